@@ -1,0 +1,1 @@
+//! Form factors: kernels, occlusion and the operators assembled from them.

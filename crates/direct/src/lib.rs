@@ -1,0 +1,1 @@
+//! Direct solvers of (I - K) x = b.

@@ -1,0 +1,1 @@
+//! Iterative solvers of (I - K) x = b, one algorithm a file.

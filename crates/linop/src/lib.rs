@@ -1,0 +1,1 @@
+//! The contract between couplings and solvers: scalars, multivectors, operators, solvers.

@@ -1,0 +1,1 @@
+//! Integration rules on the interval, the triangle and the quadrilateral.

@@ -1,0 +1,1 @@
+//! What people look at: tables, VTU, NPZ, pictures and plots.

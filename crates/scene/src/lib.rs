@@ -1,0 +1,1 @@
+//! Scene files: from TOML and OBJ to a meshed problem.

@@ -1,0 +1,1 @@
+//! Segment and ray queries against the surfaces of a scene.

@@ -1,0 +1,3 @@
+//! The `fredholm` program.
+
+fn main() {}
