@@ -1,4 +1,50 @@
 //! Fredholm solves x = b + K x on the surfaces of a scene; this crate re-exports the public face of its parts.
+//!
+//! Data flows one way: a [`scene`] is cut into a [`mesh`]; [`coupling`] assembles what its elements exchange, with
+//! [`visibility`] and [`quadrature`]; a solver of [`iterative`] or [`direct`], whose contract is [`linop`], finds the
+//! field; [`report`] writes what people look at.
+//!
+//! In a closed room of one material the radiosity is M/(1 − ρ) everywhere:
+//!
+//! ```
+//! use fredholm::coupling::form_factor::PairIntegrator;
+//! use fredholm::coupling::{Extent, Radiosity, assemble};
+//! use fredholm::iterative::GaussSeidel;
+//! use fredholm::linop::{MultiVector, Quiet, SecondKind, Solver, Stop};
+//! use fredholm::scene::Scene;
+//! use fredholm::visibility::Occluders;
+//! use std::ops::ControlFlow;
+//!
+//! let text = r#"
+//!     [materials.wall]
+//!     reflectance = 0.75
+//!     exitance = 1
+//!
+//!     [[surface]]
+//!     name = "room"
+//!     material = "wall"
+//!     box = { min = [0, 0, 0], max = [1, 1, 1], inward = true }
+//!     divide = [2, 2]
+//! "#;
+//! let scene = Scene::from_str(text, "room.toml")?;
+//! let mesh = scene.mesh()?;
+//!
+//! let occluders = Occluders::new(mesh.occluders())?;
+//! let integrator = PairIntegrator::new(mesh.patches(), mesh.occluders(), &occluders, 1e-9);
+//! let assembled = assemble::<f64>(&integrator, &|_, _| ControlFlow::Continue(()))?;
+//!
+//! let extents = mesh.patches().map(|patch| Extent { area: patch.area(), exposed: patch.area() });
+//! let reflectance = MultiVector::from_vec(mesh.len(), 1, scene.reflectance(&mesh))?;
+//! let exitance = MultiVector::from_vec(mesh.len(), 1, scene.exitance(&mesh))?;
+//! let radiosity = Radiosity::new(extents.collect(), reflectance, exitance)?;
+//!
+//! let system = SecondKind::new(&assembled.matrix, radiosity.scaling())?;
+//! let mut x = radiosity.exitance().clone();
+//! let stop = Stop { tolerance: 1e-12, max_iterations: 100 };
+//! GaussSeidel.solve(&system, radiosity.exitance(), &mut x, &stop, &mut Quiet)?;
+//! assert!(x.as_slice().iter().all(|b| (b - 4.0).abs() < 1e-8));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub use fredholm_coupling as coupling;
 pub use fredholm_direct as direct;

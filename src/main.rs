@@ -1,3 +1,7 @@
 //! The `fredholm` program.
 
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    fredholm_cli::run()
+}

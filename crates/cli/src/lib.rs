@@ -1,1 +1,56 @@
 //! The command line of Fredholm; no mathematics.
+//!
+//! [`run`] reads the arguments, carries out the verb and returns the exit code: 0 done, 2 bad input or usage, 3 not
+//! converged (the results are written all the same), 4 resources refused, 5 a file could not be read or written,
+//! 130 interrupted. Standard output carries results and summaries, standard error progress, warnings and errors.
+
+mod args;
+mod commands;
+mod console;
+mod failure;
+mod folder;
+mod interrupt;
+mod memory;
+mod mesh_error;
+mod options;
+mod output;
+mod prediction;
+mod problem;
+mod record;
+mod registry;
+mod sample;
+mod size;
+mod solution;
+mod stages;
+mod summary;
+mod threads;
+mod watcher;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use args::Cli;
+
+/// Runs the program on the arguments of the process.
+#[must_use]
+pub fn run() -> ExitCode {
+    match Cli::try_parse() {
+        Ok(cli) => carry_out(&cli),
+        Err(usage) => {
+            // Help for a reader that has gone away needs no answer.
+            let _ = usage.print();
+            u8::try_from(usage.exit_code()).map_or(ExitCode::FAILURE, ExitCode::from)
+        }
+    }
+}
+
+fn carry_out(cli: &Cli) -> ExitCode {
+    match commands::execute(&cli.command) {
+        Ok(ending) => ending.into(),
+        Err(failure) => {
+            failure.present(cli.command.log());
+            failure.ending.into()
+        }
+    }
+}

@@ -1,1 +1,21 @@
 //! Form factors: kernels, occlusion and the operators assembled from them.
+//!
+//! The operator of diffuse light is K = R F with A_i F_ij = ∫_i ∫_j cosθ cosθ' V / (π r²) dA dA' (m²).
+
+pub mod form_factor;
+pub mod kernel;
+pub mod polygon;
+
+mod aggregate;
+mod assembly;
+mod discretisation;
+mod error;
+mod exposure;
+mod radiosity;
+
+pub use aggregate::aggregate;
+pub use assembly::{Assembled, MethodCounts, Watch, assemble};
+pub use discretisation::{MeshError, mesh_error};
+pub use error::CouplingError;
+pub use exposure::{exposed_shares, extents};
+pub use radiosity::{Energy, Extent, Means, Radiosity};

@@ -1,4 +1,4 @@
-//! What can be wrong with geometry.
+//! What can be wrong with geometry, and how to mend it. Corners, holes and cells are counted from 0.
 
 use thiserror::Error;
 
@@ -9,11 +9,14 @@ pub enum MeshError {
     /// A coordinate is NaN or infinite.
     #[error("corner {corner} has a coordinate that is not a finite number")]
     NotFinite {
-        /// Index of the corner, from 0.
+        /// Index of the corner.
         corner: usize,
     },
     /// The corners enclose no area.
-    #[error("the corners enclose no area (area {area:e} m², longest side {longest:e} m); remove the face or separate its corners")]
+    #[error(
+        "the corners enclose no area (area {area:e} m², longest side {longest:e} m); \
+         remove the face or separate its corners"
+    )]
     NoArea {
         /// Area found, m².
         area: f64,
@@ -26,4 +29,187 @@ pub enum MeshError {
         /// Largest number of elements.
         limit: usize,
     },
+    /// Two corners of a quad coincide.
+    #[error(
+        "corners {first} and {second} of the quad are the same point; use a triangle, or move one of them"
+    )]
+    RepeatedCorner {
+        /// One corner.
+        first: usize,
+        /// The other.
+        second: usize,
+    },
+    /// The sides of a quad cross.
+    #[error("the sides of the quad cross each other; list its corners in order around the border")]
+    BowTie,
+    /// A quad with a reflex corner was to be cut by lines.
+    #[error("the quad is not convex at corner {corner}, so lines cannot cut it; use a polygon, or two quads")]
+    NotConvex {
+        /// The reflex corner.
+        corner: usize,
+    },
+    /// A border with fewer than three different corners.
+    #[error("{ring} has fewer than three different corners; add corners or remove it")]
+    TooFewCorners {
+        /// The border.
+        ring: Ring,
+    },
+    /// A polygon that is not flat.
+    #[error(
+        "corner {corner} of {ring} is {distance:e} m off the plane of the polygon; move it, or use triangles"
+    )]
+    NotPlanar {
+        /// The border.
+        ring: Ring,
+        /// Index of the corner.
+        corner: usize,
+        /// Distance to the mean plane, m.
+        distance: f64,
+    },
+    /// A border crosses or touches itself.
+    #[error(
+        "{ring} crosses or touches itself at its sides {first} and {second}; \
+         list its corners in order around the border"
+    )]
+    SelfIntersecting {
+        /// The border.
+        ring: Ring,
+        /// Index of the corner where one of the sides begins.
+        first: usize,
+        /// Index of the corner where the other begins.
+        second: usize,
+    },
+    /// Two borders of a polygon cross or touch.
+    #[error("{first} and {second} cross or touch; keep them apart, or draw both as one border")]
+    Crossing {
+        /// One border.
+        first: Ring,
+        /// The other.
+        second: Ring,
+    },
+    /// A hole that does not lie in the polygon.
+    #[error("hole {hole} lies outside the outline; move it inside or remove it")]
+    HoleOutside {
+        /// Index of the hole.
+        hole: usize,
+    },
+    /// A hole within a hole.
+    #[error("hole {hole} lies inside hole {other}; remove it, or make what it encloses a polygon of its own")]
+    HoleInHole {
+        /// The inner hole.
+        hole: usize,
+        /// The outer hole.
+        other: usize,
+    },
+    /// The triangles of a polygon do not fill it.
+    #[error(
+        "the triangles of the polygon fill {found:e} instead of {expected:e} of its squared extent; \
+         remove corners that all but coincide"
+    )]
+    Triangulation {
+        /// Area by the borders, relative to the squared extent of the outline.
+        expected: f64,
+        /// Area of the triangles, relative to the squared extent of the outline.
+        found: f64,
+    },
+    /// A length or direction of a shape makes no sense.
+    #[error("{quantity} is {value:e} m, but must be positive and finite")]
+    Length {
+        /// What is wrong.
+        quantity: &'static str,
+        /// Its value, m.
+        value: f64,
+    },
+    /// A curved shape needs at least three segments.
+    #[error("{segments} segments cannot go around a curved shape; give at least 3")]
+    TooFewSegments {
+        /// What was asked for.
+        segments: usize,
+    },
+    /// More segments than a curved shape can use.
+    #[error(
+        "{segments} segments around a curved shape are more than {limit}; give fewer, and cut the facets instead"
+    )]
+    TooManySegments {
+        /// What was asked for.
+        segments: usize,
+        /// Largest number of segments.
+        limit: usize,
+    },
+    /// A number of pieces is zero.
+    #[error("{quantity} is 0, but must be at least 1")]
+    NoPieces {
+        /// Which number.
+        quantity: &'static str,
+    },
+    /// Parameters of lines do not run from 0 to 1.
+    #[error(
+        "the {direction} lines must begin with 0, end with 1 and increase strictly; look at number {index}"
+    )]
+    BadLines {
+        /// "u" or "v".
+        direction: &'static str,
+        /// Index of the first wrong parameter.
+        index: usize,
+    },
+    /// Triangles cannot be cut differently in two directions.
+    #[error("triangles need the same count along u and v, not {u} and {v}")]
+    UnequalCounts {
+        /// Pieces along u.
+        u: usize,
+        /// Pieces along v.
+        v: usize,
+    },
+    /// Explicit lines on something that has no parameters.
+    #[error("explicit lines cut quads only; give counts or a largest edge for triangles")]
+    LinesOnTriangles,
+    /// A cell to be left out does not exist.
+    #[error("cell ({i}, {j}) to be left out is not one of the {u} × {v} cells")]
+    NoSuchCell {
+        /// Index along u.
+        i: usize,
+        /// Index along v.
+        j: usize,
+        /// Cells along u.
+        u: usize,
+        /// Cells along v.
+        v: usize,
+    },
+    /// All cells are left out.
+    #[error("every cell of the quad is left out; remove the quad instead")]
+    NothingLeft,
+    /// A face was added before any surface.
+    #[error("a face was added before any surface; start a surface first")]
+    NoSurface,
+    /// An element cannot be split.
+    #[error("element {element} is not a leaf of this mesh; split leaves only")]
+    NotALeaf {
+        /// Index of the element.
+        element: usize,
+    },
+}
+
+/// A border of a polygon.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ring {
+    /// The outer border.
+    Outline,
+    /// The border of a hole, by its index.
+    Hole(usize),
+}
+
+impl Ring {
+    /// Number 0 is the outline, the holes follow.
+    pub(crate) fn numbered(number: usize) -> Self {
+        number.checked_sub(1).map_or(Self::Outline, Self::Hole)
+    }
+}
+
+impl std::fmt::Display for Ring {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Outline => f.write_str("the outline"),
+            Self::Hole(hole) => write!(f, "hole {hole}"),
+        }
+    }
 }

@@ -1,9 +1,6 @@
 //! The mesh: surfaces, faces, and the element trees of the faces.
 
-use crate::{MeshError, Patch, Vec3};
-
-/// Largest number of elements: indices are stored in 32 bits.
-const LIMIT: usize = u32::MAX as usize;
+use crate::{Bounds, Patch, Vec3};
 
 /// A named surface of the scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,11 +40,11 @@ pub struct Element {
 /// Surfaces cut into faces, faces into trees of elements.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
-    surfaces: Vec<Surface>,
-    faces: Vec<Face>,
-    elements: Vec<Element>,
-    leaves: Vec<usize>,
-    occluders: Vec<Patch>,
+    pub(crate) surfaces: Vec<Surface>,
+    pub(crate) faces: Vec<Face>,
+    pub(crate) elements: Vec<Element>,
+    pub(crate) leaves: Vec<usize>,
+    pub(crate) occluders: Vec<Patch>,
 }
 
 impl Mesh {
@@ -106,6 +103,7 @@ impl Mesh {
     }
 
     /// Patches of all leaves, in order.
+    #[must_use]
     pub fn patches(&self) -> impl ExactSizeIterator<Item = &Patch> {
         self.leaves.iter().map(|&e| &self.elements[e].patch)
     }
@@ -115,57 +113,10 @@ impl Mesh {
     pub fn occluders(&self) -> &[Patch] {
         &self.occluders
     }
-}
 
-/// Collects surfaces, faces and occluders into a [`Mesh`].
-#[derive(Clone, Debug, Default)]
-pub struct MeshBuilder {
-    mesh: Mesh,
-}
-
-impl MeshBuilder {
-    /// Starts a surface; the faces that follow belong to it.
-    pub fn surface(&mut self, name: impl Into<String>, material: usize) -> usize {
-        self.mesh.surfaces.push(Surface { name: name.into(), material });
-        self.mesh.surfaces.len() - 1
-    }
-
-    /// Adds an undivided piece of geometry that blocks the view.
-    pub fn occluder(&mut self, patch: Patch) {
-        self.mesh.occluders.push(patch);
-    }
-
-    /// Adds a face of the last surface, computed on the given root elements, and returns its index.
-    ///
-    /// # Errors
-    /// [`MeshError::TooLarge`] past 2³² − 1 elements; [`MeshError::NoArea`] for a face of no element.
-    pub fn face(&mut self, roots: &[Patch]) -> Result<usize, MeshError> {
-        let (area, centroid) = mean(roots)?;
-        if self.mesh.elements.len() + roots.len() > LIMIT {
-            return Err(MeshError::TooLarge { limit: LIMIT });
-        }
-        let face = self.mesh.faces.len();
-        let surface = self.mesh.surfaces.len().saturating_sub(1);
-        self.mesh.faces.push(Face { surface, area, centroid });
-        for &patch in roots {
-            self.mesh.leaves.push(self.mesh.elements.len());
-            self.mesh.elements.push(Element { patch, face, parent: None, children: None, level: 0 });
-        }
-        Ok(face)
-    }
-
-    /// The finished mesh.
+    /// The smallest box along the axes that holds all leaves and occluders; none for an empty mesh.
     #[must_use]
-    pub fn build(self) -> Mesh {
-        self.mesh
+    pub fn bounds(&self) -> Option<Bounds> {
+        Bounds::around(self.patches().chain(&self.occluders).flat_map(Patch::corners).copied())
     }
-}
-
-fn mean(roots: &[Patch]) -> Result<(f64, Vec3), MeshError> {
-    let area: f64 = roots.iter().map(Patch::area).sum();
-    if roots.is_empty() || !area.is_finite() {
-        return Err(MeshError::NoArea { area, longest: 0.0 });
-    }
-    let centroid = roots.iter().map(|p| p.centroid() * (p.area() / area)).sum();
-    Ok((area, centroid))
 }

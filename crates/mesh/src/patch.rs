@@ -2,7 +2,8 @@
 //!
 //! Area vector of a polygon: a = ½ Σ pᵢ × pᵢ₊₁; normal n = a/|a|, area |a|.
 
-use crate::{MeshError, Vec3};
+use crate::cutting::Grid;
+use crate::{MeshError, Vec3, quad, triangle};
 
 /// Relative area (area over squared longest side) below which corners enclose no area.
 const SLIVER: f64 = 1e-13;
@@ -41,19 +42,24 @@ impl Patch {
         if let Some(corner) = corners.iter().position(|p| !p.is_finite()) {
             return Err(MeshError::NotFinite { corner });
         }
-        let origin = corners[0];
-        // Twice the area vector of a quad is the cross product of its diagonals; of a triangle, of two sides.
-        let doubled = if sides == 4 {
-            (corners[2] - origin).cross(corners[3] - corners[1])
-        } else {
-            (corners[1] - origin).cross(corners[2] - origin)
-        };
-        let area = 0.5 * doubled.length();
-        let longest = longest_side(&corners[..sides]);
-        if !area.is_finite() || area <= SLIVER * longest * longest || area <= f64::MIN_POSITIVE {
-            return Err(MeshError::NoArea { area, longest });
+        let doubled = doubled_area(&corners[..sides]);
+        Self { corners, sides, normal: doubled.normalize_or_zero(), area: 0.5 * doubled.length() }.checked()
+    }
+
+    /// A piece of a flat polygon with this normal. Whether it is flat and convex is not asked again: rounding could
+    /// answer differently for a small piece far from the origin.
+    pub(crate) fn piece(corners: [Vec3; 4], sides: usize, normal: Vec3) -> Result<Self, MeshError> {
+        let area = 0.5 * doubled_area(&corners[..sides]).dot(normal);
+        Self { corners, sides, normal, area }.checked()
+    }
+
+    fn checked(self) -> Result<Self, MeshError> {
+        let longest = longest_side(self.corners());
+        let enough = self.area > f64::MIN_POSITIVE && self.area > SLIVER * longest * longest;
+        if !enough || !self.area.is_finite() {
+            return Err(MeshError::NoArea { area: self.area, longest });
         }
-        Ok(Self { corners, sides, normal: doubled.normalize(), area })
+        Ok(self)
     }
 
     fn is_flat(&self) -> bool {
@@ -126,6 +132,27 @@ impl Patch {
         a * ((1.0 - u) * (1.0 - v)) + b * (u * (1.0 - v)) + c * (u * v) + d * ((1.0 - u) * v)
     }
 
+    /// Piece `index` of n² similar ones: cell (i, j) of a quad, i along u and j along v, at i n + j; the triangles of a
+    /// triangle row by row away from corner a, row r starting at r².
+    pub(crate) fn piece_of(&self, n: usize, index: usize) -> Result<Self, MeshError> {
+        if self.sides == 4 {
+            let cell = quad::cell(&self.corners, Grid::even(n, n), index);
+            return Self::piece(cell, 4, self.normal);
+        }
+        let [a, b, c] = triangle::piece([self.corners[0], self.corners[1], self.corners[2]], n, index);
+        Self::piece([a, b, c, c], 3, self.normal)
+    }
+
+    /// Four similar pieces, cut at the middles of the sides. Of a quad, piece (i, j), i along u and j along v, is
+    /// number 2 i + j; of a triangle they are those at its corners a and b, the middle one and that at c.
+    ///
+    /// # Errors
+    /// [`MeshError::NoArea`] where the pieces would be too small for the precision of their coordinates.
+    pub fn split(&self) -> Result<[Self; 4], MeshError> {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|index| self.piece_of(2, index));
+        Ok([a?, b?, c?, d?])
+    }
+
     /// The same polygon seen from behind.
     #[must_use]
     pub fn flipped(&self) -> Self {
@@ -137,4 +164,13 @@ impl Patch {
 
 fn longest_side(corners: &[Vec3]) -> f64 {
     (0..corners.len()).map(|i| corners[i].distance(corners[(i + 1) % corners.len()])).fold(0.0, f64::max)
+}
+
+/// Twice the area vector: the cross product of two sides of a triangle, or of the diagonals of a quad.
+fn doubled_area(corners: &[Vec3]) -> Vec3 {
+    match *corners {
+        [a, b, c, d] => (c - a).cross(d - b),
+        [a, b, c] => (b - a).cross(c - a),
+        _ => Vec3::ZERO,
+    }
 }

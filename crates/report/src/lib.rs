@@ -1,1 +1,62 @@
 //! What people look at: tables, VTU, NPZ, pictures and plots.
+//!
+//! [`write_all`] turns a solved [`Field`] and the [`RunRecord`] of how it came about into a result folder:
+//!
+//! | file | contents |
+//! |---|---|
+//! | `field.csv` | a row per leaf element |
+//! | `faces.csv` | area means, a row per input face |
+//! | `surfaces.csv` | area means and powers, a row per surface |
+//! | `field.vtu` | the leaf elements for `ParaView` |
+//! | `field.npz` | the same numbers as `NumPy` arrays |
+//! | `image.png` | a camera view |
+//! | `convergence.svg` | residual against iterations and seconds |
+//! | `run.json` | what made all this; written last, so its presence means a complete folder |
+//!
+//! Every file appears whole or not at all. Units: metres, W/m², W, seconds.
+
+mod atomic;
+mod axis;
+mod camera;
+mod cie;
+mod colour;
+mod convergence;
+mod csv;
+mod error;
+mod faces_csv;
+mod field;
+mod field_csv;
+mod interpolate;
+mod mean;
+mod nodal;
+mod npz;
+mod number;
+mod outputs;
+mod palette;
+mod picture;
+mod run;
+mod shading;
+mod surfaces_csv;
+mod svg;
+mod tone;
+mod vtu;
+mod xml;
+
+pub use atomic::write_atomically;
+pub use camera::Camera;
+pub use cie::colour_matching;
+pub use colour::Colouring;
+pub use convergence::write_convergence;
+pub use error::ReportError;
+pub use faces_csv::write_faces_csv;
+pub use field::Field;
+pub use field_csv::write_field_csv;
+pub use npz::write_npz;
+pub use outputs::{FILES, View, write_all};
+pub use picture::{Picture, render};
+pub use run::{
+    Closure, Counts, Energy, FORMAT, FormFactorError, History, RunRecord, Timing, read_run, write_run,
+};
+pub use surfaces_csv::write_surfaces_csv;
+pub use tone::Exposure;
+pub use vtu::write_vtu;

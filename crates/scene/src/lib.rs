@@ -1,1 +1,27 @@
 //! Scene files: from TOML and OBJ to a meshed problem.
+//!
+//! A scene file names surfaces, what they are made of and how they are cut. [`Scene::load`] reads it and the files it
+//! names, and refuses what makes no sense with a [`SceneError`] that points at the place. [`Scene::mesh`] cuts the
+//! surfaces, [`Scene::check`] looks for mistakes that only the whole geometry shows. [`schema()`] is the JSON Schema of
+//! the format.
+//!
+//! Units: metres, degrees where a name says so, W/m².
+
+mod check;
+mod error;
+mod files;
+mod format;
+mod import;
+mod parse;
+mod part;
+mod resolve;
+mod scene;
+mod schema;
+mod source;
+mod suggest;
+
+pub use check::Warning;
+pub use error::{ErrorKind, Place, SceneError};
+pub use resolve::{Camera, Material, SolveDefaults, Storage};
+pub use scene::Scene;
+pub use schema::schema;

@@ -1,0 +1,221 @@
+//! What the command line understands.
+
+use std::path::PathBuf;
+
+use clap::builder::PossibleValuesParser;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
+use serde::Serialize;
+
+use crate::registry;
+use crate::size::Bytes;
+
+const EXAMPLES: &str = "\
+Examples:
+  fredholm solve scenes/cornell_box.toml
+  fredholm check scenes/cornell_box.toml
+  fredholm info out/cornell_box
+
+Exit codes:
+  0    done
+  2    bad input or usage
+  3    not converged; the results are written all the same
+  4    resources refused, such as memory
+  5    a file could not be read or written
+  130  interrupted";
+
+const SOLVE_EXAMPLES: &str = "\
+Examples:
+  fredholm solve scenes/cornell_box.toml
+  fredholm solve room.toml -o results --solver lu --memory 8GiB
+  fredholm solve room.toml --storage f32 --threads 4 --log json 2> log.jsonl
+
+Ctrl-C during the assembly ends the run with nothing written; during the solution of an
+iterative solver the current iterate is written as a result marked \"partial\". A second
+Ctrl-C ends the run at once.";
+
+const CHECK_EXAMPLES: &str = "\
+Examples:
+  fredholm check scenes/cornell_box.toml
+  fredholm check room.toml --memory 8GiB";
+
+const INFO_EXAMPLES: &str = "\
+Examples:
+  fredholm info out/cornell_box
+  fredholm info out/cornell_box/image.png";
+
+const SCHEMA_EXAMPLES: &str = "\
+Example:
+  fredholm schema > scene.schema.json";
+
+const COMPLETIONS_EXAMPLES: &str = "\
+Examples:
+  fredholm completions bash > ~/.local/share/bash-completion/completions/fredholm
+  fredholm completions zsh > ~/.zfunc/_fredholm";
+
+const SOLVERS_EXAMPLES: &str = "\
+Example:
+  fredholm solvers";
+
+/// Fredholm solves x = b + K x on the surfaces of a scene: diffuse light, deterministically.
+#[derive(Debug, Parser)]
+#[command(name = "fredholm", version, after_help = EXAMPLES)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+/// The verbs.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Solve a scene and write the results
+    #[command(after_help = SOLVE_EXAMPLES)]
+    Solve(SolveArgs),
+    /// Validate a scene, show its statistics and predict memory and time; solves and writes nothing
+    #[command(after_help = CHECK_EXAMPLES)]
+    Check(CheckArgs),
+    /// Tell what made a result
+    #[command(after_help = INFO_EXAMPLES)]
+    Info(InfoArgs),
+    /// Print the JSON Schema of scene files
+    #[command(after_help = SCHEMA_EXAMPLES)]
+    Schema,
+    /// Print the completions of a shell
+    #[command(after_help = COMPLETIONS_EXAMPLES)]
+    Completions(CompletionsArgs),
+    /// List the solvers
+    #[command(after_help = SOLVERS_EXAMPLES)]
+    Solvers,
+}
+
+impl Command {
+    /// How this command shows errors.
+    pub(crate) fn log(&self) -> LogFormat {
+        match self {
+            Self::Solve(args) => args.log.log,
+            Self::Check(args) => args.log.log,
+            _ => LogFormat::Plain,
+        }
+    }
+}
+
+/// How to show what is going on.
+#[derive(Clone, Copy, Debug, Args)]
+pub(crate) struct LogArgs {
+    /// Form of progress and errors on standard error
+    #[arg(long, value_enum, default_value_t, value_name = "FORM")]
+    pub(crate) log: LogFormat,
+    /// Show neither progress nor warnings nor summary, errors only
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+}
+
+/// Form of what goes to standard error.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum LogFormat {
+    /// Bars on a terminal, lines elsewhere
+    #[default]
+    Plain,
+    /// A JSON object a line
+    Json,
+}
+
+/// Number format of the stored matrix.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Precision {
+    /// 8 bytes an entry
+    F64,
+    /// 4 bytes an entry; arithmetic stays f64
+    F32,
+}
+
+/// What decides the size and the effort of a problem; where given it goes before the scene's `[solve]` table.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct ProblemArgs {
+    /// Scene file (TOML)
+    pub(crate) scene: PathBuf,
+    /// Threads; any number gives the same results [default: one a core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+    /// Solver [default: the scene's, else gauss-seidel]
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(registry::names()))]
+    pub(crate) solver: Option<String>,
+    /// Error asked for in a row of form factors [default: the scene's, else 1e-3]
+    #[arg(long, value_name = "T", value_parser = tolerance)]
+    pub(crate) form_factor_tolerance: Option<f64>,
+    /// Number format of the stored matrix [default: the scene's, else f64]
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub(crate) storage: Option<Precision>,
+    /// Memory allowed, such as 4GiB or 800MB [default: 80 % of what is available]
+    #[arg(long, value_name = "LIMIT")]
+    pub(crate) memory: Option<Bytes>,
+}
+
+/// Options of `solve`.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct SolveArgs {
+    /// Folder for the results [default: out/<name of the scene file>]
+    #[arg(long, short, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) problem: ProblemArgs,
+    /// Relative residual ‖b − A x‖₂/‖b‖₂ to reach in every band [default: the scene's, else 1e-10]
+    #[arg(long, value_name = "T", value_parser = tolerance)]
+    pub(crate) tolerance: Option<f64>,
+    /// Iterations allowed [default: the scene's, else 1000]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) max_iterations: Option<u32>,
+    #[command(flatten)]
+    pub(crate) log: LogArgs,
+}
+
+/// Options of `check`.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct CheckArgs {
+    #[command(flatten)]
+    pub(crate) problem: ProblemArgs,
+    #[command(flatten)]
+    pub(crate) log: LogArgs,
+}
+
+/// Options of `info`.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct InfoArgs {
+    /// Result folder, or a file in one
+    pub(crate) path: PathBuf,
+}
+
+/// Options of `completions`.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct CompletionsArgs {
+    /// Shell
+    pub(crate) shell: Shell,
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value < 1.0 => Ok(value),
+        _ => Err("must be a number above 0 and below 1, such as 1e-6".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_definition_is_sound() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn tolerances_lie_between_zero_and_one() {
+        assert_eq!(tolerance("1e-6"), Ok(1e-6));
+        for text in ["0", "1", "-1e-3", "nan", "inf", "x", ""] {
+            assert!(tolerance(text).is_err(), "{text}");
+        }
+    }
+}

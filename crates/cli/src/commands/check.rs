@@ -1,0 +1,50 @@
+//! `fredholm check`.
+
+use crate::args::CheckArgs;
+use crate::failure::{Ending, Failure};
+use crate::interrupt::Interrupt;
+use crate::problem::Problem;
+use crate::sample;
+use crate::stages::Stages;
+use crate::summary::Lines;
+use crate::{console, output, threads};
+
+/// Validates a scene and predicts what its solution will take.
+pub(crate) fn check(args: &CheckArgs) -> Result<Ending, Failure> {
+    let interrupt = Interrupt::install(args.log.log)?;
+    let console = console::choose(args.log);
+    let mut stages = Stages::new(&*console, &interrupt);
+    let count = args.problem.threads.map_or_else(threads::default_count, usize::from);
+    threads::pool(count)?.install(|| report(args, &mut stages))
+}
+
+fn report(args: &CheckArgs, stages: &mut Stages) -> Result<Ending, Failure> {
+    let problem = Problem::load(&args.problem, stages)?;
+    let seconds = stages.run("sample", || Ok(sample::assembly_seconds(&problem)))?;
+    if args.log.quiet {
+        return Ok(Ending::Done);
+    }
+    let mut lines = Lines::default();
+    geometry(&problem, &mut lines);
+    lines.add("memory", format!("{}: {}", problem.prediction.total(), problem.prediction));
+    lines.add("memory limit", problem.options.memory_limit().to_string());
+    let (threads, solver) = (problem.options.threads, &problem.options.solver);
+    lines.add(
+        "time",
+        format!("about {seconds:.1} s for the form factors on {threads} threads, then {solver}"),
+    );
+    problem.warnings.iter().for_each(|warning| lines.add("warning", warning));
+    output::print(&lines.under(&format!("{}: a valid scene", problem.scene.path().display())))?;
+    Ok(Ending::Done)
+}
+
+fn geometry(problem: &Problem, lines: &mut Lines) {
+    let (scene, mesh) = (&problem.scene, &problem.mesh);
+    if let Some(title) = scene.title() {
+        lines.add("title", title);
+    }
+    lines.add("bands", scene.bands().join(", "));
+    let (surfaces, faces, pieces) = (mesh.surfaces().len(), mesh.faces().len(), mesh.occluders().len());
+    lines.add("size", format!("{} elements on {faces} faces of {surfaces} surfaces", mesh.len()));
+    lines.add("occluders", format!("{pieces} flat pieces"));
+}

@@ -1,0 +1,23 @@
+//! The verbs, one a file.
+
+mod check;
+mod completions;
+mod info;
+mod schema;
+mod solve;
+mod solvers;
+
+use crate::args::Command;
+use crate::failure::{Ending, Failure};
+
+/// Carries out what was asked for.
+pub(crate) fn execute(command: &Command) -> Result<Ending, Failure> {
+    match command {
+        Command::Solve(args) => solve::solve(args),
+        Command::Check(args) => check::check(args),
+        Command::Info(args) => info::info(args),
+        Command::Schema => schema::schema(),
+        Command::Completions(args) => completions::completions(args),
+        Command::Solvers => solvers::solvers(),
+    }
+}

@@ -1,0 +1,113 @@
+//! `fredholm solve`.
+
+use std::path::{Path, PathBuf};
+
+use fredholm_linop::StopReason;
+use fredholm_report::{Camera, Exposure, Field, ReportError, RunRecord, View, write_all};
+
+use crate::args::{Precision, SolveArgs};
+use crate::failure::{Ending, Failure};
+use crate::interrupt::Interrupt;
+use crate::options::Options;
+use crate::problem::Problem;
+use crate::record::record;
+use crate::solution::{Solution, compute};
+use crate::stages::Stages;
+use crate::summary::{Lines, mesh_error, quality};
+use crate::{console, folder, output, threads};
+
+/// Solves a scene and writes the results.
+pub(crate) fn solve(args: &SolveArgs) -> Result<Ending, Failure> {
+    let interrupt = Interrupt::install(args.log.log)?;
+    folder::probe(&folder::of(args))?;
+    let console = console::choose(args.log);
+    let stages = Stages::new(&*console, &interrupt);
+    let count = args.problem.threads.map_or_else(threads::default_count, usize::from);
+    threads::pool(count)?.install(|| run(args, stages))
+}
+
+fn run(args: &SolveArgs, mut stages: Stages) -> Result<Ending, Failure> {
+    let problem = Problem::load(&args.problem, &mut stages)?;
+    let options = Options::new(args, problem.options.clone(), problem.scene.solve());
+    let solution = match options.problem.storage {
+        Precision::F64 => compute::<f64>(&problem, &options, &mut stages)?,
+        Precision::F32 => compute::<f32>(&problem, &options, &mut stages)?,
+    };
+    let record = record(&problem, &options, &solution, &stages);
+    stages.run("results", || write(&problem, &solution, &record, &folder::of(args)))?;
+    // The summary, other than the file, can tell the time of writing.
+    let record = RunRecord { timings: stages.timings().to_vec(), ..record };
+    conclude(args, &record, &solution, &stages)?;
+    Ok(ending(&solution, &stages))
+}
+
+fn write(
+    problem: &Problem,
+    solution: &Solution,
+    record: &RunRecord,
+    folder: &Path,
+) -> Result<Vec<PathBuf>, Failure> {
+    let exitance = problem.scene.exitance(&problem.mesh);
+    let (irradiance, radiosity) = (solution.means.irradiance.as_slice(), solution.means.radiosity.as_slice());
+    let field = Field::new(&problem.mesh, &record.bands, irradiance, radiosity)
+        .and_then(|field| field.with_exitance(&exitance))
+        .map_err(report_failure)?;
+    write_all(folder, &field, record, &view(problem, &field)).map_err(report_failure)
+}
+
+/// The scene's camera, or one that sees all of it.
+fn view(problem: &Problem, field: &Field) -> View {
+    let Some(camera) = problem.scene.camera() else { return View::framing(field) };
+    let exposure = camera.exposure.map_or(Exposure::Auto, Exposure::Fixed);
+    let camera = Camera {
+        eye: camera.eye,
+        target: camera.target,
+        up: camera.up,
+        vertical_fov_degrees: camera.vertical_fov_degrees,
+        width: camera.width,
+        height: camera.height,
+    };
+    View { camera, exposure }
+}
+
+fn report_failure(error: ReportError) -> Failure {
+    let ending = match error {
+        ReportError::Write { .. } => Ending::Files,
+        ReportError::NotFinite { .. } => Ending::NotConverged,
+        _ => Ending::Input,
+    };
+    Failure::new(ending, error)
+}
+
+/// Says what came of it: the summary, and warnings about a solution that is none.
+fn conclude(
+    args: &SolveArgs,
+    record: &RunRecord,
+    solution: &Solution,
+    stages: &Stages,
+) -> Result<(), Failure> {
+    if record.partial {
+        stages.console.warn("interrupted: the results are those of the last iterate, marked partial");
+    } else if solution.report.reason != StopReason::Converged {
+        let text = "the tolerance was not met; allow more with --max-iterations or --tolerance, or choose another --solver";
+        stages.console.warn(text);
+    }
+    if args.log.quiet { Ok(()) } else { summarise(&folder::of(args), record, solution) }
+}
+
+fn summarise(folder: &Path, record: &RunRecord, solution: &Solution) -> Result<(), Failure> {
+    let mut lines = Lines::default();
+    lines.add("picture", folder.join("image.png").display().to_string());
+    quality(record, &mut lines);
+    lines.add_some("mesh error", solution.mesh_error.as_ref().and_then(mesh_error));
+    output::print(&lines.under(&format!("{} → {}", record.scene, folder.display())))
+}
+
+fn ending(solution: &Solution, stages: &Stages) -> Ending {
+    match solution.report.reason {
+        _ if stages.interrupt.requested() => Ending::Interrupted,
+        StopReason::Converged => Ending::Done,
+        StopReason::Interrupted => Ending::Interrupted,
+        StopReason::IterationLimit | StopReason::Diverged => Ending::NotConverged,
+    }
+}

@@ -1,0 +1,62 @@
+//! The folder for the results.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::args::SolveArgs;
+use crate::failure::{Ending, Failure};
+
+/// The folder asked for, or `out/` and the name of the scene file without its ending.
+pub(crate) fn of(args: &SolveArgs) -> PathBuf {
+    let stem = args.problem.scene.file_stem().unwrap_or_else(|| "scene".as_ref());
+    args.output.clone().unwrap_or_else(|| Path::new("out").join(stem))
+}
+
+/// Makes sure that files can be written to `folder`, before anything is computed. Leaves nothing behind.
+pub(crate) fn probe(folder: &Path) -> Result<(), Failure> {
+    let missing: Vec<&Path> =
+        folder.ancestors().take_while(|a| !a.as_os_str().is_empty() && !a.exists()).collect();
+    let written = fs::create_dir_all(folder).and_then(|()| tempfile::tempfile_in(folder));
+    // What was already there, or what something else has filled meanwhile, stays.
+    for made in missing {
+        let _ = fs::remove_dir(made);
+    }
+    written.map(drop).map_err(|error| unusable(folder, &error))
+}
+
+fn unusable(folder: &Path, error: &io::Error) -> Failure {
+    let what = if folder.is_file() { "it is a file".to_owned() } else { error.to_string() };
+    let text = format!(
+        "cannot write results to {}: {what}\n  help: choose another folder with -o DIR",
+        folder.display()
+    );
+    Failure::new(Ending::Files, text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_probe_leaves_nothing_behind() {
+        let root = tempfile::tempdir().unwrap();
+        let deep = root.path().join("a/b/c");
+        probe(&deep).unwrap();
+        assert!(!root.path().join("a").exists());
+        fs::create_dir_all(&deep).unwrap();
+        probe(&deep).unwrap();
+        assert!(deep.is_dir());
+    }
+
+    #[test]
+    fn a_file_is_no_folder() {
+        let root = tempfile::tempdir().unwrap();
+        let file = root.path().join("taken");
+        fs::write(&file, "x").unwrap();
+        for path in [file.clone(), file.join("below")] {
+            assert_eq!(probe(&path).unwrap_err().ending, Ending::Files);
+        }
+        assert_eq!(fs::read(&file).unwrap(), b"x");
+    }
+}

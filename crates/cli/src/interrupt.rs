@@ -1,0 +1,91 @@
+//! Ctrl-C and the termination signal.
+//!
+//! The first signal asks the run to stop at its next look; the second ends the process at once. Where a run cannot look
+//! up in time, a watchman ends the process, unless there is an iterate or a result worth the wait.
+
+use std::io::{self, IsTerminal};
+use std::process;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread;
+use std::time::Duration;
+
+use crate::args::LogFormat;
+use crate::failure::{Ending, Failure};
+
+/// Time from the signal to the end where nothing can be saved.
+const PATIENCE: Duration = Duration::from_millis(800);
+
+/// What would be lost if the process ended now.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Phase {
+    /// Nothing that could be written.
+    Preparing,
+    /// An iterate, or results half written: the run ends by itself.
+    Saving,
+}
+
+/// Whether the user asked to stop.
+#[derive(Debug)]
+pub(crate) struct Interrupt {
+    requested: AtomicBool,
+    phase: Mutex<Phase>,
+    log: LogFormat,
+}
+
+impl Interrupt {
+    /// Listens to the signals from now on.
+    pub(crate) fn install(log: LogFormat) -> Result<Arc<Self>, Failure> {
+        let interrupt =
+            Arc::new(Self { requested: AtomicBool::new(false), phase: Mutex::new(Phase::Preparing), log });
+        let listener = Arc::clone(&interrupt);
+        ctrlc::set_handler(move || listener.signal()).map_err(|e| Failure::new(Ending::Resources, e))?;
+        Ok(interrupt)
+    }
+
+    /// Whether a signal has come.
+    pub(crate) fn requested(&self) -> bool {
+        self.requested.load(Ordering::Relaxed)
+    }
+
+    /// Fails where a signal has come and there is nothing to save.
+    pub(crate) fn check(&self) -> Result<(), Failure> {
+        if self.requested() && *self.phase() == Phase::Preparing { Err(nothing_saved()) } else { Ok(()) }
+    }
+
+    /// Says what the run is doing from now on.
+    pub(crate) fn enter(&self, phase: Phase) {
+        *self.phase() = phase;
+    }
+
+    fn phase(&self) -> MutexGuard<'_, Phase> {
+        self.phase.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn signal(self: &Arc<Self>) {
+        if self.requested.swap(true, Ordering::Relaxed) {
+            process::exit(i32::from(Ending::Interrupted.code()));
+        }
+        let watchman = Arc::clone(self);
+        thread::spawn(move || watchman.wait());
+    }
+
+    /// Ends the process after a while; the lock keeps the run from beginning to write meanwhile.
+    fn wait(&self) {
+        thread::sleep(PATIENCE);
+        let phase = self.phase();
+        if *phase == Phase::Preparing {
+            if self.log == LogFormat::Plain && io::stderr().is_terminal() {
+                // Below the progress bar.
+                eprintln!();
+            }
+            nothing_saved().present(self.log);
+            process::exit(i32::from(Ending::Interrupted.code()));
+        }
+    }
+}
+
+/// The end of a run that was stopped before it had anything to save.
+pub(crate) fn nothing_saved() -> Failure {
+    Failure::new(Ending::Interrupted, "interrupted; there is no partial result, nothing was written")
+}

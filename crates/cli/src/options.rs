@@ -1,0 +1,120 @@
+//! The options in force: those of the command line, else those of the scene, else the program's.
+
+use fredholm_scene::{SolveDefaults, Storage};
+use serde::Serialize;
+
+use crate::args::{LogArgs, LogFormat, Precision, ProblemArgs, SolveArgs};
+use crate::size::Bytes;
+use crate::{folder, memory, registry, threads};
+
+const TOLERANCE: f64 = 1e-10;
+const MAX_ITERATIONS: u64 = 1000;
+const FORM_FACTOR_TOLERANCE: f64 = 1e-3;
+
+/// What decides the size and the effort of a problem.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct ProblemOptions {
+    pub(crate) solver: String,
+    pub(crate) form_factor_tolerance: f64,
+    pub(crate) storage: Precision,
+    pub(crate) threads: usize,
+    /// `None`: most of what the system has.
+    pub(crate) memory_limit_bytes: Option<u64>,
+}
+
+/// All options of a solution.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Options {
+    #[serde(flatten)]
+    pub(crate) problem: ProblemOptions,
+    pub(crate) tolerance: f64,
+    pub(crate) max_iterations: u64,
+    pub(crate) output: String,
+    pub(crate) log: LogFormat,
+    pub(crate) quiet: bool,
+}
+
+impl ProblemOptions {
+    pub(crate) fn new(args: &ProblemArgs, scene: &SolveDefaults) -> Self {
+        let solver = args.solver.as_ref().or(scene.solver.as_ref());
+        let form_factor_tolerance = args.form_factor_tolerance.or(scene.form_factor_tolerance);
+        let storage = args.storage.or(scene.storage.map(precision));
+        Self {
+            solver: solver.map_or_else(|| registry::DEFAULT.to_owned(), Clone::clone),
+            form_factor_tolerance: form_factor_tolerance.unwrap_or(FORM_FACTOR_TOLERANCE),
+            storage: storage.unwrap_or(Precision::F64),
+            threads: args.threads.map_or_else(threads::default_count, usize::from),
+            memory_limit_bytes: args.memory.map(|Bytes(limit)| u64::try_from(limit).unwrap_or(u64::MAX)),
+        }
+    }
+
+    pub(crate) fn memory_limit(&self) -> Bytes {
+        self.memory_limit_bytes.map_or_else(memory::default_limit, |bytes| Bytes(bytes.into()))
+    }
+}
+
+impl Options {
+    pub(crate) fn new(args: &SolveArgs, problem: ProblemOptions, scene: &SolveDefaults) -> Self {
+        let LogArgs { log, quiet } = args.log;
+        let iterations = args.max_iterations.map(u64::from).or(scene.max_iterations);
+        Self {
+            problem,
+            tolerance: args.tolerance.or(scene.tolerance).unwrap_or(TOLERANCE),
+            max_iterations: iterations.unwrap_or(MAX_ITERATIONS),
+            output: folder::of(args).display().to_string(),
+            log,
+            quiet,
+        }
+    }
+}
+
+fn precision(storage: Storage) -> Precision {
+    match storage {
+        Storage::F64 => Precision::F64,
+        Storage::F32 => Precision::F32,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::args::{Cli, Command};
+    use clap::Parser;
+
+    fn options(line: &str, scene: &SolveDefaults) -> Options {
+        let Command::Solve(args) = Cli::try_parse_from(line.split(' ')).unwrap().command else {
+            panic!("{line} is no solve")
+        };
+        Options::new(&args, ProblemOptions::new(&args.problem, scene), scene)
+    }
+
+    #[test]
+    fn the_command_line_goes_before_the_scene_and_that_before_the_program() {
+        let scene = SolveDefaults {
+            solver: Some("lu".into()),
+            tolerance: Some(1e-5),
+            max_iterations: Some(7),
+            form_factor_tolerance: Some(1e-6),
+            storage: Some(Storage::F32),
+        };
+        let own = options("fredholm solve a/b.toml", &SolveDefaults::default());
+        assert_eq!(
+            (own.problem.solver.as_str(), own.tolerance, own.max_iterations),
+            ("gauss-seidel", 1e-10, 1000)
+        );
+        assert_eq!((own.problem.form_factor_tolerance, own.output.as_str()), (1e-3, "out/b"));
+        let theirs = options("fredholm solve a/b.toml", &scene);
+        assert_eq!(
+            (theirs.problem.solver.as_str(), theirs.tolerance, theirs.max_iterations),
+            ("lu", 1e-5, 7)
+        );
+        assert_eq!((theirs.problem.form_factor_tolerance, theirs.problem.storage), (1e-6, Precision::F32));
+        let given = "fredholm solve a.toml --solver southwell --storage f64 --max-iterations 9 --threads 3 --memory 2kB";
+        let given = options(given, &scene);
+        assert_eq!((given.problem.solver.as_str(), given.problem.storage), ("southwell", Precision::F64));
+        assert_eq!(
+            (given.max_iterations, given.problem.threads, given.problem.memory_limit_bytes),
+            (9, 3, Some(2000))
+        );
+    }
+}

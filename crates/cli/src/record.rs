@@ -1,0 +1,112 @@
+//! The record of a run, `run.json`.
+
+use std::collections::BTreeMap;
+
+use fredholm_linop::{Report, StopReason, Work};
+use fredholm_report::{Closure, Counts, Energy, FormFactorError, History, RunRecord};
+use serde_json::Value;
+
+use crate::memory;
+use crate::options::Options;
+use crate::problem::Problem;
+use crate::solution::{Solution, reason};
+use crate::stages::Stages;
+
+/// Everything that is worth knowing of a run.
+pub(crate) fn record(
+    problem: &Problem,
+    options: &Options,
+    solution: &Solution,
+    stages: &Stages,
+) -> RunRecord {
+    let report = &solution.report;
+    RunRecord {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        scene: problem.scene.path().display().to_string(),
+        scene_sha256: problem.scene.sha256().to_owned(),
+        options: serde_json::to_value(options).unwrap_or(Value::Null),
+        bands: problem.scene.bands().to_vec(),
+        counts: counts(problem),
+        timings: stages.timings().to_vec(),
+        peak_memory_bytes: memory::peak().and_then(|peak| u64::try_from(peak.0).ok()),
+        solver: options.problem.solver.clone(),
+        tolerance: Some(options.tolerance),
+        history: history(report, problem.scene.bands().len()),
+        work: work(&report.work),
+        stop_reason: reason(report.reason).to_owned(),
+        closure: closure(problem, &solution.closure),
+        form_factor_error: form_factor_error(options, &solution.row_error),
+        energy: energy(problem, solution),
+        warnings: problem.warnings.clone(),
+        partial: report.reason == StopReason::Interrupted,
+        ..RunRecord::default()
+    }
+}
+
+fn counts(problem: &Problem) -> Counts {
+    let mesh = &problem.mesh;
+    let elements = mesh.len() as u64;
+    Counts {
+        surfaces: mesh.surfaces().len() as u64,
+        faces: mesh.faces().len() as u64,
+        elements,
+        occluders: mesh.occluders().len() as u64,
+        bands: problem.scene.bands().len() as u64,
+        matrix_entries: elements * (elements + 1) / 2,
+    }
+}
+
+fn history(report: &Report, bands: usize) -> History {
+    let records = || report.history.iter();
+    History {
+        iterations: records().map(|record| record.iteration as u64).collect(),
+        seconds: records().map(|record| record.seconds).collect(),
+        residual: (0..bands).map(|band| records().map(|r| r.residuals[band]).collect()).collect(),
+    }
+}
+
+fn work(work: &Work) -> BTreeMap<String, u64> {
+    let counters = [
+        ("operator_applications", work.operator_applications),
+        ("row_visits", work.row_visits),
+        ("column_visits", work.column_visits),
+        ("entries_touched", work.entries_touched),
+    ];
+    counters.map(|(name, count)| (name.to_owned(), count)).into()
+}
+
+fn closure(problem: &Problem, closure: &[f64]) -> Closure {
+    let mut found = Closure::default();
+    let (mut sum, mut area) = (0.0, 0.0);
+    for (element, (patch, row)) in problem.mesh.patches().zip(closure).enumerate() {
+        let defect = (row - 1.0).abs();
+        sum += patch.area() * defect;
+        area += patch.area();
+        if found.max.is_none_or(|max| defect > max) {
+            found.max = Some(defect);
+            found.worst_element = Some(element as u64);
+        }
+    }
+    let surface = found.worst_element.map(|element| problem.mesh.surface_of(element as usize));
+    found.worst_surface = surface.map(|surface| problem.mesh.surfaces()[surface].name.clone());
+    found.mean = Some(sum / area);
+    found
+}
+
+fn form_factor_error(options: &Options, row_error: &[f64]) -> FormFactorError {
+    FormFactorError {
+        tolerance: Some(options.problem.form_factor_tolerance),
+        max: None,
+        row_max: row_error.iter().copied().reduce(f64::max),
+    }
+}
+
+fn energy(problem: &Problem, solution: &Solution) -> Vec<Energy> {
+    let balance = |(band, energy): (&String, &fredholm_coupling::Energy)| Energy {
+        band: band.clone(),
+        emitted: Some(energy.emitted),
+        absorbed: Some(energy.absorbed),
+        escaped: Some(energy.escaped),
+    };
+    problem.scene.bands().iter().zip(&solution.energy).map(balance).collect()
+}

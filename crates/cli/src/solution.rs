@@ -1,0 +1,126 @@
+//! The computation itself: assembly, solution, and what is known of their errors.
+
+use fredholm_coupling::{
+    Assembled, CouplingError, Energy, Means, MeshError, Radiosity, assemble, exposed_shares, extents,
+};
+use fredholm_linop::{MultiVector, PackedSymmetric, Report, SecondKind, SolveError, StopReason, Storage};
+use fredholm_mesh::Patch;
+
+use crate::failure::{Ending, Failure};
+use crate::interrupt::{Phase, nothing_saved};
+use crate::mesh_error;
+use crate::options::Options;
+use crate::problem::{Problem, prepare};
+use crate::stages::Stages;
+use crate::watcher::Watcher;
+
+/// A solved problem.
+pub(crate) struct Solution {
+    /// Irradiance and radiosity of the elements, W/m².
+    pub(crate) means: Means,
+    /// What the solver did.
+    pub(crate) report: Report,
+    /// Row sum of the form factors of every element.
+    pub(crate) closure: Vec<f64>,
+    /// Estimated error of the row sum of every element.
+    pub(crate) row_error: Vec<f64>,
+    /// Balance of every band.
+    pub(crate) energy: Vec<Energy>,
+    /// Estimated discretisation error, where faces have several elements.
+    pub(crate) mesh_error: Option<MeshError>,
+}
+
+/// Assembles and solves, with the matrix stored as `S`.
+pub(crate) fn compute<S: Storage>(
+    problem: &Problem,
+    options: &Options,
+    stages: &mut Stages,
+) -> Result<Solution, Failure> {
+    let watcher = Watcher::new(stages, options);
+    let assembled = stages.run("assembly", || form_factors::<S>(problem, watcher))?;
+    let radiosity = stages.run("exposure", || system(problem, &assembled.matrix))?;
+    if problem.solver.iterative {
+        stages.interrupt.enter(Phase::Saving);
+    }
+    let solved = stages.run("solution", || solve(problem, &radiosity, &assembled.matrix, watcher))?;
+    stages.interrupt.check()?;
+    stages.interrupt.enter(Phase::Saving);
+    stages.run("mesh error", || assess(problem, &radiosity, &assembled, solved, watcher))
+}
+
+fn form_factors<S: Storage>(problem: &Problem, watcher: Watcher) -> Result<Assembled<S>, Failure> {
+    let integrator = problem.integrator();
+    assemble(&integrator, &|done, total| watcher.pairs(done, total)).map_err(coupling_failure)
+}
+
+/// What follows from a solution, and how far it is to be trusted.
+fn assess<S: Storage>(
+    problem: &Problem,
+    radiosity: &Radiosity,
+    assembled: &Assembled<S>,
+    (x, report): (MultiVector<f64>, Report),
+    watcher: Watcher,
+) -> Result<Solution, Failure> {
+    let matrix = &assembled.matrix;
+    let means = radiosity.means(matrix, &x);
+    let mesh_error = mesh_error::estimate(problem, radiosity, matrix, &means, watcher)?;
+    let closure = radiosity.closure(matrix);
+    let energy = radiosity.energy(&x, &means, &closure);
+    let row_error = assembled.error.iter().zip(problem.mesh.patches()).map(|(e, p)| e / p.area()).collect();
+    Ok(Solution { means, report, closure, row_error, energy, mesh_error })
+}
+
+/// The system for the exposed parts of the elements.
+fn system<S: Storage>(problem: &Problem, matrix: &PackedSymmetric<S>) -> Result<Radiosity, Failure> {
+    let patches: Vec<Patch> = problem.mesh.patches().copied().collect();
+    let shares = exposed_shares(&problem.patches(), &prepare(&patches)?);
+    let extents = extents(&problem.patches(), &shares, &matrix.row_sums());
+    let reflectance = problem.multivector(problem.scene.reflectance(&problem.mesh))?;
+    let exitance = problem.multivector(problem.scene.exitance(&problem.mesh))?;
+    Radiosity::new(extents, reflectance, exitance).map_err(coupling_failure)
+}
+
+/// Solves from B = M on.
+pub(crate) fn solve<S: Storage>(
+    problem: &Problem,
+    radiosity: &Radiosity,
+    matrix: &PackedSymmetric<S>,
+    mut watcher: Watcher,
+) -> Result<(MultiVector<f64>, Report), Failure> {
+    let system = SecondKind::new(matrix, radiosity.scaling()).map_err(|e| Failure::new(Ending::Input, e))?;
+    let exitance = radiosity.exitance();
+    let mut x = exitance.clone();
+    let solver = &problem.solver.solver;
+    let report =
+        solver.solve(&system, exitance, &mut x, &watcher.stop(), &mut watcher).map_err(solve_failure)?;
+    Ok((x, report))
+}
+
+pub(crate) fn coupling_failure(error: CouplingError) -> Failure {
+    match error {
+        CouplingError::Interrupted { .. } => nothing_saved(),
+        CouplingError::Memory { .. } | CouplingError::Allocation { .. } => {
+            Failure::new(Ending::Resources, error)
+        }
+        _ => Failure::new(Ending::Input, error),
+    }
+}
+
+fn solve_failure(error: SolveError) -> Failure {
+    let ending = match error {
+        SolveError::Singular { .. } => Ending::NotConverged,
+        SolveError::Linop(fredholm_linop::LinopError::Memory { .. }) => Ending::Resources,
+        _ => Ending::Input,
+    };
+    Failure::new(ending, error)
+}
+
+/// The reason in the words of the record.
+pub(crate) fn reason(reason: StopReason) -> &'static str {
+    match reason {
+        StopReason::Converged => "converged",
+        StopReason::IterationLimit => "not converged",
+        StopReason::Interrupted => "interrupted",
+        StopReason::Diverged => "diverged",
+    }
+}

@@ -1,0 +1,114 @@
+//! What a run came to, in words.
+
+use std::fmt::Write;
+
+use fredholm_coupling::MeshError;
+use fredholm_report::{Closure, Counts, Energy, RunRecord, Timing};
+
+use crate::size::Bytes;
+
+/// Bands whose energy balance is listed.
+const BANDS: usize = 8;
+
+/// Lines with a label each.
+#[derive(Debug, Default)]
+pub(crate) struct Lines(String);
+
+impl Lines {
+    /// Adds a line; what has more lines is indented under its label.
+    pub(crate) fn add(&mut self, label: &str, text: impl AsRef<str>) {
+        let text = text.as_ref().replace('\n', &format!("\n{:18}", ""));
+        // Writing to a string cannot fail.
+        let _ = writeln!(self.0, "  {label:<16}{text}");
+    }
+
+    /// Adds a line where there is something to say.
+    pub(crate) fn add_some(&mut self, label: &str, text: Option<String>) {
+        if let Some(text) = text {
+            self.add(label, text);
+        }
+    }
+
+    /// The lines under a heading.
+    pub(crate) fn under(self, heading: &str) -> String {
+        format!("{heading}\n{}", self.0)
+    }
+}
+
+/// The summary at the end of a run: the figures that say whether to trust it.
+pub(crate) fn quality(run: &RunRecord, lines: &mut Lines) {
+    lines.add("size", counts(&run.counts));
+    lines.add("solution", solution(run));
+    lines.add_some("closure", closure(&run.closure));
+    lines.add_some("form factors", form_factors(run));
+    lines.add_some("time", (!run.timings.is_empty()).then(|| times(&run.timings)));
+    run.warnings.iter().for_each(|warning| lines.add("warning", warning));
+}
+
+/// Everything a record tells.
+pub(crate) fn provenance(run: &RunRecord, lines: &mut Lines) {
+    lines.add("made by", format!("fredholm {}", run.version));
+    lines.add("scene", &run.scene);
+    lines.add("scene sha256", &run.scene_sha256);
+    lines.add("state", if run.partial { "partial: the run was interrupted" } else { "complete" });
+    lines.add("bands", run.bands.join(", "));
+    quality(run, lines);
+    lines.add_some("peak memory", run.peak_memory_bytes.map(|bytes| Bytes(bytes.into()).to_string()));
+    let work: Vec<_> = run.work.iter().map(|(name, count)| format!("{name} {count}")).collect();
+    lines.add("work", work.join(", "));
+    run.energy.iter().take(BANDS).for_each(|energy| lines.add_some("energy", balance(energy)));
+    lines.add("options", format!("{:#}", run.options));
+}
+
+fn counts(counts: &Counts) -> String {
+    let Counts { surfaces, faces, elements, bands, .. } = counts;
+    format!("{elements} elements on {faces} faces of {surfaces} surfaces, {bands} bands")
+}
+
+fn solution(run: &RunRecord) -> String {
+    let iterations = run.history.iterations.last().copied().unwrap_or(0);
+    let last = run.history.residual.iter().filter_map(|band| band.last());
+    let residual = last.fold(0.0, |worst: f64, &r| if r > worst || r.is_nan() { r } else { worst });
+    let asked = run.tolerance.map(|t| format!(" (asked: {t:.1e})")).unwrap_or_default();
+    let (solver, reason) = (&run.solver, &run.stop_reason);
+    format!("{reason} after {iterations} iterations of {solver}, residual {residual:.1e}{asked}")
+}
+
+fn closure(closure: &Closure) -> Option<String> {
+    let mut text = format!("row sums of the form factors differ from 1 by {:.1e} at most", closure.max?);
+    if let Some(surface) = &closure.worst_surface {
+        let _ = write!(text, " (on {surface})");
+    }
+    if let Some(mean) = closure.mean {
+        let _ = write!(text, ", {mean:.1e} on average");
+    }
+    Some(text)
+}
+
+fn form_factors(run: &RunRecord) -> Option<String> {
+    let error = &run.form_factor_error;
+    let mut text = format!("estimated error of a row {:.1e} at most", error.row_max?);
+    if let Some(tolerance) = error.tolerance {
+        let _ = write!(text, " (asked: {tolerance:.1e})");
+    }
+    Some(text)
+}
+
+fn balance(energy: &Energy) -> Option<String> {
+    let (emitted, absorbed) = (energy.emitted?, energy.absorbed?);
+    let escaped = energy.escaped.map(|power| format!(", escaped {power:.6} W")).unwrap_or_default();
+    Some(format!("{}: emitted {emitted:.6} W, absorbed {absorbed:.6} W{escaped}", energy.band))
+}
+
+fn times(timings: &[Timing]) -> String {
+    let stages: Vec<_> = timings.iter().map(|t| format!("{} {:.2} s", t.stage, t.seconds)).collect();
+    stages.join(", ")
+}
+
+/// The error of the mesh in the worst band.
+pub(crate) fn mesh_error(error: &MeshError) -> Option<String> {
+    let worst = error.relative_l2.iter().copied().reduce(f64::max)?;
+    Some(format!(
+        "the irradiance of the faces is estimated to be within {worst:.1e} of that on a finer mesh (L2, worst band)"
+    ))
+}

@@ -1,0 +1,57 @@
+//! Between the computation and the person who waits for it: progress one way, Ctrl-C the other.
+
+use std::ops::ControlFlow;
+
+use fredholm_linop::{Observer, Progress, Stop};
+
+use crate::console::Console;
+use crate::interrupt::Interrupt;
+use crate::options::Options;
+use crate::stages::Stages;
+
+/// Watches an assembly or a solution.
+#[derive(Clone, Copy)]
+pub(crate) struct Watcher<'a> {
+    console: &'a dyn Console,
+    interrupt: &'a Interrupt,
+    stop: Stop,
+}
+
+impl<'a> Watcher<'a> {
+    pub(crate) fn new(stages: &Stages<'a>, options: &Options) -> Self {
+        let max_iterations = usize::try_from(options.max_iterations).unwrap_or(usize::MAX);
+        let stop = Stop { tolerance: options.tolerance, max_iterations };
+        Self { console: stages.console, interrupt: stages.interrupt, stop }
+    }
+
+    /// When the solution ends by itself.
+    pub(crate) fn stop(&self) -> Stop {
+        self.stop
+    }
+
+    /// Follows the assembly, from any thread.
+    pub(crate) fn pairs(&self, done: u64, total: u64) -> ControlFlow<()> {
+        self.console.advance(done as f64 / total.max(1) as f64, &|| format!("{done} of {total} pairs"));
+        self.go_on()
+    }
+
+    /// Whether the computation is still wanted.
+    pub(crate) fn go_on(&self) -> ControlFlow<()> {
+        if self.interrupt.requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
+impl Observer<f64> for Watcher<'_> {
+    fn observe(&mut self, progress: &Progress<'_, f64>) -> ControlFlow<()> {
+        let record = progress.record;
+        let residual = record.residuals.iter().copied().fold(0.0, f64::max);
+        // The digits gained of those asked for.
+        let share = (residual.ln() / self.stop.tolerance.ln()).clamp(0.0, 1.0);
+        self.console.advance(share, &|| format!("iteration {}, residual {residual:.1e}", record.iteration));
+        self.go_on()
+    }
+
+    fn poll(&mut self) -> ControlFlow<()> {
+        self.go_on()
+    }
+}

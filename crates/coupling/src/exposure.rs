@@ -1,0 +1,125 @@
+//! The exposed share w of every element: the part that sees a lit side or the open.
+//!
+//! A box that stands on a floor has no bottom, so the floor under it is a patch of which every ray ends on the back of a side. Such a part is
+//! buried: it receives nothing and nothing sees it. w is the share of points, on a grid over the element, of which at least one ray of a fixed bundle
+//! meets a lit side or nothing at all. Dimensionless; the grid is refined where both kinds of point occur.
+
+use crate::radiosity::Extent;
+use fredholm_mesh::{Patch, Vec3};
+use fredholm_visibility::Occluders;
+use rayon::prelude::*;
+use std::f64::consts::TAU;
+
+/// Points along a side of the first grid, and of the one for elements that are partly buried.
+const GRIDS: [usize; 2] = [8, 32];
+/// Tilts (cosines) of the rings of rays about the normal, and rays in a ring.
+const TILTS: [f64; 2] = [0.75, 0.3];
+const RING: usize = 6;
+
+/// Exposed shares in [0, 1] of the patches of a mesh; `lit` holds these patches, in order.
+#[must_use]
+pub fn exposed_shares(patches: &[&Patch], lit: &Occluders) -> Vec<f64> {
+    patches.par_iter().map(|patch| share(patch, patches, lit)).collect()
+}
+
+/// Areas and exposed areas (m²) of patches with given shares; `rows` are the sums Σ_j G_ij (m²).
+///
+/// What a patch exchanges cannot exceed what it exposes, Σ_j G_ij ≤ w A, which is sharper than a grid where little is exposed.
+#[must_use]
+pub fn extents(patches: &[&Patch], shares: &[f64], rows: &[f64]) -> Vec<Extent> {
+    let of = |((patch, &share), &row): ((&&Patch, &f64), &f64)| {
+        let area = patch.area();
+        Extent { area, exposed: if share < 1.0 { (share * area).max(row.min(area)) } else { area } }
+    };
+    patches.iter().zip(shares).zip(rows).map(of).collect()
+}
+
+fn share(patch: &Patch, patches: &[&Patch], lit: &Occluders) -> f64 {
+    let directions = bundle(patch);
+    let on_grid = |n: usize| {
+        let exposed = grid(patch, n).filter(|&p| directions.iter().any(|&d| is_open(p, d, patches, lit))).count();
+        exposed as f64 / (n * n) as f64
+    };
+    let first = on_grid(GRIDS[0]);
+    if first > 0.0 && first < 1.0 { on_grid(GRIDS[1]) } else { first }
+}
+
+/// Whether a ray meets a lit side, or nothing.
+fn is_open(p: Vec3, direction: Vec3, patches: &[&Patch], lit: &Occluders) -> bool {
+    lit.closest(p, direction, f64::INFINITY).is_none_or(|hit| patches[hit.patch].normal().dot(direction) < 0.0)
+}
+
+/// The normal and rings of directions about it.
+fn bundle(patch: &Patch) -> Vec<Vec3> {
+    let n = patch.normal();
+    let across = n.any_orthonormal_vector();
+    let other = n.cross(across);
+    let ring = |tilt: f64| {
+        let sine = (1.0 - tilt * tilt).sqrt();
+        (0..RING).map(move |k| {
+            let angle = TAU * (k as f64 + tilt) / RING as f64;
+            n * tilt + (across * angle.cos() + other * angle.sin()) * sine
+        })
+    };
+    std::iter::once(n).chain(TILTS.into_iter().flat_map(ring)).collect()
+}
+
+/// Midpoints of an n × n grid; on a triangle the upper half is folded down.
+fn grid(patch: &Patch, n: usize) -> impl Iterator<Item = Vec3> {
+    let middle = move |k: usize| (k as f64 + 0.5) / n as f64;
+    (0..n * n).map(move |k| {
+        let (u, v) = (middle(k / n), middle(k % n));
+        if patch.sides() == 3 && u + v > 1.0 { patch.point(1.0 - u, 1.0 - v) } else { patch.point(u, v) }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn quad(corners: [[f64; 3]; 4]) -> Patch {
+        Patch::quad(corners.map(Vec3::from)).unwrap().unwrap()
+    }
+
+    /// A floor [0, 1]² with a bottomless unit-high box standing on [0, x] × [0, 1], lit outside.
+    fn floor_and_box(x: f64) -> Vec<Patch> {
+        vec![
+            quad([[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]]),
+            quad([[0., 0., 1.], [x, 0., 1.], [x, 1., 1.], [0., 1., 1.]]),
+            quad([[0., 0., 0.], [x, 0., 0.], [x, 0., 1.], [0., 0., 1.]]),
+            quad([[x, 0., 0.], [x, 1., 0.], [x, 1., 1.], [x, 0., 1.]]),
+            quad([[x, 1., 0.], [0., 1., 0.], [0., 1., 1.], [x, 1., 1.]]),
+            quad([[0., 1., 0.], [0., 0., 0.], [0., 0., 1.], [0., 1., 1.]]),
+        ]
+    }
+
+    fn shares(patches: &[Patch]) -> Vec<f64> {
+        exposed_shares(&patches.iter().collect::<Vec<_>>(), &Occluders::new(patches).unwrap())
+    }
+
+    #[test]
+    fn the_floor_under_a_box_is_buried() {
+        for x in [0.25, 0.5, 0.6] {
+            let shares = shares(&floor_and_box(x));
+            assert!((shares[0] - (1.0 - x)).abs() < 1.0 / 32.0, "{x}: {}", shares[0]);
+            assert!(shares[1..].iter().all(|&w| w >= 1.0), "the box itself is exposed: {shares:?}");
+        }
+    }
+
+    #[test]
+    fn a_sliver_that_the_grid_misses_is_as_large_as_its_exchange() {
+        let patch = floor_and_box(0.5)[0];
+        let sizes = extents(&[&patch; 3], &[0.0, 0.5, 1.0], &[0.01, 0.4, 0.9]);
+        let exposed: Vec<f64> = sizes.iter().map(|size| size.exposed).collect();
+        assert_eq!(exposed, [0.01, 0.5, 1.0]);
+    }
+
+    #[test]
+    fn a_plate_of_two_faces_buries_nothing() {
+        let mut patches = floor_and_box(0.5);
+        patches.truncate(1);
+        let plate = quad([[-1., -1., 0.5], [2., -1., 0.5], [2., 2., 0.5], [-1., 2., 0.5]]);
+        patches.extend([plate, plate.flipped()]);
+        assert!(shares(&patches).iter().all(|&w| w >= 1.0));
+    }
+}

@@ -1,0 +1,72 @@
+//! Point to polygon in closed form: F = (1/2π) Σₑ Θₑ (Γₑ · n).
+//!
+//! J. H. Lambert 1760; P. Schröder & P. Hanrahan, SIGGRAPH 1993, doi:10.1145/166117.166138, eq. 3. Γₑ is the unit vector along rₑ × rₑ₊₁,
+//! Θₑ the angle between rₑ and rₑ₊₁, r the corners seen from the point. Dimensionless. The polygon must lie above the horizon of
+//! the point and be counter-clockwise seen from it.
+
+use fredholm_mesh::Vec3;
+use std::f64::consts::FRAC_1_PI;
+
+/// Form factor from a point at the origin with unit normal `n` to the polygon with corners `r` relative to the point.
+///
+/// ```
+/// use fredholm_coupling::form_factor::point_to_polygon;
+/// use fredholm_mesh::Vec3;
+/// // Howell B-3: a rectangle a × b at height 1 above its corner.
+/// let r = [Vec3::new(0.0, 0.0, 1.0), Vec3::new(0.0, 1.0, 1.0), Vec3::new(1.0, 1.0, 1.0), Vec3::new(1.0, 0.0, 1.0)];
+/// let side = (1.0 / 2f64.sqrt()) * (1.0 / 2f64.sqrt()).atan();
+/// assert!((point_to_polygon(Vec3::Z, r) - side / std::f64::consts::PI).abs() < 1e-15);
+/// ```
+pub fn point_to_polygon(n: Vec3, r: impl IntoIterator<Item = Vec3>) -> f64 {
+    let mut corners = r.into_iter();
+    let Some(first) = corners.next() else { return 0.0 };
+    let (mut sum, mut from) = (0.0, first);
+    for to in corners {
+        sum += edge_term(n, from, to);
+        from = to;
+    }
+    // Seen from the point, a polygon that faces it runs clockwise about the normal of the point: hence the sign.
+    -0.5 * FRAC_1_PI * (sum + edge_term(n, from, first))
+}
+
+/// Θ (Γ · n) of one edge. An edge that points at the origin spans no angle.
+fn edge_term(n: Vec3, from: Vec3, to: Vec3) -> f64 {
+    let cross = from.cross(to);
+    let sine = cross.length();
+    if sine == 0.0 { 0.0 } else { cross.dot(n) * (sine.atan2(from.dot(to)) / sine) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn disc(radius: f64, height: f64, sides: usize) -> impl Iterator<Item = Vec3> {
+        let angle = move |k: usize| -std::f64::consts::TAU * k as f64 / sides as f64;
+        (0..sides).map(move |k| Vec3::new(radius * angle(k).cos(), radius * angle(k).sin(), height))
+    }
+
+    #[test]
+    fn a_coaxial_disc_has_the_sine_squared() {
+        let exact = 1.0 / (1.0 + 4.0);
+        assert!((point_to_polygon(Vec3::Z, disc(1.0, 2.0, 100_000)) - exact).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_polygon_that_fills_the_view_has_one() {
+        assert!((point_to_polygon(Vec3::Z, disc(1e9, 1.0, 4)) - 1.0).abs() < 1e-8);
+    }
+
+    #[test]
+    fn a_small_polygon_has_the_point_kernel() {
+        let size = 1e-3;
+        let r = disc(size, 1.0, 4).map(|x| x + Vec3::X * 0.5);
+        let kernel = crate::kernel::lambert(Vec3::ZERO, Vec3::Z, Vec3::new(0.5, 0.0, 1.0), Vec3::NEG_Z);
+        let exact = kernel * 2.0 * size * size;
+        assert!((point_to_polygon(Vec3::Z, r) / exact - 1.0).abs() < 1e-5);
+    }
+
+    #[test]
+    fn nothing_has_zero() {
+        assert!(point_to_polygon(Vec3::Z, []) == 0.0);
+    }
+}

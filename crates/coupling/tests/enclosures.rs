@@ -1,0 +1,96 @@
+//! Whole enclosures: rows sum to 1, whatever the scale and place.
+
+mod common;
+
+use common::{patch, v, with_integrator};
+use fredholm_coupling::{Assembled, assemble};
+use fredholm_mesh::{Mesh, MeshBuilder, Patch, Vec3};
+use std::ops::ControlFlow;
+
+/// An n × n grid on each wall of a box seen from inside (or outside).
+fn add_box(builder: &mut MeshBuilder, min: Vec3, max: Vec3, n: usize, inward: bool) {
+    let at = |x: f64, y: f64, z: f64| min + (max - min) * v(x, y, z);
+    let walls: [[[f64; 3]; 4]; 6] = [
+        [[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]],
+        [[0., 0., 1.], [0., 1., 1.], [1., 1., 1.], [1., 0., 1.]],
+        [[0., 0., 0.], [0., 1., 0.], [0., 1., 1.], [0., 0., 1.]],
+        [[1., 0., 0.], [1., 0., 1.], [1., 1., 1.], [1., 1., 0.]],
+        [[0., 0., 0.], [0., 0., 1.], [1., 0., 1.], [1., 0., 0.]],
+        [[0., 1., 0.], [1., 1., 0.], [1., 1., 1.], [0., 1., 1.]],
+    ];
+    for wall in walls {
+        let whole = patch(&wall.map(|[x, y, z]| at(x, y, z)));
+        let whole = if inward { whole } else { whole.flipped() };
+        builder.occluder(whole);
+        grid(&whole, n).iter().for_each(|cell| drop(builder.face(&[*cell]).unwrap()));
+    }
+}
+
+fn grid(whole: &Patch, n: usize) -> Vec<Patch> {
+    let at = |i: usize, j: usize| whole.point(i as f64 / n as f64, j as f64 / n as f64);
+    let cell = |i, j| patch(&[at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
+    (0..n * n).map(|k| cell(k / n, k % n)).collect()
+}
+
+fn solve(mesh: &Mesh, tolerance: f64) -> (Assembled<f64>, f64) {
+    let assembled: Assembled<f64> =
+        with_integrator(mesh, tolerance, |pairs| assemble(pairs, &|_, _| ControlFlow::Continue(())).unwrap());
+    let sums = assembled.matrix.row_sums();
+    let closure = sums.iter().zip(mesh.patches()).map(|(sum, patch)| sum / patch.area() - 1.0);
+    let worst = closure.fold(0.0, |worst: f64, x| worst.max(x.abs()));
+    (assembled, worst)
+}
+
+fn cube(origin: Vec3, size: f64, n: usize) -> Mesh {
+    let mut builder = MeshBuilder::default();
+    builder.surface("walls", 0);
+    add_box(&mut builder, origin, origin + Vec3::splat(size), n, true);
+    builder.build()
+}
+
+#[test]
+fn rows_of_an_empty_cube_sum_to_one_at_any_scale_and_place() {
+    for (origin, size) in [(Vec3::ZERO, 1.0), (Vec3::ZERO, 1e-6), (Vec3::ZERO, 1e6), (Vec3::splat(1e3), 1.0)] {
+        let (assembled, worst) = solve(&cube(origin, size, 4), 1e-12);
+        println!("size {size:e} at {origin}: row sums within {worst:.1e}, {:?}", assembled.methods);
+        assert!(worst < 1e-11, "size {size:e}: {worst:e}");
+        assert_eq!(assembled.methods.clipped + assembled.methods.sampled, 0);
+    }
+}
+
+#[test]
+fn rows_of_a_cube_with_a_box_inside_sum_to_one_within_the_stated_error() {
+    let mut builder = MeshBuilder::default();
+    builder.surface("walls", 0);
+    add_box(&mut builder, Vec3::ZERO, Vec3::ONE, 4, true);
+    builder.surface("box", 0);
+    add_box(&mut builder, Vec3::splat(0.3), Vec3::splat(0.7), 2, false);
+    let mesh = builder.build();
+    let (assembled, worst) = solve(&mesh, 1e-3);
+    let stated = assembled.error.iter().zip(mesh.patches()).map(|(e, p)| e / p.area()).fold(0.0, f64::max);
+    println!("row sums within {worst:.1e}, stated {stated:.1e}, {:?}", assembled.methods);
+    assert!(assembled.methods.clipped > 0 && worst < 1e-3 && worst <= stated);
+}
+
+#[test]
+fn the_number_of_threads_changes_no_bit() {
+    let mesh = cube(Vec3::ZERO, 1.0, 5);
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| solve(&mesh, 1e-6)).0
+    };
+    let one = on(1);
+    for threads in [2, 4] {
+        let other = on(threads);
+        assert!(other.matrix == one.matrix && other.error == one.error);
+    }
+}
+
+#[test]
+fn the_watch_stops_the_assembly() {
+    let mesh = cube(Vec3::ZERO, 1.0, 6);
+    let stopped = with_integrator(&mesh, 1e-6, |pairs| {
+        assemble::<f64>(pairs, &|done, _| if done > 1000 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+    });
+    assert!(matches!(stopped, Err(fredholm_coupling::CouplingError::Interrupted { .. })));
+}

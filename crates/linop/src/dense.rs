@@ -1,0 +1,136 @@
+//! A square matrix with every entry stored, row by row: y_i = Σ_j k_ij x_j.
+
+use crate::{LinearOperator, LinopError, MultiVector, Scalar};
+use rayon::prelude::*;
+
+/// A square matrix stored row by row: k_ij at i · dim + j. It serves any number of lanes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dense<T> {
+    dim: usize,
+    entries: Vec<T>,
+}
+
+impl<T: Scalar> Dense<T> {
+    /// Takes the entries of `dim` rows.
+    ///
+    /// # Errors
+    /// [`LinopError::Length`] unless there are dim² entries.
+    pub fn new(dim: usize, entries: Vec<T>) -> Result<Self, LinopError> {
+        let expected = dim as u128 * dim as u128;
+        if entries.len() as u128 != expected {
+            return Err(LinopError::Length { what: "the dense matrix", expected, found: entries.len() });
+        }
+        Ok(Self { dim, entries })
+    }
+
+    /// All zeros.
+    ///
+    /// # Errors
+    /// [`LinopError::Memory`] if dim² entries do not fit.
+    pub fn zeros(dim: usize) -> Result<Self, LinopError> {
+        let refused = LinopError::Memory { what: "a dense matrix", bytes: Self::bytes(dim) };
+        let len = dim.checked_mul(dim).ok_or_else(|| refused.clone())?;
+        let mut entries = Vec::new();
+        entries.try_reserve_exact(len).map_err(|_| refused)?;
+        entries.resize(len, T::zero());
+        Ok(Self { dim, entries })
+    }
+
+    /// Bytes that dim² entries take.
+    #[must_use]
+    pub fn bytes(dim: usize) -> u64 {
+        (dim as u64).saturating_mul(dim as u64).saturating_mul(size_of::<T>() as u64)
+    }
+
+    /// Number of rows, and of columns.
+    #[must_use]
+    pub fn dim(&self) -> usize {
+        self.dim
+    }
+
+    /// k_ij.
+    ///
+    /// # Panics
+    /// There is no such entry.
+    #[must_use]
+    pub fn get(&self, i: usize, j: usize) -> T {
+        self.row_slice(i)[j]
+    }
+
+    /// Row i.
+    ///
+    /// # Panics
+    /// There is no such row.
+    #[must_use]
+    pub fn row_slice(&self, i: usize) -> &[T] {
+        &self.entries[i * self.dim..(i + 1) * self.dim]
+    }
+
+    /// Row i.
+    ///
+    /// # Panics
+    /// There is no such row.
+    pub fn row_slice_mut(&mut self, i: usize) -> &mut [T] {
+        &mut self.entries[i * self.dim..(i + 1) * self.dim]
+    }
+
+    /// The entries, row by row.
+    #[must_use]
+    pub fn into_vec(self) -> Vec<T> {
+        self.entries
+    }
+}
+
+impl<T: Scalar> LinearOperator<T> for Dense<T> {
+    fn dim(&self) -> usize {
+        self.dim
+    }
+
+    // Each thread sums whole rows in their order, so the number of threads changes no bit.
+    fn apply(&self, x: &MultiVector<T>, y: &mut MultiVector<T>) {
+        let lanes = x.lanes().max(1);
+        y.as_mut_slice().par_chunks_mut(lanes).enumerate().with_min_len(16).for_each(|(i, y)| {
+            y.fill(T::zero());
+            for (&entry, x) in self.row_slice(i).iter().zip(x.as_slice().chunks_exact(lanes)) {
+                y.iter_mut().zip(x).for_each(|(y, &x)| *y += entry * x);
+            }
+        });
+    }
+
+    fn row(&self, i: usize, _lane: usize, out: &mut [T]) {
+        out.copy_from_slice(self.row_slice(i));
+    }
+
+    fn column(&self, j: usize, _lane: usize, out: &mut [T]) {
+        out.iter_mut().enumerate().for_each(|(i, out)| *out = self.get(i, j));
+    }
+
+    fn diagonal(&self, _lane: usize, out: &mut [T]) {
+        out.iter_mut().enumerate().for_each(|(i, out)| *out = self.get(i, i));
+    }
+
+    fn dense(&self, _lane: usize) -> Result<Dense<T>, LinopError> {
+        let mut copy = Self::zeros(self.dim)?;
+        copy.entries.copy_from_slice(&self.entries);
+        Ok(copy)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wrong_number_of_entries_is_refused() {
+        let wrong = LinopError::Length { what: "the dense matrix", expected: 4, found: 3 };
+        assert_eq!(Dense::new(2, vec![0.0; 3]), Err(wrong));
+    }
+
+    #[test]
+    fn a_matrix_beyond_all_memory_is_refused() {
+        for dim in [1 << 30, usize::MAX] {
+            assert!(matches!(Dense::<f64>::zeros(dim), Err(LinopError::Memory { .. })));
+        }
+        assert_eq!(Dense::<f64>::bytes(1000), 8_000_000);
+    }
+}

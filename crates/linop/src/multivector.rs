@@ -1,0 +1,186 @@
+//! Several vectors side by side: one unknown a row, one band (or right-hand side) a lane.
+//!
+//! Entry (i, l) is stored at i · lanes + l, so that one entry of a matrix, once read, serves all lanes.
+
+use crate::{LinopError, Scalar};
+
+/// A dim × lanes array, the lanes of one unknown being neighbours.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MultiVector<T> {
+    dim: usize,
+    lanes: usize,
+    data: Vec<T>,
+}
+
+impl<T: Scalar> MultiVector<T> {
+    /// All zeros.
+    #[must_use]
+    pub fn zeros(dim: usize, lanes: usize) -> Self {
+        Self { dim, lanes, data: vec![T::zero(); dim * lanes] }
+    }
+
+    /// Entry (i, l) is `value(i, l)`.
+    #[must_use]
+    pub fn from_fn(dim: usize, lanes: usize, mut value: impl FnMut(usize, usize) -> T) -> Self {
+        let mut vector = Self::zeros(dim, lanes);
+        for i in 0..dim {
+            for l in 0..lanes {
+                vector.data[i * lanes + l] = value(i, l);
+            }
+        }
+        vector
+    }
+
+    /// Takes `data` as it is stored: entry (i, l) at i · lanes + l.
+    ///
+    /// # Errors
+    /// [`LinopError::Length`] unless `data` has dim · lanes entries.
+    pub fn from_vec(dim: usize, lanes: usize, data: Vec<T>) -> Result<Self, LinopError> {
+        let expected = dim as u128 * lanes as u128;
+        if data.len() as u128 != expected {
+            return Err(LinopError::Length { what: "the multivector", expected, found: data.len() });
+        }
+        Ok(Self { dim, lanes, data })
+    }
+
+    /// Number of unknowns.
+    #[must_use]
+    pub fn dim(&self) -> usize {
+        self.dim
+    }
+
+    /// Number of lanes.
+    #[must_use]
+    pub fn lanes(&self) -> usize {
+        self.lanes
+    }
+
+    /// All lanes of unknown `i`.
+    ///
+    /// # Panics
+    /// There is no unknown `i`.
+    #[must_use]
+    pub fn row(&self, i: usize) -> &[T] {
+        &self.data[i * self.lanes..(i + 1) * self.lanes]
+    }
+
+    /// All lanes of unknown `i`.
+    ///
+    /// # Panics
+    /// There is no unknown `i`.
+    pub fn row_mut(&mut self, i: usize) -> &mut [T] {
+        &mut self.data[i * self.lanes..(i + 1) * self.lanes]
+    }
+
+    /// Lane `l` of all unknowns, copied.
+    ///
+    /// # Panics
+    /// There is no lane `l`.
+    #[must_use]
+    pub fn lane(&self, l: usize) -> Vec<T> {
+        (0..self.dim).map(|i| self.row(i)[l]).collect()
+    }
+
+    /// Sets lane `l` of all unknowns.
+    ///
+    /// # Panics
+    /// There is no lane `l`, or `values` is shorter than dim.
+    pub fn set_lane(&mut self, l: usize, values: &[T]) {
+        for i in 0..self.dim {
+            self.row_mut(i)[l] = values[i];
+        }
+    }
+
+    /// Sets every entry.
+    pub fn fill(&mut self, value: T) {
+        self.data.fill(value);
+    }
+
+    /// Entries as they are stored.
+    #[must_use]
+    pub fn as_slice(&self) -> &[T] {
+        &self.data
+    }
+
+    /// Entries as they are stored.
+    pub fn as_mut_slice(&mut self) -> &mut [T] {
+        &mut self.data
+    }
+
+    /// ‖·‖₂ of each lane.
+    #[must_use]
+    pub fn norms(&self) -> Vec<f64> {
+        norms(self.lanes, self.data.iter().copied())
+    }
+
+    /// First entry that is NaN or infinite, as (unknown, lane).
+    #[must_use]
+    pub fn not_finite(&self) -> Option<(usize, usize)> {
+        let at = self.data.iter().position(|value| !value.is_finite())?;
+        Some((at / self.lanes, at % self.lanes))
+    }
+}
+
+/// ‖·‖₂ of each lane of values in storage order, scaled by the largest one so that squares neither overflow nor
+/// vanish. A NaN or an infinity among the values makes the norm of its lane not finite.
+pub(crate) fn norms<T: Scalar>(lanes: usize, values: impl Iterator<Item = T> + Clone) -> Vec<f64> {
+    let scales = largest(lanes, values.clone());
+    let mut sums = vec![0.0; lanes];
+    for (at, value) in values.enumerate() {
+        let scaled = value.abs() / scales[at % lanes];
+        sums[at % lanes] += scaled * scaled;
+    }
+    sums.iter().zip(&scales).map(|(sum, scale)| scale * sum.sqrt()).collect()
+}
+
+/// Largest absolute value of each lane, or 1 where that is no scale.
+fn largest<T: Scalar>(lanes: usize, values: impl Iterator<Item = T>) -> Vec<f64> {
+    let mut largest = vec![0.0; lanes];
+    for (at, value) in values.enumerate() {
+        largest[at % lanes] = value.abs().max(largest[at % lanes]);
+    }
+    largest.into_iter().map(|scale| if scale > 0.0 && scale.is_finite() { scale } else { 1.0 }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use num_complex::Complex64;
+
+    #[test]
+    fn lanes_of_one_unknown_are_neighbours() {
+        let mut vector = MultiVector::from_fn(3, 2, |i, l| (10 * i + l) as f64);
+        assert_eq!(vector.as_slice(), [0.0, 1.0, 10.0, 11.0, 20.0, 21.0]);
+        assert_eq!(vector.row(1), [10.0, 11.0]);
+        assert_eq!(vector.lane(1), [1.0, 11.0, 21.0]);
+        vector.set_lane(0, &[7.0, 8.0, 9.0]);
+        assert_eq!(vector.as_slice(), [7.0, 1.0, 8.0, 11.0, 9.0, 21.0]);
+    }
+
+    #[test]
+    fn norms_are_euclidean_at_any_magnitude() {
+        for scale in [1.0, 1e-300, 1e300, 5e-324] {
+            let vector = MultiVector::from_vec(2, 2, vec![3.0 * scale, 0.0, 4.0 * scale, 0.0]).unwrap();
+            assert!((vector.norms()[0] / scale - 5.0).abs() < 1e-12, "{scale}");
+            assert_eq!(vector.norms()[1], 0.0);
+        }
+        let vector = MultiVector::from_vec(1, 1, vec![Complex64::new(3.0, 4.0)]).unwrap();
+        assert_eq!(vector.norms(), [5.0]);
+    }
+
+    #[test]
+    fn a_number_that_is_not_finite_spoils_the_norm_of_its_lane_only() {
+        for bad in [f64::NAN, f64::INFINITY] {
+            let vector = MultiVector::from_vec(2, 2, vec![bad, 1.0, 2.0, 0.0]).unwrap();
+            assert!(!vector.norms()[0].is_finite());
+            assert_eq!(vector.norms()[1], 1.0);
+            assert_eq!(vector.not_finite(), Some((0, 0)));
+        }
+    }
+
+    #[test]
+    fn a_wrong_length_is_refused() {
+        let wrong = LinopError::Length { what: "the multivector", expected: 6, found: 5 };
+        assert_eq!(MultiVector::from_vec(2, 3, vec![0.0; 5]), Err(wrong));
+    }
+}

@@ -1,0 +1,113 @@
+//! What a solver may ask of a matrix, stored or not: y = K x.
+
+use crate::sweep::sweep_by_rows;
+use crate::{Dense, LinopError, MultiVector, Relax, Scalar, Sweep};
+use std::ops::ControlFlow;
+
+/// What is known of the symmetry of a matrix.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Symmetry {
+    /// Nothing.
+    #[default]
+    General,
+    /// k_ij = k_ji. For real entries this is the same as Hermitian.
+    Symmetric,
+    /// k_ij = conj(k_ji).
+    Hermitian,
+}
+
+/// A square matrix, stored or not. One matrix may serve all lanes, or each lane may have its own.
+///
+/// Only [`dim`](Self::dim) and [`apply`](Self::apply) are required. What is asked by default goes through them and
+/// may be slow, so an operator overrides what it can do better.
+///
+/// Vectors must fit: dim × any number of lanes, or dim × [`lanes`](Self::lanes) where that is given. Those that do
+/// not are an error of the caller, and methods may panic. Solvers check before they begin.
+pub trait LinearOperator<T: Scalar>: Sync {
+    /// Number of unknowns.
+    fn dim(&self) -> usize;
+
+    /// y = K x, all lanes in one pass over memory. The old values of `y` do not matter.
+    fn apply(&self, x: &MultiVector<T>, y: &mut MultiVector<T>);
+
+    /// Number of lanes if each has its own matrix, `None` if one matrix serves any number of lanes.
+    fn lanes(&self) -> Option<usize> {
+        None
+    }
+
+    /// Symmetry of the matrices of all lanes.
+    fn symmetry(&self) -> Symmetry {
+        Symmetry::General
+    }
+
+    /// Entries read by one application to all lanes, for work counters.
+    fn entries(&self) -> u64 {
+        (self.dim() as u64).saturating_mul(self.dim() as u64)
+    }
+
+    /// Column j of the matrix of a lane: `out[i]` = k_ij. By default one application.
+    fn column(&self, j: usize, lane: usize, out: &mut [T]) {
+        let mut unit = MultiVector::zeros(self.dim(), self.lanes().unwrap_or(1));
+        let lane = if self.lanes().is_some() { lane } else { 0 };
+        unit.row_mut(j)[lane] = T::one();
+        let mut image = MultiVector::zeros(unit.dim(), unit.lanes());
+        self.apply(&unit, &mut image);
+        out.iter_mut().enumerate().for_each(|(i, out)| *out = image.row(i)[lane]);
+    }
+
+    /// Row i of the matrix of a lane: `out[j]` = k_ij. By default one column if the matrix is symmetric, all columns
+    /// if it is not.
+    fn row(&self, i: usize, lane: usize, out: &mut [T]) {
+        match self.symmetry() {
+            Symmetry::Symmetric => self.column(i, lane, out),
+            Symmetry::Hermitian => {
+                self.column(i, lane, out);
+                out.iter_mut().for_each(|entry| *entry = entry.conj());
+            }
+            Symmetry::General => {
+                let mut column = vec![T::zero(); self.dim()];
+                for (j, out) in out.iter_mut().enumerate() {
+                    self.column(j, lane, &mut column);
+                    *out = column[i];
+                }
+            }
+        }
+    }
+
+    /// Diagonal of the matrix of a lane: `out[i]` = k_ii. By default all columns.
+    fn diagonal(&self, lane: usize, out: &mut [T]) {
+        let mut column = vec![T::zero(); self.dim()];
+        for (i, out) in out.iter_mut().enumerate() {
+            self.column(i, lane, &mut column);
+            *out = column[i];
+        }
+    }
+
+    /// The matrix of a lane. By default all columns.
+    ///
+    /// # Errors
+    /// [`LinopError::Memory`] if it does not fit.
+    fn dense(&self, lane: usize) -> Result<Dense<T>, LinopError> {
+        let mut dense = Dense::zeros(self.dim())?;
+        let mut column = vec![T::zero(); self.dim()];
+        for j in 0..self.dim() {
+            self.column(j, lane, &mut column);
+            column.iter().enumerate().for_each(|(i, &entry)| dense.row_slice_mut(i)[j] = entry);
+        }
+        Ok(dense)
+    }
+
+    /// Visits the unknowns in order, lets `relax` change each, and ends with K x of the new x in
+    /// [`Sweep::product`], all lanes in one pass over memory. See [`Sweep`].
+    ///
+    /// A break of `relax` ends the sweep there. The unknowns visited keep their new values; `sweep` is then of no
+    /// further use.
+    fn sweep(
+        &self,
+        x: &mut MultiVector<T>,
+        sweep: &mut Sweep<T>,
+        relax: &mut Relax<'_, T>,
+    ) -> ControlFlow<()> {
+        sweep_by_rows(self, x, sweep, relax)
+    }
+}

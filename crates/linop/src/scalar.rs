@@ -1,0 +1,138 @@
+//! The numbers that unknowns are made of: f64 for light, Complex64 for waves.
+
+use num_complex::Complex64;
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for f64 {}
+    impl Sealed for num_complex::Complex64 {}
+}
+
+/// A real or complex number in double precision. Implemented for f64 and Complex64 only.
+pub trait Scalar:
+    sealed::Sealed
+    + Copy
+    + Debug
+    + Default
+    + PartialEq
+    + Send
+    + Sync
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+    + 'static
+{
+    /// 0.
+    fn zero() -> Self;
+    /// 1.
+    fn one() -> Self;
+    /// The real number `value`.
+    fn from_real(value: f64) -> Self;
+    /// Complex conjugate; the number itself where it is real.
+    #[must_use]
+    fn conj(self) -> Self;
+    /// The number times a real one.
+    #[must_use]
+    fn scale(self, factor: f64) -> Self;
+    /// Absolute value.
+    fn abs(self) -> f64;
+    /// Square of the absolute value.
+    fn abs2(self) -> f64;
+    /// Neither NaN nor infinite.
+    fn is_finite(self) -> bool;
+}
+
+impl Scalar for f64 {
+    fn zero() -> Self {
+        0.0
+    }
+
+    fn one() -> Self {
+        1.0
+    }
+
+    fn from_real(value: f64) -> Self {
+        value
+    }
+
+    fn conj(self) -> Self {
+        self
+    }
+
+    fn scale(self, factor: f64) -> Self {
+        self * factor
+    }
+
+    fn abs(self) -> f64 {
+        f64::abs(self)
+    }
+
+    fn abs2(self) -> f64 {
+        self * self
+    }
+
+    fn is_finite(self) -> bool {
+        f64::is_finite(self)
+    }
+}
+
+impl Scalar for Complex64 {
+    fn zero() -> Self {
+        Self::new(0.0, 0.0)
+    }
+
+    fn one() -> Self {
+        Self::new(1.0, 0.0)
+    }
+
+    fn from_real(value: f64) -> Self {
+        Self::new(value, 0.0)
+    }
+
+    fn conj(self) -> Self {
+        Complex64::conj(&self)
+    }
+
+    fn scale(self, factor: f64) -> Self {
+        Complex64::scale(&self, factor)
+    }
+
+    fn abs(self) -> f64 {
+        self.norm()
+    }
+
+    fn abs2(self) -> f64 {
+        self.norm_sqr()
+    }
+
+    fn is_finite(self) -> bool {
+        Complex64::is_finite(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn complex_arithmetic_is_that_of_the_plane() {
+        let z = Complex64::new(3.0, -4.0);
+        assert_eq!((Scalar::abs(z), Scalar::abs2(z)), (5.0, 25.0));
+        assert_eq!(Scalar::conj(z), Complex64::new(3.0, 4.0));
+        assert_eq!(z * Scalar::conj(z), Complex64::from_real(25.0));
+        assert_eq!(Scalar::scale(z, 2.0), z + z);
+        assert!(!Scalar::is_finite(Complex64::new(0.0, f64::NAN)));
+    }
+
+    #[test]
+    fn real_numbers_are_their_own_conjugates() {
+        assert_eq!((Scalar::abs(-2.0), Scalar::abs2(-2.0), Scalar::conj(-2.0)), (2.0, 4.0, -2.0));
+        assert!(!Scalar::is_finite(f64::INFINITY));
+    }
+}

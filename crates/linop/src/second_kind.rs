@@ -1,0 +1,152 @@
+//! The system matrix of a Fredholm equation of the second kind: A = I − D K, D diagonal.
+//!
+//! For light K = G with G_ij = A_i F_ij (m²), and D = ρ_i/A_i (1/m²) per band, so that A = I − R F.
+
+use crate::{Dense, LinearOperator, LinopError, MultiVector, Relax, Scalar, Sweep, Visit};
+use std::ops::ControlFlow;
+
+/// A = I − D K around any operator K, with a diagonal D for each lane.
+#[derive(Clone)]
+pub struct SecondKind<'a, T> {
+    coupling: &'a dyn LinearOperator<T>,
+    factor: MultiVector<T>,
+}
+
+impl<'a, T: Scalar> SecondKind<'a, T> {
+    /// `factor` is D: d_i of lane l in row i.
+    ///
+    /// # Errors
+    /// [`LinopError::Factor`] if it does not fit the coupling, [`LinopError::NotFinite`] if it holds NaN or infinity.
+    pub fn new(coupling: &'a dyn LinearOperator<T>, factor: MultiVector<T>) -> Result<Self, LinopError> {
+        let (found, lanes) = (factor.dim(), factor.lanes());
+        let (expected, operator_lanes) = (coupling.dim(), coupling.lanes().unwrap_or(lanes));
+        if (found, lanes) != (expected, operator_lanes) {
+            return Err(LinopError::Factor { found, lanes, expected, operator_lanes });
+        }
+        if let Some((unknown, lane)) = factor.not_finite() {
+            return Err(LinopError::NotFinite { what: "the diagonal factor", unknown, lane });
+        }
+        Ok(Self { coupling, factor })
+    }
+
+    /// K.
+    #[must_use]
+    pub fn coupling(&self) -> &dyn LinearOperator<T> {
+        self.coupling
+    }
+
+    /// D.
+    #[must_use]
+    pub fn factor(&self) -> &MultiVector<T> {
+        &self.factor
+    }
+
+    /// Whether two lanes have the same matrix, as far as that is known without reading K.
+    #[must_use]
+    pub fn same_matrix(&self, lane: usize, other: usize) -> bool {
+        let equal = |i| self.factor.row(i)[lane] == self.factor.row(i)[other];
+        lane == other || (self.coupling.lanes().is_none() && (0..self.factor.dim()).all(equal))
+    }
+
+    /// r −= A e_j s: what a step s (per lane) of unknown j takes from a residual. `column` is dim entries of scratch.
+    /// Returns the entries of K read.
+    pub fn subtract_column(
+        &self,
+        j: usize,
+        step: &[T],
+        residual: &mut MultiVector<T>,
+        column: &mut [T],
+    ) -> u64 {
+        residual.row_mut(j).iter_mut().zip(step).for_each(|(r, &step)| *r -= step);
+        // Lanes that share a column are taken together.
+        let together = if self.coupling.lanes().is_some() { 1 } else { step.len().max(1) };
+        let mut reads = 0;
+        for first in (0..step.len()).step_by(together) {
+            self.coupling.column(j, first, column);
+            reads += column.len() as u64;
+            for (i, &entry) in column.iter().enumerate() {
+                let (residual, factor) = (residual.row_mut(i), self.factor.row(i));
+                for l in first..first + together {
+                    residual[l] += factor[l] * entry * step[l];
+                }
+            }
+        }
+        reads
+    }
+
+    /// Turns row i of K into row i of A.
+    fn turn_row(&self, i: usize, lane: usize, row: &mut [T]) {
+        let factor = self.factor.row(i)[lane];
+        row.iter_mut().for_each(|entry| *entry = -(factor * *entry));
+        row[i] += T::one();
+    }
+
+    /// Turns K x into A x.
+    fn turn_product(&self, x: &MultiVector<T>, product: &mut MultiVector<T>) {
+        let terms = self.factor.as_slice().iter().zip(x.as_slice());
+        product.as_mut_slice().iter_mut().zip(terms).for_each(|(y, (&d, &x))| *y = x - d * *y);
+    }
+}
+
+impl<T: Scalar> LinearOperator<T> for SecondKind<'_, T> {
+    fn dim(&self) -> usize {
+        self.factor.dim()
+    }
+
+    fn apply(&self, x: &MultiVector<T>, y: &mut MultiVector<T>) {
+        self.coupling.apply(x, y);
+        self.turn_product(x, y);
+    }
+
+    fn lanes(&self) -> Option<usize> {
+        Some(self.factor.lanes())
+    }
+
+    fn entries(&self) -> u64 {
+        self.coupling.entries()
+    }
+
+    fn row(&self, i: usize, lane: usize, out: &mut [T]) {
+        self.coupling.row(i, lane, out);
+        self.turn_row(i, lane, out);
+    }
+
+    fn column(&self, j: usize, lane: usize, out: &mut [T]) {
+        self.coupling.column(j, lane, out);
+        out.iter_mut().enumerate().for_each(|(i, entry)| *entry = -(self.factor.row(i)[lane] * *entry));
+        out[j] += T::one();
+    }
+
+    fn diagonal(&self, lane: usize, out: &mut [T]) {
+        self.coupling.diagonal(lane, out);
+        out.iter_mut()
+            .enumerate()
+            .for_each(|(i, entry)| *entry = T::one() - self.factor.row(i)[lane] * *entry);
+    }
+
+    fn dense(&self, lane: usize) -> Result<Dense<T>, LinopError> {
+        let mut dense = self.coupling.dense(lane)?;
+        (0..self.dim()).for_each(|i| self.turn_row(i, lane, dense.row_slice_mut(i)));
+        Ok(dense)
+    }
+
+    fn sweep(
+        &self,
+        x: &mut MultiVector<T>,
+        sweep: &mut Sweep<T>,
+        relax: &mut Relax<'_, T>,
+    ) -> ControlFlow<()> {
+        let mut off_diagonal = vec![T::zero(); x.lanes()];
+        let mut diagonal = vec![T::zero(); x.lanes()];
+        self.coupling.sweep(x, sweep, &mut |visit| {
+            let Visit { index, x, .. } = visit;
+            for (l, &d) in self.factor.row(index).iter().enumerate() {
+                off_diagonal[l] = -(d * visit.off_diagonal[l]);
+                diagonal[l] = T::one() - d * visit.diagonal[l];
+            }
+            relax(Visit { index, off_diagonal: &off_diagonal, diagonal: &diagonal, x })
+        })?;
+        self.turn_product(x, sweep.product_mut());
+        ControlFlow::Continue(())
+    }
+}

@@ -1,0 +1,162 @@
+//! The forward sweep: relaxation of every unknown in order, with the product K x of the new x for nothing.
+//!
+//! While unknowns i = 0 … n−1 are visited, split (K x)_i = L_i + k_ii x_i + U_i with L_i = Σ_{j<i} k_ij x_j and
+//! U_i = Σ_{j>i} k_ij x_j. At the visit of i, L_i is summed with the x_j just relaxed and U_i is known from before.
+//! Once x_i is set, k_ki x_i is added to U_k of all k < i: by the end of the sweep, U belongs to the new x, and
+//! ‖b − A x‖ costs no second pass. Where the matrix is symmetric, the entries k_ki are those that L_i has just read.
+//!
+//! A sweep that changes nothing computes U and K x of any starting x.
+
+use crate::{LinearOperator, MultiVector, Scalar, Symmetry};
+use std::ops::ControlFlow;
+
+/// What [`LinearOperator::sweep`] carries from one sweep to the next.
+///
+/// It belongs to one operator and one x, which nothing but sweeps may change between them. A new one belongs to x = 0.
+#[derive(Clone, Debug)]
+pub struct Sweep<T> {
+    pub(crate) upper: MultiVector<T>,
+    pub(crate) product: MultiVector<T>,
+}
+
+impl<T: Scalar> Sweep<T> {
+    /// The state of x = 0.
+    #[must_use]
+    pub fn new(dim: usize, lanes: usize) -> Self {
+        Self { upper: MultiVector::zeros(dim, lanes), product: MultiVector::zeros(dim, lanes) }
+    }
+
+    /// K x of the x that the last complete sweep left.
+    #[must_use]
+    pub fn product(&self) -> &MultiVector<T> {
+        &self.product
+    }
+
+    /// U_i = Σ_{j>i} k_ij x_j, all unknowns and lanes. An operator reads row i at visit i, sets it to 0, and adds to
+    /// it from the later ones.
+    pub fn upper_mut(&mut self) -> &mut MultiVector<T> {
+        &mut self.upper
+    }
+
+    /// Where an operator leaves K x.
+    pub fn product_mut(&mut self) -> &mut MultiVector<T> {
+        &mut self.product
+    }
+
+    /// Moves U_i to `off_diagonal` and leaves 0 for what the later unknowns add.
+    pub(crate) fn take_upper(&mut self, i: usize, off_diagonal: &mut [T]) {
+        off_diagonal.copy_from_slice(self.upper.row(i));
+        self.upper.row_mut(i).fill(T::zero());
+    }
+
+    /// Turns the recorded L_i + k_ii x_i into K x.
+    pub(crate) fn complete(&mut self) {
+        self.product.as_mut_slice().iter_mut().zip(self.upper.as_slice()).for_each(|(p, &u)| *p += u);
+    }
+}
+
+/// One unknown as a sweep presents it, all lanes.
+#[derive(Debug)]
+pub struct Visit<'a, T> {
+    /// Index i of the unknown.
+    pub index: usize,
+    /// Σ_{j≠i} k_ij x_j per lane, with the x_j already relaxed.
+    pub off_diagonal: &'a [T],
+    /// k_ii per lane.
+    pub diagonal: &'a [T],
+    /// x_i per lane, to be set.
+    pub x: &'a mut [T],
+}
+
+/// Sets x_i at each visit; a break stops the sweep.
+pub type Relax<'a, T> = dyn FnMut(Visit<'_, T>) -> ControlFlow<()> + 'a;
+
+/// The sweep of an operator that is asked for each row, and each column unless it follows from the row.
+pub(crate) fn sweep_by_rows<T: Scalar, A: LinearOperator<T> + ?Sized>(
+    a: &A,
+    x: &mut MultiVector<T>,
+    sweep: &mut Sweep<T>,
+    relax: &mut Relax<'_, T>,
+) -> ControlFlow<()> {
+    let mut lines = Lines::new(a);
+    let mut terms = Terms::new(x.lanes());
+    for index in 0..x.dim() {
+        lines.read_row(index);
+        terms.gather(&lines, index, x, sweep);
+        let Terms { off_diagonal, diagonal, .. } = &terms;
+        relax(Visit { index, off_diagonal, diagonal, x: x.row_mut(index) })?;
+        lines.turn_into_column(index);
+        terms.scatter(&lines, index, x, sweep);
+    }
+    sweep.complete();
+    ControlFlow::Continue(())
+}
+
+/// A row or column of the matrix of each lane, or one for all lanes.
+struct Lines<'a, T, A: ?Sized> {
+    a: &'a A,
+    lines: Vec<Vec<T>>,
+}
+
+impl<'a, T: Scalar, A: LinearOperator<T> + ?Sized> Lines<'a, T, A> {
+    fn new(a: &'a A) -> Self {
+        Self { a, lines: vec![vec![T::zero(); a.dim()]; a.lanes().unwrap_or(1)] }
+    }
+
+    fn of_lane(&self, lane: usize) -> &[T] {
+        &self.lines[if self.a.lanes().is_some() { lane } else { 0 }]
+    }
+
+    fn read_row(&mut self, i: usize) {
+        self.lines.iter_mut().enumerate().for_each(|(lane, line)| self.a.row(i, lane, line));
+    }
+
+    /// Makes column i of row i.
+    fn turn_into_column(&mut self, i: usize) {
+        for (lane, line) in self.lines.iter_mut().enumerate() {
+            match self.a.symmetry() {
+                Symmetry::Symmetric => {}
+                Symmetry::Hermitian => line.iter_mut().for_each(|entry| *entry = entry.conj()),
+                Symmetry::General => self.a.column(i, lane, line),
+            }
+        }
+    }
+}
+
+/// The terms of (K x)_i at a visit, per lane.
+struct Terms<T> {
+    lower: Vec<T>,
+    diagonal: Vec<T>,
+    off_diagonal: Vec<T>,
+}
+
+impl<T: Scalar> Terms<T> {
+    fn new(lanes: usize) -> Self {
+        let zeros = vec![T::zero(); lanes];
+        Self { lower: zeros.clone(), diagonal: zeros.clone(), off_diagonal: zeros }
+    }
+
+    fn gather<A>(&mut self, rows: &Lines<T, A>, i: usize, x: &MultiVector<T>, sweep: &mut Sweep<T>)
+    where
+        A: LinearOperator<T> + ?Sized,
+    {
+        sweep.take_upper(i, &mut self.off_diagonal);
+        for l in 0..x.lanes() {
+            let row = rows.of_lane(l);
+            self.lower[l] = (0..i).fold(T::zero(), |sum, j| sum + row[j] * x.row(j)[l]);
+            self.off_diagonal[l] += self.lower[l];
+            self.diagonal[l] = row[i];
+        }
+    }
+
+    fn scatter<A>(&self, columns: &Lines<T, A>, i: usize, x: &MultiVector<T>, sweep: &mut Sweep<T>)
+    where
+        A: LinearOperator<T> + ?Sized,
+    {
+        for l in 0..x.lanes() {
+            let (column, x) = (columns.of_lane(l), x.row(i)[l]);
+            (0..i).for_each(|k| sweep.upper.row_mut(k)[l] += column[k] * x);
+            sweep.product.row_mut(i)[l] = self.lower[l] + self.diagonal[l] * x;
+        }
+    }
+}

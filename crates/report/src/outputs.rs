@@ -1,0 +1,130 @@
+//! The result folder.
+//!
+//! `run.json` is removed first and written last: a folder that has one is complete, and all its files belong together.
+
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use crate::{
+    Camera, Exposure, Field, ReportError, RunRecord, render, write_atomically, write_convergence,
+    write_faces_csv, write_field_csv, write_npz, write_run, write_surfaces_csv, write_vtu,
+};
+
+/// Names of the files of a result folder, in the order in which they are written.
+pub const FILES: [&str; 8] = [
+    "field.csv",
+    "faces.csv",
+    "surfaces.csv",
+    "field.vtu",
+    "field.npz",
+    "image.png",
+    "convergence.svg",
+    "run.json",
+];
+
+/// What fills a file.
+type Writer<'a> = dyn Fn(&mut dyn Write) -> io::Result<()> + 'a;
+
+/// What the picture shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// Where it is taken from.
+    pub camera: Camera,
+    /// How bright it is.
+    pub exposure: Exposure,
+}
+
+impl View {
+    /// The whole scene, brightness chosen by the picture.
+    #[must_use]
+    pub fn framing(field: &Field<'_>) -> Self {
+        Self { camera: Camera::framing(field), exposure: Exposure::Auto }
+    }
+}
+
+/// Writes all files of a result into a folder, which is made where it does not exist, and returns their paths.
+///
+/// # Errors
+/// [`ReportError::Write`] with the file or folder that could not be written; the errors of [`render`] for a view that makes
+/// no picture. The folder then has no `run.json`.
+pub fn write_all(
+    folder: &Path,
+    field: &Field<'_>,
+    run: &RunRecord,
+    view: &View,
+) -> Result<Vec<PathBuf>, ReportError> {
+    let picture = render(field, &view.camera, view.exposure)?;
+    prepare(folder)?;
+    let paths: Vec<PathBuf> = FILES.iter().map(|name| folder.join(name)).collect();
+    let writers: [&Writer; 8] = [
+        &|out| write_field_csv(field, out),
+        &|out| write_faces_csv(field, out),
+        &|out| write_surfaces_csv(field, out),
+        &|out| write_vtu(field, out),
+        &|out| write_npz(field, out),
+        &|out| picture.write_png(out),
+        &|out| write_convergence(run, out),
+        &|out| write_run(run, out),
+    ];
+    paths.iter().zip(writers).try_for_each(|(path, write)| write_atomically(path, write))?;
+    Ok(paths)
+}
+
+/// Makes the folder and removes the mark of completeness of an older result.
+fn prepare(folder: &Path) -> Result<(), ReportError> {
+    let failed = |path: &Path| {
+        let path = path.to_owned();
+        move |source| ReportError::Write { path, source }
+    };
+    fs::create_dir_all(folder).map_err(failed(folder))?;
+    let mark = folder.join(FILES[FILES.len() - 1]);
+    match fs::remove_file(&mark) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(failed(&mark)(error)),
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::field::tests::{names, sample};
+    use crate::read_run;
+    use crate::run::tests::record;
+
+    #[test]
+    fn a_folder_is_complete_or_has_no_record() {
+        let (mesh, bands) = (sample(), names(&["r", "g"]));
+        let values = [1.0; 6];
+        let field = Field::new(&mesh, &bands, &values, &values).unwrap();
+        let view = View::framing(&field);
+        let base = tempfile::tempdir().unwrap();
+        let folder = base.path().join("new").join("result");
+        let paths = write_all(&folder, &field, &record(), &view).unwrap();
+        assert_eq!(paths, FILES.map(|name| folder.join(name)));
+        assert!(paths.iter().all(|path| fs::metadata(path).unwrap().len() > 50));
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), FILES.len());
+        assert_eq!(read_run(&paths[7]).unwrap(), record());
+        // A folder in the place of a file makes the second attempt fail half-way.
+        fs::remove_file(&paths[4]).unwrap();
+        fs::create_dir(&paths[4]).unwrap();
+        let error = write_all(&folder, &field, &record(), &view).unwrap_err();
+        assert!(error.to_string().contains("field.npz"), "{error}");
+        assert!(!paths[7].exists());
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), FILES.len() - 1);
+    }
+
+    #[test]
+    fn a_bad_view_leaves_an_old_result_alone() {
+        let (mesh, bands) = (sample(), names(&["r", "g"]));
+        let values = [1.0; 6];
+        let field = Field::new(&mesh, &bands, &values, &values).unwrap();
+        let view = View { exposure: Exposure::Fixed(-1.0), ..View::framing(&field) };
+        let base = tempfile::tempdir().unwrap();
+        assert!(matches!(
+            write_all(base.path(), &field, &record(), &view),
+            Err(ReportError::Exposure { .. })
+        ));
+        assert_eq!(fs::read_dir(base.path()).unwrap().count(), 0);
+    }
+}

@@ -1,0 +1,310 @@
+//! `run.json`: what made a result. Format `fredholm-run-1`.
+//!
+//! Units: seconds, bytes; residuals ‖b − A x‖₂/‖b‖₂ and the other figures of quality are dimensionless unless said.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::{self, Write};
+use std::path::Path;
+
+use serde::{Deserialize, Deserializer, Serialize};
+use serde_json::Value;
+
+use crate::ReportError;
+
+/// Name and version of the format of run records.
+pub const FORMAT: &str = "fredholm-run-1";
+
+/// What made a result, and how far it can be trusted.
+///
+/// Reading is lenient: unknown keys are passed over and missing ones take their default, so that records of older and
+/// newer programs with the same format name can be read. A number that is not finite is written as `null`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct RunRecord {
+    /// Format of the record: [`FORMAT`].
+    pub format: String,
+    /// Version of the program.
+    pub version: String,
+    /// Path of the scene file, as it was given.
+    pub scene: String,
+    /// SHA-256 of the scene and the files it names, in hexadecimal.
+    pub scene_sha256: String,
+    /// The complete options, defaults included.
+    pub options: Value,
+    /// Names of the bands, in the order of all vectors.
+    pub bands: Vec<String>,
+    /// Sizes of the problem.
+    pub counts: Counts,
+    /// Wall-clock time of each stage, in order.
+    pub timings: Vec<Timing>,
+    /// Largest memory in use, bytes, where the system tells.
+    pub peak_memory_bytes: Option<u64>,
+    /// Name of the solver.
+    pub solver: String,
+    /// Relative residual asked for.
+    pub tolerance: Option<f64>,
+    /// Residuals along the way.
+    pub history: History,
+    /// Work done, by name of the counter.
+    pub work: BTreeMap<String, u64>,
+    /// Why the solver stopped.
+    pub stop_reason: String,
+    /// Row sums of the form factors against 1.
+    pub closure: Closure,
+    /// Largest relative violation of `A_i F_ij = A_j F_ji` among the pairs checked.
+    pub reciprocity: Option<f64>,
+    /// Estimated error of the form factors.
+    pub form_factor_error: FormFactorError,
+    /// Energy balance, one entry a band.
+    pub energy: Vec<Energy>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+    /// Whether the run was interrupted, so that the field is not the solution asked for.
+    pub partial: bool,
+}
+
+impl Default for RunRecord {
+    fn default() -> Self {
+        Self {
+            format: FORMAT.to_owned(),
+            version: String::new(),
+            scene: String::new(),
+            scene_sha256: String::new(),
+            options: Value::Null,
+            bands: Vec::new(),
+            counts: Counts::default(),
+            timings: Vec::new(),
+            peak_memory_bytes: None,
+            solver: String::new(),
+            tolerance: None,
+            history: History::default(),
+            work: BTreeMap::new(),
+            stop_reason: String::new(),
+            closure: Closure::default(),
+            reciprocity: None,
+            form_factor_error: FormFactorError::default(),
+            energy: Vec::new(),
+            warnings: Vec::new(),
+            partial: false,
+        }
+    }
+}
+
+/// Sizes of a problem.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Counts {
+    /// Named surfaces.
+    pub surfaces: u64,
+    /// Input faces.
+    pub faces: u64,
+    /// Leaf elements, that is unknowns.
+    pub elements: u64,
+    /// Undivided pieces that block the view.
+    pub occluders: u64,
+    /// Bands.
+    pub bands: u64,
+    /// Stored entries of the operator.
+    pub matrix_entries: u64,
+}
+
+/// Wall-clock time of a stage.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Timing {
+    /// Name of the stage.
+    pub stage: String,
+    /// Seconds.
+    pub seconds: f64,
+}
+
+/// Residuals along the way. All vectors have one entry a point; `residual` has one such vector a band.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct History {
+    /// Iterations done.
+    pub iterations: Vec<u64>,
+    /// Seconds since the solver started.
+    #[serde(deserialize_with = "row")]
+    pub seconds: Vec<f64>,
+    /// ‖b − A x‖₂/‖b‖₂: `residual[band][point]`.
+    #[serde(deserialize_with = "rows")]
+    pub residual: Vec<Vec<f64>>,
+}
+
+/// How far the row sums `Σ_j F_ij` are from 1.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Closure {
+    /// Largest `|Σ_j F_ij − 1|`.
+    pub max: Option<f64>,
+    /// Area mean of `|Σ_j F_ij − 1|`.
+    pub mean: Option<f64>,
+    /// Leaf element of the largest.
+    pub worst_element: Option<u64>,
+    /// Surface of the largest.
+    pub worst_surface: Option<String>,
+}
+
+/// Estimated error of the form factors.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct FormFactorError {
+    /// Error asked for.
+    pub tolerance: Option<f64>,
+    /// Largest estimate for a pair.
+    pub max: Option<f64>,
+    /// Largest sum of estimates over a row.
+    pub row_max: Option<f64>,
+}
+
+/// Energy balance of a band, W.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Energy {
+    /// Name of the band.
+    pub band: String,
+    /// What the surfaces emit by themselves, `Σ A_i M_i`.
+    pub emitted: Option<f64>,
+    /// What the surfaces absorb, `Σ A_i (1 − ρ_i) E_i`.
+    pub absorbed: Option<f64>,
+    /// What leaves through openings, `Σ A_i B_i (1 − Σ_j F_ij)`.
+    pub escaped: Option<f64>,
+}
+
+fn row<'de, D: Deserializer<'de>>(source: D) -> Result<Vec<f64>, D::Error> {
+    Vec::<Option<f64>>::deserialize(source).map(numbers)
+}
+
+fn rows<'de, D: Deserializer<'de>>(source: D) -> Result<Vec<Vec<f64>>, D::Error> {
+    let rows = Vec::<Vec<Option<f64>>>::deserialize(source)?;
+    Ok(rows.into_iter().map(numbers).collect())
+}
+
+fn numbers(row: Vec<Option<f64>>) -> Vec<f64> {
+    row.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect()
+}
+
+/// Writes a run record as indented JSON.
+///
+/// # Errors
+/// What `out` reports.
+pub fn write_run(run: &RunRecord, out: &mut dyn Write) -> io::Result<()> {
+    serde_json::to_writer_pretty(&mut *out, run)?;
+    writeln!(out)
+}
+
+/// Reads a run record.
+///
+/// # Errors
+/// [`ReportError::Read`] where the file cannot be read, [`ReportError::BrokenRun`] for a file cut short or damaged,
+/// [`ReportError::ForeignRun`] for JSON of another kind.
+pub fn read_run(path: &Path) -> Result<RunRecord, ReportError> {
+    let bytes = fs::read(path).map_err(|source| ReportError::Read { path: path.to_owned(), source })?;
+    let broken =
+        |error: &serde_json::Error| ReportError::BrokenRun { path: path.to_owned(), why: error.to_string() };
+    let value: Value = serde_json::from_slice(&bytes).map_err(|error| broken(&error))?;
+    match value.get("format") {
+        Some(Value::String(format)) if format == FORMAT => {
+            serde_json::from_value(value).map_err(|error| broken(&error))
+        }
+        other => Err(foreign(path, other)),
+    }
+}
+
+fn foreign(path: &Path, format: Option<&Value>) -> ReportError {
+    let found = format.map_or_else(|| "missing".to_owned(), ToString::to_string);
+    ReportError::ForeignRun { path: path.to_owned(), found, expected: FORMAT }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use std::path::PathBuf;
+
+    pub(crate) fn record() -> RunRecord {
+        RunRecord {
+            version: "1.2.3".into(),
+            scene: "scenes/box.toml".into(),
+            scene_sha256: "ab".repeat(32),
+            options: serde_json::json!({ "solver": "gauss-seidel", "tolerance": 1e-9 }),
+            bands: vec!["r".into(), "g".into()],
+            counts: Counts { elements: 3, bands: 2, matrix_entries: 6, ..Counts::default() },
+            timings: vec![Timing { stage: "solve".into(), seconds: 0.1 + 0.2 }],
+            peak_memory_bytes: Some(u64::MAX),
+            solver: "gauss-seidel".into(),
+            tolerance: Some(1e-9),
+            history: History {
+                iterations: vec![0, 1, 2],
+                seconds: vec![0.0, 0.1, 1.0 / 3.0],
+                residual: vec![vec![1.0, 1e-3, 7.1e-11], vec![1.0, 2e-3, 0.0]],
+            },
+            work: BTreeMap::from([("row_visits".into(), 6)]),
+            stop_reason: "converged".into(),
+            closure: Closure { max: Some(1e-4), worst_surface: Some("floor".into()), ..Closure::default() },
+            energy: vec![Energy { band: "r".into(), emitted: Some(5.0), ..Energy::default() }],
+            warnings: vec!["half \"open\"".into()],
+            partial: true,
+            ..RunRecord::default()
+        }
+    }
+
+    fn saved(text: &[u8]) -> (tempfile::TempDir, PathBuf) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("run.json");
+        fs::write(&path, text).unwrap();
+        (folder, path)
+    }
+
+    fn written(run: &RunRecord) -> Vec<u8> {
+        let mut out = Vec::new();
+        write_run(run, &mut out).unwrap();
+        out
+    }
+
+    #[test]
+    fn a_record_reads_back() {
+        let (_folder, path) = saved(&written(&record()));
+        assert_eq!(read_run(&path).unwrap(), record());
+    }
+
+    #[test]
+    fn a_diverged_history_reads_back() {
+        let mut run = record();
+        run.history.residual[1][2] = f64::INFINITY;
+        let (_folder, path) = saved(&written(&run));
+        let back = read_run(&path).unwrap();
+        assert!(back.history.residual[1][2].is_nan());
+        assert_eq!(back.history.residual[0], run.history.residual[0]);
+    }
+
+    #[test]
+    fn unknown_and_missing_keys_are_tolerated() {
+        let (_folder, path) = saved(br#"{"format": "fredholm-run-1", "solver": "lu", "colour": 3}"#);
+        assert_eq!(read_run(&path).unwrap(), RunRecord { solver: "lu".into(), ..RunRecord::default() });
+    }
+
+    #[test]
+    fn every_truncation_is_noticed() {
+        let text = written(&record());
+        for length in 0..text.len() - 2 {
+            let (_folder, path) = saved(&text[..length]);
+            let error = read_run(&path).unwrap_err();
+            assert!(matches!(error, ReportError::BrokenRun { .. }), "{length}: {error}");
+        }
+    }
+
+    #[test]
+    fn foreign_files_are_refused() {
+        for (text, found) in [("[]", "missing"), ("{\"format\": \"x\"}", "\"x\""), ("{\"format\": 3}", "3")] {
+            let (_folder, path) = saved(text.as_bytes());
+            let message = read_run(&path).unwrap_err().to_string();
+            assert!(message.contains(&format!("\"format\" is {found}, not")), "{message}");
+        }
+        let (_folder, path) = saved(br#"{"format": "fredholm-run-1", "bands": 7}"#);
+        assert!(matches!(read_run(&path).unwrap_err(), ReportError::BrokenRun { .. }));
+        let missing = read_run(Path::new("/nonexistent/run.json")).unwrap_err();
+        assert!(matches!(missing, ReportError::Read { .. }));
+    }
+}

@@ -1,0 +1,80 @@
+//! From the text of a scene file to its entries; what the TOML reader says becomes a [`SceneError`].
+//!
+//! TOML 1.1: <https://toml.io/en/v1.1.0>.
+
+use std::ops::Range;
+
+use serde::Deserialize;
+use toml::de::{DeTable, Deserializer, Error};
+
+use crate::error::{ErrorKind, SceneError};
+use crate::format::SceneEntry;
+use crate::source::Source;
+use crate::suggest::among;
+
+/// Types as the reader calls them, and in plain words.
+const PLAIN: [(&str, &str); 10] = [
+    ("expected f64", "expected a number"),
+    ("expected u64", "expected a whole number, 0 or more"),
+    ("expected u32", "expected a whole number from 0 to 4294967295"),
+    ("expected usize", "expected a whole number, 0 or more"),
+    ("expected a sequence", "expected a list"),
+    ("expected a map", "expected a table"),
+    ("expected an array of length", "expected a list of"),
+    ("invalid type: map", "invalid type: table"),
+    ("invalid type: sequence", "invalid type: list"),
+    ("expected a boolean", "expected true or false"),
+];
+
+pub(crate) fn parse(source: &Source) -> Result<SceneEntry, SceneError> {
+    let table = DeTable::parse(&source.text).map_err(|e| syntax(source, &e))?;
+    SceneEntry::deserialize(Deserializer::from(table)).map_err(|e| meaning(source, &e))
+}
+
+fn syntax(source: &Source, error: &Error) -> SceneError {
+    let help = "correct the TOML here; brackets and quotes must be closed, and no key may be given twice";
+    source.error(ErrorKind::Syntax, span(source, error), error.message(), help)
+}
+
+fn meaning(source: &Source, error: &Error) -> SceneError {
+    let (span, message) = (span(source, error), error.message());
+    if let Some(rest) = message.strip_prefix("unknown field ") {
+        return unknown_key(source, span, rest);
+    }
+    if let Some(key) = message.strip_prefix("missing field ") {
+        let what = format!("the key {key} is missing here");
+        return source.error(
+            ErrorKind::MissingKey,
+            span,
+            what,
+            format!("add a line {} = …", key.trim_matches('`')),
+        );
+    }
+    if let Some(rest) = message.strip_prefix("unknown variant ") {
+        let what = format!("unknown value {}", rest.split(", expected").next().unwrap_or(rest));
+        let (name, known) = names(rest);
+        return source.error(ErrorKind::Value, span, what, among(name, known, "values"));
+    }
+    if message.ends_with("number overflowed") {
+        let help = "write a number between -1.7e308 and 1.7e308";
+        return source.error(ErrorKind::Value, span, "the number is too large", help);
+    }
+    let message = PLAIN.iter().fold(message.to_owned(), |m, (from, to)| m.replace(from, to));
+    source.error(ErrorKind::Type, span, message, "write a value of the type that is expected here")
+}
+
+fn unknown_key(source: &Source, span: Range<usize>, rest: &str) -> SceneError {
+    let (key, known) = names(rest);
+    source.error(ErrorKind::UnknownKey, span, format!("unknown key `{key}`"), among(key, known, "keys"))
+}
+
+/// The names in backquotes: the first, and the others.
+fn names(message: &str) -> (&str, Vec<&str>) {
+    let (unknown, known) = message.split_once(", expected ").unwrap_or((message, ""));
+    let known = known.split('`').skip(1).step_by(2).collect();
+    (unknown.trim_matches('`'), known)
+}
+
+fn span(source: &Source, error: &Error) -> Range<usize> {
+    error.span().unwrap_or(source.text.len()..source.text.len())
+}

@@ -1,0 +1,112 @@
+//! From what is written in a scene file to what it means: ranges, names and geometry are checked here.
+
+mod bands;
+mod camera;
+mod cutting;
+mod material;
+mod number;
+mod obj;
+mod shape;
+mod solve;
+mod surface;
+
+use std::collections::BTreeSet;
+
+use crate::error::{ErrorKind, SceneError};
+use crate::files::Files;
+use crate::format::{At, SceneEntry, SurfaceEntry};
+use crate::part::Part;
+use crate::source::Source;
+
+pub use camera::Camera;
+pub use material::Material;
+pub use solve::{SolveDefaults, Storage};
+
+/// Most elements of a scene: about 20 GB of mesh, and well below the 2³² − 1 that an index can hold.
+pub(crate) const MOST_ELEMENTS: u128 = 100_000_000;
+
+/// The meaning of a scene file.
+#[derive(Debug)]
+pub(crate) struct Resolved {
+    pub bands: Vec<String>,
+    pub solve: SolveDefaults,
+    pub camera: Option<Camera>,
+    pub materials: Vec<Material>,
+    pub parts: Vec<Part>,
+}
+
+/// What the meaning of a surface depends on.
+struct Context<'a> {
+    source: &'a Source,
+    scene: &'a SceneEntry,
+    materials: &'a [Material],
+    files: &'a mut Files,
+}
+
+pub(crate) fn resolve(
+    source: &Source,
+    scene: &SceneEntry,
+    files: &mut Files,
+) -> Result<Resolved, SceneError> {
+    let bands = bands::bands(source, scene)?;
+    let materials = material::materials(source, scene, &bands)?;
+    let solve = scene.solve.as_ref().map(|entry| solve::solve(source, entry)).transpose()?;
+    let camera = scene.camera.as_ref().map(|entry| camera::camera(source, entry)).transpose()?;
+    let parts = parts(&mut Context { source, scene, materials: &materials, files })?;
+    Ok(Resolved { bands, solve: solve.unwrap_or_default(), camera, materials, parts })
+}
+
+fn parts(context: &mut Context) -> Result<Vec<Part>, SceneError> {
+    let (source, scene) = (context.source, context.scene);
+    if scene.surface.is_empty() {
+        let help = "add a [[surface]] with a name, a material and a shape";
+        let end = source.text.len();
+        return Err(source.error(ErrorKind::Empty, end..end, "the scene has no surface", help));
+    }
+    let mut parts: Vec<Part> = vec![];
+    let mut names = BTreeSet::new();
+    let mut elements = 0_u128;
+    for entry in &scene.surface {
+        for part in surface::parts(context, entry)? {
+            check_name(source, entry, &part.name, &mut names)?;
+            elements = elements.saturating_add(part.elements);
+            check_number(source, entry, &part, elements)?;
+            parts.push(part);
+        }
+    }
+    Ok(parts)
+}
+
+fn check_name(
+    source: &Source,
+    entry: &At<SurfaceEntry>,
+    name: &str,
+    names: &mut BTreeSet<String>,
+) -> Result<(), SceneError> {
+    let at_name = |what: String, help| source.error(ErrorKind::Name, entry.name.span(), what, help);
+    if name.is_empty() || name.chars().any(char::is_control) {
+        return Err(at_name(
+            format!("{name:?} is no name for a surface"),
+            "write a name of visible characters",
+        ));
+    }
+    if names.insert(name.to_owned()) {
+        return Ok(());
+    }
+    Err(at_name(format!("two surfaces are called `{name}`"), "give every surface a name of its own"))
+}
+
+/// Refuses what could not be meshed, before any memory is taken for it.
+fn check_number(source: &Source, entry: &SurfaceEntry, part: &Part, total: u128) -> Result<(), SceneError> {
+    if total <= MOST_ELEMENTS {
+        return Ok(());
+    }
+    let (name, elements) = (&part.name, part.elements);
+    let what = if elements > MOST_ELEMENTS {
+        format!("the surface `{name}` would have {elements} elements, more than the limit of {MOST_ELEMENTS}")
+    } else {
+        format!("with the surface `{name}` the scene would have {total} elements, more than {MOST_ELEMENTS}")
+    };
+    let help = "divide it into fewer pieces, or lower elements_per_face";
+    Err(source.error(ErrorKind::TooLarge, cutting::density(entry), what, help))
+}

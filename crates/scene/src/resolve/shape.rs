@@ -1,0 +1,130 @@
+//! Shapes of a surface entry: exactly one, with finite numbers in their ranges.
+
+use std::ops::Range;
+
+use fredholm_mesh::{Shape, Vec3};
+
+use crate::error::{ErrorKind, SceneError};
+use crate::format::{
+    At, BoxEntry, CylinderEntry, DiscEntry, PolygonEntry, SphereEntry, SurfaceEntry, Triple,
+};
+use crate::source::Source;
+
+/// Edges around a sphere, where the scene does not say.
+const AROUND_SPHERE: usize = 20;
+/// Edges around a disc or a cylinder, where the scene does not say.
+const AROUND_DISC: usize = 32;
+
+/// Place of the one shape of a surface.
+pub(super) fn only_shape(source: &Source, entry: &SurfaceEntry) -> Result<Range<usize>, SceneError> {
+    let shapes = present(entry);
+    let help = "give exactly one of quad, triangle, polygon, box, sphere, disc, cylinder, obj";
+    match &shapes[..] {
+        [(_, span)] => Ok(span.clone()),
+        [] => {
+            let what = format!("the surface `{}` has no shape", *entry.name);
+            Err(source.error(ErrorKind::MissingKey, entry.name.span(), what, help))
+        }
+        [(first, _), (second, span), ..] => {
+            let what = format!("the surface `{}` has two shapes, {first} and {second}", *entry.name);
+            Err(source.error(ErrorKind::Value, span.clone(), what, format!("{help}; make two surfaces")))
+        }
+    }
+}
+
+/// The shapes of an entry in the order of the file.
+fn present(entry: &SurfaceEntry) -> Vec<(&'static str, Range<usize>)> {
+    let all = [
+        ("quad", entry.quad.as_ref().map(At::span)),
+        ("triangle", entry.triangle.as_ref().map(At::span)),
+        ("polygon", entry.polygon.as_ref().map(At::span)),
+        ("box", entry.cuboid.as_ref().map(At::span)),
+        ("sphere", entry.sphere.as_ref().map(At::span)),
+        ("disc", entry.disc.as_ref().map(At::span)),
+        ("cylinder", entry.cylinder.as_ref().map(At::span)),
+        ("obj", entry.obj.as_ref().map(At::span)),
+    ];
+    let mut present: Vec<_> = all.into_iter().filter_map(|(key, span)| Some((key, span?))).collect();
+    present.sort_by_key(|(_, span)| span.start);
+    present
+}
+
+/// The shape of an entry, or `None` where it comes from a file.
+pub(super) fn shape(source: &Source, entry: &SurfaceEntry) -> Result<Option<Shape>, SceneError> {
+    if let (Some(skip), None) = (&entry.skip, &entry.quad) {
+        let what = "only a quad has cells to skip".to_owned();
+        return Err(source.value_error(skip, what, "remove skip, or make the surface a quad"));
+    }
+    let flat = match (&entry.quad, &entry.triangle, &entry.polygon) {
+        (Some(quad), _, _) => Some(self::quad(source, quad, entry)?),
+        (_, Some(corners), _) => Some(Shape::Triangle { corners: points(source, corners)? }),
+        (_, _, Some(polygon)) => Some(self::polygon(source, polygon)?),
+        _ => None,
+    };
+    let solid = match (&entry.cuboid, &entry.sphere, &entry.disc, &entry.cylinder) {
+        (Some(cuboid), _, _, _) => Some(self::cuboid(source, cuboid)?),
+        (_, Some(sphere), _, _) => Some(self::sphere(source, sphere)?),
+        (_, _, Some(disc), _) => Some(self::disc(source, disc)?),
+        (_, _, _, Some(cylinder)) => Some(self::cylinder(source, cylinder)?),
+        _ => None,
+    };
+    Ok(flat.or(solid))
+}
+
+fn quad(source: &Source, corners: &[Triple; 4], entry: &SurfaceEntry) -> Result<Shape, SceneError> {
+    let skip = entry.skip.as_ref().map_or(Vec::new(), |skip| skip.iter().map(|cell| **cell).collect());
+    Ok(Shape::Quad { corners: points(source, corners)?, skip })
+}
+
+fn polygon(source: &Source, entry: &PolygonEntry) -> Result<Shape, SceneError> {
+    let ring = |ring: &Vec<Triple>| ring.iter().map(|p| source.vector(p, "the coordinate")).collect();
+    let holes = entry.holes.iter().map(ring).collect::<Result<_, SceneError>>()?;
+    Ok(Shape::Polygon { outline: ring(&entry.outline)?, holes })
+}
+
+fn cuboid(source: &Source, entry: &BoxEntry) -> Result<Shape, SceneError> {
+    let min = source.vector(&entry.min, "min")?;
+    let max = source.vector(&entry.max, "max")?;
+    Ok(Shape::Box { min, max, inward: entry.inward })
+}
+
+fn sphere(source: &Source, entry: &SphereEntry) -> Result<Shape, SceneError> {
+    Ok(Shape::Sphere {
+        centre: source.vector(&entry.centre, "centre")?,
+        radius: source.positive(&entry.radius, "radius")?,
+        inward: entry.inward,
+        segments: segments(entry.segments.as_ref(), AROUND_SPHERE),
+    })
+}
+
+fn disc(source: &Source, entry: &DiscEntry) -> Result<Shape, SceneError> {
+    Ok(Shape::Disc {
+        centre: source.vector(&entry.centre, "centre")?,
+        normal: source.direction(&entry.normal, "normal")?,
+        radius: source.positive(&entry.radius, "radius")?,
+        segments: segments(entry.segments.as_ref(), AROUND_DISC),
+    })
+}
+
+fn cylinder(source: &Source, entry: &CylinderEntry) -> Result<Shape, SceneError> {
+    Ok(Shape::Cylinder {
+        base: source.vector(&entry.base, "base")?,
+        axis: source.direction(&entry.axis, "axis")?,
+        radius: source.positive(&entry.radius, "radius")?,
+        caps: entry.caps.unwrap_or(true),
+        inward: entry.inward,
+        segments: segments(entry.segments.as_ref(), AROUND_DISC),
+    })
+}
+
+fn segments(given: Option<&At<u32>>, otherwise: usize) -> usize {
+    given.map_or(otherwise, |segments| **segments as usize)
+}
+
+fn points<const N: usize>(source: &Source, corners: &[Triple; N]) -> Result<[Vec3; N], SceneError> {
+    let mut points = [Vec3::ZERO; N];
+    for (point, corner) in points.iter_mut().zip(corners) {
+        *point = source.vector(corner, "the coordinate")?;
+    }
+    Ok(points)
+}

@@ -1,0 +1,111 @@
+//! Surfaces: name, material, shape, cutting and back.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use fredholm_mesh::{Cutting, MeshError, Shape};
+
+use super::{Context, Material, cutting, obj, shape};
+use crate::error::{ErrorKind, SceneError};
+use crate::format::{At, SurfaceEntry};
+use crate::part::Part;
+use crate::source::Source;
+use crate::suggest::among;
+
+/// The surfaces that an entry stands for: one, several from a file, and the backs of those that have two sides.
+pub(super) fn parts(context: &mut Context, entry: &SurfaceEntry) -> Result<Vec<Part>, SceneError> {
+    let span = shape::only_shape(context.source, entry)?;
+    let cutting = cutting::cutting(context.source, context.scene, entry)?;
+    let mut parts = match (shape::shape(context.source, entry)?, &entry.obj) {
+        (None, Some(file)) => obj::parts(context, entry, file, &cutting)?,
+        (Some(shape), _) => vec![own(context, entry, shape, &cutting, span)?],
+        (None, None) => vec![],
+    };
+    add_backs(context, entry, &mut parts)?;
+    Ok(parts)
+}
+
+fn own(
+    context: &Context,
+    entry: &SurfaceEntry,
+    shape: Shape,
+    cutting: &Cutting,
+    span: Range<usize>,
+) -> Result<Part, SceneError> {
+    let source = context.source;
+    let Some(name) = &entry.material else {
+        let what = format!("the surface `{}` has no material", *entry.name);
+        let help = "add a line material = \"…\" with the name of a material";
+        return Err(source.error(ErrorKind::MissingKey, entry.name.span(), what, help));
+    };
+    let material = find_material(source, name, context.materials)?;
+    let elements = shape.count(cutting).map_err(|e| geometry(source, entry, &e, (source, span)))?;
+    Ok(part(entry, &entry.name, material, vec![shape], cutting, elements))
+}
+
+/// A surface that `entry` stands for.
+pub(super) fn part(
+    entry: &SurfaceEntry,
+    name: &str,
+    material: usize,
+    shapes: Vec<Shape>,
+    cutting: &Cutting,
+    elements: u128,
+) -> Part {
+    let (name, cutting, span) = (name.to_owned(), cutting.clone(), entry.name.span());
+    Part { name, material, shapes: Arc::from(shapes), cutting, elements, span }
+}
+
+fn add_backs(context: &Context, entry: &SurfaceEntry, parts: &mut Vec<Part>) -> Result<(), SceneError> {
+    let material = entry.back_material.as_ref();
+    let material = material.map(|name| find_material(context.source, name, context.materials)).transpose()?;
+    if let (Some(name), false) = (&entry.back_material, entry.two_sided) {
+        let what = "a surface with one side has no back to give a material".to_owned();
+        return Err(context.source.value_error(name, what, "add two_sided = true, or remove back_material"));
+    }
+    if entry.two_sided {
+        let backs: Vec<Part> = parts.iter().map(|front| back(front, material)).collect();
+        parts.extend(backs);
+    }
+    Ok(())
+}
+
+fn back(front: &Part, material: Option<usize>) -> Part {
+    let cutting = Cutting { flipped: true, ..front.cutting.clone() };
+    let name = format!("{}/back", front.name);
+    Part { name, material: material.unwrap_or(front.material), cutting, ..front.clone() }
+}
+
+/// Index of the material of this name.
+pub(super) fn find_material(
+    source: &Source,
+    name: &At<String>,
+    materials: &[Material],
+) -> Result<usize, SceneError> {
+    materials.iter().position(|material| material.name == **name).ok_or_else(|| {
+        let help = among(name, materials.iter().map(|m| m.name.as_str()), "materials");
+        source.error(ErrorKind::Name, name.span(), format!("there is no material `{}`", **name), help)
+    })
+}
+
+/// What the mesh says about a shape at `origin`, or about how the entry has it cut.
+pub(super) fn geometry(
+    source: &Source,
+    entry: &SurfaceEntry,
+    error: &MeshError,
+    origin: (&Source, Range<usize>),
+) -> SceneError {
+    let message = error.to_string();
+    let (what, help) = message.split_once("; ").unwrap_or((&message, "correct the value marked"));
+    // The number that it tells to look at is marked.
+    let help = if matches!(error, MeshError::BadLines { .. }) { "correct the value marked" } else { help };
+    let what = format!("surface `{}`: {what}", *entry.name);
+    let kind = match error {
+        MeshError::TooLarge { .. } => ErrorKind::TooLarge,
+        _ => ErrorKind::Geometry,
+    };
+    match cutting::culprit(entry, error) {
+        Some(span) => source.error(kind, span, what, help),
+        None => origin.0.error(kind, origin.1, what, help),
+    }
+}

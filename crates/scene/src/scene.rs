@@ -1,0 +1,169 @@
+//! A scene: what a file describes, ready to be meshed.
+
+use std::path::Path;
+
+use fredholm_mesh::{Mesh, MeshBuilder, MeshError};
+
+use crate::error::{ErrorKind, SceneError};
+use crate::files::Files;
+use crate::parse::parse;
+use crate::part::Part;
+use crate::resolve::{Camera, Material, Resolved, SolveDefaults, resolve};
+use crate::source::{Source, read};
+
+/// A scene file and the files it names, read and checked. Lengths in metres, exitance in W/m².
+///
+/// ```
+/// use fredholm_scene::Scene;
+///
+/// let text = r#"
+///     [materials.wall]
+///     reflectance = 0.5
+///     exitance = 1
+///
+///     [[surface]]
+///     name = "room"
+///     material = "wall"
+///     box = { min = [0, 0, 0], max = [1, 1, 1], inward = true }
+///     divide = [4, 4]
+/// "#;
+/// let scene = Scene::from_str(text, "room.toml")?;
+/// assert_eq!(scene.predicted_elements(), 96);
+/// let mesh = scene.mesh()?;
+/// assert_eq!(mesh.len(), 96);
+/// assert!(scene.check(&mesh)?.is_empty());
+/// assert_eq!(scene.reflectance(&mesh), [0.5; 96]);
+/// # Ok::<(), fredholm_scene::SceneError>(())
+/// ```
+#[derive(Debug)]
+pub struct Scene {
+    source: Source,
+    title: Option<String>,
+    meaning: Resolved,
+    sha256: String,
+}
+
+impl Scene {
+    /// Reads a scene file and the files it names.
+    ///
+    /// # Errors
+    /// [`SceneError`], with file and line, for anything that is wrong with them.
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, SceneError> {
+        let path = path.as_ref();
+        let bytes = read(path).map_err(|error| {
+            let what = format!("cannot read the scene: {error}");
+            let help = "correct the name of the scene file, or its permissions";
+            SceneError::new(ErrorKind::Io, path, what, help).caused_by(error)
+        })?;
+        Self::from_source(Source::decode(path, bytes)?)
+    }
+
+    /// Reads a scene from text. Files that it names are looked for in the folder of `path`.
+    ///
+    /// # Errors
+    /// [`SceneError`], with file and line, for anything that is wrong with it.
+    pub fn from_str(text: &str, path: impl AsRef<Path>) -> Result<Self, SceneError> {
+        Self::from_source(Source { path: path.as_ref().to_owned(), text: text.to_owned() })
+    }
+
+    fn from_source(source: Source) -> Result<Self, SceneError> {
+        let entry = parse(&source)?;
+        let mut files = Files::beside(&source.path);
+        let meaning = resolve(&source, &entry, &mut files)?;
+        let sha256 = files.fingerprint(&source.text);
+        Ok(Self { title: entry.title, source, meaning, sha256 })
+    }
+
+    /// The scene file.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.source.path
+    }
+
+    /// What the scene is called.
+    #[must_use]
+    pub fn title(&self) -> Option<&str> {
+        self.title.as_deref()
+    }
+
+    /// Names of the bands, at least one.
+    #[must_use]
+    pub fn bands(&self) -> &[String] {
+        &self.meaning.bands
+    }
+
+    /// The materials, by name; the surfaces of the mesh refer to them by index.
+    #[must_use]
+    pub fn materials(&self) -> &[Material] {
+        &self.meaning.materials
+    }
+
+    /// The camera, where the scene has one.
+    #[must_use]
+    pub fn camera(&self) -> Option<&Camera> {
+        self.meaning.camera.as_ref()
+    }
+
+    /// How to solve, where the command line does not say.
+    #[must_use]
+    pub fn solve(&self) -> &SolveDefaults {
+        &self.meaning.solve
+    }
+
+    /// SHA-256 of the scene file and the files it names, in hexadecimal.
+    #[must_use]
+    pub fn sha256(&self) -> &str {
+        &self.sha256
+    }
+
+    /// Number of elements that the mesh will have, known without making it.
+    #[must_use]
+    pub fn predicted_elements(&self) -> u128 {
+        self.parts().iter().map(|part| part.elements).sum()
+    }
+
+    /// Cuts the surfaces into faces and elements.
+    ///
+    /// # Errors
+    /// [`SceneError`] with the line of a surface that cannot be meshed.
+    pub fn mesh(&self) -> Result<Mesh, SceneError> {
+        let mut builder = MeshBuilder::default();
+        for part in self.parts() {
+            builder.surface(part.name.as_str(), part.material);
+            for shape in part.shapes.iter() {
+                builder.add(shape, &part.cutting).map_err(|error| self.unmeshable(part, &error))?;
+            }
+        }
+        Ok(builder.build())
+    }
+
+    /// Reflectance of every leaf of a mesh of this scene, leaf-major: that of leaf i in band l is at i × bands + l.
+    #[must_use]
+    pub fn reflectance(&self, mesh: &Mesh) -> Vec<f64> {
+        self.per_leaf(mesh, |material| &material.reflectance)
+    }
+
+    /// Exitance of every leaf of a mesh of this scene, W/m², leaf-major: that of leaf i in band l is at i × bands + l.
+    #[must_use]
+    pub fn exitance(&self, mesh: &Mesh) -> Vec<f64> {
+        self.per_leaf(mesh, |material| &material.exitance)
+    }
+
+    fn per_leaf(&self, mesh: &Mesh, values: impl Fn(&Material) -> &Vec<f64>) -> Vec<f64> {
+        let material = |leaf| &self.materials()[mesh.surfaces()[mesh.surface_of(leaf)].material];
+        (0..mesh.len()).flat_map(|leaf| values(material(leaf)).iter().copied()).collect()
+    }
+
+    pub(crate) fn source(&self) -> &Source {
+        &self.source
+    }
+
+    pub(crate) fn parts(&self) -> &[Part] {
+        &self.meaning.parts
+    }
+
+    fn unmeshable(&self, part: &Part, error: &MeshError) -> SceneError {
+        let what = format!("surface `{}`: {error}", part.name);
+        self.source.error(ErrorKind::Geometry, part.span.clone(), what, "correct the shape")
+    }
+}

@@ -1,0 +1,131 @@
+//! A text file, and how to point at a piece of it.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use crate::error::{ErrorKind, Excerpt, Place, SceneError};
+
+/// Largest file that is read, bytes.
+const LARGEST: u64 = 1 << 30;
+/// Most characters of a line that are quoted.
+const QUOTED: usize = 100;
+/// Characters kept before the offending piece of a long line.
+const LEAD: usize = 30;
+
+/// A file as text.
+#[derive(Debug)]
+pub(crate) struct Source {
+    pub path: PathBuf,
+    pub text: String,
+}
+
+impl Source {
+    /// Takes bytes for UTF-8.
+    pub fn decode(path: &Path, bytes: Vec<u8>) -> Result<Self, SceneError> {
+        let path = path.to_owned();
+        match String::from_utf8(bytes) {
+            Ok(text) => Ok(Self { path, text }),
+            Err(error) => Err(not_text(&path, error.as_bytes(), error.utf8_error().valid_up_to())),
+        }
+    }
+
+    /// An error about the piece at `span`, bytes.
+    pub fn error(
+        &self,
+        kind: ErrorKind,
+        span: Range<usize>,
+        what: impl AsRef<str>,
+        help: impl AsRef<str>,
+    ) -> SceneError {
+        let (place, excerpt) = self.locate(span);
+        let error = SceneError::new(kind, &self.path, what, help).at(place);
+        if excerpt.line.trim().is_empty() { error } else { error.quoting(excerpt) }
+    }
+
+    /// Where the piece at `span` begins.
+    pub fn place(&self, span: Range<usize>) -> Place {
+        self.locate(span).0
+    }
+
+    /// The piece at `span`, as it is written.
+    pub fn piece(&self, span: Range<usize>) -> &str {
+        self.text.get(span).unwrap_or_default()
+    }
+
+    fn locate(&self, span: Range<usize>) -> (Place, Excerpt) {
+        let start = floor_char(&self.text, span.start);
+        let begin = self.text[..start].rfind('\n').map_or(0, |i| i + 1);
+        let end = self.text[start..].find('\n').map_or(self.text.len(), |i| start + i);
+        let before = self.text[begin..start].chars().count();
+        let stop = floor_char(&self.text, span.end).clamp(start, end);
+        let width = self.text[start..stop].trim_end().chars().count();
+        let line = 1 + self.text[..begin].matches('\n').count();
+        let place = Place::Line { line, column: before + 1 };
+        (place, excerpt(&self.text[begin..end], before, width))
+    }
+}
+
+/// Reads a whole file of at most [`LARGEST`] bytes.
+pub(crate) fn read(path: &Path) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    File::open(path)?.take(LARGEST + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > LARGEST {
+        return Err(io::Error::other("the file is longer than 1 GiB"));
+    }
+    Ok(bytes)
+}
+
+fn floor_char(text: &str, index: usize) -> usize {
+    let index = index.min(text.len());
+    (0..=index).rev().find(|&i| text.is_char_boundary(i)).unwrap_or(0)
+}
+
+fn excerpt(line: &str, before: usize, width: usize) -> Excerpt {
+    let skipped = if before + width > QUOTED { before.saturating_sub(LEAD) } else { 0 };
+    let shown = line.trim_end().chars().skip(skipped).take(QUOTED);
+    let line: String = shown.map(|c| if c.is_control() { ' ' } else { c }).collect();
+    let line = line.trim_end().to_owned();
+    let before = before - skipped;
+    let room = line.chars().count().saturating_sub(before);
+    Excerpt { line, before, width: width.clamp(1, room.max(1)) }
+}
+
+fn not_text(path: &Path, bytes: &[u8], offset: usize) -> SceneError {
+    let line = bytes[..offset].split(|&b| b == b'\n').count();
+    let what = format!("byte 0x{:02x} on line {line} is not UTF-8 text", bytes[offset]);
+    let help = "save the file as UTF-8; if it is no text file, give the right one";
+    SceneError::new(ErrorKind::Format, path, what, help).at(Place::Byte(offset))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn source(text: &str) -> Source {
+        Source { path: "a.toml".into(), text: text.to_owned() }
+    }
+
+    #[test]
+    fn a_piece_is_marked_in_its_line() {
+        let error = source("x = 1\ny = 22\n").error(ErrorKind::Value, 10..12, "wrong", "mend");
+        assert_eq!(error.place(), Some(Place::Line { line: 2, column: 5 }));
+        assert_eq!(error.to_string(), "a.toml:2:5: wrong\n  2 | y = 22\n    |     ^^\n  help: mend");
+    }
+
+    #[test]
+    fn a_long_line_is_cut_around_the_piece() {
+        let text = format!("{}BAD{}", "a".repeat(5000), "b".repeat(5000));
+        let message = source(&text).error(ErrorKind::Value, 5000..5003, "wrong", "mend").to_string();
+        assert!(message.contains("aBADb") && message.len() < 400, "{message}");
+    }
+
+    #[test]
+    fn spans_beyond_the_text_or_inside_a_character_do_no_harm() {
+        for span in [0..0, 1..2, 2..900, 900..901, 3..3] {
+            let message = source("é\n").error(ErrorKind::Value, span, "wrong", "mend").to_string();
+            assert!(message.starts_with("a.toml:"), "{message}");
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! The set of patches that block the view.
+
+use fredholm_mesh::{Patch, Vec3};
+
+use crate::VisibilityError;
+use crate::exact::line_crosses;
+use crate::facet::{Crossing, Facet};
+use crate::frame::Frame;
+use crate::probe::Probe;
+use crate::tree::{Tree, bounds};
+
+/// Facets are counted in 32 bits, and a patch may need two.
+const LIMIT: usize = (u32::MAX / 2) as usize;
+/// A quad this close to a parallelogram, over the tolerance of length, is tested as one.
+const SKEW: f64 = 1e-2;
+
+/// Patches that block the view from both sides, prepared for queries.
+#[derive(Clone, Debug)]
+pub struct Occluders {
+    pub(crate) frame: Frame,
+    pub(crate) patches: Vec<Patch>,
+    /// In the order of the leaves of the tree.
+    pub(crate) facets: Vec<Facet>,
+    pub(crate) tree: Tree,
+    /// The corners of each facet, relative to the centre of the scene; a triangle repeats its last.
+    pub(crate) outlines: Vec<[Vec3; 4]>,
+    /// Where the facets of each patch are; the two places are the same where it has only one.
+    pub(crate) places: Vec<[u32; 2]>,
+}
+
+impl Occluders {
+    /// Prepares the patches for queries. Later answers name a patch by its index in the slice. An empty slice is legal:
+    /// nothing blocks.
+    ///
+    /// # Errors
+    /// [`VisibilityError::TooMany`] past 2³¹ − 1 patches; [`VisibilityError::Span`] for a scene larger than 1e50 m or
+    /// smaller than 1e-50 m.
+    pub fn new(patches: &[Patch]) -> Result<Self, VisibilityError> {
+        if patches.len() > LIMIT {
+            return Err(VisibilityError::TooMany { count: patches.len(), limit: LIMIT });
+        }
+        let frame = Frame::around(patches)?;
+        let pieces: Vec<(Facet, [Vec3; 4])> =
+            patches.iter().zip(0..).flat_map(|(patch, index)| pieces(patch, index, &frame)).collect();
+        let boxes: Vec<_> = pieces.iter().map(|(_, outline)| bounds(outline, &frame)).collect();
+        let (tree, order) = Tree::new(&boxes);
+        let (facets, outlines): (Vec<_>, Vec<_>) = order.iter().map(|&i| pieces[i as usize]).unzip();
+        let places = places(&facets, patches.len());
+        Ok(Self { frame, patches: patches.to_vec(), facets, outlines, tree, places })
+    }
+
+    /// Number of patches.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.patches.len()
+    }
+
+    /// Whether there is nothing that could block.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.patches.is_empty()
+    }
+
+    /// Length up to which two places count as one, m: 1e-9 of the longest side of the bounding box, and no less
+    /// than 16 units in the last place of the largest coordinate.
+    #[must_use]
+    pub fn tolerance(&self) -> f64 {
+        self.frame.tolerance
+    }
+
+    /// How far along the probe the facet is crossed, as a fraction of its length, or `None` where it is not.
+    #[inline]
+    pub(crate) fn crossing(&self, facet: &Facet, probe: &Probe) -> Option<f64> {
+        match facet.crossing(probe) {
+            Crossing::Miss => None,
+            Crossing::Hit { fraction } => Some(fraction),
+            Crossing::Doubt { fraction } => self.line_crosses(facet, probe).then_some(fraction),
+        }
+    }
+
+    #[cold]
+    fn line_crosses(&self, facet: &Facet, probe: &Probe) -> bool {
+        let [p, q] = probe.ends;
+        line_crosses(p, q, self.patches[facet.patch as usize].corners())
+    }
+}
+
+/// A triangle is one facet, and so is a quad that is a parallelogram; any other quad is two triangles.
+fn pieces(patch: &Patch, index: u32, frame: &Frame) -> impl Iterator<Item = (Facet, [Vec3; 4])> {
+    let [a, b, c, d] = [0, 1, 2, 3].map(|i| patch.corners()[i.min(patch.sides() - 1)] - frame.centre);
+    let skew = (a - b + c - d).length();
+    let triangle = move |a: Vec3, b: Vec3, c: Vec3| (Facet::triangle([a, b, c], index), [a, b, c, c]);
+    let (first, second) = if patch.sides() == 3 {
+        (triangle(a, b, c), None)
+    } else if skew <= SKEW * frame.tolerance {
+        ((Facet::parallelogram([a, b, d], skew / frame.extent, index), [a, b, c, d]), None)
+    } else {
+        (triangle(a, b, c), Some(triangle(a, c, d)))
+    };
+    [Some(first), second].into_iter().flatten()
+}
+
+fn places(facets: &[Facet], patches: usize) -> Vec<[u32; 2]> {
+    let mut places = vec![[u32::MAX; 2]; patches];
+    for (place, facet) in facets.iter().enumerate() {
+        let [first, last] = &mut places[facet.patch as usize];
+        *first = (*first).min(place as u32);
+        *last = place as u32;
+    }
+    places
+}

@@ -1,0 +1,46 @@
+//! Is there anything between two points?
+
+use fredholm_mesh::Vec3;
+use rayon::prelude::*;
+
+use crate::Occluders;
+use crate::probe::Probe;
+use crate::tree::Beam;
+
+/// Segments that one thread takes at a time.
+const CHUNK: usize = 1024;
+
+impl Occluders {
+    /// Whether no patch blocks the open segment from `p` to `q`.
+    #[must_use]
+    pub fn unoccluded(&self, p: Vec3, q: Vec3) -> bool {
+        let Some(probe) = Probe::segment(p, q, &self.frame) else { return true };
+        let Some(beam) = Beam::new(&probe, &self.frame) else { return true };
+        let crosses = |facet| self.crossing(facet, &probe).is_some();
+        !self.tree.any(|node| beam.meets(node), |run| self.facets[run].iter().any(crosses))
+    }
+
+    /// Whether none of the `candidates`, indices of patches, blocks the open segment from `p` to `q`.
+    ///
+    /// With the list of [`shaft`](Self::shaft) between two patches this is [`unoccluded`](Self::unoccluded) for any
+    /// segment between them, and faster where the list is short. An index that names no patch blocks nothing.
+    #[must_use]
+    pub fn unoccluded_by(&self, p: Vec3, q: Vec3, candidates: &[u32]) -> bool {
+        let Some(probe) = Probe::segment(p, q, &self.frame) else { return true };
+        let places = candidates.iter().filter_map(|&patch| self.places.get(patch as usize));
+        let crosses = |place: u32| self.crossing(&self.facets[place as usize], &probe).is_some();
+        !places.into_iter().any(|&[first, last]| crosses(first) || (first != last && crosses(last)))
+    }
+
+    /// [`unoccluded`](Self::unoccluded) for every segment, in parallel.
+    #[must_use]
+    pub fn unoccluded_batch(&self, segments: &[(Vec3, Vec3)]) -> Vec<bool> {
+        segments.par_iter().with_min_len(CHUNK).map(|&(p, q)| self.unoccluded(p, q)).collect()
+    }
+
+    /// [`unoccluded`](Self::unoccluded) for the segments from one point to many, in parallel.
+    #[must_use]
+    pub fn unoccluded_from(&self, p: Vec3, ends: &[Vec3]) -> Vec<bool> {
+        ends.par_iter().with_min_len(CHUNK).map(|&q| self.unoccluded(p, q)).collect()
+    }
+}

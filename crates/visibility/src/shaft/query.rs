@@ -1,0 +1,62 @@
+//! Which patches could come between two patches, or between a point and a patch?
+
+use fredholm_mesh::{Patch, Vec3};
+
+use super::Shaft;
+use crate::Occluders;
+use crate::tree::Sieve;
+
+impl Occluders {
+    /// Lists the patches that could block a segment between a point of `a` and a point of `b`, by rising index.
+    ///
+    /// Only segments that leave `a` and reach `b` on their lit sides count: they carry light. Every patch that
+    /// [`unoccluded`](Self::unoccluded) finds on such a segment is in the list, so where the list is empty each patch
+    /// sees all of the other that is in front of it. The list may name patches that block nothing. Patches that only
+    /// touch the room between `a` and `b`, or reach less than the [tolerance](Self::tolerance) into it, are not in it:
+    /// neighbours that share an edge, the floor below a box, and `a` and `b` themselves. Where no part of one lies in
+    /// front of the other the list is empty.
+    ///
+    /// `candidates` is cleared first; a buffer that is used again costs no allocation.
+    pub fn shaft(&self, a: &Patch, b: &Patch, candidates: &mut Vec<u32>) {
+        candidates.clear();
+        if let Some(shaft) = Shaft::between(a, b, &self.frame) {
+            self.sift(&shaft, candidates);
+        }
+    }
+
+    /// Lists the patches that could block a segment between the point `p` and a point of `b`, by rising index.
+    ///
+    /// As [`shaft`](Self::shaft), for segments that reach `b` on its lit side; where `p` is not in front of `b` the list
+    /// is empty.
+    pub fn shaft_point(&self, p: Vec3, b: &Patch, candidates: &mut Vec<u32>) {
+        candidates.clear();
+        if let Some(shaft) = Shaft::from_point(p, b, &self.frame) {
+            self.sift(&shaft, candidates);
+        }
+    }
+
+    fn sift(&self, shaft: &Shaft, candidates: &mut Vec<u32>) {
+        let sieve = Sieve::new(shaft.planes(), &self.frame);
+        self.tree.any(
+            |node| sieve.passes(node),
+            |run| {
+                candidates.extend(run.filter(|&k| self.cuts(shaft, k)).map(|k| self.facets[k].patch));
+                false
+            },
+        );
+        candidates.sort_unstable();
+        candidates.dedup();
+    }
+
+    /// Whether facet `k` has parts of the shaft on both sides, and reaches into it as far as its half-spaces tell.
+    fn cuts(&self, shaft: &Shaft, k: usize) -> bool {
+        let tolerance = self.frame.tolerance;
+        let (mut low, mut high) = (0.0f64, 0.0f64);
+        for &corner in shaft.corners() {
+            let height = self.facets[k].height(corner);
+            (low, high) = (low.min(height), high.max(height));
+        }
+        let apart = low < -tolerance && high > tolerance;
+        apart && !shaft.planes().iter().any(|plane| plane.excludes(&self.outlines[k]))
+    }
+}

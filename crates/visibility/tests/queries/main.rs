@@ -1,0 +1,11 @@
+//! Queries compared with what other arithmetic, other algorithms or geometry itself says of the same scenes.
+
+mod batches;
+mod integer;
+mod leaks;
+mod limits;
+mod plates;
+mod rays;
+mod rooms;
+mod scenes;
+mod shafts;

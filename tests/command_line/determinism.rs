@@ -1,0 +1,47 @@
+//! The same bits with any number of threads.
+
+use std::fs;
+
+use serde_json::Value;
+
+use crate::support::{Bench, room};
+
+const SAME: [&str; 6] = ["field.csv", "faces.csv", "surfaces.csv", "field.vtu", "field.npz", "image.png"];
+
+/// The record without what may differ: times, memory, and the options that say where and by how many.
+fn timeless(bench: &Bench, folder: &str) -> Value {
+    let mut record = bench.record(folder);
+    for key in ["timings", "peak_memory_bytes"] {
+        assert!(record.as_object_mut().unwrap().remove(key).is_some(), "{key}");
+    }
+    for (table, key) in [("history", "seconds"), ("options", "threads"), ("options", "output")] {
+        assert!(record[table].as_object_mut().unwrap().remove(key).is_some(), "{key}");
+    }
+    record
+}
+
+/// The curves over iterations: they come before those over seconds.
+fn curves(bench: &Bench, folder: &str) -> Vec<String> {
+    let svg = fs::read_to_string(bench.path(folder).join("convergence.svg")).unwrap();
+    let curves: Vec<String> =
+        svg.lines().filter(|line| line.starts_with("<polyline")).map(str::to_owned).collect();
+    assert_eq!(curves.len(), 4, "two bands in two panels");
+    curves[..2].to_vec()
+}
+
+#[test]
+fn every_file_is_the_same_with_1_2_and_4_threads() {
+    for solver in ["gauss-seidel", "southwell", "lu"] {
+        let bench = Bench::new(&room(8));
+        for threads in ["1", "2", "4"] {
+            bench.solve(&["--solver", solver, "--threads", threads, "-o", threads]);
+            for name in SAME {
+                let [one, many] =
+                    ["1", threads].map(|folder| fs::read(bench.path(folder).join(name)).unwrap());
+                assert!(one == many, "{name} differs with {threads} threads and {solver}");
+            }
+            assert_eq!(timeless(&bench, "1"), timeless(&bench, threads));
+            assert_eq!(curves(&bench, "1"), curves(&bench, threads));
+        }
+    }
+}

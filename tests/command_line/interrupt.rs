@@ -1,0 +1,97 @@
+//! Ctrl-C and the termination signal, sent for real.
+
+use std::fs;
+use std::io::{BufRead, BufReader};
+use std::process::{Child, Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use crate::support::{Bench, column, furnace, program, room};
+
+/// A second, and a little for a busy machine.
+const PROMPT: Duration = Duration::from_millis(1500);
+
+/// Starts a solution and waits until it has begun a stage.
+fn solving(bench: &Bench, arguments: &[&str], stage: &str) -> Child {
+    let mut command = Command::new(program());
+    command.current_dir(bench.folder.path()).args(["solve", "scene.toml", "--log", "json"]).args(arguments);
+    let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    let mark = format!("\"stage\":\"{stage}\"");
+    let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
+    assert!(lines.any(|line| line.unwrap().contains(&mark)), "there is no stage {stage}");
+    thread::spawn(move || lines.for_each(drop));
+    thread::sleep(Duration::from_millis(100));
+    child
+}
+
+fn send(child: &Child, signal: &str) {
+    assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
+}
+
+/// Sends a signal and returns the exit code and how long the program took to end.
+fn end(mut child: Child, signal: &str) -> (i32, Duration) {
+    let started = Instant::now();
+    send(&child, signal);
+    (child.wait().unwrap().code().unwrap(), started.elapsed())
+}
+
+/// A room that takes minutes to assemble on one thread.
+fn long_assembly() -> Bench {
+    Bench::new(&room(40))
+}
+
+const LONG_ASSEMBLY: [&str; 4] = ["--threads", "1", "--form-factor-tolerance", "1e-9"];
+
+/// A room that never comes to the tolerance asked for.
+fn long_solution() -> Bench {
+    Bench::new(&furnace(10, &[0.99999]))
+}
+
+const LONG_SOLUTION: [&str; 4] = ["--tolerance", "1e-300", "--max-iterations", "4000000000"];
+
+#[test]
+fn nothing_is_written_during_assembly() {
+    for signal in ["-INT", "-TERM"] {
+        let bench = long_assembly();
+        let (code, time) = end(solving(&bench, &LONG_ASSEMBLY, "assembly"), signal);
+        assert_eq!(code, 130);
+        assert!(time < PROMPT, "{time:?}");
+        assert!(!bench.path("out").exists());
+    }
+}
+
+#[test]
+fn a_second_signal_ends_at_once() {
+    let bench = long_assembly();
+    let child = solving(&bench, &LONG_ASSEMBLY, "assembly");
+    send(&child, "-INT");
+    let (code, time) = end(child, "-INT");
+    assert_eq!(code, 130);
+    assert!(time < PROMPT, "{time:?}");
+}
+
+#[test]
+fn the_iterate_is_written_during_solution() {
+    let bench = long_solution();
+    let (code, time) = end(solving(&bench, &LONG_SOLUTION, "solution"), "-INT");
+    assert_eq!(code, 130);
+    assert!(time < PROMPT, "{time:?}");
+    assert_eq!(bench.record("out/scene")["partial"], true);
+    let files = fs::read_dir(bench.path("out/scene")).unwrap().count();
+    assert_eq!(files, fredholm::report::FILES.len());
+    let radiosity = column(&bench.path("out/scene/field.csv"), "radiosity_b0");
+    assert_eq!(radiosity.len(), 600);
+    // Every iterate lies between the exitance and the solution.
+    assert!(radiosity.iter().all(|b| (1.0..=1.0001e5).contains(b)));
+}
+
+#[test]
+fn elimination_has_no_iterate_to_write() {
+    // A factorisation for every band: several seconds.
+    let reflectance: Vec<f64> = (0..40).map(|band| 0.5 + 0.01 * f64::from(band)).collect();
+    let bench = Bench::new(&furnace(18, &reflectance));
+    let (code, time) = end(solving(&bench, &["--solver", "lu"], "solution"), "-INT");
+    assert_eq!(code, 130);
+    assert!(time < PROMPT, "{time:?}");
+    assert!(!bench.path("out").exists());
+}

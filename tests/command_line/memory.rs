@@ -1,0 +1,41 @@
+//! A scene that does not fit is refused before memory is taken.
+
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+use crate::support::{Bench, Run, furnace, program};
+
+/// Runs a verb with at most 1 GiB of address space.
+fn confined(bench: &Bench, verb: &str) -> Run {
+    let script = format!(
+        "ulimit -v 1048576; exec '{}' {verb} scene.toml --threads 1 --memory 100GiB",
+        program().display()
+    );
+    Command::new("sh").args(["-c", &script]).current_dir(bench.folder.path()).output().unwrap().into()
+}
+
+#[test]
+fn a_hundred_gibibytes_are_refused_at_once() {
+    // 6 · 170² = 173,400 elements; the lower triangle of their matrix takes 112 GiB.
+    let bench = Bench::new(&furnace(170, &[0.5]));
+    for verb in ["solve", "check"] {
+        let started = Instant::now();
+        let run = confined(&bench, verb);
+        assert!(started.elapsed() < Duration::from_secs(1));
+        assert_eq!(run.code, 4, "{}", run.stderr);
+        for hint in ["173400 elements", "11", "GiB", "100 GiB", "divide", "f32", "--memory"] {
+            assert!(run.stderr.contains(hint), "no {hint}: {}", run.stderr);
+        }
+    }
+    assert!(!bench.path("out").exists());
+}
+
+#[test]
+fn what_fits_in_single_precision_is_not_refused_there() {
+    // 864 elements: a matrix of 3.0 MB in double, 1.5 MB in single precision, besides the elements themselves.
+    let bench = Bench::new(&furnace(12, &[0.5]));
+    let limit = ["--memory", "6MB"];
+    let run =
+        |storage| bench.run(&[&["solve", "scene.toml", "--storage", storage], &limit[..]].concat()).code;
+    assert_eq!((run("f64"), run("f32")), (4, 0));
+}

@@ -1,0 +1,87 @@
+//! The result folder, the summary and what `info` and `check` tell.
+
+use std::fs;
+
+use crate::support::{Bench, furnace, room};
+
+#[test]
+fn every_file_is_written_and_info_knows_them() {
+    let bench = Bench::new(&room(3));
+    let run = bench.solve(&["--quiet"]);
+    assert_eq!((run.stdout.as_str(), run.stderr.as_str()), ("", ""));
+    for name in fredholm::report::FILES {
+        let file = format!("out/scene/{name}");
+        assert!(fs::metadata(bench.path(&file)).unwrap().len() > 100, "{name}");
+        let info = bench.run(&["info", &file]);
+        assert_eq!(info.code, 0, "{}", info.stderr);
+        assert_eq!(info.stdout, bench.run(&["info", "out/scene"]).stdout);
+        assert!(info.stdout.contains("80 elements") && info.stdout.contains("gauss-seidel"));
+    }
+}
+
+#[test]
+fn the_record_is_complete() {
+    let bench = Bench::new(&room(3));
+    bench.solve(&["--tolerance", "1e-8", "--solver", "southwell", "-o", "here", "--memory", "1GiB"]);
+    let record = bench.record("here");
+    let expected = serde_json::json!({
+        "solver": "southwell", "tolerance": 1e-8, "max_iterations": 1000, "form_factor_tolerance": 1e-3,
+        "storage": "f64", "threads": record["options"]["threads"], "memory_limit_bytes": 1 << 30,
+        "output": "here", "log": "plain", "quiet": false,
+    });
+    assert_eq!(record["options"], expected);
+    assert_eq!(record["counts"]["elements"], 80);
+    assert_eq!(record["counts"]["matrix_entries"], 80 * 81 / 2);
+    assert_eq!(record["scene_sha256"].as_str().unwrap().len(), 64);
+    let stages: Vec<_> =
+        record["timings"].as_array().unwrap().iter().map(|t| t["stage"].as_str().unwrap()).collect();
+    assert_eq!(stages, ["scene", "mesh", "visibility", "assembly", "exposure", "solution", "mesh error"]);
+}
+
+#[test]
+fn energy_is_conserved_in_a_closed_room() {
+    let bench = Bench::new(&room(3));
+    bench.solve(&[]);
+    for energy in bench.record("out/scene")["energy"].as_array().unwrap() {
+        let [emitted, absorbed, escaped] =
+            ["emitted", "absorbed", "escaped"].map(|key| energy[key].as_f64().unwrap());
+        assert!((absorbed + escaped - emitted).abs() < 1e-9 * emitted, "{energy}");
+        assert!(escaped.abs() < 1e-3 * emitted, "{energy}");
+    }
+}
+
+#[test]
+fn the_solvers_agree() {
+    let bench = Bench::new(&room(3));
+    let radiosity = |solver| {
+        bench.solve(&["--solver", solver]);
+        crate::support::column(&bench.path("out/scene/field.csv"), "radiosity_g")
+    };
+    let reference = radiosity("lu");
+    for solver in ["gauss-seidel", "southwell"] {
+        for (x, exact) in radiosity(solver).iter().zip(&reference) {
+            assert!((x - exact).abs() < 1e-8 * exact, "{solver}: {x} {exact}");
+        }
+    }
+}
+
+#[test]
+fn check_predicts_and_writes_nothing() {
+    let bench = Bench::new(&furnace(4, &[0.5]));
+    let run = bench.run(&["check", "scene.toml"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    for figure in ["96 elements", "memory", "time"] {
+        assert!(run.stdout.contains(figure), "no {figure}: {}", run.stdout);
+    }
+    assert_eq!(fs::read_dir(bench.folder.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn progress_stays_on_standard_error() {
+    let bench = Bench::new(&room(3));
+    let plain = bench.solve(&[]);
+    assert!(plain.stdout.contains("image.png") && plain.stderr.contains("assembly: done in"));
+    let json = bench.solve(&["--log", "json"]);
+    let lines = json.stderr.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap());
+    assert!(lines.filter(|line| line["event"] == "end").count() >= 6);
+}
