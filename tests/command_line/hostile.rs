@@ -14,7 +14,8 @@ fn folder() -> PathBuf {
 fn scenes() -> Vec<String> {
     let entries =
         fs::read_dir(folder()).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
-    let mut names: Vec<String> = entries.filter(|name| name.ends_with(".toml")).collect();
+    let mut names: Vec<String> =
+        entries.filter(|name| Path::new(name).extension() == Some("toml".as_ref())).collect();
     names.sort();
     names
 }

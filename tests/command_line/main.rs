@@ -1,5 +1,8 @@
 //! The program as its users meet it: verbs, messages, exit codes, result files.
 
+// A test that cannot run should panic, in its helpers too.
+#![allow(clippy::unwrap_used)]
+
 mod determinism;
 mod exit_codes;
 mod furnace;

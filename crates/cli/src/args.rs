@@ -30,9 +30,9 @@ Examples:
   fredholm solve room.toml -o results --solver lu --memory 8GiB
   fredholm solve room.toml --storage f32 --threads 4 --log json 2> log.jsonl
 
-Ctrl-C during the assembly ends the run with nothing written; during the solution of an
-iterative solver the current iterate is written as a result marked \"partial\". A second
-Ctrl-C ends the run at once.";
+Ctrl-C during the assembly ends the run with nothing written; during the solution by an
+iterative solver the current iterate is written as a result marked \"partial\", with a small
+picture. A second Ctrl-C ends the run at once.";
 
 const CHECK_EXAMPLES: &str = "\
 Examples:

@@ -12,6 +12,8 @@ use crate::size::Bytes;
 
 /// Bytes an element takes besides its row of the matrix: geometry, quadrature points, error sums of the assembly.
 const PER_ELEMENT: u128 = 4096;
+/// Bytes of the program itself, before there is a scene.
+const PROGRAM: u128 = 8 << 20;
 /// Vectors of all bands held at once: system, iterates, residuals, results.
 const VECTORS: u128 = 16;
 
@@ -47,7 +49,7 @@ impl Prediction {
     }
 
     pub(crate) fn total(&self) -> Bytes {
-        Bytes(self.matrix.0 + self.mesh.0 + self.solver.0)
+        Bytes(PROGRAM + self.matrix.0 + self.mesh.0 + self.solver.0)
     }
 
     /// Refuses what is above the limit, and says what to change.
@@ -74,9 +76,11 @@ impl Prediction {
 impl std::fmt::Display for Prediction {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { elements, matrix, mesh, solver } = self;
+        let program = Bytes(PROGRAM);
         write!(
             f,
-            "{matrix} for the form factors of {elements} elements, {mesh} for the mesh and {solver} for the solver"
+            "{matrix} for the form factors of {elements} elements, {mesh} for the mesh, {solver} for the solver and \
+             {program} for the program"
         )
     }
 }

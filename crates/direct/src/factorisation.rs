@@ -7,7 +7,7 @@ use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::lu::partial_pivoting::{factor, solve};
 use faer::perm::PermRef;
 use faer::traits::ComplexField;
-use faer::{MatMut, MatRef, Par};
+use faer::{MatMut, MatRef, Par, Spec};
 use fredholm_linop::{Dense, LinopError, Scalar};
 
 /// The parts that faer cuts its work into. The bits of the result depend on this number, not on that of the threads.
@@ -28,15 +28,14 @@ impl<T: Scalar + ComplexField> Factorisation<T> {
         let dim = matrix.dim();
         let mut factors = matrix.into_vec();
         let (mut order, mut inverse_order) = (vec![0; dim], vec![0; dim]);
-        let mut scratch =
-            scratch(factor::lu_in_place_scratch::<usize, T>(dim, dim, par(), Default::default()))?;
+        let mut scratch = scratch(factor::lu_in_place_scratch::<usize, T>(dim, dim, par(), Spec::default()))?;
         factor::lu_in_place(
             MatMut::from_column_major_slice_mut(&mut factors, dim, dim),
             &mut order,
             &mut inverse_order,
             par(),
             MemStack::new(&mut scratch),
-            Default::default(),
+            Spec::default(),
         );
         Ok(Self { dim, factors, order, inverse_order })
     }

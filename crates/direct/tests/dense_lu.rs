@@ -1,5 +1,7 @@
 //! What is particular to dense LU: singular matrices, lanes that share one, memory, threads.
 
+#![allow(clippy::float_cmp, clippy::needless_range_loop, clippy::unwrap_used)]
+
 use fredholm_direct::{ComplexField, DenseLu};
 use fredholm_linop::{
     Dense, LinearOperator, LinopError, MultiVector, Observer, Progress, Quiet, Report, Scalar, SecondKind,

@@ -1,6 +1,6 @@
 //! Gauss–Seidel: x_i = (b_i − Σ_{j≠i} a_ij x_j)/a_ii for i = 0 … n−1, with the x_j already relaxed.
 //!
-//! Source: Y. Saad, Iterative Methods for Sparse Linear Systems, 2nd ed., SIAM 2003, eq. (4.8),
+//! Source: Y. Saad, Iterative Methods for Sparse Linear Systems, 2nd ed., SIAM 2003, § 4.1,
 //! DOI 10.1137/1.9780898718003. For light it gathers, for one patch after the other, what the others send.
 //!
 //! Requires a_ii ≠ 0. Converges for strictly or irreducibly diagonally dominant matrices, which light has with ρ < 1,
@@ -96,8 +96,9 @@ fn iterate<T: Scalar>(
 
 /// x_i = (b_i − Σ_{j≠i} a_ij x_j)/a_ii in all lanes.
 fn relax<T: Scalar>(b: &MultiVector<T>, visit: Visit<'_, T>) {
-    let known = b.row(visit.index).iter().zip(visit.off_diagonal).zip(visit.diagonal);
-    for (x, ((&b, &sum), &diagonal)) in visit.x.iter_mut().zip(known) {
+    let Visit { index, off_diagonal, diagonal, x } = visit;
+    let known = b.row(index).iter().zip(off_diagonal).zip(diagonal);
+    for (x, ((&b, &sum), &diagonal)) in x.iter_mut().zip(known) {
         *x = (b - sum) / diagonal;
     }
 }

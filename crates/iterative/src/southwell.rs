@@ -2,8 +2,8 @@
 //!
 //! Source: R. V. Southwell, Relaxation Methods in Engineering Science, Oxford 1940; for light in its gathering form,
 //! S. J. Gortler, M. F. Cohen, P. Slusallek, Radiosity and relaxation methods, IEEE Computer Graphics and
-//! Applications 14 (6), 1994, DOI 10.1109/38.329094. Several lanes are relaxed together: the unknown chosen has the
-//! largest |r_il|/‖b_l‖₂ of all lanes l, the first one of equals.
+//! Applications 14 (6), 1994. Several lanes are relaxed together: the unknown chosen has the largest |r_il|/‖b_l‖₂ of
+//! all lanes l, the first one of equals.
 //!
 //! Requires a_ii ≠ 0. Converges for strictly diagonally dominant matrices and for Hermitian positive definite ones.
 //!

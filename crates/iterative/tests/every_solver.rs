@@ -2,6 +2,8 @@
 //!
 //! x is chosen, and b = A x is formed by plain loops over a full matrix.
 
+#![allow(clippy::doc_markdown, clippy::float_cmp, clippy::needless_range_loop, clippy::unwrap_used)]
+
 use fredholm_linop::{
     Dense, LinearOperator, LinopError, MultiVector, Observer, PackedSymmetric, Progress, Quiet, Report,
     Scalar, SecondKind, SolveError, Solver, Stop, StopReason, Storage,
@@ -78,7 +80,9 @@ fn m_matrix(n: usize) -> Case<f64> {
     let mut entries: Vec<f64> = (0..n * n).map(|_| random.next().powi(4)).collect();
     for row in entries.chunks_exact_mut(n) {
         let sum: f64 = row.iter().sum();
-        row.iter_mut().for_each(|entry| *entry *= 0.9 / sum);
+        for entry in row {
+            *entry *= 0.9 / sum;
+        }
     }
     let x = MultiVector::from_fn(n, 2, |_, _| random.next() - 0.5);
     let coupling = Box::new(Dense::new(n, entries.clone()).unwrap());
@@ -108,7 +112,9 @@ fn complex_dominant(n: usize) -> Case<Complex64> {
     let mut entries: Vec<Complex64> = (0..n * n).map(|_| draw()).collect();
     for row in entries.chunks_exact_mut(n) {
         let sum: f64 = row.iter().map(|entry| entry.norm()).sum();
-        row.iter_mut().for_each(|entry| *entry *= 0.8 / sum);
+        for entry in row {
+            *entry *= 0.8 / sum;
+        }
     }
     let x = MultiVector::from_fn(n, 2, |_, _| draw());
     let coupling = Box::new(Dense::new(n, entries.clone()).unwrap());
@@ -376,7 +382,7 @@ mod formulas {
     use super::*;
     use fredholm_iterative::{GaussSeidel, Southwell};
 
-    fn a<'c>(case: &'c Case<f64>, l: usize) -> impl Fn(usize, usize) -> f64 + 'c {
+    fn a(case: &Case<f64>, l: usize) -> impl Fn(usize, usize) -> f64 {
         move |i, j| f64::from(u8::from(i == j)) - case.factor.row(i)[l] * (case.entry)(i, j)
     }
 

@@ -38,7 +38,7 @@ fn measure<S: Storage>(c: &mut Criterion, storage: &str) {
         let mut x = MultiVector::from_fn(DIM, lanes, |i, l| (i + l) as f64);
         let mut y = MultiVector::zeros(DIM, lanes);
         group.bench_function(BenchmarkId::new("apply", lanes), |bench| {
-            bench.iter(|| matrix.apply(&x, &mut y))
+            bench.iter(|| matrix.apply(&x, &mut y));
         });
         let mut sweep = Sweep::new(DIM, lanes);
         group.bench_function(BenchmarkId::new("sweep", lanes), |bench| {

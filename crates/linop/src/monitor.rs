@@ -37,8 +37,7 @@ impl<'a, T: Scalar> Monitor<'a, T> {
         observer: &'a mut dyn Observer<T>,
     ) -> Result<Self, SolveError> {
         let start = Instant::now();
-        // Written so that NaN fails.
-        if !(stop.tolerance >= 0.0) {
+        if stop.tolerance.is_nan() || stop.tolerance < 0.0 {
             return Err(SolveError::Tolerance { value: stop.tolerance });
         }
         check(a, b, "right-hand side")?;

@@ -84,10 +84,11 @@ impl<T: Scalar> MultiVector<T> {
     /// Sets lane `l` of all unknowns.
     ///
     /// # Panics
-    /// There is no lane `l`, or `values` is shorter than dim.
+    /// There is no lane `l`, or `values` has not dim entries.
     pub fn set_lane(&mut self, l: usize, values: &[T]) {
-        for i in 0..self.dim {
-            self.row_mut(i)[l] = values[i];
+        assert_eq!(values.len(), self.dim, "a lane has one value for each unknown");
+        for (i, &value) in values.iter().enumerate() {
+            self.row_mut(i)[l] = value;
         }
     }
 
@@ -143,6 +144,7 @@ fn largest<T: Scalar>(lanes: usize, values: impl Iterator<Item = T>) -> Vec<f64>
 }
 
 #[cfg(test)]
+#[allow(clippy::float_cmp, reason = "these results are exact")]
 mod tests {
     use super::*;
     use num_complex::Complex64;

@@ -62,7 +62,9 @@ pub trait LinearOperator<T: Scalar>: Sync {
             Symmetry::Symmetric => self.column(i, lane, out),
             Symmetry::Hermitian => {
                 self.column(i, lane, out);
-                out.iter_mut().for_each(|entry| *entry = entry.conj());
+                for entry in out {
+                    *entry = entry.conj();
+                }
             }
             Symmetry::General => {
                 let mut column = vec![T::zero(); self.dim()];

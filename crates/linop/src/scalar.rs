@@ -117,6 +117,7 @@ impl Scalar for Complex64 {
 }
 
 #[cfg(test)]
+#[allow(clippy::float_cmp, reason = "these results are exact")]
 mod tests {
     use super::*;
 

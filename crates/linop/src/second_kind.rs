@@ -77,7 +77,9 @@ impl<'a, T: Scalar> SecondKind<'a, T> {
     /// Turns row i of K into row i of A.
     fn turn_row(&self, i: usize, lane: usize, row: &mut [T]) {
         let factor = self.factor.row(i)[lane];
-        row.iter_mut().for_each(|entry| *entry = -(factor * *entry));
+        for entry in row.iter_mut() {
+            *entry = -(factor * *entry);
+        }
         row[i] += T::one();
     }
 

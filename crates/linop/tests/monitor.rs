@@ -1,5 +1,7 @@
 //! The residual, the history and every reason to stop, with iterates chosen by hand.
 
+#![allow(clippy::unwrap_used)]
+
 use fredholm_linop::{
     Dense, LinearOperator, LinopError, Monitor, MultiVector, Observer, Progress, Quiet, Report, SecondKind,
     SolveError, Stop, StopReason, Work,

@@ -44,7 +44,8 @@ fn room() -> Vec<[Vec3; 4]> {
     quads.extend(cuboid(Vec3::new(0.33, 0.35, 0.15), Vec3::splat(0.15), 0.3, false));
     quads.extend(cuboid(Vec3::new(0.65, 0.65, 0.3), Vec3::new(0.14, 0.14, 0.3), -0.4, false));
     let panel = |x: f64, y: f64, z: f64, size: f64| {
-        [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(u, v)| Vec3::new(x + size * u, y + size * v, z))
+        [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
+            .map(|(u, v)| Vec3::new(x + size * u, y + size * v, z))
     };
     quads.push(panel(0.4, 0.4, 0.99, 0.2));
     quads.extend([0.0, 0.25, 0.5, 0.75].map(|x| panel(x, 0.1, 0.8, 0.1)));
@@ -56,16 +57,23 @@ fn as_quads(quads: &[[Vec3; 4]]) -> Vec<Patch> {
 }
 
 fn as_triangles(quads: &[[Vec3; 4]]) -> Vec<Patch> {
-    quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).map(|t| Patch::triangle(t).unwrap()).collect()
+    quads
+        .iter()
+        .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
+        .map(|t| Patch::triangle(t).unwrap())
+        .collect()
 }
 
 /// Four spheres of 20,480 triangles each, in a room: 81,932 triangles.
 fn spheres() -> Vec<Patch> {
     let mut patches = as_triangles(&cuboid(Vec3::splat(0.5), Vec3::splat(0.5), 0.0, true));
     let unit = (0..5).fold(icosahedron(), |triangles, _| triangles.iter().flat_map(split).collect());
-    for (centre, radius) in
-        [((0.3, 0.3, 0.2), 0.2), ((0.7, 0.65, 0.3), 0.25), ((0.25, 0.75, 0.6), 0.15), ((0.7, 0.25, 0.75), 0.2)]
-    {
+    for (centre, radius) in [
+        ((0.3, 0.3, 0.2), 0.2),
+        ((0.7, 0.65, 0.3), 0.25),
+        ((0.25, 0.75, 0.6), 0.15),
+        ((0.7, 0.25, 0.75), 0.2),
+    ] {
         let centre = Vec3::from(centre);
         patches.extend(unit.iter().map(|t| Patch::triangle(t.map(|p| centre + p * radius)).unwrap()));
     }
@@ -118,9 +126,11 @@ fn segments(criterion: &mut Criterion) {
     let quads = room();
     let mut group = criterion.benchmark_group("segments");
     group.throughput(Throughput::Elements(SEGMENTS as u64));
-    for (name, patches) in
-        [("46 triangles", as_triangles(&quads)), ("23 quads", as_quads(&quads)), ("81932 triangles", spheres())]
-    {
+    for (name, patches) in [
+        ("46 triangles", as_triangles(&quads)),
+        ("23 quads", as_quads(&quads)),
+        ("81932 triangles", spheres()),
+    ] {
         let scene = Occluders::new(&patches).unwrap();
         let pairs = pairs(&patches);
         group.bench_function(name, |bencher| {
@@ -132,7 +142,11 @@ fn segments(criterion: &mut Criterion) {
 fn shafts(criterion: &mut Criterion) {
     let quads = room();
     let mut group = criterion.benchmark_group("shafts");
-    for (name, occluders) in [("46 triangles", as_triangles(&quads)), ("23 quads", as_quads(&quads)), ("81932 triangles", spheres())] {
+    for (name, occluders) in [
+        ("46 triangles", as_triangles(&quads)),
+        ("23 quads", as_quads(&quads)),
+        ("81932 triangles", spheres()),
+    ] {
         let scene = Occluders::new(&occluders).unwrap();
         let elements = elements(&occluders);
         let mut candidates = Vec::new();
@@ -162,7 +176,9 @@ fn elements(patches: &[Patch]) -> Vec<Patch> {
         let mid = move |i: usize| 0.5 * (c[i % c.len()] + c[(i + 1) % c.len()]);
         let corners = p.corners().to_vec();
         (0..corners.len())
-            .filter_map(move |i| Patch::quad([corners[i], mid(i), m, mid(i + corners.len() - 1)]).ok().flatten())
+            .filter_map(move |i| {
+                Patch::quad([corners[i], mid(i), m, mid(i + corners.len() - 1)]).ok().flatten()
+            })
             .collect::<Vec<_>>()
     };
     patches.iter().flat_map(split).collect()
@@ -172,7 +188,9 @@ fn build(criterion: &mut Criterion) {
     let patches = spheres();
     let mut group = criterion.benchmark_group("build");
     group.sample_size(10);
-    group.bench_function("81932 triangles", |bencher| bencher.iter(|| Occluders::new(&patches).unwrap().len()));
+    group.bench_function("81932 triangles", |bencher| {
+        bencher.iter(|| Occluders::new(&patches).unwrap().len())
+    });
 }
 
 criterion_group!(benches, segments, shafts, build);

@@ -37,7 +37,7 @@ impl Occluders {
         let probe = Probe::ray(origin, origin + direction * span, &self.frame)?;
         let beam = Beam::new(&probe, &self.frame)?;
         let nearest = self.nearest(&probe, &beam)?;
-        let alike = nearest + self.frame.tolerance / (span * length);
+        let alike = nearest + self.tolerance() / (span * length);
         let patch = self.foremost(&probe, &beam, alike)?;
         let t = nearest * span;
         Some(Hit { patch: patch as usize, t, point: origin + direction * t })
@@ -65,7 +65,8 @@ impl Occluders {
             |node| beam.meets(node),
             |run| {
                 let facets = self.facets[run].iter();
-                let met = facets.filter(|f| self.crossing(f, probe).is_some_and(|fraction| fraction <= alike));
+                let met =
+                    facets.filter(|f| self.crossing(f, probe).is_some_and(|fraction| fraction <= alike));
                 let ranked = met.map(|f| (f.height(probe.p) < 0.0, f.patch));
                 best = best.into_iter().chain(ranked).min();
                 false

@@ -7,7 +7,9 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum VisibilityError {
     /// More patches were given than an index of 32 bits can name.
-    #[error("{count} occluders are more than the limit of {limit}; merge flat neighbours into larger patches")]
+    #[error(
+        "{count} occluders are more than the limit of {limit}; merge flat neighbours into larger patches"
+    )]
     TooMany {
         /// Number of patches given.
         count: usize,

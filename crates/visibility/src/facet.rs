@@ -1,62 +1,43 @@
-//! Does a segment cross a triangle or a parallelogram? Decided in f64, or exactly where that is in doubt.
+//! Does a segment cross a triangle or a parallelogram? Decided at once, or left to exact arithmetic where in doubt.
 //!
 //! A facet has a corner a, two edges b and c from it, and the unit normal n. Every point x has the height
-//! s = n·(x − a) over its plane and the coordinates u and v with x = a + u b + v c + s n. The segment from p to q
-//! crosses the plane where its height is zero; there, up to the common factor D = s_q − s_p,
+//! s = n·(x − a) over its plane, and the coordinates u and v with x = a + u b + v c + s n. A segment from p to q whose
+//! ends are on different sides crosses the plane where the height is zero; there, up to the common factor
+//! D = |s_p| + |s_q|,
 //!
-//! U = u_p s_q − u_q s_p,  V = v_p s_q − v_q s_p.
+//! U = u_p |s_q| + u_q |s_p|,  V = v_p |s_q| + v_q |s_p|.
 //!
-//! With D > 0 (else all signs are changed) the crossing is inside where U ≥ 0, V ≥ 0 and, for a triangle,
-//! U + V ≤ D, for a parallelogram, max(U, V) ≤ D. Swapping p and q only changes the signs of D, U and V, bit for bit.
+//! The crossing is inside where U ≥ 0, V ≥ 0 and, for a triangle, U + V ≤ D, for a parallelogram, max(U, V) ≤ D.
+//! Swapping p and q changes no bit of this.
 //!
-//! Rounding: u_p, v_p and s_p are dot products of few terms, so with g = |∇u| + |∇v|, the condition number
-//! κ = |b| |c| / |b × c| and the distance M that bounds all lengths in the query, U, V and D err by less than
-//! a small multiple of ε κ g M². Closer to zero than that the exact predicates decide.
+//! Heights are f64, since they are compared with the tolerance; u and v are f32. With g = |∇u| + |∇v|, the
+//! condition number κ = |b| |c| / |b × c| and the length M that bounds all distances in the query, roundings change
+//! U, V and D by less than a small multiple of g M (ε₃₂ D + κ ε₆₄ M). Closer to zero than that is *in doubt*.
 //!
-//! Units: metres, in coordinates relative to the centre of the scene.
+//! All lengths are local, that is over the extent of the scene.
 
 use fredholm_mesh::Vec3;
+use glam::{Vec4, Vec4Swizzles};
 
 use crate::probe::Probe;
 
-/// A generous count of the roundings on the way to U and V, each of the size ε κ g M².
-const ROUNDINGS: f64 = 64.0;
-
-/// An affine function of position: gradient·x + constant.
-#[derive(Clone, Copy, Debug)]
-struct Affine {
-    gradient: Vec3,
-    constant: f64,
-}
-
-impl Affine {
-    fn new(gradient: Vec3, zero: Vec3) -> Self {
-        Self { gradient, constant: -gradient.dot(zero) }
-    }
-
-    #[inline]
-    fn at(&self, p: Vec3) -> f64 {
-        self.gradient.x * p.x + self.gradient.y * p.y + self.gradient.z * p.z + self.constant
-    }
-
-    /// At both ends of a segment; two lanes of one instruction each.
-    #[inline]
-    fn ends(&self, probe: &Probe) -> [f64; 2] {
-        let [x, y, z] = &probe.axes;
-        [0, 1].map(|k| self.gradient.x * x[k] + self.gradient.y * y[k] + self.gradient.z * z[k] + self.constant)
-    }
-}
+/// Counts of the roundings on the way to U, V and D, on the generous side.
+const ROUNDINGS_32: f64 = 16.0;
+const ROUNDINGS_64: f64 = 64.0;
 
 /// A triangle or a parallelogram, ready to be tested.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Facet {
-    height: Affine,
-    u: Affine,
-    v: Affine,
-    /// What U, V and D may be wrong by, over M².
-    doubt: f64,
-    /// 1 for a triangle, 0 for a parallelogram: U + V − D is max(U, V) + triangle · min(U, V) − D.
-    triangle: f64,
+    normal: Vec3,
+    offset: f64,
+    /// ∂u/∂x, ∂v/∂x, ∂u/∂y, ∂v/∂y.
+    slopes_xy: Vec4,
+    /// ∂u/∂z, ∂v/∂z and the values of u and v at 0.
+    slopes_z: Vec4,
+    /// Roundings of U, V and D, over M D and over M².
+    doubt: [f32; 2],
+    /// 1 for a triangle, 0 for a parallelogram: the third condition is max(U, V) + triangle · min(U, V) ≤ D.
+    triangle: f32,
     /// Index of the patch it belongs to.
     pub patch: u32,
 }
@@ -66,16 +47,10 @@ pub(crate) struct Facet {
 pub(crate) enum Crossing {
     /// It misses for sure.
     Miss,
-    /// It crosses for sure, `fraction` of the way from p to q.
-    Hit {
-        /// Between 0 and 1.
-        fraction: f64,
-    },
-    /// It crosses the plane so close to the outline that rounding could decide.
-    Doubt {
-        /// Between 0 and 1.
-        fraction: f64,
-    },
+    /// It crosses for sure, this fraction of the way from p to q.
+    Hit(f64),
+    /// It crosses the plane at this fraction, so close to the outline that rounding could decide.
+    Doubt(f64),
 }
 
 impl Facet {
@@ -85,7 +60,7 @@ impl Facet {
     }
 
     /// The parallelogram with the corners b and c beside a. `slack` is the distance by which the fourth corner may be
-    /// elsewhere, over the extent of the scene.
+    /// elsewhere.
     pub(crate) fn parallelogram([a, b, c]: [Vec3; 3], slack: f64, patch: u32) -> Self {
         Self { triangle: 0.0, ..Self::new(a, [b - a, c - a], slack, patch) }
     }
@@ -93,13 +68,17 @@ impl Facet {
     fn new(a: Vec3, [b, c]: [Vec3; 2], slack: f64, patch: u32) -> Self {
         let cross = b.cross(c);
         let area = cross.length();
-        let (u, v) = (c.cross(cross / area) / area, (cross / area).cross(b) / area);
-        let condition = b.length() * c.length() / area;
+        let normal = cross / area;
+        let (u, v) = (c.cross(normal) / area, normal.cross(b) / area);
+        let gradient = u.length() + v.length();
+        let blur = ROUNDINGS_64 * f64::EPSILON * b.length() * c.length() / area + slack;
+        let vector = |[a, b, c, d]: [f64; 4]| Vec4::new(a as f32, b as f32, c as f32, d as f32);
         Self {
-            height: Affine::new(cross / area, a),
-            u: Affine::new(u, a),
-            v: Affine::new(v, a),
-            doubt: (u.length() + v.length()) * (ROUNDINGS * f64::EPSILON * condition + slack),
+            normal,
+            offset: -normal.dot(a),
+            slopes_xy: vector([u.x, v.x, u.y, v.y]),
+            slopes_z: vector([u.z, v.z, -u.dot(a), -v.dot(a)]),
+            doubt: [ROUNDINGS_32 * f64::from(f32::EPSILON), blur].map(|share| (gradient * share) as f32),
             triangle: 1.0,
             patch,
         }
@@ -108,30 +87,42 @@ impl Facet {
     /// Tests the segment. An end within its tolerance of the plane does not cross it.
     #[inline]
     pub(crate) fn crossing(&self, probe: &Probe) -> Crossing {
-        let [s_p, s_q] = self.height.ends(probe);
+        let [x, y, z] = &probe.axes;
+        let n = self.normal;
+        let [s_p, s_q] = [0, 1].map(|k| n.x * x[k] + n.y * y[k] + n.z * z[k] + self.offset);
         if !((s_p * s_q < 0.0) & (s_p.abs() > probe.near[0]) & (s_q.abs() > probe.near[1])) {
             return Crossing::Miss;
         }
-        let side = s_q.signum();
-        let [u_p, u_q] = self.u.ends(probe);
-        let [v_p, v_q] = self.v.ends(probe);
-        let u = side * (u_p * s_q - u_q * s_p);
-        let v = side * (v_p * s_q - v_q * s_p);
-        let d = (s_q - s_p).abs();
-        let (least, most) = if u < v { (u, v) } else { (v, u) };
-        let rest = d - (most + self.triangle * least);
-        let inside = if least < rest { least } else { rest };
-        let doubt = self.doubt * probe.reach_squared;
+        let (s_p, s_q) = (s_p.abs(), s_q.abs());
+        let d = s_p + s_q;
+        let (inside, doubt) = self.inside(probe, s_p as f32, s_q as f32, d as f32);
+        // Not a number, where f32 overflows, is in doubt.
         if inside < -doubt {
-            return Crossing::Miss;
+            Crossing::Miss
+        } else if inside > doubt {
+            Crossing::Hit(s_p / d)
+        } else {
+            Crossing::Doubt(s_p / d)
         }
-        let fraction = s_p.abs() / d;
-        if inside > doubt { Crossing::Hit { fraction } } else { Crossing::Doubt { fraction } }
     }
 
-    /// Height of a point over the plane, m.
+    /// The least of what must be positive, and how wrong it can be.
+    #[inline]
+    fn inside(&self, probe: &Probe, s_p: f32, s_q: f32, d: f32) -> (f32, f32) {
+        let [x, y, z] = probe.lanes;
+        let (xy, z1) = (self.slopes_xy, self.slopes_z);
+        let uv = xy.xxyy() * x + xy.zzww() * y + z1.xxyy() * z + z1.zzww();
+        let terms = uv * Vec4::new(s_q, s_p, s_q, s_p);
+        let (u, v) = (terms.x + terms.y, terms.z + terms.w);
+        let (least, most) = if u < v { (u, v) } else { (v, u) };
+        let rest = d - (most + self.triangle * least);
+        let doubt = probe.reach * (self.doubt[0] * d + self.doubt[1] * probe.reach);
+        (if least < rest { least } else { rest }, doubt)
+    }
+
+    /// Height of a point over the plane.
     #[inline]
     pub(crate) fn height(&self, point: Vec3) -> f64 {
-        self.height.at(point)
+        self.normal.dot(point) + self.offset
     }
 }

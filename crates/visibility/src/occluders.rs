@@ -22,7 +22,7 @@ pub struct Occluders {
     /// In the order of the leaves of the tree.
     pub(crate) facets: Vec<Facet>,
     pub(crate) tree: Tree,
-    /// The corners of each facet, relative to the centre of the scene; a triangle repeats its last.
+    /// The corners of each facet, local; a triangle repeats its last.
     pub(crate) outlines: Vec<[Vec3; 4]>,
     /// Where the facets of each patch are; the two places are the same where it has only one.
     pub(crate) places: Vec<[u32; 2]>,
@@ -42,7 +42,7 @@ impl Occluders {
         let frame = Frame::around(patches)?;
         let pieces: Vec<(Facet, [Vec3; 4])> =
             patches.iter().zip(0..).flat_map(|(patch, index)| pieces(patch, index, &frame)).collect();
-        let boxes: Vec<_> = pieces.iter().map(|(_, outline)| bounds(outline, &frame)).collect();
+        let boxes: Vec<_> = pieces.iter().map(|(_, outline)| bounds(outline)).collect();
         let (tree, order) = Tree::new(&boxes);
         let (facets, outlines): (Vec<_>, Vec<_>) = order.iter().map(|&i| pieces[i as usize]).unzip();
         let places = places(&facets, patches.len());
@@ -65,7 +65,7 @@ impl Occluders {
     /// than 16 units in the last place of the largest coordinate.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
-        self.frame.tolerance
+        self.frame.metres(self.frame.tolerance)
     }
 
     /// How far along the probe the facet is crossed, as a fraction of its length, or `None` where it is not.
@@ -73,8 +73,8 @@ impl Occluders {
     pub(crate) fn crossing(&self, facet: &Facet, probe: &Probe) -> Option<f64> {
         match facet.crossing(probe) {
             Crossing::Miss => None,
-            Crossing::Hit { fraction } => Some(fraction),
-            Crossing::Doubt { fraction } => self.line_crosses(facet, probe).then_some(fraction),
+            Crossing::Hit(fraction) => Some(fraction),
+            Crossing::Doubt(fraction) => self.line_crosses(facet, probe).then_some(fraction),
         }
     }
 
@@ -87,13 +87,13 @@ impl Occluders {
 
 /// A triangle is one facet, and so is a quad that is a parallelogram; any other quad is two triangles.
 fn pieces(patch: &Patch, index: u32, frame: &Frame) -> impl Iterator<Item = (Facet, [Vec3; 4])> {
-    let [a, b, c, d] = [0, 1, 2, 3].map(|i| patch.corners()[i.min(patch.sides() - 1)] - frame.centre);
+    let [a, b, c, d] = [0, 1, 2, 3].map(|i| frame.local(patch.corners()[i.min(patch.sides() - 1)]));
     let skew = (a - b + c - d).length();
     let triangle = move |a: Vec3, b: Vec3, c: Vec3| (Facet::triangle([a, b, c], index), [a, b, c, c]);
     let (first, second) = if patch.sides() == 3 {
         (triangle(a, b, c), None)
     } else if skew <= SKEW * frame.tolerance {
-        ((Facet::parallelogram([a, b, d], skew / frame.extent, index), [a, b, c, d]), None)
+        ((Facet::parallelogram([a, b, d], skew, index), [a, b, c, d]), None)
     } else {
         (triangle(a, b, c), Some(triangle(a, c, d)))
     };

@@ -1,26 +1,27 @@
 //! A segment on its way through the scene.
-//!
-//! Units: metres.
 
 use fredholm_mesh::Vec3;
+use glam::Vec4;
 
 use crate::frame::Frame;
 
-/// A segment from p to q, with what the tests of all facets share.
+/// A segment from p to q, with what the tests of all facets share. Local coordinates, but for the ends.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Probe {
-    /// The ends as they were given.
+    /// The ends as they were given, m.
     pub ends: [Vec3; 2],
-    /// Start, relative to the centre of the scene.
+    /// Start.
     pub p: Vec3,
-    /// End, relative to the centre of the scene.
+    /// End.
     pub q: Vec3,
     /// The x, y and z of p and q.
     pub axes: [[f64; 2]; 3],
+    /// The same in f32, twice over.
+    pub lanes: [Vec4; 3],
     /// Heights over a plane up to which p and q belong to it.
     pub near: [f64; 2],
-    /// Square of a length that bounds all distances between p, q and the occluders, m².
-    pub reach_squared: f64,
+    /// A length that bounds all distances between p, q and the occluders.
+    pub reach: f32,
 }
 
 impl Probe {
@@ -37,8 +38,11 @@ impl Probe {
 
     #[inline]
     fn new(ends: [Vec3; 2], near: [f64; 2], frame: &Frame) -> Option<Self> {
-        let [p, q] = ends.map(|end| end - frame.centre);
-        let reach = p.length_squared() + q.length_squared() + frame.half.length_squared();
-        reach.is_finite().then_some(Self { ends, p, q, axes: [[p.x,q.x],[p.y,q.y],[p.z,q.z]], near, reach_squared: 4.0 * reach })
+        let [p, q] = ends.map(|end| frame.local(end));
+        let sum = p.abs() + q.abs() + frame.half;
+        let reach = (sum.x + sum.y + sum.z) as f32;
+        let axes = [[p.x, q.x], [p.y, q.y], [p.z, q.z]];
+        let lanes = axes.map(|[p, q]| Vec4::new(p as f32, q as f32, p as f32, q as f32));
+        reach.is_finite().then_some(Self { ends, p, q, axes, lanes, near, reach })
     }
 }

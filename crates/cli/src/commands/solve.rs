@@ -16,6 +16,9 @@ use crate::stages::Stages;
 use crate::summary::{Lines, mesh_error, quality};
 use crate::{console, folder, output, threads};
 
+/// Pixels of the picture of a partial result.
+const QUICK_PIXELS: f64 = 40_000.0;
+
 /// Solves a scene and writes the results.
 pub(crate) fn solve(args: &SolveArgs) -> Result<Ending, Failure> {
     let interrupt = Interrupt::install(args.log.log)?;
@@ -52,22 +55,35 @@ fn write(
     let field = Field::new(&problem.mesh, &record.bands, irradiance, radiosity)
         .and_then(|field| field.with_exitance(&exitance))
         .map_err(report_failure)?;
-    write_all(folder, &field, record, &view(problem, &field)).map_err(report_failure)
+    let view = view(problem, &field);
+    let view = if record.partial { quick(view) } else { view };
+    write_all(folder, &field, record, &view).map_err(report_failure)
 }
 
 /// The scene's camera, or one that sees all of it.
 fn view(problem: &Problem, field: &Field) -> View {
     let Some(camera) = problem.scene.camera() else { return View::framing(field) };
     let exposure = camera.exposure.map_or(Exposure::Auto, Exposure::Fixed);
-    let camera = Camera {
+    View { camera: pinhole(camera), exposure }
+}
+
+fn pinhole(camera: &fredholm_scene::Camera) -> Camera {
+    Camera {
         eye: camera.eye,
         target: camera.target,
         up: camera.up,
         vertical_fov_degrees: camera.vertical_fov_degrees,
         width: camera.width,
         height: camera.height,
-    };
-    View { camera, exposure }
+    }
+}
+
+/// The view in few pixels: whoever has pressed Ctrl-C does not wait for a large picture.
+fn quick(view: View) -> View {
+    let Camera { width, height, .. } = view.camera;
+    let scale = (QUICK_PIXELS / (f64::from(width) * f64::from(height))).sqrt().min(1.0);
+    let scaled = |side: u32| ((f64::from(side) * scale) as u32).max(1);
+    View { camera: Camera { width: scaled(width), height: scaled(height), ..view.camera }, ..view }
 }
 
 fn report_failure(error: ReportError) -> Failure {

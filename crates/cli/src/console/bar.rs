@@ -12,7 +12,7 @@ const STEPS: u64 = 1000;
 /// Time between two frames.
 const FRAME: Duration = Duration::from_millis(100);
 
-/// A bar for the current stage; a line stays for each that has ended.
+/// A clock for the current stage, a bar once it tells of progress; a line stays for each that has ended.
 #[derive(Debug, Default)]
 pub(super) struct Bar {
     current: Mutex<Option<ProgressBar>>,
@@ -28,7 +28,9 @@ impl Bar {
 
 impl Console for Bar {
     fn begin(&self, stage: &str) {
-        let bar = ProgressBar::new(STEPS).with_style(style()).with_prefix(stage.to_owned());
+        let bar = ProgressBar::new(STEPS)
+            .with_style(style("{prefix:>16}  {elapsed}"))
+            .with_prefix(stage.to_owned());
         let bar = bar.with_finish(ProgressFinish::AndClear);
         bar.enable_steady_tick(FRAME);
         *self.current.lock().unwrap_or_else(PoisonError::into_inner) = Some(bar);
@@ -38,6 +40,7 @@ impl Console for Bar {
         self.with(|bar| {
             let step = (share * STEPS as f64) as u64;
             if step > bar.position() {
+                bar.set_style(style("{prefix:>16}  [{bar:24}] {percent:>3} %  {elapsed}  {wide_msg}"));
                 bar.set_position(step);
                 bar.set_message(note());
             }
@@ -58,8 +61,7 @@ impl Console for Bar {
     }
 }
 
-fn style() -> ProgressStyle {
-    let template = "{prefix:>16}  [{bar:40}] {percent:>3} %  {elapsed}  {msg}";
+fn style(template: &str) -> ProgressStyle {
     ProgressStyle::with_template(template)
         .unwrap_or_else(|_| ProgressStyle::default_bar())
         .progress_chars("=> ")

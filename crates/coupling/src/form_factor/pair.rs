@@ -24,7 +24,7 @@ use std::f64::consts::FRAC_1_PI;
 /// Heights below this part of the pair's extent count as 0.
 const FLAT: f64 = 1e-12;
 /// Occluders up to which the exact shadow is cheaper than sampling.
-const FEW: usize = 48;
+const FEW: usize = 128;
 /// Centre distance, in sums of radii, below which the contour integral is used at once.
 const CLOSE: f64 = 1.2;
 

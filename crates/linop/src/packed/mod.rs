@@ -167,6 +167,7 @@ impl<S: Storage> LinearOperator<f64> for PackedSymmetric<S> {
 }
 
 #[cfg(test)]
+#[allow(clippy::float_cmp, reason = "these results are exact")]
 mod tests {
     use super::*;
 
@@ -175,10 +176,10 @@ mod tests {
         let matrix = PackedSymmetric::new(3, vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0]).unwrap();
         let full = [[1.0, 2.0, 4.0], [2.0, 3.0, 5.0], [4.0, 5.0, 6.0]];
         let mut row = [0.0; 3];
-        for i in 0..3 {
+        for (i, expected) in full.iter().enumerate() {
             matrix.row(i, 0, &mut row);
-            assert_eq!(row, full[i]);
-            (0..3).for_each(|j| assert_eq!(matrix.get(i, j), full[i][j]));
+            assert_eq!(row, *expected);
+            assert_eq!([0, 1, 2].map(|j| matrix.get(i, j)), *expected);
         }
         assert_eq!(matrix.packed_row(1), [2.0, 3.0]);
         assert_eq!(matrix.row_sums(), [7.0, 10.0, 15.0]);

@@ -106,7 +106,9 @@ fn add_scaled<const L: usize>(sum: &mut [f64; L], entry: f64, values: &[f64; L])
 fn add_parts<const R: usize, const L: usize>(parts: &[[[f64; L]; WIDTH]; R], sums: &mut [f64]) {
     for (sum, parts) in sums.as_chunks_mut::<L>().0.iter_mut().zip(parts) {
         let mut total = [0.0; L];
-        parts.iter().for_each(|part| add_scaled(&mut total, 1.0, part));
+        for part in parts {
+            add_scaled(&mut total, 1.0, part);
+        }
         add_scaled(sum, 1.0, &total);
     }
 }

@@ -2,7 +2,7 @@
 
 use fredholm_mesh::Vec3;
 
-/// The points x with N·x ≥ c. Units: x in metres; those of N are free, and c follows.
+/// The points x with N·x ≥ c.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct HalfSpace {
     pub normal: Vec3,

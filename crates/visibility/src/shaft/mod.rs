@@ -6,11 +6,11 @@
 //!
 //! Reference: E. A. Haines, J. R. Wallace, "Shaft culling for efficient ray-cast radiosity", in: Photorealistic
 //! Rendering in Computer Graphics, Springer 1994, 122–138,
-//! [doi:10.1007/978-3-642-57963-9_12](https://doi.org/10.1007/978-3-642-57963-9_12). Units: metres.
+//! [doi:10.1007/978-3-642-57963-9_12](https://doi.org/10.1007/978-3-642-57963-9_12).
 
 mod half_space;
-mod query;
 mod outline;
+mod query;
 mod supporting;
 
 use fredholm_mesh::{Patch, Vec3};
@@ -25,7 +25,7 @@ pub(crate) const PLANES: usize = 12;
 /// Corners of two polygons of up to five corners.
 const CORNERS: usize = 10;
 
-/// The convex hull of two polygons, or of a point and a polygon, in coordinates relative to the centre of the scene.
+/// The convex hull of two polygons, or of a point and a polygon, in local coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shaft {
     planes: [HalfSpace; PLANES],
@@ -37,7 +37,7 @@ pub(crate) struct Shaft {
 impl Shaft {
     /// The hull of the parts of two patches that lie in front of each other, or `None` where no such parts exist.
     pub(crate) fn between(a: &Patch, b: &Patch, frame: &Frame) -> Option<Self> {
-        let (whole_a, whole_b) = (Outline::of(a, frame.centre), Outline::of(b, frame.centre));
+        let (whole_a, whole_b) = (Outline::of(a, frame), Outline::of(b, frame));
         let (front_a, front_b) = (whole_a.front(), whole_b.front());
         let a = whole_a.clip(&front_b, frame.tolerance);
         let b = whole_b.clip(&front_a, frame.tolerance);
@@ -56,8 +56,8 @@ impl Shaft {
 
     /// The hull of a point and a patch, or `None` where the point is not in front of the patch.
     pub(crate) fn from_point(point: Vec3, patch: &Patch, frame: &Frame) -> Option<Self> {
-        let point = point - frame.centre;
-        let patch = Outline::of(patch, frame.centre);
+        let point = frame.local(point);
+        let patch = Outline::of(patch, frame);
         let front = patch.front();
         if front.depth(point) <= frame.tolerance {
             return None;

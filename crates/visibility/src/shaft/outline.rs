@@ -1,16 +1,17 @@
 //! The part of a convex polygon in front of a plane.
 //!
 //! Reference: I. E. Sutherland, G. W. Hodgman, "Reentrant polygon clipping", Commun. ACM 17 (1974) 32–42,
-//! [doi:10.1145/360767.360802](https://doi.org/10.1145/360767.360802). Units: metres.
+//! [doi:10.1145/360767.360802](https://doi.org/10.1145/360767.360802).
 
 use fredholm_mesh::{Patch, Vec3};
 
 use super::HalfSpace;
+use crate::frame::Frame;
 
 /// Corners of a patch of four corners that was cut by one plane.
 const MOST: usize = 5;
 
-/// A flat convex polygon of up to five corners, in coordinates relative to the centre of the scene.
+/// A flat convex polygon of up to five corners, in local coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Outline {
     corners: [Vec3; MOST],
@@ -20,10 +21,10 @@ pub(crate) struct Outline {
 }
 
 impl Outline {
-    pub(crate) fn of(patch: &Patch, centre: Vec3) -> Self {
+    pub(crate) fn of(patch: &Patch, frame: &Frame) -> Self {
         let mut outline = Self { corners: [Vec3::ZERO; MOST], len: 0, normal: patch.normal() };
         for &corner in patch.corners() {
-            outline.push(corner - centre);
+            outline.push(frame.local(corner));
         }
         outline
     }
@@ -49,7 +50,8 @@ impl Outline {
             if depths[i] >= -tolerance {
                 kept.push(self.corners[i]);
             }
-            if (depths[i] > tolerance && depths[j] < -tolerance) || (depths[i] < -tolerance && depths[j] > tolerance)
+            if (depths[i] > tolerance && depths[j] < -tolerance)
+                || (depths[i] < -tolerance && depths[j] > tolerance)
             {
                 let t = depths[i] / (depths[i] - depths[j]);
                 kept.push(self.corners[i] + (self.corners[j] - self.corners[i]) * t);

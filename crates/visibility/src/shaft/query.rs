@@ -36,7 +36,7 @@ impl Occluders {
     }
 
     fn sift(&self, shaft: &Shaft, candidates: &mut Vec<u32>) {
-        let sieve = Sieve::new(shaft.planes(), &self.frame);
+        let sieve = Sieve::new(shaft.planes());
         self.tree.any(
             |node| sieve.passes(node),
             |run| {

@@ -8,7 +8,7 @@
 //!
 //! Reference: E. A. Haines, J. R. Wallace, "Shaft culling for efficient ray-cast radiosity", in: Photorealistic
 //! Rendering in Computer Graphics, Springer 1994, 122–138,
-//! [doi:10.1007/978-3-642-57963-9_12](https://doi.org/10.1007/978-3-642-57963-9_12). Units: metres.
+//! [doi:10.1007/978-3-642-57963-9_12](https://doi.org/10.1007/978-3-642-57963-9_12).
 
 use fredholm_mesh::Vec3;
 
@@ -37,13 +37,7 @@ pub(crate) fn supporting_planes(
     }
 }
 
-fn supporting_plane(
-    start: Vec3,
-    edge: Vec3,
-    n: Vec3,
-    others: &[Vec3],
-    tolerance: f64,
-) -> Option<HalfSpace> {
+fn supporting_plane(start: Vec3, edge: Vec3, n: Vec3, others: &[Vec3], tolerance: f64) -> Option<HalfSpace> {
     let (length, m) = (norm1(edge), n.cross(edge));
     let (mut x_last, mut z_last) = (0.0, 0.0);
     let mut any = false;

@@ -36,15 +36,14 @@ impl Beam {
     /// The part of the segment that can meet a box, or `None` where there is no such part.
     #[inline]
     pub(crate) fn new(probe: &Probe, frame: &Frame) -> Option<Self> {
-        let scale = 1.0 / frame.extent;
-        let (p, q) = (probe.p * scale, probe.q * scale);
+        let (p, q) = (probe.p, probe.q);
         if within(p) && within(q) { Some(Self::between(p, q, [0.0, 1.0])) } else { Self::inside(p, q, frame) }
     }
 
     /// The part inside the bounding box of the scene.
     #[cold]
     fn inside(p: Vec3, q: Vec3, frame: &Frame) -> Option<Self> {
-        let half = frame.half / frame.extent + 4.0 * f64::from(PADDING);
+        let half = frame.half + 4.0 * f64::from(PADDING);
         let [enter, leave] = cut(p, q, half)?;
         let at = |fraction: f64| p + (q - p) * fraction;
         Some(Self::between(at(enter), at(leave), [enter, leave - enter]))

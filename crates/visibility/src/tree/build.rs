@@ -7,7 +7,6 @@ use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
 
 use super::{Child, Node, PADDING, Tree, VECTORS, WIDTH};
-use crate::frame::Frame;
 use fredholm_mesh::Vec3;
 
 /// The padded box of a facet, in the coordinates of the tree.
@@ -16,9 +15,9 @@ pub(crate) type Bounds = Aabb;
 /// Facets in a leaf, at most.
 const LEAF: u32 = 4;
 
-/// The padded box of some points that are given relative to the centre of the scene.
-pub(crate) fn bounds(corners: &[Vec3], frame: &Frame) -> Bounds {
-    let scaled = |p: &Vec3| Vec3A::from((*p / frame.extent).as_vec3());
+/// The padded box of some points.
+pub(crate) fn bounds(corners: &[Vec3]) -> Bounds {
+    let scaled = |p: &Vec3| Vec3A::from(p.as_vec3());
     let (low, high) = corners
         .iter()
         .map(scaled)
@@ -29,7 +28,11 @@ pub(crate) fn bounds(corners: &[Vec3], frame: &Frame) -> Bounds {
 impl Tree {
     /// The tree over the boxes, and the order in which its leaves refer to them.
     pub(crate) fn new(boxes: &[Bounds]) -> (Self, Vec<u32>) {
-        let params = BvhBuildParams { pre_split: false, max_prims_per_leaf: LEAF, ..BvhBuildParams::very_slow_build() };
+        let params = BvhBuildParams {
+            pre_split: false,
+            max_prims_per_leaf: LEAF,
+            ..BvhBuildParams::very_slow_build()
+        };
         let binary = build_bvh2(boxes, params, &mut std::time::Duration::default());
         let mut tree = Self { nodes: vec![Node::empty()] };
         let mut order = Vec::with_capacity(boxes.len());

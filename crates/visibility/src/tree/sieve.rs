@@ -7,7 +7,6 @@
 use glam::Vec4;
 
 use super::{Node, VECTORS, WIDTH};
-use crate::frame::Frame;
 use crate::shaft::{HalfSpace, PLANES};
 
 /// A half-space in the coordinates of the boxes.
@@ -27,10 +26,10 @@ pub(crate) struct Sieve {
 }
 
 impl Sieve {
-    pub(crate) fn new(planes: &[HalfSpace], frame: &Frame) -> Self {
+    pub(crate) fn new(planes: &[HalfSpace]) -> Self {
         let mut sieve = Self { sides: [Side::default(); PLANES], count: planes.len().min(PLANES) };
         for (side, plane) in sieve.sides.iter_mut().zip(planes) {
-            *side = Side::new(plane, frame);
+            *side = Side::new(plane);
         }
         sieve
     }
@@ -50,11 +49,11 @@ impl Sieve {
 }
 
 impl Side {
-    fn new(plane: &HalfSpace, frame: &Frame) -> Self {
+    fn new(plane: &HalfSpace) -> Self {
         let scale = 1.0 / plane.size();
         let normal = (plane.normal * scale).as_vec3().to_array();
         let far = normal.map(|c| usize::from(c > 0.0));
-        Self { normal, offset: (plane.offset * scale / frame.extent) as f32, far }
+        Self { normal, offset: (plane.offset * scale) as f32, far }
     }
 
     #[inline]

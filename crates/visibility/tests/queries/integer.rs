@@ -17,7 +17,8 @@ fn plus(a: Point, b: Point) -> Point {
 
 /// Sign of the volume spanned by three edges.
 fn sign(a: Point, b: Point, c: Point) -> i64 {
-    (a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0]))
+    (a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
+        + a[2] * (b[0] * c[1] - b[1] * c[0]))
         .signum()
 }
 

@@ -37,7 +37,11 @@ fn agrees_with_every_patch_tested_alone() {
             if let (Some(hit), Some(t)) = (found, expected) {
                 // A box stands on the floor, so either may be named; what is named must be where the hit is.
                 let named = first(&patches[hit.patch..=hit.patch], o, d).unwrap();
-                assert!((hit.t - t).abs() <= 1e-9 && (named - t).abs() <= 1e-9, "{} and {named} for {t}", hit.t);
+                assert!(
+                    (hit.t - t).abs() <= 1e-9 && (named - t).abs() <= 1e-9,
+                    "{} and {named} for {t}",
+                    hit.t
+                );
                 assert!(hit.point.distance(o + d * t) <= 1e-9);
                 hits += 1;
             }

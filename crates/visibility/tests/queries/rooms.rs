@@ -36,8 +36,10 @@ fn the_inside_of_a_sphere() {
 #[test]
 fn corners_and_edges_of_a_box() {
     let quads = cuboid(Vec3::ZERO, Vec3::ONE, 0.6, true);
-    let ends: Vec<Vec3> =
-        quads.iter().flat_map(|q| (0..4).flat_map(|i| [q.corner(i), 0.5 * (q.corner(i) + q.corner(i + 1))])).collect();
+    let ends: Vec<Vec3> = quads
+        .iter()
+        .flat_map(|q| (0..4).flat_map(|i| [q.corner(i), 0.5 * (q.corner(i) + q.corner(i + 1))]))
+        .collect();
     for patches in [quads.clone(), triangulated(&quads)] {
         let occluders = Occluders::new(&patches).unwrap();
         for &p in &ends {

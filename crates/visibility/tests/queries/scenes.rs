@@ -45,7 +45,8 @@ pub fn triangle(corners: [Vec3; 3]) -> Patch {
 /// The six sides of a box turned about an axis, lit on the outside; reversed, on the inside.
 pub fn cuboid(centre: Vec3, half: Vec3, turn: f64, reversed: bool) -> Vec<Patch> {
     let axis = Vec3::new(0.3, -0.5, 0.9).normalize();
-    let about = |v: Vec3| v * turn.cos() + axis.cross(v) * turn.sin() + axis * (axis.dot(v) * (1.0 - turn.cos()));
+    let about =
+        |v: Vec3| v * turn.cos() + axis.cross(v) * turn.sin() + axis * (axis.dot(v) * (1.0 - turn.cos()));
     let [x, y, z] = [Vec3::X * half.x, Vec3::Y * half.y, Vec3::Z * half.z].map(about);
     let corner = |i: f64, j: f64, k: f64| centre + x * i + y * j + z * k;
     let square = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
@@ -86,7 +87,8 @@ pub fn sphere(level: usize) -> Vec<[Vec3; 3]> {
     let g = 0.5 * (1.0 + 5.0f64.sqrt());
     let mut corners = Vec::new();
     for (a, b) in [(1.0, g), (-1.0, g), (1.0, -g), (-1.0, -g)] {
-        corners.extend([Vec3::new(0.0, a, b), Vec3::new(a, b, 0.0), Vec3::new(b, 0.0, a)].map(Vec3::normalize));
+        corners
+            .extend([Vec3::new(0.0, a, b), Vec3::new(a, b, 0.0), Vec3::new(b, 0.0, a)].map(Vec3::normalize));
     }
     let side = 2.0 / g.hypot(1.0);
     let near = |i: usize, j: usize| (corners[i].distance(corners[j]) - side).abs() < 1e-9;

@@ -21,7 +21,13 @@ fn faces(patch: &Patch, point: Vec3) -> bool {
 
 /// Samples segments between the patches; every blocker must be in the list, and the list must decide visibility.
 /// Returns the number of blocked segments.
-fn check(scene: &Occluders, alone: &[Occluders], [a, b]: [&Patch; 2], random: &mut Random, samples: usize) -> usize {
+fn check(
+    scene: &Occluders,
+    alone: &[Occluders],
+    [a, b]: [&Patch; 2],
+    random: &mut Random,
+    samples: usize,
+) -> usize {
     let mut list = Vec::new();
     scene.shaft(a, b, &mut list);
     assert!(rises(&list));
@@ -124,9 +130,12 @@ fn every_blocker_among_thousands_is_listed() {
 
 #[test]
 fn nothing_comes_between_the_walls_of_an_empty_room() {
-    for (scale, centre, turn) in
-        [(1.0, Vec3::ZERO, 0.0), (1e-3, Vec3::ONE, 0.0), (1.0, Vec3::splat(1000.0), 0.5), (10.0, Vec3::ZERO, 0.5)]
-    {
+    for (scale, centre, turn) in [
+        (1.0, Vec3::ZERO, 0.0),
+        (1e-3, Vec3::ONE, 0.0),
+        (1.0, Vec3::splat(1000.0), 0.5),
+        (10.0, Vec3::ZERO, 0.5),
+    ] {
         let walls = cuboid(centre, Vec3::new(1.0, 1.5, 0.7) * scale, turn, true);
         for patches in [walls.clone(), triangulated(&walls)] {
             let scene = Occluders::new(&patches).unwrap();
@@ -211,7 +220,10 @@ fn points_see_no_more_blockers_than_shafts_from_them_name() {
                 let q = random.on(b);
                 if faces(b, p) {
                     let found = blockers(&alone, p, q);
-                    assert!(rises(&list) && found.iter().all(|c| list.contains(c)), "{found:?} not in {list:?}");
+                    assert!(
+                        rises(&list) && found.iter().all(|c| list.contains(c)),
+                        "{found:?} not in {list:?}"
+                    );
                     blocked += usize::from(!found.is_empty());
                 }
             }
