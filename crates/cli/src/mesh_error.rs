@@ -8,7 +8,7 @@ use crate::problem::{Problem, coarse};
 use crate::solution::{coupling_failure, solve};
 use crate::watcher::Watcher;
 
-/// Estimates the error of a solution. There is no estimate where every face has a single element, or where the coarse
+/// Estimates the error of a solution. There is no estimate where a face has fewer than 2 × 2 elements, or where the coarse
 /// problem was not solved to the end.
 pub(crate) fn estimate<S: Storage>(
     problem: &Problem,
@@ -29,6 +29,7 @@ pub(crate) fn estimate<S: Storage>(
     }
     let fine = radiosity.grouped(&means.irradiance, &group, faces.elements());
     let coarse = faces.means(&exchange, &x).irradiance;
-    let refinement = (mesh.len() as f64 / count as f64).sqrt();
+    let fewest = (0..count).map(|face| mesh.leaves_of_face(face).len()).min().unwrap_or(1);
+    let refinement = (fewest as f64).sqrt();
     Ok(Some(mesh_error(&fine, &coarse, faces.elements(), refinement)))
 }

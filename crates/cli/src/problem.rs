@@ -63,9 +63,10 @@ pub(crate) fn prepare(patches: &[Patch]) -> Result<Occluders, Failure> {
     Occluders::new(patches).map_err(|error| Failure::new(Ending::Input, error))
 }
 
-/// Patches of the coarser problem: the faces, where they are fewer than the elements.
+/// Patches of the coarser problem: the faces, where each is computed on 2 × 2 elements or more.
 pub(crate) fn coarse(mesh: &Mesh) -> usize {
-    if mesh.faces().len() < mesh.len() { mesh.faces().len() } else { 0 }
+    let faces = mesh.faces().len();
+    if (0..faces).all(|face| mesh.leaves_of_face(face).len() >= 4) { faces } else { 0 }
 }
 
 fn predict(

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use fredholm_linop::{Report, StopReason, Work};
-use fredholm_report::{Closure, Counts, Energy, FormFactorError, History, RunRecord};
+use fredholm_coupling::MethodCounts;
+use fredholm_report::{Closure, Counts, Energy, FormFactorError, History, MeshError, RunRecord};
 use serde_json::Value;
 
 use crate::memory;
@@ -35,7 +36,10 @@ pub(crate) fn record(
         work: work(&report.work),
         stop_reason: reason(report.reason).to_owned(),
         closure: closure(problem, &solution.closure),
-        form_factor_error: form_factor_error(options, &solution.row_error),
+        form_factor_error: form_factor_error(options, solution),
+        pairs: pairs(&solution.methods),
+        mesh_error: solution.mesh_error.as_ref().map(mesh_error),
+        reciprocity: solution.reciprocity,
         energy: energy(problem, solution),
         warnings: problem.warnings.clone(),
         partial: report.reason == StopReason::Interrupted,
@@ -93,11 +97,26 @@ fn closure(problem: &Problem, closure: &[f64]) -> Closure {
     found
 }
 
-fn form_factor_error(options: &Options, row_error: &[f64]) -> FormFactorError {
+fn mesh_error(error: &fredholm_coupling::MeshError) -> MeshError {
+    MeshError { relative_l2: error.relative_l2.clone(), largest: error.largest.clone() }
+}
+
+fn pairs(methods: &MethodCounts) -> BTreeMap<String, u64> {
+    let counts = [
+        ("hidden", methods.hidden),
+        ("area_gauss", methods.area_gauss),
+        ("contour", methods.contour),
+        ("clipped", methods.clipped),
+        ("sampled", methods.sampled),
+    ];
+    counts.map(|(name, count)| (name.to_owned(), count)).into()
+}
+
+fn form_factor_error(options: &Options, solution: &Solution) -> FormFactorError {
     FormFactorError {
         tolerance: Some(options.problem.form_factor_tolerance),
-        max: None,
-        row_max: row_error.iter().copied().reduce(f64::max),
+        max: Some(solution.pair_error),
+        row_max: solution.row_error.iter().copied().reduce(f64::max),
     }
 }
 

@@ -1,7 +1,8 @@
 //! The computation itself: assembly, solution, and what is known of their errors.
 
 use fredholm_coupling::{
-    Assembled, CouplingError, Energy, Means, MeshError, Radiosity, assemble, exposed_shares, extents,
+    Assembled, CouplingError, Energy, Means, MeshError, MethodCounts, Radiosity, assemble, exposed_shares, extents,
+    reciprocity,
 };
 use fredholm_linop::{MultiVector, PackedSymmetric, Report, SecondKind, SolveError, StopReason, Storage};
 use fredholm_mesh::Patch;
@@ -24,6 +25,14 @@ pub(crate) struct Solution {
     pub(crate) closure: Vec<f64>,
     /// Estimated error of the row sum of every element.
     pub(crate) row_error: Vec<f64>,
+    /// Largest estimated error of a form factor.
+    pub(crate) pair_error: f64,
+    /// Largest violation of reciprocity among the pairs checked.
+    pub(crate) reciprocity: Option<f64>,
+    /// Pairs per method.
+    pub(crate) methods: MethodCounts,
+    /// Exposed share of every element.
+    pub(crate) exposed: Vec<f64>,
     /// Balance of every band.
     pub(crate) energy: Vec<Energy>,
     /// Estimated discretisation error, where faces have several elements.
@@ -45,7 +54,7 @@ pub(crate) fn compute<S: Storage>(
     let solved = stages.run("solution", || solve(problem, &radiosity, &assembled.matrix, watcher))?;
     stages.interrupt.check()?;
     stages.interrupt.enter(Phase::Saving);
-    stages.run("mesh error", || assess(problem, &radiosity, &assembled, solved, watcher))
+    stages.run("errors", || assess(problem, &radiosity, &assembled, solved, watcher))
 }
 
 fn form_factors<S: Storage>(problem: &Problem, watcher: Watcher) -> Result<Assembled<S>, Failure> {
@@ -67,7 +76,19 @@ fn assess<S: Storage>(
     let closure = radiosity.closure(matrix);
     let energy = radiosity.energy(&x, &means, &closure);
     let row_error = assembled.error.iter().zip(problem.mesh.patches()).map(|(e, p)| e / p.area()).collect();
-    Ok(Solution { means, report, closure, row_error, energy, mesh_error })
+    let exposed = radiosity.elements().iter().map(|size| size.exposed / size.area).collect();
+    Ok(Solution {
+        means,
+        report,
+        closure,
+        row_error,
+        pair_error: assembled.largest,
+        reciprocity: reciprocity(&problem.integrator()),
+        methods: assembled.methods,
+        exposed,
+        energy,
+        mesh_error,
+    })
 }
 
 /// The system for the exposed parts of the elements.

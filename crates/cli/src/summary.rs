@@ -2,7 +2,6 @@
 
 use std::fmt::Write;
 
-use fredholm_coupling::MeshError;
 use fredholm_report::{Closure, Counts, Energy, RunRecord, Timing};
 
 use crate::size::Bytes;
@@ -41,6 +40,8 @@ pub(crate) fn quality(run: &RunRecord, lines: &mut Lines) {
     lines.add("solution", solution(run));
     lines.add_some("closure", closure(&run.closure));
     lines.add_some("form factors", form_factors(run));
+    lines.add_some("reciprocity", reciprocity(run));
+    lines.add("mesh error", mesh_error(run));
     lines.add_some("time", (!run.timings.is_empty()).then(|| times(&run.timings)));
     run.warnings.iter().for_each(|warning| lines.add("warning", warning));
 }
@@ -105,10 +106,15 @@ fn times(timings: &[Timing]) -> String {
     stages.join(", ")
 }
 
+fn reciprocity(run: &RunRecord) -> Option<String> {
+    Some(format!("both orders of integration agree within {:.1e} (largest of a sample)", run.reciprocity?))
+}
+
 /// The error of the mesh in the worst band.
-pub(crate) fn mesh_error(error: &MeshError) -> Option<String> {
-    let worst = error.relative_l2.iter().copied().reduce(f64::max)?;
-    Some(format!(
-        "the irradiance of the faces is estimated to be within {worst:.1e} of that on a finer mesh (L2, worst band)"
-    ))
+fn mesh_error(run: &RunRecord) -> String {
+    let worst = run.mesh_error.as_ref().and_then(|e| e.relative_l2.iter().copied().reduce(f64::max));
+    worst.map_or_else(
+        || "not estimated: give every face at least 4 elements (elements_per_face)".to_owned(),
+        |worst| format!("the irradiance of the faces is right within {worst:.1e} (L2, worst band; estimate)"),
+    )
 }

@@ -60,6 +60,8 @@ pub struct Assembled<S> {
     pub matrix: PackedSymmetric<S>,
     /// Σ_j |error of G_ij| as estimated, m², per element.
     pub error: Vec<f64>,
+    /// Largest estimated error of a form factor F_ij.
+    pub largest: f64,
     /// Pairs per method.
     pub methods: MethodCounts,
 }
@@ -78,7 +80,7 @@ pub fn assemble<S: Storage>(integrator: &PairIntegrator, watch: &Watch) -> Resul
     let mut total = Report::new(n);
     reports.iter().for_each(|report| total.merge(report));
     let matrix = PackedSymmetric::new(n, packed)?;
-    Ok(Assembled { matrix, error: total.error, methods: total.methods })
+    Ok(Assembled { matrix, error: total.error, largest: total.largest, methods: total.methods })
 }
 
 fn pairs(n: usize) -> u64 {
@@ -124,6 +126,9 @@ impl<S: Storage> Run<'_, S> {
         let mut work = Workspace::default();
         let mut rest = self.entries;
         for i in self.rows {
+            if progress.state().is_break() {
+                return report;
+            }
             let (row, tail) = rest.split_at_mut(i + 1);
             rest = tail;
             for (j, entry) in row[..i].iter_mut().enumerate() {
@@ -132,7 +137,7 @@ impl<S: Storage> Run<'_, S> {
                 }
                 let exchange = integrator.exchange(i, j, &mut work);
                 *entry = S::from_f64(exchange.value);
-                report.add(i, j, &exchange);
+                report.add(i, j, &exchange, integrator.smaller_area(i, j));
             }
         }
         progress.advance(report.unseen);
@@ -143,13 +148,14 @@ impl<S: Storage> Run<'_, S> {
 /// What one run knows of its pairs.
 struct Report {
     error: Vec<f64>,
+    largest: f64,
     methods: MethodCounts,
     unseen: u64,
 }
 
 impl Report {
     fn new(n: usize) -> Self {
-        Self { error: vec![0.0; n], methods: MethodCounts::default(), unseen: 0 }
+        Self { error: vec![0.0; n], largest: 0.0, methods: MethodCounts::default(), unseen: 0 }
     }
 
     fn count(&mut self, progress: &Progress) -> ControlFlow<()> {
@@ -161,7 +167,8 @@ impl Report {
         progress.state()
     }
 
-    fn add(&mut self, i: usize, j: usize, exchange: &Exchange) {
+    fn add(&mut self, i: usize, j: usize, exchange: &Exchange, area: f64) {
+        self.largest = self.largest.max(exchange.error / area);
         self.error[i] += exchange.error;
         self.error[j] += exchange.error;
         self.methods.add(exchange.method);
@@ -169,6 +176,7 @@ impl Report {
 
     fn merge(&mut self, other: &Self) {
         self.error.iter_mut().zip(&other.error).for_each(|(a, b)| *a += b);
+        self.largest = self.largest.max(other.largest);
         self.methods.merge(&other.methods);
     }
 }

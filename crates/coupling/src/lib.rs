@@ -12,6 +12,7 @@ mod discretisation;
 mod error;
 mod exposure;
 mod radiosity;
+mod reciprocity;
 
 pub use aggregate::aggregate;
 pub use assembly::{Assembled, MethodCounts, Watch, assemble};
@@ -19,3 +20,4 @@ pub use discretisation::{MeshError, mesh_error};
 pub use error::CouplingError;
 pub use exposure::{exposed_shares, extents};
 pub use radiosity::{Energy, Extent, Means, Radiosity};
+pub use reciprocity::reciprocity;

@@ -22,7 +22,9 @@ fn add_box(builder: &mut MeshBuilder, min: Vec3, max: Vec3, n: usize, inward: bo
         let whole = patch(&wall.map(|[x, y, z]| at(x, y, z)));
         let whole = if inward { whole } else { whole.flipped() };
         builder.occluder(whole);
-        grid(&whole, n).iter().for_each(|cell| drop(builder.face(&[*cell]).unwrap()));
+        for cell in grid(&whole, n) {
+            builder.face(&[cell]).unwrap();
+        }
     }
 }
 

@@ -52,7 +52,11 @@ pub struct RunRecord {
     pub stop_reason: String,
     /// Row sums of the form factors against 1.
     pub closure: Closure,
-    /// Largest relative violation of `A_i F_ij = A_j F_ji` among the pairs checked.
+    /// Pairs of elements by the method that computed their form factor.
+    pub pairs: BTreeMap<String, u64>,
+    /// Estimated error of the mesh.
+    pub mesh_error: Option<MeshError>,
+    /// Largest violation of `A_i F_ij = A_j F_ji` among the partly occluded pairs checked, as a form factor.
     pub reciprocity: Option<f64>,
     /// Estimated error of the form factors.
     pub form_factor_error: FormFactorError,
@@ -82,6 +86,8 @@ impl Default for RunRecord {
             work: BTreeMap::new(),
             stop_reason: String::new(),
             closure: Closure::default(),
+            pairs: BTreeMap::new(),
+            mesh_error: None,
             reciprocity: None,
             form_factor_error: FormFactorError::default(),
             energy: Vec::new(),
@@ -107,6 +113,16 @@ pub struct Counts {
     pub bands: u64,
     /// Stored entries of the operator.
     pub matrix_entries: u64,
+}
+
+/// Estimated error of the irradiance of faces from the size of the elements.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct MeshError {
+    /// Relative L2 norm over the faces, per band.
+    pub relative_l2: Vec<f64>,
+    /// Largest error of a face, W/m², per band.
+    pub largest: Vec<f64>,
 }
 
 /// Wall-clock time of a stage.

@@ -1,8 +1,9 @@
-//! Segments and shafts per second on one core, in a room with two boxes and in a room with four finely tessellated
-//! spheres.
+//! Segments, rays and shafts per second on one core, in a room with two boxes and in a room with four finely
+//! tessellated spheres; and the time to build the larger.
 //!
-//! The ends of the segments are points of the surfaces, uniform by area and in random order. Build times and rates are
-//! measured on one thread.
+//! The ends of the segments are points of the surfaces, uniform by area and in random order.
+
+#![allow(clippy::unwrap_used, reason = "the scenes are fixed")]
 
 use std::hint::black_box;
 
@@ -122,66 +123,67 @@ fn pairs(patches: &[Patch]) -> Vec<(Vec3, Vec3)> {
     (0..SEGMENTS).map(|_| (point(), point())).collect()
 }
 
-fn segments(criterion: &mut Criterion) {
+fn scenes() -> [(&'static str, Vec<Patch>); 3] {
     let quads = room();
+    [("46 triangles", as_triangles(&quads)), ("23 quads", as_quads(&quads)), ("81932 triangles", spheres())]
+}
+
+fn segments(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("segments");
     group.throughput(Throughput::Elements(SEGMENTS as u64));
-    for (name, patches) in [
-        ("46 triangles", as_triangles(&quads)),
-        ("23 quads", as_quads(&quads)),
-        ("81932 triangles", spheres()),
-    ] {
-        let scene = Occluders::new(&patches).unwrap();
-        let pairs = pairs(&patches);
+    for (name, patches) in scenes() {
+        let (scene, pairs) = (Occluders::new(&patches).unwrap(), pairs(&patches));
         group.bench_function(name, |bencher| {
             bencher.iter(|| pairs.iter().filter(|&&(p, q)| black_box(&scene).unoccluded(p, q)).count());
         });
     }
 }
 
+fn rays(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("rays");
+    group.throughput(Throughput::Elements(SEGMENTS as u64));
+    for (name, patches) in scenes() {
+        let (scene, pairs) = (Occluders::new(&patches).unwrap(), pairs(&patches));
+        let hits = |&&(p, q): &&(Vec3, Vec3)| black_box(&scene).closest(p, q - p, f64::INFINITY).is_some();
+        group.bench_function(name, |bencher| bencher.iter(|| pairs.iter().filter(hits).count()));
+    }
+}
+
 fn shafts(criterion: &mut Criterion) {
-    let quads = room();
     let mut group = criterion.benchmark_group("shafts");
-    for (name, occluders) in [
-        ("46 triangles", as_triangles(&quads)),
-        ("23 quads", as_quads(&quads)),
-        ("81932 triangles", spheres()),
-    ] {
-        let scene = Occluders::new(&occluders).unwrap();
-        let elements = elements(&occluders);
+    for (name, patches) in scenes() {
+        let (scene, elements) = (Occluders::new(&patches).unwrap(), elements(&patches));
         let mut candidates = Vec::new();
+        let mut named = |a: &Patch, b: &Patch| {
+            black_box(&scene).shaft(a, b, &mut candidates);
+            candidates.len()
+        };
         group.throughput(Throughput::Elements((elements.len() * elements.len()) as u64));
         group.bench_function(name, |bencher| {
             bencher.iter(|| {
-                let mut found = 0;
-                for a in &elements {
-                    for b in &elements {
-                        scene.shaft(a, b, &mut candidates);
-                        found += candidates.len();
-                    }
-                }
-                found
+                elements
+                    .iter()
+                    .flat_map(|a| elements.iter().map(move |b| (a, b)))
+                    .map(|(a, b)| named(a, b))
+                    .sum::<usize>()
             });
         });
     }
 }
 
-/// Every patch, if there are few, divided into four; else a choice of some hundred.
+/// Every patch cut into quads around its corners; of many patches, every four-hundredth as it is.
 fn elements(patches: &[Patch]) -> Vec<Patch> {
-    if patches.len() > 100 {
-        return patches.iter().step_by(patches.len() / 200).copied().collect();
+    if patches.len() > 400 {
+        return patches.iter().step_by(400).copied().collect();
     }
-    let split = |p: &Patch| {
-        let (c, m) = (p.corners().to_vec(), p.centroid());
-        let mid = move |i: usize| 0.5 * (c[i % c.len()] + c[(i + 1) % c.len()]);
-        let corners = p.corners().to_vec();
-        (0..corners.len())
-            .filter_map(move |i| {
-                Patch::quad([corners[i], mid(i), m, mid(i + corners.len() - 1)]).ok().flatten()
-            })
-            .collect::<Vec<_>>()
-    };
-    patches.iter().flat_map(split).collect()
+    patches.iter().flat_map(quarters).collect()
+}
+
+fn quarters(patch: &Patch) -> Vec<Patch> {
+    let n = patch.sides();
+    let middle = |i: usize| 0.5 * (patch.corner(i) + patch.corner(i + 1));
+    let around = |i: usize| [patch.corner(i), middle(i), patch.centroid(), middle(i + n - 1)];
+    (0..n).map(|i| Patch::quad(around(i)).unwrap().unwrap()).collect()
 }
 
 fn build(criterion: &mut Criterion) {
@@ -189,9 +191,9 @@ fn build(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("build");
     group.sample_size(10);
     group.bench_function("81932 triangles", |bencher| {
-        bencher.iter(|| Occluders::new(&patches).unwrap().len())
+        bencher.iter(|| Occluders::new(&patches));
     });
 }
 
-criterion_group!(benches, segments, shafts, build);
+criterion_group!(benches, segments, rays, shafts, build);
 criterion_main!(benches);

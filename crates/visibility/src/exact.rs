@@ -1,9 +1,9 @@
 //! Does a line cross a convex polygon? Decided exactly.
 //!
-//! Seen along the line from p to q, the signed volume of the tetrahedron p, q, v_i, v_{i+1} says on which side of the
-//! directed edge the line passes. It crosses a triangle, outline included, where no two of the three volumes have
-//! opposite signs. Signs are exact, and that of a shared edge is the same for both its triangles, so that a line cannot
-//! slip between them.
+//! Seen along the line from p to q, the signed volume of the tetrahedron of p, q and the ends of an edge says on which
+//! side of the directed edge the line passes. It crosses a triangle, outline included, where no two of the three
+//! volumes have opposite signs. Signs are exact, and that of a shared edge is the same for both its triangles, so that
+//! a line cannot slip between them.
 //!
 //! Reference: J. R. Shewchuk, "Adaptive precision floating-point arithmetic and fast robust geometric predicates",
 //! Discrete Comput. Geom. 18 (1997) 305–363, [doi:10.1007/PL00009321](https://doi.org/10.1007/PL00009321).

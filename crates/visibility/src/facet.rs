@@ -2,17 +2,19 @@
 //!
 //! A facet has a corner a, two edges b and c from it, and the unit normal n. Every point x has the height
 //! s = n·(x − a) over its plane, and the coordinates u and v with x = a + u b + v c + s n. A segment from p to q whose
-//! ends are on different sides crosses the plane where the height is zero; there, up to the common factor
-//! D = |s_p| + |s_q|,
+//! ends are on different sides crosses the plane where the height is zero; there u and v are U/D and V/D with
 //!
-//! U = u_p |s_q| + u_q |s_p|,  V = v_p |s_q| + v_q |s_p|.
+//! ```text
+//! D = |s_p| + |s_q|,   U = u_p |s_q| + u_q |s_p|,   V = v_p |s_q| + v_q |s_p|.
+//! ```
 //!
 //! The crossing is inside where U ≥ 0, V ≥ 0 and, for a triangle, U + V ≤ D, for a parallelogram, max(U, V) ≤ D.
 //! Swapping p and q changes no bit of this.
 //!
 //! Heights are f64, since they are compared with the tolerance; u and v are f32. With g = |∇u| + |∇v|, the
 //! condition number κ = |b| |c| / |b × c| and the length M that bounds all distances in the query, roundings change
-//! U, V and D by less than a small multiple of g M (ε₃₂ D + κ ε₆₄ M). Closer to zero than that is *in doubt*.
+//! U, V and D by less than a small multiple of g M (ε₃₂ D + κ ε₆₄ M). What is closer to zero than that is *in doubt*.
+//! A fourth corner that lies the distance h off the parallelogram changes them by less than 3 g M h.
 //!
 //! All lengths are local, that is over the extent of the scene.
 
@@ -21,9 +23,11 @@ use glam::{Vec4, Vec4Swizzles};
 
 use crate::probe::Probe;
 
-/// Counts of the roundings on the way to U, V and D, on the generous side.
+/// Counts of the roundings on the way to U, V and D, about twice what a term by term estimate gives.
 const ROUNDINGS_32: f64 = 16.0;
 const ROUNDINGS_64: f64 = 64.0;
+/// The factor 3 above, over the least M, which is ½.
+const SLACK: f64 = 6.0;
 
 /// A triangle or a parallelogram, ready to be tested.
 #[derive(Clone, Copy, Debug)]
@@ -54,15 +58,15 @@ pub(crate) enum Crossing {
 }
 
 impl Facet {
-    /// The triangle with the given corners.
-    pub(crate) fn triangle([a, b, c]: [Vec3; 3], patch: u32) -> Self {
-        Self::new(a, [b - a, c - a], 0.0, patch)
+    /// The triangle with the corner a and the edges b and c from it.
+    pub(crate) fn triangle(a: Vec3, edges: [Vec3; 2], patch: u32) -> Self {
+        Self::new(a, edges, 0.0, patch)
     }
 
-    /// The parallelogram with the corners b and c beside a. `slack` is the distance by which the fourth corner may be
-    /// elsewhere.
-    pub(crate) fn parallelogram([a, b, c]: [Vec3; 3], slack: f64, patch: u32) -> Self {
-        Self { triangle: 0.0, ..Self::new(a, [b - a, c - a], slack, patch) }
+    /// The parallelogram with the corner a and the edges b and c from it, whose fourth corner may lie the distance
+    /// `slack` off.
+    pub(crate) fn parallelogram(a: Vec3, edges: [Vec3; 2], slack: f64, patch: u32) -> Self {
+        Self { triangle: 0.0, ..Self::new(a, edges, slack, patch) }
     }
 
     fn new(a: Vec3, [b, c]: [Vec3; 2], slack: f64, patch: u32) -> Self {
@@ -71,7 +75,7 @@ impl Facet {
         let normal = cross / area;
         let (u, v) = (c.cross(normal) / area, normal.cross(b) / area);
         let gradient = u.length() + v.length();
-        let blur = ROUNDINGS_64 * f64::EPSILON * b.length() * c.length() / area + slack;
+        let blur = ROUNDINGS_64 * f64::EPSILON * b.length() * c.length() / area + SLACK * slack;
         let vector = |[a, b, c, d]: [f64; 4]| Vec4::new(a as f32, b as f32, c as f32, d as f32);
         Self {
             normal,

@@ -54,6 +54,11 @@ impl Frame {
         (point - self.centre) * self.scale
     }
 
+    /// The local vector of a difference of two points.
+    pub(crate) fn edge(&self, difference: Vec3) -> Vec3 {
+        difference * self.scale
+    }
+
     /// A local length in metres.
     pub(crate) fn metres(&self, length: f64) -> f64 {
         length / self.scale

@@ -86,18 +86,22 @@ impl Occluders {
 }
 
 /// A triangle is one facet, and so is a quad that is a parallelogram; any other quad is two triangles.
-fn pieces(patch: &Patch, index: u32, frame: &Frame) -> impl Iterator<Item = (Facet, [Vec3; 4])> {
-    let [a, b, c, d] = [0, 1, 2, 3].map(|i| frame.local(patch.corners()[i.min(patch.sides() - 1)]));
-    let skew = (a - b + c - d).length();
-    let triangle = move |a: Vec3, b: Vec3, c: Vec3| (Facet::triangle([a, b, c], index), [a, b, c, c]);
-    let (first, second) = if patch.sides() == 3 {
-        (triangle(a, b, c), None)
+///
+/// Edges are differences of the corners as given: those of local coordinates lose digits of small patches.
+fn pieces(patch: &Patch, index: u32, frame: &Frame) -> impl Iterator<Item = (Facet, [Vec3; 4])> + use<> {
+    let [a, b, c, d] = [0, 1, 2, 3].map(|i| patch.corner(i.min(patch.sides() - 1)));
+    let [to_b, to_c, to_d] = [b, c, d].map(|corner| frame.edge(corner - a));
+    let [a, b, c, d] = [a, b, c, d].map(|corner| frame.local(corner));
+    let skew = (to_b + to_d - to_c).length();
+    let first = (Facet::triangle(a, [to_b, to_c], index), [a, b, c, c]);
+    let pieces = if patch.sides() == 3 {
+        [Some(first), None]
     } else if skew <= SKEW * frame.tolerance {
-        ((Facet::parallelogram([a, b, d], skew, index), [a, b, c, d]), None)
+        [Some((Facet::parallelogram(a, [to_b, to_d], skew, index), [a, b, c, d])), None]
     } else {
-        (triangle(a, b, c), Some(triangle(a, c, d)))
+        [Some(first), Some((Facet::triangle(a, [to_c, to_d], index), [a, c, d, d]))]
     };
-    [Some(first), second].into_iter().flatten()
+    pieces.into_iter().flatten()
 }
 
 fn places(facets: &[Facet], patches: usize) -> Vec<[u32; 2]> {

@@ -13,7 +13,7 @@ use crate::problem::Problem;
 use crate::record::record;
 use crate::solution::{Solution, compute};
 use crate::stages::Stages;
-use crate::summary::{Lines, mesh_error, quality};
+use crate::summary::{Lines, quality};
 use crate::{console, folder, output, threads};
 
 /// Pixels of the picture of a partial result.
@@ -54,6 +54,7 @@ fn write(
     let (irradiance, radiosity) = (solution.means.irradiance.as_slice(), solution.means.radiosity.as_slice());
     let field = Field::new(&problem.mesh, &record.bands, irradiance, radiosity)
         .and_then(|field| field.with_exitance(&exitance))
+        .and_then(|field| field.with_exposed(&solution.exposed))
         .map_err(report_failure)?;
     let view = view(problem, &field);
     let view = if record.partial { quick(view) } else { view };
@@ -108,14 +109,13 @@ fn conclude(
         let text = "the tolerance was not met; allow more with --max-iterations or --tolerance, or choose another --solver";
         stages.console.warn(text);
     }
-    if args.log.quiet { Ok(()) } else { summarise(&folder::of(args), record, solution) }
+    if args.log.quiet { Ok(()) } else { summarise(&folder::of(args), record) }
 }
 
-fn summarise(folder: &Path, record: &RunRecord, solution: &Solution) -> Result<(), Failure> {
+fn summarise(folder: &Path, record: &RunRecord) -> Result<(), Failure> {
     let mut lines = Lines::default();
     lines.add("picture", folder.join("image.png").display().to_string());
     quality(record, &mut lines);
-    lines.add_some("mesh error", solution.mesh_error.as_ref().and_then(mesh_error));
     output::print(&lines.under(&format!("{} → {}", record.scene, folder.display())))
 }
 

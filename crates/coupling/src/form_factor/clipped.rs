@@ -32,8 +32,13 @@ pub(crate) fn clipped(cells: &[Patch], scene: &Occluded, tolerance: f64, shadow:
 }
 
 fn refine(cell: &Patch, scene: &Occluded, tolerance: f64, depth: u32, shadow: &mut Shadow) -> Estimate {
-    let (coarse, fine) = (gauss(cell, 2, scene, shadow), gauss(cell, 3, scene, shadow));
-    let error = (fine - coarse).abs();
+    let (coarse, mut fine) = (gauss(cell, 1, scene, shadow), gauss(cell, 2, scene, shadow));
+    let mut error = (fine - coarse).abs();
+    if error > tolerance {
+        let finest = gauss(cell, 3, scene, shadow);
+        error = (finest - fine).abs();
+        fine = finest;
+    }
     let met = error <= tolerance || depth == 0;
     let Some(children) = (!met).then(|| cell.split().ok()).flatten() else {
         return Estimate { value: fine, error };

@@ -74,7 +74,17 @@ pub struct Workspace {
     shadow: Shadow,
 }
 
-/// Two patches as seen from one of them.
+/// Which patch the outer integral goes over.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Outer {
+    /// The one that the occluders stand farther from. One that stands on a patch makes the outer integrand jump there, but not the
+    /// inner integral.
+    Clearer,
+    /// The first.
+    First,
+}
+
+/// A patch with what is needed of it.
 #[derive(Clone, Copy)]
 struct Side<'a> {
     patch: &'a Patch,
@@ -117,8 +127,23 @@ impl<'a> PairIntegrator<'a> {
         self.patches.is_empty()
     }
 
+    /// The smaller of two areas, m².
+    #[must_use]
+    pub fn smaller_area(&self, i: usize, j: usize) -> f64 {
+        self.patches[i].area().min(self.patches[j].area())
+    }
+
     /// A_i F_ij of patches i and j.
     pub fn exchange(&self, i: usize, j: usize, work: &mut Workspace) -> Exchange {
+        self.compute(i, j, Outer::Clearer, work)
+    }
+
+    /// A_i F_ij with the outer integral, where there is one, over patch i: against the same of (j, i) it tests reciprocity.
+    pub fn exchange_from(&self, i: usize, j: usize, work: &mut Workspace) -> Exchange {
+        self.compute(i, j, Outer::First, work)
+    }
+
+    fn compute(&self, i: usize, j: usize, outer: Outer, work: &mut Workspace) -> Exchange {
         if i == j {
             return Exchange::NONE;
         }
@@ -133,8 +158,13 @@ impl<'a> PairIntegrator<'a> {
         if work.occluders.len() == 0 {
             return unoccluded(a, b, flat, tolerance, work);
         }
+        if hides(a.patch, b.patch, &work.occluders) {
+            return Exchange { method: Method::Hidden, ..Exchange::NONE };
+        }
         if work.occluders.len() <= FEW {
-            return self.behind_few(a, b, flat, tolerance, work);
+            let keep = outer == Outer::First || clearance(a, work) >= clearance(b, work);
+            let (a, b) = if keep { (a, b) } else { (b, a) };
+            return behind_few(a, b, flat, tolerance, work);
         }
         self.behind_many(a, b, flat, tolerance, work)
     }
@@ -155,21 +185,20 @@ impl<'a> PairIntegrator<'a> {
         }
     }
 
-    fn behind_few(&self, a: Side, b: Side, flat: f64, tolerance: f64, work: &mut Workspace) -> Exchange {
-        // An occluder that stands on a patch makes the outer integrand jump there, but not the inner integral.
-        let (a, b) = if clearance(a, work) >= clearance(b, work) { (a, b) } else { (b, a) };
-        let cells = front_cells(a.patch, b.plane, flat, work);
-        front(b.patch, a.plane, flat, &mut work.front[1]);
-        let scene = Occluded { target: &work.front[1], occluders: &work.occluders };
-        Exchange::new(Method::Clipped, clipped(&cells, &scene, tolerance, &mut work.shadow))
-    }
-
     fn behind_many(&self, a: Side, b: Side, flat: f64, tolerance: f64, work: &mut Workspace) -> Exchange {
         let open = unoccluded(a, b, flat, tolerance, work);
         let open = Estimate { value: open.value, error: open.error };
         let sees = |p, q| self.bvh.unoccluded(p, q);
         Exchange::new(Method::Sampled, sampled(a.patch, b.patch, open, tolerance, sees))
     }
+}
+
+/// Integrates over `a` what its points see of `b`.
+fn behind_few(a: Side, b: Side, flat: f64, tolerance: f64, work: &mut Workspace) -> Exchange {
+    let cells = front_cells(a.patch, b.plane, flat, work);
+    front(b.patch, a.plane, flat, &mut work.front[1]);
+    let scene = Occluded { target: &work.front[1], occluders: &work.occluders };
+    Exchange::new(Method::Clipped, clipped(&cells, &scene, tolerance, &mut work.shadow))
 }
 
 fn unoccluded(a: Side, b: Side, flat: f64, tolerance: f64, work: &mut Workspace) -> Exchange {
@@ -183,6 +212,20 @@ fn unoccluded(a: Side, b: Side, flat: f64, tolerance: f64, work: &mut Workspace)
     front(a.patch, b.plane, flat, front_a);
     front(b.patch, a.plane, flat, front_b);
     Exchange::new(Method::Contour, contour_integral(front_a, front_b, 0.1 * tolerance))
+}
+
+/// Whether one of the occluders blocks every segment between two patches. Where a plane is crossed by the segments between all
+/// corners inside a convex polygon, it is so by those between all points: the crossings are convex combinations.
+fn hides(a: &Patch, b: &Patch, occluders: &PolygonList) -> bool {
+    occluders.iter().any(|o| {
+        let edges = || o.iter().zip(o.iter().cycle().skip(1));
+        let blocks = |p: Vec3, q: Vec3| {
+            let turn = |(&e, &f): (&Vec3, &Vec3)| (e - p).cross(f - p).dot(q - p);
+            edges().all(|e| turn(e) > 0.0) || edges().all(|e| turn(e) < 0.0)
+        };
+        blocks(a.centroid(), b.centroid())
+            && a.corners().iter().all(|&p| b.corners().iter().all(|&q| blocks(p, q)))
+    })
 }
 
 /// Largest distance that matters to a pair.

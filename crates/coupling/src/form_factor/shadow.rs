@@ -46,12 +46,21 @@ impl PolygonList {
     }
 }
 
+/// Corners that a quad has at most after two cuts, and room for two more.
+const CORNERS: usize = 8;
+
+/// Inward normals of the planes through a point and the edges of a convex polygon: the cone under which the point sees it.
+#[derive(Clone, Copy, Debug)]
+struct Cone {
+    planes: [Vec3; CORNERS],
+    count: usize,
+}
+
 /// Buffers of the subtraction, kept between points.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Shadow {
     visible: PolygonList,
     next: PolygonList,
-    planes: Vec<Vec3>,
     rest: Vec<Vec3>,
     inside: Vec<Vec3>,
     heights: Vec<f64>,
@@ -62,30 +71,40 @@ impl Shadow {
     pub(crate) fn visible_factor(&mut self, p: Vec3, n: Vec3, target: &[Vec3], occluders: &PolygonList) -> f64 {
         self.visible.clear();
         self.visible.push_with(|corners| corners.extend(target.iter().map(|&x| x - p)));
+        let view = self.visible.iter().next().and_then(Cone::of);
         for occluder in occluders.iter() {
             if self.visible.len() == 0 {
                 return 0.0;
             }
-            self.subtract(p, occluder);
+            self.subtract(p, occluder, view.as_ref());
         }
         self.visible.iter().map(|piece| point_to_polygon(n, piece.iter().copied())).sum()
     }
 
-    /// Replaces the visible pieces by their parts outside the cone of one occluder.
-    fn subtract(&mut self, p: Vec3, occluder: &[Vec3]) {
-        if !cone(p, occluder, &mut self.planes) {
+    /// Replaces the visible pieces by their parts outside the cone of one occluder; `view` is the cone of the whole target.
+    fn subtract(&mut self, p: Vec3, occluder: &[Vec3], view: Option<&Cone>) {
+        let mut corners = [Vec3::ZERO; CORNERS];
+        let corners = &mut corners[..occluder.len().min(CORNERS)];
+        corners.iter_mut().zip(occluder).for_each(|(corner, &x)| *corner = x - p);
+        if view.is_some_and(|view| view.misses(corners)) {
             return;
         }
+        if let Some(cone) = Cone::of(corners) {
+            self.cut_out(&cone);
+        }
+    }
+
+    fn cut_out(&mut self, cone: &Cone) {
         self.next.clear();
         for i in 0..self.visible.len() {
             let piece = self.visible.get(i);
-            if misses(piece, &self.planes) {
+            if cone.misses(piece) {
                 self.next.push_with(|corners| corners.extend_from_slice(piece));
                 continue;
             }
             self.rest.clear();
             self.rest.extend_from_slice(piece);
-            for &plane in &self.planes {
+            for &plane in cone.planes() {
                 let outside = |corners: &mut Vec<Vec3>| {
                     split(&self.rest, plane, &mut self.heights, &mut self.inside, corners);
                 };
@@ -97,26 +116,47 @@ impl Shadow {
     }
 }
 
-/// Inward normals of the planes through the point and the edges of the occluder; false where the point lies in its plane.
-fn cone(p: Vec3, occluder: &[Vec3], planes: &mut Vec<Vec3>) -> bool {
-    planes.clear();
-    let corners = occluder.iter().zip(occluder.iter().cycle().skip(1));
-    planes.extend(corners.map(|(&a, &b)| (a - p).cross(b - p)));
-    let towards = occluder[0] - p;
-    let turn = planes.iter().sum::<Vec3>().dot(towards);
-    let size = planes.iter().map(|m| m.length_squared()).sum::<f64>().sqrt() * towards.length();
-    if turn.abs() <= 1e-12 * size {
-        return false;
+impl Cone {
+    /// The cone of a polygon seen from the origin; `None` where the origin lies in its plane, or it has too many corners.
+    fn of(corners: &[Vec3]) -> Option<Self> {
+        let towards = *corners.first()?;
+        if corners.len() > CORNERS {
+            return None;
+        }
+        let mut cone = Self { planes: [Vec3::ZERO; CORNERS], count: 0 };
+        for k in 0..corners.len() {
+            cone.push(corners[k].cross(corners[(k + 1) % corners.len()]));
+        }
+        let sum = cone.planes().iter().sum::<Vec3>();
+        let size: f64 = cone.planes().iter().map(|m| m.length_squared()).sum();
+        let turn = sum.dot(towards);
+        if turn * turn <= 1e-24 * size * towards.length_squared() {
+            return None;
+        }
+        Some(if turn < 0.0 { cone.turned() } else { cone })
     }
-    if turn < 0.0 {
-        planes.iter_mut().for_each(|m| *m = -*m);
-    }
-    planes.retain(|m| *m != Vec3::ZERO);
-    true
-}
 
-fn misses(piece: &[Vec3], planes: &[Vec3]) -> bool {
-    planes.iter().any(|m| piece.iter().all(|v| m.dot(*v) <= 0.0))
+    /// Adds a plane; an edge of no length, or one that points at the origin, bounds nothing.
+    fn push(&mut self, normal: Vec3) {
+        if normal != Vec3::ZERO {
+            self.planes[self.count] = normal;
+            self.count += 1;
+        }
+    }
+
+    fn turned(mut self) -> Self {
+        self.planes.iter_mut().for_each(|m| *m = -*m);
+        self
+    }
+
+    fn planes(&self) -> &[Vec3] {
+        &self.planes[..self.count]
+    }
+
+    /// Whether one of the planes has all of a polygon outside.
+    fn misses(&self, polygon: &[Vec3]) -> bool {
+        self.planes().iter().any(|m| polygon.iter().all(|v| m.dot(*v) <= 0.0))
+    }
 }
 
 /// Splits a convex polygon by a plane through the origin into the parts with m·v ≤ 0 (appended to `outside`) and ≥ 0 (replacing `inside`).
@@ -203,6 +243,15 @@ mod tests {
         let one = seen(&target, &[occluder.clone()]);
         occluder.reverse();
         assert!((seen(&target, &[occluder]) - one).abs() < 1e-16);
+    }
+
+    #[test]
+    fn a_repeated_corner_changes_nothing() {
+        let target = square(Vec3::Z, 1.0);
+        let mut occluder = square(Vec3::new(0.2, 0.1, 0.4), 0.2);
+        let plain = seen(&target, &[occluder.clone()]);
+        occluder.insert(1, occluder[0]);
+        assert!(plain < whole(&target) && (seen(&target, &[occluder]) - plain).abs() < 1e-16);
     }
 
     #[test]

@@ -17,6 +17,7 @@ pub fn patch(corners: &[Vec3]) -> Patch {
     }
 }
 
+#[allow(dead_code, reason = "not every test needs every helper")]
 /// Exchange of the first two of some patches, all of which block.
 pub fn exchange(patches: &[Patch], tolerance: f64) -> Exchange {
     let occluders = Occluders::new(patches).unwrap();
@@ -25,7 +26,7 @@ pub fn exchange(patches: &[Patch], tolerance: f64) -> Exchange {
 }
 
 /// The integrator of a mesh, handed to `use_it`.
-#[allow(dead_code)]
+#[allow(dead_code, reason = "not every test needs every helper")]
 pub fn with_integrator<R>(mesh: &Mesh, tolerance: f64, use_it: impl FnOnce(&PairIntegrator) -> R) -> R {
     let occluders = Occluders::new(mesh.occluders()).unwrap();
     use_it(&PairIntegrator::new(mesh.patches(), mesh.occluders(), &occluders, tolerance))

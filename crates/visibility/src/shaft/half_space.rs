@@ -20,7 +20,7 @@ impl HalfSpace {
         Self { offset: self.offset + thickness * self.size(), ..*self }
     }
 
-    /// |N_x| + |N_y| + |N_z|.
+    /// The sum of the sizes of the coordinates of N.
     pub(crate) fn size(&self) -> f64 {
         norm1(self.normal)
     }

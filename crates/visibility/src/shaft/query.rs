@@ -12,9 +12,9 @@ impl Occluders {
     /// Only segments that leave `a` and reach `b` on their lit sides count: they carry light. Every patch that
     /// [`unoccluded`](Self::unoccluded) finds on such a segment is in the list, so where the list is empty each patch
     /// sees all of the other that is in front of it. The list may name patches that block nothing. Patches that only
-    /// touch the room between `a` and `b`, or reach less than the [tolerance](Self::tolerance) into it, are not in it:
-    /// neighbours that share an edge, the floor below a box, and `a` and `b` themselves. Where no part of one lies in
-    /// front of the other the list is empty.
+    /// touch the room between `a` and `b`, or reach into it by less than twice the [tolerance](Self::tolerance), are
+    /// not in it: neighbours that share an edge, the floor below a box, and `a` and `b` themselves. Where no part of
+    /// one lies in front of the other the list is empty.
     ///
     /// `candidates` is cleared first; a buffer that is used again costs no allocation.
     pub fn shaft(&self, a: &Patch, b: &Patch, candidates: &mut Vec<u32>) {
@@ -26,8 +26,8 @@ impl Occluders {
 
     /// Lists the patches that could block a segment between the point `p` and a point of `b`, by rising index.
     ///
-    /// As [`shaft`](Self::shaft), for segments that reach `b` on its lit side; where `p` is not in front of `b` the list
-    /// is empty.
+    /// As [`shaft`](Self::shaft), for segments that reach `b` on its lit side. Where `p` is not in front of `b` the
+    /// list is empty.
     pub fn shaft_point(&self, p: Vec3, b: &Patch, candidates: &mut Vec<u32>) {
         candidates.clear();
         if let Some(shaft) = Shaft::from_point(p, b, &self.frame) {

@@ -1,4 +1,4 @@
-//! Which of four boxes does a segment meet?
+//! Which boxes of a node does a segment meet?
 //!
 //! Along o + t d a slab between two planes of one axis is met for t between (near − o)/d and (far − o)/d; a box is met
 //! where the largest entry is not past the smallest exit.
@@ -84,7 +84,7 @@ impl Beam {
         met
     }
 
-    /// Where each of the four boxes is entered and left.
+    /// Where the boxes of group `i` are entered and left.
     #[inline]
     pub(crate) fn slabs(&self, node: &Node, i: usize) -> (Vec4, Vec4) {
         let (mut enter, mut leave) = (Vec4::ZERO, self.end);

@@ -1,15 +1,18 @@
 //! From the boxes of the facets to the tree.
 
+use std::time::Duration;
+
 use glam::{Vec3A, Vec4};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
+use obvhs::bvh2::node::Bvh2Node;
 
 use super::{Child, Node, PADDING, Tree, VECTORS, WIDTH};
 use fredholm_mesh::Vec3;
 
-/// The padded box of a facet, in the coordinates of the tree.
+/// The padded box of a facet.
 pub(crate) type Bounds = Aabb;
 
 /// Facets in a leaf, at most.
@@ -33,34 +36,34 @@ impl Tree {
             max_prims_per_leaf: LEAF,
             ..BvhBuildParams::very_slow_build()
         };
-        let binary = build_bvh2(boxes, params, &mut std::time::Duration::default());
+        let binary = build_bvh2(boxes, params, &mut Duration::default());
         let mut tree = Self { nodes: vec![Node::empty()] };
         let mut order = Vec::with_capacity(boxes.len());
-        if binary.nodes.is_empty() {
-            return (tree, order);
-        }
-        let mut pending = vec![(0, 0)];
-        while let Some((wide, source)) = pending.pop() {
-            for (slot, &child) in widen(&binary, source).iter().enumerate() {
-                let node = &binary.nodes[child];
-                let entry = if node.is_leaf() {
-                    let first = order.len() as u32;
-                    let run = node.first_index as usize..(node.first_index + node.prim_count) as usize;
-                    order.extend_from_slice(&binary.primitive_indices[run]);
-                    Child { first, count: node.prim_count }
+        let mut pending = if boxes.is_empty() { vec![] } else { vec![(0, 0)] };
+        while let Some((index, source)) = pending.pop() {
+            for (slot, &below) in widen(&binary, source).iter().enumerate() {
+                let node = &binary.nodes[below];
+                let child = if node.is_leaf() {
+                    leaf(node, &binary.primitive_indices, &mut order)
                 } else {
-                    pending.push((tree.nodes.len(), child));
+                    pending.push((tree.nodes.len(), below));
                     tree.nodes.push(Node::empty());
                     Child { first: tree.nodes.len() as u32 - 1, count: 0 }
                 };
-                tree.nodes[wide].set(slot, node.aabb(), entry);
+                tree.nodes[index].set(slot, node.aabb(), child);
             }
         }
         (tree, order)
     }
 }
 
-/// Up to four descendants of a node of the binary tree that cover it: the largest is opened first.
+fn leaf(node: &Bvh2Node, indices: &[u32], order: &mut Vec<u32>) -> Child {
+    let (first, run) = (order.len() as u32, node.first_index as usize);
+    order.extend_from_slice(&indices[run..run + node.prim_count as usize]);
+    Child { first, count: node.prim_count }
+}
+
+/// Up to eight descendants of a node of the binary tree that cover it: the largest is opened first.
 fn widen(binary: &Bvh2, root: usize) -> Vec<usize> {
     let mut cover = vec![root];
     let area = |&i: &usize| binary.nodes[i].aabb().half_area();

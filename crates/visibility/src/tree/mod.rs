@@ -1,8 +1,7 @@
-//! A tree of boxes, four to a node, over the facets of the scene.
+//! A tree of boxes, eight to a node, over the facets of the scene.
 //!
-//! Boxes are f32, in coordinates that put the centre of the scene at 0 and its longest side at 1. Each is larger than
-//! its contents by [`PADDING`], more than all roundings of a test, so that a box is never missed; what is met in
-//! vain costs time and nothing else.
+//! Boxes are f32, in local coordinates. Each is larger than its contents by [`PADDING`], more than all roundings of a
+//! test, so that a box is never missed; what is met in vain costs time and nothing else.
 //!
 //! References: I. Wald, C. Benthin, S. Boulos, "Getting rid of packets", IEEE Symp. Interactive Ray Tracing 2008,
 //! 49–57, [doi:10.1109/RT.2008.4634620](https://doi.org/10.1109/RT.2008.4634620), for the wide nodes; D. Meister,
@@ -28,14 +27,15 @@ use stack::Stack;
 /// What boxes are padded with: 8 units in the last place of 1, the extent of the scene.
 pub(crate) const PADDING: f32 = 8.0 * f32::EPSILON;
 
-/// Children of a node, in vectors of four.
+/// Vectors of four boxes in a node.
+const VECTORS: usize = 2;
+/// Children of a node.
 const WIDTH: usize = 4 * VECTORS;
-pub(crate) const VECTORS: usize = 2;
 
 /// One number for each box.
-pub(crate) type Lanes = [Vec4; VECTORS];
+type Lanes = [Vec4; VECTORS];
 
-/// Four boxes and what they hold.
+/// Eight boxes and what they hold.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Node {
     /// For each axis the least and the largest coordinates of the boxes.

@@ -1,8 +1,8 @@
-//! Which of four boxes reach into all of some half-spaces?
+//! Which boxes of a node reach into all of some half-spaces?
 //!
-//! A box lies outside N·x ≥ c where even its corner farthest along N does. With N scaled to |N_x| + |N_y| + |N_z| = 1
-//! and coordinates in [−½, ½] the f32 value of N·x − c errs by less than 3 ε, less than the padding of the boxes; where
-//! c is larger than 1 its sign is beyond doubt.
+//! A box lies outside N·x ≥ c where even its corner farthest along N does. With the sizes of the coordinates of N scaled
+//! to the sum 1 and coordinates in [−½, ½] the f32 value of N·x − c errs by less than 3 ε, less than the padding of the
+//! boxes; where c is larger than 1 its sign is beyond doubt.
 
 use glam::Vec4;
 

@@ -45,7 +45,7 @@ struct Grid {
 
 impl Grid {
     fn point(&mut self) -> Point {
-        [0; 3].map(|_| self.random.index(2 * self.size as usize + 1) as i64 - self.size)
+        [0; 3].map(|_| i64::from(self.random.index(2 * self.size as usize + 1) as u32) - self.size)
     }
 
     /// A triangle, a parallelogram or a trapezoid.

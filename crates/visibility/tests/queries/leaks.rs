@@ -16,13 +16,13 @@ fn target(random: &mut Random, corners: &[Vec3], kind: usize) -> Vec3 {
     }
 }
 
-/// Aims segments from the inside at edges and corners, and counts those that get out.
-fn leaks(patches: &[Patch], centre: Vec3, radius: f64, segments: usize) -> usize {
+/// Aims segments from the inside at edges and corners of the first patches, and counts those that get out.
+fn leaks(patches: &[Patch], targets: usize, centre: Vec3, radius: f64, segments: usize) -> usize {
     let occluders = Occluders::new(patches).unwrap();
     let mut random = Random(7);
     let mut pairs = Vec::new();
     for k in 0..segments {
-        let aim = target(&mut random, patches[k % patches.len()].corners(), k % 3);
+        let aim = target(&mut random, patches[k % targets].corners(), k % 3);
         let start = if k % 4 == 0 { centre } else { centre + random.cube() * (0.3 * radius) };
         pairs.push((start, start + (aim - start) * (1.5 + 3.0 * random.unit())));
     }
@@ -32,7 +32,7 @@ fn leaks(patches: &[Patch], centre: Vec3, radius: f64, segments: usize) -> usize
 #[test]
 fn a_million_segments_through_edges_and_corners_of_a_sphere() {
     let patches: Vec<Patch> = sphere(4).iter().map(|&t| triangle(t)).collect();
-    assert_eq!(leaks(&patches, Vec3::ZERO, 1.0, 1_000_000), 0);
+    assert_eq!(leaks(&patches, patches.len(), Vec3::ZERO, 1.0, 1_000_000), 0);
 }
 
 #[test]
@@ -40,7 +40,22 @@ fn small_spheres_and_distant_ones() {
     let offset = Vec3::new(1000.0, -1000.0, 1000.0);
     for (scale, centre) in [(1e-3, Vec3::ZERO), (1.0, offset), (1e-3, offset), (1e4, offset)] {
         let patches: Vec<Patch> = sphere(3).iter().map(|t| triangle(t.map(|p| centre + p * scale))).collect();
-        assert_eq!(leaks(&patches, centre, scale, 100_000), 0, "scale {scale}, centre {centre}");
+        assert_eq!(
+            leaks(&patches, patches.len(), centre, scale, 100_000),
+            0,
+            "scale {scale}, centre {centre}"
+        );
+    }
+}
+
+#[test]
+fn a_tiny_sphere_in_a_large_room() {
+    for (scale, centre) in [(1e-3, Vec3::new(0.3, 0.2, -0.1)), (1e-5, Vec3::new(-0.7, 0.1, 0.6))] {
+        let mut patches: Vec<Patch> =
+            sphere(3).iter().map(|t| triangle(t.map(|p| centre + p * scale))).collect();
+        let targets = patches.len();
+        patches.extend(cuboid(Vec3::ZERO, Vec3::ONE, 0.3, true));
+        assert_eq!(leaks(&patches, targets, centre, scale, 100_000), 0, "scale {scale}");
     }
 }
 
@@ -49,7 +64,7 @@ fn turned_boxes_of_quads() {
     for turn in [0.0, 0.4, 1.1] {
         let centre = Vec3::new(0.1, 0.2, 0.3);
         let patches = cuboid(centre, Vec3::new(1.0, 0.7, 0.4), turn, true);
-        assert_eq!(leaks(&patches, centre, 0.4, 100_000), 0, "turn {turn}");
+        assert_eq!(leaks(&patches, patches.len(), centre, 0.4, 100_000), 0, "turn {turn}");
     }
 }
 
@@ -62,13 +77,8 @@ fn prisms_of_trapezoids() {
         let height = p.dot(n);
         n * height + (p - n * height) * (0.7 + 0.3 * height)
     };
-    let patches: Vec<Patch> = outer
-        .iter()
-        .flat_map(|patch| match *patch.corners() {
-            [a, b, c, d] => Patch::quad([a, b, c, d].map(taper)).unwrap(),
-            _ => None,
-        })
-        .collect();
+    let tapered = |side: &Patch| Patch::quad([0, 1, 2, 3].map(|i| taper(side.corner(i)))).unwrap();
+    let patches: Vec<Patch> = outer.iter().filter_map(tapered).collect();
     assert_eq!(patches.len(), 6);
-    assert_eq!(leaks(&patches, Vec3::ZERO, 1.0, 100_000), 0);
+    assert_eq!(leaks(&patches, patches.len(), Vec3::ZERO, 1.0, 100_000), 0);
 }

@@ -1,5 +1,7 @@
 //! Queries compared with what other arithmetic, other algorithms or geometry itself says of the same scenes.
 
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
 mod batches;
 mod integer;
 mod leaks;

@@ -42,6 +42,12 @@ pub fn triangle(corners: [Vec3; 3]) -> Patch {
     Patch::triangle(corners).unwrap()
 }
 
+/// The vector turned about a fixed axis (Rodrigues' formula).
+pub fn turned(v: Vec3, turn: f64) -> Vec3 {
+    let axis = Vec3::new(0.3, -0.5, 0.9).normalize();
+    v * turn.cos() + axis.cross(v) * turn.sin() + axis * (axis.dot(v) * (1.0 - turn.cos()))
+}
+
 /// The six sides of a box turned about an axis, lit on the outside; reversed, on the inside.
 pub fn cuboid(centre: Vec3, half: Vec3, turn: f64, reversed: bool) -> Vec<Patch> {
     let axis = Vec3::new(0.3, -0.5, 0.9).normalize();

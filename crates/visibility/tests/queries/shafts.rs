@@ -3,7 +3,7 @@
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::Occluders;
 
-use crate::scenes::{Random, cuboid, furnished, quad, sphere, triangle, triangulated};
+use crate::scenes::{Random, cuboid, furnished, quad, sphere, triangle, triangulated, turned};
 
 /// Which patches block the segment, each asked alone.
 fn blockers(alone: &[Occluders], p: Vec3, q: Vec3) -> Vec<u32> {
@@ -176,32 +176,43 @@ fn what_only_touches_is_not_listed() {
     }
 }
 
+/// A square around (x, 0, z) that faces up, turned about the origin.
+fn square(x: f64, z: f64, half: f64, turn: f64) -> Patch {
+    let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+    quad(corners.map(|(u, v)| turned(Vec3::new(x + half * u, half * v, z), turn)))
+}
+
 #[test]
 fn a_screen_is_listed_where_it_is_in_between() {
-    let square = |z: f64, half: f64, x: f64| {
-        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
-        quad(corners.map(|(u, v)| Vec3::new(x + half * u, half * v, z)))
-    };
-    let (low, high) = (square(0.0, 1.0, 0.0), square(2.0, 1.0, 0.0).flipped());
-    let scene = Occluders::new(&[
-        square(1.0, 0.5, 0.0),
-        square(1.0, 0.5, 1.4),
-        square(1.0, 0.5, 1.5 + 1e-7),
-        square(3.0, 0.5, 0.0),
-    ])
-    .unwrap();
+    let (low, high) = (square(0.0, 0.0, 1.0, 0.0), square(0.0, 2.0, 1.0, 0.0).flipped());
+    let screens = [(0.0, 1.0), (1.4, 1.0), (1.5, 1.0), (0.0, 3.0)].map(|(x, z)| square(x, z, 0.5, 0.0));
+    let scene = Occluders::new(&screens).unwrap();
     let mut list = Vec::new();
     scene.shaft(&low, &high, &mut list);
     assert_eq!(list, [0, 1]);
-    scene.shaft_point(Vec3::new(0.0, 0.0, 0.0), &high, &mut list);
+    scene.shaft_point(Vec3::ZERO, &high, &mut list);
     assert_eq!(list, [0]);
-    scene.shaft_point(Vec3::new(1.0, 0.0, 0.0), &high, &mut list);
+    scene.shaft_point(Vec3::X, &high, &mut list);
     assert_eq!(list, [0, 1]);
     // Back to back, or from behind, there is nothing to ask.
     scene.shaft(&low.flipped(), &high, &mut list);
     assert_eq!(list, []);
     scene.shaft_point(Vec3::new(0.0, 0.0, 2.5), &high, &mut list);
     assert_eq!(list, []);
+}
+
+#[test]
+fn a_screen_that_touches_is_not_listed_and_one_that_reaches_in_is() {
+    let mut list = Vec::new();
+    for k in 0..50 {
+        let turn = 0.1 * f64::from(k);
+        let (low, high) = (square(0.0, 0.0, 1.0, turn), square(0.0, 2.0, 1.0, turn).flipped());
+        for (reach, listed) in [(-1e-7, false), (0.0, false), (1e-7, true), (1e-5, true)] {
+            let scene = Occluders::new(&[square(1.5 - reach, 1.0, 0.5, turn)]).unwrap();
+            scene.shaft(&low, &high, &mut list);
+            assert_eq!(list.len(), usize::from(listed), "reaches {reach} into the shaft, turned by {turn}");
+        }
+    }
 }
 
 #[test]
