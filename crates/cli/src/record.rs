@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use fredholm_linop::{Report, StopReason, Work};
 use fredholm_coupling::MethodCounts;
+use fredholm_linop::{Report, StopReason, Work};
 use fredholm_report::{Closure, Counts, Energy, FormFactorError, History, MeshError, RunRecord};
 use serde_json::Value;
 

@@ -1,8 +1,8 @@
 //! The computation itself: assembly, solution, and what is known of their errors.
 
 use fredholm_coupling::{
-    Assembled, CouplingError, Energy, Means, MeshError, MethodCounts, Radiosity, assemble, exposed_shares, extents,
-    reciprocity,
+    Assembled, CouplingError, Energy, Means, MeshError, MethodCounts, Radiosity, assemble, exposed_shares,
+    extents, reciprocity,
 };
 use fredholm_linop::{MultiVector, PackedSymmetric, Report, SecondKind, SolveError, StopReason, Storage};
 use fredholm_mesh::Patch;

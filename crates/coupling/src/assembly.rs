@@ -70,7 +70,10 @@ pub struct Assembled<S> {
 ///
 /// # Errors
 /// No memory, or stopped by the watch: then there is no partial result.
-pub fn assemble<S: Storage>(integrator: &PairIntegrator, watch: &Watch) -> Result<Assembled<S>, CouplingError> {
+pub fn assemble<S: Storage>(
+    integrator: &PairIntegrator,
+    watch: &Watch,
+) -> Result<Assembled<S>, CouplingError> {
     let n = integrator.len();
     let mut packed = zeros::<S>(n)?;
     let progress = Progress::new(pairs(n), watch);
@@ -78,7 +81,9 @@ pub fn assemble<S: Storage>(integrator: &PairIntegrator, watch: &Watch) -> Resul
     let reports: Vec<Report> = runs.into_par_iter().map(|run| run.fill(integrator, &progress)).collect();
     progress.finish()?;
     let mut total = Report::new(n);
-    reports.iter().for_each(|report| total.merge(report));
+    for report in &reports {
+        total.merge(report);
+    }
     let matrix = PackedSymmetric::new(n, packed)?;
     Ok(Assembled { matrix, error: total.error, largest: total.largest, methods: total.methods })
 }

@@ -21,13 +21,17 @@ pub enum CouplingError {
         limit: u64,
     },
     /// The operating system refused the memory.
-    #[error("the system has no {needed} bytes for the form-factor matrix; use fewer elements or storage = \"f32\"")]
+    #[error(
+        "the system has no {needed} bytes for the form-factor matrix; use fewer elements or storage = \"f32\""
+    )]
     Allocation {
         /// Bytes asked for.
         needed: u64,
     },
     /// The caller asked to stop.
-    #[error("stopped during the assembly of the form factors, after {done} of {total} pairs; there is no partial result")]
+    #[error(
+        "stopped during the assembly of the form factors, after {done} of {total} pairs; there is no partial result"
+    )]
     Interrupted {
         /// Pairs computed.
         done: u64,

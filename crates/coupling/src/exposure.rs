@@ -37,7 +37,8 @@ pub fn extents(patches: &[&Patch], shares: &[f64], rows: &[f64]) -> Vec<Extent> 
 fn share(patch: &Patch, patches: &[&Patch], lit: &Occluders) -> f64 {
     let directions = bundle(patch);
     let on_grid = |n: usize| {
-        let exposed = grid(patch, n).filter(|&p| directions.iter().any(|&d| is_open(p, d, patches, lit))).count();
+        let exposed =
+            grid(patch, n).filter(|&p| directions.iter().any(|&d| is_open(p, d, patches, lit))).count();
         exposed as f64 / (n * n) as f64
     };
     let first = on_grid(GRIDS[0]);
@@ -46,7 +47,8 @@ fn share(patch: &Patch, patches: &[&Patch], lit: &Occluders) -> f64 {
 
 /// Whether a ray meets a lit side, or nothing.
 fn is_open(p: Vec3, direction: Vec3, patches: &[&Patch], lit: &Occluders) -> bool {
-    lit.closest(p, direction, f64::INFINITY).is_none_or(|hit| patches[hit.patch].normal().dot(direction) < 0.0)
+    lit.closest(p, direction, f64::INFINITY)
+        .is_none_or(|hit| patches[hit.patch].normal().dot(direction) < 0.0)
 }
 
 /// The normal and rings of directions about it.

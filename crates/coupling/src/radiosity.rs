@@ -61,7 +61,10 @@ impl Radiosity {
         let n = elements.len();
         let fits = reflectance.dim() == n && exitance.dim() == n && reflectance.lanes() == exitance.lanes();
         if !fits {
-            return Err(CouplingError::Dimension { elements: n, found: reflectance.dim().min(exitance.dim()) });
+            return Err(CouplingError::Dimension {
+                elements: n,
+                found: reflectance.dim().min(exitance.dim()),
+            });
         }
         Ok(Self { elements, reflectance, exitance })
     }

@@ -18,7 +18,8 @@ pub fn reciprocity(integrator: &PairIntegrator) -> Option<f64> {
     let n = integrator.len() as f64;
     let pair = |k: u64| STEPS.map(|step| ((k as f64 * step).fract() * n) as usize);
     let mut defect = |[i, j]: [usize; 2]| {
-        let (there, back) = (integrator.exchange_from(i, j, &mut work), integrator.exchange_from(j, i, &mut work));
+        let (there, back) =
+            (integrator.exchange_from(i, j, &mut work), integrator.exchange_from(j, i, &mut work));
         let occluded = there.method == Method::Clipped;
         occluded.then(|| (there.value - back.value).abs() / integrator.smaller_area(i, j))
     };

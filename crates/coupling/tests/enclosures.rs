@@ -1,5 +1,8 @@
 //! Whole enclosures: rows sum to 1, whatever the scale and place.
 
+// A test that cannot run should panic, in its helpers too.
+#![allow(clippy::unwrap_used)]
+
 mod common;
 
 use common::{patch, v, with_integrator};
@@ -52,7 +55,8 @@ fn cube(origin: Vec3, size: f64, n: usize) -> Mesh {
 
 #[test]
 fn rows_of_an_empty_cube_sum_to_one_at_any_scale_and_place() {
-    for (origin, size) in [(Vec3::ZERO, 1.0), (Vec3::ZERO, 1e-6), (Vec3::ZERO, 1e6), (Vec3::splat(1e3), 1.0)] {
+    for (origin, size) in [(Vec3::ZERO, 1.0), (Vec3::ZERO, 1e-6), (Vec3::ZERO, 1e6), (Vec3::splat(1e3), 1.0)]
+    {
         let (assembled, worst) = solve(&cube(origin, size, 4), 1e-12);
         println!("size {size:e} at {origin}: row sums within {worst:.1e}, {:?}", assembled.methods);
         assert!(worst < 1e-11, "size {size:e}: {worst:e}");
@@ -92,7 +96,9 @@ fn the_number_of_threads_changes_no_bit() {
 fn the_watch_stops_the_assembly() {
     let mesh = cube(Vec3::ZERO, 1.0, 6);
     let stopped = with_integrator(&mesh, 1e-6, |pairs| {
-        assemble::<f64>(pairs, &|done, _| if done > 1000 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+        assemble::<f64>(pairs, &|done, _| {
+            if done > 1000 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        })
     });
     assert!(matches!(stopped, Err(fredholm_coupling::CouplingError::Interrupted { .. })));
 }

@@ -3,8 +3,6 @@
 //! A solver is one file here and one line in [`solvers`]. All report the same residual ‖b − A x‖₂/‖b‖₂ per lane as the
 //! iterative ones, see [`fredholm_linop::Monitor`].
 
-#![allow(clippy::doc_markdown, reason = "equations are written as text")]
-
 mod dense_lu;
 mod factorisation;
 

@@ -2,7 +2,7 @@
 //!
 //! x is chosen, and b = A x is formed by plain loops over a full matrix.
 
-#![allow(clippy::doc_markdown, clippy::float_cmp, clippy::needless_range_loop, clippy::unwrap_used)]
+#![allow(clippy::float_cmp, clippy::needless_range_loop, clippy::unwrap_used)]
 
 use fredholm_linop::{
     Dense, LinearOperator, LinopError, MultiVector, Observer, PackedSymmetric, Progress, Quiet, Report,

@@ -21,8 +21,6 @@
 //! # Ok::<(), fredholm_linop::LinopError>(())
 //! ```
 
-#![allow(clippy::doc_markdown, reason = "equations are written as text")]
-
 mod dense;
 mod error;
 

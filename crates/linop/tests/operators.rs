@@ -1,6 +1,6 @@
 //! Every operator, against plain loops over a full matrix.
 
-#![allow(clippy::doc_markdown, clippy::needless_range_loop, clippy::unwrap_used)]
+#![allow(clippy::needless_range_loop, clippy::unwrap_used)]
 
 mod common;
 

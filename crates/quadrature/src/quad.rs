@@ -12,9 +12,7 @@ use crate::{PlanePoint, gauss_legendre};
 pub fn tensor_quad(n: usize) -> Vec<PlanePoint> {
     let rule = gauss_legendre(n);
     let nodes = || rule.points.iter().zip(&rule.weights);
-    nodes()
-        .flat_map(|(&u, &a)| nodes().map(move |(&v, &b)| PlanePoint { u, v, weight: a * b }))
-        .collect()
+    nodes().flat_map(|(&u, &a)| nodes().map(move |(&v, &b)| PlanePoint { u, v, weight: a * b })).collect()
 }
 
 #[cfg(test)]

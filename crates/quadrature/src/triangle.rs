@@ -15,7 +15,8 @@ use crate::{PlanePoint, gauss_legendre};
 pub fn collapsed_triangle(n: usize) -> Vec<PlanePoint> {
     let rule = gauss_legendre(n);
     let nodes = || rule.points.iter().zip(&rule.weights);
-    let point = |s: f64, a: f64, t: f64, b: f64| PlanePoint { u: s, v: (1.0 - s) * t, weight: a * b * (1.0 - s) };
+    let point =
+        |s: f64, a: f64, t: f64, b: f64| PlanePoint { u: s, v: (1.0 - s) * t, weight: a * b * (1.0 - s) };
     nodes().flat_map(|(&s, &a)| nodes().map(move |(&t, &b)| point(s, a, t, b))).collect()
 }
 

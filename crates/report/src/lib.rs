@@ -55,7 +55,8 @@ pub use npz::write_npz;
 pub use outputs::{FILES, View, write_all};
 pub use picture::{Picture, render};
 pub use run::{
-    Closure, Counts, Energy, FORMAT, FormFactorError, History, MeshError, RunRecord, Timing, read_run, write_run,
+    Closure, Counts, Energy, FORMAT, FormFactorError, History, MeshError, RunRecord, Timing, read_run,
+    write_run,
 };
 pub use surfaces_csv::write_surfaces_csv;
 pub use tone::Exposure;

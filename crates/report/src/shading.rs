@@ -21,7 +21,7 @@ impl<'a> Shading<'a> {
         let leaves: Vec<Rgb> = (0..mesh.len()).map(colour).collect();
         let welded = mesh.welded(SMOOTH);
         let vertices = vertex_colours(mesh, &welded, &leaves, |leaf| field.exposed(leaf));
-        Self { field, vertices, welded }
+        Self { field, welded, vertices }
     }
 
     /// Linear sRGB of the radiosity at a point of a leaf, W/m².

@@ -203,7 +203,8 @@ fn behind_few(a: Side, b: Side, flat: f64, tolerance: f64, work: &mut Workspace)
 
 fn unoccluded(a: Side, b: Side, flat: f64, tolerance: f64, work: &mut Workspace) -> Exchange {
     let whole = clears(a.patch, b.plane, flat) && clears(b.patch, a.plane, flat);
-    if whole && apart(a.patch, b.patch)
+    if whole
+        && apart(a.patch, b.patch)
         && let Some(estimate) = area_gauss((a.patch, a.points), (b.patch, b.points), tolerance)
     {
         return Exchange::new(Method::AreaGauss, estimate);

@@ -68,7 +68,13 @@ pub(crate) struct Shadow {
 
 impl Shadow {
     /// Form factor from the point `p` with normal `n` to what it sees of `target` behind `occluders`.
-    pub(crate) fn visible_factor(&mut self, p: Vec3, n: Vec3, target: &[Vec3], occluders: &PolygonList) -> f64 {
+    pub(crate) fn visible_factor(
+        &mut self,
+        p: Vec3,
+        n: Vec3,
+        target: &[Vec3],
+        occluders: &PolygonList,
+    ) -> f64 {
         self.visible.clear();
         self.visible.push_with(|corners| corners.extend(target.iter().map(|&x| x - p)));
         let view = self.visible.iter().next().and_then(Cone::of);
@@ -194,7 +200,9 @@ mod tests {
 
     fn square(centre: Vec3, half: f64) -> Vec<Vec3> {
         // Counter-clockwise seen from below.
-        [(-1., -1.), (-1., 1.), (1., 1.), (1., -1.)].map(|(x, y)| centre + Vec3::new(x, y, 0.0) * half).to_vec()
+        [(-1., -1.), (-1., 1.), (1., 1.), (1., -1.)]
+            .map(|(x, y)| centre + Vec3::new(x, y, 0.0) * half)
+            .to_vec()
     }
 
     fn list(polygons: &[Vec<Vec3>]) -> PolygonList {
