@@ -131,7 +131,7 @@ mod tests {
         let b = [v(0.3, 1., 1.), v(1.2, 0.9, 1.), v(1., 0., 1.), v(0., 0., 1.)];
         let turn = glam_rotation();
         let plain = contour_integral(&a, &b, 1e-14);
-        let turned = contour_integral(&a.map(|x| turn(x)), &b.map(|x| turn(x)), 1e-14);
+        let turned = contour_integral(&a.map(&turn), &b.map(&turn), 1e-14);
         assert!((plain.value - turned.value).abs() < 1e-13);
     }
 
@@ -140,8 +140,6 @@ mod tests {
         move |p| x * p.x + y * p.y + Vec3::Z * p.z + v(3.0, -2.0, 5.0)
     }
 
-    /// Two triangles folded about a shared edge: with the shared edge of a right-angled isosceles pair opened by 90°,
-    /// the answer is compared with adaptive point-to-polygon integration done in the pair tests; here both orders agree.
     #[test]
     fn skew_touching_edges_converge_and_are_reciprocal() {
         let a = [v(0., 0., 0.), v(1., 0., 0.), v(0.3, 0.8, 0.)];

@@ -207,7 +207,9 @@ mod tests {
 
     fn list(polygons: &[Vec<Vec3>]) -> PolygonList {
         let mut list = PolygonList::default();
-        polygons.iter().for_each(|p| list.push_with(|corners| corners.extend_from_slice(p)));
+        for polygon in polygons {
+            list.push_with(|corners| corners.extend_from_slice(polygon));
+        }
         list
     }
 
@@ -231,7 +233,7 @@ mod tests {
     fn overlapping_occluders_are_not_counted_twice() {
         let target = square(Vec3::Z, 1.0);
         let occluder = square(Vec3::Z * 0.5, 0.25);
-        let once = seen(&target, &[occluder.clone()]);
+        let once = seen(&target, std::slice::from_ref(&occluder));
         let behind = square(Vec3::Z * 0.7, 0.3);
         assert!((seen(&target, &[occluder.clone(), occluder.clone(), behind]) - once).abs() < 1e-15);
     }
