@@ -29,10 +29,23 @@ fn curves(bench: &Bench, folder: &str) -> Vec<String> {
     curves[..2].to_vec()
 }
 
+/// A room with a block, a two-sided lamp and a pyramid from a mesh file.
+fn furnished() -> Bench {
+    let bench = Bench::new(
+        &(room(8)
+            + "[[surface]]\nname = \"pyramid\"\nmaterial = \"wall\"\n\
+               obj = { file = \"pyramid.obj\", scale = 0.4, translate = [1.4, 1.4, 0.2] }\ndivide = [2, 2]\n"),
+    );
+    let pyramid = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 1\n\
+                   f 4 3 2 1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
+    fs::write(bench.path("pyramid.obj"), pyramid).unwrap();
+    bench
+}
+
 #[test]
 fn every_file_is_the_same_with_1_2_and_4_threads() {
     for solver in ["gauss-seidel", "southwell", "lu"] {
-        let bench = Bench::new(&room(8));
+        let bench = furnished();
         for threads in ["1", "2", "4"] {
             bench.solve(&["--solver", solver, "--threads", threads, "-o", threads]);
             for name in SAME {
@@ -40,6 +53,9 @@ fn every_file_is_the_same_with_1_2_and_4_threads() {
                     ["1", threads].map(|folder| fs::read(bench.path(folder).join(name)).unwrap());
                 assert!(one == many, "{name} differs with {threads} threads and {solver}");
             }
+            // Lines of sight that are free, cut and blocked have all been met.
+            let pairs = &bench.record(threads)["pairs"];
+            assert!(["area_gauss", "clipped", "hidden"].iter().all(|kind| pairs[kind].as_u64() > Some(0)));
             assert_eq!(timeless(&bench, "1"), timeless(&bench, threads));
             assert_eq!(curves(&bench, "1"), curves(&bench, threads));
         }

@@ -26,9 +26,13 @@ fn usage_is_2() {
 
 #[test]
 fn bad_input_is_2() {
-    let bench = Bench::new("[solve]\nsolver = \"magic\"\n".to_owned().as_str());
-    fs::write(bench.path("scene.toml"), furnace(1, &[0.5]) + "[solve]\nsolver = \"magic\"\n").unwrap();
-    refused(&bench, &["solve", "scene.toml"], 2, "gauss-seidel");
+    let bench = Bench::new(&format!("{}[solve]\nsolver = \"southwel\"\n", furnace(1, &[0.5])));
+    let line = fs::read_to_string(bench.path("scene.toml")).unwrap().lines().count();
+    let message = format!("scene.toml:{line}:10: there is no solver `southwel`");
+    for verb in ["solve", "check"] {
+        refused(&bench, &[verb, "scene.toml"], 2, &message);
+        refused(&bench, &[verb, "scene.toml"], 2, "did you mean `southwell`?");
+    }
     fs::write(bench.path("notes.json"), "{}").unwrap();
     refused(&bench, &["info", "notes.json"], 2, "is not a run record");
     refused(&bench, &["info", "scene.toml"], 2, "none of the files of a result");
@@ -41,6 +45,7 @@ fn not_converged_is_3_and_writes_the_results() {
     assert_eq!(run.code, 3, "{}", run.stderr);
     let record = bench.record("out/scene");
     assert_eq!(record["partial"], false);
+    assert!(record["warnings"][0].as_str().unwrap().contains("tolerance was not met"));
     assert!(record["history"]["residual"][0].as_array().unwrap().last().unwrap().as_f64().unwrap() > 1e-10);
     assert!(bench.path("out/scene/field.csv").is_file());
 }
@@ -60,6 +65,8 @@ fn files_are_5() {
     refused(&bench, &["check", "."], 5, "cannot");
     refused(&bench, &["solve", "scene.toml", "-o", "scene.toml"], 5, "it is a file");
     refused(&bench, &["solve", "scene.toml", "-o", "scene.toml/below"], 5, "-o DIR");
+    #[cfg(unix)]
+    refused(&bench, &["solve", "scene.toml", "-o", "/dev/null"], 5, "it is a file");
     refused(&bench, &["info", "missing"], 5, "missing");
     fs::create_dir(bench.path("empty")).unwrap();
     refused(&bench, &["info", "empty"], 5, "no complete result");
@@ -69,7 +76,24 @@ fn files_are_5() {
 fn errors_are_json_where_asked_for() {
     let bench = Bench::new("titel = 3\n");
     let run = bench.run(&["solve", "scene.toml", "--log", "json"]);
-    let last: serde_json::Value = serde_json::from_str(run.stderr.lines().last().unwrap()).unwrap();
+    let lines: Vec<serde_json::Value> =
+        run.stderr.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert!(lines.iter().all(|line| line["event"].is_string() && line["time"].is_number()));
+    let last = lines.last().unwrap();
     assert_eq!((run.code, &last["event"], &last["code"]), (2, &"error".into(), &2.into()));
     assert!(last["message"].as_str().unwrap().starts_with("scene.toml:1:1: "));
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_full_standard_error_changes_nothing_but_the_silence() {
+    let bench = Bench::new(&furnace(1, &[0.5]));
+    for (arguments, code) in [(["check", "scene.toml"], 0), (["check", "missing.toml"], 5)] {
+        for log in ["plain", "json"] {
+            let full = fs::File::options().write(true).open("/dev/full").unwrap();
+            let mut command = std::process::Command::new(crate::support::program());
+            command.current_dir(bench.folder.path()).args(arguments).args(["--log", log]).stderr(full);
+            assert_eq!(command.output().unwrap().status.code(), Some(code), "{arguments:?} {log}");
+        }
+    }
 }

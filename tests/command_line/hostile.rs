@@ -46,9 +46,29 @@ fn every_hostile_scene_ends_with_a_message() {
         assert_eq!(run.stdout, "", "{scene}");
         let (_, message) =
             run.stderr.split_once("error: ").unwrap_or_else(|| panic!("{scene}: {}", run.stderr));
+        assert!(is_placed(message), "{scene}: {message}");
         writeln!(messages, "── {scene}, exit code {}\n{message}", run.code).unwrap();
     }
     insta::assert_snapshot!(messages);
+}
+
+/// Whether a message begins with a file, and a line and column or a byte in it.
+fn is_placed(message: &str) -> bool {
+    let Some((file, place)) = message.split_once(':') else { return false };
+    let number = |text: &str| text.parse::<u64>().is_ok();
+    let mut parts = place.split(':');
+    let (first, second) = (parts.next().unwrap_or_default(), parts.next().unwrap_or_default());
+    let known =
+        ["toml", "obj", "mtl"].iter().any(|ending| Path::new(file).extension() == Some(ending.as_ref()));
+    known && (number(first) && number(second) || first.strip_prefix(" byte ").is_some_and(number))
+}
+
+#[test]
+fn places_are_told_from_other_text() {
+    assert!(is_placed("a.toml:3:14: wrong") && is_placed("b.obj: byte 7: wrong"));
+    for text in ["a.toml: wrong", "a.toml:3: wrong", "wrong: 3:4", "a.toml:x:4: wrong", ""] {
+        assert!(!is_placed(text), "{text}");
+    }
 }
 
 #[test]

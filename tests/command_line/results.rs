@@ -35,7 +35,39 @@ fn the_record_is_complete() {
     assert_eq!(record["scene_sha256"].as_str().unwrap().len(), 64);
     let stages: Vec<_> =
         record["timings"].as_array().unwrap().iter().map(|t| t["stage"].as_str().unwrap()).collect();
-    assert_eq!(stages, ["scene", "mesh", "visibility", "assembly", "exposure", "solution", "mesh error"]);
+    assert_eq!(stages, ["scene", "mesh", "visibility", "assembly", "exposure", "solution", "errors"]);
+}
+
+#[test]
+fn paths_may_hold_spaces_and_any_letters() {
+    let bench = Bench::new("");
+    let folder = bench.path("été à Bâle/модели");
+    fs::create_dir_all(&folder).unwrap();
+    let scene = "[materials.wall]\nreflectance = 0.5\nexitance = 1.0\n[[surface]]\nname = \"Wände, \\\"alle\\\"\"\n\
+                 material = \"wall\"\nobj = { file = \"mein haus.obj\" }\ntwo_sided = true\n";
+    let walls = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n";
+    fs::write(folder.join("ein raum.toml"), scene).unwrap();
+    fs::write(folder.join("mein haus.obj"), walls).unwrap();
+    let run = bench.run(&["solve", "été à Bâle/модели/ein raum.toml"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let info = bench.run(&["info", "out/ein raum/field.vtu"]);
+    assert!(info.stdout.contains("été à Bâle/модели/ein raum.toml"), "{}", info.stdout);
+    let surfaces = fs::read_to_string(bench.path("out/ein raum/surfaces.csv")).unwrap();
+    assert!(surfaces.contains("\"Wände, \"\"alle\"\"\""), "{surfaces}");
+}
+
+#[test]
+fn a_second_run_replaces_the_first() {
+    let bench = Bench::new(&furnace(1, &[0.5]));
+    bench.solve(&[]);
+    fs::write(bench.path("out/scene/notes.txt"), "mine").unwrap();
+    fs::write(bench.path("scene.toml"), furnace(1, &[0.75])).unwrap();
+    bench.solve(&[]);
+    let radiosity = crate::support::column(&bench.path("out/scene/field.csv"), "radiosity_b0");
+    assert!(radiosity.iter().all(|b| (b - 4.0).abs() < 1e-6), "{radiosity:?}");
+    assert_eq!(fs::read(bench.path("out/scene/notes.txt")).unwrap(), b"mine");
+    let files = fs::read_dir(bench.path("out/scene")).unwrap().count();
+    assert_eq!(files, fredholm::report::FILES.len() + 1);
 }
 
 #[test]

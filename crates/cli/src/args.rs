@@ -21,7 +21,7 @@ Exit codes:
   2    bad input or usage
   3    not converged; the results are written all the same
   4    resources refused, such as memory
-  5    a file could not be read or written
+  5    a file could not be read or written, those that the scene names included
   130  interrupted";
 
 const SOLVE_EXAMPLES: &str = "\

@@ -13,7 +13,11 @@ use std::error::Error;
 use std::fmt::{self, Write};
 use std::process::ExitCode;
 
+use serde_json::json;
+
 use crate::args::LogFormat;
+use crate::console::json;
+use crate::output::tell;
 
 /// What kind of end a run comes to; the number is the exit code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,11 +57,10 @@ impl Failure {
     /// Shows the failure on standard error.
     pub(crate) fn present(&self, log: LogFormat) {
         match log {
-            LogFormat::Plain => eprintln!("error: {self}"),
+            LogFormat::Plain => tell(format_args!("error: {self}")),
             LogFormat::Json => {
                 let code = self.ending.code();
-                let line = serde_json::json!({ "event": "error", "code": code, "message": self.to_string() });
-                eprintln!("{line}");
+                json::line(json!({ "event": "error", "code": code, "message": self.to_string() }));
             }
         }
     }

@@ -26,7 +26,8 @@ pub(crate) fn probe(folder: &Path) -> Result<(), Failure> {
 }
 
 fn unusable(folder: &Path, error: &io::Error) -> Failure {
-    let what = if folder.is_file() { "it is a file".to_owned() } else { error.to_string() };
+    let what =
+        if folder.exists() && !folder.is_dir() { "it is a file".to_owned() } else { error.to_string() };
     let text = format!(
         "cannot write results to {}: {what}\n  help: choose another folder with -o DIR",
         folder.display()

@@ -12,6 +12,7 @@ use std::time::Duration;
 
 use crate::args::LogFormat;
 use crate::failure::{Ending, Failure};
+use crate::output::tell;
 
 /// Time from the signal to the end where nothing can be saved.
 const PATIENCE: Duration = Duration::from_millis(800);
@@ -53,9 +54,11 @@ impl Interrupt {
         if self.requested() && *self.phase() == Phase::Preparing { Err(nothing_saved()) } else { Ok(()) }
     }
 
-    /// Says what the run is doing from now on.
-    pub(crate) fn enter(&self, phase: Phase) {
-        *self.phase() = phase;
+    /// From now on there is something to save. Fails where a signal has come before.
+    pub(crate) fn begin_saving(&self) -> Result<(), Failure> {
+        self.check()?;
+        *self.phase() = Phase::Saving;
+        Ok(())
     }
 
     fn phase(&self) -> MutexGuard<'_, Phase> {
@@ -77,7 +80,7 @@ impl Interrupt {
         if *phase == Phase::Preparing {
             if self.log == LogFormat::Plain && io::stderr().is_terminal() {
                 // Below the progress bar.
-                eprintln!();
+                tell("");
             }
             nothing_saved().present(self.log);
             process::exit(i32::from(Ending::Interrupted.code()));
@@ -88,4 +91,21 @@ impl Interrupt {
 /// The end of a run that was stopped before it had anything to save.
 pub(crate) fn nothing_saved() -> Failure {
     Failure::new(Ending::Interrupted, "interrupted; there is no partial result, nothing was written")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_comes_after_the_signal_is_not_saved() {
+        for (signalled, saving) in [(false, false), (true, false), (false, true), (true, true)] {
+            let phase = if saving { Phase::Saving } else { Phase::Preparing };
+            let (requested, phase) = (AtomicBool::new(signalled), Mutex::new(phase));
+            let interrupt = Interrupt { requested, phase, log: LogFormat::Plain };
+            let refused = interrupt.begin_saving().is_err();
+            assert_eq!(refused, signalled && !saving);
+            assert_eq!(*interrupt.phase() == Phase::Saving, !refused);
+        }
+    }
 }

@@ -1,5 +1,6 @@
-//! Standard output: summaries and what a verb was asked for, nothing else.
+//! Standard output: summaries and what a verb was asked for, nothing else. Standard error: everything else.
 
+use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
 
 use crate::failure::{Ending, Failure};
@@ -12,5 +13,27 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
             Err(Failure::new(Ending::Files, format!("cannot write to standard output: {error}")))
         }
         _ => Ok(()),
+    }
+}
+
+/// Text without characters that could command a terminal: names in files can hold any.
+pub(crate) fn visible(text: &str) -> String {
+    let shown = |c: char| if c.is_control() && c != '\n' { char::REPLACEMENT_CHARACTER } else { c };
+    text.chars().map(shown).collect()
+}
+
+/// Writes a line to standard error. Where that fails, nobody listens, and there is nobody to tell.
+pub(crate) fn tell(line: impl Display) {
+    let line = visible(&format!("{line}\n"));
+    let _ = io::stderr().lock().write_all(line.as_bytes());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_commands_the_terminal() {
+        assert_eq!(visible("é 100 %\n\u{1b}[31m\u{9b}2J\r"), "é 100 %\n\u{fffd}[31m\u{fffd}2J\u{fffd}");
     }
 }

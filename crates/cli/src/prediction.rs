@@ -62,7 +62,8 @@ impl Prediction {
             format!("this scene needs {}, but {limit} are allowed: {self}\n  help: ", self.total());
         // Writing to a string cannot fail.
         let _ = write!(text, "use fewer elements (elements_per_face, divide, largest_edge in the scene)");
-        if options.storage == Precision::F64 {
+        let half = Bytes(self.total().0 - self.matrix.0 / 2);
+        if options.storage == Precision::F64 && half <= limit {
             text.push_str(", --storage f32");
         }
         if self.solver > self.matrix {
@@ -98,6 +99,24 @@ mod tests {
     fn the_triangle_of_the_matrix_is_counted_in_its_format() {
         assert_eq!(predict(10_000, Precision::F64, "gauss-seidel").matrix, Bytes(50_005_000 * 8));
         assert_eq!(predict(10_000, Precision::F32, "gauss-seidel").matrix, Bytes(50_005_000 * 4));
+    }
+
+    #[test]
+    fn single_precision_is_advised_where_it_is_enough() {
+        let advice = |limit: u64| {
+            let options = ProblemOptions {
+                solver: "gauss-seidel".into(),
+                form_factor_tolerance: 1e-3,
+                storage: Precision::F64,
+                threads: 1,
+                memory_limit_bytes: Some(limit),
+            };
+            predict(10_000, Precision::F64, "gauss-seidel").admit(&options).err().map(|e| e.to_string())
+        };
+        // 400 MB of matrix, 45 MB of everything else in double precision.
+        assert!(advice(300_000_000).unwrap().contains("--storage f32"));
+        assert!(!advice(100_000_000).unwrap().contains("--storage f32"));
+        assert_eq!(advice(1_000_000_000), None);
     }
 
     #[test]

@@ -29,14 +29,15 @@ impl Problem {
     pub(crate) fn load(args: &ProblemArgs, stages: &mut Stages) -> Result<Self, Failure> {
         let scene = stages.run("scene", || Scene::load(&args.scene).map_err(scene_failure))?;
         let options = ProblemOptions::new(args, scene.solve());
-        let solver = registry::find(&options.solver)?;
+        let solver = registry::find(&options.solver)
+            .ok_or_else(|| scene_failure(scene.unknown_solver(&registry::names())))?;
         let elements = usize::try_from(scene.predicted_elements()).unwrap_or(usize::MAX);
         predict(&scene, &options, &solver, elements, 0).admit(&options)?;
         let mesh = stages.run("mesh", || scene.mesh().map_err(scene_failure))?;
         let prediction = predict(&scene, &options, &solver, mesh.len(), coarse(&mesh));
         prediction.admit(&options)?;
         let warnings = check(&scene, &mesh, stages)?;
-        let occluders = stages.run("visibility", || prepare(mesh.occluders()))?;
+        let occluders = stages.run("visibility", || occluders(&scene, &mesh))?;
         Ok(Self { scene, options, solver, mesh, prediction, warnings, occluders })
     }
 
@@ -61,6 +62,11 @@ impl Problem {
 /// Prepares patches for queries of visibility.
 pub(crate) fn prepare(patches: &[Patch]) -> Result<Occluders, Failure> {
     Occluders::new(patches).map_err(|error| Failure::new(Ending::Input, error))
+}
+
+fn occluders(scene: &Scene, mesh: &Mesh) -> Result<Occluders, Failure> {
+    let named = |error| Failure::new(Ending::Input, format!("{}: {error}", scene.path().display()));
+    Occluders::new(mesh.occluders()).map_err(named)
 }
 
 /// Patches of the coarser problem: the faces, where each is computed on 2 × 2 elements or more.

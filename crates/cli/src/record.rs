@@ -13,6 +13,9 @@ use crate::problem::Problem;
 use crate::solution::{Solution, reason};
 use crate::stages::Stages;
 
+/// Estimated error of a row of form factors that may be rounding alone.
+const ROUNDING: f64 = 1e-11;
+
 /// Everything that is worth knowing of a run.
 pub(crate) fn record(
     problem: &Problem,
@@ -41,10 +44,38 @@ pub(crate) fn record(
         mesh_error: solution.mesh_error.as_ref().map(mesh_error),
         reciprocity: solution.reciprocity,
         energy: energy(problem, solution),
-        warnings: problem.warnings.clone(),
+        warnings: problem.warnings.iter().cloned().chain(remarks(options, solution)).collect(),
         partial: report.reason == StopReason::Interrupted,
         ..RunRecord::default()
     }
+}
+
+/// What the user should know of the solution.
+pub(crate) fn remarks(options: &Options, solution: &Solution) -> impl Iterator<Item = String> {
+    [unfinished(solution.report.reason), inexact(options, solution)].into_iter().flatten()
+}
+
+fn unfinished(reason: StopReason) -> Option<String> {
+    let text = match reason {
+        StopReason::Converged => return None,
+        StopReason::Interrupted => "interrupted: the results are those of the last iterate, marked partial",
+        StopReason::IterationLimit | StopReason::Diverged => {
+            "the tolerance was not met; allow more with --max-iterations or --tolerance, or choose another --solver"
+        }
+    };
+    Some(text.to_owned())
+}
+
+/// Whether the form factors came out less exact than asked for.
+fn inexact(options: &Options, solution: &Solution) -> Option<String> {
+    let asked = options.problem.form_factor_tolerance;
+    let error = solution.row_error.iter().copied().fold(0.0, f64::max);
+    (error > asked.max(ROUNDING)).then(|| {
+        format!(
+            "the estimated error of a row of form factors is {error:.1e}, above the {asked:.1e} asked for; \
+             cut the surfaces more finely where they almost touch"
+        )
+    })
 }
 
 fn counts(problem: &Problem) -> Counts {

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use fredholm_coupling::form_factor::{PairIntegrator, Workspace};
 
 use crate::problem::Problem;
+use crate::threads;
 
 /// Pairs sampled at most, and the time they may take.
 const PAIRS: u64 = 20_000;
@@ -16,7 +17,9 @@ const STEPS: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
 pub(crate) fn assembly_seconds(problem: &Problem) -> f64 {
     let integrator = problem.integrator();
     let pairs = integrator.len() as f64 * (integrator.len() as f64 - 1.0) / 2.0;
-    mean_seconds(&integrator) * pairs / problem.options.threads as f64
+    // More threads than cores take turns.
+    let at_once = problem.options.threads.min(threads::default_count());
+    mean_seconds(&integrator) * pairs / at_once as f64
 }
 
 fn mean_seconds(integrator: &PairIntegrator) -> f64 {

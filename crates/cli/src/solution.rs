@@ -8,7 +8,7 @@ use fredholm_linop::{MultiVector, PackedSymmetric, Report, SecondKind, SolveErro
 use fredholm_mesh::Patch;
 
 use crate::failure::{Ending, Failure};
-use crate::interrupt::{Phase, nothing_saved};
+use crate::interrupt::nothing_saved;
 use crate::mesh_error;
 use crate::options::Options;
 use crate::problem::{Problem, prepare};
@@ -49,12 +49,18 @@ pub(crate) fn compute<S: Storage>(
     let assembled = stages.run("assembly", || form_factors::<S>(problem, watcher))?;
     let radiosity = stages.run("exposure", || system(problem, &assembled.matrix))?;
     if problem.solver.iterative {
-        stages.interrupt.enter(Phase::Saving);
+        stages.interrupt.begin_saving()?;
     }
     let solved = stages.run("solution", || solve(problem, &radiosity, &assembled.matrix, watcher))?;
-    stages.interrupt.check()?;
-    stages.interrupt.enter(Phase::Saving);
+    stages.interrupt.begin_saving()?;
+    worth_saving(&solved.1)?;
     stages.run("errors", || assess(problem, &radiosity, &assembled, solved, watcher))
+}
+
+/// Fails where the run was stopped before the first iterate.
+fn worth_saving(report: &Report) -> Result<(), Failure> {
+    let iterations = report.history.last().map_or(0, |record| record.iteration);
+    if report.reason == StopReason::Interrupted && iterations == 0 { Err(nothing_saved()) } else { Ok(()) }
 }
 
 fn form_factors<S: Storage>(problem: &Problem, watcher: Watcher) -> Result<Assembled<S>, Failure> {

@@ -4,10 +4,14 @@ use std::fmt::Write;
 
 use fredholm_report::{Closure, Counts, Energy, RunRecord, Timing};
 
+use crate::output::visible;
 use crate::size::Bytes;
 
 /// Bands whose energy balance is listed.
 const BANDS: usize = 8;
+
+/// Row sums that differ more from 1 are those of an open scene.
+const OPEN: f64 = 0.01;
 
 /// Lines with a label each.
 #[derive(Debug, Default)]
@@ -16,7 +20,7 @@ pub(crate) struct Lines(String);
 impl Lines {
     /// Adds a line; what has more lines is indented under its label.
     pub(crate) fn add(&mut self, label: &str, text: impl AsRef<str>) {
-        let text = text.as_ref().replace('\n', &format!("\n{:18}", ""));
+        let text = visible(text.as_ref()).replace('\n', &format!("\n{:18}", ""));
         // Writing to a string cannot fail.
         let _ = writeln!(self.0, "  {label:<16}{text}");
     }
@@ -62,8 +66,19 @@ pub(crate) fn provenance(run: &RunRecord, lines: &mut Lines) {
 }
 
 fn counts(counts: &Counts) -> String {
-    let Counts { surfaces, faces, elements, bands, .. } = counts;
-    format!("{elements} elements on {faces} faces of {surfaces} surfaces, {bands} bands")
+    let Counts { surfaces, faces, elements, bands, .. } = *counts;
+    format!("{}, {}", extent(elements, faces, surfaces), number(bands, "band"))
+}
+
+/// How many elements there are, and on what.
+pub(crate) fn extent(elements: u64, faces: u64, surfaces: u64) -> String {
+    let [elements, faces, surfaces] =
+        [(elements, "element"), (faces, "face"), (surfaces, "surface")].map(|(n, thing)| number(n, thing));
+    format!("{elements} on {faces} of {surfaces}")
+}
+
+fn number(count: u64, thing: &str) -> String {
+    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
 }
 
 fn solution(run: &RunRecord) -> String {
@@ -72,7 +87,7 @@ fn solution(run: &RunRecord) -> String {
     let residual = last.fold(0.0, |worst: f64, &r| if r > worst || r.is_nan() { r } else { worst });
     let asked = run.tolerance.map(|t| format!(" (asked: {t:.1e})")).unwrap_or_default();
     let (solver, reason) = (&run.solver, &run.stop_reason);
-    format!("{reason} after {iterations} iterations of {solver}, residual {residual:.1e}{asked}")
+    format!("{reason} after {} of {solver}, residual {residual:.1e}{asked}", number(iterations, "iteration"))
 }
 
 fn closure(closure: &Closure) -> Option<String> {
@@ -82,6 +97,9 @@ fn closure(closure: &Closure) -> Option<String> {
     }
     if let Some(mean) = closure.mean {
         let _ = write!(text, ", {mean:.1e} on average");
+    }
+    if closure.max > Some(OPEN) {
+        text.push_str("; in an open scene, light escapes");
     }
     Some(text)
 }
@@ -113,8 +131,12 @@ fn reciprocity(run: &RunRecord) -> Option<String> {
 /// The error of the mesh in the worst band.
 fn mesh_error(run: &RunRecord) -> String {
     let worst = run.mesh_error.as_ref().and_then(|e| e.relative_l2.iter().copied().reduce(f64::max));
+    let missing = match run.stop_reason.as_str() {
+        "converged" => "give every face at least 4 elements (elements_per_face)",
+        _ => "that takes a solution within the tolerance",
+    };
     worst.map_or_else(
-        || "not estimated: give every face at least 4 elements (elements_per_face)".to_owned(),
+        || format!("not estimated: {missing}"),
         |worst| format!("the irradiance of the faces is right within {worst:.1e} (L2, worst band; estimate)"),
     )
 }

@@ -5,7 +5,7 @@
 pub struct IntervalRule {
     /// Points, increasing.
     pub points: Vec<f64>,
-    /// Weights, summing to 1.
+    /// Weights, summing to 1, or to the integral of the weight function where the rule has one.
     pub weights: Vec<f64>,
     /// Largest degree of the polynomials that are integrated exactly.
     pub degree: usize,

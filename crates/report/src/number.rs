@@ -1,4 +1,5 @@
-//! Decimal text that reads back to the same f64: the shortest digits that do, with an exponent where it saves zeros.
+//! Decimal text that reads back to the same f64: the shortest digits that do, with an exponent where it
+//! saves zeros; zero has no sign.
 
 use std::fmt;
 
@@ -8,6 +9,8 @@ pub(crate) struct Number(pub(crate) f64);
 impl fmt::Display for Number {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self(x) = *self;
+        // A zero's sign means nothing to a reader.
+        let x = if x == 0.0 { 0.0 } else { x };
         if x == 0.0 || (1e-5..1e16).contains(&x.abs()) { write!(f, "{x}") } else { write!(f, "{x:e}") }
     }
 }
@@ -27,7 +30,7 @@ mod tests {
             x *= 1.733e3;
         }
         assert_eq!(Number(0.25).to_string(), "0.25");
-        assert_eq!(Number(-0.0).to_string(), "-0");
+        assert_eq!(Number(-0.0).to_string(), "0");
         assert_eq!(Number(3e-9).to_string(), "3e-9");
     }
 }

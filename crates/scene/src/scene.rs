@@ -10,6 +10,7 @@ use crate::parse::parse;
 use crate::part::Part;
 use crate::resolve::{Camera, Material, Resolved, SolveDefaults, resolve};
 use crate::source::{Source, read};
+use crate::suggest::among;
 
 /// A scene file and the files it names, read and checked. Lengths in metres, exitance in W/m².
 ///
@@ -108,6 +109,15 @@ impl Scene {
     #[must_use]
     pub fn solve(&self) -> &SolveDefaults {
         &self.meaning.solve
+    }
+
+    /// The error of a scene whose solver is none of those in `known`.
+    #[must_use]
+    pub fn unknown_solver(&self, known: &[&str]) -> SceneError {
+        let name = self.solve().solver.as_deref().unwrap_or_default();
+        let span = self.meaning.solver.clone().unwrap_or(0..0);
+        let help = among(name, known.iter().copied(), "solvers");
+        self.source.error(ErrorKind::Name, span, format!("there is no solver `{name}`"), help)
     }
 
     /// SHA-256 of the scene file and the files it names, in hexadecimal.

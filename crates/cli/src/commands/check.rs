@@ -6,7 +6,7 @@ use crate::interrupt::Interrupt;
 use crate::problem::Problem;
 use crate::sample;
 use crate::stages::Stages;
-use crate::summary::Lines;
+use crate::summary::{Lines, extent};
 use crate::{console, output, threads};
 
 /// Validates a scene and predicts what its solution will take.
@@ -44,7 +44,8 @@ fn geometry(problem: &Problem, lines: &mut Lines) {
         lines.add("title", title);
     }
     lines.add("bands", scene.bands().join(", "));
-    let (surfaces, faces, pieces) = (mesh.surfaces().len(), mesh.faces().len(), mesh.occluders().len());
-    lines.add("size", format!("{} elements on {faces} faces of {surfaces} surfaces", mesh.len()));
-    lines.add("occluders", format!("{pieces} flat pieces"));
+    let [elements, faces, surfaces] =
+        [mesh.len(), mesh.faces().len(), mesh.surfaces().len()].map(|count| count as u64);
+    lines.add("size", extent(elements, faces, surfaces));
+    lines.add("occluders", format!("{} flat pieces", mesh.occluders().len()));
 }

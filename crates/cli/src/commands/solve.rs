@@ -10,7 +10,7 @@ use crate::failure::{Ending, Failure};
 use crate::interrupt::Interrupt;
 use crate::options::Options;
 use crate::problem::Problem;
-use crate::record::record;
+use crate::record::{record, remarks};
 use crate::solution::{Solution, compute};
 use crate::stages::Stages;
 use crate::summary::{Lines, quality};
@@ -40,7 +40,7 @@ fn run(args: &SolveArgs, mut stages: Stages) -> Result<Ending, Failure> {
     stages.run("results", || write(&problem, &solution, &record, &folder::of(args)))?;
     // The summary, other than the file, can tell the time of writing.
     let record = RunRecord { timings: stages.timings().to_vec(), ..record };
-    conclude(args, &record, &solution, &stages)?;
+    conclude(args, &record, remarks(&options, &solution), &stages)?;
     Ok(ending(&solution, &stages))
 }
 
@@ -96,18 +96,16 @@ fn report_failure(error: ReportError) -> Failure {
     Failure::new(ending, error)
 }
 
-/// Says what came of it: the summary, and warnings about a solution that is none.
+/// Says what came of it: warnings and the summary.
 fn conclude(
     args: &SolveArgs,
     record: &RunRecord,
-    solution: &Solution,
+    remarks: impl Iterator<Item = String>,
     stages: &Stages,
 ) -> Result<(), Failure> {
-    if record.partial {
-        stages.console.warn("interrupted: the results are those of the last iterate, marked partial");
-    } else if solution.report.reason != StopReason::Converged {
-        let text = "the tolerance was not met; allow more with --max-iterations or --tolerance, or choose another --solver";
-        stages.console.warn(text);
+    remarks.for_each(|remark| stages.console.warn(&remark));
+    if stages.interrupt.requested() && !record.partial {
+        stages.console.warn("interrupted when the solution was there: the results are complete all the same");
     }
     if args.log.quiet { Ok(()) } else { summarise(&folder::of(args), record) }
 }

@@ -6,6 +6,7 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressFinish, ProgressStyle};
 
 use super::Console;
+use crate::output::tell;
 
 /// Steps of the bar.
 const STEPS: u64 = 1000;
@@ -49,11 +50,11 @@ impl Console for Bar {
 
     fn end(&self, stage: &str, seconds: f64) {
         self.with(ProgressBar::finish_and_clear);
-        eprintln!("{stage:>16}  {seconds:8.2} s");
+        tell(format_args!("{stage:>16}  {seconds:8.2} s"));
     }
 
     fn warn(&self, text: &str) {
-        let print = || eprintln!("warning: {text}");
+        let print = || tell(format_args!("warning: {text}"));
         match self.current.lock().unwrap_or_else(PoisonError::into_inner).as_ref() {
             Some(bar) => bar.suspend(print),
             None => print(),

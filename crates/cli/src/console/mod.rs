@@ -1,7 +1,7 @@
 //! How a run shows what it is doing, on standard error.
 
 mod bar;
-mod json;
+pub(crate) mod json;
 mod plain;
 mod quiet;
 

@@ -3,6 +3,7 @@
 use std::sync::{Mutex, PoisonError};
 
 use super::{Console, Tenths};
+use crate::output::tell;
 
 /// Lines of text.
 #[derive(Debug, Default)]
@@ -18,15 +19,15 @@ impl Console for Plain {
     fn advance(&self, share: f64, note: &dyn Fn() -> String) {
         let mut current = self.current.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(tenth) = current.1.completed(share) {
-            eprintln!("{}: {} %, {}", current.0, 10 * tenth, note());
+            tell(format_args!("{}: {} %, {}", current.0, 10 * tenth, note()));
         }
     }
 
     fn end(&self, stage: &str, seconds: f64) {
-        eprintln!("{stage}: done in {seconds:.2} s");
+        tell(format_args!("{stage}: done in {seconds:.2} s"));
     }
 
     fn warn(&self, text: &str) {
-        eprintln!("warning: {text}");
+        tell(format_args!("warning: {text}"));
     }
 }

@@ -11,6 +11,9 @@ use std::sync::LazyLock;
 /// Highest order that is tried; beyond it the contour integral is cheaper.
 pub const MAX_ORDER: usize = 5;
 
+/// Smallest credible ratio of two steps. Next to a much larger patch the steps change sign, and one in twenty is small by accident.
+const CREDIBLE: f64 = 0.06;
+
 static QUAD: LazyLock<Vec<Vec<PlanePoint>>> = LazyLock::new(|| (0..=MAX_ORDER).map(tensor_quad).collect());
 static TRIANGLE: LazyLock<Vec<Vec<PlanePoint>>> =
     LazyLock::new(|| (0..=MAX_ORDER).map(|n| collapsed_triangle(n + usize::from(n > 1))).collect());
@@ -41,7 +44,7 @@ pub(crate) fn place(patch: &Patch, order: usize) -> Vec<(Vec3, f64)> {
 }
 
 /// |∂x/∂u × ∂x/∂v| of the parametrisation, m².
-fn jacobian(patch: &Patch, u: f64, v: f64) -> f64 {
+pub(crate) fn jacobian(patch: &Patch, u: f64, v: f64) -> f64 {
     let [a, b, c] = [0, 1, 2].map(|i| patch.corner(i));
     if patch.sides() == 3 {
         return 2.0 * patch.area();
@@ -77,7 +80,7 @@ pub fn area_gauss(a: (&Patch, &PatchPoints), b: (&Patch, &PatchPoints), toleranc
         let higher = value(order);
         let step = (higher - lower).abs();
         // A step may be small by accident; the one before it bounds how small it can credibly be.
-        let error = step.max(1e-3 * last_step.min(1e300));
+        let error = step.max(CREDIBLE * last_step);
         if error <= tolerance {
             return Some(Estimate { value: higher, error });
         }

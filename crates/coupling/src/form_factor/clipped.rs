@@ -10,6 +10,12 @@ use fredholm_quadrature::Estimate;
 
 /// Splits of a cell into four.
 const DEPTH: u32 = 7;
+/// Stated error over the root of the summed squares of the differences: the error of a kinked integrand scatters like the differences do.
+const SAFETY: f64 = 2.0;
+/// Part of the tolerance at which the difference of the two cheapest values is trusted.
+const EARLY: f64 = 0.5;
+/// Smallest credible ratio of two differences.
+const CREDIBLE: f64 = 0.1;
 
 /// The target, and what stands between it and the source patch.
 pub(crate) struct Occluded<'a> {
@@ -22,32 +28,39 @@ pub(crate) struct Occluded<'a> {
 /// ∫ f dA over the `cells` (flat pieces of the source patch), to an absolute `tolerance` in m².
 pub(crate) fn clipped(cells: &[Patch], scene: &Occluded, tolerance: f64, shadow: &mut Shadow) -> Estimate {
     let area: f64 = cells.iter().map(Patch::area).sum();
-    let mut sum = Estimate::default();
+    let mut sum = Sum::default();
     for cell in cells {
-        // Errors of neighbouring cells are of either sign: they add up like their root mean square.
         let share = tolerance * (cell.area() / area).sqrt();
-        sum = sum + refine(cell, scene, share, DEPTH, shadow);
+        refine(cell, scene, share, DEPTH, shadow, &mut sum);
     }
-    sum
+    Estimate { value: sum.value, error: SAFETY * sum.squares.sqrt() }
 }
 
-fn refine(cell: &Patch, scene: &Occluded, tolerance: f64, depth: u32, shadow: &mut Shadow) -> Estimate {
-    let (coarse, mut fine) = (gauss(cell, 1, scene, shadow), gauss(cell, 2, scene, shadow));
-    let mut error = (fine - coarse).abs();
-    if error > tolerance {
+/// Value, and squared differences: the errors of cells are of either sign and add up like their root mean square.
+#[derive(Default)]
+struct Sum {
+    value: f64,
+    squares: f64,
+}
+
+fn refine(cell: &Patch, scene: &Occluded, tolerance: f64, depth: u32, shadow: &mut Shadow, sum: &mut Sum) {
+    let (coarse, mut value) = (gauss(cell, 1, scene, shadow), gauss(cell, 2, scene, shadow));
+    let mut error = (value - coarse).abs();
+    if error > EARLY * tolerance {
         let finest = gauss(cell, 3, scene, shadow);
-        error = (finest - fine).abs();
-        fine = finest;
+        // Two values may agree by accident; the difference before bounds how well they credibly do.
+        error = (finest - value).abs().max(CREDIBLE * error);
+        value = finest;
     }
     let met = error <= tolerance || depth == 0;
-    let Some(children) = (!met).then(|| cell.split().ok()).flatten() else {
-        return Estimate { value: fine, error };
-    };
-    let mut sum = Estimate::default();
-    for child in children {
-        sum = sum + refine(&child, scene, 0.5 * tolerance, depth - 1, shadow);
+    if let Some(children) = (!met).then(|| cell.split().ok()).flatten() {
+        for child in children {
+            refine(&child, scene, 0.5 * tolerance, depth - 1, shadow, sum);
+        }
+    } else {
+        sum.value += value;
+        sum.squares += error * error;
     }
-    sum
 }
 
 fn gauss(cell: &Patch, order: usize, scene: &Occluded, shadow: &mut Shadow) -> f64 {

@@ -16,7 +16,10 @@ const DEPTH: u32 = 50;
 /// Squared sine of the angle under which edges count as parallel.
 const PARALLEL: f64 = 1e-28;
 /// Rounding of one edge pair, relative to the largest term of its closed form.
-const ROUNDING: f64 = 4.0 * f64::EPSILON;
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+/// Largest term of the closed form for parallel edges, over the product of their lengths, at which it is used. Its four terms grow
+/// with the squared distance and cancel; quadrature of the inner integral does not.
+const CANCELLING: f64 = 100.0;
 
 static RULE: LazyLock<IntervalRule> = LazyLock::new(|| gauss_legendre(POINTS));
 
@@ -41,11 +44,12 @@ struct Edge {
 /// ```
 #[must_use]
 pub fn contour_integral(a: &[Vec3], b: &[Vec3], tolerance: f64) -> Estimate {
-    let unit = unit_of_length(a, b);
+    let Some(&origin) = a.first() else { return Estimate::default() };
+    let unit = unit_of_length(origin, a, b);
     let share = tolerance * TAU / (unit * unit * (a.len() * b.len()).max(1) as f64);
     let mut sum = Estimate::default();
-    for e in edges(a, unit) {
-        for f in edges(b, unit) {
+    for e in edges(a, origin, unit) {
+        for f in edges(b, origin, unit) {
             sum = sum + edge_pair(e, f, share);
         }
     }
@@ -54,47 +58,70 @@ pub fn contour_integral(a: &[Vec3], b: &[Vec3], tolerance: f64) -> Estimate {
 }
 
 /// A typical distance. Lengths are measured in it: a constant added to ln r integrates to 0 round a closed contour, but its rounding does not.
-fn unit_of_length(a: &[Vec3], b: &[Vec3]) -> f64 {
-    let Some(&origin) = a.first() else { return 1.0 };
+fn unit_of_length(origin: Vec3, a: &[Vec3], b: &[Vec3]) -> f64 {
     let far = a.iter().chain(b).map(|x| x.distance(origin)).fold(0.0, f64::max);
     if far > 0.0 { 0.5 * far } else { 1.0 }
 }
 
-fn edges(corners: &[Vec3], unit: f64) -> impl Iterator<Item = Edge> {
+/// The edges seen from `origin`, so that points on them do not carry the rounding of a far place.
+fn edges(corners: &[Vec3], origin: Vec3, unit: f64) -> impl Iterator<Item = Edge> {
     let ends = corners.iter().zip(corners.iter().cycle().skip(1));
     ends.filter_map(move |(&p, &q)| {
         let (side, length) = (q - p, (q - p).length());
-        (length > 0.0).then(|| Edge { start: p / unit, direction: side / length, length: length / unit })
+        (length > 0.0).then(|| Edge {
+            start: (p - origin) / unit,
+            direction: side / length,
+            length: length / unit,
+        })
     })
 }
 
 /// (dₑ·d_f) ∫∫ ln r ds dt.
 fn edge_pair(e: Edge, f: Edge, tolerance: f64) -> Estimate {
     let cosine = e.direction.dot(f.direction);
-    if e.direction.cross(f.direction).length_squared() <= PARALLEL {
-        return parallel(e, f, cosine.signum());
-    }
     if cosine.abs() <= f64::EPSILON {
         return Estimate::default();
     }
+    let (e, f) = if e.length <= f.length { (e, f) } else { (f, e) };
+    let rounding = rounding(e, f);
+    if e.direction.cross(f.direction).length_squared() <= PARALLEL {
+        let closed = parallel(e, f, cosine.signum());
+        if closed.error <= CANCELLING * rounding {
+            return closed;
+        }
+    }
     let inner = |s: f64| log_integral(e.start + e.direction * s, f);
-    let outer = integrate_adaptive(&RULE, 0.0, e.length, tolerance, DEPTH, &inner);
-    let rounding = ROUNDING * e.length * f.length;
+    // Below rounding two values never agree, however short the interval.
+    let outer = integrate_adaptive(&RULE, 0.0, e.length, tolerance.max(rounding), DEPTH, &inner);
     Estimate { value: cosine * outer.value, error: cosine.abs() * (outer.error + rounding) }
 }
 
-/// ∫ ln |p − q(t)| dt along an edge: the differences of τ/2 ln(τ² + h²) − τ + h atan(τ/h) at its ends.
+/// Rounding of ∫∫ ln r ds dt: that of the terms of the inner integral, and that of a point of `e`, of order 1, times the change
+/// of the inner integral with it, the angle under which it sees `f`.
+fn rounding(e: Edge, f: Edge) -> f64 {
+    let gap = e.start.distance(f.start) - e.length - f.length;
+    let angle = f.length / gap.max(f.length);
+    ROUNDING * e.length * (f.length + angle)
+}
+
+/// ∫ ln |p − q(t)| dt along an edge of length L: with r₀, r₁ the distances of its ends, t₀, t₁ = t₀ + L their places along it from the foot
+/// of p and h the height of p, ½ L ln(r₀ r₁) + ½ (t₀ + t₁) ln(r₁/r₀) − L + h θ. θ is the angle under which p sees the edge. Every term
+/// is of the order of L: nothing cancels where the edge is short and far.
 fn log_integral(p: Vec3, f: Edge) -> f64 {
-    let d = p - f.start;
-    let along = d.dot(f.direction);
-    let h2 = (d - f.direction * along).length_squared();
+    let d = f.start - p;
+    let t0 = d.dot(f.direction);
+    let t1 = t0 + f.length;
+    let h2 = (d - f.direction * t0).length_squared();
+    let (r0, r1) = (t0 * t0 + h2, t1 * t1 + h2);
+    let near = r0.min(r1);
+    if near == 0.0 {
+        return f.length * (f.length.ln() - 1.0);
+    }
+    let middle = t0 + t1;
+    let ratio = 0.5 * (f.length * middle.abs() / near).ln_1p();
     let h = h2.sqrt();
-    let primitive = |t: f64| {
-        let log = if t == 0.0 { 0.0 } else { 0.5 * t * (t * t + h2).ln() };
-        let angle = if h == 0.0 { 0.0 } else { h * (t / h).atan() };
-        log - t + angle
-    };
-    primitive(f.length - along) - primitive(-along)
+    let angle = (h * f.length).atan2(h2 + t0 * t1);
+    0.25 * f.length * (r0.ln() + r1.ln()) + 0.5 * middle.abs() * ratio - f.length + h * angle
 }
 
 /// Both integrals closed for parallel edges: with w the distance along them and h across,

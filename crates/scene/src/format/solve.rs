@@ -11,7 +11,7 @@ use super::At;
 #[schemars(rename = "Solve")]
 pub(crate) struct SolveEntry {
     /// Name of the solver. Default: chosen by the program.
-    pub solver: Option<String>,
+    pub solver: Option<At<String>>,
     /// Residual ‖b − A x‖₂/‖b‖₂ to stop at, above 0 and below 1. Default: chosen by the program.
     pub tolerance: Option<At<f64>>,
     /// Most iterations, at least 1. Default: chosen by the program.

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::number::short;
 use crate::error::{ErrorKind, SceneError};
 use crate::format::{At, MaterialEntry, PerBand, SceneEntry};
 use crate::source::Source;
@@ -33,8 +34,9 @@ const REFLECTANCE: Quantity = Quantity {
 
 const EXITANCE: Quantity = Quantity {
     name: "exitance",
-    allowed: |m| m >= 0.0 && m.is_finite(),
-    help: "write a finite number of W/m², at least 0",
+    // Powers, their sums and their squares stay finite.
+    allowed: |m| (0.0..=1e100).contains(&m),
+    help: "write a number of W/m² from 0 to 1e100",
 };
 
 pub(super) fn materials(
@@ -88,7 +90,7 @@ fn check(source: &Source, value: f64, span: Range<usize>, quantity: &Quantity) -
     if (quantity.allowed)(value) {
         return Ok(value);
     }
-    let what = format!("{} {value} is out of range", quantity.name);
+    let what = format!("{} {} is out of range", quantity.name, short(value));
     Err(source.error(ErrorKind::Value, span, what, quantity.help))
 }
 

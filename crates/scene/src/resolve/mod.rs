@@ -11,6 +11,7 @@ mod solve;
 mod surface;
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 use crate::error::{ErrorKind, SceneError};
 use crate::files::Files;
@@ -30,6 +31,8 @@ pub(crate) const MOST_ELEMENTS: u128 = 100_000_000;
 pub(crate) struct Resolved {
     pub bands: Vec<String>,
     pub solve: SolveDefaults,
+    /// Where the name of the solver stands.
+    pub solver: Option<Range<usize>>,
     pub camera: Option<Camera>,
     pub materials: Vec<Material>,
     pub parts: Vec<Part>,
@@ -53,7 +56,8 @@ pub(crate) fn resolve(
     let solve = scene.solve.as_ref().map(|entry| solve::solve(source, entry)).transpose()?;
     let camera = scene.camera.as_ref().map(|entry| camera::camera(source, entry)).transpose()?;
     let parts = parts(&mut Context { source, scene, materials: &materials, files })?;
-    Ok(Resolved { bands, solve: solve.unwrap_or_default(), camera, materials, parts })
+    let solver = scene.solve.as_ref().and_then(|entry| entry.solver.as_ref()).map(At::span);
+    Ok(Resolved { bands, solve: solve.unwrap_or_default(), solver, camera, materials, parts })
 }
 
 fn parts(context: &mut Context) -> Result<Vec<Part>, SceneError> {

@@ -6,6 +6,15 @@ use crate::error::{ErrorKind, SceneError};
 use crate::format::{At, Triple};
 use crate::source::Source;
 
+/// Largest coordinate, metres: its cube, and the product of two areas, are far from the end of the numbers.
+pub(crate) const FARTHEST: f64 = 1e30;
+
+/// A number without rows of zeros.
+pub(super) fn short(value: f64) -> String {
+    let text = format!("{value:?}");
+    text.strip_suffix(".0").map_or_else(|| text.clone(), str::to_owned)
+}
+
 impl Source {
     /// An error about a value that is not allowed.
     pub fn value_error<T>(&self, value: &At<T>, what: String, help: &str) -> SceneError {
@@ -27,7 +36,7 @@ impl Source {
         if value > 0.0 {
             return Ok(value);
         }
-        let what = format!("{quantity} is {value}, but must be above 0");
+        let what = format!("{quantity} is {}, but must be above 0", short(value));
         Err(self.value_error(number, what, "write a number above 0"))
     }
 
@@ -37,15 +46,30 @@ impl Source {
         if value < limit {
             return Ok(value);
         }
-        let what = format!("{quantity} is {value}, but must be below {limit}");
+        let what = format!("{quantity} is {}, but must be below {limit}", short(value));
         Err(self.value_error(number, what, &format!("write a number between 0 and {limit}")))
     }
 
     /// A point or vector.
     pub fn vector(&self, triple: &Triple, quantity: &str) -> Result<Vec3, SceneError> {
         let [x, y, z] = &**triple;
-        let coordinate = |number| self.finite(number, quantity);
+        let coordinate = |number| self.coordinate(number, quantity);
         Ok(Vec3::new(coordinate(x)?, coordinate(y)?, coordinate(z)?))
+    }
+
+    /// A length above 0.
+    pub fn length(&self, number: &At<f64>, quantity: &str) -> Result<f64, SceneError> {
+        self.positive(number, quantity)?;
+        self.coordinate(number, quantity)
+    }
+
+    fn coordinate(&self, number: &At<f64>, quantity: &str) -> Result<f64, SceneError> {
+        let value = self.finite(number, quantity)?;
+        if value.abs() <= FARTHEST {
+            return Ok(value);
+        }
+        let what = format!("{quantity} is {value:e} m, too large to compute with");
+        Err(self.value_error(number, what, &format!("stay within {FARTHEST:e} m of 0")))
     }
 
     /// A vector that is not zero.

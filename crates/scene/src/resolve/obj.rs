@@ -8,6 +8,7 @@ use std::path::Path;
 
 use fredholm_mesh::{Cutting, MeshError, Shape, Vec3};
 
+use super::number::FARTHEST;
 use super::surface::{find_material, geometry, part};
 use super::{Context, Material};
 use crate::error::{ErrorKind, SceneError};
@@ -175,6 +176,7 @@ fn shapes(
     let mut shapes = vec![];
     for face in &group.faces {
         let error = |e| geometry(source, entry, &e, (mesh_file, face.span.clone()));
+        placing.check(face, mesh_file)?;
         for shape in face_shapes(face, placing) {
             let elements = shape.count(cutting).map_err(error)?;
             shapes.push((shape, elements));
@@ -229,6 +231,20 @@ impl Placing {
         let (axis, angle) = file.turn.as_ref().map_or(Ok((Vec3::Z, 0.0)), |turn| self::turn(source, turn))?;
         let (sine, cosine) = angle.sin_cos();
         Ok(Self { scale, axis, cosine, sine, translate })
+    }
+
+    /// Refuses a face that comes to stand too far away.
+    fn check(&self, face: &ImportedFace, mesh_file: &Source) -> Result<(), SceneError> {
+        if face.corners.iter().all(|&p| self.apply(p).abs().max_element() <= FARTHEST) {
+            return Ok(());
+        }
+        let what = format!("this face comes to stand farther away than {FARTHEST:e} m");
+        Err(mesh_file.error(
+            ErrorKind::Value,
+            face.span.clone(),
+            what,
+            "lower scale or translate in the scene",
+        ))
     }
 
     fn apply(&self, point: Vec3) -> Vec3 {

@@ -91,7 +91,7 @@ fn cuboid(source: &Source, entry: &BoxEntry) -> Result<Shape, SceneError> {
 fn sphere(source: &Source, entry: &SphereEntry) -> Result<Shape, SceneError> {
     Ok(Shape::Sphere {
         centre: source.vector(&entry.centre, "centre")?,
-        radius: source.positive(&entry.radius, "radius")?,
+        radius: source.length(&entry.radius, "radius")?,
         inward: entry.inward,
         segments: segments(entry.segments.as_ref(), AROUND_SPHERE),
     })
@@ -101,7 +101,7 @@ fn disc(source: &Source, entry: &DiscEntry) -> Result<Shape, SceneError> {
     Ok(Shape::Disc {
         centre: source.vector(&entry.centre, "centre")?,
         normal: source.direction(&entry.normal, "normal")?,
-        radius: source.positive(&entry.radius, "radius")?,
+        radius: source.length(&entry.radius, "radius")?,
         segments: segments(entry.segments.as_ref(), AROUND_DISC),
     })
 }
@@ -110,7 +110,7 @@ fn cylinder(source: &Source, entry: &CylinderEntry) -> Result<Shape, SceneError>
     Ok(Shape::Cylinder {
         base: source.vector(&entry.base, "base")?,
         axis: source.direction(&entry.axis, "axis")?,
-        radius: source.positive(&entry.radius, "radius")?,
+        radius: source.length(&entry.radius, "radius")?,
         caps: entry.caps.unwrap_or(true),
         inward: entry.inward,
         segments: segments(entry.segments.as_ref(), AROUND_DISC),

@@ -33,7 +33,7 @@ pub(super) fn solve(source: &Source, entry: &SolveEntry) -> Result<SolveDefaults
         number.as_ref().map(|number| source.below(number, 1.0, name)).transpose()
     };
     Ok(SolveDefaults {
-        solver: entry.solver.clone(),
+        solver: entry.solver.as_deref().cloned(),
         tolerance: below_1(&entry.tolerance, "tolerance")?,
         max_iterations: entry.max_iterations.as_ref().map(|n| at_least_1(source, n)).transpose()?,
         form_factor_tolerance: below_1(&entry.form_factor_tolerance, "form_factor_tolerance")?,

@@ -1,0 +1,222 @@
+//! Pairs behind a few occluders, or behind many.
+
+use crate::generator::{Kind, Random, axes, pair, patch, polygon};
+use crate::reference::{self, Reference};
+use fredholm_coupling::form_factor::{Exchange, Method, PairIntegrator, Workspace};
+use fredholm_mesh::{Patch, Vec3};
+use fredholm_visibility::Occluders;
+
+fn exchange(patches: &[Patch], tolerance: f64) -> Exchange {
+    let bvh = Occluders::new(patches).unwrap();
+    let integrator = PairIntegrator::new(&patches[..2], patches, &bvh, tolerance);
+    integrator.exchange(0, 1, &mut Workspace::default())
+}
+
+fn smaller(patches: &[Patch]) -> f64 {
+    patches[0].area().min(patches[1].area())
+}
+
+fn facing(patches: &[Patch]) -> f64 {
+    let d2 = patches[0].centroid().distance_squared(patches[1].centroid());
+    (patches[0].area() * patches[1].area() / (std::f64::consts::PI * d2)).min(smaller(patches))
+}
+
+/// A point of a patch, even in its parameters.
+fn point(patch: &Patch, random: &mut Random) -> Vec3 {
+    let (u, v) = (random.between(0.1, 0.9), random.between(0.1, 0.9));
+    if patch.sides() == 3 && u + v > 1.0 { patch.point(1.0 - u, 1.0 - v) } else { patch.point(u, v) }
+}
+
+/// Something between two patches: free, standing on the first, touching the second with a corner, or lying on it face down.
+fn occluder(a: &Patch, b: &Patch, size: f64, random: &mut Random) -> Option<Patch> {
+    let (p, q) = (point(a, random), point(b, random));
+    match random.below(8) {
+        0 | 1 => {
+            let [u, _] = axes(a.normal(), random);
+            let (side, height) = (u * size, a.normal() * (size * random.between(0.3, 2.0)));
+            patch(&[p, p + side, p + side + height, p + height])
+        }
+        2 => {
+            let n = random.direction();
+            let [u, v] = axes(n, random);
+            patch(&[q, q + u * size, q + v * size])
+        }
+        3 => {
+            let shrunk: Vec<Vec3> = b.flipped().corners().iter().map(|&x| q + (x - q) * 0.4).collect();
+            patch(&shrunk)
+        }
+        _ => Some(polygon(p + (q - p) * random.between(0.1, 0.9), random.direction(), size, 1.5, random)),
+    }
+}
+
+/// A pair with `count` things between, partly seen.
+fn scene(count: usize, random: &mut Random) -> Vec<Patch> {
+    let kind = [Kind::Near, Kind::Apart, Kind::SharedEdge, Kind::Crossing][random.below(4)];
+    let mut patches = pair(kind, random).to_vec();
+    while patches.len() < 2 + count {
+        let size = random.scale(0.05, 0.7);
+        let (a, b) = (patches[0], patches[1]);
+        patches.extend(occluder(&a, &b, size, random));
+    }
+    patches
+}
+
+/// The true value.
+fn truth(patches: &[Patch], tolerance: f64) -> Reference {
+    reference::exchange(&patches[0], &patches[1], &patches[2..], tolerance)
+}
+
+/// Stated against true errors.
+#[derive(Debug, Default)]
+struct Figures {
+    pairs: usize,
+    /// True error within the stated one.
+    covered: usize,
+    /// True error within the tolerance.
+    met: usize,
+    /// Stated over true errors.
+    over: Vec<f64>,
+    /// Largest true error, in tolerances.
+    worst: f64,
+}
+
+impl Figures {
+    fn add(&mut self, exact: &Reference, got: &Exchange, goal: f64) {
+        let off = ((got.value - exact.value).abs() - 0.3 * exact.error).max(0.0);
+        self.pairs += 1;
+        self.covered += usize::from(off <= got.error);
+        self.met += usize::from(off <= goal);
+        self.worst = self.worst.max(off / goal);
+        self.over.push(got.error / off.max(1e-3 * got.error));
+    }
+
+    fn say(&mut self, tolerance: f64) {
+        self.over.sort_by(f64::total_cmp);
+        let median = self.over[self.over.len() / 2];
+        let Self { pairs, covered, met, worst, .. } = self;
+        println!(
+            "T {tolerance:e}: {pairs} pairs, {covered} covered, {met} meet T, largest error {worst:.1} T, \
+             median of stated over true {median:.1}"
+        );
+    }
+}
+
+fn measure(tolerance: f64, pairs: usize) -> Figures {
+    let mut random = Random::new(5);
+    let mut figures = Figures::default();
+    while figures.pairs < pairs {
+        let count = 1 + random.below(6);
+        let patches = scene(count, &mut random);
+        let got = exchange(&patches, tolerance);
+        if got.method == Method::Clipped {
+            let goal = tolerance * facing(&patches);
+            figures.add(&truth(&patches, 0.1 * goal), &got, goal);
+        }
+    }
+    figures.say(tolerance);
+    figures
+}
+
+#[test]
+fn exact_shadows_state_their_error() {
+    let figures = measure(1e-2, 60);
+    assert!(figures.covered >= 54 && figures.met >= 54 && figures.worst < 4.0, "{figures:?}");
+}
+
+/// Takes minutes; `--nocapture` shows the figures.
+#[test]
+#[ignore = "minutes long"]
+fn exact_shadows_state_their_error_on_many_pairs() {
+    for (tolerance, pairs) in [(1e-2, 300), (1e-3, 300), (1e-4, 100)] {
+        let figures = measure(tolerance, pairs);
+        assert!(figures.covered * 100 >= figures.pairs * 90, "{tolerance:e}");
+    }
+}
+
+/// Sides and pitch of the squares of a screen, and half their number along a side.
+const SCREEN: (f64, f64, i32) = (0.07, 0.1, 10);
+const SEGMENTS: usize = 200_000;
+
+/// Two patches on the planes z = 0 and z = 2 and a screen of squares with slits between them on z = 1.1.
+fn behind_a_screen(random: &mut Random) -> Vec<Patch> {
+    let mut patches = vec![polygon(Vec3::ZERO, Vec3::Z, 1.0, 1.0, random)];
+    patches.push(polygon(Vec3::Z * 2.0, -Vec3::Z, 1.0, 1.0, random));
+    let (side, pitch, half) = SCREEN;
+    for (i, j) in (-half..half).flat_map(|i| (-half..half).map(move |j| (i, j))) {
+        let corner = Vec3::new(f64::from(i) * pitch, f64::from(j) * pitch, 1.1);
+        let (u, v) = (Vec3::X * side, Vec3::Y * side);
+        patches.extend(patch(&[corner, corner + u, corner + u + v, corner + v]));
+    }
+    patches
+}
+
+/// The exchange through the screen by random segments, with four standard errors.
+fn through_the_screen(a: &Patch, b: &Patch, random: &mut Random) -> Reference {
+    let (side, pitch, half) = SCREEN;
+    let hit = |x: f64| x.abs() <= f64::from(half) * pitch && x.rem_euclid(pitch) < side;
+    let (mut sum, mut squares) = (0.0, 0.0);
+    for _ in 0..SEGMENTS {
+        let (p, q) = (even(a, random), even(b, random));
+        let middle = p + (q - p) * 0.55;
+        let r2 = p.distance_squared(q);
+        let kernel =
+            if hit(middle.x) && hit(middle.y) { 0.0 } else { 4.0 / (std::f64::consts::PI * r2 * r2) };
+        sum += kernel;
+        squares += kernel * kernel;
+    }
+    let n = SEGMENTS as f64;
+    let (mean, areas) = (sum / n, a.area() * b.area());
+    let standard = ((squares / n - mean * mean) / n).sqrt();
+    Reference { value: areas * mean, error: 4.0 * areas * standard }
+}
+
+/// A point spread evenly over a patch.
+fn even(patch: &Patch, random: &mut Random) -> Vec3 {
+    let corner = |i: usize| patch.corner(i);
+    let first = (corner(1) - corner(0)).cross(corner(2) - corner(0)).length() * 0.5;
+    let (u, v) = (random.between(0.0, 1.0), random.between(0.0, 1.0));
+    let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+    let (b, c) = if random.between(0.0, patch.area()) < first { (1, 2) } else { (2, 3) };
+    corner(0) + (corner(b) - corner(0)) * u + (corner(c) - corner(0)) * v
+}
+
+#[test]
+fn sampled_shares_state_their_error() {
+    let mut random = Random::new(6);
+    let mut figures = Figures::default();
+    for _ in 0..25 {
+        let patches = behind_a_screen(&mut random);
+        let got = exchange(&patches, 1e-2);
+        if got.method == Method::Sampled {
+            let exact = through_the_screen(&patches[0], &patches[1], &mut random);
+            figures.add(&exact, &got, 1e-2 * facing(&patches));
+        }
+    }
+    figures.say(1e-2);
+    assert!(
+        figures.pairs >= 15 && figures.covered * 100 >= figures.pairs * 85 && figures.worst < 4.0,
+        "{figures:?}"
+    );
+}
+
+#[test]
+fn pairs_called_hidden_are_hidden() {
+    let mut random = Random::new(7);
+    let mut hidden = 0;
+    for _ in 0..200 {
+        let mut patches = pair(Kind::Apart, &mut random).to_vec();
+        let (p, q) = (patches[0].centroid(), patches[1].centroid());
+        let centre = p + (q - p) * random.between(0.2, 0.8);
+        let size = random.between(0.5, 4.0);
+        patches.push(polygon(centre, random.direction(), size, 1.0, &mut random));
+        let got = exchange(&patches, 1e-3);
+        if got.method == Method::Hidden {
+            hidden += 1;
+            assert!(
+                got.value == 0.0
+                    && truth(&patches, 1e-3 * facing(&patches)).value <= 1e-12 * smaller(&patches)
+            );
+        }
+    }
+    assert!((20..180).contains(&hidden), "{hidden}");
+}
