@@ -3,15 +3,14 @@
 use std::time::{Duration, Instant};
 
 use fredholm_coupling::form_factor::{PairIntegrator, Workspace};
+use fredholm_coupling::sample_pairs;
 
 use crate::problem::Problem;
 use crate::threads;
 
 /// Pairs sampled at most, and the time they may take.
-const PAIRS: u64 = 20_000;
+const PAIRS: usize = 20_000;
 const BUDGET: Duration = Duration::from_millis(500);
-/// Fractional parts of the powers of 1/φ₂, φ₂³ = φ₂ + 1: their multiples spread evenly over the unit square.
-const STEPS: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
 
 /// Seconds that the form factors will take: the mean time of a pair, times their number, over the threads.
 pub(crate) fn assembly_seconds(problem: &Problem) -> f64 {
@@ -24,13 +23,14 @@ pub(crate) fn assembly_seconds(problem: &Problem) -> f64 {
 
 fn mean_seconds(integrator: &PairIntegrator) -> f64 {
     let mut work = Workspace::default();
-    let n = integrator.len() as f64;
     let started = Instant::now();
-    let mut count = 0;
-    while count < PAIRS && started.elapsed() < BUDGET {
-        count += 1;
-        let [i, j] = STEPS.map(|step| ((count as f64 * step).fract() * n) as usize);
+    let mut count = 0.0;
+    for [i, j] in sample_pairs(integrator.len()).take(PAIRS) {
         std::hint::black_box(integrator.exchange(i, j, &mut work));
+        count += 1.0;
+        if started.elapsed() > BUDGET {
+            break;
+        }
     }
-    started.elapsed().as_secs_f64() / count as f64
+    started.elapsed().as_secs_f64() / count
 }

@@ -11,6 +11,7 @@ mod assembly;
 mod discretisation;
 mod error;
 mod exposure;
+mod pair_sample;
 mod radiosity;
 mod reciprocity;
 
@@ -19,5 +20,6 @@ pub use assembly::{Assembled, MethodCounts, Watch, assemble};
 pub use discretisation::{MeshError, mesh_error};
 pub use error::CouplingError;
 pub use exposure::{exposed_shares, extents};
+pub use pair_sample::sample_pairs;
 pub use radiosity::{Energy, Extent, Means, Radiosity};
 pub use reciprocity::reciprocity;

@@ -16,7 +16,7 @@ const CREDIBLE: f64 = 0.06;
 
 static QUAD: LazyLock<Vec<Vec<PlanePoint>>> = LazyLock::new(|| (0..=MAX_ORDER).map(tensor_quad).collect());
 static TRIANGLE: LazyLock<Vec<Vec<PlanePoint>>> =
-    LazyLock::new(|| (0..=MAX_ORDER).map(|n| collapsed_triangle(n + usize::from(n > 1))).collect());
+    LazyLock::new(|| (0..=MAX_ORDER).map(collapsed_triangle).collect());
 
 /// Points of a patch with weights in m², one list per order from 0 (empty) to [`MAX_ORDER`].
 #[derive(Clone, Debug)]

@@ -64,9 +64,15 @@ pub(crate) struct Shadow {
     rest: Vec<Vec3>,
     inside: Vec<Vec3>,
     heights: Vec<f64>,
+    whole: bool,
 }
 
 impl Shadow {
+    /// Whether the last point saw the target uncut.
+    pub(crate) fn is_whole(&self) -> bool {
+        self.whole
+    }
+
     /// Form factor from the point `p` with normal `n` to what it sees of `target` behind `occluders`.
     pub(crate) fn visible_factor(
         &mut self,
@@ -75,6 +81,7 @@ impl Shadow {
         target: &[Vec3],
         occluders: &PolygonList,
     ) -> f64 {
+        self.whole = true;
         self.visible.clear();
         self.visible.push_with(|corners| corners.extend(target.iter().map(|&x| x - p)));
         let view = self.visible.iter().next().and_then(Cone::of);
@@ -108,6 +115,7 @@ impl Shadow {
                 self.next.push_with(|corners| corners.extend_from_slice(piece));
                 continue;
             }
+            self.whole = false;
             self.rest.clear();
             self.rest.extend_from_slice(piece);
             for &plane in cone.planes() {
