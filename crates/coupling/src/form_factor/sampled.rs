@@ -26,14 +26,17 @@ pub(crate) fn sampled(
     sees: impl Fn(Vec3, Vec3) -> bool,
 ) -> Estimate {
     let mut batches = [Share::default(); BATCHES];
-    let mut done = 0;
+    let (mut done, mut last) = (0, 0.0);
     loop {
         let until = (4 * done).max(FIRST);
         for k in done..until {
             batches[k % BATCHES].add(a, b, pair_parameters(k), &sees);
         }
         done = until;
-        let (share, error) = summary(&batches, done);
+        let (share, spread) = summary(&batches, done);
+        // Eight batches may agree by luck, but seldom both with each other and with the stage before.
+        let error = spread.max((share - last).abs());
+        last = share;
         let total = open.value * error + open.error * share;
         if total <= tolerance || done >= MOST {
             return Estimate { value: open.value * share, error: total };
