@@ -26,7 +26,7 @@ fn scene(name: &str) -> Scene {
 
 fn form_factors(mesh: &Mesh) -> Assembled<f64> {
     let occluders = Occluders::new(mesh.occluders()).unwrap();
-    let integrator = PairIntegrator::new(mesh.patches(), mesh.occluders(), &occluders, 1e-3);
+    let integrator = PairIntegrator::new(mesh.patches(), &occluders, 1e-3);
     assemble(&integrator, &|_, _| ControlFlow::Continue(())).unwrap()
 }
 

@@ -30,7 +30,7 @@
 //! let mesh = scene.mesh()?;
 //!
 //! let occluders = Occluders::new(mesh.occluders())?;
-//! let integrator = PairIntegrator::new(mesh.patches(), mesh.occluders(), &occluders, 1e-9);
+//! let integrator = PairIntegrator::new(mesh.patches(), &occluders, 1e-9);
 //! let assembled = assemble::<f64>(&integrator, &|_, _| ControlFlow::Continue(()))?;
 //!
 //! let extents = mesh.patches().map(|patch| Extent { area: patch.area(), exposed: patch.area() });

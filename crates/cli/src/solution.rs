@@ -126,9 +126,7 @@ pub(crate) fn solve<S: Storage>(
 pub(crate) fn coupling_failure(error: CouplingError) -> Failure {
     match error {
         CouplingError::Interrupted { .. } => nothing_saved(),
-        CouplingError::Memory { .. } | CouplingError::Allocation { .. } => {
-            Failure::new(Ending::Resources, error)
-        }
+        CouplingError::Allocation { .. } => Failure::new(Ending::Resources, error),
         _ => Failure::new(Ending::Input, error),
     }
 }

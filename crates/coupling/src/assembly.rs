@@ -21,7 +21,7 @@ pub type Watch<'a> = dyn Fn(u64, u64) -> ControlFlow<()> + Sync + 'a;
 /// How many pairs each method computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MethodCounts {
-    /// Pairs with one patch behind the other.
+    /// Pairs with one patch behind the other, or wholly behind one occluder.
     pub hidden: u64,
     /// Pairs by Gauss points on both patches.
     pub area_gauss: u64,

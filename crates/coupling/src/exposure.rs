@@ -4,6 +4,7 @@
 //! buried: it receives nothing and nothing sees it. w is the share of points, on a grid over the element, of which at least one ray of a fixed bundle
 //! meets a lit side or nothing at all. Dimensionless; the grid is refined where both kinds of point occur.
 
+use crate::polygon::folded;
 use crate::radiosity::Extent;
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::Occluders;
@@ -66,12 +67,12 @@ fn bundle(patch: &Patch) -> Vec<Vec3> {
     std::iter::once(n).chain(TILTS.into_iter().flat_map(ring)).collect()
 }
 
-/// Midpoints of an n × n grid; on a triangle the upper half is folded down.
+/// Midpoints of an n × n grid.
 fn grid(patch: &Patch, n: usize) -> impl Iterator<Item = Vec3> {
     let middle = move |k: usize| (k as f64 + 0.5) / n as f64;
     (0..n * n).map(move |k| {
-        let (u, v) = (middle(k / n), middle(k % n));
-        if patch.sides() == 3 && u + v > 1.0 { patch.point(1.0 - u, 1.0 - v) } else { patch.point(u, v) }
+        let (u, v) = folded(patch, middle(k / n), middle(k % n));
+        patch.point(u, v)
     })
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Sutherland & Hodgman, Commun. ACM 17(1) 32, 1974, doi:10.1145/360767.360802, for one half-space at a time.
 
-use fredholm_mesh::Vec3;
+use fredholm_mesh::{Patch, Vec3};
 
 /// A closed half-space {x : n·x ≥ c}. With a unit normal, distances are in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,6 +57,11 @@ pub(crate) fn crossing(from: (Vec3, f64), to: (Vec3, f64)) -> Vec3 {
 
 fn snap(height: f64, tolerance: f64) -> f64 {
     if height.abs() <= tolerance { 0.0 } else { height }
+}
+
+/// Parameters of a point of the patch for a point of the unit square; on a triangle the upper half of the square is folded down.
+pub(crate) fn folded(patch: &Patch, u: f64, v: f64) -> (f64, f64) {
+    if patch.sides() == 3 && u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) }
 }
 
 /// Area vector ½ Σ pᵢ × pᵢ₊₁, m².

@@ -49,6 +49,12 @@ impl Occluders {
         Ok(Self { frame, patches: patches.to_vec(), facets, outlines, tree, places })
     }
 
+    /// The patches, as they were given.
+    #[must_use]
+    pub fn patches(&self) -> &[Patch] {
+        &self.patches
+    }
+
     /// Number of patches.
     #[must_use]
     pub fn len(&self) -> usize {

@@ -2,7 +2,7 @@
 //!
 //! | the pair | method |
 //! |---|---|
-//! | one behind the other | 0, exactly |
+//! | one behind the other, or one occluder across all segments | 0, exactly |
 //! | nothing between, apart | double area Gauss, order raised until two agree |
 //! | nothing between, close, touching or crossing each other's plane | contour integral on the parts that face each other |
 //! | a few occluders between | exact shadow inside, adaptive Gauss outside |
@@ -31,7 +31,7 @@ const CLOSE: f64 = 1.2;
 /// How an exchange was computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// One patch is behind the other.
+    /// One patch is behind the other, or one occluder hides it wholly.
     Hidden,
     /// Gauss points on both patches.
     AreaGauss,
@@ -97,22 +97,20 @@ struct Side<'a> {
 pub struct PairIntegrator<'a> {
     patches: Vec<&'a Patch>,
     points: Vec<PatchPoints>,
-    occluders: &'a [Patch],
-    bvh: &'a Occluders,
+    occluders: &'a Occluders,
     tolerance: f64,
 }
 
 impl<'a> PairIntegrator<'a> {
-    /// Prepares the patches; `occluders` are what `bvh` was built from, `tolerance` is T of the module's text.
+    /// Prepares the patches; `occluders` are what may stand between them, `tolerance` is T of the module's text.
     pub fn new(
         patches: impl IntoIterator<Item = &'a Patch>,
-        occluders: &'a [Patch],
-        bvh: &'a Occluders,
+        occluders: &'a Occluders,
         tolerance: f64,
     ) -> Self {
         let patches: Vec<_> = patches.into_iter().collect();
         let points = patches.iter().map(|p| PatchPoints::new(p)).collect();
-        Self { patches, points, occluders, bvh, tolerance }
+        Self { patches, points, occluders, tolerance }
     }
 
     /// Number of patches.
@@ -153,7 +151,7 @@ impl<'a> PairIntegrator<'a> {
             return Exchange::NONE;
         }
         let tolerance = self.tolerance * facing_exchange(a.patch, b.patch);
-        self.bvh.shaft(a.patch, b.patch, &mut work.candidates);
+        self.occluders.shaft(a.patch, b.patch, &mut work.candidates);
         self.between(a, b, flat, work);
         if work.occluders.len() == 0 {
             return unoccluded(a, b, flat, tolerance, work);
@@ -180,7 +178,7 @@ impl<'a> PairIntegrator<'a> {
         work.occluders.clear();
         for &candidate in &work.candidates {
             work.once.clear();
-            clip(self.occluders[candidate as usize].corners(), a.plane, flat, &mut work.once);
+            clip(self.occluders.patches()[candidate as usize].corners(), a.plane, flat, &mut work.once);
             work.occluders.push_with(|corners| clip(&work.once, b.plane, flat, corners));
         }
     }
@@ -188,7 +186,7 @@ impl<'a> PairIntegrator<'a> {
     fn behind_many(&self, a: Side, b: Side, flat: f64, tolerance: f64, work: &mut Workspace) -> Exchange {
         let open = unoccluded(a, b, flat, tolerance, work);
         let open = Estimate { value: open.value, error: open.error };
-        let sees = |p, q| self.bvh.unoccluded(p, q);
+        let sees = |p, q| self.occluders.unoccluded(p, q);
         Exchange::new(Method::Sampled, sampled(a.patch, b.patch, open, tolerance, sees))
     }
 }

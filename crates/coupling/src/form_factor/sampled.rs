@@ -7,6 +7,7 @@
 
 use super::area_gauss::jacobian;
 use crate::kernel::lambert;
+use crate::polygon::folded;
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_quadrature::Estimate;
 
@@ -66,9 +67,9 @@ fn pair_parameters(k: usize) -> [f64; 4] {
     STEPS.map(|step| (0.5 + step * k as f64).fract())
 }
 
-/// A point of the patch and the area it stands for, up to a constant; on a triangle the upper half of the square is folded down.
+/// A point of the patch and the area it stands for, up to a constant.
 fn weighted(patch: &Patch, u: f64, v: f64) -> (Vec3, f64) {
-    let (u, v) = if patch.sides() == 3 && u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+    let (u, v) = folded(patch, u, v);
     (patch.point(u, v), jacobian(patch, u, v))
 }
 

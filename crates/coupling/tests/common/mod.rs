@@ -21,7 +21,7 @@ pub fn patch(corners: &[Vec3]) -> Patch {
 /// Exchange of the first two of some patches, all of which block.
 pub fn exchange(patches: &[Patch], tolerance: f64) -> Exchange {
     let occluders = Occluders::new(patches).unwrap();
-    let integrator = PairIntegrator::new(patches, patches, &occluders, tolerance);
+    let integrator = PairIntegrator::new(patches, &occluders, tolerance);
     integrator.exchange(0, 1, &mut Workspace::default())
 }
 
@@ -29,5 +29,5 @@ pub fn exchange(patches: &[Patch], tolerance: f64) -> Exchange {
 #[allow(dead_code, reason = "not every test needs every helper")]
 pub fn with_integrator<R>(mesh: &Mesh, tolerance: f64, use_it: impl FnOnce(&PairIntegrator) -> R) -> R {
     let occluders = Occluders::new(mesh.occluders()).unwrap();
-    use_it(&PairIntegrator::new(mesh.patches(), mesh.occluders(), &occluders, tolerance))
+    use_it(&PairIntegrator::new(mesh.patches(), &occluders, tolerance))
 }

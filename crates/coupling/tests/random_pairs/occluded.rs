@@ -8,7 +8,7 @@ use fredholm_visibility::Occluders;
 
 fn exchange(patches: &[Patch], tolerance: f64) -> Exchange {
     let bvh = Occluders::new(patches).unwrap();
-    let integrator = PairIntegrator::new(&patches[..2], patches, &bvh, tolerance);
+    let integrator = PairIntegrator::new(&patches[..2], &bvh, tolerance);
     integrator.exchange(0, 1, &mut Workspace::default())
 }
 

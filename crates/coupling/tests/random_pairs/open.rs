@@ -11,7 +11,7 @@ const EXACT: f64 = 1e-13;
 
 fn exchange(a: &Patch, b: &Patch, tolerance: f64) -> Exchange {
     let bvh = Occluders::new(&[]).unwrap();
-    let integrator = PairIntegrator::new([a, b], &[], &bvh, tolerance);
+    let integrator = PairIntegrator::new([a, b], &bvh, tolerance);
     integrator.exchange(0, 1, &mut Workspace::default())
 }
 
