@@ -64,14 +64,6 @@ pub(crate) fn folded(patch: &Patch, u: f64, v: f64) -> (f64, f64) {
     if patch.sides() == 3 && u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) }
 }
 
-/// Area vector ½ Σ pᵢ × pᵢ₊₁, m².
-#[must_use]
-pub fn area_vector(corners: &[Vec3]) -> Vec3 {
-    let Some(&origin) = corners.first() else { return Vec3::ZERO };
-    let fans = corners.windows(2).map(|e| (e[0] - origin).cross(e[1] - origin));
-    fans.sum::<Vec3>() * 0.5
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -82,6 +74,13 @@ mod tests {
         Vec3::new(1.0, 1.0, 0.0),
         Vec3::new(0.0, 1.0, 0.0),
     ];
+
+    /// Area vector ½ Σ pᵢ × pᵢ₊₁, m².
+    fn area_vector(corners: &[Vec3]) -> Vec3 {
+        let Some(&origin) = corners.first() else { return Vec3::ZERO };
+        let fans = corners.windows(2).map(|e| (e[0] - origin).cross(e[1] - origin));
+        fans.sum::<Vec3>() * 0.5
+    }
 
     fn clipped_area(point: Vec3, normal: Vec3) -> f64 {
         let mut inside = Vec::new();

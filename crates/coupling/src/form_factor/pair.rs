@@ -9,7 +9,7 @@
 //! | many occluders between | sampled share of the unoccluded value |
 //!
 //! The tolerance T is relative to the exchange the two patches would have squarely facing each other,
-//! A_i A_j / (π d²), or the smaller area where that is less: errors of a row of F then sum to about T.
+//! A_i A_j / (π d²), or the smaller area where that is less: stated errors of a row of F then add up to about 2 T.
 
 use super::clipped::{Occluded, clipped};
 use super::sampled::sampled;
