@@ -59,6 +59,16 @@ impl Frame {
         difference * self.scale
     }
 
+    /// The centre of the bounding box, m: the local origin.
+    pub(crate) fn centre(&self) -> Vec3 {
+        self.centre
+    }
+
+    /// A length in local units.
+    pub(crate) fn local_length(&self, metres: f64) -> f64 {
+        metres * self.scale
+    }
+
     /// A local length in metres.
     pub(crate) fn metres(&self, length: f64) -> f64 {
         length / self.scale

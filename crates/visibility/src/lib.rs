@@ -6,6 +6,8 @@
 //! - [`closest`](Occluders::closest): what does a ray meet first?
 //! - [`shaft`](Occluders::shaft): which patches could come between two patches?
 //!
+//! [`body::Bodies`] puts the patches together to convex bodies, whose shadows are convex.
+//!
 //! # What is exact, and what is tolerated
 //!
 //! *Outlines are exact.* Whether a segment crosses a patch or passes beside it is decided as if with exact arithmetic:
@@ -44,6 +46,7 @@
 //!
 //! Units: metres.
 
+pub mod body;
 mod closest;
 mod error;
 mod exact;
@@ -58,3 +61,4 @@ mod tree;
 pub use closest::Hit;
 pub use error::VisibilityError;
 pub use occluders::Occluders;
+pub use shaft::Shaft;

@@ -3,8 +3,9 @@
 //! All functions give the symmetric quantity A_i F_ij = ∫_i ∫_j cosθ cosθ' V / (π r²) in m², with an estimated absolute error.
 
 mod area_gauss;
-mod clipped;
 mod contour;
+mod critical;
+mod hidden;
 mod pair;
 mod point_polygon;
 mod sampled;

@@ -11,14 +11,14 @@
 //! The tolerance T is relative to the exchange the two patches would have squarely facing each other,
 //! A_i A_j / (π d²), or the smaller area where that is less: stated errors of a row of F then add up to about 2 T.
 
-use super::clipped::{Occluded, clipped};
+use super::hidden::{HiddenWork, Occluded, hidden_exchange};
 use super::sampled::sampled;
-use super::shadow::{PolygonList, Shadow};
 use super::{PatchPoints, area_gauss, contour_integral};
 use crate::polygon::{HalfSpace, clip};
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_quadrature::Estimate;
 use fredholm_visibility::Occluders;
+use fredholm_visibility::body::{Bodies, Body, Room, Shadow};
 use std::f64::consts::FRAC_1_PI;
 
 /// Heights below this part of the pair's extent count as 0.
@@ -67,11 +67,9 @@ impl Exchange {
 /// Buffers of one thread.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
-    candidates: Vec<u32>,
-    once: Vec<Vec3>,
-    occluders: PolygonList,
     front: [Vec<Vec3>; 2],
-    shadow: Shadow,
+    room: Room,
+    hidden: HiddenWork,
 }
 
 /// Which patch the outer integral goes over.
@@ -98,6 +96,7 @@ pub struct PairIntegrator<'a> {
     patches: Vec<&'a Patch>,
     points: Vec<PatchPoints>,
     occluders: &'a Occluders,
+    bodies: Bodies,
     tolerance: f64,
 }
 
@@ -110,7 +109,8 @@ impl<'a> PairIntegrator<'a> {
     ) -> Self {
         let patches: Vec<_> = patches.into_iter().collect();
         let points = patches.iter().map(|p| PatchPoints::new(p)).collect();
-        Self { patches, points, occluders, tolerance }
+        let bodies = Bodies::new(occluders, &patches);
+        Self { patches, points, occluders, bodies, tolerance }
     }
 
     /// Number of patches.
@@ -151,20 +151,20 @@ impl<'a> PairIntegrator<'a> {
             return Exchange::NONE;
         }
         let tolerance = self.tolerance * facing_exchange(a.patch, b.patch);
-        self.occluders.shaft(a.patch, b.patch, &mut work.candidates);
-        self.between(a, b, flat, work);
-        if work.occluders.len() == 0 {
-            return unoccluded(a, b, flat, tolerance, work);
+        let bodies = self.between(a.patch, b.patch);
+        if hidden_wholly(a.patch, b.patch, &bodies, self.bodies.tolerance(), &mut work.room) {
+            return Exchange::NONE;
         }
-        if hides(a.patch, b.patch, &work.occluders) {
-            return Exchange { method: Method::Hidden, ..Exchange::NONE };
+        let open = unoccluded(a, b, flat, tolerance, work);
+        match bodies.len() {
+            0 => open,
+            1..=FEW => {
+                let keep = outer == Outer::First || clearance(a, &bodies) >= clearance(b, &bodies);
+                let sides = if keep { [a, b] } else { [b, a] };
+                self.behind_few(sides, &bodies, open, tolerance, work)
+            }
+            _ => self.behind_many(a, b, open, tolerance),
         }
-        if work.occluders.len() <= FEW {
-            let keep = outer == Outer::First || clearance(a, work) >= clearance(b, work);
-            let (a, b) = if keep { (a, b) } else { (b, a) };
-            return behind_few(a, b, flat, tolerance, work);
-        }
-        self.behind_many(a, b, flat, tolerance, work)
     }
 
     fn side(&self, i: usize) -> Side<'_> {
@@ -173,30 +173,35 @@ impl<'a> PairIntegrator<'a> {
         Side { patch, points: &self.points[i], plane }
     }
 
-    /// Clips the candidates to the space in front of both patches.
-    fn between(&self, a: Side, b: Side, flat: f64, work: &mut Workspace) {
-        work.occluders.clear();
-        for &candidate in &work.candidates {
-            work.once.clear();
-            clip(self.occluders.patches()[candidate as usize].corners(), a.plane, flat, &mut work.once);
-            work.occluders.push_with(|corners| clip(&work.once, b.plane, flat, corners));
-        }
+    /// The bodies that may come between two patches.
+    fn between(&self, a: &Patch, b: &Patch) -> Vec<&Body> {
+        let Some(shaft) = self.occluders.shaft_between(a, b) else { return Vec::new() };
+        self.bodies.as_slice().iter().filter(|body| self.occluders.reaches(body, &shaft)).collect()
     }
 
-    fn behind_many(&self, a: Side, b: Side, flat: f64, tolerance: f64, work: &mut Workspace) -> Exchange {
-        let open = unoccluded(a, b, flat, tolerance, work);
+    fn behind_many(&self, a: Side, b: Side, open: Exchange, tolerance: f64) -> Exchange {
         let open = Estimate { value: open.value, error: open.error };
         let sees = |p, q| self.occluders.unoccluded(p, q);
         Exchange::new(Method::Sampled, sampled(a.patch, b.patch, open, tolerance, sees))
     }
-}
 
-/// Integrates over `a` what its points see of `b`.
-fn behind_few(a: Side, b: Side, flat: f64, tolerance: f64, work: &mut Workspace) -> Exchange {
-    let cells = front_cells(a.patch, b.plane, flat, work);
-    front(b.patch, a.plane, flat, &mut work.front[1]);
-    let scene = Occluded { target: &work.front[1], occluders: &work.occluders };
-    Exchange::new(Method::Clipped, clipped(&cells, &scene, tolerance, &mut work.shadow))
+    /// What is left of the open exchange: the hidden part goes over the points of `a`.
+    fn behind_few(&self, [a, b]: [Side; 2], bodies: &[&Body], open: Exchange, goal: f64, work: &mut Workspace) -> Exchange {
+        let flat = FLAT * extent(a.patch, b.patch);
+        let [front_a, front_b] = &mut work.front;
+        front(a.patch, b.plane, flat, front_a);
+        front(b.patch, a.plane, flat, front_b);
+        let scene = Occluded {
+            source: front_a,
+            normal: a.patch.normal(),
+            target: front_b,
+            bodies,
+            tolerance: self.bodies.tolerance(),
+        };
+        let hidden = hidden_exchange(&scene, goal, &mut work.hidden);
+        let left = Estimate { value: open.value - hidden.value, error: open.error + hidden.error };
+        Exchange::new(Method::Clipped, left)
+    }
 }
 
 fn unoccluded(a: Side, b: Side, flat: f64, tolerance: f64, work: &mut Workspace) -> Exchange {
@@ -213,17 +218,14 @@ fn unoccluded(a: Side, b: Side, flat: f64, tolerance: f64, work: &mut Workspace)
     Exchange::new(Method::Contour, contour_integral(front_a, front_b, 0.1 * tolerance))
 }
 
-/// Whether one of the occluders blocks every segment between two patches. Where a plane is crossed by the segments between all
-/// corners inside a convex polygon, it is so by those between all points: the crossings are convex combinations.
-fn hides(a: &Patch, b: &Patch, occluders: &PolygonList) -> bool {
-    occluders.iter().any(|o| {
-        let edges = || o.iter().zip(o.iter().cycle().skip(1));
-        let blocks = |p: Vec3, q: Vec3| {
-            let turn = |(&e, &f): (&Vec3, &Vec3)| (e - p).cross(f - p).dot(q - p);
-            edges().all(|e| turn(e) > 0.0) || edges().all(|e| turn(e) < 0.0)
-        };
-        blocks(a.centroid(), b.centroid())
-            && a.corners().iter().all(|&p| b.corners().iter().all(|&q| blocks(p, q)))
+/// Whether one body blocks every segment between two patches. The points that a body hides from a point make a convex set, on either side: what holds
+/// for the corners holds for all.
+fn hidden_wholly(a: &Patch, b: &Patch, bodies: &[&Body], tolerance: f64, room: &mut Room) -> bool {
+    bodies.iter().any(|body| {
+        a.corners().iter().all(|&x| match body.shadow(x, tolerance, room) {
+            Shadow::Nothing => false,
+            Shadow::Room => b.corners().iter().all(|&y| room.holds(&[y - x])),
+        })
     })
 }
 
@@ -257,20 +259,8 @@ fn front(patch: &Patch, plane: HalfSpace, flat: f64, corners: &mut Vec<Vec3>) {
     clip(patch.corners(), plane, flat, corners);
 }
 
-/// The part of a patch in front of a plane, as patches: itself, or a fan of triangles.
-fn front_cells(patch: &Patch, plane: HalfSpace, flat: f64, work: &mut Workspace) -> Vec<Patch> {
-    if clears(patch, plane, flat) {
-        return vec![*patch];
-    }
-    let corners = &mut work.front[0];
-    front(patch, plane, flat, corners);
-    // A sliver that is no patch has no area to add.
-    let fan = (2..corners.len()).map(|k| Patch::triangle([corners[0], corners[k - 1], corners[k]]));
-    fan.filter_map(Result::ok).collect()
-}
-
-/// Smallest height of the occluders over a patch, in its diameters.
-fn clearance(side: Side, work: &Workspace) -> f64 {
-    let heights = work.occluders.iter().flatten().map(|&x| side.plane.height(x));
+/// Smallest height of the bodies over a patch, in its diameters.
+fn clearance(side: Side, bodies: &[&Body]) -> f64 {
+    let heights = bodies.iter().flat_map(|body| body.corners()).map(|&x| side.plane.height(x));
     heights.fold(f64::INFINITY, f64::min) / side.patch.diameter()
 }

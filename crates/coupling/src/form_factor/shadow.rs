@@ -1,12 +1,12 @@
-//! What a point sees of a convex polygon behind convex occluders, exactly: the polygon minus the occluders' shadows.
+//! What convex bodies hide of a convex polygon from a point, exactly: F = Σ over the pieces of the polygon that lie in the shadows.
 //!
-//! Seen from a point, a convex occluder with corners o_k is the cone {v : m_k·v ≥ 0}, m_k = ± o_k × o_{k+1}. Subtracting it cuts a convex piece
-//! along the planes m_k·v = 0 into parts outside (kept, convex) and a rest inside all of them (hidden). The occluders must lie between
-//! the point and the polygon. T. Nishita & E. Nakamae, SIGGRAPH 1985, doi:10.1145/325165.325169, treat the same geometry.
+//! The shadow of a body is an intersection of half-spaces. Clipping a convex polygon by them leaves the hidden piece, convex again; what is cut off on the
+//! way stays visible and is asked about the next body. T. Nishita & E. Nakamae, SIGGRAPH 1985, doi:10.1145/325165.325169, treat the same geometry.
 
 use crate::form_factor::point_to_polygon;
 use crate::polygon::crossing;
 use fredholm_mesh::Vec3;
+use fredholm_visibility::body::{Body, Room, Shadow};
 
 /// Convex polygons stored one behind the other.
 #[derive(Clone, Debug, Default)]
@@ -44,238 +44,109 @@ impl PolygonList {
             self.ends.push(self.corners.len());
         }
     }
+
+    /// Cuts every polygon by the plane n·x = c into its parts on both sides. Heights of at most `tolerance` count as 0.
+    pub(crate) fn cut(&mut self, n: Vec3, c: f64, tolerance: f64, work: &mut Cutter, spare: &mut Self) {
+        spare.clear();
+        for i in 0..self.len() {
+            work.split(self.get(i), n, c, tolerance);
+            spare.push_with(|corners| corners.extend_from_slice(&work.inside));
+            spare.push_with(|corners| corners.extend_from_slice(&work.outside));
+        }
+        std::mem::swap(self, spare);
+    }
 }
 
-/// Corners that a quad has at most after two cuts, and room for two more.
-const CORNERS: usize = 8;
+/// Buffers of a cut.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Cutter {
+    heights: Vec<f64>,
+    inside: Vec<Vec3>,
+    outside: Vec<Vec3>,
+}
 
-/// Inward normals of the planes through a point and the edges of a convex polygon: the cone under which the point sees it.
-#[derive(Clone, Copy, Debug)]
-struct Cone {
-    planes: [Vec3; CORNERS],
-    count: usize,
+impl Cutter {
+    /// Splits a convex polygon into its parts with n·x ≥ c and ≤ c; a part without area is empty.
+    fn split(&mut self, polygon: &[Vec3], n: Vec3, c: f64, tolerance: f64) {
+        self.inside.clear();
+        self.outside.clear();
+        self.heights.clear();
+        let height = |v: &Vec3| n.dot(*v) - c;
+        self.heights.extend(polygon.iter().map(height).map(|h| if h.abs() <= tolerance { 0.0 } else { h }));
+        let (above, below) = (self.heights.iter().any(|&h| h > 0.0), self.heights.iter().any(|&h| h < 0.0));
+        if !above || !below {
+            let whole = if above { &mut self.inside } else { &mut self.outside };
+            whole.extend_from_slice(polygon);
+            return;
+        }
+        for i in 0..polygon.len() {
+            let j = if i + 1 == polygon.len() { 0 } else { i + 1 };
+            self.side((polygon[i], self.heights[i]), (polygon[j], self.heights[j]));
+        }
+    }
+
+    fn side(&mut self, from: (Vec3, f64), to: (Vec3, f64)) {
+        if from.1 >= 0.0 {
+            self.inside.push(from.0);
+        }
+        if from.1 <= 0.0 {
+            self.outside.push(from.0);
+        }
+        if from.1 * to.1 < 0.0 {
+            let cut = crossing(from, to);
+            self.inside.push(cut);
+            self.outside.push(cut);
+        }
+    }
 }
 
 /// Buffers of the subtraction, kept between points.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Shadow {
+pub(crate) struct Hiding {
     visible: PolygonList,
     next: PolygonList,
     rest: Vec<Vec3>,
-    inside: Vec<Vec3>,
-    heights: Vec<f64>,
-    whole: bool,
+    cutter: Cutter,
+    room: Room,
 }
 
-impl Shadow {
-    /// Whether the last point saw the target uncut.
-    pub(crate) fn is_whole(&self) -> bool {
-        self.whole
-    }
-
-    /// Form factor from the point `p` with normal `n` to what it sees of `target` behind `occluders`.
-    pub(crate) fn visible_factor(
-        &mut self,
-        p: Vec3,
-        n: Vec3,
-        target: &[Vec3],
-        occluders: &PolygonList,
-    ) -> f64 {
-        self.whole = true;
+impl Hiding {
+    /// Form factor from the point `x` with normal `n` to what `bodies` hide of `target`, which lies in front of the point.
+    pub(crate) fn hidden_factor(&mut self, x: Vec3, n: Vec3, target: &[Vec3], bodies: &[&Body], tolerance: f64) -> f64 {
         self.visible.clear();
-        self.visible.push_with(|corners| corners.extend(target.iter().map(|&x| x - p)));
-        let view = self.visible.iter().next().and_then(Cone::of);
-        for occluder in occluders.iter() {
-            if self.visible.len() == 0 {
-                return 0.0;
-            }
-            self.subtract(p, occluder, view.as_ref());
+        self.visible.push_with(|corners| corners.extend(target.iter().map(|&y| y - x)));
+        let mut hidden = 0.0;
+        for (k, body) in bodies.iter().enumerate() {
+            hidden += match body.shadow(x, tolerance, &mut self.room) {
+                Shadow::Nothing => 0.0,
+                Shadow::Room => self.darken(n, k + 1 == bodies.len()),
+            };
         }
-        self.visible.iter().map(|piece| point_to_polygon(n, piece.iter().copied())).sum()
+        hidden
     }
 
-    /// Replaces the visible pieces by their parts outside the cone of one occluder; `view` is the cone of the whole target.
-    fn subtract(&mut self, p: Vec3, occluder: &[Vec3], view: Option<&Cone>) {
-        let mut corners = [Vec3::ZERO; CORNERS];
-        let corners = &mut corners[..occluder.len().min(CORNERS)];
-        corners.iter_mut().zip(occluder).for_each(|(corner, &x)| *corner = x - p);
-        if view.is_some_and(|view| view.misses(corners)) {
-            return;
-        }
-        if let Some(cone) = Cone::of(corners) {
-            self.cut_out(&cone);
-        }
-    }
-
-    fn cut_out(&mut self, cone: &Cone) {
+    /// Moves what lies in the room from the visible pieces to the hidden sum. After the last body nobody asks for the visible ones.
+    fn darken(&mut self, n: Vec3, last: bool) -> f64 {
         self.next.clear();
+        let mut hidden = 0.0;
         for i in 0..self.visible.len() {
             let piece = self.visible.get(i);
-            if cone.misses(piece) {
+            if self.room.misses(piece) {
                 self.next.push_with(|corners| corners.extend_from_slice(piece));
                 continue;
             }
-            self.whole = false;
             self.rest.clear();
             self.rest.extend_from_slice(piece);
-            for &plane in cone.planes() {
-                let outside = |corners: &mut Vec<Vec3>| {
-                    split(&self.rest, plane, &mut self.heights, &mut self.inside, corners);
-                };
-                self.next.push_with(outside);
-                std::mem::swap(&mut self.rest, &mut self.inside);
+            for &(m, c) in self.room.planes() {
+                self.cutter.split(&self.rest, m, c, 0.0);
+                std::mem::swap(&mut self.rest, &mut self.cutter.inside);
+                if !last {
+                    self.next.push_with(|corners| corners.extend_from_slice(&self.cutter.outside));
+                }
             }
+            hidden += point_to_polygon(n, self.rest.iter().copied());
         }
         std::mem::swap(&mut self.visible, &mut self.next);
-    }
-}
-
-impl Cone {
-    /// The cone of a polygon seen from the origin; `None` where the origin lies in its plane, or it has too many corners.
-    fn of(corners: &[Vec3]) -> Option<Self> {
-        let towards = *corners.first()?;
-        if corners.len() > CORNERS {
-            return None;
-        }
-        let mut cone = Self { planes: [Vec3::ZERO; CORNERS], count: 0 };
-        for k in 0..corners.len() {
-            cone.push(corners[k].cross(corners[(k + 1) % corners.len()]));
-        }
-        let sum = cone.planes().iter().sum::<Vec3>();
-        let size: f64 = cone.planes().iter().map(|m| m.length_squared()).sum();
-        let turn = sum.dot(towards);
-        if turn * turn <= 1e-24 * size * towards.length_squared() {
-            return None;
-        }
-        Some(if turn < 0.0 { cone.turned() } else { cone })
-    }
-
-    /// Adds a plane; an edge of no length, or one that points at the origin, bounds nothing.
-    fn push(&mut self, normal: Vec3) {
-        if normal != Vec3::ZERO {
-            self.planes[self.count] = normal;
-            self.count += 1;
-        }
-    }
-
-    fn turned(mut self) -> Self {
-        self.planes.iter_mut().for_each(|m| *m = -*m);
-        self
-    }
-
-    fn planes(&self) -> &[Vec3] {
-        &self.planes[..self.count]
-    }
-
-    /// Whether one of the planes has all of a polygon outside.
-    fn misses(&self, polygon: &[Vec3]) -> bool {
-        self.planes().iter().any(|m| polygon.iter().all(|v| m.dot(*v) <= 0.0))
-    }
-}
-
-/// Splits a convex polygon by a plane through the origin into the parts with m·v ≤ 0 (appended to `outside`) and ≥ 0 (replacing `inside`).
-fn split(polygon: &[Vec3], m: Vec3, heights: &mut Vec<f64>, inside: &mut Vec<Vec3>, outside: &mut Vec<Vec3>) {
-    heights.clear();
-    heights.extend(polygon.iter().map(|v| m.dot(*v)));
-    inside.clear();
-    let start = outside.len();
-    for i in 0..polygon.len() {
-        let j = (i + 1) % polygon.len();
-        let (from, to) = ((polygon[i], heights[i]), (polygon[j], heights[j]));
-        if from.1 >= 0.0 {
-            inside.push(from.0);
-        }
-        if from.1 <= 0.0 {
-            outside.push(from.0);
-        }
-        if from.1 * to.1 < 0.0 {
-            let cut = crossing(from, to);
-            inside.push(cut);
-            outside.push(cut);
-        }
-    }
-    if heights.iter().all(|&h| h >= 0.0) {
-        outside.truncate(start);
-    }
-    if heights.iter().all(|&h| h <= 0.0) {
-        inside.clear();
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn square(centre: Vec3, half: f64) -> Vec<Vec3> {
-        // Counter-clockwise seen from below.
-        [(-1., -1.), (-1., 1.), (1., 1.), (1., -1.)]
-            .map(|(x, y)| centre + Vec3::new(x, y, 0.0) * half)
-            .to_vec()
-    }
-
-    fn list(polygons: &[Vec<Vec3>]) -> PolygonList {
-        let mut list = PolygonList::default();
-        for polygon in polygons {
-            list.push_with(|corners| corners.extend_from_slice(polygon));
-        }
-        list
-    }
-
-    fn seen(target: &[Vec3], occluders: &[Vec<Vec3>]) -> f64 {
-        Shadow::default().visible_factor(Vec3::ZERO, Vec3::Z, target, &list(occluders))
-    }
-
-    fn whole(target: &[Vec3]) -> f64 {
-        point_to_polygon(Vec3::Z, target.iter().copied())
-    }
-
-    #[test]
-    fn the_shadow_of_a_square_is_the_larger_square_it_hides() {
-        let target = square(Vec3::Z, 1.0);
-        let hidden = square(Vec3::Z, 0.5);
-        let exact = whole(&target) - whole(&hidden);
-        assert!((seen(&target, &[square(Vec3::Z * 0.5, 0.25)]) - exact).abs() < 1e-15);
-    }
-
-    #[test]
-    fn overlapping_occluders_are_not_counted_twice() {
-        let target = square(Vec3::Z, 1.0);
-        let occluder = square(Vec3::Z * 0.5, 0.25);
-        let once = seen(&target, std::slice::from_ref(&occluder));
-        let behind = square(Vec3::Z * 0.7, 0.3);
-        assert!((seen(&target, &[occluder.clone(), occluder.clone(), behind]) - once).abs() < 1e-15);
-    }
-
-    #[test]
-    fn a_cover_hides_everything_and_a_neighbour_nothing() {
-        let target = square(Vec3::Z, 1.0);
-        assert!(seen(&target, &[square(Vec3::Z * 0.5, 0.6)]) == 0.0);
-        let beside = square(Vec3::new(5.0, 0.0, 0.5), 0.5);
-        assert!((seen(&target, &[beside]) - whole(&target)).abs() < 1e-16);
-    }
-
-    #[test]
-    fn the_orientation_of_an_occluder_does_not_matter() {
-        let target = square(Vec3::Z, 1.0);
-        let mut occluder = square(Vec3::new(0.2, 0.1, 0.4), 0.2);
-        let one = seen(&target, &[occluder.clone()]);
-        occluder.reverse();
-        assert!((seen(&target, &[occluder]) - one).abs() < 1e-16);
-    }
-
-    #[test]
-    fn a_repeated_corner_changes_nothing() {
-        let target = square(Vec3::Z, 1.0);
-        let mut occluder = square(Vec3::new(0.2, 0.1, 0.4), 0.2);
-        let plain = seen(&target, &[occluder.clone()]);
-        occluder.insert(1, occluder[0]);
-        assert!(plain < whole(&target) && (seen(&target, &[occluder]) - plain).abs() < 1e-16);
-    }
-
-    #[test]
-    fn an_occluder_seen_edge_on_hides_nothing() {
-        let target = square(Vec3::Z, 1.0);
-        let edge_on = vec![Vec3::new(0.0, -0.1, 0.2), Vec3::new(0.0, 0.1, 0.2), Vec3::new(0.0, 0.0, 0.5)];
-        assert!((seen(&target, &[edge_on]) - whole(&target)).abs() < 1e-16);
+        hidden
     }
 }

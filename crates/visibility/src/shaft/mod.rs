@@ -25,9 +25,9 @@ pub(crate) const PLANES: usize = 12;
 /// Corners of two polygons of up to five corners.
 const CORNERS: usize = 10;
 
-/// The convex hull of two polygons, or of a point and a polygon, in local coordinates.
+/// The convex hull of two polygons, or of a point and a polygon.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Shaft {
+pub struct Shaft {
     planes: [HalfSpace; PLANES],
     plane_count: usize,
     corners: [Vec3; CORNERS],

@@ -3,6 +3,7 @@
 use fredholm_mesh::{Patch, Vec3};
 
 use super::Shaft;
+use crate::body::Body;
 use crate::Occluders;
 use crate::tree::Sieve;
 
@@ -33,6 +34,23 @@ impl Occluders {
         if let Some(shaft) = Shaft::from_point(p, b, &self.frame) {
             self.sift(&shaft, candidates);
         }
+    }
+
+    /// The room that the segments between two patches keep to, or `None` where no part of one lies in front of the other.
+    #[must_use]
+    pub fn shaft_between(&self, a: &Patch, b: &Patch) -> Option<Shaft> {
+        Shaft::between(a, b, &self.frame)
+    }
+
+    /// Whether a body could block a segment that keeps to the shaft. It may say so of one that does not.
+    #[must_use]
+    pub fn reaches(&self, body: &Body, shaft: &Shaft) -> bool {
+        let tolerance = self.frame.tolerance;
+        let beside = body.faces().iter().any(|face| {
+            let offset = self.frame.local_length(face.height(self.frame.centre()));
+            shaft.corners().iter().all(|x| face.normal.dot(*x) + offset >= -tolerance)
+        });
+        !beside && !shaft.planes().iter().any(|plane| plane.excludes(&body.local))
     }
 
     fn sift(&self, shaft: &Shaft, candidates: &mut Vec<u32>) {

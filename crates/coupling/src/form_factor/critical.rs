@@ -1,0 +1,153 @@
+//! Where on a source patch the hidden part of a target is not a smooth function: critical lines.
+//!
+//! Seen from a point x, the shadow of a convex body on a polygon changes its kind where a corner of the body lines up with an edge of the target, an edge of the body
+//! with a corner of the target, or a face of the body turns edge-on. Each of these happens on a plane, which meets the source in a line:
+//! vertex–edge, edge–vertex and face events. C. Campbell & D. Fussell, "An analytic approach to illumination with area light sources" (1991);
+//! G. Drettakis & E. Fiume, SIGGRAPH 1994, doi:10.1145/192161.192207. Events of two bodies at once (three edges) are curves and not listed.
+
+use fredholm_mesh::Vec3;
+use fredholm_visibility::body::Body;
+
+/// Squared sine below which a corner and an edge span no plane.
+const SLIM: f64 = 1e-24;
+
+/// A plane n·x = c with a unit normal.
+pub(crate) type Plane = (Vec3, f64);
+
+/// Lists the planes of the events of `bodies` before `target` that cut the `source` polygon. Lengths below `flat` (m) count as 0.
+pub(crate) fn critical_planes(source: &[Vec3], target: &[Vec3], bodies: &[&Body], flat: f64, found: &mut Vec<Plane>) {
+    found.clear();
+    let mut search = Search { source, target, flat, found };
+    for body in bodies {
+        search.body(body);
+    }
+}
+
+struct Search<'a> {
+    source: &'a [Vec3],
+    target: &'a [Vec3],
+    flat: f64,
+    found: &'a mut Vec<Plane>,
+}
+
+impl Search<'_> {
+    fn body(&mut self, body: &Body) {
+        let sides: Vec<Lit> = body.faces().iter().map(|face| self.lit(|x| face.height(x))).collect();
+        for (face, _) in body.faces().iter().zip(&sides).filter(|(_, lit)| **lit == Lit::Partly) {
+            self.add((face.normal, face.offset));
+        }
+        let mut corners = vec![false; body.corners().len()];
+        for edge in body.edges() {
+            let [left, right] = edge.faces.map(|face| sides[face as usize]);
+            if left == right && left != Lit::Partly {
+                continue;
+            }
+            edge.ends.iter().for_each(|&k| corners[k as usize] = true);
+            self.edge(body.ends(edge));
+        }
+        for (&corner, _) in body.corners().iter().zip(corners).filter(|(_, outline)| *outline) {
+            self.corner(corner);
+        }
+    }
+
+    /// Events of an edge of a body with the corners of the target.
+    fn edge(&mut self, [a, b]: [Vec3; 2]) {
+        for k in 0..self.target.len() {
+            let w = self.target[k];
+            if let Some(plane) = spanned(w, a, b)
+                && let Some(chord) = self.chord(plane)
+                && lines_up(chord.map(|c| meeting(c, w - c, [a, b], plane.0)), |t| 0.0 < t && t < 1.0)
+            {
+                self.add(plane);
+            }
+        }
+    }
+
+    /// Events of a corner of a body with the edges of the target.
+    fn corner(&mut self, v: Vec3) {
+        for k in 0..self.target.len() {
+            let ends = [self.target[k], self.target[(k + 1) % self.target.len()]];
+            if let Some(plane) = spanned(v, ends[0], ends[1])
+                && let Some(chord) = self.chord(plane)
+                && lines_up(chord.map(|c| meeting(c, v - c, ends, plane.0)), |t| t > 1.0)
+            {
+                self.add(plane);
+            }
+        }
+    }
+
+    /// Each line once: parallel edges give the same plane many times.
+    fn add(&mut self, plane: Plane) {
+        let same = |other: &Plane| {
+            self.source.iter().all(|x| {
+                let [h, g] = [plane, *other].map(|(n, c)| n.dot(*x) - c);
+                let turned = if plane.0.dot(other.0) < 0.0 { -g } else { g };
+                (h - turned).abs() <= self.flat
+            })
+        };
+        if !self.found.iter().any(same) {
+            self.found.push(plane);
+        }
+    }
+
+    fn lit(&self, height: impl Fn(Vec3) -> f64) -> Lit {
+        let above = self.source.iter().any(|&x| height(x) > self.flat);
+        let below = self.source.iter().any(|&x| height(x) < -self.flat);
+        match (above, below) {
+            (true, true) => Lit::Partly,
+            (true, false) => Lit::Wholly,
+            _ => Lit::Never,
+        }
+    }
+
+    /// The two ends of the line in which a plane cuts the source.
+    fn chord(&self, (n, c): Plane) -> Option<[Vec3; 2]> {
+        let height = |x: Vec3| n.dot(x) - c;
+        if self.lit(height) != Lit::Partly {
+            return None;
+        }
+        let mut ends = [Vec3::ZERO; 2];
+        let mut count = 0;
+        for (&p, &q) in self.source.iter().zip(self.source.iter().cycle().skip(1)) {
+            let (from, to) = (height(p), height(q));
+            if (from >= 0.0) != (to >= 0.0) && count < 2 {
+                ends[count] = p + (q - p) * (from / (from - to));
+                count += 1;
+            }
+        }
+        (count == 2).then_some(ends)
+    }
+}
+
+/// Whether a face looks at the source.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Lit {
+    Wholly,
+    Partly,
+    Never,
+}
+
+fn spanned(v: Vec3, a: Vec3, b: Vec3) -> Option<Plane> {
+    let (edge, arm) = (b - a, v - a);
+    let normal = edge.cross(arm);
+    let enough = normal.length_squared() > SLIM * edge.length_squared() * arm.length_squared();
+    let n = enough.then(|| normal.normalize())?;
+    Some((n, n.dot(a)))
+}
+
+/// Where the line c + t d meets the line of an edge, all in the plane with normal n: t, and the place along the edge from 0 to 1.
+fn meeting(c: Vec3, d: Vec3, [a, b]: [Vec3; 2], n: Vec3) -> (f64, f64) {
+    let e = b - a;
+    let across = d.cross(e).dot(n);
+    ((a - c).cross(e).dot(n) / across, (a - c).cross(d).dot(n) / across)
+}
+
+/// Whether the edge may be met from a point of the chord: both ends meet its line in the right order and on different sides of it, or one end does
+/// not meet it so.
+fn lines_up([first, last]: [(f64, f64); 2], order: impl Fn(f64) -> bool) -> bool {
+    match (order(first.0), order(last.0)) {
+        (true, true) => first.1.min(last.1) <= 1.0 && first.1.max(last.1) >= 0.0,
+        (false, false) => false,
+        _ => true,
+    }
+}

@@ -1,0 +1,66 @@
+//! The bodies of a scene: what of its occluders can come between its elements, put together as far as it is convex.
+
+use fredholm_mesh::{Patch, Vec3};
+
+use super::coplanar::merge;
+use super::solid::solid;
+use super::weld::{Polygon, connected, weld};
+use super::{Body, Face};
+use crate::Occluders;
+
+/// Convex bodies that block the view between the elements of a scene.
+#[derive(Clone, Debug, Default)]
+pub struct Bodies {
+    bodies: Vec<Body>,
+    tolerance: f64,
+}
+
+impl Bodies {
+    /// Puts the patches of `occluders` together: neighbours in one plane to convex polygons, and faces that close round a convex volume to solids. A polygon
+    /// with all `elements` on one side of its plane blocks nothing and is left out.
+    #[must_use]
+    pub fn new(occluders: &Occluders, elements: &[&Patch]) -> Self {
+        let tolerance = occluders.tolerance();
+        let (points, polygons) = weld(occluders.patches());
+        let mut polygons = merge(&points, &polygons, tolerance);
+        polygons.retain(|polygon| divides(&points, polygon, elements, tolerance));
+        let mut bodies = Vec::new();
+        for list in connected(&polygons, |_, _| true) {
+            let faces: Vec<&Polygon> = list.iter().map(|&k| &polygons[k]).collect();
+            let whole = solid(&points, &faces, tolerance, &occluders.frame);
+            match whole.filter(|solid| solid.stands_for_its_faces(elements, tolerance)) {
+                Some(solid) => bodies.push(solid.body),
+                None => bodies.extend(faces.iter().map(|face| flat(&points, face, occluders))),
+            }
+        }
+        Self { bodies, tolerance }
+    }
+
+    /// The bodies.
+    #[must_use]
+    pub fn as_slice(&self) -> &[Body] {
+        &self.bodies
+    }
+
+    /// Length up to which two places count as one, m.
+    #[must_use]
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+}
+
+fn flat(points: &[Vec3], polygon: &Polygon, occluders: &Occluders) -> Body {
+    let corners = polygon.corners.iter().map(|&k| points[k as usize]).collect();
+    Body::flat(corners, polygon.normal, &occluders.frame)
+}
+
+fn divides(points: &[Vec3], polygon: &Polygon, elements: &[&Patch], tolerance: f64) -> bool {
+    let plane = Face::through(points[polygon.corners[0] as usize], polygon.normal);
+    let (mut above, mut below) = (false, false);
+    elements.iter().flat_map(|element| element.corners()).any(|&x| {
+        let height = plane.height(x);
+        above |= height > tolerance;
+        below |= height < -tolerance;
+        above && below
+    })
+}

@@ -1,0 +1,107 @@
+//! Convex bodies that block the view, and the shadow that one casts from a point.
+//!
+//! Seen from a point x, the shadow of a convex body is the room within its outline, {y : m_k·(y − x) ≥ 0} with m_k = (a − x) × (b − x) for the edges a b of the
+//! outline, and behind the faces that look at x. An edge is on the outline where one of its two faces looks at x and the other does not. A flat polygon is a
+//! body with two faces. Lengths in metres.
+
+mod bodies;
+mod coplanar;
+mod outline;
+mod solid;
+mod weld;
+
+use fredholm_mesh::Vec3;
+
+use crate::frame::Frame;
+pub use bodies::Bodies;
+pub use outline::{Room, Shadow};
+
+/// A plane n·x = c with a unit normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Face {
+    /// Unit normal, pointing out of the body.
+    pub normal: Vec3,
+    /// Offset c, m.
+    pub offset: f64,
+}
+
+impl Face {
+    /// The plane through a point.
+    #[must_use]
+    pub fn through(point: Vec3, normal: Vec3) -> Self {
+        Self { normal, offset: normal.dot(point) }
+    }
+
+    /// Height of a point over the face, m: positive outside the body.
+    #[must_use]
+    pub fn height(&self, x: Vec3) -> f64 {
+        self.normal.dot(x) - self.offset
+    }
+}
+
+/// An edge of a body, counter-clockwise round the first of its faces seen from outside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Edge {
+    /// Its ends, as places in [`Body::corners`].
+    pub ends: [u32; 2],
+    /// The two faces that meet, as places in [`Body::faces`].
+    pub faces: [u32; 2],
+}
+
+/// A convex body: a flat polygon, or a solid.
+#[derive(Clone, Debug)]
+pub struct Body {
+    corners: Vec<Vec3>,
+    faces: Vec<Face>,
+    edges: Vec<Edge>,
+    /// Corners in the coordinates of the scene's frame.
+    pub(crate) local: Vec<Vec3>,
+    solid: bool,
+}
+
+impl Body {
+    fn new(corners: Vec<Vec3>, faces: Vec<Face>, edges: Vec<Edge>, frame: &Frame) -> Self {
+        let local = corners.iter().map(|&x| frame.local(x)).collect();
+        let solid = faces.len() > 2;
+        Self { corners, faces, edges, local, solid }
+    }
+
+    /// A flat convex polygon, counter-clockwise about `normal`.
+    fn flat(corners: Vec<Vec3>, normal: Vec3, frame: &Frame) -> Self {
+        let n = corners.len() as u32;
+        let up = Face::through(corners[0], normal);
+        let down = Face { normal: -normal, offset: -up.offset };
+        let edges = (0..n).map(|k| Edge { ends: [k, (k + 1) % n], faces: [0, 1] }).collect();
+        Self::new(corners, vec![up, down], edges, frame)
+    }
+
+    /// The corners, m.
+    #[must_use]
+    pub fn corners(&self) -> &[Vec3] {
+        &self.corners
+    }
+
+    /// The planes of the faces: two opposite ones for a flat polygon.
+    #[must_use]
+    pub fn faces(&self) -> &[Face] {
+        &self.faces
+    }
+
+    /// The edges.
+    #[must_use]
+    pub fn edges(&self) -> &[Edge] {
+        &self.edges
+    }
+
+    /// Whether it encloses a volume.
+    #[must_use]
+    pub fn is_solid(&self) -> bool {
+        self.solid
+    }
+
+    /// The two ends of an edge, m.
+    #[must_use]
+    pub fn ends(&self, edge: &Edge) -> [Vec3; 2] {
+        edge.ends.map(|k| self.corners[k as usize])
+    }
+}

@@ -1,0 +1,85 @@
+//! The shadow of a body from a point, as an intersection of half-spaces.
+
+use fredholm_mesh::Vec3;
+
+use super::{Body, Edge};
+
+/// Faces of a solid at most, one bit each.
+pub(super) const FACES: usize = 64;
+
+/// What a body hides from a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shadow {
+    /// Nothing: the point lies in the plane of a flat body.
+    Nothing,
+    /// What lies in a [`Room`].
+    Room,
+}
+
+/// An intersection of half-spaces {y : n·(y − x) ≥ c}, in coordinates relative to the point x.
+#[derive(Clone, Debug, Default)]
+pub struct Room {
+    planes: Vec<(Vec3, f64)>,
+}
+
+impl Room {
+    /// Normals n (of any length) and offsets c: those of the outline, for which c = 0, and those behind the faces.
+    #[must_use]
+    pub fn planes(&self) -> &[(Vec3, f64)] {
+        &self.planes
+    }
+
+    /// Whether all of the points, relative to x, lie inside.
+    #[must_use]
+    pub fn holds(&self, points: &[Vec3]) -> bool {
+        self.planes.iter().all(|(n, c)| points.iter().all(|y| n.dot(*y) > *c))
+    }
+
+    /// Whether one of the half-spaces has all of the points outside.
+    #[must_use]
+    pub fn misses(&self, points: &[Vec3]) -> bool {
+        self.planes.iter().any(|(n, c)| points.iter().all(|y| n.dot(*y) <= *c))
+    }
+}
+
+impl Body {
+    /// What the body hides from `x`; where that is a room, `room` holds it. Heights of at most `tolerance` (m) over a face count as none: a point of the
+    /// surface does not shade itself.
+    pub fn shadow(&self, x: Vec3, tolerance: f64, room: &mut Room) -> Shadow {
+        room.planes.clear();
+        let lit = self.behind(x, tolerance, room);
+        if lit == 0 {
+            // From a point of a solid, all that lies behind the faces at that point is seen through the solid.
+            self.behind(x, -tolerance, room);
+            return if self.solid { Shadow::Room } else { Shadow::Nothing };
+        }
+        let outline = self.edges.iter().filter_map(|edge| self.inward(edge, x, lit));
+        room.planes.extend(outline.map(|inward| (inward, 0.0)));
+        Shadow::Room
+    }
+
+    /// Adds the rooms behind the faces over which x is higher than `least`, and returns one bit for each.
+    fn behind(&self, x: Vec3, least: f64, room: &mut Room) -> u64 {
+        let mut lit = 0;
+        for (k, face) in self.faces.iter().enumerate() {
+            let height = face.height(x);
+            if height > least {
+                lit |= 1 << k;
+                room.planes.push((-face.normal, height + least.abs()));
+            }
+        }
+        lit
+    }
+
+    /// The normal of the plane through x and an edge of the outline, pointing into the shadow.
+    fn inward(&self, edge: &Edge, x: Vec3, lit: u64) -> Option<Vec3> {
+        let [left, right] = edge.faces.map(|face| lit >> face & 1);
+        if left == right {
+            return None;
+        }
+        let [a, b] = self.ends(edge).map(|end| end - x);
+        // Counter-clockwise round a face that looks at x, the inside is to the left.
+        let inward = if left == 1 { b.cross(a) } else { a.cross(b) };
+        (inward != Vec3::ZERO).then_some(inward)
+    }
+}

@@ -1,0 +1,131 @@
+//! Faces that close round a convex volume become one solid, so that its shadow is one convex shape.
+//!
+//! A solid may lack one face: a segment that crosses the volume enters and leaves through different faces, so one of the two is there.
+
+use std::collections::BTreeMap;
+
+use fredholm_mesh::{Patch, Vec3};
+
+use super::outline::FACES;
+use super::weld::{Polygon, undirected};
+use super::{Body, Edge, Face};
+use crate::frame::Frame;
+
+/// The faces as one convex solid, or `None` where they are none.
+pub(super) fn solid(points: &[Vec3], polygons: &[&Polygon], tolerance: f64, frame: &Frame) -> Option<Solid> {
+    if polygons.len() < 3 || polygons.len() >= FACES {
+        return None;
+    }
+    let mut numbers: Vec<u32> = polygons.iter().flat_map(|p| p.corners.iter().copied()).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    let corners: Vec<Vec3> = numbers.iter().map(|&k| points[k as usize]).collect();
+    let outward: Vec<Polygon> = polygons.iter().map(|p| turned_outward(points, p, &corners)).collect();
+    let mut faces: Vec<Face> =
+        outward.iter().map(|p| Face::through(points[p.corners[0] as usize], p.normal)).collect();
+    let (mut edges, open) = edges(&outward)?;
+    let lid = (!open.is_empty()).then_some(faces.len() as u32);
+    if lid.is_some() {
+        faces.push(lid_over(points, &outward, &open, tolerance)?);
+    }
+    edges.extend(open.iter().map(|&(side, face)| Edge { ends: side, faces: [face, lid.unwrap_or(face)] }));
+    let convex = faces.iter().all(|face| bounds(face, &corners, tolerance));
+    let place = |k: u32| numbers.binary_search(&k).unwrap_or_default() as u32;
+    edges.iter_mut().for_each(|edge| edge.ends = edge.ends.map(place));
+    convex.then(|| Solid { body: Body::new(corners, faces, edges, frame), lid })
+}
+
+/// A solid, and which of its faces is missing.
+pub(super) struct Solid {
+    pub body: Body,
+    lid: Option<u32>,
+}
+
+/// A side and the polygon it belongs to.
+type Side = ([u32; 2], u32);
+
+fn turned_outward(points: &[Vec3], polygon: &Polygon, corners: &[Vec3]) -> Polygon {
+    let centre = corners.iter().sum::<Vec3>() / corners.len() as f64;
+    let above = (centre - points[polygon.corners[0] as usize]).dot(polygon.normal) > 0.0;
+    if above { polygon.clone().flipped() } else { polygon.clone() }
+}
+
+/// The edges where two polygons meet, and the sides that belong to one only; `None` where polygons overlap.
+fn edges(polygons: &[Polygon]) -> Option<(Vec<Edge>, Vec<Side>)> {
+    let mut sides: BTreeMap<[u32; 2], Vec<Side>> = BTreeMap::new();
+    for (polygon, face) in polygons.iter().zip(0..) {
+        for side in polygon.sides() {
+            sides.entry(undirected(side)).or_default().push((side, face));
+        }
+    }
+    let (mut edges, mut open) = (Vec::new(), Vec::new());
+    for uses in sides.into_values() {
+        match uses[..] {
+            [single] => open.push(single),
+            [(side, left), (back, right)] if side[0] == back[1] => {
+                edges.push(Edge { ends: side, faces: [left, right] });
+            }
+            _ => return None,
+        }
+    }
+    Some((edges, open))
+}
+
+/// The face that is missing: the areas of a closed surface add up to nothing.
+fn lid_over(points: &[Vec3], polygons: &[Polygon], open: &[Side], tolerance: f64) -> Option<Face> {
+    let normal = -polygons.iter().map(|p| p.normal * p.area).sum::<Vec3>();
+    let lid = Face::through(points[open.first()?.0[0] as usize], normal.try_normalize()?);
+    let flat = open.iter().flat_map(|(side, _)| side).all(|&k| lid.height(points[k as usize]).abs() <= tolerance);
+    flat.then_some(lid)
+}
+
+/// Whether all corners lie behind the face, and one of them far enough for a volume.
+fn bounds(face: &Face, corners: &[Vec3], tolerance: f64) -> bool {
+    let deepest = corners.iter().map(|&x| face.height(x)).fold(0.0, f64::min);
+    corners.iter().all(|&x| face.height(x) <= tolerance) && deepest < -1e3 * tolerance
+}
+
+impl Solid {
+    /// Whether one solid hides what its faces hide: no element reaches into it, and those that lie on it looking in look out of no opening and
+    /// do not see each other.
+    pub fn stands_for_its_faces(&self, elements: &[&Patch], tolerance: f64) -> bool {
+        let mut inner = None;
+        elements.iter().all(|element| match self.meets(element, tolerance) {
+            Meeting::Apart => true,
+            Meeting::Inside => false,
+            Meeting::LooksIn(face) => {
+                let same = inner.is_none_or(|other| other == face);
+                inner = Some(face);
+                same && self.lid.is_none_or(|lid| lid == face)
+            }
+        })
+    }
+
+    fn meets(&self, element: &Patch, tolerance: f64) -> Meeting {
+        let faces = self.body.faces();
+        let all = |face: &Face, low: f64| element.corners().iter().all(|&x| face.height(x) >= low);
+        if faces.iter().any(|face| all(face, tolerance)) {
+            return Meeting::Apart;
+        }
+        let against = |k: &usize| all(&faces[*k], -tolerance);
+        let Some(k) = (0..faces.len()).find(against) else { return Meeting::Inside };
+        if element.normal().dot(faces[k].normal) > 0.0 || !self.covers_part(element, k) {
+            Meeting::Apart
+        } else {
+            Meeting::LooksIn(k as u32)
+        }
+    }
+
+    /// Whether an element in the plane of face `k` may overlap that face: no other face has all of it outside.
+    fn covers_part(&self, element: &Patch, k: usize) -> bool {
+        let outside = |face: &Face| element.corners().iter().all(|&x| face.height(x) >= 0.0);
+        !self.body.faces().iter().enumerate().any(|(other, face)| other != k && outside(face))
+    }
+}
+
+/// How an element lies to a solid.
+enum Meeting {
+    Apart,
+    Inside,
+    LooksIn(u32),
+}
