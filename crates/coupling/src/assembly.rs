@@ -1,19 +1,22 @@
 //! Assembly of the symmetric matrix G_ij = A_i F_ij (m²) of a mesh, in parallel.
 //!
-//! Each pair is computed once, so that reciprocity A_i F_ij = A_j F_ji holds exactly. Rows are cut into fixed runs of about equal numbers of pairs;
-//! what the runs report is folded in their order, so that the number of threads changes no bit.
+//! Each pair is computed once, so that reciprocity A_i F_ij = A_j F_ji holds exactly. The patches are cut into panels of neighbours; a panel finds out what stands between
+//! its patches and those before it, computes its pairs, and what it reports is folded in the order of the panels, so that the number of threads changes no bit.
 
 use crate::CouplingError;
 use crate::form_factor::{Exchange, Method, PairIntegrator, Workspace};
+use crate::occlusion::{Clusters, Panel, walk};
 use fredholm_linop::{PackedSymmetric, Storage};
 use rayon::prelude::*;
-use std::ops::{ControlFlow, Range};
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Runs of rows: enough to balance the threads, few enough to keep their reports small.
-const RUNS: usize = 192;
-/// Pairs between two looks at the watch.
-const LOOK: u64 = 256;
+/// Patches of a panel at most.
+const PANEL: usize = 32;
+/// Entries that wait for their place in the matrix at most, as far as a batch of panels can tell.
+const WAITING: usize = 1 << 23;
+/// Panels of a batch at least: enough to keep many threads busy.
+const BATCH: usize = 64;
 
 /// Called with the pairs done and the pairs in all; can stop the assembly.
 pub type Watch<'a> = dyn Fn(u64, u64) -> ControlFlow<()> + Sync + 'a;
@@ -21,7 +24,7 @@ pub type Watch<'a> = dyn Fn(u64, u64) -> ControlFlow<()> + Sync + 'a;
 /// How many pairs each method computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MethodCounts {
-    /// Pairs with one patch behind the other, or wholly behind one occluder.
+    /// Pairs with one patch behind the other, or wholly behind one body.
     pub hidden: u64,
     /// Pairs by Gauss points on both patches.
     pub area_gauss: u64,
@@ -51,6 +54,10 @@ impl MethodCounts {
         self.clipped += other.clipped;
         self.sampled += other.sampled;
     }
+
+    fn sum(&self) -> u64 {
+        self.hidden + self.area_gauss + self.contour + self.clipped + self.sampled
+    }
 }
 
 /// The assembled matrix and what is known of its errors.
@@ -77,13 +84,18 @@ pub fn assemble<S: Storage>(
     let n = integrator.len();
     let mut packed = zeros::<S>(n)?;
     let progress = Progress::new(pairs(n), watch);
-    let runs = cut(&mut packed, n);
-    let reports: Vec<Report> = runs.into_par_iter().map(|run| run.fill(integrator, &progress)).collect();
-    progress.finish()?;
+    let clusters = integrator.clusters();
+    let panels = clusters.panels(PANEL);
     let mut total = Report::new(n);
-    for report in &reports {
-        total.merge(report);
+    for batch in panels.chunks((WAITING / (PANEL * n.max(1))).max(BATCH)) {
+        let compute = |&panel: &usize| Strip::compute(integrator, &clusters, panel, &progress);
+        for strip in batch.par_iter().map(compute).collect::<Vec<_>>() {
+            strip.place(&mut packed);
+            total.merge(&strip.report);
+        }
     }
+    progress.finish()?;
+    total.methods.hidden += pairs(n) - total.methods.sum();
     let matrix = PackedSymmetric::new(n, packed)?;
     Ok(Assembled { matrix, error: total.error, largest: total.largest, methods: total.methods })
 }
@@ -101,75 +113,72 @@ fn zeros<S: Storage>(n: usize) -> Result<Vec<S>, CouplingError> {
     Ok(packed)
 }
 
-/// Consecutive rows of the packed lower triangle.
-struct Run<'a, S> {
-    rows: Range<usize>,
-    entries: &'a mut [S],
+/// The pairs of one panel.
+struct Strip<S> {
+    rows: Vec<(u32, Vec<u32>, Vec<S>)>,
+    report: Report,
 }
 
-/// Cuts the packed rows into runs of about equal numbers of entries.
-fn cut<S>(mut packed: &mut [S], n: usize) -> Vec<Run<'_, S>> {
-    let share = packed.len().div_ceil(RUNS);
-    let mut runs = Vec::new();
-    let mut start = 0;
-    while start < n {
-        let (mut end, mut count) = (start, 0);
-        while end < n && count < share {
-            end += 1;
-            count += end;
+impl<S: Storage> Strip<S> {
+    fn compute(integrator: &PairIntegrator, clusters: &Clusters, panel: usize, progress: &Progress) -> Self {
+        let mut strip = Self { rows: Vec::new(), report: Report::new(integrator.len()) };
+        if progress.state().is_break() {
+            return strip;
         }
-        let (entries, rest) = packed.split_at_mut(count);
-        runs.push(Run { rows: start..end, entries });
-        (packed, start) = (rest, end);
-    }
-    runs
-}
-
-impl<S: Storage> Run<'_, S> {
-    fn fill(self, integrator: &PairIntegrator, progress: &Progress) -> Report {
-        let mut report = Report::new(integrator.len());
+        let sight = integrator.sight(clusters);
+        let mut found = walk(&sight, panel);
         let mut work = Workspace::default();
-        let mut rest = self.entries;
-        for i in self.rows {
+        for (row, place) in clusters.nodes[panel].places.clone().enumerate() {
             if progress.state().is_break() {
-                return report;
+                return strip;
             }
-            let (row, tail) = rest.split_at_mut(i + 1);
-            rest = tail;
-            for (j, entry) in row[..i].iter_mut().enumerate() {
-                if report.count(progress).is_break() {
-                    return report;
-                }
-                let exchange = integrator.exchange(i, j, &mut work);
-                *entry = S::from_f64(exchange.value);
-                report.add(i, j, &exchange, integrator.smaller_area(i, j));
+            strip.row(integrator, clusters.order[place], row, &mut found, &mut work);
+            progress.advance(place as u64);
+        }
+        strip
+    }
+
+    fn row(&mut self, integrator: &PairIntegrator, i: u32, row: usize, found: &mut Panel, work: &mut Workspace) {
+        let mut columns = std::mem::take(&mut found.seen[row]);
+        let wholly = columns.len();
+        columns.extend(found.partly[row].iter().map(|(j, _)| *j));
+        let mut values = Vec::with_capacity(columns.len());
+        let mut exchanges = Vec::new();
+        integrator.open_row(i as usize, &columns, work, &mut exchanges);
+        for (k, (_, list)) in found.partly[row].iter().enumerate() {
+            let k = wholly + k;
+            let pair = [i, columns[k]].map(|patch| patch as usize);
+            exchanges[k] = integrator.behind(pair, &found.lists[list.clone()], exchanges[k], work);
+        }
+        for (&j, exchange) in columns.iter().zip(&exchanges) {
+            values.push(S::from_f64(exchange.value));
+            let area = integrator.smaller_area(i as usize, j as usize);
+            self.report.add(i as usize, j as usize, exchange, area);
+        }
+        self.rows.push((i, columns, values));
+    }
+
+    /// Writes the entries to their places in the packed lower triangle.
+    fn place(&self, packed: &mut [S]) {
+        for (i, columns, values) in &self.rows {
+            for (j, value) in columns.iter().zip(values) {
+                let (row, column) = (*i.max(j) as usize, *i.min(j) as usize);
+                packed[row * (row + 1) / 2 + column] = *value;
             }
         }
-        progress.advance(report.unseen);
-        report
     }
 }
 
-/// What one run knows of its pairs.
+/// What one panel knows of its pairs.
 struct Report {
     error: Vec<f64>,
     largest: f64,
     methods: MethodCounts,
-    unseen: u64,
 }
 
 impl Report {
     fn new(n: usize) -> Self {
-        Self { error: vec![0.0; n], largest: 0.0, methods: MethodCounts::default(), unseen: 0 }
-    }
-
-    fn count(&mut self, progress: &Progress) -> ControlFlow<()> {
-        self.unseen += 1;
-        if self.unseen < LOOK {
-            return ControlFlow::Continue(());
-        }
-        progress.advance(std::mem::take(&mut self.unseen));
-        progress.state()
+        Self { error: vec![0.0; n], largest: 0.0, methods: MethodCounts::default() }
     }
 
     fn add(&mut self, i: usize, j: usize, exchange: &Exchange, area: f64) {

@@ -11,6 +11,7 @@ mod assembly;
 mod discretisation;
 mod error;
 mod exposure;
+mod occlusion;
 mod pair_sample;
 mod radiosity;
 mod reciprocity;

@@ -13,5 +13,6 @@ mod shadow;
 
 pub use area_gauss::{MAX_ORDER, PatchPoints, area_gauss, double_area};
 pub use contour::contour_integral;
+pub(crate) use pair::blocks;
 pub use pair::{Exchange, Method, PairIntegrator, Workspace};
 pub use point_polygon::point_to_polygon;

@@ -14,6 +14,7 @@
 use super::hidden::{HiddenWork, Occluded, hidden_exchange};
 use super::sampled::sampled;
 use super::{PatchPoints, area_gauss, contour_integral};
+use crate::occlusion::{Clusters, Sight};
 use crate::polygon::{HalfSpace, clip};
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_quadrature::Estimate;
@@ -152,16 +153,57 @@ impl<'a> PairIntegrator<'a> {
         }
         let tolerance = self.tolerance * facing_exchange(a.patch, b.patch);
         let bodies = self.between(a.patch, b.patch);
-        if hidden_wholly(a.patch, b.patch, &bodies, self.bodies.tolerance(), &mut work.room) {
+        let nothing = self.bodies.tolerance();
+        if bodies.iter().any(|body| blocks(body, a.patch, b.patch, nothing, &mut work.room)) {
             return Exchange::NONE;
         }
         let open = unoccluded(a, b, flat, tolerance, work);
+        self.behind_bodies([a, b], outer, &bodies, open, work)
+    }
+
+    /// Groups of patches, for the assembly.
+    pub(crate) fn clusters(&self) -> Clusters {
+        Clusters::new(&self.patches, self.bodies.tolerance())
+    }
+
+    /// What decides about the visibility of groups.
+    pub(crate) fn sight<'b>(&'b self, clusters: &'b Clusters) -> Sight<'b> {
+        Sight { clusters, occluders: self.occluders, bodies: &self.bodies }
+    }
+
+    /// The exchanges of patch i with patches that nothing hides.
+    pub(crate) fn open_row(&self, i: usize, columns: &[u32], work: &mut Workspace, row: &mut Vec<Exchange>) {
+        row.clear();
+        row.extend(columns.iter().map(|&j| self.open(i, j as usize, work)));
+    }
+
+    fn open(&self, i: usize, j: usize, work: &mut Workspace) -> Exchange {
+        let (a, b) = (self.side(i), self.side(j));
+        let flat = FLAT * extent(a.patch, b.patch);
+        if !rises(b.patch, a.plane, flat) || !rises(a.patch, b.plane, flat) {
+            return Exchange::NONE;
+        }
+        unoccluded(a, b, flat, self.tolerance * facing_exchange(a.patch, b.patch), work)
+    }
+
+    /// What is left of an exchange behind bodies given by their numbers.
+    pub(crate) fn behind(&self, [i, j]: [usize; 2], bodies: &[u32], open: Exchange, work: &mut Workspace) -> Exchange {
+        if open.method == Method::Hidden {
+            return open;
+        }
+        let bodies: Vec<&Body> = bodies.iter().map(|&k| &self.bodies.as_slice()[k as usize]).collect();
+        self.behind_bodies([self.side(i), self.side(j)], Outer::Clearer, &bodies, open, work)
+    }
+
+    fn behind_bodies(&self, sides: [Side; 2], outer: Outer, bodies: &[&Body], open: Exchange, work: &mut Workspace) -> Exchange {
+        let [a, b] = sides;
+        let tolerance = self.tolerance * facing_exchange(a.patch, b.patch);
         match bodies.len() {
             0 => open,
             1..=FEW => {
-                let keep = outer == Outer::First || clearance(a, &bodies) >= clearance(b, &bodies);
+                let keep = outer == Outer::First || clearance(a, bodies) >= clearance(b, bodies);
                 let sides = if keep { [a, b] } else { [b, a] };
-                self.behind_few(sides, &bodies, open, tolerance, work)
+                self.behind_few(sides, bodies, open, tolerance, work)
             }
             _ => self.behind_many(a, b, open, tolerance),
         }
@@ -218,14 +260,12 @@ fn unoccluded(a: Side, b: Side, flat: f64, tolerance: f64, work: &mut Workspace)
     Exchange::new(Method::Contour, contour_integral(front_a, front_b, 0.1 * tolerance))
 }
 
-/// Whether one body blocks every segment between two patches. The points that a body hides from a point make a convex set, on either side: what holds
-/// for the corners holds for all.
-fn hidden_wholly(a: &Patch, b: &Patch, bodies: &[&Body], tolerance: f64, room: &mut Room) -> bool {
-    bodies.iter().any(|body| {
-        a.corners().iter().all(|&x| match body.shadow(x, tolerance, room) {
-            Shadow::Nothing => false,
-            Shadow::Room => b.corners().iter().all(|&y| room.holds(&[y - x])),
-        })
+/// Whether a body blocks every segment between two patches. The points that a body hides from a point make a convex set, on either side: what holds for
+/// the corners holds for all.
+pub(crate) fn blocks(body: &Body, a: &Patch, b: &Patch, tolerance: f64, room: &mut Room) -> bool {
+    a.corners().iter().all(|&x| match body.shadow(x, tolerance, room) {
+        Shadow::Nothing => false,
+        Shadow::Room => b.corners().iter().all(|&y| room.holds(&[y - x])),
     })
 }
 

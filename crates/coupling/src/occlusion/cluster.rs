@@ -1,0 +1,173 @@
+//! A binary tree over the patches of a scene: first by place, then by plane, then by place in the plane.
+//!
+//! A node whose patches lie in one plane and face the same side is bounded by a rectangle in that plane, which stands for its patches in questions of visibility.
+//! Other nodes are bounded by boxes. Lengths in metres.
+
+use fredholm_mesh::{Patch, Vec3};
+use std::ops::Range;
+
+/// Planes in a node up to which it is cut between planes rather than through the middle.
+const PLANES: usize = 32;
+/// Cosine of the angle between normals, less than 1 by this, up to which they count as one.
+const TURN: f64 = 1e-14;
+
+/// What bounds the patches of a node.
+#[derive(Clone, Debug)]
+pub(crate) enum Bound {
+    /// A rectangle in their plane that faces as they do, or the patch itself.
+    Flat(Patch),
+    /// A box.
+    Box([Vec3; 2]),
+}
+
+/// Some patches, by their places in the order of the tree.
+#[derive(Clone, Debug)]
+pub(crate) struct Node {
+    pub places: Range<usize>,
+    /// Nodes that share its patches, none for a single patch.
+    pub children: Option<[usize; 2]>,
+    pub bound: Bound,
+    /// Half its extent, m.
+    pub radius: f64,
+}
+
+/// The tree; node 0 is the root.
+#[derive(Clone, Debug)]
+pub(crate) struct Clusters {
+    pub nodes: Vec<Node>,
+    /// The patch at each place.
+    pub order: Vec<u32>,
+}
+
+impl Clusters {
+    /// Builds the tree; places nearer than `tolerance` (m) count as one.
+    pub(crate) fn new(patches: &[&Patch], tolerance: f64) -> Self {
+        let centres = patches.iter().map(|p| p.centroid()).collect();
+        let builder = Builder { patches, centres, tolerance };
+        let mut tree = Self { nodes: Vec::new(), order: (0..patches.len() as u32).collect() };
+        if !patches.is_empty() {
+            let mut order = std::mem::take(&mut tree.order);
+            builder.build(&mut order, 0, &mut tree.nodes);
+            tree.order = order;
+        }
+        tree
+    }
+
+    /// The largest nodes of at most `most` patches, in the order of places.
+    pub(crate) fn panels(&self, most: usize) -> Vec<usize> {
+        let mut panels = Vec::new();
+        let mut stack: Vec<usize> = (!self.nodes.is_empty()).then_some(0).into_iter().collect();
+        while let Some(node) = stack.pop() {
+            match self.nodes[node].children {
+                Some([low, high]) if self.nodes[node].places.len() > most => stack.extend([high, low]),
+                _ => panels.push(node),
+            }
+        }
+        panels
+    }
+}
+
+struct Builder<'a> {
+    patches: &'a [&'a Patch],
+    centres: Vec<Vec3>,
+    tolerance: f64,
+}
+
+impl Builder<'_> {
+    /// Appends the node of `order` (patches from place `start` on) and those below it.
+    fn build(&self, order: &mut [u32], start: usize, nodes: &mut Vec<Node>) -> usize {
+        let index = nodes.len();
+        let planes = self.planes(order);
+        let (bound, radius) = self.bound(order, planes.len());
+        nodes.push(Node { places: start..start + order.len(), children: None, bound, radius });
+        if order.len() > 1 {
+            let middle = if (2..=PLANES).contains(&planes.len()) {
+                self.between_planes(order, &planes)
+            } else {
+                self.through_the_middle(order)
+            };
+            let (low, high) = order.split_at_mut(middle);
+            let low = self.build(low, start, nodes);
+            let high = self.build(high, start + middle, nodes);
+            nodes[index].children = Some([low, high]);
+        }
+        index
+    }
+
+    fn patch(&self, k: u32) -> &Patch {
+        self.patches[k as usize]
+    }
+
+    fn in_plane(&self, k: u32, first: &Patch) -> bool {
+        let patch = self.patch(k);
+        patch.normal().dot(first.normal()) > 1.0 - TURN
+            && (patch.corner(0) - first.corner(0)).dot(first.normal()).abs() <= self.tolerance
+    }
+
+    /// One patch of each plane, in a geometrical order that the numbering does not change; more than [`PLANES`] are not told apart.
+    fn planes(&self, order: &[u32]) -> Vec<u32> {
+        let mut planes: Vec<u32> = Vec::new();
+        for &k in order {
+            if !planes.iter().any(|&p| self.in_plane(k, self.patch(p))) {
+                planes.push(k);
+                if planes.len() > PLANES {
+                    break;
+                }
+            }
+        }
+        planes
+    }
+
+    /// Sorts the patches of the first half of the planes to the front.
+    fn between_planes(&self, order: &mut [u32], planes: &[u32]) -> usize {
+        let mut sorted = planes.to_vec();
+        let key = |&p: &u32| {
+            let n = self.patch(p).normal();
+            [n.z, n.y, n.x, n.dot(self.patch(p).corner(0))]
+        };
+        sorted.sort_by(|a, b| key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal));
+        let low = &sorted[..sorted.len() / 2];
+        order.sort_by_key(|&k| !low.iter().any(|&p| self.in_plane(k, self.patch(p))));
+        order.iter().take_while(|&&k| low.iter().any(|&p| self.in_plane(k, self.patch(p)))).count()
+    }
+
+    fn through_the_middle(&self, order: &mut [u32]) -> usize {
+        let corners = || order.iter().map(|&k| self.centres[k as usize]);
+        let low = corners().fold(Vec3::INFINITY, Vec3::min);
+        let size = corners().fold(Vec3::NEG_INFINITY, Vec3::max) - low;
+        // Extents that are equal but for rounding: the same axis wherever the scene stands.
+        let most = size.max_element() * (1.0 - 1e-9);
+        let axis = (0..3).find(|&axis| size[axis] >= most).unwrap_or(0);
+        order.sort_by(|&a, &b| self.centres[a as usize][axis].total_cmp(&self.centres[b as usize][axis]));
+        order.len() / 2
+    }
+
+    fn bound(&self, order: &[u32], planes: usize) -> (Bound, f64) {
+        if let [single] = *order {
+            let patch = self.patch(single);
+            return (Bound::Flat(*patch), 0.5 * patch.diameter());
+        }
+        let corners = || order.iter().flat_map(|&k| self.patch(k).corners());
+        if planes == 1
+            && let Some(rectangle) = self.rectangle(self.patch(order[0]), corners())
+        {
+            return (Bound::Flat(rectangle), 0.5 * rectangle.diameter());
+        }
+        let low = corners().fold(Vec3::INFINITY, |low, &x| low.min(x));
+        let high = corners().fold(Vec3::NEG_INFINITY, |high, &x| high.max(x));
+        (Bound::Box([low, high]), 0.5 * low.distance(high))
+    }
+
+    fn rectangle<'a>(&self, first: &Patch, corners: impl Iterator<Item = &'a Vec3> + Clone) -> Option<Patch> {
+        let origin = first.corner(0);
+        let u = (first.corner(1) - origin).normalize();
+        let v = first.normal().cross(u);
+        let range = |axis: Vec3| {
+            let places = || corners.clone().map(|&x| (x - origin).dot(axis));
+            [places().fold(f64::INFINITY, f64::min), places().fold(f64::NEG_INFINITY, f64::max)]
+        };
+        let ([u0, u1], [v0, v1]) = (range(u), range(v));
+        let at = |s: f64, t: f64| origin + u * s + v * t;
+        Patch::quad([at(u0, v0), at(u1, v0), at(u1, v1), at(u0, v1)]).ok().flatten()
+    }
+}
