@@ -3,7 +3,8 @@
 //! Seen from a point x, the shadow of a convex body on a polygon changes its kind where a corner of the body lines up with an edge of the target, an edge of the body
 //! with a corner of the target, or a face of the body turns edge-on. Each of these happens on a plane, which meets the source in a line:
 //! vertex–edge, edge–vertex and face events. C. Campbell & D. Fussell, "An analytic approach to illumination with area light sources" (1991);
-//! G. Drettakis & E. Fiume, SIGGRAPH 1994, doi:10.1145/192161.192207. Events of two bodies at once (three edges) are curves and not listed.
+//! G. Drettakis & E. Fiume, SIGGRAPH 1994, doi:10.1145/192161.192207. The same happens between two bodies. Events
+//! of three edges are curves and not listed.
 
 use fredholm_mesh::Vec3;
 use fredholm_visibility::body::Body;
@@ -14,13 +15,30 @@ const SLIM: f64 = 1e-24;
 /// A plane n·x = c with a unit normal.
 pub(crate) type Plane = (Vec3, f64);
 
-/// Lists the planes of the events of `bodies` before `target` that cut the `source` polygon. Lengths below `flat` (m) count as 0.
+/// Lists the planes of the events of `bodies` before `target` that cut the `source` polygon, those of single bodies first. Lengths below `flat` (m) count as 0.
 pub(crate) fn critical_planes(source: &[Vec3], target: &[Vec3], bodies: &[&Body], flat: f64, found: &mut Vec<Plane>) {
     found.clear();
     let mut search = Search { source, target, flat, found };
-    for body in bodies {
-        search.body(body);
+    let outlines: Vec<Outline> = bodies.iter().map(|body| search.outline(body)).collect();
+    let whole = Outline { corners: target.to_vec(), edges: sides(target).collect() };
+    for outline in &outlines {
+        search.events(outline, &whole, false);
     }
+    for (k, outline) in outlines.iter().enumerate() {
+        for (_, other) in outlines.iter().enumerate().filter(|(l, _)| *l != k) {
+            search.events(outline, other, true);
+        }
+    }
+}
+
+/// What can show in the outline of a body, or of the target.
+struct Outline {
+    corners: Vec<Vec3>,
+    edges: Vec<[Vec3; 2]>,
+}
+
+fn sides(corners: &[Vec3]) -> impl Iterator<Item = [Vec3; 2]> + '_ {
+    corners.iter().zip(corners.iter().cycle().skip(1)).map(|(&a, &b)| [a, b])
 }
 
 struct Search<'a> {
@@ -31,48 +49,53 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    fn body(&mut self, body: &Body) {
-        let sides: Vec<Lit> = body.faces().iter().map(|face| self.lit(|x| face.height(x))).collect();
-        for (face, _) in body.faces().iter().zip(&sides).filter(|(_, lit)| **lit == Lit::Partly) {
+    /// The edges of a body that are in its outline from some point of the source. Faces that turn edge-on are events themselves.
+    fn outline(&mut self, body: &Body) -> Outline {
+        let lit: Vec<Lit> = body.faces().iter().map(|face| self.lit(|x| face.height(x))).collect();
+        for (face, _) in body.faces().iter().zip(&lit).filter(|(_, lit)| **lit == Lit::Partly) {
             self.add((face.normal, face.offset));
         }
-        let mut corners = vec![false; body.corners().len()];
+        let mut shown = vec![false; body.corners().len()];
+        let mut edges = Vec::with_capacity(body.edges().len());
         for edge in body.edges() {
-            let [left, right] = edge.faces.map(|face| sides[face as usize]);
-            if left == right && left != Lit::Partly {
-                continue;
+            let [left, right] = edge.faces.map(|face| lit[face as usize]);
+            if left != right || left == Lit::Partly {
+                edge.ends.iter().for_each(|&k| shown[k as usize] = true);
+                edges.push(body.ends(edge));
             }
-            edge.ends.iter().for_each(|&k| corners[k as usize] = true);
-            self.edge(body.ends(edge));
         }
-        for (&corner, _) in body.corners().iter().zip(corners).filter(|(_, outline)| *outline) {
-            self.corner(corner);
+        let corners = body.corners().iter().zip(shown).filter(|(_, shown)| *shown).map(|(&x, _)| x).collect();
+        Outline { corners, edges }
+    }
+
+    /// Events where the outline `near` lines up with `far` behind it. Those of two bodies matter only in front of the target.
+    fn events(&mut self, near: &Outline, far: &Outline, before: bool) {
+        for &[a, b] in &near.edges {
+            for &w in &far.corners {
+                self.event(w, [a, b], before, |c, n| meeting(c, w - c, [a, b], n), |t| 0.0 < t && t < 1.0);
+            }
+        }
+        for &v in &near.corners {
+            for &ends in &far.edges {
+                self.event(v, ends, before, |c, n| meeting(c, v - c, ends, n), |t| t > 1.0);
+            }
         }
     }
 
-    /// Events of an edge of a body with the corners of the target.
-    fn edge(&mut self, [a, b]: [Vec3; 2]) {
-        for k in 0..self.target.len() {
-            let w = self.target[k];
-            if let Some(plane) = spanned(w, a, b)
-                && let Some(chord) = self.chord(plane)
-                && lines_up(chord.map(|c| meeting(c, w - c, [a, b], plane.0)), |t| 0.0 < t && t < 1.0)
-            {
-                self.add(plane);
-            }
-        }
-    }
-
-    /// Events of a corner of a body with the edges of the target.
-    fn corner(&mut self, v: Vec3) {
-        for k in 0..self.target.len() {
-            let ends = [self.target[k], self.target[(k + 1) % self.target.len()]];
-            if let Some(plane) = spanned(v, ends[0], ends[1])
-                && let Some(chord) = self.chord(plane)
-                && lines_up(chord.map(|c| meeting(c, v - c, ends, plane.0)), |t| t > 1.0)
-            {
-                self.add(plane);
-            }
+    fn event(
+        &mut self,
+        corner: Vec3,
+        [a, b]: [Vec3; 2],
+        before: bool,
+        meeting: impl Fn(Vec3, Vec3) -> (f64, f64),
+        order: impl Fn(f64) -> bool,
+    ) {
+        let Some(plane) = spanned(corner, a, b) else { return };
+        let Some(chord) = self.chord(plane) else { return };
+        let height = |x: Vec3| plane.0.dot(x) - plane.1;
+        let shows = !before || lit(self.target, self.flat, height) == Lit::Partly;
+        if shows && lines_up(chord.map(|c| meeting(c, plane.0)), order) {
+            self.add(plane);
         }
     }
 
@@ -91,13 +114,7 @@ impl Search<'_> {
     }
 
     fn lit(&self, height: impl Fn(Vec3) -> f64) -> Lit {
-        let above = self.source.iter().any(|&x| height(x) > self.flat);
-        let below = self.source.iter().any(|&x| height(x) < -self.flat);
-        match (above, below) {
-            (true, true) => Lit::Partly,
-            (true, false) => Lit::Wholly,
-            _ => Lit::Never,
-        }
+        lit(self.source, self.flat, height)
     }
 
     /// The two ends of the line in which a plane cuts the source.
@@ -119,12 +136,25 @@ impl Search<'_> {
     }
 }
 
-/// Whether a face looks at the source.
+/// Whether a plane has corners in front of it.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Lit {
     Wholly,
     Partly,
     Never,
+}
+
+fn lit(corners: &[Vec3], flat: f64, height: impl Fn(Vec3) -> f64) -> Lit {
+    let (mut low, mut high) = (0.0f64, 0.0f64);
+    for &x in corners {
+        let height = height(x);
+        (low, high) = (low.min(height), high.max(height));
+    }
+    match (high > flat, low < -flat) {
+        (true, true) => Lit::Partly,
+        (true, false) => Lit::Wholly,
+        _ => Lit::Never,
+    }
 }
 
 fn spanned(v: Vec3, a: Vec3, b: Vec3) -> Option<Plane> {

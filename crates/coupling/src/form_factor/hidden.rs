@@ -1,29 +1,23 @@
 //! What bodies hide of an exchange: ∫_i h(x) dA with h(x) the exact form factor from x to the hidden part of j, in m².
 //!
-//! h is smooth between the critical lines ([`critical`](super::critical)), so the source is cut along them and each piece gets symmetric rules of rising degree. The
-//! piece with the largest error estimate is improved next: by degree while that pays, else by halving its sides. What several bodies do together is smooth on no
-//! cut that lines make; there the halving takes over. The unoccluded exchange is computed apart, which keeps the singularity of touching patches out of this integral.
+//! h is smooth between the critical lines ([`critical`](super::critical)), so the source is cut along them. A loose goal is met by the centroids of the
+//! cells; else each cell is cut into triangles that get symmetric rules of rising degree ([`Pieces`]). The unoccluded exchange is computed apart, which
+//! keeps the singularity of touching patches out of this integral.
 
 use super::critical::{Plane, critical_planes};
+use super::pieces::{Piece, Pieces};
 use super::shadow::{Cutter, Hiding, PolygonList};
 use fredholm_mesh::Vec3;
-use fredholm_quadrature::{Estimate, PlanePoint, symmetric_triangle};
+use fredholm_quadrature::Estimate;
 use fredholm_visibility::body::Body;
-use std::sync::LazyLock;
+use std::f64::consts::FRAC_1_PI;
 
-/// Degrees that are tried on a piece.
-const DEGREES: [usize; 7] = [1, 2, 4, 7, 10, 14, 20];
-/// Ratio of two differences below which a higher degree is expected to pay.
-const PAYS: f64 = 0.3;
-/// Smallest credible ratio of two differences.
-const CREDIBLE: f64 = 0.05;
-/// Points after which an integral ends with the error that it has.
-const POINTS: usize = 100_000;
-/// Critical lines beyond which the source is not cut along them.
+/// Error of a cell by its centroid over the bend of the hidden part.
+const BEND: f64 = 0.15;
+/// Area over the goal below which a part of the source is not cut further for being close to a body.
+const SMALL: f64 = 0.05;
+/// Critical lines along which the source is cut at most: the cells grow with their square.
 const LINES: usize = 40;
-
-static RULES: LazyLock<Vec<Vec<PlanePoint>>> =
-    LazyLock::new(|| DEGREES.iter().filter_map(|&degree| symmetric_triangle(degree).ok()).collect());
 
 /// The source polygon with its normal, the target, and what stands between.
 #[derive(Clone, Copy)]
@@ -34,6 +28,13 @@ pub(crate) struct Occluded<'a> {
     pub bodies: &'a [&'a Body],
     /// Heights up to which a point lies on a face, m.
     pub tolerance: f64,
+}
+
+impl Occluded<'_> {
+    /// The form factor h(x).
+    fn hidden(&self, x: Vec3, hiding: &mut Hiding) -> f64 {
+        hiding.hidden_factor(x, self.normal, self.target, self.bodies, self.tolerance)
+    }
 }
 
 /// Buffers of one thread.
@@ -47,31 +48,49 @@ pub(crate) struct HiddenWork {
     pieces: Vec<Piece>,
 }
 
-/// A triangle of the source, its integral and how that converged.
-#[derive(Clone, Copy, Debug)]
-struct Piece {
-    corners: [Vec3; 3],
-    /// Place in [`DEGREES`].
-    degree: usize,
-    value: f64,
-    /// Difference to the degree before.
-    step: f64,
-    error: f64,
-    pays: bool,
-}
-
 /// The hidden part of the exchange (m²), to an absolute `goal` (m²).
 pub(crate) fn hidden_exchange(scene: &Occluded, goal: f64, work: &mut HiddenWork) -> Estimate {
     cut(scene, work);
-    let mut integral = Integral { scene, hiding: &mut work.hiding, points: 0 };
-    work.pieces.clear();
-    for cell in work.cells.iter() {
-        let fan = (2..cell.len()).map(|k| [cell[0], cell[k - 1], cell[k]]);
-        work.pieces.extend(fan.map(|corners| integral.start(corners)));
+    let scale = Scale::of(scene);
+    let rough = work.cells.iter().map(|cell| scale.error(cell)).sum();
+    if rough <= goal {
+        let by_centroid = |cell: &[Vec3]| {
+            let (area, centre) = centroid(cell);
+            area * scene.hidden(centre, &mut work.hiding)
+        };
+        return Estimate { value: work.cells.iter().map(by_centroid).sum(), error: rough };
     }
-    integral.improve(&mut work.pieces, goal);
-    let sum = |part: fn(&Piece) -> f64| work.pieces.iter().map(part).sum();
-    Estimate { value: sum(|p| p.value), error: sum(|p| p.error) }
+    let steep = Steep::of(scene);
+    let mut pieces = Pieces::new(|x| scene.hidden(x, &mut work.hiding), |x| steep.distance(x), &mut work.pieces);
+    for cell in work.cells.iter() {
+        (2..cell.len()).for_each(|k| pieces.add([cell[0], cell[k - 1], cell[k]], SMALL * goal));
+    }
+    pieces.integrate(goal)
+}
+
+/// What makes the hidden part steep where it is close: corners of bodies, and edges that do not lie on the source.
+struct Steep {
+    edges: Vec<[Vec3; 2]>,
+}
+
+impl Steep {
+    fn of(scene: &Occluded) -> Self {
+        let height = |x: Vec3| (x - scene.source[0]).dot(scene.normal);
+        let lies = |x: Vec3| height(x).abs() <= scene.tolerance;
+        let on_source = |[a, b]: [Vec3; 2]| if lies(a) && lies(b) { vec![[a, a], [b, b]] } else { vec![[a, b]] };
+        let edges = scene.bodies.iter().flat_map(|body| body.edges().iter().map(|edge| body.ends(edge)));
+        Self { edges: edges.flat_map(on_source).collect() }
+    }
+
+    /// Distance of a point from the nearest of them, m.
+    fn distance(&self, x: Vec3) -> f64 {
+        let to = |&[a, b]: &[Vec3; 2]| {
+            let along = b - a;
+            let t = ((x - a).dot(along) / along.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+            x.distance(a + along * t)
+        };
+        self.edges.iter().map(to).fold(f64::INFINITY, f64::min)
+    }
 }
 
 /// Cuts the source along its critical lines.
@@ -80,69 +99,46 @@ fn cut(scene: &Occluded, work: &mut HiddenWork) {
     critical_planes(scene.source, scene.target, scene.bodies, flat, &mut work.planes);
     work.cells.clear();
     work.cells.push_with(|corners| corners.extend_from_slice(scene.source));
-    if work.planes.len() <= LINES {
-        for &(n, c) in &work.planes {
-            work.cells.cut(n, c, flat, &mut work.cutter, &mut work.spare);
-        }
+    for &(n, c) in work.planes.iter().take(LINES) {
+        work.cells.cut(n, c, flat, &mut work.cutter, &mut work.spare);
     }
 }
 
-struct Integral<'a> {
-    scene: &'a Occluded<'a>,
-    hiding: &'a mut Hiding,
-    points: usize,
+/// How fast the hidden part changes over the source: the border of a shadow moves over the target by m times the way of the point, m = (D − d) / d with the
+/// distances D of the target and d of the bodies.
+struct Scale {
+    /// Squared m / target area + 1 / D², m⁻².
+    bend: f64,
+    /// Largest exchange per area of source.
+    most: f64,
 }
 
-impl Integral<'_> {
-    fn start(&mut self, corners: [Vec3; 3]) -> Piece {
-        let [first, value] = [0, 1].map(|degree| self.integrate(&corners, degree));
-        let step = (value - first).abs();
-        Piece { corners, degree: 1, value, step, error: step, pays: true }
+impl Scale {
+    fn of(scene: &Occluded) -> Self {
+        let centre = |polygon: &[Vec3]| polygon.iter().sum::<Vec3>() / polygon.len() as f64;
+        let (from, to) = (centre(scene.source), centre(scene.target));
+        let way = to - from;
+        let along = |x: Vec3| (x - from).dot(way) / way.length_squared();
+        let near = scene.bodies.iter().flat_map(|body| body.corners()).map(|&x| along(x)).fold(1.0, f64::min);
+        let magnified = if near > 0.0 { (1.0 - near) / near } else { f64::INFINITY };
+        let (d2, target) = (way.length_squared(), centroid(scene.target).0);
+        Self { bend: magnified * magnified / target + 1.0 / d2, most: (FRAC_1_PI * target / d2).min(1.0) }
     }
 
-    /// ∫ h dA over a triangle.
-    fn integrate(&mut self, corners: &[Vec3; 3], degree: usize) -> f64 {
-        let [a, b, c] = *corners;
-        let (u, v) = (b - a, c - a);
-        let Occluded { normal, target, bodies, tolerance, .. } = *self.scene;
-        let rule = &RULES[degree];
-        self.points += rule.len();
-        let mut at = |p: &PlanePoint| {
-            let x = a + u * p.u + v * p.v;
-            p.weight * self.hiding.hidden_factor(x, normal, target, bodies, tolerance)
-        };
-        let sum: f64 = rule.iter().map(&mut at).sum();
-        sum * u.cross(v).length()
-    }
-
-    fn improve(&mut self, pieces: &mut Vec<Piece>, goal: f64) {
-        while self.points < POINTS {
-            let total: f64 = pieces.iter().map(|p| p.error).sum();
-            let worst = (0..pieces.len()).max_by(|&i, &j| pieces[i].error.total_cmp(&pieces[j].error));
-            let Some(worst) = worst.filter(|_| total > goal) else { return };
-            if pieces[worst].pays {
-                pieces[worst] = self.raise(pieces[worst]);
-            } else {
-                let parts = quarters(&pieces[worst].corners).map(|corners| self.start(corners));
-                pieces[worst] = parts[0];
-                pieces.extend_from_slice(&parts[1..]);
-            }
-        }
-    }
-
-    fn raise(&mut self, piece: Piece) -> Piece {
-        let degree = piece.degree + 1;
-        let value = self.integrate(&piece.corners, degree);
-        let step = (value - piece.value).abs();
-        let ratio = if piece.step > 0.0 { step / piece.step } else { 1.0 };
-        let error = step * ratio.clamp(CREDIBLE, 1.0);
-        let pays = ratio < PAYS && degree + 1 < DEGREES.len();
-        Piece { degree, value, step, error, pays, ..piece }
+    /// Error of a cell by its centroid: on a cell the hidden part is nearly a quadratic function, so that is its bend times the squared radius of gyration.
+    fn error(&self, cell: &[Vec3]) -> f64 {
+        let (area, centre) = centroid(cell);
+        let gyration = cell.iter().map(|x| x.distance_squared(centre)).sum::<f64>() / (3 * cell.len()) as f64;
+        area * self.most * (BEND * self.bend * gyration).min(1.0)
     }
 }
 
-/// A triangle cut at the middles of its sides.
-fn quarters(&[a, b, c]: &[Vec3; 3]) -> [[Vec3; 3]; 4] {
-    let [d, e, f] = [(a, b), (b, c), (c, a)].map(|(p, q)| 0.5 * (p + q));
-    [[a, d, f], [d, b, e], [f, e, c], [d, e, f]]
+/// Area (m²) and centroid of a flat polygon.
+fn centroid(corners: &[Vec3]) -> (f64, Vec3) {
+    let origin = corners[0];
+    let fan = || corners.windows(2).map(|e| (e[0] - origin, e[1] - origin)).map(|(a, b)| (a.cross(b), a + b));
+    let whole: Vec3 = fan().map(|(doubled, _)| doubled).sum();
+    let doubled = whole.length();
+    let moment: Vec3 = fan().map(|(part, thrice)| thrice * part.dot(whole)).sum();
+    (0.5 * doubled, origin + moment / (3.0 * doubled * doubled))
 }

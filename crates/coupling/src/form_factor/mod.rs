@@ -7,6 +7,7 @@ mod contour;
 mod critical;
 mod hidden;
 mod pair;
+mod pieces;
 mod point_polygon;
 mod sampled;
 mod shadow;

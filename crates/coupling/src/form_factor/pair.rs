@@ -19,7 +19,7 @@ use crate::polygon::{HalfSpace, clip};
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_quadrature::Estimate;
 use fredholm_visibility::Occluders;
-use fredholm_visibility::body::{Bodies, Body, Room, Shadow};
+use fredholm_visibility::body::{Bodies, Body, Face, Room, Shadow};
 use std::f64::consts::FRAC_1_PI;
 
 /// Heights below this part of the pair's extent count as 0.
@@ -233,13 +233,10 @@ impl<'a> PairIntegrator<'a> {
         let [front_a, front_b] = &mut work.front;
         front(a.patch, b.plane, flat, front_a);
         front(b.patch, a.plane, flat, front_b);
-        let scene = Occluded {
-            source: front_a,
-            normal: a.patch.normal(),
-            target: front_b,
-            bodies,
-            tolerance: self.bodies.tolerance(),
-        };
+        let tolerance = self.bodies.tolerance();
+        let cut: Vec<Option<Body>> = bodies.iter().map(|body| between(body, a, b, tolerance)).collect();
+        let bodies: Vec<&Body> = cut.iter().zip(bodies).map(|(cut, whole)| cut.as_ref().unwrap_or(whole)).collect();
+        let scene = Occluded { source: front_a, normal: a.patch.normal(), target: front_b, bodies: &bodies, tolerance };
         let hidden = hidden_exchange(&scene, goal, &mut work.hidden);
         let left = Estimate { value: open.value - hidden.value, error: open.error + hidden.error };
         Exchange::new(Method::Clipped, left)
@@ -258,6 +255,13 @@ fn unoccluded(a: Side, b: Side, flat: f64, tolerance: f64, work: &mut Workspace)
     front(a.patch, b.plane, flat, front_a);
     front(b.patch, a.plane, flat, front_b);
     Exchange::new(Method::Contour, contour_integral(front_a, front_b, 0.1 * tolerance))
+}
+
+/// The part of a body in front of both patches, or `None` where that is the whole body.
+fn between(body: &Body, a: Side, b: Side, tolerance: f64) -> Option<Body> {
+    let [first, second] = [a, b].map(|side| Face { normal: side.plane.normal, offset: side.plane.offset });
+    let part = body.in_front(&first, tolerance);
+    part.as_ref().unwrap_or(body).in_front(&second, tolerance).or(part)
 }
 
 /// Whether a body blocks every segment between two patches. The points that a body hides from a point make a convex set, on either side: what holds for

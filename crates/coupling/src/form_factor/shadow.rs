@@ -29,7 +29,7 @@ impl PolygonList {
         (0..self.len()).map(|i| self.get(i))
     }
 
-    fn get(&self, i: usize) -> &[Vec3] {
+    pub(crate) fn get(&self, i: usize) -> &[Vec3] {
         let start = if i == 0 { 0 } else { self.ends[i - 1] };
         &self.corners[start..self.ends[i]]
     }
@@ -45,13 +45,23 @@ impl PolygonList {
         }
     }
 
+    /// Keeps the first `len` polygons.
+    fn truncate(&mut self, len: usize) {
+        self.ends.truncate(len);
+        self.corners.truncate(self.ends.last().copied().unwrap_or(0));
+    }
+
     /// Cuts every polygon by the plane n·x = c into its parts on both sides. Heights of at most `tolerance` count as 0.
     pub(crate) fn cut(&mut self, n: Vec3, c: f64, tolerance: f64, work: &mut Cutter, spare: &mut Self) {
         spare.clear();
         for i in 0..self.len() {
-            work.split(self.get(i), n, c, tolerance);
-            spare.push_with(|corners| corners.extend_from_slice(&work.inside));
-            spare.push_with(|corners| corners.extend_from_slice(&work.outside));
+            let polygon = self.get(i);
+            if work.split(polygon, n, c, tolerance) == Cut::Both {
+                spare.push_with(|corners| corners.extend_from_slice(&work.inside));
+                spare.push_with(|corners| corners.extend_from_slice(&work.outside));
+            } else {
+                spare.push_with(|corners| corners.extend_from_slice(polygon));
+            }
         }
         std::mem::swap(self, spare);
     }
@@ -66,38 +76,52 @@ pub(crate) struct Cutter {
 }
 
 impl Cutter {
-    /// Splits a convex polygon into its parts with n·x ≥ c and ≤ c; a part without area is empty.
-    fn split(&mut self, polygon: &[Vec3], n: Vec3, c: f64, tolerance: f64) {
+    /// Splits a convex polygon into its parts with n·x ≥ c and ≤ c, which are in `inside` and `outside` only where the plane cuts it.
+    fn split(&mut self, polygon: &[Vec3], n: Vec3, c: f64, tolerance: f64) -> Cut {
+        self.heights.clear();
+        self.heights.extend(polygon.iter().map(|v| n.dot(*v) - c));
+        let (mut low, mut high) = (-tolerance, tolerance);
+        for &height in &self.heights {
+            low = low.min(height);
+            high = high.max(height);
+        }
+        if low >= -tolerance || high <= tolerance {
+            return if high > tolerance { Cut::Inside } else { Cut::Outside };
+        }
         self.inside.clear();
         self.outside.clear();
-        self.heights.clear();
-        let height = |v: &Vec3| n.dot(*v) - c;
-        self.heights.extend(polygon.iter().map(height).map(|h| if h.abs() <= tolerance { 0.0 } else { h }));
-        let (above, below) = (self.heights.iter().any(|&h| h > 0.0), self.heights.iter().any(|&h| h < 0.0));
-        if !above || !below {
-            let whole = if above { &mut self.inside } else { &mut self.outside };
-            whole.extend_from_slice(polygon);
-            return;
+        let snapped = |h: f64| if h.abs() <= tolerance { 0.0 } else { h };
+        let last = polygon.len() - 1;
+        let mut from = (polygon[last], snapped(self.heights[last]));
+        for (i, &corner) in polygon.iter().enumerate() {
+            let to = (corner, snapped(self.heights[i]));
+            self.side(from, to);
+            from = to;
         }
-        for i in 0..polygon.len() {
-            let j = if i + 1 == polygon.len() { 0 } else { i + 1 };
-            self.side((polygon[i], self.heights[i]), (polygon[j], self.heights[j]));
-        }
+        Cut::Both
     }
 
     fn side(&mut self, from: (Vec3, f64), to: (Vec3, f64)) {
-        if from.1 >= 0.0 {
-            self.inside.push(from.0);
-        }
-        if from.1 <= 0.0 {
-            self.outside.push(from.0);
-        }
         if from.1 * to.1 < 0.0 {
             let cut = crossing(from, to);
             self.inside.push(cut);
             self.outside.push(cut);
         }
+        if to.1 >= 0.0 {
+            self.inside.push(to.0);
+        }
+        if to.1 <= 0.0 {
+            self.outside.push(to.0);
+        }
     }
+}
+
+/// On which side of a plane a polygon lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Cut {
+    Inside,
+    Outside,
+    Both,
 }
 
 /// Buffers of the subtraction, kept between points.
@@ -131,20 +155,29 @@ impl Hiding {
         let mut hidden = 0.0;
         for i in 0..self.visible.len() {
             let piece = self.visible.get(i);
-            if self.room.misses(piece) {
-                self.next.push_with(|corners| corners.extend_from_slice(piece));
-                continue;
-            }
             self.rest.clear();
             self.rest.extend_from_slice(piece);
+            let start = self.next.ends.len();
+            let mut inside = true;
             for &(m, c) in self.room.planes() {
-                self.cutter.split(&self.rest, m, c, 0.0);
-                std::mem::swap(&mut self.rest, &mut self.cutter.inside);
+                match self.cutter.split(&self.rest, m, c, 0.0) {
+                    Cut::Inside => continue,
+                    Cut::Outside => inside = false,
+                    Cut::Both => std::mem::swap(&mut self.rest, &mut self.cutter.inside),
+                }
+                if !inside {
+                    break;
+                }
                 if !last {
                     self.next.push_with(|corners| corners.extend_from_slice(&self.cutter.outside));
                 }
             }
-            hidden += point_to_polygon(n, self.rest.iter().copied());
+            if inside {
+                hidden += point_to_polygon(n, self.rest.iter().copied());
+            } else if !last {
+                self.next.truncate(start);
+                self.next.push_with(|corners| corners.extend_from_slice(piece));
+            }
         }
         std::mem::swap(&mut self.visible, &mut self.next);
         hidden

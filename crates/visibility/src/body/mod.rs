@@ -5,6 +5,7 @@
 //! body with two faces. Lengths in metres.
 
 mod bodies;
+mod clip;
 mod coplanar;
 mod outline;
 mod solid;
