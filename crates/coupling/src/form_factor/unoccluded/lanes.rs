@@ -3,8 +3,6 @@
 //! Loops run over lanes with additions, multiplications, divisions and roots only, never fused, so that a result has the same bits whatever the
 //! width of the machine's vectors and whichever pairs stand beside it.
 
-use std::array::from_fn;
-
 /// Pairs of a block.
 pub(super) const LANES: usize = 32;
 
@@ -13,6 +11,17 @@ pub(super) type Lanes = [f64; LANES];
 
 /// One vector a pair, by components.
 pub(super) type Lanes3 = [Lanes; 3];
+
+/// The value of every lane.
+#[inline(always)]
+pub(super) fn each(mut value: impl FnMut(usize) -> f64) -> Lanes {
+    // `array::from_fn` stays a call of its own, compiled without the wide vectors.
+    let mut lanes = [0.0; LANES];
+    for (m, lane) in lanes.iter_mut().enumerate() {
+        *lane = value(m);
+    }
+    lanes
+}
 
 /// The patches on one side of a block.
 pub(super) enum Places {
@@ -45,9 +54,9 @@ impl Places {
             Self::Same(id) => [field[*id]; LANES],
             Self::Run(first) => {
                 let run = &field[*first..*first + LANES];
-                from_fn(|m| run[m])
+                each(|m| run[m])
             }
-            Self::Any(ids) => from_fn(|m| field[ids[m] as usize]),
+            Self::Any(ids) => each(|m| field[ids[m] as usize]),
         }
     }
 
@@ -61,11 +70,17 @@ impl Places {
 /// a·b in every lane.
 #[inline(always)]
 pub(super) fn dot(a: &Lanes3, b: &Lanes3) -> Lanes {
-    from_fn(|m| a[0][m] * b[0][m] + a[1][m] * b[1][m] + a[2][m] * b[2][m])
+    each(|m| a[0][m] * b[0][m] + a[1][m] * b[1][m] + a[2][m] * b[2][m])
 }
 
 /// a − b in every lane.
 #[inline(always)]
 pub(super) fn difference(a: &Lanes3, b: &Lanes3) -> Lanes3 {
-    from_fn(|axis| from_fn(|m| a[axis][m] - b[axis][m]))
+    [each(|m| a[0][m] - b[0][m]), each(|m| a[1][m] - b[1][m]), each(|m| a[2][m] - b[2][m])]
+}
+
+/// a + b in every lane.
+#[inline(always)]
+pub(super) fn sum(a: &Lanes3, b: &Lanes3) -> Lanes3 {
+    [each(|m| a[0][m] + b[0][m]), each(|m| a[1][m] + b[1][m]), each(|m| a[2][m] + b[2][m])]
 }

@@ -31,7 +31,7 @@ use lanes::{LANES, Lanes, Places};
 use parallelogram::parallelograms;
 use patches::{Outline, Patches};
 use polygons::polygons;
-use pulp::Arch;
+use pulp::{Arch, NullaryFnOnce};
 use survey::{Survey, survey};
 
 /// Computes exchanges between patches of one scene that see each other wholly.
@@ -69,7 +69,7 @@ impl<'a> Unoccluded<'a> {
     pub fn row(&self, i: usize, js: &[u32], work: &mut Work, out: &mut [Exchange]) {
         let count = js.len().min(out.len());
         let row = Row { all: self, i: i as u32, js: &js[..count] };
-        self.arch.dispatch(|| row.look(work));
+        self.arch.dispatch(Look { row: &row, work });
         work.buckets.sort(&work.ways);
         out[..count].fill(NONE);
         for (way, places) in work.buckets.runs() {
@@ -79,7 +79,7 @@ impl<'a> Unoccluded<'a> {
                     out[place as usize] = row.close(place, tolerance, &mut work.front);
                 }
             } else {
-                self.arch.dispatch(|| row.gauss(way, places, &work.errors, out));
+                self.arch.dispatch(Gauss { row: &row, way, places, errors: &work.errors, out });
             }
         }
     }
@@ -87,6 +87,39 @@ impl<'a> Unoccluded<'a> {
 
 /// A patch that lies behind another.
 const NONE: Exchange = Exchange { value: 0.0, error: 0.0, method: Method::Hidden };
+
+/// Looking at the pairs of a row, compiled for each width of vectors: a closure would be compiled once, for the narrowest.
+struct Look<'a> {
+    row: &'a Row<'a>,
+    work: &'a mut Work,
+}
+
+impl NullaryFnOnce for Look<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.row.look(self.work);
+    }
+}
+
+/// Gauss for the pairs of a row that go one way.
+struct Gauss<'a> {
+    row: &'a Row<'a>,
+    way: Way,
+    places: &'a [u32],
+    errors: &'a [f64],
+    out: &'a mut [Exchange],
+}
+
+impl NullaryFnOnce for Gauss<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.row.gauss(self.way, self.places, self.errors, self.out);
+    }
+}
 
 /// The pairs of one patch with others.
 struct Row<'a> {

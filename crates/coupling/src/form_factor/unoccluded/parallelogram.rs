@@ -10,11 +10,10 @@
 //! Nodes ±s, ±t share a weight; their sum is one atanh by tanh(x + y) = (tanh x + tanh y)/(1 + tanh x tanh y). Lengths in any unit, exchanges
 //! in its square.
 
-use super::lanes::{LANES, Lanes, Lanes3, Places, difference, dot};
+use super::lanes::{LANES, Lanes, Lanes3, Places, difference, dot, each};
 use super::logarithm::{SERIES_END, ln_1p, twice_atanh};
 use super::patches::Patches;
 use super::rules::{Node, rule};
-use std::array::from_fn;
 use std::f64::consts::TAU;
 
 /// Cosine below which two directions count as perpendicular.
@@ -23,9 +22,9 @@ const PERPENDICULAR: f64 = 4.0 * f64::EPSILON;
 /// A_i F_ij of a block of pairs, with so many points along the sides of the first and of the second.
 #[inline(always)]
 pub(super) fn parallelograms(patches: &Patches, pair: [&Places; 2], points: [usize; 2]) -> Lanes {
-    let centre = pair.map(|side| side.vectors(&patches.centre));
-    let sides = pair.map(|side| patches.side.each_ref().map(|field| side.vectors(field)));
-    let d = difference(&centre[1], &centre[0]);
+    let [u, v] = &patches.side;
+    let sides = [[pair[0].vectors(u), pair[0].vectors(v)], [pair[1].vectors(u), pair[1].vectors(v)]];
+    let d = difference(&pair[1].vectors(&patches.centre), &pair[0].vectors(&patches.centre));
     let mut sum = [0.0; LANES];
     for along in 0..2 {
         for beside in 0..2 {
@@ -35,7 +34,7 @@ pub(super) fn parallelograms(patches: &Patches, pair: [&Places; 2], points: [usi
                 let second = [&sides[1][beside], &sides[1][1 - beside]];
                 let field = Field::new(&d, first, second);
                 let integral = field.integral(points);
-                sum = from_fn(|m| sum[m] + weight[m] * integral[m]);
+                sum = each(|m| sum[m] + weight[m] * integral[m]);
             }
         }
     }
@@ -47,7 +46,7 @@ pub(super) fn parallelograms(patches: &Patches, pair: [&Places; 2], points: [usi
 fn weights(w: &Lanes3, w2: &Lanes3, same: bool) -> Lanes {
     let scale = if same { 0.5 / TAU } else { -0.5 / TAU };
     let (cosine, one, two) = (dot(w, w2), dot(w, w), dot(w2, w2));
-    from_fn(|m| {
+    each(|m| {
         let square = cosine[m] * cosine[m];
         let is_right = square <= PERPENDICULAR * PERPENDICULAR * (one[m] * two[m]);
         if is_right { 0.0 } else { scale * cosine[m] }
@@ -77,19 +76,19 @@ impl Field {
         let (base, one, two) = (dot(d, d), dot(o, o), dot(o2, o2));
         let (s_s, s_t, s_st, across) = (dot(d, w), dot(d, w2), dot(w, w2), dot(o, o2));
         Self {
-            s_base: from_fn(|m| base[m] + 0.25 * (one[m] + two[m])),
-            s_s: s_s.map(|x| -2.0 * x),
-            s_t: s_t.map(|x| 2.0 * x),
+            s_base: each(|m| base[m] + 0.25 * (one[m] + two[m])),
+            s_s: each(|m| -2.0 * s_s[m]),
+            s_t: each(|m| 2.0 * s_t[m]),
             s_ss: dot(w, w),
             s_tt: dot(w2, w2),
-            s_st: s_st.map(|x| -2.0 * x),
+            s_st: each(|m| -2.0 * s_st[m]),
             p_base: dot(d, o),
-            p_s: dot(w, o).map(|x| -x),
+            p_s: dot(w, o),
             p_t: dot(w2, o),
             q_base: dot(d, o2),
-            q_s: dot(w, o2).map(|x| -x),
+            q_s: dot(w, o2),
             q_t: dot(w2, o2),
-            across: across.map(|x| 0.5 * x),
+            across: each(|m| 0.5 * across[m]),
         }
     }
 
@@ -143,8 +142,8 @@ impl Field {
     fn ratio(&self, m: usize, [s, t]: [f64; 2]) -> [f64; 2] {
         let square = (self.s_base[m] + s * s * self.s_ss[m] + t * t * self.s_tt[m])
             + (s * self.s_s[m] + t * self.s_t[m] + s * t * self.s_st[m]);
-        let p = self.p_base[m] + s * self.p_s[m] + t * self.p_t[m];
-        let q = self.q_base[m] + s * self.q_s[m] + t * self.q_t[m];
+        let p = self.p_base[m] - s * self.p_s[m] + t * self.p_t[m];
+        let q = self.q_base[m] - s * self.q_s[m] + t * self.q_t[m];
         let c = self.across[m];
         [2.0 * (p * q - square * c), (square * square + c * c) - (p * p + q * q)]
     }

@@ -5,11 +5,10 @@
 //! difference of distances: the rounding left is that of h/d, not of 1. Nodes ±s, ±t share a weight and one logarithm:
 //! (1 + x)(1 + y) = 1 + (x + y + x y). Lengths in any unit, exchanges in its square.
 
-use super::lanes::{LANES, Lanes, Lanes3, Places, difference, dot};
+use super::lanes::{LANES, Lanes, Lanes3, Places, difference, dot, each, sum};
 use super::logarithm::ln_1p;
 use super::patches::Patches;
 use super::rules::{Node, rule};
-use std::array::from_fn;
 use std::f64::consts::TAU;
 
 /// A_i F_ij of a block of pairs with so many corners, and so many points along the edges of the first and of the second.
@@ -20,21 +19,28 @@ pub(super) fn polygons(
     corners: [usize; 2],
     points: [usize; 2],
 ) -> Lanes {
-    let centre = pair.map(|side| side.vectors(&patches.centre));
-    let corner = pair.map(|side| patches.corner.each_ref().map(|field| side.vectors(field)));
-    let d = difference(&centre[1], &centre[0]);
-    let inverse = dot(&d, &d).map(f64::recip);
-    let mut sum = [0.0; LANES];
+    let corner = [outline(patches, pair[0]), outline(patches, pair[1])];
+    let d = difference(&pair[1].vectors(&patches.centre), &pair[0].vectors(&patches.centre));
+    let square = dot(&d, &d);
+    let inverse = each(|m| 1.0 / square[m]);
+    let mut total = [0.0; LANES];
     for k in 0..corners[0] {
         let e = Edge::new(&corner[0][k], &corner[0][(k + 1) % corners[0]]);
         for l in 0..corners[1] {
             let f = Edge::new(&corner[1][l], &corner[1][(l + 1) % corners[1]]);
             let cosine = dot(&e.side, &f.side);
             let integral = Field::new(&d, &inverse, &e, &f).integral(points);
-            sum = from_fn(|m| sum[m] + cosine[m] * integral[m]);
+            total = each(|m| total[m] + cosine[m] * integral[m]);
         }
     }
-    sum.map(|x| x * (0.5 / TAU))
+    each(|m| total[m] * (0.5 / TAU))
+}
+
+/// The corners seen from the centre.
+#[inline(always)]
+fn outline(patches: &Patches, side: &Places) -> [Lanes3; 4] {
+    let [a, b, c, d] = &patches.corner;
+    [side.vectors(a), side.vectors(b), side.vectors(c), side.vectors(d)]
 }
 
 /// An edge: its middle seen from the centre of the polygon, and its side.
@@ -46,8 +52,8 @@ struct Edge {
 impl Edge {
     #[inline(always)]
     fn new(from: &Lanes3, to: &Lanes3) -> Self {
-        let middle = from_fn(|axis| from_fn(|m| 0.5 * (from[axis][m] + to[axis][m])));
-        Self { middle, side: difference(to, from) }
+        let [x, y, z] = sum(from, to);
+        Self { middle: [each(|m| 0.5 * x[m]), each(|m| 0.5 * y[m]), each(|m| 0.5 * z[m])], side: difference(to, from) }
     }
 }
 
@@ -65,11 +71,11 @@ impl Field {
     #[inline(always)]
     fn new(d: &Lanes3, inverse: &Lanes, e: &Edge, f: &Edge) -> Self {
         let offset = difference(&f.middle, &e.middle);
-        let middle: Lanes3 = from_fn(|axis| from_fn(|m| d[axis][m] + offset[axis][m]));
+        let middle = sum(d, &offset);
         let (linear, square) = (dot(d, &offset), dot(&offset, &offset));
-        let scaled = |factor: f64, x: Lanes| -> Lanes { from_fn(|m| factor * inverse[m] * x[m]) };
+        let scaled = |factor: f64, x: Lanes| -> Lanes { each(|m| factor * inverse[m] * x[m]) };
         Self {
-            base: from_fn(|m| inverse[m] * (2.0 * linear[m] + square[m])),
+            base: each(|m| inverse[m] * (2.0 * linear[m] + square[m])),
             s: scaled(-2.0, dot(&middle, &e.side)),
             t: scaled(2.0, dot(&middle, &f.side)),
             ss: scaled(1.0, dot(&e.side, &e.side)),

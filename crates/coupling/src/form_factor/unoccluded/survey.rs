@@ -10,10 +10,9 @@
 //! Of a parallelogram the errors on opposite sides cancel to h/D. C is measured, see `tests/unoccluded.rs`. Both patches share the
 //! tolerance evenly.
 
-use super::lanes::{LANES, Lanes, Lanes3, Places, difference, dot};
+use super::lanes::{LANES, Lanes, Lanes3, Places, difference, dot, each};
 use super::patches::Patches;
 use super::rules::MAX_POINTS;
-use std::array::from_fn;
 use std::f64::consts::FRAC_1_PI;
 
 /// C of the error of one patch.
@@ -42,25 +41,24 @@ pub(super) struct Survey {
 /// Looks at the pairs of two sides, to a tolerance relative to the facing exchange.
 #[inline(always)]
 pub(super) fn survey(patches: &Patches, pair: [&Places; 2], tolerance: f64) -> Survey {
-    let centre = pair.map(|side| side.vectors(&patches.centre));
-    let d = difference(&centre[1], &centre[0]);
-    let radius = pair.map(|side| side.of(&patches.radius));
-    let distance = dot(&d, &d).map(f64::sqrt);
-    let flat: Lanes = from_fn(|m| {
+    let d = difference(&pair[1].vectors(&patches.centre), &pair[0].vectors(&patches.centre));
+    let radius = [pair[0].of(&patches.radius), pair[1].of(&patches.radius)];
+    let square = dot(&d, &d);
+    let distance = each(|m| square[m].sqrt());
+    let flat: Lanes = each(|m| {
         FLAT * (distance[m] + 2.0 * (radius[0][m] + radius[1][m])) + FAR / f64::EPSILON * patches.rounding
     });
-    let back = d.map(|axis| axis.map(|x| -x));
-    let there = heights(patches, pair[0], pair[1], &d);
-    let here = heights(patches, pair[1], pair[0], &back);
-    let behind: Lanes = from_fn(|m| f64::from(there.high[m] <= flat[m]).max(f64::from(here.high[m] <= flat[m])));
-    let crosses: Lanes = from_fn(|m| f64::from(there.low[m] < -flat[m]).max(f64::from(here.low[m] < -flat[m])));
-    let area = pair.map(|side| side.of(&patches.area));
-    let open: Lanes = from_fn(|m| FRAC_1_PI * area[0][m] * area[1][m] / (distance[m] * distance[m]));
-    let facing: Lanes = from_fn(|m| open[m].min(area[0][m].min(area[1][m])));
-    let limit: Lanes = from_fn(|m| 0.5 * tolerance * (facing[m] / open[m]));
+    let there = heights(patches, pair[0], pair[1], &d, 1.0);
+    let here = heights(patches, pair[1], pair[0], &d, -1.0);
+    let behind: Lanes = each(|m| f64::from(lower(there.high[m], here.high[m]) <= flat[m]));
+    let crosses: Lanes = each(|m| f64::from(lower(there.low[m], here.low[m]) < -flat[m]));
+    let area = [pair[0].of(&patches.area), pair[1].of(&patches.area)];
+    let open: Lanes = each(|m| FRAC_1_PI * area[0][m] * area[1][m] / (distance[m] * distance[m]));
+    let facing: Lanes = each(|m| lower(open[m], lower(area[0][m], area[1][m])));
+    let limit: Lanes = each(|m| 0.5 * tolerance * (facing[m] / open[m]));
     let one = orders(patches, pair[0], &radius[1], &distance, &limit);
     let two = orders(patches, pair[1], &radius[0], &distance, &limit);
-    let error: Lanes = from_fn(|m| {
+    let error: Lanes = each(|m| {
         let near = (distance[m] / (distance[m] - (radius[0][m] + radius[1][m]))).powi(2);
         let rounded = ROUNDING * f64::EPSILON + 2.0 * (f64::EPSILON + patches.rounding) / distance[m];
         open[m] * (one.error[m] + two.error[m] + rounded * near)
@@ -75,15 +73,28 @@ struct Heights {
 }
 
 #[inline(always)]
-fn heights(patches: &Patches, over: &Places, of: &Places, d: &Lanes3) -> Heights {
+fn heights(patches: &Patches, over: &Places, of: &Places, d: &Lanes3, sign: f64) -> Heights {
     let normal = over.vectors(&patches.normal);
     let middle = dot(&normal, d);
-    let corner = patches.corner.each_ref().map(|field| dot(&normal, &of.vectors(field)));
-    let [a, b, c, e] = corner;
+    let [a, b, c, e] = &patches.corner;
+    let (a, b) = (dot(&normal, &of.vectors(a)), dot(&normal, &of.vectors(b)));
+    let (c, e) = (dot(&normal, &of.vectors(c)), dot(&normal, &of.vectors(e)));
     Heights {
-        low: from_fn(|m| middle[m] + a[m].min(b[m]).min(c[m].min(e[m]))),
-        high: from_fn(|m| middle[m] + a[m].max(b[m]).max(c[m].max(e[m]))),
+        low: each(|m| sign * middle[m] + lower(lower(a[m], b[m]), lower(c[m], e[m]))),
+        high: each(|m| sign * middle[m] + higher(higher(a[m], b[m]), higher(c[m], e[m]))),
     }
+}
+
+/// The lower of two numbers. `f64::min` asks for NaN too, which takes three instructions more.
+#[inline(always)]
+fn lower(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The higher of two numbers.
+#[inline(always)]
+fn higher(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
 /// The number of points of one patch and the error they leave, relative to A_i A_j / (π d²).
@@ -95,25 +106,27 @@ struct Orders {
 #[inline(always)]
 fn orders(patches: &Patches, side: &Places, reach: &Lanes, distance: &Lanes, limit: &Lanes) -> Orders {
     let [half, middle, slenderness] =
-        [&patches.half, &patches.middle, &patches.slenderness].map(|field| side.of(field));
+        [side.of(&patches.half), side.of(&patches.middle), side.of(&patches.slenderness)];
     let (mut power, mut factor) = ([0.0; LANES], [0.0; LANES]);
     for m in 0..LANES {
-        let least = (distance[m] - (middle[m] + reach[m])).max(half[m]);
+        let least = higher(distance[m] - (middle[m] + reach[m]), half[m]);
         let x = least / half[m];
         let rho = x + (x * x - 1.0).sqrt();
         let near = distance[m] / least;
         power[m] = 1.0 / (rho * rho);
-        factor[m] = CONSTANT * near * near.max(distance[m] * slenderness[m]) / (1.0 - power[m]);
+        factor[m] = CONSTANT * near * higher(near, distance[m] * slenderness[m]) / (1.0 - power[m]);
     }
-    let (mut points, mut error) = ([1.0; LANES], from_fn(|m| factor[m] * power[m]));
-    let mut bound = error;
-    for n in 1..=MAX_POINTS {
+    let mut error = each(|m| factor[m] * power[m]);
+    let mut points = [1.0; LANES];
+    let mut n = 1.0;
+    while n <= MAX_POINTS as f64 && (0..LANES).fold(false, |any, m| any | (error[m] > limit[m])) {
+        let ratio = (n + 1.0) / n;
         for m in 0..LANES {
-            let more = bound[m] > limit[m];
-            bound[m] *= power[m] * ((n + 1) as f64 / n as f64);
-            points[m] += f64::from(more);
-            error[m] = if more { bound[m] } else { error[m] };
+            let more = error[m] > limit[m];
+            error[m] *= if more { power[m] * ratio } else { 1.0 };
+            points[m] += if more { 1.0 } else { 0.0 };
         }
+        n += 1.0;
     }
     Orders { points, error }
 }
