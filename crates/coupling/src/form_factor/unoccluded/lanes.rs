@@ -4,7 +4,7 @@
 //! width of the machine's vectors and whichever pairs stand beside it.
 
 /// Pairs of a block.
-pub(super) const LANES: usize = 32;
+pub(super) const LANES: usize = 8;
 
 /// One number a pair.
 pub(super) type Lanes = [f64; LANES];

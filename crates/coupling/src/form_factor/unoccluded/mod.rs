@@ -43,14 +43,43 @@ pub struct Unoccluded<'a> {
     arch: Arch,
 }
 
-/// Buffers of one thread.
+/// How many pairs were computed in each way.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Ways {
+    /// Pairs of which one lies behind the other or in its plane: 0.
+    pub behind: u64,
+    /// Pairs by Gauss points along the edges.
+    pub gauss: u64,
+    /// Pairs by the contour integral of the parts that face each other.
+    pub close: u64,
+}
+
+/// Buffers of one thread, and what it has computed.
 #[derive(Clone, Debug, Default)]
 pub struct Work {
+    counts: Ways,
     ways: Vec<Way>,
     errors: Vec<f64>,
     facing: Vec<f64>,
     buckets: Buckets,
     front: [Vec<Vec3>; 2],
+}
+
+impl Work {
+    /// The pairs computed so far with these buffers.
+    #[must_use]
+    pub fn counts(&self) -> Ways {
+        self.counts
+    }
+
+    fn count(&mut self) {
+        self.counts.behind += self.ways.len() as u64;
+        for (way, places) in self.buckets.runs() {
+            let pairs = places.len() as u64;
+            self.counts.behind -= pairs;
+            *(if way == Way::CLOSE { &mut self.counts.close } else { &mut self.counts.gauss }) += pairs;
+        }
+    }
 }
 
 impl<'a> Unoccluded<'a> {
@@ -71,6 +100,7 @@ impl<'a> Unoccluded<'a> {
         let row = Row { all: self, i: i as u32, js: &js[..count] };
         self.arch.dispatch(Look { row: &row, work });
         work.buckets.sort(&work.ways);
+        work.count();
         out[..count].fill(NONE);
         for (way, places) in work.buckets.runs() {
             if way == Way::CLOSE {
