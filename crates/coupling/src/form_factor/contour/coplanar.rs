@@ -19,7 +19,9 @@ pub(super) fn coplanar(e: Edge, f: Edge) -> Option<Estimate> {
     let gap2 = (f.start - e.start).dot(normal).powi(2) / sine2;
     let [s0, t0] = meeting(e, f, sine2);
     let (s1, t1) = (s0 + e.length, t0 + f.length);
-    let term = |place: f64, from: Vec3, along: Edge| if place == 0.0 { 0.0 } else { place * log_integral(from, along) };
+    let term = |place: f64, from: Vec3, along: Edge| {
+        if place == 0.0 { 0.0 } else { place * log_integral(from, along) }
+    };
     let terms = [term(s1, e.end(), f), -term(s0, e.start, f), term(t1, f.end(), e), -term(t0, f.start, e)];
     let value = 0.5 * (terms.iter().sum::<f64>() - e.length * f.length);
     let largest = terms.iter().fold(e.length * f.length, |m, t| m.max(t.abs()));

@@ -7,6 +7,7 @@
 //! makes ρ grow; where they are nearly parallel too, until values agree.
 
 use super::edge::{Edge, log_integral};
+use fredholm_mesh::Vec3;
 use fredholm_quadrature::{Estimate, IntervalRule, gauss_legendre, integrate_adaptive};
 use std::sync::LazyLock;
 
@@ -25,24 +26,24 @@ static RULES: LazyLock<Vec<IntervalRule>> = LazyLock::new(|| (0..=MAX_POINTS).ma
 /// Integration over an edge of the closed integral over another.
 #[derive(Clone, Copy)]
 pub(super) struct Outer {
-    outer: Edge,
-    inner: Edge,
-    /// Points along the outer edge; more than there are rules for where it is to be bisected.
+    along: Edge,
+    other: Edge,
+    /// Points along the first edge; more than there are rules for where it is to be bisected.
     pub points: usize,
     error: f64,
 }
 
 impl Outer {
-    /// The points on `outer` that leave an absolute error of `goal`.
-    pub(super) fn new(outer: Edge, inner: Edge, goal: f64) -> Self {
-        let decay = ellipse(outer, inner).powi(-2);
+    /// The points on `along` that leave an absolute error of `goal`.
+    pub(super) fn new(along: Edge, other: Edge, goal: f64) -> Self {
+        let decay = ellipse(along, other).powi(-2);
         let mut points = 2;
-        let mut error = 0.5 * 1.07 * outer.length * inner.length * decay * decay / (1.0 - decay);
+        let mut error = 0.5 * 1.07 * along.length * other.length * decay * decay / (1.0 - decay);
         while error > goal && points <= MAX_POINTS {
             error *= decay * points as f64 / (points + 1) as f64;
             points += 1;
         }
-        Self { outer, inner, points, error }
+        Self { along, other, points, error }
     }
 
     /// The integral to an absolute error of `goal`; `sine2` is the squared sine of the angle between the edges.
@@ -50,7 +51,7 @@ impl Outer {
         if self.points <= MAX_POINTS || sine2 > STEEP {
             return self.bisect(goal, DEPTH);
         }
-        integrate_adaptive(&RULES[ADAPTIVE], 0.0, self.outer.length, goal, DEPTH, &|s| self.inner(s))
+        integrate_adaptive(&RULES[ADAPTIVE], 0.0, self.along.length, goal, DEPTH, &|s| self.inner(s))
     }
 
     fn bisect(&self, goal: f64, depth: u32) -> Estimate {
@@ -59,20 +60,20 @@ impl Outer {
         }
         if depth == 0 {
             let value = self.apply(&RULES[MAX_POINTS]);
-            return Estimate { value, error: value.abs() + self.outer.length * self.inner.length };
+            return Estimate { value, error: value.abs() + self.along.length * self.other.length };
         }
-        let half = Edge { length: 0.5 * self.outer.length, ..self.outer };
+        let half = Edge { length: 0.5 * self.along.length, ..self.along };
         let rest = Edge { start: half.end(), ..half };
-        let part = |edge: Edge| Self::new(edge, self.inner, 0.5 * goal).bisect(0.5 * goal, depth - 1);
+        let part = |edge: Edge| Self::new(edge, self.other, 0.5 * goal).bisect(0.5 * goal, depth - 1);
         part(half) + part(rest)
     }
 
     fn apply(&self, rule: &IntervalRule) -> f64 {
-        rule.integrate(0.0, self.outer.length, |s| self.inner(s))
+        rule.integrate(0.0, self.along.length, |s| self.inner(s))
     }
 
     fn inner(&self, s: f64) -> f64 {
-        log_integral(self.outer.start + self.outer.direction * s, self.inner)
+        log_integral(self.along.start + self.along.direction * s, self.other)
     }
 }
 
@@ -84,7 +85,7 @@ fn ellipse(e: Edge, f: Edge) -> f64 {
 
 /// Least r₀ + r₁ over the points of `f`: on its line, where the ray between the ends of `e` is reflected.
 fn nearest_sum(e: Edge, f: Edge) -> f64 {
-    let foot = |p: fredholm_mesh::Vec3| {
+    let foot = |p: Vec3| {
         let d = p - f.start;
         let along = d.dot(f.direction);
         (along, (d - f.direction * along).length_squared())

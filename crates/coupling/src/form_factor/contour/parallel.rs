@@ -17,7 +17,10 @@ pub(super) fn parallel(e: Edge, f: Edge, sign: f64, sine: f64) -> Estimate {
     let terms = [primitive(a, h2), primitive(along - b, h2), -primitive(a - b, h2), -primitive(along, h2)];
     let largest = terms.iter().fold(0.0, |m: f64, t| m.max(t.abs()));
     // ∂ₛ∂ₜ Φ(w₀ + s − σt) = −σ Φ″.
-    Estimate { value: sign * terms.iter().sum::<f64>(), error: ROUNDING * largest + 0.5 * PI * sine * e.length * e.length }
+    Estimate {
+        value: sign * terms.iter().sum::<f64>(),
+        error: ROUNDING * largest + 0.5 * PI * sine * e.length * e.length,
+    }
 }
 
 fn primitive(w: f64, h2: f64) -> f64 {

@@ -13,6 +13,9 @@
 //! The number of points is known beforehand from the distance, so nothing is computed twice; see `survey` for the bound. The tolerance T is relative
 //! to the exchange the two patches would have squarely facing each other, A_i A_j / (π d²), or the smaller area where that is less.
 
+#![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
+#![allow(clippy::needless_range_loop, reason = "loops over lanes read many arrays at the same place")]
+
 mod buckets;
 mod close;
 mod lanes;
@@ -231,7 +234,7 @@ impl Row<'_> {
 
     fn close(&self, place: u32, tolerance: f64, front: &mut [Vec<Vec3>; 2]) -> Exchange {
         let j = self.js[place as usize];
-        let [a, b] = [self.i.min(j), self.i.max(j)].map(|k| self.all.source[k as usize]);
+        let [a, b] = [self.i, j].map(|k| self.all.source[k as usize]);
         exchange(close::close(a, b, tolerance * self.all.patches.unit * self.all.patches.unit, front))
     }
 }

@@ -53,7 +53,10 @@ impl Edge {
     #[inline(always)]
     fn new(from: &Lanes3, to: &Lanes3) -> Self {
         let [x, y, z] = sum(from, to);
-        Self { middle: [each(|m| 0.5 * x[m]), each(|m| 0.5 * y[m]), each(|m| 0.5 * z[m])], side: difference(to, from) }
+        Self {
+            middle: [each(|m| 0.5 * x[m]), each(|m| 0.5 * y[m]), each(|m| 0.5 * z[m])],
+            side: difference(to, from),
+        }
     }
 }
 
