@@ -45,28 +45,106 @@ pub(super) struct Survey {
 #[inline(always)]
 pub(super) fn survey(patches: &Patches, pair: [&Places; 2], tolerance: f64) -> Survey {
     let d = difference(&pair[1].vectors(&patches.centre), &pair[0].vectors(&patches.centre));
-    let radius = [pair[0].of(&patches.radius), pair[1].of(&patches.radius)];
     let square = dot(&d, &d);
     let distance = each(|m| square[m].sqrt());
-    let flat: Lanes = each(|m| {
-        FLAT * (distance[m] + 2.0 * (radius[0][m] + radius[1][m])) + FAR / f64::EPSILON * patches.rounding
-    });
-    let there = heights(patches, pair[0], pair[1], &d, 1.0);
-    let here = heights(patches, pair[1], pair[0], &d, -1.0);
-    let behind: Lanes = each(|m| f64::from(lower(there.high[m], here.high[m]) <= flat[m]));
-    let crosses: Lanes = each(|m| f64::from(lower(there.low[m], here.low[m]) < -flat[m]));
-    let area = [pair[0].of(&patches.area), pair[1].of(&patches.area)];
-    let open: Lanes = each(|m| FRAC_1_PI * (area[0][m] * area[1][m]) / (distance[m] * distance[m]));
-    let facing: Lanes = each(|m| lower(open[m], lower(area[0][m], area[1][m])));
-    let limit: Lanes = each(|m| SHARE * tolerance * (facing[m] / open[m]));
-    let one = orders(patches, pair[0], &radius[1], &distance, &limit);
-    let two = orders(patches, pair[1], &radius[0], &distance, &limit);
-    let error: Lanes = each(|m| {
-        let near = higher(one.near[m], two.near[m]);
-        let rounded = ROUNDING * f64::EPSILON + 2.0 * (f64::EPSILON + patches.rounding) / distance[m];
-        open[m] * (one.error[m] + two.error[m] + rounded * (near * near))
-    });
-    Survey { behind, crosses, points: [one.points, two.points], error, facing }
+    let extents = [Extents::new(patches, pair[0]), Extents::new(patches, pair[1])];
+    let sight = Sight::new(patches, pair, &d, &distance, &extents);
+    let mut seen = Survey {
+        behind: sight.behind,
+        crosses: sight.crosses,
+        points: [[0.0; LANES]; 2],
+        error: [0.0; LANES],
+        facing: [0.0; LANES],
+    };
+    if seen.behind.iter().sum::<f64>() < LANES as f64 {
+        seen.measure(patches, pair, &distance, &extents, tolerance);
+    }
+    seen
+}
+
+impl Survey {
+    /// Finds the exchange that the tolerance refers to, the points and the error.
+    #[inline(always)]
+    fn measure(
+        &mut self,
+        patches: &Patches,
+        pair: [&Places; 2],
+        distance: &Lanes,
+        extents: &[Extents; 2],
+        tolerance: f64,
+    ) {
+        let area = [pair[0].of(&patches.area), pair[1].of(&patches.area)];
+        let open: Lanes = each(|m| FRAC_1_PI * (area[0][m] * area[1][m]) / (distance[m] * distance[m]));
+        self.facing = each(|m| lower(open[m], lower(area[0][m], area[1][m])));
+        let limit: Lanes = each(|m| SHARE * tolerance * (self.facing[m] / open[m]));
+        let one = Orders::new(&extents[0], &extents[1].radius, distance, &limit);
+        let alike = extents[0] == extents[1];
+        let two = if alike { one } else { Orders::new(&extents[1], &extents[0].radius, distance, &limit) };
+        self.points = [one.points, two.points];
+        self.error = each(|m| {
+            let near = higher(one.near[m], two.near[m]);
+            let rounded = ROUNDING * f64::EPSILON + 2.0 * (f64::EPSILON + patches.rounding) / distance[m];
+            open[m] * (one.error[m] + two.error[m] + rounded * (near * near))
+        });
+    }
+}
+
+/// Sizes of the patches on one side.
+#[derive(PartialEq)]
+struct Extents {
+    radius: Lanes,
+    half: Lanes,
+    middle: Lanes,
+    slenderness: Lanes,
+}
+
+impl Extents {
+    #[inline(always)]
+    fn new(patches: &Patches, side: &Places) -> Self {
+        Self {
+            radius: side.of(&patches.radius),
+            half: side.of(&patches.half),
+            middle: side.of(&patches.middle),
+            slenderness: side.of(&patches.slenderness),
+        }
+    }
+}
+
+/// On which side of each other's planes the patches of a block lie: 1 for true.
+struct Sight {
+    behind: Lanes,
+    crosses: Lanes,
+}
+
+impl Sight {
+    #[inline(always)]
+    fn new(
+        patches: &Patches,
+        pair: [&Places; 2],
+        d: &Lanes3,
+        distance: &Lanes,
+        [one, two]: &[Extents; 2],
+    ) -> Self {
+        let flat: Lanes = each(|m| {
+            FLAT * (distance[m] + 2.0 * (one.radius[m] + two.radius[m]))
+                + FAR / f64::EPSILON * patches.rounding
+        });
+        let normals = [pair[0].vectors(&patches.normal), pair[1].vectors(&patches.normal)];
+        let (there, back) = (dot(&normals[0], d), dot(&normals[1], d));
+        // Nearly all patches are farther from the other's plane than they are large.
+        let least = each(|m| lower(there[m] - two.radius[m], -back[m] - one.radius[m]) - flat[m]);
+        if least.iter().fold(f64::INFINITY, |low, &x| lower(x, low)) > 0.0 {
+            return Self { behind: [0.0; LANES], crosses: [0.0; LANES] };
+        }
+        let (there, here) = (
+            heights(patches, pair[1], &normals[0], &there, 1.0),
+            heights(patches, pair[0], &normals[1], &back, -1.0),
+        );
+        Self {
+            behind: each(|m| f64::from(lower(there.high[m], here.high[m]) <= flat[m])),
+            crosses: each(|m| f64::from(lower(there.low[m], here.low[m]) < -flat[m])),
+        }
+    }
 }
 
 /// Least and largest height of the corners of a patch over the plane of another.
@@ -76,12 +154,10 @@ struct Heights {
 }
 
 #[inline(always)]
-fn heights(patches: &Patches, over: &Places, of: &Places, d: &Lanes3, sign: f64) -> Heights {
-    let normal = over.vectors(&patches.normal);
-    let middle = dot(&normal, d);
+fn heights(patches: &Patches, of: &Places, normal: &Lanes3, middle: &Lanes, sign: f64) -> Heights {
     let [a, b, c, e] = &patches.corner;
-    let (a, b) = (dot(&normal, &of.vectors(a)), dot(&normal, &of.vectors(b)));
-    let (c, e) = (dot(&normal, &of.vectors(c)), dot(&normal, &of.vectors(e)));
+    let (a, b) = (dot(normal, &of.vectors(a)), dot(normal, &of.vectors(b)));
+    let (c, e) = (dot(normal, &of.vectors(c)), dot(normal, &of.vectors(e)));
     Heights {
         low: each(|m| sign * middle[m] + lower(lower(a[m], b[m]), lower(c[m], e[m]))),
         high: each(|m| sign * middle[m] + higher(higher(a[m], b[m]), higher(c[m], e[m]))),
@@ -101,6 +177,7 @@ fn higher(a: f64, b: f64) -> f64 {
 }
 
 /// The number of points of one patch and the error they leave, relative to A_i A_j / (π d²).
+#[derive(Clone, Copy)]
 struct Orders {
     points: Lanes,
     /// d/D.
@@ -108,33 +185,34 @@ struct Orders {
     error: Lanes,
 }
 
-#[inline(always)]
-fn orders(patches: &Patches, side: &Places, reach: &Lanes, distance: &Lanes, limit: &Lanes) -> Orders {
-    let [half, middle, slenderness] =
-        [side.of(&patches.half), side.of(&patches.middle), side.of(&patches.slenderness)];
-    let (mut power, mut factor, mut near) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-    for m in 0..LANES {
-        let least = higher(distance[m] - (middle[m] + reach[m]), half[m]);
-        let x = least / half[m];
-        let rho = x + (x * x - 1.0).sqrt();
-        near[m] = distance[m] / least;
-        power[m] = 1.0 / (rho * rho);
-        let shape = higher(PARALLELOGRAM * near[m], POLYGON * (distance[m] * slenderness[m]));
-        factor[m] = near[m] * shape / (1.0 - power[m]);
-    }
-    let mut error = each(|m| factor[m] * power[m]);
-    let mut points = [1.0; LANES];
-    let mut n = 1.0;
-    while n <= MAX_POINTS as f64 && exceeds(&error, limit) {
-        let ratio = (n + 1.0) / n;
+impl Orders {
+    #[inline(always)]
+    fn new(extents: &Extents, reach: &Lanes, distance: &Lanes, limit: &Lanes) -> Self {
+        let Extents { half, middle, slenderness, .. } = extents;
+        let (mut power, mut factor, mut near) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
         for m in 0..LANES {
-            let more = error[m] > limit[m];
-            error[m] *= if more { power[m] * ratio } else { 1.0 };
-            points[m] += if more { 1.0 } else { 0.0 };
+            let least = higher(distance[m] - (middle[m] + reach[m]), half[m]);
+            let x = least / half[m];
+            let rho = x + (x * x - 1.0).sqrt();
+            near[m] = distance[m] / least;
+            power[m] = 1.0 / (rho * rho);
+            let shape = higher(PARALLELOGRAM * near[m], POLYGON * (distance[m] * slenderness[m]));
+            factor[m] = near[m] * shape / (1.0 - power[m]);
         }
-        n += 1.0;
+        let mut error = each(|m| factor[m] * power[m]);
+        let mut points = [1.0; LANES];
+        let mut n = 1.0;
+        while n <= MAX_POINTS as f64 && exceeds(&error, limit) {
+            let ratio = (n + 1.0) / n;
+            for m in 0..LANES {
+                let more = error[m] > limit[m];
+                error[m] *= if more { power[m] * ratio } else { 1.0 };
+                points[m] += if more { 1.0 } else { 0.0 };
+            }
+            n += 1.0;
+        }
+        Self { points, near, error }
     }
-    Orders { points, near, error }
 }
 
 /// Whether a lane of `a` is above that of `b`. All lanes are compared, which takes fewer instructions than leaving at the first.
