@@ -56,7 +56,7 @@ fn pairs(kind: Kind, count: usize) -> Vec<[Patch; 2]> {
     let mut random = Random::new(7);
     let mut one = |k: usize| {
         let p = pair(kind, &mut random);
-        if k % 2 == 0 { p } else { [straightened(&p[0]), straightened(&p[1])] }
+        if k.is_multiple_of(2) { p } else { [straightened(&p[0]), straightened(&p[1])] }
     };
     (0..count).map(&mut one).collect()
 }
@@ -175,7 +175,7 @@ fn scattered(count: usize) -> Vec<Patch> {
     let mut one = |k: usize| {
         let (centre, n) = (random.direction() * random.scale(0.5, 30.0), random.direction());
         let p = generator::polygon(centre, n, random.scale(0.1, 1.0), 1.0, &mut random);
-        if k % 2 == 0 { p } else { straightened(&p) }
+        if k.is_multiple_of(2) { p } else { straightened(&p) }
     };
     (0..count).map(&mut one).collect()
 }
@@ -225,7 +225,7 @@ fn patches_behind_or_in_one_plane_exchange_nothing() {
     assert_eq!(ways, Ways { behind: 5, ..Ways::default() });
     let mut out = [EMPTY];
     Unoccluded::new(&[&floor], 1e-6).row(0, &[0], &mut Work::default(), &mut out);
-    assert_eq!(out[0].value, 0.0, "a flat patch does not see itself");
+    assert_eq!(out[0].method, Method::Hidden, "a flat patch does not see itself");
 }
 
 /// The unit cube, each wall n × n patches that face inwards.

@@ -89,7 +89,12 @@ impl<'a> Unoccluded<'a> {
     /// Prepares the patches; `tolerance` is T of the module's text.
     #[must_use]
     pub fn new(patches: &[&'a Patch], tolerance: f64) -> Self {
-        Self { source: patches.to_vec(), patches: Patches::new(patches), tolerance, arch: Arch::new() }
+        Self {
+            source: patches.to_vec(),
+            patches: Patches::new(patches),
+            tolerance: tolerance.max(0.0),
+            arch: Arch::new(),
+        }
     }
 
     /// Writes A_i F_ij (m²) of patch `i` and each of `js` to `out`, as far as both lists reach. A pair has the same bits in either order and
@@ -243,4 +248,44 @@ impl Row<'_> {
 fn exchange(estimate: Estimate) -> Exchange {
     let below = (-estimate.value).max(0.0);
     Exchange { value: estimate.value.max(0.0), error: estimate.error + below, method: Method::Contour }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Squares and triangles on a bent strip, turned to each other.
+    fn strip() -> Vec<Patch> {
+        let place = |k: u32| {
+            let (angle, height) = (f64::from(k) * 0.37, f64::from(k % 7) * 0.9);
+            let out = Vec3::new(angle.cos(), angle.sin(), 0.0);
+            (out * 5.0 + Vec3::Z * height, Vec3::Z.cross(out) * 0.6, Vec3::new(0.1, 0.0, 0.7))
+        };
+        let patch = |k: u32| {
+            let (p, u, v) = place(k);
+            let corners = [p, p + v, p + u + v, p + u];
+            if k.is_multiple_of(3) {
+                Patch::triangle([corners[0], corners[1], corners[2]]).unwrap()
+            } else {
+                Patch::quad(corners).unwrap().unwrap()
+            }
+        };
+        (0..60).map(patch).collect()
+    }
+
+    #[test]
+    fn the_width_of_vectors_changes_no_bit() {
+        let patches = strip();
+        let list: Vec<&Patch> = patches.iter().collect();
+        let js: Vec<u32> = (0..60).collect();
+        let wide = Unoccluded::new(&list, 1e-9);
+        let narrow = Unoccluded { arch: Arch::Scalar, ..Unoccluded::new(&list, 1e-9) };
+        let (mut work, mut out) = (Work::default(), [vec![NONE; 60], vec![NONE; 60]]);
+        for i in 0..60 {
+            wide.row(i, &js, &mut work, &mut out[0]);
+            narrow.row(i, &js, &mut work, &mut out[1]);
+            assert_eq!(out[0], out[1]);
+        }
+        assert!(work.counts().gauss > 1000, "{:?}", work.counts());
+    }
 }
