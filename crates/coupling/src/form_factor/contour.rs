@@ -1,35 +1,27 @@
 //! Polygon to polygon as a contour integral: A_i F_ij = (1/2π) Σₑ Σ_f (dₑ·d_f) ∫ₑ∫_f ln r ds dt.
 //!
 //! Stokes' theorem twice; E. M. Sparrow 1963, doi:10.1115/1.3686055; J.-F. Viennot's thesis, eq. 1.41. In m². Both polygons must lie in
-//! front of each other and be counter-clockwise about their normals. The inner integral is closed; with parallel
-//! edges so is the outer one, else it is bisected adaptively, which copes with edges that touch or cross.
+//! front of each other and be counter-clockwise about their normals. The inner integral is closed. So is the outer one for edges that are
+//! parallel, and for edges in one plane, as all that touch are. Others take as many Gauss points as a proven bound asks for.
 
+mod coplanar;
+mod edge;
+mod gauss;
+mod parallel;
+
+use coplanar::coplanar;
+use edge::{Edge, rounding};
 use fredholm_mesh::Vec3;
-use fredholm_quadrature::{Estimate, IntervalRule, gauss_legendre, integrate_adaptive};
+use fredholm_quadrature::Estimate;
+use gauss::Outer;
+use parallel::parallel;
 use std::f64::consts::TAU;
-use std::sync::LazyLock;
 
-/// Points of the rule that is bisected along an edge.
-const POINTS: usize = 10;
-/// Bisections towards a touching corner: 2⁻⁵⁰ of the edge is below rounding.
-const DEPTH: u32 = 50;
-/// Squared sine of the angle under which edges count as parallel.
-const PARALLEL: f64 = 1e-28;
-/// Rounding of one edge pair, relative to the largest term of its closed form.
-const ROUNDING: f64 = 8.0 * f64::EPSILON;
-/// Largest term of the closed form for parallel edges, over the product of their lengths, at which it is used. Its four terms grow
-/// with the squared distance and cancel; quadrature of the inner integral does not.
+/// Error of a closed form, over the rounding of the inner integrals alone, at which it is used: its terms grow with the distance and cancel;
+/// quadrature of the inner integral does not.
 const CANCELLING: f64 = 100.0;
-
-static RULE: LazyLock<IntervalRule> = LazyLock::new(|| gauss_legendre(POINTS));
-
-/// An oriented edge: start, unit direction, length.
-#[derive(Clone, Copy)]
-struct Edge {
-    start: Vec3,
-    direction: Vec3,
-    length: f64,
-}
+/// Gauss points up to which they cost less than a closed form.
+const FEW: usize = 6;
 
 /// A_i F_ij (m²) between two polygons given by their corners, to an absolute `tolerance` (m²) as far as rounding lets it.
 ///
@@ -82,66 +74,23 @@ fn edge_pair(e: Edge, f: Edge, tolerance: f64) -> Estimate {
     if cosine.abs() <= f64::EPSILON {
         return Estimate::default();
     }
+    // A point of the longer edge is rounded by more of the shorter one.
     let (e, f) = if e.length <= f.length { (e, f) } else { (f, e) };
     let rounding = rounding(e, f);
-    if e.direction.cross(f.direction).length_squared() <= PARALLEL {
-        let closed = parallel(e, f, cosine.signum());
-        if closed.error <= CANCELLING * rounding {
-            return closed;
-        }
-    }
-    let inner = |s: f64| log_integral(e.start + e.direction * s, f);
     // Below rounding two values never agree, however short the interval.
-    let outer = integrate_adaptive(&RULE, 0.0, e.length, tolerance.max(rounding), DEPTH, &inner);
-    Estimate { value: cosine * outer.value, error: cosine.abs() * (outer.error + rounding) }
+    let goal = tolerance.max(rounding);
+    let sine2 = e.direction.cross(f.direction).length_squared();
+    let outer = Outer::new(e, f, goal);
+    let closed = if outer.points > FEW { closed(e, f, goal.max(CANCELLING * rounding)) } else { None };
+    let sum = closed.unwrap_or_else(|| outer.integrate(goal, sine2));
+    Estimate { value: cosine * sum.value, error: cosine.abs() * (sum.error + rounding) }
 }
 
-/// Rounding of ∫∫ ln r ds dt: that of the terms of the inner integral, and that of a point of `e`, of order 1, times the change
-/// of the inner integral with it, the angle under which it sees `f`.
-fn rounding(e: Edge, f: Edge) -> f64 {
-    let gap = e.start.distance(f.start) - e.length - f.length;
-    let angle = f.length / gap.max(f.length);
-    ROUNDING * e.length * (f.length + angle)
-}
-
-/// ∫ ln |p − q(t)| dt along an edge of length L: with r₀, r₁ the distances of its ends, t₀, t₁ = t₀ + L their places along it from the foot
-/// of p and h the height of p, ½ L ln(r₀ r₁) + ½ (t₀ + t₁) ln(r₁/r₀) − L + h θ. θ is the angle under which p sees the edge. Every term
-/// is of the order of L: nothing cancels where the edge is short and far.
-fn log_integral(p: Vec3, f: Edge) -> f64 {
-    let d = f.start - p;
-    let t0 = d.dot(f.direction);
-    let t1 = t0 + f.length;
-    let h2 = (d - f.direction * t0).length_squared();
-    let (r0, r1) = (t0 * t0 + h2, t1 * t1 + h2);
-    let near = r0.min(r1);
-    if near == 0.0 {
-        return f.length * (f.length.ln() - 1.0);
-    }
-    let middle = t0 + t1;
-    let ratio = 0.5 * (f.length * middle.abs() / near).ln_1p();
-    let h = h2.sqrt();
-    let angle = (h * f.length).atan2(h2 + t0 * t1);
-    0.25 * f.length * (r0.ln() + r1.ln()) + 0.5 * middle.abs() * ratio - f.length + h * angle
-}
-
-/// Both integrals closed for parallel edges: with w the distance along them and h across,
-/// Φ(w) = ¼ (w² − h²) ln(w² + h²) − ¾ w² + h w atan(w/h) has Φ″ = ½ ln(w² + h²) up to a constant of Φ.
-fn parallel(e: Edge, f: Edge, sign: f64) -> Estimate {
-    let d = e.start - f.start;
-    let along = d.dot(e.direction);
-    let h2 = (d - e.direction * along).length_squared();
-    let h = h2.sqrt();
-    let primitive = |w: f64| {
-        let r2 = w * w + h2;
-        let log = if r2 == 0.0 { 0.0 } else { 0.25 * (w * w - h2) * r2.ln() };
-        let angle = if h == 0.0 { 0.0 } else { h * w * (w / h).atan() };
-        log - 0.75 * w * w + angle
-    };
-    let (a, b) = (along + e.length, sign * f.length);
-    let terms = [primitive(a), primitive(along - b), -primitive(a - b), -primitive(along)];
-    let largest = terms.iter().fold(0.0, |m: f64, t| m.max(t.abs()));
-    // ∂ₛ∂ₜ Φ(w₀ + s − σt) = −σ Φ″, and the factor dₑ·d_f = σ squares it away.
-    Estimate { value: terms.iter().sum(), error: ROUNDING * largest }
+/// The closed form for parallel edges or for edges in one plane, if its error is at most `goal`.
+fn closed(e: Edge, f: Edge, goal: f64) -> Option<Estimate> {
+    let [sine, cosine] = [e.direction.cross(f.direction).length(), e.direction.dot(f.direction)];
+    let met = |closed: &Estimate| closed.error <= goal;
+    Some(parallel(e, f, cosine.signum(), sine)).filter(met).or_else(|| coplanar(e, f).filter(met))
 }
 
 #[cfg(test)]

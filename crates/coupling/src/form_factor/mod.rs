@@ -11,9 +11,11 @@ mod pieces;
 mod point_polygon;
 mod sampled;
 mod shadow;
+mod unoccluded;
 
 pub use area_gauss::{MAX_ORDER, PatchPoints, area_gauss, double_area};
 pub use contour::contour_integral;
 pub(crate) use pair::blocks;
 pub use pair::{Exchange, Method, PairIntegrator, Workspace};
 pub use point_polygon::point_to_polygon;
+pub use unoccluded::{Unoccluded, Ways, Work};

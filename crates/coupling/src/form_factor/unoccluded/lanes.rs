@@ -1,0 +1,86 @@
+//! Blocks of pairs: one lane a pair, every quantity an array over the lanes.
+//!
+//! Loops run over lanes with additions, multiplications, divisions and roots only, never fused, so that a result has the same bits whatever the
+//! width of the machine's vectors and whichever pairs stand beside it.
+
+/// Pairs of a block.
+pub(super) const LANES: usize = 8;
+
+/// One number a pair.
+pub(super) type Lanes = [f64; LANES];
+
+/// One vector a pair, by components.
+pub(super) type Lanes3 = [Lanes; 3];
+
+/// The value of every lane.
+#[inline(always)]
+pub(super) fn each(mut value: impl FnMut(usize) -> f64) -> Lanes {
+    // `array::from_fn` stays a call of its own, compiled without the wide vectors.
+    let mut lanes = [0.0; LANES];
+    for (m, lane) in lanes.iter_mut().enumerate() {
+        *lane = value(m);
+    }
+    lanes
+}
+
+/// The patches on one side of a block.
+pub(super) enum Places {
+    /// The same patch in every lane.
+    Same(usize),
+    /// Consecutive patches from this one on.
+    Run(usize),
+    /// Any patches.
+    Any([u32; LANES]),
+}
+
+impl Places {
+    /// The patches of `ids`; `length` is the number of patches there are.
+    #[inline(always)]
+    pub(super) fn new(ids: [u32; LANES]) -> Self {
+        let first = ids[0];
+        if ids.iter().all(|&id| id == first) {
+            Self::Same(first as usize)
+        } else if ids.iter().zip(0..).all(|(&id, k)| id == first.wrapping_add(k)) {
+            Self::Run(first as usize)
+        } else {
+            Self::Any(ids)
+        }
+    }
+
+    /// The values of a field at these patches.
+    #[inline(always)]
+    pub(super) fn of(&self, field: &[f64]) -> Lanes {
+        match self {
+            Self::Same(id) => [field[*id]; LANES],
+            Self::Run(first) => {
+                let run = &field[*first..*first + LANES];
+                each(|m| run[m])
+            }
+            Self::Any(ids) => each(|m| field[ids[m] as usize]),
+        }
+    }
+
+    /// The values of the three components of a field.
+    #[inline(always)]
+    pub(super) fn vectors(&self, field: &[Vec<f64>; 3]) -> Lanes3 {
+        [self.of(&field[0]), self.of(&field[1]), self.of(&field[2])]
+    }
+}
+
+/// a·b in every lane.
+#[inline(always)]
+pub(super) fn dot(a: &Lanes3, b: &Lanes3) -> Lanes {
+    each(|m| a[0][m] * b[0][m] + a[1][m] * b[1][m] + a[2][m] * b[2][m])
+}
+
+/// a − b in every lane.
+#[inline(always)]
+pub(super) fn difference(a: &Lanes3, b: &Lanes3) -> Lanes3 {
+    [each(|m| a[0][m] - b[0][m]), each(|m| a[1][m] - b[1][m]), each(|m| a[2][m] - b[2][m])]
+}
+
+/// a + b in every lane.
+#[inline(always)]
+pub(super) fn sum(a: &Lanes3, b: &Lanes3) -> Lanes3 {
+    [each(|m| a[0][m] + b[0][m]), each(|m| a[1][m] + b[1][m]), each(|m| a[2][m] + b[2][m])]
+}
