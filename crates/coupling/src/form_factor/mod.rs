@@ -14,3 +14,4 @@ pub use area_gauss::{MAX_ORDER, PatchPoints, area_gauss, double_area};
 pub use contour::contour_integral;
 pub use pair::{Exchange, Method, PairIntegrator, Workspace};
 pub use point_polygon::point_to_polygon;
+pub(crate) use shadow::{PolygonList, Shadow};
