@@ -91,7 +91,8 @@ pub struct Closed {
     pub steps: usize,
 }
 
-/// Enforces Σ_j G_ij = A_i (`areas`, m²). `error` is the stated error of every row sum of F: it tells an inexact row from an open one.
+/// Enforces Σ_j G_ij = A_i (`areas`, m²) for the first `closing` rows; the others, as that of the sky, take what comes. `error` is the stated
+/// error of every row sum of F: it tells an inexact row from an open one.
 ///
 /// # Errors
 /// [`ClosureError::Open`] for a row whose sum is not near 1, [`ClosureError::Infeasible`] where there is no such matrix.
@@ -99,14 +100,16 @@ pub fn enforce_closure(
     matrix: &PackedSymmetric<f64>,
     areas: &[f64],
     error: &[f64],
+    closing: usize,
 ) -> Result<Closed, ClosureError> {
     for found in [areas.len(), error.len()] {
         if found != matrix.dim() {
             return Err(ClosureError::Dimension { rows: matrix.dim(), found });
         }
     }
-    refuse_open(matrix, areas, error)?;
-    let dual = Dual { matrix, areas };
+    let closing = closing.min(areas.len());
+    refuse_open(matrix, &areas[..closing], error)?;
+    let dual = Dual { matrix, areas, closing };
     let (multipliers, steps) = dual.maximise()?;
     dual.closed(&multipliers, steps)
 }
@@ -130,6 +133,8 @@ fn refuse_open(matrix: &PackedSymmetric<f64>, areas: &[f64], error: &[f64]) -> R
 struct Dual<'a> {
     matrix: &'a PackedSymmetric<f64>,
     areas: &'a [f64],
+    /// Rows from here on have the multiplier 0.
+    closing: usize,
 }
 
 impl Dual<'_> {
@@ -144,7 +149,7 @@ impl Dual<'_> {
         }
     }
 
-    /// The dual function, and its gradient A_i − Σ_j G'_ij, m².
+    /// The dual function, and its gradient A_i − Σ_j G'_ij, m²; 0 where a row need not close.
     fn evaluate(&self, multipliers: &[f64]) -> (f64, Vec<f64>) {
         let mut gradient = self.areas.to_vec();
         let mut quadratic = 0.0;
@@ -156,6 +161,7 @@ impl Dual<'_> {
             }
             quadratic += if i == j { 0.25 } else { 0.5 } * kept * factor;
         });
+        gradient[self.closing..].fill(0.0);
         let linear: f64 = self.areas.iter().zip(multipliers).map(|(area, m)| area * m).sum();
         (linear - quadratic, gradient)
     }
@@ -172,6 +178,7 @@ impl Dual<'_> {
                 }
             }
         });
+        product[self.closing..].fill(0.0);
         product
     }
 
@@ -300,7 +307,7 @@ mod tests {
     fn equal_rows_are_scaled_alike() {
         // By symmetry all multipliers are equal: every entry is divided by the row sum.
         let matrix = packed(cube(0.2, 0.201));
-        let closed = enforce_closure(&matrix, &[1.0; 6], &[0.01; 6]).unwrap();
+        let closed = enforce_closure(&matrix, &[1.0; 6], &[0.01; 6], 6).unwrap();
         let sum = 0.2 + 4.0 * 0.201;
         assert!((closed.matrix.get(1, 0) - 0.2 / sum).abs() < 1e-15);
         assert!((closed.matrix.get(2, 0) - 0.201 / sum).abs() < 1e-15);
@@ -311,7 +318,7 @@ mod tests {
     fn a_closed_matrix_does_not_change() {
         let facing = 0.199_824_895_698_387_5;
         let matrix = packed(cube(facing, 0.25 * (1.0 - facing)));
-        let closed = enforce_closure(&matrix, &[1.0; 6], &[0.0; 6]).unwrap();
+        let closed = enforce_closure(&matrix, &[1.0; 6], &[0.0; 6], 6).unwrap();
         assert_eq!((closed.steps, closed.largest), (0, 0.0));
         assert_eq!(closed.matrix, matrix);
     }
@@ -321,7 +328,7 @@ mod tests {
         // With three flat surfaces G_01 = ½ (A_0 + A_1 − A_2), and so on, whatever the weights.
         let areas = [3.0, 4.0, 5.0];
         let matrix = packed(vec![0.0, 1.0 + 2e-3, 0.0, 2.0 - 3e-3, 3.0 + 5e-3, 0.0]);
-        let closed = enforce_closure(&matrix, &areas, &[0.01; 3]).unwrap();
+        let closed = enforce_closure(&matrix, &areas, &[0.01; 3], 3).unwrap();
         for (found, exact) in
             [(1, 0, 1.0), (2, 0, 2.0), (2, 1, 3.0)].map(|(i, j, g)| (closed.matrix.get(i, j), g))
         {
@@ -338,7 +345,7 @@ mod tests {
         (1..n).for_each(|i| entries[i * (i + 1) / 2] *= 4.0);
         entries[n * (n - 1) / 2 + 5] = 0.0;
         let matrix = packed(entries);
-        let closed = enforce_closure(&matrix, &vec![1.0; n], &vec![10.0; n]).unwrap();
+        let closed = enforce_closure(&matrix, &vec![1.0; n], &vec![10.0; n], n).unwrap();
         for (i, sum) in closed.matrix.row_sums().iter().enumerate() {
             assert!((sum - 1.0).abs() < 1e-12, "{i}: {sum}");
             assert!((0..n).all(|j| closed.matrix.get(i, j) >= 0.0));
@@ -357,23 +364,38 @@ mod tests {
             _ => 1.0,
         };
         let matrix = packed((0..6).flat_map(|i| (0..=i).map(move |j| exchange(i, j))).collect());
-        let closed = enforce_closure(&matrix, &[1.0; 6], &[10.0; 6]).unwrap().matrix;
+        let closed = enforce_closure(&matrix, &[1.0; 6], &[10.0; 6], 6).unwrap().matrix;
         assert!(closed.get(1, 0) == 0.0);
         assert!((closed.get(2, 0) - 0.25).abs() < 1e-12 && (closed.get(5, 1) - 0.25).abs() < 1e-12);
         assert!((closed.get(3, 2) - 1.0 / 6.0).abs() < 1e-12);
     }
 
     #[test]
+    fn a_free_row_takes_what_comes() {
+        // Two plates under a sky: the plates close, the sky is as large as one likes.
+        let matrix = packed(vec![0.0, 0.2, 0.0, 0.81, 0.79, 0.0]);
+        let closed = enforce_closure(&matrix, &[1.0, 1.0, 50.0], &[0.0; 3], 2).unwrap().matrix;
+        let sums = closed.row_sums();
+        assert!((sums[0] - 1.0).abs() < 1e-14 && (sums[1] - 1.0).abs() < 1e-14);
+        // λ from 0.2 (λ₀ + λ₁) + 0.81 λ₀ = −0.01 and 0.2 (λ₀ + λ₁) + 0.79 λ₁ = 0.01.
+        let determinant = 1.01 * 0.99 - 0.04;
+        let multipliers =
+            [(-0.01 * 0.99 - 0.01 * 0.2) / determinant, (0.01 * 1.01 + 0.01 * 0.2) / determinant];
+        assert!((closed.get(1, 0) - 0.2 * (1.0 + multipliers[0] + multipliers[1])).abs() < 1e-14);
+        assert!((closed.get(2, 0) - 0.81 * (1.0 + multipliers[0])).abs() < 1e-14);
+    }
+
+    #[test]
     fn open_and_impossible_scenes_are_refused() {
         let plates = packed(vec![0.0, 0.2, 0.0]);
-        let open = enforce_closure(&plates, &[1.0; 2], &[1e-3; 2]);
+        let open = enforce_closure(&plates, &[1.0; 2], &[1e-3; 2], 2);
         assert!(matches!(open, Err(ClosureError::Open { row: 0, .. })), "{open:?}");
-        let nothing = enforce_closure(&packed(vec![0.0; 3]), &[1.0; 2], &[10.0; 2]);
+        let nothing = enforce_closure(&packed(vec![0.0; 3]), &[1.0; 2], &[10.0; 2], 2);
         assert!(matches!(nothing, Err(ClosureError::Open { .. })));
         // Two surfaces of different areas cannot close on each other.
-        let unequal = enforce_closure(&packed(vec![0.0, 1.0, 0.0]), &[1.0, 1.005], &[0.0; 2]);
+        let unequal = enforce_closure(&packed(vec![0.0, 1.0, 0.0]), &[1.0, 1.005], &[0.0; 2], 2);
         assert!(matches!(unequal, Err(ClosureError::Infeasible { .. })), "{unequal:?}");
-        let short = enforce_closure(&plates, &[1.0], &[0.0; 2]);
+        let short = enforce_closure(&plates, &[1.0], &[0.0; 2], 2);
         assert_eq!(short, Err(ClosureError::Dimension { rows: 2, found: 1 }));
     }
 }

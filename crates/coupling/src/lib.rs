@@ -25,5 +25,5 @@ pub use error::CouplingError;
 pub use exposure::{exposed_shares, extents};
 pub use pair_sample::sample_pairs;
 pub use radiosity::{Energy, Extent, Means, Radiosity};
-pub use receiver::{Receiver, Targets, sky};
+pub use receiver::{Receiver, Targets, sky, sky_exchanges, with_sky};
 pub use reciprocity::reciprocity;

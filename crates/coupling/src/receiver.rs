@@ -8,8 +8,9 @@
 //! The sky is a box around everything: what a point or a patch sees of it is what no surface covers.
 
 use crate::CouplingError;
-use crate::form_factor::{PolygonList, Shadow};
+use crate::form_factor::{Exchange, PairIntegrator, PolygonList, Shadow, Workspace};
 use crate::polygon::{HalfSpace, clip};
+use fredholm_linop::{LinopError, PackedSymmetric};
 use fredholm_mesh::{Bounds, MeshError, Patch, Vec3};
 use fredholm_visibility::Occluders;
 use rayon::prelude::*;
@@ -133,7 +134,7 @@ impl Sight {
 }
 
 /// Six patches around everything within `bounds`, lit inside: the sky. Every ray that leaves the scene ends on one of them, so that
-/// F_i,sky is found as any other form factor and is independent of the others.
+/// F_i,sky is found as any other form factor, from what nothing covers, and not as what the others leave of 1.
 ///
 /// # Errors
 /// [`MeshError`] for bounds that are not finite or hold a single point.
@@ -148,6 +149,43 @@ pub fn sky(bounds: Bounds) -> Result<Vec<Patch>, MeshError> {
     let faces = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
     let quads = faces.map(|face| Patch::quad(face.map(corner)));
     quads.into_iter().filter_map(Result::transpose).collect()
+}
+
+/// What each of the first `surfaces` patches of `integrator` exchanges with the others, those of the sky: Σ_k A_i F_ik and its stated error, m².
+///
+/// The outer integral goes over the surface: the sky is large, and most of it sees nothing of a surface among others, so that
+/// points on it would miss what little there is.
+///
+/// # Errors
+/// [`CouplingError::Interrupted`] where the watch, asked before every patch, stops it.
+pub fn sky_exchanges(
+    integrator: &PairIntegrator,
+    surfaces: usize,
+    watch: &(dyn Fn() -> ControlFlow<()> + Sync),
+) -> Result<Vec<[f64; 2]>, CouplingError> {
+    let sum = |work: &mut Workspace, i: usize| {
+        watch().is_continue().then(|| {
+            let parts = (surfaces..integrator.len()).map(|k| integrator.exchange_from(i, k, work));
+            parts.fold([0.0; 2], |[value, error], part: Exchange| [value + part.value, error + part.error])
+        })
+    };
+    let found: Vec<Option<[f64; 2]>> =
+        (0..surfaces).into_par_iter().map_init(Workspace::default, sum).collect();
+    let done = found.iter().flatten().count() as u64;
+    let stopped = CouplingError::Interrupted { done, total: surfaces as u64 };
+    found.into_iter().collect::<Option<_>>().ok_or(stopped)
+}
+
+/// The matrix with a last row for the sky, which exchanges `sky[i]` (m²) with row i and nothing with itself.
+///
+/// # Errors
+/// [`LinopError::Length`] unless `sky` has an entry a row.
+pub fn with_sky(matrix: &PackedSymmetric<f64>, sky: &[f64]) -> Result<PackedSymmetric<f64>, LinopError> {
+    let mut packed = Vec::new();
+    (0..matrix.dim()).for_each(|i| packed.extend_from_slice(matrix.packed_row(i)));
+    packed.extend_from_slice(sky);
+    packed.push(0.0);
+    PackedSymmetric::new(matrix.dim() + 1, packed)
 }
 
 #[cfg(test)]
@@ -227,6 +265,35 @@ mod tests {
         let expected = factors(&open, &ceiling, &[up]);
         assert!((found[1] - expected[1]).abs() < 1e-13 && found[1] > 0.1, "{found:?} {expected:?}");
         assert!((found[0] + found[1] - 1.0).abs() < 1e-13);
+    }
+
+    #[test]
+    fn walls_of_a_court_see_the_sky_as_a_lid() {
+        // The open room of above, one patch a wall: what a wall exchanges with the sky it exchanged with the lid (Howell C-11, C-14).
+        let whole = Shape::Box { min: Vec3::ZERO, max: Vec3::ONE, inward: true };
+        let mut builder = MeshBuilder::default();
+        builder.surface("room", 0);
+        builder.add(&whole, &Cutting::default()).unwrap();
+        let room = builder.build();
+        let walls: Vec<Patch> = room.patches().filter(|patch| patch.normal().z > -0.5).copied().collect();
+        let sky = sky(room.bounds().unwrap()).unwrap();
+        let occluders = Occluders::new(&walls).unwrap();
+        let integrator = PairIntegrator::new(walls.iter().chain(&sky), &occluders, 1e-6);
+        let found = sky_exchanges(&integrator, walls.len(), &|| ControlFlow::Continue(())).unwrap();
+        for (wall, [value, error]) in walls.iter().zip(&found) {
+            let exact = if wall.normal().z > 0.5 { 0.199_824_895_698_387_5 } else { 0.200_043_776_075_403_1 };
+            assert!((value - exact).abs() < 1e-5 && *error < 2e-5, "{:e} {error:e}", value - exact);
+        }
+        let stopped = sky_exchanges(&integrator, walls.len(), &|| ControlFlow::Break(()));
+        assert_eq!(stopped, Err(CouplingError::Interrupted { done: 0, total: 5 }));
+    }
+
+    #[test]
+    fn the_row_of_the_sky_is_the_last() {
+        let matrix = PackedSymmetric::new(2, vec![0.0, 0.5, 0.0]).unwrap();
+        let found = with_sky(&matrix, &[0.1, 0.2]).unwrap();
+        assert_eq!(found, PackedSymmetric::new(3, vec![0.0, 0.5, 0.0, 0.1, 0.2, 0.0]).unwrap());
+        assert!(with_sky(&matrix, &[0.1]).is_err());
     }
 
     #[test]

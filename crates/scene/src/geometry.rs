@@ -16,6 +16,10 @@ use crate::resolve::{FARTHEST, face_shapes};
 use crate::scene::Scene;
 use crate::source::{Source, read};
 
+/// What is asked of subsurfaces.
+const SUBSURFACES: &str = "subsurfaces must lie flat inside their base and touch neither its border nor each other; \
+                           otherwise describe the base as pieces around them, put together by the combine column";
+
 /// What a row of a view-factor matrix stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum By {
@@ -229,6 +233,8 @@ impl MeshFile {
     fn unmeshable(&self, face: &InputFace, error: &MeshError) -> SceneError {
         let message = error.to_string();
         let (what, help) = message.split_once("; ").unwrap_or((&message, "correct the corners"));
+        let has_holes = |shape: &Shape| matches!(shape, Shape::Polygon { holes, .. } if !holes.is_empty());
+        let help = if face.shapes.iter().any(has_holes) { SUBSURFACES } else { help };
         self.source.error(ErrorKind::Geometry, face.span.clone(), what, help)
     }
 }
@@ -259,7 +265,9 @@ impl Surfaces {
     fn names(&self, surface_of: &[usize]) -> Vec<String> {
         let surfaces = self.mesh.surfaces();
         let mut counts = vec![0; surfaces.len()];
-        surface_of.iter().for_each(|&surface| counts[surface] += 1);
+        for &surface in surface_of {
+            counts[surface] += 1;
+        }
         let mut numbers = vec![0; surfaces.len()];
         let name = |&surface: &usize| {
             numbers[surface] += 1;
@@ -335,17 +343,16 @@ fn view3d(file: View3d) -> Result<MeshFile, SceneError> {
             obstructions.push(face);
             continue;
         };
-        match *combined {
-            Some(target) => surfaces[place[target]].faces.push(face),
-            None => {
-                place[index] = surfaces.len();
-                surfaces.push(Input {
-                    name: name.clone(),
-                    emissivity: Some(*emissivity),
-                    faces: vec![face],
-                    whole: true,
-                });
-            }
+        if let Some(target) = *combined {
+            surfaces[place[target]].faces.push(face);
+        } else {
+            place[index] = surfaces.len();
+            surfaces.push(Input {
+                name: name.clone(),
+                emissivity: Some(*emissivity),
+                faces: vec![face],
+                whole: true,
+            });
         }
     }
     let warnings = warnings(&file);

@@ -102,19 +102,19 @@ impl Scale {
 
     fn colour(&self, value: f64) -> [u8; 3] {
         if value > 0.0 {
-            self.blend((value.log10() - f64::from(self.low)) / f64::from(self.high - self.low))
+            blend((value.log10() - f64::from(self.low)) / f64::from(self.high - self.low))
         } else {
             ZERO
         }
     }
+}
 
-    /// Colour of a place from 0 to 1.
-    fn blend(&self, place: f64) -> [u8; 3] {
-        let at = place.clamp(0.0, 1.0) * (COLOURS.len() - 1) as f64;
-        let below = (at as usize).min(COLOURS.len() - 2);
-        let (share, from, to) = (at - below as f64, COLOURS[below], COLOURS[below + 1]);
-        [0, 1, 2].map(|c| (f64::from(from[c]) * (1.0 - share) + f64::from(to[c]) * share).round() as u8)
-    }
+/// Colour of a place from 0 to 1.
+fn blend(place: f64) -> [u8; 3] {
+    let at = place.clamp(0.0, 1.0) * (COLOURS.len() - 1) as f64;
+    let below = (at as usize).min(COLOURS.len() - 2);
+    let (share, from, to) = (at - below as f64, COLOURS[below], COLOURS[below + 1]);
+    [0, 1, 2].map(|c| (f64::from(from[c]) * (1.0 - share) + f64::from(to[c]) * share).round() as u8)
 }
 
 /// A white picture under construction.
@@ -140,7 +140,7 @@ impl Canvas {
     fn bar(&mut self, scale: &Scale) {
         let (left, height) = (2 * MARGIN + self.side, self.height - 2 * MARGIN);
         for y in 0..height {
-            let colour = scale.blend(1.0 - (y as f64 + 0.5) / height as f64);
+            let colour = blend(1.0 - (y as f64 + 0.5) / height as f64);
             (0..BAR).for_each(|x| self.set(left + x, MARGIN + y, colour));
         }
         for decade in scale.low..=scale.high {

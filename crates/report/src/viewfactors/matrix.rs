@@ -82,7 +82,9 @@ impl ViewFactors {
         let (mut row, mut row_sums) = (vec![0.0; n], Vec::with_capacity(n));
         for (i, area) in surfaces.area.iter().enumerate() {
             exchange(i, &mut row);
-            row.iter_mut().for_each(|entry| *entry /= area);
+            for entry in &mut row {
+                *entry /= area;
+            }
             row_sums.push(row.iter().sum());
             rows.push(&row);
         }

@@ -2,7 +2,10 @@
 
 use std::ops::ControlFlow;
 
-use fredholm_coupling::{Assembled, Closed, MethodCounts, aggregate, assemble, enforce_closure, reciprocity};
+use fredholm_coupling::{
+    Assembled, Closed, MethodCounts, aggregate, assemble, enforce_closure, reciprocity, sky_exchanges,
+    with_sky,
+};
 use fredholm_linop::{LinearOperator, PackedSymmetric};
 use fredholm_mesh::Patch;
 use fredholm_report::{ClosureChange, SurfaceData, ViewFactors, ViewPoints};
@@ -28,29 +31,57 @@ pub(super) struct Solution {
 pub(super) fn compute(problem: &Problem, stages: &mut Stages) -> Result<Solution, Failure> {
     let assembled = exchanges(problem, stages)?;
     let (pair_error, methods) = (assembled.largest, assembled.methods);
+    let (matrix, row_error) = rows(problem, assembled, stages)?;
     let area = problem.areas();
-    let error = problem.per_row(assembled.error.iter().copied());
-    let row_error: Vec<f64> = error.iter().zip(&area).map(|(error, area)| error / area).collect();
-    let mut matrix = merged(problem, assembled.matrix)?;
-    let mut enforced = None;
-    if problem.options.close {
-        let closed = stages.run("closure", || close(problem, &matrix, &area, &row_error))?;
-        enforced = Some(change(&matrix, &area, &row_error, &closed));
-        matrix = closed.matrix;
-    }
+    let (matrix, enforced) = closed(problem, matrix, &area, &row_error, stages)?;
     let (names, emissivity) = (problem.rows.names.clone(), problem.rows.emissivity.clone());
+    let (sky, sky_area) = (problem.surface_rows(), area.last().copied().unwrap_or_default());
     let surfaces = SurfaceData { names, area, emissivity, row_error };
-    let row = |i: usize, row: &mut [f64]| matrix.row(i, 0, row);
+    let row = |i: usize, row: &mut [f64]| {
+        matrix.row(i, 0, row);
+        // The sky sees itself, and the backs of surfaces, wherever it sees no front.
+        if i == sky {
+            row[sky] = sky_area - row.iter().sum::<f64>();
+        }
+    };
     let mut factors = ViewFactors::new(surfaces, problem.options.threshold, row);
-    drop(matrix);
     factors.points = points(problem, stages)?;
     let reciprocity = stages.run("errors", || Ok(reciprocity(&problem.integrator())))?;
     Ok(Solution { factors, pair_error, reciprocity, methods, enforced })
 }
 
+/// Exchanges of the rows, the sky's included, and the stated errors of their sums.
+fn rows(
+    problem: &Problem,
+    assembled: Assembled<f64>,
+    stages: &mut Stages,
+) -> Result<(PackedSymmetric<f64>, Vec<f64>), Failure> {
+    let mut error = problem.per_row(assembled.error.iter().copied());
+    let mut matrix = merged(problem, assembled.matrix)?;
+    if let Some(integrator) = problem.sky_integrator() {
+        let go_on = go_on(stages);
+        let surfaces = problem.row_of().len();
+        let found =
+            stages.run("sky", || sky_exchanges(&integrator, surfaces, &go_on).map_err(coupling_failure))?;
+        let sky = problem.per_row(found.iter().map(|[value, _]| *value));
+        matrix =
+            with_sky(&matrix, &sky[..problem.surface_rows()]).map_err(|e| Failure::new(Ending::Input, e))?;
+        let more = problem.per_row(found.iter().map(|[_, error]| *error));
+        error.iter_mut().zip(&more).for_each(|(error, more)| *error += more);
+        error[problem.surface_rows()] = more.iter().sum();
+    }
+    error.iter_mut().zip(problem.areas()).for_each(|(error, area)| *error /= area);
+    Ok((matrix, error))
+}
+
+/// Whether the run is still wanted.
+fn go_on<'a>(stages: &Stages<'a>) -> impl Fn() -> ControlFlow<()> + Sync + use<'a> {
+    let interrupt = stages.interrupt;
+    move || if interrupt.requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+}
+
 fn exchanges(problem: &Problem, stages: &mut Stages) -> Result<Assembled<f64>, Failure> {
-    let (console, interrupt) = (stages.console, stages.interrupt);
-    let go_on = || if interrupt.requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+    let (console, go_on) = (stages.console, go_on(stages));
     let watch = |done: u64, total: u64| {
         console.advance(done as f64 / total.max(1) as f64, &|| format!("{done} of {total} pairs"));
         go_on()
@@ -63,8 +94,24 @@ fn merged(problem: &Problem, matrix: PackedSymmetric<f64>) -> Result<PackedSymme
     if problem.is_unmerged() {
         return Ok(matrix);
     }
-    let rows = &problem.rows;
-    aggregate(&matrix, &rows.row_of, rows.names.len()).map_err(|error| Failure::new(Ending::Input, error))
+    aggregate(&matrix, problem.row_of(), problem.surface_rows())
+        .map_err(|error| Failure::new(Ending::Input, error))
+}
+
+/// The matrix with closed rows, where that is asked for.
+fn closed(
+    problem: &Problem,
+    matrix: PackedSymmetric<f64>,
+    area: &[f64],
+    row_error: &[f64],
+    stages: &mut Stages,
+) -> Result<(PackedSymmetric<f64>, Option<ClosureChange>), Failure> {
+    if !problem.options.close {
+        return Ok((matrix, None));
+    }
+    let closed = stages.run("closure", || close(problem, &matrix, area, row_error))?;
+    let change = change(&matrix, area, row_error, &closed, problem.surface_rows());
+    Ok((closed.matrix, Some(change)))
 }
 
 fn close(
@@ -73,7 +120,7 @@ fn close(
     area: &[f64],
     row_error: &[f64],
 ) -> Result<Closed, Failure> {
-    enforce_closure(matrix, area, row_error).map_err(|error| {
+    enforce_closure(matrix, area, row_error, problem.surface_rows()).map_err(|error| {
         use fredholm_coupling::ClosureError::{Infeasible, Open};
         let (Open { row, .. } | Infeasible { row, .. }) = error else {
             return Failure::new(Ending::Input, error);
@@ -86,15 +133,23 @@ fn close(
     })
 }
 
-/// How far the closed matrix is from the one computed.
-fn change(matrix: &PackedSymmetric<f64>, area: &[f64], row_error: &[f64], closed: &Closed) -> ClosureChange {
+/// How far the closed matrix is from the one computed, over the first `closing` rows.
+fn change(
+    matrix: &PackedSymmetric<f64>,
+    area: &[f64],
+    row_error: &[f64],
+    closed: &Closed,
+    closing: usize,
+) -> ClosureChange {
     let largest = |values: &mut dyn Iterator<Item = f64>| values.reduce(f64::max);
     let sums = matrix.row_sums();
-    let over = closed.change.iter().zip(row_error).filter(|(_, error)| **error > ROUNDING);
+    let over = closed.change[..closing].iter().zip(row_error).filter(|(_, error)| **error > ROUNDING);
     ClosureChange {
-        closure_before: largest(&mut sums.iter().zip(area).map(|(sum, area)| (sum / area - 1.0).abs())),
+        closure_before: largest(
+            &mut sums[..closing].iter().zip(area).map(|(sum, area)| (sum / area - 1.0).abs()),
+        ),
         largest: Some(closed.largest),
-        row_max: largest(&mut closed.change.iter().copied()),
+        row_max: largest(&mut closed.change[..closing].iter().copied()),
         over_stated: largest(&mut over.map(|(change, error)| change / error)),
         steps: closed.steps as u64,
     }
@@ -104,8 +159,7 @@ fn points(problem: &Problem, stages: &mut Stages) -> Result<Option<ViewPoints>, 
     if problem.receivers.is_empty() {
         return Ok(None);
     }
-    let interrupt = stages.interrupt;
-    let go_on = || if interrupt.requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+    let go_on = go_on(stages);
     let patches: Vec<&Patch> = problem.patches().collect();
     let seen = || problem.targets(&patches).factors(&problem.receivers, &go_on).map_err(coupling_failure);
     let factors = stages.run("points", seen)?;

@@ -28,8 +28,9 @@ pub(super) struct Prediction {
 impl Prediction {
     pub(super) fn new(elements: usize, rows: usize, options: &Options) -> Self {
         let packed = |n: usize| u128::from(PackedSymmetric::<f64>::bytes(n));
-        let (merged, closed) = (rows != elements, options.close);
-        let exchange = packed(elements) + packed(rows) * (u128::from(merged) + u128::from(closed));
+        // What is merged, given a sky or closed is copied.
+        let copied = rows != elements || options.sky;
+        let exchange = packed(elements) + packed(rows) * (u128::from(copied) + u128::from(options.close));
         let n = rows as u128;
         // A row sums to about 1, so that it has at most 1/X entries of at least X.
         let kept = options.threshold.map(|threshold| n.min((1.1 / threshold) as u128 + 1));

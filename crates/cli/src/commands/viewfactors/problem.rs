@@ -61,9 +61,20 @@ impl Problem {
         self.surfaces.mesh.patches().chain(&self.sky)
     }
 
-    /// What computes the form factors.
+    /// What computes the form factors between surfaces.
     pub(super) fn integrator(&self) -> PairIntegrator<'_> {
-        PairIntegrator::new(self.patches(), &self.occluders, self.options.tolerance)
+        PairIntegrator::new(self.surfaces.mesh.patches(), &self.occluders, self.options.tolerance)
+    }
+
+    /// What computes the form factors to the sky, where there is one: the patches of the sky come last.
+    pub(super) fn sky_integrator(&self) -> Option<PairIntegrator<'_>> {
+        let integrator = || PairIntegrator::new(self.patches(), &self.occluders, self.options.tolerance);
+        (!self.sky.is_empty()).then(integrator)
+    }
+
+    /// Rows of the elements of the surfaces.
+    pub(super) fn row_of(&self) -> &[usize] {
+        &self.rows.row_of[..self.surfaces.mesh.len()]
     }
 
     /// What the points look at.
@@ -81,16 +92,21 @@ impl Problem {
         self.per_row(self.patches().map(Patch::area))
     }
 
-    /// Sums of values of the elements over the rows.
+    /// Sums of values of the elements over the rows; elements of the sky may be left out.
     pub(super) fn per_row(&self, values: impl Iterator<Item = f64>) -> Vec<f64> {
         let mut sums = vec![0.0; self.rows.names.len()];
         self.rows.row_of.iter().zip(values).for_each(|(&row, value)| sums[row] += value);
         sums
     }
 
-    /// Whether every element is a row.
+    /// Number of rows without that of the sky, which is the last.
+    pub(super) fn surface_rows(&self) -> usize {
+        self.rows.names.len() - usize::from(!self.sky.is_empty())
+    }
+
+    /// Whether every element of the surfaces is a row.
     pub(super) fn is_unmerged(&self) -> bool {
-        self.rows.names.len() == self.rows.row_of.len()
+        self.surface_rows() == self.row_of().len()
     }
 }
 

@@ -28,7 +28,7 @@ pub(super) fn record(
     let form_factor_error = FormFactorError {
         tolerance: Some(problem.options.tolerance),
         max: Some(solution.pair_error),
-        row_max: largest(factors.surfaces.row_error.iter().copied()),
+        row_max: largest(factors.surfaces.row_error.iter().copied().take(problem.surface_rows())),
     };
     let warnings = problem.geometry.warnings().iter().cloned();
     ViewFactorsRecord {

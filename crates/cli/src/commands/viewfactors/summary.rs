@@ -37,17 +37,14 @@ pub(super) fn quality(record: &ViewFactorsRecord, lines: &mut Lines) {
 }
 
 fn closed(closure: &Closure) -> Option<String> {
-    let mut text = format!("row sums differ from 1 by {:.1e} at most", closure.max?);
-    if let Some(surface) = &closure.worst_surface {
-        text += &format!(" ({surface})");
-    }
-    if let Some(mean) = closure.mean {
-        text += &format!(", {mean:.1e} on average");
-    }
-    if closure.max > Some(OPEN) {
-        text += "; the scene is open, --sky would close it";
-    }
-    Some(text)
+    let most = closure.max?;
+    let at = closure.worst_surface.as_ref().map(|surface| format!(" ({surface})")).unwrap_or_default();
+    let mean = closure.mean.map(|mean| format!(", {mean:.1e} on average")).unwrap_or_default();
+    let hint = "; the scene is open (--sky would add the sky), or backs of surfaces are in view";
+    Some(format!(
+        "row sums differ from 1 by {most:.1e} at most{at}{mean}{}",
+        if most > OPEN { hint } else { "" }
+    ))
 }
 
 fn errors(record: &ViewFactorsRecord) -> Option<String> {
