@@ -144,7 +144,11 @@ fn the_sky_takes_the_place_of_a_lid() {
     for (name, exact) in [("floor", PARALLEL), ("south", PERPENDICULAR), ("west", PERPENDICULAR)] {
         let found = row(&factors, place(&factors, name));
         let stated = factors.surfaces.row_error[place(&factors, name)];
-        assert!((found[sky] - exact).abs() < 1e-6 && stated < 3e-6, "{name}: {:e} {stated:e}", found[sky] - exact);
+        assert!(
+            (found[sky] - exact).abs() < 1e-6 && stated < 3e-6,
+            "{name}: {:e} {stated:e}",
+            found[sky] - exact
+        );
         assert!((found.iter().sum::<f64>() - 1.0).abs() <= stated);
     }
     // A unit square at height 1 above the middle of the floor: four times Howell B-3.

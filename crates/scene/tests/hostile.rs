@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use fredholm_mesh::Mesh;
@@ -123,7 +124,7 @@ fn every_hostile_view3d_file_is_refused_with_place_and_help() {
         let read = Geometry::load(&file).and_then(|geometry| geometry.surfaces());
         let error = read.expect_err(&file.display().to_string());
         assert!(error.place().is_some() && !error.help().is_empty(), "{error}");
-        messages += &format!("{error}\n");
+        writeln!(messages, "{error}").unwrap();
     }
     insta::assert_snapshot!("view3d", messages);
 }

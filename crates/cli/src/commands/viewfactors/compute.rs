@@ -1,6 +1,7 @@
 //! The computation: exchanges, rows, closure, points.
 
 use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use fredholm_coupling::{
     Assembled, Closed, MethodCounts, aggregate, assemble, enforce_closure, reciprocity, sky_exchanges,
@@ -59,8 +60,8 @@ fn rows(
     let mut error = problem.per_row(assembled.error.iter().copied());
     let mut matrix = merged(problem, assembled.matrix)?;
     if let Some(integrator) = problem.sky_integrator() {
-        let go_on = go_on(stages);
         let surfaces = problem.row_of().len();
+        let go_on = counter(stages, surfaces, "elements");
         let found =
             stages.run("sky", || sky_exchanges(&integrator, surfaces, &go_on).map_err(coupling_failure))?;
         let sky = problem.per_row(found.iter().map(|[value, _]| *value));
@@ -74,17 +75,25 @@ fn rows(
     Ok((matrix, error))
 }
 
-/// Whether the run is still wanted.
-fn go_on<'a>(stages: &Stages<'a>) -> impl Fn() -> ControlFlow<()> + Sync + use<'a> {
-    let interrupt = stages.interrupt;
-    move || if interrupt.requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+/// Counts steps of `total`, shows them, and says whether the run is still wanted.
+fn counter<'a>(
+    stages: &Stages<'a>,
+    total: usize,
+    things: &'a str,
+) -> impl Fn() -> ControlFlow<()> + Sync + use<'a> {
+    let (console, interrupt, done) = (stages.console, stages.interrupt, AtomicUsize::new(0));
+    move || {
+        let done = done.fetch_add(1, Ordering::Relaxed);
+        console.advance(done as f64 / total.max(1) as f64, &|| format!("{done} of {total} {things}"));
+        if interrupt.requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
 }
 
 fn exchanges(problem: &Problem, stages: &mut Stages) -> Result<Assembled<f64>, Failure> {
-    let (console, go_on) = (stages.console, go_on(stages));
+    let (console, interrupt) = (stages.console, stages.interrupt);
     let watch = |done: u64, total: u64| {
         console.advance(done as f64 / total.max(1) as f64, &|| format!("{done} of {total} pairs"));
-        go_on()
+        if interrupt.requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     stages.run("assembly", || assemble(&problem.integrator(), &watch).map_err(coupling_failure))
 }
@@ -159,7 +168,7 @@ fn points(problem: &Problem, stages: &mut Stages) -> Result<Option<ViewPoints>, 
     if problem.receivers.is_empty() {
         return Ok(None);
     }
-    let go_on = go_on(stages);
+    let go_on = counter(stages, problem.receivers.len(), "points");
     let patches: Vec<&Patch> = problem.patches().collect();
     let seen = || problem.targets(&patches).factors(&problem.receivers, &go_on).map_err(coupling_failure);
     let factors = stages.run("points", seen)?;
