@@ -129,6 +129,34 @@ fn what_a_threshold_drops_is_stated() {
     assert_eq!(record(&bench)["counts"]["stored"], sparse.stored());
 }
 
+/// A unit cube with a window in the ceiling, a floor of two pieces, and a plate that only blocks.
+const ASSEMBLED_CUBE: &str = "T cube\nF 3\nV 1 0 0 0\nV 2 1 0 0\nV 3 1 1 0\nV 4 0 1 0\nV 5 0 0 1\nV 6 1 0 1\nV 7 1 1 1\nV 8 0 1 1\n\
+    V 9 0.2 0.3 1\nV 10 0.2 0.7 1\nV 11 0.6 0.7 1\nV 12 0.6 0.3 1\n\
+    S 1 1 2 3 0 0 0 0.9 floor\nS 2 5 8 7 6 0 0 0.8 ceiling\nS 3 9 10 11 12 2 0 0.1 window\nS 4 1 3 4 0 0 1 0.9 floor-2\n\
+    S 5 1 5 6 2 0 0 0.9 south\nS 6 2 6 7 3 0 0 0.9 east\nS 7 3 7 8 4 0 0 0.9 north\nS 8 4 8 5 1 0 0 0.9 west\n";
+
+#[test]
+fn combined_surfaces_and_windows_add_up() {
+    let bench = bench();
+    fs::write(bench.path("cube.vs3"), format!("{ASSEMBLED_CUBE}End\n")).unwrap();
+    let factors = computed(&bench, "cube.vs3", &["--tolerance", "1e-8"]);
+    assert_eq!(factors.surfaces.names, ["floor", "ceiling", "window", "south", "east", "north", "west"]);
+    let area = &factors.surfaces.area;
+    assert!(
+        (area[0] - 1.0).abs() < 1e-15 && (area[1] - 0.84).abs() < 1e-14 && (area[2] - 0.16).abs() < 1e-15
+    );
+    assert!(factors.defects().iter().all(|&defect| defect < 1e-9), "{:?}", factors.defects());
+    let [ceiling, window] = [row(&factors, 1), row(&factors, 2)];
+    assert!((area[1] * ceiling[0] + area[2] * window[0] - PARALLEL).abs() < 1e-9);
+    assert!((area[1] * ceiling[4] + area[2] * window[4] - PERPENDICULAR).abs() < 1e-9);
+    // An obstruction under the whole ceiling hides it and has no row.
+    let plate = "V 13 -1 -1 0.999\nV 14 2 -1 0.999\nV 15 2 2 0.999\nV 16 -1 2 0.999\nO 9 13 14 15 16\n";
+    fs::write(bench.path("hidden.vs3"), format!("{ASSEMBLED_CUBE}{plate}End\n")).unwrap();
+    let hidden = computed(&bench, "hidden.vs3", &["--tolerance", "1e-3"]);
+    assert_eq!(hidden.len(), 7);
+    assert!(row(&hidden, 0)[1] == 0.0 && row(&hidden, 0)[2] == 0.0 && row(&hidden, 0)[3] > 0.1);
+}
+
 /// The unit cube without its lid.
 const OPEN_CUBE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
     o floor\nf 1 2 3 4\no south\nf 1 5 6 2\no east\nf 2 6 7 3\no north\nf 3 7 8 4\no west\nf 4 8 5 1\n";
