@@ -374,7 +374,7 @@ mod tests {
     fn a_free_row_takes_what_comes() {
         // Two plates under a sky: the plates close, the sky is as large as one likes.
         let matrix = packed(vec![0.0, 0.2, 0.0, 0.81, 0.79, 0.0]);
-        let closed = enforce_closure(&matrix, &[1.0, 1.0, 50.0], &[0.0; 3], 2).unwrap().matrix;
+        let closed = enforce_closure(&matrix, &[1.0, 1.0, 50.0], &[0.01; 3], 2).unwrap().matrix;
         let sums = closed.row_sums();
         assert!((sums[0] - 1.0).abs() < 1e-14 && (sums[1] - 1.0).abs() < 1e-14);
         // λ from 0.2 (λ₀ + λ₁) + 0.81 λ₀ = −0.01 and 0.2 (λ₀ + λ₁) + 0.79 λ₁ = 0.01.
