@@ -12,7 +12,7 @@ fn help(arguments: &[&str]) -> String {
 #[test]
 fn every_verb_explains_itself() {
     insta::assert_snapshot!("help", help(&["--help"]));
-    for verb in ["solve", "check", "info", "schema", "completions", "solvers"] {
+    for verb in ["solve", "check", "viewfactors", "info", "schema", "completions", "solvers"] {
         insta::assert_snapshot!(format!("help-{verb}"), help(&[verb, "--help"]));
     }
 }

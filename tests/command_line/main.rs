@@ -14,3 +14,4 @@ mod interrupt;
 mod memory;
 mod results;
 mod support;
+mod viewfactors;

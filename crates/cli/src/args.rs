@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use serde::Serialize;
 
+use crate::commands::ViewFactorsArgs;
 use crate::registry;
 use crate::size::Bytes;
 
@@ -39,9 +40,23 @@ Examples:
   fredholm check scenes/cornell_box.toml
   fredholm check room.toml --memory 8GiB";
 
+const VIEW_FACTORS_EXAMPLES: &str = "\
+Examples:
+  fredholm viewfactors room.vs3 -o F.npz
+  fredholm viewfactors room.obj -o F.csv --tolerance 1e-6
+  fredholm viewfactors room.toml -o F.txt --rows surface --close
+  fredholm viewfactors court.obj -o F.npz --sky --threshold 1e-5
+  fredholm viewfactors hall.obj -o F.npz --point 1,2,0.8,0,0,1 --plane 0,0,0.8,6,0,0,0,4,0,12,8
+
+Beside F.npz come F.png, the matrix as a picture; F.svg, how well its rows close; and
+F.json, the record. Ctrl-C ends the run with nothing written.
+
+Faces of a mesh file are seen from the side from which their corners run counter-clockwise.";
+
 const INFO_EXAMPLES: &str = "\
 Examples:
   fredholm info out/cornell_box
+  fredholm info F.npz
   fredholm info out/cornell_box/image.png";
 
 const SCHEMA_EXAMPLES: &str = "\
@@ -74,6 +89,9 @@ pub(crate) enum Command {
     /// Validate a scene, show its statistics and predict memory and time; solves and writes nothing
     #[command(after_help = CHECK_EXAMPLES)]
     Check(CheckArgs),
+    /// Compute the view-factor matrix of a scene or a mesh file
+    #[command(name = "viewfactors", after_help = VIEW_FACTORS_EXAMPLES)]
+    ViewFactors(ViewFactorsArgs),
     /// Tell what made a result
     #[command(after_help = INFO_EXAMPLES)]
     Info(InfoArgs),
@@ -94,6 +112,7 @@ impl Command {
         match self {
             Self::Solve(args) => args.log.log,
             Self::Check(args) => args.log.log,
+            Self::ViewFactors(args) => args.log.log,
             _ => LogFormat::Plain,
         }
     }
@@ -183,7 +202,7 @@ pub(crate) struct CheckArgs {
 /// Options of `info`.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct InfoArgs {
-    /// Result folder, or a file in one
+    /// Result folder, a file in one, or a file of view factors
     pub(crate) path: PathBuf,
 }
 
@@ -194,7 +213,7 @@ pub(crate) struct CompletionsArgs {
     pub(crate) shell: Shell,
 }
 
-fn tolerance(text: &str) -> Result<f64, String> {
+pub(crate) fn tolerance(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value < 1.0 => Ok(value),
         _ => Err("must be a number above 0 and below 1, such as 1e-6".to_owned()),

@@ -135,7 +135,8 @@ fn mesh_error(error: &fredholm_coupling::MeshError) -> MeshError {
     MeshError { relative_l2: error.relative_l2.clone(), largest: error.largest.clone() }
 }
 
-fn pairs(methods: &MethodCounts) -> BTreeMap<String, u64> {
+/// Pairs by the name of the method.
+pub(crate) fn pairs(methods: &MethodCounts) -> BTreeMap<String, u64> {
     let counts = [
         ("hidden", methods.hidden),
         ("area_gauss", methods.area_gauss),

@@ -119,7 +119,8 @@ fn balance(energy: &Energy) -> Option<String> {
     Some(format!("{}: emitted {emitted:.6} W, absorbed {absorbed:.6} W{escaped}", energy.band))
 }
 
-fn times(timings: &[Timing]) -> String {
+/// The stages and their times.
+pub(crate) fn times(timings: &[Timing]) -> String {
     let stages: Vec<_> = timings.iter().map(|t| format!("{} {:.2} s", t.stage, t.seconds)).collect();
     stages.join(", ")
 }

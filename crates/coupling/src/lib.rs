@@ -8,19 +8,23 @@ pub mod polygon;
 
 mod aggregate;
 mod assembly;
+mod closure;
 mod discretisation;
 mod error;
 mod exposure;
 mod occlusion;
 mod pair_sample;
 mod radiosity;
+mod receiver;
 mod reciprocity;
 
 pub use aggregate::aggregate;
 pub use assembly::{Assembled, MethodCounts, Watch, assemble};
+pub use closure::{Closed, ClosureError, enforce_closure};
 pub use discretisation::{MeshError, mesh_error};
 pub use error::CouplingError;
 pub use exposure::{exposed_shares, extents};
 pub use pair_sample::sample_pairs;
 pub use radiosity::{Energy, Extent, Means, Radiosity};
+pub use receiver::{Receiver, Targets, sky, sky_exchanges, with_sky};
 pub use reciprocity::reciprocity;

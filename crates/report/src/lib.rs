@@ -39,6 +39,7 @@ mod shading;
 mod surfaces_csv;
 mod svg;
 mod tone;
+mod viewfactors;
 mod vtu;
 mod xml;
 
@@ -60,4 +61,9 @@ pub use run::{
 };
 pub use surfaces_csv::write_surfaces_csv;
 pub use tone::Exposure;
+pub use viewfactors::{
+    ClosureChange, Factors, MatrixFormat, Sparse, SurfaceData, VIEW_FACTORS_FORMAT, ViewFactorFiles,
+    ViewFactors, ViewFactorsError, ViewFactorsRecord, ViewPoints, heat_map, read_view_factors_record,
+    write_closure_histogram, write_view_factors,
+};
 pub use vtu::write_vtu;

@@ -11,6 +11,7 @@ mod check;
 mod error;
 mod files;
 mod format;
+mod geometry;
 mod import;
 mod parse;
 mod part;
@@ -22,6 +23,7 @@ mod suggest;
 
 pub use check::Warning;
 pub use error::{ErrorKind, Place, SceneError};
+pub use geometry::{By, Geometry, Rows, Surfaces};
 pub use resolve::{Camera, Material, SolveDefaults, Storage};
 pub use scene::Scene;
 pub use schema::schema;

@@ -3,8 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use fredholm_report::{FILES, ReportError, read_run};
+use fredholm_report::{FILES, ReportError, read_run, read_view_factors_record};
 
+use super::viewfactors;
 use crate::args::InfoArgs;
 use crate::failure::{Ending, Failure};
 use crate::output;
@@ -15,6 +16,12 @@ const RECORD: &str = "run.json";
 /// Tells what made a result.
 pub(crate) fn info(args: &InfoArgs) -> Result<Ending, Failure> {
     let path = record(&args.path)?;
+    if path.extension().is_some_and(|ending| ending == "npz") {
+        return viewfactors::describe_matrix(&path);
+    }
+    if let Ok(record) = read_view_factors_record(&path) {
+        return viewfactors::describe_record(&path, &record);
+    }
     let run = read_run(&path).map_err(|error| unreadable(&path, error))?;
     let mut lines = Lines::default();
     provenance(&run, &mut lines);
@@ -22,18 +29,18 @@ pub(crate) fn info(args: &InfoArgs) -> Result<Ending, Failure> {
     Ok(Ending::Done)
 }
 
-/// The record that belongs to a path: in the folder, or beside the file of a result.
+/// The record that belongs to a path: in the folder, or beside the file of a result. Files of view factors stand for themselves.
 fn record(path: &Path) -> Result<PathBuf, Failure> {
     let found = fs::metadata(path)
         .map_err(|error| Failure::new(Ending::Files, format!("cannot read {}: {error}", path.display())))?;
     if found.is_dir() {
         return Ok(path.join(RECORD));
     }
-    let is_json = path.extension().is_some_and(|ending| ending == "json");
+    let alone = path.extension().is_some_and(|ending| ending == "json" || ending == "npz");
     let is_result = FILES.iter().any(|name| path.file_name().is_some_and(|file| file == *name));
-    match (is_json, is_result) {
-        (true, _) => Ok(path.to_owned()),
-        (false, true) => Ok(path.with_file_name(RECORD)),
+    match (is_result, alone) {
+        (true, _) => Ok(path.with_file_name(RECORD)),
+        (false, true) => Ok(path.to_owned()),
         (false, false) => Err(foreign(path)),
     }
 }

@@ -6,15 +6,19 @@ mod info;
 mod schema;
 mod solve;
 mod solvers;
+mod viewfactors;
 
 use crate::args::Command;
 use crate::failure::{Ending, Failure};
+
+pub(crate) use viewfactors::ViewFactorsArgs;
 
 /// Carries out what was asked for.
 pub(crate) fn execute(command: &Command) -> Result<Ending, Failure> {
     match command {
         Command::Solve(args) => solve::solve(args),
         Command::Check(args) => check::check(args),
+        Command::ViewFactors(args) => viewfactors::view_factors(args),
         Command::Info(args) => info::info(args),
         Command::Schema => schema::schema(),
         Command::Completions(args) => completions::completions(args),

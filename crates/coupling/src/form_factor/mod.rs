@@ -18,4 +18,5 @@ pub use contour::contour_integral;
 pub(crate) use pair::blocks;
 pub use pair::{Exchange, Method, PairIntegrator, Workspace};
 pub use point_polygon::point_to_polygon;
+pub(crate) use shadow::Hiding;
 pub use unoccluded::{Unoccluded, Ways, Work};

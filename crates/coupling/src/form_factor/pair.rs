@@ -110,7 +110,7 @@ impl<'a> PairIntegrator<'a> {
     ) -> Self {
         let patches: Vec<_> = patches.into_iter().collect();
         let points = patches.iter().map(|p| PatchPoints::new(p)).collect();
-        let bodies = Bodies::new(occluders, &patches);
+        let bodies = Bodies::new(occluders, &patches, &[]);
         Self { patches, points, occluders, bodies, tolerance }
     }
 

@@ -4,6 +4,7 @@
 
 mod mtl;
 mod obj;
+pub(crate) mod vs3;
 
 use std::ops::Range;
 use std::path::Path;
@@ -48,13 +49,14 @@ pub(crate) struct Imported {
 }
 
 /// Endings of the names of files that [`import`] knows.
-pub(crate) const ENDINGS: &str = ".obj (Wavefront OBJ)";
+pub(crate) const ENDINGS: &str = ".obj (Wavefront OBJ) or .vs3 (View3D)";
 
 /// Reads a mesh file, or gives `None` where the ending of its name is that of no known format.
 pub(crate) fn import(path: &Path, bytes: Vec<u8>) -> Option<Result<Imported, SceneError>> {
     let ending = path.extension()?.to_str()?.to_lowercase();
     match ending.as_str() {
         "obj" => Some(Source::decode(path, bytes).and_then(obj::parse)),
+        "vs3" => Some(Source::decode(path, bytes).and_then(vs3::import)),
         _ => None,
     }
 }

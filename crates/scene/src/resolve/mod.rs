@@ -19,6 +19,9 @@ use crate::format::{At, SceneEntry, SurfaceEntry};
 use crate::part::Part;
 use crate::source::Source;
 
+pub(crate) use number::FARTHEST;
+pub(crate) use obj::face_shapes;
+
 pub use camera::Camera;
 pub use material::Material;
 pub use solve::{SolveDefaults, Storage};

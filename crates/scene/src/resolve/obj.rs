@@ -177,7 +177,8 @@ fn shapes(
     for face in &group.faces {
         let error = |e| geometry(source, entry, &e, (mesh_file, face.span.clone()));
         placing.check(face, mesh_file)?;
-        for shape in face_shapes(face, placing) {
+        let corners: Vec<Vec3> = face.corners.iter().map(|&p| placing.apply(p)).collect();
+        for shape in face_shapes(&corners) {
             let elements = shape.count(cutting).map_err(error)?;
             shapes.push((shape, elements));
         }
@@ -186,15 +187,14 @@ fn shapes(
 }
 
 /// A face as one shape. A convex polygon that is not flat, as rounded coordinates make it, is a fan of triangles.
-fn face_shapes(face: &ImportedFace, placing: &Placing) -> Vec<Shape> {
-    let corners: Vec<Vec3> = face.corners.iter().map(|&p| placing.apply(p)).collect();
-    match corners[..] {
+pub(crate) fn face_shapes(corners: &[Vec3]) -> Vec<Shape> {
+    match *corners {
         [a, b, c] => vec![Shape::Triangle { corners: [a, b, c] }],
         [a, b, c, d] => vec![Shape::Quad { corners: [a, b, c, d], skip: vec![] }],
         _ => {
-            let polygon = Shape::Polygon { outline: corners.clone(), holes: vec![] };
+            let polygon = Shape::Polygon { outline: corners.to_vec(), holes: vec![] };
             match polygon.count(&Cutting::default()) {
-                Err(MeshError::NotPlanar { .. }) if is_convex(&corners) => fan(&corners),
+                Err(MeshError::NotPlanar { .. }) if is_convex(corners) => fan(corners),
                 _ => vec![polygon],
             }
         }

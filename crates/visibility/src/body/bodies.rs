@@ -17,20 +17,20 @@ pub struct Bodies {
 
 impl Bodies {
     /// Puts the patches of `occluders` together: neighbours in one plane to convex polygons, and faces that close round a convex volume to solids. A polygon
-    /// with all `elements` on one side of its plane blocks nothing and is left out.
+    /// with all `elements` and `points` on one side of its plane blocks nothing between them and is left out.
     #[must_use]
-    pub fn new(occluders: &Occluders, elements: &[&Patch]) -> Self {
+    pub fn new(occluders: &Occluders, elements: &[&Patch], points: &[Vec3]) -> Self {
         let tolerance = occluders.tolerance();
-        let (points, polygons) = weld(occluders.patches());
-        let mut polygons = merge(&points, &polygons, tolerance);
-        polygons.retain(|polygon| divides(&points, polygon, elements, tolerance));
+        let (corners, polygons) = weld(occluders.patches());
+        let mut polygons = merge(&corners, &polygons, tolerance);
+        polygons.retain(|polygon| divides(&corners, polygon, elements, points, tolerance));
         let mut bodies = Vec::new();
         for list in connected(&polygons, |_, _| true) {
             let faces: Vec<&Polygon> = list.iter().map(|&k| &polygons[k]).collect();
-            let whole = solid(&points, &faces, tolerance, &occluders.frame);
-            match whole.filter(|solid| solid.stands_for_its_faces(elements, tolerance)) {
+            let whole = solid(&corners, &faces, tolerance, &occluders.frame);
+            match whole.filter(|solid| solid.stands_for_its_faces(elements, points, tolerance)) {
                 Some(solid) => bodies.push(solid.body),
-                None => bodies.extend(faces.iter().map(|face| flat(&points, face, occluders))),
+                None => bodies.extend(faces.iter().map(|face| flat(&corners, face, occluders))),
             }
         }
         Self { bodies, tolerance }
@@ -49,15 +49,21 @@ impl Bodies {
     }
 }
 
-fn flat(points: &[Vec3], polygon: &Polygon, occluders: &Occluders) -> Body {
-    let corners = polygon.corners.iter().map(|&k| points[k as usize]).collect();
-    Body::flat(corners, polygon.normal, &occluders.frame)
+fn flat(corners: &[Vec3], polygon: &Polygon, occluders: &Occluders) -> Body {
+    let outline = polygon.corners.iter().map(|&k| corners[k as usize]).collect();
+    Body::flat(outline, polygon.normal, &occluders.frame)
 }
 
-fn divides(points: &[Vec3], polygon: &Polygon, elements: &[&Patch], tolerance: f64) -> bool {
-    let plane = Face::through(points[polygon.corners[0] as usize], polygon.normal);
+fn divides(
+    corners: &[Vec3],
+    polygon: &Polygon,
+    elements: &[&Patch],
+    points: &[Vec3],
+    tolerance: f64,
+) -> bool {
+    let plane = Face::through(corners[polygon.corners[0] as usize], polygon.normal);
     let (mut above, mut below) = (false, false);
-    elements.iter().flat_map(|element| element.corners()).any(|&x| {
+    elements.iter().flat_map(|element| element.corners()).chain(points).any(|&x| {
         let height = plane.height(x);
         above |= height > tolerance;
         below |= height < -tolerance;

@@ -86,9 +86,13 @@ fn bounds(face: &Face, corners: &[Vec3], tolerance: f64) -> bool {
 }
 
 impl Solid {
-    /// Whether one solid hides what its faces hide: no element reaches into it, and those that lie on it looking in look out of no opening and
-    /// do not see each other.
-    pub fn stands_for_its_faces(&self, elements: &[&Patch], tolerance: f64) -> bool {
+    /// Whether one solid hides what its faces hide: no point is in it, no element reaches into it, and those that lie on it looking in look out of no
+    /// opening and do not see each other.
+    pub fn stands_for_its_faces(&self, elements: &[&Patch], points: &[Vec3], tolerance: f64) -> bool {
+        let outside = |x: &Vec3| self.body.faces().iter().any(|face| face.height(*x) > tolerance);
+        if !points.iter().all(outside) {
+            return false;
+        }
         let mut inner = None;
         elements.iter().all(|element| match self.meets(element, tolerance) {
             Meeting::Apart => true,

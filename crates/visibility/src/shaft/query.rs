@@ -42,6 +42,12 @@ impl Occluders {
         Shaft::between(a, b, &self.frame)
     }
 
+    /// The room that the segments between a point and a patch keep to, or `None` where the point is not in front of it.
+    #[must_use]
+    pub fn shaft_from(&self, p: Vec3, b: &Patch) -> Option<Shaft> {
+        Shaft::from_point(p, b, &self.frame)
+    }
+
     /// Whether a body could block a segment that keeps to the shaft. It may say so of one that does not.
     #[must_use]
     pub fn reaches(&self, body: &Body, shaft: &Shaft) -> bool {

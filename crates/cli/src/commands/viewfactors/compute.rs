@@ -1,0 +1,178 @@
+//! The computation: exchanges, rows, closure, points.
+
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use fredholm_coupling::{
+    Assembled, Closed, MethodCounts, aggregate, assemble, enforce_closure, reciprocity, sky_exchanges,
+    with_sky,
+};
+use fredholm_linop::{LinearOperator, PackedSymmetric};
+use fredholm_mesh::Patch;
+use fredholm_report::{ClosureChange, SurfaceData, ViewFactors, ViewPoints};
+
+use super::problem::Problem;
+use crate::failure::{Ending, Failure};
+use crate::solution::coupling_failure;
+use crate::stages::Stages;
+
+/// Stated errors of a row below this are rounding.
+const ROUNDING: f64 = 1e-13;
+
+/// A computed matrix.
+pub(super) struct Solution {
+    pub(super) factors: ViewFactors,
+    /// Largest estimated error of a form factor between elements.
+    pub(super) pair_error: f64,
+    pub(super) reciprocity: Option<f64>,
+    pub(super) methods: MethodCounts,
+    pub(super) enforced: Option<ClosureChange>,
+}
+
+pub(super) fn compute(problem: &Problem, stages: &mut Stages) -> Result<Solution, Failure> {
+    let assembled = exchanges(problem, stages)?;
+    let (pair_error, methods) = (assembled.largest, assembled.methods);
+    let (matrix, row_error) = rows(problem, assembled, stages)?;
+    let area = problem.areas();
+    let (matrix, enforced) = closed(problem, matrix, &area, &row_error, stages)?;
+    let (names, emissivity) = (problem.rows.names.clone(), problem.rows.emissivity.clone());
+    let (sky, sky_area) = (problem.surface_rows(), area.last().copied().unwrap_or_default());
+    let surfaces = SurfaceData { names, area, emissivity, row_error };
+    let row = |i: usize, row: &mut [f64]| {
+        matrix.row(i, 0, row);
+        // The sky sees itself, and the backs of surfaces, wherever it sees no front.
+        if i == sky {
+            row[sky] = sky_area - row.iter().sum::<f64>();
+        }
+    };
+    let mut factors = ViewFactors::new(surfaces, problem.options.threshold, row);
+    factors.points = points(problem, stages)?;
+    let reciprocity = stages.run("errors", || Ok(reciprocity(&problem.integrator())))?;
+    Ok(Solution { factors, pair_error, reciprocity, methods, enforced })
+}
+
+/// Exchanges of the rows, the sky's included, and the stated errors of their sums.
+fn rows(
+    problem: &Problem,
+    assembled: Assembled<f64>,
+    stages: &mut Stages,
+) -> Result<(PackedSymmetric<f64>, Vec<f64>), Failure> {
+    let mut error = problem.per_row(assembled.error.iter().copied());
+    let mut matrix = merged(problem, assembled.matrix)?;
+    if let Some(integrator) = problem.sky_integrator() {
+        let surfaces = problem.row_of().len();
+        let go_on = counter(stages, surfaces, "elements");
+        let found =
+            stages.run("sky", || sky_exchanges(&integrator, surfaces, &go_on).map_err(coupling_failure))?;
+        let sky = problem.per_row(found.iter().map(|[value, _]| *value));
+        matrix =
+            with_sky(&matrix, &sky[..problem.surface_rows()]).map_err(|e| Failure::new(Ending::Input, e))?;
+        let more = problem.per_row(found.iter().map(|[_, error]| *error));
+        error.iter_mut().zip(&more).for_each(|(error, more)| *error += more);
+        error[problem.surface_rows()] = more.iter().sum();
+    }
+    error.iter_mut().zip(problem.areas()).for_each(|(error, area)| *error /= area);
+    Ok((matrix, error))
+}
+
+/// Counts steps of `total`, shows them, and says whether the run is still wanted.
+fn counter<'a>(
+    stages: &Stages<'a>,
+    total: usize,
+    things: &'a str,
+) -> impl Fn() -> ControlFlow<()> + Sync + use<'a> {
+    let (console, interrupt, done) = (stages.console, stages.interrupt, AtomicUsize::new(0));
+    move || {
+        let done = done.fetch_add(1, Ordering::Relaxed);
+        console.advance(done as f64 / total.max(1) as f64, &|| format!("{done} of {total} {things}"));
+        if interrupt.requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
+fn exchanges(problem: &Problem, stages: &mut Stages) -> Result<Assembled<f64>, Failure> {
+    let (console, interrupt) = (stages.console, stages.interrupt);
+    let watch = |done: u64, total: u64| {
+        console.advance(done as f64 / total.max(1) as f64, &|| format!("{done} of {total} pairs"));
+        if interrupt.requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    };
+    stages.run("assembly", || assemble(&problem.integrator(), &watch).map_err(coupling_failure))
+}
+
+/// The exchanges of the rows, m².
+fn merged(problem: &Problem, matrix: PackedSymmetric<f64>) -> Result<PackedSymmetric<f64>, Failure> {
+    if problem.is_unmerged() {
+        return Ok(matrix);
+    }
+    aggregate(&matrix, problem.row_of(), problem.surface_rows())
+        .map_err(|error| Failure::new(Ending::Input, error))
+}
+
+/// The matrix with closed rows, where that is asked for.
+fn closed(
+    problem: &Problem,
+    matrix: PackedSymmetric<f64>,
+    area: &[f64],
+    row_error: &[f64],
+    stages: &mut Stages,
+) -> Result<(PackedSymmetric<f64>, Option<ClosureChange>), Failure> {
+    if !problem.options.close {
+        return Ok((matrix, None));
+    }
+    let closed = stages.run("closure", || close(problem, &matrix, area, row_error))?;
+    let change = change(&matrix, area, row_error, &closed, problem.surface_rows());
+    Ok((closed.matrix, Some(change)))
+}
+
+fn close(
+    problem: &Problem,
+    matrix: &PackedSymmetric<f64>,
+    area: &[f64],
+    row_error: &[f64],
+) -> Result<Closed, Failure> {
+    enforce_closure(matrix, area, row_error, problem.surface_rows()).map_err(|error| {
+        use fredholm_coupling::ClosureError::{Infeasible, Open};
+        let (Open { row, .. } | Infeasible { row, .. }) = error else {
+            return Failure::new(Ending::Input, error);
+        };
+        let text = format!(
+            "--close: {error}\n  help: row {row} is `{}`; leave out --close, or add --sky",
+            problem.rows.names[row]
+        );
+        Failure::new(Ending::Input, text)
+    })
+}
+
+/// How far the closed matrix is from the one computed, over the first `closing` rows.
+fn change(
+    matrix: &PackedSymmetric<f64>,
+    area: &[f64],
+    row_error: &[f64],
+    closed: &Closed,
+    closing: usize,
+) -> ClosureChange {
+    let largest = |values: &mut dyn Iterator<Item = f64>| values.reduce(f64::max);
+    let sums = matrix.row_sums();
+    let over = closed.change[..closing].iter().zip(row_error).filter(|(_, error)| **error > ROUNDING);
+    ClosureChange {
+        closure_before: largest(
+            &mut sums[..closing].iter().zip(area).map(|(sum, area)| (sum / area - 1.0).abs()),
+        ),
+        largest: Some(closed.largest),
+        row_max: largest(&mut closed.change[..closing].iter().copied()),
+        over_stated: largest(&mut over.map(|(change, error)| change / error)),
+        steps: closed.steps as u64,
+    }
+}
+
+fn points(problem: &Problem, stages: &mut Stages) -> Result<Option<ViewPoints>, Failure> {
+    if problem.receivers.is_empty() {
+        return Ok(None);
+    }
+    let go_on = counter(stages, problem.receivers.len(), "points");
+    let patches: Vec<&Patch> = problem.patches().collect();
+    let seen = || problem.targets(&patches).factors(&problem.receivers, &go_on).map_err(coupling_failure);
+    let factors = stages.run("points", seen)?;
+    let points = problem.receivers.iter().map(|receiver| receiver.point.to_array()).collect();
+    let normals = problem.receivers.iter().map(|receiver| receiver.normal.to_array()).collect();
+    Ok(Some(ViewPoints { points, normals, factors }))
+}

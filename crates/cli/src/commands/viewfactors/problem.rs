@@ -1,0 +1,152 @@
+//! From a file to patches with rows, that fit the memory.
+
+use std::fmt::Display;
+
+use fredholm_coupling::form_factor::PairIntegrator;
+use fredholm_coupling::{Receiver, Targets, sky};
+use fredholm_mesh::{Bounds, Patch};
+use fredholm_scene::{Geometry, Rows, SceneError, Surfaces};
+use fredholm_visibility::Occluders;
+
+use super::args::ViewFactorsArgs;
+use super::memory::Prediction;
+use super::options::Options;
+use super::target::Target;
+use crate::failure::{Ending, Failure};
+use crate::stages::Stages;
+
+/// Name of the row of the sky.
+const SKY: &str = "sky";
+/// Patches of the sky.
+const SKY_PATCHES: usize = 6;
+
+/// What the matrix is computed of.
+pub(super) struct Problem {
+    pub(super) geometry: Geometry,
+    pub(super) options: Options,
+    pub(super) rows: Rows,
+    pub(super) prediction: Prediction,
+    pub(super) occluders: Occluders,
+    pub(super) receivers: Vec<Receiver>,
+    surfaces: Surfaces,
+    sky: Vec<Patch>,
+}
+
+impl Problem {
+    /// Reads and meshes; refuses before memory is taken what does not fit.
+    pub(super) fn load(
+        args: &ViewFactorsArgs,
+        target: &Target,
+        stages: &mut Stages,
+    ) -> Result<Self, Failure> {
+        let geometry = stages.run("geometry", || Geometry::load(&args.input).map_err(scene_failure))?;
+        let options = Options::new(args, &geometry, target);
+        let more = if options.sky { SKY_PATCHES } else { 0 };
+        let count = usize::try_from(geometry.predicted_elements()).unwrap_or(usize::MAX).saturating_add(more);
+        // The number of rows is not known before the mesh; it is at least 1.
+        Prediction::new(count, 1, &options).admit(&options)?;
+        let surfaces = stages.run("mesh", || geometry.surfaces().map_err(scene_failure))?;
+        let rows = with_sky(surfaces.rows(options.by()), more);
+        let prediction = Prediction::new(rows.row_of.len(), rows.names.len(), &options);
+        prediction.admit(&options)?;
+        let receivers = receivers(args);
+        let sky = if options.sky { sky_around(&surfaces, &receivers, args)? } else { Vec::new() };
+        let prepare = || Occluders::new(surfaces.mesh.occluders()).map_err(|error| named(args, error));
+        let occluders = stages.run("visibility", prepare)?;
+        Ok(Self { geometry, options, rows, prediction, occluders, receivers, surfaces, sky })
+    }
+
+    /// The patches, those of the sky last.
+    pub(super) fn patches(&self) -> impl Iterator<Item = &Patch> {
+        self.surfaces.mesh.patches().chain(&self.sky)
+    }
+
+    /// What computes the form factors between surfaces.
+    pub(super) fn integrator(&self) -> PairIntegrator<'_> {
+        PairIntegrator::new(self.surfaces.mesh.patches(), &self.occluders, self.options.tolerance)
+    }
+
+    /// What computes the form factors to the sky, where there is one: the patches of the sky come last.
+    pub(super) fn sky_integrator(&self) -> Option<PairIntegrator<'_>> {
+        let integrator = || PairIntegrator::new(self.patches(), &self.occluders, self.options.tolerance);
+        (!self.sky.is_empty()).then(integrator)
+    }
+
+    /// Rows of the elements of the surfaces.
+    pub(super) fn row_of(&self) -> &[usize] {
+        &self.rows.row_of[..self.surfaces.mesh.len()]
+    }
+
+    /// What the points look at.
+    pub(super) fn targets<'a>(&'a self, patches: &'a [&'a Patch]) -> Targets<'a> {
+        Targets {
+            patches,
+            row_of: &self.rows.row_of,
+            rows: self.rows.names.len(),
+            occluders: &self.occluders,
+        }
+    }
+
+    /// Areas of the rows, m².
+    pub(super) fn areas(&self) -> Vec<f64> {
+        self.per_row(self.patches().map(Patch::area))
+    }
+
+    /// Sums of values of the elements over the rows; elements of the sky may be left out.
+    pub(super) fn per_row(&self, values: impl Iterator<Item = f64>) -> Vec<f64> {
+        let mut sums = vec![0.0; self.rows.names.len()];
+        self.rows.row_of.iter().zip(values).for_each(|(&row, value)| sums[row] += value);
+        sums
+    }
+
+    /// Number of rows without that of the sky, which is the last.
+    pub(super) fn surface_rows(&self) -> usize {
+        self.rows.names.len() - usize::from(!self.sky.is_empty())
+    }
+
+    /// Whether every element of the surfaces is a row.
+    pub(super) fn is_unmerged(&self) -> bool {
+        self.surface_rows() == self.row_of().len()
+    }
+}
+
+/// Adds the row of the sky, which is black.
+fn with_sky(mut rows: Rows, patches: usize) -> Rows {
+    if patches > 0 {
+        let row = rows.names.len();
+        rows.row_of.extend(std::iter::repeat_n(row, patches));
+        rows.names.push(SKY.to_owned());
+        rows.emissivity.iter_mut().for_each(|emissivity| emissivity.push(1.0));
+    }
+    rows
+}
+
+fn receivers(args: &ViewFactorsArgs) -> Vec<Receiver> {
+    let grids = args.plane.iter().flat_map(super::args::Plane::receivers);
+    args.point.iter().copied().chain(grids).collect()
+}
+
+/// The sky around the surfaces and the points.
+fn sky_around(
+    surfaces: &Surfaces,
+    receivers: &[Receiver],
+    args: &ViewFactorsArgs,
+) -> Result<Vec<Patch>, Failure> {
+    let corners = surfaces.mesh.bounds().into_iter().flat_map(|bounds| [bounds.min, bounds.max]);
+    let bounds = Bounds::around(corners.chain(receivers.iter().map(|receiver| receiver.point)));
+    bounds.map_or_else(|| Ok(Vec::new()), |bounds| sky(bounds).map_err(|error| named(args, error)))
+}
+
+fn named(args: &ViewFactorsArgs, error: impl Display) -> Failure {
+    Failure::new(Ending::Input, format!("{}: {error}", args.input.display()))
+}
+
+/// Unreadable files and scenes too large have exit codes of their own.
+fn scene_failure(error: SceneError) -> Failure {
+    let ending = match error.kind() {
+        fredholm_scene::ErrorKind::Io => Ending::Files,
+        fredholm_scene::ErrorKind::TooLarge => Ending::Resources,
+        _ => Ending::Input,
+    };
+    Failure::new(ending, error)
+}

@@ -1,0 +1,128 @@
+//! The files of a matrix: the matrix itself, a heat map (`.png`), a histogram of the closure errors (`.svg`) and the record (`.json`).
+//!
+//! The record is removed first and written last: where it stands, the files beside it belong together.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use super::heat_map::heat_map;
+use super::histogram::write_closure_histogram;
+use super::matrix::ViewFactors;
+use super::record::ViewFactorsRecord;
+use crate::{ReportError, write_atomically};
+
+/// Forms of the matrix.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MatrixFormat {
+    /// Arrays for `NumPy` and `SciPy`.
+    Npz,
+    /// A table.
+    Csv,
+    /// Text as View3D writes it.
+    View3d,
+}
+
+impl MatrixFormat {
+    /// The format that the ending of a name stands for: `.npz`, `.csv`, or `.txt`, `.out` and `.vf`.
+    #[must_use]
+    pub fn of(path: &Path) -> Option<Self> {
+        match path.extension()?.to_str()?.to_lowercase().as_str() {
+            "npz" => Some(Self::Npz),
+            "csv" => Some(Self::Csv),
+            "txt" | "out" | "vf" => Some(Self::View3d),
+            _ => None,
+        }
+    }
+}
+
+/// Where the files of a matrix lie.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ViewFactorFiles {
+    /// The matrix.
+    pub matrix: PathBuf,
+    /// The heat map.
+    pub picture: PathBuf,
+    /// The histogram.
+    pub histogram: PathBuf,
+    /// The record.
+    pub record: PathBuf,
+}
+
+impl ViewFactorFiles {
+    /// The files beside a matrix.
+    #[must_use]
+    pub fn beside(matrix: &Path) -> Self {
+        let with = |ending| matrix.with_extension(ending);
+        Self { matrix: matrix.to_owned(), picture: with("png"), histogram: with("svg"), record: with("json") }
+    }
+}
+
+/// Writes all files; the folder is made where it does not exist.
+///
+/// # Errors
+/// [`ReportError::Write`] with the file or folder that could not be written. There is then no record.
+pub fn write_view_factors(
+    files: &ViewFactorFiles,
+    format: MatrixFormat,
+    factors: &ViewFactors,
+    record: &ViewFactorsRecord,
+) -> Result<(), ReportError> {
+    prepare(files)?;
+    write_atomically(&files.matrix, |out| match format {
+        MatrixFormat::Npz => factors.write_npz(out),
+        MatrixFormat::Csv => factors.write_csv(out),
+        MatrixFormat::View3d => factors.write_view3d(record.enforced.is_some(), out),
+    })?;
+    write_atomically(&files.picture, |out| heat_map(factors).write_png(out))?;
+    write_atomically(&files.histogram, |out| write_closure_histogram(factors, out))?;
+    write_atomically(&files.record, |out| record.write(out))
+}
+
+/// Makes the folder and removes the record of an older matrix.
+fn prepare(files: &ViewFactorFiles) -> Result<(), ReportError> {
+    let failed = |path: &Path| {
+        let path = path.to_owned();
+        move |source| ReportError::Write { path, source }
+    };
+    if let Some(folder) = files.matrix.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+        fs::create_dir_all(folder).map_err(failed(folder))?;
+    }
+    match fs::remove_file(&files.record) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(failed(&files.record)(error)),
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::matrix::tests::sample;
+    use super::*;
+    use crate::read_view_factors_record;
+
+    #[test]
+    fn all_files_are_written_or_there_is_no_record() {
+        let base = tempfile::tempdir().unwrap();
+        let files = ViewFactorFiles::beside(&base.path().join("new/F.npz"));
+        let record = ViewFactorsRecord::default();
+        write_view_factors(&files, MatrixFormat::Npz, &sample(None), &record).unwrap();
+        assert_eq!(ViewFactors::read_npz(&files.matrix).unwrap(), sample(None));
+        assert_eq!(read_view_factors_record(&files.record).unwrap(), record);
+        let picture = image::open(&files.picture).unwrap();
+        assert!(picture.width() > 100 && fs::read_to_string(&files.histogram).unwrap().contains("</svg>"));
+        fs::remove_file(&files.picture).unwrap();
+        fs::create_dir(&files.picture).unwrap();
+        let error = write_view_factors(&files, MatrixFormat::Npz, &sample(None), &record).unwrap_err();
+        assert!(error.to_string().contains("F.png") && !files.record.exists(), "{error}");
+    }
+
+    #[test]
+    fn endings_name_formats() {
+        let of = |name: &str| MatrixFormat::of(Path::new(name));
+        assert_eq!(
+            [of("a.NPZ"), of("a.csv"), of("a.vf")],
+            [Some(MatrixFormat::Npz), Some(MatrixFormat::Csv), Some(MatrixFormat::View3d)]
+        );
+        assert_eq!([of("a.png"), of("npz"), of("a")], [None; 3]);
+    }
+}
