@@ -14,21 +14,21 @@ const POINTS: usize = 10;
 /// Bisections towards a touching corner: 2⁻⁵⁰ of the edge is below rounding.
 const DEPTH: u32 = 50;
 /// Squared sine of the angle under which edges count as parallel.
-const PARALLEL: f64 = 1e-28;
+pub(crate) const PARALLEL: f64 = 1e-28;
 /// Rounding of one edge pair, relative to the largest term of its closed form.
-const ROUNDING: f64 = 8.0 * f64::EPSILON;
+pub(crate) const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// Largest term of the closed form for parallel edges, over the product of their lengths, at which it is used. Its four terms grow
 /// with the squared distance and cancel; quadrature of the inner integral does not.
-const CANCELLING: f64 = 100.0;
+pub(crate) const CANCELLING: f64 = 100.0;
 
 static RULE: LazyLock<IntervalRule> = LazyLock::new(|| gauss_legendre(POINTS));
 
 /// An oriented edge: start, unit direction, length.
 #[derive(Clone, Copy)]
-struct Edge {
-    start: Vec3,
-    direction: Vec3,
-    length: f64,
+pub(crate) struct Edge {
+    pub start: Vec3,
+    pub direction: Vec3,
+    pub length: f64,
 }
 
 /// A_i F_ij (m²) between two polygons given by their corners, to an absolute `tolerance` (m²) as far as rounding lets it.
@@ -44,13 +44,24 @@ struct Edge {
 /// ```
 #[must_use]
 pub fn contour_integral(a: &[Vec3], b: &[Vec3], tolerance: f64) -> Estimate {
+    over_edges(a, b, tolerance, edge_pair)
+}
+
+/// The double sum over the edges of both polygons, in m²; `pair` computes (dₑ·d_f) ∫∫ ln r ds dt to its share of the tolerance, in the
+/// pair's own unit of length.
+pub(crate) fn over_edges(
+    a: &[Vec3],
+    b: &[Vec3],
+    tolerance: f64,
+    pair: impl Fn(Edge, Edge, f64) -> Estimate,
+) -> Estimate {
     let Some(&origin) = a.first() else { return Estimate::default() };
     let unit = unit_of_length(origin, a, b);
     let share = tolerance * TAU / (unit * unit * (a.len() * b.len()).max(1) as f64);
     let mut sum = Estimate::default();
     for e in edges(a, origin, unit) {
         for f in edges(b, origin, unit) {
-            sum = sum + edge_pair(e, f, share);
+            sum = sum + pair(e, f, share);
         }
     }
     let scale = unit * unit / TAU;
@@ -77,7 +88,7 @@ fn edges(corners: &[Vec3], origin: Vec3, unit: f64) -> impl Iterator<Item = Edge
 }
 
 /// (dₑ·d_f) ∫∫ ln r ds dt.
-fn edge_pair(e: Edge, f: Edge, tolerance: f64) -> Estimate {
+pub(crate) fn edge_pair(e: Edge, f: Edge, tolerance: f64) -> Estimate {
     let cosine = e.direction.dot(f.direction);
     if cosine.abs() <= f64::EPSILON {
         return Estimate::default();
@@ -98,7 +109,7 @@ fn edge_pair(e: Edge, f: Edge, tolerance: f64) -> Estimate {
 
 /// Rounding of ∫∫ ln r ds dt: that of the terms of the inner integral, and that of a point of `e`, of order 1, times the change
 /// of the inner integral with it, the angle under which it sees `f`.
-fn rounding(e: Edge, f: Edge) -> f64 {
+pub(crate) fn rounding(e: Edge, f: Edge) -> f64 {
     let gap = e.start.distance(f.start) - e.length - f.length;
     let angle = f.length / gap.max(f.length);
     ROUNDING * e.length * (f.length + angle)
@@ -107,7 +118,7 @@ fn rounding(e: Edge, f: Edge) -> f64 {
 /// ∫ ln |p − q(t)| dt along an edge of length L: with r₀, r₁ the distances of its ends, t₀, t₁ = t₀ + L their places along it from the foot
 /// of p and h the height of p, ½ L ln(r₀ r₁) + ½ (t₀ + t₁) ln(r₁/r₀) − L + h θ. θ is the angle under which p sees the edge. Every term
 /// is of the order of L: nothing cancels where the edge is short and far.
-fn log_integral(p: Vec3, f: Edge) -> f64 {
+pub(crate) fn log_integral(p: Vec3, f: Edge) -> f64 {
     let d = f.start - p;
     let t0 = d.dot(f.direction);
     let t1 = t0 + f.length;

@@ -4,12 +4,13 @@
 
 mod area_gauss;
 mod clipped;
-mod contour;
+pub(crate) mod contour;
 mod pair;
 mod point_polygon;
 mod sampled;
 mod shadow;
 
+pub(crate) use area_gauss::jacobian;
 pub use area_gauss::{MAX_ORDER, PatchPoints, area_gauss, double_area};
 pub use contour::contour_integral;
 pub use pair::{Exchange, Method, PairIntegrator, Workspace};
