@@ -49,11 +49,11 @@ impl FormFactorMethod for AreaGauss {
         if touching.iter().all(|pair| pair.labels.is_none()) {
             let cells = (facing.a.cells.len() * facing.b.cells.len()) as u64;
             let estimate = settled(order, |n| tensor(&facing, n));
-            return Ok(Evaluated::new(estimate, cells * cost(order, 4)));
+            return Ok(facing.evaluated(estimate, cells * cost(order, 4)));
         }
         let pieces: u64 = touching.iter().map(TrianglePair::pieces).sum();
         let estimate = settled(order, |n| touching.iter().map(|pair| pair.integral(&facing, n)).sum());
-        Ok(Evaluated::new(estimate, pieces * cost(order, 4)))
+        Ok(facing.evaluated(estimate, pieces * cost(order, 4)))
     }
 }
 

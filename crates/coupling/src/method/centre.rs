@@ -43,14 +43,14 @@ impl FormFactorMethod for Centre {
         let Some(facing) = Facing::new(a, b, occluders) else { return Ok(Evaluated::default()) };
         let kernel = facing.kernel(facing.a.centroid(), facing.b.centroid());
         let value = facing.a.area() * facing.b.area() * kernel;
-        Ok(Evaluated::new(Estimate { value, error: second_terms(&facing.a, &facing.b) }, 1))
+        Ok(facing.evaluated(Estimate { value, error: second_terms(&facing.a, &facing.b) }, 1))
     }
 }
 
-/// Size of the terms that one point pair leaves out, m²; never more than the smaller area.
+/// Size of the terms that one point pair leaves out, m².
 pub(super) fn second_terms(a: &Part, b: &Part) -> f64 {
     let r2 = a.centroid().distance_squared(b.centroid());
     let spread = (a.radius().powi(2) + b.radius().powi(2)) / r2;
     let squarely = FRAC_1_PI * a.area() * b.area() / r2;
-    (SECOND_TERMS * spread * squarely).min(a.area().min(b.area()))
+    SECOND_TERMS * spread * squarely
 }

@@ -44,7 +44,7 @@ impl FormFactorMethod for Disc {
         let (small, large) = ordered(facing.a.area(), facing.b.area());
         let circle = PI * p.distance_squared(q);
         let value = small * large * facing.kernel(p, q) * circle / (circle + large);
-        Ok(Evaluated::new(Estimate { value, error: second_terms(&facing.a, &facing.b) }, 1))
+        Ok(facing.evaluated(Estimate { value, error: second_terms(&facing.a, &facing.b) }, 1))
     }
 }
 

@@ -3,9 +3,11 @@
 //! Points of i behind the plane of j see nothing of it: A_i F_ij = ∫ ∫ over {p ∈ i : n_j·(p − c_j) ≥ 0} and the same of j. All methods integrate
 //! over these parts only, so that patches that cross each other's plane are right. Lengths in metres.
 
+use super::Evaluated;
 use crate::kernel::lambert;
 use crate::polygon::{HalfSpace, clip};
 use fredholm_mesh::{Patch, Vec3};
+use fredholm_quadrature::Estimate;
 use fredholm_visibility::Occluders;
 use std::f64::consts::FRAC_1_PI;
 
@@ -50,6 +52,13 @@ impl<'a> Facing<'a> {
     /// Largest distance that matters, m.
     pub(super) fn extent(&self) -> f64 {
         self.extent
+    }
+
+    /// The estimate, its error no larger than the value or the smaller area: the truth lies between 0 and that area.
+    pub(super) fn evaluated(&self, estimate: Estimate, evaluations: u64) -> Evaluated {
+        let got = Evaluated::new(estimate, evaluations);
+        let most = got.value.max(self.a.area().min(self.b.area()));
+        Evaluated { error: got.error.min(most), ..got }
     }
 
     /// Whether two points see each other.
@@ -110,7 +119,7 @@ impl Part {
 }
 
 /// A convex polygon as triangles; slivers that are no patches have no area to add.
-fn fan(corners: &[Vec3]) -> Vec<Patch> {
+pub(super) fn fan(corners: &[Vec3]) -> Vec<Patch> {
     let triangle = |k: usize| Patch::triangle([corners[0], corners[k - 1], corners[k]]).ok();
     (2..corners.len()).filter_map(triangle).collect()
 }

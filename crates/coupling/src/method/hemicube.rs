@@ -52,7 +52,7 @@ impl FormFactorMethod for Hemicube {
         }
         let area = facing.a.area();
         let estimate = Estimate { value: area * sum.value, error: area * sum.error + collocation(&facing) };
-        Ok(Evaluated::new(estimate, (3 * pixels * pixels) as u64))
+        Ok(facing.evaluated(estimate, (3 * pixels * pixels) as u64))
     }
 }
 

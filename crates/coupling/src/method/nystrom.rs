@@ -52,7 +52,7 @@ impl FormFactorMethod for Nystrom {
         let point = settled(order, row);
         let error = area * point.error + collocation(&facing);
         let cells = facing.b.cells.len() as u64;
-        Ok(Evaluated::new(Estimate { value: area * point.value, error }, cells * cost(order, 2)))
+        Ok(facing.evaluated(Estimate { value: area * point.value, error }, cells * cost(order, 2)))
     }
 }
 

@@ -1,11 +1,13 @@
 //! Point to polygon inside, adaptive outside: A_i F_ij = ∫_i F(p → j) dA, F(p → j) Lambert's closed form.
 //!
 //! Inner integral: see [`point_to_polygon`]. In m². The outer integral goes over the patch of the smaller diameter, cut where the
-//! error is largest (R. Piessens et al., *QUADPACK*, 1983, section 2.2.3). F(p → j) is analytic inside the part in front of j and up to shared
-//! edges; only at points where corners touch it has no limit, and bisection closes in on them. With occluders between, what the
-//! point sees is cut out exactly; see [`PairIntegrator`].
+//! error is largest (R. Piessens et al., *QUADPACK*, 1983, section 2.2.3). Where j is close, F(p → j) has layers along the projection of its edges and no
+//! limit at corners that touch: then the patch is cut along these projections (`pieces`) and graded towards the cuts (`graded`). With occluders
+//! between, what the point sees is cut out exactly; see [`PairIntegrator`].
 
-use super::facing::{Facing, Part, squarely};
+use super::facing::{Facing, Part, fan, squarely};
+use super::graded::graded;
+use super::pieces::pieces;
 use super::{Evaluated, FormFactorMethod, MethodError, Setting};
 use crate::form_factor::{Method, PairIntegrator, Workspace, jacobian, point_to_polygon};
 use fredholm_mesh::{Patch, Vec3};
@@ -15,10 +17,13 @@ use fredholm_quadrature::{
 use fredholm_visibility::Occluders;
 use std::cell::Cell;
 
-/// Points a direction of the rule on a cell.
+/// Points a direction of the rule on a cell of patches that are apart, and on a graded one.
 const POINTS: usize = 6;
+const POINTS_CLOSE: usize = 8;
 /// Most cells that are cut.
 const CUTS: usize = 4000;
+/// Stated error over the difference that one more cut makes, which may be small by accident.
+const SAFETY: f64 = 3.0;
 /// Rounding of Lambert's sum for a point at unit distance.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
@@ -69,10 +74,27 @@ fn open(outer: &Part, target: &Part, tolerance: f64) -> Evaluated {
         point_to_polygon(outer.normal, target.corners.iter().map(|&x| x - p))
     };
     let rounding = ROUNDING * outer.area();
-    let goal = Goal { tolerance: tolerance.max(rounding) / outer.cells.len() as f64, cuts: CUTS };
-    let sum =
-        outer.cells.iter().map(|cell| over_cell(cell, goal, seen)).fold(Estimate::default(), |a, b| a + b);
-    Evaluated::new(Estimate { error: sum.error + rounding, ..sum }, evaluations.get())
+    let tolerance = tolerance.max(rounding) / SAFETY;
+    let sum = if is_close(outer, target) {
+        let triangles: Vec<_> = pieces(outer, target).iter().flat_map(|piece| fan(piece)).collect();
+        let rule = tensor_quad(POINTS_CLOSE);
+        total(&triangles, tolerance, |triangle, goal| graded(triangle, &rule, goal, seen))
+    } else {
+        total(&outer.cells, tolerance, |cell, goal| over_cell(cell, goal, seen))
+    };
+    Evaluated::new(Estimate { error: SAFETY * sum.error + rounding, ..sum }, evaluations.get())
+}
+
+/// Whether the target may be closer to a point of the outer part than that is large.
+fn is_close(outer: &Part, target: &Part) -> bool {
+    let gap = outer.centroid().distance(target.centroid()) - outer.radius() - target.radius();
+    gap < outer.radius()
+}
+
+/// The sum over all cells, each with an even share of the tolerance.
+fn total(cells: &[Patch], tolerance: f64, integral: impl Fn(&Patch, Goal) -> Estimate) -> Estimate {
+    let goal = Goal { tolerance: tolerance / cells.len() as f64, cuts: CUTS };
+    cells.iter().map(|cell| integral(cell, goal)).fold(Estimate::default(), |a, b| a + b)
 }
 
 fn over_cell(cell: &Patch, goal: Goal, seen: impl Fn(Vec3) -> f64) -> Estimate {

@@ -13,8 +13,8 @@
 //! d² ∫∫ ds dt/r² = (d²/sinθ) [[ Λ(u + v, π − θ) + |u + v| θ/2 − Λ(u − v, θ) − |u − v| (π − θ)/2 ]],
 //!
 //! Λ(x, θ) = Im Li₂(e^{−|x| + iθ}), double brackets the differences between the ends of both edges. With d = 0 (lines that meet) it
-//! vanishes. Dimensionless lengths in the unit of the pair. The terms are of the size of the distance to the feet: edges that are nearly
-//! parallel, or short and far, cancel, and the stated rounding says so.
+//! vanishes. Dimensionless lengths in the unit of the pair. The terms are of the size of the distance to the feet, and the rounding of the directions
+//! turns the common perpendicular by its 1/sinθ-fold: edges that are nearly parallel, or short and far, cancel, and the stated rounding says so.
 
 use super::dilogarithm;
 use crate::form_factor::contour::{Edge, ROUNDING, log_integral};
@@ -76,7 +76,7 @@ pub(super) fn skew_edges(e: Edge, f: Edge) -> Estimate {
     let boundary = [along_f(1), -along_f(0), along_e(1), -along_e(0), -e.length * f.length];
     let terms = || boundary.into_iter().chain(feet.inverse_square());
     let largest = terms().fold(0.0, |m: f64, term| m.max(term.abs()));
-    Estimate { value: 0.5 * terms().sum::<f64>(), error: ROUNDING * largest }
+    Estimate { value: 0.5 * terms().sum::<f64>(), error: ROUNDING * largest / feet.sine }
 }
 
 #[cfg(test)]
