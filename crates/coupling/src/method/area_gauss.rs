@@ -48,16 +48,19 @@ impl FormFactorMethod for AreaGauss {
         let touching = touching_pairs(&facing);
         if touching.iter().all(|pair| pair.labels.is_none()) {
             let cells = (facing.a.cells.len() * facing.b.cells.len()) as u64;
-            let estimate = settled(order, |n| tensor(&facing, n));
+            let estimate = settled(order, facing.between() > 0, |n| tensor(&facing, n));
             return Ok(facing.evaluated(estimate, cells * cost(order, 4)));
         }
         let pieces: u64 = touching.iter().map(TrianglePair::pieces).sum();
-        let estimate = settled(order, |n| touching.iter().map(|pair| pair.integral(&facing, n)).sum());
+        let estimate = settled(order, facing.between() > 0, |n| {
+            touching.iter().map(|pair| pair.integral(&facing, n)).sum()
+        });
         Ok(facing.evaluated(estimate, pieces * cost(order, 4)))
     }
 }
 
-fn tensor(facing: &Facing, n: usize) -> f64 {
+/// The double sum of order n over all cells of both parts, m².
+pub(super) fn tensor(facing: &Facing, n: usize) -> f64 {
     let (a, b) = (placed(&facing.a.cells, n), placed(&facing.b.cells, n));
     let inner = |p: Vec3| b.iter().map(|&(q, weight)| weight * facing.kernel(p, q)).sum::<f64>();
     a.iter().map(|&(p, weight)| weight * inner(p)).sum()

@@ -6,18 +6,19 @@
 //! remaining difference is that of collocation, of second order in the size of i. The stated error has both parts.
 //! It is not reciprocal.
 
+use super::area_gauss::tensor;
 use super::facing::Facing;
 use super::orders::{cost, placed, settled};
 use super::{Evaluated, FormFactorMethod, MethodError, Setting};
-use crate::form_factor::point_to_polygon;
-use fredholm_mesh::{Patch, Vec3};
+use crate::form_factor::{contour_integral, point_to_polygon};
+use fredholm_mesh::Patch;
 use fredholm_quadrature::Estimate;
 use fredholm_visibility::Occluders;
 
 /// Highest order.
 const MOST: usize = 64;
-/// Points a direction of the mean that the centroid is compared with.
-const MEAN: usize = 4;
+/// Points a direction on both patches for the difference between centroid and mean behind occluders.
+const BEHIND: usize = 6;
 
 pub(super) struct Nystrom;
 
@@ -49,16 +50,24 @@ impl FormFactorMethod for Nystrom {
         let Some(facing) = Facing::new(a, b, occluders) else { return Ok(Evaluated::default()) };
         let (p, area) = (facing.a.centroid(), facing.a.area());
         let row = |n| placed(&facing.b.cells, n).iter().map(|&(q, w)| w * facing.kernel(p, q)).sum::<f64>();
-        let point = settled(order, row);
+        let point = settled(order, facing.between() > 0, row);
         let error = area * point.error + collocation(&facing);
         let cells = facing.b.cells.len() as u64;
         Ok(facing.evaluated(Estimate { value: area * point.value, error }, cells * cost(order, 2)))
     }
 }
 
-/// Difference between the mean over `a` of the unoccluded factor of its points and that of the centroid, times the area, m².
+/// Difference between A_i F_ij and the factor of the centroid times the area, m²: closed forms of both where nothing is between, else Gauss
+/// points and their error.
 pub(super) fn collocation(facing: &Facing) -> f64 {
-    let seen = |p: Vec3| point_to_polygon(facing.a.normal, facing.b.corners.iter().map(|&x| x - p));
-    let sum: f64 = placed(&facing.a.cells, MEAN).iter().map(|&(p, weight)| weight * seen(p)).sum();
-    (sum - facing.a.area() * seen(facing.a.centroid())).abs()
+    let (p, area) = (facing.a.centroid(), facing.a.area());
+    if facing.between() > 0 {
+        let target = placed(&facing.b.cells, BEHIND);
+        let seen: f64 = target.iter().map(|&(q, weight)| weight * facing.kernel(p, q)).sum();
+        let mean = settled(BEHIND, true, |n| tensor(facing, n));
+        return (mean.value - area * seen).abs() + mean.error;
+    }
+    let exact = contour_integral(&facing.a.corners, &facing.b.corners, 0.0).value;
+    let seen = point_to_polygon(facing.a.normal, facing.b.corners.iter().map(|&x| x - p));
+    (exact - area * seen).abs()
 }

@@ -19,11 +19,11 @@ use std::cell::Cell;
 
 /// Points a direction of the rule on a cell of patches that are apart, and on a graded one.
 const POINTS: usize = 6;
-const POINTS_CLOSE: usize = 8;
+const POINTS_CLOSE: usize = 10;
 /// Most cells that are cut.
 const CUTS: usize = 4000;
 /// Stated error over the difference that one more cut makes, which may be small by accident.
-const SAFETY: f64 = 3.0;
+const SAFETY: f64 = 10.0;
 /// Rounding of Lambert's sum for a point at unit distance.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 

@@ -8,10 +8,13 @@ mod catalogue;
 #[allow(dead_code, reason = "shared with the test of random pairs, which needs more of it")]
 #[path = "../random_pairs/generator.rs"]
 mod generator;
+mod limits;
+mod occlusion;
 mod random;
 #[allow(dead_code, reason = "the generator needs one function of it")]
 #[path = "../random_pairs/reference.rs"]
 mod reference;
+mod sampling;
 
 use fredholm_coupling::method::{Evaluated, Setting, method};
 use fredholm_mesh::Patch;
