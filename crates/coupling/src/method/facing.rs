@@ -98,6 +98,12 @@ impl Part {
         self.corners.iter().map(|x| x.distance(centre)).fold(0.0, f64::max)
     }
 
+    /// Smallest height of the corners of another part over the plane of this one, m: no point of it is closer.
+    pub(super) fn clearance(&self, other: &Self) -> f64 {
+        let height = |x: &Vec3| (*x - self.corners[0]).dot(self.normal);
+        other.corners.iter().map(height).fold(f64::INFINITY, f64::min)
+    }
+
     /// The part as triangles.
     pub(super) fn triangles(&self) -> Vec<Patch> {
         fan(&self.corners)

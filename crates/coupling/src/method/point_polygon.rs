@@ -20,6 +20,8 @@ use std::cell::Cell;
 /// Points a direction of the rule on a cell of patches that are apart, and on a graded one.
 const POINTS: usize = 6;
 const POINTS_CLOSE: usize = 10;
+/// Distance, in radii of the outer part, below which layers are looked for.
+const CLOSE: f64 = 0.4;
 /// Most cells that are cut.
 const CUTS: usize = 4000;
 /// Stated error over the difference that one more cut makes, which may be small by accident.
@@ -85,10 +87,10 @@ fn open(outer: &Part, target: &Part, tolerance: f64) -> Evaluated {
     Evaluated::new(Estimate { error: SAFETY * sum.error + rounding, ..sum }, evaluations.get())
 }
 
-/// Whether the target may be closer to a point of the outer part than that is large.
+/// Whether points of both parts may be so close that the factor varies over a small part of the outer one.
 fn is_close(outer: &Part, target: &Part) -> bool {
     let gap = outer.centroid().distance(target.centroid()) - outer.radius() - target.radius();
-    gap < outer.radius()
+    gap.max(outer.clearance(target)).max(target.clearance(outer)) < CLOSE * outer.radius()
 }
 
 /// The sum over all cells, each with an even share of the tolerance.
