@@ -12,6 +12,7 @@ mod cases;
 use cases::{Case, cases};
 use fredholm_coupling::method::{Evaluated, FormFactorMethod, Setting, methods};
 use fredholm_visibility::Occluders;
+use std::sync::LazyLock;
 use std::time::Instant;
 
 fn main() {
@@ -49,18 +50,32 @@ fn setting(method: &dyn FormFactorMethod, case: &Case) -> Setting {
     }
 }
 
-/// A result and the seconds it takes on one thread: the best of ten rounds of about a millisecond. Rounds as short as that are seldom
-/// interrupted, so that the best of them is CPU time.
+/// CPU seconds over which a time is taken, twenty ticks.
+const LONG: f64 = 0.2;
+
+/// A result and the CPU seconds it takes: the mean over as many rounds as last long enough.
 fn timed(run: impl Fn() -> Evaluated) -> (Evaluated, f64) {
-    let start = Instant::now();
-    let got = run();
-    let rounds = (1e-3 / start.elapsed().as_secs_f64()).clamp(1.0, 1e3) as usize;
-    let round = |_| {
-        let start = Instant::now();
-        for _ in 0..rounds {
+    let mut rounds = 1u32;
+    loop {
+        let start = cpu_seconds();
+        (0..rounds).for_each(|_| {
             std::hint::black_box(run());
+        });
+        let time = cpu_seconds() - start;
+        if time >= LONG {
+            return (run(), time / f64::from(rounds));
         }
-        start.elapsed().as_secs_f64() / rounds as f64
-    };
-    (got, (0..10).map(round).fold(f64::INFINITY, f64::min))
+        rounds *= 2;
+    }
+}
+
+/// CPU time of this process where the system tells it (in ticks of 10 ms), else the time passed.
+fn cpu_seconds() -> f64 {
+    static START: LazyLock<Instant> = LazyLock::new(Instant::now);
+    let told = std::fs::read_to_string("/proc/self/stat").ok();
+    let ticks = told.and_then(|line| {
+        let fields = line.rsplit(')').next()?.split_whitespace();
+        fields.skip(11).take(2).map(|field| field.parse::<f64>().ok()).sum::<Option<f64>>()
+    });
+    ticks.map_or_else(|| START.elapsed().as_secs_f64(), |ticks| 0.01 * ticks)
 }

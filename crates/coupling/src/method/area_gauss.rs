@@ -1,6 +1,6 @@
 //! Double area integral: A_i F_ij ≈ Σ_k Σ_l w_k w_l cosθ_k cosθ_l V_kl / (π r_kl²), n × n Gauss points on both patches.
 //!
-//! J.-F. Viennot's thesis, eq. 1.39; G. Walton, NISTIR 6925, 2002, for the rules. In m². Where the patches share corners the kernel jumps
+//! J.-F. Viennot's thesis, eq. 1.39. In m². Where the patches share corners the kernel jumps
 //! there; the rules of S. A. Sauter & C. Schwab (2011, section 5.2) for triangles with a common corner or edge make it analytic. So
 //! the error falls geometrically with n for patches that are apart or share whole edges; the closer they come without
 //! touching, the slower. Where they touch otherwise (part of an edge), or something stands between, it falls algebraically.

@@ -2,8 +2,8 @@
 //!
 //! L. Lewin, *Polylogarithms and Associated Functions*, North-Holland 1981; J. Vollinga & S. Weinzierl, Comput. Phys. Commun. 167
 //! (2005) 177, doi:10.1016/j.cpc.2004.12.009, section 3. Dimensionless. Inversion (|z| > 1) and reflection (Re z > ½) bring z to where
-//! u = −ln(1 − z) has |u| < 1.1; there Li₂ = Σ Bₖ uᵏ⁺¹/(k + 1)!, whose terms fall by (|u|/2π)² ≤ 0.03. The branch cut runs along
-//! real z > 1, where the value is the limit from below, as that of the logarithm demands.
+//! u = −ln(1 − z) has |u| < 1.1; there Li₂ = Σ Bₖ uᵏ⁺¹/(k + 1)!, whose terms fall by (|u|/2π)² ≤ 0.03. On the branch
+//! cut, real z > 1, the sign of the imaginary zero chooses the side.
 
 use num_complex::Complex64;
 use std::f64::consts::PI;
@@ -129,6 +129,15 @@ mod tests {
                 power *= z;
             }
             close(dilogarithm(z), sum, z);
+        }
+    }
+
+    /// Im Li₂(x ± i0) = ± π ln x.
+    #[test]
+    fn both_sides_of_the_cut() {
+        for zero in [0.0, -0.0] {
+            let value = dilogarithm(c(2.0, zero));
+            close(value, c(1.5 * ZETA_2, (PI * LN_2).copysign(zero)), c(2.0, zero));
         }
     }
 

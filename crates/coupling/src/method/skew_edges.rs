@@ -44,6 +44,11 @@ impl Feet {
         Self { s: [s, s + e.length], t: [t, t + f.length], sine, angle, distance: w.dot(common).abs() }
     }
 
+    /// Largest of all lengths.
+    fn reach(&self) -> f64 {
+        largest(self.s.into_iter().chain(self.t)).max(self.distance)
+    }
+
     /// d² ∫∫ ds dt/r² as its four terms.
     fn inverse_square(&self) -> [f64; 4] {
         if self.distance == 0.0 {
@@ -71,12 +76,20 @@ fn spiral(x: f64, angle: f64) -> f64 {
 /// ∫ₑ∫_f ln r ds dt with its rounding. The edges must not be parallel.
 pub(super) fn skew_edges(e: Edge, f: Edge) -> Estimate {
     let feet = Feet::of(e, f);
-    let along_f = |k: usize| feet.s[k] * log_integral(e.start + e.direction * (feet.s[k] - feet.s[0]), f);
-    let along_e = |k: usize| feet.t[k] * log_integral(f.start + f.direction * (feet.t[k] - feet.t[0]), e);
-    let boundary = [along_f(1), -along_f(0), along_e(1), -along_e(0), -e.length * f.length];
-    let terms = || boundary.into_iter().chain(feet.inverse_square());
-    let largest = terms().fold(0.0, |m: f64, term| m.max(term.abs()));
-    Estimate { value: 0.5 * terms().sum::<f64>(), error: ROUNDING * largest / feet.sine }
+    let along_f = feet.s.map(|s| log_integral(e.start + e.direction * (s - feet.s[0]), f));
+    let along_e = feet.t.map(|t| log_integral(f.start + f.direction * (t - feet.t[0]), e));
+    let ends = |x: [f64; 2], along: [f64; 2]| x[1] * along[1] - x[0] * along[0];
+    let inverse_square = feet.inverse_square();
+    let twice = ends(feet.s, along_f) + ends(feet.t, along_e) - e.length * f.length
+        + inverse_square.iter().sum::<f64>();
+    // The feet are rounded relative to the largest distance, wherever they lie.
+    let logs = feet.reach() * largest(along_f.into_iter().chain(along_e));
+    let terms = logs.max(largest(inverse_square)).max(e.length * f.length);
+    Estimate { value: 0.5 * twice, error: ROUNDING * terms / feet.sine }
+}
+
+fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
+    values.into_iter().fold(0.0, |m, value| m.max(value.abs()))
 }
 
 #[cfg(test)]

@@ -9,31 +9,34 @@ pub struct Case {
     pub b: Patch,
     /// F_ab.
     pub factor: f64,
-    /// Digits that the catalogue gives, as a relative error.
-    pub digits: f64,
     /// Points a direction with which `area-gauss` has ten digits.
     pub order: usize,
 }
 
-/// Name, points a direction for ten digits of `area-gauss`, digits of the catalogue.
-const NOTES: [(&str, usize, f64); 7] = [
-    ("parallel_unit_squares", 10, 1e-12),
-    ("parallel_2x3_h1", 24, 1e-12),
-    ("parallel_unit_h01", 64, 1e-12),
-    ("perpendicular_unit_shared_edge", 14, 1e-12),
-    ("offset_parallel", 12, 1e-12),
-    ("offset_perpendicular", 10, 1e-12),
-    ("triangle_parallel", 10, 1e-9),
+/// Name, and points a direction for ten digits of `area-gauss`.
+const ORDERS: [(&str, usize); 7] = [
+    ("parallel_unit_squares", 10),
+    ("parallel_2x3_h1", 24),
+    ("parallel_unit_h01", 64),
+    ("perpendicular_unit_shared_edge", 14),
+    ("offset_parallel", 12),
+    ("offset_perpendicular", 10),
+    ("triangle_parallel", 10),
 ];
+
+/// Of this case the catalogue has ten digits; nested quadrature in arbitrary precision has more.
+const TRIANGLES: (&str, f64) = ("triangle_parallel", 0.115_049_228_149_610_5);
 
 /// All seven.
 pub fn cases() -> Vec<Case> {
     let table: toml::Table = include_str!("../data/form_factors.toml").parse().unwrap();
     let read = |case: &toml::Value| {
         let name = case["name"].as_str().unwrap().to_owned();
-        let &(_, order, digits) = NOTES.iter().find(|note| note.0 == name).unwrap();
-        let factor = case["f_ab"].as_float().unwrap();
-        Case { name, a: patch(&case["a"]), b: patch(&case["b"]), factor, digits, order }
+        let &(_, order) = ORDERS.iter().find(|note| note.0 == name).unwrap();
+        let printed = case["f_ab"].as_float().unwrap();
+        let factor = if name == TRIANGLES.0 { TRIANGLES.1 } else { printed };
+        assert!((factor - printed).abs() < 1e-10);
+        Case { name, a: patch(&case["a"]), b: patch(&case["b"]), factor, order }
     };
     table["case"].as_array().unwrap().iter().map(read).collect()
 }
