@@ -19,7 +19,7 @@ pub(crate) const PARALLEL: f64 = 1e-28;
 pub(crate) const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// Largest term of the closed form for parallel edges, over the product of their lengths, at which it is used. Its four terms grow
 /// with the squared distance and cancel; quadrature of the inner integral does not.
-pub(crate) const CANCELLING: f64 = 100.0;
+const CANCELLING: f64 = 100.0;
 
 static RULE: LazyLock<IntervalRule> = LazyLock::new(|| gauss_legendre(POINTS));
 

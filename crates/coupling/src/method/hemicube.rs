@@ -61,6 +61,12 @@ fn top_pixel(pixels: usize) -> f64 {
     4.0 * FRAC_1_PI / (pixels * pixels) as f64
 }
 
+/// What a pixel adds to the sum, and to its error.
+fn pixel(share: f64, sees: bool, outline: bool) -> Estimate {
+    let part = |is: bool| if is { share } else { 0.0 };
+    Estimate { value: part(sees), error: 0.5 * part(outline) }
+}
+
 /// A face: its points are `centre` + x `across` + y `up`, x in (−1, 1), y in (`low`, 1).
 struct Face {
     centre: Vec3,
@@ -99,11 +105,7 @@ impl Face {
                     self.centre + self.across * (middle(column) - 1.0) + self.up * (middle(row) + self.low);
                 let (now, share) = (sees(ray), self.share(ray, side));
                 let outline = now != left || now != *below;
-                sum = sum
-                    + Estimate {
-                        value: if now { share } else { 0.0 },
-                        error: if outline { 0.5 * share } else { 0.0 },
-                    };
+                sum = sum + pixel(share, now, outline);
                 (left, *below) = (now, now);
             }
         }

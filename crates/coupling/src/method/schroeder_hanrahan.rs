@@ -1,16 +1,19 @@
 //! Polygon to polygon in closed form: A_i F_ij = (1/2π) Σₑ Σ_f (dₑ·d_f) ∫ₑ∫_f ln r ds dt with every double integral closed.
 //!
 //! P. Schröder & P. Hanrahan, "On the form factor between two polygons", SIGGRAPH 1993, doi:10.1145/166117.166138. In m². Skew and intersecting edges: see
-//! `skew_edges`; parallel ones: the closed form that the contour method uses too. Where the terms of a pair of edges cancel
-//! more than a hundredfold (nearly parallel, or short and far), that pair alone has its outer integral bisected to rounding. The stated error is rounding.
+//! `skew_edges`; parallel ones: the closed form that the contour method uses too. Where the closed form of a pair of edges loses more than ten times what bisection
+//! loses (nearly parallel, or short and far), that pair alone has its outer integral bisected to rounding. The stated error is rounding.
 
 use super::facing::Facing;
 use super::skew_edges::skew_edges;
 use super::{Evaluated, FormFactorMethod, MethodError, Setting};
-use crate::form_factor::contour::{CANCELLING, Edge, PARALLEL, edge_pair, over_edges, rounding};
+use crate::form_factor::contour::{Edge, PARALLEL, edge_pair, over_edges, rounding};
 use fredholm_mesh::Patch;
 use fredholm_quadrature::Estimate;
 use fredholm_visibility::Occluders;
+
+/// Rounding of the closed form over that of bisection, up to which it is used.
+const LOSS: f64 = 10.0;
 
 pub(super) struct SchroederHanrahan;
 
@@ -57,7 +60,7 @@ fn closed(e: Edge, f: Edge, tolerance: f64) -> Estimate {
     let rounding = rounding(e, f);
     if e.direction.cross(f.direction).length_squared() > PARALLEL {
         let skew = skew_edges(e, f);
-        if skew.error <= CANCELLING * rounding {
+        if skew.error <= LOSS * rounding {
             return Estimate { value: cosine * skew.value, error: cosine.abs() * (skew.error + rounding) };
         }
     }
