@@ -139,7 +139,7 @@ fn mesh_error(error: &fredholm_coupling::MeshError) -> MeshError {
 pub(crate) fn pairs(methods: &MethodCounts) -> BTreeMap<String, u64> {
     let counts = [
         ("hidden", methods.hidden),
-        ("area_gauss", methods.area_gauss),
+        ("gauss", methods.gauss),
         ("contour", methods.contour),
         ("clipped", methods.clipped),
         ("sampled", methods.sampled),

@@ -21,16 +21,23 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(get(3, 1.0) as usize).build()?;
     let start = Instant::now();
-    let assembled: Assembled<f64> = pool.install(|| {
-        let occluders = Occluders::new(&patches)?;
-        let integrator = PairIntegrator::new(&patches, &occluders, tolerance);
-        assemble(&integrator, &|_, _| ControlFlow::Continue(())).map_err(Box::<dyn std::error::Error + Send + Sync>::from)
-    }).map_err(|e| e as Box<dyn std::error::Error>)?;
+    let assembled: Assembled<f64> = pool
+        .install(|| {
+            let occluders = Occluders::new(&patches)?;
+            let integrator = PairIntegrator::new(&patches, &occluders, tolerance);
+            assemble(&integrator, &|_, _| ControlFlow::Continue(()))
+                .map_err(Box::<dyn std::error::Error + Send + Sync>::from)
+        })
+        .map_err(|e| e as Box<dyn std::error::Error>)?;
     let seconds = start.elapsed().as_secs_f64();
     let sums = assembled.matrix.row_sums();
-    let worst = sums.iter().zip(&patches).map(|(sum, patch)| (sum / patch.area() - 1.0).abs()).fold(0.0, f64::max);
+    let worst =
+        sums.iter().zip(&patches).map(|(sum, patch)| (sum / patch.area() - 1.0).abs()).fold(0.0, f64::max);
     let stated = assembled.error.iter().zip(&patches).map(|(e, patch)| e / patch.area()).fold(0.0, f64::max);
-    println!("{} patches, T = {tolerance:e}: {seconds:.3} s, row sums within {worst:.1e}, stated {stated:.1e}", patches.len());
+    println!(
+        "{} patches, T = {tolerance:e}: {seconds:.3} s, row sums within {worst:.1e}, stated {stated:.1e}",
+        patches.len()
+    );
     println!("{:?}", assembled.methods);
     Ok(())
 }

@@ -26,9 +26,9 @@ pub type Watch<'a> = dyn Fn(u64, u64) -> ControlFlow<()> + Sync + 'a;
 pub struct MethodCounts {
     /// Pairs with one patch behind the other, or wholly behind one body.
     pub hidden: u64,
-    /// Pairs by Gauss points on both patches.
-    pub area_gauss: u64,
-    /// Pairs by the contour integral.
+    /// Pairs by Gauss points along the edges.
+    pub gauss: u64,
+    /// Pairs by the contour integral of the parts that face each other.
     pub contour: u64,
     /// Pairs with exact shadows.
     pub clipped: u64,
@@ -40,7 +40,7 @@ impl MethodCounts {
     fn add(&mut self, method: Method) {
         *match method {
             Method::Hidden => &mut self.hidden,
-            Method::AreaGauss => &mut self.area_gauss,
+            Method::Gauss => &mut self.gauss,
             Method::Contour => &mut self.contour,
             Method::Clipped => &mut self.clipped,
             Method::Sampled => &mut self.sampled,
@@ -49,14 +49,14 @@ impl MethodCounts {
 
     fn merge(&mut self, other: &Self) {
         self.hidden += other.hidden;
-        self.area_gauss += other.area_gauss;
+        self.gauss += other.gauss;
         self.contour += other.contour;
         self.clipped += other.clipped;
         self.sampled += other.sampled;
     }
 
     fn sum(&self) -> u64 {
-        self.hidden + self.area_gauss + self.contour + self.clipped + self.sampled
+        self.hidden + self.gauss + self.contour + self.clipped + self.sampled
     }
 }
 
@@ -138,7 +138,14 @@ impl<S: Storage> Strip<S> {
         strip
     }
 
-    fn row(&mut self, integrator: &PairIntegrator, i: u32, row: usize, found: &mut Panel, work: &mut Workspace) {
+    fn row(
+        &mut self,
+        integrator: &PairIntegrator,
+        i: u32,
+        row: usize,
+        found: &mut Panel,
+        work: &mut Workspace,
+    ) {
         let mut columns = std::mem::take(&mut found.seen[row]);
         let wholly = columns.len();
         columns.extend(found.partly[row].iter().map(|(j, _)| *j));

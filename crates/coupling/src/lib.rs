@@ -4,6 +4,7 @@
 
 pub mod form_factor;
 pub mod kernel;
+pub mod method;
 pub mod polygon;
 
 mod aggregate;

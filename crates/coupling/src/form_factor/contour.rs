@@ -10,7 +10,7 @@ mod gauss;
 mod parallel;
 
 use coplanar::coplanar;
-use edge::{Edge, rounding};
+pub(crate) use edge::{Edge, ROUNDING, log_integral, rounding};
 use fredholm_mesh::Vec3;
 use fredholm_quadrature::Estimate;
 use gauss::Outer;
@@ -36,13 +36,24 @@ const FEW: usize = 6;
 /// ```
 #[must_use]
 pub fn contour_integral(a: &[Vec3], b: &[Vec3], tolerance: f64) -> Estimate {
+    over_edges(a, b, tolerance, edge_pair)
+}
+
+/// The double sum over the edges of both polygons, in m²; `pair` computes (dₑ·d_f) ∫∫ ln r ds dt to its share of the tolerance, in the
+/// pair's own unit of length.
+pub(crate) fn over_edges(
+    a: &[Vec3],
+    b: &[Vec3],
+    tolerance: f64,
+    pair: impl Fn(Edge, Edge, f64) -> Estimate,
+) -> Estimate {
     let Some(&origin) = a.first() else { return Estimate::default() };
     let unit = unit_of_length(origin, a, b);
     let share = tolerance * TAU / (unit * unit * (a.len() * b.len()).max(1) as f64);
     let mut sum = Estimate::default();
     for e in edges(a, origin, unit) {
         for f in edges(b, origin, unit) {
-            sum = sum + edge_pair(e, f, share);
+            sum = sum + pair(e, f, share);
         }
     }
     let scale = unit * unit / TAU;
@@ -69,7 +80,7 @@ fn edges(corners: &[Vec3], origin: Vec3, unit: f64) -> impl Iterator<Item = Edge
 }
 
 /// (dₑ·d_f) ∫∫ ln r ds dt.
-fn edge_pair(e: Edge, f: Edge, tolerance: f64) -> Estimate {
+pub(crate) fn edge_pair(e: Edge, f: Edge, tolerance: f64) -> Estimate {
     let cosine = e.direction.dot(f.direction);
     if cosine.abs() <= f64::EPSILON {
         return Estimate::default();

@@ -16,7 +16,13 @@ const SLIM: f64 = 1e-24;
 pub(crate) type Plane = (Vec3, f64);
 
 /// Lists the planes of the events of `bodies` before `target` that cut the `source` polygon, those of single bodies first. Lengths below `flat` (m) count as 0.
-pub(crate) fn critical_planes(source: &[Vec3], target: &[Vec3], bodies: &[&Body], flat: f64, found: &mut Vec<Plane>) {
+pub(crate) fn critical_planes(
+    source: &[Vec3],
+    target: &[Vec3],
+    bodies: &[&Body],
+    flat: f64,
+    found: &mut Vec<Plane>,
+) {
     found.clear();
     let mut search = Search { source, target, flat, found };
     let outlines: Vec<Outline> = bodies.iter().map(|body| search.outline(body)).collect();

@@ -61,7 +61,8 @@ pub(crate) fn hidden_exchange(scene: &Occluded, goal: f64, work: &mut HiddenWork
         return Estimate { value: work.cells.iter().map(by_centroid).sum(), error: rough };
     }
     let steep = Steep::of(scene);
-    let mut pieces = Pieces::new(|x| scene.hidden(x, &mut work.hiding), |x| steep.distance(x), &mut work.pieces);
+    let mut pieces =
+        Pieces::new(|x| scene.hidden(x, &mut work.hiding), |x| steep.distance(x), &mut work.pieces);
     for cell in work.cells.iter() {
         (2..cell.len()).for_each(|k| pieces.add([cell[0], cell[k - 1], cell[k]], SMALL * goal));
     }
@@ -77,7 +78,8 @@ impl Steep {
     fn of(scene: &Occluded) -> Self {
         let height = |x: Vec3| (x - scene.source[0]).dot(scene.normal);
         let lies = |x: Vec3| height(x).abs() <= scene.tolerance;
-        let on_source = |[a, b]: [Vec3; 2]| if lies(a) && lies(b) { vec![[a, a], [b, b]] } else { vec![[a, b]] };
+        let on_source =
+            |[a, b]: [Vec3; 2]| if lies(a) && lies(b) { vec![[a, a], [b, b]] } else { vec![[a, b]] };
         let edges = scene.bodies.iter().flat_map(|body| body.edges().iter().map(|edge| body.ends(edge)));
         Self { edges: edges.flat_map(on_source).collect() }
     }

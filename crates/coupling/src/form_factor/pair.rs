@@ -2,43 +2,38 @@
 //!
 //! | the pair | method |
 //! |---|---|
-//! | one behind the other, or one occluder across all segments | 0, exactly |
-//! | nothing between, apart | double area Gauss, order raised until two agree |
+//! | one behind the other, or one body across all segments | 0, exactly |
+//! | nothing between, apart | Gauss points along the edges ([`Unoccluded`]) |
 //! | nothing between, close, touching or crossing each other's plane | contour integral on the parts that face each other |
-//! | a few occluders between | exact shadow inside, adaptive Gauss outside |
-//! | many occluders between | sampled share of the unoccluded value |
+//! | a few bodies between | the unoccluded value less its hidden part: exact shadows inside, rules between critical lines outside |
+//! | many bodies between | sampled share of the unoccluded value |
 //!
 //! The tolerance T is relative to the exchange the two patches would have squarely facing each other,
 //! A_i A_j / (π d²), or the smaller area where that is less: stated errors of a row of F then add up to about 2 T.
 
 use super::hidden::{HiddenWork, Occluded, hidden_exchange};
 use super::sampled::sampled;
-use super::{PatchPoints, area_gauss, contour_integral};
+use super::{Unoccluded, Work, facing_exchange, flat, front, front_of};
 use crate::occlusion::{Clusters, Sight};
-use crate::polygon::{HalfSpace, clip};
+use crate::polygon::HalfSpace;
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_quadrature::Estimate;
 use fredholm_visibility::Occluders;
 use fredholm_visibility::body::{Bodies, Body, Face, Room, Shadow};
-use std::f64::consts::FRAC_1_PI;
 
-/// Heights below this part of the pair's extent count as 0.
-const FLAT: f64 = 1e-12;
-/// Occluders up to which the exact shadow is cheaper than sampling.
+/// Bodies up to which exact shadows are cheaper than sampling.
 const FEW: usize = 128;
-/// Centre distance, in sums of radii, below which the contour integral is used at once.
-const CLOSE: f64 = 1.2;
 
 /// How an exchange was computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// One patch is behind the other, or one occluder hides it wholly.
+    /// One patch is behind the other, or one body hides it wholly.
     Hidden,
-    /// Gauss points on both patches.
-    AreaGauss,
-    /// Contour integral.
+    /// Contour integral by Gauss points along the edges.
+    Gauss,
+    /// Contour integral of the parts that face each other, closed where edges touch.
     Contour,
-    /// Exact shadow inside, adaptive Gauss outside.
+    /// Exact shadows.
     Clipped,
     /// Sampled visibility.
     Sampled,
@@ -56,10 +51,10 @@ pub struct Exchange {
 }
 
 impl Exchange {
-    const NONE: Self = Self { value: 0.0, error: 0.0, method: Method::Hidden };
+    pub(super) const NONE: Self = Self { value: 0.0, error: 0.0, method: Method::Hidden };
 
     /// A factor is not negative: rounding below 0 becomes 0 and is added to the error.
-    fn new(method: Method, estimate: Estimate) -> Self {
+    pub(super) fn new(method: Method, estimate: Estimate) -> Self {
         let below = (-estimate.value).max(0.0);
         Self { value: estimate.value.max(0.0), error: estimate.error + below, method }
     }
@@ -70,6 +65,7 @@ impl Exchange {
 pub struct Workspace {
     front: [Vec<Vec3>; 2],
     room: Room,
+    open: Work,
     hidden: HiddenWork,
 }
 
@@ -87,7 +83,6 @@ enum Outer {
 #[derive(Clone, Copy)]
 struct Side<'a> {
     patch: &'a Patch,
-    points: &'a PatchPoints,
     plane: HalfSpace,
 }
 
@@ -95,7 +90,7 @@ struct Side<'a> {
 #[derive(Debug)]
 pub struct PairIntegrator<'a> {
     patches: Vec<&'a Patch>,
-    points: Vec<PatchPoints>,
+    open: Unoccluded<'a>,
     occluders: &'a Occluders,
     bodies: Bodies,
     tolerance: f64,
@@ -109,9 +104,9 @@ impl<'a> PairIntegrator<'a> {
         tolerance: f64,
     ) -> Self {
         let patches: Vec<_> = patches.into_iter().collect();
-        let points = patches.iter().map(|p| PatchPoints::new(p)).collect();
+        let open = Unoccluded::new(&patches, tolerance);
         let bodies = Bodies::new(occluders, &patches, &[]);
-        Self { patches, points, occluders, bodies, tolerance }
+        Self { patches, open, occluders, bodies, tolerance }
     }
 
     /// Number of patches.
@@ -147,18 +142,18 @@ impl<'a> PairIntegrator<'a> {
             return Exchange::NONE;
         }
         let (a, b) = (self.side(i), self.side(j));
-        let flat = FLAT * extent(a.patch, b.patch);
+        let flat = flat(a.patch, b.patch);
         if !rises(b.patch, a.plane, flat) || !rises(a.patch, b.plane, flat) {
             return Exchange::NONE;
         }
-        let tolerance = self.tolerance * facing_exchange(a.patch, b.patch);
         let bodies = self.between(a.patch, b.patch);
         let nothing = self.bodies.tolerance();
         if bodies.iter().any(|body| blocks(body, a.patch, b.patch, nothing, &mut work.room)) {
             return Exchange::NONE;
         }
-        let open = unoccluded(a, b, flat, tolerance, work);
-        self.behind_bodies([a, b], outer, &bodies, open, work)
+        let mut open = [Exchange::NONE];
+        self.open.row(i, &[j as u32], &mut work.open, &mut open);
+        self.behind_bodies([a, b], outer, &bodies, open[0], work)
     }
 
     /// Groups of patches, for the assembly.
@@ -174,20 +169,18 @@ impl<'a> PairIntegrator<'a> {
     /// The exchanges of patch i with patches that nothing hides.
     pub(crate) fn open_row(&self, i: usize, columns: &[u32], work: &mut Workspace, row: &mut Vec<Exchange>) {
         row.clear();
-        row.extend(columns.iter().map(|&j| self.open(i, j as usize, work)));
-    }
-
-    fn open(&self, i: usize, j: usize, work: &mut Workspace) -> Exchange {
-        let (a, b) = (self.side(i), self.side(j));
-        let flat = FLAT * extent(a.patch, b.patch);
-        if !rises(b.patch, a.plane, flat) || !rises(a.patch, b.plane, flat) {
-            return Exchange::NONE;
-        }
-        unoccluded(a, b, flat, self.tolerance * facing_exchange(a.patch, b.patch), work)
+        row.resize(columns.len(), Exchange::NONE);
+        self.open.row(i, columns, &mut work.open, row);
     }
 
     /// What is left of an exchange behind bodies given by their numbers.
-    pub(crate) fn behind(&self, [i, j]: [usize; 2], bodies: &[u32], open: Exchange, work: &mut Workspace) -> Exchange {
+    pub(crate) fn behind(
+        &self,
+        [i, j]: [usize; 2],
+        bodies: &[u32],
+        open: Exchange,
+        work: &mut Workspace,
+    ) -> Exchange {
         if open.method == Method::Hidden {
             return open;
         }
@@ -195,7 +188,14 @@ impl<'a> PairIntegrator<'a> {
         self.behind_bodies([self.side(i), self.side(j)], Outer::Clearer, &bodies, open, work)
     }
 
-    fn behind_bodies(&self, sides: [Side; 2], outer: Outer, bodies: &[&Body], open: Exchange, work: &mut Workspace) -> Exchange {
+    fn behind_bodies(
+        &self,
+        sides: [Side; 2],
+        outer: Outer,
+        bodies: &[&Body],
+        open: Exchange,
+        work: &mut Workspace,
+    ) -> Exchange {
         let [a, b] = sides;
         let tolerance = self.tolerance * facing_exchange(a.patch, b.patch);
         match bodies.len() {
@@ -211,8 +211,7 @@ impl<'a> PairIntegrator<'a> {
 
     fn side(&self, i: usize) -> Side<'_> {
         let patch = self.patches[i];
-        let plane = HalfSpace::through(patch.centroid(), patch.normal());
-        Side { patch, points: &self.points[i], plane }
+        Side { patch, plane: front_of(patch) }
     }
 
     /// The bodies that may come between two patches.
@@ -228,33 +227,33 @@ impl<'a> PairIntegrator<'a> {
     }
 
     /// What is left of the open exchange: the hidden part goes over the points of `a`.
-    fn behind_few(&self, [a, b]: [Side; 2], bodies: &[&Body], open: Exchange, goal: f64, work: &mut Workspace) -> Exchange {
-        let flat = FLAT * extent(a.patch, b.patch);
+    fn behind_few(
+        &self,
+        [a, b]: [Side; 2],
+        bodies: &[&Body],
+        open: Exchange,
+        goal: f64,
+        work: &mut Workspace,
+    ) -> Exchange {
+        let flat = flat(a.patch, b.patch);
         let [front_a, front_b] = &mut work.front;
         front(a.patch, b.plane, flat, front_a);
         front(b.patch, a.plane, flat, front_b);
         let tolerance = self.bodies.tolerance();
         let cut: Vec<Option<Body>> = bodies.iter().map(|body| between(body, a, b, tolerance)).collect();
-        let bodies: Vec<&Body> = cut.iter().zip(bodies).map(|(cut, whole)| cut.as_ref().unwrap_or(whole)).collect();
-        let scene = Occluded { source: front_a, normal: a.patch.normal(), target: front_b, bodies: &bodies, tolerance };
+        let bodies: Vec<&Body> =
+            cut.iter().zip(bodies).map(|(cut, whole)| cut.as_ref().unwrap_or(whole)).collect();
+        let scene = Occluded {
+            source: front_a,
+            normal: a.patch.normal(),
+            target: front_b,
+            bodies: &bodies,
+            tolerance,
+        };
         let hidden = hidden_exchange(&scene, goal, &mut work.hidden);
         let left = Estimate { value: open.value - hidden.value, error: open.error + hidden.error };
         Exchange::new(Method::Clipped, left)
     }
-}
-
-fn unoccluded(a: Side, b: Side, flat: f64, tolerance: f64, work: &mut Workspace) -> Exchange {
-    let whole = clears(a.patch, b.plane, flat) && clears(b.patch, a.plane, flat);
-    if whole
-        && apart(a.patch, b.patch)
-        && let Some(estimate) = area_gauss((a.patch, a.points), (b.patch, b.points), tolerance)
-    {
-        return Exchange::new(Method::AreaGauss, estimate);
-    }
-    let [front_a, front_b] = &mut work.front;
-    front(a.patch, b.plane, flat, front_a);
-    front(b.patch, a.plane, flat, front_b);
-    Exchange::new(Method::Contour, contour_integral(front_a, front_b, 0.1 * tolerance))
 }
 
 /// The part of a body in front of both patches, or `None` where that is the whole body.
@@ -273,34 +272,8 @@ pub(crate) fn blocks(body: &Body, a: &Patch, b: &Patch, tolerance: f64, room: &m
     })
 }
 
-/// Largest distance that matters to a pair.
-fn extent(a: &Patch, b: &Patch) -> f64 {
-    let rounding = a.corner(0).abs().max_element() * 1e-3;
-    a.centroid().distance(b.centroid()) + a.diameter() + b.diameter() + rounding
-}
-
-/// A_i A_j / (π d²), at most the smaller area.
-fn facing_exchange(a: &Patch, b: &Patch) -> f64 {
-    let d2 = a.centroid().distance_squared(b.centroid());
-    (FRAC_1_PI * a.area() * b.area() / d2).min(a.area().min(b.area()))
-}
-
 fn rises(patch: &Patch, plane: HalfSpace, flat: f64) -> bool {
     patch.corners().iter().any(|&x| plane.height(x) > flat)
-}
-
-fn clears(patch: &Patch, plane: HalfSpace, flat: f64) -> bool {
-    patch.corners().iter().all(|&x| plane.height(x) > -flat)
-}
-
-fn apart(a: &Patch, b: &Patch) -> bool {
-    a.centroid().distance(b.centroid()) > CLOSE * 0.5 * (a.diameter() + b.diameter())
-}
-
-/// The part of a patch in front of a plane.
-fn front(patch: &Patch, plane: HalfSpace, flat: f64, corners: &mut Vec<Vec3>) {
-    corners.clear();
-    clip(patch.corners(), plane, flat, corners);
 }
 
 /// Smallest height of the bodies over a patch, in its diameters.

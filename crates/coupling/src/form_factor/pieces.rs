@@ -16,8 +16,8 @@ const PAYS: f64 = 0.3;
 const NEAR: f64 = 1.0;
 /// Stated error over the root of the summed squares: errors of triangles are of either sign.
 const SAFETY: f64 = 1.0;
-/// Smallest credible ratio of two differences.
-const CREDIBLE: f64 = 0.1;
+/// Smallest credible ratio of two errors.
+const CREDIBLE: f64 = 0.05;
 /// Points after which an integral ends with the error that it has.
 const POINTS: usize = 100_000;
 
@@ -109,8 +109,10 @@ impl<'a, H: FnMut(Vec3) -> f64, D: Fn(Vec3) -> f64> Pieces<'a, H, D> {
         let value = self.rule(&piece.corners, degree);
         let step = (value - piece.value).abs();
         let ratio = if piece.step > 0.0 { step / piece.step } else { 1.0 };
+        // Two values may agree by accident; the error before bounds how well they credibly do.
+        let error = (step * ratio.min(1.0)).max(CREDIBLE * piece.error);
         let pays = ratio < PAYS && degree + 1 < DEGREES.len();
-        Piece { degree, value, step, error: step * ratio.clamp(CREDIBLE, 1.0), pays, ..piece }
+        Piece { degree, value, step, error, pays, ..piece }
     }
 }
 

@@ -5,7 +5,7 @@
 //! Effectiveness of Quasirandom Sequences*, 2018), the same for every pair of patches. Their number is multiplied by four until the
 //! tripled standard error over eight batches meets the tolerance. In m².
 
-use super::area_gauss::jacobian;
+use super::jacobian;
 use crate::kernel::lambert;
 use crate::polygon::folded;
 use fredholm_mesh::{Patch, Vec3};

@@ -136,7 +136,14 @@ pub(crate) struct Hiding {
 
 impl Hiding {
     /// Form factor from the point `x` with normal `n` to what `bodies` hide of `target`, which lies in front of the point.
-    pub(crate) fn hidden_factor(&mut self, x: Vec3, n: Vec3, target: &[Vec3], bodies: &[&Body], tolerance: f64) -> f64 {
+    pub(crate) fn hidden_factor(
+        &mut self,
+        x: Vec3,
+        n: Vec3,
+        target: &[Vec3],
+        bodies: &[&Body],
+        tolerance: f64,
+    ) -> f64 {
         self.visible.clear();
         self.visible.push_with(|corners| corners.extend(target.iter().map(|&y| y - x)));
         let mut hidden = 0.0;

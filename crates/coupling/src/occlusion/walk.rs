@@ -34,12 +34,10 @@ pub(crate) struct Panel {
 /// Sorts the pairs (i, j) with i in the panel and j at an earlier place.
 pub(crate) fn walk(sight: &Sight, panel: usize) -> Panel {
     let rows = sight.clusters.nodes[panel].places.clone();
-    let found = Panel {
-        seen: vec![Vec::new(); rows.len()],
-        partly: vec![Vec::new(); rows.len()],
-        lists: Vec::new(),
-    };
-    let mut walker = Walker { sight, first: rows.start, end: rows.end, found, room: Room::default(), stack: Vec::new() };
+    let found =
+        Panel { seen: vec![Vec::new(); rows.len()], partly: vec![Vec::new(); rows.len()], lists: Vec::new() };
+    let mut walker =
+        Walker { sight, first: rows.start, end: rows.end, found, room: Room::default(), stack: Vec::new() };
     walker.stack.extend(0..sight.bodies.as_slice().len() as u32);
     let all = 0..walker.stack.len();
     walker.against(panel, 0, all);
@@ -114,7 +112,10 @@ impl Walker<'_> {
                     }
                 }
                 let tolerance = self.sight.bodies.tolerance();
-                if self.stack[start..].iter().any(|&k| blocks(&all[k as usize], p, q, tolerance, &mut self.room)) {
+                if self.stack[start..]
+                    .iter()
+                    .any(|&k| blocks(&all[k as usize], p, q, tolerance, &mut self.room))
+                {
                     return Seen::Nothing;
                 }
             }

@@ -88,7 +88,7 @@ fn gauss_figures(kind: Kind, tolerance: f64) -> (usize, usize, f64) {
     for _ in 0..500 {
         let p = pair(kind, &mut random);
         let (got, exact) = (exchange(&p[0], &p[1], tolerance), exchange(&p[0], &p[1], 1e-14));
-        if got.method == Method::AreaGauss && exact.method == Method::Contour {
+        if got.method == Method::Gauss && exact.method == Method::Contour {
             let ratio = (got.value - exact.value).abs() / (got.error + exact.error);
             pairs += 1;
             covered += usize::from(ratio <= 1.0);

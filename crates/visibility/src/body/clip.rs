@@ -20,7 +20,13 @@ impl Body {
         if self.solid {
             faces.push(Face { normal: -plane.normal, offset: -plane.offset });
         }
-        let mut part = Cut { body: self, heights: &heights, corners: Vec::new(), edges: Vec::new(), gaps: vec![[None; 2]; self.faces.len()] };
+        let mut part = Cut {
+            body: self,
+            heights: &heights,
+            corners: Vec::new(),
+            edges: Vec::new(),
+            gaps: vec![[None; 2]; self.faces.len()],
+        };
         self.edges.iter().for_each(|edge| part.edge(edge));
         part.close(faces.len() as u32 - 1);
         Some(Self { corners: part.corners, faces, edges: part.edges, local: Vec::new(), solid: self.solid })

@@ -65,7 +65,7 @@ impl Body {
             let height = face.height(x);
             if height > least {
                 lit |= 1 << k;
-                room.planes.push((-face.normal, height + least.abs()));
+                room.planes.push((-face.normal, height));
             }
         }
         lit

@@ -75,7 +75,8 @@ fn edges(polygons: &[Polygon]) -> Option<(Vec<Edge>, Vec<Side>)> {
 fn lid_over(points: &[Vec3], polygons: &[Polygon], open: &[Side], tolerance: f64) -> Option<Face> {
     let normal = -polygons.iter().map(|p| p.normal * p.area).sum::<Vec3>();
     let lid = Face::through(points[open.first()?.0[0] as usize], normal.try_normalize()?);
-    let flat = open.iter().flat_map(|(side, _)| side).all(|&k| lid.height(points[k as usize]).abs() <= tolerance);
+    let flat =
+        open.iter().flat_map(|(side, _)| side).all(|&k| lid.height(points[k as usize]).abs() <= tolerance);
     flat.then_some(lid)
 }
 

@@ -3,8 +3,8 @@
 use fredholm_mesh::{Patch, Vec3};
 
 use super::Shaft;
-use crate::body::Body;
 use crate::Occluders;
+use crate::body::Body;
 use crate::tree::Sieve;
 
 impl Occluders {

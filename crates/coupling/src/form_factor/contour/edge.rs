@@ -7,32 +7,32 @@
 use fredholm_mesh::Vec3;
 
 /// Rounding of one edge pair, relative to the largest term of its closed form.
-pub(super) const ROUNDING: f64 = 8.0 * f64::EPSILON;
+pub(crate) const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// An oriented edge: start, unit direction, length.
 #[derive(Clone, Copy)]
-pub(super) struct Edge {
+pub(crate) struct Edge {
     pub start: Vec3,
     pub direction: Vec3,
     pub length: f64,
 }
 
 impl Edge {
-    pub(super) fn end(&self) -> Vec3 {
+    pub(crate) fn end(&self) -> Vec3 {
         self.start + self.direction * self.length
     }
 }
 
 /// Rounding of ∫∫ ln r ds dt with the outer integral over `e`: that of the terms of the inner integral, and that of a point of `e`, of order 1,
 /// times the change of the inner integral with it, the angle under which it sees `f`.
-pub(super) fn rounding(e: Edge, f: Edge) -> f64 {
+pub(crate) fn rounding(e: Edge, f: Edge) -> f64 {
     let gap = e.start.distance(f.start) - e.length - f.length;
     let angle = f.length / gap.max(f.length);
     ROUNDING * e.length * (f.length + angle)
 }
 
 /// ∫ ln |p − q(t)| dt along an edge.
-pub(super) fn log_integral(p: Vec3, f: Edge) -> f64 {
+pub(crate) fn log_integral(p: Vec3, f: Edge) -> f64 {
     let d = f.start - p;
     let t0 = d.dot(f.direction);
     let t1 = t0 + f.length;

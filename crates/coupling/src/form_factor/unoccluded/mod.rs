@@ -46,43 +46,14 @@ pub struct Unoccluded<'a> {
     arch: Arch,
 }
 
-/// How many pairs were computed in each way.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Ways {
-    /// Pairs of which one lies behind the other or in its plane: 0.
-    pub behind: u64,
-    /// Pairs by Gauss points along the edges.
-    pub gauss: u64,
-    /// Pairs by the contour integral of the parts that face each other.
-    pub close: u64,
-}
-
-/// Buffers of one thread, and what it has computed.
+/// Buffers of one thread.
 #[derive(Clone, Debug, Default)]
 pub struct Work {
-    counts: Ways,
     ways: Vec<Way>,
     errors: Vec<f64>,
     facing: Vec<f64>,
     buckets: Buckets,
     front: [Vec<Vec3>; 2],
-}
-
-impl Work {
-    /// The pairs computed so far with these buffers.
-    #[must_use]
-    pub fn counts(&self) -> Ways {
-        self.counts
-    }
-
-    fn count(&mut self) {
-        self.counts.behind += self.ways.len() as u64;
-        for (way, places) in self.buckets.runs() {
-            let pairs = places.len() as u64;
-            self.counts.behind -= pairs;
-            *(if way == Way::CLOSE { &mut self.counts.close } else { &mut self.counts.gauss }) += pairs;
-        }
-    }
 }
 
 impl<'a> Unoccluded<'a> {
@@ -108,8 +79,7 @@ impl<'a> Unoccluded<'a> {
         let row = Row { all: self, i: i as u32, js: &js[..count] };
         self.arch.dispatch(Look { row: &row, work });
         work.buckets.sort(&work.ways);
-        work.count();
-        out[..count].fill(NONE);
+        out[..count].fill(Exchange::NONE);
         for (way, places) in work.buckets.runs() {
             if way == Way::CLOSE {
                 for &place in places {
@@ -122,9 +92,6 @@ impl<'a> Unoccluded<'a> {
         }
     }
 }
-
-/// A patch that lies behind another.
-const NONE: Exchange = Exchange { value: 0.0, error: 0.0, method: Method::Hidden };
 
 /// Looking at the pairs of a row, compiled for each width of vectors: a closure would be compiled once, for the narrowest.
 struct Look<'a> {
@@ -218,7 +185,7 @@ impl Row<'_> {
             let values = self.values(way, js);
             for (&place, value) in block.iter().zip(values) {
                 let error = errors[place as usize] * square;
-                out[place as usize] = exchange(Estimate { value: value * square, error });
+                out[place as usize] = Exchange::new(Method::Gauss, Estimate { value: value * square, error });
             }
         }
     }
@@ -240,14 +207,9 @@ impl Row<'_> {
     fn close(&self, place: u32, tolerance: f64, front: &mut [Vec<Vec3>; 2]) -> Exchange {
         let j = self.js[place as usize];
         let [a, b] = [self.i, j].map(|k| self.all.source[k as usize]);
-        exchange(close::close(a, b, tolerance * self.all.patches.unit * self.all.patches.unit, front))
+        let estimate = close::close(a, b, tolerance * self.all.patches.unit * self.all.patches.unit, front);
+        Exchange::new(Method::Contour, estimate)
     }
-}
-
-/// An exchange is not negative: rounding below 0 becomes 0 and is added to the error.
-fn exchange(estimate: Estimate) -> Exchange {
-    let below = (-estimate.value).max(0.0);
-    Exchange { value: estimate.value.max(0.0), error: estimate.error + below, method: Method::Contour }
 }
 
 #[cfg(test)]
@@ -280,12 +242,14 @@ mod tests {
         let js: Vec<u32> = (0..60).collect();
         let wide = Unoccluded::new(&list, 1e-9);
         let narrow = Unoccluded { arch: Arch::Scalar, ..Unoccluded::new(&list, 1e-9) };
-        let (mut work, mut out) = (Work::default(), [vec![NONE; 60], vec![NONE; 60]]);
+        let (mut work, mut out) = (Work::default(), [vec![Exchange::NONE; 60], vec![Exchange::NONE; 60]]);
+        let mut gauss = 0;
         for i in 0..60 {
             wide.row(i, &js, &mut work, &mut out[0]);
             narrow.row(i, &js, &mut work, &mut out[1]);
             assert_eq!(out[0], out[1]);
+            gauss += out[0].iter().filter(|exchange| exchange.method == Method::Gauss).count();
         }
-        assert!(work.counts().gauss > 1000, "{:?}", work.counts());
+        assert!(gauss > 1000, "{gauss}");
     }
 }
