@@ -9,8 +9,10 @@ mod pair;
 mod point_polygon;
 mod sampled;
 mod shadow;
+mod visible;
 
 pub use area_gauss::{MAX_ORDER, PatchPoints, area_gauss, double_area};
 pub use contour::contour_integral;
 pub use pair::{Exchange, Method, PairIntegrator, Workspace};
 pub use point_polygon::point_to_polygon;
+pub use visible::VisibleParts;

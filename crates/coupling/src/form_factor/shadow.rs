@@ -73,6 +73,11 @@ impl Shadow {
         self.whole
     }
 
+    /// What the last point saw of the target: convex polygons, relative to the point.
+    pub(crate) fn parts(&self) -> &PolygonList {
+        &self.visible
+    }
+
     /// Form factor from the point `p` with normal `n` to what it sees of `target` behind `occluders`.
     pub(crate) fn visible_factor(
         &mut self,
