@@ -14,7 +14,7 @@ use std::f64::consts::{FRAC_PI_6, PI, TAU};
 const APART: f64 = 4.0;
 const LENGTH: f64 = 2.0;
 /// Points a direction of the rule for b.
-const FINE: usize = 24;
+const FINE: usize = 14;
 
 /// Two strips of 60° of unit cylinders, convex sides towards each other: x = e^{z/2} cos y.
 #[must_use]

@@ -6,7 +6,7 @@ use fredholm_coupling::kernel::lambert;
 use fredholm_mesh::{Patch, Vec3};
 
 /// Points a direction of the rule for b: the error falls by the factor 4.2² a point.
-const FINE: usize = 20;
+const FINE: usize = 12;
 
 /// Two facing squares of quads.
 #[must_use]

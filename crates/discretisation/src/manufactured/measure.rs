@@ -2,9 +2,10 @@
 
 use super::Manufactured;
 use crate::surface::Rules;
-use crate::{Discretisation, DiscretisationError, Equation, Site, Source, System};
+use crate::{Discretisation, DiscretisationError, Equation, Site, Source, Surface, System};
 use fredholm_linop::{MultiVector, Quiet, Solver, Stop};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 
 /// Residual that the solver is asked for: below every error that is measured.
 const SOLVED: f64 = 1e-13;
@@ -37,7 +38,8 @@ pub fn measure(
     let transfer = problem.transfer(&surface, order);
     let reflectance = MultiVector::from_fn(surface.len(), 1, |_, _| problem.reflectance);
     let system = method.discretise(Equation::new(&transfer, &reflectance)?)?;
-    let source = |site: &Site, _: usize| problem.source(site.position);
+    let known = Known::new(problem, &surface, order);
+    let source = |site: &Site, _: usize| known.source(site);
     let b = system.right_hand_side(&source);
     let mut x = MultiVector::zeros(b.dim(), 1);
     let stop = Stop { tolerance: SOLVED, max_iterations: 10_000 };
@@ -46,6 +48,31 @@ pub fn measure(
     let parts: Vec<Sums> =
         (0..surface.len()).into_par_iter().map(|i| element(problem, &*system, &source, &x, &rules, i)).collect();
     Ok(summary(&parts, b.dim()))
+}
+
+/// The source at the Gauss points of the transfer, which are asked for again and again.
+struct Known<'a> {
+    problem: &'a Manufactured,
+    values: BTreeMap<(usize, u64, u64), f64>,
+}
+
+impl<'a> Known<'a> {
+    fn new(problem: &'a Manufactured, surface: &Surface, order: usize) -> Self {
+        let rules = Rules::gauss(order);
+        let place = |i| surface.place(i, rules.of(surface.chart(i).sides()));
+        let sites = (0..surface.len()).flat_map(place);
+        let values = sites.map(|(site, _)| (key(&site), problem.source(site.position))).collect();
+        Self { problem, values }
+    }
+
+    fn source(&self, site: &Site) -> f64 {
+        let known = self.values.get(&key(site)).copied();
+        known.unwrap_or_else(|| self.problem.source(site.position))
+    }
+}
+
+fn key(site: &Site) -> (usize, u64, u64) {
+    (site.element, site.u.to_bits(), site.v.to_bits())
 }
 
 /// ∫ of the squares of x and of three differences.
