@@ -196,3 +196,38 @@ impl Joints {
         (point / (CUBE * self.tolerance)).floor().as_i64vec3().to_array()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::manufactured::{facing_squares, facing_triangles, inside_of_a_sphere};
+
+    #[test]
+    fn conforming_unknowns_are_the_nodes_of_the_grid() {
+        // A square of n × n cells has (k n + 1)² nodes, of quads as of triangles; a sphere of six faces 6 (k n)² + 2.
+        for (n, k) in [(1, 1), (3, 1), (3, 2)] {
+            let nodes = 2 * (k * n + 1) * (k * n + 1);
+            for problem in [facing_squares(), facing_triangles()] {
+                let surface = problem.surface(n).unwrap();
+                assert_eq!(Space::conforming(&surface, k, 30.0).unwrap().dim(), nodes, "{}", problem.name);
+            }
+            let surface = inside_of_a_sphere().surface(n).unwrap();
+            let expected = 6 * (k * n) * (k * n) + 2;
+            assert_eq!(Space::conforming(&surface, k, 30.0).unwrap().dim(), expected);
+        }
+    }
+
+    #[test]
+    fn a_conforming_function_has_one_value_on_an_edge_and_a_discontinuous_one_two() {
+        let surface = facing_squares().surface(2).unwrap();
+        let jump = |space: &Space| {
+            let x = MultiVector::from_fn(space.dim(), 1, |dof, _| ((7 * dof) % 5) as f64);
+            // Cell 0 at its right end, cell 2 at its left one: cells run along y first.
+            (space.value(&x, 0, 0, 1.0, 0.3) - space.value(&x, 0, 2, 0.0, 0.3)).abs()
+        };
+        for k in [1, 2] {
+            assert!(jump(&Space::conforming(&surface, k, 30.0).unwrap()) < 1e-14);
+            assert!(jump(&Space::discontinuous(&surface, k).unwrap()) > 1e-2);
+        }
+    }
+}

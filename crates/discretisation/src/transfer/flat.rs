@@ -6,7 +6,7 @@
 //! the moments of higher degree carry the error of the rule. For degree 0 one point with the exact factor suffices.
 
 use super::{Exchanges, Sink, Transfer};
-use crate::inverse::inverse;
+use crate::inverse::Inverse;
 use crate::surface::Rules;
 use crate::{DiscretisationError, FlatChart, Site, Surface};
 use fredholm_coupling::form_factor::{PairIntegrator, VisibleParts, point_to_polygon};
@@ -31,6 +31,7 @@ const OUTER: usize = 3;
 pub struct FlatLambert<'a> {
     surface: Surface,
     patches: Vec<Patch>,
+    inverses: Vec<Inverse>,
     occluders: &'a Occluders,
     tolerance: f64,
     rules: Vec<(f64, Vec<PlanePoint>)>,
@@ -52,7 +53,8 @@ impl<'a> FlatLambert<'a> {
         let surface = Surface::new(charts, faces)?;
         let rule = |(ratio, degree)| Ok((ratio, symmetric_triangle(degree)?));
         let rules = RULES.into_iter().map(rule).collect::<Result<_, DiscretisationError>>()?;
-        Ok(Self { surface, patches, occluders, tolerance, rules })
+        let inverses = patches.iter().map(Inverse::of).collect();
+        Ok(Self { surface, patches, inverses, occluders, tolerance, rules })
     }
 
     /// Weighted points for the parts of element j that p sees, `factor` being the exact form factor of all.
@@ -85,7 +87,7 @@ impl<'a> FlatLambert<'a> {
         for s in rule {
             let q = a + (b - a) * s.u + (c - a) * s.v;
             let k = lambert(Vec3::ZERO, p.normal, q, self.patches[j].normal());
-            let (u, v) = inverse(&self.patches[j], p.position + q);
+            let (u, v) = self.inverses[j].at(p.position + q);
             points.push(PlanePoint { u, v, weight: s.weight * twice * k });
         }
     }

@@ -1,0 +1,151 @@
+//! The scene scenes/occluder.toml by every discretisation, against particle tracing.
+
+// A test that cannot run should panic, in its helpers too.
+#![allow(clippy::unwrap_used)]
+
+use fredholm_discretisation::{Discretisation, Light, Lit, discretisation};
+use fredholm_linop::{MultiVector, Quiet, Solver, Stop, StopReason};
+use fredholm_mesh::{Cutting, Lines, Mesh, MeshBuilder, Shape, Vec3};
+use fredholm_quadrature::tensor_quad;
+use fredholm_visibility::Occluders;
+use std::fs;
+use std::path::Path;
+
+/// Name, corners, faces along a side in the reference, reflectance.
+type Wall = (&'static str, [[f64; 3]; 4], usize, f64);
+
+const WALLS: [Wall; 9] = [
+    ("floor", [[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]], 12, 0.7),
+    ("ceiling", [[0., 0., 1.], [0., 1., 1.], [1., 1., 1.], [1., 0., 1.]], 12, 0.7),
+    ("wall_xmin", [[0., 0., 0.], [0., 1., 0.], [0., 1., 1.], [0., 0., 1.]], 12, 0.7),
+    ("wall_xmax", [[1., 1., 0.], [1., 0., 0.], [1., 0., 1.], [1., 1., 1.]], 12, 0.7),
+    ("wall_ymin", [[1., 0., 0.], [0., 0., 0.], [0., 0., 1.], [1., 0., 1.]], 12, 0.7),
+    ("wall_ymax", [[0., 1., 0.], [1., 1., 0.], [1., 1., 1.], [0., 1., 1.]], 12, 0.7),
+    ("light", [[0.35, 0.35, 1.], [0.35, 0.65, 1.], [0.65, 0.65, 1.], [0.65, 0.35, 1.]], 4, 0.0),
+    ("plate_top", [[0.3, 0.3, 0.5], [0.7, 0.3, 0.5], [0.7, 0.7, 0.5], [0.3, 0.7, 0.5]], 6, 0.3),
+    ("plate_bottom", [[0.3, 0.3, 0.5], [0.3, 0.7, 0.5], [0.7, 0.7, 0.5], [0.7, 0.3, 0.5]], 6, 0.3),
+];
+
+/// The lines of the ceiling: the lamp is its middle.
+const CEILING: [f64; 13] =
+    [0., 0.0875, 0.175, 0.2625, 0.35, 0.425, 0.5, 0.575, 0.65, 0.7375, 0.825, 0.9125, 1.];
+
+/// Elements of `merge` × `merge` faces of the reference.
+fn mesh(merge: usize) -> Mesh {
+    let mut builder = MeshBuilder::default();
+    for (at, (name, corners, faces, _)) in WALLS.into_iter().enumerate() {
+        builder.surface(name, at);
+        let count = faces / merge;
+        let lines: Vec<f64> = CEILING.iter().copied().step_by(merge).collect();
+        let ceiling = name == "ceiling";
+        let lamp = 4 / merge..8 / merge;
+        let skip = lamp.clone().flat_map(|i| lamp.clone().map(move |j| [i, j]));
+        let skip = if ceiling { skip.collect() } else { Vec::new() };
+        let shape = Shape::Quad { corners: corners.map(Vec3::from), skip };
+        let lines = if ceiling {
+            Lines::Explicit { u: lines.clone(), v: lines }
+        } else {
+            Lines::Counts { u: count, v: count }
+        };
+        builder.add(&shape, &Cutting { lines, ..Cutting::default() }).unwrap();
+    }
+    builder.build()
+}
+
+fn light<'a>(mesh: &Mesh, occluders: &'a Occluders) -> Light<'a> {
+    let of = |i: usize| WALLS[mesh.surface_of(i)];
+    let reflectance = MultiVector::from_fn(mesh.len(), 1, |i, _| of(i).3);
+    let exitance = MultiVector::from_fn(mesh.len(), 1, |i, _| if of(i).0 == "light" { 10.0 } else { 0.0 });
+    Light::new(mesh, occluders, reflectance, exitance, 1e-3).unwrap()
+}
+
+/// A face of the reference: surface, centre, area, irradiance.
+struct Face {
+    surface: String,
+    centre: Vec3,
+    area: f64,
+    irradiance: f64,
+}
+
+fn reference() -> Vec<Face> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/occluder_reference.csv");
+    let text = fs::read_to_string(path).unwrap();
+    let row = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        let number = |at: usize| cells[at].parse::<f64>().unwrap();
+        let centre = Vec3::new(number(1), number(2), number(3));
+        Face { surface: cells[0].to_owned(), centre, area: number(4), irradiance: number(5) }
+    };
+    text.lines().skip(1).map(row).collect()
+}
+
+/// Mean of the irradiance over the faces of the reference: its polynomials, or (exactly) H B_h.
+fn face_means(mesh: &Mesh, lit: &Lit, merge: usize, exactly: bool) -> Vec<(String, Vec3, f64)> {
+    let space = lit.system().space();
+    let coefficients = lit.irradiance();
+    let rule = tensor_quad(2);
+    let mut means = Vec::new();
+    for i in 0..mesh.len() {
+        let name = WALLS[mesh.surface_of(i)].0;
+        for cell in 0..merge * merge {
+            let at = |k: usize, t: f64| (k as f64 + t) / merge as f64;
+            let inside = |u, v| space.surface().site(i, at(cell / merge, u), at(cell % merge, v));
+            let sites: Vec<_> = rule.iter().map(|p| inside(p.u, p.v)).collect();
+            let values: Vec<f64> = if exactly {
+                lit.irradiance_at(&sites).lane(0)
+            } else {
+                sites.iter().map(|s| space.value(&coefficients, 0, i, s.u, s.v)).collect()
+            };
+            let mean = values.iter().zip(&rule).map(|(e, p)| e * p.weight).sum();
+            means.push((name.to_owned(), inside(0.5, 0.5).position, mean));
+        }
+    }
+    means
+}
+
+/// √(Σ A (E − E')²/Σ A E'²) and the root mean square of (E − E')/E' over the faces.
+fn compare(means: &[(String, Vec3, f64)]) -> (f64, f64) {
+    let faces = reference();
+    assert_eq!(means.len(), faces.len());
+    let (mut error, mut norm, mut squares, mut count) = (0.0, 0.0, 0.0, 0.0);
+    for face in &faces {
+        let same = |m: &&(String, Vec3, f64)| m.0 == face.surface && m.1.distance(face.centre) < 1e-6;
+        let difference = means.iter().find(same).unwrap().2 - face.irradiance;
+        error += face.area * difference * difference;
+        norm += face.area * face.irradiance * face.irradiance;
+        if face.irradiance > 0.0 {
+            squares += (difference / face.irradiance).powi(2);
+            count += 1.0;
+        }
+    }
+    ((error / norm).sqrt(), f64::sqrt(squares / count))
+}
+
+fn solve<'a>(light: &'a Light, method: &dyn Discretisation, solver: &dyn Solver<f64>) -> Lit<'a> {
+    let stop = Stop { tolerance: 1e-10, max_iterations: 500 };
+    let lit = light.solve(method, solver, &stop, &mut Quiet).unwrap();
+    assert_eq!(lit.report().reason, StopReason::Converged, "{} by {}", method.name(), solver.name());
+    lit
+}
+
+#[test]
+fn trial() {
+    for name in ["galerkin-0", "collocation-0", "collocation-1", "galerkin-1", "nystrom-2", "galerkin-1-conforming", "collocation-2", "degenerate-kernel-1", "least-squares-1"] {
+        for merge in [1, 2] {
+            if merge == 1 && !name.ends_with("-0") { continue; }
+            let mesh = mesh(merge);
+            let occluders = Occluders::new(mesh.occluders()).unwrap();
+            let light = light(&mesh, &occluders);
+            let method = discretisation(name).unwrap();
+            let t = std::time::Instant::now();
+            let lit = solve(&light, &*method, &fredholm_iterative::GaussSeidel);
+            let t0 = t.elapsed().as_secs_f64();
+            let plain = compare(&face_means(&mesh, &lit, merge, false));
+            let t = std::time::Instant::now();
+            let exact = compare(&face_means(&mesh, &lit, merge, true));
+            let t1 = t.elapsed().as_secs_f64();
+            let error = lit.error().relative_l2[0];
+            println!("{name} {merge} {}: poly {:.2e} {:.2e}, exact {:.2e} {:.2e}, stated {:.2e}; {t0:.1} s {t1:.1} s, sweeps {}", lit.unknowns().dim(), plain.0, plain.1, exact.0, exact.1, error, lit.report().history.len());
+        }
+    }
+}
