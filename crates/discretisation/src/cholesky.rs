@@ -35,7 +35,7 @@ impl Cholesky {
             let (before, after) = b.split_at_mut(i * width);
             let row = &mut after[..width];
             (0..i).for_each(|k| subtract(row, self.at(i, k), &before[k * width..(k + 1) * width]));
-            row.iter_mut().for_each(|x| *x /= self.at(i, i));
+            divide(row, self.at(i, i));
         }
         for i in (0..self.dim).rev() {
             let (before, after) = b.split_at_mut((i + 1) * width);
@@ -43,7 +43,7 @@ impl Cholesky {
             for k in i + 1..self.dim {
                 subtract(row, self.at(k, i), &after[(k - i - 1) * width..(k - i) * width]);
             }
-            row.iter_mut().for_each(|x| *x /= self.at(i, i));
+            divide(row, self.at(i, i));
         }
     }
 
@@ -56,6 +56,12 @@ impl Cholesky {
 fn subtract(row: &mut [f64], factor: f64, other: &[f64]) {
     if factor != 0.0 {
         row.iter_mut().zip(other).for_each(|(x, y)| *x -= factor * y);
+    }
+}
+
+fn divide(row: &mut [f64], divisor: f64) {
+    for x in row {
+        *x /= divisor;
     }
 }
 

@@ -14,8 +14,5 @@ pub trait Discretisation: Send + Sync {
     ///
     /// # Errors
     /// No memory, or a surface that does not suit the method.
-    fn discretise<'a>(
-        &self,
-        equation: Equation<'a>,
-    ) -> Result<Box<dyn System + 'a>, DiscretisationError>;
+    fn discretise<'a>(&self, equation: Equation<'a>) -> Result<Box<dyn System + 'a>, DiscretisationError>;
 }

@@ -176,7 +176,8 @@ impl Lit<'_> {
         let rules = Rules::gauss(self.system.space().degree() + 2);
         let squares: Vec<Squares> =
             (0..surface.len()).into_par_iter().map(|i| self.squares(&coefficients, &rules, i)).collect();
-        let sum = |of: fn(&Squares) -> &Vec<f64>, band: usize| squares.iter().map(|s| of(s)[band]).sum::<f64>();
+        let sum =
+            |of: fn(&Squares) -> &Vec<f64>, band: usize| squares.iter().map(|s| of(s)[band]).sum::<f64>();
         let relative = |band| match (sum(|s| &s.error, band), sum(|s| &s.value, band)) {
             (error, value) if value > 0.0 => (error / value).sqrt(),
             _ => 0.0,

@@ -130,9 +130,21 @@ fn solve<'a>(light: &'a Light, method: &dyn Discretisation, solver: &dyn Solver<
 
 #[test]
 fn trial() {
-    for name in ["galerkin-0", "collocation-0", "collocation-1", "galerkin-1", "nystrom-2", "galerkin-1-conforming", "collocation-2", "degenerate-kernel-1", "least-squares-1"] {
+    for name in [
+        "galerkin-0",
+        "collocation-0",
+        "collocation-1",
+        "galerkin-1",
+        "nystrom-2",
+        "galerkin-1-conforming",
+        "collocation-2",
+        "degenerate-kernel-1",
+        "least-squares-1",
+    ] {
         for merge in [1, 2] {
-            if merge == 1 && !name.ends_with("-0") { continue; }
+            if merge == 1 && !name.ends_with("-0") {
+                continue;
+            }
             let mesh = mesh(merge);
             let occluders = Occluders::new(mesh.occluders()).unwrap();
             let light = light(&mesh, &occluders);
@@ -145,7 +157,16 @@ fn trial() {
             let exact = compare(&face_means(&mesh, &lit, merge, true));
             let t1 = t.elapsed().as_secs_f64();
             let error = lit.error().relative_l2[0];
-            println!("{name} {merge} {}: poly {:.2e} {:.2e}, exact {:.2e} {:.2e}, stated {:.2e}; {t0:.1} s {t1:.1} s, sweeps {}", lit.unknowns().dim(), plain.0, plain.1, exact.0, exact.1, error, lit.report().history.len());
+            println!(
+                "{name} {merge} {}: poly {:.2e} {:.2e}, exact {:.2e} {:.2e}, stated {:.2e}; {t0:.1} s {t1:.1} s, sweeps {}",
+                lit.unknowns().dim(),
+                plain.0,
+                plain.1,
+                exact.0,
+                exact.1,
+                error,
+                lit.report().history.len()
+            );
         }
     }
 }

@@ -28,7 +28,7 @@ pub fn two_cylinders() -> Manufactured {
         kernel: Box::new(lambert),
         charts: strips,
         exact,
-        irradiance: Box::new(resolved(&strips(1), FINE, lambert, exact, |p| outward(p))),
+        irradiance: Box::new(resolved(&strips(1), FINE, lambert, exact, outward)),
         peak: None,
     }
 }

@@ -45,8 +45,10 @@ pub fn measure(
     let stop = Stop { tolerance: SOLVED, max_iterations: 10_000 };
     solver.solve(&system.operator()?, &b, &mut x, &stop, &mut Quiet)?;
     let rules = Rules::gauss(system.space().degree() + 2);
-    let parts: Vec<Sums> =
-        (0..surface.len()).into_par_iter().map(|i| element(problem, &*system, &source, &x, &rules, i)).collect();
+    let parts: Vec<Sums> = (0..surface.len())
+        .into_par_iter()
+        .map(|i| element(problem, &*system, &source, &x, &rules, i))
+        .collect();
     Ok(summary(&parts, b.dim()))
 }
 

@@ -23,7 +23,8 @@ pub fn inside_of_a_sphere() -> Manufactured {
 
 fn patches(n: usize) -> Vec<Box<dyn Chart>> {
     let part = |i: usize| [i as f64 / n as f64, (i + 1) as f64 / n as f64];
-    let patch = |face, k: usize| SpherePatch { radius: 1.0, face, u: part(k / n), v: part(k % n), inward: true };
+    let patch =
+        |face, k: usize| SpherePatch { radius: 1.0, face, u: part(k / n), v: part(k % n), inward: true };
     let all = (0..6).flat_map(|face| (0..n * n).map(move |k| (face, k)));
     all.map(|(face, k)| Box::new(patch(face, k)) as Box<dyn Chart>).collect()
 }

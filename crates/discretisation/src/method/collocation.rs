@@ -27,10 +27,7 @@ impl Discretisation for Collocation {
         ][self.0.number()]
     }
 
-    fn discretise<'a>(
-        &self,
-        equation: Equation<'a>,
-    ) -> Result<Box<dyn System + 'a>, DiscretisationError> {
+    fn discretise<'a>(&self, equation: Equation<'a>) -> Result<Box<dyn System + 'a>, DiscretisationError> {
         let space = Space::discontinuous(equation.transfer().surface(), self.0.number())?;
         let matrix = collocation_matrix(&equation, &space)?;
         Ok(Box::new(AtNodes { equation, space, matrix }))

@@ -28,10 +28,7 @@ impl Discretisation for DegenerateKernel {
         ][self.0.number()]
     }
 
-    fn discretise<'a>(
-        &self,
-        equation: Equation<'a>,
-    ) -> Result<Box<dyn System + 'a>, DiscretisationError> {
+    fn discretise<'a>(&self, equation: Equation<'a>) -> Result<Box<dyn System + 'a>, DiscretisationError> {
         let space = Space::discontinuous(equation.transfer().surface(), self.0.number())?;
         let matrix = collocation_matrix(&equation, &space)?;
         Ok(Box::new(Reflected { equation, space, matrix }))

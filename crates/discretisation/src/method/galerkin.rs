@@ -47,19 +47,17 @@ impl Discretisation for Galerkin {
         }
     }
 
-    fn discretise<'a>(
-        &self,
-        equation: Equation<'a>,
-    ) -> Result<Box<dyn System + 'a>, DiscretisationError> {
+    fn discretise<'a>(&self, equation: Equation<'a>) -> Result<Box<dyn System + 'a>, DiscretisationError> {
         let (surface, degree) = (equation.transfer().surface(), self.degree.number());
         if degree == 0
             && let Some(exchanges) = equation.transfer().exchanges()
         {
             return Ok(Box::new(Zonal::new(equation, exchanges?)?));
         }
-        let space = match self.conforming {
-            true => Space::conforming(surface, degree, SMOOTH)?,
-            false => Space::discontinuous(surface, degree)?,
+        let space = if self.conforming {
+            Space::conforming(surface, degree, SMOOTH)?
+        } else {
+            Space::discontinuous(surface, degree)?
         };
         one_reflectance(&equation, &space)?;
         let mass = Mass::new(&space, equation.transfer().outer(degree))?;

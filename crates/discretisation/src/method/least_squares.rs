@@ -33,10 +33,7 @@ impl Discretisation for LeastSquares {
         ][self.0.number()]
     }
 
-    fn discretise<'a>(
-        &self,
-        equation: Equation<'a>,
-    ) -> Result<Box<dyn System + 'a>, DiscretisationError> {
+    fn discretise<'a>(&self, equation: Equation<'a>) -> Result<Box<dyn System + 'a>, DiscretisationError> {
         let space = Space::discontinuous(equation.transfer().surface(), self.0.number())?;
         let mass = Mass::new(&space, equation.transfer().outer(self.0.number()))?;
         let samples = Samples::new(&equation, &space, &mass)?;
@@ -144,7 +141,7 @@ impl Residual<'_> {
         runs.for_each(|(run, rows)| gram(&weighted, n, run * RUN, rows));
         let scale: Vec<f64> = (0..n).map(|i| 1.0 / product[i * n + i]).collect();
         for (i, row) in product.chunks_exact_mut(n.max(1)).enumerate() {
-            row.iter_mut().for_each(|entry| *entry *= -scale[i]);
+            multiply(row, -scale[i]);
             row[i] += 1.0;
         }
         Ok((Lane { weighted, scale }, Dense::new(n, product)?))
@@ -160,9 +157,15 @@ impl Residual<'_> {
             row.iter_mut().zip(self.samples.row(s)).for_each(|(e, h)| *e = -rho * h);
             let values = self.space.basis(site.element).values(site.u, site.v);
             self.space.dofs(site.element).iter().zip(values).for_each(|(&dof, phi)| row[dof] += phi);
-            row.iter_mut().for_each(|e| *e *= weight.sqrt());
+            multiply(row, weight.sqrt());
         }
         Ok(weighted)
+    }
+}
+
+fn multiply(row: &mut [f64], factor: f64) {
+    for value in row {
+        *value *= factor;
     }
 }
 
@@ -217,7 +220,9 @@ impl System for Residual<'_> {
             row.map(|(j, h)| h * x.row(j)[lane]).sum()
         });
         let starts = self.first_samples();
-        projection(&self.space, &self.mass, lanes, &|site, at, lane| at_samples.row(starts[site.element] + at)[lane])
+        projection(&self.space, &self.mass, lanes, &|site, at, lane| {
+            at_samples.row(starts[site.element] + at)[lane]
+        })
     }
 
     fn value(&self, _: &Source, x: &MultiVector<f64>, site: &Site, lane: usize) -> f64 {

@@ -29,10 +29,7 @@ impl Discretisation for Nystrom {
         ][self.0.number()]
     }
 
-    fn discretise<'a>(
-        &self,
-        equation: Equation<'a>,
-    ) -> Result<Box<dyn System + 'a>, DiscretisationError> {
+    fn discretise<'a>(&self, equation: Equation<'a>) -> Result<Box<dyn System + 'a>, DiscretisationError> {
         let space = Space::discontinuous(equation.transfer().surface(), self.0.number())?;
         let points = Points::new(&space);
         let fill = |i: usize, block: &mut [f64]| {

@@ -98,7 +98,9 @@ fn normalise(points: &mut [PlanePoint], exact: f64) {
     let sum: f64 = points.iter().map(|p| p.weight).sum();
     // Where rounding leaves no weight there is nothing to see.
     let scale = if sum > 0.0 { exact / sum } else { 0.0 };
-    points.iter_mut().for_each(|p| p.weight *= scale);
+    for point in points {
+        point.weight *= scale;
+    }
 }
 
 /// Mean of the corners and largest distance from it.
@@ -136,7 +138,8 @@ impl Transfer for FlatLambert<'_> {
     fn send(&self, sites: &[Site], j: usize, degree: usize, each: &mut Sink) {
         let Some(first) = sites.first() else { return };
         let mut view = VisibleParts::default();
-        if first.element == j || !view.prepare(&self.patches[first.element], &self.patches[j], self.occluders) {
+        if first.element == j || !view.prepare(&self.patches[first.element], &self.patches[j], self.occluders)
+        {
             return;
         }
         let middle = if self.patches[j].sides() == 3 { 1.0 / 3.0 } else { 0.5 };
