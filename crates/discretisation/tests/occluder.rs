@@ -10,6 +10,7 @@ use fredholm_linop::{MultiVector, Quiet, Solver, Stop, StopReason};
 use fredholm_mesh::{Cutting, Lines, Mesh, MeshBuilder, Shape, Vec3};
 use fredholm_quadrature::tensor_quad;
 use fredholm_visibility::Occluders;
+use rayon::prelude::*;
 use std::fs;
 use std::path::Path;
 
@@ -34,6 +35,11 @@ const CEILING: [f64; 13] =
 
 /// Elements of `merge` × `merge` faces of the reference.
 fn mesh(merge: usize) -> Mesh {
+    cut(merge, 1)
+}
+
+/// Faces of `merge` × `merge` faces of the reference, each of `split` × `split` elements.
+fn cut(merge: usize, split: usize) -> Mesh {
     let mut builder = MeshBuilder::default();
     for (at, (name, corners, faces, _)) in WALLS.into_iter().enumerate() {
         builder.surface(name, at);
@@ -49,7 +55,7 @@ fn mesh(merge: usize) -> Mesh {
         } else {
             Lines::Counts { u: count, v: count }
         };
-        builder.add(&shape, &Cutting { lines, ..Cutting::default() }).unwrap();
+        builder.add(&shape, &Cutting { lines, elements_per_side: split, ..Cutting::default() }).unwrap();
     }
     builder.build()
 }
@@ -188,5 +194,32 @@ fn every_method_above_constants_agrees_with_particle_tracing() {
 fn constants_agree_with_particle_tracing_within_their_stated_error() {
     for name in ["galerkin-0", "collocation-0", "nystrom-1", "least-squares-0", "degenerate-kernel-0"] {
         check(name, 1, 0.01);
+    }
+}
+
+/// Means of the irradiance over faces of several elements of equal size: H B_h at the middles of the elements.
+fn means_of_faces(mesh: &Mesh, lit: &Lit) -> Vec<(String, Vec3, f64)> {
+    let surface = lit.system().space().surface();
+    let middle = |leaf: usize| lit.irradiance_at(&[surface.site(leaf, 0.5, 0.5)]).row(0)[0];
+    let values: Vec<f64> = (0..mesh.len()).into_par_iter().map(middle).collect();
+    let mean = |face: usize| {
+        let leaves: Vec<usize> = (0..mesh.len()).filter(|&leaf| mesh.face_of(leaf) == face).collect();
+        leaves.iter().map(|&leaf| values[leaf]).sum::<f64>() / leaves.len() as f64
+    };
+    let name = |face: usize| WALLS[mesh.faces()[face].surface].0.to_owned();
+    (0..mesh.faces().len()).map(|face| (name(face), mesh.faces()[face].centroid, mean(face))).collect()
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn constants_agree_with_particle_tracing_on_four_elements_a_face() {
+    let mesh = cut(1, 2);
+    let occluders = Occluders::new(mesh.occluders()).unwrap();
+    let light = light(&mesh, &occluders);
+    for name in ["galerkin-0", "collocation-0", "nystrom-1", "degenerate-kernel-0"] {
+        let lit = solve(&light, &*discretisation(name).unwrap(), &GaussSeidel);
+        let (l2, rms) = compare(&means_of_faces(&mesh, &lit));
+        println!("| {name} | {} | {:.2} % | {:.2} % |", lit.unknowns().dim(), 100.0 * l2, 100.0 * rms);
+        assert!(rms <= 0.003, "{name}: {rms:e} over faces");
     }
 }

@@ -1,8 +1,8 @@
 //! The parts of a flat patch that points of another one see, exactly: convex polygons.
 //!
-//! The target is clipped by the horizon of the source, and the shadows of the occluders between both are cut out of it as in
-//! [`point_to_polygon`](super::point_to_polygon)'s companion for whole factors; T. Nishita & E. Nakamae, SIGGRAPH 1985,
-//! doi:10.1145/325165.325169. Lengths in metres. For integrals of the kernel times a function over what is seen.
+//! The target is clipped by the horizon of the source, and the shadows of the occluders between both are cut out of it. T. Nishita & E. Nakamae,
+//! SIGGRAPH 1985, doi:10.1145/325165.325169, treat the same geometry. Lengths in metres. For integrals of the kernel times a function over what is
+//! seen; the factor alone is the integral of the kernel.
 
 use super::shadow::{PolygonList, Shadow};
 use crate::polygon::{HalfSpace, clip};
