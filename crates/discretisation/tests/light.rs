@@ -89,14 +89,12 @@ fn constants_by_galerkin_are_the_radiosity_system_with_its_buried_parts() {
 
 /// Quads on four walls and triangles on two.
 fn mixed_room() -> Mesh {
-    let whole = room(2, false);
+    let whole = room(1, false);
     let mut builder = MeshBuilder::default();
     for (at, patch) in whole.patches().enumerate() {
-        if at % 4 == 0 {
-            builder.surface("wall", 0);
-        }
+        builder.surface("wall", 0);
         let [a, b, c, d] = [0, 1, 2, 3].map(|i| patch.corner(i));
-        if at < 8 {
+        if at < 2 {
             builder.face(&[Patch::triangle([a, b, c]).unwrap()]).unwrap();
             builder.face(&[Patch::triangle([c, d, a]).unwrap()]).unwrap();
         } else {
