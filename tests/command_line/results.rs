@@ -64,7 +64,7 @@ fn a_second_run_replaces_the_first() {
     fs::write(bench.path("scene.toml"), furnace(1, &[0.75])).unwrap();
     bench.solve(&[]);
     let radiosity = crate::support::column(&bench.path("out/scene/field.csv"), "radiosity_b0");
-    assert!(radiosity.iter().all(|b| (b - 4.0).abs() < 1e-6), "{radiosity:?}");
+    assert!(radiosity.iter().all(|b| (b - 4.0).abs() < 1e-3), "{radiosity:?}");
     assert_eq!(fs::read(bench.path("out/scene/notes.txt")).unwrap(), b"mine");
     let files = fs::read_dir(bench.path("out/scene")).unwrap().count();
     assert_eq!(files, fredholm::report::FILES.len() + 1);

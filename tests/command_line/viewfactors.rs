@@ -60,8 +60,8 @@ fn is_untouched(bench: &Bench) -> bool {
 fn squares_have_their_closed_forms() {
     let bench = bench();
     for (file, exact, error) in [
-        ("parallel.obj", PARALLEL, 1e-12),
-        ("perp.obj", PERPENDICULAR, 1e-12),
+        ("parallel.obj", PARALLEL, 1e-9),
+        ("perp.obj", PERPENDICULAR, 1e-9),
         ("blocked.obj", BLOCKED, 1e-9),
         ("blocked.vs3", BLOCKED, 1e-9),
     ] {

@@ -13,7 +13,7 @@ use fredholm_visibility::body::Body;
 use std::f64::consts::FRAC_1_PI;
 
 /// Error of a cell by its centroid over the bend of the hidden part.
-const BEND: f64 = 0.15;
+const BEND: f64 = 0.04;
 /// Area over the goal below which a part of the source is not cut further for being close to a body.
 const SMALL: f64 = 0.05;
 /// Critical lines along which the source is cut at most: the cells grow with their square.
@@ -25,6 +25,8 @@ pub(crate) struct Occluded<'a> {
     pub source: &'a [Vec3],
     pub normal: Vec3,
     pub target: &'a [Vec3],
+    /// Normal of the target.
+    pub facing: Vec3,
     pub bodies: &'a [&'a Body],
     /// Heights up to which a point lies on a face, m.
     pub tolerance: f64,
@@ -51,7 +53,8 @@ pub(crate) struct HiddenWork {
 /// The hidden part of the exchange (m²), to an absolute `goal` (m²).
 pub(crate) fn hidden_exchange(scene: &Occluded, goal: f64, work: &mut HiddenWork) -> Estimate {
     cut(scene, work);
-    let scale = Scale::of(scene);
+    let steep = Steep::of(scene);
+    let scale = Scale::of(scene, &steep);
     let rough = work.cells.iter().map(|cell| scale.error(cell)).sum();
     if rough <= goal {
         let by_centroid = |cell: &[Vec3]| {
@@ -60,7 +63,6 @@ pub(crate) fn hidden_exchange(scene: &Occluded, goal: f64, work: &mut HiddenWork
         };
         return Estimate { value: work.cells.iter().map(by_centroid).sum(), error: rough };
     }
-    let steep = Steep::of(scene);
     let mut pieces =
         Pieces::new(|x| scene.hidden(x, &mut work.hiding), |x| steep.distance(x), &mut work.pieces);
     for cell in work.cells.iter() {
@@ -106,32 +108,33 @@ fn cut(scene: &Occluded, work: &mut HiddenWork) {
     }
 }
 
-/// How fast the hidden part changes over the source: the border of a shadow moves over the target by m times the way of the point, m = (D − d) / d with the
-/// distances D of the target and d of the bodies.
+/// How fast the hidden part changes over the source: the border of a shadow moves over the target by at most m times the way of the point, with m the distance of the
+/// target's farthest point over that of the nearest body, and the kernel is at most 1/(π D²) with the least distance D of the target.
 struct Scale {
-    /// Squared m / target area + 1 / D², m⁻².
+    /// (m² + A/D²)/(π D²) with the target area A, m⁻².
     bend: f64,
     /// Largest exchange per area of source.
     most: f64,
 }
 
 impl Scale {
-    fn of(scene: &Occluded) -> Self {
-        let centre = |polygon: &[Vec3]| polygon.iter().sum::<Vec3>() / polygon.len() as f64;
-        let (from, to) = (centre(scene.source), centre(scene.target));
-        let way = to - from;
-        let along = |x: Vec3| (x - from).dot(way) / way.length_squared();
-        let near = scene.bodies.iter().flat_map(|body| body.corners()).map(|&x| along(x)).fold(1.0, f64::min);
-        let magnified = if near > 0.0 { (1.0 - near) / near } else { f64::INFINITY };
-        let (d2, target) = (way.length_squared(), centroid(scene.target).0);
-        Self { bend: magnified * magnified / target + 1.0 / d2, most: (FRAC_1_PI * target / d2).min(1.0) }
+    fn of(scene: &Occluded, steep: &Steep) -> Self {
+        let ((_, from), (target, to)) = (centroid(scene.source), centroid(scene.target));
+        let radius = |corners: &[Vec3], centre: Vec3| corners.iter().map(|x| x.distance(centre)).fold(0.0, f64::max);
+        let [own, other] = [radius(scene.source, from), radius(scene.target, to)];
+        let far = from.distance(to);
+        let near = (far - own - other).max((from - to).dot(scene.facing).abs() - own).max(0.0);
+        let body = (steep.distance(from) - own).max(0.0);
+        let kernel = FRAC_1_PI / (near * near);
+        let magnified = (far + other) / body;
+        Self { bend: (magnified * magnified + target / (near * near)) * kernel, most: (target * kernel).min(1.0) }
     }
 
     /// Error of a cell by its centroid: on a cell the hidden part is nearly a quadratic function, so that is its bend times the squared radius of gyration.
     fn error(&self, cell: &[Vec3]) -> f64 {
         let (area, centre) = centroid(cell);
         let gyration = cell.iter().map(|x| x.distance_squared(centre)).sum::<f64>() / (3 * cell.len()) as f64;
-        area * self.most * (BEND * self.bend * gyration).min(1.0)
+        area * (BEND * self.bend * gyration).min(self.most)
     }
 }
 

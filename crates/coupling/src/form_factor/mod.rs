@@ -13,6 +13,7 @@ mod point_polygon;
 mod sampled;
 mod shadow;
 mod unoccluded;
+mod visible;
 
 pub use contour::contour_integral;
 pub(crate) use facing::{extent, facing_exchange, flat, front, front_of};
@@ -22,3 +23,4 @@ pub use pair::{Exchange, Method, PairIntegrator, Workspace};
 pub use point_polygon::point_to_polygon;
 pub(crate) use shadow::Hiding;
 pub use unoccluded::{Unoccluded, Work};
+pub use visible::VisibleParts;

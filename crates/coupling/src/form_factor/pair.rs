@@ -247,6 +247,7 @@ impl<'a> PairIntegrator<'a> {
             source: front_a,
             normal: a.patch.normal(),
             target: front_b,
+            facing: b.patch.normal(),
             bodies: &bodies,
             tolerance,
         };

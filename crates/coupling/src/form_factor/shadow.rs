@@ -144,49 +144,63 @@ impl Hiding {
         bodies: &[&Body],
         tolerance: f64,
     ) -> f64 {
+        let Some((last, others)) = bodies.split_last() else { return 0.0 };
+        let hidden = self.hide(x, n, target, others, tolerance);
+        // After the last body nobody asks for what is left.
+        hidden + self.behind(last, x, n, tolerance, false)
+    }
+
+    /// As [`hidden_factor`](Self::hidden_factor), and leaves what is seen in [`visible`](Self::visible).
+    pub(crate) fn hide(
+        &mut self,
+        x: Vec3,
+        n: Vec3,
+        target: &[Vec3],
+        bodies: &[&Body],
+        tolerance: f64,
+    ) -> f64 {
         self.visible.clear();
         self.visible.push_with(|corners| corners.extend(target.iter().map(|&y| y - x)));
-        let mut hidden = 0.0;
-        for (k, body) in bodies.iter().enumerate() {
-            hidden += match body.shadow(x, tolerance, &mut self.room) {
-                Shadow::Nothing => 0.0,
-                Shadow::Room => self.darken(n, k + 1 == bodies.len()),
-            };
+        bodies.iter().map(|body| self.behind(body, x, n, tolerance, true)).sum()
+    }
+
+    /// What the last point saw: convex polygons, relative to it.
+    pub(crate) fn visible(&self) -> &PolygonList {
+        &self.visible
+    }
+
+    /// Moves what lies in the shadow of a body from the visible pieces to the hidden sum.
+    fn behind(&mut self, body: &Body, x: Vec3, n: Vec3, tolerance: f64, keep: bool) -> f64 {
+        if body.shadow(x, tolerance, &mut self.room) == Shadow::Nothing {
+            return 0.0;
         }
+        self.next.clear();
+        let hidden = (0..self.visible.len()).map(|i| self.darken(i, n, keep)).sum();
+        std::mem::swap(&mut self.visible, &mut self.next);
         hidden
     }
 
-    /// Moves what lies in the room from the visible pieces to the hidden sum. After the last body nobody asks for the visible ones.
-    fn darken(&mut self, n: Vec3, last: bool) -> f64 {
-        self.next.clear();
-        let mut hidden = 0.0;
-        for i in 0..self.visible.len() {
-            let piece = self.visible.get(i);
-            self.rest.clear();
-            self.rest.extend_from_slice(piece);
-            let start = self.next.ends.len();
-            let mut inside = true;
-            for &(m, c) in self.room.planes() {
-                match self.cutter.split(&self.rest, m, c, 0.0) {
-                    Cut::Inside => continue,
-                    Cut::Outside => inside = false,
-                    Cut::Both => std::mem::swap(&mut self.rest, &mut self.cutter.inside),
+    /// Form factor of the part of a visible piece that lies in the room; with `keep` the rest goes to the next pieces.
+    fn darken(&mut self, i: usize, n: Vec3, keep: bool) -> f64 {
+        self.rest.clear();
+        self.rest.extend_from_slice(self.visible.get(i));
+        let start = self.next.len();
+        for &(m, c) in self.room.planes() {
+            match self.cutter.split(&self.rest, m, c, 0.0) {
+                Cut::Inside => {}
+                Cut::Outside => {
+                    self.next.truncate(start);
+                    self.next.push_with(|corners| corners.extend_from_slice(self.visible.get(i)));
+                    return 0.0;
                 }
-                if !inside {
-                    break;
+                Cut::Both => {
+                    std::mem::swap(&mut self.rest, &mut self.cutter.inside);
+                    if keep {
+                        self.next.push_with(|corners| corners.extend_from_slice(&self.cutter.outside));
+                    }
                 }
-                if !last {
-                    self.next.push_with(|corners| corners.extend_from_slice(&self.cutter.outside));
-                }
-            }
-            if inside {
-                hidden += point_to_polygon(n, self.rest.iter().copied());
-            } else if !last {
-                self.next.truncate(start);
-                self.next.push_with(|corners| corners.extend_from_slice(piece));
             }
         }
-        std::mem::swap(&mut self.visible, &mut self.next);
-        hidden
+        point_to_polygon(n, self.rest.iter().copied())
     }
 }

@@ -37,6 +37,9 @@ use polygons::polygons;
 use pulp::{Arch, NullaryFnOnce};
 use survey::{Survey, survey};
 
+/// Rounding of a sum of points, in units of the last place of the value.
+const ROUNDING: f64 = 16.0;
+
 /// Computes exchanges between patches of one scene that see each other wholly.
 #[derive(Debug)]
 pub struct Unoccluded<'a> {
@@ -184,10 +187,17 @@ impl Row<'_> {
             let js = self.others(|m| block[m.min(block.len() - 1)] as usize);
             let values = self.values(way, js);
             for (&place, value) in block.iter().zip(values) {
-                let error = errors[place as usize] * square;
+                let error = (errors[place as usize] + self.rounding(self.js[place as usize], value)) * square;
                 out[place as usize] = Exchange::new(Method::Gauss, Estimate { value: value * square, error });
             }
         }
+    }
+
+    /// Rounding of the sum over points: relative for parallelograms, of which opposite sides are taken together, else that of the edges.
+    fn rounding(&self, j: u32, value: f64) -> f64 {
+        let patches = &self.all.patches;
+        let circumference = |k: u32| patches.slenderness[k as usize] * patches.area[k as usize];
+        f64::EPSILON * (ROUNDING * value.abs() + circumference(self.i) * circumference(j))
     }
 
     /// A_i F_ij of a block in squared units, lower index first.

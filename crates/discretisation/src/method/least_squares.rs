@@ -1,0 +1,242 @@
+//! Least squares: x_h minimises ‖x_h − ρ H x_h − b‖ in L².
+//!
+//! G. Peyré's article, eq. 1.52: ⟨û_i, û_j⟩ x = ⟨b, û_i⟩ with û = u − ρ H u. The integrals are sums over the points s of the outer rule: with E the matrix of
+//! û_j(s) and W the weights, EᵀW E x = EᵀW b. ρ enters squared, so each reflectance has its own matrix. The rows are divided by the diagonal,
+//! which changes no iterate of Gauss–Seidel, and that converges: the matrix is symmetric positive definite. Order k + 1 in L²; the iterated
+//! solution reaches 2k + 2 as for Galerkin. Memory: points × unknowns.
+
+use super::galerkin::projection;
+use super::lane_matrices::LaneMatrices;
+use crate::mass::Mass;
+use crate::transfer::fill_rows;
+use crate::{Degree, Discretisation, DiscretisationError, Equation, Site, Source, Space, System};
+use fredholm_linop::{Dense, LinearOperator, LinopError, MultiVector};
+use rayon::prelude::*;
+
+/// Rows of EᵀW E that one thread computes at a time.
+const RUN: usize = 32;
+
+/// Least squares with one degree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LeastSquares(pub Degree);
+
+impl Discretisation for LeastSquares {
+    fn name(&self) -> &'static str {
+        ["least-squares-0", "least-squares-1", "least-squares-2"][self.0.number()]
+    }
+
+    fn summary(&self) -> &'static str {
+        [
+            "Least residual in the mean square, constant on every element",
+            "Least residual in the mean square, P1 or Q1 on every element",
+            "Least residual in the mean square, P2 or Q2 on every element",
+        ][self.0.number()]
+    }
+
+    fn discretise<'a>(&self, equation: Equation<'a>) -> Result<Box<dyn System + 'a>, DiscretisationError> {
+        let space = Space::discontinuous(equation.transfer().surface(), self.0.number())?;
+        let mass = Mass::new(&space, equation.transfer().outer(self.0.number()))?;
+        let samples = Samples::new(&equation, &space, &mass)?;
+        let mut system = Residual { equation, space, mass, samples, lanes: Vec::new(), matrices: none() };
+        system.assemble()?;
+        Ok(Box::new(system))
+    }
+}
+
+fn none() -> LaneMatrices {
+    LaneMatrices { matrices: Vec::new(), of_lane: Vec::new(), dim: 0 }
+}
+
+/// (H φ_j)(s) at the points s of all elements, points × unknowns.
+struct Samples {
+    sites: Vec<(Site, f64)>,
+    rows: Vec<f64>,
+    dim: usize,
+}
+
+impl Samples {
+    fn new(equation: &Equation, space: &Space, mass: &Mass) -> Result<Self, LinopError> {
+        let n = space.dim();
+        let placed: Vec<_> = (0..space.surface().len()).map(|i| mass.sites(space, i)).collect();
+        let sites = placed.concat();
+        let mut rows = reserve(sites.len().saturating_mul(n))?;
+        let mut rest = &mut rows[..];
+        let mut blocks = Vec::with_capacity(placed.len());
+        for points in placed {
+            let (block, tail) = rest.split_at_mut(points.len() * n);
+            blocks.push((points, block));
+            rest = tail;
+        }
+        blocks.into_par_iter().for_each(|(points, block)| {
+            let sites: Vec<Site> = points.iter().map(|(site, _)| *site).collect();
+            fill_rows(equation.transfer(), space, &sites, block);
+        });
+        Ok(Self { sites, rows, dim: n })
+    }
+
+    fn row(&self, s: usize) -> &[f64] {
+        &self.rows[s * self.dim..(s + 1) * self.dim]
+    }
+}
+
+fn reserve(len: usize) -> Result<Vec<f64>, LinopError> {
+    let mut values = Vec::new();
+    let bytes = (len as u64).saturating_mul(8);
+    let what = "the samples of a least-squares system";
+    values.try_reserve_exact(len).map_err(|_| LinopError::Memory { what, bytes })?;
+    values.resize(len, 0.0);
+    Ok(values)
+}
+
+/// √W E of one reflectance, points × unknowns, and the inverse diagonal of EᵀW E.
+struct Lane {
+    weighted: Vec<f64>,
+    scale: Vec<f64>,
+}
+
+struct Residual<'a> {
+    equation: Equation<'a>,
+    space: Space<'a>,
+    mass: Mass,
+    samples: Samples,
+    lanes: Vec<Lane>,
+    matrices: LaneMatrices,
+}
+
+impl Residual<'_> {
+    fn assemble(&mut self) -> Result<(), LinopError> {
+        let of_lane = self.lanes_by_reflectance();
+        let count = of_lane.iter().max().map_or(0, |last| last + 1);
+        let mut matrices = Vec::with_capacity(count);
+        for at in 0..count {
+            let lane = of_lane.iter().position(|&other| other == at).unwrap_or(0);
+            let (lane, matrix) = self.normal_equations(lane)?;
+            self.lanes.push(lane);
+            matrices.push(matrix);
+        }
+        self.matrices = LaneMatrices { matrices, of_lane, dim: self.space.dim() };
+        Ok(())
+    }
+
+    /// Numbers the different reflectances in the order of the lanes.
+    fn lanes_by_reflectance(&self) -> Vec<usize> {
+        let columns: Vec<_> =
+            (0..self.equation.lanes()).map(|lane| self.equation.reflectance().lane(lane)).collect();
+        let mut different: Vec<&Vec<f64>> = Vec::new();
+        let number = |column| {
+            different.iter().position(|other| *other == column).unwrap_or_else(|| {
+                different.push(column);
+                different.len() - 1
+            })
+        };
+        columns.iter().map(number).collect()
+    }
+
+    /// I − diag(EᵀW E)⁻¹ EᵀW E.
+    fn normal_equations(&self, lane: usize) -> Result<(Lane, Dense<f64>), LinopError> {
+        let n = self.space.dim();
+        let weighted = self.residuals(lane)?;
+        let mut product = Dense::zeros(n)?.into_vec();
+        let runs = product.par_chunks_mut((RUN * n).max(1)).enumerate();
+        runs.for_each(|(run, rows)| gram(&weighted, n, run * RUN, rows));
+        let scale: Vec<f64> = (0..n).map(|i| 1.0 / product[i * n + i]).collect();
+        for (i, row) in product.chunks_exact_mut(n.max(1)).enumerate() {
+            multiply(row, -scale[i]);
+            row[i] += 1.0;
+        }
+        Ok((Lane { weighted, scale }, Dense::new(n, product)?))
+    }
+
+    /// √W (φ − ρ H φ).
+    fn residuals(&self, lane: usize) -> Result<Vec<f64>, LinopError> {
+        let n = self.space.dim();
+        let mut weighted = reserve(self.samples.rows.len())?;
+        for (s, (site, weight)) in self.samples.sites.iter().enumerate() {
+            let rho = self.equation.reflectance().row(site.element)[lane];
+            let row = &mut weighted[s * n..(s + 1) * n];
+            row.iter_mut().zip(self.samples.row(s)).for_each(|(e, h)| *e = -rho * h);
+            let values = self.space.basis(site.element).values(site.u, site.v);
+            self.space.dofs(site.element).iter().zip(values).for_each(|(&dof, phi)| row[dof] += phi);
+            multiply(row, weight.sqrt());
+        }
+        Ok(weighted)
+    }
+}
+
+fn multiply(row: &mut [f64], factor: f64) {
+    for value in row {
+        *value *= factor;
+    }
+}
+
+/// Rows `first`… of EᵀE.
+fn gram(e: &[f64], n: usize, first: usize, rows: &mut [f64]) {
+    for sample in e.chunks_exact(n) {
+        for (row, &factor) in rows.chunks_exact_mut(n).zip(&sample[first..]) {
+            row.iter_mut().zip(sample).for_each(|(sum, value)| *sum += factor * value);
+        }
+    }
+}
+
+impl System for Residual<'_> {
+    fn equation(&self) -> Equation<'_> {
+        self.equation
+    }
+
+    fn space(&self) -> &Space<'_> {
+        &self.space
+    }
+
+    fn coupling(&self) -> &dyn LinearOperator<f64> {
+        &self.matrices
+    }
+
+    fn factor(&self) -> MultiVector<f64> {
+        MultiVector::from_fn(self.space.dim(), self.equation.lanes(), |_, _| 1.0)
+    }
+
+    /// diag(EᵀW E)⁻¹ EᵀW b.
+    fn right_hand_side(&self, source: &Source) -> MultiVector<f64> {
+        let n = self.space.dim();
+        let mut sums = MultiVector::zeros(n, self.equation.lanes());
+        for (lane, &at) in self.matrices.of_lane.iter().enumerate() {
+            let Lane { weighted, scale } = &self.lanes[at];
+            let mut column = vec![0.0; n];
+            for ((site, weight), row) in self.samples.sites.iter().zip(weighted.chunks_exact(n.max(1))) {
+                let factor = weight.sqrt() * source(site, lane);
+                column.iter_mut().zip(row).for_each(|(sum, e)| *sum += factor * e);
+            }
+            column.iter_mut().zip(scale).for_each(|(b, scale)| *b *= scale);
+            sums.set_lane(lane, &column);
+        }
+        sums
+    }
+
+    /// The projection of H x_h.
+    fn irradiance(&self, _: &Source, x: &MultiVector<f64>) -> MultiVector<f64> {
+        let lanes = self.equation.lanes();
+        let at_samples = MultiVector::from_fn(self.samples.sites.len(), lanes, |s, lane| {
+            let row = self.samples.row(s).iter().enumerate();
+            row.map(|(j, h)| h * x.row(j)[lane]).sum()
+        });
+        let starts = self.first_samples();
+        projection(&self.space, &self.mass, lanes, &|site, at, lane| {
+            at_samples.row(starts[site.element] + at)[lane]
+        })
+    }
+
+    fn value(&self, _: &Source, x: &MultiVector<f64>, site: &Site, lane: usize) -> f64 {
+        self.space.value(x, lane, site.element, site.u, site.v)
+    }
+}
+
+impl Residual<'_> {
+    /// Index of the first sample of every element.
+    fn first_samples(&self) -> Vec<usize> {
+        let mut starts = vec![0; self.space.surface().len()];
+        for (s, (site, _)) in self.samples.sites.iter().enumerate().rev() {
+            starts[site.element] = s;
+        }
+        starts
+    }
+}
