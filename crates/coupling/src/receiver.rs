@@ -13,7 +13,7 @@ use crate::polygon::{HalfSpace, clip};
 use fredholm_linop::{LinopError, PackedSymmetric};
 use fredholm_mesh::{Bounds, MeshError, Patch, Vec3};
 use fredholm_visibility::Occluders;
-use fredholm_visibility::body::{Bodies, Body};
+use fredholm_visibility::body::{Bodies, Body, Screen};
 use rayon::prelude::*;
 use std::ops::ControlFlow;
 
@@ -119,8 +119,9 @@ impl Sight {
         }
         let shaft = occluders.shaft_from(point, patch);
         let reaches = |body: &&Body| shaft.as_ref().is_some_and(|shaft| occluders.reaches(body, shaft));
-        let between: Vec<&Body> = bodies.as_slice().iter().filter(reaches).collect();
-        let hidden = self.hiding.hidden_factor(point, normal, &self.target, &between, bodies.tolerance());
+        let screen = |body| Screen::new(body, &[point], &self.target, bodies.tolerance());
+        let between: Vec<Screen> = bodies.as_slice().iter().filter(reaches).map(screen).collect();
+        let hidden = self.hiding.hidden_factor(point, normal, &self.target, &between);
         let whole = point_to_polygon(normal, self.target.iter().map(|&x| x - point));
         (whole - hidden).max(0.0)
     }

@@ -120,3 +120,27 @@ fn a_glimpse_past_a_block_is_not_lost() {
         assert!(worst < stated && worst < 2.0 * tolerance);
     }
 }
+
+/// Groups of patches decide together what stands between their members; the pairs must come out as if each was asked alone.
+#[test]
+fn the_assembly_has_the_exchanges_of_the_pairs() {
+    let mut builder = MeshBuilder::default();
+    builder.surface("walls", 0);
+    add_box(&mut builder, Vec3::ZERO, v(3.0, 2.0, 1.5), 4, true);
+    builder.surface("blocks", 0);
+    for (min, max) in [([0.4, 0.3, 0.0], [0.9, 0.9, 0.7]), ([1.6, 0.8, 0.3], [2.2, 1.2, 1.0])] {
+        add_box(&mut builder, Vec3::from(min), Vec3::from(max), 2, false);
+    }
+    let mesh = builder.build();
+    let (assembled, _) = solve(&mesh, 1e-3);
+    assert!(assembled.methods.clipped > 500 && assembled.methods.hidden > 500, "{:?}", assembled.methods);
+    with_integrator(&mesh, 1e-3, |pairs| {
+        let mut work = fredholm_coupling::form_factor::Workspace::default();
+        for i in 0..pairs.len() {
+            for (j, &entry) in assembled.matrix.packed_row(i)[..i].iter().enumerate() {
+                let alone = pairs.exchange(i, j, &mut work);
+                assert!((entry - alone.value).abs() <= alone.error + 1e-7, "{i} {j}: {entry} {alone:?}");
+            }
+        }
+    });
+}

@@ -7,7 +7,7 @@
 //! of three edges are curves and not listed.
 
 use fredholm_mesh::Vec3;
-use fredholm_visibility::body::Body;
+use fredholm_visibility::body::Screen;
 
 /// Squared sine below which a corner and an edge span no plane.
 const SLIM: f64 = 1e-24;
@@ -15,17 +15,17 @@ const SLIM: f64 = 1e-24;
 /// A plane n·x = c with a unit normal.
 pub(crate) type Plane = (Vec3, f64);
 
-/// Lists the planes of the events of `bodies` before `target` that cut the `source` polygon, those of single bodies first. Lengths below `flat` (m) count as 0.
+/// Lists the planes of the events of `screens` before `target` that cut the `source` polygon, those of single bodies first. Lengths below `flat` (m) count as 0.
 pub(crate) fn critical_planes(
     source: &[Vec3],
     target: &[Vec3],
-    bodies: &[&Body],
+    screens: &[Screen],
     flat: f64,
     found: &mut Vec<Plane>,
 ) {
     found.clear();
     let mut search = Search { source, target, flat, found };
-    let outlines: Vec<Outline> = bodies.iter().map(|body| search.outline(body)).collect();
+    let outlines: Vec<Outline> = screens.iter().map(|screen| search.outline(screen)).collect();
     let whole = Outline { corners: target.to_vec(), edges: sides(target).collect() };
     for outline in &outlines {
         search.events(outline, &whole, false);
@@ -55,23 +55,18 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The edges of a body that are in its outline from some point of the source. Faces that turn edge-on are events themselves.
-    fn outline(&mut self, body: &Body) -> Outline {
-        let lit: Vec<Lit> = body.faces().iter().map(|face| self.lit(|x| face.height(x))).collect();
-        for (face, _) in body.faces().iter().zip(&lit).filter(|(_, lit)| **lit == Lit::Partly) {
+    /// The edges of a body that may cut the target. Faces that turn edge-on are events themselves.
+    fn outline(&mut self, screen: &Screen) -> Outline {
+        for face in screen.turning() {
             self.add((face.normal, face.offset));
         }
-        let mut shown = vec![false; body.corners().len()];
-        let mut edges = Vec::with_capacity(body.edges().len());
-        for edge in body.edges() {
-            let [left, right] = edge.faces.map(|face| lit[face as usize]);
-            if left != right || left == Lit::Partly {
-                edge.ends.iter().for_each(|&k| shown[k as usize] = true);
-                edges.push(body.ends(edge));
+        let mut corners: Vec<Vec3> = Vec::with_capacity(screen.edges().len() + 1);
+        for &end in screen.edges().iter().flatten() {
+            if !corners.contains(&end) {
+                corners.push(end);
             }
         }
-        let corners = body.corners().iter().zip(shown).filter(|(_, shown)| *shown).map(|(&x, _)| x).collect();
-        Outline { corners, edges }
+        Outline { corners, edges: screen.edges().to_vec() }
     }
 
     /// Events where the outline `near` lines up with `far` behind it. Those of two bodies matter only in front of the target.
@@ -96,6 +91,12 @@ impl Search<'_> {
         meeting: impl Fn(Vec3, Vec3) -> (f64, f64),
         order: impl Fn(f64) -> bool,
     ) {
+        // Most planes miss the source, which their signs tell.
+        let across = (b - a).cross(corner - a);
+        let (low, high) = range(self.source, |x| across.dot(x - a));
+        if low >= 0.0 || high <= 0.0 {
+            return;
+        }
         let Some(plane) = spanned(corner, a, b) else { return };
         let Some(chord) = self.chord(plane) else { return };
         let height = |x: Vec3| plane.0.dot(x) - plane.1;
@@ -151,16 +152,20 @@ enum Lit {
 }
 
 fn lit(corners: &[Vec3], flat: f64, height: impl Fn(Vec3) -> f64) -> Lit {
-    let (mut low, mut high) = (0.0f64, 0.0f64);
-    for &x in corners {
-        let height = height(x);
-        (low, high) = (low.min(height), high.max(height));
-    }
+    let (low, high) = range(corners, height);
     match (high > flat, low < -flat) {
         (true, true) => Lit::Partly,
         (true, false) => Lit::Wholly,
         _ => Lit::Never,
     }
+}
+
+/// The least and the largest of the heights.
+fn range(corners: &[Vec3], height: impl Fn(Vec3) -> f64) -> (f64, f64) {
+    corners.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| {
+        let height = height(x);
+        (low.min(height), high.max(height))
+    })
 }
 
 fn spanned(v: Vec3, a: Vec3, b: Vec3) -> Option<Plane> {

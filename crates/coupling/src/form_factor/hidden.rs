@@ -9,7 +9,7 @@ use super::pieces::{Piece, Pieces};
 use super::shadow::{Cutter, Hiding, PolygonList};
 use fredholm_mesh::Vec3;
 use fredholm_quadrature::Estimate;
-use fredholm_visibility::body::Body;
+use fredholm_visibility::body::Screen;
 use std::f64::consts::FRAC_1_PI;
 
 /// Error of a cell by its centroid over the bend of the hidden part.
@@ -27,7 +27,7 @@ pub(crate) struct Occluded<'a> {
     pub target: &'a [Vec3],
     /// Normal of the target.
     pub facing: Vec3,
-    pub bodies: &'a [&'a Body],
+    pub screens: &'a [Screen<'a>],
     /// Heights up to which a point lies on a face, m.
     pub tolerance: f64,
 }
@@ -35,7 +35,7 @@ pub(crate) struct Occluded<'a> {
 impl Occluded<'_> {
     /// The form factor h(x).
     fn hidden(&self, x: Vec3, hiding: &mut Hiding) -> f64 {
-        hiding.hidden_factor(x, self.normal, self.target, self.bodies, self.tolerance)
+        hiding.hidden_factor(x, self.normal, self.target, self.screens)
     }
 }
 
@@ -65,9 +65,7 @@ pub(crate) fn hidden_exchange(scene: &Occluded, goal: f64, work: &mut HiddenWork
     }
     let mut pieces =
         Pieces::new(|x| scene.hidden(x, &mut work.hiding), |x| steep.distance(x), &mut work.pieces);
-    for cell in work.cells.iter() {
-        (2..cell.len()).for_each(|k| pieces.add([cell[0], cell[k - 1], cell[k]], SMALL * goal));
-    }
+    work.cells.iter().for_each(|cell| pieces.add(cell, SMALL * goal));
     pieces.integrate(goal)
 }
 
@@ -82,7 +80,8 @@ impl Steep {
         let lies = |x: Vec3| height(x).abs() <= scene.tolerance;
         let on_source =
             |[a, b]: [Vec3; 2]| if lies(a) && lies(b) { vec![[a, a], [b, b]] } else { vec![[a, b]] };
-        let edges = scene.bodies.iter().flat_map(|body| body.edges().iter().map(|edge| body.ends(edge)));
+        let bodies = scene.screens.iter().map(Screen::body);
+        let edges = bodies.flat_map(|body| body.edges().iter().map(|edge| body.ends(edge)));
         Self { edges: edges.flat_map(on_source).collect() }
     }
 
@@ -100,7 +99,7 @@ impl Steep {
 /// Cuts the source along its critical lines.
 fn cut(scene: &Occluded, work: &mut HiddenWork) {
     let flat = scene.tolerance;
-    critical_planes(scene.source, scene.target, scene.bodies, flat, &mut work.planes);
+    critical_planes(scene.source, scene.target, scene.screens, flat, &mut work.planes);
     work.cells.clear();
     work.cells.push_with(|corners| corners.extend_from_slice(scene.source));
     for &(n, c) in work.planes.iter().take(LINES) {
@@ -120,14 +119,18 @@ struct Scale {
 impl Scale {
     fn of(scene: &Occluded, steep: &Steep) -> Self {
         let ((_, from), (target, to)) = (centroid(scene.source), centroid(scene.target));
-        let radius = |corners: &[Vec3], centre: Vec3| corners.iter().map(|x| x.distance(centre)).fold(0.0, f64::max);
+        let radius =
+            |corners: &[Vec3], centre: Vec3| corners.iter().map(|x| x.distance(centre)).fold(0.0, f64::max);
         let [own, other] = [radius(scene.source, from), radius(scene.target, to)];
         let far = from.distance(to);
         let near = (far - own - other).max((from - to).dot(scene.facing).abs() - own).max(0.0);
         let body = (steep.distance(from) - own).max(0.0);
         let kernel = FRAC_1_PI / (near * near);
         let magnified = (far + other) / body;
-        Self { bend: (magnified * magnified + target / (near * near)) * kernel, most: (target * kernel).min(1.0) }
+        Self {
+            bend: (magnified * magnified + target / (near * near)) * kernel,
+            most: (target * kernel).min(1.0),
+        }
     }
 
     /// Error of a cell by its centroid: on a cell the hidden part is nearly a quadratic function, so that is its bend times the squared radius of gyration.

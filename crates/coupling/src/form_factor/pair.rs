@@ -19,10 +19,13 @@ use crate::polygon::HalfSpace;
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_quadrature::Estimate;
 use fredholm_visibility::Occluders;
-use fredholm_visibility::body::{Bodies, Body, Face, Room, Shadow};
+use fredholm_visibility::body::{Bodies, Body, Face, Room, Screen, Shadow};
 
 /// Bodies up to which exact shadows are cheaper than sampling.
 const FEW: usize = 128;
+
+/// Relative difference of two quantities that count as equal.
+const TIE: f64 = 1e-6;
 
 /// How an exchange was computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -201,8 +204,7 @@ impl<'a> PairIntegrator<'a> {
         match bodies.len() {
             0 => open,
             1..=FEW => {
-                let keep = outer == Outer::First || clearance(a, bodies) >= clearance(b, bodies);
-                let sides = if keep { [a, b] } else { [b, a] };
+                let sides = if outer == Outer::First || clearer(a, b, bodies) { [a, b] } else { [b, a] };
                 self.behind_few(sides, bodies, open, tolerance, work)
             }
             _ => self.behind_many(a, b, open, tolerance),
@@ -241,14 +243,14 @@ impl<'a> PairIntegrator<'a> {
         front(b.patch, a.plane, flat, front_b);
         let tolerance = self.bodies.tolerance();
         let cut: Vec<Option<Body>> = bodies.iter().map(|body| between(body, a, b, tolerance)).collect();
-        let bodies: Vec<&Body> =
-            cut.iter().zip(bodies).map(|(cut, whole)| cut.as_ref().unwrap_or(whole)).collect();
+        let whole = cut.iter().zip(bodies).map(|(cut, whole)| cut.as_ref().unwrap_or(whole));
+        let screens: Vec<Screen> = whole.map(|body| Screen::new(body, front_a, front_b, tolerance)).collect();
         let scene = Occluded {
             source: front_a,
             normal: a.patch.normal(),
             target: front_b,
             facing: b.patch.normal(),
-            bodies: &bodies,
+            screens: &screens,
             tolerance,
         };
         let hidden = hidden_exchange(&scene, goal, &mut work.hidden);
@@ -275,6 +277,17 @@ pub(crate) fn blocks(body: &Body, a: &Patch, b: &Patch, tolerance: f64, room: &m
 
 fn rises(patch: &Patch, plane: HalfSpace, flat: f64) -> bool {
     patch.corners().iter().any(|&x| plane.height(x) > flat)
+}
+
+/// Whether the bodies stand farther from the first patch. Ties are broken by place, so that neither the numbers of the patches nor rounding decide.
+fn clearer(a: Side, b: Side, bodies: &[&Body]) -> bool {
+    let [here, there] = [clearance(a, bodies), clearance(b, bodies)];
+    if (here - there).abs() > TIE * here.abs().max(there.abs()).max(1.0) {
+        return here > there;
+    }
+    let way = a.patch.centroid() - b.patch.centroid();
+    let decides = |coordinate: &f64| coordinate.abs() > TIE * way.length();
+    way.to_array().into_iter().find(decides).is_none_or(|coordinate| coordinate < 0.0)
 }
 
 /// Smallest height of the bodies over a patch, in its diameters.

@@ -6,7 +6,7 @@
 use crate::form_factor::point_to_polygon;
 use crate::polygon::crossing;
 use fredholm_mesh::Vec3;
-use fredholm_visibility::body::{Body, Room, Shadow};
+use fredholm_visibility::body::{Room, Screen, Shadow};
 
 /// Convex polygons stored one behind the other.
 #[derive(Clone, Debug, Default)]
@@ -70,35 +70,40 @@ impl PolygonList {
 /// Buffers of a cut.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Cutter {
-    heights: Vec<f64>,
     inside: Vec<Vec3>,
     outside: Vec<Vec3>,
 }
 
 impl Cutter {
     /// Splits a convex polygon into its parts with n·x ≥ c and ≤ c, which are in `inside` and `outside` only where the plane cuts it.
+    #[inline]
     fn split(&mut self, polygon: &[Vec3], n: Vec3, c: f64, tolerance: f64) -> Cut {
-        self.heights.clear();
-        self.heights.extend(polygon.iter().map(|v| n.dot(*v) - c));
-        let (mut low, mut high) = (-tolerance, tolerance);
-        for &height in &self.heights {
-            low = low.min(height);
-            high = high.max(height);
+        let (mut above, mut below) = (false, false);
+        for corner in polygon {
+            let height = n.dot(*corner) - c;
+            above |= height > tolerance;
+            below |= height < -tolerance;
         }
-        if low >= -tolerance || high <= tolerance {
-            return if high > tolerance { Cut::Inside } else { Cut::Outside };
+        if above && below {
+            self.cut(polygon, |x| n.dot(x) - c, tolerance);
+            return Cut::Both;
         }
+        if above { Cut::Inside } else { Cut::Outside }
+    }
+
+    fn cut(&mut self, polygon: &[Vec3], height: impl Fn(Vec3) -> f64, tolerance: f64) {
         self.inside.clear();
         self.outside.clear();
-        let snapped = |h: f64| if h.abs() <= tolerance { 0.0 } else { h };
-        let last = polygon.len() - 1;
-        let mut from = (polygon[last], snapped(self.heights[last]));
-        for (i, &corner) in polygon.iter().enumerate() {
-            let to = (corner, snapped(self.heights[i]));
+        let with_height = |x: Vec3| {
+            let h = height(x);
+            (x, if h.abs() <= tolerance { 0.0 } else { h })
+        };
+        let mut from = with_height(polygon[polygon.len() - 1]);
+        for &corner in polygon {
+            let to = with_height(corner);
             self.side(from, to);
             from = to;
         }
-        Cut::Both
     }
 
     fn side(&mut self, from: (Vec3, f64), to: (Vec3, f64)) {
@@ -135,33 +140,19 @@ pub(crate) struct Hiding {
 }
 
 impl Hiding {
-    /// Form factor from the point `x` with normal `n` to what `bodies` hide of `target`, which lies in front of the point.
-    pub(crate) fn hidden_factor(
-        &mut self,
-        x: Vec3,
-        n: Vec3,
-        target: &[Vec3],
-        bodies: &[&Body],
-        tolerance: f64,
-    ) -> f64 {
-        let Some((last, others)) = bodies.split_last() else { return 0.0 };
-        let hidden = self.hide(x, n, target, others, tolerance);
+    /// Form factor from the point `x` with normal `n` to what `screens` hide of `target`, which lies in front of the point.
+    pub(crate) fn hidden_factor(&mut self, x: Vec3, n: Vec3, target: &[Vec3], screens: &[Screen]) -> f64 {
+        let Some((last, others)) = screens.split_last() else { return 0.0 };
+        let hidden = self.hide(x, n, target, others);
         // After the last body nobody asks for what is left.
-        hidden + self.behind(last, x, n, tolerance, false)
+        hidden + self.behind(last, x, n, false)
     }
 
     /// As [`hidden_factor`](Self::hidden_factor), and leaves what is seen in [`visible`](Self::visible).
-    pub(crate) fn hide(
-        &mut self,
-        x: Vec3,
-        n: Vec3,
-        target: &[Vec3],
-        bodies: &[&Body],
-        tolerance: f64,
-    ) -> f64 {
+    pub(crate) fn hide(&mut self, x: Vec3, n: Vec3, target: &[Vec3], screens: &[Screen]) -> f64 {
         self.visible.clear();
         self.visible.push_with(|corners| corners.extend(target.iter().map(|&y| y - x)));
-        bodies.iter().map(|body| self.behind(body, x, n, tolerance, true)).sum()
+        screens.iter().map(|screen| self.behind(screen, x, n, true)).sum()
     }
 
     /// What the last point saw: convex polygons, relative to it.
@@ -170,8 +161,8 @@ impl Hiding {
     }
 
     /// Moves what lies in the shadow of a body from the visible pieces to the hidden sum.
-    fn behind(&mut self, body: &Body, x: Vec3, n: Vec3, tolerance: f64, keep: bool) -> f64 {
-        if body.shadow(x, tolerance, &mut self.room) == Shadow::Nothing {
+    fn behind(&mut self, screen: &Screen, x: Vec3, n: Vec3, keep: bool) -> f64 {
+        if screen.shadow(x, &mut self.room) == Shadow::Nothing {
             return 0.0;
         }
         self.next.clear();

@@ -9,14 +9,14 @@ use super::{flat, front, front_of, point_to_polygon};
 use crate::polygon::HalfSpace;
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::Occluders;
-use fredholm_visibility::body::{Bodies, Body};
+use fredholm_visibility::body::{Bodies, Screen};
 
 /// What points of one patch see of another. Buffers are kept between pairs and points.
 #[derive(Clone, Debug)]
 pub struct VisibleParts<'a> {
     occluders: &'a Occluders,
     bodies: &'a Bodies,
-    between: Vec<&'a Body>,
+    between: Vec<Screen<'a>>,
     target: Vec<Vec3>,
     hiding: Hiding,
     behind: Option<HalfSpace>,
@@ -50,8 +50,10 @@ impl<'a> VisibleParts<'a> {
         let shaft = self.occluders.shaft_between(from, to).filter(|_| faces && self.target.len() >= 3);
         self.between.clear();
         if let Some(shaft) = &shaft {
-            let reaches = |body: &&Body| self.occluders.reaches(body, shaft);
-            self.between.extend(self.bodies.as_slice().iter().filter(reaches));
+            let tolerance = self.bodies.tolerance();
+            let reaching = self.bodies.as_slice().iter().filter(|body| self.occluders.reaches(body, shaft));
+            let screens = reaching.map(|body| Screen::new(body, from.corners(), &self.target, tolerance));
+            self.between.extend(screens);
         }
         shaft.is_some()
     }
@@ -72,7 +74,7 @@ impl<'a> VisibleParts<'a> {
     pub fn factor(&mut self, p: Vec3) -> f64 {
         let front = self.behind.is_some_and(|plane| plane.height(p) > self.flat);
         let target = if front { &self.target[..] } else { &[] };
-        self.hiding.hide(p, self.normal, target, &self.between, self.bodies.tolerance());
+        self.hiding.hide(p, self.normal, target, &self.between);
         self.parts().map(|part| point_to_polygon(self.normal, part.iter().copied())).sum()
     }
 

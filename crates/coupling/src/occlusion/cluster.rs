@@ -149,7 +149,7 @@ impl Builder<'_> {
         }
         let corners = || order.iter().flat_map(|&k| self.patch(k).corners());
         if planes == 1
-            && let Some(rectangle) = self.rectangle(self.patch(order[0]), corners())
+            && let Some(rectangle) = rectangle(self.patch(order[0]), &corners)
         {
             return (Bound::Flat(rectangle), 0.5 * rectangle.diameter());
         }
@@ -157,17 +157,18 @@ impl Builder<'_> {
         let high = corners().fold(Vec3::NEG_INFINITY, |high, &x| high.max(x));
         (Bound::Box([low, high]), 0.5 * low.distance(high))
     }
+}
 
-    fn rectangle<'a>(&self, first: &Patch, corners: impl Iterator<Item = &'a Vec3> + Clone) -> Option<Patch> {
-        let origin = first.corner(0);
-        let u = (first.corner(1) - origin).normalize();
-        let v = first.normal().cross(u);
-        let range = |axis: Vec3| {
-            let places = || corners.clone().map(|&x| (x - origin).dot(axis));
-            [places().fold(f64::INFINITY, f64::min), places().fold(f64::NEG_INFINITY, f64::max)]
-        };
-        let ([u0, u1], [v0, v1]) = (range(u), range(v));
-        let at = |s: f64, t: f64| origin + u * s + v * t;
-        Patch::quad([at(u0, v0), at(u1, v0), at(u1, v1), at(u0, v1)]).ok().flatten()
-    }
+/// A rectangle in the plane of a patch round some corners.
+fn rectangle<'a, I: Iterator<Item = &'a Vec3>>(first: &Patch, corners: &impl Fn() -> I) -> Option<Patch> {
+    let origin = first.corner(0);
+    let u = (first.corner(1) - origin).normalize();
+    let v = first.normal().cross(u);
+    let range = |axis: Vec3| {
+        let places = corners().map(|&x| (x - origin).dot(axis));
+        places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+    };
+    let ([u0, u1], [v0, v1]) = (range(u), range(v));
+    let at = |s: f64, t: f64| origin + u * s + v * t;
+    Patch::quad([at(u0, v0), at(u1, v0), at(u1, v1), at(u0, v1)]).ok().flatten()
 }

@@ -9,7 +9,7 @@ use super::cluster::{Bound, Clusters, Node};
 use crate::form_factor::blocks;
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::Occluders;
-use fredholm_visibility::body::{Bodies, Room};
+use fredholm_visibility::body::{Bodies, Body, Room};
 use std::ops::Range;
 
 /// What the walk asks about.
@@ -70,7 +70,9 @@ impl Walker<'_> {
         } else if places.start >= self.first && places.end <= self.end {
             self.within(other, bodies);
         } else if let Some(children) = self.node(other).children {
-            children.into_iter().for_each(|child| self.against(panel, child, bodies.clone()));
+            for child in children {
+                self.against(panel, child, bodies.clone());
+            }
         }
     }
 
@@ -98,38 +100,39 @@ impl Walker<'_> {
 
     /// Appends the bodies that matter to the stack.
     fn between(&mut self, a: usize, b: usize, bodies: Range<usize>) -> Seen {
-        let (a, b) = (&self.sight.clusters.nodes[a], &self.sight.clusters.nodes[b]);
-        let Sight { occluders, bodies: all, .. } = *self.sight;
-        let all = all.as_slice();
         let start = self.stack.len();
-        match (&a.bound, &b.bound) {
-            (Bound::Flat(p), Bound::Flat(q)) => {
-                let Some(shaft) = occluders.shaft_between(p, q) else { return Seen::Nothing };
-                for k in bodies {
-                    let body = self.stack[k];
-                    if occluders.reaches(&all[body as usize], &shaft) {
-                        self.stack.push(body);
-                    }
-                }
-                let tolerance = self.sight.bodies.tolerance();
-                if self.stack[start..]
-                    .iter()
-                    .any(|&k| blocks(&all[k as usize], p, q, tolerance, &mut self.room))
-                {
-                    return Seen::Nothing;
-                }
-            }
-            _ => {
-                let around = hull(&a.bound, &b.bound);
-                for k in bodies {
-                    let body = self.stack[k];
-                    if meets(around, all[body as usize].corners()) {
-                        self.stack.push(body);
-                    }
-                }
+        let nodes = &self.sight.clusters.nodes;
+        let blocked = if let (Bound::Flat(p), Bound::Flat(q)) = (&nodes[a].bound, &nodes[b].bound) {
+            self.between_rectangles(p, q, bodies)
+        } else {
+            let around = hull(&nodes[a].bound, &nodes[b].bound);
+            self.keep(bodies, |body| meets(around, body.corners()));
+            false
+        };
+        match (blocked, self.stack.len() == start) {
+            (true, _) => Seen::Nothing,
+            (false, true) => Seen::All,
+            (false, false) => Seen::Part,
+        }
+    }
+
+    /// Whether nothing of one rectangle is seen from the other.
+    fn between_rectangles(&mut self, p: &Patch, q: &Patch, bodies: Range<usize>) -> bool {
+        let Sight { occluders, bodies: all, .. } = *self.sight;
+        let start = self.stack.len();
+        let Some(shaft) = occluders.shaft_between(p, q) else { return true };
+        self.keep(bodies, |body| occluders.reaches(body, &shaft));
+        let mut reaching = self.stack[start..].iter().map(|&k| &all.as_slice()[k as usize]);
+        reaching.any(|body| blocks(body, p, q, all.tolerance(), &mut self.room))
+    }
+
+    fn keep(&mut self, bodies: Range<usize>, matters: impl Fn(&Body) -> bool) {
+        for k in bodies {
+            let body = self.stack[k];
+            if matters(&self.sight.bodies.as_slice()[body as usize]) {
+                self.stack.push(body);
             }
         }
-        if self.stack.len() == start { Seen::All } else { Seen::Part }
     }
 
     fn emit(&mut self, a: usize, b: usize) {
@@ -146,7 +149,9 @@ impl Walker<'_> {
         match (halves(self.node(a)), halves(self.node(b))) {
             (None, None) => self.leave(a, b, bodies),
             (Some(parts), other) if larger_first || other.is_none() => {
-                parts.into_iter().for_each(|part| self.pair(part, b, bodies.clone()));
+                for part in parts {
+                    self.pair(part, b, bodies.clone());
+                }
             }
             (_, Some(parts)) => parts.into_iter().for_each(|part| self.pair(a, part, bodies.clone())),
             (Some(_), None) => {}

@@ -8,7 +8,7 @@ use super::{Body, Edge, Face};
 
 impl Body {
     /// The part at heights ≥ 0 over `plane`, or `None` where that is the whole body. Heights of at most `tolerance` (m) count as 0. A body of which
-    /// nothing is in front keeps no corner.
+    /// nothing is in front keeps no edge and hides nothing.
     #[must_use]
     pub fn in_front(&self, plane: &Face, tolerance: f64) -> Option<Self> {
         let snapped = |h: f64| if h.abs() <= tolerance { 0.0 } else { h };

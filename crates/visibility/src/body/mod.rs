@@ -8,6 +8,7 @@ mod bodies;
 mod clip;
 mod coplanar;
 mod outline;
+mod screen;
 mod solid;
 mod weld;
 
@@ -16,6 +17,7 @@ use fredholm_mesh::Vec3;
 use crate::frame::Frame;
 pub use bodies::Bodies;
 pub use outline::{Room, Shadow};
+pub use screen::Screen;
 
 /// A plane n·x = c with a unit normal.
 #[derive(Clone, Copy, Debug, PartialEq)]

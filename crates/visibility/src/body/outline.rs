@@ -10,7 +10,7 @@ pub(super) const FACES: usize = 64;
 /// What a body hides from a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shadow {
-    /// Nothing: the point lies in the plane of a flat body.
+    /// Nothing: the point lies in the plane of a flat body, or nothing is left of the body.
     Nothing,
     /// What lies in a [`Room`].
     Room,
@@ -29,16 +29,21 @@ impl Room {
         &self.planes
     }
 
+    pub(super) fn clear(&mut self) {
+        self.planes.clear();
+    }
+
+    /// Adds a half-space; a plane without direction bounds nothing.
+    pub(super) fn push(&mut self, normal: Vec3, offset: f64) {
+        if normal != Vec3::ZERO {
+            self.planes.push((normal, offset));
+        }
+    }
+
     /// Whether all of the points, relative to x, lie inside.
     #[must_use]
     pub fn holds(&self, points: &[Vec3]) -> bool {
         self.planes.iter().all(|(n, c)| points.iter().all(|y| n.dot(*y) > *c))
-    }
-
-    /// Whether one of the half-spaces has all of the points outside.
-    #[must_use]
-    pub fn misses(&self, points: &[Vec3]) -> bool {
-        self.planes.iter().any(|(n, c)| points.iter().all(|y| n.dot(*y) <= *c))
     }
 }
 
@@ -46,7 +51,10 @@ impl Body {
     /// What the body hides from `x`; where that is a room, `room` holds it. Heights of at most `tolerance` (m) over a face count as none: a point of the
     /// surface does not shade itself.
     pub fn shadow(&self, x: Vec3, tolerance: f64, room: &mut Room) -> Shadow {
-        room.planes.clear();
+        room.clear();
+        if self.edges.is_empty() {
+            return Shadow::Nothing;
+        }
         let lit = self.behind(x, tolerance, room);
         if lit == 0 {
             // From a point of a solid, all that lies behind the faces at that point is seen through the solid.
@@ -54,7 +62,7 @@ impl Body {
             return if self.solid { Shadow::Room } else { Shadow::Nothing };
         }
         let outline = self.edges.iter().filter_map(|edge| self.inward(edge, x, lit));
-        room.planes.extend(outline.map(|inward| (inward, 0.0)));
+        outline.for_each(|inward| room.push(inward, 0.0));
         Shadow::Room
     }
 
@@ -65,7 +73,7 @@ impl Body {
             let height = face.height(x);
             if height > least {
                 lit |= 1 << k;
-                room.planes.push((-face.normal, height));
+                room.push(-face.normal, height);
             }
         }
         lit
@@ -79,7 +87,6 @@ impl Body {
         }
         let [a, b] = self.ends(edge).map(|end| end - x);
         // Counter-clockwise round a face that looks at x, the inside is to the left.
-        let inward = if left == 1 { b.cross(a) } else { a.cross(b) };
-        (inward != Vec3::ZERO).then_some(inward)
+        Some(if left == 1 { b.cross(a) } else { a.cross(b) })
     }
 }

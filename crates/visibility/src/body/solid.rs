@@ -31,7 +31,9 @@ pub(super) fn solid(points: &[Vec3], polygons: &[&Polygon], tolerance: f64, fram
     edges.extend(open.iter().map(|&(side, face)| Edge { ends: side, faces: [face, lid.unwrap_or(face)] }));
     let convex = faces.iter().all(|face| bounds(face, &corners, tolerance));
     let place = |k: u32| numbers.binary_search(&k).unwrap_or_default() as u32;
-    edges.iter_mut().for_each(|edge| edge.ends = edge.ends.map(place));
+    for edge in &mut edges {
+        edge.ends = edge.ends.map(place);
+    }
     convex.then(|| Solid { body: Body::new(corners, faces, edges, frame), lid })
 }
 

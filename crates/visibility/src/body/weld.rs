@@ -1,6 +1,6 @@
 //! Corners with the same coordinates get the same number.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use fredholm_mesh::{Patch, Vec3};
 
@@ -36,14 +36,14 @@ pub(super) fn undirected([a, b]: [u32; 2]) -> [u32; 2] {
 /// The corners of all patches, each once, and the patches as polygons; a patch that repeats another, or its back, is left out.
 pub(super) fn weld(patches: &[Patch]) -> (Vec<Vec3>, Vec<Polygon>) {
     let (mut numbers, mut points) = (HashMap::new(), Vec::new());
-    let mut seen = HashMap::new();
+    let mut seen = HashSet::new();
     let mut polygons = Vec::with_capacity(patches.len());
     for patch in patches {
         let corners: Vec<u32> =
             patch.corners().iter().map(|&x| number(x, &mut numbers, &mut points)).collect();
         let mut sorted = corners.clone();
         sorted.sort_unstable();
-        if seen.insert(sorted, ()).is_none() {
+        if seen.insert(sorted) {
             polygons.push(Polygon { corners, normal: patch.normal(), area: patch.area() });
         }
     }

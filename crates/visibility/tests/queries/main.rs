@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod batches;
+mod bodies;
 mod integer;
 mod leaks;
 mod limits;

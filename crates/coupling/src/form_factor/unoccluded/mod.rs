@@ -40,6 +40,9 @@ use survey::{Survey, survey};
 /// Rounding of a sum of points, in units of the last place of the value.
 const ROUNDING: f64 = 16.0;
 
+/// Rounding of the logarithms at the edges of other shapes, over the product of the circumferences: four nodes share one logarithm, which is small.
+const EDGES: f64 = 1.0 / 64.0;
+
 /// Computes exchanges between patches of one scene that see each other wholly.
 #[derive(Debug)]
 pub struct Unoccluded<'a> {
@@ -197,7 +200,7 @@ impl Row<'_> {
     fn rounding(&self, j: u32, value: f64) -> f64 {
         let patches = &self.all.patches;
         let circumference = |k: u32| patches.slenderness[k as usize] * patches.area[k as usize];
-        f64::EPSILON * (ROUNDING * value.abs() + circumference(self.i) * circumference(j))
+        f64::EPSILON * (ROUNDING * value.abs() + EDGES * circumference(self.i) * circumference(j))
     }
 
     /// A_i F_ij of a block in squared units, lower index first.

@@ -1,0 +1,113 @@
+//! A body between a source and a target polygon: what of its outline can matter there.
+//!
+//! det(a − x, b − x, y − x) is affine in x and in y. An edge a b that has all corners y of the target on its inner side from all corners x of the source has so from all
+//! points of the source: it never cuts the target. Faces that look at all of the source or at none of it need no second look either.
+
+use fredholm_mesh::Vec3;
+
+use super::{Body, Edge, Face, Room, Shadow};
+
+/// A body as points of one polygon see it before another.
+#[derive(Clone, Debug)]
+pub struct Screen<'a> {
+    body: &'a Body,
+    /// Edges that may cut the target, m.
+    edges: Vec<[Vec3; 2]>,
+    /// Faces whose planes pass through the source.
+    turning: Vec<Face>,
+    /// Faces that look at all of the source and do not have all of the target behind them, where the outline is the same from everywhere.
+    front: Option<Vec<Face>>,
+    tolerance: f64,
+}
+
+/// Which points a face looks at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Looks {
+    All,
+    Some,
+    None,
+}
+
+impl<'a> Screen<'a> {
+    /// Prepares `body` between two polygons. Heights of at most `tolerance` (m) over a face count as none.
+    #[must_use]
+    pub fn new(body: &'a Body, source: &[Vec3], target: &[Vec3], tolerance: f64) -> Self {
+        let mut looks = [Looks::None; super::outline::FACES];
+        for (looks, face) in looks.iter_mut().zip(&body.faces) {
+            *looks = looks_at(face, source, tolerance);
+        }
+        let some = |at: Looks| {
+            body.faces.iter().zip(looks).filter(move |(_, looks)| *looks == at).map(|(face, _)| *face)
+        };
+        let turning: Vec<Face> = some(Looks::Some).collect();
+        let fixed = turning.is_empty() && some(Looks::All).next().is_some() && !body.edges.is_empty();
+        let ahead = |face: &Face| target.iter().any(|&y| face.height(y) > 0.0);
+        let front = fixed.then(|| some(Looks::All).filter(ahead).collect());
+        let mut screen = Self { body, edges: Vec::with_capacity(8), turning, front, tolerance };
+        for edge in &body.edges {
+            screen.consider(edge, edge.faces.map(|face| looks[face as usize]), source, target);
+        }
+        screen
+    }
+
+    fn consider(&mut self, edge: &Edge, [left, right]: [Looks; 2], source: &[Vec3], target: &[Vec3]) {
+        if left == right && left != Looks::Some {
+            return;
+        }
+        let [a, b] = self.body.ends(edge);
+        // Counter-clockwise round a face that looks at x, the inside is to the left.
+        let ends = if left == Looks::All || right == Looks::None { [b, a] } else { [a, b] };
+        let cuts = |x: &Vec3| {
+            let inward = (ends[0] - *x).cross(ends[1] - *x);
+            target.iter().any(|y| inward.dot(*y - *x) < 0.0)
+        };
+        if self.front.is_none() || source.iter().any(cuts) {
+            self.edges.push(ends);
+        }
+    }
+
+    /// The edges that may cut the target from some point of the source, m.
+    #[must_use]
+    pub fn edges(&self) -> &[[Vec3; 2]] {
+        &self.edges
+    }
+
+    /// The faces whose planes pass through the source.
+    #[must_use]
+    pub fn turning(&self) -> &[Face] {
+        &self.turning
+    }
+
+    /// The body.
+    #[must_use]
+    pub fn body(&self) -> &Body {
+        self.body
+    }
+
+    /// What of the target is hidden from a point `x` of the source; where that is a room, `room` holds it.
+    pub fn shadow(&self, x: Vec3, room: &mut Room) -> Shadow {
+        let Some(front) = &self.front else { return self.body.shadow(x, self.tolerance, room) };
+        room.clear();
+        for face in front {
+            room.push(-face.normal, face.height(x));
+        }
+        for [a, b] in &self.edges {
+            room.push((*a - x).cross(*b - x), 0.0);
+        }
+        Shadow::Room
+    }
+}
+
+fn looks_at(face: &Face, points: &[Vec3], tolerance: f64) -> Looks {
+    let (mut some, mut all) = (false, true);
+    for &x in points {
+        let looks = face.height(x) > tolerance;
+        some |= looks;
+        all &= looks;
+    }
+    match (some, all) {
+        (_, true) => Looks::All,
+        (true, false) => Looks::Some,
+        _ => Looks::None,
+    }
+}
