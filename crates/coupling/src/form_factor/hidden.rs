@@ -14,7 +14,7 @@ use std::f64::consts::FRAC_1_PI;
 
 /// Error of a cell by its centroid over the bend of the hidden part.
 const BEND: f64 = 0.04;
-/// Area over the goal below which a part of the source is not cut further for being close to a body.
+/// Largest exchange of a part of the source, over the goal, below which a part of the source is not cut further for being close to a body.
 const SMALL: f64 = 0.05;
 /// Critical lines along which the source is cut at most: the cells grow with their square.
 const LINES: usize = 40;
@@ -65,7 +65,7 @@ pub(crate) fn hidden_exchange(scene: &Occluded, goal: f64, work: &mut HiddenWork
     }
     let mut pieces =
         Pieces::new(|x| scene.hidden(x, &mut work.hiding), |x| steep.distance(x), &mut work.pieces);
-    work.cells.iter().for_each(|cell| pieces.add(cell, SMALL * goal));
+    work.cells.iter().for_each(|cell| pieces.add(cell, SMALL * goal / scale.most));
     pieces.integrate(goal)
 }
 
