@@ -15,7 +15,7 @@ use std::f64::consts::FRAC_1_PI;
 /// Error of a cell by its centroid over the bend of the hidden part.
 const BEND: f64 = 0.04;
 /// Largest exchange of a part of the source, over the goal, below which a part of the source is not cut further for being close to a body.
-const SMALL: f64 = 2.0;
+const SMALL: f64 = 20.0;
 /// Critical lines along which the source is cut at most: the cells grow with their square.
 const LINES: usize = 40;
 
