@@ -44,11 +44,29 @@ impl Lit<'_> {
     /// Integrates H B_h over all elements: what [`error`](Self::error) gives, and more for the same cost.
     #[must_use]
     pub fn assess(&self) -> Assessment {
-        let (space, bands) = (self.system.space(), self.x.lanes());
-        let (coefficients, rules) = (self.irradiance(), Rules::gauss(space.degree() + POINTS));
-        let integrate = |i| self.integrals(&coefficients, &rules, i);
-        let found: Vec<Integrals> = (0..space.surface().len()).into_par_iter().map(integrate).collect();
-        let relative_l2 = (0..bands).map(|band| relative(&found, band)).collect();
+        let integrals = self.integrator();
+        let elements = 0..self.system.space().surface().len();
+        self.assessment(&elements.into_par_iter().map(integrals).collect::<Vec<_>>())
+    }
+
+    /// The same while `go_on` says so, which is asked before each element from any thread; `None` where it did not.
+    #[must_use]
+    pub fn assess_while(&self, go_on: &(dyn Fn() -> bool + Sync)) -> Option<Assessment> {
+        let integrals = self.integrator();
+        let elements = 0..self.system.space().surface().len();
+        let wanted = |i| go_on().then(|| integrals(i));
+        let found: Option<Vec<_>> = elements.into_par_iter().map(wanted).collect();
+        found.map(|found| self.assessment(&found))
+    }
+
+    fn integrator(&self) -> impl Fn(usize) -> Integrals + Sync {
+        let (coefficients, rules) = (self.irradiance(), Rules::gauss(self.system.space().degree() + POINTS));
+        move |i| self.integrals(&coefficients, &rules, i)
+    }
+
+    fn assessment(&self, found: &[Integrals]) -> Assessment {
+        let bands = self.x.lanes();
+        let relative_l2 = (0..bands).map(|band| relative(found, band)).collect();
         let root = |i: usize, band: usize| (found[i].error[band] / found[i].area).sqrt();
         let per_element = MultiVector::from_fn(found.len(), bands, root);
         let mean = |i: usize, band: usize| found[i].value[band] / found[i].area;
