@@ -12,7 +12,17 @@ fn help(arguments: &[&str]) -> String {
 #[test]
 fn every_verb_explains_itself() {
     insta::assert_snapshot!("help", help(&["--help"]));
-    for verb in ["solve", "check", "viewfactors", "info", "schema", "completions", "solvers"] {
+    for verb in [
+        "solve",
+        "check",
+        "converge",
+        "viewfactors",
+        "info",
+        "schema",
+        "completions",
+        "solvers",
+        "discretisations",
+    ] {
         insta::assert_snapshot!(format!("help-{verb}"), help(&[verb, "--help"]));
     }
 }

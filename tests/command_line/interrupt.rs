@@ -13,8 +13,13 @@ const PROMPT: Duration = Duration::from_millis(1500);
 
 /// Starts a solution and waits until it has begun a stage.
 fn solving(bench: &Bench, arguments: &[&str], stage: &str) -> Child {
+    running(bench, &[&["solve", "scene.toml"], arguments].concat(), stage)
+}
+
+/// Starts a run and waits until it has begun a stage.
+fn running(bench: &Bench, arguments: &[&str], stage: &str) -> Child {
     let mut command = Command::new(program());
-    command.current_dir(bench.folder.path()).args(["solve", "scene.toml", "--log", "json"]).args(arguments);
+    command.current_dir(bench.folder.path()).args(arguments).args(["--log", "json"]);
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
     let mark = format!("\"stage\":\"{stage}\"");
     let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
@@ -84,6 +89,32 @@ fn the_iterate_is_written_during_solution() {
     assert_eq!(radiosity.len(), 600);
     // Every iterate lies between the exitance and the solution.
     assert!(radiosity.iter().all(|b| (1.0..=1.0001e5).contains(b)));
+}
+
+#[test]
+fn the_iterate_of_another_discretisation_is_written_during_solution() {
+    let bench = Bench::new(&furnace(4, &[0.99999]));
+    let arguments = [&LONG_SOLUTION[..], &["--discretisation", "nystrom-2"]].concat();
+    let (code, time) = end(solving(&bench, &arguments, "solution"), "-INT");
+    assert_eq!(code, 130);
+    assert!(time < PROMPT, "{time:?}");
+    let record = bench.record("out/scene");
+    assert_eq!((&record["partial"], &record["counts"]["unknowns"]), (&true.into(), &384.into()));
+    assert_eq!(record["means"], "the irradiance as polynomials");
+    let radiosity = column(&bench.path("out/scene/field.csv"), "radiosity_b0");
+    assert!(radiosity.len() == 96 && radiosity.iter().all(|b| (1.0..=1.0001e5).contains(b)));
+}
+
+#[test]
+fn nothing_is_written_by_a_study_cut_short() {
+    let bench = long_solution();
+    let study = [&["converge", "scene.toml", "--levels", "2"], &LONG_SOLUTION[..]].concat();
+    for stage in ["level 0, assembly", "level 0, solution"] {
+        let (code, time) = end(running(&bench, &study, stage), "-INT");
+        assert_eq!(code, 130);
+        assert!(time < PROMPT, "{stage}: {time:?}");
+        assert!(!bench.path("out").exists());
+    }
 }
 
 #[test]

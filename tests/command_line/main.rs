@@ -3,7 +3,9 @@
 // A test that cannot run should panic, in its helpers too.
 #![allow(clippy::unwrap_used)]
 
+mod converge;
 mod determinism;
+mod discretisations;
 mod exit_codes;
 mod furnace;
 mod help;
@@ -12,6 +14,7 @@ mod hostile;
 mod interrupt;
 #[cfg(unix)]
 mod memory;
+mod methods;
 mod results;
 mod support;
 mod viewfactors;

@@ -25,12 +25,13 @@ fn the_record_is_complete() {
     bench.solve(&["--tolerance", "1e-8", "--solver", "southwell", "-o", "here", "--memory", "1GiB"]);
     let record = bench.record("here");
     let expected = serde_json::json!({
-        "solver": "southwell", "tolerance": 1e-8, "max_iterations": 1000, "form_factor_tolerance": 1e-3,
+        "discretisation": "galerkin-0", "solver": "southwell", "tolerance": 1e-8, "max_iterations": 1000, "form_factor_tolerance": 1e-3,
         "storage": "f64", "threads": record["options"]["threads"], "memory_limit_bytes": 1 << 30,
         "output": "here", "log": "plain", "quiet": false,
     });
     assert_eq!(record["options"], expected);
     assert_eq!(record["counts"]["elements"], 80);
+    assert_eq!((&record["counts"]["unknowns"], &record["discretisation"]), (&80.into(), &"galerkin-0".into()));
     assert_eq!(record["counts"]["matrix_entries"], 80 * 81 / 2);
     assert_eq!(record["scene_sha256"].as_str().unwrap().len(), 64);
     let stages: Vec<_> =

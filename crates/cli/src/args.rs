@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+use fredholm_discretisation::{DiscretisationError, discretisation};
 use serde::Serialize;
 
 use crate::commands::ViewFactorsArgs;
@@ -30,6 +31,7 @@ Examples:
   fredholm solve scenes/cornell_box.toml
   fredholm solve room.toml -o results --solver lu --memory 8GiB
   fredholm solve room.toml --storage f32 --threads 4 --log json 2> log.jsonl
+  fredholm solve room.toml --discretisation galerkin-1
 
 Ctrl-C during the assembly ends the run with nothing written; during the solution by an
 iterative solver the current iterate is written as a result marked \"partial\", with a small
@@ -40,13 +42,29 @@ Examples:
   fredholm check scenes/cornell_box.toml
   fredholm check room.toml --memory 8GiB";
 
+const CONVERGE_EXAMPLES: &str = "\
+Examples:
+  fredholm converge room.toml --levels 4
+  fredholm converge room.toml --levels 3 --discretisation galerkin-1 -o study
+  fredholm converge room.toml --levels 5 --form-factor-tolerance 1e-6 --memory 8GiB
+
+Level 0 is the mesh of the scene; each level cuts every element into 2 × 2. The faces of the
+scene stay what they are, and what is compared are means of the irradiance over them. An
+order takes three levels. Written are converge.csv, converge.svg, and converge.json last.
+Ctrl-C ends the run with nothing written.";
+
 const VIEW_FACTORS_EXAMPLES: &str = "\
 Examples:
   fredholm viewfactors room.vs3 -o F.npz
   fredholm viewfactors room.obj -o F.csv --tolerance 1e-6
   fredholm viewfactors room.toml -o F.txt --rows surface --close
   fredholm viewfactors court.obj -o F.npz --sky --threshold 1e-5
+  fredholm viewfactors room.obj -o F.npz --method hemicube --setting 256
   fredholm viewfactors hall.obj -o F.npz --point 1,2,0.8,0,0,1 --plane 0,0,0.8,6,0,0,0,4,0,12,8
+
+--setting is the order of area-gauss and nystrom, the tolerance of contour and point-polygon,
+the samples (or samples,seed) of monte-carlo, the pixels of hemicube. Other methods than auto
+are for study: they compute one pair after the other.
 
 Beside F.npz come F.png, the matrix as a picture; F.svg, how well its rows close; and
 F.json, the record. Ctrl-C ends the run with nothing written.
@@ -67,6 +85,10 @@ const COMPLETIONS_EXAMPLES: &str = "\
 Examples:
   fredholm completions bash > ~/.local/share/bash-completion/completions/fredholm
   fredholm completions zsh > ~/.zfunc/_fredholm";
+
+const DISCRETISATIONS_EXAMPLES: &str = "\
+Example:
+  fredholm discretisations";
 
 const SOLVERS_EXAMPLES: &str = "\
 Example:
@@ -89,6 +111,9 @@ pub(crate) enum Command {
     /// Validate a scene, show its statistics and predict memory and time; solves and writes nothing
     #[command(after_help = CHECK_EXAMPLES)]
     Check(CheckArgs),
+    /// Solve a scene on finer and finer meshes; state the order and what error remains
+    #[command(after_help = CONVERGE_EXAMPLES)]
+    Converge(ConvergeArgs),
     /// Compute the view-factor matrix of a scene or a mesh file
     #[command(name = "viewfactors", after_help = VIEW_FACTORS_EXAMPLES)]
     ViewFactors(ViewFactorsArgs),
@@ -104,6 +129,9 @@ pub(crate) enum Command {
     /// List the solvers
     #[command(after_help = SOLVERS_EXAMPLES)]
     Solvers,
+    /// List the discretisations
+    #[command(after_help = DISCRETISATIONS_EXAMPLES)]
+    Discretisations,
 }
 
 impl Command {
@@ -112,6 +140,7 @@ impl Command {
         match self {
             Self::Solve(args) => args.log.log,
             Self::Check(args) => args.log.log,
+            Self::Converge(args) => args.log.log,
             Self::ViewFactors(args) => args.log.log,
             _ => LogFormat::Plain,
         }
@@ -158,6 +187,9 @@ pub(crate) struct ProblemArgs {
     /// Threads; any number gives the same results [default: one a core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
+    /// Discretisation, as `fredholm discretisations` lists them [default: the scene's, else galerkin-0]
+    #[arg(long, value_name = "NAME", value_parser = discretisation_name)]
+    pub(crate) discretisation: Option<String>,
     /// Solver [default: the scene's, else gauss-seidel]
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(registry::names()))]
     pub(crate) solver: Option<String>,
@@ -180,12 +212,36 @@ pub(crate) struct SolveArgs {
     pub(crate) output: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) problem: ProblemArgs,
+    #[command(flatten)]
+    pub(crate) stop: StopArgs,
+    #[command(flatten)]
+    pub(crate) log: LogArgs,
+}
+
+/// When a solution ends.
+#[derive(Clone, Copy, Debug, Args)]
+pub(crate) struct StopArgs {
     /// Relative residual ‖b − A x‖₂/‖b‖₂ to reach in every band [default: the scene's, else 1e-10]
     #[arg(long, value_name = "T", value_parser = tolerance)]
     pub(crate) tolerance: Option<f64>,
     /// Iterations allowed [default: the scene's, else 1000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) max_iterations: Option<u32>,
+}
+
+/// Options of `converge`.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct ConvergeArgs {
+    /// Folder for the results [default: out/<name of the scene file>]
+    #[arg(long, short, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
+    /// Number of meshes: that of the scene, and finer ones
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(2..=12))]
+    pub(crate) levels: u8,
+    #[command(flatten)]
+    pub(crate) problem: ProblemArgs,
+    #[command(flatten)]
+    pub(crate) stop: StopArgs,
     #[command(flatten)]
     pub(crate) log: LogArgs,
 }
@@ -211,6 +267,11 @@ pub(crate) struct InfoArgs {
 pub(crate) struct CompletionsArgs {
     /// Shell
     pub(crate) shell: Shell,
+}
+
+/// The name by which a discretisation is listed.
+fn discretisation_name(text: &str) -> Result<String, DiscretisationError> {
+    discretisation(text).map(|found| found.name().to_owned())
 }
 
 pub(crate) fn tolerance(text: &str) -> Result<f64, String> {

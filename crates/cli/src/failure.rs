@@ -54,6 +54,11 @@ impl Failure {
         Self { ending, error: error.into() }
     }
 
+    /// The same failure with where it happened in front.
+    pub(crate) fn within(self, place: &str) -> Self {
+        Self::new(self.ending, format!("{place}: {self}"))
+    }
+
     /// Shows the failure on standard error.
     pub(crate) fn present(&self, log: LogFormat) {
         match log {

@@ -4,13 +4,12 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::args::SolveArgs;
 use crate::failure::{Ending, Failure};
 
 /// The folder asked for, or `out/` and the name of the scene file without its ending.
-pub(crate) fn of(args: &SolveArgs) -> PathBuf {
-    let stem = args.problem.scene.file_stem().unwrap_or_else(|| "scene".as_ref());
-    args.output.clone().unwrap_or_else(|| Path::new("out").join(stem))
+pub(crate) fn of(output: Option<&PathBuf>, scene: &Path) -> PathBuf {
+    let stem = scene.file_stem().unwrap_or_else(|| "scene".as_ref());
+    output.cloned().unwrap_or_else(|| Path::new("out").join(stem))
 }
 
 /// Makes sure that files can be written to `folder`, before anything is computed. Leaves nothing behind.

@@ -7,6 +7,7 @@
 mod args;
 mod commands;
 mod console;
+mod discretised;
 mod failure;
 mod folder;
 mod interrupt;

@@ -3,17 +3,22 @@
 use fredholm_scene::{SolveDefaults, Storage};
 use serde::Serialize;
 
-use crate::args::{LogArgs, LogFormat, Precision, ProblemArgs, SolveArgs};
+use std::path::Path;
+
+use crate::args::{LogArgs, LogFormat, Precision, ProblemArgs, StopArgs};
 use crate::size::Bytes;
-use crate::{folder, memory, registry, threads};
+use crate::{memory, registry, threads};
 
 const TOLERANCE: f64 = 1e-10;
 const MAX_ITERATIONS: u64 = 1000;
 const FORM_FACTOR_TOLERANCE: f64 = 1e-3;
+/// The discretisation where none is asked for: constants on the elements, from form factors.
+pub(crate) const RADIOSITY: &str = "galerkin-0";
 
 /// What decides the size and the effort of a problem.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct ProblemOptions {
+    pub(crate) discretisation: String,
     pub(crate) solver: String,
     pub(crate) form_factor_tolerance: f64,
     pub(crate) storage: Precision,
@@ -36,10 +41,12 @@ pub(crate) struct Options {
 
 impl ProblemOptions {
     pub(crate) fn new(args: &ProblemArgs, scene: &SolveDefaults) -> Self {
+        let discretisation = args.discretisation.as_ref().or(scene.discretisation.as_ref());
         let solver = args.solver.as_ref().or(scene.solver.as_ref());
         let form_factor_tolerance = args.form_factor_tolerance.or(scene.form_factor_tolerance);
         let storage = args.storage.or(scene.storage.map(precision));
         Self {
+            discretisation: discretisation.map_or_else(|| RADIOSITY.to_owned(), Clone::clone),
             solver: solver.map_or_else(|| registry::DEFAULT.to_owned(), Clone::clone),
             form_factor_tolerance: form_factor_tolerance.unwrap_or(FORM_FACTOR_TOLERANCE),
             storage: storage.unwrap_or(Precision::F64),
@@ -54,14 +61,19 @@ impl ProblemOptions {
 }
 
 impl Options {
-    pub(crate) fn new(args: &SolveArgs, problem: ProblemOptions, scene: &SolveDefaults) -> Self {
-        let LogArgs { log, quiet } = args.log;
-        let iterations = args.max_iterations.map(u64::from).or(scene.max_iterations);
+    pub(crate) fn new(
+        problem: ProblemOptions,
+        stop: StopArgs,
+        scene: &SolveDefaults,
+        output: &Path,
+        LogArgs { log, quiet }: LogArgs,
+    ) -> Self {
+        let iterations = stop.max_iterations.map(u64::from).or(scene.max_iterations);
         Self {
             problem,
-            tolerance: args.tolerance.or(scene.tolerance).unwrap_or(TOLERANCE),
+            tolerance: stop.tolerance.or(scene.tolerance).unwrap_or(TOLERANCE),
             max_iterations: iterations.unwrap_or(MAX_ITERATIONS),
-            output: folder::of(args).display().to_string(),
+            output: output.display().to_string(),
             log,
             quiet,
         }
@@ -85,12 +97,15 @@ mod tests {
         let Command::Solve(args) = Cli::try_parse_from(line.split(' ')).unwrap().command else {
             panic!("{line} is no solve")
         };
-        Options::new(&args, ProblemOptions::new(&args.problem, scene), scene)
+        let problem = ProblemOptions::new(&args.problem, scene);
+        let folder = crate::folder::of(args.output.as_ref(), &args.problem.scene);
+        Options::new(problem, args.stop, scene, &folder, args.log)
     }
 
     #[test]
     fn the_command_line_goes_before_the_scene_and_that_before_the_program() {
         let scene = SolveDefaults {
+            discretisation: Some("nystrom-2".into()),
             solver: Some("lu".into()),
             tolerance: Some(1e-5),
             max_iterations: Some(7),
@@ -103,14 +118,17 @@ mod tests {
             ("gauss-seidel", 1e-10, 1000)
         );
         assert_eq!((own.problem.form_factor_tolerance, own.output.as_str()), (1e-3, "out/b"));
+        assert_eq!(own.problem.discretisation, "galerkin-0");
         let theirs = options("fredholm solve a/b.toml", &scene);
         assert_eq!(
             (theirs.problem.solver.as_str(), theirs.tolerance, theirs.max_iterations),
             ("lu", 1e-5, 7)
         );
         assert_eq!((theirs.problem.form_factor_tolerance, theirs.problem.storage), (1e-6, Precision::F32));
-        let given = "fredholm solve a.toml --solver southwell --storage f64 --max-iterations 9 --threads 3 --memory 2kB";
+        assert_eq!(theirs.problem.discretisation, "nystrom-2");
+        let given = "fredholm solve a.toml --discretisation galerkin-q1 --solver southwell --storage f64 --max-iterations 9 --threads 3 --memory 2kB";
         let given = options(given, &scene);
+        assert_eq!(given.problem.discretisation, "galerkin-1");
         assert_eq!((given.problem.solver.as_str(), given.problem.storage), ("southwell", Precision::F64));
         assert_eq!(
             (given.max_iterations, given.problem.threads, given.problem.memory_limit_bytes),

@@ -6,7 +6,7 @@ use fredholm_linop::PackedSymmetric;
 
 use crate::args::Precision;
 use crate::failure::{Ending, Failure};
-use crate::options::ProblemOptions;
+use crate::options::{ProblemOptions, RADIOSITY};
 use crate::registry::Entry;
 use crate::size::Bytes;
 
@@ -21,31 +21,51 @@ const VECTORS: u128 = 16;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Size {
     pub(crate) elements: usize,
-    pub(crate) bands: usize,
+    /// Unknowns in each band.
+    pub(crate) unknowns: usize,
     /// Patches of the coarser problem that the mesh error is estimated with.
     pub(crate) coarse: usize,
+    /// Matrices of another discretisation than constants on form factors.
+    pub(crate) dense: Option<Dense>,
+}
+
+/// Dense matrices.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Dense {
+    pub(crate) bytes: u128,
+}
+
+impl Size {
+    /// What is known of a number of elements before they are there: other discretisations may have any number of unknowns.
+    pub(crate) fn before_mesh(elements: usize, options: &ProblemOptions) -> Self {
+        let radiosity = options.discretisation == RADIOSITY;
+        let (unknowns, dense) = if radiosity { (elements, None) } else { (0, Some(Dense { bytes: 0 })) };
+        Self { elements, unknowns, coarse: 0, dense }
+    }
 }
 
 /// Memory by use.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Prediction {
-    elements: usize,
+    size: Size,
     pub(crate) matrix: Bytes,
     pub(crate) mesh: Bytes,
     pub(crate) solver: Bytes,
 }
 
 impl Prediction {
-    pub(crate) fn new(size: Size, storage: Precision, solver: &Entry) -> Self {
-        let Size { elements, bands, coarse } = size;
+    pub(crate) fn new(size: Size, bands: usize, storage: Precision, solver: &Entry) -> Self {
+        let Size { elements, unknowns, coarse, dense } = size;
         let fine = match storage {
             Precision::F64 => PackedSymmetric::<f64>::bytes(elements),
             Precision::F32 => PackedSymmetric::<f32>::bytes(elements),
         };
-        let matrix = u128::from(fine) + u128::from(PackedSymmetric::<f64>::bytes(coarse));
-        let mesh = elements as u128 * (PER_ELEMENT + VECTORS * 8 * bands as u128);
-        let solver = solver.solver.bytes(elements, bands).into();
-        Self { elements, matrix: Bytes(matrix), mesh: Bytes(mesh), solver: Bytes(solver) }
+        let packed = u128::from(fine) + u128::from(PackedSymmetric::<f64>::bytes(coarse));
+        let matrix = dense.map_or(packed, |dense| dense.bytes);
+        let vectors = elements.max(unknowns) as u128 * VECTORS * 8 * bands as u128;
+        let mesh = elements as u128 * PER_ELEMENT + vectors;
+        let solver = solver.solver.bytes(unknowns, bands).into();
+        Self { size, matrix: Bytes(matrix), mesh: Bytes(mesh), solver: Bytes(solver) }
     }
 
     pub(crate) fn total(&self) -> Bytes {
@@ -63,7 +83,7 @@ impl Prediction {
         // Writing to a string cannot fail.
         let _ = write!(text, "use fewer elements (elements_per_face, divide, largest_edge in the scene)");
         let half = Bytes(self.total().0 - self.matrix.0 / 2);
-        if options.storage == Precision::F64 && half <= limit {
+        if self.size.dense.is_none() && options.storage == Precision::F64 && half <= limit {
             text.push_str(", --storage f32");
         }
         if self.solver > self.matrix {
@@ -76,11 +96,15 @@ impl Prediction {
 
 impl std::fmt::Display for Prediction {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { elements, matrix, mesh, solver } = self;
+        let Self { size: Size { elements, unknowns, .. }, matrix, mesh, solver } = self;
         let program = Bytes(PROGRAM);
+        match self.size.dense {
+            None => write!(f, "{matrix} for the form factors of {elements} elements")?,
+            Some(_) => write!(f, "{matrix} for the matrices of {unknowns} unknowns on {elements} elements")?,
+        }
         write!(
             f,
-            "{matrix} for the form factors of {elements} elements, {mesh} for the mesh, {solver} for the solver and \
+            ", {mesh} for the mesh, {solver} for the solver and \
              {program} for the program"
         )
     }
@@ -92,7 +116,8 @@ mod tests {
     use crate::registry::find;
 
     fn predict(elements: usize, storage: Precision, solver: &str) -> Prediction {
-        Prediction::new(Size { elements, bands: 3, coarse: 0 }, storage, &find(solver).unwrap())
+        let size = Size { elements, unknowns: elements, coarse: 0, dense: None };
+        Prediction::new(size, 3, storage, &find(solver).unwrap())
     }
 
     #[test]
@@ -105,6 +130,7 @@ mod tests {
     fn single_precision_is_advised_where_it_is_enough() {
         let advice = |limit: u64| {
             let options = ProblemOptions {
+                discretisation: RADIOSITY.into(),
                 solver: "gauss-seidel".into(),
                 form_factor_tolerance: 1e-3,
                 storage: Precision::F64,

@@ -1,24 +1,30 @@
 //! From a scene file to a meshed problem that fits the memory: what `solve` and `check` have in common.
 
+use std::sync::Arc;
+
 use fredholm_coupling::form_factor::PairIntegrator;
+use fredholm_discretisation::{Discretisation, Surface, discretisation, discretisations};
 use fredholm_linop::MultiVector;
 use fredholm_mesh::{Mesh, Patch};
 use fredholm_scene::{Scene, SceneError};
 use fredholm_visibility::Occluders;
 
-use crate::args::ProblemArgs;
+use crate::args::{Precision, ProblemArgs};
 use crate::failure::{Ending, Failure};
-use crate::options::ProblemOptions;
-use crate::prediction::{Prediction, Size};
+use crate::options::{ProblemOptions, RADIOSITY};
+use crate::prediction::{Dense, Prediction, Size};
 use crate::registry::{self, Entry};
 use crate::stages::Stages;
 
 /// A scene, its mesh, and how it is to be solved.
 pub(crate) struct Problem {
-    pub(crate) scene: Scene,
+    pub(crate) scene: Arc<Scene>,
     pub(crate) options: ProblemOptions,
+    pub(crate) discretisation: Box<dyn Discretisation>,
     pub(crate) solver: Entry,
     pub(crate) mesh: Mesh,
+    /// Unknowns in each band.
+    pub(crate) unknowns: usize,
     pub(crate) prediction: Prediction,
     pub(crate) warnings: Vec<String>,
     pub(crate) occluders: Occluders,
@@ -29,16 +35,36 @@ impl Problem {
     pub(crate) fn load(args: &ProblemArgs, stages: &mut Stages) -> Result<Self, Failure> {
         let scene = stages.run("scene", || Scene::load(&args.scene).map_err(scene_failure))?;
         let options = ProblemOptions::new(args, scene.solve());
+        Self::refined(Arc::new(scene), options, 1, stages)
+    }
+
+    /// Meshes a scene, every element cut into `refinement` × `refinement`. What is as it is in the scene is checked without refinement only.
+    pub(crate) fn refined(
+        scene: Arc<Scene>,
+        options: ProblemOptions,
+        refinement: usize,
+        stages: &mut Stages,
+    ) -> Result<Self, Failure> {
         let solver = registry::find(&options.solver)
             .ok_or_else(|| scene_failure(scene.unknown_solver(&registry::names())))?;
-        let elements = usize::try_from(scene.predicted_elements()).unwrap_or(usize::MAX);
-        predict(&scene, &options, &solver, elements, 0).admit(&options)?;
-        let mesh = stages.run("mesh", || scene.mesh().map_err(scene_failure))?;
-        let prediction = predict(&scene, &options, &solver, mesh.len(), coarse(&mesh));
+        let discretisation = named(&scene, &options)?;
+        let options = ProblemOptions { discretisation: discretisation.name().to_owned(), ..options };
+        let elements = scene.predicted_elements().saturating_mul((refinement as u128).pow(2));
+        let elements = usize::try_from(elements).unwrap_or(usize::MAX);
+        predict(&scene, &options, &solver, Size::before_mesh(elements, &options)).admit(&options)?;
+        let mesh = stages.run("mesh", || scene.refined_mesh(refinement).map_err(scene_failure))?;
+        let size = size(&scene, &*discretisation, &mesh)?;
+        let prediction = predict(&scene, &options, &solver, size);
         prediction.admit(&options)?;
-        let warnings = check(&scene, &mesh, stages)?;
+        let warnings = if refinement == 1 { check(&scene, &mesh, stages)? } else { Vec::new() };
         let occluders = stages.run("visibility", || occluders(&scene, &mesh))?;
-        Ok(Self { scene, options, solver, mesh, prediction, warnings, occluders })
+        let unknowns = size.unknowns;
+        Ok(Self { scene, options, discretisation, solver, mesh, unknowns, prediction, warnings, occluders })
+    }
+
+    /// Whether the system is that of form factors between elements.
+    pub(crate) fn is_radiosity(&self) -> bool {
+        self.options.discretisation == RADIOSITY
     }
 
     /// What computes the form factors of the elements.
@@ -75,15 +101,45 @@ pub(crate) fn coarse(mesh: &Mesh) -> usize {
     if (0..faces).all(|face| mesh.leaves_of_face(face).len() >= 4) { faces } else { 0 }
 }
 
-fn predict(
-    scene: &Scene,
-    options: &ProblemOptions,
-    solver: &Entry,
-    elements: usize,
-    coarse: usize,
-) -> Prediction {
-    let size = Size { elements, bands: scene.bands().len(), coarse };
-    Prediction::new(size, options.storage, solver)
+/// The discretisation asked for, which the stored format must suit.
+fn named(scene: &Scene, options: &ProblemOptions) -> Result<Box<dyn Discretisation>, Failure> {
+    let found = discretisation(&options.discretisation).map_err(|_| {
+        let known: Vec<&str> = discretisations().iter().map(|known| known.name()).collect();
+        scene_failure(scene.unknown_discretisation(&known))
+    })?;
+    if found.name() != RADIOSITY && options.storage == Precision::F32 {
+        let text = format!("{} stores f64 only\n  help: --storage f64, or {RADIOSITY}", found.name());
+        return Err(Failure::new(Ending::Input, text));
+    }
+    Ok(found)
+}
+
+/// Sizes of the meshed problem.
+fn size(scene: &Scene, discretisation: &dyn Discretisation, mesh: &Mesh) -> Result<Size, Failure> {
+    let elements = mesh.len();
+    if discretisation.name() == RADIOSITY {
+        return Ok(Size { elements, unknowns: elements, coarse: coarse(mesh), dense: None });
+    }
+    let surface = Surface::from_mesh(mesh);
+    let space = discretisation.space(&surface).map_err(|error| Failure::new(Ending::Input, error))?;
+    let bytes = 8 * discretisation.numbers(&space, different_reflectances(scene));
+    Ok(Size { elements, unknowns: space.dim(), coarse: 0, dense: Some(Dense { bytes }) })
+}
+
+/// Bands that differ in the reflectance of any material.
+fn different_reflectances(scene: &Scene) -> usize {
+    let of = |band: usize| scene.materials().iter().map(move |material| material.reflectance[band]);
+    let mut different: Vec<usize> = Vec::new();
+    for band in 0..scene.bands().len() {
+        if !different.iter().any(|&other| of(other).eq(of(band))) {
+            different.push(band);
+        }
+    }
+    different.len()
+}
+
+fn predict(scene: &Scene, options: &ProblemOptions, solver: &Entry, size: Size) -> Prediction {
+    Prediction::new(size, scene.bands().len(), options.storage, solver)
 }
 
 fn check(scene: &Scene, mesh: &Mesh, stages: &Stages) -> Result<Vec<String>, Failure> {
@@ -96,7 +152,7 @@ fn check(scene: &Scene, mesh: &Mesh, stages: &Stages) -> Result<Vec<String>, Fai
 }
 
 /// Unreadable files and scenes too large have exit codes of their own.
-fn scene_failure(error: SceneError) -> Failure {
+pub(crate) fn scene_failure(error: SceneError) -> Failure {
     let ending = match error.kind() {
         fredholm_scene::ErrorKind::Io => Ending::Files,
         fredholm_scene::ErrorKind::TooLarge => Ending::Resources,

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use fredholm_coupling::MethodCounts;
 use fredholm_linop::{Report, StopReason, Work};
-use fredholm_report::{Closure, Counts, Energy, FormFactorError, History, MeshError, RunRecord};
+use fredholm_report::{Closure, Counts, Energy, FieldError, FormFactorError, History, MeshError, RunRecord};
 use serde_json::Value;
 
 use crate::memory;
@@ -30,9 +30,11 @@ pub(crate) fn record(
         scene_sha256: problem.scene.sha256().to_owned(),
         options: serde_json::to_value(options).unwrap_or(Value::Null),
         bands: problem.scene.bands().to_vec(),
-        counts: counts(problem),
+        counts: counts(problem, solution),
         timings: stages.timings().to_vec(),
         peak_memory_bytes: memory::peak().and_then(|peak| u64::try_from(peak.0).ok()),
+        discretisation: options.problem.discretisation.clone(),
+        means: solution.means_of.to_owned(),
         solver: options.problem.solver.clone(),
         tolerance: Some(options.tolerance),
         history: history(report, problem.scene.bands().len()),
@@ -40,8 +42,9 @@ pub(crate) fn record(
         stop_reason: reason(report.reason).to_owned(),
         closure: closure(problem, &solution.closure),
         form_factor_error: form_factor_error(options, solution),
-        pairs: pairs(&solution.methods),
+        pairs: solution.methods.as_ref().map(pairs).unwrap_or_default(),
         mesh_error: solution.mesh_error.as_ref().map(mesh_error),
+        field_error: solution.field_error.clone().map(|relative_l2| FieldError { relative_l2 }),
         reciprocity: solution.reciprocity,
         energy: energy(problem, solution),
         warnings: problem.warnings.iter().cloned().chain(remarks(options, solution)).collect(),
@@ -81,16 +84,16 @@ fn inexact(options: &Options, solution: &Solution) -> Option<String> {
     })
 }
 
-fn counts(problem: &Problem) -> Counts {
+fn counts(problem: &Problem, solution: &Solution) -> Counts {
     let mesh = &problem.mesh;
-    let elements = mesh.len() as u64;
     Counts {
         surfaces: mesh.surfaces().len() as u64,
         faces: mesh.faces().len() as u64,
-        elements,
+        elements: mesh.len() as u64,
+        unknowns: problem.unknowns as u64,
         occluders: mesh.occluders().len() as u64,
         bands: problem.scene.bands().len() as u64,
-        matrix_entries: elements * (elements + 1) / 2,
+        matrix_entries: solution.entries,
     }
 }
 
@@ -115,6 +118,9 @@ fn work(work: &Work) -> BTreeMap<String, u64> {
 
 fn closure(problem: &Problem, closure: &[f64]) -> Closure {
     let mut found = Closure::default();
+    if closure.is_empty() {
+        return found;
+    }
     let (mut sum, mut area) = (0.0, 0.0);
     for (element, (patch, row)) in problem.mesh.patches().zip(closure).enumerate() {
         let defect = (row - 1.0).abs();
@@ -149,8 +155,8 @@ pub(crate) fn pairs(methods: &MethodCounts) -> BTreeMap<String, u64> {
 
 fn form_factor_error(options: &Options, solution: &Solution) -> FormFactorError {
     FormFactorError {
-        tolerance: Some(options.problem.form_factor_tolerance),
-        max: Some(solution.pair_error),
+        tolerance: solution.pair_error.map(|_| options.problem.form_factor_tolerance),
+        max: solution.pair_error,
         row_max: solution.row_error.iter().copied().reduce(f64::max),
     }
 }

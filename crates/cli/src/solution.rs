@@ -7,6 +7,8 @@ use fredholm_coupling::{
 use fredholm_linop::{MultiVector, PackedSymmetric, Report, SecondKind, SolveError, StopReason, Storage};
 use fredholm_mesh::Patch;
 
+use crate::args::Precision;
+use crate::discretised;
 use crate::failure::{Ending, Failure};
 use crate::interrupt::nothing_saved;
 use crate::mesh_error;
@@ -21,26 +23,45 @@ pub(crate) struct Solution {
     pub(crate) means: Means,
     /// What the solver did.
     pub(crate) report: Report,
-    /// Row sum of the form factors of every element.
+    /// What the values of elements are means of.
+    pub(crate) means_of: &'static str,
+    /// Stored entries of the operator.
+    pub(crate) entries: u64,
+    /// Row sum of the form factors of every element; empty where it was not computed.
     pub(crate) closure: Vec<f64>,
-    /// Estimated error of the row sum of every element.
+    /// Estimated error of the row sum of every element; empty where the method states none.
     pub(crate) row_error: Vec<f64>,
     /// Largest estimated error of a form factor.
-    pub(crate) pair_error: f64,
+    pub(crate) pair_error: Option<f64>,
     /// Largest violation of reciprocity among the pairs checked.
     pub(crate) reciprocity: Option<f64>,
     /// Pairs per method.
-    pub(crate) methods: MethodCounts,
+    pub(crate) methods: Option<MethodCounts>,
     /// Exposed share of every element.
     pub(crate) exposed: Vec<f64>,
-    /// Balance of every band.
+    /// Balance of every band; empty where it was not computed.
     pub(crate) energy: Vec<Energy>,
     /// Estimated discretisation error, where faces have several elements.
     pub(crate) mesh_error: Option<MeshError>,
+    /// Relative error of the field as polynomials, per band.
+    pub(crate) field_error: Option<Vec<f64>>,
 }
 
-/// Assembles and solves, with the matrix stored as `S`.
-pub(crate) fn compute<S: Storage>(
+/// Assembles and solves.
+pub(crate) fn compute(
+    problem: &Problem,
+    options: &Options,
+    stages: &mut Stages,
+) -> Result<Solution, Failure> {
+    match options.problem.storage {
+        _ if !problem.is_radiosity() => discretised::compute(problem, options, stages),
+        Precision::F64 => radiosity::<f64>(problem, options, stages),
+        Precision::F32 => radiosity::<f32>(problem, options, stages),
+    }
+}
+
+/// Constants on the elements, the matrix of form factors stored as `S`.
+fn radiosity<S: Storage>(
     problem: &Problem,
     options: &Options,
     stages: &mut Stages,
@@ -49,16 +70,16 @@ pub(crate) fn compute<S: Storage>(
     let assembled = stages.run("assembly", || form_factors::<S>(problem, watcher))?;
     let radiosity = stages.run("exposure", || system(problem, &assembled.matrix))?;
     if problem.solver.iterative {
-        stages.interrupt.begin_saving()?;
+        stages.begin_saving()?;
     }
     let solved = stages.run("solution", || solve(problem, &radiosity, &assembled.matrix, watcher))?;
-    stages.interrupt.begin_saving()?;
+    stages.begin_saving()?;
     worth_saving(&solved.1)?;
     stages.run("errors", || assess(problem, &radiosity, &assembled, solved, watcher))
 }
 
 /// Fails where the run was stopped before the first iterate.
-fn worth_saving(report: &Report) -> Result<(), Failure> {
+pub(crate) fn worth_saving(report: &Report) -> Result<(), Failure> {
     let iterations = report.history.last().map_or(0, |record| record.iteration);
     if report.reason == StopReason::Interrupted && iterations == 0 { Err(nothing_saved()) } else { Ok(()) }
 }
@@ -86,15 +107,25 @@ fn assess<S: Storage>(
     Ok(Solution {
         means,
         report,
+        // The means of a Galerkin solution with constants are those of H B_h.
+        means_of: "H B_h, from form factors",
+        entries: entries(problem.mesh.len()),
         closure,
         row_error,
-        pair_error: assembled.largest,
+        pair_error: Some(assembled.largest),
         reciprocity: reciprocity(&problem.integrator()),
-        methods: assembled.methods,
+        methods: Some(assembled.methods),
         exposed,
         energy,
         mesh_error,
+        field_error: None,
     })
+}
+
+/// Entries of a packed triangle.
+fn entries(elements: usize) -> u64 {
+    let n = elements as u64;
+    n * (n + 1) / 2
 }
 
 /// The system for the exposed parts of the elements.
@@ -131,7 +162,7 @@ pub(crate) fn coupling_failure(error: CouplingError) -> Failure {
     }
 }
 
-fn solve_failure(error: SolveError) -> Failure {
+pub(crate) fn solve_failure(error: SolveError) -> Failure {
     let ending = match error {
         SolveError::Singular { .. } => Ending::NotConverged,
         SolveError::Linop(fredholm_linop::LinopError::Memory { .. }) => Ending::Resources,

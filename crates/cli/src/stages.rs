@@ -13,11 +13,25 @@ pub(crate) struct Stages<'a> {
     pub(crate) console: &'a dyn Console,
     pub(crate) interrupt: &'a Interrupt,
     timings: Vec<Timing>,
+    /// What stands before the names of stages that are shown.
+    prefix: String,
+    /// Whether an interrupted run leaves what it has by then.
+    partial: bool,
 }
 
 impl<'a> Stages<'a> {
     pub(crate) fn new(console: &'a dyn Console, interrupt: &'a Interrupt) -> Self {
-        Self { console, interrupt, timings: Vec::new() }
+        Self { console, interrupt, timings: Vec::new(), prefix: String::new(), partial: true }
+    }
+
+    /// Stages of one of several parts, which are of no use without the others: an interrupted run leaves nothing.
+    pub(crate) fn part(console: &'a dyn Console, interrupt: &'a Interrupt, name: &str) -> Self {
+        Self { prefix: format!("{name}, "), partial: false, ..Self::new(console, interrupt) }
+    }
+
+    /// From now on there is something to save, where the run leaves partial results. Fails where a signal has come before.
+    pub(crate) fn begin_saving(&self) -> Result<(), Failure> {
+        if self.partial { self.interrupt.begin_saving() } else { self.interrupt.check() }
     }
 
     /// Runs one stage.
@@ -27,11 +41,12 @@ impl<'a> Stages<'a> {
         work: impl FnOnce() -> Result<R, Failure>,
     ) -> Result<R, Failure> {
         self.interrupt.check()?;
-        self.console.begin(stage);
+        let shown = format!("{}{stage}", self.prefix);
+        self.console.begin(&shown);
         let started = Instant::now();
         let result = work()?;
         let seconds = started.elapsed().as_secs_f64();
-        self.console.end(stage, seconds);
+        self.console.end(&shown, seconds);
         self.timings.push(Timing { stage: stage.to_owned(), seconds });
         Ok(result)
     }

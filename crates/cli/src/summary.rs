@@ -45,7 +45,7 @@ pub(crate) fn quality(run: &RunRecord, lines: &mut Lines) {
     lines.add_some("closure", closure(&run.closure));
     lines.add_some("form factors", form_factors(run));
     lines.add_some("reciprocity", reciprocity(run));
-    lines.add("mesh error", mesh_error(run));
+    lines.add("mesh error", field_error(run).unwrap_or_else(|| mesh_error(run)));
     lines.add_some("time", (!run.timings.is_empty()).then(|| times(&run.timings)));
     run.warnings.iter().for_each(|warning| lines.add("warning", warning));
 }
@@ -67,7 +67,9 @@ pub(crate) fn provenance(run: &RunRecord, lines: &mut Lines) {
 
 fn counts(counts: &Counts) -> String {
     let Counts { surfaces, faces, elements, bands, .. } = *counts;
-    format!("{}, {}", extent(elements, faces, surfaces), number(bands, "band"))
+    let unknowns =
+        if counts.unknowns == elements { String::new() } else { format!(", {} unknowns", counts.unknowns) };
+    format!("{}, {}{unknowns}", extent(elements, faces, surfaces), number(bands, "band"))
 }
 
 /// How many elements there are, and on what.
@@ -127,6 +129,14 @@ pub(crate) fn times(timings: &[Timing]) -> String {
 
 fn reciprocity(run: &RunRecord) -> Option<String> {
     Some(format!("both orders of integration agree within {:.1e} (largest of a sample)", run.reciprocity?))
+}
+
+/// The error of the field as polynomials in the worst band.
+fn field_error(run: &RunRecord) -> Option<String> {
+    let worst = run.field_error.as_ref()?.relative_l2.iter().copied().reduce(f64::max)?;
+    Some(format!(
+        "the irradiance as polynomials is right within {worst:.1e} (L2, worst band; estimate), means over elements are closer"
+    ))
 }
 
 /// The error of the mesh in the worst band.

@@ -35,6 +35,11 @@ impl<'a> Watcher<'a> {
         self.go_on()
     }
 
+    /// Follows the assembly of a discretisation, from any thread.
+    pub(crate) fn elements(&self, done: usize, total: usize) {
+        self.console.advance(done as f64 / total.max(1) as f64, &|| format!("{done} of {total} elements"));
+    }
+
     /// Whether the computation is still wanted.
     pub(crate) fn go_on(&self) -> ControlFlow<()> {
         if self.interrupt.requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }

@@ -1,6 +1,6 @@
 //! The contract of a discretisation.
 
-use crate::{DiscretisationError, Equation, System};
+use crate::{DiscretisationError, Equation, Space, Surface, System};
 
 /// A way to turn the integral equation into a linear system.
 pub trait Discretisation: Send + Sync {
@@ -9,6 +9,19 @@ pub trait Discretisation: Send + Sync {
 
     /// What it does, in one line.
     fn summary(&self) -> &'static str;
+
+    /// The trial functions on a surface; their number is that of the unknowns.
+    ///
+    /// # Errors
+    /// A surface that does not suit the method.
+    fn space<'a>(&self, surface: &'a Surface) -> Result<Space<'a>, DiscretisationError>;
+
+    /// Numbers of 8 bytes that the matrices hold at most while the system is built, for lanes of so many different reflectances. `galerkin-0` on a transfer
+    /// that has [`exchanges`](crate::Transfer::exchanges) takes half of that.
+    fn numbers(&self, space: &Space, reflectances: usize) -> u128 {
+        let _ = reflectances;
+        (space.dim() as u128).pow(2)
+    }
 
     /// Builds the system.
     ///

@@ -6,11 +6,10 @@
 
 use crate::surface::Rules;
 use crate::transfer::irradiance_at;
-use crate::{Discretisation, DiscretisationError, Equation, FlatLambert, Site, System};
+use crate::{Discretisation, DiscretisationError, Equation, FlatLambert, Site, System, Watch};
 use fredholm_linop::{MultiVector, Observer, Report, Solver, Stop};
 use fredholm_mesh::Mesh;
 use fredholm_visibility::Occluders;
-use rayon::prelude::*;
 
 /// Transfer, reflectance and exitance of a scene.
 #[derive(Debug)]
@@ -44,15 +43,33 @@ impl<'a> Light<'a> {
         Ok(Self { transfer, reflectance, exitance })
     }
 
+    /// Tells `watch` of the progress of an assembly.
+    #[must_use]
+    pub fn watched(mut self, watch: Watch<'a>) -> Self {
+        self.transfer = self.transfer.watched(watch);
+        self
+    }
+
     /// M at a site.
-    fn emitted(&self, site: &Site, band: usize) -> f64 {
+    pub(crate) fn emitted(&self, site: &Site, band: usize) -> f64 {
         self.exitance.row(site.element)[band]
+    }
+
+    /// Builds the system of a method.
+    ///
+    /// # Errors
+    /// The system does not fit the memory, or the surface does not suit the method.
+    pub fn discretise(
+        &self,
+        method: &dyn Discretisation,
+    ) -> Result<Box<dyn System + '_>, DiscretisationError> {
+        method.discretise(Equation::new(&self.transfer, &self.reflectance)?)
     }
 
     /// Builds the system of a method and solves it, from the right-hand side on.
     ///
     /// # Errors
-    /// The system does not fit the memory, or the solver does not suit it.
+    /// As of [`discretise`](Self::discretise) and [`solve_system`](Self::solve_system).
     pub fn solve(
         &self,
         method: &dyn Discretisation,
@@ -60,7 +77,20 @@ impl<'a> Light<'a> {
         stop: &Stop,
         observer: &mut dyn Observer<f64>,
     ) -> Result<Lit<'_>, DiscretisationError> {
-        let system = method.discretise(Equation::new(&self.transfer, &self.reflectance)?)?;
+        self.solve_system(self.discretise(method)?, solver, stop, observer)
+    }
+
+    /// Solves a system of this light, from the right-hand side on.
+    ///
+    /// # Errors
+    /// The solver does not suit the system.
+    pub fn solve_system<'s>(
+        &'s self,
+        system: Box<dyn System + 's>,
+        solver: &dyn Solver<f64>,
+        stop: &Stop,
+        observer: &mut dyn Observer<f64>,
+    ) -> Result<Lit<'s>, DiscretisationError> {
         let b = system.right_hand_side(&|site, band| self.emitted(site, band));
         let mut x = b.clone();
         let report = solver.solve(&system.operator()?, &b, &mut x, stop, observer)?;
@@ -71,8 +101,8 @@ impl<'a> Light<'a> {
 /// A solution.
 pub struct Lit<'a> {
     light: &'a Light<'a>,
-    system: Box<dyn System + 'a>,
-    x: MultiVector<f64>,
+    pub(crate) system: Box<dyn System + 'a>,
+    pub(crate) x: MultiVector<f64>,
     report: Report,
 }
 
@@ -92,15 +122,6 @@ pub struct Nodal {
     pub sites: Vec<Site>,
     /// B, nodes × bands.
     pub radiosity: MultiVector<f64>,
-}
-
-/// An estimate of the error of the irradiance as a piecewise polynomial.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FieldError {
-    /// ‖E_h − H B_h‖/‖H B_h‖ in L² over the surface, per band.
-    pub relative_l2: Vec<f64>,
-    /// Root of the mean square of E_h − H B_h on every element, elements × bands, W/m².
-    pub per_element: MultiVector<f64>,
 }
 
 impl Lit<'_> {
@@ -128,10 +149,10 @@ impl Lit<'_> {
         self.system.irradiance(&|site, band| self.light.emitted(site, band), &self.x)
     }
 
-    /// Means over the elements.
+    /// Means over the elements of the irradiance as a polynomial; [`assess`](Self::assess) has closer ones.
     #[must_use]
     pub fn means(&self) -> ElementMeans {
-        let (space, light) = (self.system.space(), self.light);
+        let space = self.system.space();
         let coefficients = self.irradiance();
         let rules = Rules::gauss(space.degree() + 1);
         let mut irradiance = MultiVector::zeros(space.surface().len(), coefficients.lanes());
@@ -142,6 +163,12 @@ impl Lit<'_> {
                 terms.for_each(|(mean, value)| *mean += weight * value);
             }
         }
+        self.with_radiosity(irradiance)
+    }
+
+    /// Adds B = M + ρ E to means of E.
+    pub(crate) fn with_radiosity(&self, irradiance: MultiVector<f64>) -> ElementMeans {
+        let light = self.light;
         let radiosity = MultiVector::from_fn(irradiance.dim(), irradiance.lanes(), |i, band| {
             light.exitance.row(i)[band] + light.reflectance.row(i)[band] * irradiance.row(i)[band]
         });
@@ -159,58 +186,18 @@ impl Lit<'_> {
         Nodal { sites, radiosity }
     }
 
+    /// B_h at a site.
+    pub(crate) fn radiosity_at(&self, site: &Site, band: usize) -> f64 {
+        self.system.value(&|site, band| self.light.emitted(site, band), &self.x, site, band)
+    }
+
     /// H B_h at sites of one element, sites × bands: the irradiance of the solution, not bound to the polynomials of the elements.
     #[must_use]
     pub fn irradiance_at(&self, sites: &[Site]) -> MultiVector<f64> {
-        let source = |site: &Site, band: usize| self.light.emitted(site, band);
-        let field = |site: &Site, band: usize| self.system.value(&source, &self.x, site, band);
-        irradiance_at(&self.system.equation(), self.system.space().degree(), sites, &field)
+        let field = |site: &Site, band: usize| self.radiosity_at(site, band);
+        let equation = self.system.equation();
+        irradiance_at(equation.transfer(), equation.lanes(), self.system.space().degree(), sites, &field)
     }
-
-    /// Compares the irradiance as a piecewise polynomial with H B_h, which is closer to the truth where the field is smooth, and shows what the
-    /// polynomials cannot follow where it is not. It costs about as much as the assembly.
-    #[must_use]
-    pub fn error(&self) -> FieldError {
-        let (surface, bands) = (self.system.space().surface(), self.x.lanes());
-        let coefficients = self.irradiance();
-        let rules = Rules::gauss(self.system.space().degree() + 2);
-        let squares: Vec<Squares> =
-            (0..surface.len()).into_par_iter().map(|i| self.squares(&coefficients, &rules, i)).collect();
-        let sum =
-            |of: fn(&Squares) -> &Vec<f64>, band: usize| squares.iter().map(|s| of(s)[band]).sum::<f64>();
-        let relative = |band| match (sum(|s| &s.error, band), sum(|s| &s.value, band)) {
-            (error, value) if value > 0.0 => (error / value).sqrt(),
-            _ => 0.0,
-        };
-        let relative_l2 = (0..bands).map(relative).collect();
-        let root = |i: usize, band: usize| (squares[i].error[band] / squares[i].area).sqrt();
-        FieldError { relative_l2, per_element: MultiVector::from_fn(surface.len(), bands, root) }
-    }
-
-    fn squares(&self, coefficients: &MultiVector<f64>, rules: &Rules, i: usize) -> Squares {
-        let (space, bands) = (self.system.space(), self.x.lanes());
-        let placed = space.surface().place(i, rules.of(space.surface().chart(i).sides()));
-        let sites: Vec<Site> = placed.iter().map(|(site, _)| *site).collect();
-        let true_to_h = self.irradiance_at(&sites);
-        let mut sums = Squares { area: 0.0, error: vec![0.0; bands], value: vec![0.0; bands] };
-        for (at, (site, weight)) in placed.iter().enumerate() {
-            sums.area += weight;
-            for band in 0..bands {
-                let value = true_to_h.row(at)[band];
-                let polynomial = space.value(coefficients, band, i, site.u, site.v);
-                sums.error[band] += weight * (polynomial - value).powi(2);
-                sums.value[band] += weight * value * value;
-            }
-        }
-        sums
-    }
-}
-
-/// Sums over one element: area, and per band ∫ (E_h − H B_h)² and ∫ (H B_h)².
-struct Squares {
-    area: f64,
-    error: Vec<f64>,
-    value: Vec<f64>,
 }
 
 /// Shares of the functions of element i in a mean: ∫ φ_a dA / A.

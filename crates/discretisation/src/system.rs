@@ -40,7 +40,8 @@ pub trait System: Sync {
     fn iterated(&self, source: &Source, x: &MultiVector<f64>, sites: &[Site]) -> MultiVector<f64> {
         let equation = self.equation();
         let field = |site: &Site, lane: usize| self.value(source, x, site, lane);
-        let irradiance = irradiance_at(&equation, self.space().degree(), sites, &field);
+        let irradiance =
+            irradiance_at(equation.transfer(), equation.lanes(), self.space().degree(), sites, &field);
         MultiVector::from_fn(sites.len(), equation.lanes(), |at, lane| {
             let rho = equation.reflectance().row(sites[at].element)[lane];
             source(&sites[at], lane) + rho * irradiance.row(at)[lane]

@@ -13,6 +13,8 @@
 //! | `convergence.svg` | residual against iterations and seconds |
 //! | `run.json` | what made all this; written last, so its presence means a complete folder |
 //!
+//! [`write_refinement`] writes a study of convergence: `converge.csv`, `converge.svg`, `converge.json`.
+//!
 //! Every file appears whole or not at all. Units: metres, W/m², W, seconds.
 
 mod atomic;
@@ -34,6 +36,7 @@ mod number;
 mod outputs;
 mod palette;
 mod picture;
+mod refinement;
 mod run;
 mod shading;
 mod surfaces_csv;
@@ -55,9 +58,13 @@ pub use field_csv::write_field_csv;
 pub use npz::write_npz;
 pub use outputs::{FILES, View, write_all};
 pub use picture::{Picture, render};
+pub use refinement::{
+    BandConvergence, REFINEMENT_FILES, REFINEMENT_FORMAT, RefinementLevel, RefinementRecord,
+    write_refinement, write_refinement_csv, write_refinement_plot,
+};
 pub use run::{
-    Closure, Counts, Energy, FORMAT, FormFactorError, History, MeshError, RunRecord, Timing, read_run,
-    write_run,
+    Closure, Counts, Energy, FORMAT, FieldError, FormFactorError, History, MeshError, RunRecord, Timing,
+    read_run, write_run,
 };
 pub use surfaces_csv::write_surfaces_csv;
 pub use tone::Exposure;

@@ -55,7 +55,7 @@ pub fn write_all(
     view: &View,
 ) -> Result<Vec<PathBuf>, ReportError> {
     let picture = render(field, &view.camera, view.exposure)?;
-    prepare(folder)?;
+    prepare(folder, &folder.join(FILES[FILES.len() - 1]))?;
     let paths: Vec<PathBuf> = FILES.iter().map(|name| folder.join(name)).collect();
     let writers: [&Writer; 8] = [
         &|out| write_field_csv(field, out),
@@ -72,15 +72,14 @@ pub fn write_all(
 }
 
 /// Makes the folder and removes the mark of completeness of an older result.
-fn prepare(folder: &Path) -> Result<(), ReportError> {
+pub(crate) fn prepare(folder: &Path, mark: &Path) -> Result<(), ReportError> {
     let failed = |path: &Path| {
         let path = path.to_owned();
         move |source| ReportError::Write { path, source }
     };
     fs::create_dir_all(folder).map_err(failed(folder))?;
-    let mark = folder.join(FILES[FILES.len() - 1]);
-    match fs::remove_file(&mark) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(failed(&mark)(error)),
+    match fs::remove_file(mark) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(failed(mark)(error)),
         _ => Ok(()),
     }
 }

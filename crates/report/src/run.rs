@@ -40,6 +40,10 @@ pub struct RunRecord {
     pub timings: Vec<Timing>,
     /// Largest memory in use, bytes, where the system tells.
     pub peak_memory_bytes: Option<u64>,
+    /// Name of the discretisation.
+    pub discretisation: String,
+    /// What the values of elements are means of.
+    pub means: String,
     /// Name of the solver.
     pub solver: String,
     /// Relative residual asked for.
@@ -56,6 +60,8 @@ pub struct RunRecord {
     pub pairs: BTreeMap<String, u64>,
     /// Estimated error of the mesh.
     pub mesh_error: Option<MeshError>,
+    /// Estimated error of the field as piecewise polynomials.
+    pub field_error: Option<FieldError>,
     /// Largest violation of `A_i F_ij = A_j F_ji` among the partly occluded pairs checked, as a form factor.
     pub reciprocity: Option<f64>,
     /// Estimated error of the form factors.
@@ -80,6 +86,8 @@ impl Default for RunRecord {
             counts: Counts::default(),
             timings: Vec::new(),
             peak_memory_bytes: None,
+            discretisation: String::new(),
+            means: String::new(),
             solver: String::new(),
             tolerance: None,
             history: History::default(),
@@ -88,6 +96,7 @@ impl Default for RunRecord {
             closure: Closure::default(),
             pairs: BTreeMap::new(),
             mesh_error: None,
+            field_error: None,
             reciprocity: None,
             form_factor_error: FormFactorError::default(),
             energy: Vec::new(),
@@ -105,8 +114,10 @@ pub struct Counts {
     pub surfaces: u64,
     /// Input faces.
     pub faces: u64,
-    /// Leaf elements, that is unknowns.
+    /// Leaf elements.
     pub elements: u64,
+    /// Unknowns of the system, in each band.
+    pub unknowns: u64,
     /// Undivided pieces that block the view.
     pub occluders: u64,
     /// Bands.
@@ -123,6 +134,14 @@ pub struct MeshError {
     pub relative_l2: Vec<f64>,
     /// Largest error of a face, W/m², per band.
     pub largest: Vec<f64>,
+}
+
+/// Estimated error of the irradiance as piecewise polynomials E_h, from the iterated one H B_h.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct FieldError {
+    /// ‖E_h − H B_h‖/‖H B_h‖ in L2 over the surfaces, per band.
+    pub relative_l2: Vec<f64>,
 }
 
 /// Wall-clock time of a stage.

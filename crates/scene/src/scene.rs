@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use fredholm_mesh::{Mesh, MeshBuilder, MeshError};
+use fredholm_mesh::{Cutting, Mesh, MeshBuilder, MeshError};
 
 use crate::error::{ErrorKind, SceneError};
 use crate::files::Files;
@@ -120,6 +120,15 @@ impl Scene {
         self.source.error(ErrorKind::Name, span, format!("there is no solver `{name}`"), help)
     }
 
+    /// The error of a scene whose discretisation is none of those in `known`.
+    #[must_use]
+    pub fn unknown_discretisation(&self, known: &[&str]) -> SceneError {
+        let name = self.solve().discretisation.as_deref().unwrap_or_default();
+        let span = self.meaning.discretisation.clone().unwrap_or(0..0);
+        let help = among(name, known.iter().copied(), "discretisations");
+        self.source.error(ErrorKind::Name, span, format!("there is no discretisation `{name}`"), help)
+    }
+
     /// SHA-256 of the scene file and the files it names, in hexadecimal.
     #[must_use]
     pub fn sha256(&self) -> &str {
@@ -137,11 +146,21 @@ impl Scene {
     /// # Errors
     /// [`SceneError`] with the line of a surface that cannot be meshed.
     pub fn mesh(&self) -> Result<Mesh, SceneError> {
+        self.refined_mesh(1)
+    }
+
+    /// Cuts the surfaces into the same faces as [`mesh`](Self::mesh), and every element of those into `refinement` × `refinement`.
+    ///
+    /// # Errors
+    /// [`SceneError`] with the line of a surface that cannot be meshed, or would have more elements than an index can hold.
+    pub fn refined_mesh(&self, refinement: usize) -> Result<Mesh, SceneError> {
         let mut builder = MeshBuilder::default();
         for part in self.parts() {
             builder.surface(part.name.as_str(), part.material);
+            let elements_per_side = part.cutting.elements_per_side.saturating_mul(refinement);
+            let cutting = Cutting { elements_per_side, ..part.cutting.clone() };
             for shape in part.shapes.iter() {
-                builder.add(shape, &part.cutting).map_err(|error| self.unmeshable(part, &error))?;
+                builder.add(shape, &cutting).map_err(|error| self.unmeshable(part, &error))?;
             }
         }
         Ok(builder.build())

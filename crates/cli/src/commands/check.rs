@@ -20,18 +20,27 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Ending, Failure> {
 
 fn report(args: &CheckArgs, stages: &mut Stages) -> Result<Ending, Failure> {
     let problem = Problem::load(&args.problem, stages)?;
-    let seconds = stages.run("sample", || Ok(sample::assembly_seconds(&problem)))?;
+    // The sample is one of pairs of elements.
+    let seconds = if problem.is_radiosity() {
+        Some(stages.run("sample", || Ok(sample::assembly_seconds(&problem)))?)
+    } else {
+        None
+    };
     if args.log.quiet {
         return Ok(Ending::Done);
     }
     let mut lines = Lines::default();
     geometry(&problem, &mut lines);
+    lines
+        .add("unknowns", format!("{} in each band, by {}", problem.unknowns, problem.options.discretisation));
     lines.add("memory", format!("{}: {}", problem.prediction.total(), problem.prediction));
     lines.add("memory limit", problem.options.memory_limit().to_string());
     let (threads, solver) = (problem.options.threads, &problem.options.solver);
-    lines.add(
+    lines.add_some(
         "time",
-        format!("about {seconds:.1} s for the form factors on {threads} threads, then {solver}"),
+        seconds.map(|seconds| {
+            format!("about {seconds:.1} s for the form factors on {threads} threads, then {solver}")
+        }),
     );
     problem.warnings.iter().for_each(|warning| lines.add("warning", warning));
     output::print(&lines.under(&format!("{}: a valid scene", problem.scene.path().display())))?;

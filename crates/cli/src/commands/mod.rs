@@ -2,6 +2,8 @@
 
 mod check;
 mod completions;
+mod converge;
+mod discretisations;
 mod info;
 mod schema;
 mod solve;
@@ -18,10 +20,12 @@ pub(crate) fn execute(command: &Command) -> Result<Ending, Failure> {
     match command {
         Command::Solve(args) => solve::solve(args),
         Command::Check(args) => check::check(args),
+        Command::Converge(args) => converge::converge(args),
         Command::ViewFactors(args) => viewfactors::view_factors(args),
         Command::Info(args) => info::info(args),
         Command::Schema => schema::schema(),
         Command::Completions(args) => completions::completions(args),
         Command::Solvers => solvers::solvers(),
+        Command::Discretisations => discretisations::discretisations(),
     }
 }

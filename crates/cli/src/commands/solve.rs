@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use fredholm_linop::StopReason;
 use fredholm_report::{Camera, Exposure, Field, ReportError, RunRecord, View, write_all};
 
-use crate::args::{Precision, SolveArgs};
+use crate::args::SolveArgs;
 use crate::failure::{Ending, Failure};
 use crate::interrupt::Interrupt;
 use crate::options::Options;
@@ -22,22 +22,25 @@ const QUICK_PIXELS: f64 = 40_000.0;
 /// Solves a scene and writes the results.
 pub(crate) fn solve(args: &SolveArgs) -> Result<Ending, Failure> {
     let interrupt = Interrupt::install(args.log.log)?;
-    folder::probe(&folder::of(args))?;
+    folder::probe(&folder(args))?;
     let console = console::choose(args.log);
     let stages = Stages::new(&*console, &interrupt);
     let count = args.problem.threads.map_or_else(threads::default_count, usize::from);
     threads::pool(count)?.install(|| run(args, stages))
 }
 
+/// The folder for the results.
+fn folder(args: &SolveArgs) -> PathBuf {
+    folder::of(args.output.as_ref(), &args.problem.scene)
+}
+
 fn run(args: &SolveArgs, mut stages: Stages) -> Result<Ending, Failure> {
     let problem = Problem::load(&args.problem, &mut stages)?;
-    let options = Options::new(args, problem.options.clone(), problem.scene.solve());
-    let solution = match options.problem.storage {
-        Precision::F64 => compute::<f64>(&problem, &options, &mut stages)?,
-        Precision::F32 => compute::<f32>(&problem, &options, &mut stages)?,
-    };
+    let (scene, folder) = (problem.scene.solve(), folder(args));
+    let options = Options::new(problem.options.clone(), args.stop, scene, &folder, args.log);
+    let solution = compute(&problem, &options, &mut stages)?;
     let record = record(&problem, &options, &solution, &stages);
-    stages.run("results", || write(&problem, &solution, &record, &folder::of(args)))?;
+    stages.run("results", || write(&problem, &solution, &record, &folder))?;
     // The summary, other than the file, can tell the time of writing.
     let record = RunRecord { timings: stages.timings().to_vec(), ..record };
     conclude(args, &record, remarks(&options, &solution), &stages)?;
@@ -87,7 +90,7 @@ fn quick(view: View) -> View {
     View { camera: Camera { width: scaled(width), height: scaled(height), ..view.camera }, ..view }
 }
 
-fn report_failure(error: ReportError) -> Failure {
+pub(super) fn report_failure(error: ReportError) -> Failure {
     let ending = match error {
         ReportError::Write { .. } => Ending::Files,
         ReportError::NotFinite { .. } => Ending::NotConverged,
@@ -107,7 +110,7 @@ fn conclude(
     if stages.interrupt.requested() && !record.partial {
         stages.console.warn("interrupted when the solution was there: the results are complete all the same");
     }
-    if args.log.quiet { Ok(()) } else { summarise(&folder::of(args), record) }
+    if args.log.quiet { Ok(()) } else { summarise(&folder(args), record) }
 }
 
 fn summarise(folder: &Path, record: &RunRecord) -> Result<(), Failure> {

@@ -7,7 +7,7 @@
 
 use crate::system::{at_nodes, product, spread};
 use crate::transfer::{fill_rows, matrix_by_element};
-use crate::{Degree, Discretisation, DiscretisationError, Equation, Site, Source, Space, System};
+use crate::{Degree, Discretisation, DiscretisationError, Equation, Site, Source, Space, Surface, System};
 use fredholm_linop::{Dense, LinearOperator, LinopError, MultiVector};
 
 /// Collocation with one degree.
@@ -27,8 +27,12 @@ impl Discretisation for Collocation {
         ][self.0.number()]
     }
 
+    fn space<'a>(&self, surface: &'a Surface) -> Result<Space<'a>, DiscretisationError> {
+        Space::discontinuous(surface, self.0.number())
+    }
+
     fn discretise<'a>(&self, equation: Equation<'a>) -> Result<Box<dyn System + 'a>, DiscretisationError> {
-        let space = Space::discontinuous(equation.transfer().surface(), self.0.number())?;
+        let space = self.space(equation.transfer().surface())?;
         let matrix = collocation_matrix(&equation, &space)?;
         Ok(Box::new(AtNodes { equation, space, matrix }))
     }

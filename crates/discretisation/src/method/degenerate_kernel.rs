@@ -8,7 +8,7 @@
 use super::collocation::collocation_matrix;
 use crate::system::{product, spread};
 use crate::transfer::{by_element, irradiance_at};
-use crate::{Degree, Discretisation, DiscretisationError, Equation, Site, Source, Space, System};
+use crate::{Degree, Discretisation, DiscretisationError, Equation, Site, Source, Space, Surface, System};
 use fredholm_linop::{Dense, LinearOperator, MultiVector};
 
 /// Interpolation of the kernel with one degree.
@@ -28,8 +28,12 @@ impl Discretisation for DegenerateKernel {
         ][self.0.number()]
     }
 
+    fn space<'a>(&self, surface: &'a Surface) -> Result<Space<'a>, DiscretisationError> {
+        Space::discontinuous(surface, self.0.number())
+    }
+
     fn discretise<'a>(&self, equation: Equation<'a>) -> Result<Box<dyn System + 'a>, DiscretisationError> {
-        let space = Space::discontinuous(equation.transfer().surface(), self.0.number())?;
+        let space = self.space(equation.transfer().surface())?;
         let matrix = collocation_matrix(&equation, &space)?;
         Ok(Box::new(Reflected { equation, space, matrix }))
     }
@@ -44,8 +48,9 @@ struct Reflected<'a> {
 impl Reflected<'_> {
     /// (H b)(p_i).
     fn direct(&self, source: &Source) -> MultiVector<f64> {
-        let rows = |i| irradiance_at(&self.equation, self.space.degree(), &self.space.nodes_of(i), source);
-        by_element(self.space.surface(), self.equation.lanes(), rows)
+        let (transfer, lanes) = (self.equation.transfer(), self.equation.lanes());
+        let rows = |i| irradiance_at(transfer, lanes, self.space.degree(), &self.space.nodes_of(i), source);
+        by_element(self.space.surface(), lanes, rows)
     }
 }
 

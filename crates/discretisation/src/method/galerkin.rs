@@ -7,10 +7,11 @@
 //! The constant basis uses the transfer's own integrals over pairs where it has them ([`zonal`](super::zonal)).
 
 use super::zonal::Zonal;
+use crate::lagrange::MOST;
 use crate::mass::Mass;
 use crate::system::{product, spread};
 use crate::transfer::fill_rows;
-use crate::{Degree, Discretisation, DiscretisationError, Equation, Site, Source, Space, System};
+use crate::{Degree, Discretisation, DiscretisationError, Equation, Site, Source, Space, Surface, System};
 use fredholm_linop::{Dense, LinearOperator, MultiVector};
 use rayon::prelude::*;
 
@@ -47,18 +48,30 @@ impl Discretisation for Galerkin {
         }
     }
 
+    fn space<'a>(&self, surface: &'a Surface) -> Result<Space<'a>, DiscretisationError> {
+        let degree = self.degree.number();
+        if self.conforming {
+            Space::conforming(surface, degree, SMOOTH)
+        } else {
+            Space::discontinuous(surface, degree)
+        }
+    }
+
+    /// The matrix and the rows that wait to be added to it; a conforming basis projects by blocks as large as the matrix at most.
+    fn numbers(&self, space: &Space, _: usize) -> u128 {
+        let n = space.dim() as u128;
+        let blocks = if self.conforming { 2 * n * n } else { 0 };
+        n * n + (RUN * MOST) as u128 * n + blocks
+    }
+
     fn discretise<'a>(&self, equation: Equation<'a>) -> Result<Box<dyn System + 'a>, DiscretisationError> {
-        let (surface, degree) = (equation.transfer().surface(), self.degree.number());
+        let degree = self.degree.number();
         if degree == 0
             && let Some(exchanges) = equation.transfer().exchanges()
         {
             return Ok(Box::new(Zonal::new(equation, exchanges?)?));
         }
-        let space = if self.conforming {
-            Space::conforming(surface, degree, SMOOTH)?
-        } else {
-            Space::discontinuous(surface, degree)?
-        };
+        let space = self.space(equation.transfer().surface())?;
         one_reflectance(&equation, &space)?;
         let mass = Mass::new(&space, equation.transfer().outer(degree))?;
         let matrix = projected(&equation, &space, &mass)?;

@@ -9,7 +9,7 @@ use super::galerkin::projection;
 use super::lane_matrices::LaneMatrices;
 use crate::mass::Mass;
 use crate::transfer::fill_rows;
-use crate::{Degree, Discretisation, DiscretisationError, Equation, Site, Source, Space, System};
+use crate::{Degree, Discretisation, DiscretisationError, Equation, Site, Source, Space, Surface, System};
 use fredholm_linop::{Dense, LinearOperator, LinopError, MultiVector};
 use rayon::prelude::*;
 
@@ -33,8 +33,20 @@ impl Discretisation for LeastSquares {
         ][self.0.number()]
     }
 
+    fn space<'a>(&self, surface: &'a Surface) -> Result<Space<'a>, DiscretisationError> {
+        Space::discontinuous(surface, self.0.number())
+    }
+
+    /// The samples; for each reflectance the weighted samples and a matrix.
+    fn numbers(&self, space: &Space, reflectances: usize) -> u128 {
+        let n = space.dim() as u128;
+        let each = (self.0.number() + crate::transfer::OUTER).pow(2);
+        let samples = space.surface().len() as u128 * each as u128 * n;
+        samples + reflectances as u128 * (samples + n * n)
+    }
+
     fn discretise<'a>(&self, equation: Equation<'a>) -> Result<Box<dyn System + 'a>, DiscretisationError> {
-        let space = Space::discontinuous(equation.transfer().surface(), self.0.number())?;
+        let space = self.space(equation.transfer().surface())?;
         let mass = Mass::new(&space, equation.transfer().outer(self.0.number()))?;
         let samples = Samples::new(&equation, &space, &mass)?;
         let mut system = Residual { equation, space, mass, samples, lanes: Vec::new(), matrices: none() };

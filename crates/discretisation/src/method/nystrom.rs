@@ -9,7 +9,9 @@
 
 use crate::system::{at_nodes, product, spread};
 use crate::transfer::matrix_by_element;
-use crate::{Degree, Discretisation, DiscretisationError, Equation, Site, Source, Space, System, Transfer};
+use crate::{
+    Degree, Discretisation, DiscretisationError, Equation, Site, Source, Space, Surface, System, Transfer,
+};
 use fredholm_linop::{Dense, LinearOperator, MultiVector};
 
 /// Nyström's method with m × m points, m one more than the degree of the basis that interpolates at them.
@@ -29,8 +31,12 @@ impl Discretisation for Nystrom {
         ][self.0.number()]
     }
 
+    fn space<'a>(&self, surface: &'a Surface) -> Result<Space<'a>, DiscretisationError> {
+        Space::discontinuous(surface, self.0.number())
+    }
+
     fn discretise<'a>(&self, equation: Equation<'a>) -> Result<Box<dyn System + 'a>, DiscretisationError> {
-        let space = Space::discontinuous(equation.transfer().surface(), self.0.number())?;
+        let space = self.space(equation.transfer().surface())?;
         let points = Points::new(&space);
         let fill = |i: usize, block: &mut [f64]| {
             points.fill(equation.transfer(), &space, &space.nodes_of(i), block);
@@ -62,6 +68,7 @@ impl Points {
                 corrected(transfer, space, sites, j, rows);
             }
         }
+        transfer.advance();
     }
 
     fn by_rule(&self, transfer: &dyn Transfer, p: &Site, dofs: &[usize], row: &mut [f64]) {

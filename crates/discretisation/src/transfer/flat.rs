@@ -25,7 +25,17 @@ const NEAR: usize = 8;
 /// Centre distance over the sum of radii above which a pair is regular.
 const APART: f64 = 3.0;
 /// Points a direction for receivers, beyond the degree.
-const OUTER: usize = 3;
+pub(crate) const OUTER: usize = 3;
+
+/// Called, from any thread, whenever an assembly has the rows of another element.
+#[derive(Clone, Copy)]
+pub struct Watch<'a>(pub &'a (dyn Fn() + Sync));
+
+impl std::fmt::Debug for Watch<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Watch")
+    }
+}
 
 /// Diffuse light between the leaves of a mesh.
 #[derive(Debug)]
@@ -37,6 +47,7 @@ pub struct FlatLambert<'a> {
     bodies: Bodies,
     tolerance: f64,
     rules: Vec<(f64, Vec<PlanePoint>)>,
+    watch: Option<Watch<'a>>,
 }
 
 impl<'a> FlatLambert<'a> {
@@ -57,7 +68,14 @@ impl<'a> FlatLambert<'a> {
         let rules = RULES.into_iter().map(rule).collect::<Result<_, DiscretisationError>>()?;
         let bodies = Bodies::new(occluders, &patches.iter().collect::<Vec<_>>(), &[]);
         let inverses = patches.iter().map(Inverse::of).collect();
-        Ok(Self { surface, patches, inverses, occluders, bodies, tolerance, rules })
+        Ok(Self { surface, patches, inverses, occluders, bodies, tolerance, rules, watch: None })
+    }
+
+    /// Tells `watch` of the progress of an assembly.
+    #[must_use]
+    pub fn watched(mut self, watch: Watch<'a>) -> Self {
+        self.watch = Some(watch);
+        self
     }
 
     /// Weighted points for the parts of element j that p sees, `factor` being the exact form factor of all.
@@ -157,6 +175,12 @@ impl Transfer for FlatLambert<'_> {
                 self.points(p, j, &view, &mut points);
                 each(at, &points);
             }
+        }
+    }
+
+    fn advance(&self) {
+        if let Some(Watch(tell)) = self.watch {
+            tell();
         }
     }
 

@@ -8,11 +8,12 @@ mod flat;
 mod near;
 mod smooth;
 
-pub use flat::FlatLambert;
+pub(crate) use flat::OUTER;
+pub use flat::{FlatLambert, Watch};
 pub use smooth::{Kernel, SmoothTransfer};
 
 use crate::surface::Rules;
-use crate::{DiscretisationError, Equation, Site, Space, Surface};
+use crate::{DiscretisationError, Site, Space, Surface};
 use fredholm_linop::{Dense, LinopError, MultiVector, PackedSymmetric};
 use fredholm_quadrature::PlanePoint;
 use rayon::prelude::*;
@@ -34,6 +35,9 @@ pub trait Transfer: Sync {
     /// Calls `each` for every site with points and weights on element `j`, for polynomials of `degree`. The sites must lie on one element. A site that
     /// sees nothing of j may be left out.
     fn send(&self, sites: &[Site], j: usize, degree: usize, each: &mut Sink);
+
+    /// Called whenever an assembly has the rows of another element, from any thread.
+    fn advance(&self) {}
 
     /// The rules for integrals over the receiving element, for polynomials of `degree`.
     fn outer(&self, degree: usize) -> Rules;
@@ -67,19 +71,21 @@ pub(crate) fn fill_rows(transfer: &dyn Transfer, space: &Space, sites: &[Site], 
             space.dofs(j).iter().zip(moments).for_each(|(&dof, moment)| row[dof] += moment);
         });
     }
+    transfer.advance();
 }
 
 /// (H f)(p) for a function f of site and lane, at sites p of one element: sites × lanes.
 pub(crate) fn irradiance_at(
-    equation: &Equation,
+    transfer: &dyn Transfer,
+    lanes: usize,
     degree: usize,
     sites: &[Site],
     f: &dyn Fn(&Site, usize) -> f64,
 ) -> MultiVector<f64> {
-    let surface = equation.transfer().surface();
-    let mut sums = MultiVector::zeros(sites.len(), equation.lanes());
+    let surface = transfer.surface();
+    let mut sums = MultiVector::zeros(sites.len(), lanes);
     for j in 0..surface.len() {
-        equation.transfer().send(sites, j, degree, &mut |at, points| {
+        transfer.send(sites, j, degree, &mut |at, points| {
             for p in points {
                 let q = surface.site(j, p.u, p.v);
                 let row = sums.row_mut(at).iter_mut().enumerate();

@@ -10,6 +10,8 @@ use super::At;
 #[serde(deny_unknown_fields, expecting = "a table of solver settings")]
 #[schemars(rename = "Solve")]
 pub(crate) struct SolveEntry {
+    /// Name of the discretisation, such as "galerkin-1". Default: "galerkin-0", constants on the elements.
+    pub discretisation: Option<At<String>>,
     /// Name of the solver. Default: chosen by the program.
     pub solver: Option<At<String>>,
     /// Residual ‖b − A x‖₂/‖b‖₂ to stop at, above 0 and below 1. Default: chosen by the program.

@@ -36,6 +36,8 @@ pub(crate) struct Resolved {
     pub solve: SolveDefaults,
     /// Where the name of the solver stands.
     pub solver: Option<Range<usize>>,
+    /// Where the name of the discretisation stands.
+    pub discretisation: Option<Range<usize>>,
     pub camera: Option<Camera>,
     pub materials: Vec<Material>,
     pub parts: Vec<Part>,
@@ -59,8 +61,11 @@ pub(crate) fn resolve(
     let solve = scene.solve.as_ref().map(|entry| solve::solve(source, entry)).transpose()?;
     let camera = scene.camera.as_ref().map(|entry| camera::camera(source, entry)).transpose()?;
     let parts = parts(&mut Context { source, scene, materials: &materials, files })?;
-    let solver = scene.solve.as_ref().and_then(|entry| entry.solver.as_ref()).map(At::span);
-    Ok(Resolved { bands, solve: solve.unwrap_or_default(), solver, camera, materials, parts })
+    let named = scene.solve.as_ref();
+    let solver = named.and_then(|entry| entry.solver.as_ref()).map(At::span);
+    let discretisation = named.and_then(|entry| entry.discretisation.as_ref()).map(At::span);
+    let solve = solve.unwrap_or_default();
+    Ok(Resolved { bands, solve, solver, discretisation, camera, materials, parts })
 }
 
 fn parts(context: &mut Context) -> Result<Vec<Part>, SceneError> {

@@ -16,6 +16,8 @@ pub enum Storage {
 /// What a scene says about its solution; `None` where it says nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SolveDefaults {
+    /// Name of the discretisation.
+    pub discretisation: Option<String>,
     /// Name of the solver.
     pub solver: Option<String>,
     /// Residual ‖b − A x‖₂/‖b‖₂ to stop at.
@@ -33,6 +35,7 @@ pub(super) fn solve(source: &Source, entry: &SolveEntry) -> Result<SolveDefaults
         number.as_ref().map(|number| source.below(number, 1.0, name)).transpose()
     };
     Ok(SolveDefaults {
+        discretisation: entry.discretisation.as_deref().cloned(),
         solver: entry.solver.as_deref().cloned(),
         tolerance: below_1(&entry.tolerance, "tolerance")?,
         max_iterations: entry.max_iterations.as_ref().map(|n| at_least_1(source, n)).transpose()?,

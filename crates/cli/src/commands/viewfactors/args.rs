@@ -26,13 +26,16 @@ pub(crate) struct ViewFactorsArgs {
     /// Form of the matrix [default: by the ending of the file: .npz, .csv, or .txt, .out, .vf for view3d]
     #[arg(long, value_enum, value_name = "FORM")]
     pub(crate) format: Option<Format>,
-    /// Error asked for in a row [default: the file's, else 1e-3]
+    /// Error asked for in a row [default: the file's, else 1e-3; of another method than auto, its usual one]
     #[arg(long, value_name = "T", value_parser = tolerance)]
     pub(crate) tolerance: Option<f64>,
     /// How form factors are computed
     #[arg(long, value_name = "NAME", default_value = method::AUTO,
         value_parser = PossibleValuesParser::new(method::names()))]
     pub(crate) method: String,
+    /// Setting of a method other than auto: its order, tolerance, samples or pixels [default: its usual one]
+    #[arg(long, value_name = "VALUE")]
+    pub(crate) setting: Option<String>,
     /// What a row stands for
     #[arg(long, value_enum, default_value_t, value_name = "WHAT")]
     pub(crate) rows: RowsBy,

@@ -1,11 +1,11 @@
 //! The computation: exchanges, rows, closure, points.
 
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use fredholm_coupling::{
-    Assembled, Closed, MethodCounts, aggregate, assemble, enforce_closure, reciprocity, sky_exchanges,
-    with_sky,
+    Assembled, Closed, aggregate, assemble, enforce_closure, reciprocity, sky_exchanges, with_sky,
 };
 use fredholm_linop::{LinearOperator, PackedSymmetric};
 use fredholm_mesh::Patch;
@@ -13,6 +13,7 @@ use fredholm_report::{ClosureChange, SurfaceData, ViewFactors, ViewPoints};
 
 use super::problem::Problem;
 use crate::failure::{Ending, Failure};
+use crate::record::pairs as by_method;
 use crate::solution::coupling_failure;
 use crate::stages::Stages;
 
@@ -25,13 +26,14 @@ pub(super) struct Solution {
     /// Largest estimated error of a form factor between elements.
     pub(super) pair_error: f64,
     pub(super) reciprocity: Option<f64>,
-    pub(super) methods: MethodCounts,
+    /// Pairs by method.
+    pub(super) pairs: BTreeMap<String, u64>,
     pub(super) enforced: Option<ClosureChange>,
 }
 
 pub(super) fn compute(problem: &Problem, stages: &mut Stages) -> Result<Solution, Failure> {
     let assembled = exchanges(problem, stages)?;
-    let (pair_error, methods) = (assembled.largest, assembled.methods);
+    let (pair_error, pairs) = (assembled.largest, pairs(problem, &assembled));
     let (matrix, row_error) = rows(problem, assembled, stages)?;
     let area = problem.areas();
     let (matrix, enforced) = closed(problem, matrix, &area, &row_error, stages)?;
@@ -47,8 +49,8 @@ pub(super) fn compute(problem: &Problem, stages: &mut Stages) -> Result<Solution
     };
     let mut factors = ViewFactors::new(surfaces, problem.options.threshold, row);
     factors.points = points(problem, stages)?;
-    let reciprocity = stages.run("errors", || Ok(reciprocity(&problem.integrator())))?;
-    Ok(Solution { factors, pair_error, reciprocity, methods, enforced })
+    let reciprocity = stages.run("errors", || Ok(agreement(problem)))?;
+    Ok(Solution { factors, pair_error, reciprocity, pairs, enforced })
 }
 
 /// Exchanges of the rows, the sky's included, and the stated errors of their sums.
@@ -89,7 +91,32 @@ fn counter<'a>(
     }
 }
 
+/// Agreement of the two orders of integration, which the other methods do not have.
+fn agreement(problem: &Problem) -> Option<f64> {
+    if problem.method.is_some() { None } else { reciprocity(&problem.integrator()) }
+}
+
+/// Pairs by method: auto tells which ones it took.
+fn pairs(problem: &Problem, assembled: &Assembled<f64>) -> BTreeMap<String, u64> {
+    if problem.method.is_none() {
+        return by_method(&assembled.methods);
+    }
+    let n = problem.row_of().len() as u64;
+    BTreeMap::from([(problem.options.method.clone(), n * n.saturating_sub(1) / 2)])
+}
+
 fn exchanges(problem: &Problem, stages: &mut Stages) -> Result<Assembled<f64>, Failure> {
+    if let Some(method) = &problem.method {
+        let count = counter(stages, problem.row_of().len(), "rows");
+        // A run that is no longer wanted ends by itself: there is nothing to save.
+        let advance = || {
+            let _ = count();
+        };
+        let patches = problem.elements();
+        let describe = |element| problem.describe(element);
+        let assemble = || method.assemble(&patches, &problem.occluders, &describe, &advance);
+        return stages.run("assembly", assemble);
+    }
     let (console, interrupt) = (stages.console, stages.interrupt);
     let watch = |done: u64, total: u64| {
         console.advance(done as f64 / total.max(1) as f64, &|| format!("{done} of {total} pairs"));

@@ -5,6 +5,7 @@ use fredholm_scene::{By, Geometry};
 use serde::Serialize;
 
 use super::args::{Format, Plane, RowsBy, ViewFactorsArgs};
+use super::method::Chosen;
 use super::target::Target;
 use crate::args::LogFormat;
 use crate::size::Bytes;
@@ -17,6 +18,8 @@ const TOLERANCE: f64 = 1e-3;
 pub(super) struct Options {
     pub(super) tolerance: f64,
     pub(super) method: String,
+    /// Setting of a method other than auto, in words.
+    pub(super) setting: Option<String>,
     pub(super) rows: RowsBy,
     pub(super) threshold: Option<f64>,
     pub(super) close: bool,
@@ -33,7 +36,12 @@ pub(super) struct Options {
 }
 
 impl Options {
-    pub(super) fn new(args: &ViewFactorsArgs, geometry: &Geometry, target: &Target) -> Self {
+    pub(super) fn new(
+        args: &ViewFactorsArgs,
+        geometry: &Geometry,
+        target: &Target,
+        method: Option<&Chosen>,
+    ) -> Self {
         let format = match target.format {
             MatrixFormat::Npz => Format::Npz,
             MatrixFormat::Csv => Format::Csv,
@@ -42,6 +50,7 @@ impl Options {
         Self {
             tolerance: args.tolerance.or(geometry.tolerance()).unwrap_or(TOLERANCE),
             method: args.method.clone(),
+            setting: method.map(|method| method.setting.to_string()),
             rows: args.rows,
             threshold: args.threshold,
             close: args.close,

@@ -10,6 +10,7 @@ use fredholm_visibility::Occluders;
 
 use super::args::ViewFactorsArgs;
 use super::memory::Prediction;
+use super::method::Chosen;
 use super::options::Options;
 use super::target::Target;
 use crate::failure::{Ending, Failure};
@@ -28,6 +29,8 @@ pub(super) struct Problem {
     pub(super) prediction: Prediction,
     pub(super) occluders: Occluders,
     pub(super) receivers: Vec<Receiver>,
+    /// Another method than the fast assembly.
+    pub(super) method: Option<Chosen>,
     surfaces: Surfaces,
     sky: Vec<Patch>,
 }
@@ -39,8 +42,9 @@ impl Problem {
         target: &Target,
         stages: &mut Stages,
     ) -> Result<Self, Failure> {
+        let method = method(args)?;
         let geometry = stages.run("geometry", || Geometry::load(&args.input).map_err(scene_failure))?;
-        let options = Options::new(args, &geometry, target);
+        let options = Options::new(args, &geometry, target, method.as_ref());
         let more = if options.sky { SKY_PATCHES } else { 0 };
         let count = usize::try_from(geometry.predicted_elements()).unwrap_or(usize::MAX).saturating_add(more);
         // The number of rows is not known before the mesh; it is at least 1.
@@ -53,7 +57,7 @@ impl Problem {
         let sky = if options.sky { sky_around(&surfaces, &receivers, args)? } else { Vec::new() };
         let prepare = || Occluders::new(surfaces.mesh.occluders()).map_err(|error| named(args, error));
         let occluders = stages.run("visibility", prepare)?;
-        Ok(Self { geometry, options, rows, prediction, occluders, receivers, surfaces, sky })
+        Ok(Self { geometry, options, rows, prediction, occluders, receivers, method, surfaces, sky })
     }
 
     /// The patches, those of the sky last.
@@ -66,10 +70,28 @@ impl Problem {
         PairIntegrator::new(self.surfaces.mesh.patches(), &self.occluders, self.options.tolerance)
     }
 
+    /// The elements of the surfaces.
+    pub(super) fn elements(&self) -> Vec<&Patch> {
+        self.surfaces.mesh.patches().collect()
+    }
+
+    /// An element by its number and its row.
+    pub(super) fn describe(&self, element: usize) -> String {
+        format!("element {element} (`{}`)", self.rows.names[self.rows.row_of[element]])
+    }
+
     /// What computes the form factors to the sky, where there is one: the patches of the sky come last.
     pub(super) fn sky_integrator(&self) -> Option<PairIntegrator<'_>> {
         let integrator = || PairIntegrator::new(self.patches(), &self.occluders, self.options.tolerance);
         (!self.sky.is_empty()).then(integrator)
+    }
+
+    /// The tolerance asked of a pair, where the method has one.
+    pub(super) fn asked(&self) -> Option<f64> {
+        match &self.method {
+            None => Some(self.options.tolerance),
+            Some(method) => method.tolerance(),
+        }
     }
 
     /// Rows of the elements of the surfaces.
@@ -108,6 +130,17 @@ impl Problem {
     pub(super) fn is_unmerged(&self) -> bool {
         self.surface_rows() == self.row_of().len()
     }
+}
+
+/// The method asked for. A tolerance that nothing would look at is refused.
+fn method(args: &ViewFactorsArgs) -> Result<Option<Chosen>, Failure> {
+    let chosen = Chosen::new(&args.method, args.setting.as_deref(), args.tolerance)?;
+    let unread = args.tolerance.is_some() && !args.sky;
+    if chosen.as_ref().is_some_and(|method| unread && method.tolerance().is_none()) {
+        let text = format!("--tolerance: the method {} has none; give its --setting", args.method);
+        return Err(Failure::new(Ending::Input, text));
+    }
+    Ok(chosen)
 }
 
 /// Adds the row of the sky, which is black.

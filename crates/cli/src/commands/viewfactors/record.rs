@@ -9,7 +9,6 @@ use super::args::ViewFactorsArgs;
 use super::compute::Solution;
 use super::problem::Problem;
 use crate::memory;
-use crate::record::pairs;
 use crate::stages::Stages;
 
 /// Row errors, in tolerances, that are reported: the tolerance is a pair's, and the errors of a row add up to about twice as much.
@@ -26,7 +25,7 @@ pub(super) fn record(
 ) -> ViewFactorsRecord {
     let factors = &solution.factors;
     let form_factor_error = FormFactorError {
-        tolerance: Some(problem.options.tolerance),
+        tolerance: problem.asked(),
         max: Some(solution.pair_error),
         row_max: largest(factors.surfaces.row_error.iter().copied().take(problem.surface_rows())),
     };
@@ -38,7 +37,7 @@ pub(super) fn record(
         title: problem.geometry.title().map(str::to_owned),
         options: serde_json::to_value(&problem.options).unwrap_or(Value::Null),
         counts: counts(problem, factors),
-        pairs: pairs(&solution.methods),
+        pairs: solution.pairs.clone(),
         timings: stages.timings().to_vec(),
         predicted_memory_bytes: u64::try_from(problem.prediction.total().0).ok(),
         peak_memory_bytes: memory::peak().and_then(|peak| u64::try_from(peak.0).ok()),

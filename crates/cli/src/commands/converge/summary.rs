@@ -1,0 +1,44 @@
+//! What a study came to, in words.
+
+use std::path::Path;
+
+use fredholm_report::{REFINEMENT_FILES, RefinementRecord};
+
+use crate::failure::Failure;
+use crate::output;
+use crate::summary::Lines;
+
+/// Bands whose verdict is shown.
+const BANDS: usize = 8;
+
+/// Prints the table of levels and the verdicts.
+pub(super) fn print(folder: &Path, record: &RefinementRecord) -> Result<(), Failure> {
+    let mut lines = Lines::default();
+    lines.add("plot", folder.join(REFINEMENT_FILES[1]).display().to_string());
+    lines.add("discretisation", &record.discretisation);
+    (0..record.levels.len()).for_each(|at| lines.add(&format!("level {at}"), level(record, at)));
+    record.bands.iter().take(BANDS).for_each(|band| lines.add(&band.band, &band.verdict));
+    if record.bands.len() > BANDS {
+        lines.add("", format!("and {} bands more: see {}", record.bands.len() - BANDS, REFINEMENT_FILES[2]));
+    }
+    record.warnings.iter().for_each(|warning| lines.add("warning", warning));
+    output::print(&lines.under(&format!("{} → {}", record.scene, folder.display())))
+}
+
+/// A level, with the worst band's difference to the finest and, where there is one, the smallest order.
+fn level(record: &RefinementRecord, at: usize) -> String {
+    let level = &record.levels[at];
+    let mut text = format!(
+        "{} elements, {} unknowns, h {:.4} m, {:.2} s",
+        level.elements, level.unknowns, level.h, level.seconds
+    );
+    let worst = record.bands.iter().map(|band| band.differences[at]).fold(0.0, f64::max);
+    if at + 1 < record.levels.len() {
+        text += &format!(", {worst:.1e} from the finest");
+    }
+    let orders = record.bands.iter().filter_map(|band| band.orders[at]);
+    if let Some(order) = orders.reduce(f64::min) {
+        text += &format!(", order {order:.2}");
+    }
+    text
+}
