@@ -65,12 +65,15 @@ fn the_table_and_the_plot_tell_the_levels() {
     assert_eq!(column(&table, "elements"), [2.0, 8.0, 32.0, 128.0]);
     assert_eq!(column(&table, "unknowns"), [2.0, 8.0, 32.0, 128.0]);
     let h = column(&table, "h");
-    assert!(h.windows(2).all(|pair| (pair[0] / pair[1] - 2.0).abs() < 1e-12) && (h[0] - 2.0_f64.sqrt()).abs() < 1e-12);
+    assert!(
+        h.windows(2).all(|pair| (pair[0] / pair[1] - 2.0).abs() < 1e-12)
+            && (h[0] - 2.0_f64.sqrt()).abs() < 1e-12
+    );
     let ceiling = column(&table, "irradiance_ceiling_grey");
     assert_eq!(ceiling.last().copied().unwrap(), finest(&record)[1]);
     assert_eq!(column(&table, "difference_grey")[3], 0.0);
     let plot = fs::read_to_string(bench.path("study/converge.svg")).unwrap();
-    assert!(plot.contains("polyline") && plot.contains("h^2") && plot.contains("order 1.8"));
+    assert!(plot.contains("polyline") && plot.contains("h²") && plot.contains("order 1.8"));
     assert_eq!(record["format"], "fredholm-converge-1");
 }
 
@@ -85,14 +88,26 @@ fn a_furnace_is_settled_and_two_levels_have_no_order() {
     let bench = Bench::new(&SQUARES.replace("quad =", "divide = [2, 2]\nquad ="));
     let record = study(&bench, &["--levels", "2"]);
     let band = &record["bands"][0];
-    assert!(band["verdict"].as_str().unwrap().contains("three levels") && band["remaining"].is_null(), "{band}");
+    assert!(
+        band["verdict"].as_str().unwrap().contains("three levels") && band["remaining"].is_null(),
+        "{band}"
+    );
 }
 
 #[test]
 fn the_furnace_scene_shows_errors_of_rounding() {
     let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/furnace.toml");
     let bench = Bench::new("");
-    let run = bench.run(&["converge", scene, "--levels", "2", "--solver", "gauss-seidel", "--max-iterations", "5000"]);
+    let run = bench.run(&[
+        "converge",
+        scene,
+        "--levels",
+        "2",
+        "--solver",
+        "gauss-seidel",
+        "--max-iterations",
+        "5000",
+    ]);
     assert_eq!(run.code, 0, "{}", run.stderr);
     assert_eq!(run.stdout.matches("no more than rounding and residual").count(), 4, "{}", run.stdout);
 }

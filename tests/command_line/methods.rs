@@ -51,7 +51,11 @@ fn every_method_computes_the_squares() {
             let (error, allowed) = ((forth - exact).abs(), if method.convergent() { 1e-3 } else { 0.2 });
             assert!(forth > 0.0 && (forth - back).abs() < 1e-15, "{}: {forth} {back}", method.name());
             // Of Monte Carlo the stated error is one standard error.
-            assert!(error <= 4.0 * stated + 1e-14 && error < allowed, "{} on {file}: {error:e}", method.name());
+            assert!(
+                error <= 4.0 * stated + 1e-14 && error < allowed,
+                "{} on {file}: {error:e}",
+                method.name()
+            );
             if method.name() != "auto" {
                 assert_eq!(record(&bench)["pairs"], serde_json::json!({ method.name(): 1 }));
             }
@@ -91,7 +95,11 @@ fn occluders_are_seen_or_the_pair_is_named() {
     assert!((entry(&factors, 0, 1) - BLOCKED).abs() < 1e-8);
     let refused = run(&bench, &data("blocked.obj"), "schroeder-hanrahan", &[]);
     assert_eq!(refused.code, 2, "{}", refused.stderr);
-    assert!(refused.stderr.contains("element 0 (`") && refused.stderr.contains("and element 1 (`"), "{}", refused.stderr);
+    assert!(
+        refused.stderr.contains("element 0 (`") && refused.stderr.contains("and element 1 (`"),
+        "{}",
+        refused.stderr
+    );
     assert!(refused.stderr.contains("use point-polygon or auto"), "{}", refused.stderr);
 }
 

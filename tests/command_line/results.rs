@@ -31,7 +31,10 @@ fn the_record_is_complete() {
     });
     assert_eq!(record["options"], expected);
     assert_eq!(record["counts"]["elements"], 80);
-    assert_eq!((&record["counts"]["unknowns"], &record["discretisation"]), (&80.into(), &"galerkin-0".into()));
+    assert_eq!(
+        (&record["counts"]["unknowns"], &record["discretisation"]),
+        (&80.into(), &"galerkin-0".into())
+    );
     assert_eq!(record["counts"]["matrix_entries"], 80 * 81 / 2);
     assert_eq!(record["scene_sha256"].as_str().unwrap().len(), 64);
     let stages: Vec<_> =

@@ -285,7 +285,7 @@ fn what_goes_wrong_has_its_exit_code() {
         assert!(run.stderr.contains(hint), "{hint}: {}", run.stderr);
     };
     let cube = data("cube8.vs3");
-    refused(&cube, &["--method", "magic"], 2, "possible values: auto");
+    refused(&cube, &["--method", "magic"], 2, "possible values: centre");
     refused(&cube, &["--point", "1,2,3"], 2, "write 6 finite numbers");
     refused(&cube, &["--plane", "0,0,0,1,0,0,2,0,0,3,3"], 2, "span an area");
     refused(&cube, &["--memory", "1MB"], 4, "--threshold");

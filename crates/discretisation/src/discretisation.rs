@@ -18,8 +18,7 @@ pub trait Discretisation: Send + Sync {
 
     /// Numbers of 8 bytes that the matrices hold at most while the system is built, for lanes of so many different reflectances. `galerkin-0` on a transfer
     /// that has [`exchanges`](crate::Transfer::exchanges) takes half of that.
-    fn numbers(&self, space: &Space, reflectances: usize) -> u128 {
-        let _ = reflectances;
+    fn numbers(&self, space: &Space, _reflectances: usize) -> u128 {
         (space.dim() as u128).pow(2)
     }
 

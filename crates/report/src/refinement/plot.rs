@@ -12,8 +12,8 @@ use crate::svg::{Point, Svg};
 
 /// Error that stands for 0.
 const FLOOR: f64 = 1e-17;
-/// Orders whose slopes are drawn.
-const SLOPES: [i32; 3] = [1, 2, 4];
+/// Orders whose slopes are drawn, with their labels.
+const SLOPES: [(f64, &str); 3] = [(1.0, "h"), (2.0, "h²"), (4.0, "h⁴")];
 /// Most entries of the legend; of more bands, the first ones are named.
 const ENTRIES: usize = 13;
 /// Size of the drawing, pixels.
@@ -93,17 +93,17 @@ fn draw_frame(svg: &mut Svg, panel: &Panel) {
     );
 }
 
-/// Lines of slope 1, 2 and 4 from the coarsest error of the first band that has one.
+/// Lines of slope 1, 2 and 4 from the finest error of the first band that has one, as far up as there are errors.
 fn draw_slopes(svg: &mut Svg, panel: &Panel, record: &RefinementRecord) {
-    let first = record.bands.iter().flat_map(curve).find(|(_, error)| *error > FLOOR);
-    let (Some((level, error)), Some(last)) = (first, record.levels.last()) else { return };
-    let start = record.levels[level].h;
-    for order in SLOPES {
-        let end = error * (last.h / start).powi(order);
-        let (from, to) = (panel.point(start, error), panel.point(last.h, end));
-        svg.line(from, to, "stroke=\"#999999\" stroke-dasharray=\"5 4\"");
-        let label = if order == 1 { "h".to_owned() } else { format!("h^{order}") };
-        svg.text((to.0 - 6.0, to.1 + 4.5), "text-anchor=\"end\" font-size=\"12\" fill=\"#777777\"", &label);
+    let drawn = || record.bands.iter().flat_map(curve).filter(|(_, error)| *error > FLOOR);
+    let finest = record.bands.iter().find_map(|band| curve(band).last().copied());
+    let Some((level, error)) = finest.filter(|(_, error)| *error > FLOOR) else { return };
+    let (end, most) = (record.levels[level].h, drawn().map(|(_, error)| error).fold(error, f64::max));
+    for (order, label) in SLOPES {
+        let reach = (end * (most / error).powf(1.0 / order)).min(record.levels[0].h);
+        let from = panel.point(reach, error * (reach / end).powf(order));
+        svg.line(from, panel.point(end, error), "stroke=\"#999999\" stroke-dasharray=\"5 4\"");
+        svg.text((from.0 + 5.0, from.1 - 5.0), "font-size=\"12\" fill=\"#777777\"", label);
     }
 }
 
@@ -118,7 +118,9 @@ fn draw_curve(svg: &mut Svg, panel: &Panel, record: &RefinementRecord, band: &Ba
             svg.line(pair[0], pair[1], &style);
         }
     }
-    points.into_iter().for_each(|point| svg.dot(point, colour));
+    for point in points {
+        svg.dot(point, colour);
+    }
 }
 
 fn draw_legend(svg: &mut Svg, record: &RefinementRecord, names: &[String]) {

@@ -28,17 +28,13 @@ pub(super) fn print(folder: &Path, record: &RefinementRecord) -> Result<(), Fail
 /// A level, with the worst band's difference to the finest and, where there is one, the smallest order.
 fn level(record: &RefinementRecord, at: usize) -> String {
     let level = &record.levels[at];
-    let mut text = format!(
-        "{} elements, {} unknowns, h {:.4} m, {:.2} s",
-        level.elements, level.unknowns, level.h, level.seconds
-    );
     let worst = record.bands.iter().map(|band| band.differences[at]).fold(0.0, f64::max);
-    if at + 1 < record.levels.len() {
-        text += &format!(", {worst:.1e} from the finest");
-    }
+    let finest = at + 1 == record.levels.len();
+    let distance = if finest { String::new() } else { format!(", {worst:.1e} from the finest") };
     let orders = record.bands.iter().filter_map(|band| band.orders[at]);
-    if let Some(order) = orders.reduce(f64::min) {
-        text += &format!(", order {order:.2}");
-    }
-    text
+    let order = orders.reduce(f64::min).map(|order| format!(", order {order:.2}")).unwrap_or_default();
+    format!(
+        "{} elements, {} unknowns, h {:.4} m, {:.2} s{distance}{order}",
+        level.elements, level.unknowns, level.h, level.seconds
+    )
 }
