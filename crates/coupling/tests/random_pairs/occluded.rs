@@ -220,3 +220,28 @@ fn pairs_called_hidden_are_hidden() {
     }
     assert!((20..180).contains(&hidden), "{hidden}");
 }
+
+/// Pairs behind one or three bodies against the same exchange to a hundredth of the tolerance.
+fn over_resolved(tolerance: f64, pairs: usize) -> Figures {
+    let mut random = Random::new(5);
+    let mut figures = Figures::default();
+    while figures.pairs < pairs {
+        let patches = scene(1 + 2 * (figures.pairs % 2), &mut random);
+        let got = exchange(&patches, tolerance);
+        if got.method == Method::Clipped {
+            let exact = exchange(&patches, 1e-2 * tolerance);
+            let exact = Reference { value: exact.value, error: 0.0 };
+            figures.add(&exact, &got, tolerance * facing(&patches));
+        }
+    }
+    figures.say(tolerance);
+    figures
+}
+
+#[test]
+fn exact_shadows_cover_the_over_resolved_value() {
+    for (tolerance, pairs) in [(1e-2, 400), (1e-3, 500), (1e-4, 100)] {
+        let figures = over_resolved(tolerance, pairs);
+        assert!(figures.covered * 100 >= pairs * 99 && figures.worst < 2.5, "{figures:?}");
+    }
+}
