@@ -42,7 +42,7 @@ fn follow(problem: &Problem, options: &Options, levels: &[Level], band: usize) -
     convergence(&values, &areas, noise(problem, options, band))
 }
 
-/// How well a solution is known: ‖A⁻¹‖ is at most 1/(1 − ρ).
+/// How well a solution is known: ‖A⁻¹‖ is about 1/(1 − ρ), but for least squares, which squares it.
 fn noise(problem: &Problem, options: &Options, band: usize) -> f64 {
     let reflectances = problem.scene.materials().iter().map(|material| material.reflectance[band]);
     MARGIN * (options.tolerance + ROUNDING) / (1.0 - reflectances.fold(0.0, f64::max))
