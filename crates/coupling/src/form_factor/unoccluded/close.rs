@@ -15,7 +15,7 @@ pub(super) fn close(a: &Patch, b: &Patch, tolerance: f64, parts: &mut [Vec<Vec3>
 }
 
 /// An order of patches that depends on where they lie, and not on their numbers.
-pub(crate) fn precedes(a: &Patch, b: &Patch) -> bool {
+fn precedes(a: &Patch, b: &Patch) -> bool {
     let [first, second] = [a, b].map(|patch| patch.corners().iter().flat_map(Vec3::to_array));
     first.lt(second)
 }
