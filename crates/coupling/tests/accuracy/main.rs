@@ -1,0 +1,8 @@
+//! Matrices of enclosures against exact ones, and what the accuracy asked for does to them.
+
+// A test that cannot run should panic, in its helpers too.
+#![allow(clippy::unwrap_used)]
+
+mod exact;
+mod symmetry;
+mod view3d;
