@@ -8,7 +8,7 @@ use fredholm_mesh::Patch;
 use fredholm_visibility::Occluders;
 use std::ops::ControlFlow;
 
-fn assembled(patches: &[Patch], tolerance: f64) -> Assembled<f64> {
+pub fn assembled(patches: &[Patch], tolerance: f64) -> Assembled<f64> {
     let occluders = Occluders::new(patches).unwrap();
     let integrator = PairIntegrator::new(patches, &occluders, tolerance);
     assemble(&integrator, &|_, _| ControlFlow::Continue(())).unwrap()
