@@ -12,6 +12,14 @@ use fredholm_visibility::body::Body;
 /// Squared sine below which a corner and an edge span no plane.
 const SLIM: f64 = 1e-24;
 
+/// Part of an edge by which a point must be inside its ends to meet it: in scenes with right angles lines often go exactly through corners.
+const MARGIN: f64 = 1e-7;
+/// A unit vector along which corners of a scene have different places, whatever its design.
+pub(super) const ODD: Vec3 = Vec3::new(0.573_1, 0.319_7, 0.754_5);
+
+/// Part of a chord that is left out at its ends, where lines of sight are often exactly parallel to the edge.
+const INSIDE: f64 = 1e-6;
+
 /// A plane n·x = c with a unit normal.
 pub(crate) type Plane = (Vec3, f64);
 
@@ -30,11 +38,14 @@ pub(crate) fn critical_planes(
     for outline in &outlines {
         search.events(outline, &whole, false);
     }
+    search.sort(0);
+    let single = search.found.len();
     for (k, outline) in outlines.iter().enumerate() {
         for (_, other) in outlines.iter().enumerate().filter(|(l, _)| *l != k) {
             search.events(outline, other, true);
         }
     }
+    search.sort(single);
 }
 
 /// What can show in the outline of a body, or of the target.
@@ -78,12 +89,18 @@ impl Search<'_> {
     fn events(&mut self, near: &Outline, far: &Outline, before: bool) {
         for &[a, b] in &near.edges {
             for &w in &far.corners {
-                self.event(w, [a, b], before, |c, n| meeting(c, w - c, [a, b], n), |t| 0.0 < t && t < 1.0);
+                self.event(
+                    w,
+                    [a, b],
+                    before,
+                    |c, n| meeting(c, w - c, [a, b], n),
+                    |t| MARGIN < t && t < 1.0 - MARGIN,
+                );
             }
         }
         for &v in &near.corners {
             for &ends in &far.edges {
-                self.event(v, ends, before, |c, n| meeting(c, v - c, ends, n), |t| t > 1.0);
+                self.event(v, ends, before, |c, n| meeting(c, v - c, ends, n), |t| t > 1.0 + MARGIN);
             }
         }
     }
@@ -96,11 +113,15 @@ impl Search<'_> {
         meeting: impl Fn(Vec3, Vec3) -> (f64, f64),
         order: impl Fn(f64) -> bool,
     ) {
-        let Some(plane) = spanned(corner, a, b) else { return };
-        let Some(chord) = self.chord(plane) else { return };
+        let Some(plane) = spanned(corner, a, b, self.flat) else { return };
         let height = |x: Vec3| plane.0.dot(x) - plane.1;
+        if self.lit(height) != Lit::Partly {
+            return;
+        }
+        let Some([first, last]) = chord(self.source, plane) else { return };
+        let inner = [first.lerp(last, INSIDE), last.lerp(first, INSIDE)];
         let shows = !before || lit(self.target, self.flat, height) == Lit::Partly;
-        if shows && lines_up(chord.map(|c| meeting(c, plane.0)), order) {
+        if shows && lines_up(inner.map(|c| meeting(c, plane.0)), order) {
             self.add(plane);
         }
     }
@@ -119,27 +140,34 @@ impl Search<'_> {
         }
     }
 
+    /// Sorts the lines from `start` on, long ones first: the order of bodies and of their corners has no say in which are used.
+    fn sort(&mut self, start: usize) {
+        let source = self.source;
+        let key = |plane: &Plane| {
+            let [a, b] = chord(source, *plane).unwrap_or_default();
+            a.distance(b) + 1e-3 * (0.5 * (a + b) - source[0]).dot(ODD)
+        };
+        self.found[start..].sort_by(|a, b| key(b).total_cmp(&key(a)));
+    }
+
     fn lit(&self, height: impl Fn(Vec3) -> f64) -> Lit {
         lit(self.source, self.flat, height)
     }
+}
 
-    /// The two ends of the line in which a plane cuts the source.
-    fn chord(&self, (n, c): Plane) -> Option<[Vec3; 2]> {
-        let height = |x: Vec3| n.dot(x) - c;
-        if self.lit(height) != Lit::Partly {
-            return None;
+/// The two ends of the line in which a plane cuts a convex polygon.
+fn chord(polygon: &[Vec3], (n, c): Plane) -> Option<[Vec3; 2]> {
+    let height = |x: Vec3| n.dot(x) - c;
+    let mut ends = [Vec3::ZERO; 2];
+    let mut count = 0;
+    for (&p, &q) in polygon.iter().zip(polygon.iter().cycle().skip(1)) {
+        let (from, to) = (height(p), height(q));
+        if (from >= 0.0) != (to >= 0.0) && count < 2 {
+            ends[count] = p + (q - p) * (from / (from - to));
+            count += 1;
         }
-        let mut ends = [Vec3::ZERO; 2];
-        let mut count = 0;
-        for (&p, &q) in self.source.iter().zip(self.source.iter().cycle().skip(1)) {
-            let (from, to) = (height(p), height(q));
-            if (from >= 0.0) != (to >= 0.0) && count < 2 {
-                ends[count] = p + (q - p) * (from / (from - to));
-                count += 1;
-            }
-        }
-        (count == 2).then_some(ends)
     }
+    (count == 2).then_some(ends)
 }
 
 /// Whether a plane has corners in front of it.
@@ -163,10 +191,11 @@ fn lit(corners: &[Vec3], flat: f64, height: impl Fn(Vec3) -> f64) -> Lit {
     }
 }
 
-fn spanned(v: Vec3, a: Vec3, b: Vec3) -> Option<Plane> {
+fn spanned(v: Vec3, a: Vec3, b: Vec3, flat: f64) -> Option<Plane> {
     let (edge, arm) = (b - a, v - a);
     let normal = edge.cross(arm);
-    let enough = normal.length_squared() > SLIM * edge.length_squared() * arm.length_squared();
+    let enough =
+        normal.length_squared() > edge.length_squared() * (SLIM * arm.length_squared()).max(flat * flat);
     let n = enough.then(|| normal.normalize())?;
     Some((n, n.dot(a)))
 }
@@ -182,7 +211,7 @@ fn meeting(c: Vec3, d: Vec3, [a, b]: [Vec3; 2], n: Vec3) -> (f64, f64) {
 /// not meet it so.
 fn lines_up([first, last]: [(f64, f64); 2], order: impl Fn(f64) -> bool) -> bool {
     match (order(first.0), order(last.0)) {
-        (true, true) => first.1.min(last.1) <= 1.0 && first.1.max(last.1) >= 0.0,
+        (true, true) => first.1.min(last.1) < 1.0 - MARGIN && first.1.max(last.1) > MARGIN,
         (false, false) => false,
         _ => true,
     }

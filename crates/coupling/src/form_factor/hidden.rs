@@ -4,7 +4,7 @@
 //! cells; else each cell is cut into triangles that get symmetric rules of rising degree ([`Pieces`]). The unoccluded exchange is computed apart, which
 //! keeps the singularity of touching patches out of this integral.
 
-use super::critical::{Plane, critical_planes};
+use super::critical::{ODD, Plane, critical_planes};
 use super::pieces::{Piece, Pieces};
 use super::shadow::{Cutter, Hiding, PolygonList};
 use fredholm_mesh::Vec3;
@@ -66,7 +66,9 @@ pub(crate) fn hidden_exchange(scene: &Occluded, goal: f64, work: &mut HiddenWork
     let mut pieces =
         Pieces::new(|x| scene.hidden(x, &mut work.hiding), |x| steep.distance(x), &mut work.pieces);
     for cell in work.cells.iter() {
-        (2..cell.len()).for_each(|k| pieces.add([cell[0], cell[k - 1], cell[k]], SMALL * goal));
+        let (after, before) = cell.split_at(apex(cell));
+        let round: Vec<Vec3> = before.iter().chain(after).copied().collect();
+        (2..round.len()).for_each(|k| pieces.add([round[0], round[k - 1], round[k]], SMALL * goal));
     }
     pieces.integrate(goal)
 }
@@ -120,14 +122,18 @@ struct Scale {
 impl Scale {
     fn of(scene: &Occluded, steep: &Steep) -> Self {
         let ((_, from), (target, to)) = (centroid(scene.source), centroid(scene.target));
-        let radius = |corners: &[Vec3], centre: Vec3| corners.iter().map(|x| x.distance(centre)).fold(0.0, f64::max);
+        let radius =
+            |corners: &[Vec3], centre: Vec3| corners.iter().map(|x| x.distance(centre)).fold(0.0, f64::max);
         let [own, other] = [radius(scene.source, from), radius(scene.target, to)];
         let far = from.distance(to);
         let near = (far - own - other).max((from - to).dot(scene.facing).abs() - own).max(0.0);
         let body = (steep.distance(from) - own).max(0.0);
         let kernel = FRAC_1_PI / (near * near);
         let magnified = (far + other) / body;
-        Self { bend: (magnified * magnified + target / (near * near)) * kernel, most: (target * kernel).min(1.0) }
+        Self {
+            bend: (magnified * magnified + target / (near * near)) * kernel,
+            most: (target * kernel).min(1.0),
+        }
     }
 
     /// Error of a cell by its centroid: on a cell the hidden part is nearly a quadratic function, so that is its bend times the squared radius of gyration.
@@ -146,4 +152,10 @@ fn centroid(corners: &[Vec3]) -> (f64, Vec3) {
     let doubled = whole.length();
     let moment: Vec3 = fan().map(|(part, thrice)| thrice * part.dot(whole)).sum();
     (0.5 * doubled, origin + moment / (3.0 * doubled * doubled))
+}
+
+/// The corner from which a cell is cut into triangles, farthest in [`ODD`]: the order of the corners has no say.
+fn apex(cell: &[Vec3]) -> usize {
+    let place = |k: &usize| (cell[*k] - cell[0]).dot(ODD);
+    (0..cell.len()).max_by(|a, b| place(a).total_cmp(&place(b))).unwrap_or(0)
 }

@@ -24,6 +24,9 @@ use fredholm_visibility::body::{Bodies, Body, Face, Room, Shadow};
 /// Bodies up to which exact shadows are cheaper than sampling.
 const FEW: usize = 128;
 
+/// Relative difference below which two lengths are equal by design of the scene.
+const EQUAL: f64 = 1e-7;
+
 /// How an exchange was computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
@@ -201,7 +204,7 @@ impl<'a> PairIntegrator<'a> {
         match bodies.len() {
             0 => open,
             1..=FEW => {
-                let keep = outer == Outer::First || clearance(a, bodies) >= clearance(b, bodies);
+                let keep = outer == Outer::First || clearer(a, b, bodies);
                 let sides = if keep { [a, b] } else { [b, a] };
                 self.behind_few(sides, bodies, open, tolerance, work)
             }
@@ -281,4 +284,16 @@ fn rises(patch: &Patch, plane: HalfSpace, flat: f64) -> bool {
 fn clearance(side: Side, bodies: &[&Body]) -> f64 {
     let heights = bodies.iter().flat_map(|body| body.corners()).map(|&x| side.plane.height(x));
     heights.fold(f64::INFINITY, f64::min) / side.patch.diameter()
+}
+
+/// Whether the bodies stand farther from the first patch. Heights that are equal by design are told apart by place, so that neither the numbering nor
+/// rounding decides.
+fn clearer(a: Side, b: Side, bodies: &[&Body]) -> bool {
+    let [x, y] = [clearance(a, bodies), clearance(b, bodies)];
+    if (x - y).abs() > EQUAL * (x.abs() + y.abs() + 1.0) {
+        return x > y;
+    }
+    let apart = b.patch.centroid() - a.patch.centroid();
+    let along = apart.to_array().into_iter().find(|d| d.abs() > EQUAL * apart.length());
+    along.is_none_or(|d| d > 0.0)
 }

@@ -13,7 +13,10 @@ const DEGREES: [usize; 7] = [1, 2, 4, 7, 10, 14, 20];
 /// Ratio of two differences below which a higher degree is expected to pay.
 const PAYS: f64 = 0.3;
 /// Radius of a triangle, in its distances from what makes h steep, above which it is cut.
-const NEAR: f64 = 1.0;
+/// No simple number: in a scene with right angles the two are often equal, and rounding would decide.
+const NEAR: f64 = 1.000_001;
+/// Relative difference below which two errors are equal by design of the scene.
+const EQUAL: f64 = 1e-6;
 /// Stated error over the root of the summed squares: errors of triangles are of either sign.
 const SAFETY: f64 = 1.0;
 /// Smallest credible ratio of two errors.
@@ -71,11 +74,19 @@ impl<'a, H: FnMut(Vec3) -> f64, D: Fn(Vec3) -> f64> Pieces<'a, H, D> {
     pub(crate) fn integrate(mut self, goal: f64) -> Estimate {
         loop {
             let stated = SAFETY * self.pieces.iter().map(|p| p.error.powi(2)).sum::<f64>().sqrt();
-            let errors = self.pieces.iter().map(|p| p.error);
-            let worst = errors.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).map(|(k, _)| k);
-            match worst.filter(|_| stated > goal && self.points < POINTS) {
-                Some(worst) => self.improve(worst),
-                None => return Estimate { value: self.pieces.iter().map(|p| p.value).sum(), error: stated },
+            if stated <= goal || self.points >= POINTS {
+                return Estimate { value: self.pieces.iter().map(|p| p.value).sum(), error: stated };
+            }
+            self.improve_worst();
+        }
+    }
+
+    /// Improves the triangle with the largest error, and those that equal it: rounding does not choose between them.
+    fn improve_worst(&mut self) {
+        let worst = self.pieces.iter().map(|p| p.error).fold(0.0, f64::max);
+        for k in 0..self.pieces.len() {
+            if self.pieces[k].error >= worst * (1.0 - EQUAL) {
+                self.improve(k);
             }
         }
     }

@@ -7,6 +7,9 @@ use super::{Body, Edge};
 /// Faces of a solid at most, one bit each.
 pub(super) const FACES: usize = 64;
 
+/// Sine of the angle by which a point that counts as hidden may lie outside: where it lies exactly on the border, rounding does not decide.
+const GRAZING: f64 = 1e-9;
+
 /// What a body hides from a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shadow {
@@ -29,10 +32,12 @@ impl Room {
         &self.planes
     }
 
-    /// Whether all of the points, relative to x, lie inside.
+    /// Whether all of the points, relative to x, lie inside, or outside by an angle of rounding.
     #[must_use]
     pub fn holds(&self, points: &[Vec3]) -> bool {
-        self.planes.iter().all(|(n, c)| points.iter().all(|y| n.dot(*y) > *c))
+        self.planes
+            .iter()
+            .all(|(n, c)| points.iter().all(|y| n.dot(*y) - *c > -GRAZING * n.length() * y.length()))
     }
 
     /// Whether one of the half-spaces has all of the points outside.
