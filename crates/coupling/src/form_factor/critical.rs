@@ -12,10 +12,15 @@ use fredholm_visibility::body::Screen;
 /// Squared sine below which a corner and an edge span no plane.
 const SLIM: f64 = 1e-24;
 
+/// Part of an edge by which a point must be inside its ends to meet it: in scenes with right angles lines often go exactly through corners.
+const MARGIN: f64 = 1e-7;
+/// Part of a chord that is left out at its ends, where lines of sight are often exactly parallel to the edge.
+const INSIDE: f64 = 1e-6;
+
 /// A plane n·x = c with a unit normal.
 pub(crate) type Plane = (Vec3, f64);
 
-/// Lists the planes of the events of `screens` before `target` that cut the `source` polygon, those of single bodies first. Lengths below `flat` (m) count as 0.
+/// Lists the planes of the events of `screens` before `target` that cut the `source` polygon. Lengths below `flat` (m) count as 0.
 pub(crate) fn critical_planes(
     source: &[Vec3],
     target: &[Vec3],
@@ -73,12 +78,18 @@ impl Search<'_> {
     fn events(&mut self, near: &Outline, far: &Outline, before: bool) {
         for &[a, b] in &near.edges {
             for &w in &far.corners {
-                self.event(w, [a, b], before, |c, n| meeting(c, w - c, [a, b], n), |t| 0.0 < t && t < 1.0);
+                self.event(
+                    w,
+                    [a, b],
+                    before,
+                    |c, n| meeting(c, w - c, [a, b], n),
+                    |t| MARGIN < t && t < 1.0 - MARGIN,
+                );
             }
         }
         for &v in &near.corners {
             for &ends in &far.edges {
-                self.event(v, ends, before, |c, n| meeting(c, v - c, ends, n), |t| t > 1.0);
+                self.event(v, ends, before, |c, n| meeting(c, v - c, ends, n), |t| t > 1.0 + MARGIN);
             }
         }
     }
@@ -97,11 +108,15 @@ impl Search<'_> {
         if low >= 0.0 || high <= 0.0 {
             return;
         }
-        let Some(plane) = spanned(corner, a, b) else { return };
-        let Some(chord) = self.chord(plane) else { return };
+        let Some(plane) = spanned(corner, a, b, self.flat) else { return };
         let height = |x: Vec3| plane.0.dot(x) - plane.1;
+        if self.lit(height) != Lit::Partly {
+            return;
+        }
+        let Some([first, last]) = chord(self.source, plane) else { return };
+        let inner = [first.lerp(last, INSIDE), last.lerp(first, INSIDE)];
         let shows = !before || lit(self.target, self.flat, height) == Lit::Partly;
-        if shows && lines_up(chord.map(|c| meeting(c, plane.0)), order) {
+        if shows && lines_up(inner.map(|c| meeting(c, plane.0)), order) {
             self.add(plane);
         }
     }
@@ -123,24 +138,21 @@ impl Search<'_> {
     fn lit(&self, height: impl Fn(Vec3) -> f64) -> Lit {
         lit(self.source, self.flat, height)
     }
+}
 
-    /// The two ends of the line in which a plane cuts the source.
-    fn chord(&self, (n, c): Plane) -> Option<[Vec3; 2]> {
-        let height = |x: Vec3| n.dot(x) - c;
-        if self.lit(height) != Lit::Partly {
-            return None;
+/// The two ends of the line in which a plane cuts a convex polygon.
+fn chord(polygon: &[Vec3], (n, c): Plane) -> Option<[Vec3; 2]> {
+    let height = |x: Vec3| n.dot(x) - c;
+    let mut ends = [Vec3::ZERO; 2];
+    let mut count = 0;
+    for (&p, &q) in polygon.iter().zip(polygon.iter().cycle().skip(1)) {
+        let (from, to) = (height(p), height(q));
+        if (from >= 0.0) != (to >= 0.0) && count < 2 {
+            ends[count] = p + (q - p) * (from / (from - to));
+            count += 1;
         }
-        let mut ends = [Vec3::ZERO; 2];
-        let mut count = 0;
-        for (&p, &q) in self.source.iter().zip(self.source.iter().cycle().skip(1)) {
-            let (from, to) = (height(p), height(q));
-            if (from >= 0.0) != (to >= 0.0) && count < 2 {
-                ends[count] = p + (q - p) * (from / (from - to));
-                count += 1;
-            }
-        }
-        (count == 2).then_some(ends)
     }
+    (count == 2).then_some(ends)
 }
 
 /// Whether a plane has corners in front of it.
@@ -168,10 +180,11 @@ fn range(corners: &[Vec3], height: impl Fn(Vec3) -> f64) -> (f64, f64) {
     })
 }
 
-fn spanned(v: Vec3, a: Vec3, b: Vec3) -> Option<Plane> {
+fn spanned(v: Vec3, a: Vec3, b: Vec3, flat: f64) -> Option<Plane> {
     let (edge, arm) = (b - a, v - a);
     let normal = edge.cross(arm);
-    let enough = normal.length_squared() > SLIM * edge.length_squared() * arm.length_squared();
+    let enough =
+        normal.length_squared() > edge.length_squared() * (SLIM * arm.length_squared()).max(flat * flat);
     let n = enough.then(|| normal.normalize())?;
     Some((n, n.dot(a)))
 }
@@ -187,7 +200,7 @@ fn meeting(c: Vec3, d: Vec3, [a, b]: [Vec3; 2], n: Vec3) -> (f64, f64) {
 /// not meet it so.
 fn lines_up([first, last]: [(f64, f64); 2], order: impl Fn(f64) -> bool) -> bool {
     match (order(first.0), order(last.0)) {
-        (true, true) => first.1.min(last.1) <= 1.0 && first.1.max(last.1) >= 0.0,
+        (true, true) => first.1.min(last.1) < 1.0 - MARGIN && first.1.max(last.1) > MARGIN,
         (false, false) => false,
         _ => true,
     }

@@ -1,23 +1,15 @@
 //! What bodies hide of an exchange: ∫_i h(x) dA with h(x) the exact form factor from x to the hidden part of j, in m².
 //!
-//! h is smooth between the critical lines ([`critical`](super::critical)), so the source is cut along them. A loose goal is met by the centroids of the
-//! cells; else each cell is cut into triangles that get symmetric rules of rising degree ([`Pieces`]). The unoccluded exchange is computed apart, which
-//! keeps the singularity of touching patches out of this integral.
+//! h is smooth between the critical lines ([`critical`](super::critical)), along which the source is cut where that pays ([`Pieces`]). The unoccluded exchange is computed
+//! apart, which keeps the singularity of touching patches out of this integral.
 
 use super::critical::{Plane, critical_planes};
-use super::pieces::{Piece, Pieces};
-use super::shadow::{Cutter, Hiding, PolygonList};
+use super::pieces::{Breaks, Piece, Pieces};
+use super::point_to_polygon;
+use super::shadow::{Hiding, Kind};
 use fredholm_mesh::Vec3;
 use fredholm_quadrature::Estimate;
 use fredholm_visibility::body::Screen;
-use std::f64::consts::FRAC_1_PI;
-
-/// Error of a cell by its centroid over the bend of the hidden part.
-const BEND: f64 = 0.04;
-/// Largest exchange of a part of the source, over the goal, below which a part of the source is not cut further for being close to a body.
-const SMALL: f64 = 20.0;
-/// Critical lines along which the source is cut at most: the cells grow with their square.
-const LINES: usize = 40;
 
 /// The source polygon with its normal, the target, and what stands between.
 #[derive(Clone, Copy)]
@@ -25,8 +17,6 @@ pub(crate) struct Occluded<'a> {
     pub source: &'a [Vec3],
     pub normal: Vec3,
     pub target: &'a [Vec3],
-    /// Normal of the target.
-    pub facing: Vec3,
     pub screens: &'a [Screen<'a>],
     /// Heights up to which a point lies on a face, m.
     pub tolerance: f64,
@@ -34,8 +24,8 @@ pub(crate) struct Occluded<'a> {
 
 impl Occluded<'_> {
     /// The form factor h(x).
-    fn hidden(&self, x: Vec3, hiding: &mut Hiding) -> f64 {
-        hiding.hidden_factor(x, self.normal, self.target, self.screens)
+    fn hidden(&self, x: Vec3, hiding: &mut Hiding) -> (f64, Kind) {
+        (hiding.hidden_factor(x, self.normal, self.target, self.screens), hiding.kind())
     }
 }
 
@@ -44,29 +34,17 @@ impl Occluded<'_> {
 pub(crate) struct HiddenWork {
     hiding: Hiding,
     planes: Vec<Plane>,
-    cells: PolygonList,
-    spare: PolygonList,
-    cutter: Cutter,
     pieces: Vec<Piece>,
 }
 
 /// The hidden part of the exchange (m²), to an absolute `goal` (m²).
 pub(crate) fn hidden_exchange(scene: &Occluded, goal: f64, work: &mut HiddenWork) -> Estimate {
-    cut(scene, work);
+    let HiddenWork { hiding, planes, pieces } = work;
     let steep = Steep::of(scene);
-    let scale = Scale::of(scene, &steep);
-    let rough = work.cells.iter().map(|cell| scale.error(cell)).sum();
-    if rough <= goal {
-        let by_centroid = |cell: &[Vec3]| {
-            let (area, centre) = centroid(cell);
-            area * scene.hidden(centre, &mut work.hiding)
-        };
-        return Estimate { value: work.cells.iter().map(by_centroid).sum(), error: rough };
-    }
-    let mut pieces =
-        Pieces::new(|x| scene.hidden(x, &mut work.hiding), |x| steep.distance(x), &mut work.pieces);
-    work.cells.iter().for_each(|cell| pieces.add(cell, SMALL * goal / scale.most));
-    pieces.integrate(goal)
+    critical_planes(scene.source, scene.target, scene.screens, scene.tolerance, planes);
+    let most = |x: Vec3| point_to_polygon(scene.normal, scene.target.iter().map(|&y| y - x));
+    let breaks = Breaks { planes, flat: scene.tolerance, distance: |x| steep.distance(x), most };
+    Pieces::new(|x| scene.hidden(x, hiding), breaks, pieces).integrate(scene.source, goal)
 }
 
 /// What makes the hidden part steep where it is close: corners of bodies, and edges that do not lie on the source.
@@ -94,59 +72,4 @@ impl Steep {
         };
         self.edges.iter().map(to).fold(f64::INFINITY, f64::min)
     }
-}
-
-/// Cuts the source along its critical lines.
-fn cut(scene: &Occluded, work: &mut HiddenWork) {
-    let flat = scene.tolerance;
-    critical_planes(scene.source, scene.target, scene.screens, flat, &mut work.planes);
-    work.cells.clear();
-    work.cells.push_with(|corners| corners.extend_from_slice(scene.source));
-    for &(n, c) in work.planes.iter().take(LINES) {
-        work.cells.cut(n, c, flat, &mut work.cutter, &mut work.spare);
-    }
-}
-
-/// How fast the hidden part changes over the source: the border of a shadow moves over the target by at most m times the way of the point, with m the distance of the
-/// target's farthest point over that of the nearest body, and the kernel is at most 1/(π D²) with the least distance D of the target.
-struct Scale {
-    /// (m² + A/D²)/(π D²) with the target area A, m⁻².
-    bend: f64,
-    /// Largest exchange per area of source.
-    most: f64,
-}
-
-impl Scale {
-    fn of(scene: &Occluded, steep: &Steep) -> Self {
-        let ((_, from), (target, to)) = (centroid(scene.source), centroid(scene.target));
-        let radius =
-            |corners: &[Vec3], centre: Vec3| corners.iter().map(|x| x.distance(centre)).fold(0.0, f64::max);
-        let [own, other] = [radius(scene.source, from), radius(scene.target, to)];
-        let far = from.distance(to);
-        let near = (far - own - other).max((from - to).dot(scene.facing).abs() - own).max(0.0);
-        let body = (steep.distance(from) - own).max(0.0);
-        let kernel = FRAC_1_PI / (near * near);
-        let magnified = (far + other) / body;
-        Self {
-            bend: (magnified * magnified + target / (near * near)) * kernel,
-            most: (target * kernel).min(1.0),
-        }
-    }
-
-    /// Error of a cell by its centroid: on a cell the hidden part is nearly a quadratic function, so that is its bend times the squared radius of gyration.
-    fn error(&self, cell: &[Vec3]) -> f64 {
-        let (area, centre) = centroid(cell);
-        let gyration = cell.iter().map(|x| x.distance_squared(centre)).sum::<f64>() / (3 * cell.len()) as f64;
-        area * (BEND * self.bend * gyration).min(self.most)
-    }
-}
-
-/// Area (m²) and centroid of a flat polygon.
-fn centroid(corners: &[Vec3]) -> (f64, Vec3) {
-    let origin = corners[0];
-    let fan = || corners.windows(2).map(|e| (e[0] - origin, e[1] - origin)).map(|(a, b)| (a.cross(b), a + b));
-    let whole: Vec3 = fan().map(|(doubled, _)| doubled).sum();
-    let doubled = whole.length();
-    let moment: Vec3 = fan().map(|(part, thrice)| thrice * part.dot(whole)).sum();
-    (0.5 * doubled, origin + moment / (3.0 * doubled * doubled))
 }

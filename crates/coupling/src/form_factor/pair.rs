@@ -249,7 +249,6 @@ impl<'a> PairIntegrator<'a> {
             source: front_a,
             normal: a.patch.normal(),
             target: front_b,
-            facing: b.patch.normal(),
             screens: &screens,
             tolerance,
         };

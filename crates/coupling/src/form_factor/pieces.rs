@@ -1,9 +1,14 @@
-//! ∫ h dA over triangles and quads by rules of rising degree and by halving, with one error estimate for all.
+//! ∫ h dA over a convex polygon in parts: by cuts along critical lines, by rules of rising degree and by halving, with one error estimate for all.
 //!
-//! The difference of two degrees is the error of the lower one; that of the higher one is smaller by the ratio to the difference before. Where h is steep close to a corner or an
-//! edge of a body, the points of a large part all miss it alike and any two values agree, so parts are first cut until they are no larger than their distance from such places.
-//! The one with the largest error is improved next, by degree while that pays, else by halving its sides. In m².
+//! The part with the largest error is improved next. Where h is not smooth on it, it is cut along the critical line that halves it best; where there is none, or where the part is large beside its
+//! distance from an edge of a body, its sides are halved; else it gets the next rule. So the cost follows the goal. In m².
+//!
+//! **Error.** The difference of two rules is the error of the lower one, and either may be small by accident. The error is a share of the geometric mean of that difference and the one before,
+//! the first being the range of h times the area, and a smaller share of the one before alone. The shares are measured (docs/form-factors.md).
 
+use super::critical::Plane;
+use super::shadow::Kind;
+use crate::polygon::{HalfSpace, clip};
 use fredholm_mesh::Vec3;
 use fredholm_quadrature::{Estimate, PlanePoint, symmetric_triangle, tensor_quad};
 use std::sync::LazyLock;
@@ -13,12 +18,23 @@ const DEGREES: [usize; 7] = [1, 2, 4, 7, 10, 14, 20];
 const POINTS_ALONG: [usize; 7] = [1, 2, 3, 4, 6, 8, 11];
 /// Ratio of two differences below which a higher degree is expected to pay.
 const PAYS: f64 = 0.3;
-/// Radius of a part, in its distances from what makes h steep, above which it is cut.
-const NEAR: f64 = 1.0;
-/// Stated error over the root of the summed squares: errors of parts are of either sign.
-const SAFETY: f64 = 1.0;
-/// Smallest credible ratio of two errors.
-const CREDIBLE: f64 = 0.05;
+/// Radius of a part, in its distances from what makes h steep, above which its sides are halved.
+/// No simple number: in a scene with right angles the two are often equal, and rounding would decide.
+const NEAR: f64 = 1.000_001;
+/// Relative difference below which two errors are equal by design of the scene.
+const EQUAL: f64 = 1e-6;
+/// A line that leaves less than this share of the width of a part on one side does not cut it.
+const SIDE: f64 = 0.020_3;
+/// Error of a rule over √(difference × difference before) and over the difference before, on a part of reach r: c₀ r + c₁ r² and c₂ r² where h is smooth,
+const SMOOTH: [f64; 3] = [0.04, 0.12, 0.02];
+/// c₀ + c₁ r² and c₂ + c₃ r² where it is not.
+const BROKEN: [f64; 4] = [0.12, 0.25, 0.02, 0.05];
+/// Growth of the error with the logarithm of the number of parts.
+const MANY: f64 = 0.1;
+/// Variation of h on a part that a line cuts, over its largest possible value, at least: the points may all miss it.
+const UNSEEN: f64 = 0.3;
+/// A unit vector to which the normals of a scene have different angles, whatever its design.
+const ODD: Vec3 = Vec3::new(0.573_1, 0.319_7, 0.754_5);
 /// Points after which an integral ends with the error that it has.
 const POINTS: usize = 100_000;
 
@@ -46,6 +62,16 @@ impl Shape {
             Self::Triangle([a, b, c]) => 0.5 * (b - a).cross(c - a).length(),
             Self::Quad([a, b, c, d]) => 0.5 * (c - a).cross(d - b).length(),
         }
+    }
+
+    fn centre(&self) -> Vec3 {
+        self.corners().iter().sum::<Vec3>() / self.corners().len() as f64
+    }
+
+    /// Radius about the centre, over its distance from what is near.
+    fn reach(&self, distance: impl Fn(Vec3) -> f64) -> f64 {
+        let centre = self.centre();
+        self.corners().iter().map(|x| x.distance(centre)).fold(0.0, f64::max) / distance(centre)
     }
 
     /// The parts between the middles of the sides.
@@ -87,33 +113,91 @@ impl Shape {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Piece {
     shape: Shape,
+    /// Radius over the distance from what makes h steep.
+    reach: f64,
+    /// Whether a critical line cuts it.
+    cut: bool,
     /// Place in [`DEGREES`] or [`POINTS_ALONG`].
     degree: usize,
     value: f64,
     /// Difference to the degree before.
     step: f64,
     error: f64,
+    /// The kind of all points so far, or `None` where they differ.
+    kind: Option<Kind>,
     pays: bool,
 }
 
-/// Parts and what is known of the convergence on them.
-pub(crate) struct Pieces<'a, H, D> {
-    h: H,
+impl Piece {
+    fn smooth(&self) -> bool {
+        self.kind.is_some() && !self.cut
+    }
+
+    /// The part with the value of the next rule.
+    fn raised(self, value: f64, kind: Option<Kind>) -> Self {
+        let step = (value - self.value).abs();
+        let next = Self { degree: self.degree + 1, value, step, kind: self.kind.and(kind), ..self };
+        let r = self.reach;
+        let [share, least] = if next.smooth() {
+            [(SMOOTH[0] + SMOOTH[1] * r) * r, SMOOTH[2] * r * r]
+        } else {
+            [BROKEN[0] + BROKEN[1] * r * r, BROKEN[2] + BROKEN[3] * r * r]
+        };
+        let error = (share * share * step + least * least * self.step).sqrt() * self.step.sqrt();
+        let pays = next.smooth() && r <= NEAR && step < PAYS * self.step && next.degree + 1 < DEGREES.len();
+        Self { error, pays, ..next }
+    }
+}
+
+/// Where h is not smooth.
+#[derive(Clone, Copy)]
+pub(crate) struct Breaks<'a, D, M> {
+    /// Critical planes.
+    pub planes: &'a [Plane],
+    /// Heights up to which a corner lies in a plane, m.
+    pub flat: f64,
     /// Distance of a point from what makes h steep, m.
-    distance: D,
+    pub distance: D,
+    /// Largest possible h at a point.
+    pub most: M,
+}
+
+/// Parts and what is known of the convergence on them.
+pub(crate) struct Pieces<'a, H, D, M> {
+    h: H,
+    breaks: Breaks<'a, D, M>,
     parts: &'a mut Vec<Piece>,
     points: usize,
 }
 
-impl<'a, H: FnMut(Vec3) -> f64, D: Fn(Vec3) -> f64> Pieces<'a, H, D> {
-    /// Prepares the integral of `h` with values up to 1; `pieces` is a buffer.
-    pub(crate) fn new(h: H, distance: D, pieces: &'a mut Vec<Piece>) -> Self {
-        pieces.clear();
-        Self { h, distance, parts: pieces, points: 0 }
+impl<'a, H: FnMut(Vec3) -> (f64, Kind), D: Fn(Vec3) -> f64, M: Fn(Vec3) -> f64> Pieces<'a, H, D, M> {
+    /// Prepares the integral of `h`; `parts` is a buffer.
+    pub(crate) fn new(h: H, breaks: Breaks<'a, D, M>, parts: &'a mut Vec<Piece>) -> Self {
+        parts.clear();
+        Self { h, breaks, parts, points: 0 }
     }
 
-    /// Adds a convex polygon, cut into parts that are no larger than their distance from what makes h steep, or of an area of at most `least` (m²).
-    pub(crate) fn add(&mut self, corners: &[Vec3], least: f64) {
+    /// The integral over a convex polygon to an absolute `goal`.
+    pub(crate) fn integrate(mut self, corners: &[Vec3], goal: f64) -> Estimate {
+        self.add(corners);
+        loop {
+            let stated = self.stated();
+            if stated <= goal || self.points >= POINTS {
+                return Estimate { value: self.parts.iter().map(|p| p.value).sum(), error: stated };
+            }
+            self.improve_worst();
+        }
+    }
+
+    /// Errors of parts are of either sign. Of many, some are underestimated, and those are the ones that are not improved.
+    fn stated(&self) -> f64 {
+        let parts = &self.parts;
+        let squares: f64 = parts.iter().map(|p| p.error.powi(2)).sum();
+        squares.sqrt() * (1.0 + MANY * (parts.len() as f64).ln())
+    }
+
+    /// Adds a convex polygon as quads and at most one triangle.
+    fn add(&mut self, corners: &[Vec3]) {
         let mut start = 1;
         while start + 1 < corners.len() {
             let shape = match corners[start..] {
@@ -121,69 +205,87 @@ impl<'a, H: FnMut(Vec3) -> f64, D: Fn(Vec3) -> f64> Pieces<'a, H, D> {
                 [b, c, d, ..] => Shape::Quad([corners[0], b, c, d]),
                 _ => return,
             };
-            self.grade(shape, least);
+            self.start(shape);
             start += shape.corners().len() - 2;
         }
     }
 
-    fn grade(&mut self, shape: Shape, least: f64) {
-        let corners = shape.corners();
-        let centre = corners.iter().sum::<Vec3>() / corners.len() as f64;
-        let radius = corners.iter().map(|x| x.distance(centre)).fold(0.0, f64::max);
-        if shape.area() > least && radius > NEAR * (self.distance)(centre) {
-            shape.quarters().into_iter().for_each(|part| self.grade(part, least));
-        } else {
-            let piece = self.start(shape);
-            self.parts.push(piece);
+    fn start(&mut self, shape: Shape) {
+        let (first, kind, range) = self.rule(&shape, 0, None);
+        let reach = shape.reach(&self.breaks.distance);
+        let cut = self.breaks.planes.iter().any(|plane| self.halves(&shape, *plane).is_some());
+        let piece =
+            Piece { shape, reach, cut, degree: 0, value: first, step: 0.0, error: 0.0, kind, pays: true };
+        let (second, kind, wider) = self.rule(&shape, 1, kind);
+        let mut range = range[1].max(wider[1]) - range[0].min(wider[0]);
+        if cut || reach > NEAR {
+            range = range.max(UNSEEN * (self.breaks.most)(shape.centre()));
         }
+        self.parts.push(Piece { step: range * shape.area(), ..piece }.raised(second, kind));
     }
 
-    /// The integral to an absolute `goal`.
-    pub(crate) fn integrate(mut self, goal: f64) -> Estimate {
-        loop {
-            let stated = SAFETY * self.parts.iter().map(|p| p.error.powi(2)).sum::<f64>().sqrt();
-            let errors = self.parts.iter().map(|p| p.error);
-            let worst = errors.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).map(|(k, _)| k);
-            match worst.filter(|_| stated > goal && self.points < POINTS) {
-                Some(worst) => self.improve(worst),
-                None => return Estimate { value: self.parts.iter().map(|p| p.value).sum(), error: stated },
+    /// The integral by a rule, the kind of its points as far as they are all of one, and the least and the largest value.
+    fn rule(&mut self, shape: &Shape, degree: usize, so_far: Option<Kind>) -> (f64, Option<Kind>, [f64; 2]) {
+        let (mut sum, mut kind, mut alike) = (0.0, so_far, true);
+        let [mut low, mut high] = [f64::INFINITY, f64::NEG_INFINITY];
+        shape.rule(degree, |x, weight| {
+            let (h, its) = (self.h)(x);
+            sum += weight * h;
+            (low, high) = (low.min(h), high.max(h));
+            alike &= *kind.get_or_insert(its) == its;
+            self.points += 1;
+        });
+        (sum, kind.filter(|_| alike), [low, high])
+    }
+
+    /// The share of the width of a part on the smaller side of a plane that cuts it.
+    fn halves(&self, shape: &Shape, (n, c): Plane) -> Option<f64> {
+        let heights = shape.corners().iter().map(|x| n.dot(*x) - c);
+        let [low, high] = heights.fold([0.0f64; 2], |[low, high], h| [low.min(h), high.max(h)]);
+        let cuts = high > self.breaks.flat && -low > self.breaks.flat;
+        let share = high.min(-low) / (high - low);
+        (cuts && share > SIDE).then_some(share)
+    }
+
+    /// Improves the part with the largest error, and those that equal it: rounding does not choose between them.
+    fn improve_worst(&mut self) {
+        let worst = self.parts.iter().map(|p| p.error).fold(0.0, f64::max);
+        for k in (0..self.parts.len()).rev() {
+            if self.parts[k].error >= worst * (1.0 - EQUAL) {
+                self.improve(k);
             }
         }
     }
 
-    fn start(&mut self, shape: Shape) -> Piece {
-        let [first, value] = [0, 1].map(|degree| self.rule(&shape, degree));
-        let step = (value - first).abs();
-        Piece { shape, degree: 1, value, step, error: step, pays: true }
-    }
-
-    fn rule(&mut self, shape: &Shape, degree: usize) -> f64 {
-        let mut sum = 0.0;
-        shape.rule(degree, |x, weight| {
-            sum += weight * (self.h)(x);
-            self.points += 1;
-        });
-        sum
-    }
-
     fn improve(&mut self, k: usize) {
-        if self.parts[k].pays {
-            self.parts[k] = self.raise(self.parts[k]);
-        } else {
-            let parts = self.parts[k].shape.quarters().map(|shape| self.start(shape));
-            self.parts[k] = parts[0];
-            self.parts.extend_from_slice(&parts[1..]);
+        let piece = self.parts[k];
+        if piece.pays {
+            let (value, kind, _) = self.rule(&piece.shape, piece.degree + 1, piece.kind);
+            self.parts[k] = piece.raised(value, kind);
+            return;
+        }
+        self.parts.swap_remove(k);
+        match self.line_through(&piece) {
+            Some(plane) => self.cut(&piece.shape, plane),
+            None => piece.shape.quarters().into_iter().for_each(|part| self.start(part)),
         }
     }
 
-    fn raise(&mut self, piece: Piece) -> Piece {
-        let degree = piece.degree + 1;
-        let value = self.rule(&piece.shape, degree);
-        let step = (value - piece.value).abs();
-        let ratio = if piece.step > 0.0 { step / piece.step } else { 1.0 };
-        // Two values may agree by accident; the error before bounds how well they credibly do.
-        let error = (step * ratio.min(1.0)).max(CREDIBLE * piece.error);
-        let pays = ratio < PAYS && degree + 1 < DEGREES.len();
-        Piece { degree, value, step, error, pays, ..piece }
+    /// The critical line that halves a part best; of equals, the place decides.
+    fn line_through(&self, piece: &Piece) -> Option<Plane> {
+        let planes = self.breaks.planes.iter().filter(|_| piece.cut);
+        let cutting = planes.filter_map(|&plane| Some((plane, self.halves(&piece.shape, plane)?)));
+        let key = |((n, _), share): &(Plane, f64)| share + 1e-3 * n.dot(ODD).abs();
+        cutting.max_by(|a, b| key(a).total_cmp(&key(b))).map(|(plane, _)| plane)
+    }
+
+    fn cut(&mut self, shape: &Shape, (normal, offset): Plane) {
+        let above = HalfSpace { normal, offset };
+        let below = HalfSpace { normal: -normal, offset: -offset };
+        for side in [above, below] {
+            let mut part = Vec::with_capacity(5);
+            clip(shape.corners(), side, self.breaks.flat, &mut part);
+            self.add(&part);
+        }
     }
 }

@@ -8,115 +8,131 @@ use crate::polygon::crossing;
 use fredholm_mesh::Vec3;
 use fredholm_visibility::body::{Room, Screen, Shadow};
 
+/// What makes a side of a polygon: a side of the target, or a half-space of a shadow.
+type Maker = u32;
+
+/// A convex polygon: corners, and what makes the side that starts at each.
+#[derive(Clone, Debug, Default)]
+struct Polygon {
+    corners: Vec<Vec3>,
+    makers: Vec<Maker>,
+}
+
+impl Polygon {
+    fn clear(&mut self) {
+        self.corners.clear();
+        self.makers.clear();
+    }
+
+    #[inline]
+    fn push(&mut self, corner: Vec3, maker: Maker) {
+        self.corners.push(corner);
+        self.makers.push(maker);
+    }
+}
+
 /// Convex polygons stored one behind the other.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PolygonList {
-    corners: Vec<Vec3>,
+    all: Polygon,
     ends: Vec<usize>,
 }
 
 impl PolygonList {
-    pub(crate) fn clear(&mut self) {
-        self.corners.clear();
+    fn clear(&mut self) {
+        self.all.clear();
         self.ends.clear();
     }
 
-    pub(crate) fn len(&self) -> usize {
+    fn len(&self) -> usize {
         self.ends.len()
     }
 
     pub(crate) fn iter(&self) -> impl Iterator<Item = &[Vec3]> {
-        (0..self.len()).map(|i| self.get(i))
+        (0..self.len()).map(|i| self.get(i).0)
     }
 
-    pub(crate) fn get(&self, i: usize) -> &[Vec3] {
+    fn get(&self, i: usize) -> (&[Vec3], &[Maker]) {
         let start = if i == 0 { 0 } else { self.ends[i - 1] };
-        &self.corners[start..self.ends[i]]
+        (&self.all.corners[start..self.ends[i]], &self.all.makers[start..self.ends[i]])
     }
 
-    /// Appends what `write` puts on the stack of corners, unless that is no polygon.
-    pub(crate) fn push_with(&mut self, write: impl FnOnce(&mut Vec<Vec3>)) {
-        let start = self.corners.len();
-        write(&mut self.corners);
-        if self.corners.len() < start + 3 {
-            self.corners.truncate(start);
-        } else {
-            self.ends.push(self.corners.len());
+    /// Appends a polygon, unless it is none.
+    fn push(&mut self, corners: &[Vec3], makers: &[Maker]) {
+        if corners.len() >= 3 {
+            self.all.corners.extend_from_slice(corners);
+            self.all.makers.extend_from_slice(makers);
+            self.ends.push(self.all.corners.len());
         }
     }
 
     /// Keeps the first `len` polygons.
     fn truncate(&mut self, len: usize) {
         self.ends.truncate(len);
-        self.corners.truncate(self.ends.last().copied().unwrap_or(0));
-    }
-
-    /// Cuts every polygon by the plane n·x = c into its parts on both sides. Heights of at most `tolerance` count as 0.
-    pub(crate) fn cut(&mut self, n: Vec3, c: f64, tolerance: f64, work: &mut Cutter, spare: &mut Self) {
-        spare.clear();
-        for i in 0..self.len() {
-            let polygon = self.get(i);
-            if work.split(polygon, n, c, tolerance) == Cut::Both {
-                spare.push_with(|corners| corners.extend_from_slice(&work.inside));
-                spare.push_with(|corners| corners.extend_from_slice(&work.outside));
-            } else {
-                spare.push_with(|corners| corners.extend_from_slice(polygon));
-            }
-        }
-        std::mem::swap(self, spare);
+        let corners = self.ends.last().copied().unwrap_or(0);
+        self.all.corners.truncate(corners);
+        self.all.makers.truncate(corners);
     }
 }
 
 /// Buffers of a cut.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Cutter {
-    inside: Vec<Vec3>,
-    outside: Vec<Vec3>,
+struct Cutter {
+    heights: Vec<f64>,
+    inside: Polygon,
+    outside: Polygon,
 }
 
 impl Cutter {
     /// Splits a convex polygon into its parts with n·x ≥ c and ≤ c, which are in `inside` and `outside` only where the plane cuts it.
     #[inline]
-    fn split(&mut self, polygon: &[Vec3], n: Vec3, c: f64, tolerance: f64) -> Cut {
+    fn split(&mut self, polygon: &Polygon, (n, c, maker): (Vec3, f64, Maker), tolerance: f64) -> Cut {
         let (mut above, mut below) = (false, false);
-        for corner in polygon {
-            let height = n.dot(*corner) - c;
-            above |= height > tolerance;
-            below |= height < -tolerance;
+        self.heights.clear();
+        self.heights.extend(polygon.corners.iter().map(|corner| n.dot(*corner) - c));
+        for height in &mut self.heights {
+            above |= *height > tolerance;
+            below |= *height < -tolerance;
+            if height.abs() <= tolerance {
+                *height = 0.0;
+            }
         }
-        if above && below {
-            self.cut(polygon, |x| n.dot(x) - c, tolerance);
-            return Cut::Both;
+        match (above, below) {
+            (true, true) => {
+                self.cut(polygon, maker);
+                Cut::Both
+            }
+            (true, false) => Cut::Inside,
+            _ => Cut::Outside,
         }
-        if above { Cut::Inside } else { Cut::Outside }
     }
 
-    fn cut(&mut self, polygon: &[Vec3], height: impl Fn(Vec3) -> f64, tolerance: f64) {
+    fn cut(&mut self, polygon: &Polygon, maker: Maker) {
         self.inside.clear();
         self.outside.clear();
-        let with_height = |x: Vec3| {
-            let h = height(x);
-            (x, if h.abs() <= tolerance { 0.0 } else { h })
-        };
-        let mut from = with_height(polygon[polygon.len() - 1]);
-        for &corner in polygon {
-            let to = with_height(corner);
-            self.side(from, to);
+        let last = polygon.corners.len() - 1;
+        let mut from = (polygon.corners[last], self.heights[last], polygon.makers[last]);
+        for k in 0..=last {
+            let to = (polygon.corners[k], self.heights[k], polygon.makers[k]);
+            self.side(from, to, maker);
             from = to;
         }
     }
 
-    fn side(&mut self, from: (Vec3, f64), to: (Vec3, f64)) {
+    /// The side from one corner to the next, of which the second is added.
+    #[inline]
+    fn side(&mut self, from: (Vec3, f64, Maker), to: (Vec3, f64, Maker), maker: Maker) {
         if from.1 * to.1 < 0.0 {
-            let cut = crossing(from, to);
-            self.inside.push(cut);
-            self.outside.push(cut);
+            let cut = crossing((from.0, from.1), (to.0, to.1));
+            let leaves = from.1 > 0.0;
+            self.inside.push(cut, if leaves { maker } else { from.2 });
+            self.outside.push(cut, if leaves { from.2 } else { maker });
         }
         if to.1 >= 0.0 {
-            self.inside.push(to.0);
+            self.inside.push(to.0, to.2);
         }
         if to.1 <= 0.0 {
-            self.outside.push(to.0);
+            self.outside.push(to.0, to.2);
         }
     }
 }
@@ -129,14 +145,35 @@ enum Cut {
     Both,
 }
 
+/// What makes the sides of the hidden parts, as a hash: where on the source it is the same everywhere, the hidden part is a smooth function.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Kind(u64);
+
+impl Kind {
+    /// Adds a hidden part. The order of its sides, and of the parts, has no say.
+    fn add(&mut self, makers: &[Maker]) {
+        let sides = makers.iter().map(|&maker| scatter(u64::from(maker) + 1)).fold(0, u64::wrapping_add);
+        self.0 = self.0.wrapping_add(scatter(sides));
+    }
+}
+
+/// Spreads a number over all bits. D. Stafford's variant 13 of the finalizer of MurmurHash3, as in G. L. Steele et al., OOPSLA 2014,
+/// doi:10.1145/2660193.2660195.
+fn scatter(z: u64) -> u64 {
+    let z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    z ^ (z >> 31)
+}
+
 /// Buffers of the subtraction, kept between points.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Hiding {
     visible: PolygonList,
     next: PolygonList,
-    rest: Vec<Vec3>,
+    rest: Polygon,
     cutter: Cutter,
     room: Room,
+    kind: Kind,
 }
 
 impl Hiding {
@@ -145,14 +182,22 @@ impl Hiding {
         let Some((last, others)) = screens.split_last() else { return 0.0 };
         let hidden = self.hide(x, n, target, others);
         // After the last body nobody asks for what is left.
-        hidden + self.behind(last, x, n, false)
+        hidden + self.behind((others.len(), last), x, n, false)
     }
 
     /// As [`hidden_factor`](Self::hidden_factor), and leaves what is seen in [`visible`](Self::visible).
     pub(crate) fn hide(&mut self, x: Vec3, n: Vec3, target: &[Vec3], screens: &[Screen]) -> f64 {
+        self.kind = Kind::default();
         self.visible.clear();
-        self.visible.push_with(|corners| corners.extend(target.iter().map(|&y| y - x)));
-        screens.iter().map(|screen| self.behind(screen, x, n, true)).sum()
+        self.rest.clear();
+        target.iter().enumerate().for_each(|(k, &y)| self.rest.push(y - x, k as Maker));
+        self.visible.push(&self.rest.corners, &self.rest.makers);
+        screens.iter().enumerate().map(|screen| self.behind(screen, x, n, true)).sum()
+    }
+
+    /// What makes the hidden parts of the last point.
+    pub(crate) fn kind(&self) -> Kind {
+        self.kind
     }
 
     /// What the last point saw: convex polygons, relative to it.
@@ -161,37 +206,49 @@ impl Hiding {
     }
 
     /// Moves what lies in the shadow of a body from the visible pieces to the hidden sum.
-    fn behind(&mut self, screen: &Screen, x: Vec3, n: Vec3, keep: bool) -> f64 {
+    fn behind(&mut self, (k, screen): (usize, &Screen), x: Vec3, n: Vec3, keep: bool) -> f64 {
         if screen.shadow(x, &mut self.room) == Shadow::Nothing {
             return 0.0;
         }
         self.next.clear();
-        let hidden = (0..self.visible.len()).map(|i| self.darken(i, n, keep)).sum();
+        // Half-spaces of other bodies, and sides of the target, have other numbers.
+        let first = (k as Maker + 1) << 8;
+        let hidden =
+            (0..self.visible.len()).map(|i| self.darken(i, n, keep, first, screen.tolerance())).sum();
         std::mem::swap(&mut self.visible, &mut self.next);
         hidden
     }
 
     /// Form factor of the part of a visible piece that lies in the room; with `keep` the rest goes to the next pieces.
-    fn darken(&mut self, i: usize, n: Vec3, keep: bool) -> f64 {
+    fn darken(&mut self, i: usize, n: Vec3, keep: bool, first: Maker, flat: f64) -> f64 {
+        let (corners, makers) = self.visible.get(i);
         self.rest.clear();
-        self.rest.extend_from_slice(self.visible.get(i));
+        self.rest.corners.extend_from_slice(corners);
+        self.rest.makers.extend_from_slice(makers);
         let start = self.next.len();
-        for &(m, c) in self.room.planes() {
-            match self.cutter.split(&self.rest, m, c, 0.0) {
+        for &(m, c, maker) in self.room.planes() {
+            match self.cutter.split(&self.rest, (m, c, first + maker), flat * size(m)) {
                 Cut::Inside => {}
                 Cut::Outside => {
                     self.next.truncate(start);
-                    self.next.push_with(|corners| corners.extend_from_slice(self.visible.get(i)));
+                    self.next.push(corners, makers);
                     return 0.0;
                 }
                 Cut::Both => {
                     std::mem::swap(&mut self.rest, &mut self.cutter.inside);
                     if keep {
-                        self.next.push_with(|corners| corners.extend_from_slice(&self.cutter.outside));
+                        self.next.push(&self.cutter.outside.corners, &self.cutter.outside.makers);
                     }
                 }
             }
         }
-        point_to_polygon(n, self.rest.iter().copied())
+        self.kind.add(&self.rest.makers);
+        point_to_polygon(n, self.rest.corners.iter().copied())
     }
+}
+
+/// The sum of the sizes of the coordinates: at least the length, and free of a square root.
+fn size(v: Vec3) -> f64 {
+    let v = v.abs();
+    v.x + v.y + v.z
 }

@@ -8,6 +8,9 @@ use std::ops::Range;
 
 /// Planes in a node up to which it is cut between planes rather than through the middle.
 const PLANES: usize = 32;
+/// A direction along which patches of a scene have different places, whatever its design, and its share in their order.
+const ODD: Vec3 = Vec3::new(0.573_1, 0.319_7, 0.754_5);
+const SHEAR: f64 = 1e-4;
 /// Cosine of the angle between normals, less than 1 by this, up to which they count as one.
 const TURN: f64 = 1e-14;
 
@@ -138,7 +141,9 @@ impl Builder<'_> {
         // Extents that are equal but for rounding: the same axis wherever the scene stands.
         let most = size.max_element() * (1.0 - 1e-9);
         let axis = (0..3).find(|&axis| size[axis] >= most).unwrap_or(0);
-        order.sort_by(|&a, &b| self.centres[a as usize][axis].total_cmp(&self.centres[b as usize][axis]));
+        // Patches at one place along the axis are told apart by a small shear, not by their numbers.
+        let key = |&k: &u32| self.centres[k as usize][axis] + SHEAR * self.centres[k as usize].dot(ODD);
+        order.sort_by(|a, b| key(a).total_cmp(&key(b)));
         order.len() / 2
     }
 

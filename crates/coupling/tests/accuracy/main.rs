@@ -4,5 +4,6 @@
 #![allow(clippy::unwrap_used)]
 
 mod exact;
+mod stacked;
 mod symmetry;
 mod view3d;

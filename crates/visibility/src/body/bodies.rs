@@ -5,7 +5,7 @@ use fredholm_mesh::{Patch, Vec3};
 use super::coplanar::merge;
 use super::solid::solid;
 use super::weld::{Polygon, connected, weld};
-use super::{Body, Face};
+use super::{Body, Face, place};
 use crate::Occluders;
 
 /// Convex bodies that block the view between the elements of a scene.
@@ -26,17 +26,20 @@ impl Bodies {
         polygons.retain(|polygon| divides(&corners, polygon, elements, points, tolerance));
         let mut bodies = Vec::new();
         for list in connected(&polygons, |_, _| true) {
-            let faces: Vec<&Polygon> = list.iter().map(|&k| &polygons[k]).collect();
+            let mut faces: Vec<&Polygon> = list.iter().map(|&k| &polygons[k]).collect();
+            let middle = |polygon: &Polygon| place(polygon.corners.iter().map(|&k| &corners[k as usize]));
+            faces.sort_by(|a, b| middle(a).total_cmp(&middle(b)));
             let whole = solid(&corners, &faces, tolerance, &occluders.frame);
             match whole.filter(|solid| solid.stands_for_its_faces(elements, points, tolerance)) {
                 Some(solid) => bodies.push(solid.body),
                 None => bodies.extend(faces.iter().map(|face| flat(&corners, face, occluders))),
             }
         }
+        bodies.sort_by(|a, b| place(a.corners().iter()).total_cmp(&place(b.corners().iter())));
         Self { bodies, tolerance }
     }
 
-    /// The bodies.
+    /// The bodies, in an order that the numbers of the patches do not change.
     #[must_use]
     pub fn as_slice(&self) -> &[Body] {
         &self.bodies

@@ -7,6 +7,9 @@ use super::{Body, Edge};
 /// Faces of a solid at most, one bit each.
 pub(super) const FACES: usize = 64;
 
+/// Sine of the angle by which a point that counts as hidden may lie outside: where it lies exactly on the border, rounding does not decide.
+const GRAZING: f64 = 1e-9;
+
 /// What a body hides from a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shadow {
@@ -19,13 +22,14 @@ pub enum Shadow {
 /// An intersection of half-spaces {y : n·(y − x) ≥ c}, in coordinates relative to the point x.
 #[derive(Clone, Debug, Default)]
 pub struct Room {
-    planes: Vec<(Vec3, f64)>,
+    planes: Vec<(Vec3, f64, u32)>,
 }
 
 impl Room {
-    /// Normals n (of any length) and offsets c: those of the outline, for which c = 0, and those behind the faces.
+    /// Normals n (of any length), offsets c and numbers: those behind the faces, and those of the outline, for which c = 0. Half-spaces of one body that the same face or edge
+    /// makes have the same number from all points.
     #[must_use]
-    pub fn planes(&self) -> &[(Vec3, f64)] {
+    pub fn planes(&self) -> &[(Vec3, f64, u32)] {
         &self.planes
     }
 
@@ -34,16 +38,28 @@ impl Room {
     }
 
     /// Adds a half-space; a plane without direction bounds nothing.
-    pub(super) fn push(&mut self, normal: Vec3, offset: f64) {
+    fn push(&mut self, normal: Vec3, offset: f64, number: usize) {
         if normal != Vec3::ZERO {
-            self.planes.push((normal, offset));
+            self.planes.push((normal, offset, number as u32));
         }
     }
 
-    /// Whether all of the points, relative to x, lie inside.
+    /// Adds the half-space behind face `k`, over which the point is at `height` (m).
+    pub(super) fn push_face(&mut self, k: usize, normal: Vec3, height: f64) {
+        self.push(-normal, height, k);
+    }
+
+    /// Adds the half-space within edge `k` of the outline.
+    pub(super) fn push_edge(&mut self, k: usize, inward: Vec3) {
+        self.push(inward, 0.0, FACES + k);
+    }
+
+    /// Whether all of the points, relative to x, lie inside, or outside by an angle of rounding.
     #[must_use]
     pub fn holds(&self, points: &[Vec3]) -> bool {
-        self.planes.iter().all(|(n, c)| points.iter().all(|y| n.dot(*y) > *c))
+        self.planes
+            .iter()
+            .all(|(n, c, _)| points.iter().all(|y| n.dot(*y) - *c > -GRAZING * n.length() * y.length()))
     }
 }
 
@@ -61,8 +77,11 @@ impl Body {
             self.behind(x, -tolerance, room);
             return if self.solid { Shadow::Room } else { Shadow::Nothing };
         }
-        let outline = self.edges.iter().filter_map(|edge| self.inward(edge, x, lit));
-        outline.for_each(|inward| room.push(inward, 0.0));
+        for (k, edge) in self.edges.iter().enumerate() {
+            if let Some(inward) = self.inward(edge, x, lit) {
+                room.push_edge(k, inward);
+            }
+        }
         Shadow::Room
     }
 
@@ -73,7 +92,7 @@ impl Body {
             let height = face.height(x);
             if height > least {
                 lit |= 1 << k;
-                room.push(-face.normal, height);
+                room.push_face(k, face.normal, height);
             }
         }
         lit

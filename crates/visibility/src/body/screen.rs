@@ -41,7 +41,7 @@ impl<'a> Screen<'a> {
         };
         let turning: Vec<Face> = some(Looks::Some).collect();
         let fixed = turning.is_empty() && some(Looks::All).next().is_some() && !body.edges.is_empty();
-        let ahead = |face: &Face| target.iter().any(|&y| face.height(y) > 0.0);
+        let ahead = |face: &Face| target.iter().any(|&y| face.height(y) > tolerance);
         let front = fixed.then(|| some(Looks::All).filter(ahead).collect());
         let mut screen = Self { body, edges: Vec::with_capacity(8), turning, front, tolerance };
         for edge in &body.edges {
@@ -59,7 +59,8 @@ impl<'a> Screen<'a> {
         let ends = if left == Looks::All || right == Looks::None { [b, a] } else { [a, b] };
         let cuts = |x: &Vec3| {
             let inward = (ends[0] - *x).cross(ends[1] - *x);
-            target.iter().any(|y| inward.dot(*y - *x) < 0.0)
+            let flat = self.tolerance * inward.length();
+            target.iter().any(|y| inward.dot(*y - *x) < -flat)
         };
         if self.front.is_none() || source.iter().any(cuts) {
             self.edges.push(ends);
@@ -84,15 +85,21 @@ impl<'a> Screen<'a> {
         self.body
     }
 
+    /// Heights up to which a point lies on a face, m.
+    #[must_use]
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
     /// What of the target is hidden from a point `x` of the source; where that is a room, `room` holds it.
     pub fn shadow(&self, x: Vec3, room: &mut Room) -> Shadow {
         let Some(front) = &self.front else { return self.body.shadow(x, self.tolerance, room) };
         room.clear();
-        for face in front {
-            room.push(-face.normal, face.height(x));
+        for (k, face) in front.iter().enumerate() {
+            room.push_face(k, face.normal, face.height(x));
         }
-        for [a, b] in &self.edges {
-            room.push((*a - x).cross(*b - x), 0.0);
+        for (k, [a, b]) in self.edges.iter().enumerate() {
+            room.push_edge(k, (*a - x).cross(*b - x));
         }
         Shadow::Room
     }

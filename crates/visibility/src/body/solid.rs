@@ -88,24 +88,42 @@ fn bounds(face: &Face, corners: &[Vec3], tolerance: f64) -> bool {
     corners.iter().all(|&x| face.height(x) <= tolerance) && deepest < -1e3 * tolerance
 }
 
+/// Relative difference of an area and the sum of its parts.
+const PART: f64 = 1e-6;
+
 impl Solid {
-    /// Whether one solid hides what its faces hide: no point is in it, no element reaches into it, and those that lie on it looking in look out of no
-    /// opening and do not see each other.
+    /// Whether one solid hides what its faces hide: no point is in it, no element reaches into it, and those that lie on it looking in are covered by its faces, as what stands on a body or
+    /// under it is, and are not the inner sides of a hollow body.
     pub fn stands_for_its_faces(&self, elements: &[&Patch], points: &[Vec3], tolerance: f64) -> bool {
         let outside = |x: &Vec3| self.body.faces().iter().any(|face| face.height(*x) > tolerance);
         if !points.iter().all(outside) {
             return false;
         }
-        let mut inner = None;
-        elements.iter().all(|element| match self.meets(element, tolerance) {
-            Meeting::Apart => true,
-            Meeting::Inside => false,
+        let mut looked_into = vec![0.0; self.body.faces().len()];
+        let reaches = elements.iter().any(|element| match self.meets(element, tolerance) {
+            Meeting::Apart => false,
+            Meeting::Inside => true,
             Meeting::LooksIn(face) => {
-                let same = inner.is_none_or(|other| other == face);
-                inner = Some(face);
-                same && self.lid.is_none_or(|lid| lid == face)
+                if self.within(element, face, tolerance) {
+                    looked_into[face as usize] += element.area();
+                }
+                false
             }
-        })
+        });
+        !reaches && !self.hollow(&looked_into)
+    }
+
+    /// Whether an element in the plane of a face lies in that face.
+    fn within(&self, element: &Patch, face: u32, tolerance: f64) -> bool {
+        let mut others = self.body.faces().iter().zip(0..).filter(|(_, k)| *k != face);
+        others.all(|(other, _)| element.corners().iter().all(|&x| other.height(x) <= tolerance))
+    }
+
+    /// Whether elements that look in cover all faces but one at most.
+    fn hollow(&self, looked_into: &[f64]) -> bool {
+        let closed = (0..looked_into.len()).filter(|&k| self.lid != Some(k as u32));
+        let bare = closed.filter(|&k| looked_into[k] < (1.0 - PART) * self.body.face_area(k));
+        bare.count() <= 1
     }
 
     fn meets(&self, element: &Patch, tolerance: f64) -> Meeting {

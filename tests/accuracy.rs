@@ -1,0 +1,97 @@
+//! Asking for twice the accuracy never makes form factors worse, on any of the shipped scenes.
+//!
+//! Worse: the largest error of a factor at T/2 exceeds that at T, and is more than a fiftieth of what was asked for. Errors are against T = 1e-6, over a sample of
+//! the pairs of each scene, as parts of what leaves the smaller patch. The errors are some hundred times below T; there, two of thirty steps are up.
+
+// A test that cannot run should panic, in its helpers too.
+#![allow(clippy::unwrap_used)]
+
+use fredholm::coupling::form_factor::{Method, PairIntegrator, Workspace};
+use fredholm::coupling::sample_pairs;
+use fredholm::mesh::Mesh;
+use fredholm::scene::Scene;
+use fredholm::visibility::Occluders;
+use std::path::{Path, PathBuf};
+
+/// Tolerance of the first step; each next one is half as large.
+const FIRST: f64 = 1e-2;
+const STEPS: i32 = 6;
+/// Tolerance of what counts as true.
+const TRUE: f64 = 1e-6;
+/// Pairs of each kind in a sample, and how many are looked at to find them.
+const PAIRS: usize = 200;
+const LOOKS: usize = 4000;
+/// Error, as part of what was asked for, below which it may be larger than before.
+const FAR_BELOW: f64 = 0.02;
+
+fn scenes() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let mut files: Vec<PathBuf> =
+        files.filter(|path| path.extension().is_some_and(|e| e == "toml")).collect();
+    files.sort();
+    files
+}
+
+/// Computes factors of a sample of the pairs of one mesh.
+struct Sample<'a> {
+    mesh: &'a Mesh,
+    occluders: &'a Occluders,
+    pairs: Vec<[usize; 2]>,
+}
+
+impl<'a> Sample<'a> {
+    /// As many pairs with something between as pairs with nothing between, as far as a scene has them.
+    fn new(mesh: &'a Mesh, occluders: &'a Occluders) -> Self {
+        let integrator = PairIntegrator::new(mesh.patches(), occluders, FIRST);
+        let mut work = Workspace::default();
+        let (mut open, mut behind) = (Vec::new(), Vec::new());
+        for [i, j] in sample_pairs(mesh.len()).take(LOOKS) {
+            match integrator.exchange(i, j, &mut work).method {
+                Method::Hidden => {}
+                Method::Gauss | Method::Contour => open.push([i, j]),
+                Method::Clipped | Method::Sampled => behind.push([i, j]),
+            }
+        }
+        open.truncate(PAIRS);
+        behind.truncate(PAIRS);
+        Self { mesh, occluders, pairs: [open, behind].concat() }
+    }
+
+    /// What of the smaller patch's light goes to the other, to a tolerance.
+    fn factors(&self, tolerance: f64) -> Vec<f64> {
+        let integrator = PairIntegrator::new(self.mesh.patches(), self.occluders, tolerance);
+        let mut work = Workspace::default();
+        let mut factor =
+            |&[i, j]: &[usize; 2]| integrator.exchange(i, j, &mut work).value / integrator.smaller_area(i, j);
+        self.pairs.iter().map(&mut factor).collect()
+    }
+
+    /// Largest error of a factor at each step.
+    fn errors(&self) -> Vec<f64> {
+        let exact = self.factors(TRUE);
+        let error = |step| {
+            let found = self.factors(FIRST * 0.5f64.powi(step));
+            found.iter().zip(&exact).map(|(found, exact)| (found - exact).abs()).fold(0.0, f64::max)
+        };
+        (0..STEPS).map(error).collect()
+    }
+}
+
+#[test]
+fn twice_the_accuracy_is_never_worse() {
+    let files = scenes();
+    assert!(files.len() >= 6, "{files:?}");
+    for file in files {
+        let mesh = Scene::load(&file).unwrap().mesh().unwrap();
+        let occluders = Occluders::new(mesh.occluders()).unwrap();
+        let sample = Sample::new(&mesh, &occluders);
+        let errors = sample.errors();
+        let shown: Vec<String> = errors.iter().map(|e| format!("{e:.1e}")).collect();
+        println!("{}: {} pairs, errors {}", file.display(), sample.pairs.len(), shown.join(", "));
+        for ((before, after), step) in errors.iter().zip(&errors[1..]).zip(1..) {
+            let asked = FIRST * 0.5f64.powi(step);
+            assert!(*after <= before.max(FAR_BELOW * asked), "{}: {errors:?}", file.display());
+        }
+    }
+}
