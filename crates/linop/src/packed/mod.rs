@@ -142,6 +142,10 @@ impl<S: Storage> LinearOperator<f64> for PackedSymmetric<S> {
         out.iter_mut().enumerate().skip(i + 1).for_each(|(j, out)| *out = self.packed_row(j)[i].to_f64());
     }
 
+    fn lower_row(&self, i: usize, _lane: usize, out: &mut [f64]) {
+        out.iter_mut().zip(self.packed_row(i)).for_each(|(out, entry)| *out = entry.to_f64());
+    }
+
     fn column(&self, j: usize, lane: usize, out: &mut [f64]) {
         self.row(j, lane, out);
     }
@@ -163,6 +167,15 @@ impl<S: Storage> LinearOperator<f64> for PackedSymmetric<S> {
         relax: &mut Relax<'_, f64>,
     ) -> ControlFlow<()> {
         sweep::sweep(self, x, sweep, relax)
+    }
+
+    fn sweep_back(
+        &self,
+        x: &mut MultiVector<f64>,
+        sweep: &mut Sweep<f64>,
+        relax: &mut Relax<'_, f64>,
+    ) -> ControlFlow<()> {
+        sweep::sweep_back(self, x, sweep, relax)
     }
 }
 
