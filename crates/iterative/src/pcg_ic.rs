@@ -70,10 +70,11 @@ impl<T: Scalar> Scheme<T> for PcgCholesky {
         "Conjugate gradients preconditioned by an incomplete Cholesky factor with threshold"
     }
 
-    // Nothing left out is the worst case.
+    // Of a row no more than 1/τ of the entries can be τ times their mean; the lists of columns grow by doubling.
     fn bytes(&self, dim: usize, lanes: usize) -> u64 {
         let (n, entry) = (dim as u64, size_of::<T>() as u64);
-        let factor = n.saturating_mul(n / 2).saturating_mul(size_of::<(u32, T)>() as u64);
+        let kept = (n as f64 * n as f64 / self.threshold.max(1.0)) as u64;
+        let factor = kept.saturating_mul(size_of::<(u32, T)>() as u64);
         let vectors = n.saturating_mul(7).saturating_mul(entry);
         factor.saturating_add(vectors).saturating_mul(lanes as u64)
     }

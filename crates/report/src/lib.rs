@@ -13,6 +13,7 @@
 //! | `convergence.svg` | residual against iterations and seconds |
 //! | `run.json` | what made all this; written last, so its presence means a complete folder |
 //!
+//! [`write_comparison`] writes a comparison of solvers: `compare.csv`, `compare_history.csv`, `compare.svg`, `compare.json`.
 //! [`write_refinement`] writes a study of convergence: `converge.csv`, `converge.svg`, `converge.json`.
 //!
 //! Every file appears whole or not at all. Units: metres, W/m², W, seconds.
@@ -20,8 +21,10 @@
 mod atomic;
 mod axis;
 mod camera;
+mod chart;
 mod cie;
 mod colour;
+mod comparison;
 mod convergence;
 mod csv;
 mod error;
@@ -50,6 +53,11 @@ pub use atomic::write_atomically;
 pub use camera::Camera;
 pub use cie::colour_matching;
 pub use colour::Colouring;
+pub use comparison::{
+    COMPARISON_FILES, COMPARISON_FORMAT, ComparisonCase, ComparisonHistory, ComparisonRecord, ComparisonRun,
+    write_comparison, write_comparison_csv, write_comparison_history, write_comparison_plot,
+    write_sweep_plot,
+};
 pub use convergence::write_convergence;
 pub use error::ReportError;
 pub use faces_csv::write_faces_csv;
