@@ -8,7 +8,7 @@ use fredholm_linop::{Context, Halt, MultiVector, Scalar, SecondKind};
 /// Most steps.
 const STEPS: usize = 30;
 /// Relative change of the estimate that ends it.
-const CHANGE: f64 = 1e-4;
+const CHANGE: f64 = 1e-3;
 
 /// The estimate per lane. One application of A a step.
 pub(crate) fn jacobi_radius<T: Scalar>(

@@ -3,7 +3,13 @@
 //! This holds G_ij = A_i F_ij (m²) of light: row i of the triangle has i + 1 entries, n(n+1)/2 in all. Storage may be
 //! f32, which halves the memory at 6e-8 relative error an entry; arithmetic is always f64.
 
+#![allow(
+    clippy::inline_always,
+    reason = "what runs under the wide registers must be compiled into the function that has them"
+)]
+
 mod apply;
+mod planar;
 mod strip;
 mod sweep;
 

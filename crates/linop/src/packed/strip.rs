@@ -2,120 +2,154 @@
 //! u_jl += Σ_r g_rj f_rl.
 //!
 //! Taking several rows at a time divides the traffic of x and u, which do not fit the innermost cache, by their
-//! number. Vectors are stored unknown-major, so a lane count known to the compiler turns the lanes of one unknown
-//! into one array. Every sum runs in [`WIDTH`] parts that are added in a fixed order: the bits depend on the code
-//! alone, not on the width of the machine's registers.
+//! number; more than [`LANES`] lanes are taken in turns, from entries that are then in the cache. The loops are
+//! compiled for the widest registers of the machine. Every sum runs in [`WIDTH`] parts that are added in a fixed
+//! order, without fused operations: the bits depend on the code alone, not on the machine.
 
 use super::Storage;
+use super::planar::Planar;
+use pulp::NullaryFnOnce;
 
-/// Entries of a row taken at a time. More of them would not fit the registers with four rows and three lanes.
-const WIDTH: usize = 2;
+/// Entries of a row taken at a time.
+const WIDTH: usize = 4;
+/// Most lanes at a time: with four rows, their sums fill the registers.
+const LANES: usize = 3;
 
-/// R rows, and how many lanes the vectors have. Values per row and lane are stored row by row.
+/// R rows whose first entry stands in column `from`.
+#[derive(Clone, Copy)]
 pub(super) struct Strip<'a, S, const R: usize> {
     pub rows: [&'a [S]; R],
-    pub lanes: usize,
+    pub from: usize,
+}
+
+/// s_rl += Σ_j g_rj x_jl, s_rl at r · lanes + l.
+pub(super) struct Dot<'a, S, const R: usize> {
+    pub strip: Strip<'a, S, R>,
+    pub x: &'a Planar,
+    pub sums: &'a mut [f64],
+}
+
+/// u_jl += Σ_r g_rj f_rl, f_rl at r · lanes + l.
+pub(super) struct Add<'a, S, const R: usize> {
+    pub strip: Strip<'a, S, R>,
+    pub factors: &'a [f64],
+    pub u: &'a mut Planar,
+}
+
+impl<S: Storage, const R: usize> NullaryFnOnce for Dot<'_, S, R> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let lanes = self.sums.len() / R;
+        let mut first = 0;
+        while first < lanes {
+            match lanes - first {
+                1 => self.strip.dot::<1>(self.x, (first, lanes), self.sums),
+                2 => self.strip.dot::<2>(self.x, (first, lanes), self.sums),
+                _ => self.strip.dot::<LANES>(self.x, (first, lanes), self.sums),
+            }
+            first += LANES;
+        }
+    }
+}
+
+impl<S: Storage, const R: usize> NullaryFnOnce for Add<'_, S, R> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let lanes = self.factors.len() / R;
+        let mut first = 0;
+        while first < lanes {
+            match lanes - first {
+                1 => self.strip.add::<1>(self.factors, (first, lanes), self.u),
+                2 => self.strip.add::<2>(self.factors, (first, lanes), self.u),
+                _ => self.strip.add::<LANES>(self.factors, (first, lanes), self.u),
+            }
+            first += LANES;
+        }
+    }
 }
 
 impl<S: Storage, const R: usize> Strip<'_, S, R> {
-    /// s_rl += Σ_j g_rj x_jl.
-    pub fn dot(&self, x: &[f64], sums: &mut [f64]) {
-        match self.lanes {
-            1 => self.dot_fixed::<1>(x, sums),
-            2 => self.dot_fixed::<2>(x, sums),
-            3 => self.dot_fixed::<3>(x, sums),
-            _ => self.dot_any(x, sums),
-        }
+    fn len(&self) -> usize {
+        self.rows.first().map_or(0, |row| row.len())
     }
 
-    /// u_jl += Σ_r g_rj f_rl.
-    pub fn add(&self, factors: &[f64], u: &mut [f64]) {
-        match self.lanes {
-            1 => self.add_fixed::<1>(factors, u),
-            2 => self.add_fixed::<2>(factors, u),
-            3 => self.add_fixed::<3>(factors, u),
-            _ => self.add_any(factors, u),
-        }
-    }
-
-    fn dot_fixed<const L: usize>(&self, x: &[f64], sums: &mut [f64]) {
-        let mut parts = [[[0.0; L]; WIDTH]; R];
-        let (xs, x_end) = x.as_chunks::<L>().0.as_chunks::<WIDTH>();
-        let (rows, ends) = self.cut(xs.len());
-        for (at, x) in xs.iter().enumerate() {
-            for r in 0..R {
-                for k in 0..WIDTH {
-                    add_scaled(&mut parts[r][k], rows[r][at][k].to_f64(), &x[k]);
-                }
-            }
-        }
-        for (k, x) in x_end.iter().enumerate() {
-            (0..R).for_each(|r| add_scaled(&mut parts[r][k], ends[r][k].to_f64(), x));
-        }
-        add_parts(&parts, sums);
-    }
-
-    fn add_fixed<const L: usize>(&self, factors: &[f64], u: &mut [f64]) {
-        let us = u.as_chunks_mut::<L>().0;
-        let factors: [[f64; L]; R] = gathered(factors);
-        let rows = self.rows.map(|row| &row[..us.len()]);
-        for (j, u) in us.iter_mut().enumerate() {
-            (0..R).for_each(|r| add_scaled(u, rows[r][j].to_f64(), &factors[r]));
-        }
-    }
-
-    /// The rows in `count` pieces of [`WIDTH`] entries, and what remains of them.
-    fn cut(&self, count: usize) -> ([&[[S; WIDTH]]; R], [&[S]; R]) {
+    /// The rows in pieces of [`WIDTH`] entries, and what remains of them.
+    #[inline(always)]
+    fn cut(&self) -> ([&[[S; WIDTH]]; R], [&[S]; R]) {
+        let count = self.len() / WIDTH;
         let pieces = self.rows.map(|row| &row.as_chunks::<WIDTH>().0[..count]);
         (pieces, self.rows.map(|row| &row[count * WIDTH..]))
     }
 
-    fn dot_any(&self, x: &[f64], sums: &mut [f64]) {
-        let lanes = self.lanes.max(1);
-        for (j, x) in x.chunks_exact(lanes).enumerate() {
-            for (row, sum) in self.rows.iter().zip(sums.chunks_exact_mut(lanes)) {
-                let entry = row[j].to_f64();
-                sum.iter_mut().zip(x).for_each(|(sum, x)| *sum += entry * x);
+    #[inline(always)]
+    fn dot<const L: usize>(&self, x: &Planar, (first, lanes): (usize, usize), sums: &mut [f64]) {
+        let (pieces, ends) = self.cut();
+        let count = self.len() / WIDTH;
+        let xs = x.lanes::<L>(first).map(|x| &x[self.from..self.from + self.len()]);
+        let x_pieces = xs.map(|x| &x.as_chunks::<WIDTH>().0[..count]);
+        let mut parts = [[[0.0; WIDTH]; L]; R];
+        for at in 0..count {
+            for r in 0..R {
+                let entries = pieces[r][at].map(Storage::to_f64);
+                for l in 0..L {
+                    for k in 0..WIDTH {
+                        parts[r][l][k] += entries[k] * x_pieces[l][at][k];
+                    }
+                }
+            }
+        }
+        for r in 0..R {
+            for l in 0..L {
+                for (k, entry) in ends[r].iter().enumerate() {
+                    parts[r][l][k] += entry.to_f64() * xs[l][count * WIDTH + k];
+                }
+                let [a, b, c, d] = parts[r][l];
+                sums[r * lanes + first + l] += (a + b) + (c + d);
             }
         }
     }
 
-    fn add_any(&self, factors: &[f64], u: &mut [f64]) {
-        let lanes = self.lanes.max(1);
-        for (j, u) in u.chunks_exact_mut(lanes).enumerate() {
-            for (row, factor) in self.rows.iter().zip(factors.chunks_exact(lanes)) {
-                let entry = row[j].to_f64();
-                u.iter_mut().zip(factor).for_each(|(u, factor)| *u += entry * factor);
+    #[inline(always)]
+    fn add<const L: usize>(&self, factors: &[f64], (first, lanes): (usize, usize), u: &mut Planar) {
+        let (pieces, ends) = self.cut();
+        let count = self.len() / WIDTH;
+        let factors: [[f64; L]; R] =
+            std::array::from_fn(|r| std::array::from_fn(|l| factors[r * lanes + first + l]));
+        let (from, to) = (self.from, self.from + self.len());
+        let us = u.lanes_mut::<L>(first).map(|u| &mut u[from..to]);
+        let mut us = us.map(|u| {
+            let (pieces, end) = u.split_at_mut(count * WIDTH);
+            (pieces.as_chunks_mut::<WIDTH>().0, end)
+        });
+        for at in 0..count {
+            for l in 0..L {
+                let u = &mut us[l].0[at];
+                let mut sum = *u;
+                for r in 0..R {
+                    let entries = pieces[r][at].map(Storage::to_f64);
+                    for k in 0..WIDTH {
+                        sum[k] += entries[k] * factors[r][l];
+                    }
+                }
+                *u = sum;
             }
         }
-    }
-}
-
-/// The lanes of R rows as values, so that the compiler may keep them in registers.
-fn gathered<const R: usize, const L: usize>(values: &[f64]) -> [[f64; L]; R] {
-    let rows = values.as_chunks::<L>().0;
-    std::array::from_fn(|r| rows[r])
-}
-
-fn add_scaled<const L: usize>(sum: &mut [f64; L], entry: f64, values: &[f64; L]) {
-    for l in 0..L {
-        sum[l] += entry * values[l];
-    }
-}
-
-fn add_parts<const R: usize, const L: usize>(parts: &[[[f64; L]; WIDTH]; R], sums: &mut [f64]) {
-    for (sum, parts) in sums.as_chunks_mut::<L>().0.iter_mut().zip(parts) {
-        let mut total = [0.0; L];
-        for part in parts {
-            add_scaled(&mut total, 1.0, part);
+        for (l, (_, end)) in us.iter_mut().enumerate() {
+            for (k, u) in end.iter_mut().enumerate() {
+                (0..R).for_each(|r| *u += ends[r][k].to_f64() * factors[r][l]);
+            }
         }
-        add_scaled(sum, 1.0, &total);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::MultiVector;
 
     /// Small integers, so that sums in any order are exact.
     fn integers(count: usize, period: usize) -> Vec<f64> {
@@ -123,24 +157,32 @@ mod tests {
     }
 
     fn check<const R: usize>(n: usize, lanes: usize) {
+        let (from, dim) = (2, n + 5);
         let entries = integers(R * n, 11);
-        let (x, factors) = (integers(n * lanes, 7), integers(R * lanes, 5));
+        let x = MultiVector::from_vec(dim, lanes, integers(dim * lanes, 7)).unwrap();
+        let factors = integers(R * lanes, 5);
         let rows: [&[f64]; R] = std::array::from_fn(|r| &entries[r * n..(r + 1) * n]);
-        let strip = Strip { rows, lanes };
-        let dot = |r: usize, l: usize| (0..n).map(|j| rows[r][j] * x[j * lanes + l]).sum::<f64>();
-        let add = |j: usize, l: usize| (0..R).map(|r| rows[r][j] * factors[r * lanes + l]).sum::<f64>();
-        let sums: Vec<f64> = (0..R * lanes).map(|at| 9.0 + dot(at / lanes, at % lanes)).collect();
-        let added: Vec<f64> = (0..n * lanes).map(|at| 1.0 + add(at / lanes, at % lanes)).collect();
+        let strip = Strip { rows, from };
+        let dot = |r: usize, l: usize| (0..n).map(|j| rows[r][j] * x.row(from + j)[l]).sum::<f64>();
+        let inside = |i: usize| i >= from && i < from + n;
+        let add = |i: usize, l: usize| {
+            let terms =
+                (0..R).map(|r| if inside(i) { rows[r][i - from] * factors[r * lanes + l] } else { 0.0 });
+            x.row(i)[l] + terms.sum::<f64>()
+        };
+        let expected: Vec<f64> = (0..R * lanes).map(|at| 9.0 + dot(at / lanes, at % lanes)).collect();
+        let added: Vec<f64> = (0..dim * lanes).map(|at| add(at / lanes, at % lanes)).collect();
 
-        let (mut sum, mut u) = (vec![9.0; R * lanes], vec![1.0; n * lanes]);
-        strip.dot(&x, &mut sum);
-        strip.add(&factors, &mut u);
-        assert_eq!((&sum, &u), (&sums, &added), "{R} × {n}, {lanes} lanes");
+        let (mut sums, mut u) = (vec![9.0; R * lanes], Planar::copied(&x));
+        Dot { strip, x: &Planar::copied(&x), sums: &mut sums }.call();
+        Add { strip, factors: &factors, u: &mut u }.call();
+        let u: Vec<f64> = (0..dim).flat_map(|i| u.row(i).collect::<Vec<_>>()).collect();
+        assert_eq!((&sums, &u), (&expected, &added), "{R} × {n}, {lanes} lanes");
     }
 
     #[test]
     fn every_lane_count_and_remainder_gives_the_plain_sums() {
-        for lanes in 0..6 {
+        for lanes in 0..9 {
             for n in 0..20 {
                 check::<1>(n, lanes);
                 check::<4>(n, lanes);

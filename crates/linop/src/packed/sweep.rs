@@ -4,9 +4,11 @@
 //! A few rows at a time share the sums over the columns before the first of them; those between them follow as
 //! their unknowns are relaxed. The backward sweep has its L from the forward one and reads each entry once, for U.
 
-use super::strip::Strip;
+use super::planar::Planar;
+use super::strip::{Add, Dot, Strip};
 use super::{PackedSymmetric, ROWS, Storage};
 use crate::{MultiVector, Relax, Sweep, Visit};
+use pulp::Arch;
 use std::ops::ControlFlow;
 
 pub(super) fn sweep<S: Storage>(
@@ -15,7 +17,8 @@ pub(super) fn sweep<S: Storage>(
     sweep: &mut Sweep<f64>,
     relax: &mut Relax<'_, f64>,
 ) -> ControlFlow<()> {
-    let mut pass = Pass::new(x, sweep);
+    let upper = Planar::copied(&sweep.upper);
+    let mut pass = Pass::new(x, sweep, upper);
     let whole = matrix.dim() / ROWS * ROWS;
     for first in (0..whole).step_by(ROWS) {
         pass.visit_rows::<S, ROWS>(matrix.packed_rows(first), first, relax)?;
@@ -23,6 +26,7 @@ pub(super) fn sweep<S: Storage>(
     for first in whole..matrix.dim() {
         pass.visit_rows::<S, 1>(matrix.packed_rows(first), first, relax)?;
     }
+    pass.keep_upper();
     sweep.complete();
     ControlFlow::Continue(())
 }
@@ -33,8 +37,8 @@ pub(super) fn sweep_back<S: Storage>(
     sweep: &mut Sweep<f64>,
     relax: &mut Relax<'_, f64>,
 ) -> ControlFlow<()> {
-    sweep.upper.fill(0.0);
-    let mut pass = Pass::new(x, sweep);
+    let upper = Planar::zeros(x.dim(), x.lanes());
+    let mut pass = Pass::new(x, sweep, upper);
     let whole = matrix.dim() / ROWS * ROWS;
     for first in (whole..matrix.dim()).rev() {
         pass.visit_rows_back::<S, 1>(matrix.packed_rows(first), first, relax)?;
@@ -42,6 +46,7 @@ pub(super) fn sweep_back<S: Storage>(
     for first in (0..whole).step_by(ROWS).rev() {
         pass.visit_rows_back::<S, ROWS>(matrix.packed_rows(first), first, relax)?;
     }
+    pass.keep_upper();
     ControlFlow::Continue(())
 }
 
@@ -50,17 +55,41 @@ struct Pass<'a> {
     lanes: usize,
     x: &'a mut MultiVector<f64>,
     sweep: &'a mut Sweep<f64>,
-    /// L of the rows taken together.
+    /// x and U as the inner loops read them.
+    known: Planar,
+    upper: Planar,
+    /// L and x of the rows taken together.
     lower: Vec<f64>,
+    factors: Vec<f64>,
     diagonal: Vec<f64>,
     off_diagonal: Vec<f64>,
+    arch: Arch,
 }
 
 impl<'a> Pass<'a> {
-    fn new(x: &'a mut MultiVector<f64>, sweep: &'a mut Sweep<f64>) -> Self {
+    fn new(x: &'a mut MultiVector<f64>, sweep: &'a mut Sweep<f64>, upper: Planar) -> Self {
         let lanes = x.lanes();
-        let zeros = vec![0.0; lanes];
-        Self { lanes, x, sweep, lower: vec![0.0; ROWS * lanes], diagonal: zeros.clone(), off_diagonal: zeros }
+        let (row, rows) = (vec![0.0; lanes], vec![0.0; ROWS * lanes]);
+        Self {
+            lanes,
+            known: Planar::copied(x),
+            x,
+            sweep,
+            upper,
+            lower: rows.clone(),
+            factors: rows,
+            diagonal: row.clone(),
+            off_diagonal: row,
+            arch: Arch::new(),
+        }
+    }
+
+    /// Leaves U where the next sweep finds it.
+    fn keep_upper(&mut self) {
+        for i in 0..self.x.dim() {
+            let values = self.upper.row(i);
+            self.sweep.upper.row_mut(i).iter_mut().zip(values).for_each(|(upper, value)| *upper = value);
+        }
     }
 
     /// Visits the unknowns of R rows, the columns before `first` together.
@@ -70,15 +99,21 @@ impl<'a> Pass<'a> {
         first: usize,
         relax: &mut Relax<'_, f64>,
     ) -> ControlFlow<()> {
-        let (start, end) = (first * self.lanes, (first + R) * self.lanes);
-        let before = Strip { rows: rows.map(|row| &row[..first]), lanes: self.lanes };
+        let strip = Strip { rows: rows.map(|row| &row[..first]), from: 0 };
         self.lower.fill(0.0);
-        before.dot(&self.x.as_slice()[..start], &mut self.lower[..R * self.lanes]);
+        let sums = &mut self.lower[..R * self.lanes];
+        self.arch.dispatch(Dot { strip, x: &self.known, sums });
         for (r, row) in rows.iter().enumerate() {
             self.visit(&row[first..], first, r, relax)?;
         }
-        before.add(&self.x.as_slice()[start..end], &mut self.sweep.upper.as_mut_slice()[..start]);
+        self.add_before(strip);
         ControlFlow::Continue(())
+    }
+
+    /// What R relaxed unknowns add to U of those before them.
+    fn add_before<S: Storage, const R: usize>(&mut self, strip: Strip<'_, S, R>) {
+        let factors = &self.factors[..R * self.lanes];
+        self.arch.dispatch(Add { strip, factors, u: &mut self.upper });
     }
 
     /// Visits unknown `first` + r, whose row from column `first` to the diagonal is `row`.
@@ -89,20 +124,41 @@ impl<'a> Pass<'a> {
         r: usize,
         relax: &mut Relax<'_, f64>,
     ) -> ControlFlow<()> {
-        let (index, above) = (first + r, first * self.lanes..(first + r) * self.lanes);
-        let corner = Strip { rows: [&row[..r]], lanes: self.lanes };
-        let lower = &mut self.lower[r * self.lanes..(r + 1) * self.lanes];
-        corner.dot(&self.x.as_slice()[above.clone()], lower);
-        self.sweep.take_upper(index, &mut self.off_diagonal);
-        self.off_diagonal.iter_mut().zip(&*lower).for_each(|(sum, lower)| *sum += lower);
+        let (index, own) = (first + r, r * self.lanes..(r + 1) * self.lanes);
+        for (k, entry) in row[..r].iter().enumerate() {
+            let above = &self.factors[k * self.lanes..(k + 1) * self.lanes];
+            let lower = self.lower[own.clone()].iter_mut();
+            lower.zip(above).for_each(|(sum, x)| *sum += entry.to_f64() * x);
+        }
+        let parts = self.upper.row(index).zip(&self.lower[own.clone()]);
+        self.off_diagonal.iter_mut().zip(parts).for_each(|(sum, (upper, lower))| *sum = upper + lower);
+        self.upper.clear_row(index);
+        self.relax(row, first, r, relax)?;
         let entry = row[r].to_f64();
-        self.diagonal.fill(entry);
+        let known = self.lower[own.clone()].iter().zip(self.x.row(index));
+        let product = self.sweep.product.row_mut(index).iter_mut();
+        product.zip(known).for_each(|(product, (lower, x))| *product = *lower + entry * *x);
+        self.sweep.lower.row_mut(index).copy_from_slice(&self.lower[own]);
+        ControlFlow::Continue(())
+    }
+
+    /// Shows an unknown, takes its new value and adds it to U of those before it among the rows taken together.
+    fn relax<S: Storage>(
+        &mut self,
+        row: &[S],
+        first: usize,
+        r: usize,
+        relax: &mut Relax<'_, f64>,
+    ) -> ControlFlow<()> {
+        let index = first + r;
+        self.diagonal.fill(row[r].to_f64());
         let (off_diagonal, diagonal, x) = (&self.off_diagonal, &self.diagonal, self.x.row_mut(index));
         relax(Visit { index, off_diagonal, diagonal, x: &mut *x })?;
-        corner.add(x, &mut self.sweep.upper.as_mut_slice()[above]);
-        let product = self.sweep.product.row_mut(index).iter_mut();
-        product.zip(&*lower).zip(x).for_each(|((product, lower), x)| *product = *lower + entry * *x);
-        self.sweep.lower.row_mut(index).copy_from_slice(lower);
+        self.known.set_row(index, x);
+        self.factors[r * self.lanes..(r + 1) * self.lanes].copy_from_slice(x);
+        for (k, entry) in row[..r].iter().enumerate() {
+            self.upper.add_row(first + k, x.iter().map(|x| entry.to_f64() * x));
+        }
         ControlFlow::Continue(())
     }
 
@@ -113,30 +169,12 @@ impl<'a> Pass<'a> {
         first: usize,
         relax: &mut Relax<'_, f64>,
     ) -> ControlFlow<()> {
-        let (start, end) = (first * self.lanes, (first + R) * self.lanes);
         for (r, row) in rows.iter().enumerate().rev() {
-            self.visit_back(&row[first..], first, r, relax)?;
+            let parts = self.upper.row(first + r).zip(self.sweep.lower.row(first + r));
+            self.off_diagonal.iter_mut().zip(parts).for_each(|(sum, (upper, lower))| *sum = upper + lower);
+            self.relax(&row[first..], first, r, relax)?;
         }
-        let before = Strip { rows: rows.map(|row| &row[..first]), lanes: self.lanes };
-        before.add(&self.x.as_slice()[start..end], &mut self.sweep.upper.as_mut_slice()[..start]);
-        ControlFlow::Continue(())
-    }
-
-    /// Visits unknown `first` + r, whose row from column `first` to the diagonal is `row`.
-    fn visit_back<S: Storage>(
-        &mut self,
-        row: &[S],
-        first: usize,
-        r: usize,
-        relax: &mut Relax<'_, f64>,
-    ) -> ControlFlow<()> {
-        let (index, above) = (first + r, first * self.lanes..(first + r) * self.lanes);
-        self.sweep.sum_parts(index, &mut self.off_diagonal);
-        self.diagonal.fill(row[r].to_f64());
-        let (off_diagonal, diagonal, x) = (&self.off_diagonal, &self.diagonal, self.x.row_mut(index));
-        relax(Visit { index, off_diagonal, diagonal, x: &mut *x })?;
-        let corner = Strip { rows: [&row[..r]], lanes: self.lanes };
-        corner.add(x, &mut self.sweep.upper.as_mut_slice()[above]);
+        self.add_before(Strip { rows: rows.map(|row| &row[..first]), from: 0 });
         ControlFlow::Continue(())
     }
 }
