@@ -5,9 +5,9 @@
 
 use super::planar::Planar;
 use super::strip::{Add, Dot, Strip};
-use super::{PackedSymmetric, ROWS, Storage};
+use super::{PackedSymmetric, ROWS, Storage, TILE};
 use crate::MultiVector;
-use pulp::{Arch, NullaryFnOnce};
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -17,8 +17,6 @@ const RUNS: usize = 32;
 const LEAST: usize = 1 << 15;
 /// Unknowns added at a time.
 const BLOCK: usize = 1 << 10;
-/// Columns taken at a time: four rows of them stay in the innermost cache for both directions and all lanes.
-const TILE: usize = 1 << 9;
 
 pub(super) fn apply<S: Storage>(matrix: &PackedSymmetric<S>, x: &MultiVector<f64>, y: &mut MultiVector<f64>) {
     let (planar, arch) = (Planar::copied(x), Arch::new());
@@ -57,23 +55,24 @@ struct Product<'a, S> {
     y: Planar,
     sums: Vec<f64>,
     factors: Vec<f64>,
+    buffer: Vec<f64>,
 }
 
 /// All rows of a product.
 struct Whole<'p, 'a, S>(&'p mut Product<'a, S>);
 
-impl<S: Storage> NullaryFnOnce for Whole<'_, '_, S> {
+impl<S: Storage> WithSimd for Whole<'_, '_, S> {
     type Output = ();
 
     #[inline(always)]
-    fn call(self) {
+    fn with_simd<V: Simd>(self, simd: V) {
         let Range { start, end } = self.0.rows;
         let whole = start + (end - start) / ROWS * ROWS;
         for first in (start..whole).step_by(ROWS) {
-            self.0.add_rows::<ROWS>(first);
+            self.0.add_rows::<V, ROWS>(simd, first);
         }
         for first in whole..end {
-            self.0.add_rows::<1>(first);
+            self.0.add_rows::<V, 1>(simd, first);
         }
     }
 }
@@ -82,12 +81,21 @@ impl<'a, S: Storage> Product<'a, S> {
     /// y up to the last of the rows.
     fn new(matrix: &'a PackedSymmetric<S>, rows: Range<usize>, lanes: usize, x: &'a Planar) -> Self {
         let (y, zeros) = (Planar::zeros(rows.end, lanes), vec![0.0; ROWS * lanes]);
-        Self { matrix, rows, lanes, x, y, sums: zeros.clone(), factors: zeros }
+        Self {
+            matrix,
+            rows,
+            lanes,
+            x,
+            y,
+            sums: zeros.clone(),
+            factors: zeros,
+            buffer: vec![0.0; ROWS * TILE],
+        }
     }
 
     /// Rows first … first + R − 1: the columns before `first` together, then those of each row up to its diagonal.
     #[inline(always)]
-    fn add_rows<const R: usize>(&mut self, first: usize) {
+    fn add_rows<V: Simd, const R: usize>(&mut self, simd: V, first: usize) {
         let rows = self.matrix.packed_rows::<R>(first);
         let count = R * self.lanes;
         self.sums.fill(0.0);
@@ -97,9 +105,10 @@ impl<'a, S: Storage> Product<'a, S> {
         }
         for from in (0..first).step_by(TILE) {
             let to = (from + TILE).min(first);
-            let strip = Strip { rows: rows.map(|row| &row[from..to]), from };
-            Dot { strip, x: self.x, sums: &mut self.sums[..count] }.call();
-            Add { strip, factors: &self.factors[..count], u: &mut self.y }.call();
+            let tile = PackedSymmetric::tile(&rows, (from, to), &mut self.buffer);
+            let strip = Strip { rows: &tile, from };
+            Dot { strip, x: self.x, sums: &mut self.sums[..count] }.with_simd(simd);
+            Add { strip, factors: &self.factors[..count], u: &mut self.y }.with_simd(simd);
         }
         (0..R).for_each(|r| self.add_corner(&rows[r][first..], first, r));
     }

@@ -16,8 +16,10 @@ mod sweep;
 use crate::{Dense, LinearOperator, LinopError, MultiVector, Relax, Sweep, Symmetry};
 use std::ops::ControlFlow;
 
-/// Rows taken at a time by the inner loops.
+/// Rows taken at a time.
 const ROWS: usize = 4;
+/// Columns taken at a time: four rows of them stay in the innermost cache for both directions and all lanes.
+const TILE: usize = 1 << 9;
 
 mod sealed {
     pub trait Sealed {}
@@ -31,6 +33,8 @@ pub trait Storage: sealed::Sealed + Copy + Send + Sync + 'static {
     fn from_f64(value: f64) -> Self;
     /// The stored value, exactly.
     fn to_f64(self) -> f64;
+    /// The stored values, exactly: as they stand, or in `buffer`, which is at least as long.
+    fn widened<'a>(values: &'a [Self], buffer: &'a mut [f64]) -> &'a [f64];
 }
 
 impl Storage for f64 {
@@ -41,6 +45,11 @@ impl Storage for f64 {
     fn to_f64(self) -> f64 {
         self
     }
+
+    #[inline(always)]
+    fn widened<'a>(values: &'a [Self], _: &'a mut [f64]) -> &'a [f64] {
+        values
+    }
 }
 
 impl Storage for f32 {
@@ -50,6 +59,13 @@ impl Storage for f32 {
 
     fn to_f64(self) -> f64 {
         f64::from(self)
+    }
+
+    #[inline(always)]
+    fn widened<'a>(values: &'a [Self], buffer: &'a mut [f64]) -> &'a [f64] {
+        let buffer = &mut buffer[..values.len()];
+        buffer.iter_mut().zip(values).for_each(|(wide, &value)| *wide = f64::from(value));
+        buffer
     }
 }
 
@@ -102,6 +118,17 @@ impl<S: Storage> PackedSymmetric<S> {
     /// R rows of the lower triangle from row `first` on.
     fn packed_rows<const R: usize>(&self, first: usize) -> [&[S]; R] {
         std::array::from_fn(|r| self.packed_row(first + r))
+    }
+
+    /// R rows from row `first` on, columns `from` … `to` − 1, as f64.
+    #[inline(always)]
+    fn tile<'a, const R: usize>(
+        rows: &[&'a [S]; R],
+        (from, to): (usize, usize),
+        buffer: &'a mut [f64],
+    ) -> [&'a [f64]; R] {
+        let mut buffers = buffer.chunks_exact_mut(TILE);
+        rows.map(|row| S::widened(&row[from..to], buffers.next().unwrap_or_default()))
     }
 
     /// g_ij, on either side of the diagonal.

@@ -2,146 +2,207 @@
 //! u_jl += Σ_r g_rj f_rl.
 //!
 //! Taking several rows at a time divides the traffic of x and u, which do not fit the innermost cache, by their
-//! number; more than [`LANES`] lanes are taken in turns, from entries that are then in the cache. The loops are
-//! compiled for the widest registers of the machine. Every sum runs in [`WIDTH`] parts that are added in a fixed
-//! order, without fused operations: the bits depend on the code alone, not on the machine.
+//! number. At most [`LANES`] lanes and [`PAIR`] rows are taken at a time by the innermost loops, so that everything
+//! that is summed stays in registers, the widest ones of the machine; a strip is short enough for the innermost cache to
+//! serve the repetitions. Every sum runs in [`WIDTH`] parts that are added in a fixed order, by fused operations that a machine
+//! without them emulates: the bits depend on the code alone, not on the machine.
 
-use super::Storage;
+use super::ROWS;
 use super::planar::Planar;
-use pulp::NullaryFnOnce;
+use pulp::{Simd, WithSimd};
 
-/// Entries of a row taken at a time.
+/// Parts of a sum.
 const WIDTH: usize = 4;
-/// Most lanes at a time: with four rows, their sums fill the registers.
+/// Most lanes at a time.
 const LANES: usize = 3;
+/// Rows at a time, where there are several lanes.
+const PAIR: usize = 2;
 
-/// R rows whose first entry stands in column `from`.
+/// Up to [`ROWS`] rows whose first entry stands in column `from`.
 #[derive(Clone, Copy)]
-pub(super) struct Strip<'a, S, const R: usize> {
-    pub rows: [&'a [S]; R],
+pub(super) struct Strip<'a> {
+    pub rows: &'a [&'a [f64]],
     pub from: usize,
 }
 
 /// s_rl += Σ_j g_rj x_jl, s_rl at r · lanes + l.
-pub(super) struct Dot<'a, S, const R: usize> {
-    pub strip: Strip<'a, S, R>,
+pub(super) struct Dot<'a> {
+    pub strip: Strip<'a>,
     pub x: &'a Planar,
     pub sums: &'a mut [f64],
 }
 
 /// u_jl += Σ_r g_rj f_rl, f_rl at r · lanes + l.
-pub(super) struct Add<'a, S, const R: usize> {
-    pub strip: Strip<'a, S, R>,
+pub(super) struct Add<'a> {
+    pub strip: Strip<'a>,
     pub factors: &'a [f64],
     pub u: &'a mut Planar,
 }
 
-impl<S: Storage, const R: usize> NullaryFnOnce for Dot<'_, S, R> {
+/// Some rows, and the lanes from one on.
+#[derive(Clone, Copy)]
+struct Place {
+    row: usize,
+    lane: usize,
+    lanes: usize,
+}
+
+impl WithSimd for Dot<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn call(self) {
-        let lanes = self.sums.len() / R;
-        let mut first = 0;
-        while first < lanes {
-            match lanes - first {
-                1 => self.strip.dot::<1>(self.x, (first, lanes), self.sums),
-                2 => self.strip.dot::<2>(self.x, (first, lanes), self.sums),
-                _ => self.strip.dot::<LANES>(self.x, (first, lanes), self.sums),
+    fn with_simd<V: Simd>(self, simd: V) {
+        let Self { strip, x, sums } = self;
+        let lanes = sums.len() / strip.rows.len().max(1);
+        for lane in (0..lanes).step_by(LANES) {
+            let at = Place { row: 0, lane, lanes };
+            match lanes - lane {
+                1 => strip.dots::<V, ROWS, 1>(simd, at, x, sums),
+                2 => strip.dots::<V, PAIR, 2>(simd, at, x, sums),
+                _ => strip.dots::<V, PAIR, LANES>(simd, at, x, sums),
             }
-            first += LANES;
         }
     }
 }
 
-impl<S: Storage, const R: usize> NullaryFnOnce for Add<'_, S, R> {
+impl WithSimd for Add<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn call(self) {
-        let lanes = self.factors.len() / R;
-        let mut first = 0;
-        while first < lanes {
-            match lanes - first {
-                1 => self.strip.add::<1>(self.factors, (first, lanes), self.u),
-                2 => self.strip.add::<2>(self.factors, (first, lanes), self.u),
-                _ => self.strip.add::<LANES>(self.factors, (first, lanes), self.u),
+    fn with_simd<V: Simd>(self, simd: V) {
+        let Self { strip, factors, u } = self;
+        let lanes = factors.len() / strip.rows.len().max(1);
+        for lane in (0..lanes).step_by(LANES) {
+            let at = Place { row: 0, lane, lanes };
+            match lanes - lane {
+                1 => strip.adds::<V, ROWS, 1>(simd, at, factors, u),
+                2 => strip.adds::<V, PAIR, 2>(simd, at, factors, u),
+                _ => strip.adds::<V, PAIR, LANES>(simd, at, factors, u),
             }
-            first += LANES;
         }
     }
 }
 
-impl<S: Storage, const R: usize> Strip<'_, S, R> {
+impl Strip<'_> {
     fn len(&self) -> usize {
         self.rows.first().map_or(0, |row| row.len())
     }
 
-    /// The rows in pieces of [`WIDTH`] entries, and what remains of them.
+    /// L lanes: R rows at a time, then those that are left one by one.
     #[inline(always)]
-    fn cut(&self) -> ([&[[S; WIDTH]]; R], [&[S]; R]) {
-        let count = self.len() / WIDTH;
-        let pieces = self.rows.map(|row| &row.as_chunks::<WIDTH>().0[..count]);
-        (pieces, self.rows.map(|row| &row[count * WIDTH..]))
+    fn dots<V: Simd, const R: usize, const L: usize>(
+        &self,
+        simd: V,
+        at: Place,
+        x: &Planar,
+        sums: &mut [f64],
+    ) {
+        let xs = x.lanes::<L>(at.lane).map(|x| &x[self.from..self.from + self.len()]);
+        let (groups, rest) = self.rows.as_chunks::<R>();
+        for (group, rows) in groups.iter().enumerate() {
+            dot::<V, R, L>(simd, *rows, xs, Place { row: group * R, ..at }, sums);
+        }
+        for (k, row) in rest.iter().enumerate() {
+            dot::<V, 1, L>(simd, [row], xs, Place { row: groups.len() * R + k, ..at }, sums);
+        }
     }
 
+    /// L lanes: R rows at a time, then those that are left one by one.
     #[inline(always)]
-    fn dot<const L: usize>(&self, x: &Planar, (first, lanes): (usize, usize), sums: &mut [f64]) {
-        let (pieces, ends) = self.cut();
-        let count = self.len() / WIDTH;
-        let xs = x.lanes::<L>(first).map(|x| &x[self.from..self.from + self.len()]);
-        let x_pieces = xs.map(|x| &x.as_chunks::<WIDTH>().0[..count]);
-        let mut parts = [[[0.0; WIDTH]; L]; R];
-        for at in 0..count {
+    fn adds<V: Simd, const R: usize, const L: usize>(
+        &self,
+        simd: V,
+        at: Place,
+        factors: &[f64],
+        u: &mut Planar,
+    ) {
+        let mut us = u.lanes_mut::<L>(at.lane).map(|u| &mut u[self.from..self.from + self.rows[0].len()]);
+        let (groups, rest) = self.rows.as_chunks::<R>();
+        for (group, rows) in groups.iter().enumerate() {
+            add::<V, R, L>(simd, *rows, factors, Place { row: group * R, ..at }, &mut us);
+        }
+        for (k, row) in rest.iter().enumerate() {
+            add::<V, 1, L>(simd, [row], factors, Place { row: groups.len() * R + k, ..at }, &mut us);
+        }
+    }
+}
+
+/// Registers that hold the parts of a sum.
+const fn registers<V: Simd>() -> usize {
+    WIDTH / V::F64_LANES
+}
+
+#[inline(always)]
+fn dot<V: Simd, const R: usize, const L: usize>(
+    simd: V,
+    rows: [&[f64]; R],
+    xs: [&[f64]; L],
+    at: Place,
+    sums: &mut [f64],
+) {
+    let whole = rows[0].len() / WIDTH * WIDTH;
+    // Slices of one length, which the compiler need not check again.
+    let count = whole / V::F64_LANES;
+    let pieces = rows.map(|row| &V::as_simd_f64s(row).0[..count]);
+    let x_pieces = xs.map(|x| &V::as_simd_f64s(x).0[..count]);
+    let mut parts = [[[simd.splat_f64s(0.0); WIDTH]; L]; R];
+    for block in 0..count / registers::<V>() {
+        for k in 0..registers::<V>() {
+            let place = block * registers::<V>() + k;
             for r in 0..R {
-                let entries = pieces[r][at].map(Storage::to_f64);
+                let entry = pieces[r][place];
                 for l in 0..L {
-                    for k in 0..WIDTH {
-                        parts[r][l][k] += entries[k] * x_pieces[l][at][k];
-                    }
+                    parts[r][l][k] = simd.mul_add_f64s(entry, x_pieces[l][place], parts[r][l][k]);
                 }
-            }
-        }
-        for r in 0..R {
-            for l in 0..L {
-                for (k, entry) in ends[r].iter().enumerate() {
-                    parts[r][l][k] += entry.to_f64() * xs[l][count * WIDTH + k];
-                }
-                let [a, b, c, d] = parts[r][l];
-                sums[r * lanes + first + l] += (a + b) + (c + d);
             }
         }
     }
-
-    #[inline(always)]
-    fn add<const L: usize>(&self, factors: &[f64], (first, lanes): (usize, usize), u: &mut Planar) {
-        let (pieces, ends) = self.cut();
-        let count = self.len() / WIDTH;
-        let factors: [[f64; L]; R] =
-            std::array::from_fn(|r| std::array::from_fn(|l| factors[r * lanes + first + l]));
-        let (from, to) = (self.from, self.from + self.len());
-        let us = u.lanes_mut::<L>(first).map(|u| &mut u[from..to]);
-        let mut us = us.map(|u| {
-            let (pieces, end) = u.split_at_mut(count * WIDTH);
-            (pieces.as_chunks_mut::<WIDTH>().0, end)
-        });
-        for at in 0..count {
-            for l in 0..L {
-                let u = &mut us[l].0[at];
-                let mut sum = *u;
-                for r in 0..R {
-                    let entries = pieces[r][at].map(Storage::to_f64);
-                    for k in 0..WIDTH {
-                        sum[k] += entries[k] * factors[r][l];
-                    }
-                }
-                *u = sum;
+    for r in 0..R {
+        for l in 0..L {
+            let mut part = spread(simd, &parts[r][l]);
+            for (k, (entry, x)) in rows[r][whole..].iter().zip(&xs[l][whole..]).enumerate() {
+                part[k] += entry * x;
             }
+            sums[(at.row + r) * at.lanes + at.lane + l] += (part[0] + part[1]) + (part[2] + part[3]);
         }
-        for (l, (_, end)) in us.iter_mut().enumerate() {
-            for (k, u) in end.iter_mut().enumerate() {
-                (0..R).for_each(|r| *u += ends[r][k].to_f64() * factors[r][l]);
+    }
+}
+
+/// The parts of a sum as numbers.
+#[inline(always)]
+fn spread<V: Simd>(_: V, parts: &[V::f64s; WIDTH]) -> [f64; WIDTH] {
+    let mut numbers = [0.0; WIDTH];
+    V::as_mut_simd_f64s(&mut numbers).0.copy_from_slice(&parts[..registers::<V>()]);
+    numbers
+}
+
+#[inline(always)]
+fn add<V: Simd, const R: usize, const L: usize>(
+    simd: V,
+    rows: [&[f64]; R],
+    factors: &[f64],
+    at: Place,
+    us: &mut [&mut [f64]; L],
+) {
+    let factor = |r: usize, l: usize| factors[(at.row + r) * at.lanes + at.lane + l];
+    let whole = rows[0].len() / WIDTH * WIDTH;
+    let count = whole / V::F64_LANES;
+    let pieces = rows.map(|row| &V::as_simd_f64s(row).0[..count]);
+    let splat: [[V::f64s; L]; R] =
+        std::array::from_fn(|r| std::array::from_fn(|l| simd.splat_f64s(factor(r, l))));
+    for (l, u) in us.iter_mut().enumerate() {
+        for (k, u) in u[whole..].iter_mut().enumerate() {
+            (0..R).for_each(|r| *u += rows[r][whole + k] * factor(r, l));
+        }
+    }
+    let u_pieces = us.each_mut().map(|u| &mut V::as_mut_simd_f64s(u).0[..count]);
+    for place in 0..count {
+        for l in 0..L {
+            let mut sum = u_pieces[l][place];
+            for r in 0..R {
+                sum = simd.mul_add_f64s(pieces[r][place], splat[r][l], sum);
             }
+            u_pieces[l][place] = sum;
         }
     }
 }
@@ -150,43 +211,61 @@ impl<S: Storage, const R: usize> Strip<'_, S, R> {
 mod tests {
     use super::*;
     use crate::MultiVector;
+    use pulp::Arch;
 
     /// Small integers, so that sums in any order are exact.
     fn integers(count: usize, period: usize) -> Vec<f64> {
         (0..count).map(|at| (at * at % period) as f64 - 3.0).collect()
     }
 
-    fn check<const R: usize>(n: usize, lanes: usize) {
+    fn check(count: usize, n: usize, lanes: usize) {
         let (from, dim) = (2, n + 5);
-        let entries = integers(R * n, 11);
+        let entries = integers(count * n, 11);
         let x = MultiVector::from_vec(dim, lanes, integers(dim * lanes, 7)).unwrap();
-        let factors = integers(R * lanes, 5);
-        let rows: [&[f64]; R] = std::array::from_fn(|r| &entries[r * n..(r + 1) * n]);
-        let strip = Strip { rows, from };
+        let factors = integers(count * lanes, 5);
+        let rows: Vec<&[f64]> = (0..count).map(|r| &entries[r * n..(r + 1) * n]).collect();
+        let strip = Strip { rows: &rows, from };
         let dot = |r: usize, l: usize| (0..n).map(|j| rows[r][j] * x.row(from + j)[l]).sum::<f64>();
         let inside = |i: usize| i >= from && i < from + n;
         let add = |i: usize, l: usize| {
-            let terms =
-                (0..R).map(|r| if inside(i) { rows[r][i - from] * factors[r * lanes + l] } else { 0.0 });
-            x.row(i)[l] + terms.sum::<f64>()
+            let term = |r: usize| if inside(i) { rows[r][i - from] * factors[r * lanes + l] } else { 0.0 };
+            x.row(i)[l] + (0..count).map(term).sum::<f64>()
         };
-        let expected: Vec<f64> = (0..R * lanes).map(|at| 9.0 + dot(at / lanes, at % lanes)).collect();
+        let expected: Vec<f64> = (0..count * lanes).map(|at| 9.0 + dot(at / lanes, at % lanes)).collect();
         let added: Vec<f64> = (0..dim * lanes).map(|at| add(at / lanes, at % lanes)).collect();
 
-        let (mut sums, mut u) = (vec![9.0; R * lanes], Planar::copied(&x));
-        Dot { strip, x: &Planar::copied(&x), sums: &mut sums }.call();
-        Add { strip, factors: &factors, u: &mut u }.call();
-        let u: Vec<f64> = (0..dim).flat_map(|i| u.row(i).collect::<Vec<_>>()).collect();
-        assert_eq!((&sums, &u), (&expected, &added), "{R} × {n}, {lanes} lanes");
+        for arch in [Arch::new(), Arch::Scalar] {
+            let (mut sums, mut u) = (vec![9.0; count * lanes], Planar::copied(&x));
+            arch.dispatch(Dot { strip, x: &Planar::copied(&x), sums: &mut sums });
+            arch.dispatch(Add { strip, factors: &factors, u: &mut u });
+            let u: Vec<f64> = (0..dim).flat_map(|i| u.row(i).collect::<Vec<_>>()).collect();
+            assert_eq!((&sums, &u), (&expected, &added), "{count} × {n}, {lanes} lanes");
+        }
     }
 
     #[test]
     fn every_lane_count_and_remainder_gives_the_plain_sums() {
         for lanes in 0..9 {
             for n in 0..20 {
-                check::<1>(n, lanes);
-                check::<4>(n, lanes);
+                (1..=ROWS).for_each(|rows| check(rows, n, lanes));
             }
         }
+    }
+
+    #[test]
+    fn the_width_of_the_registers_changes_no_bit() {
+        let (n, lanes) = (77, 4);
+        let values = |seed: usize, count: usize| -> Vec<f64> {
+            (0..count).map(|at| ((at * seed + 1) as f64 * 0.618_033_988_749_895).fract()).collect()
+        };
+        let entries = values(3, 4 * n);
+        let rows: Vec<&[f64]> = entries.chunks_exact(n).collect();
+        let x = Planar::copied(&MultiVector::from_vec(n, lanes, values(7, n * lanes)).unwrap());
+        let on = |arch: Arch| {
+            let mut sums = vec![0.0; 4 * lanes];
+            arch.dispatch(Dot { strip: Strip { rows: &rows, from: 0 }, x: &x, sums: &mut sums });
+            sums.iter().map(|sum| sum.to_bits()).collect::<Vec<u64>>()
+        };
+        assert_eq!(on(Arch::new()), on(Arch::Scalar));
     }
 }

@@ -6,9 +6,9 @@
 
 use super::planar::Planar;
 use super::strip::{Add, Dot, Strip};
-use super::{PackedSymmetric, ROWS, Storage};
+use super::{PackedSymmetric, ROWS, Storage, TILE};
 use crate::{MultiVector, Relax, Sweep, Visit};
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 use std::ops::ControlFlow;
 
 pub(super) fn sweep<S: Storage>(
@@ -63,6 +63,7 @@ struct Pass<'a> {
     factors: Vec<f64>,
     diagonal: Vec<f64>,
     off_diagonal: Vec<f64>,
+    buffer: Vec<f64>,
     arch: Arch,
 }
 
@@ -80,6 +81,7 @@ impl<'a> Pass<'a> {
             factors: rows,
             diagonal: row.clone(),
             off_diagonal: row,
+            buffer: vec![0.0; ROWS * TILE],
             arch: Arch::new(),
         }
     }
@@ -99,21 +101,12 @@ impl<'a> Pass<'a> {
         first: usize,
         relax: &mut Relax<'_, f64>,
     ) -> ControlFlow<()> {
-        let strip = Strip { rows: rows.map(|row| &row[..first]), from: 0 };
-        self.lower.fill(0.0);
-        let sums = &mut self.lower[..R * self.lanes];
-        self.arch.dispatch(Dot { strip, x: &self.known, sums });
+        self.arch.dispatch(Gather { pass: self, rows, first });
         for (r, row) in rows.iter().enumerate() {
             self.visit(&row[first..], first, r, relax)?;
         }
-        self.add_before(strip);
+        self.arch.dispatch(Scatter { pass: self, rows, first });
         ControlFlow::Continue(())
-    }
-
-    /// What R relaxed unknowns add to U of those before them.
-    fn add_before<S: Storage, const R: usize>(&mut self, strip: Strip<'_, S, R>) {
-        let factors = &self.factors[..R * self.lanes];
-        self.arch.dispatch(Add { strip, factors, u: &mut self.upper });
     }
 
     /// Visits unknown `first` + r, whose row from column `first` to the diagonal is `row`.
@@ -174,7 +167,50 @@ impl<'a> Pass<'a> {
             self.off_diagonal.iter_mut().zip(parts).for_each(|(sum, (upper, lower))| *sum = upper + lower);
             self.relax(&row[first..], first, r, relax)?;
         }
-        self.add_before(Strip { rows: rows.map(|row| &row[..first]), from: 0 });
+        self.arch.dispatch(Scatter { pass: self, rows, first });
         ControlFlow::Continue(())
+    }
+}
+
+/// L of R rows over the columns before `first`.
+struct Gather<'p, 'a, 'm, S, const R: usize> {
+    pass: &'p mut Pass<'a>,
+    rows: [&'m [S]; R],
+    first: usize,
+}
+
+impl<S: Storage, const R: usize> WithSimd for Gather<'_, '_, '_, S, R> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<V: Simd>(self, simd: V) {
+        let Self { pass, rows, first } = self;
+        pass.lower.fill(0.0);
+        for from in (0..first).step_by(TILE) {
+            let tile = PackedSymmetric::tile(&rows, (from, (from + TILE).min(first)), &mut pass.buffer);
+            let (strip, sums) = (Strip { rows: &tile, from }, &mut pass.lower[..R * pass.lanes]);
+            Dot { strip, x: &pass.known, sums }.with_simd(simd);
+        }
+    }
+}
+
+/// What R relaxed unknowns add to U of those before `first`.
+struct Scatter<'p, 'a, 'm, S, const R: usize> {
+    pass: &'p mut Pass<'a>,
+    rows: [&'m [S]; R],
+    first: usize,
+}
+
+impl<S: Storage, const R: usize> WithSimd for Scatter<'_, '_, '_, S, R> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<V: Simd>(self, simd: V) {
+        let Self { pass, rows, first } = self;
+        for from in (0..first).step_by(TILE) {
+            let tile = PackedSymmetric::tile(&rows, (from, (from + TILE).min(first)), &mut pass.buffer);
+            let (strip, factors) = (Strip { rows: &tile, from }, &pass.factors[..R * pass.lanes]);
+            Add { strip, factors, u: &mut pass.upper }.with_simd(simd);
+        }
     }
 }
