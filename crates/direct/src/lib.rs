@@ -1,18 +1,21 @@
-//! Direct solvers of (I − D K) x = b.
+//! Direct solvers of (I − D K) x = b, and its spectrum.
 //!
 //! A solver is one file here and one entry in the registry, see [`entries`]. All report the same residual ‖b − A x‖₂/‖b‖₂ per lane as the
 //! iterative ones, see [`fredholm_linop::Monitor`].
 
 mod cholesky;
 mod dense_lu;
+mod eigen;
 mod factorisation;
 mod groups;
 mod mixed_lu;
+mod spectrum;
 
 pub use cholesky::Cholesky;
 pub use dense_lu::DenseLu;
 pub use faer::traits::ComplexField;
 pub use mixed_lu::{MixedLu, Single};
+pub use spectrum::{Spectrum, SpectrumError, spectrum, spectrum_bytes};
 
 use fredholm_linop::{Entry, Options, Solver};
 

@@ -95,6 +95,12 @@ impl<T: Scalar> Dense<T> {
 
     /// The entries, row by row.
     #[must_use]
+    pub fn as_slice(&self) -> &[T] {
+        &self.entries
+    }
+
+    /// The entries, row by row.
+    #[must_use]
     pub fn into_vec(self) -> Vec<T> {
         self.entries
     }

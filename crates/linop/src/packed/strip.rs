@@ -133,6 +133,7 @@ const fn registers<V: Simd>() -> usize {
 }
 
 #[inline(always)]
+#[allow(clippy::needless_range_loop, reason = "r, l and k index several arrays")]
 fn dot<V: Simd, const R: usize, const L: usize>(
     simd: V,
     rows: [&[f64]; R],
