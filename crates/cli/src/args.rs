@@ -8,7 +8,7 @@ use clap_complete::Shell;
 use fredholm_discretisation::{DiscretisationError, discretisation};
 use serde::Serialize;
 
-use crate::commands::{CompareArgs, ViewFactorsArgs};
+use crate::commands::{CompareArgs, SpectrumArgs, ViewFactorsArgs};
 use crate::registry;
 use crate::size::Bytes;
 
@@ -64,6 +64,14 @@ those against LU where it fits the memory. Solvers that do not suit the system, 
 fit the memory, are listed as refused. Written are compare.csv, compare_history.csv,
 compare.svg, for a sweep compare_sweep.svg, and compare.json last. Ctrl-C ends the run with
 nothing written.";
+
+const SPECTRUM_EXAMPLES: &str = "\
+Examples:
+  fredholm spectrum scenes/leblond_room.toml
+  fredholm spectrum room.toml --dense 0 --steps 100 -o analysis
+
+Written are spectrum.csv, spectrum.svg, and spectrum.json last. Ctrl-C ends the run with nothing
+written.";
 
 const VIEW_FACTORS_EXAMPLES: &str = "\
 Examples:
@@ -129,6 +137,9 @@ pub(crate) enum Command {
     /// Run solvers on the same system; tell iterations, work, time and errors
     #[command(after_help = COMPARE_EXAMPLES)]
     Compare(CompareArgs),
+    /// Analyse the matrix of a scene: eigenvalues, radii, conditions, properties
+    #[command(after_help = SPECTRUM_EXAMPLES)]
+    Spectrum(SpectrumArgs),
     /// Compute the view-factor matrix of a scene or a mesh file
     #[command(name = "viewfactors", after_help = VIEW_FACTORS_EXAMPLES)]
     ViewFactors(ViewFactorsArgs),
@@ -157,6 +168,7 @@ impl Command {
             Self::Check(args) => args.log.log,
             Self::Converge(args) => args.log.log,
             Self::Compare(args) => args.log.log,
+            Self::Spectrum(args) => args.log.log,
             Self::ViewFactors(args) => args.log.log,
             _ => LogFormat::Plain,
         }

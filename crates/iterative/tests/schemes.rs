@@ -8,8 +8,8 @@ use fredholm_iterative::{
     Hybrid, Jacobi, Minres, Neumann, PcgCholesky, PcgJacobi, Progressive, Sor, Ssor, Sur, with_ambient,
 };
 use fredholm_linop::{
-    LinearOperator, MultiVector, PackedSymmetric, Progress, Quiet, Report, SecondKind, Solver, Stop,
-    StopReason,
+    Columns, Lazy, LinearOperator, MultiVector, PackedSymmetric, Progress, Quiet, Report, SecondKind, Solver,
+    Stop, StopReason,
 };
 use std::ops::ControlFlow;
 
@@ -220,6 +220,41 @@ fn overshooting_leaves_less_light_unshot() {
         scene.follow(&solver, 3).1.history.pop().unwrap().residuals[0]
     };
     assert!(unshot(true) < unshot(false), "{:e} {:e}", unshot(true), unshot(false));
+}
+
+/// Columns of a matrix that is stored elsewhere.
+struct Elsewhere<'a>(&'a PackedSymmetric<f64>);
+
+impl Columns<f64> for Elsewhere<'_> {
+    fn dim(&self) -> usize {
+        self.0.dim()
+    }
+
+    fn symmetry(&self) -> Symmetry {
+        Symmetry::Symmetric
+    }
+
+    fn diagonal(&self, i: usize) -> f64 {
+        self.0.get(i, i)
+    }
+
+    fn column(&self, j: usize, out: &mut [f64]) {
+        self.0.column(j, 0, out);
+    }
+}
+
+#[test]
+fn shooting_computes_no_more_columns_than_it_shoots() {
+    let scene = scene();
+    let elsewhere = Elsewhere(&scene.coupling);
+    let lazy = Lazy::new(&elsewhere, 1 << 20);
+    let system = SecondKind::new(&lazy, scene.factor.clone()).unwrap();
+    let stop = Stop { tolerance: 0.0, max_iterations: 2 };
+    let solver = Progressive { areas: scene.areas.clone(), overshoot: false, shots: Some(3) };
+    let mut x = MultiVector::zeros(N, 1);
+    solver.solve(&system, &scene.b, &mut x, &stop, &mut Quiet).unwrap();
+    assert!(lazy.computed() <= 6 && lazy.computed() > 1, "{}", lazy.computed());
+    assert_eq!(x.lane(0), scene.last(&solver, 2));
 }
 
 #[test]

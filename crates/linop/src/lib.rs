@@ -24,6 +24,7 @@
 mod catalogue;
 mod dense;
 mod error;
+mod lazy;
 mod monitor;
 mod multivector;
 mod operator;
@@ -37,6 +38,7 @@ mod sweep;
 pub use catalogue::{Entry, OptionError, Options, build};
 pub use dense::Dense;
 pub use error::{LinopError, SolveError};
+pub use lazy::{Columns, Lazy};
 pub use monitor::Monitor;
 pub use multivector::MultiVector;
 pub use operator::{LinearOperator, Symmetry};

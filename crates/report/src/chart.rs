@@ -175,7 +175,9 @@ fn draw_line(svg: &mut Svg, frame: &Frame<'_>, points: &[Point], colour: &str) {
         svg.polyline(&placed, colour);
     }
     if frame.panel.dots || placed.len() <= MARKED {
-        placed.into_iter().for_each(|point| svg.dot(point, colour));
+        for point in placed {
+            svg.dot(point, colour);
+        }
     }
 }
 

@@ -9,12 +9,14 @@ mod info;
 mod schema;
 mod solve;
 mod solvers;
+mod spectrum;
 mod viewfactors;
 
 use crate::args::Command;
 use crate::failure::{Ending, Failure};
 
 pub(crate) use compare::CompareArgs;
+pub(crate) use spectrum::SpectrumArgs;
 pub(crate) use viewfactors::ViewFactorsArgs;
 
 /// Carries out what was asked for.
@@ -24,6 +26,7 @@ pub(crate) fn execute(command: &Command) -> Result<Ending, Failure> {
         Command::Check(args) => check::check(args),
         Command::Converge(args) => converge::converge(args),
         Command::Compare(args) => compare::compare(args),
+        Command::Spectrum(args) => spectrum::spectrum(args),
         Command::ViewFactors(args) => viewfactors::view_factors(args),
         Command::Info(args) => info::info(args),
         Command::Schema => schema::schema(),

@@ -38,7 +38,7 @@ pub(super) fn case<S: Storage>(
         args.solvers().iter().map(|text| run(&bench, text, stages)).collect::<Result<_, _>>()?;
     let reference = reference(&bench, &outcomes, stages)?;
     let reflectance = factor * largest(problem);
-    Ok(judged(reflectance, outcomes, reference))
+    Ok(judged(reflectance, outcomes, reference.as_ref()))
 }
 
 /// Bytes that are allowed besides those of everything but the solver.
@@ -85,9 +85,9 @@ fn reference(
 fn judged(
     reflectance: f64,
     outcomes: Vec<Outcome>,
-    reference: Option<(ComparisonRun, MultiVector<f64>)>,
+    reference: Option<&(ComparisonRun, MultiVector<f64>)>,
 ) -> ComparisonCase {
-    let error = |x: &Option<MultiVector<f64>>| match (x, &reference) {
+    let error = |x: &Option<MultiVector<f64>>| match (x, reference) {
         (Some(x), Some((_, answer))) => distance(x, answer),
         _ => f64::NAN,
     };
@@ -95,8 +95,8 @@ fn judged(
         outcomes.into_iter().map(|Outcome { run, x }| ComparisonRun { error: error(&x), ..run }).collect();
     ComparisonCase {
         reflectance,
-        reference: reference.as_ref().map_or("none", |(run, _)| run.solver.as_str()).to_owned(),
-        reference_residual: reference.as_ref().map_or(f64::NAN, |(run, _)| run.residual),
+        reference: reference.map_or("none", |(run, _)| run.solver.as_str()).to_owned(),
+        reference_residual: reference.map_or(f64::NAN, |(run, _)| run.residual),
         runs,
     }
 }
