@@ -9,7 +9,7 @@ use fredholm_iterative::{
 };
 use fredholm_linop::{
     Columns, Lazy, LinearOperator, MultiVector, PackedSymmetric, Progress, Quiet, Report, SecondKind, Solver,
-    Stop, StopReason,
+    Stop, StopReason, Symmetry,
 };
 use std::ops::ControlFlow;
 
