@@ -55,7 +55,6 @@ struct Product<'a, S> {
     y: Planar,
     sums: Vec<f64>,
     factors: Vec<f64>,
-    buffer: Vec<f64>,
 }
 
 /// All rows of a product.
@@ -81,16 +80,7 @@ impl<'a, S: Storage> Product<'a, S> {
     /// y up to the last of the rows.
     fn new(matrix: &'a PackedSymmetric<S>, rows: Range<usize>, lanes: usize, x: &'a Planar) -> Self {
         let (y, zeros) = (Planar::zeros(rows.end, lanes), vec![0.0; ROWS * lanes]);
-        Self {
-            matrix,
-            rows,
-            lanes,
-            x,
-            y,
-            sums: zeros.clone(),
-            factors: zeros,
-            buffer: vec![0.0; ROWS * TILE],
-        }
+        Self { matrix, rows, lanes, x, y, sums: zeros.clone(), factors: zeros }
     }
 
     /// Rows first … first + R − 1: the columns before `first` together, then those of each row up to its diagonal.
@@ -105,7 +95,7 @@ impl<'a, S: Storage> Product<'a, S> {
         }
         for from in (0..first).step_by(TILE) {
             let to = (from + TILE).min(first);
-            let tile = PackedSymmetric::tile(&rows, (from, to), &mut self.buffer);
+            let tile = rows.map(|row| &row[from..to]);
             let strip = Strip { rows: &tile, from };
             Dot { strip, x: self.x, sums: &mut self.sums[..count] }.with_simd(simd);
             Add { strip, factors: &self.factors[..count], u: &mut self.y }.with_simd(simd);

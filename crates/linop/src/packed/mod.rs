@@ -14,10 +14,13 @@ mod strip;
 mod sweep;
 
 use crate::{Dense, LinearOperator, LinopError, MultiVector, Relax, Sweep, Symmetry};
+use rayon::prelude::*;
 use std::ops::ControlFlow;
 
 /// Rows taken at a time.
 const ROWS: usize = 4;
+/// Fewest entries of a column worth a thread.
+const LEAST: usize = 1 << 11;
 /// Columns taken at a time: four rows of them stay in the innermost cache for both directions and all lanes.
 const TILE: usize = 1 << 9;
 
@@ -33,8 +36,6 @@ pub trait Storage: sealed::Sealed + Copy + Send + Sync + 'static {
     fn from_f64(value: f64) -> Self;
     /// The stored value, exactly.
     fn to_f64(self) -> f64;
-    /// The stored values, exactly: as they stand, or in `buffer`, which is at least as long.
-    fn widened<'a>(values: &'a [Self], buffer: &'a mut [f64]) -> &'a [f64];
 }
 
 impl Storage for f64 {
@@ -45,11 +46,6 @@ impl Storage for f64 {
     fn to_f64(self) -> f64 {
         self
     }
-
-    #[inline(always)]
-    fn widened<'a>(values: &'a [Self], _: &'a mut [f64]) -> &'a [f64] {
-        values
-    }
 }
 
 impl Storage for f32 {
@@ -59,13 +55,6 @@ impl Storage for f32 {
 
     fn to_f64(self) -> f64 {
         f64::from(self)
-    }
-
-    #[inline(always)]
-    fn widened<'a>(values: &'a [Self], buffer: &'a mut [f64]) -> &'a [f64] {
-        let buffer = &mut buffer[..values.len()];
-        buffer.iter_mut().zip(values).for_each(|(wide, &value)| *wide = f64::from(value));
-        buffer
     }
 }
 
@@ -120,17 +109,6 @@ impl<S: Storage> PackedSymmetric<S> {
         std::array::from_fn(|r| self.packed_row(first + r))
     }
 
-    /// R rows from row `first` on, columns `from` … `to` − 1, as f64.
-    #[inline(always)]
-    fn tile<'a, const R: usize>(
-        rows: &[&'a [S]; R],
-        (from, to): (usize, usize),
-        buffer: &'a mut [f64],
-    ) -> [&'a [f64]; R] {
-        let mut buffers = buffer.chunks_exact_mut(TILE);
-        rows.map(|row| S::widened(&row[from..to], buffers.next().unwrap_or_default()))
-    }
-
     /// g_ij, on either side of the diagonal.
     ///
     /// # Panics
@@ -171,8 +149,11 @@ impl<S: Storage> LinearOperator<f64> for PackedSymmetric<S> {
     }
 
     fn row(&self, i: usize, _lane: usize, out: &mut [f64]) {
-        out.iter_mut().zip(self.packed_row(i)).for_each(|(out, entry)| *out = entry.to_f64());
-        out.iter_mut().enumerate().skip(i + 1).for_each(|(j, out)| *out = self.packed_row(j)[i].to_f64());
+        let (left, right) = out.split_at_mut(i + 1);
+        left.iter_mut().zip(self.packed_row(i)).for_each(|(out, entry)| *out = entry.to_f64());
+        // Below the diagonal every entry lies in another page of memory: several threads wait for several at once.
+        let below = right.par_iter_mut().with_min_len(LEAST).enumerate();
+        below.for_each(|(k, out)| *out = self.packed_row(i + 1 + k)[i].to_f64());
     }
 
     fn lower_row(&self, i: usize, _lane: usize, out: &mut [f64]) {

@@ -7,12 +7,12 @@
 //! serve the repetitions. Every sum runs in [`WIDTH`] parts that are added in a fixed order, by fused operations that a machine
 //! without them emulates: the bits depend on the code alone, not on the machine.
 
-use super::ROWS;
 use super::planar::Planar;
+use super::{ROWS, Storage};
 use pulp::{Simd, WithSimd};
 
-/// Parts of a sum.
-const WIDTH: usize = 4;
+/// Parts of a sum: no register holds more numbers.
+const WIDTH: usize = 8;
 /// Most lanes at a time.
 const LANES: usize = 3;
 /// Rows at a time, where there are several lanes.
@@ -20,21 +20,21 @@ const PAIR: usize = 2;
 
 /// Up to [`ROWS`] rows whose first entry stands in column `from`.
 #[derive(Clone, Copy)]
-pub(super) struct Strip<'a> {
-    pub rows: &'a [&'a [f64]],
+pub(super) struct Strip<'a, S> {
+    pub rows: &'a [&'a [S]],
     pub from: usize,
 }
 
 /// s_rl += Σ_j g_rj x_jl, s_rl at r · lanes + l.
-pub(super) struct Dot<'a> {
-    pub strip: Strip<'a>,
+pub(super) struct Dot<'a, S> {
+    pub strip: Strip<'a, S>,
     pub x: &'a Planar,
     pub sums: &'a mut [f64],
 }
 
 /// u_jl += Σ_r g_rj f_rl, f_rl at r · lanes + l.
-pub(super) struct Add<'a> {
-    pub strip: Strip<'a>,
+pub(super) struct Add<'a, S> {
+    pub strip: Strip<'a, S>,
     pub factors: &'a [f64],
     pub u: &'a mut Planar,
 }
@@ -47,7 +47,7 @@ struct Place {
     lanes: usize,
 }
 
-impl WithSimd for Dot<'_> {
+impl<S: Storage> WithSimd for Dot<'_, S> {
     type Output = ();
 
     #[inline(always)]
@@ -65,7 +65,7 @@ impl WithSimd for Dot<'_> {
     }
 }
 
-impl WithSimd for Add<'_> {
+impl<S: Storage> WithSimd for Add<'_, S> {
     type Output = ();
 
     #[inline(always)]
@@ -83,7 +83,7 @@ impl WithSimd for Add<'_> {
     }
 }
 
-impl Strip<'_> {
+impl<S: Storage> Strip<'_, S> {
     fn len(&self) -> usize {
         self.rows.first().map_or(0, |row| row.len())
     }
@@ -100,10 +100,10 @@ impl Strip<'_> {
         let xs = x.lanes::<L>(at.lane).map(|x| &x[self.from..self.from + self.len()]);
         let (groups, rest) = self.rows.as_chunks::<R>();
         for (group, rows) in groups.iter().enumerate() {
-            dot::<V, R, L>(simd, *rows, xs, Place { row: group * R, ..at }, sums);
+            dot::<V, S, R, L>(simd, *rows, xs, Place { row: group * R, ..at }, sums);
         }
         for (k, row) in rest.iter().enumerate() {
-            dot::<V, 1, L>(simd, [row], xs, Place { row: groups.len() * R + k, ..at }, sums);
+            dot::<V, S, 1, L>(simd, [row], xs, Place { row: groups.len() * R + k, ..at }, sums);
         }
     }
 
@@ -119,10 +119,10 @@ impl Strip<'_> {
         let mut us = u.lanes_mut::<L>(at.lane).map(|u| &mut u[self.from..self.from + self.rows[0].len()]);
         let (groups, rest) = self.rows.as_chunks::<R>();
         for (group, rows) in groups.iter().enumerate() {
-            add::<V, R, L>(simd, *rows, factors, Place { row: group * R, ..at }, &mut us);
+            add::<V, S, R, L>(simd, *rows, factors, Place { row: group * R, ..at }, &mut us);
         }
         for (k, row) in rest.iter().enumerate() {
-            add::<V, 1, L>(simd, [row], factors, Place { row: groups.len() * R + k, ..at }, &mut us);
+            add::<V, S, 1, L>(simd, [row], factors, Place { row: groups.len() * R + k, ..at }, &mut us);
         }
     }
 }
@@ -134,26 +134,26 @@ const fn registers<V: Simd>() -> usize {
 
 #[inline(always)]
 #[allow(clippy::needless_range_loop, reason = "r, l and k index several arrays")]
-fn dot<V: Simd, const R: usize, const L: usize>(
+fn dot<V: Simd, S: Storage, const R: usize, const L: usize>(
     simd: V,
-    rows: [&[f64]; R],
+    rows: [&[S]; R],
     xs: [&[f64]; L],
     at: Place,
     sums: &mut [f64],
 ) {
-    let whole = rows[0].len() / WIDTH * WIDTH;
+    let blocks = rows[0].len() / WIDTH;
+    let (whole, count) = (blocks * WIDTH, blocks * registers::<V>());
     // Slices of one length, which the compiler need not check again.
-    let count = whole / V::F64_LANES;
-    let pieces = rows.map(|row| &V::as_simd_f64s(row).0[..count]);
+    let pieces = rows.map(|row| &row.as_chunks::<WIDTH>().0[..blocks]);
     let x_pieces = xs.map(|x| &V::as_simd_f64s(x).0[..count]);
     let mut parts = [[[simd.splat_f64s(0.0); WIDTH]; L]; R];
-    for block in 0..count / registers::<V>() {
+    for block in 0..blocks {
         for k in 0..registers::<V>() {
-            let place = block * registers::<V>() + k;
             for r in 0..R {
-                let entry = pieces[r][place];
+                let entry = load::<V, S>(&pieces[r][block], k);
                 for l in 0..L {
-                    parts[r][l][k] = simd.mul_add_f64s(entry, x_pieces[l][place], parts[r][l][k]);
+                    let x = x_pieces[l][block * registers::<V>() + k];
+                    parts[r][l][k] = simd.mul_add_f64s(entry, x, parts[r][l][k]);
                 }
             }
         }
@@ -162,11 +162,24 @@ fn dot<V: Simd, const R: usize, const L: usize>(
         for l in 0..L {
             let mut part = spread(simd, &parts[r][l]);
             for (k, (entry, x)) in rows[r][whole..].iter().zip(&xs[l][whole..]).enumerate() {
-                part[k] += entry * x;
+                part[k] += entry.to_f64() * x;
             }
-            sums[(at.row + r) * at.lanes + at.lane + l] += (part[0] + part[1]) + (part[2] + part[3]);
+            sums[(at.row + r) * at.lanes + at.lane + l] += folded(&part);
         }
     }
+}
+
+/// The k-th register of a piece of a row.
+#[inline(always)]
+fn load<V: Simd, S: Storage>(piece: &[S; WIDTH], k: usize) -> V::f64s {
+    V::as_simd_f64s(&piece.map(Storage::to_f64)).0[k]
+}
+
+/// The parts of a sum, added in pairs.
+#[inline(always)]
+fn folded(part: &[f64; WIDTH]) -> f64 {
+    let [a, b, c, d, e, f, g, h] = *part;
+    ((a + b) + (c + d)) + ((e + f) + (g + h))
 }
 
 /// The parts of a sum as numbers.
@@ -178,32 +191,37 @@ fn spread<V: Simd>(_: V, parts: &[V::f64s; WIDTH]) -> [f64; WIDTH] {
 }
 
 #[inline(always)]
-fn add<V: Simd, const R: usize, const L: usize>(
+#[allow(clippy::needless_range_loop, reason = "r, l and k index several arrays")]
+fn add<V: Simd, S: Storage, const R: usize, const L: usize>(
     simd: V,
-    rows: [&[f64]; R],
+    rows: [&[S]; R],
     factors: &[f64],
     at: Place,
     us: &mut [&mut [f64]; L],
 ) {
     let factor = |r: usize, l: usize| factors[(at.row + r) * at.lanes + at.lane + l];
-    let whole = rows[0].len() / WIDTH * WIDTH;
-    let count = whole / V::F64_LANES;
-    let pieces = rows.map(|row| &V::as_simd_f64s(row).0[..count]);
+    let blocks = rows[0].len() / WIDTH;
+    let (whole, count) = (blocks * WIDTH, blocks * registers::<V>());
+    let pieces = rows.map(|row| &row.as_chunks::<WIDTH>().0[..blocks]);
     let splat: [[V::f64s; L]; R] =
         std::array::from_fn(|r| std::array::from_fn(|l| simd.splat_f64s(factor(r, l))));
     for (l, u) in us.iter_mut().enumerate() {
         for (k, u) in u[whole..].iter_mut().enumerate() {
-            (0..R).for_each(|r| *u += rows[r][whole + k] * factor(r, l));
+            (0..R).for_each(|r| *u += rows[r][whole + k].to_f64() * factor(r, l));
         }
     }
     let u_pieces = us.each_mut().map(|u| &mut V::as_mut_simd_f64s(u).0[..count]);
-    for place in 0..count {
-        for l in 0..L {
-            let mut sum = u_pieces[l][place];
-            for r in 0..R {
-                sum = simd.mul_add_f64s(pieces[r][place], splat[r][l], sum);
+    for block in 0..blocks {
+        for k in 0..registers::<V>() {
+            let entries: [V::f64s; R] = std::array::from_fn(|r| load::<V, S>(&pieces[r][block], k));
+            for l in 0..L {
+                let u = &mut u_pieces[l][block * registers::<V>() + k];
+                let mut sum = *u;
+                for r in 0..R {
+                    sum = simd.mul_add_f64s(entries[r], splat[r][l], sum);
+                }
+                *u = sum;
             }
-            u_pieces[l][place] = sum;
         }
     }
 }

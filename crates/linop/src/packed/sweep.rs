@@ -63,7 +63,6 @@ struct Pass<'a> {
     factors: Vec<f64>,
     diagonal: Vec<f64>,
     off_diagonal: Vec<f64>,
-    buffer: Vec<f64>,
     arch: Arch,
 }
 
@@ -81,7 +80,6 @@ impl<'a> Pass<'a> {
             factors: rows,
             diagonal: row.clone(),
             off_diagonal: row,
-            buffer: vec![0.0; ROWS * TILE],
             arch: Arch::new(),
         }
     }
@@ -187,7 +185,7 @@ impl<S: Storage, const R: usize> WithSimd for Gather<'_, '_, '_, S, R> {
         let Self { pass, rows, first } = self;
         pass.lower.fill(0.0);
         for from in (0..first).step_by(TILE) {
-            let tile = PackedSymmetric::tile(&rows, (from, (from + TILE).min(first)), &mut pass.buffer);
+            let tile = rows.map(|row| &row[from..(from + TILE).min(first)]);
             let (strip, sums) = (Strip { rows: &tile, from }, &mut pass.lower[..R * pass.lanes]);
             Dot { strip, x: &pass.known, sums }.with_simd(simd);
         }
@@ -208,7 +206,7 @@ impl<S: Storage, const R: usize> WithSimd for Scatter<'_, '_, '_, S, R> {
     fn with_simd<V: Simd>(self, simd: V) {
         let Self { pass, rows, first } = self;
         for from in (0..first).step_by(TILE) {
-            let tile = PackedSymmetric::tile(&rows, (from, (from + TILE).min(first)), &mut pass.buffer);
+            let tile = rows.map(|row| &row[from..(from + TILE).min(first)]);
             let (strip, factors) = (Strip { rows: &tile, from }, &pass.factors[..R * pass.lanes]);
             Add { strip, factors, u: &mut pass.upper }.with_simd(simd);
         }

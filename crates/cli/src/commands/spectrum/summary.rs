@@ -46,5 +46,5 @@ fn described(band: &BandSpectrum, lines: &mut Lines) {
     lines.add_some("  properties", (!properties.is_empty()).then(|| properties.join(", ")));
     let field =
         band.field_of_values.map(|[low, high, across]| format!("{low:.4} … {high:.4}, ± {across:.4} i"));
-    lines.add_some("  field of values", field);
+    lines.add_some("  values in", field);
 }
