@@ -8,7 +8,7 @@ use clap_complete::Shell;
 use fredholm_discretisation::{DiscretisationError, discretisation};
 use serde::Serialize;
 
-use crate::commands::ViewFactorsArgs;
+use crate::commands::{CompareArgs, SpectrumArgs, ViewFactorsArgs};
 use crate::registry;
 use crate::size::Bytes;
 
@@ -52,6 +52,26 @@ Level 0 is the mesh of the scene; each level cuts every element into 2 × 2. The
 scene stay what they are, and what is compared are means of the irradiance over them. An
 order takes three levels. Written are converge.csv, converge.svg, and converge.json last.
 Ctrl-C ends the run with nothing written.";
+
+const COMPARE_EXAMPLES: &str = "\
+Examples:
+  fredholm compare scenes/leblond_room.toml
+  fredholm compare room.toml --solvers gauss-seidel,sor:omega=1.2,cg-theta --to 1e-8
+  fredholm compare room.toml --solvers gauss-seidel,cg-theta --sweep reflectance=0.1..0.99
+
+All solvers start from x = 0 on the same matrix and stop at the same residual. Errors are
+those against LU where it fits the memory. Solvers that do not suit the system, or do not
+fit the memory, are listed as refused. Written are compare.csv, compare_history.csv,
+compare.svg, for a sweep compare_sweep.svg, and compare.json last. Ctrl-C ends the run with
+nothing written.";
+
+const SPECTRUM_EXAMPLES: &str = "\
+Examples:
+  fredholm spectrum scenes/leblond_room.toml
+  fredholm spectrum room.toml --dense 0 --steps 100 -o analysis
+
+Written are spectrum.csv, spectrum.svg, and spectrum.json last. Ctrl-C ends the run with nothing
+written.";
 
 const VIEW_FACTORS_EXAMPLES: &str = "\
 Examples:
@@ -114,6 +134,12 @@ pub(crate) enum Command {
     /// Solve a scene on finer and finer meshes; state the order and what error remains
     #[command(after_help = CONVERGE_EXAMPLES)]
     Converge(ConvergeArgs),
+    /// Run solvers on the same system; tell iterations, work, time and errors
+    #[command(after_help = COMPARE_EXAMPLES)]
+    Compare(CompareArgs),
+    /// Analyse the matrix of a scene: eigenvalues, radii, conditions, properties
+    #[command(after_help = SPECTRUM_EXAMPLES)]
+    Spectrum(SpectrumArgs),
     /// Compute the view-factor matrix of a scene or a mesh file
     #[command(name = "viewfactors", after_help = VIEW_FACTORS_EXAMPLES)]
     ViewFactors(ViewFactorsArgs),
@@ -141,6 +167,8 @@ impl Command {
             Self::Solve(args) => args.log.log,
             Self::Check(args) => args.log.log,
             Self::Converge(args) => args.log.log,
+            Self::Compare(args) => args.log.log,
+            Self::Spectrum(args) => args.log.log,
             Self::ViewFactors(args) => args.log.log,
             _ => LogFormat::Plain,
         }

@@ -1,6 +1,6 @@
 //! The solvers of all crates, by name.
 
-use fredholm_linop::Solver;
+use fredholm_linop::{OptionError, Options, Solver};
 
 /// The solver where none is asked for.
 pub(crate) const DEFAULT: &str = "gauss-seidel";
@@ -10,23 +10,42 @@ pub(crate) struct Entry {
     pub(crate) solver: Box<dyn Solver<f64>>,
     /// Whether there are iterates on the way that are worth keeping.
     pub(crate) iterative: bool,
+    /// What it asks of the system.
+    pub(crate) requirements: &'static str,
+    /// Its options and what they mean.
+    pub(crate) options: &'static [(&'static str, &'static str)],
 }
 
-/// All solvers.
+/// All solvers with their default options.
 pub(crate) fn all() -> impl Iterator<Item = Entry> {
-    let entry = |iterative| move |solver| Entry { solver, iterative };
-    let iterative = fredholm_iterative::solvers().into_iter().map(entry(true));
-    iterative.chain(fredholm_direct::solvers().into_iter().map(entry(false)))
+    names().into_iter().filter_map(find)
 }
 
 /// The names of all solvers.
 pub(crate) fn names() -> Vec<&'static str> {
-    all().map(|entry| entry.solver.name()).collect()
+    let iterative = fredholm_iterative::entries::<f64>().into_iter().map(|entry| entry.name);
+    iterative.chain(fredholm_direct::entries::<f64>().into_iter().map(|entry| entry.name)).collect()
 }
 
 /// The solver of this name, where there is one.
 pub(crate) fn find(name: &str) -> Option<Entry> {
-    all().find(|entry| entry.solver.name() == name)
+    build(name).ok()
+}
+
+/// The solver that a text such as `sor:omega=1.2` asks for.
+pub(crate) fn build(text: &str) -> Result<Entry, OptionError> {
+    let (name, given) = Options::parse(text)?;
+    let scheme = fredholm_iterative::entries::<f64>().into_iter().find(|entry| entry.name == name);
+    if let Some(entry) = scheme {
+        let solver = Box::new(entry.build(given)?);
+        let (requirements, options) = (entry.requirements, entry.options);
+        return Ok(Entry { solver, iterative: true, requirements, options });
+    }
+    let direct = fredholm_direct::entries::<f64>().into_iter().find(|entry| entry.name == name);
+    let unknown = || OptionError::Solver { name, known: names().join(", ") };
+    let entry = direct.ok_or_else(unknown)?;
+    let (requirements, options) = (entry.requirements, entry.options);
+    Ok(Entry { solver: entry.build(given)?, iterative: false, requirements, options })
 }
 
 #[cfg(test)]
@@ -42,5 +61,12 @@ mod tests {
         assert!(names.len() == count && names.contains(&DEFAULT));
         assert!(find(DEFAULT).unwrap().iterative && !find("lu").unwrap().iterative);
         assert!(find("magic").is_none());
+        assert_eq!(all().count(), count);
+    }
+
+    #[test]
+    fn options_reach_their_solver() {
+        assert_eq!(build("gmres:restart=7").unwrap().solver.name(), "gmres");
+        assert!(build("lu:omega=1").is_err() && build("gmres:omega=1").is_err() && build("magic").is_err());
     }
 }

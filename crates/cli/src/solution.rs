@@ -84,7 +84,7 @@ pub(crate) fn worth_saving(report: &Report) -> Result<(), Failure> {
     if report.reason == StopReason::Interrupted && iterations == 0 { Err(nothing_saved()) } else { Ok(()) }
 }
 
-fn form_factors<S: Storage>(problem: &Problem, watcher: Watcher) -> Result<Assembled<S>, Failure> {
+pub(crate) fn form_factors<S: Storage>(problem: &Problem, watcher: Watcher) -> Result<Assembled<S>, Failure> {
     let integrator = problem.integrator();
     assemble(&integrator, &|done, total| watcher.pairs(done, total)).map_err(coupling_failure)
 }
@@ -129,7 +129,10 @@ fn entries(elements: usize) -> u64 {
 }
 
 /// The system for the exposed parts of the elements.
-fn system<S: Storage>(problem: &Problem, matrix: &PackedSymmetric<S>) -> Result<Radiosity, Failure> {
+pub(crate) fn system<S: Storage>(
+    problem: &Problem,
+    matrix: &PackedSymmetric<S>,
+) -> Result<Radiosity, Failure> {
     let patches: Vec<Patch> = problem.mesh.patches().copied().collect();
     let shares = exposed_shares(&problem.patches(), &prepare(&patches)?);
     let extents = extents(&problem.patches(), &shares, &matrix.row_sums());

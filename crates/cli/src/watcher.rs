@@ -20,7 +20,11 @@ pub(crate) struct Watcher<'a> {
 impl<'a> Watcher<'a> {
     pub(crate) fn new(stages: &Stages<'a>, options: &Options) -> Self {
         let max_iterations = usize::try_from(options.max_iterations).unwrap_or(usize::MAX);
-        let stop = Stop { tolerance: options.tolerance, max_iterations };
+        Self::to(stages, Stop { tolerance: options.tolerance, max_iterations })
+    }
+
+    /// Watches what ends by itself at `stop`.
+    pub(crate) fn to(stages: &Stages<'a>, stop: Stop) -> Self {
         Self { console: stages.console, interrupt: stages.interrupt, stop }
     }
 

@@ -25,13 +25,12 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::factorisation::Factorisation;
+use crate::factorisation::{Factorisation, scratch_bytes};
+use crate::groups::{Ended, Run, columns, in_groups};
 use faer::traits::ComplexField;
 use fredholm_linop::{
-    LinearOperator, Monitor, MultiVector, Observer, Report, Scalar, SecondKind, SolveError, Solver, Stop,
-    StopReason, Work,
+    LinearOperator, MultiVector, Observer, Report, Scalar, SecondKind, SolveError, Solver, Stop,
 };
-use std::ops::ControlFlow;
 
 /// Factorises the matrix, once for all lanes that share it.
 #[derive(Clone, Copy, Debug, Default)]
@@ -46,11 +45,15 @@ impl<T: Scalar + ComplexField> Solver<T> for DenseLu {
         "Dense LU with partial pivoting: exact to rounding, n² memory and n³ time; for up to some thousand unknowns"
     }
 
-    // The matrix, the right-hand sides with their scratch and the product, and three permutations.
+    // The matrix with the scratch of its factorisation, the right-hand sides with their scratch and the product, and
+    // three permutations.
     fn bytes(&self, dim: usize, lanes: usize) -> u64 {
         let (n, entry, index) = (dim as u64, size_of::<T>() as u64, size_of::<usize>() as u64);
         let vectors = (lanes as u64).saturating_mul(3 * entry).saturating_add(3 * index);
-        n.saturating_mul(entry).saturating_add(vectors).saturating_mul(n)
+        n.saturating_mul(entry)
+            .saturating_add(vectors)
+            .saturating_mul(n)
+            .saturating_add(scratch_bytes::<T>(dim))
     }
 
     fn solve(
@@ -61,65 +64,22 @@ impl<T: Scalar + ComplexField> Solver<T> for DenseLu {
         stop: &Stop,
         observer: &mut dyn Observer<T>,
     ) -> Result<Report, SolveError> {
-        let stop = Stop { max_iterations: usize::MAX, ..*stop };
-        let mut monitor = Monitor::start(a, b, x, &stop, observer)?;
-        let mut product = MultiVector::zeros(x.dim(), x.lanes());
-        let mut work = Work::default();
-        let mut verdict = record(a, x, &mut product, &mut monitor, &mut work);
-        for lanes in lanes_by_matrix(a, monitor.norms()) {
-            if let ControlFlow::Break(reason) = verdict {
-                return Ok(monitor.finish(reason, work));
-            }
-            solve_lanes(a, b, x, &lanes, &mut work)?;
-            verdict = record(a, x, &mut product, &mut monitor, &mut work);
-        }
-        Ok(monitor.finish(verdict.break_value().unwrap_or(StopReason::IterationLimit), work))
+        in_groups(a, b, x, stop, observer, solve_lanes)
     }
 }
 
-/// The lanes that have something to solve, grouped by their matrix.
-fn lanes_by_matrix<T: Scalar>(a: &SecondKind<'_, T>, norms: &[f64]) -> Vec<Vec<usize>> {
-    let mut groups: Vec<Vec<usize>> = Vec::new();
-    for lane in (0..norms.len()).filter(|&lane| norms[lane] > 0.0) {
-        match groups.iter_mut().find(|group| a.same_matrix(group[0], lane)) {
-            Some(group) => group.push(lane),
-            None => groups.push(vec![lane]),
-        }
+fn solve_lanes<T: Scalar + ComplexField>(run: &mut Run<'_, '_, T>, lanes: &[usize]) -> Result<(), Ended> {
+    let matrix = run.a.dense(lanes[0])?;
+    run.work.row_visits += run.a.dim() as u64;
+    run.work.entries_touched += run.a.entries();
+    let factorisation = Factorisation::new(matrix.dim(), matrix.into_vec())?;
+    if factorisation.is_singular(f64::EPSILON, Scalar::abs) {
+        return Err(SolveError::Singular { lane: lanes[0] }.into());
     }
-    groups
-}
-
-fn solve_lanes<T: Scalar + ComplexField>(
-    a: &SecondKind<'_, T>,
-    b: &MultiVector<T>,
-    x: &mut MultiVector<T>,
-    lanes: &[usize],
-    work: &mut Work,
-) -> Result<(), SolveError> {
-    let matrix = a.dense(lanes[0])?;
-    work.row_visits += a.dim() as u64;
-    work.entries_touched += a.entries();
-    let factorisation = Factorisation::new(matrix)?;
-    if factorisation.is_singular() {
-        return Err(SolveError::Singular { lane: lanes[0] });
-    }
-    let mut columns: Vec<T> = lanes.iter().flat_map(|&lane| b.lane(lane)).collect();
-    factorisation.solve(&mut columns)?;
-    for (&lane, column) in lanes.iter().zip(columns.chunks_exact(a.dim())) {
-        x.set_lane(lane, column);
+    let mut solutions = columns(run.b, lanes);
+    factorisation.solve(&mut solutions)?;
+    for (&lane, solution) in lanes.iter().zip(solutions.chunks_exact(run.a.dim())) {
+        run.x.set_lane(lane, solution);
     }
     Ok(())
-}
-
-fn record<T: Scalar>(
-    a: &SecondKind<'_, T>,
-    x: &MultiVector<T>,
-    product: &mut MultiVector<T>,
-    monitor: &mut Monitor<'_, T>,
-    work: &mut Work,
-) -> ControlFlow<StopReason> {
-    a.apply(x, product);
-    work.operator_applications += 1;
-    work.entries_touched += a.entries();
-    monitor.record(x, product)
 }

@@ -8,7 +8,7 @@ use faer::linalg::lu::partial_pivoting::{factor, solve};
 use faer::perm::PermRef;
 use faer::traits::ComplexField;
 use faer::{MatMut, MatRef, Par, Spec};
-use fredholm_linop::{Dense, LinopError, Scalar};
+use fredholm_linop::LinopError;
 
 /// The parts that faer cuts its work into. The bits of the result depend on this number, not on that of the threads.
 const PARTS: usize = 8;
@@ -21,12 +21,12 @@ pub(crate) struct Factorisation<T> {
     inverse_order: Vec<usize>,
 }
 
-impl<T: Scalar + ComplexField> Factorisation<T> {
+impl<T: ComplexField + Copy> Factorisation<T> {
+    /// Takes the entries row by row.
+    ///
     /// # Errors
     /// [`LinopError::Memory`] if there is none for the scratch.
-    pub fn new(matrix: Dense<T>) -> Result<Self, LinopError> {
-        let dim = matrix.dim();
-        let mut factors = matrix.into_vec();
+    pub fn new(dim: usize, mut factors: Vec<T>) -> Result<Self, LinopError> {
         let (mut order, mut inverse_order) = (vec![0; dim], vec![0; dim]);
         let mut scratch = scratch(factor::lu_in_place_scratch::<usize, T>(dim, dim, par(), Spec::default()))?;
         factor::lu_in_place(
@@ -40,11 +40,11 @@ impl<T: Scalar + ComplexField> Factorisation<T> {
         Ok(Self { dim, factors, order, inverse_order })
     }
 
-    /// Whether the smallest pivot is lost in the rounding of the largest, or is no number.
-    pub fn is_singular(&self) -> bool {
-        let pivots = || (0..self.dim).map(|i| self.factors[i * self.dim + i].abs());
+    /// Whether the smallest pivot is lost in the rounding of the largest, or is no number. `epsilon` is the rounding of T.
+    pub fn is_singular(&self, epsilon: f64, size: impl Fn(T) -> f64) -> bool {
+        let pivots = || (0..self.dim).map(|i| size(self.factors[i * self.dim + i]));
         let largest = pivots().fold(0.0, f64::max);
-        let rounding = f64::EPSILON * self.dim as f64 * largest;
+        let rounding = epsilon * self.dim as f64 * largest;
         // Written so that NaN is singular.
         !pivots().all(|pivot| pivot > rounding)
     }
@@ -71,11 +71,19 @@ impl<T: Scalar + ComplexField> Factorisation<T> {
     }
 }
 
-fn par() -> Par {
+/// Bytes of scratch that a factorisation takes besides the matrix; any number for those beyond all memory.
+pub(crate) fn scratch_bytes<T: ComplexField>(dim: usize) -> u64 {
+    if dim > u32::MAX as usize {
+        return u64::MAX;
+    }
+    factor::lu_in_place_scratch::<usize, T>(dim, dim, par(), Spec::default()).size_bytes() as u64
+}
+
+pub(crate) fn par() -> Par {
     Par::rayon(PARTS)
 }
 
-fn scratch(needed: StackReq) -> Result<MemBuffer, LinopError> {
+pub(crate) fn scratch(needed: StackReq) -> Result<MemBuffer, LinopError> {
     let bytes = needed.size_bytes() as u64;
     MemBuffer::try_new(needed)
         .map_err(|_| LinopError::Memory { what: "the scratch of a factorisation", bytes })

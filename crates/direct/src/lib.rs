@@ -1,23 +1,52 @@
-//! Direct solvers of (I − D K) x = b.
+//! Direct solvers of (I − D K) x = b, and its spectrum.
 //!
-//! A solver is one file here and one line in [`solvers`]. All report the same residual ‖b − A x‖₂/‖b‖₂ per lane as the
+//! A solver is one file here and one entry in the registry, see [`entries`]. All report the same residual ‖b − A x‖₂/‖b‖₂ per lane as the
 //! iterative ones, see [`fredholm_linop::Monitor`].
 
+mod cholesky;
 mod dense_lu;
+mod eigen;
 mod factorisation;
+mod groups;
+mod mixed_lu;
+mod spectrum;
 
+pub use cholesky::Cholesky;
 pub use dense_lu::DenseLu;
 pub use faer::traits::ComplexField;
+pub use mixed_lu::{MixedLu, Single};
+pub use spectrum::{Spectrum, SpectrumError, spectrum, spectrum_bytes};
 
-use fredholm_linop::{Scalar, Solver};
+use fredholm_linop::{Entry, Options, Solver};
 
 /// All solvers of this crate, by name. T is f64 or Complex64.
+#[must_use]
+pub fn entries<T: Single + ComplexField>() -> Vec<Entry<dyn Solver<T>>> {
+    let none = "a matrix that is not singular to working precision";
+    vec![
+        Entry { name: "lu", requirements: none, options: &[], make: |_| Ok(Box::new(DenseLu)) },
+        Entry {
+            name: "lu-mixed",
+            requirements: "a condition below about a million",
+            options: &[],
+            make: |_| Ok(Box::new(MixedLu)),
+        },
+        Entry {
+            name: "cholesky",
+            requirements: "a symmetric coupling, factors at least 0, positive definite",
+            options: &[],
+            make: |_| Ok(Box::new(Cholesky)),
+        },
+    ]
+}
+
+/// All solvers of this crate.
 ///
 /// ```
 /// let names: Vec<_> = fredholm_direct::solvers::<f64>().iter().map(|solver| solver.name()).collect();
-/// assert_eq!(names, ["lu"]);
+/// assert_eq!(names, ["lu", "lu-mixed", "cholesky"]);
 /// ```
 #[must_use]
-pub fn solvers<T: Scalar + ComplexField>() -> Vec<Box<dyn Solver<T>>> {
-    vec![Box::new(DenseLu)]
+pub fn solvers<T: Single + ComplexField>() -> Vec<Box<dyn Solver<T>>> {
+    entries().into_iter().filter_map(|entry| entry.build(Options::default()).ok()).collect()
 }

@@ -11,10 +11,10 @@
 //!
 //! ```
 //! use fredholm_iterative::GaussSeidel;
-//! use fredholm_linop::{Dense, MultiVector, Quiet, SecondKind, Solver, Stop, StopReason};
+//! use fredholm_linop::{MultiVector, PackedSymmetric, Quiet, SecondKind, Solver, Stop, StopReason};
 //!
 //! // x = b + K x with K = [0 ½; ½ 0] and b = (1, 1): x = (2, 2).
-//! let coupling = Dense::new(2, vec![0.0, 0.5, 0.5, 0.0])?;
+//! let coupling = PackedSymmetric::new(2, vec![0.0, 0.5, 0.0])?;
 //! let a = SecondKind::new(&coupling, MultiVector::from_vec(2, 1, vec![1.0, 1.0])?)?;
 //! let b = MultiVector::from_vec(2, 1, vec![1.0, 1.0])?;
 //! let mut x = MultiVector::zeros(2, 1);
@@ -25,12 +25,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::diagonal::divisors;
-use fredholm_linop::{
-    LinearOperator, Monitor, MultiVector, Observer, Report, Scalar, SecondKind, SolveError, Solver, Stop,
-    StopReason, Sweep, Visit, Work,
-};
-use std::ops::ControlFlow;
+use crate::core::{Sweeping, divisors, relax_fully, solve_by_steps};
+use fredholm_linop::{Context, Halt, Iteration, MultiVector, Scalar, Scheme, SecondKind};
 
 const NAME: &str = "gauss-seidel";
 
@@ -38,7 +34,9 @@ const NAME: &str = "gauss-seidel";
 #[derive(Clone, Copy, Debug, Default)]
 pub struct GaussSeidel;
 
-impl<T: Scalar> Solver<T> for GaussSeidel {
+solve_by_steps!(GaussSeidel);
+
+impl<T: Scalar> Scheme<T> for GaussSeidel {
     fn name(&self) -> &'static str {
         NAME
     }
@@ -47,83 +45,18 @@ impl<T: Scalar> Solver<T> for GaussSeidel {
         "Gauss–Seidel: every unknown in order from the newest values of the others; robust for light"
     }
 
-    // The sums above the diagonal and the product A x.
+    // The sums on both sides of the diagonal and the product A x.
     fn bytes(&self, dim: usize, lanes: usize) -> u64 {
-        (2 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(lanes as u64)
+        (3 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(lanes as u64)
     }
 
-    fn solve(
+    fn begin<'a>(
         &self,
-        a: &SecondKind<'_, T>,
-        b: &MultiVector<T>,
-        x: &mut MultiVector<T>,
-        stop: &Stop,
-        observer: &mut dyn Observer<T>,
-    ) -> Result<Report, SolveError> {
-        let mut monitor = Monitor::start(a, b, x, stop, observer)?;
+        a: &'a SecondKind<'a, T>,
+        b: &'a MultiVector<T>,
+        _: &mut Context<'_>,
+    ) -> Result<Box<dyn Iteration<T> + 'a>, Halt> {
         divisors(NAME, a)?;
-        let mut work = Work::default();
-        let reason = iterate(a, b, x, &mut monitor, &mut work);
-        Ok(monitor.finish(reason, work))
+        Ok(Box::new(Sweeping::forward(a, b, relax_fully)))
     }
-}
-
-fn iterate<T: Scalar>(
-    a: &SecondKind<'_, T>,
-    b: &MultiVector<T>,
-    x: &mut MultiVector<T>,
-    monitor: &mut Monitor<'_, T>,
-    work: &mut Work,
-) -> StopReason {
-    let mut sweep = Sweep::new(x.dim(), x.lanes());
-    if x.as_slice().iter().any(|&value| value != T::zero()) {
-        count_sweep(a, work);
-        // Nothing changes: this gives the product of the starting guess.
-        if let ControlFlow::Break(reason) = visit_all(a, x, &mut sweep, monitor, |_| ()) {
-            return reason;
-        }
-    }
-    loop {
-        if let ControlFlow::Break(reason) = monitor.record(x, sweep.product()) {
-            return reason;
-        }
-        count_sweep(a, work);
-        if let ControlFlow::Break(reason) = visit_all(a, x, &mut sweep, monitor, |visit| relax(b, visit)) {
-            return reason;
-        }
-    }
-}
-
-/// x_i = (b_i − Σ_{j≠i} a_ij x_j)/a_ii in all lanes.
-fn relax<T: Scalar>(b: &MultiVector<T>, visit: Visit<'_, T>) {
-    let Visit { index, off_diagonal, diagonal, x } = visit;
-    let known = b.row(index).iter().zip(off_diagonal).zip(diagonal);
-    for (x, ((&b, &sum), &diagonal)) in x.iter_mut().zip(known) {
-        *x = (b - sum) / diagonal;
-    }
-}
-
-/// One sweep, which the observer can break off.
-fn visit_all<T: Scalar>(
-    a: &SecondKind<'_, T>,
-    x: &mut MultiVector<T>,
-    sweep: &mut Sweep<T>,
-    monitor: &mut Monitor<'_, T>,
-    relax: impl Fn(Visit<'_, T>),
-) -> ControlFlow<StopReason> {
-    let mut verdict = ControlFlow::Continue(());
-    let _ = a.sweep(x, sweep, &mut |visit| {
-        verdict = monitor.poll();
-        if verdict.is_break() {
-            return ControlFlow::Break(());
-        }
-        relax(visit);
-        ControlFlow::Continue(())
-    });
-    verdict
-}
-
-fn count_sweep<T: Scalar>(a: &SecondKind<'_, T>, work: &mut Work) {
-    work.row_visits += a.dim() as u64;
-    work.entries_touched += a.entries();
 }

@@ -1,24 +1,58 @@
 //! Iterative solvers of (I − D K) x = b, one algorithm a file.
 //!
-//! A solver is one file here and one line in [`solvers`]. All report the same residual ‖b − A x‖₂/‖b‖₂ per lane, see
-//! [`fredholm_linop::Monitor`].
+//! A scheme is one file here and one entry in the registry, see [`entries`]. Every scheme is a [`fredholm_linop::Solver`]; all report
+//! the same residual ‖b − A x‖₂/‖b‖₂ per lane, see [`fredholm_linop::Monitor`].
 
-mod diagonal;
+mod core;
+
+mod anderson;
+mod bicgstab;
+mod block_gauss_seidel;
+mod block_jacobi;
+mod cg_psi;
+mod cg_theta;
+mod chebyshev;
+mod estimates;
 mod gauss_seidel;
+mod gmres;
+mod group_shooting;
+mod hgs1;
+mod hgs2;
+mod hybrid;
+mod jacobi;
+mod minres;
+mod neumann;
+mod pcg_ic;
+mod pcg_jacobi;
+mod pcg_ssor;
+mod progressive;
+mod registry;
+mod sor;
 mod southwell;
+mod ssor;
 
+pub use anderson::Anderson;
+pub use bicgstab::Bicgstab;
+pub use block_gauss_seidel::BlockGaussSeidel;
+pub use block_jacobi::BlockJacobi;
+pub use cg_psi::CgPsi;
+pub use cg_theta::CgTheta;
+pub use chebyshev::Chebyshev;
+pub use estimates::{gauss_seidel_radius, ritz_values};
 pub use gauss_seidel::GaussSeidel;
+pub use gmres::Gmres;
+pub use group_shooting::GroupShooting;
+pub use hgs1::Hgs1;
+pub use hgs2::Hgs2;
+pub use hybrid::Hybrid;
+pub use jacobi::Jacobi;
+pub use minres::Minres;
+pub use neumann::Neumann;
+pub use pcg_ic::PcgCholesky;
+pub use pcg_jacobi::PcgJacobi;
+pub use pcg_ssor::PcgSsor;
+pub use progressive::{Progressive, with_ambient};
+pub use registry::{entries, solvers};
+pub use sor::{Sor, Sur};
 pub use southwell::Southwell;
-
-use fredholm_linop::{Scalar, Solver};
-
-/// All solvers of this crate, by name.
-///
-/// ```
-/// let names: Vec<_> = fredholm_iterative::solvers::<f64>().iter().map(|solver| solver.name()).collect();
-/// assert_eq!(names, ["gauss-seidel", "southwell"]);
-/// ```
-#[must_use]
-pub fn solvers<T: Scalar>() -> Vec<Box<dyn Solver<T>>> {
-    vec![Box::new(GaussSeidel), Box::new(Southwell)]
-}
+pub use ssor::Ssor;

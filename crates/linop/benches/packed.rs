@@ -1,6 +1,6 @@
-//! The product and the sweep of a packed symmetric matrix beside a plain read of the same memory.
+//! The product and the sweep of a packed symmetric matrix beside a plain read and a plain copy of the same memory.
 //!
-//! `cargo bench -p fredholm-linop`. Throughput is in bytes of stored entries.
+//! `cargo bench -p fredholm-linop`. Throughput is in bytes of stored entries; of a copy, in bytes read and written.
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use fredholm_linop::{LinearOperator, MultiVector, PackedSymmetric, Storage, Sweep};
@@ -8,8 +8,8 @@ use rayon::prelude::*;
 use std::hint::black_box;
 use std::ops::ControlFlow;
 
-/// Rows: 256 MB in f64, well beyond any cache.
-const DIM: usize = 8000;
+/// Rows: 292 MB in f64.
+const DIM: usize = 8544;
 
 fn entries<S: Storage>() -> Vec<S> {
     (0..DIM * (DIM + 1) / 2).map(|at| S::from_f64((at % 1021) as f64 / 1021.0)).collect()
@@ -27,12 +27,22 @@ fn read<S: Storage>(data: &[S]) -> f64 {
     data.par_chunks(1 << 17).map(sum).sum()
 }
 
+fn copy<S: Storage>(from: &[S], to: &mut [S]) {
+    let parts = to.par_chunks_mut(1 << 17).zip(from.par_chunks(1 << 17));
+    parts.for_each(|(to, from)| to.copy_from_slice(from));
+}
+
 fn measure<S: Storage>(c: &mut Criterion, storage: &str) {
     let data = entries::<S>();
     let mut group = c.benchmark_group(format!("packed {storage}"));
     group.throughput(Throughput::Bytes(PackedSymmetric::<S>::bytes(DIM)));
     group.sample_size(10).sampling_mode(SamplingMode::Flat);
     group.bench_function("read", |bench| bench.iter(|| read(black_box(&data))));
+    let mut copied = data.clone();
+    group.throughput(Throughput::Bytes(2 * PackedSymmetric::<S>::bytes(DIM)));
+    group.bench_function("copy", |bench| bench.iter(|| copy(black_box(&data), &mut copied)));
+    drop(copied);
+    group.throughput(Throughput::Bytes(PackedSymmetric::<S>::bytes(DIM)));
     let Ok(matrix) = PackedSymmetric::new(DIM, data) else { return };
     for lanes in [1, 3, 8] {
         let mut x = MultiVector::from_fn(DIM, lanes, |i, l| (i + l) as f64);

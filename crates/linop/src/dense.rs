@@ -1,6 +1,6 @@
 //! A square matrix with every entry stored, row by row: y_i = Σ_j k_ij x_j.
 
-use crate::{LinearOperator, LinopError, MultiVector, Scalar};
+use crate::{LinearOperator, LinopError, MultiVector, Scalar, Symmetry};
 use rayon::prelude::*;
 
 /// A square matrix stored row by row: k_ij at i · dim + j. It serves any number of lanes.
@@ -8,6 +8,7 @@ use rayon::prelude::*;
 pub struct Dense<T> {
     dim: usize,
     entries: Vec<T>,
+    symmetry: Symmetry,
 }
 
 impl<T: Scalar> Dense<T> {
@@ -20,7 +21,7 @@ impl<T: Scalar> Dense<T> {
         if entries.len() as u128 != expected {
             return Err(LinopError::Length { what: "the dense matrix", expected, found: entries.len() });
         }
-        Ok(Self { dim, entries })
+        Ok(Self { dim, entries, symmetry: Symmetry::General })
     }
 
     /// All zeros.
@@ -33,7 +34,24 @@ impl<T: Scalar> Dense<T> {
         let mut entries = Vec::new();
         entries.try_reserve_exact(len).map_err(|_| refused)?;
         entries.resize(len, T::zero());
-        Ok(Self { dim, entries })
+        Ok(Self { dim, entries, symmetry: Symmetry::General })
+    }
+
+    /// The same matrix as one that is known to have this symmetry, as some solvers ask for.
+    ///
+    /// # Errors
+    /// [`LinopError::Asymmetric`] where an entry contradicts it.
+    pub fn with_symmetry(self, symmetry: Symmetry) -> Result<Self, LinopError> {
+        let mirrored = |i: usize, j: usize| match symmetry {
+            Symmetry::General => self.get(i, j),
+            Symmetry::Symmetric => self.get(j, i),
+            Symmetry::Hermitian => self.get(j, i).conj(),
+        };
+        let pairs = (0..self.dim).flat_map(|i| (0..=i).map(move |j| (i, j)));
+        match pairs.into_iter().find(|&(i, j)| self.get(i, j) != mirrored(i, j)) {
+            Some((row, column)) => Err(LinopError::Asymmetric { row, column }),
+            None => Ok(Self { symmetry, ..self }),
+        }
     }
 
     /// Bytes that dim² entries take.
@@ -66,12 +84,19 @@ impl<T: Scalar> Dense<T> {
         &self.entries[i * self.dim..(i + 1) * self.dim]
     }
 
-    /// Row i.
+    /// Row i. The matrix is then no longer known to be symmetric.
     ///
     /// # Panics
     /// There is no such row.
     pub fn row_slice_mut(&mut self, i: usize) -> &mut [T] {
+        self.symmetry = Symmetry::General;
         &mut self.entries[i * self.dim..(i + 1) * self.dim]
+    }
+
+    /// The entries, row by row.
+    #[must_use]
+    pub fn as_slice(&self) -> &[T] {
+        &self.entries
     }
 
     /// The entries, row by row.
@@ -97,6 +122,10 @@ impl<T: Scalar> LinearOperator<T> for Dense<T> {
         });
     }
 
+    fn symmetry(&self) -> Symmetry {
+        self.symmetry
+    }
+
     fn row(&self, i: usize, _lane: usize, out: &mut [T]) {
         out.copy_from_slice(self.row_slice(i));
     }
@@ -112,6 +141,7 @@ impl<T: Scalar> LinearOperator<T> for Dense<T> {
     fn dense(&self, _lane: usize) -> Result<Dense<T>, LinopError> {
         let mut copy = Self::zeros(self.dim)?;
         copy.entries.copy_from_slice(&self.entries);
+        copy.symmetry = self.symmetry;
         Ok(copy)
     }
 }
@@ -124,6 +154,18 @@ mod tests {
     fn a_wrong_number_of_entries_is_refused() {
         let wrong = LinopError::Length { what: "the dense matrix", expected: 4, found: 3 };
         assert_eq!(Dense::new(2, vec![0.0; 3]), Err(wrong));
+    }
+
+    #[test]
+    fn a_symmetry_that_the_entries_contradict_is_refused() {
+        let matrix = |last| Dense::new(2, vec![1.0, 2.0, last, 3.0]).unwrap();
+        let symmetric = matrix(2.0).with_symmetry(Symmetry::Symmetric).unwrap();
+        assert_eq!(symmetric.symmetry(), Symmetry::Symmetric);
+        let refusal = matrix(5.0).with_symmetry(Symmetry::Hermitian);
+        assert_eq!(refusal, Err(LinopError::Asymmetric { row: 1, column: 0 }));
+        let mut changed = symmetric;
+        changed.row_slice_mut(0)[1] = 7.0;
+        assert_eq!(changed.symmetry(), Symmetry::General);
     }
 
     #[test]

@@ -40,6 +40,16 @@ pub enum LinopError {
         /// Index of the lane.
         lane: usize,
     },
+    /// A matrix is not as symmetric as was said.
+    #[error(
+        "the matrix is not symmetric as was said: its entries ({row}, {column}) and ({column}, {row}) contradict it"
+    )]
+    Asymmetric {
+        /// Row of the first entry that contradicts it.
+        row: usize,
+        /// Column of it.
+        column: usize,
+    },
     /// The system has not enough memory.
     #[error("the system has no {bytes} bytes for {what}; use fewer unknowns or a method that stores less")]
     Memory {
@@ -89,6 +99,16 @@ pub enum SolveError {
         "the matrix of lane {lane} is singular to working precision; the system has no unique solution (is the reflectance below 1?)"
     )]
     Singular {
+        /// Index of the lane.
+        lane: usize,
+    },
+    /// The matrix is not positive definite, as the method needs it.
+    #[error(
+        "{solver} does not suit this system: the matrix of lane {lane} is not positive definite (is the reflectance below 1?); minres, gmres and lu do without"
+    )]
+    Indefinite {
+        /// Name of the solver.
+        solver: &'static str,
         /// Index of the lane.
         lane: usize,
     },

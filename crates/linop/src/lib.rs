@@ -21,25 +21,30 @@
 //! # Ok::<(), fredholm_linop::LinopError>(())
 //! ```
 
+mod catalogue;
 mod dense;
 mod error;
-
+mod lazy;
 mod monitor;
 mod multivector;
 mod operator;
 mod packed;
 mod scalar;
+mod scheme;
 mod second_kind;
 mod solver;
 mod sweep;
 
+pub use catalogue::{Entry, OptionError, Options, build};
 pub use dense::Dense;
 pub use error::{LinopError, SolveError};
+pub use lazy::{Columns, Lazy};
 pub use monitor::Monitor;
 pub use multivector::MultiVector;
 pub use operator::{LinearOperator, Symmetry};
 pub use packed::{PackedSymmetric, Storage};
 pub use scalar::Scalar;
+pub use scheme::{Context, Halt, Iteration, Scheme, solve_by_steps};
 pub use second_kind::SecondKind;
 pub use solver::{Observer, Progress, Quiet, Record, Report, Solver, Stop, StopReason, Work};
 pub use sweep::{Relax, Sweep, Visit};

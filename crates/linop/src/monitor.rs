@@ -47,22 +47,32 @@ impl<'a, T: Scalar> Monitor<'a, T> {
         Ok(Self { b, norms, stop: *stop, observer, history: Vec::new(), best: f64::INFINITY, start })
     }
 
-    /// Records the next iteration, of which `product` is A x. Breaks when it is time to stop.
-    pub fn record(&mut self, x: &MultiVector<T>, product: &MultiVector<T>) -> ControlFlow<StopReason> {
+    /// Records the next iteration, of which `product` is A x and before which `work` was done. Breaks when it is
+    /// time to stop.
+    pub fn record(
+        &mut self,
+        x: &MultiVector<T>,
+        product: &MultiVector<T>,
+        work: &Work,
+    ) -> ControlFlow<StopReason> {
         let residuals = self.residuals(product);
-        let record = Record { iteration: self.history.len(), seconds: self.seconds(), residuals };
+        let (iteration, seconds) = (self.history.len(), self.seconds());
+        let record = Record { iteration, seconds, entries_touched: work.entries_touched, residuals };
         let wish = self.observer.observe(&Progress { record: &record, x });
         let verdict = self.verdict(&record, wish);
         self.history.push(record);
         verdict.map_or(ControlFlow::Continue(()), ControlFlow::Break)
     }
 
+    /// Whether every lane would meet the tolerance with this A x.
+    #[must_use]
+    pub fn converged(&self, product: &MultiVector<T>) -> bool {
+        self.residuals(product).iter().all(|&residual| residual <= self.stop.tolerance)
+    }
+
     /// Asks the observer, between iterations, whether to go on.
-    pub fn poll(&mut self) -> ControlFlow<StopReason> {
-        match self.observer.poll() {
-            ControlFlow::Continue(()) => ControlFlow::Continue(()),
-            ControlFlow::Break(()) => ControlFlow::Break(StopReason::Interrupted),
-        }
+    pub fn poll(&mut self) -> ControlFlow<()> {
+        self.observer.poll()
     }
 
     /// ‖b‖₂ per lane.

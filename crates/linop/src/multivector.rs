@@ -114,6 +114,90 @@ impl<T: Scalar> MultiVector<T> {
         norms(self.lanes, self.data.iter().copied())
     }
 
+    /// Σ_i conj(u_i) v_i of each lane, u being this vector.
+    ///
+    /// # Panics
+    /// The vectors do not have the same shape.
+    #[must_use]
+    pub fn dots(&self, v: &Self) -> Vec<T> {
+        self.check_shape(v);
+        let mut sums = vec![T::zero(); self.lanes];
+        for (u, v) in self.rows().zip(v.rows()) {
+            sums.iter_mut().zip(u.iter().zip(v)).for_each(|(sum, (&u, &v))| *sum += u.conj() * v);
+        }
+        sums
+    }
+
+    /// u += f v, with a factor f for each lane, u being this vector.
+    ///
+    /// # Panics
+    /// The vectors do not have the same shape.
+    pub fn add_scaled(&mut self, factors: &[T], v: &Self) {
+        self.check_shape(v);
+        let lanes = self.lanes.max(1);
+        for (u, v) in self.data.chunks_exact_mut(lanes).zip(v.rows()) {
+            u.iter_mut().zip(factors.iter().zip(v)).for_each(|(u, (&f, &v))| *u += f * v);
+        }
+    }
+
+    /// u = f u + v, with a factor f for each lane, u being this vector.
+    ///
+    /// # Panics
+    /// The vectors do not have the same shape.
+    pub fn scale_and_add(&mut self, factors: &[T], v: &Self) {
+        self.check_shape(v);
+        let lanes = self.lanes.max(1);
+        for (u, v) in self.data.chunks_exact_mut(lanes).zip(v.rows()) {
+            u.iter_mut().zip(factors.iter().zip(v)).for_each(|(u, (&f, &v))| *u = f * *u + v);
+        }
+    }
+
+    /// u = v − w, u being this vector.
+    ///
+    /// # Panics
+    /// The vectors do not have the same shape.
+    pub fn set_difference(&mut self, v: &Self, w: &Self) {
+        self.check_shape(v);
+        self.check_shape(w);
+        let terms = v.data.iter().zip(&w.data);
+        self.data.iter_mut().zip(terms).for_each(|(u, (&v, &w))| *u = v - w);
+    }
+
+    /// u_i = w_i v_i for every entry, u being this vector.
+    ///
+    /// # Panics
+    /// The vectors do not have the same shape.
+    pub fn set_products(&mut self, w: &Self, v: &Self) {
+        self.check_shape(w);
+        self.check_shape(v);
+        let terms = w.data.iter().zip(&v.data);
+        self.data.iter_mut().zip(terms).for_each(|(u, (&w, &v))| *u = w * v);
+    }
+
+    /// u = v, without a new allocation, u being this vector.
+    ///
+    /// # Panics
+    /// The vectors do not have the same shape.
+    pub fn copy_from(&mut self, v: &Self) {
+        self.check_shape(v);
+        self.data.copy_from_slice(&v.data);
+    }
+
+    /// Whether every entry is 0.
+    #[must_use]
+    pub fn is_zero(&self) -> bool {
+        self.data.iter().all(|&value| value == T::zero())
+    }
+
+    /// The unknowns in order, all lanes of each.
+    pub fn rows(&self) -> impl Iterator<Item = &[T]> {
+        self.data.chunks_exact(self.lanes.max(1))
+    }
+
+    fn check_shape(&self, other: &Self) {
+        assert_eq!((self.dim, self.lanes), (other.dim, other.lanes), "the shapes must be the same");
+    }
+
     /// First entry that is NaN or infinite, as (unknown, lane).
     #[must_use]
     pub fn not_finite(&self) -> Option<(usize, usize)> {
@@ -157,6 +241,26 @@ mod tests {
         assert_eq!(vector.lane(1), [1.0, 11.0, 21.0]);
         vector.set_lane(0, &[7.0, 8.0, 9.0]);
         assert_eq!(vector.as_slice(), [7.0, 1.0, 8.0, 11.0, 9.0, 21.0]);
+    }
+
+    #[test]
+    fn lanes_are_combined_each_by_itself() {
+        let u = MultiVector::from_vec(2, 2, vec![1.0, 10.0, 2.0, 20.0]).unwrap();
+        let v = MultiVector::from_vec(2, 2, vec![3.0, 5.0, 4.0, 6.0]).unwrap();
+        assert_eq!(u.dots(&v), [11.0, 170.0]);
+        let mut w = u.clone();
+        w.add_scaled(&[2.0, 0.0], &v);
+        assert_eq!(w.as_slice(), [7.0, 10.0, 10.0, 20.0]);
+        w.scale_and_add(&[0.0, 1.0], &v);
+        assert_eq!(w.as_slice(), [3.0, 15.0, 4.0, 26.0]);
+        w.set_difference(&u, &v);
+        assert_eq!(w.as_slice(), [-2.0, 5.0, -2.0, 14.0]);
+        w.set_products(&u, &v);
+        assert_eq!(w.as_slice(), [3.0, 50.0, 8.0, 120.0]);
+        w.copy_from(&u);
+        assert!(w == u && !w.is_zero() && MultiVector::<f64>::zeros(3, 1).is_zero());
+        let z = MultiVector::from_vec(1, 1, vec![Complex64::new(0.0, 2.0)]).unwrap();
+        assert_eq!(z.dots(&z), [Complex64::new(4.0, 0.0)]);
     }
 
     #[test]

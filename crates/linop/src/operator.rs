@@ -1,6 +1,6 @@
 //! What a solver may ask of a matrix, stored or not: y = K x.
 
-use crate::sweep::sweep_by_rows;
+use crate::sweep::{sweep_back_by_columns, sweep_by_rows};
 use crate::{Dense, LinopError, MultiVector, Relax, Scalar, Sweep};
 use std::ops::ControlFlow;
 
@@ -76,6 +76,14 @@ pub trait LinearOperator<T: Scalar>: Sync {
         }
     }
 
+    /// Row i of the matrix of a lane up to the diagonal: `out[j]` = k_ij for the i + 1 entries of `out`. By default a
+    /// whole row.
+    fn lower_row(&self, i: usize, lane: usize, out: &mut [T]) {
+        let mut row = vec![T::zero(); self.dim()];
+        self.row(i, lane, &mut row);
+        out.copy_from_slice(&row[..=i]);
+    }
+
     /// Diagonal of the matrix of a lane: `out[i]` = k_ii. By default all columns.
     fn diagonal(&self, lane: usize, out: &mut [T]) {
         let mut column = vec![T::zero(); self.dim()];
@@ -111,5 +119,19 @@ pub trait LinearOperator<T: Scalar>: Sync {
         relax: &mut Relax<'_, T>,
     ) -> ControlFlow<()> {
         sweep_by_rows(self, x, sweep, relax)
+    }
+
+    /// Visits the unknowns from the last to the first and leaves U of the new x in `sweep`, which must come from a
+    /// complete forward [`sweep`](Self::sweep) of the same x; [`Sweep::product`] is out of date until the next one.
+    ///
+    /// A break of `relax` ends the sweep there. The unknowns visited keep their new values; `sweep` is then of no
+    /// further use.
+    fn sweep_back(
+        &self,
+        x: &mut MultiVector<T>,
+        sweep: &mut Sweep<T>,
+        relax: &mut Relax<'_, T>,
+    ) -> ControlFlow<()> {
+        sweep_back_by_columns(self, x, sweep, relax)
     }
 }

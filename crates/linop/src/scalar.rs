@@ -28,12 +28,16 @@ pub trait Scalar:
     + SubAssign
     + 'static
 {
+    /// Whether these are the real numbers.
+    const REAL: bool;
     /// 0.
     fn zero() -> Self;
     /// 1.
     fn one() -> Self;
     /// The real number `value`.
     fn from_real(value: f64) -> Self;
+    /// Real part.
+    fn re(self) -> f64;
     /// Complex conjugate; the number itself where it is real.
     #[must_use]
     fn conj(self) -> Self;
@@ -49,6 +53,8 @@ pub trait Scalar:
 }
 
 impl Scalar for f64 {
+    const REAL: bool = true;
+
     fn zero() -> Self {
         0.0
     }
@@ -59,6 +65,10 @@ impl Scalar for f64 {
 
     fn from_real(value: f64) -> Self {
         value
+    }
+
+    fn re(self) -> f64 {
+        self
     }
 
     fn conj(self) -> Self {
@@ -83,6 +93,8 @@ impl Scalar for f64 {
 }
 
 impl Scalar for Complex64 {
+    const REAL: bool = false;
+
     fn zero() -> Self {
         Self::new(0.0, 0.0)
     }
@@ -93,6 +105,10 @@ impl Scalar for Complex64 {
 
     fn from_real(value: f64) -> Self {
         Self::new(value, 0.0)
+    }
+
+    fn re(self) -> f64 {
+        self.re
     }
 
     fn conj(self) -> Self {
@@ -126,6 +142,7 @@ mod tests {
         let z = Complex64::new(3.0, -4.0);
         assert_eq!((Scalar::abs(z), Scalar::abs2(z)), (5.0, 25.0));
         assert_eq!(Scalar::conj(z), Complex64::new(3.0, 4.0));
+        assert_eq!((Scalar::re(z), <Complex64 as Scalar>::REAL, <f64 as Scalar>::REAL), (3.0, false, true));
         assert_eq!(z * Scalar::conj(z), Complex64::from_real(25.0));
         assert_eq!(Scalar::scale(z, 2.0), z + z);
         assert!(!Scalar::is_finite(Complex64::new(0.0, f64::NAN)));

@@ -2,7 +2,9 @@
 //!
 //! For light K = G with G_ij = A_i F_ij (m²), and D = ρ_i/A_i (1/m²) per band, so that A = I − R F.
 
-use crate::{Dense, LinearOperator, LinopError, MultiVector, Relax, Scalar, Sweep, Visit};
+use crate::{
+    Dense, LinearOperator, LinopError, MultiVector, Relax, Scalar, SolveError, Sweep, Symmetry, Visit,
+};
 use std::ops::ControlFlow;
 
 /// A = I − D K around any operator K, with a diagonal D for each lane.
@@ -46,6 +48,33 @@ impl<'a, T: Scalar> SecondKind<'a, T> {
     pub fn same_matrix(&self, lane: usize, other: usize) -> bool {
         let equal = |i| self.factor.row(i)[lane] == self.factor.row(i)[other];
         lane == other || (self.coupling.lanes().is_none() && (0..self.factor.dim()).all(equal))
+    }
+
+    /// Whether A is self-adjoint in the inner product Σ_i conj(u_i) v_i/d_i, so that D⁻¹ A is Hermitian: K symmetric (Hermitian for
+    /// complex unknowns), D real and ≥ 0.
+    ///
+    /// # Errors
+    /// [`SolveError::Unsuitable`] for this solver, where that is not so or not known.
+    pub fn check_self_adjoint(&self, solver: &'static str) -> Result<(), SolveError> {
+        let refuse = |reason| Err(SolveError::Unsuitable { solver, reason });
+        let symmetric = match self.coupling.symmetry() {
+            Symmetry::General => false,
+            Symmetry::Symmetric => T::REAL,
+            Symmetry::Hermitian => true,
+        };
+        if !symmetric {
+            let needed = if T::REAL { "symmetric" } else { "Hermitian" };
+            return refuse(format!(
+                "it needs a coupling that is known to be {needed}; gmres and lu do without"
+            ));
+        }
+        let wrong = |&d: &T| d != T::from_real(d.re()) || d.re() < 0.0;
+        let Some(at) = self.factor.as_slice().iter().position(wrong) else { return Ok(()) };
+        let (i, lane) = (at / self.factor.lanes(), at % self.factor.lanes());
+        let found = self.factor.as_slice()[at];
+        refuse(format!(
+            "it needs factors that are real and at least 0, but that of unknown {i} in lane {lane} is {found:?}"
+        ))
     }
 
     /// r −= A e_j s: what a step s (per lane) of unknown j takes from a residual. `column` is dim entries of scratch.
@@ -113,6 +142,11 @@ impl<T: Scalar> LinearOperator<T> for SecondKind<'_, T> {
         self.turn_row(i, lane, out);
     }
 
+    fn lower_row(&self, i: usize, lane: usize, out: &mut [T]) {
+        self.coupling.lower_row(i, lane, out);
+        self.turn_row(i, lane, out);
+    }
+
     fn column(&self, j: usize, lane: usize, out: &mut [T]) {
         self.coupling.column(j, lane, out);
         out.iter_mut().enumerate().for_each(|(i, entry)| *entry = -(self.factor.row(i)[lane] * *entry));
@@ -138,17 +172,41 @@ impl<T: Scalar> LinearOperator<T> for SecondKind<'_, T> {
         sweep: &mut Sweep<T>,
         relax: &mut Relax<'_, T>,
     ) -> ControlFlow<()> {
-        let mut off_diagonal = vec![T::zero(); x.lanes()];
-        let mut diagonal = vec![T::zero(); x.lanes()];
-        self.coupling.sweep(x, sweep, &mut |visit| {
-            let Visit { index, x, .. } = visit;
-            for (l, &d) in self.factor.row(index).iter().enumerate() {
-                off_diagonal[l] = -(d * visit.off_diagonal[l]);
-                diagonal[l] = T::one() - d * visit.diagonal[l];
-            }
-            relax(Visit { index, off_diagonal: &off_diagonal, diagonal: &diagonal, x })
-        })?;
+        let mut view = Turned::new(&self.factor);
+        self.coupling.sweep(x, sweep, &mut |visit| relax(view.turn(visit)))?;
         self.turn_product(x, sweep.product_mut());
         ControlFlow::Continue(())
+    }
+
+    fn sweep_back(
+        &self,
+        x: &mut MultiVector<T>,
+        sweep: &mut Sweep<T>,
+        relax: &mut Relax<'_, T>,
+    ) -> ControlFlow<()> {
+        let mut view = Turned::new(&self.factor);
+        self.coupling.sweep_back(x, sweep, &mut |visit| relax(view.turn(visit)))
+    }
+}
+
+/// Turns what a visit shows of K into what it shows of A.
+struct Turned<'a, T> {
+    factor: &'a MultiVector<T>,
+    off_diagonal: Vec<T>,
+    diagonal: Vec<T>,
+}
+
+impl<'a, T: Scalar> Turned<'a, T> {
+    fn new(factor: &'a MultiVector<T>) -> Self {
+        let zeros = vec![T::zero(); factor.lanes()];
+        Self { factor, off_diagonal: zeros.clone(), diagonal: zeros }
+    }
+
+    fn turn<'v>(&'v mut self, visit: Visit<'v, T>) -> Visit<'v, T> {
+        for (l, &d) in self.factor.row(visit.index).iter().enumerate() {
+            self.off_diagonal[l] = -(d * visit.off_diagonal[l]);
+            self.diagonal[l] = T::one() - d * visit.diagonal[l];
+        }
+        Visit { off_diagonal: &self.off_diagonal, diagonal: &self.diagonal, ..visit }
     }
 }

@@ -60,6 +60,8 @@ pub struct Record {
     pub iteration: usize,
     /// Seconds since the start.
     pub seconds: f64,
+    /// Stored entries read so far, for all lanes together.
+    pub entries_touched: u64,
     /// ‖b − A x‖₂/‖b‖₂ per lane.
     pub residuals: Vec<f64>,
 }

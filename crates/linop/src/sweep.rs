@@ -6,6 +6,11 @@
 //! ‖b − A x‖ costs no second pass. Where the matrix is symmetric, the entries k_ki are those that L_i has just read.
 //!
 //! A sweep that changes nothing computes U and K x of any starting x.
+//!
+//! The backward sweep visits i = n−1 … 0. At the visit of i, L_i is that of the forward sweep before it, because no
+//! unknown before i has changed since, and U_i has gathered the x_j just relaxed: only the part k_ki x_i, k < i, is
+//! read. It leaves U of the new x, from which the next forward sweep starts; L and K x are then out of date.
+//! (V. Conrad, Y. Wallach, Numerische Mathematik 32, 1979.)
 
 use crate::{LinearOperator, MultiVector, Scalar, Symmetry};
 use std::ops::ControlFlow;
@@ -15,6 +20,7 @@ use std::ops::ControlFlow;
 /// It belongs to one operator and one x, which nothing but sweeps may change between them. A new one belongs to x = 0.
 #[derive(Clone, Debug)]
 pub struct Sweep<T> {
+    pub(crate) lower: MultiVector<T>,
     pub(crate) upper: MultiVector<T>,
     pub(crate) product: MultiVector<T>,
 }
@@ -23,13 +29,44 @@ impl<T: Scalar> Sweep<T> {
     /// The state of x = 0.
     #[must_use]
     pub fn new(dim: usize, lanes: usize) -> Self {
-        Self { upper: MultiVector::zeros(dim, lanes), product: MultiVector::zeros(dim, lanes) }
+        let zeros = MultiVector::zeros(dim, lanes);
+        Self { lower: zeros.clone(), upper: zeros.clone(), product: zeros }
     }
 
     /// K x of the x that the last complete sweep left.
     #[must_use]
     pub fn product(&self) -> &MultiVector<T> {
         &self.product
+    }
+
+    /// L_i = Σ_{j<i} k_ij x_j of the last forward sweep. An operator sets it at the visits of a forward sweep.
+    pub fn lower_mut(&mut self) -> &mut MultiVector<T> {
+        &mut self.lower
+    }
+
+    /// U_i = Σ_{j>i} k_ij x_j.
+    #[must_use]
+    pub fn upper(&self) -> &MultiVector<T> {
+        &self.upper
+    }
+
+    /// Makes this the state of α x' + (1 − α) x'', α for each lane, of which it is the state of x' and `other` that
+    /// of x''. All parts are linear in x.
+    ///
+    /// # Panics
+    /// The states do not have the same shape.
+    pub fn mix(&mut self, alpha: &[T], other: &Self) {
+        let rest: Vec<T> = alpha.iter().map(|&alpha| T::one() - alpha).collect();
+        let parts = [
+            (&mut self.lower, &other.lower),
+            (&mut self.upper, &other.upper),
+            (&mut self.product, &other.product),
+        ];
+        for (part, other) in parts {
+            let zeros = MultiVector::zeros(part.dim(), part.lanes());
+            part.scale_and_add(alpha, &zeros);
+            part.add_scaled(&rest, other);
+        }
     }
 
     /// U_i = Σ_{j>i} k_ij x_j, all unknowns and lanes. An operator reads row i at visit i, sets it to 0, and adds to
@@ -47,6 +84,12 @@ impl<T: Scalar> Sweep<T> {
     pub(crate) fn take_upper(&mut self, i: usize, off_diagonal: &mut [T]) {
         off_diagonal.copy_from_slice(self.upper.row(i));
         self.upper.row_mut(i).fill(T::zero());
+    }
+
+    /// `off_diagonal` = L_i + U_i.
+    pub(crate) fn sum_parts(&self, i: usize, off_diagonal: &mut [T]) {
+        let parts = self.lower.row(i).iter().zip(self.upper.row(i));
+        off_diagonal.iter_mut().zip(parts).for_each(|(sum, (&lower, &upper))| *sum = lower + upper);
     }
 
     /// Turns the recorded L_i + k_ii x_i into K x.
@@ -85,10 +128,33 @@ pub(crate) fn sweep_by_rows<T: Scalar, A: LinearOperator<T> + ?Sized>(
         terms.gather(&lines, index, x, sweep);
         let Terms { off_diagonal, diagonal, .. } = &terms;
         relax(Visit { index, off_diagonal, diagonal, x: x.row_mut(index) })?;
+        terms.record(index, x, sweep);
         lines.turn_into_column(index);
-        terms.scatter(&lines, index, x, sweep);
+        lines.scatter(index, x, sweep);
     }
     sweep.complete();
+    ControlFlow::Continue(())
+}
+
+/// The backward sweep of an operator that is asked for the part of each column above the diagonal.
+pub(crate) fn sweep_back_by_columns<T: Scalar, A: LinearOperator<T> + ?Sized>(
+    a: &A,
+    x: &mut MultiVector<T>,
+    sweep: &mut Sweep<T>,
+    relax: &mut Relax<'_, T>,
+) -> ControlFlow<()> {
+    let mut lines = Lines::new(a);
+    let mut terms = Terms::new(x.lanes());
+    sweep.upper.fill(T::zero());
+    for index in (0..x.dim()).rev() {
+        lines.read_row(index);
+        (0..x.lanes()).for_each(|l| terms.diagonal[l] = lines.of_lane(l)[index]);
+        sweep.sum_parts(index, &mut terms.off_diagonal);
+        let Terms { off_diagonal, diagonal, .. } = &terms;
+        relax(Visit { index, off_diagonal, diagonal, x: x.row_mut(index) })?;
+        lines.turn_into_column(index);
+        lines.scatter(index, x, sweep);
+    }
     ControlFlow::Continue(())
 }
 
@@ -109,6 +175,14 @@ impl<'a, T: Scalar, A: LinearOperator<T> + ?Sized> Lines<'a, T, A> {
 
     fn read_row(&mut self, i: usize) {
         self.lines.iter_mut().enumerate().for_each(|(lane, line)| self.a.row(i, lane, line));
+    }
+
+    /// U_k += k_ki x_i for k < i.
+    fn scatter(&self, i: usize, x: &MultiVector<T>, sweep: &mut Sweep<T>) {
+        for l in 0..x.lanes() {
+            let (column, x) = (self.of_lane(l), x.row(i)[l]);
+            (0..i).for_each(|k| sweep.upper.row_mut(k)[l] += column[k] * x);
+        }
     }
 
     /// Makes column i of row i.
@@ -149,14 +223,11 @@ impl<T: Scalar> Terms<T> {
         }
     }
 
-    fn scatter<A>(&self, columns: &Lines<T, A>, i: usize, x: &MultiVector<T>, sweep: &mut Sweep<T>)
-    where
-        A: LinearOperator<T> + ?Sized,
-    {
-        for l in 0..x.lanes() {
-            let (column, x) = (columns.of_lane(l), x.row(i)[l]);
-            (0..i).for_each(|k| sweep.upper.row_mut(k)[l] += column[k] * x);
-            sweep.product.row_mut(i)[l] = self.lower[l] + self.diagonal[l] * x;
-        }
+    /// Keeps L_i, and L_i + k_ii x_i as the part of K x that is known.
+    fn record(&self, i: usize, x: &MultiVector<T>, sweep: &mut Sweep<T>) {
+        sweep.lower.row_mut(i).copy_from_slice(&self.lower);
+        let terms = self.lower.iter().zip(&self.diagonal).zip(x.row(i));
+        let product = sweep.product.row_mut(i).iter_mut();
+        product.zip(terms).for_each(|(product, ((&lower, &diagonal), &x))| *product = lower + diagonal * x);
     }
 }

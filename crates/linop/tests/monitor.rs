@@ -28,7 +28,7 @@ fn follow(b: &[f64], stop: Stop, iterates: &[[f64; 4]], observer: &mut dyn Obser
         let x = MultiVector::from_vec(2, 2, iterate.to_vec()).unwrap();
         let mut product = MultiVector::zeros(2, 2);
         a.apply(&x, &mut product);
-        if let ControlFlow::Break(reason) = monitor.record(&x, &product) {
+        if let ControlFlow::Break(reason) = monitor.record(&x, &product, &Work::default()) {
             return monitor.finish(reason, Work::default());
         }
     }

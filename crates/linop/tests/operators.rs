@@ -80,6 +80,8 @@ fn check_entries<T: Draw>(trial: &Trial<'_, T>) {
             trial.operator.column(i, lane, &mut column);
             let expected: Vec<T> = (0..n).map(|k| full[k][i]).collect();
             assert_close(&row, &full[i], TOLERANCE, &trial.name);
+            trial.operator.lower_row(i, lane, &mut row[..=i]);
+            assert_close(&row[..=i], &full[i][..=i], TOLERANCE, &trial.name);
             assert_close(&column, &expected, TOLERANCE, &trial.name);
             assert_close(dense.row_slice(i), &full[i], TOLERANCE, &trial.name);
             assert_close(&diagonal[i..=i], &full[i][i..=i], TOLERANCE, &trial.name);
@@ -125,6 +127,68 @@ fn check_sweep<T: Draw>(trial: &Trial<'_, T>) {
 #[test]
 fn sweeps_see_the_newest_values_and_end_with_the_product() {
     for_all(&[1, 2, 13, 24], check_sweep, check_sweep);
+}
+
+/// Backward sweeps that add random steps, each between two forward ones.
+fn check_sweep_back<T: Draw>(trial: &Trial<'_, T>) {
+    let (mut random, mut x) = (Random::new(5), trial.x.clone());
+    let mut sweep = Sweep::new(trial.x.dim(), trial.x.lanes());
+    let _ = trial.operator.sweep(&mut x, &mut sweep, &mut |_| ControlFlow::Continue(()));
+    for _ in 0..2 {
+        let mut shadow = x.clone();
+        let mut next = x.dim();
+        let flow = trial.operator.sweep_back(&mut x, &mut sweep, &mut |visit| {
+            next -= 1;
+            assert_eq!(visit.index, next);
+            let i = visit.index;
+            let whole = product(trial.matrices, &shadow);
+            for l in 0..shadow.lanes() {
+                let diagonal = trial.matrices[l % trial.matrices.len()][i][i];
+                let rest = whole.row(i)[l] - diagonal * shadow.row(i)[l];
+                assert_close(&visit.off_diagonal[l..=l], &[rest], TOLERANCE, &trial.name);
+                assert_close(&visit.diagonal[l..=l], &[diagonal], TOLERANCE, &trial.name);
+                visit.x[l] += T::draw(&mut random);
+            }
+            shadow.row_mut(i).copy_from_slice(visit.x);
+            ControlFlow::Continue(())
+        });
+        assert_eq!((flow, next), (ControlFlow::Continue(()), 0));
+        let before = product(trial.matrices, &x);
+        let _ = trial.operator.sweep(&mut x, &mut sweep, &mut |visit| {
+            let i = visit.index;
+            let diagonal = trial.matrices[0][i][i];
+            let rest = before.row(i)[0] - diagonal * visit.x[0];
+            assert_close(&visit.off_diagonal[..1], &[rest], TOLERANCE, &trial.name);
+            ControlFlow::Continue(())
+        });
+        assert_close(sweep.product().as_slice(), before.as_slice(), TOLERANCE, &trial.name);
+    }
+}
+
+#[test]
+fn backward_sweeps_see_the_newest_values_and_leave_the_state_of_the_next_forward_one() {
+    for_all(&[1, 2, 13, 24], check_sweep_back, check_sweep_back);
+}
+
+#[test]
+fn states_of_sweeps_are_blended_as_the_vectors_are() {
+    let mut random = Random::new(6);
+    for case in real_cases(9, &mut random) {
+        let lanes = case.operator.lanes().unwrap_or(2);
+        let [u, v] = [0, 1].map(|_| draw_vector::<f64>(9, lanes, &mut random));
+        let state = |x: &MultiVector<f64>| {
+            let mut sweep = Sweep::new(9, lanes);
+            let _ = case.operator.sweep(&mut x.clone(), &mut sweep, &mut |_| ControlFlow::Continue(()));
+            sweep
+        };
+        let alpha: Vec<f64> = (0..lanes).map(|l| 0.3 + 1.1 * l as f64).collect();
+        let mixed =
+            MultiVector::from_fn(9, lanes, |i, l| alpha[l] * u.row(i)[l] + (1.0 - alpha[l]) * v.row(i)[l]);
+        let (mut blended, expected) = (state(&u), state(&mixed));
+        blended.mix(&alpha, &state(&v));
+        assert_close(blended.product().as_slice(), expected.product().as_slice(), TOLERANCE, &case.name);
+        assert_close(blended.upper().as_slice(), expected.upper().as_slice(), TOLERANCE, &case.name);
+    }
 }
 
 #[test]

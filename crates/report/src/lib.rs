@@ -13,6 +13,8 @@
 //! | `convergence.svg` | residual against iterations and seconds |
 //! | `run.json` | what made all this; written last, so its presence means a complete folder |
 //!
+//! [`write_comparison`] writes a comparison of solvers: `compare.csv`, `compare_history.csv`, `compare.svg`, `compare.json`.
+//! [`write_spectrum`] writes an analysis of the matrix: `spectrum.csv`, `spectrum.svg`, `spectrum.json`.
 //! [`write_refinement`] writes a study of convergence: `converge.csv`, `converge.svg`, `converge.json`.
 //!
 //! Every file appears whole or not at all. Units: metres, W/m², W, seconds.
@@ -20,8 +22,10 @@
 mod atomic;
 mod axis;
 mod camera;
+mod chart;
 mod cie;
 mod colour;
+mod comparison;
 mod convergence;
 mod csv;
 mod error;
@@ -39,6 +43,7 @@ mod picture;
 mod refinement;
 mod run;
 mod shading;
+mod spectrum;
 mod surfaces_csv;
 mod svg;
 mod tone;
@@ -50,6 +55,11 @@ pub use atomic::write_atomically;
 pub use camera::Camera;
 pub use cie::colour_matching;
 pub use colour::Colouring;
+pub use comparison::{
+    COMPARISON_FILES, COMPARISON_FORMAT, ComparisonCase, ComparisonHistory, ComparisonRecord, ComparisonRun,
+    write_comparison, write_comparison_csv, write_comparison_history, write_comparison_plot,
+    write_sweep_plot,
+};
 pub use convergence::write_convergence;
 pub use error::ReportError;
 pub use faces_csv::write_faces_csv;
@@ -65,6 +75,10 @@ pub use refinement::{
 pub use run::{
     Closure, Counts, Energy, FORMAT, FieldError, FormFactorError, History, MeshError, RunRecord, Timing,
     read_run, write_run,
+};
+pub use spectrum::{
+    BandSpectrum, Eigenvalues, SPECTRUM_FILES, SPECTRUM_FORMAT, SpectrumRecord, write_spectrum,
+    write_spectrum_csv, write_spectrum_plot,
 };
 pub use surfaces_csv::write_surfaces_csv;
 pub use tone::Exposure;

@@ -1,6 +1,7 @@
 //! The verbs, one a file.
 
 mod check;
+mod compare;
 mod completions;
 mod converge;
 mod discretisations;
@@ -8,11 +9,14 @@ mod info;
 mod schema;
 mod solve;
 mod solvers;
+mod spectrum;
 mod viewfactors;
 
 use crate::args::Command;
 use crate::failure::{Ending, Failure};
 
+pub(crate) use compare::CompareArgs;
+pub(crate) use spectrum::SpectrumArgs;
 pub(crate) use viewfactors::ViewFactorsArgs;
 
 /// Carries out what was asked for.
@@ -21,6 +25,8 @@ pub(crate) fn execute(command: &Command) -> Result<Ending, Failure> {
         Command::Solve(args) => solve::solve(args),
         Command::Check(args) => check::check(args),
         Command::Converge(args) => converge::converge(args),
+        Command::Compare(args) => compare::compare(args),
+        Command::Spectrum(args) => spectrum::spectrum(args),
         Command::ViewFactors(args) => viewfactors::view_factors(args),
         Command::Info(args) => info::info(args),
         Command::Schema => schema::schema(),

@@ -3,9 +3,11 @@
 //! Rows are cut into fixed runs of about equal numbers of entries, each run sums into a vector of its own, and the
 //! vectors are added in the order of the runs: the number of threads changes no bit.
 
-use super::strip::Strip;
-use super::{PackedSymmetric, ROWS, Storage};
+use super::planar::Planar;
+use super::strip::{Add, Dot, Strip};
+use super::{PackedSymmetric, ROWS, Storage, TILE};
 use crate::MultiVector;
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -17,14 +19,21 @@ const LEAST: usize = 1 << 15;
 const BLOCK: usize = 1 << 10;
 
 pub(super) fn apply<S: Storage>(matrix: &PackedSymmetric<S>, x: &MultiVector<f64>, y: &mut MultiVector<f64>) {
-    let partial: Vec<Vec<f64>> =
-        runs(matrix.dim()).into_par_iter().map(|rows| Product::of_rows(matrix, rows, x)).collect();
-    let block = BLOCK * x.lanes().max(1);
-    y.as_mut_slice().par_chunks_mut(block).enumerate().for_each(|(at, y)| {
+    let (planar, arch) = (Planar::copied(x), Arch::new());
+    let of = |rows: Range<usize>| {
+        let mut product = Product::new(matrix, rows, x.lanes(), &planar);
+        arch.dispatch(Whole(&mut product));
+        product
+    };
+    let partial: Vec<Product<'_, S>> = runs(matrix.dim()).into_par_iter().map(of).collect();
+    let lanes = x.lanes().max(1);
+    y.as_mut_slice().par_chunks_mut(BLOCK * lanes).enumerate().for_each(|(at, y)| {
         y.fill(0.0);
-        for partial in &partial {
-            let from = (at * block).min(partial.len());
-            y.iter_mut().zip(&partial[from..]).for_each(|(y, part)| *y += part);
+        for (k, y) in y.chunks_exact_mut(lanes).enumerate() {
+            let i = at * BLOCK + k;
+            for part in partial.iter().filter(|part| i < part.rows.end) {
+                y.iter_mut().zip(part.y.row(i)).for_each(|(y, part)| *y += part);
+            }
         }
     });
 }
@@ -40,42 +49,73 @@ fn runs(dim: usize) -> Vec<Range<usize>> {
 /// What some rows of the triangle add to y.
 struct Product<'a, S> {
     matrix: &'a PackedSymmetric<S>,
-    x: &'a MultiVector<f64>,
-    y: Vec<f64>,
+    rows: Range<usize>,
+    lanes: usize,
+    x: &'a Planar,
+    y: Planar,
     sums: Vec<f64>,
+    factors: Vec<f64>,
+}
+
+/// All rows of a product.
+struct Whole<'p, 'a, S>(&'p mut Product<'a, S>);
+
+impl<S: Storage> WithSimd for Whole<'_, '_, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<V: Simd>(self, simd: V) {
+        let Range { start, end } = self.0.rows;
+        let whole = start + (end - start) / ROWS * ROWS;
+        for first in (start..whole).step_by(ROWS) {
+            self.0.add_rows::<V, ROWS>(simd, first);
+        }
+        for first in whole..end {
+            self.0.add_rows::<V, 1>(simd, first);
+        }
+    }
 }
 
 impl<'a, S: Storage> Product<'a, S> {
     /// y up to the last of the rows.
-    fn of_rows(matrix: &'a PackedSymmetric<S>, rows: Range<usize>, x: &'a MultiVector<f64>) -> Vec<f64> {
-        let lanes = x.lanes();
-        let mut product = Self { matrix, x, y: vec![0.0; rows.end * lanes], sums: vec![0.0; ROWS * lanes] };
-        let whole = rows.start + rows.len() / ROWS * ROWS;
-        (rows.start..whole).step_by(ROWS).for_each(|first| product.add_rows::<ROWS>(first));
-        (whole..rows.end).for_each(|first| product.add_rows::<1>(first));
-        product.y
+    fn new(matrix: &'a PackedSymmetric<S>, rows: Range<usize>, lanes: usize, x: &'a Planar) -> Self {
+        let (y, zeros) = (Planar::zeros(rows.end, lanes), vec![0.0; ROWS * lanes]);
+        Self { matrix, rows, lanes, x, y, sums: zeros.clone(), factors: zeros }
     }
 
     /// Rows first … first + R − 1: the columns before `first` together, then those of each row up to its diagonal.
-    fn add_rows<const R: usize>(&mut self, first: usize) {
-        let lanes = self.x.lanes();
+    #[inline(always)]
+    fn add_rows<V: Simd, const R: usize>(&mut self, simd: V, first: usize) {
         let rows = self.matrix.packed_rows::<R>(first);
-        let (x_before, x) = self.x.as_slice().split_at(first * lanes);
-        let (y_before, y) = self.y.split_at_mut(first * lanes);
+        let count = R * self.lanes;
         self.sums.fill(0.0);
-        let before = Strip { rows: rows.map(|row| &row[..first]), lanes };
-        before.dot(x_before, &mut self.sums[..R * lanes]);
-        before.add(&x[..R * lanes], y_before);
-        for (r, row) in rows.iter().enumerate() {
-            let sums = &mut self.sums[r * lanes..(r + 1) * lanes];
-            let (x_above, x) = x.split_at(r * lanes);
-            let (y_above, y) = y.split_at_mut(r * lanes);
-            let corner = Strip { rows: [&row[first..first + r]], lanes };
-            corner.dot(x_above, sums);
-            corner.add(&x[..lanes], y_above);
-            let diagonal = row[first + r].to_f64();
-            y.iter_mut().zip(x).zip(sums).for_each(|((y, x), sum)| *y += *sum + diagonal * x);
+        for r in 0..R {
+            let factors = &mut self.factors[r * self.lanes..(r + 1) * self.lanes];
+            factors.iter_mut().zip(self.x.row(first + r)).for_each(|(factor, x)| *factor = x);
         }
+        for from in (0..first).step_by(TILE) {
+            let to = (from + TILE).min(first);
+            let tile = rows.map(|row| &row[from..to]);
+            let strip = Strip { rows: &tile, from };
+            Dot { strip, x: self.x, sums: &mut self.sums[..count] }.with_simd(simd);
+            Add { strip, factors: &self.factors[..count], u: &mut self.y }.with_simd(simd);
+        }
+        (0..R).for_each(|r| self.add_corner(&rows[r][first..], first, r));
+    }
+
+    /// Row `first` + r from column `first` to the diagonal, and what the columns before have summed.
+    fn add_corner(&mut self, row: &[S], first: usize, r: usize) {
+        let own = r * self.lanes..(r + 1) * self.lanes;
+        for (k, entry) in row[..r].iter().enumerate() {
+            let entry = entry.to_f64();
+            let above = &self.factors[k * self.lanes..(k + 1) * self.lanes];
+            self.sums[own.clone()].iter_mut().zip(above).for_each(|(sum, x)| *sum += entry * x);
+            let factors = self.factors[own.clone()].iter();
+            self.y.add_row(first + k, factors.map(|x| entry * x));
+        }
+        let diagonal = row[r].to_f64();
+        let known = self.sums[own.clone()].iter().zip(&self.factors[own]);
+        self.y.add_row(first + r, known.map(|(sum, x)| *sum + diagonal * x));
     }
 }
 

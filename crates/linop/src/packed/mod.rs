@@ -3,15 +3,26 @@
 //! This holds G_ij = A_i F_ij (m²) of light: row i of the triangle has i + 1 entries, n(n+1)/2 in all. Storage may be
 //! f32, which halves the memory at 6e-8 relative error an entry; arithmetic is always f64.
 
+#![allow(
+    clippy::inline_always,
+    reason = "what runs under the wide registers must be compiled into the function that has them"
+)]
+
 mod apply;
+mod planar;
 mod strip;
 mod sweep;
 
 use crate::{Dense, LinearOperator, LinopError, MultiVector, Relax, Sweep, Symmetry};
+use rayon::prelude::*;
 use std::ops::ControlFlow;
 
-/// Rows taken at a time by the inner loops.
+/// Rows taken at a time.
 const ROWS: usize = 4;
+/// Fewest entries of a column worth a thread.
+const LEAST: usize = 1 << 11;
+/// Columns taken at a time: four rows of them stay in the innermost cache for both directions and all lanes.
+const TILE: usize = 1 << 9;
 
 mod sealed {
     pub trait Sealed {}
@@ -138,8 +149,15 @@ impl<S: Storage> LinearOperator<f64> for PackedSymmetric<S> {
     }
 
     fn row(&self, i: usize, _lane: usize, out: &mut [f64]) {
+        let (left, right) = out.split_at_mut(i + 1);
+        left.iter_mut().zip(self.packed_row(i)).for_each(|(out, entry)| *out = entry.to_f64());
+        // Below the diagonal every entry lies in another page of memory: several threads wait for several at once.
+        let below = right.par_iter_mut().with_min_len(LEAST).enumerate();
+        below.for_each(|(k, out)| *out = self.packed_row(i + 1 + k)[i].to_f64());
+    }
+
+    fn lower_row(&self, i: usize, _lane: usize, out: &mut [f64]) {
         out.iter_mut().zip(self.packed_row(i)).for_each(|(out, entry)| *out = entry.to_f64());
-        out.iter_mut().enumerate().skip(i + 1).for_each(|(j, out)| *out = self.packed_row(j)[i].to_f64());
     }
 
     fn column(&self, j: usize, lane: usize, out: &mut [f64]) {
@@ -163,6 +181,15 @@ impl<S: Storage> LinearOperator<f64> for PackedSymmetric<S> {
         relax: &mut Relax<'_, f64>,
     ) -> ControlFlow<()> {
         sweep::sweep(self, x, sweep, relax)
+    }
+
+    fn sweep_back(
+        &self,
+        x: &mut MultiVector<f64>,
+        sweep: &mut Sweep<f64>,
+        relax: &mut Relax<'_, f64>,
+    ) -> ControlFlow<()> {
+        sweep::sweep_back(self, x, sweep, relax)
     }
 }
 

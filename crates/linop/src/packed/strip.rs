@@ -2,149 +2,289 @@
 //! u_jl += Σ_r g_rj f_rl.
 //!
 //! Taking several rows at a time divides the traffic of x and u, which do not fit the innermost cache, by their
-//! number. Vectors are stored unknown-major, so a lane count known to the compiler turns the lanes of one unknown
-//! into one array. Every sum runs in [`WIDTH`] parts that are added in a fixed order: the bits depend on the code
-//! alone, not on the width of the machine's registers.
+//! number. At most [`LANES`] lanes and [`PAIR`] rows are taken at a time by the innermost loops, so that everything
+//! that is summed stays in registers, the widest ones of the machine; a strip is short enough for the innermost cache to
+//! serve the repetitions. Every sum runs in [`WIDTH`] parts that are added in a fixed order, by fused operations that a machine
+//! without them emulates: the bits depend on the code alone, not on the machine.
 
-use super::Storage;
+use super::planar::Planar;
+use super::{ROWS, Storage};
+use pulp::{Simd, WithSimd};
 
-/// Entries of a row taken at a time. More of them would not fit the registers with four rows and three lanes.
-const WIDTH: usize = 2;
+/// Parts of a sum: no register holds more numbers.
+const WIDTH: usize = 8;
+/// Most lanes at a time.
+const LANES: usize = 3;
+/// Rows at a time, where there are several lanes.
+const PAIR: usize = 2;
 
-/// R rows, and how many lanes the vectors have. Values per row and lane are stored row by row.
-pub(super) struct Strip<'a, S, const R: usize> {
-    pub rows: [&'a [S]; R],
-    pub lanes: usize,
+/// Up to [`ROWS`] rows whose first entry stands in column `from`.
+#[derive(Clone, Copy)]
+pub(super) struct Strip<'a, S> {
+    pub rows: &'a [&'a [S]],
+    pub from: usize,
 }
 
-impl<S: Storage, const R: usize> Strip<'_, S, R> {
-    /// s_rl += Σ_j g_rj x_jl.
-    pub fn dot(&self, x: &[f64], sums: &mut [f64]) {
-        match self.lanes {
-            1 => self.dot_fixed::<1>(x, sums),
-            2 => self.dot_fixed::<2>(x, sums),
-            3 => self.dot_fixed::<3>(x, sums),
-            _ => self.dot_any(x, sums),
+/// s_rl += Σ_j g_rj x_jl, s_rl at r · lanes + l.
+pub(super) struct Dot<'a, S> {
+    pub strip: Strip<'a, S>,
+    pub x: &'a Planar,
+    pub sums: &'a mut [f64],
+}
+
+/// u_jl += Σ_r g_rj f_rl, f_rl at r · lanes + l.
+pub(super) struct Add<'a, S> {
+    pub strip: Strip<'a, S>,
+    pub factors: &'a [f64],
+    pub u: &'a mut Planar,
+}
+
+/// Some rows, and the lanes from one on.
+#[derive(Clone, Copy)]
+struct Place {
+    row: usize,
+    lane: usize,
+    lanes: usize,
+}
+
+impl<S: Storage> WithSimd for Dot<'_, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<V: Simd>(self, simd: V) {
+        let Self { strip, x, sums } = self;
+        let lanes = sums.len() / strip.rows.len().max(1);
+        for lane in (0..lanes).step_by(LANES) {
+            let at = Place { row: 0, lane, lanes };
+            match lanes - lane {
+                1 => strip.dots::<V, ROWS, 1>(simd, at, x, sums),
+                2 => strip.dots::<V, PAIR, 2>(simd, at, x, sums),
+                _ => strip.dots::<V, PAIR, LANES>(simd, at, x, sums),
+            }
+        }
+    }
+}
+
+impl<S: Storage> WithSimd for Add<'_, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<V: Simd>(self, simd: V) {
+        let Self { strip, factors, u } = self;
+        let lanes = factors.len() / strip.rows.len().max(1);
+        for lane in (0..lanes).step_by(LANES) {
+            let at = Place { row: 0, lane, lanes };
+            match lanes - lane {
+                1 => strip.adds::<V, ROWS, 1>(simd, at, factors, u),
+                2 => strip.adds::<V, PAIR, 2>(simd, at, factors, u),
+                _ => strip.adds::<V, PAIR, LANES>(simd, at, factors, u),
+            }
+        }
+    }
+}
+
+impl<S: Storage> Strip<'_, S> {
+    fn len(&self) -> usize {
+        self.rows.first().map_or(0, |row| row.len())
+    }
+
+    /// L lanes: R rows at a time, then those that are left one by one.
+    #[inline(always)]
+    fn dots<V: Simd, const R: usize, const L: usize>(
+        &self,
+        simd: V,
+        at: Place,
+        x: &Planar,
+        sums: &mut [f64],
+    ) {
+        let xs = x.lanes::<L>(at.lane).map(|x| &x[self.from..self.from + self.len()]);
+        let (groups, rest) = self.rows.as_chunks::<R>();
+        for (group, rows) in groups.iter().enumerate() {
+            dot::<V, S, R, L>(simd, *rows, xs, Place { row: group * R, ..at }, sums);
+        }
+        for (k, row) in rest.iter().enumerate() {
+            dot::<V, S, 1, L>(simd, [row], xs, Place { row: groups.len() * R + k, ..at }, sums);
         }
     }
 
-    /// u_jl += Σ_r g_rj f_rl.
-    pub fn add(&self, factors: &[f64], u: &mut [f64]) {
-        match self.lanes {
-            1 => self.add_fixed::<1>(factors, u),
-            2 => self.add_fixed::<2>(factors, u),
-            3 => self.add_fixed::<3>(factors, u),
-            _ => self.add_any(factors, u),
+    /// L lanes: R rows at a time, then those that are left one by one.
+    #[inline(always)]
+    fn adds<V: Simd, const R: usize, const L: usize>(
+        &self,
+        simd: V,
+        at: Place,
+        factors: &[f64],
+        u: &mut Planar,
+    ) {
+        let mut us = u.lanes_mut::<L>(at.lane).map(|u| &mut u[self.from..self.from + self.rows[0].len()]);
+        let (groups, rest) = self.rows.as_chunks::<R>();
+        for (group, rows) in groups.iter().enumerate() {
+            add::<V, S, R, L>(simd, *rows, factors, Place { row: group * R, ..at }, &mut us);
+        }
+        for (k, row) in rest.iter().enumerate() {
+            add::<V, S, 1, L>(simd, [row], factors, Place { row: groups.len() * R + k, ..at }, &mut us);
         }
     }
+}
 
-    fn dot_fixed<const L: usize>(&self, x: &[f64], sums: &mut [f64]) {
-        let mut parts = [[[0.0; L]; WIDTH]; R];
-        let (xs, x_end) = x.as_chunks::<L>().0.as_chunks::<WIDTH>();
-        let (rows, ends) = self.cut(xs.len());
-        for (at, x) in xs.iter().enumerate() {
+/// Registers that hold the parts of a sum.
+const fn registers<V: Simd>() -> usize {
+    WIDTH / V::F64_LANES
+}
+
+#[inline(always)]
+#[allow(clippy::needless_range_loop, reason = "r, l and k index several arrays")]
+fn dot<V: Simd, S: Storage, const R: usize, const L: usize>(
+    simd: V,
+    rows: [&[S]; R],
+    xs: [&[f64]; L],
+    at: Place,
+    sums: &mut [f64],
+) {
+    let blocks = rows[0].len() / WIDTH;
+    let (whole, count) = (blocks * WIDTH, blocks * registers::<V>());
+    // Slices of one length, which the compiler need not check again.
+    let pieces = rows.map(|row| &row.as_chunks::<WIDTH>().0[..blocks]);
+    let x_pieces = xs.map(|x| &V::as_simd_f64s(x).0[..count]);
+    let mut parts = [[[simd.splat_f64s(0.0); WIDTH]; L]; R];
+    for block in 0..blocks {
+        for k in 0..registers::<V>() {
             for r in 0..R {
-                for k in 0..WIDTH {
-                    add_scaled(&mut parts[r][k], rows[r][at][k].to_f64(), &x[k]);
+                let entry = load::<V, S>(&pieces[r][block], k);
+                for l in 0..L {
+                    let x = x_pieces[l][block * registers::<V>() + k];
+                    parts[r][l][k] = simd.mul_add_f64s(entry, x, parts[r][l][k]);
                 }
             }
         }
-        for (k, x) in x_end.iter().enumerate() {
-            (0..R).for_each(|r| add_scaled(&mut parts[r][k], ends[r][k].to_f64(), x));
-        }
-        add_parts(&parts, sums);
     }
-
-    fn add_fixed<const L: usize>(&self, factors: &[f64], u: &mut [f64]) {
-        let us = u.as_chunks_mut::<L>().0;
-        let factors: [[f64; L]; R] = gathered(factors);
-        let rows = self.rows.map(|row| &row[..us.len()]);
-        for (j, u) in us.iter_mut().enumerate() {
-            (0..R).for_each(|r| add_scaled(u, rows[r][j].to_f64(), &factors[r]));
+    for r in 0..R {
+        for l in 0..L {
+            let mut part = spread(simd, &parts[r][l]);
+            for (k, (entry, x)) in rows[r][whole..].iter().zip(&xs[l][whole..]).enumerate() {
+                part[k] += entry.to_f64() * x;
+            }
+            sums[(at.row + r) * at.lanes + at.lane + l] += folded(&part);
         }
     }
+}
 
-    /// The rows in `count` pieces of [`WIDTH`] entries, and what remains of them.
-    fn cut(&self, count: usize) -> ([&[[S; WIDTH]]; R], [&[S]; R]) {
-        let pieces = self.rows.map(|row| &row.as_chunks::<WIDTH>().0[..count]);
-        (pieces, self.rows.map(|row| &row[count * WIDTH..]))
+/// The k-th register of a piece of a row.
+#[inline(always)]
+fn load<V: Simd, S: Storage>(piece: &[S; WIDTH], k: usize) -> V::f64s {
+    V::as_simd_f64s(&piece.map(Storage::to_f64)).0[k]
+}
+
+/// The parts of a sum, added in pairs.
+#[inline(always)]
+fn folded(part: &[f64; WIDTH]) -> f64 {
+    let [a, b, c, d, e, f, g, h] = *part;
+    ((a + b) + (c + d)) + ((e + f) + (g + h))
+}
+
+/// The parts of a sum as numbers.
+#[inline(always)]
+fn spread<V: Simd>(_: V, parts: &[V::f64s; WIDTH]) -> [f64; WIDTH] {
+    let mut numbers = [0.0; WIDTH];
+    V::as_mut_simd_f64s(&mut numbers).0.copy_from_slice(&parts[..registers::<V>()]);
+    numbers
+}
+
+#[inline(always)]
+#[allow(clippy::needless_range_loop, reason = "r, l and k index several arrays")]
+fn add<V: Simd, S: Storage, const R: usize, const L: usize>(
+    simd: V,
+    rows: [&[S]; R],
+    factors: &[f64],
+    at: Place,
+    us: &mut [&mut [f64]; L],
+) {
+    let factor = |r: usize, l: usize| factors[(at.row + r) * at.lanes + at.lane + l];
+    let blocks = rows[0].len() / WIDTH;
+    let (whole, count) = (blocks * WIDTH, blocks * registers::<V>());
+    let pieces = rows.map(|row| &row.as_chunks::<WIDTH>().0[..blocks]);
+    let splat: [[V::f64s; L]; R] =
+        std::array::from_fn(|r| std::array::from_fn(|l| simd.splat_f64s(factor(r, l))));
+    for (l, u) in us.iter_mut().enumerate() {
+        for (k, u) in u[whole..].iter_mut().enumerate() {
+            (0..R).for_each(|r| *u += rows[r][whole + k].to_f64() * factor(r, l));
+        }
     }
-
-    fn dot_any(&self, x: &[f64], sums: &mut [f64]) {
-        let lanes = self.lanes.max(1);
-        for (j, x) in x.chunks_exact(lanes).enumerate() {
-            for (row, sum) in self.rows.iter().zip(sums.chunks_exact_mut(lanes)) {
-                let entry = row[j].to_f64();
-                sum.iter_mut().zip(x).for_each(|(sum, x)| *sum += entry * x);
+    let u_pieces = us.each_mut().map(|u| &mut V::as_mut_simd_f64s(u).0[..count]);
+    for block in 0..blocks {
+        for k in 0..registers::<V>() {
+            let entries: [V::f64s; R] = std::array::from_fn(|r| load::<V, S>(&pieces[r][block], k));
+            for l in 0..L {
+                let u = &mut u_pieces[l][block * registers::<V>() + k];
+                let mut sum = *u;
+                for r in 0..R {
+                    sum = simd.mul_add_f64s(entries[r], splat[r][l], sum);
+                }
+                *u = sum;
             }
         }
-    }
-
-    fn add_any(&self, factors: &[f64], u: &mut [f64]) {
-        let lanes = self.lanes.max(1);
-        for (j, u) in u.chunks_exact_mut(lanes).enumerate() {
-            for (row, factor) in self.rows.iter().zip(factors.chunks_exact(lanes)) {
-                let entry = row[j].to_f64();
-                u.iter_mut().zip(factor).for_each(|(u, factor)| *u += entry * factor);
-            }
-        }
-    }
-}
-
-/// The lanes of R rows as values, so that the compiler may keep them in registers.
-fn gathered<const R: usize, const L: usize>(values: &[f64]) -> [[f64; L]; R] {
-    let rows = values.as_chunks::<L>().0;
-    std::array::from_fn(|r| rows[r])
-}
-
-fn add_scaled<const L: usize>(sum: &mut [f64; L], entry: f64, values: &[f64; L]) {
-    for l in 0..L {
-        sum[l] += entry * values[l];
-    }
-}
-
-fn add_parts<const R: usize, const L: usize>(parts: &[[[f64; L]; WIDTH]; R], sums: &mut [f64]) {
-    for (sum, parts) in sums.as_chunks_mut::<L>().0.iter_mut().zip(parts) {
-        let mut total = [0.0; L];
-        for part in parts {
-            add_scaled(&mut total, 1.0, part);
-        }
-        add_scaled(sum, 1.0, &total);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::MultiVector;
+    use pulp::Arch;
 
     /// Small integers, so that sums in any order are exact.
     fn integers(count: usize, period: usize) -> Vec<f64> {
         (0..count).map(|at| (at * at % period) as f64 - 3.0).collect()
     }
 
-    fn check<const R: usize>(n: usize, lanes: usize) {
-        let entries = integers(R * n, 11);
-        let (x, factors) = (integers(n * lanes, 7), integers(R * lanes, 5));
-        let rows: [&[f64]; R] = std::array::from_fn(|r| &entries[r * n..(r + 1) * n]);
-        let strip = Strip { rows, lanes };
-        let dot = |r: usize, l: usize| (0..n).map(|j| rows[r][j] * x[j * lanes + l]).sum::<f64>();
-        let add = |j: usize, l: usize| (0..R).map(|r| rows[r][j] * factors[r * lanes + l]).sum::<f64>();
-        let sums: Vec<f64> = (0..R * lanes).map(|at| 9.0 + dot(at / lanes, at % lanes)).collect();
-        let added: Vec<f64> = (0..n * lanes).map(|at| 1.0 + add(at / lanes, at % lanes)).collect();
+    fn check(count: usize, n: usize, lanes: usize) {
+        let (from, dim) = (2, n + 5);
+        let entries = integers(count * n, 11);
+        let x = MultiVector::from_vec(dim, lanes, integers(dim * lanes, 7)).unwrap();
+        let factors = integers(count * lanes, 5);
+        let rows: Vec<&[f64]> = (0..count).map(|r| &entries[r * n..(r + 1) * n]).collect();
+        let strip = Strip { rows: &rows, from };
+        let dot = |r: usize, l: usize| (0..n).map(|j| rows[r][j] * x.row(from + j)[l]).sum::<f64>();
+        let inside = |i: usize| i >= from && i < from + n;
+        let add = |i: usize, l: usize| {
+            let term = |r: usize| if inside(i) { rows[r][i - from] * factors[r * lanes + l] } else { 0.0 };
+            x.row(i)[l] + (0..count).map(term).sum::<f64>()
+        };
+        let expected: Vec<f64> = (0..count * lanes).map(|at| 9.0 + dot(at / lanes, at % lanes)).collect();
+        let added: Vec<f64> = (0..dim * lanes).map(|at| add(at / lanes, at % lanes)).collect();
 
-        let (mut sum, mut u) = (vec![9.0; R * lanes], vec![1.0; n * lanes]);
-        strip.dot(&x, &mut sum);
-        strip.add(&factors, &mut u);
-        assert_eq!((&sum, &u), (&sums, &added), "{R} × {n}, {lanes} lanes");
+        for arch in [Arch::new(), Arch::Scalar] {
+            let (mut sums, mut u) = (vec![9.0; count * lanes], Planar::copied(&x));
+            arch.dispatch(Dot { strip, x: &Planar::copied(&x), sums: &mut sums });
+            arch.dispatch(Add { strip, factors: &factors, u: &mut u });
+            let u: Vec<f64> = (0..dim).flat_map(|i| u.row(i).collect::<Vec<_>>()).collect();
+            assert_eq!((&sums, &u), (&expected, &added), "{count} × {n}, {lanes} lanes");
+        }
     }
 
     #[test]
     fn every_lane_count_and_remainder_gives_the_plain_sums() {
-        for lanes in 0..6 {
+        for lanes in 0..9 {
             for n in 0..20 {
-                check::<1>(n, lanes);
-                check::<4>(n, lanes);
+                (1..=ROWS).for_each(|rows| check(rows, n, lanes));
             }
         }
+    }
+
+    #[test]
+    fn the_width_of_the_registers_changes_no_bit() {
+        let (n, lanes) = (77, 4);
+        let values = |seed: usize, count: usize| -> Vec<f64> {
+            (0..count).map(|at| ((at * seed + 1) as f64 * 0.618_033_988_749_895).fract()).collect()
+        };
+        let entries = values(3, 4 * n);
+        let rows: Vec<&[f64]> = entries.chunks_exact(n).collect();
+        let x = Planar::copied(&MultiVector::from_vec(n, lanes, values(7, n * lanes)).unwrap());
+        let on = |arch: Arch| {
+            let mut sums = vec![0.0; 4 * lanes];
+            arch.dispatch(Dot { strip: Strip { rows: &rows, from: 0 }, x: &x, sums: &mut sums });
+            sums.iter().map(|sum| sum.to_bits()).collect::<Vec<u64>>()
+        };
+        assert_eq!(on(Arch::new()), on(Arch::Scalar));
     }
 }

@@ -2,11 +2,13 @@
 //! diagonal, it is read again from cache for U once x_i is set: every entry comes from memory once a sweep.
 //!
 //! A few rows at a time share the sums over the columns before the first of them; those between them follow as
-//! their unknowns are relaxed.
+//! their unknowns are relaxed. The backward sweep has its L from the forward one and reads each entry once, for U.
 
-use super::strip::Strip;
-use super::{PackedSymmetric, ROWS, Storage};
+use super::planar::Planar;
+use super::strip::{Add, Dot, Strip};
+use super::{PackedSymmetric, ROWS, Storage, TILE};
 use crate::{MultiVector, Relax, Sweep, Visit};
+use pulp::{Arch, Simd, WithSimd};
 use std::ops::ControlFlow;
 
 pub(super) fn sweep<S: Storage>(
@@ -15,7 +17,8 @@ pub(super) fn sweep<S: Storage>(
     sweep: &mut Sweep<f64>,
     relax: &mut Relax<'_, f64>,
 ) -> ControlFlow<()> {
-    let mut pass = Pass::new(x, sweep);
+    let upper = Planar::copied(&sweep.upper);
+    let mut pass = Pass::new(x, sweep, upper);
     let whole = matrix.dim() / ROWS * ROWS;
     for first in (0..whole).step_by(ROWS) {
         pass.visit_rows::<S, ROWS>(matrix.packed_rows(first), first, relax)?;
@@ -23,7 +26,27 @@ pub(super) fn sweep<S: Storage>(
     for first in whole..matrix.dim() {
         pass.visit_rows::<S, 1>(matrix.packed_rows(first), first, relax)?;
     }
+    pass.keep_upper();
     sweep.complete();
+    ControlFlow::Continue(())
+}
+
+pub(super) fn sweep_back<S: Storage>(
+    matrix: &PackedSymmetric<S>,
+    x: &mut MultiVector<f64>,
+    sweep: &mut Sweep<f64>,
+    relax: &mut Relax<'_, f64>,
+) -> ControlFlow<()> {
+    let upper = Planar::zeros(x.dim(), x.lanes());
+    let mut pass = Pass::new(x, sweep, upper);
+    let whole = matrix.dim() / ROWS * ROWS;
+    for first in (whole..matrix.dim()).rev() {
+        pass.visit_rows_back::<S, 1>(matrix.packed_rows(first), first, relax)?;
+    }
+    for first in (0..whole).step_by(ROWS).rev() {
+        pass.visit_rows_back::<S, ROWS>(matrix.packed_rows(first), first, relax)?;
+    }
+    pass.keep_upper();
     ControlFlow::Continue(())
 }
 
@@ -32,17 +55,41 @@ struct Pass<'a> {
     lanes: usize,
     x: &'a mut MultiVector<f64>,
     sweep: &'a mut Sweep<f64>,
-    /// L of the rows taken together.
+    /// x and U as the inner loops read them.
+    known: Planar,
+    upper: Planar,
+    /// L and x of the rows taken together.
     lower: Vec<f64>,
+    factors: Vec<f64>,
     diagonal: Vec<f64>,
     off_diagonal: Vec<f64>,
+    arch: Arch,
 }
 
 impl<'a> Pass<'a> {
-    fn new(x: &'a mut MultiVector<f64>, sweep: &'a mut Sweep<f64>) -> Self {
+    fn new(x: &'a mut MultiVector<f64>, sweep: &'a mut Sweep<f64>, upper: Planar) -> Self {
         let lanes = x.lanes();
-        let zeros = vec![0.0; lanes];
-        Self { lanes, x, sweep, lower: vec![0.0; ROWS * lanes], diagonal: zeros.clone(), off_diagonal: zeros }
+        let (row, rows) = (vec![0.0; lanes], vec![0.0; ROWS * lanes]);
+        Self {
+            lanes,
+            known: Planar::copied(x),
+            x,
+            sweep,
+            upper,
+            lower: rows.clone(),
+            factors: rows,
+            diagonal: row.clone(),
+            off_diagonal: row,
+            arch: Arch::new(),
+        }
+    }
+
+    /// Leaves U where the next sweep finds it.
+    fn keep_upper(&mut self) {
+        for i in 0..self.x.dim() {
+            let values = self.upper.row(i);
+            self.sweep.upper.row_mut(i).iter_mut().zip(values).for_each(|(upper, value)| *upper = value);
+        }
     }
 
     /// Visits the unknowns of R rows, the columns before `first` together.
@@ -52,14 +99,11 @@ impl<'a> Pass<'a> {
         first: usize,
         relax: &mut Relax<'_, f64>,
     ) -> ControlFlow<()> {
-        let (start, end) = (first * self.lanes, (first + R) * self.lanes);
-        let before = Strip { rows: rows.map(|row| &row[..first]), lanes: self.lanes };
-        self.lower.fill(0.0);
-        before.dot(&self.x.as_slice()[..start], &mut self.lower[..R * self.lanes]);
+        self.arch.dispatch(Gather { pass: self, rows, first });
         for (r, row) in rows.iter().enumerate() {
             self.visit(&row[first..], first, r, relax)?;
         }
-        before.add(&self.x.as_slice()[start..end], &mut self.sweep.upper.as_mut_slice()[..start]);
+        self.arch.dispatch(Scatter { pass: self, rows, first });
         ControlFlow::Continue(())
     }
 
@@ -71,19 +115,100 @@ impl<'a> Pass<'a> {
         r: usize,
         relax: &mut Relax<'_, f64>,
     ) -> ControlFlow<()> {
-        let (index, above) = (first + r, first * self.lanes..(first + r) * self.lanes);
-        let corner = Strip { rows: [&row[..r]], lanes: self.lanes };
-        let lower = &mut self.lower[r * self.lanes..(r + 1) * self.lanes];
-        corner.dot(&self.x.as_slice()[above.clone()], lower);
-        self.sweep.take_upper(index, &mut self.off_diagonal);
-        self.off_diagonal.iter_mut().zip(&*lower).for_each(|(sum, lower)| *sum += lower);
+        let (index, own) = (first + r, r * self.lanes..(r + 1) * self.lanes);
+        for (k, entry) in row[..r].iter().enumerate() {
+            let above = &self.factors[k * self.lanes..(k + 1) * self.lanes];
+            let lower = self.lower[own.clone()].iter_mut();
+            lower.zip(above).for_each(|(sum, x)| *sum += entry.to_f64() * x);
+        }
+        let parts = self.upper.row(index).zip(&self.lower[own.clone()]);
+        self.off_diagonal.iter_mut().zip(parts).for_each(|(sum, (upper, lower))| *sum = upper + lower);
+        self.upper.clear_row(index);
+        self.relax(row, first, r, relax)?;
         let entry = row[r].to_f64();
-        self.diagonal.fill(entry);
+        let known = self.lower[own.clone()].iter().zip(self.x.row(index));
+        let product = self.sweep.product.row_mut(index).iter_mut();
+        product.zip(known).for_each(|(product, (lower, x))| *product = *lower + entry * *x);
+        self.sweep.lower.row_mut(index).copy_from_slice(&self.lower[own]);
+        ControlFlow::Continue(())
+    }
+
+    /// Shows an unknown, takes its new value and adds it to U of those before it among the rows taken together.
+    fn relax<S: Storage>(
+        &mut self,
+        row: &[S],
+        first: usize,
+        r: usize,
+        relax: &mut Relax<'_, f64>,
+    ) -> ControlFlow<()> {
+        let index = first + r;
+        self.diagonal.fill(row[r].to_f64());
         let (off_diagonal, diagonal, x) = (&self.off_diagonal, &self.diagonal, self.x.row_mut(index));
         relax(Visit { index, off_diagonal, diagonal, x: &mut *x })?;
-        corner.add(x, &mut self.sweep.upper.as_mut_slice()[above]);
-        let product = self.sweep.product.row_mut(index).iter_mut();
-        product.zip(lower).zip(x).for_each(|((product, lower), x)| *product = *lower + entry * *x);
+        self.known.set_row(index, x);
+        self.factors[r * self.lanes..(r + 1) * self.lanes].copy_from_slice(x);
+        for (k, entry) in row[..r].iter().enumerate() {
+            self.upper.add_row(first + k, x.iter().map(|x| entry.to_f64() * x));
+        }
         ControlFlow::Continue(())
+    }
+
+    /// Visits the unknowns of R rows from the last to the first, and adds to the columns before `first` together.
+    fn visit_rows_back<S: Storage, const R: usize>(
+        &mut self,
+        rows: [&[S]; R],
+        first: usize,
+        relax: &mut Relax<'_, f64>,
+    ) -> ControlFlow<()> {
+        for (r, row) in rows.iter().enumerate().rev() {
+            let parts = self.upper.row(first + r).zip(self.sweep.lower.row(first + r));
+            self.off_diagonal.iter_mut().zip(parts).for_each(|(sum, (upper, lower))| *sum = upper + lower);
+            self.relax(&row[first..], first, r, relax)?;
+        }
+        self.arch.dispatch(Scatter { pass: self, rows, first });
+        ControlFlow::Continue(())
+    }
+}
+
+/// L of R rows over the columns before `first`.
+struct Gather<'p, 'a, 'm, S, const R: usize> {
+    pass: &'p mut Pass<'a>,
+    rows: [&'m [S]; R],
+    first: usize,
+}
+
+impl<S: Storage, const R: usize> WithSimd for Gather<'_, '_, '_, S, R> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<V: Simd>(self, simd: V) {
+        let Self { pass, rows, first } = self;
+        pass.lower.fill(0.0);
+        for from in (0..first).step_by(TILE) {
+            let tile = rows.map(|row| &row[from..(from + TILE).min(first)]);
+            let (strip, sums) = (Strip { rows: &tile, from }, &mut pass.lower[..R * pass.lanes]);
+            Dot { strip, x: &pass.known, sums }.with_simd(simd);
+        }
+    }
+}
+
+/// What R relaxed unknowns add to U of those before `first`.
+struct Scatter<'p, 'a, 'm, S, const R: usize> {
+    pass: &'p mut Pass<'a>,
+    rows: [&'m [S]; R],
+    first: usize,
+}
+
+impl<S: Storage, const R: usize> WithSimd for Scatter<'_, '_, '_, S, R> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<V: Simd>(self, simd: V) {
+        let Self { pass, rows, first } = self;
+        for from in (0..first).step_by(TILE) {
+            let tile = rows.map(|row| &row[from..(from + TILE).min(first)]);
+            let (strip, factors) = (Strip { rows: &tile, from }, &pass.factors[..R * pass.lanes]);
+            Add { strip, factors, u: &mut pass.upper }.with_simd(simd);
+        }
     }
 }

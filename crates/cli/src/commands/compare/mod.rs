@@ -1,0 +1,165 @@
+//! `fredholm compare`.
+
+mod args;
+mod case;
+mod summary;
+mod trial;
+
+use std::path::Path;
+
+use fredholm_coupling::Radiosity;
+use fredholm_linop::{PackedSymmetric, Storage};
+use fredholm_report::{COMPARISON_FORMAT, ComparisonCase, ComparisonRecord, write_comparison};
+use serde_json::json;
+
+pub(crate) use args::CompareArgs;
+
+use super::solve::report_failure;
+use crate::args::Precision;
+use crate::failure::{Ending, Failure};
+use crate::interrupt::Interrupt;
+use crate::options::RADIOSITY;
+use crate::problem::Problem;
+use crate::solution::{form_factors, system};
+use crate::stages::Stages;
+use crate::watcher::Watcher;
+use crate::{console, folder, memory, threads};
+
+/// Runs solvers on the same system and writes how they did.
+pub(crate) fn compare(args: &CompareArgs) -> Result<Ending, Failure> {
+    let interrupt = Interrupt::install(args.log.log)?;
+    let folder = folder::of(args.output.as_ref(), &args.scene);
+    folder::probe(&folder)?;
+    let console = console::choose(args.log);
+    let mut stages = Stages::new(&*console, &interrupt);
+    let count = args.threads.map_or_else(threads::default_count, usize::from);
+    threads::pool(count)?.install(|| run(args, &folder, &mut stages))
+}
+
+fn run(args: &CompareArgs, folder: &Path, stages: &mut Stages) -> Result<Ending, Failure> {
+    let problem = Problem::load(&args.problem(), stages)?;
+    if !problem.is_radiosity() {
+        let text = format!(
+            "compare works on the matrix of form factors, which is {RADIOSITY}; the scene asks for {}",
+            problem.options.discretisation
+        );
+        return Err(Failure::new(Ending::Input, text));
+    }
+    let record = match problem.options.storage {
+        Precision::F64 => compared::<f64>(args, &problem, stages),
+        Precision::F32 => compared::<f32>(args, &problem, stages),
+    }?;
+    stages.interrupt.begin_saving()?;
+    write_comparison(folder, &record).map_err(report_failure)?;
+    record.warnings.iter().for_each(|warning| stages.console.warn(warning));
+    if !args.log.quiet {
+        summary::print(folder, &record)?;
+    }
+    Ok(ending(&record, stages.interrupt))
+}
+
+/// Assembles, and runs all solvers in all cases.
+fn compared<S: Storage>(
+    args: &CompareArgs,
+    problem: &Problem,
+    stages: &mut Stages,
+) -> Result<ComparisonRecord, Failure> {
+    let watcher = Watcher::to(stages, args.stop());
+    let assembled = stages.run("assembly", || form_factors::<S>(problem, watcher))?;
+    let radiosity = stages.run("exposure", || system(problem, &assembled.matrix))?;
+    let cases = cases(args, problem, (&radiosity, &assembled.matrix), stages)?;
+    Ok(record(args, problem, cases, stages))
+}
+
+fn cases<S: Storage>(
+    args: &CompareArgs,
+    problem: &Problem,
+    system: (&Radiosity, &PackedSymmetric<S>),
+    stages: &mut Stages,
+) -> Result<Vec<ComparisonCase>, Failure> {
+    let Some(sweep) = &args.sweep else {
+        return Ok(vec![case::case(args, problem, system, 1.0, stages)?]);
+    };
+    let largest = case::largest(problem);
+    if largest == 0.0 {
+        let text = "there is nothing to scale: every material has reflectance 0";
+        return Err(Failure::new(Ending::Input, text));
+    }
+    let mut cases = Vec::new();
+    for value in &sweep.0 {
+        let mut stages = Stages::part(stages.console, stages.interrupt, &format!("reflectance {value:.4}"));
+        cases.push(case::case(args, problem, system, value / largest, &mut stages)?);
+    }
+    Ok(cases)
+}
+
+fn record(
+    args: &CompareArgs,
+    problem: &Problem,
+    cases: Vec<ComparisonCase>,
+    stages: &Stages,
+) -> ComparisonRecord {
+    let (scene, options) = (&problem.scene, &problem.options);
+    let unknowns = problem.unknowns as u64;
+    ComparisonRecord {
+        format: COMPARISON_FORMAT.to_owned(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        scene: scene.path().display().to_string(),
+        scene_sha256: scene.sha256().to_owned(),
+        options: json!({
+            "solvers": args.solvers(),
+            "tolerance": args.to,
+            "max_iterations": args.max_iterations,
+            "form_factor_tolerance": options.form_factor_tolerance,
+            "storage": options.storage,
+            "threads": options.threads,
+            "memory_limit_bytes": options.memory_limit_bytes,
+            "start": "x = 0",
+        }),
+        bands: scene.bands().to_vec(),
+        unknowns,
+        entries: unknowns * (unknowns + 1) / 2,
+        warnings: warnings(problem, &cases),
+        cases,
+        timings: stages.timings().to_vec(),
+        peak_memory_bytes: memory::peak().and_then(|peak| u64::try_from(peak.0).ok()),
+    }
+}
+
+/// Solvers that did not come to an end, and those that were refused, with the reason.
+fn warnings(problem: &Problem, cases: &[ComparisonCase]) -> Vec<String> {
+    let mut warnings = problem.warnings.clone();
+    for case in cases {
+        let place =
+            if cases.len() > 1 { format!(" at reflectance {}", case.reflectance) } else { String::new() };
+        for run in case.runs.iter().filter(|run| trial::failed(run)) {
+            warnings
+                .push(format!("{}{place}: {} after {} iterations", run.solver, run.outcome, run.iterations));
+        }
+        let refused = case.runs.iter().filter_map(|run| Some((run, run.reason.as_ref()?)));
+        warnings.extend(refused.map(|(run, reason)| format!("{}{place} was refused: {reason}", run.solver)));
+    }
+    warnings
+}
+
+fn ending(record: &ComparisonRecord, interrupt: &Interrupt) -> Ending {
+    let failed = record.cases.iter().any(|case| case.runs.iter().any(trial::failed));
+    match failed {
+        _ if interrupt.requested() => Ending::Interrupted,
+        true => Ending::NotConverged,
+        false => Ending::Done,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fredholm_report::ComparisonRun;
+
+    #[test]
+    fn a_refusal_is_no_failure() {
+        let run = |outcome: &str| ComparisonRun { outcome: outcome.into(), ..ComparisonRun::default() };
+        assert!(!trial::failed(&run("refused")) && !trial::failed(&run("converged")));
+        assert!(trial::failed(&run("diverged")) && trial::failed(&run("not converged")));
+    }
+}

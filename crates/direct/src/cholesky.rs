@@ -1,0 +1,147 @@
+//! Dense Cholesky on the symmetric form: Θ = I − D^½ K D^½ = L Lᴴ, z = L⁻ᴴ L⁻¹ D^(−½) b, x = D^½ z.
+//!
+//! Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., Johns Hopkins University Press 2013, § 4.2. Ψ = D^(−½) Θ D^(−½)
+//! has the same factor up to the scaling of its rows; Θ has no entries of different size.
+//!
+//! Requires a coupling that is known to be symmetric (Hermitian, for complex unknowns), D real and ≥ 0, and Θ positive definite, which
+//! light has with ρ < 1. Unknowns with d_i = 0, black patches, are b_i, and their light moves to the right-hand side.
+//!
+//! Cost: one factorisation (n³/3 real operations, 4n³/3 for complex entries) for each different matrix, half of LU. Memory: n² entries.
+//! In the history, iteration k has k matrices factorised; the observer can stop the solver before each, not within one.
+//!
+//! ```
+//! use fredholm_direct::Cholesky;
+//! use fredholm_linop::{MultiVector, PackedSymmetric, Quiet, SecondKind, Solver, Stop, StopReason};
+//!
+//! // x = b + K x with K = [0 ½; ½ 0] and b = (1, 1): x = (2, 2).
+//! let coupling = PackedSymmetric::new(2, vec![0.0, 0.5, 0.0])?;
+//! let a = SecondKind::new(&coupling, MultiVector::from_vec(2, 1, vec![1.0, 1.0])?)?;
+//! let b = MultiVector::from_vec(2, 1, vec![1.0, 1.0])?;
+//! let mut x = MultiVector::zeros(2, 1);
+//! let stop = Stop { tolerance: 1e-12, max_iterations: 1 };
+//! let report = Cholesky.solve(&a, &b, &mut x, &stop, &mut Quiet)?;
+//! assert_eq!(report.reason, StopReason::Converged);
+//! assert!((x.row(0)[0] - 2.0).abs() < 1e-14);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use crate::factorisation::{par, scratch};
+use crate::groups::{Ended, Run, columns, in_groups};
+use faer::dyn_stack::MemStack;
+use faer::linalg::cholesky::llt::{factor, solve};
+use faer::traits::ComplexField;
+use faer::{MatMut, MatRef, Spec};
+use fredholm_linop::{
+    Dense, LinearOperator, LinopError, MultiVector, Observer, Report, Scalar, SecondKind, SolveError, Solver,
+    Stop,
+};
+
+const NAME: &str = "cholesky";
+
+/// Factorises the symmetric form, once for all lanes that share it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Cholesky;
+
+impl<T: Scalar + ComplexField> Solver<T> for Cholesky {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn description(&self) -> &'static str {
+        "Dense Cholesky of the symmetrised system: exact to rounding, half the time of lu, n² memory"
+    }
+
+    // The matrix, the right-hand sides with the product and the light of black unknowns, and a diagonal.
+    fn bytes(&self, dim: usize, lanes: usize) -> u64 {
+        let (n, entry) = (dim as u64, size_of::<T>() as u64);
+        let vectors = (lanes as u64).saturating_mul(4).saturating_add(2);
+        n.saturating_add(vectors).saturating_mul(n).saturating_mul(entry)
+    }
+
+    fn solve(
+        &self,
+        a: &SecondKind<'_, T>,
+        b: &MultiVector<T>,
+        x: &mut MultiVector<T>,
+        stop: &Stop,
+        observer: &mut dyn Observer<T>,
+    ) -> Result<Report, SolveError> {
+        a.check_self_adjoint(NAME)?;
+        in_groups(a, b, x, stop, observer, solve_lanes)
+    }
+}
+
+fn solve_lanes<T: Scalar + ComplexField>(run: &mut Run<'_, '_, T>, lanes: &[usize]) -> Result<(), Ended> {
+    let (n, lane) = (run.a.dim(), lanes[0]);
+    let roots: Vec<f64> = (0..n).map(|i| run.a.factor().row(i)[lane].re().sqrt()).collect();
+    let mut matrix = theta(run.a, lane, &roots)?;
+    run.work.row_visits += n as u64;
+    run.work.entries_touched += run.a.entries();
+    factorise(&mut matrix, n)?.ok_or(SolveError::Indefinite { solver: NAME, lane })?;
+    let mut solutions = columns(&right_side(run), lanes);
+    for solution in solutions.chunks_exact_mut(n) {
+        let inverse = |root: f64| if root > 0.0 { root.recip() } else { 1.0 };
+        solution.iter_mut().zip(&roots).for_each(|(value, &root)| *value = value.scale(inverse(root)));
+    }
+    substitute(&matrix, n, &mut solutions)?;
+    for (&lane, solution) in lanes.iter().zip(solutions.chunks_exact_mut(n)) {
+        let factor = |root: f64| if root > 0.0 { root } else { 1.0 };
+        solution.iter_mut().zip(&roots).for_each(|(value, &root)| *value = value.scale(factor(root)));
+        run.x.set_lane(lane, solution);
+    }
+    Ok(())
+}
+
+/// The lower triangle of Θ, column by column.
+fn theta<T: Scalar>(a: &SecondKind<'_, T>, lane: usize, roots: &[f64]) -> Result<Vec<T>, SolveError> {
+    let n = a.dim();
+    let mut matrix = Dense::zeros(n)?.into_vec();
+    let mut row = vec![T::zero(); n];
+    for i in 0..n {
+        a.coupling().lower_row(i, lane, &mut row[..=i]);
+        for (j, &entry) in row[..=i].iter().enumerate() {
+            matrix[j * n + i] = -entry.scale(roots[i] * roots[j]);
+        }
+        matrix[i * n + i] += T::one();
+    }
+    Ok(matrix)
+}
+
+/// b + D K b_black on the unknowns that reflect, b on the black ones.
+fn right_side<T: Scalar>(run: &mut Run<'_, '_, T>) -> MultiVector<T> {
+    let factor = run.a.factor();
+    let mut right = run.b.clone();
+    if factor.as_slice().iter().all(|&d| d != T::zero()) {
+        return right;
+    }
+    let black = |i: usize, l: usize| if factor.row(i)[l] == T::zero() { run.b.row(i)[l] } else { T::zero() };
+    let known = MultiVector::from_fn(run.b.dim(), run.b.lanes(), black);
+    run.a.apply(&known, &mut run.product);
+    run.work.operator_applications += 1;
+    run.work.entries_touched += run.a.entries();
+    // A known = known − D K known, which is known on the black unknowns.
+    let terms = known.as_slice().iter().zip(run.product.as_slice());
+    right
+        .as_mut_slice()
+        .iter_mut()
+        .zip(terms)
+        .for_each(|(right, (&known, &product))| *right += known - product);
+    right
+}
+
+/// Θ = L Lᴴ in place. `None` where a pivot is not positive.
+fn factorise<T: Scalar + ComplexField>(matrix: &mut [T], n: usize) -> Result<Option<()>, LinopError> {
+    let mut memory = scratch(factor::cholesky_in_place_scratch::<T>(n, par(), Spec::default()))?;
+    let columns = MatMut::from_column_major_slice_mut(matrix, n, n);
+    let (plain, stack) = (factor::LltRegularization::default(), MemStack::new(&mut memory));
+    Ok(factor::cholesky_in_place(columns, plain, par(), stack, Spec::default()).ok().map(drop))
+}
+
+fn substitute<T: Scalar + ComplexField>(matrix: &[T], n: usize, b: &mut [T]) -> Result<(), SolveError> {
+    let count = b.len() / n.max(1);
+    let mut memory = scratch(solve::solve_in_place_scratch::<T>(n, count, par()))?;
+    let factor = MatRef::from_column_major_slice(matrix, n, n);
+    let columns = MatMut::from_column_major_slice_mut(b, n, count);
+    solve::solve_in_place::<T, T>(factor, columns, par(), MemStack::new(&mut memory));
+    Ok(())
+}
