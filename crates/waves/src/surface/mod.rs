@@ -1,0 +1,139 @@
+//! The meshed scatterer: facets with centre, normal and tangents.
+//!
+//! Facet q carries the frame (t₁, t₂, n), right-handed: n = t₁ × t₂ is the normal of its patch, which of a closed body
+//! points outwards; t₁ runs along the first side. A tangential vector is x = x₁ t₁ + x₂ t₂. Lengths in metres.
+
+mod shapes;
+
+pub use shapes::{cube, dihedral, facing_plates, plate, rectangle, sphere, trihedral};
+
+use crate::{Wave, WaveError};
+use fredholm_mesh::{Mesh, Patch, Vec3};
+use fredholm_visibility::Occluders;
+
+/// What a facet is part of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// The surface of a closed body: only the side of the normal is outside.
+    Closed,
+    /// A sheet without thickness: both sides are outside.
+    Sheet,
+}
+
+/// A flat piece of the scatterer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facet {
+    /// Its outline, m.
+    pub patch: Patch,
+    /// Where its node is: the centroid, m.
+    pub centre: Vec3,
+    /// Unit normal n.
+    pub normal: Vec3,
+    /// Unit tangents t₁, t₂ with t₁ × t₂ = n.
+    pub tangents: [Vec3; 2],
+    /// Area it stands for, m².
+    pub area: f64,
+    /// Longest side or diagonal, m.
+    pub diameter: f64,
+    /// What it is part of.
+    pub kind: Kind,
+}
+
+impl Facet {
+    /// The facet of a patch.
+    #[must_use]
+    pub fn new(patch: &Patch, kind: Kind) -> Self {
+        let first = (patch.corner(1) - patch.corner(0)).normalize_or_zero();
+        let normal = patch.normal();
+        // Exact orthogonality: the side is in the plane of a quad up to rounding only.
+        let first = (first - normal * first.dot(normal)).normalize_or_zero();
+        Self {
+            patch: *patch,
+            centre: patch.centroid(),
+            normal,
+            tangents: [first, normal.cross(first)],
+            area: patch.area(),
+            diameter: patch.diameter(),
+            kind,
+        }
+    }
+
+    /// Longest side, m.
+    #[must_use]
+    pub fn edge(&self) -> f64 {
+        let sides = 0..self.patch.sides();
+        sides.map(|i| self.patch.corner(i).distance(self.patch.corner(i + 1))).fold(0.0, f64::max)
+    }
+
+    /// +1 if `towards` (from the facet) is on the side of the normal; −1 behind a sheet, 0 behind a closed body.
+    #[must_use]
+    pub fn side(&self, towards: Vec3) -> f64 {
+        if self.normal.dot(towards) > 0.0 {
+            1.0
+        } else if self.kind == Kind::Sheet {
+            -1.0
+        } else {
+            0.0
+        }
+    }
+}
+
+/// All facets, and what blocks the view.
+#[derive(Clone, Debug)]
+pub struct Scatterer {
+    facets: Vec<Facet>,
+    occluders: Occluders,
+    extent: f64,
+}
+
+impl Scatterer {
+    /// Takes the leaves of a mesh; `kind` says what each of its surfaces (by index) is.
+    ///
+    /// # Errors
+    /// [`WaveError::NoFacets`] for an empty mesh, [`WaveError::Visibility`] for one too large or too small.
+    pub fn new(mesh: &Mesh, kind: impl Fn(usize) -> Kind) -> Result<Self, WaveError> {
+        let Some(bounds) = mesh.bounds() else { return Err(WaveError::NoFacets) };
+        let kinds = (0..mesh.len()).map(|leaf| kind(mesh.surface_of(leaf)));
+        let facets = mesh.patches().zip(kinds).map(|(patch, kind)| Facet::new(patch, kind)).collect();
+        let occluders = Occluders::new(mesh.occluders())?;
+        Ok(Self { facets, occluders, extent: bounds.max.distance(bounds.min) })
+    }
+
+    /// The facets.
+    #[must_use]
+    pub fn facets(&self) -> &[Facet] {
+        &self.facets
+    }
+
+    /// What blocks the view.
+    #[must_use]
+    pub fn occluders(&self) -> &Occluders {
+        &self.occluders
+    }
+
+    /// Diagonal of the smallest box around everything, m.
+    #[must_use]
+    pub fn extent(&self) -> f64 {
+        self.extent
+    }
+
+    /// Sum of the areas, m².
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        self.facets.iter().map(|facet| facet.area).sum()
+    }
+
+    /// Refuses facets with edges above λ/2, on which a wave cannot be told from its alias.
+    ///
+    /// # Errors
+    /// [`WaveError::Coarse`] with the first such facet.
+    pub fn check_resolution(&self, wave: &Wave) -> Result<(), WaveError> {
+        let wavelength = wave.wavelength();
+        // Meshing rounds edges; λ/2 itself is allowed.
+        let coarse = |facet: &Facet| facet.edge() > 0.5 * wavelength * (1.0 + 1e-9);
+        match self.facets.iter().position(coarse) {
+            Some(facet) => Err(WaveError::Coarse { facet, edge: self.facets[facet].edge(), wavelength }),
+            None => Ok(()),
+        }
+    }
+}
