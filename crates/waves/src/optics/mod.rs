@@ -24,7 +24,8 @@ pub enum Shadow {
     Radiated,
     /// C: the magnetic field equation of closed bodies, of which physical optics is the first term.
     Exact,
-    /// M = 2 n × E, n turned to the observer for every pair (G. Viennot, thesis, Limoges 2012, eq. 2.15 and annex B).
+    /// M = 2 n × E on lit facets, n turned to the observer for every pair, and nothing blocks (G. Viennot, thesis,
+    /// Limoges 2012, eq. 2.15 and annex B).
     Thesis,
 }
 
@@ -123,8 +124,10 @@ pub(crate) fn induced(facet: &Facet, incident: Field, shadow: Shadow) -> Current
 
 fn lit(scatterer: &Scatterer, origin: Origin, shadow: Shadow) -> Vec<f64> {
     let side = |facet: &Facet| match shadow {
-        // These know no lit side: all facets carry the current of their own normal.
-        Shadow::Exact | Shadow::Thesis => 1.0,
+        // It knows no lit side: all facets carry the current of their own normal.
+        Shadow::Exact => 1.0,
+        // The sign of the side is in the gate.
+        Shadow::Thesis => facet.side(origin.seen_from(facet.centre)).abs(),
         Shadow::Radiated => facet.side(origin.seen_from(facet.centre)),
         Shadow::Geometric => {
             let side = facet.side(origin.seen_from(facet.centre));

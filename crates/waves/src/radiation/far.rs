@@ -37,6 +37,12 @@ pub fn polar_frame(direction: Vec3) -> [Vec3; 2] {
     [azimuth.cross(direction), azimuth]
 }
 
+/// Radar cross-section 4π |F|²/|E₀|² (m²) of a far amplitude F (V) along one polarisation, E₀ (V/m) incident.
+#[must_use]
+pub fn cross_section(amplitude: Complex64, incident: Complex64) -> f64 {
+    4.0 * std::f64::consts::PI * amplitude.norm_sqr() / incident.norm_sqr()
+}
+
 /// The far field in many directions.
 pub type Pattern = Vec<FarField>;
 

@@ -22,6 +22,13 @@ pub(crate) struct Element {
     pub(crate) im: [f64; 3],
 }
 
+impl Element {
+    /// Whether it carries no current.
+    pub(crate) fn is_dark(&self) -> bool {
+        self.re == [0.0; 3] && self.im == [0.0; 3]
+    }
+}
+
 /// The elements of one facet, and which points they reach.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Group {
@@ -31,6 +38,7 @@ pub(crate) struct Group {
     pub(crate) near_squared: f64,
     /// Factor for points behind the facet; in front it is 1.
     pub(crate) behind: f64,
+    pub(crate) facet: usize,
     pub(crate) first: usize,
     pub(crate) count: usize,
 }

@@ -11,7 +11,7 @@ mod far;
 mod kernel;
 mod near;
 
-pub use far::{FarField, Pattern, polar_frame};
+pub use far::{FarField, Pattern, cross_section, polar_frame};
 pub(crate) use kernel::{Element, Evaluate, Group};
 
 use crate::element::dual;
@@ -30,8 +30,8 @@ pub enum Gate {
     /// To both: what a current does.
     #[default]
     Open,
-    /// Of a closed body in front only; of a sheet to both sides, with the sign of the side of the observer
-    /// (G. Viennot, thesis, Limoges 2012, annex B.4).
+    /// To both, with the normal turned to the observer: opposite signs on the two sides (G. Viennot, thesis, Limoges
+    /// 2012, annex B.4.1).
     ObserverSide,
 }
 
@@ -82,7 +82,7 @@ impl<'a> Radiator<'a> {
         }
         // Currents of one kind only cost one pass.
         for elements in [&mut radiator.electric, &mut radiator.magnetic] {
-            if elements.iter().all(|element| element.re == [0.0; 3] && element.im == [0.0; 3]) {
+            if elements.iter().all(Element::is_dark) {
                 elements.clear();
             }
         }
@@ -104,12 +104,18 @@ impl<'a> Radiator<'a> {
             self.electric.push(element(q, current.j, weight));
             self.magnetic.push(element(q, current.m, weight));
         }
-        let behind = if self.gate == Gate::Open { 1.0 } else { facet.side(-facet.normal) };
+        if self.electric[first..].iter().chain(&self.magnetic[first..]).all(Element::is_dark) {
+            self.electric.truncate(first);
+            self.magnetic.truncate(first);
+            return;
+        }
+        let behind = if self.gate == Gate::Open { 1.0 } else { -1.0 };
         self.groups.push(Group {
             centre: facet.centre.into(),
             normal: facet.normal.into(),
             near_squared: near * near,
             behind,
+            facet: index,
             first,
             count: self.electric.len() - first,
         });

@@ -12,16 +12,17 @@ impl Radiator<'_> {
     /// What the near facets of receiver `index` at `p` radiate to it.
     pub(super) fn near_part(&self, index: usize, p: Vec3) -> Result<Field, WaveError> {
         let mut sum = Field::ZERO;
-        for (i, (group, facet)) in self.groups.iter().zip(self.scatterer.facets()).enumerate() {
+        for group in &self.groups {
             let d = p - Vec3::from_array(group.centre);
             if d.length_squared() > group.near_squared {
                 continue;
             }
+            let facet = &self.scatterer.facets()[group.facet];
             if touches(facet, p) {
-                return Err(WaveError::OnSurface { receiver: index, facet: i });
+                return Err(WaveError::OnSurface { receiver: index, facet: group.facet });
             }
             let weight = if d.dot(facet.normal) > 0.0 { 1.0 } else { group.behind };
-            sum += self.facet(i, p) * weight;
+            sum += self.facet(group.facet, p) * weight;
         }
         Ok(sum)
     }

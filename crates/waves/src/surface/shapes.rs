@@ -5,7 +5,6 @@
 use super::{Kind, Scatterer};
 use crate::WaveError;
 use fredholm_mesh::{Cutting, Lines, MeshBuilder, Shape, Vec3};
-use std::f64::consts::PI;
 
 fn scatterer(shapes: &[Shape], edge: f64, kind: Kind) -> Result<Scatterer, WaveError> {
     if !(edge > 0.0 && edge.is_finite()) {
@@ -105,12 +104,10 @@ pub fn trihedral(side: f64, edge: f64) -> Result<Scatterer, WaveError> {
     scatterer(&faces, edge, Kind::Sheet)
 }
 
-/// Right angle, rad.
-pub const RIGHT_ANGLE: f64 = 0.5 * PI;
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::{FRAC_PI_2, PI};
 
     #[test]
     fn frames_are_orthonormal_and_normals_as_documented() {
@@ -119,7 +116,7 @@ mod tests {
             cube(1.0, 0.3).unwrap(),
             sphere(1.0, 0.4).unwrap(),
             facing_plates(1.0, 2.0, 0.3).unwrap(),
-            dihedral(1.0, 2.0, RIGHT_ANGLE, 0.5).unwrap(),
+            dihedral(1.0, 2.0, FRAC_PI_2, 0.5).unwrap(),
             trihedral(1.0, 0.3).unwrap(),
         ];
         for scatterer in &scatterers {
