@@ -5,7 +5,9 @@
 //!
 //! Here u = (p − q)/R points from the source q to the observer p, and g = e^{−jkR}/(4πR).
 
+mod bounces;
 mod complex;
+mod coupling;
 mod current;
 mod element;
 mod error;
@@ -19,7 +21,9 @@ mod rule;
 pub mod source;
 pub mod surface;
 
+pub use bounces::Bounces;
 pub use complex::ComplexVector;
+pub use coupling::{Bounced, Discretisation, NystromCoupling, System, galerkin};
 pub use current::{Current, FacetCurrents, SurfaceCurrent};
 pub use element::{electric_element, magnetic_element};
 pub use error::WaveError;

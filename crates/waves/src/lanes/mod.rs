@@ -67,10 +67,10 @@ impl<S: Simd> Lanes<S> {
         Self { simd: self.simd, value: self.simd.div_f64s(self.simd.splat_f64s(1.0), self.value) }
     }
 
-    /// |self|.
+    /// |self|. (`Simd::abs_f64s` and `Simd::select_f64s` stay calls of their own, compiled for narrow vectors.)
     #[inline(always)]
     pub(crate) fn abs(self) -> Self {
-        Self { simd: self.simd, value: self.simd.abs_f64s(self.value) }
+        self.max(-self)
     }
 
     /// The larger of two.
@@ -79,11 +79,16 @@ impl<S: Simd> Lanes<S> {
         Self { simd: self.simd, value: self.simd.max_f64s(self.value, other.value) }
     }
 
-    /// `above` in the lanes where self > threshold, else `below`.
+    /// The smaller of two.
     #[inline(always)]
-    pub(crate) fn where_above(self, threshold: Self, above: Self, below: Self) -> Self {
-        let mask = self.simd.greater_than_f64s(self.value, threshold.value);
-        Self { simd: self.simd, value: self.simd.select_f64s(mask, above.value, below.value) }
+    pub(crate) fn min(self, other: Self) -> Self {
+        Self { simd: self.simd, value: self.simd.min_f64s(self.value, other.value) }
+    }
+
+    /// 1 in the lanes where self > 0, else 0. Positive numbers below 1e-200 count as something between.
+    #[inline(always)]
+    pub(crate) fn step(self) -> Self {
+        (self * self.constant(1e200)).max(self.constant(0.0)).min(self.constant(1.0))
     }
 }
 

@@ -43,9 +43,8 @@ fn round<S: Simd>(x: Lanes<S>) -> Lanes<S> {
 /// Σ aᵢ zⁱ.
 #[inline(always)]
 fn polynomial<S: Simd>(z: Lanes<S>, [a, b, c, d, e, f]: [f64; 6]) -> Lanes<S> {
-    let constant = |value| z.constant(value);
-    let tail = constant(f).mul_add(z, constant(e)).mul_add(z, constant(d)).mul_add(z, constant(c));
-    tail.mul_add(z, constant(b)).mul_add(z, constant(a))
+    let tail = z.constant(f).mul_add(z, z.constant(e)).mul_add(z, z.constant(d)).mul_add(z, z.constant(c));
+    tail.mul_add(z, z.constant(b)).mul_add(z, z.constant(a))
 }
 
 /// (cos x, sin x) for |x| < 2⁵¹.

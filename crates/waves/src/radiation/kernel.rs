@@ -7,9 +7,11 @@
 
 use crate::lanes::{Lanes, cos_sin};
 use crate::medium::IMPEDANCE;
+use crate::coupling::View;
 use crate::{ComplexVector, Field};
 use fredholm_mesh::Vec3;
 use pulp::{Simd, WithSimd};
+use std::ops::Range;
 
 /// Square of the distance below which an element is not evaluated (it is masked), m².
 const FLOOR: f64 = 1e-60;
@@ -43,13 +45,34 @@ pub(crate) struct Group {
     pub(crate) count: usize,
 }
 
+impl Group {
+    /// Whether the point `d` from the centre is left out: in the arithmetic of the lanes, so that none is counted twice.
+    pub(crate) fn leaves_out(&self, d: Vec3) -> bool {
+        d.z.mul_add(d.z, d.y.mul_add(d.y, d.x * d.x)) <= self.near_squared
+    }
+}
+
 /// Fields at some points.
 pub(crate) struct Evaluate<'a> {
     pub(crate) wavenumber: f64,
     pub(crate) groups: &'a [Group],
     pub(crate) elements: &'a [Element],
     pub(crate) points: &'a [Vec3],
+    pub(crate) observers: Option<Observers<'a>>,
     pub(crate) out: &'a mut [Field],
+}
+
+/// What it takes where the points are centres of facets themselves.
+#[derive(Clone, Copy)]
+pub(crate) struct Observers<'a> {
+    /// Facet of the first point.
+    pub(crate) first: usize,
+    /// Normal of every facet.
+    pub(crate) normals: &'a [Vec3],
+    /// Factor of every facet for sources behind it.
+    pub(crate) behind: &'a [f64],
+    /// Who sees whom; nobody is blocked where there is none.
+    pub(crate) view: Option<&'a View>,
 }
 
 /// Most lanes of any instruction set.
@@ -61,86 +84,236 @@ impl WithSimd for Evaluate<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let width = S::F64_LANES;
-        for (points, out) in self.points.chunks(width).zip(self.out.chunks_mut(width)) {
-            let mut places = [[0.0; WIDEST]; 3];
-            for lane in 0..width {
-                // The last point stands in for those that are missing.
-                let p = points[lane.min(points.len() - 1)];
-                (0..3).for_each(|c| places[c][lane] = p[c]);
-            }
-            let p = [0, 1, 2].map(|c| Lanes::load(simd, &places[c][..width]));
+        for start in (0..self.points.len().min(self.out.len())).step_by(width) {
+            let end = self.points.len().min(start + width);
+            let p = load(simd, &self.points[start..end]);
             let mut sums = Sums::zero(simd);
-            for group in self.groups {
-                let elements = &self.elements[group.first..group.first + group.count];
-                sums.add_group(simd, self.wavenumber, group, elements, p);
+            if let Some(observers) = &self.observers {
+                let (first, last) = (observers.first + start, observers.first + end);
+                let normal = load(simd, &observers.normals[first..last]);
+                let mut behind = [0.0; WIDEST];
+                behind[..end - start].copy_from_slice(&observers.behind[first..last]);
+                let behind = Lanes::load(simd, &behind[..width]);
+                for group in self.groups {
+                    let weight = weight(simd, group, p) * facing(group, p, normal, behind);
+                    let weight = weight * seen(simd, observers.view, first..last, group.facet);
+                    sums.add_group(simd, self.wavenumber, group, self.elements, p, weight);
+                }
+            } else {
+                for group in self.groups {
+                    let weight = weight(simd, group, p);
+                    sums.add_group(simd, self.wavenumber, group, self.elements, p, weight);
+                }
             }
-            sums.store(width, out);
+            sums.store(width, &mut self.out[start..end]);
         }
     }
 }
 
-/// E/η and H, real and imaginary, x, y, z.
+/// One point a lane; the last stands in for those that are missing.
+#[inline(always)]
+fn load<S: Simd>(simd: S, points: &[Vec3]) -> Lanes3<S> {
+    let width = S::F64_LANES;
+    let mut places = [[0.0; WIDEST]; 3];
+    for lane in 0..width {
+        let p = points[lane.min(points.len() - 1)];
+        (places[0][lane], places[1][lane], places[2][lane]) = (p.x, p.y, p.z);
+    }
+    Lanes3 {
+        x: Lanes::load(simd, &places[0][..width]),
+        y: Lanes::load(simd, &places[1][..width]),
+        z: Lanes::load(simd, &places[2][..width]),
+    }
+}
+
+/// 1 where the observer faces the group, else its factor.
+#[inline(always)]
+fn facing<S: Simd>(group: &Group, p: Lanes3<S>, normal: Lanes3<S>, behind: Lanes<S>) -> Lanes<S> {
+    let one = behind.constant(1.0);
+    let centre = Lanes3 {
+        x: one.constant(group.centre[0]),
+        y: one.constant(group.centre[1]),
+        z: one.constant(group.centre[2]),
+    };
+    let front = centre.minus(p).dot(normal).step();
+    front.mul_add(one - behind, behind)
+}
+
+/// 1 where the observers see the source, else 0.
+#[inline(always)]
+fn seen<S: Simd>(simd: S, view: Option<&View>, observers: Range<usize>, source: usize) -> Lanes<S> {
+    let Some(view) = view else { return Lanes::splat(simd, 1.0) };
+    let mut seen = [0.0; WIDEST];
+    // The view is symmetric: the bits of the observers are neighbours in the row of the source.
+    for (lane, p) in observers.enumerate() {
+        seen[lane] = f64::from(u8::from(view.sees(source, p)));
+    }
+    Lanes::load(simd, &seen[..S::F64_LANES])
+}
+
+/// A real vector a lane.
+#[derive(Clone, Copy)]
+struct Lanes3<S: Simd> {
+    x: Lanes<S>,
+    y: Lanes<S>,
+    z: Lanes<S>,
+}
+
+// No closures and no `map` from here on: what they call is compiled for the narrowest vectors.
+impl<S: Simd> Lanes3<S> {
+    #[inline(always)]
+    fn splat(simd: S, v: &[f64; 3]) -> Self {
+        Self { x: Lanes::splat(simd, v[0]), y: Lanes::splat(simd, v[1]), z: Lanes::splat(simd, v[2]) }
+    }
+
+    #[inline(always)]
+    fn minus(self, other: Self) -> Self {
+        Self { x: self.x - other.x, y: self.y - other.y, z: self.z - other.z }
+    }
+
+    #[inline(always)]
+    fn dot(self, other: Self) -> Lanes<S> {
+        self.z.mul_add(other.z, self.y.mul_add(other.y, self.x * other.x))
+    }
+
+    #[inline(always)]
+    fn cross(self, other: Self) -> Self {
+        Self {
+            x: self.y.mul_add(other.z, -(self.z * other.y)),
+            y: self.z.mul_add(other.x, -(self.x * other.z)),
+            z: self.x.mul_add(other.y, -(self.y * other.x)),
+        }
+    }
+
+    /// self + factor · other.
+    #[inline(always)]
+    fn plus(self, factor: Lanes<S>, other: Self) -> Self {
+        Self {
+            x: factor.mul_add(other.x, self.x),
+            y: factor.mul_add(other.y, self.y),
+            z: factor.mul_add(other.z, self.z),
+        }
+    }
+}
+
+/// A complex number a lane.
+#[derive(Clone, Copy)]
+struct Complex<S: Simd> {
+    re: Lanes<S>,
+    im: Lanes<S>,
+}
+
+impl<S: Simd> Complex<S> {
+    #[inline(always)]
+    fn times(self, other: Self) -> Self {
+        Self {
+            re: self.re.mul_add(other.re, -(self.im * other.im)),
+            im: self.re.mul_add(other.im, self.im * other.re),
+        }
+    }
+
+    /// (p + jq) e^{−jφ} of this cos φ + j sin φ.
+    #[inline(always)]
+    fn turn(self, p: Lanes<S>, q: Lanes<S>) -> Self {
+        Self { re: p.mul_add(self.re, q * self.im), im: q.mul_add(self.re, -(p * self.im)) }
+    }
+
+    #[inline(always)]
+    fn scale(self, factor: Lanes<S>) -> Self {
+        Self { re: self.re * factor, im: self.im * factor }
+    }
+}
+
+/// A complex vector a lane.
+#[derive(Clone, Copy)]
+struct Complex3<S: Simd> {
+    re: Lanes3<S>,
+    im: Lanes3<S>,
+}
+
+impl<S: Simd> Complex3<S> {
+    /// self + a b.
+    #[inline(always)]
+    fn plus(self, a: Complex<S>, b: Self) -> Self {
+        Self {
+            re: self.re.plus(a.re, b.re).plus(-a.im, b.im),
+            im: self.im.plus(a.re, b.im).plus(a.im, b.re),
+        }
+    }
+}
+
+/// E/η and H.
 struct Sums<S: Simd> {
-    e: [[Lanes<S>; 3]; 2],
-    h: [[Lanes<S>; 3]; 2],
+    e: Complex3<S>,
+    h: Complex3<S>,
 }
 
 impl<S: Simd> Sums<S> {
     #[inline(always)]
     fn zero(simd: S) -> Self {
-        let zero = [[Lanes::splat(simd, 0.0); 3]; 2];
-        Self { e: zero, h: zero }
+        let zero = Lanes3::splat(simd, &[0.0; 3]);
+        Self { e: Complex3 { re: zero, im: zero }, h: Complex3 { re: zero, im: zero } }
     }
 
     #[inline(always)]
-    fn add_group(&mut self, simd: S, k: f64, group: &Group, elements: &[Element], p: [Lanes<S>; 3]) {
-        let weight = weight(simd, group, p);
-        for element in elements {
-            let d = [0, 1, 2].map(|c| p[c] - Lanes::splat(simd, element.position[c]));
-            let re = [0, 1, 2].map(|c| Lanes::splat(simd, element.re[c]));
-            let im = [0, 1, 2].map(|c| Lanes::splat(simd, element.im[c]));
-            self.add(k, d, weight, [re, im]);
+    fn add_group(
+        &mut self,
+        simd: S,
+        k: f64,
+        group: &Group,
+        elements: &[Element],
+        p: Lanes3<S>,
+        weight: Lanes<S>,
+    ) {
+        for element in &elements[group.first..group.first + group.count] {
+            let d = p.minus(Lanes3::splat(simd, &element.position));
+            let (re, im) = (Lanes3::splat(simd, &element.re), Lanes3::splat(simd, &element.im));
+            self.add(k, d, weight, Complex3 { re, im });
         }
     }
 
     #[inline(always)]
-    fn add(&mut self, k: f64, d: [Lanes<S>; 3], weight: Lanes<S>, moment: [[Lanes<S>; 3]; 2]) {
-        let scalars = Scalars::new(k, dot(d, d), weight);
-        let along = times(scalars.along, [dot(d, moment[0]), dot(d, moment[1])]);
-        let turned = moment.map(|m| cross(d, m));
-        for c in 0..3 {
-            accumulate(&mut self.e, c, scalars.across, [moment[0][c], moment[1][c]]);
-            self.e[0][c] = along[0].mul_add(d[c], self.e[0][c]);
-            self.e[1][c] = along[1].mul_add(d[c], self.e[1][c]);
-            accumulate(&mut self.h, c, scalars.curl, [turned[0][c], turned[1][c]]);
-        }
+    fn add(&mut self, k: f64, d: Lanes3<S>, weight: Lanes<S>, moment: Complex3<S>) {
+        let scalars = Scalars::new(k, d.dot(d), weight);
+        let along = scalars.along.times(Complex { re: d.dot(moment.re), im: d.dot(moment.im) });
+        let e = self.e.plus(scalars.across, moment);
+        self.e = Complex3 { re: e.re.plus(along.re, d), im: e.im.plus(along.im, d) };
+        let turned = Complex3 { re: d.cross(moment.re), im: d.cross(moment.im) };
+        self.h = self.h.plus(scalars.curl, turned);
     }
 
     #[inline(always)]
     fn store(self, width: usize, out: &mut [Field]) {
-        let e = unpack(self.e, width);
-        let h = unpack(self.h, width);
+        let parts = [self.e.re, self.e.im, self.h.re, self.h.im];
+        let mut values = [[[0.0; WIDEST]; 3]; 4];
+        for (part, values) in parts.iter().zip(&mut values) {
+            part.x.store(&mut values[0][..width]);
+            part.y.store(&mut values[1][..width]);
+            part.z.store(&mut values[2][..width]);
+        }
         for (lane, out) in out.iter_mut().enumerate() {
-            *out = Field { e: vector(&e, lane) * IMPEDANCE, h: vector(&h, lane) };
+            let vector = |part: usize| Vec3::from_array([0, 1, 2].map(|c| values[part][c][lane]));
+            let [e, h] = [0, 2].map(|part| ComplexVector { re: vector(part), im: vector(part + 1) });
+            *out = Field { e: e * IMPEDANCE, h };
         }
     }
 }
 
 /// 1 where the group reaches the point, 0 where it is left out, `behind` behind it.
 #[inline(always)]
-fn weight<S: Simd>(simd: S, group: &Group, p: [Lanes<S>; 3]) -> Lanes<S> {
-    let [zero, one] = [0.0, 1.0].map(|value| Lanes::splat(simd, value));
-    let d = [0, 1, 2].map(|c| p[c] - Lanes::splat(simd, group.centre[c]));
-    let reached = dot(d, d).where_above(Lanes::splat(simd, group.near_squared), one, zero);
-    let normal = [0, 1, 2].map(|c| Lanes::splat(simd, group.normal[c]));
-    reached * dot(d, normal).where_above(zero, one, Lanes::splat(simd, group.behind))
+fn weight<S: Simd>(simd: S, group: &Group, p: Lanes3<S>) -> Lanes<S> {
+    let d = p.minus(Lanes3::splat(simd, &group.centre));
+    let reached = (d.dot(d) - Lanes::splat(simd, group.near_squared)).step();
+    let front = d.dot(Lanes3::splat(simd, &group.normal)).step();
+    let behind = Lanes::splat(simd, group.behind);
+    reached * front.mul_add(Lanes::splat(simd, 1.0) - behind, behind)
 }
 
-/// The three functions of the distance, times the weight: real and imaginary.
+/// The three functions of the distance, times the weight.
 struct Scalars<S: Simd> {
-    across: [Lanes<S>; 2],
-    along: [Lanes<S>; 2],
-    curl: [Lanes<S>; 2],
+    across: Complex<S>,
+    along: Complex<S>,
+    curl: Complex<S>,
 }
 
 impl<S: Simd> Scalars<S> {
@@ -150,55 +323,17 @@ impl<S: Simd> Scalars<S> {
         let wavenumber = square.constant(k);
         let inverse = square.sqrt().inverse();
         let (cos, sin) = cos_sin(wavenumber * square * inverse);
-        let (cos, sin) = (cos * weight, sin * weight);
+        let phase = Complex { re: cos * weight, im: sin * weight };
         let inverse_square = inverse * inverse;
         let first = wavenumber * inverse;
         let third = inverse * inverse_square * square.constant(1.0 / k);
-        // e^{−jφ} (p + jq) = (p cos φ + q sin φ) + j (q cos φ − p sin φ).
-        let turned = |p: Lanes<S>, q: Lanes<S>| [p.mul_add(cos, q * sin), q.mul_add(cos, -(p * sin))];
         let three = square.constant(3.0);
-        let across = turned(-inverse_square, third - first);
-        let along = turned(three * inverse_square, (-three).mul_add(third, first));
-        let curl = turned(-inverse, -wavenumber);
-        Self { across, along: along.map(|x| x * inverse_square), curl: curl.map(|x| x * inverse_square) }
+        Self {
+            across: phase.turn(-inverse_square, third - first),
+            along: phase
+                .turn(three * inverse_square, (-three).mul_add(third, first))
+                .scale(inverse_square),
+            curl: phase.turn(-inverse, -wavenumber).scale(inverse_square),
+        }
     }
-}
-
-#[inline(always)]
-fn dot<S: Simd>(a: [Lanes<S>; 3], b: [Lanes<S>; 3]) -> Lanes<S> {
-    a[2].mul_add(b[2], a[1].mul_add(b[1], a[0] * b[0]))
-}
-
-#[inline(always)]
-fn cross<S: Simd>(a: [Lanes<S>; 3], b: [Lanes<S>; 3]) -> [Lanes<S>; 3] {
-    let component = |i: usize, j: usize| a[i].mul_add(b[j], -(a[j] * b[i]));
-    [component(1, 2), component(2, 0), component(0, 1)]
-}
-
-#[inline(always)]
-fn times<S: Simd>(a: [Lanes<S>; 2], b: [Lanes<S>; 2]) -> [Lanes<S>; 2] {
-    [a[0].mul_add(b[0], -(a[1] * b[1])), a[0].mul_add(b[1], a[1] * b[0])]
-}
-
-/// Component c of `sum` += a b.
-#[inline(always)]
-fn accumulate<S: Simd>(sum: &mut [[Lanes<S>; 3]; 2], c: usize, a: [Lanes<S>; 2], b: [Lanes<S>; 2]) {
-    sum[0][c] = a[0].mul_add(b[0], (-a[1]).mul_add(b[1], sum[0][c]));
-    sum[1][c] = a[0].mul_add(b[1], a[1].mul_add(b[0], sum[1][c]));
-}
-
-#[inline(always)]
-fn unpack<S: Simd>(sums: [[Lanes<S>; 3]; 2], width: usize) -> [[[f64; WIDEST]; 3]; 2] {
-    sums.map(|part| {
-        part.map(|lanes| {
-            let mut values = [0.0; WIDEST];
-            lanes.store(&mut values[..width]);
-            values
-        })
-    })
-}
-
-fn vector(values: &[[[f64; WIDEST]; 3]; 2], lane: usize) -> ComplexVector {
-    let [re, im] = [0, 1].map(|part| Vec3::from_array([0, 1, 2].map(|c| values[part][c][lane])));
-    ComplexVector { re, im }
 }

@@ -12,7 +12,8 @@ mod kernel;
 mod near;
 
 pub use far::{FarField, Pattern, cross_section, polar_frame};
-pub(crate) use kernel::{Element, Evaluate, Group};
+pub(crate) use kernel::{Element, Evaluate, Group, Observers};
+pub(crate) use near::Run;
 
 use crate::element::dual;
 use crate::rule::{phase_error, points_for_phase, reach, regular};
@@ -55,6 +56,7 @@ pub struct Radiator<'a> {
     gate: Gate,
     tolerance: f64,
     groups: Vec<Group>,
+    runs: Vec<Run>,
     electric: Vec<Element>,
     magnetic: Vec<Element>,
     arch: Arch,
@@ -74,12 +76,22 @@ impl<'a> Radiator<'a> {
             Sampling::Tolerance(tolerance) => tolerance.max(1e-12),
             Sampling::Midpoint => TOLERANCE,
         };
-        let (groups, electric, magnetic) = (Vec::new(), Vec::new(), Vec::new());
-        let arch = Arch::new();
-        let mut radiator = Self { scatterer, current, wave, gate, tolerance, groups, electric, magnetic, arch };
+        let mut radiator = Self {
+            scatterer,
+            current,
+            wave,
+            gate,
+            tolerance,
+            groups: Vec::new(),
+            runs: Vec::new(),
+            electric: Vec::new(),
+            magnetic: Vec::new(),
+            arch: Arch::new(),
+        };
         for (index, facet) in scatterer.facets().iter().enumerate() {
             radiator.sample(index, facet, sampling == Sampling::Midpoint);
         }
+        radiator.runs = Run::all(&radiator.groups);
         // Currents of one kind only cost one pass.
         for elements in [&mut radiator.electric, &mut radiator.magnetic] {
             if elements.iter().all(Element::is_dark) {
@@ -156,8 +168,8 @@ impl<'a> Radiator<'a> {
                 continue;
             }
             let part = &mut part[..points.len()];
-            let wavenumber = self.wave.wavenumber();
-            self.arch.dispatch(Evaluate { wavenumber, groups: &self.groups, elements, points, out: part });
+            let (wavenumber, groups) = (self.wave.wavenumber(), &self.groups);
+            self.arch.dispatch(Evaluate { wavenumber, groups, elements, points, observers: None, out: part });
             let turned = |field: Field| if magnetic { dual(field) } else { field };
             out.iter_mut().zip(part.iter()).for_each(|(out, &field)| *out += turned(field));
         }

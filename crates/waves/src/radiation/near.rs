@@ -1,6 +1,6 @@
 //! Facets that a point is close to, integrated for it alone.
 
-use super::Radiator;
+use super::{Group, Radiator};
 use crate::rule::seen_from;
 use crate::{Current, Facet, Field, WaveError, electric_element, magnetic_element};
 use fredholm_mesh::Vec3;
@@ -8,15 +8,48 @@ use fredholm_mesh::Vec3;
 /// Height over a facet, in its diameters, up to which a point lies on it.
 const TOUCHING: f64 = 1e-9;
 
+/// Facets that are looked at together.
+const RUN: usize = 64;
+
+/// A sphere around the places that are near to some facets.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Run {
+    centre: Vec3,
+    radius: f64,
+}
+
+impl Run {
+    /// The spheres of consecutive groups.
+    pub(crate) fn all(groups: &[Group]) -> Vec<Self> {
+        groups.chunks(RUN).map(Self::around).collect()
+    }
+
+    fn around(groups: &[Group]) -> Self {
+        let centres = || groups.iter().map(|group| Vec3::from_array(group.centre));
+        let centre = centres().sum::<Vec3>() / groups.len() as f64;
+        let reach = groups.iter().zip(centres()).map(|(group, c)| c.distance(centre) + group.near_squared.sqrt());
+        // What rounding could add.
+        Self { centre, radius: reach.fold(0.0, f64::max) * (1.0 + 1e-9) }
+    }
+
+    /// The groups that leave out the point `p`, in their order.
+    pub(crate) fn near<'a>(groups: &'a [Group], runs: &'a [Self], p: Vec3) -> impl Iterator<Item = &'a Group> {
+        let close = groups.chunks(RUN).zip(runs).filter(move |(_, run)| run.may_be_near(p));
+        let left_out = move |group: &&Group| group.leaves_out(p - Vec3::from_array(group.centre));
+        close.flat_map(|(groups, _)| groups).filter(left_out)
+    }
+
+    fn may_be_near(&self, p: Vec3) -> bool {
+        p.distance(self.centre) <= self.radius
+    }
+}
+
 impl Radiator<'_> {
     /// What the near facets of receiver `index` at `p` radiate to it.
     pub(super) fn near_part(&self, index: usize, p: Vec3) -> Result<Field, WaveError> {
         let mut sum = Field::ZERO;
-        for group in &self.groups {
+        for group in Run::near(&self.groups, &self.runs, p) {
             let d = p - Vec3::from_array(group.centre);
-            if d.length_squared() > group.near_squared {
-                continue;
-            }
             let facet = &self.scatterer.facets()[group.facet];
             if touches(facet, p) {
                 return Err(WaveError::OnSurface { receiver: index, facet: group.facet });
