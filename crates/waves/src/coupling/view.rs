@@ -1,10 +1,7 @@
 //! Which facets see each other: one bit a pair.
 
-use crate::{Scatterer, Shadow};
+use crate::{Facet, Scatterer, Shadow};
 use rayon::prelude::*;
-
-/// Most flat pieces of which no third can come between two.
-const PAIR: usize = 2;
 
 /// Rows of bits: bit q of row p is set where nothing blocks the segment between the centres.
 #[derive(Clone, Debug)]
@@ -16,8 +13,7 @@ pub(crate) struct View {
 impl View {
     /// The view of all facets, or `None` where every pair sees each other or the treatment does not ask.
     pub(crate) fn new(scatterer: &Scatterer, shadow: Shadow) -> Option<Self> {
-        // Every facet lies in an occluder, which does not block its own ends.
-        if shadow != Shadow::Geometric || scatterer.occluders().len() <= PAIR {
+        if shadow != Shadow::Geometric || !can_block(scatterer) {
             return None;
         }
         let count = scatterer.facets().len();
@@ -35,6 +31,16 @@ impl View {
     pub(crate) fn sees(&self, p: usize, q: usize) -> bool {
         self.bits[p * self.words + q / 64] >> (q % 64) & 1 == 1
     }
+}
+
+/// Whether some occluder has facets on both sides of its plane: else none can come between two.
+fn can_block(scatterer: &Scatterer) -> bool {
+    let margin = scatterer.occluders().tolerance();
+    scatterer.occluders().patches().par_iter().any(|patch| {
+        let height = |facet: &Facet| patch.normal().dot(facet.centre - patch.corner(0));
+        let heights = || scatterer.facets().iter().map(height);
+        heights().any(|height| height > margin) && heights().any(|height| height < -margin)
+    })
 }
 
 fn row(scatterer: &Scatterer, p: usize, words: usize) -> Vec<u64> {

@@ -25,9 +25,9 @@ pub enum Kind {
 pub struct Facet {
     /// Its outline, m.
     pub patch: Patch,
-    /// Where its node is: the centroid, m.
+    /// Where its node is, m: the centroid, or the place on the curved surface that it stands for.
     pub centre: Vec3,
-    /// Unit normal n.
+    /// Unit normal n at the node.
     pub normal: Vec3,
     /// Unit tangents t₁, t₂ with t₁ × t₂ = n.
     pub tangents: [Vec3; 2],
@@ -97,6 +97,19 @@ impl Scatterer {
         let facets = mesh.patches().zip(kinds).map(|(patch, kind)| Facet::new(patch, kind)).collect();
         let occluders = Occluders::new(mesh.occluders())?;
         Ok(Self { facets, occluders, extent: bounds.max.distance(bounds.min) })
+    }
+
+    /// Moves the nodes and normals of a polyhedron around the origin to the sphere that it stands for: the equation for
+    /// currents at the nodes then has the curvature right.
+    #[must_use]
+    pub(crate) fn on_sphere(mut self, radius: f64) -> Self {
+        for facet in &mut self.facets {
+            facet.normal = facet.centre.normalize_or(facet.normal);
+            facet.centre = facet.normal * radius;
+            let first = facet.tangents[0] - facet.normal * facet.normal.dot(facet.tangents[0]);
+            facet.tangents = [first.normalize_or_zero(), facet.normal.cross(first.normalize_or_zero())];
+        }
+        self
     }
 
     /// The facets.

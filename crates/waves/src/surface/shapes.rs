@@ -49,7 +49,8 @@ pub fn cube(side: f64, edge: f64) -> Result<Scatterer, WaveError> {
     scatterer(&[Shape::Box { min: -half, max: half, inward: false }], edge, Kind::Closed)
 }
 
-/// The closed sphere around the origin as 20 f² triangles with edges up to `edge`; their areas sum to 4π r².
+/// The closed sphere around the origin as 20 f² triangles with edges up to `edge`; their areas sum to 4π r², and their
+/// nodes and normals are those of the sphere.
 ///
 /// # Errors
 /// [`WaveError::Length`] or [`WaveError::Mesh`] for lengths that are none.
@@ -63,7 +64,7 @@ pub fn sphere(radius: f64, edge: f64) -> Result<Scatterer, WaveError> {
     let mut builder = MeshBuilder::default();
     builder.surface("", 0);
     builder.add(&shape, &Cutting::default())?;
-    Scatterer::new(&builder.build(), |_| Kind::Closed)
+    Ok(Scatterer::new(&builder.build(), |_| Kind::Closed)?.on_sphere(radius))
 }
 
 /// Two thin squares of this side at (∓offset, 0, 0), their normals (±1, −1, 0)/√2: they face each other at a right
