@@ -75,6 +75,14 @@ pub enum WaveError {
         /// Index of the facet.
         facet: usize,
     },
+    /// A model of perfect conductors meets another material.
+    #[error("{what} knows perfect conductors only, but facet {facet} is of another material; ask for one bounce with geometric shadows")]
+    NotConductor {
+        /// The model.
+        what: &'static str,
+        /// Index of the facet.
+        facet: usize,
+    },
     /// A material passes no energy law.
     #[error("material {what}: {reason}")]
     Material {

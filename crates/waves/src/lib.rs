@@ -13,6 +13,7 @@ mod element;
 mod error;
 mod field;
 mod lanes;
+pub mod material;
 pub mod medium;
 mod mie;
 mod optics;

@@ -28,6 +28,7 @@ pub fn galerkin(
     tolerance: f64,
 ) -> Result<Dense<Complex64>, WaveError> {
     shadow.check(scatterer)?;
+    scatterer.check_conductor("the coupling of currents")?;
     let (facets, view) = (scatterer.facets(), View::new(scatterer, shadow));
     assemble(facets.len(), |p, q| {
         let (observer, source) = (&facets[p], &facets[q]);

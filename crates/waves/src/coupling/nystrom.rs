@@ -50,6 +50,7 @@ impl<'a> NystromCoupling<'a> {
     /// [`WaveError::NotClosed`] where the shadow asks for closed bodies.
     pub fn new(scatterer: &'a Scatterer, wave: Wave, shadow: Shadow) -> Result<Self, WaveError> {
         shadow.check(scatterer)?;
+        scatterer.check_conductor("the coupling of currents")?;
         let facets = scatterer.facets();
         let groups: Vec<Group> = facets.iter().enumerate().map(|(i, f)| group(i, f, &wave, shadow)).collect();
         let mut coupling = Self {

@@ -4,7 +4,12 @@
 //! Electromagnetics, 2nd ed., Wiley 2012, § 7.10). [`Shadow`] says which facets carry them; n is the normal on the lit
 //! side.
 
+mod fresnel;
+
+use crate::material::Material;
 use crate::source::Origin;
+use fresnel::fresnel;
+
 use crate::{
     ComplexVector, Current, Facet, Field, Gate, Kind, Radiator, Sampling, Scatterer, Source, SurfaceCurrent, Wave,
     WaveError,
@@ -53,8 +58,12 @@ impl Shadow {
     /// Refuses a scatterer that the treatment is not made for.
     ///
     /// # Errors
-    /// [`WaveError::NotClosed`] for a sheet and the exact equation.
+    /// [`WaveError::NotClosed`] for a sheet and the exact equation, [`WaveError::NotConductor`] for other materials and
+    /// the exact equation or the thesis.
     pub fn check(self, scatterer: &Scatterer) -> Result<(), WaveError> {
+        if matches!(self, Self::Exact | Self::Thesis) {
+            scatterer.check_conductor("this treatment of shadows")?;
+        }
         let sheet = scatterer.facets().iter().position(|facet| facet.kind == Kind::Sheet);
         match sheet {
             Some(facet) if self == Self::Exact => Err(WaveError::NotClosed { facet }),
@@ -107,18 +116,32 @@ impl<'a> PhysicalOptics<'a> {
 
 impl SurfaceCurrent for PhysicalOptics<'_> {
     fn at(&self, facet: usize, q: Vec3) -> Current {
-        let lit = self.sources.iter().zip(&self.lit).filter(|(_, lit)| lit[facet] != 0.0);
-        let incident: Field = lit.map(|(source, lit)| source.field(&self.wave, q) * lit[facet]).sum();
-        induced(&self.scatterer.facets()[facet], incident, self.shadow)
+        let shape = &self.scatterer.facets()[facet];
+        let material = self.scatterer.material(shape);
+        let mut sum = Current::default();
+        for (source, lit) in self.sources.iter().zip(&self.lit) {
+            let side = lit[facet];
+            if side != 0.0 {
+                let incident = source.field(&self.wave, q);
+                let towards = source.origin().seen_from(q);
+                let current = match material {
+                    Material::Conductor => conductor(shape.normal * side, incident, self.shadow),
+                    material => fresnel(material, &self.wave, shape, side, towards, incident),
+                };
+                sum.j += current.j;
+                sum.m += current.m;
+            }
+        }
+        sum
     }
 }
 
-/// The current that an incident field induces.
-pub(crate) fn induced(facet: &Facet, incident: Field, shadow: Shadow) -> Current {
+/// The current on a perfect conductor, `normal` on the lit side.
+fn conductor(normal: Vec3, incident: Field, shadow: Shadow) -> Current {
     if shadow == Shadow::Thesis {
-        Current { j: ComplexVector::ZERO, m: incident.e.crossed_by(facet.normal) * 2.0 }
+        Current { j: ComplexVector::ZERO, m: incident.e.crossed_by(normal) * 2.0 }
     } else {
-        Current { j: incident.h.crossed_by(facet.normal) * 2.0, m: ComplexVector::ZERO }
+        Current { j: incident.h.crossed_by(normal) * 2.0, m: ComplexVector::ZERO }
     }
 }
 

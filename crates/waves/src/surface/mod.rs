@@ -7,6 +7,7 @@ mod shapes;
 
 pub use shapes::{cube, dihedral, facing_plates, plate, rectangle, sphere, trihedral};
 
+use crate::material::Material;
 use crate::{Wave, WaveError};
 use fredholm_mesh::{Mesh, Patch, Vec3};
 use fredholm_visibility::Occluders;
@@ -37,6 +38,8 @@ pub struct Facet {
     pub diameter: f64,
     /// What it is part of.
     pub kind: Kind,
+    /// Surface of the mesh it is part of.
+    pub surface: usize,
 }
 
 impl Facet {
@@ -55,6 +58,7 @@ impl Facet {
             area: patch.area(),
             diameter: patch.diameter(),
             kind,
+            surface: 0,
         }
     }
 
@@ -84,6 +88,8 @@ pub struct Scatterer {
     facets: Vec<Facet>,
     occluders: Occluders,
     extent: f64,
+    /// Per surface; perfect conductors beyond the end.
+    materials: Vec<Material>,
 }
 
 impl Scatterer {
@@ -93,10 +99,41 @@ impl Scatterer {
     /// [`WaveError::NoFacets`] for an empty mesh, [`WaveError::Visibility`] for one too large or too small.
     pub fn new(mesh: &Mesh, kind: impl Fn(usize) -> Kind) -> Result<Self, WaveError> {
         let Some(bounds) = mesh.bounds() else { return Err(WaveError::NoFacets) };
-        let kinds = (0..mesh.len()).map(|leaf| kind(mesh.surface_of(leaf)));
-        let facets = mesh.patches().zip(kinds).map(|(patch, kind)| Facet::new(patch, kind)).collect();
+        let surfaces = (0..mesh.len()).map(|leaf| mesh.surface_of(leaf));
+        let facet = |(patch, surface)| Facet { surface, ..Facet::new(patch, kind(surface)) };
+        let facets = mesh.patches().zip(surfaces).map(facet).collect();
         let occluders = Occluders::new(mesh.occluders())?;
-        Ok(Self { facets, occluders, extent: bounds.max.distance(bounds.min) })
+        Ok(Self { facets, occluders, extent: bounds.max.distance(bounds.min), materials: Vec::new() })
+    }
+
+    /// The same of these materials, one a surface of the mesh; it is a perfect conductor before.
+    ///
+    /// # Errors
+    /// [`WaveError::Material`] for a material that gives energy away.
+    pub fn made_of(mut self, materials: Vec<Material>) -> Result<Self, WaveError> {
+        for (surface, material) in materials.iter().enumerate() {
+            material.check(&format!("of surface {surface}"))?;
+        }
+        self.materials = materials;
+        Ok(self)
+    }
+
+    /// The material of a facet.
+    #[must_use]
+    pub fn material(&self, facet: &Facet) -> &Material {
+        self.materials.get(facet.surface).unwrap_or(&Material::Conductor)
+    }
+
+    /// Refuses other materials than perfect conductors.
+    ///
+    /// # Errors
+    /// [`WaveError::NotConductor`] with the first facet of another one.
+    pub fn check_conductor(&self, what: &'static str) -> Result<(), WaveError> {
+        let other = |facet: &Facet| *self.material(facet) != Material::Conductor;
+        match self.facets.iter().position(other) {
+            Some(facet) => Err(WaveError::NotConductor { what, facet }),
+            None => Ok(()),
+        }
     }
 
     /// Moves the nodes and normals of a polyhedron around the origin to the sphere that it stands for: the equation for
