@@ -8,7 +8,7 @@ use clap_complete::Shell;
 use fredholm_discretisation::{DiscretisationError, discretisation};
 use serde::Serialize;
 
-use crate::commands::ViewFactorsArgs;
+use crate::commands::{ViewFactorsArgs, WAVES_EXAMPLES, WavesArgs};
 use crate::registry;
 use crate::size::Bytes;
 
@@ -117,6 +117,9 @@ pub(crate) enum Command {
     /// Compute the view-factor matrix of a scene or a mesh file
     #[command(name = "viewfactors", after_help = VIEW_FACTORS_EXAMPLES)]
     ViewFactors(ViewFactorsArgs),
+    /// Compute the fields of a scene of waves: conductors and other bodies in a time-harmonic field
+    #[command(after_help = WAVES_EXAMPLES)]
+    Waves(WavesArgs),
     /// Tell what made a result
     #[command(after_help = INFO_EXAMPLES)]
     Info(InfoArgs),
@@ -142,6 +145,7 @@ impl Command {
             Self::Check(args) => args.log.log,
             Self::Converge(args) => args.log.log,
             Self::ViewFactors(args) => args.log.log,
+            Self::Waves(args) => args.log.log,
             _ => LogFormat::Plain,
         }
     }

@@ -66,7 +66,7 @@ impl ConductingSphere {
     }
 
     /// Σ E_n (i a_n N_n − b_n M_n) without cos φ (r, θ) and −sin φ (φ).
-    fn sums(&self, wave: &Wave, r: f64, cos: f64, sin: f64) -> [Complex64; 3] {
+    fn sums(self, wave: &Wave, r: f64, cos: f64, sin: f64) -> [Complex64; 3] {
         let (x, rho) = (wave.wavenumber() * self.radius, wave.wavenumber() * r);
         let last = terms(x);
         let (inner, outer) = (Riccati::new(x, last), Riccati::new(rho, last));

@@ -9,11 +9,13 @@ mod schema;
 mod solve;
 mod solvers;
 mod viewfactors;
+mod waves;
 
 use crate::args::Command;
 use crate::failure::{Ending, Failure};
 
 pub(crate) use viewfactors::ViewFactorsArgs;
+pub(crate) use waves::{EXAMPLES as WAVES_EXAMPLES, WavesArgs};
 
 /// Carries out what was asked for.
 pub(crate) fn execute(command: &Command) -> Result<Ending, Failure> {
@@ -22,6 +24,7 @@ pub(crate) fn execute(command: &Command) -> Result<Ending, Failure> {
         Command::Check(args) => check::check(args),
         Command::Converge(args) => converge::converge(args),
         Command::ViewFactors(args) => viewfactors::view_factors(args),
+        Command::Waves(args) => waves::waves(args),
         Command::Info(args) => info::info(args),
         Command::Schema => schema::schema(),
         Command::Completions(args) => completions::completions(args),

@@ -10,19 +10,11 @@ use pulp::Simd;
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// A register of f64 of the instruction set S.
+#[derive(Clone, Copy)]
 pub(crate) struct Lanes<S: Simd> {
     simd: S,
     value: S::f64s,
 }
-
-impl<S: Simd> Clone for Lanes<S> {
-    #[inline(always)]
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<S: Simd> Copy for Lanes<S> {}
 
 impl<S: Simd> Lanes<S> {
     /// The same number in all lanes.

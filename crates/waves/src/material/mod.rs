@@ -60,10 +60,9 @@ impl Material {
     pub fn check(&self, what: &str) -> Result<(), WaveError> {
         let fail = |reason| Err(WaveError::Material { what: what.to_owned(), reason });
         match self {
-            Self::Conductor => Ok(()),
             Self::Impedance(z) if !z.is_finite() => fail("the surface impedance is not finite"),
             Self::Impedance(z) if z.re < 0.0 => fail("a surface impedance needs a real part of at least 0"),
-            Self::Impedance(_) => Ok(()),
+            Self::Conductor | Self::Impedance(_) => Ok(()),
             Self::HalfSpace(permittivity) => check_permittivity(*permittivity, what),
             Self::Slab(layers) if layers.is_empty() => fail("a slab needs at least one layer"),
             Self::Slab(layers) => layers.iter().try_for_each(|layer| {

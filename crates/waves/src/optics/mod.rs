@@ -171,6 +171,7 @@ fn sees(scatterer: &Scatterer, facet: &Facet, origin: Origin) -> bool {
 }
 
 #[cfg(test)]
+#[allow(clippy::float_cmp, reason = "sides are exact")]
 mod tests {
     use super::*;
     use crate::source::{HertzianDipole, PlaneWave};

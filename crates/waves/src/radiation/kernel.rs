@@ -27,7 +27,7 @@ pub(crate) struct Element {
 impl Element {
     /// Whether it carries no current.
     pub(crate) fn is_dark(&self) -> bool {
-        self.re == [0.0; 3] && self.im == [0.0; 3]
+        self.re.iter().chain(&self.im).all(|&part| part == 0.0)
     }
 }
 
@@ -46,6 +46,12 @@ pub(crate) struct Group {
 }
 
 impl Group {
+    /// Its elements among all.
+    #[inline(always)]
+    fn of<'a>(&self, elements: &'a [Element]) -> &'a [Element] {
+        &elements[self.first..self.first + self.count]
+    }
+
     /// Whether the point `d` from the centre is left out: in the arithmetic of the lanes, so that none is counted twice.
     pub(crate) fn leaves_out(&self, d: Vec3) -> bool {
         d.z.mul_add(d.z, d.y.mul_add(d.y, d.x * d.x)) <= self.near_squared
@@ -95,14 +101,14 @@ impl WithSimd for Evaluate<'_> {
                 behind[..end - start].copy_from_slice(&observers.behind[first..last]);
                 let behind = Lanes::load(simd, &behind[..width]);
                 for group in self.groups {
-                    let weight = weight(simd, group, p) * facing(group, p, normal, behind);
+                    let weight = weight(group, p) * facing(group, p, normal, behind);
                     let weight = weight * seen(simd, observers.view, first..last, group.facet);
-                    sums.add_group(simd, self.wavenumber, group, self.elements, p, weight);
+                    sums.add_all(self.wavenumber, group.of(self.elements), p, weight);
                 }
             } else {
                 for group in self.groups {
-                    let weight = weight(simd, group, p);
-                    sums.add_group(simd, self.wavenumber, group, self.elements, p, weight);
+                    let weight = weight(group, p);
+                    sums.add_all(self.wavenumber, group.of(self.elements), p, weight);
                 }
             }
             sums.store(width, &mut self.out[start..end]);
@@ -130,12 +136,7 @@ fn load<S: Simd>(simd: S, points: &[Vec3]) -> Lanes3<S> {
 #[inline(always)]
 fn facing<S: Simd>(group: &Group, p: Lanes3<S>, normal: Lanes3<S>, behind: Lanes<S>) -> Lanes<S> {
     let one = behind.constant(1.0);
-    let centre = Lanes3 {
-        x: one.constant(group.centre[0]),
-        y: one.constant(group.centre[1]),
-        z: one.constant(group.centre[2]),
-    };
-    let front = centre.minus(p).dot(normal).step();
+    let front = p.same(&group.centre).minus(p).dot(normal).step();
     front.mul_add(one - behind, behind)
 }
 
@@ -164,6 +165,12 @@ impl<S: Simd> Lanes3<S> {
     #[inline(always)]
     fn splat(simd: S, v: &[f64; 3]) -> Self {
         Self { x: Lanes::splat(simd, v[0]), y: Lanes::splat(simd, v[1]), z: Lanes::splat(simd, v[2]) }
+    }
+
+    /// The same vector in all lanes, of the same instruction set.
+    #[inline(always)]
+    fn same(self, v: &[f64; 3]) -> Self {
+        Self { x: self.x.constant(v[0]), y: self.x.constant(v[1]), z: self.x.constant(v[2]) }
     }
 
     #[inline(always)]
@@ -256,18 +263,10 @@ impl<S: Simd> Sums<S> {
     }
 
     #[inline(always)]
-    fn add_group(
-        &mut self,
-        simd: S,
-        k: f64,
-        group: &Group,
-        elements: &[Element],
-        p: Lanes3<S>,
-        weight: Lanes<S>,
-    ) {
-        for element in &elements[group.first..group.first + group.count] {
-            let d = p.minus(Lanes3::splat(simd, &element.position));
-            let (re, im) = (Lanes3::splat(simd, &element.re), Lanes3::splat(simd, &element.im));
+    fn add_all(&mut self, k: f64, elements: &[Element], p: Lanes3<S>, weight: Lanes<S>) {
+        for element in elements {
+            let d = p.minus(p.same(&element.position));
+            let (re, im) = (p.same(&element.re), p.same(&element.im));
             self.add(k, d, weight, Complex3 { re, im });
         }
     }
@@ -301,12 +300,12 @@ impl<S: Simd> Sums<S> {
 
 /// 1 where the group reaches the point, 0 where it is left out, `behind` behind it.
 #[inline(always)]
-fn weight<S: Simd>(simd: S, group: &Group, p: Lanes3<S>) -> Lanes<S> {
-    let d = p.minus(Lanes3::splat(simd, &group.centre));
-    let reached = (d.dot(d) - Lanes::splat(simd, group.near_squared)).step();
-    let front = d.dot(Lanes3::splat(simd, &group.normal)).step();
-    let behind = Lanes::splat(simd, group.behind);
-    reached * front.mul_add(Lanes::splat(simd, 1.0) - behind, behind)
+fn weight<S: Simd>(group: &Group, p: Lanes3<S>) -> Lanes<S> {
+    let d = p.minus(p.same(&group.centre));
+    let reached = (d.dot(d) - p.x.constant(group.near_squared)).step();
+    let front = d.dot(p.same(&group.normal)).step();
+    let behind = p.x.constant(group.behind);
+    reached * front.mul_add(p.x.constant(1.0) - behind, behind)
 }
 
 /// The three functions of the distance, times the weight.

@@ -5,7 +5,7 @@
 
 mod shapes;
 
-pub use shapes::{cube, dihedral, facing_plates, plate, rectangle, sphere, trihedral};
+pub use shapes::{cube, dihedral, facing_plates, plate, rectangle, sphere, sphere_segments, trihedral};
 
 use crate::material::Material;
 use crate::{Wave, WaveError};
@@ -136,15 +136,17 @@ impl Scatterer {
         }
     }
 
-    /// Moves the nodes and normals of a polyhedron around the origin to the sphere that it stands for: the equation for
-    /// currents at the nodes then has the curvature right.
+    /// Moves the nodes and normals of a surface of the mesh to the sphere that it stands for: the equation for currents
+    /// at the nodes then has the curvature right. Normals keep their side.
     #[must_use]
-    pub(crate) fn on_sphere(mut self, radius: f64) -> Self {
-        for facet in &mut self.facets {
-            facet.normal = facet.centre.normalize_or(facet.normal);
-            facet.centre = facet.normal * radius;
+    pub fn on_sphere(mut self, surface: usize, centre: Vec3, radius: f64) -> Self {
+        for facet in self.facets.iter_mut().filter(|facet| facet.surface == surface) {
+            let out = (facet.centre - centre).normalize_or(facet.normal);
+            facet.centre = centre + out * radius;
+            facet.normal = out * out.dot(facet.normal).signum();
             let first = facet.tangents[0] - facet.normal * facet.normal.dot(facet.tangents[0]);
-            facet.tangents = [first.normalize_or_zero(), facet.normal.cross(first.normalize_or_zero())];
+            let first = first.normalize_or_zero();
+            facet.tangents = [first, facet.normal.cross(first)];
         }
         self
     }

@@ -55,16 +55,25 @@ pub fn cube(side: f64, edge: f64) -> Result<Scatterer, WaveError> {
 /// # Errors
 /// [`WaveError::Length`] or [`WaveError::Mesh`] for lengths that are none.
 pub fn sphere(radius: f64, edge: f64) -> Result<Scatterer, WaveError> {
-    if !(edge > 0.0 && edge.is_finite()) {
-        return Err(WaveError::Length { what: "the largest edge", value: edge });
-    }
-    // The arc between neighbours of the icosahedron is acos(1/√5); facet edges exceed it by up to 1.2 : 1.
-    let frequency = (1.2 * radius * 0.2_f64.sqrt().acos() / edge).ceil().clamp(1.0, 1e4);
-    let shape = Shape::Sphere { centre: Vec3::ZERO, radius, inward: false, segments: 5 * frequency as usize };
+    let segments = sphere_segments(radius, edge)?;
+    let shape = Shape::Sphere { centre: Vec3::ZERO, radius, inward: false, segments };
     let mut builder = MeshBuilder::default();
     builder.surface("", 0);
     builder.add(&shape, &Cutting::default())?;
-    Ok(Scatterer::new(&builder.build(), |_| Kind::Closed)?.on_sphere(radius))
+    Ok(Scatterer::new(&builder.build(), |_| Kind::Closed)?.on_sphere(0, Vec3::ZERO, radius))
+}
+
+/// Edges around a [`Shape::Sphere`] that keep its edges up to `edge`.
+///
+/// # Errors
+/// [`WaveError::Length`] for an edge that is none.
+pub fn sphere_segments(radius: f64, edge: f64) -> Result<usize, WaveError> {
+    if !(edge > 0.0 && edge.is_finite()) {
+        return Err(WaveError::Length { what: "the largest edge", value: edge });
+    }
+    // The arc between neighbours of the icosahedron is acos(1/√5); edges exceed their share by less than 1.2 : 1.
+    let frequency = (1.2 * radius * 0.2_f64.sqrt().acos() / edge).ceil().clamp(1.0, 1e4);
+    Ok(5 * frequency as usize)
 }
 
 /// Two thin squares of this side at (∓offset, 0, 0), their normals (±1, −1, 0)/√2: they face each other at a right

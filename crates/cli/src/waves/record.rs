@@ -1,0 +1,64 @@
+//! What a run found, before it is written.
+
+use fredholm_linop::StopReason;
+use fredholm_report::{FarRow, WaveCurrents, WaveRow};
+use serde_json::{Value, json};
+
+use super::Model;
+
+/// How the currents at one frequency were found.
+#[derive(Clone, Debug)]
+pub(crate) struct Solved {
+    pub(crate) frequency: f64,
+    pub(crate) facets: usize,
+    /// Relative residual after every iteration; none where bounces are merely summed.
+    pub(crate) residuals: Vec<f64>,
+    pub(crate) reason: Option<StopReason>,
+}
+
+impl Solved {
+    /// Whether the residual asked for was met, or none was.
+    pub(crate) fn converged(&self) -> bool {
+        self.reason.is_none_or(|reason| reason == StopReason::Converged)
+    }
+}
+
+/// All results.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Outcome {
+    pub(crate) near: Vec<WaveRow>,
+    pub(crate) far: Vec<FarRow>,
+    pub(crate) currents: Vec<WaveCurrents>,
+    pub(crate) solved: Vec<Solved>,
+}
+
+impl Outcome {
+    /// Whether every residual asked for was met.
+    pub(crate) fn converged(&self) -> bool {
+        self.solved.iter().all(Solved::converged)
+    }
+
+    /// The run record.
+    pub(crate) fn record(&self, model: &Model, timings: &[fredholm_report::Timing]) -> Value {
+        let solved = |solved: &Solved| {
+            json!({
+                "frequency_hz": solved.frequency,
+                "wavelength_m": fredholm_waves::medium::SPEED_OF_LIGHT / solved.frequency,
+                "facets": solved.facets,
+                "converged": solved.converged(),
+                "residuals": solved.residuals,
+            })
+        };
+        json!({
+            "format": "fredholm-waves-run/1",
+            "program": concat!("fredholm ", env!("CARGO_PKG_VERSION")),
+            "scene": model.path(),
+            "title": model.title,
+            "shadow": model.shadow.name(),
+            "method": model.method.name(),
+            "receivers": model.receivers.iter().map(|receiver| &receiver.name).collect::<Vec<_>>(),
+            "frequencies": self.solved.iter().map(solved).collect::<Vec<_>>(),
+            "timings": timings,
+        })
+    }
+}
