@@ -76,6 +76,6 @@ pub use viewfactors::{
 };
 pub use vtu::write_vtu;
 pub use waves::{
-    FarRow, FieldMap, MapQuantity, WaveCurrents, WaveRow, write_currents_vtu, write_far_csv, write_polar_plot, write_receivers_csv,
-    write_receivers_npz,
+    FarRow, FieldMap, MapQuantity, WaveCurrents, WaveRow, write_currents_vtu, write_far_csv,
+    write_polar_plot, write_receivers_csv, write_receivers_npz,
 };

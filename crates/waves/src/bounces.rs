@@ -6,7 +6,8 @@
 //! § 4.1, DOI 10.1137/1.9780898718003.
 
 use fredholm_linop::{
-    LinearOperator, Monitor, MultiVector, Observer, Report, Scalar, SecondKind, SolveError, Solver, Stop, Work,
+    LinearOperator, Monitor, MultiVector, Observer, Report, Scalar, SecondKind, SolveError, Solver, Stop,
+    Work,
 };
 use std::ops::ControlFlow;
 

@@ -54,17 +54,21 @@ pub enum WaveError {
         wavelength: f64,
     },
     /// A receiver lies on a facet, where the field jumps.
-    #[error("receiver {receiver} lies on facet {facet}, where the field jumps; move it off the surface")]
+    #[error(
+        "point {receiver} of the receivers lies on facet {facet}, where the field jumps; move it off the surface"
+    )]
     OnSurface {
-        /// Index of the receiver.
+        /// Index of the point.
         receiver: usize,
         /// Index of the facet.
         facet: usize,
     },
     /// A receiver lies in a source.
-    #[error("the field of a source at receiver {receiver} is not finite; move the receiver out of the source")]
+    #[error(
+        "the field of a source at point {receiver} of the receivers is not finite; move the point out of the source"
+    )]
     InSource {
-        /// Index of the receiver.
+        /// Index of the point.
         receiver: usize,
     },
     /// The treatment of shadows asks for closed bodies.
@@ -76,7 +80,9 @@ pub enum WaveError {
         facet: usize,
     },
     /// A model of perfect conductors meets another material.
-    #[error("{what} knows perfect conductors only, but facet {facet} is of another material; ask for one bounce with geometric shadows")]
+    #[error(
+        "{what} knows perfect conductors only, but facet {facet} is of another material; ask for one bounce with geometric shadows"
+    )]
     NotConductor {
         /// The model.
         what: &'static str,

@@ -50,7 +50,8 @@ impl ConductingSphere {
     /// The scattered E (V/m) at `p` (m, outside), exact at any distance.
     #[must_use]
     pub fn scattered(&self, wave: &Wave, source: &PlaneWave, p: Vec3) -> ComplexVector {
-        let [x, y, z] = [source.polarisation(), source.travel().cross(source.polarisation()), source.travel()];
+        let [x, y, z] =
+            [source.polarisation(), source.travel().cross(source.polarisation()), source.travel()];
         let local = Vec3::new(p.dot(x), p.dot(y), p.dot(z));
         let (r, rho) = (local.length(), local.x.hypot(local.y));
         let (cos_phi, sin_phi) = if rho > 0.0 { (local.x / rho, local.y / rho) } else { (1.0, 0.0) };
@@ -181,9 +182,10 @@ mod tests {
     #[test]
     fn the_total_field_is_normal_to_the_sphere() {
         let (wave, sphere) = (wave_of(7.0), ConductingSphere::new(1.0).unwrap());
-        let source =
-            PlaneWave::new(Vec3::new(0.3, 1.0, -0.2), Vec3::Z, Complex64::new(0.5, 2.0)).unwrap();
-        for p in [Vec3::X, Vec3::new(0.6, 0.0, 0.8), Vec3::new(-0.48, 0.64, -0.6), Vec3::NEG_Y, source.travel()] {
+        let source = PlaneWave::new(Vec3::new(0.3, 1.0, -0.2), Vec3::Z, Complex64::new(0.5, 2.0)).unwrap();
+        for p in
+            [Vec3::X, Vec3::new(0.6, 0.0, 0.8), Vec3::new(-0.48, 0.64, -0.6), Vec3::NEG_Y, source.travel()]
+        {
             use crate::Source;
             let total = sphere.scattered(&wave, &source, p) + source.field(&wave, p).e;
             assert!(total.crossed_by(p).norm() < 1e-11, "{p}: {:e}", total.crossed_by(p).norm());

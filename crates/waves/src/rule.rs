@@ -25,11 +25,13 @@ const NEAR: usize = 14;
 #[must_use]
 pub(crate) fn phase_error(n: usize, phase: f64) -> f64 {
     // (n!)⁴/((2n)!)³ as a product, which neither overflows nor vanishes before its time.
-    let factor: f64 = (1..=n).map(|i| {
-        let i = i as f64;
-        let (a, b) = (2.0 * i - 1.0, 2.0 * i);
-        i.powi(4) * (phase / (a * b)).powi(2) / (a * b)
-    }).product();
+    let factor: f64 = (1..=n)
+        .map(|i| {
+            let i = i as f64;
+            let (a, b) = (2.0 * i - 1.0, 2.0 * i);
+            i.powi(4) * (phase / (a * b)).powi(2) / (a * b)
+        })
+        .product();
     2.0 * factor / (2 * n + 1) as f64
 }
 
@@ -64,7 +66,8 @@ pub(crate) fn regular(facet: &Facet, n: usize) -> Vec<(Vec3, f64)> {
         placed(facet, &tensor_quad(n), |u, v| quad_jacobian(patch, u, v))
     } else {
         // The degrees asked for, at most 2 · MOST − 1, exist; the product rule is as good where one should not.
-        let rule = symmetric_triangle(2 * n - 1).unwrap_or_else(|_| fredholm_quadrature::collapsed_triangle(n));
+        let rule =
+            symmetric_triangle(2 * n - 1).unwrap_or_else(|_| fredholm_quadrature::collapsed_triangle(n));
         placed(facet, &rule, |_, _| 2.0 * patch.area())
     }
 }
@@ -134,7 +137,10 @@ mod tests {
                 let sum: Complex64 = rule.iter().map(|(p, w)| Complex64::cis(kappa * p.x) * w).sum();
                 let (error, bound) = ((sum - exact).norm(), phase_error(n, kappa));
                 assert!(error <= bound + 1e-15, "{kappa} {n}: {error:e} {bound:e}");
-                assert!(error >= 0.05 * bound || bound < 1e-13 || kappa > 2.0, "{kappa} {n}: {error:e} {bound:e}");
+                assert!(
+                    error >= 0.05 * bound || bound < 1e-13 || kappa > 2.0,
+                    "{kappa} {n}: {error:e} {bound:e}"
+                );
             }
         }
     }
@@ -151,7 +157,11 @@ mod tests {
                             rule.iter().map(|(p, w)| w * x.distance(*p).powi(-3)).sum()
                         };
                         let (sum, exact) = (potential(regular(&facet, n)), potential(near(&facet, x)));
-                        assert!((sum / exact - 1.0).abs() < tolerance, "{n} {tolerance}: {}", sum / exact - 1.0);
+                        assert!(
+                            (sum / exact - 1.0).abs() < tolerance,
+                            "{n} {tolerance}: {}",
+                            sum / exact - 1.0
+                        );
                     }
                 }
             }

@@ -17,7 +17,12 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 type Vectors = MultiVector<Complex64>;
 
-fn solve(solver: &dyn Solver<Complex64>, system: &System<'_>, b: &Vectors, tolerance: f64) -> (Vectors, Report) {
+fn solve(
+    solver: &dyn Solver<Complex64>,
+    system: &System<'_>,
+    b: &Vectors,
+    tolerance: f64,
+) -> (Vectors, Report) {
     let one = MultiVector::from_fn(b.dim(), b.lanes(), |_, _| Complex64::ONE);
     let a = SecondKind::new(system.coupling(), one).unwrap();
     let mut x = MultiVector::zeros(b.dim(), b.lanes());

@@ -48,8 +48,7 @@ fn fine_sum(p: Vec3) -> Field {
 fn near_and_far_rules_meet_a_fine_sum() {
     let scatterer = panel(0.03);
     for tolerance in [1e-3, 1e-5] {
-        let radiator =
-            Radiator::new(&scatterer, wave(), &Ripple, Gate::Open, Sampling::Tolerance(tolerance));
+        let radiator = Radiator::new(&scatterer, wave(), &Ripple, Gate::Open, Sampling::Tolerance(tolerance));
         for p in [
             Vec3::new(0.4, -0.3, 0.3),
             Vec3::new(0.05, 0.11, 0.1),
@@ -61,8 +60,16 @@ fn near_and_far_rules_meet_a_fine_sum() {
             let (field, expected) = (radiator.fields(&[p]).unwrap()[0], fine_sum(p));
             let error = field - expected;
             let bound = tolerance.max(1e-4);
-            assert!(error.e.norm() < bound * expected.e.norm(), "{p} {tolerance}: {:e}", error.e.norm() / expected.e.norm());
-            assert!(error.h.norm() < bound * expected.h.norm(), "{p} {tolerance}: {:e}", error.h.norm() / expected.h.norm());
+            assert!(
+                error.e.norm() < bound * expected.e.norm(),
+                "{p} {tolerance}: {:e}",
+                error.e.norm() / expected.e.norm()
+            );
+            assert!(
+                error.h.norm() < bound * expected.h.norm(),
+                "{p} {tolerance}: {:e}",
+                error.h.norm() / expected.h.norm()
+            );
         }
     }
 }

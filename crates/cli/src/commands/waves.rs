@@ -55,7 +55,9 @@ fn run(args: &WavesArgs, stages: &mut Stages) -> Result<Ending, Failure> {
     let written = || waves::write(&folder, &model, &outcome, &timings).map_err(super::solve::report_failure);
     stages.run("results", written)?;
     if !outcome.converged() {
-        stages.console.warn("the residual asked for was not reached; the results are those of the last iteration");
+        stages
+            .console
+            .warn("the residual asked for was not reached; the results are those of the last iteration");
     }
     if !args.log.quiet {
         summarise(&folder, &model, &outcome)?;
@@ -73,6 +75,13 @@ fn summarise(folder: &std::path::Path, model: &Model, outcome: &Outcome) -> Resu
         });
         let text = format!("{} facets{ending}", solved.facets);
         lines.add(&format!("{} MHz", solved.frequency / 1e6), text);
+    }
+    for (what, errors) in [("mesh error", &outcome.mesh_errors), ("form error", &outcome.form_errors)] {
+        for error in errors {
+            let name = &model.receivers[error.receiver].name;
+            let text = format!("about {:.2e} at {name}, {} MHz", error.relative, error.frequency / 1e6);
+            lines.add(what, text);
+        }
     }
     output::print(&lines.under(&format!("{} → {}", model.path().display(), folder.display())))
 }

@@ -6,11 +6,13 @@ use fredholm_linop::{MultiVector, Observer, Progress, SecondKind, Solver, Stop, 
 use fredholm_mesh::Vec3;
 use fredholm_report::{FarRow, WaveCurrents, WaveRow};
 use fredholm_waves::{
-    Bounced, Complex64, ComplexVector, Current, Discretisation, FacetCurrents, Field, PhysicalOptics, Radiator,
-    Sampling, Scatterer, Source, System, TOLERANCE, WaveError, cross_section, incident,
+    Bounced, Complex64, ComplexVector, Current, Discretisation, FacetCurrents, Field, PhysicalOptics,
+    Radiator, Sampling, Scatterer, Shadow, Source, System, TOLERANCE, WaveError, cross_section, incident,
 };
 use rayon::prelude::*;
 
+use super::estimate;
+use super::geometry::Geometry;
 use super::model::{Band, Method};
 use super::receivers::{Places, Receiver};
 use super::record::Solved;
@@ -25,14 +27,38 @@ type Vectors = MultiVector<Complex64>;
 
 /// Computes everything that the model asks for.
 pub(crate) fn compute(model: &Model, stages: &mut Stages) -> Result<Outcome, Failure> {
+    let as_asked = Variant { name: "", geometry: &model.geometry, shadow: model.shadow };
+    let mut outcome = variant(model, as_asked, stages)?;
+    if let Some(coarse) = &model.coarse {
+        let coarser = variant(model, Variant { name: ", long edges", geometry: coarse, ..as_asked }, stages)?;
+        outcome.mesh_errors = estimate::mesh(&outcome.near, &coarser.near);
+        if estimate::has_magnetic_form(model) {
+            let shadow = Shadow::Thesis;
+            let magnetic = variant(model, Variant { name: ", magnetic form", shadow, ..as_asked }, stages)?;
+            outcome.form_errors = estimate::form(&outcome.near, &magnetic.near);
+        }
+    }
+    Ok(outcome)
+}
+
+/// One of the runs that a model may need.
+#[derive(Clone, Copy)]
+struct Variant<'a> {
+    /// What is added to the names of its stages.
+    name: &'a str,
+    geometry: &'a Geometry,
+    shadow: Shadow,
+}
+
+fn variant(model: &Model, variant: Variant<'_>, stages: &mut Stages) -> Result<Outcome, Failure> {
     let mut outcome = Outcome::default();
     for band in &model.bands {
         let refused = |error: WaveError| model.refused(&error, None);
-        let scatterer = model.geometry.scatterer(band.materials.clone()).map_err(refused)?;
+        let scatterer = variant.geometry.scatterer(band.materials.clone()).map_err(refused)?;
         scatterer.check_resolution(&band.wave).map_err(refused)?;
         let sources: Vec<&dyn Source> = model.sources.iter().map(AsRef::as_ref).collect();
-        let first = PhysicalOptics::new(&scatterer, band.wave, &sources, model.shadow).map_err(refused)?;
-        let task = Task { model, band, scatterer: &scatterer, first: &first, sources: &sources };
+        let first = PhysicalOptics::new(&scatterer, band.wave, &sources, variant.shadow).map_err(refused)?;
+        let task = Task { model, variant, band, scatterer: &scatterer, first: &first, sources: &sources };
         task.carry_out(stages, &mut outcome)?;
     }
     Ok(outcome)
@@ -41,6 +67,7 @@ pub(crate) fn compute(model: &Model, stages: &mut Stages) -> Result<Outcome, Fai
 /// One frequency.
 struct Task<'a> {
     model: &'a Model,
+    variant: Variant<'a>,
     band: &'a Band,
     scatterer: &'a Scatterer,
     first: &'a PhysicalOptics<'a>,
@@ -49,7 +76,7 @@ struct Task<'a> {
 
 impl Task<'_> {
     fn carry_out(&self, stages: &mut Stages, outcome: &mut Outcome) -> Result<(), Failure> {
-        let name = format!("{} MHz", self.band.wave.frequency() / 1e6);
+        let name = format!("{} MHz{}", self.band.wave.frequency() / 1e6, self.variant.name);
         let interrupt = stages.interrupt;
         let (system, currents, solved) =
             stages.run(&format!("currents at {name}"), || self.currents(interrupt))?;
@@ -64,7 +91,10 @@ impl Task<'_> {
     }
 
     /// The currents at the centres of the facets, and the system they solve where there is more than one bounce.
-    fn currents(&self, interrupt: &Interrupt) -> Result<(Option<System<'_>>, FacetCurrents, Solved), Failure> {
+    fn currents(
+        &self,
+        interrupt: &Interrupt,
+    ) -> Result<(Option<System<'_>>, FacetCurrents, Solved), Failure> {
         let facets = self.scatterer.facets().len();
         let frequency = self.band.wave.frequency();
         let known = Solved { frequency, facets, residuals: Vec::new(), reason: None };
@@ -87,7 +117,8 @@ impl Task<'_> {
     }
 
     fn lazy(&self) -> Result<System<'_>, Failure> {
-        System::lazy(self.scatterer, self.band.wave, self.model.shadow).map_err(|error| self.refused(&error))
+        System::lazy(self.scatterer, self.band.wave, self.variant.shadow)
+            .map_err(|error| self.refused(&error))
     }
 
     /// Stored for the solvers that read entries, where it fits.
@@ -106,7 +137,7 @@ impl Task<'_> {
             );
             return Err(Failure::new(Ending::Resources, text));
         }
-        System::stored(self.scatterer, self.band.wave, self.model.shadow, Discretisation::Nystrom)
+        System::stored(self.scatterer, self.band.wave, self.variant.shadow, Discretisation::Nystrom)
             .map_err(|error| self.refused(&error))
     }
 
@@ -120,7 +151,8 @@ impl Task<'_> {
         let b = system.right_hand_side(&[self.first]);
         let unsuitable = |error| Failure::new(Ending::Input, error);
         let one = Vectors::from_fn(b.dim(), 1, |_, _| Complex64::ONE);
-        let a = SecondKind::new(system.coupling(), one).map_err(|error| Failure::new(Ending::Input, error))?;
+        let a =
+            SecondKind::new(system.coupling(), one).map_err(|error| Failure::new(Ending::Input, error))?;
         let mut x = Vectors::zeros(b.dim(), 1);
         let report = solver.solve(&a, &b, &mut x, stop, &mut Watch(interrupt)).map_err(unsuitable)?;
         let residuals: Vec<f64> =

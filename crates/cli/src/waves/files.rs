@@ -83,7 +83,9 @@ fn polar(folder: &Path, stem: &str, degrees: &[f64], rows: &[&WaveRow]) -> Resul
     };
     let lines = [line("scattered", &|row| row.scattered), line("total", &WaveRow::total)];
     let title = format!("{stem}: |E|");
-    write_atomically(&folder.join(format!("{stem}.svg")), |out| write_polar_plot(&title, "dB(V/m)", &lines, out))
+    write_atomically(&folder.join(format!("{stem}.svg")), |out| {
+        write_polar_plot(&title, "dB(V/m)", &lines, out)
+    })
 }
 
 /// The strongest component of E, total field: magnitude, phase and real part.
@@ -122,5 +124,7 @@ fn far(
     };
     let lines = [line("θ", 0), line("φ", 1)];
     let title = format!("{stem}: radar cross-section over {}", if over_phi { "φ" } else { "θ" });
-    write_atomically(&folder.join(format!("{stem}.svg")), |out| write_polar_plot(&title, "dB(m²)", &lines, out))
+    write_atomically(&folder.join(format!("{stem}.svg")), |out| {
+        write_polar_plot(&title, "dB(m²)", &lines, out)
+    })
 }

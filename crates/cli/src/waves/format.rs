@@ -41,6 +41,9 @@ pub(super) struct WaveEntry {
     pub tolerance: Option<At<f64>>,
     /// Iterations for the solver; default 500.
     pub max_iterations: Option<u32>,
+    /// Estimate the errors by two more runs: edges twice as long, and the magnetic form. Default: false.
+    #[serde(default)]
+    pub estimate_errors: bool,
 }
 
 /// A source.

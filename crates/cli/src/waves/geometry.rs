@@ -27,8 +27,13 @@ pub(crate) struct Geometry {
 }
 
 impl Geometry {
-    /// Cuts the surfaces for the shortest wavelength.
-    pub(super) fn new(scene: &SceneText, entry: SceneEntrySurfaces<'_>, wavelength: f64) -> Result<Self, Failure> {
+    /// Cuts the surfaces for the shortest wavelength, with edges `stretch` times as long as the scene says.
+    pub(super) fn new(
+        scene: &SceneText,
+        entry: SceneEntrySurfaces<'_>,
+        wavelength: f64,
+        stretch: f64,
+    ) -> Result<Self, Failure> {
         if entry.is_empty() {
             let help = "add a [[surface]] with a name and quad, triangle, box or sphere";
             return Err(scene.fault(scene.end(), "the scene has no surface", help));
@@ -37,7 +42,7 @@ impl Geometry {
         let mut facets = 0_u128;
         for (index, surface) in entry.iter().enumerate() {
             let refused = |error: WaveError| scene.refused(surface.span(), &error);
-            let (shape, cutting) = shape(scene, surface, wavelength)?;
+            let (shape, cutting) = shape(scene, surface, (wavelength, stretch))?;
             facets += shape.count(&cutting).map_err(|error| refused(error.into()))?;
             if facets > MOST {
                 let what = format!("the scene would have {facets} facets, more than {MOST}");
@@ -46,7 +51,9 @@ impl Geometry {
             builder.surface(surface.get_ref().name.clone(), index);
             builder.add(&shape, &cutting).map_err(|error| refused(error.into()))?;
             kinds.push(kind(surface.get_ref()));
-            spheres.push(surface.get_ref().sphere.as_ref().map(|s| SphereEntry { centre: s.centre, radius: s.radius }));
+            spheres.push(
+                surface.get_ref().sphere.as_ref().map(|s| SphereEntry { centre: s.centre, radius: s.radius }),
+            );
         }
         Ok(Self { mesh: builder.build(), kinds, spheres })
     }
@@ -73,16 +80,18 @@ fn kind(entry: &SurfaceEntry) -> Kind {
 fn shape(
     scene: &SceneText,
     surface: &Spanned<SurfaceEntry>,
-    wavelength: f64,
+    (wavelength, stretch): (f64, f64),
 ) -> Result<(Shape, Cutting), Failure> {
     let entry = surface.get_ref();
-    let edge = edge(scene, entry, wavelength)?;
+    let edge = stretch * edge(scene, entry, wavelength)?;
     let lines = Cutting { lines: Lines::LargestEdge(edge), ..Cutting::default() };
     match (&entry.quad, &entry.triangle, &entry.cuboid, &entry.sphere) {
         (Some(corners), None, None, None) => {
             Ok((Shape::Quad { corners: corners.map(|c| vector(&c)), skip: Vec::new() }, lines))
         }
-        (None, Some(corners), None, None) => Ok((Shape::Triangle { corners: corners.map(|c| vector(&c)) }, lines)),
+        (None, Some(corners), None, None) => {
+            Ok((Shape::Triangle { corners: corners.map(|c| vector(&c)) }, lines))
+        }
         (None, None, Some(cuboid), None) => {
             let (min, max) = (vector(&cuboid.min), vector(&cuboid.max));
             Ok((Shape::Box { min, max, inward: cuboid.inward }, lines))
@@ -117,7 +126,11 @@ fn edge(scene: &SceneText, entry: &SurfaceEntry, wavelength: f64) -> Result<f64,
 }
 
 /// The material of every surface at one frequency.
-pub(super) fn materials(scene: &SceneText, entry: &SceneEntry, wave: &Wave) -> Result<Vec<Material>, Failure> {
+pub(super) fn materials(
+    scene: &SceneText,
+    entry: &SceneEntry,
+    wave: &Wave,
+) -> Result<Vec<Material>, Failure> {
     let mut known = BTreeMap::from([("conductor", Material::Conductor)]);
     for (name, entry) in &entry.materials {
         let found = material(scene, entry, wave)?;

@@ -27,7 +27,8 @@ impl SceneText {
     /// Reads the file.
     pub(crate) fn read(path: &Path) -> Result<Self, Failure> {
         let cannot = |what: String| {
-            let text = format!("cannot read {}: {what}\n  help: check the path of the scene file", path.display());
+            let text =
+                format!("cannot read {}: {what}\n  help: check the path of the scene file", path.display());
             Failure::new(Ending::Files, text)
         };
         let size = fs::metadata(path).map_err(|error| cannot(error.to_string()))?.len();
@@ -57,23 +58,23 @@ impl SceneText {
 
     /// A failure about the piece at `span`.
     pub(super) fn fault(&self, span: Range<usize>, what: impl Display, help: impl Display) -> Failure {
-        let start = (0..=span.start.min(self.text.len())).rev().find(|&i| self.text.is_char_boundary(i)).unwrap_or(0);
+        let start =
+            (0..=span.start.min(self.text.len())).rev().find(|&i| self.text.is_char_boundary(i)).unwrap_or(0);
         let begin = self.text[..start].rfind('\n').map_or(0, |i| i + 1);
         let line = 1 + self.text[..begin].matches('\n').count();
         let column = 1 + self.text[begin..start].chars().count();
         let quoted: String = self.text[begin..].lines().next().unwrap_or("").chars().take(QUOTED).collect();
         let path = self.path.display();
-        let mut text = format!("{path}:{line}:{column}: {what}");
-        if !quoted.trim().is_empty() {
-            text.push_str(&format!("\n  {line} | {quoted}"));
-        }
-        Failure::new(Ending::Input, format!("{text}\n  help: {help}"))
+        let excerpt = if quoted.trim().is_empty() { String::new() } else { format!("\n  {line} | {quoted}") };
+        let text = format!("{path}:{line}:{column}: {what}{excerpt}\n  help: {help}");
+        Failure::new(Ending::Input, text)
     }
 
     /// What the library says about the piece at `span`: the part after a semicolon is the help.
     pub(super) fn refused(&self, span: Range<usize>, error: &WaveError) -> Failure {
         let message = error.to_string();
-        let (what, help) = message.split_once("; ").unwrap_or((&message, "correct the entry that begins here"));
+        let (what, help) =
+            message.split_once("; ").unwrap_or((&message, "correct the entry that begins here"));
         let failure = self.fault(span, what, help);
         match error {
             WaveError::Linop(_) => Failure::new(Ending::Resources, failure.to_string()),

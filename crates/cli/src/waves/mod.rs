@@ -1,6 +1,7 @@
 //! Scenes of waves: their files, what they mean, and what is written.
 
 mod compute;
+mod estimate;
 mod files;
 mod format;
 mod geometry;

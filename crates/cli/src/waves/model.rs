@@ -55,6 +55,8 @@ pub(crate) struct Model {
     /// The source, where it is a single plane wave.
     pub(crate) plane_wave: Option<PlaneWave>,
     pub(crate) geometry: Geometry,
+    /// The same with edges twice as long, where errors are to be estimated.
+    pub(crate) coarse: Option<Geometry>,
     pub(crate) receivers: Vec<Receiver>,
     surfaces: Vec<std::ops::Range<usize>>,
 }
@@ -75,15 +77,30 @@ impl Model {
             let help = "add a [[source]] such as kind = \"plane-wave\"";
             return Err(text.fault(text.end(), "the scene has no source", help));
         }
-        let placed = entry.source.iter().map(|source| placed(&text, source)).collect::<Result<Vec<_>, _>>()?;
+        let placed =
+            entry.source.iter().map(|source| placed(&text, source)).collect::<Result<Vec<_>, _>>()?;
         let plane_wave = if let [only] = placed.as_slice() { only.plane_wave } else { None };
         let shortest = bands.iter().map(|band| band.wave.wavelength()).fold(f64::INFINITY, f64::min);
-        let geometry = Geometry::new(&text, &entry.surface, shortest)?;
+        let cut = |stretch| Geometry::new(&text, &entry.surface, shortest, stretch);
+        let geometry = cut(1.0)?;
+        let coarse = entry.wave.get_ref().estimate_errors.then(|| cut(2.0)).transpose()?;
         let receivers = receivers(&text, &entry.receiver)?;
         let surfaces = entry.surface.iter().map(toml::Spanned::span).collect();
         let sources = placed.into_iter().map(|placed| placed.source).collect();
         let title = entry.title;
-        Ok(Self { text, title, bands, shadow, method, sources, plane_wave, geometry, receivers, surfaces })
+        Ok(Self {
+            text,
+            title,
+            bands,
+            shadow,
+            method,
+            sources,
+            plane_wave,
+            geometry,
+            coarse,
+            receivers,
+            surfaces,
+        })
     }
 
     /// The scene file.

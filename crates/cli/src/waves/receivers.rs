@@ -50,7 +50,10 @@ impl Receiver {
 }
 
 /// The receivers of a scene, at least one.
-pub(super) fn receivers(scene: &SceneText, entries: &[Spanned<ReceiverEntry>]) -> Result<Vec<Receiver>, Failure> {
+pub(super) fn receivers(
+    scene: &SceneText,
+    entries: &[Spanned<ReceiverEntry>],
+) -> Result<Vec<Receiver>, Failure> {
     if entries.is_empty() {
         let help = "add a [[receiver]] with a name and points, line, circle, grid or far";
         return Err(scene.fault(scene.end(), "the scene has no receiver", help));
@@ -128,7 +131,7 @@ fn on_circle(
     let axis = vector(normal).normalize_or_zero();
     let across = vector(start) - axis * axis.dot(vector(start));
     let first = across.normalize_or_zero();
-    if axis == Vec3::ZERO || first == Vec3::ZERO || !(*radius > 0.0) {
+    if axis == Vec3::ZERO || first == Vec3::ZERO || radius.is_nan() || *radius <= 0.0 {
         let what = "the circle has no radius above 0, no normal, or a start along its normal";
         return Err(scene.fault(entry.span(), what, "give a radius, and a start across the normal"));
     }
@@ -147,7 +150,8 @@ fn on_grid(scene: &SceneText, entry: &Spanned<ReceiverEntry>, grid: &GridEntry) 
         let what = format!("the grid has {columns} × {rows} points");
         return Err(scene.fault(entry.span(), what, format!("ask for at most {MOST}")));
     }
-    let point = |i: u32, j: u32| vector(corner) + vector(u) * share(i, *columns) + vector(v) * share(j, *rows);
+    let point =
+        |i: u32, j: u32| vector(corner) + vector(u) * share(i, *columns) + vector(v) * share(j, *rows);
     let points = (0..*rows).flat_map(|j| (0..*columns).map(move |i| point(i, j))).collect();
     Ok(Places::Near { points, layout: Layout::Grid(*columns as usize) })
 }

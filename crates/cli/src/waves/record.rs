@@ -5,6 +5,7 @@ use fredholm_report::{FarRow, WaveCurrents, WaveRow};
 use serde_json::{Value, json};
 
 use super::Model;
+use super::estimate::Estimated;
 
 /// How the currents at one frequency were found.
 #[derive(Clone, Debug)]
@@ -30,6 +31,10 @@ pub(crate) struct Outcome {
     pub(crate) far: Vec<FarRow>,
     pub(crate) currents: Vec<WaveCurrents>,
     pub(crate) solved: Vec<Solved>,
+    /// Estimated relative errors of E at the receivers from the mesh.
+    pub(crate) mesh_errors: Vec<Estimated>,
+    /// Half the difference between the electric and the magnetic form: what physical optics itself may be wrong by.
+    pub(crate) form_errors: Vec<Estimated>,
 }
 
 impl Outcome {
@@ -57,6 +62,8 @@ impl Outcome {
             "shadow": model.shadow.name(),
             "method": model.method.name(),
             "receivers": model.receivers.iter().map(|receiver| &receiver.name).collect::<Vec<_>>(),
+            "estimated_mesh_errors": self.mesh_errors.iter().map(|e| e.record(model)).collect::<Vec<_>>(),
+            "estimated_form_errors": self.form_errors.iter().map(|e| e.record(model)).collect::<Vec<_>>(),
             "frequencies": self.solved.iter().map(solved).collect::<Vec<_>>(),
             "timings": timings,
         })

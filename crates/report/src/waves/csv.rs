@@ -58,6 +58,7 @@ fn name(names: &[String], receiver: usize) -> &str {
 }
 
 #[cfg(test)]
+#[allow(clippy::float_cmp, reason = "numbers are written so that they read back to the same bits")]
 pub(super) mod tests {
     use super::*;
     use crate::csv::tests::{parse, values};

@@ -48,7 +48,7 @@ impl Array {
 /// What `out` reports.
 pub fn write_currents_vtu(mesh: &Mesh, currents: &[WaveCurrents], out: &mut dyn Write) -> io::Result<()> {
     let corners: usize = mesh.patches().map(|patch| patch.corners().len()).sum();
-    let points = mesh.patches().flat_map(|patch| patch.corners()).flat_map(Vec3::to_array);
+    let points = mesh.patches().flat_map(fredholm_mesh::Patch::corners).flat_map(Vec3::to_array);
     let data = currents.iter().flat_map(arrays).collect();
     let sections = [
         ("Points", vec![Array::floats("Points".to_owned(), 3, points)]),

@@ -151,9 +151,17 @@ impl<'a> NystromCoupling<'a> {
         fields.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, out)| {
             let first = chunk * CHUNK;
             let (wavenumber, groups) = (self.wave.wavenumber(), &self.groups);
-            let observers = Observers { first, normals: &self.normals, behind: &self.behind, view: self.view.as_ref() };
+            let observers =
+                Observers { first, normals: &self.normals, behind: &self.behind, view: self.view.as_ref() };
             let points = &self.centres[first..first + out.len()];
-            self.arch.dispatch(Evaluate { wavenumber, groups, elements, points, observers: Some(observers), out });
+            self.arch.dispatch(Evaluate {
+                wavenumber,
+                groups,
+                elements,
+                points,
+                observers: Some(observers),
+                out,
+            });
         });
         fields
     }

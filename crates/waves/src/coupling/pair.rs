@@ -13,9 +13,7 @@ pub(crate) type Block = [[Complex64; 2]; 2];
 pub(crate) fn block(p: &Facet, q: &Facet, g: ComplexVector, sign: f64, shadow: Shadow) -> Block {
     let factor = if shadow == Shadow::Thesis { -2.0 * sign } else { 2.0 * sign };
     let normal = g.dot(p.normal);
-    p.tangents.map(|a| {
-        q.tangents.map(|b| (g.dot(a) * p.normal.dot(b) - normal * a.dot(b)) * factor)
-    })
+    p.tangents.map(|a| q.tangents.map(|b| (g.dot(a) * p.normal.dot(b) - normal * a.dot(b)) * factor))
 }
 
 /// G at `x` by one point in the middle of the source.

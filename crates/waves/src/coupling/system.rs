@@ -4,8 +4,8 @@ use super::nystrom::tangential;
 use super::{NystromCoupling, galerkin};
 use crate::rule::{points_for_phase, regular};
 use crate::{
-    Complex64, ComplexVector, Current, Facet, FacetCurrents, PhysicalOptics, Radiator, Sampling, Scatterer, Shadow,
-    SurfaceCurrent, TOLERANCE, Wave, WaveError,
+    Complex64, ComplexVector, Current, Facet, FacetCurrents, PhysicalOptics, Radiator, Sampling, Scatterer,
+    Shadow, SurfaceCurrent, TOLERANCE, Wave, WaveError,
 };
 use fredholm_linop::{Dense, LinearOperator, MultiVector};
 

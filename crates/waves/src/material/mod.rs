@@ -103,7 +103,8 @@ fn impedance(z: Complex64, cos: f64) -> [Complex64; 2] {
     let grazing = z * cos;
     let eta = IMPEDANCE * cos;
     // At grazing both numerators and denominators stay apart from 0 unless Z = 0, the conductor.
-    let te = if z == Complex64::ZERO { -Complex64::ONE } else { (grazing - IMPEDANCE) / (grazing + IMPEDANCE) };
+    let te =
+        if z == Complex64::ZERO { -Complex64::ONE } else { (grazing - IMPEDANCE) / (grazing + IMPEDANCE) };
     let tm = if z == Complex64::ZERO { Complex64::ONE } else { (eta - z) / (eta + z) };
     [te, tm]
 }
@@ -120,7 +121,9 @@ fn check_permittivity(permittivity: Complex64, what: &str) -> Result<(), WaveErr
         return fail("the permittivity must be finite and other than 0");
     }
     if permittivity.im > 0.0 {
-        return fail("the permittivity must not have a positive imaginary part, which is gain (e^{+jωt}: ε′ − jε″)");
+        return fail(
+            "the permittivity must not have a positive imaginary part, which is gain (e^{+jωt}: ε′ − jε″)",
+        );
     }
     if permittivity.re < 0.0 && permittivity.im == 0.0 {
         return fail("a negative permittivity needs loss (a negative imaginary part)");

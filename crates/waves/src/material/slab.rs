@@ -74,8 +74,16 @@ mod tests {
         ];
         for (permittivity, thickness, reflected, through) in table {
             let got = slab(&[Layer { permittivity, thickness }], &wave, 1.0);
-            assert!((got.reflected[0].norm() - reflected).abs() < 5.1e-4, "{permittivity}: {:?}", got.reflected[0].norm());
-            assert!((decibel(got.transmitted[0]) - through).abs() < 5.1e-3, "{permittivity}: {}", decibel(got.transmitted[0]));
+            assert!(
+                (got.reflected[0].norm() - reflected).abs() < 5.1e-4,
+                "{permittivity}: {:?}",
+                got.reflected[0].norm()
+            );
+            assert!(
+                (decibel(got.transmitted[0]) - through).abs() < 5.1e-3,
+                "{permittivity}: {}",
+                decibel(got.transmitted[0])
+            );
             // At normal incidence the two polarisations are one, but for the sign of H.
             assert!((got.reflected[0] + got.reflected[1]).norm() < 1e-14);
             assert!((got.transmitted[0] - got.transmitted[1]).norm() < 1e-14);
@@ -101,7 +109,8 @@ mod tests {
         let permittivity = Complex64::new(3.7, -0.4);
         let layer = |thickness| Layer { permittivity, thickness };
         for cos in [1.0, 0.3] {
-            let (whole, cut) = (slab(&[layer(0.05)], &wave, cos), slab(&[layer(0.02), layer(0.03)], &wave, cos));
+            let (whole, cut) =
+                (slab(&[layer(0.05)], &wave, cos), slab(&[layer(0.02), layer(0.03)], &wave, cos));
             let gaps = [(whole.reflected, cut.reflected), (whole.transmitted, cut.transmitted)];
             assert!(gaps.iter().all(|(a, b)| (a[0] - b[0]).norm() + (a[1] - b[1]).norm() < 1e-14));
         }

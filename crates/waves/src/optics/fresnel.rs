@@ -95,7 +95,10 @@ mod tests {
                         far(material, travel, polarisation, mirror),
                         far(&Material::Conductor, travel, polarisation, mirror),
                     );
-                    assert!((got - full * ratio).norm() < 1e-12 * full.norm(), "{material:?} {travel} {mode}");
+                    assert!(
+                        (got - full * ratio).norm() < 1e-12 * full.norm(),
+                        "{material:?} {travel} {mode}"
+                    );
                     let delay = wave.wavenumber() * material.thickness() * travel.y.abs();
                     let lost = Complex64::ONE - found.transmitted[mode] * Complex64::cis(delay);
                     let (got, full) = (

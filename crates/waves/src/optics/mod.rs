@@ -11,8 +11,8 @@ use crate::source::Origin;
 use fresnel::fresnel;
 
 use crate::{
-    ComplexVector, Current, Facet, Field, Gate, Kind, Radiator, Sampling, Scatterer, Source, SurfaceCurrent, Wave,
-    WaveError,
+    ComplexVector, Current, Facet, Field, Gate, Kind, Radiator, Sampling, Scatterer, Source, SurfaceCurrent,
+    Wave, WaveError,
 };
 use fredholm_mesh::Vec3;
 use rayon::prelude::*;

@@ -5,9 +5,9 @@
 
 #![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
 
+use crate::coupling::View;
 use crate::lanes::{Lanes, cos_sin};
 use crate::medium::IMPEDANCE;
-use crate::coupling::View;
 use crate::{ComplexVector, Field};
 use fredholm_mesh::Vec3;
 use pulp::{Simd, WithSimd};
@@ -242,10 +242,7 @@ impl<S: Simd> Complex3<S> {
     /// self + a b.
     #[inline(always)]
     fn plus(self, a: Complex<S>, b: Self) -> Self {
-        Self {
-            re: self.re.plus(a.re, b.re).plus(-a.im, b.im),
-            im: self.im.plus(a.re, b.im).plus(a.im, b.re),
-        }
+        Self { re: self.re.plus(a.re, b.re).plus(-a.im, b.im), im: self.im.plus(a.re, b.im).plus(a.im, b.re) }
     }
 }
 
@@ -329,9 +326,7 @@ impl<S: Simd> Scalars<S> {
         let three = square.constant(3.0);
         Self {
             across: phase.turn(-inverse_square, third - first),
-            along: phase
-                .turn(three * inverse_square, (-three).mul_add(third, first))
-                .scale(inverse_square),
+            along: phase.turn(three * inverse_square, (-three).mul_add(third, first)).scale(inverse_square),
             curl: phase.turn(-inverse, -wavenumber).scale(inverse_square),
         }
     }

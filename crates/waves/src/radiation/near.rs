@@ -27,13 +27,18 @@ impl Run {
     fn around(groups: &[Group]) -> Self {
         let centres = || groups.iter().map(|group| Vec3::from_array(group.centre));
         let centre = centres().sum::<Vec3>() / groups.len() as f64;
-        let reach = groups.iter().zip(centres()).map(|(group, c)| c.distance(centre) + group.near_squared.sqrt());
+        let reach =
+            groups.iter().zip(centres()).map(|(group, c)| c.distance(centre) + group.near_squared.sqrt());
         // What rounding could add.
         Self { centre, radius: reach.fold(0.0, f64::max) * (1.0 + 1e-9) }
     }
 
     /// The groups that leave out the point `p`, in their order.
-    pub(crate) fn near<'a>(groups: &'a [Group], runs: &'a [Self], p: Vec3) -> impl Iterator<Item = &'a Group> {
+    pub(crate) fn near<'a>(
+        groups: &'a [Group],
+        runs: &'a [Self],
+        p: Vec3,
+    ) -> impl Iterator<Item = &'a Group> {
         let close = groups.chunks(RUN).zip(runs).filter(move |(_, run)| run.may_be_near(p));
         let left_out = move |group: &&Group| group.leaves_out(p - Vec3::from_array(group.centre));
         close.flat_map(|(groups, _)| groups).filter(left_out)

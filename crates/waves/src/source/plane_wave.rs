@@ -58,10 +58,7 @@ impl Source for PlaneWave {
     fn field(&self, wave: &Wave, p: Vec3) -> Field {
         let phase = self.amplitude * Complex64::cis(-wave.wavenumber() * self.travel.dot(p));
         let magnetic = self.travel.cross(self.polarisation) / IMPEDANCE;
-        Field {
-            e: ComplexVector::along(self.polarisation, phase),
-            h: ComplexVector::along(magnetic, phase),
-        }
+        Field { e: ComplexVector::along(self.polarisation, phase), h: ComplexVector::along(magnetic, phase) }
     }
 
     fn origin(&self) -> Origin {
@@ -76,8 +73,7 @@ mod tests {
     #[test]
     fn the_polarisation_is_taken_across_the_travel() {
         let wave = Wave::new(1e9).unwrap();
-        let source =
-            PlaneWave::new(Vec3::new(0.0, 2.0, 0.0), Vec3::new(0.0, 5.0, 3.0), 2.0.into()).unwrap();
+        let source = PlaneWave::new(Vec3::new(0.0, 2.0, 0.0), Vec3::new(0.0, 5.0, 3.0), 2.0.into()).unwrap();
         let field = source.field(&wave, Vec3::Y * (0.25 * wave.wavelength()));
         let [_, y, z] = field.e.components();
         assert!(y.norm() < 1e-15 && (z - Complex64::new(0.0, -2.0)).norm() < 1e-14);
@@ -87,10 +83,7 @@ mod tests {
 
     #[test]
     fn directions_that_are_none_are_refused() {
-        assert!(matches!(
-            PlaneWave::new(Vec3::ZERO, Vec3::Z, 1.0.into()),
-            Err(WaveError::Direction { .. })
-        ));
+        assert!(matches!(PlaneWave::new(Vec3::ZERO, Vec3::Z, 1.0.into()), Err(WaveError::Direction { .. })));
         assert_eq!(PlaneWave::new(Vec3::Y, -Vec3::Y, 1.0.into()), Err(WaveError::Polarisation));
         let infinite = Complex64::new(f64::INFINITY, 0.0);
         assert!(matches!(PlaneWave::new(Vec3::Y, Vec3::Z, infinite), Err(WaveError::NotFinite { .. })));

@@ -148,7 +148,8 @@ mod tests {
     fn edges_obey_the_limit() {
         for edge in [0.5, 0.21] {
             for scatterer in [plate(1.0, edge), sphere(1.0, edge), trihedral(1.0, edge)] {
-                let longest = scatterer.unwrap().facets().iter().map(super::super::Facet::edge).fold(0.0, f64::max);
+                let longest =
+                    scatterer.unwrap().facets().iter().map(super::super::Facet::edge).fold(0.0, f64::max);
                 assert!(longest <= edge * (1.0 + 1e-9) && longest > 0.6 * edge, "{longest} of {edge}");
             }
         }

@@ -35,9 +35,8 @@ pub fn reference(name: &str, column: &str) -> Vec<Complex64> {
     let text = std::fs::read_to_string(path).unwrap();
     let mut lines = text.lines();
     let header: Vec<&str> = lines.next().unwrap().split(',').collect();
-    let [re, im] = ["re", "im"].map(|part| {
-        header.iter().position(|title| *title == format!("{column}_{part}_Ez")).unwrap()
-    });
+    let [re, im] = ["re", "im"]
+        .map(|part| header.iter().position(|title| *title == format!("{column}_{part}_Ez")).unwrap());
     let value = |line: &str| {
         let numbers: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
         Complex64::new(numbers[re], numbers[im])
