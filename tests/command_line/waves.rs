@@ -97,7 +97,7 @@ fn what_is_wrong_is_named_with_its_line() {
     let cases = [
         ("frequencies_hz = [1e9]", "frequencies_hz = [0]", "scene.toml:3:", "the frequency is 0 Hz"),
         ("frequencies_hz = [1e9]", "frequencies_hz = []", "scene.toml:3:", "there is no frequency"),
-        ("kind = \"plane-wave\"", "kind = \"torch\"", "scene.toml:5:", "torch"),
+        ("kind = \"plane-wave\"", "kind = \"torch\"", "scene.toml:6:8:", "torch"),
         ("polarisation = [0, 0, 1]", "polarisation = [0, 5, 0]", "scene.toml:5:", "parallel"),
         ("travel = [0, 1, 0]", "travel = [0, 0, 0]", "scene.toml:5:", "finite vector other than 0"),
         ("name = \"plate\"", "name = \"plate\"\nedge = \"lambda/1\"", "scene.toml:10:", "half the wavelength"),
@@ -107,7 +107,7 @@ fn what_is_wrong_is_named_with_its_line() {
         ("points = [[0, -1, 0]]", "points = []", "scene.toml:14:", "0 receiver points"),
         ("[wave]", "[wave]\nshadow = \"exact\"\nsolver = \"lu\"", "scene.toml:12:", "closed bodies"),
         ("[wave]", "[wave]\nsolver = \"magic\"", "scene.toml:3:", "unknown solver `magic`"),
-        ("[wave]", "[wave]\nvelocity = 3", "scene.toml:3:", "velocity"),
+        ("[wave]", "[wave]\nvelocity = 3", "scene.toml:3:1:", "velocity"),
     ];
     for (from, to, place, what) in cases {
         let (bench, run) = waves(&GOOD.replace(from, to));

@@ -91,6 +91,18 @@ pub fn facing_plates(side: f64, offset: f64, edge: f64) -> Result<Scatterer, Wav
     scatterer(&[plate(1.0), plate(-1.0)], edge, Kind::Sheet)
 }
 
+/// Two thin squares of this side in the planes y = ∓`distance`/2, centred, their normals towards each other.
+///
+/// # Errors
+/// [`WaveError::Length`] or [`WaveError::Mesh`] for lengths that are none.
+pub fn parallel_plates(side: f64, distance: f64, edge: f64) -> Result<Scatterer, WaveError> {
+    let plate = |sign: f64| {
+        let (x, z) = (Vec3::X * (sign * side), Vec3::Z * side);
+        quad(Vec3::Y * (0.5 * sign * distance) - 0.5 * (x + z), x, z)
+    };
+    scatterer(&[plate(1.0), plate(-1.0)], edge, Kind::Sheet)
+}
+
 /// Two thin rectangles that share the edge on the z axis, 0 ≤ z ≤ `height`, each `width` wide, `angle` (rad) apart and
 /// open towards +x.
 ///
@@ -140,6 +152,8 @@ mod tests {
         assert!((scatterers[2].area() - 4.0 * PI).abs() < 1e-12);
         let inward = |f: &super::super::Facet| f.normal.dot(Vec3::new(-f.centre.x, -1.0, 0.0));
         assert!(scatterers[3].facets().iter().all(|f| inward(f) > 0.0));
+        let parallel = parallel_plates(1.0, 0.5, 0.3).unwrap();
+        assert!(parallel.facets().iter().all(|f| f.normal.y * f.centre.y < -0.24));
         assert!(scatterers[4].facets().iter().all(|f| f.normal.dot(Vec3::X) > 0.7));
         assert!(scatterers[5].facets().iter().all(|f| f.normal.dot(Vec3::ONE) > 0.99));
     }
