@@ -41,12 +41,16 @@ fn compare(name: &str, scatterer: &Scatterer, shadow: Shadow, travel: Vec3) -> R
     for solver in solvers {
         let a = SecondKind::new(system.coupling(), Vectors::from_fn(b.dim(), 1, |_, _| Complex64::ONE))?;
         let mut x = Vectors::zeros(b.dim(), 1);
-        let stop = Stop { tolerance: 1e-6, max_iterations: 3000 };
+        let stop = Stop { tolerance: 1e-6, max_iterations: 1500 };
         match solver.solve(&a, &b, &mut x, &stop, &mut Quiet) {
             Ok(report) => {
                 let residual = report.history.last().map_or(f64::NAN, |entry| entry.residuals[0]);
                 let iterations = report.history.len().saturating_sub(1);
-                println!("  {:<14} {:?} after {iterations}, residual {residual:.1e}", solver.name(), report.reason);
+                println!(
+                    "  {:<14} {:?} after {iterations}, residual {residual:.1e}",
+                    solver.name(),
+                    report.reason
+                );
             }
             Err(error) => println!("  {:<14} {error}", solver.name()),
         }

@@ -5,7 +5,9 @@
 
 mod shapes;
 
-pub use shapes::{cube, dihedral, facing_plates, parallel_plates, plate, rectangle, sphere, sphere_segments, trihedral};
+pub use shapes::{
+    cube, dihedral, facing_plates, parallel_plates, plate, rectangle, sphere, sphere_segments, trihedral,
+};
 
 use crate::material::Material;
 use crate::{Wave, WaveError};
