@@ -154,20 +154,10 @@ fn lit(scatterer: &Scatterer, origin: Origin, shadow: Shadow) -> Vec<f64> {
         Shadow::Radiated => facet.side(origin.seen_from(facet.centre)),
         Shadow::Geometric => {
             let side = facet.side(origin.seen_from(facet.centre));
-            if side != 0.0 && sees(scatterer, facet, origin) { side } else { 0.0 }
+            if side != 0.0 && scatterer.sees(facet.centre, origin) { side } else { 0.0 }
         }
     };
     scatterer.facets().par_iter().map(side).collect()
-}
-
-/// Whether nothing blocks the way from the facet to the source.
-fn sees(scatterer: &Scatterer, facet: &Facet, origin: Origin) -> bool {
-    let end = match origin {
-        Origin::Point(source) => source,
-        // Twice the extent away, everything lies behind.
-        Origin::Direction(travel) => facet.centre - travel * (2.0 * scatterer.extent()),
-    };
-    scatterer.occluders().unoccluded(facet.centre, end)
 }
 
 #[cfg(test)]

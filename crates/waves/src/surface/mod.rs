@@ -10,6 +10,7 @@ pub use shapes::{
 };
 
 use crate::material::Material;
+use crate::source::Origin;
 use crate::{Wave, WaveError};
 use fredholm_mesh::{Mesh, Patch, Vec3};
 use fredholm_visibility::Occluders;
@@ -163,6 +164,17 @@ impl Scatterer {
     #[must_use]
     pub fn occluders(&self) -> &Occluders {
         &self.occluders
+    }
+
+    /// Whether nothing blocks the way from the point `p` of the surface to a source.
+    #[must_use]
+    pub fn sees(&self, p: Vec3, origin: Origin) -> bool {
+        let end = match origin {
+            Origin::Point(source) => source,
+            // Twice the extent away, everything lies behind.
+            Origin::Direction(travel) => p - travel * (2.0 * self.extent),
+        };
+        self.occluders.unoccluded(p, end)
     }
 
     /// Diagonal of the smallest box around everything, m.
