@@ -6,8 +6,9 @@ use fredholm_linop::{MultiVector, Observer, Progress, SecondKind, Solver, Stop, 
 use fredholm_mesh::Vec3;
 use fredholm_report::{FarRow, WaveCurrents, WaveRow};
 use fredholm_waves::{
-    Bounced, Complex64, ComplexVector, Current, Discretisation, FacetCurrents, Field, PhysicalOptics,
-    Radiator, Sampling, Scatterer, Shadow, Source, System, TOLERANCE, WaveError, cross_section, incident,
+    Bounced, Complex64, ComplexVector, Current, Discretisation, EdgeCurrents, FacetCurrents, FarField, Field,
+    PhysicalOptics, Radiator, Sampling, Scatterer, Shadow, Source, System, TOLERANCE, WaveError,
+    cross_section, incident,
 };
 use rayon::prelude::*;
 
@@ -182,22 +183,42 @@ impl Task<'_> {
     }
 
     fn receive(&self, radiator: &Radiator<'_>, outcome: &mut Outcome) -> Result<(), Failure> {
+        let edges = self.edges()?;
         for (index, receiver) in self.model.receivers.iter().enumerate() {
             let refused = |error: WaveError| self.model.refused(&error, Some(receiver));
             match &receiver.places {
                 Places::Near { points, .. } => {
-                    let scattered = radiator.fields(points).map_err(refused)?;
+                    let mut scattered = radiator.fields(points).map_err(refused)?;
+                    if let Some(edges) = &edges {
+                        scattered
+                            .iter_mut()
+                            .zip(edges.fields(points))
+                            .for_each(|(field, more)| *field += more);
+                    }
                     let rows = self.rows(index, points, &scattered).map_err(refused)?;
                     outcome.near.extend(rows);
                 }
                 Places::Far(angles) => {
-                    let far = radiator.far_field(&Receiver::directions(angles)).map_err(refused)?;
+                    let mut far = radiator.far_field(&Receiver::directions(angles)).map_err(refused)?;
+                    if let Some(edges) = &edges {
+                        let add = |far: &mut FarField| far.amplitude += edges.far_amplitude(far.direction);
+                        far.par_iter_mut().for_each(add);
+                    }
                     let rows = far.iter().zip(angles).enumerate();
                     outcome.far.extend(rows.map(|(i, (far, angles))| self.far_row([index, i], *angles, far)));
                 }
             }
         }
         Ok(())
+    }
+
+    /// The edge currents, where they are asked for; the magnetic form has none.
+    fn edges(&self) -> Result<Option<EdgeCurrents>, Failure> {
+        if !self.model.edge_currents || self.variant.shadow == Shadow::Thesis {
+            return Ok(None);
+        }
+        let found = EdgeCurrents::new(self.scatterer, self.band.wave, self.sources);
+        found.map(Some).map_err(|error| self.refused(&error))
     }
 
     fn rows(&self, receiver: usize, points: &[Vec3], scattered: &[Field]) -> Result<Vec<WaveRow>, WaveError> {
@@ -218,7 +239,7 @@ impl Task<'_> {
         points.par_iter().zip(scattered).enumerate().map(row).collect()
     }
 
-    fn far_row(&self, at: [usize; 2], angles: [f64; 2], far: &fredholm_waves::FarField) -> FarRow {
+    fn far_row(&self, at: [usize; 2], angles: [f64; 2], far: &FarField) -> FarRow {
         let [theta, phi] = far.polar();
         let section = |wave: fredholm_waves::source::PlaneWave| {
             [theta, phi].map(|part| cross_section(part, wave.amplitude()))

@@ -41,6 +41,8 @@ pub(super) struct WaveEntry {
     pub tolerance: Option<At<f64>>,
     /// Iterations for the solver; default 500.
     pub max_iterations: Option<u32>,
+    /// Add the edge currents that physical optics lacks. Default: false.
+    pub edge_currents: Option<At<bool>>,
     /// Estimate the errors by two more runs: edges twice as long, and the magnetic form. Default: false.
     #[serde(default)]
     pub estimate_errors: bool,

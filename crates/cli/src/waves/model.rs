@@ -51,6 +51,8 @@ pub(crate) struct Model {
     pub(crate) bands: Vec<Band>,
     pub(crate) shadow: Shadow,
     pub(crate) method: Method,
+    /// Whether edge currents are added.
+    pub(crate) edge_currents: bool,
     pub(crate) sources: Vec<Box<dyn Source>>,
     /// The source, where it is a single plane wave.
     pub(crate) plane_wave: Option<PlaneWave>,
@@ -73,6 +75,7 @@ impl Model {
             let what = "the exact treatment is an equation, whose first bounces mean nothing by themselves";
             return Err(text.fault(entry.wave.span(), what, "add solver = \"lu\", say"));
         }
+        let edge_currents = edge_currents(&text, entry.wave.get_ref(), shadow)?;
         if entry.source.is_empty() {
             let help = "add a [[source]] such as kind = \"plane-wave\"";
             return Err(text.fault(text.end(), "the scene has no source", help));
@@ -94,6 +97,7 @@ impl Model {
             bands,
             shadow,
             method,
+            edge_currents,
             sources,
             plane_wave,
             geometry,
@@ -141,6 +145,19 @@ fn shadow(text: &SceneText, entry: &WaveEntry) -> Result<Shadow, Failure> {
         let known = Shadow::ALL.map(Shadow::name).join(", ");
         text.fault(name.span(), format!("unknown shadow `{}`", name.get_ref()), format!("known: {known}"))
     })
+}
+
+fn edge_currents(text: &SceneText, entry: &WaveEntry, shadow: Shadow) -> Result<bool, Failure> {
+    let Some(wanted) = &entry.edge_currents else { return Ok(false) };
+    if *wanted.get_ref() && matches!(shadow, Shadow::Exact | Shadow::Thesis) {
+        let what = "edge currents complete physical optics, not this treatment of shadows";
+        return Err(text.fault(
+            wanted.span(),
+            what,
+            "take shadow = \"geometric\", or leave edge_currents out",
+        ));
+    }
+    Ok(*wanted.get_ref())
 }
 
 fn method(text: &SceneText, entry: &WaveEntry) -> Result<Method, Failure> {

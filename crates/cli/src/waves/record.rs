@@ -61,6 +61,7 @@ impl Outcome {
             "title": model.title,
             "shadow": model.shadow.name(),
             "method": model.method.name(),
+            "edge_currents": model.edge_currents,
             "receivers": model.receivers.iter().map(|receiver| &receiver.name).collect::<Vec<_>>(),
             "estimated_mesh_errors": self.mesh_errors.iter().map(|e| e.record(model)).collect::<Vec<_>>(),
             "estimated_form_errors": self.form_errors.iter().map(|e| e.record(model)).collect::<Vec<_>>(),
