@@ -100,7 +100,12 @@ fn what_is_wrong_is_named_with_its_line() {
         ("kind = \"plane-wave\"", "kind = \"torch\"", "scene.toml:6:8:", "torch"),
         ("polarisation = [0, 0, 1]", "polarisation = [0, 5, 0]", "scene.toml:5:", "parallel"),
         ("travel = [0, 1, 0]", "travel = [0, 0, 0]", "scene.toml:5:", "finite vector other than 0"),
-        ("name = \"plate\"", "name = \"plate\"\nedge = \"lambda/1\"", "scene.toml:10:", "half the wavelength"),
+        (
+            "name = \"plate\"",
+            "name = \"plate\"\nedge = \"lambda/1\"",
+            "scene.toml:10:",
+            "half the wavelength",
+        ),
         ("name = \"plate\"", "name = \"plate\"\nedge = \"lamda/9\"", "scene.toml:12:", "no edge"),
         ("name = \"plate\"", "name = \"plate\"\nmaterial = \"gold\"", "scene.toml:12:", "no material `gold`"),
         ("points = [[0, -1, 0]]", "points = [[0.01, 0, 0.02]]", "scene.toml:14:", "lies on facet"),
@@ -134,12 +139,10 @@ fn a_source_must_be_there_and_a_material_must_not_give_energy_away() {
 /// The closed cube of 2.1λ has no convergent series of bounces.
 #[test]
 fn a_series_that_diverges_is_no_result() {
-    let scene = GOOD
-        .replace("[wave]", "[wave]\nshadow = \"exact\"\nsolver = \"bounces\"")
-        .replace(
-            "quad = [[-0.3, 0, -0.3], [0.3, 0, -0.3], [0.3, 0, 0.3], [-0.3, 0, 0.3]]",
-            "box = { min = [0, 0, 0], max = [0.62956, 0.62956, 0.62956] }\nedge = \"lambda/6\"",
-        );
+    let scene = GOOD.replace("[wave]", "[wave]\nshadow = \"exact\"\nsolver = \"bounces\"").replace(
+        "quad = [[-0.3, 0, -0.3], [0.3, 0, -0.3], [0.3, 0, 0.3], [-0.3, 0, 0.3]]",
+        "box = { min = [0, 0, 0], max = [0.62956, 0.62956, 0.62956] }\nedge = \"lambda/6\"",
+    );
     let (bench, run) = waves(&scene);
     assert!(run.code == 3 && run.stderr.contains("diverges"), "{}", run.stderr);
     assert!(!bench.path("out/scene/run.json").exists());
