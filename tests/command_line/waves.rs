@@ -136,6 +136,21 @@ fn a_source_must_be_there_and_a_material_must_not_give_energy_away() {
     }
 }
 
+#[test]
+fn a_receiver_in_a_source_is_refused() {
+    let start = GOOD.find("kind").unwrap();
+    let end = GOOD.find("[[surface]]").unwrap();
+    let sources = [
+        "kind = \"half-wave-dipole\"\nposition = [0, -1, 0]\naxis = [0, 0, 1]\ncurrent_a = 1",
+        "kind = \"hertzian-dipole\"\nposition = [0, -1, 0]\naxis = [0, 0, 1]\nmoment_a_m = 1",
+        "kind = \"omnidirectional\"\nposition = [0, -1, 0]\naxis = [0, 0, 1]\npower_w = 1",
+    ];
+    for source in sources {
+        let run = waves(&GOOD.replace(&GOOD[start..end], &format!("{source}\n\n"))).1;
+        assert!(run.code == 2 && run.stderr.contains("of a source at point 0"), "{source}: {}", run.stderr);
+    }
+}
+
 /// The closed cube of 2.1λ has no convergent series of bounces.
 #[test]
 fn a_series_that_diverges_is_no_result() {

@@ -15,7 +15,7 @@ use fredholm_mesh::Vec3;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// Distance from the wire's line, over λ, below which the transverse parts are 0.
+/// Distance from the wire's line, over λ, below which a point is on it: beyond the wire the transverse parts are 0 there.
 const ON_LINE: f64 = 1e-9;
 
 /// A wire of half a wavelength with a cosine current.
@@ -54,6 +54,10 @@ impl Source for HalfWaveDipole {
         let axial = -factor * (waves[0] / ends[0].1 + waves[1] / ends[1].1);
         let mut e = ComplexVector::along(self.axis, axial);
         let mut h = ComplexVector::ZERO;
+        if rho <= ON_LINE * wave.wavelength() && z.abs() <= quarter {
+            // On the wire itself the field has no bound.
+            e += ComplexVector::along(self.axis, f64::INFINITY.into());
+        }
         if rho > ON_LINE * wave.wavelength() {
             let out = across / rho;
             let slopes = waves[0] * (ends[0].0 / ends[0].1) + waves[1] * (ends[1].0 / ends[1].1);
@@ -100,6 +104,7 @@ mod tests {
         let dipole = HalfWaveDipole::new(Vec3::ZERO, Vec3::Z, 1.0.into()).unwrap();
         let on = dipole.field(&wave, Vec3::Z * 0.5);
         let beside = dipole.field(&wave, Vec3::new(1e-6, 0.0, 0.5));
+        assert!(!dipole.field(&wave, Vec3::Z * 0.05).is_finite());
         assert!((on.e - beside.e).norm() < 1e-4 * on.e.norm() && beside.h.norm() < 1e-4 * on.e.norm());
     }
 }
