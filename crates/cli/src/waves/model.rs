@@ -11,7 +11,7 @@ use super::format::{SceneEntry, WaveEntry};
 use super::geometry::{Geometry, materials};
 use super::located::SceneText;
 use super::receivers::{Receiver, receivers};
-use super::sources::placed;
+use super::sources::{Placed, placed};
 use crate::failure::Failure;
 
 /// Residual where the scene does not say.
@@ -70,18 +70,9 @@ impl Model {
         let entry: SceneEntry = text.parse()?;
         let bands = bands(&text, &entry)?;
         let shadow = shadow(&text, entry.wave.get_ref())?;
-        let method = method(&text, entry.wave.get_ref())?;
-        if let (Shadow::Exact, Method::Bounces(_)) = (shadow, &method) {
-            let what = "the exact treatment is an equation, whose first bounces mean nothing by themselves";
-            return Err(text.fault(entry.wave.span(), what, "add solver = \"lu\", say"));
-        }
+        let method = method(&text, &entry.wave, shadow)?;
         let edge_currents = edge_currents(&text, entry.wave.get_ref(), shadow)?;
-        if entry.source.is_empty() {
-            let help = "add a [[source]] such as kind = \"plane-wave\"";
-            return Err(text.fault(text.end(), "the scene has no source", help));
-        }
-        let placed =
-            entry.source.iter().map(|source| placed(&text, source)).collect::<Result<Vec<_>, _>>()?;
+        let placed = sources(&text, &entry)?;
         let plane_wave = if let [only] = placed.as_slice() { only.plane_wave } else { None };
         let shortest = bands.iter().map(|band| band.wave.wavelength()).fold(f64::INFINITY, f64::min);
         let cut = |stretch| Geometry::new(&text, &entry.surface, shortest, stretch);
@@ -126,6 +117,25 @@ impl Model {
     }
 }
 
+/// The sources, at least one.
+fn sources(text: &SceneText, entry: &SceneEntry) -> Result<Vec<Placed>, Failure> {
+    if entry.source.is_empty() {
+        let help = "add a [[source]] such as kind = \"plane-wave\"";
+        return Err(text.fault(text.end(), "the scene has no source", help));
+    }
+    entry.source.iter().map(|source| placed(text, source)).collect()
+}
+
+/// The method, where the treatment of shadows has a use for it.
+fn method(text: &SceneText, entry: &toml::Spanned<WaveEntry>, shadow: Shadow) -> Result<Method, Failure> {
+    let found = asked(text, entry.get_ref())?;
+    if let (Shadow::Exact, Method::Bounces(_)) = (shadow, &found) {
+        let what = "the exact treatment is an equation, whose first bounces mean nothing by themselves";
+        return Err(text.fault(entry.span(), what, "add solver = \"lu\", say"));
+    }
+    Ok(found)
+}
+
 fn bands(text: &SceneText, entry: &SceneEntry) -> Result<Vec<Band>, Failure> {
     let frequencies = &entry.wave.get_ref().frequencies_hz;
     if frequencies.get_ref().is_empty() {
@@ -160,7 +170,7 @@ fn edge_currents(text: &SceneText, entry: &WaveEntry, shadow: Shadow) -> Result<
     Ok(*wanted.get_ref())
 }
 
-fn method(text: &SceneText, entry: &WaveEntry) -> Result<Method, Failure> {
+fn asked(text: &SceneText, entry: &WaveEntry) -> Result<Method, Failure> {
     let Some(name) = &entry.solver else {
         return match &entry.bounces {
             Some(bounces) if *bounces.get_ref() == 0 => {

@@ -34,6 +34,15 @@ pub(crate) enum Places {
     Far(Vec<[f64; 2]>),
 }
 
+impl Places {
+    fn len(&self) -> usize {
+        match self {
+            Self::Near { points, .. } => points.len(),
+            Self::Far(angles) => angles.len(),
+        }
+    }
+}
+
 /// A receiver.
 #[derive(Clone, Debug)]
 pub(crate) struct Receiver {
@@ -58,28 +67,31 @@ pub(super) fn receivers(
         let help = "add a [[receiver]] with a name and points, line, circle, grid or far";
         return Err(scene.fault(scene.end(), "the scene has no receiver", help));
     }
-    let mut names = BTreeSet::new();
-    let mut total = 0;
-    let mut all = Vec::new();
+    let (mut names, mut total, mut all) = (BTreeSet::new(), 0, Vec::new());
     for entry in entries {
-        let name = entry.get_ref().name.get_ref();
-        if !fit_for_a_file(name) || !names.insert(name.clone()) {
-            let what = format!("`{name}` is no name for a receiver, or is given twice");
-            let help = "give every receiver its own name of letters, digits, - and _";
-            return Err(scene.fault(entry.get_ref().name.span(), what, help));
-        }
-        let places = places(scene, entry)?;
-        total += match &places {
-            Places::Near { points, .. } => points.len(),
-            Places::Far(angles) => angles.len(),
-        };
+        let found = receiver(scene, entry, &mut names)?;
+        total += found.places.len();
         if total == 0 || total > MOST {
             let what = format!("there are {total} receiver points");
             return Err(scene.fault(entry.span(), what, format!("ask for 1 to {MOST}")));
         }
-        all.push(Receiver { name: name.clone(), places, span: entry.span() });
+        all.push(found);
     }
     Ok(all)
+}
+
+fn receiver(
+    scene: &SceneText,
+    entry: &Spanned<ReceiverEntry>,
+    names: &mut BTreeSet<String>,
+) -> Result<Receiver, Failure> {
+    let name = entry.get_ref().name.get_ref();
+    if !fit_for_a_file(name) || !names.insert(name.clone()) {
+        let what = format!("`{name}` is no name for a receiver, or is given twice");
+        let help = "give every receiver its own name of letters, digits, - and _";
+        return Err(scene.fault(entry.get_ref().name.span(), what, help));
+    }
+    Ok(Receiver { name: name.clone(), places: places(scene, entry)?, span: entry.span() })
 }
 
 /// Names of receivers become names of files.

@@ -91,14 +91,19 @@ impl<'a> Radiator<'a> {
         for (index, facet) in scatterer.facets().iter().enumerate() {
             radiator.sample(index, facet, sampling == Sampling::Midpoint);
         }
-        radiator.runs = Run::all(&radiator.groups);
+        radiator.complete();
+        radiator
+    }
+
+    /// What is left to do when all facets are sampled.
+    fn complete(&mut self) {
+        self.runs = Run::all(&self.groups);
         // Currents of one kind only cost one pass.
-        for elements in [&mut radiator.electric, &mut radiator.magnetic] {
+        for elements in [&mut self.electric, &mut self.magnetic] {
             if elements.iter().all(Element::is_dark) {
                 elements.clear();
             }
         }
-        radiator
     }
 
     /// Largest phase over a facet, rad: the wave to the observer and the current both turn by up to k a metre.
