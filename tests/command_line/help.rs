@@ -17,6 +17,7 @@ fn every_verb_explains_itself() {
         "check",
         "converge",
         "viewfactors",
+        "waves",
         "info",
         "schema",
         "completions",

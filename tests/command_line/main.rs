@@ -18,3 +18,4 @@ mod methods;
 mod results;
 mod support;
 mod viewfactors;
+mod waves;

@@ -8,7 +8,7 @@ use clap_complete::Shell;
 use fredholm_discretisation::{DiscretisationError, discretisation};
 use serde::Serialize;
 
-use crate::commands::{CompareArgs, SpectrumArgs, ViewFactorsArgs};
+use crate::commands::{CompareArgs, SpectrumArgs, ViewFactorsArgs, WAVES_EXAMPLES, WavesArgs};
 use crate::registry;
 use crate::size::Bytes;
 
@@ -143,6 +143,9 @@ pub(crate) enum Command {
     /// Compute the view-factor matrix of a scene or a mesh file
     #[command(name = "viewfactors", after_help = VIEW_FACTORS_EXAMPLES)]
     ViewFactors(ViewFactorsArgs),
+    /// Compute the fields of a scene of waves: conductors and other bodies in a time-harmonic field
+    #[command(after_help = WAVES_EXAMPLES)]
+    Waves(WavesArgs),
     /// Tell what made a result
     #[command(after_help = INFO_EXAMPLES)]
     Info(InfoArgs),
@@ -170,6 +173,7 @@ impl Command {
             Self::Compare(args) => args.log.log,
             Self::Spectrum(args) => args.log.log,
             Self::ViewFactors(args) => args.log.log,
+            Self::Waves(args) => args.log.log,
             _ => LogFormat::Plain,
         }
     }

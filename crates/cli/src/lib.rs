@@ -26,6 +26,7 @@ mod stages;
 mod summary;
 mod threads;
 mod watcher;
+mod waves;
 
 use std::process::ExitCode;
 

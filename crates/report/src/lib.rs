@@ -49,6 +49,7 @@ mod svg;
 mod tone;
 mod viewfactors;
 mod vtu;
+mod waves;
 mod xml;
 
 pub use atomic::write_atomically;
@@ -88,3 +89,7 @@ pub use viewfactors::{
     write_closure_histogram, write_view_factors,
 };
 pub use vtu::write_vtu;
+pub use waves::{
+    FarRow, FieldMap, MapQuantity, WaveCurrents, WaveRow, write_currents_vtu, write_far_csv,
+    write_polar_plot, write_receivers_csv, write_receivers_npz,
+};

@@ -11,6 +11,7 @@ mod solve;
 mod solvers;
 mod spectrum;
 mod viewfactors;
+mod waves;
 
 use crate::args::Command;
 use crate::failure::{Ending, Failure};
@@ -18,6 +19,7 @@ use crate::failure::{Ending, Failure};
 pub(crate) use compare::CompareArgs;
 pub(crate) use spectrum::SpectrumArgs;
 pub(crate) use viewfactors::ViewFactorsArgs;
+pub(crate) use waves::{EXAMPLES as WAVES_EXAMPLES, WavesArgs};
 
 /// Carries out what was asked for.
 pub(crate) fn execute(command: &Command) -> Result<Ending, Failure> {
@@ -28,6 +30,7 @@ pub(crate) fn execute(command: &Command) -> Result<Ending, Failure> {
         Command::Compare(args) => compare::compare(args),
         Command::Spectrum(args) => spectrum::spectrum(args),
         Command::ViewFactors(args) => viewfactors::view_factors(args),
+        Command::Waves(args) => waves::waves(args),
         Command::Info(args) => info::info(args),
         Command::Schema => schema::schema(),
         Command::Completions(args) => completions::completions(args),

@@ -3,9 +3,9 @@
 /// Pixels of a glyph's pixel.
 const SCALE: usize = 2;
 /// Width of a character with the gap behind it, pixels.
-pub(super) const ADVANCE: usize = 4 * SCALE;
+pub(crate) const ADVANCE: usize = 4 * SCALE;
 /// Height of a character, pixels.
-pub(super) const HEIGHT: usize = 5 * SCALE;
+pub(crate) const HEIGHT: usize = 5 * SCALE;
 
 /// Rows from the top, the left pixel in the highest of three bits. What has no glyph is blank.
 fn glyph(c: char) -> [u8; 5] {
@@ -27,7 +27,7 @@ fn glyph(c: char) -> [u8; 5] {
 }
 
 /// The pixels of a text, relative to its upper left corner.
-pub(super) fn pixels(text: &str) -> impl Iterator<Item = (usize, usize)> + '_ {
+pub(crate) fn pixels(text: &str) -> impl Iterator<Item = (usize, usize)> + '_ {
     let lit = |c: char, x: usize, y: usize| glyph(c)[y / SCALE] >> (2 - x / SCALE) & 1 == 1;
     text.chars().enumerate().flat_map(move |(k, c)| {
         let cells = (0..HEIGHT).flat_map(|y| (0..3 * SCALE).map(move |x| (x, y)));

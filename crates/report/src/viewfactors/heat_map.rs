@@ -110,7 +110,7 @@ impl Scale {
 }
 
 /// Colour of a place from 0 to 1.
-fn blend(place: f64) -> [u8; 3] {
+pub(crate) fn blend(place: f64) -> [u8; 3] {
     let at = place.clamp(0.0, 1.0) * (COLOURS.len() - 1) as f64;
     let below = (at as usize).min(COLOURS.len() - 2);
     let (share, from, to) = (at - below as f64, COLOURS[below], COLOURS[below + 1]);

@@ -5,8 +5,8 @@
 mod csv;
 mod error;
 mod files;
-mod glyphs;
-mod heat_map;
+pub(crate) mod glyphs;
+pub(crate) mod heat_map;
 mod histogram;
 mod matrix;
 mod npy;

@@ -1,0 +1,87 @@
+//! Estimates of the error of the scattered E at the receivers, relative in the L² norm over the points of each.
+//!
+//! | estimate | from |
+//! |---|---|
+//! | mesh | Richardson: a third of the difference to edges twice as long, for the second order of the rules |
+//! | form | half the difference between the currents 2 n × H and 2 n × E, which a true conductor does not tell apart |
+//!
+//! What is left of the bounces is the residual of the solver, in the run record too.
+
+use std::collections::BTreeMap;
+
+use fredholm_report::WaveRow;
+use fredholm_waves::Shadow;
+use fredholm_waves::material::Material;
+use serde_json::{Value, json};
+
+use super::Model;
+
+/// One error.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Estimated {
+    pub(crate) receiver: usize,
+    pub(crate) frequency: f64,
+    pub(crate) relative: f64,
+}
+
+impl Estimated {
+    pub(super) fn record(&self, model: &Model) -> Value {
+        let name = model.receivers.get(self.receiver).map(|receiver| &receiver.name);
+        json!({ "receiver": name, "frequency_hz": self.frequency, "relative": self.relative })
+    }
+}
+
+/// Whether the magnetic form is a second opinion: not on itself, nor on what it does not know.
+pub(super) fn has_magnetic_form(model: &Model) -> bool {
+    let conductors = model.bands.iter().flat_map(|band| &band.materials).all(|m| *m == Material::Conductor);
+    conductors && matches!(model.shadow, Shadow::Geometric | Shadow::Radiated)
+}
+
+/// A third of the difference.
+pub(super) fn mesh(fine: &[WaveRow], coarse: &[WaveRow]) -> Vec<Estimated> {
+    differences(fine, coarse, 1.0 / 3.0)
+}
+
+/// Half the difference.
+pub(super) fn form(electric: &[WaveRow], magnetic: &[WaveRow]) -> Vec<Estimated> {
+    differences(electric, magnetic, 0.5)
+}
+
+fn differences(rows: &[WaveRow], others: &[WaveRow], factor: f64) -> Vec<Estimated> {
+    // Positive frequencies are in the order of their bits.
+    let mut sums: BTreeMap<(u64, usize), [f64; 2]> = BTreeMap::new();
+    for (row, other) in rows.iter().zip(others) {
+        let sum = sums.entry((row.frequency.to_bits(), row.receiver)).or_default();
+        for (a, b) in row.scattered[..6].iter().zip(&other.scattered) {
+            sum[0] += (a - b) * (a - b);
+            sum[1] += a * a;
+        }
+    }
+    let estimated = |((bits, receiver), [gap, size]): ((u64, usize), [f64; 2])| Estimated {
+        receiver,
+        frequency: f64::from_bits(bits),
+        relative: if size > 0.0 { factor * (gap / size).sqrt() } else { 0.0 },
+    };
+    sums.into_iter().map(estimated).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(receiver: usize, ez: f64) -> WaveRow {
+        let mut scattered = [0.0; 12];
+        scattered[4] = ez;
+        WaveRow { receiver, index: 0, position: [0.0; 3], frequency: 1e9, incident: [9.0; 12], scattered }
+    }
+
+    #[test]
+    fn errors_are_those_of_each_receiver() {
+        let fine = [row(0, 3.0), row(0, 4.0), row(1, 2.0)];
+        let coarse = [row(0, 3.0), row(0, 4.0 + 1.5), row(1, 2.0)];
+        let found = mesh(&fine, &coarse);
+        assert_eq!(found.len(), 2);
+        assert!((found[0].relative - 0.1).abs() < 1e-15 && found[1].relative.abs() < 1e-300);
+        assert!((form(&fine, &coarse)[0].relative - 0.15).abs() < 1e-15);
+    }
+}

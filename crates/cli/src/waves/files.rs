@@ -1,0 +1,130 @@
+//! The files of a result folder. `run.json` is written last: where it stands, the folder is complete.
+
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use fredholm_report::{
+    FieldMap, MapQuantity, ReportError, Timing, WaveRow, write_atomically, write_currents_vtu, write_far_csv,
+    write_polar_plot, write_receivers_csv, write_receivers_npz,
+};
+
+use super::receivers::{Layout, Places, Receiver};
+use super::{Model, Outcome};
+
+const COMPONENTS: [&str; 6] = ["ex", "ey", "ez", "hx", "hy", "hz"];
+const LAST: &str = "run.json";
+
+/// Writes all files.
+pub(crate) fn write(
+    folder: &Path,
+    model: &Model,
+    outcome: &Outcome,
+    timings: &[Timing],
+) -> Result<(), ReportError> {
+    prepare(folder)?;
+    let names: Vec<String> = model.receivers.iter().map(|receiver| receiver.name.clone()).collect();
+    let put = |name: &str, fill: &dyn Fn(&mut dyn io::Write) -> io::Result<()>| {
+        write_atomically(&folder.join(name), fill)
+    };
+    put("receivers.csv", &|out| write_receivers_csv(&names, &outcome.near, out))?;
+    put("receivers.npz", &|out| write_receivers_npz(&outcome.near, out))?;
+    if !outcome.far.is_empty() {
+        put("far.csv", &|out| write_far_csv(&names, &outcome.far, out))?;
+    }
+    put("currents.vtu", &|out| write_currents_vtu(&model.geometry.mesh, &outcome.currents, out))?;
+    for (index, receiver) in model.receivers.iter().enumerate() {
+        pictures(folder, model, outcome, (index, receiver))?;
+    }
+    let record = outcome.record(model, timings);
+    put(LAST, &|out| serde_json::to_writer_pretty(out, &record).map_err(io::Error::other))
+}
+
+fn prepare(folder: &Path) -> Result<(), ReportError> {
+    let failed = |source| ReportError::Write { path: folder.to_owned(), source };
+    fs::create_dir_all(folder).map_err(failed)?;
+    match fs::remove_file(folder.join(LAST)) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(failed(error)),
+        _ => Ok(()),
+    }
+}
+
+/// The plots and maps of one receiver.
+fn pictures(
+    folder: &Path,
+    model: &Model,
+    outcome: &Outcome,
+    (index, receiver): (usize, &Receiver),
+) -> Result<(), ReportError> {
+    for band in &model.bands {
+        let frequency = band.wave.frequency();
+        let stem = if model.bands.len() > 1 {
+            format!("{}_{}MHz", receiver.name, frequency / 1e6)
+        } else {
+            receiver.name.clone()
+        };
+        let here = |row: &&WaveRow| row.receiver == index && row.frequency.total_cmp(&frequency).is_eq();
+        let rows: Vec<&WaveRow> = outcome.near.iter().filter(here).collect();
+        match &receiver.places {
+            Places::Near { layout: Layout::Circle(degrees), .. } => polar(folder, &stem, degrees, &rows)?,
+            Places::Near { layout: Layout::Grid(columns), .. } => maps(folder, &stem, *columns, &rows)?,
+            Places::Near { layout: Layout::Points, .. } => {}
+            Places::Far(angles) => far(folder, &stem, outcome, (index, frequency, angles.len()))?,
+        }
+    }
+    Ok(())
+}
+
+/// |E| of the scattered and the total field over the angle, dB above 1 V/m.
+fn polar(folder: &Path, stem: &str, degrees: &[f64], rows: &[&WaveRow]) -> Result<(), ReportError> {
+    let line = |name: &str, of: &dyn Fn(&WaveRow) -> [f64; 12]| {
+        let level = |row: &&WaveRow| 10.0 * of(row)[..6].iter().map(|x| x * x).sum::<f64>().log10();
+        (name.to_owned(), degrees.iter().copied().zip(rows.iter().map(level)).collect())
+    };
+    let lines = [line("scattered", &|row| row.scattered), line("total", &WaveRow::total)];
+    let title = format!("{stem}: |E|");
+    write_atomically(&folder.join(format!("{stem}.svg")), |out| {
+        write_polar_plot(&title, "dB(V/m)", &lines, out)
+    })
+}
+
+/// The strongest component of E, total field: magnitude, phase and real part.
+fn maps(folder: &Path, stem: &str, columns: usize, rows: &[&WaveRow]) -> Result<(), ReportError> {
+    let totals: Vec<[f64; 12]> = rows.iter().map(|row| row.total()).collect();
+    let power = |c: usize| totals.iter().map(|t| t[2 * c].powi(2) + t[2 * c + 1].powi(2)).sum::<f64>();
+    let strongest = (0..3).max_by(|&a, &b| power(a).total_cmp(&power(b))).unwrap_or(0);
+    let values: Vec<[f64; 2]> = totals.iter().map(|t| [t[2 * strongest], t[2 * strongest + 1]]).collect();
+    let map = FieldMap { columns, values: &values };
+    for quantity in MapQuantity::ALL {
+        let name = format!("{stem}_{}_{}.png", COMPONENTS[strongest], quantity.name());
+        write_atomically(&folder.join(name), |out| map.draw(quantity).write_png(out))?;
+    }
+    Ok(())
+}
+
+/// Radar cross-section over the angle that is stepped through, where a plane wave is incident.
+fn far(
+    folder: &Path,
+    stem: &str,
+    outcome: &Outcome,
+    (index, frequency, count): (usize, f64, usize),
+) -> Result<(), ReportError> {
+    let rows = outcome.far.iter().filter(|row| {
+        row.receiver == index && row.frequency.total_cmp(&frequency).is_eq() && row.cross_section.is_some()
+    });
+    let rows: Vec<_> = rows.take(count).collect();
+    let Some(first) = rows.first() else { return Ok(()) };
+    let over_phi = rows.iter().all(|row| row.theta_degrees.total_cmp(&first.theta_degrees).is_eq());
+    let line = |name: &str, part: usize| {
+        let point = |row: &&fredholm_report::FarRow| {
+            let angle = if over_phi { row.phi_degrees } else { row.theta_degrees };
+            (angle, 10.0 * row.cross_section.map_or(0.0, |sections| sections[part]).log10())
+        };
+        (name.to_owned(), rows.iter().map(point).collect())
+    };
+    let lines = [line("θ", 0), line("φ", 1)];
+    let title = format!("{stem}: radar cross-section over {}", if over_phi { "φ" } else { "θ" });
+    write_atomically(&folder.join(format!("{stem}.svg")), |out| {
+        write_polar_plot(&title, "dB(m²)", &lines, out)
+    })
+}

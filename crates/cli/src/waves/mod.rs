@@ -1,0 +1,17 @@
+//! Scenes of waves: their files, what they mean, and what is written.
+
+mod compute;
+mod estimate;
+mod files;
+mod format;
+mod geometry;
+mod located;
+mod model;
+mod receivers;
+mod record;
+mod sources;
+
+pub(crate) use compute::compute;
+pub(crate) use files::write;
+pub(crate) use model::Model;
+pub(crate) use record::Outcome;

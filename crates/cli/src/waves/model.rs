@@ -1,0 +1,206 @@
+//! From a scene file to what is computed.
+
+use std::path::{Path, PathBuf};
+
+use fredholm_linop::Solver;
+use fredholm_waves::material::Material;
+use fredholm_waves::source::PlaneWave;
+use fredholm_waves::{Complex64, Shadow, Source, Wave, WaveError};
+
+use super::format::{SceneEntry, WaveEntry};
+use super::geometry::{Geometry, materials};
+use super::located::SceneText;
+use super::receivers::{Receiver, receivers};
+use super::sources::{Placed, placed};
+use crate::failure::Failure;
+
+/// Residual where the scene does not say.
+const TOLERANCE: f64 = 1e-6;
+/// Iterations where the scene does not say.
+const ITERATIONS: u32 = 500;
+
+/// How many bounces are summed.
+pub(crate) enum Method {
+    /// So many.
+    Bounces(usize),
+    /// All, by a solver.
+    Solver { solver: Box<dyn Solver<Complex64>>, tolerance: f64, max_iterations: usize },
+}
+
+impl Method {
+    /// As it is reported.
+    pub(crate) fn name(&self) -> String {
+        match self {
+            Self::Bounces(1) => "one bounce".to_owned(),
+            Self::Bounces(bounces) => format!("{bounces} bounces"),
+            Self::Solver { solver, .. } => solver.name().to_owned(),
+        }
+    }
+}
+
+/// One frequency.
+pub(crate) struct Band {
+    pub(crate) wave: Wave,
+    pub(crate) materials: Vec<Material>,
+}
+
+/// What a scene file asks for.
+pub(crate) struct Model {
+    pub(crate) text: SceneText,
+    pub(crate) title: Option<String>,
+    pub(crate) bands: Vec<Band>,
+    pub(crate) shadow: Shadow,
+    pub(crate) method: Method,
+    /// Whether edge currents are added.
+    pub(crate) edge_currents: bool,
+    pub(crate) sources: Vec<Box<dyn Source>>,
+    /// The source, where it is a single plane wave.
+    pub(crate) plane_wave: Option<PlaneWave>,
+    pub(crate) geometry: Geometry,
+    /// The same with edges twice as long, where errors are to be estimated.
+    pub(crate) coarse: Option<Geometry>,
+    pub(crate) receivers: Vec<Receiver>,
+    surfaces: Vec<std::ops::Range<usize>>,
+}
+
+impl Model {
+    /// Reads a scene file and cuts its surfaces.
+    pub(crate) fn load(path: &Path) -> Result<Self, Failure> {
+        let text = SceneText::read(path)?;
+        let entry: SceneEntry = text.parse()?;
+        let bands = bands(&text, &entry)?;
+        let shadow = shadow(&text, entry.wave.get_ref())?;
+        let method = method(&text, &entry.wave, shadow)?;
+        let edge_currents = edge_currents(&text, entry.wave.get_ref(), shadow)?;
+        let placed = sources(&text, &entry)?;
+        let plane_wave = if let [only] = placed.as_slice() { only.plane_wave } else { None };
+        let shortest = bands.iter().map(|band| band.wave.wavelength()).fold(f64::INFINITY, f64::min);
+        let cut = |stretch| Geometry::new(&text, &entry.surface, shortest, stretch);
+        let geometry = cut(1.0)?;
+        let coarse = entry.wave.get_ref().estimate_errors.then(|| cut(2.0)).transpose()?;
+        let receivers = receivers(&text, &entry.receiver)?;
+        let surfaces = entry.surface.iter().map(toml::Spanned::span).collect();
+        let sources = placed.into_iter().map(|placed| placed.source).collect();
+        let title = entry.title;
+        Ok(Self {
+            text,
+            title,
+            bands,
+            shadow,
+            method,
+            edge_currents,
+            sources,
+            plane_wave,
+            geometry,
+            coarse,
+            receivers,
+            surfaces,
+        })
+    }
+
+    /// The scene file.
+    pub(crate) fn path(&self) -> &PathBuf {
+        &self.text.path
+    }
+
+    /// What the library says, at the surface or receiver that it is about.
+    pub(crate) fn refused(&self, error: &WaveError, receiver: Option<&Receiver>) -> Failure {
+        let facet = match error {
+            WaveError::Coarse { facet, .. }
+            | WaveError::NotClosed { facet }
+            | WaveError::NotConductor { facet, .. } => Some(*facet),
+            _ => None,
+        };
+        let surface = facet.and_then(|facet| self.surfaces.get(self.geometry.mesh.surface_of(facet)));
+        let span = receiver.map(|receiver| receiver.span.clone()).or_else(|| surface.cloned());
+        self.text.refused(span.unwrap_or(0..0), error)
+    }
+}
+
+/// The sources, at least one.
+fn sources(text: &SceneText, entry: &SceneEntry) -> Result<Vec<Placed>, Failure> {
+    if entry.source.is_empty() {
+        let help = "add a [[source]] such as kind = \"plane-wave\"";
+        return Err(text.fault(text.end(), "the scene has no source", help));
+    }
+    entry.source.iter().map(|source| placed(text, source)).collect()
+}
+
+/// The method, where the treatment of shadows has a use for it.
+fn method(text: &SceneText, entry: &toml::Spanned<WaveEntry>, shadow: Shadow) -> Result<Method, Failure> {
+    let found = asked(text, entry.get_ref())?;
+    if let (Shadow::Exact, Method::Bounces(_)) = (shadow, &found) {
+        let what = "the exact treatment is an equation, whose first bounces mean nothing by themselves";
+        return Err(text.fault(entry.span(), what, "add solver = \"lu\", say"));
+    }
+    Ok(found)
+}
+
+fn bands(text: &SceneText, entry: &SceneEntry) -> Result<Vec<Band>, Failure> {
+    let frequencies = &entry.wave.get_ref().frequencies_hz;
+    if frequencies.get_ref().is_empty() {
+        let help = "write frequencies_hz = [1e9], say";
+        return Err(text.fault(frequencies.span(), "there is no frequency", help));
+    }
+    let band = |frequency: &toml::Spanned<f64>| {
+        let wave = Wave::new(*frequency.get_ref()).map_err(|error| text.refused(frequency.span(), &error))?;
+        Ok(Band { wave, materials: materials(text, entry, &wave)? })
+    };
+    frequencies.get_ref().iter().map(band).collect()
+}
+
+fn shadow(text: &SceneText, entry: &WaveEntry) -> Result<Shadow, Failure> {
+    let Some(name) = &entry.shadow else { return Ok(Shadow::default()) };
+    Shadow::ALL.into_iter().find(|shadow| shadow.name() == name.get_ref()).ok_or_else(|| {
+        let known = Shadow::ALL.map(Shadow::name).join(", ");
+        text.fault(name.span(), format!("unknown shadow `{}`", name.get_ref()), format!("known: {known}"))
+    })
+}
+
+fn edge_currents(text: &SceneText, entry: &WaveEntry, shadow: Shadow) -> Result<bool, Failure> {
+    let Some(wanted) = &entry.edge_currents else { return Ok(false) };
+    if *wanted.get_ref() && matches!(shadow, Shadow::Exact | Shadow::Thesis) {
+        let what = "edge currents complete physical optics, not this treatment of shadows";
+        return Err(text.fault(
+            wanted.span(),
+            what,
+            "take shadow = \"geometric\", or leave edge_currents out",
+        ));
+    }
+    Ok(*wanted.get_ref())
+}
+
+fn asked(text: &SceneText, entry: &WaveEntry) -> Result<Method, Failure> {
+    let Some(name) = &entry.solver else {
+        return match &entry.bounces {
+            Some(bounces) if *bounces.get_ref() == 0 => {
+                Err(text.fault(bounces.span(), "without a bounce nothing is scattered", "write at least 1"))
+            }
+            bounces => Ok(Method::Bounces(bounces.as_ref().map_or(1, |b| *b.get_ref() as usize))),
+        };
+    };
+    if let Some(bounces) = &entry.bounces {
+        let help = "keep one of them";
+        return Err(text.fault(bounces.span(), "bounces and solver are both given", help));
+    }
+    let tolerance = entry.tolerance.as_ref().map_or(TOLERANCE, |t| *t.get_ref());
+    if !(tolerance > 0.0 && tolerance < 1.0) {
+        let span = entry.tolerance.as_ref().map_or(0..0, toml::Spanned::span);
+        return Err(text.fault(span, "the tolerance is no number between 0 and 1", "write 1e-6, say"));
+    }
+    let max_iterations = entry.max_iterations.unwrap_or(ITERATIONS) as usize;
+    let mut known = solvers();
+    let names: Vec<&str> = known.iter().map(|solver| solver.name()).collect();
+    let Some(at) = names.iter().position(|known| known == name.get_ref()) else {
+        let what = format!("unknown solver `{}`", name.get_ref());
+        return Err(text.fault(name.span(), what, format!("known: {}", names.join(", "))));
+    };
+    Ok(Method::Solver { solver: known.swap_remove(at), tolerance, max_iterations })
+}
+
+/// All solvers of complex systems.
+fn solvers() -> Vec<Box<dyn Solver<Complex64>>> {
+    let mut all: Vec<Box<dyn Solver<Complex64>>> = fredholm_iterative::solvers();
+    all.extend(fredholm_direct::solvers());
+    all
+}

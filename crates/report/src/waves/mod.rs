@@ -1,0 +1,59 @@
+//! Complex fields: E (V/m) and H (A/m) as peak phasors with time factor e^{+jωt}, at receivers and on surfaces.
+//!
+//! A phasor vector pair is twelve numbers: ex, ey, ez, hx, hy, hz, each real part first.
+
+mod csv;
+mod map;
+mod npz;
+mod polar;
+mod vtu;
+
+pub use csv::{write_far_csv, write_receivers_csv};
+pub use map::{FieldMap, MapQuantity};
+pub use npz::write_receivers_npz;
+pub use polar::write_polar_plot;
+pub use vtu::{WaveCurrents, write_currents_vtu};
+
+/// The fields at a point of a receiver.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WaveRow {
+    /// Index of the receiver.
+    pub receiver: usize,
+    /// Index of the point in it.
+    pub index: usize,
+    /// Position, m.
+    pub position: [f64; 3],
+    /// Frequency, Hz.
+    pub frequency: f64,
+    /// Incident E and H.
+    pub incident: [f64; 12],
+    /// Scattered E and H.
+    pub scattered: [f64; 12],
+}
+
+impl WaveRow {
+    /// Incident and scattered field together.
+    #[must_use]
+    pub fn total(&self) -> [f64; 12] {
+        std::array::from_fn(|i| self.incident[i] + self.scattered[i])
+    }
+}
+
+/// The far field in a direction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FarRow {
+    /// Index of the receiver.
+    pub receiver: usize,
+    /// Index of the direction in it.
+    pub index: usize,
+    /// Angle from +z, degrees.
+    pub theta_degrees: f64,
+    /// Angle from +x about z, degrees.
+    pub phi_degrees: f64,
+    /// Frequency, Hz.
+    pub frequency: f64,
+    /// F of E → F e^{−jkr}/r along θ̂ and φ̂: real and imaginary part, V.
+    pub amplitude: [f64; 4],
+    /// Radar cross-sections for reception along θ̂ and φ̂, m², where a plane wave is incident.
+    pub cross_section: Option<[f64; 2]>,
+}

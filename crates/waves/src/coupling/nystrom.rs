@@ -1,0 +1,240 @@
+//! Nyström at the centres: K x at the centre of every facet, far sources by their centre alone, near ones integrated
+//! with their current constant.
+//!
+//! A source is near within the reach of one point at the error that its phase causes anyway. The operator stores the
+//! near pairs only; the far ones are evaluated anew by the loop of the radiation integral in every application.
+//!
+//! Neighbours on a smooth surface stay with one point: there the kernel is as smooth as the surface, which flat facets
+//! are not. On a sphere of radius λ with 1,280 facets the midpoint rule has 0.2 % of error, integrated neighbours 2.9 %.
+
+use super::dense::assemble;
+use super::pair::{integral, midpoint};
+use super::sides::sign;
+use super::{Block, Sides, View, block};
+use crate::radiation::{Element, Evaluate, Group, Observers, Run};
+use crate::rule::{phase_error, reach};
+use crate::{ComplexVector, Facet, Field, Scatterer, Shadow, TOLERANCE, Wave, WaveError};
+use fredholm_linop::{Dense, LinearOperator, MultiVector};
+use fredholm_mesh::Vec3;
+use num_complex::Complex64;
+use pulp::Arch;
+use rayon::prelude::*;
+use std::f64::consts::TAU;
+
+/// Cosine between normals above which two facets are of one smooth surface.
+const SMOOTH: f64 = 0.7;
+
+/// Observers that one task takes.
+const CHUNK: usize = 64;
+
+/// The coupling of the currents at the centres of the facets.
+pub struct NystromCoupling<'a> {
+    scatterer: &'a Scatterer,
+    wave: Wave,
+    shadow: Shadow,
+    view: Option<View>,
+    groups: Vec<Group>,
+    runs: Vec<Run>,
+    /// Sources near to each observer, with their blocks.
+    near: Vec<Vec<(u32, Block)>>,
+    centres: Vec<Vec3>,
+    normals: Vec<Vec3>,
+    behind: Vec<f64>,
+    arch: Arch,
+}
+
+impl<'a> NystromCoupling<'a> {
+    /// Finds what sees each other, and integrates the near pairs.
+    ///
+    /// # Errors
+    /// [`WaveError::NotClosed`] where the shadow asks for closed bodies.
+    pub fn new(scatterer: &'a Scatterer, wave: Wave, shadow: Shadow) -> Result<Self, WaveError> {
+        shadow.check(scatterer)?;
+        scatterer.check_conductor("the coupling of currents")?;
+        let facets = scatterer.facets();
+        let groups: Vec<Group> = facets.iter().enumerate().map(|(i, f)| group(i, f, &wave, shadow)).collect();
+        let mut coupling = Self {
+            scatterer,
+            wave,
+            shadow,
+            view: View::new(scatterer, shadow),
+            runs: Run::all(&groups),
+            groups,
+            near: Vec::new(),
+            centres: facets.iter().map(|facet| facet.centre).collect(),
+            normals: facets.iter().map(|facet| facet.normal).collect(),
+            behind: facets.iter().map(|facet| Sides::of(facet, shadow).observer).collect(),
+            arch: Arch::new(),
+        };
+        coupling.near = (0..facets.len()).into_par_iter().map(|p| coupling.near_row(p)).collect();
+        Ok(coupling)
+    }
+
+    /// All blocks stored: [`Dense::bytes`] of twice the number of facets.
+    ///
+    /// # Errors
+    /// [`WaveError::Linop`] where it does not fit in memory.
+    pub fn dense_matrix(&self) -> Result<Dense<Complex64>, WaveError> {
+        let mut dense = assemble(self.centres.len(), |p, q| self.far_block(p, q))?;
+        for (p, near) in self.near.iter().enumerate() {
+            for &(q, block) in near {
+                for (a, entries) in block.iter().enumerate() {
+                    let first = 2 * q as usize;
+                    dense.row_slice_mut(2 * p + a)[first..first + 2].copy_from_slice(entries);
+                }
+            }
+        }
+        Ok(dense)
+    }
+
+    /// Bytes that the view and the near pairs of so many facets take, at most: before anything is computed.
+    #[must_use]
+    pub fn bytes(scatterer: &Scatterer, shadow: Shadow) -> u64 {
+        let facets = scatterer.facets().len();
+        if shadow == Shadow::Geometric { View::bytes(facets) } else { 0 }
+    }
+
+    fn facet(&self, i: usize) -> &Facet {
+        &self.scatterer.facets()[i]
+    }
+
+    /// s(p, q), 0 where blocked.
+    fn sign(&self, p: usize, q: usize) -> f64 {
+        if self.view.as_ref().is_some_and(|view| !view.sees(p, q)) {
+            return 0.0;
+        }
+        sign(self.facet(p), self.facet(q), self.centres[p] - self.centres[q], self.shadow)
+    }
+
+    /// The block of a far pair; 0 for a near one.
+    fn far_block(&self, p: usize, q: usize) -> Block {
+        let sign = self.sign(p, q);
+        if sign == 0.0 || self.groups[q].leaves_out(self.centres[p] - self.centres[q]) {
+            return Block::default();
+        }
+        let g = midpoint(&self.wave, self.centres[p], self.facet(q));
+        block(self.facet(p), self.facet(q), g, sign, self.shadow)
+    }
+
+    fn near_row(&self, p: usize) -> Vec<(u32, Block)> {
+        let x = self.centres[p];
+        let near = Run::near(&self.groups, &self.runs, x).map(|group| group.facet);
+        let block = |q: usize| {
+            let sign = if p == q { 0.0 } else { self.sign(p, q) };
+            let value = || {
+                let smooth = self.normals[p].dot(self.normals[q]) > SMOOTH;
+                let g = if smooth {
+                    midpoint(&self.wave, x, self.facet(q))
+                } else {
+                    integral(&self.wave, x, self.facet(q), TOLERANCE)
+                };
+                (q as u32, block(self.facet(p), self.facet(q), g, sign, self.shadow))
+            };
+            (sign != 0.0).then(value)
+        };
+        near.filter_map(block).collect()
+    }
+
+    /// The elements of lane `l` of the currents `x`.
+    fn elements(&self, x: &MultiVector<Complex64>, l: usize) -> Vec<Element> {
+        let element = |(i, facet): (usize, &Facet)| {
+            let current = tangential(facet, [x.row(2 * i)[l], x.row(2 * i + 1)[l]]);
+            let moment = current * (facet.area / (2.0 * TAU));
+            Element { position: facet.centre.into(), re: moment.re.into(), im: moment.im.into() }
+        };
+        self.scatterer.facets().iter().enumerate().map(element).collect()
+    }
+
+    /// H at the centres from the far sources.
+    fn far_fields(&self, elements: &[Element]) -> Vec<Field> {
+        let mut fields = vec![Field::ZERO; self.centres.len()];
+        fields.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, out)| {
+            let first = chunk * CHUNK;
+            let (wavenumber, groups) = (self.wave.wavenumber(), &self.groups);
+            let observers =
+                Observers { first, normals: &self.normals, behind: &self.behind, view: self.view.as_ref() };
+            let points = &self.centres[first..first + out.len()];
+            self.arch.dispatch(Evaluate {
+                wavenumber,
+                groups,
+                elements,
+                points,
+                observers: Some(observers),
+                out,
+            });
+        });
+        fields
+    }
+
+    /// Row pair p of K x, lane l, from the far field and the near blocks.
+    fn gather(&self, p: usize, far: &Field, x: &MultiVector<Complex64>, l: usize) -> [Complex64; 2] {
+        let facet = self.facet(p);
+        let factor = if self.shadow == Shadow::Thesis { -2.0 } else { 2.0 };
+        let induced = far.h.crossed_by(facet.normal) * factor;
+        let mut sums = facet.tangents.map(|t| induced.dot(t));
+        for (q, block) in &self.near[p] {
+            let source = [0, 1].map(|b| x.row(2 * *q as usize + b)[l]);
+            (0..2).for_each(|a| sums[a] += block[a][0] * source[0] + block[a][1] * source[1]);
+        }
+        sums
+    }
+}
+
+/// x₁ t₁ + x₂ t₂.
+pub(super) fn tangential(facet: &Facet, [a, b]: [Complex64; 2]) -> ComplexVector {
+    ComplexVector::along(facet.tangents[0], a) + ComplexVector::along(facet.tangents[1], b)
+}
+
+fn group(index: usize, facet: &Facet, wave: &Wave, shadow: Shadow) -> Group {
+    let error = phase_error(1, wave.wavenumber() * facet.edge()).clamp(TOLERANCE, 0.1);
+    let near = 0.5 * facet.diameter * reach(1, error);
+    Group {
+        centre: facet.centre.into(),
+        normal: facet.normal.into(),
+        near_squared: near * near,
+        behind: Sides::of(facet, shadow).source,
+        facet: index,
+        first: index,
+        count: 1,
+    }
+}
+
+impl LinearOperator<Complex64> for NystromCoupling<'_> {
+    fn dim(&self) -> usize {
+        2 * self.centres.len()
+    }
+
+    fn apply(&self, x: &MultiVector<Complex64>, y: &mut MultiVector<Complex64>) {
+        for l in 0..x.lanes() {
+            let far = self.far_fields(&self.elements(x, l));
+            let rows: Vec<[Complex64; 2]> =
+                far.par_iter().enumerate().map(|(p, far)| self.gather(p, far, x, l)).collect();
+            for (p, row) in rows.iter().enumerate() {
+                (y.row_mut(2 * p)[l], y.row_mut(2 * p + 1)[l]) = (row[0], row[1]);
+            }
+        }
+    }
+
+    fn row(&self, i: usize, _lane: usize, out: &mut [Complex64]) {
+        let (p, a) = (i / 2, i % 2);
+        for q in 0..self.centres.len() {
+            out[2 * q..2 * q + 2].copy_from_slice(&self.far_block(p, q)[a]);
+        }
+        for (q, block) in &self.near[p] {
+            out[2 * *q as usize..2 * *q as usize + 2].copy_from_slice(&block[a]);
+        }
+    }
+
+    fn column(&self, j: usize, _lane: usize, out: &mut [Complex64]) {
+        let (q, b) = (j / 2, j % 2);
+        for p in 0..self.centres.len() {
+            let near = self.near[p].binary_search_by_key(&(q as u32), |(q, _)| *q);
+            let block = near.map_or_else(|_| self.far_block(p, q), |at| self.near[p][at].1);
+            (out[2 * p], out[2 * p + 1]) = (block[0][b], block[1][b]);
+        }
+    }
+
+    fn diagonal(&self, _lane: usize, out: &mut [Complex64]) {
+        out.fill(Complex64::ZERO);
+    }
+}

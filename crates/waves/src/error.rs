@@ -1,0 +1,109 @@
+//! What can be wrong with a problem of waves, and how to mend it.
+
+use fredholm_linop::LinopError;
+use fredholm_mesh::MeshError;
+use fredholm_visibility::VisibilityError;
+use thiserror::Error;
+
+/// A problem that cannot be set up or computed.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum WaveError {
+    /// The frequency is none.
+    #[error("the frequency is {value} Hz, but must be finite and above 0")]
+    Frequency {
+        /// What was given, Hz.
+        value: f64,
+    },
+    /// A length is none.
+    #[error("{what} is {value} m, but must be finite and above 0")]
+    Length {
+        /// Which length.
+        what: &'static str,
+        /// What was given, m.
+        value: f64,
+    },
+    /// A direction has no length, or is not finite.
+    #[error("{what} must be a finite vector other than 0")]
+    Direction {
+        /// Which direction.
+        what: &'static str,
+    },
+    /// A polarisation points along the direction of travel.
+    #[error("the polarisation is parallel to the direction of travel; give one across it")]
+    Polarisation,
+    /// An amplitude or a coordinate is NaN or infinite.
+    #[error("{what} is not a finite number")]
+    NotFinite {
+        /// What the number is.
+        what: &'static str,
+    },
+    /// There is no facet.
+    #[error("the scatterer has no facets; add a surface")]
+    NoFacets,
+    /// Facets are too large for the wave.
+    #[error(
+        "facet {facet} has edges up to {edge} m, which is more than half the wavelength of {wavelength} m; mesh finer, λ/10 is usual"
+    )]
+    Coarse {
+        /// Index of the facet.
+        facet: usize,
+        /// Its longest edge, m.
+        edge: f64,
+        /// λ, m.
+        wavelength: f64,
+    },
+    /// A receiver lies on a facet, where the field jumps.
+    #[error(
+        "point {receiver} of the receivers lies on facet {facet}, where the field jumps; move it off the surface"
+    )]
+    OnSurface {
+        /// Index of the point.
+        receiver: usize,
+        /// Index of the facet.
+        facet: usize,
+    },
+    /// A receiver lies in a source.
+    #[error(
+        "the field of a source at point {receiver} of the receivers is not finite; move the point out of the source"
+    )]
+    InSource {
+        /// Index of the point.
+        receiver: usize,
+    },
+    /// The treatment of shadows asks for closed bodies.
+    #[error(
+        "the exact equation is made for closed bodies, but facet {facet} belongs to an open sheet; use the geometric or the radiated shadow"
+    )]
+    NotClosed {
+        /// Index of the facet.
+        facet: usize,
+    },
+    /// A model of perfect conductors meets another material.
+    #[error(
+        "{what} knows perfect conductors only, but facet {facet} is of another material; ask for one bounce with geometric shadows"
+    )]
+    NotConductor {
+        /// The model.
+        what: &'static str,
+        /// Index of the facet.
+        facet: usize,
+    },
+    /// A material passes no energy law.
+    #[error("material {what}: {reason}")]
+    Material {
+        /// Its name or number.
+        what: String,
+        /// What is wrong with it.
+        reason: &'static str,
+    },
+    /// The geometry cannot be meshed.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The geometry cannot be searched.
+    #[error(transparent)]
+    Visibility(#[from] VisibilityError),
+    /// A matrix cannot be built.
+    #[error(transparent)]
+    Linop(#[from] LinopError),
+}

@@ -1,0 +1,207 @@
+//! Materials: what a flat surface reflects and lets through.
+//!
+//! With the angle of incidence θ, the reflected and the transmitted wave are r and t times the incident one, apart for
+//! E across the plane of incidence (TE, r⊥ of E) and E in it (TM, r∥ of **H**): a perfect conductor has r⊥ = −1, r∥ = 1.
+//!
+//! | material | reflects | lets through |
+//! |---|---|---|
+//! | perfect conductor | everything | nothing |
+//! | impedance | E_tan = Z_s n × H (M. A. Leontovich) | nothing |
+//! | half-space | Fresnel | what is not reflected, into itself |
+//! | slab | layers by recursion | to the other side |
+
+mod fresnel;
+mod itu;
+mod slab;
+
+pub use fresnel::half_space;
+pub use itu::{ItuMaterial, itu_materials, itu_permittivity};
+pub use slab::{Layer, slab};
+
+use crate::medium::IMPEDANCE;
+use crate::{Wave, WaveError};
+use num_complex::Complex64;
+
+/// What is reflected and let through at one angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coefficients {
+    /// r⊥ (of E) and r∥ (of H).
+    pub reflected: [Complex64; 2],
+    /// t⊥ (of E) and t∥ (of H), behind the surface.
+    pub transmitted: [Complex64; 2],
+}
+
+impl Coefficients {
+    /// Those of a perfect conductor.
+    pub const CONDUCTOR: Self = Self {
+        reflected: [Complex64::new(-1.0, 0.0), Complex64::new(1.0, 0.0)],
+        transmitted: [Complex64::ZERO; 2],
+    };
+}
+
+/// The material of a surface.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Material {
+    /// A perfect conductor.
+    Conductor,
+    /// A surface impedance Z_s, Ω.
+    Impedance(Complex64),
+    /// A relative permittivity ε′ − jε″ behind the surface without end.
+    HalfSpace(Complex64),
+    /// Layers, from the front to the back, in free space. The surface of the mesh is the front.
+    Slab(Vec<Layer>),
+}
+
+impl Material {
+    /// Refuses what would give energy away or has no decaying wave; `what` names it.
+    ///
+    /// # Errors
+    /// [`WaveError::Material`] with the reason.
+    pub fn check(&self, what: &str) -> Result<(), WaveError> {
+        let fail = |reason| Err(WaveError::Material { what: what.to_owned(), reason });
+        match self {
+            Self::Impedance(z) if !z.is_finite() => fail("the surface impedance is not finite"),
+            Self::Impedance(z) if z.re < 0.0 => fail("a surface impedance needs a real part of at least 0"),
+            Self::Conductor | Self::Impedance(_) => Ok(()),
+            Self::HalfSpace(permittivity) => check_permittivity(*permittivity, what),
+            Self::Slab(layers) if layers.is_empty() => fail("a slab needs at least one layer"),
+            Self::Slab(layers) => layers.iter().try_for_each(|layer| {
+                if !(layer.thickness > 0.0 && layer.thickness.is_finite()) {
+                    return fail("the thickness of a layer must be finite and above 0");
+                }
+                check_permittivity(layer.permittivity, what)
+            }),
+        }
+    }
+
+    /// What is reflected and let through at cos θ (0 … 1).
+    #[must_use]
+    pub fn coefficients(&self, wave: &Wave, cos: f64) -> Coefficients {
+        let nothing = [Complex64::ZERO; 2];
+        match self {
+            Self::Conductor => Coefficients::CONDUCTOR,
+            Self::Impedance(z) => Coefficients { reflected: impedance(*z, cos), transmitted: nothing },
+            Self::HalfSpace(permittivity) => {
+                Coefficients { reflected: half_space(*permittivity, cos).reflected, transmitted: nothing }
+            }
+            Self::Slab(layers) => slab(layers, wave, cos),
+        }
+    }
+
+    /// Thickness behind the surface of the mesh, m.
+    #[must_use]
+    pub fn thickness(&self) -> f64 {
+        if let Self::Slab(layers) = self { layers.iter().map(|layer| layer.thickness).sum() } else { 0.0 }
+    }
+}
+
+/// Leontovich's condition: r⊥ = (Z cos θ − η)/(Z cos θ + η), r∥ = (η cos θ − Z)/(η cos θ + Z).
+///
+/// M. A. Leontovich, Investigations on Radiowave Propagation II, Academy of Sciences, Moscow 1948; T. B. A. Senior, J. L.
+/// Volakis, Approximate Boundary Conditions in Electromagnetics, IEE 1995, § 2.2.
+fn impedance(z: Complex64, cos: f64) -> [Complex64; 2] {
+    let grazing = z * cos;
+    let eta = IMPEDANCE * cos;
+    // At grazing both numerators and denominators stay apart from 0 unless Z = 0, the conductor.
+    let te =
+        if z == Complex64::ZERO { -Complex64::ONE } else { (grazing - IMPEDANCE) / (grazing + IMPEDANCE) };
+    let tm = if z == Complex64::ZERO { Complex64::ONE } else { (eta - z) / (eta + z) };
+    [te, tm]
+}
+
+/// The surface impedance η₀/√ε of a good conductor or dense dielectric, Ω.
+#[must_use]
+pub fn surface_impedance(permittivity: Complex64) -> Complex64 {
+    IMPEDANCE / permittivity.sqrt()
+}
+
+fn check_permittivity(permittivity: Complex64, what: &str) -> Result<(), WaveError> {
+    let fail = |reason| Err(WaveError::Material { what: what.to_owned(), reason });
+    if !permittivity.is_finite() || permittivity == Complex64::ZERO {
+        return fail("the permittivity must be finite and other than 0");
+    }
+    if permittivity.im > 0.0 {
+        return fail(
+            "the permittivity must not have a positive imaginary part, which is gain (e^{+jωt}: ε′ − jε″)",
+        );
+    }
+    if permittivity.re < 0.0 && permittivity.im == 0.0 {
+        return fail("a negative permittivity needs loss (a negative imaginary part)");
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn complex(re: f64, im: f64) -> Complex64 {
+        Complex64::new(re, im)
+    }
+
+    fn all() -> Vec<Material> {
+        let layer = |re, im, thickness| Layer { permittivity: complex(re, im), thickness };
+        vec![
+            Material::Conductor,
+            Material::Impedance(complex(20.0, 35.0)),
+            Material::Impedance(complex(0.0, -80.0)),
+            Material::HalfSpace(complex(5.24, -0.687)),
+            Material::HalfSpace(complex(2.0, 0.0)),
+            Material::HalfSpace(complex(-3.0, -0.1)),
+            Material::Slab(vec![layer(6.3, -0.2, 0.006)]),
+            Material::Slab(vec![layer(4.0, 0.0, 0.02)]),
+            Material::Slab(vec![layer(2.73, -0.1, 0.0125), layer(1.0, 0.0, 0.05), layer(2.73, -0.1, 0.0125)]),
+        ]
+    }
+
+    /// No material gives more than it gets, and one without loss gives it all back.
+    #[test]
+    fn power_is_balanced_at_every_angle() {
+        let wave = Wave::new(2.4e9).unwrap();
+        for material in all() {
+            material.check("test").unwrap();
+            for cos in [1.0, 0.9, 0.5, 0.1, 1e-3] {
+                let Coefficients { reflected, transmitted } = material.coefficients(&wave, cos);
+                for (r, t) in reflected.iter().zip(&transmitted) {
+                    let power = r.norm_sqr() + t.norm_sqr();
+                    assert!(power <= 1.0 + 1e-12, "{material:?} {cos}: {power}");
+                    let lossless = match &material {
+                        Material::Conductor => true,
+                        Material::Impedance(z) => z.re == 0.0,
+                        Material::HalfSpace(_) => false,
+                        Material::Slab(layers) => layers.iter().all(|layer| layer.permittivity.im == 0.0),
+                    };
+                    assert!(!lossless || (power - 1.0).abs() < 1e-12, "{material:?} {cos}: {power}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_dense_half_space_is_its_surface_impedance() {
+        let dense = complex(1.0, -1e6);
+        let wave = Wave::new(1e9).unwrap();
+        for cos in [1.0, 0.5] {
+            let exact = Material::HalfSpace(dense).coefficients(&wave, cos).reflected;
+            let leontovich = Material::Impedance(surface_impedance(dense)).coefficients(&wave, cos).reflected;
+            assert!(exact.iter().zip(&leontovich).all(|(a, b)| (a - b).norm() < 1e-8));
+        }
+    }
+
+    #[test]
+    fn what_gives_energy_away_is_refused() {
+        let layer = Layer { permittivity: complex(2.0, 0.0), thickness: 0.0 };
+        let bad = [
+            Material::Impedance(complex(-1.0, 0.0)),
+            Material::Impedance(complex(f64::NAN, 0.0)),
+            Material::HalfSpace(complex(2.0, 0.1)),
+            Material::HalfSpace(complex(-2.0, 0.0)),
+            Material::HalfSpace(Complex64::ZERO),
+            Material::Slab(vec![]),
+            Material::Slab(vec![layer]),
+        ];
+        for material in bad {
+            assert!(matches!(material.check("bad"), Err(WaveError::Material { .. })), "{material:?}");
+        }
+    }
+}

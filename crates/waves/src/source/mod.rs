@@ -1,0 +1,66 @@
+//! Sources of the incident field. Each is a solution of Maxwell's equations away from itself, save the
+//! [`Omnidirectional`] one, of which that holds far away only.
+//!
+//! Amplitudes are peak values; E in V/m, H in A/m, lengths in metres, time factor e^{+jωt}.
+
+mod half_wave;
+mod hertzian;
+mod omnidirectional;
+mod plane_wave;
+
+pub use half_wave::HalfWaveDipole;
+pub use hertzian::HertzianDipole;
+pub use omnidirectional::Omnidirectional;
+pub use plane_wave::PlaneWave;
+
+use crate::{Field, Wave, WaveError};
+use fredholm_mesh::Vec3;
+
+/// Where a wave comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Origin {
+    /// From infinity, travelling this way (unit vector).
+    Direction(Vec3),
+    /// From this point, m.
+    Point(Vec3),
+}
+
+impl Origin {
+    /// From `p` towards the source (unit vector, or 0 at the source itself).
+    #[must_use]
+    pub fn seen_from(&self, p: Vec3) -> Vec3 {
+        match *self {
+            Self::Direction(travel) => -travel,
+            Self::Point(origin) => (origin - p).normalize_or_zero(),
+        }
+    }
+}
+
+/// A source of an incident field.
+pub trait Source: Sync {
+    /// The field at `p` (m) as if the scatterer were not there. At the source itself it is not finite.
+    fn field(&self, wave: &Wave, p: Vec3) -> Field;
+
+    /// Where it comes from: decides what is lit.
+    fn origin(&self) -> Origin;
+}
+
+/// The field of all sources together at `p`.
+#[must_use]
+pub fn incident(sources: &[&dyn Source], wave: &Wave, p: Vec3) -> Field {
+    sources.iter().map(|source| source.field(wave, p)).sum()
+}
+
+/// A unit vector along `direction`.
+pub(crate) fn unit(direction: Vec3, what: &'static str) -> Result<Vec3, WaveError> {
+    let scaled = direction / direction.abs().max_element();
+    if scaled.is_finite() { Ok(scaled.normalize()) } else { Err(WaveError::Direction { what }) }
+}
+
+fn finite(value: f64, what: &'static str) -> Result<f64, WaveError> {
+    if value.is_finite() { Ok(value) } else { Err(WaveError::NotFinite { what }) }
+}
+
+fn finite_point(p: Vec3, what: &'static str) -> Result<Vec3, WaveError> {
+    if p.is_finite() { Ok(p) } else { Err(WaveError::NotFinite { what }) }
+}
