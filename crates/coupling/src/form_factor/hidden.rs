@@ -35,12 +35,13 @@ pub(crate) struct HiddenWork {
     hiding: Hiding,
     planes: Vec<Plane>,
     pieces: Vec<Piece>,
+    edges: Vec<[Vec3; 2]>,
 }
 
 /// The hidden part of the exchange (m²), to an absolute `goal` (m²).
 pub(crate) fn hidden_exchange(scene: &Occluded, goal: f64, work: &mut HiddenWork) -> Estimate {
-    let HiddenWork { hiding, planes, pieces } = work;
-    let steep = Steep::of(scene);
+    let HiddenWork { hiding, planes, pieces, edges } = work;
+    let steep = Steep::of(scene, edges);
     critical_planes(scene.source, scene.target, scene.screens, scene.tolerance, planes);
     let most = |x: Vec3| point_to_polygon(scene.normal, scene.target.iter().map(|&y| y - x));
     let breaks = Breaks { planes, flat: scene.tolerance, distance: |x| steep.distance(x), most };
@@ -48,19 +49,24 @@ pub(crate) fn hidden_exchange(scene: &Occluded, goal: f64, work: &mut HiddenWork
 }
 
 /// What makes the hidden part steep where it is close: corners of bodies, and edges that do not lie on the source.
-struct Steep {
-    edges: Vec<[Vec3; 2]>,
+struct Steep<'a> {
+    edges: &'a [[Vec3; 2]],
 }
 
-impl Steep {
-    fn of(scene: &Occluded) -> Self {
-        let height = |x: Vec3| (x - scene.source[0]).dot(scene.normal);
-        let lies = |x: Vec3| height(x).abs() <= scene.tolerance;
-        let on_source =
-            |[a, b]: [Vec3; 2]| if lies(a) && lies(b) { vec![[a, a], [b, b]] } else { vec![[a, b]] };
-        let bodies = scene.screens.iter().map(Screen::body);
-        let edges = bodies.flat_map(|body| body.edges().iter().map(|edge| body.ends(edge)));
-        Self { edges: edges.flat_map(on_source).collect() }
+impl<'a> Steep<'a> {
+    fn of(scene: &Occluded, edges: &'a mut Vec<[Vec3; 2]>) -> Self {
+        let lies = |x: Vec3| (x - scene.source[0]).dot(scene.normal).abs() <= scene.tolerance;
+        edges.clear();
+        for body in scene.screens.iter().map(Screen::body) {
+            for [a, b] in body.edges().iter().map(|edge| body.ends(edge)) {
+                if lies(a) && lies(b) {
+                    edges.extend([[a, a], [b, b]]);
+                } else {
+                    edges.push([a, b]);
+                }
+            }
+        }
+        Self { edges }
     }
 
     /// Distance of a point from the nearest of them, m.
@@ -68,8 +74,8 @@ impl Steep {
         let to = |&[a, b]: &[Vec3; 2]| {
             let along = b - a;
             let t = ((x - a).dot(along) / along.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-            x.distance(a + along * t)
+            x.distance_squared(a + along * t)
         };
-        self.edges.iter().map(to).fold(f64::INFINITY, f64::min)
+        self.edges.iter().map(to).fold(f64::INFINITY, f64::min).sqrt()
     }
 }
