@@ -6,7 +6,9 @@ mod common;
 
 use common::{WAVELENGTH, circle, reference, relative_error, source, wave};
 use fredholm_iterative::Neumann;
-use fredholm_linop::{LinearOperator, MultiVector, Quiet, Report, SecondKind, Solver, Stop, StopReason};
+use fredholm_linop::{
+    LinearOperator, MultiVector, Quiet, Report, SecondKind, SolveError, Solver, Stop, StopReason,
+};
 use fredholm_mesh::Vec3;
 use fredholm_waves::source::PlaneWave;
 use fredholm_waves::surface::{cube, dihedral, facing_plates, parallel_plates, sphere, trihedral};
@@ -24,12 +26,21 @@ fn solve(
     b: &Vectors,
     tolerance: f64,
 ) -> (Vectors, Report) {
+    attempt(solver, system, b, tolerance).unwrap()
+}
+
+fn attempt(
+    solver: &dyn Solver<Complex64>,
+    system: &System<'_>,
+    b: &Vectors,
+    tolerance: f64,
+) -> Result<(Vectors, Report), SolveError> {
     let one = MultiVector::from_fn(b.dim(), b.lanes(), |_, _| Complex64::ONE);
     let a = SecondKind::new(system.coupling(), one).unwrap();
     let mut x = MultiVector::zeros(b.dim(), b.lanes());
     let stop = Stop { tolerance, max_iterations: 400 };
-    let report = solver.solve(&a, b, &mut x, &stop, &mut Quiet).unwrap();
-    (x, report)
+    let report = solver.solve(&a, b, &mut x, &stop, &mut Quiet)?;
+    Ok((x, report))
 }
 
 fn direct() -> Box<dyn Solver<Complex64>> {
@@ -139,7 +150,7 @@ fn two_plates_converge_to_less_than_half_the_error_of_one_bounce() {
     }
 }
 
-/// Every registered solver that converges finds the same currents of a dihedral.
+/// Every registered solver that suits a coupling without symmetry and converges finds the same currents of a dihedral.
 #[test]
 fn all_solvers_agree() {
     let pair = dihedral(1.5 * WAVELENGTH, 1.5 * WAVELENGTH, FRAC_PI_2, WAVELENGTH / 6.0).unwrap();
@@ -153,14 +164,17 @@ fn all_solvers_agree() {
     let solvers: Vec<Box<dyn Solver<Complex64>>> = fredholm_iterative::solvers();
     let mut converged = 0;
     for solver in &solvers {
-        let (x, report) = solve(&**solver, &system, &b, 1e-10);
+        let (x, report) = match attempt(&**solver, &system, &b, 1e-10) {
+            Err(SolveError::Unsuitable { .. }) => continue,
+            solved => solved.unwrap(),
+        };
         if report.reason == StopReason::Converged {
             let error = Vectors::from_fn(x.dim(), 1, |i, _| x.row(i)[0] - expected.row(i)[0]).norms()[0];
             assert!(error < 1e-8 * scale, "{}: {error}", solver.name());
             converged += 1;
         }
     }
-    assert!(converged >= 2, "{converged}");
+    assert!(converged >= 10, "{converged}");
 }
 
 /// ϱ(K) as the mean growth over the later half of 120 applications.
