@@ -45,7 +45,7 @@ pub(crate) fn hidden_exchange(scene: &Occluded, goal: f64, work: &mut HiddenWork
     critical_planes(scene.source, scene.target, scene.screens, scene.tolerance, planes);
     let most = |x: Vec3| point_to_polygon(scene.normal, scene.target.iter().map(|&y| y - x));
     let breaks = Breaks { planes, flat: scene.tolerance, distance: |x| steep.distance(x), most };
-    Pieces::new(|x| scene.hidden(x, hiding), breaks, pieces).integrate(scene.source, goal)
+    Pieces::new(|x| scene.hidden(x, hiding), breaks, pieces, goal).integrate(scene.source)
 }
 
 /// What makes the hidden part steep where it is close: corners of bodies, and edges that do not lie on the source.

@@ -138,14 +138,19 @@ impl Piece {
         let step = (value - self.value).abs();
         let next = Self { degree: self.degree + 1, value, step, kind: self.kind.and(kind), ..self };
         let r = self.reach;
-        let [share, least] = if next.smooth() {
-            [(SMOOTH[0] + SMOOTH[1] * r) * r, SMOOTH[2] * r * r]
-        } else {
-            [BROKEN[0] + BROKEN[1] * r * r, BROKEN[2] + BROKEN[3] * r * r]
-        };
+        let [share, least] = shares(next.smooth(), r);
         let error = (share * share * step + least * least * self.step).sqrt() * self.step.sqrt();
         let pays = next.smooth() && r <= NEAR && step < PAYS * self.step && next.degree + 1 < DEGREES.len();
         Self { error, pays, ..next }
+    }
+}
+
+/// Error over √(difference × difference before), and over the difference before, on a part of reach `r`.
+fn shares(smooth: bool, r: f64) -> [f64; 2] {
+    if smooth {
+        [(SMOOTH[0] + SMOOTH[1] * r) * r, SMOOTH[2] * r * r]
+    } else {
+        [BROKEN[0] + BROKEN[1] * r * r, BROKEN[2] + BROKEN[3] * r * r]
     }
 }
 
@@ -168,21 +173,22 @@ pub(crate) struct Pieces<'a, H, D, M> {
     breaks: Breaks<'a, D, M>,
     parts: &'a mut Vec<Piece>,
     points: usize,
+    goal: f64,
 }
 
 impl<'a, H: FnMut(Vec3) -> (f64, Kind), D: Fn(Vec3) -> f64, M: Fn(Vec3) -> f64> Pieces<'a, H, D, M> {
-    /// Prepares the integral of `h`; `parts` is a buffer.
-    pub(crate) fn new(h: H, breaks: Breaks<'a, D, M>, parts: &'a mut Vec<Piece>) -> Self {
+    /// Prepares the integral of `h` to an absolute `goal`; `parts` is a buffer.
+    pub(crate) fn new(h: H, breaks: Breaks<'a, D, M>, parts: &'a mut Vec<Piece>, goal: f64) -> Self {
         parts.clear();
-        Self { h, breaks, parts, points: 0 }
+        Self { h, breaks, parts, points: 0, goal }
     }
 
-    /// The integral over a convex polygon to an absolute `goal`.
-    pub(crate) fn integrate(mut self, corners: &[Vec3], goal: f64) -> Estimate {
+    /// The integral over a convex polygon.
+    pub(crate) fn integrate(mut self, corners: &[Vec3]) -> Estimate {
         self.add(corners);
         loop {
             let stated = self.stated();
-            if stated <= goal || self.points >= POINTS {
+            if stated <= self.goal || self.points >= POINTS {
                 return Estimate { value: self.parts.iter().map(|p| p.value).sum(), error: stated };
             }
             self.improve_worst();
@@ -211,17 +217,30 @@ impl<'a, H: FnMut(Vec3) -> (f64, Kind), D: Fn(Vec3) -> f64, M: Fn(Vec3) -> f64> 
     }
 
     fn start(&mut self, shape: Shape) {
-        let (first, kind, range) = self.rule(&shape, 0, None);
         let reach = shape.reach(&self.breaks.distance);
         let cut = self.breaks.planes.iter().any(|plane| self.halves(&shape, *plane).is_some());
-        let piece =
-            Piece { shape, reach, cut, degree: 0, value: first, step: 0.0, error: 0.0, kind, pays: true };
-        let (second, kind, wider) = self.rule(&shape, 1, kind);
-        let mut range = range[1].max(wider[1]) - range[0].min(wider[0]);
-        if cut || reach > NEAR {
-            range = range.max(UNSEEN * (self.breaks.most)(shape.centre()));
+        let unseen = if cut || reach > NEAR {
+            UNSEEN * (self.breaks.most)(shape.centre()) * shape.area()
+        } else {
+            0.0
+        };
+        // What certainly does not suffice needs no points.
+        if cut && shares(false, reach)[1] * unseen > self.goal {
+            return self.divide(&shape, cut);
         }
-        self.parts.push(Piece { step: range * shape.area(), ..piece }.raised(second, kind));
+        let (value, kind, [low, high]) = self.rule(&shape, 0, None);
+        let piece = Piece { shape, reach, cut, degree: 0, value, step: 0.0, error: 0.0, kind, pays: true };
+        let (second, kind, [least, most]) = self.rule(&shape, 1, kind);
+        let range = (high.max(most) - low.min(least)) * shape.area();
+        self.parts.push(Piece { step: range.max(unseen), ..piece }.raised(second, kind));
+    }
+
+    /// Cuts a shape along a line, or halves its sides.
+    fn divide(&mut self, shape: &Shape, cut: bool) {
+        match self.line_through(shape).filter(|_| cut) {
+            Some(plane) => self.cut(shape, plane),
+            None => shape.quarters().into_iter().for_each(|part| self.start(part)),
+        }
     }
 
     /// The integral by a rule, the kind of its points as far as they are all of one, and the least and the largest value.
@@ -265,16 +284,13 @@ impl<'a, H: FnMut(Vec3) -> (f64, Kind), D: Fn(Vec3) -> f64, M: Fn(Vec3) -> f64> 
             return;
         }
         self.parts.swap_remove(k);
-        match self.line_through(&piece) {
-            Some(plane) => self.cut(&piece.shape, plane),
-            None => piece.shape.quarters().into_iter().for_each(|part| self.start(part)),
-        }
+        self.divide(&piece.shape, piece.cut);
     }
 
     /// The critical line that halves a part best; of equals, the place decides.
-    fn line_through(&self, piece: &Piece) -> Option<Plane> {
-        let planes = self.breaks.planes.iter().filter(|_| piece.cut);
-        let cutting = planes.filter_map(|&plane| Some((plane, self.halves(&piece.shape, plane)?)));
+    fn line_through(&self, shape: &Shape) -> Option<Plane> {
+        let planes = self.breaks.planes.iter();
+        let cutting = planes.filter_map(|&plane| Some((plane, self.halves(shape, plane)?)));
         let key = |((n, _), share): &(Plane, f64)| share + 1e-3 * n.dot(ODD).abs();
         cutting.max_by(|a, b| key(a).total_cmp(&key(b))).map(|(plane, _)| plane)
     }
