@@ -14,13 +14,19 @@ const SLIM: f64 = 1e-24;
 
 /// Part of an edge by which a point must be inside its ends to meet it: in scenes with right angles lines often go exactly through corners.
 const MARGIN: f64 = 1e-7;
+/// Lines that are listed at most: among many, most do not show, and a part that any of them cuts counts as not smooth.
+const LINES: usize = 40;
+
+/// A unit vector along which corners of a scene have different places, whatever its design.
+pub(super) const ODD: Vec3 = Vec3::new(0.573_1, 0.319_7, 0.754_5);
+
 /// Part of a chord that is left out at its ends, where lines of sight are often exactly parallel to the edge.
 const INSIDE: f64 = 1e-6;
 
 /// A plane n·x = c with a unit normal.
 pub(crate) type Plane = (Vec3, f64);
 
-/// Lists the planes of the events of `screens` before `target` that cut the `source` polygon. Lengths below `flat` (m) count as 0.
+/// Lists the planes of the events of `screens` before `target` that cut the `source` polygon. Those of single bodies come first, long ones before short ones, and at most [`LINES`] are kept. Lengths below `flat` (m) count as 0.
 pub(crate) fn critical_planes(
     source: &[Vec3],
     target: &[Vec3],
@@ -35,11 +41,18 @@ pub(crate) fn critical_planes(
     for outline in &outlines {
         search.events(outline, &whole, false);
     }
+    search.sort(0);
+    let single = search.found.len();
+    if single >= LINES {
+        return search.found.truncate(LINES);
+    }
     for (k, outline) in outlines.iter().enumerate() {
         for (_, other) in outlines.iter().enumerate().filter(|(l, _)| *l != k) {
             search.events(outline, other, true);
         }
     }
+    search.sort(single);
+    search.found.truncate(LINES);
 }
 
 /// What can show in the outline of a body, or of the target.
@@ -133,6 +146,16 @@ impl Search<'_> {
         if !self.found.iter().any(same) {
             self.found.push(plane);
         }
+    }
+
+    /// Sorts the lines from `start` on, long ones first: the order of bodies and of their corners has no say in which are used.
+    fn sort(&mut self, start: usize) {
+        let source = self.source;
+        let key = |plane: &Plane| {
+            let [a, b] = chord(source, *plane).unwrap_or_default();
+            a.distance(b) + 1e-3 * (0.5 * (a + b) - source[0]).dot(ODD)
+        };
+        self.found[start..].sort_by(|a, b| key(b).total_cmp(&key(a)));
     }
 
     fn lit(&self, height: impl Fn(Vec3) -> f64) -> Lit {

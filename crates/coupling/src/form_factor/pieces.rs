@@ -6,7 +6,7 @@
 //! **Error.** The difference of two rules is the error of the lower one, and either may be small by accident. The error is a share of the geometric mean of that difference and the one before,
 //! the first being the range of h times the area, and a smaller share of the one before alone. The shares are measured (docs/form-factors.md).
 
-use super::critical::Plane;
+use super::critical::{ODD, Plane};
 use super::shadow::Kind;
 use crate::polygon::{HalfSpace, clip};
 use fredholm_mesh::Vec3;
@@ -33,8 +33,6 @@ const BROKEN: [f64; 4] = [0.12, 0.25, 0.02, 0.05];
 const MANY: f64 = 0.1;
 /// Variation of h on a part that a line cuts, over its largest possible value, at least: the points may all miss it.
 const UNSEEN: f64 = 0.3;
-/// A unit vector to which the normals of a scene have different angles, whatever its design.
-const ODD: Vec3 = Vec3::new(0.573_1, 0.319_7, 0.754_5);
 /// Points after which an integral ends with the error that it has.
 const POINTS: usize = 100_000;
 

@@ -57,9 +57,11 @@ impl Room {
     /// Whether all of the points, relative to x, lie inside, or outside by an angle of rounding.
     #[must_use]
     pub fn holds(&self, points: &[Vec3]) -> bool {
-        self.planes
-            .iter()
-            .all(|(n, c, _)| points.iter().all(|y| n.dot(*y) - *c > -GRAZING * n.length() * y.length()))
+        let holds = |(n, c, _): &(Vec3, f64, u32), y: &Vec3| {
+            let height = n.dot(*y) - *c;
+            height > 0.0 || height > -GRAZING * n.length() * y.length()
+        };
+        self.planes.iter().all(|plane| points.iter().all(|y| holds(plane, y)))
     }
 }
 
