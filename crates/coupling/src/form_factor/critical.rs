@@ -26,7 +26,8 @@ const INSIDE: f64 = 1e-6;
 /// A plane n·x = c with a unit normal.
 pub(crate) type Plane = (Vec3, f64);
 
-/// Lists the planes of the events of `screens` before `target` that cut the `source` polygon. Those of single bodies come first, long ones before short ones, and at most [`LINES`] are kept. Lengths below `flat` (m) count as 0.
+/// Lists the planes of the events of `screens` before `target` that cut the `source` polygon. Those of single bodies come first, long ones before short
+/// ones, and at most [`LINES`] are kept. Lengths below `flat` (m) count as 0.
 pub(crate) fn critical_planes(
     source: &[Vec3],
     target: &[Vec3],

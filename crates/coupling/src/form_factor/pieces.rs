@@ -21,6 +21,8 @@ const PAYS: f64 = 0.3;
 /// Radius of a part, in its distances from what makes h steep, above which its sides are halved.
 /// No simple number: in a scene with right angles the two are often equal, and rounding would decide.
 const NEAR: f64 = 1.000_001;
+/// Largest reach, so that the error of a part with its centre on an edge of a body is a number.
+const FARTHEST: f64 = 1e3;
 /// Relative difference below which two errors are equal by design of the scene.
 const EQUAL: f64 = 1e-6;
 /// A line that leaves less than this share of the width of a part on one side does not cut it.
@@ -69,7 +71,8 @@ impl Shape {
     /// Radius about the centre, over its distance from what is near.
     fn reach(&self, distance: impl Fn(Vec3) -> f64) -> f64 {
         let centre = self.centre();
-        self.corners().iter().map(|x| x.distance(centre)).fold(0.0, f64::max) / distance(centre)
+        let radius = self.corners().iter().map(|x| x.distance(centre)).fold(0.0, f64::max);
+        (radius / distance(centre)).min(FARTHEST)
     }
 
     /// The parts between the middles of the sides.
@@ -195,9 +198,8 @@ impl<'a, H: FnMut(Vec3) -> (f64, Kind), D: Fn(Vec3) -> f64, M: Fn(Vec3) -> f64> 
 
     /// Errors of parts are of either sign. Of many, some are underestimated, and those are the ones that are not improved.
     fn stated(&self) -> f64 {
-        let parts = &self.parts;
-        let squares: f64 = parts.iter().map(|p| p.error.powi(2)).sum();
-        squares.sqrt() * (1.0 + MANY * (parts.len() as f64).ln())
+        let squares: f64 = self.parts.iter().map(|p| p.error.powi(2)).sum();
+        squares.sqrt() * (1.0 + MANY * (self.parts.len() as f64).ln())
     }
 
     /// Adds a convex polygon as quads and at most one triangle.
@@ -301,5 +303,30 @@ impl<'a, H: FnMut(Vec3) -> (f64, Kind), D: Fn(Vec3) -> f64, M: Fn(Vec3) -> f64> 
             clip(shape.corners(), side, self.breaks.flat, &mut part);
             self.add(&part);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// ∫ over the unit square of a function with a kink along x = 0.3 and with its steep place at `near`.
+    fn kinked(near: Vec3, planes: &[Plane], goal: f64) -> Estimate {
+        let square = [Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Y, Vec3::Y];
+        let h = |x: Vec3| ((x.x - 0.3).max(0.0), Kind::default());
+        let breaks = Breaks { planes, flat: 1e-12, distance: |x: Vec3| x.distance(near), most: |_| 0.7 };
+        Pieces::new(h, breaks, &mut Vec::new(), goal).integrate(&square)
+    }
+
+    #[test]
+    fn a_cut_along_the_kink_makes_it_exact() {
+        let found = kinked(Vec3::Z * 5.0, &[(Vec3::X, 0.3)], 1e-9);
+        assert!((found.value - 0.245).abs() < 1e-14 && found.error < 1e-9, "{found:?}");
+    }
+
+    #[test]
+    fn a_part_on_an_edge_of_a_body_has_an_error_that_is_a_number() {
+        let found = kinked(Vec3::new(0.5, 0.5, 0.0), &[], 1e-4);
+        assert!(found.error <= 1e-4 && (found.value - 0.245).abs() < 1e-3, "{found:?}");
     }
 }
