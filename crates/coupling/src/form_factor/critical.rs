@@ -7,7 +7,7 @@
 //! of three edges are curves and not listed.
 
 use fredholm_mesh::Vec3;
-use fredholm_visibility::body::Screen;
+use fredholm_visibility::body::{ODD, Screen};
 
 /// Squared sine below which a corner and an edge span no plane.
 const SLIM: f64 = 1e-24;
@@ -16,9 +16,6 @@ const SLIM: f64 = 1e-24;
 const MARGIN: f64 = 1e-7;
 /// Lines that are listed at most: among many, most do not show, and a part that any of them cuts counts as not smooth.
 const LINES: usize = 40;
-
-/// A unit vector along which corners of a scene have different places, whatever its design.
-pub(super) const ODD: Vec3 = Vec3::new(0.573_1, 0.319_7, 0.754_5);
 
 /// Part of a chord that is left out at its ends, where lines of sight are often exactly parallel to the edge.
 const INSIDE: f64 = 1e-6;

@@ -6,11 +6,12 @@
 //! **Error.** The difference of two rules is the error of the lower one, and either may be small by accident. The error is a share of the geometric mean of that difference and the one before,
 //! the first being the range of h times the area, and a smaller share of the one before alone. The shares are measured (docs/form-factors.md).
 
-use super::critical::{ODD, Plane};
+use super::critical::Plane;
 use super::shadow::Kind;
 use crate::polygon::{HalfSpace, clip};
 use fredholm_mesh::Vec3;
 use fredholm_quadrature::{Estimate, PlanePoint, symmetric_triangle, tensor_quad};
+use fredholm_visibility::body::ODD;
 use std::sync::LazyLock;
 
 /// Degrees that are tried on a triangle, and points a direction on a quad.
@@ -226,7 +227,7 @@ impl<'a, H: FnMut(Vec3) -> (f64, Kind), D: Fn(Vec3) -> f64, M: Fn(Vec3) -> f64> 
         };
         // What certainly does not suffice needs no points.
         if cut && shares(false, reach)[1] * unseen > self.goal {
-            return self.divide(&shape, cut);
+            return self.divide(&shape);
         }
         let (value, kind, [low, high]) = self.rule(&shape, 0, None);
         let piece = Piece { shape, reach, cut, degree: 0, value, step: 0.0, error: 0.0, kind, pays: true };
@@ -236,8 +237,8 @@ impl<'a, H: FnMut(Vec3) -> (f64, Kind), D: Fn(Vec3) -> f64, M: Fn(Vec3) -> f64> 
     }
 
     /// Cuts a shape along a line, or halves its sides.
-    fn divide(&mut self, shape: &Shape, cut: bool) {
-        match self.line_through(shape).filter(|_| cut) {
+    fn divide(&mut self, shape: &Shape) {
+        match self.line_through(shape) {
             Some(plane) => self.cut(shape, plane),
             None => shape.quarters().into_iter().for_each(|part| self.start(part)),
         }
@@ -284,7 +285,7 @@ impl<'a, H: FnMut(Vec3) -> (f64, Kind), D: Fn(Vec3) -> f64, M: Fn(Vec3) -> f64> 
             return;
         }
         self.parts.swap_remove(k);
-        self.divide(&piece.shape, piece.cut);
+        self.divide(&piece.shape);
     }
 
     /// The critical line that halves a part best; of equals, the place decides.

@@ -4,12 +4,12 @@
 //! Other nodes are bounded by boxes. Lengths in metres.
 
 use fredholm_mesh::{Patch, Vec3};
+use fredholm_visibility::body::ODD;
 use std::ops::Range;
 
 /// Planes in a node up to which it is cut between planes rather than through the middle.
 const PLANES: usize = 32;
-/// A direction along which patches of a scene have different places, whatever its design, and its share in their order.
-const ODD: Vec3 = Vec3::new(0.573_1, 0.319_7, 0.754_5);
+/// Share of the place along [`ODD`] in the order of patches.
 const SHEAR: f64 = 1e-4;
 /// Cosine of the angle between normals, less than 1 by this, up to which they count as one.
 const TURN: f64 = 1e-14;

@@ -124,8 +124,11 @@ impl Body {
     }
 }
 
-/// Where points lie in the mean along a direction in which parts of a scene have different places, whatever its design, m: an order that the numbers of the patches do not change.
+/// A direction along which parts of a scene have different places, whatever its design: an order along it does not depend on numbers.
+pub const ODD: Vec3 = Vec3::new(0.573_1, 0.319_7, 0.754_5);
+
+/// Where points lie in the mean along [`ODD`], m: an order that the numbers of the patches do not change.
 fn place<'a>(points: impl ExactSizeIterator<Item = &'a Vec3>) -> f64 {
     let n = points.len() as f64;
-    points.sum::<Vec3>().dot(Vec3::new(0.573_1, 0.319_7, 0.754_5)) / n
+    points.sum::<Vec3>().dot(ODD) / n
 }
