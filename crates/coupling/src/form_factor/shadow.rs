@@ -170,6 +170,8 @@ fn scatter(z: u64) -> u64 {
 pub(crate) struct Hiding {
     visible: PolygonList,
     next: PolygonList,
+    /// The target, relative to the point.
+    target: Vec<Vec3>,
     rest: Polygon,
     cutter: Cutter,
     room: Room,
@@ -189,9 +191,11 @@ impl Hiding {
     pub(crate) fn hide(&mut self, x: Vec3, n: Vec3, target: &[Vec3], screens: &[Screen]) -> f64 {
         self.kind = Kind::default();
         self.visible.clear();
-        self.rest.clear();
-        target.iter().enumerate().for_each(|(k, &y)| self.rest.push(y - x, k as Maker));
-        self.visible.push(&self.rest.corners, &self.rest.makers);
+        self.target.clear();
+        self.target.extend(target.iter().map(|&y| y - x));
+        self.rest.makers.clear();
+        self.rest.makers.extend(0..target.len() as Maker);
+        self.visible.push(&self.target, &self.rest.makers);
         screens.iter().enumerate().map(|screen| self.behind(screen, x, n, true)).sum()
     }
 
@@ -207,7 +211,7 @@ impl Hiding {
 
     /// Moves what lies in the shadow of a body from the visible pieces to the hidden sum.
     fn behind(&mut self, (k, screen): (usize, &Screen), x: Vec3, n: Vec3, keep: bool) -> f64 {
-        if screen.shadow(x, &mut self.room) == Shadow::Nothing {
+        if screen.shadow(x, &mut self.room) == Shadow::Nothing || self.misses(screen.tolerance()) {
             return 0.0;
         }
         self.next.clear();
@@ -217,6 +221,15 @@ impl Hiding {
             (0..self.visible.len()).map(|i| self.darken(i, n, keep, first, screen.tolerance())).sum();
         std::mem::swap(&mut self.visible, &mut self.next);
         hidden
+    }
+
+    /// Whether the room has nothing of the target. Where that is in one piece, asking about it is as quick.
+    fn misses(&self, flat: f64) -> bool {
+        let outside = |&(m, c, _): &(Vec3, f64, Maker)| {
+            let least = c + flat * size(m);
+            self.target.iter().all(|y| m.dot(*y) <= least)
+        };
+        self.visible.len() > 1 && self.room.planes().iter().any(outside)
     }
 
     /// Form factor of the part of a visible piece that lies in the room; with `keep` the rest goes to the next pieces.

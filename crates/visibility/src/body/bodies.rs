@@ -3,7 +3,7 @@
 use fredholm_mesh::{Patch, Vec3};
 
 use super::coplanar::merge;
-use super::solid::solid;
+use super::solid::{Lid, solid};
 use super::weld::{Polygon, connected, weld};
 use super::{Body, Face, place};
 use crate::Occluders;
@@ -30,7 +30,9 @@ impl Bodies {
             let middle = |polygon: &Polygon| place(polygon.corners.iter().map(|&k| &corners[k as usize]));
             faces.sort_by(|a, b| middle(a).total_cmp(&middle(b)));
             let whole = solid(&corners, &faces, tolerance, &occluders.frame);
-            match whole.filter(|solid| solid.stands_for_its_faces(elements, points, tolerance)) {
+            let covered =
+                |lid: &Lid| polygons.iter().any(|polygon| covers(&corners, polygon, lid, tolerance));
+            match whole.filter(|solid| solid.stands_for_its_faces(elements, points, tolerance, covered)) {
                 Some(solid) => bodies.push(solid.body),
                 None => bodies.extend(faces.iter().map(|face| flat(&corners, face, occluders))),
             }
@@ -55,6 +57,18 @@ impl Bodies {
 fn flat(corners: &[Vec3], polygon: &Polygon, occluders: &Occluders) -> Body {
     let outline = polygon.corners.iter().map(|&k| corners[k as usize]).collect();
     Body::flat(outline, polygon.normal, &occluders.frame)
+}
+
+/// Whether a lid lies in a polygon.
+fn covers(corners: &[Vec3], polygon: &Polygon, lid: &Lid, tolerance: f64) -> bool {
+    let plane = Face::through(corners[polygon.corners[0] as usize], polygon.normal);
+    let inside = |x: Vec3| {
+        polygon.sides().all(|side| {
+            let [a, b] = side.map(|k| corners[k as usize]);
+            polygon.normal.cross(b - a).dot(x - a) >= -tolerance * a.distance(b)
+        })
+    };
+    lid.corners.iter().all(|&x| plane.height(x).abs() <= tolerance && inside(x))
 }
 
 fn divides(

@@ -5,7 +5,23 @@ use fredholm_mesh::Vec3;
 use super::{Body, Edge};
 
 /// Faces of a solid at most, one bit each.
-pub(super) const FACES: usize = 64;
+pub(super) const FACES: usize = 256;
+
+/// One bit for each face.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Bits([u64; FACES / 64]);
+
+impl Bits {
+    const ALL: Self = Self([u64::MAX; FACES / 64]);
+
+    pub(super) fn set(&mut self, k: usize) {
+        self.0[k / 64] |= 1 << (k % 64);
+    }
+
+    fn has(self, k: u32) -> bool {
+        self.0[k as usize / 64] >> (k % 64) & 1 == 1
+    }
+}
 
 /// Sine of the angle by which a point that counts as hidden may lie outside: where it lies exactly on the border, rounding does not decide.
 const GRAZING: f64 = 1e-9;
@@ -69,14 +85,19 @@ impl Body {
     /// What the body hides from `x`; where that is a room, `room` holds it. Heights of at most `tolerance` (m) over a face count as none: a point of the
     /// surface does not shade itself.
     pub fn shadow(&self, x: Vec3, tolerance: f64, room: &mut Room) -> Shadow {
+        self.shadow_among(x, tolerance, Bits::ALL, room)
+    }
+
+    /// As [`shadow`](Self::shadow), where what is asked about lies behind all faces but `ahead`.
+    pub(super) fn shadow_among(&self, x: Vec3, tolerance: f64, ahead: Bits, room: &mut Room) -> Shadow {
         room.clear();
         if self.edges.is_empty() {
             return Shadow::Nothing;
         }
-        let lit = self.behind(x, tolerance, room);
-        if lit == 0 {
+        let lit = self.behind(x, tolerance, ahead, room);
+        if lit == Bits::default() {
             // From a point of a solid, all that lies behind the faces at that point is seen through the solid.
-            self.behind(x, -tolerance, room);
+            self.behind(x, -tolerance, ahead, room);
             return if self.solid { Shadow::Room } else { Shadow::Nothing };
         }
         for (k, edge) in self.edges.iter().enumerate() {
@@ -87,27 +108,29 @@ impl Body {
         Shadow::Room
     }
 
-    /// Adds the rooms behind the faces over which x is higher than `least`, and returns one bit for each.
-    fn behind(&self, x: Vec3, least: f64, room: &mut Room) -> u64 {
-        let mut lit = 0;
+    /// Adds the rooms behind those faces `ahead` over which x is higher than `least`, and returns all such faces.
+    fn behind(&self, x: Vec3, least: f64, ahead: Bits, room: &mut Room) -> Bits {
+        let mut lit = Bits::default();
         for (k, face) in self.faces.iter().enumerate() {
             let height = face.height(x);
             if height > least {
-                lit |= 1 << k;
-                room.push_face(k, face.normal, height);
+                lit.set(k);
+                if ahead.has(k as u32) {
+                    room.push_face(k, face.normal, height);
+                }
             }
         }
         lit
     }
 
     /// The normal of the plane through x and an edge of the outline, pointing into the shadow.
-    fn inward(&self, edge: &Edge, x: Vec3, lit: u64) -> Option<Vec3> {
-        let [left, right] = edge.faces.map(|face| lit >> face & 1);
+    fn inward(&self, edge: &Edge, x: Vec3, lit: Bits) -> Option<Vec3> {
+        let [left, right] = edge.faces.map(|face| lit.has(face));
         if left == right {
             return None;
         }
         let [a, b] = self.ends(edge).map(|end| end - x);
         // Counter-clockwise round a face that looks at x, the inside is to the left.
-        Some(if left == 1 { b.cross(a) } else { a.cross(b) })
+        Some(if left { b.cross(a) } else { a.cross(b) })
     }
 }

@@ -5,6 +5,7 @@
 
 use fredholm_mesh::Vec3;
 
+use super::outline::Bits;
 use super::{Body, Edge, Face, Room, Shadow};
 
 /// A body as points of one polygon see it before another.
@@ -17,6 +18,8 @@ pub struct Screen<'a> {
     turning: Vec<Face>,
     /// Faces that look at all of the source and do not have all of the target behind them, where the outline is the same from everywhere.
     front: Option<Vec<Face>>,
+    /// Faces that do not have all of the target behind them.
+    ahead: Bits,
     tolerance: f64,
 }
 
@@ -41,9 +44,11 @@ impl<'a> Screen<'a> {
         };
         let turning: Vec<Face> = some(Looks::Some).collect();
         let fixed = turning.is_empty() && some(Looks::All).next().is_some() && !body.edges.is_empty();
-        let ahead = |face: &Face| target.iter().any(|&y| face.height(y) > tolerance);
-        let front = fixed.then(|| some(Looks::All).filter(ahead).collect());
-        let mut screen = Self { body, edges: Vec::with_capacity(8), turning, front, tolerance };
+        let before = |face: &Face| target.iter().any(|&y| face.height(y) > tolerance);
+        let front = fixed.then(|| some(Looks::All).filter(before).collect());
+        let mut ahead = Bits::default();
+        body.faces.iter().enumerate().filter(|(_, face)| before(face)).for_each(|(k, _)| ahead.set(k));
+        let mut screen = Self { body, edges: Vec::with_capacity(8), turning, front, ahead, tolerance };
         for edge in &body.edges {
             screen.consider(edge, edge.faces.map(|face| looks[face as usize]), source, target);
         }
@@ -93,7 +98,9 @@ impl<'a> Screen<'a> {
 
     /// What of the target is hidden from a point `x` of the source; where that is a room, `room` holds it.
     pub fn shadow(&self, x: Vec3, room: &mut Room) -> Shadow {
-        let Some(front) = &self.front else { return self.body.shadow(x, self.tolerance, room) };
+        let Some(front) = &self.front else {
+            return self.body.shadow_among(x, self.tolerance, self.ahead, room);
+        };
         room.clear();
         for (k, face) in front.iter().enumerate() {
             room.push_face(k, face.normal, face.height(x));

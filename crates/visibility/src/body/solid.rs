@@ -1,6 +1,7 @@
 //! Faces that close round a convex volume become one solid, so that its shadow is one convex shape.
 //!
-//! A solid may lack one face: a segment that crosses the volume enters and leaves through different faces, so one of the two is there.
+//! A solid may lack one face: a segment that crosses the volume enters and leaves through different faces, so one of the two is there. It may lack more where each is covered by another
+//! face, or has all elements on one side: nothing is seen through those.
 
 use std::collections::BTreeMap;
 
@@ -24,23 +25,46 @@ pub(super) fn solid(points: &[Vec3], polygons: &[&Polygon], tolerance: f64, fram
     let mut faces: Vec<Face> =
         outward.iter().map(|p| Face::through(points[p.corners[0] as usize], p.normal)).collect();
     let (mut edges, open) = edges(&outward)?;
-    let lid = (!open.is_empty()).then_some(faces.len() as u32);
-    if lid.is_some() {
-        faces.push(lid_over(points, &outward, &open, tolerance)?);
+    let mut lids = Vec::new();
+    for ring in rings(open)? {
+        let number = (faces.len() + lids.len()) as u32;
+        edges.extend(ring.iter().map(|&(side, face)| Edge { ends: side, faces: [face, number] }));
+        lids.push(Lid::over(points, &ring, tolerance)?);
     }
-    edges.extend(open.iter().map(|&(side, face)| Edge { ends: side, faces: [face, lid.unwrap_or(face)] }));
+    faces.extend(lids.iter().map(|lid| lid.face));
+    if faces.len() > FACES {
+        return None;
+    }
     let convex = faces.iter().all(|face| bounds(face, &corners, tolerance));
     let place = |k: u32| numbers.binary_search(&k).unwrap_or_default() as u32;
     for edge in &mut edges {
         edge.ends = edge.ends.map(place);
     }
-    convex.then(|| Solid { body: Body::new(corners, faces, edges, frame), lid })
+    convex.then(|| Solid { body: Body::new(corners, faces, edges, frame), lids })
 }
 
-/// A solid, and which of its faces is missing.
+/// A solid, and which faces are missing: the last ones.
 pub(super) struct Solid {
     pub body: Body,
-    lid: Option<u32>,
+    lids: Vec<Lid>,
+}
+
+/// A face that is missing.
+pub(super) struct Lid {
+    pub face: Face,
+    pub corners: Vec<Vec3>,
+}
+
+impl Lid {
+    /// The face within a ring of sides of the others, which run the other way round it; `None` where they do not lie in a plane.
+    fn over(points: &[Vec3], ring: &[Side], tolerance: f64) -> Option<Self> {
+        let corners: Vec<Vec3> = ring.iter().rev().map(|(side, _)| points[side[1] as usize]).collect();
+        let origin = *corners.first()?;
+        let crosses = corners.windows(2).map(|ends| (ends[0] - origin).cross(ends[1] - origin));
+        let face = Face::through(origin, crosses.sum::<Vec3>().try_normalize()?);
+        let flat = corners.iter().all(|&x| face.height(x).abs() <= tolerance);
+        flat.then_some(Self { face, corners })
+    }
 }
 
 /// A side and the polygon it belongs to.
@@ -73,13 +97,25 @@ fn edges(polygons: &[Polygon]) -> Option<(Vec<Edge>, Vec<Side>)> {
     Some((edges, open))
 }
 
-/// The face that is missing: the areas of a closed surface add up to nothing.
-fn lid_over(points: &[Vec3], polygons: &[Polygon], open: &[Side], tolerance: f64) -> Option<Face> {
-    let normal = -polygons.iter().map(|p| p.normal * p.area).sum::<Vec3>();
-    let lid = Face::through(points[open.first()?.0[0] as usize], normal.try_normalize()?);
-    let flat =
-        open.iter().flat_map(|(side, _)| side).all(|&k| lid.height(points[k as usize]).abs() <= tolerance);
-    flat.then_some(lid)
+/// The sides of polygons that belong to one only, put together to rings; `None` where a corner has two of them.
+fn rings(open: Vec<Side>) -> Option<Vec<Vec<Side>>> {
+    let count = open.len();
+    let mut from: BTreeMap<u32, Side> = open.into_iter().map(|side| (side.0[0], side)).collect();
+    if from.len() < count {
+        return None;
+    }
+    let mut rings = Vec::new();
+    while let Some((_, first)) = from.pop_first() {
+        let mut ring = vec![first];
+        let mut end = first.0[1];
+        while end != first.0[0] {
+            let next = from.remove(&end)?;
+            ring.push(next);
+            end = next.0[1];
+        }
+        rings.push(ring);
+    }
+    Some(rings)
 }
 
 /// Whether all corners lie behind the face, and one of them far enough for a volume.
@@ -94,9 +130,16 @@ const PART: f64 = 1e-6;
 impl Solid {
     /// Whether one solid hides what its faces hide: no point is in it, no element reaches into it, and those that lie on it looking in are covered by its faces, as what stands on a body or
     /// under it is, and are not the inner sides of a hollow body.
-    pub fn stands_for_its_faces(&self, elements: &[&Patch], points: &[Vec3], tolerance: f64) -> bool {
+    /// `covered` tells whether another face covers a missing one.
+    pub fn stands_for_its_faces(
+        &self,
+        elements: &[&Patch],
+        points: &[Vec3],
+        tolerance: f64,
+        covered: impl Fn(&Lid) -> bool,
+    ) -> bool {
         let outside = |x: &Vec3| self.body.faces().iter().any(|face| face.height(*x) > tolerance);
-        if !points.iter().all(outside) {
+        if !points.iter().all(outside) || !self.is_shut(elements, points, tolerance, covered) {
             return false;
         }
         let mut looked_into = vec![0.0; self.body.faces().len()];
@@ -113,6 +156,19 @@ impl Solid {
         !reaches && !self.hollow(&looked_into)
     }
 
+    /// Whether nothing is seen through the missing faces, or only one is missing.
+    fn is_shut(
+        &self,
+        elements: &[&Patch],
+        points: &[Vec3],
+        tolerance: f64,
+        covered: impl Fn(&Lid) -> bool,
+    ) -> bool {
+        let seen = || elements.iter().flat_map(|element| element.corners()).chain(points);
+        let ends = |lid: &Lid| seen().all(|&x| lid.face.height(x) <= tolerance);
+        self.lids.len() <= 1 || self.lids.iter().all(|lid| ends(lid) || covered(lid))
+    }
+
     /// Whether an element in the plane of a face lies in that face.
     fn within(&self, element: &Patch, face: u32, tolerance: f64) -> bool {
         let mut others = self.body.faces().iter().zip(0..).filter(|(_, k)| *k != face);
@@ -121,8 +177,8 @@ impl Solid {
 
     /// Whether elements that look in cover all faces but one at most.
     fn hollow(&self, looked_into: &[f64]) -> bool {
-        let closed = (0..looked_into.len()).filter(|&k| self.lid != Some(k as u32));
-        let bare = closed.filter(|&k| looked_into[k] < (1.0 - PART) * self.body.face_area(k));
+        let bare = (0..looked_into.len() - self.lids.len())
+            .filter(|&k| looked_into[k] < (1.0 - PART) * self.body.face_area(k));
         bare.count() <= 1
     }
 

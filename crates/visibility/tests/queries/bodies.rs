@@ -57,6 +57,19 @@ fn a_box_without_its_bottom_is_a_solid_with_a_lid_unless_one_looks_out_of_it() {
 }
 
 #[test]
+fn a_leg_between_floor_and_table_is_a_solid_and_an_open_shaft_is_four_walls() {
+    let table = cuboid(Vec3::new(0.0, 0.0, -0.9), Vec3::new(1.0, 1.0, 0.1), 0.0, false);
+    let leg = cuboid(Vec3::new(0.3, 0.2, -1.5), Vec3::new(0.1, 0.1, 0.5), 0.0, false);
+    let sides: Vec<Patch> = leg.into_iter().filter(|p| p.normal().z.abs() < 0.5).collect();
+    let below: Vec<Patch> = room().into_iter().chain(sides.clone()).chain(table).collect();
+    let found = bodies(&below, &below, &[]);
+    assert!(found.as_slice().len() == 2 && found.as_slice().iter().all(Body::is_solid));
+    assert!(found.as_slice().iter().all(|body| counts(body) == [6, 12, 8]));
+    let open: Vec<Patch> = room().into_iter().chain(sides).collect();
+    assert_eq!(bodies(&open, &open, &[]).as_slice().len(), 4, "its floor is seen from above");
+}
+
+#[test]
 fn an_angled_floor_becomes_few_convex_polygons() {
     let cell = |i: usize, j: usize| {
         let corner = Vec3::new(i as f64, j as f64, 0.0);
