@@ -4,7 +4,7 @@
 //! vectors are added in the order of the runs: the number of threads changes no bit.
 
 use super::planar::Planar;
-use super::strip::{Add, Dot, Strip};
+use super::strip::{Both, Strip};
 use super::{PackedSymmetric, ROWS, Storage, TILE};
 use crate::MultiVector;
 use pulp::{Arch, Simd, WithSimd};
@@ -97,8 +97,8 @@ impl<'a, S: Storage> Product<'a, S> {
             let to = (from + TILE).min(first);
             let tile = rows.map(|row| &row[from..to]);
             let strip = Strip { rows: &tile, from };
-            Dot { strip, x: self.x, sums: &mut self.sums[..count] }.with_simd(simd);
-            Add { strip, factors: &self.factors[..count], u: &mut self.y }.with_simd(simd);
+            let (sums, factors) = (&mut self.sums[..count], &self.factors[..count]);
+            Both { strip, x: self.x, sums, factors, u: &mut self.y }.with_simd(simd);
         }
         (0..R).for_each(|r| self.add_corner(&rows[r][first..], first, r));
     }

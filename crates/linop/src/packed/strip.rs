@@ -39,6 +39,15 @@ pub(super) struct Add<'a, S> {
     pub u: &'a mut Planar,
 }
 
+/// Both at once, where the factors are known before: while one entry is used for both, the next ones come from memory.
+pub(super) struct Both<'a, S> {
+    pub strip: Strip<'a, S>,
+    pub x: &'a Planar,
+    pub sums: &'a mut [f64],
+    pub factors: &'a [f64],
+    pub u: &'a mut Planar,
+}
+
 /// Some rows, and the lanes from one on.
 #[derive(Clone, Copy)]
 struct Place {
@@ -80,6 +89,45 @@ impl<S: Storage> WithSimd for Add<'_, S> {
                 _ => strip.adds::<V, PAIR, LANES>(simd, at, factors, u),
             }
         }
+    }
+}
+
+impl<S: Storage> WithSimd for Both<'_, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<V: Simd>(mut self, simd: V) {
+        let lanes = self.sums.len() / self.strip.rows.len().max(1);
+        for lane in (0..lanes).step_by(LANES) {
+            let at = Place { row: 0, lane, lanes };
+            match lanes - lane {
+                1 => self.lanes::<V, ROWS, 1>(simd, at),
+                2 => self.lanes::<V, PAIR, 2>(simd, at),
+                _ => self.lanes::<V, PAIR, LANES>(simd, at),
+            }
+        }
+    }
+}
+
+impl<S: Storage> Both<'_, S> {
+    /// L lanes: R rows at a time, then those that are left one by one.
+    #[inline(always)]
+    fn lanes<V: Simd, const R: usize, const L: usize>(&mut self, simd: V, at: Place) {
+        let (groups, rest) = self.strip.rows.as_chunks::<R>();
+        for (group, rows) in groups.iter().enumerate() {
+            self.rows::<V, R, L>(simd, *rows, Place { row: group * R, ..at });
+        }
+        for (k, row) in rest.iter().enumerate() {
+            self.rows::<V, 1, L>(simd, [row], Place { row: groups.len() * R + k, ..at });
+        }
+    }
+
+    #[inline(always)]
+    fn rows<V: Simd, const R: usize, const L: usize>(&mut self, simd: V, rows: [&[S]; R], at: Place) {
+        let columns = self.strip.from..self.strip.from + self.strip.len();
+        let xs = self.x.lanes::<L>(at.lane).map(|x| &x[columns.clone()]);
+        let us = self.u.lanes_mut::<L>(at.lane).map(|u| &mut u[columns.clone()]);
+        both::<V, S, R, L>(simd, rows, xs, us, (self.factors, self.sums), at);
     }
 }
 
@@ -222,6 +270,56 @@ fn add<V: Simd, S: Storage, const R: usize, const L: usize>(
                 }
                 *u = sum;
             }
+        }
+    }
+}
+
+#[inline(always)]
+#[allow(clippy::needless_range_loop, reason = "r, l and k index several arrays")]
+fn both<V: Simd, S: Storage, const R: usize, const L: usize>(
+    simd: V,
+    rows: [&[S]; R],
+    xs: [&[f64]; L],
+    mut us: [&mut [f64]; L],
+    (factors, sums): (&[f64], &mut [f64]),
+    at: Place,
+) {
+    let factor = |r: usize, l: usize| factors[(at.row + r) * at.lanes + at.lane + l];
+    let blocks = rows[0].len() / WIDTH;
+    let (whole, count) = (blocks * WIDTH, blocks * registers::<V>());
+    let mut parts = [[[simd.splat_f64s(0.0); WIDTH]; L]; R];
+    {
+        let pieces = rows.map(|row| &row.as_chunks::<WIDTH>().0[..blocks]);
+        let x_pieces = xs.map(|x| &V::as_simd_f64s(x).0[..count]);
+        let u_pieces = us.each_mut().map(|u| &mut V::as_mut_simd_f64s(u).0[..count]);
+        let splat: [[V::f64s; L]; R] =
+            std::array::from_fn(|r| std::array::from_fn(|l| simd.splat_f64s(factor(r, l))));
+        for block in 0..blocks {
+            for k in 0..registers::<V>() {
+                let entries: [V::f64s; R] = std::array::from_fn(|r| load::<V, S>(&pieces[r][block], k));
+                for l in 0..L {
+                    let x = x_pieces[l][block * registers::<V>() + k];
+                    let u = &mut u_pieces[l][block * registers::<V>() + k];
+                    let mut sum = *u;
+                    for r in 0..R {
+                        parts[r][l][k] = simd.mul_add_f64s(entries[r], x, parts[r][l][k]);
+                        sum = simd.mul_add_f64s(entries[r], splat[r][l], sum);
+                    }
+                    *u = sum;
+                }
+            }
+        }
+    }
+    for l in 0..L {
+        for (k, u) in us[l][whole..].iter_mut().enumerate() {
+            (0..R).for_each(|r| *u += rows[r][whole + k].to_f64() * factor(r, l));
+        }
+        for r in 0..R {
+            let mut part = spread(simd, &parts[r][l]);
+            for (k, (entry, x)) in rows[r][whole..].iter().zip(&xs[l][whole..]).enumerate() {
+                part[k] += entry.to_f64() * x;
+            }
+            sums[(at.row + r) * at.lanes + at.lane + l] += folded(&part);
         }
     }
 }
