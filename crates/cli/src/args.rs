@@ -8,7 +8,9 @@ use clap_complete::Shell;
 use fredholm_discretisation::{DiscretisationError, discretisation};
 use serde::Serialize;
 
-use crate::commands::{CompareArgs, SpectrumArgs, ViewFactorsArgs, WAVES_EXAMPLES, WavesArgs};
+use crate::commands::{
+    CompareArgs, SHOOT_EXAMPLES, ShootArgs, SpectrumArgs, ViewFactorsArgs, WAVES_EXAMPLES, WavesArgs,
+};
 use crate::registry;
 use crate::size::Bytes;
 
@@ -137,6 +139,9 @@ pub(crate) enum Command {
     /// Run solvers on the same system; tell iterations, work, time and errors
     #[command(after_help = COMPARE_EXAMPLES)]
     Compare(CompareArgs),
+    /// Progressive radiosity without the matrix: pictures at once, and from scenes whose matrix would not fit
+    #[command(after_help = SHOOT_EXAMPLES)]
+    Shoot(ShootArgs),
     /// Analyse the matrix of a scene: eigenvalues, radii, conditions, properties
     #[command(after_help = SPECTRUM_EXAMPLES)]
     Spectrum(SpectrumArgs),
@@ -171,6 +176,7 @@ impl Command {
             Self::Check(args) => args.log.log,
             Self::Converge(args) => args.log.log,
             Self::Compare(args) => args.log.log,
+            Self::Shoot(args) => args.log.log,
             Self::Spectrum(args) => args.log.log,
             Self::ViewFactors(args) => args.log.log,
             Self::Waves(args) => args.log.log,

@@ -94,6 +94,26 @@ impl Prediction {
     }
 }
 
+/// Refuses what needs more than the limit without a matrix, where columns may take `kept`; groups of elements take as much as elements.
+pub(crate) fn admit_without_matrix(
+    elements: usize,
+    bands: usize,
+    kept: Bytes,
+    options: &ProblemOptions,
+) -> Result<(), Failure> {
+    let limit = options.memory_limit();
+    let mesh = Bytes(elements as u128 * (2 * PER_ELEMENT + VECTORS * 8 * bands as u128));
+    let total = Bytes(PROGRAM + mesh.0 + kept.0);
+    if total <= limit {
+        return Ok(());
+    }
+    let text = format!(
+        "this scene needs {total}, but {limit} are allowed: {mesh} for {elements} elements, {kept} for columns that are kept\n  \
+         help: keep less with --keep, use fewer elements (elements_per_face, divide, largest_edge in the scene), or allow more with --memory"
+    );
+    Err(Failure::new(Ending::Resources, text))
+}
+
 impl std::fmt::Display for Prediction {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { size: Size { elements, unknowns, .. }, matrix, mesh, solver } = self;

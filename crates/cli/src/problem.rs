@@ -12,8 +12,9 @@ use fredholm_visibility::Occluders;
 use crate::args::{Precision, ProblemArgs};
 use crate::failure::{Ending, Failure};
 use crate::options::{ProblemOptions, RADIOSITY};
-use crate::prediction::{Dense, Prediction, Size};
+use crate::prediction::{Dense, Prediction, Size, admit_without_matrix};
 use crate::registry::{self, Entry};
+use crate::size::Bytes;
 use crate::stages::Stages;
 
 /// A scene, its mesh, and how it is to be solved.
@@ -82,6 +83,36 @@ impl Problem {
     pub(crate) fn multivector(&self, values: Vec<f64>) -> Result<MultiVector<f64>, Failure> {
         let vector = MultiVector::from_vec(self.mesh.len(), self.scene.bands().len(), values);
         vector.map_err(|error| Failure::new(Ending::Input, error))
+    }
+}
+
+/// A scene and its mesh, for what stores no matrix.
+pub(crate) struct Open {
+    pub(crate) scene: Scene,
+    pub(crate) options: ProblemOptions,
+    pub(crate) mesh: Mesh,
+    pub(crate) warnings: Vec<String>,
+    pub(crate) occluders: Occluders,
+}
+
+impl Open {
+    /// Reads, meshes and checks a scene; refuses it before memory is taken where the mesh and `kept` do not fit.
+    pub(crate) fn load(args: &ProblemArgs, kept: Bytes, stages: &mut Stages) -> Result<Self, Failure> {
+        let scene = stages.run("scene", || Scene::load(&args.scene).map_err(scene_failure))?;
+        let options = ProblemOptions::new(args, scene.solve());
+        let bands = scene.bands().len();
+        let admit = |elements: usize| admit_without_matrix(elements, bands, kept, &options);
+        admit(usize::try_from(scene.predicted_elements()).unwrap_or(usize::MAX))?;
+        let mesh = stages.run("mesh", || scene.mesh().map_err(scene_failure))?;
+        admit(mesh.len())?;
+        let warnings = check(&scene, &mesh, stages)?;
+        let occluders = stages.run("visibility", || occluders(&scene, &mesh))?;
+        Ok(Self { scene, options, mesh, warnings, occluders })
+    }
+
+    /// The elements.
+    pub(crate) fn patches(&self) -> Vec<&Patch> {
+        self.mesh.patches().collect()
     }
 }
 

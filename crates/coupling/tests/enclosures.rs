@@ -6,8 +6,10 @@
 mod common;
 
 use common::{patch, v, with_integrator};
-use fredholm_coupling::{Assembled, assemble};
+use fredholm_coupling::{Assembled, Emitters, Groups, assemble};
+use fredholm_linop::Columns;
 use fredholm_mesh::{Mesh, MeshBuilder, Patch, Vec3};
+use fredholm_visibility::Occluders;
 use std::ops::ControlFlow;
 
 /// An n × n grid on each wall of a box seen from inside (or outside).
@@ -143,4 +145,53 @@ fn the_assembly_has_the_exchanges_of_the_pairs() {
             }
         }
     });
+}
+
+#[test]
+fn columns_of_groups_are_sums_of_columns_of_the_matrix() {
+    let mut builder = MeshBuilder::default();
+    builder.surface("walls", 0);
+    add_box(&mut builder, Vec3::ZERO, Vec3::ONE, 6, true);
+    builder.surface("block", 0);
+    add_box(&mut builder, v(0.3, 0.25, 0.2), v(0.7, 0.6, 0.55), 2, false);
+    let mesh = builder.build();
+    let elements: Vec<&Patch> = mesh.patches().collect();
+    let tolerance = 1e-4;
+    with_integrator(&mesh, tolerance, |integrator| {
+        let assembled: Assembled<f64> = assemble(integrator, &|_, _| ControlFlow::Continue(())).unwrap();
+        let occluders = Occluders::new(mesh.occluders()).unwrap();
+        let groups = Groups::new(&elements, &vec![0; elements.len()], occluders.tolerance());
+        let emitters = Emitters::new(elements.clone(), &groups, &occluders, tolerance);
+        let mut column = vec![0.0; elements.len()];
+        let (mut largest, mut walls) = (0, 0);
+        for (group, places) in groups.places().into_iter().enumerate() {
+            let members = &groups.order()[places];
+            emitters.column(group, &mut column);
+            for i in 0..elements.len() {
+                let sum: f64 = members.iter().map(|&j| assembled.matrix.get(i, j as usize)).sum();
+                let allowed = 2.0 * tolerance * elements[i].area();
+                assert!((column[i] - sum).abs() < allowed, "{members:?} {i}: {} {sum}", column[i]);
+            }
+            walls += usize::from(members.len() == 36);
+            largest = largest.max(members.len());
+        }
+        assert_eq!((largest, walls), (36, 6), "every wall is a group, and nothing is larger");
+        assert!(emitters.largest_error() > 0.0 && emitters.largest_error() < 10.0 * tolerance);
+    });
+}
+
+#[test]
+fn elements_of_different_kinds_and_patches_that_fill_no_rectangle_are_no_group() {
+    let square =
+        |x: f64, y: f64| patch(&[v(x, y, 0.), v(x + 1., y, 0.), v(x + 1., y + 1., 0.), v(x, y + 1., 0.)]);
+    let corner = [square(0., 0.), square(1., 0.), square(0., 1.)];
+    let elements: Vec<&Patch> = corner.iter().collect();
+    let sizes = |kinds: &[u32]| {
+        let mut sizes: Vec<usize> =
+            Groups::new(&elements, kinds, 1e-9).places().iter().map(ExactSizeIterator::len).collect();
+        sizes.sort_unstable();
+        sizes
+    };
+    assert_eq!(sizes(&[0, 0, 0]), [1, 1, 1, 2]);
+    assert_eq!(sizes(&[0, 1, 2]), [1, 1, 1]);
 }

@@ -4,8 +4,9 @@
 #![allow(clippy::needless_range_loop, clippy::unwrap_used)]
 
 use fredholm_iterative::{
-    BlockGaussSeidel, BlockJacobi, CgPsi, CgTheta, Chebyshev, GaussSeidel, Gmres, GroupShooting, Hgs1, Hgs2,
-    Hybrid, Jacobi, Minres, Neumann, PcgCholesky, PcgJacobi, Progressive, Sor, Ssor, Sur, with_ambient,
+    BlockGaussSeidel, BlockJacobi, CgPsi, CgTheta, Chebyshev, Frame, GaussSeidel, Gmres, GroupShooting, Hgs1,
+    Hgs2, Hybrid, Jacobi, Minres, MultilevelShooting, Neumann, PcgCholesky, PcgJacobi, Progressive, Sor,
+    Ssor, Sur, with_ambient,
 };
 use fredholm_linop::{
     Columns, Lazy, LinearOperator, MultiVector, PackedSymmetric, Progress, Quiet, Report, SecondKind, Solver,
@@ -390,4 +391,82 @@ fn every_residual_of_the_history_is_that_of_its_iterate() {
         }
         assert!(report.history.windows(2).all(|pair| pair[0].entries_touched < pair[1].entries_touched));
     }
+}
+
+/// A closed scene whose sixes see nothing of themselves and reflect alike.
+fn walls() -> Scene {
+    let entry = |i: usize, j: usize| if i / 6 == j / 6 { 0.0 } else { scattered(i * i + 7 * j).powi(2) };
+    let packed = (0..N).flat_map(|i| (0..=i).map(move |j| entry(i, j))).collect();
+    let coupling = PackedSymmetric::new(N, packed).unwrap();
+    let areas = coupling.row_sums();
+    let factor = MultiVector::from_fn(N, 1, |i, _| (0.5 + 0.1 * (i / 6) as f64) / areas[i]);
+    let b = MultiVector::from_fn(N, 1, |i, _| if i < 6 { 1.0 + scattered(i) } else { 0.0 });
+    Scene { coupling, areas, factor, b }
+}
+
+/// Columns of the elements, then their sums over sixes and threes.
+struct Summed<'a>(&'a PackedSymmetric<f64>, Vec<std::ops::Range<usize>>);
+
+impl Columns<f64> for Summed<'_> {
+    fn dim(&self) -> usize {
+        N
+    }
+
+    fn count(&self) -> usize {
+        self.1.len()
+    }
+
+    fn symmetry(&self) -> Symmetry {
+        Symmetry::General
+    }
+
+    fn diagonal(&self, _: usize) -> f64 {
+        0.0
+    }
+
+    fn column(&self, g: usize, out: &mut [f64]) {
+        (0..N).for_each(|i| out[i] = self.1[g].clone().map(|j| self.0.get(i, j)).sum());
+    }
+}
+
+#[test]
+fn shooting_from_groups_and_elements_reaches_the_solution_and_saves_columns() {
+    let scene = walls();
+    let (iterates, _) = scene.follow(&GaussSeidel, 200);
+    let exact = iterates.last().unwrap();
+    let order: Vec<u32> = (0..N as u32).collect();
+    let single: Vec<_> = (0..N).map(|i| i..i + 1).collect();
+    let sums = (0..N).step_by(6).map(|i| i..i + 6).chain((0..N).step_by(3).map(|i| i..i + 3));
+    let groups: Vec<_> = single.iter().cloned().chain(sums).collect();
+    let shots = |groups: &[std::ops::Range<usize>], share: f64| {
+        let columns = Summed(&scene.coupling, groups.to_vec());
+        let lazy = Lazy::new(&columns, 1 << 20);
+        let frame = Frame { order: &order, groups, areas: &scene.areas };
+        let mut shooting =
+            MultilevelShooting::new(&lazy, frame, scene.factor.clone(), scene.b.clone()).unwrap();
+        let mut shots = 0;
+        while shooting.distributed() < share && shooting.shoot().is_some() {
+            shots += 1;
+        }
+        (shots, lazy.computed(), shooting.radiosity().lane(0))
+    };
+    let (_, _, found) = shots(&groups, 1.0 - 1e-12);
+    let largest = exact.iter().copied().fold(0.0, f64::max);
+    (0..N).for_each(|i| {
+        assert!((found[i] - exact[i]).abs() < 1e-10 * largest, "{i}: {} {}", found[i], exact[i])
+    });
+    let ((few, computed, _), (many, all, _)) = (shots(&groups, 0.9), shots(&single, 0.9));
+    assert!(
+        few < many && 2 * computed < all,
+        "{few} shots of {computed} columns, {many} of {all} from elements"
+    );
+}
+
+#[test]
+fn a_frame_of_another_size_is_refused() {
+    let scene = walls();
+    let columns = Summed(&scene.coupling, vec![0..N]);
+    let lazy = Lazy::new(&columns, 0);
+    let frame = Frame { order: &[0, 1], groups: &[0..2], areas: &scene.areas };
+    assert!(MultilevelShooting::new(&lazy, frame, scene.factor.clone(), scene.b.clone()).is_err());
 }

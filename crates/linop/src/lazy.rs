@@ -2,7 +2,7 @@
 //!
 //! A shooting step reads one column of K, so that progressive radiosity starts at once on a matrix that would not fit, or of which most is
 //! never needed. The columns used last are kept (least recently used go first). What is kept decides the time and nothing else: a
-//! column has the same bits whenever it is computed.
+//! column has the same bits whenever it is computed. There may be more columns than unknowns: sums of columns over groups, which a step may shoot from as one.
 //!
 //! ```
 //! use fredholm_linop::{Columns, Lazy, LinearOperator, Symmetry};
@@ -50,13 +50,18 @@ pub trait Columns<T: Scalar>: Sync {
     /// Number of unknowns.
     fn dim(&self) -> usize;
 
+    /// Number of columns: the unknowns, unless there are sums of columns too.
+    fn count(&self) -> usize {
+        self.dim()
+    }
+
     /// Symmetry of the matrix.
     fn symmetry(&self) -> Symmetry;
 
     /// k_ii, without the rest of a column.
     fn diagonal(&self, i: usize) -> T;
 
-    /// Column j: `out[i]` = k_ij, the same bits every time.
+    /// Column j, below [`count`](Self::count): `out[i]` = k_ij, the same bits every time.
     fn column(&self, j: usize, out: &mut [T]);
 }
 
@@ -86,10 +91,10 @@ impl<'a, T: Scalar> Lazy<'a, T> {
     /// Keeps as many columns as fit `bytes`, maybe none.
     #[must_use]
     pub fn new(columns: &'a dyn Columns<T>, bytes: u64) -> Self {
-        let dim = columns.dim();
+        let (dim, count) = (columns.dim(), columns.count());
         let one = (dim as u64).saturating_mul(size_of::<T>() as u64).max(1);
-        let most = usize::try_from(bytes / one).unwrap_or(usize::MAX).min(dim);
-        let kept = Kept { places: vec![NONE; dim], slots: Vec::new(), most, clock: 0, computed: 0 };
+        let most = usize::try_from(bytes / one).unwrap_or(usize::MAX).min(count);
+        let kept = Kept { places: vec![NONE; count], slots: Vec::new(), most, clock: 0, computed: 0 };
         Self { columns, kept: Mutex::new(kept) }
     }
 

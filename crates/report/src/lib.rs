@@ -15,6 +15,7 @@
 //!
 //! [`write_comparison`] writes a comparison of solvers: `compare.csv`, `compare_history.csv`, `compare.svg`, `compare.json`.
 //! [`write_spectrum`] writes an analysis of the matrix: `spectrum.csv`, `spectrum.svg`, `spectrum.json`.
+//! [`write_shooting`] writes progressive radiosity without a matrix: pictures on the way, `shots.csv`, `shots.svg`, the field so far, `shots.json`.
 //! [`write_refinement`] writes a study of convergence: `converge.csv`, `converge.svg`, `converge.json`.
 //!
 //! Every file appears whole or not at all. Units: metres, W/m², W, seconds.
@@ -43,6 +44,7 @@ mod picture;
 mod refinement;
 mod run;
 mod shading;
+mod shooting;
 mod spectrum;
 mod surfaces_csv;
 mod svg;
@@ -76,6 +78,10 @@ pub use refinement::{
 pub use run::{
     Closure, Counts, Energy, FORMAT, FieldError, FormFactorError, History, MeshError, RunRecord, Timing,
     read_run, write_run,
+};
+pub use shooting::{
+    SHOOTING_FILES, SHOOTING_FORMAT, ShootingRecord, Shot, write_shooting, write_shooting_plot,
+    write_shot_picture, write_shots_csv,
 };
 pub use spectrum::{
     BandSpectrum, Eigenvalues, SPECTRUM_FILES, SPECTRUM_FORMAT, SpectrumRecord, write_spectrum,

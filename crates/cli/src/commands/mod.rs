@@ -7,6 +7,7 @@ mod converge;
 mod discretisations;
 mod info;
 mod schema;
+mod shoot;
 mod solve;
 mod solvers;
 mod spectrum;
@@ -17,6 +18,7 @@ use crate::args::Command;
 use crate::failure::{Ending, Failure};
 
 pub(crate) use compare::CompareArgs;
+pub(crate) use shoot::{EXAMPLES as SHOOT_EXAMPLES, ShootArgs};
 pub(crate) use spectrum::SpectrumArgs;
 pub(crate) use viewfactors::ViewFactorsArgs;
 pub(crate) use waves::{EXAMPLES as WAVES_EXAMPLES, WavesArgs};
@@ -28,6 +30,7 @@ pub(crate) fn execute(command: &Command) -> Result<Ending, Failure> {
         Command::Check(args) => check::check(args),
         Command::Converge(args) => converge::converge(args),
         Command::Compare(args) => compare::compare(args),
+        Command::Shoot(args) => shoot::shoot(args),
         Command::Spectrum(args) => spectrum::spectrum(args),
         Command::ViewFactors(args) => viewfactors::view_factors(args),
         Command::Waves(args) => waves::waves(args),

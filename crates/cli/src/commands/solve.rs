@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use fredholm_linop::StopReason;
 use fredholm_report::{Camera, Exposure, Field, ReportError, RunRecord, View, write_all};
+use fredholm_scene::Scene;
 
 use crate::args::SolveArgs;
 use crate::failure::{Ending, Failure};
@@ -59,14 +60,14 @@ fn write(
         .and_then(|field| field.with_exitance(&exitance))
         .and_then(|field| field.with_exposed(&solution.exposed))
         .map_err(report_failure)?;
-    let view = view(problem, &field);
+    let view = view(&problem.scene, &field);
     let view = if record.partial { quick(view) } else { view };
     write_all(folder, &field, record, &view).map_err(report_failure)
 }
 
 /// The scene's camera, or one that sees all of it.
-fn view(problem: &Problem, field: &Field) -> View {
-    let Some(camera) = problem.scene.camera() else { return View::framing(field) };
+pub(super) fn view(scene: &Scene, field: &Field) -> View {
+    let Some(camera) = scene.camera() else { return View::framing(field) };
     let exposure = camera.exposure.map_or(Exposure::Auto, Exposure::Fixed);
     View { camera: pinhole(camera), exposure }
 }

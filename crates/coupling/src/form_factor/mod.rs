@@ -12,6 +12,7 @@ mod pieces;
 mod point_polygon;
 mod sampled;
 mod shadow;
+mod small_receiver;
 mod unoccluded;
 mod visible;
 

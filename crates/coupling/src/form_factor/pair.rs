@@ -13,6 +13,7 @@
 
 use super::hidden::{HiddenWork, Occluded, hidden_exchange};
 use super::sampled::sampled;
+use super::small_receiver::small_receiver;
 use super::{Unoccluded, Work, facing_exchange, flat, front, front_of};
 use crate::occlusion::{Clusters, Sight};
 use crate::polygon::HalfSpace;
@@ -23,6 +24,10 @@ use fredholm_visibility::body::{Bodies, Body, Face, Room, Screen, Shadow};
 
 /// Bodies up to which exact shadows are cheaper than sampling.
 const FEW: usize = 128;
+
+/// Distance of a small patch from a large one, in diameters of the large one, and its own diameter, up to which points of the small one are cheaper than points along the edges.
+const CLOSE: f64 = 1.0;
+const SMALL: f64 = 0.1;
 
 /// Relative difference of two quantities that count as equal.
 const TIE: f64 = 1e-6;
@@ -106,9 +111,19 @@ impl<'a> PairIntegrator<'a> {
         occluders: &'a Occluders,
         tolerance: f64,
     ) -> Self {
-        let patches: Vec<_> = patches.into_iter().collect();
-        let open = Unoccluded::new(&patches, tolerance);
+        Self::with_groups(patches.into_iter().collect(), [], occluders, tolerance)
+    }
+
+    /// As [`new`](Self::new), and prepares patches that stand for several of `patches`; their numbers follow.
+    pub(crate) fn with_groups(
+        mut patches: Vec<&'a Patch>,
+        groups: impl IntoIterator<Item = &'a Patch>,
+        occluders: &'a Occluders,
+        tolerance: f64,
+    ) -> Self {
         let bodies = Bodies::new(occluders, &patches, &[]);
+        patches.extend(groups);
+        let open = Unoccluded::new(&patches, tolerance);
         Self { patches, open, occluders, bodies, tolerance }
     }
 
@@ -174,6 +189,35 @@ impl<'a> PairIntegrator<'a> {
         row.clear();
         row.resize(columns.len(), Exchange::NONE);
         self.open.row(i, columns, &mut work.open, row);
+    }
+
+    /// As [`open_row`](Self::open_row) for a patch that is large beside the others.
+    pub(crate) fn open_column(
+        &self,
+        j: usize,
+        rows: &[u32],
+        work: &mut Workspace,
+        column: &mut Vec<Exchange>,
+    ) {
+        let found: Vec<Option<Exchange>> = rows.iter().map(|&i| self.small_receiver(j, i as usize)).collect();
+        let rest: Vec<u32> =
+            rows.iter().zip(&found).filter_map(|(&i, found)| found.is_none().then_some(i)).collect();
+        let mut others = Vec::new();
+        self.open_row(j, &rest, work, &mut others);
+        let mut others = others.into_iter();
+        column.clear();
+        column.extend(found.into_iter().filter_map(|found| found.or_else(|| others.next())));
+    }
+
+    fn small_receiver(&self, large: usize, small: usize) -> Option<Exchange> {
+        let (large, small) = (self.patches[large], self.patches[small]);
+        // Far away, or of like size, few points along the edges are cheaper.
+        let size = large.diameter();
+        if large.centroid().distance(small.centroid()) > CLOSE * size || small.diameter() > SMALL * size {
+            return None;
+        }
+        let goal = self.tolerance * facing_exchange(large, small);
+        Some(Exchange::new(Method::Gauss, small_receiver(large, small, goal)?))
     }
 
     /// What is left of an exchange behind bodies given by their numbers.

@@ -45,8 +45,13 @@ pub(crate) struct Clusters {
 impl Clusters {
     /// Builds the tree; places nearer than `tolerance` (m) count as one.
     pub(crate) fn new(patches: &[&Patch], tolerance: f64) -> Self {
+        Self::of_kinds(patches, &vec![0; patches.len()], tolerance)
+    }
+
+    /// As [`new`](Self::new), where patches of different kinds count as lying in different planes.
+    pub(crate) fn of_kinds(patches: &[&Patch], kinds: &[u32], tolerance: f64) -> Self {
         let centres = patches.iter().map(|p| p.centroid()).collect();
-        let builder = Builder { patches, centres, tolerance };
+        let builder = Builder { patches, kinds, centres, tolerance };
         let mut tree = Self { nodes: Vec::new(), order: (0..patches.len() as u32).collect() };
         if !patches.is_empty() {
             let mut order = std::mem::take(&mut tree.order);
@@ -72,6 +77,7 @@ impl Clusters {
 
 struct Builder<'a> {
     patches: &'a [&'a Patch],
+    kinds: &'a [u32],
     centres: Vec<Vec3>,
     tolerance: f64,
 }
@@ -101,9 +107,10 @@ impl Builder<'_> {
         self.patches[k as usize]
     }
 
-    fn in_plane(&self, k: u32, first: &Patch) -> bool {
-        let patch = self.patch(k);
-        patch.normal().dot(first.normal()) > 1.0 - TURN
+    fn in_plane(&self, k: u32, p: u32) -> bool {
+        let (patch, first) = (self.patch(k), self.patch(p));
+        self.kinds[k as usize] == self.kinds[p as usize]
+            && patch.normal().dot(first.normal()) > 1.0 - TURN
             && (patch.corner(0) - first.corner(0)).dot(first.normal()).abs() <= self.tolerance
     }
 
@@ -111,7 +118,7 @@ impl Builder<'_> {
     fn planes(&self, order: &[u32]) -> Vec<u32> {
         let mut planes: Vec<u32> = Vec::new();
         for &k in order {
-            if !planes.iter().any(|&p| self.in_plane(k, self.patch(p))) {
+            if !planes.iter().any(|&p| self.in_plane(k, p)) {
                 planes.push(k);
                 if planes.len() > PLANES {
                     break;
@@ -126,12 +133,12 @@ impl Builder<'_> {
         let mut sorted = planes.to_vec();
         let key = |&p: &u32| {
             let n = self.patch(p).normal();
-            [n.z, n.y, n.x, n.dot(self.patch(p).corner(0))]
+            [n.z, n.y, n.x, n.dot(self.patch(p).corner(0)), f64::from(self.kinds[p as usize])]
         };
         sorted.sort_by(|a, b| key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal));
         let low = &sorted[..sorted.len() / 2];
-        order.sort_by_key(|&k| !low.iter().any(|&p| self.in_plane(k, self.patch(p))));
-        order.iter().take_while(|&&k| low.iter().any(|&p| self.in_plane(k, self.patch(p)))).count()
+        order.sort_by_key(|&k| !low.iter().any(|&p| self.in_plane(k, p)));
+        order.iter().take_while(|&&k| low.iter().any(|&p| self.in_plane(k, p))).count()
     }
 
     fn through_the_middle(&self, order: &mut [u32]) -> usize {
@@ -144,7 +151,12 @@ impl Builder<'_> {
         // Patches at one place along the axis are told apart by a small shear, not by their numbers.
         let key = |&k: &u32| self.centres[k as usize][axis] + SHEAR * self.centres[k as usize].dot(ODD);
         order.sort_by(|a, b| key(a).total_cmp(&key(b)));
-        order.len() / 2
+        let place = |k: usize| self.centres[order[k] as usize][axis];
+        let gap = |k: &usize| place(*k) - place(*k - 1) > 2.0 * SHEAR * most;
+        // Between rows of a grid rather than through one, so that both halves are rectangles again.
+        let middle = order.len() / 2;
+        let near = (0..=middle).flat_map(|d| [middle - d, middle + d]);
+        near.filter(|k| (1..order.len()).contains(k)).find(gap).unwrap_or(middle)
     }
 
     fn bound(&self, order: &[u32], planes: usize) -> (Bound, f64) {

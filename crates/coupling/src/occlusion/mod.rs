@@ -3,5 +3,5 @@
 mod cluster;
 mod walk;
 
-pub(crate) use cluster::Clusters;
-pub(crate) use walk::{Panel, Sight, walk};
+pub(crate) use cluster::{Bound, Clusters, Node};
+pub(crate) use walk::{Panel, Sight, walk, walk_from};

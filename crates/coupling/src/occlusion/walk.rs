@@ -44,6 +44,17 @@ pub(crate) fn walk(sight: &Sight, panel: usize) -> Panel {
     walker.found
 }
 
+/// Sorts the pairs (i, j) with i the one patch of `node` and j any patch below the root; the pair of a patch with itself is among them.
+pub(crate) fn walk_from(sight: &Sight, node: usize) -> Panel {
+    let first = sight.clusters.nodes[node].places.start;
+    let found = Panel { seen: vec![Vec::new()], partly: vec![Vec::new()], lists: Vec::new() };
+    let mut walker = Walker { sight, first, end: first + 1, found, room: Room::default(), stack: Vec::new() };
+    walker.stack.extend(0..sight.bodies.as_slice().len() as u32);
+    let all = 0..walker.stack.len();
+    walker.pair(node, 0, all);
+    walker.found
+}
+
 struct Walker<'a> {
     sight: &'a Sight<'a>,
     first: usize,

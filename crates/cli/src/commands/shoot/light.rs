@@ -1,0 +1,93 @@
+//! Exitances, reflectances and exposed areas of the elements, and the field that follows from what they have received.
+
+use fredholm_coupling::{Groups, exposed_shares};
+use fredholm_linop::MultiVector;
+use fredholm_mesh::Patch;
+use fredholm_report::Field;
+
+use super::report_failure;
+use crate::failure::{Ending, Failure};
+use crate::problem::{Open, prepare};
+
+/// The elements as sources and receivers of light.
+pub(super) struct Light {
+    /// M, W/m², elements × bands.
+    pub(super) exitance: MultiVector<f64>,
+    reflectance: MultiVector<f64>,
+    /// A, m².
+    areas: Vec<f64>,
+    /// w A, m².
+    pub(super) exposed: Vec<f64>,
+    /// w.
+    shares: Vec<f64>,
+}
+
+impl Light {
+    pub(super) fn new(scene: &Open) -> Result<Self, Failure> {
+        let patches: Vec<Patch> = scene.mesh.patches().copied().collect();
+        let shares = exposed_shares(&scene.patches(), &prepare(&patches)?);
+        let areas: Vec<f64> = patches.iter().map(Patch::area).collect();
+        let exposed = areas.iter().zip(&shares).map(|(area, share)| area * share).collect();
+        let values = |values: Vec<f64>| {
+            MultiVector::from_vec(scene.mesh.len(), scene.scene.bands().len(), values)
+                .map_err(|error| Failure::new(Ending::Input, error))
+        };
+        Ok(Self {
+            exitance: values(scene.scene.exitance(&scene.mesh))?,
+            reflectance: values(scene.scene.reflectance(&scene.mesh))?,
+            areas,
+            exposed,
+            shares,
+        })
+    }
+
+    /// D = ρ/(w A), 1/m².
+    pub(super) fn scaling(&self) -> MultiVector<f64> {
+        MultiVector::from_fn(self.areas.len(), self.exitance.lanes(), |i, l| match self.exposed[i] {
+            exposed if exposed > 0.0 => self.reflectance.row(i)[l] / exposed,
+            _ => 0.0,
+        })
+    }
+
+    /// Groups of elements that reflect alike and are exposed as a whole.
+    pub(super) fn groups(&self, scene: &Open) -> Groups {
+        let mut known: Vec<&[f64]> = Vec::new();
+        let mut kind = |i: usize| {
+            let row = self.reflectance.row(i);
+            known.iter().position(|other| *other == row).unwrap_or_else(|| {
+                known.push(row);
+                known.len() - 1
+            })
+        };
+        let alone = |i: usize| u32::MAX - i as u32;
+        let kinds: Vec<u32> = (0..self.areas.len())
+            .map(|i| if self.shares[i] < 1.0 { alone(i) } else { kind(i) as u32 })
+            .collect();
+        Groups::new(&scene.patches(), &kinds, scene.occluders.tolerance())
+    }
+
+    /// M + ρ E, means over whole elements, W/m², from the power that each has received.
+    pub(super) fn means(&self, received: &MultiVector<f64>) -> MultiVector<f64> {
+        MultiVector::from_fn(received.dim(), received.lanes(), |i, l| {
+            self.exitance.row(i)[l] + self.reflectance.row(i)[l] * received.row(i)[l] / self.areas[i]
+        })
+    }
+
+    /// Shows the field of a radiosity (W/m²) and of the power received (W).
+    pub(super) fn field<R>(
+        &self,
+        scene: &Open,
+        received: &MultiVector<f64>,
+        radiosity: &MultiVector<f64>,
+        show: impl FnOnce(&Field<'_>) -> Result<R, Failure>,
+    ) -> Result<R, Failure> {
+        let irradiance =
+            MultiVector::from_fn(received.dim(), received.lanes(), |i, l| received.row(i)[l] / self.areas[i]);
+        let bands = scene.scene.bands();
+        let field = Field::new(&scene.mesh, bands, irradiance.as_slice(), radiosity.as_slice())
+            .and_then(|field| field.with_exitance(self.exitance.as_slice()))
+            .and_then(|field| field.with_exposed(&self.shares))
+            .map_err(report_failure)?;
+        show(&field)
+    }
+}

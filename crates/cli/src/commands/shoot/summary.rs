@@ -1,0 +1,45 @@
+//! The summary of a run of shots.
+
+use std::path::Path;
+
+use fredholm_report::{SHOOTING_FILES, ShootingRecord};
+
+use crate::failure::Failure;
+use crate::output;
+use crate::size::Bytes;
+use crate::summary::Lines;
+
+/// Prints what came of the shots.
+pub(super) fn print(folder: &Path, record: &ShootingRecord) -> Result<(), Failure> {
+    let mut lines = Lines::default();
+    lines.add("picture", folder.join(SHOOTING_FILES[3]).display().to_string());
+    lines.add(
+        "size",
+        format!("{} elements, {} of them and of their groups can shoot", record.elements, record.groups),
+    );
+    lines.add("shots", shots(record));
+    lines.add("form factors", format!("estimated error of one {:.1e} at most", record.form_factor_error));
+    lines.add_some("memory", record.peak_memory_bytes.map(|peak| format!("{} at most", Bytes(peak.into()))));
+    lines.add(
+        "time",
+        record
+            .timings
+            .iter()
+            .map(|t| format!("{} {:.2} s", t.stage, t.seconds))
+            .collect::<Vec<_>>()
+            .join(", "),
+    );
+    output::print(&lines.under(&format!("{} → {}", record.scene, folder.display())))
+}
+
+fn shots(record: &ShootingRecord) -> String {
+    let Some(last) = record.shots.last() else { return "none: nothing shines".to_owned() };
+    let state = if record.reached { "" } else { ", which is less than was asked for" };
+    format!(
+        "{} from {} columns in {:.2} s: {:.2} % of the power distributed{state}",
+        record.shots.len(),
+        last.columns,
+        last.seconds,
+        100.0 * last.distributed
+    )
+}

@@ -1,0 +1,88 @@
+//! What progressive radiosity without a matrix leaves: pictures on the way, `shots.csv`, `shots.svg`, the field so far (`faces.csv`, `field.npz`, `field.vtu`, `image.png`),
+//! and `shots.json` last.
+//!
+//! Columns of the table: `shot`, `elements` (that shot as one), `columns` (computed so far), `seconds`, `distributed` (share of the power of the solution that has been shot, at least).
+
+mod plot;
+mod record;
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use crate::number::Number;
+use crate::outputs::prepare;
+use crate::{Field, ReportError, View, render, write_atomically, write_faces_csv, write_npz, write_vtu};
+
+pub use plot::write_shooting_plot;
+pub use record::{SHOOTING_FORMAT, ShootingRecord, Shot};
+
+/// The files of the end, in the order in which they are written.
+pub const SHOOTING_FILES: [&str; 7] =
+    ["faces.csv", "field.npz", "field.vtu", "image.png", "shots.csv", "shots.svg", "shots.json"];
+
+/// Writes the field so far and the record into a folder, which is made where there is none.
+///
+/// # Errors
+/// [`ReportError::Write`] with the path, and what [`render`] refuses.
+pub fn write_shooting(
+    folder: &Path,
+    field: &Field<'_>,
+    record: &ShootingRecord,
+    view: &View,
+) -> Result<(), ReportError> {
+    let picture = render(field, &view.camera, view.exposure)?;
+    let [faces, npz, vtu, image, table, plot, json] = SHOOTING_FILES.map(|name| folder.join(name));
+    prepare(folder, &json)?;
+    write_atomically(&faces, |out| write_faces_csv(field, out))?;
+    write_atomically(&npz, |out| write_npz(field, out))?;
+    write_atomically(&vtu, |out| write_vtu(field, out))?;
+    write_atomically(&image, |out| picture.write_png(out))?;
+    write_atomically(&table, |out| write_shots_csv(record, out))?;
+    write_atomically(&plot, |out| write_shooting_plot(record, out))?;
+    write_atomically(&json, |out| {
+        serde_json::to_writer_pretty(&mut *out, record)?;
+        writeln!(out)
+    })
+}
+
+/// Writes the picture after some shots, `shot_00010.png`, into a folder, which is made where there is none.
+///
+/// # Errors
+/// As for [`write_shooting`].
+pub fn write_shot_picture(
+    folder: &Path,
+    shots: u64,
+    field: &Field<'_>,
+    view: &View,
+) -> Result<(), ReportError> {
+    let picture = render(field, &view.camera, view.exposure)?;
+    prepare(folder, &folder.join(SHOOTING_FILES[6]))?;
+    write_atomically(&folder.join(format!("shot_{shots:05}.png")), |out| picture.write_png(out))
+}
+
+/// Writes the table of shots.
+///
+/// # Errors
+/// What `out` reports.
+pub fn write_shots_csv(record: &ShootingRecord, out: &mut dyn Write) -> io::Result<()> {
+    writeln!(out, "shot,elements,columns,seconds,distributed")?;
+    for (number, shot) in (1..).zip(&record.shots) {
+        let Shot { elements, columns, seconds, distributed } = *shot;
+        writeln!(out, "{number},{elements},{columns},{},{}", Number(seconds), Number(distributed))?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::record::tests::sample;
+    use super::*;
+
+    #[test]
+    fn the_table_has_a_row_a_shot() {
+        let mut out = Vec::new();
+        write_shots_csv(&sample(), &mut out).unwrap();
+        let text = String::from_utf8(out).unwrap();
+        assert_eq!(text, "shot,elements,columns,seconds,distributed\n1,4,1,0.5,0.25\n2,1,2,0.75,0.5\n");
+    }
+}
