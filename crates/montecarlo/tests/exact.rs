@@ -87,7 +87,7 @@ fn means_are_within_three_standard_errors_of_the_exact_values() {
             let (mean, error) = (state.groups.mean()[0], state.groups.standard_errors()[0]);
             let exact = case.exact;
             println!("{:8} {name:15} {mean:.6} ± {error:.1e}, exact {exact:.6}", case.name);
-            assert!((mean - exact).abs() < 3.0 * error && error < 0.02 * exact, "{} {name}", case.name);
+            assert!((mean - exact).abs() < 3.0 * error && error < 0.03 * exact, "{} {name}", case.name);
         }
     }
 }

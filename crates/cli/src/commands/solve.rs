@@ -59,19 +59,19 @@ fn write(
         .and_then(|field| field.with_exitance(&exitance))
         .and_then(|field| field.with_exposed(&solution.exposed))
         .map_err(report_failure)?;
-    let view = view(problem, &field);
+    let view = view_of(problem.scene.camera(), &field);
     let view = if record.partial { quick(view) } else { view };
     write_all(folder, &field, record, &view).map_err(report_failure)
 }
 
 /// The scene's camera, or one that sees all of it.
-fn view(problem: &Problem, field: &Field) -> View {
-    let Some(camera) = problem.scene.camera() else { return View::framing(field) };
+pub(super) fn view_of(camera: Option<&fredholm_scene::Camera>, field: &Field) -> View {
+    let Some(camera) = camera else { return View::framing(field) };
     let exposure = camera.exposure.map_or(Exposure::Auto, Exposure::Fixed);
-    View { camera: pinhole(camera), exposure }
+    View { camera: view_camera(camera), exposure }
 }
 
-fn pinhole(camera: &fredholm_scene::Camera) -> Camera {
+pub(super) fn view_camera(camera: &fredholm_scene::Camera) -> Camera {
     Camera {
         eye: camera.eye,
         target: camera.target,
