@@ -36,6 +36,7 @@ pub mod philox;
 pub mod points;
 mod run;
 pub mod statistics;
+pub mod waves;
 
 pub use enclosure::{Enclosure, Site};
 pub use error::MonteCarloError;

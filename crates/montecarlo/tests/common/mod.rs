@@ -4,7 +4,7 @@
 #![allow(dead_code)]
 
 use fredholm_mesh::{Cutting, Lines, Mesh, MeshBuilder, Patch, Shape, Vec3};
-use fredholm_montecarlo::light::{Estimator, Switches, estimator};
+use fredholm_montecarlo::light::{Estimator, PhotonMap, Switches, estimator};
 use fredholm_montecarlo::points::PointSet;
 use fredholm_montecarlo::{Enclosure, Groups, State, Stop, Tracing};
 use std::ops::ControlFlow;
@@ -65,6 +65,10 @@ pub fn single(scene: &Enclosure) -> Groups {
 }
 
 pub fn method(name: &str, scene: &Enclosure) -> Box<dyn Estimator> {
+    if name == "photon" {
+        // A small map is as unbiased here, and quick.
+        return Box::new(PhotonMap::new(scene, Switches::default(), 256));
+    }
     estimator(name, scene, Switches::default()).unwrap()
 }
 
