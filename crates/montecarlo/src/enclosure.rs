@@ -5,6 +5,7 @@
 
 use crate::MonteCarloError;
 use crate::density::{Cosine, DirectionDensity, Frame, LampDensity, SurfaceDensity};
+use crate::locator::Locator;
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::Occluders;
 use std::f64::consts::FRAC_1_PI;
@@ -25,6 +26,7 @@ pub struct Enclosure {
     frames: Vec<Frame>,
     surfaces: Vec<SurfaceDensity>,
     occluders: Occluders,
+    locator: Option<Locator>,
     bands: usize,
     reflectance: Vec<f64>,
     exitance: Vec<f64>,
@@ -60,6 +62,7 @@ impl Enclosure {
             frames: patches.iter().map(|patch| Frame::about(patch.normal())).collect(),
             surfaces: patches.iter().map(SurfaceDensity::new).collect(),
             occluders: Occluders::new(&patches)?,
+            locator: None,
             survival: reflectance.chunks(bands.max(1)).map(largest).collect(),
             exposed: vec![1.0; patches.len()],
             bands,
@@ -68,6 +71,16 @@ impl Enclosure {
             lamps,
             patches,
         })
+    }
+
+    /// The same traced against these pieces instead of the patches, which together they must cover: as few as possible, as a mesh has them.
+    ///
+    /// # Errors
+    /// [`MonteCarloError::Visibility`].
+    pub fn blocked_by(mut self, pieces: &[Patch]) -> Result<Self, MonteCarloError> {
+        self.occluders = Occluders::new(pieces)?;
+        self.locator = Some(Locator::new(pieces, &self.patches));
+        Ok(self)
     }
 
     /// The same with the exposed share of each patch, which patch-wise walks need: what is buried reflects nothing.
@@ -156,7 +169,13 @@ impl Enclosure {
     /// The lit side that a ray meets first; the direction is in the frame of the patch, its normal z.
     #[must_use]
     pub fn ray(&self, from: Site, direction: Vec3) -> Option<Site> {
-        self.cast(from.point, self.frames[from.patch].world(direction))
+        self.cast(from.point, self.world(from, direction))
+    }
+
+    /// A direction of the frame of a patch, in the axes of the scene.
+    #[must_use]
+    pub fn world(&self, at: Site, direction: Vec3) -> Vec3 {
+        self.frames[at.patch].world(direction)
     }
 
     /// Unit direction to a point, in the frame of the patch.
@@ -169,8 +188,12 @@ impl Enclosure {
     #[must_use]
     pub fn cast(&self, origin: Vec3, direction: Vec3) -> Option<Site> {
         let hit = self.occluders.closest(origin, direction, f64::INFINITY)?;
-        let lit = self.patches[hit.patch].normal().dot(direction) < 0.0;
-        lit.then_some(Site { patch: hit.patch, point: hit.point })
+        let patch = match &self.locator {
+            Some(locator) => locator.lit(hit.patch, hit.point, direction, &self.patches)?,
+            None => hit.patch,
+        };
+        let lit = self.patches[patch].normal().dot(direction) < 0.0;
+        lit.then_some(Site { patch, point: hit.point })
     }
 
     /// cosθ cosθ′/(π r²) between two sites that face each other, else 0; 1/m². Visibility is not asked.
@@ -204,5 +227,43 @@ fn check(
     match values.iter().position(|&value| !valid(value)) {
         Some(at) => Err(MonteCarloError::Range { what, patch: at / bands, value: values[at], range }),
         None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::points::{Draw, Key, PointSet};
+    use fredholm_mesh::{Cutting, Lines, MeshBuilder, Shape};
+
+    /// Rays against the undivided pieces find what rays against the patches find.
+    #[test]
+    fn few_pieces_answer_like_many_patches() {
+        let mut builder = MeshBuilder::default();
+        let shapes = [
+            (Shape::Box { min: Vec3::ZERO, max: Vec3::new(1.0, 2.0, 1.5), inward: true }, 5),
+            (Shape::Box { min: Vec3::splat(0.3), max: Vec3::splat(0.6), inward: false }, 3),
+            (Shape::Sphere { centre: Vec3::new(0.5, 1.5, 0.7), radius: 0.2, inward: false, segments: 7 }, 1),
+        ];
+        for (surface, (shape, n)) in shapes.iter().enumerate() {
+            builder.surface("s", surface);
+            let lines = if *n > 1 { Lines::Counts { u: *n, v: *n } } else { Lines::Whole };
+            builder.add(shape, &Cutting { lines, ..Cutting::default() }).unwrap();
+        }
+        let mesh = builder.build();
+        let patches: Vec<Patch> = mesh.patches().copied().collect();
+        let n = patches.len();
+        assert!(mesh.occluders().len() < n);
+        let fine = Enclosure::new(patches, 1, vec![0.5; n], vec![1.0; n]).unwrap();
+        let coarse = fine.clone().blocked_by(mesh.occluders()).unwrap();
+        for sample in 0..4000 {
+            let mut draw =
+                Draw::new(PointSet::Independent, Key { seed: 3, batch: 0, stream: 0 }, sample, 4000);
+            let at = fine.point(sample as usize % n, draw.pair());
+            let numbers = draw.pair();
+            let [a, b] = [&fine, &coarse].map(|scene| scene.bounce(at, numbers));
+            assert_eq!(a.map(|site| site.patch), b.map(|site| site.patch), "{sample}");
+            assert!(a.zip(b).is_none_or(|(a, b)| a.point.distance(b.point) < 1e-9));
+        }
     }
 }

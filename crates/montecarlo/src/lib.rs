@@ -32,6 +32,7 @@ pub mod density;
 mod enclosure;
 mod error;
 pub mod light;
+mod locator;
 pub mod philox;
 pub mod points;
 mod run;

@@ -60,7 +60,7 @@ pub(crate) fn enclosure(scene: &Scene, mesh: &Mesh) -> Result<Enclosure, Failure
     let shares = exposed_shares(&mesh.patches().collect::<Vec<_>>(), &prepare(&patches)?);
     let (rho, exitance) = (scene.reflectance(mesh), scene.exitance(mesh));
     Enclosure::new(patches, scene.bands().len(), rho, exitance)
-        .and_then(|enclosure| enclosure.with_exposed(shares))
+        .and_then(|enclosure| enclosure.with_exposed(shares)?.blocked_by(mesh.occluders()))
         .map_err(failure)
 }
 

@@ -12,6 +12,7 @@ use super::path::PathTracing;
 use super::{Batch, Estimator, PointEstimator, Switches, Work, gather};
 use crate::points::Draw;
 use crate::{Enclosure, Site};
+use fredholm_mesh::{Patch, Vec3};
 use std::f64::consts::PI;
 
 /// α of the shrinking radius.
@@ -30,16 +31,35 @@ pub struct PhotonMap {
     photons: u32,
     /// Neighbours of each patch on its flat piece, within the first radius.
     near: Vec<Vec<u32>>,
+    outlines: Vec<Outline>,
     radius: f64,
+}
+
+/// What decides whether a patch lies wholly inside or outside a disc.
+#[derive(Clone, Copy)]
+struct Outline {
+    centre: Vec3,
+    reach: f64,
+    area: f64,
+}
+
+impl Outline {
+    fn new(patch: &Patch) -> Self {
+        let centre = patch.centroid();
+        let reach = patch.corners().iter().map(|p| p.distance(centre)).fold(0.0, f64::max);
+        Self { centre, reach, area: patch.area() }
+    }
 }
 
 impl PhotonMap {
     /// A map of so many photons a batch.
     #[must_use]
     pub fn new(scene: &Enclosure, switches: Switches, photons: u32) -> Self {
-        let area: f64 = scene.patches().iter().map(fredholm_mesh::Patch::area).sum();
+        let area: f64 = scene.patches().iter().map(Patch::area).sum();
         let radius = (HELD * area / (PI * f64::from(photons.max(1)))).sqrt();
-        Self { switches, photons: photons.max(1), near: neighbours(scene, radius), radius }
+        let outlines: Vec<Outline> = scene.patches().iter().map(Outline::new).collect();
+        let near = neighbours(scene, &outlines, radius);
+        Self { switches, photons: photons.max(1), near, outlines, radius }
     }
 
     /// Radius of a batch, m.
@@ -68,15 +88,15 @@ impl PhotonMap {
 }
 
 /// Patches whose nearest points may lie within the radius, on the same plane and the same side.
-fn neighbours(scene: &Enclosure, radius: f64) -> Vec<Vec<u32>> {
+fn neighbours(scene: &Enclosure, outlines: &[Outline], radius: f64) -> Vec<Vec<u32>> {
     let patches = scene.patches();
-    let size = patches.iter().flat_map(fredholm_mesh::Patch::corners).map(|p| p.length()).fold(0.0, f64::max);
+    let size = patches.iter().flat_map(Patch::corners).map(|p| p.length()).fold(0.0, f64::max);
     let near = |i: usize, j: usize| {
         let (a, b) = (&patches[i], &patches[j]);
-        let between = b.centroid() - a.centroid();
+        let between = outlines[j].centre - outlines[i].centre;
         a.normal().dot(b.normal()) > PARALLEL
             && between.dot(a.normal()).abs() < COPLANAR * size
-            && between.length() < radius + 0.5 * (a.diameter() + b.diameter()) * 2.0
+            && between.length() < radius + outlines[i].reach + outlines[j].reach
     };
     let row = |i: usize| (0..patches.len()).filter(|&j| near(i, j)).map(|j| j as u32).collect();
     (0..patches.len()).map(row).collect()
@@ -92,11 +112,23 @@ struct Map<'a> {
 }
 
 impl Map<'_> {
+    /// Area of a patch within the radius of a point of its plane, m².
+    fn piece(&self, scene: &Enclosure, patch: usize, point: Vec3) -> f64 {
+        let outline = self.of.outlines[patch];
+        let square = outline.centre.distance_squared(point);
+        if square >= (self.radius + outline.reach).powi(2) {
+            0.0
+        } else if self.radius > outline.reach && square <= (self.radius - outline.reach).powi(2) {
+            outline.area
+        } else {
+            shared(&scene.patches()[patch], point, self.radius)
+        }
+    }
+
     /// Adds weight × Ê(y) to `out`.
     fn read(&self, scene: &Enclosure, at: Site, weight: &[f64], out: &mut [f64]) {
         let near = &self.of.near[at.patch];
-        let piece: f64 =
-            near.iter().map(|&i| shared(&scene.patches()[i as usize], at.point, self.radius)).sum();
+        let piece: f64 = near.iter().map(|&i| self.piece(scene, i as usize, at.point)).sum();
         if piece <= 0.0 {
             return;
         }

@@ -82,6 +82,8 @@ pub struct Draw {
     sample: u32,
     size: u32,
     dimension: u32,
+    /// Number of the Sobol point in this block of dimensions.
+    index: u32,
 }
 
 /// Dimensions from here on seed the patterns of a batch, so that they share no number with the samples.
@@ -91,19 +93,23 @@ impl Draw {
     /// The numbers of sample `sample` of the `size` of a batch.
     #[must_use]
     pub fn new(set: PointSet, key: Key, sample: u32, size: u32) -> Self {
-        Self { set, key, sample, size, dimension: 0 }
+        let mut draw = Self { set, key, sample, size, dimension: 0, index: 0 };
+        draw.enter();
+        draw
     }
 
     /// The next pair, each even in [0, 1).
     pub fn pair(&mut self) -> [f64; 2] {
-        let dimension = self.dimension;
-        self.dimension += 2;
+        let dimension = self.advance();
         let place = |pattern: [u32; 4], jitter: [f64; 2], set| {
             strata::place(set, self.sample, self.size, pattern, jitter)
         };
         match self.set {
             PointSet::Independent => unit_pair(self.key.words(self.sample, dimension)),
-            PointSet::Sobol => self.sobol(dimension),
+            PointSet::Sobol => {
+                let (scramble, first) = (self.key.words(2, PATTERN + dimension), dimension % DIMENSIONS);
+                [0, 1].map(|i| sobol::point(self.index, first + i as u32, scramble[i]))
+            }
             set => {
                 let pattern = self.key.words(0, PATTERN + dimension);
                 place(pattern, unit_pair(self.key.words(self.sample, dimension)), set)
@@ -113,17 +119,30 @@ impl Draw {
 
     /// The next single number: of a pair, so that the pairs that follow keep their pattern.
     pub fn single(&mut self) -> f64 {
-        self.pair()[0]
+        if self.set != PointSet::Sobol {
+            return self.pair()[0];
+        }
+        let dimension = self.advance();
+        let scramble = self.key.words(2, PATTERN + dimension);
+        sobol::point(self.index, dimension % DIMENSIONS, scramble[0])
     }
 
-    fn sobol(&self, dimension: u32) -> [f64; 2] {
-        let block = dimension / DIMENSIONS;
-        // Blocks of dimensions meet in random order, or their points would be the same ones.
-        let shuffle = self.key.words(1, PATTERN + block);
-        let scramble = self.key.words(2, PATTERN + dimension);
-        let index = sobol::scrambled(self.sample.reverse_bits(), shuffle[0]);
-        let first = dimension % DIMENSIONS;
-        [0, 1].map(|i| sobol::point(index, first + i as u32, scramble[i]))
+    /// The dimension of the next pair.
+    fn advance(&mut self) -> u32 {
+        let dimension = self.dimension;
+        if dimension > 0 && dimension.is_multiple_of(DIMENSIONS) {
+            self.enter();
+        }
+        self.dimension += 2;
+        dimension
+    }
+
+    /// Shuffles the points for a new block of dimensions: met in the same order they would be the same ones.
+    fn enter(&mut self) {
+        if self.set == PointSet::Sobol {
+            let shuffle = self.key.words(1, PATTERN + self.dimension / DIMENSIONS);
+            self.index = sobol::scrambled(self.sample.reverse_bits(), shuffle[0]);
+        }
     }
 }
 
