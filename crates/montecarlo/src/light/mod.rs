@@ -67,7 +67,9 @@ impl Switches {
         if draw.single() >= survival {
             return false;
         }
-        weight.iter_mut().for_each(|w| *w /= survival);
+        for weight in weight.iter_mut() {
+            *weight /= survival;
+        }
         true
     }
 
@@ -146,7 +148,9 @@ fn gather(scene: &Enclosure, batch: &Batch, estimator: &dyn PointEstimator, out:
             let at = scene.point(patch, draw.pair());
             work += Work { paths: 1, rays: estimator.irradiance(scene, at, &mut draw, row) };
         }
-        row.iter_mut().for_each(|e| *e /= f64::from(batch.samples));
+        for mean in row.iter_mut() {
+            *mean /= f64::from(batch.samples);
+        }
     }
     work
 }
@@ -154,7 +158,9 @@ fn gather(scene: &Enclosure, batch: &Batch, estimator: &dyn PointEstimator, out:
 /// Powers (W) of patches to irradiances (W/m²).
 fn per_area(scene: &Enclosure, out: &mut [f64]) {
     for (row, patch) in out.chunks_mut(scene.bands()).zip(scene.patches()) {
-        row.iter_mut().for_each(|power| *power /= patch.area());
+        for power in row.iter_mut() {
+            *power /= patch.area();
+        }
     }
 }
 

@@ -37,7 +37,9 @@ impl ParticleTracing {
     ) -> u64 {
         let mut at = scene.lamp(draw.pair());
         let density = scene.lamps().pdf(at.patch);
-        power.iter_mut().for_each(|power| *power /= density);
+        for power in power.iter_mut() {
+            *power /= density;
+        }
         scale(power, scene.exitance(at.patch), 1.0);
         let start = power.iter().copied().fold(0.0, f64::max);
         let (mut rays, mut done) = (0, 0);

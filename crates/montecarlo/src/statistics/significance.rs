@@ -70,7 +70,9 @@ impl Suite {
     pub fn shape_p(scores: &[f64]) -> f64 {
         let law = Normal::standard();
         let mut counts = [0.0; 10];
-        scores.iter().for_each(|&z| counts[((law.cdf(z) * 10.0) as usize).min(9)] += 1.0);
+        for &z in scores {
+            counts[((law.cdf(z) * 10.0) as usize).min(9)] += 1.0;
+        }
         let expected = scores.len() as f64 / 10.0;
         let chi: f64 = counts.iter().map(|n: &f64| (n - expected).powi(2) / expected).sum();
         chi_square_p(chi, 9.0)

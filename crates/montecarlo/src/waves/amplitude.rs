@@ -103,7 +103,7 @@ impl AmplitudeParticles {
             let Some(area) = shown(problem, cell, receiver, angle) else { return ComplexVector::ZERO };
             let mut current = problem.first(cell);
             if problem.twice() {
-                current = current + self.lit_by_others(problem, cell, batch, (stream << 16) ^ number as u32);
+                current += self.lit_by_others(problem, cell, batch, (stream << 16) ^ number as u32);
             }
             problem.radiated(current, cell, area, receiver)
         };

@@ -95,7 +95,7 @@ fn arrived(
     let Some(area) = shown(problem, spot, receiver, angle) else { return ComplexVector::ZERO };
     let mut current = problem.first(spot);
     if problem.twice() {
-        current = current + guided(problem, spot, receiver, draw);
+        current += guided(problem, spot, receiver, draw);
     }
     problem.radiated(current, spot, area, receiver)
 }

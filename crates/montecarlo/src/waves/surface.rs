@@ -30,7 +30,7 @@ impl FieldEstimator for SurfaceSampling {
                 let from = problem.spot(draw.pair());
                 let second = problem.second(spot, from, area);
                 if second != ComplexVector::ZERO && problem.sees(spot, from) {
-                    current = current + second;
+                    current += second;
                 }
             }
             if current != ComplexVector::ZERO {
