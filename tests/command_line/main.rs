@@ -16,6 +16,7 @@ mod interrupt;
 mod memory;
 mod methods;
 mod results;
+mod stochastic;
 mod support;
 mod viewfactors;
 mod waves;

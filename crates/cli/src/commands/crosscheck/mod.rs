@@ -28,6 +28,10 @@ const ERROR: f64 = 0.01;
 /// Error of a row of form factors where neither the command line nor the scene asks for one: small beside what is compared.
 const FORM_FACTORS: f64 = 1e-5;
 
+/// What is missing where a continuous method is compared.
+const UNKNOWN: &str = "the error of the mesh is not estimated, so that it counts as a fault; give every face at least 4 elements \
+    (elements_per_face), or compare with jacobi, walk-gathering or walk-shooting";
+
 /// What follows the help of `crosscheck`.
 pub(crate) const EXAMPLES: &str = "\
 Examples:
@@ -102,6 +106,9 @@ fn run(args: &CrosscheckArgs, folder: &Path, stages: &mut Stages) -> Result<Endi
     let (problem, options) = load(&args.problem, args.log, folder, stages)?;
     let solution = compute(&problem, &options, stages)?;
     let (state, patchwise) = traced(args, &problem, stages)?;
+    if !patchwise && solution.mesh_error.is_none() {
+        stages.console.warn(UNKNOWN);
+    }
     let error = expected_error(&problem, &solution, !patchwise);
     let values = deterministic(&problem, &solution);
     let found = compare(
