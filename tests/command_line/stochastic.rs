@@ -18,39 +18,22 @@ fn trace(bench: &Bench, arguments: &[&str]) {
 #[test]
 fn traced_results_are_the_same_with_any_number_of_threads_and_in_two_goes() {
     let bench = Bench::new(&room(3));
-    for method in ["path", "jacobi"] {
+    for (method, batch, some, all) in [("path", "4", "64", "144"), ("jacobi", "1250", "16000", "40000")] {
+        let go = |samples: &str, folder: &str, more: &[&str]| {
+            let wanted = ["--method", method, "--samples", samples, "--batch", batch, "-o", folder];
+            trace(&bench, &[&wanted, more].concat());
+        };
         for threads in ["1", "2", "4"] {
-            trace(
-                &bench,
-                &[
-                    "--method",
-                    method,
-                    "--samples",
-                    "40000",
-                    "--batch",
-                    "1250",
-                    "--threads",
-                    threads,
-                    "-o",
-                    threads,
-                ],
-            );
+            go(all, threads, &["--threads", threads]);
             for name in ["faces.csv", "image.png"] {
                 let [one, many] =
                     ["1", threads].map(|folder| fs::read(bench.path(folder).join(name)).unwrap());
                 assert!(one == many, "{name} differs with {threads} threads and {method}");
             }
         }
-        let go = |samples, more: &[&str]| {
-            trace(
-                &bench,
-                &[&["--method", method, "--samples", samples, "--batch", "1250", "-o", "twice"], more]
-                    .concat(),
-            );
-        };
-        go("16000", &[]);
+        go(some, "twice", &[]);
         assert!(text(&bench, "twice/faces.csv") != text(&bench, "1/faces.csv"));
-        go("40000", &["--continue"]);
+        go(all, "twice", &["--continue"]);
         assert!(text(&bench, "twice/faces.csv") == text(&bench, "1/faces.csv"), "{method}");
     }
     // Another method cannot go on with it.

@@ -1,7 +1,7 @@
 //! What each way to reduce the variance is worth: variance × CPU seconds of one batch, of the mean irradiance of faces, with and without; and, of each method, CPU seconds to
 //! a standard error of 1 % (RMS over faces).
 //!
-//! `cargo run -p fredholm-montecarlo --example efficiency`, from the repository.
+//! `cargo run -p fredholm-montecarlo --example efficiency [-- SCENE …]`, from the repository.
 
 use fredholm_mesh::Patch;
 use fredholm_montecarlo::light::{Batch, Control, Estimator, METHODS, PathTracing, Switches, estimator};
@@ -16,16 +16,17 @@ mod common;
 use common::Clock;
 
 const BATCHES: u32 = 24;
+const SCENES: [&str; 3] = ["cornell_planar", "occluder", "leblond_room"];
 
 /// A scene and its faces.
 struct Ground {
-    name: &'static str,
+    name: String,
     scene: Enclosure,
     faces: Vec<usize>,
 }
 
 impl Ground {
-    fn load(name: &'static str) -> Result<Self, Box<dyn Error>> {
+    fn load(name: &str) -> Result<Self, Box<dyn Error>> {
         let scene = Scene::load(format!("scenes/{name}.toml"))?;
         let mesh = scene.mesh()?;
         let bands = scene.bands().len();
@@ -33,7 +34,7 @@ impl Ground {
         let enclosure = Enclosure::new(patches, bands, scene.reflectance(&mesh), scene.exitance(&mesh))?
             .blocked_by(mesh.occluders())?;
         let faces = (0..mesh.len()).map(|leaf| mesh.face_of(leaf)).collect();
-        Ok(Self { name, scene: enclosure, faces })
+        Ok(Self { name: name.to_owned(), scene: enclosure, faces })
     }
 
     fn groups(&self) -> Result<Groups, Box<dyn Error>> {
@@ -114,10 +115,13 @@ fn to_one_percent(ground: &Ground) -> Result<(), Box<dyn Error>> {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
+    let asked: Vec<String> = std::env::args().skip(1).collect();
+    let all = || SCENES.map(str::to_owned).to_vec();
+    let names = if asked.is_empty() { all() } else { asked };
     // One thread, so that its clock is the work's.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     pool.install(|| -> Result<(), String> {
-        for name in ["cornell_planar", "occluder", "furnace"] {
+        for name in &names {
             let ground = Ground::load(name).map_err(|error| error.to_string())?;
             reductions(&ground).map_err(|error| error.to_string())?;
             to_one_percent(&ground).map_err(|error| error.to_string())?;
