@@ -104,6 +104,55 @@ fn a_reference_holds_the_exact_values_of_a_furnace() {
     assert_eq!(record["format"], "fredholm-reference-1");
 }
 
+const PLATE: &str = r#"
+[wave]
+frequencies_hz = [1e9]
+
+[[source]]
+kind = "plane-wave"
+travel = [0, 1, 0]
+polarisation = [0, 0, 1]
+
+[[surface]]
+name = "plate"
+quad = [[-0.3, 0, -0.3], [0.3, 0, -0.3], [0.3, 0, 0.3], [-0.3, 0, 0.3]]
+
+[[receiver]]
+name = "points"
+points = [[0, -2, 0], [1, -2, 0.5], [0, 2, 1]]
+"#;
+
+/// The numbers of the columns whose titles begin with `sca_e` or are the standard error.
+fn fields(table: &str) -> Vec<Vec<f64>> {
+    let titles: Vec<&str> = table.lines().next().unwrap().split(',').collect();
+    let wanted = |at: usize| titles[at].starts_with("sca_e") || titles[at] == "standard_error";
+    let row = |line: &str| {
+        let cells = line.split(',').enumerate().filter(|(at, _)| wanted(*at));
+        cells.map(|(_, cell)| cell.parse().unwrap()).collect()
+    };
+    table.lines().skip(1).map(row).collect()
+}
+
+#[test]
+fn sampled_waves_agree_with_the_radiation_integral() {
+    let bench = Bench::new(PLATE);
+    let run = bench.run(&["waves", "scene.toml", "-o", "solved", "--quiet"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let exact = fields(&text(&bench, "solved/receivers.csv"));
+    for method in ["surface-sampling", "field-particles", "amplitude-particles"] {
+        trace(&bench, &["--method", method, "--samples", "131072", "--batch", "4096", "-o", method]);
+        for (found, exact) in fields(&text(&bench, &format!("{method}/receivers.csv"))).iter().zip(&exact) {
+            let gap = found.iter().zip(exact).take(6).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+            let size = exact.iter().take(6).map(|x| x * x).sum::<f64>().sqrt();
+            // The radiation integral is asked for to 1e-3; cells have a bias.
+            let allowed = if method == "amplitude-particles" { 0.03 } else { 2e-3 } * size;
+            assert!(gap < 4.0 * found[6] + allowed && found[6] < 0.1 * size, "{method}: {gap:e} {found:?}");
+        }
+    }
+    let refused = bench.run(&["trace", "scene.toml", "--method", "surface-sampling", "--to", "1%"]);
+    assert!(refused.code == 2 && refused.stderr.contains("--samples"), "{}", refused.stderr);
+}
+
 #[test]
 fn the_verbs_explain_themselves() {
     for verb in ["trace", "crosscheck", "reference"] {

@@ -85,8 +85,8 @@ pub use spectrum::{
 };
 pub use stochastic::{
     CROSSCHECK_FILES, CROSSCHECK_FORMAT, CrosscheckRecord, CrosscheckRow, FaceEstimates, REFERENCE_FILES,
-    REFERENCE_FORMAT, ReferenceRecord, ReferenceTable, WorstPlace, score_map, write_crosscheck,
-    write_crosscheck_csv, write_face_estimates, write_reference, write_score_histogram,
+    REFERENCE_FORMAT, ReferenceRecord, ReferenceTable, SampledField, WorstPlace, score_map, write_crosscheck,
+    write_crosscheck_csv, write_face_estimates, write_reference, write_sampled_fields, write_score_histogram,
 };
 pub use surfaces_csv::write_surfaces_csv;
 pub use tone::Exposure;

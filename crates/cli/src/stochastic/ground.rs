@@ -35,7 +35,9 @@ impl Ground {
         let mesh = stages.run("mesh", || scene.mesh().map_err(scene_failure))?;
         let warnings = scene.check(&mesh).map_err(scene_failure)?;
         let warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
-        warnings.iter().for_each(|warning| stages.console.warn(warning));
+        for warning in &warnings {
+            stages.console.warn(warning);
+        }
         Ok(Self { scene, mesh, warnings })
     }
 }

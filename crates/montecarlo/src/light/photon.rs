@@ -112,17 +112,18 @@ struct Map<'a> {
 }
 
 impl Map<'_> {
-    /// Area of a patch within the radius of a point of its plane, m².
+    /// Exposed area of a patch within the radius of a point of its plane, m²: what is buried receives no photons.
     fn piece(&self, scene: &Enclosure, patch: usize, point: Vec3) -> f64 {
         let outline = self.of.outlines[patch];
         let square = outline.centre.distance_squared(point);
-        if square >= (self.radius + outline.reach).powi(2) {
+        let area = if square >= (self.radius + outline.reach).powi(2) {
             0.0
         } else if self.radius > outline.reach && square <= (self.radius - outline.reach).powi(2) {
             outline.area
         } else {
             shared(&scene.patches()[patch], point, self.radius)
-        }
+        };
+        area * scene.exposed(patch)
     }
 
     /// Adds weight × Ê(y) to `out`.

@@ -1,7 +1,7 @@
 //! Scattered fields by random sampling: one and two bounces of physical optics on conductors.
 //!
 //! E(r) = ∫ 𝒢(r, q) J₁(q) dA + ∫∫ 𝒢(r, q) J₂(q ← q′) dA dA′, with 𝒢 the field of a current element, J₁ = 2 n × H_i on what is lit and
-//! J₂(q ← q′) = 2 n × H[J₁(q′) dA′](q) where q and q′ face and see each other (G. Viennot, thesis, Limoges 2012, ch. 3 and 4, in the electric form).
+//! J₂(q ← q′) = 2 n × H(q) of the element J₁(q′) dA′ where q and q′ face and see each other (G. Viennot, thesis, Limoges 2012, ch. 3 and 4, in the electric form).
 //! Fields add with their phases, so that errors fall as N^(−1/2) of the *whole* surface, not of what a specular zone leaves of it.
 //!
 //! | method | samples | weight |

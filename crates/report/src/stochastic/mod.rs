@@ -2,6 +2,7 @@
 
 mod crosscheck;
 mod faces;
+mod fields;
 mod histogram;
 mod map;
 mod reference;
@@ -11,6 +12,7 @@ pub use crosscheck::{
     write_crosscheck_csv,
 };
 pub use faces::{FaceEstimates, write_face_estimates};
+pub use fields::{SampledField, write_sampled_fields};
 pub use histogram::write_score_histogram;
 pub use map::score_map;
 pub use reference::{REFERENCE_FILES, REFERENCE_FORMAT, ReferenceRecord, ReferenceTable, write_reference};

@@ -98,7 +98,7 @@ pub(super) fn write(
 }
 
 /// Makes the folder and removes the mark of completeness of an older result.
-fn prepare(folder: &Path) -> Result<(), Failure> {
+pub(super) fn prepare(folder: &Path) -> Result<(), Failure> {
     let failed = |source| report_failure(ReportError::Write { path: folder.to_owned(), source });
     std::fs::create_dir_all(folder).map_err(failed)?;
     match std::fs::remove_file(folder.join("run.json")) {

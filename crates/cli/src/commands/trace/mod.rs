@@ -1,5 +1,6 @@
 //! `fredholm trace`.
 
+mod fields;
 mod files;
 
 use std::fs;
@@ -31,6 +32,7 @@ Examples:
   fredholm trace scenes/cornell_planar.toml --method path --to 1% -o out/traced
   fredholm trace room.toml --method jacobi --seconds 30
   fredholm trace room.toml --method path --control --samples 256
+  fredholm trace scenes/waves/plate.toml --method surface-sampling --samples 65536
   fredholm trace room.toml --method light --to 0.5% -o out/traced --continue
 
 All methods estimate the irradiance of the elements, with standard errors between batches.
@@ -38,13 +40,16 @@ Methods that gather (path, bidirectional, photon, walk-gathering) start at every
 others (light, walk-shooting, jacobi) at the lamps. walk-gathering, walk-shooting and jacobi
 estimate what `solve` solves, constants on elements; the others the continuous equation. Written
 are faces.csv with standard errors, image.png, trace.json, which --continue reads, and run.json
-last. Ctrl-C keeps what is there by then. Without --samples, --seconds and --to it is --to 1%.";
+last. Ctrl-C keeps what is there by then. Without --samples, --seconds and --to it is --to 1%.
+
+surface-sampling, field-particles and amplitude-particles sample the scattered field of a scene of
+waves, one bounce or two, with shadow = \"geometric\"; written are receivers.csv and run.json.";
 
 /// Options of `trace`.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct TraceArgs {
     /// Method
-    #[arg(long, value_name = "NAME", default_value = "path", value_parser = PossibleValuesParser::new(METHODS))]
+    #[arg(long, value_name = "NAME", default_value = "path", value_parser = PossibleValuesParser::new(METHODS.into_iter().chain(fields::METHODS)))]
     pub(crate) method: String,
     /// Folder for the results [default: out/<name of the scene file>]
     #[arg(long, short, value_name = "DIR")]
@@ -85,6 +90,8 @@ pub(crate) fn trace(args: &TraceArgs) -> Result<Ending, Failure> {
     let console = console::choose(args.log);
     let mut stages = Stages::new(&*console, &interrupt);
     let count = args.problem.threads.map_or_else(threads::default_count, usize::from);
+    let waves = fields::METHODS.contains(&args.method.as_str());
+    let run = if waves { fields::run } else { run };
     threads::pool(count)?.install(|| run(args, &folder, &mut stages))
 }
 
