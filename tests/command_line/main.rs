@@ -17,6 +17,7 @@ mod memory;
 mod methods;
 mod results;
 mod shoot;
+mod stochastic;
 mod support;
 mod viewfactors;
 mod waves;

@@ -9,7 +9,8 @@ use fredholm_discretisation::{DiscretisationError, discretisation};
 use serde::Serialize;
 
 use crate::commands::{
-    CompareArgs, SHOOT_EXAMPLES, ShootArgs, SpectrumArgs, ViewFactorsArgs, WAVES_EXAMPLES, WavesArgs,
+    CROSSCHECK_EXAMPLES, CompareArgs, CrosscheckArgs, REFERENCE_EXAMPLES, ReferenceArgs, SHOOT_EXAMPLES,
+    ShootArgs, SpectrumArgs, TRACE_EXAMPLES, TraceArgs, ViewFactorsArgs, WAVES_EXAMPLES, WavesArgs,
 };
 use crate::registry;
 use crate::size::Bytes;
@@ -26,6 +27,7 @@ Exit codes:
   3    not converged; the results are written all the same
   4    resources refused, such as memory
   5    a file could not be read or written, those that the scene names included
+  6    two solutions disagree
   130  interrupted";
 
 const SOLVE_EXAMPLES: &str = "\
@@ -151,6 +153,15 @@ pub(crate) enum Command {
     /// Compute the fields of a scene of waves: conductors and other bodies in a time-harmonic field
     #[command(after_help = WAVES_EXAMPLES)]
     Waves(WavesArgs),
+    /// Trace a scene by random paths, with standard errors
+    #[command(after_help = TRACE_EXAMPLES)]
+    Trace(TraceArgs),
+    /// Solve and trace a scene, and decide by statistics whether the two agree
+    #[command(after_help = CROSSCHECK_EXAMPLES)]
+    Crosscheck(CrosscheckArgs),
+    /// Write reference values with stated errors, to check other tracers with
+    #[command(after_help = REFERENCE_EXAMPLES)]
+    Reference(ReferenceArgs),
     /// Tell what made a result
     #[command(after_help = INFO_EXAMPLES)]
     Info(InfoArgs),
@@ -180,6 +191,9 @@ impl Command {
             Self::Spectrum(args) => args.log.log,
             Self::ViewFactors(args) => args.log.log,
             Self::Waves(args) => args.log.log,
+            Self::Trace(args) => args.log.log,
+            Self::Crosscheck(args) => args.log.log,
+            Self::Reference(args) => args.log.log,
             _ => LogFormat::Plain,
         }
     }

@@ -7,6 +7,7 @@
 //! | 3 | not converged; the results are written all the same |
 //! | 4 | resources refused |
 //! | 5 | a file could not be read or written |
+//! | 6 | two solutions disagree |
 //! | 130 | interrupted |
 
 use std::error::Error;
@@ -27,6 +28,7 @@ pub(crate) enum Ending {
     NotConverged = 3,
     Resources = 4,
     Files = 5,
+    Disagrees = 6,
     Interrupted = 130,
 }
 
@@ -119,6 +121,6 @@ mod tests {
     fn codes_are_those_promised() {
         let endings = [Ending::Done, Ending::Input, Ending::NotConverged, Ending::Resources, Ending::Files];
         assert_eq!(endings.map(Ending::code), [0, 2, 3, 4, 5]);
-        assert_eq!(Ending::Interrupted.code(), 130);
+        assert_eq!([Ending::Disagrees, Ending::Interrupted].map(Ending::code), [6, 130]);
     }
 }

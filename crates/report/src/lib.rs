@@ -16,6 +16,7 @@
 //! [`write_comparison`] writes a comparison of solvers: `compare.csv`, `compare_history.csv`, `compare.svg`, `compare.json`.
 //! [`write_spectrum`] writes an analysis of the matrix: `spectrum.csv`, `spectrum.svg`, `spectrum.json`.
 //! [`write_shooting`] writes progressive radiosity without a matrix: pictures on the way, `shots.csv`, `shots.svg`, the field so far, `shots.json`.
+//! [`write_face_estimates`], [`write_crosscheck`] and [`write_reference`] write what random paths came to, beside deterministic solutions.
 //! [`write_refinement`] writes a study of convergence: `converge.csv`, `converge.svg`, `converge.json`.
 //!
 //! Every file appears whole or not at all. Units: metres, W/m², W, seconds.
@@ -46,6 +47,7 @@ mod run;
 mod shading;
 mod shooting;
 mod spectrum;
+mod stochastic;
 mod surfaces_csv;
 mod svg;
 mod tone;
@@ -86,6 +88,11 @@ pub use shooting::{
 pub use spectrum::{
     BandSpectrum, Eigenvalues, SPECTRUM_FILES, SPECTRUM_FORMAT, SpectrumRecord, write_spectrum,
     write_spectrum_csv, write_spectrum_plot,
+};
+pub use stochastic::{
+    CROSSCHECK_FILES, CROSSCHECK_FORMAT, CrosscheckRecord, CrosscheckRow, FaceEstimates, REFERENCE_FILES,
+    REFERENCE_FORMAT, ReferenceRecord, ReferenceTable, SampledField, WorstPlace, score_map, write_crosscheck,
+    write_crosscheck_csv, write_face_estimates, write_reference, write_sampled_fields, write_score_histogram,
 };
 pub use surfaces_csv::write_surfaces_csv;
 pub use tone::Exposure;

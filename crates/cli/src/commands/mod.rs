@@ -4,13 +4,16 @@ mod check;
 mod compare;
 mod completions;
 mod converge;
+mod crosscheck;
 mod discretisations;
 mod info;
+mod reference;
 mod schema;
 mod shoot;
 mod solve;
 mod solvers;
 mod spectrum;
+mod trace;
 mod viewfactors;
 mod waves;
 
@@ -18,8 +21,11 @@ use crate::args::Command;
 use crate::failure::{Ending, Failure};
 
 pub(crate) use compare::CompareArgs;
+pub(crate) use crosscheck::{CrosscheckArgs, EXAMPLES as CROSSCHECK_EXAMPLES};
+pub(crate) use reference::{EXAMPLES as REFERENCE_EXAMPLES, ReferenceArgs};
 pub(crate) use shoot::{EXAMPLES as SHOOT_EXAMPLES, ShootArgs};
 pub(crate) use spectrum::SpectrumArgs;
+pub(crate) use trace::{EXAMPLES as TRACE_EXAMPLES, TraceArgs};
 pub(crate) use viewfactors::ViewFactorsArgs;
 pub(crate) use waves::{EXAMPLES as WAVES_EXAMPLES, WavesArgs};
 
@@ -34,6 +40,9 @@ pub(crate) fn execute(command: &Command) -> Result<Ending, Failure> {
         Command::Spectrum(args) => spectrum::spectrum(args),
         Command::ViewFactors(args) => viewfactors::view_factors(args),
         Command::Waves(args) => waves::waves(args),
+        Command::Trace(args) => trace::trace(args),
+        Command::Crosscheck(args) => crosscheck::crosscheck(args),
+        Command::Reference(args) => reference::reference(args),
         Command::Info(args) => info::info(args),
         Command::Schema => schema::schema(),
         Command::Completions(args) => completions::completions(args),

@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 
 use fredholm_linop::StopReason;
 use fredholm_report::{Camera, Exposure, Field, ReportError, RunRecord, View, write_all};
-use fredholm_scene::Scene;
 
 use crate::args::SolveArgs;
 use crate::failure::{Ending, Failure};
@@ -60,19 +59,19 @@ fn write(
         .and_then(|field| field.with_exitance(&exitance))
         .and_then(|field| field.with_exposed(&solution.exposed))
         .map_err(report_failure)?;
-    let view = view(&problem.scene, &field);
+    let view = view_of(problem.scene.camera(), &field);
     let view = if record.partial { quick(view) } else { view };
     write_all(folder, &field, record, &view).map_err(report_failure)
 }
 
 /// The scene's camera, or one that sees all of it.
-pub(super) fn view(scene: &Scene, field: &Field) -> View {
-    let Some(camera) = scene.camera() else { return View::framing(field) };
+pub(super) fn view_of(camera: Option<&fredholm_scene::Camera>, field: &Field) -> View {
+    let Some(camera) = camera else { return View::framing(field) };
     let exposure = camera.exposure.map_or(Exposure::Auto, Exposure::Fixed);
-    View { camera: pinhole(camera), exposure }
+    View { camera: view_camera(camera), exposure }
 }
 
-fn pinhole(camera: &fredholm_scene::Camera) -> Camera {
+pub(super) fn view_camera(camera: &fredholm_scene::Camera) -> Camera {
     Camera {
         eye: camera.eye,
         target: camera.target,

@@ -13,5 +13,6 @@ mod sources;
 
 pub(crate) use compute::compute;
 pub(crate) use files::write;
-pub(crate) use model::Model;
+pub(crate) use model::{Band, Method, Model};
+pub(crate) use receivers::Places;
 pub(crate) use record::Outcome;

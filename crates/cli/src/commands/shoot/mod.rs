@@ -16,7 +16,7 @@ use serde_json::json;
 pub(crate) use args::{EXAMPLES, ShootArgs};
 use light::Light;
 
-use super::solve::{report_failure, view};
+use super::solve::{report_failure, view_of};
 use crate::failure::{Ending, Failure};
 use crate::interrupt::Interrupt;
 use crate::options::ProblemOptions;
@@ -51,7 +51,8 @@ fn run(args: &ShootArgs, folder: &Path, stages: &mut Stages) -> Result<Ending, F
     let mut picture = |shots: u64, shooting: &MultilevelShooting| {
         let shown = shooting.with_ambient();
         light.field(&scene, shooting.received(), &shown, |field| {
-            write_shot_picture(folder, shots, field, &view(&scene.scene, field)).map_err(report_failure)
+            write_shot_picture(folder, shots, field, &view_of(scene.scene.camera(), field))
+                .map_err(report_failure)
         })
     };
     let run = Run { args, columns: &columns, places: &places };
@@ -67,7 +68,8 @@ fn run(args: &ShootArgs, folder: &Path, stages: &mut Stages) -> Result<Ending, F
     let means = light.means(shooting.received());
     stages.run("results", || {
         light.field(&scene, shooting.received(), &means, |field| {
-            write_shooting(folder, field, &record, &view(&scene.scene, field)).map_err(report_failure)
+            write_shooting(folder, field, &record, &view_of(scene.scene.camera(), field))
+                .map_err(report_failure)
         })
     })?;
     let record = ShootingRecord { timings: stages.timings().to_vec(), ..record };

@@ -1,0 +1,189 @@
+//! `fredholm trace`.
+
+mod fields;
+mod files;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+use fredholm_montecarlo::light::{Estimator, METHODS, PathTracing, estimator};
+use fredholm_montecarlo::{Enclosure, State};
+use serde::Serialize;
+
+use crate::args::{LogArgs, ProblemArgs};
+use crate::failure::{Ending, Failure};
+use crate::interrupt::Interrupt;
+use crate::options::{Options, ProblemOptions};
+use crate::problem::Problem;
+use crate::solution::compute;
+use crate::stages::Stages;
+use crate::stochastic::{Ground, PathArgs, TraceStopArgs, Tracer, control, enclosure, faces};
+use crate::summary::Lines;
+use crate::{console, folder, output, threads};
+
+/// Error that is asked for where nothing is.
+const ERROR: f64 = 0.01;
+
+/// What follows the help of `trace`.
+pub(crate) const EXAMPLES: &str = "\
+Examples:
+  fredholm trace scenes/cornell_planar.toml --method path --to 1% -o out/traced
+  fredholm trace room.toml --method jacobi --seconds 30
+  fredholm trace room.toml --method path --control --samples 256
+  fredholm trace scenes/waves/plate.toml --method surface-sampling --samples 65536
+  fredholm trace room.toml --method light --to 0.5% -o out/traced --continue
+
+All methods estimate the irradiance of the elements, with standard errors between batches.
+Methods that gather (path, bidirectional, photon, walk-gathering) start at every element, the
+others (light, walk-shooting, jacobi) at the lamps. walk-gathering, walk-shooting and jacobi
+estimate what `solve` solves, constants on elements; the others the continuous equation. Written
+are faces.csv with standard errors, image.png, trace.json, which --continue reads, and run.json
+last. Ctrl-C keeps what is there by then. Without --samples, --seconds and --to it is --to 1%.
+
+surface-sampling, field-particles and amplitude-particles sample the scattered field of a scene of
+waves, one bounce or two, with shadow = \"geometric\"; written are receivers.csv and run.json.";
+
+/// Options of `trace`.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct TraceArgs {
+    /// Method
+    #[arg(long, value_name = "NAME", default_value = "path", value_parser = PossibleValuesParser::new(METHODS.into_iter().chain(fields::METHODS)))]
+    pub(crate) method: String,
+    /// Folder for the results [default: out/<name of the scene file>]
+    #[arg(long, short, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
+    /// Solve the scene first and sample only what the discretisation missed (path, walk-gathering)
+    #[arg(long)]
+    pub(crate) control: bool,
+    /// Go on with the run in the folder
+    #[arg(long = "continue")]
+    pub(crate) go_on: bool,
+    #[command(flatten)]
+    pub(crate) paths: PathArgs,
+    #[command(flatten)]
+    pub(crate) stop: TraceStopArgs,
+    #[command(flatten)]
+    pub(crate) problem: ProblemArgs,
+    #[command(flatten)]
+    pub(crate) log: LogArgs,
+}
+
+/// The options in force.
+#[derive(Debug, Serialize)]
+struct InForce<'a> {
+    method: &'a str,
+    control: bool,
+    #[serde(flatten)]
+    paths: PathArgs,
+    #[serde(flatten)]
+    stop: TraceStopArgs,
+    threads: usize,
+}
+
+/// Traces a scene and writes the results.
+pub(crate) fn trace(args: &TraceArgs) -> Result<Ending, Failure> {
+    let interrupt = Interrupt::install(args.log.log)?;
+    let folder = folder::of(args.output.as_ref(), &args.problem.scene);
+    folder::probe(&folder)?;
+    let console = console::choose(args.log);
+    let mut stages = Stages::new(&*console, &interrupt);
+    let count = args.problem.threads.map_or_else(threads::default_count, usize::from);
+    let waves = fields::METHODS.contains(&args.method.as_str());
+    let run = if waves { fields::run } else { run };
+    threads::pool(count)?.install(|| run(args, &folder, &mut stages))
+}
+
+/// Without a wish, one percent.
+fn stop(args: &TraceArgs) -> TraceStopArgs {
+    let TraceStopArgs { samples, seconds, to } = args.stop;
+    let nothing = samples.is_none() && seconds.is_none() && to.is_none();
+    TraceStopArgs { to: if nothing { Some(ERROR) } else { to }, ..args.stop }
+}
+
+fn run(args: &TraceArgs, folder: &Path, stages: &mut Stages) -> Result<Ending, Failure> {
+    let ground = Ground::load(&args.problem, stages)?;
+    let scene = stages.run("exposure", || enclosure(&ground.scene, &ground.mesh))?;
+    let estimator = method(args, &scene, stages)?;
+    let stop = stop(args);
+    let tracer = Tracer::new(&scene, &*estimator, faces(&ground.mesh, &scene)?, &args.paths, &stop)?;
+    let mut state = if args.go_on { earlier(folder)? } else { tracer.start() };
+    stages.begin_saving()?;
+    let watched = Stages::new(stages.console, stages.interrupt);
+    stages.run("tracing", || tracer.run(&mut state, &watched))?;
+    worth_saving(&state)?;
+    let threads = args.problem.threads.map_or_else(threads::default_count, usize::from);
+    let options = InForce { method: &args.method, control: args.control, paths: args.paths, stop, threads };
+    let record = files::record(&ground, &state, &options, tracer.reason(&state), stages);
+    stages.run("results", || files::write(folder, &ground, &state, &record))?;
+    if !args.log.quiet {
+        summarise(folder, &state, &record.stop_reason)?;
+    }
+    Ok(if stages.interrupt.requested() { Ending::Interrupted } else { Ending::Done })
+}
+
+fn method(args: &TraceArgs, scene: &Enclosure, stages: &Stages) -> Result<Box<dyn Estimator>, Failure> {
+    let patchwise = args.method == "walk-gathering";
+    if !args.control {
+        let found = estimator(&args.method, scene, args.paths.switches());
+        return found
+            .ok_or_else(|| Failure::new(Ending::Input, format!("there is no method {}", args.method)));
+    }
+    if !patchwise && args.method != "path" {
+        let text = format!(
+            "{} takes no control variate\n  help: --method path, or leave out --control",
+            args.method
+        );
+        return Err(Failure::new(Ending::Input, text));
+    }
+    let known = control(scene, &solution(args, stages)?, patchwise)?;
+    let switches = args.paths.switches();
+    let tracing =
+        if patchwise { PathTracing::patchwise(switches) } else { PathTracing::continuous(switches) };
+    Ok(Box::new(tracing.with_control(known)))
+}
+
+fn solution(args: &TraceArgs, stages: &Stages) -> Result<crate::solution::Solution, Failure> {
+    let mut stages = Stages::part(stages.console, stages.interrupt, "control");
+    let problem = Problem::load(&args.problem, &mut stages)?;
+    let options = options(args, &problem.options, &problem);
+    compute(&problem, &options, &mut stages)
+}
+
+fn options(args: &TraceArgs, options: &ProblemOptions, problem: &Problem) -> Options {
+    let stop = crate::args::StopArgs { tolerance: None, max_iterations: None };
+    Options::new(options.clone(), stop, problem.scene.solve(), Path::new(""), args.log)
+}
+
+/// The state that an earlier run has left.
+fn earlier(folder: &Path) -> Result<State, Failure> {
+    let path = folder.join(files::STATE);
+    let text = fs::read_to_string(&path).map_err(|error| {
+        let text = format!(
+            "cannot read {}: {error}\n  help: without --continue the run starts anew",
+            path.display()
+        );
+        Failure::new(Ending::Files, text)
+    })?;
+    serde_json::from_str(&text).map_err(|error| {
+        Failure::new(Ending::Input, format!("{} is no state of a traced run: {error}", path.display()))
+    })
+}
+
+fn worth_saving(state: &State) -> Result<(), Failure> {
+    if state.batches() < 2 { Err(crate::interrupt::nothing_saved()) } else { Ok(()) }
+}
+
+fn summarise(folder: &Path, state: &State, reason: &str) -> Result<(), Failure> {
+    let mut lines = Lines::default();
+    lines.add("picture", folder.join("image.png").display().to_string());
+    let (batches, samples) = (state.batches(), state.samples);
+    lines.add(
+        "samples",
+        format!("{batches} batches of {samples}, {} paths, {} rays", state.paths, state.rays),
+    );
+    lines.add("result", reason);
+    lines.add("time", format!("{:.2} s of tracing", state.seconds));
+    output::print(&lines.under(&format!("{} → {}", state.method, folder.display())))
+}

@@ -1,0 +1,109 @@
+//! What paths are traced on: a meshed scene, and what a deterministic solution adds to it.
+
+use fredholm_coupling::exposed_shares;
+use fredholm_mesh::{Mesh, Patch};
+use fredholm_montecarlo::light::Control;
+use fredholm_montecarlo::{Enclosure, Groups};
+use fredholm_scene::Scene;
+
+use super::tracer::failure;
+use crate::args::ProblemArgs;
+use crate::failure::{Ending, Failure};
+use crate::memory;
+use crate::problem::{Problem, prepare, scene_failure};
+use crate::size::Bytes;
+use crate::solution::Solution;
+use crate::stages::Stages;
+
+/// Bytes an element takes: geometry, trees of boxes, materials.
+const PER_ELEMENT: u128 = 2048;
+/// Vectors of all elements and bands held at once: a wave of batches, sums, means and errors.
+const VECTORS: u128 = fredholm_montecarlo::WAVE as u128 + 10;
+
+/// A meshed scene.
+pub(crate) struct Ground {
+    pub(crate) scene: Scene,
+    pub(crate) mesh: Mesh,
+    pub(crate) warnings: Vec<String>,
+}
+
+impl Ground {
+    /// Reads, meshes and checks a scene; refuses it before memory is taken where it does not fit.
+    pub(crate) fn load(args: &ProblemArgs, stages: &mut Stages) -> Result<Self, Failure> {
+        let scene = stages.run("scene", || Scene::load(&args.scene).map_err(scene_failure))?;
+        admit(&scene, args.memory)?;
+        let mesh = stages.run("mesh", || scene.mesh().map_err(scene_failure))?;
+        let warnings = scene.check(&mesh).map_err(scene_failure)?;
+        let warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+        for warning in &warnings {
+            stages.console.warn(warning);
+        }
+        Ok(Self { scene, mesh, warnings })
+    }
+}
+
+fn admit(scene: &Scene, limit: Option<Bytes>) -> Result<(), Failure> {
+    let element = PER_ELEMENT + VECTORS * 8 * scene.bands().len() as u128;
+    let needed = Bytes(scene.predicted_elements().saturating_mul(element));
+    let limit = limit.unwrap_or_else(memory::default_limit);
+    if needed <= limit {
+        return Ok(());
+    }
+    let text = format!(
+        "this scene needs {needed}, but {limit} are allowed\n  \
+         help: use fewer elements (elements_per_face, divide, largest_edge in the scene), or allow more with --memory"
+    );
+    Err(Failure::new(Ending::Resources, text))
+}
+
+/// The scene as a tracer sees it.
+pub(crate) fn enclosure(scene: &Scene, mesh: &Mesh) -> Result<Enclosure, Failure> {
+    let patches: Vec<Patch> = mesh.patches().copied().collect();
+    let shares = exposed_shares(&mesh.patches().collect::<Vec<_>>(), &prepare(&patches)?);
+    let (rho, exitance) = (scene.reflectance(mesh), scene.exitance(mesh));
+    Enclosure::new(patches, scene.bands().len(), rho, exitance)
+        .and_then(|enclosure| enclosure.with_exposed(shares)?.blocked_by(mesh.occluders()))
+        .map_err(failure)
+}
+
+/// The input faces as groups of elements.
+pub(crate) fn faces(mesh: &Mesh, enclosure: &Enclosure) -> Result<Groups, Failure> {
+    let of = (0..mesh.len()).map(|leaf| mesh.face_of(leaf)).collect();
+    Groups::new(enclosure, of, mesh.faces().len()).map_err(failure)
+}
+
+/// A deterministic solution as a control variate.
+pub(crate) fn control(
+    enclosure: &Enclosure,
+    solution: &Solution,
+    patchwise: bool,
+) -> Result<Control, Failure> {
+    Control::new(enclosure, solution.means.irradiance.as_slice().to_vec(), patchwise).map_err(failure)
+}
+
+/// What a deterministic solution says of the error of the irradiance of each face and band, W/m²: the estimated errors of the form factors times the largest radiosity and, where asked for,
+/// the estimated error of the mesh, no less than the one of the whole scene has it.
+pub(crate) fn expected_error(problem: &Problem, solution: &Solution, meshed: bool) -> Vec<f64> {
+    let (mesh, bands) = (&problem.mesh, problem.scene.bands().len());
+    let radiosity = &solution.means.radiosity;
+    let exposed = |leaf: usize| solution.exposed[leaf].max(0.5);
+    let largest = |band: usize| {
+        (0..mesh.len()).map(|leaf| radiosity.row(leaf)[band] / exposed(leaf)).fold(0.0, f64::max)
+    };
+    let largest: Vec<f64> = (0..bands).map(largest).collect();
+    let row = |leaf: usize| solution.row_error.get(leaf).copied().unwrap_or(0.0);
+    let error = |at: usize| {
+        let (face, band) = (at / bands, at % bands);
+        let leaves = || mesh.leaves_of_face(face);
+        let mean = |value: &dyn Fn(usize) -> f64| {
+            leaves().map(|leaf| mesh.patch(leaf).area() * value(leaf)).sum::<f64>() / mesh.faces()[face].area
+        };
+        let factors = mean(&row) * largest[band];
+        let meshing = solution.mesh_error.as_ref().filter(|_| meshed).map_or(0.0, |error| {
+            let irradiance = mean(&|leaf| solution.means.irradiance.row(leaf)[band]);
+            error.per_face[at].max(error.relative_l2[band] * irradiance)
+        });
+        factors.hypot(meshing)
+    };
+    (0..mesh.faces().len() * bands).map(error).collect()
+}

@@ -1,0 +1,9 @@
+//! What the verbs that trace random paths have in common.
+
+mod args;
+mod ground;
+mod tracer;
+
+pub(crate) use args::{PathArgs, TraceStopArgs, share};
+pub(crate) use ground::{Ground, control, enclosure, expected_error, faces};
+pub(crate) use tracer::{Tracer, failure};

@@ -1,0 +1,269 @@
+//! The scene as a tracer sees it: flat patches that emit and reflect diffusely on their lit side.
+//!
+//! Irradiance at a point p of patch i: E(p) = ∫ κ(p, q) B(q) dA, κ = cosθ cosθ′ V/(π r²) (1/m²), B = M + ρ E. A ray with density cosθ/π from p
+//! meets q with density κ(p, q) per area. A ray that ends on a back, or nowhere, brings nothing. Lengths in metres, exitance in W/m².
+
+use crate::MonteCarloError;
+use crate::density::{Cosine, DirectionDensity, Frame, LampDensity, SurfaceDensity};
+use crate::locator::Locator;
+use fredholm_mesh::{Patch, Vec3};
+use fredholm_visibility::Occluders;
+use std::f64::consts::FRAC_1_PI;
+
+/// A point of a patch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Site {
+    /// The patch.
+    pub patch: usize,
+    /// The point, m.
+    pub point: Vec3,
+}
+
+/// Patches with their materials, ready to be traced.
+#[derive(Clone, Debug)]
+pub struct Enclosure {
+    patches: Vec<Patch>,
+    frames: Vec<Frame>,
+    surfaces: Vec<SurfaceDensity>,
+    occluders: Occluders,
+    locator: Option<Locator>,
+    bands: usize,
+    reflectance: Vec<f64>,
+    exitance: Vec<f64>,
+    exposed: Vec<f64>,
+    survival: Vec<f64>,
+    lamps: LampDensity,
+}
+
+impl Enclosure {
+    /// Takes patches, and for each and every band reflectance and exitance (W/m²), patch-major.
+    ///
+    /// # Errors
+    /// [`MonteCarloError::Length`] for vectors of other lengths, [`MonteCarloError::Range`] for a reflectance outside [0, 1) or an exitance that is
+    /// negative or not finite, [`MonteCarloError::NoLight`], [`MonteCarloError::Visibility`].
+    pub fn new(
+        patches: Vec<Patch>,
+        bands: usize,
+        reflectance: Vec<f64>,
+        exitance: Vec<f64>,
+    ) -> Result<Self, MonteCarloError> {
+        let values = patches.len() * bands;
+        check("the reflectance", "[0, 1)", &reflectance, values, bands, |x| (0.0..1.0).contains(&x))?;
+        check("the exitance", "[0, ∞)", &exitance, values, bands, |x| x >= 0.0 && x.is_finite())?;
+        let mean = |row: &[f64]| row.iter().sum::<f64>() / bands as f64;
+        let power: Vec<f64> = exitance
+            .chunks(bands.max(1))
+            .zip(&patches)
+            .map(|(row, patch)| mean(row) * patch.area())
+            .collect();
+        let lamps = LampDensity::new(&patches, &power).ok_or(MonteCarloError::NoLight)?;
+        let largest = |row: &[f64]| row.iter().copied().fold(0.0, f64::max);
+        Ok(Self {
+            frames: patches.iter().map(|patch| Frame::about(patch.normal())).collect(),
+            surfaces: patches.iter().map(SurfaceDensity::new).collect(),
+            occluders: Occluders::new(&patches)?,
+            locator: None,
+            survival: reflectance.chunks(bands.max(1)).map(largest).collect(),
+            exposed: vec![1.0; patches.len()],
+            bands,
+            reflectance,
+            exitance,
+            lamps,
+            patches,
+        })
+    }
+
+    /// The same traced against these pieces instead of the patches, which together they must cover: as few as possible, as a mesh has them.
+    ///
+    /// # Errors
+    /// [`MonteCarloError::Visibility`].
+    pub fn blocked_by(mut self, pieces: &[Patch]) -> Result<Self, MonteCarloError> {
+        self.occluders = Occluders::new(pieces)?;
+        self.locator = Some(Locator::new(pieces, &self.patches));
+        Ok(self)
+    }
+
+    /// The same with the exposed share of each patch, which patch-wise walks need: what is buried reflects nothing.
+    ///
+    /// # Errors
+    /// [`MonteCarloError::Length`], [`MonteCarloError::Range`] for a share outside [0, 1].
+    pub fn with_exposed(mut self, shares: Vec<f64>) -> Result<Self, MonteCarloError> {
+        check("the exposed share", "[0, 1]", &shares, self.patches.len(), 1, |x| (0.0..=1.0).contains(&x))?;
+        self.exposed = shares;
+        Ok(self)
+    }
+
+    /// The patches.
+    #[must_use]
+    pub fn patches(&self) -> &[Patch] {
+        &self.patches
+    }
+
+    /// Number of patches.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.patches.len()
+    }
+
+    /// Whether there is no patch; such an enclosure cannot be made.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.patches.is_empty()
+    }
+
+    /// Number of bands.
+    #[must_use]
+    pub fn bands(&self) -> usize {
+        self.bands
+    }
+
+    /// Reflectances of a patch, one a band.
+    #[must_use]
+    pub fn reflectance(&self, patch: usize) -> &[f64] {
+        &self.reflectance[patch * self.bands..(patch + 1) * self.bands]
+    }
+
+    /// Exitances of a patch, one a band, W/m².
+    #[must_use]
+    pub fn exitance(&self, patch: usize) -> &[f64] {
+        &self.exitance[patch * self.bands..(patch + 1) * self.bands]
+    }
+
+    /// Exposed share of a patch.
+    #[must_use]
+    pub fn exposed(&self, patch: usize) -> f64 {
+        self.exposed[patch]
+    }
+
+    /// Largest reflectance of a patch over the bands: the probability to go on that keeps weights from growing.
+    #[must_use]
+    pub fn survival(&self, patch: usize) -> f64 {
+        self.survival[patch]
+    }
+
+    /// The lamps.
+    #[must_use]
+    pub fn lamps(&self) -> &LampDensity {
+        &self.lamps
+    }
+
+    /// The even point of a patch.
+    #[must_use]
+    pub fn point(&self, patch: usize, numbers: [f64; 2]) -> Site {
+        Site { patch, point: self.surfaces[patch].sample(numbers) }
+    }
+
+    /// A point of a lamp, in proportion to exitance.
+    #[must_use]
+    pub fn lamp(&self, numbers: [f64; 2]) -> Site {
+        let (patch, point) = self.lamps.sample(numbers);
+        Site { patch, point }
+    }
+
+    /// The lit side that a ray with density cosθ/π meets first.
+    #[must_use]
+    pub fn bounce(&self, from: Site, numbers: [f64; 2]) -> Option<Site> {
+        self.ray(from, Cosine.sample(numbers))
+    }
+
+    /// The lit side that a ray meets first; the direction is in the frame of the patch, its normal z.
+    #[must_use]
+    pub fn ray(&self, from: Site, direction: Vec3) -> Option<Site> {
+        self.cast(from.point, self.world(from, direction))
+    }
+
+    /// A direction of the frame of a patch, in the axes of the scene.
+    #[must_use]
+    pub fn world(&self, at: Site, direction: Vec3) -> Vec3 {
+        self.frames[at.patch].world(direction)
+    }
+
+    /// Unit direction to a point, in the frame of the patch.
+    #[must_use]
+    pub fn direction(&self, from: Site, to: Vec3) -> Vec3 {
+        self.frames[from.patch].local((to - from.point).normalize_or_zero())
+    }
+
+    /// The lit side that a ray from anywhere meets first.
+    #[must_use]
+    pub fn cast(&self, origin: Vec3, direction: Vec3) -> Option<Site> {
+        let hit = self.occluders.closest(origin, direction, f64::INFINITY)?;
+        let patch = match &self.locator {
+            Some(locator) => locator.lit(hit.patch, hit.point, direction, &self.patches)?,
+            None => hit.patch,
+        };
+        let lit = self.patches[patch].normal().dot(direction) < 0.0;
+        lit.then_some(Site { patch, point: hit.point })
+    }
+
+    /// cosθ cosθ′/(π r²) between two sites that face each other, else 0; 1/m². Visibility is not asked.
+    #[must_use]
+    pub fn kernel(&self, p: Site, q: Site) -> f64 {
+        let between = q.point - p.point;
+        let square = between.length_squared();
+        let out = self.patches[p.patch].normal().dot(between);
+        let back = -self.patches[q.patch].normal().dot(between);
+        if out > 0.0 && back > 0.0 { out * back * FRAC_1_PI / (square * square) } else { 0.0 }
+    }
+
+    /// Whether nothing lies between two sites.
+    #[must_use]
+    pub fn sees(&self, p: Site, q: Site) -> bool {
+        self.occluders.unoccluded(p.point, q.point)
+    }
+}
+
+fn check(
+    what: &'static str,
+    range: &'static str,
+    values: &[f64],
+    expected: usize,
+    bands: usize,
+    valid: impl Fn(f64) -> bool,
+) -> Result<(), MonteCarloError> {
+    if values.len() != expected {
+        return Err(MonteCarloError::Length { what, expected, found: values.len() });
+    }
+    match values.iter().position(|&value| !valid(value)) {
+        Some(at) => Err(MonteCarloError::Range { what, patch: at / bands, value: values[at], range }),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::points::{Draw, Key, PointSet};
+    use fredholm_mesh::{Cutting, Lines, MeshBuilder, Shape};
+
+    /// Rays against the undivided pieces find what rays against the patches find.
+    #[test]
+    fn few_pieces_answer_like_many_patches() {
+        let mut builder = MeshBuilder::default();
+        let shapes = [
+            (Shape::Box { min: Vec3::ZERO, max: Vec3::new(1.0, 2.0, 1.5), inward: true }, 5),
+            (Shape::Box { min: Vec3::splat(0.3), max: Vec3::splat(0.6), inward: false }, 3),
+            (Shape::Sphere { centre: Vec3::new(0.5, 1.5, 0.7), radius: 0.2, inward: false, segments: 7 }, 1),
+        ];
+        for (surface, (shape, n)) in shapes.iter().enumerate() {
+            builder.surface("s", surface);
+            let lines = if *n > 1 { Lines::Counts { u: *n, v: *n } } else { Lines::Whole };
+            builder.add(shape, &Cutting { lines, ..Cutting::default() }).unwrap();
+        }
+        let mesh = builder.build();
+        let patches: Vec<Patch> = mesh.patches().copied().collect();
+        let n = patches.len();
+        assert!(mesh.occluders().len() < n);
+        let fine = Enclosure::new(patches, 1, vec![0.5; n], vec![1.0; n]).unwrap();
+        let coarse = fine.clone().blocked_by(mesh.occluders()).unwrap();
+        for sample in 0..4000 {
+            let mut draw =
+                Draw::new(PointSet::Independent, Key { seed: 3, batch: 0, stream: 0 }, sample, 4000);
+            let at = fine.point(sample as usize % n, draw.pair());
+            let numbers = draw.pair();
+            let [a, b] = [&fine, &coarse].map(|scene| scene.bounce(at, numbers));
+            assert_eq!(a.map(|site| site.patch), b.map(|site| site.patch), "{sample}");
+            assert!(a.zip(b).is_none_or(|(a, b)| a.point.distance(b.point) < 1e-9));
+        }
+    }
+}

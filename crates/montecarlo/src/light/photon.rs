@@ -1,0 +1,174 @@
+//! Photon maps: particles are kept where they arrive, and read where gathering rays end.
+//!
+//! E(p) is direct light plus E[ρ Ê(y)] over rays of density cosθ/π, Ê(y) = Σ φ/N(y) over the photons within r of y on the same flat piece, N(y) the area of that piece within r: constant irradiance is
+//! read without bias up to its edges. H. W. Jensen, Eurographics workshop on rendering 1996, doi:10.1007/978-3-7091-7484-5_3.
+//! The bias of Ê falls with r², which shrinks from batch to batch, r²_{b+1} = r²_b (b + α)/(b + 1), so that the mean of the batches tends to the true value
+//! (C. Knaus, M. Zwicker, ACM Trans. Graph. 30 (2011) 25, doi:10.1145/1966394.1966404).
+
+use super::disc::shared;
+use super::kd_tree::KdTree;
+use super::particles::ParticleTracing;
+use super::path::PathTracing;
+use super::{Batch, Estimator, PointEstimator, Switches, Work, gather};
+use crate::points::Draw;
+use crate::{Enclosure, Site};
+use fredholm_mesh::{Patch, Vec3};
+use std::f64::consts::PI;
+
+/// α of the shrinking radius.
+const ALPHA: f64 = 2.0 / 3.0;
+/// Photons that a disc of the first radius holds, were they spread evenly.
+const HELD: f64 = 50.0;
+/// Cosine between normals, and distance from the plane over the size of the scene, up to which patches are one flat piece.
+const PARALLEL: f64 = 1.0 - 1e-9;
+const COPLANAR: f64 = 1e-7;
+/// Streams of photons lie beyond those of patches.
+const PHOTONS: u32 = 1 << 30;
+
+/// The photon map with final gathering.
+pub struct PhotonMap {
+    switches: Switches,
+    photons: u32,
+    /// Neighbours of each patch on its flat piece, within the first radius.
+    near: Vec<Vec<u32>>,
+    outlines: Vec<Outline>,
+    radius: f64,
+}
+
+/// What decides whether a patch lies wholly inside or outside a disc.
+#[derive(Clone, Copy)]
+struct Outline {
+    centre: Vec3,
+    reach: f64,
+    area: f64,
+}
+
+impl Outline {
+    fn new(patch: &Patch) -> Self {
+        let centre = patch.centroid();
+        let reach = patch.corners().iter().map(|p| p.distance(centre)).fold(0.0, f64::max);
+        Self { centre, reach, area: patch.area() }
+    }
+}
+
+impl PhotonMap {
+    /// A map of so many photons a batch.
+    #[must_use]
+    pub fn new(scene: &Enclosure, switches: Switches, photons: u32) -> Self {
+        let area: f64 = scene.patches().iter().map(Patch::area).sum();
+        let radius = (HELD * area / (PI * f64::from(photons.max(1)))).sqrt();
+        let outlines: Vec<Outline> = scene.patches().iter().map(Outline::new).collect();
+        let near = neighbours(scene, &outlines, radius);
+        Self { switches, photons: photons.max(1), near, outlines, radius }
+    }
+
+    /// Radius of a batch, m.
+    #[must_use]
+    pub fn radius(&self, batch: u32) -> f64 {
+        let square = (1..=batch).fold(1.0, |square, b| square * (f64::from(b) - 1.0 + ALPHA) / f64::from(b));
+        self.radius * f64::sqrt(square)
+    }
+
+    fn map(&self, scene: &Enclosure, batch: &Batch) -> (Map<'_>, Work) {
+        let tracing = ParticleTracing::continuous(self.switches);
+        let (mut sites, mut powers, mut rays) = (Vec::new(), Vec::new(), 0);
+        let mut power = vec![0.0; scene.bands()];
+        for photon in 0..self.photons {
+            power.fill(1.0 / f64::from(self.photons));
+            let mut keep = |at: Site, power: &[f64]| {
+                sites.push(at);
+                powers.extend_from_slice(power);
+            };
+            rays += tracing.fly(scene, &mut batch.draw(PHOTONS, photon, self.photons), &mut power, &mut keep);
+        }
+        let tree = KdTree::new(sites.iter().map(|site| site.point));
+        let work = Work { paths: u64::from(self.photons), rays };
+        (Map { of: self, radius: self.radius(batch.number), sites, powers, tree }, work)
+    }
+}
+
+/// Patches whose nearest points may lie within the radius, on the same plane and the same side.
+fn neighbours(scene: &Enclosure, outlines: &[Outline], radius: f64) -> Vec<Vec<u32>> {
+    let patches = scene.patches();
+    let size = patches.iter().flat_map(Patch::corners).map(|p| p.length()).fold(0.0, f64::max);
+    let near = |i: usize, j: usize| {
+        let (a, b) = (&patches[i], &patches[j]);
+        let between = outlines[j].centre - outlines[i].centre;
+        a.normal().dot(b.normal()) > PARALLEL
+            && between.dot(a.normal()).abs() < COPLANAR * size
+            && between.length() < radius + outlines[i].reach + outlines[j].reach
+    };
+    let row = |i: usize| (0..patches.len()).filter(|&j| near(i, j)).map(|j| j as u32).collect();
+    (0..patches.len()).map(row).collect()
+}
+
+/// The photons of a batch.
+struct Map<'a> {
+    of: &'a PhotonMap,
+    radius: f64,
+    sites: Vec<Site>,
+    powers: Vec<f64>,
+    tree: KdTree,
+}
+
+impl Map<'_> {
+    /// Exposed area of a patch within the radius of a point of its plane, m²: what is buried receives no photons.
+    fn piece(&self, scene: &Enclosure, patch: usize, point: Vec3) -> f64 {
+        let outline = self.of.outlines[patch];
+        let square = outline.centre.distance_squared(point);
+        let area = if square >= (self.radius + outline.reach).powi(2) {
+            0.0
+        } else if self.radius > outline.reach && square <= (self.radius - outline.reach).powi(2) {
+            outline.area
+        } else {
+            shared(&scene.patches()[patch], point, self.radius)
+        };
+        area * scene.exposed(patch)
+    }
+
+    /// Adds weight × Ê(y) to `out`.
+    fn read(&self, scene: &Enclosure, at: Site, weight: &[f64], out: &mut [f64]) {
+        let near = &self.of.near[at.patch];
+        let piece: f64 = near.iter().map(|&i| self.piece(scene, i as usize, at.point)).sum();
+        if piece <= 0.0 {
+            return;
+        }
+        let bands = scene.bands();
+        self.tree.within(at.point, self.radius, &mut |photon| {
+            let photon = photon as usize;
+            // The list is in order.
+            if near.binary_search(&(self.sites[photon].patch as u32)).is_ok() {
+                let power = &self.powers[photon * bands..(photon + 1) * bands];
+                super::add(out, weight, power, 1.0 / piece);
+            }
+        });
+    }
+}
+
+impl PointEstimator for Map<'_> {
+    fn irradiance(&self, scene: &Enclosure, at: Site, draw: &mut Draw, out: &mut [f64]) -> u64 {
+        let direct = PathTracing::continuous(self.of.switches);
+        let mut weight = vec![1.0; scene.bands()];
+        let (next, rays) = direct.first(scene, at, draw, &mut weight, out);
+        if let Some(next) = next {
+            self.read(scene, next, &weight, out);
+        }
+        rays
+    }
+}
+
+impl Estimator for PhotonMap {
+    fn name(&self) -> &'static str {
+        "photon"
+    }
+
+    fn gathers(&self) -> bool {
+        true
+    }
+
+    fn batch(&self, scene: &Enclosure, batch: &Batch, out: &mut [f64]) -> Work {
+        let (map, mut work) = self.map(scene, batch);
+        work += gather(scene, batch, &map, out);
+        work
+    }
+}

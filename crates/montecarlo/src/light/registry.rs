@@ -1,0 +1,26 @@
+//! The methods by name.
+
+use super::{Bidirectional, Estimator, ParticleTracing, PathTracing, PhotonMap, StochasticJacobi, Switches};
+use crate::Enclosure;
+
+/// Names of all methods.
+pub const METHODS: [&str; 7] =
+    ["path", "light", "bidirectional", "photon", "walk-gathering", "walk-shooting", "jacobi"];
+
+/// Photons of a batch of the photon map.
+const PHOTONS: u32 = 8192;
+
+/// The method of this name, without a control variate.
+#[must_use]
+pub fn estimator(name: &str, scene: &Enclosure, switches: Switches) -> Option<Box<dyn Estimator>> {
+    Some(match name {
+        "path" => Box::new(PathTracing::continuous(switches)),
+        "light" => Box::new(ParticleTracing::continuous(switches)),
+        "bidirectional" => Box::new(Bidirectional::new(switches)),
+        "photon" => Box::new(PhotonMap::new(scene, switches, PHOTONS)),
+        "walk-gathering" => Box::new(PathTracing::patchwise(switches)),
+        "walk-shooting" => Box::new(ParticleTracing::patchwise(switches)),
+        "jacobi" => Box::new(StochasticJacobi),
+        _ => return None,
+    })
+}

@@ -1,0 +1,93 @@
+//! Every estimator of light against closed forms: means, and the distribution of their scores over many seeds.
+
+// A test that cannot run should panic, in its helpers too.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{SQUARES, furnace, method, run, samples, single, sphere, squares, whole};
+use fredholm_montecarlo::light::METHODS;
+use fredholm_montecarlo::statistics::{Suite, normal_score};
+use fredholm_montecarlo::{Enclosure, Groups};
+
+/// A scene and the exact mean irradiance of its group 0.
+struct Case {
+    name: &'static str,
+    scene: Enclosure,
+    groups: fn(&Enclosure) -> Groups,
+    exact: f64,
+    patchwise: bool,
+}
+
+impl Case {
+    fn methods(&self) -> impl Iterator<Item = &'static str> {
+        METHODS.into_iter().filter(|name| !self.patchwise || method(name, &self.scene).patchwise())
+    }
+}
+
+fn cases() -> Vec<Case> {
+    let mirrored = SQUARES / (1.0 - 0.64 * SQUARES * SQUARES);
+    vec![
+        // B = M/(1 − ρ), E = B.
+        Case { name: "furnace", scene: furnace(0.5), groups: whole, exact: 2.0, patchwise: false },
+        // E = F M.
+        Case { name: "squares", scene: squares(0.0), groups: single, exact: SQUARES, patchwise: false },
+        // E = F (M + ρ F ρ E), one constant a square.
+        Case { name: "mirrored", scene: squares(0.8), groups: single, exact: mirrored, patchwise: true },
+        // All that is emitted is absorbed: Σ A E (1 − ρ) = Σ A M, half of the area emitting 1.
+        Case { name: "sphere", scene: sphere(0.6, 5), groups: whole, exact: 0.5 / 0.4, patchwise: false },
+    ]
+}
+
+/// Scores of the first group over seeds.
+fn scores(case: &Case, name: &str, seeds: u64) -> Vec<f64> {
+    let estimator = method(name, &case.scene);
+    let samples = samples(&*estimator, &case.scene, 8);
+    let score = |seed: u64| {
+        let state = run(&case.scene, &*estimator, (case.groups)(&case.scene), (seed, samples, 32));
+        let (mean, error) = (state.groups.mean()[0], state.groups.standard_errors()[0]);
+        normal_score((mean - case.exact) / error, 31.0)
+    };
+    (0..seeds).map(score).collect()
+}
+
+fn check(seeds: u64, level: f64) {
+    for case in cases() {
+        for name in case.methods() {
+            let scores = scores(&case, name, seeds);
+            let (suite, shape) = (Suite::new(&scores), Suite::shape_p(&scores));
+            println!(
+                "{:8} {name:15} mean {:+.3} (p {:.3}), variance {:.3} (p {:.3}), shape p {shape:.3}",
+                case.name, suite.mean, suite.mean_p, suite.variance, suite.variance_p
+            );
+            assert!(suite.mean_p > level && suite.variance_p > level, "{} {name}", case.name);
+        }
+    }
+}
+
+#[test]
+fn scores_over_seeds_have_mean_0_and_variance_1() {
+    check(10, 1e-4);
+}
+
+/// The whole: `cargo test --release -p fredholm-montecarlo --test exact -- --ignored --nocapture`.
+#[test]
+#[ignore = "a thousand seeds take minutes"]
+fn scores_over_a_thousand_seeds_have_mean_0_and_variance_1() {
+    check(1000, 1e-3);
+}
+
+#[test]
+fn means_are_within_three_standard_errors_of_the_exact_values() {
+    for case in cases() {
+        for name in case.methods() {
+            let estimator = method(name, &case.scene);
+            let samples = samples(&*estimator, &case.scene, 32);
+            let state = run(&case.scene, &*estimator, (case.groups)(&case.scene), (1, samples, 64));
+            let (mean, error) = (state.groups.mean()[0], state.groups.standard_errors()[0]);
+            let exact = case.exact;
+            println!("{:8} {name:15} {mean:.6} ± {error:.1e}, exact {exact:.6}", case.name);
+            assert!((mean - exact).abs() < 3.0 * error && error < 0.03 * exact, "{} {name}", case.name);
+        }
+    }
+}

@@ -1,0 +1,179 @@
+//! The files of a comparison of a deterministic with a stochastic solution. `crosscheck.json` is written last.
+//!
+//! Columns of `crosscheck.csv`: `face, surface, cx, cy, cz, area, band`, then `deterministic`, `deterministic_error`, `stochastic`, `standard_error` (irradiance, W/m²),
+//! `z`, `p`, and `significant` (1 or 0).
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use fredholm_mesh::Mesh;
+use serde::Serialize;
+
+use super::faces::{COLUMNS, place};
+use super::histogram::write_score_histogram;
+use crate::csv::{numbers, quoted};
+use crate::outputs::prepare;
+use crate::{Picture, ReportError, Timing, write_atomically};
+
+/// Names of the files, in the order in which they are written.
+pub const CROSSCHECK_FILES: [&str; 4] =
+    ["crosscheck.csv", "crosscheck.svg", "crosscheck.png", "crosscheck.json"];
+/// Name and version of the format of the record.
+pub const CROSSCHECK_FORMAT: &str = "fredholm-crosscheck-1";
+
+/// One face in one band; irradiances in W/m².
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CrosscheckRow {
+    /// The face.
+    pub face: usize,
+    /// The band.
+    pub band: usize,
+    /// Deterministic value and what it says of its error.
+    pub deterministic: [f64; 2],
+    /// Stochastic value and its standard error.
+    pub stochastic: [f64; 2],
+    /// Normal score of the difference.
+    pub z: f64,
+    /// Two-sided probability of it.
+    pub p: f64,
+    /// Whether it is significant.
+    pub significant: bool,
+}
+
+/// A place far apart.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WorstPlace {
+    /// The face.
+    pub face: usize,
+    /// Its surface.
+    pub surface: String,
+    /// Its centroid, m.
+    pub centroid: [f64; 3],
+    /// The band.
+    pub band: String,
+    /// The score.
+    pub z: f64,
+    /// Difference over the deterministic value.
+    pub relative: f64,
+}
+
+/// What a comparison came to.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CrosscheckRecord {
+    /// Format of the record: [`CROSSCHECK_FORMAT`].
+    pub format: String,
+    /// Version of the program.
+    pub version: String,
+    /// Path of the scene file, as it was given.
+    pub scene: String,
+    /// SHA-256 of the scene and the files it names, in hexadecimal.
+    pub scene_sha256: String,
+    /// `agree` or `disagree`.
+    pub verdict: String,
+    /// Level of significance.
+    pub significance: f64,
+    /// Correction for many tests.
+    pub correction: String,
+    /// Faces times bands.
+    pub places: usize,
+    /// How many are significantly apart.
+    pub significant: usize,
+    /// Mean of the scores, and mean of their squares.
+    pub score_mean: f64,
+    /// Mean of the squares of the scores.
+    pub score_variance: f64,
+    /// The worst places.
+    pub worst: Vec<WorstPlace>,
+    /// Stochastic method.
+    pub method: String,
+    /// Seed.
+    pub seed: u64,
+    /// Batches.
+    pub batches: u64,
+    /// Relative standard error, RMS over the faces.
+    pub relative_error: f64,
+    /// Deterministic solver.
+    pub solver: String,
+    /// Wall-clock time of each stage.
+    pub timings: Vec<Timing>,
+}
+
+/// Writes the table.
+///
+/// # Errors
+/// What `out` reports.
+pub fn write_crosscheck_csv(
+    mesh: &Mesh,
+    bands: &[String],
+    rows: &[CrosscheckRow],
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    writeln!(
+        out,
+        "{COLUMNS},band,deterministic,deterministic_error,stochastic,standard_error,z,p,significant"
+    )?;
+    for row in rows {
+        place(mesh, row.face, out)?;
+        write!(out, ",{}", quoted(&bands[row.band]))?;
+        numbers(out, row.deterministic.into_iter().chain(row.stochastic).chain([row.z, row.p]))?;
+        writeln!(out, ",{}", u8::from(row.significant))?;
+    }
+    Ok(())
+}
+
+/// Writes all files into a folder, which is made where it does not exist, and returns their paths.
+///
+/// # Errors
+/// [`ReportError::Write`] with the file or folder that could not be written. The folder then has no `crosscheck.json`.
+pub fn write_crosscheck(
+    folder: &Path,
+    mesh: &Mesh,
+    bands: &[String],
+    (rows, map): (&[CrosscheckRow], &Picture),
+    record: &CrosscheckRecord,
+) -> Result<Vec<PathBuf>, ReportError> {
+    let paths = CROSSCHECK_FILES.map(|name| folder.join(name));
+    prepare(folder, &paths[3])?;
+    let scores: Vec<f64> = rows.iter().map(|row| row.z).collect();
+    let title = format!(
+        "{}: {} of {} places apart, mean z {:.2}, mean z² {:.2}",
+        record.verdict, record.significant, record.places, record.score_mean, record.score_variance
+    );
+    write_atomically(&paths[0], |out| write_crosscheck_csv(mesh, bands, rows, out))?;
+    write_atomically(&paths[1], |out| write_score_histogram(&title, &scores, out))?;
+    write_atomically(&paths[2], |out| map.write_png(out))?;
+    write_atomically(&paths[3], |out| json(record, out))?;
+    Ok(paths.to_vec())
+}
+
+pub(super) fn json(record: &impl Serialize, out: &mut dyn Write) -> io::Result<()> {
+    serde_json::to_writer_pretty(&mut *out, record)?;
+    writeln!(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::csv::tests::parse;
+    use crate::field::tests::{names, sample};
+
+    #[test]
+    fn rows_say_where_and_how_far() {
+        let (mesh, bands) = (sample(), names(&["r, deep", "g"]));
+        let row = CrosscheckRow {
+            face: 2,
+            band: 0,
+            deterministic: [2.0, 0.5],
+            stochastic: [3.0, 0.25],
+            z: 1.5,
+            p: 0.125,
+            significant: true,
+        };
+        let mut out = Vec::new();
+        write_crosscheck_csv(&mesh, &bands, &[row], &mut out).unwrap();
+        let rows = parse(&String::from_utf8(out).unwrap());
+        assert_eq!(rows[0].len(), rows[1].len());
+        assert_eq!(rows[1][..2], ["2", "<lamp & shade>"]);
+        assert_eq!(rows[1][6..], ["r, deep", "2", "0.5", "3", "0.25", "1.5", "0.125", "1"]);
+    }
+}

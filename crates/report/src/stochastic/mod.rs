@@ -1,0 +1,18 @@
+//! Results of random paths, and of comparing them with deterministic ones.
+
+mod crosscheck;
+mod faces;
+mod fields;
+mod histogram;
+mod map;
+mod reference;
+
+pub use crosscheck::{
+    CROSSCHECK_FILES, CROSSCHECK_FORMAT, CrosscheckRecord, CrosscheckRow, WorstPlace, write_crosscheck,
+    write_crosscheck_csv,
+};
+pub use faces::{FaceEstimates, write_face_estimates};
+pub use fields::{SampledField, write_sampled_fields};
+pub use histogram::write_score_histogram;
+pub use map::score_map;
+pub use reference::{REFERENCE_FILES, REFERENCE_FORMAT, ReferenceRecord, ReferenceTable, write_reference};
