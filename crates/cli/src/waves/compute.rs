@@ -6,9 +6,9 @@ use fredholm_linop::{MultiVector, Observer, Progress, SecondKind, Solver, Stop, 
 use fredholm_mesh::Vec3;
 use fredholm_report::{FarRow, WaveCurrents, WaveRow};
 use fredholm_waves::{
-    Bounced, Complex64, ComplexVector, Current, Discretisation, EdgeCurrents, FacetCurrents, FarField, Field,
-    PhysicalOptics, Radiator, Sampling, Scatterer, Shadow, Source, System, TOLERANCE, WaveError,
-    cross_section, incident,
+    Bounced, Bounces, Complex64, ComplexVector, Current, Discretisation, EdgeCurrents, FacetCurrents,
+    FarField, Field, PhysicalOptics, Radiator, Sampling, Scatterer, Shadow, Source, System, TOLERANCE, Wave,
+    WaveError, cross_section, incident,
 };
 use rayon::prelude::*;
 
@@ -103,12 +103,16 @@ impl Task<'_> {
         let frequency = self.band.wave.frequency();
         let known = Solved { frequency, facets, residuals: Vec::new(), reason: None };
         match &self.model.method {
-            Method::Bounces(1) => Ok((None, FacetCurrents::sampled(self.scatterer, self.first), known)),
-            Method::Bounces(bounces) => {
+            Method::Bounces(1) => {
+                let residuals = self.first_residuals(interrupt)?;
+                let currents = FacetCurrents::sampled(self.scatterer, self.first);
+                Ok((None, currents, Solved { residuals, ..known }))
+            }
+            Method::Bounces(count) => {
                 let system = self.lazy()?;
-                let x = bounced(&system, &system.right_hand_side(&[self.first]), *bounces);
+                let (x, residuals) = self.bounced(&system, *count, interrupt)?;
                 let currents = system.currents(&x, 0);
-                Ok((Some(system), currents, known))
+                Ok((Some(system), currents, Solved { residuals, ..known }))
             }
             Method::Solver { solver, tolerance, max_iterations } => {
                 let system = self.system(&**solver)?;
@@ -125,25 +129,35 @@ impl Task<'_> {
             .map_err(|error| self.refused(&error))
     }
 
-    /// Stored for the solvers that read entries, where it fits.
     fn system(&self, solver: &dyn Solver<Complex64>) -> Result<System<'_>, Failure> {
-        let facets = self.scatterer.facets().len();
-        let needed = u128::from(System::bytes(facets)) + u128::from(solver.bytes(2 * facets, 1));
-        let limit = memory::default_limit();
-        if needed > limit.0 && PRODUCTS_ONLY.contains(&solver.name()) {
-            return self.lazy();
+        coupled(self.model, self.scatterer, self.band.wave, self.variant.shadow, &[solver])
+    }
+
+    /// The currents after so many bounces, and the residual after each.
+    fn bounced(
+        &self,
+        system: &System<'_>,
+        count: usize,
+        interrupt: &Interrupt,
+    ) -> Result<(Vectors, Vec<f64>), Failure> {
+        let b = system.right_hand_side(&[self.first]);
+        let mut poll =
+            || if interrupt.requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+        let sum = Bounces::sum(system.coupling(), &b, count, &mut poll).ok_or_else(nothing_saved)?;
+        let residuals: Vec<f64> = sum.residuals.iter().filter_map(|lanes| lanes.first().copied()).collect();
+        // A next bounce stronger than what comes from the sources: the sum is no approximation of anything.
+        match residuals.last() {
+            Some(&last) if count > 1 && last > 1.0 => Err(diverged("the sum of bounces", &residuals)),
+            _ => Ok((sum.x, residuals)),
         }
-        if needed > limit.0 {
-            let text = format!(
-                "the coupling of {facets} facets and the solver {} would take {}, and {limit} may be used\n  help: mesh coarser, or take a solver that needs no matrix: {}",
-                solver.name(),
-                Bytes(needed),
-                PRODUCTS_ONLY.join(", ")
-            );
-            return Err(Failure::new(Ending::Resources, text));
+    }
+
+    /// What a second bounce would add, where errors are to be estimated and there is one.
+    fn first_residuals(&self, interrupt: &Interrupt) -> Result<Vec<f64>, Failure> {
+        if self.model.coarse.is_none() || self.scatterer.check_conductor("").is_err() {
+            return Ok(Vec::new());
         }
-        System::stored(self.scatterer, self.band.wave, self.variant.shadow, Discretisation::Nystrom)
-            .map_err(|error| self.refused(&error))
+        Ok(self.bounced(&self.lazy()?, 1, interrupt)?.1)
     }
 
     fn solve(
@@ -260,15 +274,31 @@ impl Task<'_> {
     }
 }
 
-/// x after so many bounces.
-fn bounced(system: &System<'_>, b: &Vectors, bounces: usize) -> Vectors {
-    let mut x = b.clone();
-    for _ in 1..bounces {
-        let mut product = Vectors::zeros(x.dim(), x.lanes());
-        system.coupling().apply(&x, &mut product);
-        x = Vectors::from_fn(x.dim(), x.lanes(), |i, l| b.row(i)[l] + product.row(i)[l]);
+/// The system for these solvers: stored where it fits, else evaluated anew for those that ask for products only.
+pub(super) fn coupled<'a>(
+    model: &Model,
+    scatterer: &'a Scatterer,
+    wave: Wave,
+    shadow: Shadow,
+    solvers: &[&dyn Solver<Complex64>],
+) -> Result<System<'a>, Failure> {
+    let facets = scatterer.facets().len();
+    let solver = solvers.iter().map(|solver| solver.bytes(2 * facets, 1)).max().unwrap_or(0);
+    let needed = u128::from(System::bytes(facets)) + u128::from(solver);
+    let limit = memory::default_limit();
+    let refused = |error: WaveError| model.refused(&error, None);
+    if needed <= limit.0 {
+        return System::stored(scatterer, wave, shadow, Discretisation::Nystrom).map_err(refused);
     }
-    x
+    if solvers.iter().all(|solver| PRODUCTS_ONLY.contains(&solver.name())) {
+        return System::lazy(scatterer, wave, shadow).map_err(refused);
+    }
+    let text = format!(
+        "the coupling of {facets} facets and its solver would take {}, and {limit} may be used\n  help: mesh coarser, or take a solver that needs no matrix: {}",
+        Bytes(needed),
+        PRODUCTS_ONLY.join(", ")
+    );
+    Err(Failure::new(Ending::Resources, text))
 }
 
 fn diverged(solver: &str, residuals: &[f64]) -> Failure {
@@ -281,7 +311,7 @@ fn diverged(solver: &str, residuals: &[f64]) -> Failure {
 }
 
 /// Stops the solver at a signal.
-struct Watch<'a>(&'a Interrupt);
+pub(super) struct Watch<'a>(pub(super) &'a Interrupt);
 
 impl<T> Observer<T> for Watch<'_> {
     fn observe(&mut self, _: &Progress<'_, T>) -> ControlFlow<()> {

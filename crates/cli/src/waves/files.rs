@@ -5,10 +5,12 @@ use std::io;
 use std::path::Path;
 
 use fredholm_report::{
-    FieldMap, MapQuantity, ReportError, Timing, WaveRow, write_atomically, write_currents_vtu, write_far_csv,
-    write_polar_plot, write_receivers_csv, write_receivers_npz,
+    FieldMap, MapQuantity, ReportError, Timing, WaveResiduals, WaveRow, write_atomically, write_currents_vtu,
+    write_far_csv, write_polar_plot, write_receivers_csv, write_receivers_npz, write_residuals_csv,
+    write_residuals_plot,
 };
 
+use super::model::Method;
 use super::receivers::{Layout, Places, Receiver};
 use super::{Model, Outcome};
 
@@ -33,11 +35,28 @@ pub(crate) fn write(
         put("far.csv", &|out| write_far_csv(&names, &outcome.far, out))?;
     }
     put("currents.vtu", &|out| write_currents_vtu(&model.geometry.mesh, &outcome.currents, out))?;
+    residuals(folder, model, outcome)?;
     for (index, receiver) in model.receivers.iter().enumerate() {
         pictures(folder, model, outcome, (index, receiver))?;
     }
     let record = outcome.record(model, timings);
     put(LAST, &|out| serde_json::to_writer_pretty(out, &record).map_err(io::Error::other))
+}
+
+/// The residual after every iteration or bounce, where there is any.
+fn residuals(folder: &Path, model: &Model, outcome: &Outcome) -> Result<(), ReportError> {
+    let known = outcome.solved.iter().filter(|solved| !solved.residuals.is_empty());
+    let lines: Vec<WaveResiduals> = known
+        .map(|solved| WaveResiduals { frequency: solved.frequency, values: solved.residuals.clone() })
+        .collect();
+    if lines.is_empty() {
+        return Ok(());
+    }
+    let across = if let Method::Bounces(_) = model.method { "bounces" } else { "iterations" };
+    write_atomically(&folder.join("residuals.csv"), |out| write_residuals_csv(&lines, out))?;
+    write_atomically(&folder.join("residuals.svg"), |out| {
+        write_residuals_plot(&model.method.name(), across, &lines, out)
+    })
 }
 
 fn prepare(folder: &Path) -> Result<(), ReportError> {

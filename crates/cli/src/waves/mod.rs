@@ -1,5 +1,6 @@
 //! Scenes of waves: their files, what they mean, and what is written.
 
+mod compare;
 mod compute;
 mod estimate;
 mod files;
@@ -9,9 +10,12 @@ mod located;
 mod model;
 mod receivers;
 mod record;
+mod registry;
 mod sources;
 
+pub(crate) use compare::{compare, failed};
 pub(crate) use compute::compute;
 pub(crate) use files::write;
 pub(crate) use model::Model;
 pub(crate) use record::Outcome;
+pub(crate) use registry::{build, names};

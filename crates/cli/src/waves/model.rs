@@ -189,18 +189,10 @@ fn asked(text: &SceneText, entry: &WaveEntry) -> Result<Method, Failure> {
         return Err(text.fault(span, "the tolerance is no number between 0 and 1", "write 1e-6, say"));
     }
     let max_iterations = entry.max_iterations.unwrap_or(ITERATIONS) as usize;
-    let mut known = solvers();
-    let names: Vec<&str> = known.iter().map(|solver| solver.name()).collect();
-    let Some(at) = names.iter().position(|known| known == name.get_ref()) else {
-        let what = format!("unknown solver `{}`", name.get_ref());
-        return Err(text.fault(name.span(), what, format!("known: {}", names.join(", "))));
-    };
-    Ok(Method::Solver { solver: known.swap_remove(at), tolerance, max_iterations })
-}
-
-/// All solvers of complex systems.
-fn solvers() -> Vec<Box<dyn Solver<Complex64>>> {
-    let mut all: Vec<Box<dyn Solver<Complex64>>> = fredholm_iterative::solvers();
-    all.extend(fredholm_direct::solvers());
-    all
+    let solver = super::registry::build(name.get_ref()).map_err(|error| {
+        let message = error.to_string();
+        let (what, help) = message.split_once("; ").unwrap_or((&message, "correct the name or the options"));
+        text.fault(name.span(), what, help)
+    })?;
+    Ok(Method::Solver { solver, tolerance, max_iterations })
 }

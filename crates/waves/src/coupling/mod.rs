@@ -19,6 +19,7 @@
 //!
 //! Flat facets do not couple with themselves. J in A/m, M in V/m, lengths in metres.
 
+mod bounces;
 mod dense;
 mod galerkin;
 mod nystrom;
@@ -27,6 +28,7 @@ mod sides;
 mod system;
 mod view;
 
+pub use bounces::{Bounces, spectral_radius};
 pub use galerkin::galerkin;
 pub use nystrom::NystromCoupling;
 pub use system::{Bounced, Discretisation, System};
