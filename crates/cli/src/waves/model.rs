@@ -129,7 +129,7 @@ fn sources(text: &SceneText, entry: &SceneEntry) -> Result<Vec<Placed>, Failure>
 /// The method, where the treatment of shadows has a use for it.
 fn method(text: &SceneText, entry: &toml::Spanned<WaveEntry>, shadow: Shadow) -> Result<Method, Failure> {
     let found = asked(text, entry.get_ref())?;
-    if let (Shadow::Exact, Method::Bounces(_)) = (shadow, &found) {
+    if let (true, Method::Bounces(_)) = (shadow.is_equation(), &found) {
         let what = "the exact treatment is an equation, whose first bounces mean nothing by themselves";
         return Err(text.fault(entry.span(), what, "add solver = \"lu\", say"));
     }
@@ -159,7 +159,7 @@ fn shadow(text: &SceneText, entry: &WaveEntry) -> Result<Shadow, Failure> {
 
 fn edge_currents(text: &SceneText, entry: &WaveEntry, shadow: Shadow) -> Result<bool, Failure> {
     let Some(wanted) = &entry.edge_currents else { return Ok(false) };
-    if *wanted.get_ref() && matches!(shadow, Shadow::Exact | Shadow::Thesis) {
+    if *wanted.get_ref() && (shadow.is_equation() || shadow == Shadow::Thesis) {
         let what = "edge currents complete physical optics, not this treatment of shadows";
         return Err(text.fault(
             wanted.span(),

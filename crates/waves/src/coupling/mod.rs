@@ -14,7 +14,7 @@
 //! |---|---|---|---|
 //! | geometric | closed 0, sheet 1 | closed 0, sheet −1 | 0 |
 //! | radiated | 1 | closed 0, sheet −1 | 1 |
-//! | exact | 1 | 1 | 1 |
+//! | exact, exact-dual | 1 | 1 | 1 |
 //! | thesis | −1 | closed 0, sheet 1 | 1 |
 //!
 //! Flat facets do not couple with themselves. J in A/m, M in V/m, lengths in metres.
@@ -22,6 +22,7 @@
 mod bounces;
 mod dense;
 mod galerkin;
+mod inner;
 mod nystrom;
 mod pair;
 mod sides;

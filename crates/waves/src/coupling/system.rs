@@ -1,5 +1,6 @@
 //! The system x = b + K x of a scatterer, its sources and a treatment of shadows, and the currents it gives.
 
+use super::inner::{FACTOR, inner_points};
 use super::nystrom::tangential;
 use super::{NystromCoupling, galerkin};
 use crate::rule::{points_for_phase, regular};
@@ -81,9 +82,14 @@ impl<'a> System<'a> {
     pub fn right_hand_side(&self, incident: &[&PhysicalOptics<'_>]) -> MultiVector<Complex64> {
         let facets = self.scatterer.facets();
         let mut b = MultiVector::zeros(2 * facets.len(), incident.len());
+        // A second surface that does not fit is refused with the coupling.
+        let inner = inner_points(self.scatterer, &self.wave, self.shadow).ok().flatten();
         for (l, optics) in incident.iter().enumerate() {
             for (i, facet) in facets.iter().enumerate() {
-                let current = self.known(self.sampled(*optics, i, facet));
+                let mut current = self.known(self.sampled(*optics, i, facet));
+                if let Some(points) = &inner {
+                    current += optics.on(facet, points[i]) * FACTOR;
+                }
                 (b.row_mut(2 * i)[l], b.row_mut(2 * i + 1)[l]) =
                     (current.dot(facet.tangents[0]), current.dot(facet.tangents[1]));
             }

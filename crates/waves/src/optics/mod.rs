@@ -29,6 +29,9 @@ pub enum Shadow {
     Radiated,
     /// C: the magnetic field equation of closed bodies, of which physical optics is the first term.
     Exact,
+    /// C, and j times the same on a second surface λ/4 inside, which takes away the resonances of the interior (R. A.
+    /// Shore, A. D. Yaghjian, IEEE Trans. Antennas Propag. 53 (2005) 1706, doi:10.1109/TAP.2005.846804).
+    ExactDual,
     /// M = 2 n × E on lit facets, n turned to the observer for every pair, and nothing blocks (G. Viennot, thesis,
     /// Limoges 2012, eq. 2.15 and annex B).
     Thesis,
@@ -36,7 +39,7 @@ pub enum Shadow {
 
 impl Shadow {
     /// All treatments.
-    pub const ALL: [Self; 4] = [Self::Geometric, Self::Radiated, Self::Exact, Self::Thesis];
+    pub const ALL: [Self; 5] = [Self::Geometric, Self::Radiated, Self::Exact, Self::ExactDual, Self::Thesis];
 
     /// The name in scene files.
     #[must_use]
@@ -45,8 +48,15 @@ impl Shadow {
             Self::Geometric => "geometric",
             Self::Radiated => "radiated",
             Self::Exact => "exact",
+            Self::ExactDual => "exact-dual",
             Self::Thesis => "thesis",
         }
+    }
+
+    /// Whether it is an equation for the currents, without approximation: of closed conductors.
+    #[must_use]
+    pub fn is_equation(self) -> bool {
+        matches!(self, Self::Exact | Self::ExactDual)
     }
 
     /// To which side the currents radiate.
@@ -61,12 +71,12 @@ impl Shadow {
     /// [`WaveError::NotClosed`] for a sheet and the exact equation, [`WaveError::NotConductor`] for other materials and
     /// the exact equation or the thesis.
     pub fn check(self, scatterer: &Scatterer) -> Result<(), WaveError> {
-        if matches!(self, Self::Exact | Self::Thesis) {
+        if self.is_equation() || self == Self::Thesis {
             scatterer.check_conductor("this treatment of shadows")?;
         }
         let sheet = scatterer.facets().iter().position(|facet| facet.kind == Kind::Sheet);
         match sheet {
-            Some(facet) if self == Self::Exact => Err(WaveError::NotClosed { facet }),
+            Some(facet) if self.is_equation() => Err(WaveError::NotClosed { facet }),
             _ => Ok(()),
         }
     }
@@ -105,6 +115,11 @@ impl<'a> PhysicalOptics<'a> {
     #[must_use]
     pub fn lit(&self, source: usize) -> &[f64] {
         &self.lit[source]
+    }
+
+    /// 2 n × H_i at the point `p` (m), n that of a facet.
+    pub(crate) fn on(&self, facet: &Facet, p: Vec3) -> ComplexVector {
+        crate::source::incident(self.sources, &self.wave, p).h.crossed_by(facet.normal) * 2.0
     }
 
     /// These currents, ready to radiate.
@@ -148,7 +163,7 @@ fn conductor(normal: Vec3, incident: Field, shadow: Shadow) -> Current {
 fn lit(scatterer: &Scatterer, origin: Origin, shadow: Shadow) -> Vec<f64> {
     let side = |facet: &Facet| match shadow {
         // It knows no lit side: all facets carry the current of their own normal.
-        Shadow::Exact => 1.0,
+        Shadow::Exact | Shadow::ExactDual => 1.0,
         // The sign of the side is in the gate.
         Shadow::Thesis => facet.side(origin.seen_from(facet.centre)).abs(),
         Shadow::Radiated => facet.side(origin.seen_from(facet.centre)),
