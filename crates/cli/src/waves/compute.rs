@@ -154,7 +154,7 @@ impl Task<'_> {
 
     /// What a second bounce would add, where errors are to be estimated and there is one.
     fn first_residuals(&self, interrupt: &Interrupt) -> Result<Vec<f64>, Failure> {
-        if self.model.coarse.is_none() || self.scatterer.check_conductor("").is_err() {
+        if self.model.coarse.is_none() {
             return Ok(Vec::new());
         }
         Ok(self.bounced(&self.lazy()?, 1, interrupt)?.1)
@@ -282,9 +282,9 @@ pub(super) fn coupled<'a>(
     shadow: Shadow,
     solvers: &[&dyn Solver<Complex64>],
 ) -> Result<System<'a>, Failure> {
-    let facets = scatterer.facets().len();
-    let solver = solvers.iter().map(|solver| solver.bytes(2 * facets, 1)).max().unwrap_or(0);
-    let needed = u128::from(System::bytes(facets)) + u128::from(solver);
+    let (facets, unknowns) = (scatterer.facets().len(), System::unknowns(scatterer));
+    let solver = solvers.iter().map(|solver| solver.bytes(unknowns, 1)).max().unwrap_or(0);
+    let needed = u128::from(System::bytes(scatterer)) + u128::from(solver);
     let limit = memory::default_limit();
     let refused = |error: WaveError| model.refused(&error, None);
     if needed <= limit.0 {

@@ -23,6 +23,7 @@ mod bounces;
 mod dense;
 mod galerkin;
 mod inner;
+mod material;
 mod nystrom;
 mod pair;
 mod sides;
@@ -31,6 +32,7 @@ mod view;
 
 pub use bounces::{Bounces, spectral_radius};
 pub use galerkin::galerkin;
+pub use material::MaterialCoupling;
 pub use nystrom::NystromCoupling;
 pub use system::{Bounced, Discretisation, System};
 

@@ -23,7 +23,7 @@ use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// Cosine between normals above which two facets are of one smooth surface.
-const SMOOTH: f64 = 0.7;
+pub(super) const SMOOTH: f64 = 0.7;
 
 /// Observers that one task takes.
 const CHUNK: usize = 64;

@@ -139,15 +139,26 @@ impl SurfaceCurrent for PhysicalOptics<'_> {
             if side != 0.0 {
                 let incident = source.field(&self.wave, q);
                 let towards = source.origin().seen_from(q);
-                let current = match material {
-                    Material::Conductor => conductor(shape.normal * side, incident, self.shadow),
-                    material => fresnel(material, &self.wave, shape, side, towards, incident),
-                };
+                let current = response(material, &self.wave, (shape, side, towards), incident, self.shadow);
                 sum.j += current.j;
                 sum.m += current.m;
             }
         }
         sum
+    }
+}
+
+/// The current that a wave makes on a facet that it meets on `side`, coming from the direction `towards` its source.
+pub(crate) fn response(
+    material: &Material,
+    wave: &Wave,
+    (facet, side, towards): (&Facet, f64, Vec3),
+    incident: Field,
+    shadow: Shadow,
+) -> Current {
+    match material {
+        Material::Conductor => conductor(facet.normal * side, incident, shadow),
+        material => fresnel(material, wave, facet, side, towards, incident),
     }
 }
 
