@@ -96,7 +96,7 @@ pub enum WaveError {
     CentresOnly,
     /// A model of perfect conductors meets another material.
     #[error(
-        "{what} knows perfect conductors only, but facet {facet} is of another material; ask for one bounce with geometric shadows"
+        "{what} knows perfect conductors only, but facet {facet} is of another material; ask for geometric or radiated shadows, without edge currents"
     )]
     NotConductor {
         /// The model.

@@ -1,16 +1,14 @@
 //! Solvers compared on the coupling of a scene: iterations, residuals, the spectral radius, and which of them diverge.
 
-use std::ops::ControlFlow;
-
-use fredholm_linop::{MultiVector, Report, SecondKind, Solver, Stop, StopReason};
+use fredholm_linop::{Report, SecondKind, Solver, Stop, StopReason};
 use fredholm_report::{
     ComparisonHistory, ComparisonRun, WAVE_COMPARISON_FORMAT, WaveComparison, WaveComparisonCase,
 };
 use fredholm_waves::{Complex64, PhysicalOptics, Source, System, WaveError, spectral_radius};
 use serde_json::json;
 
-use super::compute::{Watch, coupled};
 use super::model::Band;
+use super::solving::{Vectors, Watch, coupled, go_on};
 use super::{Model, registry};
 use crate::failure::{Ending, Failure};
 use crate::interrupt::{Interrupt, nothing_saved};
@@ -19,8 +17,6 @@ use crate::stages::Stages;
 
 /// Applications that the spectral radius is estimated from.
 const STEPS: usize = 200;
-
-type Vectors = MultiVector<Complex64>;
 
 /// Runs the solvers, given as texts such as `gmres:restart=100`, at every frequency.
 pub(crate) fn compare(
@@ -84,8 +80,7 @@ fn build(text: &str) -> Result<Box<dyn Solver<Complex64>>, Failure> {
 }
 
 fn radius(system: &System<'_>, interrupt: &Interrupt) -> Result<f64, Failure> {
-    let mut poll = || if interrupt.requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
-    spectral_radius(system.coupling(), STEPS, &mut poll).ok_or_else(nothing_saved)
+    spectral_radius(system.coupling(), STEPS, &mut || go_on(interrupt)).ok_or_else(nothing_saved)
 }
 
 fn run(

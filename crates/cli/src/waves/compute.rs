@@ -1,33 +1,24 @@
 //! The currents and the fields at all frequencies.
 
-use std::ops::ControlFlow;
-
-use fredholm_linop::{MultiVector, Observer, Progress, SecondKind, Solver, Stop, StopReason};
 use fredholm_mesh::Vec3;
 use fredholm_report::{FarRow, WaveCurrents, WaveRow};
 use fredholm_waves::{
-    Bounced, Bounces, Complex64, ComplexVector, Current, Discretisation, EdgeCurrents, FacetCurrents,
-    FarField, Field, PhysicalOptics, Radiator, Sampling, Scatterer, Shadow, Source, System, TOLERANCE, Wave,
-    WaveError, cross_section, incident,
+    Bounced, ComplexVector, Current, EdgeCurrents, FacetCurrents, FarField, Field, PhysicalOptics, Radiator,
+    Sampling, Scatterer, Shadow, Source, System, TOLERANCE, WaveError, cross_section, incident,
 };
 use rayon::prelude::*;
 
 use super::estimate;
 use super::geometry::Geometry;
-use super::model::{Band, Method};
+use super::model::Band;
+use super::monostatic::Sweep;
 use super::receivers::{Places, Receiver};
 use super::record::Solved;
+use super::solving::{self, Solution};
 use super::{Model, Outcome};
-use crate::failure::{Ending, Failure};
-use crate::interrupt::{Interrupt, nothing_saved};
-use crate::memory;
-use crate::size::Bytes;
+use crate::failure::Failure;
+use crate::interrupt::Interrupt;
 use crate::stages::Stages;
-
-/// Solvers that ask for products only: where the matrix does not fit, they compute it anew each time.
-const PRODUCTS_ONLY: [&str; 4] = ["neumann", "gmres", "bicgstab", "anderson"];
-
-type Vectors = MultiVector<Complex64>;
 
 /// Computes everything that the model asks for.
 pub(crate) fn compute(model: &Model, stages: &mut Stages) -> Result<Outcome, Failure> {
@@ -35,11 +26,11 @@ pub(crate) fn compute(model: &Model, stages: &mut Stages) -> Result<Outcome, Fai
     let mut outcome = variant(model, as_asked, stages)?;
     if let Some(coarse) = &model.coarse {
         let coarser = variant(model, Variant { name: ", long edges", geometry: coarse, ..as_asked }, stages)?;
-        outcome.mesh_errors = estimate::mesh(&outcome.near, &coarser.near);
+        outcome.mesh_errors = estimate::mesh(&outcome, &coarser);
         if estimate::has_magnetic_form(model) {
             let shadow = Shadow::Thesis;
             let magnetic = variant(model, Variant { name: ", magnetic form", shadow, ..as_asked }, stages)?;
-            outcome.form_errors = estimate::form(&outcome.near, &magnetic.near);
+            outcome.form_errors = estimate::form(&outcome, &magnetic);
         }
     }
     Ok(outcome)
@@ -82,11 +73,20 @@ impl Task<'_> {
     fn carry_out(&self, stages: &mut Stages, outcome: &mut Outcome) -> Result<(), Failure> {
         let name = format!("{} MHz{}", self.band.wave.frequency() / 1e6, self.variant.name);
         let interrupt = stages.interrupt;
-        let (system, currents, solved) =
-            stages.run(&format!("currents at {name}"), || self.currents(interrupt))?;
-        stages.run(&format!("fields at {name}"), || self.radiate(system.as_ref(), &currents, outcome))?;
-        outcome.currents.push(WaveCurrents { name, values: currents.values().iter().map(current).collect() });
-        outcome.solved.push(solved);
+        let system = stages.run(&format!("coupling at {name}"), || self.system())?;
+        let system = system.as_ref();
+        if self.model.has_bistatic() {
+            let (currents, solved) =
+                stages.run(&format!("currents at {name}"), || self.currents(system, interrupt))?;
+            stages.run(&format!("fields at {name}"), || self.radiate(system, &currents, outcome))?;
+            let values = currents.values().iter().map(current).collect();
+            outcome.currents.push(WaveCurrents { name: name.clone(), values });
+            outcome.solved.push(solved);
+        }
+        // Estimates are made of the fields at receivers only.
+        if self.variant.name.is_empty() && self.model.has_sweep() {
+            stages.run(&format!("sweep at {name}"), || self.sweep(system, interrupt, outcome))?;
+        }
         Ok(())
     }
 
@@ -94,96 +94,61 @@ impl Task<'_> {
         self.model.refused(error, None)
     }
 
-    /// The currents at the centres of the facets, and the system they solve where there is more than one bounce.
+    fn system(&self) -> Result<Option<System<'_>>, Failure> {
+        solving::system(self.model, self.scatterer, self.band.wave, self.variant.shadow)
+    }
+
+    /// The currents at the centres of the facets.
     fn currents(
         &self,
+        system: Option<&System<'_>>,
         interrupt: &Interrupt,
-    ) -> Result<(Option<System<'_>>, FacetCurrents, Solved), Failure> {
-        let facets = self.scatterer.facets().len();
-        let frequency = self.band.wave.frequency();
-        let known = Solved { frequency, facets, residuals: Vec::new(), reason: None };
-        match &self.model.method {
-            Method::Bounces(1) => {
-                let residuals = self.first_residuals(interrupt)?;
-                let currents = FacetCurrents::sampled(self.scatterer, self.first);
-                Ok((None, currents, Solved { residuals, ..known }))
-            }
-            Method::Bounces(count) => {
-                let system = self.lazy()?;
-                let (x, residuals) = self.bounced(&system, *count, interrupt)?;
-                let currents = system.currents(&x, 0);
-                Ok((Some(system), currents, Solved { residuals, ..known }))
-            }
-            Method::Solver { solver, tolerance, max_iterations } => {
-                let system = self.system(&**solver)?;
-                let stop = Stop { tolerance: *tolerance, max_iterations: *max_iterations };
-                let (x, solved) = self.solve(&system, &**solver, &stop, interrupt)?;
-                let currents = system.currents(&x, 0);
-                Ok((Some(system), currents, Solved { facets, ..solved }))
-            }
-        }
-    }
-
-    fn lazy(&self) -> Result<System<'_>, Failure> {
-        System::lazy(self.scatterer, self.band.wave, self.variant.shadow)
-            .map_err(|error| self.refused(&error))
-    }
-
-    fn system(&self, solver: &dyn Solver<Complex64>) -> Result<System<'_>, Failure> {
-        coupled(self.model, self.scatterer, self.band.wave, self.variant.shadow, &[solver])
-    }
-
-    /// The currents after so many bounces, and the residual after each.
-    fn bounced(
-        &self,
-        system: &System<'_>,
-        count: usize,
-        interrupt: &Interrupt,
-    ) -> Result<(Vectors, Vec<f64>), Failure> {
+    ) -> Result<(FacetCurrents, Solved), Failure> {
+        let Some(system) = system else {
+            let residuals = self.first_residuals(interrupt)?;
+            let currents = FacetCurrents::sampled(self.scatterer, self.first);
+            return Ok((currents, Solved { residuals, ..self.solved(None) }));
+        };
         let b = system.right_hand_side(&[self.first]);
-        let mut poll =
-            || if interrupt.requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
-        let sum = Bounces::sum(system.coupling(), &b, count, &mut poll).ok_or_else(nothing_saved)?;
-        let residuals: Vec<f64> = sum.residuals.iter().filter_map(|lanes| lanes.first().copied()).collect();
-        // A next bounce stronger than what comes from the sources: the sum is no approximation of anything.
-        match residuals.last() {
-            Some(&last) if count > 1 && last > 1.0 => Err(diverged("the sum of bounces", &residuals)),
-            _ => Ok((sum.x, residuals)),
-        }
+        let solution = solving::solution(&self.model.method, system, &b, interrupt)?;
+        Ok((system.currents(&solution.x, 0), self.solved(Some(solution))))
     }
 
-    /// What a second bounce would add, where errors are to be estimated and there is one.
+    fn solved(&self, solution: Option<Solution>) -> Solved {
+        let (frequency, facets) = (self.band.wave.frequency(), self.scatterer.facets().len());
+        let (residuals, reason) =
+            solution.map_or((Vec::new(), None), |solution| (solution.residuals, solution.reason));
+        Solved { frequency, facets, residuals, reason }
+    }
+
+    /// What a second bounce would add, where errors are to be estimated.
     fn first_residuals(&self, interrupt: &Interrupt) -> Result<Vec<f64>, Failure> {
         if self.model.coarse.is_none() {
             return Ok(Vec::new());
         }
-        Ok(self.bounced(&self.lazy()?, 1, interrupt)?.1)
+        let system = solving::lazy(self.model, self.scatterer, self.band.wave, self.variant.shadow)?;
+        let b = system.right_hand_side(&[self.first]);
+        Ok(solving::bounced(&system, &b, 1, interrupt)?.residuals)
     }
 
-    fn solve(
+    /// The sweeps of the receivers that ask for one.
+    fn sweep(
         &self,
-        system: &System<'_>,
-        solver: &dyn Solver<Complex64>,
-        stop: &Stop,
+        system: Option<&System<'_>>,
         interrupt: &Interrupt,
-    ) -> Result<(Vectors, Solved), Failure> {
-        let b = system.right_hand_side(&[self.first]);
-        let unsuitable = |error| Failure::new(Ending::Input, error);
-        let one = Vectors::from_fn(b.dim(), 1, |_, _| Complex64::ONE);
-        let a =
-            SecondKind::new(system.coupling(), one).map_err(|error| Failure::new(Ending::Input, error))?;
-        let mut x = Vectors::zeros(b.dim(), 1);
-        let report = solver.solve(&a, &b, &mut x, stop, &mut Watch(interrupt)).map_err(unsuitable)?;
-        let residuals: Vec<f64> =
-            report.history.iter().filter_map(|entry| entry.residuals.first().copied()).collect();
-        match report.reason {
-            StopReason::Interrupted => Err(nothing_saved()),
-            StopReason::Diverged => Err(diverged(solver.name(), &residuals)),
-            reason => {
-                let frequency = self.band.wave.frequency();
-                Ok((x, Solved { frequency, facets: 0, residuals, reason: Some(reason) }))
+        outcome: &mut Outcome,
+    ) -> Result<(), Failure> {
+        let (model, scatterer, wave, shadow) =
+            (self.model, self.scatterer, self.band.wave, self.variant.shadow);
+        let sweep = Sweep { model, scatterer, wave, shadow, system };
+        for (index, receiver) in model.receivers.iter().enumerate() {
+            if let Places::Monostatic(angles) = &receiver.places {
+                let (rows, worst) = sweep.run(index, angles, interrupt)?;
+                outcome.monostatic.extend(rows);
+                outcome.solved.push(self.solved(worst));
             }
         }
+        Ok(())
     }
 
     /// Fields at all receivers.
@@ -225,6 +190,7 @@ impl Task<'_> {
                     let rows = far.iter().zip(angles).enumerate();
                     outcome.far.extend(rows.map(|(i, (far, angles))| self.far_row([index, i], *angles, far)));
                 }
+                Places::Monostatic(_) => {}
             }
         }
         Ok(())
@@ -271,55 +237,6 @@ impl Task<'_> {
             amplitude: [theta.re, theta.im, phi.re, phi.im],
             cross_section: self.model.plane_wave.map(section),
         }
-    }
-}
-
-/// The system for these solvers: stored where it fits, else evaluated anew for those that ask for products only.
-pub(super) fn coupled<'a>(
-    model: &Model,
-    scatterer: &'a Scatterer,
-    wave: Wave,
-    shadow: Shadow,
-    solvers: &[&dyn Solver<Complex64>],
-) -> Result<System<'a>, Failure> {
-    let (facets, unknowns) = (scatterer.facets().len(), System::unknowns(scatterer));
-    let solver = solvers.iter().map(|solver| solver.bytes(unknowns, 1)).max().unwrap_or(0);
-    let needed = u128::from(System::bytes(scatterer)) + u128::from(solver);
-    let limit = memory::default_limit();
-    let refused = |error: WaveError| model.refused(&error, None);
-    if needed <= limit.0 {
-        return System::stored(scatterer, wave, shadow, Discretisation::Nystrom).map_err(refused);
-    }
-    if solvers.iter().all(|solver| PRODUCTS_ONLY.contains(&solver.name())) {
-        return System::lazy(scatterer, wave, shadow).map_err(refused);
-    }
-    let text = format!(
-        "the coupling of {facets} facets and its solver would take {}, and {limit} may be used\n  help: mesh coarser, or take a solver that needs no matrix: {}",
-        Bytes(needed),
-        PRODUCTS_ONLY.join(", ")
-    );
-    Err(Failure::new(Ending::Resources, text))
-}
-
-fn diverged(solver: &str, residuals: &[f64]) -> Failure {
-    let reached = residuals.iter().copied().fold(f64::INFINITY, f64::min);
-    let text = format!(
-        "{solver} diverges after {} iterations (best residual {reached:.1e}); nothing was written\n  help: a closed body near a resonance or a cavity has no convergent series of bounces; take another solver",
-        residuals.len().saturating_sub(1)
-    );
-    Failure::new(Ending::NotConverged, text)
-}
-
-/// Stops the solver at a signal.
-pub(super) struct Watch<'a>(pub(super) &'a Interrupt);
-
-impl<T> Observer<T> for Watch<'_> {
-    fn observe(&mut self, _: &Progress<'_, T>) -> ControlFlow<()> {
-        Observer::<T>::poll(self)
-    }
-
-    fn poll(&mut self) -> ControlFlow<()> {
-        if self.0.requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }
 

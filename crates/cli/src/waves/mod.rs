@@ -8,9 +8,11 @@ mod format;
 mod geometry;
 mod located;
 mod model;
+mod monostatic;
 mod receivers;
 mod record;
 mod registry;
+mod solving;
 mod sources;
 
 pub(crate) use compare::{compare, failed};

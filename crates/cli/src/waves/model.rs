@@ -7,10 +7,10 @@ use fredholm_waves::material::Material;
 use fredholm_waves::source::PlaneWave;
 use fredholm_waves::{Complex64, Shadow, Source, Wave, WaveError};
 
-use super::format::{SceneEntry, WaveEntry};
+use super::format::{ReceiverEntry, SceneEntry, WaveEntry};
 use super::geometry::{Geometry, materials};
 use super::located::SceneText;
-use super::receivers::{Receiver, receivers};
+use super::receivers::{Places, Receiver, receivers};
 use super::sources::{Placed, placed};
 use crate::failure::Failure;
 
@@ -103,6 +103,16 @@ impl Model {
         &self.text.path
     }
 
+    /// Whether any receiver is there for the sources of the scene.
+    pub(crate) fn has_bistatic(&self) -> bool {
+        self.receivers.iter().any(|receiver| !matches!(receiver.places, Places::Monostatic(_)))
+    }
+
+    /// Whether any receiver sends its own waves.
+    pub(crate) fn has_sweep(&self) -> bool {
+        self.receivers.iter().any(|receiver| matches!(receiver.places, Places::Monostatic(_)))
+    }
+
     /// What the library says, at the surface or receiver that it is about.
     pub(crate) fn refused(&self, error: &WaveError, receiver: Option<&Receiver>) -> Failure {
         let facet = match error {
@@ -117,9 +127,10 @@ impl Model {
     }
 }
 
-/// The sources, at least one.
+/// The sources, at least one unless all receivers send their own waves.
 fn sources(text: &SceneText, entry: &SceneEntry) -> Result<Vec<Placed>, Failure> {
-    if entry.source.is_empty() {
+    let own = |receiver: &toml::Spanned<ReceiverEntry>| receiver.get_ref().monostatic.is_some();
+    if entry.source.is_empty() && !entry.receiver.iter().all(own) {
         let help = "add a [[source]] such as kind = \"plane-wave\"";
         return Err(text.fault(text.end(), "the scene has no source", help));
     }
