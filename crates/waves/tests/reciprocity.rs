@@ -10,7 +10,7 @@
 mod common;
 
 use common::{WAVELENGTH, wave};
-use fredholm_linop::{MultiVector, Quiet, SecondKind, Solver, Stop};
+use fredholm_linop::{MultiVector, Quiet, SecondKind, Stop};
 use fredholm_mesh::Vec3;
 use fredholm_waves::source::{HertzianDipole, PlaneWave};
 use fredholm_waves::surface::{cube, facing_plates, plate};
