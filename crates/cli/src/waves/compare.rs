@@ -70,7 +70,7 @@ fn case(
         let work = || run(&system, &b, (text, &**solver), stop, interrupt);
         solved.push(stages.run(&format!("{text} at {name}"), work)?);
     }
-    let (reference, runs) = judged(solved);
+    let (reference, runs) = judged(&solved);
     let (frequency, unknowns) = (band.wave.frequency(), b.dim() as u64);
     Ok(WaveComparisonCase { frequency, unknowns, spectral_radius: radius, reference, runs })
 }
@@ -136,7 +136,7 @@ fn told(text: &str, report: &Report) -> ComparisonRun {
 }
 
 /// The runs with their errors against the solution of the smallest residual, and whose that is.
-fn judged(solved: Vec<(ComparisonRun, Option<Vectors>)>) -> (String, Vec<ComparisonRun>) {
+fn judged(solved: &[(ComparisonRun, Option<Vectors>)]) -> (String, Vec<ComparisonRun>) {
     let answers = solved.iter().filter(|(run, x)| x.is_some() && run.residual.is_finite());
     let best = answers.min_by(|(a, _), (b, _)| a.residual.total_cmp(&b.residual));
     let best = best.and_then(|(run, x)| Some((run.solver.clone(), x.clone()?)));

@@ -159,14 +159,20 @@ impl Task<'_> {
         outcome: &mut Outcome,
     ) -> Result<(), Failure> {
         let Some(system) = system else {
-            return self.receive(&self.first.radiator(Sampling::Tolerance(TOLERANCE)), outcome);
+            return self.receive(&self.first.radiator(Sampling::Tolerance(TOLERANCE)), None, outcome);
         };
         let all = Bounced::new(self.scatterer, self.first, currents);
-        self.receive(&system.radiator(&all), outcome)
+        self.receive(&system.radiator(&all), Some(&all), outcome)
     }
 
-    fn receive(&self, radiator: &Radiator<'_>, outcome: &mut Outcome) -> Result<(), Failure> {
-        let edges = self.edges()?;
+    /// `all` are the currents where there is more than one bounce.
+    fn receive(
+        &self,
+        radiator: &Radiator<'_>,
+        all: Option<&Bounced<'_>>,
+        outcome: &mut Outcome,
+    ) -> Result<(), Failure> {
+        let edges = self.edges(all)?;
         for (index, receiver) in self.model.receivers.iter().enumerate() {
             let refused = |error: WaveError| self.model.refused(&error, Some(receiver));
             match &receiver.places {
@@ -197,11 +203,15 @@ impl Task<'_> {
     }
 
     /// The edge currents, where they are asked for; the magnetic form has none.
-    fn edges(&self) -> Result<Option<EdgeCurrents>, Failure> {
+    fn edges(&self, all: Option<&Bounced<'_>>) -> Result<Option<EdgeCurrents>, Failure> {
         if !self.model.edge_currents || self.variant.shadow == Shadow::Thesis {
             return Ok(None);
         }
-        let found = EdgeCurrents::new(self.scatterer, self.band.wave, self.sources);
+        let lit = EdgeCurrents::new(self.scatterer, self.band.wave, self.sources);
+        let found = lit.and_then(|lit| match all {
+            Some(all) => lit.with_bounces(self.scatterer, all),
+            None => Ok(lit),
+        });
         found.map(Some).map_err(|error| self.refused(&error))
     }
 

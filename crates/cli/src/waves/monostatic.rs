@@ -103,17 +103,23 @@ impl Sweep<'_> {
         (first, sources): (&PhysicalOptics<'_>, &[&dyn Source]),
         known: Option<(&Solution, usize)>,
     ) -> Result<[Complex64; 2], WaveError> {
+        let mut edges = None;
+        if self.model.edge_currents {
+            edges = Some(EdgeCurrents::new(self.scatterer, self.wave, sources)?);
+        }
         let mut far = match (self.system, known) {
             (Some(system), Some((solution, lane))) => {
                 let currents = system.currents(&solution.x, lane);
                 let all = Bounced::new(self.scatterer, first, &currents);
+                edges = edges.map(|edges| edges.with_bounces(self.scatterer, &all)).transpose()?;
                 system.radiator(&all).far_field(&[u])?
             }
             _ => first.radiator(Sampling::Tolerance(TOLERANCE)).far_field(&[u])?,
         };
-        if self.model.edge_currents {
-            let edges = EdgeCurrents::new(self.scatterer, self.wave, sources)?;
-            far.iter_mut().for_each(|far| far.amplitude += edges.far_amplitude(far.direction));
+        if let Some(edges) = edges {
+            for far in &mut far {
+                far.amplitude += edges.far_amplitude(far.direction);
+            }
         }
         Ok(far.first().map_or([Complex64::ZERO; 2], fredholm_waves::FarField::polar))
     }
