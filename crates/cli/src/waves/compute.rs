@@ -50,7 +50,9 @@ fn variant(model: &Model, variant: Variant<'_>, stages: &mut Stages) -> Result<O
     for band in &model.bands {
         let refused = |error: WaveError| model.refused(&error, None);
         let scatterer = variant.geometry.scatterer(band.materials.clone()).map_err(refused)?;
-        scatterer.check_resolution(&band.wave).map_err(refused)?;
+        if !model.is_closed_form() {
+            scatterer.check_resolution(&band.wave).map_err(refused)?;
+        }
         let sources: Vec<&dyn Source> = model.sources.iter().map(AsRef::as_ref).collect();
         let first = PhysicalOptics::new(&scatterer, band.wave, &sources, variant.shadow).map_err(refused)?;
         let task = Task { model, variant, band, scatterer: &scatterer, first: &first, sources: &sources };
@@ -188,7 +190,11 @@ impl Task<'_> {
                     outcome.near.extend(rows);
                 }
                 Places::Far(angles) => {
-                    let mut far = radiator.far_field(&Receiver::directions(angles)).map_err(refused)?;
+                    let directions = Receiver::directions(angles);
+                    let closed =
+                        if all.is_none() { self.first.linear_phase_far_field(&directions) } else { None };
+                    let mut far =
+                        closed.unwrap_or_else(|| radiator.far_field(&directions)).map_err(refused)?;
                     if let Some(edges) = &edges {
                         let add = |far: &mut FarField| far.amplitude += edges.far_amplitude(far.direction);
                         far.par_iter_mut().for_each(add);

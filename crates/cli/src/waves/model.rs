@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use fredholm_linop::Solver;
 use fredholm_waves::material::Material;
 use fredholm_waves::source::PlaneWave;
-use fredholm_waves::{Complex64, Shadow, Source, Wave, WaveError};
+use fredholm_waves::{Complex64, Origin, Shadow, Source, Wave, WaveError};
 
 use super::format::{ReceiverEntry, SceneEntry, WaveEntry};
 use super::geometry::{Geometry, materials};
@@ -101,6 +101,16 @@ impl Model {
     /// The scene file.
     pub(crate) fn path(&self) -> &PathBuf {
         &self.text.path
+    }
+
+    /// Whether facets may be of any size: one bounce of plane waves, looked at from far away only.
+    pub(crate) fn is_closed_form(&self) -> bool {
+        let far = |receiver: &Receiver| !matches!(receiver.places, Places::Near { .. });
+        let plane = self.sources.iter().all(|source| matches!(source.origin(), Origin::Direction(_)));
+        matches!(self.method, Method::Bounces(1))
+            && self.coarse.is_none()
+            && plane
+            && self.receivers.iter().all(far)
     }
 
     /// Whether any receiver is there for the sources of the scene.

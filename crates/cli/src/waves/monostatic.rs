@@ -114,7 +114,9 @@ impl Sweep<'_> {
                 edges = edges.map(|edges| edges.with_bounces(self.scatterer, &all)).transpose()?;
                 system.radiator(&all).far_field(&[u])?
             }
-            _ => first.radiator(Sampling::Tolerance(TOLERANCE)).far_field(&[u])?,
+            _ => first
+                .linear_phase_far_field(&[u])
+                .unwrap_or_else(|| first.radiator(Sampling::Tolerance(TOLERANCE)).far_field(&[u]))?,
         };
         if let Some(edges) = edges {
             for far in &mut far {

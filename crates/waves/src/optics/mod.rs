@@ -117,6 +117,30 @@ impl<'a> PhysicalOptics<'a> {
         &self.lit[source]
     }
 
+    /// The current of one source at a point of a facet that it lights.
+    pub(crate) fn of_source(&self, source: usize, facet: usize, q: Vec3) -> Current {
+        let (side, source) = (self.lit[source][facet], self.sources[source]);
+        let (shape, towards) = (&self.scatterer.facets()[facet], source.origin().seen_from(q));
+        let material = self.scatterer.material(shape);
+        response(material, &self.wave, (shape, side, towards), source.field(&self.wave, q), self.shadow)
+    }
+
+    pub(crate) fn origins(&self) -> impl Iterator<Item = Origin> {
+        self.sources.iter().map(|source| source.origin())
+    }
+
+    pub(crate) fn scatterer(&self) -> &Scatterer {
+        self.scatterer
+    }
+
+    pub(crate) fn wave(&self) -> Wave {
+        self.wave
+    }
+
+    pub(crate) fn gate(&self) -> Gate {
+        self.shadow.gate()
+    }
+
     /// 2 n × H_i at the point `p` (m), n that of a facet.
     pub(crate) fn on(&self, facet: &Facet, p: Vec3) -> ComplexVector {
         crate::source::incident(self.sources, &self.wave, p).h.crossed_by(facet.normal) * 2.0
@@ -131,18 +155,11 @@ impl<'a> PhysicalOptics<'a> {
 
 impl SurfaceCurrent for PhysicalOptics<'_> {
     fn at(&self, facet: usize, q: Vec3) -> Current {
-        let shape = &self.scatterer.facets()[facet];
-        let material = self.scatterer.material(shape);
         let mut sum = Current::default();
-        for (source, lit) in self.sources.iter().zip(&self.lit) {
-            let side = lit[facet];
-            if side != 0.0 {
-                let incident = source.field(&self.wave, q);
-                let towards = source.origin().seen_from(q);
-                let current = response(material, &self.wave, (shape, side, towards), incident, self.shadow);
-                sum.j += current.j;
-                sum.m += current.m;
-            }
+        for source in (0..self.sources.len()).filter(|&source| self.lit[source][facet] != 0.0) {
+            let current = self.of_source(source, facet, q);
+            sum.j += current.j;
+            sum.m += current.m;
         }
         sum
     }
