@@ -1,7 +1,7 @@
 //! The magnetic field equation on one and on two surfaces (`exact`, `exact-dual`), measured:
 //!
 //! - `-- spheres`: spheres of radius λ and 3λ against the series of Mie at 25 m, orders of convergence;
-//! - `-- backscatter`: spheres from ka = 5 to 20 beside the series, physical optics in closed form, and its specular part;
+//! - `-- backscatter`: spheres of ka = 5 to 15, or as given, beside the series, physical optics in closed form, and its specular part;
 //! - `-- resonance`: a sphere and the cube of 5λ near resonances of their interior (from the repository).
 //!
 //! `cargo run --release -p fredholm-waves --example exact_equation -- spheres`. Products are computed anew by GMRES: no
@@ -109,7 +109,9 @@ fn decibel(ratio: f64) -> f64 {
 
 fn backscatter() -> Done {
     println!("dB over the series:\n  ka  physical optics  specular part   exact  exact-dual");
-    for ka in [5.0, 5.5, 6.0, 6.5, 7.0, 8.0, 10.0, 12.0, 15.0, 20.0] {
+    let given = std::env::args().skip(2).map(|ka| ka.parse()).collect::<Result<Vec<f64>, _>>()?;
+    let usual = vec![5.0, 5.5, 6.0, 6.5, 7.0, 8.0, 10.0, 12.0, 15.0];
+    for ka in if given.is_empty() { usual } else { given } {
         let wave = Wave::new(ka * SPEED_OF_LIGHT / TAU)?;
         let series = ConductingSphere::new(1.0)?.backscatter(&wave);
         let ball = sphere(1.0, wave.wavelength() / 8.0)?;
@@ -131,7 +133,7 @@ fn backscatter() -> Done {
         Ok(worst)
     };
     println!("largest in closed form over half as much again from ka:");
-    for ka in [5.0, 10.0, 20.0, 40.0, 60.0] {
+    for ka in [5.0, 10.0, 20.0, 30.0, 40.0, 55.0] {
         println!("{ka:>4} {:>16.2} {:>14.2}", worst(ka, 1.0)?, worst(ka, 0.0)?);
     }
     Ok(())
