@@ -179,26 +179,11 @@ impl Task<'_> {
             let refused = |error: WaveError| self.model.refused(&error, Some(receiver));
             match &receiver.places {
                 Places::Near { points, .. } => {
-                    let mut scattered = radiator.fields(points).map_err(refused)?;
-                    if let Some(edges) = &edges {
-                        scattered
-                            .iter_mut()
-                            .zip(edges.fields(points))
-                            .for_each(|(field, more)| *field += more);
-                    }
-                    let rows = self.rows(index, points, &scattered).map_err(refused)?;
-                    outcome.near.extend(rows);
+                    let scattered = near(radiator, edges.as_ref(), points).map_err(refused)?;
+                    outcome.near.extend(self.rows(index, points, &scattered).map_err(refused)?);
                 }
                 Places::Far(angles) => {
-                    let directions = Receiver::directions(angles);
-                    let closed =
-                        if all.is_none() { self.first.linear_phase_far_field(&directions) } else { None };
-                    let mut far =
-                        closed.unwrap_or_else(|| radiator.far_field(&directions)).map_err(refused)?;
-                    if let Some(edges) = &edges {
-                        let add = |far: &mut FarField| far.amplitude += edges.far_amplitude(far.direction);
-                        far.par_iter_mut().for_each(add);
-                    }
+                    let far = self.far(radiator, all.is_none(), edges.as_ref(), angles).map_err(refused)?;
                     let rows = far.iter().zip(angles).enumerate();
                     outcome.far.extend(rows.map(|(i, (far, angles))| self.far_row([index, i], *angles, far)));
                 }
@@ -206,6 +191,24 @@ impl Task<'_> {
             }
         }
         Ok(())
+    }
+
+    /// The far fields in some directions; of one bounce of plane waves in closed form.
+    fn far(
+        &self,
+        radiator: &Radiator<'_>,
+        one_bounce: bool,
+        edges: Option<&EdgeCurrents>,
+        angles: &[[f64; 2]],
+    ) -> Result<Vec<FarField>, WaveError> {
+        let directions = Receiver::directions(angles);
+        let closed = if one_bounce { self.first.linear_phase_far_field(&directions) } else { None };
+        let mut far = closed.unwrap_or_else(|| radiator.far_field(&directions))?;
+        if let Some(edges) = edges {
+            let add = |far: &mut FarField| far.amplitude += edges.far_amplitude(far.direction);
+            far.par_iter_mut().for_each(add);
+        }
+        Ok(far)
     }
 
     /// The edge currents, where they are asked for; the magnetic form has none.
@@ -254,6 +257,19 @@ impl Task<'_> {
             cross_section: self.model.plane_wave.map(section),
         }
     }
+}
+
+/// The scattered fields at some points.
+fn near(
+    radiator: &Radiator<'_>,
+    edges: Option<&EdgeCurrents>,
+    points: &[Vec3],
+) -> Result<Vec<Field>, WaveError> {
+    let mut scattered = radiator.fields(points)?;
+    if let Some(edges) = edges {
+        scattered.iter_mut().zip(edges.fields(points)).for_each(|(field, more)| *field += more);
+    }
+    Ok(scattered)
 }
 
 fn current(current: &Current) -> [f64; 12] {

@@ -67,24 +67,18 @@ impl Sweep<'_> {
         interrupt: &Interrupt,
     ) -> Result<(Vec<[Complex64; 4]>, Option<Solution>), Failure> {
         let refused = |error: WaveError| self.model.refused(&error, None);
-        let waves: Vec<PlaneWave> = directions
-            .iter()
-            .flat_map(|&u| polar_frame(u).map(|along| PlaneWave::new(-u, along, Complex64::ONE)))
-            .collect::<Result<_, _>>()
-            .map_err(refused)?;
+        let waves = plane_waves(directions).map_err(refused)?;
         let sources: Vec<[&dyn Source; 1]> = waves.iter().map(|wave| [wave as &dyn Source]).collect();
         let optics: Vec<PhysicalOptics<'_>> = sources
             .iter()
             .map(|sources| PhysicalOptics::new(self.scatterer, self.wave, sources, self.shadow))
             .collect::<Result<_, _>>()
             .map_err(refused)?;
-        let solution = match self.system {
-            Some(system) => {
-                let lanes: Vec<&PhysicalOptics<'_>> = optics.iter().collect();
-                Some(solution(&self.model.method, system, &system.right_hand_side(&lanes), interrupt)?)
-            }
-            None => None,
+        let lanes: Vec<&PhysicalOptics<'_>> = optics.iter().collect();
+        let solve = |system: &System<'_>| {
+            solution(&self.model.method, system, &system.right_hand_side(&lanes), interrupt)
         };
+        let solution = self.system.map(solve).transpose()?;
         let back = |lane: usize| {
             let u = directions[lane / 2];
             let known = solution.as_ref().map(|solution| (solution, lane));
@@ -125,4 +119,10 @@ impl Sweep<'_> {
         }
         Ok(far.first().map_or([Complex64::ZERO; 2], fredholm_waves::FarField::polar))
     }
+}
+
+/// Waves of 1 V/m from these directions, along θ̂ and φ̂ in turn.
+fn plane_waves(directions: &[Vec3]) -> Result<Vec<PlaneWave>, WaveError> {
+    let pair = |&u: &Vec3| polar_frame(u).map(|along| PlaneWave::new(-u, along, Complex64::ONE));
+    directions.iter().flat_map(pair).collect()
 }
