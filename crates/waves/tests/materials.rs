@@ -80,6 +80,16 @@ fn rows_columns_and_products_are_those_of_the_stored_matrix_for_any_threads() {
     }
 }
 
+/// A flat pane sends nothing to itself, however fine its mesh.
+#[test]
+fn a_flat_sheet_has_no_second_bounce() {
+    let sheet = fredholm_waves::surface::plate(WAVELENGTH, WAVELENGTH / 12.0).unwrap();
+    let sheet = sheet.made_of(vec![glass()]).unwrap();
+    let coupling = MaterialCoupling::new(&sheet, wave(), Shadow::Geometric).unwrap();
+    let x = Vectors::from_fn(coupling.dim(), 1, |i, _| Complex64::new((0.3 * i as f64).sin(), 0.5));
+    assert!(product(&coupling, &x).norms()[0] < 1e-12 * x.norms()[0]);
+}
+
 /// The far field straight back from a dihedral after two bounces.
 fn two_bounces(side: f64, material: &Material, polarisation: Vec3) -> Complex64 {
     let side = side * WAVELENGTH;

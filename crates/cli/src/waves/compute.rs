@@ -123,9 +123,9 @@ impl Task<'_> {
         Solved { frequency, facets, residuals, reason }
     }
 
-    /// What a second bounce would add, where errors are to be estimated.
+    /// What a second bounce would add, where errors are to be estimated; it is not asked of the runs that do so.
     fn first_residuals(&self, interrupt: &Interrupt) -> Result<Vec<f64>, Failure> {
-        if self.model.coarse.is_none() {
+        if self.model.coarse.is_none() || !self.variant.name.is_empty() {
             return Ok(Vec::new());
         }
         let system = solving::lazy(self.model, self.scatterer, self.band.wave, self.variant.shadow)?;

@@ -2,7 +2,8 @@
 //!
 //! What facet q sends is at facet p a wave that comes from q, so that its angle of incidence is known pair by pair and the
 //! coefficients of reflection and transmission apply as to the wave of a source: J = n × (H + H_r − H_t), M = −n × (E + E_r
-//! − E_t). On perfect conductors this is the coupling of the electric form, with M = 0. It is physical optics at every
+//! − E_t). Coefficients are made for waves with both fields across their travel u: of J the H is taken as it is, and E =
+//! η₀ H × u; of M the E is, and H = u × E/η₀. So facets of one plane do not couple. On perfect conductors this is the coupling of the electric form, with M = 0. It is physical optics at every
 //! bounce (F. Obelleiro-Basteiro, J. L. Rodriguez, R. J. Burkholder, IEEE Trans. Antennas Propag. 43 (1995) 356,
 //! doi:10.1109/8.376033, with the tangent plane's coefficients instead of those of a conductor).
 //!
@@ -16,7 +17,7 @@ use crate::medium::IMPEDANCE;
 use crate::optics::response;
 use crate::rule::{phase_error, reach, seen_from};
 use crate::{
-    ComplexVector, Current, Facet, Scatterer, Shadow, TOLERANCE, Wave, WaveError, electric_element,
+    ComplexVector, Current, Facet, Field, Scatterer, Shadow, TOLERANCE, Wave, WaveError, electric_element,
     magnetic_element,
 };
 use fredholm_linop::{Dense, LinearOperator, MultiVector};
@@ -83,9 +84,11 @@ impl<'a> MaterialCoupling<'a> {
         if side == 0.0 {
             return Current::default();
         }
-        let mut field = electric_element(&self.wave, sent.j * weight, d);
+        let h = electric_element(&self.wave, sent.j * weight, d).h;
+        let mut field = Field { e: h.crossed_by(towards) * IMPEDANCE, h };
         if sent.m != ComplexVector::ZERO {
-            field += magnetic_element(&self.wave, sent.m * weight, d);
+            let e = magnetic_element(&self.wave, sent.m * weight, d).e;
+            field += Field { e, h: e.crossed_by(towards) * (-1.0 / IMPEDANCE) };
         }
         response(self.scatterer.material(observer), &self.wave, (observer, side, towards), field, self.shadow)
     }
