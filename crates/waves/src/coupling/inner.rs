@@ -6,9 +6,9 @@
 //! J = 2 n × (H_i(p) + j H_i(p − δn)) + K J + j K_δ J,   K_δ J = 2 n × H[J](p − δn),
 //! ```
 //!
-//! leaves no current that solves it without a source, at any frequency, while δ < λ/2 (R. A. Shore, A. D. Yaghjian, IEEE
-//! Trans. Antennas Propag. 53 (2005) 1706, doi:10.1109/TAP.2005.846804; M. B. Woodworth, A. D. Yaghjian, J. Acoust. Soc.
-//! Am. 90 (1991) 2166). δ = λ/4, less in small bodies.
+//! leaves no current that solves it without a source, at any frequency, while δ < λ/2 (R. A. Shore, A. D. Yaghjian,
+//! Dual-surface integral equations in electromagnetic scattering, IEEE Trans. Antennas Propag. 53 (2005) 1706). δ = λ/4,
+//! less in small bodies.
 
 use crate::{Scatterer, Shadow, Wave, WaveError};
 use fredholm_mesh::Vec3;

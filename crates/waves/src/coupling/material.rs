@@ -5,8 +5,8 @@
 //! − E_t). Coefficients are made for waves with both fields across their travel u: of J the H is taken as it is, and E =
 //! η₀ H × u; of M the E is, and H = u × E/η₀. So facets of one plane do not couple. On perfect conductors this is the
 //! coupling of the electric form, with M = 0. It is physical optics at every bounce (F. Obelleiro-Basteiro, J. L. Rodriguez,
-//! R. J. Burkholder, IEEE Trans. Antennas Propag. 43 (1995) 356,
-//! doi:10.1109/8.376033, with the tangent plane's coefficients instead of those of a conductor).
+//! R. J. Burkholder, IEEE Trans. Antennas Propag. 43 (1995) 356, with
+//! the tangent plane's coefficients instead of those of a conductor).
 //!
 //! Unknowns of facet i are 4i … 4i + 3: J along t₁ and t₂, M/η₀ along t₁ and t₂, all in A/m. Products are computed
 //! pair by pair; nothing but the view is stored.

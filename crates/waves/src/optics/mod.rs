@@ -30,7 +30,7 @@ pub enum Shadow {
     /// C: the magnetic field equation of closed bodies, of which physical optics is the first term.
     Exact,
     /// C, and j times the same on a second surface λ/4 inside, which takes away the resonances of the interior (R. A.
-    /// Shore, A. D. Yaghjian, IEEE Trans. Antennas Propag. 53 (2005) 1706, doi:10.1109/TAP.2005.846804).
+    /// Shore, A. D. Yaghjian, IEEE Trans. Antennas Propag. 53 (2005) 1706).
     ExactDual,
     /// M = 2 n × E on lit facets, n turned to the observer for every pair, and nothing blocks (G. Viennot, thesis,
     /// Limoges 2012, eq. 2.15 and annex B).
