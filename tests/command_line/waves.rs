@@ -112,7 +112,7 @@ fn what_is_wrong_is_named_with_its_line() {
         ("points = [[0, -1, 0]]", "points = []", "scene.toml:14:", "0 receiver points"),
         ("[wave]", "[wave]\nshadow = \"exact\"\nsolver = \"lu\"", "scene.toml:12:", "closed bodies"),
         ("[wave]", "[wave]\nshadow = \"thesis\"\nedge_currents = true", "scene.toml:4:", "physical optics"),
-        ("[wave]", "[wave]\nsolver = \"magic\"", "scene.toml:3:", "unknown solver `magic`"),
+        ("[wave]", "[wave]\nsolver = \"magic\"", "scene.toml:3:", "there is no solver"),
         ("[wave]", "[wave]\nvelocity = 3", "scene.toml:3:1:", "velocity"),
     ];
     for (from, to, place, what) in cases {
@@ -161,4 +161,238 @@ fn a_series_that_diverges_is_no_result() {
     let (bench, run) = waves(&scene);
     assert!(run.code == 3 && run.stderr.contains("diverges"), "{}", run.stderr);
     assert!(!bench.path("out/scene/run.json").exists());
+}
+
+/// GOOD with other keys under [wave], another source, surface or receiver.
+fn changed(changes: &[(&str, &str)]) -> String {
+    changes.iter().fold(GOOD.to_owned(), |scene, (from, to)| {
+        assert!(scene.contains(from), "{from}");
+        scene.replace(from, to)
+    })
+}
+
+const PLATE: &str = "quad = [[-0.3, 0, -0.3], [0.3, 0, -0.3], [0.3, 0, 0.3], [-0.3, 0, 0.3]]";
+const POINT: &str = "points = [[0, -1, 0]]";
+const CUBE: &str = "box = { min = [0, 0, 0], max = [0.62956, 0.62956, 0.62956] }\nedge = \"lambda/6\"";
+
+fn read(bench: &Bench, name: &str) -> String {
+    fs::read_to_string(bench.path("out/scene").join(name)).unwrap()
+}
+
+/// On the closed cube of 2.1λ the bounces diverge, and GMRES does not: told, with exit code 3, and no field is written.
+#[test]
+fn a_comparison_tells_what_diverges() {
+    let bench =
+        Bench::new(&changed(&[("[wave]", "[wave]\nshadow = \"exact\"\nsolver = \"lu\""), (PLATE, CUBE)]));
+    let run = bench.run(&["waves", "scene.toml", "--compare", "neumann,gmres:restart=100,cg-theta"]);
+    assert_eq!(run.code, 3, "{}", run.stderr);
+    let table = read(&bench, "compare.csv");
+    let rows: Vec<Vec<&str>> = table.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    let outcomes: Vec<&str> = rows.iter().map(|row| row[3]).collect();
+    assert_eq!(outcomes, ["diverged", "converged", "refused"]);
+    // The radius of an independent code is 1.12.
+    let radius: f64 = rows[0][1].parse().unwrap();
+    assert!((radius / 1.12 - 1.0).abs() < 0.05, "{radius}");
+    let residual: f64 = rows[1][7].parse().unwrap();
+    assert!(residual < 1e-6 && rows[0][8].is_empty(), "{table}");
+    assert!(read(&bench, "compare_history.csv").lines().count() > 100);
+    for file in ["compare.svg", "compare.json"] {
+        assert!(read(&bench, file).contains("neumann"), "{file}");
+    }
+    assert!(!bench.path("out/scene/run.json").exists() && run.stdout.contains("spectral radius 1.1"));
+    let wrong = bench.run(&["waves", "scene.toml", "--compare", "magic"]);
+    assert!(wrong.code == 2 && wrong.stderr.contains("magic"), "{}", wrong.stderr);
+}
+
+/// A sweep needs no source, and has at every direction what the plane wave from there sends back.
+#[test]
+fn a_monostatic_sweep_is_the_backscatter_of_every_direction() {
+    let far = "far = { theta_degrees = [90, 70], phi_degrees = [270, 250] }";
+    let bistatic = |method: &str, theta: u32, phi: u32, along: &str| {
+        let from = format!("from_theta_degrees = {theta}\nfrom_phi_degrees = {phi}");
+        let polarised = format!("polarisation = \"{along}\"");
+        let wave = format!("[wave]\n{method}");
+        let bench = Bench::new(&changed(&[
+            ("[wave]", &wave),
+            ("travel = [0, 1, 0]", &from),
+            ("polarisation = [0, 0, 1]", &polarised),
+            (POINT, far),
+        ]));
+        assert_eq!(bench.run(&["waves", "scene.toml"]).code, 0);
+        let table = read(&bench, "far.csv");
+        let is =
+            |title: &str, angle: u32, i: usize| (column(&table, title)[i] - f64::from(angle)).abs() < 1e-9;
+        let at = (0..4).find(|&i| is("theta_degrees", theta, i) && is("phi_degrees", phi, i));
+        ["rcs_theta", "rcs_phi"].map(|title| column(&table, title)[at.unwrap()])
+    };
+    for method in ["bounces = 1", "solver = \"gmres\""] {
+        let start = GOOD.find("[[source]]").unwrap();
+        let end = GOOD.find("[[surface]]").unwrap();
+        let dark = GOOD.replace(&GOOD[start..end], "").replace("[wave]", &format!("[wave]\n{method}"));
+        let bench = Bench::new(&dark.replace(POINT, &far.replace("far", "monostatic")));
+        let run = bench.run(&["waves", "scene.toml"]);
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        let table = read(&bench, "monostatic.csv");
+        assert_eq!(column(&table, "index"), [0.0, 1.0, 2.0, 3.0]);
+        for (row, theta, phi) in [(0, 90, 270), (3, 70, 250)] {
+            for (along, titles) in [("theta", ["rcs_tt", "rcs_pt"]), ("phi", ["rcs_tp", "rcs_pp"])] {
+                let expected = bistatic(method, theta, phi, along);
+                let found = titles.map(|title| column(&table, title)[row]);
+                let scale = expected[0].max(expected[1]);
+                assert!(scale > 1e-6);
+                for (a, b) in found.iter().zip(expected) {
+                    assert!(
+                        (a - b).abs() < 1e-9 * scale,
+                        "{method} {theta} {phi} {along}: {found:?} {expected:?}"
+                    );
+                }
+            }
+        }
+        assert!(read(&bench, "point.svg").contains("φθ"));
+    }
+}
+
+/// Several sources together scatter the sum of what each scatters, whatever they are.
+#[test]
+fn sources_add_up() {
+    let start = GOOD.find("[[source]]").unwrap();
+    let end = GOOD.find("[[surface]]").unwrap();
+    let plane = &GOOD[start..end];
+    let dipole = "[[source]]\nkind = \"half-wave-dipole\"\nposition = [0.2, -0.7, 0.1]\naxis = [0, 1, 1]\ncurrent_a = 0.02\n\n";
+    let field = |sources: &str| {
+        let bench = Bench::new(&GOOD.replace(plane, sources).replace("[wave]", "[wave]\nbounces = 3"));
+        assert_eq!(bench.run(&["waves", "scene.toml"]).code, 0);
+        let table = read(&bench, "receivers.csv");
+        ["tot_ex_re", "tot_ez_re", "tot_ez_im", "sca_hx_im"].map(|title| column(&table, title)[0])
+    };
+    let (one, other, both) = (field(plane), field(dipole), field(&format!("{plane}{dipole}")));
+    for i in 0..4 {
+        assert!(
+            (one[i] + other[i] - both[i]).abs() < 1e-12 * both.iter().fold(0.0, |m: f64, x| m.max(x.abs()))
+        );
+    }
+    assert!(one[1].abs() > 1e-3 && other[1].abs() > 1e-3);
+}
+
+/// Every treatment and material, with what is left of the bounces in files of its own.
+#[test]
+fn threads_change_no_byte_of_any_mode() {
+    let corner = "quad = [[-0.3, 0, -0.3], [0.3, 0, -0.3], [0.3, 0, 0.3], [-0.3, 0, 0.3]]\nedge = \"lambda/5\"\n\n[[surface]]\nname = \"wing\"\nquad = [[-0.3, 0, -0.3], [-0.3, 0, 0.3], [-0.3, -0.6, 0.3], [-0.3, -0.6, -0.3]]\nedge = \"lambda/5\"";
+    let small = "box = { min = [0, 0, 0], max = [0.3, 0.4, 0.35] }\nedge = \"lambda/6\"";
+    let glass = "\n[materials.glass]\nlayers = [{ itu = \"glass\", thickness_m = 0.006 }]\n";
+    let modes = [
+        ("bounces = 3", corner, ""),
+        ("bounces = 2\nedge_currents = true\nestimate_errors = true", corner, ""),
+        ("shadow = \"radiated\"\nsolver = \"gmres\"", corner, ""),
+        ("shadow = \"thesis\"\nbounces = 2", corner, ""),
+        ("bounces = 2", &*corner.replace("name = \"wing\"", "name = \"wing\"\nmaterial = \"glass\""), glass),
+        ("shadow = \"exact\"\nsolver = \"gmres\"", small, ""),
+        ("shadow = \"exact-dual\"\nsolver = \"gmres\"", small, ""),
+    ];
+    for (method, surface, materials) in modes {
+        let receivers = "points = [[0, -1, 0], [0.2, 2, 1]]\n\n[[receiver]]\nname = \"sweep\"\nmonostatic = { theta_degrees = 80, phi_degrees = [250, 290] }";
+        let wave = format!("[wave]\n{method}");
+        let scene = changed(&[("[wave]", &wave), (PLATE, surface), (POINT, receivers)]) + materials;
+        let bench = Bench::new(&scene);
+        let results = |threads: &str| {
+            let run = bench.run(&["waves", "scene.toml", "-o", threads, "--threads", threads, "--quiet"]);
+            assert_eq!(run.code, 0, "{method}: {}", run.stderr);
+            let file = |name: &str| fs::read(bench.folder.path().join(threads).join(name)).unwrap();
+            ["receivers.csv", "monostatic.csv", "residuals.csv", "currents.vtu"].map(file)
+        };
+        let one = results("1");
+        assert!(one.iter().all(|file| file.len() > 50), "{method}");
+        assert!(results("2") == one && results("4") == one, "{method}");
+    }
+}
+
+/// The residual after the bounces asked for, and the estimates, are in the record.
+#[test]
+fn errors_are_estimated_for_mesh_bounces_and_form() {
+    let keys = "[wave]\nestimate_errors = true";
+    let far = "points = [[0, -1, 0]]\n\n[[receiver]]\nname = \"far\"\nfar = { theta_degrees = 90, phi_degrees = [200, 270] }";
+    let scene = changed(&[("[wave]", keys), (POINT, far)]).replace("0.3, 0, 0.3]", "0.3, 0.0, 0.3]");
+    let bench = Bench::new(&scene);
+    assert_eq!(bench.run(&["waves", "scene.toml"]).code, 0);
+    let record: serde_json::Value = serde_json::from_str(&read(&bench, "run.json")).unwrap();
+    let receivers = |key: &str| -> Vec<String> {
+        record[key].as_array().unwrap().iter().map(|e| e["receiver"].as_str().unwrap().to_owned()).collect()
+    };
+    for key in ["estimated_mesh_errors", "estimated_form_errors"] {
+        assert_eq!(receivers(key), ["point", "far"], "{key}");
+    }
+    // One flat plate has no second bounce.
+    assert_eq!(record["frequencies"][0]["residuals"].as_array().unwrap().len(), 2);
+    assert!(record["frequencies"][0]["residuals"][1].as_f64().unwrap() < 1e-12);
+}
+
+/// Numbers that are none, or beyond all measure, end with a message and a code, in no time and without a file.
+#[test]
+fn hostile_numbers_are_refused_or_harmless() {
+    let refused = [
+        ("[1e9]", "[nan]", "frequency"),
+        ("[1e9]", "[1e300]", ""),
+        ("[1e9]", "[-1e9]", "frequency"),
+        ("travel = [0, 1, 0]", "travel = [0, nan, 0]", "finite"),
+        ("travel = [0, 1, 0]", "travel = [0, 1, 0]\namplitude_v_per_m = inf", "finite"),
+        ("[[-0.3, 0, -0.3], [0.3, 0, -0.3]", "[[nan, 0, -0.3], [0.3, 0, -0.3]", ""),
+        ("[[-0.3, 0, -0.3], [0.3, 0, -0.3]", "[[-1e200, 0, -0.3], [0.3, 0, -0.3]", ""),
+        (PLATE, "sphere = { centre = [0, 0, 0], radius = 1e9 }", ""),
+        (PLATE, "sphere = { centre = [0, 0, 0], radius = nan }", ""),
+        (PLATE, "sphere = { centre = [0, 0, 0], radius = 0 }", ""),
+        (POINT, "points = [[0, nan, 0]]", "finite"),
+        (
+            POINT,
+            "circle = { centre = [0, 0, 0], radius = 9, normal = [0, 0, 1], start = [0, 0, 2], points = 9 }",
+            "start",
+        ),
+        (
+            POINT,
+            "grid = { corner = [0, 0, 0], u = [1, 0, 0], v = [0, 1, 0], columns = 100000, rows = 100000 }",
+            "at most",
+        ),
+        (POINT, "monostatic = { theta_degrees = nan, phi_degrees = 0 }", "finite"),
+        ("[wave]", "[wave]\nbounces = 0", "bounce"),
+        ("[wave]", "[wave]\nsolver = \"gmres:restart=0\"", "restart"),
+        ("[wave]", "[wave]\nsolver = \"gmres\"\ntolerance = -1", "tolerance"),
+    ];
+    for (from, to, what) in refused {
+        let (bench, run) = waves(&GOOD.replace(from, to));
+        assert!(run.code == 2 || run.code == 4, "{to}: {} {}", run.code, run.stderr);
+        assert!(run.stderr.contains(what) && run.stderr.contains("help: "), "{to}: {}", run.stderr);
+        assert!(!bench.path("out").exists(), "{to}");
+    }
+    let harmless = [
+        (POINT, "points = [[0, -1e12, 0]]"),
+        ("travel = [0, 1, 0]", "travel = [0, 1e-300, 0]"),
+        ("travel = [0, 1, 0]", "travel = [0, 1, 0]\namplitude_v_per_m = 0"),
+    ];
+    for (from, to) in harmless {
+        let (bench, run) = waves(&GOOD.replace(from, to));
+        assert_eq!(run.code, 0, "{to}: {}", run.stderr);
+        assert!(column(&read(&bench, "receivers.csv"), "sca_ez_re")[0].is_finite(), "{to}");
+    }
+}
+
+/// One bounce of plane waves seen from far away is a closed form: a plate of 20 wavelengths needs no mesh in wavelengths,
+/// and has 4πA²/λ² straight back.
+#[test]
+fn far_fields_of_large_plates_need_one_facet() {
+    let start = GOOD.find("[[source]]").unwrap();
+    let end = GOOD.find("[[surface]]").unwrap();
+    let dark = GOOD.replace(&GOOD[start..end], "");
+    let large = "quad = [[-3, 0, -3], [3, 0, -3], [3, 0, 3], [-3, 0, 3]]\nedge = 10.0";
+    let sweep = "monostatic = { theta_degrees = 90, phi_degrees = [270, 265] }";
+    let bench = Bench::new(&dark.replace(PLATE, large).replace(POINT, sweep));
+    let run = bench.run(&["waves", "scene.toml"]);
+    assert!(run.code == 0 && run.stdout.contains("1 facets"), "{}{}", run.stdout, run.stderr);
+    let wavelength = 299_792_458.0 / 1e9;
+    let closed = 4.0 * std::f64::consts::PI * (36.0_f64 / wavelength).powi(2);
+    let table = read(&bench, "monostatic.csv");
+    for title in ["rcs_tt", "rcs_pp"] {
+        assert!((column(&table, title)[0] / closed - 1.0).abs() < 1e-9, "{title}");
+    }
+    // Near by, the mesh matters.
+    let (_, run) = waves(&GOOD.replace(PLATE, large));
+    assert!(run.code == 2 && run.stderr.contains("half the wavelength"), "{}", run.stderr);
 }

@@ -1,29 +1,18 @@
 //! Iterations of every complex solver on a dihedral, two facing plates and a closed cube, with the spectral radius of K:
 //! `cargo run --release -p fredholm-waves --example solvers_compared`. Mesh λ/6, residual 1e-6.
 
-use fredholm_linop::{LinearOperator, MultiVector, Quiet, SecondKind, Solver, Stop};
+use fredholm_linop::{MultiVector, Quiet, SecondKind, Solver, Stop};
 use fredholm_mesh::Vec3;
 use fredholm_waves::source::PlaneWave;
 use fredholm_waves::surface::{cube, dihedral, parallel_plates};
-use fredholm_waves::{Complex64, Discretisation, PhysicalOptics, Scatterer, Shadow, Source, System, Wave};
+use fredholm_waves::{
+    Complex64, Discretisation, PhysicalOptics, Scatterer, Shadow, Source, System, Wave, spectral_radius,
+};
 use std::error::Error;
 use std::f64::consts::FRAC_PI_2;
+use std::ops::ControlFlow;
 
 type Vectors = MultiVector<Complex64>;
-
-/// The mean growth over the later half of 200 applications.
-fn spectral_radius(coupling: &dyn LinearOperator<Complex64>) -> f64 {
-    let mut x = Vectors::from_fn(coupling.dim(), 1, |i, _| Complex64::new((1.7 * i as f64).cos(), 0.3));
-    let mut growth = 0.0;
-    for step in 0..200 {
-        let mut y = Vectors::zeros(x.dim(), 1);
-        coupling.apply(&x, &mut y);
-        let norm = y.norms()[0];
-        growth += if step < 100 { 0.0 } else { norm.ln() };
-        x = Vectors::from_fn(x.dim(), 1, |i, _| y.row(i)[0] / norm);
-    }
-    (growth / 100.0).exp()
-}
 
 fn compare(name: &str, scatterer: &Scatterer, shadow: Shadow, travel: Vec3) -> Result<(), Box<dyn Error>> {
     let wave = Wave::new(1e9)?;
@@ -32,7 +21,8 @@ fn compare(name: &str, scatterer: &Scatterer, shadow: Shadow, travel: Vec3) -> R
     let first = PhysicalOptics::new(scatterer, wave, &sources, shadow)?;
     let system = System::stored(scatterer, wave, shadow, Discretisation::Nystrom)?;
     let b = system.right_hand_side(&[&first]);
-    println!("{name}: {} unknowns, spectral radius {:.3}", b.dim(), spectral_radius(system.coupling()));
+    let radius = spectral_radius(system.coupling(), 200, &mut || ControlFlow::Continue(()));
+    println!("{name}: {} unknowns, spectral radius {:.3}", b.dim(), radius.unwrap_or(f64::NAN));
     let mut solvers: Vec<Box<dyn Solver<Complex64>>> = fredholm_iterative::solvers();
     solvers.extend(fredholm_direct::solvers());
     for solver in solvers {

@@ -19,7 +19,8 @@
 use crate::medium::IMPEDANCE;
 use crate::source::Source;
 use crate::{
-    Complex64, ComplexVector, Field, Kind, Scatterer, Wave, WaveError, electric_element, magnetic_element,
+    Complex64, ComplexVector, Current, Facet, Field, Gate, Kind, Radiator, Sampling, Scatterer,
+    SurfaceCurrent, TOLERANCE, Wave, WaveError, electric_element, magnetic_element,
 };
 use fredholm_mesh::{Patch, Vec3};
 use rayon::prelude::*;
@@ -83,6 +84,41 @@ impl EdgeCurrents {
         Ok(Self { wave, elements })
     }
 
+    /// Adds the edge currents of the waves that come from other faces: the field of the currents on all faces that do not
+    /// contain the edge, taken as one wave that travels along its mean power flow.
+    ///
+    /// Edges that another face goes through are left out.
+    ///
+    /// # Errors
+    /// [`WaveError::NotFinite`] where a coordinate of the mesh is none.
+    pub fn with_bounces(
+        mut self,
+        scatterer: &Scatterer,
+        currents: &dyn SurfaceCurrent,
+    ) -> Result<Self, WaveError> {
+        let sheets = scatterer.facets().iter().all(|facet| facet.kind == Kind::Sheet);
+        for edge in edges(scatterer.occluders().patches(), sheets) {
+            let others = Others { currents, contains: edge.faces_of(scatterer) };
+            let sampling = Sampling::Tolerance(TOLERANCE);
+            let radiator = Radiator::new(scatterer, self.wave, &others, Gate::Open, sampling);
+            if radiator.elements() == 0 {
+                continue;
+            }
+            let (places, length) = edge.pieces(&self.wave);
+            let fields = match radiator.fields(&places) {
+                // Another face goes through the edge: it is none of a half-plane.
+                Err(WaveError::OnSurface { .. }) => continue,
+                found => found?,
+            };
+            let arrives = |(&place, field): (&Vec3, Field)| {
+                let towards = -field.power_density().try_normalize()?;
+                edge.element(&self.wave, (place, length), towards, field)
+            };
+            self.elements.extend(places.iter().zip(fields).filter_map(arrives));
+        }
+        Ok(self)
+    }
+
     /// Number of elements.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -113,6 +149,18 @@ impl EdgeCurrents {
             (across - ComplexVector::along(u.cross(t), magnetic)) * (phase * element.length)
         };
         self.elements.iter().map(term).sum::<ComplexVector>() * Complex64::new(0.0, -k / (2.0 * TAU))
+    }
+}
+
+/// Currents without those of the faces that contain an edge.
+struct Others<'a> {
+    currents: &'a dyn SurfaceCurrent,
+    contains: Vec<bool>,
+}
+
+impl SurfaceCurrent for Others<'_> {
+    fn at(&self, facet: usize, q: Vec3) -> Current {
+        if self.contains[facet] { Current::default() } else { self.currents.at(facet, q) }
     }
 }
 
@@ -173,35 +221,49 @@ impl Edge {
         found
     }
 
-    /// The elements in the light of a source.
-    fn lit(&self, scatterer: &Scatterer, wave: &Wave, source: &dyn Source) -> Vec<Element> {
+    /// Middles of even pieces and their length, at least ten a wavelength.
+    fn pieces(&self, wave: &Wave) -> (Vec<Vec3>, f64) {
         let [a, b] = self.ends;
         let count = (a.distance(b) / wave.wavelength() * PER_WAVELENGTH).ceil().max(1.0) as usize;
-        let place = |i: usize| a.lerp(b, (i as f64 + 0.5) / count as f64);
-        let element = |i| self.element(scatterer, wave, source, (place(i), a.distance(b) / count as f64));
-        (0..count).filter_map(element).collect()
+        let places = (0..count).map(|i| a.lerp(b, (i as f64 + 0.5) / count as f64)).collect();
+        (places, a.distance(b) / count as f64)
     }
 
+    /// For each facet, whether its plane contains the edge.
+    fn faces_of(&self, scatterer: &Scatterer) -> Vec<bool> {
+        let contains = |facet: &Facet| {
+            let height = |end: Vec3| facet.patch.normal().dot(end - facet.patch.centroid()).abs();
+            self.ends.iter().all(|&end| height(end) <= 1e-9 * scatterer.extent())
+        };
+        scatterer.facets().iter().map(contains).collect()
+    }
+
+    /// The elements in the light of a source.
+    fn lit(&self, scatterer: &Scatterer, wave: &Wave, source: &dyn Source) -> Vec<Element> {
+        let (places, length) = self.pieces(wave);
+        let seen = places.iter().filter(|&&place| scatterer.sees(place, source.origin()));
+        let element = |&place: &Vec3| {
+            let towards = source.origin().seen_from(place);
+            self.element(wave, (place, length), towards, source.field(wave, place))
+        };
+        seen.filter_map(element).collect()
+    }
+
+    /// The element of a piece that a wave from the direction `towards` its source meets.
     fn element(
         &self,
-        scatterer: &Scatterer,
         wave: &Wave,
-        source: &dyn Source,
         (place, length): (Vec3, f64),
+        towards: Vec3,
+        Field { e, h }: Field,
     ) -> Option<Element> {
-        let towards = source.origin().seen_from(place);
         let (t, source_angle) = (self.tangent(), self.angle(towards));
         let sin_squared = 1.0 - towards.dot(t).powi(2);
         let faces = [0.0, PI, (self.opening - 1.0) * PI, self.opening * PI];
         let grazes = faces.iter().any(|face| (source_angle - face).abs() < GRAZING);
-        if sin_squared < 1e-6
-            || grazes
-            || source_angle > self.opening * PI
-            || !scatterer.sees(place, source.origin())
-        {
+        if sin_squared < 1e-6 || grazes || source_angle > self.opening * PI {
             return None;
         }
-        let Field { e, h } = source.field(wave, place);
         let factor = Complex64::new(0.0, 2.0 / (wave.wavenumber() * sin_squared));
         let strength = [e.dot(t) * factor / IMPEDANCE, h.dot(t) * factor * IMPEDANCE];
         Some(Element { place, length, edge: *self, source_angle, strength })

@@ -79,9 +79,24 @@ pub enum WaveError {
         /// Index of the facet.
         facet: usize,
     },
+    /// A closed body has no room for a second surface inside.
+    #[error(
+        "the point {depth} m behind facet {facet} is not inside the body, which is too thin for the equation on two surfaces; use the exact shadow"
+    )]
+    Thin {
+        /// Index of the facet.
+        facet: usize,
+        /// Depth of the second surface, m.
+        depth: f64,
+    },
+    /// The equation on two surfaces is asked for as means over facets.
+    #[error(
+        "the equation on two surfaces is made discrete at the centres of the facets only; ask for Nyström"
+    )]
+    CentresOnly,
     /// A model of perfect conductors meets another material.
     #[error(
-        "{what} knows perfect conductors only, but facet {facet} is of another material; ask for one bounce with geometric shadows"
+        "{what} knows perfect conductors only, but facet {facet} is of another material; ask for geometric or radiated shadows, without edge currents"
     )]
     NotConductor {
         /// The model.

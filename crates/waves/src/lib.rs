@@ -23,7 +23,9 @@ pub mod source;
 pub mod surface;
 
 pub use complex::ComplexVector;
-pub use coupling::{Bounced, Discretisation, NystromCoupling, System, galerkin};
+pub use coupling::{
+    Bounced, Bounces, Discretisation, MaterialCoupling, NystromCoupling, System, galerkin, spectral_radius,
+};
 pub use current::{Current, FacetCurrents, SurfaceCurrent};
 pub use edges::EdgeCurrents;
 pub use element::{electric_element, magnetic_element};

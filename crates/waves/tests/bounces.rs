@@ -6,17 +6,16 @@ mod common;
 
 use common::{WAVELENGTH, circle, reference, relative_error, source, wave};
 use fredholm_iterative::Neumann;
-use fredholm_linop::{
-    LinearOperator, MultiVector, Quiet, Report, SecondKind, SolveError, Solver, Stop, StopReason,
-};
+use fredholm_linop::{MultiVector, Quiet, Report, SecondKind, SolveError, Solver, Stop, StopReason};
 use fredholm_mesh::Vec3;
 use fredholm_waves::source::PlaneWave;
 use fredholm_waves::surface::{cube, dihedral, facing_plates, parallel_plates, sphere, trihedral};
 use fredholm_waves::{
-    Bounced, Complex64, Discretisation, EdgeCurrents, Field, PhysicalOptics, Scatterer, Shadow, Source,
-    System, cross_section,
+    Bounced, Bounces, Complex64, Discretisation, EdgeCurrents, Field, PhysicalOptics, Scatterer, Shadow,
+    Source, System, cross_section, spectral_radius,
 };
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::ops::ControlFlow;
 
 type Vectors = MultiVector<Complex64>;
 
@@ -47,15 +46,8 @@ fn direct() -> Box<dyn Solver<Complex64>> {
     fredholm_direct::solvers().remove(0)
 }
 
-/// x after so many bounces more than one.
-fn bounced(system: &System<'_>, b: &Vectors, bounces: usize) -> Vectors {
-    let mut x = b.clone();
-    for _ in 0..bounces {
-        let mut product = MultiVector::zeros(x.dim(), x.lanes());
-        system.coupling().apply(&x, &mut product);
-        x = MultiVector::from_fn(x.dim(), x.lanes(), |i, l| b.row(i)[l] + product.row(i)[l]);
-    }
-    x
+fn go_on() -> ControlFlow<()> {
+    ControlFlow::Continue(())
 }
 
 /// σ straight back over the closed form, dB.
@@ -64,7 +56,8 @@ fn corner(scatterer: &Scatterer, from: Vec3, bounces: usize, closed: f64) -> f64
     let sources: [&dyn Source; 1] = [&source];
     let first = PhysicalOptics::new(scatterer, wave(), &sources, Shadow::Geometric).unwrap();
     let system = System::lazy(scatterer, wave(), Shadow::Geometric).unwrap();
-    let x = bounced(&system, &system.right_hand_side(&[&first]), bounces - 1);
+    let b = system.right_hand_side(&[&first]);
+    let x = Bounces::sum(system.coupling(), &b, bounces, &mut go_on).unwrap().x;
     let currents = system.currents(&x, 0);
     let far = system.radiator(&currents).far_field(&[from]).unwrap();
     10.0 * (cross_section(far[0].amplitude.dot(source.polarisation()), 1.0.into()) / closed).log10()
@@ -142,10 +135,14 @@ fn two_plates_converge_to_less_than_half_the_error_of_one_bounce() {
         if shadow != Shadow::Thesis {
             let currents = Bounced::new(&plates, &first, &system.currents(&x, 0));
             let fields = system.radiator(&currents).fields(&circle()).unwrap();
-            let edges = EdgeCurrents::new(&plates, wave(), &sources).unwrap().fields(&circle());
-            let both: Vec<Field> = fields.iter().zip(edges).map(|(&field, edge)| field + edge).collect();
-            let with_edges = relative_error(&scattered(&both), &expected);
-            assert!(with_edges < 0.08, "{shadow:?}: {with_edges}");
+            let lit = EdgeCurrents::new(&plates, wave(), &sources).unwrap();
+            let bounced = lit.clone().with_bounces(&plates, &currents).unwrap();
+            let [lit, bounced] = [lit, bounced].map(|edges| {
+                let pairs = fields.iter().zip(edges.fields(&circle()));
+                let both: Vec<Field> = pairs.map(|(&field, edge)| field + edge).collect();
+                relative_error(&scattered(&both), &expected)
+            });
+            assert!(lit < 0.08 && bounced < 0.06, "{shadow:?}: {lit} {bounced}");
         }
     }
 }
@@ -177,22 +174,6 @@ fn all_solvers_agree() {
     assert!(converged >= 10, "{converged}");
 }
 
-/// ϱ(K) as the mean growth over the later half of 120 applications.
-fn spectral_radius(coupling: &dyn LinearOperator<Complex64>) -> f64 {
-    let mut x = Vectors::from_fn(coupling.dim(), 1, |i, _| Complex64::new((1.7 * i as f64).cos(), 0.3));
-    let mut growth = 0.0;
-    for step in 0..120 {
-        let mut y = Vectors::zeros(x.dim(), 1);
-        coupling.apply(&x, &mut y);
-        let norm = y.norms()[0];
-        if step >= 60 {
-            growth += norm.ln();
-        }
-        x = Vectors::from_fn(x.dim(), 1, |i, _| y.row(i)[0] / norm);
-    }
-    (growth / 60.0).exp()
-}
-
 /// Spectral radii of an independent code at λ/6; beyond 1 the series of bounces diverges, which is reported.
 #[test]
 fn spectral_radii_and_a_series_that_diverges() {
@@ -209,7 +190,7 @@ fn spectral_radii_and_a_series_that_diverges() {
     ];
     for (scatterer, shadow, expected) in cases {
         let system = System::stored(scatterer, wave(), shadow, Discretisation::Nystrom).unwrap();
-        let radius = spectral_radius(system.coupling());
+        let radius = spectral_radius(system.coupling(), 120, &mut go_on).unwrap();
         assert!((radius / expected - 1.0).abs() < 0.05, "{shadow:?}: {radius} for {expected}");
         if expected > 1.1 {
             let source = source();

@@ -61,7 +61,9 @@ fn the_lazy_operator_is_the_stored_one() {
         let refused = NystromCoupling::new(scatterer, wave(), Shadow::Exact);
         assert!(matches!(refused.err(), Some(WaveError::NotClosed { facet: 0 })));
     }
-    check(&cube(0.8 * WAVELENGTH, WAVELENGTH / 6.0).unwrap(), Shadow::Exact);
+    for shadow in [Shadow::Exact, Shadow::ExactDual] {
+        check(&cube(0.8 * WAVELENGTH, WAVELENGTH / 6.0).unwrap(), shadow);
+    }
 }
 
 #[test]

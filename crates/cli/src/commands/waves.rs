@@ -1,12 +1,16 @@
 //! `fredholm waves`.
 
-use std::path::PathBuf;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
+use fredholm_linop::Stop;
+use fredholm_report::{ComparisonRun, WaveComparison, write_wave_comparison};
 
-use crate::args::LogArgs;
+use crate::args::{LogArgs, tolerance};
 use crate::failure::{Ending, Failure};
 use crate::interrupt::Interrupt;
+use crate::output::visible;
 use crate::stages::Stages;
 use crate::summary::Lines;
 use crate::waves::{self, Model, Outcome};
@@ -17,9 +21,11 @@ pub(crate) const EXAMPLES: &str = "\
 Examples:
   fredholm waves scenes/waves/plate.toml
   fredholm waves dihedral.toml -o results --threads 2
+  fredholm waves scenes/waves/facing_plates.toml --compare neumann,gmres,southwell
 
 Written are receivers.csv, receivers.npz, currents.vtu, far.csv, plots and maps of the
-receivers, and run.json last. Ctrl-C ends the run with nothing written.";
+receivers, and run.json last; with --compare, compare.csv, compare_history.csv, compare.svg
+and compare.json instead. Ctrl-C ends the run with nothing written.";
 
 /// Options of `waves`.
 #[derive(Clone, Debug, Args)]
@@ -32,8 +38,41 @@ pub(crate) struct WavesArgs {
     /// Threads; any number gives the same results [default: one a core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+    /// Compare solvers on the coupling instead, with their options, or all: neumann,gmres:restart=100,southwell
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = solver)]
+    compare: Vec<String>,
+    /// Residual that compared solvers are to reach
+    #[arg(long, value_name = "T", value_parser = tolerance, default_value = "1e-6", requires = "compare")]
+    to: f64,
+    /// Iterations that compared solvers are allowed
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), default_value_t = 1000, requires = "compare")]
+    max_iterations: u32,
     #[command(flatten)]
     pub(crate) log: LogArgs,
+}
+
+/// A solver that can be made, or all of them.
+fn solver(text: &str) -> Result<String, String> {
+    if text != "all" {
+        waves::build(text).map_err(|error| error.to_string())?;
+    }
+    Ok(text.to_owned())
+}
+
+impl WavesArgs {
+    /// The solvers to compare, `all` written out, each once.
+    fn solvers(&self) -> Vec<String> {
+        let mut solvers: Vec<String> = Vec::new();
+        for text in &self.compare {
+            let named = if text == "all" { waves::names() } else { vec![text.as_str()] };
+            for name in named {
+                if solvers.iter().all(|known| known != name) {
+                    solvers.push(name.to_owned());
+                }
+            }
+        }
+        solvers
+    }
 }
 
 /// Computes a scene of waves and writes the results.
@@ -49,6 +88,9 @@ pub(crate) fn waves(args: &WavesArgs) -> Result<Ending, Failure> {
 fn run(args: &WavesArgs, stages: &mut Stages) -> Result<Ending, Failure> {
     let folder = folder::of(args.output.as_ref(), &args.scene);
     let model = stages.run("scene", || Model::load(&args.scene))?;
+    if !args.compare.is_empty() {
+        return compare(args, &folder, &model, stages);
+    }
     let outcome = waves::compute(&model, stages)?;
     stages.begin_saving()?;
     let timings = stages.timings().to_vec();
@@ -65,7 +107,50 @@ fn run(args: &WavesArgs, stages: &mut Stages) -> Result<Ending, Failure> {
     Ok(if outcome.converged() { Ending::Done } else { Ending::NotConverged })
 }
 
-fn summarise(folder: &std::path::Path, model: &Model, outcome: &Outcome) -> Result<(), Failure> {
+fn compare(args: &WavesArgs, folder: &Path, model: &Model, stages: &mut Stages) -> Result<Ending, Failure> {
+    let stop = Stop { tolerance: args.to, max_iterations: args.max_iterations as usize };
+    let record = waves::compare(model, &args.solvers(), &stop, stages)?;
+    stages.begin_saving()?;
+    write_wave_comparison(folder, &record).map_err(super::solve::report_failure)?;
+    if !args.log.quiet {
+        tabulate(folder, &record)?;
+    }
+    let failed = record.cases.iter().any(|case| case.runs.iter().any(waves::failed));
+    Ok(if failed { Ending::NotConverged } else { Ending::Done })
+}
+
+/// Prints a table for each frequency.
+fn tabulate(folder: &Path, record: &WaveComparison) -> Result<(), Failure> {
+    let mut text = format!("{} → {}\n", record.scene, folder.join("compare.svg").display());
+    for case in &record.cases {
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            text,
+            "\n  {} MHz, {} unknowns, spectral radius {:.3}; errors against {}",
+            case.frequency / 1e6,
+            case.unknowns,
+            case.spectral_radius,
+            case.reference
+        );
+        let width = case.runs.iter().map(|run| run.solver.chars().count()).fold(8, usize::max);
+        let _ = writeln!(text, "  {:width$}  iterations   residual      error  outcome", "solver");
+        for run in &case.runs {
+            let _ = writeln!(text, "  {:width$}  {}", run.solver, row(run));
+        }
+    }
+    output::print(&visible(&text))
+}
+
+fn row(run: &ComparisonRun) -> String {
+    match &run.reason {
+        Some(reason) => format!("{:>32}  refused: {reason}", ""),
+        None => {
+            format!("{:>10}  {:>9.1e}  {:>9.1e}  {}", run.iterations, run.residual, run.error, run.outcome)
+        }
+    }
+}
+
+fn summarise(folder: &Path, model: &Model, outcome: &Outcome) -> Result<(), Failure> {
     let mut lines = Lines::default();
     lines.add("method", format!("{}, shadows {}", model.method.name(), model.shadow.name()));
     for solved in &outcome.solved {

@@ -1,33 +1,24 @@
 //! The currents and the fields at all frequencies.
 
-use std::ops::ControlFlow;
-
-use fredholm_linop::{MultiVector, Observer, Progress, SecondKind, Solver, Stop, StopReason};
 use fredholm_mesh::Vec3;
 use fredholm_report::{FarRow, WaveCurrents, WaveRow};
 use fredholm_waves::{
-    Bounced, Complex64, ComplexVector, Current, Discretisation, EdgeCurrents, FacetCurrents, FarField, Field,
-    PhysicalOptics, Radiator, Sampling, Scatterer, Shadow, Source, System, TOLERANCE, WaveError,
-    cross_section, incident,
+    Bounced, ComplexVector, Current, EdgeCurrents, FacetCurrents, FarField, Field, PhysicalOptics, Radiator,
+    Sampling, Scatterer, Shadow, Source, System, TOLERANCE, WaveError, cross_section, incident,
 };
 use rayon::prelude::*;
 
 use super::estimate;
 use super::geometry::Geometry;
-use super::model::{Band, Method};
+use super::model::Band;
+use super::monostatic::Sweep;
 use super::receivers::{Places, Receiver};
 use super::record::Solved;
+use super::solving::{self, Solution};
 use super::{Model, Outcome};
-use crate::failure::{Ending, Failure};
-use crate::interrupt::{Interrupt, nothing_saved};
-use crate::memory;
-use crate::size::Bytes;
+use crate::failure::Failure;
+use crate::interrupt::Interrupt;
 use crate::stages::Stages;
-
-/// Solvers that ask for products only: where the matrix does not fit, they compute it anew each time.
-const PRODUCTS_ONLY: [&str; 4] = ["neumann", "gmres", "bicgstab", "anderson"];
-
-type Vectors = MultiVector<Complex64>;
 
 /// Computes everything that the model asks for.
 pub(crate) fn compute(model: &Model, stages: &mut Stages) -> Result<Outcome, Failure> {
@@ -35,11 +26,11 @@ pub(crate) fn compute(model: &Model, stages: &mut Stages) -> Result<Outcome, Fai
     let mut outcome = variant(model, as_asked, stages)?;
     if let Some(coarse) = &model.coarse {
         let coarser = variant(model, Variant { name: ", long edges", geometry: coarse, ..as_asked }, stages)?;
-        outcome.mesh_errors = estimate::mesh(&outcome.near, &coarser.near);
+        outcome.mesh_errors = estimate::mesh(&outcome, &coarser);
         if estimate::has_magnetic_form(model) {
             let shadow = Shadow::Thesis;
             let magnetic = variant(model, Variant { name: ", magnetic form", shadow, ..as_asked }, stages)?;
-            outcome.form_errors = estimate::form(&outcome.near, &magnetic.near);
+            outcome.form_errors = estimate::form(&outcome, &magnetic);
         }
     }
     Ok(outcome)
@@ -59,7 +50,9 @@ fn variant(model: &Model, variant: Variant<'_>, stages: &mut Stages) -> Result<O
     for band in &model.bands {
         let refused = |error: WaveError| model.refused(&error, None);
         let scatterer = variant.geometry.scatterer(band.materials.clone()).map_err(refused)?;
-        scatterer.check_resolution(&band.wave).map_err(refused)?;
+        if !model.is_closed_form() {
+            scatterer.check_resolution(&band.wave).map_err(refused)?;
+        }
         let sources: Vec<&dyn Source> = model.sources.iter().map(AsRef::as_ref).collect();
         let first = PhysicalOptics::new(&scatterer, band.wave, &sources, variant.shadow).map_err(refused)?;
         let task = Task { model, variant, band, scatterer: &scatterer, first: &first, sources: &sources };
@@ -82,11 +75,20 @@ impl Task<'_> {
     fn carry_out(&self, stages: &mut Stages, outcome: &mut Outcome) -> Result<(), Failure> {
         let name = format!("{} MHz{}", self.band.wave.frequency() / 1e6, self.variant.name);
         let interrupt = stages.interrupt;
-        let (system, currents, solved) =
-            stages.run(&format!("currents at {name}"), || self.currents(interrupt))?;
-        stages.run(&format!("fields at {name}"), || self.radiate(system.as_ref(), &currents, outcome))?;
-        outcome.currents.push(WaveCurrents { name, values: currents.values().iter().map(current).collect() });
-        outcome.solved.push(solved);
+        let system = stages.run(&format!("coupling at {name}"), || self.system())?;
+        let system = system.as_ref();
+        if self.model.has_bistatic() {
+            let (currents, solved) =
+                stages.run(&format!("currents at {name}"), || self.currents(system, interrupt))?;
+            stages.run(&format!("fields at {name}"), || self.radiate(system, &currents, outcome))?;
+            let values = currents.values().iter().map(current).collect();
+            outcome.currents.push(WaveCurrents { name: name.clone(), values });
+            outcome.solved.push(solved);
+        }
+        // Estimates are made of the fields at receivers only.
+        if self.variant.name.is_empty() && self.model.has_sweep() {
+            stages.run(&format!("sweep at {name}"), || self.sweep(system, interrupt, outcome))?;
+        }
         Ok(())
     }
 
@@ -94,82 +96,61 @@ impl Task<'_> {
         self.model.refused(error, None)
     }
 
-    /// The currents at the centres of the facets, and the system they solve where there is more than one bounce.
+    fn system(&self) -> Result<Option<System<'_>>, Failure> {
+        solving::system(self.model, self.scatterer, self.band.wave, self.variant.shadow)
+    }
+
+    /// The currents at the centres of the facets.
     fn currents(
         &self,
+        system: Option<&System<'_>>,
         interrupt: &Interrupt,
-    ) -> Result<(Option<System<'_>>, FacetCurrents, Solved), Failure> {
-        let facets = self.scatterer.facets().len();
-        let frequency = self.band.wave.frequency();
-        let known = Solved { frequency, facets, residuals: Vec::new(), reason: None };
-        match &self.model.method {
-            Method::Bounces(1) => Ok((None, FacetCurrents::sampled(self.scatterer, self.first), known)),
-            Method::Bounces(bounces) => {
-                let system = self.lazy()?;
-                let x = bounced(&system, &system.right_hand_side(&[self.first]), *bounces);
-                let currents = system.currents(&x, 0);
-                Ok((Some(system), currents, known))
-            }
-            Method::Solver { solver, tolerance, max_iterations } => {
-                let system = self.system(&**solver)?;
-                let stop = Stop { tolerance: *tolerance, max_iterations: *max_iterations };
-                let (x, solved) = self.solve(&system, &**solver, &stop, interrupt)?;
-                let currents = system.currents(&x, 0);
-                Ok((Some(system), currents, Solved { facets, ..solved }))
-            }
-        }
-    }
-
-    fn lazy(&self) -> Result<System<'_>, Failure> {
-        System::lazy(self.scatterer, self.band.wave, self.variant.shadow)
-            .map_err(|error| self.refused(&error))
-    }
-
-    /// Stored for the solvers that read entries, where it fits.
-    fn system(&self, solver: &dyn Solver<Complex64>) -> Result<System<'_>, Failure> {
-        let facets = self.scatterer.facets().len();
-        let needed = u128::from(System::bytes(facets)) + u128::from(solver.bytes(2 * facets, 1));
-        let limit = memory::default_limit();
-        if needed > limit.0 && PRODUCTS_ONLY.contains(&solver.name()) {
-            return self.lazy();
-        }
-        if needed > limit.0 {
-            let text = format!(
-                "the coupling of {facets} facets and the solver {} would take {}, and {limit} may be used\n  help: mesh coarser, or take a solver that needs no matrix: {}",
-                solver.name(),
-                Bytes(needed),
-                PRODUCTS_ONLY.join(", ")
-            );
-            return Err(Failure::new(Ending::Resources, text));
-        }
-        System::stored(self.scatterer, self.band.wave, self.variant.shadow, Discretisation::Nystrom)
-            .map_err(|error| self.refused(&error))
-    }
-
-    fn solve(
-        &self,
-        system: &System<'_>,
-        solver: &dyn Solver<Complex64>,
-        stop: &Stop,
-        interrupt: &Interrupt,
-    ) -> Result<(Vectors, Solved), Failure> {
+    ) -> Result<(FacetCurrents, Solved), Failure> {
+        let Some(system) = system else {
+            let residuals = self.first_residuals(interrupt)?;
+            let currents = FacetCurrents::sampled(self.scatterer, self.first);
+            return Ok((currents, Solved { residuals, ..self.solved(None) }));
+        };
         let b = system.right_hand_side(&[self.first]);
-        let unsuitable = |error| Failure::new(Ending::Input, error);
-        let one = Vectors::from_fn(b.dim(), 1, |_, _| Complex64::ONE);
-        let a =
-            SecondKind::new(system.coupling(), one).map_err(|error| Failure::new(Ending::Input, error))?;
-        let mut x = Vectors::zeros(b.dim(), 1);
-        let report = solver.solve(&a, &b, &mut x, stop, &mut Watch(interrupt)).map_err(unsuitable)?;
-        let residuals: Vec<f64> =
-            report.history.iter().filter_map(|entry| entry.residuals.first().copied()).collect();
-        match report.reason {
-            StopReason::Interrupted => Err(nothing_saved()),
-            StopReason::Diverged => Err(diverged(solver.name(), &residuals)),
-            reason => {
-                let frequency = self.band.wave.frequency();
-                Ok((x, Solved { frequency, facets: 0, residuals, reason: Some(reason) }))
+        let solution = solving::solution(&self.model.method, system, &b, interrupt)?;
+        Ok((system.currents(&solution.x, 0), self.solved(Some(solution))))
+    }
+
+    fn solved(&self, solution: Option<Solution>) -> Solved {
+        let (frequency, facets) = (self.band.wave.frequency(), self.scatterer.facets().len());
+        let (residuals, reason) =
+            solution.map_or((Vec::new(), None), |solution| (solution.residuals, solution.reason));
+        Solved { frequency, facets, residuals, reason }
+    }
+
+    /// What a second bounce would add, where errors are to be estimated; it is not asked of the runs that do so.
+    fn first_residuals(&self, interrupt: &Interrupt) -> Result<Vec<f64>, Failure> {
+        if self.model.coarse.is_none() || !self.variant.name.is_empty() {
+            return Ok(Vec::new());
+        }
+        let system = solving::lazy(self.model, self.scatterer, self.band.wave, self.variant.shadow)?;
+        let b = system.right_hand_side(&[self.first]);
+        Ok(solving::bounced(&system, &b, 1, interrupt)?.residuals)
+    }
+
+    /// The sweeps of the receivers that ask for one.
+    fn sweep(
+        &self,
+        system: Option<&System<'_>>,
+        interrupt: &Interrupt,
+        outcome: &mut Outcome,
+    ) -> Result<(), Failure> {
+        let (model, scatterer, wave, shadow) =
+            (self.model, self.scatterer, self.band.wave, self.variant.shadow);
+        let sweep = Sweep { model, scatterer, wave, shadow, system };
+        for (index, receiver) in model.receivers.iter().enumerate() {
+            if let Places::Monostatic(angles) = &receiver.places {
+                let (rows, worst) = sweep.run(index, angles, interrupt)?;
+                outcome.monostatic.extend(rows);
+                outcome.solved.push(self.solved(worst));
             }
         }
+        Ok(())
     }
 
     /// Fields at all receivers.
@@ -180,48 +161,66 @@ impl Task<'_> {
         outcome: &mut Outcome,
     ) -> Result<(), Failure> {
         let Some(system) = system else {
-            return self.receive(&self.first.radiator(Sampling::Tolerance(TOLERANCE)), outcome);
+            return self.receive(&self.first.radiator(Sampling::Tolerance(TOLERANCE)), None, outcome);
         };
         let all = Bounced::new(self.scatterer, self.first, currents);
-        self.receive(&system.radiator(&all), outcome)
+        self.receive(&system.radiator(&all), Some(&all), outcome)
     }
 
-    fn receive(&self, radiator: &Radiator<'_>, outcome: &mut Outcome) -> Result<(), Failure> {
-        let edges = self.edges()?;
+    /// `all` are the currents where there is more than one bounce.
+    fn receive(
+        &self,
+        radiator: &Radiator<'_>,
+        all: Option<&Bounced<'_>>,
+        outcome: &mut Outcome,
+    ) -> Result<(), Failure> {
+        let edges = self.edges(all)?;
         for (index, receiver) in self.model.receivers.iter().enumerate() {
             let refused = |error: WaveError| self.model.refused(&error, Some(receiver));
             match &receiver.places {
                 Places::Near { points, .. } => {
-                    let mut scattered = radiator.fields(points).map_err(refused)?;
-                    if let Some(edges) = &edges {
-                        scattered
-                            .iter_mut()
-                            .zip(edges.fields(points))
-                            .for_each(|(field, more)| *field += more);
-                    }
-                    let rows = self.rows(index, points, &scattered).map_err(refused)?;
-                    outcome.near.extend(rows);
+                    let scattered = near(radiator, edges.as_ref(), points).map_err(refused)?;
+                    outcome.near.extend(self.rows(index, points, &scattered).map_err(refused)?);
                 }
                 Places::Far(angles) => {
-                    let mut far = radiator.far_field(&Receiver::directions(angles)).map_err(refused)?;
-                    if let Some(edges) = &edges {
-                        let add = |far: &mut FarField| far.amplitude += edges.far_amplitude(far.direction);
-                        far.par_iter_mut().for_each(add);
-                    }
+                    let far = self.far(radiator, all.is_none(), edges.as_ref(), angles).map_err(refused)?;
                     let rows = far.iter().zip(angles).enumerate();
                     outcome.far.extend(rows.map(|(i, (far, angles))| self.far_row([index, i], *angles, far)));
                 }
+                Places::Monostatic(_) => {}
             }
         }
         Ok(())
     }
 
+    /// The far fields in some directions; of one bounce of plane waves in closed form.
+    fn far(
+        &self,
+        radiator: &Radiator<'_>,
+        one_bounce: bool,
+        edges: Option<&EdgeCurrents>,
+        angles: &[[f64; 2]],
+    ) -> Result<Vec<FarField>, WaveError> {
+        let directions = Receiver::directions(angles);
+        let closed = if one_bounce { self.first.linear_phase_far_field(&directions) } else { None };
+        let mut far = closed.unwrap_or_else(|| radiator.far_field(&directions))?;
+        if let Some(edges) = edges {
+            let add = |far: &mut FarField| far.amplitude += edges.far_amplitude(far.direction);
+            far.par_iter_mut().for_each(add);
+        }
+        Ok(far)
+    }
+
     /// The edge currents, where they are asked for; the magnetic form has none.
-    fn edges(&self) -> Result<Option<EdgeCurrents>, Failure> {
+    fn edges(&self, all: Option<&Bounced<'_>>) -> Result<Option<EdgeCurrents>, Failure> {
         if !self.model.edge_currents || self.variant.shadow == Shadow::Thesis {
             return Ok(None);
         }
-        let found = EdgeCurrents::new(self.scatterer, self.band.wave, self.sources);
+        let lit = EdgeCurrents::new(self.scatterer, self.band.wave, self.sources);
+        let found = lit.and_then(|lit| match all {
+            Some(all) => lit.with_bounces(self.scatterer, all),
+            None => Ok(lit),
+        });
         found.map(Some).map_err(|error| self.refused(&error))
     }
 
@@ -260,37 +259,17 @@ impl Task<'_> {
     }
 }
 
-/// x after so many bounces.
-fn bounced(system: &System<'_>, b: &Vectors, bounces: usize) -> Vectors {
-    let mut x = b.clone();
-    for _ in 1..bounces {
-        let mut product = Vectors::zeros(x.dim(), x.lanes());
-        system.coupling().apply(&x, &mut product);
-        x = Vectors::from_fn(x.dim(), x.lanes(), |i, l| b.row(i)[l] + product.row(i)[l]);
+/// The scattered fields at some points.
+fn near(
+    radiator: &Radiator<'_>,
+    edges: Option<&EdgeCurrents>,
+    points: &[Vec3],
+) -> Result<Vec<Field>, WaveError> {
+    let mut scattered = radiator.fields(points)?;
+    if let Some(edges) = edges {
+        scattered.iter_mut().zip(edges.fields(points)).for_each(|(field, more)| *field += more);
     }
-    x
-}
-
-fn diverged(solver: &str, residuals: &[f64]) -> Failure {
-    let reached = residuals.iter().copied().fold(f64::INFINITY, f64::min);
-    let text = format!(
-        "{solver} diverges after {} iterations (best residual {reached:.1e}); nothing was written\n  help: a closed body near a resonance or a cavity has no convergent series of bounces; take another solver",
-        residuals.len().saturating_sub(1)
-    );
-    Failure::new(Ending::NotConverged, text)
-}
-
-/// Stops the solver at a signal.
-struct Watch<'a>(&'a Interrupt);
-
-impl<T> Observer<T> for Watch<'_> {
-    fn observe(&mut self, _: &Progress<'_, T>) -> ControlFlow<()> {
-        Observer::<T>::poll(self)
-    }
-
-    fn poll(&mut self) -> ControlFlow<()> {
-        if self.0.requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    }
+    Ok(scattered)
 }
 
 fn current(current: &Current) -> [f64; 12] {

@@ -1,4 +1,5 @@
-//! Estimates of the error of the scattered E at the receivers, relative in the L² norm over the points of each.
+//! Estimates of the error of the scattered E at the receivers and of their far fields, relative in the L² norm over the
+//! points or directions of each.
 //!
 //! | estimate | from |
 //! |---|---|
@@ -9,12 +10,11 @@
 
 use std::collections::BTreeMap;
 
-use fredholm_report::WaveRow;
 use fredholm_waves::Shadow;
 use fredholm_waves::material::Material;
 use serde_json::{Value, json};
 
-use super::Model;
+use super::{Model, Outcome};
 
 /// One error.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,24 +38,30 @@ pub(super) fn has_magnetic_form(model: &Model) -> bool {
 }
 
 /// A third of the difference.
-pub(super) fn mesh(fine: &[WaveRow], coarse: &[WaveRow]) -> Vec<Estimated> {
+pub(super) fn mesh(fine: &Outcome, coarse: &Outcome) -> Vec<Estimated> {
     differences(fine, coarse, 1.0 / 3.0)
 }
 
 /// Half the difference.
-pub(super) fn form(electric: &[WaveRow], magnetic: &[WaveRow]) -> Vec<Estimated> {
+pub(super) fn form(electric: &Outcome, magnetic: &Outcome) -> Vec<Estimated> {
     differences(electric, magnetic, 0.5)
 }
 
-fn differences(rows: &[WaveRow], others: &[WaveRow], factor: f64) -> Vec<Estimated> {
+fn differences(ours: &Outcome, others: &Outcome, factor: f64) -> Vec<Estimated> {
     // Positive frequencies are in the order of their bits.
     let mut sums: BTreeMap<(u64, usize), [f64; 2]> = BTreeMap::new();
-    for (row, other) in rows.iter().zip(others) {
-        let sum = sums.entry((row.frequency.to_bits(), row.receiver)).or_default();
-        for (a, b) in row.scattered[..6].iter().zip(&other.scattered) {
+    let mut add = |(frequency, receiver): (f64, usize), a: &[f64], b: &[f64]| {
+        let sum = sums.entry((frequency.to_bits(), receiver)).or_default();
+        for (a, b) in a.iter().zip(b) {
             sum[0] += (a - b) * (a - b);
             sum[1] += a * a;
         }
+    };
+    for (row, other) in ours.near.iter().zip(&others.near) {
+        add((row.frequency, row.receiver), &row.scattered[..6], &other.scattered[..6]);
+    }
+    for (row, other) in ours.far.iter().zip(&others.far) {
+        add((row.frequency, row.receiver), &row.amplitude, &other.amplitude);
     }
     let estimated = |((bits, receiver), [gap, size]): ((u64, usize), [f64; 2])| Estimated {
         receiver,
@@ -68,6 +74,7 @@ fn differences(rows: &[WaveRow], others: &[WaveRow], factor: f64) -> Vec<Estimat
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fredholm_report::WaveRow;
 
     fn row(receiver: usize, ez: f64) -> WaveRow {
         let mut scattered = [0.0; 12];
@@ -77,8 +84,9 @@ mod tests {
 
     #[test]
     fn errors_are_those_of_each_receiver() {
-        let fine = [row(0, 3.0), row(0, 4.0), row(1, 2.0)];
-        let coarse = [row(0, 3.0), row(0, 4.0 + 1.5), row(1, 2.0)];
+        let outcome = |near: &[WaveRow]| Outcome { near: near.to_vec(), ..Outcome::default() };
+        let fine = outcome(&[row(0, 3.0), row(0, 4.0), row(1, 2.0)]);
+        let coarse = outcome(&[row(0, 3.0), row(0, 4.0 + 1.5), row(1, 2.0)]);
         let found = mesh(&fine, &coarse);
         assert_eq!(found.len(), 2);
         assert!((found[0].relative - 0.1).abs() < 1e-15 && found[1].relative.abs() < 1e-300);

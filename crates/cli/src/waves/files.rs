@@ -5,10 +5,12 @@ use std::io;
 use std::path::Path;
 
 use fredholm_report::{
-    FieldMap, MapQuantity, ReportError, Timing, WaveRow, write_atomically, write_currents_vtu, write_far_csv,
-    write_polar_plot, write_receivers_csv, write_receivers_npz,
+    FieldMap, MapQuantity, ReportError, Timing, WaveResiduals, WaveRow, write_atomically, write_currents_vtu,
+    write_far_csv, write_monostatic_csv, write_polar_plot, write_receivers_csv, write_receivers_npz,
+    write_residuals_csv, write_residuals_plot,
 };
 
+use super::model::Method;
 use super::receivers::{Layout, Places, Receiver};
 use super::{Model, Outcome};
 
@@ -32,12 +34,32 @@ pub(crate) fn write(
     if !outcome.far.is_empty() {
         put("far.csv", &|out| write_far_csv(&names, &outcome.far, out))?;
     }
+    if !outcome.monostatic.is_empty() {
+        put("monostatic.csv", &|out| write_monostatic_csv(&names, &outcome.monostatic, out))?;
+    }
     put("currents.vtu", &|out| write_currents_vtu(&model.geometry.mesh, &outcome.currents, out))?;
+    residuals(folder, model, outcome)?;
     for (index, receiver) in model.receivers.iter().enumerate() {
         pictures(folder, model, outcome, (index, receiver))?;
     }
     let record = outcome.record(model, timings);
     put(LAST, &|out| serde_json::to_writer_pretty(out, &record).map_err(io::Error::other))
+}
+
+/// The residual after every iteration or bounce, where there is any.
+fn residuals(folder: &Path, model: &Model, outcome: &Outcome) -> Result<(), ReportError> {
+    let known = outcome.solved.iter().filter(|solved| !solved.residuals.is_empty());
+    let lines: Vec<WaveResiduals> = known
+        .map(|solved| WaveResiduals { frequency: solved.frequency, values: solved.residuals.clone() })
+        .collect();
+    if lines.is_empty() {
+        return Ok(());
+    }
+    let across = if let Method::Bounces(_) = model.method { "bounces" } else { "iterations" };
+    write_atomically(&folder.join("residuals.csv"), |out| write_residuals_csv(&lines, out))?;
+    write_atomically(&folder.join("residuals.svg"), |out| {
+        write_residuals_plot(&model.method.name(), across, &lines, out)
+    })
 }
 
 fn prepare(folder: &Path) -> Result<(), ReportError> {
@@ -69,7 +91,8 @@ fn pictures(
             Places::Near { layout: Layout::Circle(degrees), .. } => polar(folder, &stem, degrees, &rows)?,
             Places::Near { layout: Layout::Grid(columns), .. } => maps(folder, &stem, *columns, &rows)?,
             Places::Near { layout: Layout::Points, .. } => {}
-            Places::Far(angles) => far(folder, &stem, outcome, (index, frequency, angles.len()))?,
+            Places::Far(_) => far(folder, &stem, outcome, (index, frequency))?,
+            Places::Monostatic(_) => sweep(folder, &stem, outcome, (index, frequency))?,
         }
     }
     Ok(())
@@ -107,22 +130,51 @@ fn far(
     folder: &Path,
     stem: &str,
     outcome: &Outcome,
-    (index, frequency, count): (usize, f64, usize),
+    (index, frequency): (usize, f64),
 ) -> Result<(), ReportError> {
-    let rows = outcome.far.iter().filter(|row| {
-        row.receiver == index && row.frequency.total_cmp(&frequency).is_eq() && row.cross_section.is_some()
-    });
-    let rows: Vec<_> = rows.take(count).collect();
-    let Some(first) = rows.first() else { return Ok(()) };
-    let over_phi = rows.iter().all(|row| row.theta_degrees.total_cmp(&first.theta_degrees).is_eq());
-    let line = |name: &str, part: usize| {
-        let point = |row: &&fredholm_report::FarRow| {
-            let angle = if over_phi { row.phi_degrees } else { row.theta_degrees };
-            (angle, 10.0 * row.cross_section.map_or(0.0, |sections| sections[part]).log10())
-        };
-        (name.to_owned(), rows.iter().map(point).collect())
+    let here = outcome.far.iter().filter(|row| row.receiver == index && same(row.frequency, frequency));
+    let known = here.filter_map(|row| Some(([row.theta_degrees, row.phi_degrees], row.cross_section?)));
+    let (angles, sections): (Vec<_>, Vec<_>) = known.unzip();
+    let lines = [("θ", 0), ("φ", 1)];
+    let line = |(name, part): (&str, usize)| (name.to_owned(), sections.iter().map(|s| s[part]).collect());
+    cross_sections(folder, stem, &angles, &lines.map(line))
+}
+
+/// The same of a monostatic sweep, for either polarisation and across.
+fn sweep(
+    folder: &Path,
+    stem: &str,
+    outcome: &Outcome,
+    (index, frequency): (usize, f64),
+) -> Result<(), ReportError> {
+    let rows = outcome.monostatic.iter();
+    let here = rows.filter(|row| row.receiver == index && same(row.frequency, frequency));
+    let known = here.map(|row| ([row.theta_degrees, row.phi_degrees], row.cross_sections()));
+    let (angles, sections): (Vec<_>, Vec<_>) = known.unzip();
+    let lines = [("θθ", 0), ("φφ", 3), ("φθ", 1)];
+    let line = |(name, part): (&str, usize)| (name.to_owned(), sections.iter().map(|s| s[part]).collect());
+    cross_sections(folder, stem, &angles, &lines.map(line))
+}
+
+fn same(a: f64, b: f64) -> bool {
+    a.total_cmp(&b).is_eq()
+}
+
+/// Lines of cross-sections (m²) over φ where θ stays the same, else over θ.
+fn cross_sections(
+    folder: &Path,
+    stem: &str,
+    angles: &[[f64; 2]],
+    lines: &[(String, Vec<f64>)],
+) -> Result<(), ReportError> {
+    let Some(first) = angles.first() else { return Ok(()) };
+    let over_phi = angles.iter().all(|angle| same(angle[0], first[0]));
+    let across = angles.iter().map(|angle| angle[usize::from(over_phi)]);
+    let line = |(name, sections): &(String, Vec<f64>)| {
+        let levels = sections.iter().map(|section| 10.0 * section.log10());
+        (name.clone(), across.clone().zip(levels).collect())
     };
-    let lines = [line("θ", 0), line("φ", 1)];
+    let lines: Vec<(String, Vec<(f64, f64)>)> = lines.iter().map(line).collect();
     let title = format!("{stem}: radar cross-section over {}", if over_phi { "φ" } else { "θ" });
     write_atomically(&folder.join(format!("{stem}.svg")), |out| {
         write_polar_plot(&title, "dB(m²)", &lines, out)

@@ -181,6 +181,8 @@ pub(super) struct ReceiverEntry {
     pub circle: Option<CircleEntry>,
     pub grid: Option<GridEntry>,
     pub far: Option<FarEntry>,
+    /// Plane waves from these directions, and what goes back to each.
+    pub monostatic: Option<FarEntry>,
 }
 
 /// Points from one to the other, both included.

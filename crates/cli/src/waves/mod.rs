@@ -1,5 +1,6 @@
 //! Scenes of waves: their files, what they mean, and what is written.
 
+mod compare;
 mod compute;
 mod estimate;
 mod files;
@@ -7,12 +8,17 @@ mod format;
 mod geometry;
 mod located;
 mod model;
+mod monostatic;
 mod receivers;
 mod record;
+mod registry;
+mod solving;
 mod sources;
 
+pub(crate) use compare::{compare, failed};
 pub(crate) use compute::compute;
 pub(crate) use files::write;
 pub(crate) use model::{Band, Method, Model};
 pub(crate) use receivers::Places;
 pub(crate) use record::Outcome;
+pub(crate) use registry::{build, names};

@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 use fredholm_linop::Solver;
 use fredholm_waves::material::Material;
 use fredholm_waves::source::PlaneWave;
-use fredholm_waves::{Complex64, Shadow, Source, Wave, WaveError};
+use fredholm_waves::{Complex64, Origin, Shadow, Source, Wave, WaveError};
 
-use super::format::{SceneEntry, WaveEntry};
+use super::format::{ReceiverEntry, SceneEntry, WaveEntry};
 use super::geometry::{Geometry, materials};
 use super::located::SceneText;
-use super::receivers::{Receiver, receivers};
+use super::receivers::{Places, Receiver, receivers};
 use super::sources::{Placed, placed};
 use crate::failure::Failure;
 
@@ -103,6 +103,26 @@ impl Model {
         &self.text.path
     }
 
+    /// Whether facets may be of any size: one bounce of plane waves, looked at from far away only.
+    pub(crate) fn is_closed_form(&self) -> bool {
+        let far = |receiver: &Receiver| !matches!(receiver.places, Places::Near { .. });
+        let plane = self.sources.iter().all(|source| matches!(source.origin(), Origin::Direction(_)));
+        matches!(self.method, Method::Bounces(1))
+            && self.coarse.is_none()
+            && plane
+            && self.receivers.iter().all(far)
+    }
+
+    /// Whether any receiver is there for the sources of the scene.
+    pub(crate) fn has_bistatic(&self) -> bool {
+        self.receivers.iter().any(|receiver| !matches!(receiver.places, Places::Monostatic(_)))
+    }
+
+    /// Whether any receiver sends its own waves.
+    pub(crate) fn has_sweep(&self) -> bool {
+        self.receivers.iter().any(|receiver| matches!(receiver.places, Places::Monostatic(_)))
+    }
+
     /// What the library says, at the surface or receiver that it is about.
     pub(crate) fn refused(&self, error: &WaveError, receiver: Option<&Receiver>) -> Failure {
         let facet = match error {
@@ -117,9 +137,10 @@ impl Model {
     }
 }
 
-/// The sources, at least one.
+/// The sources, at least one unless all receivers send their own waves.
 fn sources(text: &SceneText, entry: &SceneEntry) -> Result<Vec<Placed>, Failure> {
-    if entry.source.is_empty() {
+    let own = |receiver: &toml::Spanned<ReceiverEntry>| receiver.get_ref().monostatic.is_some();
+    if entry.source.is_empty() && !entry.receiver.iter().all(own) {
         let help = "add a [[source]] such as kind = \"plane-wave\"";
         return Err(text.fault(text.end(), "the scene has no source", help));
     }
@@ -129,7 +150,7 @@ fn sources(text: &SceneText, entry: &SceneEntry) -> Result<Vec<Placed>, Failure>
 /// The method, where the treatment of shadows has a use for it.
 fn method(text: &SceneText, entry: &toml::Spanned<WaveEntry>, shadow: Shadow) -> Result<Method, Failure> {
     let found = asked(text, entry.get_ref())?;
-    if let (Shadow::Exact, Method::Bounces(_)) = (shadow, &found) {
+    if let (true, Method::Bounces(_)) = (shadow.is_equation(), &found) {
         let what = "the exact treatment is an equation, whose first bounces mean nothing by themselves";
         return Err(text.fault(entry.span(), what, "add solver = \"lu\", say"));
     }
@@ -159,7 +180,7 @@ fn shadow(text: &SceneText, entry: &WaveEntry) -> Result<Shadow, Failure> {
 
 fn edge_currents(text: &SceneText, entry: &WaveEntry, shadow: Shadow) -> Result<bool, Failure> {
     let Some(wanted) = &entry.edge_currents else { return Ok(false) };
-    if *wanted.get_ref() && matches!(shadow, Shadow::Exact | Shadow::Thesis) {
+    if *wanted.get_ref() && (shadow.is_equation() || shadow == Shadow::Thesis) {
         let what = "edge currents complete physical optics, not this treatment of shadows";
         return Err(text.fault(
             wanted.span(),
@@ -189,18 +210,10 @@ fn asked(text: &SceneText, entry: &WaveEntry) -> Result<Method, Failure> {
         return Err(text.fault(span, "the tolerance is no number between 0 and 1", "write 1e-6, say"));
     }
     let max_iterations = entry.max_iterations.unwrap_or(ITERATIONS) as usize;
-    let mut known = solvers();
-    let names: Vec<&str> = known.iter().map(|solver| solver.name()).collect();
-    let Some(at) = names.iter().position(|known| known == name.get_ref()) else {
-        let what = format!("unknown solver `{}`", name.get_ref());
-        return Err(text.fault(name.span(), what, format!("known: {}", names.join(", "))));
-    };
-    Ok(Method::Solver { solver: known.swap_remove(at), tolerance, max_iterations })
-}
-
-/// All solvers of complex systems.
-fn solvers() -> Vec<Box<dyn Solver<Complex64>>> {
-    let mut all: Vec<Box<dyn Solver<Complex64>>> = fredholm_iterative::solvers();
-    all.extend(fredholm_direct::solvers());
-    all
+    let solver = super::registry::build(name.get_ref()).map_err(|error| {
+        let message = error.to_string();
+        let (what, help) = message.split_once("; ").unwrap_or((&message, "correct the name or the options"));
+        text.fault(name.span(), what, help)
+    })?;
+    Ok(Method::Solver { solver, tolerance, max_iterations })
 }

@@ -32,13 +32,15 @@ pub(crate) enum Places {
     Near { points: Vec<Vec3>, layout: Layout },
     /// θ and φ, degrees.
     Far(Vec<[f64; 2]>),
+    /// θ and φ of the directions that plane waves come from and go back to, degrees.
+    Monostatic(Vec<[f64; 2]>),
 }
 
 impl Places {
     fn len(&self) -> usize {
         match self {
             Self::Near { points, .. } => points.len(),
-            Self::Far(angles) => angles.len(),
+            Self::Far(angles) | Self::Monostatic(angles) => angles.len(),
         }
     }
 }
@@ -64,7 +66,7 @@ pub(super) fn receivers(
     entries: &[Spanned<ReceiverEntry>],
 ) -> Result<Vec<Receiver>, Failure> {
     if entries.is_empty() {
-        let help = "add a [[receiver]] with a name and points, line, circle, grid or far";
+        let help = "add a [[receiver]] with a name and points, line, circle, grid, far or monostatic";
         return Err(scene.fault(scene.end(), "the scene has no receiver", help));
     }
     let (mut names, mut total, mut all) = (BTreeSet::new(), 0, Vec::new());
@@ -101,22 +103,27 @@ fn fit_for_a_file(name: &str) -> bool {
 }
 
 fn places(scene: &SceneText, entry: &Spanned<ReceiverEntry>) -> Result<Places, Failure> {
-    let ReceiverEntry { points, line, circle, grid, far, .. } = entry.get_ref();
+    let ReceiverEntry { points, line, circle, grid, far, monostatic, .. } = entry.get_ref();
     let near = |points, layout| Ok(Places::Near { points, layout });
-    let found = match (points, line, circle, grid, far) {
-        (Some(points), None, None, None, None) => near(points.iter().map(vector).collect(), Layout::Points),
-        (None, Some(line), None, None, None) => near(on_line(line), Layout::Points),
-        (None, None, Some(circle), None, None) => on_circle(scene, entry, circle),
-        (None, None, None, Some(grid), None) => on_grid(scene, entry, grid),
-        (None, None, None, None, Some(far)) => far_away(scene, entry, far),
+    let found = match (points, line, circle, grid, far, monostatic) {
+        (Some(points), None, None, None, None, None) => {
+            near(points.iter().map(vector).collect(), Layout::Points)
+        }
+        (None, Some(line), None, None, None, None) => near(on_line(line), Layout::Points),
+        (None, None, Some(circle), None, None, None) => on_circle(scene, entry, circle),
+        (None, None, None, Some(grid), None, None) => on_grid(scene, entry, grid),
+        (None, None, None, None, Some(far), None) => far_away(scene, entry, far).map(Places::Far),
+        (None, None, None, None, None, Some(back)) => far_away(scene, entry, back).map(Places::Monostatic),
         _ => {
             let what = format!("the receiver `{}` needs exactly one shape", entry.get_ref().name.get_ref());
-            Err(scene.fault(entry.span(), what, "give one of points, line, circle, grid, far"))
+            Err(scene.fault(entry.span(), what, "give one of points, line, circle, grid, far, monostatic"))
         }
     }?;
     let finite = match &found {
         Places::Near { points, .. } => points.iter().all(|p| p.is_finite()),
-        Places::Far(angles) => angles.iter().flatten().all(|angle| angle.is_finite()),
+        Places::Far(angles) | Places::Monostatic(angles) => {
+            angles.iter().flatten().all(|angle| angle.is_finite())
+        }
     };
     if finite {
         return Ok(found);
@@ -168,14 +175,18 @@ fn on_grid(scene: &SceneText, entry: &Spanned<ReceiverEntry>, grid: &GridEntry) 
     Ok(Places::Near { points, layout: Layout::Grid(*columns as usize) })
 }
 
-fn far_away(scene: &SceneText, entry: &Spanned<ReceiverEntry>, far: &FarEntry) -> Result<Places, Failure> {
+fn far_away(
+    scene: &SceneText,
+    entry: &Spanned<ReceiverEntry>,
+    far: &FarEntry,
+) -> Result<Vec<[f64; 2]>, Failure> {
     let (thetas, phis) = (angles(&far.theta_degrees), angles(&far.phi_degrees));
     if thetas.len().saturating_mul(phis.len()) > MOST {
         let what = format!("{} × {} directions", thetas.len(), phis.len());
         return Err(scene.fault(entry.span(), what, format!("ask for at most {MOST}")));
     }
     let pair = |&theta: &f64| phis.iter().map(move |&phi| [theta, phi]);
-    Ok(Places::Far(thetas.iter().flat_map(pair).collect()))
+    Ok(thetas.iter().flat_map(pair).collect())
 }
 
 fn angles(entry: &AnglesEntry) -> Vec<f64> {

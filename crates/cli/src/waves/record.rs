@@ -1,7 +1,7 @@
 //! What a run found, before it is written.
 
 use fredholm_linop::StopReason;
-use fredholm_report::{FarRow, WaveCurrents, WaveRow};
+use fredholm_report::{FarRow, MonostaticRow, WaveCurrents, WaveRow};
 use serde_json::{Value, json};
 
 use super::Model;
@@ -29,6 +29,7 @@ impl Solved {
 pub(crate) struct Outcome {
     pub(crate) near: Vec<WaveRow>,
     pub(crate) far: Vec<FarRow>,
+    pub(crate) monostatic: Vec<MonostaticRow>,
     pub(crate) currents: Vec<WaveCurrents>,
     pub(crate) solved: Vec<Solved>,
     /// Estimated relative errors of E at the receivers from the mesh.

@@ -2,16 +2,22 @@
 //!
 //! A phasor vector pair is twelve numbers: ex, ey, ez, hx, hy, hz, each real part first.
 
+mod comparison;
 mod csv;
 mod map;
+mod monostatic;
 mod npz;
 mod polar;
+mod residuals;
 mod vtu;
 
+pub use comparison::{WAVE_COMPARISON_FORMAT, WaveComparison, WaveComparisonCase, write_wave_comparison};
 pub use csv::{write_far_csv, write_receivers_csv};
 pub use map::{FieldMap, MapQuantity};
+pub use monostatic::{MonostaticRow, write_monostatic_csv};
 pub use npz::write_receivers_npz;
 pub use polar::write_polar_plot;
+pub use residuals::{WaveResiduals, write_residuals_csv, write_residuals_plot};
 pub use vtu::{WaveCurrents, write_currents_vtu};
 
 /// The fields at a point of a receiver.

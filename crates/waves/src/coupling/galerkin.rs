@@ -19,7 +19,8 @@ const CLOSE: usize = 6;
 /// The matrix K (2N × 2N for N facets), `tolerance` relative to a block.
 ///
 /// # Errors
-/// [`WaveError::NotClosed`] where the shadow asks for closed bodies; [`WaveError::Linop`] where it does not fit in
+/// [`WaveError::NotClosed`] where the shadow asks for closed bodies; [`WaveError::CentresOnly`] for the equation on two
+/// surfaces; [`WaveError::Linop`] where it does not fit in
 /// memory.
 pub fn galerkin(
     scatterer: &Scatterer,
@@ -28,6 +29,9 @@ pub fn galerkin(
     tolerance: f64,
 ) -> Result<Dense<Complex64>, WaveError> {
     shadow.check(scatterer)?;
+    if shadow == Shadow::ExactDual {
+        return Err(WaveError::CentresOnly);
+    }
     scatterer.check_conductor("the coupling of currents")?;
     let (facets, view) = (scatterer.facets(), View::new(scatterer, shadow));
     assemble(facets.len(), |p, q| {

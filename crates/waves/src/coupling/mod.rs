@@ -14,20 +14,25 @@
 //! |---|---|---|---|
 //! | geometric | closed 0, sheet 1 | closed 0, sheet −1 | 0 |
 //! | radiated | 1 | closed 0, sheet −1 | 1 |
-//! | exact | 1 | 1 | 1 |
+//! | exact, exact-dual | 1 | 1 | 1 |
 //! | thesis | −1 | closed 0, sheet 1 | 1 |
 //!
 //! Flat facets do not couple with themselves. J in A/m, M in V/m, lengths in metres.
 
+mod bounces;
 mod dense;
 mod galerkin;
+mod inner;
+mod material;
 mod nystrom;
 mod pair;
 mod sides;
 mod system;
 mod view;
 
+pub use bounces::{Bounces, spectral_radius};
 pub use galerkin::galerkin;
+pub use material::MaterialCoupling;
 pub use nystrom::NystromCoupling;
 pub use system::{Bounced, Discretisation, System};
 

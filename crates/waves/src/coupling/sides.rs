@@ -18,7 +18,7 @@ impl Sides {
             (Shadow::Geometric, Kind::Closed) => [0.0, 0.0],
             (Shadow::Radiated, Kind::Closed) => [1.0, 0.0],
             (Shadow::Geometric | Shadow::Radiated, Kind::Sheet) => [1.0, -1.0],
-            (Shadow::Exact, _) => [1.0, 1.0],
+            (Shadow::Exact | Shadow::ExactDual, _) => [1.0, 1.0],
             (Shadow::Thesis, Kind::Closed) => [-1.0, 0.0],
             (Shadow::Thesis, Kind::Sheet) => [-1.0, 1.0],
         };

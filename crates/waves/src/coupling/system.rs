@@ -1,7 +1,9 @@
 //! The system x = b + K x of a scatterer, its sources and a treatment of shadows, and the currents it gives.
 
+use super::inner::{FACTOR, inner_points};
+use super::material::{UNKNOWNS, current, values};
 use super::nystrom::tangential;
-use super::{NystromCoupling, galerkin};
+use super::{MaterialCoupling, NystromCoupling, galerkin};
 use crate::rule::{points_for_phase, regular};
 use crate::{
     Complex64, ComplexVector, Current, Facet, FacetCurrents, PhysicalOptics, Radiator, Sampling, Scatterer,
@@ -21,7 +23,8 @@ pub enum Discretisation {
 
 /// Where K comes from.
 enum Coupling<'a> {
-    Lazy(NystromCoupling<'a>),
+    Conductors(NystromCoupling<'a>),
+    Materials(MaterialCoupling<'a>),
     Stored(Dense<Complex64>),
 }
 
@@ -35,19 +38,23 @@ pub struct System<'a> {
 }
 
 impl<'a> System<'a> {
-    /// The system with K stored as 2N × 2N numbers, see [`System::bytes`].
+    /// The system with K stored, see [`System::bytes`]; by Nyström where there are other materials than conductors.
     ///
     /// # Errors
-    /// Those of [`NystromCoupling::new`] and [`galerkin`].
+    /// Those of [`NystromCoupling::new`], [`MaterialCoupling::new`] and [`galerkin`].
     pub fn stored(
         scatterer: &'a Scatterer,
         wave: Wave,
         shadow: Shadow,
         discretisation: Discretisation,
     ) -> Result<Self, WaveError> {
+        let conductors = scatterer.check_conductor("").is_ok();
         let dense = match discretisation {
-            Discretisation::Nystrom => NystromCoupling::new(scatterer, wave, shadow)?.dense_matrix()?,
             Discretisation::Galerkin => galerkin(scatterer, &wave, shadow, TOLERANCE)?,
+            Discretisation::Nystrom if conductors => {
+                NystromCoupling::new(scatterer, wave, shadow)?.dense_matrix()?
+            }
+            Discretisation::Nystrom => MaterialCoupling::new(scatterer, wave, shadow)?.dense_matrix()?,
         };
         Ok(Self { scatterer, wave, shadow, discretisation, coupling: Coupling::Stored(dense) })
     }
@@ -55,23 +62,35 @@ impl<'a> System<'a> {
     /// The system with K evaluated anew in every application, by Nyström.
     ///
     /// # Errors
-    /// Those of [`NystromCoupling::new`].
+    /// Those of [`NystromCoupling::new`] and [`MaterialCoupling::new`].
     pub fn lazy(scatterer: &'a Scatterer, wave: Wave, shadow: Shadow) -> Result<Self, WaveError> {
-        let coupling = Coupling::Lazy(NystromCoupling::new(scatterer, wave, shadow)?);
+        let coupling = if scatterer.check_conductor("").is_ok() {
+            Coupling::Conductors(NystromCoupling::new(scatterer, wave, shadow)?)
+        } else {
+            Coupling::Materials(MaterialCoupling::new(scatterer, wave, shadow)?)
+        };
         Ok(Self { scatterer, wave, shadow, discretisation: Discretisation::Nystrom, coupling })
     }
 
-    /// Bytes of the stored K of so many facets.
+    /// Complex unknowns: two a facet, four where there are other materials than conductors.
     #[must_use]
-    pub fn bytes(facets: usize) -> u64 {
-        Dense::<Complex64>::bytes(facets.saturating_mul(2))
+    pub fn unknowns(scatterer: &Scatterer) -> usize {
+        let each = if scatterer.check_conductor("").is_ok() { 2 } else { UNKNOWNS };
+        scatterer.facets().len().saturating_mul(each)
+    }
+
+    /// Bytes of the stored K.
+    #[must_use]
+    pub fn bytes(scatterer: &Scatterer) -> u64 {
+        Dense::<Complex64>::bytes(Self::unknowns(scatterer))
     }
 
     /// K.
     #[must_use]
     pub fn coupling(&self) -> &dyn LinearOperator<Complex64> {
         match &self.coupling {
-            Coupling::Lazy(lazy) => lazy,
+            Coupling::Conductors(lazy) => lazy,
+            Coupling::Materials(lazy) => lazy,
             Coupling::Stored(dense) => dense,
         }
     }
@@ -79,27 +98,50 @@ impl<'a> System<'a> {
     /// b: one lane for each of the given incident fields, as the currents of one bounce.
     #[must_use]
     pub fn right_hand_side(&self, incident: &[&PhysicalOptics<'_>]) -> MultiVector<Complex64> {
-        let facets = self.scatterer.facets();
-        let mut b = MultiVector::zeros(2 * facets.len(), incident.len());
+        let mut b = MultiVector::zeros(self.coupling().dim(), incident.len());
+        // A second surface that does not fit is refused with the coupling.
+        let inner = inner_points(self.scatterer, &self.wave, self.shadow).ok().flatten();
         for (l, optics) in incident.iter().enumerate() {
-            for (i, facet) in facets.iter().enumerate() {
-                let current = self.known(self.sampled(*optics, i, facet));
-                (b.row_mut(2 * i)[l], b.row_mut(2 * i + 1)[l]) =
-                    (current.dot(facet.tangents[0]), current.dot(facet.tangents[1]));
+            for (i, facet) in self.scatterer.facets().iter().enumerate() {
+                let mut current = self.sampled(*optics, i, facet);
+                if let Some(points) = &inner {
+                    current.j += optics.on(facet, points[i]) * FACTOR;
+                }
+                self.put(&mut b, (i, l), current);
             }
         }
         b
     }
 
+    /// Unknowns of a facet.
+    fn each(&self) -> usize {
+        self.coupling().dim() / self.scatterer.facets().len().max(1)
+    }
+
+    /// Writes the unknowns of facet i in lane l.
+    fn put(&self, b: &mut MultiVector<Complex64>, (i, l): (usize, usize), current: Current) {
+        let (each, facet) = (self.each(), &self.scatterer.facets()[i]);
+        let known = if self.shadow == Shadow::Thesis { current.m } else { current.j };
+        let conductor = facet.tangents.map(|t| known.dot(t));
+        let material = values(facet, current);
+        let values = if each == UNKNOWNS { &material[..] } else { &conductor[..] };
+        values.iter().enumerate().for_each(|(a, value)| b.row_mut(each * i + a)[l] = *value);
+    }
+
     /// Lane `l` of a solution as currents on the facets.
     #[must_use]
     pub fn currents(&self, x: &MultiVector<Complex64>, l: usize) -> FacetCurrents {
+        let each = self.each();
         let current = |(i, facet): (usize, &Facet)| {
-            let value = tangential(facet, [x.row(2 * i)[l], x.row(2 * i + 1)[l]]);
+            let value = |a: usize| x.row(each * i + a)[l];
+            if each == UNKNOWNS {
+                return current(facet, std::array::from_fn(value));
+            }
+            let known = tangential(facet, std::array::from_fn(value));
             if self.shadow == Shadow::Thesis {
-                Current { j: ComplexVector::ZERO, m: value }
+                Current { j: ComplexVector::ZERO, m: known }
             } else {
-                Current { j: value, m: ComplexVector::ZERO }
+                Current { j: known, m: ComplexVector::ZERO }
             }
         };
         FacetCurrents::new(self.scatterer.facets().iter().enumerate().map(current).collect())
@@ -131,11 +173,6 @@ impl<'a> System<'a> {
             mean.m += m * (weight / facet.area);
         }
         mean
-    }
-
-    /// The current that is the unknown.
-    fn known(&self, current: Current) -> ComplexVector {
-        if self.shadow == Shadow::Thesis { current.m } else { current.j }
     }
 }
 

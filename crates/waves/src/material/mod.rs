@@ -88,6 +88,15 @@ impl Material {
         }
     }
 
+    /// As it is met from behind: the layers in the opposite order.
+    #[must_use]
+    pub fn turned(&self) -> Self {
+        match self {
+            Self::Slab(layers) => Self::Slab(layers.iter().rev().copied().collect()),
+            other => other.clone(),
+        }
+    }
+
     /// Thickness behind the surface of the mesh, m.
     #[must_use]
     pub fn thickness(&self) -> f64 {
@@ -174,6 +183,30 @@ mod tests {
                     assert!(!lossless || (power - 1.0).abs() < 1e-12, "{material:?} {cos}: {power}");
                 }
             }
+        }
+    }
+
+    /// What gets through does not depend on the side; without loss, nor does how much is reflected.
+    #[test]
+    fn transmission_is_the_same_from_either_side() {
+        let wave = Wave::new(2.4e9).unwrap();
+        let layer = |re, im, thickness| Layer { permittivity: complex(re, im), thickness };
+        let lossy =
+            Material::Slab(vec![layer(5.2, -0.7, 0.02), layer(2.0, -0.1, 0.03), layer(9.0, -3.0, 0.004)]);
+        let clear = Material::Slab(vec![layer(5.2, 0.0, 0.02), layer(2.0, 0.0, 0.03)]);
+        for cos in [1.0, 0.6, 0.05] {
+            for material in [&lossy, &clear] {
+                let (front, back) =
+                    (material.coefficients(&wave, cos), material.turned().coefficients(&wave, cos));
+                for mode in 0..2 {
+                    assert!((front.transmitted[mode] - back.transmitted[mode]).norm() < 1e-14);
+                    let gap = front.reflected[mode].norm() - back.reflected[mode].norm();
+                    assert!(gap.abs() < 1e-13 || *material == lossy, "{cos}: {gap}");
+                }
+            }
+            let gap = lossy.coefficients(&wave, cos).reflected[0]
+                - lossy.turned().coefficients(&wave, cos).reflected[0];
+            assert!(gap.norm() > 1e-3 || cos < 0.1);
         }
     }
 

@@ -5,7 +5,7 @@
 //! Electromagnetics, 2nd ed., Wiley 2012, § 7.8). Only sheets let something through to their other side. Of a slab the
 //! mesh is the front, and the transmitted wave is continued back to it, so that the phase behind is right.
 
-use crate::material::Material;
+use crate::material::{Coefficients, Material};
 use crate::{ComplexVector, Current, Facet, Field, Kind, Wave};
 use fredholm_mesh::Vec3;
 use num_complex::Complex64;
@@ -21,7 +21,7 @@ pub(super) fn fresnel(
 ) -> Current {
     let normal = facet.normal * side;
     let cos = normal.dot(towards).clamp(0.0, 1.0);
-    let [te, tm] = totals(material, wave, cos, facet.kind);
+    let [te, tm] = totals(material, wave, (side, cos), facet.kind);
     // Across the plane of incidence; at normal incidence any direction is.
     let across = normal.cross(towards).try_normalize().unwrap_or(facet.tangents[0]);
     let along = normal.cross(across);
@@ -38,9 +38,15 @@ struct Total {
 }
 
 /// 1 + r − t of E and H, TE and TM.
-fn totals(material: &Material, wave: &Wave, cos: f64, kind: Kind) -> [Total; 2] {
-    let found = material.coefficients(wave, cos);
+fn totals(material: &Material, wave: &Wave, (side, cos): (f64, f64), kind: Kind) -> [Total; 2] {
     let back = Complex64::cis(wave.wavenumber() * material.thickness() * cos);
+    let found = if side > 0.0 {
+        material.coefficients(wave, cos)
+    } else {
+        // The back is met first, a thickness before the mesh: the wave that it reflects is ahead by twice that.
+        let Coefficients { reflected, transmitted } = material.turned().coefficients(wave, cos);
+        Coefficients { reflected: reflected.map(|r| r * back * back), transmitted }
+    };
     let through = found.transmitted.map(|t| if kind == Kind::Sheet { t * back } else { Complex64::ZERO });
     let one = Complex64::ONE;
     let ([r_te, r_tm], [t_te, t_tm]) = (found.reflected, through);
@@ -90,7 +96,10 @@ mod tests {
                 for material in &materials {
                     let found = material.coefficients(&wave, travel.y.abs());
                     let conductor = [-1.0, 1.0][mode];
-                    let ratio = found.reflected[mode] / conductor;
+                    // The normal is −y: along −y the wave meets the back, a thickness early.
+                    let depth = if travel.y < 0.0 { material.thickness() } else { 0.0 };
+                    let ahead = Complex64::cis(2.0 * wave.wavenumber() * depth * travel.y.abs());
+                    let ratio = found.reflected[mode] * ahead / conductor;
                     let (got, full) = (
                         far(material, travel, polarisation, mirror),
                         far(&Material::Conductor, travel, polarisation, mirror),

@@ -29,6 +29,9 @@ pub enum Shadow {
     Radiated,
     /// C: the magnetic field equation of closed bodies, of which physical optics is the first term.
     Exact,
+    /// C, and j times the same on a second surface λ/4 inside, which takes away the resonances of the interior (R. A.
+    /// Shore, A. D. Yaghjian, IEEE Trans. Antennas Propag. 53 (2005) 1706).
+    ExactDual,
     /// M = 2 n × E on lit facets, n turned to the observer for every pair, and nothing blocks (G. Viennot, thesis,
     /// Limoges 2012, eq. 2.15 and annex B).
     Thesis,
@@ -36,7 +39,7 @@ pub enum Shadow {
 
 impl Shadow {
     /// All treatments.
-    pub const ALL: [Self; 4] = [Self::Geometric, Self::Radiated, Self::Exact, Self::Thesis];
+    pub const ALL: [Self; 5] = [Self::Geometric, Self::Radiated, Self::Exact, Self::ExactDual, Self::Thesis];
 
     /// The name in scene files.
     #[must_use]
@@ -45,8 +48,15 @@ impl Shadow {
             Self::Geometric => "geometric",
             Self::Radiated => "radiated",
             Self::Exact => "exact",
+            Self::ExactDual => "exact-dual",
             Self::Thesis => "thesis",
         }
+    }
+
+    /// Whether it is an equation for the currents, without approximation: of closed conductors.
+    #[must_use]
+    pub fn is_equation(self) -> bool {
+        matches!(self, Self::Exact | Self::ExactDual)
     }
 
     /// To which side the currents radiate.
@@ -61,12 +71,12 @@ impl Shadow {
     /// [`WaveError::NotClosed`] for a sheet and the exact equation, [`WaveError::NotConductor`] for other materials and
     /// the exact equation or the thesis.
     pub fn check(self, scatterer: &Scatterer) -> Result<(), WaveError> {
-        if matches!(self, Self::Exact | Self::Thesis) {
+        if self.is_equation() || self == Self::Thesis {
             scatterer.check_conductor("this treatment of shadows")?;
         }
         let sheet = scatterer.facets().iter().position(|facet| facet.kind == Kind::Sheet);
         match sheet {
-            Some(facet) if self == Self::Exact => Err(WaveError::NotClosed { facet }),
+            Some(facet) if self.is_equation() => Err(WaveError::NotClosed { facet }),
             _ => Ok(()),
         }
     }
@@ -107,6 +117,35 @@ impl<'a> PhysicalOptics<'a> {
         &self.lit[source]
     }
 
+    /// The current of one source at a point of a facet that it lights.
+    pub(crate) fn of_source(&self, source: usize, facet: usize, q: Vec3) -> Current {
+        let (side, source) = (self.lit[source][facet], self.sources[source]);
+        let (shape, towards) = (&self.scatterer.facets()[facet], source.origin().seen_from(q));
+        let material = self.scatterer.material(shape);
+        response(material, &self.wave, (shape, side, towards), source.field(&self.wave, q), self.shadow)
+    }
+
+    pub(crate) fn origins(&self) -> impl Iterator<Item = Origin> {
+        self.sources.iter().map(|source| source.origin())
+    }
+
+    pub(crate) fn scatterer(&self) -> &Scatterer {
+        self.scatterer
+    }
+
+    pub(crate) fn wave(&self) -> Wave {
+        self.wave
+    }
+
+    pub(crate) fn gate(&self) -> Gate {
+        self.shadow.gate()
+    }
+
+    /// 2 n × H_i at the point `p` (m), n that of a facet.
+    pub(crate) fn on(&self, facet: &Facet, p: Vec3) -> ComplexVector {
+        crate::source::incident(self.sources, &self.wave, p).h.crossed_by(facet.normal) * 2.0
+    }
+
     /// These currents, ready to radiate.
     #[must_use]
     pub fn radiator(&'a self, sampling: Sampling) -> Radiator<'a> {
@@ -116,23 +155,27 @@ impl<'a> PhysicalOptics<'a> {
 
 impl SurfaceCurrent for PhysicalOptics<'_> {
     fn at(&self, facet: usize, q: Vec3) -> Current {
-        let shape = &self.scatterer.facets()[facet];
-        let material = self.scatterer.material(shape);
         let mut sum = Current::default();
-        for (source, lit) in self.sources.iter().zip(&self.lit) {
-            let side = lit[facet];
-            if side != 0.0 {
-                let incident = source.field(&self.wave, q);
-                let towards = source.origin().seen_from(q);
-                let current = match material {
-                    Material::Conductor => conductor(shape.normal * side, incident, self.shadow),
-                    material => fresnel(material, &self.wave, shape, side, towards, incident),
-                };
-                sum.j += current.j;
-                sum.m += current.m;
-            }
+        for source in (0..self.sources.len()).filter(|&source| self.lit[source][facet] != 0.0) {
+            let current = self.of_source(source, facet, q);
+            sum.j += current.j;
+            sum.m += current.m;
         }
         sum
+    }
+}
+
+/// The current that a wave makes on a facet that it meets on `side`, coming from the direction `towards` its source.
+pub(crate) fn response(
+    material: &Material,
+    wave: &Wave,
+    (facet, side, towards): (&Facet, f64, Vec3),
+    incident: Field,
+    shadow: Shadow,
+) -> Current {
+    match material {
+        Material::Conductor => conductor(facet.normal * side, incident, shadow),
+        material => fresnel(material, wave, facet, side, towards, incident),
     }
 }
 
@@ -148,7 +191,7 @@ fn conductor(normal: Vec3, incident: Field, shadow: Shadow) -> Current {
 fn lit(scatterer: &Scatterer, origin: Origin, shadow: Shadow) -> Vec<f64> {
     let side = |facet: &Facet| match shadow {
         // It knows no lit side: all facets carry the current of their own normal.
-        Shadow::Exact => 1.0,
+        Shadow::Exact | Shadow::ExactDual => 1.0,
         // The sign of the side is in the gate.
         Shadow::Thesis => facet.side(origin.seen_from(facet.centre)).abs(),
         Shadow::Radiated => facet.side(origin.seen_from(facet.centre)),

@@ -9,6 +9,7 @@
 
 mod far;
 mod kernel;
+mod linear_phase;
 mod near;
 
 pub use far::{FarField, Pattern, cross_section, polar_frame};

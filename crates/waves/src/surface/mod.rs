@@ -6,7 +6,8 @@
 mod shapes;
 
 pub use shapes::{
-    cube, dihedral, facing_plates, parallel_plates, plate, rectangle, sphere, sphere_segments, trihedral,
+    cube, cuboid, dihedral, facing_plates, parallel_plates, plate, rectangle, sphere, sphere_segments,
+    trihedral,
 };
 
 use crate::material::Material;

@@ -45,7 +45,15 @@ pub fn plate(side: f64, edge: f64) -> Result<Scatterer, WaveError> {
 /// # Errors
 /// [`WaveError::Length`] or [`WaveError::Mesh`] for lengths that are none.
 pub fn cube(side: f64, edge: f64) -> Result<Scatterer, WaveError> {
-    let half = Vec3::splat(0.5 * side);
+    cuboid(Vec3::splat(side), edge)
+}
+
+/// The closed box of these sides along the axes, centred.
+///
+/// # Errors
+/// [`WaveError::Length`] or [`WaveError::Mesh`] for lengths that are none.
+pub fn cuboid(sides: Vec3, edge: f64) -> Result<Scatterer, WaveError> {
+    let half = 0.5 * sides;
     scatterer(&[Shape::Box { min: -half, max: half, inward: false }], edge, Kind::Closed)
 }
 

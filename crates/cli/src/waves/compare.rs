@@ -1,0 +1,162 @@
+//! Solvers compared on the coupling of a scene: iterations, residuals, the spectral radius, and which of them diverge.
+
+use fredholm_linop::{Report, SecondKind, Solver, Stop, StopReason};
+use fredholm_report::{
+    ComparisonHistory, ComparisonRun, WAVE_COMPARISON_FORMAT, WaveComparison, WaveComparisonCase,
+};
+use fredholm_waves::{Complex64, PhysicalOptics, Source, System, WaveError, spectral_radius};
+use serde_json::json;
+
+use super::model::Band;
+use super::solving::{Vectors, Watch, coupled, go_on};
+use super::{Model, registry};
+use crate::failure::{Ending, Failure};
+use crate::interrupt::{Interrupt, nothing_saved};
+use crate::solution::reason;
+use crate::stages::Stages;
+
+/// Applications that the spectral radius is estimated from.
+const STEPS: usize = 200;
+
+/// Runs the solvers, given as texts such as `gmres:restart=100`, at every frequency.
+pub(crate) fn compare(
+    model: &Model,
+    solvers: &[String],
+    stop: &Stop,
+    stages: &mut Stages,
+) -> Result<WaveComparison, Failure> {
+    let mut cases = Vec::new();
+    for band in &model.bands {
+        cases.push(case(model, band, (solvers, stop), stages)?);
+    }
+    Ok(WaveComparison {
+        format: WAVE_COMPARISON_FORMAT.to_owned(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        scene: model.path().display().to_string(),
+        options: json!({
+            "solvers": solvers,
+            "tolerance": stop.tolerance,
+            "max_iterations": stop.max_iterations,
+            "shadow": model.shadow.name(),
+            "start": "x = 0",
+        }),
+        cases,
+        timings: stages.timings().to_vec(),
+    })
+}
+
+fn case(
+    model: &Model,
+    band: &Band,
+    (solvers, stop): (&[String], &Stop),
+    stages: &mut Stages,
+) -> Result<WaveComparisonCase, Failure> {
+    let refused = |error: WaveError| model.refused(&error, None);
+    let scatterer = model.geometry.scatterer(band.materials.clone()).map_err(refused)?;
+    scatterer.check_resolution(&band.wave).map_err(refused)?;
+    let sources: Vec<&dyn Source> = model.sources.iter().map(AsRef::as_ref).collect();
+    let first = PhysicalOptics::new(&scatterer, band.wave, &sources, model.shadow).map_err(refused)?;
+    let name = format!("{} MHz", band.wave.frequency() / 1e6);
+    let interrupt = stages.interrupt;
+    let made = solvers.iter().map(|text| build(text)).collect::<Result<Vec<_>, _>>()?;
+    let system = stages.run(&format!("coupling at {name}"), || {
+        let all: Vec<&dyn Solver<Complex64>> = made.iter().map(AsRef::as_ref).collect();
+        coupled(model, &scatterer, band.wave, model.shadow, &all)
+    })?;
+    let radius = stages.run(&format!("spectral radius at {name}"), || radius(&system, interrupt))?;
+    let b = system.right_hand_side(&[&first]);
+    let mut solved = Vec::new();
+    for (text, solver) in solvers.iter().zip(&made) {
+        let work = || run(&system, &b, (text, &**solver), stop, interrupt);
+        solved.push(stages.run(&format!("{text} at {name}"), work)?);
+    }
+    let (reference, runs) = judged(&solved);
+    let (frequency, unknowns) = (band.wave.frequency(), b.dim() as u64);
+    Ok(WaveComparisonCase { frequency, unknowns, spectral_radius: radius, reference, runs })
+}
+
+fn build(text: &str) -> Result<Box<dyn Solver<Complex64>>, Failure> {
+    registry::build(text).map_err(|error| Failure::new(Ending::Input, error))
+}
+
+fn radius(system: &System<'_>, interrupt: &Interrupt) -> Result<f64, Failure> {
+    spectral_radius(system.coupling(), STEPS, &mut || go_on(interrupt)).ok_or_else(nothing_saved)
+}
+
+fn run(
+    system: &System<'_>,
+    b: &Vectors,
+    (text, solver): (&str, &dyn Solver<Complex64>),
+    stop: &Stop,
+    interrupt: &Interrupt,
+) -> Result<(ComparisonRun, Option<Vectors>), Failure> {
+    let one = Vectors::from_fn(b.dim(), 1, |_, _| Complex64::ONE);
+    let a = SecondKind::new(system.coupling(), one).map_err(|error| Failure::new(Ending::Input, error))?;
+    let mut x = Vectors::zeros(b.dim(), 1);
+    match solver.solve(&a, b, &mut x, stop, &mut Watch(interrupt)) {
+        Ok(report) if report.reason == StopReason::Interrupted => Err(nothing_saved()),
+        Ok(report) => Ok((told(text, &report), (report.reason != StopReason::Diverged).then_some(x))),
+        Err(error) => Ok((refusal(text, error.to_string()), None)),
+    }
+}
+
+fn refusal(text: &str, reason: String) -> ComparisonRun {
+    ComparisonRun {
+        solver: text.to_owned(),
+        outcome: "refused".to_owned(),
+        reason: Some(reason),
+        residual: f64::NAN,
+        error: f64::NAN,
+        ..ComparisonRun::default()
+    }
+}
+
+fn told(text: &str, report: &Report) -> ComparisonRun {
+    let history = || report.history.iter();
+    let residual = |record: &fredholm_linop::Record| record.residuals.first().copied().unwrap_or(0.0);
+    let last = history().next_back();
+    ComparisonRun {
+        solver: text.to_owned(),
+        outcome: reason(report.reason).to_owned(),
+        reason: None,
+        iterations: last.map_or(0, |record| record.iteration as u64),
+        applications: report.work.operator_applications,
+        rows: report.work.row_visits,
+        columns: report.work.column_visits,
+        entries: report.work.entries_touched,
+        seconds: report.seconds,
+        residual: last.map_or(f64::NAN, residual),
+        error: f64::NAN,
+        history: ComparisonHistory {
+            entries: history().map(|record| record.entries_touched).collect(),
+            seconds: history().map(|record| record.seconds).collect(),
+            residual: history().map(residual).collect(),
+        },
+    }
+}
+
+/// The runs with their errors against the solution of the smallest residual, and whose that is.
+fn judged(solved: &[(ComparisonRun, Option<Vectors>)]) -> (String, Vec<ComparisonRun>) {
+    let answers = solved.iter().filter(|(run, x)| x.is_some() && run.residual.is_finite());
+    let best = answers.min_by(|(a, _), (b, _)| a.residual.total_cmp(&b.residual));
+    let best = best.and_then(|(run, x)| Some((run.solver.clone(), x.clone()?)));
+    let error = |x: &Option<Vectors>| match (x, &best) {
+        (Some(x), Some((_, answer))) => distance(x, answer),
+        _ => f64::NAN,
+    };
+    let runs = solved.iter().map(|(run, x)| ComparisonRun { error: error(x), ..run.clone() }).collect();
+    (best.map_or_else(|| "none".to_owned(), |(name, _)| name), runs)
+}
+
+/// ‖x − y‖₂/‖y‖₂.
+fn distance(x: &Vectors, y: &Vectors) -> f64 {
+    let mut gap = x.clone();
+    gap.set_difference(x, y);
+    let norm = |v: &Vectors| v.norms().first().copied().unwrap_or(0.0);
+    if norm(y) > 0.0 { norm(&gap) / norm(y) } else { norm(&gap) }
+}
+
+/// Whether a run failed to converge, other than by being refused.
+pub(crate) fn failed(run: &ComparisonRun) -> bool {
+    run.outcome != reason(StopReason::Converged) && run.outcome != "refused"
+}

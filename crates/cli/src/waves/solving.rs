@@ -1,0 +1,162 @@
+//! From incident currents to all bounces, by the method that the scene asks for.
+
+use std::ops::ControlFlow;
+
+use fredholm_linop::{MultiVector, Observer, Progress, SecondKind, Solver, Stop, StopReason};
+use fredholm_waves::{Bounces, Complex64, Discretisation, Scatterer, Shadow, System, Wave, WaveError};
+
+use super::Model;
+use super::model::Method;
+use crate::failure::{Ending, Failure};
+use crate::interrupt::{Interrupt, nothing_saved};
+use crate::memory;
+use crate::size::Bytes;
+
+/// Solvers that ask for products only: where the matrix does not fit, they compute it anew each time.
+const PRODUCTS_ONLY: [&str; 4] = ["neumann", "gmres", "bicgstab", "anderson"];
+
+pub(super) type Vectors = MultiVector<Complex64>;
+
+/// The currents of all bounces, a lane an incident wave.
+pub(super) struct Solution {
+    pub(super) x: Vectors,
+    /// Relative residual of the worst lane, from the start on.
+    pub(super) residuals: Vec<f64>,
+    pub(super) reason: Option<StopReason>,
+}
+
+/// The system of a model's method; none where one bounce is all.
+pub(super) fn system<'a>(
+    model: &Model,
+    scatterer: &'a Scatterer,
+    wave: Wave,
+    shadow: Shadow,
+) -> Result<Option<System<'a>>, Failure> {
+    match &model.method {
+        Method::Bounces(1) => Ok(None),
+        Method::Bounces(_) => lazy(model, scatterer, wave, shadow).map(Some),
+        Method::Solver { solver, .. } => coupled(model, scatterer, wave, shadow, &[&**solver]).map(Some),
+    }
+}
+
+/// The system whose products are computed anew each time.
+pub(super) fn lazy<'a>(
+    model: &Model,
+    scatterer: &'a Scatterer,
+    wave: Wave,
+    shadow: Shadow,
+) -> Result<System<'a>, Failure> {
+    System::lazy(scatterer, wave, shadow).map_err(|error: WaveError| model.refused(&error, None))
+}
+
+/// The system for these solvers: stored where it fits, else evaluated anew for those that ask for products only.
+pub(super) fn coupled<'a>(
+    model: &Model,
+    scatterer: &'a Scatterer,
+    wave: Wave,
+    shadow: Shadow,
+    solvers: &[&dyn Solver<Complex64>],
+) -> Result<System<'a>, Failure> {
+    let (facets, unknowns) = (scatterer.facets().len(), System::unknowns(scatterer));
+    let solver = solvers.iter().map(|solver| solver.bytes(unknowns, 1)).max().unwrap_or(0);
+    let needed = u128::from(System::bytes(scatterer)) + u128::from(solver);
+    let limit = memory::default_limit();
+    if needed <= limit.0 {
+        return System::stored(scatterer, wave, shadow, Discretisation::Nystrom)
+            .map_err(|error: WaveError| model.refused(&error, None));
+    }
+    if solvers.iter().all(|solver| PRODUCTS_ONLY.contains(&solver.name())) {
+        return lazy(model, scatterer, wave, shadow);
+    }
+    let text = format!(
+        "the coupling of {facets} facets and its solver would take {}, and {limit} may be used\n  help: mesh coarser, or take a solver that needs no matrix: {}",
+        Bytes(needed),
+        PRODUCTS_ONLY.join(", ")
+    );
+    Err(Failure::new(Ending::Resources, text))
+}
+
+/// Solves for all lanes of b by a model's method.
+pub(super) fn solution(
+    method: &Method,
+    system: &System<'_>,
+    b: &Vectors,
+    interrupt: &Interrupt,
+) -> Result<Solution, Failure> {
+    match method {
+        Method::Bounces(count) => bounced(system, b, *count, interrupt),
+        Method::Solver { solver, tolerance, max_iterations } => {
+            let stop = Stop { tolerance: *tolerance, max_iterations: *max_iterations };
+            solved(system, b, (&**solver, &stop), interrupt)
+        }
+    }
+}
+
+/// The currents after so many bounces, and the residual after each.
+pub(super) fn bounced(
+    system: &System<'_>,
+    b: &Vectors,
+    count: usize,
+    interrupt: &Interrupt,
+) -> Result<Solution, Failure> {
+    let sum =
+        Bounces::sum(system.coupling(), b, count, &mut || go_on(interrupt)).ok_or_else(nothing_saved)?;
+    let residuals: Vec<f64> = sum.residuals.iter().map(|lanes| worst(lanes)).collect();
+    // A next bounce stronger than what comes from the sources: the sum is no approximation of anything.
+    match residuals.last() {
+        Some(&last) if count > 1 && (last > 1.0 || last.is_nan()) => {
+            Err(diverged("the sum of bounces", &residuals))
+        }
+        _ => Ok(Solution { x: sum.x, residuals, reason: None }),
+    }
+}
+
+fn solved(
+    system: &System<'_>,
+    b: &Vectors,
+    (solver, stop): (&dyn Solver<Complex64>, &Stop),
+    interrupt: &Interrupt,
+) -> Result<Solution, Failure> {
+    let one = Vectors::from_fn(b.dim(), b.lanes(), |_, _| Complex64::ONE);
+    let a = SecondKind::new(system.coupling(), one).map_err(|error| Failure::new(Ending::Input, error))?;
+    let mut x = Vectors::zeros(b.dim(), b.lanes());
+    let report = solver
+        .solve(&a, b, &mut x, stop, &mut Watch(interrupt))
+        .map_err(|error| Failure::new(Ending::Input, error))?;
+    let residuals: Vec<f64> = report.history.iter().map(|entry| worst(&entry.residuals)).collect();
+    match report.reason {
+        StopReason::Interrupted => Err(nothing_saved()),
+        StopReason::Diverged => Err(diverged(solver.name(), &residuals)),
+        reason => Ok(Solution { x, residuals, reason: Some(reason) }),
+    }
+}
+
+fn worst(lanes: &[f64]) -> f64 {
+    lanes.iter().copied().fold(0.0, |worst, lane| if lane > worst || lane.is_nan() { lane } else { worst })
+}
+
+fn diverged(solver: &str, residuals: &[f64]) -> Failure {
+    let reached = residuals.iter().copied().fold(f64::INFINITY, f64::min);
+    let text = format!(
+        "{solver} diverges after {} iterations (best residual {reached:.1e}); nothing was written\n  help: a closed body near a resonance or a cavity has no convergent series of bounces; take another solver",
+        residuals.len().saturating_sub(1)
+    );
+    Failure::new(Ending::NotConverged, text)
+}
+
+pub(super) fn go_on(interrupt: &Interrupt) -> ControlFlow<()> {
+    if interrupt.requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+}
+
+/// Stops the solver at a signal.
+pub(super) struct Watch<'a>(pub(super) &'a Interrupt);
+
+impl<T> Observer<T> for Watch<'_> {
+    fn observe(&mut self, _: &Progress<'_, T>) -> ControlFlow<()> {
+        go_on(self.0)
+    }
+
+    fn poll(&mut self) -> ControlFlow<()> {
+        go_on(self.0)
+    }
+}

@@ -1,0 +1,63 @@
+//! The second surface of the dual equation: points a depth δ behind the facets, inside the conductor.
+//!
+//! There the total H vanishes. Adding j times that to the magnetic field equation,
+//!
+//! ```text
+//! J = 2 n × (H_i(p) + j H_i(p − δn)) + K J + j K_δ J,   K_δ J = 2 n × H[J](p − δn),
+//! ```
+//!
+//! leaves no current that solves it without a source, at any frequency, while δ < λ/2 (R. A. Shore, A. D. Yaghjian,
+//! Dual-surface integral equations in electromagnetic scattering, IEEE Trans. Antennas Propag. 53 (2005) 1706). δ = λ/4,
+//! less in small bodies.
+
+use crate::{Scatterer, Shadow, Wave, WaveError};
+use fredholm_mesh::Vec3;
+use num_complex::Complex64;
+
+/// What the inner equation is multiplied by.
+pub(crate) const FACTOR: Complex64 = Complex64::I;
+/// Most of the extent of the body that δ takes.
+const SHARE: f64 = 0.125;
+
+/// The inner point of each facet; none where the treatment has no second surface.
+pub(crate) fn inner_points(
+    scatterer: &Scatterer,
+    wave: &Wave,
+    shadow: Shadow,
+) -> Result<Option<Vec<Vec3>>, WaveError> {
+    if shadow != Shadow::ExactDual {
+        return Ok(None);
+    }
+    let depth = (0.25 * wave.wavelength()).min(SHARE * scatterer.extent());
+    let points: Vec<Vec3> =
+        scatterer.facets().iter().map(|facet| facet.centre - facet.normal * depth).collect();
+    // From the flat facet on: its node may be outside of it, on the curved surface.
+    let pierced = |(facet, &point): (&crate::Facet, &Vec3)| {
+        !scatterer.occluders().unoccluded(facet.patch.centroid(), point)
+    };
+    match scatterer.facets().iter().zip(&points).position(pierced) {
+        Some(facet) => Err(WaveError::Thin { facet, depth }),
+        None => Ok(Some(points)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::{cube, cuboid, sphere};
+
+    #[test]
+    fn inner_points_are_inside_or_refused() {
+        let wave = Wave::new(1e9).unwrap();
+        let depth = 0.25 * wave.wavelength();
+        let ball = sphere(0.4, 0.05).unwrap();
+        let points = inner_points(&ball, &wave, Shadow::ExactDual).unwrap().unwrap();
+        assert!(points.iter().all(|p| (p.length() - (0.4 - depth)).abs() < 1e-12));
+        assert_eq!(inner_points(&ball, &wave, Shadow::Exact), Ok(None));
+        let flat = cuboid(Vec3::new(1.0, 1.0, 0.06), 0.1).unwrap();
+        let refused = inner_points(&flat, &wave, Shadow::ExactDual);
+        assert!(matches!(refused, Err(WaveError::Thin { .. })), "{refused:?}");
+        // A small body takes a smaller depth.
+        assert!(inner_points(&cube(0.1, 0.02).unwrap(), &wave, Shadow::ExactDual).is_ok());
+    }
+}
