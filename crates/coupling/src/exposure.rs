@@ -20,7 +20,7 @@ const RING: usize = 6;
 /// Exposed shares in [0, 1] of the patches of a mesh; `lit` holds these patches, in order.
 #[must_use]
 pub fn exposed_shares(patches: &[&Patch], lit: &Occluders) -> Vec<f64> {
-    patches.par_iter().map(|patch| share(patch, patches, lit)).collect()
+    patches.par_iter().map(|patch| exposed_share(patch, patches, lit)).collect()
 }
 
 /// Areas and exposed areas (m²) of patches with given shares; `rows` are the sums Σ_j G_ij (m²).
@@ -35,7 +35,9 @@ pub fn extents(patches: &[&Patch], shares: &[f64], rows: &[f64]) -> Vec<Extent> 
     patches.iter().zip(shares).zip(rows).map(of).collect()
 }
 
-fn share(patch: &Patch, patches: &[&Patch], lit: &Occluders) -> f64 {
+/// Exposed share in [0, 1] of one patch, which may be a part of one of those that `lit` holds in order.
+#[must_use]
+pub fn exposed_share(patch: &Patch, patches: &[&Patch], lit: &Occluders) -> f64 {
     let directions = bundle(patch);
     let on_grid = |n: usize| {
         let exposed =
