@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let occluders = Occluders::new(mesh.occluders())?;
     let problem = Problem { mesh: &mesh, occluders: &occluders, surfaces: &surfaces };
-    let options = Options { accuracy: accuracy.parse()?, bytes: 8 << 30, max_iterations: 200 };
+    let options = Options { accuracy: accuracy.parse()?, linear: std::env::var_os("CONSTANT").is_none(), bytes: 8 << 30, max_iterations: 200 };
     println!("threshold  elements      links  links/  change       CPU");
     let solution = solve(&problem, &options, &CgTheta, None, &Print)?;
     print(&solution.rounds[solution.rounds.len() - 1]);

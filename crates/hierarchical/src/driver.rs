@@ -16,11 +16,11 @@ use fredholm_visibility::body::Bodies;
 use std::ops::ControlFlow;
 
 /// Factor from one threshold to the next.
-const STEP: f64 = 0.35;
+const STEP: f64 = 0.3;
 /// First threshold, over the accuracy.
 const FIRST: f64 = 4.0;
 /// Stated error over the last change.
-pub(crate) const CONFIDENCE: f64 = 0.5;
+pub(crate) const CONFIDENCE: f64 = 1.5;
 /// Rounds at most.
 const ROUNDS: usize = 24;
 /// Residual of a solution, over the accuracy.
@@ -46,6 +46,8 @@ pub struct Problem<'a> {
 pub struct Options {
     /// Relative error of the irradiance of the faces to reach, L2.
     pub accuracy: f64,
+    /// Whether links follow the variation of the form factor to first order; else it is constant over each node.
+    pub linear: bool,
     /// Bytes that tree and links may take.
     pub bytes: u64,
     /// Iterations of the solver at most, in each round.
@@ -130,7 +132,7 @@ pub fn solve(
     let bodies = Bodies::new(problem.occluders, &patches, &[]);
     let exposure = Exposure::new(problem.mesh)?;
     let sight = Sight { occluders: problem.occluders, bodies: &bodies };
-    let run = Run { problem, options, solver, watch, sight, exposure };
+    let mut run = Run { problem, options, solver, watch, sight, exposure };
     let mut state = match state {
         Some(state) => state,
         None => State::new(problem, options.accuracy * FIRST)?,
@@ -167,13 +169,14 @@ struct Run<'a> {
 
 impl Run<'_> {
     /// The system of a state that has been solved.
-    fn resumed(&self, state: &State) -> Result<Option<System>, HierarchyError> {
+    fn resumed(&mut self, state: &State) -> Result<Option<System>, HierarchyError> {
         if state.rounds.is_empty() { Ok(None) } else { self.system(&state.tree, &state.links).map(Some) }
     }
 
-    fn system(&self, tree: &Tree, links: &[Link]) -> Result<System, HierarchyError> {
-        let operator = HierarchicalOperator::new(tree, links);
-        let extents = self.exposure.extents(tree, &operator);
+    fn system(&mut self, tree: &Tree, links: &[Link]) -> Result<System, HierarchyError> {
+        let extents = self.exposure.extents(tree, &tree.leaves());
+        let exposed: Vec<f64> = extents.iter().map(|extent| extent.exposed).collect();
+        let operator = HierarchicalOperator::new(tree, links, &exposed);
         let roots: Vec<usize> =
             operator.leaves().iter().map(|&leaf| tree.nodes()[leaf as usize].root().unwrap_or(0)).collect();
         let of_leaves = |values: &MultiVector<f64>| {
@@ -191,12 +194,12 @@ impl Run<'_> {
             return Light::ambient(&state.tree, surfaces);
         };
         let means = radiosity.means(operator, &state.radiosity);
-        let nodes = [operator.pull(&state.radiosity), operator.pull(&means.irradiance)];
+        let nodes = [operator.means(&state.radiosity), operator.means(&means.irradiance)];
         Light::solved(&state.tree, surfaces, &state.links, operator, [&nodes[0], &nodes[1]])
     }
 
     /// Refines, solves, and adds what came of it to the state.
-    fn round(&self, state: &mut State, mut light: Light) -> Result<(System, Report), HierarchyError> {
+    fn round(&mut self, state: &mut State, mut light: Light) -> Result<(System, Report), HierarchyError> {
         let before = state.rounds.last().map(|_| state.nodes_radiosity());
         let links = before.as_ref().map(|_| std::mem::take(&mut state.links));
         let limits = self.limits(state);
@@ -220,6 +223,7 @@ impl Run<'_> {
         let area = state.tree.nodes()[0].area();
         Limits {
             threshold: state.threshold,
+            linear: self.options.linear,
             least_area: LEAST * area,
             tolerance: EXCHANGE * self.options.accuracy,
             bytes: self.options.bytes,

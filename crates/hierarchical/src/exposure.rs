@@ -1,17 +1,23 @@
 //! Which part of every leaf sees a lit side or the open: what stands on a floor buries the part under it.
 //!
-//! Input elements are looked at once. Only those that are buried in part are looked at leaf by leaf.
+//! A node is looked at once, on a grid of points; what is wholly exposed or wholly buried is so in all of its parts.
 
-use crate::{HierarchicalOperator, HierarchyError, Tree};
-use fredholm_coupling::{Extent, exposed_share, extents};
+use crate::{HierarchyError, Tree};
+use fredholm_coupling::{Extent, exposed_share};
 use fredholm_mesh::{Mesh, Patch};
 use fredholm_visibility::Occluders;
 use rayon::prelude::*;
 
-/// Exposed shares of the input elements, and what is needed to find those of their parts.
+/// Points along a side of the grid over an input element, and of the one where it is partly buried.
+const WHOLE: [usize; 2] = [6, 16];
+/// Points along a side of the grid over a part of a partly buried element.
+const PART: usize = 4;
+
+/// Exposed shares of the nodes that were looked at, and what is needed to look at others.
 pub(crate) struct Exposure<'a> {
     patches: Vec<&'a Patch>,
     lit: Occluders,
+    /// Of the nodes of a tree; not a number where it is not known.
     shares: Vec<f64>,
 }
 
@@ -19,24 +25,55 @@ impl<'a> Exposure<'a> {
     pub fn new(mesh: &'a Mesh) -> Result<Self, HierarchyError> {
         let patches: Vec<&Patch> = mesh.patches().collect();
         let lit = Occluders::new(&patches.iter().map(|patch| **patch).collect::<Vec<_>>())?;
-        let shares = patches.par_iter().map(|patch| exposed_share(patch, &patches, &lit)).collect();
-        Ok(Self { patches, lit, shares })
+        Ok(Self { patches, lit, shares: Vec::new() })
     }
 
-    /// Areas and exposed areas of the leaves, m².
-    pub fn extents(&self, tree: &Tree, operator: &HierarchicalOperator) -> Vec<Extent> {
-        let leaves: Vec<&Patch> =
-            operator.leaves().iter().filter_map(|&leaf| tree.nodes()[leaf as usize].patch()).collect();
-        let shares: Vec<f64> = operator.leaves().par_iter().map(|&leaf| self.share(tree, leaf)).collect();
-        extents(&leaves, &shares, &operator.row_sums())
-    }
-
-    fn share(&self, tree: &Tree, leaf: u32) -> f64 {
-        let node = &tree.nodes()[leaf as usize];
-        let whole = node.root().map_or(1.0, |root| self.shares[root]);
-        match node.patch() {
-            Some(patch) if whole > 0.0 && whole < 1.0 => exposed_share(patch, &self.patches, &self.lit),
-            _ => whole,
+    /// Areas and exposed areas of the leaves, m². The tree must be that of the call before, or grown from it.
+    pub fn extents(&mut self, tree: &Tree, leaves: &[u32]) -> Vec<Extent> {
+        let known = self.shares.len();
+        self.shares.resize(tree.nodes().len(), f64::NAN);
+        let mut asked = Vec::new();
+        for index in known..tree.nodes().len() {
+            self.find(tree, index as u32, &mut asked);
         }
+        self.look(tree, &mut asked);
+        let extent = |&leaf: &u32| {
+            let area = tree.nodes()[leaf as usize].area();
+            Extent { area, exposed: self.shares[leaf as usize] * area }
+        };
+        leaves.iter().map(extent).collect()
+    }
+
+    /// Takes the share of a node from its parent, or adds it to the nodes to be looked at.
+    fn find(&mut self, tree: &Tree, index: u32, asked: &mut Vec<u32>) {
+        let node = &tree.nodes()[index as usize];
+        let Some(root) = node.root() else { return };
+        let parent = node.parent().filter(|_| tree.roots()[root] != index);
+        if parent.is_some_and(|parent| self.shares[parent as usize].is_nan()) {
+            self.look(tree, asked);
+        }
+        match parent.map(|parent| self.shares[parent as usize]) {
+            Some(share) if share <= 0.0 || share >= 1.0 => self.shares[index as usize] = share,
+            _ => asked.push(index),
+        }
+    }
+
+    /// Looks at nodes, in parallel.
+    fn look(&mut self, tree: &Tree, asked: &mut Vec<u32>) {
+        let found: Vec<f64> = asked.par_iter().map(|&index| self.share(tree, index)).collect();
+        for (index, share) in asked.drain(..).zip(found) {
+            self.shares[index as usize] = share;
+        }
+    }
+
+    fn share(&self, tree: &Tree, index: u32) -> f64 {
+        let node = &tree.nodes()[index as usize];
+        let Some(patch) = node.patch() else { return 1.0 };
+        let on_grid = |n: usize| exposed_share(patch, n, &self.patches, &self.lit);
+        if node.root().is_none_or(|root| tree.roots()[root] != index) {
+            return on_grid(PART);
+        }
+        let first = on_grid(WHOLE[0]);
+        if first > 0.0 && first < 1.0 { on_grid(WHOLE[1]) } else { first }
     }
 }

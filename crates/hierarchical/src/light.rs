@@ -50,18 +50,31 @@ impl Light {
             let level = relative(irradiance.row(index)).into_iter().zip(&unit).filter(|(_, u)| **u > 0.0);
             node[2] = level.map(|(x, _)| x).reduce(f64::min).unwrap_or(0.0);
         }
+        light.darken(tree, operator);
         light.deviate(tree, surfaces, links, operator);
         light.contrast(tree);
         light
+    }
+
+    /// The level of a cluster is that of its darkest part that is not buried.
+    fn darken(&mut self, tree: &Tree, operator: &HierarchicalOperator) {
+        for (index, node) in tree.nodes().iter().enumerate().rev() {
+            if operator.is_buried(index) {
+                self.nodes[index][2] = 1.0;
+            } else if node.root().is_none() {
+                let levels = node.children().iter().map(|&child| self.nodes[child as usize][2]);
+                self.nodes[index][2] = levels.fold(1.0, f64::min);
+            }
+        }
     }
 
     /// Contrast of the leaves: what their links leave within them, reflected.
     fn deviate(&mut self, tree: &Tree, surfaces: &Surfaces, links: &[Link], operator: &HierarchicalOperator) {
         let mut squares = vec![0.0; self.nodes.len()];
         for link in links {
-            for (to, from, spread) in [(link.a, link.b, link.spread[0]), (link.b, link.a, link.spread[1])] {
+            for (to, from, deviation) in [(link.a, link.b, link.deviation[0]), (link.b, link.a, link.deviation[1])] {
                 let factor = link.open / tree.nodes()[to as usize].area();
-                let deviation = factor * f64::from(spread) * self.nodes[from as usize][0];
+                let deviation = factor * f64::from(deviation) * self.nodes[from as usize][0];
                 squares[to as usize] += deviation * deviation;
             }
         }

@@ -1,24 +1,24 @@
 //! Which link is too coarse, and which of its nodes to split.
 //!
 //! The unit of light is the root-mean-square irradiance of the scene in each band. For each node: the *brightness* β, its radiosity in that unit; its *contrast* γ, the deviation of
-//! the radiosity within the node; its *level* η, the irradiance in that unit; the latter two may be any number ≥ 0. A link of p and q with form factor F_pq and relative spread
-//! s_p over p and s_q over q leaves the errors
+//! the radiosity within the node; its *level* η, the irradiance in that unit; the latter two may be any number ≥ 0. A link of p and q with form factor F_pq leaves the
+//! errors, with what it does not resolve of the variation over each side, s_p and s_q (all of it over a leaf, else what a linear function leaves),
 //!
-//! - β_q F_pq s_p on the points of p: one value stands for a field that varies. Splitting p cures it. What the parts of a large sender do to p goes the same way and adds up: F_pq is
+//! - β_q F_pq s_p on the points of p: one function stands for a field that varies otherwise. Splitting p cures it. What the parts of a large sender do to p goes the same way and adds up: F_pq is
 //!   taken to be that of a sender of at least the size of p, and at most 1;
-//! - γ_q F_pq s_q on the mean of p: one value stands for a sender that varies. Splitting q cures it;
+//! - γ_q F_pq s_q on the mean of p: the same for a sender of some contrast. Splitting q cures it;
 //! - β_q F_pq d with the uncertainty d of what gets through. Splitting the larger node cures it.
 //!
 //! They are compared with the irradiance of p. Below the faces an error weighs less: it is the means of faces that accuracy is promised for. On the part of a face that p
-//! is, √(A_p/A_face) is the weight of an error of a mean, and a further [`DETAIL`] that of a deviation from it. The weighting by brightness is that of P. Hanrahan, D. Salzman,
+//! is, A_p/A_face is the weight of an error of a mean, and a further [`DETAIL`] that of a deviation from it. The weighting by brightness is that of P. Hanrahan, D. Salzman,
 //! L. Aupperle, SIGGRAPH 1991, doi:10.1145/122718.122740.
 
 use crate::tree::{Node, Tree};
 
 /// Weight of deviations within a face.
-const DETAIL: f64 = 0.3;
+const DETAIL: f64 = 0.2;
 /// Share of the mean irradiance that counts as present everywhere: nothing is resolved below it.
-const FLOOR: f64 = 0.1;
+const FLOOR: f64 = 0.01;
 
 /// What is known of the light on the nodes.
 #[derive(Clone, Debug)]
@@ -41,7 +41,8 @@ pub(crate) struct Candidate {
     pub nodes: [u32; 2],
     /// Open exchange, m².
     pub open: f64,
-    pub spread: [f64; 2],
+    /// Deviation and rest over both sides.
+    pub sides: [[f64; 2]; 2],
     pub doubt: f64,
 }
 
@@ -51,6 +52,8 @@ pub(crate) struct Oracle<'a> {
     pub tree: &'a Tree,
     pub light: &'a Light,
     pub threshold: f64,
+    /// Whether links have gradients.
+    pub linear: bool,
     /// Elements smaller than this are not split, m².
     pub least_area: f64,
 }
@@ -85,10 +88,15 @@ impl Oracle<'_> {
         let together = (node.area() / self.node(q).area()).max(1.0);
         let light = (factor * together).min(1.0).max(factor) * brightness;
         [
-            detail * light * pair.spread[side],
-            mean * factor * contrast * pair.spread[1 - side],
+            detail * light * self.left(p, pair.sides[side]),
+            mean * factor * contrast * self.left(q, pair.sides[1 - side]),
             mean * factor * brightness * pair.doubt,
         ]
+    }
+
+    /// What is not resolved of a variation over a node: all of it over a leaf, else what a linear function leaves.
+    fn left(&self, index: u32, [deviation, rest]: [f64; 2]) -> f64 {
+        if self.linear && !self.node(index).is_leaf() { rest } else { deviation }
     }
 
     /// Weights of the error of a mean and of deviations from it.
@@ -97,7 +105,7 @@ impl Oracle<'_> {
             None => (1.0, 1.0),
             Some(root) => {
                 let whole = self.tree.nodes()[self.tree.roots()[root] as usize].area();
-                let share = (node.area() / whole).sqrt();
+                let share = node.area() / whole;
                 (share, DETAIL * share)
             }
         }

@@ -4,7 +4,7 @@
 //! make the next wave. So the links do not depend on the number of threads. What a pair sees wholly its parts see wholly, and what sees nothing is gone.
 
 use crate::oracle::{Candidate, Light, Oracle, Verdict};
-use crate::transport::{Sight, View, Viewer, exchanges, spread};
+use crate::transport::{Side, Sight, View, Viewer, exchanges, spread};
 use crate::tree::{Node, Tree};
 use crate::{HierarchyError, Link, Watch};
 use fredholm_mesh::Patch;
@@ -19,6 +19,8 @@ struct Pair {
     nodes: [u32; 2],
     /// Whether nothing can be between.
     open: bool,
+    /// Whether it is known to be too coarse, by its first node.
+    coarse: bool,
 }
 
 /// What becomes of a pair.
@@ -33,6 +35,8 @@ enum Fate {
 pub(crate) struct Limits<'a> {
     /// Relative error that one link may leave.
     pub threshold: f64,
+    /// Whether links have gradients.
+    pub linear: bool,
     /// Elements are not made smaller than this, m².
     pub least_area: f64,
     /// Relative tolerance of exchanges.
@@ -69,7 +73,7 @@ pub(crate) fn refine(
 ) -> Result<Refined, HierarchyError> {
     let (mut kept, mut fresh) = (Vec::new(), Vec::new());
     let mut wave = match links {
-        None => vec![Pair { nodes: [0, 0], open: false }],
+        None => vec![Pair { nodes: [0, 0], open: false, coarse: true }],
         Some(links) => sift(tree, links, light, limits, &mut kept),
     };
     let mut limited = false;
@@ -79,7 +83,7 @@ pub(crate) fn refine(
         }
         limited |= bytes(tree, kept.len() + fresh.len() + 4 * wave.len()) > limits.bytes;
         let threshold = if limited { f64::INFINITY } else { limits.threshold };
-        let oracle = Oracle { tree, light, threshold, least_area: limits.least_area };
+        let oracle = Oracle { tree, light, threshold, linear: limits.linear, least_area: limits.least_area };
         let fates = judge(&oracle, sight, &wave);
         wave = advance(tree, light, fates, &mut fresh)?;
     }
@@ -92,14 +96,15 @@ pub(crate) fn refine(
 
 /// Parts links into those that stay and pairs to be split.
 fn sift(tree: &Tree, links: Vec<Link>, light: &Light, limits: &Limits, kept: &mut Vec<Link>) -> Vec<Pair> {
-    let oracle = Oracle { tree, light, threshold: limits.threshold, least_area: limits.least_area };
+    let oracle = Oracle { tree, light, threshold: limits.threshold, linear: limits.linear, least_area: limits.least_area };
     let verdicts: Vec<Verdict> = links.par_iter().map(|link| oracle.judge(&candidate(link))).collect();
     let mut wave = Vec::new();
     for (link, verdict) in links.into_iter().zip(verdicts) {
-        if verdict == Verdict::Keep {
-            kept.push(link);
-        } else {
-            wave.push(Pair { nodes: [link.a, link.b], open: !link.partly });
+        let pair = Pair { nodes: [link.a, link.b], open: !link.partly, coarse: true };
+        match verdict {
+            Verdict::Keep => kept.push(link),
+            Verdict::SplitA => wave.push(pair),
+            Verdict::SplitB => wave.push(swapped(pair)),
         }
     }
     wave
@@ -109,7 +114,7 @@ fn candidate(link: &Link) -> Candidate {
     Candidate {
         nodes: [link.a, link.b],
         open: link.open,
-        spread: link.spread.map(f64::from),
+        sides: [0, 1].map(|k| [link.deviation[k], link.rest[k]].map(f64::from)),
         doubt: f64::from(link.doubt),
     }
 }
@@ -124,6 +129,9 @@ fn judge(oracle: &Oracle, sight: Sight, wave: &[Pair]) -> Vec<Fate> {
 }
 
 fn fate(oracle: &Oracle, viewer: &mut Viewer, pair: Pair) -> Fate {
+    if pair.coarse {
+        return Fate::Split(pair);
+    }
     let [a, b] = pair.nodes.map(|index| &oracle.tree.nodes()[index as usize]);
     if pair.nodes[0] == pair.nodes[1] {
         return if a.patch().is_some() { Fate::Gone } else { Fate::Split(pair) };
@@ -139,8 +147,9 @@ fn fate(oracle: &Oracle, viewer: &mut Viewer, pair: Pair) -> Fate {
     }
 }
 
-fn swapped(Pair { nodes: [a, b], open }: Pair) -> Pair {
-    Pair { nodes: [b, a], open }
+fn swapped(pair: Pair) -> Pair {
+    let [a, b] = pair.nodes;
+    Pair { nodes: [b, a], ..pair }
 }
 
 /// The fate of two flat nodes.
@@ -149,29 +158,48 @@ fn flat(oracle: &Oracle, viewer: &mut Viewer, pair: Pair, [p, q]: [&Patch; 2]) -
         return Fate::Gone;
     }
     let view = if pair.open { View::Open } else { viewer.view(p, q) };
-    let seen = spread(p, q);
-    let (share, spread, doubt, open) = match view {
+    let seen = spread(p, q, &mut viewer.front);
+    let (share, sides, doubt, open) = match view {
         View::Nothing => return Fate::Gone,
-        View::Open => (1.0, seen.relative, 0.0, true),
-        View::Part { share, spread, doubt } => (share, spread, doubt, false),
+        View::Open => (1.0, seen.sides, 0.0, true),
+        View::Part { share, sides, doubt } => {
+            // Where nothing stands in the way of the points, the open pair still varies.
+            let varied = |k: usize| Side {
+                deviation: sides[k].deviation.max(share * seen.sides[k].deviation),
+                rest: sides[k].rest.max(share * seen.sides[k].rest),
+                ..sides[k]
+            };
+            (share, [varied(0), varied(1)], doubt, false)
+        }
     };
-    let candidate = Candidate { nodes: pair.nodes, open: seen.exchange, spread, doubt };
+    let candidate = Candidate {
+        nodes: pair.nodes,
+        open: seen.exchange,
+        sides: sides.map(|side| [side.deviation, side.rest]),
+        doubt,
+    };
     let pair = Pair { open, ..pair };
     match oracle.judge(&candidate) {
         Verdict::SplitA => Fate::Split(pair),
         Verdict::SplitB => Fate::Split(swapped(pair)),
-        Verdict::Keep => Fate::Link(link(&candidate, share, !open)),
+        Verdict::Keep => Fate::Link(link(pair, sides, [share, doubt], oracle.linear)),
     }
 }
 
-fn link(candidate: &Candidate, share: f64, partly: bool) -> Link {
-    let [a, b] = candidate.nodes;
-    let spread = candidate.spread.map(|s| s as f32);
-    let (share, doubt) = (share as f32, candidate.doubt as f32);
-    if a < b {
-        Link { a, b, open: 0.0, share, spread, doubt, partly }
-    } else {
-        Link { a: b, b: a, open: 0.0, share, spread: [spread[1], spread[0]], doubt, partly }
+fn link(pair: Pair, sides: [Side; 2], [share, doubt]: [f64; 2], linear: bool) -> Link {
+    let [a, b] = pair.nodes;
+    let [p, q] = if a < b { sides } else { [sides[1], sides[0]] };
+    let gradient = |side: Side| if linear { side.gradient.as_vec3() } else { glam::Vec3::ZERO };
+    Link {
+        a: a.min(b),
+        b: a.max(b),
+        open: 0.0,
+        share: share as f32,
+        doubt: doubt as f32,
+        deviation: [p.deviation as f32, q.deviation as f32],
+        rest: [p.rest as f32, q.rest as f32],
+        gradient: [gradient(p), gradient(q)],
+        partly: !pair.open,
     }
 }
 
@@ -201,16 +229,16 @@ fn advance(
 
 /// Appends the pairs that take the place of a pair whose first node is split.
 fn children(tree: &mut Tree, light: &mut Light, pair: Pair, wave: &mut Vec<Pair>) -> Result<(), HierarchyError> {
-    let Pair { nodes: [a, b], open } = pair;
+    let Pair { nodes: [a, b], open, .. } = pair;
     tree.split(a)?;
     light.inherit(tree, a);
     let children = tree.nodes()[a as usize].children();
     if a == b {
         for (k, &child) in children.iter().enumerate() {
-            wave.extend(children[k..].iter().map(|&other| Pair { nodes: [child, other], open }));
+            wave.extend(children[k..].iter().map(|&other| Pair { nodes: [child, other], open, coarse: false }));
         }
     } else {
-        wave.extend(children.iter().map(|&child| Pair { nodes: [child, b], open }));
+        wave.extend(children.iter().map(|&child| Pair { nodes: [child, b], open, coarse: false }));
     }
     Ok(())
 }

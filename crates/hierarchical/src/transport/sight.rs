@@ -4,10 +4,10 @@
 //! see the other one exactly clipped, and the share is Σ F_seen/Σ F_open over the points; what both sides make of it differs by an estimate of its error. Behind many bodies
 //! segments between the points of both sides take the place of the clipping. E. A. Haines & J. R. Wallace 1994, doi:10.1007/978-3-642-57963-9_12, for the shaft.
 
-use super::spread::{POINTS, points, summary};
-use fredholm_coupling::form_factor::{VisibleParts, point_to_polygon};
+use super::side::{POINTS, Points, Side};
+use super::spread::{STEEP, open_factor};
+use fredholm_coupling::form_factor::VisibleParts;
 use fredholm_coupling::kernel::lambert;
-use fredholm_coupling::polygon::{HalfSpace, clip};
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::Occluders;
 use fredholm_visibility::body::{Bodies, Body, Room, Shadow};
@@ -16,7 +16,7 @@ use fredholm_visibility::body::{Bodies, Body, Room, Shadow};
 const FEW: usize = 256;
 
 /// Least uncertainty of a share that is neither 0 nor 1 for sure.
-const DOUBT: f64 = 0.1;
+const DOUBT: f64 = 0.2;
 /// Spread that is added to both sides before they are weighed.
 const EVEN: f64 = 1e-3;
 
@@ -34,8 +34,8 @@ pub(crate) enum View {
     Open,
     /// Nothing gets through.
     Nothing,
-    /// A share of the open exchange; relative to that, the spreads over both sides and the uncertainty of the share.
-    Part { share: f64, spread: [f64; 2], doubt: f64 },
+    /// A share of the open exchange; relative to that, how both sides deviate, and the uncertainty of the share.
+    Part { share: f64, sides: [Side; 2], doubt: f64 },
 }
 
 /// Answers for one thread.
@@ -44,7 +44,7 @@ pub(crate) struct Viewer<'a> {
     parts: VisibleParts<'a>,
     room: Room,
     between: Vec<u32>,
-    front: Vec<Vec3>,
+    pub front: Vec<Vec3>,
 }
 
 impl<'a> Viewer<'a> {
@@ -68,31 +68,22 @@ impl<'a> Viewer<'a> {
         if reaching.any(|body| blocks(body, a, b, bodies.tolerance(), &mut self.room)) {
             return View::Nothing;
         }
-        let (over_a, over_b) = (self.seen(a, b), self.seen(b, a));
-        view(over_a, over_b)
+        let (xs, ys) = (Points::of(a), Points::of(b));
+        let (over_a, over_b) = (self.seen(&xs, a, b), self.seen(&ys, b, a));
+        view(side(&xs, over_a), side(&ys, over_b))
     }
 
     /// Open and seen form factors from the points of one patch to the other.
-    fn seen(&mut self, from: &Patch, to: &Patch) -> [[f64; POINTS]; 2] {
+    fn seen(&mut self, points: &Points, from: &Patch, to: &Patch) -> [[f64; POINTS]; 2] {
         let mut found = [[0.0; POINTS]; 2];
         if !self.parts.prepare(from, to) {
             return found;
         }
-        for (k, x) in points(from).into_iter().enumerate() {
+        for (k, &x) in points.at.iter().enumerate() {
             found[1][k] = self.parts.factor(x);
-            found[0][k] = self.open(x, from, to).max(found[1][k]);
+            found[0][k] = open_factor(x, from, to, &mut self.front).max(found[1][k]);
         }
         found
-    }
-
-    /// Form factor from a point of one patch to the part of the other above its horizon.
-    fn open(&mut self, x: Vec3, from: &Patch, to: &Patch) -> f64 {
-        self.front.clear();
-        if (x - to.corner(0)).dot(to.normal()) <= 0.0 {
-            return 0.0;
-        }
-        clip(to.corners(), HalfSpace::through(x, from.normal()), 0.0, &mut self.front);
-        point_to_polygon(from.normal(), self.front.iter().map(|&y| y - x))
     }
 
     fn behind_many(&mut self, a: &Patch, b: &Patch) -> View {
@@ -101,10 +92,10 @@ impl<'a> Viewer<'a> {
         if self.between.is_empty() {
             return View::Open;
         }
-        let (xs, ys) = (points(a), points(b));
+        let (xs, ys) = (Points::of(a), Points::of(b));
         let mut found = [[[0.0; POINTS]; 2]; 2];
-        for (i, &x) in xs.iter().enumerate() {
-            for (j, &y) in ys.iter().enumerate() {
+        for (i, &x) in xs.at.iter().enumerate() {
+            for (j, &y) in ys.at.iter().enumerate() {
                 let weight = lambert(x, a.normal(), y, b.normal());
                 let seen = weight > 0.0 && occluders.unoccluded_by(x, y, &self.between);
                 for (side, k) in [(0, i), (1, j)] {
@@ -113,20 +104,30 @@ impl<'a> Viewer<'a> {
                 }
             }
         }
-        view(found[0], found[1])
+        view(side(&xs, found[0]), side(&ys, found[1]))
     }
 }
 
-/// Puts together what the points of both sides see: open and seen factors of each.
-fn view(over_a: [[f64; POINTS]; 2], over_b: [[f64; POINTS]; 2]) -> View {
-    let [a, b] = [over_a, over_b].map(|[open, seen]| {
-        let ((open, _), (mean, relative)) = (summary(&open), summary(&seen));
-        if open > 0.0 { ((mean / open).min(1.0), relative * mean / open) } else { (0.0, 0.0) }
-    });
-    // The side over which less varies knows the share better.
-    let (here, there) = (b.1 + EVEN, a.1 + EVEN);
-    let share = (here * a.0 + there * b.0) / (here + there);
-    View::Part { share, spread: [a.1, b.1], doubt: (0.5 * (a.0 - b.0).abs()).max(DOUBT) }
+/// Puts together what the points of both sides see.
+fn view(a: Option<(f64, Side)>, b: Option<(f64, Side)>) -> View {
+    let (share, doubt) = match (a, b) {
+        (Some(a), Some(b)) => {
+            // The side over which less varies knows the share better.
+            let (here, there) = (b.1.deviation + EVEN, a.1.deviation + EVEN);
+            ((here * a.0 + there * b.0) / (here + there), (a.0 - b.0).abs())
+        }
+        (Some(one), None) | (None, Some(one)) => (one.0, DOUBT),
+        (None, None) => (0.5, 0.5),
+    };
+    let sides = [a, b].map(|side| side.map_or_else(|| Side::default().at_least(STEEP), |(_, side)| side));
+    View::Part { share, sides, doubt: doubt.max(DOUBT) }
+}
+
+/// Share that one side sees and how that varies, relative to the open factor; none where no point is in front.
+fn side(points: &Points, [open, seen]: [[f64; POINTS]; 2]) -> Option<(f64, Side)> {
+    let (open, seen) = (points.side(&open), points.side(&seen));
+    let share = if open.mean > 0.0 { (seen.mean / open.mean).min(1.0) } else { 0.0 };
+    (open.mean > 0.0).then(|| (share, seen.scaled(share)))
 }
 
 /// Whether a convex body is across every segment between two patches: what holds for their corners holds for all of their points.
