@@ -32,6 +32,7 @@ Examples:
   fredholm solve room.toml -o results --solver lu --memory 8GiB
   fredholm solve room.toml --storage f32 --threads 4 --log json 2> log.jsonl
   fredholm solve room.toml --discretisation galerkin-1
+  fredholm solve room.toml --accuracy 1%
 
 Ctrl-C during the assembly ends the run with nothing written; during the solution by an
 iterative solver the current iterate is written as a result marked \"partial\", with a small
@@ -242,6 +243,10 @@ pub(crate) struct SolveArgs {
     /// Folder for the results [default: out/<name of the scene file>]
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
+    /// Error of the irradiance of the faces to reach, such as 1% or 0.01; the elements are then chosen by hierarchical
+    /// radiosity [default: the scene's, else its elements]
+    #[arg(long, value_name = "E", value_parser = accuracy)]
+    pub(crate) accuracy: Option<f64>,
     #[command(flatten)]
     pub(crate) problem: ProblemArgs,
     #[command(flatten)]
@@ -313,6 +318,14 @@ pub(crate) fn tolerance(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A relative error, as a number or in per cent.
+fn accuracy(text: &str) -> Result<f64, String> {
+    let wrong = || "must be above 0 and below 100%, such as 1% or 0.01".to_owned();
+    let (number, unit) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 0.01));
+    let value = number.trim().parse::<f64>().map_err(|_| wrong())? * unit;
+    if value > 0.0 && value < 1.0 { Ok(value) } else { Err(wrong()) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -321,6 +334,14 @@ mod tests {
     #[test]
     fn the_definition_is_sound() {
         Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn an_accuracy_is_a_number_or_in_per_cent() {
+        assert_eq!((accuracy("1%"), accuracy("0.02"), accuracy("50 %")), (Ok(0.01), Ok(0.02), Ok(0.5)));
+        for text in ["0", "0%", "1", "100%", "-1%", "nan%", "inf", "%", "x", ""] {
+            assert!(accuracy(text).is_err(), "{text}");
+        }
     }
 
     #[test]

@@ -10,6 +10,7 @@ mod console;
 mod discretised;
 mod failure;
 mod folder;
+mod hierarchical;
 mod interrupt;
 mod memory;
 mod mesh_error;

@@ -17,7 +17,7 @@ fn main() {
     };
     let occluders = Occluders::new(mesh.occluders()).unwrap();
     let problem = Problem { mesh: &mesh, occluders: &occluders, surfaces: &surfaces };
-    let options = Options { accuracy: a[2].parse().unwrap(), linear: std::env::var_os("CONSTANT").is_none(), bytes: 8 << 30, max_iterations: 200 };
+    let options = Options { accuracy: a[2].parse().unwrap(), linear: std::env::var_os("CONSTANT").is_none(), residual: 1e-5, bytes: 8 << 30, max_iterations: 200 };
     let s = solve(&problem, &options, &CgTheta, None, &Patient).unwrap();
     let p = Vec3::new(a[3].parse().unwrap(), a[4].parse().unwrap(), a[5].parse().unwrap());
     let i = (0..rows).min_by(|x, y| mesh.patch(*x).centroid().distance(p).total_cmp(&mesh.patch(*y).centroid().distance(p))).unwrap();

@@ -41,12 +41,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let occluders = Occluders::new(mesh.occluders())?;
     let problem = Problem { mesh: &mesh, occluders: &occluders, surfaces: &surfaces };
-    let options = Options { accuracy: accuracy.parse()?, linear: std::env::var_os("CONSTANT").is_none(), bytes: 8 << 30, max_iterations: 200 };
+    let options = Options { accuracy: accuracy.parse()?, linear: std::env::var_os("CONSTANT").is_none(), residual: 1e-5, bytes: 8 << 30, max_iterations: 200 };
     println!("threshold  elements      links  links/  change       CPU");
     let solution = solve(&problem, &options, &CgTheta, None, &Print)?;
     print(&solution.rounds[solution.rounds.len() - 1]);
     closure(&solution);
-    println!("stated error {:.3} %", 100.0 * solution.error.unwrap_or(f64::NAN));
+    println!("stated error {:.3} %", 100.0 * solution.error.as_ref().map_or(f64::NAN, |error| error.worst()));
     if let Some(file) = args.next() {
         faces(&mesh, &solution, scene.bands(), &file)?;
     }

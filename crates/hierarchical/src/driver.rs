@@ -5,7 +5,7 @@
 
 use crate::exposure::Exposure;
 use crate::oracle::Light;
-use crate::refine::{Limits, refine};
+use crate::refine::{Limits, bytes, refine};
 use crate::transport::Sight;
 use crate::{HierarchicalOperator, HierarchyError, Link, State, Surfaces, Tree};
 use fredholm_coupling::{Extent, Means, Radiosity};
@@ -23,8 +23,8 @@ const FIRST: f64 = 4.0;
 pub(crate) const CONFIDENCE: f64 = 1.5;
 /// Rounds at most.
 const ROUNDS: usize = 24;
-/// Residual of a solution, over the accuracy.
-const RESIDUAL: f64 = 1e-3;
+/// Residual of a solution, over the accuracy, that is small beside it.
+pub const RESIDUAL: f64 = 1e-3;
 /// Tolerance of exchanges, over the accuracy.
 const EXCHANGE: f64 = 0.1;
 /// Least area of an element, over that of the scene.
@@ -48,6 +48,8 @@ pub struct Options {
     pub accuracy: f64,
     /// Whether links follow the variation of the form factor to first order; else it is constant over each node.
     pub linear: bool,
+    /// Relative residual ‖b − A x‖₂/‖b‖₂ to which each system is solved; [`RESIDUAL`] times the accuracy is small beside it.
+    pub residual: f64,
     /// Bytes that tree and links may take.
     pub bytes: u64,
     /// Iterations of the solver at most, in each round.
@@ -65,6 +67,23 @@ pub struct Round {
     pub links: usize,
     /// Relative change of the irradiance of the faces since the round before, L2, worst band; none in the first.
     pub change: Option<f64>,
+}
+
+/// Estimated error of the irradiance of the faces.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stated {
+    /// Relative, area-weighted L2 norm over the faces, of each band.
+    pub relative_l2: Vec<f64>,
+    /// Largest of a face, W/m², of each band.
+    pub largest: Vec<f64>,
+}
+
+impl Stated {
+    /// The relative error of the worst band.
+    #[must_use]
+    pub fn worst(&self) -> f64 {
+        self.relative_l2.iter().copied().fold(0.0, f64::max)
+    }
 }
 
 /// Follows a solution and may stop it.
@@ -108,8 +127,8 @@ pub struct Solution {
     pub report: Report,
     /// All rounds.
     pub rounds: Vec<Round>,
-    /// Estimated relative error of the irradiance of the faces, L2, worst band.
-    pub error: Option<f64>,
+    /// Estimated error of the irradiance of the faces; none after a single round.
+    pub error: Option<Stated>,
     /// Whether memory ended the refinement before the accuracy was reached.
     pub limited: bool,
 }
@@ -167,6 +186,14 @@ struct Run<'a> {
     exposure: Exposure<'a>,
 }
 
+impl Solution {
+    /// Bytes of the tree and the links.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        bytes(&self.tree, self.links.len())
+    }
+}
+
 impl Run<'_> {
     /// The system of a state that has been solved.
     fn resumed(&mut self, state: &State) -> Result<Option<System>, HierarchyError> {
@@ -212,7 +239,8 @@ impl Run<'_> {
         };
         let report = self.solved(&system, &mut x)?;
         let faces = self.faces(state, &system, &x);
-        let change = (!state.faces.is_empty()).then(|| self.change(&state.faces, &faces));
+        state.error = (!state.faces.is_empty()).then(|| self.change(&state.faces, &faces));
+        let change = state.error.as_ref().map(|error| error.worst() / CONFIDENCE);
         let (elements, links) = (system.operator.leaves().len(), state.links.len());
         state.rounds.push(Round { threshold: state.threshold, elements, links, change });
         (state.radiosity, state.faces) = (x, faces);
@@ -234,8 +262,7 @@ impl Run<'_> {
     fn solved(&self, system: &System, x: &mut MultiVector<f64>) -> Result<Report, HierarchyError> {
         let radiosity = &system.radiosity;
         let a = SecondKind::new(&system.operator, radiosity.scaling())?;
-        let tolerance = RESIDUAL * self.options.accuracy;
-        let stop = Stop { tolerance, max_iterations: self.options.max_iterations };
+        let stop = Stop { tolerance: self.options.residual, max_iterations: self.options.max_iterations };
         let mut observer = |_: &Progress<'_, f64>| self.watch.poll();
         let report = self.solver.solve(&a, radiosity.exitance(), x, &stop, &mut observer)?;
         if report.reason == StopReason::Interrupted { Err(HierarchyError::Interrupted) } else { Ok(report) }
@@ -257,24 +284,25 @@ impl Run<'_> {
         irradiance
     }
 
-    /// Relative difference of two irradiances of the faces in the worst band.
-    fn change(&self, before: &[f64], now: &[f64]) -> f64 {
+    /// The error that the change from one irradiance of the faces to the next lets expect.
+    fn change(&self, before: &[f64], now: &[f64]) -> Stated {
         let lanes = self.problem.surfaces.exitance.lanes();
-        let faces = self.problem.mesh.faces();
-        let band = |band: usize| {
-            let (mut difference, mut norm) = (0.0, 0.0);
-            for (k, face) in faces.iter().enumerate() {
+        let (mut squares, mut norms) = (vec![0.0; lanes], vec![0.0; lanes]);
+        let mut largest = vec![0.0; lanes];
+        for (k, face) in self.problem.mesh.faces().iter().enumerate() {
+            for band in 0..lanes {
                 let (e, old) = (now[k * lanes + band], before[k * lanes + band]);
-                difference += face.area * (e - old) * (e - old);
-                norm += face.area * e * e;
+                squares[band] += face.area * (e - old) * (e - old);
+                norms[band] += face.area * e * e;
+                largest[band] = f64::max(largest[band], CONFIDENCE * (e - old).abs());
             }
-            if norm > 0.0 { (difference / norm).sqrt() } else { 0.0 }
-        };
-        (0..lanes).map(band).fold(0.0, f64::max)
+        }
+        let relative = |(square, norm): (f64, f64)| if norm > 0.0 { CONFIDENCE * (square / norm).sqrt() } else { 0.0 };
+        Stated { relative_l2: squares.into_iter().zip(norms).map(relative).collect(), largest }
     }
 
     fn enough(&self, state: &State) -> bool {
-        state.rounds.len() >= ROUNDS || state.error().is_some_and(|error| error <= self.options.accuracy)
+        state.rounds.len() >= ROUNDS || state.error().is_some_and(|error| error.worst() <= self.options.accuracy)
     }
 
     fn finish(&self, state: State, system: System, report: Report) -> Solution {
@@ -282,8 +310,7 @@ impl Run<'_> {
         let means = system.means(&operator, &state.radiosity);
         let closed = |(sum, size): (f64, &Extent)| if size.exposed > 0.0 { sum / size.exposed } else { 1.0 };
         let closure = operator.row_sums().into_iter().zip(system.elements()).map(closed).collect();
-        let error = state.error();
-        let State { tree, links, radiosity, rounds, limited, .. } = state;
+        let State { tree, links, radiosity, rounds, error, limited, .. } = state;
         Solution { tree, links, means, system, radiosity, closure, report, rounds, error, limited }
     }
 }

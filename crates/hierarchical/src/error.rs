@@ -46,6 +46,12 @@ pub enum HierarchyError {
         /// What is wrong with it.
         why: &'static str,
     },
+    /// A state that could not be saved.
+    #[error("cannot save the state: {why}")]
+    Save {
+        /// What stood in the way.
+        why: String,
+    },
     /// The caller asked to stop.
     #[error("stopped before there was a solution")]
     Interrupted,

@@ -1,6 +1,6 @@
 //! Where a solution stands between two rounds: all that is needed to go on to the same bits.
 
-use crate::driver::{CONFIDENCE, Problem, Round};
+use crate::driver::{Problem, Round, Stated};
 use crate::{HierarchyError, Link, Tree};
 use fredholm_linop::MultiVector;
 
@@ -16,6 +16,7 @@ pub struct State {
     /// What a link may leave in the next round.
     pub(crate) threshold: f64,
     pub(crate) rounds: Vec<Round>,
+    pub(crate) error: Option<Stated>,
     pub(crate) limited: bool,
 }
 
@@ -36,6 +37,7 @@ impl State {
             faces: Vec::new(),
             threshold,
             rounds: Vec::new(),
+            error: None,
             limited: false,
         })
     }
@@ -46,10 +48,10 @@ impl State {
         &self.rounds
     }
 
-    /// Estimated relative error of the irradiance of the faces, where there are two rounds.
+    /// Estimated error of the irradiance of the faces, where there are two rounds.
     #[must_use]
-    pub fn error(&self) -> Option<f64> {
-        self.rounds.last()?.change.map(|change| CONFIDENCE * change)
+    pub fn error(&self) -> Option<&Stated> {
+        self.error.as_ref()
     }
 
     /// Radiosity of all nodes, area means of that of the leaves.
