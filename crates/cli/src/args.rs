@@ -8,7 +8,7 @@ use clap_complete::Shell;
 use fredholm_discretisation::{DiscretisationError, discretisation};
 use serde::Serialize;
 
-use crate::commands::{CompareArgs, SpectrumArgs, ViewFactorsArgs, WAVES_EXAMPLES, WavesArgs};
+use crate::commands::{CompareArgs, RESUME_EXAMPLES, ResumeArgs, SpectrumArgs, ViewFactorsArgs, WAVES_EXAMPLES, WavesArgs};
 use crate::registry;
 use crate::size::Bytes;
 
@@ -129,6 +129,9 @@ pub(crate) enum Command {
     /// Solve a scene and write the results
     #[command(after_help = SOLVE_EXAMPLES)]
     Solve(SolveArgs),
+    /// Go on with a run to an accuracy that was stopped
+    #[command(after_help = RESUME_EXAMPLES)]
+    Resume(ResumeArgs),
     /// Validate a scene, show its statistics and predict memory and time; solves and writes nothing
     #[command(after_help = CHECK_EXAMPLES)]
     Check(CheckArgs),
@@ -169,6 +172,7 @@ impl Command {
     pub(crate) fn log(&self) -> LogFormat {
         match self {
             Self::Solve(args) => args.log.log,
+            Self::Resume(args) => args.log.log,
             Self::Check(args) => args.log.log,
             Self::Converge(args) => args.log.log,
             Self::Compare(args) => args.log.log,

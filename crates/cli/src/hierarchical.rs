@@ -13,9 +13,10 @@ use fredholm_report::{Hierarchy, HierarchyRound};
 use fredholm_scene::Scene;
 
 use crate::args::{Precision, SolveArgs};
+use crate::checkpoint::{self, Checkpoint, Header};
 use crate::console::Console;
 use crate::failure::{Ending, Failure};
-use crate::interrupt::{Interrupt, nothing_saved};
+use crate::interrupt::Interrupt;
 use crate::options::{Options, ProblemOptions, RADIOSITY};
 use crate::prediction::{Dense, Prediction, Size};
 use crate::problem::{Problem, check, occluders, scene_failure};
@@ -90,7 +91,7 @@ fn unsuitable(solver: &str) -> Failure {
 pub(crate) fn compute(
     scene: &Arc<Scene>,
     options: &Options,
-    accuracy: f64,
+    (accuracy, checkpoint): (f64, Option<&Checkpoint>),
     stages: &mut Stages,
 ) -> Result<(Problem, Solution), Failure> {
     let faces = stages.run("mesh", || scene.face_mesh().map_err(scene_failure))?;
@@ -100,8 +101,14 @@ pub(crate) fn compute(
     let input = Input { mesh: &faces, occluders: &occluders, surfaces: &surfaces };
     let limits = limits(options, accuracy);
     let entry = registry::build(&options.problem.solver).map_err(|e| Failure::new(Ending::Input, e))?;
-    let watch = Follower { console: stages.console, interrupt: stages.interrupt, accuracy };
-    let solve = || fredholm_hierarchical::solve(&input, &limits, &*entry.solver, None, &watch).map_err(failure);
+    let state = checkpoint.map(|checkpoint| state(checkpoint, scene, &input)).transpose()?;
+    let watch = Follower {
+        console: stages.console,
+        interrupt: stages.interrupt,
+        header: Header::new(scene, options, accuracy),
+        folder: Path::new(&options.output),
+    };
+    let solve = || fredholm_hierarchical::solve(&input, &limits, &*entry.solver, state, &watch).map_err(failure);
     let solved = stages.run("solution", solve)?;
     stages.begin_saving()?;
     let mesh = refined(&faces, &solved).map_err(|e| Failure::new(Ending::Input, e))?;
@@ -124,6 +131,15 @@ pub(crate) fn compute(
         occluders,
     };
     Ok((problem, solution))
+}
+
+/// The state of a checkpoint, which must be one of this scene.
+fn state(checkpoint: &Checkpoint, scene: &Scene, input: &Input) -> Result<State, Failure> {
+    if checkpoint.header.scene_sha256 != scene.sha256() {
+        let text = format!("{} has changed since the checkpoint\n  help: solve it again", scene.path().display());
+        return Err(Failure::new(Ending::Input, text));
+    }
+    State::read(input, &mut checkpoint.state.as_slice()).map_err(failure)
 }
 
 fn limits(options: &Options, accuracy: f64) -> Limits {
@@ -212,7 +228,8 @@ fn hierarchy(solved: &Solved, accuracy: f64) -> Hierarchy {
 struct Follower<'a> {
     console: &'a dyn Console,
     interrupt: &'a Interrupt,
-    accuracy: f64,
+    header: Header,
+    folder: &'a Path,
 }
 
 impl Watch for Follower<'_> {
@@ -222,9 +239,10 @@ impl Watch for Follower<'_> {
 
     fn round(&self, rounds: &[Round], state: &State) -> Result<(), HierarchyError> {
         let Some(last) = rounds.last() else { return Ok(()) };
+        checkpoint::write(self.folder, &self.header, state).map_err(|why| HierarchyError::Save { why })?;
         let error = state.error().map(|error| error.worst());
         // The digits gained of those asked for.
-        let share = error.map_or(0.0, |error| (error.ln() / self.accuracy.ln()).clamp(0.0, 1.0));
+        let share = error.map_or(0.0, |error| (error.ln() / self.header.accuracy.ln()).clamp(0.0, 1.0));
         self.console.advance(share, &|| {
             let error = error.map_or_else(String::new, |error| format!(", estimated error {error:.1e}"));
             format!("round {}: {} elements, {} links{error}", rounds.len(), last.elements, last.links)
@@ -233,9 +251,14 @@ impl Watch for Follower<'_> {
     }
 }
 
-pub(crate) fn failure(error: HierarchyError) -> Failure {
+fn interrupted() -> Failure {
+    let text = "interrupted; there is no result yet\n  help: `fredholm resume DIR`, with the folder for the results, goes on after the last round";
+    Failure::new(Ending::Interrupted, text)
+}
+
+fn failure(error: HierarchyError) -> Failure {
     match error {
-        HierarchyError::Interrupted => nothing_saved(),
+        HierarchyError::Interrupted => interrupted(),
         HierarchyError::Solve(error) => solve_failure(error),
         HierarchyError::Coupling(error) => coupling_failure(error),
         HierarchyError::Memory { .. } | HierarchyError::TooLarge => Failure::new(Ending::Resources, error),

@@ -5,6 +5,7 @@
 //! 130 interrupted. Standard output carries results and summaries, standard error progress, warnings and errors.
 
 mod args;
+mod checkpoint;
 mod commands;
 mod console;
 mod discretised;

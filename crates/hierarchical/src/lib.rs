@@ -6,6 +6,7 @@
 //!
 //! Source: P. Hanrahan, D. Salzman, L. Aupperle, *A rapid hierarchical radiosity algorithm*, SIGGRAPH 1991, doi:10.1145/122718.122740. Units: metres, W/m².
 
+mod checkpoint;
 mod driver;
 mod error;
 mod exposure;

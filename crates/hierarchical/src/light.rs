@@ -2,7 +2,7 @@
 //!
 //! Before there is a solution, every element is taken to receive the ambient irradiance Σ A M/Σ A (1 − ρ), which a closed room of one reflectance has.
 
-use crate::oracle::Light;
+use crate::oracle::{FLOOR, Light};
 use crate::tree::Tree;
 use crate::{HierarchicalOperator, Link};
 use fredholm_linop::MultiVector;
@@ -56,14 +56,17 @@ impl Light {
         light
     }
 
-    /// The level of a cluster is that of its darkest part that is not buried.
+    /// The level of a cluster is the harmonic mean over its parts: relative errors weigh more where it is dark. What is buried does not count.
     fn darken(&mut self, tree: &Tree, operator: &HierarchicalOperator) {
         for (index, node) in tree.nodes().iter().enumerate().rev() {
             if operator.is_buried(index) {
                 self.nodes[index][2] = 1.0;
             } else if node.root().is_none() {
-                let levels = node.children().iter().map(|&child| self.nodes[child as usize][2]);
-                self.nodes[index][2] = levels.fold(1.0, f64::min);
+                let part = |&child: &u32| {
+                    let level = self.nodes[child as usize][2].min(1.0) + FLOOR;
+                    tree.nodes()[child as usize].area() / node.area() / level
+                };
+                self.nodes[index][2] = (node.children().iter().map(part).sum::<f64>().recip() - FLOOR).max(0.0);
             }
         }
     }

@@ -18,7 +18,7 @@ use crate::tree::{Node, Tree};
 /// Weight of deviations within a face.
 const DETAIL: f64 = 0.2;
 /// Share of the mean irradiance that counts as present everywhere: nothing is resolved below it.
-const FLOOR: f64 = 0.01;
+pub(crate) const FLOOR: f64 = 0.01;
 
 /// What is known of the light on the nodes.
 #[derive(Clone, Debug)]

@@ -6,6 +6,7 @@ mod completions;
 mod converge;
 mod discretisations;
 mod info;
+mod resume;
 mod schema;
 mod solve;
 mod solvers;
@@ -17,6 +18,7 @@ use crate::args::Command;
 use crate::failure::{Ending, Failure};
 
 pub(crate) use compare::CompareArgs;
+pub(crate) use resume::{EXAMPLES as RESUME_EXAMPLES, ResumeArgs};
 pub(crate) use spectrum::SpectrumArgs;
 pub(crate) use viewfactors::ViewFactorsArgs;
 pub(crate) use waves::{EXAMPLES as WAVES_EXAMPLES, WavesArgs};
@@ -25,6 +27,7 @@ pub(crate) use waves::{EXAMPLES as WAVES_EXAMPLES, WavesArgs};
 pub(crate) fn execute(command: &Command) -> Result<Ending, Failure> {
     match command {
         Command::Solve(args) => solve::solve(args),
+        Command::Resume(args) => resume::resume(args),
         Command::Check(args) => check::check(args),
         Command::Converge(args) => converge::converge(args),
         Command::Compare(args) => compare::compare(args),

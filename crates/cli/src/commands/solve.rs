@@ -8,6 +8,7 @@ use fredholm_report::{Camera, Exposure, Field, ReportError, RunRecord, View, wri
 use fredholm_scene::Scene;
 
 use crate::args::SolveArgs;
+use crate::checkpoint::{self, Checkpoint};
 use crate::failure::{Ending, Failure};
 use crate::interrupt::Interrupt;
 use crate::options::{Options, ProblemOptions};
@@ -23,12 +24,17 @@ const QUICK_PIXELS: f64 = 40_000.0;
 
 /// Solves a scene and writes the results.
 pub(crate) fn solve(args: &SolveArgs) -> Result<Ending, Failure> {
+    solve_from(args, None)
+}
+
+/// Solves a scene, from a checkpoint where there is one, and writes the results.
+pub(super) fn solve_from(args: &SolveArgs, checkpoint: Option<&Checkpoint>) -> Result<Ending, Failure> {
     let interrupt = Interrupt::install(args.log.log)?;
     folder::probe(&folder(args))?;
     let console = console::choose(args.log);
     let stages = Stages::new(&*console, &interrupt);
     let count = args.problem.threads.map_or_else(threads::default_count, usize::from);
-    threads::pool(count)?.install(|| run(args, stages))
+    threads::pool(count)?.install(|| run(args, checkpoint, stages))
 }
 
 /// The folder for the results.
@@ -36,15 +42,16 @@ fn folder(args: &SolveArgs) -> PathBuf {
     folder::of(args.output.as_ref(), &args.problem.scene)
 }
 
-fn run(args: &SolveArgs, mut stages: Stages) -> Result<Ending, Failure> {
+fn run(args: &SolveArgs, checkpoint: Option<&Checkpoint>, mut stages: Stages) -> Result<Ending, Failure> {
     let scene = stages.run("scene", || Scene::load(&args.problem.scene).map_err(scene_failure))?;
     let (scene, folder) = (Arc::new(scene), folder(args));
     let (options, problem, solution) = match args.accuracy.or(scene.solve().accuracy) {
-        Some(accuracy) => adaptive(args, &scene, accuracy, &folder, &mut stages)?,
+        Some(accuracy) => adaptive(args, &scene, (accuracy, checkpoint), &folder, &mut stages)?,
         None => dense(args, &scene, &folder, &mut stages)?,
     };
     let record = record(&problem, &options, &solution, &stages);
     stages.run("results", || write(&problem, &solution, &record, &folder))?;
+    checkpoint::remove(&folder)?;
     // The summary, other than the file, can tell the time of writing.
     let record = RunRecord { timings: stages.timings().to_vec(), ..record };
     conclude(args, &record, remarks(&options, &solution), &stages)?;
@@ -69,12 +76,12 @@ fn dense(
 fn adaptive(
     args: &SolveArgs,
     scene: &Arc<Scene>,
-    accuracy: f64,
+    (accuracy, checkpoint): (f64, Option<&Checkpoint>),
     folder: &Path,
     stages: &mut Stages,
 ) -> Result<(Options, Problem, Solution), Failure> {
     let options = hierarchical::options(args, scene, accuracy, folder)?;
-    let (problem, solution) = hierarchical::compute(scene, &options, accuracy, stages)?;
+    let (problem, solution) = hierarchical::compute(scene, &options, (accuracy, checkpoint), stages)?;
     Ok((options, problem, solution))
 }
 
