@@ -8,7 +8,9 @@ use clap_complete::Shell;
 use fredholm_discretisation::{DiscretisationError, discretisation};
 use serde::Serialize;
 
-use crate::commands::{CompareArgs, RESUME_EXAMPLES, ResumeArgs, SpectrumArgs, ViewFactorsArgs, WAVES_EXAMPLES, WavesArgs};
+use crate::commands::{
+    CompareArgs, RESUME_EXAMPLES, ResumeArgs, SpectrumArgs, ViewFactorsArgs, WAVES_EXAMPLES, WavesArgs,
+};
 use crate::registry;
 use crate::size::Bytes;
 

@@ -30,7 +30,11 @@ pub(crate) struct Header {
 
 impl Header {
     /// What is kept of the options of a run.
-    pub(crate) fn new(scene: &fredholm_scene::Scene, options: &crate::options::Options, accuracy: f64) -> Self {
+    pub(crate) fn new(
+        scene: &fredholm_scene::Scene,
+        options: &crate::options::Options,
+        accuracy: f64,
+    ) -> Self {
         Self {
             format: FORMAT.to_owned(),
             scene: scene.path().to_owned(),
@@ -72,7 +76,8 @@ pub(crate) fn read(folder: &Path) -> Result<Checkpoint, Failure> {
         Failure::new(Ending::Files, text)
     })?;
     let broken = || {
-        let text = format!("{} is no checkpoint of this version\n  help: solve the scene again", path.display());
+        let text =
+            format!("{} is no checkpoint of this version\n  help: solve the scene again", path.display());
         Failure::new(Ending::Input, text)
     };
     let end = bytes.iter().position(|&byte| byte == b'\n').ok_or_else(broken)?;

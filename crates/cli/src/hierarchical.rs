@@ -5,7 +5,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use fredholm_hierarchical::{
-    HierarchyError, Options as Limits, Problem as Input, RESIDUAL, Round, Solution as Solved, State, Surfaces, Watch,
+    HierarchyError, Options as Limits, Problem as Input, RESIDUAL, Round, Solution as Solved, State,
+    Surfaces, Watch,
 };
 use fredholm_linop::MultiVector;
 use fredholm_mesh::{Mesh, MeshBuilder, MeshError, Patch};
@@ -108,7 +109,8 @@ pub(crate) fn compute(
         header: Header::new(scene, options, accuracy),
         folder: Path::new(&options.output),
     };
-    let solve = || fredholm_hierarchical::solve(&input, &limits, &*entry.solver, state, &watch).map_err(failure);
+    let solve =
+        || fredholm_hierarchical::solve(&input, &limits, &*entry.solver, state, &watch).map_err(failure);
     let solved = stages.run("solution", solve)?;
     stages.begin_saving()?;
     let mesh = refined(&faces, &solved).map_err(|e| Failure::new(Ending::Input, e))?;
@@ -136,7 +138,8 @@ pub(crate) fn compute(
 /// The state of a checkpoint, which must be one of this scene.
 fn state(checkpoint: &Checkpoint, scene: &Scene, input: &Input) -> Result<State, Failure> {
     if checkpoint.header.scene_sha256 != scene.sha256() {
-        let text = format!("{} has changed since the checkpoint\n  help: solve it again", scene.path().display());
+        let text =
+            format!("{} has changed since the checkpoint\n  help: solve it again", scene.path().display());
         return Err(Failure::new(Ending::Input, text));
     }
     State::read(input, &mut checkpoint.state.as_slice()).map_err(failure)

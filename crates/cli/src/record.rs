@@ -77,8 +77,14 @@ fn coarse(solution: &Solution) -> Option<String> {
     let hierarchy = solution.hierarchy.as_ref().filter(|_| !solution.is_accurate())?;
     let Hierarchy { accuracy, stated, limited, .. } = hierarchy;
     let reached = stated.map_or_else(|| "not known".to_owned(), |error| format!("{error:.1e}"));
-    let why = if *limited { "the memory did not allow finer links; allow more with --memory" } else { "the rounds ran out" };
-    Some(format!("the estimated error of the irradiance is {reached}, where {accuracy:.1e} was asked for: {why}"))
+    let why = if *limited {
+        "the memory did not allow finer links; allow more with --memory"
+    } else {
+        "the rounds ran out"
+    };
+    Some(format!(
+        "the estimated error of the irradiance is {reached}, where {accuracy:.1e} was asked for: {why}"
+    ))
 }
 
 /// Row errors, in tolerances, that are reported: the tolerance is a pair's, and the errors of a row add up to about twice as much.

@@ -44,8 +44,7 @@ fn share(patch: &Patch, patches: &[&Patch], lit: &Occluders) -> f64 {
 #[must_use]
 pub fn exposed_share(patch: &Patch, n: usize, patches: &[&Patch], lit: &Occluders) -> f64 {
     let directions = bundle(patch);
-    let exposed =
-        grid(patch, n).filter(|&p| directions.iter().any(|&d| is_open(p, d, patches, lit))).count();
+    let exposed = grid(patch, n).filter(|&p| directions.iter().any(|&d| is_open(p, d, patches, lit))).count();
     exposed as f64 / (n * n) as f64
 }
 

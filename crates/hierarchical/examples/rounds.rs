@@ -20,7 +20,13 @@ impl Watch for Print {
 fn print(round: &Round) {
     let change = round.change.map_or_else(|| "-".to_owned(), |change| format!("{:.3} %", 100.0 * change));
     let per = round.links as f64 / round.elements as f64;
-    println!("{:9.2e} {:9} {:10} {per:6.1} {change:>10} {:8.2} s", round.threshold, round.elements, round.links, cpu());
+    println!(
+        "{:9.2e} {:9} {:10} {per:6.1} {change:>10} {:8.2} s",
+        round.threshold,
+        round.elements,
+        round.links,
+        cpu()
+    );
 }
 
 fn cpu() -> f64 {
@@ -41,7 +47,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let occluders = Occluders::new(mesh.occluders())?;
     let problem = Problem { mesh: &mesh, occluders: &occluders, surfaces: &surfaces };
-    let options = Options { accuracy: accuracy.parse()?, linear: std::env::var_os("CONSTANT").is_none(), residual: 1e-5, bytes: 8 << 30, max_iterations: 200 };
+    let options = Options {
+        accuracy: accuracy.parse()?,
+        linear: std::env::var_os("CONSTANT").is_none(),
+        residual: 1e-5,
+        bytes: 8 << 30,
+        max_iterations: 200,
+    };
     println!("threshold  elements      links  links/  change       CPU");
     let solution = solve(&problem, &options, &CgTheta, None, &Print)?;
     print(&solution.rounds[solution.rounds.len() - 1]);

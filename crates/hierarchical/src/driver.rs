@@ -297,12 +297,14 @@ impl Run<'_> {
                 largest[band] = f64::max(largest[band], CONFIDENCE * (e - old).abs());
             }
         }
-        let relative = |(square, norm): (f64, f64)| if norm > 0.0 { CONFIDENCE * (square / norm).sqrt() } else { 0.0 };
+        let relative =
+            |(square, norm): (f64, f64)| if norm > 0.0 { CONFIDENCE * (square / norm).sqrt() } else { 0.0 };
         Stated { relative_l2: squares.into_iter().zip(norms).map(relative).collect(), largest }
     }
 
     fn enough(&self, state: &State) -> bool {
-        state.rounds.len() >= ROUNDS || state.error().is_some_and(|error| error.worst() <= self.options.accuracy)
+        state.rounds.len() >= ROUNDS
+            || state.error().is_some_and(|error| error.worst() <= self.options.accuracy)
     }
 
     fn finish(&self, state: State, system: System, report: Report) -> Solution {

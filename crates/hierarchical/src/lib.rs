@@ -19,7 +19,7 @@ mod state;
 mod transport;
 mod tree;
 
-pub use driver::{Options, Patient, RESIDUAL, Problem, Round, Solution, Stated, Watch, solve};
+pub use driver::{Options, Patient, Problem, RESIDUAL, Round, Solution, Stated, Watch, solve};
 pub use error::HierarchyError;
 pub use light::Surfaces;
 pub use link::Link;

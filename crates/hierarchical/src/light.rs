@@ -66,7 +66,8 @@ impl Light {
                     let level = self.nodes[child as usize][2].min(1.0) + FLOOR;
                     tree.nodes()[child as usize].area() / node.area() / level
                 };
-                self.nodes[index][2] = (node.children().iter().map(part).sum::<f64>().recip() - FLOOR).max(0.0);
+                self.nodes[index][2] =
+                    (node.children().iter().map(part).sum::<f64>().recip() - FLOOR).max(0.0);
             }
         }
     }
@@ -75,7 +76,9 @@ impl Light {
     fn deviate(&mut self, tree: &Tree, surfaces: &Surfaces, links: &[Link], operator: &HierarchicalOperator) {
         let mut squares = vec![0.0; self.nodes.len()];
         for link in links {
-            for (to, from, deviation) in [(link.a, link.b, link.deviation[0]), (link.b, link.a, link.deviation[1])] {
+            for (to, from, deviation) in
+                [(link.a, link.b, link.deviation[0]), (link.b, link.a, link.deviation[1])]
+            {
                 let factor = link.open / tree.nodes()[to as usize].area();
                 let deviation = factor * f64::from(deviation) * self.nodes[from as usize][0];
                 squares[to as usize] += deviation * deviation;

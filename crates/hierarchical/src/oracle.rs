@@ -70,7 +70,8 @@ impl Oracle<'_> {
         } else {
             by_b = by_b.max(doubt);
         }
-        let wanted = |by: f64, index: u32| if by > self.threshold && self.divisible(index) { by } else { 0.0 };
+        let wanted =
+            |by: f64, index: u32| if by > self.threshold && self.divisible(index) { by } else { 0.0 };
         match (wanted(by_a, a), wanted(by_b, b)) {
             (x, y) if x == 0.0 && y == 0.0 => Verdict::Keep,
             (x, y) if x >= y => Verdict::SplitA,

@@ -96,7 +96,13 @@ pub(crate) fn refine(
 
 /// Parts links into those that stay and pairs to be split.
 fn sift(tree: &Tree, links: Vec<Link>, light: &Light, limits: &Limits, kept: &mut Vec<Link>) -> Vec<Pair> {
-    let oracle = Oracle { tree, light, threshold: limits.threshold, linear: limits.linear, least_area: limits.least_area };
+    let oracle = Oracle {
+        tree,
+        light,
+        threshold: limits.threshold,
+        linear: limits.linear,
+        least_area: limits.least_area,
+    };
     let verdicts: Vec<Verdict> = links.par_iter().map(|link| oracle.judge(&candidate(link))).collect();
     let mut wave = Vec::new();
     for (link, verdict) in links.into_iter().zip(verdicts) {
@@ -228,14 +234,23 @@ fn advance(
 }
 
 /// Appends the pairs that take the place of a pair whose first node is split.
-fn children(tree: &mut Tree, light: &mut Light, pair: Pair, wave: &mut Vec<Pair>) -> Result<(), HierarchyError> {
+fn children(
+    tree: &mut Tree,
+    light: &mut Light,
+    pair: Pair,
+    wave: &mut Vec<Pair>,
+) -> Result<(), HierarchyError> {
     let Pair { nodes: [a, b], open, .. } = pair;
     tree.split(a)?;
     light.inherit(tree, a);
     let children = tree.nodes()[a as usize].children();
     if a == b {
         for (k, &child) in children.iter().enumerate() {
-            wave.extend(children[k..].iter().map(|&other| Pair { nodes: [child, other], open, coarse: false }));
+            wave.extend(children[k..].iter().map(|&other| Pair {
+                nodes: [child, other],
+                open,
+                coarse: false,
+            }));
         }
     } else {
         wave.extend(children.iter().map(|&child| Pair { nodes: [child, b], open, coarse: false }));

@@ -25,7 +25,8 @@ impl State {
     pub(crate) fn new(problem: &Problem, threshold: f64) -> Result<Self, HierarchyError> {
         let bands = problem.surfaces.exitance.lanes();
         let (expected, surfaces) = (problem.mesh.len(), problem.surfaces);
-        for (what, rows) in [("the reflectance", &surfaces.reflectance), ("the exitance", &surfaces.exitance)] {
+        for (what, rows) in [("the reflectance", &surfaces.reflectance), ("the exitance", &surfaces.exitance)]
+        {
             if rows.dim() != expected {
                 return Err(HierarchyError::Shape { what, found: rows.dim(), expected });
             }

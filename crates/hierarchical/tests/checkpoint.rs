@@ -51,8 +51,14 @@ fn damaged_and_foreign_states_are_refused() {
         assert!(matches!(cut, Err(HierarchyError::State { .. })), "{length}");
     }
     let other = Bench::text(&room(0.5).replace("[2, 2]", "[1, 1]"));
-    assert!(matches!(State::read(&other.problem(), &mut bytes.as_slice()), Err(HierarchyError::State { .. })));
+    assert!(matches!(
+        State::read(&other.problem(), &mut bytes.as_slice()),
+        Err(HierarchyError::State { .. })
+    ));
     let mut hostile = bytes;
     hostile[8..16].copy_from_slice(&u64::MAX.to_le_bytes());
-    assert!(matches!(State::read(&bench.problem(), &mut hostile.as_slice()), Err(HierarchyError::State { .. })));
+    assert!(matches!(
+        State::read(&bench.problem(), &mut hostile.as_slice()),
+        Err(HierarchyError::State { .. })
+    ));
 }

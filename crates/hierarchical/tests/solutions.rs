@@ -35,7 +35,8 @@ fn error(bench: &Bench, found: &[f64], name: &str, columns: &[&str]) -> f64 {
     let (mut squares, mut norms) = (vec![0.0; columns.len()], vec![0.0; columns.len()]);
     for (face, e) in bench.mesh.faces().iter().zip(found.chunks(columns.len())) {
         let rows = &reference[&bench.mesh.surfaces()[face.surface].name];
-        let close = |row: &&Row| face.centroid.to_array().iter().zip(row.0).all(|(a, b)| (a - b).abs() < 1e-6);
+        let close =
+            |row: &&Row| face.centroid.to_array().iter().zip(row.0).all(|(a, b)| (a - b).abs() < 1e-6);
         let exact = &rows.iter().find(close).unwrap().1;
         for band in 0..columns.len() {
             squares[band] += face.area * (e[band] - exact[band]).powi(2);
@@ -135,7 +136,8 @@ fn little_memory_is_respected_and_said() {
 #[test]
 fn what_cannot_be_solved_is_refused() {
     let bench = Bench::text(&room(0.5));
-    let refused = |accuracy| solve(&bench.problem(), &options(accuracy), &CgTheta, None, &Patient).unwrap_err();
+    let refused =
+        |accuracy| solve(&bench.problem(), &options(accuracy), &CgTheta, None, &Patient).unwrap_err();
     assert!(matches!(refused(0.0), HierarchyError::Accuracy { .. }));
     assert!(matches!(refused(f64::NAN), HierarchyError::Accuracy { .. }));
     let other = Bench::text(&room(0.5).replace("[2, 2]", "[3, 3]"));

@@ -58,7 +58,8 @@ fn far([a, b]: [&Patch; 2], [xs, ys]: [&Points; 2]) -> Spread {
 fn close([a, b]: [&Patch; 2], [xs, ys]: [&Points; 2], front: &mut Vec<Vec3>) -> Spread {
     let mut seen = |points: &Points, p: &Patch, q: &Patch| {
         let side = points.side(&points.at.map(|x| open_factor(x, p, q, front)));
-        let corners = p.corners().iter().map(|&x| open_factor(x.lerp(points.at[POINTS - 1], INSET), p, q, front));
+        let corners =
+            p.corners().iter().map(|&x| open_factor(x.lerp(points.at[POINTS - 1], INSET), p, q, front));
         (side, p.area() * side.mean.max(CORNER * corners.fold(0.0, f64::max)))
     };
     let ((over_a, from_a), (over_b, from_b)) = (seen(xs, a, b), seen(ys, b, a));

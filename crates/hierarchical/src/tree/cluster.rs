@@ -93,7 +93,9 @@ impl<'a> Builder<'a> {
             let n = self.patch(k).normal();
             [n.z, n.y, n.x, n.dot(self.patch(k).corner(0))]
         };
-        let by_key = |a: &u32, b: &u32| key(*a).iter().zip(key(*b)).fold(std::cmp::Ordering::Equal, |o, (a, b)| o.then(a.total_cmp(&b)));
+        let by_key = |a: &u32, b: &u32| {
+            key(*a).iter().zip(key(*b)).fold(std::cmp::Ordering::Equal, |o, (a, b)| o.then(a.total_cmp(&b)))
+        };
         planes.sort_by(by_key);
         let low = &planes[..planes.len() / 2];
         order.into_iter().partition(|&k| low.iter().any(|&plane| self.same_plane(k, plane)))
@@ -130,7 +132,8 @@ impl<'a> Builder<'a> {
         let middle = 0.5 * (start + last);
         let mut best: Option<f64> = None;
         for &[from, to] in &spans[1..] {
-            if from >= end - self.tolerance && best.is_none_or(|b| (from - middle).abs() < (b - middle).abs()) {
+            if from >= end - self.tolerance && best.is_none_or(|b| (from - middle).abs() < (b - middle).abs())
+            {
                 best = Some(from);
             }
             end = end.max(to);

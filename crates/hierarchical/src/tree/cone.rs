@@ -44,9 +44,8 @@ impl Cone {
             return false;
         }
         let (along, slack) = (line / distance, (reach / distance).asin());
-        let away = |cone: &Self, u: Vec3| {
-            cone.axis.dot(u).clamp(-1.0, 1.0).acos() >= FRAC_PI_2 + cone.angle + slack
-        };
+        let away =
+            |cone: &Self, u: Vec3| cone.axis.dot(u).clamp(-1.0, 1.0).acos() >= FRAC_PI_2 + cone.angle + slack;
         away(self, along) || away(other, -along)
     }
 }

@@ -73,7 +73,8 @@ mod tests {
 
     #[test]
     fn cells_of_a_grid_fill_a_rectangle() {
-        let cells: Vec<Patch> = (0..12).map(|k| cell(0.1 * f64::from(k % 4), 0.3 * f64::from(k / 4))).collect();
+        let cells: Vec<Patch> =
+            (0..12).map(|k| cell(0.1 * f64::from(k % 4), 0.3 * f64::from(k / 4))).collect();
         let list: Vec<&Patch> = cells.iter().collect();
         let whole = filled(&list).unwrap();
         assert!((whole.area() - 12.0 * cells[0].area()).abs() < 1e-12);
