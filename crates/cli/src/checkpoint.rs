@@ -21,9 +21,9 @@ pub(crate) struct Header {
     /// The scene file, as it was given.
     pub(crate) scene: PathBuf,
     pub(crate) scene_sha256: String,
-    pub(crate) accuracy: f64,
+    accuracy: String,
     pub(crate) solver: String,
-    pub(crate) tolerance: f64,
+    tolerance: String,
     pub(crate) max_iterations: u64,
     pub(crate) memory_limit_bytes: Option<u64>,
 }
@@ -39,18 +39,27 @@ impl Header {
             format: FORMAT.to_owned(),
             scene: scene.path().to_owned(),
             scene_sha256: scene.sha256().to_owned(),
-            accuracy,
+            // As text, which is read back to the same bits.
+            accuracy: accuracy.to_string(),
             solver: options.problem.solver.clone(),
-            tolerance: options.tolerance,
+            tolerance: options.tolerance.to_string(),
             max_iterations: options.max_iterations,
             memory_limit_bytes: options.problem.memory_limit_bytes,
         }
+    }
+
+    /// Accuracy and tolerance; none where they are no numbers between 0 and 1.
+    fn numbers(&self) -> Option<[f64; 2]> {
+        let number = |text: &str| text.parse().ok().filter(|&value: &f64| value > 0.0 && value < 1.0);
+        Some([number(&self.accuracy)?, number(&self.tolerance)?])
     }
 }
 
 /// A checkpoint that was read.
 pub(crate) struct Checkpoint {
     pub(crate) header: Header,
+    pub(crate) accuracy: f64,
+    pub(crate) tolerance: f64,
     pub(crate) state: Vec<u8>,
 }
 
@@ -85,7 +94,8 @@ pub(crate) fn read(folder: &Path) -> Result<Checkpoint, Failure> {
     if header.format != FORMAT {
         return Err(broken());
     }
-    Ok(Checkpoint { header, state: bytes[end + 1..].to_vec() })
+    let [accuracy, tolerance] = header.numbers().ok_or_else(broken)?;
+    Ok(Checkpoint { header, accuracy, tolerance, state: bytes[end + 1..].to_vec() })
 }
 
 /// Removes the checkpoint of a folder, where there is one: the results are there.

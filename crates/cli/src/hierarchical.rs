@@ -107,6 +107,7 @@ pub(crate) fn compute(
         console: stages.console,
         interrupt: stages.interrupt,
         header: Header::new(scene, options, accuracy),
+        accuracy,
         folder: Path::new(&options.output),
     };
     let solve =
@@ -232,6 +233,7 @@ struct Follower<'a> {
     console: &'a dyn Console,
     interrupt: &'a Interrupt,
     header: Header,
+    accuracy: f64,
     folder: &'a Path,
 }
 
@@ -245,7 +247,7 @@ impl Watch for Follower<'_> {
         checkpoint::write(self.folder, &self.header, state).map_err(|why| HierarchyError::Save { why })?;
         let error = state.error().map(|error| error.worst());
         // The digits gained of those asked for.
-        let share = error.map_or(0.0, |error| (error.ln() / self.header.accuracy.ln()).clamp(0.0, 1.0));
+        let share = error.map_or(0.0, |error| (error.ln() / self.accuracy.ln()).clamp(0.0, 1.0));
         self.console.advance(share, &|| {
             let error = error.map_or_else(String::new, |error| format!(", estimated error {error:.1e}"));
             format!("round {}: {} elements, {} links{error}", rounds.len(), last.elements, last.links)

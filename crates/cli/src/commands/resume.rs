@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::solve::solve_from;
 use crate::args::{LogArgs, ProblemArgs, SolveArgs, StopArgs};
-use crate::checkpoint::{self, Checkpoint};
+use crate::checkpoint;
 use crate::failure::{Ending, Failure};
 use crate::size::Bytes;
 
@@ -31,10 +31,11 @@ pub(crate) struct ResumeArgs {
 
 /// Goes on with a run that was stopped.
 pub(crate) fn resume(args: &ResumeArgs) -> Result<Ending, Failure> {
-    let Checkpoint { header, state } = checkpoint::read(&args.folder)?;
+    let checkpoint = checkpoint::read(&args.folder)?;
+    let header = &checkpoint.header;
     let solve = SolveArgs {
         output: Some(args.folder.clone()),
-        accuracy: Some(header.accuracy),
+        accuracy: Some(checkpoint.accuracy),
         problem: ProblemArgs {
             scene: header.scene.clone(),
             threads: args.threads,
@@ -45,10 +46,10 @@ pub(crate) fn resume(args: &ResumeArgs) -> Result<Ending, Failure> {
             memory: header.memory_limit_bytes.map(|bytes| Bytes(bytes.into())),
         },
         stop: StopArgs {
-            tolerance: Some(header.tolerance),
+            tolerance: Some(checkpoint.tolerance),
             max_iterations: Some(u32::try_from(header.max_iterations).unwrap_or(u32::MAX)),
         },
         log: args.log,
     };
-    solve_from(&solve, Some(&Checkpoint { header, state }))
+    solve_from(&solve, Some(&checkpoint))
 }
