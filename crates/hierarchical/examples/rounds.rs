@@ -2,7 +2,7 @@
 //! `cargo run --release -p fredholm-hierarchical --example rounds -- SCENE ACCURACY [constant|linear] [REFERENCE.csv]`.
 
 use fredholm_hierarchical::{
-    HierarchyError, Options, Problem, RESIDUAL, Round, Solution, State, Surfaces, Watch, solve,
+    HierarchyError, Options, Problem, RESIDUAL, Round, Solution, State, Stated, Surfaces, Watch, solve,
 };
 use fredholm_iterative::CgTheta;
 use fredholm_linop::MultiVector;
@@ -61,7 +61,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("threshold  elements      links links/element     change        CPU");
     let solution = solve(&problem, &options, &CgTheta, None, &Print)?;
     solution.rounds.last().into_iter().for_each(print);
-    println!("stated error {:.3} %", 100.0 * solution.error.as_ref().map_or(f64::NAN, |e| e.worst()));
+    println!("stated error {:.3} %", 100.0 * solution.error.as_ref().map_or(f64::NAN, Stated::worst));
     if let Some(file) = rest.get(1) {
         let (l2, rms) = errors(&mesh, &solution, scene.bands(), file)?;
         println!("true error {:.3} % (L2, worst band), {:.3} % (RMS over faces)", 100.0 * l2, 100.0 * rms);

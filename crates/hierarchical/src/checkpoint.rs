@@ -92,7 +92,7 @@ fn numbers(out: &mut dyn Write, values: &[f64]) -> io::Result<()> {
 fn link_bytes(link: &Link) -> [u8; LINK] {
     let mut bytes = [0; LINK];
     let singles = [link.share, link.doubt, link.deviation[0], link.deviation[1], link.rest[0], link.rest[1]];
-    let gradients = link.gradient.iter().flat_map(|g| g.to_array());
+    let gradients = link.gradient.iter().flat_map(glam::Vec3::to_array);
     bytes[..4].copy_from_slice(&link.a.to_le_bytes());
     bytes[4..8].copy_from_slice(&link.b.to_le_bytes());
     bytes[8..16].copy_from_slice(&link.open.to_le_bytes());

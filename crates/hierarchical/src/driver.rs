@@ -162,7 +162,7 @@ pub fn solve(
         let (next, report) = run.round(&mut state, light)?;
         let ends = report.reason != StopReason::Converged || state.limited || run.enough(&state);
         if ends {
-            return Ok(run.finish(state, next, report));
+            return Ok(Run::finish(state, next, report));
         }
         state.threshold *= STEP;
         watch.round(&state.rounds, &state)?;
@@ -307,7 +307,7 @@ impl Run<'_> {
             || state.error().is_some_and(|error| error.worst() <= self.options.accuracy)
     }
 
-    fn finish(&self, state: State, system: System, report: Report) -> Solution {
+    fn finish(state: State, system: System, report: Report) -> Solution {
         let System { operator, radiosity: system } = system;
         let means = system.means(&operator, &state.radiosity);
         let closed = |(sum, size): (f64, &Extent)| if size.exposed > 0.0 { sum / size.exposed } else { 1.0 };

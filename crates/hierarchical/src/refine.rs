@@ -54,6 +54,26 @@ pub(crate) struct Refined {
     pub limited: bool,
 }
 
+/// Bytes after a wave of which all children become links.
+fn needed(tree: &Tree, fates: &[Fate], links: usize) -> u64 {
+    let mut pairs = links;
+    let mut split: Vec<u32> = Vec::new();
+    for fate in fates {
+        match fate {
+            Fate::Gone => {}
+            Fate::Link(_) => pairs += 1,
+            Fate::Split(pair) => {
+                pairs += 4;
+                split.push(pair.nodes[0]);
+            }
+        }
+    }
+    split.retain(|&node| tree.nodes()[node as usize].is_leaf());
+    split.sort_unstable();
+    split.dedup();
+    bytes(tree, pairs) + (4 * split.len() * (size_of::<Node>() + NODE_WORK)) as u64
+}
+
 /// Bytes of a tree and its links.
 pub(crate) fn bytes(tree: &Tree, links: usize) -> u64 {
     let nodes = (tree.nodes().len() * (size_of::<Node>() + NODE_WORK)) as u64;
@@ -81,10 +101,17 @@ pub(crate) fn refine(
         if limits.watch.poll().is_break() {
             return Err(HierarchyError::Interrupted);
         }
-        limited |= bytes(tree, kept.len() + fresh.len() + 4 * wave.len()) > limits.bytes;
         let threshold = if limited { f64::INFINITY } else { limits.threshold };
         let oracle = Oracle { tree, light, threshold, linear: limits.linear, least_area: limits.least_area };
         let fates = judge(&oracle, sight, &wave);
+        if !limited && needed(tree, &fates, kept.len() + fresh.len()) > limits.bytes {
+            limited = true;
+            // Once more, and nothing is too coarse now but what cannot be a link.
+            for pair in &mut wave {
+                pair.coarse = pair.nodes[0] == pair.nodes[1];
+            }
+            continue;
+        }
         wave = advance(tree, light, fates, &mut fresh)?;
     }
     fresh.par_sort_unstable_by_key(|link: &Link| (link.a, link.b));

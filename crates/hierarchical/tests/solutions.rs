@@ -129,7 +129,7 @@ fn little_memory_is_respected_and_said() {
     let limited = common::options(0.001);
     let limited = fredholm_hierarchical::Options { bytes: 12 << 20, ..limited };
     let solution = solve(&bench.problem(), &limited, &CgTheta, None, &Patient).unwrap();
-    assert!(solution.limited && solution.bytes() < 12 << 20, "{}", solution.bytes());
+    assert!(solution.limited && solution.bytes() < 12 << 20, "{} {}", solution.limited, solution.bytes());
     assert!(solution.means.irradiance.as_slice().iter().all(|e| e.is_finite()));
 }
 

@@ -25,13 +25,12 @@ pub(super) fn build(mesh: &Mesh, tolerance: f64, tree: &mut Tree) {
             let children = &mut tree.nodes[parent as usize].children;
             children[usize::from(children[0] != NONE)] = index;
         }
-        match *order {
-            [single] => tree.roots[single as usize] = index,
-            _ => {
-                let (low, high) = builder.part(order);
-                stack.push((index, high));
-                stack.push((index, low));
-            }
+        if let [single] = *order {
+            tree.roots[single as usize] = index;
+        } else {
+            let (low, high) = builder.part(order);
+            stack.push((index, high));
+            stack.push((index, low));
         }
     }
 }

@@ -14,7 +14,7 @@ type Corner = ([f64; 2], Vec3);
 /// The hull of patches in one plane that face as the first does, if it has at most four corners and they fill it.
 pub(super) fn filled(patches: &[&Patch]) -> Option<Patch> {
     let area: f64 = patches.iter().map(|patch| patch.area()).sum();
-    let corners = hull(plane_corners(patches), area);
+    let corners = hull(&plane_corners(patches), area);
     let patch = match *corners.as_slice() {
         [a, b, c] => Patch::triangle([a, b, c]).ok()?,
         [a, b, c, d] => Patch::quad([a, b, c, d]).ok()??,
@@ -36,7 +36,7 @@ fn plane_corners(patches: &[&Patch]) -> Vec<Corner> {
 }
 
 /// The corners of the convex hull, counter-clockwise; those nearly on a side are left out.
-fn hull(corners: Vec<Corner>, area: f64) -> Vec<Vec3> {
+fn hull(corners: &[Corner], area: f64) -> Vec<Vec3> {
     let least = FILLED * area;
     let mut lower = half(corners.iter().copied(), least);
     let mut upper = half(corners.iter().rev().copied(), least);
