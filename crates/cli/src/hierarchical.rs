@@ -12,6 +12,7 @@ use fredholm_linop::MultiVector;
 use fredholm_mesh::{Mesh, MeshBuilder, MeshError, Patch};
 use fredholm_report::{Hierarchy, HierarchyRound};
 use fredholm_scene::Scene;
+use fredholm_visibility::Occluders;
 
 use crate::args::{Precision, SolveArgs};
 use crate::checkpoint::{self, Checkpoint, Header};
@@ -21,7 +22,7 @@ use crate::interrupt::Interrupt;
 use crate::options::{Options, ProblemOptions, RADIOSITY};
 use crate::prediction::{Dense, Prediction, Size};
 use crate::problem::{Problem, check, occluders, scene_failure};
-use crate::registry;
+use crate::registry::{self, Entry};
 use crate::solution::{Solution, coupling_failure, solve_failure};
 use crate::stages::Stages;
 
@@ -115,25 +116,33 @@ pub(crate) fn compute(
     let solved = stages.run("solution", solve)?;
     stages.begin_saving()?;
     let mesh = refined(&faces, &solved).map_err(|e| Failure::new(Ending::Input, e))?;
-    let (unknowns, bands) = (mesh.len(), scene.bands().len());
-    let dense = Some(Dense { bytes: u128::from(solved.bytes()) });
+    let bytes = solved.bytes();
+    let problem = problem((scene, options), mesh, (warnings, occluders), (entry, bytes))?;
+    Ok((problem, solution(solved, accuracy)))
+}
+
+/// The problem that was solved, on the elements that it came to.
+fn problem(
+    (scene, options): (&Arc<Scene>, &Options),
+    mesh: Mesh,
+    (warnings, occluders): (Vec<String>, Occluders),
+    (solver, bytes): (Entry, u64),
+) -> Result<Problem, Failure> {
+    let (unknowns, dense) = (mesh.len(), Some(Dense { bytes: bytes.into() }));
     let size = Size { elements: unknowns, unknowns, coarse: 0, dense };
-    let prediction = Prediction::new(size, bands, Precision::F64, &entry);
-    let solution = solution(solved, accuracy);
     let discretisation = fredholm_discretisation::discretisation(RADIOSITY)
         .map_err(|error| Failure::new(Ending::Input, error))?;
-    let problem = Problem {
+    Ok(Problem {
         scene: Arc::clone(scene),
         options: options.problem.clone(),
         discretisation,
-        solver: entry,
+        prediction: Prediction::new(size, scene.bands().len(), Precision::F64, &solver),
+        solver,
         mesh,
         unknowns,
-        prediction,
         warnings,
         occluders,
-    };
-    Ok((problem, solution))
+    })
 }
 
 /// The state of a checkpoint, which must be one of this scene.
@@ -245,7 +254,7 @@ impl Watch for Follower<'_> {
     fn round(&self, rounds: &[Round], state: &State) -> Result<(), HierarchyError> {
         let Some(last) = rounds.last() else { return Ok(()) };
         checkpoint::write(self.folder, &self.header, state).map_err(|why| HierarchyError::Save { why })?;
-        let error = state.error().map(|error| error.worst());
+        let error = state.error().map(fredholm_hierarchical::Stated::worst);
         // The digits gained of those asked for.
         let share = error.map_or(0.0, |error| (error.ln() / self.accuracy.ln()).clamp(0.0, 1.0));
         self.console.advance(share, &|| {

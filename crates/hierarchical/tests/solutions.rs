@@ -126,7 +126,7 @@ fn another_solver_gives_the_same_light() {
 #[test]
 fn little_memory_is_respected_and_said() {
     let bench = Bench::shipped("occluder.toml");
-    let limited = common::options(0.001);
+    let limited = options(0.001);
     let limited = fredholm_hierarchical::Options { bytes: 12 << 20, ..limited };
     let solution = solve(&bench.problem(), &limited, &CgTheta, None, &Patient).unwrap();
     assert!(solution.limited && solution.bytes() < 12 << 20, "{} {}", solution.limited, solution.bytes());

@@ -64,7 +64,8 @@ fn the_walls_of_a_room_are_whole_rectangles() {
     let top = |node: &&fredholm_hierarchical::Node| {
         node.patch().is_some() && node.parent().is_none_or(|p| tree.nodes()[p as usize].patch().is_none())
     };
-    let mut found: Vec<f64> = tree.nodes().iter().filter(top).map(|node| node.area()).collect();
+    let mut found: Vec<f64> =
+        tree.nodes().iter().filter(top).map(fredholm_hierarchical::Node::area).collect();
     found.sort_by(f64::total_cmp);
     assert_eq!(found.len(), 6);
     assert!(found.iter().zip(walls).all(|(a, b)| (a - b).abs() < 1e-9), "{found:?}");

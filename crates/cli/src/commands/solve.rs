@@ -162,8 +162,7 @@ fn ending(solution: &Solution, stages: &Stages) -> Ending {
     match solution.report.reason {
         _ if stages.interrupt.requested() => Ending::Interrupted,
         StopReason::Converged if solution.is_accurate() => Ending::Done,
-        StopReason::Converged => Ending::NotConverged,
         StopReason::Interrupted => Ending::Interrupted,
-        StopReason::IterationLimit | StopReason::Diverged => Ending::NotConverged,
+        _ => Ending::NotConverged,
     }
 }
