@@ -81,8 +81,8 @@ fn what_does_not_go_with_an_accuracy_is_refused() {
     assert!(run.code == 2 && run.stderr.contains("such as 1% or 0.01"), "{}", run.stderr);
     for (more, text) in [
         (&["--solver", "lu"][..], "cg-theta"),
-        (&["--storage", "f32"], "does not go with an accuracy"),
-        (&["--discretisation", "nystrom-2"], "does not go with an accuracy"),
+        (&["--storage", "f32"][..], "does not go with an accuracy"),
+        (&["--discretisation", "nystrom-2"][..], "does not go with an accuracy"),
     ] {
         let run = bench.run(&[&["solve", "scene.toml", "--accuracy", "1%"][..], more].concat());
         assert!(run.code == 2 && run.stderr.contains(text), "{}", run.stderr);
