@@ -2,7 +2,8 @@
 //!
 //! Data flows one way: a [`scene`] is cut into a [`mesh`]; [`coupling`] assembles what its elements exchange, with
 //! [`visibility`] and [`quadrature`]; a solver of [`iterative`] or [`direct`], whose contract is [`linop`], finds the
-//! field; [`discretisation`] has other bases and equations than constants on elements; [`report`] writes what people look at.
+//! field; [`discretisation`] has other bases and equations than constants on elements; [`hierarchical`] finds the elements that an
+//! accuracy asks for, and links between elements of any size instead of a matrix; [`report`] writes what people look at.
 //!
 //! In a closed room of one material the radiosity is M/(1 − ρ) everywhere:
 //!
@@ -49,6 +50,7 @@
 pub use fredholm_coupling as coupling;
 pub use fredholm_direct as direct;
 pub use fredholm_discretisation as discretisation;
+pub use fredholm_hierarchical as hierarchical;
 pub use fredholm_iterative as iterative;
 pub use fredholm_linop as linop;
 pub use fredholm_mesh as mesh;

@@ -14,6 +14,7 @@ fn every_verb_explains_itself() {
     insta::assert_snapshot!("help", help(&["--help"]));
     for verb in [
         "solve",
+        "resume",
         "check",
         "converge",
         "viewfactors",

@@ -9,8 +9,9 @@ use fredholm_discretisation::{DiscretisationError, discretisation};
 use serde::Serialize;
 
 use crate::commands::{
-    CROSSCHECK_EXAMPLES, CompareArgs, CrosscheckArgs, REFERENCE_EXAMPLES, ReferenceArgs, SHOOT_EXAMPLES,
-    ShootArgs, SpectrumArgs, TRACE_EXAMPLES, TraceArgs, ViewFactorsArgs, WAVES_EXAMPLES, WavesArgs,
+    CROSSCHECK_EXAMPLES, CompareArgs, CrosscheckArgs, REFERENCE_EXAMPLES, RESUME_EXAMPLES, ReferenceArgs,
+    ResumeArgs, SHOOT_EXAMPLES, ShootArgs, SpectrumArgs, TRACE_EXAMPLES, TraceArgs, ViewFactorsArgs,
+    WAVES_EXAMPLES, WavesArgs,
 };
 use crate::registry;
 use crate::size::Bytes;
@@ -36,6 +37,7 @@ Examples:
   fredholm solve room.toml -o results --solver lu --memory 8GiB
   fredholm solve room.toml --storage f32 --threads 4 --log json 2> log.jsonl
   fredholm solve room.toml --discretisation galerkin-1
+  fredholm solve room.toml --accuracy 1%
 
 Ctrl-C during the assembly ends the run with nothing written; during the solution by an
 iterative solver the current iterate is written as a result marked \"partial\", with a small
@@ -132,6 +134,9 @@ pub(crate) enum Command {
     /// Solve a scene and write the results
     #[command(after_help = SOLVE_EXAMPLES)]
     Solve(SolveArgs),
+    /// Go on with a run to an accuracy that was stopped
+    #[command(after_help = RESUME_EXAMPLES)]
+    Resume(ResumeArgs),
     /// Validate a scene, show its statistics and predict memory and time; solves and writes nothing
     #[command(after_help = CHECK_EXAMPLES)]
     Check(CheckArgs),
@@ -184,6 +189,7 @@ impl Command {
     pub(crate) fn log(&self) -> LogFormat {
         match self {
             Self::Solve(args) => args.log.log,
+            Self::Resume(args) => args.log.log,
             Self::Check(args) => args.log.log,
             Self::Converge(args) => args.log.log,
             Self::Compare(args) => args.log.log,
@@ -262,6 +268,10 @@ pub(crate) struct SolveArgs {
     /// Folder for the results [default: out/<name of the scene file>]
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
+    /// Error of the irradiance of the faces to reach, such as 1% or 0.01; the elements are then chosen by hierarchical
+    /// radiosity [default: the scene's, else its elements]
+    #[arg(long, value_name = "E", value_parser = accuracy)]
+    pub(crate) accuracy: Option<f64>,
     #[command(flatten)]
     pub(crate) problem: ProblemArgs,
     #[command(flatten)]
@@ -333,6 +343,14 @@ pub(crate) fn tolerance(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A relative error, as a number or in per cent.
+fn accuracy(text: &str) -> Result<f64, String> {
+    let wrong = || "must be above 0 and below 100%, such as 1% or 0.01".to_owned();
+    let (number, unit) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 0.01));
+    let value = number.trim().parse::<f64>().map_err(|_| wrong())? * unit;
+    if value > 0.0 && value < 1.0 { Ok(value) } else { Err(wrong()) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -341,6 +359,14 @@ mod tests {
     #[test]
     fn the_definition_is_sound() {
         Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn an_accuracy_is_a_number_or_in_per_cent() {
+        assert_eq!((accuracy("1%"), accuracy("0.02"), accuracy("50 %")), (Ok(0.01), Ok(0.02), Ok(0.5)));
+        for text in ["0", "0%", "1", "100%", "-1%", "nan%", "inf", "%", "x", ""] {
+            assert!(accuracy(text).is_err(), "{text}");
+        }
     }
 
     #[test]

@@ -80,6 +80,7 @@ fn unassessed(lit: &Lit, exposed: Vec<f64>) -> Solution {
         exposed,
         energy: Vec::new(),
         mesh_error: None,
+        hierarchy: None,
         field_error: None,
     }
 }

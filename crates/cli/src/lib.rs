@@ -5,11 +5,13 @@
 //! 6 two solutions disagree, 130 interrupted. Standard output carries results and summaries, standard error progress, warnings and errors.
 
 mod args;
+mod checkpoint;
 mod commands;
 mod console;
 mod discretised;
 mod failure;
 mod folder;
+mod hierarchical;
 mod interrupt;
 mod memory;
 mod mesh_error;

@@ -32,6 +32,9 @@ pub(crate) struct ProblemOptions {
 pub(crate) struct Options {
     #[serde(flatten)]
     pub(crate) problem: ProblemOptions,
+    /// Where elements are chosen by hierarchical radiosity.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) accuracy: Option<f64>,
     pub(crate) tolerance: f64,
     pub(crate) max_iterations: u64,
     pub(crate) output: String,
@@ -71,6 +74,7 @@ impl Options {
         let iterations = stop.max_iterations.map(u64::from).or(scene.max_iterations);
         Self {
             problem,
+            accuracy: None,
             tolerance: stop.tolerance.or(scene.tolerance).unwrap_or(TOLERANCE),
             max_iterations: iterations.unwrap_or(MAX_ITERATIONS),
             output: output.display().to_string(),
@@ -111,6 +115,7 @@ mod tests {
             max_iterations: Some(7),
             form_factor_tolerance: Some(1e-6),
             storage: Some(Storage::F32),
+            accuracy: None,
         };
         let own = options("fredholm solve a/b.toml", &SolveDefaults::default());
         assert_eq!(

@@ -121,7 +121,7 @@ pub(crate) fn prepare(patches: &[Patch]) -> Result<Occluders, Failure> {
     Occluders::new(patches).map_err(|error| Failure::new(Ending::Input, error))
 }
 
-fn occluders(scene: &Scene, mesh: &Mesh) -> Result<Occluders, Failure> {
+pub(crate) fn occluders(scene: &Scene, mesh: &Mesh) -> Result<Occluders, Failure> {
     let named = |error| Failure::new(Ending::Input, format!("{}: {error}", scene.path().display()));
     Occluders::new(mesh.occluders()).map_err(named)
 }
@@ -173,7 +173,7 @@ fn predict(scene: &Scene, options: &ProblemOptions, solver: &Entry, size: Size) 
     Prediction::new(size, scene.bands().len(), options.storage, solver)
 }
 
-fn check(scene: &Scene, mesh: &Mesh, stages: &Stages) -> Result<Vec<String>, Failure> {
+pub(crate) fn check(scene: &Scene, mesh: &Mesh, stages: &Stages) -> Result<Vec<String>, Failure> {
     let warnings = scene.check(mesh).map_err(scene_failure)?;
     let warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
     for warning in &warnings {

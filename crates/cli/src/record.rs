@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use fredholm_coupling::MethodCounts;
 use fredholm_linop::{Report, StopReason, Work};
-use fredholm_report::{Closure, Counts, Energy, FieldError, FormFactorError, History, MeshError, RunRecord};
+use fredholm_report::{
+    Closure, Counts, Energy, FieldError, FormFactorError, Hierarchy, History, MeshError, RunRecord,
+};
 use serde_json::Value;
 
 use crate::memory;
@@ -44,6 +46,7 @@ pub(crate) fn record(
         form_factor_error: form_factor_error(options, solution),
         pairs: solution.methods.as_ref().map(pairs).unwrap_or_default(),
         mesh_error: solution.mesh_error.as_ref().map(mesh_error),
+        hierarchy: solution.hierarchy.clone(),
         field_error: solution.field_error.clone().map(|relative_l2| FieldError { relative_l2 }),
         reciprocity: solution.reciprocity,
         energy: energy(problem, solution),
@@ -55,7 +58,7 @@ pub(crate) fn record(
 
 /// What the user should know of the solution.
 pub(crate) fn remarks(options: &Options, solution: &Solution) -> impl Iterator<Item = String> {
-    [unfinished(solution.report.reason), inexact(options, solution)].into_iter().flatten()
+    [unfinished(solution.report.reason), inexact(options, solution), coarse(solution)].into_iter().flatten()
 }
 
 fn unfinished(reason: StopReason) -> Option<String> {
@@ -67,6 +70,21 @@ fn unfinished(reason: StopReason) -> Option<String> {
         }
     };
     Some(text.to_owned())
+}
+
+/// Whether the accuracy was not reached.
+fn coarse(solution: &Solution) -> Option<String> {
+    let hierarchy = solution.hierarchy.as_ref().filter(|_| !solution.is_accurate())?;
+    let Hierarchy { accuracy, stated, limited, .. } = hierarchy;
+    let reached = stated.map_or_else(|| "not known".to_owned(), |error| format!("{error:.1e}"));
+    let why = if *limited {
+        "the memory did not allow finer links; allow more with --memory"
+    } else {
+        "the rounds ran out"
+    };
+    Some(format!(
+        "the estimated error of the irradiance is {reached}, where {accuracy:.1e} was asked for: {why}"
+    ))
 }
 
 /// Row errors, in tolerances, that are reported: the tolerance is a pair's, and the errors of a row add up to about twice as much.

@@ -6,6 +6,7 @@ use fredholm_coupling::{
 };
 use fredholm_linop::{MultiVector, PackedSymmetric, Report, SecondKind, SolveError, StopReason, Storage};
 use fredholm_mesh::Patch;
+use fredholm_report::Hierarchy;
 
 use crate::args::Precision;
 use crate::discretised;
@@ -43,8 +44,17 @@ pub(crate) struct Solution {
     pub(crate) energy: Vec<Energy>,
     /// Estimated discretisation error, where faces have several elements.
     pub(crate) mesh_error: Option<MeshError>,
+    /// What hierarchical radiosity did, where it did.
+    pub(crate) hierarchy: Option<Hierarchy>,
     /// Relative error of the field as polynomials, per band.
     pub(crate) field_error: Option<Vec<f64>>,
+}
+
+impl Solution {
+    /// Whether the accuracy asked for was reached, where one was.
+    pub(crate) fn is_accurate(&self) -> bool {
+        self.hierarchy.as_ref().is_none_or(|h| h.stated.is_some_and(|error| error <= h.accuracy))
+    }
 }
 
 /// Assembles and solves.
@@ -118,6 +128,7 @@ fn assess<S: Storage>(
         exposed,
         energy,
         mesh_error,
+        hierarchy: None,
         field_error: None,
     })
 }

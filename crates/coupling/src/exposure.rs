@@ -36,14 +36,16 @@ pub fn extents(patches: &[&Patch], shares: &[f64], rows: &[f64]) -> Vec<Extent> 
 }
 
 fn share(patch: &Patch, patches: &[&Patch], lit: &Occluders) -> f64 {
+    let first = exposed_share(patch, GRIDS[0], patches, lit);
+    if first > 0.0 && first < 1.0 { exposed_share(patch, GRIDS[1], patches, lit) } else { first }
+}
+
+/// Exposed share in [0, 1] of one patch, from a grid of n × n points; it may be a part of one of those that `lit` holds in order.
+#[must_use]
+pub fn exposed_share(patch: &Patch, n: usize, patches: &[&Patch], lit: &Occluders) -> f64 {
     let directions = bundle(patch);
-    let on_grid = |n: usize| {
-        let exposed =
-            grid(patch, n).filter(|&p| directions.iter().any(|&d| is_open(p, d, patches, lit))).count();
-        exposed as f64 / (n * n) as f64
-    };
-    let first = on_grid(GRIDS[0]);
-    if first > 0.0 && first < 1.0 { on_grid(GRIDS[1]) } else { first }
+    let exposed = grid(patch, n).filter(|&p| directions.iter().any(|&d| is_open(p, d, patches, lit))).count();
+    exposed as f64 / (n * n) as f64
 }
 
 /// Whether a ray meets a lit side, or nothing.

@@ -26,7 +26,7 @@ pub use closure::{Closed, ClosureError, enforce_closure};
 pub use discretisation::{MeshError, mesh_error};
 pub use emitters::{Emitters, Groups};
 pub use error::CouplingError;
-pub use exposure::{exposed_shares, extents};
+pub use exposure::{exposed_share, exposed_shares, extents};
 pub use pair_sample::sample_pairs;
 pub use radiosity::{Energy, Extent, Means, Radiosity};
 pub use receiver::{Receiver, Targets, sky, sky_exchanges, with_sky};

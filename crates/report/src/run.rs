@@ -10,7 +10,7 @@ use std::path::Path;
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
-use crate::ReportError;
+use crate::{Hierarchy, ReportError};
 
 /// Name and version of the format of run records.
 pub const FORMAT: &str = "fredholm-run-1";
@@ -60,6 +60,9 @@ pub struct RunRecord {
     pub pairs: BTreeMap<String, u64>,
     /// Estimated error of the mesh.
     pub mesh_error: Option<MeshError>,
+    /// What hierarchical radiosity did, where it did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hierarchy: Option<Hierarchy>,
     /// Estimated error of the field as piecewise polynomials.
     pub field_error: Option<FieldError>,
     /// Largest violation of `A_i F_ij = A_j F_ji` among the partly occluded pairs checked, as a form factor.
@@ -96,6 +99,7 @@ impl Default for RunRecord {
             closure: Closure::default(),
             pairs: BTreeMap::new(),
             mesh_error: None,
+            hierarchy: None,
             field_error: None,
             reciprocity: None,
             form_factor_error: FormFactorError::default(),

@@ -154,10 +154,22 @@ impl Scene {
     /// # Errors
     /// [`SceneError`] with the line of a surface that cannot be meshed, or would have more elements than an index can hold.
     pub fn refined_mesh(&self, refinement: usize) -> Result<Mesh, SceneError> {
+        self.mesh_with(|per_side| per_side.saturating_mul(refinement))
+    }
+
+    /// Cuts the surfaces into the same faces as [`mesh`](Self::mesh), and those into as few elements as they are flat pieces.
+    ///
+    /// # Errors
+    /// [`SceneError`] with the line of a surface that cannot be meshed, or would have more elements than an index can hold.
+    pub fn face_mesh(&self) -> Result<Mesh, SceneError> {
+        self.mesh_with(|_| 1)
+    }
+
+    fn mesh_with(&self, per_side: impl Fn(usize) -> usize) -> Result<Mesh, SceneError> {
         let mut builder = MeshBuilder::default();
         for part in self.parts() {
             builder.surface(part.name.as_str(), part.material);
-            let elements_per_side = part.cutting.elements_per_side.saturating_mul(refinement);
+            let elements_per_side = per_side(part.cutting.elements_per_side);
             let cutting = Cutting { elements_per_side, ..part.cutting.clone() };
             for shape in part.shapes.iter() {
                 builder.add(shape, &cutting).map_err(|error| self.unmeshable(part, &error))?;

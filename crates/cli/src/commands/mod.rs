@@ -8,6 +8,7 @@ mod crosscheck;
 mod discretisations;
 mod info;
 mod reference;
+mod resume;
 mod schema;
 mod shoot;
 mod solve;
@@ -23,6 +24,7 @@ use crate::failure::{Ending, Failure};
 pub(crate) use compare::CompareArgs;
 pub(crate) use crosscheck::{CrosscheckArgs, EXAMPLES as CROSSCHECK_EXAMPLES};
 pub(crate) use reference::{EXAMPLES as REFERENCE_EXAMPLES, ReferenceArgs};
+pub(crate) use resume::{EXAMPLES as RESUME_EXAMPLES, ResumeArgs};
 pub(crate) use shoot::{EXAMPLES as SHOOT_EXAMPLES, ShootArgs};
 pub(crate) use spectrum::SpectrumArgs;
 pub(crate) use trace::{EXAMPLES as TRACE_EXAMPLES, TraceArgs};
@@ -33,6 +35,7 @@ pub(crate) use waves::{EXAMPLES as WAVES_EXAMPLES, WavesArgs};
 pub(crate) fn execute(command: &Command) -> Result<Ending, Failure> {
     match command {
         Command::Solve(args) => solve::solve(args),
+        Command::Resume(args) => resume::resume(args),
         Command::Check(args) => check::check(args),
         Command::Converge(args) => converge::converge(args),
         Command::Compare(args) => compare::compare(args),

@@ -1,32 +1,40 @@
 //! `fredholm solve`.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use fredholm_linop::StopReason;
 use fredholm_report::{Camera, Exposure, Field, ReportError, RunRecord, View, write_all};
+use fredholm_scene::Scene;
 
 use crate::args::SolveArgs;
+use crate::checkpoint::{self, Checkpoint};
 use crate::failure::{Ending, Failure};
 use crate::interrupt::Interrupt;
-use crate::options::Options;
-use crate::problem::Problem;
+use crate::options::{Options, ProblemOptions};
+use crate::problem::{Problem, scene_failure};
 use crate::record::{record, remarks};
 use crate::solution::{Solution, compute};
 use crate::stages::Stages;
 use crate::summary::{Lines, quality};
-use crate::{console, folder, output, threads};
+use crate::{console, folder, hierarchical, output, threads};
 
 /// Pixels of the picture of a partial result.
 const QUICK_PIXELS: f64 = 40_000.0;
 
 /// Solves a scene and writes the results.
 pub(crate) fn solve(args: &SolveArgs) -> Result<Ending, Failure> {
+    solve_from(args, None)
+}
+
+/// Solves a scene, from a checkpoint where there is one, and writes the results.
+pub(super) fn solve_from(args: &SolveArgs, checkpoint: Option<&Checkpoint>) -> Result<Ending, Failure> {
     let interrupt = Interrupt::install(args.log.log)?;
     folder::probe(&folder(args))?;
     let console = console::choose(args.log);
     let stages = Stages::new(&*console, &interrupt);
     let count = args.problem.threads.map_or_else(threads::default_count, usize::from);
-    threads::pool(count)?.install(|| run(args, stages))
+    threads::pool(count)?.install(|| run(args, checkpoint, stages))
 }
 
 /// The folder for the results.
@@ -34,17 +42,47 @@ fn folder(args: &SolveArgs) -> PathBuf {
     folder::of(args.output.as_ref(), &args.problem.scene)
 }
 
-fn run(args: &SolveArgs, mut stages: Stages) -> Result<Ending, Failure> {
-    let problem = Problem::load(&args.problem, &mut stages)?;
-    let (scene, folder) = (problem.scene.solve(), folder(args));
-    let options = Options::new(problem.options.clone(), args.stop, scene, &folder, args.log);
-    let solution = compute(&problem, &options, &mut stages)?;
+fn run(args: &SolveArgs, checkpoint: Option<&Checkpoint>, mut stages: Stages) -> Result<Ending, Failure> {
+    let scene = stages.run("scene", || Scene::load(&args.problem.scene).map_err(scene_failure))?;
+    let (scene, folder) = (Arc::new(scene), folder(args));
+    let (options, problem, solution) = match args.accuracy.or(scene.solve().accuracy) {
+        Some(accuracy) => adaptive(args, &scene, (accuracy, checkpoint), &folder, &mut stages)?,
+        None => dense(args, &scene, &folder, &mut stages)?,
+    };
     let record = record(&problem, &options, &solution, &stages);
     stages.run("results", || write(&problem, &solution, &record, &folder))?;
+    checkpoint::remove(&folder)?;
     // The summary, other than the file, can tell the time of writing.
     let record = RunRecord { timings: stages.timings().to_vec(), ..record };
     conclude(args, &record, remarks(&options, &solution), &stages)?;
     Ok(ending(&solution, &stages))
+}
+
+/// On the elements of the scene.
+fn dense(
+    args: &SolveArgs,
+    scene: &Arc<Scene>,
+    folder: &Path,
+    stages: &mut Stages,
+) -> Result<(Options, Problem, Solution), Failure> {
+    let options = ProblemOptions::new(&args.problem, scene.solve());
+    let problem = Problem::refined(Arc::clone(scene), options, 1, stages)?;
+    let options = Options::new(problem.options.clone(), args.stop, scene.solve(), folder, args.log);
+    let solution = compute(&problem, &options, stages)?;
+    Ok((options, problem, solution))
+}
+
+/// On elements that an accuracy asks for.
+fn adaptive(
+    args: &SolveArgs,
+    scene: &Arc<Scene>,
+    (accuracy, checkpoint): (f64, Option<&Checkpoint>),
+    folder: &Path,
+    stages: &mut Stages,
+) -> Result<(Options, Problem, Solution), Failure> {
+    let options = hierarchical::options(args, scene, accuracy, folder)?;
+    let (problem, solution) = hierarchical::compute(scene, &options, (accuracy, checkpoint), stages)?;
+    Ok((options, problem, solution))
 }
 
 fn write(
@@ -123,8 +161,8 @@ fn summarise(folder: &Path, record: &RunRecord) -> Result<(), Failure> {
 fn ending(solution: &Solution, stages: &Stages) -> Ending {
     match solution.report.reason {
         _ if stages.interrupt.requested() => Ending::Interrupted,
-        StopReason::Converged => Ending::Done,
+        StopReason::Converged if solution.is_accurate() => Ending::Done,
         StopReason::Interrupted => Ending::Interrupted,
-        StopReason::IterationLimit | StopReason::Diverged => Ending::NotConverged,
+        _ => Ending::NotConverged,
     }
 }

@@ -20,6 +20,8 @@ pub(crate) struct SolveEntry {
     pub max_iterations: Option<At<u64>>,
     /// Largest estimated error of a form factor, above 0 and below 1. Default: chosen by the program.
     pub form_factor_tolerance: Option<At<f64>>,
+    /// Relative error of the irradiance of faces to reach, above 0 and below 1: elements are then chosen by the program. Default: elements as given.
+    pub accuracy: Option<At<f64>>,
     /// Precision in which form factors are stored. Default: "f64".
     pub storage: Option<StorageEntry>,
 }

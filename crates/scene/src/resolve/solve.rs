@@ -26,6 +26,8 @@ pub struct SolveDefaults {
     pub max_iterations: Option<u64>,
     /// Largest estimated error of a form factor.
     pub form_factor_tolerance: Option<f64>,
+    /// Relative error of the irradiance of faces to reach; elements are then chosen by the program.
+    pub accuracy: Option<f64>,
     /// Precision in which form factors are stored.
     pub storage: Option<Storage>,
 }
@@ -40,6 +42,7 @@ pub(super) fn solve(source: &Source, entry: &SolveEntry) -> Result<SolveDefaults
         tolerance: below_1(&entry.tolerance, "tolerance")?,
         max_iterations: entry.max_iterations.as_ref().map(|n| at_least_1(source, n)).transpose()?,
         form_factor_tolerance: below_1(&entry.form_factor_tolerance, "form_factor_tolerance")?,
+        accuracy: below_1(&entry.accuracy, "accuracy")?,
         storage: entry.storage.map(|storage| match storage {
             StorageEntry::F64 => Storage::F64,
             StorageEntry::F32 => Storage::F32,

@@ -1,0 +1,110 @@
+//! The checkpoint of a run to an accuracy: one line of JSON that says how to go on, then the state of the solution.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use fredholm_hierarchical::State;
+use fredholm_report::write_atomically;
+use serde::{Deserialize, Serialize};
+
+use crate::failure::{Ending, Failure};
+
+/// Name and version of the format.
+const FORMAT: &str = "fredholm-checkpoint-1";
+/// The file in the folder for the results.
+const FILE: &str = "checkpoint.bin";
+
+/// What a run needs to go on besides the state.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Header {
+    format: String,
+    /// The scene file, as it was given.
+    pub(crate) scene: PathBuf,
+    pub(crate) scene_sha256: String,
+    accuracy: String,
+    pub(crate) solver: String,
+    tolerance: String,
+    pub(crate) max_iterations: u64,
+    pub(crate) memory_limit_bytes: Option<u64>,
+}
+
+impl Header {
+    /// What is kept of the options of a run.
+    pub(crate) fn new(
+        scene: &fredholm_scene::Scene,
+        options: &crate::options::Options,
+        accuracy: f64,
+    ) -> Self {
+        Self {
+            format: FORMAT.to_owned(),
+            scene: scene.path().to_owned(),
+            scene_sha256: scene.sha256().to_owned(),
+            // As text, which is read back to the same bits.
+            accuracy: accuracy.to_string(),
+            solver: options.problem.solver.clone(),
+            tolerance: options.tolerance.to_string(),
+            max_iterations: options.max_iterations,
+            memory_limit_bytes: options.problem.memory_limit_bytes,
+        }
+    }
+
+    /// Accuracy and tolerance; none where they are no numbers between 0 and 1.
+    fn numbers(&self) -> Option<[f64; 2]> {
+        let number = |text: &str| text.parse().ok().filter(|&value: &f64| value > 0.0 && value < 1.0);
+        Some([number(&self.accuracy)?, number(&self.tolerance)?])
+    }
+}
+
+/// A checkpoint that was read.
+pub(crate) struct Checkpoint {
+    pub(crate) header: Header,
+    pub(crate) accuracy: f64,
+    pub(crate) tolerance: f64,
+    pub(crate) state: Vec<u8>,
+}
+
+/// Writes the checkpoint into a folder, which is made where it does not exist. It appears whole or not at all.
+pub(crate) fn write(folder: &Path, header: &Header, state: &State) -> Result<(), String> {
+    fs::create_dir_all(folder).map_err(|error| error.to_string())?;
+    let filled = write_atomically(&folder.join(FILE), |out| {
+        serde_json::to_writer(&mut *out, header)?;
+        out.write_all(b"\n")?;
+        state.write(out)
+    });
+    filled.map_err(|error| error.to_string())
+}
+
+/// Reads the checkpoint of a folder.
+pub(crate) fn read(folder: &Path) -> Result<Checkpoint, Failure> {
+    let path = folder.join(FILE);
+    let bytes = fs::read(&path).map_err(|error| {
+        let text = format!(
+            "cannot read {}: {error}\n  help: a run to an accuracy that was stopped after its first round leaves a checkpoint; others are solved again",
+            path.display()
+        );
+        Failure::new(Ending::Files, text)
+    })?;
+    let broken = || {
+        let text =
+            format!("{} is no checkpoint of this version\n  help: solve the scene again", path.display());
+        Failure::new(Ending::Input, text)
+    };
+    let end = bytes.iter().position(|&byte| byte == b'\n').ok_or_else(broken)?;
+    let header: Header = serde_json::from_slice(&bytes[..end]).map_err(|_| broken())?;
+    if header.format != FORMAT {
+        return Err(broken());
+    }
+    let [accuracy, tolerance] = header.numbers().ok_or_else(broken)?;
+    Ok(Checkpoint { header, accuracy, tolerance, state: bytes[end + 1..].to_vec() })
+}
+
+/// Removes the checkpoint of a folder, where there is one: the results are there.
+pub(crate) fn remove(folder: &Path) -> Result<(), Failure> {
+    match fs::remove_file(folder.join(FILE)) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            let text = format!("cannot remove {}: {error}", folder.join(FILE).display());
+            Err(Failure::new(Ending::Files, text))
+        }
+        _ => Ok(()),
+    }
+}

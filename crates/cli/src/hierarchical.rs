@@ -1,0 +1,282 @@
+//! The computation to an accuracy: elements and links by hierarchical radiosity, then the same results as of any other.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::Arc;
+
+use fredholm_hierarchical::{
+    HierarchyError, Options as Limits, Problem as Input, RESIDUAL, Round, Solution as Solved, State,
+    Surfaces, Watch,
+};
+use fredholm_linop::MultiVector;
+use fredholm_mesh::{Mesh, MeshBuilder, MeshError, Patch};
+use fredholm_report::{Hierarchy, HierarchyRound};
+use fredholm_scene::Scene;
+use fredholm_visibility::Occluders;
+
+use crate::args::{Precision, SolveArgs};
+use crate::checkpoint::{self, Checkpoint, Header};
+use crate::console::Console;
+use crate::failure::{Ending, Failure};
+use crate::interrupt::Interrupt;
+use crate::options::{Options, ProblemOptions, RADIOSITY};
+use crate::prediction::{Dense, Prediction, Size};
+use crate::problem::{Problem, check, occluders, scene_failure};
+use crate::registry::{self, Entry};
+use crate::solution::{Solution, coupling_failure, solve_failure};
+use crate::stages::Stages;
+
+/// What the record calls the discretisation.
+const NAME: &str = "hierarchical";
+/// The solver where none is asked for.
+const SOLVER: &str = "cg-theta";
+/// Solvers that know the matrix by applications alone. Others read rows or columns, each of which is an application here.
+const SUITABLE: [&str; 10] = [
+    "neumann",
+    "jacobi",
+    "cg-psi",
+    "cg-theta",
+    "pcg-jacobi",
+    "chebyshev",
+    "minres",
+    "gmres",
+    "bicgstab",
+    "anderson",
+];
+/// Share of the memory that tree and links may take.
+const SHARE: f64 = 0.8;
+
+/// The options in force.
+pub(crate) fn options(
+    args: &SolveArgs,
+    scene: &Scene,
+    accuracy: f64,
+    folder: &Path,
+) -> Result<Options, Failure> {
+    let mut problem = ProblemOptions::new(&args.problem, scene.solve());
+    refuse_dense(&problem)?;
+    NAME.clone_into(&mut problem.discretisation);
+    if args.problem.solver.is_none() && scene.solve().solver.is_none() {
+        SOLVER.clone_into(&mut problem.solver);
+    } else if !SUITABLE.contains(&problem.solver.as_str()) {
+        return Err(unsuitable(&problem.solver));
+    }
+    let mut options = Options::new(problem, args.stop, scene.solve(), folder, args.log);
+    options.accuracy = Some(accuracy);
+    options.tolerance = args.stop.tolerance.or(scene.solve().tolerance).unwrap_or(RESIDUAL * accuracy);
+    Ok(options)
+}
+
+/// Refuses what belongs to a stored matrix.
+fn refuse_dense(options: &ProblemOptions) -> Result<(), Failure> {
+    let what = match (options.discretisation.as_str(), options.storage) {
+        (RADIOSITY, Precision::F64) => return Ok(()),
+        (RADIOSITY, Precision::F32) => "--storage f32".to_owned(),
+        (name, _) => format!("the discretisation {name}"),
+    };
+    let text = format!(
+        "{what} does not go with an accuracy\n  help: leave out one of them; with an accuracy there is no stored matrix, and \
+         the elements are chosen by hierarchical radiosity"
+    );
+    Err(Failure::new(Ending::Input, text))
+}
+
+fn unsuitable(solver: &str) -> Failure {
+    let text = format!(
+        "{solver} reads rows or columns of a matrix, which hierarchical radiosity does not have\n  help: with an accuracy choose one of {}",
+        SUITABLE.join(", ")
+    );
+    Failure::new(Ending::Input, text)
+}
+
+/// Solves a scene to an accuracy.
+pub(crate) fn compute(
+    scene: &Arc<Scene>,
+    options: &Options,
+    (accuracy, checkpoint): (f64, Option<&Checkpoint>),
+    stages: &mut Stages,
+) -> Result<(Problem, Solution), Failure> {
+    let faces = stages.run("mesh", || scene.face_mesh().map_err(scene_failure))?;
+    let warnings = check(scene, &faces, stages)?;
+    let occluders = stages.run("visibility", || occluders(scene, &faces))?;
+    let surfaces = surfaces(scene, &faces)?;
+    let input = Input { mesh: &faces, occluders: &occluders, surfaces: &surfaces };
+    let limits = limits(options, accuracy);
+    let entry = registry::build(&options.problem.solver).map_err(|e| Failure::new(Ending::Input, e))?;
+    let state = checkpoint.map(|checkpoint| state(checkpoint, scene, &input)).transpose()?;
+    let watch = Follower {
+        console: stages.console,
+        interrupt: stages.interrupt,
+        header: Header::new(scene, options, accuracy),
+        accuracy,
+        folder: Path::new(&options.output),
+    };
+    let solve =
+        || fredholm_hierarchical::solve(&input, &limits, &*entry.solver, state, &watch).map_err(failure);
+    let solved = stages.run("solution", solve)?;
+    stages.begin_saving()?;
+    let mesh = refined(&faces, &solved).map_err(|e| Failure::new(Ending::Input, e))?;
+    let bytes = solved.bytes();
+    let problem = problem((scene, options), mesh, (warnings, occluders), (entry, bytes))?;
+    Ok((problem, solution(solved, accuracy)))
+}
+
+/// The problem that was solved, on the elements that it came to.
+fn problem(
+    (scene, options): (&Arc<Scene>, &Options),
+    mesh: Mesh,
+    (warnings, occluders): (Vec<String>, Occluders),
+    (solver, bytes): (Entry, u64),
+) -> Result<Problem, Failure> {
+    let (unknowns, dense) = (mesh.len(), Some(Dense { bytes: bytes.into() }));
+    let size = Size { elements: unknowns, unknowns, coarse: 0, dense };
+    let discretisation = fredholm_discretisation::discretisation(RADIOSITY)
+        .map_err(|error| Failure::new(Ending::Input, error))?;
+    Ok(Problem {
+        scene: Arc::clone(scene),
+        options: options.problem.clone(),
+        discretisation,
+        prediction: Prediction::new(size, scene.bands().len(), Precision::F64, &solver),
+        solver,
+        mesh,
+        unknowns,
+        warnings,
+        occluders,
+    })
+}
+
+/// The state of a checkpoint, which must be one of this scene.
+fn state(checkpoint: &Checkpoint, scene: &Scene, input: &Input) -> Result<State, Failure> {
+    if checkpoint.header.scene_sha256 != scene.sha256() {
+        let text =
+            format!("{} has changed since the checkpoint\n  help: solve it again", scene.path().display());
+        return Err(Failure::new(Ending::Input, text));
+    }
+    State::read(input, &mut checkpoint.state.as_slice()).map_err(failure)
+}
+
+fn limits(options: &Options, accuracy: f64) -> Limits {
+    let allowed = u64::try_from(options.problem.memory_limit().0).unwrap_or(u64::MAX);
+    Limits {
+        accuracy,
+        linear: true,
+        residual: options.tolerance,
+        bytes: (allowed as f64 * SHARE) as u64,
+        max_iterations: usize::try_from(options.max_iterations).unwrap_or(usize::MAX),
+    }
+}
+
+fn surfaces(scene: &Scene, mesh: &Mesh) -> Result<Surfaces, Failure> {
+    let vector = |values| {
+        let vector = MultiVector::from_vec(mesh.len(), scene.bands().len(), values);
+        vector.map_err(|error| Failure::new(Ending::Input, error))
+    };
+    Ok(Surfaces { reflectance: vector(scene.reflectance(mesh))?, exitance: vector(scene.exitance(mesh))? })
+}
+
+/// The mesh of the faces, each on the elements that the solution has there.
+fn refined(faces: &Mesh, solved: &Solved) -> Result<Mesh, MeshError> {
+    let mut parts: Vec<Vec<Patch>> = vec![Vec::new(); faces.faces().len()];
+    for leaf in solved.tree.leaves() {
+        let node = &solved.tree.nodes()[leaf as usize];
+        if let (Some(face), Some(patch)) = (node.face(), node.patch()) {
+            parts[face].push(*patch);
+        }
+    }
+    let mut builder = MeshBuilder::default();
+    let mut parts = parts.into_iter().zip(faces.faces()).peekable();
+    for (index, surface) in faces.surfaces().iter().enumerate() {
+        builder.surface(surface.name.as_str(), surface.material);
+        while let Some((part, _)) = parts.next_if(|(_, face)| face.surface == index) {
+            builder.face(&part)?;
+        }
+    }
+    faces.occluders().iter().for_each(|patch| builder.occluder(*patch));
+    Ok(builder.build())
+}
+
+fn solution(solved: Solved, accuracy: f64) -> Solution {
+    let energy = solved.system.energy(&solved.radiosity, &solved.means, &solved.closure);
+    let exposed = solved.system.elements().iter().map(|size| size.exposed / size.area).collect();
+    let stated = |error: &fredholm_hierarchical::Stated| fredholm_coupling::MeshError {
+        relative_l2: error.relative_l2.clone(),
+        largest: error.largest.clone(),
+        per_face: Vec::new(),
+    };
+    Solution {
+        mesh_error: solved.error.as_ref().map(stated),
+        hierarchy: Some(hierarchy(&solved, accuracy)),
+        means: solved.means,
+        report: solved.report,
+        means_of: "H B_h, over links",
+        entries: 2 * solved.links.len() as u64,
+        closure: solved.closure,
+        row_error: Vec::new(),
+        pair_error: None,
+        reciprocity: None,
+        methods: None,
+        exposed,
+        energy,
+        field_error: None,
+    }
+}
+
+fn hierarchy(solved: &Solved, accuracy: f64) -> Hierarchy {
+    let round = |round: &Round| HierarchyRound {
+        threshold: round.threshold,
+        elements: round.elements as u64,
+        links: round.links as u64,
+        change: round.change,
+    };
+    Hierarchy {
+        accuracy,
+        stated: solved.error.as_ref().map(fredholm_hierarchical::Stated::worst),
+        links: solved.links.len() as u64,
+        limited: solved.limited,
+        rounds: solved.rounds.iter().map(round).collect(),
+    }
+}
+
+/// Follows the rounds.
+struct Follower<'a> {
+    console: &'a dyn Console,
+    interrupt: &'a Interrupt,
+    header: Header,
+    accuracy: f64,
+    folder: &'a Path,
+}
+
+impl Watch for Follower<'_> {
+    fn poll(&self) -> ControlFlow<()> {
+        if self.interrupt.requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+
+    fn round(&self, rounds: &[Round], state: &State) -> Result<(), HierarchyError> {
+        let Some(last) = rounds.last() else { return Ok(()) };
+        checkpoint::write(self.folder, &self.header, state).map_err(|why| HierarchyError::Save { why })?;
+        let error = state.error().map(fredholm_hierarchical::Stated::worst);
+        // The digits gained of those asked for.
+        let share = error.map_or(0.0, |error| (error.ln() / self.accuracy.ln()).clamp(0.0, 1.0));
+        self.console.advance(share, &|| {
+            let error = error.map_or_else(String::new, |error| format!(", estimated error {error:.1e}"));
+            format!("round {}: {} elements, {} links{error}", rounds.len(), last.elements, last.links)
+        });
+        Ok(())
+    }
+}
+
+fn interrupted() -> Failure {
+    let text = "interrupted; there is no result yet\n  help: `fredholm resume DIR`, with the folder for the results, goes on after the last round";
+    Failure::new(Ending::Interrupted, text)
+}
+
+fn failure(error: HierarchyError) -> Failure {
+    match error {
+        HierarchyError::Interrupted => interrupted(),
+        HierarchyError::Solve(error) => solve_failure(error),
+        HierarchyError::Coupling(error) => coupling_failure(error),
+        HierarchyError::Memory { .. } | HierarchyError::TooLarge => Failure::new(Ending::Resources, error),
+        HierarchyError::Save { .. } => Failure::new(Ending::Files, error),
+        _ => Failure::new(Ending::Input, error),
+    }
+}

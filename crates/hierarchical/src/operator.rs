@@ -1,0 +1,223 @@
+//! The operator of all links, y = G x on the leaves of the tree, without its n² entries.
+//!
+//! Every node has the mean X of the radiosity x over the exposed areas w of its leaves and the first moment M = Σ w x (c_leaf − c)/Σ w about its centre c (*pull*). A link of p and q with the exchange
+//! g (m²) and the gradients g_p and g_q brings the power s = g (X_q + g_q·M_q) to p, as s (1 + g_p·(x − c_p)) over its area, and the like to q (*gather*). A node shares its power and its gradient among its
+//! children (*push*). So G_ij = Σ g v_i v_j over the links of nodes p that hold i and q that hold j, v_i = (w_i/W_p) (1 + g_p·(c_i − c_p)): symmetric, with the exchanges of the links as sums.
+//! One pass over the links serves all bands. P. Hanrahan, D. Salzman, L. Aupperle, SIGGRAPH 1991, doi:10.1145/122718.122740, for constants; H. R. Zatz, SIGGRAPH 1993, doi:10.1145/166117.166150,
+//! for higher orders.
+//!
+//! The links of a receiver are summed in order, by one thread: the bits do not depend on the number of threads.
+
+use crate::Link;
+use crate::tree::{Node, Tree};
+use fredholm_linop::{LinearOperator, MultiVector, Symmetry};
+use fredholm_mesh::Vec3;
+use rayon::prelude::*;
+
+/// Receivers that one thread takes at a time.
+const CHUNK: usize = 256;
+/// Share of the area of a buried element that counts as exposed.
+const BURIED: f64 = 1e-9;
+/// Numbers of a node and band: the mean and the three components of the moment or gradient.
+const NUMBERS: usize = 4;
+
+/// One direction of a link.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Entry {
+    exchange: f64,
+    receiving: glam::Vec3,
+    sending: glam::Vec3,
+    sender: u32,
+}
+
+/// G on the leaves of a tree.
+#[derive(Clone, Debug)]
+pub struct HierarchicalOperator {
+    parents: Vec<u32>,
+    /// Exposed areas, m², and their centres.
+    areas: Vec<f64>,
+    centres: Vec<Vec3>,
+    buried: Vec<bool>,
+    leaves: Vec<u32>,
+    /// The links of receiver p are those from `starts[p]` up to `starts[p + 1]`.
+    starts: Vec<usize>,
+    entries: Vec<Entry>,
+}
+
+impl HierarchicalOperator {
+    /// The operator of some links between nodes of a tree. `exposed` are the exposed areas of the leaves, m²: what is buried neither sends nor receives.
+    #[must_use]
+    pub fn new(tree: &Tree, links: &[Link], exposed: &[f64]) -> Self {
+        let (nodes, leaves) = (tree.nodes(), tree.leaves());
+        let starts = starts(nodes.len(), links);
+        let mut next = starts.clone();
+        let mut entries = vec![Entry::default(); 2 * links.len()];
+        for link in links {
+            for (to, sender, k) in [(link.a, link.b, 0), (link.b, link.a, 1)] {
+                let (receiving, sending) = (link.gradient[k], link.gradient[1 - k]);
+                let at = next[to as usize];
+                entries[at] = Entry { exchange: link.exchange(), receiving, sending, sender };
+                next[to as usize] += 1;
+            }
+        }
+        let parents = nodes.iter().map(|node| node.parent().unwrap_or(u32::MAX)).collect();
+        let (areas, centres) = areas(tree, &leaves, exposed);
+        let limit = |(area, node): (&f64, &Node)| *area <= 2.0 * BURIED * node.area();
+        let buried = areas.iter().zip(nodes).map(limit).collect();
+        Self { parents, areas, centres, buried, leaves, starts, entries }
+    }
+
+    /// The node of each unknown.
+    #[must_use]
+    pub fn leaves(&self) -> &[u32] {
+        &self.leaves
+    }
+
+    /// Whether nothing of a node is exposed.
+    pub(crate) fn is_buried(&self, node: usize) -> bool {
+        self.buried[node]
+    }
+
+    /// Row sums Σ_j G_ij, m².
+    #[must_use]
+    pub fn row_sums(&self) -> Vec<f64> {
+        let ones = MultiVector::from_fn(self.leaves.len(), 1, |_, _| 1.0);
+        let mut sums = MultiVector::zeros(self.leaves.len(), 1);
+        self.apply(&ones, &mut sums);
+        sums.lane(0)
+    }
+
+    /// Means over the exposed areas of all nodes of values on the leaves, nodes × lanes.
+    #[must_use]
+    pub fn means(&self, x: &MultiVector<f64>) -> MultiVector<f64> {
+        let pulled = self.pull(x);
+        MultiVector::from_fn(self.parents.len(), x.lanes(), |node, lane| pulled.row(node)[NUMBERS * lane])
+    }
+
+    /// Means and moments of all nodes.
+    fn pull(&self, x: &MultiVector<f64>) -> MultiVector<f64> {
+        let mut pulled = MultiVector::zeros(self.parents.len(), NUMBERS * x.lanes());
+        for (i, &leaf) in self.leaves.iter().enumerate() {
+            let numbers = pulled.row_mut(leaf as usize).chunks_exact_mut(NUMBERS);
+            numbers.zip(x.row(i)).for_each(|(numbers, &x)| numbers[0] = x);
+        }
+        for child in (1..self.parents.len()).rev() {
+            let (offset, share) = self.place(child);
+            let (parent, child) = rows(&mut pulled, self.parents[child] as usize, child);
+            for (to, from) in parent.chunks_exact_mut(NUMBERS).zip(child.chunks_exact(NUMBERS)) {
+                to[0] += share * from[0];
+                (0..3).for_each(|k| to[k + 1] += share * (from[k + 1] + from[0] * offset[k]));
+            }
+        }
+        pulled
+    }
+
+    /// Offset of the centre of a child from that of its parent, m, and its share of the exposed area.
+    fn place(&self, child: usize) -> (Vec3, f64) {
+        let parent = self.parents[child] as usize;
+        (self.centres[child] - self.centres[parent], self.areas[child] / self.areas[parent])
+    }
+
+    /// The power and its gradient that reach each node over its own links.
+    fn gather(&self, pulled: &MultiVector<f64>) -> MultiVector<f64> {
+        let width = pulled.lanes();
+        let mut power = MultiVector::zeros(pulled.dim(), width);
+        power.as_mut_slice().par_chunks_mut(CHUNK * width).enumerate().for_each(|(chunk, rows)| {
+            for (at, row) in rows.chunks_exact_mut(width).enumerate() {
+                self.receive(chunk * CHUNK + at, pulled, row);
+            }
+        });
+        power
+    }
+
+    fn receive(&self, node: usize, pulled: &MultiVector<f64>, power: &mut [f64]) {
+        for entry in &self.entries[self.starts[node]..self.starts[node + 1]] {
+            let (to, from) = (entry.receiving.as_dvec3(), entry.sending.as_dvec3());
+            let sent = pulled.row(entry.sender as usize).chunks_exact(NUMBERS);
+            for (power, x) in power.chunks_exact_mut(NUMBERS).zip(sent) {
+                let s = entry.exchange * (x[0] + from.x * x[1] + from.y * x[2] + from.z * x[3]);
+                power[0] += s;
+                (0..3).for_each(|k| power[k + 1] += s * to[k]);
+            }
+        }
+    }
+
+    /// Adds to each node its share of what its ancestors received.
+    fn push(&self, power: &mut MultiVector<f64>) {
+        for child in 1..self.parents.len() {
+            let (offset, share) = self.place(child);
+            let (parent, child) = rows(power, self.parents[child] as usize, child);
+            for (from, to) in parent.chunks_exact(NUMBERS).zip(child.chunks_exact_mut(NUMBERS)) {
+                let rise = offset.x * from[1] + offset.y * from[2] + offset.z * from[3];
+                to[0] += share * (from[0] + rise);
+                (1..NUMBERS).for_each(|k| to[k] += share * from[k]);
+            }
+        }
+    }
+}
+
+/// Two rows, the lower one first.
+fn rows(vector: &mut MultiVector<f64>, lower: usize, higher: usize) -> (&mut [f64], &mut [f64]) {
+    let width = vector.lanes();
+    let (before, after) = vector.as_mut_slice().split_at_mut(higher * width);
+    (&mut before[lower * width..(lower + 1) * width], &mut after[..width])
+}
+
+/// Exposed areas of all nodes, m², and their centres. Where nothing is exposed, a small part of the area stands for it, so that shares are numbers.
+fn areas(tree: &Tree, leaves: &[u32], exposed: &[f64]) -> (Vec<f64>, Vec<Vec3>) {
+    let nodes = tree.nodes();
+    let (mut areas, mut centres) = (vec![0.0; nodes.len()], vec![Vec3::ZERO; nodes.len()]);
+    for (&leaf, &exposed) in leaves.iter().zip(exposed) {
+        let node = &nodes[leaf as usize];
+        areas[leaf as usize] = exposed.max(BURIED * node.area());
+        centres[leaf as usize] = areas[leaf as usize] * node.cone().centre;
+    }
+    for (index, parent) in nodes.iter().map(Node::parent).enumerate().rev() {
+        if let Some(parent) = parent {
+            areas[parent as usize] += areas[index];
+            let moment = centres[index];
+            centres[parent as usize] += moment;
+        }
+    }
+    let centres = centres.iter().zip(&areas).map(|(moment, area)| *moment / *area).collect();
+    (areas, centres)
+}
+
+fn starts(nodes: usize, links: &[Link]) -> Vec<usize> {
+    let mut starts = vec![0; nodes + 1];
+    for end in links.iter().flat_map(|link| [link.a, link.b]) {
+        starts[end as usize + 1] += 1;
+    }
+    for k in 0..nodes {
+        starts[k + 1] += starts[k];
+    }
+    starts
+}
+
+impl LinearOperator<f64> for HierarchicalOperator {
+    fn dim(&self) -> usize {
+        self.leaves.len()
+    }
+
+    fn apply(&self, x: &MultiVector<f64>, y: &mut MultiVector<f64>) {
+        let mut power = self.gather(&self.pull(x));
+        self.push(&mut power);
+        for (i, &leaf) in self.leaves.iter().enumerate() {
+            let numbers = power.row(leaf as usize).chunks_exact(NUMBERS);
+            y.row_mut(i).iter_mut().zip(numbers).for_each(|(y, numbers)| *y = numbers[0]);
+        }
+    }
+
+    fn symmetry(&self) -> Symmetry {
+        Symmetry::Symmetric
+    }
+
+    fn entries(&self) -> u64 {
+        (self.entries.len() + 2 * self.parents.len()) as u64
+    }
+
+    /// No element sees itself.
+    fn diagonal(&self, _: usize, out: &mut [f64]) {
+        out.fill(0.0);
+    }
+}

@@ -1,0 +1,74 @@
+//! Where a solution stands between two rounds: all that is needed to go on to the same bits.
+
+use crate::driver::{Problem, Round, Stated};
+use crate::{HierarchyError, Link, Tree};
+use fredholm_linop::MultiVector;
+
+/// A solution between two rounds.
+#[derive(Clone, Debug)]
+pub struct State {
+    pub(crate) tree: Tree,
+    pub(crate) links: Vec<Link>,
+    /// Radiosity of the exposed parts of the leaves, W/m².
+    pub(crate) radiosity: MultiVector<f64>,
+    /// Irradiance of the faces, W/m².
+    pub(crate) faces: Vec<f64>,
+    /// What a link may leave in the next round.
+    pub(crate) threshold: f64,
+    pub(crate) rounds: Vec<Round>,
+    pub(crate) error: Option<Stated>,
+    pub(crate) limited: bool,
+}
+
+impl State {
+    /// The start.
+    pub(crate) fn new(problem: &Problem, threshold: f64) -> Result<Self, HierarchyError> {
+        let bands = problem.surfaces.exitance.lanes();
+        let (expected, surfaces) = (problem.mesh.len(), problem.surfaces);
+        for (what, rows) in [("the reflectance", &surfaces.reflectance), ("the exitance", &surfaces.exitance)]
+        {
+            if rows.dim() != expected {
+                return Err(HierarchyError::Shape { what, found: rows.dim(), expected });
+            }
+        }
+        Ok(Self {
+            tree: Tree::new(problem.mesh, problem.occluders.tolerance())?,
+            links: Vec::new(),
+            radiosity: MultiVector::zeros(problem.mesh.len(), bands),
+            faces: Vec::new(),
+            threshold,
+            rounds: Vec::new(),
+            error: None,
+            limited: false,
+        })
+    }
+
+    /// The rounds so far.
+    #[must_use]
+    pub fn rounds(&self) -> &[Round] {
+        &self.rounds
+    }
+
+    /// Estimated error of the irradiance of the faces, where there are two rounds.
+    #[must_use]
+    pub fn error(&self) -> Option<&Stated> {
+        self.error.as_ref()
+    }
+
+    /// Radiosity of all nodes, area means of that of the leaves.
+    pub(crate) fn nodes_radiosity(&self) -> MultiVector<f64> {
+        let nodes = self.tree.nodes();
+        let mut means = MultiVector::zeros(nodes.len(), self.radiosity.lanes());
+        for (i, leaf) in self.tree.leaves().into_iter().enumerate() {
+            means.row_mut(leaf as usize).copy_from_slice(self.radiosity.row(i));
+        }
+        for (index, node) in nodes.iter().enumerate().rev() {
+            if let Some(parent) = node.parent() {
+                let share = node.area() / nodes[parent as usize].area();
+                let row = means.row(index).to_vec();
+                means.row_mut(parent as usize).iter_mut().zip(row).for_each(|(to, x)| *to += share * x);
+            }
+        }
+        means
+    }
+}

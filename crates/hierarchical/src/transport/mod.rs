@@ -1,0 +1,11 @@
+//! What a pair of nodes exchanges: bounds and spreads before it is computed, the open exchange, and what gets through.
+
+mod exchange;
+mod side;
+mod sight;
+mod spread;
+
+pub(crate) use exchange::exchanges;
+pub(crate) use side::Side;
+pub(crate) use sight::{Sight, View, Viewer};
+pub(crate) use spread::spread;

@@ -1,0 +1,139 @@
+//! What gets through between two flat nodes: all, nothing, or a share of it.
+//!
+//! No body in the shaft of the two polygons, and all gets through; one convex body across all segments between their corners, and nothing does. Else points of each polygon
+//! see the other one exactly clipped, and the share is Σ F_seen/Σ F_open over the points; what both sides make of it differs by an estimate of its error. Behind many bodies
+//! segments between the points of both sides take the place of the clipping. E. A. Haines & J. R. Wallace 1994, doi:10.1007/978-3-642-57963-9_12, for the shaft.
+
+use super::side::{POINTS, Points, Side};
+use super::spread::{STEEP, open_factor};
+use fredholm_coupling::form_factor::VisibleParts;
+use fredholm_coupling::kernel::lambert;
+use fredholm_mesh::{Patch, Vec3};
+use fredholm_visibility::Occluders;
+use fredholm_visibility::body::{Bodies, Body, Room, Shadow};
+
+/// Bodies in a scene up to which points see exactly.
+const FEW: usize = 256;
+
+/// Least uncertainty of a share that is neither 0 nor 1 for sure.
+const DOUBT: f64 = 0.2;
+/// Spread that is added to both sides before they are weighed.
+const EVEN: f64 = 1e-3;
+
+/// What may come between the elements of a scene.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sight<'a> {
+    pub occluders: &'a Occluders,
+    pub bodies: &'a Bodies,
+}
+
+/// What two patches see of each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum View {
+    /// Nothing is between.
+    Open,
+    /// Nothing gets through.
+    Nothing,
+    /// A share of the open exchange; relative to that, how both sides deviate, and the uncertainty of the share.
+    Part { share: f64, sides: [Side; 2], doubt: f64 },
+}
+
+/// Answers for one thread.
+pub(crate) struct Viewer<'a> {
+    sight: Sight<'a>,
+    parts: VisibleParts<'a>,
+    room: Room,
+    between: Vec<u32>,
+    pub front: Vec<Vec3>,
+}
+
+impl<'a> Viewer<'a> {
+    pub fn new(sight: Sight<'a>) -> Self {
+        let parts = VisibleParts::new(sight.occluders, sight.bodies);
+        Self { sight, parts, room: Room::default(), between: Vec::new(), front: Vec::new() }
+    }
+
+    /// What two patches see of each other.
+    pub fn view(&mut self, a: &Patch, b: &Patch) -> View {
+        if self.sight.bodies.as_slice().len() > FEW { self.behind_many(a, b) } else { self.behind_few(a, b) }
+    }
+
+    fn behind_few(&mut self, a: &Patch, b: &Patch) -> View {
+        let Sight { occluders, bodies } = self.sight;
+        let Some(shaft) = occluders.shaft_between(a, b) else { return View::Nothing };
+        let mut reaching = bodies.as_slice().iter().filter(|body| occluders.reaches(body, &shaft)).peekable();
+        if reaching.peek().is_none() {
+            return View::Open;
+        }
+        if reaching.any(|body| blocks(body, a, b, bodies.tolerance(), &mut self.room)) {
+            return View::Nothing;
+        }
+        let (xs, ys) = (Points::of(a), Points::of(b));
+        let (over_a, over_b) = (self.seen(&xs, a, b), self.seen(&ys, b, a));
+        view(side(&xs, over_a), side(&ys, over_b))
+    }
+
+    /// Open and seen form factors from the points of one patch to the other.
+    fn seen(&mut self, points: &Points, from: &Patch, to: &Patch) -> [[f64; POINTS]; 2] {
+        let mut found = [[0.0; POINTS]; 2];
+        if !self.parts.prepare(from, to) {
+            return found;
+        }
+        for (k, &x) in points.at.iter().enumerate() {
+            found[1][k] = self.parts.factor(x);
+            found[0][k] = open_factor(x, from, to, &mut self.front).max(found[1][k]);
+        }
+        found
+    }
+
+    fn behind_many(&mut self, a: &Patch, b: &Patch) -> View {
+        let occluders = self.sight.occluders;
+        occluders.shaft(a, b, &mut self.between);
+        if self.between.is_empty() {
+            return View::Open;
+        }
+        let (xs, ys) = (Points::of(a), Points::of(b));
+        let mut found = [[[0.0; POINTS]; 2]; 2];
+        for (i, &x) in xs.at.iter().enumerate() {
+            for (j, &y) in ys.at.iter().enumerate() {
+                let weight = lambert(x, a.normal(), y, b.normal());
+                let seen = weight > 0.0 && occluders.unoccluded_by(x, y, &self.between);
+                for (side, k) in [(0, i), (1, j)] {
+                    found[side][0][k] += weight;
+                    found[side][1][k] += if seen { weight } else { 0.0 };
+                }
+            }
+        }
+        view(side(&xs, found[0]), side(&ys, found[1]))
+    }
+}
+
+/// Puts together what the points of both sides see.
+fn view(a: Option<(f64, Side)>, b: Option<(f64, Side)>) -> View {
+    let (share, doubt) = match (a, b) {
+        (Some(a), Some(b)) => {
+            // The side over which less varies knows the share better.
+            let (here, there) = (b.1.deviation + EVEN, a.1.deviation + EVEN);
+            ((here * a.0 + there * b.0) / (here + there), (a.0 - b.0).abs())
+        }
+        (Some(one), None) | (None, Some(one)) => (one.0, DOUBT),
+        (None, None) => (0.5, 0.5),
+    };
+    let sides = [a, b].map(|side| side.map_or_else(|| Side::default().at_least(STEEP), |(_, side)| side));
+    View::Part { share, sides, doubt: doubt.max(DOUBT) }
+}
+
+/// Share that one side sees and how that varies, relative to the open factor; none where no point is in front.
+fn side(points: &Points, [open, seen]: [[f64; POINTS]; 2]) -> Option<(f64, Side)> {
+    let (open, seen) = (points.side(&open), points.side(&seen));
+    let share = if open.mean > 0.0 { (seen.mean / open.mean).min(1.0) } else { 0.0 };
+    (open.mean > 0.0).then(|| (share, seen.scaled(share)))
+}
+
+/// Whether a convex body is across every segment between two patches: what holds for their corners holds for all of their points.
+fn blocks(body: &Body, a: &Patch, b: &Patch, tolerance: f64, room: &mut Room) -> bool {
+    a.corners().iter().all(|&x| match body.shadow(x, tolerance, room) {
+        Shadow::Nothing => false,
+        Shadow::Room => b.corners().iter().all(|&y| room.holds(&[y - x])),
+    })
+}

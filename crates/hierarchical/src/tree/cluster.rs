@@ -1,0 +1,156 @@
+//! Clusters of input elements: a binary tree, first by place, then by plane, then by place in the plane.
+//!
+//! Elements of at most [`PLANES`] planes are parted between planes, others through the middle of their longest extent; elements of one plane along a line that cuts none of them, where
+//! there is one. Every decision depends on places alone. Lengths in metres.
+
+use super::hull::filled;
+use super::{Cone, NONE, Node, Tree};
+use fredholm_mesh::{Mesh, Patch, Vec3};
+
+/// Planes up to which a group is parted between planes.
+const PLANES: usize = 32;
+/// Cosine of the angle between normals, less than 1 by this, up to which they count as one.
+const TURN: f64 = 1e-12;
+
+/// Appends the clusters and roots of a mesh, parents before children.
+pub(super) fn build(mesh: &Mesh, tolerance: f64, tree: &mut Tree) {
+    let patches: Vec<&Patch> = mesh.patches().collect();
+    let builder = Builder { mesh, patches, tolerance };
+    let all: Vec<u32> = (0..mesh.len() as u32).collect();
+    let mut stack = vec![(NONE, all)];
+    while let Some((parent, order)) = stack.pop() {
+        let index = tree.nodes.len() as u32;
+        tree.nodes.push(Node { parent, ..builder.node(&order) });
+        if parent != NONE {
+            let children = &mut tree.nodes[parent as usize].children;
+            children[usize::from(children[0] != NONE)] = index;
+        }
+        if let [single] = *order {
+            tree.roots[single as usize] = index;
+        } else {
+            let (low, high) = builder.part(order);
+            stack.push((index, high));
+            stack.push((index, low));
+        }
+    }
+}
+
+struct Builder<'a> {
+    mesh: &'a Mesh,
+    patches: Vec<&'a Patch>,
+    tolerance: f64,
+}
+
+impl<'a> Builder<'a> {
+    fn patch(&self, k: u32) -> &'a Patch {
+        self.patches[k as usize]
+    }
+
+    fn node(&self, order: &[u32]) -> Node {
+        if let [single] = *order {
+            let face = self.mesh.face_of(single as usize) as u32;
+            return Node::element(*self.patch(single), face, single);
+        }
+        let list: Vec<&Patch> = order.iter().map(|&k| self.patch(k)).collect();
+        let area = list.iter().map(|patch| patch.area()).sum();
+        let flat = if self.planes(order).len() == 1 { filled(&list) } else { None };
+        Node::cluster(flat, Cone::around(list.iter().copied()), area)
+    }
+
+    /// Parts a group of at least two.
+    fn part(&self, order: Vec<u32>) -> (Vec<u32>, Vec<u32>) {
+        let planes = self.planes(&order);
+        match planes.len() {
+            1 => self.in_one_plane(order),
+            2..=PLANES => self.between_planes(order, planes),
+            _ => self.through_the_middle(order, [Vec3::X, Vec3::Y, Vec3::Z]),
+        }
+    }
+
+    fn same_plane(&self, k: u32, of: u32) -> bool {
+        let (patch, first) = (self.patch(k), self.patch(of));
+        patch.normal().dot(first.normal()) > 1.0 - TURN
+            && (patch.corner(0) - first.corner(0)).dot(first.normal()).abs() <= self.tolerance
+    }
+
+    /// One element of each plane; more than [`PLANES`] are not told apart.
+    fn planes(&self, order: &[u32]) -> Vec<u32> {
+        let mut planes: Vec<u32> = Vec::new();
+        for &k in order {
+            if !planes.iter().any(|&plane| self.same_plane(k, plane)) {
+                planes.push(k);
+                if planes.len() > PLANES {
+                    break;
+                }
+            }
+        }
+        planes
+    }
+
+    fn between_planes(&self, order: Vec<u32>, mut planes: Vec<u32>) -> (Vec<u32>, Vec<u32>) {
+        let key = |k: u32| {
+            let n = self.patch(k).normal();
+            [n.z, n.y, n.x, n.dot(self.patch(k).corner(0))]
+        };
+        let by_key = |a: &u32, b: &u32| {
+            key(*a).iter().zip(key(*b)).fold(std::cmp::Ordering::Equal, |o, (a, b)| o.then(a.total_cmp(&b)))
+        };
+        planes.sort_by(by_key);
+        let low = &planes[..planes.len() / 2];
+        order.into_iter().partition(|&k| low.iter().any(|&plane| self.same_plane(k, plane)))
+    }
+
+    /// Along a line between elements, else through the middle.
+    fn in_one_plane(&self, order: Vec<u32>) -> (Vec<u32>, Vec<u32>) {
+        let first = self.patch(order[0]);
+        let u = (first.corner(1) - first.corner(0)).normalize();
+        let axes = [u, first.normal().cross(u)];
+        let extent = |axis: Vec3| {
+            let [low, high] = self.range(&order, axis);
+            high - low
+        };
+        let longer_first = if extent(axes[0]) >= extent(axes[1]) { axes } else { [axes[1], axes[0]] };
+        let line = longer_first.iter().find_map(|&axis| Some((axis, self.gap(&order, axis)?)));
+        match line {
+            Some((axis, at)) => order.into_iter().partition(|&k| self.patch(k).centroid().dot(axis) < at),
+            None => self.through_the_middle(order, [axes[0], axes[1], axes[0]]),
+        }
+    }
+
+    fn range(&self, order: &[u32], axis: Vec3) -> [f64; 2] {
+        let places = order.iter().flat_map(|&k| self.patch(k).corners()).map(|x| x.dot(axis));
+        places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+    }
+
+    /// The place along an axis, nearest to the middle, where a line cuts no element.
+    fn gap(&self, order: &[u32], axis: Vec3) -> Option<f64> {
+        let mut spans: Vec<[f64; 2]> = order.iter().map(|&k| self.range(&[k], axis)).collect();
+        spans.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let (start, mut end) = (spans[0][0], spans[0][1]);
+        let last = spans.iter().map(|span| span[1]).fold(end, f64::max);
+        let middle = 0.5 * (start + last);
+        let mut best: Option<f64> = None;
+        for &[from, to] in &spans[1..] {
+            if from >= end - self.tolerance && best.is_none_or(|b| (from - middle).abs() < (b - middle).abs())
+            {
+                best = Some(from);
+            }
+            end = end.max(to);
+        }
+        best
+    }
+
+    /// Two halves along the axis of the largest extent.
+    fn through_the_middle(&self, mut order: Vec<u32>, axes: [Vec3; 3]) -> (Vec<u32>, Vec<u32>) {
+        let extents = axes.map(|axis| {
+            let [low, high] = self.range(&order, axis);
+            high - low
+        });
+        let most = extents.iter().copied().fold(0.0, f64::max) * (1.0 - 1e-9);
+        let axis = axes[extents.iter().position(|&extent| extent >= most).unwrap_or(0)];
+        let place = |k: u32| self.patch(k).centroid().dot(axis);
+        order.sort_by(|&a, &b| place(a).total_cmp(&place(b)));
+        let high = order.split_off(order.len() / 2);
+        (order, high)
+    }
+}

@@ -1,0 +1,147 @@
+//! Solutions against closed forms and independent references, their stated errors, energy, and the same bits for any number of threads.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot run should panic, in its helpers too")]
+
+mod common;
+
+use common::{Bench, options, room};
+use fredholm_hierarchical::{HierarchyError, Patient, solve};
+use fredholm_iterative::{CgTheta, Neumann};
+use std::collections::HashMap;
+use std::path::Path;
+
+/// Centre of a face and its irradiance in each band.
+type Row = ([f64; 3], Vec<f64>);
+
+/// Rows of a reference by surface.
+fn reference(name: &str, bands: &[&str]) -> HashMap<String, Vec<Row>> {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data");
+    let text = std::fs::read_to_string(data.join(format!("{name}_reference.csv"))).unwrap();
+    let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let head = lines.next().unwrap();
+    let at = |column: &str| head.iter().position(|name| *name == column).unwrap();
+    let mut found: HashMap<String, Vec<Row>> = HashMap::new();
+    for line in lines {
+        let number = |column: &str| line[at(column)].parse::<f64>().unwrap();
+        let row = (["cx", "cy", "cz"].map(number), bands.iter().map(|band| number(band)).collect());
+        found.entry(line[at("surface")].to_owned()).or_default().push(row);
+    }
+    found
+}
+
+/// Relative L2 error in the worst band against a reference.
+fn error(bench: &Bench, found: &[f64], name: &str, columns: &[&str]) -> f64 {
+    let reference = reference(name, columns);
+    let (mut squares, mut norms) = (vec![0.0; columns.len()], vec![0.0; columns.len()]);
+    for (face, e) in bench.mesh.faces().iter().zip(found.chunks(columns.len())) {
+        let rows = &reference[&bench.mesh.surfaces()[face.surface].name];
+        let close =
+            |row: &&Row| face.centroid.to_array().iter().zip(row.0).all(|(a, b)| (a - b).abs() < 1e-6);
+        let exact = &rows.iter().find(close).unwrap().1;
+        for band in 0..columns.len() {
+            squares[band] += face.area * (e[band] - exact[band]).powi(2);
+            norms[band] += face.area * exact[band] * exact[band];
+        }
+    }
+    squares.iter().zip(norms).map(|(s, n)| (s / n).sqrt()).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_furnace_is_exitance_over_absorptance() {
+    for reflectance in [0.2, 0.8] {
+        let bench = Bench::text(&room(reflectance));
+        let solution = bench.solve(0.01);
+        let exact = 1.0 / (1.0 - reflectance);
+        let faces = bench.faces(&solution);
+        let (mut squares, mut area) = (0.0, 0.0);
+        for (face, e) in bench.mesh.faces().iter().zip(&faces) {
+            squares += face.area * (e / exact - 1.0).powi(2);
+            area += face.area;
+        }
+        let (found, stated) = ((squares / area).sqrt(), solution.error.unwrap().worst());
+        println!("ρ = {reflectance}: found {found:.2e}, stated {stated:.2e}");
+        assert!(found < 0.01 && stated < 0.01, "{found:e} {stated:e}");
+    }
+}
+
+#[test]
+fn the_planar_cornell_box_agrees_with_particle_tracing() {
+    let bench = Bench::shipped("cornell_planar.toml");
+    let solution = bench.solve(0.02);
+    let found = error(&bench, &bench.faces(&solution), "cornell_planar", &["E_r", "E_g", "E_b"]);
+    let stated = solution.error.unwrap().worst();
+    println!("found {found:.2e}, stated {stated:.2e}");
+    assert!(found < 0.015 && found < stated && stated < 0.02, "{found:e} {stated:e}");
+}
+
+#[test]
+fn the_occluder_agrees_with_particle_tracing() {
+    let bench = Bench::shipped("occluder.toml");
+    let solution = bench.solve(0.02);
+    let found = error(&bench, &bench.faces(&solution), "occluder", &["E"]);
+    let stated = solution.error.unwrap().worst();
+    println!("found {found:.2e}, stated {stated:.2e}");
+    assert!(found < 0.02 && found < stated && stated < 0.02, "{found:e} {stated:e}");
+}
+
+#[test]
+fn what_is_emitted_is_absorbed_at_every_accuracy() {
+    let bench = Bench::text(&room(0.6));
+    for accuracy in [0.1, 0.03, 0.01] {
+        let solution = bench.solve(accuracy);
+        let energy = solution.system.energy(&solution.radiosity, &solution.means, &solution.closure)[0];
+        let balance = (energy.absorbed + energy.escaped) / energy.emitted - 1.0;
+        let stated = solution.error.unwrap().worst();
+        println!("{accuracy}: balance {balance:.2e}, escaped {:.2e}", energy.escaped / energy.emitted);
+        assert!(balance.abs() < 1e-3 * accuracy.max(stated), "{balance:e}");
+        assert!((energy.escaped / energy.emitted).abs() < stated, "{energy:?}");
+    }
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    let bench = Bench::shipped("occluder.toml");
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| bench.solve(0.05))
+    };
+    let one = with(1);
+    for threads in [2, 4] {
+        let many = with(threads);
+        assert!(one.links == many.links && one.tree.splits() == many.tree.splits());
+        assert!(one.radiosity == many.radiosity && one.means == many.means && one.rounds == many.rounds);
+    }
+    assert!(!one.tree.splits().is_empty());
+}
+
+#[test]
+fn another_solver_gives_the_same_light() {
+    let bench = Bench::text(&room(0.5));
+    let other = solve(&bench.problem(), &options(0.05), &Neumann, None, &Patient).unwrap();
+    let first = bench.solve(0.05);
+    let pairs = bench.faces(&first).into_iter().zip(bench.faces(&other));
+    assert!(pairs.map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max) < 1e-3);
+}
+
+#[test]
+fn little_memory_is_respected_and_said() {
+    let bench = Bench::shipped("occluder.toml");
+    let limited = options(0.001);
+    let limited = fredholm_hierarchical::Options { bytes: 12 << 20, ..limited };
+    let solution = solve(&bench.problem(), &limited, &CgTheta, None, &Patient).unwrap();
+    assert!(solution.limited && solution.bytes() < 12 << 20, "{} {}", solution.limited, solution.bytes());
+    assert!(solution.means.irradiance.as_slice().iter().all(|e| e.is_finite()));
+}
+
+#[test]
+fn what_cannot_be_solved_is_refused() {
+    let bench = Bench::text(&room(0.5));
+    let refused =
+        |accuracy| solve(&bench.problem(), &options(accuracy), &CgTheta, None, &Patient).unwrap_err();
+    assert!(matches!(refused(0.0), HierarchyError::Accuracy { .. }));
+    assert!(matches!(refused(f64::NAN), HierarchyError::Accuracy { .. }));
+    let other = Bench::text(&room(0.5).replace("[2, 2]", "[3, 3]"));
+    let mixed = fredholm_hierarchical::Problem { surfaces: &other.surfaces, ..bench.problem() };
+    let error = solve(&mixed, &options(0.1), &CgTheta, None, &Patient).unwrap_err();
+    assert!(matches!(error, HierarchyError::Shape { expected: 30, .. }), "{error}");
+}
