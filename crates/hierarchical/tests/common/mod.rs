@@ -44,6 +44,7 @@ impl Bench {
         Problem { mesh: &self.mesh, occluders: &self.occluders, surfaces: &self.surfaces }
     }
 
+    #[allow(dead_code, reason = "not every test needs every helper")]
     pub fn solve(&self, accuracy: f64) -> Solution {
         self.resume(accuracy, None, &Patient)
     }
