@@ -4,6 +4,7 @@
 //! the next terms of the expansion are smaller by its square. In m².
 
 use super::{flat, front_of, jacobian, point_to_polygon};
+use crate::polygon::HalfSpace;
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_quadrature::{Estimate, PlanePoint, symmetric_triangle, tensor_quad};
 use std::sync::LazyLock;
@@ -16,10 +17,9 @@ static QUAD: LazyLock<Vec<PlanePoint>> = LazyLock::new(|| tensor_quad(2));
 
 /// The exchange to an absolute `goal` (m²), or `None` where the patches do not face each other wholly or the rule does not suffice.
 pub(crate) fn small_receiver(large: &Patch, small: &Patch, goal: f64) -> Option<Estimate> {
-    let (behind_large, behind_small) = (front_of(large), front_of(small));
-    let lowest = -flat(large, small);
-    let faces = small.corners().iter().all(|&x| behind_large.height(x) >= lowest)
-        && large.corners().iter().all(|&y| behind_small.height(y) >= lowest);
+    let (before_large, before_small) = (front_of(large), front_of(small));
+    let faces = in_front(small, before_large, flat(large, small))
+        && in_front(large, before_small, flat(large, small));
     let centre = small.centroid();
     let reach = 0.5 * small.diameter() / to_edges(large, centre);
     if !faces || reach > REACH {
@@ -31,6 +31,12 @@ pub(crate) fn small_receiver(large: &Patch, small: &Patch, goal: f64) -> Option<
     let value: f64 = rule.iter().map(term).sum();
     let error = reach * (value - small.area() * seen(centre)).abs();
     (error <= goal).then_some(Estimate { value, error })
+}
+
+/// Whether no corner is behind a plane, and one before it.
+fn in_front(patch: &Patch, plane: HalfSpace, flat: f64) -> bool {
+    let heights = || patch.corners().iter().map(|&x| plane.height(x));
+    heights().all(|height| height >= -flat) && heights().any(|height| height > flat)
 }
 
 /// Distance of a point from the edges of a patch, m.
@@ -77,10 +83,11 @@ mod tests {
     }
 
     #[test]
-    fn a_patch_that_looks_away_or_crosses_the_plane_is_left_to_others() {
+    fn a_patch_that_looks_away_or_crosses_the_plane_or_lies_in_it_is_left_to_others() {
         let wall = rectangle(Vec3::ZERO, Vec3::Y * 3.0, Vec3::Z * 2.0);
         let away = rectangle(Vec3::new(2.0, 1.0, 0.0), Vec3::Y * 0.1, Vec3::X * 0.1);
         let across = rectangle(Vec3::new(-0.05, -2.0, 0.5), Vec3::X * 0.1, Vec3::Z * 0.1);
-        assert!([away, across].iter().all(|patch| small_receiver(&wall, patch, 1.0).is_none()));
+        let within = rectangle(Vec3::new(0.0, 1.0, 1.0), Vec3::Y * 0.1, Vec3::Z * 0.1);
+        assert!([away, across, within].iter().all(|patch| small_receiver(&wall, patch, 1.0).is_none()));
     }
 }
