@@ -3,7 +3,8 @@
 //! Data flows one way: a [`scene`] is cut into a [`mesh`]; [`coupling`] assembles what its elements exchange, with
 //! [`visibility`] and [`quadrature`]; a solver of [`iterative`] or [`direct`], whose contract is [`linop`], finds the
 //! field; [`discretisation`] has other bases and equations than constants on elements; [`hierarchical`] finds the elements that an
-//! accuracy asks for, and links between elements of any size instead of a matrix; [`report`] writes what people look at.
+//! accuracy asks for, and links between elements of any size instead of a matrix; [`waves`] has the electromagnetic couplings; [`montecarlo`] estimates
+//! the same fields from random paths; [`report`] writes what people look at.
 //!
 //! In a closed room of one material the radiosity is M/(1 − ρ) everywhere:
 //!
@@ -54,7 +55,9 @@ pub use fredholm_hierarchical as hierarchical;
 pub use fredholm_iterative as iterative;
 pub use fredholm_linop as linop;
 pub use fredholm_mesh as mesh;
+pub use fredholm_montecarlo as montecarlo;
 pub use fredholm_quadrature as quadrature;
 pub use fredholm_report as report;
 pub use fredholm_scene as scene;
 pub use fredholm_visibility as visibility;
+pub use fredholm_waves as waves;

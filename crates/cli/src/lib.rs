@@ -25,6 +25,7 @@ mod sample;
 mod size;
 mod solution;
 mod stages;
+mod start;
 mod stochastic;
 mod summary;
 mod threads;

@@ -7,17 +7,17 @@ use fredholm_linop::StopReason;
 use fredholm_report::{Camera, Exposure, Field, ReportError, RunRecord, View, write_all};
 use fredholm_scene::Scene;
 
-use crate::args::SolveArgs;
+use crate::args::{ProblemArgs, SolveArgs};
 use crate::checkpoint::{self, Checkpoint};
 use crate::failure::{Ending, Failure};
-use crate::interrupt::Interrupt;
 use crate::options::{Options, ProblemOptions};
 use crate::problem::{Problem, scene_failure};
 use crate::record::{record, remarks};
 use crate::solution::{Solution, compute};
 use crate::stages::Stages;
+use crate::start::Start;
 use crate::summary::{Lines, quality};
-use crate::{console, folder, hierarchical, output, threads};
+use crate::{hierarchical, output};
 
 /// Pixels of the picture of a partial result.
 const QUICK_PIXELS: f64 = 40_000.0;
@@ -29,33 +29,31 @@ pub(crate) fn solve(args: &SolveArgs) -> Result<Ending, Failure> {
 
 /// Solves a scene, from a checkpoint where there is one, and writes the results.
 pub(super) fn solve_from(args: &SolveArgs, checkpoint: Option<&Checkpoint>) -> Result<Ending, Failure> {
-    let interrupt = Interrupt::install(args.log.log)?;
-    folder::probe(&folder(args))?;
-    let console = console::choose(args.log);
-    let stages = Stages::new(&*console, &interrupt);
-    let count = args.problem.threads.map_or_else(threads::default_count, usize::from);
-    threads::pool(count)?.install(|| run(args, checkpoint, stages))
+    let ProblemArgs { scene, threads, .. } = &args.problem;
+    let start = Start { scene, output: args.output.as_ref(), threads: *threads, log: args.log };
+    start.run(|folder, stages| run(args, checkpoint, folder, stages))
 }
 
-/// The folder for the results.
-fn folder(args: &SolveArgs) -> PathBuf {
-    folder::of(args.output.as_ref(), &args.problem.scene)
-}
-
-fn run(args: &SolveArgs, checkpoint: Option<&Checkpoint>, mut stages: Stages) -> Result<Ending, Failure> {
+fn run(
+    args: &SolveArgs,
+    checkpoint: Option<&Checkpoint>,
+    folder: &Path,
+    stages: &mut Stages,
+) -> Result<Ending, Failure> {
     let scene = stages.run("scene", || Scene::load(&args.problem.scene).map_err(scene_failure))?;
-    let (scene, folder) = (Arc::new(scene), folder(args));
+    let scene = Arc::new(scene);
     let (options, problem, solution) = match args.accuracy.or(scene.solve().accuracy) {
-        Some(accuracy) => adaptive(args, &scene, (accuracy, checkpoint), &folder, &mut stages)?,
-        None => dense(args, &scene, &folder, &mut stages)?,
+        Some(accuracy) => adaptive(args, &scene, (accuracy, checkpoint), folder, stages)?,
+        None => dense(args, &scene, folder, stages)?,
     };
-    let record = record(&problem, &options, &solution, &stages);
-    stages.run("results", || write(&problem, &solution, &record, &folder))?;
-    checkpoint::remove(&folder)?;
+    let record = record(&problem, &options, &solution, stages);
+    stages.run("results", || write(&problem, &solution, &record, folder))?;
+    checkpoint::remove(folder)?;
     // The summary, other than the file, can tell the time of writing.
     let record = RunRecord { timings: stages.timings().to_vec(), ..record };
-    conclude(args, &record, remarks(&options, &solution), &stages)?;
-    Ok(ending(&solution, &stages))
+    remarks(&options, &solution).for_each(|remark| stages.console.warn(&remark));
+    conclude(args, folder, &record, stages)?;
+    Ok(ending(&solution, stages))
 }
 
 /// On the elements of the scene.
@@ -137,18 +135,12 @@ pub(super) fn report_failure(error: ReportError) -> Failure {
     Failure::new(ending, error)
 }
 
-/// Says what came of it: warnings and the summary.
-fn conclude(
-    args: &SolveArgs,
-    record: &RunRecord,
-    remarks: impl Iterator<Item = String>,
-    stages: &Stages,
-) -> Result<(), Failure> {
-    remarks.for_each(|remark| stages.console.warn(&remark));
+/// Says what came of it.
+fn conclude(args: &SolveArgs, folder: &Path, record: &RunRecord, stages: &Stages) -> Result<(), Failure> {
     if stages.interrupt.requested() && !record.partial {
         stages.console.warn("interrupted when the solution was there: the results are complete all the same");
     }
-    if args.log.quiet { Ok(()) } else { summarise(&folder(args), record) }
+    if args.log.quiet { Ok(()) } else { summarise(folder, record) }
 }
 
 fn summarise(folder: &Path, record: &RunRecord) -> Result<(), Failure> {

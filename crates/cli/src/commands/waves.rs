@@ -9,12 +9,12 @@ use fredholm_report::{ComparisonRun, WaveComparison, write_wave_comparison};
 
 use crate::args::{LogArgs, tolerance};
 use crate::failure::{Ending, Failure};
-use crate::interrupt::Interrupt;
+use crate::output;
 use crate::output::visible;
 use crate::stages::Stages;
+use crate::start::Start;
 use crate::summary::Lines;
 use crate::waves::{self, Model, Outcome};
-use crate::{console, folder, output, threads};
 
 /// Examples for the help.
 pub(crate) const EXAMPLES: &str = "\
@@ -77,24 +77,20 @@ impl WavesArgs {
 
 /// Computes a scene of waves and writes the results.
 pub(crate) fn waves(args: &WavesArgs) -> Result<Ending, Failure> {
-    let interrupt = Interrupt::install(args.log.log)?;
-    folder::probe(&folder::of(args.output.as_ref(), &args.scene))?;
-    let console = console::choose(args.log);
-    let mut stages = Stages::new(&*console, &interrupt);
-    let count = args.threads.map_or_else(threads::default_count, usize::from);
-    threads::pool(count)?.install(|| run(args, &mut stages))
+    let start =
+        Start { scene: &args.scene, output: args.output.as_ref(), threads: args.threads, log: args.log };
+    start.run(|folder, stages| run(args, folder, stages))
 }
 
-fn run(args: &WavesArgs, stages: &mut Stages) -> Result<Ending, Failure> {
-    let folder = folder::of(args.output.as_ref(), &args.scene);
+fn run(args: &WavesArgs, folder: &Path, stages: &mut Stages) -> Result<Ending, Failure> {
     let model = stages.run("scene", || Model::load(&args.scene))?;
     if !args.compare.is_empty() {
-        return compare(args, &folder, &model, stages);
+        return compare(args, folder, &model, stages);
     }
     let outcome = waves::compute(&model, stages)?;
     stages.begin_saving()?;
     let timings = stages.timings().to_vec();
-    let written = || waves::write(&folder, &model, &outcome, &timings).map_err(super::solve::report_failure);
+    let written = || waves::write(folder, &model, &outcome, &timings).map_err(super::solve::report_failure);
     stages.run("results", written)?;
     if !outcome.converged() {
         stages
@@ -102,7 +98,7 @@ fn run(args: &WavesArgs, stages: &mut Stages) -> Result<Ending, Failure> {
             .warn("the residual asked for was not reached; the results are those of the last iteration");
     }
     if !args.log.quiet {
-        summarise(&folder, &model, &outcome)?;
+        summarise(folder, &model, &outcome)?;
     }
     Ok(if outcome.converged() { Ending::Done } else { Ending::NotConverged })
 }

@@ -18,22 +18,19 @@ use super::solve::report_failure;
 use crate::args::Precision;
 use crate::failure::{Ending, Failure};
 use crate::interrupt::Interrupt;
+use crate::memory;
 use crate::options::RADIOSITY;
 use crate::problem::Problem;
 use crate::solution::{form_factors, system};
 use crate::stages::Stages;
+use crate::start::Start;
 use crate::watcher::Watcher;
-use crate::{console, folder, memory, threads};
 
 /// Runs solvers on the same system and writes how they did.
 pub(crate) fn compare(args: &CompareArgs) -> Result<Ending, Failure> {
-    let interrupt = Interrupt::install(args.log.log)?;
-    let folder = folder::of(args.output.as_ref(), &args.scene);
-    folder::probe(&folder)?;
-    let console = console::choose(args.log);
-    let mut stages = Stages::new(&*console, &interrupt);
-    let count = args.threads.map_or_else(threads::default_count, usize::from);
-    threads::pool(count)?.install(|| run(args, &folder, &mut stages))
+    let start =
+        Start { scene: &args.scene, output: args.output.as_ref(), threads: args.threads, log: args.log };
+    start.run(|folder, stages| run(args, folder, stages))
 }
 
 fn run(args: &CompareArgs, folder: &Path, stages: &mut Stages) -> Result<Ending, Failure> {

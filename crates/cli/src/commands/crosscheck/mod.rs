@@ -14,14 +14,15 @@ use fredholm_report::{CrosscheckRecord, score_map, write_crosscheck};
 use super::solve::{report_failure, view_camera};
 use crate::args::{LogArgs, ProblemArgs, StopArgs};
 use crate::failure::{Ending, Failure};
-use crate::interrupt::{Interrupt, nothing_saved};
+use crate::interrupt::nothing_saved;
 use crate::options::Options;
+use crate::output;
 use crate::problem::Problem;
 use crate::solution::{Solution, compute};
 use crate::stages::Stages;
+use crate::start::Start;
 use crate::stochastic::{PathArgs, TraceStopArgs, Tracer, enclosure, expected_error, faces, failure, share};
 use crate::summary::Lines;
-use crate::{console, folder, output, threads};
 
 /// Error that is asked for where nothing is.
 const ERROR: f64 = 0.01;
@@ -93,13 +94,16 @@ impl CorrectionName {
 
 /// Solves and traces a scene, and says whether the two agree.
 pub(crate) fn crosscheck(args: &CrosscheckArgs) -> Result<Ending, Failure> {
-    let interrupt = Interrupt::install(args.log.log)?;
-    let folder = folder::of(args.output.as_ref(), &args.problem.scene);
-    folder::probe(&folder)?;
-    let console = console::choose(args.log);
-    let mut stages = Stages::part(&*console, &interrupt, "check");
-    let count = args.problem.threads.map_or_else(threads::default_count, usize::from);
-    threads::pool(count)?.install(|| run(args, &folder, &mut stages))
+    let start = Start {
+        scene: &args.problem.scene,
+        output: args.output.as_ref(),
+        threads: args.problem.threads,
+        log: args.log,
+    };
+    start.run(|folder, stages| {
+        let mut stages = Stages::part(stages.console, stages.interrupt, "check");
+        run(args, folder, &mut stages)
+    })
 }
 
 fn run(args: &CrosscheckArgs, folder: &Path, stages: &mut Stages) -> Result<Ending, Failure> {

@@ -11,13 +11,14 @@ use super::crosscheck::{deterministic, load};
 use super::solve::report_failure;
 use crate::args::{LogArgs, ProblemArgs};
 use crate::failure::{Ending, Failure};
-use crate::interrupt::{Interrupt, nothing_saved};
+use crate::interrupt::nothing_saved;
+use crate::output;
 use crate::problem::Problem;
 use crate::solution::{Solution, compute};
 use crate::stages::Stages;
+use crate::start::Start;
 use crate::stochastic::{PathArgs, TraceStopArgs, Tracer, control, enclosure, expected_error, faces};
 use crate::summary::Lines;
-use crate::{console, folder, output, threads};
 
 /// Error that is asked for where nothing is.
 const ERROR: f64 = 0.002;
@@ -51,13 +52,16 @@ pub(crate) struct ReferenceArgs {
 
 /// Solves, traces and writes the bundle.
 pub(crate) fn reference(args: &ReferenceArgs) -> Result<Ending, Failure> {
-    let interrupt = Interrupt::install(args.log.log)?;
-    let folder = folder::of(args.output.as_ref(), &args.problem.scene);
-    folder::probe(&folder)?;
-    let console = console::choose(args.log);
-    let mut stages = Stages::part(&*console, &interrupt, "reference");
-    let count = args.problem.threads.map_or_else(threads::default_count, usize::from);
-    threads::pool(count)?.install(|| run(args, &folder, &mut stages))
+    let start = Start {
+        scene: &args.problem.scene,
+        output: args.output.as_ref(),
+        threads: args.problem.threads,
+        log: args.log,
+    };
+    start.run(|folder, stages| {
+        let mut stages = Stages::part(stages.console, stages.interrupt, "reference");
+        run(args, folder, &mut stages)
+    })
 }
 
 fn run(args: &ReferenceArgs, folder: &Path, stages: &mut Stages) -> Result<Ending, Failure> {

@@ -7,9 +7,9 @@ mod summary;
 use std::path::Path;
 use std::time::Instant;
 
-use fredholm_coupling::Emitters;
+use fredholm_coupling::{Emitters, Groups};
 use fredholm_iterative::{Frame, MultilevelShooting};
-use fredholm_linop::{Columns, Lazy};
+use fredholm_linop::{Columns, Lazy, MultiVector};
 use fredholm_report::{SHOOTING_FORMAT, ShootingRecord, Shot, write_shooting, write_shot_picture};
 use serde_json::json;
 
@@ -19,81 +19,63 @@ use light::Light;
 use super::solve::{report_failure, view_of};
 use crate::failure::{Ending, Failure};
 use crate::interrupt::Interrupt;
+use crate::memory;
 use crate::options::ProblemOptions;
 use crate::problem::Open;
 use crate::solution::solve_failure;
 use crate::stages::Stages;
-use crate::{console, folder, memory, threads};
+use crate::start::Start;
 
 /// Shoots until the share asked for is distributed, and writes the field so far.
 pub(crate) fn shoot(args: &ShootArgs) -> Result<Ending, Failure> {
-    let interrupt = Interrupt::install(args.log.log)?;
-    let folder = folder::of(args.output.as_ref(), &args.scene);
-    folder::probe(&folder)?;
-    let console = console::choose(args.log);
-    let mut stages = Stages::new(&*console, &interrupt);
-    let count = args.threads.map_or_else(threads::default_count, usize::from);
-    threads::pool(count)?.install(|| run(args, &folder, &mut stages))
+    let start =
+        Start { scene: &args.scene, output: args.output.as_ref(), threads: args.threads, log: args.log };
+    start.run(|folder, stages| run(args, folder, stages))
 }
 
 fn run(args: &ShootArgs, folder: &Path, stages: &mut Stages) -> Result<Ending, Failure> {
     let scene = Open::load(&args.problem(), args.keep, stages)?;
     let light = stages.run("exposure", || Light::new(&scene))?;
-    let tolerance = scene.options.form_factor_tolerance;
     let groups = stages.run("groups", || Ok(light.groups(&scene)))?;
-    let places = groups.places();
+    let tolerance = scene.options.form_factor_tolerance;
     let emitters = Emitters::new(scene.patches(), &groups, &scene.occluders, tolerance);
-    let columns = Lazy::new(&emitters, u64::try_from(args.keep.0).unwrap_or(u64::MAX));
-    let frame = Frame { order: groups.order(), groups: &places, areas: &light.exposed };
-    let mut shooting = MultilevelShooting::new(&columns, frame, light.scaling(), light.exitance.clone())
-        .map_err(solve_failure)?;
+    let job = Job { args, folder, scene: &scene, light: &light, groups: &groups };
     stages.begin_saving()?;
-    let mut picture = |shots: u64, shooting: &MultilevelShooting| {
-        let shown = shooting.with_ambient();
-        light.field(&scene, shooting.received(), &shown, |field| {
-            write_shot_picture(folder, shots, field, &view_of(scene.scene.camera(), field))
-                .map_err(report_failure)
-        })
-    };
-    let run = Run { args, columns: &columns, places: &places };
     let (console, interrupt) = (stages.console, stages.interrupt);
-    let go_on = |distributed: f64, shots: usize| {
-        console.advance(distributed / args.share, &|| {
-            format!("{shots} shots, {:.1} % distributed", 100.0 * distributed)
-        });
+    let watch = |shot: &Shot, number: usize| {
+        let share = shot.distributed / args.share;
+        console.advance(share, &|| format!("{number} shots, {:.1} % distributed", 100.0 * shot.distributed));
         !interrupt.requested()
     };
-    let shots = stages.run("shots", || run.shoot(&mut shooting, &mut picture, &go_on))?;
+    let (shots, received) = stages.run("shots", || job.shoot(&emitters, &watch))?;
     let record = record(args, &scene, shots, &emitters, stages);
-    let means = light.means(shooting.received());
-    stages.run("results", || {
-        light.field(&scene, shooting.received(), &means, |field| {
-            write_shooting(folder, field, &record, &view_of(scene.scene.camera(), field))
-                .map_err(report_failure)
-        })
-    })?;
+    stages.run("results", || job.write(&received, &record))?;
     let record = ShootingRecord { timings: stages.timings().to_vec(), ..record };
-    record.warnings.iter().for_each(|warning| stages.console.warn(warning));
-    if !args.log.quiet {
-        summary::print(folder, &record)?;
-    }
-    Ok(ending(&record, stages.interrupt))
+    conclude(args, folder, &record, stages)
 }
 
-/// What a run of shots needs.
-struct Run<'a> {
+/// A scene that is shot through, and where its results go.
+struct Job<'a> {
     args: &'a ShootArgs,
-    columns: &'a Lazy<'a, f64>,
-    places: &'a [std::ops::Range<usize>],
+    folder: &'a Path,
+    scene: &'a Open,
+    light: &'a Light,
+    groups: &'a Groups,
 }
 
-impl Run<'_> {
+impl Job<'_> {
+    /// The shots, and what each element has received, W.
     fn shoot(
         &self,
-        shooting: &mut MultilevelShooting,
-        picture: &mut dyn FnMut(u64, &MultilevelShooting) -> Result<(), Failure>,
-        go_on: &dyn Fn(f64, usize) -> bool,
-    ) -> Result<Vec<Shot>, Failure> {
+        emitters: &Emitters,
+        watch: &dyn Fn(&Shot, usize) -> bool,
+    ) -> Result<(Vec<Shot>, MultiVector<f64>), Failure> {
+        let columns = Lazy::new(emitters, u64::try_from(self.args.keep.0).unwrap_or(u64::MAX));
+        let places = self.groups.places();
+        let frame = Frame { order: self.groups.order(), groups: &places, areas: &self.light.exposed };
+        let (scaling, exitance) = (self.light.scaling(), self.light.exitance.clone());
+        let mut shooting =
+            MultilevelShooting::new(&columns, frame, scaling, exitance).map_err(solve_failure)?;
         let (mut shots, mut seconds): (Vec<Shot>, f64) = (Vec::new(), 0.0);
         let mut distributed = shooting.distributed();
         while distributed < self.args.share && shots.len() < self.args.max_shots as usize {
@@ -101,18 +83,47 @@ impl Run<'_> {
             let Some(group) = shooting.shoot() else { break };
             distributed = shooting.distributed();
             seconds += started.elapsed().as_secs_f64();
-            let (elements, columns) = (self.places[group].len() as u64, self.columns.computed());
+            let (elements, columns) = (places[group].len() as u64, columns.computed());
             shots.push(Shot { elements, columns, seconds, distributed });
-            let number = shots.len() as u64;
-            if self.args.pictures.contains(&number) {
-                picture(number, shooting)?;
-            }
-            if !go_on(distributed, shots.len()) {
+            self.picture(shots.len() as u64, &shooting)?;
+            if !watch(&shots[shots.len() - 1], shots.len()) {
                 break;
             }
         }
-        Ok(shots)
+        Ok((shots, shooting.received().clone()))
     }
+
+    /// Writes a picture, where one is asked for after this many shots.
+    fn picture(&self, shots: u64, shooting: &MultilevelShooting) -> Result<(), Failure> {
+        if !self.args.pictures.contains(&shots) {
+            return Ok(());
+        }
+        self.light.field(self.scene, shooting.received(), &shooting.with_ambient(), |field| {
+            let view = view_of(self.scene.scene.camera(), field);
+            write_shot_picture(self.folder, shots, field, &view).map_err(report_failure)
+        })
+    }
+
+    /// Writes the field that follows from what the elements have received, and the record.
+    fn write(&self, received: &MultiVector<f64>, record: &ShootingRecord) -> Result<(), Failure> {
+        self.light.field(self.scene, received, &self.light.means(received), |field| {
+            let view = view_of(self.scene.scene.camera(), field);
+            write_shooting(self.folder, field, record, &view).map_err(report_failure)
+        })
+    }
+}
+
+fn conclude(
+    args: &ShootArgs,
+    folder: &Path,
+    record: &ShootingRecord,
+    stages: &Stages,
+) -> Result<Ending, Failure> {
+    record.warnings.iter().for_each(|warning| stages.console.warn(warning));
+    if !args.log.quiet {
+        summary::print(folder, record)?;
+    }
+    Ok(ending(record, stages.interrupt))
 }
 
 fn record(

@@ -12,14 +12,14 @@ use fredholm_report::{SPECTRUM_FORMAT, SpectrumRecord, write_spectrum};
 use super::solve::report_failure;
 use crate::args::{LogArgs, Precision, ProblemArgs, tolerance};
 use crate::failure::{Ending, Failure};
-use crate::interrupt::Interrupt;
 use crate::options::RADIOSITY;
 use crate::problem::Problem;
+use crate::registry;
 use crate::size::Bytes;
 use crate::solution::{form_factors, system};
 use crate::stages::Stages;
+use crate::start::Start;
 use crate::watcher::Watcher;
-use crate::{console, folder, registry, threads};
 
 /// Options of `spectrum`.
 #[derive(Clone, Debug, Args)]
@@ -50,13 +50,9 @@ pub(crate) struct SpectrumArgs {
 
 /// Analyses the matrix of a scene.
 pub(crate) fn spectrum(args: &SpectrumArgs) -> Result<Ending, Failure> {
-    let interrupt = Interrupt::install(args.log.log)?;
-    let folder = folder::of(args.output.as_ref(), &args.scene);
-    folder::probe(&folder)?;
-    let console = console::choose(args.log);
-    let mut stages = Stages::new(&*console, &interrupt);
-    let count = args.threads.map_or_else(threads::default_count, usize::from);
-    threads::pool(count)?.install(|| run(args, &folder, &mut stages))
+    let start =
+        Start { scene: &args.scene, output: args.output.as_ref(), threads: args.threads, log: args.log };
+    start.run(|folder, stages| run(args, folder, stages))
 }
 
 fn problem(args: &SpectrumArgs) -> ProblemArgs {

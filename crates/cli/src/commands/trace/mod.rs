@@ -14,14 +14,14 @@ use serde::Serialize;
 
 use crate::args::{LogArgs, ProblemArgs};
 use crate::failure::{Ending, Failure};
-use crate::interrupt::Interrupt;
 use crate::options::{Options, ProblemOptions};
 use crate::problem::Problem;
 use crate::solution::compute;
 use crate::stages::Stages;
+use crate::start::Start;
 use crate::stochastic::{Ground, PathArgs, TraceStopArgs, Tracer, control, enclosure, faces};
 use crate::summary::Lines;
-use crate::{console, folder, output, threads};
+use crate::{output, threads};
 
 /// Error that is asked for where nothing is.
 const ERROR: f64 = 0.01;
@@ -84,15 +84,15 @@ struct InForce<'a> {
 
 /// Traces a scene and writes the results.
 pub(crate) fn trace(args: &TraceArgs) -> Result<Ending, Failure> {
-    let interrupt = Interrupt::install(args.log.log)?;
-    let folder = folder::of(args.output.as_ref(), &args.problem.scene);
-    folder::probe(&folder)?;
-    let console = console::choose(args.log);
-    let mut stages = Stages::new(&*console, &interrupt);
-    let count = args.problem.threads.map_or_else(threads::default_count, usize::from);
+    let start = Start {
+        scene: &args.problem.scene,
+        output: args.output.as_ref(),
+        threads: args.problem.threads,
+        log: args.log,
+    };
     let waves = fields::METHODS.contains(&args.method.as_str());
     let run = if waves { fields::run } else { run };
-    threads::pool(count)?.install(|| run(args, &folder, &mut stages))
+    start.run(|folder, stages| run(args, folder, stages))
 }
 
 /// Without a wish, one percent.

@@ -1,0 +1,33 @@
+//! How a verb that computes and writes begins: signals, a folder that can be written to, the console, threads.
+
+use std::path::{Path, PathBuf};
+
+use crate::args::LogArgs;
+use crate::failure::{Ending, Failure};
+use crate::interrupt::Interrupt;
+use crate::stages::Stages;
+use crate::{console, folder, threads};
+
+/// What the command line says of it.
+pub(crate) struct Start<'a> {
+    pub(crate) scene: &'a Path,
+    pub(crate) output: Option<&'a PathBuf>,
+    pub(crate) threads: Option<u16>,
+    pub(crate) log: LogArgs,
+}
+
+impl Start<'_> {
+    /// Runs a verb on its threads, with the folder for its results.
+    pub(crate) fn run(
+        &self,
+        verb: impl FnOnce(&Path, &mut Stages) -> Result<Ending, Failure> + Send,
+    ) -> Result<Ending, Failure> {
+        let interrupt = Interrupt::install(self.log.log)?;
+        let folder = folder::of(self.output, self.scene);
+        folder::probe(&folder)?;
+        let console = console::choose(self.log);
+        let mut stages = Stages::new(&*console, &interrupt);
+        let count = self.threads.map_or_else(threads::default_count, usize::from);
+        threads::pool(count)?.install(|| verb(&folder, &mut stages))
+    }
+}
