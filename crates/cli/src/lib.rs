@@ -29,6 +29,7 @@ mod start;
 mod stochastic;
 mod summary;
 mod threads;
+mod trial;
 mod watcher;
 mod waves;
 

@@ -30,4 +30,13 @@ impl Start<'_> {
         let count = self.threads.map_or_else(threads::default_count, usize::from);
         threads::pool(count)?.install(|| verb(&folder, &mut stages))
     }
+
+    /// As [`run`](Self::run), for a verb whose stages are of no use without the others: what is interrupted leaves nothing.
+    pub(crate) fn run_whole(
+        &self,
+        name: &str,
+        verb: impl FnOnce(&Path, &mut Stages) -> Result<Ending, Failure> + Send,
+    ) -> Result<Ending, Failure> {
+        self.run(|folder, stages| verb(folder, &mut Stages::part(stages.console, stages.interrupt, name)))
+    }
 }

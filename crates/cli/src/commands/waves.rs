@@ -14,6 +14,7 @@ use crate::output::visible;
 use crate::stages::Stages;
 use crate::start::Start;
 use crate::summary::Lines;
+use crate::trial::failed;
 use crate::waves::{self, Model, Outcome};
 
 /// Examples for the help.
@@ -111,8 +112,8 @@ fn compare(args: &WavesArgs, folder: &Path, model: &Model, stages: &mut Stages) 
     if !args.log.quiet {
         tabulate(folder, &record)?;
     }
-    let failed = record.cases.iter().any(|case| case.runs.iter().any(waves::failed));
-    Ok(if failed { Ending::NotConverged } else { Ending::Done })
+    let any = record.cases.iter().any(|case| case.runs.iter().any(failed));
+    Ok(if any { Ending::NotConverged } else { Ending::Done })
 }
 
 /// Prints a table for each frequency.

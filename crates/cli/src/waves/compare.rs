@@ -1,9 +1,7 @@
 //! Solvers compared on the coupling of a scene: iterations, residuals, the spectral radius, and which of them diverge.
 
-use fredholm_linop::{Report, SecondKind, Solver, Stop, StopReason};
-use fredholm_report::{
-    ComparisonHistory, ComparisonRun, WAVE_COMPARISON_FORMAT, WaveComparison, WaveComparisonCase,
-};
+use fredholm_linop::{SecondKind, Solver, Stop, StopReason};
+use fredholm_report::{ComparisonRun, WAVE_COMPARISON_FORMAT, WaveComparison, WaveComparisonCase};
 use fredholm_waves::{Complex64, PhysicalOptics, Source, System, WaveError, spectral_radius};
 use serde_json::json;
 
@@ -12,8 +10,8 @@ use super::solving::{Vectors, Watch, coupled, go_on};
 use super::{Model, registry};
 use crate::failure::{Ending, Failure};
 use crate::interrupt::{Interrupt, nothing_saved};
-use crate::solution::reason;
 use crate::stages::Stages;
+use crate::trial;
 
 /// Applications that the spectral radius is estimated from.
 const STEPS: usize = 200;
@@ -95,43 +93,8 @@ fn run(
     let mut x = Vectors::zeros(b.dim(), 1);
     match solver.solve(&a, b, &mut x, stop, &mut Watch(interrupt)) {
         Ok(report) if report.reason == StopReason::Interrupted => Err(nothing_saved()),
-        Ok(report) => Ok((told(text, &report), (report.reason != StopReason::Diverged).then_some(x))),
-        Err(error) => Ok((refusal(text, error.to_string()), None)),
-    }
-}
-
-fn refusal(text: &str, reason: String) -> ComparisonRun {
-    ComparisonRun {
-        solver: text.to_owned(),
-        outcome: "refused".to_owned(),
-        reason: Some(reason),
-        residual: f64::NAN,
-        error: f64::NAN,
-        ..ComparisonRun::default()
-    }
-}
-
-fn told(text: &str, report: &Report) -> ComparisonRun {
-    let history = || report.history.iter();
-    let residual = |record: &fredholm_linop::Record| record.residuals.first().copied().unwrap_or(0.0);
-    let last = history().next_back();
-    ComparisonRun {
-        solver: text.to_owned(),
-        outcome: reason(report.reason).to_owned(),
-        reason: None,
-        iterations: last.map_or(0, |record| record.iteration as u64),
-        applications: report.work.operator_applications,
-        rows: report.work.row_visits,
-        columns: report.work.column_visits,
-        entries: report.work.entries_touched,
-        seconds: report.seconds,
-        residual: last.map_or(f64::NAN, residual),
-        error: f64::NAN,
-        history: ComparisonHistory {
-            entries: history().map(|record| record.entries_touched).collect(),
-            seconds: history().map(|record| record.seconds).collect(),
-            residual: history().map(residual).collect(),
-        },
+        Ok(report) => Ok((trial::ran(text, &report), (report.reason != StopReason::Diverged).then_some(x))),
+        Err(error) => Ok((trial::refused(text, error.to_string()), None)),
     }
 }
 
@@ -154,9 +117,4 @@ fn distance(x: &Vectors, y: &Vectors) -> f64 {
     gap.set_difference(x, y);
     let norm = |v: &Vectors| v.norms().first().copied().unwrap_or(0.0);
     if norm(y) > 0.0 { norm(&gap) / norm(y) } else { norm(&gap) }
-}
-
-/// Whether a run failed to converge, other than by being refused.
-pub(crate) fn failed(run: &ComparisonRun) -> bool {
-    run.outcome != reason(StopReason::Converged) && run.outcome != "refused"
 }

@@ -15,7 +15,7 @@ mod registry;
 mod solving;
 mod sources;
 
-pub(crate) use compare::{compare, failed};
+pub(crate) use compare::compare;
 pub(crate) use compute::compute;
 pub(crate) use files::write;
 pub(crate) use model::{Band, Method, Model};

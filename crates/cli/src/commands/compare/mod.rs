@@ -24,6 +24,7 @@ use crate::problem::Problem;
 use crate::solution::{form_factors, system};
 use crate::stages::Stages;
 use crate::start::Start;
+use crate::trial::failed;
 use crate::watcher::Watcher;
 
 /// Runs solvers on the same system and writes how they did.
@@ -129,7 +130,7 @@ fn warnings(problem: &Problem, cases: &[ComparisonCase]) -> Vec<String> {
     for case in cases {
         let place =
             if cases.len() > 1 { format!(" at reflectance {}", case.reflectance) } else { String::new() };
-        for run in case.runs.iter().filter(|run| trial::failed(run)) {
+        for run in case.runs.iter().filter(|run| failed(run)) {
             warnings
                 .push(format!("{}{place}: {} after {} iterations", run.solver, run.outcome, run.iterations));
         }
@@ -140,23 +141,9 @@ fn warnings(problem: &Problem, cases: &[ComparisonCase]) -> Vec<String> {
 }
 
 fn ending(record: &ComparisonRecord, interrupt: &Interrupt) -> Ending {
-    let failed = record.cases.iter().any(|case| case.runs.iter().any(trial::failed));
-    match failed {
+    match record.cases.iter().any(|case| case.runs.iter().any(failed)) {
         _ if interrupt.requested() => Ending::Interrupted,
         true => Ending::NotConverged,
         false => Ending::Done,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use fredholm_report::ComparisonRun;
-
-    #[test]
-    fn a_refusal_is_no_failure() {
-        let run = |outcome: &str| ComparisonRun { outcome: outcome.into(), ..ComparisonRun::default() };
-        assert!(!trial::failed(&run("refused")) && !trial::failed(&run("converged")));
-        assert!(trial::failed(&run("diverged")) && trial::failed(&run("not converged")));
     }
 }

@@ -100,10 +100,7 @@ pub(crate) fn crosscheck(args: &CrosscheckArgs) -> Result<Ending, Failure> {
         threads: args.problem.threads,
         log: args.log,
     };
-    start.run(|folder, stages| {
-        let mut stages = Stages::part(stages.console, stages.interrupt, "check");
-        run(args, folder, &mut stages)
-    })
+    start.run_whole("check", |folder, stages| run(args, folder, stages))
 }
 
 fn run(args: &CrosscheckArgs, folder: &Path, stages: &mut Stages) -> Result<Ending, Failure> {

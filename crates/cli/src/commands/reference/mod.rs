@@ -58,10 +58,7 @@ pub(crate) fn reference(args: &ReferenceArgs) -> Result<Ending, Failure> {
         threads: args.problem.threads,
         log: args.log,
     };
-    start.run(|folder, stages| {
-        let mut stages = Stages::part(stages.console, stages.interrupt, "reference");
-        run(args, folder, &mut stages)
-    })
+    start.run_whole("reference", |folder, stages| run(args, folder, stages))
 }
 
 fn run(args: &ReferenceArgs, folder: &Path, stages: &mut Stages) -> Result<Ending, Failure> {
