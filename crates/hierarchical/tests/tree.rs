@@ -67,7 +67,7 @@ fn the_walls_of_a_room_are_whole_rectangles() {
     let mut found: Vec<f64> =
         tree.nodes().iter().filter(top).map(fredholm_hierarchical::Node::area).collect();
     found.sort_by(f64::total_cmp);
-    assert_eq!(found.len(), 6);
+    assert_eq!(found.len(), 6, "{found:?}");
     assert!(found.iter().zip(walls).all(|(a, b)| (a - b).abs() < 1e-9), "{found:?}");
 }
 

@@ -8,6 +8,9 @@ use fredholm_mesh::{Patch, Vec3};
 /// Relative difference of areas up to which the hull counts as filled, and of the doubled area of a corner's triangle up to which it is none.
 const FILLED: f64 = 1e-9;
 
+/// Tangent of the angle between a side and the order of corners: no simple number.
+const ASKEW: f64 = 0.412_7;
+
 /// A point in the plane and in space.
 type Corner = ([f64; 2], Vec3);
 
@@ -26,7 +29,9 @@ pub(super) fn filled(patches: &[&Patch]) -> Option<Patch> {
 /// The corners in coordinates of the plane, sorted.
 fn plane_corners(patches: &[&Patch]) -> Vec<Corner> {
     let (n, origin) = (patches[0].normal(), patches[0].corner(0));
-    let u = (patches[0].corner(1) - origin).normalize();
+    let side = (patches[0].corner(1) - origin).normalize();
+    // Askew to the sides: of corners on a side across the order, rounding would decide which is the first.
+    let u = (side + n.cross(side) * ASKEW).normalize();
     let v = n.cross(u);
     let flat = |x: &Vec3| ([(*x - origin).dot(u), (*x - origin).dot(v)], *x);
     let mut corners: Vec<Corner> =
