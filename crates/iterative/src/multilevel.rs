@@ -75,6 +75,9 @@ pub struct MultilevelShooting<'a> {
     unshot: MultiVector<f64>,
     /// Σ A r over the places before each, by lane, W.
     sums: Vec<f64>,
+    /// Σ A |r| and Σ A x by lane, W.
+    left: Vec<f64>,
+    sent: Vec<f64>,
     scales: Vec<f64>,
     /// 1 − ρ̄, by lane.
     losses: Vec<f64>,
@@ -114,7 +117,7 @@ impl<'a> MultilevelShooting<'a> {
         }
         let zeros = MultiVector::zeros(dim, lanes);
         let scale = |norm: f64| if norm > 0.0 { norm.recip() } else { 0.0 };
-        Ok(Self {
+        let mut shooting = Self {
             columns,
             frame,
             losses: losses(frame.areas, &scaling),
@@ -124,14 +127,17 @@ impl<'a> MultilevelShooting<'a> {
             scales: exitance.norms().into_iter().map(scale).collect(),
             unshot: exitance,
             sums: vec![0.0; (dim + 1) * lanes],
+            left: vec![0.0; lanes],
+            sent: vec![0.0; lanes],
             column: vec![0.0; dim],
             known: vec![false; frame.groups.len()],
-        })
+        };
+        shooting.sum_up();
+        Ok(shooting)
     }
 
     /// Shoots from the group with the most unshot power and returns it; `None` where nothing is unshot.
     pub fn shoot(&mut self) -> Option<usize> {
-        self.sum_up();
         let group = self.brightest()?;
         let places = self.frame.groups[group].clone();
         let members = &self.frame.order[places.clone()];
@@ -148,6 +154,8 @@ impl<'a> MultilevelShooting<'a> {
             let reflected = self.unshot.row_mut(i).iter_mut().zip(self.scaling.row(i));
             reflected.zip(&step).for_each(|((unshot, scaling), step)| *unshot += scaling * exchange * step);
         }
+        self.sent.iter_mut().zip(&step).for_each(|(sent, step)| *sent += area * step);
+        self.sum_up();
         Some(group)
     }
 
@@ -192,9 +200,8 @@ impl<'a> MultilevelShooting<'a> {
     #[must_use]
     pub fn distributed(&self) -> f64 {
         let share = |l: usize| {
-            let unshot = self.power(|i| self.unshot.row(i)[l].abs()) / self.losses[l];
-            let all = self.power(|i| self.shot.row(i)[l]) + unshot;
-            if unshot > 0.0 { 1.0 - unshot / all } else { 1.0 }
+            let unshot = self.left[l] / self.losses[l];
+            if unshot > 0.0 { 1.0 - unshot / (self.sent[l] + unshot) } else { 1.0 }
         };
         (0..self.shot.lanes()).map(share).fold(1.0, f64::min)
     }
@@ -206,10 +213,12 @@ impl<'a> MultilevelShooting<'a> {
 
     fn sum_up(&mut self) {
         let lanes = self.shot.lanes();
+        self.left.fill(0.0);
         for (place, &i) in self.frame.order.iter().enumerate() {
             for l in 0..lanes {
                 let own = self.frame.areas[i as usize] * self.unshot.row(i as usize)[l];
                 self.sums[(place + 1) * lanes + l] = self.sums[place * lanes + l] + own;
+                self.left[l] += own.abs();
             }
         }
     }

@@ -28,12 +28,14 @@ pub(super) fn apply<S: Storage>(matrix: &PackedSymmetric<S>, x: &MultiVector<f64
     let partial: Vec<Product<'_, S>> = runs(matrix.dim()).into_par_iter().map(of).collect();
     let lanes = x.lanes().max(1);
     y.as_mut_slice().par_chunks_mut(BLOCK * lanes).enumerate().for_each(|(at, y)| {
-        y.fill(0.0);
-        for (k, y) in y.chunks_exact_mut(lanes).enumerate() {
-            let i = at * BLOCK + k;
-            for part in partial.iter().filter(|part| i < part.rows.end) {
-                y.iter_mut().zip(part.y.row(i)).for_each(|(y, part)| *y += part);
+        let mut sums = [0.0; BLOCK];
+        for lane in 0..x.lanes() {
+            let sums = &mut sums[..y.len() / lanes];
+            sums.fill(0.0);
+            for part in &partial {
+                part.add_to(sums, at * BLOCK, lane);
             }
+            y.iter_mut().skip(lane).step_by(lanes).zip(sums).for_each(|(y, sum)| *y = *sum);
         }
     });
 }
@@ -81,6 +83,12 @@ impl<'a, S: Storage> Product<'a, S> {
     fn new(matrix: &'a PackedSymmetric<S>, rows: Range<usize>, lanes: usize, x: &'a Planar) -> Self {
         let (y, zeros) = (Planar::zeros(rows.end, lanes), vec![0.0; ROWS * lanes]);
         Self { matrix, rows, lanes, x, y, sums: zeros.clone(), factors: zeros }
+    }
+
+    /// Adds a lane of y from unknown `first` on, as far as it goes.
+    fn add_to(&self, sums: &mut [f64], first: usize, lane: usize) {
+        let [y] = self.y.lanes::<1>(lane);
+        sums.iter_mut().zip(y.iter().skip(first)).for_each(|(sum, part)| *sum += part);
     }
 
     /// Rows first … first + R − 1: the columns before `first` together, then those of each row up to its diagonal.

@@ -103,6 +103,8 @@ impl<S: Storage> WithSimd for Both<'_, S> {
             match lanes - lane {
                 1 => self.lanes::<V, ROWS, 1>(simd, at),
                 2 => self.lanes::<V, PAIR, 2>(simd, at),
+                // Machines of narrow registers have few of them, too: no more sums than fit.
+                _ if registers::<V>() > 1 => self.lanes::<V, 1, LANES>(simd, at),
                 _ => self.lanes::<V, PAIR, LANES>(simd, at),
             }
         }
