@@ -45,6 +45,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use crate::progressive::ambient;
 use fredholm_linop::{Lazy, LinearOperator, MultiVector, SolveError};
 use std::ops::Range;
 
@@ -170,13 +171,7 @@ impl<'a> MultilevelShooting<'a> {
     /// The radiosity with the ambient term: x + r + ρ Amb, where Amb = Σ A r/(Σ A (1 − ρ̄)) spreads what the unshot light will become evenly.
     #[must_use]
     pub fn with_ambient(&self) -> MultiVector<f64> {
-        let total: f64 = self.frame.areas.iter().sum();
-        let ambient: Vec<f64> = (0..self.shot.lanes())
-            .map(|l| {
-                let loss = self.losses[l] * total;
-                if loss > 0.0 { self.power(|i| self.unshot.row(i)[l]) / loss } else { 0.0 }
-            })
-            .collect();
+        let ambient = ambient(&self.scaling, self.frame.areas, &self.unshot);
         let known = self.radiosity();
         MultiVector::from_fn(known.dim(), known.lanes(), |i, l| {
             known.row(i)[l] + self.scaling.row(i)[l] * self.frame.areas[i] * ambient[l]
@@ -204,11 +199,6 @@ impl<'a> MultilevelShooting<'a> {
             if unshot > 0.0 { 1.0 - unshot / (self.sent[l] + unshot) } else { 1.0 }
         };
         (0..self.shot.lanes()).map(share).fold(1.0, f64::min)
-    }
-
-    /// Σ A_i v_i, W.
-    fn power(&self, value: impl Fn(usize) -> f64) -> f64 {
-        self.frame.areas.iter().enumerate().map(|(i, area)| area * value(i)).sum()
     }
 
     fn sum_up(&mut self) {

@@ -139,7 +139,7 @@ fn overshot(r: f64, ahead: f64) -> f64 {
 }
 
 /// The ambient radiosity per lane: Amb = Σ A_j r_j/(Σ A_j (1 − ρ̄)), what the unshot light comes to if it is spread evenly.
-fn ambient<T: Scalar>(factor: &MultiVector<T>, areas: &[f64], unshot: &MultiVector<T>) -> Vec<T> {
+pub(crate) fn ambient<T: Scalar>(factor: &MultiVector<T>, areas: &[f64], unshot: &MultiVector<T>) -> Vec<T> {
     let total: f64 = areas.iter().sum();
     let mut sums = vec![(T::zero(), 0.0); unshot.lanes()];
     for ((row, d), &area) in unshot.rows().zip(factor.rows()).zip(areas) {

@@ -29,6 +29,16 @@ pub(crate) fn front_of(patch: &Patch) -> HalfSpace {
     HalfSpace::through(patch.centroid(), patch.normal())
 }
 
+/// Distance of a point from the nearest of some segments, m.
+pub(crate) fn to_segments(x: Vec3, segments: impl Iterator<Item = [Vec3; 2]>) -> f64 {
+    let to = |[a, b]: [Vec3; 2]| {
+        let along = b - a;
+        let t = ((x - a).dot(along) / along.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        x.distance_squared(a + along * t)
+    };
+    segments.map(to).fold(f64::INFINITY, f64::min).sqrt()
+}
+
 /// Writes the part of a patch in front of a plane to `corners`.
 pub(crate) fn front(patch: &Patch, plane: HalfSpace, flat: f64, corners: &mut Vec<Vec3>) {
     corners.clear();

@@ -5,8 +5,8 @@
 
 use super::critical::{Plane, critical_planes};
 use super::pieces::{Breaks, Piece, Pieces};
-use super::point_to_polygon;
 use super::shadow::{Hiding, Kind};
+use super::{point_to_polygon, to_segments};
 use fredholm_mesh::Vec3;
 use fredholm_quadrature::Estimate;
 use fredholm_visibility::body::Screen;
@@ -71,11 +71,6 @@ impl<'a> Steep<'a> {
 
     /// Distance of a point from the nearest of them, m.
     fn distance(&self, x: Vec3) -> f64 {
-        let to = |&[a, b]: &[Vec3; 2]| {
-            let along = b - a;
-            let t = ((x - a).dot(along) / along.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-            x.distance_squared(a + along * t)
-        };
-        self.edges.iter().map(to).fold(f64::INFINITY, f64::min).sqrt()
+        to_segments(x, self.edges.iter().copied())
     }
 }

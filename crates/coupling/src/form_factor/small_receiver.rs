@@ -3,7 +3,7 @@
 //! F from a point in closed form is smooth over a patch that is far from the edges of the polygon, measured in its radius. The error is that of the midpoint rule times the ratio of both:
 //! the next terms of the expansion are smaller by its square. In m².
 
-use super::{flat, front_of, jacobian, point_to_polygon};
+use super::{flat, front_of, jacobian, point_to_polygon, to_segments};
 use crate::polygon::HalfSpace;
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_quadrature::{Estimate, PlanePoint, symmetric_triangle, tensor_quad};
@@ -21,7 +21,9 @@ pub(crate) fn small_receiver(large: &Patch, small: &Patch, goal: f64) -> Option<
     let faces = in_front(small, before_large, flat(large, small))
         && in_front(large, before_small, flat(large, small));
     let centre = small.centroid();
-    let reach = 0.5 * small.diameter() / to_edges(large, centre);
+    let corners = large.corners();
+    let sides = corners.iter().zip(corners.iter().cycle().skip(1)).map(|(&a, &b)| [a, b]);
+    let reach = 0.5 * small.diameter() / to_segments(centre, sides);
     if !faces || reach > REACH {
         return None;
     }
@@ -37,18 +39,6 @@ pub(crate) fn small_receiver(large: &Patch, small: &Patch, goal: f64) -> Option<
 fn in_front(patch: &Patch, plane: HalfSpace, flat: f64) -> bool {
     let heights = || patch.corners().iter().map(|&x| plane.height(x));
     heights().all(|height| height >= -flat) && heights().any(|height| height > flat)
-}
-
-/// Distance of a point from the edges of a patch, m.
-fn to_edges(patch: &Patch, x: Vec3) -> f64 {
-    let corners = patch.corners();
-    let sides = corners.iter().zip(corners.iter().cycle().skip(1));
-    let to = |(&a, &b): (&Vec3, &Vec3)| {
-        let along = b - a;
-        let t = ((x - a).dot(along) / along.length_squared()).clamp(0.0, 1.0);
-        x.distance_squared(a + along * t)
-    };
-    sides.map(to).fold(f64::INFINITY, f64::min).sqrt()
 }
 
 #[cfg(test)]

@@ -357,6 +357,17 @@ mod tests {
             let (mut sums, mut u) = (vec![9.0; count * lanes], Planar::copied(&x));
             arch.dispatch(Dot { strip, x: &Planar::copied(&x), sums: &mut sums });
             arch.dispatch(Add { strip, factors: &factors, u: &mut u });
+            let (mut sums_too, mut u_too) = (vec![9.0; count * lanes], Planar::copied(&x));
+            let both =
+                Both { strip, x: &Planar::copied(&x), sums: &mut sums_too, factors: &factors, u: &mut u_too };
+            arch.dispatch(both);
+            let rows_of =
+                |u: &Planar| (0..dim).flat_map(|i| u.row(i).collect::<Vec<_>>()).collect::<Vec<_>>();
+            assert_eq!(
+                (&sums_too, &rows_of(&u_too)),
+                (&expected, &added),
+                "{count} × {n}, {lanes} lanes at once"
+            );
             let u: Vec<f64> = (0..dim).flat_map(|i| u.row(i).collect::<Vec<_>>()).collect();
             assert_eq!((&sums, &u), (&expected, &added), "{count} × {n}, {lanes} lanes");
         }
