@@ -3,7 +3,7 @@
 //! Rows are cut into fixed runs of about equal numbers of entries, each run sums into a vector of its own, and the
 //! vectors are added in the order of the runs: the number of threads changes no bit.
 
-use super::planar::Planar;
+use super::planar::{Planar, PlanarMut};
 use super::strip::{Both, Strip};
 use super::{PackedSymmetric, ROWS, Storage, TILE};
 use crate::MultiVector;
@@ -19,25 +19,38 @@ const LEAST: usize = 1 << 15;
 const BLOCK: usize = 1 << 10;
 
 pub(super) fn apply<S: Storage>(matrix: &PackedSymmetric<S>, x: &MultiVector<f64>, y: &mut MultiVector<f64>) {
-    let (planar, arch) = (Planar::copied(x), Arch::new());
-    let of = |rows: Range<usize>| {
-        let mut product = Product::new(matrix, rows, x.lanes(), &planar);
-        arch.dispatch(Whole(&mut product));
-        product
-    };
-    let partial: Vec<Product<'_, S>> = runs(matrix.dim()).into_par_iter().map(of).collect();
+    let (planar, runs) = (Planar::copied(x), runs(matrix.dim()));
+    // One piece of memory for all, which the next product is likely to be given again.
+    let mut memory = vec![0.0; runs.iter().map(|rows| rows.end * x.lanes()).sum()];
+    let mut parts = split(&mut memory, &runs, x.lanes());
+    let tasks = parts.par_iter_mut().zip(runs).with_max_len(1);
+    tasks.for_each(|(part, rows)| {
+        Arch::new().dispatch(Whole(&mut Product::new(matrix, rows, x.lanes(), &planar, part.view_mut())));
+    });
     let lanes = x.lanes().max(1);
     y.as_mut_slice().par_chunks_mut(BLOCK * lanes).enumerate().for_each(|(at, y)| {
         let mut sums = [0.0; BLOCK];
         for lane in 0..x.lanes() {
             let sums = &mut sums[..y.len() / lanes];
             sums.fill(0.0);
-            for part in &partial {
-                part.add_to(sums, at * BLOCK, lane);
+            for part in &parts {
+                let part = part.lane(lane).iter().skip(at * BLOCK);
+                sums.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
             }
             y.iter_mut().skip(lane).step_by(lanes).zip(sums).for_each(|(y, sum)| *y = *sum);
         }
     });
+}
+
+/// For each run of rows its share of y: all lanes up to the last of its rows.
+fn split<'a>(mut memory: &'a mut [f64], runs: &[Range<usize>], lanes: usize) -> Vec<PlanarMut<'a>> {
+    let mut parts = Vec::with_capacity(runs.len());
+    for rows in runs {
+        let (part, rest) = memory.split_at_mut(rows.end * lanes);
+        parts.push(PlanarMut::new(rows.end, part));
+        memory = rest;
+    }
+    parts
 }
 
 /// Runs of rows that depend on the dimension alone. Row i ends at about i²/2 entries, so equal shares end at equal
@@ -54,7 +67,8 @@ struct Product<'a, S> {
     rows: Range<usize>,
     lanes: usize,
     x: &'a Planar,
-    y: Planar,
+    /// y up to the last of the rows.
+    y: PlanarMut<'a>,
     sums: Vec<f64>,
     factors: Vec<f64>,
 }
@@ -79,16 +93,15 @@ impl<S: Storage> WithSimd for Whole<'_, '_, S> {
 }
 
 impl<'a, S: Storage> Product<'a, S> {
-    /// y up to the last of the rows.
-    fn new(matrix: &'a PackedSymmetric<S>, rows: Range<usize>, lanes: usize, x: &'a Planar) -> Self {
-        let (y, zeros) = (Planar::zeros(rows.end, lanes), vec![0.0; ROWS * lanes]);
+    fn new(
+        matrix: &'a PackedSymmetric<S>,
+        rows: Range<usize>,
+        lanes: usize,
+        x: &'a Planar,
+        y: PlanarMut<'a>,
+    ) -> Self {
+        let zeros = vec![0.0; ROWS * lanes];
         Self { matrix, rows, lanes, x, y, sums: zeros.clone(), factors: zeros }
-    }
-
-    /// Adds a lane of y from unknown `first` on, as far as it goes.
-    fn add_to(&self, sums: &mut [f64], first: usize, lane: usize) {
-        let [y] = self.y.lanes::<1>(lane);
-        sums.iter_mut().zip(y.iter().skip(first)).for_each(|(sum, part)| *sum += part);
     }
 
     /// Rows first … first + R − 1: the columns before `first` together, then those of each row up to its diagonal.
@@ -103,10 +116,11 @@ impl<'a, S: Storage> Product<'a, S> {
         }
         for from in (0..first).step_by(TILE) {
             let to = (from + TILE).min(first);
-            let tile = rows.map(|row| &row[from..to]);
+            let tile = rows.map(|row| &row[from..]);
             let strip = Strip { rows: &tile, from };
             let (sums, factors) = (&mut self.sums[..count], &self.factors[..count]);
-            Both { strip, x: self.x, sums, factors, u: &mut self.y }.with_simd(simd);
+            Both { strip, x: self.x, sums, factors, u: self.y.view_mut(), columns: to - from }
+                .with_simd(simd);
         }
         (0..R).for_each(|r| self.add_corner(&rows[r][first..], first, r));
     }

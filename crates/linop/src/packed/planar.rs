@@ -25,13 +25,6 @@ impl Planar {
         std::array::from_fn(|l| &self.data[(first + l) * self.dim..(first + l + 1) * self.dim])
     }
 
-    /// L lanes from lane `first` on.
-    #[inline(always)]
-    pub fn lanes_mut<const L: usize>(&mut self, first: usize) -> [&mut [f64]; L] {
-        let mut lanes = self.data[first * self.dim..].chunks_exact_mut(self.dim.max(1));
-        std::array::from_fn(|_| lanes.next().unwrap_or_default())
-    }
-
     /// Entry i of all lanes.
     pub fn row(&self, i: usize) -> impl Iterator<Item = f64> {
         self.data.iter().skip(i).step_by(self.dim.max(1)).copied()
@@ -45,6 +38,40 @@ impl Planar {
 
     pub fn clear_row(&mut self, i: usize) {
         self.data.iter_mut().skip(i).step_by(self.dim.max(1)).for_each(|value| *value = 0.0);
+    }
+
+    pub fn view_mut(&mut self) -> PlanarMut<'_> {
+        PlanarMut { dim: self.dim, data: &mut self.data }
+    }
+}
+
+/// Lanes one after the other in memory that is kept elsewhere.
+pub(super) struct PlanarMut<'a> {
+    dim: usize,
+    data: &'a mut [f64],
+}
+
+impl<'a> PlanarMut<'a> {
+    /// Lanes of equal length that fill `data`.
+    pub fn new(dim: usize, data: &'a mut [f64]) -> Self {
+        Self { dim, data }
+    }
+
+    /// The same for a while.
+    pub fn view_mut(&mut self) -> PlanarMut<'_> {
+        PlanarMut { dim: self.dim, data: self.data }
+    }
+
+    /// One lane.
+    pub fn lane(&self, lane: usize) -> &[f64] {
+        &self.data[lane * self.dim..(lane + 1) * self.dim]
+    }
+
+    /// L lanes from lane `first` on.
+    #[inline(always)]
+    pub fn lanes_mut<const L: usize>(&mut self, first: usize) -> [&mut [f64]; L] {
+        let mut lanes = self.data[first * self.dim..].chunks_exact_mut(self.dim.max(1));
+        std::array::from_fn(|_| lanes.next().unwrap_or_default())
     }
 
     /// Adds to entry i of all lanes.

@@ -7,7 +7,7 @@
 //! serve the repetitions. Every sum runs in [`WIDTH`] parts that are added in a fixed order, by fused operations that a machine
 //! without them emulates: the bits depend on the code alone, not on the machine.
 
-use super::planar::Planar;
+use super::planar::{Planar, PlanarMut};
 use super::{ROWS, Storage};
 use pulp::{Simd, WithSimd};
 
@@ -17,6 +17,9 @@ const WIDTH: usize = 8;
 const LANES: usize = 3;
 /// Rows at a time, where there are several lanes.
 const PAIR: usize = 2;
+/// Pieces that a row is read ahead of its products, where there are several lanes: products that wait for an entry fill up
+/// the machine, and it asks for the next entries too late.
+const AHEAD: usize = 8;
 
 /// Up to [`ROWS`] rows whose first entry stands in column `from`.
 #[derive(Clone, Copy)]
@@ -36,7 +39,7 @@ pub(super) struct Dot<'a, S> {
 pub(super) struct Add<'a, S> {
     pub strip: Strip<'a, S>,
     pub factors: &'a [f64],
-    pub u: &'a mut Planar,
+    pub u: PlanarMut<'a>,
 }
 
 /// Both at once, where the factors are known before: while one entry is used for both, the next ones come from memory.
@@ -45,7 +48,9 @@ pub(super) struct Both<'a, S> {
     pub x: &'a Planar,
     pub sums: &'a mut [f64],
     pub factors: &'a [f64],
-    pub u: &'a mut Planar,
+    pub u: PlanarMut<'a>,
+    /// Columns to be taken. The rows may go on behind them: those entries are fetched, not used.
+    pub columns: usize,
 }
 
 /// Some rows, and the lanes from one on.
@@ -61,14 +66,27 @@ impl<S: Storage> WithSimd for Dot<'_, S> {
 
     #[inline(always)]
     fn with_simd<V: Simd>(self, simd: V) {
+        match registers::<V>() {
+            1 => self.all::<V, 1>(simd),
+            2 => self.all::<V, 2>(simd),
+            4 => self.all::<V, 4>(simd),
+            _ => self.all::<V, WIDTH>(simd),
+        }
+    }
+}
+
+impl<S: Storage> Dot<'_, S> {
+    /// All lanes, with K registers to a sum.
+    #[inline(always)]
+    fn all<V: Simd, const K: usize>(self, simd: V) {
         let Self { strip, x, sums } = self;
         let lanes = sums.len() / strip.rows.len().max(1);
         for lane in (0..lanes).step_by(LANES) {
             let at = Place { row: 0, lane, lanes };
             match lanes - lane {
-                1 => strip.dots::<V, ROWS, 1>(simd, at, x, sums),
-                2 => strip.dots::<V, PAIR, 2>(simd, at, x, sums),
-                _ => strip.dots::<V, PAIR, LANES>(simd, at, x, sums),
+                1 => strip.dots::<V, ROWS, 1, K>(simd, at, x, sums),
+                2 => strip.dots::<V, PAIR, 2, K>(simd, at, x, sums),
+                _ => strip.dots::<V, PAIR, LANES, K>(simd, at, x, sums),
             }
         }
     }
@@ -79,14 +97,14 @@ impl<S: Storage> WithSimd for Add<'_, S> {
 
     #[inline(always)]
     fn with_simd<V: Simd>(self, simd: V) {
-        let Self { strip, factors, u } = self;
+        let Self { strip, factors, mut u } = self;
         let lanes = factors.len() / strip.rows.len().max(1);
         for lane in (0..lanes).step_by(LANES) {
             let at = Place { row: 0, lane, lanes };
             match lanes - lane {
-                1 => strip.adds::<V, ROWS, 1>(simd, at, factors, u),
-                2 => strip.adds::<V, PAIR, 2>(simd, at, factors, u),
-                _ => strip.adds::<V, PAIR, LANES>(simd, at, factors, u),
+                1 => strip.adds::<V, ROWS, 1>(simd, at, factors, &mut u),
+                2 => strip.adds::<V, PAIR, 2>(simd, at, factors, &mut u),
+                _ => strip.adds::<V, PAIR, LANES>(simd, at, factors, &mut u),
             }
         }
     }
@@ -96,40 +114,57 @@ impl<S: Storage> WithSimd for Both<'_, S> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<V: Simd>(mut self, simd: V) {
-        let lanes = self.sums.len() / self.strip.rows.len().max(1);
-        for lane in (0..lanes).step_by(LANES) {
-            let at = Place { row: 0, lane, lanes };
-            match lanes - lane {
-                1 => self.lanes::<V, ROWS, 1>(simd, at),
-                2 => self.lanes::<V, PAIR, 2>(simd, at),
-                // Machines of narrow registers have few of them, too: no more sums than fit.
-                _ if registers::<V>() > 1 => self.lanes::<V, 1, LANES>(simd, at),
-                _ => self.lanes::<V, PAIR, LANES>(simd, at),
-            }
+    fn with_simd<V: Simd>(self, simd: V) {
+        match registers::<V>() {
+            1 => self.all::<V, 1>(simd),
+            2 => self.all::<V, 2>(simd),
+            4 => self.all::<V, 4>(simd),
+            _ => self.all::<V, WIDTH>(simd),
         }
     }
 }
 
 impl<S: Storage> Both<'_, S> {
+    /// All lanes, with K registers to a sum.
+    #[inline(always)]
+    fn all<V: Simd, const K: usize>(mut self, simd: V) {
+        let lanes = self.sums.len() / self.strip.rows.len().max(1);
+        for lane in (0..lanes).step_by(LANES) {
+            let at = Place { row: 0, lane, lanes };
+            match lanes - lane {
+                1 => self.lanes::<V, ROWS, 1, K>(simd, at),
+                2 if K == 1 => self.lanes::<V, ROWS, 2, K>(simd, at),
+                2 => self.lanes::<V, PAIR, 2, K>(simd, at),
+                _ if K == 1 => self.lanes::<V, ROWS, LANES, K>(simd, at),
+                // Machines of narrow registers have few of them, too: no more sums than fit.
+                _ => self.lanes::<V, 1, LANES, K>(simd, at),
+            }
+        }
+    }
+
     /// L lanes: R rows at a time, then those that are left one by one.
     #[inline(always)]
-    fn lanes<V: Simd, const R: usize, const L: usize>(&mut self, simd: V, at: Place) {
+    fn lanes<V: Simd, const R: usize, const L: usize, const K: usize>(&mut self, simd: V, at: Place) {
         let (groups, rest) = self.strip.rows.as_chunks::<R>();
         for (group, rows) in groups.iter().enumerate() {
-            self.rows::<V, R, L>(simd, *rows, Place { row: group * R, ..at });
+            self.rows::<V, R, L, K>(simd, *rows, Place { row: group * R, ..at });
         }
         for (k, row) in rest.iter().enumerate() {
-            self.rows::<V, 1, L>(simd, [row], Place { row: groups.len() * R + k, ..at });
+            self.rows::<V, 1, L, K>(simd, [row], Place { row: groups.len() * R + k, ..at });
         }
     }
 
     #[inline(always)]
-    fn rows<V: Simd, const R: usize, const L: usize>(&mut self, simd: V, rows: [&[S]; R], at: Place) {
-        let columns = self.strip.from..self.strip.from + self.strip.len();
+    fn rows<V: Simd, const R: usize, const L: usize, const K: usize>(
+        &mut self,
+        simd: V,
+        rows: [&[S]; R],
+        at: Place,
+    ) {
+        let columns = self.strip.from..self.strip.from + self.columns;
         let xs = self.x.lanes::<L>(at.lane).map(|x| &x[columns.clone()]);
         let us = self.u.lanes_mut::<L>(at.lane).map(|u| &mut u[columns.clone()]);
-        both::<V, S, R, L>(simd, rows, xs, us, (self.factors, self.sums), at);
+        both::<V, S, R, L, K>(simd, rows, xs, us, (self.factors, self.sums), at);
     }
 }
 
@@ -140,7 +175,7 @@ impl<S: Storage> Strip<'_, S> {
 
     /// L lanes: R rows at a time, then those that are left one by one.
     #[inline(always)]
-    fn dots<V: Simd, const R: usize, const L: usize>(
+    fn dots<V: Simd, const R: usize, const L: usize, const K: usize>(
         &self,
         simd: V,
         at: Place,
@@ -150,10 +185,10 @@ impl<S: Storage> Strip<'_, S> {
         let xs = x.lanes::<L>(at.lane).map(|x| &x[self.from..self.from + self.len()]);
         let (groups, rest) = self.rows.as_chunks::<R>();
         for (group, rows) in groups.iter().enumerate() {
-            dot::<V, S, R, L>(simd, *rows, xs, Place { row: group * R, ..at }, sums);
+            dot::<V, S, R, L, K>(simd, *rows, xs, Place { row: group * R, ..at }, sums);
         }
         for (k, row) in rest.iter().enumerate() {
-            dot::<V, S, 1, L>(simd, [row], xs, Place { row: groups.len() * R + k, ..at }, sums);
+            dot::<V, S, 1, L, K>(simd, [row], xs, Place { row: groups.len() * R + k, ..at }, sums);
         }
     }
 
@@ -164,7 +199,7 @@ impl<S: Storage> Strip<'_, S> {
         simd: V,
         at: Place,
         factors: &[f64],
-        u: &mut Planar,
+        u: &mut PlanarMut<'_>,
     ) {
         let mut us = u.lanes_mut::<L>(at.lane).map(|u| &mut u[self.from..self.from + self.rows[0].len()]);
         let (groups, rest) = self.rows.as_chunks::<R>();
@@ -184,7 +219,7 @@ const fn registers<V: Simd>() -> usize {
 
 #[inline(always)]
 #[allow(clippy::needless_range_loop, reason = "r, l and k index several arrays")]
-fn dot<V: Simd, S: Storage, const R: usize, const L: usize>(
+fn dot<V: Simd, S: Storage, const R: usize, const L: usize, const K: usize>(
     simd: V,
     rows: [&[S]; R],
     xs: [&[f64]; L],
@@ -192,29 +227,55 @@ fn dot<V: Simd, S: Storage, const R: usize, const L: usize>(
     sums: &mut [f64],
 ) {
     let blocks = rows[0].len() / WIDTH;
-    let (whole, count) = (blocks * WIDTH, blocks * registers::<V>());
     // Slices of one length, which the compiler need not check again.
     let pieces = rows.map(|row| &row.as_chunks::<WIDTH>().0[..blocks]);
-    let x_pieces = xs.map(|x| &V::as_simd_f64s(x).0[..count]);
-    let mut parts = [[[simd.splat_f64s(0.0); WIDTH]; L]; R];
+    let x_pieces = xs.map(|x| &V::as_simd_f64s(x).0[..blocks * K]);
+    let mut parts = [[[simd.splat_f64s(0.0); K]; L]; R];
     for block in 0..blocks {
-        for k in 0..registers::<V>() {
+        for k in 0..K {
             for r in 0..R {
                 let entry = load::<V, S>(&pieces[r][block], k);
                 for l in 0..L {
-                    let x = x_pieces[l][block * registers::<V>() + k];
+                    let x = x_pieces[l][block * K + k];
                     parts[r][l][k] = simd.mul_add_f64s(entry, x, parts[r][l][k]);
                 }
             }
         }
     }
+    finish(&mut numbers(simd, &parts), rows, xs, at, sums);
+}
+
+/// All parts as numbers: in a small loop of its own, which is unrolled, so that the parts can stay in registers.
+#[inline(always)]
+fn numbers<V: Simd, const R: usize, const L: usize, const K: usize>(
+    simd: V,
+    parts: &[[[V::f64s; K]; L]; R],
+) -> [[[f64; WIDTH]; L]; R] {
+    let mut numbers = [[[0.0; WIDTH]; L]; R];
     for r in 0..R {
         for l in 0..L {
-            let mut part = spread(simd, &parts[r][l]);
-            for (k, (entry, x)) in rows[r][whole..].iter().zip(&xs[l][whole..]).enumerate() {
-                part[k] += entry.to_f64() * x;
+            numbers[r][l] = spread(simd, &parts[r][l]);
+        }
+    }
+    numbers
+}
+
+/// Adds the columns that fill no register, and the parts to the sums.
+#[inline(always)]
+fn finish<S: Storage, const R: usize, const L: usize>(
+    numbers: &mut [[[f64; WIDTH]; L]; R],
+    rows: [&[S]; R],
+    xs: [&[f64]; L],
+    at: Place,
+    sums: &mut [f64],
+) {
+    for (r, row) in rows.iter().enumerate() {
+        for (l, x) in xs.iter().enumerate() {
+            let (part, whole) = (&mut numbers[r][l], x.len() / WIDTH * WIDTH);
+            for ((part, entry), x) in part.iter_mut().zip(&row[whole..]).zip(&x[whole..]) {
+                *part += entry.to_f64() * x;
             }
-            sums[(at.row + r) * at.lanes + at.lane + l] += folded(&part);
+            sums[(at.row + r) * at.lanes + at.lane + l] += folded(part);
         }
     }
 }
@@ -234,9 +295,9 @@ fn folded(part: &[f64; WIDTH]) -> f64 {
 
 /// The parts of a sum as numbers.
 #[inline(always)]
-fn spread<V: Simd>(_: V, parts: &[V::f64s; WIDTH]) -> [f64; WIDTH] {
+fn spread<V: Simd, const K: usize>(_: V, parts: &[V::f64s; K]) -> [f64; WIDTH] {
     let mut numbers = [0.0; WIDTH];
-    V::as_mut_simd_f64s(&mut numbers).0.copy_from_slice(&parts[..registers::<V>()]);
+    V::as_mut_simd_f64s(&mut numbers).0.copy_from_slice(parts);
     numbers
 }
 
@@ -278,7 +339,7 @@ fn add<V: Simd, S: Storage, const R: usize, const L: usize>(
 
 #[inline(always)]
 #[allow(clippy::needless_range_loop, reason = "r, l and k index several arrays")]
-fn both<V: Simd, S: Storage, const R: usize, const L: usize>(
+fn both<V: Simd, S: Storage, const R: usize, const L: usize, const K: usize>(
     simd: V,
     rows: [&[S]; R],
     xs: [&[f64]; L],
@@ -287,43 +348,42 @@ fn both<V: Simd, S: Storage, const R: usize, const L: usize>(
     at: Place,
 ) {
     let factor = |r: usize, l: usize| factors[(at.row + r) * at.lanes + at.lane + l];
-    let blocks = rows[0].len() / WIDTH;
-    let (whole, count) = (blocks * WIDTH, blocks * registers::<V>());
-    let mut parts = [[[simd.splat_f64s(0.0); WIDTH]; L]; R];
-    {
-        let pieces = rows.map(|row| &row.as_chunks::<WIDTH>().0[..blocks]);
-        let x_pieces = xs.map(|x| &V::as_simd_f64s(x).0[..count]);
-        let u_pieces = us.each_mut().map(|u| &mut V::as_mut_simd_f64s(u).0[..count]);
-        let splat: [[V::f64s; L]; R] =
-            std::array::from_fn(|r| std::array::from_fn(|l| simd.splat_f64s(factor(r, l))));
-        for block in 0..blocks {
-            for k in 0..registers::<V>() {
-                let entries: [V::f64s; R] = std::array::from_fn(|r| load::<V, S>(&pieces[r][block], k));
-                for l in 0..L {
-                    let x = x_pieces[l][block * registers::<V>() + k];
-                    let u = &mut u_pieces[l][block * registers::<V>() + k];
-                    let mut sum = *u;
-                    for r in 0..R {
-                        parts[r][l][k] = simd.mul_add_f64s(entries[r], x, parts[r][l][k]);
-                        sum = simd.mul_add_f64s(entries[r], splat[r][l], sum);
-                    }
-                    *u = sum;
+    let blocks = xs[0].len() / WIDTH;
+    for (l, u) in us.iter_mut().enumerate() {
+        for (k, u) in u.iter_mut().enumerate().skip(blocks * WIDTH) {
+            (0..R).for_each(|r| *u += rows[r][k].to_f64() * factor(r, l));
+        }
+    }
+    let pieces = rows.map(|row| &row.as_chunks::<WIDTH>().0[..blocks]);
+    let ahead = rows.map(|row| {
+        let all = row.as_chunks::<WIDTH>().0;
+        &all[AHEAD.min(all.len() - blocks)..][..blocks]
+    });
+    let x_pieces = xs.map(|x| &V::as_simd_f64s(x).0[..blocks * K]);
+    let u_pieces = us.each_mut().map(|u| &mut V::as_mut_simd_f64s(u).0[..blocks * K]);
+    let splat: [[V::f64s; L]; R] =
+        std::array::from_fn(|r| std::array::from_fn(|l| simd.splat_f64s(factor(r, l))));
+    let mut parts = [[[simd.splat_f64s(0.0); K]; L]; R];
+    let mut touched = [0.0; R];
+    for block in 0..blocks {
+        for r in 0..if L > 1 { R } else { 0 } {
+            touched[r] += ahead[r][block][0].to_f64();
+        }
+        for k in 0..K {
+            let entries: [V::f64s; R] = std::array::from_fn(|r| load::<V, S>(&pieces[r][block], k));
+            for l in 0..L {
+                let (x, u) = (x_pieces[l][block * K + k], &mut u_pieces[l][block * K + k]);
+                let mut sum = *u;
+                for r in 0..R {
+                    parts[r][l][k] = simd.mul_add_f64s(entries[r], x, parts[r][l][k]);
+                    sum = simd.mul_add_f64s(entries[r], splat[r][l], sum);
                 }
+                *u = sum;
             }
         }
     }
-    for l in 0..L {
-        for (k, u) in us[l][whole..].iter_mut().enumerate() {
-            (0..R).for_each(|r| *u += rows[r][whole + k].to_f64() * factor(r, l));
-        }
-        for r in 0..R {
-            let mut part = spread(simd, &parts[r][l]);
-            for (k, (entry, x)) in rows[r][whole..].iter().zip(&xs[l][whole..]).enumerate() {
-                part[k] += entry.to_f64() * x;
-            }
-            sums[(at.row + r) * at.lanes + at.lane + l] += folded(&part);
-        }
-    }
+    std::hint::black_box(touched);
+    finish(&mut numbers(simd, &parts), rows, xs, at, sums);
 }
 
 #[cfg(test)]
@@ -356,10 +416,16 @@ mod tests {
         for arch in [Arch::new(), Arch::Scalar] {
             let (mut sums, mut u) = (vec![9.0; count * lanes], Planar::copied(&x));
             arch.dispatch(Dot { strip, x: &Planar::copied(&x), sums: &mut sums });
-            arch.dispatch(Add { strip, factors: &factors, u: &mut u });
+            arch.dispatch(Add { strip, factors: &factors, u: u.view_mut() });
             let (mut sums_too, mut u_too) = (vec![9.0; count * lanes], Planar::copied(&x));
-            let both =
-                Both { strip, x: &Planar::copied(&x), sums: &mut sums_too, factors: &factors, u: &mut u_too };
+            let both = Both {
+                strip,
+                x: &Planar::copied(&x),
+                sums: &mut sums_too,
+                factors: &factors,
+                u: u_too.view_mut(),
+                columns: n,
+            };
             arch.dispatch(both);
             let rows_of =
                 |u: &Planar| (0..dim).flat_map(|i| u.row(i).collect::<Vec<_>>()).collect::<Vec<_>>();

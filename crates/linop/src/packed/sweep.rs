@@ -148,7 +148,7 @@ impl<'a> Pass<'a> {
         self.known.set_row(index, x);
         self.factors[r * self.lanes..(r + 1) * self.lanes].copy_from_slice(x);
         for (k, entry) in row[..r].iter().enumerate() {
-            self.upper.add_row(first + k, x.iter().map(|x| entry.to_f64() * x));
+            self.upper.view_mut().add_row(first + k, x.iter().map(|x| entry.to_f64() * x));
         }
         ControlFlow::Continue(())
     }
@@ -208,7 +208,7 @@ impl<S: Storage, const R: usize> WithSimd for Scatter<'_, '_, '_, S, R> {
         for from in (0..first).step_by(TILE) {
             let tile = rows.map(|row| &row[from..(from + TILE).min(first)]);
             let (strip, factors) = (Strip { rows: &tile, from }, &pass.factors[..R * pass.lanes]);
-            Add { strip, factors, u: &mut pass.upper }.with_simd(simd);
+            Add { strip, factors, u: pass.upper.view_mut() }.with_simd(simd);
         }
     }
 }
