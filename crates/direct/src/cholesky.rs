@@ -37,6 +37,8 @@ use fredholm_linop::{
 };
 
 const NAME: &str = "cholesky";
+/// Rows that are turned into columns at a time: their entries of a column lie together in memory.
+const ROWS: usize = 16;
 
 /// Factorises the symmetric form, once for all lanes that share it.
 #[derive(Clone, Copy, Debug, Default)]
@@ -96,14 +98,19 @@ fn solve_lanes<T: Scalar + ComplexField>(run: &mut Run<'_, '_, T>, lanes: &[usiz
 fn theta<T: Scalar>(a: &SecondKind<'_, T>, lane: usize, roots: &[f64]) -> Result<Vec<T>, SolveError> {
     let n = a.dim();
     let mut matrix = Dense::zeros(n)?.into_vec();
-    let mut row = vec![T::zero(); n];
-    for i in 0..n {
-        a.coupling().lower_row(i, lane, &mut row[..=i]);
-        for (j, &entry) in row[..=i].iter().enumerate() {
-            matrix[j * n + i] = -entry.scale(roots[i] * roots[j]);
+    let mut rows = vec![T::zero(); n * ROWS];
+    for first in (0..n).step_by(ROWS) {
+        let last = (first + ROWS).min(n);
+        for i in first..last {
+            a.coupling().lower_row(i, lane, &mut rows[(i - first) * n..][..=i]);
         }
-        matrix[i * n + i] += T::one();
+        for (j, column) in matrix.chunks_exact_mut(n.max(1)).enumerate().take(last) {
+            for i in first.max(j)..last {
+                column[i] = -rows[(i - first) * n + j].scale(roots[i] * roots[j]);
+            }
+        }
     }
+    (0..n).for_each(|i| matrix[i * n + i] += T::one());
     Ok(matrix)
 }
 

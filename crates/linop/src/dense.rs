@@ -31,9 +31,8 @@ impl<T: Scalar> Dense<T> {
     pub fn zeros(dim: usize) -> Result<Self, LinopError> {
         let refused = LinopError::Memory { what: "a dense matrix", bytes: Self::bytes(dim) };
         let len = dim.checked_mul(dim).ok_or_else(|| refused.clone())?;
-        let mut entries = Vec::new();
-        entries.try_reserve_exact(len).map_err(|_| refused)?;
-        entries.resize(len, T::zero());
+        // Memory that the system hands out is zero: what stays so is never touched.
+        let entries = bytemuck::allocation::try_zeroed_vec(len).map_err(|()| refused)?;
         Ok(Self { dim, entries, symmetry: Symmetry::General })
     }
 

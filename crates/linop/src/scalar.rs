@@ -26,6 +26,7 @@ pub trait Scalar:
     + Neg<Output = Self>
     + AddAssign
     + SubAssign
+    + bytemuck::Zeroable
     + 'static
 {
     /// Whether these are the real numbers.
