@@ -16,7 +16,7 @@ use crate::form_factor::{Exchange, PairIntegrator, Workspace};
 use crate::occlusion::{Bound, Clusters, Node, Panel, walk_from};
 
 /// Receivers that one thread takes at a time.
-const CHUNK: usize = 2048;
+const CHUNK: usize = 512;
 /// Relative difference up to which the areas of elements fill a rectangle.
 const FILLED: f64 = 1e-9;
 
@@ -124,7 +124,7 @@ impl<'a> Emitters<'a> {
         f64::from_bits(self.largest.load(Ordering::Relaxed))
     }
 
-    fn exchanges(&self, source: u32, columns: &[u32], panel: &Panel, wholly: usize) -> Vec<Exchange> {
+    fn exchanges(&self, source: u32, columns: &[u32], panel: &Panel, wholly: usize) -> Vec<Vec<Exchange>> {
         let compute = |(chunk, columns): (usize, &[u32])| {
             let (mut work, mut exchanges) = (Workspace::default(), Vec::new());
             if (source as usize) < self.elements {
@@ -142,12 +142,16 @@ impl<'a> Emitters<'a> {
             }
             exchanges
         };
-        columns.par_chunks(CHUNK).enumerate().flat_map_iter(compute).collect()
+        columns.par_chunks(CHUNK).enumerate().map(compute).collect()
     }
 
-    fn note(&self, source: u32, column: u32, exchange: &Exchange) {
-        let area = self.integrator.smaller_area(source as usize, column as usize);
-        self.largest.fetch_max((exchange.error / area).to_bits(), Ordering::Relaxed);
+    /// Remembers the largest error of a form factor.
+    fn note(&self, source: u32, columns: &[u32], exchanges: &[Vec<Exchange>]) {
+        let error = |(&j, exchange): (&u32, &Exchange)| {
+            exchange.error / self.integrator.smaller_area(source as usize, j as usize)
+        };
+        let largest = columns.iter().zip(exchanges.iter().flatten()).map(error).fold(0.0, f64::max);
+        self.largest.fetch_max(largest.to_bits(), Ordering::Relaxed);
     }
 }
 
@@ -190,9 +194,10 @@ impl Columns<f64> for Emitters<'_> {
         let wholly = columns.len();
         columns.extend(panel.partly[0].iter().map(|(j, _)| *j));
         out.fill(0.0);
-        for (&j, exchange) in columns.iter().zip(&self.exchanges(source, &columns, &panel, wholly)) {
+        let exchanges = self.exchanges(source, &columns, &panel, wholly);
+        for (&j, exchange) in columns.iter().zip(exchanges.iter().flatten()) {
             out[j as usize] = exchange.value;
-            self.note(source, j, exchange);
         }
+        self.note(source, &columns, &exchanges);
     }
 }

@@ -442,8 +442,7 @@ fn shooting_from_groups_and_elements_reaches_the_solution_and_saves_columns() {
         let columns = Summed(&scene.coupling, groups.to_vec());
         let lazy = Lazy::new(&columns, 1 << 20);
         let frame = Frame { order: &order, groups, areas: &scene.areas };
-        let mut shooting =
-            MultilevelShooting::new(&lazy, frame, scene.factor.clone(), scene.b.clone()).unwrap();
+        let mut shooting = MultilevelShooting::new(&lazy, frame, scene.factor.clone(), &scene.b).unwrap();
         let mut shots = 0;
         while shooting.distributed() < share && shooting.shoot().is_some() {
             shots += 1;
@@ -469,5 +468,5 @@ fn a_frame_of_another_size_is_refused() {
     let columns = Summed(&scene.coupling, halves.to_vec());
     let lazy = Lazy::new(&columns, 0);
     let frame = Frame { order: &[0, 1], groups: &halves, areas: &scene.areas };
-    assert!(MultilevelShooting::new(&lazy, frame, scene.factor.clone(), scene.b.clone()).is_err());
+    assert!(MultilevelShooting::new(&lazy, frame, scene.factor.clone(), &scene.b).is_err());
 }

@@ -73,9 +73,9 @@ impl Job<'_> {
         let columns = Lazy::new(emitters, u64::try_from(self.args.keep.0).unwrap_or(u64::MAX));
         let places = self.groups.places();
         let frame = Frame { order: self.groups.order(), groups: &places, areas: &self.light.exposed };
-        let (scaling, exitance) = (self.light.scaling(), self.light.exitance.clone());
         let mut shooting =
-            MultilevelShooting::new(&columns, frame, scaling, exitance).map_err(solve_failure)?;
+            MultilevelShooting::new(&columns, frame, self.light.scaling(), &self.light.exitance)
+                .map_err(solve_failure)?;
         let (mut shots, mut seconds): (Vec<Shot>, f64) = (Vec::new(), 0.0);
         let mut distributed = shooting.distributed();
         while distributed < self.args.share && shots.len() < self.args.max_shots as usize {
@@ -90,7 +90,7 @@ impl Job<'_> {
                 break;
             }
         }
-        Ok((shots, shooting.received().clone()))
+        Ok((shots, shooting.received()))
     }
 
     /// Writes a picture, where one is asked for after this many shots.
@@ -98,7 +98,7 @@ impl Job<'_> {
         if !self.args.pictures.contains(&shots) {
             return Ok(());
         }
-        self.light.field(self.scene, shooting.received(), &shooting.with_ambient(), |field| {
+        self.light.field(self.scene, &shooting.received(), &shooting.with_ambient(), |field| {
             let view = view_of(self.scene.scene.camera(), field);
             write_shot_picture(self.folder, shots, field, &view).map_err(report_failure)
         })
