@@ -4,7 +4,9 @@
 //! make the next wave. So the links do not depend on the number of threads. What a pair sees wholly its parts see wholly, and what sees nothing is gone.
 
 use crate::oracle::{Candidate, Light, Oracle, Verdict};
-use crate::transport::{Side, Sight, View, Viewer, exchanges, spread};
+use crate::transport::{
+    End, Meeting, NEAR, Side, Sight, View, Viewer, bound, exchanges, meet, spread, touch,
+};
 use crate::tree::{Node, Tree};
 use crate::{HierarchyError, Link, Watch};
 use fredholm_mesh::Patch;
@@ -107,15 +109,17 @@ pub(crate) fn refine(
         if !limited && needed(tree, &fates, kept.len() + fresh.len()) > limits.bytes {
             limited = true;
             // Once more, and nothing is too coarse now but what cannot be a link.
-            for pair in &mut wave {
-                pair.coarse = pair.nodes[0] == pair.nodes[1];
-            }
+            wave.iter_mut().for_each(|pair| pair.coarse = false);
             continue;
         }
         wave = advance(tree, light, fates, &mut fresh)?;
     }
     fresh.par_sort_unstable_by_key(|link: &Link| (link.a, link.b));
+    let flat = |index: u32| tree.nodes()[index as usize].patch().is_some();
+    let (mut fresh, bent): (Vec<Link>, Vec<Link>) =
+        fresh.into_iter().partition(|link| flat(link.a) && flat(link.b));
     exchanges(tree, &mut fresh, limits.tolerance);
+    kept.extend(bent);
     kept.extend(fresh.into_iter().filter(|link| link.open > 0.0));
     kept.par_sort_unstable_by_key(|link| (link.a, link.b));
     Ok(Refined { links: kept, limited })
@@ -167,17 +171,70 @@ fn fate(oracle: &Oracle, viewer: &mut Viewer, pair: Pair) -> Fate {
     }
     let [a, b] = pair.nodes.map(|index| &oracle.tree.nodes()[index as usize]);
     if pair.nodes[0] == pair.nodes[1] {
-        return if a.patch().is_some() { Fate::Gone } else { Fate::Split(pair) };
+        return match a.patch() {
+            Some(_) => Fate::Gone,
+            None if a.is_linkable() => bent(oracle, viewer, pair),
+            None => Fate::Split(pair),
+        };
     }
     if a.cone().turned_away(b.cone()) {
         return Fate::Gone;
     }
     match (a.patch(), b.patch()) {
         (Some(p), Some(q)) => flat(oracle, viewer, pair, [p, q]),
-        (None, None) if a.cone().radius >= b.cone().radius => Fate::Split(pair),
-        (None, Some(_)) => Fate::Split(pair),
-        _ => Fate::Split(swapped(pair)),
+        (Some(p), None) if b.cone().apart_from(p) => Fate::Gone,
+        (None, Some(q)) if a.cone().apart_from(q) => Fate::Gone,
+        _ if a.is_linkable() && b.is_linkable() => bent(oracle, viewer, pair),
+        _ if b.is_linkable() => Fate::Split(pair),
+        _ if a.is_linkable() || a.cone().radius < b.cone().radius => Fate::Split(swapped(pair)),
+        _ => Fate::Split(pair),
     }
+}
+
+/// The fate of two nodes of which at least one is bent, or of a bent one with itself.
+fn bent(oracle: &Oracle, viewer: &mut Viewer, pair: Pair) -> Fate {
+    let [p, q] = pair.nodes.map(|index| &oracle.tree.nodes()[index as usize]);
+    let ends = pair.nodes.map(|index| End::of(oracle.tree, index));
+    let met = if touching(p, q) {
+        let same = pair.nodes[0] == pair.nodes[1];
+        touch(viewer, [&ends[0], &ends[1]], bound(p, q, same), same)
+    } else {
+        meet(viewer, [&ends[0], &ends[1]], near(p, q))
+    };
+    let met = if met.open > 0.0 { met } else { grazing(p, q) };
+    let Meeting { open, share, sides, doubt } = met;
+    let deviations = sides.map(|side| [side.deviation, side.rest]);
+    let candidate = Candidate { nodes: pair.nodes, open, sides: deviations, doubt };
+    match oracle.judge(&candidate) {
+        Verdict::SplitA => Fate::Split(pair),
+        Verdict::SplitB => Fate::Split(swapped(pair)),
+        Verdict::Keep => Fate::Link(Link { open, ..link(pair, sides, [share, doubt], oracle.linear) }),
+    }
+}
+
+/// Whether the ball round a bent node reaches the other one.
+fn touching(p: &Node, q: &Node) -> bool {
+    match (p.patch(), q.patch()) {
+        (Some(patch), _) => q.cone().distance(patch) <= q.cone().radius,
+        (_, Some(patch)) => p.cone().distance(patch) <= p.cone().radius,
+        _ => p.cone().centre.distance(q.cone().centre) <= p.cone().radius + q.cone().radius,
+    }
+}
+
+/// Whether points of the larger node are too coarse for the smaller one.
+fn near(p: &Node, q: &Node) -> bool {
+    p.cone().centre.distance(q.cone().centre) < NEAR * (p.cone().radius + q.cone().radius)
+}
+
+/// Share of what two nodes would exchange face to face that they may exchange where no part of one is seen from the parts of the other, but some members may be.
+const GRAZING: f64 = 0.02;
+
+/// Nodes that hardly see each other.
+fn grazing(p: &Node, q: &Node) -> Meeting {
+    let distance = p.cone().centre.distance(q.cone().centre);
+    let open = GRAZING * p.area() * q.area() / (std::f64::consts::PI * distance * distance);
+    let side = Side::default().at_least(1.0);
+    Meeting { open: open.min(p.area()).min(q.area()), share: 0.0, sides: [side; 2], doubt: 1.0 }
 }
 
 fn swapped(pair: Pair) -> Pair {

@@ -36,6 +36,29 @@ impl Cone {
         Self { centre, radius: far, axis, angle }
     }
 
+    /// Whether no point of the group looks at any point of a patch, or the other way round. The places that nobody in the ball with any normal of the cone looks at are an intersection of
+    /// half-spaces, so that it is enough to ask for the corners.
+    pub fn apart_from(&self, patch: &Patch) -> bool {
+        let height = (self.centre - patch.corner(0)).dot(patch.normal());
+        let unseen = |x: &Vec3| {
+            let line = *x - self.centre;
+            let off = line.angle_between(self.axis) - self.angle;
+            line.length() * off.max(0.0).cos() + self.radius <= 0.0
+        };
+        height <= -self.radius || patch.corners().iter().all(unseen)
+    }
+
+    /// Distance from the centre to a patch, m, or less.
+    pub fn distance(&self, patch: &Patch) -> f64 {
+        let (n, corners) = (patch.normal(), patch.corners());
+        let height = (self.centre - corners[0]).dot(n);
+        let beyond = |k: usize| {
+            let (x, y) = (corners[k], patch.corner(k + 1));
+            (self.centre - x).dot((y - x).cross(n).normalize_or_zero())
+        };
+        height.hypot((0..corners.len()).map(beyond).fold(0.0, f64::max))
+    }
+
     /// Whether no point of one group looks at any point of the other.
     pub fn turned_away(&self, other: &Self) -> bool {
         let line = other.centre - self.centre;
