@@ -3,27 +3,18 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot run should panic, in its helpers too")]
 
 mod common;
+#[path = "common/objects.rs"]
+mod objects;
 #[path = "common/shapes.rs"]
 mod shapes;
 #[path = "common/traced.rs"]
 mod traced;
 
-use common::Bench;
 use traced::Parts;
-
-fn bench(name: &str, count: usize) -> Bench {
-    let folder = std::env::temp_dir().join(format!("fredholm-curved-{name}-{count}-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
-    std::fs::write(folder.join("object.obj"), shapes::object(name, count).unwrap()).unwrap();
-    std::fs::write(folder.join("object.toml"), shapes::room_with("object.obj")).unwrap();
-    let scene = fredholm_scene::Scene::load(folder.join("object.toml")).unwrap();
-    std::fs::remove_dir_all(&folder).unwrap();
-    Bench::new(scene)
-}
 
 /// Relative L2 errors of the parts less the noise of tracing, of all and of the object alone, and what is stated.
 fn errors(name: &str, (count, accuracy): (usize, f64), (whole_walls, batches): (bool, u64)) -> [f64; 3] {
-    let bench = bench(name, count);
+    let bench = objects::bench(name, count);
     let parts = Parts::of(&bench, whole_walls);
     let solution = bench.solve(accuracy);
     let found = parts.solved(&bench, &solution);

@@ -334,14 +334,16 @@ mod tests {
 
     #[test]
     fn a_hill_receives_what_its_base_would() {
-        let (tree, plate) = (hill(0.15), plate(3.0));
-        let base = plate_under();
-        let exact = contour_integral(base.corners(), plate.corners(), 1e-10).value;
-        let ends = [End::of(&tree, 0), End::Flat(&plate, Points::of(&plate))];
-        for pair in [[&ends[0], &ends[1]], [&ends[1], &ends[0]]] {
-            let found = with_viewer(|viewer| meet(viewer, pair, false));
-            assert!((found.open / exact - 1.0).abs() < 2e-3, "{} {exact}", found.open);
-            assert!(found.share >= 1.0 && found.sides.iter().all(|side| side.rest < 0.1), "{found:?}");
+        // What the parts do not resolve of curvature times gradient falls with the distance.
+        for (distance, tolerance) in [(3.0, 1.5e-2), (9.0, 5e-3)] {
+            let (tree, plate, base) = (hill(0.15), plate(distance), plate_under());
+            let exact = contour_integral(base.corners(), plate.corners(), 1e-10).value;
+            let ends = [End::of(&tree, 0), End::Flat(&plate, Points::of(&plate))];
+            for pair in [[&ends[0], &ends[1]], [&ends[1], &ends[0]]] {
+                let found = with_viewer(|viewer| meet(viewer, pair, false));
+                assert!((found.open / exact - 1.0).abs() < tolerance, "{} {exact}", found.open);
+                assert!(found.share >= 1.0 && found.sides.iter().all(|side| side.rest < 0.1), "{found:?}");
+            }
         }
     }
 

@@ -1,6 +1,6 @@
 //! Irradiances by particle tracing, which shares no more with the links than the rays.
 
-use super::Bench;
+use super::common::Bench;
 use fredholm_hierarchical::Solution;
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_montecarlo::light::{Switches, estimator};
