@@ -109,7 +109,9 @@ pub(crate) fn refine(
         if !limited && needed(tree, &fates, kept.len() + fresh.len()) > limits.bytes {
             limited = true;
             // Once more, and nothing is too coarse now but what cannot be a link.
-            wave.iter_mut().for_each(|pair| pair.coarse = false);
+            for pair in &mut wave {
+                pair.coarse = false;
+            }
             continue;
         }
         wave = advance(tree, light, fates, &mut fresh)?;

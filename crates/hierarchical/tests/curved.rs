@@ -42,6 +42,22 @@ fn objects_agree_with_particle_tracing() {
     }
 }
 
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    let bench = objects::bench("ring", 800);
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| bench.solve(0.05))
+    };
+    let one = with(1);
+    let nodes = one.tree.nodes();
+    assert!(one.links.iter().any(|link| nodes[link.a as usize].patch().is_none()));
+    for threads in [2, 4] {
+        let many = with(threads);
+        assert!(one.links == many.links && one.radiosity == many.radiosity && one.means == many.means);
+    }
+}
+
 /// `cargo test --release -p fredholm-hierarchical --test curved -- --ignored --nocapture`
 #[test]
 #[ignore = "traces hundreds of millions of segments"]

@@ -33,7 +33,8 @@ fn a_furnace_is_exitance_over_absorptance() {
 fn the_planar_cornell_box_agrees_with_particle_tracing() {
     let bench = Bench::shipped("cornell_planar.toml");
     let solution = bench.solve(0.02);
-    let found = error(&bench, &bench.faces(&solution), &traced(&bench, "cornell_planar", &["E_r", "E_g", "E_b"]));
+    let found =
+        error(&bench, &bench.faces(&solution), &traced(&bench, "cornell_planar", &["E_r", "E_g", "E_b"]));
     let stated = solution.error.unwrap().worst();
     println!("found {found:.2e}, stated {stated:.2e}");
     assert!(found < 0.015 && found < stated && stated < 0.02, "{found:e} {stated:e}");

@@ -90,7 +90,11 @@ fn table(trials: &[Trial], accuracies: &[f64]) -> (usize, usize, f64) {
     }
     shares.sort_by(f64::total_cmp);
     let below = shares.iter().filter(|share| **share < 1.0).count();
-    println!("{below} of {} below the stated error, median ratio {:.2}", shares.len(), shares[shares.len() / 2]);
+    println!(
+        "{below} of {} below the stated error, median ratio {:.2}",
+        shares.len(),
+        shares[shares.len() / 2]
+    );
     (below, shares.len(), shares[shares.len() / 2])
 }
 

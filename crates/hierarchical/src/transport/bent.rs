@@ -47,7 +47,7 @@ fn samples(tree: &Tree, index: u32) -> Vec<Sample> {
         let node = &tree.nodes()[part as usize];
         match node.patch() {
             Some(patch) if parts.len() < SAMPLES || node.cone().radius > large => {
-                quarters(patch, &mut samples)
+                quarters(patch, &mut samples);
             }
             Some(patch) => samples.push(Sample::of(node, node.centre(), patch.normal())),
             None => {
@@ -88,6 +88,14 @@ struct Place {
     on: Vec3,
     /// |a|, m².
     facing: f64,
+}
+
+impl Place {
+    /// What two places exchange, m².
+    fn weight(&self, other: &Self) -> f64 {
+        let larger = self.facing.max(other.facing);
+        disc([self.at, self.normal], [other.at, other.normal], larger) * self.facing * other.facing
+    }
 }
 
 /// What two sides exchange: relative to the open exchange the share that gets through, the variation over either side, and the uncertainty of the share.
@@ -218,66 +226,83 @@ fn limited(gradient: Vec3, offsets: &[Vec3]) -> Vec3 {
     if least < -1.0 { gradient / -least } else { gradient }
 }
 
-/// The exchange of two sides that lie apart, at least one of them bent. Nothing is in front where the open exchange is 0.
-pub(crate) fn meet(viewer: &mut Viewer, ends: [&End; 2], near: bool) -> Meeting {
-    let [a, b] = ends;
-    let front = &mut viewer.front;
-    let open = [a.open(b, front), b.open(a, front)];
-    let probes = [a.probes(b, front), b.probes(a, front)];
-    let mut sides = [a.side(&open[0], &probes[0]), b.side(&open[1], &probes[1])];
-    // The parts of a bent cluster see a polygon as it is.
-    let exact = usize::from(matches!(a, End::Flat(..)));
-    let exchange = sides[exact].mean * ends[exact].area();
-    if near {
-        let larger = usize::from(a.area() <= b.area());
-        sides[larger] = sides[larger].at_least(STEEP);
-    }
-    let (seen, rays, clear) = rays(viewer, ends);
-    if clear == rays {
-        return Meeting { open: exchange, share: 1.0, sides, doubt: UNANIMOUS };
-    }
-    let view = |k: usize| {
-        let through = |values: &[f64]| values.iter().zip(&seen[k]).map(|(v, s)| v * s).collect::<Vec<_>>();
-        let side = ends[k].side(&through(&open[k]), &through(&probes[k]));
-        let share = if sides[k].mean > 0.0 { (side.mean / sides[k].mean).min(1.0) } else { 0.0 };
-        (sides[k].mean > 0.0).then(|| (share, side.scaled(share)))
-    };
-    let (share, partly, doubt) = weigh(view(0), view(1));
-    let both = |k: usize| partly[k].at_least_of(&sides[k], share);
-    let least = if clear == 0 { UNANIMOUS } else { MIXED };
-    Meeting { open: exchange, share, sides: [both(0), both(1)], doubt: doubt.max(least) }
+/// Open form factors from the parts of a side, those from members, and what they tell of the function.
+struct Outlook {
+    open: Vec<f64>,
+    probes: Vec<f64>,
+    side: Side,
 }
 
-/// Shares that the places of both sides see of each other, weighted by what they exchange, the rays, and how many of them are clear.
-fn rays(viewer: &mut Viewer, [a, b]: [&End; 2]) -> ([Vec<f64>; 2], usize, usize) {
+impl Outlook {
+    fn of(from: &End, to: &End, front: &mut Vec<Vec3>) -> Self {
+        let (open, probes) = (from.open(to, front), from.probes(to, front));
+        let side = from.side(&open, &probes);
+        Self { open, probes, side }
+    }
+
+    /// The share that is left where each part sees a share of what it would, and how that varies; none where nothing is in front.
+    fn seen(&self, from: &End, shares: &[f64]) -> Option<(f64, Side)> {
+        let through = |values: &[f64]| values.iter().zip(shares).map(|(v, s)| v * s).collect::<Vec<_>>();
+        let side = from.side(&through(&self.open), &through(&self.probes));
+        let share = if self.side.mean > 0.0 { (side.mean / self.side.mean).min(1.0) } else { 0.0 };
+        (self.side.mean > 0.0).then(|| (share, side.scaled(share)))
+    }
+}
+
+/// The exchange of two sides that lie apart, at least one of them bent; the larger one of two near ones varies by as much as itself. The open exchange is 0 where no part sees another.
+pub(crate) fn meet(viewer: &mut Viewer, ends: [&End; 2], near: bool) -> Meeting {
+    let [a, b] = ends;
+    let looks = [Outlook::of(a, b, &mut viewer.front), Outlook::of(b, a, &mut viewer.front)];
+    let exact = exact(ends);
+    let open = looks[exact].side.mean * ends[exact].area();
+    let larger = usize::from(a.area() <= b.area());
+    let least = |k: usize| if near && k == larger { STEEP } else { 0.0 };
+    let whole = [0, 1].map(|k| looks[k].side.at_least(least(k)));
+    let (seen, [all, clear]) = rays(viewer, ends);
+    if clear == all {
+        return Meeting { open, share: 1.0, sides: whole, doubt: UNANIMOUS };
+    }
+    let views = [0, 1].map(|k| looks[k].seen(ends[k], &seen[k]));
+    let (share, partly, doubt) = weigh(views[0], views[1]);
+    let sides = [0, 1].map(|k| partly[k].at_least_of(&whole[k], share));
+    let unsure = if clear == 0 { UNANIMOUS } else { MIXED };
+    Meeting { open, share, sides, doubt: doubt.max(unsure) }
+}
+
+/// Which side knows the exchange better: the parts of a bent cluster see a polygon as it is.
+fn exact(ends: [&End; 2]) -> usize {
+    usize::from(matches!(ends[0], End::Flat(..)))
+}
+
+/// Shares that the places of both sides see of each other, weighted by what they exchange, and the numbers of rays and of clear ones.
+fn rays(viewer: &mut Viewer, [a, b]: [&End; 2]) -> ([Vec<f64>; 2], [usize; 2]) {
     let (xs, ys) = (a.places(), b.places());
     let mut sums = [vec![[0.0; 2]; xs.len()], vec![[0.0; 2]; ys.len()]];
-    let (mut all, mut clear) = (0, 0);
+    let mut counts = [0, 0];
     let stride = (xs.len() * ys.len()).div_ceil(MOST);
     for (i, x) in xs.iter().enumerate() {
         for (j, y) in ys.iter().enumerate().filter(|(j, _)| (i + j) % stride == 0) {
-            let weight =
-                disc([x.at, x.normal], [y.at, y.normal], x.facing.max(y.facing)) * x.facing * y.facing;
+            let weight = x.weight(y);
             if weight > 0.0 {
                 let seen = viewer.sees(x.on, y.on);
-                (all, clear) = (all + 1, clear + usize::from(seen));
+                counts = [counts[0] + 1, counts[1] + usize::from(seen)];
                 for (side, k) in [(0, i), (1, j)] {
-                    sums[side][k][0] += weight;
-                    sums[side][k][1] += if seen { weight } else { 0.0 };
+                    let sum = &mut sums[side][k];
+                    *sum = [sum[0] + weight, sum[1] + if seen { weight } else { 0.0 }];
                 }
             }
         }
     }
-    let mean = if all > 0 { f64::from(clear as u32) / f64::from(all as u32) } else { 1.0 };
+    let mean = counts[1] as f64 / counts[0].max(1) as f64;
     let share = |[all, seen]: &[f64; 2]| if *all > 0.0 { seen / all } else { mean };
-    (sums.map(|side| side.iter().map(share).collect()), all, clear)
+    (sums.map(|side| side.iter().map(share).collect()), counts)
 }
 
 /// The exchange of two sides that touch or are one, which no sampling resolves: at most `bound`, (A + A' − |a + a'|)/2. For every direction, what leaves one member along it and meets another is at most the smaller
 /// one of the projected areas that face forward and backward; their difference is a·ω, their sum Σ A |n·ω|, and the integral of the smaller over all directions is that bound.
 /// A link of a node with itself counts twice.
 pub(crate) fn touch(viewer: &mut Viewer, ends: [&End; 2], bound: f64, same: bool) -> Meeting {
-    let exact = usize::from(matches!(ends[0], End::Flat(..)));
+    let exact = exact(ends);
     let open = ends[exact].open(ends[1 - exact], &mut viewer.front);
     let half = if same { 0.5 } else { 1.0 };
     let guess = half * ends[exact].side(&open, &open).mean * ends[exact].area();
