@@ -27,10 +27,16 @@ pub(super) fn summarise(tree: &mut Tree) {
     for index in (0..tree.nodes.len()).rev() {
         if tree.nodes[index].root == NONE {
             let node = &tree.nodes[index];
-            let bent = node.patch.is_none() && node.cone.angle <= WIDEST;
+            let bent = node.patch.is_none() && node.cone.angle <= WIDEST && is_fine(tree, index as u32);
             tree.nodes[index].gist = Gist { bent, ..gist(tree, node) };
         }
     }
+}
+
+/// Whether a cluster has many parts, or elements alone: nothing is gained by linking a few large polygons as one.
+fn is_fine(tree: &Tree, index: u32) -> bool {
+    let parts = tree.parts(index);
+    parts.len() == PARTS || parts.iter().all(|&part| tree.nodes[part as usize].root != NONE)
 }
 
 fn gist(tree: &Tree, node: &Node) -> Gist {

@@ -1,7 +1,7 @@
 //! Clusters of input elements: a binary tree, first by place, then by plane, then by place in the plane.
 //!
-//! Elements of at most [`PLANES`] planes are parted between planes, unless nearly each has its own; others through the middle of their longest extent, where normals count as places too, so that
-//! what faces elsewhere is parted from what only lies elsewhere; elements of one plane along a line that cuts none of them, where there is one. Lengths in metres.
+//! Elements of at most [`PLANES`] planes are parted between planes, others through the middle of their longest extent. Where nearly each element has a plane of its own, normals count as places, so
+//! that what faces elsewhere is parted from what only lies elsewhere. Elements of one plane are parted along a line that cuts none of them, where there is one. Lengths in metres.
 
 use super::hull::filled;
 use super::{Cone, NONE, Node, Tree};
@@ -9,7 +9,7 @@ use fredholm_mesh::{Mesh, Patch, Vec3};
 
 /// Planes up to which a group is parted between planes.
 const PLANES: usize = 32;
-/// Planes from which on a group of fewer than [`SHARED`] elements a plane is parted as curved ones are.
+/// Planes from which on a group is curved, if each is met within [`SHARED`] elements.
 const CURVED: usize = 7;
 const SHARED: usize = 3;
 /// Length of a unit normal as a place, over the extent of the group.
@@ -58,19 +58,18 @@ impl<'a> Builder<'a> {
         }
         let list: Vec<&Patch> = order.iter().map(|&k| self.patch(k)).collect();
         let area = list.iter().map(|patch| patch.area()).sum();
-        let flat = if self.planes(order).len() == 1 { filled(&list) } else { None };
+        let flat = if self.planes(order).0.len() == 1 { filled(&list) } else { None };
         Node::cluster(flat, Cone::around(list.iter().copied()), area)
     }
 
     /// Parts a group of at least two.
     fn part(&self, order: Vec<u32>) -> (Vec<u32>, Vec<u32>) {
-        let planes = self.planes(&order);
+        let (planes, met) = self.planes(&order);
         match planes.len() {
             1 => self.in_one_plane(order),
-            count @ 2..=PLANES if count < CURVED || order.len() >= SHARED * count => {
-                self.between_planes(order, planes)
-            }
-            _ => self.through_place_or_normal(order),
+            count if count >= CURVED && met < SHARED * count => self.through_place_or_normal(order),
+            2..=PLANES => self.between_planes(order, planes),
+            _ => self.through_the_middle(order, [Vec3::X, Vec3::Y, Vec3::Z]),
         }
     }
 
@@ -80,18 +79,18 @@ impl<'a> Builder<'a> {
             && (patch.corner(0) - first.corner(0)).dot(first.normal()).abs() <= self.tolerance
     }
 
-    /// One element of each plane; more than [`PLANES`] are not told apart.
-    fn planes(&self, order: &[u32]) -> Vec<u32> {
+    /// One element of each plane, and how many elements were asked; more than [`PLANES`] are not told apart.
+    fn planes(&self, order: &[u32]) -> (Vec<u32>, usize) {
         let mut planes: Vec<u32> = Vec::new();
-        for &k in order {
+        for (met, &k) in order.iter().enumerate() {
             if !planes.iter().any(|&plane| self.same_plane(k, plane)) {
                 planes.push(k);
                 if planes.len() > PLANES {
-                    break;
+                    return (planes, met + 1);
                 }
             }
         }
-        planes
+        (planes, order.len())
     }
 
     fn between_planes(&self, order: Vec<u32>, mut planes: Vec<u32>) -> (Vec<u32>, Vec<u32>) {
@@ -184,8 +183,19 @@ fn widest(extents: &[f64; 3]) -> (usize, f64) {
     (extents.iter().position(|&extent| extent >= most).unwrap_or(0), most)
 }
 
+/// Two parts of rising places, as nearly halves as elements at one place stay together.
 fn halves(mut order: Vec<u32>, place: impl Fn(u32) -> f64) -> (Vec<u32>, Vec<u32>) {
     order.sort_by(|&a, &b| place(a).total_cmp(&place(b)));
-    let high = order.split_off(order.len() / 2);
+    let together = 1e-9 * (place(order[order.len() - 1]) - place(order[0]));
+    let apart = |&k: &usize| place(order[k]) - place(order[k - 1]) > together;
+    let middle = order.len() / 2;
+    let below = (1..=middle).rev().find(apart);
+    let above = (middle + 1..order.len()).find(apart);
+    let cut = match (below, above) {
+        (Some(low), Some(high)) if high - middle < middle - low => high,
+        (Some(low), _) => low,
+        (None, high) => high.unwrap_or(middle),
+    };
+    let high = order.split_off(cut);
     (order, high)
 }
