@@ -4,9 +4,7 @@
 //! make the next wave. So the links do not depend on the number of threads. What a pair sees wholly its parts see wholly, and what sees nothing is gone.
 
 use crate::oracle::{Candidate, Light, Oracle, Verdict};
-use crate::transport::{
-    End, Meeting, NEAR, Side, Sight, View, Viewer, bound, exchanges, meet, spread, touch,
-};
+use crate::transport::{Meeting, Side, Sight, View, Viewer, encounter, exchanges, spread};
 use crate::tree::{Node, Tree};
 use crate::{HierarchyError, Link, Watch};
 use fredholm_mesh::Patch;
@@ -195,16 +193,7 @@ fn fate(oracle: &Oracle, viewer: &mut Viewer, pair: Pair) -> Fate {
 
 /// The fate of two nodes of which at least one is bent, or of a bent one with itself.
 fn bent(oracle: &Oracle, viewer: &mut Viewer, pair: Pair) -> Fate {
-    let [p, q] = pair.nodes.map(|index| &oracle.tree.nodes()[index as usize]);
-    let ends = pair.nodes.map(|index| End::of(oracle.tree, index));
-    let met = if touching(p, q) {
-        let same = pair.nodes[0] == pair.nodes[1];
-        touch(viewer, [&ends[0], &ends[1]], bound(p, q, same), same)
-    } else {
-        meet(viewer, [&ends[0], &ends[1]], near(p, q))
-    };
-    let met = if met.open > 0.0 { met } else { grazing(p, q) };
-    let Meeting { open, share, sides, doubt } = met;
+    let Meeting { open, share, sides, doubt } = encounter(oracle.tree, pair.nodes, viewer);
     let deviations = sides.map(|side| [side.deviation, side.rest]);
     let candidate = Candidate { nodes: pair.nodes, open, sides: deviations, doubt };
     match oracle.judge(&candidate) {
@@ -212,31 +201,6 @@ fn bent(oracle: &Oracle, viewer: &mut Viewer, pair: Pair) -> Fate {
         Verdict::SplitB => Fate::Split(swapped(pair)),
         Verdict::Keep => Fate::Link(Link { open, ..link(pair, sides, [share, doubt], oracle.linear) }),
     }
-}
-
-/// Whether the ball round a bent node reaches the other one.
-fn touching(p: &Node, q: &Node) -> bool {
-    match (p.patch(), q.patch()) {
-        (Some(patch), _) => q.cone().distance(patch) <= q.cone().radius,
-        (_, Some(patch)) => p.cone().distance(patch) <= p.cone().radius,
-        _ => p.cone().centre.distance(q.cone().centre) <= p.cone().radius + q.cone().radius,
-    }
-}
-
-/// Whether points of the larger node are too coarse for the smaller one.
-fn near(p: &Node, q: &Node) -> bool {
-    p.cone().centre.distance(q.cone().centre) < NEAR * (p.cone().radius + q.cone().radius)
-}
-
-/// Share of what two nodes would exchange face to face that they may exchange where no part of one is seen from the parts of the other, but some members may be.
-const GRAZING: f64 = 0.02;
-
-/// Nodes that hardly see each other.
-fn grazing(p: &Node, q: &Node) -> Meeting {
-    let distance = p.cone().centre.distance(q.cone().centre);
-    let open = GRAZING * p.area() * q.area() / (std::f64::consts::PI * distance * distance);
-    let side = Side::default().at_least(1.0);
-    Meeting { open: open.min(p.area()).min(q.area()), share: 0.0, sides: [side; 2], doubt: 1.0 }
 }
 
 fn swapped(pair: Pair) -> Pair {
