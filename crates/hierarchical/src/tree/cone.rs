@@ -93,6 +93,23 @@ mod tests {
     }
 
     #[test]
+    fn a_group_and_a_patch_that_do_not_see_each_other_are_told() {
+        let (floor, group) = (square(0.0, true), Cone::around([square(9.0, false)].iter()));
+        assert!(!group.apart_from(&floor) && group.apart_from(&floor.flipped()));
+        let leaning = |angle: f64| Cone { angle, ..Cone::around([square(9.0, true)].iter()) };
+        assert!(leaning(1.0).apart_from(&floor) && !leaning(1.5).apart_from(&floor));
+    }
+
+    #[test]
+    fn the_distance_from_a_patch_is_not_overestimated() {
+        let floor = square(0.0, true);
+        let at =
+            |x: f64, y: f64, z: f64| Cone { centre: Vec3::new(x, y, z), ..Cone::of(&floor) }.distance(&floor);
+        assert!((at(0.5, -0.5, 2.0) - 2.0).abs() < 1e-12 && (at(5.0, 0.0, 3.0) - 5.0).abs() < 1e-12);
+        assert!(at(5.0, 5.0, 3.0) <= 41f64.sqrt() && at(5.0, 5.0, 3.0) >= 5.0 - 1e-12);
+    }
+
+    #[test]
     fn a_group_of_all_directions_is_never_turned_away() {
         let both = [square(0.0, true), square(0.0, false)];
         assert!(!Cone::around(both.iter()).turned_away(&Cone::of(&square(9.0, false))));
