@@ -3,7 +3,7 @@
 //! The tree is not saved but grown again: the same splits of the same mesh give the same tree.
 
 use crate::driver::{Problem, Round, Stated};
-use crate::{HierarchyError, Link, State, Tree};
+use crate::{HierarchyError, Link, Node, State, Tree};
 use fredholm_linop::MultiVector;
 use std::io::{self, Read, Write};
 
@@ -63,11 +63,12 @@ impl State {
     /// Refuses what does not fit its tree.
     fn checked(self, problem: &Problem) -> Result<Self, HierarchyError> {
         let nodes = self.tree.nodes();
-        let flat = |index: u32| nodes.get(index as usize).is_some_and(|node| node.patch().is_some());
+        let linkable = |index: u32| nodes.get(index as usize).is_some_and(Node::is_linkable);
         let faces = problem.mesh.faces().len() * self.radiosity.lanes();
-        let fits = self.links.iter().all(|link| flat(link.a) && flat(link.b) && link.open.is_finite())
-            && (self.faces.len() == faces || self.rounds.is_empty())
-            && self.radiosity.not_finite().is_none();
+        let fits =
+            self.links.iter().all(|link| linkable(link.a) && linkable(link.b) && link.open.is_finite())
+                && (self.faces.len() == faces || self.rounds.is_empty())
+                && self.radiosity.not_finite().is_none();
         if fits { Ok(self) } else { Err(HierarchyError::State { why: "belongs to another scene" }) }
     }
 }

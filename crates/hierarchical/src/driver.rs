@@ -30,6 +30,9 @@ const EXCHANGE: f64 = 0.1;
 /// Least area of an element, over that of the scene.
 const LEAST: f64 = 1e-10;
 
+/// Occluders that are put together to bodies, at most.
+const MANY: usize = 2048;
+
 /// What is solved.
 #[derive(Clone, Copy, Debug)]
 pub struct Problem<'a> {
@@ -148,9 +151,10 @@ pub fn solve(
         return Err(HierarchyError::Accuracy { value: options.accuracy });
     }
     let patches: Vec<&Patch> = problem.mesh.patches().collect();
-    let bodies = Bodies::new(problem.occluders, &patches, &[]);
+    let many = problem.occluders.len() > MANY;
+    let bodies = if many { Bodies::default() } else { Bodies::new(problem.occluders, &patches, &[]) };
     let exposure = Exposure::new(problem.mesh)?;
-    let sight = Sight { occluders: problem.occluders, bodies: &bodies };
+    let sight = Sight { occluders: problem.occluders, bodies: &bodies, many };
     let mut run = Run { problem, options, solver, watch, sight, exposure };
     let mut state = match state {
         Some(state) => state,

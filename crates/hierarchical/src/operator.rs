@@ -94,6 +94,12 @@ impl HierarchicalOperator {
         MultiVector::from_fn(self.parents.len(), x.lanes(), |node, lane| pulled.row(node)[NUMBERS * lane])
     }
 
+    /// What a node exchanges with itself, m²; such links have no gradient.
+    fn own_exchange(&self, node: usize) -> f64 {
+        let entries = &self.entries[self.starts[node]..self.starts[node + 1]];
+        entries.iter().filter(|entry| entry.sender as usize == node).map(|entry| entry.exchange).sum()
+    }
+
     /// Means and moments of all nodes.
     fn pull(&self, x: &MultiVector<f64>) -> MultiVector<f64> {
         let mut pulled = MultiVector::zeros(self.parents.len(), NUMBERS * x.lanes());
@@ -216,8 +222,13 @@ impl LinearOperator<f64> for HierarchicalOperator {
         (self.entries.len() + 2 * self.parents.len()) as u64
     }
 
-    /// No element sees itself.
+    /// No element sees itself, but a bent cluster that is linked with itself gives each of its elements a share of its own light.
     fn diagonal(&self, _: usize, out: &mut [f64]) {
-        out.fill(0.0);
+        let mut own: Vec<f64> = (0..self.parents.len()).map(|node| self.own_exchange(node)).collect();
+        for child in 1..own.len() {
+            let (_, share) = self.place(child);
+            own[child] += share * share * own[self.parents[child] as usize];
+        }
+        out.iter_mut().zip(&self.leaves).for_each(|(out, &leaf)| *out = own[leaf as usize]);
     }
 }

@@ -4,7 +4,7 @@
 //! make the next wave. So the links do not depend on the number of threads. What a pair sees wholly its parts see wholly, and what sees nothing is gone.
 
 use crate::oracle::{Candidate, Light, Oracle, Verdict};
-use crate::transport::{Side, Sight, View, Viewer, exchanges, spread};
+use crate::transport::{Meeting, Side, Sight, View, Viewer, encounter, exchanges, spread};
 use crate::tree::{Node, Tree};
 use crate::{HierarchyError, Link, Watch};
 use fredholm_mesh::Patch;
@@ -108,14 +108,18 @@ pub(crate) fn refine(
             limited = true;
             // Once more, and nothing is too coarse now but what cannot be a link.
             for pair in &mut wave {
-                pair.coarse = pair.nodes[0] == pair.nodes[1];
+                pair.coarse = false;
             }
             continue;
         }
         wave = advance(tree, light, fates, &mut fresh)?;
     }
     fresh.par_sort_unstable_by_key(|link: &Link| (link.a, link.b));
+    let flat = |index: u32| tree.nodes()[index as usize].patch().is_some();
+    let (mut fresh, bent): (Vec<Link>, Vec<Link>) =
+        fresh.into_iter().partition(|link| flat(link.a) && flat(link.b));
     exchanges(tree, &mut fresh, limits.tolerance);
+    kept.extend(bent);
     kept.extend(fresh.into_iter().filter(|link| link.open > 0.0));
     kept.par_sort_unstable_by_key(|link| (link.a, link.b));
     Ok(Refined { links: kept, limited })
@@ -167,16 +171,35 @@ fn fate(oracle: &Oracle, viewer: &mut Viewer, pair: Pair) -> Fate {
     }
     let [a, b] = pair.nodes.map(|index| &oracle.tree.nodes()[index as usize]);
     if pair.nodes[0] == pair.nodes[1] {
-        return if a.patch().is_some() { Fate::Gone } else { Fate::Split(pair) };
+        return match a.patch() {
+            Some(_) => Fate::Gone,
+            None if a.is_linkable() => bent(oracle, viewer, pair),
+            None => Fate::Split(pair),
+        };
     }
     if a.cone().turned_away(b.cone()) {
         return Fate::Gone;
     }
     match (a.patch(), b.patch()) {
         (Some(p), Some(q)) => flat(oracle, viewer, pair, [p, q]),
-        (None, None) if a.cone().radius >= b.cone().radius => Fate::Split(pair),
-        (None, Some(_)) => Fate::Split(pair),
-        _ => Fate::Split(swapped(pair)),
+        (Some(p), None) if b.cone().apart_from(p) => Fate::Gone,
+        (None, Some(q)) if a.cone().apart_from(q) => Fate::Gone,
+        _ if a.is_linkable() && b.is_linkable() => bent(oracle, viewer, pair),
+        _ if b.is_linkable() => Fate::Split(pair),
+        _ if a.is_linkable() || a.cone().radius < b.cone().radius => Fate::Split(swapped(pair)),
+        _ => Fate::Split(pair),
+    }
+}
+
+/// The fate of two nodes of which at least one is bent, or of a bent one with itself.
+fn bent(oracle: &Oracle, viewer: &mut Viewer, pair: Pair) -> Fate {
+    let Meeting { open, share, sides, doubt } = encounter(oracle.tree, pair.nodes, viewer);
+    let deviations = sides.map(|side| [side.deviation, side.rest]);
+    let candidate = Candidate { nodes: pair.nodes, open, sides: deviations, doubt };
+    match oracle.judge(&candidate) {
+        Verdict::SplitA => Fate::Split(pair),
+        Verdict::SplitB => Fate::Split(swapped(pair)),
+        Verdict::Keep => Fate::Link(Link { open, ..link(pair, sides, [share, doubt], oracle.linear) }),
     }
 }
 

@@ -3,6 +3,10 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot run should panic, in its helpers too")]
 
 mod common;
+#[path = "common/objects.rs"]
+mod objects;
+#[path = "common/shapes.rs"]
+mod shapes;
 
 use common::{Bench, room};
 use fredholm_hierarchical::{HierarchyError, Patient, Round, State, Watch};
@@ -25,7 +29,12 @@ impl Watch for Keep {
 
 #[test]
 fn every_saved_state_leads_to_the_same_bits() {
-    let bench = Bench::shipped("occluder.toml");
+    for bench in [Bench::shipped("occluder.toml"), objects::bench("ring", 800)] {
+        resumed_from_every_state(&bench);
+    }
+}
+
+fn resumed_from_every_state(bench: &Bench) {
     let keep = Keep::default();
     let whole = bench.resume(ACCURACY, None, &keep);
     let states = keep.0.into_inner().unwrap();

@@ -3,6 +3,10 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot run should panic, in its helpers too")]
 
 mod common;
+#[path = "common/objects.rs"]
+mod objects;
+#[path = "common/shapes.rs"]
+mod shapes;
 
 use common::{Bench, room};
 use fredholm_coupling::form_factor::{PairIntegrator, Workspace};
@@ -92,4 +96,36 @@ fn a_closed_room_is_closed() {
     let sums = solution.closure.iter().zip(solution.system.elements());
     let mean = sums.map(|(sum, size)| size.area * (sum - 1.0)).sum::<f64>() / area;
     assert!(mean.abs() < 5e-3, "{mean:e}");
+}
+
+#[test]
+fn bent_clusters_keep_the_operator_symmetric_and_its_diagonal_true() {
+    let solution = objects::bench("bowl", 800).solve(0.1);
+    assert!(solution.links.iter().any(|link| link.a == link.b && link.exchange() > 0.0));
+    let operator = operator(&solution);
+    let n = operator.dim();
+    let (x, y) = (noise(n, 3), noise(n, 4));
+    let (mut gx, mut gy) = (MultiVector::zeros(n, 1), MultiVector::zeros(n, 1));
+    operator.apply(&x, &mut gx);
+    operator.apply(&y, &mut gy);
+    let (one, other) = (y.dots(&gx)[0], x.dots(&gy)[0]);
+    assert!((one - other).abs() < 1e-12 * gx.norms()[0] * y.norms()[0], "{one} {other}");
+    let (mut column, mut diagonal) = (vec![0.0; n], vec![0.0; n]);
+    operator.diagonal(0, &mut diagonal);
+    assert!(diagonal.iter().any(|&own| own > 0.0));
+    for i in (0..n).step_by(37) {
+        operator.column(i, 0, &mut column);
+        assert!((column[i] - diagonal[i]).abs() <= 1e-12 * diagonal[i], "{i}: {} {}", column[i], diagonal[i]);
+    }
+}
+
+#[test]
+fn a_room_with_a_ring_is_closed() {
+    let bench = objects::bench("ring", 800);
+    let solution = bench.solve(0.02);
+    let area: f64 = solution.system.elements().iter().map(|size| size.area).sum();
+    let sums = solution.closure.iter().zip(solution.system.elements());
+    let mean = sums.map(|(sum, size)| size.area * (sum - 1.0)).sum::<f64>() / area;
+    println!("{mean:e}");
+    assert!(mean.abs() < 1e-2, "{mean:e}");
 }

@@ -3,48 +3,13 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot run should panic, in its helpers too")]
 
 mod common;
+#[path = "common/truth.rs"]
+mod truth;
 
 use common::{Bench, options, room};
 use fredholm_hierarchical::{HierarchyError, Patient, solve};
 use fredholm_iterative::{CgTheta, Neumann};
-use std::collections::HashMap;
-use std::path::Path;
-
-/// Centre of a face and its irradiance in each band.
-type Row = ([f64; 3], Vec<f64>);
-
-/// Rows of a reference by surface.
-fn reference(name: &str, bands: &[&str]) -> HashMap<String, Vec<Row>> {
-    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data");
-    let text = std::fs::read_to_string(data.join(format!("{name}_reference.csv"))).unwrap();
-    let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
-    let head = lines.next().unwrap();
-    let at = |column: &str| head.iter().position(|name| *name == column).unwrap();
-    let mut found: HashMap<String, Vec<Row>> = HashMap::new();
-    for line in lines {
-        let number = |column: &str| line[at(column)].parse::<f64>().unwrap();
-        let row = (["cx", "cy", "cz"].map(number), bands.iter().map(|band| number(band)).collect());
-        found.entry(line[at("surface")].to_owned()).or_default().push(row);
-    }
-    found
-}
-
-/// Relative L2 error in the worst band against a reference.
-fn error(bench: &Bench, found: &[f64], name: &str, columns: &[&str]) -> f64 {
-    let reference = reference(name, columns);
-    let (mut squares, mut norms) = (vec![0.0; columns.len()], vec![0.0; columns.len()]);
-    for (face, e) in bench.mesh.faces().iter().zip(found.chunks(columns.len())) {
-        let rows = &reference[&bench.mesh.surfaces()[face.surface].name];
-        let close =
-            |row: &&Row| face.centroid.to_array().iter().zip(row.0).all(|(a, b)| (a - b).abs() < 1e-6);
-        let exact = &rows.iter().find(close).unwrap().1;
-        for band in 0..columns.len() {
-            squares[band] += face.area * (e[band] - exact[band]).powi(2);
-            norms[band] += face.area * exact[band] * exact[band];
-        }
-    }
-    squares.iter().zip(norms).map(|(s, n)| (s / n).sqrt()).fold(0.0, f64::max)
-}
+use truth::{error, traced};
 
 #[test]
 fn a_furnace_is_exitance_over_absorptance() {
@@ -68,7 +33,8 @@ fn a_furnace_is_exitance_over_absorptance() {
 fn the_planar_cornell_box_agrees_with_particle_tracing() {
     let bench = Bench::shipped("cornell_planar.toml");
     let solution = bench.solve(0.02);
-    let found = error(&bench, &bench.faces(&solution), "cornell_planar", &["E_r", "E_g", "E_b"]);
+    let found =
+        error(&bench, &bench.faces(&solution), &traced(&bench, "cornell_planar", &["E_r", "E_g", "E_b"]));
     let stated = solution.error.unwrap().worst();
     println!("found {found:.2e}, stated {stated:.2e}");
     assert!(found < 0.015 && found < stated && stated < 0.02, "{found:e} {stated:e}");
@@ -78,7 +44,7 @@ fn the_planar_cornell_box_agrees_with_particle_tracing() {
 fn the_occluder_agrees_with_particle_tracing() {
     let bench = Bench::shipped("occluder.toml");
     let solution = bench.solve(0.02);
-    let found = error(&bench, &bench.faces(&solution), "occluder", &["E"]);
+    let found = error(&bench, &bench.faces(&solution), &traced(&bench, "occluder", &["E"]));
     let stated = solution.error.unwrap().worst();
     println!("found {found:.2e}, stated {stated:.2e}");
     assert!(found < 0.02 && found < stated && stated < 0.02, "{found:e} {stated:e}");

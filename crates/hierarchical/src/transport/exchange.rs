@@ -9,7 +9,7 @@ use rayon::prelude::*;
 /// Links that one thread takes at a time.
 const CHUNK: usize = 512;
 
-/// Sets the open exchanges of links, which must be sorted by their first node, to a relative `tolerance`.
+/// Sets the open exchanges of links between flat nodes, which must be sorted by their first node, to a relative `tolerance`.
 pub(crate) fn exchanges(tree: &Tree, links: &mut [Link], tolerance: f64) {
     let nodes = tree.nodes();
     let mut places = vec![u32::MAX; nodes.len()];

@@ -1,10 +1,15 @@
 //! What a pair of nodes exchanges: bounds and spreads before it is computed, the open exchange, and what gets through.
 
+mod bent;
+mod encounter;
 mod exchange;
+mod sample;
 mod side;
 mod sight;
 mod spread;
 
+pub(crate) use bent::Meeting;
+pub(crate) use encounter::encounter;
 pub(crate) use exchange::exchanges;
 pub(crate) use side::Side;
 pub(crate) use sight::{Sight, View, Viewer};

@@ -34,6 +34,15 @@ impl Side {
         Self { deviation: self.deviation.max(least), rest: self.rest.max(least), ..self }
     }
 
+    /// The same, with deviations of at least `share` of those of another function.
+    pub fn at_least_of(self, other: &Self, share: f64) -> Self {
+        Self {
+            deviation: self.deviation.max(share * other.deviation),
+            rest: self.rest.max(share * other.rest),
+            ..self
+        }
+    }
+
     /// The same function relative to a mean that is larger by `1/share`.
     pub fn scaled(self, share: f64) -> Self {
         Self { deviation: self.deviation * share, rest: self.rest * share, ..self }

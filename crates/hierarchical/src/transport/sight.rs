@@ -14,6 +14,8 @@ use fredholm_visibility::body::{Bodies, Body, Room, Shadow};
 
 /// Bodies in a scene up to which points see exactly.
 const FEW: usize = 256;
+/// Occluders between two patches up to which segments are tested against each of them.
+const LISTED: usize = 64;
 
 /// Least uncertainty of a share that is neither 0 nor 1 for sure.
 const DOUBT: f64 = 0.2;
@@ -25,6 +27,8 @@ const EVEN: f64 = 1e-3;
 pub(crate) struct Sight<'a> {
     pub occluders: &'a Occluders,
     pub bodies: &'a Bodies,
+    /// Whether there are too many occluders to put them together to bodies.
+    pub many: bool,
 }
 
 /// What two patches see of each other.
@@ -55,11 +59,17 @@ impl<'a> Viewer<'a> {
 
     /// What two patches see of each other.
     pub fn view(&mut self, a: &Patch, b: &Patch) -> View {
-        if self.sight.bodies.as_slice().len() > FEW { self.behind_many(a, b) } else { self.behind_few(a, b) }
+        let many = self.sight.many || self.sight.bodies.as_slice().len() > FEW;
+        if many { self.behind_many(a, b) } else { self.behind_few(a, b) }
+    }
+
+    /// Whether nothing is between two points.
+    pub fn sees(&self, x: Vec3, y: Vec3) -> bool {
+        self.sight.occluders.unoccluded(x, y)
     }
 
     fn behind_few(&mut self, a: &Patch, b: &Patch) -> View {
-        let Sight { occluders, bodies } = self.sight;
+        let Sight { occluders, bodies, .. } = self.sight;
         let Some(shaft) = occluders.shaft_between(a, b) else { return View::Nothing };
         let mut reaching = bodies.as_slice().iter().filter(|body| occluders.reaches(body, &shaft)).peekable();
         if reaching.peek().is_none() {
@@ -81,23 +91,26 @@ impl<'a> Viewer<'a> {
         }
         for (k, &x) in points.at.iter().enumerate() {
             found[1][k] = self.parts.factor(x);
-            found[0][k] = open_factor(x, from, to, &mut self.front).max(found[1][k]);
+            found[0][k] = open_factor(x, from.normal(), to, &mut self.front).max(found[1][k]);
         }
         found
     }
 
     fn behind_many(&mut self, a: &Patch, b: &Patch) -> View {
         let occluders = self.sight.occluders;
-        occluders.shaft(a, b, &mut self.between);
+        let listed = occluders.shaft_up_to(a, b, LISTED, &mut self.between);
         if self.between.is_empty() {
             return View::Open;
         }
+        let clear = |x: Vec3, y: Vec3| {
+            if listed { occluders.unoccluded_by(x, y, &self.between) } else { occluders.unoccluded(x, y) }
+        };
         let (xs, ys) = (Points::of(a), Points::of(b));
         let mut found = [[[0.0; POINTS]; 2]; 2];
         for (i, &x) in xs.at.iter().enumerate() {
             for (j, &y) in ys.at.iter().enumerate() {
                 let weight = lambert(x, a.normal(), y, b.normal());
-                let seen = weight > 0.0 && occluders.unoccluded_by(x, y, &self.between);
+                let seen = weight > 0.0 && clear(x, y);
                 for (side, k) in [(0, i), (1, j)] {
                     found[side][0][k] += weight;
                     found[side][1][k] += if seen { weight } else { 0.0 };
@@ -110,6 +123,12 @@ impl<'a> Viewer<'a> {
 
 /// Puts together what the points of both sides see.
 fn view(a: Option<(f64, Side)>, b: Option<(f64, Side)>) -> View {
+    let (share, sides, doubt) = weigh(a, b);
+    View::Part { share, sides, doubt: doubt.max(DOUBT) }
+}
+
+/// The share that both sides make out, how it varies over them, and how far they differ.
+pub(super) fn weigh(a: Option<(f64, Side)>, b: Option<(f64, Side)>) -> (f64, [Side; 2], f64) {
     let (share, doubt) = match (a, b) {
         (Some(a), Some(b)) => {
             // The side over which less varies knows the share better.
@@ -120,7 +139,7 @@ fn view(a: Option<(f64, Side)>, b: Option<(f64, Side)>) -> View {
         (None, None) => (0.5, 0.5),
     };
     let sides = [a, b].map(|side| side.map_or_else(|| Side::default().at_least(STEEP), |(_, side)| side));
-    View::Part { share, sides, doubt: doubt.max(DOUBT) }
+    (share, sides, doubt)
 }
 
 /// Share that one side sees and how that varies, relative to the open factor; none where no point is in front.

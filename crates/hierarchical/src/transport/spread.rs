@@ -10,7 +10,7 @@ use fredholm_mesh::{Patch, Vec3};
 use std::f64::consts::PI;
 
 /// Distance, over the mean diameter, below which a pair is close.
-const NEAR: f64 = 1.5;
+pub(crate) const NEAR: f64 = 1.5;
 /// Least deviation over the larger patch of a close pair, and over a side of which no point sees anything.
 pub(super) const STEEP: f64 = 1.0;
 
@@ -57,9 +57,9 @@ fn far([a, b]: [&Patch; 2], [xs, ys]: [&Points; 2]) -> Spread {
 /// Points see the other patch as it is, and the larger one varies by as much as itself.
 fn close([a, b]: [&Patch; 2], [xs, ys]: [&Points; 2], front: &mut Vec<Vec3>) -> Spread {
     let mut seen = |points: &Points, p: &Patch, q: &Patch| {
-        let side = points.side(&points.at.map(|x| open_factor(x, p, q, front)));
-        let corners =
-            p.corners().iter().map(|&x| open_factor(x.lerp(points.at[POINTS - 1], INSET), p, q, front));
+        let side = points.side(&points.at.map(|x| open_factor(x, p.normal(), q, front)));
+        let inset = |x: &Vec3| x.lerp(points.at[POINTS - 1], INSET);
+        let corners = p.corners().iter().map(|x| open_factor(inset(x), p.normal(), q, front));
         (side, p.area() * side.mean.max(CORNER * corners.fold(0.0, f64::max)))
     };
     let ((over_a, from_a), (over_b, from_b)) = (seen(xs, a, b), seen(ys, b, a));
@@ -74,18 +74,18 @@ fn close([a, b]: [&Patch; 2], [xs, ys]: [&Points; 2], front: &mut Vec<Vec3>) -> 
     Spread { exchange, sides }
 }
 
-/// Form factor from a point of one patch to the part of the other above its horizon.
-pub(crate) fn open_factor(x: Vec3, from: &Patch, to: &Patch, front: &mut Vec<Vec3>) -> f64 {
+/// Form factor from a point with its normal to the part of a patch above its horizon.
+pub(crate) fn open_factor(x: Vec3, normal: Vec3, to: &Patch, front: &mut Vec<Vec3>) -> f64 {
     front.clear();
     if (x - to.corner(0)).dot(to.normal()) <= 0.0 {
         return 0.0;
     }
-    clip(to.corners(), HalfSpace::through(x, from.normal()), 0.0, front);
-    point_to_polygon(from.normal(), front.iter().map(|&y| y - x)).max(0.0)
+    clip(to.corners(), HalfSpace::through(x, normal), 0.0, front);
+    point_to_polygon(normal, front.iter().map(|&y| y - x)).max(0.0)
 }
 
 /// Form factor over area, 1/m², between a point and a disc of some area, both with their normals.
-fn disc([x, nx]: [Vec3; 2], [y, ny]: [Vec3; 2], area: f64) -> f64 {
+pub(super) fn disc([x, nx]: [Vec3; 2], [y, ny]: [Vec3; 2], area: f64) -> f64 {
     let line = y - x;
     let r2 = line.length_squared();
     let cosines = line.dot(nx).max(0.0) * (-line.dot(ny)).max(0.0);

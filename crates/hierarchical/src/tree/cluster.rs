@@ -1,7 +1,7 @@
 //! Clusters of input elements: a binary tree, first by place, then by plane, then by place in the plane.
 //!
-//! Elements of at most [`PLANES`] planes are parted between planes, others through the middle of their longest extent; elements of one plane along a line that cuts none of them, where
-//! there is one. Every decision depends on places alone. Lengths in metres.
+//! Elements of at most [`PLANES`] planes are parted between planes, others through the middle of their longest extent. Where nearly each element has a plane of its own, normals count as places, so
+//! that what faces elsewhere is parted from what only lies elsewhere. Elements of one plane are parted along a line that cuts none of them, where there is one. Lengths in metres.
 
 use super::hull::filled;
 use super::{Cone, NONE, Node, Tree};
@@ -9,6 +9,11 @@ use fredholm_mesh::{Mesh, Patch, Vec3};
 
 /// Planes up to which a group is parted between planes.
 const PLANES: usize = 32;
+/// Planes from which on a group is curved, if each is met within [`SHARED`] elements.
+const CURVED: usize = 7;
+const SHARED: usize = 3;
+/// Length of a unit normal as a place, over the extent of the group.
+const TURNED: f64 = 0.5;
 /// Cosine of the angle between normals, less than 1 by this, up to which they count as one.
 const TURN: f64 = 1e-12;
 
@@ -20,7 +25,7 @@ pub(super) fn build(mesh: &Mesh, tolerance: f64, tree: &mut Tree) {
     let mut stack = vec![(NONE, all)];
     while let Some((parent, order)) = stack.pop() {
         let index = tree.nodes.len() as u32;
-        tree.nodes.push(Node { parent, ..builder.node(&order) });
+        tree.nodes.push(Node { parent, ..builder.node(&order, index) });
         if parent != NONE {
             let children = &mut tree.nodes[parent as usize].children;
             children[usize::from(children[0] != NONE)] = index;
@@ -46,22 +51,23 @@ impl<'a> Builder<'a> {
         self.patches[k as usize]
     }
 
-    fn node(&self, order: &[u32]) -> Node {
+    fn node(&self, order: &[u32], number: u32) -> Node {
         if let [single] = *order {
             let face = self.mesh.face_of(single as usize) as u32;
-            return Node::element(*self.patch(single), face, single);
+            return Node::element(*self.patch(single), face, single, number);
         }
         let list: Vec<&Patch> = order.iter().map(|&k| self.patch(k)).collect();
         let area = list.iter().map(|patch| patch.area()).sum();
-        let flat = if self.planes(order).len() == 1 { filled(&list) } else { None };
+        let flat = if self.planes(order).0.len() == 1 { filled(&list) } else { None };
         Node::cluster(flat, Cone::around(list.iter().copied()), area)
     }
 
     /// Parts a group of at least two.
     fn part(&self, order: Vec<u32>) -> (Vec<u32>, Vec<u32>) {
-        let planes = self.planes(&order);
+        let (planes, met) = self.planes(&order);
         match planes.len() {
             1 => self.in_one_plane(order),
+            count if count >= CURVED && met < SHARED * count => self.through_place_or_normal(order),
             2..=PLANES => self.between_planes(order, planes),
             _ => self.through_the_middle(order, [Vec3::X, Vec3::Y, Vec3::Z]),
         }
@@ -73,18 +79,18 @@ impl<'a> Builder<'a> {
             && (patch.corner(0) - first.corner(0)).dot(first.normal()).abs() <= self.tolerance
     }
 
-    /// One element of each plane; more than [`PLANES`] are not told apart.
-    fn planes(&self, order: &[u32]) -> Vec<u32> {
+    /// One element of each plane, and how many elements were asked; more than [`PLANES`] are not told apart.
+    fn planes(&self, order: &[u32]) -> (Vec<u32>, usize) {
         let mut planes: Vec<u32> = Vec::new();
-        for &k in order {
+        for (met, &k) in order.iter().enumerate() {
             if !planes.iter().any(|&plane| self.same_plane(k, plane)) {
                 planes.push(k);
                 if planes.len() > PLANES {
-                    break;
+                    return (planes, met + 1);
                 }
             }
         }
-        planes
+        (planes, order.len())
     }
 
     fn between_planes(&self, order: Vec<u32>, mut planes: Vec<u32>) -> (Vec<u32>, Vec<u32>) {
@@ -140,17 +146,56 @@ impl<'a> Builder<'a> {
         best
     }
 
+    /// Two halves along the axis of the largest extent of places or normals.
+    fn through_place_or_normal(&self, order: Vec<u32>) -> (Vec<u32>, Vec<u32>) {
+        let axes = [Vec3::X, Vec3::Y, Vec3::Z];
+        let place = |k: u32| self.patch(k).centroid();
+        let extents = axes.map(|axis| extent(&order, |k| place(k).dot(axis)));
+        let length = TURNED * extents.iter().copied().fold(0.0, f64::max);
+        let normal = |k: u32| self.patch(k).normal() * length;
+        let turns = axes.map(|axis| extent(&order, |k| normal(k).dot(axis)));
+        match (widest(&extents), widest(&turns)) {
+            ((_, far), (axis, turn)) if turn > far => halves(order, |k| normal(k).dot(axes[axis])),
+            ((axis, _), _) => halves(order, |k| place(k).dot(axes[axis])),
+        }
+    }
+
     /// Two halves along the axis of the largest extent.
-    fn through_the_middle(&self, mut order: Vec<u32>, axes: [Vec3; 3]) -> (Vec<u32>, Vec<u32>) {
+    fn through_the_middle(&self, order: Vec<u32>, axes: [Vec3; 3]) -> (Vec<u32>, Vec<u32>) {
         let extents = axes.map(|axis| {
             let [low, high] = self.range(&order, axis);
             high - low
         });
-        let most = extents.iter().copied().fold(0.0, f64::max) * (1.0 - 1e-9);
-        let axis = axes[extents.iter().position(|&extent| extent >= most).unwrap_or(0)];
-        let place = |k: u32| self.patch(k).centroid().dot(axis);
-        order.sort_by(|&a, &b| place(a).total_cmp(&place(b)));
-        let high = order.split_off(order.len() / 2);
-        (order, high)
+        let axis = axes[widest(&extents).0];
+        halves(order, |k| self.patch(k).centroid().dot(axis))
     }
+}
+
+fn extent(order: &[u32], place: impl Fn(u32) -> f64) -> f64 {
+    let ends = |[low, high]: [f64; 2], x: f64| [low.min(x), high.max(x)];
+    let [low, high] = order.iter().map(|&k| place(k)).fold([f64::INFINITY, f64::NEG_INFINITY], ends);
+    high - low
+}
+
+/// The first of the largest, up to rounding.
+fn widest(extents: &[f64; 3]) -> (usize, f64) {
+    let most = extents.iter().copied().fold(0.0, f64::max) * (1.0 - 1e-9);
+    (extents.iter().position(|&extent| extent >= most).unwrap_or(0), most)
+}
+
+/// Two parts of rising places, as nearly halves as elements at one place stay together.
+fn halves(mut order: Vec<u32>, place: impl Fn(u32) -> f64) -> (Vec<u32>, Vec<u32>) {
+    order.sort_by(|&a, &b| place(a).total_cmp(&place(b)));
+    let together = 1e-9 * (place(order[order.len() - 1]) - place(order[0]));
+    let apart = |&k: &usize| place(order[k]) - place(order[k - 1]) > together;
+    let middle = order.len() / 2;
+    let below = (1..=middle).rev().find(apart);
+    let above = (middle + 1..order.len()).find(apart);
+    let cut = match (below, above) {
+        (Some(low), Some(high)) if high - middle < middle - low => high,
+        (Some(low), _) => low,
+        (None, high) => high.unwrap_or(middle),
+    };
+    let high = order.split_off(cut);
+    (order, high)
 }

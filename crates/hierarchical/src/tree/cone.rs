@@ -36,6 +36,29 @@ impl Cone {
         Self { centre, radius: far, axis, angle }
     }
 
+    /// Whether no point of the group looks at any point of a patch, or the other way round. The places that nobody in the ball with any normal of the cone looks at are an intersection of
+    /// half-spaces, so that it is enough to ask for the corners.
+    pub fn apart_from(&self, patch: &Patch) -> bool {
+        let height = (self.centre - patch.corner(0)).dot(patch.normal());
+        let unseen = |x: &Vec3| {
+            let line = *x - self.centre;
+            let off = line.angle_between(self.axis) - self.angle;
+            line.length() * off.max(0.0).cos() + self.radius <= 0.0
+        };
+        height <= -self.radius || patch.corners().iter().all(unseen)
+    }
+
+    /// Distance from the centre to a patch, m, or less.
+    pub fn distance(&self, patch: &Patch) -> f64 {
+        let (n, corners) = (patch.normal(), patch.corners());
+        let height = (self.centre - corners[0]).dot(n);
+        let beyond = |k: usize| {
+            let (x, y) = (corners[k], patch.corner(k + 1));
+            (self.centre - x).dot((y - x).cross(n).normalize_or_zero())
+        };
+        height.hypot((0..corners.len()).map(beyond).fold(0.0, f64::max))
+    }
+
     /// Whether no point of one group looks at any point of the other.
     pub fn turned_away(&self, other: &Self) -> bool {
         let line = other.centre - self.centre;
@@ -67,6 +90,23 @@ mod tests {
         let faces = |a: &Patch, b: &Patch| !Cone::of(a).turned_away(&Cone::of(b));
         assert!(faces(&low, &high));
         assert!(!faces(&low.flipped(), &high) && !faces(&low, &high.flipped()));
+    }
+
+    #[test]
+    fn a_group_and_a_patch_that_do_not_see_each_other_are_told() {
+        let (floor, group) = (square(0.0, true), Cone::around([square(9.0, false)].iter()));
+        assert!(!group.apart_from(&floor) && group.apart_from(&floor.flipped()));
+        let leaning = |angle: f64| Cone { angle, ..Cone::around([square(9.0, true)].iter()) };
+        assert!(leaning(1.0).apart_from(&floor) && !leaning(1.5).apart_from(&floor));
+    }
+
+    #[test]
+    fn the_distance_from_a_patch_is_not_overestimated() {
+        let floor = square(0.0, true);
+        let at =
+            |x: f64, y: f64, z: f64| Cone { centre: Vec3::new(x, y, z), ..Cone::of(&floor) }.distance(&floor);
+        assert!((at(0.5, -0.5, 2.0) - 2.0).abs() < 1e-12 && (at(5.0, 0.0, 3.0) - 5.0).abs() < 1e-12);
+        assert!(at(5.0, 5.0, 3.0) <= 41f64.sqrt() && at(5.0, 5.0, 3.0) >= 5.0 - 1e-12);
     }
 
     #[test]

@@ -1,15 +1,18 @@
 //! The tree of elements: clusters above the input elements, similar quarters below them.
 //!
 //! A child has a higher number than its parent, so that a pass over the numbers, forward or backward, visits parents before or after their children. A node is *flat* where
-//! its elements fill a convex polygon of three or four corners: then it has a patch, and may be linked. Other nodes only lead to their children.
+//! its elements fill a convex polygon of three or four corners: then it has a patch. It is *bent* where its elements face about the same way. Flat and bent nodes may be linked; others
+//! only lead to their children.
 //! P. Hanrahan, D. Salzman, L. Aupperle, SIGGRAPH 1991, doi:10.1145/122718.122740, for the quarters; B. Smits, J. Arvo, D. Greenberg, SIGGRAPH 1994,
 //! doi:10.1145/192161.192277, for the clusters. Lengths in metres.
 
+mod bent;
 mod cluster;
 mod cone;
 mod hull;
 
 use crate::HierarchyError;
+use bent::Gist;
 pub(crate) use cone::Cone;
 use fredholm_mesh::{Mesh, Patch, Vec3};
 
@@ -26,6 +29,7 @@ pub struct Node {
     patch: Option<Patch>,
     cone: Cone,
     area: f64,
+    gist: Gist,
 }
 
 impl Node {
@@ -72,6 +76,28 @@ impl Node {
         self.children[0] == NONE
     }
 
+    /// Whether it may be linked: its elements fill a polygon, or face about the same way.
+    #[must_use]
+    pub fn is_linkable(&self) -> bool {
+        self.patch.is_some() || self.gist.bent
+    }
+
+    /// Σ A n over its elements, m².
+    #[must_use]
+    pub fn area_vector(&self) -> Vec3 {
+        self.gist.vector
+    }
+
+    /// Centre of its area, m.
+    pub(crate) fn centre(&self) -> Vec3 {
+        self.gist.centre
+    }
+
+    /// Number of an element, or of a flat node, near its centre.
+    pub(crate) fn middle(&self) -> u32 {
+        self.gist.middle
+    }
+
     /// A ball round it, and its normals.
     pub(crate) fn cone(&self) -> &Cone {
         &self.cone
@@ -97,6 +123,7 @@ impl Tree {
         }
         let mut tree = Self { nodes: Vec::new(), roots: vec![NONE; mesh.len()], splits: Vec::new() };
         cluster::build(mesh, tolerance, &mut tree);
+        bent::summarise(&mut tree);
         Ok(tree)
     }
 
@@ -144,8 +171,8 @@ impl Tree {
             return Err(HierarchyError::TooLarge);
         }
         let (face, root, first) = (node.face, node.root, self.nodes.len() as u32);
-        for quarter in patch.split()? {
-            self.nodes.push(Node { parent: index, ..Node::element(quarter, face, root) });
+        for (number, quarter) in (first..).zip(patch.split()?) {
+            self.nodes.push(Node { parent: index, ..Node::element(quarter, face, root, number) });
         }
         self.nodes[index as usize].children = [first, first + 1, first + 2, first + 3];
         self.splits.push(index);
@@ -154,13 +181,16 @@ impl Tree {
 }
 
 impl Node {
-    fn element(patch: Patch, face: u32, root: u32) -> Self {
-        let cone = Cone::of(&patch);
-        Self { parent: NONE, children: [NONE; 4], face, root, patch: Some(patch), cone, area: patch.area() }
+    fn element(patch: Patch, face: u32, root: u32, number: u32) -> Self {
+        let (cone, area) = (Cone::of(&patch), patch.area());
+        let gist = Gist { vector: patch.normal() * area, centre: cone.centre, middle: number, bent: false };
+        Self { parent: NONE, children: [NONE; 4], face, root, patch: Some(patch), cone, area, gist }
     }
 
+    /// A cluster whose gist is still to be found.
     fn cluster(patch: Option<Patch>, cone: Cone, area: f64) -> Self {
-        Self { parent: NONE, children: [NONE; 4], face: NONE, root: NONE, patch, cone, area }
+        let gist = Gist { vector: Vec3::ZERO, centre: cone.centre, middle: NONE, bent: false };
+        Self { parent: NONE, children: [NONE; 4], face: NONE, root: NONE, patch, cone, area, gist }
     }
 }
 

@@ -29,6 +29,7 @@ impl Bench {
         Self { scene, mesh, occluders, surfaces }
     }
 
+    #[allow(dead_code, reason = "not every test needs one")]
     pub fn text(text: &str) -> Self {
         Self::new(Scene::from_str(text, "test.toml").unwrap())
     }

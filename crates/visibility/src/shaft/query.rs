@@ -21,8 +21,14 @@ impl Occluders {
     pub fn shaft(&self, a: &Patch, b: &Patch, candidates: &mut Vec<u32>) {
         candidates.clear();
         if let Some(shaft) = Shaft::between(a, b, &self.frame) {
-            self.sift(&shaft, candidates);
+            self.sift(&shaft, usize::MAX, candidates);
         }
+    }
+
+    /// As [`shaft`](Self::shaft), but the search ends after more than `most` patches were found. Returns whether the list holds all of them.
+    pub fn shaft_up_to(&self, a: &Patch, b: &Patch, most: usize, candidates: &mut Vec<u32>) -> bool {
+        candidates.clear();
+        Shaft::between(a, b, &self.frame).is_none_or(|shaft| self.sift(&shaft, most, candidates))
     }
 
     /// Lists the patches that could block a segment between the point `p` and a point of `b`, by rising index.
@@ -32,7 +38,7 @@ impl Occluders {
     pub fn shaft_point(&self, p: Vec3, b: &Patch, candidates: &mut Vec<u32>) {
         candidates.clear();
         if let Some(shaft) = Shaft::from_point(p, b, &self.frame) {
-            self.sift(&shaft, candidates);
+            self.sift(&shaft, usize::MAX, candidates);
         }
     }
 
@@ -59,17 +65,19 @@ impl Occluders {
         !beside && !shaft.planes().iter().any(|plane| plane.excludes(&body.local))
     }
 
-    fn sift(&self, shaft: &Shaft, candidates: &mut Vec<u32>) {
+    /// Whether all of them were listed.
+    fn sift(&self, shaft: &Shaft, most: usize, candidates: &mut Vec<u32>) -> bool {
         let sieve = Sieve::new(shaft.planes());
-        self.tree.any(
+        let ended = self.tree.any(
             |node| sieve.passes(node),
             |run| {
                 candidates.extend(run.filter(|&k| self.cuts(shaft, k)).map(|k| self.facets[k].patch));
-                false
+                candidates.len() > most
             },
         );
         candidates.sort_unstable();
         candidates.dedup();
+        !ended
     }
 
     /// Whether facet `k` has parts of the shaft on both sides, and reaches into it as far as its half-spaces tell.

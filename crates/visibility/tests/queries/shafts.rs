@@ -101,6 +101,21 @@ fn every_blocker_in_a_furnished_room_is_listed() {
 }
 
 #[test]
+fn a_list_that_ends_early_says_so() {
+    let mut patches = cuboid(Vec3::ZERO, Vec3::ONE, 0.0, true);
+    let walls = [patches[0], patches[1]];
+    patches.extend(sphere(3).iter().map(|t| triangle(t.map(|p| p * 0.4))));
+    let scene = Occluders::new(&patches).unwrap();
+    let (mut all, mut some) = (Vec::new(), Vec::new());
+    let [a, b] = walls;
+    scene.shaft(&a, &b, &mut all);
+    assert!(all.len() > 100, "{}", all.len());
+    assert!(!scene.shaft_up_to(&a, &b, 20, &mut some) && some.len() > 20 && some.len() < all.len());
+    assert!(some.iter().all(|k| all.binary_search(k).is_ok()));
+    assert!(scene.shaft_up_to(&a, &b, all.len(), &mut some) && some == all);
+}
+
+#[test]
 fn every_blocker_among_thousands_is_listed() {
     let mut random = Random(23);
     let mut patches = cuboid(Vec3::ZERO, Vec3::ONE, 0.0, true);
