@@ -10,6 +10,7 @@ mod checkpoint;
 mod driver;
 mod error;
 mod exposure;
+mod gather;
 mod light;
 mod link;
 mod operator;
@@ -21,6 +22,7 @@ mod tree;
 
 pub use driver::{Options, Patient, Problem, RESIDUAL, Round, Solution, Stated, Watch, solve};
 pub use error::HierarchyError;
+pub use gather::{Gather, Gatherer, Leaves};
 pub use light::Surfaces;
 pub use link::Link;
 pub use operator::HierarchicalOperator;
