@@ -38,6 +38,10 @@ Examples:
   fredholm solve room.toml --storage f32 --threads 4 --log json 2> log.jsonl
   fredholm solve room.toml --discretisation galerkin-1
   fredholm solve room.toml --accuracy 1%
+  fredholm solve room.toml --accuracy 1% --final-gather
+
+With an accuracy, mesh.png shows the elements and links.png what the element in the middle of the
+picture receives its light from.
 
 Ctrl-C during the assembly ends the run with nothing written; during the solution by an
 iterative solver the current iterate is written as a result marked \"partial\", with a small
@@ -272,6 +276,10 @@ pub(crate) struct SolveArgs {
     /// radiosity [default: the scene's, else its elements]
     #[arg(long, value_name = "E", value_parser = accuracy)]
     pub(crate) accuracy: Option<f64>,
+    /// Also draw gather.png, for which every pixel gathers its light from all that it sees; image.png interpolates
+    /// between elements
+    #[arg(long)]
+    pub(crate) final_gather: bool,
     #[command(flatten)]
     pub(crate) problem: ProblemArgs,
     #[command(flatten)]

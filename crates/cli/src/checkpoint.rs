@@ -26,6 +26,8 @@ pub(crate) struct Header {
     tolerance: String,
     pub(crate) max_iterations: u64,
     pub(crate) memory_limit_bytes: Option<u64>,
+    #[serde(default)]
+    pub(crate) final_gather: bool,
 }
 
 impl Header {
@@ -45,6 +47,7 @@ impl Header {
             tolerance: options.tolerance.to_string(),
             max_iterations: options.max_iterations,
             memory_limit_bytes: options.problem.memory_limit_bytes,
+            final_gather: options.final_gather,
         }
     }
 

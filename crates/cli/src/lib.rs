@@ -17,6 +17,7 @@ mod memory;
 mod mesh_error;
 mod options;
 mod output;
+mod pictures;
 mod prediction;
 mod problem;
 mod record;

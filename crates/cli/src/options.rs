@@ -35,6 +35,8 @@ pub(crate) struct Options {
     /// Where elements are chosen by hierarchical radiosity.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) accuracy: Option<f64>,
+    /// Whether the light of every pixel is gathered for a picture.
+    pub(crate) final_gather: bool,
     pub(crate) tolerance: f64,
     pub(crate) max_iterations: u64,
     pub(crate) output: String,
@@ -75,6 +77,7 @@ impl Options {
         Self {
             problem,
             accuracy: None,
+            final_gather: false,
             tolerance: stop.tolerance.or(scene.tolerance).unwrap_or(TOLERANCE),
             max_iterations: iterations.unwrap_or(MAX_ITERATIONS),
             output: output.display().to_string(),

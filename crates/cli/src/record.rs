@@ -5,12 +5,13 @@ use std::collections::BTreeMap;
 use fredholm_coupling::MethodCounts;
 use fredholm_linop::{Report, StopReason, Work};
 use fredholm_report::{
-    Closure, Counts, Energy, FieldError, FormFactorError, Hierarchy, History, MeshError, RunRecord,
+    Closure, Counts, Energy, FILES, FieldError, FormFactorError, Hierarchy, History, MeshError, RunRecord,
 };
 use serde_json::Value;
 
 use crate::memory;
 use crate::options::Options;
+use crate::pictures;
 use crate::problem::Problem;
 use crate::solution::{Solution, reason};
 use crate::stages::Stages;
@@ -50,6 +51,7 @@ pub(crate) fn record(
         field_error: solution.field_error.clone().map(|relative_l2| FieldError { relative_l2 }),
         reciprocity: solution.reciprocity,
         energy: energy(problem, solution),
+        files: pictures::names(options, solution).chain(FILES).map(str::to_owned).collect(),
         warnings: problem.warnings.iter().cloned().chain(remarks(options, solution)).collect(),
         partial: report.reason == StopReason::Interrupted,
         ..RunRecord::default()

@@ -73,8 +73,8 @@ pub use field::Field;
 pub use field_csv::write_field_csv;
 pub use hierarchy::{Hierarchy, HierarchyRound};
 pub use npz::write_npz;
-pub use outputs::{FILES, View, write_all};
-pub use picture::{Picture, render};
+pub use outputs::{FILES, PICTURES, View, write_all, write_with};
+pub use picture::{Gathering, Layer, Link, Linked, Picture, render, render_layers};
 pub use refinement::{
     BandConvergence, REFINEMENT_FILES, REFINEMENT_FORMAT, RefinementLevel, RefinementRecord,
     write_refinement, write_refinement_csv, write_refinement_plot,

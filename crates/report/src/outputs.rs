@@ -7,8 +7,8 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use crate::{
-    Camera, Exposure, Field, ReportError, RunRecord, render, write_atomically, write_convergence,
-    write_faces_csv, write_field_csv, write_npz, write_run, write_surfaces_csv, write_vtu,
+    Camera, Exposure, Field, Layer, ReportError, RunRecord, render_layers, write_atomically,
+    write_convergence, write_faces_csv, write_field_csv, write_npz, write_run, write_surfaces_csv, write_vtu,
 };
 
 /// Names of the files of a result folder, in the order in which they are written.
@@ -22,6 +22,9 @@ pub const FILES: [&str; 8] = [
     "convergence.svg",
     "run.json",
 ];
+
+/// Names of further pictures that a result folder may hold: the mesh, links, and the final gather.
+pub const PICTURES: [&str; 3] = ["mesh.png", "links.png", "gather.png"];
 
 /// What fills a file.
 type Writer<'a> = dyn Fn(&mut dyn Write) -> io::Result<()> + 'a;
@@ -46,7 +49,7 @@ impl View {
 /// Writes all files of a result into a folder, which is made where it does not exist, and returns their paths.
 ///
 /// # Errors
-/// [`ReportError::Write`] with the file or folder that could not be written; the errors of [`render`] for a view that makes
+/// [`ReportError::Write`] with the file or folder that could not be written; the errors of [`render`](crate::render) for a view that makes
 /// no picture. The folder then has no `run.json`.
 pub fn write_all(
     folder: &Path,
@@ -54,9 +57,31 @@ pub fn write_all(
     run: &RunRecord,
     view: &View,
 ) -> Result<Vec<PathBuf>, ReportError> {
-    let picture = render(field, &view.camera, view.exposure)?;
+    write_with(folder, field, run, view, &[])
+}
+
+/// As [`write_all`], with further pictures: names of [`PICTURES`] and what they show. Those that an older result left are removed.
+///
+/// # Errors
+/// As for [`write_all`].
+pub fn write_with(
+    folder: &Path,
+    field: &Field<'_>,
+    run: &RunRecord,
+    view: &View,
+    more: &[(&str, Layer<'_>)],
+) -> Result<Vec<PathBuf>, ReportError> {
+    let layers = std::iter::once(&Layer::Field).chain(more.iter().map(|(_, layer)| layer));
+    let mut pictures = render_layers(field, &view.camera, view.exposure, layers)?.into_iter();
+    let Some(picture) = pictures.next() else { return Ok(Vec::new()) };
     prepare(folder, &folder.join(FILES[FILES.len() - 1]))?;
-    let paths: Vec<PathBuf> = FILES.iter().map(|name| folder.join(name)).collect();
+    PICTURES.iter().try_for_each(|name| remove(&folder.join(name)))?;
+    let mut paths = Vec::new();
+    for ((name, _), picture) in more.iter().zip(pictures) {
+        paths.push(folder.join(name));
+        write_atomically(&folder.join(name), &|out: &mut dyn Write| picture.write_png(out))?;
+    }
+    let files = FILES.iter().map(|name| folder.join(name));
     let writers: [&Writer; 8] = [
         &|out| write_field_csv(field, out),
         &|out| write_faces_csv(field, out),
@@ -67,7 +92,10 @@ pub fn write_all(
         &|out| write_convergence(run, out),
         &|out| write_run(run, out),
     ];
-    paths.iter().zip(writers).try_for_each(|(path, write)| write_atomically(path, write))?;
+    for (path, write) in files.zip(writers) {
+        write_atomically(&path, write)?;
+        paths.push(path);
+    }
     Ok(paths)
 }
 
@@ -78,8 +106,15 @@ pub(crate) fn prepare(folder: &Path, mark: &Path) -> Result<(), ReportError> {
         move |source| ReportError::Write { path, source }
     };
     fs::create_dir_all(folder).map_err(failed(folder))?;
-    match fs::remove_file(mark) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(failed(mark)(error)),
+    remove(mark)
+}
+
+/// Removes a file, if it is there.
+fn remove(path: &Path) -> Result<(), ReportError> {
+    match fs::remove_file(path) {
+        Err(source) if source.kind() != io::ErrorKind::NotFound => {
+            Err(ReportError::Write { path: path.to_owned(), source })
+        }
         _ => Ok(()),
     }
 }

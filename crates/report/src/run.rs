@@ -71,6 +71,8 @@ pub struct RunRecord {
     pub form_factor_error: FormFactorError,
     /// Energy balance, one entry a band.
     pub energy: Vec<Energy>,
+    /// Names of the files of the folder, in the order in which they were written.
+    pub files: Vec<String>,
     /// What the user should know.
     pub warnings: Vec<String>,
     /// Whether the run was interrupted, so that the field is not the solution asked for.
@@ -104,6 +106,7 @@ impl Default for RunRecord {
             reciprocity: None,
             form_factor_error: FormFactorError::default(),
             energy: Vec::new(),
+            files: Vec::new(),
             warnings: Vec::new(),
             partial: false,
         }

@@ -36,6 +36,7 @@ pub(crate) fn resume(args: &ResumeArgs) -> Result<Ending, Failure> {
     let solve = SolveArgs {
         output: Some(args.folder.clone()),
         accuracy: Some(checkpoint.accuracy),
+        final_gather: header.final_gather,
         problem: ProblemArgs {
             scene: header.scene.clone(),
             threads: args.threads,

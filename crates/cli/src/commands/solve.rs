@@ -4,13 +4,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use fredholm_linop::StopReason;
-use fredholm_report::{Camera, Exposure, Field, ReportError, RunRecord, View, write_all};
+use fredholm_report::{Camera, Exposure, Field, Layer, ReportError, RunRecord, View, write_with};
 use fredholm_scene::Scene;
 
 use crate::args::{ProblemArgs, SolveArgs};
 use crate::checkpoint::{self, Checkpoint};
 use crate::failure::{Ending, Failure};
 use crate::options::{Options, ProblemOptions};
+use crate::pictures::{Source, names};
 use crate::problem::{Problem, scene_failure};
 use crate::record::{record, remarks};
 use crate::solution::{Solution, compute};
@@ -47,7 +48,7 @@ fn run(
         None => dense(args, &scene, folder, stages)?,
     };
     let record = record(&problem, &options, &solution, stages);
-    stages.run("results", || write(&problem, &solution, &record, folder))?;
+    stages.run("results", || write(&problem, &options, &solution, &record, folder))?;
     checkpoint::remove(folder)?;
     // The summary, other than the file, can tell the time of writing.
     let record = RunRecord { timings: stages.timings().to_vec(), ..record };
@@ -66,6 +67,7 @@ fn dense(
     let options = ProblemOptions::new(&args.problem, scene.solve());
     let problem = Problem::refined(Arc::clone(scene), options, 1, stages)?;
     let options = Options::new(problem.options.clone(), args.stop, scene.solve(), folder, args.log);
+    let options = Options { final_gather: args.final_gather, ..options };
     let solution = compute(&problem, &options, stages)?;
     Ok((options, problem, solution))
 }
@@ -85,6 +87,7 @@ fn adaptive(
 
 fn write(
     problem: &Problem,
+    options: &Options,
     solution: &Solution,
     record: &RunRecord,
     folder: &Path,
@@ -97,7 +100,16 @@ fn write(
         .map_err(report_failure)?;
     let view = view_of(problem.scene.camera(), &field);
     let view = if record.partial { quick(view) } else { view };
-    write_all(folder, &field, record, &view).map_err(report_failure)
+    let source = Source::new(problem, options, solution)?;
+    let (links, gathered) = (|element| source.linked(element), source.gather(options)?);
+    let layer = |name| match (name, &gathered) {
+        ("mesh.png", _) => Layer::Elements,
+        ("links.png", _) => Layer::Links(&links),
+        (_, Some(gathered)) => Layer::Gathered(gathered),
+        _ => Layer::Field,
+    };
+    let layers: Vec<(&str, Layer)> = names(options, solution).map(|name| (name, layer(name))).collect();
+    write_with(folder, &field, record, &view, &layers).map_err(report_failure)
 }
 
 /// The scene's camera, or one that sees all of it.

@@ -3,7 +3,11 @@
 //! Each pixel is the mean of the display values of [`SAMPLES`] points of a fixed lattice. What a sample sees is found by
 //! ray casting among the leaves that turn their lit side to the eye; the others are invisible, so that a closed room
 //! shows its inside. The colour there is the radiosity, smoothly interpolated. Rows are drawn in parallel, each by
-//! itself, so that the number of threads never changes a pixel.
+//! itself, so that the number of threads never changes a pixel. Several pictures of one view share the rays.
+
+mod elements;
+mod gathered;
+mod links;
 
 use std::io::{self, Write};
 
@@ -17,6 +21,11 @@ use crate::colour::Rgb;
 use crate::shading::Shading;
 use crate::tone::{Exposure, Tone, encode, luminance};
 use crate::{Camera, Field, ReportError};
+use elements::Elements;
+use gathered::GatherPainter;
+pub use gathered::Gathering;
+use links::LinkPainter;
+pub use links::{Link, Linked};
 
 /// Samples of a pixel.
 const SAMPLES: usize = 8;
@@ -48,19 +57,76 @@ impl Picture {
     }
 }
 
+/// What a picture shows.
+pub enum Layer<'a> {
+    /// The radiosity, interpolated between the corners of elements.
+    Field,
+    /// The elements, drawn over the field.
+    Elements,
+    /// The links of the element in the middle of the picture: what is drawn of an element, of which the number is given.
+    Links(&'a (dyn Fn(usize) -> Linked + Sync)),
+    /// The radiosity of every pixel, gathered from all that it sees.
+    Gathered(&'a dyn Gathering),
+}
+
 /// Draws a field as a camera sees it.
 ///
 /// # Errors
 /// [`ReportError::Camera`] or [`ReportError::Exposure`] for settings that make no picture,
 /// [`ReportError::Visibility`] where the surfaces cannot be prepared for ray casting.
 pub fn render(field: &Field<'_>, camera: &Camera, exposure: Exposure) -> Result<Picture, ReportError> {
+    let mut pictures = render_layers(field, camera, exposure, &[Layer::Field])?;
+    Ok(pictures.swap_remove(0))
+}
+
+/// Draws several pictures of a field as a camera sees it, all of one exposure, and casts the rays once.
+///
+/// # Errors
+/// As for [`render`].
+pub fn render_layers<'a>(
+    field: &Field<'_>,
+    camera: &Camera,
+    exposure: Exposure,
+    layers: impl IntoIterator<Item = &'a Layer<'a>>,
+) -> Result<Vec<Picture>, ReportError> {
     let view = Viewer::new(field, camera)?;
     let tone = Tone::new(exposure, &view.meter(field))?;
+    let painters: Vec<Box<dyn Painter + '_>> =
+        layers.into_iter().map(|layer| view.painter(field, layer)).collect();
     let row_bytes = 3 * camera.width as usize;
-    let mut pixels = vec![0; row_bytes * camera.height as usize];
-    pixels.par_chunks_mut(row_bytes).enumerate().for_each(|(y, row)| view.draw(tone, y, row));
-    Ok(Picture { width: camera.width, height: camera.height, pixels })
+    let width = row_bytes * painters.len();
+    let mut rows = vec![0; width * camera.height as usize];
+    rows.par_chunks_mut(width).enumerate().for_each(|(y, row)| view.draw(tone, &painters, y, row));
+    let picture = |(k, painter): (usize, &Box<dyn Painter + '_>)| {
+        let row = |row: &[u8]| row[k * row_bytes..(k + 1) * row_bytes].to_vec();
+        let pixels = rows.chunks_exact(width).flat_map(row).collect();
+        let mut picture = Picture { width: camera.width, height: camera.height, pixels };
+        painter.finish(&view, &mut picture);
+        picture
+    };
+    Ok(painters.iter().enumerate().map(picture).collect())
 }
+
+/// What is seen through a point of the picture.
+#[derive(Clone, Copy, Debug)]
+struct Sample {
+    leaf: usize,
+    point: Vec3,
+    /// Place in the picture, pixels from the upper left.
+    at: (f64, f64),
+}
+
+/// Colours the pixels of a picture.
+trait Painter: Sync {
+    /// Paints for one thread: a linear display colour from the samples of a pixel.
+    fn brush(&self) -> Brush<'_>;
+
+    /// Adds what is drawn over the whole picture.
+    fn finish(&self, _view: &Viewer<'_>, _picture: &mut Picture) {}
+}
+
+/// Paints a pixel.
+type Brush<'a> = Box<dyn FnMut(&Viewer<'_>, Tone, &[Option<Sample>; SAMPLES]) -> Rgb + 'a>;
 
 /// A camera before a scene.
 struct Viewer<'a> {
@@ -90,19 +156,44 @@ impl<'a> Viewer<'a> {
         Some((self.leaves[hit.patch], hit.point))
     }
 
-    fn draw(&self, tone: Tone, y: usize, row: &mut [u8]) {
-        for (x, pixel) in row.chunks_exact_mut(3).enumerate() {
-            let mut sum = [0.0; 3];
-            for (dx, dy) in lattice() {
-                let colour = self.sample(tone, x as f64 + dx, y as f64 + dy);
-                sum = [0, 1, 2].map(|i| sum[i] + colour[i]);
-            }
-            pixel.copy_from_slice(&sum.map(|channel| encode(channel / SAMPLES as f64)));
+    fn painter<'v>(&'v self, field: &Field<'v>, layer: &Layer<'v>) -> Box<dyn Painter + 'v> {
+        match *layer {
+            Layer::Field => Box::new(Plain),
+            Layer::Elements => Box::new(Elements { mesh: field.mesh() }),
+            Layer::Links(links) => Box::new(LinkPainter::new(self, field, links)),
+            Layer::Gathered(gathering) => Box::new(GatherPainter::new(*field, gathering)),
         }
     }
 
-    fn sample(&self, tone: Tone, x: f64, y: f64) -> Rgb {
-        self.hit(x, y).map_or([BACKGROUND; 3], |(leaf, p)| tone.display(self.shading.colour(leaf, p)))
+    /// Draws one row of all pictures, one behind the other.
+    fn draw(&self, tone: Tone, painters: &[Box<dyn Painter + '_>], y: usize, rows: &mut [u8]) {
+        let width = self.camera.width as usize;
+        let mut brushes: Vec<Brush> = painters.iter().map(|painter| painter.brush()).collect();
+        for x in 0..width {
+            let samples = self.samples(x, y);
+            for (k, brush) in brushes.iter_mut().enumerate() {
+                let at = 3 * (k * width + x);
+                rows[at..at + 3].copy_from_slice(&brush(self, tone, &samples).map(encode));
+            }
+        }
+    }
+
+    fn samples(&self, x: usize, y: usize) -> [Option<Sample>; SAMPLES] {
+        std::array::from_fn(|k| {
+            let (dx, dy) = lattice(k);
+            let at = (x as f64 + dx, y as f64 + dy);
+            self.hit(at.0, at.1).map(|(leaf, point)| Sample { leaf, point, at })
+        })
+    }
+
+    /// Display colour of the interpolated field.
+    fn shade(&self, tone: Tone, sample: &Sample) -> Rgb {
+        tone.display(self.shading.colour(sample.leaf, sample.point))
+    }
+
+    /// Where a point is in the picture, pixels from the upper left; none for one behind the eye.
+    fn project(&self, point: Vec3) -> Option<(f64, f64)> {
+        self.camera.place(&self.axes, point)
     }
 
     /// Luminances seen through the middle of each pixel: of lit surfaces, or of lamps where there is nothing else.
@@ -122,9 +213,29 @@ impl<'a> Viewer<'a> {
     }
 }
 
-fn lattice() -> impl Iterator<Item = (f64, f64)> {
+/// Place of a sample in its pixel.
+fn lattice(i: usize) -> (f64, f64) {
     let place = |i: usize| (i as f64 + 0.5) / SAMPLES as f64;
-    (0..SAMPLES).map(move |i| (place(i), place(GENERATOR * i % SAMPLES)))
+    (place(i), place(GENERATOR * i % SAMPLES))
+}
+
+/// The mean of the display colours of the samples of a pixel.
+fn mean(samples: &[Option<Sample>; SAMPLES], mut colour: impl FnMut(&Sample) -> Rgb) -> Rgb {
+    let mut sum = [0.0; 3];
+    for sample in samples {
+        let part = sample.as_ref().map_or([BACKGROUND; 3], &mut colour);
+        sum = [0, 1, 2].map(|i| sum[i] + part[i]);
+    }
+    sum.map(|channel| channel / SAMPLES as f64)
+}
+
+/// The interpolated field.
+struct Plain;
+
+impl Painter for Plain {
+    fn brush(&self) -> Brush<'_> {
+        Box::new(|view, tone, samples| mean(samples, |sample| view.shade(tone, sample)))
+    }
 }
 
 #[cfg(test)]
