@@ -6,6 +6,7 @@
 
 mod args;
 mod checkpoint;
+mod choice;
 mod commands;
 mod console;
 mod discretised;

@@ -35,6 +35,9 @@ pub(crate) struct Options {
     /// Where elements are chosen by hierarchical radiosity.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) accuracy: Option<f64>,
+    /// Why an accuracy was reached in the way it was.
+    #[serde(skip)]
+    pub(crate) choice: Option<String>,
     /// Whether the light of every pixel is gathered for a picture.
     pub(crate) final_gather: bool,
     pub(crate) tolerance: f64,
@@ -77,6 +80,7 @@ impl Options {
         Self {
             problem,
             accuracy: None,
+            choice: None,
             final_gather: false,
             tolerance: stop.tolerance.or(scene.tolerance).unwrap_or(TOLERANCE),
             max_iterations: iterations.unwrap_or(MAX_ITERATIONS),

@@ -50,6 +50,7 @@ pub(crate) fn record(
         hierarchy: solution.hierarchy.clone(),
         field_error: solution.field_error.clone().map(|relative_l2| FieldError { relative_l2 }),
         reciprocity: solution.reciprocity,
+        choice: options.choice.clone(),
         energy: energy(problem, solution),
         files: pictures::names(options, solution).chain(FILES).map(str::to_owned).collect(),
         warnings: problem.warnings.iter().cloned().chain(remarks(options, solution)).collect(),

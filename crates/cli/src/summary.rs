@@ -41,6 +41,7 @@ impl Lines {
 /// The summary at the end of a run: the figures that say whether to trust it.
 pub(crate) fn quality(run: &RunRecord, lines: &mut Lines) {
     lines.add("size", counts(&run.counts));
+    lines.add_some("way", run.choice.clone());
     lines.add("solution", solution(run));
     lines.add_some("closure", closure(&run.closure));
     lines.add_some("form factors", form_factors(run));
