@@ -55,7 +55,6 @@ pub(crate) fn options(
     folder: &Path,
 ) -> Result<Options, Failure> {
     let mut problem = ProblemOptions::new(&args.problem, scene.solve());
-    refuse_dense(&problem)?;
     NAME.clone_into(&mut problem.discretisation);
     if args.problem.solver.is_none() && scene.solve().solver.is_none() {
         SOLVER.clone_into(&mut problem.solver);
@@ -69,8 +68,8 @@ pub(crate) fn options(
     Ok(options)
 }
 
-/// Refuses what belongs to a stored matrix.
-fn refuse_dense(options: &ProblemOptions) -> Result<(), Failure> {
+/// Refuses what an accuracy is not promised for.
+pub(crate) fn refuse_dense(options: &ProblemOptions) -> Result<(), Failure> {
     let what = match (options.discretisation.as_str(), options.storage) {
         (RADIOSITY, Precision::F64) => return Ok(()),
         (RADIOSITY, Precision::F32) => "--storage f32".to_owned(),

@@ -40,4 +40,4 @@ pub use mesh::{Element, Face, Mesh, Surface};
 pub use patch::Patch;
 pub use quality::Quality;
 pub use shape::Shape;
-pub use weld::{Weld, Welded};
+pub use weld::{Anchored, Hanging, Weld, Welded};

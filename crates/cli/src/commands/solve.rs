@@ -82,7 +82,7 @@ fn to_accuracy(
     folder: &Path,
     stages: &mut Stages,
 ) -> Result<(Options, Problem, Solution), Failure> {
-    let options = hierarchical::options(args, scene, accuracy, folder)?;
+    hierarchical::refuse_dense(&ProblemOptions::new(&args.problem, scene.solve()))?;
     let mut choice = None;
     if checkpoint.is_none() {
         let predicted = predicted(args, scene, accuracy)?;
@@ -94,6 +94,7 @@ fn to_accuracy(
             }
         }
     }
+    let options = hierarchical::options(args, scene, accuracy, folder)?;
     let options = Options { choice: choice.map(|choice| choice.to_string()), ..options };
     let (problem, solution) = hierarchical::compute(scene, &options, (accuracy, checkpoint), stages)?;
     Ok((options, problem, solution))

@@ -355,4 +355,77 @@ mod tests {
         assert_eq!((back.width(), back.height()), (40, 30));
         assert_eq!(back.into_raw(), picture.pixels);
     }
+
+    /// Several pictures of a square of 2 × 2 elements, which fills columns and rows 30 to 50 of 80.
+    fn layers(layers: &[Layer<'_>]) -> Vec<Picture> {
+        let (mesh, bands) = (square(2), names(&["grey"]));
+        let field = Field::new(&mesh, &bands, &[2.0; 4], &[2.0; 4]).unwrap();
+        render_layers(&field, &above(80, 80), Exposure::Fixed(0.5), layers).unwrap()
+    }
+
+    #[test]
+    fn edges_are_drawn_over_the_field() {
+        let pictures = layers(&[Layer::Field, Layer::Elements]);
+        assert_eq!(pixel(&pictures[0], 40, 35), [193; 3]);
+        for (x, y) in [(39, 35), (40, 35), (30, 35), (35, 49), (35, 40)] {
+            let [red, _, blue] = pixel(&pictures[1], x, y);
+            assert!(blue > red + 20, "({x}, {y}) is on an edge");
+        }
+        for (x, y) in [(35, 35), (45, 36), (33, 46), (2, 2)] {
+            assert_eq!(pixel(&pictures[1], x, y), pixel(&pictures[0], x, y), "({x}, {y}) is on none");
+        }
+    }
+
+    #[test]
+    fn links_are_tinted_by_what_they_bring() {
+        let corner = |x: f64, y: f64| Vec3::new(0.5 * x, 0.5 * y, 0.0);
+        let cell =
+            |x: f64, y: f64| [corner(x, y), corner(x + 1., y), corner(x + 1., y + 1.), corner(x, y + 1.)];
+        let link = |x: f64, y: f64, share: f64| {
+            let patch = Patch::quad(cell(x, y)).unwrap().unwrap();
+            Link { patch, level: 4, share }
+        };
+        // The middle of the picture is a corner of all four elements: the first one is the receiver.
+        let linked = |_: usize| Linked {
+            links: vec![link(1.0, 0.0, 0.5), link(1.0, 1.0, 1e-3)],
+            link_of: vec![None, Some(0), None, Some(1)],
+        };
+        let picture = &layers(&[Layer::Links(&linked)])[0];
+        let blueness = |x: u32, y: u32| {
+            let [red, _, blue] = pixel(picture, x, y);
+            i32::from(blue) - i32::from(red)
+        };
+        let mesh = square(2);
+        let place = |leaf: usize| {
+            let middle = mesh.patch(leaf).centroid();
+            (30 + (20.0 * middle.x) as u32 + 2, 50 - (20.0 * middle.y) as u32 + 2)
+        };
+        let [strong, none, weak] = [1, 2, 3].map(|leaf| blueness(place(leaf).0, place(leaf).1));
+        assert!(strong > weak && weak > none && none <= 0, "{strong} {weak} {none}");
+    }
+
+    /// Radiosity 4 x.
+    struct Ramp;
+
+    impl Gathering for Ramp {
+        fn gatherer(&self) -> Box<dyn FnMut(usize, Vec3) -> Vec<f64> + '_> {
+            Box::new(|_, point| vec![4.0 * point.x])
+        }
+    }
+
+    #[test]
+    fn gathered_pixels_have_the_radiosity_of_their_points() {
+        let picture = &layers(&[Layer::Gathered(&Ramp)])[0];
+        let tone = Tone::new(Exposure::Fixed(0.5), &[]).unwrap();
+        for x in 31..49 {
+            // The sample nearest to the middle of pixel x stands within an eighth of a pixel of it.
+            let [low, high] = [-0.15, 0.15].map(|off| {
+                let b = 4.0 * (f64::from(x) + 0.5 + off - 30.0) / 20.0;
+                encode(tone.display([b; 3])[0])
+            });
+            let found = pixel(picture, x, 37)[0];
+            assert!(low <= found && found <= high, "{x}: {found} is not from {low} to {high}");
+        }
+        assert_eq!(pixel(picture, 2, 2), pixel(picture, 70, 70), "nothing is gathered beside the square");
+    }
 }
