@@ -5,13 +5,14 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+use fredholm_coupling::Receiver;
 use fredholm_discretisation::{DiscretisationError, discretisation};
 use serde::Serialize;
 
 use crate::commands::{
-    CROSSCHECK_EXAMPLES, CompareArgs, CrosscheckArgs, REFERENCE_EXAMPLES, RESUME_EXAMPLES, ReferenceArgs,
-    ResumeArgs, SHOOT_EXAMPLES, ShootArgs, SpectrumArgs, TRACE_EXAMPLES, TraceArgs, ViewFactorsArgs,
-    WAVES_EXAMPLES, WavesArgs,
+    CROSSCHECK_EXAMPLES, CompareArgs, CrosscheckArgs, Plane, REFERENCE_EXAMPLES, RESUME_EXAMPLES,
+    ReferenceArgs, ResumeArgs, SHOOT_EXAMPLES, ShootArgs, SpectrumArgs, TRACE_EXAMPLES, TraceArgs,
+    ViewFactorsArgs, WAVES_EXAMPLES, WavesArgs, plane, point,
 };
 use crate::registry;
 use crate::size::Bytes;
@@ -38,7 +39,7 @@ Examples:
   fredholm solve room.toml --storage f32 --threads 4 --log json 2> log.jsonl
   fredholm solve room.toml --discretisation galerkin-1
   fredholm solve room.toml --accuracy 1%
-  fredholm solve room.toml --accuracy 1% --final-gather
+  fredholm solve room.toml --accuracy 1% --final-gather --point 1,2,0.8,0,0,1
 
 With an accuracy, mesh.png shows the elements and links.png what the element in the middle of the
 picture receives its light from.
@@ -281,11 +282,32 @@ pub(crate) struct SolveArgs {
     #[arg(long)]
     pub(crate) final_gather: bool,
     #[command(flatten)]
+    pub(crate) places: PlaceArgs,
+    #[command(flatten)]
     pub(crate) problem: ProblemArgs,
     #[command(flatten)]
     pub(crate) stop: StopArgs,
     #[command(flatten)]
     pub(crate) log: LogArgs,
+}
+
+/// Where the irradiance is gathered for points.csv.
+#[derive(Clone, Debug, Default, Args)]
+pub(crate) struct PlaceArgs {
+    /// Point with a normal that receives light, for points.csv: x,y,z,nx,ny,nz (may be given several times)
+    #[arg(long, value_name = "POINT", value_parser = point, allow_hyphen_values = true)]
+    pub(crate) point: Vec<Receiver>,
+    /// Such points in a parallelogram: ox,oy,oz,ux,uy,uz,vx,vy,vz,NU,NV, normal u × v (may be given several times)
+    #[arg(long, value_name = "PLANE", value_parser = plane, allow_hyphen_values = true)]
+    pub(crate) plane: Vec<Plane>,
+}
+
+impl PlaceArgs {
+    /// All points.
+    pub(crate) fn receivers(&self) -> Vec<Receiver> {
+        let grids = self.plane.iter().flat_map(Plane::receivers);
+        self.point.iter().copied().chain(grids).collect()
+    }
 }
 
 /// When a solution ends.

@@ -1,7 +1,8 @@
 //! The options in force: those of the command line, else those of the scene, else the program's.
 
+use fredholm_coupling::Receiver;
 use fredholm_scene::{SolveDefaults, Storage};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use std::path::Path;
 
@@ -38,6 +39,9 @@ pub(crate) struct Options {
     /// Why an accuracy was reached in the way it was.
     #[serde(skip)]
     pub(crate) choice: Option<String>,
+    /// Points whose irradiance is gathered.
+    #[serde(serialize_with = "places", skip_serializing_if = "Vec::is_empty")]
+    pub(crate) points: Vec<Receiver>,
     /// Whether the light of every pixel is gathered for a picture.
     pub(crate) final_gather: bool,
     pub(crate) tolerance: f64,
@@ -81,6 +85,7 @@ impl Options {
             problem,
             accuracy: None,
             choice: None,
+            points: Vec::new(),
             final_gather: false,
             tolerance: stop.tolerance.or(scene.tolerance).unwrap_or(TOLERANCE),
             max_iterations: iterations.unwrap_or(MAX_ITERATIONS),
@@ -89,6 +94,11 @@ impl Options {
             quiet,
         }
     }
+}
+
+/// Points as lists of numbers: place and normal.
+fn places<S: Serializer>(points: &[Receiver], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(points.iter().map(|r| [r.point.to_array(), r.normal.to_array()].concat()))
 }
 
 fn precision(storage: Storage) -> Precision {

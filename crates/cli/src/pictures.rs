@@ -4,7 +4,7 @@ use fredholm_coupling::Receiver;
 use fredholm_hierarchical::{Gather, HierarchyError, Leaves, Link, Sender, Tree, senders};
 use fredholm_linop::MultiVector;
 use fredholm_mesh::Vec3;
-use fredholm_report::{Gathering, Link as Drawn, Linked, PICTURES};
+use fredholm_report::{EXTRAS, Gathering, Link as Drawn, Linked, PointTable};
 
 use crate::failure::{Ending, Failure};
 use crate::options::Options;
@@ -16,6 +16,8 @@ use crate::solution::Solution;
 const SHARE: f64 = 0.1;
 /// The same where no accuracy was asked for.
 const ALONE: f64 = 1e-3;
+/// The table of points.
+const POINTS: &str = "points.csv";
 
 /// Elements and clusters of a solution, and the links between them.
 #[derive(Debug)]
@@ -25,9 +27,15 @@ pub(crate) struct Hierarchy {
 }
 
 /// The names of the pictures that are written besides the usual one.
-pub(crate) fn names(options: &Options, solution: &Solution) -> impl Iterator<Item = &'static str> {
-    let wanted = [solution.tree.is_some(), solution.tree.is_some(), options.final_gather];
-    PICTURES.into_iter().zip(wanted).filter(|(_, wanted)| *wanted).map(|(name, _)| name)
+pub(crate) fn pictures(options: &Options, solution: &Solution) -> impl Iterator<Item = &'static str> {
+    files(options, solution).filter(|name| *name != POINTS)
+}
+
+/// The names of all files that are written besides the usual ones.
+pub(crate) fn files(options: &Options, solution: &Solution) -> impl Iterator<Item = &'static str> {
+    let linked = solution.tree.is_some();
+    let wanted = [linked, linked, options.final_gather, !options.points.is_empty()];
+    EXTRAS.into_iter().zip(wanted).filter(|(_, wanted)| *wanted).map(|(name, _)| name)
 }
 
 /// What pictures are made from.
@@ -59,7 +67,8 @@ impl<'a> Source<'a> {
         solution: &'a Solution,
     ) -> Result<Self, Failure> {
         let hierarchy = solution.tree.as_ref();
-        let light = options.final_gather.then(|| Light::new(problem, options, solution)).transpose()?;
+        let wanted = options.final_gather || !options.points.is_empty();
+        let light = wanted.then(|| Light::new(problem, options, solution)).transpose()?;
         Ok(Self { problem, solution, hierarchy, light })
     }
 
@@ -71,7 +80,8 @@ impl<'a> Source<'a> {
         let Light { radiosity, irradiance, exposed, .. } = light;
         let leaves = Leaves { radiosity, irradiance, exposed };
         let share = options.accuracy.map_or(ALONE, |accuracy| SHARE * accuracy);
-        let gather = Gather::new(tree, &leaves, &self.problem.occluders, &[], share).map_err(failure)?;
+        let points: Vec<Vec3> = options.points.iter().map(|receiver| receiver.point).collect();
+        let gather = Gather::new(tree, &leaves, &self.problem.occluders, &points, share).map_err(failure)?;
         Ok(Some(Gathered { problem: self.problem, light, gather }))
     }
 
@@ -160,6 +170,22 @@ pub(crate) struct Gathered<'a> {
     problem: &'a Problem,
     light: &'a Light,
     gather: Gather<'a>,
+}
+
+impl Gathered<'_> {
+    /// The irradiance of the points that were asked for.
+    pub(crate) fn points(&self, options: &Options) -> Result<Option<PointTable>, Failure> {
+        if options.points.is_empty() {
+            return Ok(None);
+        }
+        let usual = self.gather.usual();
+        let usual = MultiVector::from_fn(options.points.len(), usual.len(), |_, band| usual[band]);
+        // What comes of the first time tells how exact the second one has to be.
+        let first = self.gather.irradiance(&options.points, &usual).map_err(failure)?;
+        let found = self.gather.irradiance(&options.points, &first).map_err(failure)?;
+        let points = options.points.iter().map(|receiver| [receiver.point, receiver.normal]).collect();
+        Ok(Some(PointTable { points, irradiance: found.as_slice().to_vec() }))
+    }
 }
 
 impl Gathering for Gathered<'_> {

@@ -52,7 +52,7 @@ pub(crate) fn record(
         reciprocity: solution.reciprocity,
         choice: options.choice.clone(),
         energy: energy(problem, solution),
-        files: pictures::names(options, solution).chain(FILES).map(str::to_owned).collect(),
+        files: pictures::files(options, solution).chain(FILES).map(str::to_owned).collect(),
         warnings: problem.warnings.iter().cloned().chain(remarks(options, solution)).collect(),
         partial: report.reason == StopReason::Interrupted,
         ..RunRecord::default()

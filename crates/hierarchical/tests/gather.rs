@@ -5,7 +5,7 @@ mod common;
 
 use common::Bench;
 use fredholm_coupling::{Receiver, Targets};
-use fredholm_hierarchical::{Gather, Leaves, Solution};
+use fredholm_hierarchical::{Gather, Leaves, Solution, Tree};
 use fredholm_linop::MultiVector;
 use fredholm_mesh::{Patch, Vec3};
 use std::f64::consts::TAU;
@@ -160,6 +160,46 @@ fn means_of_points_are_those_of_particle_tracing() {
     let rms = (squares / (3 * chosen.len()) as f64).sqrt();
     println!("{} faces: {rms:.2e}", chosen.len());
     assert!(rms < 0.02 && chosen.len() > 40, "{rms:e}");
+}
+
+#[test]
+fn behind_many_bodies_the_strong_senders_are_cut_and_the_weak_ones_sampled() {
+    // A lamp and an even ceiling over a grid of plates over a floor: the factors of both are those of the exact clipping.
+    let quad = |name: &str, [x0, x1, y0, y1, z]: [f64; 5], up: bool| {
+        let (a, b) = if up { ([x1, y0], [x0, y1]) } else { ([x0, y1], [x1, y0]) };
+        format!(
+            "[[surface]]\nname = \"{name}\"\nmaterial = \"black\"\nquad = [[{x0}, {y0}, {z}], [{}, {}, {z}], [{x1}, {y1}, {z}], [{}, {}, {z}]]\n",
+            a[0], a[1], b[0], b[1]
+        )
+    };
+    let mut text = "[materials.black]\nreflectance = 0\nexitance = 1\n".to_owned();
+    text += &quad("floor", [0.0, 1.0, 0.0, 1.0, 0.0], true);
+    text += &quad("lamp", [0.3, 0.5, 0.4, 0.6, 1.0], false);
+    text += &quad("sky", [-9.0, 10.0, -9.0, 10.0, 1.1], false);
+    for k in 0..289 {
+        let (x, y) = (f64::from(k % 17) / 17.0, f64::from(k / 17) / 17.0);
+        text += &quad(&format!("plate {k}"), [x, x + 0.02, y, y + 0.02, 0.3], true);
+    }
+    let bench = Bench::text(&text);
+    let n = bench.mesh.len();
+    let tree = Tree::new(&bench.mesh, bench.occluders.tolerance()).unwrap();
+    let ones = MultiVector::from_fn(n, 1, |_, _| 1.0);
+    let radiosity = MultiVector::from_fn(n, 1, |i, _| [0.0, 5.0, 0.1].get(i).copied().unwrap_or(0.0));
+    let exposed: Vec<f64> = bench.mesh.patches().map(Patch::area).collect();
+    let leaves = Leaves { radiosity: &radiosity, irradiance: &ones, exposed: &exposed };
+    let gather = Gather::new(&tree, &leaves, &bench.occluders, &[], 1e-3).unwrap();
+    let places =
+        (0..25).map(|k| Vec3::new(0.1 + 0.17 * f64::from(k % 5), 0.13 + 0.17 * f64::from(k / 5), 0.0));
+    let points: Vec<Receiver> = places.map(|p| Receiver::new(p, Vec3::Z).unwrap()).collect();
+    let found = gather.irradiance(&points, &MultiVector::from_fn(25, 1, |_, _| 0.3)).unwrap();
+    let patches: Vec<&Patch> = bench.mesh.patches().collect();
+    let row_of: Vec<usize> = (0..n).map(|i| i.min(3)).collect();
+    let targets = Targets { patches: &patches, row_of: &row_of, rows: 4, occluders: &bench.occluders };
+    let factors = targets.factors(&points, &|| ControlFlow::Continue(())).unwrap();
+    for (k, row) in factors.chunks(4).enumerate() {
+        let (exact, error) = (5.0 * row[1] + 0.1 * row[2], found.row(k)[0] - 5.0 * row[1] - 0.1 * row[2]);
+        assert!(error.abs() < 0.03 * exact, "{k}: {error:e} of {exact}, the lamp alone {}", 5.0 * row[1]);
+    }
 }
 
 #[test]

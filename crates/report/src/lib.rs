@@ -11,6 +11,8 @@
 //! | `field.npz` | the same numbers as `NumPy` arrays |
 //! | `image.png` | a camera view |
 //! | `convergence.svg` | residual against iterations and seconds |
+//! | `mesh.png`, `links.png`, `gather.png` | the elements, links and a final gather, where asked for |
+//! | `points.csv` | the irradiance of points, where asked for |
 //! | `run.json` | what made all this; written last, so its presence means a complete folder |
 //!
 //! [`write_comparison`] writes a comparison of solvers: `compare.csv`, `compare_history.csv`, `compare.svg`, `compare.json`.
@@ -43,6 +45,7 @@ mod number;
 mod outputs;
 mod palette;
 mod picture;
+mod points_csv;
 mod refinement;
 mod run;
 mod shading;
@@ -73,8 +76,9 @@ pub use field::Field;
 pub use field_csv::write_field_csv;
 pub use hierarchy::{Hierarchy, HierarchyRound};
 pub use npz::write_npz;
-pub use outputs::{FILES, PICTURES, View, write_all, write_with};
+pub use outputs::{EXTRAS, Extras, FILES, View, write_all, write_with};
 pub use picture::{Gathering, Layer, Link, Linked, Picture, render, render_layers};
+pub use points_csv::{PointTable, write_points_csv};
 pub use refinement::{
     BandConvergence, REFINEMENT_FILES, REFINEMENT_FORMAT, RefinementLevel, RefinementRecord,
     write_refinement, write_refinement_csv, write_refinement_plot,

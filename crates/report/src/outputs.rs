@@ -7,8 +7,9 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use crate::{
-    Camera, Exposure, Field, Layer, ReportError, RunRecord, render_layers, write_atomically,
-    write_convergence, write_faces_csv, write_field_csv, write_npz, write_run, write_surfaces_csv, write_vtu,
+    Camera, Exposure, Field, Layer, PointTable, ReportError, RunRecord, render_layers, write_atomically,
+    write_convergence, write_faces_csv, write_field_csv, write_npz, write_points_csv, write_run,
+    write_surfaces_csv, write_vtu,
 };
 
 /// Names of the files of a result folder, in the order in which they are written.
@@ -23,8 +24,17 @@ pub const FILES: [&str; 8] = [
     "run.json",
 ];
 
-/// Names of further pictures that a result folder may hold: the mesh, links, and the final gather.
-pub const PICTURES: [&str; 3] = ["mesh.png", "links.png", "gather.png"];
+/// Names of further files that a result folder may hold: pictures of the mesh, of links and of the final gather, and the table of points.
+pub const EXTRAS: [&str; 4] = ["mesh.png", "links.png", "gather.png", "points.csv"];
+
+/// What a result folder holds besides the usual files.
+#[derive(Default)]
+pub struct Extras<'a> {
+    /// Pictures with their names, which are among [`EXTRAS`].
+    pub pictures: Vec<(&'static str, Layer<'a>)>,
+    /// The irradiance of points.
+    pub points: Option<PointTable>,
+}
 
 /// What fills a file.
 type Writer<'a> = dyn Fn(&mut dyn Write) -> io::Result<()> + 'a;
@@ -57,10 +67,10 @@ pub fn write_all(
     run: &RunRecord,
     view: &View,
 ) -> Result<Vec<PathBuf>, ReportError> {
-    write_with(folder, field, run, view, &[])
+    write_with(folder, field, run, view, &Extras::default())
 }
 
-/// As [`write_all`], with further pictures: names of [`PICTURES`] and what they show. Those that an older result left are removed.
+/// As [`write_all`], with more. What of [`EXTRAS`] an older result left is removed.
 ///
 /// # Errors
 /// As for [`write_all`].
@@ -69,17 +79,23 @@ pub fn write_with(
     field: &Field<'_>,
     run: &RunRecord,
     view: &View,
-    more: &[(&str, Layer<'_>)],
+    more: &Extras<'_>,
 ) -> Result<Vec<PathBuf>, ReportError> {
-    let layers = std::iter::once(&Layer::Field).chain(more.iter().map(|(_, layer)| layer));
+    let layers = std::iter::once(&Layer::Field).chain(more.pictures.iter().map(|(_, layer)| layer));
     let mut pictures = render_layers(field, &view.camera, view.exposure, layers)?.into_iter();
     let Some(picture) = pictures.next() else { return Ok(Vec::new()) };
     prepare(folder, &folder.join(FILES[FILES.len() - 1]))?;
-    PICTURES.iter().try_for_each(|name| remove(&folder.join(name)))?;
+    EXTRAS.iter().try_for_each(|name| remove(&folder.join(name)))?;
     let mut paths = Vec::new();
-    for ((name, _), picture) in more.iter().zip(pictures) {
+    for ((name, _), picture) in more.pictures.iter().zip(pictures) {
         paths.push(folder.join(name));
         write_atomically(&folder.join(name), &|out: &mut dyn Write| picture.write_png(out))?;
+    }
+    if let Some(table) = &more.points {
+        paths.push(folder.join("points.csv"));
+        write_atomically(&folder.join("points.csv"), &|out: &mut dyn Write| {
+            write_points_csv(table, field.bands(), out)
+        })?;
     }
     let files = FILES.iter().map(|name| folder.join(name));
     let writers: [&Writer; 8] = [

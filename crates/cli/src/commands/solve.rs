@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use fredholm_linop::StopReason;
-use fredholm_report::{Camera, Exposure, Field, Layer, ReportError, RunRecord, View, write_with};
+use fredholm_report::{Camera, Exposure, Extras, Field, Layer, ReportError, RunRecord, View, write_with};
 use fredholm_scene::Scene;
 
 use crate::args::{ProblemArgs, SolveArgs};
@@ -12,7 +12,7 @@ use crate::checkpoint::{self, Checkpoint};
 use crate::choice::{Choice, Extent};
 use crate::failure::{Ending, Failure};
 use crate::options::{Options, ProblemOptions};
-use crate::pictures::{Source, names};
+use crate::pictures::{Source, pictures};
 use crate::prediction::{Prediction, Size};
 use crate::problem::{Problem, scene_failure};
 use crate::record::{record, remarks};
@@ -69,7 +69,8 @@ fn dense(
     let options = ProblemOptions::new(&args.problem, scene.solve());
     let problem = Problem::refined(Arc::clone(scene), options, 1, stages)?;
     let options = Options::new(problem.options.clone(), args.stop, scene.solve(), folder, args.log);
-    let options = Options { final_gather: args.final_gather, ..options };
+    let points = args.places.receivers();
+    let options = Options { final_gather: args.final_gather, points, ..options };
     let solution = compute(&problem, &options, stages)?;
     Ok((options, problem, solution))
 }
@@ -169,8 +170,9 @@ fn write(
         (_, Some(gathered)) => Layer::Gathered(gathered),
         _ => Layer::Field,
     };
-    let layers: Vec<(&str, Layer)> = names(options, solution).map(|name| (name, layer(name))).collect();
-    write_with(folder, &field, record, &view, &layers).map_err(report_failure)
+    let pictures = pictures(options, solution).map(|name| (name, layer(name))).collect();
+    let points = gathered.as_ref().map(|gathered| gathered.points(options)).transpose()?.flatten();
+    write_with(folder, &field, record, &view, &Extras { pictures, points }).map_err(report_failure)
 }
 
 /// The scene's camera, or one that sees all of it.

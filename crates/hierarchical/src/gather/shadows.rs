@@ -6,7 +6,7 @@
 use fredholm_coupling::form_factor::point_to_polygon;
 use fredholm_coupling::polygon::{HalfSpace, clip};
 use fredholm_mesh::Vec3;
-use fredholm_visibility::body::{Bodies, Room, Shadow};
+use fredholm_visibility::body::{Body, Room, Shadow};
 use std::ops::Range;
 
 /// Heights below this part of the distance count as 0.
@@ -34,12 +34,18 @@ pub(super) struct Shadows {
 
 impl Shadows {
     /// Casts the shadows of bodies that reach above the horizon of `x`.
-    pub fn cast(&mut self, x: Vec3, normal: Vec3, bodies: &Bodies) {
+    pub fn cast<'b>(
+        &mut self,
+        x: Vec3,
+        normal: Vec3,
+        bodies: impl Iterator<Item = &'b Body>,
+        tolerance: f64,
+    ) {
         self.planes.clear();
         self.spans.clear();
-        for body in bodies.as_slice() {
-            let below = body.corners().iter().all(|y| normal.dot(*y - x) <= bodies.tolerance());
-            if below || body.shadow(x, bodies.tolerance(), &mut self.room) == Shadow::Nothing {
+        for body in bodies {
+            let below = body.corners().iter().all(|y| normal.dot(*y - x) <= tolerance);
+            if below || body.shadow(x, tolerance, &mut self.room) == Shadow::Nothing {
                 continue;
             }
             let start = self.planes.len();

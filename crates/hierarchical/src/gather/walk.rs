@@ -7,11 +7,16 @@ use fredholm_coupling::Receiver;
 use fredholm_coupling::form_factor::point_to_polygon;
 use fredholm_coupling::polygon::{HalfSpace, clip};
 use fredholm_mesh::{Patch, Vec3};
+use fredholm_visibility::body::Body;
 use std::f64::consts::PI;
 use std::ops::Range;
 
 /// Bodies in a scene up to which their shadows are cut out exactly; behind more of them segments to points of a node are tested.
 const FEW: usize = 256;
+/// Bodies in a scene up to which those before strong senders are looked for.
+const MOST: usize = 10_000;
+/// Part of the irradiance above which a node behind some of many bodies is cut exactly.
+const STRONG: f64 = 0.02;
 /// Points along a side of the grid on a node that brings all of the irradiance.
 const SIDE: f64 = 8.0;
 /// Deviation of the kernel over its mean, for a node of radius r at distance d, over r/d.
@@ -22,7 +27,8 @@ const BEND: f64 = 2.0;
 pub struct Gatherer<'g> {
     gather: &'g Gather<'g>,
     receiver: Receiver,
-    /// Error that a node may leave, of each band, W/m².
+    /// Irradiance that is expected, and error that a node may leave, of each band, W/m².
+    expected: Vec<f64>,
     allowed: Vec<f64>,
     shadows: Shadows,
     /// Shadows that may matter to a node, one list behind the other.
@@ -38,6 +44,7 @@ impl<'g> Gatherer<'g> {
         Self {
             gather,
             receiver: Receiver { point: Vec3::ZERO, normal: Vec3::Z },
+            expected: vec![0.0; bands],
             allowed: vec![0.0; bands],
             shadows: Shadows::default(),
             lists: Vec::new(),
@@ -51,13 +58,15 @@ impl<'g> Gatherer<'g> {
     pub fn irradiance(&mut self, receiver: &Receiver, expected: &[f64]) -> &[f64] {
         let Gather { share, floor, bodies, .. } = self.gather;
         self.receiver = *receiver;
-        for ((allowed, e), floor) in self.allowed.iter_mut().zip(expected).zip(floor) {
-            *allowed = share * e.max(*floor);
+        for (band, (e, floor)) in expected.iter().zip(floor).enumerate() {
+            self.expected[band] = e.max(*floor);
+            self.allowed[band] = share * self.expected[band];
         }
         self.sum.fill(0.0);
         self.lists.clear();
         if self.is_exact() {
-            self.shadows.cast(receiver.point, receiver.normal, bodies);
+            let Receiver { point, normal } = *receiver;
+            self.shadows.cast(point, normal, bodies.as_slice().iter(), bodies.tolerance());
             self.lists.extend(0..self.shadows.len() as u32);
         }
         self.visit(0, 0..self.lists.len());
@@ -161,22 +170,44 @@ impl<'g> Gatherer<'g> {
         if self.front.len() < 3 {
             return;
         }
-        let factor = if self.is_exact() && !own.is_empty() {
-            self.shadows.factor(normal, &self.front, &self.lists[own], flat)
-        } else {
-            point_to_polygon(normal, self.front.iter().copied()).max(0.0)
+        let open = || point_to_polygon(normal, self.front.iter().copied()).max(0.0);
+        let factor = match (self.is_exact(), own.is_empty()) {
+            (true, true) => open(),
+            (true, false) => self.shadows.factor(normal, &self.front, &self.lists[own], flat),
+            (false, _) => {
+                let open = open();
+                self.behind_many(index, open, flat)
+            }
         };
-        let factor = if self.is_exact() { factor } else { factor * self.sampled(index, factor) };
         let mean = self.senders().mean(index);
         self.sum.iter_mut().zip(mean).for_each(|(sum, b)| *sum += factor * b);
     }
 
-    /// Share of a grid of points on a node that is seen, finer on nodes that bring more.
-    fn sampled(&self, index: u32, factor: f64) -> f64 {
-        let Some(patch) = self.node(index).patch() else { return 1.0 };
-        let expected = self.allowed.iter().map(|allowed| allowed / self.gather.share);
-        let parts = self.senders().mean(index).iter().zip(expected);
-        let part = parts.map(|(b, e)| if e > 0.0 { factor * b / e } else { 0.0 }).fold(0.0, f64::max);
+    /// Factor of a node with the factor `open` if nothing stood between: exact where it brings much.
+    fn behind_many(&mut self, index: u32, open: f64, flat: f64) -> f64 {
+        let Some(patch) = self.node(index).patch() else { return open };
+        let expected = self.expected.iter().zip(self.senders().mean(index));
+        let part = expected.map(|(e, b)| if *e > 0.0 { open * b / e } else { 0.0 }).fold(0.0, f64::max);
+        let exact = if part > STRONG { self.cut(patch, flat) } else { None };
+        exact.unwrap_or_else(|| open * self.sampled(patch, part))
+    }
+
+    /// Factor of what the bodies between leave of the polygon looked at; none where they are many.
+    fn cut(&mut self, patch: &Patch, flat: f64) -> Option<f64> {
+        let Gather { occluders, bodies, .. } = self.gather;
+        let Receiver { point, normal } = self.receiver;
+        if bodies.as_slice().len() > MOST {
+            return None;
+        }
+        let shaft = occluders.shaft_from(point, patch);
+        let reaches = |body: &&Body| shaft.as_ref().is_some_and(|shaft| occluders.reaches(body, shaft));
+        self.shadows.cast(point, normal, bodies.as_slice().iter().filter(reaches), bodies.tolerance());
+        let all: Vec<u32> = (0..self.shadows.len() as u32).collect();
+        (all.len() <= FEW).then(|| self.shadows.factor(normal, &self.front, &all, flat))
+    }
+
+    /// Share of a grid of points on a node that is seen, finer on nodes that bring a larger part of the irradiance.
+    fn sampled(&self, patch: &Patch, part: f64) -> f64 {
         let side = (SIDE * part.sqrt()).ceil().clamp(1.0, SIDE) as usize;
         let middle = |k: usize| (k as f64 + 0.5) / side as f64;
         let place = |k: usize| {
