@@ -5,6 +5,7 @@ use super::{Gather, Senders};
 use crate::tree::Node;
 use fredholm_coupling::Receiver;
 use fredholm_coupling::form_factor::point_to_polygon;
+use fredholm_coupling::kernel::lambert;
 use fredholm_coupling::polygon::{HalfSpace, clip};
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::body::Body;
@@ -206,7 +207,7 @@ impl<'g> Gatherer<'g> {
         (all.len() <= FEW).then(|| self.shadows.factor(normal, &self.front, &all, flat))
     }
 
-    /// Share of a grid of points on a node that is seen, finer on nodes that bring a larger part of the irradiance.
+    /// Share of what comes from a grid of points on a node that is seen; the grid is finer on nodes that bring a larger part of the irradiance.
     fn sampled(&self, patch: &Patch, part: f64) -> f64 {
         let side = (SIDE * part.sqrt()).ceil().clamp(1.0, SIDE) as usize;
         let middle = |k: usize| (k as f64 + 0.5) / side as f64;
@@ -214,10 +215,15 @@ impl<'g> Gatherer<'g> {
             let (u, v) = (middle(k / side), middle(k % side));
             if patch.sides() == 3 && u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) }
         };
-        let sees = |k: &usize| {
-            let (u, v) = place(*k);
-            self.gather.occluders.unoccluded(self.receiver.point, patch.point(u, v))
+        let Receiver { point, normal } = self.receiver;
+        let weigh = |[all, seen]: [f64; 2], k: usize| {
+            let (u, v) = place(k);
+            let y = patch.point(u, v);
+            let weight = lambert(point, normal, y, patch.normal());
+            let open = weight > 0.0 && self.gather.occluders.unoccluded(point, y);
+            [all + weight, seen + if open { weight } else { 0.0 }]
         };
-        (0..side * side).filter(sees).count() as f64 / (side * side) as f64
+        let [all, seen] = (0..side * side).fold([0.0; 2], weigh);
+        if all > 0.0 { seen / all } else { 1.0 }
     }
 }
