@@ -95,7 +95,9 @@ impl<'a> Source<'a> {
         for sender in senders(tree, links, leaves[element]) {
             let Some(patch) = tree.nodes()[sender.node as usize].patch() else { continue };
             let below = below(tree, &place, sender.node);
-            below.iter().for_each(|&i| linked.link_of[i] = Some(linked.links.len()));
+            for &i in &below {
+                linked.link_of[i] = Some(linked.links.len());
+            }
             let share = self.share(tree, &sender, &below, element);
             linked.links.push(Drawn { patch: *patch, level: sender.level, share });
         }

@@ -152,9 +152,9 @@ fn means_of_points_are_those_of_particle_tracing() {
     let mut squares = 0.0;
     for (c, &i) in chosen.iter().enumerate() {
         let traced = traced(bench.mesh.faces()[face(i)].centroid);
-        for band in 0..3 {
+        for (band, traced) in traced.iter().enumerate() {
             let mean: f64 = (0..16).map(|k| found.row(16 * c + k)[band]).sum::<f64>() / 16.0;
-            squares += (mean / traced[band] - 1.0).powi(2);
+            squares += (mean / traced - 1.0).powi(2);
         }
     }
     let rms = (squares / (3 * chosen.len()) as f64).sqrt();

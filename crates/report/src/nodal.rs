@@ -126,7 +126,7 @@ mod tests {
         let beside = |y: f64| {
             (1..mesh.len()).find(|&k| {
                 let low = mesh.patch(k).corner(0);
-                low.x == 1.0 && low.y <= y && y <= low.y + 0.25
+                low.x > 0.999 && low.x < 1.001 && low.y <= y && y <= low.y + 0.25
             })
         };
         for y in [0.05, 0.25, 0.3, 0.5, 0.6, 0.75, 0.9] {

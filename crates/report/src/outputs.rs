@@ -89,11 +89,11 @@ pub fn write_with(
     let mut paths = Vec::new();
     for ((name, _), picture) in more.pictures.iter().zip(pictures) {
         paths.push(folder.join(name));
-        write_atomically(&folder.join(name), &|out: &mut dyn Write| picture.write_png(out))?;
+        write_atomically(&folder.join(name), |out: &mut dyn Write| picture.write_png(out))?;
     }
     if let Some(table) = &more.points {
         paths.push(folder.join("points.csv"));
-        write_atomically(&folder.join("points.csv"), &|out: &mut dyn Write| {
+        write_atomically(&folder.join("points.csv"), |out: &mut dyn Write| {
             write_points_csv(table, field.bands(), out)
         })?;
     }

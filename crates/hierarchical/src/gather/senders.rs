@@ -5,7 +5,7 @@
 use super::Leaves;
 use crate::Tree;
 use fredholm_linop::MultiVector;
-use fredholm_mesh::{Bounds, Vec3};
+use fredholm_mesh::{Bounds, Patch, Vec3};
 
 /// Share of the area of a buried leaf that counts as exposed, so that shares are numbers.
 const BURIED: f64 = 1e-9;
@@ -88,7 +88,7 @@ fn balls(tree: &Tree) -> Vec<(Vec3, f64)> {
     let empty = Bounds { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
     let mut boxes = vec![empty; nodes.len()];
     for (index, node) in nodes.iter().enumerate().rev() {
-        let corners = node.patch().into_iter().flat_map(|patch| patch.corners());
+        let corners = node.patch().into_iter().flat_map(Patch::corners);
         let own = corners.fold(boxes[index], |b, &x| Bounds { min: b.min.min(x), max: b.max.max(x) });
         boxes[index] = own;
         if let Some(parent) = node.parent() {

@@ -97,14 +97,15 @@ pub fn render_layers<'a>(
     let width = row_bytes * painters.len();
     let mut rows = vec![0; width * camera.height as usize];
     rows.par_chunks_mut(width).enumerate().for_each(|(y, row)| view.draw(tone, &painters, y, row));
-    let picture = |(k, painter): (usize, &Box<dyn Painter + '_>)| {
-        let row = |row: &[u8]| row[k * row_bytes..(k + 1) * row_bytes].to_vec();
-        let pixels = rows.chunks_exact(width).flat_map(row).collect();
+    let mut pictures = Vec::new();
+    for (k, painter) in painters.iter().enumerate() {
+        let part = |row: &[u8]| row[k * row_bytes..(k + 1) * row_bytes].to_vec();
+        let pixels = rows.chunks_exact(width).flat_map(part).collect();
         let mut picture = Picture { width: camera.width, height: camera.height, pixels };
         painter.finish(&view, &mut picture);
-        picture
-    };
-    Ok(painters.iter().enumerate().map(picture).collect())
+        pictures.push(picture);
+    }
+    Ok(pictures)
 }
 
 /// What is seen through a point of the picture.
