@@ -41,8 +41,9 @@ Examples:
   fredholm solve room.toml --accuracy 1%
   fredholm solve room.toml --accuracy 1% --final-gather --point 1,2,0.8,0,0,1
 
-With an accuracy, mesh.png shows the elements and links.png what the element in the middle of the
-picture receives its light from.
+An accuracy is reached by hierarchical radiosity or by the matrix of the scene's elements, whichever
+is predicted to cost less; the summary says which. With the former, mesh.png shows the elements and
+links.png what the element in the middle of the picture receives its light from.
 
 Ctrl-C during the assembly ends the run with nothing written; during the solution by an
 iterative solver the current iterate is written as a result marked \"partial\", with a small

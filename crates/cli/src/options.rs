@@ -43,6 +43,7 @@ pub(crate) struct Options {
     #[serde(serialize_with = "places", skip_serializing_if = "Vec::is_empty")]
     pub(crate) points: Vec<Receiver>,
     /// Whether the light of every pixel is gathered for a picture.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub(crate) final_gather: bool,
     pub(crate) tolerance: f64,
     pub(crate) max_iterations: u64,
