@@ -7,7 +7,21 @@ use std::time::Duration;
 
 use crate::support::{Bench, column, furnace, program, room};
 
-const SAME: [&str; 6] = ["field.csv", "faces.csv", "surfaces.csv", "field.vtu", "field.npz", "image.png"];
+const SAME: [&str; 10] = [
+    "field.csv",
+    "faces.csv",
+    "surfaces.csv",
+    "field.vtu",
+    "field.npz",
+    "image.png",
+    "mesh.png",
+    "links.png",
+    "gather.png",
+    "points.csv",
+];
+
+/// What is gathered.
+const GATHER: [&str; 3] = ["--final-gather", "--point", "1,1.3,0.1,0.2,-0.3,0.9"];
 
 fn same(bench: &Bench, one: &str, other: &str) {
     for name in SAME {
@@ -46,7 +60,7 @@ fn the_scene_may_ask_for_an_accuracy() {
 fn results_are_the_same_with_1_2_and_4_threads() {
     let bench = Bench::new(&room(8));
     for threads in ["1", "2", "4"] {
-        bench.solve(&["--accuracy", "0.02", "--threads", threads, "-o", threads]);
+        bench.solve(&[&["--accuracy", "0.02", "--threads", threads, "-o", threads], &GATHER[..]].concat());
         same(&bench, "1", threads);
     }
 }
@@ -62,6 +76,7 @@ fn killed_after_a_round(bench: &Bench, pause: Duration) -> bool {
         "-o",
         "killed",
     ]);
+    command.args(GATHER);
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
     let checkpoint = bench.path("killed").join("checkpoint.bin");
     while !checkpoint.exists() && child.try_wait().unwrap().is_none() {
@@ -76,7 +91,7 @@ fn killed_after_a_round(bench: &Bench, pause: Duration) -> bool {
 #[test]
 fn a_killed_run_is_resumed_to_the_same_bits() {
     let bench = Bench::new(&room(8));
-    bench.solve(&["--accuracy", "1%", "-o", "whole"]);
+    bench.solve(&[&["--accuracy", "1%", "-o", "whole"], &GATHER[..]].concat());
     let mut resumed = 0;
     for pause in [0, 0, 10, 40] {
         if killed_after_a_round(&bench, Duration::from_millis(pause)) {
