@@ -195,3 +195,21 @@ fn the_cheaper_way_to_an_accuracy_is_taken_and_named() {
     let (way, _) = solve(&room(8));
     assert!(way.starts_with("hierarchical, since"), "{way}");
 }
+
+#[test]
+fn elements_are_cut_along_shadows() {
+    let bench = Bench::new(&room(4));
+    let mut files = Vec::new();
+    for threads in ["1", "3"] {
+        bench.solve(&["--accuracy", "5%", "--discontinuity", "--threads", threads, "-o", "out"]);
+        files.push(fs::read(bench.path("out").join("shadows.vtu")).unwrap());
+    }
+    assert!(files[0] == files[1], "threads change no bit");
+    let text = String::from_utf8_lossy(&files[0]);
+    let start = text.find("NumberOfCells=\"").unwrap() + 15;
+    let cells: usize = text[start..].split('"').next().unwrap().parse().unwrap();
+    let elements = bench.record("out")["counts"]["elements"].as_u64().unwrap() as usize;
+    // Two triangles an element, and more where shadows end.
+    assert!(cells > 3 * elements, "{cells} triangles, {elements} elements");
+    assert!(text.contains("irradiance_g") && bench.record("out")["options"]["discontinuity"] == true);
+}

@@ -282,6 +282,10 @@ pub(crate) struct SolveArgs {
     /// between elements
     #[arg(long)]
     pub(crate) final_gather: bool,
+    /// Also write shadows.vtu, for which the elements are cut along the borders of the shadows that lamps cast and gather
+    /// their irradiance at the corners
+    #[arg(long)]
+    pub(crate) discontinuity: bool,
     #[command(flatten)]
     pub(crate) places: PlaceArgs,
     #[command(flatten)]

@@ -30,6 +30,8 @@ pub(crate) struct Header {
     pub(crate) memory_limit_bytes: Option<u64>,
     #[serde(default)]
     pub(crate) final_gather: bool,
+    #[serde(default)]
+    pub(crate) discontinuity: bool,
     /// Points whose irradiance is gathered, six numbers each.
     #[serde(default)]
     points: Vec<[String; 6]>,
@@ -53,6 +55,7 @@ impl Header {
             max_iterations: options.max_iterations,
             memory_limit_bytes: options.problem.memory_limit_bytes,
             final_gather: options.final_gather,
+            discontinuity: options.discontinuity,
             points: options.points.iter().map(written).collect(),
         }
     }

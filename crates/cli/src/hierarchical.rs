@@ -64,6 +64,7 @@ pub(crate) fn options(
     let mut options = Options::new(problem, args.stop, scene.solve(), folder, args.log);
     options.accuracy = Some(accuracy);
     options.final_gather = args.final_gather;
+    options.discontinuity = args.discontinuity;
     options.points = args.places.receivers();
     options.tolerance = args.stop.tolerance.or(scene.solve().tolerance).unwrap_or(RESIDUAL * accuracy);
     Ok(options)

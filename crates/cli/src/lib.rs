@@ -24,6 +24,7 @@ mod problem;
 mod record;
 mod registry;
 mod sample;
+mod shadows;
 mod size;
 mod solution;
 mod stages;

@@ -45,6 +45,9 @@ pub(crate) struct Options {
     /// Whether the light of every pixel is gathered for a picture.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub(crate) final_gather: bool,
+    /// Whether elements are cut along the borders of shadows.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub(crate) discontinuity: bool,
     pub(crate) tolerance: f64,
     pub(crate) max_iterations: u64,
     pub(crate) output: String,
@@ -88,6 +91,7 @@ impl Options {
             choice: None,
             points: Vec::new(),
             final_gather: false,
+            discontinuity: false,
             tolerance: stop.tolerance.or(scene.tolerance).unwrap_or(TOLERANCE),
             max_iterations: iterations.unwrap_or(MAX_ITERATIONS),
             output: output.display().to_string(),

@@ -16,8 +16,6 @@ use crate::solution::Solution;
 const SHARE: f64 = 0.1;
 /// The same where no accuracy was asked for.
 const ALONE: f64 = 1e-3;
-/// The table of points.
-const POINTS: &str = "points.csv";
 
 /// Elements and clusters of a solution, and the links between them.
 #[derive(Debug)]
@@ -28,13 +26,14 @@ pub(crate) struct Hierarchy {
 
 /// The names of the pictures that are written besides the usual one.
 pub(crate) fn pictures(options: &Options, solution: &Solution) -> impl Iterator<Item = &'static str> {
-    files(options, solution).filter(|name| *name != POINTS)
+    files(options, solution).filter(|name| name.ends_with(".png"))
 }
 
 /// The names of all files that are written besides the usual ones.
 pub(crate) fn files(options: &Options, solution: &Solution) -> impl Iterator<Item = &'static str> {
     let linked = solution.tree.is_some();
-    let wanted = [linked, linked, options.final_gather, !options.points.is_empty()];
+    let points = !options.points.is_empty();
+    let wanted = [linked, linked, options.final_gather, points, options.discontinuity];
     EXTRAS.into_iter().zip(wanted).filter(|(_, wanted)| *wanted).map(|(name, _)| name)
 }
 
@@ -67,7 +66,7 @@ impl<'a> Source<'a> {
         solution: &'a Solution,
     ) -> Result<Self, Failure> {
         let hierarchy = solution.tree.as_ref();
-        let wanted = options.final_gather || !options.points.is_empty();
+        let wanted = options.final_gather || options.discontinuity || !options.points.is_empty();
         let light = wanted.then(|| Light::new(problem, options, solution)).transpose()?;
         Ok(Self { problem, solution, hierarchy, light })
     }
@@ -169,12 +168,22 @@ fn admit(needed: Bytes, options: &Options) -> Result<(), Failure> {
 
 /// Gathers the light of points on the elements.
 pub(crate) struct Gathered<'a> {
-    problem: &'a Problem,
+    pub(crate) problem: &'a Problem,
     light: &'a Light,
-    gather: Gather<'a>,
+    pub(crate) gather: Gather<'a>,
 }
 
 impl Gathered<'_> {
+    /// Whether an element is a lamp.
+    pub(crate) fn emits(&self, element: usize) -> bool {
+        self.light.exitance.row(element).iter().any(|m| *m > 0.0)
+    }
+
+    /// Irradiance of an element, of each band, W/m².
+    pub(crate) fn expected(&self, element: usize) -> &[f64] {
+        self.light.irradiance.row(element)
+    }
+
     /// The irradiance of the points that were asked for.
     pub(crate) fn points(&self, options: &Options) -> Result<Option<PointTable>, Failure> {
         if options.points.is_empty() {

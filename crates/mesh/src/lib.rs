@@ -12,6 +12,7 @@ mod border;
 mod bounds;
 mod builder;
 mod cuboid;
+mod cuts;
 mod cutting;
 mod cylinder;
 mod disc;
@@ -33,6 +34,7 @@ mod weld;
 
 pub use bounds::Bounds;
 pub use builder::MeshBuilder;
+pub use cuts::{cut_polygon, part_inside};
 pub use cutting::{Cutting, Lines};
 pub use error::{MeshError, Ring};
 pub use glam::DVec3 as Vec3;

@@ -13,6 +13,7 @@
 //! | `convergence.svg` | residual against iterations and seconds |
 //! | `mesh.png`, `links.png`, `gather.png` | the elements, links and a final gather, where asked for |
 //! | `points.csv` | the irradiance of points, where asked for |
+//! | `shadows.vtu` | triangles cut along the borders of shadows, where asked for |
 //! | `run.json` | what made all this; written last, so its presence means a complete folder |
 //!
 //! [`write_comparison`] writes a comparison of solvers: `compare.csv`, `compare_history.csv`, `compare.svg`, `compare.json`.
@@ -49,6 +50,7 @@ mod points_csv;
 mod refinement;
 mod run;
 mod shading;
+mod shadows_vtu;
 mod shooting;
 mod spectrum;
 mod stochastic;
@@ -87,6 +89,7 @@ pub use run::{
     Closure, Counts, Energy, FORMAT, FieldError, FormFactorError, History, MeshError, RunRecord, Timing,
     read_run, write_run,
 };
+pub use shadows_vtu::{ShadowMesh, write_shadows_vtu};
 pub use shooting::{
     SHOOTING_FILES, SHOOTING_FORMAT, ShootingRecord, Shot, write_shooting, write_shooting_plot,
     write_shot_picture, write_shots_csv,

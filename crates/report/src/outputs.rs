@@ -7,9 +7,9 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use crate::{
-    Camera, Exposure, Field, Layer, PointTable, ReportError, RunRecord, render_layers, write_atomically,
-    write_convergence, write_faces_csv, write_field_csv, write_npz, write_points_csv, write_run,
-    write_surfaces_csv, write_vtu,
+    Camera, Exposure, Field, Layer, PointTable, ReportError, RunRecord, ShadowMesh, render_layers,
+    write_atomically, write_convergence, write_faces_csv, write_field_csv, write_npz, write_points_csv,
+    write_run, write_shadows_vtu, write_surfaces_csv, write_vtu,
 };
 
 /// Names of the files of a result folder, in the order in which they are written.
@@ -24,8 +24,8 @@ pub const FILES: [&str; 8] = [
     "run.json",
 ];
 
-/// Names of further files that a result folder may hold: pictures of the mesh, of links and of the final gather, and the table of points.
-pub const EXTRAS: [&str; 4] = ["mesh.png", "links.png", "gather.png", "points.csv"];
+/// Names of further files that a result folder may hold: pictures of the mesh, of links and of the final gather, the table of points, and triangles cut along shadows.
+pub const EXTRAS: [&str; 5] = ["mesh.png", "links.png", "gather.png", "points.csv", "shadows.vtu"];
 
 /// What a result folder holds besides the usual files.
 #[derive(Default)]
@@ -34,6 +34,8 @@ pub struct Extras<'a> {
     pub pictures: Vec<(&'static str, Layer<'a>)>,
     /// The irradiance of points.
     pub points: Option<PointTable>,
+    /// Triangles cut along the borders of shadows.
+    pub shadows: Option<ShadowMesh>,
 }
 
 /// What fills a file.
@@ -95,6 +97,12 @@ pub fn write_with(
         paths.push(folder.join("points.csv"));
         write_atomically(&folder.join("points.csv"), |out: &mut dyn Write| {
             write_points_csv(table, field.bands(), out)
+        })?;
+    }
+    if let Some(mesh) = &more.shadows {
+        paths.push(folder.join("shadows.vtu"));
+        write_atomically(&folder.join("shadows.vtu"), |out: &mut dyn Write| {
+            write_shadows_vtu(mesh, field.bands(), out)
         })?;
     }
     let files = FILES.iter().map(|name| folder.join(name));

@@ -17,23 +17,28 @@ use crate::Field;
 use crate::nodal::SMOOTH;
 use crate::xml::escaped;
 
-const TRIANGLE: u8 = 5;
+pub(crate) const TRIANGLE: u8 = 5;
 const QUAD: u8 = 9;
 const POLYGON: u8 = 7;
 
-type Fill<'a> = Box<dyn Fn(&mut dyn Write) -> io::Result<()> + 'a>;
+pub(crate) type Fill<'a> = Box<dyn Fn(&mut dyn Write) -> io::Result<()> + 'a>;
 
 /// One data array: its description, its size in bytes and what writes them.
-struct Array<'a> {
-    name: String,
-    kind: &'static str,
-    components: usize,
-    bytes: usize,
-    fill: Fill<'a>,
+pub(crate) struct Array<'a> {
+    pub(crate) name: String,
+    pub(crate) kind: &'static str,
+    pub(crate) components: usize,
+    pub(crate) bytes: usize,
+    pub(crate) fill: Fill<'a>,
 }
 
 impl<'a> Array<'a> {
-    fn floats<I>(name: String, components: usize, count: usize, values: impl Fn() -> I + 'a) -> Self
+    pub(crate) fn floats<I>(
+        name: String,
+        components: usize,
+        count: usize,
+        values: impl Fn() -> I + 'a,
+    ) -> Self
     where
         I: Iterator<Item = f64>,
     {
@@ -41,7 +46,7 @@ impl<'a> Array<'a> {
         Self { name, kind: "Float64", components, bytes: 8 * components * count, fill }
     }
 
-    fn integers<I>(name: &str, count: usize, values: impl Fn() -> I + 'a) -> Self
+    pub(crate) fn integers<I>(name: &str, count: usize, values: impl Fn() -> I + 'a) -> Self
     where
         I: Iterator<Item = usize>,
     {
@@ -74,9 +79,18 @@ pub fn write_vtu(field: &Field<'_>, out: &mut dyn Write) -> io::Result<()> {
     let Anchored { leaves, polygons: welded, .. } = field.mesh().anchored(SMOOTH);
     let sections =
         [("Points", vec![points(&welded)]), ("Cells", cells(&leaves, &welded)), ("CellData", data(field))];
-    opening(&welded, out)?;
+    write_grid([welded.vertices.len(), welded.len()], &sections, out)
+}
+
+/// Writes the arrays of a grid of some points and cells, by sections.
+pub(crate) fn write_grid(
+    counts: [usize; 2],
+    sections: &[(&str, Vec<Array<'_>>)],
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    opening(counts, out)?;
     let mut offset = 0;
-    for (section, arrays) in &sections {
+    for (section, arrays) in sections {
         writeln!(out, "<{section}>")?;
         for array in arrays {
             array.describe(out, offset)?;
@@ -89,8 +103,7 @@ pub fn write_vtu(field: &Field<'_>, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "\n</AppendedData>\n</VTKFile>")
 }
 
-fn opening(welded: &Welded, out: &mut dyn Write) -> io::Result<()> {
-    let (points, cells) = (welded.vertices.len(), welded.len());
+fn opening([points, cells]: [usize; 2], out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "<?xml version=\"1.0\"?>")?;
     writeln!(
         out,

@@ -37,6 +37,7 @@ pub(crate) fn resume(args: &ResumeArgs) -> Result<Ending, Failure> {
         output: Some(args.folder.clone()),
         accuracy: Some(checkpoint.accuracy),
         final_gather: header.final_gather,
+        discontinuity: header.discontinuity,
         places: PlaceArgs { point: header.receivers(), plane: Vec::new() },
         problem: ProblemArgs {
             scene: header.scene.clone(),

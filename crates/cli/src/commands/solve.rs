@@ -12,7 +12,7 @@ use crate::checkpoint::{self, Checkpoint};
 use crate::choice::{Choice, Extent};
 use crate::failure::{Ending, Failure};
 use crate::options::{Options, ProblemOptions};
-use crate::pictures::{Source, pictures};
+use crate::pictures::{Gathered, Source, pictures};
 use crate::prediction::{Prediction, Size};
 use crate::problem::{Problem, scene_failure};
 use crate::record::{record, remarks};
@@ -70,7 +70,8 @@ fn dense(
     let problem = Problem::refined(Arc::clone(scene), options, 1, stages)?;
     let options = Options::new(problem.options.clone(), args.stop, scene.solve(), folder, args.log);
     let points = args.places.receivers();
-    let options = Options { final_gather: args.final_gather, points, ..options };
+    let SolveArgs { final_gather, discontinuity, .. } = *args;
+    let options = Options { final_gather, discontinuity, points, ..options };
     let solution = compute(&problem, &options, stages)?;
     Ok((options, problem, solution))
 }
@@ -172,7 +173,8 @@ fn write(
     };
     let pictures = pictures(options, solution).map(|name| (name, layer(name))).collect();
     let points = gathered.as_ref().map(|gathered| gathered.points(options)).transpose()?.flatten();
-    write_with(folder, &field, record, &view, &Extras { pictures, points }).map_err(report_failure)
+    let shadows = gathered.as_ref().filter(|_| options.discontinuity).map(Gathered::shadows);
+    write_with(folder, &field, record, &view, &Extras { pictures, points, shadows }).map_err(report_failure)
 }
 
 /// The scene's camera, or one that sees all of it.

@@ -93,6 +93,18 @@ impl<'a> Gather<'a> {
         self.floor.iter().map(|e| e / FLOOR).collect()
     }
 
+    /// The tree that is gathered from.
+    #[must_use]
+    pub fn tree(&self) -> &'a Tree {
+        self.tree
+    }
+
+    /// What hides parts of it.
+    #[must_use]
+    pub fn bodies(&self) -> &Bodies {
+        &self.bodies
+    }
+
     /// Gathers for one thread.
     #[must_use]
     pub fn gatherer(&self) -> Gatherer<'_> {
