@@ -17,6 +17,9 @@ const SHARE: f64 = 0.1;
 /// The same where no accuracy was asked for.
 const ALONE: f64 = 1e-3;
 
+/// How many of the further files are pictures: the first ones.
+const PICTURES: usize = 3;
+
 /// Elements and clusters of a solution, and the links between them.
 #[derive(Debug)]
 pub(crate) struct Hierarchy {
@@ -26,7 +29,7 @@ pub(crate) struct Hierarchy {
 
 /// The names of the pictures that are written besides the usual one.
 pub(crate) fn pictures(options: &Options, solution: &Solution) -> impl Iterator<Item = &'static str> {
-    files(options, solution).filter(|name| name.ends_with(".png"))
+    files(options, solution).filter(|name| EXTRAS[..PICTURES].contains(name))
 }
 
 /// The names of all files that are written besides the usual ones.

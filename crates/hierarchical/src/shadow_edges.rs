@@ -9,6 +9,8 @@ use fredholm_visibility::body::{Bodies, Body, Edge, Face};
 
 /// Height of what casts a shadow, over that of the corner of the lamp, at most.
 const BELOW: f64 = 1.0 - 1e-6;
+/// Difference of heights, over that of the corner of the lamp, below which an edge is level.
+const LEVEL: f64 = 1e-14;
 
 /// The lines that lamps and bodies make on the plane of `onto`; they may lie outside of it, or where another body hides the lamp.
 #[must_use]
@@ -57,14 +59,14 @@ fn project(plane: &Face, lamp: Vec3, x: Vec3) -> Option<Vec3> {
 fn between(plane: &Face, [a, b]: [Vec3; 2], most: f64) -> Option<[Vec3; 2]> {
     let (from, to) = (plane.height(a), plane.height(b));
     let at = |height: f64| ((height - from) / (to - from)).clamp(0.0, 1.0);
-    if from.max(to) <= 0.0 || from.min(to) >= most {
+    if most <= 0.0 || from.max(to) <= 0.0 || from.min(to) >= most {
         return None;
     }
-    if from == to {
-        return Some([a, b]);
-    }
-    let (low, high) = (at(0.0).min(at(most)), at(0.0).max(at(most)));
     // Rounding must not put the ends beyond the heights that were asked for.
     let inside = |x: Vec3| x + plane.normal * (plane.height(x).clamp(0.0, most) - plane.height(x));
+    if (to - from).abs() <= LEVEL * most {
+        return Some([a, b].map(inside));
+    }
+    let (low, high) = (at(0.0).min(at(most)), at(0.0).max(at(most)));
     Some([low, high].map(|t| inside(a.lerp(b, t))))
 }

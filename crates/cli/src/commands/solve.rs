@@ -71,7 +71,7 @@ fn dense(
     let options = Options::new(problem.options.clone(), args.stop, scene.solve(), folder, args.log);
     let points = args.places.receivers();
     let SolveArgs { final_gather, discontinuity, .. } = *args;
-    let options = Options { final_gather, discontinuity, points, ..options };
+    let options = Options { points, final_gather, discontinuity, ..options };
     let solution = compute(&problem, &options, stages)?;
     Ok((options, problem, solution))
 }
