@@ -209,7 +209,7 @@ fn elements_are_cut_along_shadows() {
     let start = text.find("NumberOfCells=\"").unwrap() + 15;
     let cells: usize = text[start..].split('"').next().unwrap().parse().unwrap();
     let elements = bench.record("out")["counts"]["elements"].as_u64().unwrap() as usize;
-    // Two triangles an element, and more where shadows end.
-    assert!(cells > 3 * elements, "{cells} triangles, {elements} elements");
+    // Two triangles an element, and more where lines of shadows or corners of neighbours are on it.
+    assert!(cells > 2 * elements + 100, "{cells} triangles, {elements} elements");
     assert!(text.contains("irradiance_g") && bench.record("out")["options"]["discontinuity"] == true);
 }

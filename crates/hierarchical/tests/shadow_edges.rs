@@ -70,3 +70,17 @@ fn what_is_beside_the_lamp_or_above_it_casts_no_shadow() {
     assert!(found.iter().flatten().all(|x| x.x > 0.69 && x.y > 0.69), "{found:?}");
     assert!(!found.is_empty());
 }
+
+#[test]
+fn a_lamp_below_a_polygon_casts_no_shadow_on_it() {
+    let bench = scene();
+    let patches: Vec<&Patch> = bench.mesh.patches().collect();
+    let bodies = Bodies::new(&bench.occluders, &patches, &[]);
+    let square = |half: f64, z: f64| {
+        let corners = [[-half, -half], [half, -half], [half, half], [-half, half]];
+        Patch::quad(corners.map(|[x, y]| Vec3::new(x, y, z))).unwrap().unwrap()
+    };
+    // The box reaches from below the polygon to above it.
+    assert!(shadow_edges(&[square(0.1, 0.02)], &bodies, &square(1.0, 0.05)).is_empty());
+    assert!(!shadow_edges(&[square(0.1, 0.9)], &bodies, &square(1.0, 0.05)).is_empty());
+}
