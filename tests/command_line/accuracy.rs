@@ -5,9 +5,23 @@ use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
-use crate::support::{Bench, program, room};
+use crate::support::{Bench, column, furnace, program, room};
 
-const SAME: [&str; 6] = ["field.csv", "faces.csv", "surfaces.csv", "field.vtu", "field.npz", "image.png"];
+const SAME: [&str; 10] = [
+    "field.csv",
+    "faces.csv",
+    "surfaces.csv",
+    "field.vtu",
+    "field.npz",
+    "image.png",
+    "mesh.png",
+    "links.png",
+    "gather.png",
+    "points.csv",
+];
+
+/// What is gathered.
+const GATHER: [&str; 3] = ["--final-gather", "--point", "1,1.3,0.1,0.2,-0.3,0.9"];
 
 fn same(bench: &Bench, one: &str, other: &str) {
     for name in SAME {
@@ -46,7 +60,7 @@ fn the_scene_may_ask_for_an_accuracy() {
 fn results_are_the_same_with_1_2_and_4_threads() {
     let bench = Bench::new(&room(8));
     for threads in ["1", "2", "4"] {
-        bench.solve(&["--accuracy", "0.02", "--threads", threads, "-o", threads]);
+        bench.solve(&[&["--accuracy", "0.02", "--threads", threads, "-o", threads], &GATHER[..]].concat());
         same(&bench, "1", threads);
     }
 }
@@ -62,6 +76,7 @@ fn killed_after_a_round(bench: &Bench, pause: Duration) -> bool {
         "-o",
         "killed",
     ]);
+    command.args(GATHER);
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
     let checkpoint = bench.path("killed").join("checkpoint.bin");
     while !checkpoint.exists() && child.try_wait().unwrap().is_none() {
@@ -76,7 +91,7 @@ fn killed_after_a_round(bench: &Bench, pause: Duration) -> bool {
 #[test]
 fn a_killed_run_is_resumed_to_the_same_bits() {
     let bench = Bench::new(&room(8));
-    bench.solve(&["--accuracy", "1%", "-o", "whole"]);
+    bench.solve(&[&["--accuracy", "1%", "-o", "whole"], &GATHER[..]].concat());
     let mut resumed = 0;
     for pause in [0, 0, 10, 40] {
         if killed_after_a_round(&bench, Duration::from_millis(pause)) {
@@ -104,4 +119,97 @@ fn what_does_not_go_with_an_accuracy_is_refused() {
     }
     let run = bench.run(&["resume", "nowhere"]);
     assert!(run.code == 5 && run.stderr.contains("checkpoint"), "{}", run.stderr);
+}
+
+#[test]
+fn pictures_of_the_elements_and_links_are_among_the_results() {
+    let bench = Bench::new(&room(8));
+    bench.solve(&["--accuracy", "5%", "--final-gather", "-o", "out"]);
+    let listed = bench.record("out")["files"].clone();
+    for name in ["mesh.png", "links.png", "gather.png"] {
+        assert!(listed.as_array().unwrap().iter().any(|file| file == name), "{listed}");
+        let file = fs::read(bench.path("out").join(name)).unwrap();
+        assert!(
+            file.starts_with(b"\x89PNG") && file != fs::read(bench.path("out").join("image.png")).unwrap()
+        );
+    }
+    let info = bench.run(&["info", "out/links.png"]);
+    assert!(
+        info.code == 0 && info.stdout.contains("mesh.png, links.png, gather.png, field.csv"),
+        "{}",
+        info.stdout
+    );
+    // What another result left does not stay.
+    bench.solve(&["-o", "out"]);
+    assert!(
+        ["mesh.png", "links.png", "gather.png"].iter().all(|name| !bench.path("out").join(name).exists())
+    );
+}
+
+#[test]
+fn points_gather_their_irradiance() {
+    // In a room of one reflectance and exitance, E = M/(1 − ρ) everywhere; from outside nothing is seen.
+    let bench = Bench::new(&furnace(4, &[0.5, 0.9]));
+    for accuracy in [&[][..], &["--accuracy", "1%"]] {
+        let places = ["--point", "0.2,0.3,0.4,1,-2,3", "--plane", "0,0,0,1,0,0,0,1,0,3,2", "-o", "out"];
+        bench.solve(&[accuracy, &places].concat());
+        let path = bench.path("out").join("points.csv");
+        for (band, exact) in [("b0", 2.0), ("b1", 10.0)] {
+            let found = column(&path, &format!("irradiance_{band}"));
+            assert_eq!(found.len(), 7);
+            assert!(found.iter().all(|e| (e / exact - 1.0).abs() < 1e-2), "{found:?}");
+        }
+        assert_eq!(column(&path, "x")[..2], [0.2, 1.0 / 6.0]);
+    }
+    let run = bench.run(&["solve", "scene.toml", "--point", "1,2,3"]);
+    assert!(run.code == 2 && run.stderr.contains("6 finite numbers"), "{}", run.stderr);
+}
+
+#[test]
+fn the_cheaper_way_to_an_accuracy_is_taken_and_named() {
+    let solve = |scene: &str| {
+        let bench = Bench::new(scene);
+        let run = bench.solve(&["--accuracy", "1%", "-o", "out"]);
+        let record = bench.record("out");
+        let way = record["choice"].as_str().unwrap().to_owned();
+        assert!(run.stdout.contains("way "), "{}", run.stdout);
+        (way, record)
+    };
+    // 24 faces of 4 elements in a furnace: 4,656 pairs, and no error of the mesh.
+    let small = furnace(2, &[0.5]).replace("divide = [2, 2]", "divide = [2, 2]\nelements_per_face = 4");
+    let (way, record) = solve(&small);
+    assert!(way.starts_with("the matrix of the scene's elements, since 4.7e3 pairs"), "{way}");
+    assert_eq!(
+        (record["discretisation"].as_str(), record["options"]["accuracy"].as_f64()),
+        (Some("galerkin-0"), Some(0.01))
+    );
+    assert!(record["mesh_error"]["relative_l2"][0].as_f64().unwrap() <= 0.01);
+    // A lamp and a block: 2 × 2 elements a face leave more than that.
+    let shaded = room(1)
+        .replace("divide = [1, 1]", "elements_per_face = 4")
+        .replace("divide = [2, 2]", "elements_per_face = 4");
+    let shaded = shaded.replace("two_sided", "elements_per_face = 4\ntwo_sided");
+    let (way, record) = solve(&shaded);
+    assert!(way.contains("was cheaper but left an error of"), "{way}");
+    assert_eq!(record["discretisation"], "hierarchical");
+    let (way, _) = solve(&room(8));
+    assert!(way.starts_with("hierarchical, since"), "{way}");
+}
+
+#[test]
+fn elements_are_cut_along_shadows() {
+    let bench = Bench::new(&room(4));
+    let mut files = Vec::new();
+    for threads in ["1", "3"] {
+        bench.solve(&["--accuracy", "5%", "--discontinuity", "--threads", threads, "-o", "out"]);
+        files.push(fs::read(bench.path("out").join("shadows.vtu")).unwrap());
+    }
+    assert!(files[0] == files[1], "threads change no bit");
+    let text = String::from_utf8_lossy(&files[0]);
+    let start = text.find("NumberOfCells=\"").unwrap() + 15;
+    let cells: usize = text[start..].split('"').next().unwrap().parse().unwrap();
+    let elements = bench.record("out")["counts"]["elements"].as_u64().unwrap() as usize;
+    // Two triangles an element, and more where lines of shadows or corners of neighbours are on it.
+    assert!(cells > 2 * elements + 100, "{cells} triangles, {elements} elements");
+    assert!(text.contains("irradiance_g") && bench.record("out")["options"]["discontinuity"] == true);
 }

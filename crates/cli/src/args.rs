@@ -5,13 +5,14 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+use fredholm_coupling::Receiver;
 use fredholm_discretisation::{DiscretisationError, discretisation};
 use serde::Serialize;
 
 use crate::commands::{
-    CROSSCHECK_EXAMPLES, CompareArgs, CrosscheckArgs, REFERENCE_EXAMPLES, RESUME_EXAMPLES, ReferenceArgs,
-    ResumeArgs, SHOOT_EXAMPLES, ShootArgs, SpectrumArgs, TRACE_EXAMPLES, TraceArgs, ViewFactorsArgs,
-    WAVES_EXAMPLES, WavesArgs,
+    CROSSCHECK_EXAMPLES, CompareArgs, CrosscheckArgs, Plane, REFERENCE_EXAMPLES, RESUME_EXAMPLES,
+    ReferenceArgs, ResumeArgs, SHOOT_EXAMPLES, ShootArgs, SpectrumArgs, TRACE_EXAMPLES, TraceArgs,
+    ViewFactorsArgs, WAVES_EXAMPLES, WavesArgs, plane, point,
 };
 use crate::registry;
 use crate::size::Bytes;
@@ -38,6 +39,11 @@ Examples:
   fredholm solve room.toml --storage f32 --threads 4 --log json 2> log.jsonl
   fredholm solve room.toml --discretisation galerkin-1
   fredholm solve room.toml --accuracy 1%
+  fredholm solve room.toml --accuracy 1% --final-gather --point 1,2,0.8,0,0,1
+
+An accuracy is reached by hierarchical radiosity or by the matrix of the scene's elements, whichever
+is predicted to cost less; the summary says which. With the former, mesh.png shows the elements and
+links.png what the element in the middle of the picture receives its light from.
 
 Ctrl-C during the assembly ends the run with nothing written; during the solution by an
 iterative solver the current iterate is written as a result marked \"partial\", with a small
@@ -272,12 +278,41 @@ pub(crate) struct SolveArgs {
     /// radiosity [default: the scene's, else its elements]
     #[arg(long, value_name = "E", value_parser = accuracy)]
     pub(crate) accuracy: Option<f64>,
+    /// Also draw gather.png, for which every pixel gathers its light from all that it sees; image.png interpolates
+    /// between elements
+    #[arg(long)]
+    pub(crate) final_gather: bool,
+    /// Also write shadows.vtu, for which the elements are cut along the borders of the shadows that lamps cast and gather
+    /// their irradiance at the corners
+    #[arg(long)]
+    pub(crate) discontinuity: bool,
+    #[command(flatten)]
+    pub(crate) places: PlaceArgs,
     #[command(flatten)]
     pub(crate) problem: ProblemArgs,
     #[command(flatten)]
     pub(crate) stop: StopArgs,
     #[command(flatten)]
     pub(crate) log: LogArgs,
+}
+
+/// Where the irradiance is gathered for points.csv.
+#[derive(Clone, Debug, Default, Args)]
+pub(crate) struct PlaceArgs {
+    /// Point with a normal that receives light, for points.csv: x,y,z,nx,ny,nz (may be given several times)
+    #[arg(long, value_name = "POINT", value_parser = point, allow_hyphen_values = true)]
+    pub(crate) point: Vec<Receiver>,
+    /// Such points in a parallelogram: ox,oy,oz,ux,uy,uz,vx,vy,vz,NU,NV, normal u × v (may be given several times)
+    #[arg(long, value_name = "PLANE", value_parser = plane, allow_hyphen_values = true)]
+    pub(crate) plane: Vec<Plane>,
+}
+
+impl PlaceArgs {
+    /// All points.
+    pub(crate) fn receivers(&self) -> Vec<Receiver> {
+        let grids = self.plane.iter().flat_map(Plane::receivers);
+        self.point.iter().copied().chain(grids).collect()
+    }
 }
 
 /// When a solution ends.

@@ -3,7 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use fredholm_coupling::Receiver;
 use fredholm_hierarchical::State;
+use fredholm_mesh::Vec3;
 use fredholm_report::write_atomically;
 use serde::{Deserialize, Serialize};
 
@@ -26,6 +28,13 @@ pub(crate) struct Header {
     tolerance: String,
     pub(crate) max_iterations: u64,
     pub(crate) memory_limit_bytes: Option<u64>,
+    #[serde(default)]
+    pub(crate) final_gather: bool,
+    #[serde(default)]
+    pub(crate) discontinuity: bool,
+    /// Points whose irradiance is gathered, six numbers each.
+    #[serde(default)]
+    points: Vec<[String; 6]>,
 }
 
 impl Header {
@@ -45,7 +54,20 @@ impl Header {
             tolerance: options.tolerance.to_string(),
             max_iterations: options.max_iterations,
             memory_limit_bytes: options.problem.memory_limit_bytes,
+            final_gather: options.final_gather,
+            discontinuity: options.discontinuity,
+            points: options.points.iter().map(written).collect(),
         }
+    }
+
+    /// The points; those that cannot be read are left out.
+    pub(crate) fn receivers(&self) -> Vec<Receiver> {
+        let number = |text: &String| text.parse::<f64>().ok().filter(|x| x.is_finite());
+        let receiver = |texts: &[String; 6]| {
+            let [x, y, z, nx, ny, nz] = texts.each_ref().map(number);
+            Some(Receiver { point: Vec3::new(x?, y?, z?), normal: Vec3::new(nx?, ny?, nz?) })
+        };
+        self.points.iter().filter_map(receiver).collect()
     }
 
     /// Accuracy and tolerance; none where they are no numbers between 0 and 1.
@@ -53,6 +75,12 @@ impl Header {
         let number = |text: &str| text.parse().ok().filter(|&value: &f64| value > 0.0 && value < 1.0);
         Some([number(&self.accuracy)?, number(&self.tolerance)?])
     }
+}
+
+/// A point as text, which is read back to the same bits.
+fn written(receiver: &Receiver) -> [String; 6] {
+    let (p, n) = (receiver.point, receiver.normal);
+    [p.x, p.y, p.z, n.x, n.y, n.z].map(|number| number.to_string())
 }
 
 /// A checkpoint that was read.

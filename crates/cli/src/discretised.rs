@@ -81,6 +81,7 @@ fn unassessed(lit: &Lit, exposed: Vec<f64>) -> Solution {
         energy: Vec::new(),
         mesh_error: None,
         hierarchy: None,
+        tree: None,
         field_error: None,
     }
 }

@@ -20,6 +20,7 @@ use crate::console::Console;
 use crate::failure::{Ending, Failure};
 use crate::interrupt::Interrupt;
 use crate::options::{Options, ProblemOptions, RADIOSITY};
+use crate::pictures;
 use crate::prediction::{Dense, Prediction, Size};
 use crate::problem::{Problem, check, occluders, scene_failure};
 use crate::registry::{self, Entry};
@@ -54,7 +55,6 @@ pub(crate) fn options(
     folder: &Path,
 ) -> Result<Options, Failure> {
     let mut problem = ProblemOptions::new(&args.problem, scene.solve());
-    refuse_dense(&problem)?;
     NAME.clone_into(&mut problem.discretisation);
     if args.problem.solver.is_none() && scene.solve().solver.is_none() {
         SOLVER.clone_into(&mut problem.solver);
@@ -63,12 +63,15 @@ pub(crate) fn options(
     }
     let mut options = Options::new(problem, args.stop, scene.solve(), folder, args.log);
     options.accuracy = Some(accuracy);
+    options.final_gather = args.final_gather;
+    options.discontinuity = args.discontinuity;
+    options.points = args.places.receivers();
     options.tolerance = args.stop.tolerance.or(scene.solve().tolerance).unwrap_or(RESIDUAL * accuracy);
     Ok(options)
 }
 
-/// Refuses what belongs to a stored matrix.
-fn refuse_dense(options: &ProblemOptions) -> Result<(), Failure> {
+/// Refuses what an accuracy is not promised for.
+pub(crate) fn refuse_dense(options: &ProblemOptions) -> Result<(), Failure> {
     let what = match (options.discretisation.as_str(), options.storage) {
         (RADIOSITY, Precision::F64) => return Ok(()),
         (RADIOSITY, Precision::F32) => "--storage f32".to_owned(),
@@ -203,13 +206,15 @@ fn solution(solved: Solved, accuracy: f64) -> Solution {
         largest: error.largest.clone(),
         per_face: Vec::new(),
     };
+    let entries = 2 * solved.links.len() as u64;
     Solution {
         mesh_error: solved.error.as_ref().map(stated),
         hierarchy: Some(hierarchy(&solved, accuracy)),
+        tree: Some(pictures::Hierarchy { tree: solved.tree, links: solved.links }),
         means: solved.means,
         report: solved.report,
         means_of: "H B_h, over links",
-        entries: 2 * solved.links.len() as u64,
+        entries,
         closure: solved.closure,
         row_error: Vec::new(),
         pair_error: None,

@@ -6,6 +6,7 @@
 
 mod args;
 mod checkpoint;
+mod choice;
 mod commands;
 mod console;
 mod discretised;
@@ -17,11 +18,13 @@ mod memory;
 mod mesh_error;
 mod options;
 mod output;
+mod pictures;
 mod prediction;
 mod problem;
 mod record;
 mod registry;
 mod sample;
+mod shadows;
 mod size;
 mod solution;
 mod stages;

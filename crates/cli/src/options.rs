@@ -1,7 +1,8 @@
 //! The options in force: those of the command line, else those of the scene, else the program's.
 
+use fredholm_coupling::Receiver;
 use fredholm_scene::{SolveDefaults, Storage};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use std::path::Path;
 
@@ -35,6 +36,18 @@ pub(crate) struct Options {
     /// Where elements are chosen by hierarchical radiosity.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) accuracy: Option<f64>,
+    /// Why an accuracy was reached in the way it was.
+    #[serde(skip)]
+    pub(crate) choice: Option<String>,
+    /// Points whose irradiance is gathered.
+    #[serde(serialize_with = "places", skip_serializing_if = "Vec::is_empty")]
+    pub(crate) points: Vec<Receiver>,
+    /// Whether the light of every pixel is gathered for a picture.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub(crate) final_gather: bool,
+    /// Whether elements are cut along the borders of shadows.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub(crate) discontinuity: bool,
     pub(crate) tolerance: f64,
     pub(crate) max_iterations: u64,
     pub(crate) output: String,
@@ -75,6 +88,10 @@ impl Options {
         Self {
             problem,
             accuracy: None,
+            choice: None,
+            points: Vec::new(),
+            final_gather: false,
+            discontinuity: false,
             tolerance: stop.tolerance.or(scene.tolerance).unwrap_or(TOLERANCE),
             max_iterations: iterations.unwrap_or(MAX_ITERATIONS),
             output: output.display().to_string(),
@@ -82,6 +99,11 @@ impl Options {
             quiet,
         }
     }
+}
+
+/// Points as lists of numbers: place and normal.
+fn places<S: Serializer>(points: &[Receiver], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(points.iter().map(|r| [r.point.to_array(), r.normal.to_array()].concat()))
 }
 
 fn precision(storage: Storage) -> Precision {

@@ -5,12 +5,13 @@ use std::collections::BTreeMap;
 use fredholm_coupling::MethodCounts;
 use fredholm_linop::{Report, StopReason, Work};
 use fredholm_report::{
-    Closure, Counts, Energy, FieldError, FormFactorError, Hierarchy, History, MeshError, RunRecord,
+    Closure, Counts, Energy, FILES, FieldError, FormFactorError, Hierarchy, History, MeshError, RunRecord,
 };
 use serde_json::Value;
 
 use crate::memory;
 use crate::options::Options;
+use crate::pictures;
 use crate::problem::Problem;
 use crate::solution::{Solution, reason};
 use crate::stages::Stages;
@@ -49,7 +50,9 @@ pub(crate) fn record(
         hierarchy: solution.hierarchy.clone(),
         field_error: solution.field_error.clone().map(|relative_l2| FieldError { relative_l2 }),
         reciprocity: solution.reciprocity,
+        choice: options.choice.clone(),
         energy: energy(problem, solution),
+        files: pictures::files(options, solution).chain(FILES).map(str::to_owned).collect(),
         warnings: problem.warnings.iter().cloned().chain(remarks(options, solution)).collect(),
         partial: report.reason == StopReason::Interrupted,
         ..RunRecord::default()

@@ -14,6 +14,7 @@ use crate::failure::{Ending, Failure};
 use crate::interrupt::nothing_saved;
 use crate::mesh_error;
 use crate::options::Options;
+use crate::pictures;
 use crate::problem::{Problem, prepare};
 use crate::stages::Stages;
 use crate::watcher::Watcher;
@@ -46,6 +47,8 @@ pub(crate) struct Solution {
     pub(crate) mesh_error: Option<MeshError>,
     /// What hierarchical radiosity did, where it did.
     pub(crate) hierarchy: Option<Hierarchy>,
+    /// Elements, clusters and links of hierarchical radiosity, where it did it.
+    pub(crate) tree: Option<pictures::Hierarchy>,
     /// Relative error of the field as polynomials, per band.
     pub(crate) field_error: Option<Vec<f64>>,
 }
@@ -129,6 +132,7 @@ fn assess<S: Storage>(
         energy,
         mesh_error,
         hierarchy: None,
+        tree: None,
         field_error: None,
     })
 }

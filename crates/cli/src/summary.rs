@@ -41,6 +41,7 @@ impl Lines {
 /// The summary at the end of a run: the figures that say whether to trust it.
 pub(crate) fn quality(run: &RunRecord, lines: &mut Lines) {
     lines.add("size", counts(&run.counts));
+    lines.add_some("way", run.choice.clone());
     lines.add("solution", solution(run));
     lines.add_some("closure", closure(&run.closure));
     lines.add_some("form factors", form_factors(run));
@@ -61,6 +62,7 @@ pub(crate) fn provenance(run: &RunRecord, lines: &mut Lines) {
     lines.add_some("peak memory", run.peak_memory_bytes.map(|bytes| Bytes(bytes.into()).to_string()));
     let work: Vec<_> = run.work.iter().map(|(name, count)| format!("{name} {count}")).collect();
     lines.add("work", work.join(", "));
+    lines.add_some("files", (!run.files.is_empty()).then(|| run.files.join(", ")));
     run.energy.iter().take(BANDS).for_each(|energy| lines.add_some("energy", balance(energy)));
     lines.add("options", format!("{:#}", run.options));
 }

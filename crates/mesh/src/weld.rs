@@ -26,6 +26,26 @@ pub enum Weld {
     },
 }
 
+/// The leaves of a mesh over shared vertices, and without cracks between leaves of different size, as long as these come from halving the same sides.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Anchored {
+    /// The leaves with their own corners.
+    pub leaves: Welded,
+    /// The same with the corners of smaller neighbours that lie on their sides: a side is one of two leaves, or of one on the border.
+    pub polygons: Welded,
+    /// Vertices in the middle of sides, those of the longest sides first.
+    pub hanging: Vec<Hanging>,
+}
+
+/// A vertex in the middle of a side of a larger leaf.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Hanging {
+    /// The vertex.
+    pub vertex: usize,
+    /// The ends of the side, or of the part of it that it halves.
+    pub ends: [usize; 2],
+}
+
 /// The leaves of a mesh as polygons over shared vertices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Welded {
@@ -82,6 +102,39 @@ impl Mesh {
     /// ```
     #[must_use]
     pub fn welded(&self, weld: Weld) -> Welded {
+        let (points, corners, ends) = self.points(weld);
+        Welded { vertices: points.vertices, corners, ends }
+    }
+
+    /// Welds the corners of all leaves, and finds those that lie on sides of larger leaves.
+    #[must_use]
+    pub fn anchored(&self, weld: Weld) -> Anchored {
+        let (points, own, own_ends) = self.points(weld);
+        let (mut corners, mut ends, mut hanging) =
+            (Vec::new(), Vec::with_capacity(own_ends.len()), Vec::new());
+        let mut start = 0;
+        for (leaf, &end) in own_ends.iter().enumerate() {
+            let patch = &own[start..end];
+            start = end;
+            for (k, &from) in patch.iter().enumerate() {
+                let joins = |first: usize| self.joins(weld, first, leaf);
+                corners.push(from);
+                points.between([from, patch[(k + 1) % patch.len()]], &joins, &mut corners, &mut hanging);
+            }
+            ends.push(corners.len());
+        }
+        let length = |h: &Hanging| points.vertices[h.ends[0]].distance(points.vertices[h.ends[1]]);
+        hanging.sort_by(|a, b| length(b).total_cmp(&length(a)).then(a.vertex.cmp(&b.vertex)));
+        let polygons = Welded { vertices: points.vertices.clone(), corners, ends };
+        Anchored {
+            leaves: Welded { vertices: points.vertices, corners: own, ends: own_ends },
+            polygons,
+            hanging,
+        }
+    }
+
+    /// Vertices, those of the corners of all leaves, and where the leaves end among them.
+    fn points(&self, weld: Weld) -> (Points, Vec<usize>, Vec<usize>) {
         let mut points = Points::new(self);
         let mut corners = Vec::new();
         let mut ends = Vec::with_capacity(self.len());
@@ -90,7 +143,7 @@ impl Mesh {
             corners.extend(patch.corners().iter().map(|&corner| points.vertex(corner, leaf, joins)));
             ends.push(corners.len());
         }
-        Welded { vertices: points.vertices, corners, ends }
+        (points, corners, ends)
     }
 
     fn joins(&self, weld: Weld, first: usize, leaf: usize) -> bool {
@@ -131,6 +184,23 @@ impl Points {
         })
     }
 
+    /// Appends the vertices between two ends of a side: the one in the middle, where there is one, and those of both halves.
+    fn between(
+        &self,
+        [a, b]: [usize; 2],
+        joins: &impl Fn(usize) -> bool,
+        corners: &mut Vec<usize>,
+        hanging: &mut Vec<Hanging>,
+    ) {
+        let middle = 0.5 * (self.vertices[a] + self.vertices[b]);
+        let inner = self.find(middle, joins).filter(|&vertex| vertex != a && vertex != b);
+        let Some(vertex) = inner else { return };
+        hanging.push(Hanging { vertex, ends: [a, b] });
+        self.between([a, vertex], joins, corners, hanging);
+        corners.push(vertex);
+        self.between([vertex, b], joins, corners, hanging);
+    }
+
     /// The first vertex within the tolerance that may be joined.
     fn find(&self, point: Vec3, joins: impl Fn(usize) -> bool) -> Option<usize> {
         let (low, high) = (self.cube(point - self.tolerance), self.cube(point + self.tolerance));
@@ -151,5 +221,91 @@ impl Points {
 
     fn cube(&self, point: Vec3) -> [i64; 3] {
         ((point - self.origin) / (CUBE * self.tolerance)).floor().as_i64vec3().to_array()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{MeshBuilder, Patch};
+    use std::collections::BTreeMap;
+
+    /// Leaves of a patch split where a rule says so, up to some depth.
+    fn split(patch: Patch, depth: usize, wanted: &impl Fn(&Patch) -> bool, leaves: &mut Vec<Patch>) {
+        if depth == 0 || !wanted(&patch) {
+            leaves.push(patch);
+        } else {
+            patch.split().unwrap().into_iter().for_each(|part| split(part, depth - 1, wanted, leaves));
+        }
+    }
+
+    /// Two squares and a triangle side by side, split towards a point.
+    fn uneven() -> Mesh {
+        let v = |x: f64, y: f64| Vec3::new(x, y, 0.3 * x);
+        let square =
+            |x: f64| Patch::quad([v(x, 0.), v(x + 1., 0.), v(x + 1., 1.), v(x, 1.)]).unwrap().unwrap();
+        let near = |patch: &Patch| patch.centroid().distance(v(0.9, 0.33)) < 1.1 * patch.diameter();
+        let mut builder = MeshBuilder::default();
+        builder.surface("floor", 0);
+        for whole in [square(0.0), square(1.0), Patch::triangle([v(2., 0.), v(3., 0.), v(2., 1.)]).unwrap()] {
+            let mut leaves = Vec::new();
+            split(whole, 6, &near, &mut leaves);
+            builder.face(&leaves).unwrap();
+        }
+        builder.build()
+    }
+
+    /// How many leaves have each side.
+    fn sides(welded: &Welded) -> BTreeMap<[usize; 2], usize> {
+        let mut sides = BTreeMap::new();
+        for patch in welded.patches() {
+            for (k, &a) in patch.iter().enumerate() {
+                let b = patch[(k + 1) % patch.len()];
+                *sides.entry([a.min(b), a.max(b)]).or_default() += 1;
+            }
+        }
+        sides
+    }
+
+    /// Whether a point lies on the outline of the three faces.
+    fn outer(p: Vec3) -> bool {
+        let on = |d: f64| d.abs() < 1e-9;
+        on(p.x) || on(p.y) || (p.x < 2.0 && on(p.y - 1.0)) || on(p.x + p.y - 3.0)
+    }
+
+    #[test]
+    fn every_inner_side_is_shared_by_two_leaves() {
+        let mesh = uneven();
+        let Anchored { polygons: welded, hanging, .. } = mesh.anchored(Weld::Everywhere);
+        assert!(hanging.len() > 20 && welded.len() == mesh.len());
+        for ([a, b], count) in sides(&welded) {
+            let middle = 0.5 * (welded.vertices[a] + welded.vertices[b]);
+            assert_eq!(count, if outer(middle) { 1 } else { 2 }, "{middle}");
+        }
+        let plain = sides(&mesh.welded(Weld::Everywhere));
+        assert!(plain.len() != sides(&welded).len(), "there were junctions to be mended");
+    }
+
+    #[test]
+    fn hanging_vertices_halve_their_sides_and_depend_on_those_before() {
+        let Anchored { leaves: welded, hanging, .. } = uneven().anchored(Weld::Everywhere);
+        for (k, h) in hanging.iter().enumerate() {
+            let [a, b] = h.ends.map(|end| welded.vertices[end]);
+            assert!(welded.vertices[h.vertex].distance(0.5 * (a + b)) < 1e-12);
+            let later = hanging[k..].iter().any(|other| h.ends.contains(&other.vertex));
+            assert!(!later, "an end is settled before");
+        }
+    }
+
+    #[test]
+    fn an_even_mesh_has_nothing_to_anchor() {
+        let mut builder = MeshBuilder::default();
+        builder.surface("floor", 0);
+        let v = |x: f64, y: f64| Vec3::new(x, y, 0.0);
+        let whole = Patch::quad([v(0., 0.), v(1., 0.), v(1., 1.), v(0., 1.)]).unwrap().unwrap();
+        builder.face(&whole.split().unwrap()).unwrap();
+        let mesh = builder.build();
+        let Anchored { polygons, hanging, .. } = mesh.anchored(Weld::Everywhere);
+        assert!(hanging.is_empty() && polygons == mesh.welded(Weld::Everywhere));
     }
 }

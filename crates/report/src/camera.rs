@@ -18,6 +18,8 @@ const CLOSED: f64 = 1e-3;
 const ALIGNED: f64 = 0.8;
 /// Tangent of the angle at which a scene is looked down on.
 const TILT: f64 = 0.12;
+/// Cosine to the direction of view below which a point is not before the eye.
+const NEAR: f64 = 1e-3;
 /// Room left around a framed scene.
 const MARGIN: f64 = 1.02;
 
@@ -106,6 +108,18 @@ impl Camera {
     pub(crate) fn direction(&self, axes: &Axes, x: f64, y: f64) -> Vec3 {
         let (x, y) = (2.0 * x / f64::from(self.width) - 1.0, 1.0 - 2.0 * y / f64::from(self.height));
         (axes.forward + axes.right * x + axes.up * y).normalize()
+    }
+}
+
+impl Camera {
+    /// Column and row from the upper left, in pixels, at which a point is seen; none for one that is not before the eye.
+    pub(crate) fn place(&self, axes: &Axes, point: Vec3) -> Option<(f64, f64)> {
+        let line = point - self.eye;
+        let depth = line.dot(axes.forward);
+        let along = |axis: Vec3| line.dot(axis) / (depth * axis.length_squared());
+        let (x, y) = (along(axes.right), along(axes.up));
+        let place = (0.5 * (1.0 + x) * f64::from(self.width), 0.5 * (1.0 - y) * f64::from(self.height));
+        (depth > NEAR * line.length()).then_some(place)
     }
 }
 

@@ -11,6 +11,9 @@
 //! | `field.npz` | the same numbers as `NumPy` arrays |
 //! | `image.png` | a camera view |
 //! | `convergence.svg` | residual against iterations and seconds |
+//! | `mesh.png`, `links.png`, `gather.png` | the elements, links and a final gather, where asked for |
+//! | `points.csv` | the irradiance of points, where asked for |
+//! | `shadows.vtu` | triangles cut along the borders of shadows, where asked for |
 //! | `run.json` | what made all this; written last, so its presence means a complete folder |
 //!
 //! [`write_comparison`] writes a comparison of solvers: `compare.csv`, `compare_history.csv`, `compare.svg`, `compare.json`.
@@ -43,9 +46,11 @@ mod number;
 mod outputs;
 mod palette;
 mod picture;
+mod points_csv;
 mod refinement;
 mod run;
 mod shading;
+mod shadows_vtu;
 mod shooting;
 mod spectrum;
 mod stochastic;
@@ -73,8 +78,9 @@ pub use field::Field;
 pub use field_csv::write_field_csv;
 pub use hierarchy::{Hierarchy, HierarchyRound};
 pub use npz::write_npz;
-pub use outputs::{FILES, View, write_all};
-pub use picture::{Picture, render};
+pub use outputs::{EXTRAS, Extras, FILES, View, write_all, write_with};
+pub use picture::{Gathering, Layer, Link, Linked, Picture, render, render_layers};
+pub use points_csv::{PointTable, write_points_csv};
 pub use refinement::{
     BandConvergence, REFINEMENT_FILES, REFINEMENT_FORMAT, RefinementLevel, RefinementRecord,
     write_refinement, write_refinement_csv, write_refinement_plot,
@@ -83,6 +89,7 @@ pub use run::{
     Closure, Counts, Energy, FORMAT, FieldError, FormFactorError, History, MeshError, RunRecord, Timing,
     read_run, write_run,
 };
+pub use shadows_vtu::{ShadowMesh, write_shadows_vtu};
 pub use shooting::{
     SHOOTING_FILES, SHOOTING_FORMAT, ShootingRecord, Shot, write_shooting, write_shooting_plot,
     write_shot_picture, write_shots_csv,

@@ -3,9 +3,9 @@
 //! The value at a corner is the mean of the elements that meet there, belong to the same surface and have a similar
 //! normal, with weights 1/Aᵢ. The nearer, that is smaller, elements count more: on a grid of rectangles with any
 //! spacing, the four weights 1/(hᵢ kⱼ) are products of the exact weights in each direction, so that a bilinear function
-//! is reproduced. The weight of a partly buried element is its exposed share of that.
+//! is reproduced. A corner on a side of a larger element takes the colour of that side: else the two would differ along it. The weight of a partly buried element is its exposed share of that.
 
-use fredholm_mesh::{Mesh, Weld, Welded};
+use fredholm_mesh::{Hanging, Mesh, Weld, Welded};
 
 use crate::colour::Rgb;
 
@@ -32,6 +32,13 @@ pub(crate) fn vertex_colours(
         }
     }
     sums.into_iter().map(|(sum, total)| sum.map(|value| value / total)).collect()
+}
+
+/// Gives vertices on the sides of larger elements the colour that these have there, so that there is no crack in it: the mean of the ends.
+pub(crate) fn close(hanging: &[Hanging], vertices: &mut [Rgb]) {
+    for Hanging { vertex, ends: [a, b] } in hanging {
+        vertices[*vertex] = [0, 1, 2].map(|i| 0.5 * (vertices[*a][i] + vertices[*b][i]));
+    }
 }
 
 #[cfg(test)]
@@ -91,6 +98,42 @@ mod tests {
         let shared: Vec<_> = welded.patch(0).iter().filter(|v| welded.patch(1).contains(v)).collect();
         assert_eq!(shared.len(), 2);
         assert!(shared.iter().all(|&&v| (colours[v][0] - 4.0).abs() < 1e-8));
+    }
+
+    #[test]
+    fn elements_of_different_size_have_one_colour_along_their_sides() {
+        let v = Vec3::new;
+        let square = |x: f64| {
+            let corners = [v(x, 0., 0.), v(x + 1., 0., 0.), v(x + 1., 1., 0.), v(x, 1., 0.)];
+            Patch::quad(corners).unwrap().unwrap()
+        };
+        let fine: Vec<Patch> =
+            square(1.0).split().unwrap().iter().flat_map(|part| part.split().unwrap()).collect();
+        let mut builder = MeshBuilder::default();
+        builder.surface("wall", 0);
+        builder.face(&[square(0.0)]).unwrap();
+        builder.face(&fine).unwrap();
+        let mesh = builder.build();
+        let leaves: Vec<Rgb> = (0..mesh.len()).map(|leaf| [(leaf * leaf) as f64; 3]).collect();
+        let welded = mesh.welded(SMOOTH);
+        let mut colours = vertex_colours(&mesh, &welded, &leaves, |_| 1.0);
+        close(&mesh.anchored(SMOOTH).hanging, &mut colours);
+        let on_side = |leaf: usize, p: Vec3| {
+            let weights = corner_weights(mesh.patch(leaf), p);
+            let corners = welded.patch(leaf).iter().zip(weights);
+            corners.map(|(&vertex, weight)| weight * colours[vertex][0]).sum::<f64>()
+        };
+        let beside = |y: f64| {
+            (1..mesh.len()).find(|&k| {
+                let low = mesh.patch(k).corner(0);
+                low.x > 0.999 && low.x < 1.001 && low.y <= y && y <= low.y + 0.25
+            })
+        };
+        for y in [0.05, 0.25, 0.3, 0.5, 0.6, 0.75, 0.9] {
+            let p = v(1.0, y, 0.0);
+            let [large, small] = [on_side(0, p), on_side(beside(y).unwrap(), p)];
+            assert!((large - small).abs() < 1e-12 && large > 0.0, "{y}: {large} {small}");
+        }
     }
 
     #[test]

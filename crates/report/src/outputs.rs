@@ -7,8 +7,9 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use crate::{
-    Camera, Exposure, Field, ReportError, RunRecord, render, write_atomically, write_convergence,
-    write_faces_csv, write_field_csv, write_npz, write_run, write_surfaces_csv, write_vtu,
+    Camera, Exposure, Field, Layer, PointTable, ReportError, RunRecord, ShadowMesh, render_layers,
+    write_atomically, write_convergence, write_faces_csv, write_field_csv, write_npz, write_points_csv,
+    write_run, write_shadows_vtu, write_surfaces_csv, write_vtu,
 };
 
 /// Names of the files of a result folder, in the order in which they are written.
@@ -22,6 +23,20 @@ pub const FILES: [&str; 8] = [
     "convergence.svg",
     "run.json",
 ];
+
+/// Names of further files that a result folder may hold: pictures of the mesh, of links and of the final gather, the table of points, and triangles cut along shadows.
+pub const EXTRAS: [&str; 5] = ["mesh.png", "links.png", "gather.png", "points.csv", "shadows.vtu"];
+
+/// What a result folder holds besides the usual files.
+#[derive(Default)]
+pub struct Extras<'a> {
+    /// Pictures with their names, which are among [`EXTRAS`].
+    pub pictures: Vec<(&'static str, Layer<'a>)>,
+    /// The irradiance of points.
+    pub points: Option<PointTable>,
+    /// Triangles cut along the borders of shadows.
+    pub shadows: Option<ShadowMesh>,
+}
 
 /// What fills a file.
 type Writer<'a> = dyn Fn(&mut dyn Write) -> io::Result<()> + 'a;
@@ -46,7 +61,7 @@ impl View {
 /// Writes all files of a result into a folder, which is made where it does not exist, and returns their paths.
 ///
 /// # Errors
-/// [`ReportError::Write`] with the file or folder that could not be written; the errors of [`render`] for a view that makes
+/// [`ReportError::Write`] with the file or folder that could not be written; the errors of [`render`](crate::render) for a view that makes
 /// no picture. The folder then has no `run.json`.
 pub fn write_all(
     folder: &Path,
@@ -54,9 +69,43 @@ pub fn write_all(
     run: &RunRecord,
     view: &View,
 ) -> Result<Vec<PathBuf>, ReportError> {
-    let picture = render(field, &view.camera, view.exposure)?;
+    write_with(folder, field, run, view, &Extras::default())
+}
+
+/// As [`write_all`], with more. What of [`EXTRAS`] an older result left is removed.
+///
+/// # Errors
+/// As for [`write_all`].
+pub fn write_with(
+    folder: &Path,
+    field: &Field<'_>,
+    run: &RunRecord,
+    view: &View,
+    more: &Extras<'_>,
+) -> Result<Vec<PathBuf>, ReportError> {
+    let layers = std::iter::once(&Layer::Field).chain(more.pictures.iter().map(|(_, layer)| layer));
+    let mut pictures = render_layers(field, &view.camera, view.exposure, layers)?.into_iter();
+    let Some(picture) = pictures.next() else { return Ok(Vec::new()) };
     prepare(folder, &folder.join(FILES[FILES.len() - 1]))?;
-    let paths: Vec<PathBuf> = FILES.iter().map(|name| folder.join(name)).collect();
+    EXTRAS.iter().try_for_each(|name| remove(&folder.join(name)))?;
+    let mut paths = Vec::new();
+    for ((name, _), picture) in more.pictures.iter().zip(pictures) {
+        paths.push(folder.join(name));
+        write_atomically(&folder.join(name), |out: &mut dyn Write| picture.write_png(out))?;
+    }
+    if let Some(table) = &more.points {
+        paths.push(folder.join("points.csv"));
+        write_atomically(&folder.join("points.csv"), |out: &mut dyn Write| {
+            write_points_csv(table, field.bands(), out)
+        })?;
+    }
+    if let Some(mesh) = &more.shadows {
+        paths.push(folder.join("shadows.vtu"));
+        write_atomically(&folder.join("shadows.vtu"), |out: &mut dyn Write| {
+            write_shadows_vtu(mesh, field.bands(), out)
+        })?;
+    }
+    let files = FILES.iter().map(|name| folder.join(name));
     let writers: [&Writer; 8] = [
         &|out| write_field_csv(field, out),
         &|out| write_faces_csv(field, out),
@@ -67,7 +116,10 @@ pub fn write_all(
         &|out| write_convergence(run, out),
         &|out| write_run(run, out),
     ];
-    paths.iter().zip(writers).try_for_each(|(path, write)| write_atomically(path, write))?;
+    for (path, write) in files.zip(writers) {
+        write_atomically(&path, write)?;
+        paths.push(path);
+    }
     Ok(paths)
 }
 
@@ -78,8 +130,15 @@ pub(crate) fn prepare(folder: &Path, mark: &Path) -> Result<(), ReportError> {
         move |source| ReportError::Write { path, source }
     };
     fs::create_dir_all(folder).map_err(failed(folder))?;
-    match fs::remove_file(mark) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(failed(mark)(error)),
+    remove(mark)
+}
+
+/// Removes a file, if it is there.
+fn remove(path: &Path) -> Result<(), ReportError> {
+    match fs::remove_file(path) {
+        Err(source) if source.kind() != io::ErrorKind::NotFound => {
+            Err(ReportError::Write { path: path.to_owned(), source })
+        }
         _ => Ok(()),
     }
 }

@@ -63,6 +63,9 @@ pub struct RunRecord {
     /// What hierarchical radiosity did, where it did.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hierarchy: Option<Hierarchy>,
+    /// Where an accuracy was asked for: the way it was reached, and why.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub choice: Option<String>,
     /// Estimated error of the field as piecewise polynomials.
     pub field_error: Option<FieldError>,
     /// Largest violation of `A_i F_ij = A_j F_ji` among the partly occluded pairs checked, as a form factor.
@@ -71,6 +74,8 @@ pub struct RunRecord {
     pub form_factor_error: FormFactorError,
     /// Energy balance, one entry a band.
     pub energy: Vec<Energy>,
+    /// Names of the files of the folder, in the order in which they were written.
+    pub files: Vec<String>,
     /// What the user should know.
     pub warnings: Vec<String>,
     /// Whether the run was interrupted, so that the field is not the solution asked for.
@@ -100,10 +105,12 @@ impl Default for RunRecord {
             pairs: BTreeMap::new(),
             mesh_error: None,
             hierarchy: None,
+            choice: None,
             field_error: None,
             reciprocity: None,
             form_factor_error: FormFactorError::default(),
             energy: Vec::new(),
+            files: Vec::new(),
             warnings: Vec::new(),
             partial: false,
         }

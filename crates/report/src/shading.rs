@@ -1,11 +1,11 @@
 //! The colour of a point of the surfaces: radiosity as linear sRGB, smoothly interpolated.
 
-use fredholm_mesh::{Vec3, Welded};
+use fredholm_mesh::{Anchored, Vec3, Welded};
 
 use crate::Field;
 use crate::colour::{Colouring, Rgb};
 use crate::interpolate::corner_weights;
-use crate::nodal::{SMOOTH, vertex_colours};
+use crate::nodal::{SMOOTH, close, vertex_colours};
 
 /// Colours at the vertices of the leaves.
 pub(crate) struct Shading<'a> {
@@ -19,8 +19,9 @@ impl<'a> Shading<'a> {
         let (mesh, colouring) = (field.mesh(), Colouring::new(field.bands()));
         let colour = |leaf| colouring.colour(&field.exposed_radiosity(leaf));
         let leaves: Vec<Rgb> = (0..mesh.len()).map(colour).collect();
-        let welded = mesh.welded(SMOOTH);
-        let vertices = vertex_colours(mesh, &welded, &leaves, |leaf| field.exposed(leaf));
+        let Anchored { leaves: welded, hanging, .. } = mesh.anchored(SMOOTH);
+        let mut vertices = vertex_colours(mesh, &welded, &leaves, |leaf| field.exposed(leaf));
+        close(&hanging, &mut vertices);
         Self { field, welded, vertices }
     }
 

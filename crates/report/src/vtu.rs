@@ -2,7 +2,8 @@
 //!
 //! Format: VTK XML, version 1.0, little endian, appended raw data, `UInt64` block headers
 //! (<https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html>). Each cell is a leaf element: a triangle
-//! (type 5) or a quad (type 9). Elements that shade smoothly into each other share their points, so that a smoothing filter
+//! (type 5), a quad (type 9), or a polygon (type 7) where smaller elements have corners on its sides: so every side within a face is one of two cells, and
+//! there are no cracks. Elements that shade smoothly into each other share their points, so that a smoothing filter
 //! keeps surfaces and edges apart. Points in metres.
 //!
 //! Cell data: `element`, `face`, `surface` (numbers, from 0), `area` (m²), `exposed` (share not buried), and band by band `irradiance_BAND` and
@@ -10,28 +11,34 @@
 
 use std::io::{self, Write};
 
-use fredholm_mesh::{Patch, Vec3, Welded};
+use fredholm_mesh::{Anchored, Patch, Vec3, Welded};
 
 use crate::Field;
 use crate::nodal::SMOOTH;
 use crate::xml::escaped;
 
-const TRIANGLE: u8 = 5;
+pub(crate) const TRIANGLE: u8 = 5;
 const QUAD: u8 = 9;
+const POLYGON: u8 = 7;
 
-type Fill<'a> = Box<dyn Fn(&mut dyn Write) -> io::Result<()> + 'a>;
+pub(crate) type Fill<'a> = Box<dyn Fn(&mut dyn Write) -> io::Result<()> + 'a>;
 
 /// One data array: its description, its size in bytes and what writes them.
-struct Array<'a> {
-    name: String,
-    kind: &'static str,
-    components: usize,
-    bytes: usize,
-    fill: Fill<'a>,
+pub(crate) struct Array<'a> {
+    pub(crate) name: String,
+    pub(crate) kind: &'static str,
+    pub(crate) components: usize,
+    pub(crate) bytes: usize,
+    pub(crate) fill: Fill<'a>,
 }
 
 impl<'a> Array<'a> {
-    fn floats<I>(name: String, components: usize, count: usize, values: impl Fn() -> I + 'a) -> Self
+    pub(crate) fn floats<I>(
+        name: String,
+        components: usize,
+        count: usize,
+        values: impl Fn() -> I + 'a,
+    ) -> Self
     where
         I: Iterator<Item = f64>,
     {
@@ -39,7 +46,7 @@ impl<'a> Array<'a> {
         Self { name, kind: "Float64", components, bytes: 8 * components * count, fill }
     }
 
-    fn integers<I>(name: &str, count: usize, values: impl Fn() -> I + 'a) -> Self
+    pub(crate) fn integers<I>(name: &str, count: usize, values: impl Fn() -> I + 'a) -> Self
     where
         I: Iterator<Item = usize>,
     {
@@ -69,11 +76,21 @@ impl<'a> Array<'a> {
 /// # Errors
 /// What `out` reports.
 pub fn write_vtu(field: &Field<'_>, out: &mut dyn Write) -> io::Result<()> {
-    let welded = field.mesh().welded(SMOOTH);
-    let sections = [("Points", vec![points(&welded)]), ("Cells", cells(&welded)), ("CellData", data(field))];
-    opening(&welded, out)?;
+    let Anchored { leaves, polygons: welded, .. } = field.mesh().anchored(SMOOTH);
+    let sections =
+        [("Points", vec![points(&welded)]), ("Cells", cells(&leaves, &welded)), ("CellData", data(field))];
+    write_grid([welded.vertices.len(), welded.len()], &sections, out)
+}
+
+/// Writes the arrays of a grid of some points and cells, by sections.
+pub(crate) fn write_grid(
+    counts: [usize; 2],
+    sections: &[(&str, Vec<Array<'_>>)],
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    opening(counts, out)?;
     let mut offset = 0;
-    for (section, arrays) in &sections {
+    for (section, arrays) in sections {
         writeln!(out, "<{section}>")?;
         for array in arrays {
             array.describe(out, offset)?;
@@ -86,8 +103,7 @@ pub fn write_vtu(field: &Field<'_>, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "\n</AppendedData>\n</VTKFile>")
 }
 
-fn opening(welded: &Welded, out: &mut dyn Write) -> io::Result<()> {
-    let (points, cells) = (welded.vertices.len(), welded.len());
+fn opening([points, cells]: [usize; 2], out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "<?xml version=\"1.0\"?>")?;
     writeln!(
         out,
@@ -101,7 +117,7 @@ fn points(welded: &Welded) -> Array<'_> {
     Array::floats("Points".to_owned(), 3, welded.vertices.len(), values)
 }
 
-fn cells(welded: &Welded) -> Vec<Array<'_>> {
+fn cells<'a>(leaves: &'a Welded, welded: &'a Welded) -> Vec<Array<'a>> {
     let ends = || {
         welded.patches().scan(0, |end, patch| {
             *end += patch.len();
@@ -117,13 +133,20 @@ fn cells(welded: &Welded) -> Vec<Array<'_>> {
             kind: "UInt8",
             components: 1,
             bytes: welded.len(),
-            fill: Box::new(|out| welded.patches().try_for_each(|patch| out.write_all(&[cell_type(patch)]))),
+            fill: Box::new(|out| {
+                let mut cells = leaves.patches().zip(welded.patches());
+                cells.try_for_each(|(leaf, polygon)| out.write_all(&[cell_type(leaf, polygon)]))
+            }),
         },
     ]
 }
 
-fn cell_type(patch: &[usize]) -> u8 {
-    if patch.len() == 3 { TRIANGLE } else { QUAD }
+fn cell_type(leaf: &[usize], polygon: &[usize]) -> u8 {
+    match (leaf.len() == polygon.len(), leaf.len()) {
+        (true, 3) => TRIANGLE,
+        (true, _) => QUAD,
+        (false, _) => POLYGON,
+    }
 }
 
 fn data<'a>(field: &Field<'a>) -> Vec<Array<'a>> {
@@ -209,5 +232,27 @@ mod tests {
         assert_eq!(points[12..15], [2.0, 0.0, 0.0]);
         assert_eq!(points[24..], [1.0 / 3.0, 0.0, 1.0]);
         assert_eq!(floats(&arrays["area"])[..2], [1.0, 1.0]);
+    }
+
+    #[test]
+    fn sides_that_smaller_elements_touch_make_polygons() {
+        let v = |x: f64, y: f64| Vec3::new(x, y, 0.0);
+        let square =
+            |x: f64| Patch::quad([v(x, 0.), v(x + 1., 0.), v(x + 1., 1.), v(x, 1.)]).unwrap().unwrap();
+        let mut builder = fredholm_mesh::MeshBuilder::default();
+        builder.surface("floor", 0);
+        builder.face(&[square(0.0)]).unwrap();
+        builder.face(&square(1.0).split().unwrap()).unwrap();
+        let (mesh, bands) = (builder.build(), names(&["grey"]));
+        let field = Field::new(&mesh, &bands, &[1.0; 5], &[1.0; 5]).unwrap();
+        let mut out = Vec::new();
+        write_vtu(&field, &mut out).unwrap();
+        let (_, arrays) = parse(&out);
+        assert_eq!(arrays["types"].1, vec![7, 9, 9, 9, 9]);
+        assert_eq!(integers(&arrays["offsets"]), [5, 9, 13, 17, 21]);
+        let points = floats(&arrays["Points"]);
+        let at = |k: i64| (points[3 * k as usize], points[3 * k as usize + 1]);
+        let first: Vec<(f64, f64)> = integers(&arrays["connectivity"])[..5].iter().map(|&k| at(k)).collect();
+        assert_eq!(first, [(0., 0.), (1., 0.), (1., 0.5), (1., 1.), (0., 1.)]);
     }
 }

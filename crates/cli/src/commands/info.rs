@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use fredholm_report::{FILES, ReportError, read_run, read_view_factors_record};
+use fredholm_report::{EXTRAS, FILES, ReportError, read_run, read_view_factors_record};
 
 use super::viewfactors;
 use crate::args::InfoArgs;
@@ -37,7 +37,8 @@ fn record(path: &Path) -> Result<PathBuf, Failure> {
         return Ok(path.join(RECORD));
     }
     let alone = path.extension().is_some_and(|ending| ending == "json" || ending == "npz");
-    let is_result = FILES.iter().any(|name| path.file_name().is_some_and(|file| file == *name));
+    let is_result =
+        FILES.iter().chain(&EXTRAS).any(|name| path.file_name().is_some_and(|file| file == *name));
     match (is_result, alone) {
         (true, _) => Ok(path.with_file_name(RECORD)),
         (false, true) => Ok(path.to_owned()),
@@ -49,7 +50,7 @@ fn foreign(path: &Path) -> Failure {
     let text = format!(
         "{} is none of the files of a result\n  help: give a result folder or one of {}",
         path.display(),
-        FILES.join(", ")
+        [&FILES[..], &EXTRAS].concat().join(", ")
     );
     Failure::new(Ending::Input, text)
 }

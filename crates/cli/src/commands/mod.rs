@@ -28,7 +28,7 @@ pub(crate) use resume::{EXAMPLES as RESUME_EXAMPLES, ResumeArgs};
 pub(crate) use shoot::{EXAMPLES as SHOOT_EXAMPLES, ShootArgs};
 pub(crate) use spectrum::SpectrumArgs;
 pub(crate) use trace::{EXAMPLES as TRACE_EXAMPLES, TraceArgs};
-pub(crate) use viewfactors::ViewFactorsArgs;
+pub(crate) use viewfactors::{Plane, ViewFactorsArgs, plane, point};
 pub(crate) use waves::{EXAMPLES as WAVES_EXAMPLES, WavesArgs};
 
 /// Carries out what was asked for.

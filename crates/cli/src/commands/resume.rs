@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::solve::solve_from;
-use crate::args::{LogArgs, ProblemArgs, SolveArgs, StopArgs};
+use crate::args::{LogArgs, PlaceArgs, ProblemArgs, SolveArgs, StopArgs};
 use crate::checkpoint;
 use crate::failure::{Ending, Failure};
 use crate::size::Bytes;
@@ -36,6 +36,9 @@ pub(crate) fn resume(args: &ResumeArgs) -> Result<Ending, Failure> {
     let solve = SolveArgs {
         output: Some(args.folder.clone()),
         accuracy: Some(checkpoint.accuracy),
+        final_gather: header.final_gather,
+        discontinuity: header.discontinuity,
+        places: PlaceArgs { point: header.receivers(), plane: Vec::new() },
         problem: ProblemArgs {
             scene: header.scene.clone(),
             threads: args.threads,

@@ -4,20 +4,23 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use fredholm_linop::StopReason;
-use fredholm_report::{Camera, Exposure, Field, ReportError, RunRecord, View, write_all};
+use fredholm_report::{Camera, Exposure, Extras, Field, Layer, ReportError, RunRecord, View, write_with};
 use fredholm_scene::Scene;
 
 use crate::args::{ProblemArgs, SolveArgs};
 use crate::checkpoint::{self, Checkpoint};
+use crate::choice::{Choice, Extent};
 use crate::failure::{Ending, Failure};
 use crate::options::{Options, ProblemOptions};
+use crate::pictures::{Gathered, Source, pictures};
+use crate::prediction::{Prediction, Size};
 use crate::problem::{Problem, scene_failure};
 use crate::record::{record, remarks};
 use crate::solution::{Solution, compute};
 use crate::stages::Stages;
 use crate::start::Start;
 use crate::summary::{Lines, quality};
-use crate::{hierarchical, output};
+use crate::{hierarchical, output, registry};
 
 /// Pixels of the picture of a partial result.
 const QUICK_PIXELS: f64 = 40_000.0;
@@ -43,11 +46,11 @@ fn run(
     let scene = stages.run("scene", || Scene::load(&args.problem.scene).map_err(scene_failure))?;
     let scene = Arc::new(scene);
     let (options, problem, solution) = match args.accuracy.or(scene.solve().accuracy) {
-        Some(accuracy) => adaptive(args, &scene, (accuracy, checkpoint), folder, stages)?,
+        Some(accuracy) => to_accuracy(args, &scene, (accuracy, checkpoint), folder, stages)?,
         None => dense(args, &scene, folder, stages)?,
     };
     let record = record(&problem, &options, &solution, stages);
-    stages.run("results", || write(&problem, &solution, &record, folder))?;
+    stages.run("results", || write(&problem, &options, &solution, &record, folder))?;
     checkpoint::remove(folder)?;
     // The summary, other than the file, can tell the time of writing.
     let record = RunRecord { timings: stages.timings().to_vec(), ..record };
@@ -66,25 +69,88 @@ fn dense(
     let options = ProblemOptions::new(&args.problem, scene.solve());
     let problem = Problem::refined(Arc::clone(scene), options, 1, stages)?;
     let options = Options::new(problem.options.clone(), args.stop, scene.solve(), folder, args.log);
+    let points = args.places.receivers();
+    let SolveArgs { final_gather, discontinuity, .. } = *args;
+    let options = Options { points, final_gather, discontinuity, ..options };
     let solution = compute(&problem, &options, stages)?;
     Ok((options, problem, solution))
 }
 
-/// On elements that an accuracy asks for.
-fn adaptive(
+/// To an accuracy, the way that costs less.
+fn to_accuracy(
     args: &SolveArgs,
     scene: &Arc<Scene>,
     (accuracy, checkpoint): (f64, Option<&Checkpoint>),
     folder: &Path,
     stages: &mut Stages,
 ) -> Result<(Options, Problem, Solution), Failure> {
+    hierarchical::refuse_dense(&ProblemOptions::new(&args.problem, scene.solve()))?;
+    let mut choice = None;
+    if checkpoint.is_none() {
+        let predicted = predicted(args, scene, accuracy)?;
+        choice = Some(predicted);
+        if predicted.is_matrix() {
+            match on_matrix(args, scene, (accuracy, predicted), folder, stages)? {
+                Ok(solved) => return Ok(solved),
+                Err(stated) => choice = Some(Choice::TooCoarse { stated }),
+            }
+        }
+    }
     let options = hierarchical::options(args, scene, accuracy, folder)?;
+    let options = Options { choice: choice.map(|choice| choice.to_string()), ..options };
     let (problem, solution) = hierarchical::compute(scene, &options, (accuracy, checkpoint), stages)?;
     Ok((options, problem, solution))
 }
 
+/// The way that is predicted to cost less.
+fn predicted(args: &SolveArgs, scene: &Scene, accuracy: f64) -> Result<Choice, Failure> {
+    let elements = scene.predicted_elements() as f64;
+    if elements >= Choice::most_elements(accuracy) {
+        // Whatever the faces: as many as there are elements, they have the most links.
+        return Ok(Choice::new(Extent { elements, faces: elements, fewest: 1 }, accuracy));
+    }
+    let mesh = scene.mesh().map_err(scene_failure)?;
+    let count = mesh.faces().len();
+    let fewest = (0..count).map(|face| mesh.leaves_of_face(face).len()).min().unwrap_or(0);
+    let choice = Choice::new(Extent { elements: mesh.len() as f64, faces: count as f64, fewest }, accuracy);
+    let options = ProblemOptions::new(&args.problem, scene.solve());
+    let fits = fits(&options, mesh.len(), count, scene.bands().len());
+    Ok(if choice.is_matrix() && !fits { Choice::Memory } else { choice })
+}
+
+/// Whether the matrix of some elements on some faces fits the memory.
+fn fits(options: &ProblemOptions, elements: usize, faces: usize, bands: usize) -> bool {
+    let size = Size { elements, unknowns: elements, coarse: faces, dense: None };
+    registry::find(&options.solver).is_some_and(|solver| {
+        Prediction::new(size, bands, options.storage, &solver).total() <= options.memory_limit()
+    })
+}
+
+/// A solution, or the error that it states where that is too large.
+type Trial = Result<(Options, Problem, Solution), Option<f64>>;
+
+/// On the elements of the scene, where the error that is stated then is within an accuracy.
+fn on_matrix(
+    args: &SolveArgs,
+    scene: &Arc<Scene>,
+    (accuracy, choice): (f64, Choice),
+    folder: &Path,
+    stages: &mut Stages,
+) -> Result<Trial, Failure> {
+    let (options, problem, solution) = dense(args, scene, folder, stages)?;
+    let stated = solution.mesh_error.as_ref();
+    let stated = stated.and_then(|error| error.relative_l2.iter().copied().reduce(f64::max));
+    let partial = solution.report.reason != StopReason::Converged;
+    if !partial && stated.is_none_or(|error| error > accuracy) {
+        return Ok(Err(stated));
+    }
+    let choice = Some(choice.to_string());
+    Ok(Ok((Options { accuracy: Some(accuracy), choice, ..options }, problem, solution)))
+}
+
 fn write(
     problem: &Problem,
+    options: &Options,
     solution: &Solution,
     record: &RunRecord,
     folder: &Path,
@@ -97,7 +163,18 @@ fn write(
         .map_err(report_failure)?;
     let view = view_of(problem.scene.camera(), &field);
     let view = if record.partial { quick(view) } else { view };
-    write_all(folder, &field, record, &view).map_err(report_failure)
+    let source = Source::new(problem, options, solution)?;
+    let (links, gathered) = (|element| source.linked(element), source.gather(options)?);
+    let layer = |name| match (name, &gathered) {
+        ("mesh.png", _) => Layer::Elements,
+        ("links.png", _) => Layer::Links(&links),
+        (_, Some(gathered)) => Layer::Gathered(gathered),
+        _ => Layer::Field,
+    };
+    let pictures = pictures(options, solution).map(|name| (name, layer(name))).collect();
+    let points = gathered.as_ref().map(|gathered| gathered.points(options)).transpose()?.flatten();
+    let shadows = gathered.as_ref().filter(|_| options.discontinuity).map(Gathered::shadows);
+    write_with(folder, &field, record, &view, &Extras { pictures, points, shadows }).map_err(report_failure)
 }
 
 /// The scene's camera, or one that sees all of it.

@@ -104,19 +104,19 @@ impl Plane {
     }
 
     /// The points; none where the plane has no normal, which [`plane`] does not let through.
-    pub(super) fn receivers(&self) -> Vec<Receiver> {
+    pub(crate) fn receivers(&self) -> Vec<Receiver> {
         Receiver::plane(self.origin, self.sides, self.counts).unwrap_or_default()
     }
 }
 
-fn point(text: &str) -> Result<Receiver, String> {
+pub(crate) fn point(text: &str) -> Result<Receiver, String> {
     let [x, y, z, nx, ny, nz] = numbers(text)?;
     let receiver = Receiver::new(Vec3::new(x, y, z), Vec3::new(nx, ny, nz));
     receiver
         .ok_or_else(|| "the normal has no direction; write x,y,z,nx,ny,nz such as 1,2,0.8,0,0,1".to_owned())
 }
 
-fn plane(text: &str) -> Result<Plane, String> {
+pub(crate) fn plane(text: &str) -> Result<Plane, String> {
     let numbers: [f64; 11] = numbers(text)?;
     let [origin, u, v] = [0, 3, 6].map(|k| Vec3::new(numbers[k], numbers[k + 1], numbers[k + 2]));
     let [nu, nv] = [numbers[9], numbers[10]];

@@ -12,7 +12,7 @@ mod target;
 
 use fredholm_report::{ReportError, ViewFactorsRecord, write_view_factors};
 
-pub(crate) use args::ViewFactorsArgs;
+pub(crate) use args::{Plane, ViewFactorsArgs, plane, point};
 pub(super) use summary::{describe_matrix, describe_record};
 
 use crate::failure::{Ending, Failure};

@@ -3,7 +3,11 @@
 //! Each pixel is the mean of the display values of [`SAMPLES`] points of a fixed lattice. What a sample sees is found by
 //! ray casting among the leaves that turn their lit side to the eye; the others are invisible, so that a closed room
 //! shows its inside. The colour there is the radiosity, smoothly interpolated. Rows are drawn in parallel, each by
-//! itself, so that the number of threads never changes a pixel.
+//! itself, so that the number of threads never changes a pixel. Several pictures of one view share the rays.
+
+mod elements;
+mod gathered;
+mod links;
 
 use std::io::{self, Write};
 
@@ -17,6 +21,11 @@ use crate::colour::Rgb;
 use crate::shading::Shading;
 use crate::tone::{Exposure, Tone, encode, luminance};
 use crate::{Camera, Field, ReportError};
+use elements::Elements;
+use gathered::GatherPainter;
+pub use gathered::Gathering;
+use links::LinkPainter;
+pub use links::{Link, Linked};
 
 /// Samples of a pixel.
 const SAMPLES: usize = 8;
@@ -48,19 +57,77 @@ impl Picture {
     }
 }
 
+/// What a picture shows.
+pub enum Layer<'a> {
+    /// The radiosity, interpolated between the corners of elements.
+    Field,
+    /// The elements, drawn over the field.
+    Elements,
+    /// The links of the element in the middle of the picture: what is drawn of an element, of which the number is given.
+    Links(&'a (dyn Fn(usize) -> Linked + Sync)),
+    /// The radiosity of every pixel, gathered from all that it sees.
+    Gathered(&'a dyn Gathering),
+}
+
 /// Draws a field as a camera sees it.
 ///
 /// # Errors
 /// [`ReportError::Camera`] or [`ReportError::Exposure`] for settings that make no picture,
 /// [`ReportError::Visibility`] where the surfaces cannot be prepared for ray casting.
 pub fn render(field: &Field<'_>, camera: &Camera, exposure: Exposure) -> Result<Picture, ReportError> {
+    let mut pictures = render_layers(field, camera, exposure, &[Layer::Field])?;
+    Ok(pictures.swap_remove(0))
+}
+
+/// Draws several pictures of a field as a camera sees it, all of one exposure, and casts the rays once.
+///
+/// # Errors
+/// As for [`render`].
+pub fn render_layers<'a>(
+    field: &Field<'_>,
+    camera: &Camera,
+    exposure: Exposure,
+    layers: impl IntoIterator<Item = &'a Layer<'a>>,
+) -> Result<Vec<Picture>, ReportError> {
     let view = Viewer::new(field, camera)?;
     let tone = Tone::new(exposure, &view.meter(field))?;
+    let painters: Vec<Box<dyn Painter + '_>> =
+        layers.into_iter().map(|layer| view.painter(field, layer)).collect();
     let row_bytes = 3 * camera.width as usize;
-    let mut pixels = vec![0; row_bytes * camera.height as usize];
-    pixels.par_chunks_mut(row_bytes).enumerate().for_each(|(y, row)| view.draw(tone, y, row));
-    Ok(Picture { width: camera.width, height: camera.height, pixels })
+    let width = row_bytes * painters.len();
+    let mut rows = vec![0; width * camera.height as usize];
+    rows.par_chunks_mut(width).enumerate().for_each(|(y, row)| view.draw(tone, &painters, y, row));
+    let mut pictures = Vec::new();
+    for (k, painter) in painters.iter().enumerate() {
+        let part = |row: &[u8]| row[k * row_bytes..(k + 1) * row_bytes].to_vec();
+        let pixels = rows.chunks_exact(width).flat_map(part).collect();
+        let mut picture = Picture { width: camera.width, height: camera.height, pixels };
+        painter.finish(&view, &mut picture);
+        pictures.push(picture);
+    }
+    Ok(pictures)
 }
+
+/// What is seen through a point of the picture.
+#[derive(Clone, Copy, Debug)]
+struct Sample {
+    leaf: usize,
+    point: Vec3,
+    /// Place in the picture, pixels from the upper left.
+    at: (f64, f64),
+}
+
+/// Colours the pixels of a picture.
+trait Painter: Sync {
+    /// Paints for one thread: a linear display colour from the samples of a pixel.
+    fn brush(&self) -> Brush<'_>;
+
+    /// Adds what is drawn over the whole picture.
+    fn finish(&self, _view: &Viewer<'_>, _picture: &mut Picture) {}
+}
+
+/// Paints a pixel.
+type Brush<'a> = Box<dyn FnMut(&Viewer<'_>, Tone, &[Option<Sample>; SAMPLES]) -> Rgb + 'a>;
 
 /// A camera before a scene.
 struct Viewer<'a> {
@@ -90,19 +157,44 @@ impl<'a> Viewer<'a> {
         Some((self.leaves[hit.patch], hit.point))
     }
 
-    fn draw(&self, tone: Tone, y: usize, row: &mut [u8]) {
-        for (x, pixel) in row.chunks_exact_mut(3).enumerate() {
-            let mut sum = [0.0; 3];
-            for (dx, dy) in lattice() {
-                let colour = self.sample(tone, x as f64 + dx, y as f64 + dy);
-                sum = [0, 1, 2].map(|i| sum[i] + colour[i]);
-            }
-            pixel.copy_from_slice(&sum.map(|channel| encode(channel / SAMPLES as f64)));
+    fn painter<'v>(&'v self, field: &Field<'v>, layer: &Layer<'v>) -> Box<dyn Painter + 'v> {
+        match *layer {
+            Layer::Field => Box::new(Plain),
+            Layer::Elements => Box::new(Elements { mesh: field.mesh() }),
+            Layer::Links(links) => Box::new(LinkPainter::new(self, field, links)),
+            Layer::Gathered(gathering) => Box::new(GatherPainter::new(*field, gathering)),
         }
     }
 
-    fn sample(&self, tone: Tone, x: f64, y: f64) -> Rgb {
-        self.hit(x, y).map_or([BACKGROUND; 3], |(leaf, p)| tone.display(self.shading.colour(leaf, p)))
+    /// Draws one row of all pictures, one behind the other.
+    fn draw(&self, tone: Tone, painters: &[Box<dyn Painter + '_>], y: usize, rows: &mut [u8]) {
+        let width = self.camera.width as usize;
+        let mut brushes: Vec<Brush> = painters.iter().map(|painter| painter.brush()).collect();
+        for x in 0..width {
+            let samples = self.samples(x, y);
+            for (k, brush) in brushes.iter_mut().enumerate() {
+                let at = 3 * (k * width + x);
+                rows[at..at + 3].copy_from_slice(&brush(self, tone, &samples).map(encode));
+            }
+        }
+    }
+
+    fn samples(&self, x: usize, y: usize) -> [Option<Sample>; SAMPLES] {
+        std::array::from_fn(|k| {
+            let (dx, dy) = lattice(k);
+            let at = (x as f64 + dx, y as f64 + dy);
+            self.hit(at.0, at.1).map(|(leaf, point)| Sample { leaf, point, at })
+        })
+    }
+
+    /// Display colour of the interpolated field.
+    fn shade(&self, tone: Tone, sample: &Sample) -> Rgb {
+        tone.display(self.shading.colour(sample.leaf, sample.point))
+    }
+
+    /// Where a point is in the picture, pixels from the upper left; none for one behind the eye.
+    fn project(&self, point: Vec3) -> Option<(f64, f64)> {
+        self.camera.place(&self.axes, point)
     }
 
     /// Luminances seen through the middle of each pixel: of lit surfaces, or of lamps where there is nothing else.
@@ -122,9 +214,29 @@ impl<'a> Viewer<'a> {
     }
 }
 
-fn lattice() -> impl Iterator<Item = (f64, f64)> {
+/// Place of a sample in its pixel.
+fn lattice(i: usize) -> (f64, f64) {
     let place = |i: usize| (i as f64 + 0.5) / SAMPLES as f64;
-    (0..SAMPLES).map(move |i| (place(i), place(GENERATOR * i % SAMPLES)))
+    (place(i), place(GENERATOR * i % SAMPLES))
+}
+
+/// The mean of the display colours of the samples of a pixel.
+fn mean(samples: &[Option<Sample>; SAMPLES], mut colour: impl FnMut(&Sample) -> Rgb) -> Rgb {
+    let mut sum = [0.0; 3];
+    for sample in samples {
+        let part = sample.as_ref().map_or([BACKGROUND; 3], &mut colour);
+        sum = [0, 1, 2].map(|i| sum[i] + part[i]);
+    }
+    sum.map(|channel| channel / SAMPLES as f64)
+}
+
+/// The interpolated field.
+struct Plain;
+
+impl Painter for Plain {
+    fn brush(&self) -> Brush<'_> {
+        Box::new(|view, tone, samples| mean(samples, |sample| view.shade(tone, sample)))
+    }
 }
 
 #[cfg(test)]
@@ -243,5 +355,78 @@ mod tests {
         let back = image::load_from_memory(&out).unwrap().to_rgb8();
         assert_eq!((back.width(), back.height()), (40, 30));
         assert_eq!(back.into_raw(), picture.pixels);
+    }
+
+    /// Several pictures of a square of 2 × 2 elements, which fills columns and rows 30 to 50 of 80.
+    fn layers(layers: &[Layer<'_>]) -> Vec<Picture> {
+        let (mesh, bands) = (square(2), names(&["grey"]));
+        let field = Field::new(&mesh, &bands, &[2.0; 4], &[2.0; 4]).unwrap();
+        render_layers(&field, &above(80, 80), Exposure::Fixed(0.5), layers).unwrap()
+    }
+
+    #[test]
+    fn edges_are_drawn_over_the_field() {
+        let pictures = layers(&[Layer::Field, Layer::Elements]);
+        assert_eq!(pixel(&pictures[0], 40, 35), [193; 3]);
+        for (x, y) in [(39, 35), (40, 35), (30, 35), (35, 49), (35, 40)] {
+            let [red, _, blue] = pixel(&pictures[1], x, y);
+            assert!(blue > red + 20, "({x}, {y}) is on an edge");
+        }
+        for (x, y) in [(35, 35), (45, 36), (33, 46), (2, 2)] {
+            assert_eq!(pixel(&pictures[1], x, y), pixel(&pictures[0], x, y), "({x}, {y}) is on none");
+        }
+    }
+
+    #[test]
+    fn links_are_tinted_by_what_they_bring() {
+        let corner = |x: f64, y: f64| Vec3::new(0.5 * x, 0.5 * y, 0.0);
+        let cell =
+            |x: f64, y: f64| [corner(x, y), corner(x + 1., y), corner(x + 1., y + 1.), corner(x, y + 1.)];
+        let link = |x: f64, y: f64, share: f64| {
+            let patch = Patch::quad(cell(x, y)).unwrap().unwrap();
+            Link { patch, level: 4, share }
+        };
+        // The middle of the picture is a corner of all four elements: the first one is the receiver.
+        let linked = |_: usize| Linked {
+            links: vec![link(1.0, 0.0, 0.5), link(1.0, 1.0, 1e-3)],
+            link_of: vec![None, Some(0), None, Some(1)],
+        };
+        let picture = &layers(&[Layer::Links(&linked)])[0];
+        let blueness = |x: u32, y: u32| {
+            let [red, _, blue] = pixel(picture, x, y);
+            i32::from(blue) - i32::from(red)
+        };
+        let mesh = square(2);
+        let place = |leaf: usize| {
+            let middle = mesh.patch(leaf).centroid();
+            (30 + (20.0 * middle.x) as u32 + 2, 50 - (20.0 * middle.y) as u32 + 2)
+        };
+        let [strong, none, weak] = [1, 2, 3].map(|leaf| blueness(place(leaf).0, place(leaf).1));
+        assert!(strong > weak && weak > none && none <= 0, "{strong} {weak} {none}");
+    }
+
+    /// Radiosity 4 x.
+    struct Ramp;
+
+    impl Gathering for Ramp {
+        fn gatherer(&self) -> Box<dyn FnMut(usize, Vec3) -> Vec<f64> + '_> {
+            Box::new(|_, point| vec![4.0 * point.x])
+        }
+    }
+
+    #[test]
+    fn gathered_pixels_have_the_radiosity_of_their_points() {
+        let picture = &layers(&[Layer::Gathered(&Ramp)])[0];
+        let tone = Tone::new(Exposure::Fixed(0.5), &[]).unwrap();
+        for x in 31..49 {
+            // The sample nearest to the middle of pixel x stands within an eighth of a pixel of it.
+            let [low, high] = [-0.15, 0.15].map(|off| {
+                let b = 4.0 * (f64::from(x) + 0.5 + off - 30.0) / 20.0;
+                encode(tone.display([b; 3])[0])
+            });
+            let found = pixel(picture, x, 37)[0];
+            assert!(low <= found && found <= high, "{x}: {found} is not from {low} to {high}");
+        }
+        assert_eq!(pixel(picture, 2, 2), pixel(picture, 70, 70), "nothing is gathered beside the square");
     }
 }

@@ -1,0 +1,124 @@
+//! Which way to an accuracy costs less: the matrix of the scene's elements, or links.
+//!
+//! The matrix has n(n + 1)/2 pairs. The links are about [`LINKS`] (1 %/ε)^[`POWER`] a face at the accuracy ε, and one costs as much as [`PAIRS`] pairs, as measured on the scenes of
+//! docs/hierarchical.md. The matrix has a stated error only where every face has 2 × 2 elements or more; what it states decides whether it was enough.
+
+use std::fmt;
+
+/// Links a face at 1 %, one for both ways.
+const LINKS: f64 = 160.0;
+/// Exponent of 1 %/ε.
+const POWER: f64 = 0.8;
+/// Pairs of the matrix that take the time of one link.
+const PAIRS: f64 = 6.0;
+
+/// What is known of a scene before it is solved.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Extent {
+    pub(crate) elements: f64,
+    pub(crate) faces: f64,
+    /// Fewest elements of a face.
+    pub(crate) fewest: usize,
+}
+
+/// What was predicted, and what it came to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Choice {
+    /// The matrix would state no error.
+    NoEstimate,
+    /// The matrix costs more: pairs and links.
+    Links { pairs: f64, links: f64 },
+    /// The matrix does not fit the memory.
+    Memory,
+    /// The matrix costs less.
+    Matrix { pairs: f64, links: f64 },
+    /// The matrix cost less, and stated this error or none.
+    TooCoarse { stated: Option<f64> },
+}
+
+impl Choice {
+    /// The cheaper way to an accuracy.
+    pub(crate) fn new(extent: Extent, accuracy: f64) -> Self {
+        let pairs = 0.5 * extent.elements * (extent.elements + 1.0);
+        let links = LINKS * extent.faces * (0.01 / accuracy).powf(POWER);
+        if pairs >= PAIRS * links {
+            Self::Links { pairs, links }
+        } else if extent.fewest < 4 {
+            Self::NoEstimate
+        } else {
+            Self::Matrix { pairs, links }
+        }
+    }
+
+    /// Elements from which on links cost less, whatever the faces.
+    pub(crate) fn most_elements(accuracy: f64) -> f64 {
+        2.0 * PAIRS * LINKS * (0.01 / accuracy).powf(POWER)
+    }
+
+    pub(crate) fn is_matrix(self) -> bool {
+        matches!(self, Self::Matrix { .. })
+    }
+}
+
+impl fmt::Display for Choice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoEstimate => f.write_str(
+                "hierarchical, since faces of fewer than 4 elements give a matrix no stated error",
+            ),
+            Self::Links { pairs, links } => {
+                write!(
+                    f,
+                    "hierarchical, since about {links:.1e} links cost less than {pairs:.1e} pairs of a matrix"
+                )
+            }
+            Self::Memory => {
+                f.write_str("hierarchical, since the matrix of the scene's elements does not fit the memory")
+            }
+            Self::Matrix { pairs, links } => {
+                write!(
+                    f,
+                    "the matrix of the scene's elements, since {pairs:.1e} pairs cost less than about {links:.1e} links"
+                )
+            }
+            Self::TooCoarse { stated: Some(stated) } => {
+                write!(
+                    f,
+                    "hierarchical, since the matrix of the scene's elements was cheaper but left an error of {stated:.1e}"
+                )
+            }
+            Self::TooCoarse { stated: None } => f.write_str(
+                "hierarchical, since the matrix of the scene's elements was cheaper but stated no error",
+            ),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn choice(faces: f64, fewest: usize, accuracy: f64) -> Choice {
+        Choice::new(Extent { elements: faces * fewest as f64, faces, fewest }, accuracy)
+    }
+
+    #[test]
+    fn few_faces_take_the_matrix_and_many_take_links() {
+        assert!(choice(96.0, 4, 0.01).is_matrix());
+        assert!(matches!(choice(480.0, 9, 0.01), Choice::Links { .. }));
+        assert!(
+            matches!(choice(96.0, 4, 0.3), Choice::Links { .. }),
+            "few links are enough for little accuracy"
+        );
+        assert_eq!(choice(96.0, 1, 0.01), Choice::NoEstimate);
+    }
+
+    #[test]
+    fn above_the_most_elements_links_always_cost_less() {
+        for accuracy in [0.1, 0.01, 0.001] {
+            let most = Choice::most_elements(accuracy);
+            let at = |elements: f64| Choice::new(Extent { elements, faces: elements, fewest: 1 }, accuracy);
+            assert!(matches!(at(most), Choice::Links { .. }) && at(0.9 * most) == Choice::NoEstimate);
+        }
+    }
+}

@@ -1,0 +1,220 @@
+//! What a solution is seen by: pictures of the elements, of links, and of the light that every pixel gathers.
+
+use fredholm_coupling::Receiver;
+use fredholm_hierarchical::{Gather, HierarchyError, Leaves, Link, Sender, Tree, senders};
+use fredholm_linop::MultiVector;
+use fredholm_mesh::Vec3;
+use fredholm_report::{EXTRAS, Gathering, Link as Drawn, Linked, PointTable};
+
+use crate::failure::{Ending, Failure};
+use crate::options::Options;
+use crate::problem::Problem;
+use crate::size::Bytes;
+use crate::solution::Solution;
+
+/// Error that a node may leave in the irradiance of a pixel, over the accuracy asked for.
+const SHARE: f64 = 0.1;
+/// The same where no accuracy was asked for.
+const ALONE: f64 = 1e-3;
+
+/// How many of the further files are pictures: the first ones.
+const PICTURES: usize = 3;
+
+/// Elements and clusters of a solution, and the links between them.
+#[derive(Debug)]
+pub(crate) struct Hierarchy {
+    pub(crate) tree: Tree,
+    pub(crate) links: Vec<Link>,
+}
+
+/// The names of the pictures that are written besides the usual one.
+pub(crate) fn pictures(options: &Options, solution: &Solution) -> impl Iterator<Item = &'static str> {
+    files(options, solution).filter(|name| EXTRAS[..PICTURES].contains(name))
+}
+
+/// The names of all files that are written besides the usual ones.
+pub(crate) fn files(options: &Options, solution: &Solution) -> impl Iterator<Item = &'static str> {
+    let linked = solution.tree.is_some();
+    let points = !options.points.is_empty();
+    let wanted = [linked, linked, options.final_gather, points, options.discontinuity];
+    EXTRAS.into_iter().zip(wanted).filter(|(_, wanted)| *wanted).map(|(name, _)| name)
+}
+
+/// What pictures are made from.
+pub(crate) struct Source<'a> {
+    problem: &'a Problem,
+    solution: &'a Solution,
+    hierarchy: Option<&'a Hierarchy>,
+    light: Option<Light>,
+}
+
+/// What gathering needs besides the solution.
+struct Light {
+    /// The tree over the elements, where the solution has none.
+    tree: Option<Tree>,
+    reflectance: MultiVector<f64>,
+    exitance: MultiVector<f64>,
+    /// Irradiance and radiosity of the exposed parts of the elements, W/m².
+    irradiance: MultiVector<f64>,
+    radiosity: MultiVector<f64>,
+    /// m².
+    exposed: Vec<f64>,
+}
+
+impl<'a> Source<'a> {
+    /// Prepares the pictures of a solution.
+    pub(crate) fn new(
+        problem: &'a Problem,
+        options: &Options,
+        solution: &'a Solution,
+    ) -> Result<Self, Failure> {
+        let hierarchy = solution.tree.as_ref();
+        let wanted = options.final_gather || options.discontinuity || !options.points.is_empty();
+        let light = wanted.then(|| Light::new(problem, options, solution)).transpose()?;
+        Ok(Self { problem, solution, hierarchy, light })
+    }
+
+    /// What gathers, where that was asked for.
+    pub(crate) fn gather(&self, options: &Options) -> Result<Option<Gathered<'_>>, Failure> {
+        let Some(light) = &self.light else { return Ok(None) };
+        let tree = light.tree.as_ref().or(self.hierarchy.map(|h| &h.tree));
+        let Some(tree) = tree else { return Ok(None) };
+        let Light { radiosity, irradiance, exposed, .. } = light;
+        let leaves = Leaves { radiosity, irradiance, exposed };
+        let share = options.accuracy.map_or(ALONE, |accuracy| SHARE * accuracy);
+        let points: Vec<Vec3> = options.points.iter().map(|receiver| receiver.point).collect();
+        let gather = Gather::new(tree, &leaves, &self.problem.occluders, &points, share).map_err(failure)?;
+        Ok(Some(Gathered { problem: self.problem, light, gather }))
+    }
+
+    /// The links of an element as they are drawn.
+    pub(crate) fn linked(&self, element: usize) -> Linked {
+        let mut linked = Linked { links: Vec::new(), link_of: vec![None; self.problem.mesh.len()] };
+        let Some(Hierarchy { tree, links }) = self.hierarchy else { return linked };
+        let leaves = tree.leaves();
+        let mut place = vec![None; tree.nodes().len()];
+        leaves.iter().enumerate().for_each(|(i, &leaf)| place[leaf as usize] = Some(i));
+        for sender in senders(tree, links, leaves[element]) {
+            let Some(patch) = tree.nodes()[sender.node as usize].patch() else { continue };
+            let below = below(tree, &place, sender.node);
+            for &i in &below {
+                linked.link_of[i] = Some(linked.links.len());
+            }
+            let share = self.share(tree, &sender, &below, element);
+            linked.links.push(Drawn { patch: *patch, level: sender.level, share });
+        }
+        linked
+    }
+
+    /// Share of the irradiance of an element that a sender brings, in the band where it is most.
+    fn share(&self, tree: &Tree, sender: &Sender, below: &[usize], element: usize) -> f64 {
+        let means = &self.solution.means;
+        let area: f64 = below.iter().map(|&i| self.problem.mesh.patch(i).area()).sum();
+        let share = |band: usize| {
+            let weighted = |&i: &usize| self.problem.mesh.patch(i).area() * means.radiosity.row(i)[band];
+            let sent = below.iter().map(weighted).sum::<f64>() / area;
+            let brought = sender.exchange / tree.nodes()[sender.receiver as usize].area() * sent;
+            let all = means.irradiance.row(element)[band];
+            if all > 0.0 { brought / all } else { 0.0 }
+        };
+        (0..means.irradiance.lanes()).map(share).fold(0.0, f64::max)
+    }
+}
+
+/// Numbers of the elements below a node.
+fn below(tree: &Tree, place: &[Option<usize>], node: u32) -> Vec<usize> {
+    let (mut found, mut stack) = (Vec::new(), vec![node]);
+    while let Some(node) = stack.pop() {
+        found.extend(place[node as usize]);
+        stack.extend(tree.nodes()[node as usize].children());
+    }
+    found
+}
+
+impl Light {
+    fn new(problem: &Problem, options: &Options, solution: &Solution) -> Result<Self, Failure> {
+        let Problem { mesh, scene, occluders, .. } = problem;
+        let tree = match solution.tree {
+            Some(_) => None,
+            None => Some(Tree::new(mesh, occluders.tolerance()).map_err(failure)?),
+        };
+        let nodes = solution.tree.as_ref().map_or(2 * mesh.len(), |h| h.tree.nodes().len());
+        admit(Bytes(Gather::bytes(nodes, scene.bands().len()).into()), options)?;
+        let (reflectance, exitance) =
+            (problem.multivector(scene.reflectance(mesh))?, problem.multivector(scene.exitance(mesh))?);
+        let (bands, means) = (scene.bands().len(), &solution.means.irradiance);
+        // Means are over whole elements; what is buried receives nothing.
+        let of_exposed = |i: usize, band: usize| match solution.exposed[i] {
+            share if share > 0.0 => means.row(i)[band] / share,
+            _ => 0.0,
+        };
+        let irradiance = MultiVector::from_fn(mesh.len(), bands, of_exposed);
+        let radiosity = MultiVector::from_fn(mesh.len(), bands, |i, band| {
+            exitance.row(i)[band] + reflectance.row(i)[band] * irradiance.row(i)[band]
+        });
+        let exposed = mesh.patches().zip(&solution.exposed).map(|(p, share)| p.area() * share).collect();
+        Ok(Self { tree, reflectance, exitance, irradiance, radiosity, exposed })
+    }
+}
+
+/// Refuses to gather where the memory does not allow it.
+fn admit(needed: Bytes, options: &Options) -> Result<(), Failure> {
+    let limit = options.problem.memory_limit();
+    if needed <= limit {
+        return Ok(());
+    }
+    let text = format!(
+        "gathering needs {needed}, but {limit} are allowed\n  help: leave out --final-gather, or allow more with --memory"
+    );
+    Err(Failure::new(Ending::Resources, text))
+}
+
+/// Gathers the light of points on the elements.
+pub(crate) struct Gathered<'a> {
+    pub(crate) problem: &'a Problem,
+    light: &'a Light,
+    pub(crate) gather: Gather<'a>,
+}
+
+impl Gathered<'_> {
+    /// Whether an element is a lamp.
+    pub(crate) fn emits(&self, element: usize) -> bool {
+        self.light.exitance.row(element).iter().any(|m| *m > 0.0)
+    }
+
+    /// Irradiance of an element, of each band, W/m².
+    pub(crate) fn expected(&self, element: usize) -> &[f64] {
+        self.light.irradiance.row(element)
+    }
+
+    /// The irradiance of the points that were asked for.
+    pub(crate) fn points(&self, options: &Options) -> Result<Option<PointTable>, Failure> {
+        if options.points.is_empty() {
+            return Ok(None);
+        }
+        let usual = self.gather.usual();
+        let usual = MultiVector::from_fn(options.points.len(), usual.len(), |_, band| usual[band]);
+        // What comes of the first time tells how exact the second one has to be.
+        let first = self.gather.irradiance(&options.points, &usual).map_err(failure)?;
+        let found = self.gather.irradiance(&options.points, &first).map_err(failure)?;
+        let points = options.points.iter().map(|receiver| [receiver.point, receiver.normal]).collect();
+        Ok(Some(PointTable { points, irradiance: found.as_slice().to_vec() }))
+    }
+}
+
+impl Gathering for Gathered<'_> {
+    fn gatherer(&self) -> Box<dyn FnMut(usize, Vec3) -> Vec<f64> + '_> {
+        let mut gatherer = self.gather.gatherer();
+        let Light { reflectance, exitance, irradiance, .. } = self.light;
+        Box::new(move |element, point| {
+            let receiver = Receiver { point, normal: self.problem.mesh.patch(element).normal() };
+            let e = gatherer.irradiance(&receiver, irradiance.row(element));
+            let (rho, m) = (reflectance.row(element), exitance.row(element));
+            (0..e.len()).map(|band| m[band] + rho[band] * e[band]).collect()
+        })
+    }
+}
+
+fn failure(error: HierarchyError) -> Failure {
+    Failure::new(Ending::Input, error)
+}

@@ -1,0 +1,69 @@
+//! The radiosity of every pixel, gathered from all that it sees: B(x) = M + ρ E(x).
+//!
+//! The samples of a pixel that lie on one plane of one surface have one colour: it is gathered at the one nearest to their mean. So borders are drawn as finely as in the interpolated picture, and
+//! light is gathered little more than once a pixel. W/m².
+
+use fredholm_mesh::Vec3;
+
+use super::{Brush, Painter, SAMPLES, Sample, mean};
+use crate::Field;
+use crate::colour::{Colouring, Rgb};
+
+/// Cosine, less than 1 by this, up to which two elements have one normal.
+const TURN: f64 = 1e-9;
+
+/// Gathers the radiosity of points.
+pub trait Gathering: Sync {
+    /// A gatherer for one thread: the radiosity of a point of an element, of each band, W/m².
+    fn gatherer(&self) -> Box<dyn FnMut(usize, Vec3) -> Vec<f64> + '_>;
+}
+
+pub(super) struct GatherPainter<'a> {
+    field: Field<'a>,
+    gathering: &'a dyn Gathering,
+    colouring: Colouring,
+}
+
+impl<'a> GatherPainter<'a> {
+    pub fn new(field: Field<'a>, gathering: &'a dyn Gathering) -> Self {
+        Self { field, gathering, colouring: Colouring::new(field.bands()) }
+    }
+
+    /// Whether two samples lie on one plane of one surface.
+    fn alike(&self, a: &Sample, b: &Sample) -> bool {
+        let mesh = self.field.mesh();
+        let [p, q] = [a, b].map(|sample| mesh.patch(sample.leaf));
+        let apart = (b.point - a.point).dot(p.normal()).abs();
+        mesh.surface_of(a.leaf) == mesh.surface_of(b.leaf)
+            && p.normal().dot(q.normal()) > 1.0 - TURN
+            && apart <= TURN * p.diameter()
+    }
+
+    /// The sample of a group nearest to the mean of their points.
+    fn middle<'s>(&self, first: &Sample, samples: &'s [Option<Sample>; SAMPLES]) -> Option<&'s Sample> {
+        let group = || samples.iter().flatten().filter(|sample| self.alike(first, sample));
+        let (sum, count) = group().fold((Vec3::ZERO, 0.0), |(sum, count), s| (sum + s.point, count + 1.0));
+        group().min_by(|a, b| {
+            let [a, b] = [a, b].map(|sample| sample.point.distance_squared(sum / count));
+            a.total_cmp(&b)
+        })
+    }
+}
+
+impl Painter for GatherPainter<'_> {
+    fn brush(&self) -> Brush<'_> {
+        let mut gather = self.gathering.gatherer();
+        Box::new(move |_, tone, samples| {
+            let mut known: Vec<(Sample, Rgb)> = Vec::new();
+            mean(samples, |sample| {
+                if let Some((_, colour)) = known.iter().find(|(other, _)| self.alike(other, sample)) {
+                    return *colour;
+                }
+                let middle = self.middle(sample, samples).unwrap_or(sample);
+                let colour = tone.display(self.colouring.colour(&gather(middle.leaf, middle.point)));
+                known.push((*sample, colour));
+                colour
+            })
+        })
+    }
+}
