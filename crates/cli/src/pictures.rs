@@ -3,7 +3,7 @@
 use fredholm_coupling::Receiver;
 use fredholm_hierarchical::{Gather, HierarchyError, Leaves, Link, Sender, Tree, senders};
 use fredholm_linop::MultiVector;
-use fredholm_mesh::Vec3;
+use fredholm_mesh::{Patch, Vec3};
 use fredholm_report::{EXTRAS, Gathering, Link as Drawn, Linked, PointTable};
 
 use crate::failure::{Ending, Failure};
@@ -95,15 +95,22 @@ impl<'a> Source<'a> {
         let mut place = vec![None; tree.nodes().len()];
         leaves.iter().enumerate().for_each(|(i, &leaf)| place[leaf as usize] = Some(i));
         for sender in senders(tree, links, leaves[element]) {
-            let Some(patch) = tree.nodes()[sender.node as usize].patch() else { continue };
+            let patch = tree.nodes()[sender.node as usize].patch().copied();
             let below = below(tree, &place, sender.node);
             for &i in &below {
                 linked.link_of[i] = Some(linked.links.len());
             }
             let share = self.share(tree, &sender, &below, element);
-            linked.links.push(Drawn { patch: *patch, level: sender.level, share });
+            linked.links.push(Drawn { patch, centre: self.middle(&below), level: sender.level, share });
         }
         linked
+    }
+
+    /// Centroid of some elements, m.
+    fn middle(&self, below: &[usize]) -> Vec3 {
+        let patches = || below.iter().map(|&i| self.problem.mesh.patch(i));
+        let moment: Vec3 = patches().map(|patch| patch.centroid() * patch.area()).sum();
+        moment / patches().map(Patch::area).sum::<f64>()
     }
 
     /// Share of the irradiance of an element that a sender brings, in the band where it is most.

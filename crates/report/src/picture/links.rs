@@ -14,8 +14,10 @@ use crate::tone::{Tone, encode, luminance};
 /// A node that sends to the receiver.
 #[derive(Clone, Debug)]
 pub struct Link {
-    /// The polygon of the node.
-    pub patch: Patch,
+    /// The polygon of the node, or `None` for elements that bend.
+    pub patch: Option<Patch>,
+    /// Its middle, m.
+    pub centre: Vec3,
     /// Levels from the receiver up to the node at which the link arrives.
     pub level: usize,
     /// Share of the irradiance of the receiver that it brings, in the band where it is most.
@@ -72,7 +74,7 @@ impl<'a> LinkPainter<'a> {
         }
         let Some(link) = self.linked.link_of[sample.leaf].map(|k| &self.linked.links[k]) else { return grey };
         let colour = LEVELS[link.level.min(LEVELS.len() - 1)];
-        if on_edge(view, &link.patch, sample, HALF) {
+        if link.patch.is_some_and(|patch| on_edge(view, &patch, sample, HALF)) {
             return colour;
         }
         blend(grey, colour, 0.6 * strength(link.share))
@@ -96,7 +98,7 @@ impl Painter for LinkPainter<'_> {
         links.sort_by(|a, b| a.share.total_cmp(&b.share));
         for link in links {
             let colour = LEVELS[link.level.min(LEVELS.len() - 1)].map(encode);
-            line(view, picture, [from, link.patch.centroid()], (colour, 0.15 + 0.7 * strength(link.share)));
+            line(view, picture, [from, link.centre], (colour, 0.15 + 0.7 * strength(link.share)));
         }
     }
 }

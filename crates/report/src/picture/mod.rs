@@ -384,7 +384,7 @@ mod tests {
             |x: f64, y: f64| [corner(x, y), corner(x + 1., y), corner(x + 1., y + 1.), corner(x, y + 1.)];
         let link = |x: f64, y: f64, share: f64| {
             let patch = Patch::quad(cell(x, y)).unwrap().unwrap();
-            Link { patch, level: 4, share }
+            Link { patch: Some(patch), centre: patch.centroid(), level: 4, share }
         };
         // The middle of the picture is a corner of all four elements: the first one is the receiver.
         let linked = |_: usize| Linked {
