@@ -18,6 +18,7 @@
 //! without discretisation error.
 
 mod bidirectional;
+mod buried;
 mod disc;
 mod jacobi;
 pub(crate) mod kd_tree;
