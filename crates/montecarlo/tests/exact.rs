@@ -6,7 +6,8 @@
 mod common;
 
 use common::{SQUARES, furnace, method, run, samples, single, sphere, squares, whole};
-use fredholm_montecarlo::light::METHODS;
+use fredholm_montecarlo::light::pixels::pixel;
+use fredholm_montecarlo::light::{METHODS, PICTURED, Switches, point_estimator};
 use fredholm_montecarlo::statistics::{Suite, normal_score};
 use fredholm_montecarlo::{Enclosure, Groups};
 
@@ -89,5 +90,25 @@ fn means_are_within_three_standard_errors_of_the_exact_values() {
             println!("{:8} {name:15} {mean:.6} ± {error:.1e}, exact {exact:.6}", case.name);
             assert!((mean - exact).abs() < 3.0 * error && error < 0.03 * exact, "{} {name}", case.name);
         }
+    }
+}
+
+/// B = M/(1 − ρ) through every pixel of a furnace, here half of each; scores over pixels have variance 1.
+#[test]
+fn pixels_show_the_radiosity_within_their_errors() {
+    let scene = furnace(0.5);
+    for name in PICTURED {
+        let estimator = point_estimator(name, Switches::default()).unwrap();
+        let half = |patch: usize, [u, v]: [f64; 2]| (u < 0.5).then(|| scene.point(patch, [2.0 * u, v]));
+        let score = |number: u32| {
+            let see = |place| half(number as usize % scene.len(), place);
+            let found = pixel(&scene, &*estimator, (3, number, 32), &see);
+            let z = normal_score((found.radiosity[0] - found.covered * 2.0) / found.standard_error[0], 31.0);
+            assert!((found.covered - 0.5).abs() < 1e-12 && found.standard_error[0] < 0.2, "{found:?}");
+            z
+        };
+        let suite = Suite::new(&(0..400).map(score).collect::<Vec<f64>>());
+        println!("{name:15} mean {:+.3}, variance {:.3}", suite.mean, suite.variance);
+        assert!(suite.mean_p > 1e-3 && suite.variance_p > 1e-3, "{name}: {suite:?}");
     }
 }
