@@ -68,7 +68,12 @@ fn values(csv: &Path, value: &str, error: &str) -> Values {
 }
 
 /// Probabilities of the differences of an estimate from the reference; of a method that estimates constants on elements, `mesh` is their error.
-fn probabilities(found: &Values, reference: &Values, mesh: Option<&Values>, batches: u64) -> (Vec<f64>, f64, f64) {
+fn probabilities(
+    found: &Values,
+    reference: &Values,
+    mesh: Option<&Values>,
+    batches: u64,
+) -> (Vec<f64>, f64, f64) {
     let side = |values: &Values, column: usize| -> Vec<f64> {
         reference.keys().map(|place| values[place][column]).collect()
     };
@@ -95,7 +100,9 @@ fn every_method_agrees_with_the_solution_and_with_the_references() {
     let grey: &[[&str; 3]] = &[["grey", "E", "stderr"]];
     let rgb: &[[&str; 3]] = &[["r", "E_r", "stderr_r"], ["g", "E_g", "stderr_g"], ["b", "E_b", "stderr_b"]];
     let mut all = Vec::new();
-    println!("| scene | method | verdict | against the solution: mean z² | against the reference: mean z², largest z |");
+    println!(
+        "| scene | method | verdict | against the solution: mean z² | against the reference: mean z², largest z |"
+    );
     for (scene, bands) in [("cornell_planar", rgb), ("occluder", grey)] {
         let reference = reference(scene, bands);
         // Of a continuous method the deterministic error has the one of the mesh in it.
@@ -107,8 +114,7 @@ fn every_method_agrees_with_the_solution_and_with_the_references() {
             let scores = table(&csv);
             let own = scores.iter().map(|row| number(row, "z").powi(2)).sum::<f64>() / scores.len() as f64;
             let found = values(&csv, "stochastic", "standard_error");
-            let (p, square, worst) =
-                probabilities(&found, &reference, patchwise.then_some(&mesh), batches);
+            let (p, square, worst) = probabilities(&found, &reference, patchwise.then_some(&mesh), batches);
             let verdict = if agrees { "agree" } else { "disagree" };
             println!("| {scene} | {method} | {verdict} | {own:.2} | {square:.2}, {worst:+.1} |");
             assert!(agrees, "{scene} {method}");

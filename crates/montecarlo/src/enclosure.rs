@@ -200,7 +200,8 @@ impl Enclosure {
     #[must_use]
     pub fn opens(&self, from: Site, direction: Vec3) -> bool {
         let world = self.world(from, direction);
-        self.occluders.closest(from.point, world, f64::INFINITY).is_none() || self.ray(from, direction).is_some()
+        self.occluders.closest(from.point, world, f64::INFINITY).is_none()
+            || self.ray(from, direction).is_some()
     }
 
     /// cosθ cosθ′/(π r²) between two sites that face each other, else 0; 1/m². Visibility is not asked.

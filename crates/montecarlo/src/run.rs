@@ -178,7 +178,8 @@ impl<'a> Tracing<'a> {
     ) -> Result<(), MonteCarloError> {
         self.check(state)?;
         let (started, before) = (Instant::now(), state.seconds);
-        while !stop.is_met(state.batches(), &|| state.relative_error(), started) && watch(state).is_continue() {
+        while !stop.is_met(state.batches(), &|| state.relative_error(), started) && watch(state).is_continue()
+        {
             let left = stop.batches.map_or(u64::from(WAVE), |all| all - state.batches());
             self.wave(state, left.min(WAVE.into()) as u32);
             state.seconds = before + started.elapsed().as_secs_f64();

@@ -152,7 +152,9 @@ fn particles_and_surface_samples_converge_to_the_radiation_integral() {
                     ratios.push(sum / SEEDS as f64);
                 }
                 let slope = slope(&errors);
-                println!("{name:10} {method:17} {errors:.4?}, over the stated {ratios:.1?}, slope {slope:.2}");
+                println!(
+                    "{name:10} {method:17} {errors:.4?}, over the stated {ratios:.1?}, slope {slope:.2}"
+                );
                 // Weights of a lobe are not bounded, and their standard errors less sure.
                 let highest = if method == "particles, lobe" { 4.0 } else { 2.5 };
                 assert!(ratios.iter().all(|&ratio| ratio < highest), "{name} {method}: {ratios:?}");
@@ -202,7 +204,10 @@ fn densities_that_know_where_the_body_is_have_less_variance() {
             assert!(ratio < 2.5, "{aim:?}: {ratio}");
             error
         });
-        assert!(errors[1] < errors[0] && errors[2] < 0.5 * errors[1] && errors[3] < 0.5 * errors[2], "{errors:?}");
+        assert!(
+            errors[1] < errors[0] && errors[2] < 0.5 * errors[1] && errors[3] < 0.5 * errors[2],
+            "{errors:?}"
+        );
     });
 }
 

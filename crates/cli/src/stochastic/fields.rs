@@ -5,8 +5,8 @@ use std::ops::ControlFlow;
 use fredholm_mesh::Vec3;
 use fredholm_montecarlo::Stop;
 use fredholm_montecarlo::waves::{
-    Aim, AmplitudeParticles, Bounces, FieldEstimate, FieldEstimator, FieldParticles, FieldTracing, Scattering,
-    SurfaceSampling,
+    Aim, AmplitudeParticles, Bounces, FieldEstimate, FieldEstimator, FieldParticles, FieldTracing,
+    Scattering, SurfaceSampling,
 };
 use fredholm_waves::{PhysicalOptics, Shadow, Source, Wave, WaveError};
 
@@ -87,7 +87,8 @@ impl FieldRun {
         let scatterer = model.geometry.scatterer(band.materials.clone()).map_err(refused)?;
         scatterer.check_conductor("the sampling of fields").map_err(refused)?;
         let sources: Vec<&dyn Source> = model.sources.iter().map(AsRef::as_ref).collect();
-        let optics = PhysicalOptics::new(&scatterer, band.wave, &sources, Shadow::Geometric).map_err(refused)?;
+        let optics =
+            PhysicalOptics::new(&scatterer, band.wave, &sources, Shadow::Geometric).map_err(refused)?;
         let problem = Scattering::new(&scatterer, &optics, band.wave, self.bounces).map_err(failure)?;
         let method = estimator(&self.method, &band.wave);
         let points: Vec<Vec3> = field_points(model).into_iter().map(|(_, _, point)| point).collect();

@@ -66,11 +66,7 @@ pub(super) struct SolidAngles {
 
 impl SolidAngles {
     /// Of the facets that are wanted.
-    pub(super) fn new(
-        problem: &Scattering<'_>,
-        from: Vec3,
-        wanted: impl Fn(usize, &Facet) -> bool,
-    ) -> Self {
+    pub(super) fn new(problem: &Scattering<'_>, from: Vec3, wanted: impl Fn(usize, &Facet) -> bool) -> Self {
         let mut sum = 0.0;
         let mut cumulate = |(number, facet): (usize, &Facet)| {
             let between = facet.centre - from;
@@ -99,12 +95,7 @@ impl SolidAngles {
     }
 
     /// All surfaces along a ray to one of the facets, and the density of its direction, 1/sr.
-    pub(super) fn shoot(
-        &self,
-        problem: &Scattering<'_>,
-        from: Vec3,
-        [u, v]: [f64; 2],
-    ) -> (Vec<Spot>, f64) {
+    pub(super) fn shoot(&self, problem: &Scattering<'_>, from: Vec3, [u, v]: [f64; 2]) -> (Vec<Spot>, f64) {
         if !self.any() {
             return (Vec::new(), 1.0);
         }

@@ -64,7 +64,8 @@ impl AmplitudeParticles {
         batch: &Batch,
         stream: u32,
     ) -> ComplexVector {
-        let angles = SolidAngles::new(problem, cell.point, |number, facet| problem.lights(number, facet, cell));
+        let angles =
+            SolidAngles::new(problem, cell.point, |number, facet| problem.lights(number, facet, cell));
         let key = Key { seed: batch.seed, batch: batch.number, stream: (1 << 31) | stream };
         let impact = |ray: u32| {
             let mut draw = Draw::new(batch.points, key, ray, self.second);

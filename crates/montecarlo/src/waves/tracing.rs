@@ -1,11 +1,11 @@
 //! Runs of sampled fields: batch after batch, until there are enough. V/m.
 
 use super::{FieldEstimator, Scattering};
+use crate::MonteCarloError;
 use crate::light::Batch;
 use crate::points::PointSet;
 use crate::run::{Stop, WAVE};
 use crate::statistics::Moments;
-use crate::MonteCarloError;
 use fredholm_mesh::Vec3;
 use fredholm_waves::{Complex64, ComplexVector};
 use rayon::prelude::*;
@@ -115,7 +115,8 @@ impl<'a> FieldTracing<'a> {
     ) -> Result<(), MonteCarloError> {
         self.check(state)?;
         let (started, before) = (Instant::now(), state.seconds);
-        while !stop.is_met(state.batches(), &|| state.relative_error(), started) && watch(state).is_continue() {
+        while !stop.is_met(state.batches(), &|| state.relative_error(), started) && watch(state).is_continue()
+        {
             let left = stop.batches.map_or(u64::from(WAVE), |all| all - state.batches());
             self.wave(state, left.min(WAVE.into()) as u32);
             state.seconds = before + started.elapsed().as_secs_f64();

@@ -74,8 +74,7 @@ pub(super) struct Estimates<'a> {
 
 impl<'a> Estimates<'a> {
     pub(super) fn new(ground: &'a Ground, state: &'a State) -> Self {
-        let (rho, exitance) =
-            (ground.scene.reflectance(&ground.mesh), ground.scene.exitance(&ground.mesh));
+        let (rho, exitance) = (ground.scene.reflectance(&ground.mesh), ground.scene.exitance(&ground.mesh));
         let reflected = state.patches.mean().iter().zip(&rho).zip(&exitance);
         let radiosity = reflected.map(|((e, rho), m)| m + rho * e).collect();
         Self { ground, state, radiosity, exitance }

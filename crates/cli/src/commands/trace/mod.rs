@@ -13,6 +13,8 @@ use fredholm_montecarlo::light::{Estimator, METHODS, PathTracing, estimator};
 use fredholm_montecarlo::{Enclosure, State};
 use serde::Serialize;
 
+use self::files::Estimates;
+use self::saved::Origin;
 use crate::args::{LogArgs, ProblemArgs};
 use crate::failure::{Ending, Failure};
 use crate::options::{Options, ProblemOptions};
@@ -21,8 +23,6 @@ use crate::solution::compute;
 use crate::stages::Stages;
 use crate::start::Start;
 use crate::stochastic::{FIELD_METHODS, Ground, PathArgs, TraceStopArgs, Tracer, control, enclosure, faces};
-use self::files::Estimates;
-use self::saved::Origin;
 use crate::summary::Lines;
 use crate::{output, threads};
 
@@ -107,6 +107,7 @@ pub(crate) fn trace(args: &TraceArgs) -> Result<Ending, Failure> {
 
 fn run(args: &TraceArgs, folder: &Path, stages: &mut Stages) -> Result<Ending, Failure> {
     let ground = Ground::load(&args.problem, stages)?;
+    picture::admit(args, &ground)?;
     let scene = stages.run("exposure", || enclosure(&ground.scene, &ground.mesh))?;
     let stop = args.stop.or_to(ERROR);
     let origin = Origin::new(args, ground.scene.sha256(), 0);

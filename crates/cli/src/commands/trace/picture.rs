@@ -16,6 +16,8 @@ use crate::stochastic::Ground;
 
 /// Rows between looks for Ctrl-C.
 const STRIP: u32 = 16;
+/// Width and height of pictures of scenes without a camera.
+const FRAMED: [u32; 2] = [800, 600];
 /// Fewest batches of a pixel: without two there is no standard error.
 const FEWEST: u32 = 2;
 
@@ -38,7 +40,6 @@ impl<'a> Tracer<'a> {
     ) -> Result<Option<Self>, Failure> {
         let Some(samples) = args.spp else { return Ok(None) };
         let estimator = point_estimator(&args.method, args.paths.switches()).ok_or_else(|| refused(args))?;
-        fits(args, camera, scene.bands())?;
         let eye = Eye::new(&ground.mesh, camera).map_err(report_failure)?;
         let batches = samples.div_ceil(SAMPLES).max(FEWEST);
         Ok(Some(Self { scene, estimator, eye, seed: args.paths.seed, batches }))
@@ -77,6 +78,18 @@ impl<'a> Tracer<'a> {
     }
 }
 
+/// Refuses what cannot be traced pixel by pixel, before any path is traced.
+pub(super) fn admit(args: &TraceArgs, ground: &Ground) -> Result<(), Failure> {
+    if args.spp.is_none() {
+        return Ok(());
+    }
+    if !PICTURED.contains(&args.method.as_str()) {
+        return Err(refused(args));
+    }
+    let size = ground.scene.camera().map_or(FRAMED, |camera| [camera.width, camera.height]);
+    fits(args, size, ground.scene.bands().len())
+}
+
 fn refused(args: &TraceArgs) -> Failure {
     let text = format!(
         "{} traces no pixels\n  help: --spp goes with --method {}",
@@ -87,8 +100,8 @@ fn refused(args: &TraceArgs) -> Failure {
 }
 
 /// Refuses a picture that does not fit in memory: two numbers a pixel and band while it is traced, as many in the file, and what holds them.
-fn fits(args: &TraceArgs, camera: &Camera, bands: usize) -> Result<(), Failure> {
-    let pixels = u128::from(camera.width) * u128::from(camera.height);
+fn fits(args: &TraceArgs, [width, height]: [u32; 2], bands: usize) -> Result<(), Failure> {
+    let pixels = u128::from(width) * u128::from(height);
     let needed = Bytes(pixels * (32 * bands as u128 + 64));
     let limit = args.problem.memory.unwrap_or_else(memory::default_limit);
     if needed <= limit {
