@@ -183,13 +183,13 @@ fn sampled_waves_are_checked_against_computed_ones() {
 /// Every pixel traced by itself shows what the solution shows, up to its noise and to the elements of the solution.
 #[test]
 fn traced_pixels_show_what_the_solution_shows() {
-    let bench = Bench::new(&room(6).replace("height = 48\n", "height = 48\nexposure = 0.2\n"));
+    let bench = Bench::new(&room(6).replace("height = 48\n", "height = 48\nexposure = 1.0\n"));
     bench.solve(&["--quiet"]);
     let picture = |path: &str| image::open(bench.path(path)).unwrap().to_rgb8().into_raw();
     let solved = picture("out/scene/image.png");
     for method in ["path", "bidirectional"] {
         let go = |folder: &str, threads: &str| {
-            let wanted = ["--method", method, "--to", "10%", "--spp", "32", "--threads", threads];
+            let wanted = ["--method", method, "--to", "10%", "--spp", "128", "--threads", threads];
             trace(&bench, &[&wanted[..], &["-o", folder]].concat());
         };
         go("one", "1");
@@ -203,7 +203,7 @@ fn traced_pixels_show_what_the_solution_shows() {
         let mean = gaps.sum::<f64>() / solved.len() as f64;
         let contrast = solved.iter().map(|&a| f64::from(a)).fold(0.0, f64::max);
         println!("{method}: mean difference {mean:.2} of 255");
-        assert!(mean < 6.0 && contrast > 100.0, "{method}: {mean}, {contrast}");
+        assert!(mean < 6.0 && contrast > 150.0, "{method}: {mean}, {contrast}");
     }
     let refused = bench.run(&["trace", "scene.toml", "--method", "light", "--spp", "8"]);
     assert!(refused.code == 2 && refused.stderr.contains("--method path or"), "{}", refused.stderr);
