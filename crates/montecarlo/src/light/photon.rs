@@ -67,7 +67,9 @@ impl PhotonMap {
         let mut outlines: Vec<Outline> = scene.patches().iter().map(Outline::new).collect();
         let near = neighbours(scene, &outlines, radius);
         let parts = partly_buried(scene);
-        parts.iter().for_each(|(&patch, part)| outlines[patch].exposed = part.area());
+        for (&patch, part) in &parts {
+            outlines[patch].exposed = part.area();
+        }
         Self { switches, photons: photons.max(1), near, outlines, parts, radius }
     }
 
