@@ -32,8 +32,7 @@ pub fn pixel(
 ) -> PixelEstimate {
     let bands = scene.bands();
     let (mut moments, mut seen) = (Moments::new(bands), 0_u32);
-    let mut sum = vec![0.0; bands];
-    let mut irradiance = vec![0.0; bands];
+    let [mut sum, mut irradiance] = [vec![0.0; bands], vec![0.0; bands]];
     for batch in 0..batches {
         sum.fill(0.0);
         for sample in 0..SAMPLES {
@@ -43,15 +42,17 @@ pub fn pixel(
             seen += 1;
             irradiance.fill(0.0);
             estimator.irradiance(scene, site, &mut draw, &mut irradiance);
-            add(&mut sum, scene.reflectance(site.patch), &irradiance, 1.0 / f64::from(SAMPLES));
-            let own = scene.exitance(site.patch);
-            sum.iter_mut().zip(own).for_each(|(sum, m)| *sum += m / f64::from(SAMPLES));
+            add_radiosity(scene, site, &irradiance, &mut sum);
         }
         moments.push(&sum);
     }
-    PixelEstimate {
-        radiosity: moments.mean().to_vec(),
-        standard_error: moments.standard_errors(),
-        covered: f64::from(seen) / f64::from((batches * SAMPLES).max(1)),
-    }
+    let covered = f64::from(seen) / f64::from((batches * SAMPLES).max(1));
+    PixelEstimate { radiosity: moments.mean().to_vec(), standard_error: moments.standard_errors(), covered }
+}
+
+/// Adds the share of one sample of M + ρ E to the mean of a batch.
+fn add_radiosity(scene: &Enclosure, site: Site, irradiance: &[f64], sum: &mut [f64]) {
+    let share = 1.0 / f64::from(SAMPLES);
+    add(sum, scene.reflectance(site.patch), irradiance, share);
+    sum.iter_mut().zip(scene.exitance(site.patch)).for_each(|(sum, m)| *sum += m * share);
 }

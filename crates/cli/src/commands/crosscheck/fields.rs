@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use fredholm_montecarlo::statistics::{Comparison, Correction, Suite, crosscheck as compare};
+use fredholm_montecarlo::statistics::{Comparison, Correction, Place, Suite, crosscheck as compare};
 use fredholm_montecarlo::waves::FieldEstimate;
 use fredholm_report::{
     COMPONENTS, CROSSCHECK_FORMAT, CrosscheckRecord, FieldScore, WorstPlace, write_field_crosscheck,
@@ -18,7 +18,7 @@ use super::{CrosscheckArgs, summarise};
 use crate::failure::{Ending, Failure};
 use crate::interrupt::nothing_saved;
 use crate::stages::Stages;
-use crate::stochastic::{FieldRun, failure, field_points};
+use crate::stochastic::{FieldPoint, FieldRun, failure, field_points};
 use crate::waves::{self, Band, Method, Model, Outcome, Places};
 
 /// Method where none is asked for, and the error it is asked for.
@@ -78,11 +78,11 @@ fn computed(model: &Model, band: &Band, outcome: &Outcome) -> (Vec<[f64; 6]>, Ve
     };
     let errors: Vec<f64> = (0..model.receivers.len()).map(error).collect();
     let points = field_points(model);
-    let value = |&(receiver, index, _): &(usize, usize, _)| fields.get(&(receiver, index)).copied();
+    let value = |&(receiver, index, _): &FieldPoint| fields.get(&(receiver, index)).copied();
     (points.iter().filter_map(value).collect(), points.iter().map(|&(r, _, _)| errors[r]).collect())
 }
 
-/// A row a point and number; what is significant is decided later, of all frequencies together.
+/// A row a point and number.
 fn compared(
     model: &Model,
     band: &Band,
@@ -102,24 +102,37 @@ fn compared(
         standard_error: &standard_error,
         batches: state.batches(),
     };
+    // Of all frequencies together it is decided later what is significant.
     let places = compare(&comparison, Correction::Holm, 0.5).map_err(failure)?.places;
     let points = field_points(model);
-    let row = |place: &fredholm_montecarlo::statistics::Place| {
-        let (receiver, index, point) = points[place.index / COMPONENTS.len()];
-        FieldScore {
-            receiver: model.receivers[receiver].name.clone(),
-            index,
-            position: point.to_array(),
-            frequency: band.wave.frequency(),
-            component: place.index % COMPONENTS.len(),
-            deterministic: [deterministic[place.index], deterministic_error[place.index]],
-            stochastic: [stochastic[place.index], standard_error[place.index]],
-            score: place.z,
-            p: place.p,
-            significant: false,
-        }
+    let row = |place: &Place| FieldScore {
+        score: place.z,
+        p: place.p,
+        ..unscored(model, band, points[place.index / COMPONENTS.len()], &comparison, place.index)
     };
     Ok(places.iter().map(row).collect())
+}
+
+/// One number on both sides.
+fn unscored(
+    model: &Model,
+    band: &Band,
+    (receiver, index, point): FieldPoint,
+    comparison: &Comparison<'_>,
+    at: usize,
+) -> FieldScore {
+    FieldScore {
+        receiver: model.receivers[receiver].name.clone(),
+        index,
+        position: point.to_array(),
+        frequency: band.wave.frequency(),
+        component: at % COMPONENTS.len(),
+        deterministic: [comparison.deterministic[at], comparison.deterministic_error[at]],
+        stochastic: [comparison.stochastic[at], comparison.standard_error[at]],
+        score: 0.0,
+        p: 1.0,
+        significant: false,
+    }
 }
 
 fn decide(rows: &mut [FieldScore], correction: Correction, significance: f64) {

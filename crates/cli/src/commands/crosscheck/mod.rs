@@ -10,7 +10,7 @@ use clap::{Args, ValueEnum};
 use fredholm_montecarlo::State;
 use fredholm_montecarlo::light::{METHODS, estimator};
 use fredholm_montecarlo::statistics::{Comparison, Correction, Crosscheck, crosscheck as compare};
-use fredholm_report::{CrosscheckRecord, score_map, write_crosscheck};
+use fredholm_report::{CrosscheckRecord, WorstPlace, score_map, write_crosscheck};
 
 use super::solve::{report_failure, view_camera};
 use crate::args::{LogArgs, ProblemArgs, StopArgs};
@@ -220,20 +220,8 @@ fn summarise(folder: &Path, kind: &str, record: &CrosscheckRecord) -> Result<(),
         "scores",
         format!("mean {:.3}, mean of squares {:.3}", record.score_mean, record.score_variance),
     );
-    let band = |name: &str| if kind == "face" { format!("band {name}") } else { name.to_owned() };
     for place in &record.worst {
-        let [x, y, z] = place.centroid;
-        lines.add(
-            "worst",
-            format!(
-                "z = {:+.2}, {:+.2} %: {kind} {} of {}, at ({x:.3}, {y:.3}, {z:.3}), {}",
-                place.z,
-                100.0 * place.relative,
-                place.face,
-                place.surface,
-                band(&place.band)
-            ),
-        );
+        lines.add("worst", worst(kind, place));
     }
     lines.add(
         "traced",
@@ -246,4 +234,12 @@ fn summarise(folder: &Path, kind: &str, record: &CrosscheckRecord) -> Result<(),
     );
     lines.add("time", crate::summary::times(&record.timings));
     output::print(&lines.under(&format!("{} → {}", record.scene, folder.display())))
+}
+
+/// One of the places farthest apart, in words.
+fn worst(kind: &str, place: &WorstPlace) -> String {
+    let ([x, y, z], relative) = (place.centroid, 100.0 * place.relative);
+    let band = if kind == "face" { format!("band {}", place.band) } else { place.band.clone() };
+    let (score, number, of) = (place.z, place.face, &place.surface);
+    format!("z = {score:+.2}, {relative:+.2} %: {kind} {number} of {of}, at ({x:.3}, {y:.3}, {z:.3}), {band}")
 }
