@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::support::{Bench, fredholm_in, furnace, room};
+use crate::support::{Bench, PLATE, fredholm_in, furnace, room};
 
 fn text(bench: &Bench, path: &str) -> String {
     fs::read_to_string(bench.path(path)).unwrap()
@@ -36,7 +36,9 @@ fn traced_results_are_the_same_with_any_number_of_threads_and_in_two_goes() {
         go(all, "twice", &["--continue"]);
         assert!(text(&bench, "twice/faces.csv") == text(&bench, "1/faces.csv"), "{method}");
     }
-    // Another method cannot go on with it.
+    // A run with other switches or by another method cannot go on with it.
+    let run = bench.run(&["trace", "scene.toml", "--no-roulette", "-o", "twice", "--continue"]);
+    assert!(run.code == 2 && run.stderr.contains("--no-roulette"), "{}", run.stderr);
     let run = bench.run(&[
         "trace",
         "scene.toml",
@@ -104,23 +106,10 @@ fn a_reference_holds_the_exact_values_of_a_furnace() {
     assert_eq!(record["format"], "fredholm-reference-1");
 }
 
-const PLATE: &str = r#"
-[wave]
-frequencies_hz = [1e9]
-
-[[source]]
-kind = "plane-wave"
-travel = [0, 1, 0]
-polarisation = [0, 0, 1]
-
-[[surface]]
-name = "plate"
-quad = [[-0.3, 0, -0.3], [0.3, 0, -0.3], [0.3, 0, 0.3], [-0.3, 0, 0.3]]
-
-[[receiver]]
-name = "points"
-points = [[0, -2, 0], [1, -2, 0.5], [0, 2, 1]]
-"#;
+/// The plate seen from three points.
+fn plate() -> String {
+    PLATE.replace("[[0, -1, 0]]", "[[0, -2, 0], [1, -2, 0.5], [0, 2, 1]]")
+}
 
 /// The numbers of the columns whose titles begin with `sca_e` or are the standard error.
 fn fields(table: &str) -> Vec<Vec<f64>> {
@@ -135,7 +124,7 @@ fn fields(table: &str) -> Vec<Vec<f64>> {
 
 #[test]
 fn sampled_waves_agree_with_the_radiation_integral() {
-    let bench = Bench::new(PLATE);
+    let bench = Bench::new(&plate());
     let run = bench.run(&["waves", "scene.toml", "-o", "solved", "--quiet"]);
     assert_eq!(run.code, 0, "{}", run.stderr);
     let exact = fields(&text(&bench, "solved/receivers.csv"));
@@ -149,8 +138,75 @@ fn sampled_waves_agree_with_the_radiation_integral() {
             assert!(gap < 4.0 * found[6] + allowed && found[6] < 0.1 * size, "{method}: {gap:e} {found:?}");
         }
     }
-    let refused = bench.run(&["trace", "scene.toml", "--method", "surface-sampling", "--to", "1%"]);
-    assert!(refused.code == 2 && refused.stderr.contains("--samples"), "{}", refused.stderr);
+}
+
+/// An error, a time and two goes; what is another run is refused with what to do.
+#[test]
+fn sampled_waves_stop_where_they_should_and_go_on() {
+    let bench = Bench::new(&plate());
+    let wave = ["--method", "surface-sampling", "--batch", "256"];
+    let go = |folder: &str, more: &[&str]| trace(&bench, &[&wave, more, &["-o", folder]].concat());
+    go("exact", &["--to", "3%"]);
+    let ending = bench.record("exact")["stop_reason"].as_str().unwrap().to_owned();
+    assert!(ending.starts_with("converged, one bounce"), "{ending}");
+    go("timed", &["--seconds", "0.2", "--samples", "1000000000"]);
+    let ending = bench.record("timed")["stop_reason"].as_str().unwrap().to_owned();
+    assert!(ending.starts_with("time spent"), "{ending}");
+    go("once", &["--samples", "20480", "--threads", "1"]);
+    go("twice", &["--samples", "8192"]);
+    assert!(text(&bench, "twice/receivers.csv") != text(&bench, "once/receivers.csv"));
+    go("twice", &["--samples", "20480", "--continue", "--threads", "2"]);
+    assert!(text(&bench, "twice/receivers.csv") == text(&bench, "once/receivers.csv"));
+    let refused = |more: &[&str], what: &str| {
+        let run = bench.run(&[&["trace", "scene.toml", "-o", "twice"], more].concat());
+        assert!(run.code == 2 && run.stderr.contains(what), "{}", run.stderr);
+    };
+    refused(&["--method", "surface-sampling", "--continue"], "the number of samples of a batch differs");
+    refused(&[&wave[..], &["--seed", "2", "--continue"]].concat(), "the seed differs; start anew");
+    refused(&[&wave[..], &["--points", "jittered"]].concat(), "neither --points");
+    fs::write(bench.path("scene.toml"), plate().replace("1e9", "1.1e9")).unwrap();
+    refused(&[&wave[..], &["--continue"]].concat(), "the scene file differs; start anew");
+}
+
+#[test]
+fn sampled_waves_are_checked_against_computed_ones() {
+    let bench = Bench::new(&plate());
+    for method in [&[][..], &["--method", "field-particles"]] {
+        let check = [&["crosscheck", "scene.toml", "--to", "2%", "-o", "checked"], method].concat();
+        let run = bench.run(&check);
+        assert_eq!(run.code, 0, "{}{}", run.stdout, run.stderr);
+        assert!(run.stdout.contains("they agree: 0 of 18"), "{}", run.stdout);
+        assert_eq!(text(&bench, "checked/crosscheck.csv").lines().count(), 19);
+    }
+}
+
+/// Every pixel traced by itself shows what the solution shows, up to its noise and to the elements of the solution.
+#[test]
+fn traced_pixels_show_what_the_solution_shows() {
+    let bench = Bench::new(&room(6).replace("height = 48\n", "height = 48\nexposure = 1.0\n"));
+    bench.solve(&["--quiet"]);
+    let picture = |path: &str| image::open(bench.path(path)).unwrap().to_rgb8().into_raw();
+    let solved = picture("out/scene/image.png");
+    for method in ["path", "bidirectional"] {
+        let go = |folder: &str, threads: &str| {
+            let wanted = ["--method", method, "--to", "10%", "--spp", "128", "--threads", threads];
+            trace(&bench, &[&wanted[..], &["-o", folder]].concat());
+        };
+        go("one", "1");
+        go("two", "2");
+        assert!(
+            fs::read(bench.path("one/image.png")).unwrap() == fs::read(bench.path("two/image.png")).unwrap()
+        );
+        assert!(fs::read(bench.path("one/pixels.npz")).unwrap().starts_with(b"PK"));
+        let traced = picture("one/image.png");
+        let gaps = solved.iter().zip(&traced).map(|(a, b)| f64::from(a.abs_diff(*b)));
+        let mean = gaps.sum::<f64>() / solved.len() as f64;
+        let contrast = solved.iter().map(|&a| f64::from(a)).fold(0.0, f64::max);
+        println!("{method}: mean difference {mean:.2} of 255");
+        assert!(mean < 6.0 && contrast > 150.0, "{method}: {mean}, {contrast}");
+    }
+    let refused = bench.run(&["trace", "scene.toml", "--method", "light", "--spp", "8"]);
+    assert!(refused.code == 2 && refused.stderr.contains("--method path or"), "{}", refused.stderr);
 }
 
 #[test]

@@ -99,6 +99,25 @@ pub fn room(n: usize) -> String {
     )
 }
 
+/// A square plate of two wavelengths, lit squarely, seen from one point: a scene of waves.
+pub const PLATE: &str = r#"
+[wave]
+frequencies_hz = [1e9]
+
+[[source]]
+kind = "plane-wave"
+travel = [0, 1, 0]
+polarisation = [0, 0, 1]
+
+[[surface]]
+name = "plate"
+quad = [[-0.3, 0, -0.3], [0.3, 0, -0.3], [0.3, 0, 0.3], [-0.3, 0, 0.3]]
+
+[[receiver]]
+name = "point"
+points = [[0, -1, 0]]
+"#;
+
 /// A table with a header: its columns by name.
 pub fn column(csv: &Path, name: &str) -> Vec<f64> {
     let text = fs::read_to_string(csv).unwrap();

@@ -3,25 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use crate::support::{Bench, Run, fredholm_in};
-
-const GOOD: &str = r#"
-[wave]
-frequencies_hz = [1e9]
-
-[[source]]
-kind = "plane-wave"
-travel = [0, 1, 0]
-polarisation = [0, 0, 1]
-
-[[surface]]
-name = "plate"
-quad = [[-0.3, 0, -0.3], [0.3, 0, -0.3], [0.3, 0, 0.3], [-0.3, 0, 0.3]]
-
-[[receiver]]
-name = "point"
-points = [[0, -1, 0]]
-"#;
+use crate::support::{Bench, PLATE as GOOD, Run, fredholm_in};
 
 fn waves(scene: &str) -> (Bench, Run) {
     let bench = Bench::new(scene);

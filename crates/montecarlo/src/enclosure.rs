@@ -196,6 +196,14 @@ impl Enclosure {
         lit.then_some(Site { patch, point: hit.point })
     }
 
+    /// Whether a ray of this direction, in the frame of the patch, meets a lit side or nothing: under what stands on a patch no ray does.
+    #[must_use]
+    pub fn opens(&self, from: Site, direction: Vec3) -> bool {
+        let world = self.world(from, direction);
+        self.occluders.closest(from.point, world, f64::INFINITY).is_none()
+            || self.ray(from, direction).is_some()
+    }
+
     /// cosθ cosθ′/(π r²) between two sites that face each other, else 0; 1/m². Visibility is not asked.
     #[must_use]
     pub fn kernel(&self, p: Site, q: Site) -> f64 {

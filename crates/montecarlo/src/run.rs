@@ -104,6 +104,16 @@ pub struct Stop {
     pub error: Option<f64>,
 }
 
+impl Stop {
+    /// Whether a run that began at `started` is to end after so many batches.
+    pub(crate) fn is_met(&self, done: u64, error: &dyn Fn() -> f64, started: Instant) -> bool {
+        let enough = self.batches.is_some_and(|all| done >= all);
+        let late = self.seconds.is_some_and(|seconds| started.elapsed().as_secs_f64() >= seconds);
+        let exact = self.error.is_some_and(|wanted| done >= FEWEST.into() && error() <= wanted);
+        enough || late || exact || done >= u64::from(u32::MAX - WAVE)
+    }
+}
+
 /// A method on a scene.
 pub struct Tracing<'a> {
     scene: &'a Enclosure,
@@ -168,7 +178,8 @@ impl<'a> Tracing<'a> {
     ) -> Result<(), MonteCarloError> {
         self.check(state)?;
         let (started, before) = (Instant::now(), state.seconds);
-        while !finished(state, stop, started) && watch(state).is_continue() {
+        while !stop.is_met(state.batches(), &|| state.relative_error(), started) && watch(state).is_continue()
+        {
             let left = stop.batches.map_or(u64::from(WAVE), |all| all - state.batches());
             self.wave(state, left.min(WAVE.into()) as u32);
             state.seconds = before + started.elapsed().as_secs_f64();
@@ -207,12 +218,4 @@ impl<'a> Tracing<'a> {
         let work = self.estimator.batch(self.scene, &batch, &mut values);
         (values, work)
     }
-}
-
-fn finished(state: &State, stop: &Stop, started: Instant) -> bool {
-    let done = state.batches();
-    let enough = stop.batches.is_some_and(|all| done >= all);
-    let late = stop.seconds.is_some_and(|seconds| started.elapsed().as_secs_f64() >= seconds);
-    let exact = stop.error.is_some_and(|error| done >= FEWEST.into() && state.relative_error() <= error);
-    enough || late || exact || done >= u64::from(u32::MAX - WAVE)
 }

@@ -6,7 +6,8 @@
 mod common;
 
 use common::{SQUARES, furnace, method, run, samples, single, sphere, squares, whole};
-use fredholm_montecarlo::light::METHODS;
+use fredholm_montecarlo::light::pixels::pixel;
+use fredholm_montecarlo::light::{METHODS, PICTURED, Switches, point_estimator};
 use fredholm_montecarlo::statistics::{Suite, normal_score};
 use fredholm_montecarlo::{Enclosure, Groups};
 
@@ -89,5 +90,31 @@ fn means_are_within_three_standard_errors_of_the_exact_values() {
             println!("{:8} {name:15} {mean:.6} ± {error:.1e}, exact {exact:.6}", case.name);
             assert!((mean - exact).abs() < 3.0 * error && error < 0.03 * exact, "{} {name}", case.name);
         }
+    }
+}
+
+/// B = M/(1 − ρ) through every pixel of a furnace, here half of each: the mean of many pixels within their errors, and the scores of the single ones with variance near 1. Their mean is below 0, as
+/// that of every t of a skewed quantity such as the length of paths.
+#[test]
+fn pixels_show_the_radiosity_within_their_errors() {
+    let scene = furnace(0.5);
+    for name in PICTURED {
+        let estimator = point_estimator(name, Switches::default()).unwrap();
+        let half = |patch: usize, [u, v]: [f64; 2]| (u < 0.5).then(|| scene.point(patch, [2.0 * u, v]));
+        let difference = |number: u32| {
+            let see = |place| half(number as usize % scene.len(), place);
+            let found = pixel(&scene, &*estimator, (3, number, 32), &see);
+            assert!((found.covered - 0.5).abs() < 1e-12 && found.standard_error[0] < 0.2, "{found:?}");
+            [found.radiosity[0] - 0.5 * 2.0, found.standard_error[0]]
+        };
+        let all: Vec<[f64; 2]> = (0..4000).map(difference).collect();
+        let (sum, square) = all.iter().fold((0.0, 0.0), |(sum, square), [d, s]| (sum + d, square + s * s));
+        let together = sum / f64::sqrt(square);
+        let suite = Suite::new(&all.iter().map(|[d, s]| normal_score(d / s, 31.0)).collect::<Vec<f64>>());
+        println!("{name:15} all {together:+.2}, mean {:+.3}, variance {:.3}", suite.mean, suite.variance);
+        assert!(
+            together.abs() < 3.0 && (0.8..1.25).contains(&suite.variance),
+            "{name}: {together} {suite:?}"
+        );
     }
 }

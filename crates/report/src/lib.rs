@@ -34,6 +34,7 @@ mod comparison;
 mod convergence;
 mod csv;
 mod error;
+mod eye;
 mod faces_csv;
 mod field;
 mod field_csv;
@@ -73,6 +74,7 @@ pub use comparison::{
 };
 pub use convergence::write_convergence;
 pub use error::ReportError;
+pub use eye::Eye;
 pub use faces_csv::write_faces_csv;
 pub use field::Field;
 pub use field_csv::write_field_csv;
@@ -99,9 +101,10 @@ pub use spectrum::{
     write_spectrum_csv, write_spectrum_plot,
 };
 pub use stochastic::{
-    CROSSCHECK_FILES, CROSSCHECK_FORMAT, CrosscheckRecord, CrosscheckRow, FaceEstimates, REFERENCE_FILES,
-    REFERENCE_FORMAT, ReferenceRecord, ReferenceTable, SampledField, WorstPlace, score_map, write_crosscheck,
-    write_crosscheck_csv, write_face_estimates, write_reference, write_sampled_fields, write_score_histogram,
+    COMPONENTS, CROSSCHECK_FILES, CROSSCHECK_FORMAT, CrosscheckRecord, CrosscheckRow, FaceEstimates,
+    FieldScore, Pixels, REFERENCE_FILES, REFERENCE_FORMAT, ReferenceRecord, ReferenceTable, SampledField,
+    WorstPlace, score_map, write_crosscheck, write_crosscheck_csv, write_face_estimates,
+    write_field_crosscheck, write_reference, write_sampled_fields, write_score_histogram,
 };
 pub use surfaces_csv::write_surfaces_csv;
 pub use tone::Exposure;

@@ -54,6 +54,11 @@ impl PathArgs {
         }
     }
 
+    /// Whether only the seed and the batch were chosen: what the sampling of fields takes.
+    pub(crate) fn is_plain(&self) -> bool {
+        self.points == Points::Sobol && self.switches() == Switches::default()
+    }
+
     pub(crate) fn point_set(&self) -> PointSet {
         match self.points {
             Points::Independent => PointSet::Independent,
@@ -77,6 +82,18 @@ pub(crate) struct TraceStopArgs {
     /// Standard error to reach, root mean square over the faces, such as 1% or 0.01
     #[arg(long, value_name = "E", value_parser = share)]
     pub(crate) to: Option<f64>,
+}
+
+impl TraceStopArgs {
+    /// Whether nothing says when tracing ends.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.samples.is_none() && self.seconds.is_none() && self.to.is_none()
+    }
+
+    /// The same, or up to an error where nothing is said.
+    pub(crate) fn or_to(self, error: f64) -> Self {
+        if self.is_empty() { Self { to: Some(error), ..self } } else { self }
+    }
 }
 
 /// A share above 0 and below 1, as a number or in percent.

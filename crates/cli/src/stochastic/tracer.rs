@@ -46,7 +46,8 @@ impl<'a> Tracer<'a> {
     pub(crate) fn run(&self, state: &mut State, stages: &Stages) -> Result<(), Failure> {
         let (console, interrupt) = (stages.console, stages.interrupt);
         let watch = |state: &State| {
-            console.advance(self.share(state), &|| {
+            let share = share(&self.stop, state.batches(), state.relative_error(), state.seconds);
+            console.advance(share, &|| {
                 let (batches, error) = (state.batches(), 100.0 * state.relative_error());
                 format!("{batches} batches, standard error {error:.2} %")
             });
@@ -55,33 +56,36 @@ impl<'a> Tracer<'a> {
         self.tracing.go_on(state, &self.stop, &watch).map_err(failure)
     }
 
-    /// How far a run has come.
-    fn share(&self, state: &State) -> f64 {
-        let done = state.batches() as f64;
-        let batches = self.stop.batches.map_or(0.0, |all| done / all as f64);
-        // Errors fall with the root of the work.
-        let error = self.stop.error.map_or(0.0, |error| {
-            (error / state.relative_error()).powi(2).min(done / f64::from(FEWEST)).min(1.0)
-        });
-        let time = self.stop.seconds.map_or(0.0, |seconds| state.seconds / seconds);
-        batches.max(error).max(time).min(1.0)
-    }
-
     /// Why a run has ended, in words.
     pub(crate) fn reason(&self, state: &State) -> String {
         let error = state.relative_error();
-        let met = |asked: Option<f64>, found: f64| asked.is_some_and(|asked| found >= asked);
-        let what = if self.stop.error.is_some_and(|asked| error <= asked) {
-            "converged"
-        } else if met(self.stop.batches.map(|all| all as f64), state.batches() as f64) {
-            "all samples drawn"
-        } else if met(self.stop.seconds, state.seconds) {
-            "time spent"
-        } else {
-            "interrupted"
-        };
+        let what = ended(&self.stop, state.batches(), error, state.seconds);
         format!("{what}, standard error {:.3} % (RMS over the faces)", 100.0 * error)
     }
+}
+
+/// Which of its ends a run has met after so many batches, with this error, after so many seconds.
+pub(super) fn ended(stop: &Stop, batches: u64, error: f64, seconds: f64) -> &'static str {
+    if stop.error.is_some_and(|asked| error <= asked) {
+        "converged"
+    } else if stop.batches.is_some_and(|all| batches >= all) {
+        "all samples drawn"
+    } else if stop.seconds.is_some_and(|asked| seconds >= asked) {
+        "time spent"
+    } else {
+        "interrupted"
+    }
+}
+
+/// How far a run has come.
+pub(super) fn share(stop: &Stop, batches: u64, error: f64, seconds: f64) -> f64 {
+    let done = batches as f64;
+    let drawn = stop.batches.map_or(0.0, |all| done / all as f64);
+    // Errors fall with the root of the work.
+    let exact =
+        stop.error.map_or(0.0, |asked| (asked / error).powi(2).min(done / f64::from(FEWEST)).min(1.0));
+    let time = stop.seconds.map_or(0.0, |asked| seconds / asked);
+    drawn.max(exact).max(time).min(1.0)
 }
 
 fn batch(scene: &Enclosure, estimator: &dyn Estimator) -> u32 {

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use fredholm_waves::WaveError;
 use serde::de::DeserializeOwned;
+use sha2::{Digest, Sha256};
 use toml::de::Error;
 
 use crate::failure::{Ending, Failure};
@@ -49,6 +50,11 @@ impl SceneText {
             let span = error.span().unwrap_or(self.text.len()..self.text.len());
             self.fault(span, error.message(), "see docs/waves.md for the keys of a scene of waves")
         })
+    }
+
+    /// SHA-256 of the text, in hexadecimal.
+    pub(crate) fn sha256(&self) -> String {
+        format!("{:x}", Sha256::digest(&self.text))
     }
 
     /// The end of the file.

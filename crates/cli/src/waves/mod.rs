@@ -18,7 +18,7 @@ mod sources;
 pub(crate) use compare::compare;
 pub(crate) use compute::compute;
 pub(crate) use files::write;
-pub(crate) use model::{Band, Method, Model};
+pub(crate) use model::{Band, Method, Model, is_scene};
 pub(crate) use receivers::Places;
 pub(crate) use record::Outcome;
 pub(crate) use registry::{build, names};

@@ -66,6 +66,15 @@ pub(crate) struct Model {
 impl Model {
     /// Reads a scene file and cuts its surfaces.
     pub(crate) fn load(path: &Path) -> Result<Self, Failure> {
+        Self::read(path, false)
+    }
+
+    /// The same with errors estimated, whether the scene asks for it or not.
+    pub(crate) fn load_estimated(path: &Path) -> Result<Self, Failure> {
+        Self::read(path, true)
+    }
+
+    fn read(path: &Path, estimated: bool) -> Result<Self, Failure> {
         let text = SceneText::read(path)?;
         let entry: SceneEntry = text.parse()?;
         let bands = bands(&text, &entry)?;
@@ -77,7 +86,7 @@ impl Model {
         let shortest = bands.iter().map(|band| band.wave.wavelength()).fold(f64::INFINITY, f64::min);
         let cut = |stretch| Geometry::new(&text, &entry.surface, shortest, stretch);
         let geometry = cut(1.0)?;
-        let coarse = entry.wave.get_ref().estimate_errors.then(|| cut(2.0)).transpose()?;
+        let coarse = (estimated || entry.wave.get_ref().estimate_errors).then(|| cut(2.0)).transpose()?;
         let receivers = receivers(&text, &entry.receiver)?;
         let surfaces = entry.surface.iter().map(toml::Spanned::span).collect();
         let sources = placed.into_iter().map(|placed| placed.source).collect();
@@ -135,6 +144,12 @@ impl Model {
         let span = receiver.map(|receiver| receiver.span.clone()).or_else(|| surface.cloned());
         self.text.refused(span.unwrap_or(0..0), error)
     }
+}
+
+/// Whether a file is a scene of waves: it has a table `wave`. What cannot be read is none.
+pub(crate) fn is_scene(path: &Path) -> bool {
+    let table = SceneText::read(path).and_then(|text| text.parse::<toml::Table>());
+    table.is_ok_and(|table| table.contains_key("wave"))
 }
 
 /// The sources, at least one unless all receivers send their own waves.

@@ -18,12 +18,14 @@
 //! without discretisation error.
 
 mod bidirectional;
+mod buried;
 mod disc;
 mod jacobi;
 pub(crate) mod kd_tree;
 mod particles;
 mod path;
 mod photon;
+pub mod pixels;
 mod registry;
 
 pub use bidirectional::Bidirectional;
@@ -31,7 +33,7 @@ pub use jacobi::StochasticJacobi;
 pub use particles::ParticleTracing;
 pub use path::{Control, PathTracing};
 pub use photon::PhotonMap;
-pub use registry::{METHODS, estimator};
+pub use registry::{METHODS, PICTURED, estimator, point_estimator};
 
 use crate::points::{Draw, Key, PointSet};
 use crate::{Enclosure, Site};

@@ -35,12 +35,7 @@ impl ParticleTracing {
         power: &mut [f64],
         arrive: &mut dyn FnMut(Site, &[f64]),
     ) -> u64 {
-        let mut at = scene.lamp(draw.pair());
-        let density = scene.lamps().pdf(at.patch);
-        for power in power.iter_mut() {
-            *power /= density;
-        }
-        scale(power, scene.exitance(at.patch), 1.0);
+        let mut at = emitted(scene, draw, power);
         let start = power.iter().copied().fold(0.0, f64::max);
         let (mut rays, mut done) = (0, 0);
         loop {
@@ -59,6 +54,17 @@ impl ParticleTracing {
             done += 1;
         }
     }
+}
+
+/// Where a particle starts; its power, times M/p_L.
+fn emitted(scene: &Enclosure, draw: &mut Draw, power: &mut [f64]) -> Site {
+    let at = scene.lamp(draw.pair());
+    let density = scene.lamps().pdf(at.patch);
+    for power in power.iter_mut() {
+        *power /= density;
+    }
+    scale(power, scene.exitance(at.patch), 1.0);
+    at
 }
 
 impl Estimator for ParticleTracing {

@@ -120,59 +120,74 @@ impl PathTracing {
         }
     }
 
-    /// What arrives directly, and the first place that a ray meets, `weight` times its reflectance.
-    pub(super) fn first(
+    /// One step: from a vertex to the next, or the end.
+    pub(super) fn step(
         &self,
         scene: &Enclosure,
-        at: Site,
+        step: &mut Step<'_>,
         draw: &mut Draw,
-        weight: &mut [f64],
         out: &mut [f64],
-    ) -> (Option<Site>, u64) {
-        let mut step = Step { at, done: 0, rays: 0, weight };
-        let next = self.step(scene, &mut step, draw, out);
-        (next, step.rays)
-    }
-
-    /// One step: from a vertex to the next, or the end.
-    fn step(&self, scene: &Enclosure, step: &mut Step<'_>, draw: &mut Draw, out: &mut [f64]) -> Option<Site> {
-        let scored = self.control.is_none() || step.done > 0;
-        let at = step.at;
-        if step.done > 0 {
-            self.correct(scene, at.patch, step.weight, -1.0, out);
-        }
-        if scored && self.switches.next_event {
-            step.rays += self.next_event(scene, at, draw, step.weight, out);
-        }
+    ) -> Option<Site> {
+        self.leave(scene, step, draw, out);
         let direction = self.directions.sample(draw.pair());
         if direction.z <= 0.0 {
             return None;
         }
         let factor = direction.z * FRAC_1_PI / self.directions.pdf(direction);
         step.rays += 1;
-        let next = scene.ray(at, direction)?;
+        let next = scene.ray(step.at, direction)?;
+        if !self.arrive(scene, step, (next, factor), out) {
+            return None;
+        }
+        let survival = scene.survival(next.patch);
+        self.switches.goes_on(survival, draw, step.weight, 1.0).then_some(next)
+    }
+
+    /// What is scored at a vertex before a ray leaves it.
+    fn leave(&self, scene: &Enclosure, step: &mut Step<'_>, draw: &mut Draw, out: &mut [f64]) {
+        if step.done > 0 {
+            self.correct(scene, step.at.patch, step.weight, -1.0, out);
+        }
+        if self.scores(step) && self.switches.next_event {
+            step.rays += self.next_event(scene, step.at, draw, step.weight, out);
+        }
+    }
+
+    /// What is scored where a ray of this factor arrives; whether it is reflected.
+    fn arrive(
+        &self,
+        scene: &Enclosure,
+        step: &mut Step<'_>,
+        (next, factor): (Site, f64),
+        out: &mut [f64],
+    ) -> bool {
+        let scored = self.scores(step);
         if scored {
-            add(out, step.weight, scene.exitance(next.patch), self.share(scene, at, next, factor));
+            add(out, step.weight, scene.exitance(next.patch), self.share(scene, step.at, next, factor));
         }
         let exposed = if self.patchwise { scene.exposed(next.patch) } else { 1.0 };
         if exposed <= 0.0 || !self.switches.reflects(step.done) {
-            return None;
+            return false;
         }
         scale(step.weight, scene.reflectance(next.patch), factor / exposed);
         if scored {
             self.correct(scene, next.patch, step.weight, 1.0, out);
         }
-        let survival = scene.survival(next.patch);
-        self.switches.goes_on(survival, draw, step.weight, 1.0).then_some(next)
+        true
+    }
+
+    /// A control variate has scored the first vertex already.
+    fn scores(&self, step: &Step<'_>) -> bool {
+        self.control.is_none() || step.done > 0
     }
 }
 
-/// Where a path is.
-struct Step<'a> {
-    at: Site,
-    done: u32,
-    rays: u64,
-    weight: &'a mut [f64],
+/// Where a path is, how often it was reflected, and what it weighs.
+pub(super) struct Step<'a> {
+    pub(super) at: Site,
+    pub(super) done: u32,
+    pub(super) rays: u64,
+    pub(super) weight: &'a mut [f64],
 }
 
 impl PointEstimator for PathTracing {

@@ -1,24 +1,29 @@
 //! Photon maps: particles are kept where they arrive, and read where gathering rays end.
 //!
 //! E(p) is direct light plus E[ρ Ê(y)] over rays of density cosθ/π, Ê(y) = Σ φ/N(y) over the photons within r of y on the same flat piece, N(y) the area of that piece within r: constant irradiance is
-//! read without bias up to its edges. H. W. Jensen, Eurographics workshop on rendering 1996, doi:10.1007/978-3-7091-7484-5_3.
+//! read without bias up to its edges, and up to what stands on it ([`super::buried`]). A ray shorter than [`NEAR`] radii is reflected where it ends, as a path: a corner sees every
+//! gradient beside it, what is far away only its mean. H. W. Jensen, Eurographics workshop on rendering 1996, doi:10.1007/978-3-7091-7484-5_3.
 //! The bias of Ê falls with r², which shrinks from batch to batch, r²_{b+1} = r²_b (b + α)/(b + 1), so that the mean of the batches tends to the true value
 //! (C. Knaus, M. Zwicker, ACM Trans. Graph. 30 (2011) 25, doi:10.1145/1966394.1966404).
 
+use super::buried::{ExposedPart, partly_buried};
 use super::disc::shared;
 use super::kd_tree::KdTree;
 use super::particles::ParticleTracing;
-use super::path::PathTracing;
+use super::path::{PathTracing, Step};
 use super::{Batch, Estimator, PointEstimator, Switches, Work, gather};
 use crate::points::Draw;
 use crate::{Enclosure, Site};
 use fredholm_mesh::{Patch, Vec3};
+use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 /// α of the shrinking radius.
 const ALPHA: f64 = 2.0 / 3.0;
 /// Photons that a disc of the first radius holds, were they spread evenly.
-const HELD: f64 = 50.0;
+const HELD: f64 = 8.0;
+/// Rays up to so many radii long are reflected where they end.
+const NEAR: f64 = 3.0;
 /// Cosine between normals, and distance from the plane over the size of the scene, up to which patches are one flat piece.
 const PARALLEL: f64 = 1.0 - 1e-9;
 const COPLANAR: f64 = 1e-7;
@@ -32,6 +37,7 @@ pub struct PhotonMap {
     /// Neighbours of each patch on its flat piece, within the first radius.
     near: Vec<Vec<u32>>,
     outlines: Vec<Outline>,
+    parts: BTreeMap<usize, ExposedPart>,
     radius: f64,
 }
 
@@ -40,14 +46,15 @@ pub struct PhotonMap {
 struct Outline {
     centre: Vec3,
     reach: f64,
-    area: f64,
+    /// Area that is not buried, m².
+    exposed: f64,
 }
 
 impl Outline {
     fn new(patch: &Patch) -> Self {
         let centre = patch.centroid();
         let reach = patch.corners().iter().map(|p| p.distance(centre)).fold(0.0, f64::max);
-        Self { centre, reach, area: patch.area() }
+        Self { centre, reach, exposed: patch.area() }
     }
 }
 
@@ -57,9 +64,13 @@ impl PhotonMap {
     pub fn new(scene: &Enclosure, switches: Switches, photons: u32) -> Self {
         let area: f64 = scene.patches().iter().map(Patch::area).sum();
         let radius = (HELD * area / (PI * f64::from(photons.max(1)))).sqrt();
-        let outlines: Vec<Outline> = scene.patches().iter().map(Outline::new).collect();
+        let mut outlines: Vec<Outline> = scene.patches().iter().map(Outline::new).collect();
         let near = neighbours(scene, &outlines, radius);
-        Self { switches, photons: photons.max(1), near, outlines, radius }
+        let parts = partly_buried(scene);
+        for (&patch, part) in &parts {
+            outlines[patch].exposed = part.area();
+        }
+        Self { switches, photons: photons.max(1), near, outlines, parts, radius }
     }
 
     /// Radius of a batch, m.
@@ -116,14 +127,16 @@ impl Map<'_> {
     fn piece(&self, scene: &Enclosure, patch: usize, point: Vec3) -> f64 {
         let outline = self.of.outlines[patch];
         let square = outline.centre.distance_squared(point);
-        let area = if square >= (self.radius + outline.reach).powi(2) {
+        if square >= (self.radius + outline.reach).powi(2) {
             0.0
         } else if self.radius > outline.reach && square <= (self.radius - outline.reach).powi(2) {
-            outline.area
+            outline.exposed
         } else {
-            shared(&scene.patches()[patch], point, self.radius)
-        };
-        area * scene.exposed(patch)
+            match self.of.parts.get(&patch) {
+                Some(part) => part.within(point, self.radius),
+                None => shared(&scene.patches()[patch], point, self.radius),
+            }
+        }
     }
 
     /// Adds weight × Ê(y) to `out`.
@@ -147,13 +160,18 @@ impl Map<'_> {
 
 impl PointEstimator for Map<'_> {
     fn irradiance(&self, scene: &Enclosure, at: Site, draw: &mut Draw, out: &mut [f64]) -> u64 {
-        let direct = PathTracing::continuous(self.of.switches);
+        let path = PathTracing::continuous(self.of.switches);
         let mut weight = vec![1.0; scene.bands()];
-        let (next, rays) = direct.first(scene, at, draw, &mut weight, out);
-        if let Some(next) = next {
-            self.read(scene, next, &weight, out);
+        let mut step = Step { at, done: 0, rays: 0, weight: &mut weight };
+        while let Some(next) = path.step(scene, &mut step, draw, out) {
+            if next.point.distance(step.at.point) > NEAR * self.radius {
+                self.read(scene, next, step.weight, out);
+                break;
+            }
+            step.at = next;
+            step.done += 1;
         }
-        rays
+        step.rays
     }
 }
 

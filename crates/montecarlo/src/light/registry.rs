@@ -1,6 +1,9 @@
 //! The methods by name.
 
-use super::{Bidirectional, Estimator, ParticleTracing, PathTracing, PhotonMap, StochasticJacobi, Switches};
+use super::{
+    Bidirectional, Estimator, ParticleTracing, PathTracing, PhotonMap, PointEstimator, StochasticJacobi,
+    Switches,
+};
 use crate::Enclosure;
 
 /// Names of all methods.
@@ -21,6 +24,19 @@ pub fn estimator(name: &str, scene: &Enclosure, switches: Switches) -> Option<Bo
         "walk-gathering" => Box::new(PathTracing::patchwise(switches)),
         "walk-shooting" => Box::new(ParticleTracing::patchwise(switches)),
         "jacobi" => Box::new(StochasticJacobi),
+        _ => return None,
+    })
+}
+
+/// Names of the methods that estimate the light at a point, so that pictures can be traced pixel by pixel.
+pub const PICTURED: [&str; 2] = ["path", "bidirectional"];
+
+/// The method of this name as it estimates the irradiance of points.
+#[must_use]
+pub fn point_estimator(name: &str, switches: Switches) -> Option<Box<dyn PointEstimator>> {
+    Some(match name {
+        "path" => Box::new(PathTracing::continuous(switches)),
+        "bidirectional" => Box::new(Bidirectional::new(switches)),
         _ => return None,
     })
 }

@@ -6,10 +6,9 @@
 //!
 //! The phase turns within a cell, so that the estimate is biased: of a cell of radius a seen at the angle θ by about (k a sinθ)²/8 of its field.
 
-use super::particles::{Aim, aimed, shown};
+use super::aim::{Aim, Directions, SolidAngles, shown};
 use super::scattering::Spot;
 use super::{FieldEstimator, Scattering};
-use crate::density::{Cosine, DirectionDensity, Frame};
 use crate::light::Batch;
 use crate::light::kd_tree::KdTree;
 use crate::points::{Draw, Key};
@@ -65,21 +64,17 @@ impl AmplitudeParticles {
         batch: &Batch,
         stream: u32,
     ) -> ComplexVector {
-        let facet = problem.facet(cell);
-        let sheet = facet.side(facet.normal * -1.0) != 0.0;
-        let sides: &[f64] = if sheet { &[1.0, -1.0] } else { &[1.0] };
-        let mut impacts = Vec::new();
-        for (turn, &side) in sides.iter().enumerate() {
-            let frame = Frame::about(facet.normal * side);
-            for ray in 0..self.second {
-                let key = Key { seed: batch.seed, batch: batch.number, stream: (1 << 31) | stream };
-                let mut draw = Draw::new(batch.points, key, 2 * ray + turn as u32, 2 * self.second);
-                let local = Cosine.sample(draw.pair());
-                if let Some(spot) = problem.met(cell.point, frame.world(local)) {
-                    impacts.push((spot, 1.0 / (Cosine.pdf(local) * f64::from(self.second))));
-                }
-            }
-        }
+        let angles =
+            SolidAngles::new(problem, cell.point, |number, facet| problem.lights(number, facet, cell));
+        let key = Key { seed: batch.seed, batch: batch.number, stream: (1 << 31) | stream };
+        let impact = |ray: u32| {
+            let mut draw = Draw::new(batch.points, key, ray, self.second);
+            let (spots, density) = angles.shoot(problem, cell.point, draw.pair());
+            // What lies behind the first is hidden.
+            let first = spots.first().filter(|_| density > 0.0);
+            first.map(|&spot| (spot, 1.0 / (density * f64::from(self.second))))
+        };
+        let impacts: Vec<(Spot, f64)> = (0..self.second).filter_map(impact).collect();
         let cells = self.merged(problem, &impacts);
         let part = |&(from, angle): &(Spot, f64)| {
             shown(problem, from, cell.point, angle)
@@ -89,14 +84,14 @@ impl AmplitudeParticles {
     }
 
     fn field(&self, problem: &Scattering<'_>, receiver: Vec3, batch: &Batch, stream: u32) -> ComplexVector {
-        let (frame, density) = aimed(problem, Aim::Lobe(None), receiver);
+        let directions = Directions::new(problem, Aim::Facets, receiver);
         let mut impacts = Vec::new();
         for sample in 0..batch.samples {
             let key = Key { seed: batch.seed, batch: batch.number, stream };
-            let local = density.sample(Draw::new(batch.points, key, sample, batch.samples).pair());
-            let angle = 1.0 / (density.pdf(local) * f64::from(batch.samples));
-            let spots = problem.pierced(receiver, frame.world(local));
-            impacts.extend(spots.into_iter().map(|spot| (spot, angle)));
+            let mut draw = Draw::new(batch.points, key, sample, batch.samples);
+            let (spots, density) = directions.shoot(problem, receiver, draw.pair());
+            let angle = 1.0 / (density * f64::from(batch.samples));
+            impacts.extend(spots.into_iter().filter(|_| density > 0.0).map(|spot| (spot, angle)));
         }
         let cells = self.merged(problem, &impacts);
         let part = |(number, &(cell, angle)): (usize, &(Spot, f64))| {

@@ -29,6 +29,8 @@ pub struct Scattering<'a> {
     facets: Occluders,
     surfaces: Vec<SurfaceDensity>,
     cumulated: Vec<f64>,
+    /// Facets with a first current.
+    lit: Vec<bool>,
 }
 
 /// A point of a facet.
@@ -55,7 +57,9 @@ impl<'a> Scattering<'a> {
             sum += patch.area();
             sum
         };
+        let lit = |(number, facet): (usize, &Facet)| optics.at(number, facet.centre).j != ComplexVector::ZERO;
         Ok(Self {
+            lit: scatterer.facets().iter().enumerate().map(lit).collect(),
             scatterer,
             optics,
             wave,
@@ -82,11 +86,32 @@ impl<'a> Scattering<'a> {
 
     /// An even point of all surfaces.
     pub(super) fn spot(&self, [u, v]: [f64; 2]) -> Spot {
-        let place = u * self.area();
-        let facet = self.cumulated.partition_point(|&end| end <= place).min(self.cumulated.len() - 1);
-        let start = if facet == 0 { 0.0 } else { self.cumulated[facet - 1] };
-        let rest = ((place - start) / (self.cumulated[facet] - start)).clamp(0.0, 1.0 - f64::EPSILON);
-        Spot { facet, point: self.surfaces[facet].sample([rest, v]) }
+        let (facet, rest) = pick(&self.cumulated, u);
+        Spot { facet, point: self.on(facet, [rest, v]) }
+    }
+
+    /// An even point of a facet, m.
+    pub(super) fn on(&self, facet: usize, numbers: [f64; 2]) -> Vec3 {
+        self.surfaces[facet].sample(numbers)
+    }
+
+    pub(super) fn facets(&self) -> &[Facet] {
+        self.scatterer.facets()
+    }
+
+    /// Whether a facet is a sheet.
+    pub(super) fn two_sided(&self, spot: Spot) -> bool {
+        let facet = self.facet(spot);
+        facet.side(-facet.normal) != 0.0
+    }
+
+    /// What may light a spot: lit facets, seen from their lit side, in front of it.
+    pub(super) fn lights(&self, number: usize, facet: &Facet, spot: Spot) -> bool {
+        let between = facet.centre - spot.point;
+        number != spot.facet
+            && self.facet(spot).side(between) != 0.0
+            && facet.side(-between) != 0.0
+            && self.lit[number]
     }
 
     /// Centre and radius of a ball around everything, m.
@@ -146,4 +171,12 @@ impl<'a> Scattering<'a> {
     ) -> ComplexVector {
         electric_element(&self.wave, current * area, receiver - spot.point).e
     }
+}
+
+/// The place of a number in [0, 1) among running sums, and what is left of the number, even again in [0, 1).
+pub(super) fn pick(cumulated: &[f64], u: f64) -> (usize, f64) {
+    let place = u * cumulated.last().copied().unwrap_or(0.0);
+    let at = cumulated.partition_point(|&end| end <= place).min(cumulated.len() - 1);
+    let start = if at == 0 { 0.0 } else { cumulated[at - 1] };
+    (at, ((place - start) / (cumulated[at] - start)).clamp(0.0, 1.0 - f64::EPSILON))
 }

@@ -55,8 +55,9 @@ pub(super) struct LinkPainter<'a> {
 impl<'a> LinkPainter<'a> {
     /// The links of the element in the middle of the picture, or of the first one where nothing is there.
     pub fn new(view: &Viewer<'a>, field: &Field<'a>, links: &(dyn Fn(usize) -> Linked + Sync)) -> Self {
-        let middle = [view.camera.width, view.camera.height].map(|side| 0.5 * f64::from(side));
-        let receiver = view.hit(middle[0], middle[1]).map_or(0, |(leaf, _)| leaf);
+        let camera = view.eye.camera();
+        let middle = [camera.width, camera.height].map(|side| 0.5 * f64::from(side));
+        let receiver = view.eye.hit(middle[0], middle[1]).map_or(0, |(leaf, _)| leaf);
         Self { field: *field, receiver, linked: links(receiver) }
     }
 

@@ -11,16 +11,14 @@ mod links;
 
 use std::io::{self, Write};
 
-use fredholm_mesh::{Patch, Vec3};
-use fredholm_visibility::Occluders;
+use fredholm_mesh::Vec3;
 use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
 use rayon::prelude::*;
 
-use crate::camera::Axes;
 use crate::colour::Rgb;
 use crate::shading::Shading;
 use crate::tone::{Exposure, Tone, encode, luminance};
-use crate::{Camera, Field, ReportError};
+use crate::{Camera, Eye, Field, ReportError};
 use elements::Elements;
 use gathered::GatherPainter;
 pub use gathered::Gathering;
@@ -32,7 +30,7 @@ const SAMPLES: usize = 8;
 /// Generator of the lattice of samples: sample i stands at ((i + ½)/8, ((3 i mod 8) + ½)/8).
 const GENERATOR: usize = 3;
 /// Linear display value where nothing is hit: a dark grey.
-const BACKGROUND: f64 = 0.012;
+pub(crate) const BACKGROUND: f64 = 0.012;
 
 /// A finished picture: rows from the top, three bytes a pixel, sRGB.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -131,30 +129,13 @@ type Brush<'a> = Box<dyn FnMut(&Viewer<'_>, Tone, &[Option<Sample>; SAMPLES]) ->
 
 /// A camera before a scene.
 struct Viewer<'a> {
-    camera: Camera,
-    axes: Axes,
+    eye: Eye,
     shading: Shading<'a>,
-    /// The leaves that face the eye, and their numbers.
-    facing: Occluders,
-    leaves: Vec<usize>,
 }
 
 impl<'a> Viewer<'a> {
     fn new(field: &Field<'a>, camera: &Camera) -> Result<Self, ReportError> {
-        let axes = camera.axes()?;
-        let lit = |patch: &Patch| patch.normal().dot(camera.eye - patch.centroid()) > 0.0;
-        let seen = field.mesh().patches().enumerate().filter(|(_, patch)| lit(patch));
-        let (leaves, patches): (Vec<usize>, Vec<Patch>) = seen.map(|(leaf, &patch)| (leaf, patch)).unzip();
-        let facing =
-            Occluders::new(&patches).map_err(|error| ReportError::Visibility { why: error.to_string() })?;
-        Ok(Self { camera: *camera, axes, shading: Shading::new(*field), facing, leaves })
-    }
-
-    /// Leaf and point seen through a point of the picture, in pixels from the upper left.
-    fn hit(&self, x: f64, y: f64) -> Option<(usize, Vec3)> {
-        let direction = self.camera.direction(&self.axes, x, y);
-        let hit = self.facing.closest(self.camera.eye, direction, f64::INFINITY)?;
-        Some((self.leaves[hit.patch], hit.point))
+        Ok(Self { eye: Eye::new(field.mesh(), camera)?, shading: Shading::new(*field) })
     }
 
     fn painter<'v>(&'v self, field: &Field<'v>, layer: &Layer<'v>) -> Box<dyn Painter + 'v> {
@@ -168,7 +149,7 @@ impl<'a> Viewer<'a> {
 
     /// Draws one row of all pictures, one behind the other.
     fn draw(&self, tone: Tone, painters: &[Box<dyn Painter + '_>], y: usize, rows: &mut [u8]) {
-        let width = self.camera.width as usize;
+        let width = self.eye.camera().width as usize;
         let mut brushes: Vec<Brush> = painters.iter().map(|painter| painter.brush()).collect();
         for x in 0..width {
             let samples = self.samples(x, y);
@@ -183,7 +164,7 @@ impl<'a> Viewer<'a> {
         std::array::from_fn(|k| {
             let (dx, dy) = lattice(k);
             let at = (x as f64 + dx, y as f64 + dy);
-            self.hit(at.0, at.1).map(|(leaf, point)| Sample { leaf, point, at })
+            self.eye.hit(at.0, at.1).map(|(leaf, point)| Sample { leaf, point, at })
         })
     }
 
@@ -194,13 +175,13 @@ impl<'a> Viewer<'a> {
 
     /// Where a point is in the picture, pixels from the upper left; none for one behind the eye.
     fn project(&self, point: Vec3) -> Option<(f64, f64)> {
-        self.camera.place(&self.axes, point)
+        self.eye.place(point)
     }
 
     /// Luminances seen through the middle of each pixel: of lit surfaces, or of lamps where there is nothing else.
     fn meter(&self, field: &Field<'_>) -> Vec<f64> {
         let rows: Vec<Vec<(bool, f64)>> =
-            (0..self.camera.height).into_par_iter().map(|y| self.probe(field, y)).collect();
+            (0..self.eye.camera().height).into_par_iter().map(|y| self.probe(field, y)).collect();
         let seen = rows.into_iter().flatten();
         let (lamps, reflecting): (Vec<_>, Vec<_>) = seen.partition(|(emits, _)| *emits);
         let chosen = if reflecting.is_empty() { lamps } else { reflecting };
@@ -208,9 +189,9 @@ impl<'a> Viewer<'a> {
     }
 
     fn probe(&self, field: &Field<'_>, y: u32) -> Vec<(bool, f64)> {
-        let look = |x| self.hit(f64::from(x) + 0.5, f64::from(y) + 0.5);
+        let look = |x| self.eye.hit(f64::from(x) + 0.5, f64::from(y) + 0.5);
         let value = |(leaf, p)| (field.emits(leaf), luminance(self.shading.colour(leaf, p)));
-        (0..self.camera.width).filter_map(look).map(value).collect()
+        (0..self.eye.camera().width).filter_map(look).map(value).collect()
     }
 }
 
@@ -243,7 +224,7 @@ impl Painter for Plain {
 mod tests {
     use super::*;
     use crate::field::tests::{grid, names};
-    use fredholm_mesh::{Mesh, MeshBuilder};
+    use fredholm_mesh::{Mesh, MeshBuilder, Patch, Vec3};
     use rayon::ThreadPoolBuilder;
 
     /// Looks down on the unit square from 2 m: the picture is 4 m wide and high.

@@ -43,13 +43,13 @@ pub struct CrosscheckRow {
 /// A place far apart.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WorstPlace {
-    /// The face.
+    /// The face, or the point of a receiver.
     pub face: usize,
-    /// Its surface.
+    /// Its surface, or the receiver.
     pub surface: String,
-    /// Its centroid, m.
+    /// Its centroid, or where it lies, m.
     pub centroid: [f64; 3],
-    /// The band.
+    /// The band, or component and frequency.
     pub band: String,
     /// The score.
     pub z: f64,
@@ -74,7 +74,7 @@ pub struct CrosscheckRecord {
     pub significance: f64,
     /// Correction for many tests.
     pub correction: String,
-    /// Faces times bands.
+    /// Faces times bands, or numbers of the field.
     pub places: usize,
     /// How many are significantly apart.
     pub significant: usize,
@@ -96,6 +96,16 @@ pub struct CrosscheckRecord {
     pub solver: String,
     /// Wall-clock time of each stage.
     pub timings: Vec<Timing>,
+}
+
+impl CrosscheckRecord {
+    /// The verdict in one line.
+    pub(super) fn headline(&self) -> String {
+        format!(
+            "{}: {} of {} places apart, mean z {:.2}, mean z² {:.2}",
+            self.verdict, self.significant, self.places, self.score_mean, self.score_variance
+        )
+    }
 }
 
 /// Writes the table.
@@ -135,10 +145,7 @@ pub fn write_crosscheck(
     let paths = CROSSCHECK_FILES.map(|name| folder.join(name));
     prepare(folder, &paths[3])?;
     let scores: Vec<f64> = rows.iter().map(|row| row.z).collect();
-    let title = format!(
-        "{}: {} of {} places apart, mean z {:.2}, mean z² {:.2}",
-        record.verdict, record.significant, record.places, record.score_mean, record.score_variance
-    );
+    let title = record.headline();
     write_atomically(&paths[0], |out| write_crosscheck_csv(mesh, bands, rows, out))?;
     write_atomically(&paths[1], |out| write_score_histogram(&title, &scores, out))?;
     write_atomically(&paths[2], |out| map.write_png(out))?;

@@ -2,9 +2,11 @@
 
 mod crosscheck;
 mod faces;
+mod field_scores;
 mod fields;
 mod histogram;
 mod map;
+mod pixels;
 mod reference;
 
 pub use crosscheck::{
@@ -12,7 +14,9 @@ pub use crosscheck::{
     write_crosscheck_csv,
 };
 pub use faces::{FaceEstimates, write_face_estimates};
+pub use field_scores::{COMPONENTS, FieldScore, write_field_crosscheck};
 pub use fields::{SampledField, write_sampled_fields};
 pub use histogram::write_score_histogram;
 pub use map::score_map;
+pub use pixels::Pixels;
 pub use reference::{REFERENCE_FILES, REFERENCE_FORMAT, ReferenceRecord, ReferenceTable, write_reference};

@@ -1,5 +1,6 @@
 //! `fredholm crosscheck`.
 
+mod fields;
 mod record;
 
 use std::path::{Path, PathBuf};
@@ -9,7 +10,7 @@ use clap::{Args, ValueEnum};
 use fredholm_montecarlo::State;
 use fredholm_montecarlo::light::{METHODS, estimator};
 use fredholm_montecarlo::statistics::{Comparison, Correction, Crosscheck, crosscheck as compare};
-use fredholm_report::{CrosscheckRecord, score_map, write_crosscheck};
+use fredholm_report::{CrosscheckRecord, WorstPlace, score_map, write_crosscheck};
 
 use super::solve::{report_failure, view_camera};
 use crate::args::{LogArgs, ProblemArgs, StopArgs};
@@ -21,9 +22,14 @@ use crate::problem::Problem;
 use crate::solution::{Solution, compute};
 use crate::stages::Stages;
 use crate::start::Start;
-use crate::stochastic::{PathArgs, TraceStopArgs, Tracer, enclosure, expected_error, faces, failure, share};
+use crate::stochastic::{
+    FIELD_METHODS, PathArgs, TraceStopArgs, Tracer, enclosure, expected_error, faces, failure, share,
+};
 use crate::summary::Lines;
+use crate::waves::is_scene;
 
+/// Method where none is asked for.
+const USUAL: &str = "jacobi";
 /// Error that is asked for where nothing is.
 const ERROR: f64 = 0.01;
 /// Error of a row of form factors where neither the command line nor the scene asks for one: small beside what is compared.
@@ -39,6 +45,7 @@ Examples:
   fredholm crosscheck scenes/cornell_planar.toml
   fredholm crosscheck room.toml --method path --to 0.5% -o out/checked
   fredholm crosscheck room.toml --significance 0.001 --correction benjamini-hochberg
+  fredholm crosscheck scenes/waves/plate.toml --method field-particles --to 2%
 
 The scene is solved and traced, and the irradiance of every face and band is compared by its z,
 the difference over the standard error and the estimated deterministic error together. The
@@ -47,14 +54,17 @@ probability of --significance at most. jacobi, walk-gathering and walk-shooting 
 is solved; path, light, bidirectional and photon the continuous equation, where the estimated
 error of the mesh counts as well. Written are crosscheck.csv, crosscheck.svg, crosscheck.png (red:
 the traced solution is the brighter), and crosscheck.json last. Exit code 6 where the two
-disagree.";
+disagree.
+
+Of a scene of waves every number of the scattered E at every point of a receiver is compared, one
+bounce or two; written are crosscheck.csv, crosscheck.svg and crosscheck.json.";
 
 /// Options of `crosscheck`.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct CrosscheckArgs {
-    /// Stochastic method
-    #[arg(long, value_name = "NAME", default_value = "jacobi", value_parser = PossibleValuesParser::new(METHODS))]
-    pub(crate) method: String,
+    /// Stochastic method [default: jacobi, of waves surface-sampling]
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(METHODS.into_iter().chain(FIELD_METHODS)))]
+    method: Option<String>,
     /// Probability of a false alarm that is allowed
     #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = share)]
     pub(crate) significance: f64,
@@ -100,7 +110,19 @@ pub(crate) fn crosscheck(args: &CrosscheckArgs) -> Result<Ending, Failure> {
         threads: args.problem.threads,
         log: args.log,
     };
+    let fields = match &args.method {
+        Some(name) => FIELD_METHODS.contains(&name.as_str()),
+        None => is_scene(&args.problem.scene),
+    };
+    let run = if fields { fields::run } else { run };
     start.run_whole("check", |folder, stages| run(args, folder, stages))
+}
+
+impl CrosscheckArgs {
+    /// The method asked for, or else the usual one.
+    fn method_or<'a>(&'a self, usual: &'a str) -> &'a str {
+        self.method.as_deref().unwrap_or(usual)
+    }
 }
 
 fn run(args: &CrosscheckArgs, folder: &Path, stages: &mut Stages) -> Result<Ending, Failure> {
@@ -112,27 +134,31 @@ fn run(args: &CrosscheckArgs, folder: &Path, stages: &mut Stages) -> Result<Endi
     }
     let error = expected_error(&problem, &solution, !patchwise);
     let values = deterministic(&problem, &solution);
-    let found = compare(
-        &Comparison {
-            deterministic: &values,
-            deterministic_error: &error,
-            stochastic: state.groups.mean(),
-            standard_error: &state.groups.standard_errors(),
-            batches: state.batches(),
-        },
-        args.correction.correction(),
-        args.significance,
-    )
-    .map_err(failure)?;
+    let found = compared(args, (&values, &error), &state)?;
     let record = record::record(args, &problem, (&values, &state), &found, stages);
     let rows = record::rows(&problem, (&values, &error), &state, &found);
     let map = map(&problem, &found)?;
     let bands = problem.scene.bands();
     write_crosscheck(folder, &problem.mesh, bands, (&rows, &map), &record).map_err(report_failure)?;
     if !args.log.quiet {
-        summarise(folder, &record)?;
+        summarise(folder, "face", &record)?;
     }
     Ok(if found.agrees() { Ending::Done } else { Ending::Disagrees })
+}
+
+fn compared(
+    args: &CrosscheckArgs,
+    (values, error): (&[f64], &[f64]),
+    state: &State,
+) -> Result<Crosscheck, Failure> {
+    let comparison = Comparison {
+        deterministic: values,
+        deterministic_error: error,
+        stochastic: state.groups.mean(),
+        standard_error: &state.groups.standard_errors(),
+        batches: state.batches(),
+    };
+    compare(&comparison, args.correction.correction(), args.significance).map_err(failure)
 }
 
 /// The problem, with form factors more exact than for a picture.
@@ -152,11 +178,10 @@ pub(super) fn load(
 
 fn traced(args: &CrosscheckArgs, problem: &Problem, stages: &mut Stages) -> Result<(State, bool), Failure> {
     let scene = enclosure(&problem.scene, &problem.mesh)?;
-    let none = || Failure::new(Ending::Input, format!("there is no method {}", args.method));
-    let method = estimator(&args.method, &scene, args.paths.switches()).ok_or_else(none)?;
-    let TraceStopArgs { samples, seconds, to } = args.stop;
-    let nothing = samples.is_none() && seconds.is_none() && to.is_none();
-    let stop = TraceStopArgs { to: if nothing { Some(ERROR) } else { to }, ..args.stop };
+    let name = args.method_or(USUAL);
+    let none = || Failure::new(Ending::Input, format!("there is no method {name}"));
+    let method = estimator(name, &scene, args.paths.switches()).ok_or_else(none)?;
+    let stop = args.stop.or_to(ERROR);
     let tracer = Tracer::new(&scene, &*method, faces(&problem.mesh, &scene)?, &args.paths, &stop)?;
     let mut state = tracer.start();
     let watched = Stages::part(stages.console, stages.interrupt, "check");
@@ -184,7 +209,7 @@ fn map(problem: &Problem, found: &Crosscheck) -> Result<fredholm_report::Picture
     score_map(&problem.mesh, &scores, camera.as_ref()).map_err(report_failure)
 }
 
-fn summarise(folder: &Path, record: &CrosscheckRecord) -> Result<(), Failure> {
+fn summarise(folder: &Path, kind: &str, record: &CrosscheckRecord) -> Result<(), Failure> {
     let mut lines = Lines::default();
     let CrosscheckRecord { verdict, significant, places, significance, correction, .. } = record;
     lines.add(
@@ -196,18 +221,7 @@ fn summarise(folder: &Path, record: &CrosscheckRecord) -> Result<(), Failure> {
         format!("mean {:.3}, mean of squares {:.3}", record.score_mean, record.score_variance),
     );
     for place in &record.worst {
-        let [x, y, z] = place.centroid;
-        lines.add(
-            "worst",
-            format!(
-                "z = {:+.2}, {:+.2} %: face {} of {}, at ({x:.3}, {y:.3}, {z:.3}), band {}",
-                place.z,
-                100.0 * place.relative,
-                place.face,
-                place.surface,
-                place.band
-            ),
-        );
+        lines.add("worst", worst(kind, place));
     }
     lines.add(
         "traced",
@@ -220,4 +234,12 @@ fn summarise(folder: &Path, record: &CrosscheckRecord) -> Result<(), Failure> {
     );
     lines.add("time", crate::summary::times(&record.timings));
     output::print(&lines.under(&format!("{} → {}", record.scene, folder.display())))
+}
+
+/// One of the places farthest apart, in words.
+fn worst(kind: &str, place: &WorstPlace) -> String {
+    let ([x, y, z], relative) = (place.centroid, 100.0 * place.relative);
+    let band = if kind == "face" { format!("band {}", place.band) } else { place.band.clone() };
+    let (score, number, of) = (place.z, place.face, &place.surface);
+    format!("z = {score:+.2}, {relative:+.2} %: {kind} {number} of {of}, at ({x:.3}, {y:.3}, {z:.3}), {band}")
 }

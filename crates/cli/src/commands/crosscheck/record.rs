@@ -9,7 +9,7 @@ use crate::problem::Problem;
 use crate::stages::Stages;
 
 /// Places that are named.
-const WORST: usize = 5;
+pub(super) const WORST: usize = 5;
 
 /// What the comparison came to.
 pub(super) fn record(

@@ -2,160 +2,135 @@
 
 use std::path::Path;
 
-use fredholm_montecarlo::waves::{
-    Aim, AmplitudeParticles, Bounces, FieldEstimate, FieldEstimator, FieldParticles, Scattering,
-    SurfaceSampling, estimate,
-};
+use fredholm_montecarlo::waves::FieldEstimate;
 use fredholm_report::{
     ReportError, RunRecord, SampledField, write_atomically, write_run, write_sampled_fields,
 };
-use fredholm_waves::{PhysicalOptics, Shadow, Source, Wave, WaveError};
 use serde_json::json;
 
 use super::TraceArgs;
 use super::files::prepare;
+use super::saved::{Origin, STATE};
 use crate::commands::solve::report_failure;
 use crate::failure::{Ending, Failure};
 use crate::interrupt::nothing_saved;
 use crate::output;
 use crate::stages::Stages;
-use crate::stochastic::failure;
+use crate::stochastic::{FieldRun, field_points};
 use crate::summary::Lines;
-use crate::waves::{Band, Method, Model, Places};
-
-/// Names of the methods.
-pub(super) const METHODS: [&str; 3] = ["surface-sampling", "field-particles", "amplitude-particles"];
-
-/// Samples of a batch, and in all, where nothing is asked for.
-const BATCH: u32 = 1024;
-const SAMPLES: u64 = 1 << 16;
-/// Radius of a cell of amplitude particles over the wavelength, and rays that leave each for the second bounce.
-const CELL: f64 = 0.1;
-const SECOND: u32 = 16;
+use crate::waves::Model;
 
 /// Samples the fields of a scene of waves and writes them.
 pub(super) fn run(args: &TraceArgs, folder: &Path, stages: &mut Stages) -> Result<Ending, Failure> {
+    admit(args)?;
     let model = stages.run("scene", || Model::load(&args.problem.scene))?;
-    let bounces = admitted(args, &model, stages)?;
-    let mut rows = Vec::new();
-    for band in &model.bands {
-        let name = format!("fields at {} MHz", band.wave.frequency() / 1e6);
-        stages.run(&name, || sampled(args, &model, band, bounces, &mut rows))?;
-    }
-    if stages.interrupt.requested() {
-        return Err(nothing_saved());
-    }
-    let record = record(args, &model, bounces, stages);
+    let run = FieldRun::new(&args.method, &args.paths, &args.stop, &model, stages)?;
+    let origin = Origin::new(args, &model.text.sha256(), run.bounces());
+    let earlier: Vec<FieldEstimate> = if args.go_on { origin.earlier(folder)? } else { Vec::new() };
+    stages.begin_saving()?;
+    let states = sampled(&run, &model, earlier, stages)?;
+    let record = record(args, &model, (&run, &states), stages);
+    let rows = rows(&model, &states);
     prepare(folder)?;
-    write(folder, &rows, &record).map_err(report_failure)?;
+    write(folder, &rows, (&origin, &states), &record).map_err(report_failure)?;
     if !args.log.quiet {
         summarise(folder, &rows, &record)?;
     }
-    Ok(Ending::Done)
+    Ok(if record.partial { Ending::Interrupted } else { Ending::Done })
 }
 
-/// What can be sampled, and how many bounces.
-fn admitted(args: &TraceArgs, model: &Model, stages: &Stages) -> Result<Bounces, Failure> {
-    let refused = |text: String| Err(Failure::new(Ending::Input, text));
-    if model.shadow != Shadow::Geometric {
-        return refused(format!(
-            "shadows `{}` cannot be sampled\n  help: shadow = \"geometric\" in [wave], or `fredholm waves`",
-            model.shadow.name()
-        ));
+/// Options of light that fields do not take.
+fn admit(args: &TraceArgs) -> Result<(), Failure> {
+    if !args.control && args.spp.is_none() {
+        return Ok(());
     }
-    if args.control || args.go_on || args.stop.seconds.is_some() || args.stop.to.is_some() {
-        return refused(format!(
-            "{} stops at a number of samples and takes neither --control, --continue, --seconds nor --to\n  help: --samples",
-            args.method
-        ));
+    let text = format!("{} takes neither --control nor --spp\n  help: leave them out", args.method);
+    Err(Failure::new(Ending::Input, text))
+}
+
+/// The estimates of all frequencies, going on from earlier ones.
+fn sampled(
+    run: &FieldRun,
+    model: &Model,
+    earlier: Vec<FieldEstimate>,
+    stages: &mut Stages,
+) -> Result<Vec<FieldEstimate>, Failure> {
+    let mut earlier = earlier.into_iter();
+    let mut states = Vec::new();
+    for band in &model.bands {
+        let name = format!("fields at {} MHz", band.wave.frequency() / 1e6);
+        let watched = Stages::new(stages.console, stages.interrupt);
+        let before = earlier.next();
+        let state = stages.run(&name, || run.sample(model, band, before, &watched))?;
+        if state.batches() < 2 {
+            return Err(nothing_saved());
+        }
+        states.push(state);
     }
-    match model.method {
-        Method::Bounces(1) => Ok(Bounces::One),
-        Method::Bounces(2) => Ok(Bounces::Two),
-        _ => {
-            stages.console.warn(
-                "two bounces are sampled, not more: the signs of a random walk over bounces cancel too slowly",
-            );
-            Ok(Bounces::Two)
+    Ok(states)
+}
+
+/// A row a point and frequency.
+fn rows(model: &Model, states: &[FieldEstimate]) -> Vec<SampledField> {
+    let points = field_points(model);
+    let mut rows = Vec::new();
+    for (band, state) in model.bands.iter().zip(states) {
+        let found = state.mean().into_iter().zip(state.standard_errors());
+        for (&(receiver, index, point), (mean, error)) in points.iter().zip(found) {
+            let [x, y, z] = mean.components();
+            rows.push(SampledField {
+                receiver: model.receivers[receiver].name.clone(),
+                index,
+                position: point.to_array(),
+                frequency: band.wave.frequency(),
+                e: [x.re, x.im, y.re, y.im, z.re, z.im],
+                error,
+            });
         }
     }
+    rows
 }
 
-fn sampled(
+fn record(
     args: &TraceArgs,
     model: &Model,
-    band: &Band,
-    bounces: Bounces,
-    rows: &mut Vec<SampledField>,
-) -> Result<(), Failure> {
-    let refused = |error: WaveError| model.refused(&error, None);
-    let scatterer = model.geometry.scatterer(band.materials.clone()).map_err(refused)?;
-    scatterer.check_conductor("the sampling of fields").map_err(refused)?;
-    let sources: Vec<&dyn Source> = model.sources.iter().map(AsRef::as_ref).collect();
-    let optics = PhysicalOptics::new(&scatterer, band.wave, &sources, Shadow::Geometric).map_err(refused)?;
-    let problem = Scattering::new(&scatterer, &optics, band.wave, bounces).map_err(failure)?;
-    let method = method(&args.method, &band.wave);
-    let batch = args.paths.batch.unwrap_or(BATCH);
-    let batches = args.stop.samples.unwrap_or(SAMPLES).div_ceil(batch.into()).clamp(2, u32::MAX.into());
-    for receiver in &model.receivers {
-        if let Places::Near { points, .. } = &receiver.places {
-            let found = estimate(&problem, &*method, points, (args.paths.seed, batches as u32, batch));
-            let place = (receiver.name.as_str(), band.wave.frequency());
-            rows.extend(points.iter().enumerate().map(|(i, p)| row(place, i, p.to_array(), &found)));
-        }
-    }
-    Ok(())
-}
-
-fn method(name: &str, wave: &Wave) -> Box<dyn FieldEstimator> {
-    match name {
-        "field-particles" => Box::new(FieldParticles::new(Aim::Lobe(None))),
-        "amplitude-particles" => Box::new(AmplitudeParticles::new(CELL * wave.wavelength(), SECOND)),
-        _ => Box::new(SurfaceSampling),
-    }
-}
-
-fn row(
-    (receiver, frequency): (&str, f64),
-    index: usize,
-    position: [f64; 3],
-    found: &FieldEstimate,
-) -> SampledField {
-    let [x, y, z] = found.mean()[index].components();
-    let error = found.standard_errors()[index];
-    let e = [x.re, x.im, y.re, y.im, z.re, z.im];
-    SampledField { receiver: receiver.to_owned(), index, position, frequency, e, error }
-}
-
-fn record(args: &TraceArgs, model: &Model, bounces: Bounces, stages: &Stages) -> RunRecord {
+    (run, states): (&FieldRun, &[FieldEstimate]),
+    stages: &Stages,
+) -> RunRecord {
+    let frequency = |(band, state): (&crate::waves::Band, &FieldEstimate)| {
+        json!({ "frequency_hz": band.wave.frequency(), "batches": state.batches(), "samples_of_a_batch": state.samples(),
+            "relative_error": state.relative_error(), "ended": run.reason(state) })
+    };
+    let frequencies: Vec<_> = model.bands.iter().zip(states).map(frequency).collect();
     RunRecord {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         scene: model.path().display().to_string(),
-        options: json!({ "method": args.method, "paths": args.paths, "samples": args.stop.samples }),
+        scene_sha256: model.text.sha256(),
+        options: json!({ "method": args.method, "paths": args.paths, "stop": args.stop, "frequencies": frequencies }),
         timings: stages.timings().to_vec(),
         means: "random samples; standard errors in receivers.csv".to_owned(),
         solver: args.method.clone(),
-        stop_reason: format!(
-            "all samples drawn, {} summed",
-            if bounces == Bounces::One { "one bounce" } else { "two bounces" }
-        ),
+        stop_reason: states.last().map_or(String::new(), |state| run.reason(state)),
+        partial: stages.interrupt.requested(),
         ..RunRecord::default()
     }
 }
 
-fn write(folder: &Path, rows: &[SampledField], record: &RunRecord) -> Result<(), ReportError> {
+fn write(
+    folder: &Path,
+    rows: &[SampledField],
+    (origin, states): (&Origin, &[FieldEstimate]),
+    record: &RunRecord,
+) -> Result<(), ReportError> {
     write_atomically(&folder.join("receivers.csv"), |out| write_sampled_fields(rows, out))?;
+    write_atomically(&folder.join(STATE), |out| origin.save(&states, out))?;
     write_atomically(&folder.join("run.json"), |out| write_run(record, out))
 }
 
 fn summarise(folder: &Path, rows: &[SampledField], record: &RunRecord) -> Result<(), Failure> {
-    let norm = |row: &SampledField| row.e.iter().map(|x| x * x).sum::<f64>();
-    let (size, error) =
-        rows.iter().fold((0.0, 0.0), |(size, error), row| (size + norm(row), error + row.error * row.error));
     let mut lines = Lines::default();
     lines.add("fields", format!("{} points and frequencies in receivers.csv", rows.len()));
     lines.add("result", &record.stop_reason);
-    lines.add("standard error", format!("{:.2} % (L2 over all points)", 100.0 * f64::sqrt(error / size)));
     lines.add("time", crate::summary::times(&record.timings));
     output::print(&lines.under(&format!("{} → {}", record.solver, folder.display())))
 }

@@ -6,20 +6,18 @@ use std::path::Path;
 
 use fredholm_montecarlo::State;
 use fredholm_report::{
-    Counts, FaceEstimates, Field, ReportError, RunRecord, render, write_atomically, write_face_estimates,
-    write_run,
+    Counts, FaceEstimates, Field, Picture, Pixels, ReportError, RunRecord, View, render, write_atomically,
+    write_face_estimates, write_run,
 };
 use serde_json::Value;
 
 use super::InForce;
+use super::saved::{Origin, STATE};
 use crate::commands::solve::{report_failure, view_of};
 use crate::failure::Failure;
 use crate::memory;
 use crate::stages::Stages;
 use crate::stochastic::Ground;
-
-/// What `--continue` reads.
-pub(super) const STATE: &str = "trace.json";
 
 /// Everything that is worth knowing of a traced run.
 pub(super) fn record(
@@ -66,35 +64,68 @@ fn work(state: &State) -> BTreeMap<String, u64> {
     counters.map(|(name, count)| (name.to_owned(), count)).into()
 }
 
-/// Writes the files; `run.json` last.
-pub(super) fn write(
-    folder: &Path,
-    ground: &Ground,
-    state: &State,
-    record: &RunRecord,
-) -> Result<(), Failure> {
-    let (mesh, bands) = (&ground.mesh, ground.scene.bands());
-    let errors = state.groups.standard_errors();
-    let faces = FaceEstimates::new(mesh, bands, state.groups.mean(), &errors).map_err(report_failure)?;
-    let (rho, exitance) = (ground.scene.reflectance(mesh), ground.scene.exitance(mesh));
-    let irradiance = state.patches.mean();
-    let radiosity: Vec<f64> =
-        irradiance.iter().zip(&rho).zip(&exitance).map(|((e, rho), m)| m + rho * e).collect();
-    let field = Field::new(mesh, bands, irradiance, &radiosity)
-        .and_then(|field| field.with_exitance(&exitance))
-        .map_err(report_failure)?;
-    let view = view_of(ground.scene.camera(), &field);
-    let picture = render(&field, &view.camera, view.exposure).map_err(report_failure)?;
-    let write = || -> Result<(), ReportError> {
-        write_atomically(&folder.join("faces.csv"), |out| write_face_estimates(&faces, out))?;
-        write_atomically(&folder.join("image.png"), |out| picture.write_png(out))?;
-        write_atomically(&folder.join(STATE), |out| {
-            serde_json::to_writer(out, state).map_err(io::Error::from)
-        })?;
-        write_atomically(&folder.join("run.json"), |out| write_run(record, out))
-    };
-    prepare(folder)?;
-    write().map_err(report_failure)
+/// The estimates as a field on the mesh, to be looked at and written.
+pub(super) struct Estimates<'a> {
+    ground: &'a Ground,
+    state: &'a State,
+    radiosity: Vec<f64>,
+    exitance: Vec<f64>,
+}
+
+impl<'a> Estimates<'a> {
+    pub(super) fn new(ground: &'a Ground, state: &'a State) -> Self {
+        let (rho, exitance) = (ground.scene.reflectance(&ground.mesh), ground.scene.exitance(&ground.mesh));
+        let reflected = state.patches.mean().iter().zip(&rho).zip(&exitance);
+        let radiosity = reflected.map(|((e, rho), m)| m + rho * e).collect();
+        Self { ground, state, radiosity, exitance }
+    }
+
+    fn field(&self) -> Result<Field<'_>, Failure> {
+        let (mesh, bands) = (&self.ground.mesh, self.ground.scene.bands());
+        Field::new(mesh, bands, self.state.patches.mean(), &self.radiosity)
+            .and_then(|field| field.with_exitance(&self.exitance))
+            .map_err(report_failure)
+    }
+
+    /// Where pictures are taken from.
+    pub(super) fn view(&self) -> Result<View, Failure> {
+        Ok(view_of(self.ground.scene.camera(), &self.field()?))
+    }
+
+    /// The picture of the pixels, or else of the means of the elements.
+    fn picture(&self, pixels: Option<&Pixels>) -> Result<Picture, Failure> {
+        let view = self.view()?;
+        let picture = match pixels {
+            Some(pixels) => pixels.picture(self.ground.scene.bands(), view.exposure),
+            None => render(&self.field()?, &view.camera, view.exposure),
+        };
+        picture.map_err(report_failure)
+    }
+
+    /// Writes the files; `run.json` last.
+    pub(super) fn write(
+        &self,
+        folder: &Path,
+        origin: &Origin,
+        pixels: Option<&Pixels>,
+        record: &RunRecord,
+    ) -> Result<(), Failure> {
+        let (mesh, bands, state) = (&self.ground.mesh, self.ground.scene.bands(), self.state);
+        let errors = state.groups.standard_errors();
+        let faces = FaceEstimates::new(mesh, bands, state.groups.mean(), &errors).map_err(report_failure)?;
+        let picture = self.picture(pixels)?;
+        prepare(folder)?;
+        let write = || -> Result<(), ReportError> {
+            write_atomically(&folder.join("faces.csv"), |out| write_face_estimates(&faces, out))?;
+            write_atomically(&folder.join("image.png"), |out| picture.write_png(out))?;
+            if let Some(pixels) = pixels {
+                write_atomically(&folder.join("pixels.npz"), |out| pixels.write_npz(out))?;
+            }
+            write_atomically(&folder.join(STATE), |out| origin.save(state, out))?;
+            write_atomically(&folder.join("run.json"), |out| write_run(record, out))
+        };
+        write().map_err(report_failure)
+    }
 }
 
 /// Makes the folder and removes the mark of completeness of an older result.

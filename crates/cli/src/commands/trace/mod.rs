@@ -2,8 +2,9 @@
 
 mod fields;
 mod files;
+mod picture;
+mod saved;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -12,6 +13,8 @@ use fredholm_montecarlo::light::{Estimator, METHODS, PathTracing, estimator};
 use fredholm_montecarlo::{Enclosure, State};
 use serde::Serialize;
 
+use self::files::Estimates;
+use self::saved::Origin;
 use crate::args::{LogArgs, ProblemArgs};
 use crate::failure::{Ending, Failure};
 use crate::options::{Options, ProblemOptions};
@@ -19,7 +22,7 @@ use crate::problem::Problem;
 use crate::solution::compute;
 use crate::stages::Stages;
 use crate::start::Start;
-use crate::stochastic::{Ground, PathArgs, TraceStopArgs, Tracer, control, enclosure, faces};
+use crate::stochastic::{FIELD_METHODS, Ground, PathArgs, TraceStopArgs, Tracer, control, enclosure, faces};
 use crate::summary::Lines;
 use crate::{output, threads};
 
@@ -32,7 +35,8 @@ Examples:
   fredholm trace scenes/cornell_planar.toml --method path --to 1% -o out/traced
   fredholm trace room.toml --method jacobi --seconds 30
   fredholm trace room.toml --method path --control --samples 256
-  fredholm trace scenes/waves/plate.toml --method surface-sampling --samples 65536
+  fredholm trace room.toml --method bidirectional --to 5% --spp 256
+  fredholm trace scenes/waves/plate.toml --method surface-sampling --to 1%
   fredholm trace room.toml --method light --to 0.5% -o out/traced --continue
 
 All methods estimate the irradiance of the elements, with standard errors between batches.
@@ -41,15 +45,17 @@ others (light, walk-shooting, jacobi) at the lamps. walk-gathering, walk-shootin
 estimate what `solve` solves, constants on elements; the others the continuous equation. Written
 are faces.csv with standard errors, image.png, trace.json, which --continue reads, and run.json
 last. Ctrl-C keeps what is there by then. Without --samples, --seconds and --to it is --to 1%.
+With --spp image.png is traced pixel by pixel, and pixels.npz has the standard error of each.
 
 surface-sampling, field-particles and amplitude-particles sample the scattered field of a scene of
-waves, one bounce or two, with shadow = \"geometric\"; written are receivers.csv and run.json.";
+waves, one bounce or two, with shadow = \"geometric\"; written are receivers.csv, trace.json and
+run.json. Without --samples, --seconds and --to they draw 65536 samples.";
 
 /// Options of `trace`.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct TraceArgs {
     /// Method
-    #[arg(long, value_name = "NAME", default_value = "path", value_parser = PossibleValuesParser::new(METHODS.into_iter().chain(fields::METHODS)))]
+    #[arg(long, value_name = "NAME", default_value = "path", value_parser = PossibleValuesParser::new(METHODS.into_iter().chain(FIELD_METHODS)))]
     pub(crate) method: String,
     /// Folder for the results [default: out/<name of the scene file>]
     #[arg(long, short, value_name = "DIR")]
@@ -57,6 +63,9 @@ pub(crate) struct TraceArgs {
     /// Solve the scene first and sample only what the discretisation missed (path, walk-gathering)
     #[arg(long)]
     pub(crate) control: bool,
+    /// Trace every pixel of the picture by itself, with at least so many samples (path, bidirectional)
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
+    pub(crate) spp: Option<u32>,
     /// Go on with the run in the folder
     #[arg(long = "continue")]
     pub(crate) go_on: bool,
@@ -75,6 +84,7 @@ pub(crate) struct TraceArgs {
 struct InForce<'a> {
     method: &'a str,
     control: bool,
+    spp: Option<u32>,
     #[serde(flatten)]
     paths: PathArgs,
     #[serde(flatten)]
@@ -90,37 +100,57 @@ pub(crate) fn trace(args: &TraceArgs) -> Result<Ending, Failure> {
         threads: args.problem.threads,
         log: args.log,
     };
-    let waves = fields::METHODS.contains(&args.method.as_str());
+    let waves = FIELD_METHODS.contains(&args.method.as_str());
     let run = if waves { fields::run } else { run };
     start.run(|folder, stages| run(args, folder, stages))
 }
 
-/// Without a wish, one percent.
-fn stop(args: &TraceArgs) -> TraceStopArgs {
-    let TraceStopArgs { samples, seconds, to } = args.stop;
-    let nothing = samples.is_none() && seconds.is_none() && to.is_none();
-    TraceStopArgs { to: if nothing { Some(ERROR) } else { to }, ..args.stop }
-}
-
 fn run(args: &TraceArgs, folder: &Path, stages: &mut Stages) -> Result<Ending, Failure> {
     let ground = Ground::load(&args.problem, stages)?;
+    picture::admit(args, &ground)?;
     let scene = stages.run("exposure", || enclosure(&ground.scene, &ground.mesh))?;
-    let estimator = method(args, &scene, stages)?;
-    let stop = stop(args);
-    let tracer = Tracer::new(&scene, &*estimator, faces(&ground.mesh, &scene)?, &args.paths, &stop)?;
-    let mut state = if args.go_on { earlier(folder)? } else { tracer.start() };
-    stages.begin_saving()?;
+    let stop = args.stop.or_to(ERROR);
+    let origin = Origin::new(args, ground.scene.sha256(), 0);
+    let (state, reason) = traced(args, folder, (&ground, &scene, &origin), &stop, stages)?;
+    let estimates = Estimates::new(&ground, &state);
+    let tracer = picture::Tracer::new(args, &ground, &scene, &estimates.view()?.camera)?;
     let watched = Stages::new(stages.console, stages.interrupt);
-    stages.run("tracing", || tracer.run(&mut state, &watched))?;
-    worth_saving(&state)?;
-    let threads = args.problem.threads.map_or_else(threads::default_count, usize::from);
-    let options = InForce { method: &args.method, control: args.control, paths: args.paths, stop, threads };
-    let record = files::record(&ground, &state, &options, tracer.reason(&state), stages);
-    stages.run("results", || files::write(folder, &ground, &state, &record))?;
+    let pixels = match tracer {
+        Some(tracer) if !stages.interrupt.requested() => {
+            stages.run("picture", || Ok(tracer.trace(&watched)))?
+        }
+        _ => None,
+    };
+    let record = files::record(&ground, &state, &in_force(args, stop), reason, stages);
+    stages.run("results", || estimates.write(folder, &origin, pixels.as_ref(), &record))?;
     if !args.log.quiet {
         summarise(folder, &state, &record.stop_reason)?;
     }
     Ok(if stages.interrupt.requested() { Ending::Interrupted } else { Ending::Done })
+}
+
+fn in_force(args: &TraceArgs, stop: TraceStopArgs) -> InForce<'_> {
+    let threads = args.problem.threads.map_or_else(threads::default_count, usize::from);
+    InForce { method: &args.method, control: args.control, spp: args.spp, paths: args.paths, stop, threads }
+}
+
+/// The irradiances, and why their tracing has ended.
+fn traced(
+    args: &TraceArgs,
+    folder: &Path,
+    (ground, scene, origin): (&Ground, &Enclosure, &Origin),
+    stop: &TraceStopArgs,
+    stages: &mut Stages,
+) -> Result<(State, String), Failure> {
+    let estimator = method(args, scene, stages)?;
+    let tracer = Tracer::new(scene, &*estimator, faces(&ground.mesh, scene)?, &args.paths, stop)?;
+    let mut state = if args.go_on { origin.earlier(folder)? } else { tracer.start() };
+    stages.begin_saving()?;
+    let watched = Stages::new(stages.console, stages.interrupt);
+    stages.run("tracing", || tracer.run(&mut state, &watched))?;
+    worth_saving(&state)?;
+    let reason = tracer.reason(&state);
+    Ok((state, reason))
 }
 
 fn method(args: &TraceArgs, scene: &Enclosure, stages: &Stages) -> Result<Box<dyn Estimator>, Failure> {
@@ -154,21 +184,6 @@ fn solution(args: &TraceArgs, stages: &Stages) -> Result<crate::solution::Soluti
 fn options(args: &TraceArgs, options: &ProblemOptions, problem: &Problem) -> Options {
     let stop = crate::args::StopArgs { tolerance: None, max_iterations: None };
     Options::new(options.clone(), stop, problem.scene.solve(), Path::new(""), args.log)
-}
-
-/// The state that an earlier run has left.
-fn earlier(folder: &Path) -> Result<State, Failure> {
-    let path = folder.join(files::STATE);
-    let text = fs::read_to_string(&path).map_err(|error| {
-        let text = format!(
-            "cannot read {}: {error}\n  help: without --continue the run starts anew",
-            path.display()
-        );
-        Failure::new(Ending::Files, text)
-    })?;
-    serde_json::from_str(&text).map_err(|error| {
-        Failure::new(Ending::Input, format!("{} is no state of a traced run: {error}", path.display()))
-    })
 }
 
 fn worth_saving(state: &State) -> Result<(), Failure> {

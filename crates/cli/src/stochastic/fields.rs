@@ -1,0 +1,162 @@
+//! Scenes of waves by random sampling: what can be sampled, and one run of it.
+
+use std::ops::ControlFlow;
+
+use fredholm_mesh::Vec3;
+use fredholm_montecarlo::Stop;
+use fredholm_montecarlo::waves::{
+    Aim, AmplitudeParticles, Bounces, FieldEstimate, FieldEstimator, FieldParticles, FieldTracing,
+    Scattering, SurfaceSampling,
+};
+use fredholm_waves::{PhysicalOptics, Shadow, Source, Wave, WaveError};
+
+use super::args::{PathArgs, TraceStopArgs};
+use super::tracer::{ended, failure, share};
+use crate::failure::{Ending, Failure};
+use crate::stages::Stages;
+use crate::waves::{Band, Method, Model, Places};
+
+/// Names of the methods.
+pub(crate) const FIELD_METHODS: [&str; 3] = ["surface-sampling", "field-particles", "amplitude-particles"];
+
+/// Samples of a batch, and in all, where nothing is asked for.
+const BATCH: u32 = 1024;
+const SAMPLES: u64 = 1 << 16;
+/// Radius of a cell of amplitude particles over the wavelength, and rays that leave each for the second bounce.
+const CELL: f64 = 0.1;
+const SECOND: u32 = 16;
+
+/// A point of a receiver: the number of the receiver, its own, and where it lies (m).
+pub(crate) type FieldPoint = (usize, usize, Vec3);
+
+/// All points of the receivers that have some.
+pub(crate) fn field_points(model: &Model) -> Vec<FieldPoint> {
+    let mut all = Vec::new();
+    for (number, receiver) in model.receivers.iter().enumerate() {
+        if let Places::Near { points, .. } = &receiver.places {
+            all.extend(points.iter().enumerate().map(|(index, &point)| (number, index, point)));
+        }
+    }
+    all
+}
+
+/// How fields are sampled.
+pub(crate) struct FieldRun {
+    method: String,
+    bounces: Bounces,
+    seed: u64,
+    batch: u32,
+    stop: Stop,
+}
+
+impl FieldRun {
+    /// Refuses what cannot be sampled.
+    pub(crate) fn new(
+        method: &str,
+        paths: &PathArgs,
+        stop: &TraceStopArgs,
+        model: &Model,
+        stages: &Stages,
+    ) -> Result<Self, Failure> {
+        admit(method, paths, model)?;
+        let batch = paths.batch.unwrap_or(BATCH);
+        let samples = stop.samples.or(stop.is_empty().then_some(SAMPLES));
+        let stop = Stop {
+            batches: samples.map(|all| all.div_ceil(batch.into()).max(2)),
+            // Every frequency has its share of the time.
+            seconds: stop.seconds.map(|all| all / model.bands.len() as f64),
+            error: stop.to,
+        };
+        Ok(Self { method: method.to_owned(), bounces: bounces(model, stages), seed: paths.seed, batch, stop })
+    }
+
+    /// Bounces that are summed.
+    pub(crate) fn bounces(&self) -> usize {
+        if self.bounces == Bounces::One { 1 } else { 2 }
+    }
+
+    /// The fields at one frequency, from the beginning or from where an earlier run ended; Ctrl-C ends it before.
+    pub(crate) fn sample(
+        &self,
+        model: &Model,
+        band: &Band,
+        earlier: Option<FieldEstimate>,
+        stages: &Stages,
+    ) -> Result<FieldEstimate, Failure> {
+        let refused = |error: WaveError| model.refused(&error, None);
+        let scatterer = model.geometry.scatterer(band.materials.clone()).map_err(refused)?;
+        scatterer.check_conductor("the sampling of fields").map_err(refused)?;
+        let sources: Vec<&dyn Source> = model.sources.iter().map(AsRef::as_ref).collect();
+        let optics =
+            PhysicalOptics::new(&scatterer, band.wave, &sources, Shadow::Geometric).map_err(refused)?;
+        let problem = Scattering::new(&scatterer, &optics, band.wave, self.bounces).map_err(failure)?;
+        let method = estimator(&self.method, &band.wave);
+        let points: Vec<Vec3> = field_points(model).into_iter().map(|(_, _, point)| point).collect();
+        let tracing = FieldTracing::new(&problem, &*method, &points, (self.seed, self.batch));
+        let mut state = earlier.unwrap_or_else(|| tracing.start());
+        tracing.go_on(&mut state, &self.stop, &|state| self.watch(state, stages)).map_err(failure)?;
+        Ok(state)
+    }
+
+    fn watch(&self, state: &FieldEstimate, stages: &Stages) -> ControlFlow<()> {
+        let (batches, error) = (state.batches(), state.relative_error());
+        stages.console.advance(share(&self.stop, batches, error, state.seconds), &|| {
+            format!("{batches} batches, standard error {:.2} %", 100.0 * error)
+        });
+        if stages.interrupt.requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+
+    /// Why the sampling of a frequency has ended, in words.
+    pub(crate) fn reason(&self, state: &FieldEstimate) -> String {
+        let error = state.relative_error();
+        let what = ended(&self.stop, state.batches(), error, state.seconds);
+        let bounces = if self.bounces == Bounces::One { "one bounce" } else { "two bounces" };
+        format!("{what}, {bounces}, standard error {:.3} % (L2 over the points)", 100.0 * error)
+    }
+}
+
+fn admit(method: &str, paths: &PathArgs, model: &Model) -> Result<(), Failure> {
+    let refused = |text: String| Err(Failure::new(Ending::Input, text));
+    if model.shadow != Shadow::Geometric {
+        let name = model.shadow.name();
+        return refused(format!(
+            "shadows `{name}` cannot be sampled\n  help: shadow = \"geometric\" in [wave], or `fredholm waves`"
+        ));
+    }
+    if !paths.is_plain() {
+        return refused(format!(
+            "{method} takes --seed and --batch, but neither --points nor switches of paths\n  help: leave them out"
+        ));
+    }
+    if field_points(model).is_empty() {
+        return refused(
+            "fields are sampled at points, and no receiver has any\n  help: add a [[receiver]] with points, line, circle or grid".to_owned(),
+        );
+    }
+    Ok(())
+}
+
+/// How many bounces are sampled of those that a scene asks for, with a warning of what is left out.
+fn bounces(model: &Model, stages: &Stages) -> Bounces {
+    if model.edge_currents {
+        stages.console.warn("edge currents are not sampled");
+    }
+    match model.method {
+        Method::Bounces(1) => Bounces::One,
+        Method::Bounces(2) => Bounces::Two,
+        _ => {
+            stages.console.warn(
+                "two bounces are sampled, not more: the signs of a random walk over bounces cancel too slowly",
+            );
+            Bounces::Two
+        }
+    }
+}
+
+fn estimator(name: &str, wave: &Wave) -> Box<dyn FieldEstimator> {
+    match name {
+        "field-particles" => Box::new(FieldParticles::new(Aim::Facets)),
+        "amplitude-particles" => Box::new(AmplitudeParticles::new(CELL * wave.wavelength(), SECOND)),
+        _ => Box::new(SurfaceSampling),
+    }
+}
