@@ -119,8 +119,8 @@ mod tests {
         let names = ["grey".to_owned()];
         let picture = pixels.picture(&names, Exposure::Fixed(1.0)).unwrap();
         let levels: Vec<u8> = picture.pixels.chunks(3).map(|pixel| pixel[0]).collect();
-        // 4 is white: linear 1; half of it over the background 0.012 is 0.506, which sRGB encodes as 188.
-        assert_eq!(levels, [encode(BACKGROUND), 188, 255]);
+        // 4 is white: linear 1; half of it over the background 0.012 is 0.506, which sRGB encodes as 188.52/255.
+        assert_eq!(levels, [encode(BACKGROUND), 189, 255]);
         assert!(Pixels { covered: Vec::new(), ..pixels }.picture(&names, Exposure::Auto).is_err());
     }
 }
