@@ -66,7 +66,7 @@ fn results_are_the_same_with_1_2_and_4_threads() {
 }
 
 /// Starts a run and kills it a while after its first checkpoint; whether the run was still under way.
-fn killed_after_a_round(bench: &Bench, pause: Duration) -> bool {
+fn killed_after_a_round(bench: &Bench, more: &[&str], pause: Duration) -> bool {
     let mut command = Command::new(program());
     command.current_dir(bench.folder.path()).args([
         "solve",
@@ -76,7 +76,7 @@ fn killed_after_a_round(bench: &Bench, pause: Duration) -> bool {
         "-o",
         "killed",
     ]);
-    command.args(GATHER);
+    command.args(GATHER).args(more);
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
     let checkpoint = bench.path("killed").join("checkpoint.bin");
     while !checkpoint.exists() && child.try_wait().unwrap().is_none() {
@@ -91,17 +91,19 @@ fn killed_after_a_round(bench: &Bench, pause: Duration) -> bool {
 #[test]
 fn a_killed_run_is_resumed_to_the_same_bits() {
     let bench = Bench::new(&room(8));
-    bench.solve(&[&["--accuracy", "1%", "-o", "whole"], &GATHER[..]].concat());
-    let mut resumed = 0;
-    for pause in [0, 0, 10, 40] {
-        if killed_after_a_round(&bench, Duration::from_millis(pause)) {
-            assert_eq!(bench.run(&["resume", "killed"]).code, 0);
-            same(&bench, "whole", "killed");
-            resumed += 1;
+    for (more, pauses) in [(&[][..], &[0, 0, 10, 40][..]), (&["--goal", "block"], &[0, 10])] {
+        bench.solve(&[&["--accuracy", "1%", "-o", "whole"], &GATHER[..], more].concat());
+        let mut resumed = 0;
+        for &pause in pauses {
+            if killed_after_a_round(&bench, more, Duration::from_millis(pause)) {
+                assert_eq!(bench.run(&["resume", "killed"]).code, 0);
+                same(&bench, "whole", "killed");
+                resumed += 1;
+            }
+            fs::remove_dir_all(bench.path("killed")).unwrap();
         }
-        fs::remove_dir_all(bench.path("killed")).unwrap();
+        assert!(resumed >= 1, "no run was killed between two rounds");
     }
-    assert!(resumed >= 1, "no run was killed between two rounds");
 }
 
 #[test]
@@ -212,4 +214,32 @@ fn elements_are_cut_along_shadows() {
     // Two triangles an element, and more where lines of shadows or corners of neighbours are on it.
     assert!(cells > 2 * elements + 100, "{cells} triangles, {elements} elements");
     assert!(text.contains("irradiance_g") && bench.record("out")["options"]["discontinuity"] == true);
+}
+
+#[test]
+fn a_goal_alone_has_the_accuracy_and_the_result_says_so() {
+    let bench = Bench::new(&room(8));
+    let run = bench.solve(&["--accuracy", "3%", "--goal", "block,lamp", "-o", "out"]);
+    let said = "the mean irradiance of block, lamp is right within";
+    assert!(run.stdout.contains(said) && run.stdout.contains("only that was asked for"), "{}", run.stdout);
+    let record = bench.record("out");
+    let goal = &record["hierarchy"]["goal"];
+    assert_eq!((&goal["surfaces"][1], &record["options"]["goal"][0]), (&"lamp".into(), &"block".into()));
+    let stated = record["hierarchy"]["stated"].as_f64().unwrap();
+    assert!(stated > 0.0 && stated <= 0.03 && record["mesh_error"].is_null(), "{stated}");
+    assert!(goal["relative_error"].as_array().unwrap().iter().any(|error| error.as_f64() == Some(stated)));
+    // The mean over both surfaces, by their powers and areas.
+    let surfaces = bench.path("out").join("surfaces.csv");
+    let (areas, means) = (column(&surfaces, "area"), column(&surfaces, "irradiance_g"));
+    let mean = (areas[1] * means[1] + areas[2] * means[2]) / (areas[1] + areas[2]);
+    let found = goal["irradiance"][1].as_f64().unwrap();
+    assert!((found / mean - 1.0).abs() < 1e-9, "{found} {mean}");
+    let run = bench.run(&["solve", "scene.toml", "--accuracy", "3%", "--goal", "blok"]);
+    assert!(
+        run.code == 2 && run.stderr.contains("\"blok\"; choose among walls, block, lamp"),
+        "{}",
+        run.stderr
+    );
+    let run = bench.run(&["solve", "scene.toml", "--goal", "block"]);
+    assert!(run.code == 2 && run.stderr.contains("a goal needs an accuracy"), "{}", run.stderr);
 }

@@ -39,6 +39,7 @@ Examples:
   fredholm solve room.toml --storage f32 --threads 4 --log json 2> log.jsonl
   fredholm solve room.toml --discretisation galerkin-1
   fredholm solve room.toml --accuracy 1%
+  fredholm solve room.toml --accuracy 1% --goal desk,board
   fredholm solve room.toml --accuracy 1% --final-gather --point 1,2,0.8,0,0,1
 
 An accuracy is reached by hierarchical radiosity or by the matrix of the scene's elements, whichever
@@ -278,6 +279,10 @@ pub(crate) struct SolveArgs {
     /// radiosity [default: the scene's, else its elements]
     #[arg(long, value_name = "E", value_parser = accuracy)]
     pub(crate) accuracy: Option<f64>,
+    /// Surfaces, by their names, whose mean irradiance is to have the accuracy; all else is only as exact as that needs, and
+    /// the elements are chosen by hierarchical radiosity
+    #[arg(long, value_name = "SURFACE", value_delimiter = ',')]
+    pub(crate) goal: Vec<String>,
     /// Also draw gather.png, for which every pixel gathers its light from all that it sees; image.png interpolates
     /// between elements
     #[arg(long)]

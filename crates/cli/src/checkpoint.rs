@@ -24,6 +24,9 @@ pub(crate) struct Header {
     pub(crate) scene: PathBuf,
     pub(crate) scene_sha256: String,
     accuracy: String,
+    /// Surfaces of the goal; none without one.
+    #[serde(default)]
+    pub(crate) goal: Vec<String>,
     pub(crate) solver: String,
     tolerance: String,
     pub(crate) max_iterations: u64,
@@ -50,6 +53,7 @@ impl Header {
             scene_sha256: scene.sha256().to_owned(),
             // As text, which is read back to the same bits.
             accuracy: accuracy.to_string(),
+            goal: options.goal.clone(),
             solver: options.problem.solver.clone(),
             tolerance: options.tolerance.to_string(),
             max_iterations: options.max_iterations,

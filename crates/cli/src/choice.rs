@@ -26,6 +26,8 @@ pub(crate) struct Extent {
 pub(crate) enum Choice {
     /// The matrix would state no error.
     NoEstimate,
+    /// Links alone know a goal.
+    Goal,
     /// The matrix costs more: pairs and links.
     Links { pairs: f64, links: f64 },
     /// The matrix does not fit the memory.
@@ -66,6 +68,7 @@ impl fmt::Display for Choice {
             Self::NoEstimate => f.write_str(
                 "hierarchical, since faces of fewer than 4 elements give a matrix no stated error",
             ),
+            Self::Goal => f.write_str("hierarchical, since elements are chosen for a goal"),
             Self::Links { pairs, links } => {
                 write!(
                     f,

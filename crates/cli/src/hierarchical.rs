@@ -5,12 +5,12 @@ use std::path::Path;
 use std::sync::Arc;
 
 use fredholm_hierarchical::{
-    HierarchyError, Options as Limits, Problem as Input, RESIDUAL, Round, Solution as Solved, State,
+    Goal, HierarchyError, Options as Limits, Problem as Input, RESIDUAL, Round, Solution as Solved, State,
     Surfaces, Watch,
 };
 use fredholm_linop::MultiVector;
 use fredholm_mesh::{Mesh, MeshBuilder, MeshError, Patch};
-use fredholm_report::{Hierarchy, HierarchyRound};
+use fredholm_report::{Hierarchy, HierarchyGoal, HierarchyRound};
 use fredholm_scene::Scene;
 use fredholm_visibility::Occluders;
 
@@ -63,6 +63,7 @@ pub(crate) fn options(
     }
     let mut options = Options::new(problem, args.stop, scene.solve(), folder, args.log);
     options.accuracy = Some(accuracy);
+    options.goal.clone_from(&args.goal);
     options.final_gather = args.final_gather;
     options.discontinuity = args.discontinuity;
     options.points = args.places.receivers();
@@ -84,6 +85,18 @@ pub(crate) fn refuse_dense(options: &ProblemOptions) -> Result<(), Failure> {
     Err(Failure::new(Ending::Input, text))
 }
 
+/// Refuses a goal without an accuracy.
+pub(crate) fn goal_alone() -> Failure {
+    let text = "a goal needs an accuracy\n  help: add one, such as --accuracy 1%; the mean irradiance of the goal will have it";
+    Failure::new(Ending::Input, text)
+}
+
+/// The goal that the options name, if any.
+fn goal(options: &Options, mesh: &Mesh) -> Result<Option<Goal>, Failure> {
+    let goal = (!options.goal.is_empty()).then(|| Goal::new(mesh, &options.goal));
+    goal.transpose().map_err(failure)
+}
+
 fn unsuitable(solver: &str) -> Failure {
     let text = format!(
         "{solver} reads rows or columns of a matrix, which hierarchical radiosity does not have\n  help: with an accuracy choose one of {}",
@@ -100,10 +113,11 @@ pub(crate) fn compute(
     stages: &mut Stages,
 ) -> Result<(Problem, Solution), Failure> {
     let faces = stages.run("mesh", || scene.face_mesh().map_err(scene_failure))?;
+    let goal = goal(options, &faces)?;
     let warnings = check(scene, &faces, stages)?;
     let occluders = stages.run("visibility", || occluders(scene, &faces))?;
     let surfaces = surfaces(scene, &faces)?;
-    let input = Input { mesh: &faces, occluders: &occluders, surfaces: &surfaces };
+    let input = Input { mesh: &faces, occluders: &occluders, surfaces: &surfaces, goal: goal.as_ref() };
     let limits = limits(options, accuracy);
     let entry = registry::build(&options.problem.solver).map_err(|e| Failure::new(Ending::Input, e))?;
     let state = checkpoint.map(|checkpoint| state(checkpoint, scene, &input)).transpose()?;
@@ -121,7 +135,7 @@ pub(crate) fn compute(
     let mesh = refined(&faces, &solved).map_err(|e| Failure::new(Ending::Input, e))?;
     let bytes = solved.bytes();
     let problem = problem((scene, options), mesh, (warnings, occluders), (entry, bytes))?;
-    Ok((problem, solution(solved, accuracy)))
+    Ok((problem, solution(solved, options, accuracy)))
 }
 
 /// The problem that was solved, on the elements that it came to.
@@ -198,7 +212,7 @@ fn refined(faces: &Mesh, solved: &Solved) -> Result<Mesh, MeshError> {
     Ok(builder.build())
 }
 
-fn solution(solved: Solved, accuracy: f64) -> Solution {
+fn solution(solved: Solved, options: &Options, accuracy: f64) -> Solution {
     let energy = solved.system.energy(&solved.radiosity, &solved.means, &solved.closure);
     let exposed = solved.system.elements().iter().map(|size| size.exposed / size.area).collect();
     let stated = |error: &fredholm_hierarchical::Stated| fredholm_coupling::MeshError {
@@ -208,8 +222,9 @@ fn solution(solved: Solved, accuracy: f64) -> Solution {
     };
     let entries = 2 * solved.links.len() as u64;
     Solution {
-        mesh_error: solved.error.as_ref().map(stated),
-        hierarchy: Some(hierarchy(&solved, accuracy)),
+        // With a goal nothing is stated for the faces.
+        mesh_error: solved.error.as_ref().filter(|_| solved.goal.is_none()).map(stated),
+        hierarchy: Some(hierarchy(&solved, options, accuracy)),
         tree: Some(pictures::Hierarchy { tree: solved.tree, links: solved.links }),
         means: solved.means,
         report: solved.report,
@@ -226,7 +241,7 @@ fn solution(solved: Solved, accuracy: f64) -> Solution {
     }
 }
 
-fn hierarchy(solved: &Solved, accuracy: f64) -> Hierarchy {
+fn hierarchy(solved: &Solved, options: &Options, accuracy: f64) -> Hierarchy {
     let round = |round: &Round| HierarchyRound {
         threshold: round.threshold,
         elements: round.elements as u64,
@@ -236,6 +251,11 @@ fn hierarchy(solved: &Solved, accuracy: f64) -> Hierarchy {
     Hierarchy {
         accuracy,
         stated: solved.error.as_ref().map(fredholm_hierarchical::Stated::worst),
+        goal: solved.goal.as_ref().map(|reached| HierarchyGoal {
+            surfaces: options.goal.clone(),
+            irradiance: reached.irradiance.clone(),
+            relative_error: solved.error.as_ref().map(|error| error.relative_l2.clone()).unwrap_or_default(),
+        }),
         links: solved.links.len() as u64,
         limited: solved.limited,
         rounds: solved.rounds.iter().map(round).collect(),

@@ -36,6 +36,9 @@ pub(crate) struct Options {
     /// Where elements are chosen by hierarchical radiosity.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) accuracy: Option<f64>,
+    /// Surfaces whose mean irradiance is to have the accuracy.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) goal: Vec<String>,
     /// Why an accuracy was reached in the way it was.
     #[serde(skip)]
     pub(crate) choice: Option<String>,
@@ -88,6 +91,7 @@ impl Options {
         Self {
             problem,
             accuracy: None,
+            goal: Vec::new(),
             choice: None,
             points: Vec::new(),
             final_gather: false,

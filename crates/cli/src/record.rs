@@ -78,7 +78,8 @@ fn unfinished(reason: StopReason) -> Option<String> {
 /// Whether the accuracy was not reached.
 fn coarse(solution: &Solution) -> Option<String> {
     let hierarchy = solution.hierarchy.as_ref().filter(|_| !solution.is_accurate())?;
-    let Hierarchy { accuracy, stated, limited, .. } = hierarchy;
+    let Hierarchy { accuracy, stated, limited, goal, .. } = hierarchy;
+    let whose = if goal.is_some() { "mean irradiance of the goal" } else { "irradiance" };
     let reached = stated.map_or_else(|| "not known".to_owned(), |error| format!("{error:.1e}"));
     let why = if *limited {
         "the memory did not allow finer links; allow more with --memory"
@@ -86,7 +87,7 @@ fn coarse(solution: &Solution) -> Option<String> {
         "the rounds ran out"
     };
     Some(format!(
-        "the estimated error of the irradiance is {reached}, where {accuracy:.1e} was asked for: {why}"
+        "the estimated error of the {whose} is {reached}, where {accuracy:.1e} was asked for: {why}"
     ))
 }
 

@@ -46,7 +46,7 @@ pub(crate) fn quality(run: &RunRecord, lines: &mut Lines) {
     lines.add_some("closure", closure(&run.closure));
     lines.add_some("form factors", form_factors(run));
     lines.add_some("reciprocity", reciprocity(run));
-    lines.add("mesh error", field_error(run).unwrap_or_else(|| mesh_error(run)));
+    lines.add("mesh error", goal(run).or_else(|| field_error(run)).unwrap_or_else(|| mesh_error(run)));
     lines.add_some("time", (!run.timings.is_empty()).then(|| times(&run.timings)));
     run.warnings.iter().for_each(|warning| lines.add("warning", warning));
 }
@@ -131,6 +131,19 @@ pub(crate) fn times(timings: &[Timing]) -> String {
 
 fn reciprocity(run: &RunRecord) -> Option<String> {
     Some(format!("both orders of integration agree within {:.1e} (largest of a sample)", run.reciprocity?))
+}
+
+/// The error of the goal in the worst band.
+fn goal(run: &RunRecord) -> Option<String> {
+    let hierarchy = run.hierarchy.as_ref()?;
+    let surfaces = hierarchy.goal.as_ref()?.surfaces.join(", ");
+    let error = hierarchy.stated.map_or_else(
+        || format!("that of the mean irradiance of {surfaces} is not estimated"),
+        |error| {
+            format!("the mean irradiance of {surfaces} is right within {error:.1e} (worst band; estimate)")
+        },
+    );
+    Some(format!("{error}; only that was asked for, all else may be far less exact"))
 }
 
 /// The error of the field as polynomials in the worst band.

@@ -54,7 +54,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         exitance: MultiVector::from_vec(rows, bands, scene.exitance(&mesh))?,
     };
     let occluders = Occluders::new(mesh.occluders())?;
-    let problem = Problem { mesh: &mesh, occluders: &occluders, surfaces: &surfaces };
+    let problem = Problem { mesh: &mesh, occluders: &occluders, surfaces: &surfaces, goal: None };
     let linear = rest.first().is_none_or(|order| order != "constant");
     let residual = RESIDUAL * accuracy;
     let options = Options { accuracy, linear, residual, bytes: 8 << 30, max_iterations: 200 };

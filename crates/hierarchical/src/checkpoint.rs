@@ -1,4 +1,4 @@
-//! The state between two rounds as bytes, little-endian: what was split, the links, the radiosity and the rounds. Floating-point numbers keep their bits.
+//! The state between two rounds as bytes, little-endian: what was split, the links, the radiosity, the goal with the importance, and the rounds. Floating-point numbers keep their bits.
 //!
 //! The tree is not saved but grown again: the same splits of the same mesh give the same tree.
 
@@ -8,7 +8,7 @@ use fredholm_linop::MultiVector;
 use std::io::{self, Read, Write};
 
 /// First bytes of a state.
-const MARK: &[u8; 8] = b"FREDHR01";
+const MARK: &[u8; 8] = b"FREDHR02";
 /// Bytes of a link.
 const LINK: usize = 4 + 4 + 8 + 6 * 4 + 6 * 4 + 1;
 /// Most elements of a list that are believed before they have been read.
@@ -21,9 +21,11 @@ impl State {
     /// What `out` reports.
     pub fn write(&self, out: &mut dyn Write) -> io::Result<()> {
         out.write_all(MARK)?;
+        list(out, self.goal.iter().map(|&surface| (surface as u64).to_le_bytes()))?;
         list(out, self.tree.splits().iter().map(|split| split.to_le_bytes()))?;
         list(out, self.links.iter().map(link_bytes))?;
         numbers(out, self.radiosity.as_slice())?;
+        numbers(out, self.importance.as_slice())?;
         numbers(out, &self.faces)?;
         out.write_all(&self.threshold.to_le_bytes())?;
         list(out, self.rounds.iter().map(round_bytes))?;
@@ -44,13 +46,18 @@ impl State {
             return Err(HierarchyError::State { why: "is none of this version" });
         }
         let mut state = Self::new(problem, 0.0)?;
+        if source.list(|s| Ok(u64::from_le_bytes(s.array()?) as usize))? != state.goal {
+            return Err(HierarchyError::State { why: "belongs to another goal" });
+        }
         for split in source.list(|s| Ok(u32::from_le_bytes(s.array()?)))? {
             grow(&mut state.tree, split)?;
         }
         state.links = source.list(Source::link)?;
         let (lanes, leaves) = (state.radiosity.lanes(), state.tree.leaves().len());
-        let foreign = HierarchyError::State { why: "belongs to another scene" };
-        state.radiosity = MultiVector::from_vec(leaves, lanes, source.numbers()?).map_err(|_| foreign)?;
+        let foreign = |_| HierarchyError::State { why: "belongs to another scene" };
+        state.radiosity = MultiVector::from_vec(leaves, lanes, source.numbers()?).map_err(foreign)?;
+        let lanes = state.importance.lanes();
+        state.importance = MultiVector::from_vec(leaves, lanes, source.numbers()?).map_err(foreign)?;
         state.faces = source.numbers()?;
         state.threshold = source.number()?;
         state.rounds = source.list(Source::round)?;
@@ -68,7 +75,8 @@ impl State {
         let fits =
             self.links.iter().all(|link| linkable(link.a) && linkable(link.b) && link.open.is_finite())
                 && (self.faces.len() == faces || self.rounds.is_empty())
-                && self.radiosity.not_finite().is_none();
+                && self.radiosity.not_finite().is_none()
+                && self.importance.not_finite().is_none();
         if fits { Ok(self) } else { Err(HierarchyError::State { why: "belongs to another scene" }) }
     }
 }

@@ -1,9 +1,11 @@
 //! Solve, refine where the solution says so, solve again: until the change from one solution to the next says that the accuracy is reached.
 //!
 //! Every round lowers the error that a link may leave by [`STEP`]. The irradiance of the input faces then changes by about what the round before was wrong by; what remains is less. The stated error
-//! is [`CONFIDENCE`] times the relative change ‖E − E'‖/‖E‖ in the area-weighted L2 norm over the faces, in the worst band.
+//! is [`CONFIDENCE`] times the relative change ‖E − E'‖/‖E‖ in the area-weighted L2 norm over the faces, in the worst band. With a [`Goal`] the dual problem is solved in every round too, and the error is
+//! that of the mean irradiance of the goal ([`crate::goal`]).
 
 use crate::exposure::Exposure;
+use crate::goal::{Estimate, Goal, Reached, expected, weights};
 use crate::oracle::Light;
 use crate::refine::{Limits, bytes, refine};
 use crate::transport::Sight;
@@ -16,7 +18,7 @@ use fredholm_visibility::body::Bodies;
 use std::ops::ControlFlow;
 
 /// Factor from one threshold to the next.
-const STEP: f64 = 0.3;
+pub(crate) const STEP: f64 = 0.3;
 /// First threshold, over the accuracy.
 const FIRST: f64 = 4.0;
 /// Stated error over the last change.
@@ -42,12 +44,14 @@ pub struct Problem<'a> {
     pub occluders: &'a Occluders,
     /// Materials of the input elements.
     pub surfaces: &'a Surfaces,
+    /// Where accuracy is asked for; everywhere where there is none.
+    pub goal: Option<&'a Goal>,
 }
 
 /// How far to go.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
-    /// Relative error of the irradiance of the faces to reach, L2.
+    /// Relative error to reach: of the irradiance of the faces, L2, or of the mean irradiance of the goal.
     pub accuracy: f64,
     /// Whether links follow the variation of the form factor to first order; else it is constant over each node.
     pub linear: bool,
@@ -68,16 +72,17 @@ pub struct Round {
     pub elements: usize,
     /// Links, each of which serves both ways.
     pub links: usize,
-    /// Relative change of the irradiance of the faces since the round before, L2, worst band; none in the first.
+    /// Relative change of the irradiance of the faces since the round before, L2, worst band; none in the first. With a goal, that of its mean irradiance, or what the input
+    /// elements have to do with it if that is more.
     pub change: Option<f64>,
 }
 
-/// Estimated error of the irradiance of the faces.
+/// Estimated error of the irradiance of the faces, or of its mean over the goal where there is one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stated {
-    /// Relative, area-weighted L2 norm over the faces, of each band.
+    /// Relative, of each band; the area-weighted L2 norm over the faces, or that of the one mean.
     pub relative_l2: Vec<f64>,
-    /// Largest of a face, W/m², of each band.
+    /// Largest of a face, or that of the mean, W/m², of each band.
     pub largest: Vec<f64>,
 }
 
@@ -130,8 +135,10 @@ pub struct Solution {
     pub report: Report,
     /// All rounds.
     pub rounds: Vec<Round>,
-    /// Estimated error of the irradiance of the faces; none after a single round.
+    /// Estimated error of the irradiance of the faces, or of the goal where there is one; none after a single round, or two with a goal.
     pub error: Option<Stated>,
+    /// What was reached of the goal, where there is one.
+    pub goal: Option<Reached>,
     /// Whether memory ended the refinement before the accuracy was reached.
     pub limited: bool,
 }
@@ -150,12 +157,17 @@ pub fn solve(
     if !(options.accuracy > 0.0 && options.accuracy < 1.0) {
         return Err(HierarchyError::Accuracy { value: options.accuracy });
     }
+    let goal = problem.goal.map_or(&[][..], Goal::surfaces);
+    if state.as_ref().is_some_and(|state| state.goal != goal) {
+        return Err(HierarchyError::State { why: "belongs to another goal" });
+    }
     let patches: Vec<&Patch> = problem.mesh.patches().collect();
     let many = problem.occluders.len() > MANY;
     let bodies = if many { Bodies::default() } else { Bodies::new(problem.occluders, &patches, &[]) };
     let exposure = Exposure::new(problem.mesh)?;
     let sight = Sight { occluders: problem.occluders, bodies: &bodies, many };
-    let mut run = Run { problem, options, solver, watch, sight, exposure };
+    let dual = problem.goal.map(|goal| (goal, goal.dual(problem.mesh, problem.surfaces)));
+    let mut run = Run { problem, options, solver, watch, sight, exposure, dual };
     let mut state = match state {
         Some(state) => state,
         None => State::new(problem, options.accuracy * FIRST)?,
@@ -163,10 +175,10 @@ pub fn solve(
     let mut system = run.resumed(&state)?;
     loop {
         let light = run.light(&state, system.as_ref());
-        let (next, report) = run.round(&mut state, light)?;
+        let (next, report) = run.round(&mut state, system.as_ref(), light)?;
         let ends = report.reason != StopReason::Converged || state.limited || run.enough(&state);
         if ends {
-            return Ok(Run::finish(state, next, report));
+            return Ok(run.finish(state, next, report));
         }
         state.threshold *= STEP;
         watch.round(&state.rounds, &state)?;
@@ -178,6 +190,15 @@ pub fn solve(
 struct System {
     operator: HierarchicalOperator,
     radiosity: Radiosity,
+    /// w of the dual problem, where there is a goal, 1/m².
+    dual: Option<MultiVector<f64>>,
+}
+
+/// What a round starts from, on all nodes.
+struct Known {
+    radiosity: MultiVector<f64>,
+    /// With a goal: irradiance, W/m², and importance, 1/m².
+    goal: Option<[MultiVector<f64>; 2]>,
 }
 
 /// What does not change from round to round.
@@ -188,6 +209,8 @@ struct Run<'a> {
     watch: &'a dyn Watch,
     sight: Sight<'a>,
     exposure: Exposure<'a>,
+    /// With a goal: the dual problem, of the same reflectances.
+    dual: Option<(&'a Goal, Surfaces)>,
 }
 
 impl Solution {
@@ -215,36 +238,75 @@ impl Run<'_> {
         };
         let Surfaces { reflectance, exitance } = self.problem.surfaces;
         let radiosity = Radiosity::new(extents, of_leaves(reflectance), of_leaves(exitance))?;
-        Ok(System { operator, radiosity })
+        let dual = self.dual.as_ref().map(|(_, dual)| of_leaves(&dual.exitance));
+        Ok(System { operator, radiosity, dual })
     }
 
     /// What is known of the light before the next round.
     fn light(&self, state: &State, system: Option<&System>) -> Light {
         let surfaces = self.problem.surfaces;
-        let Some(System { operator, radiosity }) = system else {
-            return Light::ambient(&state.tree, surfaces);
+        let Some(System { operator, radiosity, .. }) = system else {
+            let mut light = Light::ambient(&state.tree, surfaces);
+            light.weights =
+                self.dual.as_ref().map(|(_, dual)| weights(&state.tree, &expected(&state.tree, dual), None));
+            return light;
         };
         let means = radiosity.means(operator, &state.radiosity);
         let nodes = [operator.means(&state.radiosity), operator.means(&means.irradiance)];
-        Light::solved(&state.tree, surfaces, &state.links, operator, [&nodes[0], &nodes[1]])
+        let mut light = Light::solved(&state.tree, surfaces, &state.links, operator, [&nodes[0], &nodes[1]]);
+        light.weights = self.dual.as_ref().map(|_| {
+            let [z, e] = [&state.importance, &means.irradiance].map(|leaves| state.nodes_means(leaves));
+            weights(&state.tree, &z, Some(&e))
+        });
+        light
+    }
+
+    /// What is known on the nodes before a refinement.
+    fn known(&self, state: &State, system: Option<&System>) -> Option<Known> {
+        state.rounds.last()?;
+        let goal = self.dual.as_ref().and(system).map(|System { operator, radiosity, .. }| {
+            let irradiance = radiosity.means(operator, &state.radiosity).irradiance;
+            [state.nodes_means(&irradiance), state.nodes_means(&state.importance)]
+        });
+        Some(Known { radiosity: state.nodes_radiosity(), goal })
     }
 
     /// Refines, solves, and adds what came of it to the state.
-    fn round(&mut self, state: &mut State, mut light: Light) -> Result<(System, Report), HierarchyError> {
-        let before = state.rounds.last().map(|_| state.nodes_radiosity());
+    fn round(
+        &mut self,
+        state: &mut State,
+        system: Option<&System>,
+        mut light: Light,
+    ) -> Result<(System, Report), HierarchyError> {
+        let before = self.known(state, system);
         let links = before.as_ref().map(|_| std::mem::take(&mut state.links));
         let limits = self.limits(state);
         let refined = refine(&mut state.tree, links, &mut light, self.sight, &limits)?;
         (state.links, state.limited) = (refined.links, refined.limited);
         let system = self.system(&state.tree, &state.links)?;
-        let mut x = match before {
-            Some(before) => inherited(&state.tree, &system.operator, &before),
+        let mut x = match &before {
+            Some(before) => inherited(&state.tree, &system.operator, &before.radiosity),
             None => system.radiosity.exitance().clone(),
         };
-        let report = self.solved(&system, &mut x)?;
+        let mut report = self.solved(&system, system.radiosity.exitance(), &mut x)?;
         let faces = self.faces(state, &system, &x);
-        state.error = (!state.faces.is_empty()).then(|| self.change(&state.faces, &faces));
-        let change = state.error.as_ref().map(|error| error.worst() / CONFIDENCE);
+        let change;
+        if let Some(w) = &system.dual {
+            let earlier = before.as_ref().and_then(|before| before.goal.as_ref());
+            let mut z =
+                earlier.map_or_else(|| w.clone(), |[_, z]| inherited(&state.tree, &system.operator, z));
+            let dual = self.solved(&system, w, &mut z)?;
+            if report.reason == StopReason::Converged && dual.reason != StopReason::Converged {
+                report = dual;
+            }
+            state.importance = z;
+            let found = before.map(|before| self.goal_error(state, &system, &before, (&x, &faces)));
+            let (error, of_goal) = found.transpose()?.flatten().unzip();
+            (state.error, change) = (error.flatten(), of_goal);
+        } else {
+            state.error = (!state.faces.is_empty()).then(|| self.change(&state.faces, &faces));
+            change = state.error.as_ref().map(|error| error.worst() / CONFIDENCE);
+        }
         let (elements, links) = (system.operator.leaves().len(), state.links.len());
         state.rounds.push(Round { threshold: state.threshold, elements, links, change });
         (state.radiosity, state.faces) = (x, faces);
@@ -263,12 +325,17 @@ impl Run<'_> {
         }
     }
 
-    fn solved(&self, system: &System, x: &mut MultiVector<f64>) -> Result<Report, HierarchyError> {
+    fn solved(
+        &self,
+        system: &System,
+        rhs: &MultiVector<f64>,
+        x: &mut MultiVector<f64>,
+    ) -> Result<Report, HierarchyError> {
         let radiosity = &system.radiosity;
         let a = SecondKind::new(&system.operator, radiosity.scaling())?;
         let stop = Stop { tolerance: self.options.residual, max_iterations: self.options.max_iterations };
         let mut observer = |_: &Progress<'_, f64>| self.watch.poll();
-        let report = self.solver.solve(&a, radiosity.exitance(), x, &stop, &mut observer)?;
+        let report = self.solver.solve(&a, rhs, x, &stop, &mut observer)?;
         if report.reason == StopReason::Interrupted { Err(HierarchyError::Interrupted) } else { Ok(report) }
     }
 
@@ -306,18 +373,48 @@ impl Run<'_> {
         Stated { relative_l2: squares.into_iter().zip(norms).map(relative).collect(), largest }
     }
 
+    /// The error that is stated for the goal.
+    fn goal_error(
+        &self,
+        state: &State,
+        system: &System,
+        before: &Known,
+        (x, faces): (&MultiVector<f64>, &[f64]),
+    ) -> Result<Option<(Option<Stated>, f64)>, HierarchyError> {
+        let (Some((goal, _)), Some([irradiance, _])) = (&self.dual, &before.goal) else { return Ok(None) };
+        let System { operator, radiosity, .. } = system;
+        let [old, unlit] =
+            [&before.radiosity, irradiance].map(|nodes| inherited(&state.tree, operator, nodes));
+        let means = [&state.faces, faces].map(|faces| goal.means(self.problem.mesh, faces, x.lanes()));
+        let estimate = Estimate {
+            tree: &state.tree,
+            operator,
+            leaves: operator.leaves(),
+            radiosity,
+            before: [&old, &unlit],
+            x,
+            importance: &state.importance,
+            means: [&means[0], &means[1]],
+        };
+        Ok(Some(estimate.stated(state.rounds.last().and_then(|round| round.change))?))
+    }
+
     fn enough(&self, state: &State) -> bool {
         state.rounds.len() >= ROUNDS
             || state.error().is_some_and(|error| error.worst() <= self.options.accuracy)
     }
 
-    fn finish(state: State, system: System, report: Report) -> Solution {
-        let System { operator, radiosity: system } = system;
+    fn finish(&self, state: State, system: System, report: Report) -> Solution {
+        let System { operator, radiosity: system, .. } = system;
         let means = system.means(&operator, &state.radiosity);
         let closed = |(sum, size): (f64, &Extent)| if size.exposed > 0.0 { sum / size.exposed } else { 1.0 };
         let closure = operator.row_sums().into_iter().zip(system.elements()).map(closed).collect();
-        let State { tree, links, radiosity, rounds, error, limited, .. } = state;
-        Solution { tree, links, means, system, radiosity, closure, report, rounds, error, limited }
+        let State { tree, links, radiosity, importance, faces, rounds, error, limited, .. } = state;
+        let goal = self.dual.as_ref().map(|(goal, _)| {
+            let irradiance = goal.means(self.problem.mesh, &faces, radiosity.lanes());
+            Reached { irradiance, importance }
+        });
+        Solution { tree, links, means, system, radiosity, closure, report, rounds, error, goal, limited }
     }
 }
 

@@ -32,6 +32,14 @@ pub enum HierarchyError {
         /// What was given.
         value: f64,
     },
+    /// A goal that the scene does not have.
+    #[error("there is no surface \"{name}\"; choose among {known}")]
+    Goal {
+        /// What was asked for.
+        name: String,
+        /// The names of the surfaces.
+        known: String,
+    },
     /// More memory than allowed, before the first solution.
     #[error("the coarsest links need {needed} bytes, but {limit} are allowed; allow more memory")]
     Memory {

@@ -20,7 +20,7 @@ impl Light {
     /// The estimate before the first solution.
     pub(crate) fn ambient(tree: &Tree, surfaces: &Surfaces) -> Self {
         let ambient = ambient(tree, surfaces);
-        let mut light = Self { nodes: vec![[0.0, 0.0, 1.0]; tree.nodes().len()] };
+        let mut light = Self { nodes: vec![[0.0, 0.0, 1.0]; tree.nodes().len()], weights: None };
         for (root, &node) in tree.roots().iter().enumerate() {
             let rows = surfaces.reflectance.row(root).iter().zip(surfaces.exitance.row(root)).zip(&ambient);
             let relative = rows.clone().map(|((rho, m), e)| if *e > 0.0 { rho + m / e } else { *rho });
@@ -44,7 +44,7 @@ impl Light {
         let relative = |row: &[f64]| -> Vec<f64> {
             row.iter().zip(&unit).map(|(x, u)| if *u > 0.0 { x / u } else { 0.0 }).collect()
         };
-        let mut light = Self { nodes: vec![[0.0; 3]; tree.nodes().len()] };
+        let mut light = Self { nodes: vec![[0.0; 3]; tree.nodes().len()], weights: None };
         for (index, node) in light.nodes.iter_mut().enumerate() {
             node[0] = relative(radiosity.row(index)).into_iter().fold(0.0, f64::max);
             let level = relative(irradiance.row(index)).into_iter().zip(&unit).filter(|(_, u)| **u > 0.0);
@@ -131,6 +131,9 @@ impl Light {
         if self.nodes.len() < tree.nodes().len() {
             let [brightness, contrast, level] = self.nodes[parent as usize];
             self.nodes.resize(tree.nodes().len(), [brightness, 0.5 * contrast, level]);
+            if let Some(weights) = &mut self.weights {
+                weights.resize(tree.nodes().len(), weights[parent as usize]);
+            }
         }
     }
 }
@@ -139,7 +142,7 @@ impl Light {
 const GUESS: f64 = 0.3;
 
 /// The ambient irradiance of each band, W/m².
-fn ambient(tree: &Tree, surfaces: &Surfaces) -> Vec<f64> {
+pub(crate) fn ambient(tree: &Tree, surfaces: &Surfaces) -> Vec<f64> {
     let bands = surfaces.exitance.lanes();
     let (mut emitted, mut absorbing) = (vec![0.0; bands], vec![0.0; bands]);
     for (root, &node) in tree.roots().iter().enumerate() {

@@ -12,6 +12,8 @@
 //! They are compared with the irradiance of p. Below the faces an error weighs less: it is the means of faces that accuracy is promised for. On the part of a face that p
 //! is, A_p/A_face is the weight of an error of a mean, and a further [`DETAIL`] that of a deviation from it. The weighting by brightness is that of P. Hanrahan, D. Salzman,
 //! L. Aupperle, SIGGRAPH 1991, doi:10.1145/122718.122740.
+//!
+//! With a [`crate::Goal`] all of this is multiplied by the weight of p in it ([`crate::goal`]).
 
 use crate::tree::{Node, Tree};
 
@@ -25,6 +27,8 @@ pub(crate) const FLOOR: f64 = 0.01;
 pub(crate) struct Light {
     /// β, γ, η of each node.
     pub nodes: Vec<[f64; 3]>,
+    /// With a goal: the weight of each node in it, at most 1.
+    pub weights: Option<Vec<f64>>,
 }
 
 /// What to do with a pair of nodes.
@@ -84,7 +88,10 @@ impl Oracle<'_> {
         let (node, [_, _, level]) = (self.node(p), self.light.nodes[p as usize]);
         let [brightness, contrast, _] = self.light.nodes[q as usize];
         let factor = pair.open / node.area() / (FLOOR + (1.0 - FLOOR) * level.min(1.0));
-        let (mean, detail) = self.weights(node);
+        let [mean, detail] = match &self.light.weights {
+            None => self.weights(node),
+            Some(weights) => self.weights(node).map(|weight| weight * weights[p as usize]),
+        };
         // What small parts of a sender do to a large receiver adds up.
         let together = (node.area() / self.node(q).area()).max(1.0);
         let light = (factor * together).min(1.0).max(factor) * brightness;
@@ -101,13 +108,13 @@ impl Oracle<'_> {
     }
 
     /// Weights of the error of a mean and of deviations from it.
-    fn weights(&self, node: &Node) -> (f64, f64) {
+    fn weights(&self, node: &Node) -> [f64; 2] {
         match node.root() {
-            None => (1.0, 1.0),
+            None => [1.0, 1.0],
             Some(root) => {
                 let whole = self.tree.nodes()[self.tree.roots()[root] as usize].area();
                 let share = node.area() / whole;
-                (share, DETAIL * share)
+                [share, DETAIL * share]
             }
         }
     }

@@ -11,6 +11,10 @@ pub struct State {
     pub(crate) links: Vec<Link>,
     /// Radiosity of the exposed parts of the leaves, W/m².
     pub(crate) radiosity: MultiVector<f64>,
+    /// Importance of the exposed parts of the leaves, 1/m²; without a goal there are no lanes.
+    pub(crate) importance: MultiVector<f64>,
+    /// Surfaces of the goal; none without one.
+    pub(crate) goal: Vec<usize>,
     /// Irradiance of the faces, W/m².
     pub(crate) faces: Vec<f64>,
     /// What a link may leave in the next round.
@@ -31,10 +35,14 @@ impl State {
                 return Err(HierarchyError::Shape { what, found: rows.dim(), expected });
             }
         }
+        let goal = problem.goal.map_or(Vec::new(), |goal| goal.surfaces().to_vec());
+        let lanes = if goal.is_empty() { 0 } else { bands };
         Ok(Self {
             tree: Tree::new(problem.mesh, problem.occluders.tolerance())?,
             links: Vec::new(),
             radiosity: MultiVector::zeros(problem.mesh.len(), bands),
+            importance: MultiVector::zeros(problem.mesh.len(), lanes),
+            goal,
             faces: Vec::new(),
             threshold,
             rounds: Vec::new(),
@@ -49,7 +57,7 @@ impl State {
         &self.rounds
     }
 
-    /// Estimated error of the irradiance of the faces, where there are two rounds.
+    /// Estimated error of the irradiance of the faces or of the goal, where there are two rounds.
     #[must_use]
     pub fn error(&self) -> Option<&Stated> {
         self.error.as_ref()
@@ -57,10 +65,15 @@ impl State {
 
     /// Radiosity of all nodes, area means of that of the leaves.
     pub(crate) fn nodes_radiosity(&self) -> MultiVector<f64> {
+        self.nodes_means(&self.radiosity)
+    }
+
+    /// Area means over all nodes of values of the leaves.
+    pub(crate) fn nodes_means(&self, values: &MultiVector<f64>) -> MultiVector<f64> {
         let nodes = self.tree.nodes();
-        let mut means = MultiVector::zeros(nodes.len(), self.radiosity.lanes());
+        let mut means = MultiVector::zeros(nodes.len(), values.lanes());
         for (i, leaf) in self.tree.leaves().into_iter().enumerate() {
-            means.row_mut(leaf as usize).copy_from_slice(self.radiosity.row(i));
+            means.row_mut(leaf as usize).copy_from_slice(values.row(i));
         }
         for (index, node) in nodes.iter().enumerate().rev() {
             if let Some(parent) = node.parent() {

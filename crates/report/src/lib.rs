@@ -78,7 +78,7 @@ pub use eye::Eye;
 pub use faces_csv::write_faces_csv;
 pub use field::Field;
 pub use field_csv::write_field_csv;
-pub use hierarchy::{Hierarchy, HierarchyRound};
+pub use hierarchy::{Hierarchy, HierarchyGoal, HierarchyRound};
 pub use npz::write_npz;
 pub use outputs::{EXTRAS, Extras, FILES, View, write_all, write_with};
 pub use picture::{Gathering, Layer, Link, Linked, Picture, render, render_layers};

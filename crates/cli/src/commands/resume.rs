@@ -36,6 +36,7 @@ pub(crate) fn resume(args: &ResumeArgs) -> Result<Ending, Failure> {
     let solve = SolveArgs {
         output: Some(args.folder.clone()),
         accuracy: Some(checkpoint.accuracy),
+        goal: header.goal.clone(),
         final_gather: header.final_gather,
         discontinuity: header.discontinuity,
         places: PlaceArgs { point: header.receivers(), plane: Vec::new() },

@@ -47,6 +47,7 @@ fn run(
     let scene = Arc::new(scene);
     let (options, problem, solution) = match args.accuracy.or(scene.solve().accuracy) {
         Some(accuracy) => to_accuracy(args, &scene, (accuracy, checkpoint), folder, stages)?,
+        None if !args.goal.is_empty() => return Err(hierarchical::goal_alone()),
         None => dense(args, &scene, folder, stages)?,
     };
     let record = record(&problem, &options, &solution, stages);
@@ -104,6 +105,9 @@ fn to_accuracy(
 
 /// The way that is predicted to cost less.
 fn predicted(args: &SolveArgs, scene: &Scene, accuracy: f64) -> Result<Choice, Failure> {
+    if !args.goal.is_empty() {
+        return Ok(Choice::Goal);
+    }
     let elements = scene.predicted_elements() as f64;
     if elements >= Choice::most_elements(accuracy) {
         // Whatever the faces: as many as there are elements, they have the most links.

@@ -42,7 +42,7 @@ impl Bench {
     }
 
     pub fn problem(&self) -> Problem<'_> {
-        Problem { mesh: &self.mesh, occluders: &self.occluders, surfaces: &self.surfaces }
+        Problem { mesh: &self.mesh, occluders: &self.occluders, surfaces: &self.surfaces, goal: None }
     }
 
     #[allow(dead_code, reason = "not every test needs every helper")]
