@@ -4,7 +4,7 @@
 //! apart, which keeps the singularity of touching patches out of this integral.
 
 use super::critical::{Plane, critical_planes};
-use super::pieces::{Breaks, Piece, Pieces};
+use super::pieces::{Breaks, Pieces, PiecesWork};
 use super::shadow::{Hiding, Kind};
 use super::{point_to_polygon, to_segments};
 use fredholm_mesh::Vec3;
@@ -23,9 +23,11 @@ pub(crate) struct Occluded<'a> {
 }
 
 impl Occluded<'_> {
-    /// The form factor h(x).
-    fn hidden(&self, x: Vec3, hiding: &mut Hiding) -> (f64, Kind) {
-        (hiding.hidden_factor(x, self.normal, self.target, self.screens), hiding.kind())
+    /// The form factor h at each of the `points`.
+    fn hidden(&self, points: &[Vec3], hiding: &mut Hiding, found: &mut Vec<(f64, Kind)>) {
+        let factor =
+            |&x: &Vec3| (hiding.hidden_factor(x, self.normal, self.target, self.screens), hiding.kind());
+        found.extend(points.iter().map(factor));
     }
 }
 
@@ -34,7 +36,7 @@ impl Occluded<'_> {
 pub(crate) struct HiddenWork {
     hiding: Hiding,
     planes: Vec<Plane>,
-    pieces: Vec<Piece>,
+    pieces: PiecesWork,
     edges: Vec<[Vec3; 2]>,
 }
 
@@ -45,7 +47,8 @@ pub(crate) fn hidden_exchange(scene: &Occluded, goal: f64, work: &mut HiddenWork
     critical_planes(scene.source, scene.target, scene.screens, scene.tolerance, planes);
     let most = |x: Vec3| point_to_polygon(scene.normal, scene.target.iter().map(|&y| y - x));
     let breaks = Breaks { planes, flat: scene.tolerance, distance: |x| steep.distance(x), most };
-    Pieces::new(|x| scene.hidden(x, hiding), breaks, pieces, goal).integrate(scene.source)
+    let h = |points: &[Vec3], found: &mut Vec<_>| scene.hidden(points, hiding, found);
+    Pieces::new(h, breaks, pieces, goal).integrate(scene.source)
 }
 
 /// What makes the hidden part steep where it is close: corners of bodies, and edges that do not lie on the source.

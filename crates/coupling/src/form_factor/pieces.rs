@@ -92,20 +92,31 @@ impl Shape {
         }
     }
 
-    /// Calls `each` with the points of a rule and their weights in m².
-    fn rule(&self, degree: usize, mut each: impl FnMut(Vec3, f64)) {
+    /// Calls `each` with the points of a rule.
+    fn points(&self, degree: usize, each: impl FnMut(Vec3)) {
         match *self {
             Self::Triangle([a, b, c]) => {
-                let (u, v) = (b - a, c - a);
-                let doubled = u.cross(v).length();
-                TRIANGLE[degree].iter().for_each(|p| each(a + u * p.u + v * p.v, p.weight * doubled));
+                TRIANGLE[degree].iter().map(|p| a + (b - a) * p.u + (c - a) * p.v).for_each(each);
+            }
+            Self::Quad([a, b, c, d]) => {
+                let twist = a - b + (c - d);
+                QUAD[degree].iter().map(|p| a + (b - a) * p.u + (d - a + twist * p.u) * p.v).for_each(each);
+            }
+        }
+    }
+
+    /// The integral by a rule of which `found` are the values.
+    fn sum(&self, degree: usize, found: &[(f64, Kind)]) -> f64 {
+        match *self {
+            Self::Triangle([a, b, c]) => {
+                let doubled = (b - a).cross(c - a).length();
+                let terms = TRIANGLE[degree].iter().zip(found).map(|(p, (h, _))| p.weight * h);
+                doubled * terms.sum::<f64>()
             }
             Self::Quad([a, b, c, d]) => {
                 let (u, v, twist) = (b - a, d - a, a - b + (c - d));
-                for p in &QUAD[degree] {
-                    let (along_u, along_v) = (u + twist * p.v, v + twist * p.u);
-                    each(a + u * p.u + along_v * p.v, p.weight * along_u.cross(along_v).length());
-                }
+                let stretch = |p: &PlanePoint| (u + twist * p.v).cross(v + twist * p.u).length();
+                QUAD[degree].iter().zip(found).map(|(p, (h, _))| p.weight * stretch(p) * h).sum()
             }
         }
     }
@@ -113,7 +124,7 @@ impl Shape {
 
 /// A part, its integral and how that converged.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Piece {
+struct Piece {
     shape: Shape,
     /// Radius over the distance from what makes h steep.
     reach: f64,
@@ -173,16 +184,30 @@ pub(crate) struct Breaks<'a, D, M> {
 pub(crate) struct Pieces<'a, H, D, M> {
     h: H,
     breaks: Breaks<'a, D, M>,
-    parts: &'a mut Vec<Piece>,
+    work: &'a mut PiecesWork,
     points: usize,
     goal: f64,
 }
 
-impl<'a, H: FnMut(Vec3) -> (f64, Kind), D: Fn(Vec3) -> f64, M: Fn(Vec3) -> f64> Pieces<'a, H, D, M> {
-    /// Prepares the integral of `h` to an absolute `goal`; `parts` is a buffer.
-    pub(crate) fn new(h: H, breaks: Breaks<'a, D, M>, parts: &'a mut Vec<Piece>, goal: f64) -> Self {
-        parts.clear();
-        Self { h, breaks, parts, points: 0, goal }
+/// Buffers of one thread.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct PiecesWork {
+    parts: Vec<Piece>,
+    /// The points of a rule, and h there.
+    points: Vec<Vec3>,
+    found: Vec<(f64, Kind)>,
+}
+
+impl<'a, H, D, M> Pieces<'a, H, D, M>
+where
+    H: FnMut(&[Vec3], &mut Vec<(f64, Kind)>),
+    D: Fn(Vec3) -> f64,
+    M: Fn(Vec3) -> f64,
+{
+    /// Prepares the integral of h to an absolute `goal`. `h` appends the values and the kinds at given points.
+    pub(crate) fn new(h: H, breaks: Breaks<'a, D, M>, work: &'a mut PiecesWork, goal: f64) -> Self {
+        work.parts.clear();
+        Self { h, breaks, work, points: 0, goal }
     }
 
     /// The integral over a convex polygon.
@@ -191,7 +216,7 @@ impl<'a, H: FnMut(Vec3) -> (f64, Kind), D: Fn(Vec3) -> f64, M: Fn(Vec3) -> f64> 
         loop {
             let stated = self.stated();
             if stated <= self.goal || self.points >= POINTS {
-                return Estimate { value: self.parts.iter().map(|p| p.value).sum(), error: stated };
+                return Estimate { value: self.work.parts.iter().map(|p| p.value).sum(), error: stated };
             }
             self.improve_worst();
         }
@@ -199,8 +224,8 @@ impl<'a, H: FnMut(Vec3) -> (f64, Kind), D: Fn(Vec3) -> f64, M: Fn(Vec3) -> f64> 
 
     /// Errors of parts are of either sign. Of many, some are underestimated, and those are the ones that are not improved.
     fn stated(&self) -> f64 {
-        let squares: f64 = self.parts.iter().map(|p| p.error.powi(2)).sum();
-        squares.sqrt() * (1.0 + MANY * (self.parts.len() as f64).ln())
+        let squares: f64 = self.work.parts.iter().map(|p| p.error.powi(2)).sum();
+        squares.sqrt() * (1.0 + MANY * (self.work.parts.len() as f64).ln())
     }
 
     /// Adds a convex polygon as quads and at most one triangle.
@@ -233,7 +258,7 @@ impl<'a, H: FnMut(Vec3) -> (f64, Kind), D: Fn(Vec3) -> f64, M: Fn(Vec3) -> f64> 
         let piece = Piece { shape, reach, cut, degree: 0, value, step: 0.0, error: 0.0, kind, pays: true };
         let (second, kind, [least, most]) = self.rule(&shape, 1, kind);
         let range = (high.max(most) - low.min(least)) * shape.area();
-        self.parts.push(Piece { step: range.max(unseen), ..piece }.raised(second, kind));
+        self.work.parts.push(Piece { step: range.max(unseen), ..piece }.raised(second, kind));
     }
 
     /// Cuts a shape along a line, or halves its sides.
@@ -246,16 +271,19 @@ impl<'a, H: FnMut(Vec3) -> (f64, Kind), D: Fn(Vec3) -> f64, M: Fn(Vec3) -> f64> 
 
     /// The integral by a rule, the kind of its points as far as they are all of one, and the least and the largest value.
     fn rule(&mut self, shape: &Shape, degree: usize, so_far: Option<Kind>) -> (f64, Option<Kind>, [f64; 2]) {
-        let (mut sum, mut kind, mut alike) = (0.0, so_far, true);
+        let PiecesWork { points, found, .. } = &mut *self.work;
+        points.clear();
+        found.clear();
+        shape.points(degree, |x| points.push(x));
+        (self.h)(points, found);
+        self.points += points.len();
+        let (mut kind, mut alike) = (so_far, true);
         let [mut low, mut high] = [f64::INFINITY, f64::NEG_INFINITY];
-        shape.rule(degree, |x, weight| {
-            let (h, its) = (self.h)(x);
-            sum += weight * h;
+        for &(h, its) in &*found {
             (low, high) = (low.min(h), high.max(h));
             alike &= *kind.get_or_insert(its) == its;
-            self.points += 1;
-        });
-        (sum, kind.filter(|_| alike), [low, high])
+        }
+        (shape.sum(degree, found), kind.filter(|_| alike), [low, high])
     }
 
     /// The share of the width of a part on the smaller side of a plane that cuts it.
@@ -269,22 +297,22 @@ impl<'a, H: FnMut(Vec3) -> (f64, Kind), D: Fn(Vec3) -> f64, M: Fn(Vec3) -> f64> 
 
     /// Improves the part with the largest error, and those that equal it: rounding does not choose between them.
     fn improve_worst(&mut self) {
-        let worst = self.parts.iter().map(|p| p.error).fold(0.0, f64::max);
-        for k in (0..self.parts.len()).rev() {
-            if self.parts[k].error >= worst * (1.0 - EQUAL) {
+        let worst = self.work.parts.iter().map(|p| p.error).fold(0.0, f64::max);
+        for k in (0..self.work.parts.len()).rev() {
+            if self.work.parts[k].error >= worst * (1.0 - EQUAL) {
                 self.improve(k);
             }
         }
     }
 
     fn improve(&mut self, k: usize) {
-        let piece = self.parts[k];
+        let piece = self.work.parts[k];
         if piece.pays {
             let (value, kind, _) = self.rule(&piece.shape, piece.degree + 1, piece.kind);
-            self.parts[k] = piece.raised(value, kind);
+            self.work.parts[k] = piece.raised(value, kind);
             return;
         }
-        self.parts.swap_remove(k);
+        self.work.parts.swap_remove(k);
         self.divide(&piece.shape);
     }
 
@@ -314,9 +342,10 @@ mod tests {
     /// ∫ over the unit square of a function with a kink along x = 0.3 and with its steep place at `near`.
     fn kinked(near: Vec3, planes: &[Plane], goal: f64) -> Estimate {
         let square = [Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Y, Vec3::Y];
-        let h = |x: Vec3| ((x.x - 0.3).max(0.0), Kind::default());
+        let value = |x: &Vec3| ((x.x - 0.3).max(0.0), Kind::default());
+        let h = |points: &[Vec3], found: &mut Vec<_>| found.extend(points.iter().map(value));
         let breaks = Breaks { planes, flat: 1e-12, distance: |x: Vec3| x.distance(near), most: |_| 0.7 };
-        Pieces::new(h, breaks, &mut Vec::new(), goal).integrate(&square)
+        Pieces::new(h, breaks, &mut PiecesWork::default(), goal).integrate(&square)
     }
 
     #[test]
