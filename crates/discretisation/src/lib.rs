@@ -15,6 +15,7 @@ mod degree;
 mod discretisation;
 mod equation;
 mod error;
+mod gram;
 mod inverse;
 mod lagrange;
 mod light;

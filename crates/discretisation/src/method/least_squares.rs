@@ -7,14 +7,12 @@
 
 use super::galerkin::projection;
 use super::lane_matrices::LaneMatrices;
+use crate::gram::gram;
 use crate::mass::Mass;
 use crate::transfer::fill_rows;
 use crate::{Degree, Discretisation, DiscretisationError, Equation, Site, Source, Space, Surface, System};
 use fredholm_linop::{Dense, LinearOperator, LinopError, MultiVector};
 use rayon::prelude::*;
-
-/// Rows of EᵀW E that one thread computes at a time.
-const RUN: usize = 32;
 
 /// Least squares with one degree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -149,8 +147,7 @@ impl Residual<'_> {
         let n = self.space.dim();
         let weighted = self.residuals(lane)?;
         let mut product = Dense::zeros(n)?.into_vec();
-        let runs = product.par_chunks_mut((RUN * n).max(1)).enumerate();
-        runs.for_each(|(run, rows)| gram(&weighted, n, run * RUN, rows));
+        gram(&weighted, n, &mut product);
         let scale: Vec<f64> = (0..n).map(|i| 1.0 / product[i * n + i]).collect();
         for (i, row) in product.chunks_exact_mut(n.max(1)).enumerate() {
             multiply(row, -scale[i]);
@@ -178,15 +175,6 @@ impl Residual<'_> {
 fn multiply(row: &mut [f64], factor: f64) {
     for value in row {
         *value *= factor;
-    }
-}
-
-/// Rows `first`… of EᵀE.
-fn gram(e: &[f64], n: usize, first: usize, rows: &mut [f64]) {
-    for sample in e.chunks_exact(n) {
-        for (row, &factor) in rows.chunks_exact_mut(n).zip(&sample[first..]) {
-            row.iter_mut().zip(sample).for_each(|(sum, value)| *sum += factor * value);
-        }
     }
 }
 
