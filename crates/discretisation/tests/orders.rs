@@ -1,94 +1,115 @@
 //! Measured orders of convergence on smooth problems with a known solution, flat and curved, against theory.
 //!
-//! Five meshes, four refinements; the order of the last refinement must be within 0.15 of theory.
+//! Five meshes, four refinements; the order of each must be within 0.15 of theory. The meshes begin where the first term of the error rules: on coarser
+//! ones the second term, smaller by h or h², shows.
 
 // A test that cannot run should panic, in its helpers too.
 #![allow(clippy::unwrap_used)]
 
 use fredholm_discretisation::manufactured::{
-    Errors, Manufactured, facing_squares, facing_triangles, inside_of_a_sphere, measure, two_cylinders,
+    Errors, Manufactured, facing_squares, facing_triangles, measure, orders, smooth_kernel_on_a_sphere,
+    two_cylinders,
 };
 use fredholm_discretisation::{Discretisation, discretisations};
 use fredholm_iterative::GaussSeidel;
 
-/// Gauss points along an element's side.
-const POINTS: usize = 5;
-/// Errors below this are rounding.
-const ROUNDING: f64 = 2e-12;
+/// Parts along the side of a square.
+const MESHES: [usize; 5] = [6, 7, 8, 9, 10];
+/// Enough for quadratics that are not conforming.
+const COARSER: [usize; 5] = [5, 6, 7, 8, 9];
+/// Errors below this are rounding, and have no order.
+const ROUNDING: f64 = 1e-12;
+/// Farthest from theory that an order may be.
+const NEAR: f64 = 0.15;
+
+/// Degree of the polynomials on an element.
+fn degree(name: &str) -> usize {
+    let number = name.chars().find_map(|c| c.to_digit(10)).unwrap() as usize;
+    if name.starts_with("nystrom") { number - 1 } else { number }
+}
 
 /// Orders of the own and of the iterated solution.
-fn theory(name: &str) -> (f64, f64) {
-    let number = name.chars().find(char::is_ascii_digit).and_then(|c| c.to_digit(10)).unwrap();
-    if name.starts_with("nystrom") {
-        return (f64::from(2 * number), f64::from(2 * number));
-    }
-    (f64::from(number + 1), f64::from(2 * number + 2))
+fn theory(name: &str) -> [f64; 2] {
+    let k = degree(name) as f64;
+    let own = if name.starts_with("nystrom") { 2.0 * k + 2.0 } else { k + 1.0 };
+    [own, 2.0 * k + 2.0]
 }
 
-fn levels(problem: &Manufactured, method: &dyn Discretisation, meshes: &[usize]) -> Vec<Errors> {
-    meshes.iter().map(|&n| measure(problem, method, n, POINTS, &GaussSeidel).unwrap()).collect()
-}
-
-fn orders(errors: &[f64], meshes: &[usize]) -> Vec<f64> {
-    let pairs = errors.windows(2).zip(meshes.windows(2));
-    pairs.map(|(e, n)| (e[0] / e[1]).ln() / (n[1] as f64 / n[0] as f64).ln()).collect()
+/// Errors of the own and of the iterated solution on every mesh.
+fn errors(problem: &Manufactured, method: &dyn Discretisation, meshes: &[usize]) -> [Vec<f64>; 2] {
+    // Gauss points whose error is far below that of the method.
+    let points = degree(method.name()) + 3;
+    let measured = |&n: &usize| measure(problem, method, n, points, &GaussSeidel).unwrap();
+    let levels: Vec<Errors> = meshes.iter().map(measured).collect();
+    [levels.iter().map(|e| e.own).collect(), levels.iter().map(|e| e.iterated).collect()]
 }
 
 fn check(label: &str, errors: &[f64], meshes: &[usize], theory: f64) {
     let orders = orders(errors, meshes);
     println!("{label:60} {orders:.2?}, errors to {:.1e}", errors[errors.len() - 1]);
-    let last = orders[orders.len() - 1];
-    let at_rounding = errors[errors.len() - 1] < ROUNDING;
-    assert!(at_rounding || (last - theory).abs() <= 0.15, "{label}: {orders:?}, theory {theory}");
-}
-
-fn check_all(problem: &Manufactured, of: impl Fn(&str) -> bool, meshes: &[usize]) {
-    let mut tested = 0;
-    for method in discretisations().iter().filter(|method| of(method.name())) {
-        let (name, own, iterated) = (method.name(), theory(method.name()).0, theory(method.name()).1);
-        let levels = levels(problem, &**method, meshes);
-        let errors = |of: fn(&Errors) -> f64| levels.iter().map(of).collect::<Vec<f64>>();
-        check(&format!("{}, {name}", problem.name), &errors(|e| e.own), meshes, own);
-        // The superconvergence of conforming quadratics sets in late: it is shown in the documentation only.
-        if name != "galerkin-2-conforming" {
-            check(&format!("{}, {name}, iterated", problem.name), &errors(|e| e.iterated), meshes, iterated);
-        }
-        tested += 1;
+    let above_rounding = orders.iter().zip(&errors[1..]).filter(|(_, error)| **error > ROUNDING);
+    for (order, _) in above_rounding {
+        assert!((order - theory).abs() <= NEAR, "{label}: {orders:?}, theory {theory}");
     }
-    assert!(tested > 0);
 }
 
-fn constant(name: &str) -> bool {
-    name.ends_with("-0") || name == "nystrom-1"
+/// Checks the methods that `of` chooses, by name.
+fn check_all(problem: &Manufactured, of: impl Fn(&str) -> bool, meshes: &[usize]) {
+    let chosen: Vec<_> = discretisations().into_iter().filter(|method| of(method.name())).collect();
+    assert!(!chosen.is_empty());
+    for method in chosen {
+        let name = method.name();
+        let [own, iterated] = errors(problem, &*method, meshes);
+        let label = format!("{}, {name}", problem.name);
+        check(&label, &own, meshes, theory(name)[0]);
+        if name == "galerkin-2-conforming" {
+            check_layer(&label, &iterated, meshes);
+        } else {
+            check(&format!("{label}, iterated"), &iterated, meshes, theory(name)[1]);
+        }
+    }
 }
 
-fn linear(name: &str) -> bool {
-    (name.contains("-1") && name != "nystrom-1") || name == "nystrom-2"
-}
-
-fn quadratic(name: &str) -> bool {
-    !constant(name) && !linear(name)
+/// Conforming quadratics err less in the layer of elements along the border of a face, where fewer neighbours bind them: the error is C h⁶ (1 − c h), and the orders
+/// are 6 − c h. Continued to h = 0 they must come to 6.
+fn check_layer(label: &str, errors: &[f64], meshes: &[usize]) {
+    let orders = orders(errors, meshes);
+    let middle = |at: usize| 2.0 / (meshes[at] + meshes[at + 1]) as f64;
+    let last = orders.len() - 1;
+    let slope = (orders[last] - orders[0]) / (middle(0) - middle(last));
+    let limit = orders[last] + slope * middle(last);
+    println!("{label}, iterated: {orders:.2?}, continued to {limit:.2}");
+    assert!(orders.is_sorted() && (limit - 6.0).abs() <= NEAR, "{label}: {orders:?}, {limit}");
 }
 
 #[test]
 fn constants_have_order_one_and_two() {
-    for problem in [facing_squares(), facing_triangles(), two_cylinders()] {
-        check_all(&problem, constant, &[2, 3, 4, 5, 6]);
+    for problem in [facing_squares(), facing_triangles()] {
+        check_all(&problem, |name| degree(name) == 0, &MESHES);
     }
-    check_all(&inside_of_a_sphere(), constant, &[2, 3, 4, 5, 6]);
 }
 
 #[test]
 fn linear_functions_have_order_two_and_four() {
-    check_all(&facing_squares(), linear, &[2, 3, 4, 5, 6]);
-    check_all(&facing_triangles(), |name| linear(name) && !name.contains("least"), &[2, 3, 4, 5, 6]);
-    check_all(&two_cylinders(), |name| linear(name) && !name.contains("least"), &[2, 3, 4, 5, 6]);
+    check_all(&facing_squares(), |name| degree(name) == 1, &MESHES);
 }
 
 #[test]
 fn quadratic_functions_have_order_three_and_six() {
-    let meshes = [2, 3, 4, 5, 6];
-    check_all(&facing_squares(), |name| quadratic(name) && !name.contains("conforming"), &meshes);
-    check_all(&facing_squares(), |name| name == "galerkin-2-conforming", &[4, 5, 6, 8, 10]);
-    check_all(&two_cylinders(), |name| name == "galerkin-2" || name == "nystrom-3", &meshes);
+    let conforming = |name: &str| name == "galerkin-2-conforming";
+    check_all(&facing_squares(), conforming, &MESHES);
+    check_all(&facing_squares(), |name| degree(name) == 2 && !conforming(name), &COARSER);
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn higher_degrees_have_their_orders_on_triangles() {
+    check_all(&facing_triangles(), |name| degree(name) > 0, &MESHES);
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn every_method_has_its_orders_on_curved_surfaces() {
+    check_all(&two_cylinders(), |_| true, &MESHES);
+    check_all(&smooth_kernel_on_a_sphere(), |name| degree(name) < 2, &MESHES);
 }

@@ -23,6 +23,13 @@ pub struct Errors {
     pub stated: f64,
 }
 
+/// Orders ln(e/e')/ln(n'/n) from each mesh of n parts a side to the next.
+#[must_use]
+pub fn orders(errors: &[f64], meshes: &[usize]) -> Vec<f64> {
+    let pairs = errors.windows(2).zip(meshes.windows(2));
+    pairs.map(|(e, n)| (e[0] / e[1]).ln() / (n[1] as f64 / n[0] as f64).ln()).collect()
+}
+
 /// Solves on n × n elements a piece with `order` Gauss points along the sides of an element.
 ///
 /// # Errors

@@ -11,8 +11,8 @@ mod sphere;
 
 pub use cylinder::{inside_of_a_cylinder, two_cylinders};
 pub use facing::{facing_squares, facing_triangles};
-pub use measure::{Errors, measure};
-pub use sphere::inside_of_a_sphere;
+pub use measure::{Errors, measure, orders};
+pub use sphere::{inside_of_a_sphere, smooth_kernel_on_a_sphere};
 
 use crate::surface::Rules;
 use crate::{Chart, DiscretisationError, Kernel, SmoothTransfer, Surface};
@@ -73,7 +73,14 @@ impl Manufactured {
 /// All scenes.
 #[must_use]
 pub fn manufactured() -> Vec<Manufactured> {
-    vec![facing_squares(), facing_triangles(), inside_of_a_sphere(), two_cylinders(), inside_of_a_cylinder()]
+    vec![
+        facing_squares(),
+        facing_triangles(),
+        smooth_kernel_on_a_sphere(),
+        inside_of_a_sphere(),
+        two_cylinders(),
+        inside_of_a_cylinder(),
+    ]
 }
 
 /// H x by n × n Gauss points on charts, `normal` being the unit normal at p.

@@ -1,4 +1,8 @@
-//! The inside of the unit sphere, where Lambert's kernel is the constant 1/(4π) and H x the mean of x: x = e^z with mean sinh 1, ρ = 0.8.
+//! The inside of the unit sphere, with ρ = 0.8.
+//!
+//! Lambert's kernel is the constant 1/(4π) there and H x the mean of x: x = e^z with mean sinh 1. And the kernel e^{p·q}/(4π sinh 1), which is smooth and lies in no basis: by
+//! the formula of Funk and Hecke a spherical harmonic of degree l is multiplied by λ_l = ∫ e^t P_l(t) dt/(2 sinh 1) over [−1, 1]; C. Müller, *Spherical Harmonics*,
+//! Springer 1966, doi:10.1007/BFb0094775.
 
 use super::Manufactured;
 use crate::{Chart, SpherePatch};
@@ -19,6 +23,29 @@ pub fn inside_of_a_sphere() -> Manufactured {
         irradiance: Box::new(|_| 1f64.sinh()),
         peak: None,
     }
+}
+
+/// The unit sphere with the kernel e^{p·q}/(4π sinh 1): x = 2 + z + P₂(x), closed and smooth, without an edge.
+#[must_use]
+pub fn smooth_kernel_on_a_sphere() -> Manufactured {
+    let unit = 4.0 * PI * 1f64.sinh();
+    let (first, second) = (1f64.tanh().recip() - 1.0, 4.0 - 3.0 / 1f64.tanh());
+    Manufactured {
+        name: "smooth kernel on a sphere",
+        curved: true,
+        reflectance: 0.8,
+        pieces: 1,
+        kernel: Box::new(move |p: Vec3, _: Vec3, q: Vec3, _: Vec3| p.dot(q).exp() / unit),
+        charts: patches,
+        exact: |p| 2.0 + p.z + legendre(p.x),
+        irradiance: Box::new(move |p| 2.0 + first * p.z + second * legendre(p.x)),
+        peak: None,
+    }
+}
+
+/// P₂.
+fn legendre(t: f64) -> f64 {
+    1.5 * t * t - 0.5
 }
 
 fn patches(n: usize) -> Vec<Box<dyn Chart>> {
