@@ -109,7 +109,8 @@ fn higher_degrees_have_their_orders_on_triangles() {
 
 #[test]
 #[ignore = "takes minutes"]
-fn every_method_has_its_orders_on_curved_surfaces() {
+fn curved_surfaces_keep_the_orders() {
     check_all(&two_cylinders(), |_| true, &MESHES);
-    check_all(&smooth_kernel_on_a_sphere(), |name| degree(name) < 2, &MESHES);
+    let plain = |name: &str| name.starts_with("galerkin") && !name.contains("conforming");
+    check_all(&smooth_kernel_on_a_sphere(), plain, &[3, 4, 5, 6, 7]);
 }
