@@ -68,26 +68,19 @@ pub fn convergence(levels: &[Vec<f64>], weights: &[f64], noise: f64) -> Converge
     Convergence {
         difference: levels.iter().map(|values| norm.distance(values, finest)).collect(),
         error: levels.iter().map(error).collect(),
-        verdict: verdict(
-            levels,
-            order.last().copied().flatten().zip(remaining.last().copied().flatten()),
-            &norm,
-            noise,
-        ),
+        verdict: verdict(levels, last(&order).zip(last(&remaining)), &norm, noise),
         order,
         remaining,
     }
 }
 
 fn nothing() -> Convergence {
-    let none = || Vec::new();
-    Convergence {
-        difference: Vec::new(),
-        order: none(),
-        remaining: none(),
-        error: none(),
-        verdict: Verdict::TooFew,
-    }
+    let [order, remaining, error] = [const { Vec::new() }; 3];
+    Convergence { difference: Vec::new(), order, remaining, error, verdict: Verdict::TooFew }
+}
+
+fn last(values: &[Option<f64>]) -> Option<f64> {
+    values.last().copied().flatten()
 }
 
 fn verdict(levels: &[Vec<f64>], found: Option<(f64, f64)>, norm: &Norm, noise: f64) -> Verdict {

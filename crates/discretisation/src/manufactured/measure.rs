@@ -47,16 +47,25 @@ pub fn measure(
     let system = method.discretise(Equation::new(&transfer, &reflectance)?)?;
     let known = Known::new(problem, &surface, order);
     let source = |site: &Site, _: usize| known.source(site);
-    let b = system.right_hand_side(&source);
-    let mut x = MultiVector::zeros(b.dim(), 1);
-    let stop = Stop { tolerance: SOLVED, max_iterations: 10_000 };
-    solver.solve(&system.operator()?, &b, &mut x, &stop, &mut Quiet)?;
+    let x = solution(&*system, &source, solver)?;
     let rules = Rules::gauss(system.space().degree() + 2);
     let parts: Vec<Sums> = (0..surface.len())
         .into_par_iter()
         .map(|i| element(problem, &*system, &source, &x, &rules, i))
         .collect();
-    Ok(summary(&parts, b.dim()))
+    Ok(summary(&parts, x.dim()))
+}
+
+fn solution(
+    system: &dyn System,
+    source: &Source,
+    solver: &dyn Solver<f64>,
+) -> Result<MultiVector<f64>, DiscretisationError> {
+    let b = system.right_hand_side(source);
+    let mut x = MultiVector::zeros(b.dim(), 1);
+    let stop = Stop { tolerance: SOLVED, max_iterations: 10_000 };
+    solver.solve(&system.operator()?, &b, &mut x, &stop, &mut Quiet)?;
+    Ok(x)
 }
 
 /// The source at the Gauss points of the transfer, which are asked for again and again.
