@@ -13,10 +13,11 @@ use fredholm_discretisation::manufactured::{
 use fredholm_discretisation::{Discretisation, discretisations};
 use fredholm_iterative::GaussSeidel;
 
-/// Parts along the side of a square.
+/// Parts along the side of a square, fine enough for every method.
 const MESHES: [usize; 5] = [6, 7, 8, 9, 10];
-/// Enough for quadratics that are not conforming.
-const COARSER: [usize; 5] = [5, 6, 7, 8, 9];
+/// Enough for constants and linear functions, and for quadratics that are not conforming.
+const COARSE: [usize; 5] = [4, 5, 6, 7, 8];
+const MIDDLE: [usize; 5] = [5, 6, 7, 8, 9];
 /// Errors below this are rounding, and have no order.
 const ROUNDING: f64 = 1e-12;
 /// Farthest from theory that an order may be.
@@ -85,20 +86,20 @@ fn check_layer(label: &str, errors: &[f64], meshes: &[usize]) {
 #[test]
 fn constants_have_order_one_and_two() {
     for problem in [facing_squares(), facing_triangles()] {
-        check_all(&problem, |name| degree(name) == 0, &MESHES);
+        check_all(&problem, |name| degree(name) == 0, &COARSE);
     }
 }
 
 #[test]
 fn linear_functions_have_order_two_and_four() {
-    check_all(&facing_squares(), |name| degree(name) == 1, &MESHES);
+    check_all(&facing_squares(), |name| degree(name) == 1, &COARSE);
 }
 
 #[test]
 fn quadratic_functions_have_order_three_and_six() {
     let conforming = |name: &str| name == "galerkin-2-conforming";
     check_all(&facing_squares(), conforming, &MESHES);
-    check_all(&facing_squares(), |name| degree(name) == 2 && !conforming(name), &COARSER);
+    check_all(&facing_squares(), |name| degree(name) == 2 && !conforming(name), &MIDDLE);
 }
 
 #[test]
@@ -110,7 +111,7 @@ fn higher_degrees_have_their_orders_on_triangles() {
 #[test]
 #[ignore = "takes minutes"]
 fn curved_surfaces_keep_the_orders() {
-    check_all(&two_cylinders(), |_| true, &MESHES);
+    check_all(&two_cylinders(), |name| name != "galerkin-2-conforming", &MESHES);
     let plain = |name: &str| name.starts_with("galerkin") && !name.contains("conforming");
     check_all(&smooth_kernel_on_a_sphere(), plain, &[3, 4, 5, 6, 7]);
 }
