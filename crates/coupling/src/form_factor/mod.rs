@@ -10,6 +10,7 @@ mod jacobian;
 mod pair;
 mod pieces;
 mod point_polygon;
+mod rung;
 mod sampled;
 mod shadow;
 mod small_receiver;

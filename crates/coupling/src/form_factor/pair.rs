@@ -9,9 +9,11 @@
 //! | many bodies between | sampled share of the unoccluded value |
 //!
 //! The tolerance T is relative to the exchange the two patches would have squarely facing each other,
-//! A_i A_j / (π d²), or the smaller area where that is less: stated errors of a row of F then add up to about 2 T.
+//! A_i A_j / (π d²), or the smaller area where that is less: stated errors of a row of F then add up to about 2 T. It is rounded down to a power of ten: a little
+//! more accuracy asked for then never gives a little less.
 
 use super::hidden::{HiddenWork, Occluded, hidden_exchange};
+use super::rung::rung;
 use super::sampled::sampled;
 use super::small_receiver::small_receiver;
 use super::{Unoccluded, Work, facing_exchange, flat, front, front_of};
@@ -122,6 +124,7 @@ impl<'a> PairIntegrator<'a> {
         tolerance: f64,
     ) -> Self {
         let bodies = Bodies::new(occluders, &patches, &[]);
+        let tolerance = rung(tolerance);
         patches.extend(groups);
         let open = Unoccluded::new(&patches, tolerance);
         Self { patches, open, occluders, bodies, tolerance }

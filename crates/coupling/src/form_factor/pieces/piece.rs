@@ -1,0 +1,107 @@
+//! A part of the source: the integral over it, and how well that is known.
+//!
+//! s is the change from the rule before, v the range of h times the area (for a higher rule on a part where all points are of one kind: the change before), m the
+//! largest value that the integral could have, r the reach. The error is, with measured shares (docs/form-factors.md),
+//!
+//! | | r ≤ 1 | r > 1 |
+//! |---|---|---|
+//! | all points of one kind | a √r v | r^p √((b m)² + (c s)²) |
+//! | kinds differ | d √(s v) | r^q √(e² s m + (f m)² + (g s)²) |
+
+use super::shape::{DEGREES, Shape};
+use crate::form_factor::critical::Plane;
+use crate::form_factor::shadow::Kind;
+
+/// Ratio of two changes, and of the first change to v, below which the next rule is expected to pay.
+const PAYS: f64 = 0.29;
+const PAYS_FIRST: f64 = 0.26;
+/// Radius of a part, in its distances from what makes h steep, above which its sides are halved.
+/// No simple number: in a scene with right angles the two are often equal, and rounding would decide.
+const NEAR: f64 = 1.000_001;
+/// The share a of the table,
+const SMOOTH: f64 = 0.063;
+/// b, c and p,
+const SMOOTH_NEAR: [f64; 3] = [0.011, 0.14, 0.5];
+/// d,
+const BROKEN: f64 = 0.096;
+/// and e, f, g and q.
+const BROKEN_NEAR: [f64; 4] = [0.027, 0.011, 0.018, 1.0];
+/// Share of what shows behind a line with no points of the rule.
+const BEHIND: f64 = 1.1;
+
+/// A part, its integral and how that converged.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Piece {
+    pub shape: Shape,
+    /// Radius over the distance from what makes h steep.
+    reach: f64,
+    /// Largest value that the integral could have, m².
+    pub most: f64,
+    /// Range of h at the first points, times the area, m².
+    range: f64,
+    /// Place in [`DEGREES`].
+    pub degree: usize,
+    pub value: f64,
+    /// Difference to the degree before.
+    step: f64,
+    pub error: f64,
+    /// The kind of all points so far, or `None` where they differ.
+    kind: Option<Kind>,
+    /// The line along which the part is cut next, and the share of the width on its smaller side.
+    pub line: Option<(Plane, f64)>,
+    /// Whether the next rule pays more than smaller parts.
+    pub pays: bool,
+}
+
+impl Piece {
+    /// A part with its integral by the first rule; `kind` is that of the points of the first two, and `range` that of h there, times the area.
+    pub(super) fn new(
+        shape: Shape,
+        [reach, most]: [f64; 2],
+        value: f64,
+        kind: Option<Kind>,
+        range: f64,
+    ) -> Self {
+        let nothing = Self { shape, reach, most, range, degree: 0, value, step: 0.0, error: 0.0, kind, line: None, pays: true };
+        nothing
+    }
+
+    /// Takes the integral by the next rule, with the kind of its points.
+    pub(super) fn raise(&mut self, value: f64, kind: Option<Kind>) {
+        let step = (value - self.value).abs();
+        self.kind = self.kind.filter(|_| self.kind == kind);
+        let first = self.degree == 0;
+        let before = if first || self.kind.is_none() { self.range } else { self.step }.max(step);
+        self.degree += 1;
+        self.error = self.estimate(step, before);
+        let quick = step < if first { PAYS_FIRST } else { PAYS } * before;
+        self.pays = self.kind.is_some() && self.reach <= NEAR && quick && self.degree + 1 < DEGREES.len();
+        (self.value, self.step) = (value, step);
+    }
+
+    fn estimate(&self, s: f64, v: f64) -> f64 {
+        let (r, m) = (self.reach, self.most);
+        match (self.kind.is_some(), r <= NEAR) {
+            (true, true) => SMOOTH * v * r.sqrt(),
+            (false, true) => BROKEN * (s * v).sqrt(),
+            (true, false) => {
+                let [b, c, power] = SMOOTH_NEAR;
+                (b * m).hypot(c * s) * r.powf(power)
+            }
+            (false, false) => {
+                let [e, f, g, power] = BROKEN_NEAR;
+                (e * (s * m).sqrt()).hypot(f * m).hypot(g * s) * r.powf(power)
+            }
+        }
+    }
+
+    /// A line shows that has no point of the rule behind it; `missed` is by how much the integral may be off, m².
+    pub(super) fn reveal(&mut self, line: Plane, share: f64, missed: f64) {
+        self.kind = None;
+        self.pays = false;
+        self.error = self.error.max(BEHIND * missed);
+        if self.line.is_none_or(|(_, other)| share > other) {
+            self.line = Some((line, share));
+        }
+    }
+}
