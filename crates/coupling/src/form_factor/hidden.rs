@@ -5,7 +5,8 @@
 
 use super::critical::{Plane, critical_planes};
 use super::pieces::{Breaks, Pieces, PiecesWork};
-use super::shadow::{Hiding, Kind};
+use super::shadow::Kind;
+use super::together::Together;
 use super::{point_to_polygon, to_segments};
 use fredholm_mesh::Vec3;
 use fredholm_quadrature::Estimate;
@@ -24,17 +25,15 @@ pub(crate) struct Occluded<'a> {
 
 impl Occluded<'_> {
     /// The form factor h at each of the `points`.
-    fn hidden(&self, points: &[Vec3], hiding: &mut Hiding, found: &mut Vec<(f64, Kind)>) {
-        let factor =
-            |&x: &Vec3| (hiding.hidden_factor(x, self.normal, self.target, self.screens), hiding.kind());
-        found.extend(points.iter().map(factor));
+    fn hidden(&self, points: &[Vec3], together: &mut Together, found: &mut Vec<(f64, Kind)>) {
+        together.hidden_factors(points, (self.normal, self.target), self.screens, found);
     }
 }
 
 /// Buffers of one thread.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct HiddenWork {
-    hiding: Hiding,
+    together: Together,
     planes: Vec<Plane>,
     pieces: PiecesWork,
     edges: Vec<[Vec3; 2]>,
@@ -42,12 +41,12 @@ pub(crate) struct HiddenWork {
 
 /// The hidden part of the exchange (m²), to an absolute `goal` (m²).
 pub(crate) fn hidden_exchange(scene: &Occluded, goal: f64, work: &mut HiddenWork) -> Estimate {
-    let HiddenWork { hiding, planes, pieces, edges } = work;
+    let HiddenWork { together, planes, pieces, edges } = work;
     let steep = Steep::of(scene, edges);
     critical_planes(scene.source, scene.target, scene.screens, scene.tolerance, planes);
     let most = |x: Vec3| point_to_polygon(scene.normal, scene.target.iter().map(|&y| y - x));
     let breaks = Breaks { planes, flat: scene.tolerance, distance: |x| steep.distance(x), most };
-    let h = |points: &[Vec3], found: &mut Vec<_>| scene.hidden(points, hiding, found);
+    let h = |points: &[Vec3], found: &mut Vec<_>| scene.hidden(points, together, found);
     Pieces::new(h, breaks, pieces, goal).integrate(scene.source)
 }
 

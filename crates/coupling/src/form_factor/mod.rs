@@ -3,6 +3,7 @@
 //! All functions give the symmetric quantity A_i F_ij = ∫_i ∫_j cosθ cosθ' V / (π r²) in m², with an estimated absolute error.
 
 pub(crate) mod contour;
+mod cover;
 mod critical;
 mod facing;
 mod hidden;
@@ -13,6 +14,7 @@ mod point_polygon;
 mod sampled;
 mod shadow;
 mod small_receiver;
+mod together;
 mod unoccluded;
 mod visible;
 

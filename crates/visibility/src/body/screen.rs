@@ -98,12 +98,32 @@ impl<'a> Screen<'a> {
 
     /// What of the target is hidden from a point `x` of the source; where that is a room, `room` holds it.
     pub fn shadow(&self, x: Vec3, room: &mut Room) -> Shadow {
-        let Some(front) = &self.front else {
-            return self.body.shadow_among(x, self.tolerance, self.ahead, room);
-        };
+        self.front_from(x, room);
+        self.rest(x, room)
+    }
+
+    /// Writes the half-spaces that are the same from all points of the source to `room`, in coordinates relative to the origin.
+    pub fn front(&self, room: &mut Room) {
+        self.front_from(Vec3::ZERO, room);
+    }
+
+    /// As [`shadow`](Self::shadow), less the half-spaces of [`front`](Self::front).
+    pub fn outline(&self, x: Vec3, room: &mut Room) -> Shadow {
         room.clear();
-        for (k, face) in front.iter().enumerate() {
+        self.rest(x, room)
+    }
+
+    fn front_from(&self, x: Vec3, room: &mut Room) {
+        room.clear();
+        for (k, face) in self.front.iter().flatten().enumerate() {
             room.push_face(k, face.normal, face.height(x));
+        }
+    }
+
+    /// Adds what [`front`](Self::front) lacks.
+    fn rest(&self, x: Vec3, room: &mut Room) -> Shadow {
+        if self.front.is_none() {
+            return self.body.shadow_among(x, self.tolerance, self.ahead, room);
         }
         for (k, [a, b]) in self.edges.iter().enumerate() {
             room.push_edge(k, (*a - x).cross(*b - x));
