@@ -8,6 +8,7 @@ mod critical;
 mod facing;
 mod hidden;
 mod jacobian;
+mod lanes;
 mod pair;
 mod pieces;
 mod point_polygon;

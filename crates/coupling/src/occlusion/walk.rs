@@ -12,6 +12,9 @@ use fredholm_visibility::Occluders;
 use fredholm_visibility::body::{Bodies, Body, Room};
 use std::ops::Range;
 
+/// Sine of an angle that is not rounding.
+const CERTAIN: f64 = 1e-6;
+
 /// What the walk asks about.
 #[derive(Clone, Copy)]
 pub(crate) struct Sight<'a> {
@@ -130,11 +133,24 @@ impl Walker<'_> {
     /// Whether nothing of one rectangle is seen from the other.
     fn between_rectangles(&mut self, p: &Patch, q: &Patch, bodies: Range<usize>) -> bool {
         let Sight { occluders, bodies: all, .. } = *self.sight;
-        let start = self.stack.len();
-        let Some(shaft) = occluders.shaft_between(p, q) else { return true };
-        self.keep(bodies, |body| occluders.reaches(body, &shaft));
-        let mut reaching = self.stack[start..].iter().map(|&k| &all.as_slice()[k as usize]);
-        reaching.any(|body| blocks(body, p, q, all.tolerance(), &mut self.room))
+        let (middle, tolerance) = ([p, q].map(centre), all.tolerance());
+        let (mut shaft, see) = (None, see(p, q, middle));
+        for k in bodies {
+            let number = self.stack[k];
+            let body = &all.as_slice()[number as usize];
+            // What stands between the middles reaches into the shaft.
+            if !(see && body.is_solid() && body.is_pierced(middle, tolerance)) {
+                let Some(shaft) = shaft.get_or_insert_with(|| occluders.shaft_between(p, q)) else { return true };
+                if !occluders.reaches(body, shaft) {
+                    continue;
+                }
+            }
+            if blocks(body, p, q, tolerance, &mut self.room) {
+                return true;
+            }
+            self.stack.push(number);
+        }
+        all.as_slice().is_empty() && occluders.shaft_between(p, q).is_none()
     }
 
     fn keep(&mut self, bodies: Range<usize>, matters: impl Fn(&Body) -> bool) {
@@ -183,6 +199,18 @@ enum Seen {
     Nothing,
     All,
     Part,
+}
+
+/// A point of a patch.
+fn centre(patch: &Patch) -> Vec3 {
+    patch.corners().iter().sum::<Vec3>() / patch.sides() as f64
+}
+
+/// Whether two points of two patches certainly lie in front of each other.
+fn see(p: &Patch, q: &Patch, [a, b]: [Vec3; 2]) -> bool {
+    let way = b - a;
+    let least = CERTAIN * way.abs().element_sum();
+    way.dot(p.normal()) > least && way.dot(q.normal()) < -least
 }
 
 fn corners(bound: &Bound) -> [Vec3; 2] {

@@ -8,6 +8,7 @@ mod bodies;
 mod clip;
 mod coplanar;
 mod outline;
+mod pierced;
 mod screen;
 mod solid;
 mod weld;
@@ -37,6 +38,7 @@ impl Face {
 
     /// Height of a point over the face, m: positive outside the body.
     #[must_use]
+    #[inline]
     pub fn height(&self, x: Vec3) -> f64 {
         self.normal.dot(x) - self.offset
     }
@@ -82,18 +84,21 @@ impl Body {
 
     /// The corners, m.
     #[must_use]
+    #[inline]
     pub fn corners(&self) -> &[Vec3] {
         &self.corners
     }
 
     /// The planes of the faces: two opposite ones for a flat polygon.
     #[must_use]
+    #[inline]
     pub fn faces(&self) -> &[Face] {
         &self.faces
     }
 
     /// The edges.
     #[must_use]
+    #[inline]
     pub fn edges(&self) -> &[Edge] {
         &self.edges
     }
@@ -113,12 +118,14 @@ impl Body {
 
     /// Whether it encloses a volume.
     #[must_use]
+    #[inline]
     pub fn is_solid(&self) -> bool {
         self.solid
     }
 
     /// The two ends of an edge, m.
     #[must_use]
+    #[inline]
     pub fn ends(&self, edge: &Edge) -> [Vec3; 2] {
         edge.ends.map(|k| self.corners[k as usize])
     }

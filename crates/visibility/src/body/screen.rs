@@ -74,24 +74,28 @@ impl<'a> Screen<'a> {
 
     /// The edges that may cut the target from some point of the source, m.
     #[must_use]
+    #[inline]
     pub fn edges(&self) -> &[[Vec3; 2]] {
         &self.edges
     }
 
     /// The faces whose planes pass through the source.
     #[must_use]
+    #[inline]
     pub fn turning(&self) -> &[Face] {
         &self.turning
     }
 
     /// The body.
     #[must_use]
+    #[inline]
     pub fn body(&self) -> &Body {
         self.body
     }
 
     /// Heights up to which a point lies on a face, m.
     #[must_use]
+    #[inline]
     pub fn tolerance(&self) -> f64 {
         self.tolerance
     }

@@ -10,7 +10,7 @@
 //! Of a parallelogram the errors on opposite sides cancel to h/D. C is measured, see `tests/unoccluded.rs`. Both patches share the
 //! tolerance evenly.
 
-use super::lanes::{LANES, Lanes, Lanes3, Places, difference, dot, each};
+use crate::form_factor::lanes::{LANES, Lanes, Lanes3, Places, difference, dot, each};
 use super::patches::Patches;
 use super::rules::MAX_POINTS;
 use std::f64::consts::FRAC_1_PI;
