@@ -6,6 +6,7 @@
 //! G. Drettakis & E. Fiume, SIGGRAPH 1994, doi:10.1145/192161.192207. The same happens between two bodies. Events
 //! of three edges are curves and not listed.
 
+use super::spans::Spans;
 use fredholm_mesh::Vec3;
 use fredholm_visibility::body::{ODD, Screen};
 
@@ -23,43 +24,82 @@ const INSIDE: f64 = 1e-6;
 /// A plane n·x = c with a unit normal.
 pub(crate) type Plane = (Vec3, f64);
 
-/// Lists the planes of the events of `screens` before `target` that cut the `source` polygon. Those of single bodies come first, long ones before short
-/// ones, and at most [`LINES`] are kept. Lengths below `flat` (m) count as 0.
-pub(crate) fn critical_planes(
-    source: &[Vec3],
-    target: &[Vec3],
-    screens: &[Screen],
-    flat: f64,
-    found: &mut Vec<Plane>,
-) {
-    found.clear();
-    let mut search = Search { source, target, flat, found };
-    let outlines: Vec<Outline> = screens.iter().map(|screen| search.outline(screen)).collect();
-    let whole = Outline { corners: target.to_vec(), edges: sides(target).collect() };
-    for outline in &outlines {
-        search.events(outline, &whole, false);
+/// Critical planes, and buffers.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Critical {
+    found: Vec<Plane>,
+    keyed: Vec<(f64, Plane)>,
+    spans: Spans,
+    /// Corners that can show in the outlines, body after body, and where those of each body end.
+    corners: Vec<Vec3>,
+    ends: Vec<usize>,
+    sides: Vec<[Vec3; 2]>,
+}
+
+impl Critical {
+    /// Finds the planes of the events of `screens` before `target` that cut the `source` polygon. Those of single bodies come first, long ones before short
+    /// ones, and at most [`LINES`] are kept. Lengths below `flat` (m) count as 0.
+    pub(crate) fn planes(
+        &mut self,
+        source: &[Vec3],
+        target: &[Vec3],
+        screens: &[Screen],
+        flat: f64,
+    ) -> &[Plane] {
+        let Self { found, keyed, spans, corners, ends, sides } = self;
+        found.clear();
+        let mut search = Search { source, target, flat, found, keyed, spans };
+        search.turning(screens);
+        list_corners(screens, corners, ends);
+        sides.clear();
+        sides.extend(sides_of(target));
+        let whole = Outline { corners: target, edges: sides };
+        search.all(&Outlines { screens, corners, ends }, &whole);
+        &self.found
     }
-    search.sort(0);
-    let single = search.found.len();
-    if single >= LINES {
-        return search.found.truncate(LINES);
-    }
-    for (k, outline) in outlines.iter().enumerate() {
-        for (_, other) in outlines.iter().enumerate().filter(|(l, _)| *l != k) {
-            search.events(outline, other, true);
+}
+
+/// Lists the ends of the edges that may cut the target.
+fn list_corners(screens: &[Screen], corners: &mut Vec<Vec3>, ends: &mut Vec<usize>) {
+    corners.clear();
+    ends.clear();
+    for screen in screens {
+        let start = corners.len();
+        for &end in screen.edges().iter().flatten() {
+            if !corners[start..].contains(&end) {
+                corners.push(end);
+            }
         }
+        ends.push(corners.len());
     }
-    search.sort(single);
-    search.found.truncate(LINES);
 }
 
 /// What can show in the outline of a body, or of the target.
-struct Outline {
-    corners: Vec<Vec3>,
-    edges: Vec<[Vec3; 2]>,
+#[derive(Clone, Copy)]
+struct Outline<'a> {
+    corners: &'a [Vec3],
+    edges: &'a [[Vec3; 2]],
 }
 
-fn sides(corners: &[Vec3]) -> impl Iterator<Item = [Vec3; 2]> + '_ {
+/// The outlines of all bodies.
+struct Outlines<'a> {
+    screens: &'a [Screen<'a>],
+    corners: &'a [Vec3],
+    ends: &'a [usize],
+}
+
+impl<'a> Outlines<'a> {
+    fn get(&self, k: usize) -> Outline<'a> {
+        let start = if k == 0 { 0 } else { self.ends[k - 1] };
+        Outline { corners: &self.corners[start..self.ends[k]], edges: self.screens[k].edges() }
+    }
+}
+
+fn pairs(first: usize, second: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..first).flat_map(move |k| (0..second).map(move |l| (k, l)))
+}
+
+fn sides_of(corners: &[Vec3]) -> impl Iterator<Item = [Vec3; 2]> + '_ {
     corners.iter().zip(corners.iter().cycle().skip(1)).map(|(&a, &b)| [a, b])
 }
 
@@ -68,38 +108,50 @@ struct Search<'a> {
     target: &'a [Vec3],
     flat: f64,
     found: &'a mut Vec<Plane>,
+    keyed: &'a mut Vec<(f64, Plane)>,
+    spans: &'a mut Spans,
 }
 
 impl Search<'_> {
-    /// The edges of a body that may cut the target. Faces that turn edge-on are events themselves.
-    fn outline(&mut self, screen: &Screen) -> Outline {
-        for face in screen.turning() {
+    /// Faces that turn edge-on are events themselves.
+    fn turning(&mut self, screens: &[Screen]) {
+        for face in screens.iter().flat_map(Screen::turning) {
             self.add((face.normal, face.offset));
         }
-        let mut corners: Vec<Vec3> = Vec::with_capacity(screen.edges().len() + 1);
-        for &end in screen.edges().iter().flatten() {
-            if !corners.contains(&end) {
-                corners.push(end);
-            }
+    }
+
+    fn all(&mut self, outlines: &Outlines, target: &Outline) {
+        let count = outlines.ends.len();
+        for k in 0..count {
+            self.events(&outlines.get(k), target, false);
         }
-        Outline { corners, edges: screen.edges().to_vec() }
+        self.sort(0);
+        let single = self.found.len();
+        if single >= LINES {
+            return self.found.truncate(LINES);
+        }
+        for (k, l) in pairs(count, count).filter(|(k, l)| k != l) {
+            self.events(&outlines.get(k), &outlines.get(l), true);
+        }
+        self.sort(single);
+        self.found.truncate(LINES);
     }
 
     /// Events where the outline `near` lines up with `far` behind it. Those of two bodies matter only in front of the target.
     fn events(&mut self, near: &Outline, far: &Outline, before: bool) {
-        for &[a, b] in &near.edges {
-            for &w in &far.corners {
-                self.event(
-                    w,
-                    [a, b],
-                    before,
-                    |c, n| meeting(c, w - c, [a, b], n),
-                    |t| MARGIN < t && t < 1.0 - MARGIN,
-                );
+        let within = |t: f64| MARGIN < t && t < 1.0 - MARGIN;
+        // Most planes miss the source.
+        self.spans.ask(near.edges, far.corners, self.source);
+        for (k, l) in pairs(near.edges.len(), far.corners.len()) {
+            if self.spans.passes(k, l) {
+                let (ends, w) = (near.edges[k], far.corners[l]);
+                self.event(w, ends, before, |c, n| meeting(c, w - c, ends, n), within);
             }
         }
-        for &v in &near.corners {
-            for &ends in &far.edges {
+        self.spans.ask(far.edges, near.corners, self.source);
+        for (k, l) in pairs(near.corners.len(), far.edges.len()) {
+            if self.spans.passes(l, k) {
+                let (v, ends) = (near.corners[k], far.edges[l]);
                 self.event(v, ends, before, |c, n| meeting(c, v - c, ends, n), |t| t > 1.0 + MARGIN);
             }
         }
@@ -113,12 +165,6 @@ impl Search<'_> {
         meeting: impl Fn(Vec3, Vec3) -> (f64, f64),
         order: impl Fn(f64) -> bool,
     ) {
-        // Most planes miss the source, which their signs tell.
-        let across = (b - a).cross(corner - a);
-        let (low, high) = range(self.source, |x| across.dot(x - a));
-        if low >= 0.0 || high <= 0.0 {
-            return;
-        }
         let Some(plane) = spanned(corner, a, b, self.flat) else { return };
         let height = |x: Vec3| plane.0.dot(x) - plane.1;
         if self.lit(height) != Lit::Partly {
@@ -153,7 +199,11 @@ impl Search<'_> {
             let [a, b] = chord(source, *plane).unwrap_or_default();
             a.distance(b) + 1e-3 * (0.5 * (a + b) - source[0]).dot(ODD)
         };
-        self.found[start..].sort_by(|a, b| key(b).total_cmp(&key(a)));
+        self.keyed.clear();
+        self.keyed.extend(self.found[start..].iter().map(|plane| (key(plane), *plane)));
+        self.keyed.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+        self.found.truncate(start);
+        self.found.extend(self.keyed.iter().map(|(_, plane)| *plane));
     }
 
     fn lit(&self, height: impl Fn(Vec3) -> f64) -> Lit {

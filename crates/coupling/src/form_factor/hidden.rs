@@ -3,7 +3,7 @@
 //! h is smooth between the critical lines ([`critical`](super::critical)), along which the source is cut where that pays ([`Pieces`]). The unoccluded exchange is computed
 //! apart, which keeps the singularity of touching patches out of this integral.
 
-use super::critical::{Plane, critical_planes};
+use super::critical::Critical;
 use super::pieces::{Breaks, Pieces, PiecesWork};
 use super::shadow::Kind;
 use super::together::Together;
@@ -34,16 +34,16 @@ impl Occluded<'_> {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct HiddenWork {
     together: Together,
-    planes: Vec<Plane>,
+    critical: Critical,
     pieces: PiecesWork,
     edges: Vec<[Vec3; 2]>,
 }
 
 /// The hidden part of the exchange (m²), to an absolute `goal` (m²).
 pub(crate) fn hidden_exchange(scene: &Occluded, goal: f64, work: &mut HiddenWork) -> Estimate {
-    let HiddenWork { together, planes, pieces, edges } = work;
+    let HiddenWork { together, critical, pieces, edges } = work;
     let steep = Steep::of(scene, edges);
-    critical_planes(scene.source, scene.target, scene.screens, scene.tolerance, planes);
+    let planes = critical.planes(scene.source, scene.target, scene.screens, scene.tolerance);
     let most = |x: Vec3| point_to_polygon(scene.normal, scene.target.iter().map(|&y| y - x));
     let breaks = Breaks { planes, flat: scene.tolerance, distance: |x| steep.distance(x), most };
     let h = |points: &[Vec3], found: &mut Vec<_>| scene.hidden(points, together, found);

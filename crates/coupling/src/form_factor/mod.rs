@@ -15,6 +15,7 @@ mod point_polygon;
 mod sampled;
 mod shadow;
 mod small_receiver;
+mod spans;
 mod together;
 mod unoccluded;
 mod visible;
