@@ -24,11 +24,22 @@ const INSIDE: f64 = 1e-6;
 /// A plane n·x = c with a unit normal.
 pub(crate) type Plane = (Vec3, f64);
 
+/// Corners of a source of which heights are kept: a patch that is cut by a plane has at most five.
+const CORNERS: usize = 8;
+
+/// A plane that cuts the source, and the heights of the corners of the source over it.
+#[derive(Clone, Copy, Debug)]
+struct Line {
+    plane: Plane,
+    heights: [f64; CORNERS],
+}
+
 /// Critical planes, and buffers.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Critical {
-    found: Vec<Plane>,
-    keyed: Vec<(f64, Plane)>,
+    planes: Vec<Plane>,
+    found: Vec<Line>,
+    keyed: Vec<(f64, Line)>,
     spans: Spans,
     /// Corners that can show in the outlines, body after body, and where those of each body end.
     corners: Vec<Vec3>,
@@ -46,7 +57,7 @@ impl Critical {
         screens: &[Screen],
         flat: f64,
     ) -> &[Plane] {
-        let Self { found, keyed, spans, corners, ends, sides } = self;
+        let Self { planes, found, keyed, spans, corners, ends, sides } = self;
         found.clear();
         let mut search = Search { source, target, flat, found, keyed, spans };
         search.turning(screens);
@@ -55,7 +66,9 @@ impl Critical {
         sides.extend(sides_of(target));
         let whole = Outline { corners: target, edges: sides };
         search.all(&Outlines { screens, corners, ends }, &whole);
-        &self.found
+        planes.clear();
+        planes.extend(found.iter().map(|line| line.plane));
+        planes
     }
 }
 
@@ -107,8 +120,8 @@ struct Search<'a> {
     source: &'a [Vec3],
     target: &'a [Vec3],
     flat: f64,
-    found: &'a mut Vec<Plane>,
-    keyed: &'a mut Vec<(f64, Plane)>,
+    found: &'a mut Vec<Line>,
+    keyed: &'a mut Vec<(f64, Line)>,
     spans: &'a mut Spans,
 }
 
@@ -116,7 +129,10 @@ impl Search<'_> {
     /// Faces that turn edge-on are events themselves.
     fn turning(&mut self, screens: &[Screen]) {
         for face in screens.iter().flat_map(Screen::turning) {
-            self.add((face.normal, face.offset));
+            let line = self.line((face.normal, face.offset));
+            if self.is_new(&line) {
+                self.found.push(line);
+            }
         }
     }
 
@@ -166,64 +182,72 @@ impl Search<'_> {
         order: impl Fn(f64) -> bool,
     ) {
         let Some(plane) = spanned(corner, a, b, self.flat) else { return };
-        let height = |x: Vec3| plane.0.dot(x) - plane.1;
-        if self.lit(height) != Lit::Partly {
+        let line = self.line(plane);
+        if self.lit(&line) != Lit::Partly || !self.is_new(&line) {
             return;
         }
-        let Some([first, last]) = chord(self.source, plane) else { return };
+        let Some([first, last]) = self.chord(&line) else { return };
         let inner = [first.lerp(last, INSIDE), last.lerp(first, INSIDE)];
-        let shows = !before || lit(self.target, self.flat, height) == Lit::Partly;
+        let height = |x: Vec3| plane.0.dot(x) - plane.1;
+        let shows = !before || lit(self.target.iter().map(|&x| height(x)), self.flat) == Lit::Partly;
         if shows && lines_up(inner.map(|c| meeting(c, plane.0)), order) {
-            self.add(plane);
+            self.found.push(line);
         }
     }
 
-    /// Each line once: parallel edges give the same plane many times.
-    fn add(&mut self, plane: Plane) {
-        let same = |other: &Plane| {
-            self.source.iter().all(|x| {
-                let [h, g] = [plane, *other].map(|(n, c)| n.dot(*x) - c);
-                let turned = if plane.0.dot(other.0) < 0.0 { -g } else { g };
-                (h - turned).abs() <= self.flat
-            })
-        };
-        if !self.found.iter().any(same) {
-            self.found.push(plane);
+    fn line(&self, plane: Plane) -> Line {
+        let mut heights = [0.0; CORNERS];
+        for (height, x) in heights.iter_mut().zip(self.source) {
+            *height = plane.0.dot(*x) - plane.1;
         }
+        Line { plane, heights }
+    }
+
+    /// Each line once: parallel edges give the same plane many times.
+    fn is_new(&self, line: &Line) -> bool {
+        let corners = self.source.len().min(CORNERS);
+        let near = |a: &f64, b: f64| (a - b).abs() <= self.flat;
+        let same = |other: &Line| {
+            let turned = if line.plane.0.dot(other.plane.0) < 0.0 { -1.0 } else { 1.0 };
+            line.heights[..corners].iter().zip(&other.heights).all(|(h, g)| near(h, turned * g))
+        };
+        !self.found.iter().any(same)
     }
 
     /// Sorts the lines from `start` on, long ones first: the order of bodies and of their corners has no say in which are used.
     fn sort(&mut self, start: usize) {
-        let source = self.source;
-        let key = |plane: &Plane| {
-            let [a, b] = chord(source, *plane).unwrap_or_default();
-            a.distance(b) + 1e-3 * (0.5 * (a + b) - source[0]).dot(ODD)
-        };
+        if self.found.len() < start + 2 {
+            return;
+        }
         self.keyed.clear();
-        self.keyed.extend(self.found[start..].iter().map(|plane| (key(plane), *plane)));
+        for line in &self.found[start..] {
+            let [a, b] = self.chord(line).unwrap_or_default();
+            let key = a.distance(b) + 1e-3 * (0.5 * (a + b) - self.source[0]).dot(ODD);
+            self.keyed.push((key, *line));
+        }
         self.keyed.sort_by(|(a, _), (b, _)| b.total_cmp(a));
         self.found.truncate(start);
-        self.found.extend(self.keyed.iter().map(|(_, plane)| *plane));
+        self.found.extend(self.keyed.iter().map(|(_, line)| *line));
     }
 
-    fn lit(&self, height: impl Fn(Vec3) -> f64) -> Lit {
-        lit(self.source, self.flat, height)
+    fn lit(&self, line: &Line) -> Lit {
+        lit(line.heights.into_iter().take(self.source.len()), self.flat)
     }
-}
 
-/// The two ends of the line in which a plane cuts a convex polygon.
-fn chord(polygon: &[Vec3], (n, c): Plane) -> Option<[Vec3; 2]> {
-    let height = |x: Vec3| n.dot(x) - c;
-    let mut ends = [Vec3::ZERO; 2];
-    let mut count = 0;
-    for (&p, &q) in polygon.iter().zip(polygon.iter().cycle().skip(1)) {
-        let (from, to) = (height(p), height(q));
-        if (from >= 0.0) != (to >= 0.0) && count < 2 {
-            ends[count] = p + (q - p) * (from / (from - to));
-            count += 1;
+    /// The two ends of a line on the source.
+    fn chord(&self, line: &Line) -> Option<[Vec3; 2]> {
+        let count = self.source.len().min(CORNERS);
+        let (mut ends, mut found) = ([Vec3::ZERO; 2], 0);
+        for k in 0..count {
+            let l = if k + 1 == count { 0 } else { k + 1 };
+            let (from, to) = (line.heights[k], line.heights[l]);
+            if (from >= 0.0) != (to >= 0.0) && found < 2 {
+                ends[found] = self.source[k] + (self.source[l] - self.source[k]) * (from / (from - to));
+                found += 1;
+            }
         }
+        (found == 2).then_some(ends)
     }
-    (count == 2).then_some(ends)
 }
 
 /// Whether a plane has corners in front of it.
@@ -234,21 +258,17 @@ enum Lit {
     Never,
 }
 
-fn lit(corners: &[Vec3], flat: f64, height: impl Fn(Vec3) -> f64) -> Lit {
-    let (low, high) = range(corners, height);
-    match (high > flat, low < -flat) {
+fn lit(heights: impl Iterator<Item = f64>, flat: f64) -> Lit {
+    let (mut above, mut below) = (false, false);
+    for height in heights {
+        above |= height > flat;
+        below |= height < -flat;
+    }
+    match (above, below) {
         (true, true) => Lit::Partly,
         (true, false) => Lit::Wholly,
         _ => Lit::Never,
     }
-}
-
-/// The least and the largest of the heights.
-fn range(corners: &[Vec3], height: impl Fn(Vec3) -> f64) -> (f64, f64) {
-    corners.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| {
-        let height = height(x);
-        (low.min(height), high.max(height))
-    })
 }
 
 fn spanned(v: Vec3, a: Vec3, b: Vec3, flat: f64) -> Option<Plane> {

@@ -134,10 +134,16 @@ impl Walker<'_> {
     fn between_rectangles(&mut self, p: &Patch, q: &Patch, bodies: Range<usize>) -> bool {
         let Sight { occluders, bodies: all, .. } = *self.sight;
         let (middle, tolerance) = ([p, q].map(centre), all.tolerance());
+        if is_behind(p, q, tolerance) || is_behind(q, p, tolerance) {
+            return true;
+        }
         let (mut shaft, see) = (None, see(p, q, middle));
         for k in bodies {
             let number = self.stack[k];
             let body = &all.as_slice()[number as usize];
+            if stands_beside(body, p, q, tolerance) {
+                continue;
+            }
             // What stands between the middles reaches into the shaft.
             if !(see && body.is_solid() && body.is_pierced(middle, tolerance)) {
                 let Some(shaft) = shaft.get_or_insert_with(|| occluders.shaft_between(p, q)) else { return true };
@@ -204,6 +210,18 @@ enum Seen {
 /// A point of a patch.
 fn centre(patch: &Patch) -> Vec3 {
     patch.corners().iter().sum::<Vec3>() / patch.sides() as f64
+}
+
+/// Whether no corner of `q` is higher over `p` than the tolerance.
+fn is_behind(p: &Patch, q: &Patch, tolerance: f64) -> bool {
+    let (normal, most) = (p.normal(), p.normal().dot(p.corner(0)) + tolerance);
+    q.corners().iter().all(|x| normal.dot(*x) <= most)
+}
+
+/// Whether a face of a body has both patches in front.
+fn stands_beside(body: &Body, p: &Patch, q: &Patch, tolerance: f64) -> bool {
+    let corners = p.corners().iter().chain(q.corners());
+    body.faces().iter().any(|face| corners.clone().all(|&x| face.height(x) >= -tolerance))
 }
 
 /// Whether two points of two patches certainly lie in front of each other.
