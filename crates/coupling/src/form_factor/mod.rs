@@ -12,6 +12,7 @@ mod lanes;
 mod pair;
 mod pieces;
 mod point_polygon;
+mod rims;
 mod sampled;
 mod shadow;
 mod small_receiver;

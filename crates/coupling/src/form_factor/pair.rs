@@ -32,9 +32,6 @@ const SMALL: f64 = 0.1;
 /// Relative difference of two quantities that count as equal.
 const TIE: f64 = 1e-6;
 
-/// Height over a body, in lengths of a segment, that is not rounding.
-const CERTAIN: f64 = 1e-6;
-
 /// How an exchange was computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
@@ -315,23 +312,10 @@ fn between(body: &Body, a: Side, b: Side, tolerance: f64) -> Option<Body> {
 /// Whether a body blocks every segment between two patches. The points that a body hides from a point make a convex set, on either side: what holds for
 /// the corners holds for all.
 pub(crate) fn blocks(body: &Body, a: &Patch, b: &Patch, tolerance: f64, room: &mut Room) -> bool {
-    if misses(body, a, b, tolerance) {
-        return false;
-    }
     a.corners().iter().all(|&x| match body.shadow(x, tolerance, room) {
         Shadow::Nothing => false,
         Shadow::Room => b.corners().iter().all(|&y| room.holds(&[y - x])),
     })
-}
-
-/// Whether some corner certainly sees another past the body.
-fn misses(body: &Body, a: &Patch, b: &Patch, tolerance: f64) -> bool {
-    let free = |(&x, &y): (&Vec3, &Vec3)| {
-        let height = tolerance + CERTAIN * (y - x).abs().element_sum();
-        !body.is_pierced([x, y], -height)
-    };
-    let (here, there) = (a.corners().iter(), b.corners().iter());
-    here.clone().zip(there.clone()).any(free) || here.zip(there.rev()).any(free)
 }
 
 fn rises(patch: &Patch, plane: HalfSpace, flat: f64) -> bool {

@@ -4,7 +4,7 @@
 //! meet the target, they are subtracted one after the other ([`Hiding`]). Lengths in metres.
 
 use super::cover::{Cover, MOST};
-use super::point_to_polygon;
+use super::rims::Rims;
 use super::shadow::{Hiding, Kind, Maker, size};
 use fredholm_mesh::Vec3;
 use fredholm_visibility::body::{Room, Screen, Shadow};
@@ -20,6 +20,9 @@ pub(crate) struct Together {
     makers: Vec<Maker>,
     /// Shadows that meet the target, for each point.
     shadows: Vec<u32>,
+    /// The hidden parts, and the point of each.
+    rims: Rims,
+    points: Vec<usize>,
 }
 
 impl Together {
@@ -36,11 +39,16 @@ impl Together {
         let found = &mut found[start..];
         self.shadows.clear();
         self.shadows.resize(points.len(), 0);
+        self.rims.clear();
+        self.points.clear();
         for (k, screen) in screens.iter().enumerate() {
             let first = Kind::first(k);
             if self.behind_faces(target, screen, first) {
-                self.add(points, n, (screen, first), found);
+                self.add(points, (screen, first), found);
             }
+        }
+        for (&k, factor) in self.points.iter().zip(self.rims.factors(n)) {
+            found[k].0 += factor;
         }
         let hiding = &mut self.hiding;
         for ((&x, found), _) in points.iter().zip(found).zip(&self.shadows).filter(|(_, count)| **count > 1) {
@@ -67,14 +75,8 @@ impl Together {
         some
     }
 
-    /// Adds what the body hides from each point.
-    fn add(
-        &mut self,
-        points: &[Vec3],
-        n: Vec3,
-        (screen, first): (&Screen, Maker),
-        found: &mut [(f64, Kind)],
-    ) {
+    /// Lists what the body hides from each point.
+    fn add(&mut self, points: &[Vec3], (screen, first): (&Screen, Maker), found: &mut [(f64, Kind)]) {
         for (k, &x) in points.iter().enumerate() {
             if screen.outline(x, &mut self.room) == Shadow::Nothing {
                 continue;
@@ -86,7 +88,8 @@ impl Together {
             self.cover.start(&self.corners, &self.makers, -x);
             if self.within(screen, first) {
                 self.shadows[k] += 1;
-                found[k].0 += point_to_polygon(n, self.cover.corners().iter().copied());
+                self.rims.push(self.cover.corners());
+                self.points.push(k);
                 found[k].1.add(self.cover.makers());
             }
         }

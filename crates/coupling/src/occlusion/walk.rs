@@ -6,14 +6,12 @@
 //! SIGGRAPH 1993, doi:10.1145/166117.166148, the descent with lists of blockers.
 
 use super::cluster::{Bound, Clusters, Node};
+use super::lines::{Lines, Stands};
 use crate::form_factor::blocks;
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::Occluders;
 use fredholm_visibility::body::{Bodies, Body, Room};
 use std::ops::Range;
-
-/// Sine of an angle that is not rounding.
-const CERTAIN: f64 = 1e-6;
 
 /// What the walk asks about.
 #[derive(Clone, Copy)]
@@ -40,7 +38,7 @@ pub(crate) fn walk(sight: &Sight, panel: usize) -> Panel {
     let found =
         Panel { seen: vec![Vec::new(); rows.len()], partly: vec![Vec::new(); rows.len()], lists: Vec::new() };
     let mut walker =
-        Walker { sight, first: rows.start, end: rows.end, found, room: Room::default(), stack: Vec::new() };
+        Walker { sight, first: rows.start, end: rows.end, found, room: Room::default(), heights: Vec::new(), stack: Vec::new() };
     walker.stack.extend(0..sight.bodies.as_slice().len() as u32);
     let all = 0..walker.stack.len();
     walker.against(panel, 0, all);
@@ -51,7 +49,7 @@ pub(crate) fn walk(sight: &Sight, panel: usize) -> Panel {
 pub(crate) fn walk_from(sight: &Sight, node: usize) -> Panel {
     let first = sight.clusters.nodes[node].places.start;
     let found = Panel { seen: vec![Vec::new()], partly: vec![Vec::new()], lists: Vec::new() };
-    let mut walker = Walker { sight, first, end: first + 1, found, room: Room::default(), stack: Vec::new() };
+    let mut walker = Walker { sight, first, end: first + 1, found, room: Room::default(), heights: Vec::new(), stack: Vec::new() };
     walker.stack.extend(0..sight.bodies.as_slice().len() as u32);
     let all = 0..walker.stack.len();
     walker.pair(node, 0, all);
@@ -64,6 +62,8 @@ struct Walker<'a> {
     end: usize,
     found: Panel,
     room: Room,
+    /// Heights of corners over the faces of a body.
+    heights: Vec<[f64; 8]>,
     /// Lists of bodies, one behind the other.
     stack: Vec<u32>,
 }
@@ -133,30 +133,30 @@ impl Walker<'_> {
     /// Whether nothing of one rectangle is seen from the other.
     fn between_rectangles(&mut self, p: &Patch, q: &Patch, bodies: Range<usize>) -> bool {
         let Sight { occluders, bodies: all, .. } = *self.sight;
-        let (middle, tolerance) = ([p, q].map(centre), all.tolerance());
+        let tolerance = all.tolerance();
         if is_behind(p, q, tolerance) || is_behind(q, p, tolerance) {
             return true;
         }
-        let (mut shaft, see) = (None, see(p, q, middle));
+        let (mut shaft, lines) = (None, Lines::between(p, q, tolerance));
         for k in bodies {
             let number = self.stack[k];
             let body = &all.as_slice()[number as usize];
-            if stands_beside(body, p, q, tolerance) {
+            let stands = lines.ask(body, tolerance, &mut self.heights);
+            if stands == Stands::Beside {
                 continue;
             }
-            // What stands between the middles reaches into the shaft.
-            if !(see && body.is_solid() && body.is_pierced(middle, tolerance)) {
+            if stands != Stands::Partly {
                 let Some(shaft) = shaft.get_or_insert_with(|| occluders.shaft_between(p, q)) else { return true };
                 if !occluders.reaches(body, shaft) {
                     continue;
                 }
-            }
-            if blocks(body, p, q, tolerance, &mut self.room) {
-                return true;
+                if stands == Stands::Across && blocks(body, p, q, tolerance, &mut self.room) {
+                    return true;
+                }
             }
             self.stack.push(number);
         }
-        all.as_slice().is_empty() && occluders.shaft_between(p, q).is_none()
+        false
     }
 
     fn keep(&mut self, bodies: Range<usize>, matters: impl Fn(&Body) -> bool) {
@@ -207,28 +207,10 @@ enum Seen {
     Part,
 }
 
-/// A point of a patch.
-fn centre(patch: &Patch) -> Vec3 {
-    patch.corners().iter().sum::<Vec3>() / patch.sides() as f64
-}
-
 /// Whether no corner of `q` is higher over `p` than the tolerance.
 fn is_behind(p: &Patch, q: &Patch, tolerance: f64) -> bool {
     let (normal, most) = (p.normal(), p.normal().dot(p.corner(0)) + tolerance);
     q.corners().iter().all(|x| normal.dot(*x) <= most)
-}
-
-/// Whether a face of a body has both patches in front.
-fn stands_beside(body: &Body, p: &Patch, q: &Patch, tolerance: f64) -> bool {
-    let corners = p.corners().iter().chain(q.corners());
-    body.faces().iter().any(|face| corners.clone().all(|&x| face.height(x) >= -tolerance))
-}
-
-/// Whether two points of two patches certainly lie in front of each other.
-fn see(p: &Patch, q: &Patch, [a, b]: [Vec3; 2]) -> bool {
-    let way = b - a;
-    let least = CERTAIN * way.abs().element_sum();
-    way.dot(p.normal()) > least && way.dot(q.normal()) < -least
 }
 
 fn corners(bound: &Bound) -> [Vec3; 2] {

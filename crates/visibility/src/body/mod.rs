@@ -8,7 +8,6 @@ mod bodies;
 mod clip;
 mod coplanar;
 mod outline;
-mod pierced;
 mod screen;
 mod solid;
 mod weld;
