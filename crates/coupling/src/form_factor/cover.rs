@@ -70,15 +70,16 @@ impl Cover {
     #[inline]
     pub(super) fn keep(&mut self, (n, c, maker): (Vec3, f64, Maker), flat: f64) -> bool {
         let part = &self.parts[self.now];
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        let (mut above, mut below) = (false, false);
         for (height, corner) in self.heights.iter_mut().zip(&part.corners[..part.len]) {
             *height = n.dot(*corner) - c;
-            (low, high) = (low.min(*height), high.max(*height));
+            above |= *height > flat;
+            below |= *height < -flat;
         }
-        if high > flat && low < -flat {
+        if above && below {
             self.cut(maker, flat);
         }
-        high > flat
+        above
     }
 
     fn cut(&mut self, maker: Maker, flat: f64) {

@@ -7,7 +7,7 @@ use super::critical::Critical;
 use super::pieces::{Breaks, Pieces, PiecesWork};
 use super::shadow::Kind;
 use super::together::Together;
-use super::{point_to_polygon, to_segments};
+use super::{Segment, point_to_polygon, to_segments};
 use fredholm_mesh::Vec3;
 use fredholm_quadrature::Estimate;
 use fredholm_visibility::body::Screen;
@@ -36,7 +36,7 @@ pub(crate) struct HiddenWork {
     together: Together,
     critical: Critical,
     pieces: PiecesWork,
-    edges: Vec<[Vec3; 2]>,
+    edges: Vec<Segment>,
 }
 
 /// The hidden part of the exchange (m²), to an absolute `goal` (m²).
@@ -52,19 +52,19 @@ pub(crate) fn hidden_exchange(scene: &Occluded, goal: f64, work: &mut HiddenWork
 
 /// What makes the hidden part steep where it is close: corners of bodies, and edges that do not lie on the source.
 struct Steep<'a> {
-    edges: &'a [[Vec3; 2]],
+    edges: &'a [Segment],
 }
 
 impl<'a> Steep<'a> {
-    fn of(scene: &Occluded, edges: &'a mut Vec<[Vec3; 2]>) -> Self {
+    fn of(scene: &Occluded, edges: &'a mut Vec<Segment>) -> Self {
         let lies = |x: Vec3| (x - scene.source[0]).dot(scene.normal).abs() <= scene.tolerance;
         edges.clear();
         for body in scene.screens.iter().map(Screen::body) {
             for [a, b] in body.edges().iter().map(|edge| body.ends(edge)) {
                 if lies(a) && lies(b) {
-                    edges.extend([[a, a], [b, b]]);
+                    edges.extend([[a, a], [b, b]].map(Segment::new));
                 } else {
-                    edges.push([a, b]);
+                    edges.push(Segment::new([a, b]));
                 }
             }
         }

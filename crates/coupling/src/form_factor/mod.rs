@@ -22,7 +22,7 @@ mod unoccluded;
 mod visible;
 
 pub use contour::contour_integral;
-pub(crate) use facing::{extent, facing_exchange, flat, front, front_of, to_segments};
+pub(crate) use facing::{Segment, Side, extent, facing_exchange, flat, front, front_of, to_segments};
 pub(crate) use jacobian::jacobian;
 pub(crate) use pair::blocks;
 pub use pair::{Exchange, Method, PairIntegrator, Workspace};

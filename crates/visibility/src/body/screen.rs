@@ -18,7 +18,7 @@ pub struct Screen<'a> {
     turning: Vec<Face>,
     /// Faces that look at all of the source and do not have all of the target behind them, where the outline is the same from everywhere.
     front: Option<Vec<Face>>,
-    /// Faces that do not have all of the target behind them.
+    /// Faces that do not have all of the target behind them, where the outline is not the same from everywhere.
     ahead: Bits,
     tolerance: f64,
 }
@@ -47,7 +47,9 @@ impl<'a> Screen<'a> {
         let before = |face: &Face| target.iter().any(|&y| face.height(y) > tolerance);
         let front = fixed.then(|| some(Looks::All).filter(before).collect());
         let mut ahead = Bits::default();
-        body.faces.iter().enumerate().filter(|(_, face)| before(face)).for_each(|(k, _)| ahead.set(k));
+        if !fixed {
+            body.faces.iter().enumerate().filter(|(_, face)| before(face)).for_each(|(k, _)| ahead.set(k));
+        }
         let mut screen = Self { body, edges: Vec::with_capacity(8), turning, front, ahead, tolerance };
         for edge in &body.edges {
             screen.consider(edge, edge.faces.map(|face| looks[face as usize]), source, target);
