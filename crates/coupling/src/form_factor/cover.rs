@@ -108,8 +108,7 @@ impl Cover {
 mod tests {
     use super::*;
 
-    const SQUARE: [Vec3; 4] =
-        [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y];
+    const SQUARE: [Vec3; 4] = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y];
 
     fn area(corners: &[Vec3]) -> f64 {
         corners.windows(2).map(|e| 0.5 * (e[0] - corners[0]).cross(e[1] - corners[0]).z).sum()

@@ -108,10 +108,6 @@ impl<'a> Outlines<'a> {
     }
 }
 
-fn pairs(first: usize, second: usize) -> impl Iterator<Item = (usize, usize)> {
-    (0..first).flat_map(move |k| (0..second).map(move |l| (k, l)))
-}
-
 fn sides_of(corners: &[Vec3]) -> impl Iterator<Item = [Vec3; 2]> + '_ {
     corners.iter().zip(corners.iter().cycle().skip(1)).map(|(&a, &b)| [a, b])
 }
@@ -146,8 +142,10 @@ impl Search<'_> {
         if single >= LINES {
             return self.found.truncate(LINES);
         }
-        for (k, l) in pairs(count, count).filter(|(k, l)| k != l) {
-            self.events(&outlines.get(k), &outlines.get(l), true);
+        for k in 0..count {
+            for l in (0..count).filter(|&l| l != k) {
+                self.events(&outlines.get(k), &outlines.get(l), true);
+            }
         }
         self.sort(single);
         self.found.truncate(LINES);
@@ -158,17 +156,19 @@ impl Search<'_> {
         let within = |t: f64| MARGIN < t && t < 1.0 - MARGIN;
         // Most planes miss the source.
         self.spans.ask(near.edges, far.corners, self.source);
-        for (k, l) in pairs(near.edges.len(), far.corners.len()) {
-            if self.spans.passes(k, l) {
-                let (ends, w) = (near.edges[k], far.corners[l]);
-                self.event(w, ends, before, |c, n| meeting(c, w - c, ends, n), within);
+        for (k, &ends) in near.edges.iter().enumerate() {
+            for (l, &w) in far.corners.iter().enumerate() {
+                if self.spans.passes(k, l) {
+                    self.event(w, ends, before, |c, n| meeting(c, w - c, ends, n), within);
+                }
             }
         }
         self.spans.ask(far.edges, near.corners, self.source);
-        for (k, l) in pairs(near.corners.len(), far.edges.len()) {
-            if self.spans.passes(l, k) {
-                let (v, ends) = (near.corners[k], far.edges[l]);
-                self.event(v, ends, before, |c, n| meeting(c, v - c, ends, n), |t| t > 1.0 + MARGIN);
+        for (k, &v) in near.corners.iter().enumerate() {
+            for (l, &ends) in far.edges.iter().enumerate() {
+                if self.spans.passes(l, k) {
+                    self.event(v, ends, before, |c, n| meeting(c, v - c, ends, n), |t| t > 1.0 + MARGIN);
+                }
             }
         }
     }

@@ -83,9 +83,11 @@ mod tests {
 
     #[test]
     fn polygons_have_the_factors_that_they_have_alone() {
-        let corner = |k: usize| Vec3::new((0.7 * k as f64).sin(), (1.3 * k as f64).cos(), 0.2 * (k % 7 + 1) as f64);
-        let polygons: Vec<Vec<Vec3>> =
-            (3..9).map(|n| (0..n).map(|k| corner(5 * n + k) * if n < 6 { 0.01 } else { 1.0 } + Vec3::Z).collect()).collect();
+        let corner =
+            |k: usize| Vec3::new((0.7 * k as f64).sin(), (1.3 * k as f64).cos(), 0.2 * (k % 7 + 1) as f64);
+        let polygons: Vec<Vec<Vec3>> = (3..9)
+            .map(|n| (0..n).map(|k| corner(5 * n + k) * if n < 6 { 0.01 } else { 1.0 } + Vec3::Z).collect())
+            .collect();
         let mut rims = Rims::default();
         polygons.iter().for_each(|polygon| rims.push(polygon));
         let alone = polygons.iter().map(|polygon| point_to_polygon(Vec3::Z, polygon.iter().copied()));

@@ -10,8 +10,27 @@ use fredholm_visibility::body::Body;
 const CERTAIN: f64 = 1e-6;
 /// Corners of two patches.
 const CORNERS: usize = 8;
-/// The segments, by their ends: those between corners of the same place, and of the opposite.
-const LINES: [[usize; 2]; 8] = [[0, 4], [1, 5], [2, 6], [3, 7], [0, 6], [1, 7], [2, 4], [3, 5]];
+/// The segments, by their ends: those between corners of the same place, of the opposite, and the others.
+const LINES: [[usize; 2]; 16] = [
+    [0, 4],
+    [1, 5],
+    [2, 6],
+    [3, 7],
+    [0, 6],
+    [1, 7],
+    [2, 4],
+    [3, 5],
+    [0, 5],
+    [1, 6],
+    [2, 7],
+    [3, 4],
+    [0, 7],
+    [1, 4],
+    [2, 5],
+    [3, 6],
+];
+/// Those of them that are asked about first.
+const FIRST: usize = 8;
 
 /// What is known of a body between two patches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,8 +39,10 @@ pub(crate) enum Stands {
     Beside,
     /// In the way of a segment, and not of another.
     Partly,
-    /// In the way of all segments that were asked about.
+    /// In the way of all segments as far as a few of them tell.
     Across,
+    /// In the way of all segments: the points that a body hides from a point make a convex set, on either side.
+    Certainly,
     /// In the way of none of them.
     Unknown,
 }
@@ -38,11 +59,14 @@ impl Lines {
     pub(crate) fn between(p: &Patch, q: &Patch, tolerance: f64) -> Self {
         let mut corners = [[0.0; CORNERS]; 3];
         for m in 0..CORNERS {
-            let corner = if m < 4 { p.corner(m.min(p.sides() - 1)) } else { q.corner((m - 4).min(q.sides() - 1)) };
+            let corner =
+                if m < 4 { p.corner(m.min(p.sides() - 1)) } else { q.corner((m - 4).min(q.sides() - 1)) };
             (corners[0][m], corners[1][m], corners[2][m]) = (corner.x, corner.y, corner.z);
         }
         let size = |x: Vec3| x.abs().element_sum();
-        let reach = size(q.corner(0) - p.corner(0)) + size(p.corner(2) - p.corner(0)) + size(q.corner(2) - q.corner(0));
+        let reach = size(q.corner(0) - p.corner(0))
+            + size(p.corner(2) - p.corner(0))
+            + size(q.corner(2) - q.corner(0));
         Self { corners, certain: tolerance + CERTAIN * reach }
     }
 
@@ -57,9 +81,10 @@ impl Lines {
             heights.push(over);
         }
         let meets = |[a, b]: [usize; 2], depth: f64| is_pierced(heights, a, b, depth);
-        let some = body.is_solid() && LINES.iter().any(|&line| meets(line, self.certain));
-        let all = LINES.iter().all(|&line| meets(line, -self.certain));
+        let some = body.is_solid() && LINES[..FIRST].iter().any(|&line| meets(line, self.certain));
+        let all = LINES[..FIRST].iter().all(|&line| meets(line, -self.certain));
         match (some, all) {
+            (true, true) if LINES.iter().all(|&line| meets(line, self.certain)) => Stands::Certainly,
             (_, true) => Stands::Across,
             (true, false) => Stands::Partly,
             (false, false) => Stands::Unknown,
@@ -104,6 +129,28 @@ mod tests {
         let corner = |u: f64, v: f64| Vec3::new(x + half * u, half * v, z);
         let corners = [corner(-1., -1.), corner(1., -1.), corner(1., 1.), corner(-1., 1.)];
         Patch::quad(corners).unwrap().unwrap()
+    }
+
+    #[test]
+    fn a_box_stands_in_the_way_of_all_of_some_or_of_none() {
+        let plates = [square(0.4, 0.5, 0.0).flipped(), square(0.6, 0.5, 0.0)];
+        let side = |k: usize| {
+            let (low, high) = (square(0.4, 0.5, 0.0), square(0.6, 0.5, 0.0));
+            Patch::quad([low.corner(k), low.corner(k + 1), high.corner(k + 1), high.corner(k)])
+                .unwrap()
+                .unwrap()
+        };
+        let faces: Vec<Patch> = plates.into_iter().chain((0..4).map(side)).collect();
+        let occluders = Occluders::new(&faces).unwrap();
+        let ends = |x: f64| [square(0.0, 0.1, x), square(1.0, 0.1, x).flipped()];
+        let all: Vec<Patch> = [0.0, 0.5, 0.7].into_iter().flat_map(ends).collect();
+        let bodies = Bodies::new(&occluders, &all.iter().collect::<Vec<_>>(), &[]);
+        let ask = |x: f64| {
+            let [p, q] = ends(x);
+            Lines::between(&p, &q, 1e-9).ask(&bodies.as_slice()[0], 1e-9, &mut Vec::new())
+        };
+        assert_eq!(bodies.as_slice().len(), 1);
+        assert_eq!([0.0, 0.5, 0.7].map(ask), [Stands::Certainly, Stands::Partly, Stands::Beside]);
     }
 
     #[test]

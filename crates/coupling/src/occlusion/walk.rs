@@ -37,8 +37,15 @@ pub(crate) fn walk(sight: &Sight, panel: usize) -> Panel {
     let rows = sight.clusters.nodes[panel].places.clone();
     let found =
         Panel { seen: vec![Vec::new(); rows.len()], partly: vec![Vec::new(); rows.len()], lists: Vec::new() };
-    let mut walker =
-        Walker { sight, first: rows.start, end: rows.end, found, room: Room::default(), heights: Vec::new(), stack: Vec::new() };
+    let mut walker = Walker {
+        sight,
+        first: rows.start,
+        end: rows.end,
+        found,
+        room: Room::default(),
+        heights: Vec::new(),
+        stack: Vec::new(),
+    };
     walker.stack.extend(0..sight.bodies.as_slice().len() as u32);
     let all = 0..walker.stack.len();
     walker.against(panel, 0, all);
@@ -49,7 +56,15 @@ pub(crate) fn walk(sight: &Sight, panel: usize) -> Panel {
 pub(crate) fn walk_from(sight: &Sight, node: usize) -> Panel {
     let first = sight.clusters.nodes[node].places.start;
     let found = Panel { seen: vec![Vec::new()], partly: vec![Vec::new()], lists: Vec::new() };
-    let mut walker = Walker { sight, first, end: first + 1, found, room: Room::default(), heights: Vec::new(), stack: Vec::new() };
+    let mut walker = Walker {
+        sight,
+        first,
+        end: first + 1,
+        found,
+        room: Room::default(),
+        heights: Vec::new(),
+        stack: Vec::new(),
+    };
     walker.stack.extend(0..sight.bodies.as_slice().len() as u32);
     let all = 0..walker.stack.len();
     walker.pair(node, 0, all);
@@ -142,11 +157,15 @@ impl Walker<'_> {
             let number = self.stack[k];
             let body = &all.as_slice()[number as usize];
             let stands = lines.ask(body, tolerance, &mut self.heights);
-            if stands == Stands::Beside {
-                continue;
+            match stands {
+                Stands::Beside => continue,
+                Stands::Certainly => return true,
+                Stands::Partly | Stands::Across | Stands::Unknown => {}
             }
             if stands != Stands::Partly {
-                let Some(shaft) = shaft.get_or_insert_with(|| occluders.shaft_between(p, q)) else { return true };
+                let Some(shaft) = shaft.get_or_insert_with(|| occluders.shaft_between(p, q)) else {
+                    return true;
+                };
                 if !occluders.reaches(body, shaft) {
                     continue;
                 }

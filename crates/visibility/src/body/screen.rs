@@ -66,8 +66,8 @@ impl<'a> Screen<'a> {
         let ends = if left == Looks::All || right == Looks::None { [b, a] } else { [a, b] };
         let cuts = |x: &Vec3| {
             let inward = (ends[0] - *x).cross(ends[1] - *x);
-            let flat = self.tolerance * inward.length();
-            target.iter().any(|y| inward.dot(*y - *x) < -flat)
+            let outside = |height: f64| height < 0.0 && height < -self.tolerance * inward.length();
+            target.iter().any(|y| outside(inward.dot(*y - *x)))
         };
         if self.front.is_none() || source.iter().any(cuts) {
             self.edges.push(ends);
