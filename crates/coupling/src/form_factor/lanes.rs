@@ -3,6 +3,8 @@
 //! Loops run over lanes with additions, multiplications, divisions and roots only, never fused, so that a result has the same bits whatever the
 //! width of the machine's vectors and whichever pairs stand beside it.
 
+#![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
+
 /// Pairs of a block.
 pub(super) const LANES: usize = 8;
 

@@ -4,6 +4,8 @@
 //! Θₑ the angle between rₑ and rₑ₊₁, r the corners seen from the point. Dimensionless. The polygon must lie above the horizon of
 //! the point and be counter-clockwise seen from it.
 
+#![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
+
 use super::lanes::{LANES, Lanes, Lanes3, any, ask, dot, each, only};
 use fredholm_mesh::Vec3;
 use std::f64::consts::FRAC_1_PI;

@@ -2,6 +2,8 @@
 //!
 //! The formula and its bits are those of [`point_to_polygon`](super::point_to_polygon).
 
+#![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
+
 use super::lanes::{LANES, Lanes, Lanes3};
 use super::point_polygon::{edge_terms, factor};
 use fredholm_mesh::Vec3;
@@ -47,7 +49,7 @@ impl Rims {
 
     /// The form factors of all polygons from points with normal `n`.
     pub(super) fn factors(&mut self, n: Vec3) -> impl Iterator<Item = f64> + '_ {
-        self.arch.dispatch(Terms { edges: &self.edges, n, terms: &mut self.terms });
+        self.arch.dispatch(Terms { edges: &self.edges, n, found: &mut self.terms });
         let (terms, mut start) = (&self.terms, 0);
         self.ends.iter().map(move |&end| {
             let sum = (start..end).map(|k| terms[k / LANES][k % LANES]).sum();
@@ -61,7 +63,7 @@ impl Rims {
 struct Terms<'a> {
     edges: &'a [[Lanes3; 2]],
     n: Vec3,
-    terms: &'a mut Vec<Lanes>,
+    found: &'a mut Vec<Lanes>,
 }
 
 impl NullaryFnOnce for Terms<'_> {
@@ -69,9 +71,9 @@ impl NullaryFnOnce for Terms<'_> {
 
     #[inline(always)]
     fn call(self) {
-        self.terms.clear();
+        self.found.clear();
         for [from, to] in self.edges {
-            self.terms.push(edge_terms(self.n, from, to));
+            self.found.push(edge_terms(self.n, from, to));
         }
     }
 }
@@ -89,7 +91,9 @@ mod tests {
             .map(|n| (0..n).map(|k| corner(5 * n + k) * if n < 6 { 0.01 } else { 1.0 } + Vec3::Z).collect())
             .collect();
         let mut rims = Rims::default();
-        polygons.iter().for_each(|polygon| rims.push(polygon));
+        for polygon in &polygons {
+            rims.push(polygon);
+        }
         let alone = polygons.iter().map(|polygon| point_to_polygon(Vec3::Z, polygon.iter().copied()));
         assert!(rims.factors(Vec3::Z).eq(alone));
     }

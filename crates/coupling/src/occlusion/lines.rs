@@ -57,12 +57,9 @@ pub(crate) struct Lines {
 
 impl Lines {
     pub(crate) fn between(p: &Patch, q: &Patch, tolerance: f64) -> Self {
-        let mut corners = [[0.0; CORNERS]; 3];
-        for m in 0..CORNERS {
-            let corner =
-                if m < 4 { p.corner(m.min(p.sides() - 1)) } else { q.corner((m - 4).min(q.sides() - 1)) };
-            (corners[0][m], corners[1][m], corners[2][m]) = (corner.x, corner.y, corner.z);
-        }
+        let of = |patch: &Patch, m: usize| patch.corner(m.min(patch.sides() - 1));
+        let ends = [0, 1, 2, 3, 4, 5, 6, 7].map(|m| if m < 4 { of(p, m) } else { of(q, m - 4) });
+        let corners = [ends.map(|x| x.x), ends.map(|x| x.y), ends.map(|x| x.z)];
         let size = |x: Vec3| x.abs().element_sum();
         let reach = size(q.corner(0) - p.corner(0))
             + size(p.corner(2) - p.corner(0))
@@ -143,8 +140,8 @@ mod tests {
         let faces: Vec<Patch> = plates.into_iter().chain((0..4).map(side)).collect();
         let occluders = Occluders::new(&faces).unwrap();
         let ends = |x: f64| [square(0.0, 0.1, x), square(1.0, 0.1, x).flipped()];
-        let all: Vec<Patch> = [0.0, 0.5, 0.7].into_iter().flat_map(ends).collect();
-        let bodies = Bodies::new(&occluders, &all.iter().collect::<Vec<_>>(), &[]);
+        let walls = [square(0.0, 2.0, 0.0), square(1.0, 2.0, 0.0).flipped()];
+        let bodies = Bodies::new(&occluders, &[&walls[0], &walls[1]], &[]);
         let ask = |x: f64| {
             let [p, q] = ends(x);
             Lines::between(&p, &q, 1e-9).ask(&bodies.as_slice()[0], 1e-9, &mut Vec::new())
