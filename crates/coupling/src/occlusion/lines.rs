@@ -47,6 +47,13 @@ pub(crate) enum Stands {
     Unknown,
 }
 
+impl Stands {
+    /// Whether no segment is known to be free.
+    pub(crate) fn may_be_across(self) -> bool {
+        matches!(self, Self::Across | Self::Certainly)
+    }
+}
+
 /// The corners of two patches, by components.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lines {

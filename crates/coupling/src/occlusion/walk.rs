@@ -149,9 +149,12 @@ impl Walker<'_> {
     fn between_rectangles(&mut self, p: &Patch, q: &Patch, bodies: Range<usize>) -> bool {
         let Sight { occluders, bodies: all, .. } = *self.sight;
         let tolerance = all.tolerance();
-        if is_behind(p, q, tolerance) || is_behind(q, p, tolerance) {
+        let sides = [side(p, q, tolerance), side(q, p, tolerance)];
+        if sides.contains(&Side::Behind) {
             return true;
         }
+        // Of patches that cross each other's plane, only parts see each other.
+        let wholly = sides == [Side::Before; 2];
         let (mut shaft, lines) = (None, Lines::between(p, q, tolerance));
         for k in bodies {
             let number = self.stack[k];
@@ -159,17 +162,17 @@ impl Walker<'_> {
             let stands = lines.ask(body, tolerance, &mut self.heights);
             match stands {
                 Stands::Beside => continue,
-                Stands::Certainly => return true,
-                Stands::Partly | Stands::Across | Stands::Unknown => {}
+                Stands::Certainly if wholly => return true,
+                _ => {}
             }
-            if stands != Stands::Partly {
+            if stands != Stands::Partly || !wholly {
                 let Some(shaft) = shaft.get_or_insert_with(|| occluders.shaft_between(p, q)) else {
                     return true;
                 };
                 if !occluders.reaches(body, shaft) {
                     continue;
                 }
-                if stands == Stands::Across && blocks(body, p, q, tolerance, &mut self.room) {
+                if stands.may_be_across() && blocks(body, p, q, tolerance, &mut self.room) {
                     return true;
                 }
             }
@@ -226,10 +229,28 @@ enum Seen {
     Part,
 }
 
-/// Whether no corner of `q` is higher over `p` than the tolerance.
-fn is_behind(p: &Patch, q: &Patch, tolerance: f64) -> bool {
-    let (normal, most) = (p.normal(), p.normal().dot(p.corner(0)) + tolerance);
-    q.corners().iter().all(|x| normal.dot(*x) <= most)
+/// Where a patch lies over the plane of another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Side {
+    Before,
+    Behind,
+    Across,
+}
+
+/// Where `q` lies over `p`.
+fn side(p: &Patch, q: &Patch, tolerance: f64) -> Side {
+    let (normal, offset) = (p.normal(), p.normal().dot(p.corner(0)));
+    let (mut above, mut below) = (false, false);
+    for x in q.corners() {
+        let height = normal.dot(*x) - offset;
+        above |= height > tolerance;
+        below |= height < -tolerance;
+    }
+    match (above, below) {
+        (true, false) => Side::Before,
+        (true, true) => Side::Across,
+        _ => Side::Behind,
+    }
 }
 
 fn corners(bound: &Bound) -> [Vec3; 2] {
