@@ -2,6 +2,7 @@
 //!
 //! A line may also pass between the points and the border of a part. What is behind it nobody has seen.
 
+use super::EQUAL;
 use crate::form_factor::critical::Plane;
 use crate::form_factor::shadow::Kind;
 use fredholm_mesh::Vec3;
@@ -48,9 +49,19 @@ impl Points {
         }
     }
 
+    /// Leaves out the kinds of points at heights of at most `flat`: rounding decides about them.
+    pub(super) fn leave_out(&mut self, (n, c): Plane, flat: f64) {
+        for (x, bit) in self.places.iter().zip(&mut self.bits) {
+            if (n.dot(*x) - c).abs() <= flat {
+                *bit = 0;
+            }
+        }
+    }
+
     /// The kind of all points, if it is one.
     pub(super) fn kind(&self) -> Option<Kind> {
-        if let [kind] = self.kinds[..] { Some(kind) } else { None }
+        let all = self.bits.iter().fold(0, |all, bit| all | bit);
+        (all.count_ones() == 1).then(|| self.kinds[all.trailing_zeros() as usize])
     }
 
     /// Largest less least h.
@@ -60,13 +71,12 @@ impl Points {
         high - low
     }
 
-    /// Points at heights of at most `flat` are on neither side: rounding would decide.
-    pub(super) fn judge(&self, (n, c): Plane, flat: f64) -> Line {
+    /// What the points tell about a line.
+    pub(super) fn judge(&self, (n, c): Plane) -> Line {
         let (mut above, mut below) = (0, 0);
         for (x, bit) in self.places.iter().zip(&self.bits) {
-            let height = n.dot(*x) - c;
-            above |= if height > flat { *bit } else { 0 };
-            below |= if height < -flat { *bit } else { 0 };
+            let side = if n.dot(*x) > c { &mut above } else { &mut below };
+            *side |= bit;
         }
         if above == 0 || below == 0 {
             Line::Unseen
@@ -77,11 +87,12 @@ impl Points {
         }
     }
 
-    /// h at the last point less h at the nearest other one.
+    /// Largest difference of h at the last point from h at the nearest others.
     pub(super) fn jump(&self) -> f64 {
         let last = self.places.len() - 1;
-        let distance = |k: &usize| self.places[*k].distance_squared(self.places[last]);
-        let nearest = (0..last).min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        nearest.map_or(0.0, |k| (self.found[last].0 - self.found[k].0).abs())
+        let distances = || self.places[..last].iter().map(|x| x.distance(self.places[last]));
+        let nearest = distances().fold(f64::INFINITY, f64::min) * (1.0 + EQUAL);
+        let near = distances().zip(&self.found).filter(|(distance, _)| *distance <= nearest);
+        near.map(|(_, (h, _))| (h - self.found[last].0).abs()).fold(0.0, f64::max)
     }
 }

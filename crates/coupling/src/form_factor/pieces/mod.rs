@@ -26,8 +26,10 @@ use shape::Shape;
 const EQUAL: f64 = 1e-6;
 /// A line that leaves less than this share of the width of a part on one side does not cut it.
 const SIDE: f64 = 0.020_3;
+/// Heights over a line below this share of the width of a part count as 0: often several lines meet in one point.
+const ON_THE_LINE: f64 = 1e-9;
 /// What may be hidden behind a line, in goals, from which on a point there is looked at.
-const MATTERS: f64 = 0.59;
+const MATTERS: f64 = 0.15;
 /// Points after which an integral ends with the error that it has.
 const POINTS: usize = 100_000;
 
@@ -60,7 +62,8 @@ pub(crate) struct PiecesWork {
     parts: Vec<Piece>,
     /// The points of the last rules, all on one part.
     points: Points,
-    /// Lines through that part with none of the points behind them, and the share of the width there.
+    /// Lines through that part, each with the share of the width on its smaller side, and those that have no point there.
+    lines: Vec<(Plane, f64)>,
     unseen: Vec<(Plane, f64)>,
 }
 
@@ -107,9 +110,8 @@ where
         let most = (self.breaks.most)(shape.centre()) * shape.area();
         let reach = shape.reach(&self.breaks.distance);
         let [first, second] = self.rules(&shape, [0, 1]);
-        let points = &self.work.points;
-        let piece = Piece::new(shape, [reach, most], first, points.kind(), points.range() * shape.area());
-        let piece = self.learn(piece, second);
+        let range = self.work.points.range() * shape.area();
+        let piece = self.learn(Piece::new(shape, [reach, most], first, range), second);
         self.work.parts.push(piece);
     }
 
@@ -141,37 +143,35 @@ where
         piece
     }
 
-    /// The line that shows and halves a part best, with the share of the width on its smaller side; of equals, the place decides. Lists the lines behind which no point lies.
+    /// The line that shows and halves a part best, with the share of the width on its smaller side. Lists the lines behind which no point lies.
     fn line_through(&mut self, shape: &Shape) -> Option<(Plane, f64)> {
-        let PiecesWork { points, unseen, .. } = &mut *self.work;
+        let flat = self.flat(shape);
+        let PiecesWork { points, lines, unseen, .. } = &mut *self.work;
+        let cutting = |&plane: &Plane| Some((plane, share(shape, plane, flat)?));
+        lines.clear();
+        lines.extend(self.breaks.planes.iter().filter_map(cutting));
+        lines.iter().for_each(|&(plane, _)| points.leave_out(plane, flat));
         unseen.clear();
-        let mut shown = None;
-        let key = |((n, _), share): (Plane, f64)| share + 1e-3 * n.dot(ODD).abs();
-        for &plane in self.breaks.planes {
-            let Some(share) = share(shape, plane, self.breaks.flat) else { continue };
-            match points.judge(plane, self.breaks.flat) {
-                Line::Silent => {}
-                Line::Unseen => unseen.push((plane, share)),
-                Line::Shows if shown.is_some_and(|best| key(best) >= key((plane, share))) => {}
-                Line::Shows => shown = Some((plane, share)),
-            }
-        }
-        shown
+        unseen.extend(lines.iter().filter(|(plane, _)| points.judge(*plane) == Line::Unseen));
+        let shown = lines.iter().filter(|(plane, _)| points.judge(*plane) == Line::Shows).copied();
+        shown.max_by(|a, b| merit(a).total_cmp(&merit(b)))
     }
 
     /// Looks at a point behind each line that has none, where much may be hidden.
     fn look_behind(&mut self, piece: &mut Piece) {
-        let PiecesWork { points, unseen, .. } = &mut *self.work;
+        let flat = self.flat(&piece.shape);
+        let PiecesWork { points, lines, unseen, .. } = &mut *self.work;
         for &(plane, share) in unseen.iter() {
             let matters = share * piece.most >= MATTERS * self.goal;
-            if !matters || points.judge(plane, self.breaks.flat) != Line::Unseen {
+            if !matters || points.judge(plane) != Line::Unseen {
                 continue;
             }
-            points.places.push(piece.shape.behind(plane));
+            points.places.push(piece.shape.behind(plane, flat));
             points.ask(&mut self.h);
             self.points += 1;
-            if points.judge(plane, self.breaks.flat) == Line::Shows {
-                piece.reveal(plane, share, points.jump() * share * piece.shape.area());
+            lines.iter().for_each(|&(plane, _)| points.leave_out(plane, flat));
+            if points.judge(plane) == Line::Shows {
+                piece.reveal((plane, share), points.jump() * share * piece.shape.area());
             }
         }
     }
@@ -208,15 +208,25 @@ where
         }
     }
 
+    /// Heights over a line that count as 0 on a part, m.
+    fn flat(&self, shape: &Shape) -> f64 {
+        self.breaks.flat.max(ON_THE_LINE * shape.width())
+    }
+
     fn cut(&mut self, shape: &Shape, (normal, offset): Plane) {
         let above = HalfSpace { normal, offset };
         let below = HalfSpace { normal: -normal, offset: -offset };
         for side in [above, below] {
             let mut part = Vec::with_capacity(5);
-            clip(shape.corners(), side, self.breaks.flat, &mut part);
+            clip(shape.corners(), side, self.flat(shape), &mut part);
             self.add(&part);
         }
     }
+}
+
+/// How well a line with this share of the width on its smaller side halves a part; of equals, the place decides.
+fn merit(((n, _), share): &(Plane, f64)) -> f64 {
+    share + 1e-3 * n.dot(ODD).abs()
 }
 
 /// The share of the width of a shape on the smaller side of a plane that cuts it.
@@ -234,7 +244,10 @@ mod tests {
     /// ∫ over the unit square of a function with a kink along x = 0.3 and with its steep place at `near`.
     fn kinked(near: Vec3, planes: &[Plane], goal: f64) -> Estimate {
         let square = [Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Y, Vec3::Y];
-        let value = |x: &Vec3| ((x.x - 0.3).max(0.0), Kind::default());
+        let mut other = Kind::default();
+        other.add(&[1]);
+        let kind = |x: &Vec3| if x.x < 0.3 { other } else { Kind::default() };
+        let value = |x: &Vec3| ((x.x - 0.3).max(0.0), kind(x));
         let h = |points: &[Vec3], found: &mut Vec<_>| found.extend(points.iter().map(value));
         let breaks = Breaks { planes, flat: 1e-12, distance: |x: Vec3| x.distance(near), most: |_| 0.7 };
         Pieces::new(h, breaks, &mut PiecesWork::default(), goal).integrate(&square)

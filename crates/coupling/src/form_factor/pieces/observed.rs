@@ -10,17 +10,17 @@
 use super::piece::Piece;
 
 /// c,
-const SAFETY: f64 = 0.36;
+const SAFETY: f64 = 0.55;
 /// u,
 const SURPRISE: f64 = 0.62;
 /// w and
-const UNKNOWN: f64 = 12.0;
+const UNKNOWN: f64 = 6.3;
 /// l of the formula.
-const MANY: f64 = 0.14;
+const MANY: f64 = 0.17;
 /// What a refinement weighs after the next one.
 const KEEP: f64 = 0.86;
 /// Largest ρ that counts.
-const LARGEST: f64 = 7.0;
+const LARGEST: f64 = 6.2;
 
 /// The refinements of one integral.
 #[derive(Clone, Copy, Debug, Default)]

@@ -5,29 +5,30 @@
 //!
 //! | | r ≤ 1 | r > 1 |
 //! |---|---|---|
-//! | all points of one kind | a √r v | r^p √((b m)² + (c s)²) |
-//! | kinds differ | d √(s v) | r^q √(e² s m + (f m)² + (g s)²) |
+//! | all points of one kind | r √(a² s v + a′² v²) | √r √((b m)² + (c s)²) |
+//! | kinds differ | d √(s v) | r √(e² s m + (f m)² + (g s)²) |
 
+use super::merit;
 use super::shape::{DEGREES, Shape};
 use crate::form_factor::critical::Plane;
 use crate::form_factor::shadow::Kind;
 
 /// Ratio of two changes, and of the first change to v, below which the next rule is expected to pay.
-const PAYS: f64 = 0.29;
+const PAYS: f64 = 0.3;
 const PAYS_FIRST: f64 = 0.26;
 /// Radius of a part, in its distances from what makes h steep, above which its sides are halved.
 /// No simple number: in a scene with right angles the two are often equal, and rounding would decide.
 const NEAR: f64 = 1.000_001;
-/// The share a of the table,
-const SMOOTH: f64 = 0.063;
-/// b, c and p,
-const SMOOTH_NEAR: [f64; 3] = [0.011, 0.14, 0.5];
+/// The shares a and a′ of the table,
+const SMOOTH: [f64; 2] = [0.15, 0.03];
+/// b and c,
+const SMOOTH_NEAR: [f64; 2] = [0.013, 0.14];
 /// d,
-const BROKEN: f64 = 0.096;
-/// and e, f, g and q.
-const BROKEN_NEAR: [f64; 4] = [0.027, 0.011, 0.018, 1.0];
+const BROKEN: f64 = 0.11;
+/// and e, f and g.
+const BROKEN_NEAR: [f64; 3] = [0.053, 0.011, 0.013];
 /// Share of what shows behind a line with no points of the rule.
-const BEHIND: f64 = 1.1;
+const BEHIND: f64 = 1.3;
 
 /// A part, its integral and how that converged.
 #[derive(Clone, Copy, Debug)]
@@ -54,23 +55,17 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    /// A part with its integral by the first rule; `kind` is that of the points of the first two, and `range` that of h there, times the area.
-    pub(super) fn new(
-        shape: Shape,
-        [reach, most]: [f64; 2],
-        value: f64,
-        kind: Option<Kind>,
-        range: f64,
-    ) -> Self {
-        let nothing = Self { shape, reach, most, range, degree: 0, value, step: 0.0, error: 0.0, kind, line: None, pays: true };
-        nothing
+    /// A part with its reach, the largest value that the integral could have, the integral by the first rule, and the range of h at the points of the first two times the area.
+    pub(super) fn new(shape: Shape, [reach, most]: [f64; 2], value: f64, range: f64) -> Self {
+        let (step, error, kind, line) = (0.0, 0.0, None, None);
+        Self { shape, reach, most, range, degree: 0, value, step, error, kind, line, pays: true }
     }
 
     /// Takes the integral by the next rule, with the kind of its points.
     pub(super) fn raise(&mut self, value: f64, kind: Option<Kind>) {
         let step = (value - self.value).abs();
-        self.kind = self.kind.filter(|_| self.kind == kind);
         let first = self.degree == 0;
+        self.kind = kind.filter(|_| first || self.kind == kind);
         let before = if first || self.kind.is_none() { self.range } else { self.step }.max(step);
         self.degree += 1;
         self.error = self.estimate(step, before);
@@ -81,27 +76,22 @@ impl Piece {
 
     fn estimate(&self, s: f64, v: f64) -> f64 {
         let (r, m) = (self.reach, self.most);
+        let (a, [b, c], [e, f, g]) = (SMOOTH, SMOOTH_NEAR, BROKEN_NEAR);
         match (self.kind.is_some(), r <= NEAR) {
-            (true, true) => SMOOTH * v * r.sqrt(),
+            (true, true) => r * (a[0] * a[0] * s * v + a[1] * a[1] * v * v).sqrt(),
             (false, true) => BROKEN * (s * v).sqrt(),
-            (true, false) => {
-                let [b, c, power] = SMOOTH_NEAR;
-                (b * m).hypot(c * s) * r.powf(power)
-            }
-            (false, false) => {
-                let [e, f, g, power] = BROKEN_NEAR;
-                (e * (s * m).sqrt()).hypot(f * m).hypot(g * s) * r.powf(power)
-            }
+            (true, false) => (r * (b * b * m * m + c * c * s * s)).sqrt(),
+            (false, false) => r * (e * e * s * m + f * f * m * m + g * g * s * s).sqrt(),
         }
     }
 
     /// A line shows that has no point of the rule behind it; `missed` is by how much the integral may be off, m².
-    pub(super) fn reveal(&mut self, line: Plane, share: f64, missed: f64) {
+    pub(super) fn reveal(&mut self, line: (Plane, f64), missed: f64) {
         self.kind = None;
         self.pays = false;
         self.error = self.error.max(BEHIND * missed);
-        if self.line.is_none_or(|(_, other)| share > other) {
-            self.line = Some((line, share));
+        if self.line.is_none_or(|other| merit(&line) > merit(&other)) {
+            self.line = Some(line);
         }
     }
 }

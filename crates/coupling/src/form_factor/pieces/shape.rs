@@ -4,6 +4,7 @@ use crate::form_factor::critical::Plane;
 use crate::form_factor::shadow::Kind;
 use fredholm_mesh::Vec3;
 use fredholm_quadrature::{PlanePoint, symmetric_triangle, tensor_quad};
+use fredholm_visibility::body::ODD;
 use std::sync::LazyLock;
 
 /// Degrees that are tried on a triangle, and points a direction on a quad.
@@ -42,6 +43,12 @@ impl Shape {
         self.corners().iter().sum::<Vec3>() / self.corners().len() as f64
     }
 
+    /// Largest distance of a corner from the first.
+    pub(super) fn width(&self) -> f64 {
+        let [first, others @ ..] = self.corners() else { return 0.0 };
+        others.iter().map(|x| x.distance(*first)).fold(0.0, f64::max)
+    }
+
     /// Radius about the centre, over its distance from what is near.
     pub(super) fn reach(&self, distance: impl Fn(Vec3) -> f64) -> f64 {
         let centre = self.centre();
@@ -65,11 +72,12 @@ impl Shape {
         }
     }
 
-    /// A point behind a line, seen from the centre: half way from it to the corners there.
-    pub(super) fn behind(&self, (n, c): Plane) -> Vec3 {
+    /// A point behind a line, seen from the centre: half way from it to the corners there. Where the line passes within `flat` of the centre, its normal decides.
+    pub(super) fn behind(&self, (n, c): Plane, flat: f64) -> Vec3 {
         let centre = self.centre();
         let middle = n.dot(centre) - c;
-        let depth = |x: &Vec3| ((c - n.dot(*x)) * middle.signum()).max(0.0);
+        let side = if middle.abs() > flat { middle } else { n.dot(ODD) };
+        let depth = |x: &Vec3| ((c - n.dot(*x)) * side.signum()).max(0.0);
         let weight: f64 = self.corners().iter().map(depth).sum();
         let far = self.corners().iter().map(|x| *x * depth(x)).sum::<Vec3>() / weight;
         let (up, down) = (depth(&far), middle.abs());
