@@ -44,9 +44,9 @@ fn supporting_plane(start: Vec3, edge: Vec3, n: Vec3, others: &[Vec3], tolerance
     for &w in others {
         let (x, z) = ((w - start).dot(m), (w - start).dot(n).max(0.0));
         let off_the_edge = z > tolerance || x.abs() > tolerance * length;
-        // Corners at 0 and at π span no area.
-        let (this, last) = (x_last * z, z_last * x);
-        let wider = this > last || (this == last && x < x_last);
+        let area = x_last * z - z_last * x;
+        // Corners at the angles 0 and π span no area.
+        let wider = area > 0.0 || (area >= 0.0 && x < x_last);
         if off_the_edge && (!any || wider) {
             (x_last, z_last, any) = (x, z, true);
         }

@@ -136,6 +136,7 @@ where
     /// A part with the integral by the next rule, and with what its points tell.
     fn learn(&mut self, mut piece: Piece, value: f64) -> Piece {
         piece.line = self.line_through(&piece.shape);
+        piece.cut = self.work.lines.iter().map(|(_, share)| *share).fold(0.0, f64::max);
         piece.raise(value, self.work.points.kind());
         if self.observed.scale() * piece.error < self.goal {
             self.look_behind(&mut piece);

@@ -27,6 +27,8 @@ const SMOOTH_NEAR: [f64; 2] = [0.013, 0.14];
 const BROKEN: f64 = 0.11;
 /// and e, f and g.
 const BROKEN_NEAR: [f64; 3] = [0.053, 0.011, 0.013];
+/// Share of the largest value, and of the width behind a line through a part of one kind, that small shadows between its four points may hide; each next rule leaves this part of it.
+const BETWEEN: [f64; 2] = [3e-4, 0.25];
 /// Share of what shows behind a line with no points of the rule.
 const BEHIND: f64 = 1.3;
 
@@ -48,6 +50,8 @@ pub(super) struct Piece {
     pub error: f64,
     /// The kind of all points so far, or `None` where they differ.
     kind: Option<Kind>,
+    /// Largest share of the width behind a line.
+    pub cut: f64,
     /// The line along which the part is cut next, and the share of the width on its smaller side.
     pub line: Option<(Plane, f64)>,
     /// Whether the next rule pays more than smaller parts.
@@ -58,7 +62,7 @@ impl Piece {
     /// A part with its reach, the largest value that the integral could have, the integral by the first rule, and the range of h at the points of the first two times the area.
     pub(super) fn new(shape: Shape, [reach, most]: [f64; 2], value: f64, range: f64) -> Self {
         let (step, error, kind, line) = (0.0, 0.0, None, None);
-        Self { shape, reach, most, range, degree: 0, value, step, error, kind, line, pays: true }
+        Self { shape, reach, most, range, degree: 0, value, step, error, kind, cut: 0.0, line, pays: true }
     }
 
     /// Takes the integral by the next rule, with the kind of its points.
@@ -68,10 +72,17 @@ impl Piece {
         self.kind = kind.filter(|_| first || self.kind == kind);
         let before = if first || self.kind.is_none() { self.range } else { self.step }.max(step);
         self.degree += 1;
-        self.error = self.estimate(step, before);
-        let quick = step < if first { PAYS_FIRST } else { PAYS } * before;
+        let hidden = self.between();
+        self.error = self.estimate(step, before) + hidden;
+        let quick = step < if first { PAYS_FIRST } else { PAYS } * before || 2.0 * hidden > self.error;
         self.pays = self.kind.is_some() && self.reach <= NEAR && quick && self.degree + 1 < DEGREES.len();
         (self.value, self.step) = (value, step);
+    }
+
+    /// What may hide between points that are all of one kind, m².
+    fn between(&self) -> f64 {
+        let share = if self.kind.is_some() { self.cut } else { 0.0 };
+        BETWEEN[0] * BETWEEN[1].powi(self.degree as i32 - 1) * share * self.most
     }
 
     fn estimate(&self, s: f64, v: f64) -> f64 {
