@@ -77,30 +77,35 @@ impl Patch {
 
     /// The corners, counter-clockwise seen from the lit side.
     #[must_use]
+    #[inline]
     pub fn corners(&self) -> &[Vec3] {
         &self.corners[..self.sides]
     }
 
     /// Corner `i`, counted round the polygon.
     #[must_use]
+    #[inline]
     pub fn corner(&self, i: usize) -> Vec3 {
         self.corners[i % self.sides]
     }
 
     /// Number of sides: 3 or 4.
     #[must_use]
+    #[inline]
     pub fn sides(&self) -> usize {
         self.sides
     }
 
     /// Unit normal, pointing to the lit side.
     #[must_use]
+    #[inline]
     pub fn normal(&self) -> Vec3 {
         self.normal
     }
 
     /// Area, m².
     #[must_use]
+    #[inline]
     pub fn area(&self) -> f64 {
         self.area
     }

@@ -6,6 +6,7 @@
 //! G. Drettakis & E. Fiume, SIGGRAPH 1994, doi:10.1145/192161.192207. The same happens between two bodies. Events
 //! of three edges are curves and not listed.
 
+use super::spans::Spans;
 use fredholm_mesh::Vec3;
 use fredholm_visibility::body::{ODD, Screen};
 
@@ -23,43 +24,91 @@ const INSIDE: f64 = 1e-6;
 /// A plane n·x = c with a unit normal.
 pub(crate) type Plane = (Vec3, f64);
 
-/// Lists the planes of the events of `screens` before `target` that cut the `source` polygon. Those of single bodies come first, long ones before short
-/// ones, and at most [`LINES`] are kept. Lengths below `flat` (m) count as 0.
-pub(crate) fn critical_planes(
-    source: &[Vec3],
-    target: &[Vec3],
-    screens: &[Screen],
-    flat: f64,
-    found: &mut Vec<Plane>,
-) {
-    found.clear();
-    let mut search = Search { source, target, flat, found };
-    let outlines: Vec<Outline> = screens.iter().map(|screen| search.outline(screen)).collect();
-    let whole = Outline { corners: target.to_vec(), edges: sides(target).collect() };
-    for outline in &outlines {
-        search.events(outline, &whole, false);
+/// Corners of a source of which heights are kept: a patch that is cut by a plane has at most five.
+const CORNERS: usize = 8;
+
+/// A plane that cuts the source, and the heights of the corners of the source over it.
+#[derive(Clone, Copy, Debug)]
+struct Line {
+    plane: Plane,
+    heights: [f64; CORNERS],
+}
+
+/// Critical planes, and buffers.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Critical {
+    planes: Vec<Plane>,
+    found: Vec<Line>,
+    keyed: Vec<(f64, Line)>,
+    spans: Spans,
+    /// Corners that can show in the outlines, body after body, and where those of each body end.
+    corners: Vec<Vec3>,
+    ends: Vec<usize>,
+    sides: Vec<[Vec3; 2]>,
+}
+
+impl Critical {
+    /// Finds the planes of the events of `screens` before `target` that cut the `source` polygon. Those of single bodies come first, long ones before short
+    /// ones, and at most [`LINES`] are kept. Lengths below `flat` (m) count as 0.
+    pub(crate) fn planes(
+        &mut self,
+        source: &[Vec3],
+        target: &[Vec3],
+        screens: &[Screen],
+        flat: f64,
+    ) -> &[Plane] {
+        let Self { planes, found, keyed, spans, corners, ends, sides } = self;
+        found.clear();
+        let mut search = Search { source, target, flat, found, keyed, spans };
+        search.turning(screens);
+        list_corners(screens, corners, ends);
+        sides.clear();
+        sides.extend(sides_of(target));
+        let whole = Outline { corners: target, edges: sides };
+        search.all(&Outlines { screens, corners, ends }, &whole);
+        planes.clear();
+        planes.extend(found.iter().map(|line| line.plane));
+        planes
     }
-    search.sort(0);
-    let single = search.found.len();
-    if single >= LINES {
-        return search.found.truncate(LINES);
-    }
-    for (k, outline) in outlines.iter().enumerate() {
-        for (_, other) in outlines.iter().enumerate().filter(|(l, _)| *l != k) {
-            search.events(outline, other, true);
+}
+
+/// Lists the ends of the edges that may cut the target.
+fn list_corners(screens: &[Screen], corners: &mut Vec<Vec3>, ends: &mut Vec<usize>) {
+    corners.clear();
+    ends.clear();
+    for screen in screens {
+        let start = corners.len();
+        for &end in screen.edges().iter().flatten() {
+            if !corners[start..].contains(&end) {
+                corners.push(end);
+            }
         }
+        ends.push(corners.len());
     }
-    search.sort(single);
-    search.found.truncate(LINES);
 }
 
 /// What can show in the outline of a body, or of the target.
-struct Outline {
-    corners: Vec<Vec3>,
-    edges: Vec<[Vec3; 2]>,
+#[derive(Clone, Copy)]
+struct Outline<'a> {
+    corners: &'a [Vec3],
+    edges: &'a [[Vec3; 2]],
 }
 
-fn sides(corners: &[Vec3]) -> impl Iterator<Item = [Vec3; 2]> + '_ {
+/// The outlines of all bodies.
+struct Outlines<'a> {
+    screens: &'a [Screen<'a>],
+    corners: &'a [Vec3],
+    ends: &'a [usize],
+}
+
+impl<'a> Outlines<'a> {
+    fn get(&self, k: usize) -> Outline<'a> {
+        let start = if k == 0 { 0 } else { self.ends[k - 1] };
+        Outline { corners: &self.corners[start..self.ends[k]], edges: self.screens[k].edges() }
+    }
+}
+
+fn sides_of(corners: &[Vec3]) -> impl Iterator<Item = [Vec3; 2]> + '_ {
     corners.iter().zip(corners.iter().cycle().skip(1)).map(|(&a, &b)| [a, b])
 }
 
@@ -67,40 +116,59 @@ struct Search<'a> {
     source: &'a [Vec3],
     target: &'a [Vec3],
     flat: f64,
-    found: &'a mut Vec<Plane>,
+    found: &'a mut Vec<Line>,
+    keyed: &'a mut Vec<(f64, Line)>,
+    spans: &'a mut Spans,
 }
 
 impl Search<'_> {
-    /// The edges of a body that may cut the target. Faces that turn edge-on are events themselves.
-    fn outline(&mut self, screen: &Screen) -> Outline {
-        for face in screen.turning() {
-            self.add((face.normal, face.offset));
-        }
-        let mut corners: Vec<Vec3> = Vec::with_capacity(screen.edges().len() + 1);
-        for &end in screen.edges().iter().flatten() {
-            if !corners.contains(&end) {
-                corners.push(end);
+    /// Faces that turn edge-on are events themselves.
+    fn turning(&mut self, screens: &[Screen]) {
+        for face in screens.iter().flat_map(Screen::turning) {
+            let line = self.line((face.normal, face.offset));
+            if self.is_new(&line) {
+                self.found.push(line);
             }
         }
-        Outline { corners, edges: screen.edges().to_vec() }
+    }
+
+    fn all(&mut self, outlines: &Outlines, target: &Outline) {
+        let count = outlines.ends.len();
+        for k in 0..count {
+            self.events(&outlines.get(k), target, false);
+        }
+        self.sort(0);
+        let single = self.found.len();
+        if single >= LINES {
+            return self.found.truncate(LINES);
+        }
+        for k in 0..count {
+            for l in (0..count).filter(|&l| l != k) {
+                self.events(&outlines.get(k), &outlines.get(l), true);
+            }
+        }
+        self.sort(single);
+        self.found.truncate(LINES);
     }
 
     /// Events where the outline `near` lines up with `far` behind it. Those of two bodies matter only in front of the target.
     fn events(&mut self, near: &Outline, far: &Outline, before: bool) {
-        for &[a, b] in &near.edges {
-            for &w in &far.corners {
-                self.event(
-                    w,
-                    [a, b],
-                    before,
-                    |c, n| meeting(c, w - c, [a, b], n),
-                    |t| MARGIN < t && t < 1.0 - MARGIN,
-                );
+        let within = |t: f64| MARGIN < t && t < 1.0 - MARGIN;
+        // Most planes miss the source.
+        self.spans.ask(near.edges, far.corners, self.source);
+        for (k, &ends) in near.edges.iter().enumerate() {
+            for (l, &w) in far.corners.iter().enumerate() {
+                if self.spans.passes(k, l) {
+                    self.event(w, ends, before, |c, n| meeting(c, w - c, ends, n), within);
+                }
             }
         }
-        for &v in &near.corners {
-            for &ends in &far.edges {
-                self.event(v, ends, before, |c, n| meeting(c, v - c, ends, n), |t| t > 1.0 + MARGIN);
+        self.spans.ask(far.edges, near.corners, self.source);
+        for (k, &v) in near.corners.iter().enumerate() {
+            for (l, &ends) in far.edges.iter().enumerate() {
+                if self.spans.passes(l, k) {
+                    self.event(v, ends, before, |c, n| meeting(c, v - c, ends, n), |t| t > 1.0 + MARGIN);
+                }
             }
         }
     }
@@ -113,67 +181,73 @@ impl Search<'_> {
         meeting: impl Fn(Vec3, Vec3) -> (f64, f64),
         order: impl Fn(f64) -> bool,
     ) {
-        // Most planes miss the source, which their signs tell.
-        let across = (b - a).cross(corner - a);
-        let (low, high) = range(self.source, |x| across.dot(x - a));
-        if low >= 0.0 || high <= 0.0 {
-            return;
-        }
         let Some(plane) = spanned(corner, a, b, self.flat) else { return };
-        let height = |x: Vec3| plane.0.dot(x) - plane.1;
-        if self.lit(height) != Lit::Partly {
+        let line = self.line(plane);
+        if self.lit(&line) != Lit::Partly || !self.is_new(&line) {
             return;
         }
-        let Some([first, last]) = chord(self.source, plane) else { return };
+        let Some([first, last]) = self.chord(&line) else { return };
         let inner = [first.lerp(last, INSIDE), last.lerp(first, INSIDE)];
-        let shows = !before || lit(self.target, self.flat, height) == Lit::Partly;
+        let height = |x: Vec3| plane.0.dot(x) - plane.1;
+        let shows = !before || lit(self.target.iter().map(|&x| height(x)), self.flat) == Lit::Partly;
         if shows && lines_up(inner.map(|c| meeting(c, plane.0)), order) {
-            self.add(plane);
+            self.found.push(line);
         }
     }
 
-    /// Each line once: parallel edges give the same plane many times.
-    fn add(&mut self, plane: Plane) {
-        let same = |other: &Plane| {
-            self.source.iter().all(|x| {
-                let [h, g] = [plane, *other].map(|(n, c)| n.dot(*x) - c);
-                let turned = if plane.0.dot(other.0) < 0.0 { -g } else { g };
-                (h - turned).abs() <= self.flat
-            })
-        };
-        if !self.found.iter().any(same) {
-            self.found.push(plane);
+    fn line(&self, plane: Plane) -> Line {
+        let mut heights = [0.0; CORNERS];
+        for (height, x) in heights.iter_mut().zip(self.source) {
+            *height = plane.0.dot(*x) - plane.1;
         }
+        Line { plane, heights }
+    }
+
+    /// Each line once: parallel edges give the same plane many times.
+    fn is_new(&self, line: &Line) -> bool {
+        let corners = self.source.len().min(CORNERS);
+        let near = |a: &f64, b: f64| (a - b).abs() <= self.flat;
+        let same = |other: &Line| {
+            let turned = if line.plane.0.dot(other.plane.0) < 0.0 { -1.0 } else { 1.0 };
+            line.heights[..corners].iter().zip(&other.heights).all(|(h, g)| near(h, turned * g))
+        };
+        !self.found.iter().any(same)
     }
 
     /// Sorts the lines from `start` on, long ones first: the order of bodies and of their corners has no say in which are used.
     fn sort(&mut self, start: usize) {
-        let source = self.source;
-        let key = |plane: &Plane| {
-            let [a, b] = chord(source, *plane).unwrap_or_default();
-            a.distance(b) + 1e-3 * (0.5 * (a + b) - source[0]).dot(ODD)
-        };
-        self.found[start..].sort_by(|a, b| key(b).total_cmp(&key(a)));
-    }
-
-    fn lit(&self, height: impl Fn(Vec3) -> f64) -> Lit {
-        lit(self.source, self.flat, height)
-    }
-}
-
-/// The two ends of the line in which a plane cuts a convex polygon.
-fn chord(polygon: &[Vec3], (n, c): Plane) -> Option<[Vec3; 2]> {
-    let height = |x: Vec3| n.dot(x) - c;
-    let mut ends = [Vec3::ZERO; 2];
-    let mut count = 0;
-    for (&p, &q) in polygon.iter().zip(polygon.iter().cycle().skip(1)) {
-        let (from, to) = (height(p), height(q));
-        if (from >= 0.0) != (to >= 0.0) && count < 2 {
-            ends[count] = p + (q - p) * (from / (from - to));
-            count += 1;
+        if self.found.len() < start + 2 {
+            return;
         }
+        self.keyed.clear();
+        for line in &self.found[start..] {
+            let [a, b] = self.chord(line).unwrap_or_default();
+            let key = a.distance(b) + 1e-3 * (0.5 * (a + b) - self.source[0]).dot(ODD);
+            self.keyed.push((key, *line));
+        }
+        self.keyed.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+        self.found.truncate(start);
+        self.found.extend(self.keyed.iter().map(|(_, line)| *line));
     }
-    (count == 2).then_some(ends)
+
+    fn lit(&self, line: &Line) -> Lit {
+        lit(line.heights.into_iter().take(self.source.len()), self.flat)
+    }
+
+    /// The two ends of a line on the source.
+    fn chord(&self, line: &Line) -> Option<[Vec3; 2]> {
+        let count = self.source.len().min(CORNERS);
+        let (mut ends, mut found) = ([Vec3::ZERO; 2], 0);
+        for k in 0..count {
+            let l = if k + 1 == count { 0 } else { k + 1 };
+            let (from, to) = (line.heights[k], line.heights[l]);
+            if (from >= 0.0) != (to >= 0.0) && found < 2 {
+                ends[found] = self.source[k] + (self.source[l] - self.source[k]) * (from / (from - to));
+                found += 1;
+            }
+        }
+        (found == 2).then_some(ends)
+    }
 }
 
 /// Whether a plane has corners in front of it.
@@ -184,21 +258,17 @@ enum Lit {
     Never,
 }
 
-fn lit(corners: &[Vec3], flat: f64, height: impl Fn(Vec3) -> f64) -> Lit {
-    let (low, high) = range(corners, height);
-    match (high > flat, low < -flat) {
+fn lit(heights: impl Iterator<Item = f64>, flat: f64) -> Lit {
+    let (mut above, mut below) = (false, false);
+    for height in heights {
+        above |= height > flat;
+        below |= height < -flat;
+    }
+    match (above, below) {
         (true, true) => Lit::Partly,
         (true, false) => Lit::Wholly,
         _ => Lit::Never,
     }
-}
-
-/// The least and the largest of the heights.
-fn range(corners: &[Vec3], height: impl Fn(Vec3) -> f64) -> (f64, f64) {
-    corners.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| {
-        let height = height(x);
-        (low.min(height), high.max(height))
-    })
 }
 
 fn spanned(v: Vec3, a: Vec3, b: Vec3, flat: f64) -> Option<Plane> {

@@ -3,10 +3,11 @@
 //! h is smooth between the critical lines ([`critical`](super::critical)), along which the source is cut where that pays ([`Pieces`]). The unoccluded exchange is computed
 //! apart, which keeps the singularity of touching patches out of this integral.
 
-use super::critical::{Plane, critical_planes};
+use super::critical::Critical;
 use super::pieces::{Breaks, Pieces, PiecesWork};
-use super::shadow::{Hiding, Kind};
-use super::{point_to_polygon, to_segments};
+use super::shadow::Kind;
+use super::together::Together;
+use super::{Segment, point_to_polygon, to_segments};
 use fredholm_mesh::Vec3;
 use fredholm_quadrature::Estimate;
 use fredholm_visibility::body::Screen;
@@ -24,48 +25,46 @@ pub(crate) struct Occluded<'a> {
 
 impl Occluded<'_> {
     /// The form factor h at each of the `points`.
-    fn hidden(&self, points: &[Vec3], hiding: &mut Hiding, found: &mut Vec<(f64, Kind)>) {
-        let factor =
-            |&x: &Vec3| (hiding.hidden_factor(x, self.normal, self.target, self.screens), hiding.kind());
-        found.extend(points.iter().map(factor));
+    fn hidden(&self, points: &[Vec3], together: &mut Together, found: &mut Vec<(f64, Kind)>) {
+        together.hidden_factors(points, (self.normal, self.target), self.screens, found);
     }
 }
 
 /// Buffers of one thread.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct HiddenWork {
-    hiding: Hiding,
-    planes: Vec<Plane>,
+    together: Together,
+    critical: Critical,
     pieces: PiecesWork,
-    edges: Vec<[Vec3; 2]>,
+    edges: Vec<Segment>,
 }
 
 /// The hidden part of the exchange (m²), to an absolute `goal` (m²).
 pub(crate) fn hidden_exchange(scene: &Occluded, goal: f64, work: &mut HiddenWork) -> Estimate {
-    let HiddenWork { hiding, planes, pieces, edges } = work;
+    let HiddenWork { together, critical, pieces, edges } = work;
     let steep = Steep::of(scene, edges);
-    critical_planes(scene.source, scene.target, scene.screens, scene.tolerance, planes);
+    let planes = critical.planes(scene.source, scene.target, scene.screens, scene.tolerance);
     let most = |x: Vec3| point_to_polygon(scene.normal, scene.target.iter().map(|&y| y - x));
     let breaks = Breaks { planes, flat: scene.tolerance, distance: |x| steep.distance(x), most };
-    let h = |points: &[Vec3], found: &mut Vec<_>| scene.hidden(points, hiding, found);
+    let h = |points: &[Vec3], found: &mut Vec<_>| scene.hidden(points, together, found);
     Pieces::new(h, breaks, pieces, goal).integrate(scene.source)
 }
 
 /// What makes the hidden part steep where it is close: corners of bodies, and edges that do not lie on the source.
 struct Steep<'a> {
-    edges: &'a [[Vec3; 2]],
+    edges: &'a [Segment],
 }
 
 impl<'a> Steep<'a> {
-    fn of(scene: &Occluded, edges: &'a mut Vec<[Vec3; 2]>) -> Self {
+    fn of(scene: &Occluded, edges: &'a mut Vec<Segment>) -> Self {
         let lies = |x: Vec3| (x - scene.source[0]).dot(scene.normal).abs() <= scene.tolerance;
         edges.clear();
         for body in scene.screens.iter().map(Screen::body) {
             for [a, b] in body.edges().iter().map(|edge| body.ends(edge)) {
                 if lies(a) && lies(b) {
-                    edges.extend([[a, a], [b, b]]);
+                    edges.extend([[a, a], [b, b]].map(Segment::new));
                 } else {
-                    edges.push([a, b]);
+                    edges.push(Segment::new([a, b]));
                 }
             }
         }

@@ -9,12 +9,14 @@
 //! | many bodies between | sampled share of the unoccluded value |
 //!
 //! The tolerance T is relative to the exchange the two patches would have squarely facing each other,
-//! A_i A_j / (π d²), or the smaller area where that is less: stated errors of a row of F then add up to about 2 T.
+//! A_i A_j / (π d²), or the smaller area where that is less: stated errors of a row of F then add up to about 2 T. It is rounded down to a power of ten: a little
+//! more accuracy asked for then never gives a little less.
 
 use super::hidden::{HiddenWork, Occluded, hidden_exchange};
+use super::rung::rung;
 use super::sampled::sampled;
 use super::small_receiver::small_receiver;
-use super::{Unoccluded, Work, facing_exchange, flat, front, front_of};
+use super::{Side, Unoccluded, Work, facing_exchange, front};
 use crate::occlusion::{Clusters, Sight};
 use crate::polygon::HalfSpace;
 use fredholm_mesh::{Patch, Vec3};
@@ -87,17 +89,11 @@ enum Outer {
     First,
 }
 
-/// A patch with what is needed of it.
-#[derive(Clone, Copy)]
-struct Side<'a> {
-    patch: &'a Patch,
-    plane: HalfSpace,
-}
-
 /// Computes exchanges between patches of one scene.
 #[derive(Debug)]
 pub struct PairIntegrator<'a> {
     patches: Vec<&'a Patch>,
+    sides: Vec<Side<'a>>,
     open: Unoccluded<'a>,
     occluders: &'a Occluders,
     bodies: Bodies,
@@ -122,9 +118,11 @@ impl<'a> PairIntegrator<'a> {
         tolerance: f64,
     ) -> Self {
         let bodies = Bodies::new(occluders, &patches, &[]);
+        let tolerance = rung(tolerance);
         patches.extend(groups);
         let open = Unoccluded::new(&patches, tolerance);
-        Self { patches, open, occluders, bodies, tolerance }
+        let sides = patches.iter().map(|patch| Side::of(patch)).collect();
+        Self { patches, sides, open, occluders, bodies, tolerance }
     }
 
     /// Number of patches.
@@ -160,7 +158,7 @@ impl<'a> PairIntegrator<'a> {
             return Exchange::NONE;
         }
         let (a, b) = (self.side(i), self.side(j));
-        let flat = flat(a.patch, b.patch);
+        let flat = a.flat(&b);
         if !rises(b.patch, a.plane, flat) || !rises(a.patch, b.plane, flat) {
             return Exchange::NONE;
         }
@@ -244,7 +242,7 @@ impl<'a> PairIntegrator<'a> {
         work: &mut Workspace,
     ) -> Exchange {
         let [a, b] = sides;
-        let tolerance = self.tolerance * facing_exchange(a.patch, b.patch);
+        let tolerance = self.tolerance * a.facing_exchange(&b);
         match bodies.len() {
             0 => open,
             1..=FEW => {
@@ -256,8 +254,7 @@ impl<'a> PairIntegrator<'a> {
     }
 
     fn side(&self, i: usize) -> Side<'_> {
-        let patch = self.patches[i];
-        Side { patch, plane: front_of(patch) }
+        self.sides[i]
     }
 
     /// The bodies that may come between two patches.
@@ -281,7 +278,7 @@ impl<'a> PairIntegrator<'a> {
         goal: f64,
         work: &mut Workspace,
     ) -> Exchange {
-        let flat = flat(a.patch, b.patch);
+        let flat = a.flat(&b);
         let [front_a, front_b] = &mut work.front;
         front(a.patch, b.plane, flat, front_a);
         front(b.patch, a.plane, flat, front_b);
@@ -328,7 +325,7 @@ fn clearer(a: Side, b: Side, bodies: &[&Body]) -> bool {
     if (here - there).abs() > TIE * here.abs().max(there.abs()).max(1.0) {
         return here > there;
     }
-    let way = a.patch.centroid() - b.patch.centroid();
+    let way = a.centroid - b.centroid;
     let decides = |coordinate: &f64| coordinate.abs() > TIE * way.length();
     way.to_array().into_iter().find(decides).is_none_or(|coordinate| coordinate < 0.0)
 }
@@ -336,5 +333,5 @@ fn clearer(a: Side, b: Side, bodies: &[&Body]) -> bool {
 /// Smallest height of the bodies over a patch, in its diameters.
 fn clearance(side: Side, bodies: &[&Body]) -> f64 {
     let heights = bodies.iter().flat_map(|body| body.corners()).map(|&x| side.plane.height(x));
-    heights.fold(f64::INFINITY, f64::min) / side.patch.diameter()
+    heights.fold(f64::INFINITY, f64::min) / side.diameter
 }

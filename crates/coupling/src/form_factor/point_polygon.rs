@@ -4,6 +4,9 @@
 //! Θₑ the angle between rₑ and rₑ₊₁, r the corners seen from the point. Dimensionless. The polygon must lie above the horizon of
 //! the point and be counter-clockwise seen from it.
 
+#![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
+
+use super::lanes::{LANES, Lanes, Lanes3, any, ask, dot, each, only};
 use fredholm_mesh::Vec3;
 use std::f64::consts::FRAC_1_PI;
 
@@ -25,12 +28,20 @@ pub fn point_to_polygon(n: Vec3, r: impl IntoIterator<Item = Vec3>) -> f64 {
         sum += edge_term(n, from, to);
         from = to;
     }
+    factor(sum + edge_term(n, from, first))
+}
+
+/// The form factor for the sum of the terms of the edges.
+pub(super) fn factor(sum: f64) -> f64 {
     // Seen from the point, a polygon that faces it runs clockwise about the normal of the point: hence the sign.
-    -0.5 * FRAC_1_PI * (sum + edge_term(n, from, first))
+    -0.5 * FRAC_1_PI * sum
 }
 
 /// Square of the tangent up to which the series of the arc tangent is used.
 const NARROW: f64 = 0.04;
+
+/// Terms of the series, which leave 2e-17.
+const TERMS: usize = 11;
 
 /// Θ (Γ · n) of one edge. An edge that points at the origin spans no angle.
 #[inline]
@@ -44,10 +55,54 @@ fn edge_term(n: Vec3, from: Vec3, to: Vec3) -> f64 {
     if sine == 0.0 { 0.0 } else { cross.dot(n) * (sine.atan2(cosine) / sine) }
 }
 
+/// Θ (Γ · n) of one edge a lane: the same bits as [`edge_term`].
+#[inline(always)]
+pub(super) fn edge_terms(n: Vec3, from: &Lanes3, to: &Lanes3) -> Lanes {
+    let cross = cross(from, to);
+    let (cosine, sine2) = (dot(from, to), dot(&cross, &cross));
+    let up = dot(&cross, &[[n.x; LANES], [n.y; LANES], [n.z; LANES]]);
+    let narrow = ask(|m| cosine[m] > 0.0 && sine2[m] < NARROW * cosine[m] * cosine[m]);
+    let shares = arcs_over_tangents(&each(|m| sine2[m] / (cosine[m] * cosine[m])));
+    let mut terms = only(&narrow, &each(|m| up[m] / cosine[m] * shares[m]));
+    let wide = ask(|m| sine2[m] > 0.0 && (narrow[m] == 0));
+    if any(&wide) {
+        add_wide(&mut terms, &only(&wide, &sine2), &cosine, &up);
+    }
+    terms
+}
+
+/// Writes the terms of the lanes of which `sine2` is not 0.
+#[inline(never)]
+fn add_wide(terms: &mut Lanes, sine2: &Lanes, cosine: &Lanes, up: &Lanes) {
+    for m in (0..LANES).filter(|&m| sine2[m] > 0.0) {
+        let sine = sine2[m].sqrt();
+        terms[m] = up[m] * (sine.atan2(cosine[m]) / sine);
+    }
+}
+
+#[inline(always)]
+fn cross(a: &Lanes3, b: &Lanes3) -> Lanes3 {
+    [
+        each(|m| a[1][m] * b[2][m] - b[1][m] * a[2][m]),
+        each(|m| a[2][m] * b[0][m] - b[2][m] * a[0][m]),
+        each(|m| a[0][m] * b[1][m] - b[0][m] * a[1][m]),
+    ]
+}
+
+/// As [`arc_over_tangent`].
+#[inline(always)]
+fn arcs_over_tangents(t2: &Lanes) -> Lanes {
+    let mut sum = [0.0; LANES];
+    for k in (0..TERMS).rev() {
+        let term = 1.0 / (2 * k + 1) as f64;
+        sum = each(|m| term - sum[m] * t2[m]);
+    }
+    sum
+}
+
 /// atan(t)/t = Σ (−t²)^k/(2k + 1) for t² up to [`NARROW`]: eleven terms leave 2e-17.
-#[inline]
+#[inline(always)]
 fn arc_over_tangent(t2: f64) -> f64 {
-    const TERMS: usize = 11;
     (0..TERMS).rev().fold(0.0, |sum: f64, k| 1.0 / (2 * k + 1) as f64 - sum * t2)
 }
 

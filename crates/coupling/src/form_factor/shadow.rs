@@ -9,7 +9,7 @@ use fredholm_mesh::Vec3;
 use fredholm_visibility::body::{Room, Screen, Shadow};
 
 /// What makes a side of a polygon: a side of the target, or a half-space of a shadow.
-type Maker = u32;
+pub(super) type Maker = u32;
 
 /// A convex polygon: corners, and what makes the side that starts at each.
 #[derive(Clone, Debug, Default)]
@@ -150,8 +150,13 @@ enum Cut {
 pub(crate) struct Kind(u64);
 
 impl Kind {
+    /// The number of the first half-space of body `k`: those of other bodies, and sides of the target, have other numbers.
+    pub(super) fn first(k: usize) -> Maker {
+        (k as Maker + 1) << 10
+    }
+
     /// Adds a hidden part. The order of its sides, and of the parts, has no say.
-    fn add(&mut self, makers: &[Maker]) {
+    pub(super) fn add(&mut self, makers: &[Maker]) {
         let sides = makers.iter().map(|&maker| scatter(u64::from(maker) + 1)).fold(0, u64::wrapping_add);
         self.0 = self.0.wrapping_add(scatter(sides));
     }
@@ -215,8 +220,7 @@ impl Hiding {
             return 0.0;
         }
         self.next.clear();
-        // Half-spaces of other bodies, and sides of the target, have other numbers.
-        let first = (k as Maker + 1) << 8;
+        let first = Kind::first(k);
         let hidden =
             (0..self.visible.len()).map(|i| self.darken(i, n, keep, first, screen.tolerance())).sum();
         std::mem::swap(&mut self.visible, &mut self.next);
@@ -261,7 +265,7 @@ impl Hiding {
 }
 
 /// The sum of the sizes of the coordinates: at least the length, and free of a square root.
-fn size(v: Vec3) -> f64 {
+pub(super) fn size(v: Vec3) -> f64 {
     let v = v.abs();
     v.x + v.y + v.z
 }

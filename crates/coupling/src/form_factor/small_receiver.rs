@@ -4,7 +4,7 @@
 //! the next terms of the expansion are smaller by its square. The second derivative of F across an edge at a distance d is at most 0.43/d², that of ½(1 + x/√(x² + d²)), which bounds
 //! the error of the midpoint rule where that suffices. In m².
 
-use super::{flat, front_of, jacobian, point_to_polygon, to_segments};
+use super::{Segment, flat, front_of, jacobian, point_to_polygon, to_segments};
 use crate::polygon::HalfSpace;
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_quadrature::{Estimate, PlanePoint, symmetric_triangle, tensor_quad};
@@ -26,7 +26,7 @@ pub(crate) fn small_receiver(large: &Patch, small: &Patch, goal: f64) -> Option<
     let centre = small.centroid();
     let corners = large.corners();
     let sides = corners.iter().zip(corners.iter().cycle().skip(1)).map(|(&a, &b)| [a, b]);
-    let reach = 0.5 * small.diameter() / to_segments(centre, sides);
+    let reach = 0.5 * small.diameter() / to_segments(centre, sides.map(Segment::new));
     if !faces || reach > REACH {
         return None;
     }
@@ -91,7 +91,7 @@ mod tests {
             let Some(estimate) = small_receiver(&wall, &tile, 1.0) else { continue };
             let exact = contour_integral(wall.corners(), tile.corners(), 1e-12 * tile.area()).value;
             let sides = (0..4).map(|k| [wall.corners()[k], wall.corners()[(k + 1) % 4]]);
-            let reach = 0.5 * tile.diameter() / to_segments(tile.centroid(), sides);
+            let reach = 0.5 * tile.diameter() / to_segments(tile.centroid(), sides.map(Segment::new));
             let middle = point_to_polygon(tile.normal(), wall.corners().iter().map(|&y| y - tile.centroid()));
             worst =
                 worst.max((tile.area() * middle - exact).abs() / (MIDPOINT * reach.powi(2) * tile.area()));

@@ -6,6 +6,7 @@
 //! SIGGRAPH 1993, doi:10.1145/166117.166148, the descent with lists of blockers.
 
 use super::cluster::{Bound, Clusters, Node};
+use super::lines::{Lines, Stands};
 use crate::form_factor::blocks;
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::Occluders;
@@ -36,8 +37,15 @@ pub(crate) fn walk(sight: &Sight, panel: usize) -> Panel {
     let rows = sight.clusters.nodes[panel].places.clone();
     let found =
         Panel { seen: vec![Vec::new(); rows.len()], partly: vec![Vec::new(); rows.len()], lists: Vec::new() };
-    let mut walker =
-        Walker { sight, first: rows.start, end: rows.end, found, room: Room::default(), stack: Vec::new() };
+    let mut walker = Walker {
+        sight,
+        first: rows.start,
+        end: rows.end,
+        found,
+        room: Room::default(),
+        heights: Vec::new(),
+        stack: Vec::new(),
+    };
     walker.stack.extend(0..sight.bodies.as_slice().len() as u32);
     let all = 0..walker.stack.len();
     walker.against(panel, 0, all);
@@ -48,7 +56,15 @@ pub(crate) fn walk(sight: &Sight, panel: usize) -> Panel {
 pub(crate) fn walk_from(sight: &Sight, node: usize) -> Panel {
     let first = sight.clusters.nodes[node].places.start;
     let found = Panel { seen: vec![Vec::new()], partly: vec![Vec::new()], lists: Vec::new() };
-    let mut walker = Walker { sight, first, end: first + 1, found, room: Room::default(), stack: Vec::new() };
+    let mut walker = Walker {
+        sight,
+        first,
+        end: first + 1,
+        found,
+        room: Room::default(),
+        heights: Vec::new(),
+        stack: Vec::new(),
+    };
     walker.stack.extend(0..sight.bodies.as_slice().len() as u32);
     let all = 0..walker.stack.len();
     walker.pair(node, 0, all);
@@ -61,6 +77,8 @@ struct Walker<'a> {
     end: usize,
     found: Panel,
     room: Room,
+    /// Heights of corners over the faces of a body.
+    heights: Vec<[f64; 8]>,
     /// Lists of bodies, one behind the other.
     stack: Vec<u32>,
 }
@@ -130,11 +148,37 @@ impl Walker<'_> {
     /// Whether nothing of one rectangle is seen from the other.
     fn between_rectangles(&mut self, p: &Patch, q: &Patch, bodies: Range<usize>) -> bool {
         let Sight { occluders, bodies: all, .. } = *self.sight;
-        let start = self.stack.len();
-        let Some(shaft) = occluders.shaft_between(p, q) else { return true };
-        self.keep(bodies, |body| occluders.reaches(body, &shaft));
-        let mut reaching = self.stack[start..].iter().map(|&k| &all.as_slice()[k as usize]);
-        reaching.any(|body| blocks(body, p, q, all.tolerance(), &mut self.room))
+        let tolerance = all.tolerance();
+        let sides = [side(p, q, tolerance), side(q, p, tolerance)];
+        if sides.contains(&Side::Behind) {
+            return true;
+        }
+        // Of patches that cross each other's plane, only parts see each other.
+        let wholly = sides == [Side::Before; 2];
+        let (mut shaft, lines) = (None, Lines::between(p, q, tolerance));
+        for k in bodies {
+            let number = self.stack[k];
+            let body = &all.as_slice()[number as usize];
+            let stands = lines.ask(body, tolerance, &mut self.heights);
+            match stands {
+                Stands::Beside => continue,
+                Stands::Certainly if wholly => return true,
+                _ => {}
+            }
+            if stands != Stands::Partly || !wholly {
+                let Some(shaft) = shaft.get_or_insert_with(|| occluders.shaft_between(p, q)) else {
+                    return true;
+                };
+                if !occluders.reaches(body, shaft) {
+                    continue;
+                }
+                if stands.may_be_across() && blocks(body, p, q, tolerance, &mut self.room) {
+                    return true;
+                }
+            }
+            self.stack.push(number);
+        }
+        false
     }
 
     fn keep(&mut self, bodies: Range<usize>, matters: impl Fn(&Body) -> bool) {
@@ -183,6 +227,30 @@ enum Seen {
     Nothing,
     All,
     Part,
+}
+
+/// Where a patch lies over the plane of another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Side {
+    Before,
+    Behind,
+    Across,
+}
+
+/// Where `q` lies over `p`.
+fn side(p: &Patch, q: &Patch, tolerance: f64) -> Side {
+    let (normal, offset) = (p.normal(), p.normal().dot(p.corner(0)));
+    let (mut above, mut below) = (false, false);
+    for x in q.corners() {
+        let height = normal.dot(*x) - offset;
+        above |= height > tolerance;
+        below |= height < -tolerance;
+    }
+    match (above, below) {
+        (true, false) => Side::Before,
+        (true, true) => Side::Across,
+        _ => Side::Behind,
+    }
 }
 
 fn corners(bound: &Bound) -> [Vec3; 2] {

@@ -12,10 +12,11 @@ impl Body {
     #[must_use]
     pub fn in_front(&self, plane: &Face, tolerance: f64) -> Option<Self> {
         let snapped = |h: f64| if h.abs() <= tolerance { 0.0 } else { h };
-        let heights: Vec<f64> = self.corners.iter().map(|&x| snapped(plane.height(x))).collect();
-        if heights.iter().all(|&h| h >= 0.0) {
+        let height = |&x: &Vec3| snapped(plane.height(x));
+        if self.corners.iter().all(|x| height(x) >= 0.0) {
             return None;
         }
+        let heights: Vec<f64> = self.corners.iter().map(height).collect();
         let mut faces = self.faces.clone();
         if self.solid {
             faces.push(Face { normal: -plane.normal, offset: -plane.offset });

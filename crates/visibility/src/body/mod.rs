@@ -37,6 +37,7 @@ impl Face {
 
     /// Height of a point over the face, m: positive outside the body.
     #[must_use]
+    #[inline]
     pub fn height(&self, x: Vec3) -> f64 {
         self.normal.dot(x) - self.offset
     }
@@ -82,18 +83,21 @@ impl Body {
 
     /// The corners, m.
     #[must_use]
+    #[inline]
     pub fn corners(&self) -> &[Vec3] {
         &self.corners
     }
 
     /// The planes of the faces: two opposite ones for a flat polygon.
     #[must_use]
+    #[inline]
     pub fn faces(&self) -> &[Face] {
         &self.faces
     }
 
     /// The edges.
     #[must_use]
+    #[inline]
     pub fn edges(&self) -> &[Edge] {
         &self.edges
     }
@@ -113,12 +117,14 @@ impl Body {
 
     /// Whether it encloses a volume.
     #[must_use]
+    #[inline]
     pub fn is_solid(&self) -> bool {
         self.solid
     }
 
     /// The two ends of an edge, m.
     #[must_use]
+    #[inline]
     pub fn ends(&self, edge: &Edge) -> [Vec3; 2] {
         edge.ends.map(|k| self.corners[k as usize])
     }

@@ -45,6 +45,7 @@ impl Room {
     /// Normals n (of any length), offsets c and numbers: those behind the faces, and those of the outline, for which c = 0. Half-spaces of one body that the same face or edge
     /// makes have the same number from all points.
     #[must_use]
+    #[inline]
     pub fn planes(&self) -> &[(Vec3, f64, u32)] {
         &self.planes
     }

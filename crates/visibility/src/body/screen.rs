@@ -18,7 +18,7 @@ pub struct Screen<'a> {
     turning: Vec<Face>,
     /// Faces that look at all of the source and do not have all of the target behind them, where the outline is the same from everywhere.
     front: Option<Vec<Face>>,
-    /// Faces that do not have all of the target behind them.
+    /// Faces that do not have all of the target behind them, where the outline is not the same from everywhere.
     ahead: Bits,
     tolerance: f64,
 }
@@ -47,7 +47,9 @@ impl<'a> Screen<'a> {
         let before = |face: &Face| target.iter().any(|&y| face.height(y) > tolerance);
         let front = fixed.then(|| some(Looks::All).filter(before).collect());
         let mut ahead = Bits::default();
-        body.faces.iter().enumerate().filter(|(_, face)| before(face)).for_each(|(k, _)| ahead.set(k));
+        if !fixed {
+            body.faces.iter().enumerate().filter(|(_, face)| before(face)).for_each(|(k, _)| ahead.set(k));
+        }
         let mut screen = Self { body, edges: Vec::with_capacity(8), turning, front, ahead, tolerance };
         for edge in &body.edges {
             screen.consider(edge, edge.faces.map(|face| looks[face as usize]), source, target);
@@ -64,8 +66,8 @@ impl<'a> Screen<'a> {
         let ends = if left == Looks::All || right == Looks::None { [b, a] } else { [a, b] };
         let cuts = |x: &Vec3| {
             let inward = (ends[0] - *x).cross(ends[1] - *x);
-            let flat = self.tolerance * inward.length();
-            target.iter().any(|y| inward.dot(*y - *x) < -flat)
+            let outside = |height: f64| height < 0.0 && height < -self.tolerance * inward.length();
+            target.iter().any(|y| outside(inward.dot(*y - *x)))
         };
         if self.front.is_none() || source.iter().any(cuts) {
             self.edges.push(ends);
@@ -74,36 +76,60 @@ impl<'a> Screen<'a> {
 
     /// The edges that may cut the target from some point of the source, m.
     #[must_use]
+    #[inline]
     pub fn edges(&self) -> &[[Vec3; 2]] {
         &self.edges
     }
 
     /// The faces whose planes pass through the source.
     #[must_use]
+    #[inline]
     pub fn turning(&self) -> &[Face] {
         &self.turning
     }
 
     /// The body.
     #[must_use]
+    #[inline]
     pub fn body(&self) -> &Body {
         self.body
     }
 
     /// Heights up to which a point lies on a face, m.
     #[must_use]
+    #[inline]
     pub fn tolerance(&self) -> f64 {
         self.tolerance
     }
 
     /// What of the target is hidden from a point `x` of the source; where that is a room, `room` holds it.
     pub fn shadow(&self, x: Vec3, room: &mut Room) -> Shadow {
-        let Some(front) = &self.front else {
-            return self.body.shadow_among(x, self.tolerance, self.ahead, room);
-        };
+        self.front_from(x, room);
+        self.rest(x, room)
+    }
+
+    /// Writes the half-spaces that are the same from all points of the source to `room`, in coordinates relative to the origin.
+    pub fn front(&self, room: &mut Room) {
+        self.front_from(Vec3::ZERO, room);
+    }
+
+    /// As [`shadow`](Self::shadow), less the half-spaces of [`front`](Self::front).
+    pub fn outline(&self, x: Vec3, room: &mut Room) -> Shadow {
         room.clear();
-        for (k, face) in front.iter().enumerate() {
+        self.rest(x, room)
+    }
+
+    fn front_from(&self, x: Vec3, room: &mut Room) {
+        room.clear();
+        for (k, face) in self.front.iter().flatten().enumerate() {
             room.push_face(k, face.normal, face.height(x));
+        }
+    }
+
+    /// Adds what [`front`](Self::front) lacks.
+    fn rest(&self, x: Vec3, room: &mut Room) -> Shadow {
+        if self.front.is_none() {
+            return self.body.shadow_among(x, self.tolerance, self.ahead, room);
         }
         for (k, [a, b]) in self.edges.iter().enumerate() {
             room.push_edge(k, (*a - x).cross(*b - x));

@@ -44,11 +44,37 @@ fn supporting_plane(start: Vec3, edge: Vec3, n: Vec3, others: &[Vec3], tolerance
     for &w in others {
         let (x, z) = ((w - start).dot(m), (w - start).dot(n).max(0.0));
         let off_the_edge = z > tolerance || x.abs() > tolerance * length;
-        if off_the_edge && (!any || x_last * z > z_last * x) {
+        let area = x_last * z - z_last * x;
+        // Corners at the angles 0 and π span no area.
+        let wider = area > 0.0 || (area >= 0.0 && x < x_last);
+        if off_the_edge && (!any || wider) {
             (x_last, z_last, any) = (x, z, true);
         }
     }
     let normal = z_last * m - x_last * n;
     let sure = length > SURE * tolerance && norm1(normal) > SURE * tolerance * length;
     (any && sure).then(|| HalfSpace { normal, offset: normal.dot(start) })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::Occluders;
+    use crate::body::Bodies;
+    use fredholm_mesh::{Patch, Vec3};
+
+    fn quad(corners: [[f64; 3]; 4]) -> Patch {
+        Patch::quad(corners.map(Vec3::from)).unwrap().unwrap()
+    }
+
+    /// The wall stands in the plane of the floor's first side: seen from an edge of the wall, that side lies at the angles 0 and π.
+    #[test]
+    fn a_screen_before_a_floor_that_ends_under_a_wall_is_in_the_shaft() {
+        let floor = quad([[2.0, 8.5, 0.0], [4.0, 8.5, 0.0], [4.0, 10.0, 0.0], [2.0, 10.0, 0.0]]);
+        let wall = quad([[1.0, 8.5, 0.5], [1.0, 8.5, 1.5], [2.75, 8.5, 1.5], [2.75, 8.5, 0.5]]);
+        let screen = quad([[3.5, 8.0, 0.0], [3.5, 9.0, 0.0], [3.5, 9.0, 1.5], [3.5, 8.0, 1.5]]);
+        let occluders = Occluders::new(&[screen]).unwrap();
+        let bodies = Bodies::new(&occluders, &[&floor, &wall], &[]);
+        let shaft = occluders.shaft_between(&floor, &wall).unwrap();
+        assert!(occluders.reaches(&bodies.as_slice()[0], &shaft));
+    }
 }

@@ -18,7 +18,6 @@
 
 mod buckets;
 mod close;
-mod lanes;
 mod logarithm;
 mod parallelogram;
 mod patches;
@@ -26,11 +25,11 @@ mod polygons;
 mod rules;
 mod survey;
 
+use super::lanes::{LANES, Lanes, Places};
 use super::{Exchange, Method};
 use buckets::{Buckets, Way};
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_quadrature::Estimate;
-use lanes::{LANES, Lanes, Places};
 use parallelogram::parallelograms;
 use patches::{Outline, Patches};
 use polygons::polygons;

@@ -10,10 +10,10 @@
 //! Nodes ±s, ±t share a weight; their sum is one atanh by tanh(x + y) = (tanh x + tanh y)/(1 + tanh x tanh y). Lengths in any unit, exchanges
 //! in its square.
 
-use super::lanes::{LANES, Lanes, Lanes3, Places, difference, dot, each};
 use super::logarithm::{SERIES_END, ln_1p, twice_atanh};
 use super::patches::Patches;
 use super::rules::{Node, rule};
+use crate::form_factor::lanes::{LANES, Lanes, Lanes3, Places, difference, dot, each};
 use std::f64::consts::TAU;
 
 /// Cosine below which two directions count as perpendicular.

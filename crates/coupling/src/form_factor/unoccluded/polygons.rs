@@ -5,10 +5,10 @@
 //! difference of distances: the rounding left is that of h/d, not of 1. Nodes ±s, ±t share a weight and one logarithm:
 //! (1 + x)(1 + y) = 1 + (x + y + x y). Lengths in any unit, exchanges in its square.
 
-use super::lanes::{LANES, Lanes, Lanes3, Places, difference, dot, each, sum};
 use super::logarithm::ln_1p;
 use super::patches::Patches;
 use super::rules::{Node, rule};
+use crate::form_factor::lanes::{LANES, Lanes, Lanes3, Places, difference, dot, each, sum};
 use std::f64::consts::TAU;
 
 /// A_i F_ij of a block of pairs with so many corners, and so many points along the edges of the first and of the second.

@@ -10,9 +10,9 @@
 //! Of a parallelogram the errors on opposite sides cancel to h/D. C is measured, see `tests/unoccluded.rs`. Both patches share the
 //! tolerance evenly.
 
-use super::lanes::{LANES, Lanes, Lanes3, Places, difference, dot, each};
 use super::patches::Patches;
 use super::rules::MAX_POINTS;
+use crate::form_factor::lanes::{LANES, Lanes, Lanes3, Places, difference, dot, each};
 use std::f64::consts::FRAC_1_PI;
 
 /// C for a parallelogram, and for other patches. The largest errors among 18,000 random pairs are 0.7 and 0.3 of the bound.

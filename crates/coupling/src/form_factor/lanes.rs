@@ -3,6 +3,8 @@
 //! Loops run over lanes with additions, multiplications, divisions and roots only, never fused, so that a result has the same bits whatever the
 //! width of the machine's vectors and whichever pairs stand beside it.
 
+#![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
+
 /// Pairs of a block.
 pub(super) const LANES: usize = 8;
 
@@ -83,4 +85,33 @@ pub(super) fn difference(a: &Lanes3, b: &Lanes3) -> Lanes3 {
 #[inline(always)]
 pub(super) fn sum(a: &Lanes3, b: &Lanes3) -> Lanes3 {
     [each(|m| a[0][m] + b[0][m]), each(|m| a[1][m] + b[1][m]), each(|m| a[2][m] + b[2][m])]
+}
+
+/// A yes (all bits) or no (none) a lane.
+pub(super) type Mask = [u64; LANES];
+
+/// The answer of every lane.
+#[inline(always)]
+pub(super) fn ask(mut answer: impl FnMut(usize) -> bool) -> Mask {
+    let mut mask = [0; LANES];
+    for (m, lane) in mask.iter_mut().enumerate() {
+        *lane = if answer(m) { u64::MAX } else { 0 };
+    }
+    mask
+}
+
+/// Whether any lane says yes.
+#[inline(always)]
+pub(super) fn any(mask: &Mask) -> bool {
+    let mut all = 0;
+    for lane in mask {
+        all |= lane;
+    }
+    all != 0
+}
+
+/// The number where the mask says yes, and 0 elsewhere.
+#[inline(always)]
+pub(super) fn only(mask: &Mask, number: &Lanes) -> Lanes {
+    each(|m| f64::from_bits(number[m].to_bits() & mask[m]))
 }

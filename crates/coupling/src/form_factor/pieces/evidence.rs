@@ -1,0 +1,98 @@
+//! What the points of a rule tell about critical lines: those on whose two sides points are of one kind do not show, those that part the kinds do.
+//!
+//! A line may also pass between the points and the border of a part. What is behind it nobody has seen.
+
+use super::EQUAL;
+use crate::form_factor::critical::Plane;
+use crate::form_factor::shadow::Kind;
+use fredholm_mesh::Vec3;
+
+/// What is known of a line that cuts a part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Line {
+    /// Points of one kind on both sides.
+    Silent,
+    /// The kinds on one side are others than those on the other.
+    Shows,
+    /// No point on one side.
+    Unseen,
+}
+
+/// Points on a part with h there and their kinds.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Points {
+    pub places: Vec<Vec3>,
+    pub found: Vec<(f64, Kind)>,
+    /// The kinds that occur, and which of them each point has, as a bit.
+    kinds: Vec<Kind>,
+    bits: Vec<u64>,
+}
+
+impl Points {
+    pub(super) fn clear(&mut self) {
+        self.places.clear();
+        self.found.clear();
+        self.kinds.clear();
+        self.bits.clear();
+    }
+
+    /// Asks for h at the points that are new, and sorts them by kind. Beyond 64 kinds the rest counts as one.
+    pub(super) fn ask(&mut self, h: &mut impl FnMut(&[Vec3], &mut Vec<(f64, Kind)>)) {
+        h(&self.places[self.found.len()..], &mut self.found);
+        for (_, kind) in &self.found[self.bits.len()..] {
+            let known = self.kinds.iter().position(|k| k == kind);
+            let place = known.unwrap_or(self.kinds.len());
+            if known.is_none() {
+                self.kinds.push(*kind);
+            }
+            self.bits.push(1 << place.min(63));
+        }
+    }
+
+    /// Leaves out the kinds of points at heights of at most `flat`: rounding decides about them.
+    pub(super) fn leave_out(&mut self, (n, c): Plane, flat: f64) {
+        for (x, bit) in self.places.iter().zip(&mut self.bits) {
+            if (n.dot(*x) - c).abs() <= flat {
+                *bit = 0;
+            }
+        }
+    }
+
+    /// The kind of all points, if it is one.
+    pub(super) fn kind(&self) -> Option<Kind> {
+        let all = self.bits.iter().fold(0, |all, bit| all | bit);
+        (all.count_ones() == 1).then(|| self.kinds[all.trailing_zeros() as usize])
+    }
+
+    /// Largest less least h.
+    pub(super) fn range(&self) -> f64 {
+        let each = |[low, high]: [f64; 2], (h, _): &(f64, Kind)| [low.min(*h), high.max(*h)];
+        let [low, high] = self.found.iter().fold([f64::INFINITY, f64::NEG_INFINITY], each);
+        high - low
+    }
+
+    /// What the points tell about a line.
+    pub(super) fn judge(&self, (n, c): Plane) -> Line {
+        let (mut above, mut below) = (0, 0);
+        for (x, bit) in self.places.iter().zip(&self.bits) {
+            let side = if n.dot(*x) > c { &mut above } else { &mut below };
+            *side |= bit;
+        }
+        if above == 0 || below == 0 {
+            Line::Unseen
+        } else if above & below == 0 {
+            Line::Shows
+        } else {
+            Line::Silent
+        }
+    }
+
+    /// Largest difference of h at the last point from h at the nearest others.
+    pub(super) fn jump(&self) -> f64 {
+        let last = self.places.len() - 1;
+        let distances = || self.places[..last].iter().map(|x| x.distance(self.places[last]));
+        let nearest = distances().fold(f64::INFINITY, f64::min) * (1.0 + EQUAL);
+        let near = distances().zip(&self.found).filter(|(distance, _)| *distance <= nearest);
+        near.map(|(_, (h, _))| (h - self.found[last].0).abs()).fold(0.0, f64::max)
+    }
+}

@@ -1,0 +1,268 @@
+//! ∫ h dA over a convex polygon in parts: by cuts along critical lines, by rules of rising degree and by halving, with one error estimate for all.
+//!
+//! The part with the largest error is improved next. Where its points are of several kinds it is cut along the critical line that parts them, and halves it best; where
+//! there is none its sides are halved. Where all are of one kind it gets the next rule as long as that pays, or its sides are halved. So the cost follows the goal. In m².
+//!
+//! Most critical lines do not show, and the kinds of points on both sides tell which. A line may also pass between the points and the border of a part: before the part
+//! is left as it is, one point behind the line is looked at, if that could hide something that matters.
+
+mod evidence;
+mod observed;
+mod piece;
+mod shape;
+
+use super::critical::Plane;
+use super::shadow::Kind;
+use crate::polygon::{HalfSpace, clip};
+use evidence::{Line, Points};
+use fredholm_mesh::Vec3;
+use fredholm_quadrature::Estimate;
+use fredholm_visibility::body::ODD;
+use observed::Observed;
+use piece::Piece;
+use shape::Shape;
+
+/// Relative difference below which two errors are equal by design of the scene.
+const EQUAL: f64 = 1e-6;
+/// A line that leaves less than this share of the width of a part on one side does not cut it.
+const SIDE: f64 = 0.020_3;
+/// Heights over a line below this share of the width of a part count as 0: often several lines meet in one point.
+const ON_THE_LINE: f64 = 1e-9;
+/// What may be hidden behind a line, in goals, from which on a point there is looked at.
+const MATTERS: f64 = 0.15;
+/// Points after which an integral ends with the error that it has.
+const POINTS: usize = 100_000;
+
+/// Where h is not smooth.
+#[derive(Clone, Copy)]
+pub(crate) struct Breaks<'a, D, M> {
+    /// Critical planes.
+    pub planes: &'a [Plane],
+    /// Heights up to which a point lies in a plane, m.
+    pub flat: f64,
+    /// Distance of a point from what makes h steep, m.
+    pub distance: D,
+    /// Largest possible h at a point.
+    pub most: M,
+}
+
+/// Parts and what is known of the convergence on them.
+pub(crate) struct Pieces<'a, H, D, M> {
+    h: H,
+    breaks: Breaks<'a, D, M>,
+    work: &'a mut PiecesWork,
+    observed: Observed,
+    points: usize,
+    goal: f64,
+}
+
+/// Buffers of one thread.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct PiecesWork {
+    parts: Vec<Piece>,
+    /// The points of the last rules, all on one part.
+    points: Points,
+    /// Lines through that part, each with the share of the width on its smaller side, and those that have no point there.
+    lines: Vec<(Plane, f64)>,
+    unseen: Vec<(Plane, f64)>,
+}
+
+impl<'a, H, D, M> Pieces<'a, H, D, M>
+where
+    H: FnMut(&[Vec3], &mut Vec<(f64, Kind)>),
+    D: Fn(Vec3) -> f64,
+    M: Fn(Vec3) -> f64,
+{
+    /// Prepares the integral of h to an absolute `goal`. `h` appends the values and the kinds at given points.
+    pub(crate) fn new(h: H, breaks: Breaks<'a, D, M>, work: &'a mut PiecesWork, goal: f64) -> Self {
+        work.parts.clear();
+        Self { h, breaks, work, observed: Observed::default(), points: 0, goal }
+    }
+
+    /// The integral over a convex polygon.
+    pub(crate) fn integrate(mut self, corners: &[Vec3]) -> Estimate {
+        self.add(corners);
+        loop {
+            let error = self.observed.error(&self.work.parts);
+            if error <= self.goal || self.points >= POINTS {
+                return Estimate { value: self.work.parts.iter().map(|p| p.value).sum(), error };
+            }
+            self.improve_worst();
+        }
+    }
+
+    /// Adds a convex polygon as quads and at most one triangle.
+    fn add(&mut self, corners: &[Vec3]) {
+        let mut start = 1;
+        while start + 1 < corners.len() {
+            let shape = match corners[start..] {
+                [b, c] => Shape::Triangle([corners[0], b, c]),
+                [b, c, d, ..] => Shape::Quad([corners[0], b, c, d]),
+                _ => return,
+            };
+            self.start(shape);
+            start += shape.corners().len() - 2;
+        }
+    }
+
+    /// Adds a part with its integral by the first two rules.
+    fn start(&mut self, shape: Shape) {
+        let most = (self.breaks.most)(shape.centre()) * shape.area();
+        let reach = shape.reach(&self.breaks.distance);
+        let [first, second] = self.rules(&shape, [0, 1]);
+        let range = self.work.points.range() * shape.area();
+        let piece = self.learn(Piece::new(shape, [reach, most], first, range), second);
+        self.work.parts.push(piece);
+    }
+
+    /// The integrals by some rules, the points of which are asked about together.
+    fn rules<const N: usize>(&mut self, shape: &Shape, degrees: [usize; N]) -> [f64; N] {
+        let points = &mut self.work.points;
+        points.clear();
+        let ends = degrees.map(|degree| {
+            shape.points(degree, |x| points.places.push(x));
+            points.places.len()
+        });
+        points.ask(&mut self.h);
+        self.points += points.places.len();
+        let mut start = 0;
+        std::array::from_fn(|k| {
+            let values = start..ends[k];
+            start = ends[k];
+            shape.sum(degrees[k], &self.work.points.found[values])
+        })
+    }
+
+    /// A part with the integral by the next rule, and with what its points tell.
+    fn learn(&mut self, mut piece: Piece, value: f64) -> Piece {
+        piece.line = self.line_through(&piece.shape);
+        piece.cut = self.work.lines.iter().map(|(_, share)| *share).fold(0.0, f64::max);
+        piece.raise(value, self.work.points.kind());
+        if self.observed.scale() * piece.error < self.goal {
+            self.look_behind(&mut piece);
+        }
+        piece
+    }
+
+    /// The line that shows and halves a part best, with the share of the width on its smaller side. Lists the lines behind which no point lies.
+    fn line_through(&mut self, shape: &Shape) -> Option<(Plane, f64)> {
+        let flat = self.flat(shape);
+        let PiecesWork { points, lines, unseen, .. } = &mut *self.work;
+        let cutting = |&plane: &Plane| Some((plane, share(shape, plane, flat)?));
+        lines.clear();
+        lines.extend(self.breaks.planes.iter().filter_map(cutting));
+        lines.iter().for_each(|&(plane, _)| points.leave_out(plane, flat));
+        unseen.clear();
+        unseen.extend(lines.iter().filter(|(plane, _)| points.judge(*plane) == Line::Unseen));
+        let shown = lines.iter().filter(|(plane, _)| points.judge(*plane) == Line::Shows).copied();
+        shown.max_by(|a, b| merit(a).total_cmp(&merit(b)))
+    }
+
+    /// Looks at a point behind each line that has none, where much may be hidden.
+    fn look_behind(&mut self, piece: &mut Piece) {
+        let flat = self.flat(&piece.shape);
+        let PiecesWork { points, lines, unseen, .. } = &mut *self.work;
+        for &(plane, share) in unseen.iter() {
+            let matters = share * piece.most >= MATTERS * self.goal;
+            if !matters || points.judge(plane) != Line::Unseen {
+                continue;
+            }
+            points.places.push(piece.shape.behind(plane, flat));
+            points.ask(&mut self.h);
+            self.points += 1;
+            lines.iter().for_each(|&(plane, _)| points.leave_out(plane, flat));
+            if points.judge(plane) == Line::Shows {
+                piece.reveal((plane, share), points.jump() * share * piece.shape.area());
+            }
+        }
+    }
+
+    /// Improves the part with the largest error, and those that equal it: rounding does not choose between them.
+    fn improve_worst(&mut self) {
+        let worst = self.work.parts.iter().map(|p| p.error).fold(0.0, f64::max);
+        for k in (0..self.work.parts.len()).rev() {
+            if self.work.parts[k].error >= worst * (1.0 - EQUAL) {
+                self.improve(k);
+            }
+        }
+    }
+
+    fn improve(&mut self, k: usize) {
+        let piece = self.work.parts.swap_remove(k);
+        let start = self.work.parts.len();
+        if piece.pays {
+            let [value] = self.rules(&piece.shape, [piece.degree + 1]);
+            let piece = self.learn(piece, value);
+            self.work.parts.push(piece);
+        } else {
+            self.divide(&piece);
+        }
+        let value: f64 = self.work.parts[start..].iter().map(|p| p.value).sum();
+        self.observed.add(value - piece.value, piece.error);
+    }
+
+    /// Cuts a part along a line, or halves its sides.
+    fn divide(&mut self, piece: &Piece) {
+        match piece.line {
+            Some((plane, _)) => self.cut(&piece.shape, plane),
+            None => piece.shape.quarters().into_iter().for_each(|part| self.start(part)),
+        }
+    }
+
+    /// Heights over a line that count as 0 on a part, m.
+    fn flat(&self, shape: &Shape) -> f64 {
+        self.breaks.flat.max(ON_THE_LINE * shape.width())
+    }
+
+    fn cut(&mut self, shape: &Shape, (normal, offset): Plane) {
+        let above = HalfSpace { normal, offset };
+        let below = HalfSpace { normal: -normal, offset: -offset };
+        for side in [above, below] {
+            let mut part = Vec::with_capacity(5);
+            clip(shape.corners(), side, self.flat(shape), &mut part);
+            self.add(&part);
+        }
+    }
+}
+
+/// How well a line with this share of the width on its smaller side halves a part; of equals, the place decides.
+fn merit(((n, _), share): &(Plane, f64)) -> f64 {
+    share + 1e-3 * n.dot(ODD).abs()
+}
+
+/// The share of the width of a shape on the smaller side of a plane that cuts it.
+fn share(shape: &Shape, (n, c): Plane, flat: f64) -> Option<f64> {
+    let heights = shape.corners().iter().map(|x| n.dot(*x) - c);
+    let [low, high] = heights.fold([0.0f64; 2], |[low, high], h| [low.min(h), high.max(h)]);
+    let share = high.min(-low) / (high - low);
+    (high > flat && -low > flat && share > SIDE).then_some(share)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// ∫ over the unit square of a function with a kink along x = 0.3 and with its steep place at `near`.
+    fn kinked(near: Vec3, planes: &[Plane], goal: f64) -> Estimate {
+        let square = [Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Y, Vec3::Y];
+        let mut other = Kind::default();
+        other.add(&[1]);
+        let kind = |x: &Vec3| if x.x < 0.3 { other } else { Kind::default() };
+        let value = |x: &Vec3| ((x.x - 0.3).max(0.0), kind(x));
+        let h = |points: &[Vec3], found: &mut Vec<_>| found.extend(points.iter().map(value));
+        let breaks = Breaks { planes, flat: 1e-12, distance: |x: Vec3| x.distance(near), most: |_| 0.7 };
+        Pieces::new(h, breaks, &mut PiecesWork::default(), goal).integrate(&square)
+    }
+
+    #[test]
+    fn a_cut_along_the_kink_makes_it_exact() {
+        let found = kinked(Vec3::Z * 5.0, &[(Vec3::X, 0.3)], 1e-9);
+        assert!((found.value - 0.245).abs() < 1e-14 && found.error < 1e-9, "{found:?}");
+    }
+
+    #[test]
+    fn a_part_on_an_edge_of_a_body_has_an_error_that_is_a_number() {
+        let found = kinked(Vec3::new(0.5, 0.5, 0.0), &[], 1e-4);
+        assert!(found.error <= 1e-4 && (found.value - 0.245).abs() < 1e-3, "{found:?}");
+    }
+}

@@ -1,0 +1,108 @@
+//! A part of the source: the integral over it, and how well that is known.
+//!
+//! s is the change from the rule before, v the range of h times the area (for a higher rule on a part where all points are of one kind: the change before), m the
+//! largest value that the integral could have, r the reach. The error is, with measured shares (docs/form-factors.md),
+//!
+//! | | r ≤ 1 | r > 1 |
+//! |---|---|---|
+//! | all points of one kind | r √(a² s v + a′² v²) | √r √((b m)² + (c s)²) |
+//! | kinds differ | d √(s v) | r √(e² s m + (f m)² + (g s)²) |
+
+use super::merit;
+use super::shape::{DEGREES, Shape};
+use crate::form_factor::critical::Plane;
+use crate::form_factor::shadow::Kind;
+
+/// Ratio of two changes, and of the first change to v, below which the next rule is expected to pay.
+const PAYS: f64 = 0.3;
+const PAYS_FIRST: f64 = 0.26;
+/// Radius of a part, in its distances from what makes h steep, above which its sides are halved.
+/// No simple number: in a scene with right angles the two are often equal, and rounding would decide.
+const NEAR: f64 = 1.000_001;
+/// The shares a and a′ of the table,
+const SMOOTH: [f64; 2] = [0.15, 0.03];
+/// b and c,
+const SMOOTH_NEAR: [f64; 2] = [0.013, 0.14];
+/// d,
+const BROKEN: f64 = 0.11;
+/// and e, f and g.
+const BROKEN_NEAR: [f64; 3] = [0.053, 0.011, 0.013];
+/// Share of the largest value, and of the width behind a line through a part of one kind, that small shadows between its four points may hide; each next rule leaves this part of it.
+const BETWEEN: [f64; 2] = [3e-4, 0.25];
+/// Share of what shows behind a line with no points of the rule.
+const BEHIND: f64 = 1.3;
+
+/// A part, its integral and how that converged.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Piece {
+    pub shape: Shape,
+    /// Radius over the distance from what makes h steep.
+    reach: f64,
+    /// Largest value that the integral could have, m².
+    pub most: f64,
+    /// Range of h at the first points, times the area, m².
+    range: f64,
+    /// Place in [`DEGREES`].
+    pub degree: usize,
+    pub value: f64,
+    /// Difference to the degree before.
+    step: f64,
+    pub error: f64,
+    /// The kind of all points so far, or `None` where they differ.
+    kind: Option<Kind>,
+    /// Largest share of the width behind a line.
+    pub cut: f64,
+    /// The line along which the part is cut next, and the share of the width on its smaller side.
+    pub line: Option<(Plane, f64)>,
+    /// Whether the next rule pays more than smaller parts.
+    pub pays: bool,
+}
+
+impl Piece {
+    /// A part with its reach, the largest value that the integral could have, the integral by the first rule, and the range of h at the points of the first two times the area.
+    pub(super) fn new(shape: Shape, [reach, most]: [f64; 2], value: f64, range: f64) -> Self {
+        let (step, error, kind, line) = (0.0, 0.0, None, None);
+        Self { shape, reach, most, range, degree: 0, value, step, error, kind, cut: 0.0, line, pays: true }
+    }
+
+    /// Takes the integral by the next rule, with the kind of its points.
+    pub(super) fn raise(&mut self, value: f64, kind: Option<Kind>) {
+        let step = (value - self.value).abs();
+        let first = self.degree == 0;
+        self.kind = kind.filter(|_| first || self.kind == kind);
+        let before = if first || self.kind.is_none() { self.range } else { self.step }.max(step);
+        self.degree += 1;
+        let hidden = self.between();
+        self.error = self.estimate(step, before) + hidden;
+        let quick = step < if first { PAYS_FIRST } else { PAYS } * before || 2.0 * hidden > self.error;
+        self.pays = self.kind.is_some() && self.reach <= NEAR && quick && self.degree + 1 < DEGREES.len();
+        (self.value, self.step) = (value, step);
+    }
+
+    /// What may hide between points that are all of one kind, m².
+    fn between(&self) -> f64 {
+        let share = if self.kind.is_some() { self.cut } else { 0.0 };
+        BETWEEN[0] * BETWEEN[1].powi(self.degree as i32 - 1) * share * self.most
+    }
+
+    fn estimate(&self, s: f64, v: f64) -> f64 {
+        let (r, m) = (self.reach, self.most);
+        let (a, [b, c], [e, f, g]) = (SMOOTH, SMOOTH_NEAR, BROKEN_NEAR);
+        match (self.kind.is_some(), r <= NEAR) {
+            (true, true) => r * (a[0] * a[0] * s * v + a[1] * a[1] * v * v).sqrt(),
+            (false, true) => BROKEN * (s * v).sqrt(),
+            (true, false) => (r * (b * b * m * m + c * c * s * s)).sqrt(),
+            (false, false) => r * (e * e * s * m + f * f * m * m + g * g * s * s).sqrt(),
+        }
+    }
+
+    /// A line shows that has no point of the rule behind it; `missed` is by how much the integral may be off, m².
+    pub(super) fn reveal(&mut self, line: (Plane, f64), missed: f64) {
+        self.kind = None;
+        self.pays = false;
+        self.error = self.error.max(BEHIND * missed);
+        if self.line.is_none_or(|other| merit(&line) > merit(&other)) {
+            self.line = Some(line);
+        }
+    }
+}
