@@ -49,10 +49,10 @@ impl Points {
         }
     }
 
-    /// Leaves out the kinds of points at heights of at most `flat`: rounding decides about them.
-    pub(super) fn leave_out(&mut self, (n, c): Plane, flat: f64) {
+    /// Leaves out the kinds of points at heights of at most `flat` over one of the lines: rounding decides about them.
+    pub(super) fn leave_out(&mut self, lines: &[(Plane, f64)], flat: f64) {
         for (x, bit) in self.places.iter().zip(&mut self.bits) {
-            if (n.dot(*x) - c).abs() <= flat {
+            if lines.iter().any(|((n, c), _)| (n.dot(*x) - c).abs() <= flat) {
                 *bit = 0;
             }
         }
@@ -61,7 +61,7 @@ impl Points {
     /// The kind of all points, if it is one.
     pub(super) fn kind(&self) -> Option<Kind> {
         let all = self.bits.iter().fold(0, |all, bit| all | bit);
-        (all.count_ones() == 1).then(|| self.kinds[all.trailing_zeros() as usize])
+        all.is_power_of_two().then(|| self.kinds[all.trailing_zeros() as usize])
     }
 
     /// Largest less least h.

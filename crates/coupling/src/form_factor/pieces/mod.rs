@@ -151,7 +151,7 @@ where
         let cutting = |&plane: &Plane| Some((plane, share(shape, plane, flat)?));
         lines.clear();
         lines.extend(self.breaks.planes.iter().filter_map(cutting));
-        lines.iter().for_each(|&(plane, _)| points.leave_out(plane, flat));
+        points.leave_out(lines, flat);
         unseen.clear();
         unseen.extend(lines.iter().filter(|(plane, _)| points.judge(*plane) == Line::Unseen));
         let shown = lines.iter().filter(|(plane, _)| points.judge(*plane) == Line::Shows).copied();
@@ -170,7 +170,7 @@ where
             points.places.push(piece.shape.behind(plane, flat));
             points.ask(&mut self.h);
             self.points += 1;
-            lines.iter().for_each(|&(plane, _)| points.leave_out(plane, flat));
+            points.leave_out(lines, flat);
             if points.judge(plane) == Line::Shows {
                 piece.reveal((plane, share), points.jump() * share * piece.shape.area());
             }
