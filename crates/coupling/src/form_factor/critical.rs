@@ -24,20 +24,27 @@ const INSIDE: f64 = 1e-6;
 /// A plane n·x = c with a unit normal.
 pub(crate) type Plane = (Vec3, f64);
 
+/// A plane on which the hidden part changes its kind, and whether it surely does so wherever the plane cuts the source.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Event {
+    pub plane: Plane,
+    pub certain: bool,
+}
+
 /// Corners of a source of which heights are kept: a patch that is cut by a plane has at most five.
 const CORNERS: usize = 8;
 
 /// A plane that cuts the source, and the heights of the corners of the source over it.
 #[derive(Clone, Copy, Debug)]
 struct Line {
-    plane: Plane,
+    event: Event,
     heights: [f64; CORNERS],
 }
 
 /// Critical planes, and buffers.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Critical {
-    planes: Vec<Plane>,
+    events: Vec<Event>,
     found: Vec<Line>,
     keyed: Vec<(f64, Line)>,
     spans: Spans,
@@ -48,27 +55,28 @@ pub(crate) struct Critical {
 }
 
 impl Critical {
-    /// Finds the planes of the events of `screens` before `target` that cut the `source` polygon. Those of single bodies come first, long ones before short
+    /// Finds the events of `screens` before `target` on planes that cut the `source` polygon. Those of single bodies come first, long ones before short
     /// ones, and at most [`LINES`] are kept. Lengths below `flat` (m) count as 0.
-    pub(crate) fn planes(
+    pub(crate) fn events(
         &mut self,
         source: &[Vec3],
         target: &[Vec3],
         screens: &[Screen],
         flat: f64,
-    ) -> &[Plane] {
-        let Self { planes, found, keyed, spans, corners, ends, sides } = self;
+    ) -> &[Event] {
+        let Self { events, found, keyed, spans, corners, ends, sides } = self;
         found.clear();
-        let mut search = Search { source, target, flat, found, keyed, spans };
+        let lone = matches!(screens, [screen] if screen.is_fixed());
+        let mut search = Search { source, target, flat, lone, found, keyed, spans };
         search.turning(screens);
         list_corners(screens, corners, ends);
         sides.clear();
         sides.extend(sides_of(target));
         let whole = Outline { corners: target, edges: sides };
         search.all(&Outlines { screens, corners, ends }, &whole);
-        planes.clear();
-        planes.extend(found.iter().map(|line| line.plane));
-        planes
+        events.clear();
+        events.extend(found.iter().map(|line| line.event));
+        events
     }
 }
 
@@ -112,10 +120,17 @@ fn sides_of(corners: &[Vec3]) -> impl Iterator<Item = [Vec3; 2]> + '_ {
     corners.iter().zip(corners.iter().cycle().skip(1)).map(|(&a, &b)| [a, b])
 }
 
+/// Whether a place along an edge, from 0 to 1, is inside its ends.
+fn within(t: f64) -> bool {
+    MARGIN < t && t < 1.0 - MARGIN
+}
+
 struct Search<'a> {
     source: &'a [Vec3],
     target: &'a [Vec3],
     flat: f64,
+    /// Whether there is one body, with the same outline from everywhere.
+    lone: bool,
     found: &'a mut Vec<Line>,
     keyed: &'a mut Vec<(f64, Line)>,
     spans: &'a mut Spans,
@@ -126,7 +141,7 @@ impl Search<'_> {
     fn turning(&mut self, screens: &[Screen]) {
         for face in screens.iter().flat_map(Screen::turning) {
             let line = self.line((face.normal, face.offset));
-            if self.is_new(&line) {
+            if self.known(&line).is_none() {
                 self.found.push(line);
             }
         }
@@ -153,7 +168,6 @@ impl Search<'_> {
 
     /// Events where the outline `near` lines up with `far` behind it. Those of two bodies matter only in front of the target.
     fn events(&mut self, near: &Outline, far: &Outline, before: bool) {
-        let within = |t: f64| MARGIN < t && t < 1.0 - MARGIN;
         // Most planes miss the source.
         self.spans.ask(near.edges, far.corners, self.source);
         for (k, &ends) in near.edges.iter().enumerate() {
@@ -182,16 +196,23 @@ impl Search<'_> {
         order: impl Fn(f64) -> bool,
     ) {
         let Some(plane) = spanned(corner, a, b, self.flat) else { return };
-        let line = self.line(plane);
-        if self.lit(&line) != Lit::Partly || !self.is_new(&line) {
+        let mut line = self.line(plane);
+        let known = self.known(&line);
+        if self.lit(&line) != Lit::Partly || known.is_some_and(|k| before || self.found[k].event.certain) {
             return;
         }
         let Some([first, last]) = self.chord(&line) else { return };
         let inner = [first.lerp(last, INSIDE), last.lerp(first, INSIDE)];
         let height = |x: Vec3| plane.0.dot(x) - plane.1;
         let shows = !before || lit(self.target.iter().map(|&x| height(x)), self.flat) == Lit::Partly;
-        if shows && lines_up(inner.map(|c| meeting(c, plane.0)), order) {
-            self.found.push(line);
+        let ends = inner.map(|c| meeting(c, plane.0));
+        if !shows || !lines_up(ends, &order) {
+            return;
+        }
+        line.event.certain = !before && self.lone && ends.iter().all(|&(t, at)| order(t) && within(at));
+        match known {
+            Some(k) => self.found[k].event.certain |= line.event.certain,
+            None => self.found.push(line),
         }
     }
 
@@ -200,18 +221,18 @@ impl Search<'_> {
         for (height, x) in heights.iter_mut().zip(self.source) {
             *height = plane.0.dot(*x) - plane.1;
         }
-        Line { plane, heights }
+        Line { event: Event { plane, certain: false }, heights }
     }
 
-    /// Each line once: parallel edges give the same plane many times.
-    fn is_new(&self, line: &Line) -> bool {
+    /// The place of the same line among those found: parallel edges give the same plane many times.
+    fn known(&self, line: &Line) -> Option<usize> {
         let corners = self.source.len().min(CORNERS);
         let near = |a: &f64, b: f64| (a - b).abs() <= self.flat;
         let same = |other: &Line| {
-            let turned = if line.plane.0.dot(other.plane.0) < 0.0 { -1.0 } else { 1.0 };
+            let turned = if line.event.plane.0.dot(other.event.plane.0) < 0.0 { -1.0 } else { 1.0 };
             line.heights[..corners].iter().zip(&other.heights).all(|(h, g)| near(h, turned * g))
         };
-        !self.found.iter().any(same)
+        self.found.iter().position(same)
     }
 
     /// Sorts the lines from `start` on, long ones first: the order of bodies and of their corners has no say in which are used.
