@@ -31,20 +31,17 @@ impl Rims {
 
     /// Appends a polygon.
     pub(super) fn push(&mut self, corners: &[Vec3]) {
-        let (start, count) = (self.len(), corners.len());
-        self.edges.resize((start + count).div_ceil(LANES), Default::default());
-        for (k, corner) in corners.iter().enumerate() {
-            self.set(start + k, 0, *corner);
-            self.set(start + (k + count - 1) % count, 1, *corner);
+        let [.., last] = corners else { return self.ends.push(self.len()) };
+        let (mut place, end) = (self.len(), self.len() + corners.len());
+        self.edges.resize(end.div_ceil(LANES), Default::default());
+        let mut from = last;
+        for to in corners {
+            let [starts, ends] = &mut self.edges[place / LANES];
+            set(starts, place % LANES, from);
+            set(ends, place % LANES, to);
+            (from, place) = (to, place + 1);
         }
-        self.ends.push(start + count);
-    }
-
-    #[inline]
-    fn set(&mut self, edge: usize, end: usize, corner: Vec3) {
-        let lanes = &mut self.edges[edge / LANES][end];
-        (lanes[0][edge % LANES], lanes[1][edge % LANES], lanes[2][edge % LANES]) =
-            (corner.x, corner.y, corner.z);
+        self.ends.push(end);
     }
 
     /// The form factors of all polygons from points with normal `n`.
@@ -57,6 +54,11 @@ impl Rims {
             factor(sum)
         })
     }
+}
+
+#[inline]
+fn set(lanes: &mut Lanes3, m: usize, x: &Vec3) {
+    (lanes[0][m], lanes[1][m], lanes[2][m]) = (x.x, x.y, x.z);
 }
 
 /// The terms of all edges, compiled for each width of vectors: a closure would be compiled once, for the narrowest.

@@ -287,7 +287,7 @@ mod tests {
 
     #[test]
     fn a_cut_along_the_kink_makes_it_exact() {
-        let found = kinked(Vec3::Z * 5.0, &[(Vec3::X, 0.3)], 1e-9);
+        let found = kinked(Vec3::Z * 5.0, &[Event { plane: (Vec3::X, 0.3), certain: true }], 1e-9);
         assert!((found.value - 0.245).abs() < 1e-14 && found.error < 1e-9, "{found:?}");
     }
 

@@ -20,7 +20,7 @@ const PAYS_FIRST: f64 = 0.26;
 /// No simple number: in a scene with right angles the two are often equal, and rounding would decide.
 const NEAR: f64 = 1.000_001;
 /// The shares a and a′ of the table,
-const SMOOTH: [f64; 2] = [0.15, 0.03];
+const SMOOTH: [f64; 2] = [0.10, 0.006];
 /// b and c,
 const SMOOTH_NEAR: [f64; 2] = [0.013, 0.14];
 /// d,
