@@ -66,13 +66,13 @@ impl Critical {
     ) -> &[Event] {
         let Self { events, found, keyed, spans, corners, ends, sides } = self;
         found.clear();
-        let lone = matches!(screens, [screen] if screen.is_fixed());
+        let lone = screens.len() == 1;
         let mut search = Search { source, target, flat, lone, found, keyed, spans };
         search.turning(screens);
         list_corners(screens, corners, ends);
         sides.clear();
         sides.extend(sides_of(target));
-        let whole = Outline { corners: target, edges: sides };
+        let whole = Outline { corners: target, edges: sides, screen: None };
         search.all(&Outlines { screens, corners, ends }, &whole);
         events.clear();
         events.extend(found.iter().map(|line| line.event));
@@ -100,6 +100,20 @@ fn list_corners(screens: &[Screen], corners: &mut Vec<Vec3>, ends: &mut Vec<usiz
 struct Outline<'a> {
     corners: &'a [Vec3],
     edges: &'a [[Vec3; 2]],
+    /// The body.
+    screen: Option<&'a Screen<'a>>,
+}
+
+impl Outline<'_> {
+    /// Whether an edge shows from all points of the source.
+    fn is_sure(&self, edge: usize) -> bool {
+        self.screen.is_none_or(|screen| screen.is_fixed(edge))
+    }
+
+    /// Whether a corner does.
+    fn is_sure_corner(&self, corner: Vec3) -> bool {
+        self.edges.iter().enumerate().any(|(k, ends)| ends.contains(&corner) && self.is_sure(k))
+    }
 }
 
 /// The outlines of all bodies.
@@ -112,7 +126,8 @@ struct Outlines<'a> {
 impl<'a> Outlines<'a> {
     fn get(&self, k: usize) -> Outline<'a> {
         let start = if k == 0 { 0 } else { self.ends[k - 1] };
-        Outline { corners: &self.corners[start..self.ends[k]], edges: self.screens[k].edges() }
+        let screen = &self.screens[k];
+        Outline { corners: &self.corners[start..self.ends[k]], edges: screen.edges(), screen: Some(screen) }
     }
 }
 
@@ -129,7 +144,7 @@ struct Search<'a> {
     source: &'a [Vec3],
     target: &'a [Vec3],
     flat: f64,
-    /// Whether there is one body, with the same outline from everywhere.
+    /// Whether there is one body: another may hide events.
     lone: bool,
     found: &'a mut Vec<Line>,
     keyed: &'a mut Vec<(f64, Line)>,
@@ -139,8 +154,9 @@ struct Search<'a> {
 impl Search<'_> {
     /// Faces that turn edge-on are events themselves.
     fn turning(&mut self, screens: &[Screen]) {
-        for face in screens.iter().flat_map(Screen::turning) {
-            let line = self.line((face.normal, face.offset));
+        for (face, cuts) in screens.iter().flat_map(Screen::turning) {
+            let mut line = self.line((face.normal, face.offset));
+            line.event.certain = self.lone && cuts;
             if self.known(&line).is_none() {
                 self.found.push(line);
             }
@@ -173,7 +189,8 @@ impl Search<'_> {
         for (k, &ends) in near.edges.iter().enumerate() {
             for (l, &w) in far.corners.iter().enumerate() {
                 if self.spans.passes(k, l) {
-                    self.event(w, ends, before, |c, n| meeting(c, w - c, ends, n), within);
+                    let sure = || near.is_sure(k);
+                    self.event((w, ends), before, |c, n| meeting(c, w - c, ends, n), within, sure);
                 }
             }
         }
@@ -181,7 +198,8 @@ impl Search<'_> {
         for (k, &v) in near.corners.iter().enumerate() {
             for (l, &ends) in far.edges.iter().enumerate() {
                 if self.spans.passes(l, k) {
-                    self.event(v, ends, before, |c, n| meeting(c, v - c, ends, n), |t| t > 1.0 + MARGIN);
+                    let (behind, sure) = (|t: f64| t > 1.0 + MARGIN, || near.is_sure_corner(v));
+                    self.event((v, ends), before, |c, n| meeting(c, v - c, ends, n), behind, sure);
                 }
             }
         }
@@ -189,11 +207,11 @@ impl Search<'_> {
 
     fn event(
         &mut self,
-        corner: Vec3,
-        [a, b]: [Vec3; 2],
+        (corner, [a, b]): (Vec3, [Vec3; 2]),
         before: bool,
         meeting: impl Fn(Vec3, Vec3) -> (f64, f64),
         order: impl Fn(f64) -> bool,
+        sure: impl Fn() -> bool,
     ) {
         let Some(plane) = spanned(corner, a, b, self.flat) else { return };
         let mut line = self.line(plane);
@@ -209,7 +227,8 @@ impl Search<'_> {
         if !shows || !lines_up(ends, &order) {
             return;
         }
-        line.event.certain = !before && self.lone && ends.iter().all(|&(t, at)| order(t) && within(at));
+        let wholly = ends.iter().all(|&(t, at)| order(t) && within(at));
+        line.event.certain = self.lone && wholly && sure();
         match known {
             Some(k) => self.found[k].event.certain |= line.event.certain,
             None => self.found.push(line),

@@ -109,17 +109,18 @@ impl<'a> Screen<'a> {
         &self.edges
     }
 
-    /// The faces whose planes pass through the source.
-    #[inline]
-    pub fn turning(&self) -> impl Iterator<Item = &Face> {
-        self.turning.iter().map(|(_, face, _)| face)
-    }
-
-    /// Whether the outline is the same from all points of the source.
+    /// Whether an edge is in the outline from all points of the source.
     #[must_use]
     #[inline]
-    pub fn is_fixed(&self) -> bool {
-        self.lit != 0 && self.turning.is_empty()
+    pub fn is_fixed(&self, edge: usize) -> bool {
+        !self.plain && self.borders[edge].faces.iter().all(|&bit| bit >= DARK)
+    }
+
+    /// The faces whose planes pass through the source, and whether any edge that may cut the target is theirs.
+    #[inline]
+    pub fn turning(&self) -> impl Iterator<Item = (&Face, bool)> {
+        let cuts = |bit: usize| self.borders.iter().any(|border| border.faces.contains(&(bit as u8)));
+        self.turning.iter().enumerate().map(move |(bit, (_, face, _))| (face, !self.plain && cuts(bit)))
     }
 
     /// The body.
