@@ -13,6 +13,7 @@ use pulp::{Arch, NullaryFnOnce};
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rims {
     arch: Arch,
+    /// What is left in the last lanes of the last block nobody asks for.
     edges: Vec<[Lanes3; 2]>,
     terms: Vec<Lanes>,
     /// Where the edges of each polygon end.
@@ -21,7 +22,6 @@ pub(super) struct Rims {
 
 impl Rims {
     pub(super) fn clear(&mut self) {
-        self.edges.clear();
         self.ends.clear();
     }
 
@@ -31,22 +31,25 @@ impl Rims {
 
     /// Appends a polygon.
     pub(super) fn push(&mut self, corners: &[Vec3]) {
-        let [.., last] = corners else { return self.ends.push(self.len()) };
-        let (mut place, end) = (self.len(), self.len() + corners.len());
-        self.edges.resize(end.div_ceil(LANES), Default::default());
-        let mut from = last;
-        for to in corners {
-            let [starts, ends] = &mut self.edges[place / LANES];
-            set(starts, place % LANES, from);
-            set(ends, place % LANES, to);
-            (from, place) = (to, place + 1);
-        }
+        let (start, end) = (self.len(), self.len() + corners.len());
         self.ends.push(end);
+        let blocks = end.div_ceil(LANES);
+        if self.edges.len() < blocks {
+            self.edges.resize(blocks, Default::default());
+        }
+        let Some(mut from) = corners.last() else { return };
+        for (place, to) in (start..end).zip(corners) {
+            let ([starts, ends], m) = (&mut self.edges[place / LANES], place % LANES);
+            (starts[0][m], starts[1][m], starts[2][m]) = (from.x, from.y, from.z);
+            (ends[0][m], ends[1][m], ends[2][m]) = (to.x, to.y, to.z);
+            from = to;
+        }
     }
 
     /// The form factors of all polygons from points with normal `n`.
     pub(super) fn factors(&mut self, n: Vec3) -> impl Iterator<Item = f64> + '_ {
-        self.arch.dispatch(Terms { edges: &self.edges, n, found: &mut self.terms });
+        let edges = &self.edges[..self.len().div_ceil(LANES)];
+        self.arch.dispatch(Terms { edges, n, found: &mut self.terms });
         let (terms, mut start) = (&self.terms, 0);
         self.ends.iter().map(move |&end| {
             let sum = (start..end).map(|k| terms[k / LANES][k % LANES]).sum();
@@ -54,11 +57,6 @@ impl Rims {
             factor(sum)
         })
     }
-}
-
-#[inline]
-fn set(lanes: &mut Lanes3, m: usize, x: &Vec3) {
-    (lanes[0][m], lanes[1][m], lanes[2][m]) = (x.x, x.y, x.z);
 }
 
 /// The terms of all edges, compiled for each width of vectors: a closure would be compiled once, for the narrowest.

@@ -125,11 +125,10 @@ where
 
     /// Adds a part with its integral by the first two rules.
     fn start(&mut self, shape: Shape) {
-        let most = (self.breaks.most)(shape.centre()) * shape.area();
         let reach = shape.reach(&self.breaks.distance);
         let [first, second] = self.rules(&shape, [0, 1]);
         let range = self.work.points.range() * shape.area();
-        let piece = self.learn(Piece::new(shape, [reach, most], first, range), second);
+        let piece = self.learn(Piece::new(shape, reach, first, range), second);
         self.work.parts.push(piece);
     }
 
@@ -155,6 +154,9 @@ where
     fn learn(&mut self, mut piece: Piece, value: f64) -> Piece {
         piece.line = self.line_through(&piece.shape);
         piece.cut = self.work.lines.iter().map(|(_, share)| *share).fold(0.0, f64::max);
+        if piece.asks_most() {
+            piece.most = (self.breaks.most)(piece.shape.centre()) * piece.shape.area();
+        }
         piece.raise(value, self.work.points.kind());
         if self.observed.scale() * piece.error < self.goal {
             self.look_behind(&mut piece);

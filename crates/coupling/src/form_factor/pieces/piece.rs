@@ -38,7 +38,7 @@ pub(super) struct Piece {
     pub shape: Shape,
     /// Radius over the distance from what makes h steep.
     reach: f64,
-    /// Largest value that the integral could have, m².
+    /// Largest value that the integral could have, m², where that has a say.
     pub most: f64,
     /// Range of h at the first points, times the area, m².
     range: f64,
@@ -59,10 +59,15 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    /// A part with its reach, the largest value that the integral could have, the integral by the first rule, and the range of h at the points of the first two times the area.
-    pub(super) fn new(shape: Shape, [reach, most]: [f64; 2], value: f64, range: f64) -> Self {
-        let (step, error, kind, line) = (0.0, 0.0, None, None);
-        Self { shape, reach, most, range, degree: 0, value, step, error, kind, cut: 0.0, line, pays: true }
+    /// A part with its reach, the integral by the first rule, and the range of h at the points of the first two times the area.
+    pub(super) fn new(shape: Shape, reach: f64, value: f64, range: f64) -> Self {
+        let (most, step, error, cut, kind, line) = (0.0, 0.0, 0.0, 0.0, None, None);
+        Self { shape, reach, most, range, degree: 0, value, step, error, kind, cut, line, pays: true }
+    }
+
+    /// Whether the largest value that the integral could have has a say in the error, and is not known yet.
+    pub(super) fn asks_most(&self) -> bool {
+        self.degree == 0 && (self.reach > NEAR || self.cut > 0.0)
     }
 
     /// Takes the integral by the next rule, with the kind of its points.
