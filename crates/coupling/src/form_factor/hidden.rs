@@ -59,7 +59,7 @@ impl<'a> Steep<'a> {
     fn of(scene: &Occluded, edges: &'a mut Vec<Segment>) -> Self {
         let lies = |x: Vec3| (x - scene.source[0]).dot(scene.normal).abs() <= scene.tolerance;
         edges.clear();
-        for &[a, b] in scene.screens.iter().flat_map(Screen::edges) {
+        for [a, b] in scene.screens.iter().flat_map(Screen::steep) {
             if lies(a) && lies(b) {
                 edges.extend([[a, a], [b, b]].map(Segment::new));
             } else {

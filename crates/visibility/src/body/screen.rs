@@ -102,6 +102,14 @@ impl<'a> Screen<'a> {
         }
     }
 
+    /// The edges near which what is hidden of the target may be a steep function on the source, m: those that may cut the target, or all edges of a body that has part of the source inside
+    /// or on it.
+    pub fn steep(&self) -> impl Iterator<Item = [Vec3; 2]> {
+        let all = self.lit == 0 || self.edges.is_empty();
+        let whole = self.body.edges.iter().filter(move |_| all).map(|edge| self.body.ends(edge));
+        whole.chain(self.edges.iter().filter(move |_| !all).copied())
+    }
+
     /// The edges that may cut the target from some point of the source, m.
     #[must_use]
     #[inline]
