@@ -86,7 +86,7 @@ impl Piece {
 
     /// What may hide between points that are all of one kind, m².
     fn between(&self) -> f64 {
-        let share = if self.kind.is_some() { self.cut } else { 0.0 };
+        let share = self.cut;
         BETWEEN[0] * BETWEEN[1].powi(self.degree as i32 - 1) * share * self.most
     }
 
