@@ -6,6 +6,7 @@
 //! G. Drettakis & E. Fiume, SIGGRAPH 1994, doi:10.1145/192161.192207. The same happens between two bodies. Events
 //! of three edges are curves and not listed.
 
+use super::sighting::{Event, Sighting, Sightings};
 use super::spans::Spans;
 use fredholm_mesh::Vec3;
 use fredholm_visibility::body::{ODD, Screen};
@@ -13,23 +14,11 @@ use fredholm_visibility::body::{ODD, Screen};
 /// Squared sine below which a corner and an edge span no plane.
 const SLIM: f64 = 1e-24;
 
-/// Part of an edge by which a point must be inside its ends to meet it: in scenes with right angles lines often go exactly through corners.
-const MARGIN: f64 = 1e-7;
 /// Lines that are listed at most: among many, most do not show, and a part that any of them cuts counts as not smooth.
 const LINES: usize = 40;
 
-/// Part of a chord that is left out at its ends, where lines of sight are often exactly parallel to the edge.
-const INSIDE: f64 = 1e-6;
-
 /// A plane n·x = c with a unit normal.
 pub(crate) type Plane = (Vec3, f64);
-
-/// A plane on which the hidden part changes its kind, and whether it surely does so wherever the plane cuts the source.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Event {
-    pub plane: Plane,
-    pub certain: bool,
-}
 
 /// Corners of a source of which heights are kept: a patch that is cut by a plane has at most five.
 const CORNERS: usize = 8;
@@ -45,6 +34,7 @@ struct Line {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Critical {
     events: Vec<Event>,
+    sightings: Sightings,
     found: Vec<Line>,
     keyed: Vec<(f64, Line)>,
     spans: Spans,
@@ -63,11 +53,12 @@ impl Critical {
         target: &[Vec3],
         screens: &[Screen],
         flat: f64,
-    ) -> &[Event] {
-        let Self { events, found, keyed, spans, corners, ends, sides } = self;
+    ) -> (&[Event], &Sightings) {
+        let Self { events, sightings, found, keyed, spans, corners, ends, sides } = self;
         found.clear();
+        sightings.clear();
         let lone = screens.len() == 1;
-        let mut search = Search { source, target, flat, lone, found, keyed, spans };
+        let mut search = Search { source, target, flat, lone, sightings, found, keyed, spans };
         search.turning(screens);
         list_corners(screens, corners, ends);
         sides.clear();
@@ -76,7 +67,7 @@ impl Critical {
         search.all(&Outlines { screens, corners, ends }, &whole);
         events.clear();
         events.extend(found.iter().map(|line| line.event));
-        events
+        (events, sightings)
     }
 }
 
@@ -135,17 +126,13 @@ fn sides_of(corners: &[Vec3]) -> impl Iterator<Item = [Vec3; 2]> + '_ {
     corners.iter().zip(corners.iter().cycle().skip(1)).map(|(&a, &b)| [a, b])
 }
 
-/// Whether a place along an edge, from 0 to 1, is inside its ends.
-fn within(t: f64) -> bool {
-    MARGIN < t && t < 1.0 - MARGIN
-}
-
 struct Search<'a> {
     source: &'a [Vec3],
     target: &'a [Vec3],
     flat: f64,
     /// Whether there is one body: another may hide events.
     lone: bool,
+    sightings: &'a mut Sightings,
     found: &'a mut Vec<Line>,
     keyed: &'a mut Vec<(f64, Line)>,
     spans: &'a mut Spans,
@@ -155,8 +142,8 @@ impl Search<'_> {
     /// Faces that turn edge-on are events themselves.
     fn turning(&mut self, screens: &[Screen]) {
         for (face, cuts) in screens.iter().flat_map(Screen::turning) {
-            let mut line = self.line((face.normal, face.offset));
-            line.event.certain = self.lone && cuts;
+            let plane = (face.normal, face.offset);
+            let line = self.line(if self.lone && cuts { Event::always(plane) } else { Event::perhaps(plane) });
             if self.known(&line).is_none() {
                 self.found.push(line);
             }
@@ -186,61 +173,49 @@ impl Search<'_> {
     fn events(&mut self, near: &Outline, far: &Outline, before: bool) {
         // Most planes miss the source.
         self.spans.ask(near.edges, far.corners, self.source);
-        for (k, &ends) in near.edges.iter().enumerate() {
-            for (l, &w) in far.corners.iter().enumerate() {
+        for (k, &edge) in near.edges.iter().enumerate() {
+            for (l, &corner) in far.corners.iter().enumerate() {
                 if self.spans.passes(k, l) {
-                    let sure = || near.is_sure(k);
-                    self.event((w, ends), before, |c, n| meeting(c, w - c, ends, n), within, sure);
+                    self.event(Sighting { corner, edge, behind: false }, before, || near.is_sure(k));
                 }
             }
         }
         self.spans.ask(far.edges, near.corners, self.source);
-        for (k, &v) in near.corners.iter().enumerate() {
-            for (l, &ends) in far.edges.iter().enumerate() {
+        for (k, &corner) in near.corners.iter().enumerate() {
+            for (l, &edge) in far.edges.iter().enumerate() {
                 if self.spans.passes(l, k) {
-                    let (behind, sure) = (|t: f64| t > 1.0 + MARGIN, || near.is_sure_corner(v));
-                    self.event((v, ends), before, |c, n| meeting(c, v - c, ends, n), behind, sure);
+                    self.event(Sighting { corner, edge, behind: true }, before, || near.is_sure_corner(corner));
                 }
             }
         }
     }
 
-    fn event(
-        &mut self,
-        (corner, [a, b]): (Vec3, [Vec3; 2]),
-        before: bool,
-        meeting: impl Fn(Vec3, Vec3) -> (f64, f64),
-        order: impl Fn(f64) -> bool,
-        sure: impl Fn() -> bool,
-    ) {
-        let Some(plane) = spanned(corner, a, b, self.flat) else { return };
-        let mut line = self.line(plane);
+    fn event(&mut self, sighting: Sighting, before: bool, sure: impl Fn() -> bool) {
+        let Some(plane) = spanned(sighting.corner, sighting.edge, self.flat) else { return };
+        let mut line = self.line(Event::new(plane));
         let known = self.known(&line);
-        if self.lit(&line) != Lit::Partly || known.is_some_and(|k| before || self.found[k].event.certain) {
+        if self.lit(&line) != Lit::Partly || known.is_some() && !self.lone {
             return;
         }
-        let Some([first, last]) = self.chord(&line) else { return };
-        let inner = [first.lerp(last, INSIDE), last.lerp(first, INSIDE)];
+        let Some(chord) = self.chord(&line) else { return };
         let height = |x: Vec3| plane.0.dot(x) - plane.1;
         let shows = !before || lit(self.target.iter().map(|&x| height(x)), self.flat) == Lit::Partly;
-        let ends = inner.map(|c| meeting(c, plane.0));
-        if !shows || !lines_up(ends, &order) {
+        if !shows || !sighting.shows(chord, plane.0) {
             return;
         }
-        let wholly = ends.iter().all(|&(t, at)| order(t) && within(at));
-        line.event.certain = self.lone && wholly && sure();
-        match known {
-            Some(k) => self.found[k].event.certain |= line.event.certain,
-            None => self.found.push(line),
+        let event = known.map_or(&mut line.event, |k| &mut self.found[k].event);
+        self.sightings.add(event, sighting, self.lone && sure());
+        if known.is_none() {
+            self.found.push(line);
         }
     }
 
-    fn line(&self, plane: Plane) -> Line {
+    fn line(&self, event: Event) -> Line {
         let mut heights = [0.0; CORNERS];
         for (height, x) in heights.iter_mut().zip(self.source) {
-            *height = plane.0.dot(*x) - plane.1;
+            *height = event.plane.0.dot(*x) - event.plane.1;
         }
-        Line { event: Event { plane, certain: false }, heights }
+        Line { event, heights }
     }
 
     /// The place of the same line among those found: parallel edges give the same plane many times.
@@ -311,28 +286,11 @@ fn lit(heights: impl Iterator<Item = f64>, flat: f64) -> Lit {
     }
 }
 
-fn spanned(v: Vec3, a: Vec3, b: Vec3, flat: f64) -> Option<Plane> {
+fn spanned(v: Vec3, [a, b]: [Vec3; 2], flat: f64) -> Option<Plane> {
     let (edge, arm) = (b - a, v - a);
     let normal = edge.cross(arm);
     let enough =
         normal.length_squared() > edge.length_squared() * (SLIM * arm.length_squared()).max(flat * flat);
     let n = enough.then(|| normal.normalize())?;
     Some((n, n.dot(a)))
-}
-
-/// Where the line c + t d meets the line of an edge, all in the plane with normal n: t, and the place along the edge from 0 to 1.
-fn meeting(c: Vec3, d: Vec3, [a, b]: [Vec3; 2], n: Vec3) -> (f64, f64) {
-    let e = b - a;
-    let across = d.cross(e).dot(n);
-    ((a - c).cross(e).dot(n) / across, (a - c).cross(d).dot(n) / across)
-}
-
-/// Whether the edge may be met from a point of the chord: both ends meet its line in the right order and on different sides of it, or one end does
-/// not meet it so.
-fn lines_up([first, last]: [(f64, f64); 2], order: impl Fn(f64) -> bool) -> bool {
-    match (order(first.0), order(last.0)) {
-        (true, true) => first.1.min(last.1) < 1.0 - MARGIN && first.1.max(last.1) > MARGIN,
-        (false, false) => false,
-        _ => true,
-    }
 }

@@ -43,9 +43,9 @@ pub(crate) struct HiddenWork {
 pub(crate) fn hidden_exchange(scene: &Occluded, goal: f64, work: &mut HiddenWork) -> Estimate {
     let HiddenWork { together, critical, pieces, edges } = work;
     let steep = Steep::of(scene, edges);
-    let events = critical.events(scene.source, scene.target, scene.screens, scene.tolerance);
+    let (events, sightings) = critical.events(scene.source, scene.target, scene.screens, scene.tolerance);
     let most = |x: Vec3| point_to_polygon(scene.normal, scene.target.iter().map(|&y| y - x));
-    let breaks = Breaks { events, flat: scene.tolerance, distance: |x| steep.distance(x), most };
+    let breaks = Breaks { events, sightings, flat: scene.tolerance, distance: |x| steep.distance(x), most };
     let h = |points: &[Vec3], found: &mut Vec<_>| scene.hidden(points, together, found);
     Pieces::new(h, breaks, pieces, goal).integrate(scene.source)
 }

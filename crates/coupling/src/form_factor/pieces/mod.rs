@@ -11,8 +11,9 @@ mod observed;
 mod piece;
 mod shape;
 
-use super::critical::{Event, Plane};
+use super::critical::Plane;
 use super::shadow::Kind;
+use super::sighting::{Event, Shows, Sightings};
 use crate::polygon::{HalfSpace, clip};
 use evidence::{Line, Points};
 use fredholm_mesh::Vec3;
@@ -41,6 +42,7 @@ const POINTS: usize = 100_000;
 pub(crate) struct Breaks<'a, D, M> {
     /// Critical planes.
     pub events: &'a [Event],
+    pub sightings: &'a Sightings,
     /// Heights up to which a point lies in a plane, m.
     pub flat: f64,
     /// Distance of a point from what makes h steep, m.
@@ -100,9 +102,10 @@ where
     fn cut_surely(&mut self, corners: &[Vec3], most: f64) {
         let worth = SURELY * self.goal / (most * area(corners));
         let flat = self.breaks.flat.max(ON_THE_LINE * width(corners));
-        let certain = self.breaks.events.iter().filter(|event| event.certain);
+        let surely = |event: &&Event| self.breaks.sightings.ask(event, corners) == Shows::Surely;
         let cutting = |event: &Event| Some((event.plane, share(corners, event.plane, flat)?));
-        let lines = certain.filter_map(cutting).filter(|(_, share)| *share >= worth);
+        let matters = |event: &&Event| cutting(event).is_some_and(|(_, share)| share >= worth);
+        let lines = self.breaks.events.iter().filter(matters).filter(surely).filter_map(cutting);
         let Some((plane, _)) = lines.max_by(|a, b| merit(a).total_cmp(&merit(b))) else { return self.add(corners) };
         for part in halves(corners, plane, flat) {
             self.cut_surely(&part, most);
@@ -167,10 +170,14 @@ where
     /// The line that shows and halves a part best, with the share of the width on its smaller side. Lists the lines behind which no point lies.
     fn line_through(&mut self, shape: &Shape) -> Option<(Plane, f64)> {
         let flat = self.flat(shape);
+        let Breaks { events, sightings, .. } = self.breaks;
         let PiecesWork { points, lines, unseen, .. } = &mut *self.work;
-        let cutting = |event: &Event| Some((event.plane, share(shape.corners(), event.plane, flat)?));
+        let cutting = |event: &Event| {
+            let line = (event.plane, share(shape.corners(), event.plane, flat)?);
+            (sightings.ask(event, shape.corners()) != Shows::Never).then_some(line)
+        };
         lines.clear();
-        lines.extend(self.breaks.events.iter().filter_map(cutting));
+        lines.extend(events.iter().filter_map(cutting));
         points.leave_out(lines, flat);
         unseen.clear();
         unseen.extend(lines.iter().filter(|(plane, _)| points.judge(*plane) == Line::Unseen));
@@ -283,13 +290,14 @@ mod tests {
         let kind = |x: &Vec3| if x.x < 0.3 { other } else { Kind::default() };
         let value = |x: &Vec3| ((x.x - 0.3).max(0.0), kind(x));
         let h = |points: &[Vec3], found: &mut Vec<_>| found.extend(points.iter().map(value));
-        let breaks = Breaks { events, flat: 1e-12, distance: |x: Vec3| x.distance(near), most: |_| 0.7 };
+        let sightings = &Sightings::default();
+        let breaks = Breaks { events, sightings, flat: 1e-12, distance: |x: Vec3| x.distance(near), most: |_| 0.7 };
         Pieces::new(h, breaks, &mut PiecesWork::default(), goal).integrate(&square)
     }
 
     #[test]
     fn a_cut_along_the_kink_makes_it_exact() {
-        let found = kinked(Vec3::Z * 5.0, &[Event { plane: (Vec3::X, 0.3), certain: true }], 1e-9);
+        let found = kinked(Vec3::Z * 5.0, &[Event::always((Vec3::X, 0.3))], 1e-9);
         assert!((found.value - 0.245).abs() < 1e-14 && found.error < 1e-9, "{found:?}");
     }
 
