@@ -45,7 +45,8 @@ pub(crate) fn hidden_exchange(scene: &Occluded, goal: f64, work: &mut HiddenWork
     let steep = Steep::of(scene, edges);
     let (events, sightings) = critical.events(scene.source, scene.target, scene.screens, scene.tolerance);
     let most = |x: Vec3| point_to_polygon(scene.normal, scene.target.iter().map(|&y| y - x));
-    let breaks = Breaks { events, sightings, flat: scene.tolerance, distance: |x| steep.distance(x), most };
+    let sure = scene.screens.len() == 1 && events.iter().all(super::sighting::Event::is_sure);
+    let breaks = Breaks { events, sightings, sure, flat: scene.tolerance, distance: |x| steep.distance(x), most };
     let h = |points: &[Vec3], found: &mut Vec<_>| scene.hidden(points, together, found);
     Pieces::new(h, breaks, pieces, goal).integrate(scene.source)
 }

@@ -58,6 +58,11 @@ pub(crate) struct Event {
 }
 
 impl Event {
+    /// Whether it shows nowhere but where sightings tell.
+    pub(crate) fn is_sure(&self) -> bool {
+        self.sure
+    }
+
     /// An event that nobody has seen yet.
     pub(super) fn new(plane: Plane) -> Self {
         Self { plane, sure: true, always: false, last: 0 }

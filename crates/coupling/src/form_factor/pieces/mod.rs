@@ -33,7 +33,7 @@ const ON_THE_LINE: f64 = 1e-9;
 /// What may be hidden behind a line, in goals, from which on a point there is looked at.
 const MATTERS: f64 = 0.15;
 /// What may be hidden behind a line that surely shows, in goals, from which on the source is cut along it at once.
-const SURELY: f64 = 1.0;
+const SURELY: f64 = 5.0;
 /// Points after which an integral ends with the error that it has.
 const POINTS: usize = 100_000;
 
@@ -43,6 +43,8 @@ pub(crate) struct Breaks<'a, D, M> {
     /// Critical planes.
     pub events: &'a [Event],
     pub sightings: &'a Sightings,
+    /// Whether sightings tell of all of them.
+    pub sure: bool,
     /// Heights up to which a point lies in a plane, m.
     pub flat: f64,
     /// Distance of a point from what makes h steep, m.
@@ -81,7 +83,8 @@ where
     /// Prepares the integral of h to an absolute `goal`. `h` appends the values and the kinds at given points.
     pub(crate) fn new(h: H, breaks: Breaks<'a, D, M>, work: &'a mut PiecesWork, goal: f64) -> Self {
         work.parts.clear();
-        Self { h, breaks, work, observed: Observed::default(), points: 0, goal }
+        let observed = Observed::new(breaks.sure);
+        Self { h, breaks, work, observed, points: 0, goal }
     }
 
     /// The integral over a convex polygon.
@@ -291,7 +294,7 @@ mod tests {
         let value = |x: &Vec3| ((x.x - 0.3).max(0.0), kind(x));
         let h = |points: &[Vec3], found: &mut Vec<_>| found.extend(points.iter().map(value));
         let sightings = &Sightings::default();
-        let breaks = Breaks { events, sightings, flat: 1e-12, distance: |x: Vec3| x.distance(near), most: |_| 0.7 };
+        let breaks = Breaks { events, sightings, sure: false, flat: 1e-12, distance: |x: Vec3| x.distance(near), most: |_| 0.7 };
         Pieces::new(h, breaks, &mut PiecesWork::default(), goal).integrate(&square)
     }
 
