@@ -37,8 +37,9 @@ impl Rims {
         if self.edges.len() < blocks {
             self.edges.resize(blocks, Default::default());
         }
-        let Some(mut from) = corners.last() else { return };
-        for (place, to) in (start..end).zip(corners) {
+        let Some((first, others)) = corners.split_first() else { return };
+        let mut from = first;
+        for (place, to) in (start..end).zip(others.iter().chain([first])) {
             let ([starts, ends], m) = (&mut self.edges[place / LANES], place % LANES);
             (starts[0][m], starts[1][m], starts[2][m]) = (from.x, from.y, from.z);
             (ends[0][m], ends[1][m], ends[2][m]) = (to.x, to.y, to.z);

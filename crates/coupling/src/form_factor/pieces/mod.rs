@@ -33,7 +33,7 @@ const ON_THE_LINE: f64 = 1e-9;
 /// What may be hidden behind a line, in goals, from which on a point there is looked at.
 const MATTERS: f64 = 0.15;
 /// What may be hidden behind a line that surely shows, in goals, from which on the source is cut along it at once.
-const SURELY: f64 = 5.0;
+const SURELY: f64 = 2.0;
 /// Points after which an integral ends with the error that it has.
 const POINTS: usize = 100_000;
 

@@ -20,7 +20,7 @@ const PAYS_FIRST: f64 = 0.26;
 /// No simple number: in a scene with right angles the two are often equal, and rounding would decide.
 const NEAR: f64 = 1.000_001;
 /// The shares a and a′ of the table,
-const SMOOTH: [f64; 2] = [0.10, 0.006];
+const SMOOTH: [f64; 2] = [0.15, 0.045];
 /// b and c,
 const SMOOTH_NEAR: [f64; 2] = [0.013, 0.14];
 /// d,
@@ -28,7 +28,7 @@ const BROKEN: f64 = 0.11;
 /// and e, f and g.
 const BROKEN_NEAR: [f64; 3] = [0.053, 0.011, 0.013];
 /// Share of the largest value, and of the width behind a line through a part of one kind, that small shadows between its four points may hide; each next rule leaves this part of it.
-const BETWEEN: [f64; 2] = [3e-4, 0.25];
+const BETWEEN: [f64; 2] = [1e-3, 0.25];
 /// Share of what shows behind a line with no points of the rule.
 const BEHIND: f64 = 1.3;
 
