@@ -143,7 +143,8 @@ impl Search<'_> {
     fn turning(&mut self, screens: &[Screen]) {
         for (face, cuts) in screens.iter().flat_map(Screen::turning) {
             let plane = (face.normal, face.offset);
-            let line = self.line(if self.lone && cuts { Event::always(plane) } else { Event::perhaps(plane) });
+            let line =
+                self.line(if self.lone && cuts { Event::always(plane) } else { Event::perhaps(plane) });
             if self.known(&line).is_none() {
                 self.found.push(line);
             }
@@ -184,7 +185,9 @@ impl Search<'_> {
         for (k, &corner) in near.corners.iter().enumerate() {
             for (l, &edge) in far.edges.iter().enumerate() {
                 if self.spans.passes(l, k) {
-                    self.event(Sighting { corner, edge, behind: true }, before, || near.is_sure_corner(corner));
+                    self.event(Sighting { corner, edge, behind: true }, before, || {
+                        near.is_sure_corner(corner)
+                    });
                 }
             }
         }

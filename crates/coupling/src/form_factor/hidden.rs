@@ -6,6 +6,7 @@
 use super::critical::Critical;
 use super::pieces::{Breaks, Pieces, PiecesWork};
 use super::shadow::Kind;
+use super::sighting::Event;
 use super::together::Together;
 use super::{Segment, point_to_polygon, to_segments};
 use fredholm_mesh::Vec3;
@@ -45,8 +46,9 @@ pub(crate) fn hidden_exchange(scene: &Occluded, goal: f64, work: &mut HiddenWork
     let steep = Steep::of(scene, edges);
     let (events, sightings) = critical.events(scene.source, scene.target, scene.screens, scene.tolerance);
     let most = |x: Vec3| point_to_polygon(scene.normal, scene.target.iter().map(|&y| y - x));
-    let sure = scene.screens.len() == 1 && events.iter().all(super::sighting::Event::is_sure);
-    let breaks = Breaks { events, sightings, sure, flat: scene.tolerance, distance: |x| steep.distance(x), most };
+    let sure = scene.screens.len() == 1 && events.iter().all(Event::is_sure);
+    let breaks =
+        Breaks { events, sightings, sure, flat: scene.tolerance, distance: |x| steep.distance(x), most };
     let h = |points: &[Vec3], found: &mut Vec<_>| scene.hidden(points, together, found);
     Pieces::new(h, breaks, pieces, goal).integrate(scene.source)
 }

@@ -164,7 +164,9 @@ mod tests {
     fn an_event_shows_on_the_polygons_on_which_it_is_seen() {
         let n = Vec3::new(-0.5, 0.0, 1.0).normalize();
         let (mut event, mut sightings) = (Event::new((n, n.dot(post().corner))), Sightings::default());
-        let square = |y: f64| [[-1.5, y], [-0.5, y], [-0.5, y + 1.0], [-1.5, y + 1.0]].map(|[x, y]| Vec3::new(x, y, 0.0));
+        let square = |y: f64| {
+            [[-1.5, y], [-0.5, y], [-0.5, y + 1.0], [-1.5, y + 1.0]].map(|[x, y]| Vec3::new(x, y, 0.0))
+        };
         sightings.add(&mut event, post(), true);
         assert_eq!(sightings.ask(&event, &square(0.0)), Shows::Surely);
         assert_eq!(sightings.ask(&event, &square(3.0)), Shows::Never);

@@ -45,8 +45,7 @@ impl<'a> Screen<'a> {
     pub fn new(body: &'a Body, source: &[Vec3], target: &[Vec3], tolerance: f64) -> Self {
         let edges = Vec::with_capacity(8);
         let (borders, turning, front) = (Vec::with_capacity(8), Vec::new(), Vec::new());
-        let mut screen =
-            Self { body, edges, borders, turning, front, lit: 0, plain: false, tolerance };
+        let mut screen = Self { body, edges, borders, turning, front, lit: 0, plain: false, tolerance };
         let mut bits = [DARK; super::outline::FACES];
         for (k, (bit, face)) in bits.iter_mut().zip(&body.faces).enumerate() {
             *bit = screen.look((k as u32, face), source, target);

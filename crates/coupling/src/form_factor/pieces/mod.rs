@@ -3,8 +3,9 @@
 //! The part with the largest error is improved next. Where its points are of several kinds it is cut along the critical line that parts them, and halves it best; where
 //! there is none its sides are halved. Where all are of one kind it gets the next rule as long as that pays, or its sides are halved. So the cost follows the goal. In m².
 //!
-//! Most critical lines do not show, and the kinds of points on both sides tell which. A line may also pass between the points and the border of a part: before the part
-//! is left as it is, one point behind the line is looked at, if that could hide something that matters.
+//! Most critical lines do not show. Behind one body it is known where they do ([`Sightings`]): the source is cut along those that may matter before anything is asked. Of the others the
+//! kinds of points on both sides tell. A line may also pass between the points and the border of a part: before the part is left as it is, one point behind the line is looked at,
+//! if that could hide something that matters.
 
 mod evidence;
 mod observed;
@@ -22,7 +23,6 @@ use fredholm_visibility::body::ODD;
 use observed::Observed;
 use piece::Piece;
 use shape::{Shape, width};
-
 
 /// Relative difference below which two errors are equal by design of the scene.
 const EQUAL: f64 = 1e-6;
@@ -109,7 +109,9 @@ where
         let cutting = |event: &Event| Some((event.plane, share(corners, event.plane, flat)?));
         let matters = |event: &&Event| cutting(event).is_some_and(|(_, share)| share >= worth);
         let lines = self.breaks.events.iter().filter(matters).filter(surely).filter_map(cutting);
-        let Some((plane, _)) = lines.max_by(|a, b| merit(a).total_cmp(&merit(b))) else { return self.add(corners) };
+        let Some((plane, _)) = lines.max_by(|a, b| merit(a).total_cmp(&merit(b))) else {
+            return self.add(corners);
+        };
         for part in halves(corners, plane, flat) {
             self.cut_surely(&part, most);
         }
@@ -294,7 +296,14 @@ mod tests {
         let value = |x: &Vec3| ((x.x - 0.3).max(0.0), kind(x));
         let h = |points: &[Vec3], found: &mut Vec<_>| found.extend(points.iter().map(value));
         let sightings = &Sightings::default();
-        let breaks = Breaks { events, sightings, sure: false, flat: 1e-12, distance: |x: Vec3| x.distance(near), most: |_| 0.7 };
+        let breaks = Breaks {
+            events,
+            sightings,
+            sure: false,
+            flat: 1e-12,
+            distance: |x: Vec3| x.distance(near),
+            most: |_| 0.7,
+        };
         Pieces::new(h, breaks, &mut PiecesWork::default(), goal).integrate(&square)
     }
 
