@@ -25,13 +25,13 @@ impl Default for Few {
 }
 
 impl Few {
-    /// What has no place is left out: nobody asks for more than [`MOST`].
+    /// Takes a corner as the one after `len` others, and counts it. What has no place is left out: nobody asks for more than [`MOST`].
     #[inline]
-    fn push(&mut self, corner: Vec3, maker: Maker) {
-        if self.len < MOST {
-            self.corners[self.len] = corner;
-            self.makers[self.len] = maker;
-            self.len += 1;
+    fn set(&mut self, len: &mut usize, corner: Vec3, maker: Maker) {
+        if *len < MOST {
+            self.corners[*len] = corner;
+            self.makers[*len] = maker;
+            *len += 1;
         }
     }
 }
@@ -50,9 +50,10 @@ impl Cover {
     pub(super) fn start(&mut self, corners: &[Vec3], makers: &[Maker], shift: Vec3) {
         self.now = 0;
         let part = &mut self.parts[0];
-        part.len = 0;
-        for (&corner, &maker) in corners.iter().zip(makers) {
-            part.push(corner + shift, maker);
+        part.len = corners.len().min(MOST);
+        part.makers[..part.len].copy_from_slice(&makers[..part.len]);
+        for (moved, &corner) in part.corners.iter_mut().zip(corners) {
+            *moved = corner + shift;
         }
     }
 
@@ -70,13 +71,15 @@ impl Cover {
     #[inline]
     pub(super) fn keep(&mut self, (n, c, maker): (Vec3, f64, Maker), flat: f64) -> bool {
         let part = &self.parts[self.now];
-        let (mut above, mut below) = (false, false);
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for (height, corner) in self.heights.iter_mut().zip(&part.corners[..part.len]) {
-            *height = n.dot(*corner) - c;
-            above |= *height > flat;
-            below |= *height < -flat;
+            let h = n.dot(*corner) - c;
+            low = if h < low { h } else { low };
+            high = if h > high { h } else { high };
+            *height = h;
         }
-        if above && below {
+        let above = high > flat;
+        if above && low < -flat {
             self.cut(maker, flat);
         }
         above
@@ -85,21 +88,21 @@ impl Cover {
     fn cut(&mut self, maker: Maker, flat: f64) {
         let [first, second] = &mut self.parts;
         let (part, left) = if self.now == 0 { (&*first, second) } else { (&*second, first) };
-        left.len = 0;
-        let snapped = |height: f64| if height.abs() <= flat { 0.0 } else { height };
-        let at = |k: usize| (part.corners[k], snapped(self.heights[k]), part.makers[k]);
-        let mut from = at(part.len - 1);
-        for k in 0..part.len {
-            let to = at(k);
-            if from.1 * to.1 < 0.0 {
-                let maker = if from.1 > 0.0 { maker } else { from.2 };
-                left.push(crossing((from.0, from.1), (to.0, to.1)), maker);
+        let heights = &mut self.heights[..part.len];
+        heights.iter_mut().filter(|height| height.abs() <= flat).for_each(|height| *height = 0.0);
+        let (mut len, mut from) = (0, part.len - 1);
+        for (to, &height) in heights.iter().enumerate() {
+            let before = heights[from];
+            if before * height < 0.0 {
+                let maker = if before > 0.0 { maker } else { part.makers[from] };
+                left.set(&mut len, crossing((part.corners[from], before), (part.corners[to], height)), maker);
             }
-            if to.1 >= 0.0 {
-                left.push(to.0, to.2);
+            if height >= 0.0 {
+                left.set(&mut len, part.corners[to], part.makers[to]);
             }
             from = to;
         }
+        left.len = len;
         self.now = 1 - self.now;
     }
 }

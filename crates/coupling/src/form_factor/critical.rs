@@ -6,6 +6,7 @@
 //! G. Drettakis & E. Fiume, SIGGRAPH 1994, doi:10.1145/192161.192207. The same happens between two bodies. Events
 //! of three edges are curves and not listed.
 
+use super::sighting::{Event, Sighting, Sightings};
 use super::spans::Spans;
 use fredholm_mesh::Vec3;
 use fredholm_visibility::body::{ODD, Screen};
@@ -13,13 +14,8 @@ use fredholm_visibility::body::{ODD, Screen};
 /// Squared sine below which a corner and an edge span no plane.
 const SLIM: f64 = 1e-24;
 
-/// Part of an edge by which a point must be inside its ends to meet it: in scenes with right angles lines often go exactly through corners.
-const MARGIN: f64 = 1e-7;
 /// Lines that are listed at most: among many, most do not show, and a part that any of them cuts counts as not smooth.
 const LINES: usize = 40;
-
-/// Part of a chord that is left out at its ends, where lines of sight are often exactly parallel to the edge.
-const INSIDE: f64 = 1e-6;
 
 /// A plane n·x = c with a unit normal.
 pub(crate) type Plane = (Vec3, f64);
@@ -30,14 +26,15 @@ const CORNERS: usize = 8;
 /// A plane that cuts the source, and the heights of the corners of the source over it.
 #[derive(Clone, Copy, Debug)]
 struct Line {
-    plane: Plane,
+    event: Event,
     heights: [f64; CORNERS],
 }
 
 /// Critical planes, and buffers.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Critical {
-    planes: Vec<Plane>,
+    events: Vec<Event>,
+    sightings: Sightings,
     found: Vec<Line>,
     keyed: Vec<(f64, Line)>,
     spans: Spans,
@@ -48,27 +45,29 @@ pub(crate) struct Critical {
 }
 
 impl Critical {
-    /// Finds the planes of the events of `screens` before `target` that cut the `source` polygon. Those of single bodies come first, long ones before short
+    /// Finds the events of `screens` before `target` on planes that cut the `source` polygon. Those of single bodies come first, long ones before short
     /// ones, and at most [`LINES`] are kept. Lengths below `flat` (m) count as 0.
-    pub(crate) fn planes(
+    pub(crate) fn events(
         &mut self,
         source: &[Vec3],
         target: &[Vec3],
         screens: &[Screen],
         flat: f64,
-    ) -> &[Plane] {
-        let Self { planes, found, keyed, spans, corners, ends, sides } = self;
+    ) -> (&[Event], &Sightings) {
+        let Self { events, sightings, found, keyed, spans, corners, ends, sides } = self;
         found.clear();
-        let mut search = Search { source, target, flat, found, keyed, spans };
+        sightings.clear();
+        let lone = screens.len() == 1;
+        let mut search = Search { source, target, flat, lone, sightings, found, keyed, spans };
         search.turning(screens);
         list_corners(screens, corners, ends);
         sides.clear();
         sides.extend(sides_of(target));
-        let whole = Outline { corners: target, edges: sides };
+        let whole = Outline { corners: target, edges: sides, screen: None };
         search.all(&Outlines { screens, corners, ends }, &whole);
-        planes.clear();
-        planes.extend(found.iter().map(|line| line.plane));
-        planes
+        events.clear();
+        events.extend(found.iter().map(|line| line.event));
+        (events, sightings)
     }
 }
 
@@ -92,6 +91,20 @@ fn list_corners(screens: &[Screen], corners: &mut Vec<Vec3>, ends: &mut Vec<usiz
 struct Outline<'a> {
     corners: &'a [Vec3],
     edges: &'a [[Vec3; 2]],
+    /// The body.
+    screen: Option<&'a Screen<'a>>,
+}
+
+impl Outline<'_> {
+    /// Whether an edge shows from all points of the source.
+    fn is_sure(&self, edge: usize) -> bool {
+        self.screen.is_none_or(|screen| screen.is_fixed(edge))
+    }
+
+    /// Whether a corner does.
+    fn is_sure_corner(&self, corner: Vec3) -> bool {
+        self.edges.iter().enumerate().any(|(k, ends)| ends.contains(&corner) && self.is_sure(k))
+    }
 }
 
 /// The outlines of all bodies.
@@ -104,7 +117,8 @@ struct Outlines<'a> {
 impl<'a> Outlines<'a> {
     fn get(&self, k: usize) -> Outline<'a> {
         let start = if k == 0 { 0 } else { self.ends[k - 1] };
-        Outline { corners: &self.corners[start..self.ends[k]], edges: self.screens[k].edges() }
+        let screen = &self.screens[k];
+        Outline { corners: &self.corners[start..self.ends[k]], edges: screen.edges(), screen: Some(screen) }
     }
 }
 
@@ -116,6 +130,9 @@ struct Search<'a> {
     source: &'a [Vec3],
     target: &'a [Vec3],
     flat: f64,
+    /// Whether there is one body: another may hide events.
+    lone: bool,
+    sightings: &'a mut Sightings,
     found: &'a mut Vec<Line>,
     keyed: &'a mut Vec<(f64, Line)>,
     spans: &'a mut Spans,
@@ -124,9 +141,11 @@ struct Search<'a> {
 impl Search<'_> {
     /// Faces that turn edge-on are events themselves.
     fn turning(&mut self, screens: &[Screen]) {
-        for face in screens.iter().flat_map(Screen::turning) {
-            let line = self.line((face.normal, face.offset));
-            if self.is_new(&line) {
+        for (face, cuts) in screens.iter().flat_map(Screen::turning) {
+            let plane = (face.normal, face.offset);
+            let line =
+                self.line(if self.lone && cuts { Event::always(plane) } else { Event::perhaps(plane) });
+            if self.known(&line).is_none() {
                 self.found.push(line);
             }
         }
@@ -153,65 +172,64 @@ impl Search<'_> {
 
     /// Events where the outline `near` lines up with `far` behind it. Those of two bodies matter only in front of the target.
     fn events(&mut self, near: &Outline, far: &Outline, before: bool) {
-        let within = |t: f64| MARGIN < t && t < 1.0 - MARGIN;
         // Most planes miss the source.
         self.spans.ask(near.edges, far.corners, self.source);
-        for (k, &ends) in near.edges.iter().enumerate() {
-            for (l, &w) in far.corners.iter().enumerate() {
+        for (k, &edge) in near.edges.iter().enumerate() {
+            for (l, &corner) in far.corners.iter().enumerate() {
                 if self.spans.passes(k, l) {
-                    self.event(w, ends, before, |c, n| meeting(c, w - c, ends, n), within);
+                    self.event(Sighting { corner, edge, behind: false }, before, || near.is_sure(k));
                 }
             }
         }
         self.spans.ask(far.edges, near.corners, self.source);
-        for (k, &v) in near.corners.iter().enumerate() {
-            for (l, &ends) in far.edges.iter().enumerate() {
+        for (k, &corner) in near.corners.iter().enumerate() {
+            for (l, &edge) in far.edges.iter().enumerate() {
                 if self.spans.passes(l, k) {
-                    self.event(v, ends, before, |c, n| meeting(c, v - c, ends, n), |t| t > 1.0 + MARGIN);
+                    self.event(Sighting { corner, edge, behind: true }, before, || {
+                        near.is_sure_corner(corner)
+                    });
                 }
             }
         }
     }
 
-    fn event(
-        &mut self,
-        corner: Vec3,
-        [a, b]: [Vec3; 2],
-        before: bool,
-        meeting: impl Fn(Vec3, Vec3) -> (f64, f64),
-        order: impl Fn(f64) -> bool,
-    ) {
-        let Some(plane) = spanned(corner, a, b, self.flat) else { return };
-        let line = self.line(plane);
-        if self.lit(&line) != Lit::Partly || !self.is_new(&line) {
+    fn event(&mut self, sighting: Sighting, before: bool, sure: impl Fn() -> bool) {
+        let Some(plane) = spanned(sighting.corner, sighting.edge, self.flat) else { return };
+        let mut line = self.line(Event::new(plane));
+        let known = self.known(&line);
+        if self.lit(&line) != Lit::Partly || known.is_some() && !self.lone {
             return;
         }
-        let Some([first, last]) = self.chord(&line) else { return };
-        let inner = [first.lerp(last, INSIDE), last.lerp(first, INSIDE)];
+        let Some(chord) = self.chord(&line) else { return };
         let height = |x: Vec3| plane.0.dot(x) - plane.1;
         let shows = !before || lit(self.target.iter().map(|&x| height(x)), self.flat) == Lit::Partly;
-        if shows && lines_up(inner.map(|c| meeting(c, plane.0)), order) {
+        if !shows || !sighting.shows(chord, plane.0) {
+            return;
+        }
+        let event = known.map_or(&mut line.event, |k| &mut self.found[k].event);
+        self.sightings.add(event, sighting, self.lone && sure());
+        if known.is_none() {
             self.found.push(line);
         }
     }
 
-    fn line(&self, plane: Plane) -> Line {
+    fn line(&self, event: Event) -> Line {
         let mut heights = [0.0; CORNERS];
         for (height, x) in heights.iter_mut().zip(self.source) {
-            *height = plane.0.dot(*x) - plane.1;
+            *height = event.plane.0.dot(*x) - event.plane.1;
         }
-        Line { plane, heights }
+        Line { event, heights }
     }
 
-    /// Each line once: parallel edges give the same plane many times.
-    fn is_new(&self, line: &Line) -> bool {
+    /// The place of the same line among those found: parallel edges give the same plane many times.
+    fn known(&self, line: &Line) -> Option<usize> {
         let corners = self.source.len().min(CORNERS);
         let near = |a: &f64, b: f64| (a - b).abs() <= self.flat;
         let same = |other: &Line| {
-            let turned = if line.plane.0.dot(other.plane.0) < 0.0 { -1.0 } else { 1.0 };
+            let turned = if line.event.plane.0.dot(other.event.plane.0) < 0.0 { -1.0 } else { 1.0 };
             line.heights[..corners].iter().zip(&other.heights).all(|(h, g)| near(h, turned * g))
         };
-        !self.found.iter().any(same)
+        self.found.iter().position(same)
     }
 
     /// Sorts the lines from `start` on, long ones first: the order of bodies and of their corners has no say in which are used.
@@ -271,28 +289,11 @@ fn lit(heights: impl Iterator<Item = f64>, flat: f64) -> Lit {
     }
 }
 
-fn spanned(v: Vec3, a: Vec3, b: Vec3, flat: f64) -> Option<Plane> {
+fn spanned(v: Vec3, [a, b]: [Vec3; 2], flat: f64) -> Option<Plane> {
     let (edge, arm) = (b - a, v - a);
     let normal = edge.cross(arm);
     let enough =
         normal.length_squared() > edge.length_squared() * (SLIM * arm.length_squared()).max(flat * flat);
     let n = enough.then(|| normal.normalize())?;
     Some((n, n.dot(a)))
-}
-
-/// Where the line c + t d meets the line of an edge, all in the plane with normal n: t, and the place along the edge from 0 to 1.
-fn meeting(c: Vec3, d: Vec3, [a, b]: [Vec3; 2], n: Vec3) -> (f64, f64) {
-    let e = b - a;
-    let across = d.cross(e).dot(n);
-    ((a - c).cross(e).dot(n) / across, (a - c).cross(d).dot(n) / across)
-}
-
-/// Whether the edge may be met from a point of the chord: both ends meet its line in the right order and on different sides of it, or one end does
-/// not meet it so.
-fn lines_up([first, last]: [(f64, f64); 2], order: impl Fn(f64) -> bool) -> bool {
-    match (order(first.0), order(last.0)) {
-        (true, true) => first.1.min(last.1) < 1.0 - MARGIN && first.1.max(last.1) > MARGIN,
-        (false, false) => false,
-        _ => true,
-    }
 }

@@ -6,6 +6,7 @@
 use super::critical::Critical;
 use super::pieces::{Breaks, Pieces, PiecesWork};
 use super::shadow::Kind;
+use super::sighting::Event;
 use super::together::Together;
 use super::{Segment, point_to_polygon, to_segments};
 use fredholm_mesh::Vec3;
@@ -43,14 +44,16 @@ pub(crate) struct HiddenWork {
 pub(crate) fn hidden_exchange(scene: &Occluded, goal: f64, work: &mut HiddenWork) -> Estimate {
     let HiddenWork { together, critical, pieces, edges } = work;
     let steep = Steep::of(scene, edges);
-    let planes = critical.planes(scene.source, scene.target, scene.screens, scene.tolerance);
+    let (events, sightings) = critical.events(scene.source, scene.target, scene.screens, scene.tolerance);
     let most = |x: Vec3| point_to_polygon(scene.normal, scene.target.iter().map(|&y| y - x));
-    let breaks = Breaks { planes, flat: scene.tolerance, distance: |x| steep.distance(x), most };
+    let sure = scene.screens.len() == 1 && events.iter().all(Event::is_sure);
+    let breaks =
+        Breaks { events, sightings, sure, flat: scene.tolerance, distance: |x| steep.distance(x), most };
     let h = |points: &[Vec3], found: &mut Vec<_>| scene.hidden(points, together, found);
     Pieces::new(h, breaks, pieces, goal).integrate(scene.source)
 }
 
-/// What makes the hidden part steep where it is close: corners of bodies, and edges that do not lie on the source.
+/// What makes the hidden part steep where it is close: edges that may cut the target, and of those that lie on the source the ends.
 struct Steep<'a> {
     edges: &'a [Segment],
 }
@@ -59,13 +62,11 @@ impl<'a> Steep<'a> {
     fn of(scene: &Occluded, edges: &'a mut Vec<Segment>) -> Self {
         let lies = |x: Vec3| (x - scene.source[0]).dot(scene.normal).abs() <= scene.tolerance;
         edges.clear();
-        for body in scene.screens.iter().map(Screen::body) {
-            for [a, b] in body.edges().iter().map(|edge| body.ends(edge)) {
-                if lies(a) && lies(b) {
-                    edges.extend([[a, a], [b, b]].map(Segment::new));
-                } else {
-                    edges.push(Segment::new([a, b]));
-                }
+        for [a, b] in scene.screens.iter().flat_map(Screen::steep) {
+            if lies(a) && lies(b) {
+                edges.extend([[a, a], [b, b]].map(Segment::new));
+            } else {
+                edges.push(Segment::new([a, b]));
             }
         }
         Self { edges }

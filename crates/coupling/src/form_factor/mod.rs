@@ -16,6 +16,7 @@ mod rims;
 mod rung;
 mod sampled;
 mod shadow;
+mod sighting;
 mod small_receiver;
 mod spans;
 mod together;

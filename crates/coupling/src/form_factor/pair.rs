@@ -27,6 +27,9 @@ use fredholm_visibility::body::{Bodies, Body, Face, Room, Screen, Shadow};
 /// Bodies up to which exact shadows are cheaper than sampling.
 const FEW: usize = 128;
 
+/// Tolerance of exchanges with nothing between, in T: a digit more costs them next to nothing.
+const OPEN: f64 = 0.1;
+
 /// Distance of a small patch from a large one, in diameters of the large one, and its own diameter, up to which points of the small one are cheaper than points along the edges.
 const CLOSE: f64 = 1.0;
 const SMALL: f64 = 0.1;
@@ -120,7 +123,7 @@ impl<'a> PairIntegrator<'a> {
         let bodies = Bodies::new(occluders, &patches, &[]);
         let tolerance = rung(tolerance);
         patches.extend(groups);
-        let open = Unoccluded::new(&patches, tolerance);
+        let open = Unoccluded::new(&patches, OPEN * tolerance);
         let sides = patches.iter().map(|patch| Side::of(patch)).collect();
         Self { patches, sides, open, occluders, bodies, tolerance }
     }
@@ -214,7 +217,7 @@ impl<'a> PairIntegrator<'a> {
         if large.centroid().distance(small.centroid()) > CLOSE * size || small.diameter() > SMALL * size {
             return None;
         }
-        let goal = self.tolerance * facing_exchange(large, small);
+        let goal = OPEN * self.tolerance * facing_exchange(large, small);
         Some(Exchange::new(Method::Gauss, small_receiver(large, small, goal)?))
     }
 

@@ -13,6 +13,7 @@ use pulp::{Arch, NullaryFnOnce};
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rims {
     arch: Arch,
+    /// What is left in the last lanes of the last block nobody asks for.
     edges: Vec<[Lanes3; 2]>,
     terms: Vec<Lanes>,
     /// Where the edges of each polygon end.
@@ -21,7 +22,6 @@ pub(super) struct Rims {
 
 impl Rims {
     pub(super) fn clear(&mut self) {
-        self.edges.clear();
         self.ends.clear();
     }
 
@@ -31,25 +31,26 @@ impl Rims {
 
     /// Appends a polygon.
     pub(super) fn push(&mut self, corners: &[Vec3]) {
-        let (start, count) = (self.len(), corners.len());
-        self.edges.resize((start + count).div_ceil(LANES), Default::default());
-        for (k, corner) in corners.iter().enumerate() {
-            self.set(start + k, 0, *corner);
-            self.set(start + (k + count - 1) % count, 1, *corner);
+        let (start, end) = (self.len(), self.len() + corners.len());
+        self.ends.push(end);
+        let blocks = end.div_ceil(LANES);
+        if self.edges.len() < blocks {
+            self.edges.resize(blocks, Default::default());
         }
-        self.ends.push(start + count);
-    }
-
-    #[inline]
-    fn set(&mut self, edge: usize, end: usize, corner: Vec3) {
-        let lanes = &mut self.edges[edge / LANES][end];
-        (lanes[0][edge % LANES], lanes[1][edge % LANES], lanes[2][edge % LANES]) =
-            (corner.x, corner.y, corner.z);
+        let Some((first, others)) = corners.split_first() else { return };
+        let mut from = first;
+        for (place, to) in (start..end).zip(others.iter().chain([first])) {
+            let ([starts, ends], m) = (&mut self.edges[place / LANES], place % LANES);
+            (starts[0][m], starts[1][m], starts[2][m]) = (from.x, from.y, from.z);
+            (ends[0][m], ends[1][m], ends[2][m]) = (to.x, to.y, to.z);
+            from = to;
+        }
     }
 
     /// The form factors of all polygons from points with normal `n`.
     pub(super) fn factors(&mut self, n: Vec3) -> impl Iterator<Item = f64> + '_ {
-        self.arch.dispatch(Terms { edges: &self.edges, n, found: &mut self.terms });
+        let edges = &self.edges[..self.len().div_ceil(LANES)];
+        self.arch.dispatch(Terms { edges, n, found: &mut self.terms });
         let (terms, mut start) = (&self.terms, 0);
         self.ends.iter().map(move |&end| {
             let sum = (start..end).map(|k| terms[k / LANES][k % LANES]).sum();

@@ -79,10 +79,14 @@ impl Lines {
         heights.clear();
         for face in body.faces() {
             let over = self.heights(face.normal, face.offset);
-            if over.iter().all(|&h| h >= -tolerance) {
+            let [low, high] = range(&over);
+            if low >= -tolerance {
                 return Stands::Beside;
             }
-            heights.push(over);
+            // What is below a face along all segments says nothing about them.
+            if high >= -self.certain {
+                heights.push(over);
+            }
         }
         let meets = |[a, b]: [usize; 2], depth: f64| is_pierced(heights, a, b, depth);
         let some = body.is_solid() && LINES[..FIRST].iter().any(|&line| meets(line, self.certain));
@@ -103,6 +107,17 @@ impl Lines {
         }
         heights
     }
+}
+
+/// The least and the largest of some heights.
+#[inline]
+fn range(heights: &[f64; CORNERS]) -> [f64; 2] {
+    let [mut low, mut high] = [heights[0]; 2];
+    for &h in heights {
+        low = if h < low { h } else { low };
+        high = if h > high { h } else { high };
+    }
+    [low, high]
 }
 
 /// Whether a part of the segment between two corners lies deeper than `depth` below all faces.

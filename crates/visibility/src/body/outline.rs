@@ -9,12 +9,10 @@ pub(super) const FACES: usize = 256;
 
 /// One bit for each face.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Bits([u64; FACES / 64]);
+struct Bits([u64; FACES / 64]);
 
 impl Bits {
-    const ALL: Self = Self([u64::MAX; FACES / 64]);
-
-    pub(super) fn set(&mut self, k: usize) {
+    fn set(&mut self, k: usize) {
         self.0[k / 64] |= 1 << (k % 64);
     }
 
@@ -86,19 +84,14 @@ impl Body {
     /// What the body hides from `x`; where that is a room, `room` holds it. Heights of at most `tolerance` (m) over a face count as none: a point of the
     /// surface does not shade itself.
     pub fn shadow(&self, x: Vec3, tolerance: f64, room: &mut Room) -> Shadow {
-        self.shadow_among(x, tolerance, Bits::ALL, room)
-    }
-
-    /// As [`shadow`](Self::shadow), where what is asked about lies behind all faces but `ahead`.
-    pub(super) fn shadow_among(&self, x: Vec3, tolerance: f64, ahead: Bits, room: &mut Room) -> Shadow {
         room.clear();
         if self.edges.is_empty() {
             return Shadow::Nothing;
         }
-        let lit = self.behind(x, tolerance, ahead, room);
+        let lit = self.behind(x, tolerance, room);
         if lit == Bits::default() {
             // From a point of a solid, all that lies behind the faces at that point is seen through the solid.
-            self.behind(x, -tolerance, ahead, room);
+            self.behind(x, -tolerance, room);
             return if self.solid { Shadow::Room } else { Shadow::Nothing };
         }
         for (k, edge) in self.edges.iter().enumerate() {
@@ -109,16 +102,14 @@ impl Body {
         Shadow::Room
     }
 
-    /// Adds the rooms behind those faces `ahead` over which x is higher than `least`, and returns all such faces.
-    fn behind(&self, x: Vec3, least: f64, ahead: Bits, room: &mut Room) -> Bits {
+    /// Adds the rooms behind the faces over which x is higher than `least`, and returns those faces.
+    fn behind(&self, x: Vec3, least: f64, room: &mut Room) -> Bits {
         let mut lit = Bits::default();
         for (k, face) in self.faces.iter().enumerate() {
             let height = face.height(x);
             if height > least {
                 lit.set(k);
-                if ahead.has(k as u32) {
-                    room.push_face(k, face.normal, height);
-                }
+                room.push_face(k, face.normal, height);
             }
         }
         lit

@@ -5,8 +5,13 @@
 
 use fredholm_mesh::Vec3;
 
-use super::outline::Bits;
 use super::{Body, Edge, Face, Room, Shadow};
+
+/// Faces that look at part of the source at most, one bit each.
+const TURNING: usize = 62;
+/// The bits of all faces that look at none of the source, and of all that look at all of it.
+const DARK: u8 = 62;
+const LIT: u8 = 63;
 
 /// A body as points of one polygon see it before another.
 #[derive(Clone, Debug)]
@@ -14,64 +19,94 @@ pub struct Screen<'a> {
     body: &'a Body,
     /// Edges that may cut the target, m.
     edges: Vec<[Vec3; 2]>,
-    /// Faces whose planes pass through the source.
-    turning: Vec<Face>,
-    /// Faces that look at all of the source and do not have all of the target behind them, where the outline is the same from everywhere.
-    front: Option<Vec<Face>>,
-    /// Faces that do not have all of the target behind them, where the outline is not the same from everywhere.
-    ahead: Bits,
+    /// What decides about each of them.
+    borders: Vec<Border>,
+    /// Faces whose planes pass through the source, by their numbers, and whether part of the target lies before them.
+    turning: Vec<(u32, Face, bool)>,
+    /// Faces that look at all of the source and do not have all of the target behind them.
+    front: Vec<(u32, Face)>,
+    /// The bit of the faces that look at all of the source, if there are any.
+    lit: u64,
+    /// Whether the body itself is asked: nothing is left of it, or too many of its faces turn.
+    plain: bool,
     tolerance: f64,
 }
 
-/// Which points a face looks at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Looks {
-    All,
-    Some,
-    None,
+/// An edge, by its number, and the bits of its faces: it shows where one of them looks at a point and the other does not.
+#[derive(Clone, Copy, Debug)]
+struct Border {
+    number: u32,
+    faces: [u8; 2],
 }
 
 impl<'a> Screen<'a> {
     /// Prepares `body` between two polygons. Heights of at most `tolerance` (m) over a face count as none.
     #[must_use]
     pub fn new(body: &'a Body, source: &[Vec3], target: &[Vec3], tolerance: f64) -> Self {
-        let mut looks = [Looks::None; super::outline::FACES];
-        for (looks, face) in looks.iter_mut().zip(&body.faces) {
-            *looks = looks_at(face, source, tolerance);
+        let edges = Vec::with_capacity(8);
+        let (borders, turning, front) = (Vec::with_capacity(8), Vec::new(), Vec::new());
+        let mut screen = Self { body, edges, borders, turning, front, lit: 0, plain: false, tolerance };
+        let mut bits = [DARK; super::outline::FACES];
+        for (k, (bit, face)) in bits.iter_mut().zip(&body.faces).enumerate() {
+            *bit = screen.look((k as u32, face), source, target);
         }
-        let some = |at: Looks| {
-            body.faces.iter().zip(looks).filter(move |(_, looks)| *looks == at).map(|(face, _)| *face)
-        };
-        let turning: Vec<Face> = some(Looks::Some).collect();
-        let fixed = turning.is_empty() && some(Looks::All).next().is_some() && !body.edges.is_empty();
-        let before = |face: &Face| target.iter().any(|&y| face.height(y) > tolerance);
-        let front = fixed.then(|| some(Looks::All).filter(before).collect());
-        let mut ahead = Bits::default();
-        if !fixed {
-            body.faces.iter().enumerate().filter(|(_, face)| before(face)).for_each(|(k, _)| ahead.set(k));
-        }
-        let mut screen = Self { body, edges: Vec::with_capacity(8), turning, front, ahead, tolerance };
-        for edge in &body.edges {
-            screen.consider(edge, edge.faces.map(|face| looks[face as usize]), source, target);
+        screen.plain = screen.turning.len() > TURNING || body.edges.is_empty();
+        for (k, edge) in body.edges.iter().enumerate() {
+            screen.consider((k as u32, edge), edge.faces.map(|face| bits[face as usize]), source, target);
         }
         screen
     }
 
-    fn consider(&mut self, edge: &Edge, [left, right]: [Looks; 2], source: &[Vec3], target: &[Vec3]) {
-        if left == right && left != Looks::Some {
+    /// Takes a face, and returns its bit.
+    fn look(&mut self, (k, face): (u32, &Face), source: &[Vec3], target: &[Vec3]) -> u8 {
+        let (mut some, mut all) = (false, true);
+        for &x in source {
+            let looks = face.height(x) > self.tolerance;
+            some |= looks;
+            all &= looks;
+        }
+        if !some {
+            return DARK;
+        }
+        let before = target.iter().any(|&y| face.height(y) > self.tolerance);
+        if all {
+            self.lit = 1 << LIT;
+            if before {
+                self.front.push((k, *face));
+            }
+            return LIT;
+        }
+        self.turning.push((k, *face, before));
+        (self.turning.len() - 1).min(TURNING) as u8
+    }
+
+    fn consider(&mut self, (k, edge): (u32, &Edge), faces: [u8; 2], source: &[Vec3], target: &[Vec3]) {
+        let [left, right] = faces;
+        if left == right && left >= DARK {
             return;
         }
         let [a, b] = self.body.ends(edge);
         // Counter-clockwise round a face that looks at x, the inside is to the left.
-        let ends = if left == Looks::All || right == Looks::None { [b, a] } else { [a, b] };
+        let turned = left == LIT || right == DARK;
+        let (ends, faces) = if turned { ([b, a], [right, left]) } else { ([a, b], [left, right]) };
+        let known = faces.iter().any(|&face| face >= DARK);
         let cuts = |x: &Vec3| {
             let inward = (ends[0] - *x).cross(ends[1] - *x);
             let outside = |height: f64| height < 0.0 && height < -self.tolerance * inward.length();
             target.iter().any(|y| outside(inward.dot(*y - *x)))
         };
-        if self.front.is_none() || source.iter().any(cuts) {
+        if !known || source.iter().any(cuts) {
             self.edges.push(ends);
+            self.borders.push(Border { number: k, faces });
         }
+    }
+
+    /// The edges near which what is hidden of the target may be a steep function on the source, m: those that may cut the target, or all edges of a body that has part of the source inside
+    /// or on it.
+    pub fn steep(&self) -> impl Iterator<Item = [Vec3; 2]> {
+        let all = self.lit == 0 || self.edges.is_empty();
+        let whole = self.body.edges.iter().filter(move |_| all).map(|edge| self.body.ends(edge));
+        whole.chain(self.edges.iter().filter(move |_| !all).copied())
     }
 
     /// The edges that may cut the target from some point of the source, m.
@@ -81,11 +116,18 @@ impl<'a> Screen<'a> {
         &self.edges
     }
 
-    /// The faces whose planes pass through the source.
+    /// Whether an edge is in the outline from all points of the source.
     #[must_use]
     #[inline]
-    pub fn turning(&self) -> &[Face] {
-        &self.turning
+    pub fn is_fixed(&self, edge: usize) -> bool {
+        !self.plain && self.borders[edge].faces.iter().all(|&bit| bit >= DARK)
+    }
+
+    /// The faces whose planes pass through the source, and whether any edge that may cut the target is theirs.
+    #[inline]
+    pub fn turning(&self) -> impl Iterator<Item = (&Face, bool)> {
+        let cuts = |bit: usize| self.borders.iter().any(|border| border.faces.contains(&(bit as u8)));
+        self.turning.iter().enumerate().map(move |(bit, (_, face, _))| (face, !self.plain && cuts(bit)))
     }
 
     /// The body.
@@ -121,33 +163,33 @@ impl<'a> Screen<'a> {
 
     fn front_from(&self, x: Vec3, room: &mut Room) {
         room.clear();
-        for (k, face) in self.front.iter().flatten().enumerate() {
-            room.push_face(k, face.normal, face.height(x));
+        for (k, face) in &self.front {
+            room.push_face(*k as usize, face.normal, face.height(x));
         }
     }
 
     /// Adds what [`front`](Self::front) lacks.
     fn rest(&self, x: Vec3, room: &mut Room) -> Shadow {
-        if self.front.is_none() {
-            return self.body.shadow_among(x, self.tolerance, self.ahead, room);
+        let mut lit = self.lit;
+        for (bit, (k, face, before)) in self.turning.iter().enumerate().take(TURNING) {
+            let height = face.height(x);
+            if height > self.tolerance {
+                lit |= 1 << bit;
+                if *before {
+                    room.push_face(*k as usize, face.normal, height);
+                }
+            }
         }
-        for (k, [a, b]) in self.edges.iter().enumerate() {
-            room.push_edge(k, (*a - x).cross(*b - x));
+        if lit == 0 || self.plain {
+            return self.body.shadow(x, self.tolerance, room);
+        }
+        for ([a, b], Border { number, faces: [first, second] }) in self.edges.iter().zip(&self.borders) {
+            let [first, second] = [first, second].map(|bit| lit >> bit & 1 == 1);
+            if first != second {
+                let inward = (*a - x).cross(*b - x);
+                room.push_edge(*number as usize, if second { inward } else { -inward });
+            }
         }
         Shadow::Room
-    }
-}
-
-fn looks_at(face: &Face, points: &[Vec3], tolerance: f64) -> Looks {
-    let (mut some, mut all) = (false, true);
-    for &x in points {
-        let looks = face.height(x) > tolerance;
-        some |= looks;
-        all &= looks;
-    }
-    match (some, all) {
-        (_, true) => Looks::All,
-        (true, false) => Looks::Some,
-        _ => Looks::None,
     }
 }

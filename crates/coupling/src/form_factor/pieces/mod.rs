@@ -3,8 +3,9 @@
 //! The part with the largest error is improved next. Where its points are of several kinds it is cut along the critical line that parts them, and halves it best; where
 //! there is none its sides are halved. Where all are of one kind it gets the next rule as long as that pays, or its sides are halved. So the cost follows the goal. In m².
 //!
-//! Most critical lines do not show, and the kinds of points on both sides tell which. A line may also pass between the points and the border of a part: before the part
-//! is left as it is, one point behind the line is looked at, if that could hide something that matters.
+//! Most critical lines do not show. Behind one body it is known where they do ([`Sightings`]): the source is cut along those that may matter before anything is asked. Of the others the
+//! kinds of points on both sides tell. A line may also pass between the points and the border of a part: before the part is left as it is, one point behind the line is looked at,
+//! if that could hide something that matters.
 
 mod evidence;
 mod observed;
@@ -13,6 +14,7 @@ mod shape;
 
 use super::critical::Plane;
 use super::shadow::Kind;
+use super::sighting::{Event, Shows, Sightings};
 use crate::polygon::{HalfSpace, clip};
 use evidence::{Line, Points};
 use fredholm_mesh::Vec3;
@@ -20,7 +22,7 @@ use fredholm_quadrature::Estimate;
 use fredholm_visibility::body::ODD;
 use observed::Observed;
 use piece::Piece;
-use shape::Shape;
+use shape::{Shape, width};
 
 /// Relative difference below which two errors are equal by design of the scene.
 const EQUAL: f64 = 1e-6;
@@ -30,6 +32,8 @@ const SIDE: f64 = 0.020_3;
 const ON_THE_LINE: f64 = 1e-9;
 /// What may be hidden behind a line, in goals, from which on a point there is looked at.
 const MATTERS: f64 = 0.15;
+/// What may be hidden behind a line that surely shows, in goals, from which on the source is cut along it at once.
+const SURELY: f64 = 2.0;
 /// Points after which an integral ends with the error that it has.
 const POINTS: usize = 100_000;
 
@@ -37,7 +41,10 @@ const POINTS: usize = 100_000;
 #[derive(Clone, Copy)]
 pub(crate) struct Breaks<'a, D, M> {
     /// Critical planes.
-    pub planes: &'a [Plane],
+    pub events: &'a [Event],
+    pub sightings: &'a Sightings,
+    /// Whether sightings tell of all of them.
+    pub sure: bool,
     /// Heights up to which a point lies in a plane, m.
     pub flat: f64,
     /// Distance of a point from what makes h steep, m.
@@ -76,18 +83,37 @@ where
     /// Prepares the integral of h to an absolute `goal`. `h` appends the values and the kinds at given points.
     pub(crate) fn new(h: H, breaks: Breaks<'a, D, M>, work: &'a mut PiecesWork, goal: f64) -> Self {
         work.parts.clear();
-        Self { h, breaks, work, observed: Observed::default(), points: 0, goal }
+        let observed = Observed::new(breaks.sure);
+        Self { h, breaks, work, observed, points: 0, goal }
     }
 
     /// The integral over a convex polygon.
     pub(crate) fn integrate(mut self, corners: &[Vec3]) -> Estimate {
-        self.add(corners);
+        let centre = corners.iter().sum::<Vec3>() / corners.len() as f64;
+        let most = (self.breaks.most)(centre);
+        self.cut_surely(corners, most);
         loop {
             let error = self.observed.error(&self.work.parts);
             if error <= self.goal || self.points >= POINTS {
                 return Estimate { value: self.work.parts.iter().map(|p| p.value).sum(), error };
             }
             self.improve_worst();
+        }
+    }
+
+    /// Adds a convex polygon, cut along the lines that surely show where much may be hidden behind them. `most` is the largest possible h.
+    fn cut_surely(&mut self, corners: &[Vec3], most: f64) {
+        let worth = SURELY * self.goal / (most * area(corners));
+        let flat = self.breaks.flat.max(ON_THE_LINE * width(corners));
+        let surely = |event: &&Event| self.breaks.sightings.ask(event, corners) == Shows::Surely;
+        let cutting = |event: &Event| Some((event.plane, share(corners, event.plane, flat)?));
+        let matters = |event: &&Event| cutting(event).is_some_and(|(_, share)| share >= worth);
+        let lines = self.breaks.events.iter().filter(matters).filter(surely).filter_map(cutting);
+        let Some((plane, _)) = lines.max_by(|a, b| merit(a).total_cmp(&merit(b))) else {
+            return self.add(corners);
+        };
+        for part in halves(corners, plane, flat) {
+            self.cut_surely(&part, most);
         }
     }
 
@@ -107,11 +133,10 @@ where
 
     /// Adds a part with its integral by the first two rules.
     fn start(&mut self, shape: Shape) {
-        let most = (self.breaks.most)(shape.centre()) * shape.area();
         let reach = shape.reach(&self.breaks.distance);
         let [first, second] = self.rules(&shape, [0, 1]);
         let range = self.work.points.range() * shape.area();
-        let piece = self.learn(Piece::new(shape, [reach, most], first, range), second);
+        let piece = self.learn(Piece::new(shape, reach, first, range), second);
         self.work.parts.push(piece);
     }
 
@@ -137,6 +162,9 @@ where
     fn learn(&mut self, mut piece: Piece, value: f64) -> Piece {
         piece.line = self.line_through(&piece.shape);
         piece.cut = self.work.lines.iter().map(|(_, share)| *share).fold(0.0, f64::max);
+        if piece.asks_most() {
+            piece.most = (self.breaks.most)(piece.shape.centre()) * piece.shape.area();
+        }
         piece.raise(value, self.work.points.kind());
         if self.observed.scale() * piece.error < self.goal {
             self.look_behind(&mut piece);
@@ -147,10 +175,14 @@ where
     /// The line that shows and halves a part best, with the share of the width on its smaller side. Lists the lines behind which no point lies.
     fn line_through(&mut self, shape: &Shape) -> Option<(Plane, f64)> {
         let flat = self.flat(shape);
+        let Breaks { events, sightings, .. } = self.breaks;
         let PiecesWork { points, lines, unseen, .. } = &mut *self.work;
-        let cutting = |&plane: &Plane| Some((plane, share(shape, plane, flat)?));
+        let cutting = |event: &Event| {
+            let line = (event.plane, share(shape.corners(), event.plane, flat)?);
+            (sightings.ask(event, shape.corners()) != Shows::Never).then_some(line)
+        };
         lines.clear();
-        lines.extend(self.breaks.planes.iter().filter_map(cutting));
+        lines.extend(events.iter().filter_map(cutting));
         points.leave_out(lines, flat);
         unseen.clear();
         unseen.extend(lines.iter().filter(|(plane, _)| points.judge(*plane) == Line::Unseen));
@@ -214,15 +246,28 @@ where
         self.breaks.flat.max(ON_THE_LINE * shape.width())
     }
 
-    fn cut(&mut self, shape: &Shape, (normal, offset): Plane) {
-        let above = HalfSpace { normal, offset };
-        let below = HalfSpace { normal: -normal, offset: -offset };
-        for side in [above, below] {
-            let mut part = Vec::with_capacity(5);
-            clip(shape.corners(), side, self.flat(shape), &mut part);
+    fn cut(&mut self, shape: &Shape, plane: Plane) {
+        for part in halves(shape.corners(), plane, self.flat(shape)) {
             self.add(&part);
         }
     }
+}
+
+/// The two parts of a convex polygon on both sides of a plane.
+fn halves(corners: &[Vec3], (normal, offset): Plane, flat: f64) -> [Vec<Vec3>; 2] {
+    let above = HalfSpace { normal, offset };
+    let below = HalfSpace { normal: -normal, offset: -offset };
+    [above, below].map(|side| {
+        let mut part = Vec::with_capacity(corners.len() + 1);
+        clip(corners, side, flat, &mut part);
+        part
+    })
+}
+
+/// Area of a convex polygon, m².
+fn area(corners: &[Vec3]) -> f64 {
+    let doubled = corners.windows(2).map(|e| (e[0] - corners[0]).cross(e[1] - corners[0]));
+    0.5 * doubled.sum::<Vec3>().length()
 }
 
 /// How well a line with this share of the width on its smaller side halves a part; of equals, the place decides.
@@ -230,9 +275,9 @@ fn merit(((n, _), share): &(Plane, f64)) -> f64 {
     share + 1e-3 * n.dot(ODD).abs()
 }
 
-/// The share of the width of a shape on the smaller side of a plane that cuts it.
-fn share(shape: &Shape, (n, c): Plane, flat: f64) -> Option<f64> {
-    let heights = shape.corners().iter().map(|x| n.dot(*x) - c);
+/// The share of the width of a convex polygon on the smaller side of a plane that cuts it.
+fn share(corners: &[Vec3], (n, c): Plane, flat: f64) -> Option<f64> {
+    let heights = corners.iter().map(|x| n.dot(*x) - c);
     let [low, high] = heights.fold([0.0f64; 2], |[low, high], h| [low.min(h), high.max(h)]);
     let share = high.min(-low) / (high - low);
     (high > flat && -low > flat && share > SIDE).then_some(share)
@@ -243,20 +288,28 @@ mod tests {
     use super::*;
 
     /// ∫ over the unit square of a function with a kink along x = 0.3 and with its steep place at `near`.
-    fn kinked(near: Vec3, planes: &[Plane], goal: f64) -> Estimate {
+    fn kinked(near: Vec3, events: &[Event], goal: f64) -> Estimate {
         let square = [Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Y, Vec3::Y];
         let mut other = Kind::default();
         other.add(&[1]);
         let kind = |x: &Vec3| if x.x < 0.3 { other } else { Kind::default() };
         let value = |x: &Vec3| ((x.x - 0.3).max(0.0), kind(x));
         let h = |points: &[Vec3], found: &mut Vec<_>| found.extend(points.iter().map(value));
-        let breaks = Breaks { planes, flat: 1e-12, distance: |x: Vec3| x.distance(near), most: |_| 0.7 };
+        let sightings = &Sightings::default();
+        let breaks = Breaks {
+            events,
+            sightings,
+            sure: false,
+            flat: 1e-12,
+            distance: |x: Vec3| x.distance(near),
+            most: |_| 0.7,
+        };
         Pieces::new(h, breaks, &mut PiecesWork::default(), goal).integrate(&square)
     }
 
     #[test]
     fn a_cut_along_the_kink_makes_it_exact() {
-        let found = kinked(Vec3::Z * 5.0, &[(Vec3::X, 0.3)], 1e-9);
+        let found = kinked(Vec3::Z * 5.0, &[Event::always((Vec3::X, 0.3))], 1e-9);
         assert!((found.value - 0.245).abs() < 1e-14 && found.error < 1e-9, "{found:?}");
     }
 

@@ -5,7 +5,7 @@
 //!
 //! error = c √(1 + u Σ ρ²) (1 + w/(1 + Σ 1)) (1 + l ln n) √(Σ eₖ²).
 //!
-//! A part that was off by about its error or more raises that of all; nothing refined yet is nothing known.
+//! A part that was off by about its error or more raises that of all; nothing refined yet is nothing known, but where it is known which lines show, w is less.
 
 use super::piece::Piece;
 
@@ -13,8 +13,10 @@ use super::piece::Piece;
 const SAFETY: f64 = 0.55;
 /// u,
 const SURPRISE: f64 = 0.62;
-/// w and
+/// w,
 const UNKNOWN: f64 = 6.3;
+/// and where all events are sure, and
+const SURE: f64 = 1.0;
 /// l of the formula.
 const MANY: f64 = 0.17;
 /// What a refinement weighs after the next one.
@@ -23,8 +25,10 @@ const KEEP: f64 = 0.86;
 const LARGEST: f64 = 6.2;
 
 /// The refinements of one integral.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Observed {
+    /// w.
+    unknown: f64,
     /// Σ 1.
     count: f64,
     /// Σ ρ².
@@ -32,6 +36,11 @@ pub(super) struct Observed {
 }
 
 impl Observed {
+    /// None yet, of an integral of which it is known or not which lines show.
+    pub(super) fn new(sure: bool) -> Self {
+        Self { unknown: if sure { SURE } else { UNKNOWN }, count: 0.0, surprise: 0.0 }
+    }
+
     /// Takes the change of a part's integral against the error that it had.
     pub(super) fn add(&mut self, change: f64, error: f64) {
         let ratio = if error > 0.0 { (change.abs() / error).min(LARGEST) } else { 0.0 };
@@ -47,7 +56,7 @@ impl Observed {
     /// The error of the sum of some parts.
     pub(super) fn error(&self, parts: &[Piece]) -> f64 {
         let squares: f64 = parts.iter().map(|part| part.error.powi(2)).sum();
-        let unknown = 1.0 + UNKNOWN / (1.0 + self.count);
+        let unknown = 1.0 + self.unknown / (1.0 + self.count);
         self.scale() * unknown * (1.0 + MANY * (parts.len() as f64).ln()) * squares.sqrt()
     }
 }

@@ -20,7 +20,7 @@ const PAYS_FIRST: f64 = 0.26;
 /// No simple number: in a scene with right angles the two are often equal, and rounding would decide.
 const NEAR: f64 = 1.000_001;
 /// The shares a and a′ of the table,
-const SMOOTH: [f64; 2] = [0.15, 0.03];
+const SMOOTH: [f64; 2] = [0.15, 0.045];
 /// b and c,
 const SMOOTH_NEAR: [f64; 2] = [0.013, 0.14];
 /// d,
@@ -28,7 +28,7 @@ const BROKEN: f64 = 0.11;
 /// and e, f and g.
 const BROKEN_NEAR: [f64; 3] = [0.053, 0.011, 0.013];
 /// Share of the largest value, and of the width behind a line through a part of one kind, that small shadows between its four points may hide; each next rule leaves this part of it.
-const BETWEEN: [f64; 2] = [3e-4, 0.25];
+const BETWEEN: [f64; 2] = [1e-3, 0.25];
 /// Share of what shows behind a line with no points of the rule.
 const BEHIND: f64 = 1.3;
 
@@ -38,7 +38,7 @@ pub(super) struct Piece {
     pub shape: Shape,
     /// Radius over the distance from what makes h steep.
     reach: f64,
-    /// Largest value that the integral could have, m².
+    /// Largest value that the integral could have, m², where that has a say.
     pub most: f64,
     /// Range of h at the first points, times the area, m².
     range: f64,
@@ -59,10 +59,15 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    /// A part with its reach, the largest value that the integral could have, the integral by the first rule, and the range of h at the points of the first two times the area.
-    pub(super) fn new(shape: Shape, [reach, most]: [f64; 2], value: f64, range: f64) -> Self {
-        let (step, error, kind, line) = (0.0, 0.0, None, None);
-        Self { shape, reach, most, range, degree: 0, value, step, error, kind, cut: 0.0, line, pays: true }
+    /// A part with its reach, the integral by the first rule, and the range of h at the points of the first two times the area.
+    pub(super) fn new(shape: Shape, reach: f64, value: f64, range: f64) -> Self {
+        let (most, step, error, cut, kind, line) = (0.0, 0.0, 0.0, 0.0, None, None);
+        Self { shape, reach, most, range, degree: 0, value, step, error, kind, cut, line, pays: true }
+    }
+
+    /// Whether the largest value that the integral could have has a say in the error, and is not known yet.
+    pub(super) fn asks_most(&self) -> bool {
+        self.degree == 0 && (self.reach > NEAR || self.cut > 0.0)
     }
 
     /// Takes the integral by the next rule, with the kind of its points.
@@ -81,7 +86,7 @@ impl Piece {
 
     /// What may hide between points that are all of one kind, m².
     fn between(&self) -> f64 {
-        let share = if self.kind.is_some() { self.cut } else { 0.0 };
+        let share = self.cut;
         BETWEEN[0] * BETWEEN[1].powi(self.degree as i32 - 1) * share * self.most
     }
 

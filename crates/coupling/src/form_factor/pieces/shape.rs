@@ -24,6 +24,12 @@ pub(super) enum Shape {
     Quad([Vec3; 4]),
 }
 
+/// Largest distance of a corner from the first.
+pub(super) fn width(corners: &[Vec3]) -> f64 {
+    let [first, others @ ..] = corners else { return 0.0 };
+    others.iter().map(|x| x.distance(*first)).fold(0.0, f64::max)
+}
+
 impl Shape {
     pub(super) fn corners(&self) -> &[Vec3] {
         match self {
@@ -43,10 +49,8 @@ impl Shape {
         self.corners().iter().sum::<Vec3>() / self.corners().len() as f64
     }
 
-    /// Largest distance of a corner from the first.
     pub(super) fn width(&self) -> f64 {
-        let [first, others @ ..] = self.corners() else { return 0.0 };
-        others.iter().map(|x| x.distance(*first)).fold(0.0, f64::max)
+        width(self.corners())
     }
 
     /// Radius about the centre, over its distance from what is near.
