@@ -10,11 +10,11 @@
 use super::piece::Piece;
 
 /// c,
-const SAFETY: f64 = 0.55;
+const SAFETY: f64 = 0.58;
 /// u,
 const SURPRISE: f64 = 0.62;
 /// w,
-const UNKNOWN: f64 = 6.3;
+const UNKNOWN: f64 = 6.0;
 /// and where all events are sure, and
 const SURE: f64 = 1.0;
 /// l of the formula.
