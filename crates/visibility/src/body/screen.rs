@@ -77,7 +77,8 @@ impl<'a> Screen<'a> {
             return LIT;
         }
         self.turning.push((k, *face, before));
-        (self.turning.len() - 1).min(TURNING) as u8
+        // Those beyond share a bit, which says no more than that they turn.
+        (self.turning.len() - 1).min(TURNING - 1) as u8
     }
 
     fn consider(&mut self, (k, edge): (u32, &Edge), faces: [u8; 2], source: &[Vec3], target: &[Vec3]) {

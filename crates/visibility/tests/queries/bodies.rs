@@ -146,20 +146,23 @@ fn the_part_of_a_body_in_front_of_a_plane_shades_the_same_there() {
 #[test]
 fn a_screen_hides_of_the_target_what_its_body_does() {
     let mut random = Random(5);
-    let (mut hidden, mut seen, mut fewer) = (0, 0, 0);
-    for k in 0..80 {
+    let (mut hidden, mut seen, mut fewer, mut turning) = (0, 0, 0, 0);
+    for k in 0..160 {
         let block = cuboid(random.cube() * 0.2, Vec3::new(0.4, 0.2, 0.3), f64::from(k), false);
         let z = random.unit();
         let square = |z: f64, size: f64, centre: Vec3| {
             [(-1., -1.), (1., -1.), (1., 1.), (-1., 1.)]
                 .map(|(u, v)| Vec3::new(centre.x + u * size, centre.y + v * size, z))
         };
-        let (source, target) = (square(-1.5, 0.4, random.cube()), square(1.0 + z, 0.25, random.cube()));
+        // Faces of the block turn on a large source.
+        let (low, size) = if k < 80 { (-1.5, 0.4) } else { (-0.9, 2.0) };
+        let (source, target) = (square(low, size, random.cube()), square(1.0 + z, 0.25, random.cube()));
         let elements = [quad(source), quad(target)];
         let all = bodies(&block, &elements, &[]);
         let [body] = all.as_slice() else { continue };
         let screen = Screen::new(body, &source, &target, 1e-9);
         fewer += usize::from(screen.edges().len() < 4);
+        turning += usize::from(screen.turning().next().is_some());
         let mut room = Room::default();
         for _ in 0..50 {
             let (x, y) = (random.on(&elements[0]), random.on(&elements[1]));
@@ -169,5 +172,5 @@ fn a_screen_hides_of_the_target_what_its_body_does() {
             seen += usize::from(!dark);
         }
     }
-    assert!(hidden > 200 && seen > 200 && fewer > 3, "{hidden} {seen} {fewer}");
+    assert!(hidden > 200 && seen > 200 && fewer > 3 && turning > 40, "{hidden} {seen} {fewer} {turning}");
 }
