@@ -21,6 +21,7 @@ const TRUE: f64 = 1e-7;
 /// Pairs of each kind in a sample, and how many are looked at to find them.
 const PAIRS: usize = 200;
 const LOOKS: usize = 4000;
+
 fn scenes() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
     let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());

@@ -6,7 +6,7 @@
 //! G. Drettakis & E. Fiume, SIGGRAPH 1994, doi:10.1145/192161.192207. The same happens between two bodies. Events
 //! of three edges are curves and not listed.
 
-use super::sighting::{Event, Sighting, Sightings};
+use super::sighting::{Event, Sighting, Sightings, chord};
 use super::spans::Spans;
 use fredholm_mesh::Vec3;
 use fredholm_visibility::body::{ODD, Screen};
@@ -254,17 +254,8 @@ impl Search<'_> {
 
     /// The two ends of a line on the source.
     fn chord(&self, line: &Line) -> Option<[Vec3; 2]> {
-        let count = self.source.len().min(CORNERS);
-        let (mut ends, mut found) = ([Vec3::ZERO; 2], 0);
-        for k in 0..count {
-            let l = if k + 1 == count { 0 } else { k + 1 };
-            let (from, to) = (line.heights[k], line.heights[l]);
-            if (from >= 0.0) != (to >= 0.0) && found < 2 {
-                ends[found] = self.source[k] + (self.source[l] - self.source[k]) * (from / (from - to));
-                found += 1;
-            }
-        }
-        (found == 2).then_some(ends)
+        let corners = &self.source[..self.source.len().min(CORNERS)];
+        chord(corners, |k| line.heights[k])
     }
 }
 

@@ -110,10 +110,11 @@ impl Sightings {
         if event.always {
             return Shows::Surely;
         }
-        let Some(chord) = chord(corners, event.plane) else { return Shows::Perhaps };
+        let (n, c) = event.plane;
+        let Some(chord) = chord(corners, |k| n.dot(corners[k]) - c) else { return Shows::Perhaps };
         let mut next = event.last;
         while let Some((sighting, before)) = next.checked_sub(1).map(|k| &self.0[k as usize]) {
-            if sighting.shows(chord, event.plane.0) {
+            if sighting.shows(chord, n) {
                 return Shows::Surely;
             }
             next = *before;
@@ -122,18 +123,16 @@ impl Sightings {
     }
 }
 
-/// The two ends of the line in which a plane cuts a convex polygon.
-fn chord(corners: &[Vec3], (n, c): Plane) -> Option<[Vec3; 2]> {
-    let height = |x: &Vec3| n.dot(*x) - c;
-    let mut from = corners.last().map(|x| (*x, height(x)))?;
+/// The two ends of the line in which a plane cuts a convex polygon, given the heights of its corners over the plane.
+pub(super) fn chord(corners: &[Vec3], height: impl Fn(usize) -> f64) -> Option<[Vec3; 2]> {
     let (mut ends, mut found) = ([Vec3::ZERO; 2], 0);
-    for x in corners {
-        let to = (*x, height(x));
-        if (from.1 >= 0.0) != (to.1 >= 0.0) && found < 2 {
-            ends[found] = from.0 + (to.0 - from.0) * (from.1 / (from.1 - to.1));
+    for k in 0..corners.len() {
+        let l = if k + 1 == corners.len() { 0 } else { k + 1 };
+        let (from, to) = (height(k), height(l));
+        if (from >= 0.0) != (to >= 0.0) && found < 2 {
+            ends[found] = corners[k] + (corners[l] - corners[k]) * (from / (from - to));
             found += 1;
         }
-        from = to;
     }
     (found == 2).then_some(ends)
 }

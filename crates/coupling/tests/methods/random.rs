@@ -62,7 +62,7 @@ fn agree(name: &str, pairs: &[[Patch; 2]], tolerance: f64) -> usize {
         assert!(outcome.is_sound(), "{name} {k}: {outcome:?} {:?}", pairs[k]);
         assert!(outcome.ratios().iter().all(|&ratio| ratio <= 1.0), "{name} {k}: {outcome:?} {:?}", pairs[k]);
         let stated = outcome.stated();
-        let useful = stated[0] < 1e-7 && stated[1] < 3e-9 && stated[2] < 1.01 * tolerance;
+        let useful = stated[0] < 1e-7 && stated[1] < 2e-9 && stated[2] < 1.01 * tolerance;
         assert!(useful, "{name} {k}: {stated:?}");
     }
     let [ratios, stated] =

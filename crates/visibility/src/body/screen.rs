@@ -171,8 +171,11 @@ impl<'a> Screen<'a> {
 
     /// Adds what [`front`](Self::front) lacks.
     fn rest(&self, x: Vec3, room: &mut Room) -> Shadow {
+        if self.plain {
+            return self.body.shadow(x, self.tolerance, room);
+        }
         let mut lit = self.lit;
-        for (bit, (k, face, before)) in self.turning.iter().enumerate().take(TURNING) {
+        for (bit, (k, face, before)) in self.turning.iter().enumerate() {
             let height = face.height(x);
             if height > self.tolerance {
                 lit |= 1 << bit;
@@ -181,7 +184,7 @@ impl<'a> Screen<'a> {
                 }
             }
         }
-        if lit == 0 || self.plain {
+        if lit == 0 {
             return self.body.shadow(x, self.tolerance, room);
         }
         for ([a, b], Border { number, faces: [first, second] }) in self.edges.iter().zip(&self.borders) {

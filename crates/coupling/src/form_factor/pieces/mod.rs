@@ -104,7 +104,7 @@ where
     /// Adds a convex polygon, cut along the lines that surely show where much may be hidden behind them. `most` is the largest possible h.
     fn cut_surely(&mut self, corners: &[Vec3], most: f64) {
         let worth = SURELY * self.goal / (most * area(corners));
-        let flat = self.breaks.flat.max(ON_THE_LINE * width(corners));
+        let flat = self.flat(corners);
         let surely = |event: &&Event| self.breaks.sightings.ask(event, corners) == Shows::Surely;
         let cutting = |event: &Event| Some((event.plane, share(corners, event.plane, flat)?));
         let matters = |event: &&Event| cutting(event).is_some_and(|(_, share)| share >= worth);
@@ -174,7 +174,7 @@ where
 
     /// The line that shows and halves a part best, with the share of the width on its smaller side. Lists the lines behind which no point lies.
     fn line_through(&mut self, shape: &Shape) -> Option<(Plane, f64)> {
-        let flat = self.flat(shape);
+        let flat = self.flat(shape.corners());
         let Breaks { events, sightings, .. } = self.breaks;
         let PiecesWork { points, lines, unseen, .. } = &mut *self.work;
         let cutting = |event: &Event| {
@@ -192,7 +192,7 @@ where
 
     /// Looks at a point behind each line that has none, where much may be hidden.
     fn look_behind(&mut self, piece: &mut Piece) {
-        let flat = self.flat(&piece.shape);
+        let flat = self.flat(piece.shape.corners());
         let PiecesWork { points, lines, unseen, .. } = &mut *self.work;
         for &(plane, share) in unseen.iter() {
             let matters = share * piece.most >= MATTERS * self.goal;
@@ -242,12 +242,12 @@ where
     }
 
     /// Heights over a line that count as 0 on a part, m.
-    fn flat(&self, shape: &Shape) -> f64 {
-        self.breaks.flat.max(ON_THE_LINE * shape.width())
+    fn flat(&self, corners: &[Vec3]) -> f64 {
+        self.breaks.flat.max(ON_THE_LINE * width(corners))
     }
 
     fn cut(&mut self, shape: &Shape, plane: Plane) {
-        for part in halves(shape.corners(), plane, self.flat(shape)) {
+        for part in halves(shape.corners(), plane, self.flat(shape.corners())) {
             self.add(&part);
         }
     }

@@ -27,7 +27,7 @@ const SMOOTH_NEAR: [f64; 2] = [0.013, 0.14];
 const BROKEN: f64 = 0.11;
 /// and e, f and g.
 const BROKEN_NEAR: [f64; 3] = [0.053, 0.011, 0.013];
-/// Share of the largest value, and of the width behind a line through a part of one kind, that small shadows between its four points may hide; each next rule leaves this part of it.
+/// Share of the largest value, and of the width behind a line through a part, that small shadows between its points may hide; each next rule leaves this part of it.
 const BETWEEN: [f64; 2] = [1e-3, 0.25];
 /// Share of what shows behind a line with no points of the rule.
 const BEHIND: f64 = 1.3;
@@ -84,10 +84,9 @@ impl Piece {
         (self.value, self.step) = (value, step);
     }
 
-    /// What may hide between points that are all of one kind, m².
+    /// What may hide between the points near a line, m².
     fn between(&self) -> f64 {
-        let share = self.cut;
-        BETWEEN[0] * BETWEEN[1].powi(self.degree as i32 - 1) * share * self.most
+        BETWEEN[0] * BETWEEN[1].powi(self.degree as i32 - 1) * self.cut * self.most
     }
 
     fn estimate(&self, s: f64, v: f64) -> f64 {

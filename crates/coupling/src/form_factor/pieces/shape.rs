@@ -49,10 +49,6 @@ impl Shape {
         self.corners().iter().sum::<Vec3>() / self.corners().len() as f64
     }
 
-    pub(super) fn width(&self) -> f64 {
-        width(self.corners())
-    }
-
     /// Radius about the centre, over its distance from what is near.
     pub(super) fn reach(&self, distance: impl Fn(Vec3) -> f64) -> f64 {
         let centre = self.centre();
