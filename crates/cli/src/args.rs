@@ -258,7 +258,7 @@ pub(crate) struct ProblemArgs {
     /// Solver [default: the scene's, else gauss-seidel]
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(registry::names()))]
     pub(crate) solver: Option<String>,
-    /// Error asked for in a row of form factors [default: the scene's, else 1e-3]
+    /// Error asked for in a row of form factors, rounded down to a power of ten [default: the scene's, else 1e-3]
     #[arg(long, value_name = "T", value_parser = tolerance)]
     pub(crate) form_factor_tolerance: Option<f64>,
     /// Number format of the stored matrix [default: the scene's, else f64]

@@ -19,7 +19,7 @@ pub enum Verdict {
     Order {
         /// p of the last three meshes.
         order: f64,
-        /// ‖E − E_L‖/‖E_L‖.
+        /// ‖E − E_L‖/‖E_L‖, by this order or the highest that lasts.
         remaining: f64,
     },
     /// The last step is no larger than what the values are known to.
@@ -37,7 +37,7 @@ pub struct Convergence {
     pub difference: Vec<f64>,
     /// Order from this mesh and the two before.
     pub order: Vec<Option<f64>>,
-    /// What remains by that order.
+    /// What remains by that order, or the highest that lasts.
     pub remaining: Vec<Option<f64>>,
     /// ‖E_l − E‖ to Richardson's limit, where the sequence has an order.
     pub error: Vec<Option<f64>>,
@@ -45,25 +45,27 @@ pub struct Convergence {
     pub verdict: Verdict,
 }
 
-/// Follows values on successive meshes, meshes × values, with their weights. Steps up to `noise`, relative to the norm, are taken for rounding.
+/// Follows values on successive meshes, meshes × values, with their weights. Steps up to `noise`, relative to the norm, are taken for rounding. An order above `highest`, the method's
+/// own on smooth fields, is stated but does not last: what remains follows from `highest` then.
 ///
 /// ```
 /// use fredholm_discretisation::{Verdict, convergence};
 ///
 /// let levels: Vec<Vec<f64>> = [1.0, 0.25, 0.0625].map(|h2| vec![3.0 + h2, 2.0 - h2]).to_vec();
-/// let found = convergence(&levels, &[1.0, 1.0], 1e-12);
+/// let found = convergence(&levels, &[1.0, 1.0], 1e-12, 2.0);
 /// let Verdict::Order { order, .. } = found.verdict else { panic!("the steps fall by four") };
 /// assert!((order - 2.0).abs() < 1e-12);
 /// ```
 #[must_use]
-pub fn convergence(levels: &[Vec<f64>], weights: &[f64], noise: f64) -> Convergence {
+pub fn convergence(levels: &[Vec<f64>], weights: &[f64], noise: f64, highest: f64) -> Convergence {
     let Some(finest) = levels.last() else { return nothing() };
     let norm = Norm { weights, unit: norm(weights, finest) };
     let order: Vec<_> = (0..levels.len()).map(|l| order(levels, l, &norm, noise)).collect();
-    let remains =
-        |l: usize| order[l].map(|p| norm.distance(&levels[l], &levels[l - 1]) / (RATIO.powf(p) - 1.0));
+    let remains = |l: usize| {
+        order[l].map(|p| norm.distance(&levels[l], &levels[l - 1]) / (RATIO.powf(p.min(highest)) - 1.0))
+    };
     let remaining: Vec<_> = (0..levels.len()).map(remains).collect();
-    let limit = order[levels.len() - 1].map(|p| limit(levels, p));
+    let limit = order[levels.len() - 1].map(|p| limit(levels, p.min(highest)));
     let error = |values: &Vec<f64>| limit.as_ref().map(|limit| norm.distance(values, limit));
     Convergence {
         difference: levels.iter().map(|values| norm.distance(values, finest)).collect(),
@@ -157,7 +159,7 @@ mod tests {
         let weights = [2.0, 0.5];
         for p in [0.5, 1.0, 2.0, 4.0] {
             let levels = series(p, 4);
-            let found = convergence(&levels, &weights, 1e-14);
+            let found = convergence(&levels, &weights, 1e-14, 4.0);
             let Verdict::Order { order, remaining } = found.verdict else { panic!("{found:?}") };
             assert!((order - p).abs() < 1e-9, "{order}");
             // √(2 + ½ 4) h^p over the norm of the finest values.
@@ -175,18 +177,28 @@ mod tests {
         let growing: Vec<_> = (0..4).map(|l| vec![2.0_f64.powi(l)]).collect();
         let turning = vec![vec![1.0, 1.0], vec![1.4, 1.0], vec![1.4, 1.2]];
         for levels in [swinging, growing, turning] {
-            let found = convergence(&levels, &[1.0, 1.0], 1e-14);
+            let found = convergence(&levels, &[1.0, 1.0], 1e-14, 4.0);
             assert_eq!(found.verdict, Verdict::Irregular, "{levels:?}");
             assert!(found.error.iter().all(Option::is_none));
         }
     }
 
     #[test]
+    fn an_order_above_that_of_the_method_does_not_make_what_remains_less() {
+        let (steep, weights) = (series(6.0, 3), [1.0, 1.0]);
+        let found = convergence(&steep, &weights, 1e-14, 2.0);
+        let Verdict::Order { order, remaining } = found.verdict else { panic!("{found:?}") };
+        assert!((order - 6.0).abs() < 1e-9, "{order}");
+        assert!((remaining - found.difference[1] / 3.0).abs() < 1e-15, "{remaining}");
+        assert!((found.error[2].unwrap() / remaining - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
     fn rounding_is_told_from_convergence_and_two_meshes_are_too_few() {
         let rounding = [1.0, 1.0 + 4e-16, 1.0 - 2e-16].map(|x| vec![x]);
-        assert_eq!(convergence(&rounding, &[1.0], 1e-14).verdict, Verdict::Settled);
-        assert_eq!(convergence(&series(2.0, 2), &[1.0, 1.0], 1e-14).verdict, Verdict::TooFew);
-        assert_eq!(convergence(&[], &[], 1e-14).verdict, Verdict::TooFew);
-        assert_eq!(convergence(&vec![vec![0.0]; 3], &[1.0], 1e-14).verdict, Verdict::Settled);
+        assert_eq!(convergence(&rounding, &[1.0], 1e-14, 4.0).verdict, Verdict::Settled);
+        assert_eq!(convergence(&series(2.0, 2), &[1.0, 1.0], 1e-14, 4.0).verdict, Verdict::TooFew);
+        assert_eq!(convergence(&[], &[], 1e-14, 4.0).verdict, Verdict::TooFew);
+        assert_eq!(convergence(&vec![vec![0.0]; 3], &[1.0], 1e-14, 4.0).verdict, Verdict::Settled);
     }
 }

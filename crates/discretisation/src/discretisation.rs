@@ -1,6 +1,6 @@
 //! The contract of a discretisation.
 
-use crate::{DiscretisationError, Equation, Space, Surface, System};
+use crate::{Degree, DiscretisationError, Equation, Space, Surface, System};
 
 /// A way to turn the integral equation into a linear system.
 pub trait Discretisation: Send + Sync {
@@ -9,6 +9,14 @@ pub trait Discretisation: Send + Sync {
 
     /// What it does, in one line.
     fn summary(&self) -> &'static str;
+
+    /// Degree of the trial functions.
+    fn degree(&self) -> Degree;
+
+    /// Order at which the means of H x over faces converge where the field is smooth: twice the degree and two (I. H. Sloan, Math. Comp. 30 (1976) 758, doi:10.2307/2005395).
+    fn order(&self) -> f64 {
+        (2 * self.degree().number() + 2) as f64
+    }
 
     /// The trial functions on a surface; their number is that of the unknowns.
     ///

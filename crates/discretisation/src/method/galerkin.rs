@@ -48,6 +48,10 @@ impl Discretisation for Galerkin {
         }
     }
 
+    fn degree(&self) -> Degree {
+        self.degree
+    }
+
     fn space<'a>(&self, surface: &'a Surface) -> Result<Space<'a>, DiscretisationError> {
         let degree = self.degree.number();
         if self.conforming {

@@ -31,6 +31,10 @@ impl Discretisation for LeastSquares {
         ][self.0.number()]
     }
 
+    fn degree(&self) -> Degree {
+        self.0
+    }
+
     fn space<'a>(&self, surface: &'a Surface) -> Result<Space<'a>, DiscretisationError> {
         Space::discontinuous(surface, self.0.number())
     }

@@ -18,6 +18,7 @@ const MARGIN: f64 = 10.0;
 /// The record of a study.
 pub(super) fn record(problem: &Problem, options: &Options, levels: &[Level]) -> RefinementRecord {
     let (scene, mesh) = (&problem.scene, &problem.mesh);
+    let highest = problem.discretisation.order();
     let found: Vec<Convergence> =
         (0..scene.bands().len()).map(|band| follow(problem, options, levels, band)).collect();
     RefinementRecord {
@@ -28,7 +29,7 @@ pub(super) fn record(problem: &Problem, options: &Options, levels: &[Level]) -> 
         discretisation: problem.options.discretisation.clone(),
         surfaces: mesh.surfaces().iter().map(|surface| surface.name.clone()).collect(),
         levels: levels.iter().enumerate().map(|(number, level)| level.record(number)).collect(),
-        bands: scene.bands().iter().zip(&found).map(|(name, found)| band(name, found)).collect(),
+        bands: scene.bands().iter().zip(&found).map(|(name, found)| band(name, found, highest)).collect(),
         warnings: warnings(problem, levels, &found),
         peak_memory_bytes: memory::peak().and_then(|peak| u64::try_from(peak.0).ok()),
         ..RefinementRecord::default()
@@ -39,7 +40,7 @@ pub(super) fn record(problem: &Problem, options: &Options, levels: &[Level]) -> 
 fn follow(problem: &Problem, options: &Options, levels: &[Level], band: usize) -> Convergence {
     let values: Vec<Vec<f64>> = levels.iter().map(|level| level.faces.lane(band)).collect();
     let areas: Vec<f64> = problem.mesh.faces().iter().map(|face| face.area).collect();
-    convergence(&values, &areas, noise(problem, options, band))
+    convergence(&values, &areas, noise(problem, options, band), problem.discretisation.order())
 }
 
 /// How well a solution is known: ‖A⁻¹‖ is about 1/(1 − ρ), but for least squares, which squares it.
@@ -48,14 +49,14 @@ fn noise(problem: &Problem, options: &Options, band: usize) -> f64 {
     MARGIN * (options.tolerance + ROUNDING) / (1.0 - reflectances.fold(0.0, f64::max))
 }
 
-fn band(name: &str, found: &Convergence) -> BandConvergence {
+fn band(name: &str, found: &Convergence, highest: f64) -> BandConvergence {
     let (order, remaining) = match found.verdict {
         Verdict::Order { order, remaining } => (Some(order), Some(remaining)),
         _ => (None, None),
     };
     BandConvergence {
         band: name.to_owned(),
-        verdict: verdict(found),
+        verdict: verdict(found, highest),
         order,
         remaining,
         differences: found.difference.clone(),
@@ -66,12 +67,13 @@ fn band(name: &str, found: &Convergence) -> BandConvergence {
 }
 
 /// What a band comes to, in words.
-fn verdict(found: &Convergence) -> String {
+fn verdict(found: &Convergence, highest: f64) -> String {
     let last = found.difference.iter().rev().nth(1).copied().unwrap_or(0.0);
     match found.verdict {
         Verdict::Order { order, remaining } => {
+            let lasting = if order > highest { format!(" (counted as {highest:.0})") } else { String::new() };
             format!(
-                "order {order:.2}; the finest level is right within {remaining:.1e} (estimate by Richardson)"
+                "order {order:.2}{lasting}; the finest level is right within {remaining:.1e} (estimate by Richardson)"
             )
         }
         Verdict::Settled => {
