@@ -19,7 +19,7 @@ use std::f64::consts::TAU;
 
 /// Error of a closed form, over the rounding of the inner integrals alone, at which it is used: its terms grow with the distance and cancel;
 /// quadrature of the inner integral does not.
-const CANCELLING: f64 = 100.0;
+const CANCELLING: f64 = 50.0;
 /// Gauss points up to which they cost less than a closed form.
 const FEW: usize = 6;
 
