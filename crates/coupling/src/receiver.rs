@@ -121,7 +121,7 @@ impl Sight {
         let reaches = |body: &&Body| shaft.as_ref().is_some_and(|shaft| occluders.reaches(body, shaft));
         let screen = |body| Screen::new(body, &[point], &self.target, bodies.tolerance());
         let between: Vec<Screen> = bodies.as_slice().iter().filter(reaches).map(screen).collect();
-        let hidden = self.hiding.hidden_factor(point, normal, &self.target, &between);
+        let hidden = self.hiding.hidden_factor(point, normal, &self.target, between.iter().enumerate());
         let whole = point_to_polygon(normal, self.target.iter().map(|&x| x - point));
         (whole - hidden).max(0.0)
     }

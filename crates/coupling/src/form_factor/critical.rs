@@ -6,13 +6,10 @@
 //! G. Drettakis & E. Fiume, SIGGRAPH 1994, doi:10.1145/192161.192207. The same happens between two bodies. Events
 //! of three edges are curves and not listed.
 
+use super::lineup::{Aligned, Lineup, Place};
 use super::sighting::{Event, Sighting, Sightings, chord};
-use super::spans::Spans;
 use fredholm_mesh::Vec3;
 use fredholm_visibility::body::{ODD, Screen};
-
-/// Squared sine below which a corner and an edge span no plane.
-const SLIM: f64 = 1e-24;
 
 /// Lines that are listed at most: among many, most do not show, and a part that any of them cuts counts as not smooth.
 const LINES: usize = 40;
@@ -37,7 +34,7 @@ pub(crate) struct Critical {
     sightings: Sightings,
     found: Vec<Line>,
     keyed: Vec<(f64, Line)>,
-    spans: Spans,
+    lineup: Lineup,
     /// Corners that can show in the outlines, body after body, and where those of each body end.
     corners: Vec<Vec3>,
     ends: Vec<usize>,
@@ -54,11 +51,11 @@ impl Critical {
         screens: &[Screen],
         flat: f64,
     ) -> (&[Event], &Sightings) {
-        let Self { events, sightings, found, keyed, spans, corners, ends, sides } = self;
+        let Self { events, sightings, found, keyed, lineup, corners, ends, sides } = self;
         found.clear();
         sightings.clear();
         let lone = screens.len() == 1;
-        let mut search = Search { source, target, flat, lone, sightings, found, keyed, spans };
+        let mut search = Search { source, target, flat, lone, sightings, found, keyed, lineup };
         search.turning(screens);
         list_corners(screens, corners, ends);
         sides.clear();
@@ -135,7 +132,7 @@ struct Search<'a> {
     sightings: &'a mut Sightings,
     found: &'a mut Vec<Line>,
     keyed: &'a mut Vec<(f64, Line)>,
-    spans: &'a mut Spans,
+    lineup: &'a mut Lineup,
 }
 
 impl Search<'_> {
@@ -172,42 +169,39 @@ impl Search<'_> {
 
     /// Events where the outline `near` lines up with `far` behind it. Those of two bodies matter only in front of the target.
     fn events(&mut self, near: &Outline, far: &Outline, before: bool) {
-        // Most planes miss the source.
-        self.spans.ask(near.edges, far.corners, self.source);
-        for (k, &edge) in near.edges.iter().enumerate() {
-            for (l, &corner) in far.corners.iter().enumerate() {
-                if self.spans.passes(k, l) {
-                    self.event(Sighting { corner, edge, behind: false }, before, || near.is_sure(k));
-                }
+        self.lineup.clear();
+        for &edge in near.edges {
+            for &corner in far.corners {
+                self.lineup.push(&Sighting { corner, edge, behind: false });
             }
         }
-        self.spans.ask(far.edges, near.corners, self.source);
-        for (k, &corner) in near.corners.iter().enumerate() {
-            for (l, &edge) in far.edges.iter().enumerate() {
-                if self.spans.passes(l, k) {
-                    self.event(Sighting { corner, edge, behind: true }, before, || {
-                        near.is_sure_corner(corner)
-                    });
-                }
+        let edges = near.edges.len() * far.corners.len();
+        for &corner in near.corners {
+            for &edge in far.edges {
+                self.lineup.push(&Sighting { corner, edge, behind: true });
             }
+        }
+        let target = before.then_some(self.target);
+        self.lineup.ask(Place { source: self.source, target, flat: self.flat });
+        for k in 0..self.lineup.found().len() {
+            let Aligned { pair, plane } = self.lineup.found()[k];
+            let sure = self.lone
+                && match pair.checked_sub(edges) {
+                    None => near.is_sure(pair / far.corners.len()),
+                    Some(pair) => near.is_sure_corner(near.corners[pair / far.edges.len()]),
+                };
+            self.event(self.lineup.get(pair), plane, sure);
         }
     }
 
-    fn event(&mut self, sighting: Sighting, before: bool, sure: impl Fn() -> bool) {
-        let Some(plane) = spanned(sighting.corner, sighting.edge, self.flat) else { return };
+    fn event(&mut self, sighting: Sighting, plane: Plane, sure: bool) {
         let mut line = self.line(Event::new(plane));
         let known = self.known(&line);
-        if self.lit(&line) != Lit::Partly || known.is_some() && !self.lone {
-            return;
-        }
-        let Some(chord) = self.chord(&line) else { return };
-        let height = |x: Vec3| plane.0.dot(x) - plane.1;
-        let shows = !before || lit(self.target.iter().map(|&x| height(x)), self.flat) == Lit::Partly;
-        if !shows || !sighting.shows(chord, plane.0) {
+        if known.is_some() && !self.lone {
             return;
         }
         let event = known.map_or(&mut line.event, |k| &mut self.found[k].event);
-        self.sightings.add(event, sighting, self.lone && sure());
+        self.sightings.add(event, sighting, sure);
         if known.is_none() {
             self.found.push(line);
         }
@@ -248,43 +242,9 @@ impl Search<'_> {
         self.found.extend(self.keyed.iter().map(|(_, line)| *line));
     }
 
-    fn lit(&self, line: &Line) -> Lit {
-        lit(line.heights.into_iter().take(self.source.len()), self.flat)
-    }
-
     /// The two ends of a line on the source.
     fn chord(&self, line: &Line) -> Option<[Vec3; 2]> {
         let corners = &self.source[..self.source.len().min(CORNERS)];
         chord(corners, |k| line.heights[k])
     }
-}
-
-/// Whether a plane has corners in front of it.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Lit {
-    Wholly,
-    Partly,
-    Never,
-}
-
-fn lit(heights: impl Iterator<Item = f64>, flat: f64) -> Lit {
-    let (mut above, mut below) = (false, false);
-    for height in heights {
-        above |= height > flat;
-        below |= height < -flat;
-    }
-    match (above, below) {
-        (true, true) => Lit::Partly,
-        (true, false) => Lit::Wholly,
-        _ => Lit::Never,
-    }
-}
-
-fn spanned(v: Vec3, [a, b]: [Vec3; 2], flat: f64) -> Option<Plane> {
-    let (edge, arm) = (b - a, v - a);
-    let normal = edge.cross(arm);
-    let enough =
-        normal.length_squared() > edge.length_squared() * (SLIM * arm.length_squared()).max(flat * flat);
-    let n = enough.then(|| normal.normalize())?;
-    Some((n, n.dot(a)))
 }

@@ -20,6 +20,8 @@ pub(crate) struct Occluded<'a> {
     pub normal: Vec3,
     pub target: &'a [Vec3],
     pub screens: &'a [Screen<'a>],
+    /// The exchange with nothing between, m².
+    pub open: f64,
     /// Heights up to which a point lies on a face, m.
     pub tolerance: f64,
 }
@@ -50,7 +52,7 @@ pub(crate) fn hidden_exchange(scene: &Occluded, goal: f64, work: &mut HiddenWork
     let breaks =
         Breaks { events, sightings, sure, flat: scene.tolerance, distance: |x| steep.distance(x), most };
     let h = |points: &[Vec3], found: &mut Vec<_>| scene.hidden(points, together, found);
-    Pieces::new(h, breaks, pieces, goal).integrate(scene.source)
+    Pieces::new(h, breaks, pieces, goal).integrate(scene.source, scene.open)
 }
 
 /// What makes the hidden part steep where it is close: edges that may cut the target, and of those that lie on the source the ends.

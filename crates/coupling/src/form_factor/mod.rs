@@ -3,22 +3,21 @@
 //! All functions give the symmetric quantity A_i F_ij = ∫_i ∫_j cosθ cosθ' V / (π r²) in m², with an estimated absolute error.
 
 pub(crate) mod contour;
-mod cover;
 mod critical;
 mod facing;
 mod hidden;
 mod jacobian;
 mod lanes;
+mod lineup;
+mod packet;
 mod pair;
 mod pieces;
 mod point_polygon;
-mod rims;
 mod rung;
 mod sampled;
 mod shadow;
 mod sighting;
 mod small_receiver;
-mod spans;
 mod together;
 mod unoccluded;
 mod visible;
@@ -26,6 +25,7 @@ mod visible;
 pub use contour::contour_integral;
 pub(crate) use facing::{Segment, Side, extent, facing_exchange, flat, front, front_of, to_segments};
 pub(crate) use jacobian::jacobian;
+pub(crate) use lanes::{LANES, Lanes, Lanes3, any, ask, each, heights, range, same};
 pub(crate) use pair::blocks;
 pub use pair::{Exchange, Method, PairIntegrator, Workspace};
 pub use point_polygon::point_to_polygon;

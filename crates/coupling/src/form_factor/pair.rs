@@ -16,6 +16,7 @@ use super::hidden::{HiddenWork, Occluded, hidden_exchange};
 use super::rung::rung;
 use super::sampled::sampled;
 use super::small_receiver::small_receiver;
+use super::together::BODIES;
 use super::{Side, Unoccluded, Work, facing_exchange, front};
 use crate::occlusion::{Clusters, Sight};
 use crate::polygon::HalfSpace;
@@ -24,8 +25,8 @@ use fredholm_quadrature::Estimate;
 use fredholm_visibility::Occluders;
 use fredholm_visibility::body::{Bodies, Body, Face, Room, Screen, Shadow};
 
-/// Bodies up to which exact shadows are cheaper than sampling.
-const FEW: usize = 128;
+/// Bodies up to which exact shadows are cheaper than sampling, and as many as they tell apart.
+const FEW: usize = BODIES;
 
 /// Tolerance of exchanges with nothing between, in T: a digit more costs them next to nothing.
 const OPEN: f64 = 0.1;
@@ -294,6 +295,7 @@ impl<'a> PairIntegrator<'a> {
             normal: a.patch.normal(),
             target: front_b,
             screens: &screens,
+            open: open.value,
             tolerance,
         };
         let hidden = hidden_exchange(&scene, goal, &mut work.hidden);

@@ -155,10 +155,14 @@ impl Kind {
         (k as Maker + 1) << 10
     }
 
-    /// Adds a hidden part. The order of its sides, and of the parts, has no say.
-    pub(super) fn add(&mut self, makers: &[Maker]) {
-        let sides = makers.iter().map(|&maker| scatter(u64::from(maker) + 1)).fold(0, u64::wrapping_add);
-        self.0 = self.0.wrapping_add(scatter(sides));
+    /// The kind of one hidden part. The order of its sides has no say.
+    pub(super) fn of(makers: &[Maker]) -> Self {
+        Self(scatter(makers.iter().map(|&maker| scatter(u64::from(maker) + 1)).fold(0, u64::wrapping_add)))
+    }
+
+    /// Adds other parts. Their order has no say.
+    pub(super) fn merge(&mut self, other: Self) {
+        self.0 = self.0.wrapping_add(other.0);
     }
 }
 
@@ -184,16 +188,32 @@ pub(crate) struct Hiding {
 }
 
 impl Hiding {
-    /// Form factor from the point `x` with normal `n` to what `screens` hide of `target`, which lies in front of the point.
-    pub(crate) fn hidden_factor(&mut self, x: Vec3, n: Vec3, target: &[Vec3], screens: &[Screen]) -> f64 {
-        let Some((last, others)) = screens.split_last() else { return 0.0 };
-        let hidden = self.hide(x, n, target, others);
-        // After the last body nobody asks for what is left.
-        hidden + self.behind((others.len(), last), x, n, false)
+    /// Form factor from the point `x` with normal `n` to what `screens`, given with their numbers, hide of `target`, which lies in front of the point.
+    pub(crate) fn hidden_factor<'s>(
+        &mut self,
+        x: Vec3,
+        n: Vec3,
+        target: &[Vec3],
+        screens: impl Iterator<Item = (usize, &'s Screen<'s>)>,
+    ) -> f64 {
+        self.start(x, target);
+        let (mut screens, mut hidden) = (screens.peekable(), 0.0);
+        while let Some(screen) = screens.next() {
+            // After the last body nobody asks for what is left.
+            hidden += self.behind(screen, x, n, screens.peek().is_some());
+        }
+        hidden
     }
 
-    /// As [`hidden_factor`](Self::hidden_factor), and leaves what is seen in [`visible`](Self::visible).
-    pub(crate) fn hide(&mut self, x: Vec3, n: Vec3, target: &[Vec3], screens: &[Screen]) -> f64 {
+    /// Leaves what is seen behind `screens` in [`visible`](Self::visible).
+    pub(crate) fn hide(&mut self, x: Vec3, n: Vec3, target: &[Vec3], screens: &[Screen]) {
+        self.start(x, target);
+        for screen in screens.iter().enumerate() {
+            self.behind(screen, x, n, true);
+        }
+    }
+
+    fn start(&mut self, x: Vec3, target: &[Vec3]) {
         self.kind = Kind::default();
         self.visible.clear();
         self.target.clear();
@@ -201,7 +221,6 @@ impl Hiding {
         self.rest.makers.clear();
         self.rest.makers.extend(0..target.len() as Maker);
         self.visible.push(&self.target, &self.rest.makers);
-        screens.iter().enumerate().map(|screen| self.behind(screen, x, n, true)).sum()
     }
 
     /// What makes the hidden parts of the last point.
@@ -259,13 +278,13 @@ impl Hiding {
                 }
             }
         }
-        self.kind.add(&self.rest.makers);
+        self.kind.merge(Kind::of(&self.rest.makers));
         point_to_polygon(n, self.rest.corners.iter().copied())
     }
 }
 
 /// The sum of the sizes of the coordinates: at least the length, and free of a square root.
-pub(super) fn size(v: Vec3) -> f64 {
+fn size(v: Vec3) -> f64 {
     let v = v.abs();
     v.x + v.y + v.z
 }

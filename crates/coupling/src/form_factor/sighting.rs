@@ -7,9 +7,9 @@ use super::critical::Plane;
 use fredholm_mesh::Vec3;
 
 /// Part of an edge by which a point must be inside its ends to meet it: in scenes with right angles lines often go exactly through corners.
-const MARGIN: f64 = 1e-7;
+pub(super) const MARGIN: f64 = 1e-7;
 /// Part of a chord that is left out at its ends, where lines of sight are often exactly parallel to the edge.
-const INSIDE: f64 = 1e-6;
+pub(super) const INSIDE: f64 = 1e-6;
 
 /// A corner and an edge that line up.
 #[derive(Clone, Copy, Debug)]
@@ -22,26 +22,55 @@ pub(super) struct Sighting {
 
 impl Sighting {
     /// Whether they line up from a part of a chord in the plane with normal n.
+    #[inline]
     pub(super) fn shows(&self, [first, last]: [Vec3; 2], n: Vec3) -> bool {
         let inner = [first.lerp(last, INSIDE), last.lerp(first, INSIDE)];
-        let [first, last] = inner.map(|c| self.meeting(c, n));
-        match (self.order(first.0), self.order(last.0)) {
-            (true, true) => first.1.min(last.1) < 1.0 - MARGIN && first.1.max(last.1) > MARGIN,
+        let across = (self.edge[1] - self.edge[0]).cross(n);
+        let [first, last] = [self.meeting(inner[0], n, across), self.meeting(inner[1], n, across)];
+        match (self.order(&first), self.order(&last)) {
+            (true, true) => {
+                (first.before_end() || last.before_end()) && (first.behind_start() || last.behind_start())
+            }
             (false, false) => false,
             _ => true,
         }
     }
 
-    /// Where the line from c through the corner meets the line of the edge: the distance in distances of the corner, and the place along the edge from 0 to 1.
-    fn meeting(&self, c: Vec3, n: Vec3) -> (f64, f64) {
-        let [a, b] = self.edge;
-        let (d, e) = (self.corner - c, b - a);
-        let across = d.cross(e).dot(n);
-        ((a - c).cross(e).dot(n) / across, (a - c).cross(d).dot(n) / across)
+    /// Where the line from c through the corner meets the line of the edge; `across` is the normal of the edge in the plane.
+    #[inline]
+    fn meeting(&self, c: Vec3, n: Vec3, across: Vec3) -> Meeting {
+        let (d, a) = (self.corner - c, self.edge[0] - c);
+        let (whole, distance, place) = (d.dot(across), a.dot(across), a.cross(d).dot(n));
+        let sign = 1f64.copysign(whole);
+        Meeting { whole: sign * whole, distance: sign * distance, place: sign * place }
     }
 
-    fn order(&self, t: f64) -> bool {
-        if self.behind { t > 1.0 + MARGIN } else { MARGIN < t && t < 1.0 - MARGIN }
+    #[inline]
+    fn order(&self, &Meeting { whole, distance, .. }: &Meeting) -> bool {
+        if self.behind {
+            distance > (1.0 + MARGIN) * whole
+        } else {
+            MARGIN * whole < distance && distance < (1.0 - MARGIN) * whole
+        }
+    }
+}
+
+/// A point of the line of an edge, seen through a corner: its distance in distances of the corner, and its place along the edge from 0 to 1, both times `whole`, which is not negative.
+struct Meeting {
+    whole: f64,
+    distance: f64,
+    place: f64,
+}
+
+impl Meeting {
+    #[inline]
+    fn before_end(&self) -> bool {
+        self.place < (1.0 - MARGIN) * self.whole
+    }
+
+    #[inline]
+    fn behind_start(&self) -> bool {
+        self.place > MARGIN * self.whole
     }
 }
 
@@ -105,13 +134,13 @@ impl Sightings {
         event.sure &= sure;
     }
 
-    /// Whether an event shows on a convex polygon.
-    pub(super) fn ask(&self, event: &Event, corners: &[Vec3]) -> Shows {
+    /// Whether an event shows on the line in which its plane cuts a convex polygon, given by the two ends.
+    pub(super) fn ask(&self, event: &Event, chord: Option<[Vec3; 2]>) -> Shows {
         if event.always {
             return Shows::Surely;
         }
-        let (n, c) = event.plane;
-        let Some(chord) = chord(corners, |k| n.dot(corners[k]) - c) else { return Shows::Perhaps };
+        let (n, _) = event.plane;
+        let Some(chord) = chord else { return Shows::Perhaps };
         let mut next = event.last;
         while let Some((sighting, before)) = next.checked_sub(1).map(|k| &self.0[k as usize]) {
             if sighting.shows(chord, n) {
@@ -123,17 +152,25 @@ impl Sightings {
     }
 }
 
-/// The two ends of the line in which a plane cuts a convex polygon, given the heights of its corners over the plane.
-pub(super) fn chord(corners: &[Vec3], height: impl Fn(usize) -> f64) -> Option<[Vec3; 2]> {
+/// The two ends of the line in which a plane cuts a convex polygon, given the heights of its corners over the plane, each of which is asked for once.
+#[inline]
+pub(super) fn chord(corners: &[Vec3], mut height: impl FnMut(usize) -> f64) -> Option<[Vec3; 2]> {
     let (mut ends, mut found) = ([Vec3::ZERO; 2], 0);
-    for k in 0..corners.len() {
-        let l = if k + 1 == corners.len() { 0 } else { k + 1 };
-        let (from, to) = (height(k), height(l));
-        if (from >= 0.0) != (to >= 0.0) && found < 2 {
-            ends[found] = corners[k] + (corners[l] - corners[k]) * (from / (from - to));
+    let mut cross = |from: (usize, f64), to: (usize, f64)| {
+        if (from.1 >= 0.0) != (to.1 >= 0.0) && found < 2 {
+            let along = corners[to.0] - corners[from.0];
+            ends[found] = corners[from.0] + along * (from.1 / (from.1 - to.1));
             found += 1;
         }
+    };
+    let first = height(0);
+    let mut from = first;
+    for k in 1..corners.len() {
+        let to = height(k);
+        cross((k - 1, from), (k, to));
+        from = to;
     }
+    cross((corners.len() - 1, from), (0, first));
     (found == 2).then_some(ends)
 }
 
@@ -163,13 +200,16 @@ mod tests {
     fn an_event_shows_on_the_polygons_on_which_it_is_seen() {
         let n = Vec3::new(-0.5, 0.0, 1.0).normalize();
         let (mut event, mut sightings) = (Event::new((n, n.dot(post().corner))), Sightings::default());
-        let square = |y: f64| {
-            [[-1.5, y], [-0.5, y], [-0.5, y + 1.0], [-1.5, y + 1.0]].map(|[x, y]| Vec3::new(x, y, 0.0))
+        let ask = |sightings: &Sightings, event: &Event, y: f64| {
+            let square = [[-1.5, y], [-0.5, y], [-0.5, y + 1.0], [-1.5, y + 1.0]];
+            let square = square.map(|[x, y]| Vec3::new(x, y, 0.0));
+            let (n, c) = event.plane;
+            sightings.ask(event, chord(&square, |k| n.dot(square[k]) - c))
         };
         sightings.add(&mut event, post(), true);
-        assert_eq!(sightings.ask(&event, &square(0.0)), Shows::Surely);
-        assert_eq!(sightings.ask(&event, &square(3.0)), Shows::Never);
+        assert_eq!(ask(&sightings, &event, 0.0), Shows::Surely);
+        assert_eq!(ask(&sightings, &event, 3.0), Shows::Never);
         sightings.add(&mut event, post(), false);
-        assert_eq!(sightings.ask(&event, &square(3.0)), Shows::Perhaps);
+        assert_eq!(ask(&sightings, &event, 3.0), Shows::Perhaps);
     }
 }

@@ -3,34 +3,19 @@
 //! Heights over the faces of the body are affine along a segment. A segment that gets below all faces passes through the body: M. Cyrus & J. Beck, Comput. Graph. 3(1) 23,
 //! 1978, doi:10.1016/0097-8493(78)90021-3. Lengths in metres.
 
+#![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
+
+use crate::form_factor::{LANES, Lanes, Lanes3, any, ask, each, heights, range, same};
 use fredholm_mesh::{Patch, Vec3};
-use fredholm_visibility::body::Body;
+use fredholm_visibility::body::{Body, Face};
+use pulp::{Arch, NullaryFnOnce};
 
 /// Height over a body, in lengths of a segment, that is not rounding.
 const CERTAIN: f64 = 1e-6;
-/// Corners of two patches.
-const CORNERS: usize = 8;
-/// The segments, by their ends: those between corners of the same place, of the opposite, and the others.
-const LINES: [[usize; 2]; 16] = [
-    [0, 4],
-    [1, 5],
-    [2, 6],
-    [3, 7],
-    [0, 6],
-    [1, 7],
-    [2, 4],
-    [3, 5],
-    [0, 5],
-    [1, 6],
-    [2, 7],
-    [3, 4],
-    [0, 7],
-    [1, 4],
-    [2, 5],
-    [3, 6],
-];
-/// Those of them that are asked about first.
-const FIRST: usize = 8;
+/// The corners of the second patch to which the segments from those of the first go: to those of the same place and of the opposite,
+const FIRST: [usize; LANES] = [0, 1, 2, 3, 2, 3, 0, 1];
+/// and to the others.
+const OTHERS: [usize; LANES] = [1, 2, 3, 0, 3, 0, 1, 2];
 
 /// What is known of a body between two patches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,88 +39,128 @@ impl Stands {
     }
 }
 
-/// The corners of two patches, by components.
+/// Segments between the corners of two patches, one a lane: those that are asked about first, and then others from the same starts.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lines {
-    corners: [[f64; CORNERS]; 3],
+    starts: Lanes3,
+    ends: Lanes3,
+    others: Lanes3,
     /// A height that is not rounding.
     certain: f64,
 }
 
 impl Lines {
     pub(crate) fn between(p: &Patch, q: &Patch, tolerance: f64) -> Self {
-        let of = |patch: &Patch, m: usize| patch.corner(m.min(patch.sides() - 1));
-        let ends = [0, 1, 2, 3, 4, 5, 6, 7].map(|m| if m < 4 { of(p, m) } else { of(q, m - 4) });
-        let corners = [ends.map(|x| x.x), ends.map(|x| x.y), ends.map(|x| x.z)];
         let size = |x: Vec3| x.abs().element_sum();
         let reach = size(q.corner(0) - p.corner(0))
             + size(p.corner(2) - p.corner(0))
             + size(q.corner(2) - q.corner(0));
-        Self { corners, certain: tolerance + CERTAIN * reach }
+        let starts = lanes(p, [0, 1, 2, 3, 0, 1, 2, 3]);
+        Self { starts, ends: lanes(q, FIRST), others: lanes(q, OTHERS), certain: tolerance + CERTAIN * reach }
     }
 
     /// How a body stands between the patches. `heights` is a buffer.
-    pub(crate) fn ask(&self, body: &Body, tolerance: f64, heights: &mut Vec<[f64; CORNERS]>) -> Stands {
-        heights.clear();
-        for face in body.faces() {
-            let over = self.heights(face.normal, face.offset);
-            let [low, high] = range(&over);
-            if low >= -tolerance {
+    pub(crate) fn ask(
+        &self,
+        body: &Body,
+        tolerance: f64,
+        (arch, heights): (Arch, &mut Vec<Heights>),
+    ) -> Stands {
+        arch.dispatch(Ask { lines: self, body, tolerance, heights })
+    }
+}
+
+/// Some corners of a patch, by components; a triangle has its last one twice.
+fn lanes(patch: &Patch, places: [usize; LANES]) -> Lanes3 {
+    let (given, last) = (patch.corners(), patch.sides() - 1);
+    let corners = [given[0], given[1], given[2], given[last]];
+    [each(|m| corners[places[m]].x), each(|m| corners[places[m]].y), each(|m| corners[places[m]].z)]
+}
+
+/// Heights of the ends of segments over a face.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Heights {
+    face: Face,
+    from: Lanes,
+    to: Lanes,
+}
+
+/// A question, compiled for each width of vectors: a closure would be compiled once, for the narrowest.
+struct Ask<'a> {
+    lines: &'a Lines,
+    body: &'a Body,
+    tolerance: f64,
+    heights: &'a mut Vec<Heights>,
+}
+
+impl NullaryFnOnce for Ask<'_> {
+    type Output = Stands;
+
+    #[inline(always)]
+    fn call(self) -> Stands {
+        let Self { lines, body, tolerance, heights: list } = self;
+        list.clear();
+        for &face in body.faces() {
+            let (n, c) = (same(face.normal), [face.offset; LANES]);
+            let (from, to) = (heights(&n, &c, &lines.starts), heights(&n, &c, &lines.ends));
+            let low = each(|m| if from[m] < to[m] { from[m] } else { to[m] });
+            let high = each(|m| if from[m] > to[m] { from[m] } else { to[m] });
+            if range(&low)[0] >= -tolerance {
                 return Stands::Beside;
             }
             // What is below a face along all segments says nothing about them.
-            if high >= -self.certain {
-                heights.push(over);
+            if range(&high)[1] >= -lines.certain {
+                list.push(Heights { face, from, to });
             }
         }
-        let meets = |[a, b]: [usize; 2], depth: f64| is_pierced(heights, a, b, depth);
-        let some = body.is_solid() && LINES[..FIRST].iter().any(|&line| meets(line, self.certain));
-        let all = LINES[..FIRST].iter().all(|&line| meets(line, -self.certain));
+        let (deeply, touched) = (pierced(list, lines.certain), pierced(list, -lines.certain));
+        let (some, all) = (body.is_solid() && deeply != Pierced::None, touched == Pierced::All);
         match (some, all) {
-            (true, true) if LINES.iter().all(|&line| meets(line, self.certain)) => Stands::Certainly,
+            (true, true) if deeply == Pierced::All && lines.others_pierced(list) => Stands::Certainly,
             (_, true) => Stands::Across,
             (true, false) => Stands::Partly,
             (false, false) => Stands::Unknown,
         }
     }
+}
 
-    #[inline]
-    fn heights(&self, n: Vec3, offset: f64) -> [f64; CORNERS] {
-        let mut heights = [0.0; CORNERS];
-        for (m, height) in heights.iter_mut().enumerate() {
-            *height = n.x * self.corners[0][m] + n.y * self.corners[1][m] + n.z * self.corners[2][m] - offset;
+impl Lines {
+    #[inline(always)]
+    fn others_pierced(&self, list: &mut [Heights]) -> bool {
+        for over in &mut *list {
+            over.to = heights(&same(over.face.normal), &[over.face.offset; LANES], &self.others);
         }
-        heights
+        pierced(list, self.certain) == Pierced::All
     }
 }
 
-/// The least and the largest of some heights.
-#[inline]
-fn range(heights: &[f64; CORNERS]) -> [f64; 2] {
-    let [mut low, mut high] = [heights[0]; 2];
-    for &h in heights {
-        low = if h < low { h } else { low };
-        high = if h > high { h } else { high };
-    }
-    [low, high]
+/// How many segments pass through a body.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Pierced {
+    None,
+    Some,
+    All,
 }
 
-/// Whether a part of the segment between two corners lies deeper than `depth` below all faces.
-#[inline]
-fn is_pierced(heights: &[[f64; CORNERS]], a: usize, b: usize, depth: f64) -> bool {
-    let (mut first, mut last) = (0.0f64, 1.0f64);
-    for over in heights {
-        let (from, to) = (over[a] + depth, over[b] + depth);
-        if from >= 0.0 && to >= 0.0 {
-            return false;
-        }
-        if from > 0.0 {
-            first = first.max(from / (from - to));
-        } else if to > 0.0 {
-            last = last.min(from / (from - to));
-        }
+/// How many of the segments have a part deeper than `depth` below all faces.
+#[inline(always)]
+fn pierced(list: &[Heights], depth: f64) -> Pierced {
+    let (mut first, mut last) = ([0.0; LANES], [1.0; LANES]);
+    for Heights { from, to, .. } in list {
+        let share = each(|m| (from[m] + depth) / (from[m] - to[m]));
+        let enters = each(|m| if from[m] >= -depth { share[m] } else { 0.0 });
+        let leaves = each(|m| if to[m] > -depth { share[m] } else { 1.0 });
+        first = each(|m| if enters[m] > first[m] { enters[m] } else { first[m] });
+        last = each(|m| if leaves[m] < last[m] { leaves[m] } else { last[m] });
+        // Above at both ends: nothing is left.
+        let lower = each(|m| if from[m] < to[m] { from[m] } else { to[m] });
+        last = each(|m| if lower[m] >= -depth { -1.0 } else { last[m] });
     }
-    first < last
+    match (any(&ask(|m| first[m] < last[m])), any(&ask(|m| first[m] >= last[m]))) {
+        (false, _) => Pierced::None,
+        (true, true) => Pierced::Some,
+        (true, false) => Pierced::All,
+    }
 }
 
 #[cfg(test)]
@@ -166,7 +191,7 @@ mod tests {
         let bodies = Bodies::new(&occluders, &[&walls[0], &walls[1]], &[]);
         let ask = |x: f64| {
             let [p, q] = ends(x);
-            Lines::between(&p, &q, 1e-9).ask(&bodies.as_slice()[0], 1e-9, &mut Vec::new())
+            Lines::between(&p, &q, 1e-9).ask(&bodies.as_slice()[0], 1e-9, (Arch::new(), &mut Vec::new()))
         };
         assert_eq!(bodies.as_slice().len(), 1);
         assert_eq!([0.0, 0.5, 0.7].map(ask), [Stands::Certainly, Stands::Partly, Stands::Beside]);
@@ -178,7 +203,8 @@ mod tests {
         let ends = [square(0.0, 0.1, 0.0), square(1.0, 0.1, 0.0).flipped()];
         let bodies = Bodies::new(&occluders, &[&ends[0], &ends[1]], &[]);
         let body = &bodies.as_slice()[0];
-        let ask = |p: &Patch, q: &Patch| Lines::between(p, q, 1e-9).ask(body, 1e-9, &mut Vec::new());
+        let ask =
+            |p: &Patch, q: &Patch| Lines::between(p, q, 1e-9).ask(body, 1e-9, (Arch::new(), &mut Vec::new()));
         assert_eq!(ask(&ends[0], &ends[1]), Stands::Across);
         assert_eq!(ask(&ends[0], &square(0.4, 0.1, 0.0)), Stands::Beside);
     }

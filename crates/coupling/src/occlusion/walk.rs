@@ -6,11 +6,12 @@
 //! SIGGRAPH 1993, doi:10.1145/166117.166148, the descent with lists of blockers.
 
 use super::cluster::{Bound, Clusters, Node};
-use super::lines::{Lines, Stands};
+use super::lines::{Heights, Lines, Stands};
 use crate::form_factor::blocks;
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::Occluders;
 use fredholm_visibility::body::{Bodies, Body, Room};
+use pulp::Arch;
 use std::ops::Range;
 
 /// What the walk asks about.
@@ -43,6 +44,7 @@ pub(crate) fn walk(sight: &Sight, panel: usize) -> Panel {
         end: rows.end,
         found,
         room: Room::default(),
+        arch: Arch::new(),
         heights: Vec::new(),
         stack: Vec::new(),
     };
@@ -62,6 +64,7 @@ pub(crate) fn walk_from(sight: &Sight, node: usize) -> Panel {
         end: first + 1,
         found,
         room: Room::default(),
+        arch: Arch::new(),
         heights: Vec::new(),
         stack: Vec::new(),
     };
@@ -77,8 +80,9 @@ struct Walker<'a> {
     end: usize,
     found: Panel,
     room: Room,
-    /// Heights of corners over the faces of a body.
-    heights: Vec<[f64; 8]>,
+    arch: Arch,
+    /// A buffer of [`Lines::ask`].
+    heights: Vec<Heights>,
     /// Lists of bodies, one behind the other.
     stack: Vec<u32>,
 }
@@ -159,7 +163,7 @@ impl Walker<'_> {
         for k in bodies {
             let number = self.stack[k];
             let body = &all.as_slice()[number as usize];
-            let stands = lines.ask(body, tolerance, &mut self.heights);
+            let stands = lines.ask(body, tolerance, (self.arch, &mut self.heights));
             match stands {
                 Stands::Beside => continue,
                 Stands::Certainly if wholly => return true,

@@ -17,7 +17,7 @@ use fredholm_mesh::Vec3;
 use crate::frame::Frame;
 pub use bodies::Bodies;
 pub use outline::{Room, Shadow};
-pub use screen::Screen;
+pub use screen::{Looking, Rim, Screen};
 
 /// A plane n·x = c with a unit normal.
 #[derive(Clone, Copy, Debug, PartialEq)]

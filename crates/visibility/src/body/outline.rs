@@ -53,20 +53,10 @@ impl Room {
     }
 
     /// Adds a half-space; a plane without direction bounds nothing.
-    fn push(&mut self, normal: Vec3, offset: f64, number: usize) {
+    pub(super) fn push(&mut self, normal: Vec3, offset: f64, number: u32) {
         if normal != Vec3::ZERO {
-            self.planes.push((normal, offset, number as u32));
+            self.planes.push((normal, offset, number));
         }
-    }
-
-    /// Adds the half-space behind face `k`, over which the point is at `height` (m).
-    pub(super) fn push_face(&mut self, k: usize, normal: Vec3, height: f64) {
-        self.push(-normal, height, k);
-    }
-
-    /// Adds the half-space within edge `k` of the outline.
-    pub(super) fn push_edge(&mut self, k: usize, inward: Vec3) {
-        self.push(inward, 0.0, FACES + k);
     }
 
     /// Whether all of the points, relative to x, lie inside, or outside by an angle of rounding.
@@ -78,6 +68,11 @@ impl Room {
         };
         self.planes.iter().all(|plane| points.iter().all(|y| holds(plane, y)))
     }
+}
+
+/// The number of the half-space within edge `k`; those behind faces have the numbers of these.
+pub(super) fn edge_number(k: u32) -> u32 {
+    FACES as u32 + k
 }
 
 impl Body {
@@ -96,7 +91,7 @@ impl Body {
         }
         for (k, edge) in self.edges.iter().enumerate() {
             if let Some(inward) = self.inward(edge, x, lit) {
-                room.push_edge(k, inward);
+                room.push(inward, 0.0, edge_number(k as u32));
             }
         }
         Shadow::Room
@@ -109,7 +104,7 @@ impl Body {
             let height = face.height(x);
             if height > least {
                 lit.set(k);
-                room.push_face(k, face.normal, height);
+                room.push(-face.normal, height, k as u32);
             }
         }
         lit

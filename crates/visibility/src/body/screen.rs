@@ -5,6 +5,7 @@
 
 use fredholm_mesh::Vec3;
 
+use super::outline::edge_number;
 use super::{Body, Edge, Face, Room, Shadow};
 
 /// Faces that look at part of the source at most, one bit each.
@@ -32,11 +33,53 @@ pub struct Screen<'a> {
     tolerance: f64,
 }
 
-/// An edge, by its number, and the bits of its faces: it shows where one of them looks at a point and the other does not.
+/// An edge, by the number of its half-space, and the bits of its faces: it shows where one of them looks at a point and the other does not.
 #[derive(Clone, Copy, Debug)]
 struct Border {
     number: u32,
     faces: [u8; 2],
+}
+
+/// An edge a b of an outline.
+#[derive(Clone, Copy, Debug)]
+pub struct Rim {
+    /// The number of its half-space.
+    pub number: u32,
+    /// Its place among [`edges`](Screen::edges).
+    pub place: usize,
+    /// Whether from a point x, (a − x) × (b − x) points out of the shadow, and not into it.
+    pub turned: bool,
+}
+
+/// A polygon and the box around it.
+struct Around<'a> {
+    corners: &'a [Vec3],
+    centre: Vec3,
+    half: Vec3,
+}
+
+impl<'a> Around<'a> {
+    fn new(corners: &'a [Vec3]) -> Self {
+        let low = corners.iter().fold(Vec3::INFINITY, |low, &x| low.min(x));
+        let high = corners.iter().fold(Vec3::NEG_INFINITY, |high, &x| high.max(x));
+        Self { corners, centre: 0.5 * (low + high), half: 0.5 * (high - low) }
+    }
+
+    /// Whether the box has a part with n·(y − x) < 0.
+    #[inline]
+    fn may_lie_outside(&self, n: Vec3, x: Vec3) -> bool {
+        n.dot(self.centre - x) < n.abs().dot(self.half)
+    }
+}
+
+/// Which faces look at a point: one bit each, and one for all that look at all of the source.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Looking(u64);
+
+impl Looking {
+    fn has(self, bit: u8) -> bool {
+        self.0 >> bit & 1 == 1
+    }
 }
 
 impl<'a> Screen<'a> {
@@ -51,8 +94,9 @@ impl<'a> Screen<'a> {
             *bit = screen.look((k as u32, face), source, target);
         }
         screen.plain = screen.turning.len() > TURNING || body.edges.is_empty();
+        let target = Around::new(target);
         for (k, edge) in body.edges.iter().enumerate() {
-            screen.consider((k as u32, edge), edge.faces.map(|face| bits[face as usize]), source, target);
+            screen.consider((k as u32, edge), edge.faces.map(|face| bits[face as usize]), source, &target);
         }
         screen
     }
@@ -81,7 +125,7 @@ impl<'a> Screen<'a> {
         (self.turning.len() - 1).min(TURNING - 1) as u8
     }
 
-    fn consider(&mut self, (k, edge): (u32, &Edge), faces: [u8; 2], source: &[Vec3], target: &[Vec3]) {
+    fn consider(&mut self, (k, edge): (u32, &Edge), faces: [u8; 2], source: &[Vec3], target: &Around) {
         let [left, right] = faces;
         if left == right && left >= DARK {
             return;
@@ -94,11 +138,11 @@ impl<'a> Screen<'a> {
         let cuts = |x: &Vec3| {
             let inward = (ends[0] - *x).cross(ends[1] - *x);
             let outside = |height: f64| height < 0.0 && height < -self.tolerance * inward.length();
-            target.iter().any(|y| outside(inward.dot(*y - *x)))
+            target.may_lie_outside(inward, *x) && target.corners.iter().any(|y| outside(inward.dot(*y - *x)))
         };
         if !known || source.iter().any(cuts) {
             self.edges.push(ends);
-            self.borders.push(Border { number: k, faces });
+            self.borders.push(Border { number: edge_number(k), faces });
         }
     }
 
@@ -131,13 +175,6 @@ impl<'a> Screen<'a> {
         self.turning.iter().enumerate().map(move |(bit, (_, face, _))| (face, !self.plain && cuts(bit)))
     }
 
-    /// The body.
-    #[must_use]
-    #[inline]
-    pub fn body(&self) -> &Body {
-        self.body
-    }
-
     /// Heights up to which a point lies on a face, m.
     #[must_use]
     #[inline]
@@ -147,53 +184,49 @@ impl<'a> Screen<'a> {
 
     /// What of the target is hidden from a point `x` of the source; where that is a room, `room` holds it.
     pub fn shadow(&self, x: Vec3, room: &mut Room) -> Shadow {
-        self.front_from(x, room);
-        self.rest(x, room)
-    }
-
-    /// Writes the half-spaces that are the same from all points of the source to `room`, in coordinates relative to the origin.
-    pub fn front(&self, room: &mut Room) {
-        self.front_from(Vec3::ZERO, room);
-    }
-
-    /// As [`shadow`](Self::shadow), less the half-spaces of [`front`](Self::front).
-    pub fn outline(&self, x: Vec3, room: &mut Room) -> Shadow {
+        let Some(looking) = self.looking(x) else { return self.body.shadow(x, self.tolerance, room) };
         room.clear();
-        self.rest(x, room)
-    }
-
-    fn front_from(&self, x: Vec3, room: &mut Room) {
-        room.clear();
-        for (k, face) in &self.front {
-            room.push_face(*k as usize, face.normal, face.height(x));
+        for (number, face) in self.faces(looking) {
+            room.push(-face.normal, face.height(x), number);
         }
-    }
-
-    /// Adds what [`front`](Self::front) lacks.
-    fn rest(&self, x: Vec3, room: &mut Room) -> Shadow {
-        if self.plain {
-            return self.body.shadow(x, self.tolerance, room);
-        }
-        let mut lit = self.lit;
-        for (bit, (k, face, before)) in self.turning.iter().enumerate() {
-            let height = face.height(x);
-            if height > self.tolerance {
-                lit |= 1 << bit;
-                if *before {
-                    room.push_face(*k as usize, face.normal, height);
-                }
-            }
-        }
-        if lit == 0 {
-            return self.body.shadow(x, self.tolerance, room);
-        }
-        for ([a, b], Border { number, faces: [first, second] }) in self.edges.iter().zip(&self.borders) {
-            let [first, second] = [first, second].map(|bit| lit >> bit & 1 == 1);
-            if first != second {
-                let inward = (*a - x).cross(*b - x);
-                room.push_edge(*number as usize, if second { inward } else { -inward });
-            }
+        for Rim { number, place, turned } in self.rim(looking) {
+            let [a, b] = self.edges[place];
+            let inward = (a - x).cross(b - x);
+            room.push(if turned { -inward } else { inward }, 0.0, number);
         }
         Shadow::Room
+    }
+
+    /// Which faces look at a point of the source: from points where this is the same, the same faces and edges make the shadow. `None` where the body itself is asked.
+    #[must_use]
+    #[inline]
+    pub fn looking(&self, x: Vec3) -> Option<Looking> {
+        if self.plain {
+            return None;
+        }
+        let mut lit = self.lit;
+        for (bit, (_, face, _)) in self.turning.iter().enumerate() {
+            lit |= u64::from(face.height(x) > self.tolerance) << bit;
+        }
+        (lit != 0).then_some(Looking(lit))
+    }
+
+    /// The faces behind which the shadow lies, with the numbers of their half-spaces.
+    #[inline]
+    pub fn faces(&self, looking: Looking) -> impl Iterator<Item = (u32, &Face)> {
+        let looks =
+            move |(bit, (_, _, before)): &(usize, &(u32, Face, bool))| *before && looking.has(*bit as u8);
+        let turning = self.turning.iter().enumerate().filter(looks);
+        let front = self.front.iter().map(|(k, face)| (*k, face));
+        front.chain(turning.map(|(_, (k, face, _))| (*k, face)))
+    }
+
+    /// The edges of the outline that may cut the target.
+    #[inline]
+    pub fn rim(&self, looking: Looking) -> impl Iterator<Item = Rim> {
+        self.borders.iter().enumerate().filter_map(move |(place, border)| {
+            let [first, second] = border.faces.map(|bit| looking.has(bit));
+            (first != second).then_some(Rim { number: border.number, place, turned: first })
+        })
     }
 }

@@ -174,3 +174,45 @@ fn a_screen_hides_of_the_target_what_its_body_does() {
     }
     assert!(hidden > 200 && seen > 200 && fewer > 3 && turning > 40, "{hidden} {seen} {fewer} {turning}");
 }
+
+/// Two pyramids with n sides on one base, turned so that one face is level below.
+fn spindle(n: usize, radius: f64, half: f64) -> Vec<Patch> {
+    let (slope, first) = (half / radius, std::f64::consts::PI / n as f64);
+    let turn = (slope / first.cos()).atan();
+    let turned = |x: Vec3| {
+        let (sine, cosine) = turn.sin_cos();
+        Vec3::new(cosine * x.x + sine * x.z, x.y, cosine * x.z - sine * x.x)
+    };
+    let at = |k: usize| {
+        let angle = first * (2 * (k % n) + 1) as f64;
+        turned(Vec3::new(radius * angle.cos(), radius * angle.sin(), 0.0))
+    };
+    let [top, bottom] = [half, -half].map(|z| turned(Vec3::Z * z));
+    let up = |k: usize| Patch::triangle([at(k), at(k + 1), top]).unwrap();
+    let down = |k: usize| Patch::triangle([at(k + 1), at(k), bottom]).unwrap();
+    (0..n).flat_map(|k| [up(k), down(k)]).collect()
+}
+
+#[test]
+fn a_body_of_more_turning_faces_than_are_told_apart_hides_the_same() {
+    let square = |z: f64, size: f64| {
+        [(-1., -1.), (1., -1.), (1., 1.), (-1., 1.)].map(|(u, v)| Vec3::new(u * size, v * size, z))
+    };
+    let (source, target) = (square(-1.0, 100.0), square(1.0, 0.8));
+    let mut random = Random(6);
+    for (n, least) in [(20, 30), (50, 80), (100, 150)] {
+        let elements = [quad(source), quad(target)];
+        let all = bodies(&spindle(n, 0.4, 0.3), &elements, &[]);
+        let [body] = all.as_slice() else { panic!("{} bodies of {n} sides", all.as_slice().len()) };
+        let screen = Screen::new(body, &source, &target, 1e-9);
+        assert!(screen.turning().count() > least, "{}", screen.turning().count());
+        let (mut hidden, mut room) = (0, Room::default());
+        for _ in 0..200 {
+            let (x, y) = (random.on(&elements[0]) * Vec3::new(0.02, 0.02, 1.0), random.on(&elements[1]));
+            let dark = screen.shadow(x, &mut room) == Shadow::Room && room.holds(&[y - x]);
+            assert_eq!(dark, shaded(body, x, y), "{n}: {x} {y}");
+            hidden += usize::from(dark);
+        }
+        assert!((10..190).contains(&hidden), "{n}: {hidden}");
+    }
+}

@@ -14,7 +14,7 @@ mod shape;
 
 use super::critical::Plane;
 use super::shadow::Kind;
-use super::sighting::{Event, Shows, Sightings};
+use super::sighting::{Event, Shows, Sightings, chord};
 use crate::polygon::{HalfSpace, clip};
 use evidence::{Line, Points};
 use fredholm_mesh::Vec3;
@@ -23,6 +23,7 @@ use fredholm_visibility::body::ODD;
 use observed::Observed;
 use piece::Piece;
 use shape::{Shape, width};
+use std::ops::Range;
 
 /// Relative difference below which two errors are equal by design of the scene.
 const EQUAL: f64 = 1e-6;
@@ -53,6 +54,16 @@ pub(crate) struct Breaks<'a, D, M> {
     pub most: M,
 }
 
+impl<D, M> Breaks<'_, D, M> {
+    /// An event, if it may show on a convex polygon.
+    fn cutting(&self, event: u32, corners: &[Vec3], flat: f64) -> Option<Cutting> {
+        let its = &self.events[event as usize];
+        let (share, chord) = cut(corners, its.plane, flat)?;
+        let shows = self.sightings.ask(its, chord);
+        (shows != Shows::Never).then_some(Cutting { event, share, surely: shows == Shows::Surely })
+    }
+}
+
 /// Parts and what is known of the convergence on them.
 pub(crate) struct Pieces<'a, H, D, M> {
     h: H,
@@ -67,11 +78,39 @@ pub(crate) struct Pieces<'a, H, D, M> {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PiecesWork {
     parts: Vec<Piece>,
+    /// Lines through parts, each list by its range. A part of a part looks no further than into the list of the whole.
+    cutting: Vec<Cutting>,
     /// The points of the last rules, all on one part.
     points: Points,
     /// Lines through that part, each with the share of the width on its smaller side, and those that have no point there.
     lines: Vec<(Plane, f64)>,
     unseen: Vec<(Plane, f64)>,
+    /// Polygons for the next cuts.
+    spare: Vec<Vec<Vec3>>,
+}
+
+/// A line that cuts a part and may show there.
+#[derive(Clone, Copy, Debug)]
+struct Cutting {
+    /// The place of its event.
+    event: u32,
+    /// The share of the width on its smaller side.
+    share: f64,
+    /// Whether it shows for certain.
+    surely: bool,
+}
+
+/// A range of a list of lines.
+#[derive(Clone, Copy, Debug)]
+struct Lines {
+    start: u32,
+    end: u32,
+}
+
+impl Lines {
+    fn places(self) -> Range<usize> {
+        self.start as usize..self.end as usize
+    }
 }
 
 impl<'a, H, D, M> Pieces<'a, H, D, M>
@@ -83,15 +122,15 @@ where
     /// Prepares the integral of h to an absolute `goal`. `h` appends the values and the kinds at given points.
     pub(crate) fn new(h: H, breaks: Breaks<'a, D, M>, work: &'a mut PiecesWork, goal: f64) -> Self {
         work.parts.clear();
+        work.cutting.clear();
         let observed = Observed::new(breaks.sure);
         Self { h, breaks, work, observed, points: 0, goal }
     }
 
-    /// The integral over a convex polygon.
-    pub(crate) fn integrate(mut self, corners: &[Vec3]) -> Estimate {
-        let centre = corners.iter().sum::<Vec3>() / corners.len() as f64;
-        let most = (self.breaks.most)(centre);
-        self.cut_surely(corners, most);
+    /// The integral over a convex polygon; it is at most `most`.
+    pub(crate) fn integrate(mut self, corners: &[Vec3], most: f64) -> Estimate {
+        let lines = self.lines(corners);
+        self.cut_surely(corners, lines, most / area(corners));
         loop {
             let error = self.observed.error(&self.work.parts);
             if error <= self.goal || self.points >= POINTS {
@@ -101,24 +140,48 @@ where
         }
     }
 
-    /// Adds a convex polygon, cut along the lines that surely show where much may be hidden behind them. `most` is the largest possible h.
-    fn cut_surely(&mut self, corners: &[Vec3], most: f64) {
-        let worth = SURELY * self.goal / (most * area(corners));
+    /// Lists all lines that cut a convex polygon and may show there.
+    fn lines(&mut self, corners: &[Vec3]) -> Lines {
         let flat = self.flat(corners);
-        let surely = |event: &&Event| self.breaks.sightings.ask(event, corners) == Shows::Surely;
-        let cutting = |event: &Event| Some((event.plane, share(corners, event.plane, flat)?));
-        let matters = |event: &&Event| cutting(event).is_some_and(|(_, share)| share >= worth);
-        let lines = self.breaks.events.iter().filter(matters).filter(surely).filter_map(cutting);
-        let Some((plane, _)) = lines.max_by(|a, b| merit(a).total_cmp(&merit(b))) else {
-            return self.add(corners);
+        let found = (0..self.breaks.events.len() as u32)
+            .filter_map(|event| self.breaks.cutting(event, corners, flat));
+        self.work.cutting.extend(found);
+        Lines { start: 0, end: self.work.cutting.len() as u32 }
+    }
+
+    /// Lists those of the lines through a whole that cut a part of it.
+    fn narrow(&mut self, corners: &[Vec3], whole: Lines) -> Lines {
+        let (flat, list) = (self.flat(corners), &mut self.work.cutting);
+        let start = list.len() as u32;
+        for k in whole.places() {
+            let found = self.breaks.cutting(list[k].event, corners, flat);
+            list.extend(found);
+        }
+        Lines { start, end: list.len() as u32 }
+    }
+
+    /// Adds a convex polygon, cut along the lines that surely show where much may be hidden behind them. `most` is the mean of what h could be at most over the whole.
+    fn cut_surely(&mut self, corners: &[Vec3], lines: Lines, most: f64) {
+        let worth = SIDE.max(SURELY * self.goal / (most * area(corners)));
+        let list = &self.work.cutting[lines.places()];
+        let matter = list.iter().filter(|line| line.surely && line.share >= worth);
+        let found = matter.map(|line| self.line(line));
+        let Some((plane, _)) = found.max_by(|a, b| merit(a).total_cmp(&merit(b))) else {
+            return self.add(corners, lines);
         };
-        for part in halves(corners, plane, flat) {
-            self.cut_surely(&part, most);
+        for part in self.halves(corners, plane) {
+            let narrower = self.narrow(&part, lines);
+            self.cut_surely(&part, narrower, most);
+            self.work.spare.push(part);
         }
     }
 
+    fn line(&self, line: &Cutting) -> (Plane, f64) {
+        (self.breaks.events[line.event as usize].plane, line.share)
+    }
+
     /// Adds a convex polygon as quads and at most one triangle.
-    fn add(&mut self, corners: &[Vec3]) {
+    fn add(&mut self, corners: &[Vec3], lines: Lines) {
         let mut start = 1;
         while start + 1 < corners.len() {
             let shape = match corners[start..] {
@@ -126,17 +189,19 @@ where
                 [b, c, d, ..] => Shape::Quad([corners[0], b, c, d]),
                 _ => return,
             };
-            self.start(shape);
+            let whole = shape.corners().len() == corners.len();
+            let lines = if whole { lines } else { self.narrow(shape.corners(), lines) };
+            self.start(shape, lines);
             start += shape.corners().len() - 2;
         }
     }
 
     /// Adds a part with its integral by the first two rules.
-    fn start(&mut self, shape: Shape) {
+    fn start(&mut self, shape: Shape, lines: Lines) {
         let reach = shape.reach(&self.breaks.distance);
         let [first, second] = self.rules(&shape, [0, 1]);
         let range = self.work.points.range() * shape.area();
-        let piece = self.learn(Piece::new(shape, reach, first, range), second);
+        let piece = self.learn(Piece::new(shape, lines, reach, first, range), second);
         self.work.parts.push(piece);
     }
 
@@ -160,12 +225,12 @@ where
 
     /// A part with the integral by the next rule, and with what its points tell.
     fn learn(&mut self, mut piece: Piece, value: f64) -> Piece {
-        piece.line = self.line_through(&piece.shape);
+        piece.line = self.line_through(&piece);
         piece.cut = self.work.lines.iter().map(|(_, share)| *share).fold(0.0, f64::max);
         if piece.asks_most() {
             piece.most = (self.breaks.most)(piece.shape.centre()) * piece.shape.area();
         }
-        piece.raise(value, self.work.points.kind());
+        piece.raise(value, self.work.points.kind(), self.goal);
         if self.observed.scale() * piece.error < self.goal {
             self.look_behind(&mut piece);
         }
@@ -173,16 +238,12 @@ where
     }
 
     /// The line that shows and halves a part best, with the share of the width on its smaller side. Lists the lines behind which no point lies.
-    fn line_through(&mut self, shape: &Shape) -> Option<(Plane, f64)> {
-        let flat = self.flat(shape.corners());
-        let Breaks { events, sightings, .. } = self.breaks;
-        let PiecesWork { points, lines, unseen, .. } = &mut *self.work;
-        let cutting = |event: &Event| {
-            let line = (event.plane, share(shape.corners(), event.plane, flat)?);
-            (sightings.ask(event, shape.corners()) != Shows::Never).then_some(line)
-        };
+    fn line_through(&mut self, piece: &Piece) -> Option<(Plane, f64)> {
+        let (flat, events) = (self.flat(piece.shape.corners()), self.breaks.events);
+        let PiecesWork { points, cutting, lines, unseen, .. } = &mut *self.work;
         lines.clear();
-        lines.extend(events.iter().filter_map(cutting));
+        let cutting = cutting[piece.lines.places()].iter().filter(|line| line.share > SIDE);
+        lines.extend(cutting.map(|line| (events[line.event as usize].plane, line.share)));
         points.leave_out(lines, flat);
         unseen.clear();
         unseen.extend(lines.iter().filter(|(plane, _)| points.judge(*plane) == Line::Unseen));
@@ -236,9 +297,26 @@ where
     /// Cuts a part along a line, or halves its sides.
     fn divide(&mut self, piece: &Piece) {
         match piece.line {
-            Some((plane, _)) => self.cut(&piece.shape, plane),
-            None => piece.shape.quarters().into_iter().for_each(|part| self.start(part)),
+            Some((plane, _)) => self.cut(piece, plane),
+            None => {
+                for part in piece.shape.quarters() {
+                    let lines = self.narrow(part.corners(), piece.lines);
+                    self.start(part, lines);
+                }
+            }
         }
+    }
+
+    /// The two parts of a convex polygon on both sides of a plane.
+    fn halves(&mut self, corners: &[Vec3], (normal, offset): Plane) -> [Vec<Vec3>; 2] {
+        let (flat, spare) = (self.flat(corners), &mut self.work.spare);
+        let mut half = |normal, offset| {
+            let mut part = spare.pop().unwrap_or_default();
+            part.clear();
+            clip(corners, HalfSpace { normal, offset }, flat, &mut part);
+            part
+        };
+        [half(normal, offset), half(-normal, -offset)]
     }
 
     /// Heights over a line that count as 0 on a part, m.
@@ -246,22 +324,14 @@ where
         self.breaks.flat.max(ON_THE_LINE * width(corners))
     }
 
-    fn cut(&mut self, shape: &Shape, plane: Plane) {
-        for part in halves(shape.corners(), plane, self.flat(shape.corners())) {
-            self.add(&part);
+    fn cut(&mut self, piece: &Piece, plane: Plane) {
+        let corners = piece.shape.corners();
+        for part in self.halves(corners, plane) {
+            let lines = self.narrow(&part, piece.lines);
+            self.add(&part, lines);
+            self.work.spare.push(part);
         }
     }
-}
-
-/// The two parts of a convex polygon on both sides of a plane.
-fn halves(corners: &[Vec3], (normal, offset): Plane, flat: f64) -> [Vec<Vec3>; 2] {
-    let above = HalfSpace { normal, offset };
-    let below = HalfSpace { normal: -normal, offset: -offset };
-    [above, below].map(|side| {
-        let mut part = Vec::with_capacity(corners.len() + 1);
-        clip(corners, side, flat, &mut part);
-        part
-    })
 }
 
 /// Area of a convex polygon, m².
@@ -275,12 +345,16 @@ fn merit(((n, _), share): &(Plane, f64)) -> f64 {
     share + 1e-3 * n.dot(ODD).abs()
 }
 
-/// The share of the width of a convex polygon on the smaller side of a plane that cuts it.
-fn share(corners: &[Vec3], (n, c): Plane, flat: f64) -> Option<f64> {
-    let heights = corners.iter().map(|x| n.dot(*x) - c);
-    let [low, high] = heights.fold([0.0f64; 2], |[low, high], h| [low.min(h), high.max(h)]);
-    let share = high.min(-low) / (high - low);
-    (high > flat && -low > flat && share > SIDE).then_some(share)
+/// The share of the width of a convex polygon on the smaller side of a plane that cuts it, and the two ends of the cut.
+fn cut(corners: &[Vec3], (n, c): Plane, flat: f64) -> Option<(f64, Option<[Vec3; 2]>)> {
+    let (mut low, mut high) = (0.0f64, 0.0f64);
+    let chord = chord(corners, |k| {
+        let height = n.dot(corners[k]) - c;
+        low = low.min(height);
+        high = high.max(height);
+        height
+    });
+    (high > flat && -low > flat).then(|| (high.min(-low) / (high - low), chord))
 }
 
 #[cfg(test)]
@@ -290,8 +364,7 @@ mod tests {
     /// ∫ over the unit square of a function with a kink along x = 0.3 and with its steep place at `near`.
     fn kinked(near: Vec3, events: &[Event], goal: f64) -> Estimate {
         let square = [Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Y, Vec3::Y];
-        let mut other = Kind::default();
-        other.add(&[1]);
+        let other = Kind::of(&[1]);
         let kind = |x: &Vec3| if x.x < 0.3 { other } else { Kind::default() };
         let value = |x: &Vec3| ((x.x - 0.3).max(0.0), kind(x));
         let h = |points: &[Vec3], found: &mut Vec<_>| found.extend(points.iter().map(value));
@@ -304,7 +377,7 @@ mod tests {
             distance: |x: Vec3| x.distance(near),
             most: |_| 0.7,
         };
-        Pieces::new(h, breaks, &mut PiecesWork::default(), goal).integrate(&square)
+        Pieces::new(h, breaks, &mut PiecesWork::default(), goal).integrate(&square, 0.7)
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! A part of the source: the integral over it, and how well that is known.
 //!
-//! s is the change from the rule before, v the range of h times the area (for a higher rule on a part where all points are of one kind: the change before), m the
+//! s is the change from the rule before (at least [`ROUNDING`] times the integral), v the range of h times the area (for a higher rule on a part where all points are of one kind: the change before), m the
 //! largest value that the integral could have, r the reach. The error is, with measured shares (docs/form-factors.md),
 //!
 //! | | r ≤ 1 | r > 1 |
@@ -8,8 +8,8 @@
 //! | all points of one kind | r √(a² s v + a′² v²) | √r √((b m)² + (c s)²) |
 //! | kinds differ | d √(s v) | r √(e² s m + (f m)² + (g s)²) |
 
-use super::merit;
 use super::shape::{DEGREES, Shape};
+use super::{Lines, merit};
 use crate::form_factor::critical::Plane;
 use crate::form_factor::shadow::Kind;
 
@@ -32,10 +32,16 @@ const BETWEEN: [f64; 2] = [1e-3, 0.25];
 /// Share of what shows behind a line with no points of the rule.
 const BEHIND: f64 = 1.3;
 
+/// Changes below these shares of an integral and of the goal count as that: else rounding would decide what is improved next.
+const ROUNDING: f64 = 1e-10;
+const BESIDE_THE_GOAL: f64 = 1e-5;
+
 /// A part, its integral and how that converged.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Piece {
     pub shape: Shape,
+    /// Lines that cut it and may show.
+    pub lines: Lines,
     /// Radius over the distance from what makes h steep.
     reach: f64,
     /// Largest value that the integral could have, m², where that has a say.
@@ -59,10 +65,10 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    /// A part with its reach, the integral by the first rule, and the range of h at the points of the first two times the area.
-    pub(super) fn new(shape: Shape, reach: f64, value: f64, range: f64) -> Self {
+    /// A part with the lines through it, its reach, the integral by the first rule, and the range of h at the points of the first two times the area.
+    pub(super) fn new(shape: Shape, lines: Lines, reach: f64, value: f64, range: f64) -> Self {
         let (most, step, error, cut, kind, line) = (0.0, 0.0, 0.0, 0.0, None, None);
-        Self { shape, reach, most, range, degree: 0, value, step, error, kind, cut, line, pays: true }
+        Self { shape, lines, reach, most, range, degree: 0, value, step, error, kind, cut, line, pays: true }
     }
 
     /// Whether the largest value that the integral could have has a say in the error, and is not known yet.
@@ -70,9 +76,10 @@ impl Piece {
         self.degree == 0 && (self.reach > NEAR || self.cut > 0.0)
     }
 
-    /// Takes the integral by the next rule, with the kind of its points.
-    pub(super) fn raise(&mut self, value: f64, kind: Option<Kind>) {
-        let step = (value - self.value).abs();
+    /// Takes the integral by the next rule, with the kind of its points. `goal` is the error allowed to the whole, m².
+    pub(super) fn raise(&mut self, value: f64, kind: Option<Kind>, goal: f64) {
+        let negligible = (ROUNDING * value.abs()).min(BESIDE_THE_GOAL * goal);
+        let step = (value - self.value).abs().max(negligible);
         let first = self.degree == 0;
         self.kind = kind.filter(|_| first || self.kind == kind);
         let before = if first || self.kind.is_none() { self.range } else { self.step }.max(step);

@@ -27,7 +27,7 @@ pub(super) enum Shape {
 /// Largest distance of a corner from the first.
 pub(super) fn width(corners: &[Vec3]) -> f64 {
     let [first, others @ ..] = corners else { return 0.0 };
-    others.iter().map(|x| x.distance(*first)).fold(0.0, f64::max)
+    others.iter().map(|x| x.distance_squared(*first)).fold(0.0, f64::max).sqrt()
 }
 
 impl Shape {
@@ -52,8 +52,8 @@ impl Shape {
     /// Radius about the centre, over its distance from what is near.
     pub(super) fn reach(&self, distance: impl Fn(Vec3) -> f64) -> f64 {
         let centre = self.centre();
-        let radius = self.corners().iter().map(|x| x.distance(centre)).fold(0.0, f64::max);
-        (radius / distance(centre)).min(FARTHEST)
+        let radius = self.corners().iter().map(|x| x.distance_squared(centre)).fold(0.0, f64::max);
+        (radius.sqrt() / distance(centre)).min(FARTHEST)
     }
 
     /// The parts between the middles of the sides.
