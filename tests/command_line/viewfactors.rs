@@ -69,8 +69,28 @@ fn squares_have_their_closed_forms() {
         let (forth, back) = (row(&factors, 0)[1], row(&factors, 1)[0]);
         assert!((forth - exact).abs() < error, "{file}: {:e}", forth - exact);
         assert!((forth - back).abs() < 1e-16, "{file}: areas are equal");
-        assert!((forth - exact).abs() <= factors.surfaces.row_error[0] + 1e-15, "{file}");
+        assert!((forth - exact).abs() <= f64::from(factors.errors[1]) + 1e-15, "{file}");
     }
+}
+
+#[test]
+fn the_errors_of_the_pairs_of_a_row_add_up_to_its_own() {
+    let bench = bench();
+    let options: [&[&str]; 3] =
+        [&["--rows", "element"], &["--rows", "surface", "--sky"], &["--sky", "--close"]];
+    for options in options {
+        let factors = computed(&bench, &data("cubebox8.vs3"), &[options, &["--tolerance", "1e-2"]].concat());
+        let n = factors.len();
+        let sky = options.contains(&"--sky");
+        for i in 0..n - usize::from(sky) {
+            let errors = &factors.errors[i * n..(i + 1) * n];
+            let (sum, row) =
+                (errors.iter().map(|&e| f64::from(e)).sum::<f64>(), factors.surfaces.row_error[i]);
+            assert!((sum / row - 1.0).abs() < 1e-6 && row > 0.0, "{options:?} row {i}: {sum:e} for {row:e}");
+        }
+    }
+    let sparse = computed(&bench, &data("cube8.vs3"), &["--threshold", "1e-2"]);
+    assert_eq!(sparse.errors.len(), sparse.stored());
 }
 
 #[test]
@@ -324,6 +344,14 @@ fn info_tells_what_a_matrix_holds() {
     let short = bench.run(&["info", "short.npz"]);
     assert!(short.code == 2 && short.stderr.contains("short.npz"), "{}", short.stderr);
     assert_eq!(bench.run(&["info", "none.npz"]).code, 5);
+    // Tables are told about by their record.
+    let table = run(&bench, &data("blocked.vs3"), &["-o", "table.csv"]);
+    assert_eq!(table.code, 0, "{}", table.stderr);
+    let table = bench.run(&["info", "table.csv"]);
+    assert!(table.code == 0 && table.stdout.contains("row sums"), "{}{}", table.stdout, table.stderr);
+    fs::remove_file(bench.path("table.json")).unwrap();
+    let alone = bench.run(&["info", "table.csv"]);
+    assert!(alone.code == 5 && alone.stderr.contains("lies beside the matrix"), "{}", alone.stderr);
     let mut again = Vec::new();
     matrix.write_npz(&mut again).unwrap();
     assert!(again == bytes, "what is read and written again is the same file");

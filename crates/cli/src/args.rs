@@ -1,9 +1,10 @@
 //! What the command line understands.
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Arg, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use fredholm_coupling::Receiver;
 use fredholm_discretisation::{DiscretisationError, discretisation};
@@ -107,8 +108,9 @@ Faces of a mesh file are seen from the side from which their corners run counter
 const INFO_EXAMPLES: &str = "\
 Examples:
   fredholm info out/cornell_box
+  fredholm info out/cornell_box/image.png
   fredholm info F.npz
-  fredholm info out/cornell_box/image.png";
+  fredholm info F.csv";
 
 const SCHEMA_EXAMPLES: &str = "\
 Example:
@@ -133,6 +135,18 @@ Example:
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,
+}
+
+impl Cli {
+    /// Reads a command line. Negative numbers are values, so that an option that takes none says itself what it takes.
+    pub(crate) fn read<T: Into<OsString> + Clone>(
+        line: impl IntoIterator<Item = T>,
+    ) -> Result<Self, clap::Error> {
+        let negative =
+            |arg: Arg| if arg.get_action().takes_values() { arg.allow_negative_numbers(true) } else { arg };
+        let command = Self::command().mut_subcommands(|verb| verb.mut_args(negative));
+        Self::from_arg_matches(&command.try_get_matches_from(line)?)
+    }
 }
 
 /// The verbs.
@@ -258,7 +272,7 @@ pub(crate) struct ProblemArgs {
     /// Solver [default: the scene's, else gauss-seidel]
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(registry::names()))]
     pub(crate) solver: Option<String>,
-    /// Error asked for in a row of form factors, rounded down to a power of ten [default: the scene's, else 1e-3]
+    /// Error asked for in a row of form factors, rounded down to a power of ten, 1e-14 at least [default: the scene's, else 1e-3]
     #[arg(long, value_name = "T", value_parser = tolerance)]
     pub(crate) form_factor_tolerance: Option<f64>,
     /// Number format of the stored matrix [default: the scene's, else f64]
@@ -394,11 +408,23 @@ fn accuracy(text: &str) -> Result<f64, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory;
 
     #[test]
     fn the_definition_is_sound() {
         Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn negative_numbers_are_answered_by_the_option() {
+        for (line, wanted) in [
+            ("fredholm viewfactors a.obj --tolerance -1", "above 0 and below 1"),
+            ("fredholm converge a.toml --levels -1", "2..=12"),
+            ("fredholm solve a.toml --threads -3", "1..=1024"),
+        ] {
+            let message = Cli::read(line.split(' ')).unwrap_err().to_string();
+            assert!(message.contains(wanted), "{message}");
+        }
+        assert!(Cli::read(["fredholm", "info", "-x"]).is_err());
     }
 
     #[test]

@@ -12,8 +12,8 @@ pub(crate) fn of(output: Option<&PathBuf>, scene: &Path) -> PathBuf {
     output.cloned().unwrap_or_else(|| Path::new("out").join(stem))
 }
 
-/// Makes sure that files can be written to `folder`, before anything is computed. Leaves nothing behind.
-pub(crate) fn probe(folder: &Path) -> Result<(), Failure> {
+/// Makes sure that files can be written to `folder`, before anything is computed. Leaves nothing behind. `option` is what chooses another one.
+pub(crate) fn probe(folder: &Path, option: &str) -> Result<(), Failure> {
     let missing: Vec<&Path> =
         folder.ancestors().take_while(|a| !a.as_os_str().is_empty() && !a.exists()).collect();
     let written = fs::create_dir_all(folder).and_then(|()| tempfile::tempfile_in(folder));
@@ -21,14 +21,14 @@ pub(crate) fn probe(folder: &Path) -> Result<(), Failure> {
     for made in missing {
         let _ = fs::remove_dir(made);
     }
-    written.map(drop).map_err(|error| unusable(folder, &error))
+    written.map(drop).map_err(|error| unusable(folder, option, &error))
 }
 
-fn unusable(folder: &Path, error: &io::Error) -> Failure {
+fn unusable(folder: &Path, option: &str, error: &io::Error) -> Failure {
     let what =
         if folder.exists() && !folder.is_dir() { "it is a file".to_owned() } else { error.to_string() };
     let text = format!(
-        "cannot write results to {}: {what}\n  help: choose another folder with -o DIR",
+        "cannot write results to {}: {what}\n  help: choose another folder with {option}",
         folder.display()
     );
     Failure::new(Ending::Files, text)
@@ -42,10 +42,10 @@ mod tests {
     fn a_probe_leaves_nothing_behind() {
         let root = tempfile::tempdir().unwrap();
         let deep = root.path().join("a/b/c");
-        probe(&deep).unwrap();
+        probe(&deep, "-o DIR").unwrap();
         assert!(!root.path().join("a").exists());
         fs::create_dir_all(&deep).unwrap();
-        probe(&deep).unwrap();
+        probe(&deep, "-o DIR").unwrap();
         assert!(deep.is_dir());
     }
 
@@ -55,7 +55,7 @@ mod tests {
         let file = root.path().join("taken");
         fs::write(&file, "x").unwrap();
         for path in [file.clone(), file.join("below")] {
-            assert_eq!(probe(&path).unwrap_err().ending, Ending::Files);
+            assert_eq!(probe(&path, "-o DIR").unwrap_err().ending, Ending::Files);
         }
         assert_eq!(fs::read(&file).unwrap(), b"x");
     }

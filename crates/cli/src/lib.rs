@@ -38,14 +38,12 @@ mod waves;
 
 use std::process::ExitCode;
 
-use clap::Parser;
-
 use args::Cli;
 
 /// Runs the program on the arguments of the process.
 #[must_use]
 pub fn run() -> ExitCode {
-    match Cli::try_parse() {
+    match Cli::read(std::env::args_os()) {
         Ok(cli) => carry_out(&cli),
         Err(usage) => {
             // Help for a reader that has gone away needs no answer.

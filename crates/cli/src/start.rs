@@ -24,7 +24,7 @@ impl Start<'_> {
     ) -> Result<Ending, Failure> {
         let interrupt = Interrupt::install(self.log.log)?;
         let folder = folder::of(self.output, self.scene);
-        folder::probe(&folder)?;
+        folder::probe(&folder, "-o DIR")?;
         let console = console::choose(self.log);
         let mut stages = Stages::new(&*console, &interrupt);
         let count = self.threads.map_or_else(threads::default_count, usize::from);

@@ -22,9 +22,9 @@ pub enum Verdict {
         /// ‖E − E_L‖/‖E_L‖, by this order or the highest that lasts.
         remaining: f64,
     },
-    /// The last step is no larger than what the values are known to.
+    /// The last two steps are no larger than what the values are known to. One alone may be so by symmetry.
     Settled,
-    /// The last two steps do not fall, or point different ways.
+    /// The last two steps do not fall, or point different ways, or only the last is lost in what the values are known to.
     Irregular,
     /// An order takes three meshes.
     TooFew,
@@ -90,7 +90,11 @@ fn verdict(levels: &[Vec<f64>], found: Option<(f64, f64)>, norm: &Norm, noise: f
         return Verdict::Order { order, remaining };
     }
     match levels {
-        [.., before, last] if norm.distance(before, last) <= noise => Verdict::Settled,
+        [.., first, second, third]
+            if norm.distance(first, second).max(norm.distance(second, third)) <= noise =>
+        {
+            Verdict::Settled
+        }
         [_, _, _, ..] => Verdict::Irregular,
         _ => Verdict::TooFew,
     }
@@ -199,6 +203,14 @@ mod tests {
         assert_eq!(convergence(&rounding, &[1.0], 1e-14, 4.0).verdict, Verdict::Settled);
         assert_eq!(convergence(&series(2.0, 2), &[1.0, 1.0], 1e-14, 4.0).verdict, Verdict::TooFew);
         assert_eq!(convergence(&[], &[], 1e-14, 4.0).verdict, Verdict::TooFew);
+        let alike = [1.5, 1.5, 1.1, 1.02, 1.02].map(|x| vec![x]);
+        for (levels, verdict) in [(2, Verdict::TooFew), (3, Verdict::Irregular), (5, Verdict::Irregular)] {
+            assert_eq!(
+                convergence(&alike[..levels], &[1.0], 1e-14, 4.0).verdict,
+                verdict,
+                "by accident alike"
+            );
+        }
         assert_eq!(convergence(&vec![vec![0.0]; 3], &[1.0], 1e-14, 4.0).verdict, Verdict::Settled);
     }
 }

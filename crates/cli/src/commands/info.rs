@@ -3,7 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use fredholm_report::{EXTRAS, FILES, ReportError, read_run, read_view_factors_record};
+use fredholm_report::{
+    EXTRAS, FILES, MatrixFormat, ReportError, ViewFactorFiles, read_run, read_view_factors_record,
+};
 
 use super::viewfactors;
 use crate::args::InfoArgs;
@@ -31,24 +33,35 @@ pub(crate) fn info(args: &InfoArgs) -> Result<Ending, Failure> {
 
 /// The record that belongs to a path: in the folder, or beside the file of a result. Files of view factors stand for themselves.
 fn record(path: &Path) -> Result<PathBuf, Failure> {
-    let found = fs::metadata(path)
-        .map_err(|error| Failure::new(Ending::Files, format!("cannot read {}: {error}", path.display())))?;
+    let found = fs::metadata(path).map_err(|error| {
+        let text = format!(
+            "cannot read {}: {error}\n  help: give a result folder, or a file in one",
+            path.display()
+        );
+        Failure::new(Ending::Files, text)
+    })?;
     if found.is_dir() {
         return Ok(path.join(RECORD));
     }
-    let alone = path.extension().is_some_and(|ending| ending == "json" || ending == "npz");
     let is_result =
         FILES.iter().chain(&EXTRAS).any(|name| path.file_name().is_some_and(|file| file == *name));
-    match (is_result, alone) {
-        (true, _) => Ok(path.with_file_name(RECORD)),
-        (false, true) => Ok(path.to_owned()),
-        (false, false) => Err(foreign(path)),
+    if is_result {
+        return Ok(path.with_file_name(RECORD));
+    }
+    if path.extension().is_some_and(|ending| ending == "json") {
+        return Ok(path.to_owned());
+    }
+    match MatrixFormat::of(path) {
+        Some(MatrixFormat::Npz) => Ok(path.to_owned()),
+        // Tables of view factors tell less than the record beside them.
+        Some(_) => Ok(ViewFactorFiles::beside(path).record),
+        None => Err(foreign(path)),
     }
 }
 
 fn foreign(path: &Path) -> Failure {
     let text = format!(
-        "{} is none of the files of a result\n  help: give a result folder or one of {}",
+        "{} is none of the files of a result\n  help: give a result folder, a matrix of view factors (.npz, .csv, .txt) or one of {}",
         path.display(),
         [&FILES[..], &EXTRAS].concat().join(", ")
     );
@@ -58,12 +71,26 @@ fn foreign(path: &Path) -> Failure {
 fn unreadable(path: &Path, error: ReportError) -> Failure {
     match error {
         ReportError::Read { source, .. } => {
-            let text = format!(
-                "cannot read {}: {source}\n  help: a folder without {RECORD} holds no complete result; solve the scene again",
-                path.display()
-            );
+            let text = format!("cannot read {}: {source}\n  help: {}", path.display(), without_record(path));
             Failure::new(Ending::Files, text)
         }
         other => Failure::new(Ending::Input, other),
+    }
+}
+
+/// What a record that is not there means.
+fn without_record(path: &Path) -> String {
+    if path.file_name().is_none_or(|name| name != RECORD) {
+        return "the record of view factors lies beside the matrix; compute them again".to_owned();
+    }
+    let entries = path.parent().and_then(|folder| fs::read_dir(folder).ok()).into_iter().flatten().flatten();
+    let mut others: Vec<String> =
+        entries.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+    others.retain(|name| Path::new(name).extension().is_some_and(|ending| ending == "json"));
+    others.sort();
+    if others.is_empty() {
+        format!("a folder without {RECORD} holds no complete result; solve the scene again")
+    } else {
+        format!("the folder holds the record of another command, to be read as it is: {}", others.join(", "))
     }
 }

@@ -16,9 +16,6 @@ use pulp::{Arch, NullaryFnOnce};
 /// Points of a packet at most.
 pub(super) const POINTS: usize = LANES;
 
-/// Bodies at most that are told apart.
-pub(super) const BODIES: usize = u128::BITS as usize;
-
 /// Corners of a polygon at most. A half-space adds one.
 const MOST: usize = 32;
 
@@ -118,7 +115,7 @@ pub(super) struct Found<'a> {
     pub shadows: &'a mut [Shadows],
 }
 
-/// Which of at most [`BODIES`] bodies hide something of the target from a point.
+/// Which bodies hide something of the target from a point. Those from number 127 on share a bit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Shadows {
     bodies: u128,
@@ -128,7 +125,7 @@ pub(super) struct Shadows {
 impl Shadows {
     fn add(&mut self, body: usize) {
         self.together |= self.bodies != 0;
-        self.bodies |= 1 << body;
+        self.bodies |= Self::bit(body);
     }
 
     /// Adds a body that only [`Hiding`](super::shadow::Hiding) can tell about.
@@ -143,7 +140,11 @@ impl Shadows {
     }
 
     pub(super) fn has(self, body: usize) -> bool {
-        self.bodies >> body & 1 == 1
+        self.bodies & Self::bit(body) != 0
+    }
+
+    fn bit(body: usize) -> u128 {
+        1 << body.min(u128::BITS as usize - 1)
     }
 }
 

@@ -5,8 +5,8 @@
 //! | one behind the other, or one body across all segments | 0, exactly |
 //! | nothing between, apart | Gauss points along the edges ([`Unoccluded`]) |
 //! | nothing between, close, touching or crossing each other's plane | contour integral on the parts that face each other |
-//! | a few bodies between | the unoccluded value less its hidden part: exact shadows inside, rules between critical lines outside |
-//! | many bodies between | sampled share of the unoccluded value |
+//! | bodies between | the unoccluded value less its hidden part: exact shadows inside, rules between critical lines outside |
+//! | many bodies between | sampled share of the unoccluded value, where that is exact enough |
 //!
 //! The tolerance T is relative to the exchange the two patches would have squarely facing each other,
 //! A_i A_j / (π d²), or the smaller area where that is less: stated errors of a row of F then add up to about 2 T. It is rounded down to a power of ten: a little
@@ -16,7 +16,6 @@ use super::hidden::{HiddenWork, Occluded, hidden_exchange};
 use super::rung::rung;
 use super::sampled::sampled;
 use super::small_receiver::small_receiver;
-use super::together::BODIES;
 use super::{Side, Unoccluded, Work, facing_exchange, front};
 use crate::occlusion::{Clusters, Sight};
 use crate::polygon::HalfSpace;
@@ -25,8 +24,8 @@ use fredholm_quadrature::Estimate;
 use fredholm_visibility::Occluders;
 use fredholm_visibility::body::{Bodies, Body, Face, Room, Screen, Shadow};
 
-/// Bodies up to which exact shadows are cheaper than sampling, and as many as they tell apart.
-const FEW: usize = BODIES;
+/// Bodies up to which exact shadows are cheaper than sampling.
+const FEW: usize = 128;
 
 /// Tolerance of exchanges with nothing between, in T: a digit more costs them next to nothing.
 const OPEN: f64 = 0.1;
@@ -102,6 +101,8 @@ pub struct PairIntegrator<'a> {
     occluders: &'a Occluders,
     bodies: Bodies,
     tolerance: f64,
+    /// Bodies up to which exact shadows come first.
+    few: usize,
 }
 
 impl<'a> PairIntegrator<'a> {
@@ -126,7 +127,12 @@ impl<'a> PairIntegrator<'a> {
         patches.extend(groups);
         let open = Unoccluded::new(&patches, OPEN * tolerance);
         let sides = patches.iter().map(|patch| Side::of(patch)).collect();
-        Self { patches, sides, open, occluders, bodies, tolerance }
+        Self { patches, sides, open, occluders, bodies, tolerance, few: FEW }
+    }
+
+    /// Computes exact shadows behind any number of bodies.
+    pub(crate) fn without_sampling(self) -> Self {
+        Self { few: usize::MAX, ..self }
     }
 
     /// Number of patches.
@@ -247,14 +253,14 @@ impl<'a> PairIntegrator<'a> {
     ) -> Exchange {
         let [a, b] = sides;
         let tolerance = self.tolerance * a.facing_exchange(&b);
-        match bodies.len() {
-            0 => open,
-            1..=FEW => {
-                let sides = if outer == Outer::First || clearer(a, b, bodies) { [a, b] } else { [b, a] };
-                self.behind_few(sides, bodies, open, tolerance, work)
-            }
-            _ => self.behind_many(a, b, open, tolerance),
+        if bodies.is_empty() {
+            return open;
         }
+        let share = if bodies.len() > self.few { self.share(sides, open, tolerance) } else { None };
+        share.unwrap_or_else(|| {
+            let sides = if outer == Outer::First || clearer(a, b, bodies) { [a, b] } else { [b, a] };
+            self.behind_all(sides, bodies, open, tolerance, work)
+        })
     }
 
     fn side(&self, i: usize) -> Side<'_> {
@@ -267,14 +273,16 @@ impl<'a> PairIntegrator<'a> {
         self.bodies.as_slice().iter().filter(|body| self.occluders.reaches(body, &shaft)).collect()
     }
 
-    fn behind_many(&self, a: Side, b: Side, open: Exchange, tolerance: f64) -> Exchange {
+    /// The sampled share, where it meets the tolerance.
+    fn share(&self, [a, b]: [Side; 2], open: Exchange, tolerance: f64) -> Option<Exchange> {
         let open = Estimate { value: open.value, error: open.error };
         let sees = |p, q| self.occluders.unoccluded(p, q);
-        Exchange::new(Method::Sampled, sampled(a.patch, b.patch, open, tolerance, sees))
+        let found = sampled(a.patch, b.patch, open, tolerance, sees);
+        (found.error <= tolerance).then(|| Exchange::new(Method::Sampled, found))
     }
 
     /// What is left of the open exchange: the hidden part goes over the points of `a`.
-    fn behind_few(
+    fn behind_all(
         &self,
         [a, b]: [Side; 2],
         bodies: &[&Body],

@@ -3,7 +3,7 @@
 //!
 //! The pairs follow the four-dimensional additive recurrence with the generalised golden ratio φ⁵ = φ + 1 (M. Roberts, *The Unreasonable
 //! Effectiveness of Quasirandom Sequences*, 2018), the same for every pair of patches. Their number is multiplied by four until the
-//! tripled standard error over eight batches meets the tolerance. In m².
+//! tripled standard error over eight batches meets the tolerance, or until there are more than exact shadows would cost. In m².
 
 use super::jacobian;
 use crate::kernel::lambert;
@@ -16,7 +16,7 @@ const STEPS: [f64; 4] =
     [0.856_674_883_854_502_9, 0.733_891_856_627_126, 0.628_706_721_185_640_4, 0.538_597_257_223_612_2];
 const BATCHES: usize = 8;
 const FIRST: usize = 64;
-const MOST: usize = 4096;
+const MOST: usize = 16384;
 
 /// A_i F_ij (m²) of two patches whose unoccluded value is `open`; `sees` answers whether two points see each other.
 pub(crate) fn sampled(

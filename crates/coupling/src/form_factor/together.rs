@@ -3,7 +3,6 @@
 //! Most points see the shadow of one body only: the part of the target in its room is the hidden part, and nothing of what is left is needed. Where the shadows of several bodies
 //! meet the target, they are subtracted one after the other ([`Hiding`]). Lengths in metres.
 
-pub(super) use super::packet::BODIES;
 use super::packet::{Found, POINTS, Packet, Shadows, Target};
 use super::shadow::{Hiding, Kind, Maker};
 use fredholm_mesh::Vec3;
@@ -20,7 +19,7 @@ pub(crate) struct Together {
 }
 
 impl Together {
-    /// Appends the form factor from each of the `points` with normal `n` to what `screens`, at most [`BODIES`], hide of `target`, and what makes the hidden part.
+    /// Appends the form factor from each of the `points` with normal `n` to what `screens` hide of `target`, and what makes the hidden part.
     pub(crate) fn hidden_factors(
         &mut self,
         points: &[Vec3],

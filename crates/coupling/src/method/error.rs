@@ -32,12 +32,4 @@ pub enum MethodError {
         /// Name of the method.
         method: &'static str,
     },
-    /// More occluders between the patches than exact shadows are made for.
-    #[error(
-        "too many occluders stand between the patches for the exact shadows of {method}; use auto or monte-carlo"
-    )]
-    ManyOccluders {
-        /// Name of the method.
-        method: &'static str,
-    },
 }

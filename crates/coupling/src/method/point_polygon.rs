@@ -9,7 +9,7 @@ use super::facing::{Facing, Part, fan};
 use super::graded::graded;
 use super::pieces::pieces;
 use super::{Evaluated, FormFactorMethod, MethodError, Setting};
-use crate::form_factor::{Method, PairIntegrator, Workspace, facing_exchange, jacobian, point_to_polygon};
+use crate::form_factor::{PairIntegrator, Workspace, facing_exchange, jacobian, point_to_polygon};
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_quadrature::{
     Estimate, Goal, adaptive_quad, adaptive_triangle, collapsed_triangle, tensor_quad,
@@ -58,7 +58,7 @@ impl FormFactorMethod for PointPolygon {
         let tolerance = setting.tolerance(self.name())?;
         let Some(facing) = Facing::new(a, b, occluders) else { return Ok(Evaluated::default()) };
         if facing.between() > 0 {
-            return shadowed(self.name(), [a, b], occluders, tolerance);
+            return Ok(shadowed([a, b], occluders, tolerance));
         }
         Ok(if a.diameter() <= b.diameter() {
             open(&facing.a, &facing.b, tolerance * facing_exchange(a, b))
@@ -109,15 +109,8 @@ fn over_cell(cell: &Patch, goal: Goal, seen: impl Fn(Vec3) -> f64) -> Estimate {
 }
 
 /// The same behind occluders, by exact shadows.
-fn shadowed(
-    method: &'static str,
-    pair: [&Patch; 2],
-    occluders: &Occluders,
-    tolerance: f64,
-) -> Result<Evaluated, MethodError> {
-    let got = PairIntegrator::new(pair, occluders, tolerance).exchange(0, 1, &mut Workspace::default());
-    if got.method == Method::Sampled {
-        return Err(MethodError::ManyOccluders { method });
-    }
-    Ok(Evaluated::new(Estimate { value: got.value, error: got.error }, 1))
+fn shadowed(pair: [&Patch; 2], occluders: &Occluders, tolerance: f64) -> Evaluated {
+    let integrator = PairIntegrator::new(pair, occluders, tolerance).without_sampling();
+    let got = integrator.exchange(0, 1, &mut Workspace::default());
+    Evaluated::new(Estimate { value: got.value, error: got.error }, 1)
 }

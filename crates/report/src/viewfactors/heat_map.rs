@@ -176,7 +176,7 @@ mod tests {
             emissivity: None,
             row_error: vec![0.0; n],
         };
-        ViewFactors::new(surfaces, None, |i, row| {
+        ViewFactors::new(surfaces, None, |i, row, _| {
             row.iter_mut().enumerate().for_each(|(j, x)| *x = value(i, j));
         })
     }

@@ -7,6 +7,8 @@ pub struct ViewFactors {
     pub surfaces: SurfaceData,
     /// F_ij.
     pub factors: Factors,
+    /// Stated error of every stored factor, in their order.
+    pub errors: Vec<f32>,
     /// Σ_j F_ij over all entries, those that were dropped included.
     pub row_sums: Vec<f64>,
     /// Σ_j F_ij over the entries that were dropped.
@@ -62,7 +64,7 @@ pub struct ViewPoints {
 }
 
 impl ViewFactors {
-    /// Divides exchanges by areas. `exchange(i, row)` writes row i of G (m²); `threshold` asks for sparse storage.
+    /// Divides exchanges by areas. `exchange(i, row, errors)` writes row i of G and the errors stated for it (m²); `threshold` asks for sparse storage.
     ///
     /// ```
     /// use fredholm_report::{SurfaceData, ViewFactors};
@@ -73,23 +75,28 @@ impl ViewFactors {
     ///     row_error: vec![0.0; 2],
     /// };
     /// let exchange = [[0.0, 1.0], [1.0, 3.0]];
-    /// let factors = ViewFactors::new(surfaces, Some(0.5), |i, row| row.copy_from_slice(&exchange[i]));
+    /// let factors = ViewFactors::new(surfaces, Some(0.5), |i, row, errors| {
+    ///     row.copy_from_slice(&exchange[i]);
+    ///     errors.fill(1e-9);
+    /// });
     /// assert_eq!((factors.row_sums, factors.row_dropped), (vec![1.0, 1.0], vec![0.0, 0.25]));
     /// ```
-    pub fn new(surfaces: SurfaceData, threshold: Option<f64>, exchange: impl Fn(usize, &mut [f64])) -> Self {
+    pub fn new(
+        surfaces: SurfaceData,
+        threshold: Option<f64>,
+        exchange: impl Fn(usize, &mut [f64], &mut [f64]),
+    ) -> Self {
         let n = surfaces.area.len();
         let mut rows = Rows::new(n, threshold);
-        let (mut row, mut row_sums) = (vec![0.0; n], Vec::with_capacity(n));
+        let (mut row, mut errors, mut row_sums) = (vec![0.0; n], vec![0.0; n], Vec::with_capacity(n));
         for (i, area) in surfaces.area.iter().enumerate() {
-            exchange(i, &mut row);
-            for entry in &mut row {
-                *entry /= area;
-            }
+            exchange(i, &mut row, &mut errors);
+            row.iter_mut().chain(&mut errors).for_each(|entry| *entry /= area);
             row_sums.push(row.iter().sum());
-            rows.push(&row);
+            rows.push(&row, &errors);
         }
-        let Rows { factors, dropped } = rows;
-        Self { surfaces, factors, row_sums, row_dropped: dropped, points: None }
+        let Rows { factors, errors, dropped } = rows;
+        Self { surfaces, factors, errors, row_sums, row_dropped: dropped, points: None }
     }
 
     /// Number of surfaces.
@@ -140,6 +147,7 @@ impl ViewFactors {
 /// Rows on their way into storage.
 struct Rows {
     factors: Factors,
+    errors: Vec<f32>,
     dropped: Vec<f64>,
 }
 
@@ -148,26 +156,42 @@ impl Rows {
         let sparse = |threshold| Sparse { threshold, starts: vec![0], columns: vec![], values: vec![] };
         let dense = || Factors::Dense(Vec::with_capacity(n * n));
         let factors = threshold.map_or_else(dense, |threshold| Factors::Sparse(sparse(threshold)));
-        Self { factors, dropped: Vec::with_capacity(n) }
+        let errors = Vec::with_capacity(if threshold.is_some() { 0 } else { n * n });
+        Self { factors, errors, dropped: Vec::with_capacity(n) }
     }
 
-    fn push(&mut self, row: &[f64]) {
+    fn push(&mut self, row: &[f64], errors: &[f64]) {
         match &mut self.factors {
             Factors::Dense(values) => {
                 values.extend_from_slice(row);
+                self.errors.extend(errors.iter().map(|&error| rounded_up(error)));
                 self.dropped.push(0.0);
             }
-            Factors::Sparse(sparse) => self.dropped.push(sparse.push(row)),
+            Factors::Sparse(sparse) => {
+                let kept = errors.iter().zip(row).filter(|(_, factor)| sparse.keeps(**factor));
+                self.errors.extend(kept.map(|(&error, _)| rounded_up(error)));
+                self.dropped.push(sparse.push(row));
+            }
         }
     }
 }
 
+/// A stated error must not shrink where it loses digits.
+fn rounded_up(error: f64) -> f32 {
+    let nearest = error as f32;
+    if f64::from(nearest) < error { nearest.next_up() } else { nearest }
+}
+
 impl Sparse {
+    fn keeps(&self, factor: f64) -> bool {
+        factor > 0.0 && factor >= self.threshold
+    }
+
     /// Appends a row and returns the sum of what it drops.
     fn push(&mut self, row: &[f64]) -> f64 {
         let mut dropped = 0.0;
         for (column, &value) in (0..).zip(row) {
-            if value > 0.0 && value >= self.threshold {
+            if self.keeps(value) {
                 self.columns.push(column);
                 self.values.push(value);
             } else {
@@ -192,7 +216,10 @@ pub(super) mod tests {
             emissivity: Some(vec![0.9, 0.05, 1.0]),
             row_error: vec![1e-4, 2e-17, 0.0],
         };
-        let mut factors = ViewFactors::new(surfaces, threshold, |i, row| row.copy_from_slice(&exchange[i]));
+        let mut factors = ViewFactors::new(surfaces, threshold, |i, row, errors| {
+            row.copy_from_slice(&exchange[i]);
+            errors.copy_from_slice(&exchange[i].map(|g| 1e-7 * g));
+        });
         factors.points = Some(ViewPoints {
             points: vec![[0.1, 0.2, 0.3], [1e-300, -0.5, 7.0]],
             normals: vec![[0.0, 0.0, 1.0], [0.6, 0.8, 0.0]],
@@ -219,5 +246,24 @@ pub(super) mod tests {
             }));
         }
         assert_eq!(dense.row_dropped, [0.0; 3]);
+    }
+
+    #[test]
+    fn every_stored_factor_has_its_error_and_none_shrinks() {
+        for factors in [sample(None), sample(Some(0.1))] {
+            let stored = match &factors.factors {
+                Factors::Dense(values) => values,
+                Factors::Sparse(sparse) => &sparse.values,
+            };
+            assert_eq!(stored.len(), factors.errors.len());
+            for (&factor, &error) in stored.iter().zip(&factors.errors) {
+                let (error, stated) = (f64::from(error), 1e-7 * factor);
+                assert!(
+                    error >= stated * (1.0 - 1e-15) && error <= stated * (1.0 + 1e-6),
+                    "{error:e} {stated:e}"
+                );
+            }
+        }
+        assert!(rounded_up(1e-60) > 0.0);
     }
 }

@@ -43,6 +43,7 @@ macro_rules! number {
 }
 
 number!(f64, "<f8");
+number!(f32, "<f4");
 number!(i32, "<i4");
 number!(i64, "<i8");
 

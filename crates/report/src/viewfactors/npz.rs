@@ -5,6 +5,7 @@
 //! | `F` | f64 | n × n | dense matrix |
 //! | `data`, `indices`, `indptr`, `shape`, `format` | f64, i32, i64, i64, bytes | | sparse matrix (CSR) in place of `F` |
 //! | `threshold` | f64 | 1 | least factor kept, of a sparse matrix |
+//! | `F_error` | f32 | as `F` or `data` | stated error of every stored factor, rounded up |
 //! | `names` | text | n | |
 //! | `areas` | f64 | n | m² |
 //! | `emissivity` | f64 | n | where it is known |
@@ -37,6 +38,7 @@ impl ViewFactors {
             Factors::Dense(values) => archive.numbers("F", &[n, n], values)?,
             Factors::Sparse(sparse) => archive.sparse(n, sparse)?,
         }
+        archive.numbers("F_error", &self.factors.shape(n), &self.errors)?;
         archive.entry("names", |out| npy::write_texts(out, &self.surfaces.names))?;
         archive.numbers("areas", &[n], &self.surfaces.area)?;
         if let Some(emissivity) = &self.surfaces.emissivity {
@@ -57,6 +59,16 @@ impl ViewFactors {
     /// [`ViewFactorsError`] with the array and its place for a file that is damaged or holds something else.
     pub fn read_npz(path: &Path) -> Result<Self, ViewFactorsError> {
         Reader::open(path)?.view_factors()
+    }
+}
+
+impl Factors {
+    /// Shape of what is stored of n × n factors.
+    fn shape(&self, n: usize) -> Vec<usize> {
+        match self {
+            Self::Dense(_) => vec![n; 2],
+            Self::Sparse(sparse) => vec![sparse.values.len()],
+        }
     }
 }
 
@@ -98,8 +110,9 @@ impl Archive<'_> {
 }
 
 /// Every array that an archive may have; another one is taken for damage.
-const ARRAYS: [&str; 16] = [
+const ARRAYS: [&str; 17] = [
     "F",
+    "F_error",
     "data",
     "indices",
     "indptr",
@@ -151,11 +164,13 @@ impl<'a> Reader<'a> {
         } else {
             Factors::Sparse(self.sparse(n)?)
         };
+        let shape = factors.shape(n);
+        let errors = self.required("F_error", |array| errors(array, &shape))?;
         let (row_sums, row_error, row_dropped) =
             (self.vector("row_sums", n)?, self.vector("row_error", n)?, self.vector("row_dropped", n)?);
         let points = if self.has("points") { Some(self.points(n)?) } else { None };
         let surfaces = SurfaceData { names, area, emissivity, row_error };
-        Ok(ViewFactors { surfaces, factors, row_sums, row_dropped, points })
+        Ok(ViewFactors { surfaces, factors, errors, row_sums, row_dropped, points })
     }
 
     fn sparse(&mut self, n: usize) -> Result<Sparse, ViewFactorsError> {
@@ -221,10 +236,26 @@ fn names(array: &Array) -> Result<Vec<String>, String> {
 
 /// Finite numbers of a given shape.
 fn matrix(array: &Array, shape: &[usize]) -> Result<Vec<f64>, String> {
-    if array.shape != shape {
-        return Err(format!("its shape is {:?}, but {shape:?} fits the names", array.shape));
-    }
+    fits(array, shape)?;
     finite(array.numbers()?)
+}
+
+fn fits(array: &Array, shape: &[usize]) -> Result<(), String> {
+    if array.shape == shape {
+        Ok(())
+    } else {
+        Err(format!("its shape is {:?}, but {shape:?} fits the names", array.shape))
+    }
+}
+
+/// Finite numbers of a given shape, none of them negative.
+fn errors(array: &Array, shape: &[usize]) -> Result<Vec<f32>, String> {
+    fits(array, shape)?;
+    let errors: Vec<f32> = array.numbers()?;
+    match errors.iter().position(|error| !error.is_finite() || *error < 0.0) {
+        Some(at) => Err(format!("number {at} is {}, no error", errors[at])),
+        None => Ok(errors),
+    }
 }
 
 fn finite(values: Vec<f64>) -> Result<Vec<f64>, String> {
@@ -342,6 +373,9 @@ mod tests {
         assert!(broken(&|s| s.values[0] = f64::NAN).contains("`data`"));
         assert!(broken(&|s| s.columns[0] = 7).contains("`indices`"));
         assert!(broken(&|s| s.starts[1] = 9).contains("`indptr`"));
+        let negative = ViewFactors { errors: vec![-1.0; nan.errors.len()], ..nan.clone() };
+        let message = read(&written(&negative)).unwrap_err().to_string();
+        assert!(message.contains("`F_error`") && message.contains("-1, no error"), "{message}");
         assert!(matches!(read(b"PK"), Err(ViewFactorsError::Archive { .. })));
         let missing = ViewFactors::read_npz(Path::new("/nonexistent/F.npz"));
         assert!(matches!(missing, Err(ViewFactorsError::Read { .. })));

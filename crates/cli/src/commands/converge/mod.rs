@@ -26,7 +26,7 @@ use level::Level;
 /// Solves a scene on finer and finer meshes and writes what that tells.
 pub(crate) fn converge(args: &ConvergeArgs) -> Result<Ending, Failure> {
     let interrupt = Interrupt::install(args.log.log)?;
-    folder::probe(&folder(args))?;
+    folder::probe(&folder(args), "-o DIR")?;
     let console = console::choose(args.log);
     let count = args.problem.threads.map_or_else(threads::default_count, usize::from);
     threads::pool(count)?.install(|| run(args, &*console, &interrupt))

@@ -77,7 +77,9 @@ fn verdict(found: &Convergence, highest: f64) -> String {
             )
         }
         Verdict::Settled => {
-            format!("settled: the last two levels differ by {last:.1e}, no more than rounding and residual")
+            format!(
+                "settled: the last three levels agree, the last two within {last:.1e}: rounding and residual"
+            )
         }
         Verdict::Irregular => {
             format!(

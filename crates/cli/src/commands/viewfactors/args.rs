@@ -26,7 +26,7 @@ pub(crate) struct ViewFactorsArgs {
     /// Form of the matrix [default: by the ending of the file: .npz, .csv, or .txt, .out, .vf for view3d]
     #[arg(long, value_enum, value_name = "FORM")]
     pub(crate) format: Option<Format>,
-    /// Error asked for in a row; with auto rounded down to a power of ten [default: the file's, else 1e-3; of another method than auto, its usual one]
+    /// Error asked for in a row; with auto rounded down to a power of ten, 1e-14 at least [default: the file's, else 1e-3; of another method than auto, its usual one]
     #[arg(long, value_name = "T", value_parser = tolerance)]
     pub(crate) tolerance: Option<f64>,
     /// How form factors are computed

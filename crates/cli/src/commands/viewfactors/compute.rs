@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use fredholm_coupling::{
-    Assembled, Closed, aggregate, assemble, enforce_closure, reciprocity, sky_exchanges, with_sky,
+    Assembled, Closed, aggregate, assemble_with_errors, enforce_closure, reciprocity, sky_exchanges, with_sky,
 };
 use fredholm_linop::{LinearOperator, PackedSymmetric};
 use fredholm_mesh::Patch;
@@ -24,7 +24,7 @@ const ROUNDING: f64 = 1e-13;
 pub(super) struct Solution {
     pub(super) factors: ViewFactors,
     /// Largest estimated error of a form factor between elements.
-    pub(super) pair_error: f64,
+    pub(super) largest: f64,
     pub(super) reciprocity: Option<f64>,
     /// Pairs by method.
     pub(super) pairs: BTreeMap<String, u64>,
@@ -32,49 +32,70 @@ pub(super) struct Solution {
 }
 
 pub(super) fn compute(problem: &Problem, stages: &mut Stages) -> Result<Solution, Failure> {
-    let assembled = exchanges(problem, stages)?;
-    let (pair_error, pairs) = (assembled.largest, pairs(problem, &assembled));
-    let (matrix, row_error) = rows(problem, assembled, stages)?;
+    let (assembled, errors) = exchanges(problem, stages)?;
+    let (largest, pairs) = (assembled.largest, pairs(problem, &assembled));
+    let Rows { matrix, pair_error, row_error } = rows(problem, assembled, errors, stages)?;
     let area = problem.areas();
     let (matrix, enforced) = closed(problem, matrix, &area, &row_error, stages)?;
     let (names, emissivity) = (problem.rows.names.clone(), problem.rows.emissivity.clone());
     let (sky, sky_area) = (problem.surface_rows(), area.last().copied().unwrap_or_default());
     let surfaces = SurfaceData { names, area, emissivity, row_error };
-    let row = |i: usize, row: &mut [f64]| {
+    let row = |i: usize, row: &mut [f64], errors: &mut [f64]| {
         matrix.row(i, 0, row);
-        // The sky sees itself, and the backs of surfaces, wherever it sees no front.
+        pair_error.row(i, 0, errors);
+        // The sky sees itself, and the backs of surfaces, wherever it sees no front: as exactly as it sees them.
         if i == sky {
             row[sky] = sky_area - row.iter().sum::<f64>();
+            errors[sky] = errors.iter().sum();
         }
     };
     let mut factors = ViewFactors::new(surfaces, problem.options.threshold, row);
     factors.points = points(problem, stages)?;
     let reciprocity = stages.run("errors", || Ok(agreement(problem)))?;
-    Ok(Solution { factors, pair_error, reciprocity, pairs, enforced })
+    Ok(Solution { factors, largest, reciprocity, pairs, enforced })
 }
 
-/// Exchanges of the rows, the sky's included, and the stated errors of their sums.
+/// Exchanges of the rows, the sky's included, the errors stated for them (m²), and those of the sums of F.
+struct Rows {
+    matrix: PackedSymmetric<f64>,
+    pair_error: PackedSymmetric<f64>,
+    row_error: Vec<f64>,
+}
+
 fn rows(
     problem: &Problem,
     assembled: Assembled<f64>,
+    errors: PackedSymmetric<f64>,
     stages: &mut Stages,
-) -> Result<(PackedSymmetric<f64>, Vec<f64>), Failure> {
-    let mut error = problem.per_row(assembled.error.iter().copied());
-    let mut matrix = merged(problem, assembled.matrix)?;
+) -> Result<Rows, Failure> {
+    let mut found = Rows {
+        matrix: merged(problem, assembled.matrix)?,
+        pair_error: merged(problem, errors)?,
+        row_error: problem.per_row(assembled.error.into_iter()),
+    };
     if let Some(integrator) = problem.sky_integrator() {
         let surfaces = problem.row_of().len();
         let go_on = counter(stages, surfaces, "elements");
-        let found =
+        let sky =
             stages.run("sky", || sky_exchanges(&integrator, surfaces, &go_on).map_err(coupling_failure))?;
-        let sky = problem.per_row(found.iter().map(|[value, _]| *value));
-        matrix =
-            with_sky(&matrix, &sky[..problem.surface_rows()]).map_err(|e| Failure::new(Ending::Input, e))?;
-        let more = problem.per_row(found.iter().map(|[_, error]| *error));
-        error.iter_mut().zip(&more).for_each(|(error, more)| *error += more);
-        error[problem.surface_rows()] = more.iter().sum();
+        found.add_sky(problem, &sky)?;
     }
-    error.iter_mut().zip(problem.areas()).for_each(|(error, area)| *error /= area);
-    Ok((matrix, error))
+    found.row_error.iter_mut().zip(problem.areas()).for_each(|(error, area)| *error /= area);
+    Ok(found)
+}
+
+impl Rows {
+    /// Adds the last row, from what the elements exchange with the sky and the errors of that.
+    fn add_sky(&mut self, problem: &Problem, found: &[[f64; 2]]) -> Result<(), Failure> {
+        let input = |error| Failure::new(Ending::Input, error);
+        let surfaces = problem.surface_rows();
+        let [sky, error] = [0, 1].map(|k| problem.per_row(found.iter().map(|pair| pair[k])));
+        self.matrix = with_sky(&self.matrix, &sky[..surfaces]).map_err(input)?;
+        self.pair_error = with_sky(&self.pair_error, &error[..surfaces]).map_err(input)?;
+        self.row_error.iter_mut().zip(&error).for_each(|(row, error)| *row += error);
+        self.row_error[surfaces] = error.iter().sum();
+        Ok(())
+    }
 }
 
 /// Counts steps of `total`, shows them, and says whether the run is still wanted.
@@ -105,7 +126,11 @@ fn pairs(problem: &Problem, assembled: &Assembled<f64>) -> BTreeMap<String, u64>
     BTreeMap::from([(problem.options.method.clone(), n * n.saturating_sub(1) / 2)])
 }
 
-fn exchanges(problem: &Problem, stages: &mut Stages) -> Result<Assembled<f64>, Failure> {
+/// Exchanges of the elements and the error stated for each, m².
+fn exchanges(
+    problem: &Problem,
+    stages: &mut Stages,
+) -> Result<(Assembled<f64>, PackedSymmetric<f64>), Failure> {
     if let Some(method) = &problem.method {
         let count = counter(stages, problem.row_of().len(), "rows");
         // A run that is no longer wanted ends by itself: there is nothing to save.
@@ -122,7 +147,7 @@ fn exchanges(problem: &Problem, stages: &mut Stages) -> Result<Assembled<f64>, F
         console.advance(done as f64 / total.max(1) as f64, &|| format!("{done} of {total} pairs"));
         if interrupt.requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
-    stages.run("assembly", || assemble(&problem.integrator(), &watch).map_err(coupling_failure))
+    stages.run("assembly", || assemble_with_errors(&problem.integrator(), &watch).map_err(coupling_failure))
 }
 
 /// The exchanges of the rows, m².

@@ -12,9 +12,11 @@ use crate::size::Bytes;
 const PER_ELEMENT: u128 = 4096;
 /// Bytes of the program itself.
 const PROGRAM: u128 = 8 << 20;
-/// Bytes of a factor, and of one in sparse storage.
-const DENSE: u128 = 8;
-const SPARSE: u128 = 12;
+/// Bytes of a factor.
+const FACTOR: u128 = 8;
+/// Bytes of a factor with its stated error, and of one in sparse storage.
+const DENSE: u128 = FACTOR + 4;
+const SPARSE: u128 = DENSE + 4;
 
 /// Memory by use.
 #[derive(Clone, Copy, Debug)]
@@ -28,14 +30,15 @@ pub(super) struct Prediction {
 impl Prediction {
     pub(super) fn new(elements: usize, rows: usize, options: &Options) -> Self {
         let packed = |n: usize| u128::from(PackedSymmetric::<f64>::bytes(n));
-        // What is merged, given a sky or closed is copied.
+        // Exchanges and their errors; what is merged or given a sky is copied, of what is closed the exchanges are.
         let copied = rows != elements || options.sky;
-        let exchange = packed(elements) + packed(rows) * (u128::from(copied) + u128::from(options.close));
+        let exchange =
+            2 * packed(elements) + packed(rows) * (2 * u128::from(copied) + u128::from(options.close));
         let n = rows as u128;
         // A row sums to about 1, so that it has at most 1/X entries of at least X.
         let kept = options.threshold.map(|threshold| n.min((1.1 / threshold) as u128 + 1));
         let factors = kept.map_or(n * n * DENSE, |kept| n * kept * SPARSE);
-        let points = options.points as u128 * n * DENSE;
+        let points = options.points as u128 * n * FACTOR;
         let rest = PROGRAM + elements as u128 * PER_ELEMENT + points;
         Self { elements, exchange: Bytes(exchange), factors: Bytes(factors), rest: Bytes(rest) }
     }
@@ -65,7 +68,7 @@ impl fmt::Display for Prediction {
         let Self { elements, exchange, factors, rest } = self;
         write!(
             f,
-            "{exchange} for the exchanges of {elements} elements, {factors} for the matrix and {rest} for all the rest"
+            "{exchange} for the exchanges of {elements} elements and their errors, {factors} for the matrix and {rest} for all the rest"
         )
     }
 }

@@ -69,14 +69,14 @@ impl Chosen {
         outcome.map(drop).map_err(|error| input(&error))
     }
 
-    /// Computes all pairs; `advance` is told of every row from any thread.
+    /// Computes all pairs and the errors stated for them, m²; `advance` is told of every row from any thread.
     pub(super) fn assemble(
         &self,
         patches: &[&Patch],
         occluders: &Occluders,
         name: &dyn Fn(usize) -> String,
         advance: &(dyn Fn() + Sync),
-    ) -> Result<Assembled<f64>, Failure> {
+    ) -> Result<(Assembled<f64>, PackedSymmetric<f64>), Failure> {
         let row = |i: usize| {
             advance();
             self.row(patches, occluders, i)
@@ -135,10 +135,11 @@ fn refused([a, b]: [String; 2], error: &MethodError) -> Failure {
     Failure::new(Ending::Input, format!("{a} and {b}: {error}"))
 }
 
-/// The packed triangle and the stated errors under construction.
+/// The packed triangles of exchanges and stated errors under construction.
 struct Matrix<'a> {
     patches: &'a [&'a Patch],
     packed: Vec<f64>,
+    errors: Vec<f64>,
     error: Vec<f64>,
     largest: f64,
 }
@@ -146,31 +147,42 @@ struct Matrix<'a> {
 impl<'a> Matrix<'a> {
     fn new(patches: &'a [&'a Patch]) -> Result<Self, Failure> {
         let n = patches.len();
-        let mut packed = Vec::new();
-        let needed = PackedSymmetric::<f64>::bytes(n);
-        let no_memory =
-            format!("the system has no {needed} bytes for the form-factor matrix; use fewer elements");
-        packed.try_reserve_exact(n * (n + 1) / 2).map_err(|_| Failure::new(Ending::Resources, no_memory))?;
-        Ok(Self { patches, packed, error: vec![0.0; n], largest: 0.0 })
+        let (packed, errors) = (triangle(n)?, triangle(n)?);
+        Ok(Self { patches, packed, errors, error: vec![0.0; n], largest: 0.0 })
     }
 
     /// Adds row i, up to the diagonal: flat patches see nothing of themselves.
     fn push(&mut self, i: usize, row: &[Evaluated]) {
         for (j, found) in row.iter().enumerate() {
             self.packed.push(found.value);
+            self.errors.push(found.error);
             self.error[i] += found.error;
             self.error[j] += found.error;
             let area = self.patches[i].area().min(self.patches[j].area());
             self.largest = self.largest.max(found.error / area);
         }
         self.packed.push(0.0);
+        self.errors.push(0.0);
     }
 
-    fn finish(self) -> Result<Assembled<f64>, Failure> {
-        let matrix = PackedSymmetric::new(self.patches.len(), self.packed);
-        let matrix = matrix.map_err(|error| Failure::new(Ending::Input, error))?;
-        Ok(Assembled { matrix, error: self.error, largest: self.largest, methods: MethodCounts::default() })
+    fn finish(self) -> Result<(Assembled<f64>, PackedSymmetric<f64>), Failure> {
+        let input = |error| Failure::new(Ending::Input, error);
+        let n = self.patches.len();
+        let errors = PackedSymmetric::new(n, self.errors).map_err(input)?;
+        let matrix = PackedSymmetric::new(n, self.packed).map_err(input)?;
+        let methods = MethodCounts::default();
+        Ok((Assembled { matrix, error: self.error, largest: self.largest, methods }, errors))
     }
+}
+
+/// Room for the lower triangle of n × n entries.
+fn triangle(n: usize) -> Result<Vec<f64>, Failure> {
+    let mut packed = Vec::new();
+    let needed = PackedSymmetric::<f64>::bytes(n);
+    let no_memory =
+        format!("the system has no {needed} bytes for the form-factor matrix; use fewer elements");
+    packed.try_reserve_exact(n * (n + 1) / 2).map_err(|_| Failure::new(Ending::Resources, no_memory))?;
+    Ok(packed)
 }
 
 #[cfg(test)]

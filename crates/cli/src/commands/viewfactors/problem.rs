@@ -17,7 +17,7 @@ use crate::failure::{Ending, Failure};
 use crate::stages::Stages;
 
 /// Name of the row of the sky.
-const SKY: &str = "sky";
+pub(super) const SKY: &str = "sky";
 /// Patches of the sky.
 const SKY_PATCHES: usize = 6;
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use fredholm_report::{Closure, FormFactorError, ViewFactors, ViewFactorsRecord};
+use fredholm_report::{Closure, ClosureChange, FormFactorError, ViewFactors, ViewFactorsRecord};
 use serde_json::Value;
 
 use super::args::ViewFactorsArgs;
@@ -16,6 +16,9 @@ const ROW: f64 = 3.0;
 /// Estimated error of a row that may be rounding alone.
 const ROUNDING: f64 = 1e-11;
 
+/// Change of a row by closing, Σ_j |F'_ij − F_ij|, that is reported.
+const BENT: f64 = 0.01;
+
 /// Everything that is worth knowing of a run.
 pub(super) fn record(
     args: &ViewFactorsArgs,
@@ -26,7 +29,7 @@ pub(super) fn record(
     let factors = &solution.factors;
     let form_factor_error = FormFactorError {
         tolerance: problem.asked(),
-        max: Some(solution.pair_error),
+        max: Some(solution.largest),
         row_max: largest(factors.surfaces.row_error.iter().copied().take(problem.surface_rows())),
     };
     let warnings = problem.geometry.warnings().iter().cloned();
@@ -46,7 +49,10 @@ pub(super) fn record(
         dropped_max: problem.options.threshold.and_then(|_| largest(factors.row_dropped.iter().copied())),
         point_closure_max: point_closure(factors),
         enforced: solution.enforced.clone(),
-        warnings: warnings.chain(inexact(&form_factor_error)).collect(),
+        warnings: warnings
+            .chain(inexact(&form_factor_error))
+            .chain(solution.enforced.as_ref().and_then(bent))
+            .collect(),
         form_factor_error,
         ..ViewFactorsRecord::default()
     }
@@ -88,6 +94,14 @@ pub(super) fn point_closure(factors: &ViewFactors) -> Option<f64> {
 
 pub(super) fn largest(values: impl Iterator<Item = f64>) -> Option<f64> {
     values.reduce(f64::max)
+}
+
+/// Whether closing the rows changed more than errors of a computation should make.
+fn bent(change: &ClosureChange) -> Option<String> {
+    let most = change.row_max.filter(|&most| most > BENT)?;
+    Some(format!(
+        "--close changed a row by {most:.1e} in all: such factors are those of another room; use a finer tolerance or setting"
+    ))
 }
 
 /// Whether the factors came out less exact than asked for.

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use fredholm_report::{Closure, ViewFactors, ViewFactorsRecord};
 
+use super::problem::SKY;
 use super::record::{closure, largest, point_closure};
 use crate::failure::{Ending, Failure};
 use crate::output;
@@ -21,7 +22,8 @@ pub(super) fn quality(record: &ViewFactorsRecord, lines: &mut Lines) {
         "size",
         format!("{rows} rows of {elements} elements, {occluders} occluders, {stored} factors stored"),
     );
-    lines.add_some("closure", closed(&record.closure));
+    let sky = record.options["sky"].as_bool().unwrap_or(false);
+    lines.add_some("closure", closed(&record.closure, record.form_factor_error.row_max, sky));
     lines.add_some("form factors", errors(record));
     lines.add_some(
         "reciprocity",
@@ -36,21 +38,30 @@ pub(super) fn quality(record: &ViewFactorsRecord, lines: &mut Lines) {
     record.warnings.iter().for_each(|warning| lines.add("warning", warning));
 }
 
-fn closed(closure: &Closure) -> Option<String> {
+/// How the rows close; `error` is the largest stated error of a row.
+fn closed(closure: &Closure, error: Option<f64>, sky: bool) -> Option<String> {
     let most = closure.max?;
     let at = closure.worst_surface.as_ref().map(|surface| format!(" ({surface})")).unwrap_or_default();
     let mean = closure.mean.map(|mean| format!(", {mean:.1e} on average")).unwrap_or_default();
-    let hint = "; the scene is open (--sky would add the sky), or backs of surfaces are in view";
-    Some(format!(
-        "row sums differ from 1 by {most:.1e} at most{at}{mean}{}",
-        if most > OPEN { hint } else { "" }
-    ))
+    let open = most > OPEN.max(error.unwrap_or(0.0));
+    let hint = match (open, sky) {
+        (false, _) => "",
+        (true, false) => "; the scene is open (--sky would add the sky), or backs of surfaces are in view",
+        (true, true) => "; backs of surfaces are in view",
+    };
+    Some(format!("row sums differ from 1 by {most:.1e} at most{at}{mean}{hint}"))
 }
 
 fn errors(record: &ViewFactorsRecord) -> Option<String> {
     let error = &record.form_factor_error;
     let asked = error.tolerance.map(|t| format!(" (asked: {t:.1e})")).unwrap_or_default();
-    Some(format!("estimated error of a row {:.1e} at most{asked}", error.row_max?))
+    let factor = error.max.map(|max| format!(", of a factor between elements {max:.1e}")).unwrap_or_default();
+    Some(format!("estimated error of a row {:.1e} at most{factor}{asked}", error.row_max?))
+}
+
+fn stated(row: f64, factors: &ViewFactors) -> String {
+    let factor = factors.errors.iter().fold(0.0, |most: f32, error| most.max(*error));
+    format!("estimated error of a row {row:.1e} at most, of a factor {factor:.1e}")
 }
 
 fn dropped(most: f64) -> String {
@@ -98,10 +109,10 @@ pub(crate) fn describe_matrix(path: &Path) -> Result<Ending, Failure> {
     let n = factors.len();
     lines.add("size", format!("{n} rows, {} of {} factors stored", factors.stored(), n * n));
     lines.add("area", format!("{:.6} m² in all", factors.surfaces.area.iter().sum::<f64>()));
-    lines.add_some("closure", closed(&closure(&factors)));
     let error = largest(factors.surfaces.row_error.iter().copied());
-    lines
-        .add_some("form factors", error.map(|error| format!("estimated error of a row {error:.1e} at most")));
+    let sky = factors.surfaces.names.last().is_some_and(|name| name == SKY);
+    lines.add_some("closure", closed(&closure(&factors), error, sky));
+    lines.add_some("form factors", error.map(|error| stated(error, &factors)));
     let most = largest(factors.row_dropped.iter().copied()).filter(|&most| most > 0.0);
     lines.add_some("dropped", most.map(dropped));
     let count = factors.points.as_ref().map_or(0, |points| points.points.len() as u64);

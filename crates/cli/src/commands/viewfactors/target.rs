@@ -26,7 +26,7 @@ impl Target {
         let path = args.output.clone().unwrap_or_else(default);
         let format = format(&path, args.format)?;
         let parent = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-        folder::probe(parent.unwrap_or(Path::new(".")))?;
+        folder::probe(parent.unwrap_or(Path::new(".")), "-o FILE")?;
         let files = ViewFactorFiles::beside(&path);
         for file in [&files.matrix, &files.picture, &files.histogram, &files.record] {
             if file.is_dir() {
