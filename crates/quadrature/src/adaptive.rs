@@ -32,7 +32,8 @@ impl std::ops::Add for Estimate {
 }
 
 /// ∫ₐᵇ f by `rule`, bisected until each half meets its share of `tolerance` (absolute) or `depth` bisections
-/// are spent. What could not be met shows in the error of the result.
+/// are spent. What could not be met shows in the error of the result. Where f is not a number, or infinite at points of
+/// a part and of its halves, that part is not bisected further, and the error is NaN.
 ///
 /// ```
 /// let rule = fredholm_quadrature::gauss_legendre(8);
@@ -61,7 +62,8 @@ fn bisect(
     let middle = 0.5 * (a + b);
     let (left, right) = (rule.integrate(a, middle, f), rule.integrate(middle, b, f));
     let error = (left + right - whole).abs();
-    if error <= tolerance || depth == 0 {
+    // No bisection mends an error that is not a number; an infinite one may come from a pole that the halves miss.
+    if error <= tolerance || error.is_nan() || depth == 0 {
         return Estimate { value: left + right, error };
     }
     let half = 0.5 * tolerance;
@@ -71,7 +73,9 @@ fn bisect(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gauss_legendre;
+    use crate::exactness::interval_degree_of;
+    use crate::{gauss_legendre, newton_cotes_closed};
+    use std::cell::Cell;
 
     fn meets(f: impl Fn(f64) -> f64, exact: f64) {
         for tolerance in [1e-4, 1e-8, 1e-12] {
@@ -93,5 +97,40 @@ mod tests {
     fn says_so_when_it_runs_out_of_depth() {
         let got = integrate_adaptive(&gauss_legendre(2), 0.0, 1.0, 1e-15, 2, &|x: f64| x.ln());
         assert!(got.error > 1e-4);
+    }
+
+    #[test]
+    fn one_bisection_has_the_degree_of_the_rule() {
+        for n in 1..=10 {
+            let rule = gauss_legendre(n);
+            let by = |f: &dyn Fn(f64) -> f64| integrate_adaptive(&rule, 0.0, 1.0, 0.0, 0, &f).value;
+            interval_degree_of(&format!("n = {n}"), rule.degree, by);
+        }
+    }
+
+    /// The result at a depth of 60, which must not take more than a thousand values.
+    fn counted(rule: &IntervalRule, f: impl Fn(f64) -> f64) -> Estimate {
+        let count = Cell::new(0);
+        let watched = |x: f64| {
+            count.set(count.get() + 1);
+            assert!(count.get() < 1000, "no end");
+            f(x)
+        };
+        integrate_adaptive(rule, 0.0, 1.0, 1e-6, 60, &watched)
+    }
+
+    #[test]
+    fn a_value_that_is_no_number_ends_the_work_and_stays_visible() {
+        let rule = gauss_legendre(3);
+        assert!(counted(&rule, |_| f64::NAN).error.is_nan());
+        assert!(counted(&rule, |x| (x - 0.3).sqrt()).error.is_nan());
+        assert!(counted(&rule, |x| if x > 0.6 { f64::INFINITY } else { x }).error.is_nan());
+        assert!(counted(&newton_cotes_closed(3).unwrap(), |x| 1.0 / x).error.is_nan());
+    }
+
+    #[test]
+    fn a_single_infinite_value_is_bisected_away() {
+        let got = counted(&gauss_legendre(3), |x| if x == 0.5 { f64::INFINITY } else { x });
+        assert!((got.value - 0.5).abs() < 1e-15 && got.error < 1e-15, "{got:?}");
     }
 }

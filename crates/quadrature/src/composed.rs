@@ -69,15 +69,25 @@ fn scaled(rule: &[PlanePoint], corner: (f64, f64), h: f64) -> impl Iterator<Item
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exactness::{interval_degree, triangle_degree};
-    use crate::{gauss_legendre, newton_cotes_closed, symmetric_triangle, tensor_quad};
+    use crate::exactness::{interval_degree, plane_sum, square_degree_of, triangle_degree};
+    use crate::{collapsed_triangle, gauss_legendre, newton_cotes_closed, symmetric_triangle, tensor_quad};
 
     #[test]
-    fn composing_keeps_the_degree() {
-        for parts in [1, 2, 5] {
-            interval_degree(&composed_interval(&gauss_legendre(2), parts));
-            interval_degree(&composed_interval(&newton_cotes_closed(3).unwrap(), parts));
-            triangle_degree(&composed_triangle(&symmetric_triangle(4).unwrap(), parts), 4);
+    fn composing_keeps_the_degree_on_the_interval() {
+        for (parts, n) in (1..=5).flat_map(|parts| (1..=5).map(move |n| (parts, n))) {
+            interval_degree(&composed_interval(&gauss_legendre(n), parts));
+            interval_degree(&composed_interval(&newton_cotes_closed(n + 1).unwrap(), parts));
+        }
+    }
+
+    #[test]
+    fn composing_keeps_the_degree_on_the_square_and_the_triangle() {
+        for (parts, n) in (1..=5).flat_map(|parts| (1..=5).map(move |n| (parts, n))) {
+            let quad = composed_quad(&tensor_quad(n), parts);
+            square_degree_of(&format!("{parts} parts, n = {n}"), 2 * n - 1, |f| plane_sum(&quad, f));
+            let (even, odd) = (symmetric_triangle(2 * n).unwrap(), collapsed_triangle(n));
+            triangle_degree(&composed_triangle(&even, parts), 2 * n);
+            triangle_degree(&composed_triangle(&odd, parts), 2 * n - 1);
         }
     }
 

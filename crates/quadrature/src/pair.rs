@@ -7,7 +7,7 @@
 //! degree 2n − 4, since the factor ξ³ of the Jacobian takes three.
 //!
 //! Corners carry labels; equal labels are the same corner. A quadrilateral is cut into two triangles along a
-//! diagonal. The parameters of a triangle's corners are (0, 0), (1, 0), (0, 1), those of a quadrilateral's
+//! diagonal, and the degree stays. The parameters of a triangle's corners are (0, 0), (1, 0), (0, 1), those of a quadrilateral's
 //! (0, 0), (1, 0), (1, 1), (0, 1).
 
 use crate::{PlanePoint, collapsed_triangle, tensor_quad};
@@ -44,7 +44,7 @@ pub fn triangle_pair(a: [usize; 3], b: [usize; 3], n: usize) -> Vec<PairPoint> {
     place((a, corners), (b, corners), n)
 }
 
-/// The rule for two quadrilaterals, the sum of the rules of four pairs of triangles. It holds for any
+/// The rule for two quadrilaterals, the sum of the rules of four pairs of triangles, whose degree it has. It holds for any
 /// parametrisation that is smooth on both sides of the diagonal, the bilinear one among them.
 ///
 /// ```
@@ -177,29 +177,87 @@ fn identical(xi: f64, e1: f64, e2: f64, e3: f64) -> [PairPoint; 6] {
 mod tests {
     use super::*;
     use crate::closed_forms::coplanar;
-    use crate::exactness::{peak, triangle_moment};
+    use crate::exactness::{
+        EXACT, WRONG, chebyshev, chebyshev_integral, peak, triangle_chebyshev, triangle_moment,
+    };
 
     fn sum(points: &[PairPoint], f: impl Fn(&PairPoint) -> f64) -> f64 {
         points.iter().map(|p| p.weight * f(p)).sum()
     }
 
-    /// Largest error over all monomials of one total degree in (x, y), relative to measure and largest value.
-    fn worst(points: &[PairPoint], total: i32) -> f64 {
-        let mut worst = 0.0_f64;
-        for a in 0..=total {
-            for b in 0..=total - a {
-                for c in 0..=total - a - b {
-                    let d = total - a - b - c;
-                    let term =
-                        |p: &PairPoint| p.x[0].powi(a) * p.x[1].powi(b) * p.y[0].powi(c) * p.y[1].powi(d);
-                    let exact =
-                        triangle_moment(a as usize, b as usize) * triangle_moment(c as usize, d as usize);
-                    let scale = 0.25 * peak(a as usize, b as usize) * peak(c as usize, d as usize);
-                    worst = worst.max((sum(points, term) - exact).abs() / scale);
+    /// Polynomials Pₐ(u) P_b(v) on a patch: P, their integrals, and measure times largest value.
+    struct Family {
+        value: fn(usize, f64) -> f64,
+        integral: fn(usize, usize) -> f64,
+        scale: fn(usize, usize) -> f64,
+    }
+
+    const POWER: fn(usize, f64) -> f64 = |k, x| x.powi(k as i32);
+
+    /// What is to be exact, and what shows an error beyond the degree.
+    const TRIANGLE: [Family; 2] = [
+        Family { value: POWER, integral: triangle_moment, scale: |a, b| 0.5 * peak(a, b) },
+        Family { value: chebyshev, integral: triangle_chebyshev, scale: |_, _| 0.5 },
+    ];
+    const SQUARE: [Family; 2] = [
+        Family { value: POWER, integral: |a, b| 1.0 / ((a + 1) * (b + 1)) as f64, scale: |_, _| 1.0 },
+        Family {
+            value: chebyshev,
+            integral: |a, b| chebyshev_integral(a) * chebyshev_integral(b),
+            scale: |_, _| 1.0,
+        },
+    ];
+
+    impl Family {
+        /// Largest error over products with these degrees in (x, y), relative to measure and largest value.
+        fn worst(&self, points: &[PairPoint], degrees: &[[usize; 4]]) -> f64 {
+            // Sums of sums: that of many thousand points in a row rounds by more than 1e-14.
+            let mut sums = vec![0.0; degrees.len()];
+            for block in points.chunks(100) {
+                sums.iter_mut().zip(self.sums(block, degrees)).for_each(|(sum, part)| *sum += part);
+            }
+            let error = |(sum, &[a, b, c, d]): (f64, &[usize; 4])| {
+                let exact = (self.integral)(a, b) * (self.integral)(c, d);
+                (sum - exact).abs() / ((self.scale)(a, b) * (self.scale)(c, d))
+            };
+            sums.into_iter().zip(degrees).map(error).fold(0.0, f64::max)
+        }
+
+        fn sums(&self, points: &[PairPoint], degrees: &[[usize; 4]]) -> Vec<f64> {
+            let highest = degrees.iter().flatten().copied().max().unwrap_or(0);
+            let mut sums = vec![0.0; degrees.len()];
+            for p in points {
+                let values = |x: f64| -> Vec<f64> { (0..=highest).map(|k| (self.value)(k, x)).collect() };
+                let [s, t, u, v] = [p.x[0], p.x[1], p.y[0], p.y[1]].map(values);
+                for (sum, [a, b, c, d]) in sums.iter_mut().zip(degrees) {
+                    *sum += p.weight * s[*a] * t[*b] * u[*c] * v[*d];
                 }
             }
+            sums
         }
-        worst
+    }
+
+    /// All exponents up to `highest` that `of` keeps.
+    fn degrees(highest: usize, of: impl Fn(usize, usize) -> bool) -> Vec<[usize; 4]> {
+        let side = highest + 1;
+        let all =
+            (0..side.pow(4)).map(|k| [k / side.pow(3), k / side.pow(2) % side, k / side % side, k % side]);
+        all.filter(|[a, b, c, d]| of(a + b, c + d)).collect()
+    }
+
+    /// Total degree 2n − 4 in (x, y), and no more.
+    fn touching([exact, beyond]: &[Family; 2], points: &[PairPoint], n: usize, label: &str) {
+        let kept = exact.worst(points, &degrees(2 * n - 4, |x, y| x + y <= 2 * n - 4));
+        let missed = beyond.worst(points, &degrees(2 * n - 3, |x, y| x + y == 2 * n - 3));
+        assert!(kept <= EXACT && missed > WRONG, "{label}, n = {n}: {kept:e}, {missed:e}");
+    }
+
+    /// Degree 2n − 1 in x and in y, and no more in either.
+    fn apart([exact, beyond]: &[Family; 2], points: &[PairPoint], n: usize, label: &str) {
+        let kept = exact.worst(points, &degrees(2 * n - 1, |x, y| x.max(y) < 2 * n));
+        let in_x = beyond.worst(points, &degrees(2 * n, |x, y| x == 2 * n && y == 0));
+        let in_y = beyond.worst(points, &degrees(2 * n, |x, y| x == 0 && y == 2 * n));
+        assert!(kept <= EXACT && in_x.min(in_y) > WRONG, "{label}, n = {n}: {kept:e}, {in_x:e}, {in_y:e}");
     }
 
     /// One pair of labels for each kind of contact, with the common corners in different places.
@@ -207,22 +265,30 @@ mod tests {
 
     #[test]
     fn every_touching_pair_has_its_degree_and_no_more() {
-        for b in CONTACTS {
-            for n in 2..=5 {
-                let points = triangle_pair([0, 1, 2], b, n);
-                for total in 0..=2 * n as i32 - 4 {
-                    assert!(worst(&points, total) <= 1e-14, "{b:?}, n = {n}, degree {total}");
-                }
-                assert!(worst(&points, 2 * n as i32 - 3) > 1e-9, "{b:?}, n = {n}");
-            }
+        for (b, n) in CONTACTS.into_iter().flat_map(|b| (2..=8).map(move |n| (b, n))) {
+            touching(&TRIANGLE, &triangle_pair([0, 1, 2], b, n), n, &format!("{b:?}"));
         }
     }
 
     #[test]
     fn triangles_apart_keep_the_full_degree_in_each() {
-        let points = triangle_pair([0, 1, 2], [3, 4, 5], 2);
-        assert_eq!(points.len(), 16);
-        assert!(worst(&points, 3) <= 1e-14 && worst(&points, 4) > 1e-6);
+        assert_eq!(triangle_pair([0, 1, 2], [3, 4, 5], 2).len(), 16);
+        for n in 1..=6 {
+            apart(&TRIANGLE, &triangle_pair([0, 1, 2], [3, 4, 5], n), n, "triangles");
+        }
+    }
+
+    /// The same square from two corners, a common edge, a common corner.
+    const SQUARES: [[usize; 4]; 4] = [[0, 1, 2, 3], [1, 2, 3, 0], [1, 4, 5, 2], [2, 5, 6, 7]];
+
+    #[test]
+    fn squares_have_the_degree_of_their_triangles() {
+        for (b, n) in SQUARES.into_iter().flat_map(|b| (2..=8).map(move |n| (b, n))) {
+            touching(&SQUARE, &quad_pair([0, 1, 2, 3], b, n), n, &format!("{b:?}"));
+        }
+        for n in 1..=6 {
+            apart(&SQUARE, &quad_pair([0, 1, 2, 3], [4, 5, 6, 7], n), n, "squares");
+        }
     }
 
     /// ∫∫ 1/|x − y| over the unit square and itself moved by (i, j), by n points a direction.

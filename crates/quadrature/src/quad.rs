@@ -18,29 +18,13 @@ pub fn tensor_quad(n: usize) -> Vec<PlanePoint> {
 #[cfg(test)]
 mod tests {
     use super::tensor_quad;
-
-    fn error(n: usize, a: usize, b: usize) -> f64 {
-        let exact = 1.0 / ((a + 1) * (b + 1)) as f64;
-        let sum: f64 =
-            tensor_quad(n).iter().map(|p| p.weight * p.u.powi(a as i32) * p.v.powi(b as i32)).sum();
-        (sum - exact).abs() / exact
-    }
+    use crate::exactness::{plane_sum, square_degree_of};
 
     #[test]
-    fn integrates_every_monomial_of_its_degree() {
-        for n in 1..=10 {
-            for a in 0..2 * n {
-                for b in 0..2 * n {
-                    assert!(error(n, a, b) < 1e-14, "n = {n}, u^{a} v^{b}");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn fails_beyond_its_degree() {
-        for n in 1..=6 {
-            assert!(error(n, 2 * n, 0) > 1e-10 && error(n, 0, 2 * n) > 1e-10);
+    fn every_rule_has_its_degree_and_no_more() {
+        for n in 1..=40 {
+            let points = tensor_quad(n);
+            square_degree_of(&format!("n = {n}"), 2 * n - 1, |f| plane_sum(&points, f));
         }
     }
 }

@@ -5,7 +5,8 @@
 //! fall by q from one cut to the next leave d q/(1 − q) to come, more than d where a singularity makes q > ½;
 //! the error taken is the larger of the two. Ties go to the older cell, so that the result never depends on
 //! chance. A peak that falls between all points of the first rule is not seen: start from a composed rule
-//! that is fine enough. A value that is not finite ends the work with an error of NaN.
+//! that is fine enough. A value that is not a number ends the work with an error of NaN, and so does an infinite one
+//! that the cell and its parts both have; the cell is cut on where only one of them meets the pole.
 
 use crate::{Estimate, IntervalRule, PlanePoint};
 use std::cmp::Ordering;
@@ -165,8 +166,8 @@ fn refine<C>(whole: &C, goal: Goal, cut: impl Fn(&C) -> Vec<C>, mut q: impl FnMu
     let (mut error, mut born) = (first[0].error, 1);
     let mut heap = BinaryHeap::from(first);
     for _ in 0..goal.cuts {
-        // The running sum drifts by rounding, so that only a fresh one may end the work.
-        if error <= goal.tolerance {
+        // The running sum drifts by rounding and loses all in ∞ − ∞, so that only a fresh one may end the work.
+        if error <= goal.tolerance || error.is_nan() {
             error = heap.iter().map(|region| region.error).sum();
         }
         if error <= goal.tolerance || error.is_nan() {
@@ -194,6 +195,7 @@ fn total<C>(heap: BinaryHeap<Region<C>>) -> Estimate {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::exactness::{interval_degree_of, square_degree_of, triangle_degree_of};
     use crate::{gauss_legendre, symmetric_triangle, tensor_quad};
     use std::f64::consts::{LN_2, PI, SQRT_2};
 
@@ -287,5 +289,29 @@ mod tests {
     fn a_value_that_is_no_number_stays_visible() {
         let goal = Goal { tolerance: 1e-12, cuts: 50 };
         assert!(adaptive_interval(&gauss_legendre(3), 0.0, 1.0, goal, |_| f64::NAN).error.is_nan());
+        let beyond = |x: f64| if x > 0.6 { f64::INFINITY } else { x };
+        assert!(adaptive_interval(&gauss_legendre(3), 0.0, 1.0, goal, beyond).error.is_nan());
+        assert!(adaptive_quad(&tensor_quad(3), goal, |u, _| (u - 0.3).sqrt()).error.is_nan());
+        assert!(adaptive_triangle(&tensor_quad(3), goal, |u, _| (u - 0.3).ln()).error.is_nan());
+    }
+
+    #[test]
+    fn a_pole_at_a_point_of_the_first_rule_alone_is_cut_away() {
+        let goal = Goal { tolerance: 1e-5, cuts: 500 };
+        let got = adaptive_interval(&gauss_legendre(3), 0.0, 1.0, goal, |x| 1.0 / (x - 0.5).abs().sqrt());
+        met(got, 8f64.sqrt(), 1e-5, "pole in the middle");
+    }
+
+    #[test]
+    fn a_single_cut_has_the_degree_of_the_rule() {
+        let goal = Goal { tolerance: 0.0, cuts: 0 };
+        for n in 1..=10 {
+            let (line, plane) = (gauss_legendre(n), tensor_quad(n));
+            let triangle = symmetric_triangle(2 * n).unwrap();
+            let label = format!("n = {n}");
+            interval_degree_of(&label, 2 * n - 1, |f| adaptive_interval(&line, 0.0, 1.0, goal, f).value);
+            square_degree_of(&label, 2 * n - 1, |f| adaptive_quad(&plane, goal, f).value);
+            triangle_degree_of(&label, 2 * n, |f| adaptive_triangle(&triangle, goal, f).value);
+        }
     }
 }
