@@ -92,7 +92,7 @@ pub fn triangle_degree_of(label: &str, degree: usize, integrate: impl Fn(Surface
 
 /// ∫ Tₐ(u) T_b(v) over the unit triangle, collapsed, by a Gauss–Legendre rule that is exact.
 pub fn triangle_chebyshev(a: usize, b: usize) -> f64 {
-    let rule = gauss_legendre((a + b) / 2 + 1);
+    let rule = gauss_legendre(usize::midpoint(a, b) + 2);
     let across = |s: f64| rule.integrate(0.0, 1.0, |t| chebyshev(b, (1.0 - s) * t));
     rule.integrate(0.0, 1.0, |s| (1.0 - s) * chebyshev(a, s) * across(s))
 }
