@@ -1,6 +1,6 @@
 //! The scene scenes/occluder.toml by every discretisation, against particle tracing.
 //!
-//! On every face H B_h must be within 0.3 % of the reference and three standard errors of it; the polynomials must be within their stated error; and LU must find
+//! On every face H B_h must be within 0.3 % of the reference; the polynomials must be within their stated error; and LU must find
 //! what Gauss–Seidel finds.
 
 // A test that cannot run should panic, in its helpers too.
@@ -17,7 +17,7 @@ use fredholm_iterative::GaussSeidel;
 use fredholm_linop::{MultiVector, Quiet, Solver, Stop, StopReason};
 use fredholm_mesh::Mesh;
 use fredholm_visibility::Occluders;
-use scene::Cuts;
+use scene::{Cuts, Part};
 
 const STOP: Stop = Stop { tolerance: 1e-10, max_iterations: 500 };
 
@@ -31,8 +31,19 @@ const CONSTANT: Cuts = Cuts {
     plate: &[(0.5, 5)],
 };
 
+/// Lower walls for methods that find too much light on them from constants.
+const FINER: [&[Part]; 2] = [&[(0.12, 3), (0.5, 7)], &[(0.1, 2), (1.0, 10)]];
+
 /// For Nyström's method with one point an element: one point is not enough for the whole lamp.
-const MIDPOINTS: Cuts = Cuts { lamp: &[(0.5, 2)], ..CONSTANT };
+const MIDPOINTS: Cuts = Cuts { lamp: &[(0.5, 2)], lower: FINER, ..CONSTANT };
+
+/// For least squares, whose residual is largest in the corners of the ceiling.
+const LEAST_SQUARES: Cuts = Cuts {
+    ceiling: &[(0.12, 9), (0.35, 6), (0.5, 1)],
+    lower: FINER,
+    upper: [&[(0.12, 7), (0.5, 11)], &[(0.5, 7), (1.0, 12)]],
+    ..CONSTANT
+};
 
 /// Enough for constants by Galerkin.
 const CONSTANT_GALERKIN: Cuts = Cuts {
@@ -95,7 +106,7 @@ fn check(name: &str, cuts: &Cuts) {
     assert!(solvers < 1e-8, "{name}: LU and Gauss–Seidel differ by {solvers:e}");
     // The classes of faces are known to 0.05 %.
     assert!(found.polynomial <= stated + 5e-4, "{name}: error {:e}, stated {stated:e}", found.polynomial);
-    assert!(found.beyond_noise <= 0.003, "{name}: {beyond} % beyond the noise of a face");
+    assert!(found.largest <= 0.003, "{name}: {largest} % off on a face");
 }
 
 #[test]
@@ -119,7 +130,14 @@ fn check_all(degree: usize, cuts: &Cuts) {
         let number = method.name().chars().find_map(|c| c.to_digit(10)).unwrap() as usize;
         let nystrom = usize::from(method.name().starts_with("nystrom"));
         if number - nystrom == degree {
-            check(method.name(), if nystrom == 1 && degree == 0 { &MIDPOINTS } else { cuts });
+            check(
+                method.name(),
+                match method.name() {
+                    "nystrom-1" => &MIDPOINTS,
+                    "least-squares-0" => &LEAST_SQUARES,
+                    _ => cuts,
+                },
+            );
         }
     }
 }

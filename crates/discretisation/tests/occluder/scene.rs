@@ -31,7 +31,7 @@ const SPLIT: f64 = 0.75;
 const LAMP: f64 = 0.35;
 
 /// Elements of equal width up to a line, and their number.
-type Part = (f64, usize);
+pub type Part = (f64, usize);
 
 /// The lines of the elements. Those along horizontal sides are given up to the middle, and mirrored.
 pub struct Cuts {
