@@ -351,7 +351,7 @@ fn info_tells_what_a_matrix_holds() {
     assert!(table.code == 0 && table.stdout.contains("row sums"), "{}{}", table.stdout, table.stderr);
     fs::remove_file(bench.path("table.json")).unwrap();
     let alone = bench.run(&["info", "table.csv"]);
-    assert!(alone.code == 5 && alone.stderr.contains("lies beside the matrix"), "{}", alone.stderr);
+    assert!(alone.code == 5 && alone.stderr.contains("in the record beside it"), "{}", alone.stderr);
     let mut again = Vec::new();
     matrix.write_npz(&mut again).unwrap();
     assert!(again == bytes, "what is read and written again is the same file");

@@ -28,7 +28,7 @@ fn unusable(folder: &Path, option: &str, error: &io::Error) -> Failure {
     let what =
         if folder.exists() && !folder.is_dir() { "it is a file".to_owned() } else { error.to_string() };
     let text = format!(
-        "cannot write results to {}: {what}\n  help: choose another folder with {option}",
+        "cannot write results to {}: {what}\n  help: write elsewhere with {option}",
         folder.display()
     );
     Failure::new(Ending::Files, text)

@@ -123,6 +123,14 @@ fn assembly<S: Storage>(
     Ok((Assembled { matrix, error, largest, methods }, packed.errors))
 }
 
+/// Bytes of the entries of `n` patches that wait for their place in the matrix at most, besides the matrix; with or without their errors.
+#[must_use]
+pub fn waiting_bytes<S: Storage>(n: usize, errors: bool) -> u64 {
+    let batch = WAITING.max(BATCH * PANEL * n) as u64;
+    let entry = size_of::<u32>() + size_of::<S>() + if errors { size_of::<f64>() } else { 0 };
+    pairs(n).min(batch) * entry as u64
+}
+
 fn pairs(n: usize) -> u64 {
     let n = n as u64;
     n * n.saturating_sub(1) / 2
@@ -216,7 +224,8 @@ impl<S: Storage> Strip<S> {
             self.report.add(i as usize, j as usize, exchange, area);
         }
         let values = exchanges.iter().map(|exchange| S::from_f64(exchange.value)).collect();
-        let errors = exchanges.iter().filter(|_| self.keep_errors).map(|exchange| exchange.error).collect();
+        let kept = if self.keep_errors { &exchanges[..] } else { &[] };
+        let errors = kept.iter().map(|exchange| exchange.error).collect();
         self.rows.push(Row { patch: i, columns, values, errors });
     }
 }

@@ -21,7 +21,7 @@ mod receiver;
 mod reciprocity;
 
 pub use aggregate::aggregate;
-pub use assembly::{Assembled, MethodCounts, Watch, assemble, assemble_with_errors};
+pub use assembly::{Assembled, MethodCounts, Watch, assemble, assemble_with_errors, waiting_bytes};
 pub use closure::{Closed, ClosureError, enforce_closure};
 pub use discretisation::{MeshError, mesh_error};
 pub use emitters::{Emitters, Groups};

@@ -24,7 +24,9 @@ pub enum Verdict {
     },
     /// The last two steps are no larger than what the values are known to. One alone may be so by symmetry.
     Settled,
-    /// The last two steps do not fall, or point different ways, or only the last is lost in what the values are known to.
+    /// The last step is no larger than what the values are known to, the one before is.
+    Lost,
+    /// The last two steps do not fall, or point different ways.
     Irregular,
     /// An order takes three meshes.
     TooFew,
@@ -89,14 +91,12 @@ fn verdict(levels: &[Vec<f64>], found: Option<(f64, f64)>, norm: &Norm, noise: f
     if let Some((order, remaining)) = found {
         return Verdict::Order { order, remaining };
     }
-    match levels {
-        [.., first, second, third]
-            if norm.distance(first, second).max(norm.distance(second, third)) <= noise =>
-        {
-            Verdict::Settled
-        }
-        [_, _, _, ..] => Verdict::Irregular,
-        _ => Verdict::TooFew,
+    let [.., first, second, third] = levels else { return Verdict::TooFew };
+    let lost = |a: &[f64], b: &[f64]| norm.distance(a, b) <= noise;
+    match (lost(first, second), lost(second, third)) {
+        (true, true) => Verdict::Settled,
+        (false, true) => Verdict::Lost,
+        _ => Verdict::Irregular,
     }
 }
 
@@ -204,7 +204,7 @@ mod tests {
         assert_eq!(convergence(&series(2.0, 2), &[1.0, 1.0], 1e-14, 4.0).verdict, Verdict::TooFew);
         assert_eq!(convergence(&[], &[], 1e-14, 4.0).verdict, Verdict::TooFew);
         let alike = [1.5, 1.5, 1.1, 1.02, 1.02].map(|x| vec![x]);
-        for (levels, verdict) in [(2, Verdict::TooFew), (3, Verdict::Irregular), (5, Verdict::Irregular)] {
+        for (levels, verdict) in [(2, Verdict::TooFew), (3, Verdict::Irregular), (5, Verdict::Lost)] {
             assert_eq!(
                 convergence(&alike[..levels], &[1.0], 1e-14, 4.0).verdict,
                 verdict,

@@ -81,7 +81,7 @@ fn unreadable(path: &Path, error: ReportError) -> Failure {
 /// What a record that is not there means.
 fn without_record(path: &Path) -> String {
     if path.file_name().is_none_or(|name| name != RECORD) {
-        return "the record of view factors lies beside the matrix; compute them again".to_owned();
+        return "what is known of a table of view factors stands in the record beside it; compute them again if it is one".to_owned();
     }
     let entries = path.parent().and_then(|folder| fs::read_dir(folder).ok()).into_iter().flatten().flatten();
     let mut others: Vec<String> =
@@ -91,6 +91,9 @@ fn without_record(path: &Path) -> String {
     if others.is_empty() {
         format!("a folder without {RECORD} holds no complete result; solve the scene again")
     } else {
-        format!("the folder holds the record of another command, to be read as it is: {}", others.join(", "))
+        format!(
+            "there is no result of `fredholm solve`; other records in the folder are {}",
+            others.join(", ")
+        )
     }
 }

@@ -12,7 +12,7 @@ use fredholm_mesh::Vec3;
 use fredholm_visibility::body::{ODD, Screen};
 
 /// Lines that are listed at most: among many, most do not show, and a part that any of them cuts counts as not smooth.
-const LINES: usize = 40;
+const LINES: usize = 400;
 
 /// A plane n·x = c with a unit normal.
 pub(crate) type Plane = (Vec3, f64);

@@ -34,7 +34,7 @@ pub(crate) fn sampled(
             batches[k % BATCHES].add(a, b, pair_parameters(k), &sees);
         }
         done = until;
-        let (share, spread) = summary(&batches, done);
+        let (share, spread) = summary(&batches);
         // Eight batches may agree by luck, but seldom both with each other and with the stage before.
         let error = spread.max((share - last).abs());
         last = share;
@@ -45,11 +45,12 @@ pub(crate) fn sampled(
     }
 }
 
-/// Weight that gets through and weight in all.
+/// Weight that gets through, weight in all, and the largest of one pair.
 #[derive(Clone, Copy, Default)]
 struct Share {
     through: f64,
     all: f64,
+    largest: f64,
 }
 
 impl Share {
@@ -57,6 +58,7 @@ impl Share {
         let ((p, wp), (q, wq)) = (weighted(a, x[0], x[1]), weighted(b, x[2], x[3]));
         let weight = wp * wq * lambert(p, a.normal(), q, b.normal());
         self.all += weight;
+        self.largest = self.largest.max(weight);
         if weight > 0.0 && sees(p, q) {
             self.through += weight;
         }
@@ -73,17 +75,19 @@ fn weighted(patch: &Patch, u: f64, v: f64) -> (Vec3, f64) {
     (patch.point(u, v), jacobian(patch, u, v))
 }
 
-/// Mean share and three standard errors over the batches, 98 % of a t-distribution with seven degrees of freedom; never less than one pair's worth.
-fn summary(batches: &[Share], pairs: usize) -> (f64, f64) {
+/// Mean share and three standard errors over the batches, 98 % of a t-distribution with seven degrees of freedom; never less than the heaviest pair's worth.
+/// Where no pair has any weight nothing is known.
+fn summary(batches: &[Share]) -> (f64, f64) {
     let all: f64 = batches.iter().map(|s| s.all).sum();
     if all == 0.0 {
-        return (0.0, 0.0);
+        return (0.0, 1.0);
     }
     let mean = batches.iter().map(|s| s.through).sum::<f64>() / all;
     let spread: f64 = batches.iter().map(|s| (s.through - mean * s.all).powi(2)).sum();
     let n = batches.len() as f64;
     let standard = (spread * n / (n - 1.0)).sqrt() / all;
-    (mean, (3.0 * standard).max(1.0 / pairs as f64))
+    let heaviest = batches.iter().map(|s| s.largest).fold(0.0, f64::max) / all;
+    (mean, (3.0 * standard).max(heaviest))
 }
 
 #[cfg(test)]
@@ -111,6 +115,22 @@ mod tests {
         let exact = 0.099_506_294_598_985;
         assert!((got.value - exact).abs() <= got.error, "{got:?}");
         assert!(got.error < 5e-3);
+    }
+
+    #[test]
+    fn where_hardly_a_point_faces_the_other_patch_little_is_claimed() {
+        // A wall that reaches below the floor, and above it by less than the points are apart.
+        let v = |x, y, z| Vec3::new(x, y, z);
+        let floor =
+            Patch::quad([v(0., 0., 0.), v(1., 0., 0.), v(1., 1., 0.), v(0., 1., 0.)]).unwrap().unwrap();
+        for height in [1e-9, 1e-5, 1e-3] {
+            let wall = Patch::quad([v(2., 0., -1.), v(2., 0., height), v(2., 1., height), v(2., 1., -1.)])
+                .unwrap()
+                .unwrap();
+            let open = Estimate { value: 1e-3, error: 0.0 };
+            let got = sampled(&floor, &wall, open, 1e-9, |_, _| false);
+            assert!(got.error >= 1e-4 * open.value, "{height}: {got:?}");
+        }
     }
 
     #[test]

@@ -26,7 +26,7 @@ pub enum ViewFactorsError {
         why: String,
     },
     /// An array is missing.
-    #[error("{}: there is no array `{entry}`; give a file that `fredholm viewfactors` wrote", path.display())]
+    #[error("{}: there is no array `{entry}`; compute the view factors again, or give a file that `fredholm viewfactors` wrote", path.display())]
     Missing {
         /// File.
         path: PathBuf,

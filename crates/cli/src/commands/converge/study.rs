@@ -81,6 +81,11 @@ fn verdict(found: &Convergence, highest: f64) -> String {
                 "settled: the last three levels agree, the last two within {last:.1e}: rounding and residual"
             )
         }
+        Verdict::Lost => {
+            format!(
+                "no order: the last step is {last:.1e}, no more than rounding and residual, but the one before is larger"
+            )
+        }
         Verdict::Irregular => {
             format!(
                 "no order: the steps from level to level are not monotone; the last is {last:.1e}, and what remains is not known"

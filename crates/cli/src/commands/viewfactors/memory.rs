@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use fredholm_coupling::waiting_bytes;
 use fredholm_linop::PackedSymmetric;
 
 use super::options::Options;
@@ -32,8 +33,9 @@ impl Prediction {
         let packed = |n: usize| u128::from(PackedSymmetric::<f64>::bytes(n));
         // Exchanges and their errors; what is merged or given a sky is copied, of what is closed the exchanges are.
         let copied = rows != elements || options.sky;
-        let exchange =
-            2 * packed(elements) + packed(rows) * (2 * u128::from(copied) + u128::from(options.close));
+        let exchange = u128::from(waiting_bytes::<f64>(elements, true))
+            + 2 * packed(elements)
+            + packed(rows) * (2 * u128::from(copied) + u128::from(options.close));
         let n = rows as u128;
         // A row sums to about 1, so that it has at most 1/X entries of at least X.
         let kept = options.threshold.map(|threshold| n.min((1.1 / threshold) as u128 + 1));
