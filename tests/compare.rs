@@ -172,7 +172,7 @@ fn bad_usage_is_2_and_no_convergence_is_3_with_the_results_written() {
 fn a_solver_that_does_not_fit_the_memory_is_refused_and_the_others_run() {
     let walls = ROOM.replace("divide = [6, 3]", "divide = [24, 12]");
     let bench = Bench::new(&walls);
-    let record = bench.compare("small", &["--solvers", "gauss-seidel,lu", "--memory", "19MB"]);
+    let record = bench.compare("small", &["--solvers", "gauss-seidel,lu", "--memory", "24MB"]);
     let outcomes: Vec<&str> = runs(&record, 0).iter().map(|run| run["outcome"].as_str().unwrap()).collect();
     assert_eq!(outcomes, ["converged", "refused"]);
     assert!(runs(&record, 0)[1]["reason"].as_str().unwrap().contains("bytes"));
