@@ -54,8 +54,7 @@ impl Critical {
         let Self { events, sightings, found, keyed, lineup, corners, ends, sides } = self;
         found.clear();
         sightings.clear();
-        let lone = screens.len() == 1;
-        let mut search = Search { source, target, flat, lone, sightings, found, keyed, lineup };
+        let mut search = Search { source, target, flat, sightings, found, keyed, lineup };
         search.turning(screens);
         list_corners(screens, corners, ends);
         sides.clear();
@@ -127,8 +126,6 @@ struct Search<'a> {
     source: &'a [Vec3],
     target: &'a [Vec3],
     flat: f64,
-    /// Whether there is one body: another may hide events.
-    lone: bool,
     sightings: &'a mut Sightings,
     found: &'a mut Vec<Line>,
     keyed: &'a mut Vec<(f64, Line)>,
@@ -140,8 +137,7 @@ impl Search<'_> {
     fn turning(&mut self, screens: &[Screen]) {
         for (face, cuts) in screens.iter().flat_map(Screen::turning) {
             let plane = (face.normal, face.offset);
-            let line =
-                self.line(if self.lone && cuts { Event::always(plane) } else { Event::perhaps(plane) });
+            let line = self.line(if cuts { Event::always(plane) } else { Event::perhaps(plane) });
             if self.known(&line).is_none() {
                 self.found.push(line);
             }
@@ -185,7 +181,7 @@ impl Search<'_> {
         self.lineup.ask(Place { source: self.source, target, flat: self.flat });
         for k in 0..self.lineup.found().len() {
             let Aligned { pair, plane } = self.lineup.found()[k];
-            let sure = self.lone
+            let sure = !before
                 && match pair.checked_sub(edges) {
                     None => near.is_sure(pair / far.corners.len()),
                     Some(pair) => near.is_sure_corner(near.corners[pair / far.edges.len()]),
@@ -197,9 +193,6 @@ impl Search<'_> {
     fn event(&mut self, sighting: Sighting, plane: Plane, sure: bool) {
         let mut line = self.line(Event::new(plane));
         let known = self.known(&line);
-        if known.is_some() && !self.lone {
-            return;
-        }
         let event = known.map_or(&mut line.event, |k| &mut self.found[k].event);
         self.sightings.add(event, sighting, sure);
         if known.is_none() {

@@ -13,10 +13,6 @@ use fredholm_mesh::Vec3;
 use fredholm_quadrature::Estimate;
 use fredholm_visibility::body::Screen;
 
-/// Bodies up to which stated errors were fitted to known ones, and what they are multiplied by behind more: errors of many parts are then more often of one sign.
-const CALIBRATED: usize = 6;
-const CAUTION: f64 = 2.0;
-
 /// The source polygon with its normal, the target, and what stands between.
 #[derive(Clone, Copy)]
 pub(crate) struct Occluded<'a> {
@@ -56,9 +52,7 @@ pub(crate) fn hidden_exchange(scene: &Occluded, goal: f64, work: &mut HiddenWork
     let breaks =
         Breaks { events, sightings, sure, flat: scene.tolerance, distance: |x| steep.distance(x), most };
     let h = |points: &[Vec3], found: &mut Vec<_>| scene.hidden(points, together, found);
-    let caution = if scene.screens.len() > CALIBRATED { CAUTION } else { 1.0 };
-    let found = Pieces::new(h, breaks, pieces, goal / caution).integrate(scene.source, scene.open);
-    Estimate { error: caution * found.error, ..found }
+    Pieces::new(h, breaks, pieces, goal).integrate(scene.source, scene.open)
 }
 
 /// What makes the hidden part steep where it is close: edges that may cut the target, and of those that lie on the source the ends.

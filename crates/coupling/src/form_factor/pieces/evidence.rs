@@ -71,6 +71,11 @@ impl Points {
         high - low
     }
 
+    /// The largest value at the points of a function that is not negative.
+    pub(super) fn largest(&self, f: impl Fn(Vec3) -> f64) -> f64 {
+        self.places.iter().map(|&x| f(x)).fold(0.0, f64::max)
+    }
+
     /// What the points tell about a line.
     pub(super) fn judge(&self, (n, c): Plane) -> Line {
         let (mut above, mut below) = (0, 0);

@@ -3,8 +3,8 @@
 //! The part with the largest error is improved next. Where its points are of several kinds it is cut along the critical line that parts them, and halves it best; where
 //! there is none its sides are halved. Where all are of one kind it gets the next rule as long as that pays, or its sides are halved. So the cost follows the goal. In m².
 //!
-//! Most critical lines do not show. Behind one body it is known where they do ([`Sightings`]): the source is cut along those that may matter before anything is asked. Of the others the
-//! kinds of points on both sides tell. A line may also pass between the points and the border of a part: before the part is left as it is, one point behind the line is looked at,
+//! Most critical lines do not show. Of lines of single bodies it is known where they do, unless another body hides that ([`Sightings`]): the source is cut along those that may matter before anything is asked. Of the others
+//! the kinds of points on both sides tell. A line may also pass between the points and the border of a part: before the part is left as it is, one point behind the line is looked at,
 //! if that could hide something that matters.
 
 mod evidence;
@@ -34,7 +34,7 @@ const ON_THE_LINE: f64 = 1e-9;
 /// What may be hidden behind a line, in goals, from which on a point there is looked at.
 const MATTERS: f64 = 0.15;
 /// What may be hidden behind a line that surely shows, in goals, from which on the source is cut along it at once.
-const SURELY: f64 = 2.0;
+const SURELY: f64 = 2.2;
 /// Points after which an integral ends with the error that it has.
 const POINTS: usize = 100_000;
 
@@ -228,13 +228,19 @@ where
         piece.line = self.line_through(&piece);
         piece.cut = self.work.lines.iter().map(|(_, share)| *share).fold(0.0, f64::max);
         if piece.asks_most() {
-            piece.most = (self.breaks.most)(piece.shape.centre()) * piece.shape.area();
+            piece.most = self.most(&piece);
         }
         piece.raise(value, self.work.points.kind(), self.goal);
         if self.observed.scale() * piece.error < self.goal {
             self.look_behind(&mut piece);
         }
         piece
+    }
+
+    /// Largest value that h could have on a part at the points of its first rules, or at its centre where h is not steep, times the area, m².
+    fn most(&self, piece: &Piece) -> f64 {
+        let (most, shape) = (&self.breaks.most, &piece.shape);
+        shape.area() * if piece.is_near() { self.work.points.largest(most) } else { most(shape.centre()) }
     }
 
     /// The line that shows and halves a part best, with the share of the width on its smaller side. Lists the lines behind which no point lies.

@@ -10,17 +10,17 @@
 use super::piece::Piece;
 
 /// c,
-const SAFETY: f64 = 0.58;
+const SAFETY: f64 = 0.495;
 /// u,
 const SURPRISE: f64 = 0.62;
 /// w,
-const UNKNOWN: f64 = 6.0;
+const UNKNOWN: f64 = 5.0;
 /// and where all events are sure, and
-const SURE: f64 = 1.0;
+const SURE: f64 = 1.2;
 /// l of the formula.
 const MANY: f64 = 0.17;
 /// What a refinement weighs after the next one.
-const KEEP: f64 = 0.86;
+const KEEP: f64 = 0.95;
 /// Largest ρ that counts.
 const LARGEST: f64 = 6.2;
 

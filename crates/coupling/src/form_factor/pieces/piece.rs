@@ -1,11 +1,11 @@
 //! A part of the source: the integral over it, and how well that is known.
 //!
 //! s is the change from the rule before (at least [`ROUNDING`] times the integral), v the range of h times the area (for a higher rule on a part where all points are of one kind: the change before), m the
-//! largest value that the integral could have, r the reach. The error is, with measured shares (docs/form-factors.md),
+//! area times the largest value that h could have at the first points, r the reach. The error is, with measured shares (docs/form-factors.md),
 //!
 //! | | r ≤ 1 | r > 1 |
 //! |---|---|---|
-//! | all points of one kind | r √(a² s v + a′² v²) | √r √((b m)² + (c s)²) |
+//! | all points of one kind | r √r √(a² s v + a′² v² + a″² s²) | √r √((b m)² + (c s)²) |
 //! | kinds differ | d √(s v) | r √(e² s m + (f m)² + (g s)²) |
 
 use super::shape::{DEGREES, Shape};
@@ -19,16 +19,16 @@ const PAYS_FIRST: f64 = 0.26;
 /// Radius of a part, in its distances from what makes h steep, above which its sides are halved.
 /// No simple number: in a scene with right angles the two are often equal, and rounding would decide.
 const NEAR: f64 = 1.000_001;
-/// The shares a and a′ of the table,
-const SMOOTH: [f64; 2] = [0.15, 0.045];
+/// The shares a, a′ and a″ of the table,
+const SMOOTH: [f64; 3] = [0.11, 0.02, 0.32];
 /// b and c,
-const SMOOTH_NEAR: [f64; 2] = [0.013, 0.14];
+const SMOOTH_NEAR: [f64; 2] = [0.0106, 0.18];
 /// d,
-const BROKEN: f64 = 0.11;
+const BROKEN: f64 = 0.1;
 /// and e, f and g.
-const BROKEN_NEAR: [f64; 3] = [0.053, 0.011, 0.013];
+const BROKEN_NEAR: [f64; 3] = [0.05, 0.008, 0.014];
 /// Share of the largest value, and of the width behind a line through a part, that small shadows between its points may hide; each next rule leaves this part of it.
-const BETWEEN: [f64; 2] = [1e-3, 0.25];
+const BETWEEN: [f64; 2] = [1e-3, 0.22];
 /// Share of what shows behind a line with no points of the rule.
 const BEHIND: f64 = 1.3;
 
@@ -44,7 +44,7 @@ pub(super) struct Piece {
     pub lines: Lines,
     /// Radius over the distance from what makes h steep.
     reach: f64,
-    /// Largest value that the integral could have, m², where that has a say.
+    /// Largest value that h could have at the first points, times the area, m², where that has a say.
     pub most: f64,
     /// Range of h at the first points, times the area, m².
     range: f64,
@@ -71,9 +71,14 @@ impl Piece {
         Self { shape, lines, reach, most, range, degree: 0, value, step, error, kind, cut, line, pays: true }
     }
 
-    /// Whether the largest value that the integral could have has a say in the error, and is not known yet.
+    /// Whether h is steep on it.
+    pub(super) fn is_near(&self) -> bool {
+        self.reach > NEAR
+    }
+
+    /// Whether the largest value that h could have has a say in the error, and is not known yet.
     pub(super) fn asks_most(&self) -> bool {
-        self.degree == 0 && (self.reach > NEAR || self.cut > 0.0)
+        self.degree == 0 && (self.is_near() || self.cut > 0.0)
     }
 
     /// Takes the integral by the next rule, with the kind of its points. `goal` is the error allowed to the whole, m².
@@ -87,7 +92,7 @@ impl Piece {
         let hidden = self.between();
         self.error = self.estimate(step, before) + hidden;
         let quick = step < if first { PAYS_FIRST } else { PAYS } * before || 2.0 * hidden > self.error;
-        self.pays = self.kind.is_some() && self.reach <= NEAR && quick && self.degree + 1 < DEGREES.len();
+        self.pays = self.kind.is_some() && !self.is_near() && quick && self.degree + 1 < DEGREES.len();
         (self.value, self.step) = (value, step);
     }
 
@@ -98,9 +103,9 @@ impl Piece {
 
     fn estimate(&self, s: f64, v: f64) -> f64 {
         let (r, m) = (self.reach, self.most);
-        let (a, [b, c], [e, f, g]) = (SMOOTH, SMOOTH_NEAR, BROKEN_NEAR);
+        let ([a, a1, a2], [b, c], [e, f, g]) = (SMOOTH, SMOOTH_NEAR, BROKEN_NEAR);
         match (self.kind.is_some(), r <= NEAR) {
-            (true, true) => r * (a[0] * a[0] * s * v + a[1] * a[1] * v * v).sqrt(),
+            (true, true) => r * (r * (a * a * s * v + a1 * a1 * v * v + a2 * a2 * s * s)).sqrt(),
             (false, true) => BROKEN * (s * v).sqrt(),
             (true, false) => (r * (b * b * m * m + c * c * s * s)).sqrt(),
             (false, false) => r * (e * e * s * m + f * f * m * m + g * g * s * s).sqrt(),
