@@ -153,19 +153,31 @@ fn exact_shadows_state_their_error() {
     }
 }
 
-/// What the errors above are measured against agrees with other formulas. Their integral misses a small shadow now and then: to a tenth of the goal all of these pairs agree to 0.005 T.
-#[test]
-fn resolved_exchanges_are_true() {
-    let tolerance = 1e-2;
+/// How many of some pairs agree with other formulas, and the largest difference, in T.
+fn agreement(pairs: impl Iterator<Item = ((Vec<Patch>, Exchange), f64)>, slack: [f64; 2]) -> (usize, f64) {
     let (mut agree, mut worst) = (0, 0f64);
-    for ((patches, _), value) in occluded(tolerance).zip(resolved()).step_by(40) {
-        let goal = tolerance * facing(&patches);
+    for ((patches, _), value) in pairs {
+        let goal = 1e-2 * facing(&patches);
         let exact = independent(&patches, 1e-2 * goal);
         let off = (value - exact.value).abs();
         worst = worst.max(off / goal);
-        agree += usize::from(off <= 2.0 * exact.error + 5e-3 * goal);
+        agree += usize::from(off <= slack[0] * exact.error + slack[1] * goal);
     }
-    println!("63 resolved pairs: {agree} agree with other formulas, largest difference {worst:.1e} T");
+    println!("{agree} resolved pairs agree with other formulas, largest difference {worst:.1e} T");
+    (agree, worst)
+}
+
+/// What the errors above are measured against agrees with other formulas.
+#[test]
+fn resolved_exchanges_are_true() {
+    let (agree, worst) = agreement(occluded(1e-2).zip(resolved()).take(60), [1.0, 1e-3]);
+    assert!(agree >= 59 && worst < 0.01);
+}
+
+/// In the other sets the integral of the other formulas misses a small shadow now and then: to a tenth of the goal these pairs agree to 0.005 T.
+#[test]
+fn resolved_exchanges_of_all_sets_are_true() {
+    let (agree, worst) = agreement(occluded(1e-2).zip(resolved()).step_by(40), [2.0, 5e-3]);
     assert!(agree >= 62 && worst < 0.05);
 }
 
