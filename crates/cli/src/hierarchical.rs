@@ -3,10 +3,11 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use fredholm_hierarchical::{
-    Goal, HierarchyError, Options as Limits, Problem as Input, RESIDUAL, Round, Solution as Solved, State,
-    Surfaces, Watch,
+    Goal, HierarchyError, Options as Limits, Problem as Input, RESIDUAL, Round, Solution as Solved, Solvers,
+    State, Surfaces, Watch,
 };
 use fredholm_linop::MultiVector;
 use fredholm_mesh::{Mesh, MeshBuilder, MeshError, Patch};
@@ -29,6 +30,8 @@ use crate::stages::Stages;
 
 /// What the record calls the discretisation.
 const NAME: &str = "hierarchical";
+/// What solves where the solver asked for fails: it needs products alone.
+const FALLBACK: &str = "gmres";
 /// The solver where none is asked for.
 const SOLVER: &str = "cg-theta";
 /// Solvers that know the matrix by applications alone. Others read rows or columns, each of which is an application here.
@@ -121,15 +124,24 @@ pub(crate) fn compute(
     let limits = limits(options, accuracy);
     let entry = registry::build(&options.problem.solver).map_err(|e| Failure::new(Ending::Input, e))?;
     let state = checkpoint.map(|checkpoint| state(checkpoint, scene, &input)).transpose()?;
+    let fallback = registry::build(FALLBACK).map_err(|e| Failure::new(Ending::Input, e))?;
+    let solvers = Solvers { first: &*entry.solver, fallback: &*fallback.solver };
     let watch = Follower {
         console: stages.console,
         interrupt: stages.interrupt,
         header: Header::new(scene, options, accuracy),
         accuracy,
         folder: Path::new(&options.output),
+        saved: AtomicBool::new(false),
     };
-    let solve =
-        || fredholm_hierarchical::solve(&input, &limits, &*entry.solver, state, &watch).map_err(failure);
+    let solve = || match fredholm_hierarchical::solve(&input, &limits, solvers, state, &watch) {
+        // What the last round came to is in the checkpoint, which stays: the run can go on from there.
+        Err(HierarchyError::Interrupted) if watch.saved.load(Ordering::Relaxed) => {
+            let state = self::state(&checkpoint::read(watch.folder)?, scene, &input)?;
+            fredholm_hierarchical::conclude(&input, &limits, solvers, state).map_err(failure)
+        }
+        solved => solved.map_err(failure),
+    };
     let solved = stages.run("solution", solve)?;
     stages.begin_saving()?;
     let mesh = refined(&faces, &solved).map_err(|e| Failure::new(Ending::Input, e))?;
@@ -238,6 +250,9 @@ fn solution(solved: Solved, options: &Options, accuracy: f64) -> Solution {
         exposed,
         energy,
         field_error: None,
+        replaced: solved
+            .replaced
+            .map(|why| format!("{} was replaced by {FALLBACK}: {why}", options.problem.solver)),
     }
 }
 
@@ -269,6 +284,8 @@ struct Follower<'a> {
     header: Header,
     accuracy: f64,
     folder: &'a Path,
+    /// Whether there is a checkpoint of this run.
+    saved: AtomicBool,
 }
 
 impl Watch for Follower<'_> {
@@ -279,6 +296,9 @@ impl Watch for Follower<'_> {
     fn round(&self, rounds: &[Round], state: &State) -> Result<(), HierarchyError> {
         let Some(last) = rounds.last() else { return Ok(()) };
         checkpoint::write(self.folder, &self.header, state).map_err(|why| HierarchyError::Save { why })?;
+        self.saved.store(true, Ordering::Relaxed);
+        // From now on there is a result worth the wait.
+        self.interrupt.begin_saving().map_err(|_| HierarchyError::Interrupted)?;
         let error = state.error().map(fredholm_hierarchical::Stated::worst);
         // The digits gained of those asked for.
         let share = error.map_or(0.0, |error| (error.ln() / self.accuracy.ln()).clamp(0.0, 1.0));
@@ -291,7 +311,7 @@ impl Watch for Follower<'_> {
 }
 
 fn interrupted() -> Failure {
-    let text = "interrupted; there is no result yet\n  help: `fredholm resume DIR`, with the folder for the results, goes on after the last round";
+    let text = "interrupted before the first round had ended; there is no result, nothing was written";
     Failure::new(Ending::Interrupted, text)
 }
 

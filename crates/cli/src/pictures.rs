@@ -1,5 +1,7 @@
 //! What a solution is seen by: pictures of the elements, of links, and of the light that every pixel gathers.
 
+use std::sync::Arc;
+
 use fredholm_coupling::Receiver;
 use fredholm_hierarchical::{Gather, HierarchyError, Leaves, Link, Sender, Tree, senders};
 use fredholm_linop::MultiVector;
@@ -24,7 +26,7 @@ const PICTURES: usize = 3;
 #[derive(Debug)]
 pub(crate) struct Hierarchy {
     pub(crate) tree: Tree,
-    pub(crate) links: Vec<Link>,
+    pub(crate) links: Arc<Vec<Link>>,
 }
 
 /// The names of the pictures that are written besides the usual one.

@@ -61,12 +61,17 @@ pub(crate) fn record(
 
 /// What the user should know of the solution.
 pub(crate) fn remarks(options: &Options, solution: &Solution) -> impl Iterator<Item = String> {
-    [unfinished(solution.report.reason), inexact(options, solution), coarse(solution)].into_iter().flatten()
+    [unfinished(solution), inexact(options, solution), coarse(solution), solution.replaced.clone()]
+        .into_iter()
+        .flatten()
 }
 
-fn unfinished(reason: StopReason) -> Option<String> {
-    let text = match reason {
+fn unfinished(solution: &Solution) -> Option<String> {
+    let text = match solution.report.reason {
         StopReason::Converged => return None,
+        StopReason::Interrupted if solution.hierarchy.is_some() => {
+            "interrupted: the results are those of the last round, marked partial; `fredholm resume DIR`, with the folder of the results, goes on from there"
+        }
         StopReason::Interrupted => "interrupted: the results are those of the last iterate, marked partial",
         StopReason::IterationLimit | StopReason::Diverged => {
             "the tolerance was not met; allow more with --max-iterations or --tolerance, or choose another --solver"
@@ -81,10 +86,11 @@ fn coarse(solution: &Solution) -> Option<String> {
     let Hierarchy { accuracy, stated, limited, goal, .. } = hierarchy;
     let whose = if goal.is_some() { "mean irradiance of the goal" } else { "irradiance" };
     let reached = stated.map_or_else(|| "not known".to_owned(), |error| format!("{error:.1e}"));
-    let why = if *limited {
-        "the memory did not allow finer links; allow more with --memory"
-    } else {
-        "the rounds ran out"
+    let why = match solution.report.reason {
+        _ if *limited => "the memory did not allow finer links; allow more with --memory",
+        StopReason::Converged => "the rounds ran out",
+        StopReason::Interrupted => "the run was interrupted",
+        StopReason::IterationLimit | StopReason::Diverged => "the solver did not converge",
     };
     Some(format!(
         "the estimated error of the {whose} is {reached}, where {accuracy:.1e} was asked for: {why}"

@@ -51,6 +51,8 @@ pub(crate) struct Solution {
     pub(crate) tree: Option<pictures::Hierarchy>,
     /// Relative error of the field as polynomials, per band.
     pub(crate) field_error: Option<Vec<f64>>,
+    /// Which solver took the place of the one asked for, and why.
+    pub(crate) replaced: Option<String>,
 }
 
 impl Solution {
@@ -134,6 +136,7 @@ fn assess<S: Storage>(
         hierarchy: None,
         tree: None,
         field_error: None,
+        replaced: None,
     })
 }
 

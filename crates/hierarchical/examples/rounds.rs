@@ -2,14 +2,18 @@
 //! `cargo run --release -p fredholm-hierarchical --example rounds -- SCENE ACCURACY [constant|linear] [REFERENCE.csv]`.
 
 use fredholm_hierarchical::{
-    HierarchyError, Options, Problem, RESIDUAL, Round, Solution, State, Stated, Surfaces, Watch, solve,
+    HierarchyError, Options, Problem, RESIDUAL, Round, Solution, Solvers, State, Stated, Surfaces, Watch,
+    solve,
 };
-use fredholm_iterative::CgTheta;
+use fredholm_iterative::{CgTheta, Gmres};
 use fredholm_linop::MultiVector;
 use fredholm_mesh::Mesh;
 use fredholm_scene::Scene;
 use fredholm_visibility::Occluders;
 use std::error::Error;
+
+/// The solver of the command line, and the one that takes its place.
+const SOLVERS: Solvers = Solvers { first: &CgTheta, fallback: &Gmres { restart: 50 } };
 
 /// Prints every round.
 struct Print;
@@ -59,7 +63,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let residual = RESIDUAL * accuracy;
     let options = Options { accuracy, linear, residual, bytes: 8 << 30, max_iterations: 200 };
     println!("threshold  elements      links links/element     change        CPU");
-    let solution = solve(&problem, &options, &CgTheta, None, &Print)?;
+    let solution = solve(&problem, &options, SOLVERS, None, &Print)?;
     solution.rounds.last().into_iter().for_each(print);
     println!("stated error {:.3} %", 100.0 * solution.error.as_ref().map_or(f64::NAN, Stated::worst));
     if let Some(file) = rest.get(1) {

@@ -3,9 +3,10 @@
 //! The tree is not saved but grown again: the same splits of the same mesh give the same tree.
 
 use crate::driver::{Problem, Round, Stated};
-use crate::{HierarchyError, Link, Node, State, Tree};
+use crate::{HierarchyError, Link, State, Tree};
 use fredholm_linop::MultiVector;
 use std::io::{self, Read, Write};
+use std::sync::Arc;
 
 /// First bytes of a state.
 const MARK: &[u8; 8] = b"FREDHR02";
@@ -52,7 +53,7 @@ impl State {
         for split in source.list(|s| Ok(u32::from_le_bytes(s.array()?)))? {
             grow(&mut state.tree, split)?;
         }
-        state.links = source.list(Source::link)?;
+        state.links = Arc::new(source.list(Source::link)?);
         let (lanes, leaves) = (state.radiosity.lanes(), state.tree.leaves().len());
         let foreign = |_| HierarchyError::State { why: "belongs to another scene" };
         state.radiosity = MultiVector::from_vec(leaves, lanes, source.numbers()?).map_err(foreign)?;
@@ -70,13 +71,12 @@ impl State {
     /// Refuses what does not fit its tree.
     fn checked(self, problem: &Problem) -> Result<Self, HierarchyError> {
         let nodes = self.tree.nodes();
-        let linkable = |index: u32| nodes.get(index as usize).is_some_and(Node::is_linkable);
+        let known = |index: u32| (index as usize) < nodes.len();
         let faces = problem.mesh.faces().len() * self.radiosity.lanes();
-        let fits =
-            self.links.iter().all(|link| linkable(link.a) && linkable(link.b) && link.open.is_finite())
-                && (self.faces.len() == faces || self.rounds.is_empty())
-                && self.radiosity.not_finite().is_none()
-                && self.importance.not_finite().is_none();
+        let fits = self.links.iter().all(|link| known(link.a) && known(link.b) && link.open.is_finite())
+            && (self.faces.len() == faces || self.rounds.is_empty())
+            && self.radiosity.not_finite().is_none()
+            && self.importance.not_finite().is_none();
         if fits { Ok(self) } else { Err(HierarchyError::State { why: "belongs to another scene" }) }
     }
 }

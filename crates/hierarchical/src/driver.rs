@@ -1,21 +1,27 @@
 //! Solve, refine where the solution says so, solve again: until the change from one solution to the next says that the accuracy is reached.
 //!
 //! Every round lowers the error that a link may leave by [`STEP`]. The irradiance of the input faces then changes by about what the round before was wrong by; what remains is less. The stated error
-//! is [`CONFIDENCE`] times the relative change ‖E − E'‖/‖E‖ in the area-weighted L2 norm over the faces, in the worst band. With a [`Goal`] the dual problem is solved in every round too, and the error is
+//! is [`CONFIDENCE`] times the relative change ‖E − E'‖/‖E‖ in the area-weighted L2 norm over the faces, in the worst band; a change is not believed to be less than [`LEAP`] times the one before. To it comes what the balance of energy
+//! tells: the power that row sums lose or gain against what rays say, over the power that is absorbed. The irradiances are solutions, so that multiple reflection has amplified it already.
+//!
+//! A round that refined nothing tells nothing: it keeps the error that was stated before. So does a round that memory ended, but for a larger change. With a [`Goal`] the dual problem is solved in every round too, and the error is
 //! that of the mean irradiance of the goal ([`crate::goal`]).
 
+use crate::closure::{Aim, balance};
 use crate::exposure::Exposure;
 use crate::goal::{Estimate, Goal, Reached, expected, weights};
+use crate::opening::Opening;
 use crate::oracle::Light;
 use crate::refine::{Limits, bytes, refine};
 use crate::transport::Sight;
 use crate::{HierarchicalOperator, HierarchyError, Link, State, Surfaces, Tree};
 use fredholm_coupling::{Extent, Means, Radiosity};
-use fredholm_linop::{MultiVector, Progress, Report, SecondKind, Solver, Stop, StopReason};
+use fredholm_linop::{MultiVector, Progress, Report, SecondKind, SolveError, Solver, Stop, StopReason};
 use fredholm_mesh::{Mesh, Patch};
 use fredholm_visibility::Occluders;
 use fredholm_visibility::body::Bodies;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 /// Factor from one threshold to the next.
 pub(crate) const STEP: f64 = 0.3;
@@ -23,6 +29,8 @@ pub(crate) const STEP: f64 = 0.3;
 const FIRST: f64 = 4.0;
 /// Stated error over the last change.
 pub(crate) const CONFIDENCE: f64 = 1.5;
+/// Least change that is believed, over that of the round before: a smaller one is chance.
+const LEAP: f64 = 0.1;
 /// Rounds at most.
 const ROUNDS: usize = 24;
 /// Residual of a solution, over the accuracy, that is small beside it.
@@ -31,6 +39,11 @@ pub const RESIDUAL: f64 = 1e-3;
 const EXCHANGE: f64 = 0.1;
 /// Least area of an element, over that of the scene.
 const LEAST: f64 = 1e-10;
+
+/// What row sums may exceed 1 by where it is not known whether something leaves: cutting off all that is above, and adding nothing to what is below, would lose power.
+const SLACK: f64 = 0.04;
+/// Row sum up to which a leaf of a closed scene is not believed to lack links alone.
+const LEAST_ROW: f64 = 0.7;
 
 /// Occluders that are put together to bodies, at most.
 const MANY: usize = 2048;
@@ -94,6 +107,24 @@ impl Stated {
     }
 }
 
+impl Stated {
+    /// The same with a further error of the whole of each band.
+    fn with(mut self, further: &[f64]) -> Self {
+        self.relative_l2.iter_mut().zip(further).for_each(|(error, further)| *error += further);
+        self
+    }
+
+    /// Whatever is more of either.
+    fn or_more(mut self, other: &Self) -> Self {
+        let more = |errors: &mut [f64], others: &[f64]| {
+            errors.iter_mut().zip(others).for_each(|(error, other)| *error = error.max(*other));
+        };
+        more(&mut self.relative_l2, &other.relative_l2);
+        more(&mut self.largest, &other.largest);
+        self
+    }
+}
+
 /// Follows a solution and may stop it.
 pub trait Watch: Sync {
     /// Whether to go on; asked often, from any thread.
@@ -122,7 +153,7 @@ pub struct Solution {
     /// Elements and clusters.
     pub tree: Tree,
     /// Links.
-    pub links: Vec<Link>,
+    pub links: Arc<Vec<Link>>,
     /// Irradiance and radiosity of the leaves, W/m², in the order of [`Tree::leaves`].
     pub means: Means,
     /// The system of the leaves.
@@ -141,6 +172,19 @@ pub struct Solution {
     pub goal: Option<Reached>,
     /// Whether memory ended the refinement before the accuracy was reached.
     pub limited: bool,
+    /// Factors of the leaves on both sides of the operator of the links, which make its row sums hold.
+    pub scale: Vec<f64>,
+    /// Why the solver asked for was replaced by the other one, where it was.
+    pub replaced: Option<String>,
+}
+
+/// The solver to be used, and the one that takes its place where it fails.
+#[derive(Clone, Copy)]
+pub struct Solvers<'a> {
+    /// The one asked for.
+    pub first: &'a dyn Solver<f64>,
+    /// One that needs no more than products.
+    pub fallback: &'a dyn Solver<f64>,
 }
 
 /// Solves to an accuracy, from the start or from a saved state.
@@ -150,46 +194,80 @@ pub struct Solution {
 pub fn solve(
     problem: &Problem,
     options: &Options,
-    solver: &dyn Solver<f64>,
+    solvers: Solvers,
     state: Option<State>,
     watch: &dyn Watch,
 ) -> Result<Solution, HierarchyError> {
     if !(options.accuracy > 0.0 && options.accuracy < 1.0) {
         return Err(HierarchyError::Accuracy { value: options.accuracy });
     }
-    let goal = problem.goal.map_or(&[][..], Goal::surfaces);
-    if state.as_ref().is_some_and(|state| state.goal != goal) {
-        return Err(HierarchyError::State { why: "belongs to another goal" });
-    }
+    with_run(problem, options, solvers, watch, |run| {
+        let mut state = match state {
+            Some(state) => run.taken(state)?,
+            None => State::new(problem, options.accuracy * FIRST)?,
+        };
+        let mut system = run.resumed(&state)?;
+        loop {
+            let (next, report) = run.round(&mut state, system.take())?;
+            let ends = report.reason != StopReason::Converged || state.limited || run.enough(&state);
+            if ends {
+                return Ok(run.finish(state, next, report));
+            }
+            state.threshold *= STEP;
+            watch.round(&state.rounds, &state)?;
+            system = Some(next);
+        }
+    })
+}
+
+/// The solution that a saved state holds, such as that of the last round before a run was interrupted, with the error that was stated then. Nothing is refined or solved.
+///
+/// # Errors
+/// [`HierarchyError::State`] for a state without a round, or one of another goal.
+pub fn conclude(
+    problem: &Problem,
+    options: &Options,
+    solvers: Solvers,
+    state: State,
+) -> Result<Solution, HierarchyError> {
+    with_run(problem, options, solvers, &Patient, |run| {
+        let state = run.taken(state)?;
+        let Some(system) = run.resumed(&state)? else {
+            return Err(HierarchyError::State { why: "has no round yet" });
+        };
+        // No iteration: only the residual is wanted.
+        let stop = Stop { tolerance: options.residual, max_iterations: 0 };
+        let (rhs, mut x) = (system.radiosity.exitance(), state.radiosity.clone());
+        let found = run.solved(&system, rhs, &mut x, stop)?;
+        Ok(run.finish(state, system, Report { reason: StopReason::Interrupted, ..found }))
+    })
+}
+
+/// Prepares what does not change from round to round.
+fn with_run<T>(
+    problem: &Problem,
+    options: &Options,
+    solvers: Solvers,
+    watch: &dyn Watch,
+    f: impl FnOnce(&mut Run) -> Result<T, HierarchyError>,
+) -> Result<T, HierarchyError> {
     let patches: Vec<&Patch> = problem.mesh.patches().collect();
     let many = problem.occluders.len() > MANY;
     let bodies = if many { Bodies::default() } else { Bodies::new(problem.occluders, &patches, &[]) };
     let exposure = Exposure::new(problem.mesh)?;
+    let reflectances = problem.surfaces.reflectance.as_slice();
+    let opening = exposure.opening(reflectances.iter().copied().fold(0.0, f64::max));
     let sight = Sight { occluders: problem.occluders, bodies: &bodies, many };
     let dual = problem.goal.map(|goal| (goal, goal.dual(problem.mesh, problem.surfaces)));
-    let mut run = Run { problem, options, solver, watch, sight, exposure, dual };
-    let mut state = match state {
-        Some(state) => state,
-        None => State::new(problem, options.accuracy * FIRST)?,
-    };
-    let mut system = run.resumed(&state)?;
-    loop {
-        let light = run.light(&state, system.as_ref());
-        let (next, report) = run.round(&mut state, system.as_ref(), light)?;
-        let ends = report.reason != StopReason::Converged || state.limited || run.enough(&state);
-        if ends {
-            return Ok(run.finish(state, next, report));
-        }
-        state.threshold *= STEP;
-        watch.round(&state.rounds, &state)?;
-        system = Some(next);
-    }
+    f(&mut Run { problem, options, solvers, watch, sight, exposure, opening, dual, replaced: None })
 }
 
 /// The operator of some links and the system that it makes.
 struct System {
     operator: HierarchicalOperator,
     radiosity: Radiosity,
+    /// The input element of each leaf.
+    roots: Vec<u32>,
     /// w of the dual problem, where there is a goal, 1/m².
     dual: Option<MultiVector<f64>>,
 }
@@ -205,41 +283,87 @@ struct Known {
 struct Run<'a> {
     problem: &'a Problem<'a>,
     options: &'a Options,
-    solver: &'a dyn Solver<f64>,
+    solvers: Solvers<'a>,
     watch: &'a dyn Watch,
     sight: Sight<'a>,
     exposure: Exposure<'a>,
+    opening: Opening,
     /// With a goal: the dual problem, of the same reflectances.
     dual: Option<(&'a Goal, Surfaces)>,
+    /// Why the fallback solves.
+    replaced: Option<String>,
 }
 
 impl Solution {
-    /// Bytes of the tree and the links.
+    /// The operator that was solved with.
+    #[must_use]
+    pub fn operator(&self) -> HierarchicalOperator {
+        let exposed = exposed(self.system.elements());
+        let mut operator = HierarchicalOperator::new(&self.tree, Arc::clone(&self.links), &exposed);
+        operator.set_scale(self.scale.clone());
+        operator
+    }
+
+    /// Bytes of the tree, the links and the vectors on them.
     #[must_use]
     pub fn bytes(&self) -> u64 {
-        bytes(&self.tree, self.links.len())
+        bytes(self.tree.nodes().len(), self.links.len(), self.radiosity.lanes())
     }
 }
 
 impl Run<'_> {
+    /// A saved state, which must be one of the goal.
+    fn taken(&self, state: State) -> Result<State, HierarchyError> {
+        let goal = self.problem.goal.map_or(&[][..], Goal::surfaces);
+        if state.goal == goal {
+            Ok(state)
+        } else {
+            Err(HierarchyError::State { why: "belongs to another goal" })
+        }
+    }
+
     /// The system of a state that has been solved.
     fn resumed(&mut self, state: &State) -> Result<Option<System>, HierarchyError> {
         if state.rounds.is_empty() { Ok(None) } else { self.system(&state.tree, &state.links).map(Some) }
     }
 
-    fn system(&mut self, tree: &Tree, links: &[Link]) -> Result<System, HierarchyError> {
-        let extents = self.exposure.extents(tree, &tree.leaves());
-        let exposed: Vec<f64> = extents.iter().map(|extent| extent.exposed).collect();
-        let operator = HierarchicalOperator::new(tree, links, &exposed);
-        let roots: Vec<usize> =
-            operator.leaves().iter().map(|&leaf| tree.nodes()[leaf as usize].root().unwrap_or(0)).collect();
+    fn system(&mut self, tree: &Tree, links: &Arc<Vec<Link>>) -> Result<System, HierarchyError> {
+        let mut extents = self.exposure.extents(tree, &tree.leaves());
+        let mut operator = HierarchicalOperator::new(tree, Arc::clone(links), &exposed(&extents));
+        if widen(&mut extents, &operator.row_sums()) {
+            operator = HierarchicalOperator::new(tree, Arc::clone(links), &exposed(&extents));
+        }
+        let root = |&leaf: &u32| tree.nodes()[leaf as usize].root().unwrap_or(0) as u32;
+        let roots: Vec<u32> = operator.leaves().iter().map(root).collect();
+        // Far from a goal elements are coarse and row sums rough: to correct them would disturb what the goal receives.
+        if self.dual.is_none() {
+            self.close(&mut operator, &extents, &roots);
+        }
         let of_leaves = |values: &MultiVector<f64>| {
-            MultiVector::from_fn(roots.len(), values.lanes(), |i, band| values.row(roots[i])[band])
+            MultiVector::from_fn(roots.len(), values.lanes(), |i, band| values.row(roots[i] as usize)[band])
         };
         let Surfaces { reflectance, exitance } = self.problem.surfaces;
         let radiosity = Radiosity::new(extents, of_leaves(reflectance), of_leaves(exitance))?;
         let dual = self.dual.as_ref().map(|(_, dual)| of_leaves(&dual.exitance));
-        Ok(System { operator, radiosity, dual })
+        Ok(System { operator, radiosity, roots, dual })
+    }
+
+    /// Scales the operator until its row sums hold: none above 1 by more than a tolerance, and 1 exactly in a closed scene. A row sum that is far too small there has another cause, such as a buried part that no
+    /// grid saw, and is left as it is.
+    fn close(&self, operator: &mut HierarchicalOperator, extents: &[Extent], roots: &[u32]) {
+        let aim = |((size, &root), row): ((&Extent, &u32), f64)| {
+            let reflectances = self.problem.surfaces.reflectance.row(root as usize);
+            let reflectance = reflectances.iter().copied().fold(0.0, f64::max);
+            if self.opening.loses_nothing(root as usize) && row > LEAST_ROW * size.exposed {
+                Aim { least: size.exposed, most: size.exposed }
+            } else {
+                // Half of what would make the system indefinite.
+                let slack = SLACK.min(0.5 * (1.0 / reflectance - 1.0));
+                Aim { least: 0.0, most: (1.0 + slack) * size.exposed }
+            }
+        };
+        let aims: Vec<Aim> = extents.iter().zip(roots).zip(operator.row_sums()).map(aim).collect();
+        balance(operator, &aims);
     }
 
     /// What is known of the light before the next round.
@@ -275,38 +399,50 @@ impl Run<'_> {
     fn round(
         &mut self,
         state: &mut State,
-        system: Option<&System>,
-        mut light: Light,
+        system: Option<System>,
     ) -> Result<(System, Report), HierarchyError> {
-        let before = self.known(state, system);
-        let links = before.as_ref().map(|_| std::mem::take(&mut state.links));
+        let mut light = self.light(state, system.as_ref());
+        let before = self.known(state, system.as_ref());
+        // The links are refined in their place: nothing else may hold them.
+        drop(system);
+        let links = before.as_ref().map(|_| Arc::unwrap_or_clone(std::mem::take(&mut state.links)));
         let limits = self.limits(state);
         let refined = refine(&mut state.tree, links, &mut light, self.sight, &limits)?;
-        (state.links, state.limited) = (refined.links, refined.limited);
+        drop(light);
+        (state.links, state.limited) = (Arc::new(refined.links), refined.limited);
         let system = self.system(&state.tree, &state.links)?;
         let mut x = match &before {
             Some(before) => inherited(&state.tree, &system.operator, &before.radiosity),
             None => system.radiosity.exitance().clone(),
         };
-        let mut report = self.solved(&system, system.radiosity.exitance(), &mut x)?;
+        let stop = Stop { tolerance: self.options.residual, max_iterations: self.options.max_iterations };
+        let mut report = self.solved(&system, system.radiosity.exitance(), &mut x, stop)?;
         let faces = self.faces(state, &system, &x);
-        let change;
+        let (error, change);
         if let Some(w) = &system.dual {
             let earlier = before.as_ref().and_then(|before| before.goal.as_ref());
             let mut z =
                 earlier.map_or_else(|| w.clone(), |[_, z]| inherited(&state.tree, &system.operator, z));
-            let dual = self.solved(&system, w, &mut z)?;
+            let dual = self.solved(&system, w, &mut z, stop)?;
             if report.reason == StopReason::Converged && dual.reason != StopReason::Converged {
                 report = dual;
             }
             state.importance = z;
             let found = before.map(|before| self.goal_error(state, &system, &before, (&x, &faces)));
-            let (error, of_goal) = found.transpose()?.flatten().unzip();
-            (state.error, change) = (error.flatten(), of_goal);
+            let (found, of_goal) = found.transpose()?.flatten().unzip();
+            (error, change) = (found.flatten(), of_goal);
         } else {
-            state.error = (!state.faces.is_empty()).then(|| self.change(&state.faces, &faces));
-            change = state.error.as_ref().map(|error| error.worst() / CONFIDENCE);
+            (error, change) = self.change(state, &faces).unzip();
         }
+        let unbalanced = self.unbalanced(&system, &x);
+        let known = if refined.changed { error.map(|error| error.with(&unbalanced)) } else { None };
+        state.error = match (known, state.error.take()) {
+            // Memory may have ended the round early: it mends a part only of what the last one stated.
+            (Some(known), Some(earlier)) if state.limited => Some(known.or_more(&earlier)),
+            (Some(known), _) if !state.limited => Some(known),
+            (_, earlier) => earlier,
+        };
+        let change = change.filter(|_| refined.changed);
         let (elements, links) = (system.operator.leaves().len(), state.links.len());
         state.rounds.push(Round { threshold: state.threshold, elements, links, change });
         (state.radiosity, state.faces) = (x, faces);
@@ -321,21 +457,41 @@ impl Run<'_> {
             least_area: LEAST * area,
             tolerance: EXCHANGE * self.options.accuracy,
             bytes: self.options.bytes,
+            bands: self.problem.surfaces.exitance.lanes(),
             watch: self.watch,
         }
     }
 
+    /// Solves from `x` on; a solver that the system does not suit is replaced for good.
     fn solved(
-        &self,
+        &mut self,
         system: &System,
         rhs: &MultiVector<f64>,
         x: &mut MultiVector<f64>,
+        stop: Stop,
     ) -> Result<Report, HierarchyError> {
-        let radiosity = &system.radiosity;
-        let a = SecondKind::new(&system.operator, radiosity.scaling())?;
-        let stop = Stop { tolerance: self.options.residual, max_iterations: self.options.max_iterations };
-        let mut observer = |_: &Progress<'_, f64>| self.watch.poll();
-        let report = self.solver.solve(&a, rhs, x, &stop, &mut observer)?;
+        let a = SecondKind::new(&system.operator, system.radiosity.scaling())?;
+        let watch = self.watch;
+        let mut observer = |_: &Progress<'_, f64>| watch.poll();
+        let start = x.clone();
+        let mut report = None;
+        if self.replaced.is_none() {
+            match self.solvers.first.solve(&a, rhs, x, &stop, &mut observer) {
+                Ok(found) if found.reason != StopReason::Diverged => report = Some(found),
+                Ok(_) => self.replaced = Some("it diverged".to_owned()),
+                Err(error @ (SolveError::Indefinite { .. } | SolveError::Unsuitable { .. })) => {
+                    self.replaced = Some(error.to_string());
+                }
+                Err(error) => return Err(error.into()),
+            }
+        }
+        let report = match report {
+            Some(report) => report,
+            None => {
+                *x = start;
+                self.solvers.fallback.solve(&a, rhs, x, &stop, &mut observer)?
+            }
+        };
         if report.reason == StopReason::Interrupted { Err(HierarchyError::Interrupted) } else { Ok(report) }
     }
 
@@ -355,8 +511,12 @@ impl Run<'_> {
         irradiance
     }
 
-    /// The error that the change from one irradiance of the faces to the next lets expect.
-    fn change(&self, before: &[f64], now: &[f64]) -> Stated {
+    /// The error that the change from the irradiance of the faces before lets expect, and that change, relative, of the worst band; none in the first round.
+    fn change(&self, state: &State, now: &[f64]) -> Option<(Stated, f64)> {
+        let before = &state.faces;
+        if before.is_empty() {
+            return None;
+        }
         let lanes = self.problem.surfaces.exitance.lanes();
         let (mut squares, mut norms) = (vec![0.0; lanes], vec![0.0; lanes]);
         let mut largest = vec![0.0; lanes];
@@ -368,9 +528,40 @@ impl Run<'_> {
                 largest[band] = f64::max(largest[band], CONFIDENCE * (e - old).abs());
             }
         }
-        let relative =
-            |(square, norm): (f64, f64)| if norm > 0.0 { CONFIDENCE * (square / norm).sqrt() } else { 0.0 };
-        Stated { relative_l2: squares.into_iter().zip(norms).map(relative).collect(), largest }
+        let relative = |(square, norm): (f64, f64)| if norm > 0.0 { (square / norm).sqrt() } else { 0.0 };
+        let changes: Vec<f64> = squares.into_iter().zip(norms).map(relative).collect();
+        let worst = changes.iter().copied().fold(0.0, f64::max);
+        // A small change may be chance.
+        let earlier = state.rounds.iter().rev().find_map(|round| round.change).unwrap_or(0.0);
+        let believed = |change: f64| CONFIDENCE * change.max(if change > 0.0 { LEAP * earlier } else { 0.0 });
+        Some((Stated { relative_l2: changes.into_iter().map(believed).collect(), largest }, worst))
+    }
+
+    /// The power that row sums lose or gain against what rays say, beyond twice the standard error of the rays, over the power that is absorbed, of each band.
+    fn unbalanced(&self, system: &System, x: &MultiVector<f64>) -> Vec<f64> {
+        let System { operator, radiosity, roots, .. } = system;
+        let (rows, means) = (operator.row_sums(), radiosity.means(operator, x));
+        let lanes = x.lanes();
+        let (mut lost, mut absorbed) = (vec![0.0; lanes], vec![0.0; lanes]);
+        // The rays of one element say the same of all of its leaves, so their errors add up.
+        let mut unsure = MultiVector::<f64>::zeros(self.problem.mesh.len(), lanes);
+        for (i, size) in radiosity.elements().iter().enumerate() {
+            let root = roots[i] as usize;
+            let [open, variance] = self.opening.lost(root);
+            let missing = size.exposed * (1.0 - open) - rows[i];
+            for band in 0..lanes {
+                let b = x.row(i)[band];
+                lost[band] += b * missing;
+                unsure.row_mut(root)[band] += b * size.exposed * variance.sqrt();
+                let reflected = self.problem.surfaces.reflectance.row(root)[band];
+                absorbed[band] += size.area * (1.0 - reflected) * means.irradiance.row(i)[band];
+            }
+        }
+        let share = |((lost, unsure), absorbed): ((&f64, f64), &f64)| match *absorbed {
+            absorbed if absorbed > 0.0 => (lost.abs() - 2.0 * unsure).max(0.0) / absorbed,
+            _ => 0.0,
+        };
+        lost.iter().zip(unsure.norms()).zip(&absorbed).map(share).collect()
     }
 
     /// The error that is stated for the goal.
@@ -406,6 +597,7 @@ impl Run<'_> {
 
     fn finish(&self, state: State, system: System, report: Report) -> Solution {
         let System { operator, radiosity: system, .. } = system;
+        let (scale, replaced) = (operator.scale().to_vec(), self.replaced.clone());
         let means = system.means(&operator, &state.radiosity);
         let closed = |(sum, size): (f64, &Extent)| if size.exposed > 0.0 { sum / size.exposed } else { 1.0 };
         let closure = operator.row_sums().into_iter().zip(system.elements()).map(closed).collect();
@@ -414,7 +606,21 @@ impl Run<'_> {
             let irradiance = goal.means(self.problem.mesh, &faces, radiosity.lanes());
             Reached { irradiance, importance }
         });
-        Solution { tree, links, means, system, radiosity, closure, report, rounds, error, goal, limited }
+        Solution {
+            tree,
+            links,
+            means,
+            system,
+            radiosity,
+            closure,
+            report,
+            rounds,
+            error,
+            goal,
+            limited,
+            scale,
+            replaced,
+        }
     }
 }
 
@@ -429,4 +635,21 @@ fn inherited(tree: &Tree, operator: &HierarchicalOperator, before: &MultiVector<
     };
     let leaves = operator.leaves();
     MultiVector::from_fn(leaves.len(), before.lanes(), |i, band| before.row(known(leaves[i]))[band])
+}
+
+/// Exposed areas, m².
+fn exposed(extents: &[Extent]) -> Vec<f64> {
+    extents.iter().map(|extent| extent.exposed).collect()
+}
+
+/// Where a part of an element is buried, a grid of points tells how much. What the links exchange cannot be more than what is exposed, up to the whole area, so that they know better where little is. Says whether anything grew.
+fn widen(extents: &mut [Extent], rows: &[f64]) -> bool {
+    let mut grown = false;
+    for (extent, &row) in extents.iter_mut().zip(rows) {
+        if extent.exposed < extent.area && row > extent.exposed {
+            extent.exposed = row.min(extent.area);
+            grown = true;
+        }
+    }
+    grown
 }

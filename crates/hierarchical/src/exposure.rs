@@ -2,6 +2,7 @@
 //!
 //! A node is looked at once, on a grid of points; what is wholly exposed or wholly buried is so in all of its parts.
 
+use crate::opening::Opening;
 use crate::{HierarchyError, Tree};
 use fredholm_coupling::{Extent, exposed_share};
 use fredholm_mesh::{Mesh, Patch};
@@ -26,6 +27,11 @@ impl<'a> Exposure<'a> {
         let patches: Vec<&Patch> = mesh.patches().collect();
         let lit = Occluders::new(&patches.iter().map(|patch| **patch).collect::<Vec<_>>())?;
         Ok(Self { patches, lit, shares: Vec::new() })
+    }
+
+    /// What rays from the input elements meet; `reflectance` is the largest one.
+    pub fn opening(&self, reflectance: f64) -> Opening {
+        Opening::new(&self.patches, &self.lit, reflectance)
     }
 
     /// Areas and exposed areas of the leaves, m². The tree must be that of the call before, or grown from it.

@@ -7,6 +7,7 @@
 //! Source: P. Hanrahan, D. Salzman, L. Aupperle, *A rapid hierarchical radiosity algorithm*, SIGGRAPH 1991, doi:10.1145/122718.122740. Units: metres, W/m².
 
 mod checkpoint;
+mod closure;
 mod driver;
 mod error;
 mod exposure;
@@ -14,6 +15,7 @@ mod gather;
 mod goal;
 mod light;
 mod link;
+mod opening;
 mod operator;
 mod oracle;
 mod refine;
@@ -23,7 +25,9 @@ mod state;
 mod transport;
 mod tree;
 
-pub use driver::{Options, Patient, Problem, RESIDUAL, Round, Solution, Stated, Watch, solve};
+pub use driver::{
+    Options, Patient, Problem, RESIDUAL, Round, Solution, Solvers, Stated, Watch, conclude, solve,
+};
 pub use error::HierarchyError;
 pub use gather::{Gather, Gatherer, Leaves};
 pub use goal::{Goal, Reached};

@@ -30,8 +30,8 @@ pub struct Link {
 }
 
 impl Link {
-    /// Bytes of a link with both of its entries in the operator.
-    pub const BYTES: u64 = (size_of::<Self>() + 2 * size_of::<crate::operator::Entry>()) as u64;
+    /// Bytes of a link and of its two ends in the operator.
+    pub const BYTES: u64 = size_of::<Self>() as u64 + crate::HierarchicalOperator::BYTES_OF_LINK;
 
     /// Exchange A_a F_ab with what stands between, m².
     #[must_use]

@@ -3,6 +3,7 @@
 //! Every node has the mean X of the radiosity x over the exposed areas w of its leaves and the first moment M = Σ w x (c_leaf − c)/Σ w about its centre c (*pull*). A link of p and q with the exchange
 //! g (m²) and the gradients g_p and g_q brings the power s = g (X_q + g_q·M_q) to p, as s (1 + g_p·(x − c_p)) over its area, and the like to q (*gather*). A node shares its power and its gradient among its
 //! children (*push*). So G_ij = Σ g v_i v_j over the links of nodes p that hold i and q that hold j, v_i = (w_i/W_p) (1 + g_p·(c_i − c_p)): symmetric, with the exchanges of the links as sums.
+//! Row sums that exceed what a leaf can send are taken back by a diagonal scaling S on both sides, S G S ([`crate::closure`]).
 //! One pass over the links serves all bands. P. Hanrahan, D. Salzman, L. Aupperle, SIGGRAPH 1991, doi:10.1145/122718.122740, for constants; H. R. Zatz, SIGGRAPH 1993, doi:10.1145/166117.166150,
 //! for higher orders.
 //!
@@ -13,6 +14,7 @@ use crate::tree::{Node, Tree};
 use fredholm_linop::{LinearOperator, MultiVector, Symmetry};
 use fredholm_mesh::Vec3;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Receivers that one thread takes at a time.
 const CHUNK: usize = 256;
@@ -21,14 +23,10 @@ const BURIED: f64 = 1e-9;
 /// Numbers of a node and band: the mean and the three components of the moment or gradient.
 const NUMBERS: usize = 4;
 
-/// One direction of a link.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Entry {
-    exchange: f64,
-    receiving: glam::Vec3,
-    sending: glam::Vec3,
-    sender: u32,
-}
+/// The bit of an end that says that the receiver is the second node of its link.
+const SECOND: u32 = 1 << 31;
+/// Links that the ends can number.
+pub(crate) const MOST_LINKS: usize = SECOND as usize;
 
 /// G on the leaves of a tree.
 #[derive(Clone, Debug)]
@@ -39,24 +37,24 @@ pub struct HierarchicalOperator {
     centres: Vec<Vec3>,
     buried: Vec<bool>,
     leaves: Vec<u32>,
-    /// The links of receiver p are those from `starts[p]` up to `starts[p + 1]`.
+    links: Arc<Vec<Link>>,
+    /// The links of receiver p are those that `ends` numbers from `starts[p]` up to `starts[p + 1]`, with a bit for the side on which p is.
     starts: Vec<usize>,
-    entries: Vec<Entry>,
+    ends: Vec<u32>,
+    /// S, of each leaf.
+    scale: Vec<f64>,
 }
 
 impl HierarchicalOperator {
     /// The operator of some links between nodes of a tree. `exposed` are the exposed areas of the leaves, m²: what is buried neither sends nor receives.
-    #[must_use]
-    pub fn new(tree: &Tree, links: &[Link], exposed: &[f64]) -> Self {
+    pub(crate) fn new(tree: &Tree, links: Arc<Vec<Link>>, exposed: &[f64]) -> Self {
         let (nodes, leaves) = (tree.nodes(), tree.leaves());
-        let starts = starts(nodes.len(), links);
+        let starts = starts(nodes.len(), &links);
         let mut next = starts.clone();
-        let mut entries = vec![Entry::default(); 2 * links.len()];
-        for link in links {
-            for (to, sender, k) in [(link.a, link.b, 0), (link.b, link.a, 1)] {
-                let (receiving, sending) = (link.gradient[k], link.gradient[1 - k]);
-                let at = next[to as usize];
-                entries[at] = Entry { exchange: link.exchange(), receiving, sending, sender };
+        let mut ends = vec![0; 2 * links.len()];
+        for (number, link) in (0..).zip(links.iter()) {
+            for (to, side) in [(link.a, 0), (link.b, SECOND)] {
+                ends[next[to as usize]] = number | side;
                 next[to as usize] += 1;
             }
         }
@@ -64,7 +62,21 @@ impl HierarchicalOperator {
         let (areas, centres) = areas(tree, &leaves, exposed);
         let limit = |(area, node): (&f64, &Node)| *area <= 2.0 * BURIED * node.area();
         let buried = areas.iter().zip(nodes).map(limit).collect();
-        Self { parents, areas, centres, buried, leaves, starts, entries }
+        let scale = vec![1.0; leaves.len()];
+        Self { parents, areas, centres, buried, leaves, links, starts, ends, scale }
+    }
+
+    /// Bytes that the operator takes for each link beside the link itself.
+    pub(crate) const BYTES_OF_LINK: u64 = 2 * size_of::<u32>() as u64;
+
+    /// Takes another scaling S, one number for each leaf.
+    pub(crate) fn set_scale(&mut self, scale: Vec<f64>) {
+        self.scale = scale;
+    }
+
+    /// S, of each leaf.
+    pub(crate) fn scale(&self) -> &[f64] {
+        &self.scale
     }
 
     /// The node of each unknown.
@@ -90,22 +102,29 @@ impl HierarchicalOperator {
     /// Means over the exposed areas of all nodes of values on the leaves, nodes × lanes.
     #[must_use]
     pub fn means(&self, x: &MultiVector<f64>) -> MultiVector<f64> {
-        let pulled = self.pull(x);
+        let pulled = self.pull(x, |_| 1.0);
         MultiVector::from_fn(self.parents.len(), x.lanes(), |node, lane| pulled.row(node)[NUMBERS * lane])
     }
 
     /// What a node exchanges with itself, m²; such links have no gradient.
     fn own_exchange(&self, node: usize) -> f64 {
-        let entries = &self.entries[self.starts[node]..self.starts[node + 1]];
-        entries.iter().filter(|entry| entry.sender as usize == node).map(|entry| entry.exchange).sum()
+        let own = |(link, _): &(&Link, usize)| link.a == link.b;
+        self.received(node).filter(own).map(|(link, _)| link.exchange()).sum()
     }
 
-    /// Means and moments of all nodes.
-    fn pull(&self, x: &MultiVector<f64>) -> MultiVector<f64> {
+    /// The links over which a node receives, each with the side on which the node is.
+    fn received(&self, node: usize) -> impl Iterator<Item = (&Link, usize)> {
+        let ends = &self.ends[self.starts[node]..self.starts[node + 1]];
+        ends.iter().map(|end| (&self.links[(end & !SECOND) as usize], usize::from(end & SECOND != 0)))
+    }
+
+    /// Means and moments of all nodes of values on the leaves, each times a factor.
+    fn pull(&self, x: &MultiVector<f64>, factor: impl Fn(usize) -> f64) -> MultiVector<f64> {
         let mut pulled = MultiVector::zeros(self.parents.len(), NUMBERS * x.lanes());
         for (i, &leaf) in self.leaves.iter().enumerate() {
             let numbers = pulled.row_mut(leaf as usize).chunks_exact_mut(NUMBERS);
-            numbers.zip(x.row(i)).for_each(|(numbers, &x)| numbers[0] = x);
+            let factor = factor(i);
+            numbers.zip(x.row(i)).for_each(|(numbers, &x)| numbers[0] = factor * x);
         }
         for child in (1..self.parents.len()).rev() {
             let (offset, share) = self.place(child);
@@ -137,11 +156,12 @@ impl HierarchicalOperator {
     }
 
     fn receive(&self, node: usize, pulled: &MultiVector<f64>, power: &mut [f64]) {
-        for entry in &self.entries[self.starts[node]..self.starts[node + 1]] {
-            let (to, from) = (entry.receiving.as_dvec3(), entry.sending.as_dvec3());
-            let sent = pulled.row(entry.sender as usize).chunks_exact(NUMBERS);
+        for (link, side) in self.received(node) {
+            let (to, from) = (link.gradient[side].as_dvec3(), link.gradient[1 - side].as_dvec3());
+            let (sender, exchange) = (if side == 0 { link.b } else { link.a }, link.exchange());
+            let sent = pulled.row(sender as usize).chunks_exact(NUMBERS);
             for (power, x) in power.chunks_exact_mut(NUMBERS).zip(sent) {
-                let s = entry.exchange * (x[0] + from.x * x[1] + from.y * x[2] + from.z * x[3]);
+                let s = exchange * (x[0] + from.x * x[1] + from.y * x[2] + from.z * x[3]);
                 power[0] += s;
                 (0..3).for_each(|k| power[k + 1] += s * to[k]);
             }
@@ -206,11 +226,11 @@ impl LinearOperator<f64> for HierarchicalOperator {
     }
 
     fn apply(&self, x: &MultiVector<f64>, y: &mut MultiVector<f64>) {
-        let mut power = self.gather(&self.pull(x));
+        let mut power = self.gather(&self.pull(x, |leaf| self.scale[leaf]));
         self.push(&mut power);
         for (i, &leaf) in self.leaves.iter().enumerate() {
             let numbers = power.row(leaf as usize).chunks_exact(NUMBERS);
-            y.row_mut(i).iter_mut().zip(numbers).for_each(|(y, numbers)| *y = numbers[0]);
+            y.row_mut(i).iter_mut().zip(numbers).for_each(|(y, numbers)| *y = self.scale[i] * numbers[0]);
         }
     }
 
@@ -219,7 +239,7 @@ impl LinearOperator<f64> for HierarchicalOperator {
     }
 
     fn entries(&self) -> u64 {
-        (self.entries.len() + 2 * self.parents.len()) as u64
+        (self.ends.len() + 2 * self.parents.len()) as u64
     }
 
     /// No element sees itself, but a bent cluster that is linked with itself gives each of its elements a share of its own light.
@@ -229,6 +249,9 @@ impl LinearOperator<f64> for HierarchicalOperator {
             let (_, share) = self.place(child);
             own[child] += share * share * own[self.parents[child] as usize];
         }
-        out.iter_mut().zip(&self.leaves).for_each(|(out, &leaf)| *out = own[leaf as usize]);
+        let leaves = self.leaves.iter().zip(&self.scale);
+        out.iter_mut()
+            .zip(leaves)
+            .for_each(|(out, (&leaf, scale))| *out = scale * scale * own[leaf as usize]);
     }
 }

@@ -1,17 +1,27 @@
 //! Refinement: pairs of nodes that are too coarse become pairs of their children, until every pair is fine enough for the oracle.
 //!
-//! It goes in waves. In each, every pair is judged by itself, in parallel; then the nodes to be split are split in the order of the pairs, and the pairs of children
-//! make the next wave. So the links do not depend on the number of threads. What a pair sees wholly its parts see wholly, and what sees nothing is gone.
+//! Pairs wait on a stack, from which blocks of them are taken. Each pair of a block is judged by itself, in parallel; then the nodes to be split are split in the order of the pairs, and the pairs of
+//! children go on the stack. So the links do not depend on the number of threads, and few pairs wait at any time. What a pair sees wholly its parts see wholly, and what sees nothing is gone.
+//!
+//! **Memory.** Before a block is taken over, what tree, links and waiting pairs will need is compared with what they may take, every waiting pair counted as a link. Where it is more, nothing is refined any further: what waits is linked as it is,
+//! but for pairs that cannot be a link.
 
+use crate::operator::MOST_LINKS;
 use crate::oracle::{Candidate, Light, Oracle, Verdict};
-use crate::transport::{Meeting, Side, Sight, View, Viewer, encounter, exchanges, spread};
+use crate::transport::{Chance, Meeting, Side, Sight, View, Viewer, apart, encounter, exchanges, spread};
 use crate::tree::{Node, Tree};
 use crate::{HierarchyError, Link, Watch};
 use fredholm_mesh::Patch;
 use rayon::prelude::*;
+use std::ops::ControlFlow;
 
 /// Pairs that one thread takes at a time.
 const CHUNK: usize = 256;
+/// Pairs that are judged before the tree grows.
+const BLOCK: usize = 1 << 15;
+
+/// Input elements from which on clusters that face all ways are linked as wholes. Where there are fewer, the links of their parts are few enough, and more exact.
+const PLENTY: usize = 4096;
 
 /// A pair of nodes to be judged.
 #[derive(Clone, Copy, Debug)]
@@ -43,6 +53,8 @@ pub(crate) struct Limits<'a> {
     pub tolerance: f64,
     /// Bytes that tree and links may take.
     pub bytes: u64,
+    /// Bands of the light.
+    pub bands: usize,
     /// Whether to go on.
     pub watch: &'a dyn Watch,
 }
@@ -50,13 +62,75 @@ pub(crate) struct Limits<'a> {
 /// The links that the refinement left.
 pub(crate) struct Refined {
     pub links: Vec<Link>,
+    /// Whether anything was too coarse.
+    pub changed: bool,
     /// Whether memory ended it.
     pub limited: bool,
 }
 
-/// Bytes after a wave of which all children become links.
-fn needed(tree: &Tree, fates: &[Fate], links: usize) -> u64 {
-    let mut pairs = links;
+/// Bytes of a tree and its links with all that a solution of some bands does with them.
+pub(crate) fn bytes(nodes: usize, links: usize, bands: usize) -> u64 {
+    let node = size_of::<Node>() + NODE_WORK + BAND_WORK * bands;
+    nodes as u64 * node as u64 + links as u64 * Link::BYTES
+}
+
+/// Bytes of a node in the operator, in the preparation of exchanges and in what is known of the light.
+const NODE_WORK: usize = 320;
+/// Bytes of a node for each band: means, moments, power and gradients of a product, and the vectors of a solver.
+const BAND_WORK: usize = 176;
+/// Share of the memory from which on nothing is refined any further: the rest is for pairs that cannot be links.
+const SOFT: f64 = 0.85;
+
+/// Refines links, or the pair of the whole scene with itself where there are none yet.
+pub(crate) fn refine(
+    tree: &mut Tree,
+    links: Option<Vec<Link>>,
+    light: &mut Light,
+    sight: Sight,
+    limits: &Limits,
+) -> Result<Refined, HierarchyError> {
+    let (mut kept, mut fresh) = (Vec::new(), Vec::new());
+    let mut waiting = match links {
+        None => vec![Pair { nodes: [0, 0], open: false, coarse: true }],
+        Some(links) => {
+            kept = links;
+            sift(tree, &mut kept, light, limits)
+        }
+    };
+    let changed = !waiting.is_empty();
+    let mut limited = false;
+    while !waiting.is_empty() {
+        let block = waiting.split_off(waiting.len().saturating_sub(BLOCK));
+        let threshold = if limited { f64::INFINITY } else { limits.threshold };
+        let oracle = Oracle { tree, light, threshold, linear: limits.linear, least_area: limits.least_area };
+        let fates = judge(&oracle, sight, &block, limits.watch)?;
+        let [nodes, pairs] = outcome(tree, &fates);
+        let links = kept.len() + fresh.len() + waiting.len() + pairs;
+        let needed = bytes(nodes, links, limits.bands);
+        if !limited && needed as f64 > SOFT * limits.bytes as f64 {
+            limited = true;
+            // Once more, and nothing is too coarse now but what cannot be a link.
+            waiting.extend(block);
+            waiting.iter_mut().for_each(|pair| pair.coarse = false);
+            continue;
+        }
+        if needed > limits.bytes || links > MOST_LINKS {
+            return Err(HierarchyError::Memory { needed, limit: limits.bytes });
+        }
+        advance(tree, light, fates, &mut fresh, &mut waiting)?;
+    }
+    fresh.par_sort_unstable_by_key(|link: &Link| (link.a, link.b));
+    exchanges(tree, &mut fresh, limits.tolerance);
+    fresh.retain(|link| link.open > 0.0);
+    kept.reserve_exact(fresh.len());
+    kept.append(&mut fresh);
+    kept.par_sort_unstable_by_key(|link| (link.a, link.b));
+    Ok(Refined { links: kept, changed, limited })
+}
+
+/// Nodes of the tree, and links and pairs in the place of a block, when it has become what was found.
+fn outcome(tree: &Tree, fates: &[Fate]) -> [usize; 2] {
+    let mut pairs = 0;
     let mut split: Vec<u32> = Vec::new();
     for fate in fates {
         match fate {
@@ -71,62 +145,11 @@ fn needed(tree: &Tree, fates: &[Fate], links: usize) -> u64 {
     split.retain(|&node| tree.nodes()[node as usize].is_leaf());
     split.sort_unstable();
     split.dedup();
-    bytes(tree, pairs) + (4 * split.len() * (size_of::<Node>() + NODE_WORK)) as u64
+    [tree.nodes().len() + 4 * split.len(), pairs]
 }
 
-/// Bytes of a tree and its links.
-pub(crate) fn bytes(tree: &Tree, links: usize) -> u64 {
-    let nodes = (tree.nodes().len() * (size_of::<Node>() + NODE_WORK)) as u64;
-    nodes + links as u64 * Link::BYTES
-}
-
-/// Bytes of a node in the operator and in the preparation of exchanges.
-const NODE_WORK: usize = 512;
-
-/// Refines links, or the pair of the whole scene with itself where there are none yet.
-pub(crate) fn refine(
-    tree: &mut Tree,
-    links: Option<Vec<Link>>,
-    light: &mut Light,
-    sight: Sight,
-    limits: &Limits,
-) -> Result<Refined, HierarchyError> {
-    let (mut kept, mut fresh) = (Vec::new(), Vec::new());
-    let mut wave = match links {
-        None => vec![Pair { nodes: [0, 0], open: false, coarse: true }],
-        Some(links) => sift(tree, links, light, limits, &mut kept),
-    };
-    let mut limited = false;
-    while !wave.is_empty() {
-        if limits.watch.poll().is_break() {
-            return Err(HierarchyError::Interrupted);
-        }
-        let threshold = if limited { f64::INFINITY } else { limits.threshold };
-        let oracle = Oracle { tree, light, threshold, linear: limits.linear, least_area: limits.least_area };
-        let fates = judge(&oracle, sight, &wave);
-        if !limited && needed(tree, &fates, kept.len() + fresh.len()) > limits.bytes {
-            limited = true;
-            // Once more, and nothing is too coarse now but what cannot be a link.
-            for pair in &mut wave {
-                pair.coarse = false;
-            }
-            continue;
-        }
-        wave = advance(tree, light, fates, &mut fresh)?;
-    }
-    fresh.par_sort_unstable_by_key(|link: &Link| (link.a, link.b));
-    let flat = |index: u32| tree.nodes()[index as usize].patch().is_some();
-    let (mut fresh, bent): (Vec<Link>, Vec<Link>) =
-        fresh.into_iter().partition(|link| flat(link.a) && flat(link.b));
-    exchanges(tree, &mut fresh, limits.tolerance);
-    kept.extend(bent);
-    kept.extend(fresh.into_iter().filter(|link| link.open > 0.0));
-    kept.par_sort_unstable_by_key(|link| (link.a, link.b));
-    Ok(Refined { links: kept, limited })
-}
-
-/// Parts links into those that stay and pairs to be split.
-fn sift(tree: &Tree, links: Vec<Link>, light: &Light, limits: &Limits, kept: &mut Vec<Link>) -> Vec<Pair> {
+/// Takes the links that are too coarse out and returns them as pairs to be split.
+fn sift(tree: &Tree, links: &mut Vec<Link>, light: &Light, limits: &Limits) -> Vec<Pair> {
     let oracle = Oracle {
         tree,
         light,
@@ -135,16 +158,17 @@ fn sift(tree: &Tree, links: Vec<Link>, light: &Light, limits: &Limits, kept: &mu
         least_area: limits.least_area,
     };
     let verdicts: Vec<Verdict> = links.par_iter().map(|link| oracle.judge(&candidate(link))).collect();
-    let mut wave = Vec::new();
-    for (link, verdict) in links.into_iter().zip(verdicts) {
+    let (mut coarse, mut verdicts) = (Vec::new(), verdicts.into_iter());
+    links.retain(|link| {
         let pair = Pair { nodes: [link.a, link.b], open: !link.partly, coarse: true };
-        match verdict {
-            Verdict::Keep => kept.push(link),
-            Verdict::SplitA => wave.push(pair),
-            Verdict::SplitB => wave.push(swapped(pair)),
+        match verdicts.next() {
+            Some(Verdict::SplitA) => coarse.push(pair),
+            Some(Verdict::SplitB) => coarse.push(swapped(pair)),
+            _ => return true,
         }
-    }
-    wave
+        false
+    });
+    coarse
 }
 
 fn candidate(link: &Link) -> Candidate {
@@ -156,13 +180,21 @@ fn candidate(link: &Link) -> Candidate {
     }
 }
 
-fn judge(oracle: &Oracle, sight: Sight, wave: &[Pair]) -> Vec<Fate> {
-    let chunks = wave.par_chunks(CHUNK);
-    let judged = chunks.map_init(
+fn judge(
+    oracle: &Oracle,
+    sight: Sight,
+    block: &[Pair],
+    watch: &dyn Watch,
+) -> Result<Vec<Fate>, HierarchyError> {
+    let judged = block.par_chunks(CHUNK).map_init(
         || Viewer::new(sight),
-        |viewer, pairs| pairs.iter().map(|pair| fate(oracle, viewer, *pair)).collect::<Vec<_>>(),
+        |viewer, pairs| match watch.poll() {
+            ControlFlow::Continue(()) => Ok(pairs.iter().map(|pair| fate(oracle, viewer, *pair)).collect()),
+            ControlFlow::Break(()) => Err(HierarchyError::Interrupted),
+        },
     );
-    judged.collect::<Vec<_>>().into_iter().flatten().collect()
+    let judged: Vec<Vec<Fate>> = judged.collect::<Result<_, _>>()?;
+    Ok(judged.into_iter().flatten().collect())
 }
 
 fn fate(oracle: &Oracle, viewer: &mut Viewer, pair: Pair) -> Fate {
@@ -173,7 +205,7 @@ fn fate(oracle: &Oracle, viewer: &mut Viewer, pair: Pair) -> Fate {
     if pair.nodes[0] == pair.nodes[1] {
         return match a.patch() {
             Some(_) => Fate::Gone,
-            None if a.is_linkable() => bent(oracle, viewer, pair),
+            None if a.faces_one_way() => bent(oracle, viewer, pair),
             None => Fate::Split(pair),
         };
     }
@@ -184,9 +216,10 @@ fn fate(oracle: &Oracle, viewer: &mut Viewer, pair: Pair) -> Fate {
         (Some(p), Some(q)) => flat(oracle, viewer, pair, [p, q]),
         (Some(p), None) if b.cone().apart_from(p) => Fate::Gone,
         (None, Some(q)) if a.cone().apart_from(q) => Fate::Gone,
-        _ if a.is_linkable() && b.is_linkable() => bent(oracle, viewer, pair),
-        _ if b.is_linkable() => Fate::Split(pair),
-        _ if a.is_linkable() || a.cone().radius < b.cone().radius => Fate::Split(swapped(pair)),
+        _ if a.faces_one_way() && b.faces_one_way() => bent(oracle, viewer, pair),
+        _ if oracle.tree.roots().len() > PLENTY && apart(a, b) => scattered(oracle, viewer, pair),
+        _ if b.faces_one_way() => Fate::Split(pair),
+        _ if a.faces_one_way() || a.cone().radius < b.cone().radius => Fate::Split(swapped(pair)),
         _ => Fate::Split(pair),
     }
 }
@@ -200,6 +233,31 @@ fn bent(oracle: &Oracle, viewer: &mut Viewer, pair: Pair) -> Fate {
         Verdict::SplitA => Fate::Split(pair),
         Verdict::SplitB => Fate::Split(swapped(pair)),
         Verdict::Keep => Fate::Link(Link { open, ..link(pair, sides, [share, doubt], oracle.linear) }),
+    }
+}
+
+/// The fate of two nodes of which at least one faces all ways.
+fn scattered(oracle: &Oracle, viewer: &mut Viewer, pair: Pair) -> Fate {
+    let [a, b] = pair.nodes;
+    let chance = Chance::of(oracle.tree, pair.nodes);
+    let coarse = |verdict| match verdict {
+        Verdict::SplitA => Some(Fate::Split(pair)),
+        Verdict::SplitB => Some(Fate::Split(swapped(pair))),
+        Verdict::Keep => None,
+    };
+    // Rays only where the pair is not too coarse anyway.
+    let (open, deviations) = (chance.open, chance.deviations);
+    let candidate = |doubt| Candidate { nodes: [a, b], open, sides: deviations.map(|d| [d; 2]), doubt };
+    if let Some(split) = coarse(oracle.judge(&candidate(0.0))) {
+        return split;
+    }
+    let [share, doubt] = chance.seen(viewer);
+    match coarse(oracle.judge(&candidate(doubt))) {
+        Some(split) => split,
+        None => {
+            let sides = deviations.map(|deviation| Side::default().at_least(deviation));
+            Fate::Link(Link { open, ..link(pair, sides, [share, doubt], false) })
+        }
     }
 }
 
@@ -265,22 +323,28 @@ fn behind(p: &Patch, q: &Patch) -> bool {
     p.corners().iter().all(|x| (*x - q.corner(0)).dot(q.normal()) <= flat)
 }
 
-/// Splits nodes and makes the next wave.
+/// Takes over what became of a block: links, split nodes, and the pairs of their children.
 fn advance(
     tree: &mut Tree,
     light: &mut Light,
     fates: Vec<Fate>,
     links: &mut Vec<Link>,
-) -> Result<Vec<Pair>, HierarchyError> {
-    let mut wave = Vec::new();
+    waiting: &mut Vec<Pair>,
+) -> Result<(), HierarchyError> {
     for fate in fates {
         match fate {
             Fate::Gone => {}
-            Fate::Link(link) => links.push(link),
-            Fate::Split(pair) => children(tree, light, pair, &mut wave)?,
+            Fate::Link(link) => {
+                if links.len() == links.capacity() {
+                    // A quarter more at a time: doubling would take memory that nothing needs.
+                    links.reserve_exact(links.len() / 4 + BLOCK);
+                }
+                links.push(link);
+            }
+            Fate::Split(pair) => children(tree, light, pair, waiting)?,
         }
     }
-    Ok(wave)
+    Ok(())
 }
 
 /// Appends the pairs that take the place of a pair whose first node is split.
@@ -288,7 +352,7 @@ fn children(
     tree: &mut Tree,
     light: &mut Light,
     pair: Pair,
-    wave: &mut Vec<Pair>,
+    waiting: &mut Vec<Pair>,
 ) -> Result<(), HierarchyError> {
     let Pair { nodes: [a, b], open, .. } = pair;
     tree.split(a)?;
@@ -296,14 +360,14 @@ fn children(
     let children = tree.nodes()[a as usize].children();
     if a == b {
         for (k, &child) in children.iter().enumerate() {
-            wave.extend(children[k..].iter().map(|&other| Pair {
+            waiting.extend(children[k..].iter().map(|&other| Pair {
                 nodes: [child, other],
                 open,
                 coarse: false,
             }));
         }
     } else {
-        wave.extend(children.iter().map(|&child| Pair { nodes: [child, b], open, coarse: false }));
+        waiting.extend(children.iter().map(|&child| Pair { nodes: [child, b], open, coarse: false }));
     }
     Ok(())
 }

@@ -3,12 +3,13 @@
 use crate::driver::{Problem, Round, Stated};
 use crate::{HierarchyError, Link, Tree};
 use fredholm_linop::MultiVector;
+use std::sync::Arc;
 
 /// A solution between two rounds.
 #[derive(Clone, Debug)]
 pub struct State {
     pub(crate) tree: Tree,
-    pub(crate) links: Vec<Link>,
+    pub(crate) links: Arc<Vec<Link>>,
     /// Radiosity of the exposed parts of the leaves, W/m².
     pub(crate) radiosity: MultiVector<f64>,
     /// Importance of the exposed parts of the leaves, 1/m²; without a goal there are no lanes.
@@ -39,7 +40,7 @@ impl State {
         let lanes = if goal.is_empty() { 0 } else { bands };
         Ok(Self {
             tree: Tree::new(problem.mesh, problem.occluders.tolerance())?,
-            links: Vec::new(),
+            links: Arc::default(),
             radiosity: MultiVector::zeros(problem.mesh.len(), bands),
             importance: MultiVector::zeros(problem.mesh.len(), lanes),
             goal,

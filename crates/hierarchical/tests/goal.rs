@@ -4,19 +4,17 @@
 
 mod common;
 
-use common::{Bench, options, room};
+use common::{Bench, SOLVERS, options, room};
 use fredholm_hierarchical::{
-    Goal, HierarchicalOperator, HierarchyError, Options, Patient, Problem, Round, Solution, State, Watch,
-    solve,
+    Goal, HierarchyError, Options, Patient, Problem, Round, Solution, State, Watch, solve,
 };
-use fredholm_iterative::CgTheta;
 use fredholm_linop::{LinearOperator, MultiVector};
 use std::sync::Mutex;
 
 const TWO_ROOMS: &str = include_str!("data/two_rooms.toml");
 
 fn reached(problem: &Problem, options: &Options, state: Option<State>, watch: &dyn Watch) -> Solution {
-    solve(problem, options, &CgTheta, state, watch).unwrap()
+    solve(problem, options, SOLVERS, state, watch).unwrap()
 }
 
 /// What is found, its stated error and the links of a solution to the goal.
@@ -63,8 +61,7 @@ fn the_dual_sees_the_same_mean_as_the_solution() {
     let exact = Options { residual: 1e-12, ..options(0.1) };
     let solution = reached(&problem, &exact, None, &Patient);
     let importance = &solution.goal.as_ref().unwrap().importance;
-    let exposed: Vec<f64> = solution.system.elements().iter().map(|size| size.exposed).collect();
-    let operator = HierarchicalOperator::new(&solution.tree, &solution.links, &exposed);
+    let operator = solution.operator();
     let applied = |x: &MultiVector<f64>| {
         let mut y = MultiVector::zeros(x.dim(), x.lanes());
         operator.apply(x, &mut y);
@@ -140,7 +137,7 @@ fn foreign_goals_and_unknown_surfaces_are_refused() {
         let read = State::read(&other, &mut bytes.as_slice()).unwrap_err();
         assert!(read.to_string().contains("belongs to another goal"), "{read}");
         let state = State::read(&problem, &mut bytes.as_slice()).unwrap();
-        let solved = solve(&other, &options(0.3), &CgTheta, Some(state), &Patient).unwrap_err();
+        let solved = solve(&other, &options(0.3), SOLVERS, Some(state), &Patient).unwrap_err();
         assert!(solved.to_string().contains("belongs to another goal"), "{solved}");
     }
     let unknown = Goal::new(&bench.mesh, &["desk", "dsek"]).unwrap_err().to_string();

@@ -6,9 +6,9 @@ mod common;
 #[path = "common/truth.rs"]
 mod truth;
 
-use common::{Bench, options, room};
-use fredholm_hierarchical::{HierarchyError, Patient, solve};
-use fredholm_iterative::{CgTheta, Neumann};
+use common::{Bench, SOLVERS, options, room};
+use fredholm_hierarchical::{HierarchyError, Patient, Solvers, solve};
+use fredholm_iterative::{Gmres, Neumann};
 use truth::{error, traced};
 
 #[test]
@@ -83,7 +83,14 @@ fn any_number_of_threads_gives_the_same_bits() {
 #[test]
 fn another_solver_gives_the_same_light() {
     let bench = Bench::text(&room(0.5));
-    let other = solve(&bench.problem(), &options(0.05), &Neumann, None, &Patient).unwrap();
+    let other = solve(
+        &bench.problem(),
+        &options(0.05),
+        Solvers { first: &Neumann, fallback: &Gmres { restart: 50 } },
+        None,
+        &Patient,
+    )
+    .unwrap();
     let first = bench.solve(0.05);
     let pairs = bench.faces(&first).into_iter().zip(bench.faces(&other));
     assert!(pairs.map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max) < 1e-3);
@@ -94,7 +101,7 @@ fn little_memory_is_respected_and_said() {
     let bench = Bench::shipped("occluder.toml");
     let limited = options(0.001);
     let limited = fredholm_hierarchical::Options { bytes: 12 << 20, ..limited };
-    let solution = solve(&bench.problem(), &limited, &CgTheta, None, &Patient).unwrap();
+    let solution = solve(&bench.problem(), &limited, SOLVERS, None, &Patient).unwrap();
     assert!(solution.limited && solution.bytes() < 12 << 20, "{} {}", solution.limited, solution.bytes());
     assert!(solution.means.irradiance.as_slice().iter().all(|e| e.is_finite()));
 }
@@ -103,11 +110,11 @@ fn little_memory_is_respected_and_said() {
 fn what_cannot_be_solved_is_refused() {
     let bench = Bench::text(&room(0.5));
     let refused =
-        |accuracy| solve(&bench.problem(), &options(accuracy), &CgTheta, None, &Patient).unwrap_err();
+        |accuracy| solve(&bench.problem(), &options(accuracy), SOLVERS, None, &Patient).unwrap_err();
     assert!(matches!(refused(0.0), HierarchyError::Accuracy { .. }));
     assert!(matches!(refused(f64::NAN), HierarchyError::Accuracy { .. }));
     let other = Bench::text(&room(0.5).replace("[2, 2]", "[3, 3]"));
     let mixed = fredholm_hierarchical::Problem { surfaces: &other.surfaces, ..bench.problem() };
-    let error = solve(&mixed, &options(0.1), &CgTheta, None, &Patient).unwrap_err();
+    let error = solve(&mixed, &options(0.1), SOLVERS, None, &Patient).unwrap_err();
     assert!(matches!(error, HierarchyError::Shape { expected: 30, .. }), "{error}");
 }

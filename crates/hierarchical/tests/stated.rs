@@ -11,6 +11,7 @@ mod shapes;
 mod truth;
 
 use common::{Bench, room};
+use fredholm_hierarchical::Solution;
 use truth::{error, furnace, traced};
 
 /// A scene and the irradiance of its faces.
@@ -107,6 +108,62 @@ fn true_errors_are_below_the_stated_ones_and_not_far() {
     ];
     let (below, all, median) = table(&trials, &[0.1, 0.04, 0.02]);
     assert!(below == all && median > 0.1, "{below} of {all}, {median}");
+}
+
+/// A closed room of one reflectance with a lamp and two blocks, one of them on the floor.
+fn bright(reflectance: f64) -> Bench {
+    Bench::text(&format!(
+        "[materials.wall]\nreflectance = {reflectance}\n[materials.lamp]\nreflectance = {reflectance}\nexitance = 20\n\
+         [[surface]]\nname = \"walls\"\nmaterial = \"wall\"\n\
+         box = {{ min = [0, 0, 0], max = [4, 3, 2.5], inward = true }}\ndivide = [4, 4]\n\
+         [[surface]]\nname = \"block\"\nmaterial = \"wall\"\n\
+         box = {{ min = [0.7, 0.6, 0], max = [1.7, 1.5, 1.2] }}\ndivide = [2, 2]\n\
+         [[surface]]\nname = \"shelf\"\nmaterial = \"wall\"\n\
+         box = {{ min = [2.2, 1.4, 1.1], max = [3.6, 1.9, 1.3] }}\ndivide = [2, 1]\n\
+         [[surface]]\nname = \"lamp\"\nmaterial = \"lamp\"\n\
+         box = {{ min = [1.6, 1.2, 2.3], max = [2.3, 1.7, 2.4] }}\n"
+    ))
+}
+
+/// Power that is absorbed over what is emitted, less 1.
+fn balance(solution: &Solution) -> f64 {
+    let energy = solution.system.energy(&solution.radiosity, &solution.means, &solution.closure);
+    energy.iter().map(|band| (band.absorbed / band.emitted - 1.0).abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_bright_closed_room_keeps_its_energy() {
+    for reflectance in [0.9, 0.98] {
+        let bench = bright(reflectance);
+        for accuracy in [0.1, 0.05] {
+            let solution = bench.solve(accuracy);
+            let off = balance(&solution);
+            println!("{reflectance} {accuracy}: {off:.1e}");
+            assert!(off < 0.5 * accuracy, "{reflectance}, {accuracy}: {off}");
+        }
+    }
+}
+
+/// `cargo test --release -p fredholm-hierarchical --test stated bright -- --ignored --nocapture`
+#[test]
+#[ignore = "solves to high accuracy"]
+fn bright_rooms_to_high_accuracy() {
+    let rooms = [("room 0.5", 0.5), ("room 0.8", 0.8), ("room 0.95", 0.95), ("room 0.98", 0.98)];
+    let mut trials = Vec::new();
+    for (name, reflectance) in rooms {
+        let bench = bright(reflectance);
+        let mut exact = Vec::new();
+        for accuracy in [0.05, 0.02, 0.01, 0.005] {
+            let solution = bench.solve(accuracy);
+            let off = balance(&solution);
+            println!("{name}: energy off by {off:.1e} at {accuracy}, {} links", solution.links.len());
+            assert!(off < accuracy, "{name}: {off}");
+            exact = bench.faces(&solution);
+        }
+        trials.push(Trial { name, bench, exact });
+    }
+    let (below, all, median) = table(&trials, &[0.1, 0.05, 0.03, 0.02]);
+    assert!(100 * below >= 95 * all && median > 0.1, "{below} of {all}, {median}");
 }
 
 /// `cargo test --release -p fredholm-hierarchical --test stated -- --ignored --nocapture`

@@ -52,7 +52,9 @@ fn run(
     };
     let record = record(&problem, &options, &solution, stages);
     stages.run("results", || write(&problem, &options, &solution, &record, folder))?;
-    checkpoint::remove(folder)?;
+    if !record.partial {
+        checkpoint::remove(folder)?;
+    }
     // The summary, other than the file, can tell the time of writing.
     let record = RunRecord { timings: stages.timings().to_vec(), ..record };
     remarks(&options, &solution).for_each(|remark| stages.console.warn(&remark));

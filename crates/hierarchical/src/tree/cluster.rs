@@ -62,15 +62,20 @@ impl<'a> Builder<'a> {
         Node::cluster(flat, Cone::around(list.iter().copied()), area)
     }
 
-    /// Parts a group of at least two.
+    /// Parts a group of at least two. Both parts have members: where rounding puts all on one side, the middle of the list parts them.
     fn part(&self, order: Vec<u32>) -> (Vec<u32>, Vec<u32>) {
         let (planes, met) = self.planes(&order);
-        match planes.len() {
+        let (mut low, mut high) = match planes.len() {
             1 => self.in_one_plane(order),
             count if count >= CURVED && met < SHARED * count => self.through_place_or_normal(order),
-            2..=PLANES => self.between_planes(order, planes),
+            2..=PLANES => self.between_planes(order, &planes),
             _ => self.through_the_middle(order, [Vec3::X, Vec3::Y, Vec3::Z]),
+        };
+        if low.is_empty() || high.is_empty() {
+            low.append(&mut high);
+            high = low.split_off(low.len() / 2);
         }
+        (low, high)
     }
 
     fn same_plane(&self, k: u32, of: u32) -> bool {
@@ -93,7 +98,7 @@ impl<'a> Builder<'a> {
         (planes, order.len())
     }
 
-    fn between_planes(&self, order: Vec<u32>, mut planes: Vec<u32>) -> (Vec<u32>, Vec<u32>) {
+    fn between_planes(&self, order: Vec<u32>, found: &[u32]) -> (Vec<u32>, Vec<u32>) {
         let key = |k: u32| {
             let n = self.patch(k).normal();
             [n.z, n.y, n.x, n.dot(self.patch(k).corner(0))]
@@ -101,9 +106,12 @@ impl<'a> Builder<'a> {
         let by_key = |a: &u32, b: &u32| {
             key(*a).iter().zip(key(*b)).fold(std::cmp::Ordering::Equal, |o, (a, b)| o.then(a.total_cmp(&b)))
         };
+        let mut planes = found.to_vec();
         planes.sort_by(by_key);
-        let low = &planes[..planes.len() / 2];
-        order.into_iter().partition(|&k| low.iter().any(|&plane| self.same_plane(k, plane)))
+        // Each element goes with the first plane that takes it, as when the planes were found: what lies in one plane up to rounding is not the same both ways.
+        let low: Vec<u32> = planes[..planes.len() / 2].to_vec();
+        let plane = |k: u32| found.iter().find(|&&plane| self.same_plane(k, plane));
+        order.into_iter().partition(|&k| plane(k).is_some_and(|plane| low.contains(plane)))
     }
 
     /// Along a line between elements, else through the middle.

@@ -1,8 +1,7 @@
 //! The tree of elements: clusters above the input elements, similar quarters below them.
 //!
 //! A child has a higher number than its parent, so that a pass over the numbers, forward or backward, visits parents before or after their children. A node is *flat* where
-//! its elements fill a convex polygon of three or four corners: then it has a patch. It is *bent* where its elements face about the same way. Flat and bent nodes may be linked; others
-//! only lead to their children.
+//! its elements fill a convex polygon of three or four corners: then it has a patch. It is *bent* where its elements face about the same way, and *scattered* where they face all ways.
 //! P. Hanrahan, D. Salzman, L. Aupperle, SIGGRAPH 1991, doi:10.1145/122718.122740, for the quarters; B. Smits, J. Arvo, D. Greenberg, SIGGRAPH 1994,
 //! doi:10.1145/192161.192277, for the clusters. Lengths in metres.
 
@@ -76,9 +75,8 @@ impl Node {
         self.children[0] == NONE
     }
 
-    /// Whether it may be linked: its elements fill a polygon, or face about the same way.
-    #[must_use]
-    pub fn is_linkable(&self) -> bool {
+    /// Whether its elements fill a polygon or face about the same way.
+    pub(crate) fn faces_one_way(&self) -> bool {
         self.patch.is_some() || self.gist.bent
     }
 
@@ -191,6 +189,21 @@ impl Node {
     fn cluster(patch: Option<Patch>, cone: Cone, area: f64) -> Self {
         let gist = Gist { vector: Vec3::ZERO, centre: cone.centre, middle: NONE, bent: false };
         Self { parent: NONE, children: [NONE; 4], face: NONE, root: NONE, patch, cone, area, gist }
+    }
+}
+
+impl Tree {
+    /// An input element, or a flat node, of a node, chosen with a probability in proportion to its area by a number `u` in [0, 1).
+    pub(crate) fn member(&self, mut index: u32, mut u: f64) -> Option<&Patch> {
+        loop {
+            let node = &self.nodes[index as usize];
+            if let Some(patch) = node.patch() {
+                return Some(patch);
+            }
+            let &[low, high, ..] = node.children() else { return None };
+            let share = self.nodes[low as usize].area / node.area;
+            (index, u) = if u < share { (low, u / share) } else { (high, (u - share) / (1.0 - share)) };
+        }
     }
 }
 

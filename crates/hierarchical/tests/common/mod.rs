@@ -1,12 +1,15 @@
 //! Scenes for the tests, and solving them.
 
-use fredholm_hierarchical::{Options, Patient, Problem, Solution, State, Surfaces, Watch, solve};
-use fredholm_iterative::CgTheta;
+use fredholm_hierarchical::{Options, Patient, Problem, Solution, Solvers, State, Surfaces, Watch, solve};
+use fredholm_iterative::{CgTheta, Gmres};
 use fredholm_linop::MultiVector;
 use fredholm_mesh::Mesh;
 use fredholm_scene::Scene;
 use fredholm_visibility::Occluders;
 use std::path::Path;
+
+/// The solver of the command line, and the one that takes its place.
+pub const SOLVERS: Solvers = Solvers { first: &CgTheta, fallback: &Gmres { restart: 50 } };
 
 /// A scene on its faces.
 pub struct Bench {
@@ -51,7 +54,7 @@ impl Bench {
     }
 
     pub fn resume(&self, accuracy: f64, state: Option<State>, watch: &dyn Watch) -> Solution {
-        solve(&self.problem(), &options(accuracy), &CgTheta, state, watch).unwrap()
+        solve(&self.problem(), &options(accuracy), SOLVERS, state, watch).unwrap()
     }
 
     /// Irradiance of the faces, faces × bands, W/m².
