@@ -61,6 +61,7 @@ fn assess(problem: &Problem, lit: &Lit, watcher: Watcher) -> Result<Solution, Fa
         closure,
         energy,
         field_error: Some(found.error.relative_l2),
+        replaced: None,
         ..unassessed(lit, exposed)
     })
 }
@@ -83,6 +84,7 @@ fn unassessed(lit: &Lit, exposed: Vec<f64>) -> Solution {
         hierarchy: None,
         tree: None,
         field_error: None,
+        replaced: None,
     }
 }
 
