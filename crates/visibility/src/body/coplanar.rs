@@ -7,6 +7,9 @@ use super::weld::{Polygon, connected, undirected};
 /// Part of its area, or of its perimeter, by which a hull may differ from the polygons that fill it.
 const FILLED: f64 = 1e-9;
 
+/// Tangent of the angle between the first side of a polygon and the direction along which corners are sorted.
+const OBLIQUE: f64 = 0.573_1;
+
 /// Merges polygons that share a side and lie in one plane up to `tolerance` (m). A group that is not convex is halved until its parts are.
 pub(super) fn merge(points: &[Vec3], polygons: &[Polygon], tolerance: f64) -> Vec<Polygon> {
     let flat = |a: &Polygon, b: &Polygon| {
@@ -54,8 +57,10 @@ impl<'a> Plane<'a> {
         Self { points, normal: polygon.normal, axes: [u, polygon.normal.cross(u)] }
     }
 
+    /// Where a corner lies along a direction that no side is expected to be at right angles to: places of corners on such a side differ by rounding alone, and their order would be none.
     fn place(&self, k: u32) -> [f64; 2] {
-        self.axes.map(|axis| axis.dot(self.points[k as usize]))
+        let [u, v] = self.axes;
+        [u + v * OBLIQUE, v - u * OBLIQUE].map(|axis| axis.dot(self.points[k as usize]))
     }
 
     /// The convex hull of the listed polygons, if they fill it.

@@ -189,7 +189,9 @@ impl Solid {
             return Meeting::Apart;
         }
         let against = |k: &usize| all(&faces[*k], -tolerance);
-        let Some(k) = (0..faces.len()).find(against) else { return Meeting::Inside };
+        let Some(k) = (0..faces.len()).find(against) else {
+            return if self.holds_part(element, tolerance) { Meeting::Inside } else { Meeting::Apart };
+        };
         if element.normal().dot(faces[k].normal) > 0.0 || !self.covers_part(element, k) {
             Meeting::Apart
         } else {
@@ -197,11 +199,39 @@ impl Solid {
         }
     }
 
+    /// Whether part of an element lies deeper than `tolerance` below all faces. Beside an edge of the solid it may lie outside without being before any one face.
+    fn holds_part(&self, element: &Patch, tolerance: f64) -> bool {
+        let mut part = element.corners().to_vec();
+        for face in self.body.faces() {
+            part = below(&part, face, tolerance);
+        }
+        !part.is_empty()
+    }
+
     /// Whether an element in the plane of face `k` may overlap that face: no other face has all of it outside.
     fn covers_part(&self, element: &Patch, k: usize) -> bool {
         let outside = |face: &Face| element.corners().iter().all(|&x| face.height(x) >= 0.0);
         !self.body.faces().iter().enumerate().any(|(other, face)| other != k && outside(face))
     }
+}
+
+/// The part of a convex polygon deeper than `depth` (m) below a face.
+fn below(corners: &[Vec3], face: &Face, depth: f64) -> Vec<Vec3> {
+    let mut part = Vec::with_capacity(corners.len() + 1);
+    let Some(&last) = corners.last() else { return part };
+    let height = |x: Vec3| face.height(x) + depth;
+    let mut from = (last, height(last));
+    for &corner in corners {
+        let to = (corner, height(corner));
+        if (from.1 < 0.0) != (to.1 < 0.0) {
+            part.push(from.0 + (to.0 - from.0) * (from.1 / (from.1 - to.1)));
+        }
+        if to.1 < 0.0 {
+            part.push(to.0);
+        }
+        from = to;
+    }
+    part
 }
 
 /// How an element lies to a solid.

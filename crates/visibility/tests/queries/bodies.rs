@@ -41,6 +41,39 @@ fn the_walls_of_a_room_block_nothing_and_a_box_in_it_is_one_solid() {
     }
 }
 
+/// Corners on a side that is at right angles to the axis by which they are sorted differ by rounding alone.
+#[test]
+fn a_turned_box_of_small_patches_is_one_solid_in_a_turned_room_and_before_large_walls() {
+    for k in 1..12 {
+        let turn = 0.547 * f64::from(k);
+        let block = cuboid(Vec3::new(0.2, -0.1, 0.3), Vec3::new(0.9, 0.7, 0.8), turn, false);
+        let upright = room();
+        let along = cuboid(Vec3::ZERO, Vec3::splat(2.0), turn, true);
+        for walls in [upright.clone(), cut(&upright, 2), cut(&along, 3)] {
+            let all: Vec<Patch> = walls.into_iter().chain(cut(&block, 4)).collect();
+            let found = bodies(&all, &all, &[]);
+            assert_eq!(found.as_slice().len(), 1, "turned by {turn}");
+            assert_eq!(counts(&found.as_slice()[0]), [6, 12, 8]);
+        }
+    }
+}
+
+/// A patch that no face of a box has wholly before it, but of which nothing is in the box, leaves it a solid; one that reaches into it does not.
+#[test]
+fn a_patch_beside_an_edge_of_a_box_leaves_it_a_solid() {
+    let block = cuboid(Vec3::ZERO, Vec3::splat(0.5), 0.0, false);
+    let beside = |near: f64| {
+        let corner = |u: f64, z: f64| Vec3::new(near + u, near - u, z);
+        quad([corner(-2.0, -2.0), corner(2.0, -2.0), corner(2.0, 2.0), corner(-2.0, 2.0)])
+    };
+    let count = |near: f64| {
+        let all: Vec<Patch> = block.iter().copied().chain([beside(near)]).collect();
+        bodies(&all, &all, &[]).as_slice().iter().filter(|body| body.is_solid()).count()
+    };
+    assert_eq!([0.51, 0.500_001].map(count), [1, 1]);
+    assert_eq!([0.49, 0.0].map(count), [0, 0]);
+}
+
 #[test]
 fn a_box_without_its_bottom_is_a_solid_with_a_lid_unless_one_looks_out_of_it() {
     let block = cuboid(Vec3::new(0.0, 0.0, -1.5), Vec3::splat(0.5), 0.0, false);

@@ -27,8 +27,10 @@ use std::ops::Range;
 
 /// Relative difference below which two errors are equal by design of the scene.
 const EQUAL: f64 = 1e-6;
-/// A line that leaves less than this share of the width of a part on one side does not cut it.
+/// A line that leaves less than this share of the width of a part on one side does not cut it,
 const SIDE: f64 = 0.020_3;
+/// and what it may cost at most that it does not, in goals.
+const LOST: f64 = 0.1;
 /// Heights over a line below this share of the width of a part count as 0: often several lines meet in one point.
 const ON_THE_LINE: f64 = 1e-9;
 /// What may be hidden behind a line, in goals, from which on a point there is looked at.
@@ -72,6 +74,8 @@ pub(crate) struct Pieces<'a, H, D, M> {
     observed: Observed,
     points: usize,
     goal: f64,
+    /// The mean over the whole of what h could be at most.
+    density: f64,
 }
 
 /// Buffers of one thread.
@@ -124,13 +128,14 @@ where
         work.parts.clear();
         work.cutting.clear();
         let observed = Observed::new(breaks.sure);
-        Self { h, breaks, work, observed, points: 0, goal }
+        Self { h, breaks, work, observed, points: 0, goal, density: 0.0 }
     }
 
     /// The integral over a convex polygon; it is at most `most`.
     pub(crate) fn integrate(mut self, corners: &[Vec3], most: f64) -> Estimate {
+        self.density = most / area(corners);
         let lines = self.lines(corners);
-        self.cut_surely(corners, lines, most / area(corners));
+        self.cut_surely(corners, lines);
         loop {
             let error = self.observed.error(&self.work.parts);
             if error <= self.goal || self.points >= POINTS {
@@ -160,9 +165,9 @@ where
         Lines { start, end: list.len() as u32 }
     }
 
-    /// Adds a convex polygon, cut along the lines that surely show where much may be hidden behind them. `most` is the mean of what h could be at most over the whole.
-    fn cut_surely(&mut self, corners: &[Vec3], lines: Lines, most: f64) {
-        let worth = SIDE.max(SURELY * self.goal / (most * area(corners)));
+    /// Adds a convex polygon, cut along the lines that surely show where much may be hidden behind them.
+    fn cut_surely(&mut self, corners: &[Vec3], lines: Lines) {
+        let worth = self.side(corners).max(SURELY * self.goal / self.most_over(corners));
         let list = &self.work.cutting[lines.places()];
         let matter = list.iter().filter(|line| line.surely && line.share >= worth);
         let found = matter.map(|line| self.line(line));
@@ -171,7 +176,7 @@ where
         };
         for part in self.halves(corners, plane) {
             let narrower = self.narrow(&part, lines);
-            self.cut_surely(&part, narrower, most);
+            self.cut_surely(&part, narrower);
             self.work.spare.push(part);
         }
     }
@@ -246,9 +251,10 @@ where
     /// The line that shows and halves a part best, with the share of the width on its smaller side. Lists the lines behind which no point lies.
     fn line_through(&mut self, piece: &Piece) -> Option<(Plane, f64)> {
         let (flat, events) = (self.flat(piece.shape.corners()), self.breaks.events);
+        let side = self.side(piece.shape.corners());
         let PiecesWork { points, cutting, lines, unseen, .. } = &mut *self.work;
         lines.clear();
-        let cutting = cutting[piece.lines.places()].iter().filter(|line| line.share > SIDE);
+        let cutting = cutting[piece.lines.places()].iter().filter(|line| line.share > side);
         lines.extend(cutting.map(|line| (events[line.event as usize].plane, line.share)));
         points.leave_out(lines, flat);
         unseen.clear();
@@ -300,9 +306,11 @@ where
         self.observed.add(value - piece.value, piece.error);
     }
 
-    /// Cuts a part along a line, or halves its sides.
+    /// Cuts a part along a line, or halves its sides. Where most of its error is what may hide between its points near lines, it is cut along these although none is known to show: halves
+    /// that they still cut keep most of that error.
     fn divide(&mut self, piece: &Piece) {
-        match piece.line {
+        let hidden = if piece.hides_most() { self.widest(piece) } else { None };
+        match piece.line.or(hidden) {
             Some((plane, _)) => self.cut(piece, plane),
             None => {
                 for part in piece.shape.quarters() {
@@ -311,6 +319,13 @@ where
                 }
             }
         }
+    }
+
+    /// The line that halves a part best.
+    fn widest(&self, piece: &Piece) -> Option<(Plane, f64)> {
+        let side = self.side(piece.shape.corners());
+        let lines = self.work.cutting[piece.lines.places()].iter().filter(|line| line.share > side);
+        lines.map(|line| self.line(line)).max_by(|a, b| merit(a).total_cmp(&merit(b)))
     }
 
     /// The two parts of a convex polygon on both sides of a plane.
@@ -323,6 +338,16 @@ where
             part
         };
         [half(normal, offset), half(-normal, -offset)]
+    }
+
+    /// What the integral over a convex polygon could be at most, m².
+    fn most_over(&self, corners: &[Vec3]) -> f64 {
+        self.density * area(corners)
+    }
+
+    /// The share of the width of a part which a line must leave on both sides to cut it. Behind a line h has another slope: what a rule misses there grows with the square of the share.
+    fn side(&self, corners: &[Vec3]) -> f64 {
+        SIDE.min((LOST * self.goal / self.most_over(corners)).sqrt())
     }
 
     /// Heights over a line that count as 0 on a part, m.

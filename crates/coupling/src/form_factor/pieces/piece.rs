@@ -89,11 +89,15 @@ impl Piece {
         self.kind = kind.filter(|_| first || self.kind == kind);
         let before = if first || self.kind.is_none() { self.range } else { self.step }.max(step);
         self.degree += 1;
-        let hidden = self.between();
-        self.error = self.estimate(step, before) + hidden;
-        let quick = step < if first { PAYS_FIRST } else { PAYS } * before || 2.0 * hidden > self.error;
+        self.error = self.estimate(step, before) + self.between();
+        let quick = step < if first { PAYS_FIRST } else { PAYS } * before || self.hides_most();
         self.pays = self.kind.is_some() && !self.is_near() && quick && self.degree + 1 < DEGREES.len();
         (self.value, self.step) = (value, step);
+    }
+
+    /// Whether what may hide between its points is most of its error.
+    pub(super) fn hides_most(&self) -> bool {
+        2.0 * self.between() > self.error
     }
 
     /// What may hide between the points near a line, m².
