@@ -1,0 +1,31 @@
+//! Scenes made from a number, for tests, examples and benchmarks. The same number gives the same files on every machine.
+//!
+//! - [`City`]: blocks of houses that touch, overlap and go through each other, under a lit sky;
+//! - [`Scan`]: a creased figure with noisy normals, as a scanner gives, in a closed room;
+//! - [`Room`]: a closed room of any reflectance, whose energy balance is known.
+//!
+//! Lengths in metres, z is up.
+//!
+//! ```
+//! use fredholm_generate::Room;
+//!
+//! let folder = tempfile::tempdir()?;
+//! let room = Room { reflectance: 0.98, furnace: true, ..Room::default() };
+//! let scene = fredholm_scene::Scene::load(room.files().write(folder.path())?)?;
+//! let mesh = scene.mesh()?;
+//! assert!(scene.reflectance(&mesh).iter().all(|&r| r == 0.98));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod body;
+mod city;
+mod dice;
+mod files;
+mod room;
+mod scan;
+
+pub use city::City;
+pub use dice::Dice;
+pub use files::Files;
+pub use room::Room;
+pub use scan::Scan;
