@@ -182,7 +182,7 @@ fn courtyard(middle: DVec3, turn: f64, dice: &mut Dice) -> Vec<Body> {
         let base = rectangle(middle + offset, dice.between(8.0, 26.0), 0.2, angle);
         bodies.push(Body::prism(base, dice.between(1.8, 2.4), "brick", "brick"));
     }
-    for _ in 0..1 + dice.below(2) {
+    for _ in 0..=dice.below(2) {
         let offset = DVec3::new(dice.between(-8.0, 8.0), dice.between(-8.0, 8.0), 0.0);
         let (length, width) = (dice.between(3.0, 9.0), dice.between(3.0, 6.0));
         let base = rectangle(middle + offset, length, width, dice.between(0.0, 3.0));
