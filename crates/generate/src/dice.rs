@@ -47,8 +47,8 @@ impl Dice {
     }
 
     /// One of the choices, of which there is at least one.
-    pub fn pick<'a, T>(&mut self, choices: &'a [T]) -> &'a T {
-        &choices[self.below(choices.len())]
+    pub fn pick<T: Copy>(&mut self, choices: &[T]) -> T {
+        choices[self.below(choices.len())]
     }
 
     /// A direction, all equally likely.

@@ -2,7 +2,9 @@
 //!
 //! - [`City`]: blocks of houses that touch, overlap and go through each other, under a lit sky;
 //! - [`Scan`]: a creased figure with noisy normals, as a scanner gives, in a closed room;
-//! - [`Room`]: a closed room of any reflectance, whose energy balance is known.
+//! - [`Room`]: a closed room of any reflectance, whose energy balance is known;
+//! - [`Case`]: a random valid scene and a command line for it, to look for crashes with;
+//! - [`mutated`]: a text with random damages.
 //!
 //! Lengths in metres, z is up.
 //!
@@ -21,11 +23,15 @@ mod body;
 mod city;
 mod dice;
 mod files;
+mod mutate;
+mod random;
 mod room;
 mod scan;
 
 pub use city::City;
 pub use dice::Dice;
 pub use files::Files;
+pub use mutate::mutated;
+pub use random::Case;
 pub use room::Room;
 pub use scan::Scan;
