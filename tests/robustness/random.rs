@@ -31,7 +31,7 @@ impl Run {
     /// Runs the program in the folder of a case.
     fn of(case: &Case, folder: &Path) -> Self {
         let program = assert_cmd::cargo::cargo_bin!("fredholm");
-        let limits = format!("ulimit -v {MEMORY} -t {SECONDS} -c 0; exec \"$@\"");
+        let limits = format!("ulimit -v {MEMORY}; ulimit -t {SECONDS}; ulimit -c 0; exec \"$@\"");
         let errors = folder.join("stderr.txt");
         let started = Instant::now();
         let mut child = Command::new("sh")

@@ -148,7 +148,7 @@ fn problem(dice: &mut Dice, line: &mut Line) {
         line.with(&["--discretisation", dice.pick(&DISCRETISATIONS)]);
     }
     if dice.chance(0.3) {
-        line.with(&["--form-factor-tolerance", dice.pick(&["1e-1", "1e-2", "1e-4", "1e-6"])]);
+        line.with(&["--form-factor-tolerance", dice.pick(&["1e-1", "1e-2", "1e-4", "1e-5"])]);
     }
     if dice.chance(0.2) {
         line.with(&["--storage", "f32"]);
@@ -157,7 +157,7 @@ fn problem(dice: &mut Dice, line: &mut Line) {
 
 fn to_accuracy(dice: &mut Dice, scene: &str, frame: &Frame, surfaces: &[String]) -> Line {
     let mut line = Line::new("solve", scene);
-    line.with(&["-o", "out", "--accuracy", dice.pick(&["20%", "10%", "10%", "5%"])]);
+    line.with(&["-o", "out", "--accuracy", dice.pick(&["50%", "20%", "20%", "10%"])]);
     if dice.chance(0.4) {
         line.with(&["--discontinuity"]);
     }
@@ -201,7 +201,7 @@ fn view_factors(dice: &mut Dice, scene: &str, frame: &Frame) -> Line {
             line.with(&["--setting", setting]);
         }
     } else if dice.chance(0.5) {
-        line.with(&["--tolerance", dice.pick(&["1e-1", "1e-4", "1e-6", "1e-9"])]);
+        line.with(&["--tolerance", dice.pick(&["1e-1", "1e-4", "1e-5"])]);
     }
     line.with(&["--rows", dice.pick(&["element", "face", "surface"])]);
     if dice.chance(0.25) {
