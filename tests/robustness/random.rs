@@ -68,17 +68,22 @@ impl Run {
         match self.code {
             // Generated files lie where the scenes say, and the disc is writable: 5 would be wrong.
             Some(0 | 3 | 6) => None,
-            Some(2 | 4) if self.errors.lines().any(|line| line.starts_with("error: ")) => {
+            Some(2 | 4) => {
                 (!self.says_what_to_do()).then(|| "a refusal that does not say what to do".to_owned())
             }
             code => Some(format!("exit code {code:?}")),
         }
     }
 
-    /// A refusal says what is wrong and, behind a colon, a semicolon or on a line of its own, what to do.
+    /// A refusal says what is wrong and, behind a semicolon or on a line of its own, what to do.
     fn says_what_to_do(&self) -> bool {
-        let (_, message) = self.errors.split_once("error: ").unwrap_or_default();
-        message.contains("help: ") || message.contains("; ") || message.contains(": ")
+        let message = self.message();
+        message.contains("\n  help: ") || message.contains("; ")
+    }
+
+    /// The message of a refusal.
+    fn message(&self) -> &str {
+        self.errors.find("error: ").map_or("", |start| self.errors[start..].trim_end())
     }
 }
 
@@ -111,6 +116,9 @@ fn random_scenes_are_answered_or_refused() {
         if asked.is_some() {
             let spent = run.spent.as_secs_f64();
             println!("case {seed}: code {:?}, {spent:.1} s: {}", run.code, case.arguments.join(" "));
+            if let Some(2 | 4) = run.code {
+                println!("{}", run.message());
+            }
         }
     }
     println!("{count} cases, {answered} answered, {} faults, slowest {slowest:.1?}", faults.len());

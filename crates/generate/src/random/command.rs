@@ -148,7 +148,7 @@ fn problem(dice: &mut Dice, line: &mut Line) {
         line.with(&["--discretisation", dice.pick(&DISCRETISATIONS)]);
     }
     if dice.chance(0.3) {
-        line.with(&["--form-factor-tolerance", dice.pick(&["1e-1", "1e-2", "1e-4", "1e-5"])]);
+        line.with(&["--form-factor-tolerance", dice.pick(&["1e-1", "1e-2", "1e-4"])]);
     }
     if dice.chance(0.2) {
         line.with(&["--storage", "f32"]);
@@ -201,7 +201,7 @@ fn view_factors(dice: &mut Dice, scene: &str, frame: &Frame) -> Line {
             line.with(&["--setting", setting]);
         }
     } else if dice.chance(0.5) {
-        line.with(&["--tolerance", dice.pick(&["1e-1", "1e-4", "1e-5"])]);
+        line.with(&["--tolerance", dice.pick(&["1e-1", "1e-2", "1e-4"])]);
     }
     line.with(&["--rows", dice.pick(&["element", "face", "surface"])]);
     if dice.chance(0.25) {
