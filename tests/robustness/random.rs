@@ -28,8 +28,8 @@ struct Run {
 }
 
 impl Run {
-    /// Runs the program in the folder of a case.
-    fn of(case: &Case, folder: &Path) -> Self {
+    /// Runs the program in the folder of a scene.
+    fn of(arguments: &[String], folder: &Path) -> Self {
         let program = assert_cmd::cargo::cargo_bin!("fredholm");
         let limits = format!("ulimit -v {MEMORY}; ulimit -t {SECONDS}; ulimit -c 0; exec \"$@\"");
         let errors = folder.join("stderr.txt");
@@ -37,7 +37,7 @@ impl Run {
         let mut child = Command::new("sh")
             .args(["-c", &limits, "sh"])
             .arg(program)
-            .args(&case.arguments)
+            .args(arguments)
             .current_dir(folder)
             .stdin(Stdio::null())
             .stdout(Stdio::null())
@@ -96,7 +96,7 @@ fn random_scenes_are_answered_or_refused() {
         count += 1;
         let (case, folder) = (Case::random(seed), tempfile::tempdir().unwrap());
         case.files.write(folder.path()).unwrap();
-        let run = Run::of(&case, folder.path());
+        let run = Run::of(&case.arguments, folder.path());
         answered += usize::from(run.code == Some(0));
         slowest = slowest.max(run.spent);
         if let Some(fault) = run.fault() {
@@ -109,7 +109,7 @@ fn random_scenes_are_answered_or_refused() {
             if let Some(keep) = keep() {
                 let kept = keep.join(format!("case{seed}"));
                 case.files.write(&kept).unwrap();
-                fs::write(kept.join("command.txt"), format!("fredholm {line}\n")).unwrap();
+                fs::write(kept.join("command.txt"), format!("{line}\n")).unwrap();
                 fs::write(kept.join("stderr.txt"), &run.errors).unwrap();
             }
         }
@@ -124,4 +124,27 @@ fn random_scenes_are_answered_or_refused() {
     println!("{count} cases, {answered} answered, {} faults, slowest {slowest:.1?}", faults.len());
     assert!(faults.is_empty(), "{} of {count} cases:\n{}", faults.len(), faults.join("\n"));
     assert!(2 * answered as u64 > count, "only {answered} of {count} cases are answered");
+}
+
+/// What was found once: a folder each, as FREDHOLM_KEEP keeps them.
+#[test]
+fn what_was_found_stays_mended() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/robustness/finds");
+    let mut finds: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    finds.sort();
+    assert!(!finds.is_empty());
+    for find in finds {
+        let (copy, mut arguments) = (tempfile::tempdir().unwrap(), vec![]);
+        for file in fs::read_dir(&find).unwrap().map(|entry| entry.unwrap().path()) {
+            let name = file.file_name().unwrap();
+            fs::copy(&file, copy.path().join(name)).unwrap();
+            if name == "command.txt" {
+                let line = fs::read_to_string(&file).unwrap();
+                arguments = line.split_whitespace().map(str::to_owned).collect();
+            }
+        }
+        let run = Run::of(&arguments, copy.path());
+        let fault = run.fault();
+        assert!(fault.is_none(), "{}: {fault:?}\n{}", find.display(), run.errors);
+    }
 }
