@@ -49,10 +49,11 @@ fn of_edge(plane: &Face, lamp: [Vec3; 2], corner: Vec3) -> Option<[Vec3; 2]> {
     Some([from?, to?])
 }
 
-/// Where the line from a corner of a lamp through a point below it meets the plane; none for a point that is not between.
+/// Where the line from a corner of a lamp through a point below it meets the plane; none for a point that is not between, or a lamp
+/// in the plane.
 fn project(plane: &Face, lamp: Vec3, x: Vec3) -> Option<Vec3> {
     let (high, low) = (plane.height(lamp), plane.height(x));
-    (low >= 0.0 && low <= BELOW * high).then(|| lamp.lerp(x, high / (high - low)))
+    (high > 0.0 && low >= 0.0 && low <= BELOW * high).then(|| lamp.lerp(x, high / (high - low)))
 }
 
 /// The part of a segment from height 0 up to some height.

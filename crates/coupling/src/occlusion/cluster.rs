@@ -128,7 +128,9 @@ impl Builder<'_> {
         planes
     }
 
-    /// Sorts the patches of the first half of the planes to the front.
+    /// Sorts the patches of the first half of the planes to the front. A patch belongs to the first plane that it lies in: where
+    /// one patch lies in the plane of another but not the other way round, as nearly flat quads make them, each plane keeps its own
+    /// patch, so that neither part is empty.
     fn between_planes(&self, order: &mut [u32], planes: &[u32]) -> usize {
         let mut sorted = planes.to_vec();
         let key = |&p: &u32| {
@@ -137,8 +139,10 @@ impl Builder<'_> {
         };
         sorted.sort_by(|a, b| key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal));
         let low = &sorted[..sorted.len() / 2];
-        order.sort_by_key(|&k| !low.iter().any(|&p| self.in_plane(k, p)));
-        order.iter().take_while(|&&k| low.iter().any(|&p| self.in_plane(k, p))).count()
+        let plane = |k: u32| planes.iter().find(|&&p| p == k || self.in_plane(k, p));
+        let is_low = |k: u32| plane(k).is_some_and(|p| low.contains(p));
+        order.sort_by_cached_key(|&k| !is_low(k));
+        order.iter().take_while(|&&k| is_low(k)).count()
     }
 
     fn through_the_middle(&self, order: &mut [u32]) -> usize {
@@ -188,4 +192,25 @@ fn rectangle<'a, I: Iterator<Item = &'a Vec3>>(first: &Patch, corners: &impl Fn(
     let ([u0, u1], [v0, v1]) = (range(u), range(v));
     let at = |s: f64, t: f64| origin + u * s + v * t;
     Patch::quad([at(u0, v0), at(u1, v0), at(u1, v1), at(u0, v1)]).ok().flatten()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A unit square that looks down, its corner at `corner` and its side along x falling by `slope`.
+    fn square(corner: Vec3, slope: f64) -> Patch {
+        let (u, v) = (Vec3::new(1.0, 0.0, -slope), Vec3::Y);
+        Patch::quad([corner, corner + v, corner + u + v, corner + u]).unwrap().unwrap()
+    }
+
+    #[test]
+    fn a_patch_in_the_plane_of_another_that_is_not_in_its_own_ends_the_tree() {
+        // The level square's plane goes through the corner of the tilted one, that of the tilted one passes 1e-7 below the level one.
+        let patches = [square(Vec3::ZERO, 1e-7), square(Vec3::X * 3.0, 0.0)];
+        let tree = Clusters::new(&patches.each_ref(), 1e-9);
+        assert_eq!(tree.nodes.len(), 3);
+        let copies: Vec<&Patch> = patches.iter().cycle().take(7).collect();
+        assert_eq!(Clusters::new(&copies, 1e-9).nodes.len(), 13);
+    }
 }

@@ -24,23 +24,26 @@ pub(super) fn merge(points: &[Vec3], polygons: &[Polygon], tolerance: f64) -> Ve
     merged
 }
 
+/// Joins a list to one polygon, or else parts of it. A list can be parted as often as it is long, too deep for a recursion.
 fn join(points: &[Vec3], polygons: &[Polygon], list: &[usize], merged: &mut Vec<Polygon>) {
-    if let [single] = list {
-        merged.push(polygons[*single].clone());
-        return;
+    let mut lists = vec![list.to_vec()];
+    while let Some(list) = lists.pop() {
+        if let [single] = *list {
+            merged.push(polygons[single].clone());
+            continue;
+        }
+        let plane = Plane::of(points, &polygons[list[0]]);
+        if let Some(hull) = plane.filled_hull(polygons, &list) {
+            merged.push(hull);
+            continue;
+        }
+        let [low, high] = plane.halve(polygons, &list);
+        if low.is_empty() || high.is_empty() {
+            merged.extend(list.iter().map(|&k| polygons[k].clone()));
+        } else {
+            lists.extend([high, low]);
+        }
     }
-    let plane = Plane::of(points, &polygons[list[0]]);
-    if let Some(hull) = plane.filled_hull(polygons, list) {
-        merged.push(hull);
-        return;
-    }
-    let [low, high] = plane.halve(polygons, list);
-    if low.is_empty() || high.is_empty() {
-        merged.extend(list.iter().map(|&k| polygons[k].clone()));
-        return;
-    }
-    join(points, polygons, &low, merged);
-    join(points, polygons, &high, merged);
 }
 
 /// Coordinates in the plane of a polygon.

@@ -1,0 +1,32 @@
+//! A scene file and the mesh file beside it.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// A scene as text, with the mesh files that it names.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Files {
+    /// Name of the scene file.
+    pub name: String,
+    /// Text of the scene file.
+    pub scene: String,
+    /// Names and texts of the files that it names.
+    pub others: Vec<(String, String)>,
+}
+
+impl Files {
+    /// Writes the files into a folder, which is made where there is none; tells where the scene file lies.
+    ///
+    /// # Errors
+    /// What the operating system says.
+    pub fn write(&self, folder: &Path) -> io::Result<PathBuf> {
+        fs::create_dir_all(folder)?;
+        for (name, text) in &self.others {
+            fs::write(folder.join(name), text)?;
+        }
+        let path = folder.join(&self.name);
+        fs::write(&path, &self.scene)?;
+        Ok(path)
+    }
+}
