@@ -128,7 +128,7 @@ fn a_level_that_does_not_fit_is_refused_before_anything_is_computed() {
     // Level 2 has 1536 elements, with a matrix of 9 MB and about 7 MB of mesh.
     let run = bench.run(&["converge", "scene.toml", "--levels", "4", "--memory", "16MB"]);
     assert_eq!(run.code, 4, "{}", run.stderr);
-    assert!(run.stderr.contains("level 2 (fits: --levels 2): this scene needs"), "{}", run.stderr);
+    assert!(run.stderr.contains("level 2 (fits: --levels 2): this needs"), "{}", run.stderr);
     assert!(!run.stderr.contains("assembly") && !bench.path("out").exists());
     let usage = bench.run(&["converge", "scene.toml", "--levels", "1"]);
     assert_eq!((usage.code, usage.stderr.contains("2..=12")), (2, true), "{}", usage.stderr);

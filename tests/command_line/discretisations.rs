@@ -136,7 +136,7 @@ fn what_does_not_fit_is_refused() {
     refused(&["--discretisation", "galerkin-9"], 2, "galerkin-2-conforming");
     refused(&["--discretisation", "galerkin-1", "--storage", "f32"], 2, "stores f64 only");
     // 864 unknowns have a matrix of 6 MB, 96 elements one of 37 kB.
-    let limit = ["--memory", "10MB", "--discretisation"];
+    let limit = ["--memory", "14MB", "--discretisation"];
     refused(&[&limit[..], &["collocation-2"]].concat(), 4, "864 unknowns on 96 elements");
     assert_eq!(bench.run(&[&["check", "scene.toml"], &limit[..], &["galerkin-0"]].concat()).code, 0);
     assert!(!bench.path("out").exists());

@@ -278,7 +278,7 @@ pub(crate) struct ProblemArgs {
     /// Number format of the stored matrix [default: the scene's, else f64]
     #[arg(long, value_enum, value_name = "FORMAT")]
     pub(crate) storage: Option<Precision>,
-    /// Memory allowed, such as 4GiB or 800MB [default: 80 % of what is available]
+    /// Memory allowed, such as 4GiB or 800MB [default: what leaves the machine usable]
     #[arg(long, value_name = "LIMIT")]
     pub(crate) memory: Option<Bytes>,
 }
@@ -315,6 +315,9 @@ pub(crate) struct SolveArgs {
     pub(crate) log: LogArgs,
 }
 
+/// Bytes of a point: it is listed for the options, to gather, and for the file.
+const PLACE: u128 = 200;
+
 /// Where the irradiance is gathered for points.csv.
 #[derive(Clone, Debug, Default, Args)]
 pub(crate) struct PlaceArgs {
@@ -327,6 +330,12 @@ pub(crate) struct PlaceArgs {
 }
 
 impl PlaceArgs {
+    /// Bytes that the points take, with their irradiance in each band.
+    pub(crate) fn bytes(&self, bands: usize) -> u128 {
+        let points = self.point.len() + self.plane.iter().map(Plane::count).sum::<usize>();
+        points as u128 * (PLACE + 32 * bands as u128)
+    }
+
     /// All points.
     pub(crate) fn receivers(&self) -> Vec<Receiver> {
         let grids = self.plane.iter().flat_map(Plane::receivers);

@@ -20,10 +20,11 @@ use crate::checkpoint::{self, Checkpoint, Header};
 use crate::console::Console;
 use crate::failure::{Ending, Failure};
 use crate::interrupt::Interrupt;
+use crate::memory::Plan;
 use crate::options::{Options, ProblemOptions, RADIOSITY};
 use crate::pictures;
-use crate::prediction::{Dense, Prediction, Size};
-use crate::problem::{Problem, check, occluders, scene_failure};
+use crate::prediction::{Dense, MESH, Prediction, Size, results};
+use crate::problem::{Problem, check, occluders, pixels, scene_failure};
 use crate::registry::{self, Entry};
 use crate::solution::{Solution, coupling_failure, solve_failure};
 use crate::stages::Stages;
@@ -47,8 +48,12 @@ const SUITABLE: [&str; 10] = [
     "bicgstab",
     "anderson",
 ];
-/// Share of the memory that tree and links may take.
-const SHARE: f64 = 0.8;
+/// How to need less memory.
+const HELP: &str = "use fewer faces, or a smaller picture";
+/// Pictures: of the field, of the elements, of links.
+const PICTURES: usize = 3;
+/// Share that tree and links may take of what the scene and the pictures leave: the other part is for results of the elements, whose number is not known before.
+const SHARE: f64 = 0.6;
 
 /// The options in force.
 pub(crate) fn options(
@@ -115,13 +120,18 @@ pub(crate) fn compute(
     (accuracy, checkpoint): (f64, Option<&Checkpoint>),
     stages: &mut Stages,
 ) -> Result<(Problem, Solution), Failure> {
+    let admit = |plan: &Plan, stages: &Stages| stages.admit(plan, options.problem.memory_limit(), HELP);
+    let count = usize::try_from(scene.predicted_faces()).unwrap_or(usize::MAX);
+    admit(&plan(scene, count, options), stages)?;
     let faces = stages.run("mesh", || scene.face_mesh().map_err(scene_failure))?;
     let goal = goal(options, &faces)?;
     let warnings = check(scene, &faces, stages)?;
+    let plan = plan(scene, faces.len(), options);
+    admit(&plan, stages)?;
     let occluders = stages.run("visibility", || occluders(scene, &faces))?;
     let surfaces = surfaces(scene, &faces)?;
     let input = Input { mesh: &faces, occluders: &occluders, surfaces: &surfaces, goal: goal.as_ref() };
-    let limits = limits(options, accuracy);
+    let limits = limits(options, accuracy, &plan);
     let entry = registry::build(&options.problem.solver).map_err(|e| Failure::new(Ending::Input, e))?;
     let state = checkpoint.map(|checkpoint| state(checkpoint, scene, &input)).transpose()?;
     let fallback = registry::build(FALLBACK).map_err(|e| Failure::new(Ending::Input, e))?;
@@ -145,8 +155,8 @@ pub(crate) fn compute(
     let solved = stages.run("solution", solve)?;
     stages.begin_saving()?;
     let mesh = refined(&faces, &solved).map_err(|e| Failure::new(Ending::Input, e))?;
-    let bytes = solved.bytes();
-    let problem = problem((scene, options), mesh, (warnings, occluders), (entry, bytes))?;
+    let plan = plan.hold("tree and links", limits.bytes.into());
+    let problem = problem((scene, options), mesh, (warnings, occluders), (entry, plan))?;
     Ok((problem, solution(solved, options, accuracy)))
 }
 
@@ -155,9 +165,9 @@ fn problem(
     (scene, options): (&Arc<Scene>, &Options),
     mesh: Mesh,
     (warnings, occluders): (Vec<String>, Occluders),
-    (solver, bytes): (Entry, u64),
+    (solver, plan): (Entry, Plan),
 ) -> Result<Problem, Failure> {
-    let (unknowns, dense) = (mesh.len(), Some(Dense { bytes: bytes.into() }));
+    let (unknowns, dense) = (mesh.len(), Some(Dense { bytes: 0 }));
     let size = Size { elements: unknowns, unknowns, coarse: 0, dense };
     let discretisation = fredholm_discretisation::discretisation(RADIOSITY)
         .map_err(|error| Failure::new(Ending::Input, error))?;
@@ -166,6 +176,7 @@ fn problem(
         options: options.problem.clone(),
         discretisation,
         prediction: Prediction::new(size, scene.bands().len(), Precision::F64, &solver),
+        plan,
         solver,
         mesh,
         unknowns,
@@ -184,8 +195,18 @@ fn state(checkpoint: &Checkpoint, scene: &Scene, input: &Input) -> Result<State,
     State::read(input, &mut checkpoint.state.as_slice()).map_err(failure)
 }
 
-fn limits(options: &Options, accuracy: f64) -> Limits {
-    let allowed = u64::try_from(options.problem.memory_limit().0).unwrap_or(u64::MAX);
+/// What is held besides tree and links.
+fn plan(scene: &Scene, count: usize, options: &Options) -> Plan {
+    let bands = scene.bands().len();
+    let pictures = PICTURES + usize::from(options.final_gather);
+    Plan::default()
+        .hold(format!("{count} faces"), MESH * count as u128)
+        .hold("results and pictures", results(count, bands, pixels(scene), pictures))
+}
+
+fn limits(options: &Options, accuracy: f64, plan: &Plan) -> Limits {
+    let allowed = options.problem.memory_limit().bytes.0.saturating_sub(plan.peak().0);
+    let allowed = u64::try_from(allowed).unwrap_or(u64::MAX);
     Limits {
         accuracy,
         linear: true,

@@ -7,6 +7,7 @@ use serde::{Serialize, Serializer};
 use std::path::Path;
 
 use crate::args::{LogArgs, LogFormat, Precision, ProblemArgs, StopArgs};
+use crate::memory::Limit;
 use crate::size::Bytes;
 use crate::{memory, registry, threads};
 
@@ -69,13 +70,13 @@ impl ProblemOptions {
             solver: solver.map_or_else(|| registry::DEFAULT.to_owned(), Clone::clone),
             form_factor_tolerance: form_factor_tolerance.unwrap_or(FORM_FACTOR_TOLERANCE),
             storage: storage.unwrap_or(Precision::F64),
-            threads: args.threads.map_or_else(threads::default_count, usize::from),
+            threads: threads::count(args.threads),
             memory_limit_bytes: args.memory.map(|Bytes(limit)| u64::try_from(limit).unwrap_or(u64::MAX)),
         }
     }
 
-    pub(crate) fn memory_limit(&self) -> Bytes {
-        self.memory_limit_bytes.map_or_else(memory::default_limit, |bytes| Bytes(bytes.into()))
+    pub(crate) fn memory_limit(&self) -> Limit {
+        memory::limit(self.memory_limit_bytes.map(|bytes| Bytes(bytes.into())))
     }
 }
 

@@ -11,7 +11,6 @@ use fredholm_report::{EXTRAS, Gathering, Link as Drawn, Linked, PointTable};
 use crate::failure::{Ending, Failure};
 use crate::options::Options;
 use crate::problem::Problem;
-use crate::size::Bytes;
 use crate::solution::Solution;
 
 /// Error that a node may leave in the irradiance of a pixel, over the accuracy asked for.
@@ -72,7 +71,7 @@ impl<'a> Source<'a> {
     ) -> Result<Self, Failure> {
         let hierarchy = solution.tree.as_ref();
         let wanted = options.final_gather || options.discontinuity || !options.points.is_empty();
-        let light = wanted.then(|| Light::new(problem, options, solution)).transpose()?;
+        let light = wanted.then(|| Light::new(problem, solution)).transpose()?;
         Ok(Self { problem, solution, hierarchy, light })
     }
 
@@ -141,14 +140,14 @@ fn below(tree: &Tree, place: &[Option<usize>], node: u32) -> Vec<usize> {
 }
 
 impl Light {
-    fn new(problem: &Problem, options: &Options, solution: &Solution) -> Result<Self, Failure> {
+    fn new(problem: &Problem, solution: &Solution) -> Result<Self, Failure> {
         let Problem { mesh, scene, occluders, .. } = problem;
         let tree = match solution.tree {
             Some(_) => None,
             None => Some(Tree::new(mesh, occluders.tolerance()).map_err(failure)?),
         };
         let nodes = solution.tree.as_ref().map_or(2 * mesh.len(), |h| h.tree.nodes().len());
-        admit(Bytes(Gather::bytes(nodes, scene.bands().len()).into()), options)?;
+        admit(problem, nodes)?;
         let (reflectance, exitance) =
             (problem.multivector(scene.reflectance(mesh))?, problem.multivector(scene.exitance(mesh))?);
         let (bands, means) = (scene.bands().len(), &solution.means.irradiance);
@@ -166,16 +165,27 @@ impl Light {
     }
 }
 
+/// Bytes of a node of the tree over elements.
+const NODE: u128 = 320;
+/// Vectors of all elements and bands that gathering needs.
+const VECTORS: u128 = 5;
+
+/// Bytes of what gathers light from so many elements, of which a tree is made.
+pub(crate) fn gathering(elements: usize, bands: usize) -> u128 {
+    let nodes = elements.saturating_mul(2);
+    u128::from(Gather::bytes(nodes, bands))
+        + nodes as u128 * NODE
+        + elements as u128 * 8 * VECTORS * bands as u128
+}
+
 /// Refuses to gather where the memory does not allow it.
-fn admit(needed: Bytes, options: &Options) -> Result<(), Failure> {
-    let limit = options.problem.memory_limit();
-    if needed <= limit {
-        return Ok(());
-    }
-    let text = format!(
-        "gathering needs {needed}, but {limit} are allowed\n  help: leave out --final-gather, or allow more with --memory"
-    );
-    Err(Failure::new(Ending::Resources, text))
+fn admit(problem: &Problem, nodes: usize) -> Result<(), Failure> {
+    let bytes = Gather::bytes(nodes, problem.scene.bands().len());
+    let plan = problem.plan.clone().hold("gathering", bytes.into());
+    plan.admit(
+        problem.options.memory_limit(),
+        "leave out --final-gather, --discontinuity, --point and --plane",
+    )
 }
 
 /// Gathers the light of points on the elements.

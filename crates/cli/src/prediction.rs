@@ -1,20 +1,33 @@
 //! Memory that a solution will take, known before any is taken.
-
-use std::fmt::Write;
+//!
+//! The bytes an element takes are measured: `cargo test --release --test memory -- --ignored` compares every prediction with what was held.
 
 use fredholm_coupling::waiting_bytes;
-use fredholm_linop::PackedSymmetric;
+use fredholm_linop::{PackedSymmetric, Storage};
 
 use crate::args::Precision;
-use crate::failure::{Ending, Failure};
+use crate::failure::Failure;
+use crate::memory::{Limit, Plan};
 use crate::options::{ProblemOptions, RADIOSITY};
 use crate::registry::Entry;
 use crate::size::Bytes;
+use crate::stages::Stages;
 
-/// Bytes an element takes besides its row of the matrix: geometry, quadrature points, error sums of the assembly.
-const PER_ELEMENT: u128 = 4096;
-/// Bytes of the program itself, before there is a scene.
-const PROGRAM: u128 = 8 << 20;
+/// Bytes of an element from the scene on: its patch, the scene's surfaces, what blocks the view.
+pub(crate) const MESH: u128 = 600;
+/// Bytes of an element while its exchanges are computed: quadrature points, clusters, error sums.
+pub(crate) const ASSEMBLY: u128 = 800;
+/// Bytes of an element that is shot from: quadrature points, groups, the tree of elements.
+const SHOT: u128 = 1300;
+/// Of the entries on their way, many small pieces, the C library still has one in so many when they have arrived.
+pub(crate) const RETAINED: u128 = 3;
+/// Bytes of an element while results are written, and of each of its values: what rays are cast at for the picture, welded corners, the composed file of arrays.
+const RESULTS: u128 = 650;
+const VALUE: u128 = 50;
+/// Bytes of a pixel: its luminance, among lit surfaces or lamps, and its place in the list of all while it is put together.
+const PIXEL: u128 = 28;
+/// Bytes of a pixel in each picture: while it is drawn, and when all are taken apart.
+const LAYER: u128 = 6;
 /// Vectors of all bands held at once: system, iterates, residuals, results.
 const VECTORS: u128 = 16;
 
@@ -49,99 +62,114 @@ impl Size {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Prediction {
     size: Size,
-    pub(crate) matrix: Bytes,
+    matrix: u128,
     /// Entries on their way into the matrix.
-    pub(crate) waiting: Bytes,
-    pub(crate) mesh: Bytes,
-    pub(crate) solver: Bytes,
+    waiting: u128,
+    /// The matrix of the coarser problem.
+    coarse: u128,
+    mesh: u128,
+    vectors: u128,
+    solver: u128,
 }
 
 impl Prediction {
     pub(crate) fn new(size: Size, bands: usize, storage: Precision, solver: &Entry) -> Self {
         let Size { elements, unknowns, coarse, dense } = size;
-        let fine = match storage {
-            Precision::F64 => PackedSymmetric::<f64>::bytes(elements),
-            Precision::F32 => PackedSymmetric::<f32>::bytes(elements),
+        let (packed, waiting) = match storage {
+            Precision::F64 => (PackedSymmetric::<f64>::bytes(elements), waiting::<f64>(elements, false)),
+            Precision::F32 => (PackedSymmetric::<f32>::bytes(elements), waiting::<f32>(elements, false)),
         };
-        let waiting = match storage {
-            Precision::F64 => waiting_bytes::<f64>(elements, false),
-            Precision::F32 => waiting_bytes::<f32>(elements, false),
-        };
-        let packed = u128::from(fine) + u128::from(PackedSymmetric::<f64>::bytes(coarse));
-        let matrix = dense.map_or(packed, |dense| dense.bytes);
-        let vectors = elements.max(unknowns) as u128 * VECTORS * 8 * bands as u128;
-        let mesh = elements as u128 * PER_ELEMENT + vectors;
-        let solver = solver.solver.bytes(unknowns, bands).into();
-        let waiting = Bytes(waiting.into());
-        Self { size, matrix: Bytes(matrix), waiting, mesh: Bytes(mesh), solver: Bytes(solver) }
+        let n = elements as u128;
+        Self {
+            size,
+            matrix: dense.map_or(packed.into(), |dense| dense.bytes),
+            waiting: if dense.is_none() { waiting.into() } else { 0 },
+            coarse: PackedSymmetric::<f64>::bytes(coarse).into(),
+            mesh: n * MESH,
+            vectors: elements.max(unknowns) as u128 * VECTORS * 8 * bands as u128,
+            solver: solver.solver.bytes(unknowns, bands).into(),
+        }
     }
 
-    pub(crate) fn total(&self) -> Bytes {
-        Bytes(PROGRAM + self.matrix.0 + self.waiting.0 + self.mesh.0 + self.solver.0)
+    /// What is held when, by a computation that keeps no matrix for its results.
+    pub(crate) fn plan(&self) -> Plan {
+        let Self { matrix, waiting, coarse, mesh, vectors, solver, size: Size { elements, unknowns, .. } } =
+            *self;
+        let (assembly, retained) = (waiting + elements as u128 * ASSEMBLY, waiting / RETAINED);
+        let what = match self.size.dense {
+            None => format!("{} of form factors of {elements} elements", Bytes(matrix)),
+            Some(_) => format!("{} of matrices of {unknowns} unknowns on {elements} elements", Bytes(matrix)),
+        };
+        Plan::default()
+            .hold("scene, mesh and vectors", mesh.saturating_add(vectors))
+            .stage(
+                format!("{what} and {} on their way there", Bytes(assembly)),
+                matrix.saturating_add(assembly),
+            )
+            .stage(
+                format!("{what} and {} of the solver", Bytes(solver)),
+                matrix.saturating_add(solver).saturating_add(retained),
+            )
+            .stage(format!("{what} and those of their faces"), matrix.saturating_add(coarse))
+    }
+
+    /// The same with a solver of so many bytes.
+    pub(crate) fn with_solver(self, solver: u128) -> Self {
+        Self { solver, ..self }
     }
 
     /// Refuses what is above the limit, and says what to change.
-    pub(crate) fn admit(&self, options: &ProblemOptions) -> Result<(), Failure> {
+    pub(crate) fn admit(
+        &self,
+        plan: &Plan,
+        options: &ProblemOptions,
+        stages: &Stages,
+    ) -> Result<(), Failure> {
         let limit = options.memory_limit();
-        if self.total() <= limit {
-            return Ok(());
-        }
-        let mut text =
-            format!("this scene needs {}, but {limit} are allowed: {self}\n  help: ", self.total());
-        // Writing to a string cannot fail.
-        let _ = write!(text, "use fewer elements (elements_per_face, divide, largest_edge in the scene)");
-        // Entries that wait have a column of 4 bytes besides.
-        let single = Bytes(self.total().0 - self.matrix.0 / 2 - self.waiting.0 / 3);
-        if self.size.dense.is_none() && options.storage == Precision::F64 && single <= limit {
+        stages.admit(plan, limit, &self.help(plan, limit, options))
+    }
+
+    /// How to need less.
+    fn help(&self, plan: &Plan, limit: Limit, options: &ProblemOptions) -> String {
+        let mut text = "use fewer elements (elements_per_face, divide, largest_edge in the scene)".to_owned();
+        let single = Bytes(plan.peak().0.saturating_sub(self.matrix / 2));
+        if self.size.dense.is_none() && options.storage == Precision::F64 && single <= limit.bytes {
             text.push_str(", --storage f32");
         }
         if self.solver > self.matrix {
-            let _ = write!(text, ", a solver that needs less than {}", options.solver);
+            text.push_str(", a solver that needs less than ");
+            text.push_str(&options.solver);
         }
-        text.push_str(", or allow more with --memory");
-        Err(Failure::new(Ending::Resources, text))
+        text
     }
 }
 
-/// Refuses what needs more than the limit without a matrix, where columns may take `kept`; groups of elements take as much as elements.
-pub(crate) fn admit_without_matrix(
-    elements: usize,
-    bands: usize,
-    kept: Bytes,
-    options: &ProblemOptions,
-) -> Result<(), Failure> {
-    let limit = options.memory_limit();
-    let mesh = Bytes(elements as u128 * (2 * PER_ELEMENT + VECTORS * 8 * bands as u128));
-    let total = Bytes(PROGRAM + mesh.0 + kept.0);
-    if total <= limit {
-        return Ok(());
-    }
-    let text = format!(
-        "this scene needs {total}, but {limit} are allowed: {mesh} for {elements} elements, {kept} for columns that are kept\n  \
-         help: keep less with --keep, use fewer elements (elements_per_face, divide, largest_edge in the scene), or allow more with --memory"
-    );
-    Err(Failure::new(Ending::Resources, text))
+/// Bytes of the entries on their way into a matrix; more than 2³¹ elements, whose pairs cannot be counted, have none that would fit.
+pub(crate) fn waiting<S: Storage>(elements: usize, errors: bool) -> u64 {
+    waiting_bytes::<S>(elements.min(1 << 31), errors)
 }
 
-impl std::fmt::Display for Prediction {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { size: Size { elements, unknowns, .. }, matrix, waiting, mesh, solver } = self;
-        let program = Bytes(PROGRAM);
-        match self.size.dense {
-            None => write!(f, "{matrix} for the form factors of {elements} elements")?,
-            Some(_) => write!(f, "{matrix} for the matrices of {unknowns} unknowns on {elements} elements")?,
-        }
-        write!(
-            f,
-            ", {waiting} on their way there, {mesh} for the mesh, {solver} for the solver and \
-             {program} for the program"
+/// A computation without a matrix, where columns may take `kept`; groups of elements take as much as elements.
+pub(crate) fn without_matrix(elements: usize, bands: usize, kept: Bytes) -> Plan {
+    let n = elements as u128;
+    Plan::default()
+        .hold(
+            format!("{elements} elements and groups of them"),
+            n * (MESH + SHOT + VECTORS * 8 * bands as u128),
         )
-    }
+        .hold("columns that are kept", kept.0)
+}
+
+/// Bytes of the results of so many elements and of pictures of so many pixels.
+pub(crate) fn results(elements: usize, bands: usize, pixels: u128, pictures: usize) -> u128 {
+    let fields = elements as u128 * (RESULTS + VALUE * bands as u128);
+    fields.saturating_add(pixels.saturating_mul(PIXEL + LAYER * pictures as u128))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::memory::limit;
     use crate::registry::find;
 
     fn predict(elements: usize, storage: Precision, solver: &str) -> Prediction {
@@ -151,31 +179,37 @@ mod tests {
 
     #[test]
     fn the_triangle_of_the_matrix_is_counted_in_its_format() {
-        assert_eq!(predict(10_000, Precision::F64, "gauss-seidel").matrix, Bytes(50_005_000 * 8));
-        assert_eq!(predict(10_000, Precision::F32, "gauss-seidel").matrix, Bytes(50_005_000 * 4));
+        assert_eq!(predict(10_000, Precision::F64, "gauss-seidel").matrix, 50_005_000 * 8);
+        assert_eq!(predict(10_000, Precision::F32, "gauss-seidel").matrix, 50_005_000 * 4);
     }
 
     #[test]
     fn single_precision_is_advised_where_it_is_enough() {
-        let advice = |limit: u64| {
+        let advice = |bytes: u64| {
             let options = ProblemOptions {
                 discretisation: RADIOSITY.into(),
                 solver: "gauss-seidel".into(),
                 form_factor_tolerance: 1e-3,
                 storage: Precision::F64,
                 threads: 1,
-                memory_limit_bytes: Some(limit),
+                memory_limit_bytes: Some(bytes),
             };
-            predict(10_000, Precision::F64, "gauss-seidel").admit(&options).err().map(|e| e.to_string())
+            let found = predict(10_000, Precision::F64, "gauss-seidel");
+            found.help(&found.plan(), limit(Some(Bytes(bytes.into()))), &options)
         };
-        // 400 MB of matrix, 246 MB that wait, 45 MB of everything else in double precision.
-        assert!(advice(450_000_000).unwrap().contains("--storage f32"));
-        assert!(!advice(100_000_000).unwrap().contains("--storage f32"));
-        assert_eq!(advice(1_000_000_000), None);
+        // 400 MB of matrix and 150 MB of everything else in double precision.
+        assert!(advice(450_000_000).contains("--storage f32"));
+        assert!(!advice(100_000_000).contains("--storage f32"));
     }
 
     #[test]
     fn elimination_needs_at_least_the_full_square() {
-        assert!(predict(10_000, Precision::F64, "lu").solver >= Bytes(8 * 10_000 * 10_000));
+        assert!(predict(10_000, Precision::F64, "lu").solver >= 8 * 10_000 * 10_000);
+    }
+
+    #[test]
+    fn a_large_picture_counts() {
+        assert!(results(600, 3, 16_384 * 16_384, 1) > 8 << 30);
+        assert!(results(usize::MAX, 3, u128::MAX, 1) == u128::MAX);
     }
 }

@@ -6,13 +6,15 @@ use fredholm_coupling::form_factor::PairIntegrator;
 use fredholm_discretisation::{Discretisation, Surface, discretisation, discretisations};
 use fredholm_linop::MultiVector;
 use fredholm_mesh::{Mesh, Patch};
+use fredholm_report::FRAMED;
 use fredholm_scene::{Scene, SceneError};
 use fredholm_visibility::Occluders;
 
 use crate::args::{Precision, ProblemArgs};
 use crate::failure::{Ending, Failure};
+use crate::memory::Plan;
 use crate::options::{ProblemOptions, RADIOSITY};
-use crate::prediction::{Dense, Prediction, Size, admit_without_matrix};
+use crate::prediction::{Dense, Prediction, Size, results, without_matrix};
 use crate::registry::{self, Entry};
 use crate::size::Bytes;
 use crate::stages::Stages;
@@ -27,23 +29,28 @@ pub(crate) struct Problem {
     /// Unknowns in each band.
     pub(crate) unknowns: usize,
     pub(crate) prediction: Prediction,
+    /// Memory of the whole run.
+    pub(crate) plan: Plan,
     pub(crate) warnings: Vec<String>,
     pub(crate) occluders: Occluders,
 }
 
+/// What a verb adds to the memory of a solution, of a scene with so many elements.
+pub(crate) type More<'a> = &'a dyn Fn(Plan, &Scene, usize) -> Plan;
+
 impl Problem {
-    /// Reads, meshes and checks a scene; refuses it before memory is taken where it does not fit.
-    pub(crate) fn load(args: &ProblemArgs, stages: &mut Stages) -> Result<Self, Failure> {
+    /// Reads, meshes and checks a scene; refuses it before memory is taken where it does not fit, together with what the verb adds.
+    pub(crate) fn load(args: &ProblemArgs, more: More, stages: &mut Stages) -> Result<Self, Failure> {
         let scene = stages.run("scene", || Scene::load(&args.scene).map_err(scene_failure))?;
         let options = ProblemOptions::new(args, scene.solve());
-        Self::refined(Arc::new(scene), options, 1, stages)
+        Self::refined(Arc::new(scene), options, (1, more), stages)
     }
 
     /// Meshes a scene, every element cut into `refinement` × `refinement`. What is as it is in the scene is checked without refinement only.
     pub(crate) fn refined(
         scene: Arc<Scene>,
         options: ProblemOptions,
-        refinement: usize,
+        (refinement, more): (usize, More),
         stages: &mut Stages,
     ) -> Result<Self, Failure> {
         let solver = registry::find(&options.solver)
@@ -52,15 +59,28 @@ impl Problem {
         let options = ProblemOptions { discretisation: discretisation.name().to_owned(), ..options };
         let elements = scene.predicted_elements().saturating_mul((refinement as u128).pow(2));
         let elements = usize::try_from(elements).unwrap_or(usize::MAX);
-        predict(&scene, &options, &solver, Size::before_mesh(elements, &options)).admit(&options)?;
+        let before = predict(&scene, &options, &solver, Size::before_mesh(elements, &options));
+        before.admit(&more(before.plan(), &scene, elements), &options, stages)?;
         let mesh = stages.run("mesh", || scene.refined_mesh(refinement).map_err(scene_failure))?;
         let size = size(&scene, &*discretisation, &mesh)?;
         let prediction = predict(&scene, &options, &solver, size);
-        prediction.admit(&options)?;
+        let plan = more(prediction.plan(), &scene, mesh.len());
+        prediction.admit(&plan, &options, stages)?;
         let warnings = if refinement == 1 { check(&scene, &mesh, stages)? } else { Vec::new() };
         let occluders = stages.run("visibility", || occluders(&scene, &mesh))?;
         let unknowns = size.unknowns;
-        Ok(Self { scene, options, discretisation, solver, mesh, unknowns, prediction, warnings, occluders })
+        Ok(Self {
+            scene,
+            options,
+            discretisation,
+            solver,
+            mesh,
+            unknowns,
+            prediction,
+            plan,
+            warnings,
+            occluders,
+        })
     }
 
     /// Whether the system is that of form factors between elements.
@@ -101,10 +121,16 @@ impl Open {
         let scene = stages.run("scene", || Scene::load(&args.scene).map_err(scene_failure))?;
         let options = ProblemOptions::new(args, scene.solve());
         let bands = scene.bands().len();
-        let admit = |elements: usize| admit_without_matrix(elements, bands, kept, &options);
-        admit(usize::try_from(scene.predicted_elements()).unwrap_or(usize::MAX))?;
+        let pixels = pixels(&scene);
+        let admit = |elements: usize, stages: &Stages| {
+            let results = results(elements, bands, pixels, 1);
+            let plan = without_matrix(elements, bands, kept).stage("results and pictures", results);
+            let help = "keep less with --keep, use fewer elements (elements_per_face, divide, largest_edge in the scene)";
+            stages.admit(&plan, options.memory_limit(), help)
+        };
+        admit(usize::try_from(scene.predicted_elements()).unwrap_or(usize::MAX), stages)?;
         let mesh = stages.run("mesh", || scene.mesh().map_err(scene_failure))?;
-        admit(mesh.len())?;
+        admit(mesh.len(), stages)?;
         let warnings = check(&scene, &mesh, stages)?;
         let occluders = stages.run("visibility", || occluders(&scene, &mesh))?;
         Ok(Self { scene, options, mesh, warnings, occluders })
@@ -114,6 +140,23 @@ impl Open {
     pub(crate) fn patches(&self) -> Vec<&Patch> {
         self.mesh.patches().collect()
     }
+}
+
+/// Pixels of the picture of a scene.
+pub(crate) fn pixels(scene: &Scene) -> u128 {
+    let [width, height] = scene.camera().map_or(FRAMED, |camera| [camera.width, camera.height]);
+    u128::from(width) * u128::from(height)
+}
+
+/// Results and so many pictures after a solution, and what these take besides.
+pub(crate) fn with_results(
+    plan: Plan,
+    scene: &Scene,
+    elements: usize,
+    (pictures, more): (usize, u128),
+) -> Plan {
+    let bytes = results(elements, scene.bands().len(), pixels(scene), pictures);
+    plan.stage("results and pictures", bytes.saturating_add(more))
 }
 
 /// Prepares patches for queries of visibility.

@@ -17,7 +17,7 @@ pub(crate) fn assembly_seconds(problem: &Problem) -> f64 {
     let integrator = problem.integrator();
     let pairs = integrator.len() as f64 * (integrator.len() as f64 - 1.0) / 2.0;
     // More threads than cores take turns.
-    let at_once = problem.options.threads.min(threads::default_count());
+    let at_once = problem.options.threads.min(threads::cores());
     mean_seconds(&integrator) * pairs / at_once as f64
 }
 

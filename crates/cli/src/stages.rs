@@ -7,6 +7,7 @@ use fredholm_report::Timing;
 use crate::console::Console;
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
+use crate::memory::{Limit, Plan};
 
 /// Runs stages and keeps their times.
 pub(crate) struct Stages<'a> {
@@ -49,6 +50,13 @@ impl<'a> Stages<'a> {
         self.console.end(&shown, seconds);
         self.timings.push(Timing { stage: stage.to_owned(), seconds });
         Ok(result)
+    }
+
+    /// Refuses what a limit does not allow, before any of it is taken; `help` says how to need less.
+    pub(crate) fn admit(&self, plan: &Plan, limit: Limit, help: &str) -> Result<(), Failure> {
+        plan.admit(limit, help)?;
+        self.console.admit(plan, limit);
+        Ok(())
     }
 
     /// The stages so far.

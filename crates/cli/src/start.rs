@@ -5,14 +5,16 @@ use std::path::{Path, PathBuf};
 use crate::args::LogArgs;
 use crate::failure::{Ending, Failure};
 use crate::interrupt::Interrupt;
+use crate::size::Bytes;
 use crate::stages::Stages;
-use crate::{console, folder, threads};
+use crate::{console, folder, memory, threads};
 
 /// What the command line says of it.
 pub(crate) struct Start<'a> {
     pub(crate) scene: &'a Path,
     pub(crate) output: Option<&'a PathBuf>,
     pub(crate) threads: Option<u16>,
+    pub(crate) memory: Option<Bytes>,
     pub(crate) log: LogArgs,
 }
 
@@ -27,8 +29,10 @@ impl Start<'_> {
         folder::probe(&folder, "-o DIR")?;
         let console = console::choose(self.log);
         let mut stages = Stages::new(&*console, &interrupt);
-        let count = self.threads.map_or_else(threads::default_count, usize::from);
-        threads::pool(count)?.install(|| verb(&folder, &mut stages))
+        memory::tell(self.memory, &*console);
+        let ended = threads::pool(self.threads)?.install(|| verb(&folder, &mut stages));
+        memory::conclude(&*console);
+        ended
     }
 
     /// As [`run`](Self::run), for a verb whose stages are of no use without the others: what is interrupted leaves nothing.

@@ -14,9 +14,10 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 /// Patches of a panel at most.
 const PANEL: usize = 32;
 /// Entries that wait for their place in the matrix at most, as far as a batch of panels can tell.
-const WAITING: usize = 1 << 23;
-/// Panels of a batch at least: enough to keep many threads busy.
-const BATCH: usize = 64;
+const WAITING: usize = 1 << 21;
+/// Panels of a batch at least, and for each thread: enough to keep many threads busy.
+const BATCH: usize = 32;
+const OF_A_THREAD: usize = 4;
 
 /// Called with the pairs done and the pairs in all; can stop the assembly.
 pub type Watch<'a> = dyn Fn(u64, u64) -> ControlFlow<()> + Sync + 'a;
@@ -109,7 +110,7 @@ fn assembly<S: Storage>(
     let clusters = integrator.clusters();
     let panels = clusters.panels(PANEL);
     let mut total = Report::new(n);
-    for batch in panels.chunks((WAITING / (PANEL * n.max(1))).max(BATCH)) {
+    for batch in panels.chunks(batch(n)) {
         let keep = !packed.errors.is_empty();
         let compute = |&panel: &usize| Strip::compute(integrator, &clusters, panel, keep, &progress);
         for strip in batch.par_iter().map(compute).collect::<Vec<_>>() {
@@ -126,9 +127,15 @@ fn assembly<S: Storage>(
 /// Bytes of the entries of `n` patches that wait for their place in the matrix at most, besides the matrix; with or without their errors.
 #[must_use]
 pub fn waiting_bytes<S: Storage>(n: usize, errors: bool) -> u64 {
-    let batch = WAITING.max(BATCH * PANEL * n) as u64;
+    // The last batch has the longest rows.
+    let batch = pairs(n) - pairs(n.saturating_sub(PANEL * batch(n)));
     let entry = size_of::<u32>() + size_of::<S>() + if errors { size_of::<f64>() } else { 0 };
-    pairs(n).min(batch) * entry as u64
+    batch * entry as u64
+}
+
+/// Panels of a batch.
+fn batch(n: usize) -> usize {
+    (WAITING / PANEL / n.max(1)).max(BATCH).max(OF_A_THREAD * rayon::current_num_threads())
 }
 
 fn pairs(n: usize) -> u64 {

@@ -126,7 +126,7 @@ fn condition(ascending: &[f64]) -> Option<f64> {
 /// Bytes that [`spectrum`] takes besides the operator: some dense matrices.
 #[must_use]
 pub fn spectrum_bytes(dim: usize) -> u64 {
-    Dense::<f64>::bytes(dim).saturating_mul(6)
+    Dense::<f64>::bytes(dim).saturating_mul(9)
 }
 
 /// Computes it all for one lane, by dense methods: n³ operations, some n² entries of memory.

@@ -48,6 +48,9 @@ pub(crate) struct Axes {
     up: Vec3,
 }
 
+/// Width and height of the picture of a scene without a camera of its own, pixels.
+pub const FRAMED: [u32; 2] = [800, 600];
+
 impl Camera {
     /// A camera that sees the whole scene: through its opening, or through a wall where it is closed, since walls are
     /// invisible from behind. Up is opposite to where the lamps shine, else y.
@@ -60,8 +63,8 @@ impl Camera {
             target: field.mesh().bounds().map_or(Vec3::ZERO, |bounds| bounds.centre()),
             up,
             vertical_fov_degrees: 40.0,
-            width: 800,
-            height: 600,
+            width: FRAMED[0],
+            height: FRAMED[1],
         };
         let distance = MARGIN * reach(field, &camera, forward);
         Self { eye: camera.target - forward * distance, ..camera }

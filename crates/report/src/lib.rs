@@ -64,7 +64,7 @@ mod waves;
 mod xml;
 
 pub use atomic::write_atomically;
-pub use camera::Camera;
+pub use camera::{Camera, FRAMED};
 pub use cie::colour_matching;
 pub use colour::Colouring;
 pub use comparison::{

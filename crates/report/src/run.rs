@@ -38,6 +38,9 @@ pub struct RunRecord {
     pub counts: Counts,
     /// Wall-clock time of each stage, in order.
     pub timings: Vec<Timing>,
+    /// Memory predicted before any was taken, bytes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub predicted_memory_bytes: Option<u64>,
     /// Largest memory in use, bytes, where the system tells.
     pub peak_memory_bytes: Option<u64>,
     /// Name of the discretisation.
@@ -93,6 +96,7 @@ impl Default for RunRecord {
             bands: Vec::new(),
             counts: Counts::default(),
             timings: Vec::new(),
+            predicted_memory_bytes: None,
             peak_memory_bytes: None,
             discretisation: String::new(),
             means: String::new(),

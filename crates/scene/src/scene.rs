@@ -30,6 +30,7 @@ use crate::suggest::among;
 /// "#;
 /// let scene = Scene::from_str(text, "room.toml")?;
 /// assert_eq!(scene.predicted_elements(), 96);
+/// assert_eq!(scene.predicted_faces(), scene.face_mesh()?.faces().len() as u128);
 /// let mesh = scene.mesh()?;
 /// assert_eq!(mesh.len(), 96);
 /// assert!(scene.check(&mesh)?.is_empty());
@@ -139,6 +140,16 @@ impl Scene {
     #[must_use]
     pub fn predicted_elements(&self) -> u128 {
         self.parts().iter().map(|part| part.elements).sum()
+    }
+
+    /// Number of faces that the mesh will have, known without making it.
+    #[must_use]
+    pub fn predicted_faces(&self) -> u128 {
+        let faces = |part: &Part| {
+            let side = part.cutting.elements_per_side.max(1) as u128;
+            part.elements.div_ceil(side * side)
+        };
+        self.parts().iter().map(faces).sum()
     }
 
     /// Cuts the surfaces into faces and elements.

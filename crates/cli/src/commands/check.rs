@@ -3,23 +3,26 @@
 use crate::args::CheckArgs;
 use crate::failure::{Ending, Failure};
 use crate::interrupt::Interrupt;
-use crate::problem::Problem;
+use crate::problem::{Problem, with_results};
 use crate::sample;
 use crate::stages::Stages;
 use crate::summary::{Lines, extent};
-use crate::{console, output, threads};
+use crate::{console, memory, output, threads};
 
 /// Validates a scene and predicts what its solution will take.
 pub(crate) fn check(args: &CheckArgs) -> Result<Ending, Failure> {
     let interrupt = Interrupt::install(args.log.log)?;
     let console = console::choose(args.log);
     let mut stages = Stages::new(&*console, &interrupt);
-    let count = args.problem.threads.map_or_else(threads::default_count, usize::from);
-    threads::pool(count)?.install(|| report(args, &mut stages))
+    memory::tell(args.problem.memory, &*console);
+    let ended = threads::pool(args.problem.threads)?.install(|| report(args, &mut stages));
+    memory::conclude(&*console);
+    ended
 }
 
 fn report(args: &CheckArgs, stages: &mut Stages) -> Result<Ending, Failure> {
-    let problem = Problem::load(&args.problem, stages)?;
+    let problem =
+        Problem::load(&args.problem, &|plan, scene, n| with_results(plan, scene, n, (1, 0)), stages)?;
     // The sample is one of pairs of elements.
     let seconds = if problem.is_radiosity() {
         Some(stages.run("sample", || Ok(sample::assembly_seconds(&problem)))?)
@@ -33,7 +36,7 @@ fn report(args: &CheckArgs, stages: &mut Stages) -> Result<Ending, Failure> {
     geometry(&problem, &mut lines);
     lines
         .add("unknowns", format!("{} in each band, by {}", problem.unknowns, problem.options.discretisation));
-    lines.add("memory", format!("{}: {}", problem.prediction.total(), problem.prediction));
+    lines.add("memory", format!("{}: {}", problem.plan.peak(), problem.plan));
     lines.add("memory limit", problem.options.memory_limit().to_string());
     let (threads, solver) = (problem.options.threads, &problem.options.solver);
     lines.add_some(

@@ -25,6 +25,9 @@ pub(crate) struct ResumeArgs {
     /// Threads; any number gives the same results [default: one a core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
+    /// Memory allowed, such as 4GiB or 800MB [default: as the run was begun with]
+    #[arg(long, value_name = "LIMIT")]
+    pub(crate) memory: Option<Bytes>,
     #[command(flatten)]
     pub(crate) log: LogArgs,
 }
@@ -47,7 +50,7 @@ pub(crate) fn resume(args: &ResumeArgs) -> Result<Ending, Failure> {
             solver: Some(header.solver.clone()),
             form_factor_tolerance: None,
             storage: None,
-            memory: header.memory_limit_bytes.map(|bytes| Bytes(bytes.into())),
+            memory: args.memory.or(header.memory_limit_bytes.map(|bytes| Bytes(bytes.into()))),
         },
         stop: StopArgs {
             tolerance: Some(checkpoint.tolerance),

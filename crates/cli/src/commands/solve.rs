@@ -11,10 +11,11 @@ use crate::args::{ProblemArgs, SolveArgs};
 use crate::checkpoint::{self, Checkpoint};
 use crate::choice::{Choice, Extent};
 use crate::failure::{Ending, Failure};
+use crate::memory::{self, Plan};
 use crate::options::{Options, ProblemOptions};
-use crate::pictures::{Gathered, Source, pictures};
-use crate::prediction::{Prediction, Size};
-use crate::problem::{Problem, scene_failure};
+use crate::pictures::{Gathered, Source, gathering, pictures};
+use crate::prediction::{MESH, Prediction, Size};
+use crate::problem::{Problem, scene_failure, with_results};
 use crate::record::{record, remarks};
 use crate::solution::{Solution, compute};
 use crate::stages::Stages;
@@ -32,8 +33,9 @@ pub(crate) fn solve(args: &SolveArgs) -> Result<Ending, Failure> {
 
 /// Solves a scene, from a checkpoint where there is one, and writes the results.
 pub(super) fn solve_from(args: &SolveArgs, checkpoint: Option<&Checkpoint>) -> Result<Ending, Failure> {
-    let ProblemArgs { scene, threads, .. } = &args.problem;
-    let start = Start { scene, output: args.output.as_ref(), threads: *threads, log: args.log };
+    let ProblemArgs { scene, threads, memory, .. } = &args.problem;
+    let output = args.output.as_ref();
+    let start = Start { scene, output, threads: *threads, memory: *memory, log: args.log };
     start.run(|folder, stages| run(args, checkpoint, folder, stages))
 }
 
@@ -45,6 +47,8 @@ fn run(
 ) -> Result<Ending, Failure> {
     let scene = stages.run("scene", || Scene::load(&args.problem.scene).map_err(scene_failure))?;
     let scene = Arc::new(scene);
+    let points = Plan::default().hold("points", args.places.bytes(scene.bands().len()));
+    points.admit(memory::limit(args.problem.memory), "ask for fewer points")?;
     let (options, problem, solution) = match args.accuracy.or(scene.solve().accuracy) {
         Some(accuracy) => to_accuracy(args, &scene, (accuracy, checkpoint), folder, stages)?,
         None if !args.goal.is_empty() => return Err(hierarchical::goal_alone()),
@@ -70,7 +74,13 @@ fn dense(
     stages: &mut Stages,
 ) -> Result<(Options, Problem, Solution), Failure> {
     let options = ProblemOptions::new(&args.problem, scene.solve());
-    let problem = Problem::refined(Arc::clone(scene), options, 1, stages)?;
+    let more = |plan, scene: &Scene, elements| {
+        let bands = scene.bands().len();
+        let wanted = args.final_gather || args.discontinuity || args.places.bytes(bands) > 0;
+        let gathering = if wanted { gathering(elements, bands) + args.places.bytes(bands) } else { 0 };
+        with_results(plan, scene, elements, (1 + usize::from(args.final_gather), gathering))
+    };
+    let problem = Problem::refined(Arc::clone(scene), options, (1, &more), stages)?;
     let options = Options::new(problem.options.clone(), args.stop, scene.solve(), folder, args.log);
     let points = args.places.receivers();
     let SolveArgs { final_gather, discontinuity, .. } = *args;
@@ -115,11 +125,15 @@ fn predicted(args: &SolveArgs, scene: &Scene, accuracy: f64) -> Result<Choice, F
         // Whatever the faces: as many as there are elements, they have the most links.
         return Ok(Choice::new(Extent { elements, faces: elements, fewest: 1 }, accuracy));
     }
+    let options = ProblemOptions::new(&args.problem, scene.solve());
+    let meshed = Plan::default().hold("the mesh", MESH.saturating_mul(scene.predicted_elements()));
+    if !meshed.fits(options.memory_limit()) {
+        return Ok(Choice::Memory);
+    }
     let mesh = scene.mesh().map_err(scene_failure)?;
     let count = mesh.faces().len();
     let fewest = (0..count).map(|face| mesh.leaves_of_face(face).len()).min().unwrap_or(0);
     let choice = Choice::new(Extent { elements: mesh.len() as f64, faces: count as f64, fewest }, accuracy);
-    let options = ProblemOptions::new(&args.problem, scene.solve());
     let fits = fits(&options, mesh.len(), count, scene.bands().len());
     Ok(if choice.is_matrix() && !fits { Choice::Memory } else { choice })
 }
@@ -128,7 +142,7 @@ fn predicted(args: &SolveArgs, scene: &Scene, accuracy: f64) -> Result<Choice, F
 fn fits(options: &ProblemOptions, elements: usize, faces: usize, bands: usize) -> bool {
     let size = Size { elements, unknowns: elements, coarse: faces, dense: None };
     registry::find(&options.solver).is_some_and(|solver| {
-        Prediction::new(size, bands, options.storage, &solver).total() <= options.memory_limit()
+        Prediction::new(size, bands, options.storage, &solver).plan().fits(options.memory_limit())
     })
 }
 

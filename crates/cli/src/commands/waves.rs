@@ -11,6 +11,7 @@ use crate::args::{LogArgs, tolerance};
 use crate::failure::{Ending, Failure};
 use crate::output;
 use crate::output::visible;
+use crate::size::Bytes;
 use crate::stages::Stages;
 use crate::start::Start;
 use crate::summary::Lines;
@@ -39,6 +40,9 @@ pub(crate) struct WavesArgs {
     /// Threads; any number gives the same results [default: one a core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+    /// Memory allowed, such as 4GiB or 800MB [default: what leaves the machine usable]
+    #[arg(long, value_name = "LIMIT")]
+    memory: Option<Bytes>,
     /// Compare solvers on the coupling instead, with their options, or all: neumann,gmres:restart=100,southwell
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = solver)]
     compare: Vec<String>,
@@ -78,13 +82,19 @@ impl WavesArgs {
 
 /// Computes a scene of waves and writes the results.
 pub(crate) fn waves(args: &WavesArgs) -> Result<Ending, Failure> {
-    let start =
-        Start { scene: &args.scene, output: args.output.as_ref(), threads: args.threads, log: args.log };
+    let start = Start {
+        scene: &args.scene,
+        output: args.output.as_ref(),
+        threads: args.threads,
+        memory: args.memory,
+        log: args.log,
+    };
     start.run(|folder, stages| run(args, folder, stages))
 }
 
 fn run(args: &WavesArgs, folder: &Path, stages: &mut Stages) -> Result<Ending, Failure> {
-    let model = stages.run("scene", || Model::load(&args.scene))?;
+    let model = stages.run("scene", || Model::load(&args.scene, args.memory))?;
+    stages.console.admit(&model.plan, model.limit);
     if !args.compare.is_empty() {
         return compare(args, folder, &model, stages);
     }

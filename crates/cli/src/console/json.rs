@@ -6,7 +6,9 @@ use std::time::Instant;
 use serde_json::{Value, json};
 
 use super::{Console, Tenths};
+use crate::memory::{Limit, Plan};
 use crate::output::tell;
+use crate::size::Bytes;
 
 /// Time of the first line.
 static STARTED: LazyLock<Instant> = LazyLock::new(Instant::now);
@@ -21,6 +23,11 @@ pub(super) struct Json {
 pub(crate) fn line(mut object: Value) {
     object["time"] = json!(STARTED.elapsed().as_secs_f64());
     tell(object);
+}
+
+/// As a number that JSON has.
+fn bytes(Bytes(bytes): Bytes) -> u64 {
+    u64::try_from(bytes).unwrap_or(u64::MAX)
 }
 
 impl Console for Json {
@@ -38,6 +45,15 @@ impl Console for Json {
 
     fn end(&self, stage: &str, seconds: f64) {
         line(json!({ "event": "end", "stage": stage, "seconds": seconds }));
+    }
+
+    fn admit(&self, plan: &Plan, limit: Limit) {
+        let (predicted, limit) = (bytes(plan.peak()), bytes(limit.bytes));
+        line(json!({ "event": "memory", "predicted_bytes": predicted, "limit_bytes": limit }));
+    }
+
+    fn held(&self, peak: Bytes) {
+        line(json!({ "event": "memory", "peak_bytes": bytes(peak) }));
     }
 
     fn warn(&self, text: &str) {

@@ -9,6 +9,8 @@ use std::io::{IsTerminal, stderr};
 use std::time::{Duration, Instant};
 
 use crate::args::{LogArgs, LogFormat};
+use crate::memory::{Limit, Plan};
+use crate::size::Bytes;
 
 /// Follows the stages of a run; can be told of progress from any thread.
 pub(crate) trait Console: Send + Sync {
@@ -23,6 +25,12 @@ pub(crate) trait Console: Send + Sync {
 
     /// Something the user should know.
     fn warn(&self, text: &str);
+
+    /// So much memory will be held, which the limit allows; `check` tells people, the others only programs.
+    fn admit(&self, _plan: &Plan, _limit: Limit) {}
+
+    /// So much memory was held at most, which records tell people.
+    fn held(&self, _peak: Bytes) {}
 }
 
 /// The console that was asked for: bars on a terminal, lines elsewhere.

@@ -8,15 +8,15 @@ use fredholm_scene::Scene;
 
 use super::tracer::failure;
 use crate::args::ProblemArgs;
-use crate::failure::{Ending, Failure};
-use crate::memory;
-use crate::problem::{Problem, prepare, scene_failure};
-use crate::size::Bytes;
+use crate::failure::Failure;
+use crate::memory::{self, Plan};
+use crate::prediction::MESH;
+use crate::problem::{Problem, prepare, scene_failure, with_results};
 use crate::solution::Solution;
 use crate::stages::Stages;
 
-/// Bytes an element takes: geometry, trees of boxes, materials.
-const PER_ELEMENT: u128 = 2048;
+/// Bytes an element takes while paths are traced: what rays are cast at, densities, the state that is written.
+const TRACED: u128 = 600;
 /// Vectors of all elements and bands held at once: a wave of batches, sums, means and errors.
 const VECTORS: u128 = fredholm_montecarlo::WAVE as u128 + 10;
 
@@ -31,7 +31,7 @@ impl Ground {
     /// Reads, meshes and checks a scene; refuses it before memory is taken where it does not fit.
     pub(crate) fn load(args: &ProblemArgs, stages: &mut Stages) -> Result<Self, Failure> {
         let scene = stages.run("scene", || Scene::load(&args.scene).map_err(scene_failure))?;
-        admit(&scene, args.memory)?;
+        admit(&scene, args, stages)?;
         let mesh = stages.run("mesh", || scene.mesh().map_err(scene_failure))?;
         let warnings = scene.check(&mesh).map_err(scene_failure)?;
         let warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
@@ -42,18 +42,18 @@ impl Ground {
     }
 }
 
-fn admit(scene: &Scene, limit: Option<Bytes>) -> Result<(), Failure> {
-    let element = PER_ELEMENT + VECTORS * 8 * scene.bands().len() as u128;
-    let needed = Bytes(scene.predicted_elements().saturating_mul(element));
-    let limit = limit.unwrap_or_else(memory::default_limit);
-    if needed <= limit {
-        return Ok(());
-    }
-    let text = format!(
-        "this scene needs {needed}, but {limit} are allowed\n  \
-         help: use fewer elements (elements_per_face, divide, largest_edge in the scene), or allow more with --memory"
-    );
-    Err(Failure::new(Ending::Resources, text))
+fn admit(scene: &Scene, args: &ProblemArgs, stages: &Stages) -> Result<(), Failure> {
+    let elements = usize::try_from(scene.predicted_elements()).unwrap_or(usize::MAX);
+    let plan = Plan::default().hold(format!("{elements} elements"), MESH.saturating_mul(elements as u128));
+    let plan = with_results(with_tracing(plan, scene, elements), scene, elements, (1, 0));
+    let help = "use fewer elements (elements_per_face, divide, largest_edge in the scene)";
+    stages.admit(&plan, memory::limit(args.memory), help)
+}
+
+/// Random paths as a thing after another.
+pub(crate) fn with_tracing(plan: Plan, scene: &Scene, elements: usize) -> Plan {
+    let element = TRACED + VECTORS * 8 * scene.bands().len() as u128;
+    plan.stage("random paths", element.saturating_mul(elements as u128))
 }
 
 /// The scene as a tracer sees it.

@@ -55,11 +55,11 @@ fn case(
     let sources: Vec<&dyn Source> = model.sources.iter().map(AsRef::as_ref).collect();
     let first = PhysicalOptics::new(&scatterer, band.wave, &sources, model.shadow).map_err(refused)?;
     let name = format!("{} MHz", band.wave.frequency() / 1e6);
-    let interrupt = stages.interrupt;
+    let (interrupt, console) = (stages.interrupt, stages.console);
     let made = solvers.iter().map(|text| build(text)).collect::<Result<Vec<_>, _>>()?;
     let system = stages.run(&format!("coupling at {name}"), || {
         let all: Vec<&dyn Solver<Complex64>> = made.iter().map(AsRef::as_ref).collect();
-        coupled(model, &scatterer, band.wave, model.shadow, &all)
+        coupled(model, &scatterer, (band.wave, model.shadow), &all, console)
     })?;
     let radius = stages.run(&format!("spectral radius at {name}"), || radius(&system, interrupt))?;
     let b = system.right_hand_side(&[&first]);

@@ -16,6 +16,7 @@ use super::receivers::{Places, Receiver};
 use super::record::Solved;
 use super::solving::{self, Solution};
 use super::{Model, Outcome};
+use crate::console::Console;
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
 use crate::stages::Stages;
@@ -75,11 +76,12 @@ impl Task<'_> {
     fn carry_out(&self, stages: &mut Stages, outcome: &mut Outcome) -> Result<(), Failure> {
         let name = format!("{} MHz{}", self.band.wave.frequency() / 1e6, self.variant.name);
         let interrupt = stages.interrupt;
-        let system = stages.run(&format!("coupling at {name}"), || self.system())?;
+        let console = stages.console;
+        let system = stages.run(&format!("coupling at {name}"), || self.system(console))?;
         let system = system.as_ref();
         if self.model.has_bistatic() {
             let (currents, solved) =
-                stages.run(&format!("currents at {name}"), || self.currents(system, interrupt))?;
+                stages.run(&format!("currents at {name}"), || self.currents(system, interrupt, console))?;
             stages.run(&format!("fields at {name}"), || self.radiate(system, &currents, outcome))?;
             let values = currents.values().iter().map(current).collect();
             outcome.currents.push(WaveCurrents { name: name.clone(), values });
@@ -96,8 +98,8 @@ impl Task<'_> {
         self.model.refused(error, None)
     }
 
-    fn system(&self) -> Result<Option<System<'_>>, Failure> {
-        solving::system(self.model, self.scatterer, self.band.wave, self.variant.shadow)
+    fn system(&self, console: &dyn Console) -> Result<Option<System<'_>>, Failure> {
+        solving::system(self.model, self.scatterer, (self.band.wave, self.variant.shadow), console)
     }
 
     /// The currents at the centres of the facets.
@@ -105,9 +107,10 @@ impl Task<'_> {
         &self,
         system: Option<&System<'_>>,
         interrupt: &Interrupt,
+        console: &dyn Console,
     ) -> Result<(FacetCurrents, Solved), Failure> {
         let Some(system) = system else {
-            let residuals = self.first_residuals(interrupt)?;
+            let residuals = self.first_residuals(interrupt, console)?;
             let currents = FacetCurrents::sampled(self.scatterer, self.first);
             return Ok((currents, Solved { residuals, ..self.solved(None) }));
         };
@@ -124,11 +127,12 @@ impl Task<'_> {
     }
 
     /// What a second bounce would add, where errors are to be estimated; it is not asked of the runs that do so.
-    fn first_residuals(&self, interrupt: &Interrupt) -> Result<Vec<f64>, Failure> {
+    fn first_residuals(&self, interrupt: &Interrupt, console: &dyn Console) -> Result<Vec<f64>, Failure> {
         if self.model.coarse.is_none() || !self.variant.name.is_empty() {
             return Ok(Vec::new());
         }
-        let system = solving::lazy(self.model, self.scatterer, self.band.wave, self.variant.shadow)?;
+        let system =
+            solving::lazy(self.model, self.scatterer, (self.band.wave, self.variant.shadow), console)?;
         let b = system.right_hand_side(&[self.first]);
         Ok(solving::bounced(&system, &b, 1, interrupt)?.residuals)
     }

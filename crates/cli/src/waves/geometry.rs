@@ -27,29 +27,35 @@ pub(crate) struct Geometry {
 }
 
 impl Geometry {
-    /// Cuts the surfaces for the shortest wavelength, with edges `stretch` times as long as the scene says.
+    /// Cuts the surfaces for the shortest wavelength, with edges `stretch` times as long as the scene says, where `admit` allows so many facets.
     pub(super) fn new(
         scene: &SceneText,
         entry: SceneEntrySurfaces<'_>,
         wavelength: f64,
         stretch: f64,
+        admit: &dyn Fn(u128) -> Result<(), Failure>,
     ) -> Result<Self, Failure> {
         if entry.is_empty() {
             let help = "add a [[surface]] with a name and quad, triangle, box or sphere";
             return Err(scene.fault(scene.end(), "the scene has no surface", help));
         }
-        let (mut builder, mut kinds, mut spheres) = (MeshBuilder::default(), Vec::new(), Vec::new());
-        let mut facets = 0_u128;
-        for (index, surface) in entry.iter().enumerate() {
-            let refused = |error: WaveError| scene.refused(surface.span(), &error);
+        let refused =
+            |surface: &Spanned<SurfaceEntry>, error: WaveError| scene.refused(surface.span(), &error);
+        let (mut facets, mut shapes) = (0_u128, Vec::new());
+        for surface in entry {
             let (shape, cutting) = shape(scene, surface, (wavelength, stretch))?;
-            facets += shape.count(&cutting).map_err(|error| refused(error.into()))?;
+            facets += shape.count(&cutting).map_err(|error| refused(surface, error.into()))?;
             if facets > MOST {
                 let what = format!("the scene would have {facets} facets, more than {MOST}");
                 return Err(scene.fault(surface.span(), what, "take longer edges"));
             }
+            shapes.push((shape, cutting));
+        }
+        admit(facets)?;
+        let (mut builder, mut kinds, mut spheres) = (MeshBuilder::default(), Vec::new(), Vec::new());
+        for (index, (surface, (shape, cutting))) in entry.iter().zip(&shapes).enumerate() {
             builder.surface(surface.get_ref().name.clone(), index);
-            builder.add(&shape, &cutting).map_err(|error| refused(error.into()))?;
+            builder.add(shape, cutting).map_err(|error| refused(surface, error.into()))?;
             kinds.push(kind(surface.get_ref()));
             spheres.push(
                 surface.get_ref().sphere.as_ref().map(|s| SphereEntry { centre: s.centre, radius: s.radius }),

@@ -7,6 +7,7 @@ mod files;
 mod format;
 mod geometry;
 mod located;
+mod memory;
 mod model;
 mod monostatic;
 mod receivers;

@@ -10,10 +10,15 @@ use fredholm_waves::{Complex64, Origin, Shadow, Source, Wave, WaveError};
 use super::format::{ReceiverEntry, SceneEntry, WaveEntry};
 use super::geometry::{Geometry, materials};
 use super::located::SceneText;
+use super::memory::plan as memory_of;
 use super::receivers::{Places, Receiver, receivers};
 use super::sources::{Placed, placed};
 use crate::failure::Failure;
+use crate::memory::{self, Limit, Plan};
+use crate::size::Bytes;
 
+/// How to need less memory.
+const HELP: &str = "take longer edges, or fewer points and directions of receivers";
 /// Residual where the scene does not say.
 const TOLERANCE: f64 = 1e-6;
 /// Iterations where the scene does not say.
@@ -61,20 +66,23 @@ pub(crate) struct Model {
     pub(crate) coarse: Option<Geometry>,
     pub(crate) receivers: Vec<Receiver>,
     surfaces: Vec<std::ops::Range<usize>>,
+    /// Memory of everything but a coupling, and what all may take.
+    pub(crate) plan: Plan,
+    pub(crate) limit: Limit,
 }
 
 impl Model {
-    /// Reads a scene file and cuts its surfaces.
-    pub(crate) fn load(path: &Path) -> Result<Self, Failure> {
-        Self::read(path, false)
+    /// Reads a scene file and cuts its surfaces, where they fit the memory asked for.
+    pub(crate) fn load(path: &Path, memory: Option<Bytes>) -> Result<Self, Failure> {
+        Self::read(path, memory, false)
     }
 
     /// The same with errors estimated, whether the scene asks for it or not.
-    pub(crate) fn load_estimated(path: &Path) -> Result<Self, Failure> {
-        Self::read(path, true)
+    pub(crate) fn load_estimated(path: &Path, memory: Option<Bytes>) -> Result<Self, Failure> {
+        Self::read(path, memory, true)
     }
 
-    fn read(path: &Path, estimated: bool) -> Result<Self, Failure> {
+    fn read(path: &Path, memory: Option<Bytes>, estimated: bool) -> Result<Self, Failure> {
         let text = SceneText::read(path)?;
         let entry: SceneEntry = text.parse()?;
         let bands = bands(&text, &entry)?;
@@ -84,9 +92,14 @@ impl Model {
         let placed = sources(&text, &entry)?;
         let plane_wave = if let [only] = placed.as_slice() { only.plane_wave } else { None };
         let shortest = bands.iter().map(|band| band.wave.wavelength()).fold(f64::INFINITY, f64::min);
-        let cut = |stretch| Geometry::new(&text, &entry.surface, shortest, stretch);
+        let limit = memory::limit(memory);
+        let admit = |facets| memory_of(facets, &entry).admit(limit, HELP);
+        let cut = |stretch| Geometry::new(&text, &entry.surface, shortest, stretch, &admit);
         let geometry = cut(1.0)?;
         let coarse = (estimated || entry.wave.get_ref().estimate_errors).then(|| cut(2.0)).transpose()?;
+        let facets = geometry.mesh.len() + coarse.as_ref().map_or(0, |coarse| coarse.mesh.len());
+        let plan = memory_of(facets as u128, &entry);
+        plan.admit(limit, HELP)?;
         let receivers = receivers(&text, &entry.receiver)?;
         let surfaces = entry.surface.iter().map(toml::Spanned::span).collect();
         let sources = placed.into_iter().map(|placed| placed.source).collect();
@@ -104,6 +117,8 @@ impl Model {
             coarse,
             receivers,
             surfaces,
+            plan,
+            limit,
         })
     }
 

@@ -3,14 +3,17 @@
 use std::ops::ControlFlow;
 
 use fredholm_linop::{MultiVector, Observer, Progress, SecondKind, Solver, Stop, StopReason};
-use fredholm_waves::{Bounces, Complex64, Discretisation, Scatterer, Shadow, System, Wave, WaveError};
+use fredholm_waves::{
+    Bounces, Complex64, Discretisation, NystromCoupling, Scatterer, Shadow, System, Wave, WaveError,
+};
 
 use super::Model;
+use super::memory::COUPLED;
 use super::model::Method;
+use crate::console::Console;
 use crate::failure::{Ending, Failure};
 use crate::interrupt::{Interrupt, nothing_saved};
-use crate::memory;
-use crate::size::Bytes;
+use crate::memory::Plan;
 
 /// Solvers that ask for products only: where the matrix does not fit, they compute it anew each time.
 const PRODUCTS_ONLY: [&str; 4] = ["neumann", "gmres", "bicgstab", "anderson"];
@@ -29,13 +32,15 @@ pub(super) struct Solution {
 pub(super) fn system<'a>(
     model: &Model,
     scatterer: &'a Scatterer,
-    wave: Wave,
-    shadow: Shadow,
+    (wave, shadow): (Wave, Shadow),
+    console: &dyn Console,
 ) -> Result<Option<System<'a>>, Failure> {
     match &model.method {
         Method::Bounces(1) => Ok(None),
-        Method::Bounces(_) => lazy(model, scatterer, wave, shadow).map(Some),
-        Method::Solver { solver, .. } => coupled(model, scatterer, wave, shadow, &[&**solver]).map(Some),
+        Method::Bounces(_) => lazy(model, scatterer, (wave, shadow), console).map(Some),
+        Method::Solver { solver, .. } => {
+            coupled(model, scatterer, (wave, shadow), &[&**solver], console).map(Some)
+        }
     }
 }
 
@@ -43,9 +48,13 @@ pub(super) fn system<'a>(
 pub(super) fn lazy<'a>(
     model: &Model,
     scatterer: &'a Scatterer,
-    wave: Wave,
-    shadow: Shadow,
+    (wave, shadow): (Wave, Shadow),
+    console: &dyn Console,
 ) -> Result<System<'a>, Failure> {
+    let help = "mesh coarser, or ask for one bounce";
+    let plan = coupling(model.plan.clone(), scatterer, shadow);
+    plan.admit(model.limit, help)?;
+    console.admit(&plan, model.limit);
     System::lazy(scatterer, wave, shadow).map_err(|error: WaveError| model.refused(&error, None))
 }
 
@@ -53,27 +62,32 @@ pub(super) fn lazy<'a>(
 pub(super) fn coupled<'a>(
     model: &Model,
     scatterer: &'a Scatterer,
-    wave: Wave,
-    shadow: Shadow,
+    (wave, shadow): (Wave, Shadow),
     solvers: &[&dyn Solver<Complex64>],
+    console: &dyn Console,
 ) -> Result<System<'a>, Failure> {
-    let (facets, unknowns) = (scatterer.facets().len(), System::unknowns(scatterer));
+    let unknowns = System::unknowns(scatterer);
     let solver = solvers.iter().map(|solver| solver.bytes(unknowns, 1)).max().unwrap_or(0);
-    let needed = u128::from(System::bytes(scatterer)) + u128::from(solver);
-    let limit = memory::default_limit();
-    if needed <= limit.0 {
-        return System::stored(scatterer, wave, shadow, Discretisation::Nystrom)
-            .map_err(|error: WaveError| model.refused(&error, None));
+    let plan = coupling(model.plan.clone(), scatterer, shadow)
+        .hold(format!("the coupling of {unknowns} unknowns"), System::bytes(scatterer).into())
+        .hold("the solver", solver.into());
+    if !plan.fits(model.limit) && solvers.iter().all(|solver| PRODUCTS_ONLY.contains(&solver.name())) {
+        return lazy(model, scatterer, (wave, shadow), console);
     }
-    if solvers.iter().all(|solver| PRODUCTS_ONLY.contains(&solver.name())) {
-        return lazy(model, scatterer, wave, shadow);
-    }
-    let text = format!(
-        "the coupling of {facets} facets and its solver would take {}, and {limit} may be used\n  help: mesh coarser, or take a solver that needs no matrix: {}",
-        Bytes(needed),
-        PRODUCTS_ONLY.join(", ")
-    );
-    Err(Failure::new(Ending::Resources, text))
+    let help = format!("mesh coarser, or take a solver that needs no matrix: {}", PRODUCTS_ONLY.join(", "));
+    plan.admit(model.limit, &help)?;
+    console.admit(&plan, model.limit);
+    System::stored(scatterer, wave, shadow, Discretisation::Nystrom)
+        .map_err(|error: WaveError| model.refused(&error, None))
+}
+
+/// What a coupling takes besides its matrix.
+fn coupling(plan: Plan, scatterer: &Scatterer, shadow: Shadow) -> Plan {
+    let facets = scatterer.facets().len() as u128;
+    plan.hold(
+        "what is near and in view",
+        facets * COUPLED + u128::from(NystromCoupling::bytes(scatterer, shadow)),
+    )
 }
 
 /// Solves for all lanes of b by a model's method.

@@ -4,6 +4,7 @@
 //! back from the last corner read so far. Texture coordinates, normals, lines and points are passed over; free-form
 //! surfaces are refused, since a part of the geometry would be missing without notice.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -13,6 +14,8 @@ use super::{Group, Imported, ImportedFace, Name};
 use crate::error::{ErrorKind, SceneError};
 use crate::source::Source;
 
+/// Most corners of a face: it is cut into triangles in a time that grows with their square.
+const MOST_CORNERS: usize = 10_000;
 /// Statements that change no surface.
 const PASSED_OVER: [&str; 15] = [
     "vt",
@@ -34,7 +37,7 @@ const PASSED_OVER: [&str; 15] = [
 
 pub(super) fn parse(source: Source) -> Result<Imported, SceneError> {
     let mut reader = Reader::new(&source);
-    for statement in statements(&source.text) {
+    for statement in (Statements { text: &source.text, start: 0 }) {
         reader.statement(&statement)?;
     }
     let Reader { groups, libraries, .. } = reader;
@@ -42,29 +45,45 @@ pub(super) fn parse(source: Source) -> Result<Imported, SceneError> {
 }
 
 /// A statement: one line, or several that a backslash at the end joins.
-struct Statement {
-    text: String,
+struct Statement<'a> {
+    text: Cow<'a, str>,
     span: Range<usize>,
 }
 
-fn statements(text: &str) -> Vec<Statement> {
-    let mut statements: Vec<Statement> = vec![];
-    let (mut start, mut joined) = (0, false);
-    for line in text.split_inclusive('\n') {
+/// The statements of a text, one after the other: a file of many lines is not held twice.
+struct Statements<'a> {
+    text: &'a str,
+    /// Where the next line begins.
+    start: usize,
+}
+
+impl<'a> Statements<'a> {
+    /// The next line without its comment, and where it lies.
+    fn line(&mut self) -> Option<(&'a str, Range<usize>)> {
+        let start = self.start;
+        let line = self.text[start..].split_inclusive('\n').next()?;
+        self.start += line.len();
         let content = line.split('#').next().unwrap_or_default().trim_end();
-        let end = start + content.len();
-        let (piece, continues) = content.strip_suffix('\\').map_or((content, false), |piece| (piece, true));
-        match statements.last_mut() {
-            Some(last) if joined => {
-                last.text.push(' ');
-                last.text.push_str(piece);
-                last.span.end = end;
-            }
-            _ => statements.push(Statement { text: piece.to_owned(), span: start..end }),
-        }
-        (start, joined) = (start + line.len(), continues);
+        Some((content, start..start + content.len()))
     }
-    statements
+}
+
+impl<'a> Iterator for Statements<'a> {
+    type Item = Statement<'a>;
+
+    fn next(&mut self) -> Option<Statement<'a>> {
+        let (mut piece, mut span) = self.line()?;
+        let mut text = Cow::Borrowed(piece.strip_suffix('\\').unwrap_or(piece));
+        while piece.ends_with('\\') {
+            let Some((line, place)) = self.line() else { break };
+            piece = line;
+            span.end = place.end;
+            let joined = text.to_mut();
+            joined.push(' ');
+            joined.push_str(piece.strip_suffix('\\').unwrap_or(piece));
+        }
+        Some(Statement { text, span })
+    }
 }
 
 /// What has been read so far.
@@ -122,6 +141,12 @@ impl Reader<'_> {
     }
 
     fn face(&mut self, statement: &Statement, rest: &str) -> Result<(), SceneError> {
+        let count = rest.split_whitespace().take(MOST_CORNERS + 1).count();
+        if count > MOST_CORNERS {
+            let what = format!("a face of more than {MOST_CORNERS} corners");
+            let help = "cut it into smaller faces";
+            return Err(self.source.error(ErrorKind::TooLarge, statement.span.clone(), what, help));
+        }
         let corners = rest.split_whitespace().map(|word| self.index(statement, word));
         let corners: Vec<Vec3> = corners.collect::<Result<_, _>>()?;
         if corners.len() < 3 {
@@ -234,6 +259,23 @@ mod tests {
                 "{face}"
             );
         }
+    }
+
+    #[test]
+    fn a_face_has_a_bounded_number_of_corners() {
+        let face = |corners: usize| parsed(&format!("{SQUARE}f{}\n", " 1 2 3 4".repeat(corners / 4)));
+        assert!(face(MOST_CORNERS).is_ok());
+        let error = face(MOST_CORNERS + 4).unwrap_err();
+        assert!(error.kind() == ErrorKind::TooLarge && error.to_string().contains("a.obj:5"), "{error}");
+    }
+
+    #[test]
+    fn joined_lines_are_one_statement_up_to_the_end_of_the_file() {
+        let found: Vec<(String, Range<usize>)> = Statements { text: "a \\\n b\\\n\nc # \\\nd\\", start: 0 }
+            .map(|statement| (statement.text.into_owned(), statement.span))
+            .collect();
+        let expected = [("a   b ", 0..8), ("c", 9..10), ("d", 15..17)];
+        assert_eq!(found, expected.map(|(text, span)| (text.to_owned(), span)));
     }
 
     #[test]

@@ -41,7 +41,7 @@ pub(crate) struct CompareArgs {
     /// Number format of the stored matrix [default: the scene's, else f64]
     #[arg(long, value_enum, value_name = "FORMAT")]
     pub(crate) storage: Option<Precision>,
-    /// Memory allowed, such as 4GiB or 800MB [default: 80 % of what is available]
+    /// Memory allowed, such as 4GiB or 800MB [default: what leaves the machine usable]
     #[arg(long, value_name = "LIMIT")]
     pub(crate) memory: Option<Bytes>,
     #[command(flatten)]

@@ -28,6 +28,7 @@ pub(super) fn case<S: Storage>(
     let mut scaling = radiosity.scaling();
     scaling.as_mut_slice().iter_mut().for_each(|d| *d *= factor);
     let system = SecondKind::new(matrix, scaling).map_err(|error| Failure::new(Ending::Input, error))?;
+    tell(args, problem, stages);
     let bench = Bench {
         system: &system,
         b: radiosity.exitance(),
@@ -43,9 +44,18 @@ pub(super) fn case<S: Storage>(
 
 /// Bytes that are allowed besides those of everything but the solver.
 fn left(problem: &Problem) -> u128 {
-    let (limit, total, own) =
-        (problem.options.memory_limit(), problem.prediction.total(), problem.prediction.solver);
-    (limit.0 + own.0).saturating_sub(total.0)
+    let (limit, peak) = (problem.options.memory_limit().bytes, problem.plan.peak());
+    limit.0.saturating_sub(peak.0)
+}
+
+/// Says what will be held with the solver of those that fit that takes most.
+fn tell(args: &CompareArgs, problem: &Problem, stages: &Stages) {
+    let names = args.solvers().into_iter().chain([REFERENCE.to_owned()]);
+    let (unknowns, bands) = (problem.unknowns, problem.scene.bands().len());
+    let bytes =
+        |text: String| registry::build(&text).ok().map(|entry| entry.solver.bytes(unknowns, bands).into());
+    let most = names.filter_map(bytes).filter(|&bytes: &u128| bytes <= left(problem)).max().unwrap_or(0);
+    stages.console.admit(&problem.prediction.with_solver(most).plan(), problem.options.memory_limit());
 }
 
 /// Largest reflectance of any material in any band.

@@ -10,6 +10,7 @@ use std::path::Path;
 use fredholm_coupling::Radiosity;
 use fredholm_linop::{PackedSymmetric, Storage};
 use fredholm_report::{COMPARISON_FORMAT, ComparisonCase, ComparisonRecord, write_comparison};
+use fredholm_scene::Scene;
 use serde_json::json;
 
 pub(crate) use args::CompareArgs;
@@ -18,7 +19,7 @@ use super::solve::report_failure;
 use crate::args::Precision;
 use crate::failure::{Ending, Failure};
 use crate::interrupt::Interrupt;
-use crate::memory;
+use crate::memory::{self, Plan};
 use crate::options::RADIOSITY;
 use crate::problem::Problem;
 use crate::solution::{form_factors, system};
@@ -29,13 +30,22 @@ use crate::watcher::Watcher;
 
 /// Runs solvers on the same system and writes how they did.
 pub(crate) fn compare(args: &CompareArgs) -> Result<Ending, Failure> {
-    let start =
-        Start { scene: &args.scene, output: args.output.as_ref(), threads: args.threads, log: args.log };
+    let start = Start {
+        scene: &args.scene,
+        output: args.output.as_ref(),
+        threads: args.threads,
+        memory: args.memory,
+        log: args.log,
+    };
     start.run(|folder, stages| run(args, folder, stages))
 }
 
 fn run(args: &CompareArgs, folder: &Path, stages: &mut Stages) -> Result<Ending, Failure> {
-    let problem = Problem::load(&args.problem(), stages)?;
+    let answers = args.solvers().len() as u128 * 8;
+    let more = |plan: Plan, scene: &Scene, n: usize| {
+        plan.hold("the answers of the solvers", answers * n as u128 * scene.bands().len() as u128)
+    };
+    let problem = Problem::load(&args.problem(), &more, stages)?;
     if !problem.is_radiosity() {
         let text = format!(
             "compare works on the matrix of form factors, which is {RADIOSITY}; the scene asks for {}",
@@ -120,7 +130,7 @@ fn record(
         warnings: warnings(problem, &cases),
         cases,
         timings: stages.timings().to_vec(),
-        peak_memory_bytes: memory::peak().and_then(|peak| u64::try_from(peak.0).ok()),
+        peak_memory_bytes: memory::peak_bytes(),
     }
 }
 

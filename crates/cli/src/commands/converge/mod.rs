@@ -16,11 +16,13 @@ use crate::args::ConvergeArgs;
 use crate::console::Console;
 use crate::failure::{Ending, Failure};
 use crate::interrupt::Interrupt;
+use crate::memory::Plan;
 use crate::options::{Options, ProblemOptions};
+use crate::prediction::MESH;
 use crate::problem::{Problem, scene_failure};
 use crate::solution::compute;
 use crate::stages::Stages;
-use crate::{console, folder, threads};
+use crate::{console, folder, memory, threads};
 use level::Level;
 
 /// Solves a scene on finer and finer meshes and writes what that tells.
@@ -28,8 +30,10 @@ pub(crate) fn converge(args: &ConvergeArgs) -> Result<Ending, Failure> {
     let interrupt = Interrupt::install(args.log.log)?;
     folder::probe(&folder(args), "-o DIR")?;
     let console = console::choose(args.log);
-    let count = args.problem.threads.map_or_else(threads::default_count, usize::from);
-    threads::pool(count)?.install(|| run(args, &*console, &interrupt))
+    memory::tell(args.problem.memory, &*console);
+    let ended = threads::pool(args.problem.threads)?.install(|| run(args, &*console, &interrupt));
+    memory::conclude(&*console);
+    ended
 }
 
 /// The folder for the results.
@@ -63,10 +67,13 @@ fn problems(
     let path: &Path = &args.problem.scene;
     let scene = Arc::new(stages.run("scene", || Scene::load(path).map_err(scene_failure))?);
     let options = ProblemOptions::new(&args.problem, scene.solve());
+    // Each of the coarser meshes has a quarter of the elements of the next.
+    let others = |plan: Plan, _: &Scene, n: usize| plan.hold("coarser meshes", n as u128 * MESH / 3);
     let problem = |level: u8| {
         let (name, refinement) = (format!("level {level}"), 1_usize << level);
         let mut stages = Stages::part(console, interrupt, &name);
-        let refined = Problem::refined(Arc::clone(&scene), options.clone(), refinement, &mut stages);
+        let refined =
+            Problem::refined(Arc::clone(&scene), options.clone(), (refinement, &others), &mut stages);
         refined.map_err(|failure| located(failure, level))
     };
     (0..args.levels).map(problem).collect()

@@ -31,7 +31,7 @@ pub(super) fn record(problem: &Problem, options: &Options, levels: &[Level]) -> 
         levels: levels.iter().enumerate().map(|(number, level)| level.record(number)).collect(),
         bands: scene.bands().iter().zip(&found).map(|(name, found)| band(name, found, highest)).collect(),
         warnings: warnings(problem, levels, &found),
-        peak_memory_bytes: memory::peak().and_then(|peak| u64::try_from(peak.0).ok()),
+        peak_memory_bytes: memory::peak_bytes(),
         ..RefinementRecord::default()
     }
 }

@@ -26,7 +26,8 @@ const USUAL: &str = "surface-sampling";
 const ERROR: f64 = 0.01;
 
 pub(super) fn run(args: &CrosscheckArgs, folder: &Path, stages: &mut Stages) -> Result<Ending, Failure> {
-    let mut model = stages.run("scene", || Model::load_estimated(&args.problem.scene))?;
+    let mut model =
+        stages.run("scene", || Model::load_estimated(&args.problem.scene, args.problem.memory))?;
     let stop = args.stop.or_to(ERROR);
     let run = FieldRun::new(args.method_or(USUAL), &args.paths, &stop, &model, stages)?;
     // Both sides sum the same bounces, of the same currents.

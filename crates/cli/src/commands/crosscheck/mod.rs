@@ -11,6 +11,7 @@ use fredholm_montecarlo::State;
 use fredholm_montecarlo::light::{METHODS, estimator};
 use fredholm_montecarlo::statistics::{Comparison, Correction, Crosscheck, crosscheck as compare};
 use fredholm_report::{CrosscheckRecord, WorstPlace, score_map, write_crosscheck};
+use fredholm_scene::Scene;
 
 use super::solve::{report_failure, view_camera};
 use crate::args::{LogArgs, ProblemArgs, StopArgs};
@@ -18,12 +19,13 @@ use crate::failure::{Ending, Failure};
 use crate::interrupt::nothing_saved;
 use crate::options::Options;
 use crate::output;
-use crate::problem::Problem;
+use crate::problem::{Problem, with_results};
 use crate::solution::{Solution, compute};
 use crate::stages::Stages;
 use crate::start::Start;
 use crate::stochastic::{
     FIELD_METHODS, PathArgs, TraceStopArgs, Tracer, enclosure, expected_error, faces, failure, share,
+    with_tracing,
 };
 use crate::summary::Lines;
 use crate::waves::is_scene;
@@ -108,6 +110,7 @@ pub(crate) fn crosscheck(args: &CrosscheckArgs) -> Result<Ending, Failure> {
         scene: &args.problem.scene,
         output: args.output.as_ref(),
         threads: args.problem.threads,
+        memory: args.problem.memory,
         log: args.log,
     };
     let fields = match &args.method {
@@ -168,7 +171,8 @@ pub(super) fn load(
     folder: &Path,
     stages: &mut Stages,
 ) -> Result<(Problem, Options), Failure> {
-    let mut problem = Problem::load(args, stages)?;
+    let more = |plan, scene: &Scene, n| with_results(with_tracing(plan, scene, n), scene, n, (1, 0));
+    let mut problem = Problem::load(args, &more, stages)?;
     let asked = args.form_factor_tolerance.or(problem.scene.solve().form_factor_tolerance);
     problem.options.form_factor_tolerance = asked.unwrap_or(FORM_FACTORS);
     let stop = StopArgs { tolerance: None, max_iterations: None };

@@ -56,6 +56,7 @@ pub(crate) fn reference(args: &ReferenceArgs) -> Result<Ending, Failure> {
         scene: &args.problem.scene,
         output: args.output.as_ref(),
         threads: args.problem.threads,
+        memory: args.problem.memory,
         log: args.log,
     };
     start.run_whole("reference", |folder, stages| run(args, folder, stages))

@@ -44,7 +44,7 @@ pub(crate) struct ShootArgs {
     /// Error asked for in a row of form factors, rounded down to a power of ten, 1e-14 at least [default: the scene's, else 1e-3]
     #[arg(long, value_name = "T", value_parser = tolerance)]
     pub(crate) form_factor_tolerance: Option<f64>,
-    /// Memory allowed, such as 4GiB or 800MB [default: 80 % of what is available]
+    /// Memory allowed, such as 4GiB or 800MB [default: what leaves the machine usable]
     #[arg(long, value_name = "LIMIT")]
     pub(crate) memory: Option<Bytes>,
     #[command(flatten)]

@@ -28,8 +28,13 @@ use crate::start::Start;
 
 /// Shoots until the share asked for is distributed, and writes the field so far.
 pub(crate) fn shoot(args: &ShootArgs) -> Result<Ending, Failure> {
-    let start =
-        Start { scene: &args.scene, output: args.output.as_ref(), threads: args.threads, log: args.log };
+    let start = Start {
+        scene: &args.scene,
+        output: args.output.as_ref(),
+        threads: args.threads,
+        memory: args.memory,
+        log: args.log,
+    };
     start.run(|folder, stages| run(args, folder, stages))
 }
 
@@ -151,7 +156,7 @@ fn record(
         groups: emitters.count() as u64,
         reached: shots.last().is_none_or(|shot| shot.distributed >= args.share),
         form_factor_error: emitters.largest_error(),
-        peak_memory_bytes: memory::peak().and_then(|peak| u64::try_from(peak.0).ok()),
+        peak_memory_bytes: memory::peak_bytes(),
         warnings: scene.warnings.clone(),
         shots,
         timings: stages.timings().to_vec(),

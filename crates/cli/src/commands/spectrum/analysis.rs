@@ -1,32 +1,14 @@
 //! From the system to what is told of it.
 
-use fredholm_direct::{Spectrum, spectrum, spectrum_bytes};
+use fredholm_direct::{Spectrum, spectrum};
 use fredholm_iterative::{gauss_seidel_radius, ritz_values};
 use fredholm_linop::SecondKind;
 use fredholm_report::{BandSpectrum, Eigenvalues};
 
-use super::SpectrumArgs;
 use crate::failure::{Ending, Failure};
-use crate::problem::Problem;
-use crate::size::Bytes;
 use crate::solution::solve_failure;
 use crate::stages::Stages;
 use crate::watcher::Watcher;
-
-/// Refuses dense methods that do not fit the memory.
-pub(super) fn admit(args: &SpectrumArgs, problem: &Problem) -> Result<(), Failure> {
-    let limit = problem.options.memory_limit();
-    let dense = problem.unknowns <= args.dense;
-    let own = if dense { u128::from(spectrum_bytes(problem.unknowns)) } else { 0 };
-    let needed = Bytes(problem.prediction.total().0 + own);
-    if needed <= limit {
-        return Ok(());
-    }
-    let text = format!(
-        "dense methods need {needed}, but {limit} are allowed\n  help: --dense 0 estimates, or allow more with --memory"
-    );
-    Err(Failure::new(Ending::Resources, text))
-}
 
 /// All there is, by dense methods.
 pub(super) fn exact(

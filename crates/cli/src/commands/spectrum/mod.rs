@@ -6,12 +6,16 @@ mod summary;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use fredholm_direct::spectrum_bytes;
 use fredholm_linop::{SecondKind, Stop, Storage};
 use fredholm_report::{SPECTRUM_FORMAT, SpectrumRecord, write_spectrum};
+use fredholm_scene::Scene;
 
 use super::solve::report_failure;
 use crate::args::{LogArgs, Precision, ProblemArgs, tolerance};
+
 use crate::failure::{Ending, Failure};
+use crate::memory::Plan;
 use crate::options::RADIOSITY;
 use crate::problem::Problem;
 use crate::registry;
@@ -41,7 +45,7 @@ pub(crate) struct SpectrumArgs {
     /// Error asked for in a row of form factors, rounded down to a power of ten, 1e-14 at least [default: the scene's, else 1e-3]
     #[arg(long, value_name = "T", value_parser = tolerance)]
     pub(crate) form_factor_tolerance: Option<f64>,
-    /// Memory allowed, such as 4GiB or 800MB [default: 80 % of what is available]
+    /// Memory allowed, such as 4GiB or 800MB [default: what leaves the machine usable]
     #[arg(long, value_name = "LIMIT")]
     pub(crate) memory: Option<Bytes>,
     #[command(flatten)]
@@ -50,8 +54,13 @@ pub(crate) struct SpectrumArgs {
 
 /// Analyses the matrix of a scene.
 pub(crate) fn spectrum(args: &SpectrumArgs) -> Result<Ending, Failure> {
-    let start =
-        Start { scene: &args.scene, output: args.output.as_ref(), threads: args.threads, log: args.log };
+    let start = Start {
+        scene: &args.scene,
+        output: args.output.as_ref(),
+        threads: args.threads,
+        memory: args.memory,
+        log: args.log,
+    };
     start.run(|folder, stages| run(args, folder, stages))
 }
 
@@ -68,7 +77,10 @@ fn problem(args: &SpectrumArgs) -> ProblemArgs {
 }
 
 fn run(args: &SpectrumArgs, folder: &Path, stages: &mut Stages) -> Result<Ending, Failure> {
-    let problem = Problem::load(&problem(args), stages)?;
+    let dense = |plan: Plan, _: &Scene, n: usize| {
+        if n <= args.dense { plan.hold("dense methods", spectrum_bytes(n).into()) } else { plan }
+    };
+    let problem = Problem::load(&problem(args), &dense, stages)?;
     if !problem.is_radiosity() {
         let text = format!(
             "spectrum works on the matrix of form factors, which is {RADIOSITY}; the scene asks for {}",
@@ -76,7 +88,6 @@ fn run(args: &SpectrumArgs, folder: &Path, stages: &mut Stages) -> Result<Ending
         );
         return Err(Failure::new(Ending::Input, text));
     }
-    analysis::admit(args, &problem)?;
     let record = match problem.options.storage {
         Precision::F64 => analysed::<f64>(args, &problem, stages),
         Precision::F32 => analysed::<f32>(args, &problem, stages),

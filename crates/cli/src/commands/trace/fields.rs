@@ -23,7 +23,7 @@ use crate::waves::Model;
 /// Samples the fields of a scene of waves and writes them.
 pub(super) fn run(args: &TraceArgs, folder: &Path, stages: &mut Stages) -> Result<Ending, Failure> {
     admit(args)?;
-    let model = stages.run("scene", || Model::load(&args.problem.scene))?;
+    let model = stages.run("scene", || Model::load(&args.problem.scene, args.problem.memory))?;
     let run = FieldRun::new(&args.method, &args.paths, &args.stop, &model, stages)?;
     let origin = Origin::new(args, &model.text.sha256(), run.bounces());
     let earlier: Vec<FieldEstimate> = if args.go_on { origin.earlier(folder)? } else { Vec::new() };

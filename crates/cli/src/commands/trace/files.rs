@@ -43,7 +43,7 @@ pub(super) fn record(
             ..Counts::default()
         },
         timings: stages.timings().to_vec(),
-        peak_memory_bytes: memory::peak().and_then(|peak| u64::try_from(peak.0).ok()),
+        peak_memory_bytes: memory::peak_bytes(),
         means: "random paths; standard errors in faces.csv".to_owned(),
         solver: state.method.clone(),
         work: work(state),

@@ -22,7 +22,9 @@ use crate::problem::Problem;
 use crate::solution::compute;
 use crate::stages::Stages;
 use crate::start::Start;
-use crate::stochastic::{FIELD_METHODS, Ground, PathArgs, TraceStopArgs, Tracer, control, enclosure, faces};
+use crate::stochastic::{
+    FIELD_METHODS, Ground, PathArgs, TraceStopArgs, Tracer, control, enclosure, faces, with_tracing,
+};
 use crate::summary::Lines;
 use crate::{output, threads};
 
@@ -98,6 +100,7 @@ pub(crate) fn trace(args: &TraceArgs) -> Result<Ending, Failure> {
         scene: &args.problem.scene,
         output: args.output.as_ref(),
         threads: args.problem.threads,
+        memory: args.problem.memory,
         log: args.log,
     };
     let waves = FIELD_METHODS.contains(&args.method.as_str());
@@ -107,7 +110,7 @@ pub(crate) fn trace(args: &TraceArgs) -> Result<Ending, Failure> {
 
 fn run(args: &TraceArgs, folder: &Path, stages: &mut Stages) -> Result<Ending, Failure> {
     let ground = Ground::load(&args.problem, stages)?;
-    picture::admit(args, &ground)?;
+    picture::admit(args, &ground, stages)?;
     let scene = stages.run("exposure", || enclosure(&ground.scene, &ground.mesh))?;
     let stop = args.stop.or_to(ERROR);
     let origin = Origin::new(args, ground.scene.sha256(), 0);
@@ -130,7 +133,7 @@ fn run(args: &TraceArgs, folder: &Path, stages: &mut Stages) -> Result<Ending, F
 }
 
 fn in_force(args: &TraceArgs, stop: TraceStopArgs) -> InForce<'_> {
-    let threads = args.problem.threads.map_or_else(threads::default_count, usize::from);
+    let threads = threads::count(args.problem.threads);
     InForce { method: &args.method, control: args.control, spp: args.spp, paths: args.paths, stop, threads }
 }
 
@@ -176,7 +179,7 @@ fn method(args: &TraceArgs, scene: &Enclosure, stages: &Stages) -> Result<Box<dy
 
 fn solution(args: &TraceArgs, stages: &Stages) -> Result<crate::solution::Solution, Failure> {
     let mut stages = Stages::part(stages.console, stages.interrupt, "control");
-    let problem = Problem::load(&args.problem, &mut stages)?;
+    let problem = Problem::load(&args.problem, &with_tracing, &mut stages)?;
     let options = options(args, &problem.options, &problem);
     compute(&problem, &options, &mut stages)
 }

@@ -3,21 +3,21 @@
 use fredholm_montecarlo::light::pixels::{PixelEstimate, SAMPLES, pixel};
 use fredholm_montecarlo::light::{PICTURED, PointEstimator, point_estimator};
 use fredholm_montecarlo::{Enclosure, Site};
-use fredholm_report::{Camera, Eye, Pixels};
+use fredholm_report::{Camera, Eye, FRAMED, Pixels};
 use rayon::prelude::*;
 
 use super::TraceArgs;
 use crate::commands::solve::report_failure;
 use crate::failure::{Ending, Failure};
-use crate::memory;
-use crate::size::Bytes;
+use crate::memory::{self, Plan};
 use crate::stages::Stages;
 use crate::stochastic::Ground;
 
 /// Rows between looks for Ctrl-C.
 const STRIP: u32 = 16;
-/// Width and height of pictures of scenes without a camera.
-const FRAMED: [u32; 2] = [800, 600];
+/// Bytes of a pixel, and of each of its bands, while it is traced and written.
+const PIXEL: u128 = 40;
+const BAND: u128 = 32;
 /// Fewest batches of a pixel: without two there is no standard error.
 const FEWEST: u32 = 2;
 
@@ -79,7 +79,7 @@ impl<'a> Tracer<'a> {
 }
 
 /// Refuses what cannot be traced pixel by pixel, before any path is traced.
-pub(super) fn admit(args: &TraceArgs, ground: &Ground) -> Result<(), Failure> {
+pub(super) fn admit(args: &TraceArgs, ground: &Ground, stages: &Stages) -> Result<(), Failure> {
     if args.spp.is_none() {
         return Ok(());
     }
@@ -87,7 +87,7 @@ pub(super) fn admit(args: &TraceArgs, ground: &Ground) -> Result<(), Failure> {
         return Err(refused(args));
     }
     let size = ground.scene.camera().map_or(FRAMED, |camera| [camera.width, camera.height]);
-    fits(args, size, ground.scene.bands().len())
+    fits(args, size, ground.scene.bands().len(), stages)
 }
 
 fn refused(args: &TraceArgs) -> Failure {
@@ -100,15 +100,8 @@ fn refused(args: &TraceArgs) -> Failure {
 }
 
 /// Refuses a picture that does not fit in memory: two numbers a pixel and band while it is traced, as many in the file, and what holds them.
-fn fits(args: &TraceArgs, [width, height]: [u32; 2], bands: usize) -> Result<(), Failure> {
+fn fits(args: &TraceArgs, [width, height]: [u32; 2], bands: usize, stages: &Stages) -> Result<(), Failure> {
     let pixels = u128::from(width) * u128::from(height);
-    let needed = Bytes(pixels * (32 * bands as u128 + 64));
-    let limit = args.problem.memory.unwrap_or_else(memory::default_limit);
-    if needed <= limit {
-        return Ok(());
-    }
-    let text = format!(
-        "this picture needs {needed}, but {limit} are allowed\n  help: make the camera's width and height smaller, or allow more with --memory"
-    );
-    Err(Failure::new(Ending::Resources, text))
+    let plan = Plan::default().hold("the picture and its errors", pixels * (BAND * bands as u128 + PIXEL));
+    stages.admit(&plan, memory::limit(args.problem.memory), "make the camera's width and height smaller")
 }

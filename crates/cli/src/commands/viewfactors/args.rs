@@ -57,7 +57,7 @@ pub(crate) struct ViewFactorsArgs {
     /// Threads; any number gives the same results [default: one a core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
-    /// Memory allowed, such as 4GiB or 800MB [default: 80 % of what is available]
+    /// Memory allowed, such as 4GiB or 800MB [default: what leaves the machine usable]
     #[arg(long, value_name = "LIMIT")]
     pub(crate) memory: Option<Bytes>,
     #[command(flatten)]
@@ -99,7 +99,7 @@ pub(crate) struct Plane {
 
 impl Plane {
     /// Number of points.
-    pub(super) fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.counts[0] * self.counts[1]
     }
 

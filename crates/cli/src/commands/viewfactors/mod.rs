@@ -2,9 +2,9 @@
 
 mod args;
 mod compute;
-mod memory;
 mod method;
 mod options;
+mod plan;
 mod problem;
 mod record;
 mod summary;
@@ -19,7 +19,7 @@ use crate::failure::{Ending, Failure};
 use crate::interrupt::Interrupt;
 use crate::stages::Stages;
 use crate::summary::Lines;
-use crate::{console, output, threads};
+use crate::{console, memory, output, threads};
 use compute::compute;
 use problem::Problem;
 use record::record;
@@ -31,8 +31,10 @@ pub(crate) fn view_factors(args: &ViewFactorsArgs) -> Result<Ending, Failure> {
     let target = Target::new(args)?;
     let console = console::choose(args.log);
     let stages = Stages::new(&*console, &interrupt);
-    let count = args.threads.map_or_else(threads::default_count, usize::from);
-    threads::pool(count)?.install(|| run(args, &target, stages))
+    memory::tell(args.memory, &*console);
+    let ended = threads::pool(args.threads)?.install(|| run(args, &target, stages));
+    memory::conclude(&*console);
+    ended
 }
 
 fn run(args: &ViewFactorsArgs, target: &Target, mut stages: Stages) -> Result<Ending, Failure> {

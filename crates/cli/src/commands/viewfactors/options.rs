@@ -8,6 +8,7 @@ use super::args::{Format, Plane, RowsBy, ViewFactorsArgs};
 use super::method::Chosen;
 use super::target::Target;
 use crate::args::LogFormat;
+use crate::memory::Limit;
 use crate::size::Bytes;
 use crate::{memory, threads};
 
@@ -58,7 +59,7 @@ impl Options {
             points: args.point.len() + args.plane.iter().map(Plane::count).sum::<usize>(),
             format,
             output: target.files.matrix.display().to_string(),
-            threads: args.threads.map_or_else(threads::default_count, usize::from),
+            threads: threads::count(args.threads),
             memory_limit_bytes: args.memory.map(|Bytes(limit)| u64::try_from(limit).unwrap_or(u64::MAX)),
             log: args.log.log,
             quiet: args.log.quiet,
@@ -73,7 +74,7 @@ impl Options {
         }
     }
 
-    pub(super) fn memory_limit(&self) -> Bytes {
-        self.memory_limit_bytes.map_or_else(memory::default_limit, |bytes| Bytes(bytes.into()))
+    pub(super) fn memory_limit(&self) -> Limit {
+        memory::limit(self.memory_limit_bytes.map(|bytes| Bytes(bytes.into())))
     }
 }

@@ -9,11 +9,12 @@ use fredholm_scene::{Geometry, Rows, SceneError, Surfaces};
 use fredholm_visibility::Occluders;
 
 use super::args::ViewFactorsArgs;
-use super::memory::Prediction;
 use super::method::Chosen;
 use super::options::Options;
+use super::plan::{help, plan};
 use super::target::Target;
 use crate::failure::{Ending, Failure};
+use crate::memory::Plan;
 use crate::stages::Stages;
 
 /// Name of the row of the sky.
@@ -26,7 +27,7 @@ pub(super) struct Problem {
     pub(super) geometry: Geometry,
     pub(super) options: Options,
     pub(super) rows: Rows,
-    pub(super) prediction: Prediction,
+    pub(super) plan: Plan,
     pub(super) occluders: Occluders,
     pub(super) receivers: Vec<Receiver>,
     /// Another method than the fast assembly.
@@ -48,16 +49,18 @@ impl Problem {
         let more = if options.sky { SKY_PATCHES } else { 0 };
         let count = usize::try_from(geometry.predicted_elements()).unwrap_or(usize::MAX).saturating_add(more);
         // The number of rows is not known before the mesh; it is at least 1.
-        Prediction::new(count, 1, &options).admit(&options)?;
+        let admit =
+            |plan: &Plan, stages: &Stages| stages.admit(plan, options.memory_limit(), &help(&options));
+        admit(&plan(count, 1, &options), stages)?;
         let surfaces = stages.run("mesh", || geometry.surfaces().map_err(scene_failure))?;
         let rows = with_sky(surfaces.rows(options.by()), more);
-        let prediction = Prediction::new(rows.row_of.len(), rows.names.len(), &options);
-        prediction.admit(&options)?;
+        let plan = plan(rows.row_of.len(), rows.names.len(), &options);
+        admit(&plan, stages)?;
         let receivers = receivers(args);
         let sky = if options.sky { sky_around(&surfaces, &receivers, args)? } else { Vec::new() };
         let prepare = || Occluders::new(surfaces.mesh.occluders()).map_err(|error| named(args, error));
         let occluders = stages.run("visibility", prepare)?;
-        Ok(Self { geometry, options, rows, prediction, occluders, receivers, method, surfaces, sky })
+        Ok(Self { geometry, options, rows, plan, occluders, receivers, method, surfaces, sky })
     }
 
     /// The patches, those of the sky last.

@@ -1,0 +1,171 @@
+//! The one limit on the memory of a run, for every command.
+
+use std::fmt;
+use std::path::Path;
+use std::sync::OnceLock;
+
+use super::machine::Machine;
+use crate::console::Console;
+use crate::size::Bytes;
+
+/// Share of what the machine has left that is used where nothing is asked for: the rest keeps it usable.
+const SHARE: f64 = 0.8;
+/// Limit where the system does not tell what is available.
+const FALLBACK: u128 = 4 << 30;
+/// Address space that the C library sets aside for each thread that allocates (glibc, `HEAP_MAX_SIZE` of malloc/arena.c), and the thread's stack.
+const THREAD: u128 = (64 + 2) << 20;
+/// Share of a limit on the address space that threads may set aside.
+const SET_ASIDE: u128 = 4;
+
+/// What sets the limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Bound {
+    /// `--memory`.
+    Asked,
+    /// What the machine has left.
+    Available,
+    /// The control group.
+    Group,
+    /// `ulimit -v`.
+    AddressSpace,
+    /// `ulimit -d`.
+    Data,
+    /// Nothing that is known.
+    Fallback,
+}
+
+/// The most that this process may hold, and why.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Limit {
+    pub(crate) bytes: Bytes,
+    pub(crate) bound: Bound,
+}
+
+/// The machine as it was when the process first asked: what the run itself takes must not lower its limit.
+fn machine() -> &'static Machine {
+    static MACHINE: OnceLock<Machine> = OnceLock::new();
+    MACHINE.get_or_init(|| Machine::read(Path::new("/")))
+}
+
+/// The limit in force, where so much is asked for.
+pub(crate) fn limit(asked: Option<Bytes>) -> Limit {
+    machine().limit(asked)
+}
+
+/// Threads of which the stacks and the C library's heaps leave most of a limited address space to the data.
+pub(crate) fn allowance() -> usize {
+    machine().threads()
+}
+
+/// Says where less is allowed than was asked for.
+pub(crate) fn tell(asked: Option<Bytes>, console: &dyn Console) {
+    let Some(asked) = asked else { return };
+    let limit = limit(Some(asked));
+    if limit.bytes < asked {
+        console.warn(&format!("--memory {asked} is more than there may be: the limit is {limit}"));
+    }
+}
+
+impl Machine {
+    fn limit(&self, asked: Option<Bytes>) -> Limit {
+        let ceiling = self.bounds(1.0).min_by_key(|limit| limit.bytes);
+        match asked {
+            Some(bytes) if ceiling.is_none_or(|ceiling| bytes <= ceiling.bytes) => {
+                Limit { bytes, bound: Bound::Asked }
+            }
+            _ => self.least(asked.map_or(SHARE, |_| 1.0)),
+        }
+    }
+
+    /// The least bound, with a share of what is available.
+    fn least(&self, share: f64) -> Limit {
+        let fallback = Limit { bytes: Bytes(FALLBACK), bound: Bound::Fallback };
+        self.bounds(share).min_by_key(|limit| limit.bytes).unwrap_or(fallback)
+    }
+
+    /// Everything that bounds the memory of this process, which holds some already.
+    fn bounds(&self, share: f64) -> impl Iterator<Item = Limit> {
+        // Of the address space a part is set aside that is never touched; how much of it is not known before.
+        let aside = |left: u128| left - (left / SET_ASIDE).min(self.threads() as u128 * THREAD);
+        let bounds = [
+            (self.available.map(|left| (left as f64 * share) as u128), Bound::Available),
+            (self.group, Bound::Group),
+            (self.address_space.map(aside), Bound::AddressSpace),
+            (self.data, Bound::Data),
+        ];
+        let resident = self.resident;
+        bounds
+            .into_iter()
+            .filter_map(move |(left, bound)| Some(Limit { bytes: Bytes(left? + resident), bound }))
+    }
+
+    fn threads(&self) -> usize {
+        let most = self.address_space.map_or(u128::MAX, |left| (left / SET_ASIDE / THREAD).max(1));
+        usize::try_from(most).unwrap_or(usize::MAX)
+    }
+}
+
+impl fmt::Display for Limit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let why = match self.bound {
+            Bound::Asked => "--memory",
+            Bound::Available => "what the machine has left",
+            Bound::Group => "what the control group has left",
+            Bound::AddressSpace => "what ulimit -v leaves",
+            Bound::Data => "what ulimit -d leaves",
+            Bound::Fallback => "the system does not tell what is left",
+        };
+        write!(f, "{} ({why})", self.bytes)
+    }
+}
+
+impl Limit {
+    /// How to get more.
+    pub(super) fn help(self) -> &'static str {
+        match self.bound {
+            Bound::Asked | Bound::Fallback => "allow more with --memory",
+            Bound::Available => "end other programs, or allow more with --memory",
+            Bound::Group => "raise the limit of the control group",
+            Bound::AddressSpace => "raise ulimit -v",
+            Bound::Data => "raise ulimit -d",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GIB: u128 = 1 << 30;
+
+    fn of(limit: Limit) -> (u128, Bound) {
+        (limit.bytes.0, limit.bound)
+    }
+
+    #[test]
+    fn the_least_of_all_bounds_counts() {
+        let free = Machine { available: Some(10 * GIB), ..Machine::default() };
+        assert_eq!(of(free.limit(None)), (8 * GIB, Bound::Available));
+        assert_eq!(of(free.limit(Some(Bytes(9 * GIB)))), (9 * GIB, Bound::Asked));
+        assert_eq!(of(free.limit(Some(Bytes(11 * GIB)))), (10 * GIB, Bound::Available));
+        let grouped = Machine { group: Some(3 * GIB), resident: 5, ..free };
+        assert_eq!(of(grouped.limit(None)), (3 * GIB + 5, Bound::Group));
+        assert_eq!(of(grouped.limit(Some(Bytes(4 * GIB)))), (3 * GIB + 5, Bound::Group));
+        assert_eq!(of(grouped.limit(Some(Bytes(GIB)))), (GIB, Bound::Asked));
+        let data = Machine { data: Some(GIB), ..grouped };
+        assert_eq!(of(data.limit(None)), (GIB + 5, Bound::Data));
+        assert_eq!(of(Machine::default().limit(None)), (FALLBACK, Bound::Fallback));
+    }
+
+    #[test]
+    fn threads_set_aside_at_most_a_part_of_the_address_space() {
+        let machine = |space: u128| Machine { address_space: Some(space), ..Machine::default() };
+        assert_eq!(Machine::default().threads(), usize::MAX);
+        assert_eq!(
+            (machine(GIB).threads(), machine(4 * GIB).threads(), machine(GIB / 8).threads()),
+            (3, 15, 1)
+        );
+        assert_eq!(of(machine(GIB).limit(None)), (GIB - 3 * THREAD, Bound::AddressSpace));
+        assert_eq!(machine(GIB / 8).limit(None).bytes, Bytes(GIB / 8 * 3 / 4));
+    }
+}

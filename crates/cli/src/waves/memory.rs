@@ -1,0 +1,43 @@
+//! The memory of a scene of waves, known before it is taken.
+
+use super::format::{AnglesEntry, FarEntry, ReceiverEntry, SceneEntry};
+use crate::memory::Plan;
+
+/// Bytes of a facet: its patch in the mesh, its frame, what blocks the view, radiating points, and the arrays of its file.
+const FACET: u128 = 490;
+/// Bytes of a facet and frequency: its currents, and their arrays in the file.
+const CURRENTS: u128 = 240;
+/// Bytes of a receiver's point, and of a row of it at one frequency while the fields are put together and written.
+const POINT: u128 = 24;
+const ROW: u128 = 716;
+/// Bytes of a facet in a coupling: its frame in lanes, and the blocks of what is near.
+pub(super) const COUPLED: u128 = 2500;
+
+/// What so many facets and all receivers take.
+pub(super) fn plan(facets: u128, entry: &SceneEntry) -> Plan {
+    let bands = entry.wave.get_ref().frequencies_hz.get_ref().len() as u128;
+    let places: u128 = entry.receiver.iter().map(|receiver| places(receiver.get_ref())).sum();
+    Plan::default()
+        .hold(format!("{facets} facets"), facets.saturating_mul(FACET + CURRENTS * bands))
+        .hold(format!("{places} points and directions"), places.saturating_mul(POINT + ROW * bands))
+}
+
+/// Points and directions of a receiver.
+fn places(entry: &ReceiverEntry) -> u128 {
+    let angles = |entry: &AnglesEntry| match entry {
+        AnglesEntry::One(_) => 1,
+        AnglesEntry::List(angles) => angles.len() as u128,
+        AnglesEntry::Range { points, .. } => (*points).into(),
+    };
+    let directions = |far: &FarEntry| angles(&far.theta_degrees) * angles(&far.phi_degrees);
+    let ReceiverEntry { points, line, circle, grid, far, monostatic, .. } = entry;
+    let counts = [
+        points.as_ref().map(|points| points.len() as u128),
+        line.as_ref().map(|line| line.points.into()),
+        circle.as_ref().map(|circle| circle.points.into()),
+        grid.as_ref().map(|grid| u128::from(grid.columns) * u128::from(grid.rows)),
+        far.as_ref().map(directions),
+        monostatic.as_ref().map(directions),
+    ];
+    counts.into_iter().flatten().sum()
+}
