@@ -132,6 +132,8 @@ pub(crate) fn compute(
     let surfaces = surfaces(scene, &faces)?;
     let input = Input { mesh: &faces, occluders: &occluders, surfaces: &surfaces, goal: goal.as_ref() };
     let limits = limits(options, accuracy, &plan);
+    let plan = plan.hold("tree and links", limits.bytes.into());
+    stages.console.admit(&plan, options.problem.memory_limit());
     let entry = registry::build(&options.problem.solver).map_err(|e| Failure::new(Ending::Input, e))?;
     let state = checkpoint.map(|checkpoint| state(checkpoint, scene, &input)).transpose()?;
     let fallback = registry::build(FALLBACK).map_err(|e| Failure::new(Ending::Input, e))?;
@@ -155,7 +157,6 @@ pub(crate) fn compute(
     let solved = stages.run("solution", solve)?;
     stages.begin_saving()?;
     let mesh = refined(&faces, &solved).map_err(|e| Failure::new(Ending::Input, e))?;
-    let plan = plan.hold("tree and links", limits.bytes.into());
     let problem = problem((scene, options), mesh, (warnings, occluders), (entry, plan))?;
     Ok((problem, solution(solved, options, accuracy)))
 }
