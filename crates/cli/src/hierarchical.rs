@@ -158,7 +158,7 @@ fn problem(
     (solver, bytes): (Entry, u64),
 ) -> Result<Problem, Failure> {
     let (unknowns, dense) = (mesh.len(), Some(Dense { bytes: bytes.into() }));
-    let size = Size { elements: unknowns, unknowns, coarse: 0, dense };
+    let size = Size { elements: unknowns, unknowns, dense };
     let discretisation = fredholm_discretisation::discretisation(RADIOSITY)
         .map_err(|error| Failure::new(Ending::Input, error))?;
     Ok(Problem {

@@ -15,8 +15,8 @@ use crate::size::Bytes;
 const PER_ELEMENT: u128 = 4096;
 /// Bytes of the program itself, before there is a scene.
 const PROGRAM: u128 = 8 << 20;
-/// Vectors of all bands held at once: system, iterates, residuals, results.
-const VECTORS: u128 = 16;
+/// Vectors of all bands held at once: system and results, and six sources of errors with their system, iterates and residuals.
+const VECTORS: u128 = 48;
 
 /// Sizes that decide the memory.
 #[derive(Clone, Copy, Debug)]
@@ -24,8 +24,6 @@ pub(crate) struct Size {
     pub(crate) elements: usize,
     /// Unknowns in each band.
     pub(crate) unknowns: usize,
-    /// Patches of the coarser problem that the mesh error is estimated with.
-    pub(crate) coarse: usize,
     /// Matrices of another discretisation than constants on form factors.
     pub(crate) dense: Option<Dense>,
 }
@@ -41,7 +39,7 @@ impl Size {
     pub(crate) fn before_mesh(elements: usize, options: &ProblemOptions) -> Self {
         let radiosity = options.discretisation == RADIOSITY;
         let (unknowns, dense) = if radiosity { (elements, None) } else { (0, Some(Dense { bytes: 0 })) };
-        Self { elements, unknowns, coarse: 0, dense }
+        Self { elements, unknowns, dense }
     }
 }
 
@@ -58,7 +56,7 @@ pub(crate) struct Prediction {
 
 impl Prediction {
     pub(crate) fn new(size: Size, bands: usize, storage: Precision, solver: &Entry) -> Self {
-        let Size { elements, unknowns, coarse, dense } = size;
+        let Size { elements, unknowns, dense } = size;
         let fine = match storage {
             Precision::F64 => PackedSymmetric::<f64>::bytes(elements),
             Precision::F32 => PackedSymmetric::<f32>::bytes(elements),
@@ -67,8 +65,7 @@ impl Prediction {
             Precision::F64 => waiting_bytes::<f64>(elements, false),
             Precision::F32 => waiting_bytes::<f32>(elements, false),
         };
-        let packed = u128::from(fine) + u128::from(PackedSymmetric::<f64>::bytes(coarse));
-        let matrix = dense.map_or(packed, |dense| dense.bytes);
+        let matrix = dense.map_or(u128::from(fine), |dense| dense.bytes);
         let vectors = elements.max(unknowns) as u128 * VECTORS * 8 * bands as u128;
         let mesh = elements as u128 * PER_ELEMENT + vectors;
         let solver = solver.solver.bytes(unknowns, bands).into();
@@ -145,7 +142,7 @@ mod tests {
     use crate::registry::find;
 
     fn predict(elements: usize, storage: Precision, solver: &str) -> Prediction {
-        let size = Size { elements, unknowns: elements, coarse: 0, dense: None };
+        let size = Size { elements, unknowns: elements, dense: None };
         Prediction::new(size, 3, storage, &find(solver).unwrap())
     }
 

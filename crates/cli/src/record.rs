@@ -61,9 +61,9 @@ pub(crate) fn record(
 
 /// What the user should know of the solution.
 pub(crate) fn remarks(options: &Options, solution: &Solution) -> impl Iterator<Item = String> {
-    [unfinished(solution), inexact(options, solution), coarse(solution), solution.replaced.clone()]
-        .into_iter()
-        .flatten()
+    let replaced = solution.replaced.clone();
+    let own = [unfinished(solution), inexact(options, solution), coarse(solution), large(solution), replaced];
+    own.into_iter().flatten()
 }
 
 fn unfinished(solution: &Solution) -> Option<String> {
@@ -95,6 +95,22 @@ fn coarse(solution: &Solution) -> Option<String> {
     Some(format!(
         "the estimated error of the {whose} is {reached}, where {accuracy:.1e} was asked for: {why}"
     ))
+}
+
+/// Stated error of the irradiance that is worth a warning.
+pub(crate) const LARGE: f64 = 0.1;
+
+/// Whether constants on the elements are far off.
+fn large(solution: &Solution) -> Option<String> {
+    let error = solution.mesh_error.as_ref().filter(|_| solution.hierarchy.is_none())?;
+    let worst = error.relative_l2.iter().copied().fold(0.0, f64::max);
+    (worst > LARGE).then(|| {
+        format!(
+            "the irradiance of the faces may be {:.0} % off: light changes much across the elements\n  \
+             help: --accuracy 1% chooses elements that suffice, or use more (elements_per_face, divide, largest_edge in the scene)",
+            100.0 * worst
+        )
+    })
 }
 
 /// Row errors, in tolerances, that are reported: the tolerance is a pair's, and the errors of a row add up to about twice as much.

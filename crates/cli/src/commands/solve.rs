@@ -120,13 +120,13 @@ fn predicted(args: &SolveArgs, scene: &Scene, accuracy: f64) -> Result<Choice, F
     let fewest = (0..count).map(|face| mesh.leaves_of_face(face).len()).min().unwrap_or(0);
     let choice = Choice::new(Extent { elements: mesh.len() as f64, faces: count as f64, fewest }, accuracy);
     let options = ProblemOptions::new(&args.problem, scene.solve());
-    let fits = fits(&options, mesh.len(), count, scene.bands().len());
+    let fits = fits(&options, mesh.len(), scene.bands().len());
     Ok(if choice.is_matrix() && !fits { Choice::Memory } else { choice })
 }
 
-/// Whether the matrix of some elements on some faces fits the memory.
-fn fits(options: &ProblemOptions, elements: usize, faces: usize, bands: usize) -> bool {
-    let size = Size { elements, unknowns: elements, coarse: faces, dense: None };
+/// Whether the matrix of some elements fits the memory.
+fn fits(options: &ProblemOptions, elements: usize, bands: usize) -> bool {
+    let size = Size { elements, unknowns: elements, dense: None };
     registry::find(&options.solver).is_some_and(|solver| {
         Prediction::new(size, bands, options.storage, &solver).total() <= options.memory_limit()
     })
