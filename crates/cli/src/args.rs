@@ -398,7 +398,7 @@ pub(crate) fn tolerance(text: &str) -> Result<f64, String> {
 }
 
 /// A relative error, as a number or in per cent.
-fn accuracy(text: &str) -> Result<f64, String> {
+pub(crate) fn accuracy(text: &str) -> Result<f64, String> {
     let wrong = || "must be above 0 and below 100%, such as 1% or 0.01".to_owned();
     let (number, unit) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 0.01));
     let value = number.trim().parse::<f64>().map_err(|_| wrong())? * unit;

@@ -8,6 +8,8 @@
 //!   open scene only what is above 1, which no scene has;
 //! - in an open scene the stated errors of the rows times the radiosity that they see. In a closed one these errors cancel in the sums, and are not amplified.
 
+use std::ops::ControlFlow;
+
 use fredholm_coupling::{Assembled, Constants, CouplingError, Extent, MeshError, Radiosity, Residual};
 use fredholm_linop::{MultiVector, Report, Stop, StopReason, Storage};
 use fredholm_mesh::Mesh;
@@ -25,6 +27,8 @@ const STOP: Stop = Stop { tolerance: 1e-3, max_iterations: 10_000 };
 /// Stated errors of a row within which its sum is that of a closed scene, and the error that is always allowed.
 const ROWS: f64 = 3.0;
 const CLOSED: f64 = 1e-6;
+/// Root mean square over the mean of the irradiance that unshot light comes to.
+const UNEVEN: f64 = 1.5;
 /// Share of the sampled square of an error that is left, however large the noise.
 const LEFT: f64 = 0.25;
 
@@ -189,38 +193,56 @@ impl Sampled {
 }
 
 /// Areas of the faces, m².
-pub(crate) fn areas(mesh: &Mesh) -> Vec<f64> {
+fn areas(mesh: &Mesh) -> Vec<f64> {
     mesh.faces().iter().map(|face| face.area).collect()
 }
 
 /// Area means over the faces.
-pub(crate) fn of_faces(mesh: &Mesh, values: &MultiVector<f64>) -> MultiVector<f64> {
+fn of_faces(mesh: &Mesh, values: &MultiVector<f64>) -> MultiVector<f64> {
     MultiVector::from_fn(mesh.faces().len(), values.lanes(), |face, lane| {
         let part = |leaf: usize| mesh.patch(leaf).area() * values.row(leaf)[lane];
         mesh.leaves_of_face(face).map(part).sum::<f64>() / mesh.faces()[face].area
     })
 }
 
-/// Of the elements of a field without a matrix: sources of an error are spread evenly from their first reflection on.
-pub(crate) fn without_matrix(
+/// The same of a field without a matrix, of which `unshot` (W/m²) is still to be sent. Sources of errors are spread evenly from their first reflection on, and what is unshot from the
+/// beginning, as all reflections together spread light. There is no estimate where `go_on` breaks.
+pub(crate) fn of_shooting(
     mesh: &Mesh,
     constants: &Constants<'_>,
-    residual: &Residual,
-) -> MultiVector<f64> {
-    let (bands, sizes) = (constants.irradiance.lanes(), constants.elements);
-    let reflected = |lane: usize| -> f64 {
-        let part = |i: usize| constants.reflectance.row(i)[lane % bands] * residual.power.row(i)[lane];
-        (0..mesh.len()).map(part).sum()
+    unshot: &MultiVector<f64>,
+    go_on: &(dyn Fn() -> ControlFlow<()> + Sync),
+) -> Result<Option<MeshError>, Failure> {
+    if go_on().is_break() {
+        return Ok(None);
+    }
+    let residual = match constants.residual(go_on) {
+        Ok(residual) => residual,
+        Err(CouplingError::Interrupted { .. }) => return Ok(None),
+        Err(error) => return Err(coupling_failure(error)),
     };
-    let ambient: Vec<f64> =
-        (0..residual.power.lanes()).map(|lane| reflected(lane) / absorbed(constants, lane % bands)).collect();
-    MultiVector::from_fn(mesh.len(), residual.power.lanes(), |i, lane| {
-        residual.power.row(i)[lane] / sizes[i].area + ambient[lane]
-    })
+    let (bands, sizes) = (unshot.lanes(), constants.elements);
+    let sampled = residual.draws * bands;
+    let all = || 0..mesh.len();
+    let reflected = |lane: usize| -> f64 {
+        let rho = |i: usize| constants.reflectance.row(i)[lane % bands];
+        all().map(|i| rho(i) * residual.power.row(i)[lane]).sum()
+    };
+    let left = |band: usize| all().map(|i| sizes[i].exposed * unshot.row(i)[band].abs()).sum::<f64>();
+    let ambient: Vec<f64> = (0..sampled)
+        .map(|lane| reflected(lane) / absorbing(constants, lane % bands))
+        .chain((0..bands).map(|band| UNEVEN * left(band) / absorbing(constants, band)))
+        .collect();
+    let errors = MultiVector::from_fn(mesh.len(), sampled + 2 * bands, |i, lane| match lane {
+        _ if lane < sampled => residual.power.row(i)[lane] / sizes[i].area + ambient[lane],
+        _ if lane < sampled + bands => ambient[lane],
+        _ => 0.0,
+    });
+    Ok(Some(stated(mesh, constants.irradiance, &errors, residual.draws)))
 }
 
 /// Σ w A (1 − ρ), m²: what absorbs.
-fn absorbed(constants: &Constants<'_>, band: usize) -> f64 {
+fn absorbing(constants: &Constants<'_>, band: usize) -> f64 {
     let part = |(i, size): (usize, &Extent)| size.exposed * (1.0 - constants.reflectance.row(i)[band]);
     constants.elements.iter().enumerate().map(part).sum()
 }

@@ -180,7 +180,8 @@ fn closure(problem: &Problem, closure: &[f64]) -> Closure {
     found
 }
 
-fn mesh_error(error: &fredholm_coupling::MeshError) -> MeshError {
+/// An error as the record has it.
+pub(crate) fn mesh_error(error: &fredholm_coupling::MeshError) -> MeshError {
     MeshError { relative_l2: error.relative_l2.clone(), largest: error.largest.clone() }
 }
 

@@ -101,9 +101,9 @@ pub use spectrum::{
     write_spectrum_csv, write_spectrum_plot,
 };
 pub use stochastic::{
-    COMPONENTS, CROSSCHECK_FILES, CROSSCHECK_FORMAT, CrosscheckRecord, CrosscheckRow, FaceEstimates,
-    FieldScore, Pixels, REFERENCE_FILES, REFERENCE_FORMAT, ReferenceRecord, ReferenceTable, SampledField,
-    WorstPlace, score_map, write_crosscheck, write_crosscheck_csv, write_face_estimates,
+    COMPONENTS, CROSSCHECK_FILES, CROSSCHECK_FORMAT, CrosscheckPower, CrosscheckRecord, CrosscheckRow,
+    FaceEstimates, FieldScore, Pixels, REFERENCE_FILES, REFERENCE_FORMAT, ReferenceRecord, ReferenceTable,
+    SampledField, WorstPlace, score_map, write_crosscheck, write_crosscheck_csv, write_face_estimates,
     write_field_crosscheck, write_reference, write_sampled_fields, write_score_histogram,
 };
 pub use surfaces_csv::write_surfaces_csv;

@@ -43,13 +43,7 @@ fn run(
     folder: &Path,
     stages: &mut Stages,
 ) -> Result<Ending, Failure> {
-    let scene = stages.run("scene", || Scene::load(&args.problem.scene).map_err(scene_failure))?;
-    let scene = Arc::new(scene);
-    let (options, problem, solution) = match args.accuracy.or(scene.solve().accuracy) {
-        Some(accuracy) => to_accuracy(args, &scene, (accuracy, checkpoint), folder, stages)?,
-        None if !args.goal.is_empty() => return Err(hierarchical::goal_alone()),
-        None => dense(args, &scene, folder, stages)?,
-    };
+    let (options, problem, solution) = answer(args, checkpoint, folder, stages)?;
     let record = record(&problem, &options, &solution, stages);
     stages.run("results", || write(&problem, &options, &solution, &record, folder))?;
     if !record.partial {
@@ -60,6 +54,22 @@ fn run(
     remarks(&options, &solution).for_each(|remark| stages.console.warn(&remark));
     conclude(args, folder, &record, stages)?;
     Ok(ending(&solution, stages))
+}
+
+/// Reads and solves the scene.
+pub(super) fn answer(
+    args: &SolveArgs,
+    checkpoint: Option<&Checkpoint>,
+    folder: &Path,
+    stages: &mut Stages,
+) -> Result<(Options, Problem, Solution), Failure> {
+    let scene = stages.run("scene", || Scene::load(&args.problem.scene).map_err(scene_failure))?;
+    let scene = Arc::new(scene);
+    match args.accuracy.or(scene.solve().accuracy) {
+        Some(accuracy) => to_accuracy(args, &scene, (accuracy, checkpoint), folder, stages),
+        None if !args.goal.is_empty() => Err(hierarchical::goal_alone()),
+        None => dense(args, &scene, folder, stages),
+    }
 }
 
 /// On the elements of the scene.
