@@ -51,6 +51,9 @@ pub(crate) struct Options {
     /// Whether elements are cut along the borders of shadows.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub(crate) discontinuity: bool,
+    /// Whether nothing is drawn.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub(crate) no_pictures: bool,
     pub(crate) tolerance: f64,
     pub(crate) max_iterations: u64,
     pub(crate) output: String,
@@ -96,6 +99,7 @@ impl Options {
             points: Vec::new(),
             final_gather: false,
             discontinuity: false,
+            no_pictures: false,
             tolerance: stop.tolerance.or(scene.tolerance).unwrap_or(TOLERANCE),
             max_iterations: iterations.unwrap_or(MAX_ITERATIONS),
             output: output.display().to_string(),

@@ -41,7 +41,7 @@ pub use cutting::{Cutting, Lines};
 pub use error::{MeshError, Ring};
 pub use flatten::{Flattened, flatten};
 pub use glam::DVec3 as Vec3;
-pub use inspection::{Component, Contacts, Covered, Overlap, Repeat, Topology};
+pub use inspection::{Component, Contacts, Overlap, Repeat, Topology};
 pub use mesh::{Element, Face, Mesh, Surface};
 pub use patch::Patch;
 pub use quality::Quality;

@@ -5,27 +5,6 @@ use super::contacts::{around, tolerance};
 use super::overlap::{common, uncovered};
 use crate::{Bounds, Mesh, MeshBuilder, MeshError, Patch, Vec3};
 
-/// What was cut away, or left out, where elements lay on each other.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Covered {
-    /// Numbers of the faces that are gone, before they went.
-    pub gone: Vec<usize>,
-    /// Numbers of the faces that lost a part, before others went.
-    pub cut: Vec<usize>,
-    /// Area that was cut away, m².
-    pub area: f64,
-    /// Pairs of surfaces: what was cut, and what lies there.
-    pub surfaces: Vec<[usize; 2]>,
-}
-
-impl Covered {
-    /// Whether nothing lay on anything.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.gone.is_empty() && self.cut.is_empty()
-    }
-}
-
 impl Mesh {
     /// The mesh without what other elements cover that are lit on the same side. A lamp (a surface for which `emits` holds) covers what
     /// does not emit; else the smaller face covers the larger one, and the one with the smaller number what is as large. Faces of which nothing
@@ -33,14 +12,13 @@ impl Mesh {
     ///
     /// # Errors
     /// [`MeshError::TooLarge`] past 2³² − 1 elements.
-    pub fn without_covered(self, emits: impl Fn(usize) -> bool) -> Result<(Self, Covered), MeshError> {
+    pub fn without_covered(self, emits: impl Fn(usize) -> bool) -> Result<Self, MeshError> {
         let tolerance = tolerance(self.patches().chain(&self.occluders));
         let order = Order::of(&self, emits);
         let mut covers: Vec<Vec<u32>> = self.covers(&order, tolerance);
         if covers.iter().all(Vec::is_empty) {
-            return Ok((self, Covered::default()));
+            return Ok(self);
         }
-        let mut covered = Covered::default();
         let mut builder = MeshBuilder::default();
         let mut surface = None;
         for (face, entry) in self.faces.iter().enumerate() {
@@ -51,7 +29,6 @@ impl Mesh {
             }
             let leaves = self.leaves_of_face(face);
             let mut roots = Vec::with_capacity(leaves.len());
-            let mut whole = true;
             for leaf in leaves {
                 let patch = self.patch(leaf);
                 let own = std::mem::take(&mut covers[leaf]);
@@ -59,15 +36,9 @@ impl Mesh {
                     roots.push(*patch);
                     continue;
                 }
-                whole = false;
-                covered.surfaces.extend(own.iter().map(|&k| [entry.surface, self.surface_of(k as usize)]));
                 let others: Vec<&Patch> = own.iter().map(|&k| self.patch(k as usize)).collect();
                 roots
                     .extend(uncovered(patch, &others, tolerance).iter().flat_map(|part| pieces(part, patch)));
-            }
-            if !whole {
-                covered.area += entry.area - roots.iter().map(Patch::area).sum::<f64>();
-                (if roots.is_empty() { &mut covered.gone } else { &mut covered.cut }).push(face);
             }
             if !roots.is_empty() {
                 builder.face(&roots)?;
@@ -77,9 +48,7 @@ impl Mesh {
             builder.surface(rest.name.as_str(), rest.material);
         }
         self.occluders.iter().for_each(|patch| builder.occluder(*patch));
-        covered.surfaces.sort_unstable();
-        covered.surfaces.dedup();
-        Ok((builder.build(), covered))
+        Ok(builder.build())
     }
 
     /// For every leaf those that lie on it, are lit on the same side, and come before it.
@@ -174,12 +143,9 @@ mod tests {
     fn each_place_is_left_to_one_face() {
         let (ceiling, lamp) = (quad([0., 4.], [0., 4.], false), quad([1., 2.], [1.3, 2.], false));
         for divide in [1, 3] {
-            let (left, covered) =
-                mesh(&[ceiling.clone(), lamp.clone()], divide).without_covered(|_| false).unwrap();
+            let left = mesh(&[ceiling.clone(), lamp.clone()], divide).without_covered(|_| false).unwrap();
             assert!((areas(&left)[0] - 15.3).abs() < 1e-12 && (areas(&left)[1] - 0.7).abs() < 1e-15);
-            assert!((covered.area - 0.7).abs() < 1e-12 && covered.surfaces == [[0, 1]], "{covered:?}");
-            let (left, _) =
-                mesh(&[ceiling.clone(), lamp.clone()], divide).without_covered(|s| s == 0).unwrap();
+            let left = mesh(&[ceiling.clone(), lamp.clone()], divide).without_covered(|s| s == 0).unwrap();
             assert!((areas(&left)[0] - 16.0).abs() < 1e-12 && areas(&left)[1] == 0.0, "a lamp covers");
             assert_eq!((left.surfaces.len(), left.occluders.len()), (2, 2));
         }
@@ -189,10 +155,11 @@ mod tests {
     fn the_second_of_two_alike_is_gone_and_backs_stay() {
         let (floor, back) = (quad([0., 1.], [0., 1.], false), quad([0., 1.], [0., 1.], true));
         let all = [floor.clone(), back.clone(), floor.clone(), back];
-        let (left, covered) = mesh(&all, 1).without_covered(|_| false).unwrap();
-        assert_eq!((covered.gone, covered.cut, left.faces.len()), (vec![2, 3], vec![], 2));
+        let left = mesh(&all, 1).without_covered(|_| false).unwrap();
+        assert_eq!(areas(&left), [1.0, 1.0, 0.0, 0.0]);
+        assert_eq!((left.faces.len(), left.surfaces.len()), (2, 4));
         let clean = mesh(&[floor, quad([1., 2.], [0., 1.], false)], 2);
-        let (left, covered) = clean.clone().without_covered(|_| true).unwrap();
-        assert!(covered.is_empty() && left == clean);
+        let left = clean.clone().without_covered(|_| true).unwrap();
+        assert_eq!(left, clean);
     }
 }

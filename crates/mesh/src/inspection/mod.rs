@@ -10,5 +10,4 @@ mod overlap;
 mod topology;
 
 pub use contacts::{Contacts, Overlap};
-pub use cover::Covered;
 pub use topology::{Component, Repeat, Topology};

@@ -77,7 +77,7 @@ mod tests {
         let found = read(text).unwrap();
         let names: Vec<&str> = found.iter().map(|material| material.name.as_str()).collect();
         assert_eq!(names, ["oak wood", "b"]);
-        assert_eq!(found[0].diffuse.as_ref().unwrap().0, [1.0, 0.5, 0.25]);
+        assert_eq!(found[0].diffuse, Some(([1.0, 0.5, 0.25], 31..43)));
         assert_eq!(found[0].emission, None);
         let (emission, span) = found[1].emission.clone().unwrap();
         assert_eq!((emission, &text[span]), ([3.0; 3], "Ke 3"));
