@@ -133,9 +133,11 @@ fn a_matrix_that_does_not_fit_has_its_mesh_told_and_another_way_named() {
 #[test]
 fn the_other_commands_take_a_mesh_file() {
     let bench = bench(CUBE, b"newmtl side\nKd 0.5 0.5 0.5\nnewmtl top\nKd 0.5 0.5 0.5\n");
-    for line in
-        ["shoot cube.obj", "trace cube.obj --paths 1000", "compare cube.obj --solvers gauss-seidel,lu"]
-    {
+    for line in [
+        "shoot cube.obj --no-pictures",
+        "trace cube.obj --to 20% --no-pictures",
+        "compare cube.obj --solvers gauss-seidel,lu",
+    ] {
         let run = bench.run(&line.split(' ').collect::<Vec<_>>());
         assert_eq!(run.code, 0, "{line}: {}", run.stderr);
     }

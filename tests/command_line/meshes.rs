@@ -70,10 +70,10 @@ impl Object {
     }
 }
 
-const LOW: [f64; 3] = [0.3, 0.35, 0.0];
-const HIGH: [f64; 3] = [0.6, 0.7, 0.4];
+const LOW: [f64; 3] = [0.3, 0.35, 0.2];
+const HIGH: [f64; 3] = [0.6, 0.7, 0.6];
 
-/// A box on the floor.
+/// A box over the floor.
 fn block() -> Object {
     Object::new().add(LOW, HIGH, 0.0)
 }
@@ -84,7 +84,7 @@ fn check(obj: &str, keys: &str) -> Run {
     bench.run(&["check", "scene.toml"])
 }
 
-/// Irradiance of the faces of the room, and power that falls on the object, W.
+/// Power that falls on each face of the room, and on the object, W.
 fn solution(obj: &str, keys: &str) -> (Vec<f64>, f64) {
     let bench = Bench::new(&scene(keys));
     fs::write(bench.path("x.obj"), obj).unwrap();
@@ -96,7 +96,7 @@ fn solution(obj: &str, keys: &str) -> (Vec<f64>, f64) {
     let (mut room, mut power) = (Vec::new(), 0.0);
     for (name, (area, irradiance)) in names.zip(values) {
         if name == "room" {
-            room.push(irradiance);
+            room.push(area * irradiance);
         } else if name.starts_with('x') {
             power += area * irradiance;
         }
@@ -118,7 +118,7 @@ fn assert_same(defect: (&str, &str), mended: (&str, &str), named: &str) {
     let ((room, power), (expected, total)) = (solution(defect.0, defect.1), solution(mended.0, mended.1));
     let scale = expected.iter().copied().fold(0.0, f64::max);
     let worst = room.iter().zip(&expected).map(|(a, b)| (a - b).abs() / scale).fold(0.0, f64::max);
-    assert!(room.len() == expected.len() && worst < 3e-3, "{named}: {worst:.1e} in the room");
+    assert!(room.len() == expected.len() && worst < 6e-3, "{named}: {worst:.1e} in the room");
     assert!((power - total).abs() < 5e-3 * total, "{named}: {power} instead of {total} W on the object");
 }
 
@@ -131,7 +131,9 @@ fn assert_refused(obj: &str, reason: &str, cure: &str) {
 
 #[test]
 fn an_open_bottom_on_the_floor_changes_nothing() {
-    assert_mended(&block().change(|o| drop(o.faces.remove(4))), &block(), "open sides");
+    let standing = || Object::new().add([0.3, 0.35, 0.0], HIGH, 0.0);
+    // Four of them are those of the lamp.
+    assert_mended(&standing().change(|o| drop(o.faces.remove(4))), &standing(), "8 open sides");
 }
 
 #[test]
@@ -150,7 +152,7 @@ fn an_object_turned_inside_out_is_told_and_can_be_lit_on_both_sides() {
     let report = check(&defect.text(6), PLAIN);
     assert!(report.stdout.contains("lit inside and hold no lamp"), "{report:?}");
     assert!(report.stdout.contains("set two_sided = true"), "{report:?}");
-    assert_same((&defect.text(6), " }\ntwo_sided = true"), (&block().text(6), PLAIN), "objects lit inside");
+    assert_same((&defect.text(6), " }\ntwo_sided = true"), (&block().text(6), PLAIN), "2 objects lit inside");
 }
 
 #[test]
@@ -173,7 +175,7 @@ fn an_object_given_twice_counts_once() {
 #[test]
 fn corners_inside_sides_let_no_light_through() {
     let split = |o: &mut Object| {
-        o.corners.extend([[0.45, 0.35, 0.4], [0.45, 0.7, 0.4]]);
+        o.corners.extend([[0.45, 0.35, 0.6], [0.45, 0.7, 0.6]]);
         o.faces[TOP] = vec![5, 9, 10, 7];
         o.faces.push(vec![9, 6, 8, 10]);
     };
@@ -183,12 +185,12 @@ fn corners_inside_sides_let_no_light_through() {
 #[test]
 fn slivers_do_no_harm() {
     let split = |o: &mut Object| {
-        o.corners.push([0.45, 0.3501, 0.4]);
+        o.corners.push([0.45, 0.3501, 0.6]);
         o.faces.remove(TOP);
         o.faces.extend([vec![5, 6, 9], vec![6, 8, 9], vec![8, 7, 9], vec![7, 5, 9]]);
     };
     let cut = |o: &mut Object| {
-        o.corners.push([0.45, 0.525, 0.4]);
+        o.corners.push([0.45, 0.525, 0.6]);
         o.faces.remove(TOP);
         o.faces.extend([vec![5, 6, 9], vec![6, 8, 9], vec![8, 7, 9], vec![7, 5, 9]]);
     };
@@ -198,7 +200,7 @@ fn slivers_do_no_harm() {
 #[test]
 fn faces_without_area_are_left_out() {
     let line = |o: &mut Object| {
-        o.corners.push([0.45, 0.35, 0.4]);
+        o.corners.push([0.45, 0.35, 0.6]);
         o.faces.extend([vec![5, 9, 6], vec![5, 5, 6]]);
     };
     assert_mended(&block().change(line), &block(), "2 faces enclose no area and are left out");
@@ -214,14 +216,14 @@ fn a_quad_with_a_corner_given_twice_is_a_triangle() {
 
 #[test]
 fn what_crosses_an_object_is_black_inside() {
-    let pole = |from: f64| block().add([0.4, 0.45, from], [0.45, 0.5, 0.7], 0.0);
-    assert_mended(&pole(0.2), &pole(0.4), "pairs of faces that cross");
+    let pole = |from: f64| block().add([0.4, 0.45, from], [0.45, 0.5, 0.8], 0.0);
+    assert_mended(&pole(0.3), &pole(0.6), "pairs of faces that cross");
 }
 
 #[test]
 fn faces_that_lie_on_each_other_in_part_count_once() {
-    let plate = [[0.25, 0.4, 0.4], [0.5, 0.4, 0.4], [0.5, 0.6, 0.4], [0.25, 0.6, 0.4]];
-    let rest = [[0.25, 0.4, 0.4], [0.3, 0.4, 0.4], [0.3, 0.6, 0.4], [0.25, 0.6, 0.4]];
+    let plate = [[0.25, 0.4, 0.6], [0.5, 0.4, 0.6], [0.5, 0.6, 0.6], [0.25, 0.6, 0.6]];
+    let rest = [[0.25, 0.4, 0.6], [0.3, 0.4, 0.6], [0.3, 0.6, 0.6], [0.25, 0.6, 0.6]];
     assert_mended(
         &block().with(&plate, &[&[1, 2, 3, 4]]),
         &block().with(&rest, &[&[1, 2, 3, 4]]),
@@ -231,24 +233,20 @@ fn faces_that_lie_on_each_other_in_part_count_once() {
 
 #[test]
 fn a_face_inside_an_object_is_buried() {
-    let inner = [[0.4, 0.4, 0.2], [0.5, 0.4, 0.2], [0.5, 0.6, 0.2], [0.4, 0.6, 0.2]];
+    let inner = [[0.4, 0.4, 0.4], [0.5, 0.4, 0.4], [0.5, 0.6, 0.4], [0.4, 0.6, 0.4]];
     let defect = block().with(&inner, &[&[1, 2, 3, 4]]);
-    let report = check(&defect.text(6), PLAIN);
-    // The bottom on the floor is buried, and so is the floor under it, where it is a face of its own.
-    assert!(report.stdout.contains("2 buried faces"), "{report:?}");
-    assert!(check(&block().text(6), PLAIN).stdout.contains("1 buried faces"));
-    assert_mended(&defect, &block(), "2 buried faces");
+    assert_mended(&defect, &block(), "1 buried faces");
 }
 
 #[test]
 fn objects_that_share_a_side_are_told_and_right() {
-    let two = |gap: f64| block().add([0.6 + gap, 0.7 + gap, 0.0], [0.8, 0.9, 0.4], 0.0);
+    let two = |gap: f64| block().add([0.6 + gap, 0.7 + gap, 0.2], [0.8, 0.9, 0.6], 0.0);
     assert_mended(&two(0.0), &two(1e-5), "1 sides of more than two faces");
 }
 
 #[test]
 fn objects_that_touch_are_one() {
-    let two = Object::new().add(LOW, [0.45, 0.7, 0.4], 0.0).add([0.45, 0.35, 0.0], HIGH, 0.0);
+    let two = Object::new().add(LOW, [0.45, 0.7, 0.6], 0.0).add([0.45, 0.35, 0.2], HIGH, 0.0);
     assert_mended(&two, &block(), "sides of more than two faces");
 }
 
@@ -267,7 +265,7 @@ fn rounded_quads_are_one_flat_face_each() {
         })
     };
     let (rounded, exact) = (turned().text(6), turned().text(17));
-    assert_same((&rounded, PLAIN), (&exact, PLAIN), "faces were flat but for rounding");
+    assert_same((&rounded, PLAIN), (&exact, PLAIN), "faces that were flat but for rounding");
     let report = check(&rounded, PLAIN);
     assert!(report.stdout.contains("61 elements"), "six faces of one element each: {report:?}");
 }

@@ -30,6 +30,7 @@ pub(crate) struct ProblemOptions {
 
 /// All options of a solution.
 #[derive(Clone, Debug, Serialize)]
+#[allow(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub(crate) struct Options {
     #[serde(flatten)]
     pub(crate) problem: ProblemOptions,

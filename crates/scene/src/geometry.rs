@@ -296,7 +296,9 @@ fn wavefront(path: &Path, bytes: Vec<u8>) -> Result<MeshFile, SceneError> {
     let source = imported.source;
     let faces = imported.groups.iter().flat_map(|group| &group.faces);
     let mended = Mended::of(faces.map(|face| face.corners.clone()).collect());
-    let words = mended.words().into_iter().chain(doubled(&mended));
+    let found = mended.findings();
+    let words =
+        mended.left_out().into_iter().chain(found.iter().map(ToString::to_string)).chain(doubled(&mended));
     let warnings = words.map(|what| format!("{}: {what}", path.display())).collect();
     let mut shapes = mended.shapes.into_iter();
     let mut surfaces = vec![];

@@ -5,7 +5,7 @@ use std::path::Path;
 use fredholm_mesh::{Cutting, Mesh, MeshBuilder, MeshError};
 
 use crate::bare::{self, is_mesh};
-use crate::check::{Pieces, Warning};
+use crate::check::{Finding, Pieces, Warning};
 use crate::error::{ErrorKind, SceneError};
 use crate::files::Files;
 use crate::parse::parse;
@@ -235,8 +235,14 @@ impl Scene {
         &self.pieces
     }
 
-    /// What was read from material libraries and what was mended.
-    pub(crate) fn notes(&self) -> &[Warning] {
+    /// What was found in mesh files while they were read.
+    pub(crate) fn findings(&self) -> &[Finding] {
+        &self.meaning.findings
+    }
+
+    /// What was read from material libraries and what was mended. [`check`](Self::check) tells it, too.
+    #[must_use]
+    pub fn notes(&self) -> &[Warning] {
         &self.meaning.notes
     }
 

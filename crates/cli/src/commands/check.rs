@@ -40,7 +40,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Ending, Failure> {
 fn report(args: &CheckArgs, stages: &mut Stages) -> Result<Ending, Failure> {
     let scene = stages.run("scene", || Scene::load(&args.problem.scene).map_err(scene_failure))?;
     let scene = Arc::new(scene);
-    let found = stages.run("report", || scene.report().map_err(scene_failure))?;
+    let found = stages.run("report", || Ok(scene.report()))?;
     let mut lines = Lines::default();
     geometry(&scene, &found, &mut lines);
     if let Some(folder) = &args.output {
@@ -53,6 +53,7 @@ fn report(args: &CheckArgs, stages: &mut Stages) -> Result<Ending, Failure> {
         // What the mesh is is told all the same.
         Err(failure) if failure.ending == Ending::Resources && !args.log.quiet => {
             lines.add("instead", INSTEAD);
+            scene.notes().iter().for_each(|note| lines.add("warning", note.to_string()));
             output::print(
                 &lines.under(&format!("{}: a scene whose matrix does not fit", scene.path().display())),
             )?;

@@ -8,7 +8,6 @@ use fredholm_visibility::Occluders;
 use rayon::prelude::*;
 
 use super::Warning;
-use crate::error::{ErrorKind, SceneError};
 use crate::part::Origin;
 use crate::scene::Scene;
 
@@ -73,15 +72,13 @@ impl Scene {
     /// ```
     /// let text = "[materials.clay]\nreflectance = 0.5\n[[surface]]\nname = \"a\"\nmaterial = \"clay\"\n\
     ///             quad = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]\n";
-    /// let report = fredholm_scene::Scene::from_str(text, "a.toml")?.report()?;
+    /// let report = fredholm_scene::Scene::from_str(text, "a.toml")?.report();
     /// assert_eq!((report.pieces, report.closed, report.open.len()), (1, 0, 4));
     /// assert!(report.findings[0].to_string().starts_with("4 open sides"));
     /// # Ok::<(), fredholm_scene::SceneError>(())
     /// ```
-    ///
-    /// # Errors
-    /// [`ErrorKind::Geometry`] for a scene too large or too small for the ray caster.
-    pub fn report(&self) -> Result<Report, SceneError> {
+    #[must_use]
+    pub fn report(&self) -> Report {
         let pieces = self.pieces();
         let topology = Topology::of(&pieces.patches);
         let diagonal = self.diagonal();
@@ -90,6 +87,7 @@ impl Scene {
             components: topology.components.len(),
             closed: topology.components.iter().filter(|component| component.closed).count(),
             diagonal,
+            findings: self.findings().to_vec(),
             ..Report::default()
         };
         report.open = topology.open.iter().map(|(side, _)| *side).collect();
@@ -97,7 +95,7 @@ impl Scene {
         sides(&topology, &mut report.findings);
         self.shapes(&topology, &mut report.findings);
         self.contacts(&mut report.findings);
-        self.buried(&mut report.findings)?;
+        self.buried(&mut report.findings);
         let [least, most] = USUAL;
         if diagonal > 0.0 && !(least..=most).contains(&diagonal) {
             let what = format!(
@@ -105,7 +103,7 @@ impl Scene {
             );
             report.findings.push(Finding { name: "unusual size", count: 1, what });
         }
-        Ok(report)
+        report
     }
 
     fn shown(&self, topology: &Topology) -> Vec<Shown> {
@@ -179,14 +177,13 @@ impl Scene {
     }
 
     /// Pieces from which every ray ends on the back of a face.
-    fn buried(&self, findings: &mut Vec<Finding>) -> Result<(), SceneError> {
+    fn buried(&self, findings: &mut Vec<Finding>) {
         let pieces = self.pieces();
         let backs = pieces.patches.iter().zip(&pieces.part_of).filter(|(_, part)| pieces.two_sided[**part]);
         let backs: Vec<Patch> = backs.map(|(patch, _)| patch.flipped()).collect();
         let lit: Vec<Patch> = pieces.patches.iter().chain(&backs).copied().collect();
-        let occluders = Occluders::new(&lit).map_err(|error| {
-            SceneError::new(ErrorKind::Geometry, self.path(), error.to_string(), "correct the unit of length")
-        })?;
+        // What is too large or too small for the ray caster is refused when it is solved.
+        let Ok(occluders) = Occluders::new(&lit) else { return };
         let all: Vec<&Patch> = lit.iter().collect();
         let buried: Vec<bool> = pieces
             .patches
@@ -199,7 +196,6 @@ impl Scene {
             at(first.map(|(p, _)| p.centroid()).as_ref())
         );
         add(findings, "buried faces", buried.iter().filter(|buried| **buried).count(), what);
-        Ok(())
     }
 }
 

@@ -2,6 +2,8 @@
 
 use fredholm_mesh::{Cutting, Flattened, MeshError, Shape, Vec3, flatten};
 
+use crate::check::Finding;
+
 /// Distance of two corners, relative to the longest side, up to which they are one.
 const SAME: f64 = 1e-12;
 /// Area over the squared longest side up to which a face has none: what is refused as a patch.
@@ -27,20 +29,22 @@ impl Mended {
         Self { shapes: faces.iter().map(|corners| shapes(corners)).collect(), without_area, flattened }
     }
 
-    /// What was done to the faces, in words.
-    pub fn words(&self) -> Vec<String> {
-        let Flattened { polygons, farthest, left } = self.flattened;
+    /// Says how many faces were left out, where any was.
+    pub fn left_out(&self) -> Option<String> {
         let gone = self.without_area.len();
-        let lines = [
-            (gone > 0).then(|| format!("{gone} faces enclose no area and are left out")),
-            (polygons > 0).then(|| {
-                format!("{polygons} faces were flat but for rounding and are now flat: no corner moved by more than {farthest:.1e} m")
-            }),
-            (left > 0).then(|| {
-                format!("{left} faces are nearly flat, but not together with their neighbours: each is two triangles")
-            }),
+        (gone > 0).then(|| format!("{gone} faces enclose no area and are left out"))
+    }
+
+    /// What became of faces that are nearly flat.
+    pub fn findings(&self) -> Vec<Finding> {
+        let Flattened { polygons, farthest, left } = self.flattened;
+        let moved = format!("now they are flat, and no corner was moved by more than {farthest:.1e} m");
+        let bent = "each is two triangles".to_owned();
+        let all = [
+            Finding { name: "faces that were flat but for rounding", count: polygons, what: moved },
+            Finding { name: "nearly flat faces that cannot be flat together", count: left, what: bent },
         ];
-        lines.into_iter().flatten().collect()
+        all.into_iter().filter(|finding| finding.count > 0).collect()
     }
 }
 
@@ -114,6 +118,7 @@ mod tests {
         assert!(matches!(mended.shapes[0][..], [Shape::Triangle { .. }]));
         assert!(matches!(mended.shapes[3][..], [Shape::Quad { .. }]));
         assert!(mended.shapes[4][0].count(&Cutting::default()).is_err(), "a bow-tie stays to be refused");
-        assert_eq!(mended.words(), ["2 faces enclose no area and are left out"]);
+        assert_eq!(mended.left_out().as_deref(), Some("2 faces enclose no area and are left out"));
+        assert_eq!(mended.findings(), []);
     }
 }

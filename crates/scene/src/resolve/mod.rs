@@ -16,7 +16,7 @@ mod turned;
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use crate::check::Warning;
+use crate::check::{Finding, Warning};
 use crate::error::{ErrorKind, SceneError};
 use crate::files::Files;
 use crate::format::{At, SceneEntry, SurfaceEntry};
@@ -48,6 +48,8 @@ pub(crate) struct Resolved {
     pub parts: Vec<Part>,
     /// What was read from material libraries and what was mended.
     pub notes: Vec<Warning>,
+    /// What was found in mesh files while they were read.
+    pub findings: Vec<Finding>,
 }
 
 /// What the meaning of a surface depends on.
@@ -61,6 +63,7 @@ struct Context<'a> {
     own: usize,
     files: &'a mut Files,
     notes: Vec<Warning>,
+    findings: Vec<Finding>,
     /// What faces are made of that have no material, where a mesh file stands for a scene; none in a scene.
     fallback: Option<usize>,
 }
@@ -83,15 +86,16 @@ pub(crate) fn resolve(
     let materials = material::materials(source, scene, &bands)?;
     let solve = scene.solve.as_ref().map(|entry| solve::solve(source, entry)).transpose()?;
     let camera = scene.camera.as_ref().map(|entry| camera::camera(source, entry)).transpose()?;
-    let (own, notes) = (materials.len(), vec![]);
-    let mut context = Context { source, scene, bands: &bands, materials, own, files, notes, fallback };
+    let (own, notes, findings) = (materials.len(), vec![], vec![]);
+    let mut context =
+        Context { source, scene, bands: &bands, materials, own, files, notes, findings, fallback };
     let parts = parts(&mut context)?;
-    let Context { materials, notes, .. } = context;
+    let Context { materials, notes, findings, .. } = context;
     let named = scene.solve.as_ref();
     let solver = named.and_then(|entry| entry.solver.as_ref()).map(At::span);
     let discretisation = named.and_then(|entry| entry.discretisation.as_ref()).map(At::span);
     let solve = solve.unwrap_or_default();
-    Ok(Resolved { bands, solve, solver, discretisation, camera, materials, parts, notes })
+    Ok(Resolved { bands, solve, solver, discretisation, camera, materials, parts, notes, findings })
 }
 
 fn parts(context: &mut Context) -> Result<Vec<Part>, SceneError> {

@@ -82,11 +82,12 @@ fn mended(context: &mut Context, imported: &Imported, placing: &Placing) -> Resu
     let first = mended.without_area.first();
     let span = first.and_then(|&k| imported.groups.iter().flat_map(|group| &group.faces).nth(k));
     let span = span.map_or(0..0, |face| face.span.clone());
-    for what in mended.words() {
-        let (file, place) = (imported.source.path.clone(), imported.source.place(span.clone()));
+    if let Some(what) = mended.left_out() {
+        let (file, place) = (imported.source.path.clone(), imported.source.place(span));
         let help = "nothing is to be done; an export with more digits avoids it".to_owned();
         context.notes.push(Warning { file, place, what, help });
     }
+    context.findings.extend(mended.findings());
     Ok(mended)
 }
 
