@@ -69,6 +69,7 @@ pub(crate) fn options(
     options.goal.clone_from(&args.goal);
     options.final_gather = args.final_gather;
     options.discontinuity = args.discontinuity;
+    options.no_pictures = args.no_pictures;
     options.points = args.places.receivers();
     options.tolerance = args.stop.tolerance.or(scene.solve().tolerance).unwrap_or(RESIDUAL * accuracy);
     Ok(options)

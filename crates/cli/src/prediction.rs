@@ -95,7 +95,7 @@ impl Prediction {
         if self.solver > self.matrix {
             let _ = write!(text, ", a solver that needs less than {}", options.solver);
         }
-        text.push_str(", or allow more with --memory");
+        text.push_str(", solve with --accuracy 5%, which needs no matrix, or allow more with --memory");
         Err(Failure::new(Ending::Resources, text))
     }
 }

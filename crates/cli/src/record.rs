@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use fredholm_coupling::MethodCounts;
 use fredholm_linop::{Report, StopReason, Work};
 use fredholm_report::{
-    Closure, Counts, Energy, FILES, FieldError, FormFactorError, Hierarchy, History, MeshError, RunRecord,
+    Closure, Counts, Energy, FILES, FieldError, FormFactorError, Hierarchy, History, IMAGE, MeshError,
+    RunRecord,
 };
 use serde_json::Value;
 
@@ -52,11 +53,16 @@ pub(crate) fn record(
         reciprocity: solution.reciprocity,
         choice: options.choice.clone(),
         energy: energy(problem, solution),
-        files: pictures::files(options, solution).chain(FILES).map(str::to_owned).collect(),
+        files: pictures::files(options, solution).chain(usual(options)).map(str::to_owned).collect(),
         warnings: problem.warnings.iter().cloned().chain(remarks(options, solution)).collect(),
         partial: report.reason == StopReason::Interrupted,
         ..RunRecord::default()
     }
+}
+
+/// The names of the usual files, with the picture where one is drawn.
+fn usual(options: &Options) -> impl Iterator<Item = &'static str> {
+    FILES.into_iter().filter(|name| *name != IMAGE || !options.no_pictures)
 }
 
 /// What the user should know of the solution.

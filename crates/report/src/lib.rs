@@ -80,8 +80,8 @@ pub use field::Field;
 pub use field_csv::write_field_csv;
 pub use hierarchy::{Hierarchy, HierarchyGoal, HierarchyRound};
 pub use npz::write_npz;
-pub use outputs::{EXTRAS, Extras, FILES, View, write_all, write_with};
-pub use picture::{Gathering, Layer, Link, Linked, Picture, render, render_layers};
+pub use outputs::{EXTRAS, Extras, FILES, IMAGE, View, write_all, write_with};
+pub use picture::{Back, Gathering, Layer, Link, Linked, Picture, Side, render, render_layers, render_sides};
 pub use points_csv::{PointTable, write_points_csv};
 pub use refinement::{
     BandConvergence, REFINEMENT_FILES, REFINEMENT_FORMAT, RefinementLevel, RefinementRecord,

@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use fredholm_linop::StopReason;
-use fredholm_report::{Camera, Exposure, Extras, Field, Layer, ReportError, RunRecord, View, write_with};
+use fredholm_report::{
+    Camera, Exposure, Extras, Field, IMAGE, Layer, ReportError, RunRecord, View, write_with,
+};
 use fredholm_scene::Scene;
 
 use crate::args::{ProblemArgs, SolveArgs};
@@ -83,8 +85,8 @@ fn dense(
     let problem = Problem::refined(Arc::clone(scene), options, 1, stages)?;
     let options = Options::new(problem.options.clone(), args.stop, scene.solve(), folder, args.log);
     let points = args.places.receivers();
-    let SolveArgs { final_gather, discontinuity, .. } = *args;
-    let options = Options { points, final_gather, discontinuity, ..options };
+    let SolveArgs { final_gather, discontinuity, no_pictures, .. } = *args;
+    let options = Options { points, final_gather, discontinuity, no_pictures, ..options };
     let solution = compute(&problem, &options, stages)?;
     Ok((options, problem, solution))
 }
@@ -190,7 +192,8 @@ fn write(
     let pictures = pictures(options, solution).map(|name| (name, layer(name))).collect();
     let points = gathered.as_ref().map(|gathered| gathered.points(options)).transpose()?.flatten();
     let shadows = gathered.as_ref().filter(|_| options.discontinuity).map(Gathered::shadows);
-    write_with(folder, &field, record, &view, &Extras { pictures, points, shadows }).map_err(report_failure)
+    let view = (!options.no_pictures).then_some(&view);
+    write_with(folder, &field, record, view, &Extras { pictures, points, shadows }).map_err(report_failure)
 }
 
 /// The scene's camera, or one that sees all of it.
@@ -238,7 +241,8 @@ fn conclude(args: &SolveArgs, folder: &Path, record: &RunRecord, stages: &Stages
 
 fn summarise(folder: &Path, record: &RunRecord) -> Result<(), Failure> {
     let mut lines = Lines::default();
-    lines.add("picture", folder.join("image.png").display().to_string());
+    let picture = record.files.iter().any(|name| name == IMAGE);
+    lines.add_some("picture", picture.then(|| folder.join(IMAGE).display().to_string()));
     quality(record, &mut lines);
     output::print(&lines.under(&format!("{} → {}", record.scene, folder.display())))
 }

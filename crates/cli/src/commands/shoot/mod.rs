@@ -99,7 +99,7 @@ impl Job<'_> {
 
     /// Writes a picture, where one is asked for after this many shots.
     fn picture(&self, shots: u64, shooting: &MultilevelShooting) -> Result<(), Failure> {
-        if !self.args.pictures.contains(&shots) {
+        if self.args.no_pictures || !self.args.pictures.contains(&shots) {
             return Ok(());
         }
         self.light.field(self.scene, &shooting.received(), &shooting.with_ambient(), |field| {
@@ -111,8 +111,8 @@ impl Job<'_> {
     /// Writes the field that follows from what the elements have received, and the record.
     fn write(&self, received: &MultiVector<f64>, record: &ShootingRecord) -> Result<(), Failure> {
         self.light.field(self.scene, received, &self.light.means(received), |field| {
-            let view = view_of(self.scene.scene.camera(), field);
-            write_shooting(self.folder, field, record, &view).map_err(report_failure)
+            let view = (!self.args.no_pictures).then(|| view_of(self.scene.scene.camera(), field));
+            write_shooting(self.folder, field, record, view.as_ref()).map_err(report_failure)
         })
     }
 }
@@ -125,7 +125,7 @@ fn conclude(
 ) -> Result<Ending, Failure> {
     record.warnings.iter().for_each(|warning| stages.console.warn(warning));
     if !args.log.quiet {
-        summary::print(folder, record)?;
+        summary::print(folder, record, !args.no_pictures)?;
     }
     Ok(ending(record, stages.interrupt))
 }

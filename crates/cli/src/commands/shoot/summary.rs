@@ -10,9 +10,9 @@ use crate::size::Bytes;
 use crate::summary::Lines;
 
 /// Prints what came of the shots.
-pub(super) fn print(folder: &Path, record: &ShootingRecord) -> Result<(), Failure> {
+pub(super) fn print(folder: &Path, record: &ShootingRecord, drawn: bool) -> Result<(), Failure> {
     let mut lines = Lines::default();
-    lines.add("picture", folder.join(SHOOTING_FILES[3]).display().to_string());
+    lines.add_some("picture", drawn.then(|| folder.join(SHOOTING_FILES[3]).display().to_string()));
     lines.add(
         "size",
         format!("{} elements, {} of them and of their groups can shoot", record.elements, record.groups),
