@@ -229,16 +229,19 @@ pub(crate) fn of_shooting(
         all().map(|i| rho(i) * residual.power.row(i)[lane]).sum()
     };
     let left = |band: usize| all().map(|i| sizes[i].exposed * unshot.row(i)[band].abs()).sum::<f64>();
+    let missing: Vec<f64> = (0..bands).map(|band| left(band) / absorbing(constants, band)).collect();
     let ambient: Vec<f64> = (0..sampled)
         .map(|lane| reflected(lane) / absorbing(constants, lane % bands))
-        .chain((0..bands).map(|band| UNEVEN * left(band) / absorbing(constants, band)))
+        .chain(missing.iter().map(|missing| UNEVEN * missing))
         .collect();
     let errors = MultiVector::from_fn(mesh.len(), sampled + 2 * bands, |i, lane| match lane {
         _ if lane < sampled => residual.power.row(i)[lane] / sizes[i].area + ambient[lane],
         _ if lane < sampled + bands => ambient[lane],
         _ => 0.0,
     });
-    Ok(Some(stated(mesh, constants.irradiance, &errors, residual.draws)))
+    // What the error is relative to has the light in it that is still to come.
+    let whole = MultiVector::from_fn(mesh.len(), bands, |i, l| constants.irradiance.row(i)[l] + missing[l]);
+    Ok(Some(stated(mesh, &whole, &errors, residual.draws)))
 }
 
 /// Σ w A (1 − ρ), m²: what absorbs.
