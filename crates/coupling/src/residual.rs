@@ -249,7 +249,7 @@ impl Chosen {
     fn places(&self, side: usize) -> Vec<[f64; 2]> {
         if side < 2 {
             let (low, high) = (0.25, 0.75);
-            return if self.turn % 2 == 0 {
+            return if self.turn.is_multiple_of(2) {
                 vec![[low, low], [high, high]]
             } else {
                 vec![[low, high], [high, low]]

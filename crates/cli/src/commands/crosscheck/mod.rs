@@ -196,6 +196,7 @@ fn answer(args: &CrosscheckArgs, folder: &Path, stages: &mut Stages) -> Result<(
         goal: Vec::new(),
         final_gather: false,
         discontinuity: false,
+        no_pictures: true,
         places: PlaceArgs::default(),
         problem: args.problem.clone(),
         stop: StopArgs { tolerance: None, max_iterations: None },

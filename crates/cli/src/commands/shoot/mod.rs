@@ -58,6 +58,9 @@ fn run(args: &ShootArgs, folder: &Path, stages: &mut Stages) -> Result<Ending, F
     conclude(args, folder, &record, stages)
 }
 
+/// The shots, what each element has received, W, and what it has still to send, W/m².
+type Shots = (Vec<Shot>, MultiVector<f64>, MultiVector<f64>);
+
 /// A scene that is shot through, and where its results go.
 struct Job<'a> {
     args: &'a ShootArgs,
@@ -68,12 +71,8 @@ struct Job<'a> {
 }
 
 impl Job<'_> {
-    /// The shots, what each element has received, W, and what it has still to send, W/m².
-    fn shoot(
-        &self,
-        emitters: &Emitters,
-        watch: &dyn Fn(&Shot, usize) -> bool,
-    ) -> Result<(Vec<Shot>, MultiVector<f64>, MultiVector<f64>), Failure> {
+    /// Shoots until the share that was asked for is distributed.
+    fn shoot(&self, emitters: &Emitters, watch: &dyn Fn(&Shot, usize) -> bool) -> Result<Shots, Failure> {
         let columns = Lazy::new(emitters, u64::try_from(self.args.keep.0).unwrap_or(u64::MAX));
         let places = self.groups.places();
         let frame = Frame { order: self.groups.order(), groups: &places, areas: &self.light.exposed };
