@@ -85,6 +85,7 @@ fn probabilities(
         deterministic_error: &error,
         stochastic: &side(found, 0),
         standard_error: &side(found, 1),
+        single: &vec![0.0; reference.len()],
         batches,
     };
     let result = crosscheck(&comparison, Correction::Holm, SIGNIFICANCE).unwrap();

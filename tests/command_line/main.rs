@@ -8,6 +8,7 @@ mod converge;
 mod determinism;
 mod discretisations;
 mod exit_codes;
+mod first_contact;
 mod furnace;
 mod help;
 mod hostile;
@@ -15,6 +16,7 @@ mod hostile;
 mod interrupt;
 #[cfg(unix)]
 mod memory;
+mod meshes;
 mod methods;
 mod results;
 mod shoot;

@@ -68,24 +68,46 @@ fn every_method_finds_the_furnace_within_its_errors() {
     }
 }
 
+fn crosscheck(bench: &Bench, arguments: &[&str]) -> (i32, String, Value) {
+    let run = bench.run(&[&["crosscheck", "scene.toml", "-o", "checked"], arguments].concat());
+    assert!([0, 3, 6].contains(&run.code), "{}{}", run.stdout, run.stderr);
+    let record = serde_json::from_str(&text(bench, "checked/crosscheck.json")).unwrap();
+    (run.code, format!("{}{}", run.stdout, run.stderr), record)
+}
+
 #[test]
-fn a_right_scene_agrees_and_one_without_an_estimated_mesh_error_does_not() {
+fn a_right_scene_agrees_and_says_what_would_have_been_found() {
     let bench = Bench::new(&room(4));
-    let check =
-        |arguments: &[&str]| bench.run(&[&["crosscheck", "scene.toml", "-o", "checked"], arguments].concat());
-    let right = check(&["--to", "2%"]);
-    assert_eq!(right.code, 0, "{}{}", right.stdout, right.stderr);
-    assert!(right.stdout.contains("they agree: 0 of"), "{}", right.stdout);
-    let record: Value = serde_json::from_str(&text(&bench, "checked/crosscheck.json")).unwrap();
+    let (code, said, record) = crosscheck(&bench, &["--to", "2%"]);
+    assert!(
+        code == 0 && said.contains("they agree: 0 of") && said.contains("nine times out of ten"),
+        "{said}"
+    );
     assert_eq!((&record["verdict"], &record["significant"]), (&"agree".into(), &0.into()));
+    assert_eq!(record["method"], "light");
+    let [whole, face] = ["whole", "face"].map(|name| record["power"][name].as_f64().unwrap());
+    assert!(whole > 0.0 && whole < face && face < 1.0, "{whole} {face}");
     assert!(text(&bench, "checked/crosscheck.csv").lines().count() > 10);
     assert!(fs::read(bench.path("checked/crosscheck.png")).unwrap().starts_with(b"\x89PNG"));
-    // Coarse constants are not what continuous light is.
+}
+
+#[test]
+fn what_is_checked_is_what_solve_answers_and_the_mesh_is_seen() {
+    // One element a wall is far off, and says so.
     let bench = Bench::new(&room(1));
-    let coarse =
-        bench.run(&["crosscheck", "scene.toml", "--method", "path", "--to", "0.5%", "-o", "checked"]);
-    assert_eq!(coarse.code, 6, "{}{}", coarse.stdout, coarse.stderr);
-    assert!(coarse.stderr.contains("the error of the mesh is not estimated"), "{}", coarse.stderr);
+    let (code, said, _) = crosscheck(&bench, &["--to", "1%"]);
+    assert_eq!(code, 0, "{said}");
+    // With an accuracy links are checked.
+    let (code, said, record) = crosscheck(&bench, &["--accuracy", "3%", "--to", "1%"]);
+    assert_eq!(code, 0, "{said}");
+    assert_eq!(record["solver"], "cg-theta", "{said}");
+}
+
+#[test]
+fn too_few_samples_are_no_agreement() {
+    let bench = Bench::new(&room(2));
+    let (code, said, record) = crosscheck(&bench, &["--samples", "8", "--batch", "4"]);
+    assert!(code == 3 && said.contains("undecided") && record["verdict"] == "undecided", "{said}");
 }
 
 #[test]

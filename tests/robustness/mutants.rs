@@ -19,7 +19,7 @@ const USUAL: u64 = 2_000;
 /// Elements up to which a mesh is made: a damaged number may ask for any.
 const ELEMENTS: u128 = 20_000;
 /// Longest time for one.
-const LONGEST: Duration = Duration::from_secs(60);
+const LONGEST: Duration = Duration::from_mins(1);
 
 const VIEW3D: &str = "T box\nC eps=1e-4 encl=1\nF 3\nV 1 0 0 0\nV 2 4 0 0\nV 3 4 4 0\nV 4 0 4 0\nV 5 1 1 0\nV 6 3 1 0\nV 7 3 3 0\n\
     V 8 0 0 2\nV 9 4 0 2\nS 1 1 2 3 4 0 0 0.8 wall\nS 2 5 6 7 0 1 0 0.9 window\nS 3 1 2 9 8 0 0 0.9 side\nO 4 1 2 3 0\nEnd of data\n";

@@ -13,11 +13,11 @@ use crate::settings::{first, keep, number};
 /// CPU time of a run, s.
 const SECONDS: u64 = 60;
 /// Elapsed time of a run: a run that only waits ends too.
-const ELAPSED: Duration = Duration::from_secs(600);
+const ELAPSED: Duration = Duration::from_mins(10);
 /// Address space of a run, KiB.
 const MEMORY: u64 = 4 << 20;
 /// Time for all cases where no number of cases is given.
-const IN_ALL: Duration = Duration::from_secs(60);
+const IN_ALL: Duration = Duration::from_mins(1);
 
 /// How a run ended.
 struct Run {

@@ -42,6 +42,10 @@ Examples:
   fredholm solve room.toml --accuracy 1%
   fredholm solve room.toml --accuracy 1% --goal desk,board
   fredholm solve room.toml --accuracy 1% --final-gather --point 1,2,0.8,0,0,1
+  fredholm solve house.obj --accuracy 5%
+
+A mesh file (.obj, .vs3) stands for a scene: its .mtl file tells reflectances (Kd) and lamps (Ke);
+where nothing emits, light comes evenly from all sides. What was taken is told.
 
 An accuracy is reached by hierarchical radiosity or by the matrix of the scene's elements, whichever
 is predicted to cost less; the summary says which. With the former, mesh.png shows the elements and
@@ -54,7 +58,10 @@ picture. A second Ctrl-C ends the run at once.";
 const CHECK_EXAMPLES: &str = "\
 Examples:
   fredholm check scenes/cornell_box.toml
-  fredholm check room.toml --memory 8GiB";
+  fredholm check house.obj -o out
+  fredholm check room.toml --memory 8GiB
+
+A mesh file (.obj, .vs3) stands for a scene: see `fredholm solve --help`.";
 
 const CONVERGE_EXAMPLES: &str = "\
 Examples:
@@ -158,7 +165,7 @@ pub(crate) enum Command {
     /// Go on with a run to an accuracy that was stopped
     #[command(after_help = RESUME_EXAMPLES)]
     Resume(ResumeArgs),
-    /// Validate a scene, show its statistics and predict memory and time; solves and writes nothing
+    /// Validate a scene, tell what its mesh is, and predict memory and time; solves nothing
     #[command(after_help = CHECK_EXAMPLES)]
     Check(CheckArgs),
     /// Solve a scene on finer and finer meshes; state the order and what error remains
@@ -261,7 +268,7 @@ pub(crate) enum Precision {
 /// What decides the size and the effort of a problem; where given it goes before the scene's `[solve]` table.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct ProblemArgs {
-    /// Scene file (TOML)
+    /// Scene file (.toml), or mesh file that stands for a scene (.obj, .vs3)
     pub(crate) scene: PathBuf,
     /// Threads; any number gives the same results [default: one a core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -301,6 +308,9 @@ pub(crate) struct SolveArgs {
     /// between elements
     #[arg(long)]
     pub(crate) final_gather: bool,
+    /// Draw no picture
+    #[arg(long, conflicts_with = "final_gather")]
+    pub(crate) no_pictures: bool,
     /// Also write shadows.vtu, for which the elements are cut along the borders of the shadows that lamps cast and gather
     /// their irradiance at the corners
     #[arg(long)]
@@ -374,6 +384,9 @@ pub(crate) struct ConvergeArgs {
 /// Options of `check`.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct CheckArgs {
+    /// Folder for check.png: fronts blue, backs orange, what lies on or crosses something violet, open sides yellow
+    #[arg(long, short, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) problem: ProblemArgs,
     #[command(flatten)]
@@ -407,7 +420,7 @@ pub(crate) fn tolerance(text: &str) -> Result<f64, String> {
 }
 
 /// A relative error, as a number or in per cent.
-fn accuracy(text: &str) -> Result<f64, String> {
+pub(crate) fn accuracy(text: &str) -> Result<f64, String> {
     let wrong = || "must be above 0 and below 100%, such as 1% or 0.01".to_owned();
     let (number, unit) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 0.01));
     let value = number.trim().parse::<f64>().map_err(|_| wrong())? * unit;

@@ -35,6 +35,8 @@ pub(crate) struct Header {
     pub(crate) final_gather: bool,
     #[serde(default)]
     pub(crate) discontinuity: bool,
+    #[serde(default)]
+    pub(crate) no_pictures: bool,
     /// Points whose irradiance is gathered, six numbers each.
     #[serde(default)]
     points: Vec<[String; 6]>,
@@ -60,6 +62,7 @@ impl Header {
             memory_limit_bytes: options.problem.memory_limit_bytes,
             final_gather: options.final_gather,
             discontinuity: options.discontinuity,
+            no_pictures: options.no_pictures,
             points: options.points.iter().map(written).collect(),
         }
     }

@@ -61,7 +61,6 @@ fn assess(problem: &Problem, lit: &Lit, watcher: Watcher) -> Result<Solution, Fa
         closure,
         energy,
         field_error: Some(found.error.relative_l2),
-        replaced: None,
         ..unassessed(lit, exposed)
     })
 }

@@ -74,6 +74,7 @@ pub(crate) fn options(
     options.goal.clone_from(&args.goal);
     options.final_gather = args.final_gather;
     options.discontinuity = args.discontinuity;
+    options.no_pictures = args.no_pictures;
     options.points = args.places.receivers();
     options.tolerance = args.stop.tolerance.or(scene.solve().tolerance).unwrap_or(RESIDUAL * accuracy);
     Ok(options)
@@ -169,7 +170,7 @@ fn problem(
     (solver, plan): (Entry, Plan),
 ) -> Result<Problem, Failure> {
     let (unknowns, dense) = (mesh.len(), Some(Dense { bytes: 0 }));
-    let size = Size { elements: unknowns, unknowns, coarse: 0, dense };
+    let size = Size { elements: unknowns, unknowns, dense };
     let discretisation = fredholm_discretisation::discretisation(RADIOSITY)
         .map_err(|error| Failure::new(Ending::Input, error))?;
     Ok(Problem {

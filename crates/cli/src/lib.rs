@@ -10,6 +10,7 @@ mod choice;
 mod commands;
 mod console;
 mod discretised;
+mod duration;
 mod failure;
 mod folder;
 mod hierarchical;

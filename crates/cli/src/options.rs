@@ -31,6 +31,7 @@ pub(crate) struct ProblemOptions {
 
 /// All options of a solution.
 #[derive(Clone, Debug, Serialize)]
+#[allow(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub(crate) struct Options {
     #[serde(flatten)]
     pub(crate) problem: ProblemOptions,
@@ -52,6 +53,9 @@ pub(crate) struct Options {
     /// Whether elements are cut along the borders of shadows.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub(crate) discontinuity: bool,
+    /// Whether nothing is drawn.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub(crate) no_pictures: bool,
     pub(crate) tolerance: f64,
     pub(crate) max_iterations: u64,
     pub(crate) output: String,
@@ -97,6 +101,7 @@ impl Options {
             points: Vec::new(),
             final_gather: false,
             discontinuity: false,
+            no_pictures: false,
             tolerance: stop.tolerance.or(scene.tolerance).unwrap_or(TOLERANCE),
             max_iterations: iterations.unwrap_or(MAX_ITERATIONS),
             output: output.display().to_string(),

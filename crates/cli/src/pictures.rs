@@ -35,7 +35,7 @@ pub(crate) fn pictures(options: &Options, solution: &Solution) -> impl Iterator<
 
 /// The names of all files that are written besides the usual ones.
 pub(crate) fn files(options: &Options, solution: &Solution) -> impl Iterator<Item = &'static str> {
-    let linked = solution.tree.is_some();
+    let linked = solution.tree.is_some() && !options.no_pictures;
     let points = !options.points.is_empty();
     let wanted = [linked, linked, options.final_gather, points, options.discontinuity];
     EXTRAS.into_iter().zip(wanted).filter(|(_, wanted)| *wanted).map(|(name, _)| name)

@@ -28,8 +28,8 @@ const VALUE: u128 = 50;
 const PIXEL: u128 = 28;
 /// Bytes of a pixel in each picture: while it is drawn, and when all are taken apart.
 const LAYER: u128 = 6;
-/// Vectors of all bands held at once: system, iterates, residuals, results.
-const VECTORS: u128 = 16;
+/// Vectors of all bands held at once: system and results, and six sources of errors with their system, iterates and residuals.
+const VECTORS: u128 = 48;
 
 /// Sizes that decide the memory.
 #[derive(Clone, Copy, Debug)]
@@ -37,8 +37,6 @@ pub(crate) struct Size {
     pub(crate) elements: usize,
     /// Unknowns in each band.
     pub(crate) unknowns: usize,
-    /// Patches of the coarser problem that the mesh error is estimated with.
-    pub(crate) coarse: usize,
     /// Matrices of another discretisation than constants on form factors.
     pub(crate) dense: Option<Dense>,
 }
@@ -54,7 +52,7 @@ impl Size {
     pub(crate) fn before_mesh(elements: usize, options: &ProblemOptions) -> Self {
         let radiosity = options.discretisation == RADIOSITY;
         let (unknowns, dense) = if radiosity { (elements, None) } else { (0, Some(Dense { bytes: 0 })) };
-        Self { elements, unknowns, coarse: 0, dense }
+        Self { elements, unknowns, dense }
     }
 }
 
@@ -65,8 +63,6 @@ pub(crate) struct Prediction {
     matrix: u128,
     /// Entries on their way into the matrix.
     waiting: u128,
-    /// The matrix of the coarser problem.
-    coarse: u128,
     mesh: u128,
     vectors: u128,
     solver: u128,
@@ -74,7 +70,7 @@ pub(crate) struct Prediction {
 
 impl Prediction {
     pub(crate) fn new(size: Size, bands: usize, storage: Precision, solver: &Entry) -> Self {
-        let Size { elements, unknowns, coarse, dense } = size;
+        let Size { elements, unknowns, dense } = size;
         let (packed, waiting) = match storage {
             Precision::F64 => (PackedSymmetric::<f64>::bytes(elements), waiting::<f64>(elements, false)),
             Precision::F32 => (PackedSymmetric::<f32>::bytes(elements), waiting::<f32>(elements, false)),
@@ -84,7 +80,6 @@ impl Prediction {
             size,
             matrix: dense.map_or(packed.into(), |dense| dense.bytes),
             waiting: if dense.is_none() { waiting.into() } else { 0 },
-            coarse: PackedSymmetric::<f64>::bytes(coarse).into(),
             mesh: n * MESH,
             vectors: elements.max(unknowns) as u128 * VECTORS * 8 * bands as u128,
             solver: solver.solver.bytes(unknowns, bands).into(),
@@ -93,8 +88,7 @@ impl Prediction {
 
     /// What is held when, by a computation that keeps no matrix for its results.
     pub(crate) fn plan(&self) -> Plan {
-        let Self { matrix, waiting, coarse, mesh, vectors, solver, size: Size { elements, unknowns, .. } } =
-            *self;
+        let Self { matrix, waiting, mesh, vectors, solver, size: Size { elements, unknowns, .. } } = *self;
         let (assembly, retained) = (waiting + elements as u128 * ASSEMBLY, waiting / RETAINED);
         let what = match self.size.dense {
             None => format!("{} of form factors of {elements} elements", Bytes(matrix)),
@@ -110,7 +104,6 @@ impl Prediction {
                 format!("{what} and {} of the solver", Bytes(solver)),
                 matrix.saturating_add(solver).saturating_add(retained),
             )
-            .stage(format!("{what} and those of their faces"), matrix.saturating_add(coarse))
     }
 
     /// The same with a solver of so many bytes.
@@ -140,6 +133,7 @@ impl Prediction {
             text.push_str(", a solver that needs less than ");
             text.push_str(&options.solver);
         }
+        text.push_str(", solve with --accuracy 5%, which needs no matrix");
         text
     }
 }
@@ -173,7 +167,7 @@ mod tests {
     use crate::registry::find;
 
     fn predict(elements: usize, storage: Precision, solver: &str) -> Prediction {
-        let size = Size { elements, unknowns: elements, coarse: 0, dense: None };
+        let size = Size { elements, unknowns: elements, dense: None };
         Prediction::new(size, 3, storage, &find(solver).unwrap())
     }
 

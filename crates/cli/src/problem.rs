@@ -169,12 +169,6 @@ pub(crate) fn occluders(scene: &Scene, mesh: &Mesh) -> Result<Occluders, Failure
     Occluders::new(mesh.occluders()).map_err(named)
 }
 
-/// Patches of the coarser problem: the faces, where each is computed on 2 × 2 elements or more.
-pub(crate) fn coarse(mesh: &Mesh) -> usize {
-    let faces = mesh.faces().len();
-    if (0..faces).all(|face| mesh.leaves_of_face(face).len() >= 4) { faces } else { 0 }
-}
-
 /// The discretisation asked for, which the stored format must suit.
 fn named(scene: &Scene, options: &ProblemOptions) -> Result<Box<dyn Discretisation>, Failure> {
     let found = discretisation(&options.discretisation).map_err(|_| {
@@ -192,12 +186,12 @@ fn named(scene: &Scene, options: &ProblemOptions) -> Result<Box<dyn Discretisati
 fn size(scene: &Scene, discretisation: &dyn Discretisation, mesh: &Mesh) -> Result<Size, Failure> {
     let elements = mesh.len();
     if discretisation.name() == RADIOSITY {
-        return Ok(Size { elements, unknowns: elements, coarse: coarse(mesh), dense: None });
+        return Ok(Size { elements, unknowns: elements, dense: None });
     }
     let surface = Surface::from_mesh(mesh);
     let space = discretisation.space(&surface).map_err(|error| Failure::new(Ending::Input, error))?;
     let bytes = 8 * discretisation.numbers(&space, different_reflectances(scene));
-    Ok(Size { elements, unknowns: space.dim(), coarse: 0, dense: Some(Dense { bytes }) })
+    Ok(Size { elements, unknowns: space.dim(), dense: Some(Dense { bytes }) })
 }
 
 /// Bands that differ in the reflectance of any material.

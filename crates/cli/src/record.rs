@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use fredholm_coupling::MethodCounts;
 use fredholm_linop::{Report, StopReason, Work};
 use fredholm_report::{
-    Closure, Counts, Energy, FILES, FieldError, FormFactorError, Hierarchy, History, MeshError, RunRecord,
+    Closure, Counts, Energy, FILES, FieldError, FormFactorError, Hierarchy, History, IMAGE, MeshError,
+    RunRecord,
 };
 use serde_json::Value;
 
@@ -53,18 +54,22 @@ pub(crate) fn record(
         reciprocity: solution.reciprocity,
         choice: options.choice.clone(),
         energy: energy(problem, solution),
-        files: pictures::files(options, solution).chain(FILES).map(str::to_owned).collect(),
+        files: pictures::files(options, solution).chain(usual(options)).map(str::to_owned).collect(),
         warnings: problem.warnings.iter().cloned().chain(remarks(options, solution)).collect(),
         partial: report.reason == StopReason::Interrupted,
         ..RunRecord::default()
     }
 }
 
+/// The names of the usual files, with the picture where one is drawn.
+fn usual(options: &Options) -> impl Iterator<Item = &'static str> {
+    FILES.into_iter().filter(|name| *name != IMAGE || !options.no_pictures)
+}
+
 /// What the user should know of the solution.
 pub(crate) fn remarks(options: &Options, solution: &Solution) -> impl Iterator<Item = String> {
-    [unfinished(solution), inexact(options, solution), coarse(solution), solution.replaced.clone()]
-        .into_iter()
-        .flatten()
+    let own = [unfinished(solution), inexact(options, solution), coarse(solution), large(solution)];
+    own.into_iter().flatten().chain(solution.replaced.clone())
 }
 
 fn unfinished(solution: &Solution) -> Option<String> {
@@ -96,6 +101,22 @@ fn coarse(solution: &Solution) -> Option<String> {
     Some(format!(
         "the estimated error of the {whose} is {reached}, where {accuracy:.1e} was asked for: {why}"
     ))
+}
+
+/// Stated error of the irradiance that is worth a warning.
+pub(crate) const LARGE: f64 = 0.1;
+
+/// Whether constants on the elements are far off.
+fn large(solution: &Solution) -> Option<String> {
+    let error = solution.mesh_error.as_ref().filter(|_| solution.hierarchy.is_none())?;
+    let worst = error.relative_l2.iter().copied().fold(0.0, f64::max);
+    (worst > LARGE).then(|| {
+        format!(
+            "the irradiance of the faces may be {:.0} % off: light changes much across the elements\n  \
+             help: --accuracy 1% chooses elements that suffice, or use more (elements_per_face, divide, largest_edge in the scene)",
+            100.0 * worst
+        )
+    })
 }
 
 /// Row errors, in tolerances, that are reported: the tolerance is a pair's, and the errors of a row add up to about twice as much.
@@ -166,7 +187,8 @@ fn closure(problem: &Problem, closure: &[f64]) -> Closure {
     found
 }
 
-fn mesh_error(error: &fredholm_coupling::MeshError) -> MeshError {
+/// An error as the record has it.
+pub(crate) fn mesh_error(error: &fredholm_coupling::MeshError) -> MeshError {
     MeshError { relative_l2: error.relative_l2.clone(), largest: error.largest.clone() }
 }
 

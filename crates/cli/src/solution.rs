@@ -4,7 +4,9 @@ use fredholm_coupling::{
     Assembled, CouplingError, Energy, Means, MeshError, MethodCounts, Radiosity, assemble, exposed_shares,
     extents, reciprocity,
 };
-use fredholm_linop::{MultiVector, PackedSymmetric, Report, SecondKind, SolveError, StopReason, Storage};
+use fredholm_linop::{
+    MultiVector, PackedSymmetric, Report, SecondKind, SolveError, Solver, StopReason, Storage,
+};
 use fredholm_mesh::Patch;
 use fredholm_report::Hierarchy;
 
@@ -43,7 +45,7 @@ pub(crate) struct Solution {
     pub(crate) exposed: Vec<f64>,
     /// Balance of every band; empty where it was not computed.
     pub(crate) energy: Vec<Energy>,
-    /// Estimated discretisation error, where faces have several elements.
+    /// Estimated error of the irradiance of the faces.
     pub(crate) mesh_error: Option<MeshError>,
     /// What hierarchical radiosity did, where it did.
     pub(crate) hierarchy: Option<Hierarchy>,
@@ -114,7 +116,7 @@ fn assess<S: Storage>(
 ) -> Result<Solution, Failure> {
     let matrix = &assembled.matrix;
     let means = radiosity.means(matrix, &x);
-    let mesh_error = mesh_error::estimate(problem, radiosity, matrix, &means, watcher)?;
+    let mesh_error = mesh_error::estimate(problem, radiosity, assembled, (&x, &report), watcher)?;
     let closure = radiosity.closure(matrix);
     let energy = radiosity.energy(&x, &means, &closure);
     let row_error = assembled.error.iter().zip(problem.mesh.patches()).map(|(e, p)| e / p.area()).collect();
@@ -164,12 +166,21 @@ pub(crate) fn solve<S: Storage>(
     problem: &Problem,
     radiosity: &Radiosity,
     matrix: &PackedSymmetric<S>,
+    watcher: Watcher,
+) -> Result<(MultiVector<f64>, Report), Failure> {
+    solve_with(&*problem.solver.solver, radiosity, matrix, watcher)
+}
+
+/// Solves from B = M on, with this solver.
+pub(crate) fn solve_with<S: Storage>(
+    solver: &dyn Solver<f64>,
+    radiosity: &Radiosity,
+    matrix: &PackedSymmetric<S>,
     mut watcher: Watcher,
 ) -> Result<(MultiVector<f64>, Report), Failure> {
     let system = SecondKind::new(matrix, radiosity.scaling()).map_err(|e| Failure::new(Ending::Input, e))?;
     let exitance = radiosity.exitance();
     let mut x = exitance.clone();
-    let solver = &problem.solver.solver;
     let report =
         solver.solve(&system, exitance, &mut x, &watcher.stop(), &mut watcher).map_err(solve_failure)?;
     Ok((x, report))

@@ -28,6 +28,11 @@ impl<'a> Watcher<'a> {
         Self { console: stages.console, interrupt: stages.interrupt, stop }
     }
 
+    /// The same with another end.
+    pub(crate) fn until(self, stop: Stop) -> Self {
+        Self { stop, ..self }
+    }
+
     /// When the solution ends by itself.
     pub(crate) fn stop(&self) -> Stop {
         self.stop

@@ -8,7 +8,6 @@
 //! having irradiance 0: E_i = Σ_j G_ij B_j / A_i.
 
 use crate::CouplingError;
-use crate::aggregate::aggregate;
 use fredholm_linop::{LinearOperator, MultiVector, PackedSymmetric, Storage};
 
 /// Areas, reflectances and exitances of the elements: everything but the form factors.
@@ -75,6 +74,12 @@ impl Radiosity {
         &self.elements
     }
 
+    /// ρ, elements × bands.
+    #[must_use]
+    pub fn reflectance(&self) -> &MultiVector<f64> {
+        &self.reflectance
+    }
+
     /// M, the right-hand side, W/m².
     #[must_use]
     pub fn exitance(&self) -> &MultiVector<f64> {
@@ -122,41 +127,6 @@ impl Radiosity {
             }
         }
         energy
-    }
-
-    /// The same problem on coarser patches: `group[i]`, below `count`, is the patch of element i. Areas and exchanges add up, materials
-    /// are area means.
-    ///
-    /// # Errors
-    /// [`CouplingError::Dimension`] where `group` does not name a patch for every element.
-    pub fn coarsen<S: Storage>(
-        &self,
-        matrix: &PackedSymmetric<S>,
-        group: &[usize],
-        count: usize,
-    ) -> Result<(Self, PackedSymmetric<f64>), CouplingError> {
-        if group.len() != self.elements.len() || group.iter().any(|&g| g >= count) {
-            return Err(CouplingError::Dimension { elements: self.elements.len(), found: group.len() });
-        }
-        let mut elements = vec![Extent::default(); count];
-        for (&g, size) in group.iter().zip(&self.elements) {
-            elements[g].area += size.area;
-            elements[g].exposed += size.exposed;
-        }
-        let reflectance = self.grouped(&self.reflectance, group, &elements);
-        let exitance = self.grouped(&self.exitance, group, &elements);
-        Ok((Self { elements, reflectance, exitance }, aggregate(matrix, group, count)?))
-    }
-
-    /// Area means of `values` over groups of elements whose sizes are `coarse`.
-    #[must_use]
-    pub fn grouped(&self, values: &MultiVector<f64>, group: &[usize], coarse: &[Extent]) -> MultiVector<f64> {
-        let mut means = MultiVector::zeros(coarse.len(), values.lanes());
-        for (i, &g) in group.iter().enumerate() {
-            let share = self.elements[i].area / coarse[g].area;
-            means.row_mut(g).iter_mut().zip(values.row(i)).for_each(|(mean, value)| *mean += share * value);
-        }
-        means
     }
 
     fn map(&self, value: impl FnMut(usize, usize) -> f64) -> MultiVector<f64> {

@@ -86,7 +86,8 @@ impl Targets<'_> {
         rows.map(|rows| rows.concat()).ok_or(stopped)
     }
 
-    fn row(&self, receiver: &Receiver, bodies: &Bodies) -> Vec<f64> {
+    /// The form factors of one receiver, behind these bodies of the occluders.
+    pub(crate) fn row(&self, receiver: &Receiver, bodies: &Bodies) -> Vec<f64> {
         let mut sight = Sight::default();
         let mut row = vec![0.0; self.rows];
         for (patch, &at) in self.patches.iter().zip(self.row_of) {
@@ -117,12 +118,15 @@ impl Sight {
         if self.target.len() < 3 {
             return 0.0;
         }
+        let whole = point_to_polygon(normal, self.target.iter().map(|&x| x - point));
+        if bodies.as_slice().is_empty() {
+            return whole;
+        }
         let shaft = occluders.shaft_from(point, patch);
         let reaches = |body: &&Body| shaft.as_ref().is_some_and(|shaft| occluders.reaches(body, shaft));
         let screen = |body| Screen::new(body, &[point], &self.target, bodies.tolerance());
         let between: Vec<Screen> = bodies.as_slice().iter().filter(reaches).map(screen).collect();
         let hidden = self.hiding.hidden_factor(point, normal, &self.target, between.iter().enumerate());
-        let whole = point_to_polygon(normal, self.target.iter().map(|&x| x - point));
         (whole - hidden).max(0.0)
     }
 }

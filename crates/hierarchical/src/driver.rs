@@ -485,12 +485,11 @@ impl Run<'_> {
                 Err(error) => return Err(error.into()),
             }
         }
-        let report = match report {
-            Some(report) => report,
-            None => {
-                *x = start;
-                self.solvers.fallback.solve(&a, rhs, x, &stop, &mut observer)?
-            }
+        let report = if let Some(report) = report {
+            report
+        } else {
+            *x = start;
+            self.solvers.fallback.solve(&a, rhs, x, &stop, &mut observer)?
         };
         if report.reason == StopReason::Interrupted { Err(HierarchyError::Interrupted) } else { Ok(report) }
     }

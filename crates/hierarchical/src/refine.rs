@@ -111,7 +111,9 @@ pub(crate) fn refine(
             limited = true;
             // Once more, and nothing is too coarse now but what cannot be a link.
             waiting.extend(block);
-            waiting.iter_mut().for_each(|pair| pair.coarse = false);
+            for pair in &mut waiting {
+                pair.coarse = false;
+            }
             continue;
         }
         if needed > limits.bytes || links > MOST_LINKS {
@@ -252,13 +254,11 @@ fn scattered(oracle: &Oracle, viewer: &mut Viewer, pair: Pair) -> Fate {
         return split;
     }
     let [share, doubt] = chance.seen(viewer);
-    match coarse(oracle.judge(&candidate(doubt))) {
-        Some(split) => split,
-        None => {
-            let sides = deviations.map(|deviation| Side::default().at_least(deviation));
-            Fate::Link(Link { open, ..link(pair, sides, [share, doubt], false) })
-        }
+    if let Some(split) = coarse(oracle.judge(&candidate(doubt))) {
+        return split;
     }
+    let sides = deviations.map(|deviation| Side::default().at_least(deviation));
+    Fate::Link(Link { open, ..link(pair, sides, [share, doubt], false) })
 }
 
 fn swapped(pair: Pair) -> Pair {

@@ -3,7 +3,7 @@
 //! Lengths in metres. A shape is cut into faces and elements as a [`Cutting`](crate::Cutting) says.
 
 use crate::solid::Solid;
-use crate::{Cutting, MeshError, Vec3};
+use crate::{Cutting, MeshError, Patch, Vec3};
 
 /// A piece of surface, before it is cut. Lengths in metres.
 ///
@@ -107,6 +107,17 @@ impl Shape {
     /// [`MeshError::TooLarge`] where the number has more than 128 bits.
     pub fn count(&self, cutting: &Cutting) -> Result<u128, MeshError> {
         Solid::new(self)?.count(cutting)
+    }
+
+    /// The undivided flat pieces of the shape that [`MeshBuilder::add`](crate::MeshBuilder::add) makes occluders, whatever side the
+    /// cutting says is lit: as few polygons as possible, lit as the shape is.
+    ///
+    /// # Errors
+    /// Those of [`Self::count`].
+    pub fn blockers(&self, cutting: &Cutting) -> Result<Vec<Patch>, MeshError> {
+        let solid = Solid::new(self)?;
+        let blockers = solid.blockers(&solid.facets()?, &cutting.lines)?;
+        Ok(if self.is_inward() { blockers.iter().map(Patch::flipped).collect() } else { blockers })
     }
 
     /// Whether it is lit on the inside.

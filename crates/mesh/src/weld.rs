@@ -6,7 +6,7 @@
 
 use std::collections::HashMap;
 
-use crate::{Mesh, Vec3};
+use crate::{Bounds, Mesh, Vec3};
 
 /// Distance, relative to the diagonal of the mesh, up to which corners are one vertex.
 const TOLERANCE: f64 = 1e-9;
@@ -135,7 +135,7 @@ impl Mesh {
 
     /// Vertices, those of the corners of all leaves, and where the leaves end among them.
     fn points(&self, weld: Weld) -> (Points, Vec<usize>, Vec<usize>) {
-        let mut points = Points::new(self);
+        let mut points = Points::new(self.bounds());
         let mut corners = Vec::new();
         let mut ends = Vec::with_capacity(self.len());
         for (leaf, patch) in self.patches().enumerate() {
@@ -158,24 +158,26 @@ impl Mesh {
 }
 
 /// Vertices, found by their position. The map is only ever asked for a cube, so that its order plays no part.
-struct Points {
+pub(crate) struct Points {
     origin: Vec3,
-    tolerance: f64,
+    /// m.
+    pub tolerance: f64,
     cubes: HashMap<[i64; 3], Vec<usize>>,
-    vertices: Vec<Vec3>,
+    pub vertices: Vec<Vec3>,
     /// The leaf that each vertex was made for.
     leaves: Vec<usize>,
 }
 
 impl Points {
-    fn new(mesh: &Mesh) -> Self {
-        let bounds = mesh.bounds();
+    /// For points within some bounds.
+    pub fn new(bounds: Option<Bounds>) -> Self {
         let origin = bounds.map_or(Vec3::ZERO, |bounds| bounds.min);
         let tolerance = TOLERANCE * bounds.map_or(1.0, |bounds| bounds.diagonal());
         Self { origin, tolerance, cubes: HashMap::new(), vertices: Vec::new(), leaves: Vec::new() }
     }
 
-    fn vertex(&mut self, point: Vec3, leaf: usize, joins: impl Fn(usize) -> bool) -> usize {
+    /// The vertex at a place, which is made where there is none that may be joined.
+    pub fn vertex(&mut self, point: Vec3, leaf: usize, joins: impl Fn(usize) -> bool) -> usize {
         self.find(point, joins).unwrap_or_else(|| {
             self.cubes.entry(self.cube(point)).or_default().push(self.vertices.len());
             self.vertices.push(point);

@@ -17,9 +17,15 @@ pub const WAVE: u32 = 16;
 /// Batches without which a standard error is not worth deciding by.
 pub const FEWEST: u32 = 32;
 
-/// Patches put together, such as to faces: means by area.
+/// Patches put together, such as to faces, and those to surfaces: means by area.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Groups {
+    levels: Vec<Level>,
+}
+
+/// One way to put patches together.
+#[derive(Clone, Debug, PartialEq)]
+struct Level {
     of: Vec<usize>,
     share: Vec<f64>,
     count: usize,
@@ -31,6 +37,14 @@ impl Groups {
     /// # Errors
     /// [`MonteCarloError::Length`] where not every patch has a group.
     pub fn new(scene: &Enclosure, of: Vec<usize>, count: usize) -> Result<Self, MonteCarloError> {
+        Self { levels: Vec::new() }.and(scene, of, count)
+    }
+
+    /// The same, followed by the groups of another way to put the patches together.
+    ///
+    /// # Errors
+    /// As for [`Groups::new`].
+    pub fn and(mut self, scene: &Enclosure, of: Vec<usize>, count: usize) -> Result<Self, MonteCarloError> {
         let what = "the list of groups";
         let valid = of.iter().filter(|&&group| group < count).count();
         if of.len() != scene.len() || valid != scene.len() {
@@ -40,9 +54,21 @@ impl Groups {
         of.iter().zip(scene.patches()).for_each(|(&group, patch)| areas[group] += patch.area());
         let share =
             of.iter().zip(scene.patches()).map(|(&group, patch)| patch.area() / areas[group]).collect();
-        Ok(Self { of, share, count })
+        self.levels.push(Level { of, share, count });
+        Ok(self)
     }
 
+    /// Number of groups of all levels.
+    fn count(&self) -> usize {
+        self.levels.iter().map(|level| level.count).sum()
+    }
+
+    fn means(&self, values: &[f64], bands: usize) -> Vec<f64> {
+        self.levels.iter().flat_map(|level| level.means(values, bands)).collect()
+    }
+}
+
+impl Level {
     fn means(&self, values: &[f64], bands: usize) -> Vec<f64> {
         let mut means = vec![0.0; self.count * bands];
         for ((&group, share), row) in self.of.iter().zip(&self.share).zip(values.chunks(bands)) {
@@ -159,7 +185,7 @@ impl<'a> Tracing<'a> {
             samples: self.samples,
             points: self.points,
             patches: Moments::new(self.scene.len() * bands),
-            groups: Moments::new(self.groups.count * bands),
+            groups: Moments::new(self.groups.count() * bands),
             paths: 0,
             rays: 0,
             seconds: 0.0,

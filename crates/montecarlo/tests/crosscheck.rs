@@ -67,6 +67,7 @@ fn verdict(irradiance: &[f64], state: &State) -> Crosscheck {
         deterministic_error: &error,
         stochastic: state.groups.mean(),
         standard_error: &state.groups.standard_errors(),
+        single: &vec![0.0; irradiance.len()],
         batches: state.batches(),
     };
     crosscheck(&comparison, Correction::Holm, SIGNIFICANCE).unwrap()

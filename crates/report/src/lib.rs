@@ -80,8 +80,8 @@ pub use field::Field;
 pub use field_csv::write_field_csv;
 pub use hierarchy::{Hierarchy, HierarchyGoal, HierarchyRound};
 pub use npz::write_npz;
-pub use outputs::{EXTRAS, Extras, FILES, View, write_all, write_with};
-pub use picture::{Gathering, Layer, Link, Linked, Picture, render, render_layers};
+pub use outputs::{EXTRAS, Extras, FILES, IMAGE, View, write_all, write_with};
+pub use picture::{Back, Gathering, Layer, Link, Linked, Picture, Side, render, render_layers, render_sides};
 pub use points_csv::{PointTable, write_points_csv};
 pub use refinement::{
     BandConvergence, REFINEMENT_FILES, REFINEMENT_FORMAT, RefinementLevel, RefinementRecord,
@@ -101,9 +101,9 @@ pub use spectrum::{
     write_spectrum_csv, write_spectrum_plot,
 };
 pub use stochastic::{
-    COMPONENTS, CROSSCHECK_FILES, CROSSCHECK_FORMAT, CrosscheckRecord, CrosscheckRow, FaceEstimates,
-    FieldScore, Pixels, REFERENCE_FILES, REFERENCE_FORMAT, ReferenceRecord, ReferenceTable, SampledField,
-    WorstPlace, score_map, write_crosscheck, write_crosscheck_csv, write_face_estimates,
+    COMPONENTS, CROSSCHECK_FILES, CROSSCHECK_FORMAT, CrosscheckPower, CrosscheckRecord, CrosscheckRow,
+    FaceEstimates, FieldScore, Pixels, REFERENCE_FILES, REFERENCE_FORMAT, ReferenceRecord, ReferenceTable,
+    SampledField, WorstPlace, score_map, write_crosscheck, write_crosscheck_csv, write_face_estimates,
     write_field_crosscheck, write_reference, write_sampled_fields, write_score_histogram,
 };
 pub use surfaces_csv::write_surfaces_csv;

@@ -24,6 +24,9 @@ pub const FILES: [&str; 8] = [
     "run.json",
 ];
 
+/// The picture among them.
+pub const IMAGE: &str = "image.png";
+
 /// Names of further files that a result folder may hold: pictures of the mesh, of links and of the final gather, the table of points, and triangles cut along shadows.
 pub const EXTRAS: [&str; 5] = ["mesh.png", "links.png", "gather.png", "points.csv", "shadows.vtu"];
 
@@ -69,10 +72,10 @@ pub fn write_all(
     run: &RunRecord,
     view: &View,
 ) -> Result<Vec<PathBuf>, ReportError> {
-    write_with(folder, field, run, view, &Extras::default())
+    write_with(folder, field, run, Some(view), &Extras::default())
 }
 
-/// As [`write_all`], with more. What of [`EXTRAS`] an older result left is removed.
+/// As [`write_all`], with more. Without a view no picture is drawn. What of [`EXTRAS`], and of pictures, an older result left is removed.
 ///
 /// # Errors
 /// As for [`write_all`].
@@ -80,14 +83,15 @@ pub fn write_with(
     folder: &Path,
     field: &Field<'_>,
     run: &RunRecord,
-    view: &View,
+    view: Option<&View>,
     more: &Extras<'_>,
 ) -> Result<Vec<PathBuf>, ReportError> {
     let layers = std::iter::once(&Layer::Field).chain(more.pictures.iter().map(|(_, layer)| layer));
-    let mut pictures = render_layers(field, &view.camera, view.exposure, layers)?.into_iter();
-    let Some(picture) = pictures.next() else { return Ok(Vec::new()) };
+    let drawn = view.map(|view| render_layers(field, &view.camera, view.exposure, layers)).transpose()?;
+    let mut pictures = drawn.unwrap_or_default().into_iter();
+    let picture = pictures.next();
     prepare(folder, &folder.join(FILES[FILES.len() - 1]))?;
-    EXTRAS.iter().try_for_each(|name| remove(&folder.join(name)))?;
+    EXTRAS.iter().chain([&IMAGE]).try_for_each(|name| remove(&folder.join(name)))?;
     let mut paths = Vec::new();
     for ((name, _), picture) in more.pictures.iter().zip(pictures) {
         paths.push(folder.join(name));
@@ -105,18 +109,20 @@ pub fn write_with(
             write_shadows_vtu(mesh, field.bands(), out)
         })?;
     }
-    let files = FILES.iter().map(|name| folder.join(name));
+    let draw = |out: &mut dyn Write| picture.as_ref().map_or(Ok(()), |picture| picture.write_png(out));
     let writers: [&Writer; 8] = [
         &|out| write_field_csv(field, out),
         &|out| write_faces_csv(field, out),
         &|out| write_surfaces_csv(field, out),
         &|out| write_vtu(field, out),
         &|out| write_npz(field, out),
-        &|out| picture.write_png(out),
+        &draw,
         &|out| write_convergence(run, out),
         &|out| write_run(run, out),
     ];
-    for (path, write) in files.zip(writers) {
+    let wanted = |name: &str| name != IMAGE || picture.is_some();
+    for (name, write) in FILES.into_iter().zip(writers).filter(|(name, _)| wanted(name)) {
+        let path = folder.join(name);
         write_atomically(&path, write)?;
         paths.push(path);
     }
@@ -134,7 +140,7 @@ pub(crate) fn prepare(folder: &Path, mark: &Path) -> Result<(), ReportError> {
 }
 
 /// Removes a file, if it is there.
-fn remove(path: &Path) -> Result<(), ReportError> {
+pub(crate) fn remove(path: &Path) -> Result<(), ReportError> {
     match fs::remove_file(path) {
         Err(source) if source.kind() != io::ErrorKind::NotFound => {
             Err(ReportError::Write { path: path.to_owned(), source })
@@ -170,6 +176,19 @@ mod tests {
         assert!(error.to_string().contains("field.npz"), "{error}");
         assert!(!paths[7].exists());
         assert_eq!(fs::read_dir(&folder).unwrap().count(), FILES.len() - 1);
+    }
+
+    #[test]
+    fn without_a_view_an_old_picture_goes_and_all_else_is_written() {
+        let (mesh, bands) = (sample(), names(&["r", "g"]));
+        let values = [1.0; 6];
+        let field = Field::new(&mesh, &bands, &values, &values).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        write_all(folder.path(), &field, &record(), &View::framing(&field)).unwrap();
+        assert!(folder.path().join(IMAGE).exists());
+        let paths = write_with(folder.path(), &field, &record(), None, &Extras::default()).unwrap();
+        assert_eq!(paths.len(), FILES.len() - 1);
+        assert!(!folder.path().join(IMAGE).exists() && paths.iter().all(|path| path.exists()));
     }
 
     #[test]

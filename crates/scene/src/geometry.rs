@@ -6,13 +6,13 @@
 
 use std::path::Path;
 
-use fredholm_mesh::{Cutting, Mesh, MeshBuilder, MeshError, Shape, Vec3};
+use fredholm_mesh::{Contacts, Cutting, Mesh, MeshBuilder, MeshError, Shape, Vec3};
 
 use crate::error::{ErrorKind, SceneError};
 use crate::files::Files;
 use crate::import::vs3::{self, Radiating, View3d};
 use crate::import::{ENDINGS, import};
-use crate::resolve::{FARTHEST, face_shapes};
+use crate::resolve::{FARTHEST, Mended, face_shapes};
 use crate::scene::Scene;
 use crate::source::{Source, read};
 
@@ -294,20 +294,49 @@ fn wavefront(path: &Path, bytes: Vec<u8>) -> Result<MeshFile, SceneError> {
     };
     let imported = import(path, bytes).unwrap_or_else(unknown)?;
     let source = imported.source;
+    let faces = imported.groups.iter().flat_map(|group| &group.faces);
+    let mended = Mended::of(faces.map(|face| face.corners.clone()).collect());
+    let found = mended.findings();
+    let words =
+        mended.left_out().into_iter().chain(found.iter().map(ToString::to_string)).chain(doubled(&mended));
+    let warnings = words.map(|what| format!("{}: {what}", path.display())).collect();
+    let mut shapes = mended.shapes.into_iter();
     let mut surfaces = vec![];
     for group in imported.groups {
         let material = group.material.map(|name| name.text);
         let name = group.object.or(material).unwrap_or_else(|| "face".to_owned());
-        let faces = group.faces.iter().map(|face| input_face(&source, &face.corners, face.span.clone()));
-        let faces = faces.collect::<Result<_, _>>()?;
-        surfaces.push(Input { name, emissivity: None, faces, whole: false });
+        let mut faces = vec![];
+        for face in &group.faces {
+            within_reach(&source, &face.corners, &face.span)?;
+            let Some(shapes) = shapes.next().filter(|shapes| !shapes.is_empty()) else { continue };
+            faces.push(InputFace { shapes, span: face.span.clone() });
+        }
+        if !faces.is_empty() {
+            surfaces.push(Input { name, emissivity: None, faces, whole: false });
+        }
     }
     if surfaces.is_empty() {
         let end = source.text.len();
         let help = "give a file with faces (lines that begin with f)";
         return Err(source.error(ErrorKind::Empty, end..end, "the file holds no face", help));
     }
-    Ok(MeshFile { source, title: None, surfaces, obstructions: vec![], tolerance: None, warnings: vec![] })
+    Ok(MeshFile { source, title: None, surfaces, obstructions: vec![], tolerance: None, warnings })
+}
+
+/// Says where faces lie on each other and are lit on the same side: each has its row, and light is counted twice.
+fn doubled(mended: &Mended) -> Option<String> {
+    let blockers = |shape: &Shape| shape.blockers(&Cutting::default()).unwrap_or_default();
+    // What makes no blockers is refused when it is meshed.
+    let pieces: Vec<_> = mended.shapes.iter().flatten().flat_map(blockers).collect();
+    let contacts = Contacts::of(&pieces);
+    let mut same_side = contacts.overlaps.iter().filter(|overlap| overlap.same_side);
+    let first = same_side.next()?;
+    Some(format!(
+        "{} pairs of faces lie on each other, lit on the same side, the first at {} m: light is counted twice there; \
+         remove one of each pair, or put the file into a scene, where one is left out",
+        1 + same_side.count(),
+        first.place
+    ))
 }
 
 fn input_face(

@@ -2,11 +2,13 @@
 //!
 //! A scene file names surfaces, what they are made of and how they are cut. [`Scene::load`] reads it and the files it
 //! names, and refuses what makes no sense with a [`SceneError`] that points at the place. [`Scene::mesh`] cuts the
-//! surfaces, [`Scene::check`] looks for mistakes that only the whole geometry shows. [`schema()`] is the JSON Schema of
+//! surfaces, [`Scene::check`] looks for mistakes that only the whole geometry shows, [`Scene::report`] tells what a mesh is. A mesh file
+//! stands for a scene, too. [`schema()`] is the JSON Schema of
 //! the format.
 //!
 //! Units: metres, degrees where a name says so, W/m².
 
+mod bare;
 mod check;
 mod error;
 mod files;
@@ -21,7 +23,7 @@ mod schema;
 mod source;
 mod suggest;
 
-pub use check::Warning;
+pub use check::{Finding, Report, Shown, Warning};
 pub use error::{ErrorKind, Place, SceneError};
 pub use geometry::{By, Geometry, Rows, Surfaces};
 pub use resolve::{Camera, Material, SolveDefaults, Storage};

@@ -15,6 +15,16 @@ pub(crate) struct Part {
     pub cutting: Cutting,
     /// Number of elements that it will have.
     pub elements: u128,
+    pub origin: Origin,
     /// Its name in the scene file.
     pub span: Range<usize>,
+}
+
+/// Where a part comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Origin {
+    Scene,
+    MeshFile,
+    /// The light around a mesh file that stands for a scene.
+    Sky,
 }

@@ -4,6 +4,8 @@ use std::path::Path;
 
 use fredholm_mesh::{Cutting, Mesh, MeshBuilder, MeshError};
 
+use crate::bare::{self, is_mesh};
+use crate::check::{Finding, Pieces, Warning};
 use crate::error::{ErrorKind, SceneError};
 use crate::files::Files;
 use crate::parse::parse;
@@ -43,15 +45,22 @@ pub struct Scene {
     title: Option<String>,
     meaning: Resolved,
     sha256: String,
+    pieces: Pieces,
 }
 
 impl Scene {
-    /// Reads a scene file and the files it names.
+    /// Reads a scene file and the files it names, or a mesh file (.obj, .vs3) that stands for a scene: with the materials of its
+    /// libraries, and evenly lit from all sides where none of them emits.
     ///
     /// # Errors
     /// [`SceneError`], with file and line, for anything that is wrong with them.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, SceneError> {
         let path = path.as_ref();
+        if is_mesh(path) {
+            let mut files = Files::beside(path);
+            let (source, meaning) = bare::meaning(path, &mut files)?;
+            return Self::new(source, None, meaning, &files);
+        }
         let bytes = read(path).map_err(|error| {
             let what = format!("cannot read the scene: {error}");
             let help = "correct the name of the scene file, or its permissions";
@@ -71,9 +80,21 @@ impl Scene {
     fn from_source(source: Source) -> Result<Self, SceneError> {
         let entry = parse(&source)?;
         let mut files = Files::beside(&source.path);
-        let meaning = resolve(&source, &entry, &mut files)?;
+        let meaning = resolve(&source, &entry, &mut files, None)?;
+        Self::new(source, entry.title, meaning, &files)
+    }
+
+    fn new(
+        source: Source,
+        title: Option<String>,
+        meaning: Resolved,
+        files: &Files,
+    ) -> Result<Self, SceneError> {
         let sha256 = files.fingerprint(&source.text);
-        Ok(Self { title: entry.title, source, meaning, sha256 })
+        let pieces = Pieces::default();
+        let mut scene = Self { source, title, meaning, sha256, pieces };
+        scene.pieces = Pieces::of(scene.parts()).map_err(|(part, error)| scene.unmeshable(part, &error))?;
+        Ok(scene)
     }
 
     /// The scene file.
@@ -186,7 +207,21 @@ impl Scene {
                 builder.add(shape, &cutting).map_err(|error| self.unmeshable(part, &error))?;
             }
         }
-        Ok(builder.build())
+        let mesh = builder.build();
+        if !self.pieces.overlap {
+            return Ok(mesh);
+        }
+        let emits = |surface: usize| self.emits(mesh_material(&mesh, surface));
+        let emitting: Vec<bool> = (0..mesh.surfaces().len()).map(emits).collect();
+        mesh.without_covered(|surface| emitting[surface]).map_err(|error| {
+            let (what, help) = (error.to_string(), "use fewer elements");
+            SceneError::new(ErrorKind::TooLarge, &self.source.path, what, help)
+        })
+    }
+
+    /// Whether a material emits in any band.
+    pub(crate) fn emits(&self, material: usize) -> bool {
+        self.materials()[material].exitance.iter().any(|&exitance| exitance > 0.0)
     }
 
     /// Reflectance of every leaf of a mesh of this scene, leaf-major: that of leaf i in band l is at i × bands + l.
@@ -206,6 +241,22 @@ impl Scene {
         (0..mesh.len()).flat_map(|leaf| values(material(leaf)).iter().copied()).collect()
     }
 
+    /// The undivided pieces of the surfaces.
+    pub(crate) fn pieces(&self) -> &Pieces {
+        &self.pieces
+    }
+
+    /// What was found in mesh files while they were read.
+    pub(crate) fn findings(&self) -> &[Finding] {
+        &self.meaning.findings
+    }
+
+    /// What was read from material libraries and what was mended. [`check`](Self::check) tells it, too.
+    #[must_use]
+    pub fn notes(&self) -> &[Warning] {
+        &self.meaning.notes
+    }
+
     pub(crate) fn source(&self) -> &Source {
         &self.source
     }
@@ -218,4 +269,9 @@ impl Scene {
         let what = format!("surface `{}`: {error}", part.name);
         self.source.error(ErrorKind::Geometry, part.span.clone(), what, "correct the shape")
     }
+}
+
+/// Index of the material of a surface.
+fn mesh_material(mesh: &Mesh, surface: usize) -> usize {
+    mesh.surfaces()[surface].material
 }

@@ -21,14 +21,34 @@ pub(crate) struct Source {
     pub text: String,
 }
 
+/// What editors put before the text of UTF-8 files to mark them as such.
+const BYTE_ORDER_MARK: char = '\u{feff}';
+
 impl Source {
-    /// Takes bytes for UTF-8.
+    /// Takes bytes for UTF-8, with or without a byte-order mark.
     pub fn decode(path: &Path, bytes: Vec<u8>) -> Result<Self, SceneError> {
-        let path = path.to_owned();
         match String::from_utf8(bytes) {
-            Ok(text) => Ok(Self { path, text }),
-            Err(error) => Err(not_text(&path, error.as_bytes(), error.utf8_error().valid_up_to())),
+            Ok(text) => Ok(Self::of(path, text)),
+            Err(error) => Err(not_text(path, error.as_bytes(), error.utf8_error().valid_up_to())),
         }
+    }
+
+    /// Takes bytes for UTF-8 or else for Latin-1, in which old programs write names and comments of mesh files. What holds a zero
+    /// byte is no text.
+    pub fn decode_mesh(path: &Path, bytes: Vec<u8>) -> Result<Self, SceneError> {
+        if let Some(offset) = bytes.iter().position(|&byte| byte == 0) {
+            return Err(not_text(path, &bytes, offset));
+        }
+        let latin = |bytes: &[u8]| bytes.iter().map(|&byte| char::from(byte)).collect();
+        let text = String::from_utf8(bytes).unwrap_or_else(|error| latin(error.as_bytes()));
+        Ok(Self::of(path, text))
+    }
+
+    fn of(path: &Path, mut text: String) -> Self {
+        if text.starts_with(BYTE_ORDER_MARK) {
+            text.drain(..BYTE_ORDER_MARK.len_utf8());
+        }
+        Self { path: path.to_owned(), text }
     }
 
     /// An error about the piece at `span`, bytes.
@@ -95,7 +115,7 @@ fn excerpt(line: &str, before: usize, width: usize) -> Excerpt {
 fn not_text(path: &Path, bytes: &[u8], offset: usize) -> SceneError {
     let line = bytes[..offset].split(|&b| b == b'\n').count();
     let what = format!("byte 0x{:02x} on line {line} is not UTF-8 text", bytes[offset]);
-    let help = "save the file as UTF-8; if it is no text file, give the right one";
+    let help = "save the file as UTF-8 text; if it is no text file, give the right one";
     SceneError::new(ErrorKind::Format, path, what, help).at(Place::Byte(offset))
 }
 
@@ -112,6 +132,18 @@ mod tests {
         let error = source("x = 1\ny = 22\n").error(ErrorKind::Value, 10..12, "wrong", "mend");
         assert_eq!(error.place(), Some(Place::Line { line: 2, column: 5 }));
         assert_eq!(error.to_string(), "a.toml:2:5: wrong\n  2 | y = 22\n    |     ^^\n  help: mend");
+    }
+
+    #[test]
+    fn marks_and_latin_letters_are_read() {
+        let path = Path::new("a.obj");
+        let read = |bytes: &[u8]| Source::decode_mesh(path, bytes.to_vec()).map(|source| source.text);
+        assert_eq!(read(b"\xef\xbb\xbfv 0 0 0").unwrap(), "v 0 0 0");
+        assert_eq!(read(b"# caf\xe9").unwrap(), "# café");
+        assert_eq!(read("# café".as_bytes()).unwrap(), "# café");
+        assert_eq!(Source::decode(path, b"\xef\xbb\xbfx = 1".to_vec()).unwrap().text, "x = 1");
+        assert!(read(b"v 0\0").unwrap_err().to_string().contains("0x00 on line 1"));
+        assert!(Source::decode(path, b"\xe9".to_vec()).is_err());
     }
 
     #[test]

@@ -149,17 +149,17 @@ fn objects_and_materials_of_an_obj_file_become_surfaces() {
     let obj = format!(
         "mtllib none.mtl\n{CORNERS}f 1 2 3\no p\nusemtl x\nf 1 2 3 4\no q\nf 1 2 3 4 5\nusemtl wall\nf 1 2 3\n"
     );
-    let keys =
-        "material = \"wall\"\nobj = { file = \"a.obj\", materials = { x = \"oak\", wall = \"wall\" } }";
+    let keys = "material = \"wall\"\ntwo_sided = false\nobj = { file = \"a.obj\", materials = { x = \"oak\", wall = \"wall\" } }";
     let scene = with_obj(folder.path(), &obj, keys);
     let mesh = scene.mesh().unwrap();
     assert_eq!(names(&mesh), ["a", "a/p", "a/q/x", "a/q/wall"]);
     let materials: Vec<&str> =
         mesh.surfaces().iter().map(|surface| scene.materials()[surface.material].name.as_str()).collect();
     assert_eq!(materials, ["wall", "oak", "oak", "wall"]);
-    assert_eq!(mesh.faces().len(), 4);
+    assert_eq!(scene.predicted_elements(), 6);
     // The pentagon: a unit square and a triangle of base 1 and height 1/2.
-    assert!((mesh.faces()[2].area - 1.25).abs() < 1e-14);
+    // They lie on each other, and each place is left to one of them.
+    assert!((mesh.faces().iter().map(|face| face.area).sum::<f64>() - 1.25).abs() < 1e-14);
 }
 
 #[test]
@@ -219,7 +219,9 @@ fn warnings_point_at_what_is_probably_not_meant() {
     assert!(outside[0].starts_with("scene.toml:9:8: the lit side of `roof` faces no other"), "{outside:?}");
     let twice = warnings(&format!("{WALL}{room}{}", quad("floor", 0)));
     assert!(
-        twice[0].starts_with("scene.toml:9:8: 1 elements of `floor` lie on elements of `room`"),
+        twice[0].starts_with(
+            "scene.toml:9:8: `room` and `floor` lie on each other, lit on the same side, over 1.000e0 m²"
+        ),
         "{twice:?}"
     );
     assert_eq!((outside.len(), twice.len()), (1, 1));

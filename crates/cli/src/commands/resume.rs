@@ -42,6 +42,7 @@ pub(crate) fn resume(args: &ResumeArgs) -> Result<Ending, Failure> {
         goal: header.goal.clone(),
         final_gather: header.final_gather,
         discontinuity: header.discontinuity,
+        no_pictures: header.no_pictures,
         places: PlaceArgs { point: header.receivers(), plane: Vec::new() },
         problem: ProblemArgs {
             scene: header.scene.clone(),

@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use fredholm_linop::StopReason;
-use fredholm_report::{Camera, Exposure, Extras, Field, Layer, ReportError, RunRecord, View, write_with};
+use fredholm_report::{
+    Camera, Exposure, Extras, Field, IMAGE, Layer, ReportError, RunRecord, View, write_with,
+};
 use fredholm_scene::Scene;
 
 use crate::args::{ProblemArgs, SolveArgs};
@@ -45,15 +47,7 @@ fn run(
     folder: &Path,
     stages: &mut Stages,
 ) -> Result<Ending, Failure> {
-    let scene = stages.run("scene", || Scene::load(&args.problem.scene).map_err(scene_failure))?;
-    let scene = Arc::new(scene);
-    let points = Plan::default().hold("points", args.places.bytes(scene.bands().len()));
-    points.admit(memory::limit(args.problem.memory), "ask for fewer points")?;
-    let (options, problem, solution) = match args.accuracy.or(scene.solve().accuracy) {
-        Some(accuracy) => to_accuracy(args, &scene, (accuracy, checkpoint), folder, stages)?,
-        None if !args.goal.is_empty() => return Err(hierarchical::goal_alone()),
-        None => dense(args, &scene, folder, stages)?,
-    };
+    let (options, problem, solution) = answer(args, checkpoint, folder, stages)?;
     let record = record(&problem, &options, &solution, stages);
     stages.run("results", || write(&problem, &options, &solution, &record, folder))?;
     if !record.partial {
@@ -64,6 +58,24 @@ fn run(
     remarks(&options, &solution).for_each(|remark| stages.console.warn(&remark));
     conclude(args, folder, &record, stages)?;
     Ok(ending(&solution, stages))
+}
+
+/// Reads and solves the scene.
+pub(super) fn answer(
+    args: &SolveArgs,
+    checkpoint: Option<&Checkpoint>,
+    folder: &Path,
+    stages: &mut Stages,
+) -> Result<(Options, Problem, Solution), Failure> {
+    let scene = stages.run("scene", || Scene::load(&args.problem.scene).map_err(scene_failure))?;
+    let scene = Arc::new(scene);
+    let points = Plan::default().hold("points", args.places.bytes(scene.bands().len()));
+    points.admit(memory::limit(args.problem.memory), "ask for fewer points")?;
+    match args.accuracy.or(scene.solve().accuracy) {
+        Some(accuracy) => to_accuracy(args, &scene, (accuracy, checkpoint), folder, stages),
+        None if !args.goal.is_empty() => Err(hierarchical::goal_alone()),
+        None => dense(args, &scene, folder, stages),
+    }
 }
 
 /// On the elements of the scene.
@@ -83,8 +95,8 @@ fn dense(
     let problem = Problem::refined(Arc::clone(scene), options, (1, &more), stages)?;
     let options = Options::new(problem.options.clone(), args.stop, scene.solve(), folder, args.log);
     let points = args.places.receivers();
-    let SolveArgs { final_gather, discontinuity, .. } = *args;
-    let options = Options { points, final_gather, discontinuity, ..options };
+    let SolveArgs { final_gather, discontinuity, no_pictures, .. } = *args;
+    let options = Options { points, final_gather, discontinuity, no_pictures, ..options };
     let solution = compute(&problem, &options, stages)?;
     Ok((options, problem, solution))
 }
@@ -134,13 +146,13 @@ fn predicted(args: &SolveArgs, scene: &Scene, accuracy: f64) -> Result<Choice, F
     let count = mesh.faces().len();
     let fewest = (0..count).map(|face| mesh.leaves_of_face(face).len()).min().unwrap_or(0);
     let choice = Choice::new(Extent { elements: mesh.len() as f64, faces: count as f64, fewest }, accuracy);
-    let fits = fits(&options, mesh.len(), count, scene.bands().len());
+    let fits = fits(&options, mesh.len(), scene.bands().len());
     Ok(if choice.is_matrix() && !fits { Choice::Memory } else { choice })
 }
 
-/// Whether the matrix of some elements on some faces fits the memory.
-fn fits(options: &ProblemOptions, elements: usize, faces: usize, bands: usize) -> bool {
-    let size = Size { elements, unknowns: elements, coarse: faces, dense: None };
+/// Whether the matrix of some elements fits the memory.
+fn fits(options: &ProblemOptions, elements: usize, bands: usize) -> bool {
+    let size = Size { elements, unknowns: elements, dense: None };
     registry::find(&options.solver).is_some_and(|solver| {
         Prediction::new(size, bands, options.storage, &solver).plan().fits(options.memory_limit())
     })
@@ -194,7 +206,8 @@ fn write(
     let pictures = pictures(options, solution).map(|name| (name, layer(name))).collect();
     let points = gathered.as_ref().map(|gathered| gathered.points(options)).transpose()?.flatten();
     let shadows = gathered.as_ref().filter(|_| options.discontinuity).map(Gathered::shadows);
-    write_with(folder, &field, record, &view, &Extras { pictures, points, shadows }).map_err(report_failure)
+    let view = (!options.no_pictures).then_some(&view);
+    write_with(folder, &field, record, view, &Extras { pictures, points, shadows }).map_err(report_failure)
 }
 
 /// The scene's camera, or one that sees all of it.
@@ -242,7 +255,8 @@ fn conclude(args: &SolveArgs, folder: &Path, record: &RunRecord, stages: &Stages
 
 fn summarise(folder: &Path, record: &RunRecord) -> Result<(), Failure> {
     let mut lines = Lines::default();
-    lines.add("picture", folder.join("image.png").display().to_string());
+    let picture = record.files.iter().any(|name| name == IMAGE);
+    lines.add_some("picture", picture.then(|| folder.join(IMAGE).display().to_string()));
     quality(record, &mut lines);
     output::print(&lines.under(&format!("{} → {}", record.scene, folder.display())))
 }

@@ -81,8 +81,8 @@ pub(crate) fn control(
     Control::new(enclosure, solution.means.irradiance.as_slice().to_vec(), patchwise).map_err(failure)
 }
 
-/// What a deterministic solution says of the error of the irradiance of each face and band, W/m²: the estimated errors of the form factors times the largest radiosity and, where asked for,
-/// the estimated error of the mesh, no less than the one of the whole scene has it.
+/// What a deterministic solution says of the error of the irradiance of each face and band, W/m²: what it states of the whole, errors of the mesh and the form factors together, no less than
+/// the relative error of the scene; or of the form factors alone, their estimated errors times the largest radiosity.
 pub(crate) fn expected_error(problem: &Problem, solution: &Solution, meshed: bool) -> Vec<f64> {
     let (mesh, bands) = (&problem.mesh, problem.scene.bands().len());
     let radiosity = &solution.means.radiosity;
@@ -98,12 +98,14 @@ pub(crate) fn expected_error(problem: &Problem, solution: &Solution, meshed: boo
         let mean = |value: &dyn Fn(usize) -> f64| {
             leaves().map(|leaf| mesh.patch(leaf).area() * value(leaf)).sum::<f64>() / mesh.faces()[face].area
         };
-        let factors = mean(&row) * largest[band];
-        let meshing = solution.mesh_error.as_ref().filter(|_| meshed).map_or(0.0, |error| {
-            let irradiance = mean(&|leaf| solution.means.irradiance.row(leaf)[band]);
-            error.per_face[at].max(error.relative_l2[band] * irradiance)
-        });
-        factors.hypot(meshing)
+        match solution.mesh_error.as_ref().filter(|_| meshed) {
+            None => mean(&row) * largest[band],
+            Some(error) => {
+                let irradiance = mean(&|leaf| solution.means.irradiance.row(leaf)[band]);
+                let own = error.per_face.get(at).copied().unwrap_or(0.0);
+                own.max(error.relative_l2[band] * irradiance)
+            }
+        }
     };
     (0..mesh.faces().len() * bands).map(error).collect()
 }

@@ -200,8 +200,8 @@ fn view_factors(dice: &mut Dice, scene: &str, frame: &Frame) -> Line {
         if let Some(setting) = setting {
             line.with(&["--setting", setting]);
         }
-    } else if dice.chance(0.5) {
-        line.with(&["--tolerance", dice.pick(&["1e-1", "1e-2", "1e-4"])]);
+    } else {
+        line.with(&["--tolerance", dice.pick(&["1e-1", "1e-2", "1e-3", "1e-4"])]);
     }
     line.with(&["--rows", dice.pick(&["element", "face", "surface"])]);
     if dice.chance(0.25) {
@@ -225,7 +225,7 @@ pub(super) fn of_waves(dice: &mut Dice, scene: &str) -> Vec<String> {
     line.with(&["-o", "out"]);
     match verb {
         "waves" if dice.chance(0.2) => {
-            line.with(&["--compare", "gmres,neumann,bicgstab", "--max-iterations", "50"])
+            line.with(&["--compare", "gmres,neumann,bicgstab", "--max-iterations", "50"]);
         }
         "waves" => {}
         _ => {

@@ -33,7 +33,7 @@ pub(super) fn scene(dice: &mut Dice) -> (Files, Frame, Vec<String>) {
     let mut others = vec![];
     enclosure(dice, &frame, &mut text, &mut names);
     let on_grid = dice.chance(0.5);
-    for number in 0..1 + dice.below(6) {
+    for number in 0..=dice.below(6) {
         let shape = shape::random(dice, &frame, on_grid, number);
         let name = format!("s{number}");
         let material = if dice.chance(0.25) { "lamp" } else { "thing" };

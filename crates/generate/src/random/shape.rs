@@ -135,7 +135,7 @@ fn cylinder(dice: &mut Dice, frame: &Frame, on_grid: bool) -> Shape {
 fn wavefront(dice: &mut Dice, frame: &Frame, on_grid: bool, number: usize) -> Shape {
     let decimals = dice.pick(&[3, 6, 6, 6, 9]);
     let mut mesh = Mesh { text: String::new(), count: 0, decimals };
-    for part in 0..1 + dice.below(2) {
+    for part in 0..=dice.below(2) {
         let _ = writeln!(mesh.text, "o part{part}");
         let place = Place { centre: somewhere(dice, on_grid), turn: turn(dice) };
         match dice.below(4) {
@@ -211,7 +211,9 @@ fn solid(dice: &mut Dice, mesh: &mut Mesh, place: &Place, on_grid: bool) {
         };
         faces = faces.iter().flat_map(fan).collect();
     }
-    faces.iter().for_each(|face| mesh.face(face));
+    for face in faces {
+        mesh.face(&face);
+    }
 }
 
 /// Triangles in any position, some of them slivers.

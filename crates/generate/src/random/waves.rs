@@ -36,10 +36,10 @@ pub(super) fn scene(dice: &mut Dice) -> Files {
     }
     text.push_str("[materials.coat]\nimpedance_ohm = [50, 20]\n");
     text.push_str("[materials.wall]\nlayers = [{ itu = \"concrete\", thickness_m = 0.1 }]\n");
-    for _ in 0..1 + dice.below(2) {
+    for _ in 0..=dice.below(2) {
         source(dice, &mut text);
     }
-    for number in 0..1 + dice.below(2) {
+    for number in 0..=dice.below(2) {
         surface(dice, &mut text, number, closed);
     }
     receivers(dice, &mut text);
@@ -94,7 +94,7 @@ fn surface(dice: &mut Dice, text: &mut String, number: usize, closed: bool) {
 }
 
 fn receivers(dice: &mut Dice, text: &mut String) {
-    for number in 0..1 + dice.below(3) {
+    for number in 0..=dice.below(3) {
         let _ = writeln!(text, "[[receiver]]\nname = \"r{number}\"");
         let _ = match dice.below(6) {
             0 => writeln!(text, "points = [[0, -1, 0], {:?}]", (dice.direction() * 0.3).to_array()),

@@ -78,7 +78,9 @@ impl Chance {
         let count = PAIRS as f64;
         let (mean, square) = (sum / count, squares / count);
         let error = ((square - mean * mean).max(0.0) / count).sqrt() / mean;
-        pairs.iter_mut().for_each(|(_, weight)| *weight /= sum);
+        for (_, weight) in &mut pairs {
+            *weight /= sum;
+        }
         Self { open: (mean * areas).min(a.area()).min(b.area()), deviations, pairs, error }
     }
 

@@ -27,6 +27,15 @@ pub fn normal_score(t: f64, freedom: f64) -> f64 {
     t.signum() * SQRT_2 * erfc_inv((2.0 * tail).max(1e-300))
 }
 
+/// The value of Student's t that is exceeded with this two-sided probability.
+#[must_use]
+pub(crate) fn critical_t(p: f64, freedom: f64) -> f64 {
+    if freedom >= NORMAL {
+        return SQRT_2 * erfc_inv(p);
+    }
+    StudentsT::new(0.0, 1.0, freedom).map_or(f64::INFINITY, |law| -law.inverse_cdf(0.5 * p))
+}
+
 /// Probability that χ² with these degrees of freedom is at least this large.
 #[must_use]
 pub fn chi_square_p(chi: f64, freedom: f64) -> f64 {
@@ -98,6 +107,17 @@ mod tests {
         }
         assert!((chi_square_p(18.307_038, 10.0) - 0.05).abs() < 1e-8);
         assert!(normal_score(1e300, 31.0).is_finite() && normal_score(f64::NAN, 3.0).is_nan());
+    }
+
+    #[test]
+    fn bounds_are_where_the_probabilities_are() {
+        for (p, freedom) in [(0.01, 31.0), (1e-6, 31.0), (0.05, 1.0), (1e-4, 1e9)] {
+            let bound = critical_t(p, freedom);
+            assert!(
+                (two_sided_p(normal_score(bound, freedom)) / p - 1.0).abs() < 1e-6,
+                "{p} {freedom}: {bound}"
+            );
+        }
     }
 
     #[test]

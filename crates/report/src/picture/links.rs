@@ -99,14 +99,15 @@ impl Painter for LinkPainter<'_> {
         links.sort_by(|a, b| a.share.total_cmp(&b.share));
         for link in links {
             let colour = LEVELS[link.level.min(LEVELS.len() - 1)].map(encode);
-            line(view, picture, [from, link.centre], (colour, 0.15 + 0.7 * strength(link.share)));
+            if let [Some(a), Some(b)] = [from, link.centre].map(|end| view.project(end)) {
+                line(picture, [a, b], (colour, 0.15 + 0.7 * strength(link.share)));
+            }
         }
     }
 }
 
-/// Draws a line of one pixel over a picture; `cover` is how much of its colour it has.
-fn line(view: &Viewer<'_>, picture: &mut Picture, ends: [Vec3; 2], (colour, cover): ([u8; 3], f64)) {
-    let [Some(a), Some(b)] = ends.map(|end| view.project(end)) else { return };
+/// Draws a line of one pixel over a picture, between places in pixels; `cover` is how much of its colour it has.
+pub(super) fn line(picture: &mut Picture, [a, b]: [(f64, f64); 2], (colour, cover): ([u8; 3], f64)) {
     let (dx, dy) = (b.0 - a.0, b.1 - a.1);
     let steps = dx.abs().max(dy.abs()).ceil().clamp(1.0, f64::from(picture.width + picture.height));
     for step in 0..=steps as u32 {

@@ -8,6 +8,7 @@
 mod elements;
 mod gathered;
 mod links;
+mod sides;
 
 use std::io::{self, Write};
 
@@ -24,6 +25,7 @@ use gathered::GatherPainter;
 pub use gathered::Gathering;
 use links::LinkPainter;
 pub use links::{Link, Linked};
+pub use sides::{Back, Side, render_sides};
 
 /// Samples of a pixel.
 const SAMPLES: usize = 8;

@@ -10,7 +10,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use crate::number::Number;
-use crate::outputs::prepare;
+use crate::outputs::{prepare, remove};
 use crate::{Field, ReportError, View, render, write_atomically, write_faces_csv, write_npz, write_vtu};
 
 pub use plot::write_shooting_plot;
@@ -20,7 +20,7 @@ pub use record::{SHOOTING_FORMAT, ShootingRecord, Shot};
 pub const SHOOTING_FILES: [&str; 7] =
     ["faces.csv", "field.npz", "field.vtu", "image.png", "shots.csv", "shots.svg", "shots.json"];
 
-/// Writes the field so far and the record into a folder, which is made where there is none.
+/// Writes the field so far and the record into a folder, which is made where there is none. Without a view no picture is drawn.
 ///
 /// # Errors
 /// [`ReportError::Write`] with the path, and what [`render`] refuses.
@@ -28,15 +28,18 @@ pub fn write_shooting(
     folder: &Path,
     field: &Field<'_>,
     record: &ShootingRecord,
-    view: &View,
+    view: Option<&View>,
 ) -> Result<(), ReportError> {
-    let picture = render(field, &view.camera, view.exposure)?;
+    let picture = view.map(|view| render(field, &view.camera, view.exposure)).transpose()?;
     let [faces, npz, vtu, image, table, plot, json] = SHOOTING_FILES.map(|name| folder.join(name));
     prepare(folder, &json)?;
     write_atomically(&faces, |out| write_faces_csv(field, out))?;
     write_atomically(&npz, |out| write_npz(field, out))?;
     write_atomically(&vtu, |out| write_vtu(field, out))?;
-    write_atomically(&image, |out| picture.write_png(out))?;
+    match picture {
+        Some(picture) => write_atomically(&image, |out| picture.write_png(out))?,
+        None => remove(&image)?,
+    }
     write_atomically(&table, |out| write_shots_csv(record, out))?;
     write_atomically(&plot, |out| write_shooting_plot(record, out))?;
     write_atomically(&json, |out| {

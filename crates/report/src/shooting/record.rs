@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::Timing;
+use crate::{MeshError, Timing};
 
 /// Name of the format of `shots.json`.
 pub const SHOOTING_FORMAT: &str = "fredholm-shots-1";
@@ -41,6 +41,8 @@ pub struct ShootingRecord {
     pub groups: u64,
     /// Whether the share asked for was reached.
     pub reached: bool,
+    /// Estimated error of the irradiance of the faces: of the mesh, and of what is unshot; none where the run was interrupted.
+    pub mesh_error: Option<MeshError>,
     /// Largest estimated error of a form factor of the columns computed.
     pub form_factor_error: f64,
     /// Largest memory held, bytes, where the system tells.
@@ -70,6 +72,7 @@ pub(super) mod tests {
             elements: 8,
             groups: 12,
             reached: false,
+            mesh_error: None,
             form_factor_error: 1e-4,
             peak_memory_bytes: None,
             warnings: Vec::new(),

@@ -43,6 +43,8 @@ pub struct CrosscheckRow {
 /// A place far apart.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WorstPlace {
+    /// `face`, `surface`, `whole`, or `point` of a receiver.
+    pub kind: String,
     /// The face, or the point of a receiver.
     pub face: usize,
     /// Its surface, or the receiver.
@@ -57,6 +59,17 @@ pub struct WorstPlace {
     pub relative: f64,
 }
 
+/// The smallest deviations that would have been found nine times out of ten, over the irradiance; none where nothing is lit.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct CrosscheckPower {
+    /// Of the mean over everything, in the worst band.
+    pub whole: Option<f64>,
+    /// Of the mean over a surface, the median of all.
+    pub surface: Option<f64>,
+    /// Of a face, the median of all.
+    pub face: Option<f64>,
+}
+
 /// What a comparison came to.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CrosscheckRecord {
@@ -68,16 +81,19 @@ pub struct CrosscheckRecord {
     pub scene: String,
     /// SHA-256 of the scene and the files it names, in hexadecimal.
     pub scene_sha256: String,
-    /// `agree` or `disagree`.
+    /// `agree`, `disagree`, or `undecided` where too little was sampled.
     pub verdict: String,
     /// Level of significance.
     pub significance: f64,
     /// Correction for many tests.
     pub correction: String,
-    /// Faces times bands, or numbers of the field.
+    /// Faces, surfaces and the whole times bands, or numbers of the field.
     pub places: usize,
     /// How many are significantly apart.
     pub significant: usize,
+    /// What would have been found; not known of fields.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub power: Option<CrosscheckPower>,
     /// Mean of the scores, and mean of their squares.
     pub score_mean: f64,
     /// Mean of the squares of the scores.

@@ -10,8 +10,8 @@ mod pixels;
 mod reference;
 
 pub use crosscheck::{
-    CROSSCHECK_FILES, CROSSCHECK_FORMAT, CrosscheckRecord, CrosscheckRow, WorstPlace, write_crosscheck,
-    write_crosscheck_csv,
+    CROSSCHECK_FILES, CROSSCHECK_FORMAT, CrosscheckPower, CrosscheckRecord, CrosscheckRow, WorstPlace,
+    write_crosscheck, write_crosscheck_csv,
 };
 pub use faces::{FaceEstimates, write_face_estimates};
 pub use field_scores::{COMPONENTS, FieldScore, write_field_crosscheck};

@@ -20,8 +20,10 @@ const HELP: &str = "a face is lit on the side from which its corners run counter
 pub(super) fn check(scene: &Scene, mesh: &Mesh) -> Result<Vec<Warning>, SceneError> {
     let surfaces = samples(mesh);
     let patches: Vec<&Patch> = surfaces.iter().flatten().copied().collect();
-    let faces_something =
-        |own: &Vec<&Patch>| own.iter().any(|a| patches.iter().any(|b| face_each_other(a, b)));
+    // A surface that others cover has nothing left to face anything.
+    let faces_something = |own: &Vec<&Patch>| {
+        own.is_empty() || own.iter().any(|a| patches.iter().any(|b| face_each_other(a, b)))
+    };
     let facing: Vec<bool> = surfaces.iter().map(faces_something).collect();
     refuse_darkness(scene, mesh, &facing)?;
     let blind = (0..facing.len()).filter(|&surface| !facing[surface]);

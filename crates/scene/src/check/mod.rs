@@ -1,8 +1,10 @@
 //! Mistakes that only the whole geometry shows.
 
-mod coincident;
 mod facing;
 mod lamps;
+mod overlaps;
+mod pieces;
+mod report;
 
 use std::fmt;
 use std::ops::Range;
@@ -12,6 +14,9 @@ use fredholm_mesh::Mesh;
 
 use crate::error::{Place, SceneError};
 use crate::scene::Scene;
+
+pub(crate) use pieces::Pieces;
+pub use report::{Finding, Report, Shown};
 
 /// Something in a scene that is allowed, but probably not meant.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -33,16 +38,18 @@ impl fmt::Display for Warning {
 }
 
 impl Scene {
-    /// Looks at a mesh of this scene as a whole: whether anything emits, whether lit sides face each other and whether
-    /// faces coincide.
+    /// Looks at a mesh of this scene as a whole: whether anything emits, whether lit sides face each other, whether faces lie on each other and
+    /// objects are turned inside out. What was read from material libraries and what was mended comes first.
     ///
     /// # Errors
     /// [`ErrorKind::Inverted`](crate::ErrorKind::Inverted) where no lit side can receive light, as in a room whose
     /// walls are lit outside.
     pub fn check(&self, mesh: &Mesh) -> Result<Vec<Warning>, SceneError> {
-        let mut warnings: Vec<Warning> = lamps::check(self, mesh).into_iter().collect();
+        let mut warnings: Vec<Warning> = self.notes().to_vec();
+        warnings.extend(lamps::check(self, mesh));
         warnings.extend(facing::check(self, mesh)?);
-        warnings.extend(coincident::check(self, mesh));
+        warnings.extend(overlaps::check(self));
+        warnings.extend(report::inside_out(self, mesh));
         Ok(warnings)
     }
 
@@ -60,5 +67,5 @@ impl Scene {
 
 /// Whether the material of a surface emits in any band.
 fn emits(scene: &Scene, mesh: &Mesh, surface: usize) -> bool {
-    scene.materials()[mesh.surfaces()[surface].material].exitance.iter().any(|&exitance| exitance > 0.0)
+    scene.emits(mesh.surfaces()[surface].material)
 }

@@ -97,7 +97,8 @@ pub(crate) struct ObjEntry {
     pub turn: Option<Turn>,
     /// Moved after turning, m. Default: [0, 0, 0].
     pub translate: Option<Triple>,
-    /// Material of the scene for each material of the file. Default: the one of the same name.
+    /// Material of the scene for each material of the file. Default: the one of the same name, else what the file's material
+    /// library says: reflectance Kd, exitance π Ke.
     #[serde(default)]
     pub materials: BTreeMap<At<String>, At<String>>,
 }

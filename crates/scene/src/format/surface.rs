@@ -52,9 +52,9 @@ pub(crate) struct SurfaceEntry {
     pub skip: Option<At<Vec<At<[usize; 2]>>>>,
     /// Elements that every face of this surface is computed on, a square number. Default: that of the scene.
     pub elements_per_face: Option<At<u64>>,
-    /// Lit on both sides. The back is a surface of its own, called NAME/back. Default: false.
-    #[serde(default)]
-    pub two_sided: bool,
+    /// Lit on both sides. The back is a surface of its own, called NAME/back. Default: false; but objects of a file whose
+    /// faces are turned inconsistently have two sides.
+    pub two_sided: Option<bool>,
     /// Material of the back of a two-sided surface. Default: that of the front.
     pub back_material: Option<At<String>>,
 }

@@ -14,7 +14,7 @@ use fredholm_mesh::Vec3;
 use crate::error::SceneError;
 use crate::source::Source;
 
-pub(crate) use mtl::material_names;
+pub(crate) use mtl::{MeshMaterial, mesh_materials};
 
 /// A name in a file, and where.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -55,7 +55,7 @@ pub(crate) const ENDINGS: &str = ".obj (Wavefront OBJ) or .vs3 (View3D)";
 pub(crate) fn import(path: &Path, bytes: Vec<u8>) -> Option<Result<Imported, SceneError>> {
     let ending = path.extension()?.to_str()?.to_lowercase();
     match ending.as_str() {
-        "obj" => Some(Source::decode(path, bytes).and_then(obj::parse)),
+        "obj" => Some(Source::decode_mesh(path, bytes).and_then(obj::parse)),
         "vs3" => Some(Source::decode(path, bytes).and_then(vs3::import)),
         _ => None,
     }

@@ -3,24 +3,29 @@
 mod bands;
 mod camera;
 mod cutting;
+mod faces;
+mod library;
 mod material;
 mod number;
 mod obj;
 mod shape;
 mod solve;
 mod surface;
+mod turned;
 
 use std::collections::BTreeSet;
 use std::ops::Range;
 
+use crate::check::{Finding, Warning};
 use crate::error::{ErrorKind, SceneError};
 use crate::files::Files;
 use crate::format::{At, SceneEntry, SurfaceEntry};
 use crate::part::Part;
 use crate::source::Source;
 
+pub(crate) use faces::{Mended, shapes as face_shapes};
+pub(crate) use library::{UNSAID, load as load_library};
 pub(crate) use number::FARTHEST;
-pub(crate) use obj::face_shapes;
 
 pub use camera::Camera;
 pub use material::Material;
@@ -41,31 +46,56 @@ pub(crate) struct Resolved {
     pub camera: Option<Camera>,
     pub materials: Vec<Material>,
     pub parts: Vec<Part>,
+    /// What was read from material libraries and what was mended.
+    pub notes: Vec<Warning>,
+    /// What was found in mesh files while they were read.
+    pub findings: Vec<Finding>,
 }
 
 /// What the meaning of a surface depends on.
 struct Context<'a> {
     source: &'a Source,
     scene: &'a SceneEntry,
-    materials: &'a [Material],
+    bands: &'a [String],
+    /// Those of the scene, then those of material libraries.
+    materials: Vec<Material>,
+    /// How many of them are the scene's.
+    own: usize,
     files: &'a mut Files,
+    notes: Vec<Warning>,
+    findings: Vec<Finding>,
+    /// What faces are made of that have no material, where a mesh file stands for a scene; none in a scene.
+    fallback: Option<usize>,
 }
 
+impl Context<'_> {
+    /// The materials of the scene itself.
+    fn own(&self) -> &[Material] {
+        &self.materials[..self.own]
+    }
+}
+
+/// Finds the meaning of a scene. `fallback` is the material of faces without one, where a mesh file stands for a scene.
 pub(crate) fn resolve(
     source: &Source,
     scene: &SceneEntry,
     files: &mut Files,
+    fallback: Option<usize>,
 ) -> Result<Resolved, SceneError> {
     let bands = bands::bands(source, scene)?;
     let materials = material::materials(source, scene, &bands)?;
     let solve = scene.solve.as_ref().map(|entry| solve::solve(source, entry)).transpose()?;
     let camera = scene.camera.as_ref().map(|entry| camera::camera(source, entry)).transpose()?;
-    let parts = parts(&mut Context { source, scene, materials: &materials, files })?;
+    let (own, notes, findings) = (materials.len(), vec![], vec![]);
+    let mut context =
+        Context { source, scene, bands: &bands, materials, own, files, notes, findings, fallback };
+    let parts = parts(&mut context)?;
+    let Context { materials, notes, findings, .. } = context;
     let named = scene.solve.as_ref();
     let solver = named.and_then(|entry| entry.solver.as_ref()).map(At::span);
     let discretisation = named.and_then(|entry| entry.discretisation.as_ref()).map(At::span);
     let solve = solve.unwrap_or_default();
-    Ok(Resolved { bands, solve, solver, discretisation, camera, materials, parts })
+    Ok(Resolved { bands, solve, solver, discretisation, camera, materials, parts, notes, findings })
 }
 
 fn parts(context: &mut Context) -> Result<Vec<Part>, SceneError> {

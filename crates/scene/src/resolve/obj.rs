@@ -8,12 +8,15 @@ use std::path::Path;
 
 use fredholm_mesh::{Cutting, MeshError, Shape, Vec3};
 
+use super::Context;
+use super::faces::Mended;
+use super::library::{self, Library};
 use super::number::FARTHEST;
 use super::surface::{find_material, geometry, part};
-use super::{Context, Material};
+use crate::check::Warning;
 use crate::error::{ErrorKind, SceneError};
 use crate::format::{At, ObjEntry, SurfaceEntry, Turn};
-use crate::import::{ENDINGS, Group, Imported, ImportedFace, Name, import, material_names};
+use crate::import::{ENDINGS, Group, Imported, ImportedFace, Name, import};
 use crate::part::Part;
 use crate::source::Source;
 use crate::suggest::among;
@@ -24,21 +27,78 @@ pub(super) fn parts(
     file: &ObjEntry,
     cutting: &Cutting,
 ) -> Result<Vec<Part>, SceneError> {
-    let (source, materials) = (context.source, context.materials);
+    let source = context.source;
     let imported = load(context, file)?;
     let placing = Placing::new(source, file)?;
     let libraries = libraries(context, file, &imported)?;
     unused_names(source, file, &imported)?;
-    let part = |group: &Group| {
-        let material =
-            Lookup { source, entry, file, imported: &imported, materials, libraries: libraries.as_deref() };
-        let material = material.of(group)?;
-        let shapes = shapes(source, entry, &imported.source, group, &placing, cutting)?;
+    let mended = mended(context, &imported, &placing)?;
+    let mut shapes = mended.shapes.into_iter();
+    let mut parts = vec![];
+    for group in &imported.groups {
+        let lookup = Lookup { entry, file, imported: &imported, libraries: libraries.as_deref() };
+        let material = lookup.of(context, group)?;
+        let counted = group.faces.iter().zip(shapes.by_ref());
+        let shapes = counted.map(|(face, shapes)| {
+            counted_shapes(shapes, cutting, |e| {
+                geometry(source, entry, e, (&imported.source, face.span.clone()))
+            })
+        });
+        let shapes: Vec<(Shape, u128)> =
+            shapes.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
         let elements = shapes.iter().map(|(_, elements)| elements).sum();
-        let shapes = shapes.into_iter().map(|(shape, _)| shape).collect();
-        Ok(part(entry, &name(entry, group, &imported.groups), material, shapes, cutting, elements))
-    };
-    imported.groups.iter().map(part).collect()
+        let shapes: Vec<Shape> = shapes.into_iter().map(|(shape, _)| shape).collect();
+        if !shapes.is_empty() {
+            parts.push(part(
+                entry,
+                &name(entry, group, &imported.groups),
+                material,
+                shapes,
+                cutting,
+                elements,
+            ));
+        }
+    }
+    if parts.is_empty() {
+        let what = format!("no face of `{}` encloses an area", *file.file);
+        return Err(source.error(
+            ErrorKind::Geometry,
+            file.file.span(),
+            what,
+            "export the mesh anew, with more digits",
+        ));
+    }
+    Ok(parts)
+}
+
+/// The faces of all groups where they come to stand, fit to be meshed; what was done to them is noted.
+fn mended(context: &mut Context, imported: &Imported, placing: &Placing) -> Result<Mended, SceneError> {
+    let mut faces = vec![];
+    for face in imported.groups.iter().flat_map(|group| &group.faces) {
+        placing.check(face, &imported.source)?;
+        faces.push(face.corners.iter().map(|&p| placing.apply(p)).collect());
+    }
+    let mended = Mended::of(faces);
+    let first = mended.without_area.first();
+    let span = first.and_then(|&k| imported.groups.iter().flat_map(|group| &group.faces).nth(k));
+    let span = span.map_or(0..0, |face| face.span.clone());
+    if let Some(what) = mended.left_out() {
+        let (file, place) = (imported.source.path.clone(), imported.source.place(span));
+        let help = "nothing is to be done; an export with more digits avoids it".to_owned();
+        context.notes.push(Warning { file, place, what, help });
+    }
+    context.findings.extend(mended.findings());
+    Ok(mended)
+}
+
+/// Shapes with their numbers of elements.
+fn counted_shapes(
+    shapes: Vec<Shape>,
+    cutting: &Cutting,
+    error: impl Fn(&MeshError) -> SceneError,
+) -> Result<Vec<(Shape, u128)>, SceneError> {
+    let counted = |shape: Shape| shape.count(cutting).map(|count| (shape, count)).map_err(|e| error(&e));
+    shapes.into_iter().map(counted).collect()
 }
 
 fn load(context: &mut Context, file: &ObjEntry) -> Result<Imported, SceneError> {
@@ -61,38 +121,17 @@ fn load(context: &mut Context, file: &ObjEntry) -> Result<Imported, SceneError> 
     Ok(imported)
 }
 
-/// Names in the material libraries, or `None` where there is none or where none is needed, since the scene has a
-/// material for every name.
+/// The material libraries, or `None` where there is none or where none is needed, since the scene has a material for every name.
 fn libraries(
     context: &mut Context,
     file: &ObjEntry,
     imported: &Imported,
-) -> Result<Option<Vec<String>>, SceneError> {
+) -> Result<Option<Vec<Library>>, SceneError> {
     let mut used = imported.groups.iter().filter_map(|group| group.material.as_ref());
     if imported.libraries.is_empty() || used.all(|name| mapped(file, name).is_some()) {
         return Ok(None);
     }
-    let mut names = vec![];
-    for library in &imported.libraries {
-        names.extend(library_names(context, file, imported, library)?);
-    }
-    Ok(Some(names))
-}
-
-fn library_names(
-    context: &mut Context,
-    file: &ObjEntry,
-    imported: &Imported,
-    library: &Name,
-) -> Result<Vec<String>, SceneError> {
-    let name = Path::new(file.file.as_str()).with_file_name(&library.text);
-    let bytes = context.files.load(&name).map_err(|error| {
-        let what = format!("cannot read the material library `{}`: {error}", library.text);
-        let help =
-            "put it beside the OBJ file, or name a material of the scene for every usemtl: materials = { … }";
-        imported.source.error(ErrorKind::Io, library.span.clone(), what, help).caused_by(error)
-    })?;
-    Ok(material_names(&Source::decode(&context.files.path(&name), bytes)?))
+    library::read(context, file, imported).map(Some)
 }
 
 fn mapped<'a>(file: &'a ObjEntry, name: &Name) -> Option<&'a At<String>> {
@@ -110,43 +149,49 @@ fn unused_names(source: &Source, file: &ObjEntry, imported: &Imported) -> Result
 
 /// Where the material of a group is looked for.
 struct Lookup<'a> {
-    source: &'a Source,
     entry: &'a SurfaceEntry,
     file: &'a ObjEntry,
     imported: &'a Imported,
-    materials: &'a [Material],
-    libraries: Option<&'a [String]>,
+    libraries: Option<&'a [Library]>,
 }
 
 impl Lookup<'_> {
-    fn of(&self, group: &Group) -> Result<usize, SceneError> {
+    fn of(&self, context: &mut Context, group: &Group) -> Result<usize, SceneError> {
         match &group.material {
             Some(name) => match mapped(self.file, name) {
-                Some(to) => find_material(self.source, to, self.materials),
-                None => self.by_same_name(name),
+                Some(to) => find_material(context.source, to, context.own()),
+                None => self.by_same_name(context, name),
             },
             None => match &self.entry.material {
-                Some(name) => find_material(self.source, name, self.materials),
+                Some(name) => find_material(context.source, name, context.own()),
                 None => Err(self.nameless(group)),
             },
         }
     }
 
-    fn by_same_name(&self, name: &Name) -> Result<usize, SceneError> {
+    /// The material of the scene that has the name, else that of a library.
+    fn by_same_name(&self, context: &mut Context, name: &Name) -> Result<usize, SceneError> {
         let error =
             |what: String, help| self.imported.source.error(ErrorKind::Name, name.span.clone(), what, help);
-        if let Some(names) = self.libraries.filter(|names| !names.contains(&name.text)) {
+        let libraries = self.libraries.unwrap_or_default();
+        let defined = || libraries.iter().flat_map(|library| &library.materials).map(|m| m.name.as_str());
+        let undefined = self.libraries.is_some() && !defined().any(|known| known == name.text);
+        if undefined && context.fallback.is_none() {
             let what = format!("no material library of this file defines `{}`", name.text);
-            return Err(error(what, among(&name.text, names.iter().map(String::as_str), "names")));
+            return Err(error(what, among(&name.text, defined(), "names")));
         }
-        self.materials.iter().position(|material| material.name == name.text).ok_or_else(|| {
-            let what = format!("the scene has no material `{}`", name.text);
-            let known = among(&name.text, self.materials.iter().map(|m| m.name.as_str()), "materials");
-            error(
-                what,
-                format!("write materials = {{ \"{}\" = \"…\" }} in the obj table; {known}", name.text),
-            )
-        })
+        if let Some(own) = context.own().iter().position(|material| material.name == name.text) {
+            return Ok(own);
+        }
+        if let Some(found) = library::find(context, libraries, &name.text)?.or(context.fallback) {
+            return Ok(found);
+        }
+        let what = format!("the scene has no material `{}`", name.text);
+        let known = among(&name.text, context.own().iter().map(|m| m.name.as_str()), "materials");
+        Err(error(
+            what,
+            format!("write materials = {{ \"{}\" = \"…\" }} in the obj table; {known}", name.text),
+        ))
     }
 
     fn nameless(&self, group: &Group) -> SceneError {
@@ -162,56 +207,6 @@ fn name(entry: &SurfaceEntry, group: &Group, groups: &[Group]) -> String {
     let material = group.material.as_ref().filter(|_| several).map(|name| name.text.as_str());
     let parts = [Some(entry.name.as_str()), group.object.as_deref(), material];
     parts.into_iter().flatten().collect::<Vec<_>>().join("/")
-}
-
-/// Shapes of a group, each with its number of elements.
-fn shapes(
-    source: &Source,
-    entry: &SurfaceEntry,
-    mesh_file: &Source,
-    group: &Group,
-    placing: &Placing,
-    cutting: &Cutting,
-) -> Result<Vec<(Shape, u128)>, SceneError> {
-    let mut shapes = vec![];
-    for face in &group.faces {
-        let error = |e| geometry(source, entry, &e, (mesh_file, face.span.clone()));
-        placing.check(face, mesh_file)?;
-        let corners: Vec<Vec3> = face.corners.iter().map(|&p| placing.apply(p)).collect();
-        for shape in face_shapes(&corners) {
-            let elements = shape.count(cutting).map_err(error)?;
-            shapes.push((shape, elements));
-        }
-    }
-    Ok(shapes)
-}
-
-/// A face as one shape. A convex polygon that is not flat, as rounded coordinates make it, is a fan of triangles.
-pub(crate) fn face_shapes(corners: &[Vec3]) -> Vec<Shape> {
-    match *corners {
-        [a, b, c] => vec![Shape::Triangle { corners: [a, b, c] }],
-        [a, b, c, d] => vec![Shape::Quad { corners: [a, b, c, d], skip: vec![] }],
-        _ => {
-            let polygon = Shape::Polygon { outline: corners.to_vec(), holes: vec![] };
-            match polygon.count(&Cutting::default()) {
-                Err(MeshError::NotPlanar { .. }) if is_convex(corners) => fan(corners),
-                _ => vec![polygon],
-            }
-        }
-    }
-}
-
-fn fan(corners: &[Vec3]) -> Vec<Shape> {
-    let triangle = |side: &[Vec3]| Shape::Triangle { corners: [corners[0], side[0], side[1]] };
-    corners[1..].windows(2).map(triangle).collect()
-}
-
-/// Whether every corner turns left, seen along the area vector.
-fn is_convex(corners: &[Vec3]) -> bool {
-    let n = corners.len();
-    let side = |i: usize| corners[(i + 1) % n] - corners[i % n];
-    let normal: Vec3 = (0..n).map(|i| (corners[i] - corners[0]).cross(side(i))).sum();
-    (0..n).all(|i| side(i).cross(side(i + 1)).dot(normal) > 0.0)
 }
 
 /// Where a file's points come to stand.

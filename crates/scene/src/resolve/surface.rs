@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use fredholm_mesh::{Cutting, MeshError, Shape};
 
-use super::{Context, Material, cutting, obj, shape};
+use super::{Context, Material, cutting, obj, shape, turned};
 use crate::error::{ErrorKind, SceneError};
 use crate::format::{At, SurfaceEntry};
-use crate::part::Part;
+use crate::part::{Origin, Part};
 use crate::source::Source;
 use crate::suggest::among;
 
@@ -21,8 +21,18 @@ pub(super) fn parts(context: &mut Context, entry: &SurfaceEntry) -> Result<Vec<P
         (Some(shape), _) => vec![own(context, entry, shape, &cutting, span)?],
         (None, None) => vec![],
     };
-    add_backs(context, entry, &mut parts)?;
+    let sides = two_sided(context, entry, &parts)?;
+    add_backs(context, entry, &mut parts, &sides)?;
     Ok(parts)
+}
+
+/// Which parts have two sides: as the entry says, else the objects of a file whose faces are turned inconsistently.
+fn two_sided(context: &mut Context, entry: &SurfaceEntry, parts: &[Part]) -> Result<Vec<bool>, SceneError> {
+    match (entry.two_sided, &entry.obj) {
+        (Some(given), _) => Ok(vec![given; parts.len()]),
+        (None, None) => Ok(vec![false; parts.len()]),
+        (None, Some(_)) => turned::two_sided(context, entry, parts),
+    }
 }
 
 fn own(
@@ -38,7 +48,7 @@ fn own(
         let help = "add a line material = \"…\" with the name of a material";
         return Err(source.error(ErrorKind::MissingKey, entry.name.span(), what, help));
     };
-    let material = find_material(source, name, context.materials)?;
+    let material = find_material(source, name, context.own())?;
     let elements = shape.count(cutting).map_err(|e| geometry(source, entry, &e, (source, span)))?;
     Ok(part(entry, &entry.name, material, vec![shape], cutting, elements))
 }
@@ -53,20 +63,25 @@ pub(super) fn part(
     elements: u128,
 ) -> Part {
     let (name, cutting, span) = (name.to_owned(), cutting.clone(), entry.name.span());
-    Part { name, material, shapes: Arc::from(shapes), cutting, elements, span }
+    let origin = if entry.obj.is_some() { Origin::MeshFile } else { Origin::Scene };
+    Part { name, material, shapes: Arc::from(shapes), cutting, elements, origin, span }
 }
 
-fn add_backs(context: &Context, entry: &SurfaceEntry, parts: &mut Vec<Part>) -> Result<(), SceneError> {
+fn add_backs(
+    context: &Context,
+    entry: &SurfaceEntry,
+    parts: &mut Vec<Part>,
+    sides: &[bool],
+) -> Result<(), SceneError> {
     let material = entry.back_material.as_ref();
-    let material = material.map(|name| find_material(context.source, name, context.materials)).transpose()?;
-    if let (Some(name), false) = (&entry.back_material, entry.two_sided) {
+    let material = material.map(|name| find_material(context.source, name, context.own())).transpose()?;
+    if let (Some(name), false) = (&entry.back_material, sides.contains(&true)) {
         let what = "a surface with one side has no back to give a material".to_owned();
         return Err(context.source.value_error(name, what, "add two_sided = true, or remove back_material"));
     }
-    if entry.two_sided {
-        let backs: Vec<Part> = parts.iter().map(|front| back(front, material)).collect();
-        parts.extend(backs);
-    }
+    let backs: Vec<Part> =
+        parts.iter().zip(sides).filter(|(_, two)| **two).map(|(front, _)| back(front, material)).collect();
+    parts.extend(backs);
     Ok(())
 }
 

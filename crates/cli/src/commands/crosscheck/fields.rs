@@ -46,7 +46,7 @@ pub(super) fn run(args: &CrosscheckArgs, folder: &Path, stages: &mut Stages) -> 
     let record = record(args, &model, (&rows, &states), stages);
     write_field_crosscheck(folder, &rows, &record).map_err(report_failure)?;
     if !args.log.quiet {
-        summarise(folder, "point", &record)?;
+        summarise(folder, &record)?;
     }
     Ok(if record.significant == 0 { Ending::Done } else { Ending::Disagrees })
 }
@@ -101,6 +101,7 @@ fn compared(
         deterministic_error: &deterministic_error,
         stochastic: &stochastic,
         standard_error: &standard_error,
+        single: &vec![0.0; standard_error.len()],
         batches: state.batches(),
     };
     // Of all frequencies together it is decided later what is significant.
@@ -161,6 +162,7 @@ fn record(
         correction: args.correction.correction().name().to_owned(),
         places: rows.len(),
         significant,
+        power: None,
         score_mean: suite.mean,
         score_variance: suite.variance,
         worst: worst(rows),
@@ -178,6 +180,7 @@ fn worst(rows: &[FieldScore]) -> Vec<WorstPlace> {
     let mut order: Vec<&FieldScore> = rows.iter().collect();
     order.sort_by(|a, b| b.score.abs().total_cmp(&a.score.abs()));
     let place = |row: &&FieldScore| WorstPlace {
+        kind: "point".to_owned(),
         face: row.index,
         surface: row.receiver.clone(),
         centroid: row.position,

@@ -2,9 +2,10 @@
 
 use fredholm_montecarlo::State;
 use fredholm_montecarlo::statistics::{Crosscheck, Place};
-use fredholm_report::{CROSSCHECK_FORMAT, CrosscheckRecord, CrosscheckRow, WorstPlace};
+use fredholm_report::{CROSSCHECK_FORMAT, CrosscheckPower, CrosscheckRecord, CrosscheckRow, WorstPlace};
 
-use super::CrosscheckArgs;
+use super::places::{self, Places};
+use super::{CrosscheckArgs, Power, UNDECIDED};
 use crate::problem::Problem;
 use crate::stages::Stages;
 
@@ -14,27 +15,34 @@ pub(super) const WORST: usize = 5;
 /// What the comparison came to.
 pub(super) fn record(
     args: &CrosscheckArgs,
-    problem: &Problem,
+    (problem, places): (&Problem, &Places),
     (values, state): (&[f64], &State),
-    found: &Crosscheck,
+    (found, power): (&Crosscheck, &Power),
     stages: &Stages,
 ) -> CrosscheckRecord {
     let relative = |at: usize| {
         if values[at] == 0.0 { f64::INFINITY } else { state.groups.mean()[at] / values[at] - 1.0 }
+    };
+    let named = |place: &Place| worst(problem, places, place, relative(place.index));
+    let verdict = match (found.agrees(), power.suffices()) {
+        (false, _) => "disagree",
+        (true, true) => "agree",
+        (true, false) => UNDECIDED,
     };
     CrosscheckRecord {
         format: CROSSCHECK_FORMAT.to_owned(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
         scene: problem.scene.path().display().to_string(),
         scene_sha256: problem.scene.sha256().to_owned(),
-        verdict: if found.agrees() { "agree" } else { "disagree" }.to_owned(),
+        verdict: verdict.to_owned(),
         significance: args.significance,
         correction: args.correction.correction().name().to_owned(),
         places: found.places.len(),
         significant: found.significant,
+        power: Some(power.record()),
         score_mean: found.suite.mean,
         score_variance: found.suite.variance,
-        worst: found.worst(WORST).iter().map(|place| worst(problem, place, relative(place.index))).collect(),
+        worst: found.worst(WORST).iter().map(named).collect(),
         method: state.method.clone(),
         seed: state.seed,
         batches: state.batches(),
@@ -44,17 +52,33 @@ pub(super) fn record(
     }
 }
 
-fn worst(problem: &Problem, place: &Place, relative: f64) -> WorstPlace {
-    let bands = problem.scene.bands();
-    let (number, band) = (place.index / bands.len(), place.index % bands.len());
-    let face = &problem.mesh.faces()[number];
-    WorstPlace {
-        face: number,
-        surface: problem.mesh.surfaces()[face.surface].name.clone(),
-        centroid: face.centroid.to_array(),
-        band: bands[band].clone(),
-        z: place.z,
+impl Power {
+    fn record(&self) -> CrosscheckPower {
+        let known = |part: f64| part.is_finite().then_some(part);
+        CrosscheckPower { whole: known(self.whole), surface: known(self.surface), face: known(self.face) }
+    }
+}
+
+fn worst(problem: &Problem, places: &Places, place: &Place, relative: f64) -> WorstPlace {
+    let (at, band) = places.at(place.index);
+    let band = problem.scene.bands()[band].clone();
+    let (mesh, z) = (&problem.mesh, place.z);
+    let named = |kind: &str, face: usize, surface: &str, centroid: [f64; 3]| WorstPlace {
+        kind: kind.to_owned(),
+        face,
+        surface: surface.to_owned(),
+        centroid,
+        band,
+        z,
         relative,
+    };
+    match at {
+        places::Place::Face(number) => {
+            let face = &mesh.faces()[number];
+            named("face", number, &mesh.surfaces()[face.surface].name, face.centroid.to_array())
+        }
+        places::Place::Surface(number) => named("surface", number, &mesh.surfaces()[number].name, [0.0; 3]),
+        places::Place::Whole => named("whole", 0, "", [0.0; 3]),
     }
 }
 
@@ -63,7 +87,7 @@ pub(super) fn rows(
     problem: &Problem,
     (values, error): (&[f64], &[f64]),
     state: &State,
-    found: &Crosscheck,
+    faces: &[Place],
 ) -> Vec<CrosscheckRow> {
     let (bands, errors) = (problem.scene.bands().len(), state.groups.standard_errors());
     let row = |place: &Place| CrosscheckRow {
@@ -75,5 +99,5 @@ pub(super) fn rows(
         p: place.p,
         significant: place.significant,
     };
-    found.places.iter().map(row).collect()
+    faces.iter().map(row).collect()
 }

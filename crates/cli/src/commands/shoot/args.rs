@@ -21,7 +21,7 @@ After Ctrl-C the field so far is written.";
 /// Options of `shoot`.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct ShootArgs {
-    /// Scene file (TOML)
+    /// Scene file (.toml), or mesh file that stands for a scene (.obj, .vs3)
     pub(crate) scene: PathBuf,
     /// Folder for the results [default: out/<name of the scene file>]
     #[arg(long, short, value_name = "DIR")]
@@ -35,6 +35,9 @@ pub(crate) struct ShootArgs {
     /// Numbers of shots after which to write a picture
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "1,10,100")]
     pub(crate) pictures: Vec<u64>,
+    /// Draw no picture, neither on the way nor at the end
+    #[arg(long, conflicts_with = "pictures")]
+    pub(crate) no_pictures: bool,
     /// Memory for columns that are kept for the next shot from there
     #[arg(long, value_name = "LIMIT", default_value = "32MiB")]
     pub(crate) keep: Bytes,

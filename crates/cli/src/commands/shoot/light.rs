@@ -1,12 +1,15 @@
 //! Exitances, reflectances and exposed areas of the elements, and the field that follows from what they have received.
 
-use fredholm_coupling::{Groups, exposed_shares};
+use std::ops::ControlFlow;
+
+use fredholm_coupling::{Constants, Extent, Groups, MeshError, exposed_shares};
 use fredholm_linop::MultiVector;
 use fredholm_mesh::Patch;
 use fredholm_report::Field;
 
 use super::report_failure;
 use crate::failure::{Ending, Failure};
+use crate::mesh_error;
 use crate::problem::{Open, prepare};
 
 /// The elements as sources and receivers of light.
@@ -66,6 +69,37 @@ impl Light {
         Groups::new(&scene.patches(), &kinds, scene.occluders.tolerance())
     }
 
+    /// The stated error of the field so far, of which `unshot` is still to be sent; none where `go_on` breaks.
+    pub(super) fn error(
+        &self,
+        scene: &Open,
+        (received, unshot): (&MultiVector<f64>, &MultiVector<f64>),
+        go_on: &(dyn Fn() -> ControlFlow<()> + Sync),
+    ) -> Result<Option<MeshError>, Failure> {
+        let scaling = self.scaling();
+        let radiosity = MultiVector::from_fn(received.dim(), received.lanes(), |i, l| {
+            self.exitance.row(i)[l] + scaling.row(i)[l] * received.row(i)[l]
+        });
+        let irradiance = self.irradiance(received);
+        let size = |(&area, &exposed): (&f64, &f64)| Extent { area, exposed };
+        let elements: Vec<Extent> = self.areas.iter().zip(&self.exposed).map(size).collect();
+        let patches = scene.patches();
+        let constants = Constants {
+            patches: &patches,
+            occluders: &scene.occluders,
+            elements: &elements,
+            reflectance: &self.reflectance,
+            radiosity: &radiosity,
+            irradiance: &irradiance,
+        };
+        mesh_error::of_shooting(&scene.mesh, &constants, unshot, go_on)
+    }
+
+    /// Means over whole elements, W/m², from the power that each has received.
+    fn irradiance(&self, received: &MultiVector<f64>) -> MultiVector<f64> {
+        MultiVector::from_fn(received.dim(), received.lanes(), |i, l| received.row(i)[l] / self.areas[i])
+    }
+
     /// M + ρ E, means over whole elements, W/m², from the power that each has received.
     pub(super) fn means(&self, received: &MultiVector<f64>) -> MultiVector<f64> {
         MultiVector::from_fn(received.dim(), received.lanes(), |i, l| {
@@ -81,8 +115,7 @@ impl Light {
         radiosity: &MultiVector<f64>,
         show: impl FnOnce(&Field<'_>) -> Result<R, Failure>,
     ) -> Result<R, Failure> {
-        let irradiance =
-            MultiVector::from_fn(received.dim(), received.lanes(), |i, l| received.row(i)[l] / self.areas[i]);
+        let irradiance = self.irradiance(received);
         let bands = scene.scene.bands();
         let field = Field::new(&scene.mesh, bands, irradiance.as_slice(), radiosity.as_slice())
             .and_then(|field| field.with_exitance(self.exitance.as_slice()))

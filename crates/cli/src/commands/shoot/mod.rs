@@ -4,10 +4,11 @@ mod args;
 mod light;
 mod summary;
 
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 
-use fredholm_coupling::{Emitters, Groups};
+use fredholm_coupling::{Emitters, Groups, MeshError};
 use fredholm_iterative::{Frame, MultilevelShooting};
 use fredholm_linop::{Columns, Lazy, MultiVector};
 use fredholm_report::{SHOOTING_FORMAT, ShootingRecord, Shot, write_shooting, write_shot_picture};
@@ -22,6 +23,7 @@ use crate::interrupt::Interrupt;
 use crate::memory;
 use crate::options::ProblemOptions;
 use crate::problem::Open;
+use crate::record;
 use crate::solution::solve_failure;
 use crate::stages::Stages;
 use crate::start::Start;
@@ -52,12 +54,17 @@ fn run(args: &ShootArgs, folder: &Path, stages: &mut Stages) -> Result<Ending, F
         console.advance(share, &|| format!("{number} shots, {:.1} % distributed", 100.0 * shot.distributed));
         !interrupt.requested()
     };
-    let (shots, received) = stages.run("shots", || job.shoot(&emitters, &watch))?;
-    let record = record(args, &scene, shots, &emitters, stages);
+    let (shots, received, unshot) = stages.run("shots", || job.shoot(&emitters, &watch))?;
+    let go_on = || if interrupt.requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+    let error = stages.run("errors", || light.error(&scene, (&received, &unshot), &go_on))?;
+    let record = shooting_record(args, &scene, (shots, error), &emitters, stages);
     stages.run("results", || job.write(&received, &record))?;
     let record = ShootingRecord { timings: stages.timings().to_vec(), ..record };
     conclude(args, folder, &record, stages)
 }
+
+/// The shots, what each element has received, W, and what it has still to send, W/m².
+type Shots = (Vec<Shot>, MultiVector<f64>, MultiVector<f64>);
 
 /// A scene that is shot through, and where its results go.
 struct Job<'a> {
@@ -69,12 +76,8 @@ struct Job<'a> {
 }
 
 impl Job<'_> {
-    /// The shots, and what each element has received, W.
-    fn shoot(
-        &self,
-        emitters: &Emitters,
-        watch: &dyn Fn(&Shot, usize) -> bool,
-    ) -> Result<(Vec<Shot>, MultiVector<f64>), Failure> {
+    /// Shoots until the share that was asked for is distributed.
+    fn shoot(&self, emitters: &Emitters, watch: &dyn Fn(&Shot, usize) -> bool) -> Result<Shots, Failure> {
         let columns = Lazy::new(emitters, u64::try_from(self.args.keep.0).unwrap_or(u64::MAX));
         let places = self.groups.places();
         let frame = Frame { order: self.groups.order(), groups: &places, areas: &self.light.exposed };
@@ -95,12 +98,12 @@ impl Job<'_> {
                 break;
             }
         }
-        Ok((shots, shooting.received()))
+        Ok((shots, shooting.received(), shooting.unshot()))
     }
 
     /// Writes a picture, where one is asked for after this many shots.
     fn picture(&self, shots: u64, shooting: &MultilevelShooting) -> Result<(), Failure> {
-        if !self.args.pictures.contains(&shots) {
+        if self.args.no_pictures || !self.args.pictures.contains(&shots) {
             return Ok(());
         }
         self.light.field(self.scene, &shooting.received(), &shooting.with_ambient(), |field| {
@@ -112,8 +115,8 @@ impl Job<'_> {
     /// Writes the field that follows from what the elements have received, and the record.
     fn write(&self, received: &MultiVector<f64>, record: &ShootingRecord) -> Result<(), Failure> {
         self.light.field(self.scene, received, &self.light.means(received), |field| {
-            let view = view_of(self.scene.scene.camera(), field);
-            write_shooting(self.folder, field, record, &view).map_err(report_failure)
+            let view = (!self.args.no_pictures).then(|| view_of(self.scene.scene.camera(), field));
+            write_shooting(self.folder, field, record, view.as_ref()).map_err(report_failure)
         })
     }
 }
@@ -126,15 +129,15 @@ fn conclude(
 ) -> Result<Ending, Failure> {
     record.warnings.iter().for_each(|warning| stages.console.warn(warning));
     if !args.log.quiet {
-        summary::print(folder, record)?;
+        summary::print(folder, record, !args.no_pictures)?;
     }
     Ok(ending(record, stages.interrupt))
 }
 
-fn record(
+fn shooting_record(
     args: &ShootArgs,
     scene: &Open,
-    shots: Vec<Shot>,
+    (shots, error): (Vec<Shot>, Option<MeshError>),
     emitters: &Emitters,
     stages: &Stages,
 ) -> ShootingRecord {
@@ -155,6 +158,7 @@ fn record(
         elements: scene.mesh.len() as u64,
         groups: emitters.count() as u64,
         reached: shots.last().is_none_or(|shot| shot.distributed >= args.share),
+        mesh_error: error.as_ref().map(record::mesh_error),
         form_factor_error: emitters.largest_error(),
         peak_memory_bytes: memory::peak_bytes(),
         warnings: scene.warnings.clone(),

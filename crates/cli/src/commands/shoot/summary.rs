@@ -10,14 +10,15 @@ use crate::size::Bytes;
 use crate::summary::Lines;
 
 /// Prints what came of the shots.
-pub(super) fn print(folder: &Path, record: &ShootingRecord) -> Result<(), Failure> {
+pub(super) fn print(folder: &Path, record: &ShootingRecord, drawn: bool) -> Result<(), Failure> {
     let mut lines = Lines::default();
-    lines.add("picture", folder.join(SHOOTING_FILES[3]).display().to_string());
+    lines.add_some("picture", drawn.then(|| folder.join(SHOOTING_FILES[3]).display().to_string()));
     lines.add(
         "size",
         format!("{} elements, {} of them and of their groups can shoot", record.elements, record.groups),
     );
     lines.add("shots", shots(record));
+    lines.add("error", error(record));
     lines.add("form factors", format!("estimated error of one {:.1e} at most", record.form_factor_error));
     lines.add_some("memory", record.peak_memory_bytes.map(|peak| format!("{} at most", Bytes(peak.into()))));
     lines.add(
@@ -30,6 +31,19 @@ pub(super) fn print(folder: &Path, record: &ShootingRecord) -> Result<(), Failur
             .join(", "),
     );
     output::print(&lines.under(&format!("{} → {}", record.scene, folder.display())))
+}
+
+/// The stated error in the worst band.
+fn error(record: &ShootingRecord) -> String {
+    let worst = record.mesh_error.as_ref().and_then(|e| e.relative_l2.iter().copied().reduce(f64::max));
+    worst.map_or_else(
+        || "not estimated: that takes a run that was not interrupted".to_owned(),
+        |worst| {
+            format!(
+                "the irradiance of the faces is right within {worst:.1e} (mesh and unshot light; L2, worst band; estimate)"
+            )
+        },
+    )
 }
 
 fn shots(record: &ShootingRecord) -> String {

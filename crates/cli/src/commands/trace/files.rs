@@ -102,22 +102,25 @@ impl<'a> Estimates<'a> {
         picture.map_err(report_failure)
     }
 
-    /// Writes the files; `run.json` last.
+    /// Writes the files, with a picture where one is to be drawn; `run.json` last.
     pub(super) fn write(
         &self,
         folder: &Path,
         origin: &Origin,
-        pixels: Option<&Pixels>,
+        (drawn, pixels): (bool, Option<&Pixels>),
         record: &RunRecord,
     ) -> Result<(), Failure> {
         let (mesh, bands, state) = (&self.ground.mesh, self.ground.scene.bands(), self.state);
         let errors = state.groups.standard_errors();
         let faces = FaceEstimates::new(mesh, bands, state.groups.mean(), &errors).map_err(report_failure)?;
-        let picture = self.picture(pixels)?;
+        let picture = drawn.then(|| self.picture(pixels)).transpose()?;
         prepare(folder)?;
+        remove(&folder.join("image.png"))?;
         let write = || -> Result<(), ReportError> {
             write_atomically(&folder.join("faces.csv"), |out| write_face_estimates(&faces, out))?;
-            write_atomically(&folder.join("image.png"), |out| picture.write_png(out))?;
+            if let Some(picture) = &picture {
+                write_atomically(&folder.join("image.png"), |out| picture.write_png(out))?;
+            }
             if let Some(pixels) = pixels {
                 write_atomically(&folder.join("pixels.npz"), |out| pixels.write_npz(out))?;
             }
@@ -130,10 +133,18 @@ impl<'a> Estimates<'a> {
 
 /// Makes the folder and removes the mark of completeness of an older result.
 pub(super) fn prepare(folder: &Path) -> Result<(), Failure> {
-    let failed = |source| report_failure(ReportError::Write { path: folder.to_owned(), source });
-    std::fs::create_dir_all(folder).map_err(failed)?;
-    match std::fs::remove_file(folder.join("run.json")) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(failed(error)),
+    std::fs::create_dir_all(folder).map_err(|error| failed(folder, error))?;
+    remove(&folder.join("run.json"))
+}
+
+/// Removes a file, if it is there.
+fn remove(path: &Path) -> Result<(), Failure> {
+    match std::fs::remove_file(path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(failed(path, error)),
         _ => Ok(()),
     }
+}
+
+fn failed(path: &Path, source: io::Error) -> Failure {
+    report_failure(ReportError::Write { path: path.to_owned(), source })
 }

@@ -68,6 +68,9 @@ pub(crate) struct TraceArgs {
     /// Trace every pixel of the picture by itself, with at least so many samples (path, bidirectional)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
     pub(crate) spp: Option<u32>,
+    /// Draw no picture
+    #[arg(long, conflicts_with = "spp")]
+    pub(crate) no_pictures: bool,
     /// Go on with the run in the folder
     #[arg(long = "continue")]
     pub(crate) go_on: bool,
@@ -125,9 +128,10 @@ fn run(args: &TraceArgs, folder: &Path, stages: &mut Stages) -> Result<Ending, F
         _ => None,
     };
     let record = files::record(&ground, &state, &in_force(args, stop), reason, stages);
-    stages.run("results", || estimates.write(folder, &origin, pixels.as_ref(), &record))?;
+    stages
+        .run("results", || estimates.write(folder, &origin, (!args.no_pictures, pixels.as_ref()), &record))?;
     if !args.log.quiet {
-        summarise(folder, &state, &record.stop_reason)?;
+        summarise(folder, !args.no_pictures, &state, &record.stop_reason)?;
     }
     Ok(if stages.interrupt.requested() { Ending::Interrupted } else { Ending::Done })
 }
@@ -193,9 +197,9 @@ fn worth_saving(state: &State) -> Result<(), Failure> {
     if state.batches() < 2 { Err(crate::interrupt::nothing_saved()) } else { Ok(()) }
 }
 
-fn summarise(folder: &Path, state: &State, reason: &str) -> Result<(), Failure> {
+fn summarise(folder: &Path, drawn: bool, state: &State, reason: &str) -> Result<(), Failure> {
     let mut lines = Lines::default();
-    lines.add("picture", folder.join("image.png").display().to_string());
+    lines.add_some("picture", drawn.then(|| folder.join("image.png").display().to_string()));
     let (batches, samples) = (state.batches(), state.samples);
     lines.add(
         "samples",

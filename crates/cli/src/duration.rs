@@ -1,0 +1,43 @@
+//! Times as people say them.
+
+/// Units, their seconds, and the number of seconds from which on they are used.
+const UNITS: [(&str, f64, f64); 5] = [
+    ("year", 31_557_600.0, 63_115_200.0),
+    ("day", 86_400.0, 172_800.0),
+    ("hour", 3600.0, 5400.0),
+    ("minute", 60.0, 90.0),
+    ("second", 1.0, 0.95),
+];
+
+/// About how long a number of seconds is, with one or two digits.
+pub(crate) fn in_words(seconds: f64) -> String {
+    let Some((name, unit, _)) = UNITS.iter().find(|(_, _, from)| seconds >= *from) else {
+        return "less than a second".to_owned();
+    };
+    let count = (seconds / unit).round().max(1.0);
+    let shown = if count < 100.0 { format!("{count}") } else { format!("{count:.1e}") };
+    let plural = if count > 1.0 { "s" } else { "" };
+    format!("about {shown} {name}{plural}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_told_in_the_unit_that_suits_them() {
+        for (seconds, words) in [
+            (0.2, "less than a second"),
+            (1.2, "about 1 second"),
+            (75.0, "about 75 seconds"),
+            (200.0, "about 3 minutes"),
+            (4000.0, "about 67 minutes"),
+            (10_000.0, "about 3 hours"),
+            (5e5, "about 6 days"),
+            (1e8, "about 3 years"),
+            (1e12, "about 3.2e4 years"),
+        ] {
+            assert_eq!(in_words(seconds), words, "{seconds}");
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! Objects of a file whose faces are turned inconsistently: they are lit on both sides, since nobody knows which one is meant.
+
+use fredholm_mesh::{Patch, Topology};
+
+use super::Context;
+use super::surface::geometry;
+use crate::check::Warning;
+use crate::error::SceneError;
+use crate::format::SurfaceEntry;
+use crate::part::Part;
+
+/// Names that are listed.
+const LISTED: usize = 4;
+
+/// Which of the parts of one file have neighbouring faces that run along their common side in the same direction.
+pub(super) fn two_sided(
+    context: &mut Context,
+    entry: &SurfaceEntry,
+    parts: &[Part],
+) -> Result<Vec<bool>, SceneError> {
+    let (source, mut pieces, mut part_of): (_, Vec<Patch>, Vec<usize>) = (context.source, vec![], vec![]);
+    for (number, part) in parts.iter().enumerate() {
+        for shape in part.shapes.iter() {
+            let own = shape.blockers(&part.cutting);
+            let own = own.map_err(|error| geometry(source, entry, &error, (source, part.span.clone())))?;
+            part_of.resize(part_of.len() + own.len(), number);
+            pieces.extend(own);
+        }
+    }
+    let topology = Topology::of(&pieces);
+    let mut sides = vec![false; parts.len()];
+    for &(_, clash) in &topology.clashes {
+        for piece in clash {
+            sides[part_of[piece as usize]] = true;
+        }
+    }
+    if let Some(([from, to], _)) = topology.clashes.first() {
+        let names: Vec<&str> =
+            parts.iter().zip(&sides).filter(|(_, two)| **two).map(|(part, _)| part.name.as_str()).collect();
+        let count = topology.clashes.len();
+        let what = format!(
+            "the faces of {} are turned inconsistently: the two that share a side run along it in the same direction at \
+             {count} sides, the first from {from} to {to} m; lit on both sides",
+            listed(&names)
+        );
+        let help = "turn the faces one way in the program that made the file, or set two_sided = false to light fronts only";
+        let (file, place) = (source.path.clone(), source.place(entry.name.span()));
+        context.notes.push(Warning { file, place, what, help: help.to_owned() });
+    }
+    Ok(sides)
+}
+
+/// The first names, and how many more.
+fn listed(names: &[&str]) -> String {
+    let quoted: Vec<String> = names.iter().take(LISTED).map(|name| format!("`{name}`")).collect();
+    match names.len().saturating_sub(LISTED) {
+        0 => quoted.join(", "),
+        more => format!("{} and {more} more", quoted.join(", ")),
+    }
+}
