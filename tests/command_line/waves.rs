@@ -331,7 +331,7 @@ fn hostile_numbers_are_refused_or_harmless() {
         (
             POINT,
             "grid = { corner = [0, 0, 0], u = [1, 0, 0], v = [0, 1, 0], columns = 100000, rows = 100000 }",
-            "at most",
+            "but the limit is",
         ),
         (POINT, "monostatic = { theta_degrees = nan, phi_degrees = 0 }", "finite"),
         ("[wave]", "[wave]\nbounces = 0", "bounce"),
