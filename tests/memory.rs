@@ -74,7 +74,7 @@ impl Bench {
         let output = command.stdin(Stdio::null()).stdout(Stdio::null()).output().unwrap();
         let errors = String::from_utf8_lossy(&output.stderr).into_owned();
         let lines = || errors.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
-        let last = |key: &str| lines().filter_map(|line| line[key].as_f64()).last().unwrap_or(0.0);
+        let last = |key: &str| lines().filter_map(|line| line[key].as_f64()).next_back().unwrap_or(0.0);
         let (predicted, peak) = (last("predicted_bytes"), last("peak_bytes"));
         let plain: Vec<&str> = errors.lines().filter(|line| !line.contains("\"progress\"")).collect();
         Outcome { code: output.status.code(), predicted, peak, errors: plain.join("\n") }
