@@ -33,7 +33,8 @@ fn a_city_has_the_faces_asked_for_and_one_sky() {
 fn faces_of_a_city_without_jitter_are_flat_enough_to_stay_whole() {
     let (_, mesh) = read(&City { faces: 3_000, ..City::default() }.files());
     let quads = mesh.patches().filter(|patch| patch.sides() == 4).count();
-    assert!(2 * quads > mesh.len(), "{quads} of {}", mesh.len());
+    // What touching blocks cover of each other is cut away, which leaves triangles.
+    assert!(5 * quads > 2 * mesh.len(), "{quads} of {}", mesh.len());
 }
 
 #[test]

@@ -175,7 +175,9 @@ mod tests {
         let error = write_all(&folder, &field, &record(), &view).unwrap_err();
         assert!(error.to_string().contains("field.npz"), "{error}");
         assert!(!paths[7].exists());
-        assert_eq!(fs::read_dir(&folder).unwrap().count(), FILES.len() - 1);
+        // The picture of the first attempt is gone too: none of an earlier result stays.
+        assert!(!folder.join(IMAGE).exists());
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), FILES.len() - 2);
     }
 
     #[test]
