@@ -60,7 +60,8 @@ fn snap(height: f64, tolerance: f64) -> f64 {
 }
 
 /// Parameters of a point of the patch for a point of the unit square; on a triangle the upper half of the square is folded down.
-pub(crate) fn folded(patch: &Patch, u: f64, v: f64) -> (f64, f64) {
+#[must_use]
+pub fn folded(patch: &Patch, u: f64, v: f64) -> (f64, f64) {
     if patch.sides() == 3 && u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) }
 }
 

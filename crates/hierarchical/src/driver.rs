@@ -105,9 +105,7 @@ impl Stated {
     pub fn worst(&self) -> f64 {
         self.relative_l2.iter().copied().fold(0.0, f64::max)
     }
-}
 
-impl Stated {
     /// The same with a further error of the whole of each band.
     fn with(mut self, further: &[f64]) -> Self {
         self.relative_l2.iter_mut().zip(further).for_each(|(error, further)| *error += further);

@@ -4,7 +4,8 @@
 //! at points of the element and go in directions of cosine density, both from the low-discrepancy sequence R_d of M. Roberts 2018 (powers of the root of x^{d+1} = x + 1), moved by the golden ratio from element to element. Points from which all rays meet backs
 //! are buried and do not count.
 
-use fredholm_mesh::{Patch, Vec3};
+use fredholm_coupling::polygon::folded;
+use fredholm_mesh::Patch;
 use fredholm_visibility::Occluders;
 use rayon::prelude::*;
 
@@ -86,7 +87,8 @@ fn send(element: usize, points: usize, patches: &[&Patch], lit: &Occluders) -> R
     };
     let mut rays = Rays::default();
     for point in 0..points {
-        let from = inside(patch, place(point, 0), place(point, 1));
+        let (u, v) = folded(patch, place(point, 0), place(point, 1));
+        let from = patch.point(u, v);
         let (mut lost, mut backs) = (0, 0);
         for direction in 0..DIRECTIONS {
             let number = point * DIRECTIONS + direction;
@@ -105,10 +107,4 @@ fn send(element: usize, points: usize, patches: &[&Patch], lit: &Occluders) -> R
         }
     }
     rays
-}
-
-/// A point of a patch from two numbers in [0, 1), evenly spread over parallelograms and triangles.
-fn inside(patch: &Patch, u: f64, v: f64) -> Vec3 {
-    let folded = if patch.sides() == 3 && u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] };
-    patch.point(folded[0], folded[1])
 }

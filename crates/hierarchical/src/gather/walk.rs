@@ -6,7 +6,7 @@ use crate::tree::Node;
 use fredholm_coupling::Receiver;
 use fredholm_coupling::form_factor::point_to_polygon;
 use fredholm_coupling::kernel::lambert;
-use fredholm_coupling::polygon::{HalfSpace, clip};
+use fredholm_coupling::polygon::{HalfSpace, clip, folded};
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::body::Body;
 use std::f64::consts::PI;
@@ -211,10 +211,7 @@ impl<'g> Gatherer<'g> {
     fn sampled(&self, patch: &Patch, part: f64) -> f64 {
         let side = (SIDE * part.sqrt()).ceil().clamp(1.0, SIDE) as usize;
         let middle = |k: usize| (k as f64 + 0.5) / side as f64;
-        let place = |k: usize| {
-            let (u, v) = (middle(k / side), middle(k % side));
-            if patch.sides() == 3 && u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) }
-        };
+        let place = |k: usize| folded(patch, middle(k / side), middle(k % side));
         let Receiver { point, normal } = self.receiver;
         let weigh = |[all, seen]: [f64; 2], k: usize| {
             let (u, v) = place(k);

@@ -8,6 +8,7 @@
 use super::sight::Viewer;
 use crate::tree::{Node, Tree};
 use fredholm_coupling::kernel::lambert;
+use fredholm_coupling::polygon::folded;
 use fredholm_mesh::{Patch, Vec3};
 use std::f64::consts::PI;
 
@@ -94,10 +95,10 @@ impl Chance {
     }
 }
 
-/// A point of a patch from two numbers in [0, 1), evenly spread over parallelograms and triangles.
+/// The point of a patch for a point of the unit square.
 fn place(patch: &Patch, [u, v]: [f64; 2]) -> Vec3 {
-    let folded = if patch.sides() == 3 && u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] };
-    patch.point(folded[0], folded[1])
+    let (u, v) = folded(patch, u, v);
+    patch.point(u, v)
 }
 
 /// Where the sequence of a pair of nodes starts: numbers that follow no pattern (the mixing function of SplitMix64, G. L. Steele, D. Lea, C. H. Flood 2014, doi:10.1145/2660193.2660195).
