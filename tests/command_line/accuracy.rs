@@ -243,3 +243,24 @@ fn a_goal_alone_has_the_accuracy_and_the_result_says_so() {
     let run = bench.run(&["solve", "scene.toml", "--goal", "block"]);
     assert!(run.code == 2 && run.stderr.contains("a goal needs an accuracy"), "{}", run.stderr);
 }
+
+#[test]
+fn what_memory_ends_says_so_and_states_no_error_that_is_not_known() {
+    let bench = Bench::new(include_str!("../../scenes/leblond_furnished.toml"));
+    let mut unknown = 0;
+    for memory in ["30MB", "60MB"] {
+        let asked = ["solve", "scene.toml", "--accuracy", "0.3%", "--no-pictures", "-o", "out"];
+        let run = bench.run(&[&asked[..], &["--memory", memory]].concat());
+        assert!(run.code == 3 && run.stderr.contains("the memory did not allow"), "{memory}: {}", run.stderr);
+        let hierarchy = bench.record("out")["hierarchy"].clone();
+        assert_eq!(hierarchy["limited"], true, "{memory}");
+        if let Some(stated) = hierarchy["stated"].as_f64() {
+            assert!(stated > 0.003, "{memory}: {stated}");
+        } else {
+            let why = "not estimated: that takes the change from one round of refinement to the next";
+            assert!(run.stdout.contains(why), "{memory}: {}", run.stdout);
+            unknown += 1;
+        }
+    }
+    assert!(unknown > 0);
+}

@@ -44,6 +44,7 @@ use args::Cli;
 /// Runs the program on the arguments of the process.
 #[must_use]
 pub fn run() -> ExitCode {
+    memory::share_one_heap();
     match Cli::read(std::env::args_os()) {
         Ok(cli) => carry_out(&cli),
         Err(usage) => {

@@ -158,6 +158,7 @@ fn field_error(run: &RunRecord) -> Option<String> {
 fn mesh_error(run: &RunRecord) -> String {
     let worst = run.mesh_error.as_ref().and_then(|e| e.relative_l2.iter().copied().reduce(f64::max));
     let missing = match run.stop_reason.as_str() {
+        _ if run.hierarchy.is_some() => "that takes the change from one round of refinement to the next",
         "converged" => "what the form factors lose or add has no end",
         _ => "that takes a solution within the tolerance",
     };

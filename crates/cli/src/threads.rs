@@ -17,6 +17,7 @@ pub(crate) fn count(asked: Option<u16>) -> usize {
 
 /// A pool of as many threads.
 pub(crate) fn pool(asked: Option<u16>) -> Result<ThreadPool, Failure> {
+    memory::room_to_begin()?;
     let count = count(asked);
     let built = ThreadPoolBuilder::new().num_threads(count).build();
     built.map_err(|e| {

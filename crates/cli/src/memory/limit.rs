@@ -6,16 +6,22 @@ use std::sync::OnceLock;
 
 use super::machine::Machine;
 use crate::console::Console;
+use crate::failure::{Ending, Failure};
 use crate::size::Bytes;
+use crate::threads::cores;
 
 /// Share of what the machine has left that is used where nothing is asked for: the rest keeps it usable.
 const SHARE: f64 = 0.8;
 /// Limit where the system does not tell what is available.
 const FALLBACK: u128 = 4 << 30;
-/// Address space that the C library sets aside for each thread that allocates (glibc, `HEAP_MAX_SIZE` of malloc/arena.c), and the thread's stack.
-const THREAD: u128 = (64 + 2) << 20;
+/// Address space that a thread sets aside: its stack with what guards it, and its part of the runtime.
+const THREAD: u128 = 3 << 20;
 /// Share of a limit on the address space that threads may set aside.
 const SET_ASIDE: u128 = 4;
+/// Addresses without which no run begins: reading a scene, and threads.
+const LEAST_SPACE: Bytes = Bytes(16 << 20);
+/// Threads that a limited address space makes room for at most, where the machine has fewer cores.
+const MOST_THREADS: u128 = 16;
 
 /// What sets the limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,9 +58,25 @@ pub(crate) fn limit(asked: Option<Bytes>) -> Limit {
     machine().limit(asked)
 }
 
-/// Threads of which the stacks and the C library's heaps leave most of a limited address space to the data.
+/// Whether `ulimit -v` is in force.
+#[cfg(target_os = "linux")]
+pub(super) fn addresses_are_limited() -> bool {
+    machine().address_space.is_some()
+}
+
+/// Threads of which the stacks leave most of a limited address space to the data.
 pub(crate) fn allowance() -> usize {
     machine().threads()
+}
+
+/// Refuses to begin where so few addresses are left that the smallest scene could not be read.
+pub(crate) fn room_to_begin() -> Result<(), Failure> {
+    let left = Bytes(machine().address_space.unwrap_or(u128::MAX));
+    if left >= LEAST_SPACE {
+        return Ok(());
+    }
+    let message = format!("ulimit -v leaves {left}, and {LEAST_SPACE} are the least to begin with");
+    Err(Failure::new(Ending::Resources, format!("{message}; raise it")))
 }
 
 /// Says where less is allowed than was asked for.
@@ -100,7 +122,8 @@ impl Machine {
     }
 
     fn threads(&self) -> usize {
-        let most = self.address_space.map_or(u128::MAX, |left| (left / SET_ASIDE / THREAD).max(1));
+        let room = |left: u128| (left / SET_ASIDE / THREAD).clamp(1, MOST_THREADS.max(cores() as u128));
+        let most = self.address_space.map_or(u128::MAX, room);
         usize::try_from(most).unwrap_or(usize::MAX)
     }
 }
@@ -162,10 +185,11 @@ mod tests {
         let machine = |space: u128| Machine { address_space: Some(space), ..Machine::default() };
         assert_eq!(Machine::default().threads(), usize::MAX);
         assert_eq!(
-            (machine(GIB).threads(), machine(4 * GIB).threads(), machine(GIB / 8).threads()),
-            (3, 15, 1)
+            (machine(GIB).threads(), machine(GIB / 8).threads(), machine(GIB / 1024).threads()),
+            (cores().max(16), 10, 1)
         );
-        assert_eq!(of(machine(GIB).limit(None)), (GIB - 3 * THREAD, Bound::AddressSpace));
-        assert_eq!(machine(GIB / 8).limit(None).bytes, Bytes(GIB / 8 * 3 / 4));
+        let aside = cores().max(16) as u128 * THREAD;
+        assert_eq!(of(machine(GIB).limit(None)), (GIB - aside, Bound::AddressSpace));
+        assert_eq!(machine(GIB / 256).limit(None).bytes, Bytes(GIB / 256 * 3 / 4));
     }
 }

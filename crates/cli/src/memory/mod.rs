@@ -1,13 +1,15 @@
 //! How much memory a run may take, how much it will take, and how much it took.
 
 mod groups;
+mod heap;
 mod limit;
 mod machine;
 mod plan;
 
 use std::fs;
 
-pub(crate) use limit::{Limit, allowance, limit, tell};
+pub(crate) use heap::share as share_one_heap;
+pub(crate) use limit::{Limit, allowance, limit, room_to_begin, tell};
 pub(crate) use plan::Plan;
 
 use crate::console::Console;
