@@ -10,32 +10,43 @@ use fredholm_linop::MultiVector;
 use fredholm_mesh::Mesh;
 use fredholm_scene::Scene;
 use fredholm_visibility::Occluders;
+use std::collections::HashMap;
 use std::error::Error;
 
 /// The solver of the command line, and the one that takes its place.
 const SOLVERS: Solvers = Solvers { first: &CgTheta, fallback: &Gmres { restart: 50 } };
 
-/// Prints every round.
-struct Print;
+/// Prints every round, with its true error where that is known.
+struct Print<'a> {
+    mesh: &'a Mesh,
+    reference: Option<Vec<f64>>,
+}
 
-impl Watch for Print {
-    fn round(&self, rounds: &[Round], _: &State) -> Result<(), HierarchyError> {
-        rounds.last().map_or(Ok(()), |round| {
-            print(round);
-            Ok(())
-        })
+impl Watch for Print<'_> {
+    fn round(&self, rounds: &[Round], state: &State) -> Result<(), HierarchyError> {
+        if let Some(round) = rounds.last() {
+            self.print(round, state.irradiance());
+        }
+        Ok(())
     }
 }
 
-fn print(round: &Round) {
-    let change = round.change.map_or_else(|| "-".to_owned(), |change| format!("{:.3} %", 100.0 * change));
-    let (elements, links) = (round.elements, round.links);
-    let per = links as f64 / elements as f64;
-    println!(
-        "{:9.2e} {elements:9} {links:10} {per:13.1} {change:>10} {:8.2} s",
-        round.threshold,
-        cpu_seconds()
-    );
+impl Print<'_> {
+    /// Prints a round and what is off in the irradiances of its faces, faces × bands, W/m².
+    fn print(&self, round: &Round, found: &[f64]) {
+        let change = round.change.map_or_else(|| "-".to_owned(), |change| format!("{:.3} %", 100.0 * change));
+        let (elements, links) = (round.elements, round.links);
+        let per = links as f64 / elements as f64;
+        let truth = self.reference.as_ref().map_or_else(String::new, |reference| {
+            let (l2, rms) = errors(self.mesh, found, reference);
+            format!("   true {:.3} % (L2), {:.3} % (RMS over faces)", 100.0 * l2, 100.0 * rms)
+        });
+        println!(
+            "{:9.2e} {elements:9} {links:10} {per:13.1} {change:>10} {:8.2} s{truth}",
+            round.threshold,
+            cpu_seconds()
+        );
+    }
 }
 
 /// Processor time of this program so far, where the system tells.
@@ -62,43 +73,57 @@ fn main() -> Result<(), Box<dyn Error>> {
     let linear = rest.first().is_none_or(|order| order != "constant");
     let residual = RESIDUAL * accuracy;
     let options = Options { accuracy, linear, residual, bytes: 8 << 30, max_iterations: 200 };
+    let reference = rest.get(1).map(|file| read(&mesh, scene.bands(), file)).transpose()?;
+    let print = Print { mesh: &mesh, reference };
     println!("threshold  elements      links links/element     change        CPU");
-    let solution = solve(&problem, &options, SOLVERS, None, &Print)?;
-    solution.rounds.last().into_iter().for_each(print);
-    println!("stated error {:.3} %", 100.0 * solution.error.as_ref().map_or(f64::NAN, Stated::worst));
-    if let Some(file) = rest.get(1) {
-        let (l2, rms) = errors(&mesh, &solution, scene.bands(), file)?;
-        println!("true error {:.3} % (L2, worst band), {:.3} % (RMS over faces)", 100.0 * l2, 100.0 * rms);
+    let solution = solve(&problem, &options, SOLVERS, None, &print)?;
+    if let Some(round) = solution.rounds.last() {
+        print.print(round, &faces(&mesh, &solution, bands));
     }
+    println!("stated error {:.3} %", 100.0 * solution.error.as_ref().map_or(f64::NAN, Stated::worst));
     Ok(())
 }
 
-/// Relative L2 error of the worst band and root mean square over faces and bands against a reference.
-fn errors(
-    mesh: &Mesh,
-    solution: &Solution,
-    bands: &[String],
-    file: &str,
-) -> Result<(f64, f64), Box<dyn Error>> {
+/// The irradiances of a table of faces, faces × bands, W/m².
+fn read(mesh: &Mesh, bands: &[String], file: &str) -> Result<Vec<f64>, Box<dyn Error>> {
     let text = std::fs::read_to_string(file)?;
-    let table: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
-    let found = faces(mesh, solution, bands.len());
+    let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<&str>>());
+    let titles = lines.next().ok_or("the table is empty")?;
+    let at = |name: &str| titles.iter().position(|title| *title == name).ok_or("a column is missing");
+    let (surface, centre) = (at("surface")?, [at("cx")?, at("cy")?, at("cz")?]);
+    let columns = bands.iter().map(|name| {
+        // A table of one band need not name it.
+        at(&format!("E_{name}")).or_else(|_| at(&format!("irradiance_{name}"))).or_else(|_| at("E"))
+    });
+    let columns: Vec<usize> = columns.collect::<Result<_, _>>()?;
+    let mut places: HashMap<(String, [i64; 3]), Vec<f64>> = HashMap::new();
+    for row in lines {
+        let [x, y, z] = centre.map(|c| row[c].parse().map_or(i64::MAX, rounded));
+        let values = columns.iter().map(|&c| row[c].parse()).collect::<Result<_, _>>()?;
+        places.insert((row[surface].to_owned(), [x, y, z]), values);
+    }
+    let mut values = Vec::with_capacity(mesh.faces().len() * bands.len());
+    for face in mesh.faces() {
+        let key = (mesh.surfaces()[face.surface].name.clone(), face.centroid.to_array().map(rounded));
+        values.extend(places.get(&key).ok_or("a face is missing")?);
+    }
+    Ok(values)
+}
+
+/// A coordinate in units that tell faces apart and forgive what is rounded in a table.
+fn rounded(x: f64) -> i64 {
+    (x * 1e6 + 0.25).round() as i64
+}
+
+/// Relative L2 error of the worst band and root mean square over faces and bands against a reference.
+fn errors(mesh: &Mesh, found: &[f64], reference: &[f64]) -> (f64, f64) {
+    let bands = found.len() / mesh.faces().len();
     let (mut worst, mut squares, mut count) = (0.0, 0.0, 0.0);
-    for (band, name) in bands.iter().enumerate() {
-        let column = if bands.len() == 1 { "E".to_owned() } else { format!("E_{name}") };
-        let at = |name: &str| table[0].iter().position(|title| *title == name).ok_or("a column is missing");
-        let (surface, e) = (at("surface")?, at(&column)?);
-        let centre = [at("cx")?, at("cy")?, at("cz")?];
+    for band in 0..bands {
         let (mut error, mut norm) = (0.0, 0.0);
-        for (face, value) in mesh.faces().iter().zip(found.chunks(bands.len())) {
-            let near = |row: &&Vec<&str>| {
-                let place = centre.map(|c| row[c].parse().unwrap_or(f64::NAN));
-                let here = face.centroid.to_array();
-                row[surface] == mesh.surfaces()[face.surface].name
-                    && (0..3).all(|k| (place[k] - here[k]).abs() < 1e-6)
-            };
-            let exact: f64 = table[1..].iter().find(near).ok_or("a face is missing")?[e].parse()?;
-            let difference = value[band] - exact;
+        for (k, face) in mesh.faces().iter().enumerate() {
+            let exact = reference[k * bands + band];
+            let difference = found[k * bands + band] - exact;
             error += face.area * difference * difference;
             norm += face.area * exact * exact;
             if exact > 0.0 {
@@ -108,7 +133,7 @@ fn errors(
         }
         worst = f64::max(worst, (error / norm).sqrt());
     }
-    Ok((worst, (squares / count).sqrt()))
+    (worst, (squares / count).sqrt())
 }
 
 /// Irradiance of the faces, faces × bands, W/m².

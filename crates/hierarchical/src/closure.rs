@@ -8,7 +8,7 @@
 use crate::HierarchicalOperator;
 
 /// Steps at most.
-const STEPS: usize = 30;
+const STEPS: usize = 20;
 /// Relative distance of row sums from their bounds that is near enough.
 const NEAR: f64 = 1e-5;
 /// A leaf whose links bring much too little lacks some of them: scaling does not stand in for those.
@@ -49,16 +49,48 @@ impl Aim {
     }
 }
 
-/// Scales an operator until its row sums are within their bounds, as far as that goes; none stays above.
-pub(crate) fn balance(operator: &mut HierarchicalOperator, aims: &[Aim]) {
-    operator.set_scale(vec![1.0; aims.len()]);
+/// The leaves of the input elements, and what their row sums may be together.
+pub(crate) struct Wholes<'a> {
+    /// The input element of each leaf.
+    pub of_leaf: &'a [u32],
+    /// What is known of each input element, m²; none where only its leaves are.
+    pub aims: Vec<Option<Aim>>,
+}
+
+impl Wholes<'_> {
+    /// The factors that bring the sums over input elements nearer.
+    fn next(&self, factors: &[f64], rows: &[f64]) -> Vec<f64> {
+        let mut sums = vec![0.0; self.aims.len()];
+        self.of_leaf.iter().zip(rows).for_each(|(&whole, row)| sums[whole as usize] += row);
+        let next = |((&factor, &sum), aim): ((&f64, &f64), &Option<Aim>)| match aim {
+            Some(aim) if sum > 0.0 => {
+                (factor * (sum.clamp(aim.least, aim.most) / sum).sqrt()).clamp(MOST.recip(), MOST)
+            }
+            _ => factor,
+        };
+        factors.iter().zip(&sums).zip(&self.aims).map(next).collect()
+    }
+}
+
+/// Scales an operator until its row sums are within their bounds, as far as that goes; none stays above. Every leaf has
+/// a factor of its own and shares another with the leaves of its input element; they take turns.
+pub(crate) fn balance(operator: &mut HierarchicalOperator, aims: &[Aim], wholes: &Wholes) {
+    let (mut own, mut shared) = (vec![1.0; aims.len()], vec![1.0; wholes.aims.len()]);
+    let products = |own: &[f64], shared: &[f64]| -> Vec<f64> {
+        own.iter().zip(wholes.of_leaf).map(|(own, &whole)| own * shared[whole as usize]).collect()
+    };
+    operator.set_scale(own.clone());
     for _ in 0..STEPS {
+        let next = wholes.next(&shared, &operator.row_sums());
+        let mut done = near(&shared, &next);
+        shared = next;
+        operator.set_scale(products(&own, &shared));
         let rows = operator.row_sums();
-        let leaves = operator.scale().iter().zip(&rows).zip(aims);
-        let scale: Vec<f64> = leaves.map(|((&scale, &row), aim)| aim.next(scale, row)).collect();
-        let still = |(now, next): (&f64, &f64)| (next - now).abs() <= NEAR * now;
-        let done = operator.scale().iter().zip(&scale).all(still);
-        operator.set_scale(scale);
+        let leaves = own.iter().zip(&rows).zip(aims);
+        let next: Vec<f64> = leaves.map(|((&own, &row), aim)| aim.next(own, row)).collect();
+        done &= near(&own, &next);
+        own = next;
+        operator.set_scale(products(&own, &shared));
         if done {
             break;
         }
@@ -69,4 +101,9 @@ pub(crate) fn balance(operator: &mut HierarchicalOperator, aims: &[Aim]) {
     let cut = leaves.map(|((&scale, &row), aim)| if row > aim.most { scale * aim.most / row } else { scale });
     let scale = cut.collect();
     operator.set_scale(scale);
+}
+
+/// Whether nothing moves any more.
+fn near(now: &[f64], next: &[f64]) -> bool {
+    now.iter().zip(next).all(|(now, next)| (next - now).abs() <= NEAR * now)
 }

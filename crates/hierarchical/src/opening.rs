@@ -5,14 +5,17 @@
 //! are buried and do not count.
 
 use fredholm_coupling::polygon::folded;
-use fredholm_mesh::Patch;
+use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::Occluders;
 use rayon::prelude::*;
+use std::f64::consts::TAU;
 
 /// Rays of the whole scene, about: by default, and where much reflection amplifies what they do not know.
 const RAYS: [usize; 2] = [1 << 16, 1 << 20];
 /// Reflectance from which on that is so.
 const BRIGHT: f64 = 0.85;
+/// Rays of an element, one a point, that tell its row sum where the scene loses something.
+const SINGLE: u32 = 256;
 /// Rays from one point.
 const DIRECTIONS: usize = 8;
 /// Points of an element, at least and at most.
@@ -39,13 +42,21 @@ pub(crate) struct Rays {
 pub(crate) struct Opening {
     rays: Vec<Rays>,
     closed: bool,
+    /// Of [`SINGLE`] rays from as many points of each element, buried ones included, those that met a lit side; empty
+    /// where the scene is closed.
+    met: Vec<u32>,
 }
 
 impl Opening {
     /// Sends the rays; `lit` holds the elements in order, `reflectance` is the largest one.
     pub fn new(patches: &[&Patch], lit: &Occluders, reflectance: f64) -> Self {
         let first = Self::sent(patches, lit, RAYS[0]);
-        if first.closed || reflectance < BRIGHT { first } else { Self::sent(patches, lit, RAYS[1]) }
+        if first.closed {
+            return first;
+        }
+        let all = if reflectance < BRIGHT { first } else { Self::sent(patches, lit, RAYS[1]) };
+        let met = (0..patches.len()).into_par_iter().map(|k| met(k, patches, lit)).collect();
+        Self { met, ..all }
     }
 
     fn sent(patches: &[&Patch], lit: &Occluders, rays: usize) -> Self {
@@ -56,12 +67,19 @@ impl Opening {
         let inside = || rays.iter().filter(|rays| rays.lost < rays.all);
         let sum = |of: fn(&Rays) -> u32| inside().map(|rays| u64::from(of(rays))).sum::<u64>() as f64;
         let closed = sum(|rays| rays.lost) <= SEAMS * sum(|rays| rays.all);
-        Self { rays, closed }
+        Self { rays, closed, met: Vec::new() }
     }
 
     /// Whether all that an element sends is known to arrive: in a scene that loses nothing, and by its own rays.
     pub fn loses_nothing(&self, element: usize) -> bool {
         self.closed && self.rays[element].lost == 0
+    }
+
+    /// What the row sums over an element come to, over its area, and the standard error of that; none in a closed scene.
+    pub fn row(&self, element: usize) -> Option<[f64; 2]> {
+        let met = f64::from(*self.met.get(element)?);
+        let (count, likely) = (f64::from(SINGLE), (met + 1.0) / f64::from(SINGLE + 2));
+        Some([met / count, (likely * (1.0 - likely) / count).sqrt()])
     }
 
     /// The share that is lost and the variance of that estimate.
@@ -77,29 +95,69 @@ impl Opening {
     }
 }
 
+/// Where the rays of an element begin and where they go.
+struct Directions<'a> {
+    element: usize,
+    patch: &'a Patch,
+    across: Vec3,
+    other: Vec3,
+}
+
+impl<'a> Directions<'a> {
+    fn of(element: usize, patches: &[&'a Patch]) -> Self {
+        let patch = patches[element];
+        let across = patch.normal().any_orthonormal_vector();
+        Self { element, patch, across, other: patch.normal().cross(across) }
+    }
+
+    fn coordinate(&self, number: usize, k: usize) -> f64 {
+        ((number + 1) as f64 * R4[k] + (self.element as f64 * GOLDEN * (k + 1) as f64)).fract()
+    }
+
+    fn point(&self, number: usize) -> Vec3 {
+        let (u, v) = folded(self.patch, self.coordinate(number, 0), self.coordinate(number, 1));
+        self.patch.point(u, v)
+    }
+
+    fn direction(&self, number: usize) -> Vec3 {
+        let (sine, angle) = (self.coordinate(number, 2).sqrt(), TAU * self.coordinate(number, 3));
+        let flat = self.across * (sine * angle.cos()) + self.other * (sine * angle.sin());
+        flat + self.patch.normal() * (1.0 - sine * sine).max(0.0).sqrt()
+    }
+}
+
+/// What a ray meets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Meets {
+    Lit,
+    Back,
+    Nothing,
+}
+
+fn meets(from: Vec3, along: Vec3, patches: &[&Patch], lit: &Occluders) -> Meets {
+    match lit.closest(from, along, f64::INFINITY) {
+        Some(hit) if patches[hit.patch].normal().dot(along) < 0.0 => Meets::Lit,
+        Some(_) => Meets::Back,
+        None => Meets::Nothing,
+    }
+}
+
+fn met(element: usize, patches: &[&Patch], lit: &Occluders) -> u32 {
+    let directions = Directions::of(element, patches);
+    let lit = |&k: &usize| meets(directions.point(k), directions.direction(k), patches, lit) == Meets::Lit;
+    (0..SINGLE as usize).filter(lit).count() as u32
+}
+
 fn send(element: usize, points: usize, patches: &[&Patch], lit: &Occluders) -> Rays {
-    let patch = patches[element];
-    let n = patch.normal();
-    let across = n.any_orthonormal_vector();
-    let other = n.cross(across);
-    let place = |number: usize, k: usize| {
-        ((number + 1) as f64 * R4[k] + (element as f64 * GOLDEN * (k + 1) as f64)).fract()
-    };
+    let directions = Directions::of(element, patches);
     let mut rays = Rays::default();
     for point in 0..points {
-        let (u, v) = folded(patch, place(point, 0), place(point, 1));
-        let from = patch.point(u, v);
+        let from = directions.point(point);
         let (mut lost, mut backs) = (0, 0);
-        for direction in 0..DIRECTIONS {
-            let number = point * DIRECTIONS + direction;
-            let (sine, angle) = (place(number, 2).sqrt(), std::f64::consts::TAU * place(number, 3));
-            let flat = across * (sine * angle.cos()) + other * (sine * angle.sin());
-            let along = flat + n * (1.0 - sine * sine).max(0.0).sqrt();
-            match lit.closest(from, along, f64::INFINITY) {
-                Some(hit) if patches[hit.patch].normal().dot(along) < 0.0 => {}
-                Some(_) => (lost, backs) = (lost + 1, backs + 1),
-                None => lost += 1,
-            }
+        for k in 0..DIRECTIONS {
+            let met = meets(from, directions.direction(point * DIRECTIONS + k), patches, lit);
+            lost += u32::from(met != Meets::Lit);
+            backs += u32::from(met == Meets::Back);
         }
         if backs < DIRECTIONS as u32 {
             rays.all += DIRECTIONS as u32;

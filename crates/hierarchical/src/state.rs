@@ -64,6 +64,12 @@ impl State {
         self.error.as_ref()
     }
 
+    /// Irradiance of the faces after the last round, faces × bands, W/m².
+    #[must_use]
+    pub fn irradiance(&self) -> &[f64] {
+        &self.faces
+    }
+
     /// Radiosity of all nodes, area means of that of the leaves.
     pub(crate) fn nodes_radiosity(&self) -> MultiVector<f64> {
         self.nodes_means(&self.radiosity)

@@ -9,6 +9,12 @@ use fredholm_mesh::Vec3;
 use fredholm_visibility::body::{Body, Room, Shadow};
 use std::ops::Range;
 
+/// Pieces of a polygon up to which what many shadows leave of it is cut out exactly. Inside a crowded body the
+/// shadows cross each other so often that the pieces would never end.
+const MOST_PIECES: usize = 4096;
+/// How often the triangles of a polygon are halved both ways where there would be more.
+const HALVINGS: u32 = 5;
+
 /// Heights below this part of the distance count as 0.
 pub(super) const FLAT: f64 = 1e-12;
 
@@ -103,8 +109,37 @@ impl Shadows {
                 self.darken(k, shadow, flat);
             }
             std::mem::swap(&mut self.pieces, &mut self.next);
+            if self.pieces.len() > MOST_PIECES {
+                return self.sampled(n, polygon, shadows);
+            }
         }
         self.pieces.iter().map(|piece| point_to_polygon(n, piece.iter().copied())).sum::<f64>().max(0.0)
+    }
+
+    /// The same from small triangles of which the middle lies in no shadow.
+    fn sampled(&self, n: Vec3, polygon: &[Vec3], shadows: &[u32]) -> f64 {
+        let lit = |y: Vec3| shadows.iter().all(|&s| self.heights(s, y).any(|height| height < 0.0));
+        let cells = 1 << HALVINGS;
+        let mut sum = 0.0;
+        for k in 2..polygon.len() {
+            let [origin, u, v] = [polygon[0], polygon[k - 1] - polygon[0], polygon[k] - polygon[0]];
+            let at = |i: u32, j: u32| {
+                origin + u * (f64::from(i) / f64::from(cells)) + v * (f64::from(j) / f64::from(cells))
+            };
+            for i in 0..cells {
+                for j in 0..cells - i {
+                    let lower = [at(i, j), at(i + 1, j), at(i, j + 1)];
+                    // Beside the diagonal there is no upper half.
+                    let upper = [at(i + 1, j + 1), at(i, j + 1), at(i + 1, j)];
+                    for corners in [lower, upper].iter().take(if i + j + 1 < cells { 2 } else { 1 }) {
+                        if lit(corners.iter().sum::<Vec3>() / 3.0) {
+                            sum += point_to_polygon(n, corners.iter().copied());
+                        }
+                    }
+                }
+            }
+        }
+        sum.max(0.0)
     }
 
     /// Adds what a shadow leaves of a piece to the next pieces.
@@ -169,5 +204,52 @@ impl Pieces {
             self.corners.extend_from_slice(corners);
             self.ends.push(self.corners.len());
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Shadows of squares of side 0.3 at a height of 0.5, all over the sky of the origin.
+    fn shadows(count: usize) -> Shadows {
+        let mut shadows = Shadows::default();
+        for k in 0..count {
+            let at = |r: f64| (k as f64 * r).fract() * 2.0 - 1.0;
+            let (x, y) = (at(0.754_877_666), at(0.569_840_291));
+            let corner = |u: f64, v: f64| Vec3::new(x + 0.15 * u, y + 0.15 * v, 0.5);
+            let corners = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+            let start = shadows.planes.len();
+            for i in 0..4 {
+                let normal = corners[i].cross(corners[(i + 1) % 4]).normalize();
+                shadows.planes.push(HalfSpace { normal, offset: 0.0 });
+            }
+            shadows.spans.push(start..shadows.planes.len());
+        }
+        shadows
+    }
+
+    #[test]
+    fn what_is_sampled_agrees_with_what_is_cut_out() {
+        let up = Vec3::Z;
+        let polygon = [(-2.0, -2.0), (-2.0, 2.0), (2.0, 2.0), (2.0, -2.0)].map(|(x, y)| Vec3::new(x, y, 1.0));
+        for count in [1, 8, 30] {
+            let mut shadows = shadows(count);
+            let all: Vec<u32> = (0..count as u32).collect();
+            let exact = shadows.factor(up, &polygon, &all, 1e-12);
+            let sampled = shadows.sampled(up, &polygon, &all);
+            let whole = point_to_polygon(up, polygon.iter().copied());
+            assert!(exact < whole && (sampled - exact).abs() < 0.02 * whole, "{count}: {sampled} {exact}");
+        }
+    }
+
+    #[test]
+    fn thousands_of_crossing_shadows_come_to_an_end() {
+        let mut shadows = shadows(2000);
+        let all: Vec<u32> = (0..2000).collect();
+        let polygon = [(-2.0, -2.0), (-2.0, 2.0), (2.0, 2.0), (2.0, -2.0)].map(|(x, y)| Vec3::new(x, y, 1.0));
+        let factor = shadows.factor(Vec3::Z, &polygon, &all, 1e-12);
+        let whole = point_to_polygon(Vec3::Z, polygon.iter().copied());
+        assert!(factor >= 0.0 && factor < 0.5 * whole, "{factor} of {whole}");
     }
 }

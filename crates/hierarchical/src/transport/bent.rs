@@ -1,9 +1,10 @@
 //! What a bent cluster exchanges with a polygon or with another one, and how that varies over both.
 //!
 //! A part with the area vector a = |a| n and the area A receives (|a|/A) F from afar, F the form factor of a point with its normal: the polygon as it is, or the parts of the other cluster as discs. Over the
-//! cluster that is taken to be linear in space, which on a smooth surface is linear in the normal too; what real members receive otherwise is the rest. Rays between members tell what gets through,
+//! cluster that is taken to be linear in space, which on a smooth surface is linear in the normal too; what real members receive otherwise is the rest. Rays between members, which every pair draws for itself, tell what gets through,
 //! those that the cluster itself stops included. Lengths in metres, exchanges in m².
 
+use super::draw::Places;
 use super::sample::{Sample, fit, samples};
 use super::side::{POINTS, Points, Side};
 use super::sight::{Viewer, weigh};
@@ -20,7 +21,7 @@ const MOST: usize = 40;
 /// A side of a pair: a polygon or a bent cluster.
 pub(super) enum End<'a> {
     Flat(&'a Patch, Points<'a>),
-    Bent(Vec<Sample>),
+    Bent(&'a Tree, Vec<Sample>),
 }
 
 /// A place that stands for a part of a side.
@@ -28,8 +29,6 @@ pub(super) enum End<'a> {
 struct Place {
     at: Vec3,
     normal: Vec3,
-    /// Where rays start.
-    on: Vec3,
     /// |a|, m².
     facing: f64,
 }
@@ -56,7 +55,7 @@ impl<'a> End<'a> {
     pub fn of(tree: &'a Tree, index: u32) -> Self {
         match tree.nodes()[index as usize].patch() {
             Some(patch) => Self::Flat(patch, Points::of(patch)),
-            None => Self::Bent(samples(tree, index)),
+            None => Self::Bent(tree, samples(tree, index)),
         }
     }
 
@@ -64,15 +63,23 @@ impl<'a> End<'a> {
         match self {
             Self::Flat(patch, points) => {
                 let (normal, facing) = (patch.normal(), patch.area() / (POINTS - 1) as f64);
-                points.at.iter().map(|&at| Place { at, normal, on: at, facing }).collect()
+                points.at.iter().map(|&at| Place { at, normal, facing }).collect()
             }
-            Self::Bent(samples) => {
+            Self::Bent(_, samples) => {
                 let place = |s: &Sample| {
                     let facing = s.vector.length();
-                    Place { at: s.centre, normal: s.vector / facing, on: s.member[0], facing }
+                    Place { at: s.centre, normal: s.vector / facing, facing }
                 };
                 samples.iter().map(place).collect()
             }
+        }
+    }
+
+    /// Where a ray starts on the part of a place.
+    fn start(&self, k: usize, drawn: (f64, [f64; 2])) -> Vec3 {
+        match self {
+            Self::Flat(_, points) => points.within(k, drawn.1),
+            Self::Bent(tree, samples) => samples[k].place(tree, drawn),
         }
     }
 
@@ -80,7 +87,7 @@ impl<'a> End<'a> {
     fn factor(&self, [x, n]: [Vec3; 2], front: &mut Vec<Vec3>) -> f64 {
         match self {
             Self::Flat(patch, _) => open_factor(x, n, patch, front),
-            Self::Bent(samples) => {
+            Self::Bent(_, samples) => {
                 let part = |s: &Sample| {
                     let facing = s.vector.length();
                     facing * disc([x, n], [s.centre, s.vector / facing], facing)
@@ -94,7 +101,7 @@ impl<'a> End<'a> {
     pub(super) fn open(&self, to: &Self, front: &mut Vec<Vec3>) -> Vec<f64> {
         let filled = |k: usize, place: &Place| match self {
             Self::Flat(..) => 1.0,
-            Self::Bent(samples) => place.facing / samples[k].area,
+            Self::Bent(_, samples) => place.facing / samples[k].area,
         };
         let factor =
             |(k, place): (usize, &Place)| filled(k, place) * to.factor([place.at, place.normal], front);
@@ -105,7 +112,7 @@ impl<'a> End<'a> {
     fn probes(&self, to: &Self, front: &mut Vec<Vec3>) -> Vec<f64> {
         match self {
             Self::Flat(..) => Vec::new(),
-            Self::Bent(samples) => samples.iter().map(|s| to.factor(s.member, front)).collect(),
+            Self::Bent(_, samples) => samples.iter().map(|s| to.factor(s.member, front)).collect(),
         }
     }
 
@@ -115,14 +122,14 @@ impl<'a> End<'a> {
             Self::Flat(_, points) => {
                 points.side(&std::array::from_fn(|k| values.get(k).copied().unwrap_or(0.0)))
             }
-            Self::Bent(samples) => fit(samples, values, probes),
+            Self::Bent(_, samples) => fit(samples, values, probes),
         }
     }
 
     pub(super) fn area(&self) -> f64 {
         match self {
             Self::Flat(patch, _) => patch.area(),
-            Self::Bent(samples) => samples.iter().map(|s| s.area).sum(),
+            Self::Bent(_, samples) => samples.iter().map(|s| s.area).sum(),
         }
     }
 }
@@ -180,12 +187,14 @@ fn rays(viewer: &mut Viewer, [a, b]: [&End; 2]) -> ([Vec<f64>; 2], [usize; 2]) {
     let (xs, ys) = (a.places(), b.places());
     let mut sums = [vec![[0.0; 2]; xs.len()], vec![[0.0; 2]; ys.len()]];
     let mut counts = [0, 0];
+    let mut drawn = Places::at(xs[0].at, ys[0].at);
     let stride = (xs.len() * ys.len()).div_ceil(MOST);
     for (i, x) in xs.iter().enumerate() {
         for (j, y) in ys.iter().enumerate().filter(|(j, _)| (i + j) % stride == 0) {
             let weight = x.weight(y);
             if weight > 0.0 {
-                let seen = viewer.sees(x.on, y.on);
+                let [on_a, on_b] = drawn.next();
+                let seen = viewer.sees(a.start(i, on_a), b.start(j, on_b));
                 counts = [counts[0] + 1, counts[1] + usize::from(seen)];
                 for (side, k) in [(0, i), (1, j)] {
                     let sum = &mut sums[side][k];

@@ -1,6 +1,7 @@
 //! What a pair of nodes exchanges: bounds and spreads before it is computed, the open exchange, and what gets through.
 
 mod bent;
+mod draw;
 mod encounter;
 mod exchange;
 mod sample;

@@ -3,7 +3,8 @@
 //! The function is fitted by 1 + g·(x − c) times its mean in space, not in a plane: on a smooth surface that is linear in the normal too. What it leaves of the values at the parts, or at real members if that is more,
 //! is the rest. Lengths in metres.
 
-use super::side::{POINTS, Points, Side};
+use super::scattered::place;
+use super::side::{OUTER, Points, Side};
 use crate::tree::{Node, Tree};
 use fredholm_mesh::{Patch, Vec3};
 
@@ -27,6 +28,9 @@ pub(super) struct Sample {
     pub area: f64,
     /// Place and normal of one of its elements near the centre.
     pub member: [Vec3; 2],
+    /// The node of the part, and which quarter of a flat one it is.
+    part: u32,
+    quarter: Option<usize>,
 }
 
 /// The parts of a bent node; quarters of flat ones that are few or large.
@@ -38,29 +42,51 @@ pub(super) fn samples(tree: &Tree, index: u32) -> Vec<Sample> {
         let node = &tree.nodes()[part as usize];
         match node.patch() {
             Some(patch) if parts.len() < SAMPLES || node.cone().radius > large => {
-                quarters(patch, &mut samples);
+                quarters(patch, part, &mut samples);
             }
-            Some(patch) => samples.push(Sample::of(node, node.centre(), patch.normal())),
+            Some(patch) => samples.push(Sample::of(part, node, node.centre(), patch.normal())),
             None => {
                 let middle = &tree.nodes()[node.middle() as usize];
                 let normal = middle.area_vector().normalize_or_zero();
-                samples.push(Sample::of(node, middle.centre(), normal));
+                samples.push(Sample::of(part, node, middle.centre(), normal));
             }
         }
     }
     samples
 }
 
-fn quarters(patch: &Patch, samples: &mut Vec<Sample>) {
-    let area = patch.area() / (POINTS - 1) as f64;
-    let quarter =
-        |&x: &Vec3| Sample { centre: x, vector: patch.normal() * area, area, member: [x, patch.normal()] };
-    samples.extend(Points::of(patch).at[..POINTS - 1].iter().map(quarter));
+fn quarters(patch: &Patch, part: u32, samples: &mut Vec<Sample>) {
+    let area = patch.area() / OUTER as f64;
+    let quarter = |(k, &x): (usize, &Vec3)| Sample {
+        centre: x,
+        vector: patch.normal() * area,
+        area,
+        member: [x, patch.normal()],
+        part,
+        quarter: Some(k),
+    };
+    samples.extend(Points::of(patch).at[..OUTER].iter().enumerate().map(quarter));
 }
 
 impl Sample {
-    fn of(node: &Node, place: Vec3, normal: Vec3) -> Self {
-        Self { centre: node.centre(), vector: node.area_vector(), area: node.area(), member: [place, normal] }
+    fn of(part: u32, node: &Node, place: Vec3, normal: Vec3) -> Self {
+        Self {
+            centre: node.centre(),
+            vector: node.area_vector(),
+            area: node.area(),
+            member: [place, normal],
+            part,
+            quarter: None,
+        }
+    }
+
+    /// A place on one of the elements of the part.
+    pub fn place(&self, tree: &Tree, (member, on): (f64, [f64; 2])) -> Vec3 {
+        match (tree.member(self.part, member), self.quarter) {
+            (Some(patch), Some(k)) => Points::of(patch).within(k, on),
+            (Some(patch), None) => place(patch, on),
+            (None, _) => self.member[0],
+        }
     }
 }
 

@@ -5,6 +5,7 @@
 //! divides what matters. The members of a scattered node receive very differently, which counts as a deviation of [`UNEVEN`]. Exchanges in m², lengths in metres.
 //! B. Smits, J. Arvo, D. Greenberg, SIGGRAPH 1994, doi:10.1145/192161.192277, for links of clusters that face all ways.
 
+use super::draw::Places;
 use super::sight::Viewer;
 use crate::tree::{Node, Tree};
 use fredholm_coupling::kernel::lambert;
@@ -21,16 +22,6 @@ const APART: f64 = 1.5;
 const UNEVEN: f64 = 20.0;
 /// Share of what two nodes would exchange face to face that they may exchange where no pair of points does.
 const GRAZING: f64 = 0.02;
-/// Powers of the inverse root of x⁷ = x + 1 (R_d of M. Roberts 2018): a member and a place on it for either node.
-const R6: [f64; 6] = [
-    0.898_653_712_628_699_2,
-    0.807_578_495_221_344_7,
-    0.725_733_412_969_759_7,
-    0.652_183_025_943_971_5,
-    0.586_086_697_577_969_3,
-    0.526_687_986_700_735_7,
-];
-
 /// Pairs of points of two nodes.
 pub(crate) struct Chance {
     /// Exchange A_a F_ab with nothing between, m².
@@ -52,15 +43,16 @@ impl Chance {
     /// The pairs of points of two nodes, which must lie apart.
     pub fn of(tree: &Tree, nodes: [u32; 2]) -> Self {
         let [a, b] = nodes.map(|index| &tree.nodes()[index as usize]);
-        let start = start(nodes[0].min(nodes[1]), nodes[0].max(nodes[1]));
+        let (low, high) = (nodes[0].min(nodes[1]), nodes[0].max(nodes[1]));
+        let mut places = Places::of((u64::from(low) << 32) | u64::from(high));
         let mut pairs = Vec::with_capacity(PAIRS);
         let (mut sum, mut squares) = (0.0, 0.0);
-        for k in 0..PAIRS {
-            let u: [f64; 6] = std::array::from_fn(|d| ((k + 1) as f64 * R6[d] + start[d]).fract());
-            let (Some(p), Some(q)) = (tree.member(nodes[0], u[0]), tree.member(nodes[1], u[3])) else {
+        for _ in 0..PAIRS {
+            let [(of_a, on_a), (of_b, on_b)] = places.next();
+            let (Some(p), Some(q)) = (tree.member(nodes[0], of_a), tree.member(nodes[1], of_b)) else {
                 continue;
             };
-            let (x, y) = (place(p, [u[1], u[2]]), place(q, [u[4], u[5]]));
+            let (x, y) = (place(p, on_a), place(q, on_b));
             let weight = lambert(x, p.normal(), y, q.normal());
             if weight > 0.0 {
                 (sum, squares) = (sum + weight, squares + weight * weight);
@@ -96,19 +88,7 @@ impl Chance {
 }
 
 /// The point of a patch for a point of the unit square.
-fn place(patch: &Patch, [u, v]: [f64; 2]) -> Vec3 {
+pub(super) fn place(patch: &Patch, [u, v]: [f64; 2]) -> Vec3 {
     let (u, v) = folded(patch, u, v);
     patch.point(u, v)
-}
-
-/// Where the sequence of a pair of nodes starts: numbers that follow no pattern (the mixing function of SplitMix64, G. L. Steele, D. Lea, C. H. Flood 2014, doi:10.1145/2660193.2660195).
-fn start(a: u32, b: u32) -> [f64; 6] {
-    let mut state = (u64::from(a) << 32) | u64::from(b);
-    std::array::from_fn(|_| {
-        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        (z ^ (z >> 31)) as f64 / 2f64.powi(64)
-    })
 }

@@ -8,7 +8,7 @@ use fredholm_mesh::{Patch, Vec3};
 /// Points of a patch.
 pub(crate) const POINTS: usize = 5;
 /// Those that the mean is made of; the last point is the centroid.
-const OUTER: usize = POINTS - 1;
+pub(super) const OUTER: usize = POINTS - 1;
 /// Places of the two Gauss points of the unit interval.
 const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 /// Places on a triangle of the centroids of three of its quarters, and of the fourth a little off the middle, which is the fifth point.
@@ -63,6 +63,25 @@ impl<'a> Points<'a> {
             _ => patch.point(GAUSS[k / 2], GAUSS[k % 2]),
         });
         Self { at, patch }
+    }
+
+    /// A place in the part of the patch that a point stands for: a quarter, or as much about the middle.
+    pub fn within(&self, k: usize, [r, s]: [f64; 2]) -> Vec3 {
+        let half = |corner: f64, x: f64| 0.5 * (corner + x);
+        let (u, v) = if self.patch.sides() == 3 {
+            let (r, s) = if r + s > 1.0 { (1.0 - r, 1.0 - s) } else { (r, s) };
+            match k {
+                0 => (half(0.0, r), half(0.0, s)),
+                1 => (half(1.0, r), half(0.0, s)),
+                2 => (half(0.0, r), half(1.0, s)),
+                _ => (half(1.0, -r), half(1.0, -s)),
+            }
+        } else if k < OUTER {
+            (half((k / 2) as f64, r), half((k % 2) as f64, s))
+        } else {
+            (half(0.5, r), half(0.5, s))
+        };
+        self.patch.point(u, v)
     }
 
     /// What values at the points, of either sign or none, tell of the function.
@@ -135,6 +154,24 @@ mod tests {
             assert!((side.mean - f(patch.centroid())).abs() < 1e-12);
             assert!((side.gradient * side.mean - Vec3::new(1.0, -0.5, 0.0)).length() < 1e-12);
             assert!(side.rest < 1e-12 && side.deviation > 0.01, "{side:?}");
+        }
+    }
+
+    #[test]
+    fn places_fill_the_parts_of_their_points_and_all_of_the_patch_evenly() {
+        for sides in [3, 4] {
+            let patch = patch(sides);
+            let points = Points::of(&patch);
+            let n = 40;
+            let middle = |i: usize| (i as f64 + 0.5) / n as f64;
+            let mean = |k: usize| {
+                let places = (0..n * n).map(|p| points.within(k, [middle(p / n), middle(p % n)]));
+                places.sum::<Vec3>() / (n * n) as f64
+            };
+            let outer: Vec3 = (0..OUTER).map(mean).sum::<Vec3>() / OUTER as f64;
+            assert!((outer - patch.centroid()).length() < 1e-3, "{outer}");
+            assert!((mean(OUTER) - patch.centroid()).length() < 1e-3);
+            (0..OUTER).for_each(|k| assert!((mean(k) - points.at[k]).length() < 0.1 * patch.area().sqrt()));
         }
     }
 

@@ -11,6 +11,8 @@ use fredholm_mesh::Vec3;
 const PARTS: usize = 8;
 /// Largest angle between the normals of a bent cluster and their axis.
 const WIDEST: f64 = 1.4;
+/// The same where it has fewer elements than would be parts.
+const WIDEST_OF_FEW: f64 = 0.5;
 
 /// Area vector, centre of area and a member near it.
 #[derive(Clone, Copy, Debug)]
@@ -27,16 +29,18 @@ pub(super) fn summarise(tree: &mut Tree) {
     for index in (0..tree.nodes.len()).rev() {
         if tree.nodes[index].root == NONE {
             let node = &tree.nodes[index];
-            let bent = node.patch.is_none() && node.cone.angle <= WIDEST && is_fine(tree, index as u32);
+            let bent = node.patch.is_none() && is_fine(tree, index as u32);
             tree.nodes[index].gist = Gist { bent, ..gist(tree, node) };
         }
     }
 }
 
-/// Whether a cluster has many parts, or elements alone: nothing is gained by linking a few large polygons as one.
+/// Whether a function over a cluster may be linear: it has many parts, or few elements that hardly bend. Over the two
+/// sides of an edge it is not, whatever is sent there.
 fn is_fine(tree: &Tree, index: u32) -> bool {
-    let parts = tree.parts(index);
-    parts.len() == PARTS || parts.iter().all(|&part| tree.nodes[part as usize].root != NONE)
+    let (parts, angle) = (tree.parts(index), tree.nodes[index as usize].cone.angle);
+    let elements = || parts.iter().all(|&part| tree.nodes[part as usize].root != NONE);
+    angle <= WIDEST && parts.len() == PARTS || angle <= WIDEST_OF_FEW && elements()
 }
 
 fn gist(tree: &Tree, node: &Node) -> Gist {
