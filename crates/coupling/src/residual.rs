@@ -31,7 +31,7 @@ pub const DRAWS: usize = 4;
 const FREE: usize = 1 << 17;
 /// Points per element where nothing stands between, so that a form factor costs as much as an exchange, and where it costs a small part of one.
 const OPEN: f64 = 0.25;
-const BLOCKED: f64 = 1.0;
+const BLOCKED: f64 = 0.5;
 /// Bodies from which on looking through all of them costs more than everything else of a form factor.
 const MANY: f64 = 256.0;
 /// Fewest elements that are drawn.

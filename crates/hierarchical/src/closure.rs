@@ -98,7 +98,12 @@ pub(crate) fn balance(operator: &mut HierarchicalOperator, aims: &[Aim], wholes:
     // What is above in the end is cut off: smaller factors make no other row sum larger.
     let rows = operator.row_sums();
     let leaves = operator.scale().iter().zip(&rows).zip(aims);
-    let cut = leaves.map(|((&scale, &row), aim)| if row > aim.most { scale * aim.most / row } else { scale });
+    // Linear functions may leave a nearly buried leaf less than nothing.
+    let cut = leaves.map(|((&scale, &row), aim)| match row {
+        _ if row > aim.most => scale * aim.most / row,
+        _ if row < 0.0 => 0.0,
+        _ => scale,
+    });
     let scale = cut.collect();
     operator.set_scale(scale);
 }

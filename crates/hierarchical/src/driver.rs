@@ -2,7 +2,7 @@
 //!
 //! Every round lowers the error that a link may leave by [`STEP`]. The irradiance of the input faces then changes by about what the round before was wrong by; what remains is less. The stated error
 //! is [`CONFIDENCE`] times the relative change ‖E − E'‖/‖E‖ in the area-weighted L2 norm over the faces, in the worst band; a change is not believed to be less than [`LEAP`] times the one before. To it comes what the balance of energy
-//! tells: the power that row sums lose or gain against what rays say, over the power that is absorbed. The irradiances are solutions, so that multiple reflection has amplified it already.
+//! tells: the power that row sums lose or gain against what rays say, over the power that is absorbed; and what the residual of the solver leaves, amplified as reflection may amplify it. The irradiances are solutions, so that multiple reflection has amplified it already.
 //!
 //! A round that refined nothing tells nothing: it keeps the error that was stated before. So does a round that memory ended, but for a larger change. With a [`Goal`] the dual problem is solved in every round too, and the error is
 //! that of the mean irradiance of the goal ([`crate::goal`]).
@@ -28,9 +28,9 @@ pub(crate) const STEP: f64 = 0.3;
 /// First threshold, over the accuracy.
 const FIRST: f64 = 4.0;
 /// Stated error over the last change.
-pub(crate) const CONFIDENCE: f64 = 1.5;
+pub(crate) const CONFIDENCE: f64 = 2.0;
 /// Least change that is believed, over that of the round before: a smaller one is chance.
-const LEAP: f64 = 0.1;
+const LEAP: f64 = 0.35;
 /// Rounds at most.
 const ROUNDS: usize = 24;
 /// Residual of a solution, over the accuracy, that is small beside it.
@@ -461,8 +461,9 @@ impl Run<'_> {
         } else {
             (error, change) = self.change(state, &faces).unzip();
         }
-        let unbalanced = self.unbalanced(&system, &x);
-        let known = if refined.changed { error.map(|error| error.with(&unbalanced)) } else { None };
+        let further: Vec<f64> =
+            self.unbalanced(&system, &x).iter().zip(self.unsolved(&report)).map(|(a, b)| a + b).collect();
+        let known = if refined.changed { error.map(|error| error.with(&further)) } else { None };
         state.error = match (known, state.error.take()) {
             // Memory may have ended the round early: it mends a part only of what the last one stated.
             (Some(known), Some(earlier)) if state.limited => Some(known.or_more(&earlier)),
@@ -588,6 +589,19 @@ impl Run<'_> {
             _ => 0.0,
         };
         lost.iter().zip(unsure.norms()).zip(&absorbed).map(share).collect()
+    }
+
+    /// The error that the residual of the solver leaves at most, of each band: relative, times 1/(1 − ρ) of the
+    /// brightest surface.
+    fn unsolved(&self, report: &Report) -> Vec<f64> {
+        let reflectance = &self.problem.surfaces.reflectance;
+        let mut largest = vec![0.0f64; reflectance.lanes()];
+        let Some(record) = report.history.last() else { return largest };
+        for row in reflectance.rows() {
+            largest.iter_mut().zip(row).for_each(|(largest, rho)| *largest = largest.max(*rho));
+        }
+        let left = |(residual, rho): (&f64, f64)| residual / (1.0 - rho).max(f64::EPSILON);
+        record.residuals.iter().zip(largest).map(left).collect()
     }
 
     /// The error that is stated for the goal.
