@@ -12,6 +12,18 @@ const POWER: f64 = 0.8;
 /// Pairs of the matrix that take the time of one link.
 const PAIRS: f64 = 6.0;
 
+/// Most links at 1 % over √(faces): cells of a wall, and small things far away, are linked as wholes.
+const TOGETHER: f64 = 10_000.0;
+/// Links of an element.
+const OF_ELEMENT: f64 = 10.0;
+
+/// Elements and links to expect at an accuracy, from which those of a scene may differ by a factor of three.
+pub(crate) fn expected(faces: usize, accuracy: f64) -> [usize; 2] {
+    let n = faces as f64;
+    let links = (LINKS * n).min(TOGETHER * n.sqrt()) * (0.01 / accuracy).powf(POWER);
+    [faces.max((links / OF_ELEMENT) as usize), links as usize]
+}
+
 /// What is known of a scene before it is solved.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Extent {

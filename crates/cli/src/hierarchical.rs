@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use fredholm_hierarchical::{
     Goal, HierarchyError, Options as Limits, Problem as Input, RESIDUAL, Round, Solution as Solved, Solvers,
-    State, Surfaces, Watch,
+    State, Surfaces, Watch, expected_bytes,
 };
 use fredholm_linop::MultiVector;
 use fredholm_mesh::{Mesh, MeshBuilder, MeshError, Patch};
@@ -17,15 +17,16 @@ use fredholm_visibility::Occluders;
 
 use crate::args::{Precision, SolveArgs};
 use crate::checkpoint::{self, Checkpoint, Header};
+use crate::choice::expected;
 use crate::console::Console;
 use crate::failure::{Ending, Failure};
 use crate::interrupt::Interrupt;
-use crate::memory::Plan;
+use crate::memory::{Limit, Plan};
 use crate::options::{Options, ProblemOptions, RADIOSITY};
-use crate::pictures;
 use crate::prediction::{Dense, MESH, Prediction, Size, results};
 use crate::problem::{Problem, check, occluders, pixels, scene_failure};
 use crate::registry::{self, Entry};
+use crate::size::Bytes;
 use crate::solution::{Solution, coupling_failure, solve_failure};
 use crate::stages::Stages;
 
@@ -54,6 +55,12 @@ const HELP: &str = "use fewer faces, or a smaller picture";
 const PICTURES: usize = 3;
 /// Share that tree and links may take of what the scene and the pictures leave: the other part is for results of the elements, whose number is not known before.
 const SHARE: f64 = 0.6;
+
+/// Share of what tree and links take that is still there when the results are written.
+const KEPT: f64 = 0.87;
+/// Growth of elements and links in a round, where none is known yet, and the most that is expected.
+const GROWTH: f64 = 2.0;
+const MOST_GROWTH: f64 = 3.0;
 
 /// The options in force.
 pub(crate) fn options(
@@ -114,6 +121,48 @@ fn unsuitable(solver: &str) -> Failure {
     Failure::new(Ending::Input, text)
 }
 
+/// What links take, as far as it is known.
+struct Forecast {
+    faces: usize,
+    bands: usize,
+    pixels: u128,
+    pictures: usize,
+    /// Bytes that tree and links may take.
+    most: u64,
+    limit: Limit,
+}
+
+impl Forecast {
+    /// With so many elements and links in the end.
+    fn plan(&self, [elements, links]: [usize; 2]) -> Plan {
+        let bytes = expected_bytes(elements, links, self.bands).min(self.most);
+        Plan::default()
+            .hold(format!("{} faces", self.faces), MESH * self.faces as u128)
+            .hold(
+                format!("about {links} links and {elements} elements ({} allowed)", Bytes(self.most.into())),
+                (bytes as f64 * KEPT) as u128,
+            )
+            .stage("their solution", (bytes as f64 * (1.0 - KEPT)) as u128)
+            .stage("results and pictures", results(elements, self.bands, self.pixels, self.pictures))
+    }
+
+    /// After so many rounds: what there is, or where the accuracy is not reached yet what the next
+    /// round is likely to leave.
+    fn after(&self, rounds: &[Round], reached: bool) -> Option<Plan> {
+        let last = rounds.last()?;
+        let size = |round: &Round| [round.elements, round.links];
+        if reached {
+            return Some(self.plan(size(last)));
+        }
+        let before = rounds.len().checked_sub(2).map(|i| size(&rounds[i]));
+        let grown = |k: usize| {
+            let growth = before.map_or(GROWTH, |before| size(last)[k] as f64 / before[k].max(1) as f64);
+            (size(last)[k] as f64 * growth.clamp(1.0, MOST_GROWTH)) as usize
+        };
+        Some(self.plan([grown(0), grown(1)]))
+    }
+}
+
 /// Solves a scene to an accuracy.
 pub(crate) fn compute(
     scene: &Arc<Scene>,
@@ -133,13 +182,22 @@ pub(crate) fn compute(
     let surfaces = surfaces(scene, &faces)?;
     let input = Input { mesh: &faces, occluders: &occluders, surfaces: &surfaces, goal: goal.as_ref() };
     let limits = limits(options, accuracy, &plan);
-    let plan = plan.hold("tree and links", limits.bytes.into());
-    stages.console.admit(&plan, options.problem.memory_limit());
+    let forecast = Forecast {
+        faces: faces.len(),
+        bands: scene.bands().len(),
+        pixels: pixels(scene),
+        pictures: pictures(options),
+        most: limits.bytes,
+        limit: options.problem.memory_limit(),
+    };
+    let plan = forecast.plan(expected(faces.len(), accuracy));
+    stages.console.admit(&plan, forecast.limit);
     let entry = registry::build(&options.problem.solver).map_err(|e| Failure::new(Ending::Input, e))?;
     let state = checkpoint.map(|checkpoint| state(checkpoint, scene, &input)).transpose()?;
     let fallback = registry::build(FALLBACK).map_err(|e| Failure::new(Ending::Input, e))?;
     let solvers = Solvers { first: &*entry.solver, fallback: &*fallback.solver };
     let watch = Follower {
+        forecast: &forecast,
         console: stages.console,
         interrupt: stages.interrupt,
         header: Header::new(scene, options, accuracy),
@@ -157,6 +215,9 @@ pub(crate) fn compute(
     };
     let solved = stages.run("solution", solve)?;
     stages.begin_saving()?;
+    if let Some(plan) = forecast.after(&solved.rounds, true) {
+        stages.console.admit(&plan, forecast.limit);
+    }
     let mesh = refined(&faces, &solved).map_err(|e| Failure::new(Ending::Input, e))?;
     let problem = problem((scene, options), mesh, (warnings, occluders), (entry, plan))?;
     Ok((problem, solution(solved, options, accuracy)))
@@ -200,10 +261,14 @@ fn state(checkpoint: &Checkpoint, scene: &Scene, input: &Input) -> Result<State,
 /// What is held besides tree and links.
 fn plan(scene: &Scene, count: usize, options: &Options) -> Plan {
     let bands = scene.bands().len();
-    let pictures = PICTURES + usize::from(options.final_gather);
     Plan::default()
         .hold(format!("{count} faces"), MESH * count as u128)
-        .hold("results and pictures", results(count, bands, pixels(scene), pictures))
+        .hold("results and pictures", results(count, bands, pixels(scene), pictures(options)))
+}
+
+/// Pictures that are drawn.
+fn pictures(options: &Options) -> usize {
+    PICTURES + usize::from(options.final_gather)
 }
 
 fn limits(options: &Options, accuracy: f64, plan: &Plan) -> Limits {
@@ -260,7 +325,7 @@ fn solution(solved: Solved, options: &Options, accuracy: f64) -> Solution {
         // With a goal nothing is stated for the faces.
         mesh_error: solved.error.as_ref().filter(|_| solved.goal.is_none()).map(stated),
         hierarchy: Some(hierarchy(&solved, options, accuracy)),
-        tree: Some(pictures::Hierarchy { tree: solved.tree, links: solved.links }),
+        tree: Some(crate::pictures::Hierarchy { tree: solved.tree, links: solved.links }),
         means: solved.means,
         report: solved.report,
         means_of: "H B_h, over links",
@@ -302,6 +367,7 @@ fn hierarchy(solved: &Solved, options: &Options, accuracy: f64) -> Hierarchy {
 
 /// Follows the rounds.
 struct Follower<'a> {
+    forecast: &'a Forecast,
     console: &'a dyn Console,
     interrupt: &'a Interrupt,
     header: Header,
@@ -323,6 +389,10 @@ impl Watch for Follower<'_> {
         // From now on there is a result worth the wait.
         self.interrupt.begin_saving().map_err(|_| HierarchyError::Interrupted)?;
         let error = state.error().map(fredholm_hierarchical::Stated::worst);
+        let reached = error.is_some_and(|error| error <= self.accuracy);
+        if let Some(plan) = self.forecast.after(rounds, reached) {
+            self.console.admit(&plan, self.forecast.limit);
+        }
         // The digits gained of those asked for.
         let share = error.map_or(0.0, |error| (error.ln() / self.accuracy.ln()).clamp(0.0, 1.0));
         self.console.advance(share, &|| {

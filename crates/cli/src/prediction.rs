@@ -2,7 +2,7 @@
 //!
 //! The bytes an element takes are measured: `cargo test --release --test memory -- --ignored` compares every prediction with what was held.
 
-use fredholm_coupling::waiting_bytes;
+use fredholm_coupling::{Constants, waiting_bytes};
 use fredholm_linop::{PackedSymmetric, Storage};
 
 use crate::args::Precision;
@@ -18,18 +18,21 @@ pub(crate) const MESH: u128 = 600;
 /// Bytes of an element while its exchanges are computed: quadrature points, clusters, error sums.
 pub(crate) const ASSEMBLY: u128 = 800;
 /// Bytes of an element that is shot from: quadrature points, groups, the tree of elements.
-const SHOT: u128 = 1300;
+const SHOT: u128 = 1500;
 /// Of the entries on their way, many small pieces, the C library still has one in so many when they have arrived.
-pub(crate) const RETAINED: u128 = 3;
+const RETAINED: u128 = 2;
 /// Bytes of an element while results are written, and of each of its values: what rays are cast at for the picture, welded corners, the composed file of arrays.
 const RESULTS: u128 = 650;
 const VALUE: u128 = 50;
-/// Bytes of a pixel: its luminance, among lit surfaces or lamps, and its place in the list of all while it is put together.
-const PIXEL: u128 = 28;
-/// Bytes of a pixel in each picture: while it is drawn, and when all are taken apart.
+/// Bytes of a pixel while the exposure is found, and in each picture: while it is drawn, and when
+/// all are taken apart. Besides, what the last rows take.
+const METERED: u128 = 10;
 const LAYER: u128 = 6;
+const ROWS: u128 = 2;
 /// Vectors of all bands held at once: system and results, and six sources of errors with their system, iterates and residuals.
 const VECTORS: u128 = 48;
+/// Vectors of all bands more while errors are followed.
+const FOLLOWED: u128 = 150;
 
 /// Sizes that decide the memory.
 #[derive(Clone, Copy, Debug)]
@@ -66,6 +69,10 @@ pub(crate) struct Prediction {
     mesh: u128,
     vectors: u128,
     solver: u128,
+    /// Addresses that the threads set aside for the solver.
+    aside: u128,
+    /// What the residual of the solution takes.
+    residual: u128,
 }
 
 impl Prediction {
@@ -83,12 +90,15 @@ impl Prediction {
             mesh: n * MESH,
             vectors: elements.max(unknowns) as u128 * VECTORS * 8 * bands as u128,
             solver: solver.solver.bytes(unknowns, bands).into(),
+            aside: of_threads(solver.solver.addresses()),
+            residual: if dense.is_none() { residual(elements, bands) } else { 0 },
         }
     }
 
     /// What is held when, by a computation that keeps no matrix for its results.
     pub(crate) fn plan(&self) -> Plan {
-        let Self { matrix, waiting, mesh, vectors, solver, size: Size { elements, unknowns, .. } } = *self;
+        let Self { matrix, waiting, mesh, vectors, solver, residual, .. } = *self;
+        let Size { elements, unknowns, .. } = self.size;
         let (assembly, retained) = (waiting + elements as u128 * ASSEMBLY, waiting / RETAINED);
         let what = match self.size.dense {
             None => format!("{} of form factors of {elements} elements", Bytes(matrix)),
@@ -104,6 +114,11 @@ impl Prediction {
                 format!("{what} and {} of the solver", Bytes(solver)),
                 matrix.saturating_add(solver).saturating_add(retained),
             )
+            .stage(
+                format!("{what} and {} of its residual", Bytes(residual)),
+                matrix.saturating_add(residual).saturating_add(retained),
+            )
+            .aside(self.aside)
     }
 
     /// The same with a solver of so many bytes.
@@ -138,6 +153,18 @@ impl Prediction {
     }
 }
 
+/// Bytes of what follows the residual of a solution: besides what is sampled of it, the products of
+/// its six sources in every band, in parts.
+fn residual(elements: usize, bands: usize) -> u128 {
+    let followed = elements as u128 * (bands as u128) * 8 * FOLLOWED;
+    u128::from(Constants::bytes(elements, bands)).saturating_add(followed)
+}
+
+/// Addresses that all threads of this run set aside, where each does so many.
+pub(crate) fn of_threads(addresses: u64) -> u128 {
+    u128::from(addresses) * rayon::current_num_threads() as u128
+}
+
 /// Bytes of the entries on their way into a matrix; more than 2³¹ elements, whose pairs cannot be counted, have none that would fit.
 pub(crate) fn waiting<S: Storage>(elements: usize, errors: bool) -> u64 {
     waiting_bytes::<S>(elements.min(1 << 31), errors)
@@ -157,7 +184,12 @@ pub(crate) fn without_matrix(elements: usize, bands: usize, kept: Bytes) -> Plan
 /// Bytes of the results of so many elements and of pictures of so many pixels.
 pub(crate) fn results(elements: usize, bands: usize, pixels: u128, pictures: usize) -> u128 {
     let fields = elements as u128 * (RESULTS + VALUE * bands as u128);
-    fields.saturating_add(pixels.saturating_mul(PIXEL + LAYER * pictures as u128))
+    fields.saturating_add(pictured(pixels, pictures))
+}
+
+/// Bytes of so many pictures of so many pixels.
+pub(crate) fn pictured(pixels: u128, pictures: usize) -> u128 {
+    pixels.saturating_mul(METERED.max(LAYER * pictures as u128 + ROWS))
 }
 
 #[cfg(test)]
@@ -203,7 +235,7 @@ mod tests {
 
     #[test]
     fn a_large_picture_counts() {
-        assert!(results(600, 3, 16_384 * 16_384, 1) > 8 << 30);
+        assert!(results(600, 3, 16_384 * 16_384, 1) > 2 << 30);
         assert!(results(usize::MAX, 3, u128::MAX, 1) == u128::MAX);
     }
 }

@@ -54,9 +54,9 @@ impl<'a> Stages<'a> {
 
     /// Refuses what a limit does not allow, before any of it is taken; `help` says how to need less.
     pub(crate) fn admit(&self, plan: &Plan, limit: Limit, help: &str) -> Result<(), Failure> {
-        plan.admit(limit, help)?;
+        // Programs are told what was predicted of what is refused, too.
         self.console.admit(plan, limit);
-        Ok(())
+        plan.admit(limit, help)
     }
 
     /// The stages so far.

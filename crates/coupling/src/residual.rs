@@ -40,8 +40,11 @@ const FEWEST: usize = 32;
 const SIDE: usize = 8;
 /// Share of the mean irradiance by which elements count at least when they are drawn.
 const DARK: f64 = 0.1;
-/// Elements whose rows are in memory at once.
+/// Elements whose rows are in memory at once, of up to so many bands; of more bands fewer, but
+/// some for each thread.
 const CHUNK: usize = 64;
+const BANDS: usize = 4;
+const OF_A_THREAD: usize = 2;
 
 /// Estimated error of the irradiance of faces, per band.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -111,6 +114,12 @@ struct Chosen {
 }
 
 impl Constants<'_> {
+    /// Bytes that [`residual`](Self::residual) takes for so many elements and bands.
+    #[must_use]
+    pub fn bytes(elements: usize, bands: usize) -> u64 {
+        (at_once(bands) * bands) as u64 * 8 * elements as u64
+    }
+
     /// Samples the residual. `watch` is asked before every element whether to go on.
     ///
     /// # Errors
@@ -127,9 +136,11 @@ impl Constants<'_> {
             watch().is_continue().then(|| self.spread(chosen.element, &places, &targets, &bodies))
         };
         let mut power = MultiVector::zeros(n, draws * bands);
-        for (number, chunk) in chosen.chunks(CHUNK).enumerate() {
+        // The sums are in the order of the elements, however many there are at a time.
+        let size = at_once(bands);
+        for (number, chunk) in chosen.chunks(size).enumerate() {
             let found: Vec<Option<Vec<f64>>> = chunk.par_iter().map(one).collect();
-            let (done, total) = ((number * CHUNK) as u64, chosen.len() as u64);
+            let (done, total) = ((number * size) as u64, chosen.len() as u64);
             let found: Option<Vec<Vec<f64>>> = found.into_iter().collect();
             let found = found.ok_or(CouplingError::Interrupted { done, total })?;
             for (chosen, spread) in chunk.iter().zip(found) {
@@ -265,6 +276,12 @@ fn points(elements: usize, bodies: usize) -> usize {
     let n = elements.max(1) as f64;
     let share = if bodies == 0 { OPEN } else { BLOCKED / (1.0 + bodies as f64 / MANY) };
     (FREE / elements.max(1)).max((share * n) as usize)
+}
+
+/// Elements whose rows are in memory at once.
+fn at_once(bands: usize) -> usize {
+    let some = OF_A_THREAD * rayon::current_num_threads();
+    (CHUNK * BANDS / bands.max(1)).clamp(some.min(CHUNK), CHUNK)
 }
 
 /// The point of a patch for two numbers in [0, 1], as many on equal areas; of a quad that is no parallelogram nearly so.

@@ -25,6 +25,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use crate::buffers;
 use crate::factorisation::{par, scratch};
 use crate::groups::{Ended, Run, columns, in_groups};
 use faer::dyn_stack::MemStack;
@@ -57,7 +58,12 @@ impl<T: Scalar + ComplexField> Solver<T> for Cholesky {
     fn bytes(&self, dim: usize, lanes: usize) -> u64 {
         let (n, entry) = (dim as u64, size_of::<T>() as u64);
         let vectors = (lanes as u64).saturating_mul(4).saturating_add(2);
-        n.saturating_add(vectors).saturating_mul(n).saturating_mul(entry)
+        let matrix = n.saturating_add(vectors).saturating_mul(n).saturating_mul(entry);
+        matrix.saturating_add(buffers::touched(dim, size_of::<T>()))
+    }
+
+    fn addresses(&self) -> u64 {
+        buffers::thread_addresses()
     }
 
     fn solve(

@@ -25,6 +25,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use crate::buffers;
 use crate::factorisation::{Factorisation, scratch_bytes};
 use crate::groups::{Ended, Run, columns, in_groups};
 use faer::traits::ComplexField;
@@ -54,6 +55,11 @@ impl<T: Scalar + ComplexField> Solver<T> for DenseLu {
             .saturating_add(vectors)
             .saturating_mul(n)
             .saturating_add(scratch_bytes::<T>(dim))
+            .saturating_add(buffers::touched(dim, size_of::<T>()))
+    }
+
+    fn addresses(&self) -> u64 {
+        buffers::thread_addresses()
     }
 
     fn solve(

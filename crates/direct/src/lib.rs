@@ -3,6 +3,7 @@
 //! A solver is one file here and one entry in the registry, see [`entries`]. All report the same residual ‖b − A x‖₂/‖b‖₂ per lane as the
 //! iterative ones, see [`fredholm_linop::Monitor`].
 
+mod buffers;
 mod cholesky;
 mod dense_lu;
 mod eigen;
@@ -11,6 +12,7 @@ mod groups;
 mod mixed_lu;
 mod spectrum;
 
+pub use buffers::thread_addresses;
 pub use cholesky::Cholesky;
 pub use dense_lu::DenseLu;
 pub use faer::traits::ComplexField;

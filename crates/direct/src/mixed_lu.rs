@@ -24,6 +24,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use crate::buffers;
 use crate::factorisation::{Factorisation, scratch_bytes};
 use crate::groups::{Ended, Run, columns, in_groups};
 use faer::traits::ComplexField;
@@ -88,7 +89,13 @@ impl<T: Single> Solver<T> for MixedLu {
         let (n, entry, index) = (dim as u64, size_of::<T>() as u64, size_of::<usize>() as u64);
         let vectors = (lanes as u64).saturating_mul(4).saturating_add(1).saturating_mul(entry);
         let line = n.saturating_mul(entry / 2).saturating_add(vectors).saturating_add(3 * index);
-        line.saturating_mul(n).saturating_add(scratch_bytes::<T::Low>(dim))
+        line.saturating_mul(n)
+            .saturating_add(scratch_bytes::<T::Low>(dim))
+            .saturating_add(buffers::touched(dim, size_of::<T::Low>()))
+    }
+
+    fn addresses(&self) -> u64 {
+        buffers::thread_addresses()
     }
 
     fn solve(

@@ -185,6 +185,14 @@ pub struct Solvers<'a> {
     pub fallback: &'a dyn Solver<f64>,
 }
 
+/// Bytes that a tree with so many leaves and its links take with all that a solution of some bands
+/// does with them.
+#[must_use]
+pub fn expected_bytes(elements: usize, links: usize, bands: usize) -> u64 {
+    // The parts of the divided and the clusters of all: a half more, as measured.
+    bytes(elements.saturating_add(elements / 2), links, bands)
+}
+
 /// Solves to an accuracy, from the start or from a saved state.
 ///
 /// # Errors

@@ -26,7 +26,8 @@ mod transport;
 mod tree;
 
 pub use driver::{
-    Options, Patient, Problem, RESIDUAL, Round, Solution, Solvers, Stated, Watch, conclude, solve,
+    Options, Patient, Problem, RESIDUAL, Round, Solution, Solvers, Stated, Watch, conclude, expected_bytes,
+    solve,
 };
 pub use error::HierarchyError;
 pub use gather::{Gather, Gatherer, Leaves};

@@ -71,7 +71,7 @@ pub(crate) struct Refined {
 /// Bytes of a tree and its links with all that a solution of some bands does with them.
 pub(crate) fn bytes(nodes: usize, links: usize, bands: usize) -> u64 {
     let node = size_of::<Node>() + NODE_WORK + BAND_WORK * bands;
-    nodes as u64 * node as u64 + links as u64 * Link::BYTES
+    (nodes as u64 * node as u64).saturating_add((links as u64).saturating_mul(Link::BYTES))
 }
 
 /// Bytes of a node in the operator, in the preparation of exchanges and in what is known of the light.

@@ -14,6 +14,12 @@ pub trait Solver<T: Scalar>: Send + Sync {
     /// Bytes it needs besides the operator, b and x.
     fn bytes(&self, dim: usize, lanes: usize) -> u64;
 
+    /// Bytes of addresses that every thread sets aside besides, and of which it touches no more
+    /// than [`bytes`](Self::bytes) counts. They matter only where the address space is limited.
+    fn addresses(&self) -> u64 {
+        0
+    }
+
     /// Solves A x = b from the starting guess `x`, which becomes the solution. The residual of every iteration goes
     /// to `observer`, and into the report.
     ///

@@ -53,14 +53,12 @@ fn report(args: &CheckArgs, stages: &mut Stages) -> Result<Ending, Failure> {
     let options = ProblemOptions::new(&args.problem, scene.solve());
     let more = |plan, scene: &Scene, n| with_results(plan, scene, n, (1, 0));
     let problem = match Problem::refined(Arc::clone(&scene), options, (1, &more), stages) {
-        // What the mesh is is told all the same.
-        Err(failure) if failure.ending == Ending::Resources && !args.log.quiet => {
-            lines.add("instead", INSTEAD);
-            scene.notes().iter().for_each(|note| lines.add("warning", note.to_string()));
-            output::print(
-                &lines.under(&format!("{}: a scene whose matrix does not fit", scene.path().display())),
-            )?;
-            return Err(failure);
+        // That is what was asked; what the mesh is is told all the same.
+        Err(failure) if failure.ending == Ending::Resources => {
+            if !args.log.quiet {
+                too_large(&scene, &failure, lines)?;
+            }
+            return Ok(Ending::Done);
         }
         loaded => loaded?,
     };
@@ -77,6 +75,15 @@ fn report(args: &CheckArgs, stages: &mut Stages) -> Result<Ending, Failure> {
     problem.warnings.iter().for_each(|warning| lines.add("warning", warning));
     output::print(&lines.under(&format!("{}: a valid scene", scene.path().display())))?;
     Ok(Ending::Done)
+}
+
+/// Says that the matrix does not fit, and what to do.
+fn too_large(scene: &Scene, failure: &Failure, mut lines: Lines) -> Result<(), Failure> {
+    lines.add("memory", failure.to_string());
+    lines.add("instead", INSTEAD);
+    scene.notes().iter().for_each(|note| lines.add("warning", note.to_string()));
+    let heading = format!("{}: a valid scene whose matrix does not fit", scene.path().display());
+    output::print(&lines.under(&heading))
 }
 
 /// What the solution will take.

@@ -69,8 +69,11 @@ pub(super) fn answer(
 ) -> Result<(Options, Problem, Solution), Failure> {
     let scene = stages.run("scene", || Scene::load(&args.problem.scene).map_err(scene_failure))?;
     let scene = Arc::new(scene);
-    let points = Plan::default().hold("points", args.places.bytes(scene.bands().len()));
-    points.admit(memory::limit(args.problem.memory), "ask for fewer points")?;
+    // Without points there is nothing to be said of them.
+    if let bytes @ 1.. = args.places.bytes(scene.bands().len()) {
+        let points = Plan::default().hold("points", bytes);
+        points.admit(memory::limit(args.problem.memory), "ask for fewer points")?;
+    }
     match args.accuracy.or(scene.solve().accuracy) {
         Some(accuracy) => to_accuracy(args, &scene, (accuracy, checkpoint), folder, stages),
         None if !args.goal.is_empty() => Err(hierarchical::goal_alone()),

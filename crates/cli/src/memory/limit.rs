@@ -45,6 +45,8 @@ pub(crate) enum Bound {
 pub(crate) struct Limit {
     pub(crate) bytes: Bytes,
     pub(crate) bound: Bound,
+    /// Addresses that may be set aside besides, where their number is limited.
+    pub(super) spare: Option<u128>,
 }
 
 /// The machine as it was when the process first asked: what the run itself takes must not lower its limit.
@@ -91,17 +93,20 @@ pub(crate) fn tell(asked: Option<Bytes>, console: &dyn Console) {
 impl Machine {
     fn limit(&self, asked: Option<Bytes>) -> Limit {
         let ceiling = self.bounds(1.0).min_by_key(|limit| limit.bytes);
-        match asked {
+        let found = match asked {
             Some(bytes) if ceiling.is_none_or(|ceiling| bytes <= ceiling.bytes) => {
-                Limit { bytes, bound: Bound::Asked }
+                Limit { bytes, bound: Bound::Asked, spare: None }
             }
             _ => self.least(asked.map_or(SHARE, |_| 1.0)),
-        }
+        };
+        let addresses = self.bounds(1.0).find(|limit| limit.bound == Bound::AddressSpace);
+        let spare = |all: Limit| all.bytes.0.saturating_sub(found.bytes.0);
+        Limit { spare: addresses.map(spare), ..found }
     }
 
     /// The least bound, with a share of what is available.
     fn least(&self, share: f64) -> Limit {
-        let fallback = Limit { bytes: Bytes(FALLBACK), bound: Bound::Fallback };
+        let fallback = Limit { bytes: Bytes(FALLBACK), bound: Bound::Fallback, spare: None };
         self.bounds(share).min_by_key(|limit| limit.bytes).unwrap_or(fallback)
     }
 
@@ -116,9 +121,10 @@ impl Machine {
             (self.data, Bound::Data),
         ];
         let resident = self.resident;
-        bounds
-            .into_iter()
-            .filter_map(move |(left, bound)| Some(Limit { bytes: Bytes(left? + resident), bound }))
+        let limit = move |(left, bound): (Option<u128>, Bound)| {
+            Some(Limit { bytes: Bytes(left? + resident), bound, spare: None })
+        };
+        bounds.into_iter().filter_map(limit)
     }
 
     fn threads(&self) -> usize {
@@ -143,6 +149,12 @@ impl fmt::Display for Limit {
 }
 
 impl Limit {
+    /// What addresses that are set aside and hardly touched take of the limit: nothing where
+    /// their number is not limited.
+    pub(crate) fn counted(self, aside: u128) -> u128 {
+        self.spare.map_or(0, |spare| aside.saturating_sub(spare))
+    }
+
     /// How to get more.
     pub(super) fn help(self) -> &'static str {
         match self.bound {
@@ -178,6 +190,17 @@ mod tests {
         let data = Machine { data: Some(GIB), ..grouped };
         assert_eq!(of(data.limit(None)), (GIB + 5, Bound::Data));
         assert_eq!(of(Machine::default().limit(None)), (FALLBACK, Bound::Fallback));
+    }
+
+    #[test]
+    fn addresses_that_are_set_aside_count_where_they_are_limited() {
+        let free = Machine { available: Some(10 * GIB), ..Machine::default() };
+        assert_eq!(free.limit(None).counted(100 * GIB), 0);
+        let tight = Machine { address_space: Some(2 * GIB), ..free };
+        assert_eq!(tight.limit(None).counted(GIB), GIB);
+        let asked = tight.limit(Some(Bytes(GIB)));
+        let spare = tight.limit(None).bytes.0 - GIB;
+        assert_eq!((asked.counted(spare), asked.counted(GIB)), (0, GIB - spare));
     }
 
     #[test]

@@ -14,6 +14,8 @@ const PROGRAM: u128 = 10 << 20;
 pub(crate) struct Plan {
     held: Vec<Part>,
     stages: Vec<Part>,
+    /// Addresses that are set aside and hardly touched.
+    aside: u128,
 }
 
 /// A use of memory.
@@ -36,6 +38,11 @@ impl Plan {
         self
     }
 
+    /// Adds addresses that are set aside and, but for what is counted, never touched.
+    pub(crate) fn aside(self, bytes: u128) -> Self {
+        Self { aside: self.aside.max(bytes), ..self }
+    }
+
     /// The most that is held at a time.
     pub(crate) fn peak(&self) -> Bytes {
         let held = self.held.iter().fold(PROGRAM, |sum, part| sum.saturating_add(part.bytes));
@@ -49,7 +56,7 @@ impl Plan {
 
     /// Whether it stays within a limit.
     pub(crate) fn fits(&self, limit: Limit) -> bool {
-        self.peak() <= limit.bytes
+        self.peak().0.saturating_add(limit.counted(self.aside)) <= limit.bytes.0
     }
 
     /// Refuses what is above the limit; `help` says how to need less.
@@ -57,8 +64,13 @@ impl Plan {
         if self.fits(limit) {
             return Ok(());
         }
+        let aside = match limit.counted(self.aside) {
+            0 => String::new(),
+            _ => format!(" and {} of addresses that its threads set aside", Bytes(self.aside)),
+        };
+        let threads = if aside.is_empty() { "" } else { ", fewer --threads" };
         let text = format!(
-            "this needs {}, but the limit is {limit}: {self}\n  help: {help}, or {}",
+            "this needs {}{aside}, but the limit is {limit}: {self}\n  help: {help}{threads}, or {}",
             self.peak(),
             limit.help()
         );
@@ -88,12 +100,21 @@ mod tests {
         assert_eq!(plan.peak(), Bytes(19 << 20));
         let text = "1.0 MiB for the mesh, 8.0 MiB for the matrix, 10.0 MiB for the program";
         assert_eq!(plan.to_string(), text);
-        let limit = |bytes| Limit { bytes: Bytes(bytes), bound: Bound::Group };
+        let limit = |bytes| Limit { bytes: Bytes(bytes), bound: Bound::Group, spare: None };
         assert!(plan.admit(limit(19 << 20), "less").is_ok());
         let refused = plan.admit(limit((19 << 20) - 1), "use less").unwrap_err();
         assert_eq!(refused.ending, Ending::Resources);
         let text = refused.to_string();
         assert!(text.contains("help: use less, or raise the limit of the control group"), "{text}");
+    }
+
+    #[test]
+    fn addresses_set_aside_are_refused_where_they_are_limited() {
+        let plan = Plan::default().hold("all", 6 << 20).aside(8 << 20).aside(4 << 20);
+        let limit = |spare| Limit { bytes: Bytes(20 << 20), bound: Bound::AddressSpace, spare };
+        assert!(plan.fits(limit(None)) && plan.fits(limit(Some(4 << 20))));
+        let refused = plan.admit(limit(Some(0)), "use less").unwrap_err().to_string();
+        assert!(refused.contains("and 8.0 MiB of addresses") && refused.contains("--threads"), "{refused}");
     }
 
     #[test]

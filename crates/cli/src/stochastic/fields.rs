@@ -3,11 +3,11 @@
 use std::ops::ControlFlow;
 
 use fredholm_mesh::Vec3;
-use fredholm_montecarlo::Stop;
 use fredholm_montecarlo::waves::{
     Aim, AmplitudeParticles, Bounces, FieldEstimate, FieldEstimator, FieldParticles, FieldTracing,
     Scattering, SurfaceSampling,
 };
+use fredholm_montecarlo::{Stop, WAVE};
 use fredholm_waves::{PhysicalOptics, Shadow, Source, Wave, WaveError};
 
 use super::args::{PathArgs, TraceStopArgs};
@@ -31,7 +31,11 @@ pub(crate) type FieldPoint = (usize, usize, Vec3);
 
 /// All points of the receivers that have some.
 pub(crate) fn field_points(model: &Model) -> Vec<FieldPoint> {
-    let mut all = Vec::new();
+    let near = model.receivers.iter().map(|receiver| match &receiver.places {
+        Places::Near { points, .. } => points.len(),
+        _ => 0,
+    });
+    let mut all = Vec::with_capacity(near.sum());
     for (number, receiver) in model.receivers.iter().enumerate() {
         if let Places::Near { points, .. } = &receiver.places {
             all.extend(points.iter().enumerate().map(|(index, &point)| (number, index, point)));
@@ -60,14 +64,18 @@ impl FieldRun {
     ) -> Result<Self, Failure> {
         admit(method, paths, model)?;
         let batch = paths.batch.unwrap_or(BATCH);
-        let samples = stop.samples.or(stop.is_empty().then_some(SAMPLES));
         let stop = Stop {
-            batches: samples.map(|all| all.div_ceil(batch.into()).max(2)),
+            batches: batches(paths, stop),
             // Every frequency has its share of the time.
             seconds: stop.seconds.map(|all| all / model.bands.len() as f64),
             error: stop.to,
         };
         Ok(Self { method: method.to_owned(), bounces: bounces(model, stages), seed: paths.seed, batch, stop })
+    }
+
+    /// Batches that are in memory at once.
+    pub(crate) fn at_once(paths: &PathArgs, stop: &TraceStopArgs) -> u32 {
+        batches(paths, stop).and_then(|all| u32::try_from(all).ok()).map_or(WAVE, |all| all.min(WAVE))
     }
 
     /// Bounces that are summed.
@@ -113,6 +121,12 @@ impl FieldRun {
         let bounces = if self.bounces == Bounces::One { "one bounce" } else { "two bounces" };
         format!("{what}, {bounces}, standard error {:.3} % (L2 over the points)", 100.0 * error)
     }
+}
+
+/// Batches in all, where their number is known.
+fn batches(paths: &PathArgs, stop: &TraceStopArgs) -> Option<u64> {
+    let samples = stop.samples.or(stop.is_empty().then_some(SAMPLES));
+    samples.map(|all| all.div_ceil(paths.batch.unwrap_or(BATCH).into()).max(2))
 }
 
 fn admit(method: &str, paths: &PathArgs, model: &Model) -> Result<(), Failure> {

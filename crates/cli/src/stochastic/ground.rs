@@ -11,7 +11,7 @@ use crate::args::ProblemArgs;
 use crate::failure::Failure;
 use crate::memory::{self, Plan};
 use crate::prediction::MESH;
-use crate::problem::{Problem, prepare, scene_failure, with_results};
+use crate::problem::{Problem, prepare, scene_failure};
 use crate::solution::Solution;
 use crate::stages::Stages;
 
@@ -19,6 +19,11 @@ use crate::stages::Stages;
 const TRACED: u128 = 600;
 /// Vectors of all elements and bands held at once: a wave of batches, sums, means and errors.
 const VECTORS: u128 = fredholm_montecarlo::WAVE as u128 + 10;
+
+/// Bytes of an element while the results are drawn and written, and of each of its values: what
+/// paths are traced on is still there.
+const RESULTS: u128 = 920;
+const VALUE: u128 = 200;
 
 /// A meshed scene.
 pub(crate) struct Ground {
@@ -29,9 +34,13 @@ pub(crate) struct Ground {
 
 impl Ground {
     /// Reads, meshes and checks a scene; refuses it before memory is taken where it does not fit.
-    pub(crate) fn load(args: &ProblemArgs, stages: &mut Stages) -> Result<Self, Failure> {
+    pub(crate) fn load(
+        args: &ProblemArgs,
+        picture: &dyn Fn(&Scene) -> Drawn,
+        stages: &mut Stages,
+    ) -> Result<Self, Failure> {
         let scene = stages.run("scene", || Scene::load(&args.scene).map_err(scene_failure))?;
-        admit(&scene, args, stages)?;
+        admit(&scene, args, &picture(&scene), stages)?;
         let mesh = stages.run("mesh", || scene.mesh().map_err(scene_failure))?;
         let warnings = scene.check(&mesh).map_err(scene_failure)?;
         let warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
@@ -42,11 +51,25 @@ impl Ground {
     }
 }
 
-fn admit(scene: &Scene, args: &ProblemArgs, stages: &Stages) -> Result<(), Failure> {
+/// What is drawn of a traced scene.
+pub(crate) enum Drawn {
+    /// Nothing.
+    Nothing,
+    /// The means of the elements, or else pixels: bytes.
+    Picture(u128),
+}
+
+fn admit(scene: &Scene, args: &ProblemArgs, drawn: &Drawn, stages: &Stages) -> Result<(), Failure> {
     let elements = usize::try_from(scene.predicted_elements()).unwrap_or(usize::MAX);
-    let plan = Plan::default().hold(format!("{elements} elements"), MESH.saturating_mul(elements as u128));
-    let plan = with_results(with_tracing(plan, scene, elements), scene, elements, (1, 0));
-    let help = "use fewer elements (elements_per_face, divide, largest_edge in the scene)";
+    let n = elements as u128;
+    let plan = Plan::default().hold(format!("{elements} elements"), MESH.saturating_mul(n));
+    let mut plan = with_tracing(plan, scene, elements);
+    if let Drawn::Picture(bytes) = drawn {
+        let element = RESULTS + VALUE * scene.bands().len() as u128;
+        plan = plan.stage("results and pictures", element.saturating_mul(n).saturating_add(*bytes));
+    }
+    let help =
+        "use fewer elements (elements_per_face, divide, largest_edge in the scene), or a smaller picture";
     stages.admit(&plan, memory::limit(args.memory), help)
 }
 

@@ -11,12 +11,35 @@ const CURRENTS: u128 = 240;
 const POINT: u128 = 24;
 const ROW: u128 = 716;
 /// Bytes of a facet in a coupling: its frame in lanes, and the blocks of what is near.
-pub(super) const COUPLED: u128 = 2500;
+pub(super) const COUPLED: u128 = 5000;
+
+/// Bytes of a point while its field is sampled, of each batch that is in memory, and of a point at
+/// one frequency while the results are written.
+const SAMPLED: u128 = 72;
+const BATCH: u128 = 48;
+const ESTIMATED: u128 = 440;
+
+/// What so many facets take, and the fields at all points sampled so many batches at once.
+pub(super) fn sampled(facets: u128, entry: &SceneEntry, batches: u32) -> Plan {
+    let bands = entry.wave.get_ref().frequencies_hz.get_ref().len() as u128;
+    let places = all_places(entry);
+    let sampling = places.saturating_mul(SAMPLED + BATCH * (2 + u128::from(batches)));
+    Plan::default()
+        .hold(format!("{facets} facets"), facets.saturating_mul(FACET))
+        .hold(format!("{places} points"), places.saturating_mul(POINT))
+        .stage(format!("{batches} batches of samples"), sampling)
+        .stage("the estimates and their files", places.saturating_mul(ESTIMATED * bands))
+}
+
+/// Points and directions of all receivers.
+fn all_places(entry: &SceneEntry) -> u128 {
+    entry.receiver.iter().map(|receiver| places(receiver.get_ref())).sum()
+}
 
 /// What so many facets and all receivers take.
 pub(super) fn plan(facets: u128, entry: &SceneEntry) -> Plan {
     let bands = entry.wave.get_ref().frequencies_hz.get_ref().len() as u128;
-    let places: u128 = entry.receiver.iter().map(|receiver| places(receiver.get_ref())).sum();
+    let places = all_places(entry);
     Plan::default()
         .hold(format!("{facets} facets"), facets.saturating_mul(FACET + CURRENTS * bands))
         .hold(format!("{places} points and directions"), places.saturating_mul(POINT + ROW * bands))

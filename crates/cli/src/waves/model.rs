@@ -10,7 +10,7 @@ use fredholm_waves::{Complex64, Origin, Shadow, Source, Wave, WaveError};
 use super::format::{ReceiverEntry, SceneEntry, WaveEntry};
 use super::geometry::{Geometry, materials};
 use super::located::SceneText;
-use super::memory::plan as memory_of;
+use super::memory::{plan as memory_of, sampled};
 use super::receivers::{Places, Receiver, receivers};
 use super::sources::{Placed, placed};
 use crate::failure::Failure;
@@ -74,15 +74,25 @@ pub(crate) struct Model {
 impl Model {
     /// Reads a scene file and cuts its surfaces, where they fit the memory asked for.
     pub(crate) fn load(path: &Path, memory: Option<Bytes>) -> Result<Self, Failure> {
-        Self::read(path, memory, false)
+        Self::read(path, memory, false, &memory_of)
+    }
+
+    /// The same where the fields are sampled, so many batches at once.
+    pub(crate) fn load_sampled(path: &Path, memory: Option<Bytes>, batches: u32) -> Result<Self, Failure> {
+        Self::read(path, memory, false, &|facets, entry| sampled(facets, entry, batches))
     }
 
     /// The same with errors estimated, whether the scene asks for it or not.
     pub(crate) fn load_estimated(path: &Path, memory: Option<Bytes>) -> Result<Self, Failure> {
-        Self::read(path, memory, true)
+        Self::read(path, memory, true, &memory_of)
     }
 
-    fn read(path: &Path, memory: Option<Bytes>, estimated: bool) -> Result<Self, Failure> {
+    fn read(
+        path: &Path,
+        memory: Option<Bytes>,
+        estimated: bool,
+        memory_of: &dyn Fn(u128, &SceneEntry) -> Plan,
+    ) -> Result<Self, Failure> {
         let text = SceneText::read(path)?;
         let entry: SceneEntry = text.parse()?;
         let bands = bands(&text, &entry)?;

@@ -14,6 +14,7 @@ use crate::console::Console;
 use crate::failure::{Ending, Failure};
 use crate::interrupt::{Interrupt, nothing_saved};
 use crate::memory::Plan;
+use crate::prediction::of_threads;
 
 /// Solvers that ask for products only: where the matrix does not fit, they compute it anew each time.
 const PRODUCTS_ONLY: [&str; 4] = ["neumann", "gmres", "bicgstab", "anderson"];
@@ -68,9 +69,11 @@ pub(super) fn coupled<'a>(
 ) -> Result<System<'a>, Failure> {
     let unknowns = System::unknowns(scatterer);
     let solver = solvers.iter().map(|solver| solver.bytes(unknowns, 1)).max().unwrap_or(0);
+    let addresses = solvers.iter().map(|solver| solver.addresses()).max().unwrap_or(0);
     let plan = coupling(model.plan.clone(), scatterer, shadow)
         .hold(format!("the coupling of {unknowns} unknowns"), System::bytes(scatterer).into())
-        .hold("the solver", solver.into());
+        .hold("the solver", solver.into())
+        .aside(of_threads(addresses));
     if !plan.fits(model.limit) && solvers.iter().all(|solver| PRODUCTS_ONLY.contains(&solver.name())) {
         return lazy(model, scatterer, (wave, shadow), console);
     }

@@ -182,18 +182,29 @@ impl<'a> Viewer<'a> {
 
     /// Luminances seen through the middle of each pixel: of lit surfaces, or of lamps where there is nothing else.
     fn meter(&self, field: &Field<'_>) -> Vec<f64> {
-        let rows: Vec<Vec<(bool, f64)>> =
-            (0..self.eye.camera().height).into_par_iter().map(|y| self.probe(field, y)).collect();
-        let seen = rows.into_iter().flatten();
-        let (lamps, reflecting): (Vec<_>, Vec<_>) = seen.partition(|(emits, _)| *emits);
-        let chosen = if reflecting.is_empty() { lamps } else { reflecting };
-        chosen.into_iter().map(|(_, luminance)| luminance).collect()
-    }
-
-    fn probe(&self, field: &Field<'_>, y: u32) -> Vec<(bool, f64)> {
-        let look = |x| self.eye.hit(f64::from(x) + 0.5, f64::from(y) + 0.5);
-        let value = |(leaf, p)| (field.emits(leaf), luminance(self.shading.colour(leaf, p)));
-        (0..self.eye.camera().width).filter_map(look).map(value).collect()
+        let Camera { width, height, .. } = *self.eye.camera();
+        // One list for all: a row that sees nothing somewhere would leave gaps in the heap. Lamps have
+        // the sign of a negative number there, and nothing is no number.
+        let mut seen = vec![f64::NAN; width as usize * height as usize];
+        let look = |(y, row): (usize, &mut [f64])| {
+            for (x, value) in row.iter_mut().enumerate() {
+                if let Some((leaf, p)) = self.eye.hit(x as f64 + 0.5, y as f64 + 0.5) {
+                    let bright = luminance(self.shading.colour(leaf, p));
+                    *value = if field.emits(leaf) { -bright } else { bright };
+                }
+            }
+        };
+        seen.par_chunks_mut(width as usize).enumerate().for_each(look);
+        let reflects = |value: f64| !value.is_nan() && value.is_sign_positive();
+        if seen.iter().any(|&value| reflects(value)) {
+            seen.retain(|&value| reflects(value));
+        } else {
+            seen.retain(|value| !value.is_nan());
+            for value in &mut seen {
+                *value = -*value;
+            }
+        }
+        seen
     }
 }
 

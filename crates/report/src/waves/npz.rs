@@ -14,6 +14,10 @@ use ndarray_npy::{NpzWriter, WriteNpzError};
 
 use super::WaveRow;
 
+/// Bytes of a row in the file, and of all that the archive adds.
+const ROW: usize = 8 * (3 + 3 + 3 * 12);
+const HEADERS: usize = 4096;
+
 /// Writes the fields as arrays. The file is composed in memory.
 ///
 /// # Errors
@@ -25,7 +29,9 @@ pub fn write_receivers_npz(rows: &[WaveRow], out: &mut dyn Write) -> io::Result<
 
 fn compose(rows: &[WaveRow]) -> Result<Vec<u8>, WriteNpzError> {
     let number = |i: usize| i64::try_from(i).unwrap_or(i64::MAX);
-    let mut npz = NpzWriter::new(Cursor::new(Vec::new()));
+    // A file that grows would be held twice over.
+    let file = Vec::with_capacity(rows.len() * ROW + HEADERS);
+    let mut npz = NpzWriter::new(Cursor::new(file));
     npz.add_array("receiver", &rows.iter().map(|row| number(row.receiver)).collect::<Array1<i64>>())?;
     npz.add_array("index", &rows.iter().map(|row| number(row.index)).collect::<Array1<i64>>())?;
     npz.add_array("position", &Array2::from(rows.iter().map(|row| row.position).collect::<Vec<_>>()))?;
@@ -37,8 +43,8 @@ fn compose(rows: &[WaveRow]) -> Result<Vec<u8>, WriteNpzError> {
 }
 
 fn phasors(rows: &[WaveRow], of: impl Fn(&WaveRow) -> [f64; 12]) -> Array3<f64> {
-    let values: Vec<[f64; 12]> = rows.iter().map(of).collect();
-    Array3::from_shape_fn((rows.len(), 6, 2), |(i, component, part)| values[i][2 * component + part])
+    let value = |(i, component, part): (usize, usize, usize)| of(&rows[i])[2 * component + part];
+    Array3::from_shape_fn((rows.len(), 6, 2), value)
 }
 
 #[cfg(test)]

@@ -33,6 +33,7 @@ pub(super) fn case<S: Storage>(
         system: &system,
         b: radiosity.exitance(),
         memory: left(problem),
+        limit: problem.options.memory_limit(),
         watcher: Watcher::to(stages, args.stop()),
     };
     let outcomes: Vec<Outcome> =

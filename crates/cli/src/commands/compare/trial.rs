@@ -5,6 +5,8 @@ use fredholm_report::ComparisonRun;
 
 use crate::failure::Failure;
 use crate::interrupt::nothing_saved;
+use crate::memory::Limit;
+use crate::prediction::of_threads;
 use crate::registry::Entry;
 use crate::trial;
 use crate::watcher::Watcher;
@@ -15,6 +17,8 @@ pub(super) struct Bench<'a> {
     pub(super) b: &'a MultiVector<f64>,
     /// Bytes that a solver may take.
     pub(super) memory: u128,
+    /// Where addresses are limited, those that threads set aside count as well.
+    pub(super) limit: Limit,
     pub(super) watcher: Watcher<'a>,
 }
 
@@ -28,7 +32,8 @@ impl Bench<'_> {
     /// Solves from x = 0.
     pub(super) fn run(&self, text: &str, entry: &Entry) -> Result<Outcome, Failure> {
         let (dim, lanes) = (self.b.dim(), self.b.lanes());
-        let bytes = u128::from(entry.solver.bytes(dim, lanes));
+        let bytes = u128::from(entry.solver.bytes(dim, lanes))
+            + self.limit.counted(of_threads(entry.solver.addresses()));
         if bytes > self.memory {
             let reason = format!("it takes {bytes} bytes of memory and {} are left", self.memory);
             return Ok(Outcome { run: trial::refused(text, reason), x: None });

@@ -6,7 +6,7 @@ mod summary;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use fredholm_direct::spectrum_bytes;
+use fredholm_direct::{spectrum_bytes, thread_addresses};
 use fredholm_linop::{SecondKind, Stop, Storage};
 use fredholm_report::{SPECTRUM_FORMAT, SpectrumRecord, write_spectrum};
 use fredholm_scene::Scene;
@@ -17,6 +17,7 @@ use crate::args::{LogArgs, Precision, ProblemArgs, tolerance};
 use crate::failure::{Ending, Failure};
 use crate::memory::Plan;
 use crate::options::RADIOSITY;
+use crate::prediction::of_threads;
 use crate::problem::Problem;
 use crate::registry;
 use crate::size::Bytes;
@@ -78,7 +79,10 @@ fn problem(args: &SpectrumArgs) -> ProblemArgs {
 
 fn run(args: &SpectrumArgs, folder: &Path, stages: &mut Stages) -> Result<Ending, Failure> {
     let dense = |plan: Plan, _: &Scene, n: usize| {
-        if n <= args.dense { plan.hold("dense methods", spectrum_bytes(n).into()) } else { plan }
+        if n > args.dense {
+            return plan;
+        }
+        plan.hold("dense methods", spectrum_bytes(n).into()).aside(of_threads(thread_addresses()))
     };
     let problem = Problem::load(&problem(args), &dense, stages)?;
     if !problem.is_radiosity() {

@@ -23,7 +23,10 @@ use crate::waves::Model;
 /// Samples the fields of a scene of waves and writes them.
 pub(super) fn run(args: &TraceArgs, folder: &Path, stages: &mut Stages) -> Result<Ending, Failure> {
     admit(args)?;
-    let model = stages.run("scene", || Model::load(&args.problem.scene, args.problem.memory))?;
+    let batches = FieldRun::at_once(&args.paths, &args.stop);
+    let load = || Model::load_sampled(&args.problem.scene, args.problem.memory, batches);
+    let model = stages.run("scene", load)?;
+    stages.console.admit(&model.plan, model.limit);
     let run = FieldRun::new(&args.method, &args.paths, &args.stop, &model, stages)?;
     let origin = Origin::new(args, &model.text.sha256(), run.bounces());
     let earlier: Vec<FieldEstimate> = if args.go_on { origin.earlier(folder)? } else { Vec::new() };
@@ -73,7 +76,8 @@ fn sampled(
 /// A row a point and frequency.
 fn rows(model: &Model, states: &[FieldEstimate]) -> Vec<SampledField> {
     let points = field_points(model);
-    let mut rows = Vec::new();
+    // A list that grows would be held twice over.
+    let mut rows = Vec::with_capacity(points.len() * states.len());
     for (band, state) in model.bands.iter().zip(states) {
         let found = state.mean().into_iter().zip(state.standard_errors());
         for (&(receiver, index, point), (mean, error)) in points.iter().zip(found) {

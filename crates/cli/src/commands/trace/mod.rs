@@ -112,8 +112,8 @@ pub(crate) fn trace(args: &TraceArgs) -> Result<Ending, Failure> {
 }
 
 fn run(args: &TraceArgs, folder: &Path, stages: &mut Stages) -> Result<Ending, Failure> {
-    let ground = Ground::load(&args.problem, stages)?;
-    picture::admit(args, &ground, stages)?;
+    picture::admit(args)?;
+    let ground = Ground::load(&args.problem, &|scene| picture::drawn(args, scene), stages)?;
     let scene = stages.run("exposure", || enclosure(&ground.scene, &ground.mesh))?;
     let stop = args.stop.or_to(ERROR);
     let origin = Origin::new(args, ground.scene.sha256(), 0);

@@ -3,21 +3,26 @@
 use fredholm_montecarlo::light::pixels::{PixelEstimate, SAMPLES, pixel};
 use fredholm_montecarlo::light::{PICTURED, PointEstimator, point_estimator};
 use fredholm_montecarlo::{Enclosure, Site};
-use fredholm_report::{Camera, Eye, FRAMED, Pixels};
+use fredholm_report::{Camera, Eye, Pixels};
+use fredholm_scene::Scene;
 use rayon::prelude::*;
 
 use super::TraceArgs;
 use crate::commands::solve::report_failure;
 use crate::failure::{Ending, Failure};
-use crate::memory::{self, Plan};
+use crate::prediction::pictured;
+use crate::problem::pixels;
 use crate::stages::Stages;
-use crate::stochastic::Ground;
+use crate::stochastic::{Drawn, Ground};
 
 /// Rows between looks for Ctrl-C.
 const STRIP: u32 = 16;
-/// Bytes of a pixel, and of each of its bands, while it is traced and written.
-const PIXEL: u128 = 40;
-const BAND: u128 = 32;
+/// Bytes of a pixel, and of each of its bands.
+const PIXEL: u128 = 9;
+const BAND: u128 = 16;
+/// Bytes of its colour with what the exposure goes by, and of the rest of it in the file.
+const COLOUR: u128 = 35;
+const FILE: u128 = 8;
 /// Fewest batches of a pixel: without two there is no standard error.
 const FEWEST: u32 = 2;
 
@@ -48,7 +53,17 @@ impl<'a> Tracer<'a> {
     /// All pixels; none where Ctrl-C comes before.
     pub(super) fn trace(&self, stages: &Stages) -> Option<Pixels> {
         let Camera { width, height, .. } = *self.eye.camera();
-        let mut pixels = Pixels { width, height, ..Pixels::default() };
+        // Lists that grow would be held twice over.
+        let count = width as usize * height as usize;
+        let values = count * self.scene.bands();
+        let mut pixels = Pixels {
+            width,
+            height,
+            radiosity: Vec::with_capacity(values),
+            standard_error: Vec::with_capacity(values),
+            covered: Vec::with_capacity(count),
+            lamp: Vec::with_capacity(count),
+        };
         for first in (0..height).step_by(STRIP as usize) {
             if stages.interrupt.requested() {
                 return None;
@@ -79,15 +94,24 @@ impl<'a> Tracer<'a> {
 }
 
 /// Refuses what cannot be traced pixel by pixel, before any path is traced.
-pub(super) fn admit(args: &TraceArgs, ground: &Ground, stages: &Stages) -> Result<(), Failure> {
-    if args.spp.is_none() {
-        return Ok(());
-    }
-    if !PICTURED.contains(&args.method.as_str()) {
+pub(super) fn admit(args: &TraceArgs) -> Result<(), Failure> {
+    if args.spp.is_some() && !PICTURED.contains(&args.method.as_str()) {
         return Err(refused(args));
     }
-    let size = ground.scene.camera().map_or(FRAMED, |camera| [camera.width, camera.height]);
-    fits(args, size, ground.scene.bands().len(), stages)
+    Ok(())
+}
+
+/// What is drawn of a scene, and the bytes that it takes: pixel by pixel two numbers a band, and
+/// either the colours of the picture or the file of the numbers.
+pub(super) fn drawn(args: &TraceArgs, scene: &Scene) -> Drawn {
+    let (pixels, bands) = (pixels(scene), scene.bands().len() as u128);
+    if args.no_pictures {
+        return Drawn::Nothing;
+    }
+    Drawn::Picture(match args.spp {
+        None => pictured(pixels, 1),
+        Some(_) => pixels * (PIXEL + BAND * bands + COLOUR.max(FILE + BAND * bands)),
+    })
 }
 
 fn refused(args: &TraceArgs) -> Failure {
@@ -97,11 +121,4 @@ fn refused(args: &TraceArgs) -> Failure {
         PICTURED.join(" or --method ")
     );
     Failure::new(Ending::Input, text)
-}
-
-/// Refuses a picture that does not fit in memory: two numbers a pixel and band while it is traced, as many in the file, and what holds them.
-fn fits(args: &TraceArgs, [width, height]: [u32; 2], bands: usize, stages: &Stages) -> Result<(), Failure> {
-    let pixels = u128::from(width) * u128::from(height);
-    let plan = Plan::default().hold("the picture and its errors", pixels * (BAND * bands as u128 + PIXEL));
-    stages.admit(&plan, memory::limit(args.problem.memory), "make the camera's width and height smaller")
 }

@@ -4,7 +4,7 @@ use fredholm_linop::PackedSymmetric;
 
 use super::options::Options;
 use crate::memory::Plan;
-use crate::prediction::{ASSEMBLY, MESH, RETAINED, waiting};
+use crate::prediction::{ASSEMBLY, MESH, waiting};
 
 /// Bytes of a factor.
 const FACTOR: u128 = 8;
@@ -13,6 +13,10 @@ const DENSE: u128 = FACTOR + 4;
 const SPARSE: u128 = DENSE + 4;
 /// Bytes of a point, as it is given and as it is written.
 const POINT: u128 = 96;
+
+/// Of the entries on their way, which bring their errors with them, one in so many is still there
+/// when they have arrived.
+const RETAINED: u128 = 3;
 
 /// How to need less.
 pub(super) fn help(options: &Options) -> String {
