@@ -1,7 +1,8 @@
 //! Which way to an accuracy costs less: the matrix of the scene's elements, or links.
 //!
 //! The matrix has n(n + 1)/2 pairs. The links are about [`LINKS`] (1 %/ε)^[`POWER`] a face at the accuracy ε, and one costs as much as [`PAIRS`] pairs, as measured on the scenes of
-//! docs/hierarchical.md. The matrix has a stated error only where every face has 2 × 2 elements or more; what it states decides whether it was enough.
+//! docs/hierarchical.md. On fewer than 2 × 2 elements a face the matrix is seldom exact enough, and links would have to follow; else the error
+//! that it states decides whether it was enough.
 
 use std::fmt;
 
@@ -36,8 +37,8 @@ pub(crate) struct Extent {
 /// What was predicted, and what it came to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Choice {
-    /// The matrix would state no error.
-    NoEstimate,
+    /// The matrix has fewer than 2 × 2 elements a face: links would follow in the end.
+    Coarse,
     /// Links alone know a goal.
     Goal,
     /// The matrix costs more: pairs and links.
@@ -58,7 +59,7 @@ impl Choice {
         if pairs >= PAIRS * links {
             Self::Links { pairs, links }
         } else if extent.fewest < 4 {
-            Self::NoEstimate
+            Self::Coarse
         } else {
             Self::Matrix { pairs, links }
         }
@@ -77,8 +78,8 @@ impl Choice {
 impl fmt::Display for Choice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NoEstimate => f.write_str(
-                "hierarchical, since faces of fewer than 4 elements give a matrix no stated error",
+            Self::Coarse => f.write_str(
+                "hierarchical, since a matrix of faces of fewer than 4 elements is seldom exact enough",
             ),
             Self::Goal => f.write_str("hierarchical, since elements are chosen for a goal"),
             Self::Links { pairs, links } => {
@@ -125,7 +126,7 @@ mod tests {
             matches!(choice(96.0, 4, 0.3), Choice::Links { .. }),
             "few links are enough for little accuracy"
         );
-        assert_eq!(choice(96.0, 1, 0.01), Choice::NoEstimate);
+        assert_eq!(choice(96.0, 1, 0.01), Choice::Coarse);
     }
 
     #[test]
@@ -133,7 +134,7 @@ mod tests {
         for accuracy in [0.1, 0.01, 0.001] {
             let most = Choice::most_elements(accuracy);
             let at = |elements: f64| Choice::new(Extent { elements, faces: elements, fewest: 1 }, accuracy);
-            assert!(matches!(at(most), Choice::Links { .. }) && at(0.9 * most) == Choice::NoEstimate);
+            assert!(matches!(at(most), Choice::Links { .. }) && at(0.9 * most) == Choice::Coarse);
         }
     }
 }
