@@ -112,3 +112,19 @@ pub(crate) fn balance(operator: &mut HierarchicalOperator, aims: &[Aim], wholes:
 fn near(now: &[f64], next: &[f64]) -> bool {
     now.iter().zip(next).all(|(now, next)| (next - now).abs() <= NEAR * now)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn factors_stay_finite_whatever_the_sums_are() {
+        let aims = [0.0, 1.0].map(|row| Some(Aim { least: row, most: row }));
+        let wholes = Wholes { of_leaf: &[0, 1], aims: aims.to_vec() };
+        for rows in [[0.5, 0.5], [-0.1, 0.0], [1e-300, 1e300]] {
+            let next = wholes.next(&[1.0, 1.0], &rows);
+            let within = |factor: &f64| (MOST.recip()..=MOST).contains(factor);
+            assert!(next.iter().all(within), "{rows:?}: {next:?}");
+        }
+    }
+}

@@ -395,7 +395,8 @@ impl Run<'_> {
         }
         let part = if differences > errors { 1.0 - errors / differences } else { 0.0 };
         let aim = |(element, &sum): (usize, &f64)| {
-            let row = sum + part * (told(element)?[0] - sum);
+            // Linear functions may have left less than nothing.
+            let row = (sum + part * (told(element)?[0] - sum)).max(0.0);
             (part > 0.0).then_some(Aim { least: row, most: row })
         };
         sums.iter().enumerate().map(aim).collect()
