@@ -9,8 +9,9 @@ use crate::HierarchicalOperator;
 
 /// Steps at most.
 const STEPS: usize = 20;
-/// Relative distance of row sums from their bounds that is near enough.
-const NEAR: f64 = 1e-5;
+/// Change of the factors that is small enough where row sums must be 1, and where they only have bounds, to which what
+/// is left above is cut.
+const NEAR: [f64; 2] = [1e-5, 1e-3];
 /// A leaf whose links bring much too little lacks some of them: scaling does not stand in for those.
 const MOST: f64 = 1.25;
 
@@ -80,15 +81,20 @@ pub(crate) fn balance(operator: &mut HierarchicalOperator, aims: &[Aim], wholes:
         own.iter().zip(wholes.of_leaf).map(|(own, &whole)| own * shared[whole as usize]).collect()
     };
     operator.set_scale(own.clone());
+    let tolerance = NEAR[usize::from(aims.iter().all(|aim| aim.least <= 0.0))];
+    let together = wholes.aims.iter().any(Option::is_some);
     for _ in 0..STEPS {
-        let next = wholes.next(&shared, &operator.row_sums());
-        let mut done = near(&shared, &next);
-        shared = next;
-        operator.set_scale(products(&own, &shared));
+        let mut done = true;
+        if together {
+            let next = wholes.next(&shared, &operator.row_sums());
+            done = near(&shared, &next, tolerance);
+            shared = next;
+            operator.set_scale(products(&own, &shared));
+        }
         let rows = operator.row_sums();
         let leaves = own.iter().zip(&rows).zip(aims);
         let next: Vec<f64> = leaves.map(|((&own, &row), aim)| aim.next(own, row)).collect();
-        done &= near(&own, &next);
+        done &= near(&own, &next, tolerance);
         own = next;
         operator.set_scale(products(&own, &shared));
         if done {
@@ -109,8 +115,8 @@ pub(crate) fn balance(operator: &mut HierarchicalOperator, aims: &[Aim], wholes:
 }
 
 /// Whether nothing moves any more.
-fn near(now: &[f64], next: &[f64]) -> bool {
-    now.iter().zip(next).all(|(now, next)| (next - now).abs() <= NEAR * now)
+fn near(now: &[f64], next: &[f64], tolerance: f64) -> bool {
+    now.iter().zip(next).all(|(now, next)| (next - now).abs() <= tolerance * now)
 }
 
 #[cfg(test)]

@@ -45,6 +45,9 @@ const SLACK: f64 = 0.04;
 /// Row sum up to which a leaf of a closed scene is not believed to lack links alone.
 const LEAST_ROW: f64 = 0.7;
 
+/// Least part of the differences between rays and links that is worth taking for faults of the links.
+const LEAST_PART: f64 = 0.2;
+
 /// Occluders that are put together to bodies, at most.
 const MANY: usize = 2048;
 
@@ -397,7 +400,7 @@ impl Run<'_> {
         let aim = |(element, &sum): (usize, &f64)| {
             // Linear functions may have left less than nothing.
             let row = (sum + part * (told(element)?[0] - sum)).max(0.0);
-            (part > 0.0).then_some(Aim { least: row, most: row })
+            (part > LEAST_PART).then_some(Aim { least: row, most: row })
         };
         sums.iter().enumerate().map(aim).collect()
     }

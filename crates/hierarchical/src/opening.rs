@@ -15,7 +15,7 @@ const RAYS: [usize; 2] = [1 << 16, 1 << 20];
 /// Reflectance from which on that is so.
 const BRIGHT: f64 = 0.85;
 /// Rays of an element, one a point, that tell its row sum where the scene loses something.
-const SINGLE: u32 = 256;
+const SINGLE: u32 = 128;
 /// Rays from one point.
 const DIRECTIONS: usize = 8;
 /// Points of an element, at least and at most.
