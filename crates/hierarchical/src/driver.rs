@@ -371,8 +371,9 @@ impl Run<'_> {
                 Aim { least: 0.0, most: (1.0 + slack) * size.exposed }
             }
         };
-        let aims: Vec<Aim> = extents.iter().zip(roots).zip(operator.row_sums()).map(aim).collect();
-        let wholes = Wholes { of_leaf: roots, aims: self.whole_rows(tree, &operator.row_sums(), roots) };
+        let rows = operator.row_sums();
+        let wholes = Wholes { of_leaf: roots, aims: self.whole_rows(tree, &rows, roots) };
+        let aims: Vec<Aim> = extents.iter().zip(roots).zip(rows).map(aim).collect();
         balance(operator, &aims, &wholes);
     }
 
