@@ -4,9 +4,26 @@
 //! [`visibility`] and [`quadrature`]; a solver of [`iterative`] or [`direct`], whose contract is [`linop`], finds the
 //! field; [`discretisation`] has other bases and equations than constants on elements; [`hierarchical`] finds the elements that an
 //! accuracy asks for, and links between elements of any size instead of a matrix; [`waves`] has the electromagnetic couplings; [`montecarlo`] estimates
-//! the same fields from random paths; [`report`] writes what people look at.
+//! the same fields from random paths; [`report`] writes what people look at; [`study`] puts all of it
+//! together: a scene, a question and its answer.
 //!
-//! In a closed room of one material the radiosity is M/(1 − ρ) everywhere:
+//! A study in whole: a scene is solved to 1 %, the irradiance of a surface is printed with its stated
+//! error, and the results are written into a folder.
+//!
+//! ```
+//! use fredholm::study::{Quiet, SolveOptions, solve};
+//! # let folder = tempfile::tempdir()?;
+//!
+//! let options = SolveOptions { accuracy: Some(0.01), ..SolveOptions::default() };
+//! let mut solved = solve("scenes/occluder.toml", &options, &Quiet)?;
+//! let floor = solved.surface("floor").ok_or("the scene has no floor")?;
+//! println!("{:.4} ± {:.4} W/m²", floor.irradiance[0], floor.error[0]);
+//! solved.write(&folder)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The parts can be used one by one, too. In a closed room of one material the radiosity is M/(1 − ρ)
+//! everywhere:
 //!
 //! ```
 //! use fredholm::coupling::form_factor::PairIntegrator;
@@ -59,5 +76,6 @@ pub use fredholm_montecarlo as montecarlo;
 pub use fredholm_quadrature as quadrature;
 pub use fredholm_report as report;
 pub use fredholm_scene as scene;
+pub use fredholm_study as study;
 pub use fredholm_visibility as visibility;
 pub use fredholm_waves as waves;

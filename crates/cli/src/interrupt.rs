@@ -4,14 +4,17 @@
 //! up in time, a watchman ends the process, unless there is an iterate or a result worth the wait.
 
 use std::io::{self, IsTerminal};
+use std::ops::ControlFlow;
 use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::Duration;
 
+use fredholm_study::{Error, ErrorKind};
+
 use crate::args::LogFormat;
-use crate::failure::{Ending, Failure};
+use crate::ending::{Ending, present};
 use crate::output::tell;
 
 /// Time from the signal to the end where nothing can be saved.
@@ -36,11 +39,11 @@ pub(crate) struct Interrupt {
 
 impl Interrupt {
     /// Listens to the signals from now on.
-    pub(crate) fn install(log: LogFormat) -> Result<Arc<Self>, Failure> {
+    pub(crate) fn install(log: LogFormat) -> Result<Arc<Self>, Error> {
         let interrupt =
             Arc::new(Self { requested: AtomicBool::new(false), phase: Mutex::new(Phase::Preparing), log });
         let listener = Arc::clone(&interrupt);
-        ctrlc::set_handler(move || listener.signal()).map_err(|e| Failure::new(Ending::Resources, e))?;
+        ctrlc::set_handler(move || listener.signal()).map_err(|e| Error::new(ErrorKind::Resources, e))?;
         Ok(interrupt)
     }
 
@@ -49,16 +52,13 @@ impl Interrupt {
         self.requested.load(Ordering::Relaxed)
     }
 
-    /// Fails where a signal has come and there is nothing to save.
-    pub(crate) fn check(&self) -> Result<(), Failure> {
-        if self.requested() && *self.phase() == Phase::Preparing { Err(nothing_saved()) } else { Ok(()) }
-    }
-
-    /// From now on there is something to save. Fails where a signal has come before.
-    pub(crate) fn begin_saving(&self) -> Result<(), Failure> {
-        self.check()?;
+    /// From now on there is something to save. Breaks where a signal has come before.
+    pub(crate) fn begin_saving(&self) -> ControlFlow<()> {
+        if self.requested() && *self.phase() == Phase::Preparing {
+            return ControlFlow::Break(());
+        }
         *self.phase() = Phase::Saving;
-        Ok(())
+        ControlFlow::Continue(())
     }
 
     fn phase(&self) -> MutexGuard<'_, Phase> {
@@ -82,15 +82,10 @@ impl Interrupt {
                 // Below the progress bar.
                 tell("");
             }
-            nothing_saved().present(self.log);
+            present(&Error::cancelled(), self.log);
             process::exit(i32::from(Ending::Interrupted.code()));
         }
     }
-}
-
-/// The end of a run that was stopped before it had anything to save.
-pub(crate) fn nothing_saved() -> Failure {
-    Failure::new(Ending::Interrupted, "interrupted; there is no partial result, nothing was written")
 }
 
 #[cfg(test)]
@@ -103,7 +98,7 @@ mod tests {
             let phase = if saving { Phase::Saving } else { Phase::Preparing };
             let (requested, phase) = (AtomicBool::new(signalled), Mutex::new(phase));
             let interrupt = Interrupt { requested, phase, log: LogFormat::Plain };
-            let refused = interrupt.begin_saving().is_err();
+            let refused = interrupt.begin_saving().is_break();
             assert_eq!(refused, signalled && !saving);
             assert_eq!(*interrupt.phase() == Phase::Saving, !refused);
         }

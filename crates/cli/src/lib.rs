@@ -1,50 +1,31 @@
-//! The command line of Fredholm; no mathematics.
+//! The command line of Fredholm: arguments, the console, and exit codes. What is computed and written
+//! is [`fredholm_study`].
 //!
 //! [`run`] reads the arguments, carries out the verb and returns the exit code: 0 done, 2 bad input or usage, 3 not
 //! converged (the results are written all the same), 4 resources refused, 5 a file could not be read or written,
 //! 6 two solutions disagree, 130 interrupted. Standard output carries results and summaries, standard error progress, warnings and errors.
 
 mod args;
-mod checkpoint;
-mod choice;
 mod commands;
 mod console;
-mod discretised;
 mod duration;
-mod failure;
-mod folder;
-mod hierarchical;
+mod ending;
+mod heap;
 mod interrupt;
-mod memory;
-mod mesh_error;
-mod options;
 mod output;
-mod pictures;
-mod prediction;
-mod problem;
-mod record;
-mod registry;
-mod sample;
-mod shadows;
-mod size;
-mod solution;
-mod stages;
 mod start;
-mod stochastic;
 mod summary;
-mod threads;
-mod trial;
-mod watcher;
-mod waves;
+mod terminal;
 
 use std::process::ExitCode;
 
 use args::Cli;
+use ending::{Ending, present};
 
 /// Runs the program on the arguments of the process.
 #[must_use]
 pub fn run() -> ExitCode {
-    memory::share_one_heap();
+    heap::share();
     match Cli::read(std::env::args_os()) {
         Ok(cli) => carry_out(&cli),
         Err(usage) => {
@@ -58,9 +39,9 @@ pub fn run() -> ExitCode {
 fn carry_out(cli: &Cli) -> ExitCode {
     match commands::execute(&cli.command) {
         Ok(ending) => ending.into(),
-        Err(failure) => {
-            failure.present(cli.command.log());
-            failure.ending.into()
+        Err(error) => {
+            present(&error, cli.command.log());
+            Ending::from(error.kind()).into()
         }
     }
 }

@@ -1,16 +1,16 @@
 //! Standard output: summaries and what a verb was asked for, nothing else. Standard error: everything else.
 
 use std::fmt::Display;
-use std::io::{self, ErrorKind, Write};
+use std::io::{self, Write};
 
-use crate::failure::{Ending, Failure};
+use fredholm_study::{Error, ErrorKind};
 
 /// Writes `text` to standard output. A reader that has gone away (`fredholm schema | head`) is no failure.
-pub(crate) fn print(text: &str) -> Result<(), Failure> {
+pub(crate) fn print(text: &str) -> Result<(), Error> {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(Failure::new(Ending::Files, format!("cannot write to standard output: {error}")))
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(Error::new(ErrorKind::Files, format!("cannot write to standard output: {error}")))
         }
         _ => Ok(()),
     }

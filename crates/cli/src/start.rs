@@ -1,13 +1,14 @@
-//! How a verb that computes and writes begins: signals, a folder that can be written to, the console, threads.
+//! How a verb that computes and writes begins: signals, a folder that can be written to, the console,
+//! threads.
 
 use std::path::{Path, PathBuf};
 
-use crate::args::LogArgs;
-use crate::failure::{Ending, Failure};
-use crate::interrupt::Interrupt;
-use crate::size::Bytes;
-use crate::stages::Stages;
-use crate::{console, folder, memory, threads};
+use fredholm_study::{Bytes, Error, less_than_asked, peak_memory, probe_folder, thread_pool};
+use serde_json::{Value, json};
+
+use crate::args::{LogArgs, ProblemArgs};
+use crate::ending::Ending;
+use crate::terminal::Terminal;
 
 /// What the command line says of it.
 pub(crate) struct Start<'a> {
@@ -18,29 +19,62 @@ pub(crate) struct Start<'a> {
     pub(crate) log: LogArgs,
 }
 
-impl Start<'_> {
+impl<'a> Start<'a> {
+    /// That of a verb with the options of a problem.
+    pub(crate) fn of(problem: &'a ProblemArgs, output: Option<&'a PathBuf>, log: LogArgs) -> Self {
+        let ProblemArgs { scene, threads, memory, .. } = problem;
+        Self { scene, output, threads: *threads, memory: *memory, log }
+    }
+
     /// Runs a verb on its threads, with the folder for its results.
     pub(crate) fn run(
         &self,
-        verb: impl FnOnce(&Path, &mut Stages) -> Result<Ending, Failure> + Send,
-    ) -> Result<Ending, Failure> {
-        let interrupt = Interrupt::install(self.log.log)?;
-        let folder = folder::of(self.output, self.scene);
-        folder::probe(&folder, "-o DIR")?;
-        let console = console::choose(self.log);
-        let mut stages = Stages::new(&*console, &interrupt);
-        memory::tell(self.memory, &*console);
-        let ended = threads::pool(self.threads)?.install(|| verb(&folder, &mut stages));
-        memory::conclude(&*console);
-        ended
+        verb: impl FnOnce(&Path, &Terminal) -> Result<Ending, Error> + Send,
+    ) -> Result<Ending, Error> {
+        let terminal = Terminal::new(self.log)?;
+        let folder = folder(self.output, self.scene);
+        probe_folder(&folder, "-o DIR")?;
+        run(&terminal, self.threads, self.memory, || verb(&folder, &terminal))
     }
+}
 
-    /// As [`run`](Self::run), for a verb whose stages are of no use without the others: what is interrupted leaves nothing.
-    pub(crate) fn run_whole(
-        &self,
-        name: &str,
-        verb: impl FnOnce(&Path, &mut Stages) -> Result<Ending, Failure> + Send,
-    ) -> Result<Ending, Failure> {
-        self.run(|folder, stages| verb(folder, &mut Stages::part(stages.console, stages.interrupt, name)))
+/// Runs a verb on so many threads.
+pub(crate) fn run(
+    terminal: &Terminal,
+    threads: Option<u16>,
+    memory: Option<Bytes>,
+    verb: impl FnOnce() -> Result<Ending, Error> + Send,
+) -> Result<Ending, Error> {
+    if let Some((asked, limit)) = memory.and_then(|asked| Some((asked, less_than_asked(asked)?))) {
+        let text = format!("--memory {asked} is more than there may be: the limit is {limit}");
+        terminal.console.warn(&text);
+    }
+    let ended = thread_pool(threads)?.install(verb);
+    if let Some(peak) = peak_memory() {
+        terminal.console.held(peak);
+    }
+    ended
+}
+
+/// The folder asked for, or `out/` and the name of the scene file without its ending.
+fn folder(output: Option<&PathBuf>, scene: &Path) -> PathBuf {
+    let stem = scene.file_stem().unwrap_or_else(|| "scene".as_ref());
+    output.cloned().unwrap_or_else(|| Path::new("out").join(stem))
+}
+
+/// How the program was asked to show what goes on, for the record.
+pub(crate) fn recorded(log: LogArgs) -> fredholm_study::Recorded {
+    let LogArgs { log, quiet } = log;
+    [("log".to_owned(), json!(log)), ("quiet".to_owned(), Value::Bool(quiet))].into_iter().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn results_go_to_a_folder_of_the_name_of_the_scene() {
+        assert_eq!(folder(None, Path::new("a/b.toml")), Path::new("out/b"));
+        assert_eq!(folder(Some(&"c".into()), Path::new("a/b.toml")), Path::new("c"));
     }
 }

@@ -3,9 +3,9 @@
 use std::fmt::Write;
 
 use fredholm_report::{Closure, Counts, Energy, RunRecord, Timing};
+use fredholm_study::Bytes;
 
 use crate::output::visible;
-use crate::size::Bytes;
 
 /// Bands whose energy balance is listed.
 const BANDS: usize = 8;

@@ -34,6 +34,7 @@ mod scheme;
 mod second_kind;
 mod solver;
 mod sweep;
+mod watch;
 
 pub use catalogue::{Entry, OptionError, Options, build};
 pub use dense::Dense;
@@ -48,3 +49,4 @@ pub use scheme::{Context, Halt, Iteration, Scheme, solve_by_steps};
 pub use second_kind::SecondKind;
 pub use solver::{Observer, Progress, Quiet, Record, Report, Solver, Stop, StopReason, Work};
 pub use sweep::{Relax, Sweep, Visit};
+pub use watch::Watch;

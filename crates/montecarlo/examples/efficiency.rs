@@ -10,7 +10,6 @@ use fredholm_montecarlo::statistics::Moments;
 use fredholm_montecarlo::{Enclosure, Groups, Stop, Tracing};
 use fredholm_scene::Scene;
 use std::error::Error;
-use std::ops::ControlFlow;
 
 mod common;
 use common::Clock;
@@ -66,7 +65,7 @@ fn known(ground: &Ground) -> Result<Vec<f64>, Box<dyn Error>> {
     let tracing = Tracing::new(&ground.scene, &*jacobi, ground.groups()?, 99, 1 << 17)?;
     let mut state = tracing.start();
     let stop = Stop { batches: Some(64), ..Stop::default() };
-    tracing.go_on(&mut state, &stop, &|_| ControlFlow::Continue(()))?;
+    tracing.go_on(&mut state, &stop, &fredholm_linop::Quiet)?;
     Ok(state.patches.mean().to_vec())
 }
 
@@ -106,7 +105,7 @@ fn to_one_percent(ground: &Ground) -> Result<(), Box<dyn Error>> {
         let mut state = tracing.start();
         let stop = Stop { batches: Some(BATCHES.into()), ..Stop::default() };
         let clock = Clock::start();
-        tracing.go_on(&mut state, &stop, &|_| ControlFlow::Continue(()))?;
+        tracing.go_on(&mut state, &stop, &fredholm_linop::Quiet)?;
         // Errors fall with the root of the work.
         let seconds = clock.seconds() * (state.relative_error() / 0.01).powi(2);
         println!("{}: {name:15} {seconds:6.1} CPU s to 1 % RMS", ground.name);

@@ -4,10 +4,10 @@
 //! enough. Random numbers are those of a key, [`points`]: no result depends on the number of threads, or on whether a run was continued.
 //!
 //! ```
+//! use fredholm_linop::Quiet;
 //! use fredholm_mesh::{Patch, Vec3};
 //! use fredholm_montecarlo::light::{Switches, estimator};
 //! use fredholm_montecarlo::{Enclosure, Groups, Stop, Tracing};
-//! use std::ops::ControlFlow;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! // A lamp above a floor, unit squares at distance 1: E = 0.1998 M on the floor.
@@ -19,7 +19,7 @@
 //! let path = estimator("path", &scene, Switches::default()).ok_or("no such method")?;
 //! let tracing = Tracing::new(&scene, &*path, Groups::new(&scene, vec![0, 1], 2)?, 1, 16)?;
 //! let mut state = tracing.start();
-//! tracing.go_on(&mut state, &Stop { batches: Some(64), ..Stop::default() }, &|_| ControlFlow::Continue(()))?;
+//! tracing.go_on(&mut state, &Stop { batches: Some(64), ..Stop::default() }, &Quiet)?;
 //! let (mean, error) = (state.groups.mean()[0], state.groups.standard_errors()[0]);
 //! assert!((mean - 0.1998).abs() < 4.0 * error && error < 0.01);
 //! # Ok(())

@@ -7,9 +7,9 @@ use crate::light::{Batch, Estimator, Work};
 use crate::points::PointSet;
 use crate::statistics::Moments;
 use crate::{Enclosure, MonteCarloError};
+use fredholm_linop::Watch;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::ops::ControlFlow;
 use std::time::Instant;
 
 /// Batches that are in memory at once.
@@ -138,6 +138,33 @@ impl Stop {
         let exact = self.error.is_some_and(|wanted| done >= FEWEST.into() && error() <= wanted);
         enough || late || exact || done >= u64::from(u32::MAX - WAVE)
     }
+
+    /// Which end a run has met after so many batches, with this error, after so many seconds.
+    #[must_use]
+    pub fn ended(&self, batches: u64, error: f64, seconds: f64) -> &'static str {
+        if self.error.is_some_and(|asked| error <= asked) {
+            "converged"
+        } else if self.batches.is_some_and(|all| batches >= all) {
+            "all samples drawn"
+        } else if self.seconds.is_some_and(|asked| seconds >= asked) {
+            "time spent"
+        } else {
+            "interrupted"
+        }
+    }
+
+    /// Tells how far a run has come.
+    pub(crate) fn tell(&self, watch: &dyn Watch, batches: u64, error: f64, seconds: f64) {
+        let done = batches as f64;
+        let drawn = self.batches.map_or(0.0, |all| done / all as f64);
+        // Errors fall with the root of the work.
+        let exact = |asked: f64| (asked / error).powi(2).min(done / f64::from(FEWEST)).min(1.0);
+        let exact = self.error.map_or(0.0, exact);
+        let time = self.seconds.map_or(0.0, |asked| seconds / asked);
+        watch.advance(drawn.max(exact).max(time).min(1.0), &|| {
+            format!("{batches} batches, standard error {:.2} %", 100.0 * error)
+        });
+    }
 }
 
 /// A method on a scene.
@@ -192,20 +219,18 @@ impl<'a> Tracing<'a> {
         }
     }
 
-    /// Goes on until the run is to end or `watch`, which is told the state between waves, breaks.
+    /// Goes on until the run is to end or `watch`, which is told between waves how far it is, breaks.
     ///
     /// # Errors
     /// [`MonteCarloError::Foreign`] for a state of other settings.
-    pub fn go_on(
-        &self,
-        state: &mut State,
-        stop: &Stop,
-        watch: &dyn Fn(&State) -> ControlFlow<()>,
-    ) -> Result<(), MonteCarloError> {
+    pub fn go_on(&self, state: &mut State, stop: &Stop, watch: &dyn Watch) -> Result<(), MonteCarloError> {
         self.check(state)?;
         let (started, before) = (Instant::now(), state.seconds);
-        while !stop.is_met(state.batches(), &|| state.relative_error(), started) && watch(state).is_continue()
-        {
+        let wanted = |state: &State| {
+            stop.tell(watch, state.batches(), state.relative_error(), state.seconds);
+            watch.go_on().is_continue()
+        };
+        while !stop.is_met(state.batches(), &|| state.relative_error(), started) && wanted(state) {
             let left = stop.batches.map_or(u64::from(WAVE), |all| all - state.batches());
             self.wave(state, left.min(WAVE.into()) as u32);
             state.seconds = before + started.elapsed().as_secs_f64();

@@ -7,16 +7,18 @@ use fredholm_report::{
     EXTRAS, FILES, MatrixFormat, ReportError, ViewFactorFiles, read_run, read_view_factors_record,
 };
 
+use fredholm_study::{Error, ErrorKind};
+
 use super::viewfactors;
 use crate::args::InfoArgs;
-use crate::failure::{Ending, Failure};
+use crate::ending::Ending;
 use crate::output;
 use crate::summary::{Lines, provenance};
 
 const RECORD: &str = "run.json";
 
 /// Tells what made a result.
-pub(crate) fn info(args: &InfoArgs) -> Result<Ending, Failure> {
+pub(crate) fn info(args: &InfoArgs) -> Result<Ending, Error> {
     let path = record(&args.path)?;
     if path.extension().is_some_and(|ending| ending == "npz") {
         return viewfactors::describe_matrix(&path);
@@ -32,13 +34,10 @@ pub(crate) fn info(args: &InfoArgs) -> Result<Ending, Failure> {
 }
 
 /// The record that belongs to a path: in the folder, or beside the file of a result. Files of view factors stand for themselves.
-fn record(path: &Path) -> Result<PathBuf, Failure> {
+fn record(path: &Path) -> Result<PathBuf, Error> {
     let found = fs::metadata(path).map_err(|error| {
-        let text = format!(
-            "cannot read {}: {error}\n  help: give a result folder, or a file in one",
-            path.display()
-        );
-        Failure::new(Ending::Files, text)
+        Error::new(ErrorKind::Files, format!("cannot read {}: {error}", path.display()))
+            .with_help("give a result folder, or a file in one")
     })?;
     if found.is_dir() {
         return Ok(path.join(RECORD));
@@ -59,22 +58,22 @@ fn record(path: &Path) -> Result<PathBuf, Failure> {
     }
 }
 
-fn foreign(path: &Path) -> Failure {
-    let text = format!(
-        "{} is none of the files of a result\n  help: give a result folder, a matrix of view factors (.npz, .csv, .txt) or one of {}",
-        path.display(),
+fn foreign(path: &Path) -> Error {
+    let help = format!(
+        "give a result folder, a matrix of view factors (.npz, .csv, .txt) or one of {}",
         [&FILES[..], &EXTRAS].concat().join(", ")
     );
-    Failure::new(Ending::Input, text)
+    let text = format!("{} is none of the files of a result", path.display());
+    Error::new(ErrorKind::Input, text).with_help(help)
 }
 
-fn unreadable(path: &Path, error: ReportError) -> Failure {
+fn unreadable(path: &Path, error: ReportError) -> Error {
     match error {
         ReportError::Read { source, .. } => {
-            let text = format!("cannot read {}: {source}\n  help: {}", path.display(), without_record(path));
-            Failure::new(Ending::Files, text)
+            let text = format!("cannot read {}: {source}", path.display());
+            Error::new(ErrorKind::Files, text).with_help(without_record(path))
         }
-        other => Failure::new(Ending::Input, other),
+        other => Error::new(ErrorKind::Input, other),
     }
 }
 

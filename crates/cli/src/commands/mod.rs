@@ -18,21 +18,13 @@ mod trace;
 mod viewfactors;
 mod waves;
 
-use crate::args::Command;
-use crate::failure::{Ending, Failure};
+use fredholm_study::Error;
 
-pub(crate) use compare::CompareArgs;
-pub(crate) use crosscheck::{CrosscheckArgs, EXAMPLES as CROSSCHECK_EXAMPLES};
-pub(crate) use reference::{EXAMPLES as REFERENCE_EXAMPLES, ReferenceArgs};
-pub(crate) use resume::{EXAMPLES as RESUME_EXAMPLES, ResumeArgs};
-pub(crate) use shoot::{EXAMPLES as SHOOT_EXAMPLES, ShootArgs};
-pub(crate) use spectrum::SpectrumArgs;
-pub(crate) use trace::{EXAMPLES as TRACE_EXAMPLES, TraceArgs};
-pub(crate) use viewfactors::{Plane, ViewFactorsArgs, plane, point};
-pub(crate) use waves::{EXAMPLES as WAVES_EXAMPLES, WavesArgs};
+use crate::args::Command;
+use crate::ending::Ending;
 
 /// Carries out what was asked for.
-pub(crate) fn execute(command: &Command) -> Result<Ending, Failure> {
+pub(crate) fn execute(command: &Command) -> Result<Ending, Error> {
     match command {
         Command::Solve(args) => solve::solve(args),
         Command::Resume(args) => resume::resume(args),

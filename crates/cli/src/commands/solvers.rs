@@ -2,17 +2,18 @@
 
 use std::fmt::Write;
 
-use crate::failure::{Ending, Failure};
+use fredholm_study::{Error, SolverEntry};
+
+use crate::ending::Ending;
 use crate::output;
-use crate::registry::{self, Entry};
 
 /// Lists the solvers, with what they need and their options.
-pub(crate) fn solvers() -> Result<Ending, Failure> {
-    output::print(&registry::all().map(|entry| described(&entry)).collect::<String>())?;
+pub(crate) fn solvers() -> Result<Ending, Error> {
+    output::print(&fredholm_study::solvers().map(|entry| described(&entry)).collect::<String>())?;
     Ok(Ending::Done)
 }
 
-fn described(Entry { solver, requirements, options, .. }: &Entry) -> String {
+fn described(SolverEntry { solver, requirements, options, .. }: &SolverEntry) -> String {
     let mut text = format!("{:<20}{}\n", solver.name(), solver.description());
     if *requirements != "none" {
         // Writing to a string cannot fail.

@@ -3,12 +3,11 @@
 use std::sync::{LazyLock, Mutex, PoisonError};
 use std::time::Instant;
 
+use fredholm_study::Bytes;
 use serde_json::{Value, json};
 
 use super::{Console, Tenths};
-use crate::memory::{Limit, Plan};
 use crate::output::tell;
-use crate::size::Bytes;
 
 /// Time of the first line.
 static STARTED: LazyLock<Instant> = LazyLock::new(Instant::now);
@@ -23,11 +22,6 @@ pub(super) struct Json {
 pub(crate) fn line(mut object: Value) {
     object["time"] = json!(STARTED.elapsed().as_secs_f64());
     tell(object);
-}
-
-/// As a number that JSON has.
-fn bytes(Bytes(bytes): Bytes) -> u64 {
-    u64::try_from(bytes).unwrap_or(u64::MAX)
 }
 
 impl Console for Json {
@@ -47,13 +41,13 @@ impl Console for Json {
         line(json!({ "event": "end", "stage": stage, "seconds": seconds }));
     }
 
-    fn admit(&self, plan: &Plan, limit: Limit) {
-        let (predicted, limit) = (bytes(plan.peak()), bytes(limit.bytes));
+    fn memory(&self, predicted: u128, limit: u128) {
+        let (predicted, limit) = (Bytes(predicted).as_u64(), Bytes(limit).as_u64());
         line(json!({ "event": "memory", "predicted_bytes": predicted, "limit_bytes": limit }));
     }
 
     fn held(&self, peak: Bytes) {
-        line(json!({ "event": "memory", "peak_bytes": bytes(peak) }));
+        line(json!({ "event": "memory", "peak_bytes": peak.as_u64() }));
     }
 
     fn warn(&self, text: &str) {

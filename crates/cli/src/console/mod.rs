@@ -8,9 +8,9 @@ mod quiet;
 use std::io::{IsTerminal, stderr};
 use std::time::{Duration, Instant};
 
+use fredholm_study::Bytes;
+
 use crate::args::{LogArgs, LogFormat};
-use crate::memory::{Limit, Plan};
-use crate::size::Bytes;
 
 /// Follows the stages of a run; can be told of progress from any thread.
 pub(crate) trait Console: Send + Sync {
@@ -26,8 +26,9 @@ pub(crate) trait Console: Send + Sync {
     /// Something the user should know.
     fn warn(&self, text: &str);
 
-    /// So much memory will be held, which the limit allows; `check` tells people, the others only programs.
-    fn admit(&self, _plan: &Plan, _limit: Limit) {}
+    /// So many bytes will be held of those that are allowed; `check` tells people, the others only
+    /// programs.
+    fn memory(&self, _predicted: u128, _limit: u128) {}
 
     /// So much memory was held at most, which records tell people.
     fn held(&self, _peak: Bytes) {}

@@ -6,11 +6,11 @@ use crate::light::Batch;
 use crate::points::PointSet;
 use crate::run::{Stop, WAVE};
 use crate::statistics::Moments;
+use fredholm_linop::Watch;
 use fredholm_mesh::Vec3;
 use fredholm_waves::{Complex64, ComplexVector};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::ops::ControlFlow;
 use std::time::Instant;
 
 /// Real numbers of a field: three complex components.
@@ -102,7 +102,7 @@ impl<'a> FieldTracing<'a> {
         }
     }
 
-    /// Goes on until the run is to end or `watch`, which is told the state between waves of batches, breaks; the same bits for any number of threads and
+    /// Goes on until the run is to end or `watch`, which is told between waves of batches how far it is, breaks; the same bits for any number of threads and
     /// of continuations.
     ///
     /// # Errors
@@ -111,12 +111,15 @@ impl<'a> FieldTracing<'a> {
         &self,
         state: &mut FieldEstimate,
         stop: &Stop,
-        watch: &dyn Fn(&FieldEstimate) -> ControlFlow<()>,
+        watch: &dyn Watch,
     ) -> Result<(), MonteCarloError> {
         self.check(state)?;
         let (started, before) = (Instant::now(), state.seconds);
-        while !stop.is_met(state.batches(), &|| state.relative_error(), started) && watch(state).is_continue()
-        {
+        let wanted = |state: &FieldEstimate| {
+            stop.tell(watch, state.batches(), state.relative_error(), state.seconds);
+            watch.go_on().is_continue()
+        };
+        while !stop.is_met(state.batches(), &|| state.relative_error(), started) && wanted(state) {
             let left = stop.batches.map_or(u64::from(WAVE), |all| all - state.batches());
             self.wave(state, left.min(WAVE.into()) as u32);
             state.seconds = before + started.elapsed().as_secs_f64();

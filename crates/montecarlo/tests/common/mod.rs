@@ -7,7 +7,6 @@ use fredholm_mesh::{Cutting, Lines, Mesh, MeshBuilder, Patch, Shape, Vec3};
 use fredholm_montecarlo::light::{Estimator, PhotonMap, Switches, estimator};
 use fredholm_montecarlo::points::PointSet;
 use fredholm_montecarlo::{Enclosure, Groups, State, Stop, Tracing};
-use std::ops::ControlFlow;
 
 /// A mesh of shapes, each with its lines and its reflectance and exitance.
 pub fn mesh(shapes: &[(Shape, Lines)]) -> Mesh {
@@ -97,6 +96,6 @@ pub fn run_with(
     let tracing = Tracing::new(scene, estimator, groups, seed, samples).unwrap().with_points(points);
     let mut state = tracing.start();
     let stop = Stop { batches: Some(batches), ..Stop::default() };
-    tracing.go_on(&mut state, &stop, &|_| ControlFlow::Continue(())).unwrap();
+    tracing.go_on(&mut state, &stop, &fredholm_linop::Quiet).unwrap();
     state
 }

@@ -1,0 +1,66 @@
+//! Options of `waves`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use fredholm_study::{Bytes, WaveCompareOptions, WaveOptions, check_wave_solver};
+
+use super::{LogArgs, tolerance};
+
+/// What follows the help.
+pub(super) const EXAMPLES: &str = "\
+Examples:
+  fredholm waves scenes/waves/plate.toml
+  fredholm waves dihedral.toml -o results --threads 2
+  fredholm waves scenes/waves/facing_plates.toml --compare neumann,gmres,southwell
+
+Written are receivers.csv, receivers.npz, currents.vtu, far.csv, plots and maps of the
+receivers, and run.json last; with --compare, compare.csv, compare_history.csv, compare.svg
+and compare.json instead. Ctrl-C ends the run with nothing written.";
+
+/// Options of `waves`.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct WavesArgs {
+    /// Scene of waves (TOML), see docs/waves.md
+    pub(crate) scene: PathBuf,
+    /// Folder for the results [default: out/<name of the scene file>]
+    #[arg(long, short, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
+    /// Threads; any number gives the same results [default: one a core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+    /// Memory allowed, such as 4GiB or 800MB [default: what leaves the machine usable]
+    #[arg(long, value_name = "LIMIT")]
+    pub(crate) memory: Option<Bytes>,
+    /// Compare solvers on the coupling instead, with their options, or all: neumann,gmres:restart=100,southwell
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = solver)]
+    pub(crate) compare: Vec<String>,
+    /// Residual that compared solvers are to reach
+    #[arg(long, value_name = "T", value_parser = tolerance, default_value = "1e-6", requires = "compare")]
+    pub(crate) to: f64,
+    /// Iterations that compared solvers are allowed
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), default_value_t = 1000, requires = "compare")]
+    pub(crate) max_iterations: u32,
+    #[command(flatten)]
+    pub(crate) log: LogArgs,
+}
+
+/// A solver that can be made, or all of them.
+fn solver(text: &str) -> Result<String, String> {
+    if text != "all" {
+        check_wave_solver(text).map_err(|error| error.to_string())?;
+    }
+    Ok(text.to_owned())
+}
+
+impl WavesArgs {
+    pub(crate) fn options(&self) -> WaveOptions {
+        WaveOptions { memory: self.memory }
+    }
+
+    /// The solvers to compare, where there are any.
+    pub(crate) fn comparison(&self) -> Option<WaveCompareOptions> {
+        let (solvers, max_iterations) = (self.compare.clone(), self.max_iterations);
+        (!solvers.is_empty()).then_some(WaveCompareOptions { solvers, tolerance: self.to, max_iterations })
+    }
+}

@@ -1,0 +1,93 @@
+//! A study is a scene, a question and its answer: everything that a program asks of Fredholm, as
+//! plain functions.
+//!
+//! | question | function |
+//! |---|---|
+//! | the light of a scene, on its elements or to an accuracy | [`solve`], [`resume`] |
+//! | whether a scene is valid, and what its solution will take | [`check`] |
+//! | the order of the error on finer and finer meshes | [`converge`] |
+//! | which solver needs how long | [`compare`] |
+//! | eigenvalues and conditions of the matrix | [`spectrum`] |
+//! | pictures at once, and scenes whose matrix would not fit | [`shoot`] |
+//! | the matrix of view factors | [`view_factors`] |
+//! | the fields of a scene of waves | [`waves`], [`compare_waves`] |
+//! | estimates by random paths | [`trace`] |
+//! | whether a solution and random paths agree | [`crosscheck`] |
+//! | reference values for other programs | [`reference`] |
+//!
+//! Options are structs with defaults: what is not asked for is as the scene says, else as usual.
+//! Every function takes one [`Watch`], which is told of progress and can cancel the run; [`Quiet`]
+//! does neither. Errors say of which kind they are and how to mend them ([`Error`]). Nothing here
+//! prints, reads a command line or ends the process. Runs use the threads of the pool they are called
+//! in; [`thread_pool`] makes one. Memory is predicted before it is taken, and result files appear
+//! whole or not at all.
+
+mod check;
+mod checkpoint;
+mod choice;
+mod compare;
+mod converge;
+mod crosscheck;
+mod discretised;
+mod error;
+mod folder;
+mod hierarchical;
+mod memory;
+mod mesh_error;
+mod options;
+mod pictures;
+mod prediction;
+mod problem;
+mod record;
+mod reference;
+mod registry;
+mod sample;
+mod shadows;
+mod shoot;
+mod size;
+mod solution;
+mod solve;
+mod spectrum;
+mod stages;
+mod stochastic;
+mod threads;
+mod trace;
+mod trial;
+mod viewfactors;
+mod watcher;
+mod waves;
+
+pub use check::{Checked, Forecast, check};
+pub use checkpoint::Checkpoint;
+pub use compare::{CompareOptions, check_solver, compare};
+pub use converge::{ConvergeOptions, converge};
+pub use crosscheck::{CrosscheckOptions, MultipleTests, Verdict, crosscheck};
+pub use error::{Error, ErrorKind};
+pub use folder::probe as probe_folder;
+pub use fredholm_coupling::Receiver;
+pub use fredholm_discretisation::{discretisation, discretisations};
+pub use fredholm_linop::{Quiet, Watch};
+pub use fredholm_mesh::Vec3;
+pub use memory::{
+    Limit as MemoryLimit, Plan as MemoryPlan, addresses_are_limited, less_than_asked, peak as peak_memory,
+};
+pub use options::{
+    GatherPoints, PointGrid, Precision, ProblemOptions, Recorded, SceneSource, SolveOptions, StopOptions,
+};
+pub use reference::{ReferenceOptions, References, reference};
+pub use registry::{SolverEntry, names as solver_names, solvers};
+pub use shoot::{ShootOptions, shoot};
+pub use size::Bytes;
+pub use solve::{Ended, Solved, SurfaceLight, resume, solve};
+pub use spectrum::{SpectrumOptions, spectrum};
+pub use stochastic::{FIELD_METHODS, PathOptions, SamplePoints, TraceStop};
+pub use threads::thread_pool;
+pub use trace::{LIGHT_METHODS, TraceOptions, Traced, trace};
+pub use viewfactors::{
+    MatrixFiles, MatrixRows, SKY, ViewFactorOptions, closure as matrix_closure, largest, point_closure,
+    view_factor_methods, view_factors,
+};
+pub use waves::{
+    Estimated, SolvedFrequency, SolvedWaves, WaveCompareOptions, WaveOptions, check_wave_solver,
+    compare_waves, waves,
+};

@@ -1,0 +1,236 @@
+//! Memory that a solution will take, known before any is taken.
+//!
+//! The bytes an element takes are measured: `cargo test --release --test memory -- --ignored` compares every prediction with what was held.
+
+use fredholm_coupling::{Constants, waiting_bytes};
+use fredholm_linop::{PackedSymmetric, Storage};
+
+use crate::error::Error;
+use crate::memory::{Limit, Plan};
+use crate::options::Precision;
+use crate::options::{ProblemSettings, RADIOSITY};
+use crate::registry::SolverEntry;
+use crate::size::Bytes;
+use crate::stages::Stages;
+
+/// Bytes of an element from the scene on: its patch, the scene's surfaces, what blocks the view.
+pub(crate) const MESH: u128 = 600;
+/// Bytes of an element while its exchanges are computed: quadrature points, clusters, error sums.
+pub(crate) const ASSEMBLY: u128 = 800;
+/// Bytes of an element that is shot from: quadrature points, groups, the tree of elements.
+const SHOT: u128 = 1500;
+/// Of the entries on their way, many small pieces, the C library still has one in so many when they have arrived.
+const RETAINED: u128 = 2;
+/// Bytes of an element while results are written, and of each of its values: what rays are cast at for the picture, welded corners, the composed file of arrays.
+const RESULTS: u128 = 650;
+const VALUE: u128 = 50;
+/// Bytes of a pixel while the exposure is found, and in each picture: while it is drawn, and when
+/// all are taken apart. Besides, what the last rows take.
+const METERED: u128 = 10;
+const LAYER: u128 = 6;
+const ROWS: u128 = 2;
+/// Vectors of all bands held at once: system and results, and six sources of errors with their system, iterates and residuals.
+const VECTORS: u128 = 48;
+/// Vectors of all bands more while errors are followed.
+const FOLLOWED: u128 = 150;
+
+/// Sizes that decide the memory.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Size {
+    pub(crate) elements: usize,
+    /// Unknowns in each band.
+    pub(crate) unknowns: usize,
+    /// Matrices of another discretisation than constants on form factors.
+    pub(crate) dense: Option<Dense>,
+}
+
+/// Dense matrices.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Dense {
+    pub(crate) bytes: u128,
+}
+
+impl Size {
+    /// What is known of a number of elements before they are there: other discretisations may have any number of unknowns.
+    pub(crate) fn before_mesh(elements: usize, options: &ProblemSettings) -> Self {
+        let radiosity = options.discretisation == RADIOSITY;
+        let (unknowns, dense) = if radiosity { (elements, None) } else { (0, Some(Dense { bytes: 0 })) };
+        Self { elements, unknowns, dense }
+    }
+}
+
+/// Memory by use.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Prediction {
+    size: Size,
+    matrix: u128,
+    /// Entries on their way into the matrix.
+    waiting: u128,
+    mesh: u128,
+    vectors: u128,
+    solver: u128,
+    /// Addresses that the threads set aside for the solver.
+    aside: u128,
+    /// What the residual of the solution takes.
+    residual: u128,
+}
+
+impl Prediction {
+    pub(crate) fn new(size: Size, bands: usize, storage: Precision, solver: &SolverEntry) -> Self {
+        let Size { elements, unknowns, dense } = size;
+        let (packed, waiting) = match storage {
+            Precision::F64 => (PackedSymmetric::<f64>::bytes(elements), waiting::<f64>(elements, false)),
+            Precision::F32 => (PackedSymmetric::<f32>::bytes(elements), waiting::<f32>(elements, false)),
+        };
+        let n = elements as u128;
+        Self {
+            size,
+            matrix: dense.map_or(packed.into(), |dense| dense.bytes),
+            waiting: if dense.is_none() { waiting.into() } else { 0 },
+            mesh: n * MESH,
+            vectors: elements.max(unknowns) as u128 * VECTORS * 8 * bands as u128,
+            solver: solver.solver.bytes(unknowns, bands).into(),
+            aside: of_threads(solver.solver.addresses()),
+            residual: if dense.is_none() { residual(elements, bands) } else { 0 },
+        }
+    }
+
+    /// What is held when, by a computation that keeps no matrix for its results.
+    pub(crate) fn plan(&self) -> Plan {
+        let Self { matrix, waiting, mesh, vectors, solver, residual, .. } = *self;
+        let Size { elements, unknowns, .. } = self.size;
+        let (assembly, retained) = (waiting + elements as u128 * ASSEMBLY, waiting / RETAINED);
+        let what = match self.size.dense {
+            None => format!("{} of form factors of {elements} elements", Bytes(matrix)),
+            Some(_) => format!("{} of matrices of {unknowns} unknowns on {elements} elements", Bytes(matrix)),
+        };
+        Plan::default()
+            .hold("scene, mesh and vectors", mesh.saturating_add(vectors))
+            .stage(
+                format!("{what} and {} on their way there", Bytes(assembly)),
+                matrix.saturating_add(assembly),
+            )
+            .stage(
+                format!("{what} and {} of the solver", Bytes(solver)),
+                matrix.saturating_add(solver).saturating_add(retained),
+            )
+            .stage(
+                format!("{what} and {} of its residual", Bytes(residual)),
+                matrix.saturating_add(residual).saturating_add(retained),
+            )
+            .aside(self.aside)
+    }
+
+    /// The same with a solver of so many bytes.
+    pub(crate) fn with_solver(self, solver: u128) -> Self {
+        Self { solver, ..self }
+    }
+
+    /// Refuses what is above the limit, and says what to change.
+    pub(crate) fn admit(&self, plan: &Plan, options: &ProblemSettings, stages: &Stages) -> Result<(), Error> {
+        let limit = options.memory_limit();
+        stages.admit(plan, limit, &self.help(plan, limit, options))
+    }
+
+    /// How to need less.
+    fn help(&self, plan: &Plan, limit: Limit, options: &ProblemSettings) -> String {
+        let mut text = "use fewer elements (elements_per_face, divide, largest_edge in the scene)".to_owned();
+        let single = Bytes(plan.peak().0.saturating_sub(self.matrix / 2));
+        if self.size.dense.is_none() && options.storage == Precision::F64 && single <= limit.bytes() {
+            text.push_str(", --storage f32");
+        }
+        if self.solver > self.matrix {
+            text.push_str(", a solver that needs less than ");
+            text.push_str(&options.solver);
+        }
+        text.push_str(", solve with --accuracy 5%, which needs no matrix");
+        text
+    }
+}
+
+/// Bytes of what follows the residual of a solution: besides what is sampled of it, the products of
+/// its six sources in every band, in parts.
+fn residual(elements: usize, bands: usize) -> u128 {
+    let followed = elements as u128 * (bands as u128) * 8 * FOLLOWED;
+    u128::from(Constants::bytes(elements, bands)).saturating_add(followed)
+}
+
+/// Addresses that all threads of this run set aside, where each does so many.
+pub(crate) fn of_threads(addresses: u64) -> u128 {
+    u128::from(addresses) * rayon::current_num_threads() as u128
+}
+
+/// Bytes of the entries on their way into a matrix; more than 2³¹ elements, whose pairs cannot be counted, have none that would fit.
+pub(crate) fn waiting<S: Storage>(elements: usize, errors: bool) -> u64 {
+    waiting_bytes::<S>(elements.min(1 << 31), errors)
+}
+
+/// A computation without a matrix, where columns may take `kept`; groups of elements take as much as elements.
+pub(crate) fn without_matrix(elements: usize, bands: usize, kept: Bytes) -> Plan {
+    let n = elements as u128;
+    Plan::default()
+        .hold(
+            format!("{elements} elements and groups of them"),
+            n * (MESH + SHOT + VECTORS * 8 * bands as u128),
+        )
+        .hold("columns that are kept", kept.0)
+}
+
+/// Bytes of the results of so many elements and of pictures of so many pixels.
+pub(crate) fn results(elements: usize, bands: usize, pixels: u128, pictures: usize) -> u128 {
+    let fields = elements as u128 * (RESULTS + VALUE * bands as u128);
+    fields.saturating_add(pictured(pixels, pictures))
+}
+
+/// Bytes of so many pictures of so many pixels.
+pub(crate) fn pictured(pixels: u128, pictures: usize) -> u128 {
+    pixels.saturating_mul(METERED.max(LAYER * pictures as u128 + ROWS))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::memory::limit;
+    use crate::registry::find;
+
+    fn predict(elements: usize, storage: Precision, solver: &str) -> Prediction {
+        let size = Size { elements, unknowns: elements, dense: None };
+        Prediction::new(size, 3, storage, &find(solver).unwrap())
+    }
+
+    #[test]
+    fn the_triangle_of_the_matrix_is_counted_in_its_format() {
+        assert_eq!(predict(10_000, Precision::F64, "gauss-seidel").matrix, 50_005_000 * 8);
+        assert_eq!(predict(10_000, Precision::F32, "gauss-seidel").matrix, 50_005_000 * 4);
+    }
+
+    #[test]
+    fn single_precision_is_advised_where_it_is_enough() {
+        let advice = |bytes: u64| {
+            let options = ProblemSettings {
+                discretisation: RADIOSITY.into(),
+                solver: "gauss-seidel".into(),
+                form_factor_tolerance: 1e-3,
+                storage: Precision::F64,
+                threads: 1,
+                memory_limit_bytes: Some(bytes),
+            };
+            let found = predict(10_000, Precision::F64, "gauss-seidel");
+            found.help(&found.plan(), limit(Some(Bytes(bytes.into()))), &options)
+        };
+        // 400 MB of matrix and 150 MB of everything else in double precision.
+        assert!(advice(450_000_000).contains("--storage f32"));
+        assert!(!advice(100_000_000).contains("--storage f32"));
+    }
+
+    #[test]
+    fn elimination_needs_at_least_the_full_square() {
+        assert!(predict(10_000, Precision::F64, "lu").solver >= 8 * 10_000 * 10_000);
+    }
+
+    #[test]
+    fn a_large_picture_counts() {
+        assert!(results(600, 3, 16_384 * 16_384, 1) > 2 << 30);
+        assert!(results(usize::MAX, 3, u128::MAX, 1) == u128::MAX);
+    }
+}

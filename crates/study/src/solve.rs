@@ -1,0 +1,383 @@
+//! The radiosity of a scene: on its elements, or to an accuracy.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use fredholm_linop::{MultiVector, StopReason, Watch};
+use fredholm_mesh::Mesh;
+use fredholm_report::{Camera, Exposure, Extras, Field, Layer, ReportError, RunRecord, View, write_with};
+use fredholm_scene::Scene;
+
+use crate::checkpoint::{self, Checkpoint};
+use crate::choice::{Choice, Extent};
+use crate::error::{Error, ErrorKind};
+use crate::memory::{self, Plan};
+use crate::options::{ProblemSettings, SceneSource, SolveOptions, SolveSettings};
+use crate::pictures::{Gathered, Source, gathering, pictures};
+use crate::prediction::{MESH, Prediction, Size};
+use crate::problem::{Problem, scene_failure, with_results};
+use crate::record::{record, remarks};
+use crate::solution::{Solution, compute};
+use crate::stages::Stages;
+use crate::stochastic::expected_error;
+use crate::{hierarchical, registry};
+
+/// Pixels of the picture of a partial result.
+const QUICK_PIXELS: f64 = 40_000.0;
+
+/// How a study ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ended {
+    /// With what was asked for.
+    Done,
+    /// With results that miss the tolerance or the accuracy asked for.
+    NotConverged,
+    /// With what there was when the run was cancelled.
+    Interrupted,
+}
+
+/// A solved scene.
+pub struct Solved<'a> {
+    pub(crate) settings: SolveSettings,
+    pub(crate) problem: Problem,
+    pub(crate) solution: Solution,
+    pub(crate) stages: Stages<'a>,
+}
+
+/// The light of a surface, per band.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SurfaceLight {
+    /// Mean irradiance over the surface, W/m².
+    pub irradiance: Vec<f64>,
+    /// The stated error of it, W/m²: the root mean square of what the solution states of the faces of
+    /// the surface, which is the most that the error of their mean can be where each is right. An
+    /// estimate, as the stated errors are. Empty where the solution states no error.
+    pub error: Vec<f64>,
+}
+
+/// Solves a scene.
+///
+/// # Errors
+/// What is wrong with the scene or the options; [`ErrorKind::Resources`] before memory is taken that
+/// the limit does not allow; [`ErrorKind::Interrupted`] for a run that was cancelled before it had a
+/// result.
+pub fn solve<'a>(
+    source: impl Into<SceneSource>,
+    asked: &SolveOptions,
+    watch: &'a dyn Watch,
+) -> Result<Solved<'a>, Error> {
+    solve_from(&source.into(), asked, None, Stages::new(watch))
+}
+
+/// Goes on with a run to an accuracy that was stopped, with the options of the
+/// [`Checkpoint`], some of which may be changed.
+///
+/// # Errors
+/// As [`solve`], and for a scene that is another one by now.
+pub fn resume<'a>(
+    checkpoint: &Checkpoint,
+    asked: &SolveOptions,
+    watch: &'a dyn Watch,
+) -> Result<Solved<'a>, Error> {
+    solve_from(&checkpoint.scene().into(), asked, Some(checkpoint), Stages::new(watch))
+}
+
+/// Solves a scene, from a checkpoint where there is one.
+pub(crate) fn solve_from<'a>(
+    source: &SceneSource,
+    asked: &SolveOptions,
+    checkpoint: Option<&Checkpoint>,
+    mut stages: Stages<'a>,
+) -> Result<Solved<'a>, Error> {
+    let (settings, problem, solution) = answer(source, asked, checkpoint, &mut stages)?;
+    let settings = SolveSettings { recorded: asked.recorded.clone(), ..settings };
+    Ok(Solved { settings, problem, solution, stages })
+}
+
+impl Solved<'_> {
+    /// The scene.
+    #[must_use]
+    pub fn scene(&self) -> &Scene {
+        &self.problem.scene
+    }
+
+    /// The elements that the solution came to, with their faces and surfaces.
+    #[must_use]
+    pub fn mesh(&self) -> &Mesh {
+        &self.problem.mesh
+    }
+
+    /// Mean irradiance of the elements, elements × bands, W/m².
+    #[must_use]
+    pub fn irradiance(&self) -> &MultiVector<f64> {
+        &self.solution.means.irradiance
+    }
+
+    /// Mean radiosity of the elements, elements × bands, W/m².
+    #[must_use]
+    pub fn radiosity(&self) -> &MultiVector<f64> {
+        &self.solution.means.radiosity
+    }
+
+    /// The light of a surface by its name; none where the scene has no such surface.
+    #[must_use]
+    pub fn surface(&self, name: &str) -> Option<SurfaceLight> {
+        let (mesh, bands) = (&self.problem.mesh, self.problem.scene.bands().len());
+        let surface = mesh.surfaces().iter().position(|surface| surface.name == name)?;
+        let own: Vec<usize> =
+            (0..mesh.faces().len()).filter(|&face| mesh.faces()[face].surface == surface).collect();
+        let area: f64 = own.iter().map(|&face| mesh.faces()[face].area).sum();
+        let power = |leaf: usize, band: usize| mesh.patch(leaf).area() * self.irradiance().row(leaf)[band];
+        let received = |band: usize| -> f64 {
+            own.iter().flat_map(|&face| mesh.leaves_of_face(face)).map(|leaf| power(leaf, band)).sum()
+        };
+        let irradiance = (0..bands).map(|band| received(band) / area).collect();
+        let known = self.solution.mesh_error.as_ref();
+        let errors = known.map(|_| expected_error(&self.problem, &self.solution, true));
+        let square = |errors: &[f64], band: usize| -> f64 {
+            own.iter().map(|&face| mesh.faces()[face].area * errors[face * bands + band].powi(2)).sum()
+        };
+        let stated =
+            |errors: Vec<f64>| (0..bands).map(|band| (square(&errors, band) / area).sqrt()).collect();
+        Some(SurfaceLight { irradiance, error: errors.map_or_else(Vec::new, stated) })
+    }
+
+    /// Stated relative error of the irradiance of the faces (L², an estimate), or of the mean
+    /// irradiance of the goal where there is one, in the worst band; none where it is not known.
+    #[must_use]
+    pub fn relative_error(&self) -> Option<f64> {
+        let known = self.solution.mesh_error.as_ref().map(|error| error.relative_l2.iter().copied());
+        let stated = self.solution.hierarchy.as_ref().and_then(|hierarchy| hierarchy.stated);
+        known.and_then(|errors| errors.reduce(f64::max)).or(stated)
+    }
+
+    /// How the solution ended.
+    #[must_use]
+    pub fn ended(&self) -> Ended {
+        match self.solution.report.reason {
+            _ if self.stages.is_cancelled() => Ended::Interrupted,
+            StopReason::Converged if self.solution.is_accurate() => Ended::Done,
+            StopReason::Interrupted => Ended::Interrupted,
+            _ => Ended::NotConverged,
+        }
+    }
+
+    /// What the user should know of the solution; warnings about the scene were told before.
+    pub fn remarks(&self) -> impl Iterator<Item = String> {
+        remarks(&self.settings, &self.solution)
+    }
+
+    /// What is worth knowing of the run so far, as `run.json` has it.
+    #[must_use]
+    pub fn record(&self) -> RunRecord {
+        record(&self.problem, &self.settings, &self.solution, &self.stages)
+    }
+
+    /// Writes all results into a folder, which is made where it does not exist, and returns the
+    /// record with the time of writing. The checkpoint there of a run that is complete is removed.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Files`] with the file that could not be written; the folder then has no
+    /// `run.json`.
+    pub fn write(&mut self, folder: impl AsRef<Path>) -> Result<RunRecord, Error> {
+        let folder = folder.as_ref();
+        self.settings.output = folder.display().to_string();
+        let record = self.record();
+        let Self { settings, problem, solution, stages } = self;
+        stages.run("results", || write(problem, settings, solution, &record, folder))?;
+        if !record.partial {
+            checkpoint::remove(folder)?;
+        }
+        Ok(RunRecord { timings: stages.timings().to_vec(), ..record })
+    }
+}
+
+/// Reads and solves the scene.
+fn answer(
+    source: &SceneSource,
+    asked: &SolveOptions,
+    checkpoint: Option<&Checkpoint>,
+    stages: &mut Stages,
+) -> Result<(SolveSettings, Problem, Solution), Error> {
+    let scene = source.load(stages)?;
+    // Without points there is nothing to be said of them.
+    if let bytes @ 1.. = asked.points.bytes(scene.bands().len()) {
+        let points = Plan::default().hold("points", bytes);
+        points.admit(memory::limit(asked.problem.memory), "ask for fewer points")?;
+    }
+    match asked.accuracy.or(scene.solve().accuracy) {
+        Some(accuracy) if !(accuracy > 0.0 && accuracy < 1.0) => {
+            let error = Error::new(ErrorKind::Input, format!("the accuracy {accuracy} cannot be reached"));
+            Err(error.with_help("ask for one above 0 and below 1, such as 0.01"))
+        }
+        Some(accuracy) => to_accuracy(asked, &scene, (accuracy, checkpoint), stages),
+        None if !asked.goal.is_empty() => Err(hierarchical::goal_alone()),
+        None => dense(asked, &scene, stages),
+    }
+}
+
+/// On the elements of the scene.
+fn dense(
+    asked: &SolveOptions,
+    scene: &Arc<Scene>,
+    stages: &mut Stages,
+) -> Result<(SolveSettings, Problem, Solution), Error> {
+    let options = ProblemSettings::new(&asked.problem, scene.solve());
+    let more = |plan, scene: &Scene, elements| {
+        let bands = scene.bands().len();
+        let wanted = asked.final_gather || asked.discontinuity || asked.points.bytes(bands) > 0;
+        let gathering = if wanted { gathering(elements, bands) + asked.points.bytes(bands) } else { 0 };
+        with_results(plan, scene, elements, (1 + usize::from(asked.final_gather), gathering))
+    };
+    let problem = Problem::refined(Arc::clone(scene), options, (1, &more), stages)?;
+    let options = SolveSettings::new(problem.options.clone(), asked.stop, scene.solve());
+    let points = asked.points.receivers();
+    let SolveOptions { final_gather, discontinuity, no_pictures, .. } = *asked;
+    let options = SolveSettings { points, final_gather, discontinuity, no_pictures, ..options };
+    let solution = compute(&problem, &options, stages)?;
+    Ok((options, problem, solution))
+}
+
+/// To an accuracy, the way that costs less.
+fn to_accuracy(
+    asked: &SolveOptions,
+    scene: &Arc<Scene>,
+    (accuracy, checkpoint): (f64, Option<&Checkpoint>),
+    stages: &mut Stages,
+) -> Result<(SolveSettings, Problem, Solution), Error> {
+    hierarchical::refuse_dense(&ProblemSettings::new(&asked.problem, scene.solve()))?;
+    let mut choice = None;
+    if checkpoint.is_none() {
+        let predicted = predicted(asked, scene, accuracy)?;
+        choice = Some(predicted);
+        if predicted.is_matrix() {
+            match on_matrix(asked, scene, (accuracy, predicted), stages)? {
+                Ok(solved) => return Ok(solved),
+                Err(stated) => choice = Some(Choice::TooCoarse { stated }),
+            }
+        }
+    }
+    let options = hierarchical::options(asked, scene, accuracy)?;
+    let options = SolveSettings { choice: choice.map(|choice| choice.to_string()), ..options };
+    let saved = (accuracy, checkpoint, asked.folder.as_deref());
+    let (problem, solution) = hierarchical::compute(scene, &options, saved, stages)?;
+    Ok((options, problem, solution))
+}
+
+/// The way that is predicted to cost less.
+fn predicted(asked: &SolveOptions, scene: &Scene, accuracy: f64) -> Result<Choice, Error> {
+    if !asked.goal.is_empty() {
+        return Ok(Choice::Goal);
+    }
+    let elements = scene.predicted_elements() as f64;
+    if elements >= Choice::most_elements(accuracy) {
+        // Whatever the faces: as many as there are elements, they have the most links.
+        return Ok(Choice::new(Extent { elements, faces: elements, fewest: 1 }, accuracy));
+    }
+    let options = ProblemSettings::new(&asked.problem, scene.solve());
+    let meshed = Plan::default().hold("the mesh", MESH.saturating_mul(scene.predicted_elements()));
+    if !meshed.fits(options.memory_limit()) {
+        return Ok(Choice::Memory);
+    }
+    let mesh = scene.mesh().map_err(scene_failure)?;
+    let count = mesh.faces().len();
+    let fewest = (0..count).map(|face| mesh.leaves_of_face(face).len()).min().unwrap_or(0);
+    let choice = Choice::new(Extent { elements: mesh.len() as f64, faces: count as f64, fewest }, accuracy);
+    let fits = fits(&options, mesh.len(), scene.bands().len());
+    Ok(if choice.is_matrix() && !fits { Choice::Memory } else { choice })
+}
+
+/// Whether the matrix of some elements fits the memory.
+fn fits(options: &ProblemSettings, elements: usize, bands: usize) -> bool {
+    let size = Size { elements, unknowns: elements, dense: None };
+    registry::find(&options.solver).is_some_and(|solver| {
+        Prediction::new(size, bands, options.storage, &solver).plan().fits(options.memory_limit())
+    })
+}
+
+/// A solution, or the error that it states where that is too large.
+type Trial = Result<(SolveSettings, Problem, Solution), Option<f64>>;
+
+/// On the elements of the scene, where the error that is stated then is within an accuracy.
+fn on_matrix(
+    asked: &SolveOptions,
+    scene: &Arc<Scene>,
+    (accuracy, choice): (f64, Choice),
+    stages: &mut Stages,
+) -> Result<Trial, Error> {
+    let (options, problem, solution) = dense(asked, scene, stages)?;
+    let stated = solution.mesh_error.as_ref();
+    let stated = stated.and_then(|error| error.relative_l2.iter().copied().reduce(f64::max));
+    let partial = solution.report.reason != StopReason::Converged;
+    if !partial && stated.is_none_or(|error| error > accuracy) {
+        return Ok(Err(stated));
+    }
+    let choice = Some(choice.to_string());
+    Ok(Ok((SolveSettings { accuracy: Some(accuracy), choice, ..options }, problem, solution)))
+}
+
+fn write(
+    problem: &Problem,
+    options: &SolveSettings,
+    solution: &Solution,
+    record: &RunRecord,
+    folder: &Path,
+) -> Result<(), Error> {
+    let exitance = problem.scene.exitance(&problem.mesh);
+    let (irradiance, radiosity) = (solution.means.irradiance.as_slice(), solution.means.radiosity.as_slice());
+    let field = Field::new(&problem.mesh, &record.bands, irradiance, radiosity)
+        .and_then(|field| field.with_exitance(&exitance))
+        .and_then(|field| field.with_exposed(&solution.exposed))
+        .map_err(report_failure)?;
+    let view = view_of(problem.scene.camera(), &field);
+    let view = if record.partial { quick(view) } else { view };
+    let source = Source::new(problem, options, solution)?;
+    let (links, gathered) = (|element| source.linked(element), source.gather(options)?);
+    let layer = |name| match (name, &gathered) {
+        ("mesh.png", _) => Layer::Elements,
+        ("links.png", _) => Layer::Links(&links),
+        (_, Some(gathered)) => Layer::Gathered(gathered),
+        _ => Layer::Field,
+    };
+    let pictures = pictures(options, solution).map(|name| (name, layer(name))).collect();
+    let points = gathered.as_ref().map(|gathered| gathered.points(options)).transpose()?.flatten();
+    let shadows = gathered.as_ref().filter(|_| options.discontinuity).map(Gathered::shadows);
+    let view = (!options.no_pictures).then_some(&view);
+    let more = Extras { pictures, points, shadows };
+    write_with(folder, &field, record, view, &more).map(drop).map_err(report_failure)
+}
+
+/// The scene's camera, or one that sees all of it.
+pub(crate) fn view_of(camera: Option<&fredholm_scene::Camera>, field: &Field) -> View {
+    let Some(camera) = camera else { return View::framing(field) };
+    let exposure = camera.exposure.map_or(Exposure::Auto, Exposure::Fixed);
+    View { camera: view_camera(camera), exposure }
+}
+
+pub(crate) fn view_camera(camera: &fredholm_scene::Camera) -> Camera {
+    Camera {
+        eye: camera.eye,
+        target: camera.target,
+        up: camera.up,
+        vertical_fov_degrees: camera.vertical_fov_degrees,
+        width: camera.width,
+        height: camera.height,
+    }
+}
+
+/// The view in few pixels: whoever has pressed Ctrl-C does not wait for a large picture.
+fn quick(view: View) -> View {
+    let Camera { width, height, .. } = view.camera;
+    let scale = (QUICK_PIXELS / (f64::from(width) * f64::from(height))).sqrt().min(1.0);
+    let scaled = |side: u32| ((f64::from(side) * scale) as u32).max(1);
+    View { camera: Camera { width: scaled(width), height: scaled(height), ..view.camera }, ..view }
+}
+
+pub(crate) fn report_failure(error: ReportError) -> Error {
+    let ending = match error {
+        ReportError::Write { .. } => ErrorKind::Files,
+        ReportError::NotFinite { .. } => ErrorKind::NotConverged,
+        _ => ErrorKind::Input,
+    };
+    Error::new(ending, error)
+}

@@ -1,0 +1,121 @@
+//! Analysis of the matrix of a scene: eigenvalues, radii, conditions, properties.
+
+mod analysis;
+
+use std::path::Path;
+
+use fredholm_direct::{spectrum_bytes, thread_addresses};
+use fredholm_linop::{SecondKind, Stop, Storage, Watch};
+use fredholm_report::{SPECTRUM_FORMAT, SpectrumRecord, write_spectrum};
+use fredholm_scene::Scene;
+
+use crate::error::{Error, ErrorKind};
+use crate::memory::Plan;
+use crate::options::{Precision, ProblemOptions, RADIOSITY, SceneSource};
+use crate::prediction::of_threads;
+use crate::problem::Problem;
+use crate::registry;
+use crate::size::Bytes;
+use crate::solution::{form_factors, system};
+use crate::solve::{Ended, report_failure};
+use crate::stages::Stages;
+use crate::watcher::Watcher;
+
+/// What is asked of [`spectrum`].
+#[derive(Clone, Debug)]
+pub struct SpectrumOptions {
+    /// Most unknowns for dense methods; beyond, there are estimates by the Lanczos process.
+    pub dense: usize,
+    /// Steps of the Lanczos process.
+    pub steps: u32,
+    /// Threads of the run; see [`ProblemOptions`].
+    pub threads: Option<u16>,
+    /// Error asked for in a row of form factors; see [`ProblemOptions`].
+    pub form_factor_tolerance: Option<f64>,
+    /// Memory allowed; see [`ProblemOptions`].
+    pub memory: Option<Bytes>,
+}
+
+impl Default for SpectrumOptions {
+    fn default() -> Self {
+        Self { dense: 2000, steps: 60, threads: None, form_factor_tolerance: None, memory: None }
+    }
+}
+
+impl SpectrumOptions {
+    fn problem(&self) -> ProblemOptions {
+        ProblemOptions {
+            threads: self.threads,
+            discretisation: None,
+            solver: Some(registry::DEFAULT.to_owned()),
+            form_factor_tolerance: self.form_factor_tolerance,
+            storage: None,
+            memory: self.memory,
+        }
+    }
+}
+
+/// Analyses the matrix of a scene and writes what was found into a folder.
+///
+/// # Errors
+/// What is wrong with the scene or the options; [`ErrorKind::Resources`] before memory is taken that
+/// the limit does not allow; [`ErrorKind::Interrupted`] for a run that was cancelled.
+pub fn spectrum(
+    source: impl Into<SceneSource>,
+    asked: &SpectrumOptions,
+    folder: impl AsRef<Path>,
+    watch: &dyn Watch,
+) -> Result<(SpectrumRecord, Ended), Error> {
+    let mut stages = Stages::new(watch);
+    let dense = |plan: Plan, _: &Scene, n: usize| {
+        if n > asked.dense {
+            return plan;
+        }
+        plan.hold("dense methods", spectrum_bytes(n).into()).aside(of_threads(thread_addresses()))
+    };
+    let problem = Problem::load(&source.into(), &asked.problem(), &dense, &mut stages)?;
+    if !problem.is_radiosity() {
+        let text = format!(
+            "spectrum works on the matrix of form factors, which is {RADIOSITY}; the scene asks for {}",
+            problem.options.discretisation
+        );
+        return Err(Error::new(ErrorKind::Input, text));
+    }
+    let record = match problem.options.storage {
+        Precision::F64 => analysed::<f64>(asked, &problem, &mut stages),
+        Precision::F32 => analysed::<f32>(asked, &problem, &mut stages),
+    }?;
+    stages.begin_saving()?;
+    write_spectrum(folder.as_ref(), &record).map_err(report_failure)?;
+    let ended = if stages.is_cancelled() { Ended::Interrupted } else { Ended::Done };
+    Ok((record, ended))
+}
+
+fn analysed<S: Storage>(
+    asked: &SpectrumOptions,
+    problem: &Problem,
+    stages: &mut Stages,
+) -> Result<SpectrumRecord, Error> {
+    let watcher = Watcher::to(stages, Stop { tolerance: 0.0, max_iterations: 0 });
+    let assembled = stages.run("assembly", || form_factors::<S>(problem, watcher))?;
+    let radiosity = stages.run("exposure", || system(problem, &assembled.matrix))?;
+    let system = SecondKind::new(&assembled.matrix, radiosity.scaling())
+        .map_err(|error| Error::new(ErrorKind::Input, error))?;
+    let dense = problem.unknowns <= asked.dense;
+    let bands = if dense {
+        analysis::exact(&system, problem.scene.bands(), stages)?
+    } else {
+        analysis::estimated(&system, problem.scene.bands(), asked.steps as usize, watcher, stages)?
+    };
+    let scene = &problem.scene;
+    Ok(SpectrumRecord {
+        format: SPECTRUM_FORMAT.to_owned(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        scene: scene.path().display().to_string(),
+        scene_sha256: scene.sha256().to_owned(),
+        unknowns: problem.unknowns as u64,
+        method: if dense { "dense" } else { "lanczos" }.to_owned(),
+        bands,
+        timings: stages.timings().to_vec(),
+    })
+}

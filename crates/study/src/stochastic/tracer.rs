@@ -1,0 +1,67 @@
+//! One traced run, with its progress.
+
+use fredholm_linop::Watch;
+use fredholm_montecarlo::light::Estimator;
+use fredholm_montecarlo::{Enclosure, Groups, MonteCarloError, State, Stop, Tracing};
+
+use super::options::{PathOptions, TraceStop};
+use crate::error::{Error, ErrorKind};
+
+/// Samples of a batch of each element, and for each element.
+const GATHERED: u32 = 4;
+const SHOT: u32 = 8;
+/// Fewest and most samples of a batch that shoots.
+const LEAST: u32 = 1 << 12;
+const MOST: u32 = 1 << 20;
+
+/// A method on a scene, and when it ends.
+pub(crate) struct Tracer<'a> {
+    tracing: Tracing<'a>,
+    stop: Stop,
+}
+
+impl<'a> Tracer<'a> {
+    pub(crate) fn new(
+        scene: &'a Enclosure,
+        estimator: &'a dyn Estimator,
+        groups: Groups,
+        paths: &PathOptions,
+        stop: &TraceStop,
+    ) -> Result<Self, Error> {
+        let samples = paths.batch.unwrap_or_else(|| batch(scene, estimator));
+        let tracing = Tracing::new(scene, estimator, groups, paths.seed, samples).map_err(failure)?;
+        let batches = stop.samples.map(|all| all.div_ceil(samples.into()).max(2));
+        let stop = Stop { batches, seconds: stop.seconds, error: stop.error };
+        Ok(Self { tracing: tracing.with_points(paths.point_set()), stop })
+    }
+
+    /// A run that has not begun.
+    pub(crate) fn start(&self) -> State {
+        self.tracing.start()
+    }
+
+    /// Runs to the end, or until it is cancelled: what is there by then is a valid result.
+    pub(crate) fn run(&self, state: &mut State, watch: &dyn Watch) -> Result<(), Error> {
+        self.tracing.go_on(state, &self.stop, watch).map_err(failure)
+    }
+
+    /// Why a run has ended, in words.
+    pub(crate) fn reason(&self, state: &State) -> String {
+        let error = state.relative_error();
+        let what = self.stop.ended(state.batches(), error, state.seconds);
+        format!("{what}, standard error {:.3} % (RMS over the faces)", 100.0 * error)
+    }
+}
+
+fn batch(scene: &Enclosure, estimator: &dyn Estimator) -> u32 {
+    if estimator.gathers() {
+        return GATHERED;
+    }
+    let samples = u32::try_from(scene.len()).unwrap_or(MOST).saturating_mul(SHOT);
+    samples.clamp(LEAST, MOST).next_power_of_two()
+}
+
+/// What is wrong with a traced scene is wrong with the input.
+pub(crate) fn failure(error: MonteCarloError) -> Error {
+    Error::new(ErrorKind::Input, error)
+}

@@ -1,0 +1,150 @@
+//! The files of a traced run.
+
+use std::collections::BTreeMap;
+use std::io;
+use std::path::Path;
+
+use fredholm_montecarlo::State;
+use fredholm_report::{
+    Counts, FaceEstimates, Field, Picture, Pixels, ReportError, RunRecord, View, render, write_atomically,
+    write_face_estimates, write_run,
+};
+use serde_json::Value;
+
+use super::InForce;
+use super::saved::{Origin, STATE};
+use crate::error::Error;
+use crate::memory;
+use crate::solve::{report_failure, view_of};
+use crate::stages::Stages;
+use crate::stochastic::Ground;
+
+/// Everything that is worth knowing of a traced run.
+pub(super) fn record(
+    ground: &Ground,
+    state: &State,
+    options: &InForce<'_>,
+    reason: String,
+    stages: &Stages,
+) -> RunRecord {
+    let (scene, mesh) = (&ground.scene, &ground.mesh);
+    RunRecord {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        scene: scene.path().display().to_string(),
+        scene_sha256: scene.sha256().to_owned(),
+        options: serde_json::to_value(options).unwrap_or(Value::Null),
+        bands: scene.bands().to_vec(),
+        counts: Counts {
+            surfaces: mesh.surfaces().len() as u64,
+            faces: mesh.faces().len() as u64,
+            elements: mesh.len() as u64,
+            occluders: mesh.occluders().len() as u64,
+            bands: scene.bands().len() as u64,
+            ..Counts::default()
+        },
+        timings: stages.timings().to_vec(),
+        peak_memory_bytes: memory::peak_bytes(),
+        means: "random paths; standard errors in faces.csv".to_owned(),
+        solver: state.method.clone(),
+        work: work(state),
+        stop_reason: reason,
+        warnings: ground.warnings.clone(),
+        partial: stages.is_cancelled(),
+        ..RunRecord::default()
+    }
+}
+
+fn work(state: &State) -> BTreeMap<String, u64> {
+    let counters = [
+        ("batches", state.batches()),
+        ("samples_of_a_batch", state.samples.into()),
+        ("paths", state.paths),
+        ("rays", state.rays),
+    ];
+    counters.map(|(name, count)| (name.to_owned(), count)).into()
+}
+
+/// The estimates as a field on the mesh, to be looked at and written.
+pub(super) struct Estimates<'a> {
+    ground: &'a Ground,
+    state: &'a State,
+    radiosity: Vec<f64>,
+    exitance: Vec<f64>,
+}
+
+impl<'a> Estimates<'a> {
+    pub(super) fn new(ground: &'a Ground, state: &'a State) -> Self {
+        let (rho, exitance) = (ground.scene.reflectance(&ground.mesh), ground.scene.exitance(&ground.mesh));
+        let reflected = state.patches.mean().iter().zip(&rho).zip(&exitance);
+        let radiosity = reflected.map(|((e, rho), m)| m + rho * e).collect();
+        Self { ground, state, radiosity, exitance }
+    }
+
+    fn field(&self) -> Result<Field<'_>, Error> {
+        let (mesh, bands) = (&self.ground.mesh, self.ground.scene.bands());
+        Field::new(mesh, bands, self.state.patches.mean(), &self.radiosity)
+            .and_then(|field| field.with_exitance(&self.exitance))
+            .map_err(report_failure)
+    }
+
+    /// Where pictures are taken from.
+    pub(super) fn view(&self) -> Result<View, Error> {
+        Ok(view_of(self.ground.scene.camera(), &self.field()?))
+    }
+
+    /// The picture of the pixels, or else of the means of the elements.
+    fn picture(&self, pixels: Option<&Pixels>) -> Result<Picture, Error> {
+        let view = self.view()?;
+        let picture = match pixels {
+            Some(pixels) => pixels.picture(self.ground.scene.bands(), view.exposure),
+            None => render(&self.field()?, &view.camera, view.exposure),
+        };
+        picture.map_err(report_failure)
+    }
+
+    /// Writes the files, with a picture where one is to be drawn; `run.json` last.
+    pub(super) fn write(
+        &self,
+        folder: &Path,
+        origin: &Origin,
+        (drawn, pixels): (bool, Option<&Pixels>),
+        record: &RunRecord,
+    ) -> Result<(), Error> {
+        let (mesh, bands, state) = (&self.ground.mesh, self.ground.scene.bands(), self.state);
+        let errors = state.groups.standard_errors();
+        let faces = FaceEstimates::new(mesh, bands, state.groups.mean(), &errors).map_err(report_failure)?;
+        let picture = drawn.then(|| self.picture(pixels)).transpose()?;
+        prepare(folder)?;
+        remove(&folder.join("image.png"))?;
+        let write = || -> Result<(), ReportError> {
+            write_atomically(&folder.join("faces.csv"), |out| write_face_estimates(&faces, out))?;
+            if let Some(picture) = &picture {
+                write_atomically(&folder.join("image.png"), |out| picture.write_png(out))?;
+            }
+            if let Some(pixels) = pixels {
+                write_atomically(&folder.join("pixels.npz"), |out| pixels.write_npz(out))?;
+            }
+            write_atomically(&folder.join(STATE), |out| origin.save(state, out))?;
+            write_atomically(&folder.join("run.json"), |out| write_run(record, out))
+        };
+        write().map_err(report_failure)
+    }
+}
+
+/// Makes the folder and removes the mark of completeness of an older result.
+pub(super) fn prepare(folder: &Path) -> Result<(), Error> {
+    std::fs::create_dir_all(folder).map_err(|error| failed(folder, error))?;
+    remove(&folder.join("run.json"))
+}
+
+/// Removes a file, if it is there.
+fn remove(path: &Path) -> Result<(), Error> {
+    match std::fs::remove_file(path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(failed(path, error)),
+        _ => Ok(()),
+    }
+}
+
+fn failed(path: &Path, source: io::Error) -> Error {
+    report_failure(ReportError::Write { path: path.to_owned(), source })
+}

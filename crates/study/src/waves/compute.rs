@@ -1,0 +1,283 @@
+//! The currents and the fields at all frequencies.
+
+use fredholm_mesh::Vec3;
+use fredholm_report::{FarRow, WaveCurrents, WaveRow};
+use fredholm_waves::{
+    Bounced, ComplexVector, Current, EdgeCurrents, FacetCurrents, FarField, Field, PhysicalOptics, Radiator,
+    Sampling, Scatterer, Shadow, Source, System, TOLERANCE, WaveError, cross_section, incident,
+};
+use rayon::prelude::*;
+
+use super::estimate;
+use super::geometry::Geometry;
+use super::model::Band;
+use super::monostatic::Sweep;
+use super::receivers::{Places, Receiver};
+use super::record::Solved;
+use super::solving::{self, Solution};
+use super::{Model, Outcome};
+use crate::error::Error;
+use crate::stages::{Signals, Stages};
+
+/// Computes everything that the model asks for.
+pub(crate) fn compute(model: &Model, stages: &mut Stages) -> Result<Outcome, Error> {
+    let as_asked = Variant { name: "", geometry: &model.geometry, shadow: model.shadow };
+    let mut outcome = variant(model, as_asked, stages)?;
+    if let Some(coarse) = &model.coarse {
+        let coarser = variant(model, Variant { name: ", long edges", geometry: coarse, ..as_asked }, stages)?;
+        outcome.mesh_errors = estimate::mesh(&outcome, &coarser);
+        if estimate::has_magnetic_form(model) {
+            let shadow = Shadow::Thesis;
+            let magnetic = variant(model, Variant { name: ", magnetic form", shadow, ..as_asked }, stages)?;
+            outcome.form_errors = estimate::form(&outcome, &magnetic);
+        }
+    }
+    Ok(outcome)
+}
+
+/// One of the runs that a model may need.
+#[derive(Clone, Copy)]
+struct Variant<'a> {
+    /// What is added to the names of its stages.
+    name: &'a str,
+    geometry: &'a Geometry,
+    shadow: Shadow,
+}
+
+fn variant(model: &Model, variant: Variant<'_>, stages: &mut Stages) -> Result<Outcome, Error> {
+    let mut outcome = Outcome::default();
+    for band in &model.bands {
+        let refused = |error: WaveError| model.refused(&error, None);
+        let scatterer = variant.geometry.scatterer(band.materials.clone()).map_err(refused)?;
+        if !model.is_closed_form() {
+            scatterer.check_resolution(&band.wave).map_err(refused)?;
+        }
+        let sources: Vec<&dyn Source> = model.sources.iter().map(AsRef::as_ref).collect();
+        let first = PhysicalOptics::new(&scatterer, band.wave, &sources, variant.shadow).map_err(refused)?;
+        let task = Task { model, variant, band, scatterer: &scatterer, first: &first, sources: &sources };
+        task.carry_out(stages, &mut outcome)?;
+    }
+    Ok(outcome)
+}
+
+/// One frequency.
+struct Task<'a> {
+    model: &'a Model,
+    variant: Variant<'a>,
+    band: &'a Band,
+    scatterer: &'a Scatterer,
+    first: &'a PhysicalOptics<'a>,
+    sources: &'a [&'a dyn Source],
+}
+
+impl Task<'_> {
+    fn carry_out(&self, stages: &mut Stages, outcome: &mut Outcome) -> Result<(), Error> {
+        let name = format!("{} MHz{}", self.band.wave.frequency() / 1e6, self.variant.name);
+        let signals = &stages.signals();
+        let system = stages.run(&format!("coupling at {name}"), || self.system(signals))?;
+        let system = system.as_ref();
+        if self.model.has_bistatic() {
+            let (currents, solved) =
+                stages.run(&format!("currents at {name}"), || self.currents(system, signals))?;
+            stages.run(&format!("fields at {name}"), || self.radiate(system, &currents, outcome))?;
+            let values = currents.values().iter().map(current).collect();
+            outcome.currents.push(WaveCurrents { name: name.clone(), values });
+            outcome.solved.push(solved);
+        }
+        // Estimates are made of the fields at receivers only.
+        if self.variant.name.is_empty() && self.model.has_sweep() {
+            stages.run(&format!("sweep at {name}"), || self.sweep(system, signals, outcome))?;
+        }
+        Ok(())
+    }
+
+    fn refused(&self, error: &WaveError) -> Error {
+        self.model.refused(error, None)
+    }
+
+    fn system(&self, signals: &Signals<'_>) -> Result<Option<System<'_>>, Error> {
+        solving::system(self.model, self.scatterer, (self.band.wave, self.variant.shadow), signals)
+    }
+
+    /// The currents at the centres of the facets.
+    fn currents(
+        &self,
+        system: Option<&System<'_>>,
+        signals: &Signals<'_>,
+    ) -> Result<(FacetCurrents, Solved), Error> {
+        let Some(system) = system else {
+            let residuals = self.first_residuals(signals)?;
+            let currents = FacetCurrents::sampled(self.scatterer, self.first);
+            return Ok((currents, Solved { residuals, ..self.solved(None) }));
+        };
+        let b = system.right_hand_side(&[self.first]);
+        let solution = solving::solution(&self.model.method, system, &b, signals)?;
+        Ok((system.currents(&solution.x, 0), self.solved(Some(solution))))
+    }
+
+    fn solved(&self, solution: Option<Solution>) -> Solved {
+        let (frequency, facets) = (self.band.wave.frequency(), self.scatterer.facets().len());
+        let (residuals, reason) =
+            solution.map_or((Vec::new(), None), |solution| (solution.residuals, solution.reason));
+        Solved { frequency, facets, residuals, reason }
+    }
+
+    /// What a second bounce would add, where errors are to be estimated; it is not asked of the runs that do so.
+    fn first_residuals(&self, signals: &Signals<'_>) -> Result<Vec<f64>, Error> {
+        if self.model.coarse.is_none() || !self.variant.name.is_empty() {
+            return Ok(Vec::new());
+        }
+        let system =
+            solving::lazy(self.model, self.scatterer, (self.band.wave, self.variant.shadow), signals)?;
+        let b = system.right_hand_side(&[self.first]);
+        Ok(solving::bounced(&system, &b, 1, signals)?.residuals)
+    }
+
+    /// The sweeps of the receivers that ask for one.
+    fn sweep(
+        &self,
+        system: Option<&System<'_>>,
+        signals: &Signals<'_>,
+        outcome: &mut Outcome,
+    ) -> Result<(), Error> {
+        let (model, scatterer, wave, shadow) =
+            (self.model, self.scatterer, self.band.wave, self.variant.shadow);
+        let sweep = Sweep { model, scatterer, wave, shadow, system };
+        for (index, receiver) in model.receivers.iter().enumerate() {
+            if let Places::Monostatic(angles) = &receiver.places {
+                let (rows, worst) = sweep.run(index, angles, signals)?;
+                outcome.monostatic.extend(rows);
+                outcome.solved.push(self.solved(worst));
+            }
+        }
+        Ok(())
+    }
+
+    /// Fields at all receivers.
+    fn radiate(
+        &self,
+        system: Option<&System<'_>>,
+        currents: &FacetCurrents,
+        outcome: &mut Outcome,
+    ) -> Result<(), Error> {
+        let Some(system) = system else {
+            return self.receive(&self.first.radiator(Sampling::Tolerance(TOLERANCE)), None, outcome);
+        };
+        let all = Bounced::new(self.scatterer, self.first, currents);
+        self.receive(&system.radiator(&all), Some(&all), outcome)
+    }
+
+    /// `all` are the currents where there is more than one bounce.
+    fn receive(
+        &self,
+        radiator: &Radiator<'_>,
+        all: Option<&Bounced<'_>>,
+        outcome: &mut Outcome,
+    ) -> Result<(), Error> {
+        let edges = self.edges(all)?;
+        for (index, receiver) in self.model.receivers.iter().enumerate() {
+            let refused = |error: WaveError| self.model.refused(&error, Some(receiver));
+            match &receiver.places {
+                Places::Near { points, .. } => {
+                    let scattered = near(radiator, edges.as_ref(), points).map_err(refused)?;
+                    outcome.near.extend(self.rows(index, points, &scattered).map_err(refused)?);
+                }
+                Places::Far(angles) => {
+                    let far = self.far(radiator, all.is_none(), edges.as_ref(), angles).map_err(refused)?;
+                    let rows = far.iter().zip(angles).enumerate();
+                    outcome.far.extend(rows.map(|(i, (far, angles))| self.far_row([index, i], *angles, far)));
+                }
+                Places::Monostatic(_) => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// The far fields in some directions; of one bounce of plane waves in closed form.
+    fn far(
+        &self,
+        radiator: &Radiator<'_>,
+        one_bounce: bool,
+        edges: Option<&EdgeCurrents>,
+        angles: &[[f64; 2]],
+    ) -> Result<Vec<FarField>, WaveError> {
+        let directions = Receiver::directions(angles);
+        let closed = if one_bounce { self.first.linear_phase_far_field(&directions) } else { None };
+        let mut far = closed.unwrap_or_else(|| radiator.far_field(&directions))?;
+        if let Some(edges) = edges {
+            let add = |far: &mut FarField| far.amplitude += edges.far_amplitude(far.direction);
+            far.par_iter_mut().for_each(add);
+        }
+        Ok(far)
+    }
+
+    /// The edge currents, where they are asked for; the magnetic form has none.
+    fn edges(&self, all: Option<&Bounced<'_>>) -> Result<Option<EdgeCurrents>, Error> {
+        if !self.model.edge_currents || self.variant.shadow == Shadow::Thesis {
+            return Ok(None);
+        }
+        let lit = EdgeCurrents::new(self.scatterer, self.band.wave, self.sources);
+        let found = lit.and_then(|lit| match all {
+            Some(all) => lit.with_bounces(self.scatterer, all),
+            None => Ok(lit),
+        });
+        found.map(Some).map_err(|error| self.refused(&error))
+    }
+
+    fn rows(&self, receiver: usize, points: &[Vec3], scattered: &[Field]) -> Result<Vec<WaveRow>, WaveError> {
+        let row = |(index, (&p, scattered)): (usize, (&Vec3, &Field))| {
+            let incident = incident(self.sources, &self.band.wave, p);
+            if !incident.is_finite() {
+                return Err(WaveError::InSource { receiver: index });
+            }
+            Ok(WaveRow {
+                receiver,
+                index,
+                position: p.to_array(),
+                frequency: self.band.wave.frequency(),
+                incident: pair(incident.e, incident.h),
+                scattered: pair(scattered.e, scattered.h),
+            })
+        };
+        points.par_iter().zip(scattered).enumerate().map(row).collect()
+    }
+
+    fn far_row(&self, at: [usize; 2], angles: [f64; 2], far: &FarField) -> FarRow {
+        let [theta, phi] = far.polar();
+        let section = |wave: fredholm_waves::source::PlaneWave| {
+            [theta, phi].map(|part| cross_section(part, wave.amplitude()))
+        };
+        FarRow {
+            receiver: at[0],
+            index: at[1],
+            theta_degrees: angles[0],
+            phi_degrees: angles[1],
+            frequency: self.band.wave.frequency(),
+            amplitude: [theta.re, theta.im, phi.re, phi.im],
+            cross_section: self.model.plane_wave.map(section),
+        }
+    }
+}
+
+/// The scattered fields at some points.
+fn near(
+    radiator: &Radiator<'_>,
+    edges: Option<&EdgeCurrents>,
+    points: &[Vec3],
+) -> Result<Vec<Field>, WaveError> {
+    let mut scattered = radiator.fields(points)?;
+    if let Some(edges) = edges {
+        scattered.iter_mut().zip(edges.fields(points)).for_each(|(field, more)| *field += more);
+    }
+    Ok(scattered)
+}
+
+fn current(current: &Current) -> [f64; 12] {
+    pair(current.j, current.m)
+}
+
+/// Components of two vectors, real parts first.
+fn pair(a: ComplexVector, b: ComplexVector) -> [f64; 12] {
+    let part = |i: usize| if i < 6 { a.components()[i / 2] } else { b.components()[i / 2 - 3] };
+    std::array::from_fn(|i| if i.is_multiple_of(2) { part(i).re } else { part(i).im })
+}

@@ -1,0 +1,98 @@
+//! Estimates of the error of the scattered E at the receivers and of their far fields, relative in the L² norm over the
+//! points or directions of each.
+//!
+//! | estimate | from |
+//! |---|---|
+//! | mesh | Richardson: a third of the difference to edges twice as long, for the second order of the rules |
+//! | form | half the difference between the currents 2 n × H and 2 n × E, which a true conductor does not tell apart |
+//!
+//! What is left of the bounces is the residual of the solver, in the run record too.
+
+use std::collections::BTreeMap;
+
+use fredholm_waves::Shadow;
+use fredholm_waves::material::Material;
+use serde_json::{Value, json};
+
+use super::{Model, Outcome};
+
+/// The estimated error at one receiver and frequency.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimated {
+    /// Number of the receiver.
+    pub receiver: usize,
+    /// Frequency, Hz.
+    pub frequency: f64,
+    /// Error relative to the scattered field, L² over the points or directions.
+    pub relative: f64,
+}
+
+impl Estimated {
+    pub(super) fn record(&self, model: &Model) -> Value {
+        let name = model.receivers.get(self.receiver).map(|receiver| &receiver.name);
+        json!({ "receiver": name, "frequency_hz": self.frequency, "relative": self.relative })
+    }
+}
+
+/// Whether the magnetic form is a second opinion: not on itself, nor on what it does not know.
+pub(super) fn has_magnetic_form(model: &Model) -> bool {
+    let conductors = model.bands.iter().flat_map(|band| &band.materials).all(|m| *m == Material::Conductor);
+    conductors && matches!(model.shadow, Shadow::Geometric | Shadow::Radiated)
+}
+
+/// A third of the difference.
+pub(super) fn mesh(fine: &Outcome, coarse: &Outcome) -> Vec<Estimated> {
+    differences(fine, coarse, 1.0 / 3.0)
+}
+
+/// Half the difference.
+pub(super) fn form(electric: &Outcome, magnetic: &Outcome) -> Vec<Estimated> {
+    differences(electric, magnetic, 0.5)
+}
+
+fn differences(ours: &Outcome, others: &Outcome, factor: f64) -> Vec<Estimated> {
+    // Positive frequencies are in the order of their bits.
+    let mut sums: BTreeMap<(u64, usize), [f64; 2]> = BTreeMap::new();
+    let mut add = |(frequency, receiver): (f64, usize), a: &[f64], b: &[f64]| {
+        let sum = sums.entry((frequency.to_bits(), receiver)).or_default();
+        for (a, b) in a.iter().zip(b) {
+            sum[0] += (a - b) * (a - b);
+            sum[1] += a * a;
+        }
+    };
+    for (row, other) in ours.near.iter().zip(&others.near) {
+        add((row.frequency, row.receiver), &row.scattered[..6], &other.scattered[..6]);
+    }
+    for (row, other) in ours.far.iter().zip(&others.far) {
+        add((row.frequency, row.receiver), &row.amplitude, &other.amplitude);
+    }
+    let estimated = |((bits, receiver), [gap, size]): ((u64, usize), [f64; 2])| Estimated {
+        receiver,
+        frequency: f64::from_bits(bits),
+        relative: if size > 0.0 { factor * (gap / size).sqrt() } else { 0.0 },
+    };
+    sums.into_iter().map(estimated).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fredholm_report::WaveRow;
+
+    fn row(receiver: usize, ez: f64) -> WaveRow {
+        let mut scattered = [0.0; 12];
+        scattered[4] = ez;
+        WaveRow { receiver, index: 0, position: [0.0; 3], frequency: 1e9, incident: [9.0; 12], scattered }
+    }
+
+    #[test]
+    fn errors_are_those_of_each_receiver() {
+        let outcome = |near: &[WaveRow]| Outcome { near: near.to_vec(), ..Outcome::default() };
+        let fine = outcome(&[row(0, 3.0), row(0, 4.0), row(1, 2.0)]);
+        let coarse = outcome(&[row(0, 3.0), row(0, 4.0 + 1.5), row(1, 2.0)]);
+        let found = mesh(&fine, &coarse);
+        assert_eq!(found.len(), 2);
+        assert!((found[0].relative - 0.1).abs() < 1e-15 && found[1].relative.abs() < 1e-300);
+        assert!((form(&fine, &coarse)[0].relative - 0.15).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,77 @@
+//! What a run found, before it is written.
+
+use fredholm_linop::StopReason;
+use fredholm_report::{FarRow, MonostaticRow, WaveCurrents, WaveRow};
+use serde_json::{Value, json};
+
+use super::Model;
+use super::estimate::Estimated;
+
+/// How the currents at one frequency were found.
+#[derive(Clone, Debug)]
+pub struct Solved {
+    /// Frequency, Hz.
+    pub frequency: f64,
+    /// Facets of the scatterer.
+    pub facets: usize,
+    /// Relative residual after every iteration; none where bounces are merely summed.
+    pub residuals: Vec<f64>,
+    /// Why the solver stopped, where one did.
+    pub reason: Option<StopReason>,
+}
+
+impl Solved {
+    /// Whether the residual asked for was met, or none was.
+    #[must_use]
+    pub fn converged(&self) -> bool {
+        self.reason.is_none_or(|reason| reason == StopReason::Converged)
+    }
+}
+
+/// All results.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Outcome {
+    pub(crate) near: Vec<WaveRow>,
+    pub(crate) far: Vec<FarRow>,
+    pub(crate) monostatic: Vec<MonostaticRow>,
+    pub(crate) currents: Vec<WaveCurrents>,
+    pub(crate) solved: Vec<Solved>,
+    /// Estimated relative errors of E at the receivers from the mesh.
+    pub(crate) mesh_errors: Vec<Estimated>,
+    /// Half the difference between the electric and the magnetic form: what physical optics itself may be wrong by.
+    pub(crate) form_errors: Vec<Estimated>,
+}
+
+impl Outcome {
+    /// Whether every residual asked for was met.
+    pub(crate) fn converged(&self) -> bool {
+        self.solved.iter().all(Solved::converged)
+    }
+
+    /// The run record.
+    pub(crate) fn record(&self, model: &Model, timings: &[fredholm_report::Timing]) -> Value {
+        let solved = |solved: &Solved| {
+            json!({
+                "frequency_hz": solved.frequency,
+                "wavelength_m": fredholm_waves::medium::SPEED_OF_LIGHT / solved.frequency,
+                "facets": solved.facets,
+                "converged": solved.converged(),
+                "residuals": solved.residuals,
+            })
+        };
+        json!({
+            "format": "fredholm-waves-run/1",
+            "program": concat!("fredholm ", env!("CARGO_PKG_VERSION")),
+            "scene": model.path(),
+            "title": model.title,
+            "shadow": model.shadow.name(),
+            "method": model.method.name(),
+            "edge_currents": model.edge_currents,
+            "receivers": model.receivers.iter().map(|receiver| &receiver.name).collect::<Vec<_>>(),
+            "estimated_mesh_errors": self.mesh_errors.iter().map(|e| e.record(model)).collect::<Vec<_>>(),
+            "estimated_form_errors": self.form_errors.iter().map(|e| e.record(model)).collect::<Vec<_>>(),
+            "frequencies": self.solved.iter().map(solved).collect::<Vec<_>>(),
+            "timings": timings,
+        })
+    }
+}

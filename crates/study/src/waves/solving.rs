@@ -1,0 +1,161 @@
+//! From incident currents to all bounces, by the method that the scene asks for.
+
+use fredholm_linop::{MultiVector, SecondKind, Solver, Stop, StopReason};
+use fredholm_waves::{
+    Bounces, Complex64, Discretisation, NystromCoupling, Scatterer, Shadow, System, Wave, WaveError,
+};
+
+use super::Model;
+use super::memory::COUPLED;
+use super::model::Method;
+use crate::error::{Error, ErrorKind};
+use crate::memory::Plan;
+use crate::prediction::of_threads;
+use crate::stages::Signals;
+
+/// Solvers that ask for products only: where the matrix does not fit, they compute it anew each time.
+const PRODUCTS_ONLY: [&str; 4] = ["neumann", "gmres", "bicgstab", "anderson"];
+
+pub(super) type Vectors = MultiVector<Complex64>;
+
+/// The currents of all bounces, a lane an incident wave.
+pub(super) struct Solution {
+    pub(super) x: Vectors,
+    /// Relative residual of the worst lane, from the start on.
+    pub(super) residuals: Vec<f64>,
+    pub(super) reason: Option<StopReason>,
+}
+
+/// The system of a model's method; none where one bounce is all.
+pub(super) fn system<'a>(
+    model: &Model,
+    scatterer: &'a Scatterer,
+    (wave, shadow): (Wave, Shadow),
+    signals: &Signals<'_>,
+) -> Result<Option<System<'a>>, Error> {
+    match &model.method {
+        Method::Bounces(1) => Ok(None),
+        Method::Bounces(_) => lazy(model, scatterer, (wave, shadow), signals).map(Some),
+        Method::Solver { solver, .. } => {
+            coupled(model, scatterer, (wave, shadow), &[&**solver], signals).map(Some)
+        }
+    }
+}
+
+/// The system whose products are computed anew each time.
+pub(super) fn lazy<'a>(
+    model: &Model,
+    scatterer: &'a Scatterer,
+    (wave, shadow): (Wave, Shadow),
+    signals: &Signals<'_>,
+) -> Result<System<'a>, Error> {
+    let help = "mesh coarser, or ask for one bounce";
+    let plan = coupling(model.plan.clone(), scatterer, shadow);
+    plan.admit(model.limit, help)?;
+    plan.tell(model.limit, signals.watch);
+    System::lazy(scatterer, wave, shadow).map_err(|error: WaveError| model.refused(&error, None))
+}
+
+/// The system for these solvers: stored where it fits, else evaluated anew for those that ask for products only.
+pub(super) fn coupled<'a>(
+    model: &Model,
+    scatterer: &'a Scatterer,
+    (wave, shadow): (Wave, Shadow),
+    solvers: &[&dyn Solver<Complex64>],
+    signals: &Signals<'_>,
+) -> Result<System<'a>, Error> {
+    let unknowns = System::unknowns(scatterer);
+    let solver = solvers.iter().map(|solver| solver.bytes(unknowns, 1)).max().unwrap_or(0);
+    let addresses = solvers.iter().map(|solver| solver.addresses()).max().unwrap_or(0);
+    let plan = coupling(model.plan.clone(), scatterer, shadow)
+        .hold(format!("the coupling of {unknowns} unknowns"), System::bytes(scatterer).into())
+        .hold("the solver", solver.into())
+        .aside(of_threads(addresses));
+    if !plan.fits(model.limit) && solvers.iter().all(|solver| PRODUCTS_ONLY.contains(&solver.name())) {
+        return lazy(model, scatterer, (wave, shadow), signals);
+    }
+    let help = format!("mesh coarser, or take a solver that needs no matrix: {}", PRODUCTS_ONLY.join(", "));
+    plan.admit(model.limit, &help)?;
+    plan.tell(model.limit, signals.watch);
+    System::stored(scatterer, wave, shadow, Discretisation::Nystrom)
+        .map_err(|error: WaveError| model.refused(&error, None))
+}
+
+/// What a coupling takes besides its matrix.
+fn coupling(plan: Plan, scatterer: &Scatterer, shadow: Shadow) -> Plan {
+    let facets = scatterer.facets().len() as u128;
+    plan.hold(
+        "what is near and in view",
+        facets * COUPLED + u128::from(NystromCoupling::bytes(scatterer, shadow)),
+    )
+}
+
+/// Solves for all lanes of b by a model's method.
+pub(super) fn solution(
+    method: &Method,
+    system: &System<'_>,
+    b: &Vectors,
+    signals: &Signals<'_>,
+) -> Result<Solution, Error> {
+    match method {
+        Method::Bounces(count) => bounced(system, b, *count, signals),
+        Method::Solver { solver, tolerance, max_iterations } => {
+            let stop = Stop { tolerance: *tolerance, max_iterations: *max_iterations };
+            solved(system, b, (&**solver, &stop), signals)
+        }
+    }
+}
+
+/// The currents after so many bounces, and the residual after each.
+pub(super) fn bounced(
+    system: &System<'_>,
+    b: &Vectors,
+    count: usize,
+    signals: &Signals<'_>,
+) -> Result<Solution, Error> {
+    let sum = Bounces::sum(system.coupling(), b, count, &mut || signals.watch.go_on())
+        .ok_or_else(Error::cancelled)?;
+    let residuals: Vec<f64> = sum.residuals.iter().map(|lanes| worst(lanes)).collect();
+    // A next bounce stronger than what comes from the sources: the sum is no approximation of anything.
+    match residuals.last() {
+        Some(&last) if count > 1 && (last > 1.0 || last.is_nan()) => {
+            Err(diverged("the sum of bounces", &residuals))
+        }
+        _ => Ok(Solution { x: sum.x, residuals, reason: None }),
+    }
+}
+
+fn solved(
+    system: &System<'_>,
+    b: &Vectors,
+    (solver, stop): (&dyn Solver<Complex64>, &Stop),
+    signals: &Signals<'_>,
+) -> Result<Solution, Error> {
+    let one = Vectors::from_fn(b.dim(), b.lanes(), |_, _| Complex64::ONE);
+    let a = SecondKind::new(system.coupling(), one).map_err(|error| Error::new(ErrorKind::Input, error))?;
+    let mut x = Vectors::zeros(b.dim(), b.lanes());
+    let report = solver
+        .solve(&a, b, &mut x, stop, &mut signals.clone())
+        .map_err(|error| Error::new(ErrorKind::Input, error))?;
+    let residuals: Vec<f64> = report.history.iter().map(|entry| worst(&entry.residuals)).collect();
+    match report.reason {
+        StopReason::Interrupted => Err(Error::cancelled()),
+        StopReason::Diverged => Err(diverged(solver.name(), &residuals)),
+        reason => Ok(Solution { x, residuals, reason: Some(reason) }),
+    }
+}
+
+fn worst(lanes: &[f64]) -> f64 {
+    lanes.iter().copied().fold(0.0, |worst, lane| if lane > worst || lane.is_nan() { lane } else { worst })
+}
+
+fn diverged(solver: &str, residuals: &[f64]) -> Error {
+    let reached = residuals.iter().copied().fold(f64::INFINITY, f64::min);
+    let text = format!(
+        "{solver} diverges after {} iterations (best residual {reached:.1e}); nothing was written",
+        residuals.len().saturating_sub(1)
+    );
+    let help = "a closed body near a resonance or a cavity has no convergent series of bounces; take another \
+                solver";
+    Error::new(ErrorKind::NotConverged, text).with_help(help)
+}

@@ -1,0 +1,182 @@
+//! Scenes of waves, from the file to the written results.
+
+use std::path::Path;
+
+use fredholm_linop::{OptionError, Stop, Watch};
+use fredholm_report::{FarRow, MonostaticRow, WaveComparison, WaveRow, write_wave_comparison};
+
+use super::estimate::Estimated;
+use super::model::Model;
+use super::record::{Outcome, Solved};
+use super::{files, registry};
+use crate::compare::written_out;
+use crate::error::Error;
+use crate::size::Bytes;
+use crate::solve::{Ended, report_failure};
+use crate::stages::Stages;
+use crate::trial::failed;
+
+/// What is asked of [`waves`] and [`compare_waves`]; all else says the scene.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct WaveOptions {
+    /// Memory allowed; most of what the machine has left.
+    pub memory: Option<Bytes>,
+}
+
+/// What is asked of [`compare_waves`] besides.
+#[derive(Clone, Debug)]
+pub struct WaveCompareOptions {
+    /// Solvers with their options, such as `gmres:restart=100`; `all` stands for all of them.
+    pub solvers: Vec<String>,
+    /// Relative residual to reach.
+    pub tolerance: f64,
+    /// Iterations allowed.
+    pub max_iterations: u32,
+}
+
+impl Default for WaveCompareOptions {
+    /// All solvers, to a residual of 1e-6 in at most 1000 iterations.
+    fn default() -> Self {
+        Self { solvers: vec!["all".to_owned()], tolerance: 1e-6, max_iterations: 1000 }
+    }
+}
+
+/// The fields of a scene of waves.
+pub struct SolvedWaves<'a> {
+    model: Model,
+    outcome: Outcome,
+    stages: Stages<'a>,
+}
+
+/// Computes the fields of a scene of waves, whose file is given.
+///
+/// # Errors
+/// What is wrong with the scene, with line and column; [`Resources`](crate::ErrorKind::Resources)
+/// before memory is taken that the limit does not allow; [`NotConverged`](crate::ErrorKind::NotConverged)
+/// for a method that diverges; [`Interrupted`](crate::ErrorKind::Interrupted) for a run that was
+/// cancelled.
+pub fn waves<'a>(
+    scene: impl AsRef<Path>,
+    asked: &WaveOptions,
+    watch: &'a dyn Watch,
+) -> Result<SolvedWaves<'a>, Error> {
+    let mut stages = Stages::new(watch);
+    let model = load(scene.as_ref(), asked, &mut stages)?;
+    let outcome = super::compute(&model, &mut stages)?;
+    stages.begin_saving()?;
+    Ok(SolvedWaves { model, outcome, stages })
+}
+
+/// Runs solvers on the coupling of a scene of waves, whose file is given, and writes how they did into
+/// a folder.
+///
+/// # Errors
+/// As [`waves`].
+pub fn compare_waves(
+    scene: impl AsRef<Path>,
+    asked: &WaveOptions,
+    solvers: &WaveCompareOptions,
+    folder: impl AsRef<Path>,
+    watch: &dyn Watch,
+) -> Result<(WaveComparison, Ended), Error> {
+    let mut stages = Stages::new(watch);
+    let model = load(scene.as_ref(), asked, &mut stages)?;
+    let stop = Stop { tolerance: solvers.tolerance, max_iterations: solvers.max_iterations as usize };
+    let names = written_out(&solvers.solvers, &registry::names());
+    let record = super::compare(&model, &names, &stop, &mut stages)?;
+    stages.begin_saving()?;
+    write_wave_comparison(folder.as_ref(), &record).map_err(report_failure)?;
+    let any = record.cases.iter().any(|case| case.runs.iter().any(failed));
+    Ok((record, if any { Ended::NotConverged } else { Ended::Done }))
+}
+
+/// Fails where a text such as `gmres:restart=100` names no solver of complex systems with its options.
+///
+/// # Errors
+/// What is wrong with the name or the options.
+pub fn check_wave_solver(text: &str) -> Result<(), OptionError> {
+    registry::build(text).map(drop)
+}
+
+fn load(scene: &Path, asked: &WaveOptions, stages: &mut Stages) -> Result<Model, Error> {
+    let model = stages.run("scene", || Model::load(scene, asked.memory))?;
+    stages.tell(&model.plan, model.limit);
+    Ok(model)
+}
+
+impl SolvedWaves<'_> {
+    /// The fields at the points of the receivers, V/m and A/m.
+    #[must_use]
+    pub fn near(&self) -> &[WaveRow] {
+        &self.outcome.near
+    }
+
+    /// The far fields in the directions of the receivers.
+    #[must_use]
+    pub fn far(&self) -> &[FarRow] {
+        &self.outcome.far
+    }
+
+    /// What the waves of monostatic receivers send back.
+    #[must_use]
+    pub fn monostatic(&self) -> &[MonostaticRow] {
+        &self.outcome.monostatic
+    }
+
+    /// The name of a receiver by its number, as rows have it.
+    #[must_use]
+    pub fn receiver(&self, number: usize) -> Option<&str> {
+        self.model.receivers.get(number).map(|receiver| receiver.name.as_str())
+    }
+
+    /// The method, as it is reported.
+    #[must_use]
+    pub fn method(&self) -> String {
+        self.model.method.name()
+    }
+
+    /// The treatment of shadows, as scenes name it.
+    #[must_use]
+    pub fn shadow(&self) -> &'static str {
+        self.model.shadow.name()
+    }
+
+    /// How the currents at each frequency were found.
+    #[must_use]
+    pub fn frequencies(&self) -> &[Solved] {
+        &self.outcome.solved
+    }
+
+    /// Estimated errors of the scattered fields at the receivers from the mesh, where the scene asks
+    /// for estimates.
+    #[must_use]
+    pub fn mesh_errors(&self) -> &[Estimated] {
+        &self.outcome.mesh_errors
+    }
+
+    /// Half the difference between the electric and the magnetic form of physical optics, where the
+    /// scene asks for estimates.
+    #[must_use]
+    pub fn form_errors(&self) -> &[Estimated] {
+        &self.outcome.form_errors
+    }
+
+    /// How the study ended: whether the residuals asked for were met.
+    #[must_use]
+    pub fn ended(&self) -> Ended {
+        if self.outcome.converged() { Ended::Done } else { Ended::NotConverged }
+    }
+
+    /// Writes all results into a folder, which is made where it does not exist.
+    ///
+    /// # Errors
+    /// [`Files`](crate::ErrorKind::Files) with the file that could not be written; the folder then has
+    /// no `run.json`.
+    pub fn write(&mut self, folder: impl AsRef<Path>) -> Result<(), Error> {
+        let timings = self.stages.timings().to_vec();
+        let Self { model, outcome, stages } = self;
+        stages.run("results", || {
+            files::write(folder.as_ref(), model, outcome, &timings).map_err(report_failure)
+        })
+    }
+}
