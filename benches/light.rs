@@ -13,7 +13,6 @@ use fredholm::mesh::Mesh;
 use fredholm::scene::Scene;
 use fredholm::visibility::Occluders;
 use std::hint::black_box;
-use std::ops::ControlFlow;
 use std::path::Path;
 
 /// A shipped scene with one element a face.
@@ -27,7 +26,7 @@ fn scene(name: &str) -> Scene {
 fn form_factors(mesh: &Mesh) -> Assembled<f64> {
     let occluders = Occluders::new(mesh.occluders()).unwrap();
     let integrator = PairIntegrator::new(mesh.patches(), &occluders, 1e-3);
-    assemble(&integrator, &|_, _| ControlFlow::Continue(())).unwrap()
+    assemble(&integrator, &Quiet).unwrap()
 }
 
 fn assembly(c: &mut Criterion) {

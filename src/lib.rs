@@ -32,7 +32,6 @@
 //! use fredholm::linop::{MultiVector, Quiet, SecondKind, Solver, Stop};
 //! use fredholm::scene::Scene;
 //! use fredholm::visibility::Occluders;
-//! use std::ops::ControlFlow;
 //!
 //! let text = r#"
 //!     [materials.wall]
@@ -50,7 +49,7 @@
 //!
 //! let occluders = Occluders::new(mesh.occluders())?;
 //! let integrator = PairIntegrator::new(mesh.patches(), &occluders, 1e-9);
-//! let assembled = assemble::<f64>(&integrator, &|_, _| ControlFlow::Continue(()))?;
+//! let assembled = assemble::<f64>(&integrator, &Quiet)?;
 //!
 //! let extents = mesh.patches().map(|patch| Extent { area: patch.area(), exposed: patch.area() });
 //! let reflectance = MultiVector::from_vec(mesh.len(), 1, scene.reflectance(&mesh))?;

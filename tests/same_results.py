@@ -175,7 +175,7 @@ def comparable(path):
     if path.suffix == ".csv":
         return table_without_times(data.decode())
     if path.name in TIMED_PLOTS:
-        return set(re.sub(r"-?\d+(\.\d+)?(e-?\d+)?", "#", data.decode()).splitlines())
+        return set(re.sub(r"[-⁻]?[\d⁰¹²³⁴⁵⁶⁷⁸⁹]+(\.\d+)?(e-?\d+)?", "#", data.decode()).splitlines())
     return data
 
 

@@ -6,9 +6,9 @@
 
 use fredholm_coupling::form_factor::PairIntegrator;
 use fredholm_coupling::{Assembled, assemble};
+use fredholm_linop::Quiet;
 use fredholm_mesh::{MeshError, Patch, Vec3};
 use fredholm_visibility::Occluders;
-use std::ops::ControlFlow;
 use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -25,8 +25,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .install(|| {
             let occluders = Occluders::new(&patches)?;
             let integrator = PairIntegrator::new(&patches, &occluders, tolerance);
-            assemble(&integrator, &|_, _| ControlFlow::Continue(()))
-                .map_err(Box::<dyn std::error::Error + Send + Sync>::from)
+            assemble(&integrator, &Quiet).map_err(Box::<dyn std::error::Error + Send + Sync>::from)
         })
         .map_err(|e| e as Box<dyn std::error::Error>)?;
     let seconds = start.elapsed().as_secs_f64();

@@ -6,10 +6,10 @@
 
 use fredholm_coupling::form_factor::PairIntegrator;
 use fredholm_coupling::{Assembled, assemble};
+use fredholm_linop::Quiet;
 use fredholm_mesh::{MeshError, Patch, Vec3};
 use fredholm_visibility::Occluders;
 use std::error::Error;
-use std::ops::ControlFlow;
 use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn all(patches: &[Patch], tolerance: f64) -> Result<Assembled<f64>, Box<dyn Error + Send + Sync>> {
     let occluders = Occluders::new(patches)?;
     let integrator = PairIntegrator::new(patches, &occluders, tolerance);
-    Ok(assemble(&integrator, &|_, _| ControlFlow::Continue(()))?)
+    Ok(assemble(&integrator, &Quiet)?)
 }
 
 /// The room in squares of half a metre and the boxes with 2 × 2 patches a face, put in their place, and the numbers of the patches that nothing covers.

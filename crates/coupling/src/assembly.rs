@@ -6,10 +6,10 @@
 use crate::CouplingError;
 use crate::form_factor::{Exchange, Method, PairIntegrator, Workspace};
 use crate::occlusion::{Clusters, Panel, walk};
-use fredholm_linop::{PackedSymmetric, Storage};
+use fredholm_linop::{PackedSymmetric, Steps, Storage, Watch};
 use rayon::prelude::*;
 use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Patches of a panel at most.
 const PANEL: usize = 32;
@@ -18,9 +18,6 @@ const WAITING: usize = 1 << 21;
 /// Panels of a batch at least, and for each thread: enough to keep many threads busy.
 const BATCH: usize = 32;
 const OF_A_THREAD: usize = 4;
-
-/// Called with the pairs done and the pairs in all; can stop the assembly.
-pub type Watch<'a> = dyn Fn(u64, u64) -> ControlFlow<()> + Sync + 'a;
 
 /// How many pairs each method computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -80,7 +77,7 @@ pub struct Assembled<S> {
 /// No memory, or stopped by the watch: then there is no partial result.
 pub fn assemble<S: Storage>(
     integrator: &PairIntegrator,
-    watch: &Watch,
+    watch: &dyn Watch,
 ) -> Result<Assembled<S>, CouplingError> {
     assembly(integrator, watch, Vec::new()).map(|(assembled, _)| assembled)
 }
@@ -91,7 +88,7 @@ pub fn assemble<S: Storage>(
 /// As of [`assemble`].
 pub fn assemble_with_errors<S: Storage>(
     integrator: &PairIntegrator,
-    watch: &Watch,
+    watch: &dyn Watch,
 ) -> Result<(Assembled<S>, PackedSymmetric<f64>), CouplingError> {
     let n = integrator.len();
     let (assembled, errors) = assembly(integrator, watch, zeros(n)?)?;
@@ -101,7 +98,7 @@ pub fn assemble_with_errors<S: Storage>(
 /// `errors` has room for those of all pairs, or none where nobody asks for them.
 fn assembly<S: Storage>(
     integrator: &PairIntegrator,
-    watch: &Watch,
+    watch: &dyn Watch,
     errors: Vec<f64>,
 ) -> Result<(Assembled<S>, Vec<f64>), CouplingError> {
     let n = integrator.len();
@@ -265,20 +262,17 @@ impl Report {
 
 /// Counts pairs over all threads and asks the watch whether to go on.
 struct Progress<'a> {
-    done: AtomicU64,
-    total: u64,
+    steps: Steps<'a>,
     stopped: AtomicBool,
-    watch: &'a Watch<'a>,
 }
 
 impl<'a> Progress<'a> {
-    fn new(total: u64, watch: &'a Watch<'a>) -> Self {
-        Self { done: AtomicU64::new(0), total, stopped: AtomicBool::new(false), watch }
+    fn new(total: u64, watch: &'a dyn Watch) -> Self {
+        Self { steps: Steps::new(watch, total, "pairs"), stopped: AtomicBool::new(false) }
     }
 
     fn advance(&self, pairs: u64) {
-        let done = self.done.fetch_add(pairs, Ordering::Relaxed) + pairs;
-        if (self.watch)(done, self.total).is_break() {
+        if self.steps.add(pairs).is_break() {
             self.stopped.store(true, Ordering::Relaxed);
         }
     }
@@ -289,8 +283,8 @@ impl<'a> Progress<'a> {
 
     fn finish(&self) -> Result<(), CouplingError> {
         if self.stopped.load(Ordering::Relaxed) {
-            let done = self.done.load(Ordering::Relaxed);
-            return Err(CouplingError::Interrupted { done, total: self.total });
+            let (done, total) = (self.steps.done(), self.steps.total());
+            return Err(CouplingError::Interrupted { done, total });
         }
         Ok(())
     }

@@ -21,7 +21,7 @@ mod reciprocity;
 mod residual;
 
 pub use aggregate::aggregate;
-pub use assembly::{Assembled, MethodCounts, Watch, assemble, assemble_with_errors, waiting_bytes};
+pub use assembly::{Assembled, MethodCounts, assemble, assemble_with_errors, waiting_bytes};
 pub use closure::{Closed, ClosureError, enforce_closure};
 pub use emitters::{Emitters, Groups};
 pub use error::CouplingError;

@@ -10,12 +10,11 @@
 use crate::CouplingError;
 use crate::form_factor::{Exchange, Hiding, PairIntegrator, Workspace, point_to_polygon};
 use crate::polygon::{HalfSpace, clip};
-use fredholm_linop::{LinopError, PackedSymmetric};
+use fredholm_linop::{LinopError, PackedSymmetric, Steps, Watch};
 use fredholm_mesh::{Bounds, MeshError, Patch, Vec3};
 use fredholm_visibility::Occluders;
 use fredholm_visibility::body::{Bodies, Body, Screen};
 use rayon::prelude::*;
-use std::ops::ControlFlow;
 
 /// Heights below this part of the distance to the patch count as 0.
 const FLAT: f64 = 1e-12;
@@ -71,14 +70,11 @@ impl Targets<'_> {
     ///
     /// # Errors
     /// [`CouplingError::Interrupted`] where the watch stops it.
-    pub fn factors(
-        &self,
-        receivers: &[Receiver],
-        watch: &(dyn Fn() -> ControlFlow<()> + Sync),
-    ) -> Result<Vec<f64>, CouplingError> {
+    pub fn factors(&self, receivers: &[Receiver], watch: &dyn Watch) -> Result<Vec<f64>, CouplingError> {
         let points: Vec<Vec3> = receivers.iter().map(|receiver| receiver.point).collect();
         let bodies = Bodies::new(self.occluders, self.patches, &points);
-        let row = |receiver: &Receiver| watch().is_continue().then(|| self.row(receiver, &bodies));
+        let steps = Steps::new(watch, receivers.len() as u64, "points");
+        let row = |receiver: &Receiver| steps.begin().is_continue().then(|| self.row(receiver, &bodies));
         let rows: Vec<Option<Vec<f64>>> = receivers.par_iter().map(row).collect();
         let (done, total) = (rows.iter().flatten().count(), rows.len());
         let rows: Option<Vec<Vec<f64>>> = rows.into_iter().collect();
@@ -159,10 +155,11 @@ pub fn sky(bounds: Bounds) -> Result<Vec<Patch>, MeshError> {
 pub fn sky_exchanges(
     integrator: &PairIntegrator,
     surfaces: usize,
-    watch: &(dyn Fn() -> ControlFlow<()> + Sync),
+    watch: &dyn Watch,
 ) -> Result<Vec<[f64; 2]>, CouplingError> {
+    let steps = Steps::new(watch, surfaces as u64, "elements");
     let sum = |work: &mut Workspace, i: usize| {
-        watch().is_continue().then(|| {
+        steps.begin().is_continue().then(|| {
             let parts = (surfaces..integrator.len()).map(|k| integrator.exchange_from(i, k, work));
             parts.fold([0.0; 2], |[value, error], part: Exchange| [value + part.value, error + part.error])
         })
@@ -189,7 +186,18 @@ pub fn with_sky(matrix: &PackedSymmetric<f64>, sky: &[f64]) -> Result<PackedSymm
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fredholm_linop::Quiet;
     use fredholm_mesh::{Cutting, Lines, Mesh, MeshBuilder, Shape};
+    use std::ops::ControlFlow;
+
+    /// Whoever wants nothing.
+    struct Cancelled;
+
+    impl Watch for Cancelled {
+        fn go_on(&self) -> ControlFlow<()> {
+            ControlFlow::Break(())
+        }
+    }
 
     fn room(boxes: &[[Vec3; 2]]) -> Mesh {
         let mut builder = MeshBuilder::default();
@@ -207,7 +215,7 @@ mod tests {
         let patches: Vec<&Patch> = mesh.patches().chain(more).collect();
         let row_of: Vec<usize> = (0..patches.len()).map(|i| usize::from(i >= mesh.len())).collect();
         let targets = Targets { patches: &patches, row_of: &row_of, rows: 2, occluders: &occluders };
-        targets.factors(receivers, &|| ControlFlow::Continue(())).unwrap()
+        targets.factors(receivers, &Quiet).unwrap()
     }
 
     fn receivers() -> Vec<Receiver> {
@@ -277,12 +285,12 @@ mod tests {
         let sky = sky(room.bounds().unwrap()).unwrap();
         let occluders = Occluders::new(&walls).unwrap();
         let integrator = PairIntegrator::new(walls.iter().chain(&sky), &occluders, 1e-6);
-        let found = sky_exchanges(&integrator, walls.len(), &|| ControlFlow::Continue(())).unwrap();
+        let found = sky_exchanges(&integrator, walls.len(), &Quiet).unwrap();
         for (wall, [value, error]) in walls.iter().zip(&found) {
             let exact = if wall.normal().z > 0.5 { 0.199_824_895_698_387_5 } else { 0.200_043_776_075_403_1 };
             assert!((value - exact).abs() < 1e-5 && *error < 2e-5, "{:e} {error:e}", value - exact);
         }
-        let stopped = sky_exchanges(&integrator, walls.len(), &|| ControlFlow::Break(()));
+        let stopped = sky_exchanges(&integrator, walls.len(), &Cancelled);
         assert_eq!(stopped, Err(CouplingError::Interrupted { done: 0, total: 5 }));
     }
 
@@ -313,7 +321,7 @@ mod tests {
         let patches: Vec<&Patch> = mesh.patches().collect();
         let row_of = vec![0; patches.len()];
         let targets = Targets { patches: &patches, row_of: &row_of, rows: 1, occluders: &occluders };
-        let result = targets.factors(&receivers(), &|| ControlFlow::Break(()));
+        let result = targets.factors(&receivers(), &Cancelled);
         assert_eq!(result, Err(CouplingError::Interrupted { done: 0, total: 16 }));
     }
 }

@@ -18,12 +18,11 @@
 use crate::CouplingError;
 use crate::radiosity::Extent;
 use crate::receiver::{Receiver, Targets};
-use fredholm_linop::MultiVector;
+use fredholm_linop::{MultiVector, Watch};
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::Occluders;
 use fredholm_visibility::body::Bodies;
 use rayon::prelude::*;
-use std::ops::ControlFlow;
 
 /// Interleaved sequences of elements that are drawn.
 pub const DRAWS: usize = 4;
@@ -124,7 +123,7 @@ impl Constants<'_> {
     ///
     /// # Errors
     /// [`CouplingError::Interrupted`] where the watch stops it.
-    pub fn residual(&self, watch: &(dyn Fn() -> ControlFlow<()> + Sync)) -> Result<Residual, CouplingError> {
+    pub fn residual(&self, watch: &dyn Watch) -> Result<Residual, CouplingError> {
         let (n, bands) = (self.patches.len(), self.irradiance.lanes());
         let bodies = Bodies::new(self.occluders, self.patches, &[]);
         let (chosen, grid) = self.choose(points(n, bodies.as_slice().len()));
@@ -133,7 +132,7 @@ impl Constants<'_> {
         let targets = Targets { patches: self.patches, row_of: &rows, rows: n, occluders: self.occluders };
         let one = |chosen: &Chosen| {
             let places = chosen.places(grid);
-            watch().is_continue().then(|| self.spread(chosen.element, &places, &targets, &bodies))
+            watch.go_on().is_continue().then(|| self.spread(chosen.element, &places, &targets, &bodies))
         };
         let mut power = MultiVector::zeros(n, draws * bands);
         // The sums are in the order of the elements, however many there are at a time.
@@ -299,7 +298,18 @@ mod tests {
     use super::*;
     use crate::assembly::assemble;
     use crate::form_factor::PairIntegrator;
+    use fredholm_linop::Quiet;
     use fredholm_mesh::{Cutting, Lines, Mesh, MeshBuilder, Shape};
+    use std::ops::ControlFlow;
+
+    /// Whoever wants nothing.
+    struct Cancelled;
+
+    impl Watch for Cancelled {
+        fn go_on(&self) -> ControlFlow<()> {
+            ControlFlow::Break(())
+        }
+    }
 
     fn room(n: usize) -> Mesh {
         let mut builder = MeshBuilder::default();
@@ -324,7 +334,7 @@ mod tests {
             let mesh = room(n);
             let occluders = Occluders::new(mesh.occluders()).unwrap();
             let pairs = PairIntegrator::new(mesh.patches(), &occluders, 1e-7);
-            let matrix = assemble::<f64>(&pairs, &|_, _| ControlFlow::Continue(())).unwrap().matrix;
+            let matrix = assemble::<f64>(&pairs, &Quiet).unwrap().matrix;
             let sizes: Vec<Extent> =
                 mesh.patches().map(|p| Extent { area: p.area(), exposed: p.area() }).collect();
             let (count, rho) = (mesh.len(), 0.9);
@@ -354,7 +364,7 @@ mod tests {
                 radiosity: &self.radiosity,
                 irradiance: &self.irradiance,
             };
-            constants.residual(&|| ControlFlow::Continue(())).unwrap()
+            constants.residual(&Quiet).unwrap()
         }
     }
 
@@ -391,8 +401,8 @@ mod tests {
         let stood_for: f64 = chosen.iter().map(|one| one.times * solved.sizes[one.element].area).sum();
         let area: f64 = solved.sizes.iter().map(|size| size.area).sum();
         assert!((stood_for / area - 1.0).abs() < 0.05, "{stood_for} {area}");
-        assert_eq!(constants.residual(&|| ControlFlow::Continue(())).unwrap().draws, DRAWS);
-        let stopped = constants.residual(&|| ControlFlow::Break(()));
+        assert_eq!(constants.residual(&Quiet).unwrap().draws, DRAWS);
+        let stopped = constants.residual(&Cancelled);
         assert!(matches!(stopped, Err(CouplingError::Interrupted { done: 0, .. })));
     }
 

@@ -7,10 +7,11 @@ mod common;
 
 use common::{patch, v, with_integrator};
 use fredholm_coupling::{Assembled, Emitters, Groups, assemble};
-use fredholm_linop::Columns;
+use fredholm_linop::{Columns, Quiet, Watch};
 use fredholm_mesh::{Mesh, MeshBuilder, Patch, Vec3};
 use fredholm_visibility::Occluders;
 use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// An n × n grid on each wall of a box seen from inside (or outside).
 fn add_box(builder: &mut MeshBuilder, min: Vec3, max: Vec3, n: usize, inward: bool) {
@@ -41,7 +42,7 @@ fn grid(whole: &Patch, n: usize) -> Vec<Patch> {
 
 fn solve(mesh: &Mesh, tolerance: f64) -> (Assembled<f64>, f64) {
     let assembled: Assembled<f64> =
-        with_integrator(mesh, tolerance, |pairs| assemble(pairs, &|_, _| ControlFlow::Continue(())).unwrap());
+        with_integrator(mesh, tolerance, |pairs| assemble(pairs, &Quiet).unwrap());
     let sums = assembled.matrix.row_sums();
     let closure = sums.iter().zip(mesh.patches()).map(|(sum, patch)| sum / patch.area() - 1.0);
     let worst = closure.fold(0.0, |worst: f64, x| worst.max(x.abs()));
@@ -94,14 +95,24 @@ fn the_number_of_threads_changes_no_bit() {
     }
 }
 
+/// Has had enough after a tenth of the way.
+#[derive(Default)]
+struct Impatient(AtomicBool);
+
+impl Watch for Impatient {
+    fn advance(&self, share: f64, _: &dyn Fn() -> String) {
+        self.0.fetch_or(share > 0.1, Ordering::Relaxed);
+    }
+
+    fn go_on(&self) -> ControlFlow<()> {
+        if self.0.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
 #[test]
 fn the_watch_stops_the_assembly() {
     let mesh = cube(Vec3::ZERO, 1.0, 6);
-    let stopped = with_integrator(&mesh, 1e-6, |pairs| {
-        assemble::<f64>(pairs, &|done, _| {
-            if done > 1000 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-        })
-    });
+    let stopped = with_integrator(&mesh, 1e-6, |pairs| assemble::<f64>(pairs, &Impatient::default()));
     assert!(matches!(stopped, Err(fredholm_coupling::CouplingError::Interrupted { .. })));
 }
 
@@ -158,7 +169,7 @@ fn columns_of_groups_are_sums_of_columns_of_the_matrix() {
     let elements: Vec<&Patch> = mesh.patches().collect();
     let tolerance = 1e-4;
     with_integrator(&mesh, tolerance, |integrator| {
-        let assembled: Assembled<f64> = assemble(integrator, &|_, _| ControlFlow::Continue(())).unwrap();
+        let assembled: Assembled<f64> = assemble(integrator, &Quiet).unwrap();
         let occluders = Occluders::new(mesh.occluders()).unwrap();
         let groups = Groups::new(&elements, &vec![0; elements.len()], occluders.tolerance());
         let emitters = Emitters::new(elements.clone(), &groups, &occluders, tolerance);

@@ -8,11 +8,10 @@ mod common;
 use common::{patch, v};
 use fredholm_coupling::assemble;
 use fredholm_coupling::form_factor::PairIntegrator;
-use fredholm_linop::PackedSymmetric;
+use fredholm_linop::{PackedSymmetric, Quiet};
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::Occluders;
 use std::f64::consts::{PI, TAU};
-use std::ops::ControlFlow;
 
 /// An n × n grid on each side of a parallelepiped, seen from inside or outside. Corners that meet have the same bits.
 fn sides(corner: Vec3, edges: [Vec3; 3], n: usize, inward: bool) -> Vec<Patch> {
@@ -83,7 +82,7 @@ fn moved(patches: &[Patch], scale: f64, shift: Vec3) -> Vec<Patch> {
 fn exchanges(patches: &[Patch], tolerance: f64) -> PackedSymmetric<f64> {
     let occluders = Occluders::new(patches).unwrap();
     let integrator = PairIntegrator::new(patches, &occluders, tolerance);
-    assemble(&integrator, &|_, _| ControlFlow::Continue(())).unwrap().matrix
+    assemble(&integrator, &Quiet).unwrap().matrix
 }
 
 /// The k-th place of a fixed random order, by the linear congruential generator of Numerical Recipes.

@@ -7,7 +7,7 @@
 use crate::surface::Rules;
 use crate::transfer::irradiance_at;
 use crate::{ElementMeans, Lit, Site};
-use fredholm_linop::MultiVector;
+use fredholm_linop::{MultiVector, Watch};
 use rayon::prelude::*;
 
 /// Points a direction, beyond the degree.
@@ -49,12 +49,12 @@ impl Lit<'_> {
         self.assessment(&elements.into_par_iter().map(integrals).collect::<Vec<_>>())
     }
 
-    /// The same while `go_on` says so, which is asked before each element from any thread; `None` where it did not.
+    /// The same while `watch` says so, which is asked before each element from any thread; `None` where it did not.
     #[must_use]
-    pub fn assess_while(&self, go_on: &(dyn Fn() -> bool + Sync)) -> Option<Assessment> {
+    pub fn assess_while(&self, watch: &dyn Watch) -> Option<Assessment> {
         let integrals = self.integrator();
         let elements = 0..self.system.space().surface().len();
-        let wanted = |i| go_on().then(|| integrals(i));
+        let wanted = |i| watch.go_on().is_continue().then(|| integrals(i));
         let found: Option<Vec<_>> = elements.into_par_iter().map(wanted).collect();
         found.map(|found| self.assessment(&found))
     }

@@ -42,4 +42,4 @@ pub use registry::{discretisation, discretisations};
 pub use space::Space;
 pub use surface::{Rules, Surface};
 pub use system::System;
-pub use transfer::{Exchanges, FlatLambert, Kernel, Sink, SmoothTransfer, Transfer, Watch};
+pub use transfer::{Exchanges, FlatLambert, Kernel, Sink, SmoothTransfer, Transfer};

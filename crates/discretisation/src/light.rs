@@ -6,8 +6,8 @@
 
 use crate::surface::Rules;
 use crate::transfer::irradiance_at;
-use crate::{Discretisation, DiscretisationError, Equation, FlatLambert, Site, System, Watch};
-use fredholm_linop::{MultiVector, Observer, Report, Solver, Stop};
+use crate::{Discretisation, DiscretisationError, Equation, FlatLambert, Site, System};
+use fredholm_linop::{MultiVector, Observer, Report, Solver, Stop, Watch};
 use fredholm_mesh::Mesh;
 use fredholm_visibility::Occluders;
 
@@ -45,7 +45,7 @@ impl<'a> Light<'a> {
 
     /// Tells `watch` of the progress of an assembly.
     #[must_use]
-    pub fn watched(mut self, watch: Watch<'a>) -> Self {
+    pub fn watched(mut self, watch: &'a dyn Watch) -> Self {
         self.transfer = self.transfer.watched(watch);
         self
     }

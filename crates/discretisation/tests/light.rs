@@ -15,7 +15,6 @@ use fredholm_linop::{MultiVector, Quiet, SecondKind, Solver, Stop};
 use fredholm_mesh::{Cutting, Lines, Mesh, MeshBuilder, Patch, Shape, Vec3};
 use fredholm_quadrature::{Goal, adaptive_quad, tensor_quad};
 use fredholm_visibility::Occluders;
-use std::ops::ControlFlow;
 
 const STOP: Stop = Stop { tolerance: 1e-13, max_iterations: 10_000 };
 
@@ -69,7 +68,7 @@ fn constants_by_galerkin_are_the_radiosity_system_with_its_buried_parts() {
     let (reflectance, exitance) = materials(&mesh);
     let patches: Vec<Patch> = mesh.patches().copied().collect();
     let pairs = PairIntegrator::new(&patches, &occluders, 1e-3);
-    let assembled: Assembled<f64> = assemble(&pairs, &|_, _| ControlFlow::Continue(())).unwrap();
+    let assembled: Assembled<f64> = assemble(&pairs, &Quiet).unwrap();
     let shares = exposed_shares(&mesh.patches().collect::<Vec<_>>(), &Occluders::new(&patches).unwrap());
     assert!(shares.iter().any(|&w| w > 0.0 && w < 1.0), "part of the floor is buried");
     let sizes = extents(&mesh.patches().collect::<Vec<_>>(), &shares, &assembled.matrix.row_sums());

@@ -6,10 +6,9 @@ mod common;
 use common::Bench;
 use fredholm_coupling::{Receiver, Targets};
 use fredholm_hierarchical::{Gather, Leaves, Solution, Tree};
-use fredholm_linop::MultiVector;
+use fredholm_linop::{MultiVector, Quiet};
 use fredholm_mesh::{Patch, Vec3};
 use std::f64::consts::TAU;
-use std::ops::ControlFlow;
 
 /// Exposed areas of the leaves, m².
 fn exposed(solution: &Solution) -> Vec<f64> {
@@ -102,7 +101,7 @@ fn whole_nodes_stand_for_their_leaves_within_the_error_allowed() {
     let targets =
         Targets { patches: &patches, row_of: &row_of, rows: patches.len(), occluders: &bench.occluders };
     let list: Vec<Receiver> = points.iter().map(|(_, receiver)| *receiver).collect();
-    let factors = targets.factors(&list, &|| ControlFlow::Continue(())).unwrap();
+    let factors = targets.factors(&list, &Quiet).unwrap();
     let [all, some] =
         [0.0, 1e-3].map(|share| gathered(&bench, &solution, &solution.radiosity, &points, share));
     let mut squares = 0.0;
@@ -196,7 +195,7 @@ fn behind_many_bodies_the_strong_senders_are_cut_and_the_weak_ones_sampled() {
     let patches: Vec<&Patch> = bench.mesh.patches().collect();
     let row_of: Vec<usize> = (0..n).map(|i| i.min(3)).collect();
     let targets = Targets { patches: &patches, row_of: &row_of, rows: 4, occluders: &bench.occluders };
-    let factors = targets.factors(&points, &|| ControlFlow::Continue(())).unwrap();
+    let factors = targets.factors(&points, &Quiet).unwrap();
     let mut hidden = 0.0;
     for (row, exact) in found.rows().zip(factors.chunks(4)) {
         assert!((row[0] - 5.0 * exact[1]).abs() < 1e-12, "{row:?} {exact:?}");

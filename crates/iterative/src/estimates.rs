@@ -4,9 +4,8 @@
 use crate::GaussSeidel;
 use crate::core::{Metric, lanczos};
 use fredholm_linop::{
-    Context, Halt, LinearOperator, MultiVector, Scalar, Scheme, SecondKind, SolveError, Work,
+    Context, Halt, LinearOperator, MultiVector, Scalar, Scheme, SecondKind, SolveError, Watch, Work,
 };
-use std::ops::ControlFlow;
 
 /// Estimated eigenvalues of A per lane, ascending: those of the Lanczos process in the inner product of H = D⁻¹ after `steps` steps with
 /// whole orthogonalisation. The extreme ones are the best. Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., § 10.1.
@@ -15,26 +14,26 @@ use std::ops::ControlFlow;
 ///
 /// ```
 /// use fredholm_iterative::ritz_values;
-/// use fredholm_linop::{MultiVector, PackedSymmetric, SecondKind};
+/// use fredholm_linop::{MultiVector, PackedSymmetric, Quiet, SecondKind};
 ///
 /// let coupling = PackedSymmetric::new(2, vec![0.0, 0.5, 0.0])?;
 /// let a = SecondKind::new(&coupling, MultiVector::from_vec(2, 1, vec![1.0, 1.0])?)?;
-/// let values = ritz_values(&a, 2, &mut || std::ops::ControlFlow::Continue(()))?;
+/// let values = ritz_values(&a, 2, &Quiet)?;
 /// assert!((values[0][0] - 0.5).abs() < 1e-15 && (values[0][1] - 1.5).abs() < 1e-15);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
 /// # Errors
-/// [`SolveError::Unsuitable`] where A is not known to be self-adjoint in that product. Where `poll` breaks, what was found by then is lost and
+/// [`SolveError::Unsuitable`] where A is not known to be self-adjoint in that product. Where `watch` breaks, what was found by then is lost and
 /// the lists are empty.
 pub fn ritz_values<T: Scalar>(
     a: &SecondKind<'_, T>,
     steps: usize,
-    poll: &mut dyn FnMut() -> ControlFlow<()>,
+    watch: &dyn Watch,
 ) -> Result<Vec<Vec<f64>>, SolveError> {
     let metric = Metric::new("the Lanczos process", a)?;
     let mut work = Work::default();
-    match lanczos(a, &metric, steps, true, &mut Context::new(&mut work, poll)) {
+    match lanczos(a, &metric, steps, true, &mut Context::new(&mut work, &mut || watch.go_on())) {
         Ok(found) => {
             Ok(found.iter().map(|t| (0..t.diagonal.len()).map(|k| t.eigenvalue(k)).collect()).collect())
         }
@@ -47,27 +46,28 @@ pub fn ritz_values<T: Scalar>(
 ///
 /// ```
 /// use fredholm_iterative::gauss_seidel_radius;
-/// use fredholm_linop::{MultiVector, PackedSymmetric, SecondKind};
+/// use fredholm_linop::{MultiVector, PackedSymmetric, Quiet, SecondKind};
 ///
 /// let coupling = PackedSymmetric::new(2, vec![0.0, 0.5, 0.0])?;
 /// let a = SecondKind::new(&coupling, MultiVector::from_vec(2, 1, vec![1.0, 1.0])?)?;
-/// let radius = gauss_seidel_radius(&a, 5, &mut || std::ops::ControlFlow::Continue(()))?;
+/// let radius = gauss_seidel_radius(&a, 5, &Quiet)?;
 /// assert!((radius[0] - 0.25).abs() < 1e-15);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
 /// # Errors
-/// [`SolveError::Unsuitable`] where a diagonal entry is 0. Where `poll` breaks, the estimates are those found by then.
+/// [`SolveError::Unsuitable`] where a diagonal entry is 0. Where `watch` breaks, the estimates are those found by then.
 pub fn gauss_seidel_radius<T: Scalar>(
     a: &SecondKind<'_, T>,
     sweeps: usize,
-    poll: &mut dyn FnMut() -> ControlFlow<()>,
+    watch: &dyn Watch,
 ) -> Result<Vec<f64>, SolveError> {
     // With b = 0 the iterate is its own error.
     let b = MultiVector::zeros(a.dim(), a.factor().lanes());
     let mut x = MultiVector::from_fn(b.dim(), b.lanes(), |_, _| T::one());
     let mut work = Work::default();
-    let mut context = Context::new(&mut work, poll);
+    let mut poll = || watch.go_on();
+    let mut context = Context::new(&mut work, &mut poll);
     let mut growth = vec![0.0; b.lanes()];
     let mut sweep = || -> Result<(), Halt> {
         let mut iteration = GaussSeidel.begin(a, &b, &mut context)?;

@@ -49,4 +49,4 @@ pub use scheme::{Context, Halt, Iteration, Scheme, solve_by_steps};
 pub use second_kind::SecondKind;
 pub use solver::{Observer, Progress, Quiet, Record, Report, Solver, Stop, StopReason, Work};
 pub use sweep::{Relax, Sweep, Visit};
-pub use watch::Watch;
+pub use watch::{Steps, Watch};

@@ -4,7 +4,9 @@
 //! Every method has a default that does nothing, so that a caller implements what it wants to know.
 //! All of them may be called from any thread.
 
+use std::fmt;
 use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::Quiet;
 
@@ -40,3 +42,88 @@ pub trait Watch: Sync {
 }
 
 impl Watch for Quiet {}
+
+/// Counts the steps of a computation over all its threads, and tells a watch of them.
+pub struct Steps<'a> {
+    watch: &'a dyn Watch,
+    done: AtomicU64,
+    total: u64,
+    things: &'static str,
+}
+
+impl fmt::Debug for Steps<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Steps({} of {} {})", self.done(), self.total, self.things)
+    }
+}
+
+impl<'a> Steps<'a> {
+    /// Counts so many things, such as `pairs`.
+    pub fn new(watch: &'a dyn Watch, total: u64, things: &'static str) -> Self {
+        Self { watch, done: AtomicU64::new(0), total, things }
+    }
+
+    /// Says that `count` more are done, and asks whether to go on.
+    pub fn add(&self, count: u64) -> ControlFlow<()> {
+        let done = self.done.fetch_add(count, Ordering::Relaxed) + count;
+        self.tell(done);
+        self.watch.go_on()
+    }
+
+    /// Says that the next one begins, and asks whether to go on.
+    pub fn begin(&self) -> ControlFlow<()> {
+        self.tell(self.done.fetch_add(1, Ordering::Relaxed));
+        self.watch.go_on()
+    }
+
+    /// How many are done.
+    #[must_use]
+    pub fn done(&self) -> u64 {
+        self.done.load(Ordering::Relaxed)
+    }
+
+    /// How many there are in all.
+    #[must_use]
+    pub fn total(&self) -> u64 {
+        self.total
+    }
+
+    fn tell(&self, done: u64) {
+        let Self { total, things, .. } = self;
+        self.watch.advance(done as f64 / (*total).max(1) as f64, &|| format!("{done} of {total} {things}"));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Mutex;
+
+    /// Keeps what it is told, and breaks after so much.
+    struct Listener(Mutex<Vec<(f64, String)>>, usize);
+
+    impl Watch for Listener {
+        fn advance(&self, share: f64, note: &dyn Fn() -> String) {
+            self.0.lock().unwrap().push((share, note()));
+        }
+
+        fn go_on(&self) -> ControlFlow<()> {
+            if self.0.lock().unwrap().len() < self.1 {
+                ControlFlow::Continue(())
+            } else {
+                ControlFlow::Break(())
+            }
+        }
+    }
+
+    #[test]
+    fn steps_are_counted_told_and_stopped() {
+        let listener = Listener(Mutex::default(), 2);
+        let steps = Steps::new(&listener, 4, "rows");
+        assert!(steps.begin().is_continue() && steps.add(2).is_break());
+        assert_eq!((steps.done(), steps.total()), (3, 4));
+        let told = listener.0.into_inner().unwrap();
+        assert_eq!(told, [(0.0, "0 of 4 rows".to_owned()), (0.75, "3 of 4 rows".to_owned())]);
+        assert!(Quiet.go_on().is_continue() && Quiet.begin_saving().is_continue());
+    }
+}

@@ -8,6 +8,7 @@ mod common;
 use common::{mesh, run, single};
 use fredholm_coupling::assemble;
 use fredholm_coupling::form_factor::PairIntegrator;
+use fredholm_linop::Quiet;
 use fredholm_mesh::{Lines, Mesh, Patch, Shape, Vec3};
 use fredholm_montecarlo::density::{Cosine, DirectionDensity, UniformHemisphere};
 use fredholm_montecarlo::light::{Estimator, PathTracing, StochasticJacobi, Switches};
@@ -15,7 +16,6 @@ use fredholm_montecarlo::philox::philox;
 use fredholm_montecarlo::statistics::{Comparison, Correction, Crosscheck, crosscheck};
 use fredholm_montecarlo::{Enclosure, State};
 use fredholm_visibility::Occluders;
-use std::ops::ControlFlow;
 
 const SIGNIFICANCE: f64 = 0.01;
 const TOLERANCE: f64 = 1e-7;
@@ -32,7 +32,7 @@ impl Problem {
     fn new(patches: Vec<Patch>, rho: Vec<f64>, exitance: Vec<f64>) -> Self {
         let occluders = Occluders::new(&patches).unwrap();
         let pairs = PairIntegrator::new(patches.iter(), &occluders, TOLERANCE);
-        let matrix = assemble::<f64>(&pairs, &|_, _| ControlFlow::Continue(())).unwrap().matrix;
+        let matrix = assemble::<f64>(&pairs, &Quiet).unwrap().matrix;
         let row = |i: usize| (0..patches.len()).map(|j| matrix.get(i, j) / patches[i].area()).collect();
         let factors = (0..patches.len()).map(row).collect();
         Self { patches, rho, exitance, factors }

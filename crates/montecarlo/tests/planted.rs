@@ -8,12 +8,12 @@ mod common;
 use common::{enclosure, furnace, mesh, run, single, whole};
 use fredholm_coupling::assemble;
 use fredholm_coupling::form_factor::PairIntegrator;
+use fredholm_linop::Quiet;
 use fredholm_mesh::{Cutting, Lines, MeshBuilder, Patch, Shape, Vec3};
 use fredholm_montecarlo::light::{Switches, estimator};
 use fredholm_montecarlo::statistics::{Comparison, Correction, Crosscheck, crosscheck};
 use fredholm_montecarlo::{Enclosure, Groups, State};
 use fredholm_visibility::Occluders;
-use std::ops::ControlFlow;
 
 const SIGNIFICANCE: f64 = 0.01;
 const BANDS: usize = 2;
@@ -84,7 +84,7 @@ impl Room {
 
     fn exchanges_behind(&self, occluders: &Occluders) -> Vec<Vec<f64>> {
         let pairs = PairIntegrator::new(self.patches.iter(), occluders, 1e-5);
-        let matrix = assemble::<f64>(&pairs, &|_, _| ControlFlow::Continue(())).unwrap().matrix;
+        let matrix = assemble::<f64>(&pairs, &Quiet).unwrap().matrix;
         let n = self.patches.len();
         (0..n).map(|i| (0..n).map(|j| matrix.get(i, j)).collect()).collect()
     }

@@ -55,12 +55,12 @@ pub struct Forecast {
     pub warnings: Vec<String>,
 }
 
-/// Validates a scene, tells what its mesh is, draws it by its sides where `picture` names a file, and
-/// predicts what its solution will take.
+/// Validates a scene, tells what its mesh is, draws it by its sides where `picture` names a file,
+/// and predicts what its solution will take.
 ///
 /// # Errors
-/// What is wrong with the scene; [`ErrorKind::Files`] for a picture that cannot be written. A matrix
-/// that does not fit the memory is no error, but what was asked.
+/// What is wrong with the scene; [`ErrorKind::Files`] for a picture that cannot be written. A
+/// matrix that does not fit the memory is no error, but what was asked.
 pub fn check(
     source: impl Into<SceneSource>,
     asked: &ProblemOptions,

@@ -1,4 +1,5 @@
-//! The checkpoint of a run to an accuracy: one line of JSON that says how to go on, then the state of the solution.
+//! The checkpoint of a run to an accuracy: one line of JSON that says how to go on, then the state
+//! of the solution.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -136,7 +137,8 @@ impl Checkpoint {
     }
 }
 
-/// Writes the checkpoint into a folder, which is made where it does not exist. It appears whole or not at all.
+/// Writes the checkpoint into a folder, which is made where it does not exist. It appears whole or
+/// not at all.
 pub(crate) fn write(folder: &Path, header: &Header, state: &State) -> Result<(), String> {
     fs::create_dir_all(folder).map_err(|error| error.to_string())?;
     let filled = write_atomically(&folder.join(FILE), |out| {

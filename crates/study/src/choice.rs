@@ -1,8 +1,9 @@
 //! Which way to an accuracy costs less: the matrix of the scene's elements, or links.
 //!
-//! The matrix has n(n + 1)/2 pairs. The links are about [`LINKS`] (1 %/ε)^[`POWER`] a face at the accuracy ε, and one costs as much as [`PAIRS`] pairs, as measured on the scenes of
-//! docs/hierarchical.md. On fewer than 2 × 2 elements a face the matrix is seldom exact enough, and links would have to follow; else the error
-//! that it states decides whether it was enough.
+//! The matrix has n(n + 1)/2 pairs. The links are about [`LINKS`] (1 %/ε)^[`POWER`] a face at the
+//! accuracy ε, and one costs as much as [`PAIRS`] pairs, as measured on the scenes of
+//! docs/hierarchical.md. On fewer than 2 × 2 elements a face the matrix is seldom exact enough, and
+//! links would have to follow; else the error that it states decides whether it was enough.
 
 use std::fmt;
 
@@ -13,12 +14,14 @@ const POWER: f64 = 0.8;
 /// Pairs of the matrix that take the time of one link.
 const PAIRS: f64 = 6.0;
 
-/// Most links at 1 % over √(faces): cells of a wall, and small things far away, are linked as wholes.
+/// Most links at 1 % over √(faces): cells of a wall, and small things far away, are linked as
+/// wholes.
 const TOGETHER: f64 = 10_000.0;
 /// Links of an element.
 const OF_ELEMENT: f64 = 10.0;
 
-/// Elements and links to expect at an accuracy, from which those of a scene may differ by a factor of three.
+/// Elements and links to expect at an accuracy, from which those of a scene may differ by a factor
+/// of three.
 pub(crate) fn expected(faces: usize, accuracy: f64) -> [usize; 2] {
     let n = faces as f64;
     let links = (LINKS * n).min(TOGETHER * n.sqrt()) * (0.01 / accuracy).powf(POWER);

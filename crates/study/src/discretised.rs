@@ -1,9 +1,8 @@
-//! The computation by any discretisation: assembly, solution, and the iterated irradiance, which values and errors are taken from.
-
-use std::sync::atomic::{AtomicUsize, Ordering};
+//! The computation by any discretisation: assembly, solution, and the iterated irradiance, which
+//! values and errors are taken from.
 
 use fredholm_coupling::{Energy, Extent, Means, Radiosity, exposed_shares};
-use fredholm_discretisation::{DiscretisationError, ElementMeans, Light, Lit, Watch};
+use fredholm_discretisation::{DiscretisationError, ElementMeans, Light, Lit};
 use fredholm_linop::{LinopError, MultiVector};
 use fredholm_mesh::Patch;
 
@@ -21,9 +20,7 @@ pub(crate) fn compute(
     stages: &mut Stages,
 ) -> Result<Solution, Error> {
     let watcher = Watcher::new(stages, options);
-    let (done, elements) = (AtomicUsize::new(0), problem.mesh.len());
-    let tell = || watcher.elements(done.fetch_add(1, Ordering::Relaxed), elements);
-    let light = light(problem)?.watched(Watch(&tell));
+    let light = light(problem)?.watched(stages.watch);
     let system = stages.run("assembly", || light.discretise(&*problem.discretisation).map_err(failure))?;
     if problem.solver.iterative {
         stages.begin_saving()?;
@@ -44,11 +41,12 @@ fn light(problem: &Problem) -> Result<Light<'_>, Error> {
     Light::new(&problem.mesh, &problem.occluders, reflectance, exitance, tolerance).map_err(failure)
 }
 
-/// What follows from a solution, and how far it is to be trusted. Whoever has pressed Ctrl-C does not wait for it.
+/// What follows from a solution, and how far it is to be trusted. Whoever has pressed Ctrl-C does
+/// not wait for it.
 fn assess(problem: &Problem, lit: &Lit, watcher: Watcher) -> Result<Solution, Error> {
     let patches: Vec<Patch> = problem.mesh.patches().copied().collect();
     let exposed = exposed_shares(&problem.patches(), &prepare(&patches)?);
-    let Some(found) = lit.assess_while(&|| watcher.go_on().is_continue()) else {
+    let Some(found) = lit.assess_while(watcher.watch) else {
         return Ok(unassessed(lit, exposed));
     };
     let means = means(found.means);

@@ -63,7 +63,8 @@ impl Error {
         self.kind
     }
 
-    /// How to mend it, where this crate knows. Errors of the crates below have theirs in the message.
+    /// How to mend it, where this crate knows. Errors of the crates below have theirs in the
+    /// message.
     #[must_use]
     pub fn help(&self) -> Option<&str> {
         self.help.as_deref()

@@ -6,7 +6,8 @@ use std::path::Path;
 
 use crate::error::{Error, ErrorKind};
 
-/// Makes sure that files can be written to `folder`, before anything is computed. Leaves nothing behind. `option` is what chooses another one.
+/// Makes sure that files can be written to `folder`, before anything is computed. Leaves nothing
+/// behind. `option` is what chooses another one.
 ///
 /// # Errors
 /// [`ErrorKind::Files`] where they cannot.

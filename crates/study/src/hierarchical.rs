@@ -1,4 +1,5 @@
-//! The computation to an accuracy: elements and links by hierarchical radiosity, then the same results as of any other.
+//! The computation to an accuracy: elements and links by hierarchical radiosity, then the same
+//! results as of any other.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -33,7 +34,8 @@ const NAME: &str = "hierarchical";
 const FALLBACK: &str = "gmres";
 /// The solver where none is asked for.
 const SOLVER: &str = "cg-theta";
-/// Solvers that know the matrix by applications alone. Others read rows or columns, each of which is an application here.
+/// Solvers that know the matrix by applications alone. Others read rows or columns, each of which
+/// is an application here.
 const SUITABLE: [&str; 10] = [
     "neumann",
     "jacobi",
@@ -50,7 +52,8 @@ const SUITABLE: [&str; 10] = [
 const HELP: &str = "use fewer faces, or a smaller picture";
 /// Pictures: of the field, of the elements, of links.
 const PICTURES: usize = 3;
-/// Share that tree and links may take of what the scene and the pictures leave: the other part is for results of the elements, whose number is not known before.
+/// Share that tree and links may take of what the scene and the pictures leave: the other part is
+/// for results of the elements, whose number is not known before.
 const SHARE: f64 = 0.6;
 
 /// Share of what tree and links take that is still there when the results are written.
@@ -195,7 +198,8 @@ pub(crate) fn compute(
         saved: AtomicBool::new(false),
     };
     let solve = || match fredholm_hierarchical::solve(&input, &limits, solvers, state, &watch) {
-        // What the last round came to is in the checkpoint, which stays: the run can go on from there.
+        // What the last round came to is in the checkpoint, which stays: the run can go on from
+        // there.
         Err(HierarchyError::Interrupted) => {
             let saved = watch.folder.filter(|_| watch.saved.load(Ordering::Relaxed));
             let state = self::state(&checkpoint::read(saved.ok_or_else(interrupted)?)?, scene, &input)?;

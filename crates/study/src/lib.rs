@@ -18,9 +18,9 @@
 //! Options are structs with defaults: what is not asked for is as the scene says, else as usual.
 //! Every function takes one [`Watch`], which is told of progress and can cancel the run; [`Quiet`]
 //! does neither. Errors say of which kind they are and how to mend them ([`Error`]). Nothing here
-//! prints, reads a command line or ends the process. Runs use the threads of the pool they are called
-//! in; [`thread_pool`] makes one. Memory is predicted before it is taken, and result files appear
-//! whole or not at all.
+//! prints, reads a command line or ends the process. Runs use the threads of the pool they are
+//! called in; [`thread_pool`] makes one. Memory is predicted before it is taken, and result files
+//! appear whole or not at all.
 
 mod check;
 mod checkpoint;

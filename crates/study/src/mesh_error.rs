@@ -1,17 +1,20 @@
-//! The stated error of the irradiance of the faces: what constants on elements miss, and what the form factors lose or add.
+//! The stated error of the irradiance of the faces: what constants on elements miss, and what the
+//! form factors lose or add.
 //!
-//! Both are sources of light that the solution does not have, and are reflected as light is: an error δE of the irradiance follows from its source p (W) by
-//! (I − D G) δB = D p, δE = (p + G δB)/A, with the matrix that is there. Sources are, in lanes side by side:
+//! Both are sources of light that the solution does not have, and are reflected as light is: an
+//! error δE of the irradiance follows from its source p (W) by (I − D G) δB = D p, δE = (p + G
+//! δB)/A, with the matrix that is there. Sources are, in lanes side by side:
 //!
-//! - the residual of the continuous equation at sampled points ([`fredholm_coupling::Constants`]), once a draw;
-//! - the exchange that row sums of a closed scene lack or have too much of, δG_ij = G_ij (λ_i + λ_j) with λ the halves of the defects, as the least change that closes the rows has it; of an
+//! - the residual of the continuous equation at sampled points ([`fredholm_coupling::Constants`]),
+//!   once a draw;
+//! - the exchange that row sums of a closed scene lack or have too much of, δG_ij = G_ij (λ_i +
+//!   λ_j) with λ the halves of the defects, as the least change that closes the rows has it; of an
 //!   open scene only what is above 1, which no scene has;
-//! - in an open scene the stated errors of the rows times the radiosity that they see. In a closed one these errors cancel in the sums, and are not amplified.
-
-use std::ops::ControlFlow;
+//! - in an open scene the stated errors of the rows times the radiosity that they see. In a closed
+//!   one these errors cancel in the sums, and are not amplified.
 
 use fredholm_coupling::{Assembled, Constants, CouplingError, Extent, MeshError, Radiosity, Residual};
-use fredholm_linop::{MultiVector, Report, Stop, StopReason, Storage};
+use fredholm_linop::{MultiVector, Report, Stop, StopReason, Storage, Watch};
 use fredholm_mesh::Mesh;
 
 use crate::error::{Error, ErrorKind};
@@ -20,11 +23,13 @@ use crate::registry;
 use crate::solution::{coupling_failure, solve_with};
 use crate::watcher::Watcher;
 
-/// What an error of first order is multiplied with: of a coarse mesh it is down to half of the true one.
+/// What an error of first order is multiplied with: of a coarse mesh it is down to half of the true
+/// one.
 const SAFETY: f64 = 2.0;
 /// Sources of an error need not be followed further: relative residual, and iterations.
 const STOP: Stop = Stop { tolerance: 1e-3, max_iterations: 10_000 };
-/// Stated errors of a row within which its sum is that of a closed scene, and the error that is always allowed.
+/// Stated errors of a row within which its sum is that of a closed scene, and the error that is
+/// always allowed.
 const ROWS: f64 = 3.0;
 const CLOSED: f64 = 1e-6;
 /// Root mean square over the mean of the irradiance that unshot light comes to.
@@ -32,7 +37,8 @@ const UNEVEN: f64 = 1.5;
 /// Share of the sampled square of an error that is left, however large the noise.
 const LEFT: f64 = 0.25;
 
-/// Estimates the error of a solution `x`. There is no estimate where the solution is not within its tolerance or the sources of errors could not be followed.
+/// Estimates the error of a solution `x`. There is no estimate where the solution is not within its
+/// tolerance or the sources of errors could not be followed.
 pub(crate) fn estimate<S: Storage>(
     problem: &Problem,
     radiosity: &Radiosity,
@@ -54,7 +60,7 @@ pub(crate) fn estimate<S: Storage>(
         radiosity: x,
         irradiance: &irradiance,
     };
-    let residual = match constants.residual(&|| watcher.go_on()) {
+    let residual = match constants.residual(watcher.watch) {
         Ok(residual) => residual,
         Err(CouplingError::Interrupted { .. }) => return Ok(None),
         Err(error) => return Err(coupling_failure(error)),
@@ -109,7 +115,8 @@ impl Rows {
     }
 }
 
-/// δE of the elements, W/m²: elements × (lanes of the residual, closing rows, stated errors of rows).
+/// δE of the elements, W/m²: elements × (lanes of the residual, closing rows, stated errors of
+/// rows).
 fn follow<S: Storage>(
     radiosity: &Radiosity,
     assembled: &Assembled<S>,
@@ -143,7 +150,8 @@ fn follow<S: Storage>(
     })))
 }
 
-/// The stated error of the faces: the sampled part without most of its noise, and the errors of the form factors.
+/// The stated error of the faces: the sampled part without most of its noise, and the errors of the
+/// form factors.
 fn stated(mesh: &Mesh, irradiance: &MultiVector<f64>, errors: &MultiVector<f64>, draws: usize) -> MeshError {
     let (bands, areas) = (irradiance.lanes(), areas(mesh));
     let (values, errors) = (of_faces(mesh, irradiance), of_faces(mesh, errors));
@@ -205,18 +213,19 @@ fn of_faces(mesh: &Mesh, values: &MultiVector<f64>) -> MultiVector<f64> {
     })
 }
 
-/// The same of a field without a matrix, of which `unshot` (W/m²) is still to be sent. Sources of errors are spread evenly from their first reflection on, and what is unshot from the
-/// beginning, as all reflections together spread light. There is no estimate where `go_on` breaks.
+/// The same of a field without a matrix, of which `unshot` (W/m²) is still to be sent. Sources of
+/// errors are spread evenly from their first reflection on, and what is unshot from the beginning,
+/// as all reflections together spread light. There is no estimate where `watch` breaks.
 pub(crate) fn of_shooting(
     mesh: &Mesh,
     constants: &Constants<'_>,
     unshot: &MultiVector<f64>,
-    go_on: &(dyn Fn() -> ControlFlow<()> + Sync),
+    watch: &dyn Watch,
 ) -> Result<Option<MeshError>, Error> {
-    if go_on().is_break() {
+    if watch.go_on().is_break() {
         return Ok(None);
     }
-    let residual = match constants.residual(go_on) {
+    let residual = match constants.residual(watch) {
         Ok(residual) => residual,
         Err(CouplingError::Interrupted { .. }) => return Ok(None),
         Err(error) => return Err(coupling_failure(error)),

@@ -103,7 +103,8 @@ pub struct ProblemOptions {
 /// When a solution ends. What is none is as the scene says, else as usual.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StopOptions {
-    /// Relative residual ‖b − A x‖₂/‖b‖₂ to reach in every band; 1e-10, to an accuracy a part of it.
+    /// Relative residual ‖b − A x‖₂/‖b‖₂ to reach in every band; 1e-10, to an accuracy a part of
+    /// it.
     pub tolerance: Option<f64>,
     /// Iterations allowed; 1000.
     pub max_iterations: Option<u32>,
@@ -148,8 +149,8 @@ pub struct PointGrid {
 }
 
 impl PointGrid {
-    /// Points in the parallelogram from `origin` (m) along the sides u and v (m), so many along each;
-    /// their normal is that of u × v. None where the sides span no area.
+    /// Points in the parallelogram from `origin` (m) along the sides u and v (m), so many along
+    /// each; their normal is that of u × v. None where the sides span no area.
     #[must_use]
     pub fn new(origin: Vec3, sides: [Vec3; 2], counts: [usize; 2]) -> Option<Self> {
         sides[0].cross(sides[1]).try_normalize()?;
@@ -173,8 +174,8 @@ impl PointGrid {
 #[derive(Clone, Debug, Default)]
 #[allow(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub struct SolveOptions {
-    /// Relative error of the irradiance of the faces to reach, above 0 and below 1; the elements are
-    /// then chosen where they are needed. None: the scene's, else the elements of the scene.
+    /// Relative error of the irradiance of the faces to reach, above 0 and below 1; the elements
+    /// are then chosen where they are needed. None: the scene's, else the elements of the scene.
     pub accuracy: Option<f64>,
     /// Surfaces, by their names, whose mean irradiance is to have the accuracy; all else is only as
     /// exact as that needs.

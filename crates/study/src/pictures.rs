@@ -1,4 +1,5 @@
-//! What a solution is seen by: pictures of the elements, of links, and of the light that every pixel gathers.
+//! What a solution is seen by: pictures of the elements, of links, and of the light that every
+//! pixel gathers.
 
 use std::sync::Arc;
 

@@ -1,6 +1,7 @@
 //! Memory that a solution will take, known before any is taken.
 //!
-//! The bytes an element takes are measured: `cargo test --release --test memory -- --ignored` compares every prediction with what was held.
+//! The bytes an element takes are measured: `cargo test --release --test memory -- --ignored`
+//! compares every prediction with what was held.
 
 use fredholm_coupling::{Constants, waiting_bytes};
 use fredholm_linop::{PackedSymmetric, Storage};
@@ -19,9 +20,11 @@ pub(crate) const MESH: u128 = 600;
 pub(crate) const ASSEMBLY: u128 = 800;
 /// Bytes of an element that is shot from: quadrature points, groups, the tree of elements.
 const SHOT: u128 = 1500;
-/// Of the entries on their way, many small pieces, the C library still has one in so many when they have arrived.
+/// Of the entries on their way, many small pieces, the C library still has one in so many when they
+/// have arrived.
 const RETAINED: u128 = 2;
-/// Bytes of an element while results are written, and of each of its values: what rays are cast at for the picture, welded corners, the composed file of arrays.
+/// Bytes of an element while results are written, and of each of its values: what rays are cast at
+/// for the picture, welded corners, the composed file of arrays.
 const RESULTS: u128 = 650;
 const VALUE: u128 = 50;
 /// Bytes of a pixel while the exposure is found, and in each picture: while it is drawn, and when
@@ -29,7 +32,8 @@ const VALUE: u128 = 50;
 const METERED: u128 = 10;
 const LAYER: u128 = 6;
 const ROWS: u128 = 2;
-/// Vectors of all bands held at once: system and results, and six sources of errors with their system, iterates and residuals.
+/// Vectors of all bands held at once: system and results, and six sources of errors with their
+/// system, iterates and residuals.
 const VECTORS: u128 = 48;
 /// Vectors of all bands more while errors are followed.
 const FOLLOWED: u128 = 150;
@@ -51,7 +55,8 @@ pub(crate) struct Dense {
 }
 
 impl Size {
-    /// What is known of a number of elements before they are there: other discretisations may have any number of unknowns.
+    /// What is known of a number of elements before they are there: other discretisations may have
+    /// any number of unknowns.
     pub(crate) fn before_mesh(elements: usize, options: &ProblemSettings) -> Self {
         let radiosity = options.discretisation == RADIOSITY;
         let (unknowns, dense) = if radiosity { (elements, None) } else { (0, Some(Dense { bytes: 0 })) };
@@ -160,12 +165,14 @@ pub(crate) fn of_threads(addresses: u64) -> u128 {
     u128::from(addresses) * rayon::current_num_threads() as u128
 }
 
-/// Bytes of the entries on their way into a matrix; more than 2³¹ elements, whose pairs cannot be counted, have none that would fit.
+/// Bytes of the entries on their way into a matrix; more than 2³¹ elements, whose pairs cannot be
+/// counted, have none that would fit.
 pub(crate) fn waiting<S: Storage>(elements: usize, errors: bool) -> u64 {
     waiting_bytes::<S>(elements.min(1 << 31), errors)
 }
 
-/// A computation without a matrix, where columns may take `kept`; groups of elements take as much as elements.
+/// A computation without a matrix, where columns may take `kept`; groups of elements take as much
+/// as elements.
 pub(crate) fn without_matrix(elements: usize, bands: usize, kept: Bytes) -> Plan {
     let n = elements as u128;
     Plan::default()

@@ -1,4 +1,5 @@
-//! From a scene file to a meshed problem that fits the memory: what `solve` and `check` have in common.
+//! From a scene file to a meshed problem that fits the memory: what `solve` and `check` have in
+//! common.
 
 use std::sync::Arc;
 
@@ -38,7 +39,8 @@ pub(crate) struct Problem {
 pub(crate) type More<'a> = &'a dyn Fn(Plan, &Scene, usize) -> Plan;
 
 impl Problem {
-    /// Reads, meshes and checks a scene; refuses it before memory is taken where it does not fit, together with what the verb adds.
+    /// Reads, meshes and checks a scene; refuses it before memory is taken where it does not fit,
+    /// together with what the verb adds.
     pub(crate) fn load(
         source: &SceneSource,
         asked: &ProblemOptions,
@@ -50,7 +52,8 @@ impl Problem {
         Self::refined(scene, options, (1, more), stages)
     }
 
-    /// Meshes a scene, every element cut into `refinement` × `refinement`. What is as it is in the scene is checked without refinement only.
+    /// Meshes a scene, every element cut into `refinement` × `refinement`. What is as it is in the
+    /// scene is checked without refinement only.
     pub(crate) fn refined(
         scene: Arc<Scene>,
         options: ProblemSettings,
@@ -120,7 +123,8 @@ pub(crate) struct Open {
 }
 
 impl Open {
-    /// Reads, meshes and checks a scene; refuses it before memory is taken where the mesh and `kept` do not fit.
+    /// Reads, meshes and checks a scene; refuses it before memory is taken where the mesh and
+    /// `kept` do not fit.
     pub(crate) fn load(
         source: &SceneSource,
         asked: &ProblemOptions,

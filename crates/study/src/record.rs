@@ -119,7 +119,8 @@ fn large(solution: &Solution) -> Option<String> {
     })
 }
 
-/// Row errors, in tolerances, that are reported: the tolerance is a pair's, and the errors of a row add up to about twice as much.
+/// Row errors, in tolerances, that are reported: the tolerance is a pair's, and the errors of a row
+/// add up to about twice as much.
 const ROW: f64 = 3.0;
 
 /// Whether the form factors came out less exact than asked for.

@@ -31,7 +31,8 @@ pub struct ReferenceOptions {
     pub paths: PathOptions,
     /// When tracing ends; without anything at a standard error of 0.2 %.
     pub stop: TraceStop,
-    /// What decides the size and the effort; form factors are computed to 1e-5 where nothing is said.
+    /// What decides the size and the effort; form factors are computed to 1e-5 where nothing is
+    /// said.
     pub problem: ProblemOptions,
 }
 
@@ -44,13 +45,13 @@ pub struct References {
     pub faces: usize,
 }
 
-/// Solves a scene, traces it with the solution as control variate, and writes the irradiance of every
-/// face with its stated error into a folder.
+/// Solves a scene, traces it with the solution as control variate, and writes the irradiance of
+/// every face with its stated error into a folder.
 ///
 /// # Errors
 /// What is wrong with the scene or the options; [`Resources`](crate::ErrorKind::Resources) before
-/// memory is taken that the limit does not allow; [`Interrupted`](crate::ErrorKind::Interrupted) for a
-/// run that was cancelled.
+/// memory is taken that the limit does not allow; [`Interrupted`](crate::ErrorKind::Interrupted)
+/// for a run that was cancelled.
 pub fn reference(
     source: impl Into<SceneSource>,
     asked: &ReferenceOptions,

@@ -12,7 +12,8 @@ use crate::threads;
 const PAIRS: usize = 20_000;
 const BUDGET: Duration = Duration::from_millis(500);
 
-/// Seconds that the form factors will take: the mean time of a pair, times their number, over the threads.
+/// Seconds that the form factors will take: the mean time of a pair, times their number, over the
+/// threads.
 pub(crate) fn assembly_seconds(problem: &Problem) -> f64 {
     let integrator = problem.integrator();
     let pairs = integrator.len() as f64 * (integrator.len() as f64 - 1.0) / 2.0;

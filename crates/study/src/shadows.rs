@@ -1,4 +1,5 @@
-//! The elements cut along the borders of the shadows that lamps cast, with the irradiance gathered at the corners of the parts.
+//! The elements cut along the borders of the shadows that lamps cast, with the irradiance gathered
+//! at the corners of the parts.
 
 use fredholm_coupling::Receiver;
 use fredholm_hierarchical::{Gatherer, Tree, shadow_edges};
@@ -10,7 +11,8 @@ use crate::pictures::Gathered;
 
 /// Most lines that cut an element: the longest ones within it.
 const LINES: usize = 24;
-/// How far from a corner of a triangle its irradiance is gathered, over the distance of the centroid: each side of a border has its own.
+/// How far from a corner of a triangle its irradiance is gathered, over the distance of the
+/// centroid: each side of a border has its own.
 const INSET: f64 = 1e-5;
 
 impl Gathered<'_> {

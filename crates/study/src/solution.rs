@@ -102,7 +102,7 @@ pub(crate) fn worth_saving(report: &Report) -> Result<(), Error> {
 
 pub(crate) fn form_factors<S: Storage>(problem: &Problem, watcher: Watcher) -> Result<Assembled<S>, Error> {
     let integrator = problem.integrator();
-    assemble(&integrator, &|done, total| watcher.pairs(done, total)).map_err(coupling_failure)
+    assemble(&integrator, watcher.watch).map_err(coupling_failure)
 }
 
 /// What follows from a solution, and how far it is to be trusted.

@@ -49,18 +49,18 @@ pub struct Solved<'a> {
 pub struct SurfaceLight {
     /// Mean irradiance over the surface, W/m².
     pub irradiance: Vec<f64>,
-    /// The stated error of it, W/m²: the root mean square of what the solution states of the faces of
-    /// the surface, which is the most that the error of their mean can be where each is right. An
-    /// estimate, as the stated errors are. Empty where the solution states no error.
+    /// The stated error of it, W/m²: the root mean square of what the solution states of the faces
+    /// of the surface, which is the most that the error of their mean can be where each is right.
+    /// An estimate, as the stated errors are. Empty where the solution states no error.
     pub error: Vec<f64>,
 }
 
 /// Solves a scene.
 ///
 /// # Errors
-/// What is wrong with the scene or the options; [`ErrorKind::Resources`] before memory is taken that
-/// the limit does not allow; [`ErrorKind::Interrupted`] for a run that was cancelled before it had a
-/// result.
+/// What is wrong with the scene or the options; [`ErrorKind::Resources`] before memory is taken
+/// that the limit does not allow; [`ErrorKind::Interrupted`] for a run that was cancelled before it
+/// had a result.
 pub fn solve<'a>(
     source: impl Into<SceneSource>,
     asked: &SolveOptions,

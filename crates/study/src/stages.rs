@@ -126,7 +126,8 @@ impl<'a> Stages<'a> {
         plan.tell(limit, self.watch);
     }
 
-    /// Refuses what a limit does not allow, before any of it is taken; `help` says how to need less.
+    /// Refuses what a limit does not allow, before any of it is taken; `help` says how to need
+    /// less.
     pub(crate) fn admit(&self, plan: &Plan, limit: Limit, help: &str) -> Result<(), Error> {
         // Programs are told what was predicted of what is refused, too.
         self.tell(plan, limit);

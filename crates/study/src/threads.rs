@@ -10,7 +10,8 @@ pub(crate) fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, Into::into)
 }
 
-/// Threads of a run: as many as are asked for, or else one a core, but no more than a limited address space has room for.
+/// Threads of a run: as many as are asked for, or else one a core, but no more than a limited
+/// address space has room for.
 pub(crate) fn count(asked: Option<u16>) -> usize {
     asked.map_or_else(cores, usize::from).min(memory::allowance())
 }

@@ -10,7 +10,7 @@ use crate::stages::Stages;
 /// Watches an assembly or a solution.
 #[derive(Clone, Copy)]
 pub(crate) struct Watcher<'a> {
-    watch: &'a dyn Watch,
+    pub(crate) watch: &'a dyn Watch,
     stop: Stop,
 }
 
@@ -33,17 +33,6 @@ impl<'a> Watcher<'a> {
     /// When the solution ends by itself.
     pub(crate) fn stop(&self) -> Stop {
         self.stop
-    }
-
-    /// Follows the assembly, from any thread.
-    pub(crate) fn pairs(&self, done: u64, total: u64) -> ControlFlow<()> {
-        self.watch.advance(done as f64 / total.max(1) as f64, &|| format!("{done} of {total} pairs"));
-        self.go_on()
-    }
-
-    /// Follows the assembly of a discretisation, from any thread.
-    pub(crate) fn elements(&self, done: usize, total: usize) {
-        self.watch.advance(done as f64 / total.max(1) as f64, &|| format!("{done} of {total} elements"));
     }
 
     /// Whether the computation is still wanted.

@@ -10,7 +10,6 @@ use fredholm_waves::{
 };
 use std::error::Error;
 use std::f64::consts::FRAC_PI_2;
-use std::ops::ControlFlow;
 
 type Vectors = MultiVector<Complex64>;
 
@@ -21,7 +20,7 @@ fn compare(name: &str, scatterer: &Scatterer, shadow: Shadow, travel: Vec3) -> R
     let first = PhysicalOptics::new(scatterer, wave, &sources, shadow)?;
     let system = System::stored(scatterer, wave, shadow, Discretisation::Nystrom)?;
     let b = system.right_hand_side(&[&first]);
-    let radius = spectral_radius(system.coupling(), 200, &mut || ControlFlow::Continue(()));
+    let radius = spectral_radius(system.coupling(), 200, &Quiet);
     println!("{name}: {} unknowns, spectral radius {:.3}", b.dim(), radius.unwrap_or(f64::NAN));
     let mut solvers: Vec<Box<dyn Solver<Complex64>>> = fredholm_iterative::solvers();
     solvers.extend(fredholm_direct::solvers());

@@ -15,7 +15,6 @@ use fredholm_waves::{
     Source, System, cross_section, spectral_radius,
 };
 use std::f64::consts::{FRAC_PI_2, PI};
-use std::ops::ControlFlow;
 
 type Vectors = MultiVector<Complex64>;
 
@@ -46,10 +45,6 @@ fn direct() -> Box<dyn Solver<Complex64>> {
     fredholm_direct::solvers().remove(0)
 }
 
-fn go_on() -> ControlFlow<()> {
-    ControlFlow::Continue(())
-}
-
 /// σ straight back over the closed form, dB.
 fn corner(scatterer: &Scatterer, from: Vec3, bounces: usize, closed: f64) -> f64 {
     let source = PlaneWave::new(-from, Vec3::Z, 1.0.into()).unwrap();
@@ -57,7 +52,7 @@ fn corner(scatterer: &Scatterer, from: Vec3, bounces: usize, closed: f64) -> f64
     let first = PhysicalOptics::new(scatterer, wave(), &sources, Shadow::Geometric).unwrap();
     let system = System::lazy(scatterer, wave(), Shadow::Geometric).unwrap();
     let b = system.right_hand_side(&[&first]);
-    let x = Bounces::sum(system.coupling(), &b, bounces, &mut go_on).unwrap().x;
+    let x = Bounces::sum(system.coupling(), &b, bounces, &Quiet).unwrap().x;
     let currents = system.currents(&x, 0);
     let far = system.radiator(&currents).far_field(&[from]).unwrap();
     10.0 * (cross_section(far[0].amplitude.dot(source.polarisation()), 1.0.into()) / closed).log10()
@@ -190,7 +185,7 @@ fn spectral_radii_and_a_series_that_diverges() {
     ];
     for (scatterer, shadow, expected) in cases {
         let system = System::stored(scatterer, wave(), shadow, Discretisation::Nystrom).unwrap();
-        let radius = spectral_radius(system.coupling(), 120, &mut go_on).unwrap();
+        let radius = spectral_radius(system.coupling(), 120, &Quiet).unwrap();
         assert!((radius / expected - 1.0).abs() < 0.05, "{shadow:?}: {radius} for {expected}");
         if expected > 1.1 {
             let source = source();

@@ -5,7 +5,7 @@
 mod common;
 
 use common::{WAVELENGTH, wave};
-use fredholm_linop::{LinearOperator, MultiVector};
+use fredholm_linop::{LinearOperator, MultiVector, Quiet};
 use fredholm_mesh::{Cutting, Lines, MeshBuilder, Shape, Vec3};
 use fredholm_waves::material::{Layer, Material};
 use fredholm_waves::source::PlaneWave;
@@ -15,13 +15,8 @@ use fredholm_waves::{
     Sampling, Scatterer, Shadow, Source, System,
 };
 use std::f64::consts::FRAC_PI_2;
-use std::ops::ControlFlow;
 
 type Vectors = MultiVector<Complex64>;
-
-fn go_on() -> ControlFlow<()> {
-    ControlFlow::Continue(())
-}
 
 fn glass() -> Material {
     Material::Slab(vec![Layer { permittivity: Complex64::new(6.3, -0.2), thickness: 0.006 }])
@@ -99,7 +94,7 @@ fn two_bounces(side: f64, material: &Material, polarisation: Vec3) -> Complex64 
     let sources: [&dyn Source; 1] = [&source];
     let first = PhysicalOptics::new(&pair, wave(), &sources, Shadow::Geometric).unwrap();
     let system = System::lazy(&pair, wave(), Shadow::Geometric).unwrap();
-    let sum = Bounces::sum(system.coupling(), &system.right_hand_side(&[&first]), 2, &mut go_on).unwrap();
+    let sum = Bounces::sum(system.coupling(), &system.right_hand_side(&[&first]), 2, &Quiet).unwrap();
     let currents = system.currents(&sum.x, 0);
     system.radiator(&currents).far_field(&[Vec3::X]).unwrap()[0].amplitude.dot(polarisation)
 }
@@ -157,7 +152,7 @@ fn what_gets_through_a_pane_lights_what_is_behind() {
     let sources: [&dyn Source; 1] = [&source];
     let first = PhysicalOptics::new(&scene, wave(), &sources, Shadow::Radiated).unwrap();
     let system = System::stored(&scene, wave(), Shadow::Radiated, Discretisation::Nystrom).unwrap();
-    let x = Bounces::sum(system.coupling(), &system.right_hand_side(&[&first]), 2, &mut go_on).unwrap().x;
+    let x = Bounces::sum(system.coupling(), &system.right_hand_side(&[&first]), 2, &Quiet).unwrap().x;
     let currents = system.currents(&x, 0);
     let alone = Scatterer::new(&mesh, |_| Kind::Sheet).unwrap().made_of(vec![glass()]).unwrap();
     let pane_only = PaneOnly { first: &first, panes: &alone };

@@ -17,7 +17,6 @@ use fredholm_waves::surface::{cube, facing_plates, plate};
 use fredholm_waves::{
     Bounces, Complex64, Discretisation, PhysicalOptics, Scatterer, Shadow, Source, System, electric_element,
 };
-use std::ops::ControlFlow;
 
 /// A direction and a polarisation.
 type Port = (Vec3, Vec3);
@@ -30,7 +29,7 @@ fn scattered(body: &Scatterer, shadow: Shadow, bounces: usize, from: Port, to: P
     assert!(first.lit(0).iter().all(|&side| side > 0.0));
     let system = System::lazy(body, wave(), shadow).unwrap();
     let b = system.right_hand_side(&[&first]);
-    let x = Bounces::sum(system.coupling(), &b, bounces, &mut || ControlFlow::Continue(())).unwrap().x;
+    let x = Bounces::sum(system.coupling(), &b, bounces, &Quiet).unwrap().x;
     let currents = system.currents(&x, 0);
     received(&system, &currents, to)
 }

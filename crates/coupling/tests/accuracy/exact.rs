@@ -4,14 +4,14 @@ use crate::symmetry::renumberings;
 use crate::view3d::{patches, read};
 use fredholm_coupling::form_factor::PairIntegrator;
 use fredholm_coupling::{Assembled, assemble};
+use fredholm_linop::Quiet;
 use fredholm_mesh::Patch;
 use fredholm_visibility::Occluders;
-use std::ops::ControlFlow;
 
 pub fn assembled(patches: &[Patch], tolerance: f64) -> Assembled<f64> {
     let occluders = Occluders::new(patches).unwrap();
     let integrator = PairIntegrator::new(patches, &occluders, tolerance);
-    assemble(&integrator, &|_, _| ControlFlow::Continue(())).unwrap()
+    assemble(&integrator, &Quiet).unwrap()
 }
 
 /// One pair of each class of pairs that symmetries of the cube map onto each other: i, j and F_ij.

@@ -8,9 +8,9 @@ mod enclosures;
 use enclosures::{Place, cube_with_a_box, cube_with_a_tilted_box, furnished_room, room_with_a_corner};
 use fredholm_coupling::form_factor::PairIntegrator;
 use fredholm_coupling::{Assembled, assemble};
+use fredholm_linop::Quiet;
 use fredholm_mesh::Patch;
 use fredholm_visibility::Occluders;
-use std::ops::ControlFlow;
 
 /// Share of the rows whose stated error must hold.
 const COVERED: f64 = 0.99;
@@ -28,7 +28,7 @@ struct Row {
 fn rows(patches: &[Patch], tolerance: f64) -> Vec<Row> {
     let occluders = Occluders::new(patches).unwrap();
     let integrator = PairIntegrator::new(patches, &occluders, tolerance);
-    let found: Assembled<f64> = assemble(&integrator, &|_, _| ControlFlow::Continue(())).unwrap();
+    let found: Assembled<f64> = assemble(&integrator, &Quiet).unwrap();
     let sums = found.matrix.row_sums().into_iter().zip(&found.error).zip(patches);
     let row = |((sum, error), patch): ((f64, &f64), &Patch)| {
         let (sum, stated) = (sum / patch.area(), error / patch.area());

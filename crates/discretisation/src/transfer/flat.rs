@@ -12,11 +12,11 @@ use crate::{DiscretisationError, FlatChart, Site, Surface};
 use fredholm_coupling::form_factor::{PairIntegrator, VisibleParts, point_to_polygon};
 use fredholm_coupling::kernel::lambert;
 use fredholm_coupling::{Assembled, assemble, exposed_shares, extents};
+use fredholm_linop::{Quiet, Steps, Watch};
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_quadrature::{PlanePoint, near_triangle, symmetric_triangle};
 use fredholm_visibility::Occluders;
 use fredholm_visibility::body::Bodies;
-use std::ops::ControlFlow;
 
 /// Distance over radius of a triangle above which a rule of the degree does, with the largest first.
 const RULES: [(f64, usize); 4] = [(12.0, 4), (6.0, 6), (3.5, 10), (2.0, 16)];
@@ -26,16 +26,6 @@ const NEAR: usize = 8;
 const APART: f64 = 3.0;
 /// Points a direction for receivers, beyond the degree.
 pub(crate) const OUTER: usize = 3;
-
-/// Called, from any thread, whenever an assembly has the rows of another element.
-#[derive(Clone, Copy)]
-pub struct Watch<'a>(pub &'a (dyn Fn() + Sync));
-
-impl std::fmt::Debug for Watch<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("Watch")
-    }
-}
 
 /// Diffuse light between the leaves of a mesh.
 #[derive(Debug)]
@@ -47,7 +37,7 @@ pub struct FlatLambert<'a> {
     bodies: Bodies,
     tolerance: f64,
     rules: Vec<(f64, Vec<PlanePoint>)>,
-    watch: Option<Watch<'a>>,
+    steps: Option<Steps<'a>>,
 }
 
 impl<'a> FlatLambert<'a> {
@@ -68,13 +58,13 @@ impl<'a> FlatLambert<'a> {
         let rules = RULES.into_iter().map(rule).collect::<Result<_, DiscretisationError>>()?;
         let bodies = Bodies::new(occluders, &patches.iter().collect::<Vec<_>>(), &[]);
         let inverses = patches.iter().map(Inverse::of).collect();
-        Ok(Self { surface, patches, inverses, occluders, bodies, tolerance, rules, watch: None })
+        Ok(Self { surface, patches, inverses, occluders, bodies, tolerance, rules, steps: None })
     }
 
     /// Tells `watch` of the progress of an assembly.
     #[must_use]
-    pub fn watched(mut self, watch: Watch<'a>) -> Self {
-        self.watch = Some(watch);
+    pub fn watched(mut self, watch: &'a dyn Watch) -> Self {
+        self.steps = Some(Steps::new(watch, self.patches.len() as u64, "elements"));
         self
     }
 
@@ -179,8 +169,9 @@ impl Transfer for FlatLambert<'_> {
     }
 
     fn advance(&self) {
-        if let Some(Watch(tell)) = self.watch {
-            tell();
+        if let Some(steps) = &self.steps {
+            // An assembly that is no longer wanted ends with its process: it has nothing to save.
+            let _ = steps.begin();
         }
     }
 
@@ -197,7 +188,7 @@ impl FlatLambert<'_> {
     /// The form factors of the radiosity system, with the exposed areas of elements that are partly buried.
     fn integrate_pairs(&self) -> Result<Exchanges, DiscretisationError> {
         let integrator = PairIntegrator::new(&self.patches, self.occluders, self.tolerance);
-        let assembled: Assembled<f64> = assemble(&integrator, &|_, _| ControlFlow::Continue(()))?;
+        let assembled: Assembled<f64> = assemble(&integrator, &Quiet)?;
         let patches: Vec<&Patch> = self.patches.iter().collect();
         let shares = exposed_shares(&patches, &Occluders::new(&self.patches)?);
         let sizes = extents(&patches, &shares, &assembled.matrix.row_sums());

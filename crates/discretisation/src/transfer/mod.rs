@@ -8,8 +8,8 @@ mod flat;
 mod near;
 mod smooth;
 
+pub use flat::FlatLambert;
 pub(crate) use flat::OUTER;
-pub use flat::{FlatLambert, Watch};
 pub use smooth::{Kernel, SmoothTransfer};
 
 use crate::surface::Rules;

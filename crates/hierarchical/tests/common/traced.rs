@@ -2,10 +2,10 @@
 
 use super::common::Bench;
 use fredholm_hierarchical::Solution;
+use fredholm_linop::Quiet;
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_montecarlo::light::{Switches, estimator};
 use fredholm_montecarlo::{Enclosure, Groups, Stop, Tracing};
-use std::ops::ControlFlow;
 
 /// Particles of a batch.
 const BATCH: u32 = 1 << 16;
@@ -62,7 +62,7 @@ impl Parts {
         let tracing = Tracing::new(&scene, &*particles, groups, 1, BATCH).unwrap();
         let mut state = tracing.start();
         let stop = Stop { batches: Some(batches), ..Stop::default() };
-        tracing.go_on(&mut state, &stop, &|_| ControlFlow::Continue(())).unwrap();
+        tracing.go_on(&mut state, &stop, &Quiet).unwrap();
         [state.groups.mean().to_vec(), state.groups.standard_errors()]
     }
 }

@@ -32,8 +32,8 @@ pub struct CompareOptions {
     pub tolerance: f64,
     /// Iterations allowed.
     pub max_iterations: u32,
-    /// Largest reflectances, to which all reflectances of the scene are scaled in turn; none: as they
-    /// are.
+    /// Largest reflectances, to which all reflectances of the scene are scaled in turn; none: as
+    /// they are.
     pub sweep: Option<Vec<f64>>,
     /// Threads of the run; see [`ProblemOptions`].
     pub threads: Option<u16>,
@@ -62,7 +62,8 @@ impl Default for CompareOptions {
 }
 
 impl CompareOptions {
-    /// The problem, with the solver of the least memory: what the others need is looked at one by one.
+    /// The problem, with the solver of the least memory: what the others need is looked at one by
+    /// one.
     fn problem(&self) -> ProblemOptions {
         ProblemOptions {
             threads: self.threads,
@@ -110,8 +111,8 @@ pub fn check_solver(text: &str) -> Result<(), OptionError> {
 /// Runs solvers on the system of a scene and writes how they did into a folder.
 ///
 /// # Errors
-/// What is wrong with the scene or the options; [`ErrorKind::Resources`] before memory is taken that
-/// the limit does not allow; [`ErrorKind::Interrupted`] for a run that was cancelled.
+/// What is wrong with the scene or the options; [`ErrorKind::Resources`] before memory is taken
+/// that the limit does not allow; [`ErrorKind::Interrupted`] for a run that was cancelled.
 pub fn compare(
     source: impl Into<SceneSource>,
     asked: &CompareOptions,

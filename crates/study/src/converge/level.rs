@@ -1,4 +1,5 @@
-//! A solved level: means of the irradiance over the faces, which all levels have in common, and over the surfaces. W/m².
+//! A solved level: means of the irradiance over the faces, which all levels have in common, and
+//! over the surfaces. W/m².
 
 use fredholm_linop::{MultiVector, StopReason};
 use fredholm_mesh::{Mesh, Patch};

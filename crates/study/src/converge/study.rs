@@ -12,7 +12,8 @@ use crate::problem::Problem;
 
 /// Relative rounding of a solution.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
-/// Relative errors of the solution over the residual and rounding that they come from, for reflectance 0.
+/// Relative errors of the solution over the residual and rounding that they come from, for
+/// reflectance 0.
 const MARGIN: f64 = 10.0;
 
 /// The record of a study.

@@ -1,6 +1,7 @@
 //! Scenes of waves: sampled fields against computed ones, number by number.
 //!
-//! δ of a number is the estimated error of the mesh and that of the radiation integral together, relative to the root mean square of the scattered E over the points of its receiver.
+//! δ of a number is the estimated error of the mesh and that of the radiation integral together,
+//! relative to the root mean square of the scattered E over the points of its receiver.
 
 use std::collections::BTreeMap;
 use std::path::Path;

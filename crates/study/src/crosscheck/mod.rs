@@ -35,15 +35,16 @@ const ERROR: f64 = 0.01;
 const STATED: f64 = 0.5;
 /// What is missing where a continuous method is compared.
 const UNKNOWN: &str = "the solution states no error, so that all of it counts as a fault";
-/// Deviations of the whole, and of a typical face, that must have been found where the two are said to agree.
+/// Deviations of the whole, and of a typical face, that must have been found where the two are said
+/// to agree.
 const WHOLE: f64 = 0.5;
 const FACE: f64 = 1.0;
 
 /// What is asked of [`crosscheck`].
 #[derive(Clone, Debug)]
 pub struct CrosscheckOptions {
-    /// Stochastic method, one of [`LIGHT_METHODS`](crate::LIGHT_METHODS) or [`FIELD_METHODS`]. None:
-    /// light, of scenes of waves surface-sampling.
+    /// Stochastic method, one of [`LIGHT_METHODS`](crate::LIGHT_METHODS) or [`FIELD_METHODS`].
+    /// None: light, of scenes of waves surface-sampling.
     pub method: Option<String>,
     /// Relative error that the solution which is checked is asked for; see [`SolveOptions`].
     pub accuracy: Option<f64>,
@@ -119,8 +120,8 @@ impl Verdict {
 /// that came to into a folder.
 ///
 /// # Errors
-/// What is wrong with the scene or the options; [`ErrorKind::Resources`] before memory is taken that
-/// the limit does not allow; [`ErrorKind::Interrupted`] for a run that was cancelled.
+/// What is wrong with the scene or the options; [`ErrorKind::Resources`] before memory is taken
+/// that the limit does not allow; [`ErrorKind::Interrupted`] for a run that was cancelled.
 pub fn crosscheck(
     source: impl Into<SceneSource>,
     asked: &CrosscheckOptions,
@@ -203,7 +204,8 @@ fn answer<'a>(
     Ok(solved)
 }
 
-/// What the solution says of its error at all places. Links state nothing of single faces, but a norm over all.
+/// What the solution says of its error at all places. Links state nothing of single faces, but a
+/// norm over all.
 fn errors(
     places: &Places,
     (problem, solution): (&Problem, &Solution),
@@ -221,7 +223,8 @@ fn errors(
     }
 }
 
-/// The smallest deviations that would have been found nine times out of ten, over the irradiance, in the worst band.
+/// The smallest deviations that would have been found nine times out of ten, over the irradiance,
+/// in the worst band.
 pub(super) struct Power {
     whole: f64,
     /// Medians.

@@ -1,7 +1,9 @@
-//! What is compared: the irradiance of every face, of every surface and of the whole, in every band.
+//! What is compared: the irradiance of every face, of every surface and of the whole, in every
+//! band.
 //!
-//! A surface or the whole averages over many paths, so that deviations are found there that no face shows by itself. Its stated error is the root mean square of those of its faces,
-//! which is what the error of a mean is at most.
+//! A surface or the whole averages over many paths, so that deviations are found there that no face
+//! shows by itself. Its stated error is the root mean square of those of its faces, which is what
+//! the error of a mean is at most.
 
 use fredholm_mesh::Mesh;
 use fredholm_montecarlo::light::Estimator;
@@ -80,7 +82,8 @@ impl Places {
         self.followed(faces, |x| x * x, f64::sqrt)
     }
 
-    /// What one path brings, W/m²: the emitted power of the band over all paths. Nothing is known of methods that gather.
+    /// What one path brings, W/m²: the emitted power of the band over all paths. Nothing is known
+    /// of methods that gather.
     pub(super) fn single(&self, scene: &Enclosure, state: &State, method: &dyn Estimator) -> Vec<f64> {
         let mut power = vec![0.0; self.bands];
         if !method.gathers() {
@@ -96,7 +99,8 @@ impl Places {
             .collect()
     }
 
-    /// Largest errors of means, W/m², where only √(Σ A δ²) is stated, in W/m: all of it may be the error of one place.
+    /// Largest errors of means, W/m², where only √(Σ A δ²) is stated, in W/m: all of it may be the
+    /// error of one place.
     pub(super) fn of_norms(&self, norms: &[f64]) -> Vec<f64> {
         self.all_areas().iter().flat_map(|area| norms.iter().map(move |norm| norm / area.sqrt())).collect()
     }

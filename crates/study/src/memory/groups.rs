@@ -1,7 +1,8 @@
-//! What the control groups of this process leave it (Linux, Documentation/admin-guide/cgroup-v2.rst and cgroup-v1/memory.rst).
+//! What the control groups of this process leave it (Linux, Documentation/admin-guide/cgroup-v2.rst
+//! and cgroup-v1/memory.rst).
 //!
-//! A group holds no more than each of the groups above it may. What files are cached counts as used there, but is given
-//! back when memory is short, so that it is not taken off the limit.
+//! A group holds no more than each of the groups above it may. What files are cached counts as used
+//! there, but is given back when memory is short, so that it is not taken off the limit.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -40,7 +41,8 @@ pub(super) fn left(root: &Path) -> Option<u128> {
     hierarchies
         .filter_map(|(version, within, point, group)| {
             let top = root.join(point.trim_start_matches('/'));
-            // In a container the group may lie outside of what is mounted: then the mount is the group.
+            // In a container the group may lie outside of what is mounted: then the mount is the
+            // group.
             let below =
                 group.strip_prefix(within.trim_end_matches('/')).unwrap_or("").trim_start_matches('/');
             let mut folder = top.join(below);

@@ -9,11 +9,13 @@ use crate::error::{Error, ErrorKind};
 use crate::size::Bytes;
 use crate::threads::cores;
 
-/// Share of what the machine has left that is used where nothing is asked for: the rest keeps it usable.
+/// Share of what the machine has left that is used where nothing is asked for: the rest keeps it
+/// usable.
 const SHARE: f64 = 0.8;
 /// Limit where the system does not tell what is available.
 const FALLBACK: u128 = 4 << 30;
-/// Address space that a thread sets aside: its stack with what guards it, and its part of the runtime.
+/// Address space that a thread sets aside: its stack with what guards it, and its part of the
+/// runtime.
 const THREAD: u128 = 3 << 20;
 /// Share of a limit on the address space that threads may set aside.
 const SET_ASIDE: u128 = 4;
@@ -48,7 +50,8 @@ pub struct Limit {
     pub(super) spare: Option<u128>,
 }
 
-/// The machine as it was when the process first asked: what the run itself takes must not lower its limit.
+/// The machine as it was when the process first asked: what the run itself takes must not lower its
+/// limit.
 fn machine() -> &'static Machine {
     static MACHINE: OnceLock<Machine> = OnceLock::new();
     MACHINE.get_or_init(|| Machine::read(Path::new("/")))
@@ -108,7 +111,8 @@ impl Machine {
 
     /// Everything that bounds the memory of this process, which holds some already.
     fn bounds(&self, share: f64) -> impl Iterator<Item = Limit> {
-        // Of the address space a part is set aside that is never touched; how much of it is not known before.
+        // Of the address space a part is set aside that is never touched; how much of it is not
+        // known before.
         let aside = |left: u128| left - (left / SET_ASIDE).min(self.threads() as u128 * THREAD);
         let bounds = [
             (self.available.map(|left| (left as f64 * share) as u128), Bound::Available),

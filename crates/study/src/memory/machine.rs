@@ -22,7 +22,8 @@ pub(super) struct Machine {
 }
 
 impl Machine {
-    /// Reads the files below `root`, which is `/` but for tests. What the system does not tell is left out.
+    /// Reads the files below `root`, which is `/` but for tests. What the system does not tell is
+    /// left out.
     pub(super) fn read(root: &Path) -> Self {
         let text = |path: &str| fs::read_to_string(root.join(path)).unwrap_or_default();
         let (status, limits) = (text("proc/self/status"), text("proc/self/limits"));

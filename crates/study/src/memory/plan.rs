@@ -11,7 +11,8 @@ use crate::size::Bytes;
 /// Bytes of the program itself, before there is a scene.
 const PROGRAM: u128 = 10 << 20;
 
-/// Bytes by use: what is held from its beginning on, and what each stage holds besides, of which there is one at a time.
+/// Bytes by use: what is held from its beginning on, and what each stage holds besides, of which
+/// there is one at a time.
 #[derive(Clone, Debug, Default)]
 pub struct Plan {
     held: Vec<Part>,

@@ -1,9 +1,8 @@
-//! Exitances, reflectances and exposed areas of the elements, and the field that follows from what they have received.
-
-use std::ops::ControlFlow;
+//! Exitances, reflectances and exposed areas of the elements, and the field that follows from what
+//! they have received.
 
 use fredholm_coupling::{Constants, Extent, Groups, MeshError, exposed_shares};
-use fredholm_linop::MultiVector;
+use fredholm_linop::{MultiVector, Watch};
 use fredholm_mesh::Patch;
 use fredholm_report::Field;
 
@@ -69,12 +68,13 @@ impl Light {
         Groups::new(&scene.patches(), &kinds, scene.occluders.tolerance())
     }
 
-    /// The stated error of the field so far, of which `unshot` is still to be sent; none where `go_on` breaks.
+    /// The stated error of the field so far, of which `unshot` is still to be sent; none where
+    /// `watch` breaks.
     pub(super) fn error(
         &self,
         scene: &Open,
         (received, unshot): (&MultiVector<f64>, &MultiVector<f64>),
-        go_on: &(dyn Fn() -> ControlFlow<()> + Sync),
+        watch: &dyn Watch,
     ) -> Result<Option<MeshError>, Error> {
         let scaling = self.scaling();
         let radiosity = MultiVector::from_fn(received.dim(), received.lanes(), |i, l| {
@@ -92,7 +92,7 @@ impl Light {
             radiosity: &radiosity,
             irradiance: &irradiance,
         };
-        mesh_error::of_shooting(&scene.mesh, &constants, unshot, go_on)
+        mesh_error::of_shooting(&scene.mesh, &constants, unshot, watch)
     }
 
     /// Means over whole elements, W/m², from the power that each has received.

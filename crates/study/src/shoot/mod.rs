@@ -77,7 +77,8 @@ impl ShootOptions {
 ///
 /// # Errors
 /// What is wrong with the scene; [`Resources`](crate::ErrorKind::Resources) before memory is taken
-/// that the limit does not allow; [`Files`](crate::ErrorKind::Files) with what could not be written.
+/// that the limit does not allow; [`Files`](crate::ErrorKind::Files) with what could not be
+/// written.
 pub fn shoot(
     source: impl Into<SceneSource>,
     asked: &ShootOptions,
@@ -93,7 +94,7 @@ pub fn shoot(
     let job = Job { asked, folder: folder.as_ref(), scene: &scene, light: &light, groups: &groups };
     stages.begin_saving()?;
     let (shots, received, unshot) = stages.run("shots", || job.shoot(&emitters, watch))?;
-    let error = stages.run("errors", || light.error(&scene, (&received, &unshot), &|| watch.go_on()))?;
+    let error = stages.run("errors", || light.error(&scene, (&received, &unshot), watch))?;
     let record = shooting_record(asked, &scene, (shots, error), &emitters, &stages);
     stages.run("results", || job.write(&received, &record))?;
     let record = ShootingRecord { timings: stages.timings().to_vec(), ..record };

@@ -8,7 +8,6 @@ use fredholm_report::{BandSpectrum, Eigenvalues};
 use crate::error::{Error, ErrorKind};
 use crate::solution::solve_failure;
 use crate::stages::Stages;
-use crate::watcher::Watcher;
 
 /// All there is, by dense methods.
 pub(super) fn exact(
@@ -54,20 +53,17 @@ fn list(matrix: &str, values: &[f64]) -> Eigenvalues {
     Eigenvalues { matrix: matrix.to_owned(), values: values.iter().map(|&value| [value, 0.0]).collect() }
 }
 
-/// What sweeps and the Lanczos process tell: the extreme eigenvalues of Θ, which are those of I − R F, and the radius of Gauss–Seidel.
+/// What sweeps and the Lanczos process tell: the extreme eigenvalues of Θ, which are those of I − R
+/// F, and the radius of Gauss–Seidel.
 pub(super) fn estimated(
     system: &SecondKind<'_, f64>,
     bands: &[String],
     steps: usize,
-    watcher: Watcher,
     stages: &mut Stages,
 ) -> Result<Vec<BandSpectrum>, Error> {
-    let ritz = stages.run("Lanczos process", || {
-        ritz_values(system, steps, &mut || watcher.go_on()).map_err(solve_failure)
-    })?;
-    let radii = stages.run("sweeps", || {
-        gauss_seidel_radius(system, steps, &mut || watcher.go_on()).map_err(solve_failure)
-    })?;
+    let watch = stages.watch;
+    let ritz = stages.run("Lanczos process", || ritz_values(system, steps, watch).map_err(solve_failure))?;
+    let radii = stages.run("sweeps", || gauss_seidel_radius(system, steps, watch).map_err(solve_failure))?;
     stages.check()?;
     Ok(bands
         .iter()

@@ -58,8 +58,8 @@ impl SpectrumOptions {
 /// Analyses the matrix of a scene and writes what was found into a folder.
 ///
 /// # Errors
-/// What is wrong with the scene or the options; [`ErrorKind::Resources`] before memory is taken that
-/// the limit does not allow; [`ErrorKind::Interrupted`] for a run that was cancelled.
+/// What is wrong with the scene or the options; [`ErrorKind::Resources`] before memory is taken
+/// that the limit does not allow; [`ErrorKind::Interrupted`] for a run that was cancelled.
 pub fn spectrum(
     source: impl Into<SceneSource>,
     asked: &SpectrumOptions,
@@ -105,7 +105,7 @@ fn analysed<S: Storage>(
     let bands = if dense {
         analysis::exact(&system, problem.scene.bands(), stages)?
     } else {
-        analysis::estimated(&system, problem.scene.bands(), asked.steps as usize, watcher, stages)?
+        analysis::estimated(&system, problem.scene.bands(), asked.steps as usize, stages)?
     };
     let scene = &problem.scene;
     Ok(SpectrumRecord {

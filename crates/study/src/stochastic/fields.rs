@@ -20,7 +20,8 @@ pub const FIELD_METHODS: [&str; 3] = ["surface-sampling", "field-particles", "am
 /// Samples of a batch, and in all, where nothing is asked for.
 const BATCH: u32 = 1024;
 const SAMPLES: u64 = 1 << 16;
-/// Radius of a cell of amplitude particles over the wavelength, and rays that leave each for the second bounce.
+/// Radius of a cell of amplitude particles over the wavelength, and rays that leave each for the
+/// second bounce.
 const CELL: f64 = 0.1;
 const SECOND: u32 = 16;
 
@@ -81,7 +82,8 @@ impl FieldRun {
         if self.bounces == Bounces::One { 1 } else { 2 }
     }
 
-    /// The fields at one frequency, from the beginning or from where an earlier run ended; Ctrl-C ends it before.
+    /// The fields at one frequency, from the beginning or from where an earlier run ended; Ctrl-C
+    /// ends it before.
     pub(crate) fn sample(
         &self,
         model: &Model,

@@ -17,7 +17,8 @@ use crate::problem::{Problem, check, prepare, scene_failure};
 use crate::solution::Solution;
 use crate::stages::Stages;
 
-/// Bytes an element takes while paths are traced: what rays are cast at, densities, the state that is written.
+/// Bytes an element takes while paths are traced: what rays are cast at, densities, the state that
+/// is written.
 const TRACED: u128 = 600;
 /// Vectors of all elements and bands held at once: a wave of batches, sums, means and errors.
 const VECTORS: u128 = fredholm_montecarlo::WAVE as u128 + 10;
@@ -99,8 +100,10 @@ pub(crate) fn control(enclosure: &Enclosure, solution: &Solution, patchwise: boo
     Control::new(enclosure, solution.means.irradiance.as_slice().to_vec(), patchwise).map_err(failure)
 }
 
-/// What a deterministic solution says of the error of the irradiance of each face and band, W/m²: what it states of the whole, errors of the mesh and the form factors together, no less than
-/// the relative error of the scene; or of the form factors alone, their estimated errors times the largest radiosity.
+/// What a deterministic solution says of the error of the irradiance of each face and band, W/m²:
+/// what it states of the whole, errors of the mesh and the form factors together, no less than the
+/// relative error of the scene; or of the form factors alone, their estimated errors times the
+/// largest radiosity.
 pub(crate) fn expected_error(problem: &Problem, solution: &Solution, meshed: bool) -> Vec<f64> {
     let (mesh, bands) = (&problem.mesh, problem.scene.bands().len());
     let radiosity = &solution.means.radiosity;

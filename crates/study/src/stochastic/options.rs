@@ -77,8 +77,8 @@ impl PathOptions {
     }
 }
 
-/// When tracing ends: at the first of what is given. Where nothing is, each study has an error of its
-/// own that it goes on to.
+/// When tracing ends: at the first of what is given. Where nothing is, each study has an error of
+/// its own that it goes on to.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct TraceStop {
     /// Samples in all (of each element where a method gathers), in whole batches.

@@ -32,7 +32,8 @@ const ERROR: f64 = 0.01;
 /// What is asked of [`trace`].
 #[derive(Clone, Debug)]
 pub struct TraceOptions {
-    /// Method, one of [`LIGHT_METHODS`] for scenes of light, of [`FIELD_METHODS`] for those of waves.
+    /// Method, one of [`LIGHT_METHODS`] for scenes of light, of [`FIELD_METHODS`] for those of
+    /// waves.
     pub method: String,
     /// Whether the scene is solved first and only sampled for what the discretisation missed (path,
     /// walk-gathering).
@@ -46,7 +47,8 @@ pub struct TraceOptions {
     pub go_on: bool,
     /// How paths are made.
     pub paths: PathOptions,
-    /// When tracing ends; without anything at a standard error of 1 %, of waves after 65536 samples.
+    /// When tracing ends; without anything at a standard error of 1 %, of waves after 65536
+    /// samples.
     pub stop: TraceStop,
     /// What decides the size and the effort.
     pub problem: ProblemOptions,
@@ -82,13 +84,13 @@ pub struct Traced {
     pub fields: usize,
 }
 
-/// Traces a scene of light, or of waves where the method is one of [`FIELD_METHODS`], and writes the
-/// results into a folder.
+/// Traces a scene of light, or of waves where the method is one of [`FIELD_METHODS`], and writes
+/// the results into a folder.
 ///
 /// # Errors
-/// What is wrong with the scene or the options; [`ErrorKind::Resources`] before memory is taken that
-/// the limit does not allow; [`ErrorKind::Interrupted`] for a run that was cancelled before it had two
-/// batches.
+/// What is wrong with the scene or the options; [`ErrorKind::Resources`] before memory is taken
+/// that the limit does not allow; [`ErrorKind::Interrupted`] for a run that was cancelled before it
+/// had two batches.
 pub fn trace(
     source: impl Into<SceneSource>,
     asked: &TraceOptions,

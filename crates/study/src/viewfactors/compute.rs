@@ -1,13 +1,11 @@
 //! The computation: exchanges, rows, closure, points.
 
 use std::collections::BTreeMap;
-use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use fredholm_coupling::{
     Assembled, Closed, aggregate, assemble_with_errors, enforce_closure, reciprocity, sky_exchanges, with_sky,
 };
-use fredholm_linop::{LinearOperator, PackedSymmetric};
+use fredholm_linop::{LinearOperator, PackedSymmetric, Steps};
 use fredholm_mesh::Patch;
 use fredholm_report::{ClosureChange, SurfaceData, ViewFactors, ViewPoints};
 
@@ -43,7 +41,8 @@ pub(super) fn compute(problem: &Problem, stages: &mut Stages) -> Result<Solution
     let row = |i: usize, row: &mut [f64], errors: &mut [f64]| {
         matrix.row(i, 0, row);
         pair_error.row(i, 0, errors);
-        // The sky sees itself, and the backs of surfaces, wherever it sees no front: as exactly as it sees them.
+        // The sky sees itself, and the backs of surfaces, wherever it sees no front: as exactly as
+        // it sees them.
         if i == sky {
             row[sky] = sky_area - row.iter().sum::<f64>();
             errors[sky] = errors.iter().sum();
@@ -55,7 +54,8 @@ pub(super) fn compute(problem: &Problem, stages: &mut Stages) -> Result<Solution
     Ok(Solution { factors, largest, reciprocity, pairs, enforced })
 }
 
-/// Exchanges of the rows, the sky's included, the errors stated for them (m²), and those of the sums of F.
+/// Exchanges of the rows, the sky's included, the errors stated for them (m²), and those of the
+/// sums of F.
 struct Rows {
     matrix: PackedSymmetric<f64>,
     pair_error: PackedSymmetric<f64>,
@@ -75,9 +75,9 @@ fn rows(
     };
     if let Some(integrator) = problem.sky_integrator() {
         let surfaces = problem.row_of().len();
-        let go_on = counter(stages, surfaces, "elements");
+        let watch = stages.watch;
         let sky =
-            stages.run("sky", || sky_exchanges(&integrator, surfaces, &go_on).map_err(coupling_failure))?;
+            stages.run("sky", || sky_exchanges(&integrator, surfaces, watch).map_err(coupling_failure))?;
         found.add_sky(problem, &sky)?;
     }
     found.row_error.iter_mut().zip(problem.areas()).for_each(|(error, area)| *error /= area);
@@ -95,20 +95,6 @@ impl Rows {
         self.row_error.iter_mut().zip(&error).for_each(|(row, error)| *row += error);
         self.row_error[surfaces] = error.iter().sum();
         Ok(())
-    }
-}
-
-/// Counts steps of `total`, shows them, and says whether the run is still wanted.
-fn counter<'a>(
-    stages: &Stages<'a>,
-    total: usize,
-    things: &'a str,
-) -> impl Fn() -> ControlFlow<()> + Sync + use<'a> {
-    let (watch, done) = (stages.watch, AtomicUsize::new(0));
-    move || {
-        let done = done.fetch_add(1, Ordering::Relaxed);
-        watch.advance(done as f64 / total.max(1) as f64, &|| format!("{done} of {total} {things}"));
-        watch.go_on()
     }
 }
 
@@ -132,22 +118,14 @@ fn exchanges(
     stages: &mut Stages,
 ) -> Result<(Assembled<f64>, PackedSymmetric<f64>), Error> {
     if let Some(method) = &problem.method {
-        let count = counter(stages, problem.row_of().len(), "rows");
-        // A run that is no longer wanted ends by itself: there is nothing to save.
-        let advance = || {
-            let _ = count();
-        };
+        let rows = Steps::new(stages.watch, problem.row_of().len() as u64, "rows");
         let patches = problem.elements();
         let describe = |element| problem.describe(element);
-        let assemble = || method.assemble(&patches, &problem.occluders, &describe, &advance);
+        let assemble = || method.assemble(&patches, &problem.occluders, &describe, &rows);
         return stages.run("assembly", assemble);
     }
     let watch = stages.watch;
-    let watch = |done: u64, total: u64| {
-        watch.advance(done as f64 / total.max(1) as f64, &|| format!("{done} of {total} pairs"));
-        watch.go_on()
-    };
-    stages.run("assembly", || assemble_with_errors(&problem.integrator(), &watch).map_err(coupling_failure))
+    stages.run("assembly", || assemble_with_errors(&problem.integrator(), watch).map_err(coupling_failure))
 }
 
 /// The exchanges of the rows, m².
@@ -217,9 +195,9 @@ fn points(problem: &Problem, stages: &mut Stages) -> Result<Option<ViewPoints>, 
     if problem.receivers.is_empty() {
         return Ok(None);
     }
-    let go_on = counter(stages, problem.receivers.len(), "points");
+    let watch = stages.watch;
     let patches: Vec<&Patch> = problem.patches().collect();
-    let seen = || problem.targets(&patches).factors(&problem.receivers, &go_on).map_err(coupling_failure);
+    let seen = || problem.targets(&patches).factors(&problem.receivers, watch).map_err(coupling_failure);
     let factors = stages.run("points", seen)?;
     let points = problem.receivers.iter().map(|receiver| receiver.point.to_array()).collect();
     let normals = problem.receivers.iter().map(|receiver| receiver.normal.to_array()).collect();

@@ -1,11 +1,12 @@
 //! The methods that form factors can be computed with. This is the one place that knows them.
 //!
-//! `auto` is the fast assembly. Every other method of [`fredholm_coupling::method`] computes A_i F_ij (m²) of one pair after the other, for study. Each pair is computed
-//! once, from the smaller patch (of equal ones the first), so that the matrix is symmetric whether the method is or not.
+//! `auto` is the fast assembly. Every other method of [`fredholm_coupling::method`] computes A_i
+//! F_ij (m²) of one pair after the other, for study. Each pair is computed once, from the smaller
+//! patch (of equal ones the first), so that the matrix is symmetric whether the method is or not.
 
 use fredholm_coupling::method::{Evaluated, FormFactorMethod, MethodError, Setting, method, methods};
 use fredholm_coupling::{Assembled, MethodCounts};
-use fredholm_linop::PackedSymmetric;
+use fredholm_linop::{PackedSymmetric, Steps};
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::Occluders;
 use rayon::prelude::*;
@@ -30,7 +31,8 @@ pub(super) struct Chosen {
 }
 
 impl Chosen {
-    /// The method of a name with the setting given, else the tolerance given, else its usual setting. `None` for [`AUTO`].
+    /// The method of a name with the setting given, else the tolerance given, else its usual
+    /// setting. `None` for [`AUTO`].
     pub(super) fn new(
         name: &str,
         setting: Option<&str>,
@@ -69,16 +71,17 @@ impl Chosen {
         outcome.map(drop).map_err(|error| input(&error))
     }
 
-    /// Computes all pairs and the errors stated for them, m²; `advance` is told of every row from any thread.
+    /// Computes all pairs and the errors stated for them, m²; `steps` counts the rows.
     pub(super) fn assemble(
         &self,
         patches: &[&Patch],
         occluders: &Occluders,
         name: &dyn Fn(usize) -> String,
-        advance: &(dyn Fn() + Sync),
+        steps: &Steps<'_>,
     ) -> Result<(Assembled<f64>, PackedSymmetric<f64>), Error> {
         let row = |i: usize| {
-            advance();
+            // A run that is no longer wanted ends by itself: there is nothing to save.
+            let _ = steps.begin();
             self.row(patches, occluders, i)
         };
         let mut matrix = Matrix::new(patches)?;

@@ -36,8 +36,8 @@ pub fn view_factor_methods() -> Vec<&'static str> {
 /// time of writing too.
 ///
 /// # Errors
-/// What is wrong with the input or the options; [`ErrorKind::Resources`] before memory is taken that
-/// the limit does not allow; [`ErrorKind::Interrupted`] for a run that was cancelled.
+/// What is wrong with the input or the options; [`ErrorKind::Resources`] before memory is taken
+/// that the limit does not allow; [`ErrorKind::Interrupted`] for a run that was cancelled.
 pub fn view_factors(
     asked: &ViewFactorOptions,
     files: &MatrixFiles,

@@ -24,7 +24,8 @@ pub(super) fn help(options: &Settings) -> String {
     format!("use fewer elements{sparse}, or --rows surface")
 }
 
-/// What is held when. The exchanges and the errors stated for them are held from the assembly on, of the rows once they are merged.
+/// What is held when. The exchanges and the errors stated for them are held from the assembly on,
+/// of the rows once they are merged.
 pub(super) fn plan(elements: usize, rows: usize, options: &Settings) -> Plan {
     let packed = |n: usize| u128::from(PackedSymmetric::<f64>::bytes(n));
     let (n, m) = (elements as u128, rows as u128);

@@ -82,7 +82,8 @@ impl Problem {
         format!("element {element} (`{}`)", self.rows.names[self.rows.row_of[element]])
     }
 
-    /// What computes the form factors to the sky, where there is one: the patches of the sky come last.
+    /// What computes the form factors to the sky, where there is one: the patches of the sky come
+    /// last.
     pub(super) fn sky_integrator(&self) -> Option<PairIntegrator<'_>> {
         let integrator = || PairIntegrator::new(self.patches(), &self.occluders, self.options.tolerance);
         (!self.sky.is_empty()).then(integrator)

@@ -11,7 +11,8 @@ use super::problem::Problem;
 use crate::memory;
 use crate::stages::Stages;
 
-/// Row errors, in tolerances, that are reported: the tolerance is a pair's, and the errors of a row add up to about twice as much.
+/// Row errors, in tolerances, that are reported: the tolerance is a pair's, and the errors of a row
+/// add up to about twice as much.
 const ROW: f64 = 3.0;
 /// Estimated error of a row that may be rounding alone.
 const ROUNDING: f64 = 1e-11;

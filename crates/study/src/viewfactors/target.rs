@@ -21,12 +21,12 @@ pub struct MatrixFiles {
 
 impl MatrixFiles {
     /// Chooses the files and makes sure, before anything is computed, that they can be written:
-    /// `output`, or else `out/` and the name of the input, in the form asked for, or else that of the
-    /// ending of the name.
+    /// `output`, or else `out/` and the name of the input, in the form asked for, or else that of
+    /// the ending of the name.
     ///
     /// # Errors
-    /// [`ErrorKind::Input`] for a name whose form is not known, or which is that of a file beside the
-    /// matrix; [`ErrorKind::Files`] where they cannot be written.
+    /// [`ErrorKind::Input`] for a name whose form is not known, or which is that of a file beside
+    /// the matrix; [`ErrorKind::Files`] where they cannot be written.
     pub fn new(input: &Path, output: Option<&Path>, form: Option<MatrixFormat>) -> Result<Self, Error> {
         let stem = input.file_stem().unwrap_or_else(|| "F".as_ref());
         let default = || Path::new("out").join(stem).with_added_extension("npz");

@@ -1,4 +1,5 @@
-//! Solvers compared on the coupling of a scene: iterations, residuals, the spectral radius, and which of them diverge.
+//! Solvers compared on the coupling of a scene: iterations, residuals, the spectral radius, and
+//! which of them diverge.
 
 use fredholm_linop::{SecondKind, Solver, Stop, StopReason};
 use fredholm_report::{ComparisonRun, WAVE_COMPARISON_FORMAT, WaveComparison, WaveComparisonCase};
@@ -77,7 +78,7 @@ fn build(text: &str) -> Result<Box<dyn Solver<Complex64>>, Error> {
 }
 
 fn radius(system: &System<'_>, signals: &Signals<'_>) -> Result<f64, Error> {
-    spectral_radius(system.coupling(), STEPS, &mut || signals.watch.go_on()).ok_or_else(Error::cancelled)
+    spectral_radius(system.coupling(), STEPS, signals.watch).ok_or_else(Error::cancelled)
 }
 
 fn run(

@@ -122,7 +122,8 @@ impl Task<'_> {
         Solved { frequency, facets, residuals, reason }
     }
 
-    /// What a second bounce would add, where errors are to be estimated; it is not asked of the runs that do so.
+    /// What a second bounce would add, where errors are to be estimated; it is not asked of the
+    /// runs that do so.
     fn first_residuals(&self, signals: &Signals<'_>) -> Result<Vec<f64>, Error> {
         if self.model.coarse.is_none() || !self.variant.name.is_empty() {
             return Ok(Vec::new());

@@ -1,5 +1,5 @@
-//! Estimates of the error of the scattered E at the receivers and of their far fields, relative in the L² norm over the
-//! points or directions of each.
+//! Estimates of the error of the scattered E at the receivers and of their far fields, relative in
+//! the L² norm over the points or directions of each.
 //!
 //! | estimate | from |
 //! |---|---|

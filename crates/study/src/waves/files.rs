@@ -1,4 +1,5 @@
-//! The files of a result folder. `run.json` is written last: where it stands, the folder is complete.
+//! The files of a result folder. `run.json` is written last: where it stands, the folder is
+//! complete.
 
 use std::fs;
 use std::io;

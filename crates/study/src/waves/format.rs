@@ -1,4 +1,5 @@
-//! The format of scenes of waves, as it is written. Names say units and conventions; unknown keys are refused.
+//! The format of scenes of waves, as it is written. Names say units and conventions; unknown keys
+//! are refused.
 
 use std::collections::BTreeMap;
 
@@ -43,7 +44,8 @@ pub(super) struct WaveEntry {
     pub max_iterations: Option<u32>,
     /// Add the edge currents that physical optics lacks. Default: false.
     pub edge_currents: Option<At<bool>>,
-    /// Estimate the errors by two more runs: edges twice as long, and the magnetic form. Default: false.
+    /// Estimate the errors by two more runs: edges twice as long, and the magnetic form. Default:
+    /// false.
     #[serde(default)]
     pub estimate_errors: bool,
 }
@@ -52,8 +54,8 @@ pub(super) struct WaveEntry {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, tag = "kind", rename_all = "kebab-case")]
 pub(super) enum SourceEntry {
-    /// E = E₀ ê e^{−jk K̂·r}: travels along `travel`, or comes from the direction with these angles (θ from +z, φ from +x
-    /// about z).
+    /// E = E₀ ê e^{−jk K̂·r}: travels along `travel`, or comes from the direction with these angles
+    /// (θ from +z, φ from +x about z).
     PlaneWave {
         travel: Option<[f64; 3]>,
         from_theta_degrees: Option<f64>,

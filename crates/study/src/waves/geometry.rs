@@ -27,7 +27,8 @@ pub(crate) struct Geometry {
 }
 
 impl Geometry {
-    /// Cuts the surfaces for the shortest wavelength, with edges `stretch` times as long as the scene says, where `admit` allows so many facets.
+    /// Cuts the surfaces for the shortest wavelength, with edges `stretch` times as long as the
+    /// scene says, where `admit` allows so many facets.
     pub(super) fn new(
         scene: &SceneText,
         entry: SceneEntrySurfaces<'_>,

@@ -3,11 +3,13 @@
 use super::format::{AnglesEntry, FarEntry, ReceiverEntry, SceneEntry};
 use crate::memory::Plan;
 
-/// Bytes of a facet: its patch in the mesh, its frame, what blocks the view, radiating points, and the arrays of its file.
+/// Bytes of a facet: its patch in the mesh, its frame, what blocks the view, radiating points, and
+/// the arrays of its file.
 const FACET: u128 = 490;
 /// Bytes of a facet and frequency: its currents, and their arrays in the file.
 const CURRENTS: u128 = 240;
-/// Bytes of a receiver's point, and of a row of it at one frequency while the fields are put together and written.
+/// Bytes of a receiver's point, and of a row of it at one frequency while the fields are put
+/// together and written.
 const POINT: u128 = 24;
 const ROW: u128 = 716;
 /// Bytes of a facet in a coupling: its frame in lanes, and the blocks of what is near.

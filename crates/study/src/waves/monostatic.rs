@@ -1,4 +1,5 @@
-//! Monostatic sweeps: plane waves from every direction, along θ̂ and φ̂, and what each sends back along both.
+//! Monostatic sweeps: plane waves from every direction, along θ̂ and φ̂, and what each sends back
+//! along both.
 
 use fredholm_mesh::Vec3;
 use fredholm_report::MonostaticRow;

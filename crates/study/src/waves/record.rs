@@ -38,7 +38,8 @@ pub(crate) struct Outcome {
     pub(crate) solved: Vec<Solved>,
     /// Estimated relative errors of E at the receivers from the mesh.
     pub(crate) mesh_errors: Vec<Estimated>,
-    /// Half the difference between the electric and the magnetic form: what physical optics itself may be wrong by.
+    /// Half the difference between the electric and the magnetic form: what physical optics itself
+    /// may be wrong by.
     pub(crate) form_errors: Vec<Estimated>,
 }
 

@@ -13,7 +13,8 @@ use crate::memory::Plan;
 use crate::prediction::of_threads;
 use crate::stages::Signals;
 
-/// Solvers that ask for products only: where the matrix does not fit, they compute it anew each time.
+/// Solvers that ask for products only: where the matrix does not fit, they compute it anew each
+/// time.
 const PRODUCTS_ONLY: [&str; 4] = ["neumann", "gmres", "bicgstab", "anderson"];
 
 pub(super) type Vectors = MultiVector<Complex64>;
@@ -56,7 +57,8 @@ pub(super) fn lazy<'a>(
     System::lazy(scatterer, wave, shadow).map_err(|error: WaveError| model.refused(&error, None))
 }
 
-/// The system for these solvers: stored where it fits, else evaluated anew for those that ask for products only.
+/// The system for these solvers: stored where it fits, else evaluated anew for those that ask for
+/// products only.
 pub(super) fn coupled<'a>(
     model: &Model,
     scatterer: &'a Scatterer,
@@ -113,10 +115,10 @@ pub(super) fn bounced(
     count: usize,
     signals: &Signals<'_>,
 ) -> Result<Solution, Error> {
-    let sum = Bounces::sum(system.coupling(), b, count, &mut || signals.watch.go_on())
-        .ok_or_else(Error::cancelled)?;
+    let sum = Bounces::sum(system.coupling(), b, count, signals.watch).ok_or_else(Error::cancelled)?;
     let residuals: Vec<f64> = sum.residuals.iter().map(|lanes| worst(lanes)).collect();
-    // A next bounce stronger than what comes from the sources: the sum is no approximation of anything.
+    // A next bounce stronger than what comes from the sources: the sum is no approximation of
+    // anything.
     match residuals.last() {
         Some(&last) if count > 1 && (last > 1.0 || last.is_nan()) => {
             Err(diverged("the sum of bounces", &residuals))

@@ -52,9 +52,9 @@ pub struct SolvedWaves<'a> {
 ///
 /// # Errors
 /// What is wrong with the scene, with line and column; [`Resources`](crate::ErrorKind::Resources)
-/// before memory is taken that the limit does not allow; [`NotConverged`](crate::ErrorKind::NotConverged)
-/// for a method that diverges; [`Interrupted`](crate::ErrorKind::Interrupted) for a run that was
-/// cancelled.
+/// before memory is taken that the limit does not allow;
+/// [`NotConverged`](crate::ErrorKind::NotConverged) for a method that diverges;
+/// [`Interrupted`](crate::ErrorKind::Interrupted) for a run that was cancelled.
 pub fn waves<'a>(
     scene: impl AsRef<Path>,
     asked: &WaveOptions,
@@ -67,8 +67,8 @@ pub fn waves<'a>(
     Ok(SolvedWaves { model, outcome, stages })
 }
 
-/// Runs solvers on the coupling of a scene of waves, whose file is given, and writes how they did into
-/// a folder.
+/// Runs solvers on the coupling of a scene of waves, whose file is given, and writes how they did
+/// into a folder.
 ///
 /// # Errors
 /// As [`waves`].
@@ -90,7 +90,8 @@ pub fn compare_waves(
     Ok((record, if any { Ended::NotConverged } else { Ended::Done }))
 }
 
-/// Fails where a text such as `gmres:restart=100` names no solver of complex systems with its options.
+/// Fails where a text such as `gmres:restart=100` names no solver of complex systems with its
+/// options.
 ///
 /// # Errors
 /// What is wrong with the name or the options.
@@ -147,8 +148,8 @@ impl SolvedWaves<'_> {
         &self.outcome.solved
     }
 
-    /// Estimated errors of the scattered fields at the receivers from the mesh, where the scene asks
-    /// for estimates.
+    /// Estimated errors of the scattered fields at the receivers from the mesh, where the scene
+    /// asks for estimates.
     #[must_use]
     pub fn mesh_errors(&self) -> &[Estimated] {
         &self.outcome.mesh_errors
@@ -170,8 +171,8 @@ impl SolvedWaves<'_> {
     /// Writes all results into a folder, which is made where it does not exist.
     ///
     /// # Errors
-    /// [`Files`](crate::ErrorKind::Files) with the file that could not be written; the folder then has
-    /// no `run.json`.
+    /// [`Files`](crate::ErrorKind::Files) with the file that could not be written; the folder then
+    /// has no `run.json`.
     pub fn write(&mut self, folder: impl AsRef<Path>) -> Result<(), Error> {
         let timings = self.stages.timings().to_vec();
         let Self { model, outcome, stages } = self;

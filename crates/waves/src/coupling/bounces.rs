@@ -5,9 +5,8 @@
 //! Wilkinson, The Algebraic Eigenvalue Problem, Oxford 1965, ch. 9): above 1 the series diverges. The power method
 //! carries on from an arbitrary start, since the incident wave may miss what grows.
 
-use fredholm_linop::{LinearOperator, MultiVector};
+use fredholm_linop::{LinearOperator, MultiVector, Watch};
 use num_complex::Complex64;
-use std::ops::ControlFlow;
 
 type Vectors = MultiVector<Complex64>;
 
@@ -21,13 +20,13 @@ pub struct Bounces {
 }
 
 impl Bounces {
-    /// x after `count` bounces (at least one is summed), or `None` where `poll` breaks.
+    /// x after `count` bounces (at least one is summed), or `None` where `watch` breaks.
     #[must_use]
     pub fn sum(
         coupling: &dyn LinearOperator<Complex64>,
         b: &Vectors,
         count: usize,
-        poll: &mut dyn FnMut() -> ControlFlow<()>,
+        watch: &dyn Watch,
     ) -> Option<Self> {
         let scale = b.norms();
         let relative = |term: &Vectors| {
@@ -38,7 +37,7 @@ impl Bounces {
         let one = vec![Complex64::ONE; b.lanes()];
         let mut term = b.clone();
         for bounce in 1..=count.max(1) {
-            if poll().is_break() {
+            if watch.go_on().is_break() {
                 return None;
             }
             term = product(coupling, &term);
@@ -51,17 +50,17 @@ impl Bounces {
     }
 }
 
-/// ϱ(K) as the mean growth of a vector over the later half of `steps` applications, or `None` where `poll` breaks.
+/// ϱ(K) as the mean growth of a vector over the later half of `steps` applications, or `None` where `watch` breaks.
 #[must_use]
 pub fn spectral_radius(
     coupling: &dyn LinearOperator<Complex64>,
     steps: usize,
-    poll: &mut dyn FnMut() -> ControlFlow<()>,
+    watch: &dyn Watch,
 ) -> Option<f64> {
     let mut x = Vectors::from_fn(coupling.dim(), 1, |i, _| Complex64::new((1.7 * i as f64).cos(), 0.3));
     let mut growth = 0.0;
     for step in 0..steps {
-        if poll().is_break() {
+        if watch.go_on().is_break() {
             return None;
         }
         let y = product(coupling, &x);
@@ -85,9 +84,16 @@ fn product(coupling: &dyn LinearOperator<Complex64>, x: &Vectors) -> Vectors {
 mod tests {
     use super::*;
     use fredholm_linop::Dense;
+    use fredholm_linop::Quiet;
+    use std::ops::ControlFlow;
 
-    fn go_on() -> ControlFlow<()> {
-        ControlFlow::Continue(())
+    /// Whoever wants nothing.
+    struct Cancelled;
+
+    impl Watch for Cancelled {
+        fn go_on(&self) -> ControlFlow<()> {
+            ControlFlow::Break(())
+        }
     }
 
     fn dense(dim: usize, entries: &[[f64; 2]]) -> Dense<Complex64> {
@@ -98,10 +104,10 @@ mod tests {
     #[test]
     fn the_radius_is_that_of_the_largest_eigenvalue() {
         let triangular = dense(2, &[[0.0, 0.5], [1.0, 0.0], [0.0, 0.0], [-0.25, 0.0]]);
-        assert!((spectral_radius(&triangular, 200, &mut go_on).unwrap() - 0.5).abs() < 1e-9);
+        assert!((spectral_radius(&triangular, 200, &Quiet).unwrap() - 0.5).abs() < 1e-9);
         let nothing = dense(2, &[[0.0, 0.0]; 4]);
-        assert_eq!(spectral_radius(&nothing, 10, &mut go_on), Some(0.0));
-        assert_eq!(spectral_radius(&triangular, 10, &mut || ControlFlow::Break(())), None);
+        assert_eq!(spectral_radius(&nothing, 10, &Quiet), Some(0.0));
+        assert_eq!(spectral_radius(&triangular, 10, &Cancelled), None);
     }
 
     /// With K = ½ the sum of n bounces is 2 − 2^{1−n}, its residual 2^{−n}.
@@ -110,7 +116,7 @@ mod tests {
         let half = dense(1, &[[0.5, 0.0]]);
         let b = Vectors::from_fn(1, 1, |_, _| Complex64::ONE);
         for count in 1..6 {
-            let sum = Bounces::sum(&half, &b, count, &mut go_on).unwrap();
+            let sum = Bounces::sum(&half, &b, count, &Quiet).unwrap();
             let tail = 0.5_f64.powi(count as i32);
             assert!((sum.x.row(0)[0].re - 2.0 * (1.0 - tail)).abs() < 1e-15);
             assert_eq!(sum.residuals.len(), count + 1);
