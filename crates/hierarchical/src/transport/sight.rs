@@ -10,7 +10,7 @@ use super::spread::{STEEP, open_factor};
 use fredholm_coupling::form_factor::VisibleParts;
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::Occluders;
-use fredholm_visibility::body::{Bodies, Body, Room, Shadow};
+use fredholm_visibility::body::{Bodies, Body, Shadow, ShadowVolume};
 
 /// Bodies in a scene up to which points see exactly.
 const FEW: usize = 256;
@@ -46,7 +46,7 @@ pub(crate) enum View {
 pub(crate) struct Viewer<'a> {
     sight: Sight<'a>,
     parts: VisibleParts<'a>,
-    room: Room,
+    volume: ShadowVolume,
     between: Vec<u32>,
     segments: Segments,
     pub front: Vec<Vec3>,
@@ -58,7 +58,7 @@ impl<'a> Viewer<'a> {
         Self {
             sight,
             parts,
-            room: Room::default(),
+            volume: ShadowVolume::default(),
             between: Vec::new(),
             segments: Segments::default(),
             front: Vec::new(),
@@ -83,7 +83,7 @@ impl<'a> Viewer<'a> {
         if reaching.peek().is_none() {
             return View::Open;
         }
-        if reaching.any(|body| blocks(body, a, b, bodies.tolerance(), &mut self.room)) {
+        if reaching.any(|body| blocks(body, a, b, bodies.tolerance(), &mut self.volume)) {
             return View::Nothing;
         }
         let (xs, ys) = (Points::of(a), Points::of(b));
@@ -151,9 +151,9 @@ fn side(points: &Points, [open, seen]: [[f64; POINTS]; 2]) -> Option<(f64, Side)
 }
 
 /// Whether a convex body is across every segment between two patches: what holds for their corners holds for all of their points.
-fn blocks(body: &Body, a: &Patch, b: &Patch, tolerance: f64, room: &mut Room) -> bool {
-    a.corners().iter().all(|&x| match body.shadow(x, tolerance, room) {
+fn blocks(body: &Body, a: &Patch, b: &Patch, tolerance: f64, volume: &mut ShadowVolume) -> bool {
+    a.corners().iter().all(|&x| match body.shadow(x, tolerance, volume) {
         Shadow::Nothing => false,
-        Shadow::Room => b.corners().iter().all(|&y| room.holds(&[y - x])),
+        Shadow::Volume => b.corners().iter().all(|&y| volume.holds(&[y - x])),
     })
 }
