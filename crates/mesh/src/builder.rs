@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::facet::Facet;
-use crate::mesh::{Element, Face, Mesh, Surface};
+use crate::mesh::{Cut, Element, Face, Mesh, Surface};
 use crate::solid::Solid;
 use crate::{Cutting, MeshError, Patch, Shape, Vec3};
 
@@ -72,13 +72,18 @@ impl MeshBuilder {
         let solid = Solid::new(shape)?;
         self.check_room(solid.count(cutting)?)?;
         let (faces, elements) = (self.mesh.faces.len(), self.mesh.elements.len());
+        let occluders = self.mesh.occluders.len();
         let outcome = self.cut(&solid, cutting, shape.is_inward() != cutting.flipped);
         if outcome.is_err() {
             self.mesh.faces.truncate(faces);
             self.mesh.elements.truncate(elements);
             self.mesh.leaves.truncate(elements);
         }
-        outcome.map(|()| faces..self.mesh.faces.len())
+        outcome?;
+        let faces = faces..self.mesh.faces.len();
+        let occluders = occluders..self.mesh.occluders.len();
+        self.mesh.shapes.push(Cut { faces: faces.clone(), occluders });
+        Ok(faces)
     }
 
     /// The finished mesh.

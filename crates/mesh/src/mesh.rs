@@ -1,5 +1,7 @@
 //! The mesh: surfaces, faces, and the element trees of the faces.
 
+use std::ops::Range;
+
 use crate::{Bounds, Patch, Vec3};
 
 /// A named surface of the scene.
@@ -45,6 +47,15 @@ pub struct Mesh {
     pub(crate) elements: Vec<Element>,
     pub(crate) leaves: Vec<usize>,
     pub(crate) occluders: Vec<Patch>,
+    /// What each shape was cut into.
+    pub(crate) shapes: Vec<Cut>,
+}
+
+/// The faces of a shape and the occluders that stand for it, as ranges of their numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Cut {
+    pub faces: Range<usize>,
+    pub occluders: Range<usize>,
 }
 
 impl Mesh {

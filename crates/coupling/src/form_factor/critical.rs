@@ -1,17 +1,17 @@
 //! Where on a source patch the hidden part of a target is not a smooth function: critical lines.
 //!
-//! Seen from a point x, the shadow of a convex body on a polygon changes its kind where a corner of the body lines up with an edge of the target, an edge of the body
+//! Seen from a point x, the shadow of a convex body on a polygon changes its topology where a corner of the body lines up with an edge of the target, an edge of the body
 //! with a corner of the target, or a face of the body turns edge-on. Each of these happens on a plane, which meets the source in a line:
 //! vertex–edge, edge–vertex and face events. C. Campbell & D. Fussell, "An analytic approach to illumination with area light sources" (1991);
 //! G. Drettakis & E. Fiume, SIGGRAPH 1994, doi:10.1145/192161.192207. The same happens between two bodies. Events
 //! of three edges are curves and not listed.
 
-use super::lineup::{Aligned, Lineup, Place};
-use super::sighting::{Event, Sighting, Sightings, chord};
+use super::ev_batch::{Aligned, EdgeVertexBatch, Region};
+use super::ev_events::{CriticalPlane, EdgeVertexEvent, EdgeVertexEvents, chord};
 use fredholm_mesh::Vec3;
 use fredholm_visibility::body::{ODD, Screen};
 
-/// Lines that are listed at most: among many, most do not show, and a part that any of them cuts counts as not smooth.
+/// Lines that are listed at most: among many, most are not active, and a part that any of them cuts counts as not smooth.
 const LINES: usize = 400;
 
 /// A plane n·x = c with a unit normal.
@@ -23,18 +23,18 @@ const CORNERS: usize = 8;
 /// A plane that cuts the source, and the heights of the corners of the source over it.
 #[derive(Clone, Copy, Debug)]
 struct Line {
-    event: Event,
+    event: CriticalPlane,
     heights: [f64; CORNERS],
 }
 
 /// Critical planes, and buffers.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Critical {
-    events: Vec<Event>,
-    sightings: Sightings,
+    events: Vec<CriticalPlane>,
+    ev_events: EdgeVertexEvents,
     found: Vec<Line>,
     keyed: Vec<(f64, Line)>,
-    lineup: Lineup,
+    batch: EdgeVertexBatch,
     /// Corners that can show in the outlines, body after body, and where those of each body end.
     corners: Vec<Vec3>,
     ends: Vec<usize>,
@@ -50,11 +50,11 @@ impl Critical {
         target: &[Vec3],
         screens: &[Screen],
         flat: f64,
-    ) -> (&[Event], &Sightings) {
-        let Self { events, sightings, found, keyed, lineup, corners, ends, sides } = self;
+    ) -> (&[CriticalPlane], &EdgeVertexEvents) {
+        let Self { events, ev_events, found, keyed, batch, corners, ends, sides } = self;
         found.clear();
-        sightings.clear();
-        let mut search = Search { source, target, flat, sightings, found, keyed, lineup };
+        ev_events.clear();
+        let mut search = Search { source, target, flat, ev_events, found, keyed, batch };
         search.turning(screens);
         list_corners(screens, corners, ends);
         sides.clear();
@@ -63,7 +63,7 @@ impl Critical {
         search.all(&Outlines { screens, corners, ends }, &whole);
         events.clear();
         events.extend(found.iter().map(|line| line.event));
-        (events, sightings)
+        (events, ev_events)
     }
 }
 
@@ -126,10 +126,10 @@ struct Search<'a> {
     source: &'a [Vec3],
     target: &'a [Vec3],
     flat: f64,
-    sightings: &'a mut Sightings,
+    ev_events: &'a mut EdgeVertexEvents,
     found: &'a mut Vec<Line>,
     keyed: &'a mut Vec<(f64, Line)>,
-    lineup: &'a mut Lineup,
+    batch: &'a mut EdgeVertexBatch,
 }
 
 impl Search<'_> {
@@ -137,7 +137,8 @@ impl Search<'_> {
     fn turning(&mut self, screens: &[Screen]) {
         for (face, cuts) in screens.iter().flat_map(Screen::turning) {
             let plane = (face.normal, face.offset);
-            let line = self.line(if cuts { Event::always(plane) } else { Event::perhaps(plane) });
+            let line =
+                self.line(if cuts { CriticalPlane::always(plane) } else { CriticalPlane::perhaps(plane) });
             if self.known(&line).is_none() {
                 self.found.push(line);
             }
@@ -165,42 +166,42 @@ impl Search<'_> {
 
     /// Events where the outline `near` lines up with `far` behind it. Those of two bodies matter only in front of the target.
     fn events(&mut self, near: &Outline, far: &Outline, before: bool) {
-        self.lineup.clear();
+        self.batch.clear();
         for &edge in near.edges {
             for &corner in far.corners {
-                self.lineup.push(&Sighting { corner, edge, behind: false });
+                self.batch.push(&EdgeVertexEvent { corner, edge, behind: false });
             }
         }
         let edges = near.edges.len() * far.corners.len();
         for &corner in near.corners {
             for &edge in far.edges {
-                self.lineup.push(&Sighting { corner, edge, behind: true });
+                self.batch.push(&EdgeVertexEvent { corner, edge, behind: true });
             }
         }
         let target = before.then_some(self.target);
-        self.lineup.ask(Place { source: self.source, target, flat: self.flat });
-        for k in 0..self.lineup.found().len() {
-            let Aligned { pair, plane } = self.lineup.found()[k];
+        self.batch.ask(Region { source: self.source, target, flat: self.flat });
+        for k in 0..self.batch.found().len() {
+            let Aligned { pair, plane } = self.batch.found()[k];
             let sure = !before
                 && match pair.checked_sub(edges) {
                     None => near.is_sure(pair / far.corners.len()),
                     Some(pair) => near.is_sure_corner(near.corners[pair / far.edges.len()]),
                 };
-            self.event(self.lineup.get(pair), plane, sure);
+            self.event(self.batch.get(pair), plane, sure);
         }
     }
 
-    fn event(&mut self, sighting: Sighting, plane: Plane, sure: bool) {
-        let mut line = self.line(Event::new(plane));
+    fn event(&mut self, ev_event: EdgeVertexEvent, plane: Plane, sure: bool) {
+        let mut line = self.line(CriticalPlane::new(plane));
         let known = self.known(&line);
         let event = known.map_or(&mut line.event, |k| &mut self.found[k].event);
-        self.sightings.add(event, sighting, sure);
+        self.ev_events.add(event, ev_event, sure);
         if known.is_none() {
             self.found.push(line);
         }
     }
 
-    fn line(&self, event: Event) -> Line {
+    fn line(&self, event: CriticalPlane) -> Line {
         let mut heights = [0.0; CORNERS];
         for (height, x) in heights.iter_mut().zip(self.source) {
             *height = event.plane.0.dot(*x) - event.plane.1;

@@ -4,9 +4,9 @@
 //! apart, which keeps the singularity of touching patches out of this integral.
 
 use super::critical::Critical;
+use super::ev_events::CriticalPlane;
 use super::pieces::{Breaks, Pieces, PiecesWork};
-use super::shadow::Kind;
-use super::sighting::Event;
+use super::shadow::Topology;
 use super::together::Together;
 use super::{Segment, point_to_polygon, to_segments};
 use fredholm_mesh::Vec3;
@@ -28,7 +28,7 @@ pub(crate) struct Occluded<'a> {
 
 impl Occluded<'_> {
     /// The form factor h at each of the `points`.
-    fn hidden(&self, points: &[Vec3], together: &mut Together, found: &mut Vec<(f64, Kind)>) {
+    fn hidden(&self, points: &[Vec3], together: &mut Together, found: &mut Vec<(f64, Topology)>) {
         together.hidden_factors(points, (self.normal, self.target), self.screens, found);
     }
 }
@@ -46,11 +46,11 @@ pub(crate) struct HiddenWork {
 pub(crate) fn hidden_exchange(scene: &Occluded, goal: f64, work: &mut HiddenWork) -> Estimate {
     let HiddenWork { together, critical, pieces, edges } = work;
     let steep = Steep::of(scene, edges);
-    let (events, sightings) = critical.events(scene.source, scene.target, scene.screens, scene.tolerance);
+    let (events, ev_events) = critical.events(scene.source, scene.target, scene.screens, scene.tolerance);
     let most = |x: Vec3| point_to_polygon(scene.normal, scene.target.iter().map(|&y| y - x));
-    let sure = scene.screens.len() == 1 && events.iter().all(Event::is_sure);
+    let sure = scene.screens.len() == 1 && events.iter().all(CriticalPlane::is_sure);
     let breaks =
-        Breaks { events, sightings, sure, flat: scene.tolerance, distance: |x| steep.distance(x), most };
+        Breaks { events, ev_events, sure, flat: scene.tolerance, distance: |x| steep.distance(x), most };
     let h = |points: &[Vec3], found: &mut Vec<_>| scene.hidden(points, together, found);
     Pieces::new(h, breaks, pieces, goal).integrate(scene.source, scene.open)
 }

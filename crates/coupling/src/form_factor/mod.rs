@@ -4,11 +4,12 @@
 
 pub(crate) mod contour;
 mod critical;
+mod ev_batch;
+mod ev_events;
 mod facing;
 mod hidden;
 mod jacobian;
 mod lanes;
-mod lineup;
 mod packet;
 mod pair;
 mod pieces;
@@ -16,7 +17,6 @@ mod point_polygon;
 mod rung;
 mod sampled;
 mod shadow;
-mod sighting;
 mod small_receiver;
 mod together;
 mod unoccluded;

@@ -8,9 +8,9 @@
 
 use super::lanes::{LANES, Lanes, Lanes3, Mask, ask, cross, difference, each, heights, same};
 use super::point_polygon::{edge_terms, factor};
-use super::shadow::{Kind, Maker};
+use super::shadow::{SideId, Topology};
 use fredholm_mesh::Vec3;
-use fredholm_visibility::body::{Looking, Rim, Room, Screen, Shadow};
+use fredholm_visibility::body::{Looking, Screen, Shadow, ShadowVolume, SilhouetteEdge};
 use pulp::{Arch, NullaryFnOnce};
 
 /// Points of a packet at most.
@@ -23,7 +23,7 @@ const MOST: usize = 32;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Target<'a> {
     pub corners: &'a [Vec3],
-    pub makers: &'a [Maker],
+    pub side_ids: &'a [SideId],
     pub normal: Vec3,
 }
 
@@ -40,13 +40,13 @@ enum Side {
 #[derive(Clone, Copy, Debug)]
 struct Polygon {
     corners: [Lanes3; MOST],
-    makers: [Maker; MOST],
+    side_ids: [SideId; MOST],
     len: usize,
 }
 
 impl Default for Polygon {
     fn default() -> Self {
-        Self { corners: [[[0.0; LANES]; 3]; MOST], makers: [0; MOST], len: 0 }
+        Self { corners: [[[0.0; LANES]; 3]; MOST], side_ids: [0; MOST], len: 0 }
     }
 }
 
@@ -70,9 +70,9 @@ impl Default for Cover {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Packet {
     arch: Arch,
-    sides: Vec<(Side, Maker)>,
+    sides: Vec<(Side, SideId)>,
     cover: Cover,
-    room: Room,
+    volume: ShadowVolume,
 }
 
 /// The points that are left, by their places.
@@ -109,9 +109,9 @@ impl Left {
     }
 }
 
-/// What is found for each point: the factor of the hidden part and its kind, and the shadows that meet the target.
+/// What is found for each point: the factor of the hidden part and its topology, and the shadows that meet the target.
 pub(super) struct Found<'a> {
-    pub hidden: &'a mut [(f64, Kind)],
+    pub hidden: &'a mut [(f64, Topology)],
     pub shadows: &'a mut [Shadows],
 }
 
@@ -165,12 +165,12 @@ impl Packet {
         while left.len > 0 {
             let leader = looking[left.places[0]];
             if listed != leader {
-                self.list(screen, leader, Kind::first(body));
+                self.list(screen, leader, Topology::first(body));
                 listed = leader;
             }
             let differs = if leader.is_none() || target.corners.len() + self.sides.len() > MOST {
                 let alone = left.places[0];
-                let nothing = screen.shadow(points[alone], &mut self.room) == Shadow::Nothing;
+                let nothing = screen.shadow(points[alone], &mut self.volume) == Shadow::Nothing;
                 if !nothing {
                     found.shadows[alone].leave(body);
                 }
@@ -193,11 +193,11 @@ impl Packet {
         found: &mut Found,
     ) -> Mask {
         if let Some(factors) = self.ask(&left.lanes(points), target, screen, &mut differs) {
-            let kind = Kind::of(self.cover.makers());
+            let topology = Topology::of(self.cover.side_ids());
             for m in (0..left.len).filter(|m| differs[*m] == 0) {
                 let point = left.places[m];
                 found.hidden[point].0 += factors[m];
-                found.hidden[point].1.merge(kind);
+                found.hidden[point].1.merge(topology);
                 found.shadows[point].add(body);
             }
         }
@@ -205,13 +205,13 @@ impl Packet {
     }
 
     /// Lists the half-spaces.
-    fn list(&mut self, screen: &Screen, looking: Option<Looking>, first: Maker) {
+    fn list(&mut self, screen: &Screen, looking: Option<Looking>, first: SideId) {
         self.sides.clear();
         let Some(looking) = looking else { return };
         for (k, face) in screen.faces(looking) {
             self.sides.push((Side::Face(face.normal, face.offset), first + k));
         }
-        for Rim { number, place, turned } in screen.rim(looking) {
+        for SilhouetteEdge { number, place, turned } in screen.silhouette(looking) {
             self.sides.push((Side::Edge { place, turned }, first + number));
         }
     }
@@ -228,7 +228,7 @@ impl Packet {
 struct Ask<'a> {
     points: &'a Lanes3,
     target: Target<'a>,
-    sides: &'a [(Side, Maker)],
+    sides: &'a [(Side, SideId)],
     edges: &'a [[Vec3; 2]],
     tolerance: f64,
     cover: &'a mut Cover,
@@ -242,12 +242,12 @@ impl NullaryFnOnce for Ask<'_> {
     fn call(self) -> Option<Lanes> {
         let Self { points, target, sides, edges, tolerance, cover, differs } = self;
         cover.start(target, points);
-        for (side, maker) in sides {
+        for (side, side_id) in sides {
             let (normal, offset) = plane(side, edges, points);
             let size = size(&normal);
             // A plane without direction bounds nothing.
             if agree(&size, &[0.0; LANES], differs) > 0
-                && !cover.keep((&normal, &offset), &each(|m| tolerance * size[m]), *maker, differs)
+                && !cover.keep((&normal, &offset), &each(|m| tolerance * size[m]), *side_id, differs)
             {
                 return None;
             }
@@ -291,9 +291,9 @@ fn agree(height: &Lanes, flat: &Lanes, differs: &mut Mask) -> i8 {
 }
 
 impl Cover {
-    fn makers(&self) -> &[Maker] {
+    fn side_ids(&self) -> &[SideId] {
         let polygon = &self.polygons[self.now];
-        &polygon.makers[..polygon.len]
+        &polygon.side_ids[..polygon.len]
     }
 
     #[inline(always)]
@@ -301,7 +301,7 @@ impl Cover {
         self.now = 0;
         let polygon = &mut self.polygons[0];
         polygon.len = target.corners.len();
-        polygon.makers[..polygon.len].copy_from_slice(target.makers);
+        polygon.side_ids[..polygon.len].copy_from_slice(target.side_ids);
         for (moved, &corner) in polygon.corners.iter_mut().zip(target.corners) {
             *moved = difference(&same(corner), points);
         }
@@ -313,7 +313,7 @@ impl Cover {
         &mut self,
         (normal, offset): (&Lanes3, &Lanes),
         flat: &Lanes,
-        maker: Maker,
+        side_id: SideId,
         differs: &mut Mask,
     ) -> bool {
         let Self { polygons, now, heights: over, sides } = self;
@@ -330,27 +330,27 @@ impl Cover {
             high = side.max(high);
         }
         if low < 0 && high > 0 {
-            self.cut(maker);
+            self.cut(side_id);
         }
         high > 0
     }
 
     #[inline(always)]
-    fn cut(&mut self, maker: Maker) {
+    fn cut(&mut self, side_id: SideId) {
         let Self { polygons: [first, second], now, heights, sides } = self;
         let (polygon, left) = if *now == 0 { (&*first, second) } else { (&*second, first) };
         let (mut len, mut from) = (0, polygon.len - 1);
         for to in 0..polygon.len {
             if sides[from] * sides[to] < 0 {
                 let (low, high) = if sides[from] < 0 { (from, to) } else { (to, from) };
-                left.makers[len] = if sides[from] > 0 { maker } else { polygon.makers[from] };
+                left.side_ids[len] = if sides[from] > 0 { side_id } else { polygon.side_ids[from] };
                 let (below, above) =
                     ((&polygon.corners[low], &heights[low]), (&polygon.corners[high], &heights[high]));
                 crossing(below, above, &mut left.corners[len]);
                 len += 1;
             }
             if sides[to] >= 0 {
-                left.makers[len] = polygon.makers[to];
+                left.side_ids[len] = polygon.side_ids[to];
                 left.corners[len] = polygon.corners[to];
                 len += 1;
             }
@@ -414,22 +414,22 @@ mod tests {
             square(1.0, 0.7).into_iter().rev().map(|x| x + Vec3::Z * (tilt * x.x)).collect();
         let bodies = Bodies::new(&occluders, &[&source], &[]);
         let screen = Screen::new(&bodies.as_slice()[0], source.corners(), &target, 1e-12);
-        let makers: Vec<Maker> = (0..4).collect();
-        let mut found = vec![(0.0, Kind::default()); points.len()];
+        let side_ids: Vec<SideId> = (0..4).collect();
+        let mut found = vec![(0.0, Topology::default()); points.len()];
         let mut shadows = vec![Shadows::default(); points.len()];
-        let aim = Target { corners: &target, makers: &makers, normal: Vec3::Z };
+        let aim = Target { corners: &target, side_ids: &side_ids, normal: Vec3::Z };
         let mut packet = Packet::default();
         packet.hide(points, aim, (0, &screen), &mut Found { hidden: &mut found, shadows: &mut shadows });
         let mut alone = Hiding::default();
-        for ((x, (factor, kind)), shadows) in points.iter().zip(&found).zip(shadows) {
+        for ((x, (factor, topology)), shadows) in points.iter().zip(&found).zip(shadows) {
             let single = alone.hidden_factor(*x, Vec3::Z, &target, std::iter::once((0, &screen)));
             assert!((factor - single).abs() < 1e-14, "{x}: {factor} {single}");
-            assert_eq!(*kind, alone.kind(), "{x}");
+            assert_eq!(*topology, alone.topology(), "{x}");
             assert!(shadows.has(0) == (single > 0.0) && !shadows.are_together(), "{x}");
         }
-        let mut kinds: Vec<Kind> = found.iter().map(|(_, kind)| *kind).collect();
-        kinds.dedup();
-        kinds.len()
+        let mut topologies: Vec<Topology> = found.iter().map(|(_, topology)| *topology).collect();
+        topologies.dedup();
+        topologies.len()
     }
 
     #[test]

@@ -22,7 +22,7 @@ use crate::polygon::HalfSpace;
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_quadrature::Estimate;
 use fredholm_visibility::Occluders;
-use fredholm_visibility::body::{Bodies, Body, Face, Room, Screen, Shadow};
+use fredholm_visibility::body::{Bodies, Body, Face, Screen, Shadow, ShadowVolume};
 
 /// Bodies up to which exact shadows are cheaper than sampling.
 const FEW: usize = 128;
@@ -77,7 +77,7 @@ impl Exchange {
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
     front: [Vec<Vec3>; 2],
-    room: Room,
+    volume: ShadowVolume,
     open: Work,
     hidden: HiddenWork,
 }
@@ -174,7 +174,7 @@ impl<'a> PairIntegrator<'a> {
         }
         let bodies = self.between(a.patch, b.patch);
         let nothing = self.bodies.tolerance();
-        if bodies.iter().any(|body| blocks(body, a.patch, b.patch, nothing, &mut work.room)) {
+        if bodies.iter().any(|body| blocks(body, a.patch, b.patch, nothing, &mut work.volume)) {
             return Exchange::NONE;
         }
         let mut open = [Exchange::NONE];
@@ -321,10 +321,10 @@ fn between(body: &Body, a: Side, b: Side, tolerance: f64) -> Option<Body> {
 
 /// Whether a body blocks every segment between two patches. The points that a body hides from a point make a convex set, on either side: what holds for
 /// the corners holds for all.
-pub(crate) fn blocks(body: &Body, a: &Patch, b: &Patch, tolerance: f64, room: &mut Room) -> bool {
-    a.corners().iter().all(|&x| match body.shadow(x, tolerance, room) {
+pub(crate) fn blocks(body: &Body, a: &Patch, b: &Patch, tolerance: f64, volume: &mut ShadowVolume) -> bool {
+    a.corners().iter().all(|&x| match body.shadow(x, tolerance, volume) {
         Shadow::Nothing => false,
-        Shadow::Room => b.corners().iter().all(|&y| room.holds(&[y - x])),
+        Shadow::Volume => b.corners().iter().all(|&y| volume.holds(&[y - x])),
     })
 }
 

@@ -6,28 +6,28 @@
 use crate::form_factor::point_to_polygon;
 use crate::polygon::crossing;
 use fredholm_mesh::Vec3;
-use fredholm_visibility::body::{Room, Screen, Shadow};
+use fredholm_visibility::body::{Screen, Shadow, ShadowVolume};
 
-/// What makes a side of a polygon: a side of the target, or a half-space of a shadow.
-pub(super) type Maker = u32;
+/// What a side of a polygon comes from: a side of the target, or a half-space of a shadow volume.
+pub(super) type SideId = u32;
 
-/// A convex polygon: corners, and what makes the side that starts at each.
+/// A convex polygon: corners, and what the side that starts at each comes from.
 #[derive(Clone, Debug, Default)]
 struct Polygon {
     corners: Vec<Vec3>,
-    makers: Vec<Maker>,
+    side_ids: Vec<SideId>,
 }
 
 impl Polygon {
     fn clear(&mut self) {
         self.corners.clear();
-        self.makers.clear();
+        self.side_ids.clear();
     }
 
     #[inline]
-    fn push(&mut self, corner: Vec3, maker: Maker) {
+    fn push(&mut self, corner: Vec3, side_id: SideId) {
         self.corners.push(corner);
-        self.makers.push(maker);
+        self.side_ids.push(side_id);
     }
 }
 
@@ -52,16 +52,16 @@ impl PolygonList {
         (0..self.len()).map(|i| self.get(i).0)
     }
 
-    fn get(&self, i: usize) -> (&[Vec3], &[Maker]) {
+    fn get(&self, i: usize) -> (&[Vec3], &[SideId]) {
         let start = if i == 0 { 0 } else { self.ends[i - 1] };
-        (&self.all.corners[start..self.ends[i]], &self.all.makers[start..self.ends[i]])
+        (&self.all.corners[start..self.ends[i]], &self.all.side_ids[start..self.ends[i]])
     }
 
     /// Appends a polygon, unless it is none.
-    fn push(&mut self, corners: &[Vec3], makers: &[Maker]) {
+    fn push(&mut self, corners: &[Vec3], side_ids: &[SideId]) {
         if corners.len() >= 3 {
             self.all.corners.extend_from_slice(corners);
-            self.all.makers.extend_from_slice(makers);
+            self.all.side_ids.extend_from_slice(side_ids);
             self.ends.push(self.all.corners.len());
         }
     }
@@ -71,7 +71,7 @@ impl PolygonList {
         self.ends.truncate(len);
         let corners = self.ends.last().copied().unwrap_or(0);
         self.all.corners.truncate(corners);
-        self.all.makers.truncate(corners);
+        self.all.side_ids.truncate(corners);
     }
 }
 
@@ -86,7 +86,7 @@ struct Cutter {
 impl Cutter {
     /// Splits a convex polygon into its parts with n·x ≥ c and ≤ c, which are in `inside` and `outside` only where the plane cuts it.
     #[inline]
-    fn split(&mut self, polygon: &Polygon, (n, c, maker): (Vec3, f64, Maker), tolerance: f64) -> Cut {
+    fn split(&mut self, polygon: &Polygon, (n, c, side_id): (Vec3, f64, SideId), tolerance: f64) -> Cut {
         let (mut above, mut below) = (false, false);
         self.heights.clear();
         self.heights.extend(polygon.corners.iter().map(|corner| n.dot(*corner) - c));
@@ -99,7 +99,7 @@ impl Cutter {
         }
         match (above, below) {
             (true, true) => {
-                self.cut(polygon, maker);
+                self.cut(polygon, side_id);
                 Cut::Both
             }
             (true, false) => Cut::Inside,
@@ -107,26 +107,26 @@ impl Cutter {
         }
     }
 
-    fn cut(&mut self, polygon: &Polygon, maker: Maker) {
+    fn cut(&mut self, polygon: &Polygon, side_id: SideId) {
         self.inside.clear();
         self.outside.clear();
         let last = polygon.corners.len() - 1;
-        let mut from = (polygon.corners[last], self.heights[last], polygon.makers[last]);
+        let mut from = (polygon.corners[last], self.heights[last], polygon.side_ids[last]);
         for k in 0..=last {
-            let to = (polygon.corners[k], self.heights[k], polygon.makers[k]);
-            self.side(from, to, maker);
+            let to = (polygon.corners[k], self.heights[k], polygon.side_ids[k]);
+            self.side(from, to, side_id);
             from = to;
         }
     }
 
     /// The side from one corner to the next, of which the second is added.
     #[inline]
-    fn side(&mut self, from: (Vec3, f64, Maker), to: (Vec3, f64, Maker), maker: Maker) {
+    fn side(&mut self, from: (Vec3, f64, SideId), to: (Vec3, f64, SideId), side_id: SideId) {
         if from.1 * to.1 < 0.0 {
             let cut = crossing((from.0, from.1), (to.0, to.1));
             let leaves = from.1 > 0.0;
-            self.inside.push(cut, if leaves { maker } else { from.2 });
-            self.outside.push(cut, if leaves { from.2 } else { maker });
+            self.inside.push(cut, if leaves { side_id } else { from.2 });
+            self.outside.push(cut, if leaves { from.2 } else { side_id });
         }
         if to.1 >= 0.0 {
             self.inside.push(to.0, to.2);
@@ -145,22 +145,24 @@ enum Cut {
     Both,
 }
 
-/// What makes the sides of the hidden parts, as a hash: where on the source it is the same everywhere, the hidden part is a smooth function.
+/// The topology of the shadow, as a hash of what its sides come from: over a part of the source where it does not change, the hidden part is a smooth function.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Kind(u64);
+pub(crate) struct Topology(u64);
 
-impl Kind {
+impl Topology {
     /// The number of the first half-space of body `k`: those of other bodies, and sides of the target, have other numbers.
-    pub(super) fn first(k: usize) -> Maker {
-        (k as Maker + 1) << 10
+    pub(super) fn first(k: usize) -> SideId {
+        (k as SideId + 1) << 10
     }
 
-    /// The kind of one hidden part. The order of its sides has no say.
-    pub(super) fn of(makers: &[Maker]) -> Self {
-        Self(scatter(makers.iter().map(|&maker| scatter(u64::from(maker) + 1)).fold(0, u64::wrapping_add)))
+    /// The topology of one hidden part. The order of its sides does not matter.
+    pub(super) fn of(side_ids: &[SideId]) -> Self {
+        Self(scatter(
+            side_ids.iter().map(|&side_id| scatter(u64::from(side_id) + 1)).fold(0, u64::wrapping_add),
+        ))
     }
 
-    /// Adds other parts. Their order has no say.
+    /// Adds other parts. Their order does not matter.
     pub(super) fn merge(&mut self, other: Self) {
         self.0 = self.0.wrapping_add(other.0);
     }
@@ -183,8 +185,8 @@ pub(crate) struct Hiding {
     target: Vec<Vec3>,
     rest: Polygon,
     cutter: Cutter,
-    room: Room,
-    kind: Kind,
+    volume: ShadowVolume,
+    topology: Topology,
 }
 
 impl Hiding {
@@ -214,18 +216,18 @@ impl Hiding {
     }
 
     fn start(&mut self, x: Vec3, target: &[Vec3]) {
-        self.kind = Kind::default();
+        self.topology = Topology::default();
         self.visible.clear();
         self.target.clear();
         self.target.extend(target.iter().map(|&y| y - x));
-        self.rest.makers.clear();
-        self.rest.makers.extend(0..target.len() as Maker);
-        self.visible.push(&self.target, &self.rest.makers);
+        self.rest.side_ids.clear();
+        self.rest.side_ids.extend(0..target.len() as SideId);
+        self.visible.push(&self.target, &self.rest.side_ids);
     }
 
     /// What makes the hidden parts of the last point.
-    pub(crate) fn kind(&self) -> Kind {
-        self.kind
+    pub(crate) fn topology(&self) -> Topology {
+        self.topology
     }
 
     /// What the last point saw: convex polygons, relative to it.
@@ -235,50 +237,50 @@ impl Hiding {
 
     /// Moves what lies in the shadow of a body from the visible pieces to the hidden sum.
     fn behind(&mut self, (k, screen): (usize, &Screen), x: Vec3, n: Vec3, keep: bool) -> f64 {
-        if screen.shadow(x, &mut self.room) == Shadow::Nothing || self.misses(screen.tolerance()) {
+        if screen.shadow(x, &mut self.volume) == Shadow::Nothing || self.misses(screen.tolerance()) {
             return 0.0;
         }
         self.next.clear();
-        let first = Kind::first(k);
+        let first = Topology::first(k);
         let hidden =
             (0..self.visible.len()).map(|i| self.darken(i, n, keep, first, screen.tolerance())).sum();
         std::mem::swap(&mut self.visible, &mut self.next);
         hidden
     }
 
-    /// Whether the room has nothing of the target. Where that is in one piece, asking about it is as quick.
+    /// Whether the volume has nothing of the target. Where that is in one piece, asking about it is as quick.
     fn misses(&self, flat: f64) -> bool {
-        let outside = |&(m, c, _): &(Vec3, f64, Maker)| {
+        let outside = |&(m, c, _): &(Vec3, f64, SideId)| {
             let least = c + flat * size(m);
             self.target.iter().all(|y| m.dot(*y) <= least)
         };
-        self.visible.len() > 1 && self.room.planes().iter().any(outside)
+        self.visible.len() > 1 && self.volume.planes().iter().any(outside)
     }
 
-    /// Form factor of the part of a visible piece that lies in the room; with `keep` the rest goes to the next pieces.
-    fn darken(&mut self, i: usize, n: Vec3, keep: bool, first: Maker, flat: f64) -> f64 {
-        let (corners, makers) = self.visible.get(i);
+    /// Form factor of the part of a visible piece that lies in the volume; with `keep` the rest goes to the next pieces.
+    fn darken(&mut self, i: usize, n: Vec3, keep: bool, first: SideId, flat: f64) -> f64 {
+        let (corners, side_ids) = self.visible.get(i);
         self.rest.clear();
         self.rest.corners.extend_from_slice(corners);
-        self.rest.makers.extend_from_slice(makers);
+        self.rest.side_ids.extend_from_slice(side_ids);
         let start = self.next.len();
-        for &(m, c, maker) in self.room.planes() {
-            match self.cutter.split(&self.rest, (m, c, first + maker), flat * size(m)) {
+        for &(m, c, side_id) in self.volume.planes() {
+            match self.cutter.split(&self.rest, (m, c, first + side_id), flat * size(m)) {
                 Cut::Inside => {}
                 Cut::Outside => {
                     self.next.truncate(start);
-                    self.next.push(corners, makers);
+                    self.next.push(corners, side_ids);
                     return 0.0;
                 }
                 Cut::Both => {
                     std::mem::swap(&mut self.rest, &mut self.cutter.inside);
                     if keep {
-                        self.next.push(&self.cutter.outside.corners, &self.cutter.outside.makers);
+                        self.next.push(&self.cutter.outside.corners, &self.cutter.outside.side_ids);
                     }
                 }
             }
         }
-        self.kind.merge(Kind::of(&self.rest.makers));
+        self.topology.merge(Topology::of(&self.rest.side_ids));
         point_to_polygon(n, self.rest.corners.iter().copied())
     }
 }

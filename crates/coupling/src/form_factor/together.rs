@@ -1,10 +1,10 @@
 //! What bodies hide of a convex polygon from several points of one source.
 //!
-//! Most points see the shadow of one body only: the part of the target in its room is the hidden part, and nothing of what is left is needed. Where the shadows of several bodies
+//! Most points see the shadow of one body only: the part of the target in its shadow volume is the hidden part, and nothing of what is left is needed. Where the shadows of several bodies
 //! meet the target, they are subtracted one after the other ([`Hiding`]). Lengths in metres.
 
 use super::packet::{Found, POINTS, Packet, Shadows, Target};
-use super::shadow::{Hiding, Kind, Maker};
+use super::shadow::{Hiding, SideId, Topology};
 use fredholm_mesh::Vec3;
 use fredholm_visibility::body::Screen;
 
@@ -13,7 +13,7 @@ use fredholm_visibility::body::Screen;
 pub(crate) struct Together {
     hiding: Hiding,
     packet: Packet,
-    makers: Vec<Maker>,
+    side_ids: Vec<SideId>,
     /// Shadows that meet the target, for each point.
     shadows: Vec<Shadows>,
 }
@@ -25,16 +25,16 @@ impl Together {
         points: &[Vec3],
         (n, target): (Vec3, &[Vec3]),
         screens: &[Screen],
-        found: &mut Vec<(f64, Kind)>,
+        found: &mut Vec<(f64, Topology)>,
     ) {
         let start = found.len();
-        found.resize(start + points.len(), (0.0, Kind::default()));
+        found.resize(start + points.len(), (0.0, Topology::default()));
         self.shadows.clear();
         self.shadows.resize(points.len(), Shadows::default());
-        self.makers.clear();
-        self.makers.extend(0..target.len() as Maker);
+        self.side_ids.clear();
+        self.side_ids.extend(0..target.len() as SideId);
         let packets = points.chunks(POINTS).zip(found[start..].chunks_mut(POINTS));
-        let target_sides = Target { corners: target, makers: &self.makers, normal: n };
+        let target_sides = Target { corners: target, side_ids: &self.side_ids, normal: n };
         for ((points, hidden), shadows) in packets.zip(self.shadows.chunks_mut(POINTS)) {
             let mut found = Found { hidden, shadows };
             for (k, screen) in screens.iter().enumerate() {
@@ -44,7 +44,7 @@ impl Together {
         for ((&x, found), shadows) in points.iter().zip(&mut found[start..]).zip(&self.shadows) {
             if shadows.are_together() {
                 let screens = screens.iter().enumerate().filter(|(k, _)| shadows.has(*k));
-                *found = (self.hiding.hidden_factor(x, n, target, screens), self.hiding.kind());
+                *found = (self.hiding.hidden_factor(x, n, target, screens), self.hiding.topology());
             }
         }
     }

@@ -10,7 +10,7 @@ use super::lines::{Heights, Lines, Stands};
 use crate::form_factor::blocks;
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::Occluders;
-use fredholm_visibility::body::{Bodies, Body, Room};
+use fredholm_visibility::body::{Bodies, Body, ShadowVolume};
 use pulp::Arch;
 use std::ops::Range;
 
@@ -43,7 +43,7 @@ pub(crate) fn walk(sight: &Sight, panel: usize) -> Panel {
         first: rows.start,
         end: rows.end,
         found,
-        room: Room::default(),
+        volume: ShadowVolume::default(),
         arch: Arch::new(),
         heights: Vec::new(),
         stack: Vec::new(),
@@ -63,7 +63,7 @@ pub(crate) fn walk_from(sight: &Sight, node: usize) -> Panel {
         first,
         end: first + 1,
         found,
-        room: Room::default(),
+        volume: ShadowVolume::default(),
         arch: Arch::new(),
         heights: Vec::new(),
         stack: Vec::new(),
@@ -79,7 +79,7 @@ struct Walker<'a> {
     first: usize,
     end: usize,
     found: Panel,
-    room: Room,
+    volume: ShadowVolume,
     arch: Arch,
     /// A buffer of [`Lines::ask`].
     heights: Vec<Heights>,
@@ -176,7 +176,7 @@ impl Walker<'_> {
                 if !occluders.reaches(body, shaft) {
                     continue;
                 }
-                if stands.may_be_across() && blocks(body, p, q, tolerance, &mut self.room) {
+                if stands.may_be_across() && blocks(body, p, q, tolerance, &mut self.volume) {
                     return true;
                 }
             }

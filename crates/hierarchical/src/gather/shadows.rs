@@ -6,7 +6,7 @@
 use fredholm_coupling::form_factor::point_to_polygon;
 use fredholm_coupling::polygon::{HalfSpace, clip};
 use fredholm_mesh::Vec3;
-use fredholm_visibility::body::{Body, Room, Shadow};
+use fredholm_visibility::body::{Body, Shadow, ShadowVolume};
 use std::ops::Range;
 
 /// Pieces of a polygon up to which what many shadows leave of it is cut out exactly. Inside a crowded body the
@@ -31,7 +31,7 @@ pub(super) enum Covers {
 pub(super) struct Shadows {
     planes: Vec<HalfSpace>,
     spans: Vec<Range<usize>>,
-    room: Room,
+    volume: ShadowVolume,
     pieces: Pieces,
     next: Pieces,
     rest: Vec<Vec3>,
@@ -51,13 +51,13 @@ impl Shadows {
         self.spans.clear();
         for body in bodies {
             let below = body.corners().iter().all(|y| normal.dot(*y - x) <= tolerance);
-            if below || body.shadow(x, tolerance, &mut self.room) == Shadow::Nothing {
+            if below || body.shadow(x, tolerance, &mut self.volume) == Shadow::Nothing {
                 continue;
             }
             let start = self.planes.len();
             let unit =
                 |&(n, c, _): &(Vec3, f64, u32)| HalfSpace { normal: n / n.length(), offset: c / n.length() };
-            self.planes.extend(self.room.planes().iter().map(unit));
+            self.planes.extend(self.volume.planes().iter().map(unit));
             self.spans.push(start..self.planes.len());
         }
     }

@@ -6,6 +6,7 @@ mod encounter;
 mod exchange;
 mod sample;
 mod scattered;
+mod segments;
 mod side;
 mod sight;
 mod spread;

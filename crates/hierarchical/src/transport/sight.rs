@@ -2,16 +2,15 @@
 //!
 //! No body in the shaft of the two polygons, and all gets through; one convex body across all segments between their corners, and nothing does. Else points of each polygon
 //! see the other one exactly clipped, and the share is Σ F_seen/Σ F_open over the points; what both sides make of it differs by an estimate of its error. Behind many bodies
-//! segments take the place of the clipping, between places of either side that every pair draws for itself: what they miss is as often too much as too little. E. A. Haines & J. R. Wallace 1994, doi:10.1007/978-3-642-57963-9_12, for the shaft.
+//! segments take the place of the clipping ([`super::segments`]), between places of either side that every pair draws for itself: what they miss is as often too much as too little. E. A. Haines & J. R. Wallace 1994, doi:10.1007/978-3-642-57963-9_12, for the shaft.
 
-use super::draw::Places;
-use super::side::{OUTER, POINTS, Points, Side};
+use super::segments::{Segments, Through};
+use super::side::{POINTS, Points, Side};
 use super::spread::{STEEP, open_factor};
 use fredholm_coupling::form_factor::VisibleParts;
-use fredholm_coupling::kernel::lambert;
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::Occluders;
-use fredholm_visibility::body::{Bodies, Body, Room, Shadow};
+use fredholm_visibility::body::{Bodies, Body, Shadow, ShadowVolume};
 
 /// Bodies in a scene up to which points see exactly.
 const FEW: usize = 256;
@@ -47,15 +46,23 @@ pub(crate) enum View {
 pub(crate) struct Viewer<'a> {
     sight: Sight<'a>,
     parts: VisibleParts<'a>,
-    room: Room,
+    volume: ShadowVolume,
     between: Vec<u32>,
+    segments: Segments,
     pub front: Vec<Vec3>,
 }
 
 impl<'a> Viewer<'a> {
     pub fn new(sight: Sight<'a>) -> Self {
         let parts = VisibleParts::new(sight.occluders, sight.bodies);
-        Self { sight, parts, room: Room::default(), between: Vec::new(), front: Vec::new() }
+        Self {
+            sight,
+            parts,
+            volume: ShadowVolume::default(),
+            between: Vec::new(),
+            segments: Segments::default(),
+            front: Vec::new(),
+        }
     }
 
     /// What two patches see of each other.
@@ -76,7 +83,7 @@ impl<'a> Viewer<'a> {
         if reaching.peek().is_none() {
             return View::Open;
         }
-        if reaching.any(|body| blocks(body, a, b, bodies.tolerance(), &mut self.room)) {
+        if reaching.any(|body| blocks(body, a, b, bodies.tolerance(), &mut self.volume)) {
             return View::Nothing;
         }
         let (xs, ys) = (Points::of(a), Points::of(b));
@@ -103,28 +110,15 @@ impl<'a> Viewer<'a> {
         if self.between.is_empty() {
             return View::Open;
         }
+        let between = &self.between;
         let clear = |x: Vec3, y: Vec3| {
-            if listed { occluders.unoccluded_by(x, y, &self.between) } else { occluders.unoccluded(x, y) }
+            if listed { occluders.unoccluded_by(x, y, between) } else { occluders.unoccluded(x, y) }
         };
-        let (xs, ys) = (Points::of(a), Points::of(b));
-        let mut places = Places::at(xs.at[OUTER], ys.at[OUTER]);
-        let mut found = [[[0.0; POINTS]; 2]; 2];
-        for (i, j) in (0..POINTS).flat_map(|i| (0..POINTS).map(move |j| (i, j))) {
-            // The middle of a side tells of its bend alone: in the sums of the other it would count twice.
-            let counts = [(0, i, j < OUTER), (1, j, i < OUTER)];
-            let [(_, s), (_, t)] = places.next();
-            let (x, y) = (xs.within(i, s), ys.within(j, t));
-            let weight = lambert(x, a.normal(), y, b.normal());
-            if weight <= 0.0 || (i == OUTER && j == OUTER) {
-                continue;
-            }
-            let seen = if clear(x, y) { weight } else { 0.0 };
-            for (side, k, _) in counts.into_iter().filter(|(_, _, counts)| *counts) {
-                found[side][0][k] += weight;
-                found[side][1][k] += seen;
-            }
+        let points = [&Points::of(a), &Points::of(b)];
+        match self.segments.between([a, b], points, clear) {
+            Some(Through { share, sides, doubt }) => View::Part { share, sides, doubt },
+            None => view(None, None),
         }
-        view(side(&xs, found[0]), side(&ys, found[1]))
     }
 }
 
@@ -157,9 +151,9 @@ fn side(points: &Points, [open, seen]: [[f64; POINTS]; 2]) -> Option<(f64, Side)
 }
 
 /// Whether a convex body is across every segment between two patches: what holds for their corners holds for all of their points.
-fn blocks(body: &Body, a: &Patch, b: &Patch, tolerance: f64, room: &mut Room) -> bool {
-    a.corners().iter().all(|&x| match body.shadow(x, tolerance, room) {
+fn blocks(body: &Body, a: &Patch, b: &Patch, tolerance: f64, volume: &mut ShadowVolume) -> bool {
+    a.corners().iter().all(|&x| match body.shadow(x, tolerance, volume) {
         Shadow::Nothing => false,
-        Shadow::Room => b.corners().iter().all(|&y| room.holds(&[y - x])),
+        Shadow::Volume => b.corners().iter().all(|&y| volume.holds(&[y - x])),
     })
 }

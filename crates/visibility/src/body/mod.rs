@@ -1,6 +1,6 @@
 //! Convex bodies that block the view, and the shadow that one casts from a point.
 //!
-//! Seen from a point x, the shadow of a convex body is the room within its outline, {y : m_k·(y − x) ≥ 0} with m_k = (a − x) × (b − x) for the edges a b of the
+//! Seen from a point x, the shadow of a convex body is the volume within its outline, {y : m_k·(y − x) ≥ 0} with m_k = (a − x) × (b − x) for the edges a b of the
 //! outline, and behind the faces that look at x. An edge is on the outline where one of its two faces looks at x and the other does not. A flat polygon is a
 //! body with two faces. Lengths in metres.
 
@@ -16,8 +16,8 @@ use fredholm_mesh::Vec3;
 
 use crate::frame::Frame;
 pub use bodies::Bodies;
-pub use outline::{Room, Shadow};
-pub use screen::{Looking, Rim, Screen};
+pub use outline::{Shadow, ShadowVolume};
+pub use screen::{Looking, Screen, SilhouetteEdge};
 
 /// A plane n·x = c with a unit normal.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -29,17 +29,17 @@ const GRAZING: f64 = 1e-9;
 pub enum Shadow {
     /// Nothing: the point lies in the plane of a flat body, or nothing is left of the body.
     Nothing,
-    /// What lies in a [`Room`].
-    Room,
+    /// What lies in a [`ShadowVolume`].
+    Volume,
 }
 
 /// An intersection of half-spaces {y : n·(y − x) ≥ c}, in coordinates relative to the point x.
 #[derive(Clone, Debug, Default)]
-pub struct Room {
+pub struct ShadowVolume {
     planes: Vec<(Vec3, f64, u32)>,
 }
 
-impl Room {
+impl ShadowVolume {
     /// Normals n (of any length), offsets c and numbers: those behind the faces, and those of the outline, for which c = 0. Half-spaces of one body that the same face or edge
     /// makes have the same number from all points.
     #[must_use]
@@ -76,35 +76,35 @@ pub(super) fn edge_number(k: u32) -> u32 {
 }
 
 impl Body {
-    /// What the body hides from `x`; where that is a room, `room` holds it. Heights of at most `tolerance` (m) over a face count as none: a point of the
+    /// What the body hides from `x`; where that is a volume, `volume` holds it. Heights of at most `tolerance` (m) over a face count as none: a point of the
     /// surface does not shade itself.
-    pub fn shadow(&self, x: Vec3, tolerance: f64, room: &mut Room) -> Shadow {
-        room.clear();
+    pub fn shadow(&self, x: Vec3, tolerance: f64, volume: &mut ShadowVolume) -> Shadow {
+        volume.clear();
         if self.edges.is_empty() {
             return Shadow::Nothing;
         }
-        let lit = self.behind(x, tolerance, room);
+        let lit = self.behind(x, tolerance, volume);
         if lit == Bits::default() {
             // From a point of a solid, all that lies behind the faces at that point is seen through the solid.
-            self.behind(x, -tolerance, room);
-            return if self.solid { Shadow::Room } else { Shadow::Nothing };
+            self.behind(x, -tolerance, volume);
+            return if self.solid { Shadow::Volume } else { Shadow::Nothing };
         }
         for (k, edge) in self.edges.iter().enumerate() {
             if let Some(inward) = self.inward(edge, x, lit) {
-                room.push(inward, 0.0, edge_number(k as u32));
+                volume.push(inward, 0.0, edge_number(k as u32));
             }
         }
-        Shadow::Room
+        Shadow::Volume
     }
 
-    /// Adds the rooms behind the faces over which x is higher than `least`, and returns those faces.
-    fn behind(&self, x: Vec3, least: f64, room: &mut Room) -> Bits {
+    /// Adds the shadow volumes behind the faces over which x is higher than `least`, and returns those faces.
+    fn behind(&self, x: Vec3, least: f64, volume: &mut ShadowVolume) -> Bits {
         let mut lit = Bits::default();
         for (k, face) in self.faces.iter().enumerate() {
             let height = face.height(x);
             if height > least {
                 lit.set(k);
-                room.push(-face.normal, height, k as u32);
+                volume.push(-face.normal, height, k as u32);
             }
         }
         lit

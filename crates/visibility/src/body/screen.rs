@@ -6,7 +6,7 @@
 use fredholm_mesh::Vec3;
 
 use super::outline::edge_number;
-use super::{Body, Edge, Face, Room, Shadow};
+use super::{Body, Edge, Face, Shadow, ShadowVolume};
 
 /// Faces that look at part of the source at most, one bit each.
 const TURNING: usize = 62;
@@ -42,7 +42,7 @@ struct Border {
 
 /// An edge a b of an outline.
 #[derive(Clone, Copy, Debug)]
-pub struct Rim {
+pub struct SilhouetteEdge {
     /// The number of its half-space.
     pub number: u32,
     /// Its place among [`edges`](Screen::edges).
@@ -182,19 +182,19 @@ impl<'a> Screen<'a> {
         self.tolerance
     }
 
-    /// What of the target is hidden from a point `x` of the source; where that is a room, `room` holds it.
-    pub fn shadow(&self, x: Vec3, room: &mut Room) -> Shadow {
-        let Some(looking) = self.looking(x) else { return self.body.shadow(x, self.tolerance, room) };
-        room.clear();
+    /// What of the target is hidden from a point `x` of the source; where that is a volume, `volume` holds it.
+    pub fn shadow(&self, x: Vec3, volume: &mut ShadowVolume) -> Shadow {
+        let Some(looking) = self.looking(x) else { return self.body.shadow(x, self.tolerance, volume) };
+        volume.clear();
         for (number, face) in self.faces(looking) {
-            room.push(-face.normal, face.height(x), number);
+            volume.push(-face.normal, face.height(x), number);
         }
-        for Rim { number, place, turned } in self.rim(looking) {
+        for SilhouetteEdge { number, place, turned } in self.silhouette(looking) {
             let [a, b] = self.edges[place];
             let inward = (a - x).cross(b - x);
-            room.push(if turned { -inward } else { inward }, 0.0, number);
+            volume.push(if turned { -inward } else { inward }, 0.0, number);
         }
-        Shadow::Room
+        Shadow::Volume
     }
 
     /// Which faces look at a point of the source: from points where this is the same, the same faces and edges make the shadow. `None` where the body itself is asked.
@@ -223,10 +223,10 @@ impl<'a> Screen<'a> {
 
     /// The edges of the outline that may cut the target.
     #[inline]
-    pub fn rim(&self, looking: Looking) -> impl Iterator<Item = Rim> {
+    pub fn silhouette(&self, looking: Looking) -> impl Iterator<Item = SilhouetteEdge> {
         self.borders.iter().enumerate().filter_map(move |(place, border)| {
             let [first, second] = border.faces.map(|bit| looking.has(bit));
-            (first != second).then_some(Rim { number: border.number, place, turned: first })
+            (first != second).then_some(SilhouetteEdge { number: border.number, place, turned: first })
         })
     }
 }

@@ -2,7 +2,7 @@
 
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::Occluders;
-use fredholm_visibility::body::{Bodies, Body, Face, Room, Screen, Shadow};
+use fredholm_visibility::body::{Bodies, Body, Face, Screen, Shadow, ShadowVolume};
 
 use crate::scenes::{Random, cuboid, quad, triangulated};
 
@@ -122,8 +122,8 @@ fn an_angled_floor_becomes_few_convex_polygons() {
 }
 
 fn shaded(body: &Body, x: Vec3, y: Vec3) -> bool {
-    let mut room = Room::default();
-    body.shadow(x, 1e-9, &mut room) == Shadow::Room && room.holds(&[y - x])
+    let mut volume = ShadowVolume::default();
+    body.shadow(x, 1e-9, &mut volume) == Shadow::Volume && volume.holds(&[y - x])
 }
 
 #[test]
@@ -196,10 +196,10 @@ fn a_screen_hides_of_the_target_what_its_body_does() {
         let screen = Screen::new(body, &source, &target, 1e-9);
         fewer += usize::from(screen.edges().len() < 4);
         turning += usize::from(screen.turning().next().is_some());
-        let mut room = Room::default();
+        let mut volume = ShadowVolume::default();
         for _ in 0..50 {
             let (x, y) = (random.on(&elements[0]), random.on(&elements[1]));
-            let dark = screen.shadow(x, &mut room) == Shadow::Room && room.holds(&[y - x]);
+            let dark = screen.shadow(x, &mut volume) == Shadow::Volume && volume.holds(&[y - x]);
             assert_eq!(dark, shaded(body, x, y), "{k}: {x} {y}");
             hidden += usize::from(dark);
             seen += usize::from(!dark);
@@ -239,10 +239,10 @@ fn a_body_of_more_turning_faces_than_are_told_apart_hides_the_same() {
         let [body] = all.as_slice() else { panic!("{} bodies of {n} sides", all.as_slice().len()) };
         let screen = Screen::new(body, &source, &target, 1e-9);
         assert!(screen.turning().count() > least, "{}", screen.turning().count());
-        let (mut hidden, mut room) = (0, Room::default());
+        let (mut hidden, mut volume) = (0, ShadowVolume::default());
         for _ in 0..200 {
             let (x, y) = (random.on(&elements[0]) * Vec3::new(0.02, 0.02, 1.0), random.on(&elements[1]));
-            let dark = screen.shadow(x, &mut room) == Shadow::Room && room.holds(&[y - x]);
+            let dark = screen.shadow(x, &mut volume) == Shadow::Volume && volume.holds(&[y - x]);
             assert_eq!(dark, shaded(body, x, y), "{n}: {x} {y}");
             hidden += usize::from(dark);
         }

@@ -1,30 +1,30 @@
-//! What the points of a rule tell about critical lines: those on whose two sides points are of one kind do not show, those that part the kinds do.
+//! Which critical lines are active, as far as the points of a rule tell: a line is active if the topology of the shadow differs on its two sides.
 //!
-//! A line may also pass between the points and the border of a part. What is behind it nobody has seen.
+//! A line may also pass between the points and the border of a part. No sample lies beyond such a line: its state is unknown.
 
 use super::EQUAL;
 use crate::form_factor::critical::Plane;
-use crate::form_factor::shadow::Kind;
+use crate::form_factor::shadow::Topology;
 use fredholm_mesh::Vec3;
 
 /// What is known of a line that cuts a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Line {
-    /// Points of one kind on both sides.
+    /// Points of one topology on both sides.
     Silent,
-    /// The kinds on one side are others than those on the other.
-    Shows,
+    /// The topologies on one side are others than those on the other.
+    Active,
     /// No point on one side.
     Unseen,
 }
 
-/// Points on a part with h there and their kinds.
+/// Points on a part with h there and their topologies.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Points {
     pub places: Vec<Vec3>,
-    pub found: Vec<(f64, Kind)>,
-    /// The kinds that occur, and which of them each point has, as a bit.
-    kinds: Vec<Kind>,
+    pub found: Vec<(f64, Topology)>,
+    /// The topologies that occur, and which of them each point has, as a bit.
+    topologies: Vec<Topology>,
     bits: Vec<u64>,
 }
 
@@ -32,24 +32,24 @@ impl Points {
     pub(super) fn clear(&mut self) {
         self.places.clear();
         self.found.clear();
-        self.kinds.clear();
+        self.topologies.clear();
         self.bits.clear();
     }
 
-    /// Asks for h at the points that are new, and sorts them by kind. Beyond 64 kinds the rest counts as one.
-    pub(super) fn ask(&mut self, h: &mut impl FnMut(&[Vec3], &mut Vec<(f64, Kind)>)) {
+    /// Asks for h at the points that are new, and sorts them by topology. Beyond 64 topologies the rest counts as one.
+    pub(super) fn ask(&mut self, h: &mut impl FnMut(&[Vec3], &mut Vec<(f64, Topology)>)) {
         h(&self.places[self.found.len()..], &mut self.found);
-        for (_, kind) in &self.found[self.bits.len()..] {
-            let known = self.kinds.iter().position(|k| k == kind);
-            let place = known.unwrap_or(self.kinds.len());
+        for (_, topology) in &self.found[self.bits.len()..] {
+            let known = self.topologies.iter().position(|k| k == topology);
+            let place = known.unwrap_or(self.topologies.len());
             if known.is_none() {
-                self.kinds.push(*kind);
+                self.topologies.push(*topology);
             }
             self.bits.push(1 << place.min(63));
         }
     }
 
-    /// Leaves out the kinds of points at heights of at most `flat` over one of the lines: rounding decides about them.
+    /// Leaves out the topologies of points at heights of at most `flat` over one of the lines: rounding decides about them.
     pub(super) fn leave_out(&mut self, lines: &[(Plane, f64)], flat: f64) {
         for (x, bit) in self.places.iter().zip(&mut self.bits) {
             if lines.iter().any(|((n, c), _)| (n.dot(*x) - c).abs() <= flat) {
@@ -58,15 +58,15 @@ impl Points {
         }
     }
 
-    /// The kind of all points, if it is one.
-    pub(super) fn kind(&self) -> Option<Kind> {
+    /// The topology of all points, if it is one.
+    pub(super) fn topology(&self) -> Option<Topology> {
         let all = self.bits.iter().fold(0, |all, bit| all | bit);
-        all.is_power_of_two().then(|| self.kinds[all.trailing_zeros() as usize])
+        all.is_power_of_two().then(|| self.topologies[all.trailing_zeros() as usize])
     }
 
     /// Largest less least h.
     pub(super) fn range(&self) -> f64 {
-        let each = |[low, high]: [f64; 2], (h, _): &(f64, Kind)| [low.min(*h), high.max(*h)];
+        let each = |[low, high]: [f64; 2], (h, _): &(f64, Topology)| [low.min(*h), high.max(*h)];
         let [low, high] = self.found.iter().fold([f64::INFINITY, f64::NEG_INFINITY], each);
         high - low
     }
@@ -86,7 +86,7 @@ impl Points {
         if above == 0 || below == 0 {
             Line::Unseen
         } else if above & below == 0 {
-            Line::Shows
+            Line::Active
         } else {
             Line::Silent
         }

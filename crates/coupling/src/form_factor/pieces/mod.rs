@@ -1,10 +1,10 @@
 //! ∫ h dA over a convex polygon in parts: by cuts along critical lines, by rules of rising degree and by halving, with one error estimate for all.
 //!
-//! The part with the largest error is improved next. Where its points are of several kinds it is cut along the critical line that parts them, and halves it best; where
-//! there is none its sides are halved. Where all are of one kind it gets the next rule as long as that pays, or its sides are halved. So the cost follows the goal. In m².
+//! The part with the largest error is improved next. Where its points are of several topologies it is cut along the critical line that parts them, and halves it best; where
+//! there is none its sides are halved. Where all are of one topology it gets the next rule as long as that pays, or its sides are halved. So the cost follows the goal. In m².
 //!
-//! Most critical lines do not show. Of lines of single bodies it is known where they do, unless another body hides that ([`Sightings`]): the source is cut along those that may matter before anything is asked. Of the others
-//! the kinds of points on both sides tell. A line may also pass between the points and the border of a part: before the part is left as it is, one point behind the line is looked at,
+//! Most critical lines are not active. Of lines of single bodies it is known where they are, unless another body hides that ([`EdgeVertexEvents`]): the source is cut along those that may matter before anything is asked. Of the others
+//! the topologies of points on both sides tell. A line may also pass between the points and the border of a part: before the part is left as it is, one point behind the line is looked at,
 //! if that could hide something that matters.
 
 mod evidence;
@@ -13,8 +13,8 @@ mod piece;
 mod shape;
 
 use super::critical::Plane;
-use super::shadow::Kind;
-use super::sighting::{Event, Shows, Sightings, chord};
+use super::ev_events::{Active, CriticalPlane, EdgeVertexEvents, chord};
+use super::shadow::Topology;
 use crate::polygon::{HalfSpace, clip};
 use evidence::{Line, Points};
 use fredholm_mesh::Vec3;
@@ -35,7 +35,7 @@ const LOST: f64 = 0.1;
 const ON_THE_LINE: f64 = 1e-9;
 /// What may be hidden behind a line, in goals, from which on a point there is looked at.
 const MATTERS: f64 = 0.15;
-/// What may be hidden behind a line that surely shows, in goals, from which on the source is cut along it at once.
+/// What may be hidden behind a line that is certainly active, in goals, from which on the source is cut along it at once.
 const SURELY: f64 = 2.2;
 /// Points after which an integral ends with the error that it has.
 const POINTS: usize = 100_000;
@@ -44,9 +44,9 @@ const POINTS: usize = 100_000;
 #[derive(Clone, Copy)]
 pub(crate) struct Breaks<'a, D, M> {
     /// Critical planes.
-    pub events: &'a [Event],
-    pub sightings: &'a Sightings,
-    /// Whether sightings tell of all of them.
+    pub events: &'a [CriticalPlane],
+    pub ev_events: &'a EdgeVertexEvents,
+    /// Whether edge–vertex events tell of all of them.
     pub sure: bool,
     /// Heights up to which a point lies in a plane, m.
     pub flat: f64,
@@ -57,12 +57,12 @@ pub(crate) struct Breaks<'a, D, M> {
 }
 
 impl<D, M> Breaks<'_, D, M> {
-    /// An event, if it may show on a convex polygon.
+    /// A critical plane, if it may be active on a convex polygon.
     fn cutting(&self, event: u32, corners: &[Vec3], flat: f64) -> Option<Cutting> {
         let its = &self.events[event as usize];
         let (share, chord) = cut(corners, its.plane, flat)?;
-        let shows = self.sightings.ask(its, chord);
-        (shows != Shows::Never).then_some(Cutting { event, share, surely: shows == Shows::Surely })
+        let active = self.ev_events.ask(its, chord);
+        (active != Active::No).then_some(Cutting { event, share, surely: active == Active::Yes })
     }
 }
 
@@ -93,14 +93,14 @@ pub(crate) struct PiecesWork {
     spare: Vec<Vec<Vec3>>,
 }
 
-/// A line that cuts a part and may show there.
+/// A line that cuts a part and may be active there.
 #[derive(Clone, Copy, Debug)]
 struct Cutting {
     /// The place of its event.
     event: u32,
     /// The share of the width on its smaller side.
     share: f64,
-    /// Whether it shows for certain.
+    /// Whether it is certainly active.
     surely: bool,
 }
 
@@ -119,11 +119,11 @@ impl Lines {
 
 impl<'a, H, D, M> Pieces<'a, H, D, M>
 where
-    H: FnMut(&[Vec3], &mut Vec<(f64, Kind)>),
+    H: FnMut(&[Vec3], &mut Vec<(f64, Topology)>),
     D: Fn(Vec3) -> f64,
     M: Fn(Vec3) -> f64,
 {
-    /// Prepares the integral of h to an absolute `goal`. `h` appends the values and the kinds at given points.
+    /// Prepares the integral of h to an absolute `goal`. `h` appends the values and the topologies at given points.
     pub(crate) fn new(h: H, breaks: Breaks<'a, D, M>, work: &'a mut PiecesWork, goal: f64) -> Self {
         work.parts.clear();
         work.cutting.clear();
@@ -145,7 +145,7 @@ where
         }
     }
 
-    /// Lists all lines that cut a convex polygon and may show there.
+    /// Lists all lines that cut a convex polygon and may be active there.
     fn lines(&mut self, corners: &[Vec3]) -> Lines {
         let flat = self.flat(corners);
         let found = (0..self.breaks.events.len() as u32)
@@ -165,7 +165,7 @@ where
         Lines { start, end: list.len() as u32 }
     }
 
-    /// Adds a convex polygon, cut along the lines that surely show where much may be hidden behind them.
+    /// Adds a convex polygon, cut along the lines that are certainly active, where much may be hidden behind them.
     fn cut_surely(&mut self, corners: &[Vec3], lines: Lines) {
         let worth = self.side(corners).max(SURELY * self.goal / self.most_over(corners));
         let list = &self.work.cutting[lines.places()];
@@ -235,7 +235,7 @@ where
         if piece.asks_most() {
             piece.most = self.most(&piece);
         }
-        piece.raise(value, self.work.points.kind(), self.goal);
+        piece.raise(value, self.work.points.topology(), self.goal);
         if self.observed.scale() * piece.error < self.goal {
             self.look_behind(&mut piece);
         }
@@ -248,7 +248,7 @@ where
         shape.area() * if piece.is_near() { self.work.points.largest(most) } else { most(shape.centre()) }
     }
 
-    /// The line that shows and halves a part best, with the share of the width on its smaller side. Lists the lines behind which no point lies.
+    /// The active line that halves a part best, with the share of the width on its smaller side. Lists the lines behind which no point lies.
     fn line_through(&mut self, piece: &Piece) -> Option<(Plane, f64)> {
         let (flat, events) = (self.flat(piece.shape.corners()), self.breaks.events);
         let side = self.side(piece.shape.corners());
@@ -259,7 +259,7 @@ where
         points.leave_out(lines, flat);
         unseen.clear();
         unseen.extend(lines.iter().filter(|(plane, _)| points.judge(*plane) == Line::Unseen));
-        let shown = lines.iter().filter(|(plane, _)| points.judge(*plane) == Line::Shows).copied();
+        let shown = lines.iter().filter(|(plane, _)| points.judge(*plane) == Line::Active).copied();
         shown.max_by(|a, b| merit(a).total_cmp(&merit(b)))
     }
 
@@ -276,7 +276,7 @@ where
             points.ask(&mut self.h);
             self.points += 1;
             points.leave_out(lines, flat);
-            if points.judge(plane) == Line::Shows {
+            if points.judge(plane) == Line::Active {
                 piece.reveal((plane, share), points.jump() * share * piece.shape.area());
             }
         }
@@ -306,7 +306,7 @@ where
         self.observed.add(value - piece.value, piece.error);
     }
 
-    /// Cuts a part along a line, or halves its sides. Where most of its error is what may hide between its points near lines, it is cut along these although none is known to show: halves
+    /// Cuts a part along a line, or halves its sides. Where most of its error is what may hide between its points near lines, it is cut along these although none is known to be active: halves
     /// that they still cut keep most of that error.
     fn divide(&mut self, piece: &Piece) {
         let hidden = if piece.hides_most() { self.widest(piece) } else { None };
@@ -393,16 +393,16 @@ mod tests {
     use super::*;
 
     /// ∫ over the unit square of a function with a kink along x = 0.3 and with its steep place at `near`.
-    fn kinked(near: Vec3, events: &[Event], goal: f64) -> Estimate {
+    fn kinked(near: Vec3, events: &[CriticalPlane], goal: f64) -> Estimate {
         let square = [Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Y, Vec3::Y];
-        let other = Kind::of(&[1]);
-        let kind = |x: &Vec3| if x.x < 0.3 { other } else { Kind::default() };
-        let value = |x: &Vec3| ((x.x - 0.3).max(0.0), kind(x));
+        let other = Topology::of(&[1]);
+        let topology = |x: &Vec3| if x.x < 0.3 { other } else { Topology::default() };
+        let value = |x: &Vec3| ((x.x - 0.3).max(0.0), topology(x));
         let h = |points: &[Vec3], found: &mut Vec<_>| found.extend(points.iter().map(value));
-        let sightings = &Sightings::default();
+        let ev_events = &EdgeVertexEvents::default();
         let breaks = Breaks {
             events,
-            sightings,
+            ev_events,
             sure: false,
             flat: 1e-12,
             distance: |x: Vec3| x.distance(near),
@@ -413,7 +413,7 @@ mod tests {
 
     #[test]
     fn a_cut_along_the_kink_makes_it_exact() {
-        let found = kinked(Vec3::Z * 5.0, &[Event::always((Vec3::X, 0.3))], 1e-9);
+        let found = kinked(Vec3::Z * 5.0, &[CriticalPlane::always((Vec3::X, 0.3))], 1e-9);
         assert!((found.value - 0.245).abs() < 1e-14 && found.error < 1e-9, "{found:?}");
     }
 

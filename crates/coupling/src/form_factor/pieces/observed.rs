@@ -5,7 +5,7 @@
 //!
 //! error = c √(1 + u Σ ρ²) (1 + w/(1 + Σ 1)) (1 + l ln n) √(Σ eₖ²).
 //!
-//! A part that was off by about its error or more raises that of all; nothing refined yet is nothing known, but where it is known which lines show, w is less.
+//! A part that was off by about its error or more raises that of all; before the first refinement nothing is known and w is largest; where it is known which lines are active, w is less.
 
 use super::piece::Piece;
 
@@ -36,7 +36,7 @@ pub(super) struct Observed {
 }
 
 impl Observed {
-    /// None yet, of an integral of which it is known or not which lines show.
+    /// None yet, of an integral of which it is known or not which lines are active.
     pub(super) fn new(sure: bool) -> Self {
         Self { unknown: if sure { SURE } else { UNKNOWN }, count: 0.0, surprise: 0.0 }
     }

@@ -1,17 +1,17 @@
 //! A part of the source: the integral over it, and how well that is known.
 //!
-//! s is the change from the rule before (at least [`ROUNDING`] times the integral), v the range of h times the area (for a higher rule on a part where all points are of one kind: the change before), m the
+//! s is the change from the rule before (at least [`ROUNDING`] times the integral), v the range of h times the area (for a higher rule on a part where all points are of one topology: the change before), m the
 //! area times the largest value that h could have at the first points, r the reach. The error is, with measured shares (docs/form-factors.md),
 //!
 //! | | r ≤ 1 | r > 1 |
 //! |---|---|---|
-//! | all points of one kind | r √r √(a² s v + a′² v² + a″² s²) | √r √((b m)² + (c s)²) |
-//! | kinds differ | d √(s v) | r √(e² s m + (f m)² + (g s)²) |
+//! | all points of one topology | r √r √(a² s v + a′² v² + a″² s²) | √r √((b m)² + (c s)²) |
+//! | topologies differ | d √(s v) | r √(e² s m + (f m)² + (g s)²) |
 
 use super::shape::{DEGREES, Shape};
 use super::{Lines, merit};
 use crate::form_factor::critical::Plane;
-use crate::form_factor::shadow::Kind;
+use crate::form_factor::shadow::Topology;
 
 /// Ratio of two changes, and of the first change to v, below which the next rule is expected to pay.
 const PAYS: f64 = 0.3;
@@ -29,7 +29,7 @@ const BROKEN: f64 = 0.1;
 const BROKEN_NEAR: [f64; 3] = [0.05, 0.008, 0.014];
 /// Share of the largest value, and of the width behind a line through a part, that small shadows between its points may hide; each next rule leaves this part of it.
 const BETWEEN: [f64; 2] = [1e-3, 0.22];
-/// Share of what shows behind a line with no points of the rule.
+/// Share of the hidden part that may lie beyond an active line with no points of the rule behind it.
 const BEHIND: f64 = 1.3;
 
 /// Changes below these shares of an integral and of the goal count as that: else rounding would decide what is improved next.
@@ -40,7 +40,7 @@ const BESIDE_THE_GOAL: f64 = 1e-5;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Piece {
     pub shape: Shape,
-    /// Lines that cut it and may show.
+    /// Lines that cut it and may be active.
     pub lines: Lines,
     /// Radius over the distance from what makes h steep.
     reach: f64,
@@ -54,8 +54,8 @@ pub(super) struct Piece {
     /// Difference to the degree before.
     step: f64,
     pub error: f64,
-    /// The kind of all points so far, or `None` where they differ.
-    kind: Option<Kind>,
+    /// The topology of all points so far, or `None` where they differ.
+    topology: Option<Topology>,
     /// Largest share of the width behind a line.
     pub cut: f64,
     /// The line along which the part is cut next, and the share of the width on its smaller side.
@@ -67,8 +67,22 @@ pub(super) struct Piece {
 impl Piece {
     /// A part with the lines through it, its reach, the integral by the first rule, and the range of h at the points of the first two times the area.
     pub(super) fn new(shape: Shape, lines: Lines, reach: f64, value: f64, range: f64) -> Self {
-        let (most, step, error, cut, kind, line) = (0.0, 0.0, 0.0, 0.0, None, None);
-        Self { shape, lines, reach, most, range, degree: 0, value, step, error, kind, cut, line, pays: true }
+        let (most, step, error, cut, topology, line) = (0.0, 0.0, 0.0, 0.0, None, None);
+        Self {
+            shape,
+            lines,
+            reach,
+            most,
+            range,
+            degree: 0,
+            value,
+            step,
+            error,
+            topology,
+            cut,
+            line,
+            pays: true,
+        }
     }
 
     /// Whether h is steep on it.
@@ -81,17 +95,17 @@ impl Piece {
         self.degree == 0 && (self.is_near() || self.cut > 0.0)
     }
 
-    /// Takes the integral by the next rule, with the kind of its points. `goal` is the error allowed to the whole, m².
-    pub(super) fn raise(&mut self, value: f64, kind: Option<Kind>, goal: f64) {
+    /// Takes the integral by the next rule, with the topology of its points. `goal` is the error allowed to the whole, m².
+    pub(super) fn raise(&mut self, value: f64, topology: Option<Topology>, goal: f64) {
         let negligible = (ROUNDING * value.abs()).min(BESIDE_THE_GOAL * goal);
         let step = (value - self.value).abs().max(negligible);
         let first = self.degree == 0;
-        self.kind = kind.filter(|_| first || self.kind == kind);
-        let before = if first || self.kind.is_none() { self.range } else { self.step }.max(step);
+        self.topology = topology.filter(|_| first || self.topology == topology);
+        let before = if first || self.topology.is_none() { self.range } else { self.step }.max(step);
         self.degree += 1;
         self.error = self.estimate(step, before) + self.between();
         let quick = step < if first { PAYS_FIRST } else { PAYS } * before || self.hides_most();
-        self.pays = self.kind.is_some() && !self.is_near() && quick && self.degree + 1 < DEGREES.len();
+        self.pays = self.topology.is_some() && !self.is_near() && quick && self.degree + 1 < DEGREES.len();
         (self.value, self.step) = (value, step);
     }
 
@@ -108,7 +122,7 @@ impl Piece {
     fn estimate(&self, s: f64, v: f64) -> f64 {
         let (r, m) = (self.reach, self.most);
         let ([a, a1, a2], [b, c], [e, f, g]) = (SMOOTH, SMOOTH_NEAR, BROKEN_NEAR);
-        match (self.kind.is_some(), r <= NEAR) {
+        match (self.topology.is_some(), r <= NEAR) {
             (true, true) => r * (r * (a * a * s * v + a1 * a1 * v * v + a2 * a2 * s * s)).sqrt(),
             (false, true) => BROKEN * (s * v).sqrt(),
             (true, false) => (r * (b * b * m * m + c * c * s * s)).sqrt(),
@@ -116,9 +130,9 @@ impl Piece {
         }
     }
 
-    /// A line shows that has no point of the rule behind it; `missed` is by how much the integral may be off, m².
+    /// An active line has no point of the rule behind it; `missed` is by how much the integral may be off, m².
     pub(super) fn reveal(&mut self, line: (Plane, f64), missed: f64) {
-        self.kind = None;
+        self.topology = None;
         self.pays = false;
         self.error = self.error.max(BEHIND * missed);
         if self.line.is_none_or(|other| merit(&line) > merit(&other)) {

@@ -1,7 +1,7 @@
 //! Triangles and convex quads, their rules and their parts.
 
 use crate::form_factor::critical::Plane;
-use crate::form_factor::shadow::Kind;
+use crate::form_factor::shadow::Topology;
 use fredholm_mesh::Vec3;
 use fredholm_quadrature::{PlanePoint, symmetric_triangle, tensor_quad};
 use fredholm_visibility::body::ODD;
@@ -98,7 +98,7 @@ impl Shape {
     }
 
     /// The integral by a rule of which `found` are the values.
-    pub(super) fn sum(&self, degree: usize, found: &[(f64, Kind)]) -> f64 {
+    pub(super) fn sum(&self, degree: usize, found: &[(f64, Topology)]) -> f64 {
         match *self {
             Self::Triangle([a, b, c]) => {
                 let doubled = (b - a).cross(c - a).length();

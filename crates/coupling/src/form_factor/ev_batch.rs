@@ -1,14 +1,14 @@
 //! Which corners and edges line up, seen from somewhere in a polygon: eight pairs at once, one a lane.
 //!
 //! A corner w and an edge a b do where the plane through them passes through the polygon, det(b − a, w − a, x − a) having both signs there, and where on the line in which it does the ray
-//! to the corner meets the edge ([`Sighting`]). Most planes miss the polygon. Lengths in metres.
+//! to the corner meets the edge ([`EdgeVertexEvent`]). Most planes miss the polygon. Lengths in metres.
 
 #![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
 #![allow(clippy::needless_bitwise_bool, reason = "a jump a lane costs more than to ask both")]
 
 use super::critical::Plane;
+use super::ev_events::{EdgeVertexEvent, INSIDE, MARGIN};
 use super::lanes::{LANES, Lanes, Lanes3, Mask, any, ask, cross, difference, dot, each, heights, same};
-use super::sighting::{INSIDE, MARGIN, Sighting};
 use fredholm_mesh::Vec3;
 use pulp::{Arch, NullaryFnOnce};
 
@@ -17,7 +17,7 @@ const SLIM: f64 = 1e-24;
 
 /// Where a pair is asked about.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place<'a> {
+pub(super) struct Region<'a> {
     /// A convex polygon.
     pub source: &'a [Vec3],
     /// A polygon through which the plane has to pass as well.
@@ -37,20 +37,20 @@ struct Block {
 }
 
 impl Block {
-    fn set(&mut self, m: usize, sighting: &Sighting) {
-        let [start, end] = sighting.edge;
+    fn set(&mut self, m: usize, ev_event: &EdgeVertexEvent) {
+        let [start, end] = ev_event.edge;
         for (lanes, x) in
-            [(&mut self.corner, sighting.corner), (&mut self.start, start), (&mut self.end, end)]
+            [(&mut self.corner, ev_event.corner), (&mut self.start, start), (&mut self.end, end)]
         {
             (lanes[0][m], lanes[1][m], lanes[2][m]) = (x.x, x.y, x.z);
         }
-        self.behind[m] = f64::from(u8::from(sighting.behind));
+        self.behind[m] = f64::from(u8::from(ev_event.behind));
     }
 
-    fn get(&self, m: usize) -> Sighting {
+    fn get(&self, m: usize) -> EdgeVertexEvent {
         let [corner, start, end] = [&self.corner, &self.start, &self.end]
             .map(|lanes| Vec3::new(lanes[0][m], lanes[1][m], lanes[2][m]));
-        Sighting { corner, edge: [start, end], behind: self.behind[m] > 0.0 }
+        EdgeVertexEvent { corner, edge: [start, end], behind: self.behind[m] > 0.0 }
     }
 }
 
@@ -63,38 +63,38 @@ pub(super) struct Aligned {
 
 /// Pairs that may line up. Buffers are kept.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Lineup {
+pub(super) struct EdgeVertexBatch {
     arch: Arch,
     blocks: Vec<Block>,
     len: usize,
     found: Vec<Aligned>,
 }
 
-impl Lineup {
+impl EdgeVertexBatch {
     pub(super) fn clear(&mut self) {
         self.blocks.clear();
         self.len = 0;
     }
 
     /// Adds a pair.
-    pub(super) fn push(&mut self, sighting: &Sighting) {
+    pub(super) fn push(&mut self, ev_event: &EdgeVertexEvent) {
         let m = self.len % LANES;
         if m == 0 {
             self.blocks.push(Block::default());
         }
         if let Some(block) = self.blocks.last_mut() {
-            block.set(m, sighting);
+            block.set(m, ev_event);
         }
         self.len += 1;
     }
 
     /// A pair by its number.
-    pub(super) fn get(&self, pair: usize) -> Sighting {
+    pub(super) fn get(&self, pair: usize) -> EdgeVertexEvent {
         self.blocks[pair / LANES].get(pair % LANES)
     }
 
     /// Finds the pairs that line up.
-    pub(super) fn ask(&mut self, place: Place) {
+    pub(super) fn ask(&mut self, place: Region) {
         self.found.clear();
         let Self { arch, blocks, found, .. } = self;
         arch.dispatch(Ask { blocks, place, found });
@@ -109,7 +109,7 @@ impl Lineup {
 /// A question, compiled for each width of vectors: a closure would be compiled once, for the narrowest.
 struct Ask<'a> {
     blocks: &'a [Block],
-    place: Place<'a>,
+    place: Region<'a>,
     found: &'a mut Vec<Aligned>,
 }
 
@@ -123,8 +123,8 @@ impl NullaryFnOnce for Ask<'_> {
             if !any(&planes.pass(self.place.source, &block.start)) {
                 continue;
             }
-            let (normal, shows) = planes.line_up(block, &self.place);
-            for m in (0..LANES).filter(|m| shows[*m] != 0) {
+            let (normal, active) = planes.line_up(block, &self.place);
+            for m in (0..LANES).filter(|m| active[*m] != 0) {
                 let n = Vec3::new(normal[0][m], normal[1][m], normal[2][m]);
                 let a = Vec3::new(block.start[0][m], block.start[1][m], block.start[2][m]);
                 self.found.push(Aligned { pair: k * LANES + m, plane: (n, n.dot(a)) });
@@ -160,7 +160,7 @@ impl Planes {
 
     /// The unit normals, and which pairs line up.
     #[inline(always)]
-    fn line_up(&self, block: &Block, place: &Place) -> (Lanes3, Mask) {
+    fn line_up(&self, block: &Block, place: &Region) -> (Lanes3, Mask) {
         let (edge2, arm2) = (dot(&self.edge, &self.edge), dot(&self.arm, &self.arm));
         let (length2, flat) = (dot(&self.normal, &self.normal), place.flat);
         let least = each(|m| {
@@ -180,9 +180,9 @@ impl Planes {
             meeting(block, &shrunk(&ends[0], &ends[1]), &n, &across),
             meeting(block, &shrunk(&ends[1], &ends[0]), &n, &across),
         ];
-        let shows = lines_up(&first, &last);
+        let active = lines_up(&first, &last);
         let passes = place.target.map_or([u64::MAX; LANES], |target| passes(&n, &offset, target, flat));
-        let all = ask(|m| (length2[m] > least[m]) & (cuts[m] & shows[m] & passes[m] != 0));
+        let all = ask(|m| (length2[m] > least[m]) & (cuts[m] & active[m] & passes[m] != 0));
         (n, all)
     }
 }
@@ -256,7 +256,7 @@ fn shrunk(a: &Lanes3, b: &Lanes3) -> Lanes3 {
     moved
 }
 
-/// Where the line from a point through the corner meets the line of the edge, as in [`Sighting`].
+/// Where the line from a point through the corner meets the line of the edge, as in [`EdgeVertexEvent`].
 struct Meeting {
     /// Whether the edge and the corner come in the right order.
     order: Mask,
@@ -283,17 +283,17 @@ fn meeting(block: &Block, c: &Lanes3, n: &Lanes3, across: &Lanes3) -> Meeting {
     }
 }
 
-/// Whether corner and edge line up somewhere between two points, as in [`Sighting::shows`].
+/// Whether corner and edge line up somewhere between two points, as in [`EdgeVertexEvent::is_active`].
 #[inline(always)]
 fn lines_up(first: &Meeting, last: &Meeting) -> Mask {
-    let mut shows = [0; LANES];
-    for (m, shows) in shows.iter_mut().enumerate() {
+    let mut active = [0; LANES];
+    for (m, active) in active.iter_mut().enumerate() {
         let inside =
             (first.before_end[m] | last.before_end[m]) & (first.behind_start[m] | last.behind_start[m]);
         let both = first.order[m] & last.order[m];
-        *shows = (both & inside) | (first.order[m] ^ last.order[m]);
+        *active = (both & inside) | (first.order[m] ^ last.order[m]);
     }
-    shows
+    active
 }
 
 #[cfg(test)]
@@ -302,13 +302,13 @@ mod tests {
 
     const SQUARE: [Vec3; 4] = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y];
 
-    fn found(pairs: &[Sighting], target: Option<&[Vec3]>) -> Vec<usize> {
-        let mut lineup = Lineup::default();
+    fn found(pairs: &[EdgeVertexEvent], target: Option<&[Vec3]>) -> Vec<usize> {
+        let mut batch = EdgeVertexBatch::default();
         for pair in pairs {
-            lineup.push(pair);
+            batch.push(pair);
         }
-        lineup.ask(Place { source: &SQUARE, target, flat: 1e-12 });
-        lineup.found().iter().map(|aligned| aligned.pair).collect()
+        batch.ask(Region { source: &SQUARE, target, flat: 1e-12 });
+        batch.found().iter().map(|aligned| aligned.pair).collect()
     }
 
     #[test]
@@ -317,7 +317,7 @@ mod tests {
             let x = f64::from(k) * 0.1 - 0.05;
             [Vec3::new(x, 0.0, 1.0), Vec3::new(x, 1.0, 1.0)]
         };
-        let pair = |k| Sighting { corner: Vec3::new(0.55, 0.5, 2.0), edge: upright(k), behind: false };
+        let pair = |k| EdgeVertexEvent { corner: Vec3::new(0.55, 0.5, 2.0), edge: upright(k), behind: false };
         let pairs: Vec<_> = (0..12).map(pair).collect();
         assert_eq!(found(&pairs, None), [4, 5, 6, 7, 8]);
     }
@@ -325,7 +325,7 @@ mod tests {
     #[test]
     fn planes_that_miss_the_target_do_not_count() {
         let edge = [Vec3::new(0.5, 0.0, 1.0), Vec3::new(0.5, 1.0, 1.0)];
-        let pair = [Sighting { corner: Vec3::new(0.5, 0.5, 2.0), edge, behind: false }];
+        let pair = [EdgeVertexEvent { corner: Vec3::new(0.5, 0.5, 2.0), edge, behind: false }];
         let beside = |x: f64| SQUARE.map(|y| y + Vec3::new(x, 0.0, 3.0));
         assert_eq!(found(&pair, None), [0]);
         assert_eq!(found(&pair, Some(&beside(0.2))), [0]);
@@ -340,15 +340,15 @@ mod tests {
             let behind = k.is_multiple_of(2);
             let (corner, edge) = if behind { (0.5, 1.5) } else { (1.5, 0.5) };
             let ends = [point(9 * k, edge), point(9 * k + 3, edge)];
-            Sighting { corner: point(9 * k + 6, corner), edge: ends, behind }
+            EdgeVertexEvent { corner: point(9 * k + 6, corner), edge: ends, behind }
         };
         let pairs: Vec<_> = (0..400).map(pair).collect();
-        let alone = |sighting: &Sighting| {
-            let [a, b] = sighting.edge;
-            let n = (b - a).cross(sighting.corner - a).normalize();
+        let alone = |ev_event: &EdgeVertexEvent| {
+            let [a, b] = ev_event.edge;
+            let n = (b - a).cross(ev_event.corner - a).normalize();
             let heights = SQUARE.map(|x| n.dot(x - a));
-            super::super::sighting::chord(&SQUARE, |k| heights[k])
-                .is_some_and(|chord| sighting.shows(chord, n))
+            super::super::ev_events::chord(&SQUARE, |k| heights[k])
+                .is_some_and(|chord| ev_event.is_active(chord, n))
         };
         let expected: Vec<usize> = (0..400).filter(|k| alone(&pairs[*k])).collect();
         assert_eq!(found(&pairs, None), expected);

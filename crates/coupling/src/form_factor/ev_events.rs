@@ -13,17 +13,17 @@ pub(super) const INSIDE: f64 = 1e-6;
 
 /// A corner and an edge that line up.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sighting {
+pub(super) struct EdgeVertexEvent {
     pub corner: Vec3,
     pub edge: [Vec3; 2],
     /// Whether the edge lies behind the corner.
     pub behind: bool,
 }
 
-impl Sighting {
+impl EdgeVertexEvent {
     /// Whether they line up from a part of a chord in the plane with normal n.
     #[inline]
-    pub(super) fn shows(&self, [first, last]: [Vec3; 2], n: Vec3) -> bool {
+    pub(super) fn is_active(&self, [first, last]: [Vec3; 2], n: Vec3) -> bool {
         let inner = [first.lerp(last, INSIDE), last.lerp(first, INSIDE)];
         let across = (self.edge[1] - self.edge[0]).cross(n);
         let [first, last] = [self.meeting(inner[0], n, across), self.meeting(inner[1], n, across)];
@@ -74,81 +74,81 @@ impl Meeting {
     }
 }
 
-/// A plane on which the hidden part may change its kind.
+/// A plane on which the hidden part may change its topology.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Event {
+pub(crate) struct CriticalPlane {
     pub plane: Plane,
-    /// Whether it does so nowhere but where sightings tell.
+    /// Whether it does so nowhere but where its edge–vertex events tell.
     sure: bool,
     /// Whether it does so everywhere.
     always: bool,
-    /// The last sighting on this plane, counted from 1.
+    /// The last edge–vertex event on this plane, counted from 1.
     last: u32,
 }
 
-impl Event {
-    /// Whether it shows nowhere but where sightings tell.
+impl CriticalPlane {
+    /// Whether it is active nowhere but where its edge–vertex events tell.
     pub(crate) fn is_sure(&self) -> bool {
         self.sure
     }
 
-    /// An event that nobody has seen yet.
+    /// A plane of which no event is known yet.
     pub(super) fn new(plane: Plane) -> Self {
         Self { plane, sure: true, always: false, last: 0 }
     }
 
-    /// An event that may show anywhere.
+    /// A plane that may be active anywhere.
     pub(super) fn perhaps(plane: Plane) -> Self {
         Self { plane, sure: false, always: false, last: 0 }
     }
 
-    /// An event that shows wherever its plane cuts the source.
+    /// A plane that is active wherever it cuts the source.
     pub(super) fn always(plane: Plane) -> Self {
         Self { plane, sure: true, always: true, last: 0 }
     }
 }
 
-/// Whether a line shows on a polygon.
+/// Whether a critical line is active on a polygon: whether the topology of the shadow differs on its two sides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Shows {
-    Surely,
-    Never,
-    Perhaps,
+pub(super) enum Active {
+    Yes,
+    No,
+    Unknown,
 }
 
-/// The sightings of all events, each with the one before it on the same plane.
+/// The edge–vertex events of all critical planes, each with the one before it on the same plane.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Sightings(Vec<(Sighting, u32)>);
+pub(crate) struct EdgeVertexEvents(Vec<(EdgeVertexEvent, u32)>);
 
-impl Sightings {
+impl EdgeVertexEvents {
     pub(super) fn clear(&mut self) {
         self.0.clear();
     }
 
-    /// Adds a sighting to an event; one that is not sure may show or not.
-    pub(super) fn add(&mut self, event: &mut Event, sighting: Sighting, sure: bool) {
+    /// Adds an edge–vertex event to its critical plane; one that is not sure may show or not.
+    pub(super) fn add(&mut self, event: &mut CriticalPlane, ev_event: EdgeVertexEvent, sure: bool) {
         if sure {
-            self.0.push((sighting, event.last));
+            self.0.push((ev_event, event.last));
             event.last = self.0.len() as u32;
         }
         event.sure &= sure;
     }
 
-    /// Whether an event shows on the line in which its plane cuts a convex polygon, given by the two ends.
-    pub(super) fn ask(&self, event: &Event, chord: Option<[Vec3; 2]>) -> Shows {
+    /// Whether a critical plane is active on the line in which it cuts a convex polygon, given by the two ends.
+    pub(super) fn ask(&self, event: &CriticalPlane, chord: Option<[Vec3; 2]>) -> Active {
         if event.always {
-            return Shows::Surely;
+            return Active::Yes;
         }
         let (n, _) = event.plane;
-        let Some(chord) = chord else { return Shows::Perhaps };
+        let Some(chord) = chord else { return Active::Unknown };
         let mut next = event.last;
-        while let Some((sighting, before)) = next.checked_sub(1).map(|k| &self.0[k as usize]) {
-            if sighting.shows(chord, n) {
-                return Shows::Surely;
+        while let Some((ev_event, before)) = next.checked_sub(1).map(|k| &self.0[k as usize]) {
+            if ev_event.is_active(chord, n) {
+                return Active::Yes;
             }
             next = *before;
         }
-        if event.sure { Shows::Never } else { Shows::Perhaps }
+        if event.sure { Active::No } else { Active::Unknown }
     }
 }
 
@@ -179,8 +179,8 @@ mod tests {
     use super::*;
 
     /// A post of height 1 before a wall at x = 2 from y = −1 to 1, seen from the floor.
-    fn post() -> Sighting {
-        Sighting {
+    fn post() -> EdgeVertexEvent {
+        EdgeVertexEvent {
             corner: Vec3::new(1.0, 0.0, 1.0),
             edge: [Vec3::new(2.0, -1.0, 1.5), Vec3::new(2.0, 1.0, 1.5)],
             behind: true,
@@ -192,24 +192,25 @@ mod tests {
         // The plane through the corner and the edge cuts the floor along x = −1.
         let n = Vec3::new(-0.5, 0.0, 1.0).normalize();
         let chord = |low: f64, high: f64| [Vec3::new(-1.0, low, 0.0), Vec3::new(-1.0, high, 0.0)];
-        assert!(post().shows(chord(-0.5, 0.5), n) && post().shows(chord(1.5, 5.0), n));
-        assert!(!post().shows(chord(2.1, 5.0), n));
+        assert!(post().is_active(chord(-0.5, 0.5), n) && post().is_active(chord(1.5, 5.0), n));
+        assert!(!post().is_active(chord(2.1, 5.0), n));
     }
 
     #[test]
     fn an_event_shows_on_the_polygons_on_which_it_is_seen() {
         let n = Vec3::new(-0.5, 0.0, 1.0).normalize();
-        let (mut event, mut sightings) = (Event::new((n, n.dot(post().corner))), Sightings::default());
-        let ask = |sightings: &Sightings, event: &Event, y: f64| {
+        let (mut event, mut ev_events) =
+            (CriticalPlane::new((n, n.dot(post().corner))), EdgeVertexEvents::default());
+        let ask = |ev_events: &EdgeVertexEvents, event: &CriticalPlane, y: f64| {
             let square = [[-1.5, y], [-0.5, y], [-0.5, y + 1.0], [-1.5, y + 1.0]];
             let square = square.map(|[x, y]| Vec3::new(x, y, 0.0));
             let (n, c) = event.plane;
-            sightings.ask(event, chord(&square, |k| n.dot(square[k]) - c))
+            ev_events.ask(event, chord(&square, |k| n.dot(square[k]) - c))
         };
-        sightings.add(&mut event, post(), true);
-        assert_eq!(ask(&sightings, &event, 0.0), Shows::Surely);
-        assert_eq!(ask(&sightings, &event, 3.0), Shows::Never);
-        sightings.add(&mut event, post(), false);
-        assert_eq!(ask(&sightings, &event, 3.0), Shows::Perhaps);
+        ev_events.add(&mut event, post(), true);
+        assert_eq!(ask(&ev_events, &event, 0.0), Active::Yes);
+        assert_eq!(ask(&ev_events, &event, 3.0), Active::No);
+        ev_events.add(&mut event, post(), false);
+        assert_eq!(ask(&ev_events, &event, 3.0), Active::Unknown);
     }
 }
