@@ -13,7 +13,7 @@ use serde::Serialize;
 use crate::commands::{
     CROSSCHECK_EXAMPLES, CompareArgs, CrosscheckArgs, Plane, REFERENCE_EXAMPLES, RESUME_EXAMPLES,
     ReferenceArgs, ResumeArgs, SHOOT_EXAMPLES, ShootArgs, SpectrumArgs, TRACE_EXAMPLES, TraceArgs,
-    ViewFactorsArgs, WAVES_EXAMPLES, WavesArgs, plane, point,
+    VIEW_EXAMPLES, ViewArgs, ViewFactorsArgs, WAVES_EXAMPLES, WavesArgs, plane, point,
 };
 use crate::registry;
 use crate::size::Bytes;
@@ -71,8 +71,8 @@ Examples:
 
 Level 0 is the mesh of the scene; each level cuts every element into 2 × 2. The faces of the
 scene stay what they are, and what is compared are means of the irradiance over them. An
-order takes three levels. Written are converge.csv, converge.svg, and converge.json last.
-Ctrl-C ends the run with nothing written.";
+order takes three levels. Written are converge.csv, converge.svg, report.html, and
+converge.json last. Ctrl-C ends the run with nothing written.";
 
 const COMPARE_EXAMPLES: &str = "\
 Examples:
@@ -83,8 +83,8 @@ Examples:
 All solvers start from x = 0 on the same matrix and stop at the same residual. Errors are
 those against LU where it fits the memory. Solvers that do not suit the system, or do not
 fit the memory, are listed as refused. Written are compare.csv, compare_history.csv,
-compare.svg, for a sweep compare_sweep.svg, and compare.json last. Ctrl-C ends the run with
-nothing written.";
+compare.svg, for a sweep compare_sweep.svg, report.html, and compare.json last. Ctrl-C ends
+the run with nothing written.";
 
 const SPECTRUM_EXAMPLES: &str = "\
 Examples:
@@ -195,6 +195,9 @@ pub(crate) enum Command {
     /// Write reference values with stated errors, to check other tracers with
     #[command(after_help = REFERENCE_EXAMPLES)]
     Reference(ReferenceArgs),
+    /// Open the page of a result, report.html, or print where it is
+    #[command(after_help = VIEW_EXAMPLES)]
+    View(ViewArgs),
     /// Tell what made a result
     #[command(after_help = INFO_EXAMPLES)]
     Info(InfoArgs),
@@ -292,6 +295,7 @@ pub(crate) struct ProblemArgs {
 
 /// Options of `solve`.
 #[derive(Clone, Debug, Args)]
+#[allow(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub(crate) struct SolveArgs {
     /// Folder for the results [default: out/<name of the scene file>]
     #[arg(long, short, value_name = "DIR")]
@@ -311,6 +315,9 @@ pub(crate) struct SolveArgs {
     /// Draw no picture
     #[arg(long, conflicts_with = "final_gather")]
     pub(crate) no_pictures: bool,
+    /// Write no report.html
+    #[arg(long)]
+    pub(crate) no_report: bool,
     /// Also write shadows.vtu, for which the elements are cut along the borders of the shadows that lamps cast and gather
     /// their irradiance at the corners
     #[arg(long)]
@@ -373,6 +380,9 @@ pub(crate) struct ConvergeArgs {
     /// Number of meshes: that of the scene, and finer ones
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(2..=12))]
     pub(crate) levels: u8,
+    /// Write no report.html
+    #[arg(long)]
+    pub(crate) no_report: bool,
     #[command(flatten)]
     pub(crate) problem: ProblemArgs,
     #[command(flatten)]

@@ -82,6 +82,7 @@ pub(crate) fn options(
     options.final_gather = args.final_gather;
     options.discontinuity = args.discontinuity;
     options.no_pictures = args.no_pictures;
+    options.no_report = args.no_report;
     options.points = args.places.receivers();
     options.tolerance = args.stop.tolerance.or(scene.solve().tolerance).unwrap_or(RESIDUAL * accuracy);
     Ok(options)

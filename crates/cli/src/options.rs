@@ -56,6 +56,9 @@ pub(crate) struct Options {
     /// Whether nothing is drawn.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub(crate) no_pictures: bool,
+    /// Whether the page is left out.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub(crate) no_report: bool,
     pub(crate) tolerance: f64,
     pub(crate) max_iterations: u64,
     pub(crate) output: String,
@@ -102,6 +105,7 @@ impl Options {
             final_gather: false,
             discontinuity: false,
             no_pictures: false,
+            no_report: false,
             tolerance: stop.tolerance.or(scene.tolerance).unwrap_or(TOLERANCE),
             max_iterations: iterations.unwrap_or(MAX_ITERATIONS),
             output: output.display().to_string(),

@@ -15,6 +15,7 @@ mod solve;
 mod solvers;
 mod spectrum;
 mod trace;
+mod view;
 mod viewfactors;
 mod waves;
 
@@ -28,6 +29,7 @@ pub(crate) use resume::{EXAMPLES as RESUME_EXAMPLES, ResumeArgs};
 pub(crate) use shoot::{EXAMPLES as SHOOT_EXAMPLES, ShootArgs};
 pub(crate) use spectrum::SpectrumArgs;
 pub(crate) use trace::{EXAMPLES as TRACE_EXAMPLES, TraceArgs};
+pub(crate) use view::{EXAMPLES as VIEW_EXAMPLES, ViewArgs};
 pub(crate) use viewfactors::{Plane, ViewFactorsArgs, plane, point};
 pub(crate) use waves::{EXAMPLES as WAVES_EXAMPLES, WavesArgs};
 
@@ -46,6 +48,7 @@ pub(crate) fn execute(command: &Command) -> Result<Ending, Failure> {
         Command::Trace(args) => trace::trace(args),
         Command::Crosscheck(args) => crosscheck::crosscheck(args),
         Command::Reference(args) => reference::reference(args),
+        Command::View(args) => view::view(args),
         Command::Info(args) => info::info(args),
         Command::Schema => schema::schema(),
         Command::Completions(args) => completions::completions(args),

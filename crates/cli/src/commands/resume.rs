@@ -43,6 +43,7 @@ pub(crate) fn resume(args: &ResumeArgs) -> Result<Ending, Failure> {
         final_gather: header.final_gather,
         discontinuity: header.discontinuity,
         no_pictures: header.no_pictures,
+        no_report: header.no_report,
         places: PlaceArgs { point: header.receivers(), plane: Vec::new() },
         problem: ProblemArgs {
             scene: header.scene.clone(),

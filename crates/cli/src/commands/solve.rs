@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use fredholm_linop::StopReason;
 use fredholm_report::{
-    Camera, Exposure, Extras, Field, IMAGE, Layer, ReportError, RunRecord, View, write_with,
+    Camera, Exposure, Extras, Field, IMAGE, Layer, ReportError, RunRecord, RunReport, View, write_with,
 };
 use fredholm_scene::Scene;
 
@@ -98,8 +98,8 @@ fn dense(
     let problem = Problem::refined(Arc::clone(scene), options, (1, &more), stages)?;
     let options = Options::new(problem.options.clone(), args.stop, scene.solve(), folder, args.log);
     let points = args.places.receivers();
-    let SolveArgs { final_gather, discontinuity, no_pictures, .. } = *args;
-    let options = Options { points, final_gather, discontinuity, no_pictures, ..options };
+    let SolveArgs { final_gather, discontinuity, no_pictures, no_report, .. } = *args;
+    let options = Options { points, final_gather, discontinuity, no_pictures, no_report, ..options };
     let solution = compute(&problem, &options, stages)?;
     Ok((options, problem, solution))
 }
@@ -209,8 +209,17 @@ fn write(
     let pictures = pictures(options, solution).map(|name| (name, layer(name))).collect();
     let points = gathered.as_ref().map(|gathered| gathered.points(options)).transpose()?.flatten();
     let shadows = gathered.as_ref().filter(|_| options.discontinuity).map(Gathered::shadows);
+    let title = title(&problem.scene);
+    let report = (!options.no_report).then_some(RunReport { title: &title, view: &view, steps: ("", &[]) });
     let view = (!options.no_pictures).then_some(&view);
-    write_with(folder, &field, record, view, &Extras { pictures, points, shadows }).map_err(report_failure)
+    let extras = Extras { pictures, points, shadows, report };
+    write_with(folder, &field, record, view, &extras).map_err(report_failure)
+}
+
+/// The title of the scene, or the name of its file.
+pub(super) fn title(scene: &Scene) -> String {
+    let name = || scene.path().file_stem().map(|stem| stem.to_string_lossy().into_owned());
+    scene.title().map(str::to_owned).or_else(name).unwrap_or_default()
 }
 
 /// The scene's camera, or one that sees all of it.

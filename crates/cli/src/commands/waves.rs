@@ -26,8 +26,8 @@ Examples:
   fredholm waves scenes/waves/facing_plates.toml --compare neumann,gmres,southwell
 
 Written are receivers.csv, receivers.npz, currents.vtu, far.csv, plots and maps of the
-receivers, and run.json last; with --compare, compare.csv, compare_history.csv, compare.svg
-and compare.json instead. Ctrl-C ends the run with nothing written.";
+receivers, report.html, and run.json last; with --compare, compare.csv, compare_history.csv,
+compare.svg and compare.json instead. Ctrl-C ends the run with nothing written.";
 
 /// Options of `waves`.
 #[derive(Clone, Debug, Args)]
@@ -46,6 +46,9 @@ pub(crate) struct WavesArgs {
     /// Compare solvers on the coupling instead, with their options, or all: neumann,gmres:restart=100,southwell
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = solver)]
     compare: Vec<String>,
+    /// Write no report.html
+    #[arg(long)]
+    no_report: bool,
     /// Residual that compared solvers are to reach
     #[arg(long, value_name = "T", value_parser = tolerance, default_value = "1e-6", requires = "compare")]
     to: f64,
@@ -101,7 +104,10 @@ fn run(args: &WavesArgs, folder: &Path, stages: &mut Stages) -> Result<Ending, F
     let outcome = waves::compute(&model, stages)?;
     stages.begin_saving()?;
     let timings = stages.timings().to_vec();
-    let written = || waves::write(folder, &model, &outcome, &timings).map_err(super::solve::report_failure);
+    let written = || {
+        waves::write(folder, &model, &outcome, &timings, !args.no_report)
+            .map_err(super::solve::report_failure)
+    };
     stages.run("results", written)?;
     if !outcome.converged() {
         stages

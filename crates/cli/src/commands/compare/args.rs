@@ -32,6 +32,9 @@ pub(crate) struct CompareArgs {
     /// Repeat with all reflectances scaled so that the largest takes these values: reflectance=0.1..0.99, or reflectance=0.1..0.9:5 for five of them
     #[arg(long, value_name = "SWEEP", value_parser = sweep)]
     pub(crate) sweep: Option<Sweep>,
+    /// Write no report.html
+    #[arg(long)]
+    pub(crate) no_report: bool,
     /// Threads; any number gives the same residuals [default: one a core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,

@@ -15,7 +15,7 @@ use serde_json::json;
 
 pub(crate) use args::CompareArgs;
 
-use super::solve::report_failure;
+use super::solve::{report_failure, title};
 use crate::args::Precision;
 use crate::failure::{Ending, Failure};
 use crate::interrupt::Interrupt;
@@ -58,7 +58,8 @@ fn run(args: &CompareArgs, folder: &Path, stages: &mut Stages) -> Result<Ending,
         Precision::F32 => compared::<f32>(args, &problem, stages),
     }?;
     stages.interrupt.begin_saving()?;
-    write_comparison(folder, &record).map_err(report_failure)?;
+    let title = (!args.no_report).then(|| title(&problem.scene));
+    write_comparison(folder, &record, title.as_deref()).map_err(report_failure)?;
     record.warnings.iter().for_each(|warning| stages.console.warn(warning));
     if !args.log.quiet {
         summary::print(folder, &record)?;

@@ -11,7 +11,7 @@ use fredholm_linop::StopReason;
 use fredholm_report::write_refinement;
 use fredholm_scene::Scene;
 
-use super::solve::report_failure;
+use super::solve::{report_failure, title};
 use crate::args::ConvergeArgs;
 use crate::console::Console;
 use crate::failure::{Ending, Failure};
@@ -49,7 +49,8 @@ fn run(args: &ConvergeArgs, console: &dyn Console, interrupt: &Interrupt) -> Res
     let levels: Vec<Level> = problems.iter().enumerate().map(solve).collect::<Result<_, _>>()?;
     let record = study::record(&problems[0], &options, &levels);
     interrupt.begin_saving()?;
-    write_refinement(&folder, &record).map_err(report_failure)?;
+    let title = (!args.no_report).then(|| title(scene));
+    write_refinement(&folder, &record, title.as_deref()).map_err(report_failure)?;
     record.warnings.iter().for_each(|warning| console.warn(warning));
     if !args.log.quiet {
         summary::print(&folder, &record)?;

@@ -11,12 +11,14 @@ use clap::{Args, ValueEnum};
 use fredholm_montecarlo::light::{Estimator, METHODS, estimator};
 use fredholm_montecarlo::statistics::{Comparison, Correction, Crosscheck, Place, crosscheck as compare};
 use fredholm_montecarlo::{Enclosure, State};
-use fredholm_report::{CrosscheckPower, CrosscheckRecord, WorstPlace, score_map, write_crosscheck};
+use fredholm_report::{
+    CrosscheckPower, CrosscheckRecord, Exposure, View, WorstPlace, score_map, write_crosscheck,
+};
 use fredholm_scene::Scene;
 
 use places::Places;
 
-use super::solve::{report_failure, view_camera};
+use super::solve::{report_failure, title, view_camera};
 use crate::args::{LogArgs, PlaceArgs, ProblemArgs, SolveArgs, StopArgs, accuracy};
 use crate::checkpoint;
 use crate::failure::{Ending, Failure};
@@ -68,7 +70,8 @@ no use the two are neither said to agree nor to disagree, with exit code 3. ligh
 bidirectional and photon follow light over the surfaces as they are; jacobi, walk-gathering and
 walk-shooting estimate constants on the elements, as the solution on a matrix has them, and see
 no error of the mesh. Written are crosscheck.csv, crosscheck.svg, crosscheck.png (red: the
-traced solution is the brighter), and crosscheck.json last. Exit code 6 where the two disagree.
+traced solution is the brighter), report.html, and crosscheck.json last. Exit code 6 where the
+two disagree.
 
 Of a scene of waves every number of the scattered E at every point of a receiver is compared, one
 bounce or two; written are crosscheck.csv, crosscheck.svg and crosscheck.json.";
@@ -91,6 +94,9 @@ pub(crate) struct CrosscheckArgs {
     /// Folder for the results [default: out/<name of the scene file>]
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
+    /// Write no report.html
+    #[arg(long)]
+    pub(crate) no_report: bool,
     #[command(flatten)]
     pub(crate) paths: PathArgs,
     #[command(flatten)]
@@ -161,7 +167,11 @@ fn run(args: &CrosscheckArgs, folder: &Path, stages: &mut Stages) -> Result<Endi
     let rows = record::rows(&problem, (&values, &error), &state, &found.places[..places.of_faces()]);
     let map = map(&problem, &found.places[..places.of_faces()])?;
     let bands = problem.scene.bands();
-    write_crosscheck(folder, &problem.mesh, bands, (&rows, &map), &record).map_err(report_failure)?;
+    let title = title(&problem.scene);
+    let view =
+        problem.scene.camera().map(|camera| View { camera: view_camera(camera), exposure: Exposure::Auto });
+    let report = (!args.no_report).then_some((title.as_str(), view.as_ref()));
+    write_crosscheck(folder, &problem.mesh, bands, (&rows, &map), &record, report).map_err(report_failure)?;
     if !args.log.quiet {
         summarise(folder, &record)?;
     }
@@ -199,6 +209,7 @@ fn answer(args: &CrosscheckArgs, folder: &Path, stages: &mut Stages) -> Result<(
         final_gather: false,
         discontinuity: false,
         no_pictures: true,
+        no_report: true,
         places: PlaceArgs::default(),
         problem: args.problem.clone(),
         stop: StopArgs { tolerance: None, max_iterations: None },

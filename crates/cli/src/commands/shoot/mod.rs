@@ -11,13 +11,15 @@ use std::time::Instant;
 use fredholm_coupling::{Emitters, Groups, MeshError};
 use fredholm_iterative::{Frame, MultilevelShooting};
 use fredholm_linop::{Columns, Lazy, MultiVector};
-use fredholm_report::{SHOOTING_FORMAT, ShootingRecord, Shot, write_shooting, write_shot_picture};
+use fredholm_report::{
+    FieldStep, RunReport, SHOOTING_FORMAT, ShootingRecord, Shot, write_shooting, write_shot_picture,
+};
 use serde_json::json;
 
 pub(crate) use args::{EXAMPLES, ShootArgs};
 use light::Light;
 
-use super::solve::{report_failure, view_of};
+use super::solve::{report_failure, title, view_of};
 use crate::failure::{Ending, Failure};
 use crate::interrupt::Interrupt;
 use crate::memory;
@@ -54,17 +56,20 @@ fn run(args: &ShootArgs, folder: &Path, stages: &mut Stages) -> Result<Ending, F
         console.advance(share, &|| format!("{number} shots, {:.1} % distributed", 100.0 * shot.distributed));
         !interrupt.requested()
     };
-    let (shots, received, unshot) = stages.run("shots", || job.shoot(&emitters, &watch))?;
+    let (shots, steps, received, unshot) = stages.run("shots", || job.shoot(&emitters, &watch))?;
     let go_on = || if interrupt.requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
     let error = stages.run("errors", || light.error(&scene, (&received, &unshot), &go_on))?;
     let record = shooting_record(args, &scene, (shots, error), &emitters, stages);
-    stages.run("results", || job.write(&received, &record))?;
+    stages.run("results", || job.write(&received, &steps, &record))?;
     let record = ShootingRecord { timings: stages.timings().to_vec(), ..record };
     conclude(args, folder, &record, stages)
 }
 
-/// The shots, what each element has received, W, and what it has still to send, W/m².
-type Shots = (Vec<Shot>, MultiVector<f64>, MultiVector<f64>);
+/// The shots, fields on the way, what each element has received, W, and what it has still to send, W/m².
+type Shots = (Vec<Shot>, Vec<FieldStep>, MultiVector<f64>, MultiVector<f64>);
+
+/// Numbers of all fields on the way that are kept for the page.
+const KEPT: usize = 1 << 21;
 
 /// A scene that is shot through, and where its results go.
 struct Job<'a> {
@@ -84,7 +89,8 @@ impl Job<'_> {
         let mut shooting =
             MultilevelShooting::new(&columns, frame, self.light.scaling(), &self.light.exitance)
                 .map_err(solve_failure)?;
-        let (mut shots, mut seconds): (Vec<Shot>, f64) = (Vec::new(), 0.0);
+        let (mut shots, mut steps, mut seconds): (Vec<Shot>, Vec<FieldStep>, f64) =
+            (Vec::new(), Vec::new(), 0.0);
         let mut distributed = shooting.distributed();
         while distributed < self.args.share && shots.len() < self.args.max_shots as usize {
             let started = Instant::now();
@@ -94,11 +100,26 @@ impl Job<'_> {
             let (elements, columns) = (places[group].len() as u64, columns.computed());
             shots.push(Shot { elements, columns, seconds, distributed });
             self.picture(shots.len() as u64, &shooting)?;
+            if self.keeps(shots.len(), steps.len()) {
+                let label = format!("{} shot{}", shots.len(), if shots.len() == 1 { "" } else { "s" });
+                steps.push(FieldStep {
+                    label,
+                    irradiance: self.light.irradiance(&shooting.received()).as_slice().to_vec(),
+                });
+            }
             if !watch(&shots[shots.len() - 1], shots.len()) {
                 break;
             }
         }
-        Ok((shots, shooting.received(), shooting.unshot()))
+        Ok((shots, steps, shooting.received(), shooting.unshot()))
+    }
+
+    /// Whether the field after so many shots is kept for the page: after 1, 3, 10, 30 … of them, as
+    /// long as there is room.
+    fn keeps(&self, shots: usize, kept: usize) -> bool {
+        let power = 10_usize.pow(shots.ilog10());
+        let numbers = self.light.exitance.dim() * self.light.exitance.lanes();
+        !self.args.no_report && (shots == power || shots == 3 * power) && (kept + 1) * numbers <= KEPT
     }
 
     /// Writes a picture, where one is asked for after this many shots.
@@ -113,10 +134,19 @@ impl Job<'_> {
     }
 
     /// Writes the field that follows from what the elements have received, and the record.
-    fn write(&self, received: &MultiVector<f64>, record: &ShootingRecord) -> Result<(), Failure> {
+    fn write(
+        &self,
+        received: &MultiVector<f64>,
+        steps: &[FieldStep],
+        record: &ShootingRecord,
+    ) -> Result<(), Failure> {
         self.light.field(self.scene, received, &self.light.means(received), |field| {
-            let view = (!self.args.no_pictures).then(|| view_of(self.scene.scene.camera(), field));
-            write_shooting(self.folder, field, record, view.as_ref()).map_err(report_failure)
+            let view = view_of(self.scene.scene.camera(), field);
+            let title = title(&self.scene.scene);
+            let report = RunReport { title: &title, view: &view, steps: ("Shots", steps) };
+            let report = (!self.args.no_report).then_some(&report);
+            let view = (!self.args.no_pictures).then_some(&view);
+            write_shooting(self.folder, field, record, view, report).map_err(report_failure)
         })
     }
 }
