@@ -140,7 +140,7 @@ mod tests {
         let mut out = Vec::new();
         ReportPage::of_waves(report, model, &[]).write(&mut out).unwrap();
         let text = String::from_utf8(out).unwrap();
-        assert!(text.contains("\"component\":\"Jx\"") && text.contains("\"component\":\"Mx\""));
+        assert!(text.contains("\"component\":\"Jz\"") && text.contains("\"component\":\"Mz\""));
         assert!(!text.contains("class=\"plot\""), "there is no history to draw");
     }
 }
