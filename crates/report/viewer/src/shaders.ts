@@ -1,5 +1,8 @@
 // Programs of the graphics processor.
 
+/** Texels in a row of a table: a power of two, so that no integer is divided. */
+export const ROW = 2048;
+
 /** Most isolines. */
 export const LEVELS = 24;
 
@@ -22,8 +25,7 @@ out float scalar;
 out vec3 distances;
 
 vec4 entry(sampler2D table, uint index) {
-  int width = textureSize(table, 0).x;
-  return texelFetch(table, ivec2(int(index) % width, int(index) / width), 0);
+  return texelFetch(table, ivec2(int(index & ${ROW - 1}u), int(index >> ${Math.log2(ROW)}u)), 0);
 }
 
 void main() {

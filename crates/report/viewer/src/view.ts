@@ -23,10 +23,7 @@ import {
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import type { Camera } from "./data";
 import { triangulate, type Geometry } from "./geometry";
-import { FRAGMENT, LEVELS, VERTEX } from "./shaders";
-
-/** Most texels in a row of a table. */
-const ROW = 2048;
+import { FRAGMENT, LEVELS, ROW, VERTEX } from "./shaders";
 
 export interface Picked {
   element: number;
