@@ -19,6 +19,7 @@ fn every_verb_explains_itself() {
         "converge",
         "viewfactors",
         "waves",
+        "view",
         "info",
         "schema",
         "completions",

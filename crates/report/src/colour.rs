@@ -37,6 +37,11 @@ impl Colouring {
         Self { columns }
     }
 
+    /// Linear sRGB of 1 in each band.
+    pub(crate) fn columns(&self) -> &[Rgb] {
+        &self.columns
+    }
+
     /// Linear sRGB of a value in each band, in the unit of the values.
     ///
     /// # Examples

@@ -14,6 +14,7 @@
 //! | `mesh.png`, `links.png`, `gather.png` | the elements, links and a final gather, where asked for |
 //! | `points.csv` | the irradiance of points, where asked for |
 //! | `shadows.vtu` | triangles cut along the borders of shadows, where asked for |
+//! | `report.html` | all of it as a page to turn, pick and read, where asked for |
 //! | `run.json` | what made all this; written last, so its presence means a complete folder |
 //!
 //! [`write_comparison`] writes a comparison of solvers: `compare.csv`, `compare_history.csv`, `compare.svg`, `compare.json`.
@@ -39,6 +40,7 @@ mod faces_csv;
 mod field;
 mod field_csv;
 mod hierarchy;
+mod html;
 mod interpolate;
 mod mean;
 mod nodal;
@@ -79,8 +81,12 @@ pub use faces_csv::write_faces_csv;
 pub use field::Field;
 pub use field_csv::write_field_csv;
 pub use hierarchy::{Hierarchy, HierarchyGoal, HierarchyRound};
+pub use html::{
+    ElementPhasors, ElementValues, FieldStep, ReportAxis, ReportBadge, ReportCell, ReportColumn, ReportModel,
+    ReportPage, ReportPlot, ReportSeries, ReportTable, WaveReport, current_phasors, face_scores,
+};
 pub use npz::write_npz;
-pub use outputs::{EXTRAS, Extras, FILES, IMAGE, View, write_all, write_with};
+pub use outputs::{EXTRAS, Extras, FILES, IMAGE, REPORT, RunReport, View, write_all, write_with};
 pub use picture::{Back, Gathering, Layer, Link, Linked, Picture, Side, render, render_layers, render_sides};
 pub use points_csv::{PointTable, write_points_csv};
 pub use refinement::{

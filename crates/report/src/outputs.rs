@@ -7,13 +7,13 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use crate::{
-    Camera, Exposure, Field, Layer, PointTable, ReportError, RunRecord, ShadowMesh, render_layers,
-    write_atomically, write_convergence, write_faces_csv, write_field_csv, write_npz, write_points_csv,
-    write_run, write_shadows_vtu, write_surfaces_csv, write_vtu,
+    Camera, Exposure, Field, FieldStep, Layer, PointTable, ReportError, ReportModel, ReportPage, RunRecord,
+    ShadowMesh, render_layers, write_atomically, write_convergence, write_faces_csv, write_field_csv,
+    write_npz, write_points_csv, write_run, write_shadows_vtu, write_surfaces_csv, write_vtu,
 };
 
 /// Names of the files of a result folder, in the order in which they are written.
-pub const FILES: [&str; 8] = [
+pub const FILES: [&str; 9] = [
     "field.csv",
     "faces.csv",
     "surfaces.csv",
@@ -21,11 +21,15 @@ pub const FILES: [&str; 8] = [
     "field.npz",
     "image.png",
     "convergence.svg",
+    REPORT,
     "run.json",
 ];
 
 /// The picture among them.
 pub const IMAGE: &str = "image.png";
+
+/// The page among them.
+pub const REPORT: &str = "report.html";
 
 /// Names of further files that a result folder may hold: pictures of the mesh, of links and of the final gather, the table of points, and triangles cut along shadows.
 pub const EXTRAS: [&str; 5] = ["mesh.png", "links.png", "gather.png", "points.csv", "shadows.vtu"];
@@ -39,6 +43,19 @@ pub struct Extras<'a> {
     pub points: Option<PointTable>,
     /// Triangles cut along the borders of shadows.
     pub shadows: Option<ShadowMesh>,
+    /// What makes the page.
+    pub report: Option<RunReport<'a>>,
+}
+
+/// What the page of a run holds besides the field and the record.
+#[derive(Clone, Copy)]
+pub struct RunReport<'a> {
+    /// What the scene is called.
+    pub title: &'a str,
+    /// Where it is seen from.
+    pub view: &'a View,
+    /// The field on the way to the solution, and what the steps are.
+    pub steps: (&'a str, &'a [FieldStep]),
 }
 
 /// What fills a file.
@@ -91,7 +108,7 @@ pub fn write_with(
     let mut pictures = drawn.unwrap_or_default().into_iter();
     let picture = pictures.next();
     prepare(folder, &folder.join(FILES[FILES.len() - 1]))?;
-    EXTRAS.iter().chain([&IMAGE]).try_for_each(|name| remove(&folder.join(name)))?;
+    EXTRAS.iter().chain([&IMAGE, &REPORT]).try_for_each(|name| remove(&folder.join(name)))?;
     let mut paths = Vec::new();
     for ((name, _), picture) in more.pictures.iter().zip(pictures) {
         paths.push(folder.join(name));
@@ -109,8 +126,13 @@ pub fn write_with(
             write_shadows_vtu(mesh, field.bands(), out)
         })?;
     }
+    let page = more.report.map(|RunReport { title, view, steps: (steps_title, steps) }| {
+        let model = ReportModel { steps, steps_title, ..ReportModel::lit(field, view) };
+        ReportPage::of_run(title, field, run, model, picture.as_ref())
+    });
     let draw = |out: &mut dyn Write| picture.as_ref().map_or(Ok(()), |picture| picture.write_png(out));
-    let writers: [&Writer; 8] = [
+    let show = |out: &mut dyn Write| page.as_ref().map_or(Ok(()), |page| page.write(out));
+    let writers: [&Writer; 9] = [
         &|out| write_field_csv(field, out),
         &|out| write_faces_csv(field, out),
         &|out| write_surfaces_csv(field, out),
@@ -118,9 +140,14 @@ pub fn write_with(
         &|out| write_npz(field, out),
         &draw,
         &|out| write_convergence(run, out),
+        &show,
         &|out| write_run(run, out),
     ];
-    let wanted = |name: &str| name != IMAGE || picture.is_some();
+    let wanted = |name: &str| match name {
+        IMAGE => picture.is_some(),
+        REPORT => page.is_some(),
+        _ => true,
+    };
     for (name, write) in FILES.into_iter().zip(writers).filter(|(name, _)| wanted(name)) {
         let path = folder.join(name);
         write_atomically(&path, write)?;
@@ -137,6 +164,12 @@ pub(crate) fn prepare(folder: &Path, mark: &Path) -> Result<(), ReportError> {
     };
     fs::create_dir_all(folder).map_err(failed(folder))?;
     remove(mark)
+}
+
+/// Writes the page of a folder, or removes that of an older result.
+pub(crate) fn write_page(folder: &Path, page: Option<&ReportPage<'_>>) -> Result<(), ReportError> {
+    let path = folder.join(REPORT);
+    page.map_or_else(|| remove(&path), |page| write_atomically(&path, |out| page.write(out)))
 }
 
 /// Removes a file, if it is there.
@@ -165,19 +198,25 @@ mod tests {
         let base = tempfile::tempdir().unwrap();
         let folder = base.path().join("new").join("result");
         let paths = write_all(&folder, &field, &record(), &view).unwrap();
-        assert_eq!(paths, FILES.map(|name| folder.join(name)));
+        let named: Vec<PathBuf> = FILES.iter().map(|name| folder.join(name)).collect();
+        let usual = [&named[..7], &named[8..]].concat();
+        assert_eq!(paths, usual, "no page was asked for");
+        let report = RunReport { title: "box", view: &view, steps: ("", &[]) };
+        let more = Extras { report: Some(report), ..Extras::default() };
+        let paths = write_with(&folder, &field, &record(), Some(&view), &more).unwrap();
+        assert_eq!(paths, named);
         assert!(paths.iter().all(|path| fs::metadata(path).unwrap().len() > 50));
         assert_eq!(fs::read_dir(&folder).unwrap().count(), FILES.len());
-        assert_eq!(read_run(&paths[7]).unwrap(), record());
+        assert_eq!(read_run(&paths[8]).unwrap(), record());
         // A folder in the place of a file makes the second attempt fail half-way.
         fs::remove_file(&paths[4]).unwrap();
         fs::create_dir(&paths[4]).unwrap();
         let error = write_all(&folder, &field, &record(), &view).unwrap_err();
         assert!(error.to_string().contains("field.npz"), "{error}");
-        assert!(!paths[7].exists());
-        // The picture of the first attempt is gone too: none of an earlier result stays.
-        assert!(!folder.join(IMAGE).exists());
-        assert_eq!(fs::read_dir(&folder).unwrap().count(), FILES.len() - 2);
+        assert!(!paths[8].exists());
+        // Picture and page of the first attempt are gone too: none of an earlier result stays.
+        assert!(!folder.join(IMAGE).exists() && !folder.join(REPORT).exists());
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), FILES.len() - 3);
     }
 
     #[test]
@@ -189,7 +228,7 @@ mod tests {
         write_all(folder.path(), &field, &record(), &View::framing(&field)).unwrap();
         assert!(folder.path().join(IMAGE).exists());
         let paths = write_with(folder.path(), &field, &record(), None, &Extras::default()).unwrap();
-        assert_eq!(paths.len(), FILES.len() - 1);
+        assert_eq!(paths.len(), FILES.len() - 2);
         assert!(!folder.path().join(IMAGE).exists() && paths.iter().all(|path| path.exists()));
     }
 

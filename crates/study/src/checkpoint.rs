@@ -21,6 +21,7 @@ const FILE: &str = "checkpoint.bin";
 
 /// What a run needs to go on besides the state.
 #[derive(Clone, Debug, Serialize, Deserialize)]
+#[allow(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub(crate) struct Header {
     format: String,
     /// The scene file, as it was given.
@@ -40,6 +41,8 @@ pub(crate) struct Header {
     pub(crate) discontinuity: bool,
     #[serde(default)]
     pub(crate) no_pictures: bool,
+    #[serde(default)]
+    pub(crate) no_report: bool,
     /// Points whose irradiance is gathered, six numbers each.
     #[serde(default)]
     points: Vec<[String; 6]>,
@@ -62,6 +65,7 @@ impl Header {
             final_gather: options.final_gather,
             discontinuity: options.discontinuity,
             no_pictures: options.no_pictures,
+            no_report: options.no_report,
             points: options.points.iter().map(written).collect(),
         }
     }
@@ -122,6 +126,7 @@ impl Checkpoint {
             final_gather: header.final_gather,
             discontinuity: header.discontinuity,
             no_pictures: header.no_pictures,
+            no_report: header.no_report,
             points: GatherPoints { points: header.receivers(), grids: Vec::new() },
             problem: ProblemOptions {
                 solver: Some(header.solver.clone()),

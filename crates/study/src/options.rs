@@ -186,6 +186,8 @@ pub struct SolveOptions {
     pub discontinuity: bool,
     /// Whether nothing is drawn.
     pub no_pictures: bool,
+    /// Whether report.html is left out.
+    pub no_report: bool,
     /// Points whose irradiance is gathered.
     pub points: GatherPoints,
     /// What decides the size and the effort.
@@ -238,6 +240,9 @@ pub(crate) struct SolveSettings {
     /// Whether nothing is drawn.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub(crate) no_pictures: bool,
+    /// Whether the page is left out.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub(crate) no_report: bool,
     pub(crate) tolerance: f64,
     pub(crate) max_iterations: u64,
     /// Folder of the results.
@@ -279,6 +284,7 @@ impl SolveSettings {
             final_gather: false,
             discontinuity: false,
             no_pictures: false,
+            no_report: false,
             tolerance: stop.tolerance.or(scene.tolerance).unwrap_or(TOLERANCE),
             max_iterations: iterations.unwrap_or(MAX_ITERATIONS),
             output: String::new(),

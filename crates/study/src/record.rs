@@ -6,7 +6,7 @@ use fredholm_coupling::MethodCounts;
 use fredholm_linop::{Report, StopReason, Work};
 use fredholm_report::{
     Closure, Counts, Energy, FILES, FieldError, FormFactorError, Hierarchy, History, IMAGE, MeshError,
-    RunRecord,
+    REPORT, RunRecord,
 };
 use serde_json::Value;
 
@@ -61,9 +61,13 @@ pub(crate) fn record(
     }
 }
 
-/// The names of the usual files, with the picture where one is drawn.
+/// The names of the usual files, with the picture and the page where these are wanted.
 fn usual(options: &SolveSettings) -> impl Iterator<Item = &'static str> {
-    FILES.into_iter().filter(|name| *name != IMAGE || !options.no_pictures)
+    FILES.into_iter().filter(|name| match *name {
+        IMAGE => !options.no_pictures,
+        REPORT => !options.no_report,
+        _ => true,
+    })
 }
 
 /// What the user should know of the solution.

@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use fredholm_linop::{MultiVector, StopReason, Watch};
 use fredholm_mesh::Mesh;
-use fredholm_report::{Camera, Exposure, Extras, Field, Layer, ReportError, RunRecord, View, write_with};
+use fredholm_report::{
+    Camera, Exposure, Extras, Field, Layer, ReportError, RunRecord, RunReport, View, write_with,
+};
 use fredholm_scene::Scene;
 
 use crate::checkpoint::{self, Checkpoint};
@@ -232,8 +234,8 @@ fn dense(
     let problem = Problem::refined(Arc::clone(scene), options, (1, &more), stages)?;
     let options = SolveSettings::new(problem.options.clone(), asked.stop, scene.solve());
     let points = asked.points.receivers();
-    let SolveOptions { final_gather, discontinuity, no_pictures, .. } = *asked;
-    let options = SolveSettings { points, final_gather, discontinuity, no_pictures, ..options };
+    let SolveOptions { final_gather, discontinuity, no_pictures, no_report, .. } = *asked;
+    let options = SolveSettings { points, final_gather, discontinuity, no_pictures, no_report, ..options };
     let solution = compute(&problem, &options, stages)?;
     Ok((options, problem, solution))
 }
@@ -342,9 +344,17 @@ fn write(
     let pictures = pictures(options, solution).map(|name| (name, layer(name))).collect();
     let points = gathered.as_ref().map(|gathered| gathered.points(options)).transpose()?.flatten();
     let shadows = gathered.as_ref().filter(|_| options.discontinuity).map(Gathered::shadows);
+    let title = title(&problem.scene);
+    let report = (!options.no_report).then_some(RunReport { title: &title, view: &view, steps: ("", &[]) });
     let view = (!options.no_pictures).then_some(&view);
-    let more = Extras { pictures, points, shadows };
+    let more = Extras { pictures, points, shadows, report };
     write_with(folder, &field, record, view, &more).map(drop).map_err(report_failure)
+}
+
+/// The title of the scene, or the name of its file.
+pub(crate) fn title(scene: &Scene) -> String {
+    let name = || scene.path().file_stem().map(|stem| stem.to_string_lossy().into_owned());
+    scene.title().map(str::to_owned).or_else(name).unwrap_or_default()
 }
 
 /// The scene's camera, or one that sees all of it.

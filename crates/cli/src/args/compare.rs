@@ -17,8 +17,8 @@ Examples:
 All solvers start from x = 0 on the same matrix and stop at the same residual. Errors are
 those against LU where it fits the memory. Solvers that do not suit the system, or do not
 fit the memory, are listed as refused. Written are compare.csv, compare_history.csv,
-compare.svg, for a sweep compare_sweep.svg, and compare.json last. Ctrl-C ends the run with
-nothing written.";
+compare.svg, for a sweep compare_sweep.svg, report.html, and compare.json last. Ctrl-C ends
+the run with nothing written.";
 
 /// Values of a sweep where their number is not given.
 const VALUES: usize = 10;
@@ -43,6 +43,9 @@ pub(crate) struct CompareArgs {
     /// Repeat with all reflectances scaled so that the largest takes these values: reflectance=0.1..0.99, or reflectance=0.1..0.9:5 for five of them
     #[arg(long, value_name = "SWEEP", value_parser = sweep)]
     pub(crate) sweep: Option<Sweep>,
+    /// Write no report.html
+    #[arg(long)]
+    pub(crate) no_report: bool,
     /// Threads; any number gives the same residuals [default: one a core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
@@ -70,6 +73,7 @@ impl CompareArgs {
             tolerance: self.to,
             max_iterations: self.max_iterations,
             sweep: self.sweep.as_ref().map(|Sweep(values)| values.clone()),
+            no_report: self.no_report,
             threads: self.threads,
             form_factor_tolerance: self.form_factor_tolerance,
             storage: self.storage.map(Into::into),

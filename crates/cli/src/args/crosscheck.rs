@@ -26,7 +26,8 @@ no use the two are neither said to agree nor to disagree, with exit code 3. ligh
 bidirectional and photon follow light over the surfaces as they are; jacobi, walk-gathering and
 walk-shooting estimate constants on the elements, as the solution on a matrix has them, and see
 no error of the mesh. Written are crosscheck.csv, crosscheck.svg, crosscheck.png (red: the
-traced solution is the brighter), and crosscheck.json last. Exit code 6 where the two disagree.
+traced solution is the brighter), report.html, and crosscheck.json last. Exit code 6 where the
+two disagree.
 
 Of a scene of waves every number of the scattered E at every point of a receiver is compared, one
 bounce or two; written are crosscheck.csv, crosscheck.svg and crosscheck.json.";
@@ -49,6 +50,9 @@ pub(crate) struct CrosscheckArgs {
     /// Folder for the results [default: out/<name of the scene file>]
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
+    /// Write no report.html
+    #[arg(long)]
+    pub(crate) no_report: bool,
     #[command(flatten)]
     pub(crate) paths: PathArgs,
     #[command(flatten)]
@@ -84,6 +88,7 @@ impl CrosscheckArgs {
             accuracy: self.accuracy,
             significance: self.significance,
             correction: self.correction.into(),
+            no_report: self.no_report,
             paths: self.paths.options(),
             stop: self.stop.options(),
             problem: self.problem.options(),

@@ -23,6 +23,7 @@ use fredholm_study::{
 };
 use serde::Serialize;
 
+use crate::commands::{VIEW_EXAMPLES, ViewArgs};
 use crate::start::recorded;
 pub(crate) use compare::CompareArgs;
 pub(crate) use crosscheck::CrosscheckArgs;
@@ -87,8 +88,8 @@ Examples:
 
 Level 0 is the mesh of the scene; each level cuts every element into 2 × 2. The faces of the
 scene stay what they are, and what is compared are means of the irradiance over them. An
-order takes three levels. Written are converge.csv, converge.svg, and converge.json last.
-Ctrl-C ends the run with nothing written.";
+order takes three levels. Written are converge.csv, converge.svg, report.html, and
+converge.json last. Ctrl-C ends the run with nothing written.";
 
 const INFO_EXAMPLES: &str = "\
 Examples:
@@ -173,6 +174,9 @@ pub(crate) enum Command {
     /// Write reference values with stated errors, to check other tracers with
     #[command(after_help = reference::EXAMPLES)]
     Reference(ReferenceArgs),
+    /// Open the page of a result, report.html, or print where it is
+    #[command(after_help = VIEW_EXAMPLES)]
+    View(ViewArgs),
     /// Tell what made a result
     #[command(after_help = INFO_EXAMPLES)]
     Info(InfoArgs),
@@ -291,6 +295,7 @@ impl ProblemArgs {
 
 /// Options of `solve`.
 #[derive(Clone, Debug, Args)]
+#[allow(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub(crate) struct SolveArgs {
     /// Folder for the results [default: out/<name of the scene file>]
     #[arg(long, short, value_name = "DIR")]
@@ -310,6 +315,9 @@ pub(crate) struct SolveArgs {
     /// Draw no picture
     #[arg(long, conflicts_with = "final_gather")]
     pub(crate) no_pictures: bool,
+    /// Write no report.html
+    #[arg(long)]
+    pub(crate) no_report: bool,
     /// Also write shadows.vtu, for which the elements are cut along the borders of the shadows that lamps cast and gather
     /// their irradiance at the corners
     #[arg(long)]
@@ -333,6 +341,7 @@ impl SolveArgs {
             final_gather: self.final_gather,
             discontinuity: self.discontinuity,
             no_pictures: self.no_pictures,
+            no_report: self.no_report,
             points: GatherPoints { points: self.places.point.clone(), grids: self.places.plane.clone() },
             problem: self.problem.options(),
             stop: self.stop.options(),
@@ -379,6 +388,9 @@ pub(crate) struct ConvergeArgs {
     /// Number of meshes: that of the scene, and finer ones
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(2..=12))]
     pub(crate) levels: u8,
+    /// Write no report.html
+    #[arg(long)]
+    pub(crate) no_report: bool,
     #[command(flatten)]
     pub(crate) problem: ProblemArgs,
     #[command(flatten)]
@@ -390,7 +402,8 @@ pub(crate) struct ConvergeArgs {
 impl ConvergeArgs {
     pub(crate) fn options(&self) -> ConvergeOptions {
         let (problem, stop) = (self.problem.options(), self.stop.options());
-        ConvergeOptions { levels: self.levels, problem, stop, recorded: recorded(self.log) }
+        let (levels, no_report) = (self.levels, self.no_report);
+        ConvergeOptions { levels, no_report, problem, stop, recorded: recorded(self.log) }
     }
 }
 

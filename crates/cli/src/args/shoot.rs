@@ -16,8 +16,8 @@ Examples:
 
 No matrix is stored: a shot computes the form factors from one element, or from a rectangle of
 elements that reflect alike, to all others. Written are pictures on the way (with the ambient
-term), faces.csv, field.npz, field.vtu, image.png, shots.csv, shots.svg, and shots.json last.
-After Ctrl-C the field so far is written.";
+term), faces.csv, field.npz, field.vtu, image.png, report.html, shots.csv, shots.svg, and
+shots.json last. After Ctrl-C the field so far is written.";
 
 /// Options of `shoot`.
 #[derive(Clone, Debug, Args)]
@@ -39,6 +39,9 @@ pub(crate) struct ShootArgs {
     /// Draw no picture, neither on the way nor at the end
     #[arg(long, conflicts_with = "pictures")]
     pub(crate) no_pictures: bool,
+    /// Write no report.html
+    #[arg(long)]
+    pub(crate) no_report: bool,
     /// Memory for columns that are kept for the next shot from there
     #[arg(long, value_name = "LIMIT", default_value = "32MiB")]
     pub(crate) keep: Bytes,
@@ -62,6 +65,7 @@ impl ShootArgs {
             max_shots: self.max_shots,
             pictures: self.pictures.clone(),
             no_pictures: self.no_pictures,
+            no_report: self.no_report,
             keep: self.keep,
             threads: self.threads,
             form_factor_tolerance: self.form_factor_tolerance,

@@ -15,8 +15,8 @@ Examples:
   fredholm waves scenes/waves/facing_plates.toml --compare neumann,gmres,southwell
 
 Written are receivers.csv, receivers.npz, currents.vtu, far.csv, plots and maps of the
-receivers, and run.json last; with --compare, compare.csv, compare_history.csv, compare.svg
-and compare.json instead. Ctrl-C ends the run with nothing written.";
+receivers, report.html, and run.json last; with --compare, compare.csv, compare_history.csv,
+compare.svg and compare.json instead. Ctrl-C ends the run with nothing written.";
 
 /// Options of `waves`.
 #[derive(Clone, Debug, Args)]
@@ -35,6 +35,9 @@ pub(crate) struct WavesArgs {
     /// Compare solvers on the coupling instead, with their options, or all: neumann,gmres:restart=100,southwell
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = solver)]
     pub(crate) compare: Vec<String>,
+    /// Write no report.html
+    #[arg(long)]
+    pub(crate) no_report: bool,
     /// Residual that compared solvers are to reach
     #[arg(long, value_name = "T", value_parser = tolerance, default_value = "1e-6", requires = "compare")]
     pub(crate) to: f64,
@@ -55,7 +58,7 @@ fn solver(text: &str) -> Result<String, String> {
 
 impl WavesArgs {
     pub(crate) fn options(&self) -> WaveOptions {
-        WaveOptions { memory: self.memory }
+        WaveOptions { memory: self.memory, no_report: self.no_report }
     }
 
     /// The solvers to compare, where there are any.

@@ -15,6 +15,7 @@ mod solve;
 mod solvers;
 mod spectrum;
 mod trace;
+mod view;
 mod viewfactors;
 mod waves;
 
@@ -22,6 +23,7 @@ use fredholm_study::Error;
 
 use crate::args::Command;
 use crate::ending::Ending;
+pub(crate) use view::{EXAMPLES as VIEW_EXAMPLES, ViewArgs};
 
 /// Carries out what was asked for.
 pub(crate) fn execute(command: &Command) -> Result<Ending, Error> {
@@ -38,6 +40,7 @@ pub(crate) fn execute(command: &Command) -> Result<Ending, Error> {
         Command::Trace(args) => trace::trace(args),
         Command::Crosscheck(args) => crosscheck::crosscheck(args),
         Command::Reference(args) => reference::reference(args),
+        Command::View(args) => view::view(args),
         Command::Info(args) => info::info(args),
         Command::Schema => schema::schema(),
         Command::Completions(args) => completions::completions(args),

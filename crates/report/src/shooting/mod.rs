@@ -10,8 +10,11 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use crate::number::Number;
-use crate::outputs::{prepare, remove};
-use crate::{Field, ReportError, View, render, write_atomically, write_faces_csv, write_npz, write_vtu};
+use crate::outputs::{prepare, remove, write_page};
+use crate::{
+    Field, ReportError, ReportModel, ReportPage, RunReport, View, render, write_atomically, write_faces_csv,
+    write_npz, write_vtu,
+};
 
 pub use plot::write_shooting_plot;
 pub use record::{SHOOTING_FORMAT, ShootingRecord, Shot};
@@ -20,7 +23,8 @@ pub use record::{SHOOTING_FORMAT, ShootingRecord, Shot};
 pub const SHOOTING_FILES: [&str; 7] =
     ["faces.csv", "field.npz", "field.vtu", "image.png", "shots.csv", "shots.svg", "shots.json"];
 
-/// Writes the field so far and the record into a folder, which is made where there is none. Without a view no picture is drawn.
+/// Writes the field so far and the record into a folder, which is made where there is none. Without a view no picture is drawn,
+/// without what makes a report none is written.
 ///
 /// # Errors
 /// [`ReportError::Write`] with the path, and what [`render`] refuses.
@@ -29,6 +33,7 @@ pub fn write_shooting(
     field: &Field<'_>,
     record: &ShootingRecord,
     view: Option<&View>,
+    report: Option<&RunReport<'_>>,
 ) -> Result<(), ReportError> {
     let picture = view.map(|view| render(field, &view.camera, view.exposure)).transpose()?;
     let [faces, npz, vtu, image, table, plot, json] = SHOOTING_FILES.map(|name| folder.join(name));
@@ -36,7 +41,13 @@ pub fn write_shooting(
     write_atomically(&faces, |out| write_faces_csv(field, out))?;
     write_atomically(&npz, |out| write_npz(field, out))?;
     write_atomically(&vtu, |out| write_vtu(field, out))?;
-    match picture {
+    let page = report.map(|report| {
+        let (steps_title, steps) = report.steps;
+        let model = ReportModel { steps, steps_title, ..ReportModel::lit(field, report.view) };
+        ReportPage::of_shooting(report.title, field, record, model, picture.as_ref())
+    });
+    write_page(folder, page.as_ref())?;
+    match &picture {
         Some(picture) => write_atomically(&image, |out| picture.write_png(out))?,
         None => remove(&image)?,
     }

@@ -12,8 +12,8 @@ use serde::Serialize;
 use super::faces::{COLUMNS, place};
 use super::histogram::write_score_histogram;
 use crate::csv::{numbers, quoted};
-use crate::outputs::prepare;
-use crate::{Picture, ReportError, Timing, write_atomically};
+use crate::outputs::{prepare, write_page};
+use crate::{Picture, ReportError, ReportModel, ReportPage, Timing, View, face_scores, write_atomically};
 
 /// Names of the files, in the order in which they are written.
 pub const CROSSCHECK_FILES: [&str; 4] =
@@ -116,7 +116,7 @@ pub struct CrosscheckRecord {
 
 impl CrosscheckRecord {
     /// The verdict in one line.
-    pub(super) fn headline(&self) -> String {
+    pub(crate) fn headline(&self) -> String {
         format!(
             "{}: {} of {} places apart, mean z {:.2}, mean z² {:.2}",
             self.verdict, self.significant, self.places, self.score_mean, self.score_variance
@@ -147,7 +147,8 @@ pub fn write_crosscheck_csv(
     Ok(())
 }
 
-/// Writes all files into a folder, which is made where it does not exist, and returns their paths.
+/// Writes all files into a folder, which is made where it does not exist, and returns their paths; with a title,
+/// `report.html` too, where the scores are seen on the faces, from where the view has them.
 ///
 /// # Errors
 /// [`ReportError::Write`] with the file or folder that could not be written. The folder then has no `crosscheck.json`.
@@ -157,6 +158,7 @@ pub fn write_crosscheck(
     bands: &[String],
     (rows, map): (&[CrosscheckRow], &Picture),
     record: &CrosscheckRecord,
+    report: Option<(&str, Option<&View>)>,
 ) -> Result<Vec<PathBuf>, ReportError> {
     let paths = CROSSCHECK_FILES.map(|name| folder.join(name));
     prepare(folder, &paths[3])?;
@@ -165,6 +167,12 @@ pub fn write_crosscheck(
     write_atomically(&paths[0], |out| write_crosscheck_csv(mesh, bands, rows, out))?;
     write_atomically(&paths[1], |out| write_score_histogram(&title, &scores, out))?;
     write_atomically(&paths[2], |out| map.write_png(out))?;
+    let values = report.map(|_| face_scores(mesh, bands, rows)).unwrap_or_default();
+    let page = report.map(|(title, view)| {
+        let model = ReportModel { view, values: &values, ..ReportModel::bare(mesh) };
+        ReportPage::of_crosscheck(title, record, rows, model, Some(map))
+    });
+    write_page(folder, page.as_ref())?;
     write_atomically(&paths[3], |out| json(record, out))?;
     Ok(paths.to_vec())
 }

@@ -18,7 +18,7 @@ use crate::problem::Problem;
 use crate::registry;
 use crate::size::Bytes;
 use crate::solution::{form_factors, system};
-use crate::solve::{Ended, report_failure};
+use crate::solve::{Ended, report_failure, title};
 use crate::stages::Stages;
 use crate::trial::failed;
 use crate::watcher::Watcher;
@@ -35,6 +35,8 @@ pub struct CompareOptions {
     /// Largest reflectances, to which all reflectances of the scene are scaled in turn; none: as
     /// they are.
     pub sweep: Option<Vec<f64>>,
+    /// Whether report.html is left out.
+    pub no_report: bool,
     /// Threads of the run; see [`ProblemOptions`].
     pub threads: Option<u16>,
     /// Error asked for in a row of form factors; see [`ProblemOptions`].
@@ -53,6 +55,7 @@ impl Default for CompareOptions {
             tolerance: 1e-10,
             max_iterations: 1000,
             sweep: None,
+            no_report: false,
             threads: None,
             form_factor_tolerance: None,
             storage: None,
@@ -137,7 +140,8 @@ pub fn compare(
         Precision::F32 => compared::<f32>(asked, &problem, &mut stages),
     }?;
     stages.begin_saving()?;
-    write_comparison(folder.as_ref(), &record).map_err(report_failure)?;
+    let title = (!asked.no_report).then(|| title(&problem.scene));
+    write_comparison(folder.as_ref(), &record, title.as_deref()).map_err(report_failure)?;
     let ended = ended(&record, &stages);
     Ok((record, ended))
 }

@@ -16,7 +16,7 @@ use crate::options::{ProblemOptions, ProblemSettings, Recorded, SceneSource, Sol
 use crate::prediction::MESH;
 use crate::problem::Problem;
 use crate::solution::compute;
-use crate::solve::{Ended, report_failure};
+use crate::solve::{Ended, report_failure, title};
 use crate::stages::Stages;
 use level::Level;
 
@@ -25,6 +25,8 @@ use level::Level;
 pub struct ConvergeOptions {
     /// Number of meshes: that of the scene, and finer ones.
     pub levels: u8,
+    /// Whether report.html is left out.
+    pub no_report: bool,
     /// What decides the size and the effort.
     pub problem: ProblemOptions,
     /// When a solution ends.
@@ -37,7 +39,7 @@ impl Default for ConvergeOptions {
     /// Three levels, the fewest that show an order.
     fn default() -> Self {
         let (problem, stop) = (ProblemOptions::default(), StopOptions::default());
-        Self { levels: 3, problem, stop, recorded: Recorded::new() }
+        Self { levels: 3, no_report: false, problem, stop, recorded: Recorded::new() }
     }
 }
 
@@ -65,7 +67,8 @@ pub fn converge(
     let levels: Vec<Level> = problems.iter().enumerate().map(solve).collect::<Result<_, _>>()?;
     let record = study::record(coarsest, &settings, &levels);
     stages.begin_saving()?;
-    write_refinement(folder, &record).map_err(report_failure)?;
+    let title = (!asked.no_report).then(|| title(&coarsest.scene));
+    write_refinement(folder, &record, title.as_deref()).map_err(report_failure)?;
     let ended = ended(&levels, &stages);
     Ok((record, ended))
 }

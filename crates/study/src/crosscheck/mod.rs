@@ -10,7 +10,7 @@ use fredholm_linop::Watch;
 use fredholm_montecarlo::light::{Estimator, estimator};
 use fredholm_montecarlo::statistics::{Comparison, Correction, Crosscheck, Place, crosscheck as compare};
 use fredholm_montecarlo::{Enclosure, State};
-use fredholm_report::{CrosscheckRecord, score_map, write_crosscheck};
+use fredholm_report::{CrosscheckRecord, Exposure, View, score_map, write_crosscheck};
 
 use places::Places;
 
@@ -19,7 +19,7 @@ use crate::error::{Error, ErrorKind};
 use crate::options::{ProblemOptions, SceneSource, SolveOptions};
 use crate::problem::{Problem, scene_failure};
 use crate::solution::Solution;
-use crate::solve::{Solved, report_failure, solve_from, view_camera};
+use crate::solve::{Solved, report_failure, solve_from, title, view_camera};
 use crate::stages::Stages;
 use crate::stochastic::{
     FIELD_METHODS, PathOptions, TraceStop, Tracer, enclosure, expected_error, face_means, failure,
@@ -52,6 +52,8 @@ pub struct CrosscheckOptions {
     pub significance: f64,
     /// How the number of tests is taken into account.
     pub correction: MultipleTests,
+    /// Whether report.html is left out.
+    pub no_report: bool,
     /// How paths are made.
     pub paths: PathOptions,
     /// When tracing ends; without anything at a standard error of 1 %.
@@ -67,6 +69,7 @@ impl Default for CrosscheckOptions {
             accuracy: None,
             significance: 0.01,
             correction: MultipleTests::default(),
+            no_report: false,
             paths: PathOptions::default(),
             stop: TraceStop::default(),
             problem: ProblemOptions::default(),
@@ -171,7 +174,11 @@ fn run(
         (record, rows, map(&problem, of_faces)?)
     };
     let bands = problem.scene.bands();
-    write_crosscheck(folder, &problem.mesh, bands, (&rows, &map), &record).map_err(report_failure)?;
+    let title = title(&problem.scene);
+    let view =
+        problem.scene.camera().map(|camera| View { camera: view_camera(camera), exposure: Exposure::Auto });
+    let report = (!asked.no_report).then_some((title.as_str(), view.as_ref()));
+    write_crosscheck(folder, &problem.mesh, bands, (&rows, &map), &record, report).map_err(report_failure)?;
     Ok((record, verdict))
 }
 
@@ -193,6 +200,7 @@ fn answer<'a>(
     let solve = SolveOptions {
         accuracy: asked.accuracy,
         no_pictures: true,
+        no_report: true,
         problem: asked.problem.clone(),
         folder: Some(folder.to_owned()),
         ..SolveOptions::default()

@@ -96,7 +96,7 @@ impl Light {
     }
 
     /// Means over whole elements, W/m², from the power that each has received.
-    fn irradiance(&self, received: &MultiVector<f64>) -> MultiVector<f64> {
+    pub(super) fn irradiance(&self, received: &MultiVector<f64>) -> MultiVector<f64> {
         MultiVector::from_fn(received.dim(), received.lanes(), |i, l| received.row(i)[l] / self.areas[i])
     }
 

@@ -8,7 +8,9 @@ use std::time::Instant;
 use fredholm_coupling::{Emitters, Groups, MeshError};
 use fredholm_iterative::{Frame, MultilevelShooting};
 use fredholm_linop::{Columns, Lazy, MultiVector, Watch};
-use fredholm_report::{SHOOTING_FORMAT, ShootingRecord, Shot, write_shooting, write_shot_picture};
+use fredholm_report::{
+    FieldStep, RunReport, SHOOTING_FORMAT, ShootingRecord, Shot, write_shooting, write_shot_picture,
+};
 use serde_json::json;
 
 use light::Light;
@@ -20,7 +22,7 @@ use crate::problem::Open;
 use crate::record;
 use crate::size::Bytes;
 use crate::solution::solve_failure;
-use crate::solve::{Ended, report_failure, view_of};
+use crate::solve::{Ended, report_failure, title, view_of};
 use crate::stages::Stages;
 
 /// What is asked of [`shoot`].
@@ -34,6 +36,8 @@ pub struct ShootOptions {
     pub pictures: Vec<u64>,
     /// Whether no picture is drawn, neither on the way nor at the end.
     pub no_pictures: bool,
+    /// Whether report.html is left out.
+    pub no_report: bool,
     /// Memory for columns that are kept for the next shot from there.
     pub keep: Bytes,
     /// Threads of the run; see [`ProblemOptions`].
@@ -51,6 +55,7 @@ impl Default for ShootOptions {
             max_shots: 100_000,
             pictures: vec![1, 10, 100],
             no_pictures: false,
+            no_report: false,
             keep: Bytes(32 << 20),
             threads: None,
             form_factor_tolerance: None,
@@ -93,17 +98,20 @@ pub fn shoot(
     let emitters = Emitters::new(scene.patches(), &groups, &scene.occluders, tolerance);
     let job = Job { asked, folder: folder.as_ref(), scene: &scene, light: &light, groups: &groups };
     stages.begin_saving()?;
-    let (shots, received, unshot) = stages.run("shots", || job.shoot(&emitters, watch))?;
+    let (shots, steps, received, unshot) = stages.run("shots", || job.shoot(&emitters, watch))?;
     let error = stages.run("errors", || light.error(&scene, (&received, &unshot), watch))?;
     let record = shooting_record(asked, &scene, (shots, error), &emitters, &stages);
-    stages.run("results", || job.write(&received, &record))?;
+    stages.run("results", || job.write(&received, &steps, &record))?;
     let record = ShootingRecord { timings: stages.timings().to_vec(), ..record };
     let ended = ended(&record, &stages);
     Ok((record, ended))
 }
 
-/// The shots, what each element has received, W, and what it has still to send, W/m².
-type Shots = (Vec<Shot>, MultiVector<f64>, MultiVector<f64>);
+/// The shots, fields on the way, what each element has received, W, and what it has still to send, W/m².
+type Shots = (Vec<Shot>, Vec<FieldStep>, MultiVector<f64>, MultiVector<f64>);
+
+/// Numbers of all fields on the way that are kept for the page.
+const KEPT_NUMBERS: usize = 1 << 21;
 
 /// A scene that is shot through, and where its results go.
 struct Job<'a> {
@@ -123,7 +131,8 @@ impl Job<'_> {
         let mut shooting =
             MultilevelShooting::new(&columns, frame, self.light.scaling(), &self.light.exitance)
                 .map_err(solve_failure)?;
-        let (mut shots, mut seconds): (Vec<Shot>, f64) = (Vec::new(), 0.0);
+        let (mut shots, mut steps, mut seconds): (Vec<Shot>, Vec<FieldStep>, f64) =
+            (Vec::new(), Vec::new(), 0.0);
         let mut distributed = shooting.distributed();
         while distributed < self.asked.share && shots.len() < self.asked.max_shots as usize {
             let started = Instant::now();
@@ -133,6 +142,11 @@ impl Job<'_> {
             let (elements, columns) = (places[group].len() as u64, columns.computed());
             shots.push(Shot { elements, columns, seconds, distributed });
             self.picture(shots.len() as u64, &shooting)?;
+            if self.keeps(shots.len(), steps.len()) {
+                let label = format!("{} shot{}", shots.len(), if shots.len() == 1 { "" } else { "s" });
+                let irradiance = self.light.irradiance(&shooting.received()).as_slice().to_vec();
+                steps.push(FieldStep { label, irradiance });
+            }
             watch.advance(distributed / self.asked.share, &|| {
                 format!("{} shots, {:.1} % distributed", shots.len(), 100.0 * distributed)
             });
@@ -140,7 +154,16 @@ impl Job<'_> {
                 break;
             }
         }
-        Ok((shots, shooting.received(), shooting.unshot()))
+        Ok((shots, steps, shooting.received(), shooting.unshot()))
+    }
+
+    /// Whether the field after so many shots is kept for the page: after 1, 3, 10, 30 … of them, as
+    /// long as there is room.
+    fn keeps(&self, shots: usize, kept: usize) -> bool {
+        let power = 10_usize.pow(shots.ilog10());
+        let numbers = self.light.exitance.dim() * self.light.exitance.lanes();
+        let room = (kept + 1) * numbers <= KEPT_NUMBERS;
+        !self.asked.no_report && (shots == power || shots == 3 * power) && room
     }
 
     /// Writes a picture, where one is asked for after this many shots.
@@ -155,10 +178,19 @@ impl Job<'_> {
     }
 
     /// Writes the field that follows from what the elements have received, and the record.
-    fn write(&self, received: &MultiVector<f64>, record: &ShootingRecord) -> Result<(), Error> {
+    fn write(
+        &self,
+        received: &MultiVector<f64>,
+        steps: &[FieldStep],
+        record: &ShootingRecord,
+    ) -> Result<(), Error> {
         self.light.field(self.scene, received, &self.light.means(received), |field| {
-            let view = (!self.asked.no_pictures).then(|| view_of(self.scene.scene.camera(), field));
-            write_shooting(self.folder, field, record, view.as_ref()).map_err(report_failure)
+            let view = view_of(self.scene.scene.camera(), field);
+            let title = title(&self.scene.scene);
+            let report = RunReport { title: &title, view: &view, steps: ("Shots", steps) };
+            let report = (!self.asked.no_report).then_some(&report);
+            let view = (!self.asked.no_pictures).then_some(&view);
+            write_shooting(self.folder, field, record, view, report).map_err(report_failure)
         })
     }
 }

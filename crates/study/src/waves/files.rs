@@ -6,9 +6,10 @@ use std::io;
 use std::path::Path;
 
 use fredholm_report::{
-    FieldMap, MapQuantity, ReportError, Timing, WaveResiduals, WaveRow, write_atomically, write_currents_vtu,
-    write_far_csv, write_monostatic_csv, write_polar_plot, write_receivers_csv, write_receivers_npz,
-    write_residuals_csv, write_residuals_plot,
+    FieldMap, MapQuantity, REPORT, ReportAxis, ReportError, ReportModel, ReportPage, ReportPlot,
+    ReportSeries, Timing, WaveReport, WaveResiduals, WaveRow, current_phasors, write_atomically,
+    write_currents_vtu, write_far_csv, write_monostatic_csv, write_polar_plot, write_receivers_csv,
+    write_receivers_npz, write_residuals_csv, write_residuals_plot,
 };
 
 use super::model::Method;
@@ -24,6 +25,7 @@ pub(crate) fn write(
     model: &Model,
     outcome: &Outcome,
     timings: &[Timing],
+    report: bool,
 ) -> Result<(), ReportError> {
     prepare(folder)?;
     let names: Vec<String> = model.receivers.iter().map(|receiver| receiver.name.clone()).collect();
@@ -43,23 +45,132 @@ pub(crate) fn write(
     for (index, receiver) in model.receivers.iter().enumerate() {
         pictures(folder, model, outcome, (index, receiver))?;
     }
+    if report {
+        page(folder, model, outcome, timings)?;
+    }
     let record = outcome.record(model, timings);
     put(LAST, &|out| serde_json::to_writer_pretty(out, &record).map_err(io::Error::other))
 }
 
+/// `report.html`: the surface currents in three dimensions, and the cross-sections over angles.
+fn page(folder: &Path, model: &Model, outcome: &Outcome, timings: &[Timing]) -> Result<(), ReportError> {
+    let mesh = &model.geometry.mesh;
+    let phasors = current_phasors(mesh, &outcome.currents);
+    let shown = ReportModel { phasors: &phasors, ..ReportModel::bare(mesh) };
+    let path = model.path().display().to_string();
+    let seconds: f64 = timings.iter().map(|timing| timing.seconds).sum();
+    let known = [
+        ("Program", format!("Fredholm {}", env!("CARGO_PKG_VERSION"))),
+        ("Scene", path.clone()),
+        ("Method", model.method.name()),
+        ("Shadows", model.shadow.name().to_owned()),
+        ("Time", format!("{seconds:.2} s")),
+    ];
+    let report = WaveReport {
+        title: model.title.clone().unwrap_or(path),
+        method: model.method.name(),
+        across: across(model).to_owned(),
+        statements: statements(model, outcome),
+        plots: curves(model, outcome),
+        provenance: known.map(|(name, value)| (name.to_owned(), value)).into(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        ..WaveReport::default()
+    };
+    let page = ReportPage::of_waves(report, shown, &histories(outcome));
+    write_atomically(&folder.join(REPORT), |out| page.write(out))
+}
+
+/// What is known of the errors, in words.
+fn statements(model: &Model, outcome: &Outcome) -> Vec<String> {
+    let solved = outcome.solved.iter().filter_map(|solved| {
+        let (last, ended) = (solved.residuals.last()?, if solved.converged() { "met" } else { "not met" });
+        let megahertz = solved.frequency / 1e6;
+        Some(format!("At {megahertz} MHz the residual is {last:.1e}; what was asked for is {ended}."))
+    });
+    let sources =
+        [("the size of the facets", &outcome.mesh_errors), ("physical optics itself", &outcome.form_errors)];
+    let estimated = sources.into_iter().flat_map(|(source, errors)| {
+        errors.iter().map(move |error| {
+            let (name, megahertz) = (&model.receivers[error.receiver].name, error.frequency / 1e6);
+            let percent = 100.0 * error.relative;
+            format!("E at {name}, {megahertz} MHz, is off by about {percent:.2} % through {source}.")
+        })
+    });
+    solved.chain(estimated).collect()
+}
+
+/// Radar cross-sections of all receivers over the angle that is stepped through.
+fn curves(model: &Model, outcome: &Outcome) -> Vec<ReportPlot> {
+    let mut plots = Vec::new();
+    for (index, receiver) in model.receivers.iter().enumerate() {
+        for band in &model.bands {
+            let frequency = band.wave.frequency();
+            let far =
+                outcome.far.iter().filter(|row| row.receiver == index && same(row.frequency, frequency));
+            let known =
+                far.filter_map(|row| Some(([row.theta_degrees, row.phi_degrees], row.cross_section?)));
+            let (angles, sections): (Vec<_>, Vec<_>) = known.unzip();
+            let line = |(name, part): (&str, usize)| {
+                (name.to_owned(), sections.iter().map(|section: &[f64; 2]| section[part]).collect())
+            };
+            let title = format!("{}, {} MHz", receiver.name, frequency / 1e6);
+            plots.extend(curve(&title, &angles, [("θ", 0), ("φ", 1)].map(line).into()));
+            let rows = outcome.monostatic.iter();
+            let rows = rows.filter(|row| row.receiver == index && same(row.frequency, frequency));
+            let known = rows.map(|row| ([row.theta_degrees, row.phi_degrees], row.cross_sections()));
+            let (angles, sections): (Vec<_>, Vec<_>) = known.unzip();
+            let line = |(name, part): (&str, usize)| {
+                (name.to_owned(), sections.iter().map(|section| section[part]).collect())
+            };
+            plots.extend(curve(&title, &angles, [("θθ", 0), ("φφ", 3), ("φθ", 1)].map(line).into()));
+        }
+    }
+    plots
+}
+
+/// Lines of cross-sections (m²) over φ where θ stays the same, else over θ.
+fn curve(title: &str, angles: &[[f64; 2]], lines: Vec<(String, Vec<f64>)>) -> Option<ReportPlot> {
+    let first = angles.first()?;
+    let over_phi = angles.iter().all(|angle| same(angle[0], first[0]));
+    let x: Vec<f64> = angles.iter().map(|angle| angle[usize::from(over_phi)]).collect();
+    let line = |(name, sections): (String, Vec<f64>)| {
+        let y = sections.iter().map(|section| 10.0 * section.log10()).collect();
+        ReportSeries { name, colour: None, dashed: false, x: x.clone(), y }
+    };
+    let axis = |label: &str| ReportAxis { label: label.to_owned(), logarithmic: false };
+    Some(ReportPlot {
+        title: format!("Radar cross-section: {title}"),
+        note: "Decibels above 1 m².".to_owned(),
+        across: vec![(
+            axis(if over_phi { "φ, degrees" } else { "θ, degrees" }),
+            lines.into_iter().map(line).collect(),
+        )],
+        up: axis("dBsm"),
+    })
+}
+
+/// The residuals of all frequencies that have any.
+fn histories(outcome: &Outcome) -> Vec<WaveResiduals> {
+    let known = outcome.solved.iter().filter(|solved| !solved.residuals.is_empty());
+    known
+        .map(|solved| WaveResiduals { frequency: solved.frequency, values: solved.residuals.clone() })
+        .collect()
+}
+
+/// What a history runs along.
+fn across(model: &Model) -> &'static str {
+    if let Method::Bounces(_) = model.method { "bounces" } else { "iterations" }
+}
+
 /// The residual after every iteration or bounce, where there is any.
 fn residuals(folder: &Path, model: &Model, outcome: &Outcome) -> Result<(), ReportError> {
-    let known = outcome.solved.iter().filter(|solved| !solved.residuals.is_empty());
-    let lines: Vec<WaveResiduals> = known
-        .map(|solved| WaveResiduals { frequency: solved.frequency, values: solved.residuals.clone() })
-        .collect();
+    let lines = histories(outcome);
     if lines.is_empty() {
         return Ok(());
     }
-    let across = if let Method::Bounces(_) = model.method { "bounces" } else { "iterations" };
     write_atomically(&folder.join("residuals.csv"), |out| write_residuals_csv(&lines, out))?;
     write_atomically(&folder.join("residuals.svg"), |out| {
-        write_residuals_plot(&model.method.name(), across, &lines, out)
+        write_residuals_plot(&model.method.name(), across(model), &lines, out)
     })
 }
 

@@ -21,6 +21,8 @@ use crate::trial::failed;
 pub struct WaveOptions {
     /// Memory allowed; most of what the machine has left.
     pub memory: Option<Bytes>,
+    /// Whether report.html is left out.
+    pub no_report: bool,
 }
 
 /// What is asked of [`compare_waves`] besides.
@@ -46,6 +48,8 @@ pub struct SolvedWaves<'a> {
     model: Model,
     outcome: Outcome,
     stages: Stages<'a>,
+    /// Whether report.html is written.
+    report: bool,
 }
 
 /// Computes the fields of a scene of waves, whose file is given.
@@ -64,7 +68,7 @@ pub fn waves<'a>(
     let model = load(scene.as_ref(), asked, &mut stages)?;
     let outcome = super::compute(&model, &mut stages)?;
     stages.begin_saving()?;
-    Ok(SolvedWaves { model, outcome, stages })
+    Ok(SolvedWaves { model, outcome, stages, report: !asked.no_report })
 }
 
 /// Runs solvers on the coupling of a scene of waves, whose file is given, and writes how they did
@@ -175,9 +179,9 @@ impl SolvedWaves<'_> {
     /// has no `run.json`.
     pub fn write(&mut self, folder: impl AsRef<Path>) -> Result<(), Error> {
         let timings = self.stages.timings().to_vec();
-        let Self { model, outcome, stages } = self;
+        let Self { model, outcome, stages, report } = self;
         stages.run("results", || {
-            files::write(folder.as_ref(), model, outcome, &timings).map_err(report_failure)
+            files::write(folder.as_ref(), model, outcome, &timings, *report).map_err(report_failure)
         })
     }
 }

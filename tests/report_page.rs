@@ -1,0 +1,75 @@
+//! The page of a result, opened in a headless browser: an element is picked and compared with
+//! faces.csv, every control is moved, and nothing may be asked of the network.
+//!
+//! Skipped where `FREDHOLM_SKIP_BROWSER` is set, and where there is no Node, no Chromium, or no
+//! package of
+//! `npm ci --ignore-scripts` in crates/report/viewer; the reason is printed.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use assert_cmd::Command as Program;
+
+/// Where the page comes from.
+fn viewer() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("crates/report/viewer")
+}
+
+/// Why no page can be opened here.
+fn missing() -> Option<&'static str> {
+    let chromium = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
+    let has_browser = std::env::var_os("FREDHOLM_CHROMIUM").is_some()
+        || chromium.iter().any(|path| Path::new(path).exists());
+    if std::env::var_os("FREDHOLM_SKIP_BROWSER").is_some() {
+        Some("FREDHOLM_SKIP_BROWSER is set")
+    } else if Command::new("node").arg("--version").output().is_err() {
+        Some("there is no Node")
+    } else if !viewer().join("node_modules/playwright-core").is_dir() {
+        Some("crates/report/viewer has no packages; run npm ci --ignore-scripts there")
+    } else if !has_browser {
+        Some("there is no Chromium")
+    } else {
+        None
+    }
+}
+
+fn fredholm(arguments: &[&str]) {
+    Program::new(assert_cmd::cargo::cargo_bin!("fredholm"))
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .args(arguments)
+        .assert()
+        .success();
+}
+
+#[test]
+fn the_page_of_the_cornell_box_can_be_used() {
+    if let Some(why) = missing() {
+        eprintln!("skipped: {why}");
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().to_str().unwrap();
+    fredholm(&["solve", "scenes/cornell_box.toml", "-o", path, "--quiet"]);
+    let tried = Command::new("node").current_dir(viewer()).arg("test/open.mjs").arg(path).output().unwrap();
+    let said = String::from_utf8_lossy(&tried.stdout).into_owned() + &String::from_utf8_lossy(&tried.stderr);
+    assert!(tried.status.success() && said.contains("all is well"), "{said}");
+}
+
+#[test]
+fn without_a_report_there_is_none_and_view_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().to_str().unwrap();
+    fredholm(&["solve", "scenes/leblond_room.toml", "-o", path, "--quiet"]);
+    let page = folder.path().join("report.html");
+    let run = std::fs::read_to_string(folder.path().join("run.json")).unwrap();
+    assert!(page.is_file() && run.contains("\"report.html\""));
+    let mut view = Program::new(assert_cmd::cargo::cargo_bin!("fredholm"));
+    let view = view.args(["view", path]).env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY");
+    let told = view.assert().success().get_output().stdout.clone();
+    assert!(String::from_utf8(told).unwrap().trim().ends_with("report.html"));
+    fredholm(&["solve", "scenes/leblond_room.toml", "-o", path, "--quiet", "--no-report"]);
+    assert!(!page.exists(), "the page of an older result is left");
+    let refused =
+        Program::new(assert_cmd::cargo::cargo_bin!("fredholm")).args(["view", path]).assert().failure();
+    assert!(String::from_utf8_lossy(&refused.get_output().stderr).contains("--no-report"));
+}
