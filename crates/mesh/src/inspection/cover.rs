@@ -48,7 +48,9 @@ impl Mesh {
         for rest in &self.surfaces[surface.map_or(0, |surface| surface + 1)..] {
             builder.surface(rest.name.as_str(), rest.material);
         }
-        occluders.into_iter().for_each(|patch| builder.occluder(patch));
+        for patch in occluders {
+            builder.occluder(patch);
+        }
         Ok(builder.build())
     }
 
