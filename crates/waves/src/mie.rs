@@ -1,12 +1,16 @@
-//! The exact scattering of a plane wave by a perfectly conducting sphere: the series of Mie.
+//! The exact scattering of a plane wave by a sphere, perfectly conducting or dielectric: the series of Mie.
 //!
 //! G. Mie, Ann. Phys. 330 (1908) 377, doi:10.1002/andp.19083300302; here as C. F. Bohren, D. R. Huffman, Absorption and
 //! Scattering of Light by Small Particles, Wiley 1983, § 4.3 and 4.4, whose time factor e^{−iωt} makes ours the
 //! conjugate. For E_i = x̂ e^{ikz}, with x = ka, ψ(x) = x j_n, ξ(x) = x h_n and E_n = iⁿ (2n + 1)/(n(n + 1)),
 //!
 //! ```text
-//! E_s = Σ E_n (i a_n N_n − b_n M_n),   a_n = ψ_n′(x)/ξ_n′(x),   b_n = ψ_n(x)/ξ_n(x)
+//! E_s = Σ E_n (i a_n N_n − b_n M_n)
+//! conductor:   a_n = ψ_n′(x)/ξ_n′(x),                    b_n = ψ_n(x)/ξ_n(x)
+//! dielectric:  a_n = (m ψ_n′ − D_n ψ_n)/(m ξ_n′ − D_n ξ_n),  b_n = (ψ_n′ − m D_n ψ_n)/(ξ_n′ − m D_n ξ_n)
 //! ```
+//!
+//! where m = √ε and D_n = ψ_n′(mx)/ψ_n(mx), which is computed downwards (eq. 4.89).
 //!
 //! Backscatter: σ/(πa²) = |Σ (−1)ⁿ (2n + 1)/(ξ_n ξ_n′)|²/x² (C. A. Balanis, Advanced Engineering Electromagnetics,
 //! 2nd ed., Wiley 2012, eq. 11-247). Lengths in metres.
@@ -50,6 +54,87 @@ impl ConductingSphere {
     /// The scattered E (V/m) at `p` (m, outside), exact at any distance.
     #[must_use]
     pub fn scattered(&self, wave: &Wave, source: &PlaneWave, p: Vec3) -> ComplexVector {
+        let x = wave.wavenumber() * self.radius;
+        let inner = Riccati::new(x, terms(x));
+        let term = |n: usize| [inner.psi_slope(n) / inner.xi_slope(n), inner.psi(n) / inner.xi(n)];
+        Series((1..=terms(x)).map(term).collect()).scattered(wave, source, p)
+    }
+}
+
+/// A homogeneous dielectric sphere around the origin, in free space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DielectricSphere {
+    radius: f64,
+    permittivity: Complex64,
+}
+
+impl DielectricSphere {
+    /// The sphere of this radius (m) and relative permittivity ε′ − jε″.
+    ///
+    /// # Errors
+    /// [`WaveError::Length`] unless the radius is finite and above 0, [`WaveError::Material`] unless ε is finite with
+    /// ε′ > 0 and ε″ ≥ 0.
+    pub fn new(radius: f64, permittivity: Complex64) -> Result<Self, WaveError> {
+        ConductingSphere::new(radius)?;
+        if permittivity.re > 0.0 && permittivity.im <= 0.0 && permittivity.is_finite() {
+            return Ok(Self { radius, permittivity });
+        }
+        let reason = "the permittivity ε′ − jε″ must be finite with ε′ > 0 and ε″ ≥ 0";
+        Err(WaveError::Material { what: "of the sphere".into(), reason })
+    }
+
+    /// The scattered E (V/m) at `p` (m, outside), exact at any distance.
+    #[must_use]
+    pub fn scattered(&self, wave: &Wave, source: &PlaneWave, p: Vec3) -> ComplexVector {
+        self.series(wave).scattered(wave, source, p)
+    }
+
+    /// Cross-sections of extinction and of scattering, m².
+    #[must_use]
+    pub fn cross_sections(&self, wave: &Wave) -> [f64; 2] {
+        let k = wave.wavenumber();
+        let weighted = |value: fn(Complex64) -> f64| {
+            let term = |(i, [a, b]): (usize, &[Complex64; 2])| (2 * i + 3) as f64 * (value(*a) + value(*b));
+            self.series(wave).0.iter().enumerate().map(term).sum::<f64>() * std::f64::consts::TAU / (k * k)
+        };
+        [weighted(|c| c.re), weighted(|c| c.norm_sqr())]
+    }
+
+    fn series(&self, wave: &Wave) -> Series {
+        let x = wave.wavenumber() * self.radius;
+        let inner = Riccati::new(x, terms(x));
+        // The time factor of the source is the conjugate of ours.
+        let m = self.permittivity.conj().sqrt();
+        let slopes = logarithmic_slopes(m * x, terms(x));
+        let term = |n: usize| {
+            let (psi, psi_slope) = (inner.psi(n), inner.psi_slope(n));
+            let (xi, xi_slope, d) = (inner.xi(n), inner.xi_slope(n), slopes[n]);
+            [
+                (m * psi_slope - d * psi) / (m * xi_slope - d * xi),
+                (psi_slope - m * d * psi) / (xi_slope - m * d * xi),
+            ]
+        };
+        Series((1..=terms(x)).map(term).collect())
+    }
+}
+
+/// D_n = ψ_n′/ψ_n at z for n = 0 … last, downwards from far above the turning point.
+fn logarithmic_slopes(z: Complex64, last: usize) -> Vec<Complex64> {
+    let start = last.max(z.norm().ceil() as usize) + 30;
+    let mut slopes = vec![Complex64::ZERO; start + 1];
+    for n in (1..=start).rev() {
+        let ratio = n as f64 / z;
+        slopes[n - 1] = ratio - (slopes[n] + ratio).inv();
+    }
+    slopes.truncate(last + 1);
+    slopes
+}
+
+/// a_n and b_n from n = 1 on.
+struct Series(Vec<[Complex64; 2]>);
+
+impl Series {
+    fn scattered(&self, wave: &Wave, source: &PlaneWave, p: Vec3) -> ComplexVector {
         let [x, y, z] =
             [source.polarisation(), source.travel().cross(source.polarisation()), source.travel()];
         let local = Vec3::new(p.dot(x), p.dot(y), p.dot(z));
@@ -67,18 +152,17 @@ impl ConductingSphere {
     }
 
     /// Σ E_n (i a_n N_n − b_n M_n) without cos φ (r, θ) and −sin φ (φ).
-    fn sums(self, wave: &Wave, r: f64, cos: f64, sin: f64) -> [Complex64; 3] {
-        let (x, rho) = (wave.wavenumber() * self.radius, wave.wavenumber() * r);
-        let last = terms(x);
-        let (inner, outer) = (Riccati::new(x, last), Riccati::new(rho, last));
+    fn sums(&self, wave: &Wave, r: f64, cos: f64, sin: f64) -> [Complex64; 3] {
+        let rho = wave.wavenumber() * r;
+        let outer = Riccati::new(rho, self.0.len());
         let mut sums = [Complex64::ZERO; 3];
         let (mut earlier, mut pi, mut phase) = (0.0, 1.0, Complex64::I);
-        for n in 1..=last {
+        for (i, [a, b]) in self.0.iter().enumerate() {
+            let n = i + 1;
             let order = n as f64;
             let tau = order * cos * pi - (order + 1.0) * earlier;
             let factor = phase * (2.0 * order + 1.0) / (order * (order + 1.0));
-            let a = factor * Complex64::I * inner.psi_slope(n) / inner.xi_slope(n);
-            let b = factor * inner.psi(n) / inner.xi(n);
+            let (a, b) = (factor * Complex64::I * a, factor * b);
             let (h, slope) = (outer.xi(n) / rho, outer.xi_slope(n) / rho);
             sums[0] += a * h * (order * (order + 1.0) * sin * pi / rho);
             sums[1] += a * slope * tau - b * h * pi;
@@ -202,5 +286,39 @@ mod tests {
         let back = sphere.scattered(&wave, &source, Vec3::Y * -r).norm_squared() * 4.0 * r * r;
         let error = back / sphere.backscatter(&wave) - 1.0;
         assert!(error.abs() < 1e-6, "{error:e}");
+    }
+
+    #[test]
+    fn a_dielectric_sphere_takes_what_it_scatters_and_no_less() {
+        for (permittivity, lossless) in
+            [(2.0.into(), true), (4.0.into(), true), (Complex64::new(10.0, -5.0), false)]
+        {
+            for ka in [0.05, 1.0, 6.0, 30.0] {
+                let sphere = DielectricSphere::new(1.0, permittivity).unwrap();
+                let [extinction, scattering] = sphere.cross_sections(&wave_of(ka));
+                let absorbed = (extinction - scattering) / extinction;
+                assert!(if lossless { absorbed.abs() < 1e-10 } else { absorbed > 0.1 }, "{ka}: {absorbed}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_small_dielectric_sphere_is_a_dipole_and_a_dense_one_a_conductor() {
+        // Rayleigh: E = k² a³ (ε − 1)/(ε + 2) E₀/r across the dipole.
+        let source = PlaneWave::new(Vec3::Y, Vec3::Z, 1.0.into()).unwrap();
+        let permittivity = Complex64::new(4.0, -1.0);
+        let (ka, r) = (1e-3, 1e6);
+        let small = DielectricSphere::new(1.0, permittivity).unwrap();
+        let found = small.scattered(&wave_of(ka), &source, Vec3::X * r).components()[2];
+        let dipole = Complex64::cis(-ka * r) * ka * ka / r * (permittivity - 1.0) / (permittivity + 2.0);
+        assert!((found - dipole).norm() < 2e-3 * dipole.norm(), "{found} {dipole}");
+        let dense = DielectricSphere::new(1.0, Complex64::new(1e10, -1e10)).unwrap();
+        let conductor = ConductingSphere::new(1.0).unwrap();
+        for p in [Vec3::X * 1.5, Vec3::Y * 3.0, Vec3::new(-1.0, 0.5, 2.0)] {
+            let [a, b] =
+                [dense.scattered(&wave_of(3.0), &source, p), conductor.scattered(&wave_of(3.0), &source, p)];
+            assert!((a - b).norm() < 1e-4 * b.norm(), "{p}");
+        }
+        assert!(DielectricSphere::new(1.0, Complex64::new(2.0, 0.1)).is_err());
     }
 }

@@ -49,7 +49,8 @@ fn polynomial<S: Simd>(z: Lanes<S>, [a, b, c, d, e, f]: [f64; 6]) -> Lanes<S> {
 
 /// (cos x, sin x) for |x| < 2⁵¹.
 #[inline(always)]
-pub(crate) fn cos_sin<S: Simd>(x: Lanes<S>) -> (Lanes<S>, Lanes<S>) {
+#[must_use]
+pub fn cos_sin<S: Simd>(x: Lanes<S>) -> (Lanes<S>, Lanes<S>) {
     let one = x.constant(1.0);
     let turns = round(x * x.constant(std::f64::consts::FRAC_2_PI));
     let r = (-turns).mul_add(x.constant(HALF_PI[0]), x);

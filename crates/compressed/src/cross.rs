@@ -1,0 +1,237 @@
+//! Adaptive cross approximation: a block of low rank from few of its rows and columns.
+//!
+//! M. Bebendorf, Approximation of boundary element matrices, Numer. Math. 86 (2000) 565, doi:10.1007/PL00005410, with partial
+//! pivoting. The row and the column through the largest entry of what is left are taken until their product is small
+//! against the sum. That alone may stop too early where a block falls apart into blocks that do not couple: all rows of some groups spread over
+//! the block are then compared with the sum, and the worst of them goes on.
+
+use crate::Entries;
+use crate::low_rank::{LowRank, inner, square};
+use fredholm_linop::Scalar;
+
+/// Groups of which all rows are compared in the end.
+const CHECKS: usize = 6;
+/// Share of the block from one of them to the next; multiples of the golden ratio meet no pattern of the rows.
+const STEP: f64 = 0.618_033_988_749_895;
+/// What is asked of the crosses, over the tolerance of the block: the rest is left to the truncation.
+const SHARE: f64 = 0.3;
+
+/// Rows and columns of a block on demand.
+pub(crate) struct Block<'a, T: Scalar, E: Entries<T>> {
+    pub(crate) entries: &'a E,
+    pub(crate) rows: &'a [usize],
+    pub(crate) columns: &'a [usize],
+    pub(crate) row_set: &'a E::Set,
+    pub(crate) column_set: &'a E::Set,
+    pub(crate) scalar: std::marker::PhantomData<T>,
+}
+
+impl<T: Scalar, E: Entries<T>> Block<'_, T, E> {
+    fn height(&self) -> usize {
+        self.rows.len() * self.entries.width()
+    }
+
+    fn breadth(&self) -> usize {
+        self.columns.len() * self.entries.width()
+    }
+
+    fn row(&self, i: usize) -> Vec<T> {
+        let width = self.entries.width();
+        let set = self.entries.prepare(&self.rows[i / width..=i / width]);
+        let mut out = vec![T::zero(); width * self.breadth()];
+        self.entries.fill(&set, self.column_set, &mut out);
+        out.chunks_exact(self.breadth()).nth(i % width).map(<[T]>::to_vec).unwrap_or_default()
+    }
+
+    fn column(&self, j: usize) -> Vec<T> {
+        let width = self.entries.width();
+        let set = self.entries.prepare(&self.columns[j / width..=j / width]);
+        let mut out = vec![T::zero(); width * self.height()];
+        self.entries.fill(self.row_set, &set, &mut out);
+        out.iter().skip(j % width).step_by(width).copied().collect()
+    }
+
+    /// The block to a relative tolerance in the Frobenius norm; none where that takes as much as storing it whole.
+    pub(crate) fn compressed(&self, tolerance: f64) -> Option<LowRank<T>> {
+        let most = self.height() * self.breadth() / (self.height() + self.breadth());
+        let mut crosses = Crosses {
+            block: self,
+            u: Vec::new(),
+            v: Vec::new(),
+            square: 0.0,
+            used: vec![false; self.height()],
+        };
+        let mut next = Some(0);
+        while let Some(row) = next {
+            if crosses.u.len() > most {
+                return None;
+            }
+            next = crosses.step(row, SHARE * tolerance);
+        }
+        let low = LowRank::truncated(crosses.u, crosses.v, tolerance);
+        (low.rank <= most).then_some(low)
+    }
+}
+
+/// The crosses taken so far.
+struct Crosses<'a, T: Scalar, E: Entries<T>> {
+    block: &'a Block<'a, T, E>,
+    u: Vec<Vec<T>>,
+    v: Vec<Vec<T>>,
+    /// ‖U Vᵀ‖².
+    square: f64,
+    used: Vec<bool>,
+}
+
+impl<T: Scalar, E: Entries<T>> Crosses<'_, T, E> {
+    /// Takes the cross through the largest entry of a row; returns the next row, none at the end.
+    fn step(&mut self, row: usize, tolerance: f64) -> Option<usize> {
+        self.used[row] = true;
+        let rest = self.rest_of_row(row);
+        let pivot = largest(&rest, |_| true)?;
+        if rest[pivot] == T::zero() {
+            return if self.u.is_empty() { self.unused() } else { self.worst(tolerance) };
+        }
+        let scale = T::one() / rest[pivot];
+        let v: Vec<T> = rest.into_iter().map(|x| x * scale).collect();
+        let mut u = self.block.column(pivot);
+        for (left, right) in self.u.iter().zip(&self.v) {
+            let factor = right[pivot];
+            u.iter_mut().zip(left).for_each(|(x, &y)| *x -= y * factor);
+        }
+        let size = square(&u) * square(&v);
+        let mixed: f64 = self
+            .u
+            .iter()
+            .zip(&self.v)
+            .map(|(left, right)| 2.0 * (inner(left, &u) * inner(right, &v)).re())
+            .sum();
+        self.square = (self.square + mixed).max(0.0) + size;
+        let next = largest(&u, |i| !self.used[i]);
+        self.u.push(u);
+        self.v.push(v);
+        if size > tolerance * tolerance * self.square { next } else { self.worst(tolerance) }
+    }
+
+    /// What is left of a row.
+    fn rest_of_row(&self, row: usize) -> Vec<T> {
+        let mut rest = self.block.row(row);
+        for (left, right) in self.u.iter().zip(&self.v) {
+            let factor = left[row];
+            rest.iter_mut().zip(right).for_each(|(x, &y)| *x -= y * factor);
+        }
+        rest
+    }
+
+    /// The first row that was not taken.
+    fn unused(&self) -> Option<usize> {
+        self.used.iter().position(|used| !used)
+    }
+
+    /// Of rows spread over the block the one that is worst, if they say that the block is not met.
+    fn worst(&self, tolerance: f64) -> Option<usize> {
+        let (height, width) = (self.block.height(), self.block.entries.width());
+        let groups = self.block.rows.len();
+        let group = move |i: usize| (((i + 1) as f64 * STEP).fract() * groups as f64) as usize;
+        let all = (0..CHECKS).flat_map(|i| (0..width).map(move |kind| group(i) * width + kind));
+        let rows: Vec<usize> = all.filter(|&row| !self.used[row]).collect();
+        let sizes: Vec<f64> = rows.iter().map(|&row| square(&self.rest_of_row(row))).collect();
+        let mean = sizes.iter().sum::<f64>() / sizes.len().max(1) as f64;
+        if mean * height as f64 <= tolerance * tolerance * self.square {
+            return None;
+        }
+        let worst = (0..rows.len()).max_by(|&a, &b| sizes[a].total_cmp(&sizes[b]).then(b.cmp(&a)))?;
+        Some(rows[worst])
+    }
+}
+
+/// The largest entry of those allowed, the first of equals.
+fn largest<T: Scalar>(x: &[T], allowed: impl Fn(usize) -> bool) -> Option<usize> {
+    let candidates = (0..x.len()).filter(|&i| allowed(i));
+    candidates.fold(None, |best, i| match best {
+        Some(b) if x[i].abs2() <= x[b].abs2() => best,
+        _ => Some(i),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fredholm_linop::Symmetry;
+
+    /// 1/(1 + distance) between two rows of points, in two kinds that couple by a factor.
+    struct Rows {
+        coupling: f64,
+    }
+
+    impl Rows {
+        fn entry(&self, i: usize, j: usize) -> f64 {
+            let kind = if i % 2 == j % 2 { 1.0 } else { self.coupling };
+            kind / (1.0 + (i / 2).abs_diff(j / 2) as f64)
+        }
+    }
+
+    impl Entries<f64> for Rows {
+        type Set = Vec<usize>;
+
+        fn groups(&self) -> usize {
+            60
+        }
+
+        fn width(&self) -> usize {
+            2
+        }
+
+        fn symmetry(&self) -> Symmetry {
+            Symmetry::General
+        }
+
+        fn prepare(&self, groups: &[usize]) -> Vec<usize> {
+            groups.to_vec()
+        }
+
+        fn fill(&self, rows: &Vec<usize>, columns: &Vec<usize>, out: &mut [f64]) {
+            let unknowns = |set: &[usize]| set.iter().flat_map(|&g| [2 * g, 2 * g + 1]).collect::<Vec<_>>();
+            let columns = unknowns(columns);
+            for (row, out) in unknowns(rows).into_iter().zip(out.chunks_exact_mut(columns.len())) {
+                out.iter_mut().zip(&columns).for_each(|(out, &column)| *out = self.entry(row, column));
+            }
+        }
+    }
+
+    #[test]
+    fn blocks_are_met_also_where_kinds_do_not_couple() {
+        let groups: Vec<usize> = (0..60).collect();
+        for coupling in [0.0, 0.5, 1.0] {
+            let entries = Rows { coupling };
+            let (rows, columns) = (&groups[..25], &groups[35..]);
+            let (row_set, column_set) = (entries.prepare(rows), entries.prepare(columns));
+            let block = Block {
+                entries: &entries,
+                rows,
+                columns,
+                row_set: &row_set,
+                column_set: &column_set,
+                scalar: std::marker::PhantomData,
+            };
+            for tolerance in [1e-2, 1e-4, 1e-8] {
+                let low = block.compressed(tolerance).unwrap();
+                let (mut difference, mut size) = (0.0, 0.0);
+                for i in 0..50 {
+                    for j in 0..50 {
+                        let exact = entries.entry(2 * rows[0] + i, 2 * columns[0] + j);
+                        let found: f64 = (0..low.rank).map(|k| low.u[50 * k + i] * low.v[50 * k + j]).sum();
+                        difference += (found - exact).powi(2);
+                        size += exact * exact;
+                    }
+                }
+                let error = (difference / size).sqrt();
+                assert!(
+                    error < tolerance && low.rank < 20,
+                    "{coupling} {tolerance}: {error:e}, rank {}",
+                    low.rank
+                );
+            }
+        }
+    }
+}

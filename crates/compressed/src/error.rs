@@ -1,0 +1,49 @@
+//! What can be wrong with a matrix that is to be compressed.
+
+use thiserror::Error;
+
+/// A matrix that cannot be compressed as asked.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum CompressionError {
+    /// The number of places is not that of the groups of unknowns.
+    #[error("there are {found} places for {expected} groups of unknowns")]
+    Places {
+        /// Groups of the matrix.
+        expected: usize,
+        /// Places given.
+        found: usize,
+    },
+    /// A place is NaN or infinite.
+    #[error("the place of group {group} is not finite")]
+    NotFinite {
+        /// The group.
+        group: usize,
+    },
+    /// A setting is out of its range.
+    #[error("{what} is {value}, but must be {expected}")]
+    Setting {
+        /// What is set.
+        what: &'static str,
+        /// What was given.
+        value: f64,
+        /// What it may be.
+        expected: &'static str,
+    },
+    /// The matrix does not fit.
+    #[error(
+        "the compressed matrix needs about {needed} bytes, but {limit} are allowed; raise the tolerance or the limit"
+    )]
+    Memory {
+        /// Bytes predicted.
+        needed: u64,
+        /// Bytes allowed.
+        limit: u64,
+    },
+    /// A block on the diagonal cannot be inverted.
+    #[error("block {block} of the diagonal is singular to working precision; use no preconditioner")]
+    Singular {
+        /// The block.
+        block: usize,
+    },
+}

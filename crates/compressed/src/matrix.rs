@@ -1,0 +1,339 @@
+//! The hierarchical matrix and its products.
+
+use crate::clusters::Tree;
+use crate::cross::Block;
+use crate::low_rank::LowRank;
+use crate::{CompressionError, Entries};
+use fredholm_linop::{LinearOperator, MultiVector, Scalar, Symmetry};
+use fredholm_mesh::Vec3;
+use rayon::prelude::*;
+use std::marker::PhantomData;
+use std::ops::Range;
+
+/// Far blocks of each level that are computed for the prediction of memory.
+const SAMPLES: usize = 3;
+
+/// How a matrix is compressed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Relative error of every block in the Frobenius norm, between 1e-14 and 0.5.
+    pub tolerance: f64,
+    /// Most groups of a cluster that is not halved.
+    pub leaf: usize,
+    /// Size of the smaller of two clusters over their distance up to which they are far.
+    pub eta: f64,
+    /// Most bytes of the blocks.
+    pub limit: u64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { tolerance: 1e-4, leaf: 48, eta: 1.0, limit: u64::MAX }
+    }
+}
+
+/// What a compressed matrix is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Summary {
+    /// Blocks that are stored whole.
+    pub whole: usize,
+    /// Blocks of low rank.
+    pub low_rank: usize,
+    /// Largest rank.
+    pub largest_rank: usize,
+    /// Bytes of all blocks.
+    pub bytes: u64,
+    /// Bytes that were predicted from some blocks before the others were computed.
+    pub predicted: u64,
+    /// Bytes over those of the matrix stored whole.
+    pub share: f64,
+}
+
+/// A block: its rows and columns in the order of the tree, and its entries.
+struct Stored<T> {
+    rows: Range<usize>,
+    columns: Range<usize>,
+    kind: Kind<T>,
+}
+
+enum Kind<T> {
+    /// Row by row.
+    Whole(Vec<T>),
+    Low(LowRank<T>),
+}
+
+/// A square matrix in blocks, many of them of low rank.
+pub struct Hierarchical<T> {
+    dim: usize,
+    symmetry: Symmetry,
+    /// Unknowns in the order of the tree.
+    order: Vec<usize>,
+    /// Unknowns of the clusters that are not halved, in order.
+    leaves: Vec<Range<usize>>,
+    blocks: Vec<Stored<T>>,
+    /// Blocks that reach the rows of each leaf, and those that do by symmetry.
+    reach: Vec<Vec<(usize, bool)>>,
+    predicted: u64,
+}
+
+impl<T: Scalar> Hierarchical<T> {
+    /// Compresses a matrix whose groups of unknowns are at these places (m), in parallel over the blocks.
+    ///
+    /// # Errors
+    /// [`CompressionError::Places`], [`CompressionError::NotFinite`] and [`CompressionError::Setting`] for what does not fit,
+    /// [`CompressionError::Memory`] where the blocks are predicted to take more than the limit.
+    pub fn new<E: Entries<T>>(
+        entries: &E,
+        places: &[Vec3],
+        settings: Settings,
+    ) -> Result<Self, CompressionError> {
+        check(entries.groups(), places, settings)?;
+        let tree = Tree::new(places, settings.leaf);
+        let symmetric = entries.symmetry() == Symmetry::Symmetric;
+        let pairs = tree.pairs(settings.eta, symmetric);
+        let mut used = vec![false; tree.clusters.len()];
+        for &(row, column, _) in &pairs {
+            (used[row], used[column]) = (true, true);
+        }
+        let builder = Builder {
+            entries,
+            sets: (0..used.len()).map(|at| used[at].then(|| entries.prepare(tree.groups(at)))).collect(),
+            tree: &tree,
+            tolerance: settings.tolerance,
+            scalar: PhantomData,
+        };
+        let predicted = builder.predicted(&pairs);
+        if predicted > settings.limit {
+            return Err(CompressionError::Memory { needed: predicted, limit: settings.limit });
+        }
+        let blocks: Vec<Stored<T>> = pairs
+            .par_iter()
+            .with_max_len(1)
+            .map(|&(row, column, far)| builder.stored(row, column, far))
+            .collect();
+        let width = entries.width();
+        let mut leaves: Vec<Range<usize>> =
+            tree.leaves().iter().map(|&leaf| scaled(&tree.clusters[leaf].range, width)).collect();
+        leaves.sort_by_key(|leaf| leaf.start);
+        let reach = reach(&leaves, &blocks, symmetric);
+        let order = tree.order.iter().flat_map(|&group| group * width..(group + 1) * width).collect();
+        let dim = entries.groups() * width;
+        Ok(Self { dim, symmetry: entries.symmetry(), order, leaves, blocks, reach, predicted })
+    }
+
+    /// What it is made of.
+    #[must_use]
+    pub fn summary(&self) -> Summary {
+        let rank = |block: &Stored<T>| match &block.kind {
+            Kind::Whole(_) => None,
+            Kind::Low(low) => Some(low.rank),
+        };
+        let ranks: Vec<usize> = self.blocks.iter().filter_map(rank).collect();
+        let bytes: u64 = self.blocks.iter().map(Stored::bytes).sum();
+        Summary {
+            whole: self.blocks.len() - ranks.len(),
+            low_rank: ranks.len(),
+            largest_rank: ranks.into_iter().max().unwrap_or(0),
+            bytes,
+            predicted: self.predicted,
+            share: bytes as f64 / (self.dim as f64).powi(2) / size_of::<T>() as f64,
+        }
+    }
+
+    /// The blocks on the diagonal with their unknowns, row by row.
+    pub(crate) fn diagonal_blocks(&self) -> Vec<(Vec<usize>, Vec<T>)> {
+        let on_diagonal = |block: &Stored<T>| match &block.kind {
+            Kind::Whole(entries) if block.rows == block.columns => {
+                Some((self.order[block.rows.clone()].to_vec(), entries.clone()))
+            }
+            _ => None,
+        };
+        self.blocks.iter().filter_map(on_diagonal).collect()
+    }
+
+    /// y = A x of one lane, both in the order of the tree.
+    fn product(&self, x: &[T]) -> Vec<T> {
+        let symmetric = self.symmetry == Symmetry::Symmetric;
+        let inner: Vec<[Vec<T>; 2]> = self
+            .blocks
+            .par_iter()
+            .map(|block| match &block.kind {
+                Kind::Whole(_) => [Vec::new(), Vec::new()],
+                Kind::Low(low) => {
+                    let back = if symmetric { dots(&low.u, &x[block.rows.clone()]) } else { Vec::new() };
+                    [dots(&low.v, &x[block.columns.clone()]), back]
+                }
+            })
+            .collect();
+        let part = |(leaf, reach): (&Range<usize>, &Vec<(usize, bool)>)| {
+            let mut y = vec![T::zero(); leaf.len()];
+            for &(at, turned) in reach {
+                self.blocks[at].add(leaf, x, &inner[at][usize::from(turned)], turned, &mut y);
+            }
+            y
+        };
+        self.leaves.par_iter().zip(&self.reach).flat_map_iter(part).collect()
+    }
+}
+
+impl<T: Scalar> Stored<T> {
+    fn bytes(&self) -> u64 {
+        let entries = match &self.kind {
+            Kind::Whole(entries) => entries.len(),
+            Kind::Low(low) => low.u.len() + low.v.len(),
+        };
+        (entries * size_of::<T>()) as u64
+    }
+
+    /// Adds the rows of a leaf of the block, or of its transpose, times x. `inner` has the products with the other factor.
+    fn add(&self, leaf: &Range<usize>, x: &[T], inner: &[T], turned: bool, y: &mut [T]) {
+        let (own, other) = if turned { (&self.columns, &self.rows) } else { (&self.rows, &self.columns) };
+        let first = leaf.start - own.start;
+        match &self.kind {
+            Kind::Low(low) => {
+                let factor = if turned { &low.v } else { &low.u };
+                for (column, &value) in factor.chunks_exact(own.len()).zip(inner) {
+                    y.iter_mut().zip(&column[first..]).for_each(|(y, &u)| *y += u * value);
+                }
+            }
+            Kind::Whole(entries) if turned => {
+                for (row, &value) in entries.chunks_exact(own.len()).zip(&x[other.clone()]) {
+                    y.iter_mut().zip(&row[first..]).for_each(|(y, &entry)| *y += entry * value);
+                }
+            }
+            Kind::Whole(entries) => {
+                let rows = entries.chunks_exact(other.len()).skip(first);
+                for (y, row) in y.iter_mut().zip(rows) {
+                    let x = &x[other.clone()];
+                    *y += row.iter().zip(x).fold(T::zero(), |sum, (&entry, &x)| sum + entry * x);
+                }
+            }
+        }
+    }
+}
+
+impl<T: Scalar> LinearOperator<T> for Hierarchical<T> {
+    fn dim(&self) -> usize {
+        self.dim
+    }
+
+    fn apply(&self, x: &MultiVector<T>, y: &mut MultiVector<T>) {
+        for lane in 0..x.lanes() {
+            let sorted: Vec<T> = self.order.iter().map(|&i| x.row(i)[lane]).collect();
+            let product = self.product(&sorted);
+            self.order.iter().zip(product).for_each(|(&i, value)| y.row_mut(i)[lane] = value);
+        }
+    }
+
+    fn symmetry(&self) -> Symmetry {
+        self.symmetry
+    }
+
+    fn entries(&self) -> u64 {
+        self.blocks.iter().map(Stored::bytes).sum::<u64>() / size_of::<T>() as u64
+    }
+}
+
+/// What computes the blocks.
+struct Builder<'a, T: Scalar, E: Entries<T>> {
+    entries: &'a E,
+    tree: &'a Tree,
+    sets: Vec<Option<E::Set>>,
+    tolerance: f64,
+    scalar: PhantomData<T>,
+}
+
+impl<T: Scalar, E: Entries<T>> Builder<'_, T, E> {
+    fn stored(&self, row: usize, column: usize, far: bool) -> Stored<T> {
+        let width = self.entries.width();
+        let [rows, columns] = [row, column].map(|at| scaled(&self.tree.clusters[at].range, width));
+        Stored { rows, columns, kind: self.kind(row, column, far) }
+    }
+
+    fn kind(&self, row: usize, column: usize, far: bool) -> Kind<T> {
+        let (Some(row_set), Some(column_set)) = (&self.sets[row], &self.sets[column]) else {
+            return Kind::Whole(Vec::new());
+        };
+        let (rows, columns) = (self.tree.groups(row), self.tree.groups(column));
+        if far {
+            let block =
+                Block { entries: self.entries, rows, columns, row_set, column_set, scalar: PhantomData };
+            if let Some(low) = block.compressed(self.tolerance) {
+                return Kind::Low(low);
+            }
+        }
+        let mut whole = vec![T::zero(); rows.len() * columns.len() * self.entries.width().pow(2)];
+        self.entries.fill(row_set, column_set, &mut whole);
+        Kind::Whole(whole)
+    }
+
+    /// Bytes of all blocks: near ones are counted, far ones taken to be like some of their level.
+    fn predicted(&self, pairs: &[(usize, usize, bool)]) -> u64 {
+        let width = self.entries.width();
+        let size = |at: usize| self.tree.clusters[at].range.len() * width;
+        let whole = |&(row, column, _): &(usize, usize, bool)| (size(row) * size(column)) as u64;
+        let near: u64 = pairs.iter().filter(|pair| !pair.2).map(whole).sum();
+        // Blocks with sides within a factor of two are of one level.
+        let level = |pair: &(usize, usize, bool)| (size(pair.0) + size(pair.1)).ilog2() as usize;
+        let mut levels: Vec<Vec<(usize, usize, bool)>> = vec![Vec::new(); 64];
+        pairs.iter().filter(|pair| pair.2).for_each(|pair| levels[level(pair)].push(*pair));
+        let far = levels.par_iter().map(|pairs| {
+            let step = (pairs.len() / SAMPLES).max(1);
+            let some: Vec<_> = pairs.iter().skip(step / 2).step_by(step).take(SAMPLES).collect();
+            let stored: u64 =
+                some.iter().map(|&&(row, column, far)| self.stored(row, column, far).bytes()).sum();
+            let of = |pair: &(usize, usize, bool)| (size(pair.0) + size(pair.1)) as u64;
+            let [all, seen] = [pairs.iter().map(of).sum::<u64>(), some.into_iter().map(of).sum()];
+            (stored as f64 * all as f64 / seen.max(1) as f64) as u64
+        });
+        near * size_of::<T>() as u64 + far.sum::<u64>()
+    }
+}
+
+fn check(groups: usize, places: &[Vec3], settings: Settings) -> Result<(), CompressionError> {
+    if places.len() != groups {
+        return Err(CompressionError::Places { expected: groups, found: places.len() });
+    }
+    if let Some(group) = places.iter().position(|place| !place.is_finite()) {
+        return Err(CompressionError::NotFinite { group });
+    }
+    let refuse = |what, value, expected| Err(CompressionError::Setting { what, value, expected });
+    if !(1e-14..=0.5).contains(&settings.tolerance) {
+        return refuse("the tolerance of the compression", settings.tolerance, "between 1e-14 and 0.5");
+    }
+    if !(settings.eta > 0.0 && settings.eta.is_finite()) {
+        return refuse("eta of the compression", settings.eta, "finite and above 0");
+    }
+    if settings.leaf == 0 {
+        return refuse("the size of the smallest clusters", 0.0, "at least 1");
+    }
+    Ok(())
+}
+
+/// The unknowns of some groups.
+fn scaled(range: &Range<usize>, width: usize) -> Range<usize> {
+    range.start * width..range.end * width
+}
+
+/// For every leaf the blocks that reach its rows, in their order.
+fn reach<T>(leaves: &[Range<usize>], blocks: &[Stored<T>], symmetric: bool) -> Vec<Vec<(usize, bool)>> {
+    let mut reach = vec![Vec::new(); leaves.len()];
+    let mut add = |range: &Range<usize>, at: usize, turned: bool| {
+        let first = leaves.partition_point(|leaf| leaf.start < range.start);
+        let last = leaves.partition_point(|leaf| leaf.start < range.end);
+        reach[first..last].iter_mut().for_each(|list| list.push((at, turned)));
+    };
+    for (at, block) in blocks.iter().enumerate() {
+        add(&block.rows, at, false);
+        if symmetric && block.rows != block.columns {
+            add(&block.columns, at, true);
+        }
+    }
+    reach
+}
+
+/// The products of the columns of a factor with x, not conjugated.
+fn dots<T: Scalar>(factor: &[T], x: &[T]) -> Vec<T> {
+    let dot = |column: &[T]| column.iter().zip(x).fold(T::zero(), |sum, (&a, &b)| sum + a * b);
+    factor.chunks_exact(x.len().max(1)).map(dot).collect()
+}

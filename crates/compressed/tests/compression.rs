@@ -1,0 +1,155 @@
+//! Compressed matrices against the whole ones: errors, memory, threads, solutions.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+use fredholm_compressed::{BlockDiagonal, CompressionError, Entries, Hierarchical, Preconditioned, Settings};
+use fredholm_iterative::Gmres;
+use fredholm_linop::{LinearOperator, MultiVector, Quiet, SecondKind, Solver, Stop, StopReason, Symmetry};
+use fredholm_mesh::Vec3;
+use num_complex::Complex64;
+
+/// e^{−jkR}/R between points of a sphere, with its own diagonal; `skew` makes it unsymmetric. Two unknowns a point.
+struct Waves {
+    places: Vec<Vec3>,
+    k: f64,
+    skew: f64,
+}
+
+impl Waves {
+    fn new(count: usize, k: f64, skew: f64) -> Self {
+        let place = |i: usize| {
+            let height = (2 * i + 1) as f64 / count as f64 - 1.0;
+            let (sin, cos) = (2.399_963 * i as f64).sin_cos();
+            let ring = (1.0 - height * height).sqrt();
+            Vec3::new(ring * cos, ring * sin, height)
+        };
+        Self { places: (0..count).map(place).collect(), k, skew }
+    }
+
+    fn entry(&self, i: usize, j: usize, kinds: usize) -> Complex64 {
+        if i == j {
+            return if kinds == 1 { Complex64::new(0.5, 0.0) } else { Complex64::from(40.0) };
+        }
+        let d = self.places[i] - self.places[j];
+        let r = d.length();
+        Complex64::cis(-self.k * r) / r * (1.0 + self.skew * d.x) * if kinds == 1 { 0.5 } else { 1.0 }
+    }
+}
+
+impl Entries<Complex64> for Waves {
+    type Set = Vec<usize>;
+
+    fn groups(&self) -> usize {
+        self.places.len()
+    }
+
+    fn width(&self) -> usize {
+        2
+    }
+
+    fn symmetry(&self) -> Symmetry {
+        if self.skew == 0.0 { Symmetry::Symmetric } else { Symmetry::General }
+    }
+
+    fn prepare(&self, groups: &[usize]) -> Vec<usize> {
+        groups.to_vec()
+    }
+
+    fn fill(&self, rows: &Vec<usize>, columns: &Vec<usize>, out: &mut [Complex64]) {
+        for (row, out) in out.chunks_exact_mut(2 * columns.len()).enumerate().take(2 * rows.len()) {
+            for (column, out) in out.iter_mut().enumerate() {
+                let kinds = (row % 2) ^ (column % 2);
+                *out = self.entry(rows[row / 2], columns[column / 2], kinds);
+            }
+        }
+    }
+}
+
+fn vector(dim: usize, lanes: usize) -> MultiVector<Complex64> {
+    MultiVector::from_fn(dim, lanes, |i, l| Complex64::cis((i * i % 97 + 3 * l) as f64))
+}
+
+/// The product without compression.
+fn whole(waves: &Waves, x: &MultiVector<Complex64>) -> MultiVector<Complex64> {
+    MultiVector::from_fn(x.dim(), x.lanes(), |i, l| {
+        let term = |j: usize| waves.entry(i / 2, j / 2, (i % 2) ^ (j % 2)) * x.row(j)[l];
+        (0..x.dim()).map(term).sum()
+    })
+}
+
+fn norm(x: &MultiVector<Complex64>) -> f64 {
+    x.norms().iter().map(|norm| norm * norm).sum::<f64>().sqrt()
+}
+
+#[test]
+fn products_are_within_the_tolerance_and_memory_within_the_prediction() {
+    for skew in [0.0, 0.3] {
+        let waves = Waves::new(1500, 5.0, skew);
+        let x = vector(3000, 2);
+        let exact = whole(&waves, &x);
+        let mut shares = Vec::new();
+        for tolerance in [1e-2, 1e-4, 1e-7] {
+            let settings = Settings { tolerance, leaf: 24, ..Settings::default() };
+            let matrix = Hierarchical::new(&waves, &waves.places, settings).unwrap();
+            let mut found = MultiVector::zeros(3000, 2);
+            matrix.apply(&x, &mut found);
+            found.add_scaled(&[-Complex64::ONE; 2], &exact);
+            let error = norm(&found) / norm(&exact);
+            assert!(error < tolerance && error > 1e-3 * tolerance, "{skew} {tolerance}: {error:e}");
+            let summary = matrix.summary();
+            let ratio = summary.bytes as f64 / summary.predicted as f64;
+            assert!((0.7..1.4).contains(&ratio) && summary.low_rank > 100, "{summary:?}");
+            shares.push(summary.share);
+        }
+        assert!(shares[0] < shares[1] && shares[1] < shares[2] && shares[0] < 0.6, "{shares:?}");
+    }
+}
+
+#[test]
+fn products_have_the_same_bits_for_any_number_of_threads() {
+    let waves = Waves::new(600, 8.0, 0.0);
+    let x = vector(1200, 1);
+    let products = [1, 2, 4].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let matrix = Hierarchical::new(&waves, &waves.places, Settings::default()).unwrap();
+            let mut y = MultiVector::zeros(1200, 1);
+            matrix.apply(&x, &mut y);
+            y
+        })
+    });
+    assert!(products[0] == products[1] && products[0] == products[2]);
+}
+
+#[test]
+fn a_preconditioned_system_has_the_solution_of_the_whole_one() {
+    let waves = Waves::new(500, 4.0, 0.2);
+    let settings = Settings { tolerance: 1e-9, ..Settings::default() };
+    let matrix = Hierarchical::new(&waves, &waves.places, settings).unwrap();
+    let inverse = BlockDiagonal::new(&matrix).unwrap();
+    let system = Preconditioned::new(&matrix, &inverse);
+    let exact = vector(1000, 1);
+    let b = system.right_hand_side(&whole(&waves, &exact));
+    let a = SecondKind::new(&system, MultiVector::from_fn(1000, 1, |_, _| Complex64::ONE)).unwrap();
+    let mut x = MultiVector::zeros(1000, 1);
+    let stop = Stop { tolerance: 1e-8, max_iterations: 900 };
+    let report = Gmres { restart: 300 }.solve(&a, &b, &mut x, &stop, &mut Quiet).unwrap();
+    assert_eq!(report.reason, StopReason::Converged);
+    x.add_scaled(&[-Complex64::ONE], &exact);
+    assert!(norm(&x) < 1e-4 * norm(&exact), "{:e}", norm(&x) / norm(&exact));
+}
+
+#[test]
+fn what_does_not_fit_is_refused() {
+    let waves = Waves::new(300, 4.0, 0.0);
+    let new = |places: &[Vec3], settings| Hierarchical::new(&waves, places, settings).map(|_| ());
+    let short = new(&waves.places[1..], Settings::default());
+    assert_eq!(short, Err(CompressionError::Places { expected: 300, found: 299 }));
+    let bad = Settings { tolerance: 0.0, ..Settings::default() };
+    assert!(matches!(new(&waves.places, bad), Err(CompressionError::Setting { .. })));
+    let little = Settings { limit: 1000, ..Settings::default() };
+    assert!(matches!(new(&waves.places, little), Err(CompressionError::Memory { limit: 1000, .. })));
+    let mut lost = waves.places.clone();
+    lost[7] = Vec3::NAN;
+    assert_eq!(new(&lost, Settings::default()), Err(CompressionError::NotFinite { group: 7 }));
+}

@@ -1,0 +1,341 @@
+//! Surface currents and the fields that they radiate.
+//!
+//! With J and M on the surface, in a medium with wavenumber k and impedance η (time factor e^{+jωt}):
+//!
+//! ```text
+//! E = −jkη [∫ G J dA + ∇∫ G div J dA/k²] − ∫ ∇G × M dA
+//! H = ∫ ∇G × J dA − (jk/η) [∫ G M dA + ∇∫ G div M dA/k²]
+//! E → F e^{−jkr}/r,   F(u) = −(jk/4π) ∫ [η (J − u (u·J)) − u × M] e^{jk u·q} dA
+//! ```
+//!
+//! (C. A. Balanis, Advanced Engineering Electromagnetics, 2nd ed., Wiley 2012, ch. 6 and 7). The charges are taken from
+//! the divergence of the functions, so that close to the surface, too, no line charge of a triangle's border is left.
+
+use crate::kernel::{Eights, Medium, Points, Seen, WIDTH};
+use crate::rules::{CLASSES, Rules};
+use crate::set::Shape;
+use crate::{Basis, MomentsError};
+use fredholm_mesh::Vec3;
+use fredholm_quadrature::{gauss_legendre, symmetric_triangle};
+use fredholm_waves::medium::IMPEDANCE;
+use fredholm_waves::source::PlaneWave;
+use fredholm_waves::{ComplexVector, FarField, Field, Wave};
+use num_complex::Complex64;
+use pulp::Arch;
+use rayon::prelude::*;
+use std::f64::consts::{PI, TAU};
+
+/// Relative error of the integral over a triangle for a field.
+const TOLERANCE: f64 = 1e-6;
+/// Distance over the size of a triangle below which a point is on it.
+const ON_SURFACE: f64 = 1e-4;
+/// Halvings after which a part of a triangle is taken as it is.
+const DEEPEST: usize = 40;
+/// Degree of the rule for the far field: 1e-6 of it at λ/6.
+const FAR_DEGREE: usize = 8;
+
+/// J and M of a triangle, a + b r′ with r′ from its centre, times twice its area.
+#[derive(Clone, Copy, Debug, Default)]
+struct Linear {
+    constant: ComplexVector,
+    slope: Complex64,
+}
+
+/// The medium in which fields are asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Space {
+    /// 1/m.
+    pub(crate) k: Complex64,
+    /// η/η₀.
+    pub(crate) impedance: Complex64,
+}
+
+/// Surface currents as coefficients of the functions of a basis.
+#[derive(Clone, Debug)]
+pub struct Currents<'a> {
+    basis: &'a Basis,
+    wave: Wave,
+    electric: Vec<Linear>,
+    magnetic: Option<Vec<Linear>>,
+}
+
+impl<'a> Currents<'a> {
+    /// From the coefficients of η₀ J and, on bodies that are no conductors, of M (both in V).
+    ///
+    /// # Panics
+    /// Like a slice, where there are fewer coefficients than functions.
+    #[must_use]
+    pub fn new(basis: &'a Basis, wave: Wave, electric: &[Complex64], magnetic: Option<&[Complex64]>) -> Self {
+        let electric = linear(basis, electric);
+        Self { basis, wave, electric, magnetic: magnetic.map(|x| linear(basis, x)) }
+    }
+
+    /// J (A/m) at the centre of a triangle.
+    ///
+    /// # Panics
+    /// Like a slice, where there is no such triangle.
+    #[must_use]
+    pub fn electric(&self, triangle: usize) -> ComplexVector {
+        self.electric[triangle].constant * (0.5 / (self.basis.surface().area(triangle) * IMPEDANCE))
+    }
+
+    /// M (V/m) at the centre of a triangle.
+    ///
+    /// # Panics
+    /// Like a slice, where there is no such triangle.
+    #[must_use]
+    pub fn magnetic(&self, triangle: usize) -> ComplexVector {
+        let current = self.magnetic.as_ref().map_or(ComplexVector::ZERO, |m| m[triangle].constant);
+        current * (0.5 / self.basis.surface().area(triangle))
+    }
+
+    /// E and H that the currents radiate into free space, at points (m) away from the surface.
+    ///
+    /// # Errors
+    /// [`MomentsError::OnSurface`] for a point on the surface.
+    pub fn fields(&self, points: &[Vec3]) -> Result<Vec<Field>, MomentsError> {
+        self.fields_in(points, Space { k: self.wave.wavenumber().into(), impedance: Complex64::ONE })
+    }
+
+    pub(crate) fn fields_in(&self, points: &[Vec3], space: Space) -> Result<Vec<Field>, MomentsError> {
+        let rules = Rules::new(TOLERANCE, space.k, true)?;
+        let surface = self.basis.surface();
+        let shapes: Vec<Shape> =
+            (0..surface.triangles().len()).map(|t| Shape::new(surface.corners(t))).collect();
+        let viewer = Viewer { currents: self, space, rules, shapes, arch: Arch::new() };
+        points.par_iter().enumerate().map(|(index, &p)| viewer.field(index, p)).collect()
+    }
+
+    /// F in these directions (any length).
+    ///
+    /// # Errors
+    /// [`MomentsError::Parameter`] for a direction that is none.
+    pub fn far_field(&self, directions: &[Vec3]) -> Result<Vec<FarField>, MomentsError> {
+        let sources = self.far_sources();
+        let far = |&direction: &Vec3| {
+            let unit = direction.normalize_or_zero();
+            if unit == Vec3::ZERO || !unit.is_finite() {
+                let (what, expected) = ("the length of a direction of the far field", "finite and above 0");
+                return Err(MomentsError::Parameter { what, value: direction.length(), expected });
+            }
+            Ok(FarField { direction: unit, amplitude: self.far_amplitude(unit, &sources) })
+        };
+        directions.par_iter().map(far).collect()
+    }
+
+    /// Points with η₀ J dA and M dA, V m.
+    fn far_sources(&self) -> Vec<(Vec3, ComplexVector, ComplexVector)> {
+        // The degree is one of the table.
+        let rule = symmetric_triangle(FAR_DEGREE).unwrap_or_default();
+        let mut sources = Vec::with_capacity(self.electric.len() * rule.len());
+        for (triangle, electric) in self.electric.iter().enumerate() {
+            let shape = Shape::new(self.basis.surface().corners(triangle));
+            let magnetic = self.magnetic.as_ref().map_or(Linear::default(), |m| m[triangle]);
+            for point in &rule {
+                let p = shape.point([point.u, point.v]);
+                let at = |current: &Linear| current.at(p) * point.weight;
+                sources.push((shape.centre + p, at(electric), at(&magnetic)));
+            }
+        }
+        sources
+    }
+
+    fn far_amplitude(&self, u: Vec3, sources: &[(Vec3, ComplexVector, ComplexVector)]) -> ComplexVector {
+        let k = self.wave.wavenumber();
+        let (mut electric, mut magnetic) = (ComplexVector::ZERO, ComplexVector::ZERO);
+        for &(q, j, m) in sources {
+            let phase = Complex64::cis(k * u.dot(q));
+            electric += j * phase;
+            magnetic += m * phase;
+        }
+        let across = electric - ComplexVector::along(u, electric.dot(u)) - magnetic.crossed_by(u);
+        across * Complex64::new(0.0, -k / (4.0 * PI))
+    }
+
+    /// Power (W) that the currents radiate into free space: ∮ |F|²/(2η₀) over all directions.
+    ///
+    /// # Errors
+    /// Those of [`Currents::far_field`].
+    pub fn radiated_power(&self) -> Result<f64, MomentsError> {
+        let vertices = self.basis.surface().vertices();
+        let extent = vertices.iter().map(|v| v.length()).fold(0.0, f64::max);
+        // F has the angular bandwidth k times the radius around the origin, |F|² twice that.
+        let rings = (self.wave.wavenumber() * extent).ceil() as usize + 12;
+        let rule = gauss_legendre(rings);
+        let mut directions = Vec::with_capacity(2 * rings * rings);
+        for &height in &rule.points {
+            let (cos, sin) = (2.0 * height - 1.0, 2.0 * (height * (1.0 - height)).sqrt());
+            let around = |i: usize| TAU * i as f64 / (2 * rings) as f64;
+            directions
+                .extend((0..2 * rings).map(|i| Vec3::new(sin * around(i).cos(), sin * around(i).sin(), cos)));
+        }
+        let pattern = self.far_field(&directions)?;
+        let ring = |(ring, weight): (&[FarField], &f64)| {
+            weight * ring.iter().map(|far| far.amplitude.norm_squared()).sum::<f64>()
+        };
+        let sum: f64 = pattern.chunks(2 * rings).zip(&rule.weights).map(ring).sum();
+        Ok(sum * 4.0 * PI / (2 * rings) as f64 / (2.0 * IMPEDANCE))
+    }
+
+    /// Power (W) that is taken from a plane wave, scattered or absorbed, by the optical theorem: the far field straight
+    /// ahead interferes with the wave.
+    ///
+    /// # Errors
+    /// Those of [`Currents::far_field`].
+    pub fn extinguished_power(&self, source: &PlaneWave) -> Result<f64, MomentsError> {
+        let ahead = self.far_field(&[source.travel()])?;
+        let forward = ahead[0].amplitude.dot(source.polarisation()) * source.amplitude().conj();
+        Ok(-2.0 * PI * forward.im / (self.wave.wavenumber() * IMPEDANCE))
+    }
+}
+
+/// The currents of all triangles from the coefficients.
+fn linear(basis: &Basis, coefficients: &[Complex64]) -> Vec<Linear> {
+    let surface = basis.surface();
+    let mut all = vec![Linear::default(); surface.triangles().len()];
+    for (function, &x) in basis.functions().iter().zip(coefficients) {
+        for half in function.halves {
+            let triangle = half.triangle as usize;
+            let corner = surface.corners(triangle)[usize::from(half.corner)] - surface.centre(triangle);
+            all[triangle].constant += ComplexVector::along(corner, x * -half.weight);
+            all[triangle].slope += x * half.weight;
+        }
+    }
+    all
+}
+
+impl Linear {
+    /// At a point relative to the centre.
+    fn at(&self, p: Vec3) -> ComplexVector {
+        self.constant + ComplexVector::along(p, self.slope)
+    }
+}
+
+/// What computes fields at points.
+struct Viewer<'a> {
+    currents: &'a Currents<'a>,
+    space: Space,
+    rules: Rules,
+    shapes: Vec<Shape>,
+    arch: Arch,
+}
+
+/// A part of a triangle that waits for its rule.
+#[derive(Clone, Copy)]
+struct Part {
+    triangle: usize,
+    shape: Shape,
+    share: f64,
+}
+
+impl Viewer<'_> {
+    fn field(&self, point: usize, p: Vec3) -> Result<Field, MomentsError> {
+        let mut waiting: [Vec<Part>; CLASSES] = Default::default();
+        let mut field = Field::ZERO;
+        for (triangle, &shape) in self.shapes.iter().enumerate() {
+            if distance(p, shape.places) < ON_SURFACE * shape.radius {
+                return Err(MomentsError::OnSurface { point, triangle });
+            }
+            self.add(p, Part { triangle, shape, share: 1.0 }, 0, &mut waiting, &mut field);
+        }
+        for (class, parts) in waiting.iter_mut().enumerate() {
+            self.flush(p, class, parts, &mut field);
+        }
+        Ok(field)
+    }
+
+    fn add(&self, p: Vec3, part: Part, depth: usize, waiting: &mut [Vec<Part>; CLASSES], field: &mut Field) {
+        let ratio = p.distance(part.shape.centre) / part.shape.radius;
+        let class = self.rules.class(ratio, part.shape.radius);
+        if class.is_some() || depth >= DEEPEST {
+            let class = class.unwrap_or(CLASSES - 1);
+            waiting[class].push(part);
+            if waiting[class].len() == WIDTH {
+                self.flush(p, class, &mut waiting[class], field);
+            }
+            return;
+        }
+        for half in crate::pairs::halves_of(part.shape.places) {
+            let part = Part { shape: Shape::new(half), share: 0.5 * part.share, ..part };
+            self.add(p, part, depth + 1, waiting, field);
+        }
+    }
+
+    /// Adds the fields of the parts that wait for a rule.
+    fn flush(&self, p: Vec3, class: usize, parts: &mut Vec<Part>, field: &mut Field) {
+        let Some(&last) = parts.last() else { return };
+        let rule = &self.rules.classes[class];
+        let mut eights = Eights::default();
+        let mut points = vec![[[0.0; WIDTH]; 3]; rule.points.len()];
+        let mut spread = 0.0_f64;
+        for lane in 0..WIDTH {
+            let shape = parts.get(lane).unwrap_or(&last).shape;
+            spread = spread.max(shape.radius);
+            eights.set(lane, shape.centre, shape.normal, shape.corners);
+            for (place, &uv) in points.iter_mut().zip(&rule.points) {
+                let q = shape.point(uv);
+                (0..3).for_each(|axis| place[axis][lane] = q[axis]);
+            }
+        }
+        let sources = Points { triangles: &eights, places: &points, weights: &rule.weights };
+        let mut out = [[[0.0; WIDTH]; 2]; 7];
+        let medium = Medium::new(self.space.k);
+        self.arch.dispatch(Seen { medium, point: p, sources, spread, out: &mut out });
+        for (lane, part) in parts.drain(..).enumerate() {
+            let read = |i: usize| Complex64::new(out[i][0][lane], out[i][1][lane]) * part.share;
+            *field += self.of_part(p, &part, std::array::from_fn(read));
+        }
+    }
+
+    /// The field of the currents on a part, from the integrals over it.
+    fn of_part(&self, p: Vec3, part: &Part, [g, x, y, z, u, v, w]: [Complex64; 7]) -> Field {
+        let integrals =
+            (g, ComplexVector::from_components([x, y, z]), ComplexVector::from_components([u, v, w]));
+        // The currents are known about the centre of the whole triangle.
+        let shift = part.shape.centre - self.shapes[part.triangle].centre;
+        let at = |current: Linear| Linear { constant: current.at(shift), ..current };
+        let e = p - part.shape.centre;
+        let Space { k, impedance } = self.space;
+        let [e_j, h_j] = element(at(self.currents.electric[part.triangle]), k, e, integrals);
+        let mut field = Field { e: e_j * impedance, h: h_j };
+        if let Some(magnetic) = &self.currents.magnetic {
+            let [e_m, h_m] = element(at(magnetic[part.triangle]), k, e, integrals);
+            field.e = field.e - h_m;
+            field.h += e_m * impedance.inv();
+        }
+        Field { h: field.h * (1.0 / IMPEDANCE), ..field }
+    }
+}
+
+/// E and H of an electric current in a medium of impedance 1, `e` from the centre: −jk (A − Q div/k²) and J(e) × Q.
+fn element(
+    current: Linear,
+    k: Complex64,
+    e: Vec3,
+    (g, vector, q): (Complex64, ComplexVector, ComplexVector),
+) -> [ComplexVector; 2] {
+    let potential = current.constant * g + vector * current.slope;
+    let charge = q * (2.0 * current.slope / (k * k));
+    let electric = (potential - charge) * (-Complex64::I * k / (4.0 * PI));
+    let [a, b] = [current.at(e), q].map(ComplexVector::components);
+    let cross = [0, 1, 2].map(|c| {
+        let (d, f) = ((c + 1) % 3, (c + 2) % 3);
+        (a[d] * b[f] - a[f] * b[d]) / (4.0 * PI)
+    });
+    [electric, ComplexVector::from_components(cross)]
+}
+
+/// Distance of a point from a triangle, m.
+fn distance(p: Vec3, [a, b, c]: [Vec3; 3]) -> f64 {
+    let normal = (b - a).cross(c - a);
+    let inside =
+        [[a, b], [b, c], [c, a]].iter().all(|&[from, to]| (to - from).cross(p - from).dot(normal) >= 0.0);
+    if inside {
+        return ((p - a).dot(normal) / normal.length()).abs();
+    }
+    let to_side = |[from, to]: [Vec3; 2]| {
+        let along = ((p - from).dot(to - from) / from.distance_squared(to)).clamp(0.0, 1.0);
+        p.distance(from + along * (to - from))
+    };
+    [[a, b], [b, c], [c, a]].into_iter().map(to_side).fold(f64::INFINITY, f64::min)
+}

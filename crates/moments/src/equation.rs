@@ -1,0 +1,190 @@
+//! The equations of perfectly conducting bodies and sheets for the surface current J.
+//!
+//! With the tangential part of E and H of the current (the operators T and K of [`Operator`]):
+//!
+//! ```text
+//! electric  (any surface):   η ⟨f, T J⟩ = ⟨f, E_i⟩
+//! magnetic  (closed bodies): η [½ ⟨f, J⟩ − ⟨f, n × K J⟩] = η ⟨f, n × H_i⟩
+//! combined  (closed bodies): α electric + (1 − α) magnetic
+//! ```
+//!
+//! R. F. Harrington, Field Computation by Moment Methods, Macmillan 1968; J. R. Mautz, R. F. Harrington, H-field,
+//! E-field, and combined-field solutions for conducting bodies of revolution, AEÜ 32 (1978) 157. The first is of the first kind
+//! and symmetric. Closed bodies have resonances inside, at which the first two have solutions without a source: only
+//! the combination has one answer at every frequency. Unknowns are η J (V/m times a function of 1/m, so V); the residual
+//! of every solver is that of these equations.
+
+use crate::kernel::{Medium, Wanted};
+use crate::operator::{Kinds, Operator, Term};
+use crate::pairs::Integrator;
+use crate::rules::Rules;
+use crate::{Basis, MomentsError};
+use fredholm_linop::{MultiVector, Symmetry};
+use fredholm_mesh::Vec3;
+use fredholm_quadrature::symmetric_triangle;
+use fredholm_waves::medium::IMPEDANCE;
+use fredholm_waves::{ComplexVector, Field, Source, Wave, incident};
+use num_complex::Complex64;
+use pulp::Arch;
+use rayon::prelude::*;
+
+/// Degree of the rule for incident fields: exact for a source at λ/10 to 1e-6.
+const DEGREE: usize = 6;
+
+/// Which equation is solved on a conductor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Equation {
+    /// The electric field equation, for open and closed surfaces.
+    Electric,
+    /// The magnetic field equation, for closed bodies.
+    Magnetic,
+    /// α times the electric and 1 − α times the magnetic field equation, for closed bodies.
+    Combined {
+        /// α, between 0 and 1.
+        alpha: f64,
+    },
+}
+
+impl Default for Equation {
+    fn default() -> Self {
+        Self::Combined { alpha: 0.5 }
+    }
+}
+
+impl Equation {
+    /// The factors of both equations.
+    pub(crate) fn shares(self) -> [f64; 2] {
+        match self {
+            Self::Electric => [1.0, 0.0],
+            Self::Magnetic => [0.0, 1.0],
+            Self::Combined { alpha } => [alpha, 1.0 - alpha],
+        }
+    }
+
+    /// Its name in messages.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Electric => "the electric field equation",
+            Self::Magnetic => "the magnetic field equation",
+            Self::Combined { .. } => "the combined field equation",
+        }
+    }
+
+    fn check(self, basis: &Basis) -> Result<(), MomentsError> {
+        if let Self::Combined { alpha } = self
+            && !(0.0..=1.0).contains(&alpha)
+        {
+            let expected = "between 0 and 1";
+            return Err(MomentsError::Parameter {
+                what: "alpha of the combined field equation",
+                value: alpha,
+                expected,
+            });
+        }
+        if self == Self::Electric {
+            return Ok(());
+        }
+        basis.topology().check_closed(basis.surface(), self.name())
+    }
+}
+
+/// A perfect conductor in a wave.
+#[derive(Clone, Debug)]
+pub struct Conductor<'a> {
+    basis: &'a Basis,
+    wave: Wave,
+    equation: Equation,
+    operator: Operator<'a>,
+}
+
+impl<'a> Conductor<'a> {
+    /// Sets up an equation with integrals to a relative `tolerance` for each pair of triangles (1e-3 is usual: errors of
+    /// pairs are smaller than those of the mesh by then).
+    ///
+    /// # Errors
+    /// [`MomentsError::Coarse`] for edges above λ/3, those of [`Topology::check_closed`](crate::Topology::check_closed)
+    /// for equations of closed bodies, [`MomentsError::Parameter`] for numbers out of range.
+    pub fn new(
+        basis: &'a Basis,
+        wave: Wave,
+        equation: Equation,
+        tolerance: f64,
+    ) -> Result<Self, MomentsError> {
+        equation.check(basis)?;
+        basis.topology().check_resolution(basis.surface(), wave.wavelength())?;
+        let [electric, magnetic] = equation.shares();
+        let k = Complex64::from(wave.wavenumber());
+        let wanted = Wanted { electric: electric != 0.0, magnetic: magnetic != 0.0, turned: true };
+        let integrator = Integrator {
+            medium: Medium::new(k),
+            wanted,
+            rules: Rules::new(tolerance, k, wanted.magnetic)?,
+            arch: Arch::new(),
+        };
+        let only = |value: f64| Kinds::from([[value.into(), Complex64::ZERO], [Complex64::ZERO; 2]]);
+        // n × K tested with f is −(f × n)·… turned: f·(n × v) = (f × n)·v.
+        let term = Term { integrator, electric: only(electric), magnetic: only(-magnetic) };
+        let symmetry = if magnetic == 0.0 { Symmetry::Symmetric } else { Symmetry::General };
+        let operator = Operator::new(basis, 1, vec![term], only(0.5 * magnetic), symmetry);
+        Ok(Self { basis, wave, equation, operator })
+    }
+
+    /// The matrix.
+    #[must_use]
+    pub fn operator(&self) -> &Operator<'a> {
+        &self.operator
+    }
+
+    /// The functions.
+    #[must_use]
+    pub fn basis(&self) -> &'a Basis {
+        self.basis
+    }
+
+    /// The wave.
+    #[must_use]
+    pub fn wave(&self) -> Wave {
+        self.wave
+    }
+
+    /// One lane for each of the sets of sources, V.
+    #[must_use]
+    pub fn right_hand_side(&self, excitations: &[&[&dyn Source]]) -> MultiVector<Complex64> {
+        let [electric, magnetic] = self.equation.shares();
+        let mut b = MultiVector::zeros(self.basis.len(), excitations.len());
+        for (lane, sources) in excitations.iter().enumerate() {
+            let tested = tested(self.basis, &self.wave, sources, |field, normal| {
+                field.e * electric + field.h.crossed_by(normal) * (magnetic * IMPEDANCE)
+            });
+            b.set_lane(lane, &tested);
+        }
+        b
+    }
+}
+
+/// ∫ f·v dA of every function, for a vector v of the incident field and the normal.
+pub(crate) fn tested(
+    basis: &Basis,
+    wave: &Wave,
+    sources: &[&dyn Source],
+    value: impl Fn(Field, Vec3) -> ComplexVector + Sync,
+) -> Vec<Complex64> {
+    // The degree is one of the table.
+    let rule = symmetric_triangle(DEGREE).unwrap_or_default();
+    let surface = basis.surface();
+    let on_triangle = |triangle: usize| {
+        let [a, b, c] = surface.corners(triangle);
+        let normal = surface.normal(triangle);
+        let mut sums = [Complex64::ZERO; 3];
+        for point in &rule {
+            let p = a + point.u * (b - a) + point.v * (c - a);
+            let v = value(incident(sources, wave, p), normal) * point.weight;
+            sums.iter_mut().zip([a, b, c]).for_each(|(sum, corner)| *sum += v.dot(p - corner));
+        }
+        sums
+    };
+    let sums: Vec<[Complex64; 3]> = (0..surface.triangles().len()).into_par_iter().map(on_triangle).collect();
+    let product = |half: &crate::Half| sums[half.triangle as usize][usize::from(half.corner)] * half.weight;
+    basis.functions().iter().map(|function| function.halves.iter().map(product).sum()).collect()
+}

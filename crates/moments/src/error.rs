@@ -1,0 +1,149 @@
+//! What can be wrong with a surface or a problem, and how to mend it. Everything is counted from 0.
+
+use fredholm_linop::LinopError;
+use fredholm_waves::WaveError;
+use thiserror::Error;
+
+/// A problem that cannot be set up.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum MomentsError {
+    /// There is no triangle.
+    #[error("the surface has no triangles; add a shape")]
+    Empty,
+    /// A triangle names a vertex that is not there.
+    #[error("triangle {triangle} names vertex {vertex}, but there are only {vertices}")]
+    NoSuchVertex {
+        /// The triangle.
+        triangle: usize,
+        /// The vertex it names.
+        vertex: u32,
+        /// Number of vertices.
+        vertices: usize,
+    },
+    /// A coordinate is NaN or infinite.
+    #[error("a coordinate of vertex {vertex} is not a finite number")]
+    NotFinite {
+        /// The vertex.
+        vertex: usize,
+    },
+    /// A triangle has no area.
+    #[error("triangle {triangle} has no area; remove it and join its corners")]
+    Degenerate {
+        /// The triangle.
+        triangle: usize,
+    },
+    /// The same three corners make two triangles.
+    #[error(
+        "triangles {first} and {second} have the same corners; a box without thickness is one sheet: remove one of them"
+    )]
+    Repeated {
+        /// The first of them.
+        first: usize,
+        /// The second.
+        second: usize,
+    },
+    /// A vertex lies within an edge of another triangle.
+    #[error(
+        "vertex {vertex} lies within an open edge of triangle {triangle}, where no current could cross; split that triangle at the vertex"
+    )]
+    TJunction {
+        /// The vertex.
+        vertex: usize,
+        /// The triangle with the edge.
+        triangle: usize,
+    },
+    /// Two vertices are at the same place.
+    #[error(
+        "vertices {first} and {second} are at the same place, so that no current crosses there; join them (`Surface::welded`)"
+    )]
+    DuplicateVertices {
+        /// The first of them.
+        first: usize,
+        /// The second.
+        second: usize,
+    },
+    /// No edge has two triangles.
+    #[error("no edge of the surface joins two triangles, so that no current can flow; mesh it finer")]
+    NoInnerEdge,
+    /// An equation for closed bodies meets an open surface.
+    #[error(
+        "{equation} is made for closed bodies, but edge {edge} of triangle {triangle} is open; close the surface or use the electric field equation"
+    )]
+    NotClosed {
+        /// The equation.
+        equation: &'static str,
+        /// The open edge.
+        edge: usize,
+        /// The triangle it bounds.
+        triangle: usize,
+    },
+    /// An equation for closed bodies meets a junction of several surfaces.
+    #[error(
+        "{equation} is made for bodies with an inside and an outside, but {triangles} triangles meet at edge {edge}; use the electric field equation"
+    )]
+    Junction {
+        /// The equation.
+        equation: &'static str,
+        /// The edge.
+        edge: usize,
+        /// Triangles that meet there.
+        triangles: usize,
+    },
+    /// Neighbours do not agree on which side is outside.
+    #[error(
+        "triangles {first} and {second} are neighbours, but their normals are on different sides of the surface; turn one over (`Surface::oriented`)"
+    )]
+    Orientation {
+        /// A triangle.
+        first: usize,
+        /// Its neighbour.
+        second: usize,
+    },
+    /// The normals of a closed body point into it.
+    #[error(
+        "the normals of the closed body with triangle {triangle} point inwards; turn it over (`Surface::oriented`)"
+    )]
+    InsideOut {
+        /// The first triangle of the body.
+        triangle: usize,
+    },
+    /// Triangles are too large for the wave.
+    #[error(
+        "edge {edge} is {length} m long, which is more than a third of the wavelength of {wavelength} m; mesh finer, λ/10 is usual"
+    )]
+    Coarse {
+        /// The edge.
+        edge: usize,
+        /// Its length, m.
+        length: f64,
+        /// The shortest wavelength on either side, m.
+        wavelength: f64,
+    },
+    /// A number that sets up the problem is out of its range.
+    #[error("{what} is {value}, but must be {expected}")]
+    Parameter {
+        /// What the number is.
+        what: &'static str,
+        /// What was given.
+        value: f64,
+        /// What it may be.
+        expected: &'static str,
+    },
+    /// A point lies on the surface, where the field jumps.
+    #[error(
+        "point {point} of the receivers lies on triangle {triangle}, where the field jumps; move it off the surface"
+    )]
+    OnSurface {
+        /// The point.
+        point: usize,
+        /// The triangle.
+        triangle: usize,
+    },
+    /// A source or a wave cannot be set up.
+    #[error(transparent)]
+    Wave(#[from] WaveError),
+    /// A matrix cannot be built.
+    #[error(transparent)]
+    Linop(#[from] LinopError),
+}

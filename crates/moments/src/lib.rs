@@ -1,0 +1,29 @@
+//! Exact waves by the method of moments: Galerkin boundary elements for Maxwell's equations on triangle surfaces.
+//!
+//! Time factor e^{+jωt}, outgoing waves G = e^{−jkR}/(4πR), SI units, peak phasors. The unknown surface currents are
+//! sums of Rao–Wilton–Glisson functions; the equations are tested with the same functions and integrated to a stated
+//! tolerance.
+
+mod basis;
+mod currents;
+mod dielectric;
+mod equation;
+mod error;
+mod kernel;
+pub mod meshing;
+mod operator;
+mod pairs;
+mod rules;
+mod set;
+mod surface;
+mod topology;
+
+pub use basis::{Basis, Function, Half};
+pub use currents::Currents;
+pub use dielectric::Dielectric;
+pub use equation::{Conductor, Equation};
+pub use error::MomentsError;
+pub use operator::Operator;
+pub use set::Set;
+pub use surface::Surface;
+pub use topology::{Component, Edge, Report, Side, TJunction, Topology};

@@ -1,0 +1,139 @@
+//! The triangles of some functions, ready for the kernel: eight together, neighbours in one eight.
+
+use crate::Basis;
+use crate::kernel::{Eight, Eights, WIDTH};
+use crate::rules::{CLASSES, Rule};
+use fredholm_mesh::Vec3;
+use std::sync::OnceLock;
+
+/// A triangle with its circumscribed circle around the centroid.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shape {
+    pub(crate) centre: Vec3,
+    pub(crate) normal: Vec3,
+    /// Relative to the centre, m.
+    pub(crate) corners: [Vec3; 3],
+    /// As they were given, m.
+    pub(crate) places: [Vec3; 3],
+    pub(crate) radius: f64,
+}
+
+impl Shape {
+    pub(crate) fn new(places: [Vec3; 3]) -> Self {
+        let corners = places;
+        let centre = (corners[0] + corners[1] + corners[2]) / 3.0;
+        let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
+        let corners = corners.map(|corner| corner - centre);
+        let radius = corners.iter().map(|corner| corner.length()).fold(0.0, f64::max);
+        Self { centre, normal, corners, places, radius }
+    }
+
+    /// The corners relative to another point, m.
+    pub(crate) fn seen_from(&self, p: Vec3) -> [Vec3; 3] {
+        self.places.map(|corner| corner - p)
+    }
+
+    /// The point with these weights of corners 1 and 2, relative to the centre.
+    pub(crate) fn point(&self, [u, v]: [f64; 2]) -> Vec3 {
+        let [a, b, c] = self.corners;
+        a + u * (b - a) + v * (c - a)
+    }
+}
+
+/// A half function of a set: its corner, which of the functions of the set it belongs to, and its weight.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Entry {
+    pub(crate) corner: usize,
+    pub(crate) at: usize,
+    pub(crate) weight: f64,
+}
+
+/// Some functions of a basis, prepared for filling blocks of a matrix.
+#[derive(Debug)]
+pub struct Set {
+    pub(crate) len: usize,
+    /// Triangles in the order of their ranks.
+    pub(crate) triangles: Vec<u32>,
+    pub(crate) shapes: Vec<Shape>,
+    pub(crate) eights: Vec<Eights>,
+    /// Centres and radii once more, one array each.
+    pub(crate) spheres: [Vec<f64>; 4],
+    entries: Vec<Entry>,
+    starts: Vec<usize>,
+    points: [OnceLock<Vec<[Eight; 3]>>; CLASSES],
+}
+
+impl Set {
+    /// Prepares some functions.
+    pub(crate) fn new(basis: &Basis, functions: impl Iterator<Item = usize>) -> Self {
+        let mut halves: Vec<(u32, u32, Entry)> = Vec::new();
+        let mut len = 0;
+        for function in functions {
+            for half in basis.functions()[function].halves {
+                let entry = Entry { corner: half.corner.into(), at: len, weight: half.weight };
+                halves.push((basis.rank(half.triangle), half.triangle, entry));
+            }
+            len += 1;
+        }
+        halves.sort_by_key(|&(rank, _, entry)| (rank, entry.at));
+        let (mut triangles, mut starts) = (Vec::new(), Vec::new());
+        for (place, &(_, triangle, _)) in halves.iter().enumerate() {
+            if triangles.last() != Some(&triangle) {
+                triangles.push(triangle);
+                starts.push(place);
+            }
+        }
+        starts.push(halves.len());
+        let shapes: Vec<Shape> =
+            triangles.iter().map(|&t| Shape::new(basis.surface().corners(t as usize))).collect();
+        let coordinate = |axis: usize| shapes.iter().map(|shape| shape.centre[axis]).collect();
+        let radii = shapes.iter().map(|shape| shape.radius).collect();
+        Self {
+            len,
+            eights: eights(&shapes),
+            spheres: [coordinate(0), coordinate(1), coordinate(2), radii],
+            entries: halves.into_iter().map(|(_, _, entry)| entry).collect(),
+            triangles,
+            shapes,
+            starts,
+            points: Default::default(),
+        }
+    }
+
+    /// The half functions on a triangle.
+    pub(crate) fn entries(&self, triangle: usize) -> &[Entry] {
+        &self.entries[self.starts[triangle]..self.starts[triangle + 1]]
+    }
+
+    /// The points of a rule on eight triangles.
+    pub(crate) fn points(&self, rule: &Rule, class: usize, eight: usize) -> &[[Eight; 3]] {
+        let all = self.points[class].get_or_init(|| self.place(rule));
+        &all[eight * rule.points.len()..(eight + 1) * rule.points.len()]
+    }
+
+    fn place(&self, rule: &Rule) -> Vec<[Eight; 3]> {
+        let mut all = vec![[[0.0; WIDTH]; 3]; self.eights.len() * rule.points.len()];
+        for lane in 0..self.eights.len() * WIDTH {
+            let shape = &self.shapes[lane.min(self.shapes.len() - 1)];
+            let first = lane / WIDTH * rule.points.len();
+            for (place, &uv) in all[first..].iter_mut().zip(&rule.points) {
+                let p = shape.point(uv);
+                (0..3).for_each(|axis| place[axis][lane % WIDTH] = p[axis]);
+            }
+        }
+        all
+    }
+}
+
+/// Triangles in eights; the last is repeated.
+fn eights(shapes: &[Shape]) -> Vec<Eights> {
+    let pack = |chunk: &[Shape]| {
+        let mut eights = Eights::default();
+        for lane in 0..WIDTH {
+            let shape = chunk[lane.min(chunk.len() - 1)];
+            eights.set(lane, shape.centre, shape.normal, shape.corners);
+        }
+        eights
+    };
+    shapes.chunks(WIDTH).map(pack).collect()
+}
