@@ -41,8 +41,11 @@ impl LinearOperator<f64> for Love {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
+    // The rule is one of [0, 1].
     let rule = gauss_legendre(24);
-    let love = Love { points: rule.points, weights: rule.weights };
+    let points = rule.points.iter().map(|t| 2.0 * t - 1.0).collect();
+    let weights = rule.weights.iter().map(|weight| 2.0 * weight).collect();
+    let love = Love { points, weights };
     let one = MultiVector::from_fn(love.dim(), 1, |_, _| 1.0);
     let system = SecondKind::new(&love, one.clone())?;
     let stop = Stop { tolerance: 1e-12, max_iterations: 200 };
@@ -52,9 +55,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         if report.reason != StopReason::Converged {
             return Err(format!("{} did not converge", entry.solver.name()).into());
         }
-        // Half the integral of x is the capacitance over that without fringes.
         let mean: f64 = love.weights.iter().enumerate().map(|(i, w)| 0.5 * w * x.row(i)[0]).sum();
-        println!("{:>14}: mean {mean:.12}, {} iterations", entry.solver.name(), report.history.len());
+        let iterations = report.history.last().map_or(0, |record| record.iteration);
+        println!("{:>14}: mean {mean:.12}, {iterations} iterations", entry.solver.name());
     }
     Ok(())
 }
