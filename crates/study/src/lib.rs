@@ -13,7 +13,7 @@
 //! | the fields of a scene of waves | [`waves`], [`compare_waves`] |
 //! | estimates by random paths | [`trace`] |
 //! | whether a solution and random paths agree | [`crosscheck`] |
-//! | reference values for other programs | [`reference`] |
+//! | reference values for other programs | [`reference()`] |
 //!
 //! Options are structs with defaults: what is not asked for is as the scene says, else as usual.
 //! Every function takes one [`Watch`], which is told of progress and can cancel the run; [`Quiet`]

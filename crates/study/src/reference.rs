@@ -24,7 +24,7 @@ const ERROR: f64 = 0.002;
 /// what is compared.
 const FORM_FACTORS: f64 = 1e-5;
 
-/// What is asked of [`reference`].
+/// What is asked of [`reference()`].
 #[derive(Clone, Debug, Default)]
 pub struct ReferenceOptions {
     /// How paths are made.
