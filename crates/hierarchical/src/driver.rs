@@ -35,6 +35,10 @@ const LEAP: f64 = 0.35;
 const ROUNDS: usize = 24;
 /// Residual of a solution, over the accuracy, that is small beside it.
 pub const RESIDUAL: f64 = 1e-3;
+/// Share of the accuracy that the residual of the solver may cost.
+const UNSOLVED: f64 = 0.05;
+/// No residual less than this is asked for: rounding would keep it from being met.
+const LEAST_RESIDUAL: f64 = 1e-13;
 /// Tolerance of exchanges, over the accuracy.
 const EXCHANGE: f64 = 0.1;
 /// Least area of an element, over that of the scene.
@@ -455,7 +459,7 @@ impl Run<'_> {
             Some(before) => inherited(&state.tree, &system.operator, &before.radiosity),
             None => system.radiosity.exitance().clone(),
         };
-        let stop = Stop { tolerance: self.options.residual, max_iterations: self.options.max_iterations };
+        let stop = Stop { tolerance: self.residual(), max_iterations: self.options.max_iterations };
         let mut report = self.solved(&system, system.radiosity.exitance(), &mut x, stop)?;
         let faces = self.faces(state, &system, &x);
         let (error, change);
@@ -501,6 +505,15 @@ impl Run<'_> {
             bands: self.problem.surfaces.exitance.lanes(),
             watch: self.watch,
         }
+    }
+
+    /// The residual to solve to: what is asked for, or less where reflection may amplify that to more than
+    /// [`UNSOLVED`] of the accuracy.
+    fn residual(&self) -> f64 {
+        let reflectances = self.problem.surfaces.reflectance.as_slice();
+        let absorbed = 1.0 - reflectances.iter().copied().fold(0.0, f64::max);
+        let bearable = (UNSOLVED * self.options.accuracy * absorbed).max(LEAST_RESIDUAL);
+        self.options.residual.min(bearable)
     }
 
     /// Solves from `x` on; a solver that the system does not suit is replaced for good.

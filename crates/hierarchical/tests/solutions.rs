@@ -64,6 +64,20 @@ fn what_is_emitted_is_absorbed_at_every_accuracy() {
     }
 }
 
+/// What the solver leaves is multiplied by 1/(1 − ρ): it has to leave less where that is much.
+#[test]
+fn nearly_white_rooms_reach_their_accuracy() {
+    for reflectance in [0.999, 0.9999] {
+        let bench = Bench::text(&room(reflectance));
+        let solution = bench.solve(0.05);
+        let energy = solution.system.energy(&solution.radiosity, &solution.means, &solution.closure)[0];
+        let balance = (energy.absorbed / energy.emitted - 1.0).abs();
+        let stated = solution.error.unwrap().worst();
+        println!("ρ = {reflectance}: balance {balance:.2e}, stated {stated:.2e}, {:?}", solution.rounds);
+        assert!(stated <= 0.05 && balance <= stated, "{reflectance}: {balance:e} {stated:e}");
+    }
+}
+
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
     let bench = Bench::shipped("occluder.toml");
