@@ -95,6 +95,18 @@ impl Problem {
         self.options.discretisation == RADIOSITY
     }
 
+    /// Refuses another system, for a study that works on the matrix of form factors.
+    pub(crate) fn require_radiosity(&self, study: &str) -> Result<(), Error> {
+        if self.is_radiosity() {
+            return Ok(());
+        }
+        let text = format!(
+            "{study} works on the matrix of form factors, which is {RADIOSITY}; the scene asks for {}",
+            self.options.discretisation
+        );
+        Err(Error::new(ErrorKind::Input, text))
+    }
+
     /// What computes the form factors of the elements.
     pub(crate) fn integrator(&self) -> PairIntegrator<'_> {
         let tolerance = self.options.form_factor_tolerance;

@@ -13,7 +13,7 @@ use fredholm_coupling::kernel::lambert;
 use fredholm_mesh::{Patch, Vec3};
 
 /// Segments of a pair that are tested.
-pub(super) const TESTED: usize = 16;
+const TESTED: usize = 16;
 /// Standard errors by which a share is taken to be uncertain.
 const ERRORS: f64 = 1.7;
 /// Distances of the centroids over the sum of the diameters, and how many segments are drawn for each part of either

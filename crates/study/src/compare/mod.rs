@@ -13,7 +13,7 @@ use serde_json::json;
 
 use crate::error::{Error, ErrorKind};
 use crate::memory::{self, Plan};
-use crate::options::{Precision, ProblemOptions, RADIOSITY, SceneSource};
+use crate::options::{Precision, ProblemOptions, SceneSource};
 use crate::problem::Problem;
 use crate::registry;
 use crate::size::Bytes;
@@ -128,13 +128,7 @@ pub fn compare(
         plan.hold("the answers of the solvers", answers * n as u128 * scene.bands().len() as u128)
     };
     let problem = Problem::load(&source.into(), &asked.problem(), &more, &mut stages)?;
-    if !problem.is_radiosity() {
-        let text = format!(
-            "compare works on the matrix of form factors, which is {RADIOSITY}; the scene asks for {}",
-            problem.options.discretisation
-        );
-        return Err(Error::new(ErrorKind::Input, text));
-    }
+    problem.require_radiosity("compare")?;
     let record = match problem.options.storage {
         Precision::F64 => compared::<f64>(asked, &problem, &mut stages),
         Precision::F32 => compared::<f32>(asked, &problem, &mut stages),

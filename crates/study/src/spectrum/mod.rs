@@ -11,7 +11,7 @@ use fredholm_scene::Scene;
 
 use crate::error::{Error, ErrorKind};
 use crate::memory::Plan;
-use crate::options::{Precision, ProblemOptions, RADIOSITY, SceneSource};
+use crate::options::{Precision, ProblemOptions, SceneSource};
 use crate::prediction::of_threads;
 use crate::problem::Problem;
 use crate::registry;
@@ -74,13 +74,7 @@ pub fn spectrum(
         plan.hold("dense methods", spectrum_bytes(n).into()).aside(of_threads(thread_addresses()))
     };
     let problem = Problem::load(&source.into(), &asked.problem(), &dense, &mut stages)?;
-    if !problem.is_radiosity() {
-        let text = format!(
-            "spectrum works on the matrix of form factors, which is {RADIOSITY}; the scene asks for {}",
-            problem.options.discretisation
-        );
-        return Err(Error::new(ErrorKind::Input, text));
-    }
+    problem.require_radiosity("spectrum")?;
     let record = match problem.options.storage {
         Precision::F64 => analysed::<f64>(asked, &problem, &mut stages),
         Precision::F32 => analysed::<f32>(asked, &problem, &mut stages),
