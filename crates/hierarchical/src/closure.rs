@@ -8,9 +8,8 @@
 use crate::HierarchicalOperator;
 
 /// Steps at most.
-const STEPS: usize = 20;
-/// Change of the factors that is small enough where row sums must be 1, and where they only have bounds, to which what
-/// is left above is cut.
+const STEPS: usize = 40;
+/// Change of the factors that is small enough: least and most.
 const NEAR: [f64; 2] = [1e-5, 1e-3];
 /// A leaf whose links bring much too little lacks some of them: scaling does not stand in for those.
 const MOST: f64 = 1.25;
@@ -74,14 +73,16 @@ impl Wholes<'_> {
 }
 
 /// Scales an operator until its row sums are within their bounds, as far as that goes; none stays above. Every leaf has
-/// a factor of its own and shares another with the leaves of its input element; they take turns.
-pub(crate) fn balance(operator: &mut HierarchicalOperator, aims: &[Aim], wholes: &Wholes) {
+/// a factor of its own and shares another with the leaves of its input element; they take turns. They stop at relative
+/// changes of `tolerance`, or where row sums must be 1 at smaller ones: what is left above is cut, which loses power.
+pub(crate) fn balance(operator: &mut HierarchicalOperator, aims: &[Aim], wholes: &Wholes, tolerance: f64) {
     let (mut own, mut shared) = (vec![1.0; aims.len()], vec![1.0; wholes.aims.len()]);
     let products = |own: &[f64], shared: &[f64]| -> Vec<f64> {
         own.iter().zip(wholes.of_leaf).map(|(own, &whole)| own * shared[whole as usize]).collect()
     };
     operator.set_scale(own.clone());
-    let tolerance = NEAR[usize::from(aims.iter().all(|aim| aim.least <= 0.0))];
+    let exact = aims.iter().any(|aim| aim.least > 0.0);
+    let tolerance = if exact { NEAR[0] } else { tolerance.clamp(NEAR[0], NEAR[1]) };
     let together = wholes.aims.iter().any(Option::is_some);
     for _ in 0..STEPS {
         let mut done = true;

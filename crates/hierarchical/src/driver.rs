@@ -46,9 +46,18 @@ const LEAST: f64 = 1e-10;
 
 /// What row sums may exceed 1 by where it is not known whether something leaves: cutting off all that is above, and adding nothing to what is below, would lose power.
 const SLACK: f64 = 0.04;
+/// Relative change of the factors at which scaling ends, over the least slack: what is left to be cut is small beside it.
+const UNCUT: f64 = 0.05;
 /// Row sum up to which a leaf of a closed scene is not believed to lack links alone.
 const LEAST_ROW: f64 = 0.7;
 
+/// What links that are not divided may hide, over the share of the light that each may carry: found by trying nearly
+/// white rooms that lose light.
+const UNSEEN: f64 = 3.0;
+/// How often light is received in the mean, up to which changes from round to round tell enough.
+const OFTEN: f64 = 4.0;
+/// Standard errors from which on a difference between rays and links of the whole scene is taken for a fault of the links.
+const CLEAR: f64 = 2.0;
 /// Least part of the differences between rays and links that is worth taking for faults of the links.
 const LEAST_PART: f64 = 0.2;
 
@@ -364,28 +373,35 @@ impl Run<'_> {
     /// Scales the operator until its row sums hold: none above 1 by more than a tolerance, and 1 exactly in a closed scene. A row sum that is far too small there has another cause, such as a buried part that no
     /// grid saw, and is left as it is.
     fn close(&self, tree: &Tree, operator: &mut HierarchicalOperator, extents: &[Extent], roots: &[u32]) {
-        let aim = |((size, &root), row): ((&Extent, &u32), f64)| {
+        let slack = |root: u32| {
             let reflectances = self.problem.surfaces.reflectance.row(root as usize);
             let reflectance = reflectances.iter().copied().fold(0.0, f64::max);
+            // Half of what would make the system indefinite.
+            SLACK.min(0.5 * (1.0 / reflectance - 1.0))
+        };
+        let aim = |((size, &root), row): ((&Extent, &u32), f64)| {
             if self.opening.loses_nothing(root as usize) && row > LEAST_ROW * size.exposed {
                 Aim { least: size.exposed, most: size.exposed }
             } else {
-                // Half of what would make the system indefinite.
-                let slack = SLACK.min(0.5 * (1.0 / reflectance - 1.0));
-                Aim { least: 0.0, most: (1.0 + slack) * size.exposed }
+                Aim { least: 0.0, most: (1.0 + slack(root)) * size.exposed }
             }
         };
         let rows = operator.row_sums();
-        let wholes = Wholes { of_leaf: roots, aims: self.whole_rows(tree, &rows, roots) };
-        let aims: Vec<Aim> = extents.iter().zip(roots).zip(rows).map(aim).collect();
-        balance(operator, &aims, &wholes);
+        let aims: Vec<Aim> = extents.iter().zip(roots).zip(rows.iter().copied()).map(aim).collect();
+        let kept = kept_rows(&aims, &rows, roots, tree.roots().len());
+        let told = self.whole_rows(tree, &rows, roots);
+        let wholes = told.into_iter().zip(kept).map(|(told, kept)| told.or(kept)).collect();
+        let least = (0..tree.roots().len() as u32).map(slack).fold(SLACK, f64::min);
+        balance(operator, &aims, &Wholes { of_leaf: roots, aims: wholes }, UNCUT * least);
     }
 
     /// What the leaves of each input element should receive together, m², where something is lost.
     ///
     /// Rays say it without a systematic error, but with a standard error σ; links have none of chance. How far both
-    /// differ on all elements, D² in the mean, tells which to believe: of every difference the part 1 − σ²/D² is taken to
-    /// be a fault of the links (W. James, C. Stein, Proc. 4th Berkeley Symp. 1, 361–379, 1961). Fine links stay as they are.
+    /// differ tells which to believe: of a difference D the part 1 − σ²/D² is taken to be a fault of the links, first of
+    /// all that is lost together, then, with D² in the mean over all elements, of each element (W. James, C. Stein,
+    /// Proc. 4th Berkeley Symp. 1, 361–379, 1961; shrinking to a common mean: B. Efron, C. Morris, J. Am. Stat. Assoc.
+    /// 68, 117–130, 1973). Fine links stay as they are.
     fn whole_rows(&self, tree: &Tree, rows: &[f64], roots: &[u32]) -> Vec<Option<Aim>> {
         let mut sums = vec![0.0; tree.roots().len()];
         roots.iter().zip(rows).for_each(|(&root, row)| sums[root as usize] += row);
@@ -394,6 +410,10 @@ impl Run<'_> {
             let [row, error] = self.opening.row(element)?;
             Some([area(element) * row, area(element) * error])
         };
+        let together = lost_together(&sums, &area, &told);
+        let common = together.unwrap_or(0.0);
+        let sums: Vec<f64> =
+            sums.iter().enumerate().map(|(k, &sum)| sum + common * (area(k) - sum).abs()).collect();
         let (mut differences, mut errors) = (0.0, 0.0);
         for (element, &sum) in sums.iter().enumerate() {
             if let Some([row, error]) = told(element) {
@@ -402,10 +422,12 @@ impl Run<'_> {
             }
         }
         let part = if differences > errors { 1.0 - errors / differences } else { 0.0 };
+        let known = part > LEAST_PART;
+        let part = if known { part } else { 0.0 };
         let aim = |(element, &sum): (usize, &f64)| {
             // Linear functions may have left less than nothing.
             let row = (sum + part * (told(element)?[0] - sum)).max(0.0);
-            (part > LEAST_PART).then_some(Aim { least: row, most: row })
+            (known || together.is_some()).then_some(Aim { least: row, most: row })
         };
         sums.iter().enumerate().map(aim).collect()
     }
@@ -478,8 +500,12 @@ impl Run<'_> {
         } else {
             (error, change) = self.change(state, &faces).unzip();
         }
-        let further: Vec<f64> =
-            self.unbalanced(&system, &x).iter().zip(self.unsolved(&report)).map(|(a, b)| a + b).collect();
+        let further: Vec<f64> = self
+            .unbalanced(state, &system, &x)
+            .iter()
+            .zip(self.unsolved(&report))
+            .map(|(a, b)| a + b)
+            .collect();
         let known = if refined.changed { error.map(|error| error.with(&further)) } else { None };
         state.error = match (known, state.error.take()) {
             // Memory may have ended the round early: it mends a part only of what the last one stated.
@@ -590,31 +616,54 @@ impl Run<'_> {
         Some((Stated { relative_l2: changes.into_iter().map(believed).collect(), largest }, worst))
     }
 
-    /// The power that row sums lose or gain against what rays say, beyond twice the standard error of the rays, over the power that is absorbed, of each band.
-    fn unbalanced(&self, system: &System, x: &MultiVector<f64>) -> Vec<f64> {
+    /// The power that row sums lose or gain against what rays say, beyond twice the standard error of the rays, over the power that is absorbed or leaves, of each band.
+    ///
+    /// Rays tell of whole input elements only: within one, darker parts may lose more than brighter ones. So sums over
+    /// input elements are compared, each with its mean radiosity. Coarse links do not see such parts, and two rounds
+    /// that are too coarse may agree: as long as links that are not divided may carry a share of the light, the stated
+    /// error holds that share times the reflections that repeat it.
+    fn unbalanced(&self, state: &State, system: &System, x: &MultiVector<f64>) -> Vec<f64> {
         let System { operator, radiosity, roots, .. } = system;
         let (rows, means) = (operator.row_sums(), radiosity.means(operator, x));
-        let lanes = x.lanes();
-        let (mut lost, mut absorbed) = (vec![0.0; lanes], vec![0.0; lanes]);
-        // The rays of one element say the same of all of its leaves, so their errors add up.
-        let mut unsure = MultiVector::<f64>::zeros(self.problem.mesh.len(), lanes);
+        let (lanes, inputs) = (x.lanes(), self.problem.mesh.len());
+        let (mut gone, mut received) = (vec![0.0; lanes], vec![0.0; lanes]);
+        // Of each input element: exposed area, row sum, and exposed area times radiosity.
+        let mut wholes = vec![[0.0; 2]; inputs];
+        let mut sent = MultiVector::<f64>::zeros(inputs, lanes);
         for (i, size) in radiosity.elements().iter().enumerate() {
             let root = roots[i] as usize;
-            let [open, variance] = self.opening.lost(root);
-            let missing = size.exposed * (1.0 - open) - rows[i];
-            for band in 0..lanes {
+            wholes[root][0] += size.exposed;
+            wholes[root][1] += rows[i];
+            for (band, (gone, received)) in gone.iter_mut().zip(&mut received).enumerate() {
                 let b = x.row(i)[band];
-                lost[band] += b * missing;
-                unsure.row_mut(root)[band] += b * size.exposed * variance.sqrt();
+                sent.row_mut(root)[band] += b * size.exposed;
                 let reflected = self.problem.surfaces.reflectance.row(root)[band];
-                absorbed[band] += size.area * (1.0 - reflected) * means.irradiance.row(i)[band];
+                let power = size.area * means.irradiance.row(i)[band];
+                let absorbed = (1.0 - reflected) * power;
+                *received += power;
+                *gone += absorbed + b * (size.exposed - rows[i]);
             }
         }
-        let share = |((lost, unsure), absorbed): ((&f64, f64), &f64)| match *absorbed {
-            absorbed if absorbed > 0.0 => (lost.abs() - 2.0 * unsure).max(0.0) / absorbed,
+        let mut lost = vec![0.0; lanes];
+        // The rays of one element say the same of all of its leaves, so their errors add up.
+        let mut unsure = sent;
+        for (root, [exposed, row]) in wholes.into_iter().enumerate() {
+            let [open, variance] = self.opening.lost(root);
+            let missing = if exposed > 0.0 { 1.0 - open - row / exposed } else { 0.0 };
+            for (sent, lost) in unsure.row_mut(root).iter_mut().zip(&mut lost) {
+                *lost += *sent * missing;
+                *sent *= variance.sqrt();
+            }
+        }
+        let threshold = if self.opening.closed() { 0.0 } else { state.threshold };
+        let share = |(((lost, unsure), gone), received): (((&f64, f64), &f64), f64)| match *gone {
+            gone if gone > 0.0 => {
+                let unseen = (UNSEEN * threshold * (received / gone - OFTEN)).clamp(0.0, 1.0);
+                unseen + (lost.abs() - 2.0 * unsure).max(0.0) / gone
+            }
             _ => 0.0,
         };
-        lost.iter().zip(unsure.norms()).zip(&absorbed).map(share).collect()
+        lost.iter().zip(unsure.norms()).zip(&gone).zip(received).map(share).collect()
     }
 
     /// The error that the residual of the solver leaves at most, of each band: relative, times 1/(1 − ρ) of the
@@ -701,6 +750,43 @@ fn inherited(tree: &Tree, operator: &HierarchicalOperator, before: &MultiVector<
     };
     let leaves = operator.leaves();
     MultiVector::from_fn(leaves.len(), before.lanes(), |i, band| before.row(known(leaves[i]))[band])
+}
+
+/// The part of what the links lose that rays say is not lost, negative where they lose too little; none where both
+/// agree.
+fn lost_together(
+    sums: &[f64],
+    area: &impl Fn(usize) -> f64,
+    told: &impl Fn(usize) -> Option<[f64; 2]>,
+) -> Option<f64> {
+    let (mut difference, mut variance, mut lost) = (0.0, 0.0, 0.0);
+    for (element, &sum) in sums.iter().enumerate() {
+        let [row, error] = told(element)?;
+        difference += row - sum;
+        variance += error * error;
+        lost += (area(element) - sum).abs();
+    }
+    let clear = difference * difference > CLEAR * CLEAR * variance && lost > 0.0;
+    clear.then(|| difference * (1.0 - variance / (difference * difference)) / lost)
+}
+
+/// What the leaves of each input element receive together, m², where a leaf receives more than it may.
+///
+/// Errors of links make the row sums of some leaves too large and of others too small. To cut the large ones alone would
+/// lose power in the mean, and reflection multiplies a loss by 1/(1 − ρ): so their element keeps its sum.
+fn kept_rows(aims: &[Aim], rows: &[f64], roots: &[u32], elements: usize) -> Vec<Option<Aim>> {
+    let (mut sums, mut mosts, mut above) = (vec![0.0; elements], vec![0.0; elements], vec![false; elements]);
+    for ((aim, &row), &root) in aims.iter().zip(rows).zip(roots) {
+        let root = root as usize;
+        sums[root] += row;
+        mosts[root] += aim.most;
+        above[root] |= row > aim.most && aim.least < aim.most;
+    }
+    let kept = |((sum, most), above): ((f64, f64), bool)| {
+        let row = sum.min(most);
+        above.then_some(Aim { least: row, most: row })
+    };
+    sums.into_iter().zip(mosts).zip(above).map(kept).collect()
 }
 
 /// Exposed areas, m².

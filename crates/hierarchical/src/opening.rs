@@ -14,12 +14,13 @@ use std::f64::consts::TAU;
 const RAYS: [usize; 2] = [1 << 16, 1 << 20];
 /// Reflectance from which on that is so.
 const BRIGHT: f64 = 0.85;
-/// Rays of an element, one a point, that tell its row sum where the scene loses something.
-const SINGLE: u32 = 128;
+/// Rays of an element, one a point, that tell its row sum where the scene loses something: at least, and at most where
+/// there are few elements and much reflection.
+const SINGLE: [usize; 2] = [128, 16384];
 /// Rays from one point.
 const DIRECTIONS: usize = 8;
 /// Points of an element, at least and at most.
-const POINTS: [usize; 2] = [1, 128];
+const POINTS: [usize; 2] = [1, 4096];
 /// Share of all rays that may meet nothing lit where a scene still counts as closed: seams of rounded coordinates let some through.
 const SEAMS: f64 = 1e-3;
 /// Powers of the inverse root of x⁵ = x + 1.
@@ -42,8 +43,9 @@ pub(crate) struct Rays {
 pub(crate) struct Opening {
     rays: Vec<Rays>,
     closed: bool,
-    /// Of [`SINGLE`] rays from as many points of each element, buried ones included, those that met a lit side; empty
-    /// where the scene is closed.
+    /// Rays from as many points of each element, buried ones included.
+    single: usize,
+    /// Those of them that met a lit side; empty where the scene is closed.
     met: Vec<u32>,
 }
 
@@ -54,9 +56,12 @@ impl Opening {
         if first.closed {
             return first;
         }
-        let all = if reflectance < BRIGHT { first } else { Self::sent(patches, lit, RAYS[1]) };
-        let met = (0..patches.len()).into_par_iter().map(|k| met(k, patches, lit)).collect();
-        Self { met, ..all }
+        let bright = reflectance >= BRIGHT;
+        let all = if bright { Self::sent(patches, lit, RAYS[1]) } else { first };
+        let single =
+            if bright { (RAYS[1] / patches.len().max(1)).clamp(SINGLE[0], SINGLE[1]) } else { SINGLE[0] };
+        let met = (0..patches.len()).into_par_iter().map(|k| met(k, single, patches, lit)).collect();
+        Self { single, met, ..all }
     }
 
     fn sent(patches: &[&Patch], lit: &Occluders, rays: usize) -> Self {
@@ -67,7 +72,12 @@ impl Opening {
         let inside = || rays.iter().filter(|rays| rays.lost < rays.all);
         let sum = |of: fn(&Rays) -> u32| inside().map(|rays| u64::from(of(rays))).sum::<u64>() as f64;
         let closed = sum(|rays| rays.lost) <= SEAMS * sum(|rays| rays.all);
-        Self { rays, closed, met: Vec::new() }
+        Self { rays, closed, single: 0, met: Vec::new() }
+    }
+
+    /// Whether the scene loses nothing.
+    pub fn closed(&self) -> bool {
+        self.closed
     }
 
     /// Whether all that an element sends is known to arrive: in a scene that loses nothing, and by its own rays.
@@ -78,7 +88,8 @@ impl Opening {
     /// What the row sums over an element come to, over its area, and the standard error of that; none in a closed scene.
     pub fn row(&self, element: usize) -> Option<[f64; 2]> {
         let met = f64::from(*self.met.get(element)?);
-        let (count, likely) = (f64::from(SINGLE), (met + 1.0) / f64::from(SINGLE + 2));
+        let count = self.single as f64;
+        let likely = (met + 1.0) / (count + 2.0);
         Some([met / count, (likely * (1.0 - likely) / count).sqrt()])
     }
 
@@ -142,10 +153,10 @@ fn meets(from: Vec3, along: Vec3, patches: &[&Patch], lit: &Occluders) -> Meets 
     }
 }
 
-fn met(element: usize, patches: &[&Patch], lit: &Occluders) -> u32 {
+fn met(element: usize, rays: usize, patches: &[&Patch], lit: &Occluders) -> u32 {
     let directions = Directions::of(element, patches);
     let lit = |&k: &usize| meets(directions.point(k), directions.direction(k), patches, lit) == Meets::Lit;
-    (0..SINGLE as usize).filter(lit).count() as u32
+    (0..rays).filter(lit).count() as u32
 }
 
 fn send(element: usize, points: usize, patches: &[&Patch], lit: &Occluders) -> Rays {

@@ -78,6 +78,29 @@ fn nearly_white_rooms_reach_their_accuracy() {
     }
 }
 
+/// A nearly white room that loses light: a lamp below the ceiling has a black back, and a board sticks through a wall.
+/// What its row sums miss is multiplied by 15: links that lose one part in a hundred lose a seventh of the light.
+#[test]
+fn nearly_white_rooms_that_lose_light_reach_their_accuracy() {
+    let bench = Bench::text(
+        "[materials.wall]\nreflectance = 0.999\n[materials.lamp]\nreflectance = 0.9\nexitance = 1\n\
+         [[surface]]\nname = \"room\"\nmaterial = \"wall\"\n\
+         box = { min = [0, 0, 0], max = [4, 3, 3], inward = true }\n\
+         [[surface]]\nname = \"lamp\"\nmaterial = \"lamp\"\n\
+         quad = [[1.5, 1, 2.5], [1.5, 2, 2.5], [2.5, 2, 2.5], [2.5, 1, 2.5]]\n\
+         [[surface]]\nname = \"board\"\nmaterial = \"wall\"\n\
+         quad = [[3.2, 1, 0.4], [4.3, 1, 0.5], [4.3, 1.6, 0.6], [3.2, 1.6, 0.5]]\n",
+    );
+    let fine = bench.faces(&bench.solve(0.01));
+    for accuracy in [0.2, 0.1] {
+        let solution = bench.solve(accuracy);
+        let (links, stated) = (solution.links.len(), solution.error.as_ref().unwrap().worst());
+        let found = error(&bench, &bench.faces(&solution), &fine);
+        println!("{accuracy}: found {found:.2e}, stated {stated:.2e}, {links} links");
+        assert!(found <= stated && stated <= accuracy, "{found:e} {stated:e}");
+    }
+}
+
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
     let bench = Bench::shipped("occluder.toml");
