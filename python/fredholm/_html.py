@@ -14,10 +14,28 @@ Facts = Iterable[Tuple[str, str]]
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     """A table: the first column is text, the others are numbers."""
-    cells = lambda tag, row: "".join(f"<{tag}>{escape(str(cell))}</{tag}>" for cell in row)  # noqa: E731
-    body = "".join(f"<tr>{cells('td', row)}</tr>" for row in rows[:ROWS])
+    body = "".join(f"<tr>{_cells('td', row)}</tr>" for row in rows[:ROWS])
     more = f"<p>and {len(rows) - ROWS} more</p>" if len(rows) > ROWS else ""
-    return f"<table><thead><tr>{cells('th', head)}</tr></thead><tbody>{body}</tbody></table>{more}"
+    return f"<table><thead><tr>{_cells('th', head)}</tr></thead><tbody>{body}</tbody></table>{more}"
+
+
+class Page:
+    """A page for the browser, which notebooks show in a frame of its own."""
+
+    def __init__(self, html: str, height: int) -> None:
+        self.html, self.height = html, height
+
+    def _repr_html_(self) -> str:
+        """A frame that can run the scripts of the page, and reach nothing of the notebook."""
+        style = f"width:100%;height:{self.height}px;border:0"
+        return f'<iframe sandbox="allow-scripts" style="{style}" srcdoc="{escape(self.html)}"></iframe>'
+
+    def __repr__(self) -> str:
+        return f"<Page of {len(self.html)} characters>"
+
+
+def _cells(tag: str, row: Sequence[str]) -> str:
+    return "".join(f"<{tag}>{escape(str(cell))}</{tag}>" for cell in row)
 
 
 def panel(title: str, facts: Facts, more: str = "", picture: Optional[bytes] = None) -> str:

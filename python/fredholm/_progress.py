@@ -54,7 +54,9 @@ class _Bars:
     """A bar of tqdm for each stage that tells of progress."""
 
     def __init__(self, tqdm: Any) -> None:
-        self.tqdm, self.bar, self.stage = tqdm, None, ""
+        self.tqdm: Any = tqdm
+        self.bar: Any = None
+        self.stage = ""
 
     def __call__(self, event: str, stage: str, share: float, text: str) -> None:
         if event == "begin":

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import tempfile
 import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Callable, Dict, Iterator, List, Mapping, Optional, Tuple
@@ -234,6 +235,22 @@ class Solution:
             The folder. run.json is written last: where it stands, the folder is complete.
         """
         self._core.write(os.fspath(folder))
+
+    def page(self, height: int = 600) -> _html.Page:
+        """The page report.html, which notebooks show in a frame.
+
+        Parameters
+        ----------
+        height : int
+            Height of the frame in pixels.
+        """
+        with tempfile.TemporaryDirectory() as folder:
+            self.write(folder)
+            path = os.path.join(folder, "report.html")
+            if not os.path.exists(path):
+                raise wrong("the solution was asked for without its page", "solve with report=True")
+            with open(path, encoding="utf-8") as file:
+                return _html.Page(file.read(), height)
 
     def to_pandas(self) -> Any:
         """The faces as a ``pandas.DataFrame``: surface, centroid (m), area (m²), and for every band

@@ -97,7 +97,8 @@ class Monostatic:
     @property
     def cross_section(self) -> Floats:
         """Radar cross-sections 4π|S|², m²: ndarray, shape (n, 4)."""
-        return 4.0 * np.pi * np.abs(self.scattering) ** 2
+        section: Floats = 4.0 * np.pi * np.abs(self.scattering) ** 2
+        return section
 
 
 class WaveScene:
@@ -212,7 +213,8 @@ class Waves:
 
     def _names(self, places: Floats) -> Names:
         """Names of the receivers of some rows."""
-        return np.array(self.receivers, dtype=object)[places[:, 0].astype(int)]
+        names: Names = np.array(self.receivers, dtype=object)[places[:, 0].astype(int)]
+        return names
 
     @property
     def ended(self) -> str:

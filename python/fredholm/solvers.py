@@ -210,13 +210,18 @@ def _columns(values: NDArray[Any], dtype: Any) -> NDArray[Any]:
 
 
 def _scale(system: _System, b: NDArray[Any]) -> float:
-    """A power of two near the size of A, which the system is divided by."""
+    """A power of two, which the system is divided by: 1 where the size of A is near 1.
+
+    The solvers see A as I − K. Entries of A that are tiny would be lost in that, and huge ones would
+    leave nothing of the 1. Where nothing can be lost the system stays as it is, since schemes such as
+    neumann converge by the K that it has.
+    """
     if system.matrix is not None:
         size = float(np.abs(system.matrix).max(initial=0.0))
     else:
         vector = b[:, 0] if b.shape[1] and np.any(b[:, 0]) else np.ones(len(b), dtype=b.dtype)
         size = float(np.linalg.norm(system.multiply(vector)) / np.linalg.norm(vector))
-    if not (math.isfinite(size) and size > 0.0):
+    if not (math.isfinite(size) and size > 0.0) or 1 / 16 <= size <= 16:
         return 1.0
     return math.ldexp(1.0, max(-1000, min(1000, math.frexp(size)[1])))
 

@@ -1,5 +1,6 @@
 """The package as a whole: imports, stubs, examples, and the code of the documentation."""
 
+import json
 import pathlib
 import re
 import runpy
@@ -50,6 +51,16 @@ def test_the_code_of_the_page_runs(code: str, tmp_path: pathlib.Path, monkeypatc
     (tmp_path / "scenes").symlink_to(ROOT / "scenes")
     monkeypatch.chdir(tmp_path)
     exec(compile(code, str(PAGE), "exec"), {"__name__": "__main__"})
+
+
+@pytest.mark.filterwarnings("ignore::fredholm.FredholmWarning")
+def test_the_notebook_runs(tmp_path: pathlib.Path, monkeypatch: Any) -> None:
+    notebook = json.loads((ROOT / "examples" / "python" / "five_minutes.ipynb").read_text())
+    cells = ["".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "code"]
+    assert len(cells) >= 4 and not any(cell["outputs"] for cell in notebook["cells"] if "outputs" in cell)
+    (tmp_path / "scenes").symlink_to(ROOT / "scenes")
+    monkeypatch.chdir(tmp_path)
+    exec(compile("\n".join(cells), "notebook", "exec"), {"__name__": "__main__"})
 
 
 @pytest.mark.filterwarnings("ignore::fredholm.FredholmWarning")

@@ -75,6 +75,10 @@ def test_notebooks_show_escaped_tables() -> None:
     assert "data:image/png;base64," in html and "<details>" in html
     assert solution.picture(64).startswith(b"\x89PNG")
     assert "stated error" in repr(solution)
+    page = solution.page(height=300)._repr_html_()
+    assert page.startswith("<iframe") and "<script" not in page and "300px" in page
+    with pytest.raises(fredholm.InputError, match="without its page"):
+        fredholm.Scene.from_toml(FURNACE).solve(report=False).page()
 
 
 def test_to_pandas(furnace: fredholm.Solution) -> None:
