@@ -1,4 +1,5 @@
-"""The Cornell box to 1 %: `python examples/python/five_minutes.py`, from the folder of the repository."""
+"""The Cornell box to 1 %: `python examples/python/five_minutes.py`, from the folder of the
+repository."""
 
 from pathlib import Path
 

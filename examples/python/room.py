@@ -30,7 +30,8 @@ def main() -> None:
     for height in (1.6, 2.0, 2.4):
         solution: fredholm.Solution = room(height).solve(accuracy=0.02)
         floor = solution["floor"]
-        print(f"lamp at {height} m: {floor.irradiance[0]:.3f} ± {floor.error[0]:.3f} W/m² on the floor")
+        light, error = floor.irradiance[0], floor.error[0]
+        print(f"lamp at {height} m: {light:.3f} ± {error:.3f} W/m² on the floor")
 
 
 if __name__ == "__main__":

@@ -8,12 +8,12 @@ A scene of diffuse surfaces is loaded or built, solved to an accuracy, and looke
 >>> solution["floor"].irradiance
 array([...])
 
-Lengths are in metres, areas in m², irradiance, radiosity and exitance in W/m². Arrays have the bands
-of the light in their last axis. A face is lit on the side from which its corners run
+Lengths are in metres, areas in m², irradiance, radiosity and exitance in W/m². Arrays have the
+bands of the light in their last axis. A face is lit on the side from which its corners run
 counter-clockwise. Waves have the time factor exp(+jωt).
 
-Nothing but NumPy is needed. SciPy, pandas, xarray, PyVista and tqdm are used where they are installed
-and asked for.
+Nothing but NumPy is needed. SciPy, pandas, xarray, PyVista and tqdm are used where they are
+installed and asked for.
 """
 
 from . import solvers

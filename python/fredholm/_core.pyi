@@ -1,4 +1,5 @@
-"""The compiled part of the package. Its names are not meant for users: see the modules beside it."""
+"""The compiled part of the package. Its names are not meant for users: see the modules beside
+it."""
 
 from os import PathLike
 from typing import Any, Mapping, Optional, Sequence, Tuple, Union, final

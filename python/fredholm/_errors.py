@@ -49,7 +49,8 @@ class Interrupted(KeyboardInterrupt):
     Attributes
     ----------
     partial : object or None
-        What the study would have returned, with what it had found by then; none where it had nothing.
+        What the study would have returned, with what it had found by then; none where it had
+        nothing.
     """
 
     def __init__(self, partial: Optional[object] = None) -> None:
@@ -62,9 +63,7 @@ class FredholmWarning(UserWarning):
     """Something the user should know of a scene or a result."""
 
 
-_KINDS = {
-    kind.__name__: kind for kind in (InputError, NotConvergedError, ResourceError, FileError)
-}
+_KINDS = {kind.__name__: kind for kind in (InputError, NotConvergedError, ResourceError, FileError)}
 
 
 def made(

@@ -28,7 +28,8 @@ class Page:
     def _repr_html_(self) -> str:
         """A frame that can run the scripts of the page, and reach nothing of the notebook."""
         style = f"width:100%;height:{self.height}px;border:0"
-        return f'<iframe sandbox="allow-scripts" style="{style}" srcdoc="{escape(self.html)}"></iframe>'
+        page = escape(self.html)
+        return f'<iframe sandbox="allow-scripts" style="{style}" srcdoc="{page}"></iframe>'
 
     def __repr__(self) -> str:
         return f"<Page of {len(self.html)} characters>"
@@ -44,8 +45,9 @@ def panel(title: str, facts: Facts, more: str = "", picture: Optional[bytes] = N
     if picture is not None:
         data = base64.b64encode(picture).decode()
         image = f'<img alt="the light" style="max-width:320px" src="data:image/png;base64,{data}">'
+    left = "style='text-align:left'"
     rows = "".join(
-        f"<tr><th style='text-align:left'>{escape(label)}</th><td style='text-align:left'>{escape(text)}</td></tr>"
+        f"<tr><th {left}>{escape(label)}</th><td {left}>{escape(text)}</td></tr>"
         for label, text in facts
     )
     folded = f"<details><summary>Values</summary>{more}</details>" if more else ""

@@ -31,8 +31,8 @@ class Material:
     Parameters
     ----------
     reflectance : float, sequence of float, or mapping
-        Share of the arriving light that is reflected, from 0 to below 1: one number for all bands, a
-        list in the order of the bands, or numbers by the names of the bands.
+        Share of the arriving light that is reflected, from 0 to below 1: one number for all bands,
+        a list in the order of the bands, or numbers by the names of the bands.
     exitance : float, sequence of float, or mapping
         Power that the surface emits by itself, W/m²; its radiance is exitance/π.
     """
@@ -50,10 +50,10 @@ class Surface:
     name : str
         Its name; no two surfaces have the same.
     mesh : object
-        A pair (vertices, faces), or what trimesh, meshio or PyVista make: an object with ``vertices``
-        and ``faces``, with ``points`` and ``cells``, or with ``points`` and ``faces``. Vertices are
-        an array (n, 3), m. Faces are an array (m, 3) or (m, 4) of indices of vertices, or a list of
-        such lists of any length; they run counter-clockwise seen from the lit side.
+        A pair (vertices, faces), or what trimesh, meshio or PyVista make: an object with
+        ``vertices`` and ``faces``, with ``points`` and ``cells``, or with ``points`` and ``faces``.
+        Vertices are an array (n, 3), m. Faces are an array (m, 3) or (m, 4) of indices of vertices,
+        or a list of such lists of any length; they run counter-clockwise seen from the lit side.
     material : str
         Name of its material.
     two_sided : bool
@@ -61,7 +61,8 @@ class Surface:
     largest_edge : float, optional
         Faces are cut so that no edge is longer, m. Not at all where it is left out.
     elements_per_face : int, optional
-        Elements that every face is computed on, a square number. That of the scene where it is left out.
+        Elements that every face is computed on, a square number. That of the scene where it is left
+        out.
     """
 
     name: str
@@ -212,7 +213,8 @@ class Scene:
         return self._core.predicted[1]
 
     def save(self, folder: Path) -> str:
-        """Writes a scene that was built, and its meshes, for the command line; returns the scene file.
+        """Writes a scene that was built, and its meshes, for the command line; returns the scene
+        file.
 
         Parameters
         ----------
@@ -220,7 +222,9 @@ class Scene:
             The folder, made where it does not exist.
         """
         if self._text is None:
-            raise wrong(f"the scene is a file already: {self.path}", "copy that file and those it names")
+            raise wrong(
+                f"the scene is a file already: {self.path}", "copy that file and those it names"
+            )
         os.makedirs(folder, exist_ok=True)
         for name, data in self._files.items():
             _write(os.path.join(folder, name), data)
@@ -252,11 +256,11 @@ class Scene:
         Parameters
         ----------
         accuracy : float, optional
-            Relative error of the irradiance of the faces to reach, above 0 and below 1; the elements
-            are then chosen where they are needed. Left out: the elements of the scene.
+            Relative error of the irradiance of the faces to reach, above 0 and below 1; the
+            elements are then chosen where they are needed. Left out: the elements of the scene.
         goal : str or sequence of str
-            Surfaces whose mean irradiance is to have the accuracy; all else is only as exact as that
-            needs.
+            Surfaces whose mean irradiance is to have the accuracy; all else is only as exact as
+            that needs.
         solver, discretisation : str, optional
             Their names.
         tolerance : float, optional
@@ -268,15 +272,15 @@ class Scene:
         storage : {"f64", "f32"}, optional
             Number format of the stored matrix.
         final_gather, discontinuity, pictures, report : bool
-            What :meth:`Solution.write` makes: a picture whose pixels gather their light, elements cut
-            along the borders of shadows, pictures at all, and the page report.html.
+            What :meth:`Solution.write` makes: a picture whose pixels gather their light, elements
+            cut along the borders of shadows, pictures at all, and the page report.html.
         threads : int, optional
             Threads; one a core. Any number gives the same results.
         memory : int or str, optional
             Memory allowed, bytes or such as "4GiB"; most of what the machine has left.
         progress : bool or callable, optional
-            Whether progress is shown; where it is left out, on terminals and in notebooks. A callable
-            is told of it: (event, stage, share, text).
+            Whether progress is shown; where it is left out, on terminals and in notebooks. A
+            callable is told of it: (event, stage, share, text).
 
         Returns
         -------
@@ -399,7 +403,9 @@ def _write(path: str, data: bytes) -> None:
 def _toml(value: Any) -> str:
     """A value as scene files write it."""
     if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{_toml(key)} = {_toml(item)}" for key, item in value.items()) + " }"
+        return (
+            "{ " + ", ".join(f"{_toml(key)} = {_toml(item)}" for key, item in value.items()) + " }"
+        )
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007F")
     if isinstance(value, (bool, np.bool_)):
@@ -413,7 +419,11 @@ def _toml(value: Any) -> str:
 
 def _surface(surface: Surface, file: str) -> List[str]:
     """The lines of a surface."""
-    lines = ["[[surface]]", f"name = {_toml(surface.name)}", f"material = {_toml(surface.material)}"]
+    lines = [
+        "[[surface]]",
+        f"name = {_toml(surface.name)}",
+        f"material = {_toml(surface.material)}",
+    ]
     lines += [f"obj = {{ file = {_toml(file)} }}"]
     if surface.two_sided:
         lines += ["two_sided = true"]
@@ -441,7 +451,9 @@ def _mesh(surface: Surface) -> Tuple[NDArray[np.float64], Corners]:
     points, faces = _parts(name, mesh)
     vertices = np.asarray(points, dtype=np.float64)
     if vertices.ndim != 2 or vertices.shape[1] != 3:
-        raise wrong(f"the vertices of `{name}` have the shape {vertices.shape}", "give an array (n, 3), m")
+        raise wrong(
+            f"the vertices of `{name}` have the shape {vertices.shape}", "give an array (n, 3), m"
+        )
     if not np.isfinite(vertices).all():
         at = int(np.flatnonzero(~np.isfinite(vertices).all(axis=1))[0])
         raise wrong(f"vertex {at} of `{name}` is not a finite number", "remove or correct it")
@@ -476,7 +488,9 @@ def _listed(name: str, faces: Any) -> Corners:
     try:
         return [[_index(corner) for corner in face] for face in faces]
     except (TypeError, ValueError):
-        raise wrong(f"the faces of `{name}` are no lists of indices", "give (m, 3), or lists") from None
+        raise wrong(
+            f"the faces of `{name}` are no lists of indices", "give (m, 3), or lists"
+        ) from None
 
 
 def _index(corner: Any) -> int:

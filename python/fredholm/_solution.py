@@ -178,13 +178,14 @@ class Solution:
 
     @property
     def relative_error(self) -> Optional[float]:
-        """Stated relative error of the irradiance of the faces (L², an estimate), or of the goal, in
-        the worst band; None where it is not known."""
+        """Stated relative error of the irradiance of the faces (L², an estimate), or of the goal,
+        in the worst band; None where it is not known."""
         return self._core.relative_error
 
     @property
     def residual(self) -> Floats:
-        """Last relative residual ‖b − A x‖₂/‖b‖₂: ndarray, shape (bands,); NaN where there is none."""
+        """Last relative residual ‖b − A x‖₂/‖b‖₂: ndarray, shape (bands,); NaN where there is
+        none."""
         last = [band[-1] if band else None for band in self.record["history"]["residual"]]
         return np.array([np.nan if value is None else value for value in last])
 
@@ -196,7 +197,7 @@ class Solution:
 
     @property
     def ended(self) -> str:
-        """"done", "not converged" (the tolerance or the accuracy was missed), or "interrupted"."""
+        """ "done", "not converged" (the tolerance or the accuracy was missed), or "interrupted"."""
         return self._core.ended
 
     @property
@@ -269,7 +270,8 @@ class Solution:
         return pandas.DataFrame(columns).rename_axis("face")
 
     def to_xarray(self) -> Any:
-        """The elements as an ``xarray.Dataset`` over ``element`` and ``band``; no values are copied."""
+        """The elements as an ``xarray.Dataset`` over ``element`` and ``band``; no values are
+        copied."""
         import xarray
 
         over, one = ("element", "band"), ("element",)
@@ -287,8 +289,8 @@ class Solution:
         return xarray.Dataset(data, coords=coords, attrs=facts)
 
     def to_pyvista(self) -> Any:
-        """The elements as a ``pyvista.PolyData`` with irradiance and radiosity of every band (W/m²),
-        and the face and the surface of every cell."""
+        """The elements as a ``pyvista.PolyData`` with irradiance and radiosity of every band
+        (W/m²), and the face and the surface of every cell."""
         import pyvista
 
         corners, starts = self.polygons
@@ -305,12 +307,24 @@ class Solution:
         """Sizes and errors in words."""
         counts, error = self.counts, self.relative_error
         residual = np.nanmax(self.residual) if np.isfinite(self.residual).any() else np.nan
-        stated = "not known" if error is None else f"{100 * error:.2g} % (L² over the faces, an estimate)"
+        stated = (
+            "not known"
+            if error is None
+            else f"{100 * error:.2g} % (L² over the faces, an estimate)"
+        )
         facts = [
             ("ended", self.ended),
-            ("size", ", ".join(f"{counts[of]} {of}" for of in ("elements", "faces", "surfaces", "bands"))),
+            (
+                "size",
+                ", ".join(
+                    f"{counts[of]} {of}" for of in ("elements", "faces", "surfaces", "bands")
+                ),
+            ),
             ("stated error", stated),
-            ("residual", f"{residual:.1e} after {self.iterations} iterations of {self.record['solver']}"),
+            (
+                "residual",
+                f"{residual:.1e} after {self.iterations} iterations of {self.record['solver']}",
+            ),
         ]
         closure = self.record["closure"]["max"]
         if closure is not None:
@@ -325,7 +339,10 @@ class Solution:
 
     def _repr_html_(self) -> str:
         rows = [
-            (light.name, *(f"{value:.4g}" for value in (light.irradiance.mean(), light.error.mean())))
+            (
+                light.name,
+                *(f"{value:.4g}" for value in (light.irradiance.mean(), light.error.mean())),
+            )
             for light in self
         ]
         table = _html.table(("surface", "irradiance, W/m²", "stated error, W/m²"), rows)

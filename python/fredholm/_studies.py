@@ -5,7 +5,19 @@ from __future__ import annotations
 import csv
 import io
 import os
-from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional, Sequence, Tuple, Type, TypeVar, Union
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    Callable,
+    Dict,
+    List,
+    Optional,
+    Sequence,
+    Tuple,
+    Type,
+    TypeVar,
+    Union,
+)
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,7 +95,8 @@ class Study:
         shown = [
             (key.replace("_", " "), f"{value:.6g}" if isinstance(value, float) else str(value))
             for key, value in self.record.items()
-            if isinstance(value, (str, int, float)) and key not in ("format", "version", "scene_sha256")
+            if isinstance(value, (str, int, float))
+            and key not in ("format", "version", "scene_sha256")
         ]
         return [("ended", self.ended), *shown, *(("warning", text) for text in self.warnings)]
 
@@ -96,7 +109,9 @@ class Study:
         more = ""
         if tables:
             columns = self.table(tables[0])
-            more = _html.table(list(columns), list(zip(*(map(str, column) for column in columns.values()))))
+            more = _html.table(
+                list(columns), list(zip(*(map(str, column) for column in columns.values())))
+            )
         return _html.panel(type(self).__name__, self._facts(), more)
 
 
@@ -113,9 +128,10 @@ def _column(values: List[str]) -> NDArray[Any]:
 class Check(Study):
     """What the mesh of a scene is, and what its solution will take.
 
-    ``record`` has pieces, components, closed, diagonal (m) and findings of the mesh; elements, faces,
-    surfaces, occluders, unknowns, memory_bytes, seconds (of the form factors, from a sample) and
-    warnings of a solution, or refused, why it does not fit the memory. check.png shows the sides.
+    ``record`` has pieces, components, closed, diagonal (m) and findings of the mesh; elements,
+    faces, surfaces, occluders, unknowns, memory_bytes, seconds (of the form factors, from a sample)
+    and warnings of a solution, or refused, why it does not fit the memory. check.png shows the
+    sides.
     """
 
 
@@ -127,7 +143,11 @@ class Comparison(Study):
         """What became of each solver in each case, with ``solver``, ``outcome``, ``iterations``,
         ``seconds``, ``residual``, ``error`` and ``history``."""
         cases = self.record["cases"]
-        return [{"reflectance": case.get("reflectance"), **run} for case in cases for run in case["runs"]]
+        return [
+            {"reflectance": case.get("reflectance"), **run}
+            for case in cases
+            for run in case["runs"]
+        ]
 
 
 class Convergence(Study):
@@ -150,7 +170,8 @@ class Trace(Study):
 
 
 class Crosscheck(Study):
-    """A solution and random paths, place by place: ``ended`` is "agree", "disagree" or "undecided"."""
+    """A solution and random paths, place by place: ``ended`` is "agree", "disagree" or
+    "undecided"."""
 
     @property
     def agrees(self) -> bool:
@@ -184,7 +205,9 @@ def check(
     progress: Progress = None,
 ) -> Check:
     """See :class:`Check`; the arguments are those of :meth:`Scene.solve`."""
-    problem = _options.problem(threads, discretisation, solver, form_factor_tolerance, storage, memory)
+    problem = _options.problem(
+        threads, discretisation, solver, form_factor_tolerance, storage, memory
+    )
     how = _options.how(threads, progress)
     return _found(Check, lambda: _core.check(scene._core, problem, how))
 
@@ -203,8 +226,9 @@ def compare(
     memory: Memory = None,
     progress: Progress = None,
 ) -> Comparison:
-    """Runs ``solvers`` (names, such as "gmres:restart=20", or "all") to a residual of ``tolerance`` in
-    at most ``max_iterations``; ``sweep`` are largest reflectances to which all are scaled in turn."""
+    """Runs ``solvers`` (names, such as "gmres:restart=20", or "all") to a residual of ``tolerance``
+    in at most ``max_iterations``; ``sweep`` are largest reflectances to which all are scaled in
+    turn."""
     _options.stop(tolerance, max_iterations)
     asked = {
         "solvers": _options.texts(solvers),
@@ -235,12 +259,17 @@ def converge(
     memory: Memory = None,
     progress: Progress = None,
 ) -> Convergence:
-    """Solves on ``levels`` meshes: that of the scene, and each with 2 × 2 elements for one of the last."""
+    """Solves on ``levels`` meshes: that of the scene, and each with 2 × 2 elements for one of the
+    last."""
     if not 1 <= levels <= 20:
-        raise wrong(f"levels is {levels}", "ask for 3 levels or more, the fewest that show an order")
+        raise wrong(
+            f"levels is {levels}", "ask for 3 levels or more, the fewest that show an order"
+        )
     problem = _options.problem(threads, discretisation, solver, form_factor_tolerance, None, memory)
     stop, how = _options.stop(tolerance, max_iterations), _options.how(threads, progress)
-    return _found(Convergence, lambda: _core.converge(scene._core, (levels, report), problem, stop, how))
+    return _found(
+        Convergence, lambda: _core.converge(scene._core, (levels, report), problem, stop, how)
+    )
 
 
 def spectrum(
@@ -253,8 +282,8 @@ def spectrum(
     memory: Memory = None,
     progress: Progress = None,
 ) -> Spectrum:
-    """Analyses the matrix: by dense methods up to ``dense`` unknowns, beyond by so many ``steps`` of the
-    Lanczos process."""
+    """Analyses the matrix: by dense methods up to ``dense`` unknowns, beyond by so many ``steps``
+    of the Lanczos process."""
     problem = _options.problem(threads, None, None, form_factor_tolerance, None, memory)
     how = _options.how(threads, progress)
     return _found(Spectrum, lambda: _core.spectrum(scene._core, (dense, steps), problem, how))
@@ -297,7 +326,9 @@ def sampling(
         "correction": correction,
         "paths": {"seed": seed, "points": points, "batch": batch},
         "tracing": {"samples": samples, "seconds": seconds, "error": to},
-        "problem": _options.problem(threads, discretisation, solver, form_factor_tolerance, None, memory),
+        "problem": _options.problem(
+            threads, discretisation, solver, form_factor_tolerance, None, memory
+        ),
     }
 
 
@@ -305,9 +336,9 @@ def trace(scene: Any, method: str = "path", *, progress: Progress = None, **opti
     """Estimates the irradiance of the faces by random paths.
 
     ``method`` is path, light, bidirectional, walk-gathering or another one that the command line
-    lists. Tracing ends at the first of ``samples``, ``seconds`` and the standard error ``to`` (0.01).
-    ``seed``, ``points`` and ``batch`` say how paths are made, ``control`` whether the scene is solved
-    first and only sampled for the rest, ``spp`` how often each pixel is sampled.
+    lists. Tracing ends at the first of ``samples``, ``seconds`` and the standard error ``to``
+    (0.01). ``seed``, ``points`` and ``batch`` say how paths are made, ``control`` whether the scene
+    is solved first and only sampled for the rest, ``spp`` how often each pixel is sampled.
     """
     asked, how = sampling(method, **options), _options.how(options.get("threads"), progress)
     return _found(Trace, lambda: _core.trace(_source(scene), asked, how))
@@ -327,7 +358,8 @@ def crosscheck(
 
 
 def reference(scene: Scene, *, progress: Progress = None, **options: Any) -> Reference:
-    """Solves, and traces with the solution as control variate up to the standard error ``to`` (0.002)."""
+    """Solves, and traces with the solution as control variate up to the standard error ``to``
+    (0.002)."""
     asked, how = sampling(None, **options), _options.how(options.get("threads"), progress)
     paths, tracing, problem = asked["paths"], asked["tracing"], asked["problem"]
     return _found(Reference, lambda: _core.reference(scene._core, paths, tracing, problem, how))

@@ -39,7 +39,8 @@ def view_factors(
     memory: Memory = None,
     progress: Progress = None,
 ) -> ViewFactors:
-    """Computes the matrix of view factors of a scene or of a mesh file, whose faces are the patches.
+    """Computes the matrix of view factors of a scene or of a mesh file, whose faces are the
+    patches.
 
     Parameters
     ----------
@@ -132,8 +133,8 @@ class ViewFactors:
 
     @property
     def dense(self) -> Floats:
-        """F: ndarray, shape (rows, rows), dimensionless. Where all factors are kept it is the memory in
-        which they were computed, and cannot be written to; else a new array."""
+        """F: ndarray, shape (rows, rows), dimensionless. Where all factors are kept it is the
+        memory in which they were computed, and cannot be written to; else a new array."""
         whole = self._core.dense
         if whole is not None:
             return whole
@@ -149,7 +150,8 @@ class ViewFactors:
 
     @property
     def sparse(self) -> Any:
-        """F as a ``scipy.sparse.csr_array`` (``csr_matrix`` of old SciPy) of the factors that are kept."""
+        """F as a ``scipy.sparse.csr_array`` (``csr_matrix`` of old SciPy) of the factors that are
+        kept."""
         from scipy import sparse
 
         make = getattr(sparse, "csr_array", sparse.csr_matrix)
@@ -167,11 +169,13 @@ class ViewFactors:
 
     def __array__(self, dtype: Any = None, copy: Optional[bool] = None) -> Any:
         """F as NumPy asks for it."""
-        return np.array(self.dense, dtype=dtype, copy=True) if copy else np.asarray(self.dense, dtype)
+        return (
+            np.array(self.dense, dtype=dtype, copy=True) if copy else np.asarray(self.dense, dtype)
+        )
 
     def write(self, file: Path) -> None:
-        """Writes the matrix in the form of the ending of the name (.npz, .csv, .txt, .out or .vf), and a
-        picture, a plot and the record beside it.
+        """Writes the matrix in the form of the ending of the name (.npz, .csv, .txt, .out or .vf),
+        and a picture, a plot and the record beside it.
 
         Parameters
         ----------
@@ -198,7 +202,10 @@ class ViewFactors:
         facts = [
             ("rows", str(len(self.names))),
             ("stored", str(self.record["counts"]["stored"])),
-            ("stated error", f"{float(np.max(self.row_error, initial=0.0)):.1e} of a row at most, an estimate"),
+            (
+                "stated error",
+                f"{float(np.max(self.row_error, initial=0.0)):.1e} of a row at most, an estimate",
+            ),
         ]
         if closure is not None:
             facts.append(("closure", f"row sums differ from 1 by {closure:.1e} at most"))

@@ -113,7 +113,9 @@ class WaveScene:
     def __init__(self, path: Path) -> None:
         self.path = os.fspath(path)
         if not os.path.isfile(self.path):
-            error = FileError(f"{self.path}: there is no such file\n  help: correct the name of the file")
+            error = FileError(
+                f"{self.path}: there is no such file\n  help: correct the name of the file"
+            )
             error.file, error.help = self.path, "correct the name of the file"
             raise error
 
@@ -168,7 +170,8 @@ class WaveScene:
         return _studies.trace(self, method, **options)
 
     def crosscheck(self, method: Optional[str] = None, **options: Any) -> _studies.Crosscheck:
-        """Solves and samples, and decides whether the two agree; see :class:`fredholm.Crosscheck`."""
+        """Solves and samples, and decides whether the two agree; see
+        :class:`fredholm.Crosscheck`."""
         return _studies.crosscheck(self, method or "surface-sampling", **options)
 
     def __repr__(self) -> str:
@@ -218,7 +221,7 @@ class Waves:
 
     @property
     def ended(self) -> str:
-        """"done", or "not converged" where a residual asked for was missed."""
+        """ "done", or "not converged" where a residual asked for was missed."""
         return self._core.ended
 
     @property
@@ -232,11 +235,13 @@ class Waves:
         return str(self.record["method"])
 
     def write(self, folder: Path) -> None:
-        """Writes what the command line writes into a folder, which is made where it does not exist."""
+        """Writes what the command line writes into a folder, which is made where it does not
+        exist."""
         self._core.write(os.fspath(folder))
 
     def to_pandas(self) -> Any:
-        """The fields at points as a ``pandas.DataFrame``, or the far fields where there are no points."""
+        """The fields at points as a ``pandas.DataFrame``, or the far fields where there are no
+        points."""
         import pandas
 
         near, far = self.near, self.far
@@ -247,18 +252,29 @@ class Waves:
                 for at, name in enumerate(("ex", "ey", "ez", "hx", "hy", "hz")):
                     columns[f"{name}_{kind}"] = field[:, at]
             return pandas.DataFrame(columns)
-        columns = {"receiver": far.receiver, "frequency": far.frequency, "theta": far.theta, "phi": far.phi}
+        columns = {
+            "receiver": far.receiver,
+            "frequency": far.frequency,
+            "theta": far.theta,
+            "phi": far.phi,
+        }
         for at, name in enumerate(("theta", "phi")):
             columns[f"amplitude_{name}"] = far.amplitude[:, at]
             columns[f"cross_section_{name}"] = far.cross_section[:, at]
         return pandas.DataFrame(columns)
 
     def _facts(self) -> List[Tuple[str, str]]:
-        facts = [("ended", self.ended), ("method", self.method), ("shadows", str(self.record["shadow"]))]
+        facts = [
+            ("ended", self.ended),
+            ("method", self.method),
+            ("shadows", str(self.record["shadow"])),
+        ]
         for found in self.record["frequencies"]:
             last = found["residuals"][-1] if found["residuals"] else None
             residual = "" if last is None else f", residual {last:.1e}"
-            facts.append((f"{found['frequency_hz'] / 1e6:g} MHz", f"{found['facets']} facets{residual}"))
+            facts.append(
+                (f"{found['frequency_hz'] / 1e6:g} MHz", f"{found['facets']} facets{residual}")
+            )
         return facts
 
     def __repr__(self) -> str:

@@ -27,7 +27,8 @@ from ._options import Progress
 
 
 class Operator(Protocol):
-    """Anything that multiplies: a LinearOperator of SciPy, a Coupling, or an object of one's own."""
+    """Anything that multiplies: a LinearOperator of SciPy, a Coupling, or an object of one's
+    own."""
 
     @property
     def shape(self) -> Tuple[int, int]:
@@ -136,7 +137,9 @@ def solve(
     sides, start = _columns(b, system.dtype), _columns(start, system.dtype)
     scale = _scale(system, sides)
     asked = {
-        "solver": ":".join([name, *(f"{key.replace('_', '-')}={_text(value)}" for key, value in options.items())]),
+        "solver": ":".join(
+            [name, *(f"{key.replace('_', '-')}={_text(value)}" for key, value in options.items())]
+        ),
         "tolerance": float(tolerance),
         "max_iterations": int(max_iterations),
         "symmetry": _symmetry(system, symmetric),
@@ -212,9 +215,9 @@ def _columns(values: NDArray[Any], dtype: Any) -> NDArray[Any]:
 def _scale(system: _System, b: NDArray[Any]) -> float:
     """A power of two, which the system is divided by: 1 where the size of A is near 1.
 
-    The solvers see A as I − K. Entries of A that are tiny would be lost in that, and huge ones would
-    leave nothing of the 1. Where nothing can be lost the system stays as it is, since schemes such as
-    neumann converge by the K that it has.
+    The solvers see A as I − K. Entries of A that are tiny would be lost in that, and huge ones
+    would leave nothing of the 1. Where nothing can be lost the system stays as it is, since schemes
+    such as neumann converge by the K that it has.
     """
     if system.matrix is not None:
         size = float(np.abs(system.matrix).max(initial=0.0))

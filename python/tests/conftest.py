@@ -38,6 +38,5 @@ def program() -> str:
         pytest.skip("the command line is not built: cargo build, or set FREDHOLM_PROGRAM")
     return found
 
-
     """Nobody is told of progress."""
     return ()

@@ -19,9 +19,20 @@ EXAMPLES = sorted((ROOT / "examples" / "python").glob("*.py"))
 
 def test_nothing_but_numpy_is_imported() -> None:
     code = "import fredholm, sys; print(' '.join({name.split('.')[0] for name in sys.modules}))"
-    loaded = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout.split()
+    loaded = subprocess.run(
+        [sys.executable, "-c", code], check=True, capture_output=True, text=True
+    ).stdout.split()
     assert "numpy" in loaded
-    assert not {"scipy", "pandas", "xarray", "pyvista", "tqdm", "matplotlib", "trimesh", "meshio"} & set(loaded)
+    assert not {
+        "scipy",
+        "pandas",
+        "xarray",
+        "pyvista",
+        "tqdm",
+        "matplotlib",
+        "trimesh",
+        "meshio",
+    } & set(loaded)
 
 
 def test_every_public_name_is_documented() -> None:
@@ -39,7 +50,10 @@ def test_stubs_are_those_of_the_module() -> None:
 def blocks() -> List[Any]:
     """The code of the page: the blocks of one heading belong together."""
     parts = re.split(r"^## ", PAGE.read_text(), flags=re.MULTILINE)
-    code = [(part.splitlines()[0], re.findall(r"```python\n(.*?)```", part, re.DOTALL)) for part in parts]
+    code = [
+        (part.splitlines()[0], re.findall(r"```python\n(.*?)```", part, re.DOTALL))
+        for part in parts
+    ]
     return [pytest.param("\n".join(found), id=title) for title, found in code if found]
 
 
@@ -57,7 +71,9 @@ def test_the_code_of_the_page_runs(code: str, tmp_path: pathlib.Path, monkeypatc
 def test_the_notebook_runs(tmp_path: pathlib.Path, monkeypatch: Any) -> None:
     notebook = json.loads((ROOT / "examples" / "python" / "five_minutes.ipynb").read_text())
     cells = ["".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "code"]
-    assert len(cells) >= 4 and not any(cell["outputs"] for cell in notebook["cells"] if "outputs" in cell)
+    assert len(cells) >= 4 and not any(
+        cell["outputs"] for cell in notebook["cells"] if "outputs" in cell
+    )
     (tmp_path / "scenes").symlink_to(ROOT / "scenes")
     monkeypatch.chdir(tmp_path)
     exec(compile("\n".join(cells), "notebook", "exec"), {"__name__": "__main__"})

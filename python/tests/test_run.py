@@ -1,4 +1,5 @@
-"""Runs: the interpreter is free meanwhile, two go on at once, and Ctrl-C ends one within a second."""
+"""Runs: the interpreter is free meanwhile, two go on at once, and Ctrl-C ends one within a
+second."""
 
 import os
 import pathlib
@@ -27,7 +28,9 @@ def test_two_runs_overlap_and_python_goes_on() -> None:
         def listen(event: str, stage: str, share: float, text: str) -> None:
             told.append((number, time.monotonic()))
 
-        scene.solve(solver="jacobi", max_iterations=3000, tolerance=1e-15, threads=1, progress=listen)
+        scene.solve(
+            solver="jacobi", max_iterations=3000, tolerance=1e-15, threads=1, progress=listen
+        )
 
     ticks = 0
     with pytest.warns(fredholm.FredholmWarning, match="the tolerance was not met"):
@@ -44,7 +47,8 @@ def test_two_runs_overlap_and_python_goes_on() -> None:
 
 
 def interrupted(call: Any, stage: str) -> Tuple[float, Any]:
-    """Seconds from Ctrl-C, which is pressed once a stage makes progress, to the exception, and what it kept."""
+    """Seconds from Ctrl-C, which is pressed once a stage makes progress, to the exception, and what
+    it kept."""
     pressed: List[float] = []
 
     def press() -> None:
@@ -64,7 +68,9 @@ def interrupted(call: Any, stage: str) -> Tuple[float, Any]:
 @pytest.mark.filterwarnings("ignore::fredholm.FredholmWarning")
 def test_ctrl_c_keeps_the_iterate() -> None:
     scene = fredholm.Scene.from_toml(WHITE)
-    call = lambda listen: scene.solve(solver="jacobi", max_iterations=4_000_000_000, tolerance=1e-15, progress=listen)  # noqa: E731
+    call = lambda listen: scene.solve(
+        solver="jacobi", max_iterations=4_000_000_000, tolerance=1e-15, progress=listen
+    )  # noqa: E731
     seconds, partial = interrupted(call, "solution")
     assert seconds < 1.0
     assert isinstance(partial, fredholm.Solution) and partial.ended == "interrupted"
@@ -121,4 +127,6 @@ def test_progress_as_bars(capsys: Any) -> None:
 
 def test_the_number_of_threads_changes_no_bit() -> None:
     scene = fredholm.Scene.from_toml(FURNACE)
-    assert scene.solve(threads=1).irradiance.tobytes() == scene.solve(threads=3).irradiance.tobytes()
+    assert (
+        scene.solve(threads=1).irradiance.tobytes() == scene.solve(threads=3).irradiance.tobytes()
+    )

@@ -13,7 +13,9 @@ from fredholm import Material, Scene, Surface
 
 CUBE = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
 # The sides of the cube, lit within.
-SIDES = np.array([[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]])[:, ::-1]
+SIDES = np.array(
+    [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
+)[:, ::-1]
 GREY = {"grey": Material(0.5, 1.0)}
 
 
@@ -56,7 +58,10 @@ def test_real_meshes() -> None:
 def test_polygons_bands_and_two_sides() -> None:
     plate = ([[0, 0, 0], [2, 0, 0], [2, 1, 0], [1, 2, 0], [0, 1, 0]], [[0, 1, 2, 3, 4]])
     scene = Scene.build(
-        [Surface("plate", plate, "red", two_sided=True, largest_edge=0.5), Surface("cube", (4 * CUBE - 1, SIDES), "lamp")],
+        [
+            Surface("plate", plate, "red", two_sided=True, largest_edge=0.5),
+            Surface("cube", (4 * CUBE - 1, SIDES), "lamp"),
+        ],
         {"red": Material([0.5, 0.1]), "lamp": Material(0.0, {"r": 1.0, "g": 2.0})},
         bands=["r", "g"],
         title="A plate",
@@ -79,22 +84,64 @@ def test_a_built_scene_is_saved_for_the_command_line(tmp_path: pathlib.Path) -> 
 
 WRONG = [
     # What is called, the exception, its text, and the help.
-    (lambda: Scene.load("nowhere.toml"), fredholm.FileError, "cannot read the scene", "correct the name"),
+    (
+        lambda: Scene.load("nowhere.toml"),
+        fredholm.FileError,
+        "cannot read the scene",
+        "correct the name",
+    ),
     (lambda: built((CUBE, [[0, 1, 8]])), fredholm.InputError, "face 0 of `cube` is", "from 0 to 7"),
     (lambda: built((CUBE[:, :2], SIDES)), fredholm.InputError, "the shape (8, 2)", "(n, 3)"),
     (lambda: built(3), fredholm.InputError, "is a int", "(vertices, faces)"),
-    (lambda: Scene.from_toml(FURNACE).solve(accuracy=1.5), fredholm.InputError, "accuracy is 1.5", "below 1"),
-    (lambda: Scene.from_toml(FURNACE).solve(solver="gmrse"), fredholm.InputError, "'gmrse'", "gmres"),
-    (lambda: Scene.from_toml(FURNACE).solve(threads=0), fredholm.InputError, "threads is 0", "1 to 1024"),
-    (lambda: Scene.from_toml(FURNACE).solve(memory="2 bytes"), fredholm.InputError, "2 bytes", None),
-    (lambda: Scene.from_toml(FURNACE).solve(memory=1000), fredholm.ResourceError, "memory", "fewer elements"),
-    (lambda: Scene.from_toml(FURNACE).solve()["rom"], fredholm.InputError, "no surface 'rom'", "room"),
-    (lambda: fredholm.WaveScene("nowhere.toml"), fredholm.FileError, "no such file", "correct the name"),
+    (
+        lambda: Scene.from_toml(FURNACE).solve(accuracy=1.5),
+        fredholm.InputError,
+        "accuracy is 1.5",
+        "below 1",
+    ),
+    (
+        lambda: Scene.from_toml(FURNACE).solve(solver="gmrse"),
+        fredholm.InputError,
+        "'gmrse'",
+        "gmres",
+    ),
+    (
+        lambda: Scene.from_toml(FURNACE).solve(threads=0),
+        fredholm.InputError,
+        "threads is 0",
+        "1 to 1024",
+    ),
+    (
+        lambda: Scene.from_toml(FURNACE).solve(memory="2 bytes"),
+        fredholm.InputError,
+        "2 bytes",
+        None,
+    ),
+    (
+        lambda: Scene.from_toml(FURNACE).solve(memory=1000),
+        fredholm.ResourceError,
+        "memory",
+        "fewer elements",
+    ),
+    (
+        lambda: Scene.from_toml(FURNACE).solve()["rom"],
+        fredholm.InputError,
+        "no surface 'rom'",
+        "room",
+    ),
+    (
+        lambda: fredholm.WaveScene("nowhere.toml"),
+        fredholm.FileError,
+        "no such file",
+        "correct the name",
+    ),
 ]
 
 
 @pytest.mark.parametrize("call, kind, text, help", WRONG)
-def test_wrong_calls_say_what_is_wrong_and_what_helps(call: Any, kind: Any, text: str, help: Any) -> None:
+def test_wrong_calls_say_what_is_wrong_and_what_helps(
+    call: Any, kind: Any, text: str, help: Any
+) -> None:
     with pytest.raises(kind) as raised:
         call()
     assert text in str(raised.value)

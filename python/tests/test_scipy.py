@@ -1,4 +1,5 @@
-"""A day of a user of SciPy: sparse view factors, eigenvalues of a coupling, a solver on an operator."""
+"""A day of a user of SciPy: sparse view factors, eigenvalues of a coupling, a solver on an
+operator."""
 
 import pathlib
 

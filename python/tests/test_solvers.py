@@ -47,7 +47,9 @@ def test_the_size_of_a_system_does_not_matter(scale: float) -> None:
     matrix = scale * (SMALL + np.triu(0.01 * RNG.random((12, 12)), 1))
     for system in (matrix, Counted(matrix)):
         answer = solvers.gmres(system, RIGHT, tolerance=1e-12)
-        assert answer.converged and np.allclose(scale * answer.x, np.linalg.solve(matrix / scale, RIGHT), rtol=1e-9)
+        assert answer.converged and np.allclose(
+            scale * answer.x, np.linalg.solve(matrix / scale, RIGHT), rtol=1e-9
+        )
         residual = np.linalg.norm(RIGHT - matrix @ answer.x) / np.linalg.norm(RIGHT)
         assert residual < 1e-11
 

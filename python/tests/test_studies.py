@@ -101,7 +101,7 @@ def test_waves(scenes: pathlib.Path) -> None:
     solved = fredholm.WaveScene.load(scenes / "waves" / "plate.toml").solve()
     far = solved.far
     assert solved.converged and len(far.theta) == len(far.receiver) == len(far.amplitude)
-    # The plate seen squarely: 4πA²/λ² (Knott, Shaeffer and Tuley, Radar Cross Section, section 5.3).
+    # Seen squarely: 4πA²/λ² (Knott, Shaeffer and Tuley, Radar Cross Section, section 5.3).
     wavelength = 299_792_458.0 / far.frequency[0]
     expected = 4 * np.pi * 1.498_962_29**4 / wavelength**2
     assert np.isclose(np.nanmax(far.cross_section), expected, rtol=0.02)
@@ -116,7 +116,9 @@ def test_monostatic_cross_sections_are_those_of_the_amplitudes() -> None:
 
 
 def test_view_factors(scenes: pathlib.Path, tmp_path: pathlib.Path) -> None:
-    found = fredholm.Scene.from_toml(FURNACE).view_factors(rows="surface", points=[[0.5, 1, 1.5, 0, 0, 1]])
+    found = fredholm.Scene.from_toml(FURNACE).view_factors(
+        rows="surface", points=[[0.5, 1, 1.5, 0, 0, 1]]
+    )
     assert found.dense.shape == (1, 1) and np.isclose(found.dense[0, 0], 1.0, atol=1e-4)
     assert found.dense.ctypes.data == found._core.address()
     assert found.points is not None and np.isclose(found.points.sum(), 1.0)

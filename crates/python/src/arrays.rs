@@ -14,7 +14,8 @@ pub(crate) fn moved<T: Element>(
     numpy::PyArray1::from_vec(py, values).reshape([rows, columns])
 }
 
-/// An array, which cannot be written to, over numbers that `owner` holds: rows of `columns` numbers.
+/// An array, which cannot be written to, over numbers that `owner` holds: rows of `columns`
+/// numbers.
 ///
 /// `owner` must be immutable from Python, and must neither change nor move the numbers while it
 /// lives; the array keeps it alive.

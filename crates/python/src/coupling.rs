@@ -136,7 +136,8 @@ impl Coupling {
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let [rows, columns] = [x.shape()[0], x.shape()[1]];
         if rows != self.exchange.dim() {
-            let text = format!("the vector has {rows} entries, but the operator {} columns", self.exchange.dim());
+            let text =
+                format!("the vector has {rows} entries, but the operator {} columns", self.exchange.dim());
             return Err(input(py, text, None));
         }
         let values = x.as_array().iter().copied().collect();

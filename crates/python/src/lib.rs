@@ -1,9 +1,10 @@
 //! The module `fredholm._core`: every study of [`fredholm_study`] as a function of Python.
 //!
-//! What is here moves numbers and names between Python and the studies, and nothing else: the names,
-//! the documentation and the checks that users see are the Python sources in `python/fredholm`.
-//! Arrays that are made here are moved into NumPy and those of a result share its memory; none is
-//! copied. A study runs on threads of its own while the interpreter is free ([`run`]).
+//! What is here moves numbers and names between Python and the studies, and nothing else: the
+//! names, the documentation and the checks that users see are the Python sources in
+//! `python/fredholm`. Arrays that are made here are moved into NumPy and those of a result share
+//! its memory; none is copied. A study runs on threads of its own while the interpreter is free
+//! ([`run`]).
 
 mod arrays;
 mod coupling;

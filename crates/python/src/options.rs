@@ -67,7 +67,8 @@ pub(crate) fn points(py: Python<'_>, rows: &[[f64; 6]]) -> PyResult<GatherPoints
     let receiver = |&[x, y, z, nx, ny, nz]: &[f64; 6]| {
         let (point, normal) = (Vec3::new(x, y, z), Vec3::new(nx, ny, nz));
         let text = "a normal has no direction";
-        Receiver::new(point, normal).ok_or_else(|| input(py, text, Some("give normals of any length above 0")))
+        Receiver::new(point, normal)
+            .ok_or_else(|| input(py, text, Some("give normals of any length above 0")))
     };
     let points = rows.iter().map(receiver).collect::<PyResult<Vec<Receiver>>>()?;
     Ok(GatherPoints { points, grids: Vec::new() })

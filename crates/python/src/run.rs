@@ -1,4 +1,5 @@
-//! A study on threads of its own, while the thread that asked for it looks after signals and progress.
+//! A study on threads of its own, while the thread that asked for it looks after signals and
+//! progress.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,8 +16,8 @@ use crate::failure::{failure, internal, interrupted};
 
 /// Time between two looks for signals and progress.
 const LOOK: Duration = Duration::from_millis(40);
-/// Time from Ctrl-C to the end where there is nothing to save: the run is then left to end by itself
-/// at its next look.
+/// Time from Ctrl-C to the end where there is nothing to save: the run is then left to end by
+/// itself at its next look.
 const PATIENCE: Duration = Duration::from_millis(700);
 /// Time between two notes of progress.
 const PAUSE: Duration = Duration::from_millis(100);
@@ -114,7 +115,11 @@ impl Watch for Relay {
     }
 
     fn go_on(&self) -> ControlFlow<()> {
-        if self.cancelled.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        if self.cancelled.load(Ordering::Relaxed) {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
     }
 
     fn begin_saving(&self) -> ControlFlow<()> {
@@ -144,7 +149,8 @@ pub(crate) fn run<R: Send + 'static>(
         let _ = sender.send(result);
     };
     thread::Builder::new().name("fredholm".to_owned()).spawn(worker).map_err(internal)?;
-    let mut wait = Wait { relay: &relay, receiver: Mutex::new(receiver), progress: how.progress, stopped: None };
+    let mut wait =
+        Wait { relay: &relay, receiver: Mutex::new(receiver), progress: how.progress, stopped: None };
     match (wait.outcome(py)?, wait.stopped) {
         (Some(Ok(result)), None) => wrap(result),
         (Some(Err(error)), None) => Err(failure(py, &error)),

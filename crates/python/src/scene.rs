@@ -53,7 +53,8 @@ impl Scene {
 
     #[getter]
     fn materials(&self) -> Vec<Material> {
-        let material = |m: &fredholm_scene::Material| (m.name.clone(), m.reflectance.clone(), m.exitance.clone());
+        let material =
+            |m: &fredholm_scene::Material| (m.name.clone(), m.reflectance.clone(), m.exitance.clone());
         self.0.materials().iter().map(material).collect()
     }
 

@@ -152,7 +152,8 @@ impl Solved {
     #[getter]
     fn face_means<'py>(&self, py: Python<'py>) -> PyResult<[Array<'py, f64>; 2]> {
         let [irradiance, radiosity] = self.get().face_means().map_err(|error| failure(py, &error))?;
-        let array = |values: &fredholm_linop::MultiVector<f64>| moved(py, values.as_slice().to_vec(), values.lanes());
+        let array =
+            |values: &fredholm_linop::MultiVector<f64>| moved(py, values.as_slice().to_vec(), values.lanes());
         Ok([array(&irradiance)?, array(&radiosity)?])
     }
 

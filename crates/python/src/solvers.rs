@@ -42,8 +42,8 @@ pub(crate) struct Asked {
     scale: f64,
 }
 
-/// The answer, why the solver stopped, iterations, residuals of all iterations (one after the other,
-/// those of all right-hand sides), products computed, and seconds.
+/// The answer, why the solver stopped, iterations, residuals of all iterations (one after the
+/// other, those of all right-hand sides), products computed, and seconds.
 type Found<'py, T> = (Bound<'py, PyArray2<T>>, &'static str, usize, Bound<'py, PyArray2<f64>>, u64, f64);
 
 /// A right-hand side, or a start: unknowns × sides.
@@ -227,6 +227,7 @@ fn found<T: Scalar + Element>(py: Python<'_>, solution: Solution<T>) -> PyResult
     let residuals = report.history.into_iter().flat_map(|record| record.residuals).collect();
     let products = report.work.operator_applications;
     let answer = moved(py, x.as_slice().to_vec(), lanes)?;
-    let found: Found<'_, T> = (answer, reason, iterations, moved(py, residuals, lanes)?, products, report.seconds);
+    let found: Found<'_, T> =
+        (answer, reason, iterations, moved(py, residuals, lanes)?, products, report.seconds);
     Ok(found.into_pyobject(py)?.into_any().unbind())
 }

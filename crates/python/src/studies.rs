@@ -1,8 +1,8 @@
 //! Studies whose answer is a record and files.
 //!
 //! The files are written into a folder of the system's for temporary files, which lives as long as
-//! the answer, and copied from there where they are asked for: a run that was left because of Ctrl-C
-//! can write nothing that the user sees.
+//! the answer, and copied from there where they are asked for: a run that was left because of
+//! Ctrl-C can write nothing that the user sees.
 
 use std::fs;
 use std::io::{self, Write};
@@ -65,7 +65,9 @@ fn names(folder: &Path) -> Result<Vec<String>, Error> {
     let entry = |entry: io::Result<fs::DirEntry>| Ok(entry?.file_name().to_string_lossy().into_owned());
     let found = fs::read_dir(folder).and_then(|all| all.map(entry).collect::<io::Result<Vec<String>>>());
     let mut names = found.map_err(files)?;
-    names.sort_by_key(|name| (Path::new(name).extension().is_some_and(|ending| ending == "json"), name.clone()));
+    names.sort_by_key(|name| {
+        (Path::new(name).extension().is_some_and(|ending| ending == "json"), name.clone())
+    });
     Ok(names)
 }
 
@@ -231,7 +233,12 @@ pub(crate) fn trace(py: Python<'_>, source: Source<'_>, asked: Sampling, how: Ho
 
 /// Solves and traces a scene, and decides whether the two agree.
 #[pyfunction]
-pub(crate) fn crosscheck(py: Python<'_>, source: Source<'_>, asked: Sampling, how: How) -> PyResult<Py<PyAny>> {
+pub(crate) fn crosscheck(
+    py: Python<'_>,
+    source: Source<'_>,
+    asked: Sampling,
+    how: How,
+) -> PyResult<Py<PyAny>> {
     let source = SceneSource::from(source);
     let correction = match asked.correction.as_str() {
         "holm" => MultipleTests::Holm,

@@ -44,7 +44,12 @@ pub(crate) fn methods() -> Vec<&'static str> {
 
 /// Computes view factors.
 #[pyfunction]
-pub(crate) fn view_factors(py: Python<'_>, source: Source<'_>, asked: Asked, how: How) -> PyResult<Py<PyAny>> {
+pub(crate) fn view_factors(
+    py: Python<'_>,
+    source: Source<'_>,
+    asked: Asked,
+    how: How,
+) -> PyResult<Py<PyAny>> {
     let problem = asked.problem.options(py)?;
     let input = match source {
         Source::Scene(scene) => ViewFactorOptions::new(Arc::clone(&scene.0)),
@@ -129,7 +134,12 @@ impl ViewFactors {
     fn rows<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let factors = &self.0.factors;
         let row = |i: usize| {
-            [factors.surfaces.area[i], factors.surfaces.row_error[i], factors.row_sums[i], factors.row_dropped[i]]
+            [
+                factors.surfaces.area[i],
+                factors.surfaces.row_error[i],
+                factors.row_sums[i],
+                factors.row_dropped[i],
+            ]
         };
         moved(py, (0..factors.len()).flat_map(row).collect(), 4)
     }
@@ -149,7 +159,8 @@ impl ViewFactors {
 
     /// Writes the matrix, in the form of the ending of the name, and what comes beside it.
     fn write(&self, py: Python<'_>, file: PathBuf) -> PyResult<()> {
-        let written = py.detach(|| MatrixFiles::new(&file, Some(&file), None).and_then(|files| self.0.write(&files)));
+        let written =
+            py.detach(|| MatrixFiles::new(&file, Some(&file), None).and_then(|files| self.0.write(&files)));
         written.map_err(|error| failure(py, &error))
     }
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use fredholm_report::{FarRow, MonostaticRow, WaveRow};
-use fredholm_study::{SolvedWaves, WaveCompareOptions, WaveOptions, Watch};
+use fredholm_study::{SolvedWaves, Watch, WaveCompareOptions, WaveOptions};
 use numpy::{Complex64, PyArray2};
 use pyo3::prelude::*;
 
@@ -24,7 +24,8 @@ pub(crate) fn waves(
     how: How,
 ) -> PyResult<Py<PyAny>> {
     let options = WaveOptions { memory: problem.options(py)?.memory, no_report: !report };
-    let work = move |watch: &dyn Watch| fredholm_study::waves(path, &options, watch).map(SolvedWaves::unwatched);
+    let work =
+        move |watch: &dyn Watch| fredholm_study::waves(path, &options, watch).map(SolvedWaves::unwatched);
     run(py, how, work, |solved| Ok(Py::new(py, Waves(Mutex::new(solved)))?.into_any()))
 }
 
@@ -68,7 +69,8 @@ fn phasors(values: &[f64]) -> impl Iterator<Item = Complex64> {
 
 #[pymethods]
 impl Waves {
-    /// Receiver, index, x, y, z (m) and frequency (Hz) of the points; incident and scattered E and H.
+    /// Receiver, index, x, y, z (m) and frequency (Hz) of the points; incident and scattered E and
+    /// H.
     #[getter]
     fn near<'py>(&self, py: Python<'py>) -> PyResult<(Places<'py>, Phasors<'py>, Phasors<'py>)> {
         let solved = self.get();
@@ -90,7 +92,15 @@ impl Waves {
         let solved = self.get();
         let place = |row: &FarRow| {
             let [theta, phi] = row.cross_section.unwrap_or([f64::NAN; 2]);
-            [row.receiver as f64, row.index as f64, row.theta_degrees, row.phi_degrees, row.frequency, theta, phi]
+            [
+                row.receiver as f64,
+                row.index as f64,
+                row.theta_degrees,
+                row.phi_degrees,
+                row.frequency,
+                theta,
+                phi,
+            ]
         };
         let amplitudes = solved.far().iter().flat_map(|row| phasors(&row.amplitude)).collect();
         Ok((moved(py, solved.far().iter().flat_map(place).collect(), 7)?, moved(py, amplitudes, 2)?))

@@ -43,7 +43,10 @@ impl Field<'_> {
     pub fn face_means(&self) -> [Vec<f64>; 2] {
         let (faces, bands) = (self.mesh().faces().len(), self.bands().len());
         let all = |means: Means| {
-            (0..faces).flat_map(|face| (0..bands).map(move |band| (face, band))).map(move |(face, band)| means.mean(face, band)).collect()
+            (0..faces)
+                .flat_map(|face| (0..bands).map(move |band| (face, band)))
+                .map(move |(face, band)| means.mean(face, band))
+                .collect()
         };
         face_means(self).map(all)
     }

@@ -115,9 +115,7 @@ impl Geometry {
         match ending(path).as_str() {
             "vs3" => Self::file(path, |bytes| view3d(vs3::parse(Source::decode(path, bytes)?)?)),
             "obj" => Self::file(path, |bytes| wavefront(path, bytes)),
-            _ => {
-                Ok(Self::from(Arc::new(Scene::load(path)?)))
-            }
+            _ => Ok(Self::from(Arc::new(Scene::load(path)?))),
         }
     }
 

@@ -91,6 +91,6 @@ pub use viewfactors::{
     point_closure, solve_view_factors, view_factor_methods, view_factors,
 };
 pub use waves::{
-    Estimated, SolvedFrequency, SolvedWaves, WaveCompareOptions, WaveOptions, build_wave_solver, check_wave_solver,
-    compare_waves, waves,
+    Estimated, SolvedFrequency, SolvedWaves, WaveCompareOptions, WaveOptions, build_wave_solver,
+    check_wave_solver, compare_waves, waves,
 };

@@ -97,11 +97,7 @@ pub(super) struct Settings {
 }
 
 impl Settings {
-    pub(super) fn new(
-        asked: &ViewFactorOptions,
-        geometry: &Geometry,
-        method: Option<&Chosen>,
-    ) -> Self {
+    pub(super) fn new(asked: &ViewFactorOptions, geometry: &Geometry, method: Option<&Chosen>) -> Self {
         Self {
             tolerance: asked.tolerance.or(geometry.tolerance()).unwrap_or(TOLERANCE),
             method: asked.method.clone(),

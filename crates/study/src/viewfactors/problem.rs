@@ -38,10 +38,7 @@ pub(super) struct Problem {
 
 impl Problem {
     /// Reads and meshes; refuses before memory is taken what does not fit.
-    pub(super) fn load(
-        asked: &ViewFactorOptions,
-        stages: &mut Stages,
-    ) -> Result<Self, Error> {
+    pub(super) fn load(asked: &ViewFactorOptions, stages: &mut Stages) -> Result<Self, Error> {
         let method = method(asked)?;
         let geometry = stages.run("geometry", || geometry(&asked.input))?;
         let options = Settings::new(asked, &geometry, method.as_ref());
