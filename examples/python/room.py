@@ -8,9 +8,9 @@ from fredholm import Material, Scene, Surface
 #: Corners of a room of 4 m × 3 m × 2.5 m, and its sides, lit within.
 CORNERS = np.array([[x, y, z] for x in (0.0, 4.0) for y in (0.0, 3.0) for z in (0.0, 2.5)])
 SIDES = {
-    "walls": [[1, 3, 2, 0], [6, 7, 5, 4], [4, 5, 1, 0], [3, 7, 6, 2]],
-    "floor": [[2, 6, 4, 0]],
-    "ceiling": [[5, 7, 3, 1]],
+    "walls": [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3]],
+    "floor": [[0, 4, 6, 2]],
+    "ceiling": [[1, 3, 7, 5]],
 }
 
 

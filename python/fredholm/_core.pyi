@@ -7,6 +7,7 @@ from typing import Any, Mapping, Optional, Sequence, Tuple, Union, final
 import numpy as np
 from numpy.typing import NDArray
 
+__all__: list[str]
 VERSION: str
 
 _Floats = NDArray[np.float64]

@@ -2,7 +2,6 @@
 second."""
 
 import os
-import pathlib
 import signal
 import threading
 import time
@@ -109,16 +108,18 @@ def test_what_a_listener_raises_ends_the_run() -> None:
         fredholm.Scene.from_toml(WHITE).solve(progress=listen)
 
 
-def test_progress_in_words(capsys: Any, monkeypatch: Any, scenes: pathlib.Path) -> None:
+@pytest.mark.filterwarnings("ignore::fredholm.FredholmWarning")
+def test_progress_in_words(capsys: Any, monkeypatch: Any) -> None:
     from fredholm import _progress
 
     monkeypatch.setattr(_progress, "PAUSE", 0.0)
     monkeypatch.setattr(_progress, "_bars", lambda: None)
-    fredholm.Scene.load(scenes / "occluder.toml").solve(progress=True, pictures=False)
+    fredholm.Scene.from_toml(WHITE).solve(progress=True)
     shown = capsys.readouterr().err
     assert "assembly: done in" in shown and "%" in shown
 
 
+@pytest.mark.filterwarnings("ignore::fredholm.FredholmWarning")
 def test_progress_as_bars(capsys: Any) -> None:
     pytest.importorskip("tqdm")
     fredholm.Scene.from_toml(WHITE).solve(progress=True)

@@ -1,5 +1,6 @@
 """The command line and Python find the same numbers, bit for bit."""
 
+import csv
 import pathlib
 import subprocess
 
@@ -11,11 +12,11 @@ import fredholm
 # Scene, and the accuracy asked for where there is one.
 CASES = [
     ("furnace.toml", None),
-    ("occluder.toml", None),
     ("occluder.toml", 0.05),
     ("leblond_room.toml", None),
-    ("cornell_planar.toml", None),
-    ("studio/vase.obj", None),
+    ("cornell_planar.toml", 0.1),
+    ("studio/table.obj", None),
+    ("studio/vase.obj", 0.2),
 ]
 
 
@@ -38,16 +39,15 @@ def test_solve(
     field = np.load(tmp_path / "line" / "field.npz")
     for of in ("irradiance", "radiosity"):
         assert field[of].reshape(-1).tobytes() == getattr(solution, of).tobytes()
-    written = np.genfromtxt(tmp_path / "line" / "faces.csv", delimiter=",", names=True)
-    first = solution.bands[0].replace("-", "")
-    assert np.array_equal(
-        np.atleast_1d(written[f"irradiance_{first}"]), solution.faces.irradiance[:, 0]
-    )
+    with open(tmp_path / "line" / "faces.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    written = [float(row[f"irradiance_{solution.bands[0]}"]) for row in rows]
+    assert written == solution.faces.irradiance[:, 0].tolist()
 
 
 @pytest.mark.filterwarnings("ignore::fredholm.FredholmWarning")
 def test_view_factors(scenes: pathlib.Path, program: str, tmp_path: pathlib.Path) -> None:
-    for name in ("occluder.toml", "studio/vase.obj"):
+    for name in ("leblond_room.toml", "studio/table.obj"):
         line = tmp_path / "line.npz"
         subprocess.run(
             [program, "viewfactors", str(scenes / name), "-o", str(line), "--quiet"], check=True

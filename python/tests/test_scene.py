@@ -15,7 +15,7 @@ CUBE = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dty
 # The sides of the cube, lit within.
 SIDES = np.array(
     [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
-)[:, ::-1]
+)
 GREY = {"grey": Material(0.5, 1.0)}
 
 
@@ -65,7 +65,7 @@ def test_polygons_bands_and_two_sides() -> None:
         {"red": Material([0.5, 0.1]), "lamp": Material(0.0, {"r": 1.0, "g": 2.0})},
         bands=["r", "g"],
         title="A plate",
-        camera={"eye": [1, 1, 2.5], "target": [1, 1, 0], "width": 64, "height": 48},
+        camera={"eye": [1, 1, 2.5], "target": [1, 1.1, 0], "width": 64, "height": 48},
     )
     solution = scene.solve()
     assert scene.title == "A plate" and solution.surfaces == ["plate", "plate/back", "cube"]

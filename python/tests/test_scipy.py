@@ -20,7 +20,7 @@ def couplings() -> fredholm.Couplings:
 
 
 def test_view_factors_as_a_sparse_matrix(scenes: pathlib.Path) -> None:
-    scene = fredholm.Scene.load(scenes / "occluder.toml")
+    scene = fredholm.Scene.load(scenes / "leblond_room.toml")
     kept = scene.view_factors(rows="element", threshold=1e-3)
     whole = scene.view_factors(rows="element")
     matrix = kept.sparse

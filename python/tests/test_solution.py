@@ -18,7 +18,7 @@ def furnace() -> fredholm.Solution:
 def test_a_furnace_glows_evenly(furnace: fredholm.Solution) -> None:
     assert furnace.converged and furnace.ended == "done"
     assert furnace.radiosity.shape == (96, 1) and furnace.faces.irradiance.shape == (96, 1)
-    assert np.allclose(furnace.radiosity, 4.0, rtol=1e-6)
+    assert np.allclose(furnace.radiosity, 4.0, rtol=1e-5)
     room = furnace["room"]
     assert abs(room.irradiance[0] - 4.0) <= room.error[0] + 1e-6
     assert np.isclose(furnace.area.sum(), 22.0) and np.isclose(furnace.faces.area.sum(), 22.0)
@@ -48,7 +48,7 @@ def test_arrays_are_the_memory_of_the_solver(furnace: fredholm.Solution) -> None
 def test_arrays_outlive_their_solution() -> None:
     irradiance = fredholm.Scene.from_toml(FURNACE).solve().irradiance
     gc.collect()
-    assert np.allclose(irradiance, 4.0, rtol=1e-6)
+    assert np.allclose(irradiance, 4.0, rtol=1e-5)
 
 
 def test_writing_moves_nothing(tmp_path: pathlib.Path) -> None:

@@ -3,12 +3,13 @@
 //! What is here moves numbers and names between Python and the studies, and nothing else: the
 //! names, the documentation and the checks that users see are the Python sources in
 //! `python/fredholm`. Arrays that are made here are moved into NumPy and those of a result share
-//! its memory; none is copied. A study runs on threads of its own while the interpreter is free
-//! ([`run`]).
+//! its memory; none is copied. A study runs on threads of its own while the interpreter is
+//! free.
 
 mod arrays;
 mod coupling;
 mod failure;
+mod locks;
 mod operator;
 mod options;
 mod run;

@@ -4,7 +4,7 @@
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -13,6 +13,7 @@ use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 
 use crate::failure::{failure, internal, interrupted};
+use crate::locks::locked;
 
 /// Time between two looks for signals and progress.
 const LOOK: Duration = Duration::from_millis(40);
@@ -59,10 +60,6 @@ struct Relay {
     phase: Mutex<Phase>,
     events: Mutex<Vec<Event>>,
     noted: Mutex<Option<Instant>>,
-}
-
-fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Relay {
@@ -149,8 +146,13 @@ pub(crate) fn run<R: Send + 'static>(
         let _ = sender.send(result);
     };
     thread::Builder::new().name("fredholm".to_owned()).spawn(worker).map_err(internal)?;
-    let mut wait =
-        Wait { relay: &relay, receiver: Mutex::new(receiver), progress: how.progress, stopped: None };
+    let mut wait = Wait {
+        relay: &relay,
+        receiver: Mutex::new(receiver),
+        progress: how.progress,
+        stopped: None,
+        again: false,
+    };
     match (wait.outcome(py)?, wait.stopped) {
         (Some(Ok(result)), None) => wrap(result),
         (Some(Err(error)), None) => Err(failure(py, &error)),
@@ -170,6 +172,8 @@ struct Wait<'a, R> {
     progress: Option<Py<PyAny>>,
     /// When the run was cancelled, and by what.
     stopped: Option<(Instant, PyErr)>,
+    /// Whether Ctrl-C was pressed again: nothing is waited for then.
+    again: bool,
 }
 
 impl<R: Send> Wait<'_, R> {
@@ -185,6 +189,9 @@ impl<R: Send> Wait<'_, R> {
                     return Err(internal("the run broke off: this is a fault of fredholm, please report it"));
                 }
             }
+            if self.again {
+                return Ok(None);
+            }
             let waited = self.stopped.as_ref().is_some_and(|(since, _)| since.elapsed() >= PATIENCE);
             if waited && self.relay.leave() {
                 return Ok(None);
@@ -196,9 +203,13 @@ impl<R: Send> Wait<'_, R> {
     fn look(&mut self, py: Python<'_>) {
         let events = std::mem::take(&mut *locked(&self.relay.events));
         let told = events.into_iter().try_for_each(|event| self.tell(py, event));
-        if let (Err(stop), None) = (told.and_then(|()| py.check_signals()), &self.stopped) {
-            self.relay.cancel();
-            self.stopped = Some((Instant::now(), stop));
+        match (told.and_then(|()| py.check_signals()), &self.stopped) {
+            (Err(stop), None) => {
+                self.relay.cancel();
+                self.stopped = Some((Instant::now(), stop));
+            }
+            (Err(stop), Some(_)) => self.again = stop.is_instance_of::<PyKeyboardInterrupt>(py),
+            (Ok(()), _) => {}
         }
     }
 

@@ -1,7 +1,7 @@
 //! Solved scenes.
 
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use fredholm_mesh::{Mesh, Patch};
 use fredholm_study::{Ended, SolveOptions};
@@ -11,6 +11,7 @@ use pyo3::types::PyBytes;
 
 use crate::arrays::{moved, shared};
 use crate::failure::{failure, internal};
+use crate::locks::{Guard, attached, locked};
 use crate::options::{Problem, Stop};
 use crate::run::{How, run};
 use crate::scene::Scene;
@@ -67,8 +68,8 @@ pub(crate) fn ending(ended: Ended) -> &'static str {
 pub(crate) struct Solved(Mutex<fredholm_study::Solved<'static>>);
 
 impl Solved {
-    fn get(&self) -> MutexGuard<'_, fredholm_study::Solved<'static>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    fn get(&self) -> Guard<'_, fredholm_study::Solved<'static>> {
+        attached(&self.0)
     }
 }
 
@@ -199,13 +200,13 @@ impl Solved {
 
     /// A picture of so many pixels in width: a PNG file.
     fn picture<'py>(&self, py: Python<'py>, width: u32) -> PyResult<Bound<'py, PyBytes>> {
-        let png = py.detach(|| self.get().picture(width)).map_err(|error| failure(py, &error))?;
+        let png = py.detach(|| locked(&self.0).picture(width)).map_err(|error| failure(py, &error))?;
         Ok(PyBytes::new(py, &png))
     }
 
     /// Writes all results into a folder.
     fn write(&self, py: Python<'_>, folder: PathBuf) -> PyResult<()> {
-        let written = py.detach(|| self.get().write(folder).map(drop));
+        let written = py.detach(|| locked(&self.0).write(folder).map(drop));
         written.map_err(|error| failure(py, &error))
     }
 }

@@ -1,7 +1,7 @@
 //! Scenes of waves.
 
 use std::path::PathBuf;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::Mutex;
 
 use fredholm_report::{FarRow, MonostaticRow, WaveRow};
 use fredholm_study::{SolvedWaves, Watch, WaveCompareOptions, WaveOptions};
@@ -10,6 +10,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::moved;
 use crate::failure::{failure, internal};
+use crate::locks::{Guard, attached, locked};
 use crate::options::Problem;
 use crate::run::{How, run};
 use crate::solved::ending;
@@ -57,8 +58,8 @@ type Places<'py> = Bound<'py, PyArray2<f64>>;
 type Phasors<'py> = Bound<'py, PyArray2<Complex64>>;
 
 impl Waves {
-    fn get(&self) -> MutexGuard<'_, SolvedWaves<'static>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    fn get(&self) -> Guard<'_, SolvedWaves<'static>> {
+        attached(&self.0)
     }
 }
 
@@ -138,6 +139,6 @@ impl Waves {
 
     /// Writes all results into a folder.
     fn write(&self, py: Python<'_>, folder: PathBuf) -> PyResult<()> {
-        py.detach(|| self.get().write(folder)).map_err(|error| failure(py, &error))
+        py.detach(|| locked(&self.0).write(folder)).map_err(|error| failure(py, &error))
     }
 }
