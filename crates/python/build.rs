@@ -8,6 +8,6 @@ fn main() {
     // Wheels are without debug information. A setting of the profile would compile every crate anew.
     let (system, profile) = (var("CARGO_CFG_TARGET_OS"), var("PROFILE"));
     if system.as_deref() == Ok("linux") && profile.as_deref() == Ok("release") {
-        println!("cargo::rustc-cdylib-link-arg=-Wl,--strip-debug");
+        println!("cargo::rustc-cdylib-link-arg=-Wl,--strip-all");
     }
 }

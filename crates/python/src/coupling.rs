@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use fredholm_coupling::Radiosity;
 use fredholm_linop::{LinearOperator, MultiVector, PackedSymmetric};
-use numpy::{PyArray1, PyArray2, PyArrayDescr, PyReadonlyArray2, PyUntypedArrayMethods, dtype};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::arrays::moved;
@@ -152,11 +152,6 @@ impl Coupling {
     #[getter]
     fn shape(&self) -> (usize, usize) {
         (self.exchange.dim(), self.exchange.dim())
-    }
-
-    #[getter]
-    fn dtype<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDescr> {
-        dtype::<f64>(py)
     }
 
     /// The product with each column.

@@ -22,6 +22,7 @@ type Array<'py, T> = Bound<'py, PyArray2<T>>;
 /// What is asked of a solution.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
+#[allow(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub(crate) struct Asked {
     accuracy: Option<f64>,
     goal: Vec<String>,

@@ -65,17 +65,19 @@ fn names(folder: &Path) -> Result<Vec<String>, Error> {
     let entry = |entry: io::Result<fs::DirEntry>| Ok(entry?.file_name().to_string_lossy().into_owned());
     let found = fs::read_dir(folder).and_then(|all| all.map(entry).collect::<io::Result<Vec<String>>>());
     let mut names = found.map_err(files)?;
-    names.sort_by_key(|name| {
-        (Path::new(name).extension().is_some_and(|ending| ending == "json"), name.clone())
-    });
+    names.sort_by_key(|name| (is_record(name), name.clone()));
     Ok(names)
+}
+
+fn is_record(name: &str) -> bool {
+    Path::new(name).extension().is_some_and(|ending| ending == "json")
 }
 
 /// Copies all files; the records of an older result are removed first.
 fn copy(from: &Path, to: &Path) -> Result<(), Error> {
     let names = names(from)?;
     fs::create_dir_all(to).map_err(|error| files(format!("cannot make {}: {error}", to.display())))?;
-    for name in names.iter().filter(|name| name.ends_with(".json")) {
+    for name in names.iter().filter(|name| is_record(name)) {
         match fs::remove_file(to.join(name)) {
             Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(files(error)),
             _ => {}
