@@ -17,8 +17,7 @@ const COLUMNS: &str = "face,surface,cx,cy,cz,area";
 /// What `out` reports.
 pub fn write_faces_csv(field: &Field<'_>, out: &mut dyn Write) -> io::Result<()> {
     let mesh = field.mesh();
-    let means = |values| Means::new(field, values, mesh.faces().len(), |leaf| mesh.face_of(leaf));
-    let (irradiance, radiosity) = (means(field.irradiance()), means(field.radiosity()));
+    let [irradiance, radiosity] = face_means(field);
     header(out, COLUMNS, &["irradiance", "radiosity"], field.bands())?;
     for (i, face) in mesh.faces().iter().enumerate() {
         write!(out, "{i},{}", quoted(&mesh.surfaces()[face.surface].name))?;
@@ -29,6 +28,28 @@ pub fn write_faces_csv(field: &Field<'_>, out: &mut dyn Write) -> io::Result<()>
         writeln!(out)?;
     }
     Ok(())
+}
+
+/// Means of irradiance and radiosity over the faces.
+fn face_means(field: &Field<'_>) -> [Means; 2] {
+    let mesh = field.mesh();
+    let means = |values| Means::new(field, values, mesh.faces().len(), |leaf| mesh.face_of(leaf));
+    [means(field.irradiance()), means(field.radiosity())]
+}
+
+impl Field<'_> {
+    /// Area means of irradiance and radiosity over the faces, each faces × bands, W/m².
+    #[must_use]
+    pub fn face_means(&self) -> [Vec<f64>; 2] {
+        let (faces, bands) = (self.mesh().faces().len(), self.bands().len());
+        let all = |means: Means| {
+            (0..faces)
+                .flat_map(|face| (0..bands).map(move |band| (face, band)))
+                .map(move |(face, band)| means.mean(face, band))
+                .collect()
+        };
+        face_means(self).map(all)
+    }
 }
 
 #[cfg(test)]

@@ -21,6 +21,11 @@ impl Files {
         Self { folder: scene.parent().unwrap_or(Path::new("")).to_owned(), read: BTreeMap::new() }
     }
 
+    /// The same, where some files are there already, by the names that the scene has for them.
+    pub fn with(self, files: BTreeMap<PathBuf, Vec<u8>>) -> Self {
+        Self { read: files, ..self }
+    }
+
     /// Where a file named by the scene lies.
     pub fn path(&self, name: &Path) -> PathBuf {
         self.folder.join(name)

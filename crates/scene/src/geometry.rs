@@ -5,6 +5,7 @@
 //! around them) and block the view without radiating. Metres.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use fredholm_mesh::{Contacts, Cutting, Mesh, MeshBuilder, MeshError, Shape, Vec3};
 
@@ -51,7 +52,7 @@ pub struct Geometry {
 
 #[derive(Debug)]
 enum Origin {
-    Scene(Box<Scene>),
+    Scene(Arc<Scene>),
     File(MeshFile),
 }
 
@@ -114,11 +115,7 @@ impl Geometry {
         match ending(path).as_str() {
             "vs3" => Self::file(path, |bytes| view3d(vs3::parse(Source::decode(path, bytes)?)?)),
             "obj" => Self::file(path, |bytes| wavefront(path, bytes)),
-            _ => {
-                let scene = Scene::load(path)?;
-                let sha256 = scene.sha256().to_owned();
-                Ok(Self { origin: Origin::Scene(Box::new(scene)), sha256 })
-            }
+            _ => Ok(Self::from(Arc::new(Scene::load(path)?))),
         }
     }
 
@@ -192,6 +189,13 @@ impl Geometry {
             }
             Origin::File(file) => file.surfaces(),
         }
+    }
+}
+
+impl From<Arc<Scene>> for Geometry {
+    fn from(scene: Arc<Scene>) -> Self {
+        let sha256 = scene.sha256().to_owned();
+        Self { origin: Origin::Scene(scene), sha256 }
     }
 }
 

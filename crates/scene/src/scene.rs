@@ -1,6 +1,7 @@
 //! A scene: what a file describes, ready to be meshed.
 
-use std::path::Path;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 use fredholm_mesh::{Cutting, Mesh, MeshBuilder, MeshError};
 
@@ -77,9 +78,47 @@ impl Scene {
         Self::from_source(Source { path: path.as_ref().to_owned(), text: text.to_owned() })
     }
 
+    /// Reads a scene from text, and the files that it names from memory: bytes by the name that the text has for
+    /// the file. Other files are looked for in the folder of `path`.
+    ///
+    /// ```
+    /// use fredholm_scene::Scene;
+    ///
+    /// let text = r#"
+    ///     [materials.lamp]
+    ///     reflectance = 0.5
+    ///     exitance = 1
+    ///
+    ///     [[surface]]
+    ///     name = "tile"
+    ///     material = "lamp"
+    ///     obj = { file = "tile.obj" }
+    /// "#;
+    /// let tile = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".to_vec();
+    /// let scene = Scene::from_memory(text, "tile.toml", [("tile.obj".into(), tile)].into())?;
+    /// assert_eq!(scene.predicted_faces(), 1);
+    /// # Ok::<(), fredholm_scene::SceneError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`SceneError`], with file and line, for anything that is wrong with them.
+    pub fn from_memory(
+        text: &str,
+        path: impl AsRef<Path>,
+        files: BTreeMap<PathBuf, Vec<u8>>,
+    ) -> Result<Self, SceneError> {
+        let source = Source { path: path.as_ref().to_owned(), text: text.to_owned() };
+        let files = Files::beside(&source.path).with(files);
+        Self::from_files(source, files)
+    }
+
     fn from_source(source: Source) -> Result<Self, SceneError> {
+        let files = Files::beside(&source.path);
+        Self::from_files(source, files)
+    }
+
+    fn from_files(source: Source, mut files: Files) -> Result<Self, SceneError> {
         let entry = parse(&source)?;
-        let mut files = Files::beside(&source.path);
         let meaning = resolve(&source, &entry, &mut files, None)?;
         Self::new(source, entry.title, meaning, &files)
     }

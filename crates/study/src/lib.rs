@@ -9,7 +9,8 @@
 //! | which solver needs how long | [`compare`] |
 //! | eigenvalues and conditions of the matrix | [`spectrum`] |
 //! | pictures at once, and scenes whose matrix would not fit | [`shoot`] |
-//! | the matrix of view factors | [`view_factors`] |
+//! | the matrix of view factors | [`view_factors`], [`solve_view_factors`] |
+//! | the couplings themselves, for solvers and analyses of one's own | [`couplings`] |
 //! | the fields of a scene of waves | [`waves`], [`compare_waves`] |
 //! | estimates by random paths | [`trace`] |
 //! | whether a solution and random paths agree | [`crosscheck`] |
@@ -27,6 +28,7 @@ mod checkpoint;
 mod choice;
 mod compare;
 mod converge;
+mod couplings;
 mod crosscheck;
 mod discretised;
 mod error;
@@ -61,6 +63,7 @@ pub use check::{Checked, Forecast, check};
 pub use checkpoint::Checkpoint;
 pub use compare::{CompareOptions, check_solver, compare};
 pub use converge::{ConvergeOptions, converge};
+pub use couplings::{Couplings, couplings};
 pub use crosscheck::{CrosscheckOptions, MultipleTests, Verdict, crosscheck};
 pub use error::{Error, ErrorKind};
 pub use folder::probe as probe_folder;
@@ -75,7 +78,7 @@ pub use options::{
     GatherPoints, PointGrid, Precision, ProblemOptions, Recorded, SceneSource, SolveOptions, StopOptions,
 };
 pub use reference::{ReferenceOptions, References, reference};
-pub use registry::{SolverEntry, names as solver_names, solvers};
+pub use registry::{SolverEntry, build as build_solver, names as solver_names, solvers};
 pub use shoot::{ShootOptions, shoot};
 pub use size::Bytes;
 pub use solve::{Ended, Solved, SurfaceLight, resume, solve};
@@ -84,10 +87,10 @@ pub use stochastic::{FIELD_METHODS, PathOptions, SamplePoints, TraceStop};
 pub use threads::thread_pool;
 pub use trace::{LIGHT_METHODS, TraceOptions, Traced, trace};
 pub use viewfactors::{
-    MatrixFiles, MatrixRows, SKY, ViewFactorOptions, closure as matrix_closure, largest, point_closure,
-    view_factor_methods, view_factors,
+    MatrixFiles, MatrixRows, SKY, SolvedViewFactors, ViewFactorOptions, closure as matrix_closure, largest,
+    point_closure, solve_view_factors, view_factor_methods, view_factors,
 };
 pub use waves::{
-    Estimated, SolvedFrequency, SolvedWaves, WaveCompareOptions, WaveOptions, check_wave_solver,
-    compare_waves, waves,
+    Estimated, SolvedFrequency, SolvedWaves, WaveCompareOptions, WaveOptions, build_wave_solver,
+    check_wave_solver, compare_waves, waves,
 };

@@ -35,7 +35,10 @@ pub(crate) fn find(name: &str) -> Option<SolverEntry> {
 }
 
 /// The solver that a text such as `sor:omega=1.2` asks for.
-pub(crate) fn build(text: &str) -> Result<SolverEntry, OptionError> {
+///
+/// # Errors
+/// There is none of this name, or its options are wrong.
+pub fn build(text: &str) -> Result<SolverEntry, OptionError> {
     let (name, given) = Options::parse(text)?;
     let scheme = fredholm_iterative::entries::<f64>().into_iter().find(|entry| entry.name == name);
     if let Some(entry) = scheme {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use fredholm_linop::{MultiVector, StopReason, Watch};
 use fredholm_mesh::Mesh;
 use fredholm_report::{
-    Camera, Exposure, Extras, Field, Layer, ReportError, RunRecord, RunReport, View, write_with,
+    Camera, Exposure, Extras, Field, Layer, ReportError, RunRecord, RunReport, View, render, write_with,
 };
 use fredholm_scene::Scene;
 
@@ -97,6 +97,13 @@ pub(crate) fn solve_from<'a>(
 }
 
 impl Solved<'_> {
+    /// The same without its watch, for a caller that keeps the result longer than that.
+    #[must_use]
+    pub fn unwatched(self) -> Solved<'static> {
+        let Self { settings, problem, solution, stages } = self;
+        Solved { settings, problem, solution, stages: stages.unwatched() }
+    }
+
     /// The scene.
     #[must_use]
     pub fn scene(&self) -> &Scene {
@@ -119,6 +126,52 @@ impl Solved<'_> {
     #[must_use]
     pub fn radiosity(&self) -> &MultiVector<f64> {
         &self.solution.means.radiosity
+    }
+
+    /// Mean irradiance and mean radiosity of the faces, each faces × bands, W/m², as `faces.csv` has
+    /// them.
+    ///
+    /// # Errors
+    /// Never for the field of a solution, which fits its mesh.
+    pub fn face_means(&self) -> Result<[MultiVector<f64>; 2], Error> {
+        let field = self.field()?;
+        let faces = self.problem.mesh.faces().len();
+        let [irradiance, radiosity] = field.face_means();
+        let vector = |values| MultiVector::from_vec(faces, field.bands().len(), values);
+        let input = |error| Error::new(ErrorKind::Input, error);
+        Ok([vector(irradiance).map_err(input)?, vector(radiosity).map_err(input)?])
+    }
+
+    /// The stated error of the mean irradiance of every face, faces × bands, W/m²: an estimate.
+    /// None where the solution states no error.
+    #[must_use]
+    pub fn face_errors(&self) -> Option<Vec<f64>> {
+        self.solution.mesh_error.as_ref()?;
+        Some(expected_error(&self.problem, &self.solution, true))
+    }
+
+    /// A picture of so many pixels in width as the camera of the scene sees it, or as one does that
+    /// sees all of it: a PNG file.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Input`] for a camera that makes no picture.
+    pub fn picture(&self, width: u32) -> Result<Vec<u8>, Error> {
+        let field = self.field()?.with_exposed(&self.solution.exposed).map_err(report_failure)?;
+        let exitance = self.problem.scene.exitance(&self.problem.mesh);
+        let field = field.with_exitance(&exitance).map_err(report_failure)?;
+        let view = view_of(self.problem.scene.camera(), &field);
+        let height = f64::from(width) * f64::from(view.camera.height) / f64::from(view.camera.width);
+        let camera = Camera { width, height: (height.round() as u32).max(1), ..view.camera };
+        let picture = render(&field, &camera, view.exposure).map_err(report_failure)?;
+        let mut png = Vec::new();
+        picture.write_png(&mut png).map_err(|error| Error::new(ErrorKind::Files, error))?;
+        Ok(png)
+    }
+
+    fn field(&self) -> Result<Field<'_>, Error> {
+        let (bands, means) = (self.problem.scene.bands(), &self.solution.means);
+        let (irradiance, radiosity) = (means.irradiance.as_slice(), means.radiosity.as_slice());
+        Field::new(&self.problem.mesh, bands, irradiance, radiosity).map_err(report_failure)
     }
 
     /// The light of a surface by its name; none where the scene has no such surface.

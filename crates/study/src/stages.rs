@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use fredholm_linop::{Observer, Progress, Watch};
+use fredholm_linop::{Observer, Progress, Quiet, Watch};
 use fredholm_report::Timing;
 
 use crate::error::Error;
@@ -63,12 +63,23 @@ pub(crate) struct Stages<'a> {
     prefix: String,
     /// Whether a cancelled run leaves what it has by then.
     partial: bool,
+    /// Whether the run was cancelled by a watch that it has no more.
+    cancelled: bool,
 }
 
 impl<'a> Stages<'a> {
     pub(crate) fn new(watch: &'a dyn Watch) -> Self {
         let signals = Signals { watch, saving: Arc::default() };
-        Self { watch, signals, timings: Vec::new(), prefix: String::new(), partial: true }
+        Self { watch, signals, timings: Vec::new(), prefix: String::new(), partial: true, cancelled: false }
+    }
+
+    /// The same without its watch, for results that outlive it: nobody is told of anything, and
+    /// nobody cancels. What was cancelled stays so.
+    pub(crate) fn unwatched(self) -> Stages<'static> {
+        let (watch, cancelled): (&'static dyn Watch, _) = (&Quiet, self.is_cancelled());
+        let signals = Signals { watch, saving: self.signals.saving };
+        let Self { timings, prefix, partial, .. } = self;
+        Stages { watch, signals, timings, prefix, partial, cancelled }
     }
 
     /// Stages of one of several parts, which are of no use without the others: a cancelled run
@@ -80,6 +91,7 @@ impl<'a> Stages<'a> {
             timings: Vec::new(),
             prefix: format!("{name}, "),
             partial: false,
+            cancelled: self.cancelled,
         }
     }
 
@@ -90,7 +102,7 @@ impl<'a> Stages<'a> {
 
     /// Whether the run was cancelled.
     pub(crate) fn is_cancelled(&self) -> bool {
-        self.signals.is_cancelled()
+        self.cancelled || self.signals.is_cancelled()
     }
 
     /// Fails where the run was cancelled and there is nothing to save.
@@ -155,6 +167,13 @@ mod tests {
         fn begin_saving(&self) -> ControlFlow<()> {
             ControlFlow::Continue(())
         }
+    }
+
+    #[test]
+    fn a_cancelled_run_stays_so_without_its_watch() {
+        assert!(Stages::new(&Cancelled).unwatched().is_cancelled());
+        let mut stages = Stages::new(&Quiet).unwatched();
+        assert!(!stages.is_cancelled() && stages.run("results", || Ok(())).is_ok());
     }
 
     #[test]

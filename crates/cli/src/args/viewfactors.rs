@@ -129,7 +129,7 @@ impl From<RowsBy> for MatrixRows {
 impl ViewFactorsArgs {
     pub(crate) fn options(&self) -> ViewFactorOptions {
         ViewFactorOptions {
-            input: self.input.clone(),
+            input: self.input.as_path().into(),
             tolerance: self.tolerance,
             method: self.method.clone(),
             setting: self.setting.clone(),

@@ -9,7 +9,7 @@ mod record;
 mod target;
 
 use fredholm_linop::Watch;
-use fredholm_report::{ReportError, ViewFactorsRecord, write_view_factors};
+use fredholm_report::{MatrixFormat, ReportError, ViewFactors, ViewFactorsRecord, write_view_factors};
 
 pub use options::{MatrixRows, ViewFactorOptions};
 pub use record::{closure, largest, point_closure};
@@ -32,6 +32,59 @@ pub fn view_factor_methods() -> Vec<&'static str> {
     method::names()
 }
 
+/// View factors that were computed, and how.
+#[derive(Clone, Debug)]
+pub struct SolvedViewFactors {
+    /// The matrix.
+    pub factors: ViewFactors,
+    /// The record of the run.
+    pub record: ViewFactorsRecord,
+}
+
+/// Computes the view factors that the options ask for and writes nothing.
+///
+/// # Errors
+/// As [`view_factors`].
+pub fn solve_view_factors(asked: &ViewFactorOptions, watch: &dyn Watch) -> Result<SolvedViewFactors, Error> {
+    let mut stages = Stages::new(watch);
+    let found = solved(asked, &mut stages)?;
+    stages.check()?;
+    Ok(found)
+}
+
+impl SolvedViewFactors {
+    /// Writes the matrix, and what comes beside it.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Files`] with the file that could not be written.
+    pub fn write(&self, files: &MatrixFiles) -> Result<(), Error> {
+        let record = recorded(&self.record, files);
+        write_view_factors(&files.files, files.format, &self.factors, &record).map_err(report_failure)
+    }
+}
+
+/// The record with where the matrix is written, and in which form.
+fn recorded(record: &ViewFactorsRecord, files: &MatrixFiles) -> ViewFactorsRecord {
+    let format = match files.format {
+        MatrixFormat::Npz => "npz",
+        MatrixFormat::Csv => "csv",
+        MatrixFormat::View3d => "view3d",
+    };
+    let mut record = record.clone();
+    if let Some(options) = record.options.as_object_mut() {
+        options.insert("format".to_owned(), format.into());
+        options.insert("output".to_owned(), files.files.matrix.display().to_string().into());
+    }
+    record
+}
+
+fn solved(asked: &ViewFactorOptions, stages: &mut Stages) -> Result<SolvedViewFactors, Error> {
+    let problem = Problem::load(asked, stages)?;
+    let solution = compute(&problem, stages)?;
+    let record = record(asked, &problem, &solution, stages);
+    Ok(SolvedViewFactors { factors: solution.factors, record })
+}
+
 /// Computes the view factors that the options ask for and writes them. The record returned has the
 /// time of writing too.
 ///
@@ -44,13 +97,10 @@ pub fn view_factors(
     watch: &dyn Watch,
 ) -> Result<(ViewFactorsRecord, Ended), Error> {
     let mut stages = Stages::new(watch);
-    let problem = Problem::load(asked, files, &mut stages)?;
-    let solution = compute(&problem, &mut stages)?;
-    let record = record(asked, &problem, &solution, &stages);
+    let found = solved(asked, &mut stages)?;
     stages.begin_saving()?;
-    let write = || write_view_factors(&files.files, files.format, &solution.factors, &record);
-    stages.run("results", || write().map_err(report_failure))?;
-    let record = ViewFactorsRecord { timings: stages.timings().to_vec(), ..record };
+    stages.run("results", || found.write(files))?;
+    let record = ViewFactorsRecord { timings: stages.timings().to_vec(), ..recorded(&found.record, files) };
     let ended = if stages.is_cancelled() { Ended::Interrupted } else { Ended::Done };
     Ok((record, ended))
 }

@@ -1,15 +1,11 @@
 //! What is asked for, and the options in force as the record has them.
 
-use std::path::PathBuf;
-
-use fredholm_report::MatrixFormat;
 use fredholm_scene::{By, Geometry};
 use serde::Serialize;
 
 use super::method::{AUTO, Chosen};
-use super::target::MatrixFiles;
 use crate::memory::Limit;
-use crate::options::{GatherPoints, Recorded};
+use crate::options::{GatherPoints, Recorded, SceneSource};
 use crate::size::Bytes;
 use crate::{memory, threads};
 
@@ -20,7 +16,7 @@ const TOLERANCE: f64 = 1e-3;
 #[allow(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub struct ViewFactorOptions {
     /// Scene, or mesh file whose faces are the patches.
-    pub input: PathBuf,
+    pub input: SceneSource,
     /// Error asked for in a row. None: the input's, else 1e-3; of another method than `auto` its
     /// usual one.
     pub tolerance: Option<f64>,
@@ -49,7 +45,7 @@ pub struct ViewFactorOptions {
 
 impl ViewFactorOptions {
     /// The factors between the faces of a file by the fast assembly.
-    pub fn new(input: impl Into<PathBuf>) -> Self {
+    pub fn new(input: impl Into<SceneSource>) -> Self {
         Self {
             input: input.into(),
             tolerance: None,
@@ -93,8 +89,6 @@ pub(super) struct Settings {
     pub(super) sky: bool,
     /// Number of points, those of grids included.
     pub(super) points: usize,
-    format: &'static str,
-    output: String,
     threads: usize,
     /// `None`: most of what the system has.
     memory_limit_bytes: Option<u64>,
@@ -103,17 +97,7 @@ pub(super) struct Settings {
 }
 
 impl Settings {
-    pub(super) fn new(
-        asked: &ViewFactorOptions,
-        geometry: &Geometry,
-        files: &MatrixFiles,
-        method: Option<&Chosen>,
-    ) -> Self {
-        let format = match files.format {
-            MatrixFormat::Npz => "npz",
-            MatrixFormat::Csv => "csv",
-            MatrixFormat::View3d => "view3d",
-        };
+    pub(super) fn new(asked: &ViewFactorOptions, geometry: &Geometry, method: Option<&Chosen>) -> Self {
         Self {
             tolerance: asked.tolerance.or(geometry.tolerance()).unwrap_or(TOLERANCE),
             method: asked.method.clone(),
@@ -123,8 +107,6 @@ impl Settings {
             close: asked.close,
             sky: asked.sky,
             points: asked.points.count(),
-            format,
-            output: files.files.matrix.display().to_string(),
             threads: threads::count(asked.threads),
             memory_limit_bytes: asked.memory.map(Bytes::as_u64),
             recorded: asked.recorded.clone(),

@@ -1,6 +1,7 @@
 //! From a file to patches with rows, that fit the memory.
 
 use std::fmt::Display;
+use std::sync::Arc;
 
 use fredholm_coupling::form_factor::PairIntegrator;
 use fredholm_coupling::{Receiver, Targets, sky};
@@ -12,9 +13,9 @@ use super::SKY;
 use super::method::Chosen;
 use super::options::{Settings, ViewFactorOptions};
 use super::plan::{help, plan};
-use super::target::MatrixFiles;
 use crate::error::{Error, ErrorKind};
 use crate::memory::Plan;
+use crate::options::SceneSource;
 use crate::problem::scene_failure;
 use crate::stages::Stages;
 
@@ -37,14 +38,10 @@ pub(super) struct Problem {
 
 impl Problem {
     /// Reads and meshes; refuses before memory is taken what does not fit.
-    pub(super) fn load(
-        asked: &ViewFactorOptions,
-        files: &MatrixFiles,
-        stages: &mut Stages,
-    ) -> Result<Self, Error> {
+    pub(super) fn load(asked: &ViewFactorOptions, stages: &mut Stages) -> Result<Self, Error> {
         let method = method(asked)?;
-        let geometry = stages.run("geometry", || Geometry::load(&asked.input).map_err(scene_failure))?;
-        let options = Settings::new(asked, &geometry, files, method.as_ref());
+        let geometry = stages.run("geometry", || geometry(&asked.input))?;
+        let options = Settings::new(asked, &geometry, method.as_ref());
         let more = if options.sky { SKY_PATCHES } else { 0 };
         let count = usize::try_from(geometry.predicted_elements()).unwrap_or(usize::MAX).saturating_add(more);
         // The number of rows is not known before the mesh; it is at least 1.
@@ -135,6 +132,13 @@ impl Problem {
     }
 }
 
+fn geometry(input: &SceneSource) -> Result<Geometry, Error> {
+    match input {
+        SceneSource::File(path) => Geometry::load(path).map_err(scene_failure),
+        SceneSource::Scene(scene) => Ok(Geometry::from(Arc::clone(scene))),
+    }
+}
+
 /// The method asked for. A tolerance that nothing would look at is refused.
 fn method(asked: &ViewFactorOptions) -> Result<Option<Chosen>, Error> {
     let chosen = Chosen::new(&asked.method, asked.setting.as_deref(), asked.tolerance)?;
@@ -169,5 +173,5 @@ fn sky_around(
 }
 
 fn named(asked: &ViewFactorOptions, error: impl Display) -> Error {
-    Error::new(ErrorKind::Input, format!("{}: {error}", asked.input.display()))
+    Error::new(ErrorKind::Input, format!("{}: {error}", asked.input.path().display()))
 }

@@ -36,7 +36,7 @@ pub(super) fn record(
     let warnings = problem.geometry.warnings().iter().cloned();
     ViewFactorsRecord {
         version: env!("CARGO_PKG_VERSION").to_owned(),
-        input: asked.input.display().to_string(),
+        input: asked.input.path().display().to_string(),
         input_sha256: problem.geometry.sha256().to_owned(),
         title: problem.geometry.title().map(str::to_owned),
         options: serde_json::to_value(&problem.options).unwrap_or(Value::Null),

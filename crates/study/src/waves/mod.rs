@@ -24,4 +24,5 @@ pub(crate) use model::{Band, Method, Model, is_scene};
 pub(crate) use receivers::Places;
 pub(crate) use record::Outcome;
 pub use record::Solved as SolvedFrequency;
+pub use registry::build as build_wave_solver;
 pub use study::{SolvedWaves, WaveCompareOptions, WaveOptions, check_wave_solver, compare_waves, waves};

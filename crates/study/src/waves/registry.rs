@@ -9,8 +9,11 @@ pub(crate) fn names() -> Vec<&'static str> {
     iterative.chain(fredholm_direct::entries::<Complex64>().into_iter().map(|entry| entry.name)).collect()
 }
 
-/// The solver that a text such as `gmres:restart=100` asks for.
-pub(crate) fn build(text: &str) -> Result<Box<dyn Solver<Complex64>>, OptionError> {
+/// The solver of complex systems that a text such as `gmres:restart=100` asks for.
+///
+/// # Errors
+/// There is none of this name, or its options are wrong.
+pub fn build(text: &str) -> Result<Box<dyn Solver<Complex64>>, OptionError> {
     let (name, given) = Options::parse(text)?;
     let scheme = fredholm_iterative::entries::<Complex64>().into_iter().find(|entry| entry.name == name);
     if let Some(entry) = scheme {

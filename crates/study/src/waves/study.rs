@@ -110,6 +110,19 @@ fn load(scene: &Path, asked: &WaveOptions, stages: &mut Stages) -> Result<Model,
 }
 
 impl SolvedWaves<'_> {
+    /// The same without its watch, for a caller that keeps the result longer than that.
+    #[must_use]
+    pub fn unwatched(self) -> SolvedWaves<'static> {
+        let Self { model, outcome, stages, report } = self;
+        SolvedWaves { model, outcome, stages: stages.unwatched(), report }
+    }
+
+    /// What is worth knowing of the run so far, as `run.json` has it.
+    #[must_use]
+    pub fn record(&self) -> serde_json::Value {
+        self.outcome.record(&self.model, self.stages.timings())
+    }
+
     /// The fields at the points of the receivers, V/m and A/m.
     #[must_use]
     pub fn near(&self) -> &[WaveRow] {

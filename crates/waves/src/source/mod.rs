@@ -37,7 +37,7 @@ impl Origin {
 }
 
 /// A source of an incident field.
-pub trait Source: Sync {
+pub trait Source: Send + Sync {
     /// The field at `p` (m) as if the scatterer were not there. At the source itself it is not finite.
     fn field(&self, wave: &Wave, p: Vec3) -> Field;
 

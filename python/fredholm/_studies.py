@@ -1,0 +1,370 @@
+"""Studies whose answer is a record and files: what a class is made of is said with the class."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    Callable,
+    Dict,
+    List,
+    Optional,
+    Sequence,
+    Tuple,
+    Type,
+    TypeVar,
+    Union,
+)
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core, _html, _options
+from ._errors import Interrupted, wrong
+from ._options import Memory, Progress
+
+if TYPE_CHECKING:
+    from ._scene import Scene
+
+Floats = NDArray[np.float64]
+S = TypeVar("S", bound="Study")
+
+
+class Study:
+    """The answer of a study.
+
+    Attributes
+    ----------
+    record : dict
+        Everything that was found, as the record among the files has it; a number that is not finite
+        is None.
+    ended : str
+        "done", "not converged" or "interrupted"; of a cross-check its verdict.
+    """
+
+    def __init__(self, core: _core.Study) -> None:
+        self._core = core
+        self.record: Dict[str, Any] = _options.record(core.record)
+        self.ended: str = core.ended
+
+    @property
+    def files(self) -> List[str]:
+        """Names of the files that :meth:`write` writes."""
+        return self._core.files
+
+    @property
+    def warnings(self) -> List[str]:
+        """What the user should know."""
+        return list(self.record.get("warnings", []))
+
+    def write(self, folder: _options.Path) -> None:
+        """Writes what the command line writes into a folder, which is made where it does not exist.
+
+        Parameters
+        ----------
+        folder : str or path
+            The folder. The record is written last: where it stands, the folder is complete.
+        """
+        self._core.write(os.fspath(folder))
+
+    def table(self, file: str) -> Dict[str, NDArray[Any]]:
+        """The columns of one of the files that end in .csv, by their names.
+
+        Parameters
+        ----------
+        file : str
+            One of :attr:`files`.
+        """
+        _options.known(file, [name for name in self.files if name.endswith(".csv")], "table")
+        rows = list(csv.reader(io.StringIO(bytes(self._core.read(file)).decode())))
+        return {name: _column(values) for name, *values in zip(*rows)}
+
+    def to_pandas(self, file: Optional[str] = None) -> Any:
+        """A table as a ``pandas.DataFrame``: the first one where none is named."""
+        import pandas
+
+        tables = [name for name in self.files if name.endswith(".csv")]
+        if file is None and not tables:
+            raise wrong("this study writes no table", "see .record")
+        return pandas.DataFrame(self.table(file or tables[0]))
+
+    def _facts(self) -> List[Tuple[str, str]]:
+        shown = [
+            (key.replace("_", " "), f"{value:.6g}" if isinstance(value, float) else str(value))
+            for key, value in self.record.items()
+            if isinstance(value, (str, int, float))
+            and key not in ("format", "version", "scene_sha256")
+        ]
+        return [("ended", self.ended), *shown, *(("warning", text) for text in self.warnings)]
+
+    def __repr__(self) -> str:
+        lines = [f"  {label:<22}{text}" for label, text in self._facts()]
+        return "\n".join([f"<{type(self).__name__}>", *lines])
+
+    def _repr_html_(self) -> str:
+        tables = [name for name in self.files if name.endswith(".csv")]
+        more = ""
+        if tables:
+            columns = self.table(tables[0])
+            more = _html.table(
+                list(columns), list(zip(*(map(str, column) for column in columns.values())))
+            )
+        return _html.panel(type(self).__name__, self._facts(), more)
+
+
+def _column(values: List[str]) -> NDArray[Any]:
+    """Whole numbers, numbers, or texts. What is left empty is NaN among numbers."""
+    for kind in (np.int64, np.float64):
+        try:
+            return np.array([value or "nan" for value in values], dtype=str).astype(kind)
+        except (ValueError, OverflowError):
+            pass
+    return np.array(values, dtype=object)
+
+
+class Check(Study):
+    """What the mesh of a scene is, and what its solution will take.
+
+    ``record`` has pieces, components, closed, diagonal (m) and findings of the mesh; elements,
+    faces, surfaces, occluders, unknowns, memory_bytes, seconds (of the form factors, from a sample)
+    and warnings of a solution, or refused, why it does not fit the memory. check.png shows the
+    sides.
+    """
+
+
+class Comparison(Study):
+    """Solvers on one system: iterations, work, time and error against the best answer there is."""
+
+    @property
+    def runs(self) -> List[Dict[str, Any]]:
+        """What became of each solver in each case, with ``solver``, ``outcome``, ``iterations``,
+        ``seconds``, ``residual``, ``error`` and ``history``."""
+        cases = self.record["cases"]
+        return [
+            {"reflectance": case.get("reflectance"), **run}
+            for case in cases
+            for run in case["runs"]
+        ]
+
+
+class Convergence(Study):
+    """A scene on finer and finer meshes: the order of the error, and how much of it is left.
+
+    ``record["levels"]`` has the elements, unknowns, size h (m) and seconds of each mesh;
+    ``record["bands"]`` the differences to the finest, the orders and the verdict of each band.
+    """
+
+
+class Spectrum(Study):
+    """Eigenvalues, radii and conditions of the matrix of a scene, in ``record["bands"]``."""
+
+
+class Trace(Study):
+    """Estimates by random paths, with standard errors.
+
+    ``table("faces.csv")`` has the irradiance of every face and its standard error, W/m².
+    """
+
+
+class Crosscheck(Study):
+    """A solution and random paths, place by place: ``ended`` is "agree", "disagree" or
+    "undecided"."""
+
+    @property
+    def agrees(self) -> bool:
+        """Whether the two agree, and a deviation worth the name would have been found."""
+        return self.ended == "agree"
+
+
+class Reference(Study):
+    """Reference values with stated errors for other programs: reference.csv among the files."""
+
+
+def _found(make: Type[S], run: Callable[[], _core.Study]) -> S:
+    """The answer of a run; what Ctrl-C leaves of it is one, too."""
+    try:
+        return make(run())
+    except Interrupted as stop:
+        if stop.partial is not None:
+            stop.partial = make(stop.partial)
+        raise
+
+
+def check(
+    scene: Scene,
+    *,
+    threads: Optional[int] = None,
+    discretisation: Optional[str] = None,
+    solver: Optional[str] = None,
+    form_factor_tolerance: Optional[float] = None,
+    storage: Optional[str] = None,
+    memory: Memory = None,
+    progress: Progress = None,
+) -> Check:
+    """See :class:`Check`; the arguments are those of :meth:`Scene.solve`."""
+    problem = _options.problem(
+        threads, discretisation, solver, form_factor_tolerance, storage, memory
+    )
+    how = _options.how(threads, progress)
+    return _found(Check, lambda: _core.check(scene._core, problem, how))
+
+
+def compare(
+    scene: Scene,
+    solvers: Union[str, Sequence[str]] = "all",
+    *,
+    tolerance: float = 1e-10,
+    max_iterations: int = 1000,
+    sweep: Optional[Sequence[float]] = None,
+    report: bool = True,
+    form_factor_tolerance: Optional[float] = None,
+    storage: Optional[str] = None,
+    threads: Optional[int] = None,
+    memory: Memory = None,
+    progress: Progress = None,
+) -> Comparison:
+    """Runs ``solvers`` (names, such as "gmres:restart=20", or "all") to a residual of ``tolerance``
+    in at most ``max_iterations``; ``sweep`` are largest reflectances to which all are scaled in
+    turn."""
+    _options.stop(tolerance, max_iterations)
+    asked = {
+        "solvers": _options.texts(solvers),
+        "tolerance": tolerance,
+        "max_iterations": max_iterations,
+        "sweep": None if sweep is None else [float(value) for value in sweep],
+        "report": report,
+        "problem": _options.problem(threads, None, None, form_factor_tolerance, storage, memory),
+    }
+    known = [entry[0] for entry in _core.solvers()] + ["all"]
+    for text in _options.texts(solvers):
+        _options.known(text.split(":")[0], known, "solver")
+    how = _options.how(threads, progress)
+    return _found(Comparison, lambda: _core.compare(scene._core, asked, how))
+
+
+def converge(
+    scene: Scene,
+    levels: int = 3,
+    *,
+    discretisation: Optional[str] = None,
+    solver: Optional[str] = None,
+    tolerance: Optional[float] = None,
+    max_iterations: Optional[int] = None,
+    form_factor_tolerance: Optional[float] = None,
+    report: bool = True,
+    threads: Optional[int] = None,
+    memory: Memory = None,
+    progress: Progress = None,
+) -> Convergence:
+    """Solves on ``levels`` meshes: that of the scene, and each with 2 × 2 elements for one of the
+    last."""
+    if not 1 <= levels <= 20:
+        raise wrong(
+            f"levels is {levels}", "ask for 3 levels or more, the fewest that show an order"
+        )
+    problem = _options.problem(threads, discretisation, solver, form_factor_tolerance, None, memory)
+    stop, how = _options.stop(tolerance, max_iterations), _options.how(threads, progress)
+    return _found(
+        Convergence, lambda: _core.converge(scene._core, (levels, report), problem, stop, how)
+    )
+
+
+def spectrum(
+    scene: Scene,
+    *,
+    dense: int = 2000,
+    steps: int = 60,
+    form_factor_tolerance: Optional[float] = None,
+    threads: Optional[int] = None,
+    memory: Memory = None,
+    progress: Progress = None,
+) -> Spectrum:
+    """Analyses the matrix: by dense methods up to ``dense`` unknowns, beyond by so many ``steps``
+    of the Lanczos process."""
+    problem = _options.problem(threads, None, None, form_factor_tolerance, None, memory)
+    how = _options.how(threads, progress)
+    return _found(Spectrum, lambda: _core.spectrum(scene._core, (dense, steps), problem, how))
+
+
+def sampling(
+    method: Optional[str],
+    *,
+    control: bool = False,
+    spp: Optional[int] = None,
+    pictures: bool = True,
+    report: bool = True,
+    accuracy: Optional[float] = None,
+    significance: float = 0.01,
+    correction: str = "holm",
+    seed: int = 1,
+    points: str = "sobol",
+    batch: Optional[int] = None,
+    samples: Optional[int] = None,
+    seconds: Optional[float] = None,
+    to: Optional[float] = None,
+    threads: Optional[int] = None,
+    discretisation: Optional[str] = None,
+    solver: Optional[str] = None,
+    form_factor_tolerance: Optional[float] = None,
+    memory: Memory = None,
+) -> Dict[str, Any]:
+    """What is asked of random paths."""
+    _options.share("accuracy", accuracy)
+    _options.share("significance", significance)
+    _options.share("to", to)
+    return {
+        "method": method,
+        "control": control,
+        "spp": spp,
+        "pictures": pictures,
+        "report": report,
+        "accuracy": accuracy,
+        "significance": significance,
+        "correction": correction,
+        "paths": {"seed": seed, "points": points, "batch": batch},
+        "tracing": {"samples": samples, "seconds": seconds, "error": to},
+        "problem": _options.problem(
+            threads, discretisation, solver, form_factor_tolerance, None, memory
+        ),
+    }
+
+
+def trace(scene: Any, method: str = "path", *, progress: Progress = None, **options: Any) -> Trace:
+    """Estimates the irradiance of the faces by random paths.
+
+    ``method`` is path, light, bidirectional, walk-gathering or another one that the command line
+    lists. Tracing ends at the first of ``samples``, ``seconds`` and the standard error ``to``
+    (0.01). ``seed``, ``points`` and ``batch`` say how paths are made, ``control`` whether the scene
+    is solved first and only sampled for the rest, ``spp`` how often each pixel is sampled.
+    """
+    asked, how = sampling(method, **options), _options.how(options.get("threads"), progress)
+    return _found(Trace, lambda: _core.trace(_source(scene), asked, how))
+
+
+def crosscheck(
+    scene: Any, method: Optional[str] = None, *, progress: Progress = None, **options: Any
+) -> Crosscheck:
+    """Solves and traces, and decides by statistics whether the two agree.
+
+    ``method`` and the options of tracing are those of :func:`trace`; ``accuracy`` is asked of the
+    solution, ``significance`` is the probability of a false alarm, ``correction`` "holm" or
+    "benjamini-hochberg".
+    """
+    asked, how = sampling(method, **options), _options.how(options.get("threads"), progress)
+    return _found(Crosscheck, lambda: _core.crosscheck(_source(scene), asked, how))
+
+
+def reference(scene: Scene, *, progress: Progress = None, **options: Any) -> Reference:
+    """Solves, and traces with the solution as control variate up to the standard error ``to``
+    (0.002)."""
+    asked, how = sampling(None, **options), _options.how(options.get("threads"), progress)
+    paths, tracing, problem = asked["paths"], asked["tracing"], asked["problem"]
+    return _found(Reference, lambda: _core.reference(scene._core, paths, tracing, problem, how))
+
+
+def _source(scene: Any) -> Any:
+    """A scene as it was read, or the file of one of waves."""
+    return getattr(scene, "_core", None) or scene.path

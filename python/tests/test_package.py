@@ -1,0 +1,89 @@
+"""The package as a whole: imports, stubs, examples, and the code of the documentation."""
+
+import json
+import pathlib
+import re
+import runpy
+import subprocess
+import sys
+from typing import Any, List
+
+import pytest
+from conftest import ROOT
+
+import fredholm
+
+PAGE = ROOT / "docs" / "python.md"
+EXAMPLES = sorted((ROOT / "examples" / "python").glob("*.py"))
+
+
+def test_nothing_but_numpy_is_imported() -> None:
+    code = "import fredholm, sys; print(' '.join({name.split('.')[0] for name in sys.modules}))"
+    loaded = subprocess.run(
+        [sys.executable, "-c", code], check=True, capture_output=True, text=True
+    ).stdout.split()
+    assert "numpy" in loaded
+    assert not {
+        "scipy",
+        "pandas",
+        "xarray",
+        "pyvista",
+        "tqdm",
+        "matplotlib",
+        "trimesh",
+        "meshio",
+    } & set(loaded)
+
+
+def test_every_public_name_is_documented() -> None:
+    for name in fredholm.__all__:
+        assert name.startswith("__") or getattr(fredholm, name).__doc__, name
+
+
+def test_stubs_are_those_of_the_module() -> None:
+    pytest.importorskip("mypy")
+    command = [sys.executable, "-m", "mypy.stubtest", "fredholm._core", "--ignore-disjoint-bases"]
+    found = subprocess.run(command, capture_output=True, text=True, cwd=ROOT / "python" / "tests")
+    assert found.returncode == 0, found.stdout + found.stderr
+
+
+def blocks() -> List[Any]:
+    """The code of the page: the blocks of one heading belong together."""
+    parts = re.split(r"^## ", PAGE.read_text(), flags=re.MULTILINE)
+    code = [
+        (part.splitlines()[0], re.findall(r"```python\n(.*?)```", part, re.DOTALL))
+        for part in parts
+    ]
+    return [pytest.param("\n".join(found), id=title) for title, found in code if found]
+
+
+@pytest.mark.filterwarnings("ignore::fredholm.FredholmWarning")
+@pytest.mark.parametrize("code", blocks())
+def test_the_code_of_the_page_runs(code: str, tmp_path: pathlib.Path, monkeypatch: Any) -> None:
+    for name in set(re.findall(r"^\s*(?:import|from) (\w+)", code, re.MULTILINE)):
+        pytest.importorskip(name)
+    (tmp_path / "scenes").symlink_to(ROOT / "scenes")
+    monkeypatch.chdir(tmp_path)
+    exec(compile(code, str(PAGE), "exec"), {"__name__": "__main__"})
+
+
+@pytest.mark.filterwarnings("ignore::fredholm.FredholmWarning")
+def test_the_notebook_runs(tmp_path: pathlib.Path, monkeypatch: Any) -> None:
+    notebook = json.loads((ROOT / "examples" / "python" / "five_minutes.ipynb").read_text())
+    cells = ["".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "code"]
+    assert len(cells) >= 4 and not any(
+        cell["outputs"] for cell in notebook["cells"] if "outputs" in cell
+    )
+    (tmp_path / "scenes").symlink_to(ROOT / "scenes")
+    monkeypatch.chdir(tmp_path)
+    exec(compile("\n".join(cells), "notebook", "exec"), {"__name__": "__main__"})
+
+
+@pytest.mark.filterwarnings("ignore::fredholm.FredholmWarning")
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.name)
+def test_examples_run(path: pathlib.Path, tmp_path: pathlib.Path, monkeypatch: Any) -> None:
+    for name in set(re.findall(r"^(?:import|from) (\w+)", path.read_text(), re.MULTILINE)):
+        pytest.importorskip(name)
+    (tmp_path / "scenes").symlink_to(ROOT / "scenes")
+    monkeypatch.chdir(tmp_path)
+    runpy.run_path(str(path), run_name="__main__")
