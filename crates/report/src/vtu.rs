@@ -171,7 +171,6 @@ fn cells<'a>(leaves: &'a Welded, welded: &'a Welded) -> Vec<Array<'a>> {
             Some(*end)
         })
     };
-    let corners = ends().last().unwrap_or(0);
     vec![
         Array::integers("connectivity", || welded.patches().flatten().copied()),
         Array::integers("offsets", ends),

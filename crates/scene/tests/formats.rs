@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use std::fmt::Write;
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -166,10 +167,13 @@ fn every_mesh_file_is_one_for_view_factors() {
     }
 }
 
+/// Files by their names.
+type Files = Vec<(String, Vec<u8>)>;
+
 /// A small file in every form, by the name that it goes under, with the files that it names.
-fn originals() -> Vec<(String, Vec<(String, Vec<u8>)>)> {
+fn originals() -> Vec<(String, Files)> {
     let outline = scene().outline(None).unwrap();
-    let mut all: Vec<(String, Vec<(String, Vec<u8>)>)> = vec![];
+    let mut all: Vec<(String, Files)> = vec![];
     for (format, ..) in FORMATS {
         let files = outline.export(format, "a").files;
         all.push((files[0].0.clone(), files));
@@ -186,7 +190,9 @@ fn text_stl(outline: &Outline) -> Vec<u8> {
     let mut text = "solid a\n".to_owned();
     for corners in triangles(outline) {
         text.push_str("facet normal 0 0 1\nouter loop\n");
-        corners.iter().for_each(|p| text.push_str(&format!("vertex {} {} {}\n", p.x, p.y, p.z)));
+        for p in corners {
+            writeln!(text, "vertex {} {} {}", p.x, p.y, p.z).unwrap();
+        }
         text.push_str("endloop\nendfacet\n");
     }
     (text + "endsolid a\n").into_bytes()
@@ -280,7 +286,7 @@ const PIECES: [&[u8]; 12] = [
 /// Bytes that differ from a file in one to three places.
 fn mutated(bytes: &[u8], chance: &mut Chance) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
-    for _ in 0..1 + chance.below(3) {
+    for _ in 0..=chance.below(3) {
         let at = chance.below(bytes.len());
         match chance.below(6) {
             0 => bytes.truncate(at),

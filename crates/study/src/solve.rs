@@ -237,7 +237,7 @@ fn dense(
     let SolveOptions { final_gather, discontinuity, no_pictures, no_report, .. } = *asked;
     let also = asked.also.clone();
     let options =
-        SolveSettings { points, also, final_gather, discontinuity, no_pictures, no_report, ..options };
+        SolveSettings { points, final_gather, discontinuity, no_pictures, no_report, also, ..options };
     let solution = compute(&problem, &options, stages)?;
     Ok((options, problem, solution))
 }

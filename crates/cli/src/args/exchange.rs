@@ -11,7 +11,7 @@ use super::LogArgs;
 /// What follows the help of `export`.
 pub(super) const EXPORT_EXAMPLES: &str = "\
 Examples:
-  fredholm export scenes/cornell_box.toml --to mitsuba -o out/mitsuba
+  fredholm export scenes/cornell_planar.toml --to mitsuba -o out/mitsuba
   fredholm export room.toml --to radiance -o out/radiance
   fredholm export spectral.toml --to pbrt --band 540nm -o out/pbrt
 
@@ -24,7 +24,7 @@ pub(super) const CONVERT_EXAMPLES: &str = "\
 Examples:
   fredholm convert chair.stl chair.obj
   fredholm convert room.xml room.glb
-  fredholm convert scenes/cornell_box.toml cornell.msh
+  fredholm convert scenes/cornell_planar.toml cornell.msh
 
 Read are .obj, .stl, .ply, .gltf, .glb, .msh (Gmsh 4.1), .rad (Radiance), .xml (Mitsuba 3), .vs3
 (View3D) and scenes (.toml). Written are .obj (with .mtl), .stl, .ply, .glb, .msh, .rad, .xml and

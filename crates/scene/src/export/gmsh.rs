@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use fredholm_mesh::Bounds;
 
-use super::{Exported, Merged, Outline, triple};
+use super::{Exported, Merged, Outline, triple, without_materials};
 
 pub(super) fn export(outline: &Outline, stem: &str) -> Exported {
     let sides = outline.sides();
@@ -44,8 +44,8 @@ pub(super) fn export(outline: &Outline, stem: &str) -> Exported {
         let _ = writeln!(text, "{}", triple(place.to_array()));
     }
     let _ = writeln!(text, "$EndNodes\n$Elements\n{} {number} 1 {number}", blocks.len());
-    blocks.iter().for_each(|block| text.push_str(block));
+    text.extend(blocks);
     text.push_str("$EndElements\n");
-    let notes = outline.without_materials("Gmsh");
+    let notes = without_materials("Gmsh");
     Exported { files: vec![(format!("{stem}.msh"), text.into_bytes())], notes }
 }

@@ -1,12 +1,15 @@
-//! Mitsuba 3: a PLY file a surface, diffuse BSDFs, area emitters, a perspective sensor.
+//! Mitsuba 3: a PLY file of triangles a surface, diffuse BSDFs, area emitters, a perspective sensor.
 
 use std::fmt::Write;
 
-use super::{Exported, Outline, OutlineMaterial, OutlineSurface, polygons, words};
+use super::{Exported, Outline, OutlineMaterial, OutlineSurface, triangles, words};
 use crate::resolve::Camera;
 
 pub(super) fn export(outline: &Outline, stem: &str) -> Exported {
-    let materials = words(outline.materials.iter().map(|material| material.name.as_str()));
+    // No two things may have the same id: surfaces keep their names, materials get a number where need be.
+    let surfaces = outline.surfaces.iter().map(|surface| surface.name.as_str());
+    let mut names = words(surfaces.chain(outline.materials.iter().map(|material| material.name.as_str())));
+    let materials = names.split_off(outline.surfaces.len());
     let mut notes =
         vec!["Mitsuba computes in f32: coordinates and colours are rounded to 7 digits".to_owned()];
     let mut text = "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<scene version=\"3.0.0\">\n".to_owned();
@@ -17,7 +20,7 @@ pub(super) fn export(outline: &Outline, stem: &str) -> Exported {
     for (material, id) in outline.materials.iter().zip(&materials) {
         let _ = writeln!(text, "  {}", bsdf(material, &format!(" id=\"{}\"", escaped(id))));
     }
-    let (mut files, names) = (vec![], words(outline.surfaces.iter().map(|surface| surface.name.as_str())));
+    let mut files = vec![];
     for ((number, surface), id) in outline.surfaces.iter().enumerate().zip(names) {
         let file = format!("{stem}_meshes/{number}.ply");
         let front = &outline.materials[surface.material];
@@ -36,7 +39,7 @@ pub(super) fn export(outline: &Outline, stem: &str) -> Exported {
             ));
         }
         text.push_str("  </shape>\n");
-        files.push((file, polygons(&surface.faces)));
+        files.push((file, triangles(&surface.faces)));
     }
     text.push_str("</scene>\n");
     files.insert(0, (format!("{stem}.xml"), text.into_bytes()));

@@ -155,7 +155,10 @@ impl Scene {
 
     fn coloured(&self, material: &Material, band: Option<&str>) -> Result<OutlineMaterial, SceneError> {
         let refuse = |what: String| {
-            let help = format!("choose one of its bands to be exported as grey: {}", self.bands().join(", "));
+            let help = format!(
+                "choose a band that stands for grey by `fredholm export --band`: {}",
+                self.bands().join(", ")
+            );
             Err(SceneError::new(ErrorKind::Name, self.path(), what, help))
         };
         let of = |values: &[f64]| match band {
@@ -276,11 +279,11 @@ impl Outline {
         }
         sides
     }
+}
 
-    /// Says that a format holds no materials.
-    fn without_materials(&self, format: &str) -> Vec<String> {
-        vec![format!("{format} holds no materials: reflectances and exitances are left out")]
-    }
+/// Says that a format holds no materials.
+fn without_materials(format: &str) -> Vec<String> {
+    vec![format!("{format} holds no materials: reflectances and exitances are left out")]
 }
 
 /// Names without blanks, each different from all others.
@@ -333,7 +336,11 @@ fn triple(values: [f64; 3]) -> String {
     values.map(|x| format!("{}", x + 0.0)).join(" ")
 }
 
-/// A PLY file of polygons.
-fn polygons(faces: &[Vec<Vec3>]) -> Vec<u8> {
-    ply::write(faces.iter().map(|face| (0, face.as_slice())), &[])
+/// A PLY file of the triangles of polygons.
+fn triangles(faces: &[Vec<Vec3>]) -> Vec<u8> {
+    let of = |face: &Vec<Vec3>| -> Vec<[Vec3; 3]> {
+        face[1..].windows(2).map(|side| [face[0], side[0], side[1]]).collect()
+    };
+    let all: Vec<[Vec3; 3]> = faces.iter().flat_map(of).collect();
+    ply::write(all.iter().map(|triangle| (0, triangle.as_slice())), &[])
 }

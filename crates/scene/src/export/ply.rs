@@ -1,8 +1,10 @@
 //! Binary PLY, little endian, f64: faces with the number of their surface.
 
+use std::fmt::Write;
+
 use fredholm_mesh::Vec3;
 
-use super::{Exported, Merged, Outline};
+use super::{Exported, Merged, Outline, without_materials};
 
 pub(super) fn export(outline: &Outline, stem: &str) -> Exported {
     let sides = outline.sides();
@@ -12,7 +14,7 @@ pub(super) fn export(outline: &Outline, stem: &str) -> Exported {
         .flat_map(|(k, (_, _, faces))| faces.iter().map(move |face| (k, face.as_slice())));
     let names: Vec<&str> = sides.iter().map(|(name, ..)| name.as_str()).collect();
     let bytes = write(faces, &names);
-    let mut notes = outline.without_materials("PLY");
+    let mut notes = without_materials("PLY");
     notes.push(
         "PLY holds no names: the property surface of a face counts the surfaces, which comments name"
             .to_owned(),
@@ -34,11 +36,12 @@ pub(super) fn write<'a>(faces: impl Iterator<Item = (usize, &'a [Vec3])>, names:
     }
     let mut head = "ply\nformat binary_little_endian 1.0\n".to_owned();
     for (k, name) in names.iter().enumerate() {
-        head.push_str(&format!("comment surface {k} {name}\n"));
+        // Writing to a string cannot fail.
+        let _ = writeln!(head, "comment surface {k} {name}");
     }
-    head.push_str(&format!("element vertex {}\n", merged.places.len()));
+    let _ = writeln!(head, "element vertex {}", merged.places.len());
     head.push_str("property double x\nproperty double y\nproperty double z\n");
-    head.push_str(&format!("element face {count}\nproperty list uchar int vertex_indices\n"));
+    let _ = writeln!(head, "element face {count}\nproperty list uchar int vertex_indices");
     head.push_str(if names.is_empty() { "" } else { "property int surface\n" });
     head.push_str("end_header\n");
     let mut bytes = head.into_bytes();

@@ -2,7 +2,7 @@
 
 use fredholm_mesh::Vec3;
 
-use super::{Exported, Outline};
+use super::{Exported, Outline, without_materials};
 
 pub(super) fn export(outline: &Outline, stem: &str) -> Exported {
     let mut triangles: Vec<[Vec3; 3]> = vec![];
@@ -22,7 +22,7 @@ pub(super) fn export(outline: &Outline, stem: &str) -> Exported {
         }
         bytes.extend([0; 2]);
     }
-    let mut notes = outline.without_materials("STL");
+    let mut notes = without_materials("STL");
     notes.push(
         "STL holds f32: coordinates are rounded to 7 digits, and names of surfaces are left out".to_owned(),
     );

@@ -7,6 +7,7 @@
 //! is the radiance. Pictures, skins, morph targets and lights without a surface are not read, which
 //! is told.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use base64::Engine;
@@ -15,7 +16,7 @@ use fredholm_mesh::Vec3;
 
 use super::cursor::{Cursor, Encoding, Scalar};
 use super::json::{self, Json};
-use super::{Group, Imported, Input, MeshMaterial, Name, Note, face};
+use super::{Group, Imported, Input, MeshMaterial, Name, Note, check_faces, face};
 use crate::error::{ErrorKind, SceneError};
 use crate::source::Source;
 
@@ -94,7 +95,8 @@ fn read(
     file.told(&mut notes);
     let buffers = file.buffers(blob, &mut input)?;
     let materials = file.materials()?;
-    let mut reader = Reader { file: &file, buffers, materials: &materials, groups: vec![], visited: 0 };
+    let mut reader =
+        Reader { file: &file, buffers, materials: &materials, groups: vec![], visited: 0, faces: 0 };
     reader.scene()?;
     let groups = reader.groups;
     Ok(Imported { materials, notes, ..Imported::new(source, groups) })
@@ -279,6 +281,7 @@ struct Reader<'a> {
     materials: &'a [MeshMaterial],
     groups: Vec<Group>,
     visited: usize,
+    faces: usize,
 }
 
 impl<'a> Reader<'a> {
@@ -291,16 +294,13 @@ impl<'a> Reader<'a> {
             None => scenes.first(),
         };
         let all = json.get("nodes").and_then(Json::list).unwrap_or_default();
-        let roots: Vec<&'a Json> = match scene {
-            Some(scene) => {
-                let list = scene.get("nodes").and_then(Json::list).unwrap_or_default();
-                list.iter().map(|index| file.item("nodes", index)).collect::<Result<_, _>>()?
-            }
-            None => {
-                let children = |node: &'a Json| node.get("children").and_then(Json::list).unwrap_or_default();
-                let inner: Vec<usize> = all.iter().flat_map(children).filter_map(Json::whole).collect();
-                (0..all.len()).filter(|k| !inner.contains(k)).map(|k| &all[k]).collect()
-            }
+        let roots: Vec<&'a Json> = if let Some(scene) = scene {
+            let list = scene.get("nodes").and_then(Json::list).unwrap_or_default();
+            list.iter().map(|index| file.item("nodes", index)).collect::<Result<_, _>>()?
+        } else {
+            let children = |node: &'a Json| node.get("children").and_then(Json::list).unwrap_or_default();
+            let inner: BTreeSet<usize> = all.iter().flat_map(children).filter_map(Json::whole).collect();
+            (0..all.len()).filter(|k| !inner.contains(k)).map(|k| &all[k]).collect()
         };
         let identity = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
         let mut open: Vec<(&Json, Matrix)> = roots.into_iter().rev().map(|node| (node, identity)).collect();
@@ -385,6 +385,8 @@ impl<'a> Reader<'a> {
             None => (0..vertices.len() as u64).collect::<Vec<_>>(),
         };
         let span = primitive.get("indices").unwrap_or(primitive).span.clone();
+        self.faces += indices.len() / 3;
+        check_faces(file.source, self.faces, span.clone())?;
         let mut faces = vec![];
         for corners in triangles(mode, &indices, is_mirrored(matrix)) {
             faces.push(face(file.source, &vertices, &corners, span.clone())?);
@@ -445,9 +447,11 @@ impl<'a> Reader<'a> {
             self.replace(sparse, &layout, &mut values)?;
         }
         if accessor.get("normalized").and_then(Json::bool) == Some(true) && scalar.is_whole() {
-            let largest = if matches!(scalar, Scalar::I8 | Scalar::I16 | Scalar::I32) { 1 } else { 0 };
-            let largest = 2.0_f64.powi(8 * scalar.size() as i32 - largest) - 1.0;
-            values.iter_mut().for_each(|value| *value = (*value / largest).max(-1.0));
+            let signed = i32::from(matches!(scalar, Scalar::I8 | Scalar::I16 | Scalar::I32));
+            let largest = 2.0_f64.powi(8 * scalar.size() as i32 - signed) - 1.0;
+            for value in &mut values {
+                *value = (*value / largest).max(-1.0);
+            }
         }
         Ok(values)
     }
@@ -570,6 +574,7 @@ fn percent_decoded(text: &str) -> String {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "these values are exact")]
 mod tests {
     use super::*;
     use crate::Place;

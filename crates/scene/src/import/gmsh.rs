@@ -136,12 +136,9 @@ fn curved(found: Option<(usize, usize)>) -> Vec<Note> {
 fn format(cursor: &mut Cursor) -> Result<Encoding, SceneError> {
     let (line, span) = cursor.line().ok_or_else(|| cursor.ended("the version of the format"))?;
     let words: Vec<&str> = line.split_whitespace().collect();
-    let (kind, size) = match words[..] {
-        ["4.1", kind, size] => (kind, size),
-        _ => {
-            let what = format!("the version `{}` is not read", line.trim());
-            return Err(cursor.error(span.start, what, "save the mesh in version 4.1: gmsh -format msh41"));
-        }
+    let ["4.1", kind, size] = words[..] else {
+        let what = format!("the version `{}` is not read", line.trim());
+        return Err(cursor.error(span.start, what, "save the mesh in version 4.1: gmsh -format msh41"));
     };
     if size != "8" || !matches!(kind, "0" | "1") {
         let help = "save the mesh with numbers of 8 bytes";

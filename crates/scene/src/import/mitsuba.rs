@@ -15,7 +15,9 @@ use fredholm_mesh::Vec3;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader as Xml, XmlVersion};
 
-use super::{Group, Imported, ImportedFace, Input, MeshMaterial, Name, Note, add_material, import as mesh};
+use super::{
+    Group, Imported, ImportedFace, Input, MeshMaterial, Name, Note, add_material, check_faces, import as mesh,
+};
 use crate::error::{ErrorKind, SceneError};
 use crate::resolve::Camera;
 use crate::source::Source;
@@ -27,6 +29,8 @@ const PASSED_OVER: [&str; 9] =
     ["integrator", "sampler", "rfilter", "film", "string", "integer", "float", "boolean", "default"];
 /// Reflectance where a BSDF does not say.
 const UNSAID: f64 = 0.5;
+/// Longest value of an attribute, once defaults are put in: they could double it again and again.
+const LONGEST: usize = 65_536;
 /// Largest picture that is taken over, pixels along a side.
 const LARGEST: f64 = 16384.0;
 
@@ -134,6 +138,9 @@ fn node(
         let mut value = value.map_err(|error| refuse(error.to_string()))?.into_owned();
         for (name, text) in defaults.iter() {
             value = value.replace(&format!("${name}"), text);
+            if value.len() > LONGEST {
+                return Err(refuse(format!("defaults make a value longer than {LONGEST} bytes")));
+            }
         }
         node.attributes.push((attribute.key.0.to_owned(), value));
     }
@@ -162,12 +169,13 @@ struct Reader<'a> {
     materials: Vec<MeshMaterial>,
     notes: Vec<Note>,
     camera: Option<Camera>,
+    faces: usize,
 }
 
 impl<'a> Reader<'a> {
     fn new(source: &'a Source, input: Input<'a>) -> Self {
         let (groups, materials, notes) = (vec![], vec![], vec![]);
-        Self { source, input, known: HashMap::new(), groups, materials, notes, camera: None }
+        Self { source, input, known: HashMap::new(), groups, materials, notes, camera: None, faces: 0 }
     }
 
     fn error(&self, node: &Node, what: impl AsRef<str>, help: &str) -> SceneError {
@@ -277,6 +285,8 @@ impl<'a> Reader<'a> {
         let transform = node.named(&["to_world", "toWorld"]);
         let matrix = transform.map_or(Ok(IDENTITY), |node| self.transform(node))?;
         let mut faces = self.faces(node)?;
+        self.faces += faces.len();
+        check_faces(self.source, self.faces, node.span.clone())?;
         let determinant = determinant(&matrix);
         let mirrored = determinant < 0.0;
         if mirrored && !matches!(node.kind(), "rectangle" | "cube") {
@@ -285,7 +295,9 @@ impl<'a> Reader<'a> {
         }
         let flipped = node.named(&["flip_normals", "flipNormals"]).and_then(|flag| flag.get("value"));
         for corners in &mut faces {
-            corners.iter_mut().for_each(|corner| *corner = point(&matrix, *corner));
+            for corner in corners.iter_mut() {
+                *corner = point(&matrix, *corner);
+            }
             if mirrored != (flipped == Some("true")) {
                 corners.reverse();
             }
@@ -432,7 +444,7 @@ impl<'a> Reader<'a> {
     fn transform(&self, node: &Node) -> Result<Matrix, SceneError> {
         let mut matrix = IDENTITY;
         for step in &node.children {
-            let found = self.step(step).ok_or_else(|| {
+            let found = Self::step(step).ok_or_else(|| {
                 let help =
                     "translate, scale, rotate, matrix (16 numbers) and lookat are read, with finite numbers";
                 self.error(step, format!("this <{}> is no step of a transformation", step.tag), help)
@@ -442,7 +454,7 @@ impl<'a> Reader<'a> {
         Ok(matrix)
     }
 
-    fn step(&self, step: &Node) -> Option<Matrix> {
+    fn step(step: &Node) -> Option<Matrix> {
         let vector = |key: &str| step.get(key).and_then(numbers).and_then(|v| <[f64; 3]>::try_from(v).ok());
         match step.tag.as_str() {
             "translate" => {
@@ -468,7 +480,7 @@ impl<'a> Reader<'a> {
             }
             "lookat" | "lookAt" | "look_at" => {
                 let [origin, target] = ["origin", "target"].map(|key| vector(key).map(Vec3::from_array));
-                let up = vector("up").map(Vec3::from_array).unwrap_or(Vec3::Z);
+                let up = vector("up").map_or(Vec3::Z, Vec3::from_array);
                 let ahead = (target? - origin?).try_normalize()?;
                 let left = up.cross(ahead).try_normalize()?;
                 Some(columns([left, ahead.cross(left), ahead], origin?))
@@ -552,6 +564,7 @@ fn vertical(fov: f64, axis: &str, aspect: f64) -> f64 {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "these values are exact")]
 mod tests {
     use super::*;
     use crate::Place;

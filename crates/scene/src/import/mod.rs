@@ -16,6 +16,7 @@ mod radiance;
 mod stl;
 pub(crate) mod vs3;
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
@@ -31,6 +32,9 @@ pub(crate) use mtl::{MeshMaterial, mesh_materials};
 
 /// Most corners of a face: it is cut into triangles in a time that grows with their square.
 const MOST_CORNERS: usize = 10_000;
+
+/// Most faces of a file that may name the same mesh many times: a small file could ask for any number.
+const MOST_FACES: usize = 20_000_000;
 
 /// Endings of the names of files that [`import`] reads, and what they are.
 pub(crate) const FORMATS: [(&str, &str); 9] = [
@@ -92,9 +96,19 @@ pub(crate) struct Imported {
 }
 
 impl Imported {
-    /// Faces, and nothing besides.
-    fn new(source: impl Into<Arc<Source>>, mut groups: Vec<Group>) -> Self {
-        groups.retain(|group| !group.faces.is_empty());
+    /// Faces, and nothing besides. Groups of the same object and material are one.
+    fn new(source: impl Into<Arc<Source>>, all: Vec<Group>) -> Self {
+        let (mut groups, mut numbers): (Vec<Group>, _) = (vec![], BTreeMap::new());
+        for group in all.into_iter().filter(|group| !group.faces.is_empty()) {
+            let key = (group.object.clone(), group.material.as_ref().map(|name| name.text.clone()));
+            let number = *numbers.entry(key).or_insert(groups.len());
+            if let Some(known) = groups.get_mut(number) {
+                known.faces.extend(group.faces);
+                known.two_sided |= group.two_sided;
+            } else {
+                groups.push(group);
+            }
+        }
         let (libraries, materials, notes) = (vec![], vec![], vec![]);
         Self { source: source.into(), groups, libraries, materials, notes, camera: None }
     }
@@ -169,6 +183,15 @@ fn check_corners(source: &Source, count: usize, span: Range<usize>) -> Result<()
         _ => (ErrorKind::TooLarge, "cut it into smaller faces"),
     };
     Err(source.error(kind, span, format!("a face of {count} corners"), help))
+}
+
+/// Refuses more faces than memory should be taken for.
+fn check_faces(source: &Source, count: usize, span: Range<usize>) -> Result<(), SceneError> {
+    if count <= MOST_FACES {
+        return Ok(());
+    }
+    let what = format!("with this the file would have {count} faces, more than {MOST_FACES}");
+    Err(source.error(ErrorKind::TooLarge, span, what, "use fewer copies, or coarser meshes"))
 }
 
 /// A material that emits as well as it reflects, under a name that none of the others has.

@@ -266,9 +266,13 @@ mod tests {
             all.extend(order(z.to_le_bytes().to_vec()));
         }
         all.push(2);
-        [0_i16, 1].iter().for_each(|i| all.extend(order(i.to_le_bytes().to_vec())));
+        for i in [0_i16, 1] {
+            all.extend(order(i.to_le_bytes().to_vec()));
+        }
         all.push(3);
-        [0_i32, 1, 2].iter().for_each(|i| all.extend(order(i.to_le_bytes().to_vec())));
+        for i in [0_i32, 1, 2] {
+            all.extend(order(i.to_le_bytes().to_vec()));
+        }
         all.extend(order(7.5_f32.to_le_bytes().to_vec()));
         all
     }
