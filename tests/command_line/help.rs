@@ -20,6 +20,8 @@ fn every_verb_explains_itself() {
         "viewfactors",
         "waves",
         "view",
+        "export",
+        "convert",
         "info",
         "schema",
         "completions",

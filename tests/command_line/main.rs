@@ -9,6 +9,7 @@ mod determinism;
 mod discretisations;
 mod exit_codes;
 mod first_contact;
+mod formats;
 mod furnace;
 mod help;
 mod hostile;

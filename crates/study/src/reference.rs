@@ -6,9 +6,10 @@ use fredholm_linop::Watch;
 use fredholm_montecarlo::State;
 use fredholm_montecarlo::light::PathTracing;
 use fredholm_report::{REFERENCE_FORMAT, ReferenceRecord, ReferenceTable, write_reference};
-use fredholm_scene::Scene;
+use fredholm_scene::{ExportFormat, Scene};
 
 use crate::error::Error;
+use crate::exchange::{outline, write};
 use crate::options::{ProblemOptions, SceneSource, SolveSettings, StopOptions};
 use crate::problem::{Problem, with_results};
 use crate::solution::{Solution, compute};
@@ -46,7 +47,8 @@ pub struct References {
 }
 
 /// Solves a scene, traces it with the solution as control variate, and writes the irradiance of
-/// every face with its stated error into a folder.
+/// every face with its stated error into a folder, with the scene for Mitsuba 3 and pbrt-v4 where
+/// its bands are colours or grey.
 ///
 /// # Errors
 /// What is wrong with the scene or the options; [`Resources`](crate::ErrorKind::Resources) before
@@ -64,8 +66,18 @@ pub fn reference(
     let state = traced(asked, &problem, &solution, &mut stages)?;
     let table = table(&problem, &solution, &state);
     let record = record(&problem, &table, &state, &stages);
+    scenes(&problem, folder.as_ref())?;
     write_reference(folder.as_ref(), &problem.mesh, &table, &record).map_err(report_failure)?;
     Ok(References { record, faces: problem.mesh.faces().len() })
+}
+
+/// Writes the scene for Mitsuba 3 and pbrt-v4, where its bands are colours or grey.
+fn scenes(problem: &Problem, folder: &Path) -> Result<(), Error> {
+    let Ok(outline) = outline(&problem.scene, None) else { return Ok(()) };
+    for format in [ExportFormat::Mitsuba, ExportFormat::Pbrt] {
+        write(&outline, format, folder, "scene")?;
+    }
+    Ok(())
 }
 
 /// The problem, with form factors more exact than for a picture.

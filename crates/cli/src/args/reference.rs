@@ -16,7 +16,8 @@ Examples:
 
 The irradiance of every face by path tracing, with the deterministic solution as control
 variate: what remains are the standard error and the error of the form factors, both stated.
-Written are reference.csv, patches.obj, and reference.json last, which says what the columns mean.
+Written are reference.csv, patches.obj, the scene for Mitsuba 3 (scene.xml) and pbrt-v4 (scene.pbrt)
+where its bands are colours or grey, and reference.json last, which says what the columns mean.
 Ctrl-C ends the run with nothing written.";
 
 /// Options of `reference`.

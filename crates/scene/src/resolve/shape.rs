@@ -18,7 +18,7 @@ const AROUND_DISC: usize = 32;
 /// Place of the one shape of a surface.
 pub(super) fn only_shape(source: &Source, entry: &SurfaceEntry) -> Result<Range<usize>, SceneError> {
     let shapes = present(entry);
-    let help = "give exactly one of quad, triangle, polygon, box, sphere, disc, cylinder, obj";
+    let help = "give exactly one of quad, triangle, polygon, box, sphere, disc, cylinder, mesh, obj";
     match &shapes[..] {
         [(_, span)] => Ok(span.clone()),
         [] => {
@@ -42,6 +42,7 @@ fn present(entry: &SurfaceEntry) -> Vec<(&'static str, Range<usize>)> {
         ("sphere", entry.sphere.as_ref().map(At::span)),
         ("disc", entry.disc.as_ref().map(At::span)),
         ("cylinder", entry.cylinder.as_ref().map(At::span)),
+        ("mesh", entry.mesh.as_ref().map(At::span)),
         ("obj", entry.obj.as_ref().map(At::span)),
     ];
     let mut present: Vec<_> = all.into_iter().filter_map(|(key, span)| Some((key, span?))).collect();
