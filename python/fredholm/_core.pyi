@@ -7,7 +7,32 @@ from typing import Any, Mapping, Optional, Sequence, Tuple, Union, final
 import numpy as np
 from numpy.typing import NDArray
 
-__all__: list[str]
+__all__ = [
+    "Coupling",
+    "Couplings",
+    "couplings",
+    "Scene",
+    "Solved",
+    "solve",
+    "solve_system",
+    "solvers",
+    "Study",
+    "check",
+    "compare",
+    "converge",
+    "crosscheck",
+    "reference",
+    "spectrum",
+    "trace",
+    "ViewFactors",
+    "methods",
+    "view_factors",
+    "Waves",
+    "compare_waves",
+    "waves",
+    "VERSION",
+]
+
 VERSION: str
 
 _Floats = NDArray[np.float64]

@@ -48,11 +48,28 @@ def test_meshes_of_other_libraries_are_taken_by_their_attributes() -> None:
     assert np.allclose(np.frombuffer(light[0]), 2.0, atol=1e-5)
 
 
-def test_real_meshes() -> None:
+def test_a_mesh_of_trimesh() -> None:
     trimesh = pytest.importorskip("trimesh")
     box = trimesh.creation.box()
     box.invert()
     assert np.allclose(built(box).solve().radiosity, 2.0, atol=1e-5)
+
+
+def test_a_mesh_of_meshio() -> None:
+    meshio = pytest.importorskip("meshio")
+    box = meshio.Mesh(CUBE, [("line", [[0, 1]]), ("quad", SIDES)])
+    assert np.allclose(built(box).solve().radiosity, 2.0, atol=1e-5)
+    solid = meshio.Mesh(CUBE, [("tetra", [[0, 1, 2, 4]])])
+    with pytest.raises(fredholm.InputError, match="cells of the type 'tetra'"):
+        built(solid)
+
+
+def test_a_mesh_of_pyvista() -> None:
+    pyvista = pytest.importorskip("pyvista")
+    for faces in (SIDES, triangles(SIDES)):
+        counted = np.hstack([np.full((len(faces), 1), faces.shape[1]), faces]).ravel()
+        box = pyvista.PolyData(CUBE, faces=counted)
+        assert np.allclose(built(box).solve().radiosity, 2.0, atol=1e-5)
 
 
 def test_polygons_bands_and_two_sides() -> None:
