@@ -22,10 +22,11 @@ mod scene;
 mod schema;
 mod source;
 mod suggest;
+pub mod waves;
 
 pub use check::{Finding, Report, Shown, Warning};
 pub use error::{ErrorKind, Place, SceneError};
 pub use geometry::{By, Geometry, Rows, Surfaces};
 pub use resolve::{Camera, Material, SolveDefaults, Storage};
 pub use scene::Scene;
-pub use schema::schema;
+pub use schema::{schema, wave_schema};

@@ -214,8 +214,7 @@ impl Scene {
         let emits = |surface: usize| self.emits(mesh_material(&mesh, surface));
         let emitting: Vec<bool> = (0..mesh.surfaces().len()).map(emits).collect();
         mesh.without_covered(|surface| emitting[surface]).map_err(|error| {
-            let (what, help) = (error.to_string(), "use fewer elements");
-            SceneError::new(ErrorKind::TooLarge, &self.source.path, what, help)
+            SceneError::new(ErrorKind::TooLarge, &self.source.path, error.to_string(), error.help())
         })
     }
 
@@ -267,7 +266,7 @@ impl Scene {
 
     fn unmeshable(&self, part: &Part, error: &MeshError) -> SceneError {
         let what = format!("surface `{}`: {error}", part.name);
-        self.source.error(ErrorKind::Geometry, part.span.clone(), what, "correct the shape")
+        self.source.error(ErrorKind::Geometry, part.span.clone(), what, error.help())
     }
 }
 

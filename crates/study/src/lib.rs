@@ -10,7 +10,7 @@
 //! | eigenvalues and conditions of the matrix | [`spectrum`] |
 //! | pictures at once, and scenes whose matrix would not fit | [`shoot`] |
 //! | the matrix of view factors | [`view_factors`] |
-//! | the fields of a scene of waves | [`waves`], [`compare_waves`] |
+//! | the fields of a scene of waves | [`waves`], [`check_waves`], [`compare_waves`] |
 //! | estimates by random paths | [`trace`] |
 //! | whether a solution and random paths agree | [`crosscheck`] |
 //! | reference values for other programs | [`reference()`] |
@@ -88,6 +88,6 @@ pub use viewfactors::{
     view_factor_methods, view_factors,
 };
 pub use waves::{
-    Estimated, SolvedFrequency, SolvedWaves, WaveCompareOptions, WaveOptions, check_wave_solver,
-    compare_waves, waves,
+    CheckedWaves, Estimated, SolvedFrequency, SolvedWaves, WAVE_FILES, WaveCompareOptions, WaveOptions,
+    check_wave_solver, check_waves, compare_waves, waves,
 };

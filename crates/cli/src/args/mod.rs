@@ -99,8 +99,9 @@ Examples:
   fredholm info F.csv";
 
 const SCHEMA_EXAMPLES: &str = "\
-Example:
-  fredholm schema > scene.schema.json";
+Examples:
+  fredholm schema > scene.schema.json
+  fredholm schema --waves > waves.schema.json";
 
 const COMPLETIONS_EXAMPLES: &str = "\
 Examples:
@@ -182,7 +183,7 @@ pub(crate) enum Command {
     Info(InfoArgs),
     /// Print the JSON Schema of scene files
     #[command(after_help = SCHEMA_EXAMPLES)]
-    Schema,
+    Schema(SchemaArgs),
     /// Print the completions of a shell
     #[command(after_help = COMPLETIONS_EXAMPLES)]
     Completions(CompletionsArgs),
@@ -424,6 +425,14 @@ pub(crate) struct CheckArgs {
 pub(crate) struct InfoArgs {
     /// Result folder, a file in one, or a file of view factors
     pub(crate) path: PathBuf,
+}
+
+/// Options of `schema`.
+#[derive(Clone, Copy, Debug, Args)]
+pub(crate) struct SchemaArgs {
+    /// The schema of scenes of waves instead of scenes of light
+    #[arg(long)]
+    pub(crate) waves: bool,
 }
 
 /// Options of `completions`.

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{At, BoxEntry, CylinderEntry, DiscEntry, ObjEntry, PolygonEntry, SphereEntry, Triple};
+use super::{At, BoxEntry, CylinderEntry, DiscEntry, ObjEntry, PolygonEntry, Shapes, SphereEntry, Triple};
 
 /// A named surface: one shape, made of one material, cut into faces.
 ///
@@ -57,4 +57,21 @@ pub(crate) struct SurfaceEntry {
     pub two_sided: Option<bool>,
     /// Material of the back of a two-sided surface. Default: that of the front.
     pub back_material: Option<At<String>>,
+}
+
+impl SurfaceEntry {
+    /// The shapes that are given.
+    pub fn shapes(&self) -> Shapes<'_> {
+        Shapes {
+            name: &self.name,
+            quad: self.quad.as_ref(),
+            triangle: self.triangle.as_ref(),
+            polygon: self.polygon.as_ref(),
+            cuboid: self.cuboid.as_ref(),
+            sphere: self.sphere.as_ref(),
+            disc: self.disc.as_ref(),
+            cylinder: self.cylinder.as_ref(),
+            obj: self.obj.as_ref(),
+        }
+    }
 }
