@@ -101,7 +101,7 @@ fn numbers_and_names_that_are_none_are_refused() {
         ("[1e9]", "{ from = -1e9, to = 2e9, points = 3 }", "the frequency is -1000000000 Hz"),
         ("[1e9]", "{ from = 1e9, to = 2e9, points = 3, spacing = \"log\" }", "unknown value `log`"),
         ("[wave]", "[wave]\nshadow = \"exact\"", "method = \"physical-optics\", \"mfie\""),
-        ("[wave]", "[wave]\nmethod = \"mfei\"", "did you mean `mfie`?"),
+        ("[wave]", "[wave]\nmethod = \"mfi\"", "did you mean `mfie`?"),
         ("[wave]", "[wave]\nshadows = \"geometrical\"", "did you mean `geometric`?"),
         ("[wave]", "[wave]\nmethd = \"mfie\"", "did you mean `method`?"),
         ("[wave]", "[wave]\nmethod = \"mfie\"\nbounces = 2", "first bounces mean nothing"),

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use fredholm_report::{ComparisonRun, WaveComparison};
 use fredholm_study::{
-    CheckedWaves, Ended, Error, SolvedWaves, Watch, WaveCompareOptions, WaveOptions, check_waves,
+    CheckedWaves, Ended, Error, SolvedFrequency, SolvedWaves, Watch, WaveCompareOptions, WaveOptions,
+    check_waves,
 };
 use serde_json::Value;
 
@@ -18,6 +19,8 @@ use crate::terminal::Terminal;
 
 /// Beginning of the format of a record of waves.
 pub(super) const RECORD_FORMAT: &str = "fredholm-waves-run/";
+/// Most frequencies that are listed one by one.
+const MOST_LISTED: usize = 8;
 
 /// Computes a scene of waves and writes the results.
 pub(crate) fn waves(args: &WavesArgs) -> Result<Ending, Error> {
@@ -94,7 +97,11 @@ fn row(run: &ComparisonRun) -> String {
 fn summarise(args: &WavesArgs, folder: &Path, solved: &SolvedWaves) -> Result<(), Error> {
     let mut lines = Lines::default();
     lines.add("method", format!("{}, {}", solved.method(), solved.solution()));
-    for found in solved.frequencies() {
+    let all = solved.frequencies();
+    if all.len() > MOST_LISTED {
+        lines.add("frequencies", sweep(all));
+    }
+    for found in all.iter().filter(|_| all.len() <= MOST_LISTED) {
         let residual = found.residuals.last();
         let ending = residual.map_or(String::new(), |residual| {
             format!(", residual {residual:.1e} after {} iterations", found.residuals.len() - 1)
@@ -110,6 +117,16 @@ fn summarise(args: &WavesArgs, folder: &Path, solved: &SolvedWaves) -> Result<()
         }
     }
     output::print(&lines.under(&format!("{} → {}", args.scene.display(), folder.display())))
+}
+
+/// What is to be said of many frequencies together.
+fn sweep(all: &[SolvedFrequency]) -> String {
+    let frequencies: Vec<f64> = all.iter().map(|found| found.frequency).collect();
+    let facets = all.first().map_or(0, |found| found.facets);
+    let residuals = all.iter().filter_map(|found| found.residuals.last().copied());
+    let worst = residuals.fold(None, |worst: Option<f64>, r| Some(worst.map_or(r, |w| w.max(r))));
+    let ending = worst.map_or(String::new(), |residual| format!(", residuals up to {residual:.1e}"));
+    format!("{}, {facets} facets{ending}", self::frequencies(&frequencies))
 }
 
 /// Validates a scene of waves, tells what its mesh is and predicts what its fields will take.
@@ -162,7 +179,12 @@ pub(super) fn describe(path: &Path, record: &Value) -> Result<Ending, Error> {
     lines.add_some("title", text("title"));
     let method = [text("method"), text("shadows").map(|name| format!("{name} shadows")), text("solution")];
     lines.add("method", method.into_iter().flatten().collect::<Vec<_>>().join(", "));
-    for found in list("frequencies") {
+    let found = list("frequencies");
+    let values: Vec<f64> = found.iter().filter_map(|one| one["frequency_hz"].as_f64()).collect();
+    if found.len() > MOST_LISTED {
+        lines.add("frequencies", frequencies(&values));
+    }
+    for found in found.iter().filter(|_| found.len() <= MOST_LISTED) {
         let megahertz = found["frequency_hz"].as_f64().unwrap_or_default() / 1e6;
         let ending = match (found["residuals"].as_array().and_then(|all| all.last()), &found["converged"]) {
             (Some(residual), Value::Bool(true)) => format!(", residual {residual}"),

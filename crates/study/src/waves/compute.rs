@@ -1,5 +1,6 @@
 //! The currents and the fields at all frequencies.
 
+use fredholm_linop::Steps;
 use fredholm_mesh::Vec3;
 use fredholm_report::{FarRow, WaveCurrents, WaveRow};
 use fredholm_scene::waves::{Places, direction};
@@ -12,12 +13,13 @@ use rayon::prelude::*;
 use super::geometry::Geometry;
 use super::model::Band;
 use super::monostatic::Sweep;
+use super::over_frequency::MOST_PICTURED;
 use super::record::Solved;
 use super::solving::{self, Solution};
 use super::{Model, Outcome};
 use super::{estimate, galerkin};
 use crate::error::Error;
-use crate::stages::{Signals, Stages};
+use crate::stages::{Signals, Stages, Unstaged};
 
 /// Computes everything that the model asks for.
 pub(crate) fn compute(model: &Model, stages: &mut Stages) -> Result<Outcome, Error> {
@@ -49,18 +51,43 @@ fn variant(model: &Model, variant: Variant<'_>, stages: &mut Stages) -> Result<O
         return galerkin::run(model, (variant.geometry, variant.name), equation, stages);
     }
     let mut outcome = Outcome::default();
-    for band in &model.bands {
-        let refused = |error: WaveError| model.refused(&error, None);
-        let scatterer = variant.geometry.scatterer(&band.materials).map_err(refused)?;
-        if !model.is_closed_form() {
-            scatterer.check_resolution(&band.wave).map_err(refused)?;
+    if model.bands.len() <= MOST_PICTURED {
+        for band in &model.bands {
+            at_frequency(model, variant, band, stages, &mut outcome)?;
         }
-        let sources = model.sources();
-        let first = PhysicalOptics::new(&scatterer, band.wave, &sources, variant.shadow).map_err(refused)?;
-        let task = Task { model, variant, band, scatterer: &scatterer, first: &first, sources: &sources };
-        task.carry_out(stages, &mut outcome)?;
+        return Ok(outcome);
     }
-    Ok(outcome)
+    let (watch, count) = (stages.watch, model.bands.len());
+    let steps = Steps::new(watch, count as u64, "frequencies");
+    stages.run(&format!("{count} frequencies{}", variant.name), || {
+        let unstaged = Unstaged(watch);
+        let mut inner = Stages::new(&unstaged);
+        for band in &model.bands {
+            at_frequency(model, variant, band, &mut inner, &mut outcome)?;
+            if steps.add(1).is_break() {
+                return Err(Error::cancelled());
+            }
+        }
+        Ok(outcome)
+    })
+}
+
+fn at_frequency(
+    model: &Model,
+    variant: Variant<'_>,
+    band: &Band,
+    stages: &mut Stages,
+    outcome: &mut Outcome,
+) -> Result<(), Error> {
+    let refused = |error: WaveError| model.refused(&error, None);
+    let scatterer = variant.geometry.scatterer(&band.materials).map_err(refused)?;
+    if !model.is_closed_form() {
+        scatterer.check_resolution(&band.wave).map_err(refused)?;
+    }
+    let sources = model.sources();
+    let first = PhysicalOptics::new(&scatterer, band.wave, &sources, variant.shadow).map_err(refused)?;
+    let task = Task { model, variant, band, scatterer: &scatterer, first: &first, sources: &sources };
+    task.carry_out(stages, outcome)
 }
 
 /// One frequency.
