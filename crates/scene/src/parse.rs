@@ -25,12 +25,15 @@ const PLAIN: [(&str, &str); 10] = [
     ("expected a boolean", "expected true or false"),
 ];
 
-/// Keys that scene files had once, and what stands for them now.
-const RENAMED: [(&str, &str); 1] = [(
-    "shadow",
-    "write method = \"physical-optics\", \"mfie\" (was shadow = \"exact\"), \"dual-surface-mfie\" (was \
-     \"exact-dual\") or \"thesis\", and for physical optics shadows = \"geometric\" or \"radiated\"",
-)];
+/// Keys that belong elsewhere, or that scene files had once, and what to do about them.
+const ELSEWHERE: [(&str, &str); 2] = [
+    ("wave", "this is a scene of waves: `fredholm waves` computes its fields, `fredholm check` tells of it"),
+    (
+        "shadow",
+        "write method = \"physical-optics\", \"mfie\" (was shadow = \"exact\"), \"dual-surface-mfie\" (was \
+         \"exact-dual\") or \"thesis\", and for physical optics shadows = \"geometric\" or \"radiated\"",
+    ),
+];
 
 /// The entries of a scene file of light or of waves.
 pub(crate) fn parse<T: DeserializeOwned>(source: &Source) -> Result<T, SceneError> {
@@ -72,7 +75,7 @@ fn meaning(source: &Source, error: &Error) -> SceneError {
 
 fn unknown_key(source: &Source, span: Range<usize>, rest: &str) -> SceneError {
     let (key, known) = names(rest);
-    if let Some((_, help)) = RENAMED.iter().find(|(old, _)| *old == key) {
+    if let Some((_, help)) = ELSEWHERE.iter().find(|(old, _)| *old == key) {
         return source.error(ErrorKind::UnknownKey, span, format!("unknown key `{key}`"), help);
     }
     source.error(ErrorKind::UnknownKey, span, format!("unknown key `{key}`"), among(key, known, "keys"))

@@ -61,6 +61,9 @@ fn properties(schema: &Value, found: &mut BTreeSet<String>) {
     if let Value::Object(object) = schema {
         if let Some(Value::Object(own)) = object.get("properties") {
             found.extend(own.keys().cloned());
+            let described =
+                |(name, property): (&String, &Value)| name == "kind" || property.get("description").is_some();
+            assert!(own.iter().all(described), "{own:?}");
         }
         object.values().for_each(|value| properties(value, found));
     } else if let Value::Array(list) = schema {

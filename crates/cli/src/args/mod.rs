@@ -76,6 +76,7 @@ const CHECK_EXAMPLES: &str = "\
 Examples:
   fredholm check scenes/cornell_box.toml
   fredholm check house.obj -o out
+  fredholm check scenes/waves/cube.toml
   fredholm check room.toml --memory 8GiB
 
 A mesh file (.obj, .vs3) stands for a scene: see `fredholm solve --help`.";

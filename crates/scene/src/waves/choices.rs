@@ -81,10 +81,14 @@ choice!(
             {
                 "type": "object",
                 "properties": {
-                    "from": { "type": "number" },
-                    "to": { "type": "number" },
-                    "points": { "type": "integer", "minimum": 1 },
-                    "spacing": { "enum": ["linear", "logarithmic"], "default": "linear" }
+                    "from": { "type": "number", "description": "First frequency, Hz." },
+                    "to": { "type": "number", "description": "Last frequency, Hz." },
+                    "points": { "type": "integer", "minimum": 1, "description": "How many." },
+                    "spacing": {
+                        "enum": ["linear", "logarithmic"],
+                        "default": "linear",
+                        "description": "Equal steps, or equal ratios. Default: linear."
+                    }
                 },
                 "required": ["from", "to", "points"],
                 "additionalProperties": false
@@ -190,9 +194,9 @@ choice!(
             {
                 "type": "object",
                 "properties": {
-                    "from": { "type": "number" },
-                    "to": { "type": "number" },
-                    "points": { "type": "integer", "minimum": 1 }
+                    "from": { "type": "number", "description": "First angle, degrees." },
+                    "to": { "type": "number", "description": "Last angle, degrees." },
+                    "points": { "type": "integer", "minimum": 1, "description": "How many." }
                 },
                 "required": ["from", "to", "points"],
                 "additionalProperties": false
