@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use fredholm_scene::wave_schema;
 use fredholm_scene::waves::{Cuts, Places, WaveScene, is_wave_scene};
-use fredholm_waves::Kind;
+use fredholm_waves::{Kind, Wave};
 use serde_json::Value;
 
 const FINE: Cuts = Cuts { wavelength: 0.3, stretch: 1.0, whole: false };
@@ -67,7 +67,9 @@ fn properties(schema: &Value, found: &mut BTreeSet<String>) {
         }
         object.values().for_each(|value| properties(value, found));
     } else if let Value::Array(list) = schema {
-        list.iter().for_each(|value| properties(value, found));
+        for value in list {
+            properties(value, found);
+        }
     }
 }
 
@@ -150,7 +152,7 @@ fn objects_of_a_file_are_surfaces_of_their_own() {
 fn sweeps_have_their_ends_and_equal_steps_or_ratios() {
     let plate = "[[surface]]\nname = \"p\"\nquad = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]";
     let frequencies = |text: &str| -> Vec<f64> {
-        scene(text, plate, Path::new("")).waves().iter().map(|wave| wave.frequency()).collect()
+        scene(text, plate, Path::new("")).waves().iter().map(Wave::frequency).collect()
     };
     let linear = frequencies("{ from = 1e9, to = 3e9, points = 5 }");
     let expected = [1e9, 1.5e9, 2e9, 2.5e9, 3e9];

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
 
+use std::fmt::Write;
 use std::fs;
 
 use fredholm_study::{Bytes, CheckedWaves, Error, ErrorKind, Quiet, WaveOptions, check_waves};
@@ -37,10 +38,11 @@ fn cube(faces: &[[usize; 4]]) -> String {
     let mut text = String::from("o cube\n");
     for (x, y, z) in [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
     {
-        text += &format!("v {} {} {}\n", 0.4 * f64::from(x), 0.4 * f64::from(y), 0.4 * f64::from(z));
+        let [x, y, z] = [x, y, z].map(|c| 0.4 * f64::from(c));
+        writeln!(text, "v {x} {y} {z}").unwrap();
     }
     for [a, b, c, d] in faces {
-        text += &format!("f {a} {b} {c} {d}\n");
+        writeln!(text, "f {a} {b} {c} {d}").unwrap();
     }
     text
 }

@@ -42,7 +42,7 @@ pub(crate) fn execute(command: &Command) -> Result<Ending, Error> {
         Command::Reference(args) => reference::reference(args),
         Command::View(args) => view::view(args),
         Command::Info(args) => info::info(args),
-        Command::Schema(args) => schema::schema(args),
+        Command::Schema(args) => schema::schema(*args),
         Command::Completions(args) => completions::completions(args),
         Command::Solvers => solvers::solvers(),
         Command::Discretisations => discretisations::discretisations(),

@@ -30,15 +30,11 @@ pub(super) fn parts(context: &mut Context, entry: &SurfaceEntry) -> Result<Vec<P
 fn own_shape(source: &Source, entry: &SurfaceEntry) -> Result<Option<Shape>, SceneError> {
     let shape = shape::shape(source, &entry.shapes())?;
     let Some(cells) = &entry.skip else { return Ok(shape) };
-    match shape {
-        Some(Shape::Quad { corners, .. }) => {
-            Ok(Some(Shape::Quad { corners, skip: cells.iter().map(|cell| **cell).collect() }))
-        }
-        _ => {
-            let what = "only a quad has cells to skip".to_owned();
-            Err(source.value_error(cells, what, "remove skip, or make the surface a quad"))
-        }
+    if let Some(Shape::Quad { corners, .. }) = shape {
+        return Ok(Some(Shape::Quad { corners, skip: cells.iter().map(|cell| **cell).collect() }));
     }
+    let what = "only a quad has cells to skip".to_owned();
+    Err(source.value_error(cells, what, "remove skip, or make the surface a quad"))
 }
 
 /// Which parts have two sides: as the entry says, else the objects of a file whose faces are turned inconsistently.
