@@ -14,6 +14,7 @@
 //! | `mesh.png`, `links.png`, `gather.png` | the elements, links and a final gather, where asked for |
 //! | `points.csv` | the irradiance of points, where asked for |
 //! | `shadows.vtu` | triangles cut along the borders of shadows, where asked for |
+//! | `field.ply`, `field.glb` | the elements with the light as colours of their corners, where asked for |
 //! | `report.html` | all of it as a page to turn, pick and read, where asked for |
 //! | `run.json` | what made all this; written last, so its presence means a complete folder |
 //!
@@ -27,6 +28,7 @@
 
 mod atomic;
 mod axis;
+mod baked;
 mod camera;
 mod chart;
 mod cie;
@@ -66,6 +68,7 @@ mod waves;
 mod xml;
 
 pub use atomic::write_atomically;
+pub use baked::{write_field_glb, write_field_ply};
 pub use camera::{Camera, FRAMED};
 pub use cie::colour_matching;
 pub use colour::Colouring;
@@ -86,7 +89,9 @@ pub use html::{
     ReportPage, ReportPlot, ReportSeries, ReportTable, WaveReport, current_phasors, face_scores,
 };
 pub use npz::write_npz;
-pub use outputs::{EXTRAS, Extras, FILES, IMAGE, REPORT, RunReport, View, write_all, write_with};
+pub use outputs::{
+    EXTRAS, Extras, FIELD_GLB, FIELD_PLY, FILES, IMAGE, REPORT, RunReport, View, write_all, write_with,
+};
 pub use picture::{Back, Gathering, Layer, Link, Linked, Picture, Side, render, render_layers, render_sides};
 pub use points_csv::{PointTable, write_points_csv};
 pub use refinement::{

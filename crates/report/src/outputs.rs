@@ -9,7 +9,8 @@ use std::path::{Path, PathBuf};
 use crate::{
     Camera, Exposure, Field, FieldStep, Layer, PointTable, ReportError, ReportModel, ReportPage, RunRecord,
     ShadowMesh, render_layers, write_atomically, write_convergence, write_faces_csv, write_field_csv,
-    write_npz, write_points_csv, write_run, write_shadows_vtu, write_surfaces_csv, write_vtu,
+    write_field_glb, write_field_ply, write_npz, write_points_csv, write_run, write_shadows_vtu,
+    write_surfaces_csv, write_vtu,
 };
 
 /// Names of the files of a result folder, in the order in which they are written.
@@ -31,8 +32,15 @@ pub const IMAGE: &str = "image.png";
 /// The page among them.
 pub const REPORT: &str = "report.html";
 
-/// Names of further files that a result folder may hold: pictures of the mesh, of links and of the final gather, the table of points, and triangles cut along shadows.
-pub const EXTRAS: [&str; 5] = ["mesh.png", "links.png", "gather.png", "points.csv", "shadows.vtu"];
+/// Names of further files that a result folder may hold: pictures of the mesh, of links and of the final gather, the table of points, triangles cut along shadows, and the field as a mesh
+/// with colours.
+pub const EXTRAS: [&str; 7] =
+    ["mesh.png", "links.png", "gather.png", "points.csv", "shadows.vtu", FIELD_PLY, FIELD_GLB];
+
+/// The field as a mesh with colours, as PLY.
+pub const FIELD_PLY: &str = "field.ply";
+/// The same as binary glTF.
+pub const FIELD_GLB: &str = "field.glb";
 
 /// What a result folder holds besides the usual files.
 #[derive(Default)]
@@ -43,6 +51,8 @@ pub struct Extras<'a> {
     pub points: Option<PointTable>,
     /// Triangles cut along the borders of shadows.
     pub shadows: Option<ShadowMesh>,
+    /// Which of [`FIELD_PLY`] and [`FIELD_GLB`] are wanted.
+    pub baked: Vec<&'static str>,
     /// What makes the page.
     pub report: Option<RunReport<'a>>,
 }
@@ -125,6 +135,15 @@ pub fn write_with(
         write_atomically(&folder.join("shadows.vtu"), |out: &mut dyn Write| {
             write_shadows_vtu(mesh, field.bands(), out)
         })?;
+    }
+    let exposure = view.map_or(Exposure::Auto, |view| view.exposure);
+    for name in &more.baked {
+        let path = folder.join(name);
+        write_atomically(&path, |out: &mut dyn Write| match *name {
+            FIELD_PLY => write_field_ply(field, exposure, out),
+            _ => write_field_glb(field, exposure, out),
+        })?;
+        paths.push(path);
     }
     let page = more.report.map(|RunReport { title, view, steps: (steps_title, steps) }| {
         let model = ReportModel { steps, steps_title, ..ReportModel::lit(field, view) };

@@ -30,23 +30,22 @@ pub fn write_shadows_vtu(mesh: &ShadowMesh, bands: &[String], out: &mut dyn Writ
         name: "types".to_owned(),
         kind: "UInt8",
         components: 1,
-        bytes: n,
         fill: Box::new(move |out| (0..n).try_for_each(|_| out.write_all(&[TRIANGLE]))),
     };
     let band = |(k, name): (usize, &String)| {
         let values = move || mesh.irradiance.iter().skip(k).step_by(bands.len()).copied();
-        Array::floats(format!("irradiance_{name}"), 1, corners, values)
+        Array::floats(format!("irradiance_{name}"), 1, values)
     };
     let cells = vec![
-        Array::integers("connectivity", corners, move || 0..corners),
-        Array::integers("offsets", n, move || (1..=n).map(|k| 3 * k)),
+        Array::integers("connectivity", move || 0..corners),
+        Array::integers("offsets", move || (1..=n).map(|k| 3 * k)),
         kinds,
     ];
     let sections = [
-        ("Points", vec![Array::floats("Points".to_owned(), 3, corners, places)]),
+        ("Points", vec![Array::floats("Points".to_owned(), 3, places)]),
         ("Cells", cells),
         ("PointData", bands.iter().enumerate().map(band).collect()),
-        ("CellData", vec![Array::integers("element", n, || mesh.elements.iter().copied())]),
+        ("CellData", vec![Array::integers("element", || mesh.elements.iter().copied())]),
     ];
     write_grid([corners, n], &sections, out)
 }

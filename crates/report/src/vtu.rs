@@ -1,6 +1,6 @@
 //! `field.vtu`: a VTK unstructured grid for `ParaView`.
 //!
-//! Format: VTK XML, version 1.0, little endian, appended raw data, `UInt64` block headers
+//! Format: VTK XML, version 1.0, little endian, appended data in blocks of 1 MiB, each compressed by zlib (RFC 1950), `UInt64` headers
 //! (<https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html>). Each cell is a leaf element: a triangle
 //! (type 5), a quad (type 9), or a polygon (type 7) where smaller elements have corners on its sides: so every side within a face is one of two cells, and
 //! there are no cracks. Elements that shade smoothly into each other share their points, so that a smoothing filter
@@ -11,6 +11,8 @@
 
 use std::io::{self, Write};
 
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
 use fredholm_mesh::{Anchored, Patch, Vec3, Welded};
 
 use crate::Field;
@@ -23,36 +25,30 @@ const POLYGON: u8 = 7;
 
 pub(crate) type Fill<'a> = Box<dyn Fn(&mut dyn Write) -> io::Result<()> + 'a>;
 
-/// One data array: its description, its size in bytes and what writes them.
+/// One data array: its description and what writes its bytes.
 pub(crate) struct Array<'a> {
     pub(crate) name: String,
     pub(crate) kind: &'static str,
     pub(crate) components: usize,
-    pub(crate) bytes: usize,
     pub(crate) fill: Fill<'a>,
 }
 
 impl<'a> Array<'a> {
-    pub(crate) fn floats<I>(
-        name: String,
-        components: usize,
-        count: usize,
-        values: impl Fn() -> I + 'a,
-    ) -> Self
+    pub(crate) fn floats<I>(name: String, components: usize, values: impl Fn() -> I + 'a) -> Self
     where
         I: Iterator<Item = f64>,
     {
         let fill: Fill = Box::new(move |out| values().try_for_each(|x| out.write_all(&x.to_le_bytes())));
-        Self { name, kind: "Float64", components, bytes: 8 * components * count, fill }
+        Self { name, kind: "Float64", components, fill }
     }
 
-    pub(crate) fn integers<I>(name: &str, count: usize, values: impl Fn() -> I + 'a) -> Self
+    pub(crate) fn integers<I>(name: &str, values: impl Fn() -> I + 'a) -> Self
     where
         I: Iterator<Item = usize>,
     {
         let fill: Fill =
             Box::new(move |out| values().try_for_each(|i| out.write_all(&(i as u64).to_le_bytes())));
-        Self { name: name.to_owned(), kind: "Int64", components: 1, bytes: 8 * count, fill }
+        Self { name: name.to_owned(), kind: "Int64", components: 1, fill }
     }
 
     fn describe(&self, out: &mut dyn Write, offset: usize) -> io::Result<()> {
@@ -65,9 +61,58 @@ impl<'a> Array<'a> {
         writeln!(out, " format=\"appended\" offset=\"{offset}\"/>")
     }
 
-    fn append(&self, out: &mut dyn Write) -> io::Result<()> {
-        out.write_all(&(self.bytes as u64).to_le_bytes())?;
-        (self.fill)(out)
+    /// The number of blocks, their size, that of the last one where it is smaller, the sizes of the compressed blocks, and these.
+    fn compressed(&self) -> io::Result<Vec<u8>> {
+        let mut blocks = Blocks::default();
+        (self.fill)(&mut blocks)?;
+        let last = blocks.open.len();
+        blocks.close()?;
+        let head = [blocks.sizes.len(), BLOCK, last].into_iter().chain(blocks.sizes);
+        let mut bytes: Vec<u8> = head.flat_map(|number| (number as u64).to_le_bytes()).collect();
+        bytes.extend(blocks.compressed);
+        Ok(bytes)
+    }
+}
+
+/// Bytes of a block before it is compressed.
+const BLOCK: usize = 1 << 20;
+
+/// Compresses what is written to it, block by block.
+#[derive(Default)]
+struct Blocks {
+    open: Vec<u8>,
+    sizes: Vec<usize>,
+    compressed: Vec<u8>,
+}
+
+impl Blocks {
+    /// Compresses the open block, if there is anything in it.
+    fn close(&mut self) -> io::Result<()> {
+        if self.open.is_empty() {
+            return Ok(());
+        }
+        let before = self.compressed.len();
+        let mut encoder = ZlibEncoder::new(&mut self.compressed, Compression::fast());
+        encoder.write_all(&self.open)?;
+        encoder.finish()?;
+        self.sizes.push(self.compressed.len() - before);
+        self.open.clear();
+        Ok(())
+    }
+}
+
+impl Write for Blocks {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let taken = bytes.len().min(BLOCK - self.open.len());
+        self.open.extend(&bytes[..taken]);
+        if self.open.len() == BLOCK {
+            self.close()?;
+        }
+        Ok(taken)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
     }
 }
 
@@ -89,17 +134,19 @@ pub(crate) fn write_grid(
     out: &mut dyn Write,
 ) -> io::Result<()> {
     opening(counts, out)?;
-    let mut offset = 0;
+    let all = || sections.iter().flat_map(|(_, arrays)| arrays);
+    let data: Vec<Vec<u8>> = all().map(Array::compressed).collect::<io::Result<_>>()?;
+    let (mut offset, mut sizes) = (0, data.iter().map(Vec::len));
     for (section, arrays) in sections {
         writeln!(out, "<{section}>")?;
         for array in arrays {
             array.describe(out, offset)?;
-            offset += 8 + array.bytes;
+            offset += sizes.next().unwrap_or_default();
         }
         writeln!(out, "</{section}>")?;
     }
     write!(out, "</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_")?;
-    sections.iter().flat_map(|(_, arrays)| arrays).try_for_each(|array| array.append(out))?;
+    data.iter().try_for_each(|bytes| out.write_all(bytes))?;
     writeln!(out, "\n</AppendedData>\n</VTKFile>")
 }
 
@@ -107,14 +154,14 @@ fn opening([points, cells]: [usize; 2], out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "<?xml version=\"1.0\"?>")?;
     writeln!(
         out,
-        "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">"
+        "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">"
     )?;
     writeln!(out, "<UnstructuredGrid>\n<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">")
 }
 
 fn points(welded: &Welded) -> Array<'_> {
     let values = || welded.vertices.iter().flat_map(Vec3::to_array);
-    Array::floats("Points".to_owned(), 3, welded.vertices.len(), values)
+    Array::floats("Points".to_owned(), 3, values)
 }
 
 fn cells<'a>(leaves: &'a Welded, welded: &'a Welded) -> Vec<Array<'a>> {
@@ -124,15 +171,13 @@ fn cells<'a>(leaves: &'a Welded, welded: &'a Welded) -> Vec<Array<'a>> {
             Some(*end)
         })
     };
-    let corners = ends().last().unwrap_or(0);
     vec![
-        Array::integers("connectivity", corners, || welded.patches().flatten().copied()),
-        Array::integers("offsets", welded.len(), ends),
+        Array::integers("connectivity", || welded.patches().flatten().copied()),
+        Array::integers("offsets", ends),
         Array {
             name: "types".to_owned(),
             kind: "UInt8",
             components: 1,
-            bytes: welded.len(),
             fill: Box::new(|out| {
                 let mut cells = leaves.patches().zip(welded.patches());
                 cells.try_for_each(|(leaf, polygon)| out.write_all(&[cell_type(leaf, polygon)]))
@@ -152,11 +197,11 @@ fn cell_type(leaf: &[usize], polygon: &[usize]) -> u8 {
 fn data<'a>(field: &Field<'a>) -> Vec<Array<'a>> {
     let (field, mesh, n) = (*field, field.mesh(), field.mesh().len());
     let mut arrays = vec![
-        Array::integers("element", n, move || 0..n),
-        Array::integers("face", n, move || (0..n).map(|leaf| mesh.face_of(leaf))),
-        Array::integers("surface", n, move || (0..n).map(|leaf| mesh.surface_of(leaf))),
-        Array::floats("area".to_owned(), 1, n, move || mesh.patches().map(Patch::area)),
-        Array::floats("exposed".to_owned(), 1, n, move || (0..n).map(move |leaf| field.exposed(leaf))),
+        Array::integers("element", move || 0..n),
+        Array::integers("face", move || (0..n).map(|leaf| mesh.face_of(leaf))),
+        Array::integers("surface", move || (0..n).map(|leaf| mesh.surface_of(leaf))),
+        Array::floats("area".to_owned(), 1, move || mesh.patches().map(Patch::area)),
+        Array::floats("exposed".to_owned(), 1, move || (0..n).map(move |leaf| field.exposed(leaf))),
     ];
     for band in 0..field.bands().len() {
         arrays.push(lane(&field, "irradiance", field.irradiance(), band));
@@ -168,7 +213,7 @@ fn data<'a>(field: &Field<'a>) -> Vec<Array<'a>> {
 fn lane<'a>(field: &Field<'a>, what: &str, values: &'a [f64], band: usize) -> Array<'a> {
     let bands = field.bands();
     let picked = move || values.iter().skip(band).step_by(bands.len()).copied();
-    Array::floats(format!("{what}_{}", bands[band]), 1, field.mesh().len(), picked)
+    Array::floats(format!("{what}_{}", bands[band]), 1, picked)
 }
 
 #[cfg(test)]
@@ -176,7 +221,9 @@ mod tests {
     use super::*;
     use crate::field::tests::{names, sample};
     use crate::xml::tests::{attribute, tags};
+    use flate2::read::ZlibDecoder;
     use std::collections::BTreeMap;
+    use std::io::Read;
 
     /// Data arrays by name: (type, bytes).
     fn parse(file: &[u8]) -> (String, BTreeMap<String, (String, Vec<u8>)>) {
@@ -190,9 +237,17 @@ mod tests {
         for (_, attributes) in tags(&xml).iter().filter(|(name, _)| name == "DataArray") {
             let offset: usize = attribute(attributes, "offset").parse().unwrap();
             assert_eq!(offset, end, "blocks must follow each other");
-            let size = u64::from_le_bytes(raw[offset..offset + 8].try_into().unwrap()) as usize;
-            let block = raw[offset + 8..offset + 8 + size].to_vec();
-            end = offset + 8 + size;
+            let word = |k: usize| {
+                let at = offset + 8 * k;
+                u64::from_le_bytes(raw[at..at + 8].try_into().unwrap()) as usize
+            };
+            let mut block = vec![];
+            end = offset + 8 * (3 + word(0));
+            for k in 0..word(0) {
+                ZlibDecoder::new(&raw[end..end + word(3 + k)]).read_to_end(&mut block).unwrap();
+                end += word(3 + k);
+            }
+            assert_eq!(word(2), block.len() % word(1));
             let kind = attribute(attributes, "type").to_owned();
             arrays.insert(attribute(attributes, " Name").to_owned(), (kind, block));
         }

@@ -11,7 +11,7 @@ use crate::files::Files;
 use crate::import::{Imported, import};
 use crate::parse::parse;
 use crate::part::{Origin, Part};
-use crate::resolve::{Camera, Material, Resolved, UNSAID, load_library, resolve};
+use crate::resolve::{Camera, Material, Resolved, UNSAID, load_library, own_library, resolve};
 use crate::source::Source;
 
 /// Name of the material of faces that have none, and of the light from all sides.
@@ -25,12 +25,6 @@ const VIEW: Vec3 = Vec3::new(0.55, 0.45, 1.0);
 const FIELD_OF_VIEW: f64 = 40.0;
 const MARGIN: f64 = 1.02;
 
-/// Whether the name of a file is that of a mesh file.
-pub(crate) fn is_mesh(path: &Path) -> bool {
-    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase();
-    matches!(ending.as_str(), "obj" | "vs3")
-}
-
 /// The meaning of a mesh file, and the source that errors about the whole of it name.
 pub(crate) fn meaning(path: &Path, files: &mut Files) -> Result<(Source, Resolved), SceneError> {
     let name = path.file_name().unwrap_or_default();
@@ -39,21 +33,26 @@ pub(crate) fn meaning(path: &Path, files: &mut Files) -> Result<(Source, Resolve
         let help = "correct the name of the file, or its permissions";
         SceneError::new(ErrorKind::Io, path, what, help).caused_by(error)
     })?;
-    let coloured = match import(path, bytes) {
-        Some(imported) => is_coloured(Path::new(name), &imported?, files)?,
-        None => false,
-    };
+    let (mut coloured, mut camera) = (false, None);
+    if let Some(imported) = import(Path::new(name), bytes, files).transpose()? {
+        coloured = is_coloured(Path::new(name), &imported, files)?;
+        camera = imported.camera;
+    }
     let text = text(path, coloured);
-    let entry = parse(&Source { path: path.to_owned(), text })?;
+    let entry = parse(&Source::of(path, text))?;
     // What the text made here says has no place in a file.
-    let source = Source { path: path.to_owned(), text: String::new() };
+    let source = Source::of(path, String::new());
     let mut meaning = resolve(&source, &entry, files, Some(0))?;
+    meaning.camera = camera;
     complete(&source, &mut meaning);
     Ok((source, meaning))
 }
 
 /// Whether a library of the mesh that can be read has a material that is not grey.
 fn is_coloured(name: &Path, imported: &Imported, files: &mut Files) -> Result<bool, SceneError> {
+    if own_library(imported).is_coloured() {
+        return Ok(true);
+    }
     for library in &imported.libraries {
         match load_library(files, name, imported, library) {
             Ok(library) if library.is_coloured() => return Ok(true),
@@ -74,7 +73,7 @@ fn text(path: &Path, coloured: bool) -> String {
     let file = path.file_name().unwrap_or_default().to_string_lossy();
     let bands = if coloured { "bands = [\"r\", \"g\", \"b\"]\n" } else { "" };
     format!(
-        "{bands}[materials.{PLAIN}]\nreflectance = {UNSAID}\n[[surface]]\nname = {}\nmaterial = \"{PLAIN}\"\nobj = {{ file = {} }}\n",
+        "{bands}[materials.{PLAIN}]\nreflectance = {UNSAID}\n[[surface]]\nname = {}\nmaterial = \"{PLAIN}\"\nmesh = {{ file = {} }}\n",
         quoted(&stem),
         quoted(&file)
     )
@@ -88,9 +87,10 @@ fn complete(source: &Source, meaning: &mut Resolved) {
     };
     if meaning.parts.iter().any(|part| part.material == 0) {
         let what = format!("faces without a material that is known reflect {UNSAID}");
-        meaning
-            .notes
-            .push(note(what, "give them materials in a scene file, or in an .mtl file beside the mesh"));
+        meaning.notes.push(note(
+            what,
+            "give them materials in a scene file, or in the mesh (the .mtl file of an OBJ)",
+        ));
     }
     let emits = |part: &Part| meaning.materials[part.material].exitance.iter().any(|&m| m > 0.0);
     if meaning.parts.iter().any(emits) {
@@ -101,11 +101,11 @@ fn complete(source: &Source, meaning: &mut Resolved) {
     let bands = meaning.bands.len();
     let (name, reflectance, exitance) = (SKY.to_owned(), vec![0.0; bands], vec![PI; bands]);
     meaning.materials.push(Material { name, reflectance, exitance });
-    meaning.camera = Some(camera(&bounds));
+    meaning.camera = meaning.camera.or_else(|| Some(camera(&bounds)));
     let what = "nothing emits, so a black box around the mesh, `sky`, lights it evenly from all sides: radiance 1 W/(m² sr)";
     meaning.notes.push(note(
         what.to_owned(),
-        "give a material an emission: Ke in the .mtl file, or exitance in a scene file",
+        "give a material an emission in the mesh (Ke in the .mtl file of an OBJ), or exitance in a scene file",
     ));
 }
 

@@ -5,13 +5,14 @@
 //! around them) and block the view without radiating. Metres.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use fredholm_mesh::{Contacts, Cutting, Mesh, MeshBuilder, MeshError, Shape, Vec3};
 
 use crate::error::{ErrorKind, SceneError};
 use crate::files::Files;
 use crate::import::vs3::{self, Radiating, View3d};
-use crate::import::{ENDINGS, import};
+use crate::import::{Imported, ending, import, is_mesh};
 use crate::resolve::{FARTHEST, Mended, face_shapes};
 use crate::scene::Scene;
 use crate::source::{Source, read};
@@ -58,7 +59,7 @@ enum Origin {
 /// A mesh file on its own.
 #[derive(Debug)]
 struct MeshFile {
-    source: Source,
+    source: Arc<Source>,
     title: Option<String>,
     surfaces: Vec<Input>,
     obstructions: Vec<InputFace>,
@@ -105,15 +106,19 @@ pub struct Rows {
 }
 
 impl Geometry {
-    /// Reads a scene (.toml) or a mesh file (.obj, .vs3).
+    /// Reads a scene (.toml) or a mesh file, known by the ending of its name.
     ///
     /// # Errors
     /// [`SceneError`], with file and line, for anything that is wrong with it.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, SceneError> {
         let path = path.as_ref();
         match ending(path).as_str() {
-            "vs3" => Self::file(path, |bytes| view3d(vs3::parse(Source::decode(path, bytes)?)?)),
-            "obj" => Self::file(path, |bytes| wavefront(path, bytes)),
+            "vs3" => Self::file(path, |bytes, _| view3d(vs3::parse(Source::decode(path, bytes)?)?)),
+            _ if is_mesh(path) => Self::file(path, |bytes, files| {
+                let name = Path::new(path.file_name().unwrap_or_default());
+                import(name, bytes, files)
+                    .map_or_else(|| Err(empty(&Source::binary(path))), |read| mesh_file(read?))
+            }),
             _ => {
                 let scene = Scene::load(path)?;
                 let sha256 = scene.sha256().to_owned();
@@ -124,15 +129,21 @@ impl Geometry {
 
     fn file(
         path: &Path,
-        parse: impl FnOnce(Vec<u8>) -> Result<MeshFile, SceneError>,
+        parse: impl FnOnce(Vec<u8>, &mut Files) -> Result<MeshFile, SceneError>,
     ) -> Result<Self, SceneError> {
-        let bytes = read(path).map_err(|error| {
+        let unreadable = |error| {
             let what = format!("cannot read the file: {error}");
             SceneError::new(ErrorKind::Io, path, what, "correct the name of the file, or its permissions")
                 .caused_by(error)
-        })?;
-        let file = parse(bytes)?;
-        let sha256 = Files::beside(path).fingerprint(&file.source.text);
+        };
+        let bytes = read(path).map_err(unreadable)?;
+        let mut files = Files::beside(path);
+        let file = parse(bytes, &mut files)?;
+        if file.source.binary {
+            let name = Path::new(path.file_name().unwrap_or_default());
+            files.load(name).map_err(unreadable)?;
+        }
+        let sha256 = files.fingerprint(&file.source.text);
         Ok(Self { origin: Origin::File(file), sha256 })
     }
 
@@ -276,28 +287,27 @@ impl Surfaces {
     }
 }
 
-fn ending(path: &Path) -> String {
-    path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase()
+/// Says that a file holds nothing.
+fn empty(source: &Source) -> SceneError {
+    let end = source.text.len();
+    let help = "give a file with faces (lines that begin with f in an OBJ)";
+    source.error(ErrorKind::Empty, end..end, "the file holds no face", help)
 }
 
-/// Every face of a Wavefront OBJ file.
-fn wavefront(path: &Path, bytes: Vec<u8>) -> Result<MeshFile, SceneError> {
-    let unknown = || {
-        Err(SceneError::new(
-            ErrorKind::Format,
-            path,
-            "no known mesh format",
-            format!("give a file whose name ends in {ENDINGS}"),
-        ))
-    };
-    let imported = import(path, bytes).unwrap_or_else(unknown)?;
+/// Every face of a mesh file.
+fn mesh_file(imported: Imported) -> Result<MeshFile, SceneError> {
     let source = imported.source;
+    let path = source.path.clone();
     let faces = imported.groups.iter().flat_map(|group| &group.faces);
     let mended = Mended::of(faces.map(|face| face.corners.clone()).collect());
     let found = mended.findings();
     let words =
         mended.left_out().into_iter().chain(found.iter().map(ToString::to_string)).chain(doubled(&mended));
-    let warnings = words.map(|what| format!("{}: {what}", path.display())).collect();
+    let at = |span: &std::ops::Range<usize>| source.place(span.clone());
+    let notes =
+        imported.notes.iter().map(|note| format!("{}:{}: {}", path.display(), at(&note.span), note.what));
+    let notes: Vec<String> = notes.collect();
+    let warnings = words.map(|what| format!("{}: {what}", path.display())).chain(notes).collect();
     let mut shapes = mended.shapes.into_iter();
     let mut surfaces = vec![];
     for group in imported.groups {
@@ -314,9 +324,7 @@ fn wavefront(path: &Path, bytes: Vec<u8>) -> Result<MeshFile, SceneError> {
         }
     }
     if surfaces.is_empty() {
-        let end = source.text.len();
-        let help = "give a file with faces (lines that begin with f)";
-        return Err(source.error(ErrorKind::Empty, end..end, "the file holds no face", help));
+        return Err(empty(&source));
     }
     Ok(MeshFile { source, title: None, surfaces, obstructions: vec![], tolerance: None, warnings })
 }
@@ -384,6 +392,7 @@ fn view3d(file: View3d) -> Result<MeshFile, SceneError> {
     }
     let warnings = warnings(&file);
     let View3d { source, title, control, .. } = file;
+    let source = Arc::new(source);
     Ok(MeshFile { source, title, surfaces, obstructions, tolerance: control.tolerance, warnings })
 }
 

@@ -4,10 +4,11 @@ use std::path::Path;
 
 use fredholm_mesh::{Cutting, Mesh, MeshBuilder, MeshError};
 
-use crate::bare::{self, is_mesh};
+use crate::bare;
 use crate::check::{Finding, Pieces, Warning};
 use crate::error::{ErrorKind, SceneError};
 use crate::files::Files;
+use crate::import::is_mesh;
 use crate::parse::parse;
 use crate::part::Part;
 use crate::resolve::{Camera, Material, Resolved, SolveDefaults, resolve};
@@ -49,8 +50,8 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Reads a scene file and the files it names, or a mesh file (.obj, .vs3) that stands for a scene: with the materials of its
-    /// libraries, and evenly lit from all sides where none of them emits.
+    /// Reads a scene file and the files it names, or a mesh file (OBJ, STL, PLY, glTF, Gmsh, Radiance, Mitsuba,
+    /// View3D, known by the ending of its name) that stands for a scene: with the materials of its libraries, and evenly lit from all sides where none of them emits.
     ///
     /// # Errors
     /// [`SceneError`], with file and line, for anything that is wrong with them.
@@ -74,7 +75,7 @@ impl Scene {
     /// # Errors
     /// [`SceneError`], with file and line, for anything that is wrong with it.
     pub fn from_str(text: &str, path: impl AsRef<Path>) -> Result<Self, SceneError> {
-        Self::from_source(Source { path: path.as_ref().to_owned(), text: text.to_owned() })
+        Self::from_source(Source::of(path.as_ref(), text.to_owned()))
     }
 
     fn from_source(source: Source) -> Result<Self, SceneError> {
@@ -264,7 +265,12 @@ impl Scene {
         &self.meaning.parts
     }
 
-    fn unmeshable(&self, part: &Part, error: &MeshError) -> SceneError {
+    /// Whether some pieces lie on others.
+    pub(crate) fn overlaps(&self) -> bool {
+        self.pieces.overlap
+    }
+
+    pub(crate) fn unmeshable(&self, part: &Part, error: &MeshError) -> SceneError {
         let what = format!("surface `{}`: {error}", part.name);
         self.source.error(ErrorKind::Geometry, part.span.clone(), what, error.help())
     }

@@ -1,4 +1,4 @@
-//! A text file, and how to point at a piece of it.
+//! A file, and how to point at a piece of it: by line in a text, by byte elsewhere.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -14,11 +14,14 @@ const QUOTED: usize = 100;
 /// Characters kept before the offending piece of a long line.
 const LEAD: usize = 30;
 
-/// A file as text.
+/// A file, for messages about it.
 #[derive(Debug)]
 pub(crate) struct Source {
     pub path: PathBuf,
+    /// Its text; empty where it is none.
     pub text: String,
+    /// Whether it is no text, so that places in it are told by their bytes.
+    pub binary: bool,
 }
 
 /// What editors put before the text of UTF-8 files to mark them as such.
@@ -44,11 +47,17 @@ impl Source {
         Ok(Self::of(path, text))
     }
 
-    fn of(path: &Path, mut text: String) -> Self {
+    /// A file that is no text.
+    pub fn binary(path: &Path) -> Self {
+        Self { path: path.to_owned(), text: String::new(), binary: true }
+    }
+
+    /// A text.
+    pub fn of(path: &Path, mut text: String) -> Self {
         if text.starts_with(BYTE_ORDER_MARK) {
             text.drain(..BYTE_ORDER_MARK.len_utf8());
         }
-        Self { path: path.to_owned(), text }
+        Self { path: path.to_owned(), text, binary: false }
     }
 
     /// An error about the piece at `span`, bytes.
@@ -59,6 +68,9 @@ impl Source {
         what: impl AsRef<str>,
         help: impl AsRef<str>,
     ) -> SceneError {
+        if self.binary {
+            return SceneError::new(kind, &self.path, what, help).at(Place::Byte(span.start));
+        }
         let (place, excerpt) = self.locate(span);
         let error = SceneError::new(kind, &self.path, what, help).at(place);
         if excerpt.line.trim().is_empty() { error } else { error.quoting(excerpt) }
@@ -66,7 +78,7 @@ impl Source {
 
     /// Where the piece at `span` begins.
     pub fn place(&self, span: Range<usize>) -> Place {
-        self.locate(span).0
+        if self.binary { Place::Byte(span.start) } else { self.locate(span).0 }
     }
 
     /// The piece at `span`, as it is written.
@@ -124,7 +136,7 @@ mod tests {
     use super::*;
 
     fn source(text: &str) -> Source {
-        Source { path: "a.toml".into(), text: text.to_owned() }
+        Source::of(Path::new("a.toml"), text.to_owned())
     }
 
     #[test]

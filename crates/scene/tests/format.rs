@@ -283,6 +283,6 @@ fn the_schema_describes_every_key() {
     let surface = &schema()["$defs"]["Surface"];
     assert_eq!(surface["additionalProperties"], false);
     assert_eq!(surface["required"], serde_json::json!(["name"]));
-    assert_eq!(surface["oneOf"].as_array().unwrap().len(), 8);
+    assert_eq!(surface["oneOf"].as_array().unwrap().len(), 9);
     assert!(!schema().to_string().contains("null"));
 }

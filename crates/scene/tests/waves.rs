@@ -80,7 +80,7 @@ fn the_schema_describes_every_key() {
     properties(&schema, &mut found);
     let keys = "frequencies_hz method shadows bounces solver tolerance max_iterations edge_currents \
                 estimate_errors spacing kind travel polarisation moment_a_m current_a power_w impedance_ohm \
-                half_space layers itu thickness_m quad triangle polygon holes box sphere disc cylinder obj \
+                half_space layers itu thickness_m quad triangle polygon holes box sphere disc cylinder mesh \
                 scale turn translate edge closed points line circle grid far monostatic theta_degrees";
     for key in keys.split_whitespace() {
         assert!(found.contains(key), "{key}: {found:?}");
@@ -130,7 +130,7 @@ fn objects_of_a_file_are_surfaces_of_their_own() {
                 o plate\nusemtl coat\nv 3 0 0\nv 4 0 0\nv 4 1 0\nv 3 1 0\nf 9 10 11 12\n";
     std::fs::write(folder.path().join("two.obj"), text).unwrap();
     let surface = "[materials.coat]\nimpedance_ohm = [50, 0]\n[[surface]]\nname = \"file\"\n\
-                   obj = { file = \"two.obj\", scale = 0.3, translate = [0, 0, 1] }\nedge = 0.1";
+                   mesh = { file = \"two.obj\", scale = 0.3, translate = [0, 0, 1] }\nedge = 0.1";
     let found = scene("[1e9]", surface, folder.path());
     assert_eq!(found.surface_names().collect::<Vec<_>>(), ["file/cube", "file/plate"]);
     assert_eq!(found.materials_of_surfaces().collect::<Vec<_>>(), [0, 1]);

@@ -130,7 +130,7 @@ fn draw(scene: &Scene, found: &Report, path: &Path) -> Result<(), Error> {
 }
 
 /// A camera that sees the whole scene.
-fn framing(scene: &Scene) -> Result<Camera, Error> {
+pub(crate) fn framing(scene: &Scene) -> Result<Camera, Error> {
     let mesh = scene.face_mesh().map_err(scene_failure)?;
     let (bands, zero) = (["grey".to_owned()], vec![0.0; mesh.len()]);
     let lamps = scene.exitance(&mesh);

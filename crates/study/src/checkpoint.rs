@@ -11,7 +11,7 @@ use fredholm_report::write_atomically;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, ErrorKind};
-use crate::options::{GatherPoints, ProblemOptions, SolveOptions, SolveSettings, StopOptions};
+use crate::options::{FieldFile, GatherPoints, ProblemOptions, SolveOptions, SolveSettings, StopOptions};
 use crate::size::Bytes;
 
 /// Name and version of the format.
@@ -43,6 +43,8 @@ pub(crate) struct Header {
     pub(crate) no_pictures: bool,
     #[serde(default)]
     pub(crate) no_report: bool,
+    #[serde(default)]
+    pub(crate) also: Vec<FieldFile>,
     /// Points whose irradiance is gathered, six numbers each.
     #[serde(default)]
     points: Vec<[String; 6]>,
@@ -66,6 +68,7 @@ impl Header {
             discontinuity: options.discontinuity,
             no_pictures: options.no_pictures,
             no_report: options.no_report,
+            also: options.also.clone(),
             points: options.points.iter().map(written).collect(),
         }
     }
@@ -127,6 +130,7 @@ impl Checkpoint {
             discontinuity: header.discontinuity,
             no_pictures: header.no_pictures,
             no_report: header.no_report,
+            also: header.also.clone(),
             points: GatherPoints { points: header.receivers(), grids: Vec::new() },
             problem: ProblemOptions {
                 solver: Some(header.solver.clone()),

@@ -78,6 +78,7 @@ pub(crate) fn options(asked: &SolveOptions, scene: &Scene, accuracy: f64) -> Res
     options.discontinuity = asked.discontinuity;
     options.no_pictures = asked.no_pictures;
     options.no_report = asked.no_report;
+    options.also.clone_from(&asked.also);
     options.points = asked.points.receivers();
     options.tolerance = asked.stop.tolerance.or(scene.solve().tolerance).unwrap_or(RESIDUAL * accuracy);
     Ok(options)

@@ -14,6 +14,7 @@
 //! | estimates by random paths | [`trace`] |
 //! | whether a solution and random paths agree | [`crosscheck`] |
 //! | reference values for other programs | [`reference()`] |
+//! | a scene for other programs, a mesh in another format | [`export`], [`convert`] |
 //!
 //! Options are structs with defaults: what is not asked for is as the scene says, else as usual.
 //! Every function takes one [`Watch`], which is told of progress and can cancel the run; [`Quiet`]
@@ -30,6 +31,7 @@ mod converge;
 mod crosscheck;
 mod discretised;
 mod error;
+mod exchange;
 mod folder;
 mod hierarchical;
 mod memory;
@@ -63,16 +65,19 @@ pub use compare::{CompareOptions, check_solver, compare};
 pub use converge::{ConvergeOptions, converge};
 pub use crosscheck::{CrosscheckOptions, MultipleTests, Verdict, crosscheck};
 pub use error::{Error, ErrorKind};
+pub use exchange::{Written, convert, export};
 pub use folder::probe as probe_folder;
 pub use fredholm_coupling::Receiver;
 pub use fredholm_discretisation::{discretisation, discretisations};
 pub use fredholm_linop::{Quiet, Watch};
 pub use fredholm_mesh::Vec3;
+pub use fredholm_scene::ExportFormat;
 pub use memory::{
     Limit as MemoryLimit, Plan as MemoryPlan, addresses_are_limited, less_than_asked, peak as peak_memory,
 };
 pub use options::{
-    GatherPoints, PointGrid, Precision, ProblemOptions, Recorded, SceneSource, SolveOptions, StopOptions,
+    FieldFile, GatherPoints, PointGrid, Precision, ProblemOptions, Recorded, SceneSource, SolveOptions,
+    StopOptions,
 };
 pub use reference::{ReferenceOptions, References, reference};
 pub use registry::{SolverEntry, names as solver_names, solvers};

@@ -6,8 +6,9 @@ use std::sync::Arc;
 
 use fredholm_coupling::Receiver;
 use fredholm_mesh::Vec3;
+use fredholm_report::{FIELD_GLB, FIELD_PLY};
 use fredholm_scene::{Scene, SolveDefaults, Storage};
-use serde::{Serialize, Serializer};
+use serde::{Deserialize, Serialize, Serializer};
 use serde_json::{Map, Value};
 
 use crate::error::Error;
@@ -188,6 +189,8 @@ pub struct SolveOptions {
     pub no_pictures: bool,
     /// Whether report.html is left out.
     pub no_report: bool,
+    /// Further files with the field.
+    pub also: Vec<FieldFile>,
     /// Points whose irradiance is gathered.
     pub points: GatherPoints,
     /// What decides the size and the effort.
@@ -199,6 +202,27 @@ pub struct SolveOptions {
     pub folder: Option<PathBuf>,
     /// What else the record of the run is to say.
     pub recorded: Recorded,
+}
+
+/// A further file with the field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum FieldFile {
+    /// field.ply: elements with colours at their corners, and the values of the elements.
+    Ply,
+    /// field.glb: elements with colours and radiosity at their corners.
+    Glb,
+}
+
+impl FieldFile {
+    /// The name of the file.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ply => FIELD_PLY,
+            Self::Glb => FIELD_GLB,
+        }
+    }
 }
 
 /// What decides the size and the effort of a problem, in force.
@@ -243,6 +267,9 @@ pub(crate) struct SolveSettings {
     /// Whether the page is left out.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub(crate) no_report: bool,
+    /// Further files with the field.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) also: Vec<FieldFile>,
     pub(crate) tolerance: f64,
     pub(crate) max_iterations: u64,
     /// Folder of the results.
@@ -285,6 +312,7 @@ impl SolveSettings {
             discontinuity: false,
             no_pictures: false,
             no_report: false,
+            also: Vec::new(),
             tolerance: stop.tolerance.or(scene.tolerance).unwrap_or(TOLERANCE),
             max_iterations: iterations.unwrap_or(MAX_ITERATIONS),
             output: String::new(),

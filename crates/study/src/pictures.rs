@@ -10,7 +10,7 @@ use fredholm_mesh::{Patch, Vec3};
 use fredholm_report::{EXTRAS, Gathering, Link as Drawn, Linked, PointTable};
 
 use crate::error::{Error, ErrorKind};
-use crate::options::SolveSettings;
+use crate::options::{FieldFile, SolveSettings};
 use crate::problem::Problem;
 use crate::solution::Solution;
 
@@ -38,7 +38,8 @@ pub(crate) fn pictures(options: &SolveSettings, solution: &Solution) -> impl Ite
 pub(crate) fn files(options: &SolveSettings, solution: &Solution) -> impl Iterator<Item = &'static str> {
     let linked = solution.tree.is_some() && !options.no_pictures;
     let points = !options.points.is_empty();
-    let wanted = [linked, linked, options.final_gather, points, options.discontinuity];
+    let [ply, glb] = [FieldFile::Ply, FieldFile::Glb].map(|file| options.also.contains(&file));
+    let wanted = [linked, linked, options.final_gather, points, options.discontinuity, ply, glb];
     EXTRAS.into_iter().zip(wanted).filter(|(_, wanted)| *wanted).map(|(name, _)| name)
 }
 

@@ -235,7 +235,9 @@ fn dense(
     let options = SolveSettings::new(problem.options.clone(), asked.stop, scene.solve());
     let points = asked.points.receivers();
     let SolveOptions { final_gather, discontinuity, no_pictures, no_report, .. } = *asked;
-    let options = SolveSettings { points, final_gather, discontinuity, no_pictures, no_report, ..options };
+    let also = asked.also.clone();
+    let options =
+        SolveSettings { points, also, final_gather, discontinuity, no_pictures, no_report, ..options };
     let solution = compute(&problem, &options, stages)?;
     Ok((options, problem, solution))
 }
@@ -347,7 +349,8 @@ fn write(
     let title = title(&problem.scene);
     let report = (!options.no_report).then_some(RunReport { title: &title, view: &view, steps: ("", &[]) });
     let view = (!options.no_pictures).then_some(&view);
-    let more = Extras { pictures, points, shadows, report };
+    let baked = options.also.iter().map(|file| file.name()).collect();
+    let more = Extras { pictures, points, shadows, baked, report };
     write_with(folder, &field, record, view, &more).map(drop).map_err(report_failure)
 }
 

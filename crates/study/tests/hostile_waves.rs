@@ -85,7 +85,7 @@ fn warned(changes: &[(&str, &str)], mesh: &str, what: &str) {
 fn a_good_scene_is_told_nothing() {
     let found = checked(GOOD, "").unwrap();
     assert!(found.warnings.is_empty() && found.facets == 441, "{found:?}");
-    let solid = changed(&[(PLATE, "obj = { file = \"mesh.obj\" }")]);
+    let solid = changed(&[(PLATE, "mesh = { file = \"mesh.obj\" }")]);
     let found = checked(&solid, &cube(&FACES)).unwrap();
     assert!(found.warnings.is_empty(), "{found:?}");
     let told = found.findings.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
@@ -130,7 +130,7 @@ fn numbers_and_names_that_are_none_are_refused() {
         (PLATE, "sphere = { centre = [0, 0, 0], radius = 0 }", ""),
         (PLATE, "cylinder = { base = [0, 0, 0], axis = [0, 0, 0], radius = 1 }", "points nowhere"),
         (PLATE, "polygon = { outline = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]] }", "crosses or touches"),
-        (PLATE, "obj = { file = \"missing.obj\" }", "missing.obj"),
+        (PLATE, "mesh = { file = \"missing.obj\" }", "missing.obj"),
     ];
     for (from, to, what) in cases {
         if to.contains("missing.obj") {
@@ -144,7 +144,7 @@ fn numbers_and_names_that_are_none_are_refused() {
 
 #[test]
 fn bodies_that_are_none_are_refused() {
-    let file = |closed: &str| format!("obj = {{ file = \"mesh.obj\" }}\n{closed}");
+    let file = |closed: &str| format!("mesh = {{ file = \"mesh.obj\" }}\n{closed}");
     refused(&[("name = \"plate\"", "name = \"plate\"\nclosed = true")], "", "which is open: 4 sides");
     refused(&[(PLATE, &file("closed = true"))], &cube(&FACES[..5]), "which is open: 4 sides");
     refused(

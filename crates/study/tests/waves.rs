@@ -83,7 +83,7 @@ fn a_mesh_file_scatters_as_the_shape_does() {
         solved(folder.path(), &text).near()[0].scattered
     };
     let exact = field("box = { min = [0, 0, 0], max = [0.12, 0.12, 0.12] }");
-    let file = field("obj = { file = \"cube.obj\", scale = 0.12 }");
+    let file = field("mesh = { file = \"cube.obj\", scale = 0.12 }");
     let size = exact.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     assert!(exact.iter().zip(file).all(|(a, b)| (a - b).abs() < 1e-5 * size), "{exact:?} {file:?}");
 }

@@ -2,6 +2,7 @@
 
 mod compare;
 mod crosscheck;
+mod exchange;
 mod paths;
 mod reference;
 mod resume;
@@ -27,6 +28,7 @@ use crate::commands::{VIEW_EXAMPLES, ViewArgs};
 use crate::start::recorded;
 pub(crate) use compare::CompareArgs;
 pub(crate) use crosscheck::CrosscheckArgs;
+pub(crate) use exchange::{ConvertArgs, ExportArgs};
 pub(crate) use reference::ReferenceArgs;
 pub(crate) use resume::ResumeArgs;
 pub(crate) use shoot::ShootArgs;
@@ -60,9 +62,11 @@ Examples:
   fredholm solve room.toml --accuracy 1% --goal desk,board
   fredholm solve room.toml --accuracy 1% --final-gather --point 1,2,0.8,0,0,1
   fredholm solve house.obj --accuracy 5%
+  fredholm solve room.glb --also ply,glb
 
-A mesh file (.obj, .vs3) stands for a scene: its .mtl file tells reflectances (Kd) and lamps (Ke);
-where nothing emits, light comes evenly from all sides. What was taken is told.
+A mesh file stands for a scene: .obj, .stl, .ply, .gltf, .glb, .msh (Gmsh 4.1), .rad (Radiance), .xml
+(Mitsuba 3) or .vs3 (View3D). Reflectances and lamps are those of the file (of an OBJ those of its .mtl
+file: Kd and Ke); where nothing emits, light comes evenly from all sides. What was taken is told.
 
 An accuracy is reached by hierarchical radiosity or by the matrix of the scene's elements, whichever
 is predicted to cost less; the summary says which. With the former, mesh.png shows the elements and
@@ -79,7 +83,8 @@ Examples:
   fredholm check scenes/waves/cube.toml
   fredholm check room.toml --memory 8GiB
 
-A mesh file (.obj, .vs3) stands for a scene: see `fredholm solve --help`.";
+A mesh file (.obj, .stl, .ply, .gltf, .glb, .msh, .rad, .xml, .vs3) stands for a scene: see
+`fredholm solve --help`.";
 
 const CONVERGE_EXAMPLES: &str = "\
 Examples:
@@ -176,6 +181,12 @@ pub(crate) enum Command {
     /// Write reference values with stated errors, to check other tracers with
     #[command(after_help = reference::EXAMPLES)]
     Reference(ReferenceArgs),
+    /// Write a scene for another program: Mitsuba, pbrt, Radiance, Gmsh, or as a mesh
+    #[command(after_help = exchange::EXPORT_EXAMPLES)]
+    Export(ExportArgs),
+    /// Write a mesh in another format
+    #[command(after_help = exchange::CONVERT_EXAMPLES)]
+    Convert(ConvertArgs),
     /// Open the page of a result, report.html, or print where it is
     #[command(after_help = VIEW_EXAMPLES)]
     View(ViewArgs),
@@ -212,6 +223,8 @@ impl Command {
             Self::Trace(args) => args.log.log,
             Self::Crosscheck(args) => args.log.log,
             Self::Reference(args) => args.log.log,
+            Self::Export(args) => args.log.log,
+            Self::Convert(args) => args.log.log,
             _ => LogFormat::Plain,
         }
     }
@@ -239,6 +252,24 @@ pub(crate) enum LogFormat {
     Json,
 }
 
+/// A further file with the field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FieldFile {
+    /// Colours at the corners, and the values of the elements
+    Ply,
+    /// Colours and radiosity at the corners
+    Glb,
+}
+
+impl From<FieldFile> for fredholm_study::FieldFile {
+    fn from(file: FieldFile) -> Self {
+        match file {
+            FieldFile::Ply => Self::Ply,
+            FieldFile::Glb => Self::Glb,
+        }
+    }
+}
+
 /// Number format of the stored matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Precision {
@@ -260,7 +291,7 @@ impl From<Precision> for fredholm_study::Precision {
 /// What decides the size and the effort of a problem; where given it goes before the scene's `[solve]` table.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct ProblemArgs {
-    /// Scene file (.toml), or mesh file that stands for a scene (.obj, .vs3)
+    /// Scene file (.toml), or mesh file that stands for a scene (.obj, .stl, .ply, .gltf, .glb, .msh, .rad, .xml, .vs3)
     pub(crate) scene: PathBuf,
     /// Threads; any number gives the same results [default: one a core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -320,6 +351,9 @@ pub(crate) struct SolveArgs {
     /// Write no report.html
     #[arg(long)]
     pub(crate) no_report: bool,
+    /// Also write the elements with their light as colours and numbers: field.ply, field.glb
+    #[arg(long, value_enum, value_name = "FORMAT", value_delimiter = ',')]
+    pub(crate) also: Vec<FieldFile>,
     /// Also write shadows.vtu, for which the elements are cut along the borders of the shadows that lamps cast and gather
     /// their irradiance at the corners
     #[arg(long)]
@@ -344,6 +378,7 @@ impl SolveArgs {
             discontinuity: self.discontinuity,
             no_pictures: self.no_pictures,
             no_report: self.no_report,
+            also: self.also.iter().map(|&file| file.into()).collect(),
             points: GatherPoints { points: self.places.point.clone(), grids: self.places.plane.clone() },
             problem: self.problem.options(),
             stop: self.stop.options(),

@@ -6,6 +6,7 @@ mod completions;
 mod converge;
 mod crosscheck;
 mod discretisations;
+mod exchange;
 mod info;
 mod reference;
 mod resume;
@@ -40,6 +41,8 @@ pub(crate) fn execute(command: &Command) -> Result<Ending, Error> {
         Command::Trace(args) => trace::trace(args),
         Command::Crosscheck(args) => crosscheck::crosscheck(args),
         Command::Reference(args) => reference::reference(args),
+        Command::Export(args) => exchange::export(args),
+        Command::Convert(args) => exchange::convert(args),
         Command::View(args) => view::view(args),
         Command::Info(args) => info::info(args),
         Command::Schema(args) => schema::schema(*args),

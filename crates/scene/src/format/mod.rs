@@ -21,7 +21,7 @@ pub(crate) use camera::CameraEntry;
 pub(crate) use material::MaterialEntry;
 pub(crate) use per_band::PerBand;
 pub(crate) use shape::{
-    BoxEntry, CylinderEntry, DiscEntry, ObjEntry, PolygonEntry, Shapes, SphereEntry, Turn,
+    BoxEntry, CylinderEntry, DiscEntry, MeshFileEntry, PolygonEntry, Shapes, SphereEntry, Turn,
 };
 pub(crate) use solve::{SolveEntry, StorageEntry};
 pub(crate) use surface::SurfaceEntry;

@@ -19,7 +19,9 @@ pub(crate) struct Shapes<'a> {
     pub sphere: Option<&'a At<SphereEntry>>,
     pub disc: Option<&'a At<DiscEntry>>,
     pub cylinder: Option<&'a At<CylinderEntry>>,
-    pub obj: Option<&'a At<ObjEntry>>,
+    pub mesh: Option<&'a At<MeshFileEntry>>,
+    /// The same under its first name, of light alone.
+    pub obj: Option<&'a At<MeshFileEntry>>,
 }
 
 /// A flat polygon, not necessarily convex.
@@ -99,11 +101,12 @@ pub(crate) struct CylinderEntry {
     pub segments: Option<At<u32>>,
 }
 
-/// Faces from a Wavefront OBJ file. Every object or group becomes a surface called NAME/object.
+/// Faces from a mesh file: OBJ, STL, PLY, glTF (.gltf, .glb), Gmsh 4.1 (.msh), Radiance (.rad), Mitsuba 3 (.xml) or
+/// View3D (.vs3), known by the ending of its name. Every object, group, solid or node becomes a surface called NAME/object.
 #[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, expecting = "a table of an OBJ file")]
-#[schemars(rename = "Obj")]
-pub(crate) struct ObjEntry {
+#[serde(deny_unknown_fields, expecting = "a table of a mesh file")]
+#[schemars(rename = "Mesh")]
+pub(crate) struct MeshFileEntry {
     /// The file, relative to the scene file.
     pub file: At<String>,
     /// Length of one unit of the file, m, above 0. Default: 1.
@@ -112,8 +115,9 @@ pub(crate) struct ObjEntry {
     pub turn: Option<Turn>,
     /// Moved after turning, m. Default: [0, 0, 0].
     pub translate: Option<Triple>,
-    /// Material of the scene for each material of the file. Default: the one of the same name, else what the file's material
-    /// library says: reflectance Kd, exitance π Ke.
+    /// Material of the scene for each material of the file; for faces without one, for each object. Default: the one of
+    /// the same name as the material, else what the file or its material library says: the reflectance, and the exitance
+    /// π L of a radiance L (in an .mtl file Kd and Ke).
     #[serde(default)]
     pub materials: BTreeMap<At<String>, At<String>>,
 }

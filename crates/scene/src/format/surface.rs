@@ -3,22 +3,24 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{At, BoxEntry, CylinderEntry, DiscEntry, ObjEntry, PolygonEntry, Shapes, SphereEntry, Triple};
+use super::{
+    At, BoxEntry, CylinderEntry, DiscEntry, MeshFileEntry, PolygonEntry, Shapes, SphereEntry, Triple,
+};
 
 /// A named surface: one shape, made of one material, cut into faces.
 ///
-/// A surface has exactly one shape: quad, triangle, polygon, box, sphere, disc, cylinder or obj. It is cut into faces
+/// A surface has exactly one shape: quad, triangle, polygon, box, sphere, disc, cylinder, mesh or obj. It is cut into faces
 /// in at most one way: `divide`, `u_lines` and `v_lines`, or `largest_edge`. Results are reported for every face.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a table of a surface")]
 #[schemars(rename = "Surface", extend("oneOf" = [
     { "required": ["quad"] }, { "required": ["triangle"] }, { "required": ["polygon"] }, { "required": ["box"] },
-    { "required": ["sphere"] }, { "required": ["disc"] }, { "required": ["cylinder"] }, { "required": ["obj"] }
+    { "required": ["sphere"] }, { "required": ["disc"] }, { "required": ["cylinder"] }, { "required": ["mesh"] }, { "required": ["obj"] }
 ]))]
 pub(crate) struct SurfaceEntry {
     /// Name of the surface. No two surfaces have the same.
     pub name: At<String>,
-    /// Name of its material. Only an obj whose faces all name a material can do without.
+    /// Name of its material. Only a mesh whose faces all name a material can do without.
     pub material: Option<At<String>>,
     /// Four corners, m, counter-clockwise seen from the lit side. Lines along u cut the side from the first corner to
     /// the second, lines along v that from the first to the fourth. Corners that are not in a plane span a bilinear
@@ -37,8 +39,10 @@ pub(crate) struct SurfaceEntry {
     pub disc: Option<At<DiscEntry>>,
     /// A cylinder.
     pub cylinder: Option<At<CylinderEntry>>,
-    /// Faces from a Wavefront OBJ file.
-    pub obj: Option<At<ObjEntry>>,
+    /// Faces from a mesh file.
+    pub mesh: Option<At<MeshFileEntry>>,
+    /// The same under its first name.
+    pub obj: Option<At<MeshFileEntry>>,
     /// Cut into [u, v] equal pieces. Triangles need u = v. Default: uncut.
     pub divide: Option<At<[At<u64>; 2]>>,
     /// Cut a quad, or every side of a box, at these parameters along u: from 0 to 1, strictly increasing, both ends
@@ -60,6 +64,11 @@ pub(crate) struct SurfaceEntry {
 }
 
 impl SurfaceEntry {
+    /// The mesh file that the surface comes from, where it does.
+    pub fn mesh_file(&self) -> Option<&At<MeshFileEntry>> {
+        self.mesh.as_ref().or(self.obj.as_ref())
+    }
+
     /// The shapes that are given.
     pub fn shapes(&self) -> Shapes<'_> {
         Shapes {
@@ -71,6 +80,7 @@ impl SurfaceEntry {
             sphere: self.sphere.as_ref(),
             disc: self.disc.as_ref(),
             cylinder: self.cylinder.as_ref(),
+            mesh: self.mesh.as_ref(),
             obj: self.obj.as_ref(),
         }
     }

@@ -68,7 +68,7 @@ mod tests {
     use super::*;
 
     fn read(text: &str) -> Result<Vec<MeshMaterial>, SceneError> {
-        mesh_materials(&Source { path: "a.mtl".into(), text: text.to_owned() })
+        mesh_materials(&Source::of("a.mtl".as_ref(), text.to_owned()))
     }
 
     #[test]

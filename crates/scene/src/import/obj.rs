@@ -10,12 +10,10 @@ use std::ops::Range;
 
 use fredholm_mesh::Vec3;
 
-use super::{Group, Imported, ImportedFace, Name};
+use super::{Group, Imported, ImportedFace, MOST_CORNERS, Name};
 use crate::error::{ErrorKind, SceneError};
 use crate::source::Source;
 
-/// Most corners of a face: it is cut into triangles in a time that grows with their square.
-const MOST_CORNERS: usize = 10_000;
 /// Statements that change no surface.
 const PASSED_OVER: [&str; 15] = [
     "vt",
@@ -41,7 +39,7 @@ pub(super) fn parse(source: Source) -> Result<Imported, SceneError> {
         reader.statement(&statement)?;
     }
     let Reader { groups, libraries, .. } = reader;
-    Ok(Imported { source, groups, libraries })
+    Ok(Imported { libraries, ..Imported::new(source, groups) })
 }
 
 /// A statement: one line, or several that a backslash at the end joins.
@@ -167,7 +165,7 @@ impl Reader<'_> {
         });
         if index == self.groups.len() {
             let (object, material) = (self.object.clone(), self.material.clone());
-            self.groups.push(Group { object, material, faces: vec![] });
+            self.groups.push(Group { object, material, ..Group::default() });
         }
         self.open = Some(index);
         &mut self.groups[index]
@@ -242,7 +240,7 @@ mod tests {
     use super::*;
 
     fn parsed(text: &str) -> Result<Imported, SceneError> {
-        parse(Source { path: "a.obj".into(), text: text.to_owned() })
+        parse(Source::of("a.obj".as_ref(), text.to_owned()))
     }
 
     const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";

@@ -20,7 +20,7 @@ use std::ops::Range;
 
 use fredholm_mesh::Vec3;
 
-use super::{Group, Imported, ImportedFace, Name};
+use super::{Group, Imported, ImportedFace};
 use crate::error::{ErrorKind, SceneError};
 use crate::source::Source;
 use crate::suggest::among;
@@ -100,10 +100,10 @@ pub(super) fn import(source: Source) -> Result<Imported, SceneError> {
         let face = ImportedFace { corners: surface.corners.clone(), span: surface.span.clone() };
         match groups.iter_mut().find(|group| group.object.as_ref() == Some(name)) {
             Some(group) => group.faces.push(face),
-            None => groups.push(Group { object: Some(name.clone()), material: None, faces: vec![face] }),
+            None => groups.push(Group { object: Some(name.clone()), faces: vec![face], ..Group::default() }),
         }
     }
-    Ok(Imported { source, groups, libraries: Vec::<Name>::new() })
+    Ok(Imported::new(source, groups))
 }
 
 /// The name under which a surface goes into a scene: that of the one it is combined with.
@@ -382,7 +382,7 @@ mod tests {
     const VERTICES: &str = "V 1 0 0 0\nV 2 1 0 0\nV 3 1 1 0\nV 4 0 1 0\n";
 
     fn parsed(text: &str) -> Result<View3d, SceneError> {
-        parse(Source { path: "a.vs3".into(), text: text.to_owned() })
+        parse(Source::of("a.vs3".as_ref(), text.to_owned()))
     }
 
     #[test]
@@ -423,7 +423,7 @@ mod tests {
     #[test]
     fn pieces_go_into_a_scene_under_the_name_of_what_they_are_combined_with() {
         let text = format!("{VERTICES}S 1 1 2 3 0 0 0 0.5 a\nS 2 1 3 4 0 0 1 0.5 b\nS 3 1 2 4 0 0 0 0.5 c\n");
-        let groups = import(Source { path: "a.vs3".into(), text }).unwrap().groups;
+        let groups = import(Source::of("a.vs3".as_ref(), text)).unwrap().groups;
         let sizes: Vec<_> = groups.iter().map(|g| (g.object.as_deref().unwrap(), g.faces.len())).collect();
         assert_eq!(sizes, [("a", 2), ("c", 1)]);
     }

@@ -1,4 +1,5 @@
-//! Materials from the libraries of a mesh file: reflectance Kd, exitance π Ke (Ke is the radiance, as renderers take it).
+//! Materials from mesh files and their libraries: a reflectance, and the exitance π L of a radiance L (in a
+//! material library Kd and Ke, as renderers take them).
 //!
 //! A colour goes to the bands r, g, b (or red, green, blue); a grey one to any bands, and any to a single band as its luminance
 //! 0.2126 r + 0.7152 g + 0.0722 b (ITU-R BT.709).
@@ -6,13 +7,14 @@
 use std::f64::consts::PI;
 use std::fmt::Write;
 use std::path::Path;
+use std::sync::Arc;
 
 use super::number::short;
 use super::{Context, Material};
 use crate::check::Warning;
 use crate::error::{ErrorKind, SceneError};
-use crate::format::ObjEntry;
-use crate::import::{Imported, MeshMaterial, Name, mesh_materials};
+use crate::format::MeshFileEntry;
+use crate::import::{Imported, MeshMaterial, Name, ending, mesh_materials};
 use crate::source::Source;
 
 /// Shares of red, green and blue in a luminance.
@@ -27,18 +29,49 @@ const COLOURS: [[&str; 3]; 2] = [["r", "g", "b"], ["red", "green", "blue"]];
 /// A material library that was read.
 #[derive(Debug)]
 pub(crate) struct Library {
-    pub source: Source,
+    pub source: Arc<Source>,
     pub materials: Vec<MeshMaterial>,
+    terms: Terms,
+}
+
+/// What a format calls what is taken over.
+#[derive(Clone, Copy, Debug)]
+struct Terms {
+    library: &'static str,
+    reflectance: &'static str,
+    radiance: &'static str,
+}
+
+const MTL: Terms = Terms { library: "library", reflectance: "Kd", radiance: "Ke" };
+
+/// The words of a format that holds its materials itself.
+fn terms(path: &Path) -> Terms {
+    let (reflectance, radiance) = match ending(path).as_str() {
+        "gltf" | "glb" => ("baseColorFactor", "emissiveFactor"),
+        "xml" => ("reflectance", "radiance"),
+        _ => ("colour", "radiance"),
+    };
+    Terms { library: "file", reflectance, radiance }
+}
+
+/// The materials that a mesh file defines itself.
+pub(crate) fn own(imported: &Imported) -> Library {
+    let (source, materials) = (Arc::clone(&imported.source), imported.materials.clone());
+    let terms = terms(&source.path);
+    Library { source, materials, terms }
 }
 
 /// Reads the libraries of a mesh file; with `lenient`, those that cannot be read are told and passed over.
 pub(super) fn read(
     context: &mut Context,
-    file: &ObjEntry,
+    file: &MeshFileEntry,
     imported: &Imported,
 ) -> Result<Vec<Library>, SceneError> {
     let lenient = context.fallback.is_some();
     let mut libraries = vec![];
+    if !imported.materials.is_empty() {
+        libraries.push(own(imported));
+    }
     for library in &imported.libraries {
         match load(context.reading.files, Path::new(file.file.as_str()), imported, library) {
             Err(error) if lenient && error.is_io() => {
@@ -69,7 +102,7 @@ pub(crate) fn load(
     })?;
     let source = Source::decode_mesh(&files.path(&name), bytes)?;
     let materials = mesh_materials(&source)?;
-    Ok(Library { source, materials })
+    Ok(Library { source: Arc::new(source), materials, terms: MTL })
 }
 
 /// Index of the material that a library defines by this name; it is added where it is new. None where no library says anything of it.
@@ -105,17 +138,19 @@ fn tell(context: &mut Context, library: &Library, entry: &MeshMaterial, material
         }
         words.join(" ")
     };
-    let mut what =
-        format!("`{}` is read from this library: reflectance {}", entry.name, list(&material.reflectance));
+    let Terms { library: kind, reflectance, radiance } = library.terms;
+    let known = list(&material.reflectance);
+    let mut what = format!("`{}` is read from this {kind}: reflectance {known}", entry.name);
     // Writing to a string cannot fail.
     if lowered {
-        let _ = write!(what, ", lowered to {WHITEST} where Kd is 1, since nothing reflects all light");
+        let _ =
+            write!(what, ", lowered to {WHITEST} where {reflectance} is 1, since nothing reflects all light");
     }
     if entry.diffuse.is_none() {
-        what.push_str(", since it has no Kd");
+        let _ = write!(what, ", since it has no {reflectance}");
     }
     if material.exitance.iter().any(|&m| m > 0.0) {
-        let _ = write!(what, ", exitance π Ke = {} W/m²", list(&material.exitance));
+        let _ = write!(what, ", exitance π {radiance} = {} W/m²", list(&material.exitance));
     }
     if let Some(picture) = &entry.picture {
         let _ = write!(what, "; its picture `{picture}` is not read");
@@ -138,7 +173,8 @@ fn material(
     let (mut diffuse, mut lowered) = ([UNSAID; 3], false);
     if let Some((kd, span)) = &entry.diffuse {
         if kd.iter().any(|value| !(0.0..=1.0).contains(value)) {
-            let what = format!("the reflectance Kd of `{}` is out of range", entry.name);
+            let what =
+                format!("the reflectance {} of `{}` is out of range", library.terms.reflectance, entry.name);
             let help = "write numbers from 0 to below 1: no surface reflects more than it receives; or give the material in a scene file";
             return refuse(span, what, help);
         }
@@ -148,7 +184,7 @@ fn material(
     let mut emission = [0.0; 3];
     if let Some((ke, span)) = &entry.emission {
         if ke.iter().any(|value| !(0.0..=1e99).contains(value)) {
-            let what = format!("the emission Ke of `{}` is out of range", entry.name);
+            let what = format!("the emission {} of `{}` is out of range", library.terms.radiance, entry.name);
             return refuse(span, what, "write numbers from 0 to 1e99");
         }
         emission = ke.map(|value| PI * value);
@@ -171,6 +207,18 @@ fn material(
 /// Whether red, green and blue differ.
 fn is_coloured(colour: &[f64; 3]) -> bool {
     colour.windows(2).any(|pair| pair[0].to_bits() != pair[1].to_bits())
+}
+
+/// Red, green and blue of a value in each band; none where the bands are no colours.
+pub(crate) fn colours(bands: &[String], values: &[f64]) -> Option<[f64; 3]> {
+    if let [grey] = values {
+        return Some([*grey; 3]);
+    }
+    let of = |names: &[&str; 3]| {
+        let at = |name: &str| bands.iter().position(|band| band == name).map(|k| values[k]);
+        Some([at(names[0])?, at(names[1])?, at(names[2])?])
+    };
+    COLOURS.iter().find_map(of).filter(|_| bands.len() == 3)
 }
 
 /// A colour in the bands of a scene.

@@ -24,7 +24,7 @@ use crate::part::Part;
 use crate::source::Source;
 
 pub(crate) use faces::{Mended, shapes as face_shapes};
-pub(crate) use library::{UNSAID, load as load_library};
+pub(crate) use library::{UNSAID, colours, load as load_library, own as own_library};
 pub(crate) use number::FARTHEST;
 
 pub use camera::Camera;

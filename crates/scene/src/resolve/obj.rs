@@ -15,18 +15,19 @@ use super::surface::{find_material, geometry, part};
 use super::{Context, Reading};
 use crate::check::Warning;
 use crate::error::{ErrorKind, SceneError};
-use crate::format::{At, ObjEntry, SurfaceEntry, Turn};
-use crate::import::{ENDINGS, Group, Imported, ImportedFace, Name, import};
+use crate::format::{At, MeshFileEntry, SurfaceEntry, Turn};
+use crate::import::{Group, Imported, ImportedFace, Name, endings, import};
 use crate::part::Part;
 use crate::source::Source;
 use crate::suggest::among;
 
+/// The surfaces of a file, and which of them it says to have two sides.
 pub(super) fn parts(
     context: &mut Context,
     entry: &SurfaceEntry,
-    file: &ObjEntry,
+    file: &MeshFileEntry,
     cutting: &Cutting,
-) -> Result<Vec<Part>, SceneError> {
+) -> Result<(Vec<Part>, Vec<bool>), SceneError> {
     let source = context.reading.source;
     let imported = load(&mut context.reading, file)?;
     let placing = Placing::new(source, file)?;
@@ -34,7 +35,7 @@ pub(super) fn parts(
     unused_names(source, file, &imported)?;
     let mended = mended(&mut context.reading, &imported, &placing)?;
     let mut shapes = mended.shapes.into_iter();
-    let mut parts = vec![];
+    let (mut parts, mut two_sided) = (vec![], vec![]);
     for group in &imported.groups {
         let lookup = Lookup { entry, file, imported: &imported, libraries: libraries.as_deref() };
         let material = lookup.of(context, group)?;
@@ -49,6 +50,7 @@ pub(super) fn parts(
         let elements = shapes.iter().map(|(_, elements)| elements).sum();
         let shapes: Vec<Shape> = shapes.into_iter().map(|(shape, _)| shape).collect();
         if !shapes.is_empty() {
+            two_sided.push(group.two_sided);
             parts.push(part(
                 entry,
                 &group_name(&entry.name, group, &imported.groups),
@@ -68,7 +70,7 @@ pub(super) fn parts(
             "export the mesh anew, with more digits",
         ));
     }
-    Ok(parts)
+    Ok((parts, two_sided))
 }
 
 /// The faces of all groups where they come to stand, fit to be meshed; what was done to them is noted.
@@ -106,21 +108,25 @@ fn counted_shapes(
 }
 
 /// The faces of a mesh file, at least one.
-pub(crate) fn load(reading: &mut Reading, file: &ObjEntry) -> Result<Imported, SceneError> {
+pub(crate) fn load(reading: &mut Reading, file: &MeshFileEntry) -> Result<Imported, SceneError> {
     let name = Path::new(file.file.as_str());
     let bytes = reading.files.load(name).map_err(|error| {
         let what = format!("cannot read `{}`: {error}", *file.file);
         let help = "correct the name; it is taken relative to the folder of the scene file";
         reading.source.error(ErrorKind::Io, file.file.span(), what, help).caused_by(error)
     })?;
-    let imported = import(&reading.files.path(name), bytes).unwrap_or_else(|| {
+    let imported = import(name, bytes, reading.files).unwrap_or_else(|| {
         let what = format!("`{}` is of no known mesh format", *file.file);
-        let help = format!("give a file whose name ends in {ENDINGS}");
+        let help = format!("give a file whose name ends in {}", endings());
         Err(reading.source.error(ErrorKind::Format, file.file.span(), what, help))
     })?;
+    for note in &imported.notes {
+        let (file, place) = (imported.source.path.clone(), imported.source.place(note.span.clone()));
+        reading.notes.push(Warning { file, place, what: note.what.clone(), help: note.help.clone() });
+    }
     if imported.groups.is_empty() {
         let what = format!("`{}` holds no face", *file.file);
-        let help = "give a file with faces (lines that begin with f)";
+        let help = "give a file with faces (lines that begin with f in an OBJ)";
         return Err(reading.source.error(ErrorKind::Empty, file.file.span(), what, help));
     }
     Ok(imported)
@@ -129,34 +135,45 @@ pub(crate) fn load(reading: &mut Reading, file: &ObjEntry) -> Result<Imported, S
 /// The material libraries, or `None` where there is none or where none is needed, since the scene has a material for every name.
 fn libraries(
     context: &mut Context,
-    file: &ObjEntry,
+    file: &MeshFileEntry,
     imported: &Imported,
 ) -> Result<Option<Vec<Library>>, SceneError> {
     let mut used = imported.groups.iter().filter_map(|group| group.material.as_ref());
-    if imported.libraries.is_empty() || used.all(|name| mapped(file, name).is_some()) {
+    if (imported.libraries.is_empty() && imported.materials.is_empty())
+        || used.all(|name| mapped(file, name).is_some())
+    {
         return Ok(None);
     }
     library::read(context, file, imported).map(Some)
 }
 
 /// The material of the scene that the entry names for a material of the file.
-pub(crate) fn mapped<'a>(file: &'a ObjEntry, name: &Name) -> Option<&'a At<String>> {
+pub(crate) fn mapped<'a>(file: &'a MeshFileEntry, name: &Name) -> Option<&'a At<String>> {
     file.materials.iter().find(|(from, _)| ***from == name.text).map(|(_, to)| to)
 }
 
 /// Refuses names in the entry's table of materials that the file does not use.
-pub(crate) fn unused_names(source: &Source, file: &ObjEntry, imported: &Imported) -> Result<(), SceneError> {
-    let used: BTreeSet<&str> =
-        imported.groups.iter().filter_map(|g| g.material.as_ref()).map(|name| name.text.as_str()).collect();
+pub(crate) fn unused_names(
+    source: &Source,
+    file: &MeshFileEntry,
+    imported: &Imported,
+) -> Result<(), SceneError> {
+    let name = |group: &Group| group.material.as_ref().map(|name| name.text.clone()).or(group.object.clone());
+    let used: BTreeSet<String> = imported.groups.iter().filter_map(name).collect();
     let Some(name) = file.materials.keys().find(|name| !used.contains(name.as_str())) else { return Ok(()) };
     let what = format!("`{}` uses no material `{}`", *file.file, **name);
-    Err(source.error(ErrorKind::Name, name.span(), what, among(name, used, "materials of the file")))
+    Err(source.error(
+        ErrorKind::Name,
+        name.span(),
+        what,
+        among(name, used.iter().map(String::as_str), "materials of the file"),
+    ))
 }
 
 /// Where the material of a group is looked for.
 struct Lookup<'a> {
     entry: &'a SurfaceEntry,
-    file: &'a ObjEntry,
+    file: &'a MeshFileEntry,
     imported: &'a Imported,
     libraries: Option<&'a [Library]>,
 }
@@ -168,11 +185,17 @@ impl Lookup<'_> {
                 Some(to) => find_material(context.reading.source, to, context.own()),
                 None => self.by_same_name(context, name),
             },
-            None => match &self.entry.material {
+            None => match self.of_object(group).or(self.entry.material.as_ref()) {
                 Some(name) => find_material(context.reading.source, name, context.own()),
                 None => Err(self.nameless(group)),
             },
         }
+    }
+
+    /// What the entry names for the object of faces without a material.
+    fn of_object(&self, group: &Group) -> Option<&At<String>> {
+        let object = group.object.as_ref()?;
+        self.file.materials.iter().find(|(from, _)| ***from == *object).map(|(_, to)| to)
     }
 
     /// The material of the scene that has the name, else that of a library.
@@ -183,7 +206,7 @@ impl Lookup<'_> {
         let defined = || libraries.iter().flat_map(|library| &library.materials).map(|m| m.name.as_str());
         let undefined = self.libraries.is_some() && !defined().any(|known| known == name.text);
         if undefined && context.fallback.is_none() {
-            let what = format!("no material library of this file defines `{}`", name.text);
+            let what = format!("neither this file nor a material library of it defines `{}`", name.text);
             return Err(error(what, among(&name.text, defined(), "names")));
         }
         if let Some(own) = context.own().iter().position(|material| material.name == name.text) {
@@ -196,13 +219,13 @@ impl Lookup<'_> {
         let known = among(&name.text, context.own().iter().map(|m| m.name.as_str()), "materials");
         Err(error(
             what,
-            format!("write materials = {{ \"{}\" = \"…\" }} in the obj table; {known}", name.text),
+            format!("write materials = {{ \"{}\" = \"…\" }} in the table of the mesh; {known}", name.text),
         ))
     }
 
     fn nameless(&self, group: &Group) -> SceneError {
         let span = group.faces.first().map_or(0..0, |face| face.span.clone());
-        let help = "give the surface a material, or put a usemtl line before the face";
+        let help = "give the surface a material, or the face in its file (a usemtl line in an OBJ)";
         self.imported.source.error(ErrorKind::MissingKey, span, "this face has no material", help)
     }
 }
@@ -225,7 +248,7 @@ pub(crate) struct Placing {
 }
 
 impl Placing {
-    pub fn new(source: &Source, file: &ObjEntry) -> Result<Self, SceneError> {
+    pub fn new(source: &Source, file: &MeshFileEntry) -> Result<Self, SceneError> {
         let scale = file.scale.as_ref().map_or(Ok(1.0), |scale| source.positive(scale, "scale"))?;
         let translate = file.translate.as_ref();
         let translate = translate.map_or(Ok(Vec3::ZERO), |t| source.vector(t, "translate"))?;

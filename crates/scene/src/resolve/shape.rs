@@ -16,7 +16,7 @@ const AROUND_DISC: usize = 32;
 /// Place of the one shape of a surface.
 pub(crate) fn only_shape(source: &Source, entry: &Shapes) -> Result<Range<usize>, SceneError> {
     let shapes = present(entry);
-    let help = "give exactly one of quad, triangle, polygon, box, sphere, disc, cylinder, obj";
+    let help = "give exactly one of quad, triangle, polygon, box, sphere, disc, cylinder, mesh, obj";
     match &shapes[..] {
         [(_, span)] => Ok(span.clone()),
         [] => {
@@ -40,6 +40,7 @@ fn present(entry: &Shapes) -> Vec<(&'static str, Range<usize>)> {
         ("sphere", entry.sphere.map(At::span)),
         ("disc", entry.disc.map(At::span)),
         ("cylinder", entry.cylinder.map(At::span)),
+        ("mesh", entry.mesh.map(At::span)),
         ("obj", entry.obj.map(At::span)),
     ];
     let mut present: Vec<_> = all.into_iter().filter_map(|(key, span)| Some((key, span?))).collect();

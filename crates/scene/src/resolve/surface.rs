@@ -16,12 +16,17 @@ use crate::suggest::among;
 pub(super) fn parts(context: &mut Context, entry: &SurfaceEntry) -> Result<Vec<Part>, SceneError> {
     let span = shape::only_shape(context.reading.source, &entry.shapes())?;
     let cutting = cutting::cutting(context.reading.source, context.scene, entry)?;
-    let mut parts = match (own_shape(context.reading.source, entry)?, &entry.obj) {
-        (None, Some(file)) => obj::parts(context, entry, file, &cutting)?,
+    let mut said = vec![];
+    let mut parts = match (own_shape(context.reading.source, entry)?, entry.mesh_file()) {
+        (None, Some(file)) => {
+            let (parts, two_sided) = obj::parts(context, entry, file, &cutting)?;
+            said = two_sided;
+            parts
+        }
         (Some(shape), _) => vec![own(context, entry, shape, &cutting, span)?],
         (None, None) => vec![],
     };
-    let sides = two_sided(context, entry, &parts)?;
+    let sides = two_sided(context, entry, &parts, &said)?;
     add_backs(context, entry, &mut parts, &sides)?;
     Ok(parts)
 }
@@ -37,12 +42,18 @@ fn own_shape(source: &Source, entry: &SurfaceEntry) -> Result<Option<Shape>, Sce
     Err(source.value_error(cells, what, "remove skip, or make the surface a quad"))
 }
 
-/// Which parts have two sides: as the entry says, else the objects of a file whose faces are turned inconsistently.
-fn two_sided(context: &mut Context, entry: &SurfaceEntry, parts: &[Part]) -> Result<Vec<bool>, SceneError> {
-    match (entry.two_sided, &entry.obj) {
+/// Which parts have two sides: as the entry says, else those that the file `said` have, and the objects of a file whose faces
+/// are turned inconsistently.
+fn two_sided(
+    context: &mut Context,
+    entry: &SurfaceEntry,
+    parts: &[Part],
+    said: &[bool],
+) -> Result<Vec<bool>, SceneError> {
+    match (entry.two_sided, entry.mesh_file()) {
         (Some(given), _) => Ok(vec![given; parts.len()]),
         (None, None) => Ok(vec![false; parts.len()]),
-        (None, Some(_)) => turned::two_sided(context, entry, parts),
+        (None, Some(_)) => turned::two_sided(context, entry, parts, said),
     }
 }
 
@@ -74,7 +85,7 @@ pub(super) fn part(
     elements: u128,
 ) -> Part {
     let (name, cutting, span) = (name.to_owned(), cutting.clone(), entry.name.span());
-    let origin = if entry.obj.is_some() { Origin::MeshFile } else { Origin::Scene };
+    let origin = if entry.mesh_file().is_some() { Origin::MeshFile } else { Origin::Scene };
     Part { name, material, shapes: Arc::from(shapes), cutting, elements, origin, span }
 }
 

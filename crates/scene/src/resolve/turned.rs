@@ -1,4 +1,5 @@
-//! Objects of a file whose faces are turned inconsistently: they are lit on both sides, since nobody knows which one is meant.
+//! Objects of a file that are lit on both sides: those whose faces are turned inconsistently, since nobody knows which side is
+//! meant, and those that the file says to be two-sided, unless they are closed: nobody sees the inside.
 
 use fredholm_mesh::{Patch, Topology};
 
@@ -12,11 +13,13 @@ use crate::part::Part;
 /// Names that are listed.
 const LISTED: usize = 4;
 
-/// Which of the parts of one file have neighbouring faces that run along their common side in the same direction.
+/// Which of the parts of one file have neighbouring faces that run along their common side in the same direction, or have two
+/// sides as the file `said` and an open border.
 pub(super) fn two_sided(
     context: &mut Context,
     entry: &SurfaceEntry,
     parts: &[Part],
+    said: &[bool],
 ) -> Result<Vec<bool>, SceneError> {
     let (source, mut pieces, mut part_of): (_, Vec<Patch>, Vec<usize>) =
         (context.reading.source, vec![], vec![]);
@@ -35,9 +38,18 @@ pub(super) fn two_sided(
             sides[part_of[piece as usize]] = true;
         }
     }
+    let inconsistent = sides.clone();
+    for (piece, &component) in topology.component_of.iter().enumerate() {
+        let part = part_of[piece];
+        sides[part] |= said.get(part) == Some(&true) && !topology.components[component as usize].closed;
+    }
     if let Some(([from, to], _)) = topology.clashes.first() {
-        let names: Vec<&str> =
-            parts.iter().zip(&sides).filter(|(_, two)| **two).map(|(part, _)| part.name.as_str()).collect();
+        let names: Vec<&str> = parts
+            .iter()
+            .zip(&inconsistent)
+            .filter(|(_, two)| **two)
+            .map(|(part, _)| part.name.as_str())
+            .collect();
         let count = topology.clashes.len();
         let what = format!(
             "the faces of {} are turned inconsistently: the two that share a side run along it in the same direction at \

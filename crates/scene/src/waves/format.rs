@@ -12,7 +12,7 @@ use serde::Deserialize;
 use super::choices::{AnglesEntry, EdgeEntry, FrequenciesEntry, PolarisationEntry};
 use super::settings::{Method, Shadows};
 use crate::format::{
-    At, BoxEntry, CylinderEntry, DiscEntry, ObjEntry, PolygonEntry, Shapes, SphereEntry, Triple,
+    At, BoxEntry, CylinderEntry, DiscEntry, MeshFileEntry, PolygonEntry, Shapes, SphereEntry, Triple,
 };
 
 /// A scene of waves: a wave, its sources, surfaces and receivers.
@@ -171,12 +171,12 @@ pub(crate) struct LayerEntry {
 
 /// A named surface: one shape, made of one material, cut into facets.
 ///
-/// A surface has exactly one shape: quad, triangle, polygon, box, sphere, disc, cylinder or obj.
+/// A surface has exactly one shape: quad, triangle, polygon, box, sphere, disc, cylinder or mesh.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a table of a surface")]
 #[schemars(rename = "WaveSurface", extend("oneOf" = [
     { "required": ["quad"] }, { "required": ["triangle"] }, { "required": ["polygon"] }, { "required": ["box"] },
-    { "required": ["sphere"] }, { "required": ["disc"] }, { "required": ["cylinder"] }, { "required": ["obj"] }
+    { "required": ["sphere"] }, { "required": ["disc"] }, { "required": ["cylinder"] }, { "required": ["mesh"] }
 ]))]
 pub(crate) struct SurfaceEntry {
     /// Name of the surface. No two surfaces have the same.
@@ -200,7 +200,7 @@ pub(crate) struct SurfaceEntry {
     pub cylinder: Option<At<CylinderEntry>>,
     /// Faces from a mesh file. Materials of its libraries say nothing of waves: faces are of the
     /// surface's material, unless the scene has one of the name that they give.
-    pub obj: Option<At<ObjEntry>>,
+    pub mesh: Option<At<MeshFileEntry>>,
     /// Longest edge of a facet: metres, or a part such as "lambda/10" of the shortest wavelength.
     /// Default: "lambda/10"; a single flat plate or box seen from far away in one bounce of plane
     /// waves is left whole.
@@ -222,7 +222,8 @@ impl SurfaceEntry {
             sphere: self.sphere.as_ref(),
             disc: self.disc.as_ref(),
             cylinder: self.cylinder.as_ref(),
-            obj: self.obj.as_ref(),
+            mesh: self.mesh.as_ref(),
+            obj: None,
         }
     }
 }

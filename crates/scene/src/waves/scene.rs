@@ -113,7 +113,7 @@ impl WaveScene {
     /// # Errors
     /// [`SceneError`], with file and line, for anything that is wrong with it.
     pub fn from_str(text: &str, path: impl AsRef<Path>) -> Result<Self, SceneError> {
-        Self::from_source(Source { path: path.as_ref().to_owned(), text: text.to_owned() })
+        Self::from_source(Source::of(path.as_ref(), text.to_owned()))
     }
 
     fn from_source(source: Source) -> Result<Self, SceneError> {

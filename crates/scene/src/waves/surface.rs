@@ -10,7 +10,7 @@ use super::choices::EdgeEntry;
 use super::format::{SceneEntry, SurfaceEntry};
 use super::material;
 use crate::error::{ErrorKind, SceneError};
-use crate::format::{At, ObjEntry};
+use crate::format::{At, MeshFileEntry};
 use crate::import::{Group, Imported};
 use crate::resolve::obj::{Placing, group_name, load, mapped, mended, unused_names};
 use crate::resolve::shape::{only_shape, shape};
@@ -68,7 +68,7 @@ pub(super) struct Part {
 pub(super) fn parts(reading: &mut Reading, scene: &SceneEntry) -> Result<Vec<Part>, SceneError> {
     let source = reading.source;
     if scene.surface.is_empty() {
-        let help = "add a [[surface]] with a name and a shape such as quad, box, sphere or obj";
+        let help = "add a [[surface]] with a name and a shape such as quad, box, sphere or mesh";
         let end = source.text.len();
         return Err(source.error(ErrorKind::Empty, end..end, "the scene has no surface", help));
     }
@@ -102,12 +102,12 @@ fn of_entry(
         edge,
         kind: kind(entry.closed.as_ref().is_some_and(|closed| **closed)),
         said: entry.closed.is_some(),
-        imported: entry.obj.is_some(),
+        imported: entry.mesh.is_some(),
         entry: 0,
         span: entry.span(),
         edge_span: entry.edge.as_ref().map_or(entry.span(), At::span),
     };
-    match (shape(source, &entry.shapes())?, &entry.obj) {
+    match (shape(source, &entry.shapes())?, &entry.mesh) {
         (Some(shape), _) => {
             let kind = if bare.said { bare.kind } else { kind(is_closed(&shape)) };
             shape
@@ -161,7 +161,7 @@ fn edge(source: &crate::source::Source, entry: &SurfaceEntry) -> Result<Edge, Sc
 fn of_file(
     reading: &mut Reading,
     scene: &SceneEntry,
-    file: &ObjEntry,
+    file: &MeshFileEntry,
     bare: &Part,
     material: Option<usize>,
 ) -> Result<Vec<Part>, SceneError> {
@@ -203,18 +203,25 @@ fn of_file(
 fn of_group(
     reading: &Reading,
     scene: &SceneEntry,
-    (file, imported): (&ObjEntry, &Imported),
+    (file, imported): (&MeshFileEntry, &Imported),
     group: &Group,
     own: Option<usize>,
 ) -> Result<usize, SceneError> {
-    let Some(name) = &group.material else { return Ok(own.unwrap_or(0)) };
+    let Some(name) = &group.material else {
+        let listed =
+            |object: &String| file.materials.iter().find(|(from, _)| from.as_str() == object.as_str());
+        return match group.object.as_ref().and_then(listed) {
+            Some((_, to)) => material::find(reading.source, scene, to),
+            None => Ok(own.unwrap_or(0)),
+        };
+    };
     if let Some(to) = mapped(file, name) {
         return material::find(reading.source, scene, to);
     }
     material::number(scene, &name.text).or(own).ok_or_else(|| {
         let what = format!("the scene has no material `{}`", name.text);
         let help = format!(
-            "give the surface a material, or write materials = {{ \"{}\" = \"…\" }} in the obj table; {}",
+            "give the surface a material, or write materials = {{ \"{}\" = \"…\" }} in the mesh table; {}",
             name.text,
             material::known(scene, &name.text)
         );
