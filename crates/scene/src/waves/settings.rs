@@ -87,7 +87,7 @@ pub struct Settings {
     /// Most iterations, at least 1.
     pub max_iterations: Option<u32>,
     /// Whether the edge currents are added that physical optics lacks.
-    pub edge_currents: bool,
+    pub edge_currents: Option<bool>,
     /// Whether errors are estimated by further runs.
     pub estimate_errors: bool,
 }
@@ -107,7 +107,7 @@ pub(super) fn settings(source: &Source, entry: &WaveEntry) -> Result<Settings, S
         solver: entry.solver.as_deref().cloned(),
         tolerance: entry.tolerance.as_ref().map(|t| source.below(t, 1.0, "tolerance")).transpose()?,
         max_iterations: at_least_1(&entry.max_iterations, "max_iterations")?,
-        edge_currents: entry.edge_currents.as_ref().is_some_and(|wanted| **wanted),
+        edge_currents: entry.edge_currents.as_ref().map(|wanted| **wanted),
         estimate_errors: entry.estimate_errors,
     })
 }

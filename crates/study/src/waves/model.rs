@@ -137,7 +137,7 @@ impl Model {
             shadow: shadow(settings),
             galerkin: galerkin(settings),
             method,
-            edge_currents: settings.edge_currents,
+            edge_currents: settings.edge_currents.unwrap_or(false),
             plane_wave: only_plane_wave(&scene),
             geometry,
             coarse,
