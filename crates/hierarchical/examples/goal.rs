@@ -1,11 +1,9 @@
 //! The mean irradiance of a surface, from solutions to the accuracy of everything and to that of the surface alone, against one that is refined much further:
 //! `cargo run --release -p fredholm-hierarchical --example goal -- SCENE SURFACE[,SURFACE] ACCURACY...`.
 
-use fredholm_hierarchical::{
-    Goal, Options, Patient, Problem, RESIDUAL, Solution, Solvers, Stated, Surfaces, solve,
-};
+use fredholm_hierarchical::{Goal, Options, Problem, RESIDUAL, Solution, Solvers, Stated, Surfaces, solve};
 use fredholm_iterative::{CgTheta, Gmres};
-use fredholm_linop::MultiVector;
+use fredholm_linop::{MultiVector, Quiet};
 use fredholm_mesh::Mesh;
 use fredholm_scene::Scene;
 use fredholm_visibility::Occluders;
@@ -59,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn to(problem: &Problem, accuracy: f64) -> Result<Solution, Box<dyn Error>> {
     let residual = RESIDUAL * accuracy;
     let options = Options { accuracy, linear: true, residual, bytes: 8 << 30, max_iterations: 200 };
-    Ok(solve(problem, &options, SOLVERS, None, &Patient)?)
+    Ok(solve(problem, &options, SOLVERS, None, &Quiet)?)
 }
 
 /// Mean irradiance of the goal, W/m².

@@ -2,11 +2,11 @@
 //! `cargo run --release -p fredholm-hierarchical --example rounds -- SCENE ACCURACY [constant|linear] [REFERENCE.csv]`.
 
 use fredholm_hierarchical::{
-    HierarchyError, Options, Problem, RESIDUAL, Round, Solution, Solvers, State, Stated, Surfaces, Watch,
-    solve,
+    HierarchyError, Options, Problem, RESIDUAL, Round, RoundWatch, Solution, Solvers, State, Stated,
+    Surfaces, solve,
 };
 use fredholm_iterative::{CgTheta, Gmres};
-use fredholm_linop::MultiVector;
+use fredholm_linop::{MultiVector, Watch};
 use fredholm_mesh::Mesh;
 use fredholm_scene::Scene;
 use fredholm_visibility::Occluders;
@@ -22,7 +22,9 @@ struct Print<'a> {
     reference: Option<Vec<f64>>,
 }
 
-impl Watch for Print<'_> {
+impl Watch for Print<'_> {}
+
+impl RoundWatch for Print<'_> {
     fn round(&self, rounds: &[Round], state: &State) -> Result<(), HierarchyError> {
         if let Some(round) = rounds.last() {
             self.print(round, state.irradiance());

@@ -16,11 +16,12 @@ use crate::refine::{Limits, bytes, refine};
 use crate::transport::Sight;
 use crate::{HierarchicalOperator, HierarchyError, Link, State, Surfaces, Tree};
 use fredholm_coupling::{Extent, Means, Radiosity};
-use fredholm_linop::{MultiVector, Progress, Report, SecondKind, SolveError, Solver, Stop, StopReason};
+use fredholm_linop::{
+    MultiVector, Progress, Quiet, Report, SecondKind, SolveError, Solver, Stop, StopReason, Watch,
+};
 use fredholm_mesh::{Mesh, Patch};
 use fredholm_visibility::Occluders;
 use fredholm_visibility::body::Bodies;
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// Factor from one threshold to the next.
@@ -139,13 +140,8 @@ impl Stated {
     }
 }
 
-/// Follows a solution and may stop it.
-pub trait Watch: Sync {
-    /// Whether to go on; asked often, from any thread.
-    fn poll(&self) -> ControlFlow<()> {
-        ControlFlow::Continue(())
-    }
-
+/// A watch that follows the rounds of a solution.
+pub trait RoundWatch: Watch {
     /// Called after each round with all rounds so far and the state to go on from.
     ///
     /// # Errors
@@ -155,11 +151,7 @@ pub trait Watch: Sync {
     }
 }
 
-/// The watch that only waits.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Patient;
-
-impl Watch for Patient {}
+impl RoundWatch for Quiet {}
 
 /// A solved problem.
 #[derive(Debug)]
@@ -218,7 +210,7 @@ pub fn solve(
     options: &Options,
     solvers: Solvers,
     state: Option<State>,
-    watch: &dyn Watch,
+    watch: &dyn RoundWatch,
 ) -> Result<Solution, HierarchyError> {
     if !(options.accuracy > 0.0 && options.accuracy < 1.0) {
         return Err(HierarchyError::Accuracy { value: options.accuracy });
@@ -252,7 +244,7 @@ pub fn conclude(
     solvers: Solvers,
     state: State,
 ) -> Result<Solution, HierarchyError> {
-    with_run(problem, options, solvers, &Patient, |run| {
+    with_run(problem, options, solvers, &Quiet, |run| {
         let state = run.taken(state)?;
         let Some(system) = run.resumed(&state)? else {
             return Err(HierarchyError::State { why: "has no round yet" });
@@ -270,7 +262,7 @@ fn with_run<T>(
     problem: &Problem,
     options: &Options,
     solvers: Solvers,
-    watch: &dyn Watch,
+    watch: &dyn RoundWatch,
     f: impl FnOnce(&mut Run) -> Result<T, HierarchyError>,
 ) -> Result<T, HierarchyError> {
     let patches: Vec<&Patch> = problem.mesh.patches().collect();
@@ -306,7 +298,7 @@ struct Run<'a> {
     problem: &'a Problem<'a>,
     options: &'a Options,
     solvers: Solvers<'a>,
-    watch: &'a dyn Watch,
+    watch: &'a dyn RoundWatch,
     sight: Sight<'a>,
     exposure: Exposure<'a>,
     opening: Opening,
@@ -552,7 +544,7 @@ impl Run<'_> {
     ) -> Result<Report, HierarchyError> {
         let a = SecondKind::new(&system.operator, system.radiosity.scaling())?;
         let watch = self.watch;
-        let mut observer = |_: &Progress<'_, f64>| watch.poll();
+        let mut observer = |_: &Progress<'_, f64>| watch.go_on();
         let start = x.clone();
         let mut report = None;
         if self.replaced.is_none() {

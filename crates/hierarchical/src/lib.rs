@@ -26,8 +26,7 @@ mod transport;
 mod tree;
 
 pub use driver::{
-    Options, Patient, Problem, RESIDUAL, Round, Solution, Solvers, Stated, Watch, conclude, expected_bytes,
-    solve,
+    Options, Problem, RESIDUAL, Round, RoundWatch, Solution, Solvers, Stated, conclude, expected_bytes, solve,
 };
 pub use error::HierarchyError;
 pub use gather::{Gather, Gatherer, Leaves};

@@ -10,7 +10,9 @@ use crate::operator::MOST_LINKS;
 use crate::oracle::{Candidate, Light, Oracle, Verdict};
 use crate::transport::{Chance, Meeting, Side, Sight, View, Viewer, apart, encounter, exchanges, spread};
 use crate::tree::{Node, Tree};
-use crate::{HierarchyError, Link, Watch};
+use fredholm_linop::Watch;
+
+use crate::{HierarchyError, Link};
 use fredholm_mesh::Patch;
 use rayon::prelude::*;
 use std::ops::ControlFlow;
@@ -190,7 +192,7 @@ fn judge(
 ) -> Result<Vec<Fate>, HierarchyError> {
     let judged = block.par_chunks(CHUNK).map_init(
         || Viewer::new(sight),
-        |viewer, pairs| match watch.poll() {
+        |viewer, pairs| match watch.go_on() {
             ControlFlow::Continue(()) => Ok(pairs.iter().map(|pair| fate(oracle, viewer, *pair)).collect()),
             ControlFlow::Break(()) => Err(HierarchyError::Interrupted),
         },

@@ -9,7 +9,8 @@ mod objects;
 mod shapes;
 
 use common::{Bench, room};
-use fredholm_hierarchical::{HierarchyError, Patient, Round, State, Watch};
+use fredholm_hierarchical::{HierarchyError, Round, RoundWatch, State};
+use fredholm_linop::{Quiet, Watch};
 use std::sync::Mutex;
 
 const ACCURACY: f64 = 0.02;
@@ -18,7 +19,9 @@ const ACCURACY: f64 = 0.02;
 #[derive(Default)]
 struct Keep(Mutex<Vec<Vec<u8>>>);
 
-impl Watch for Keep {
+impl Watch for Keep {}
+
+impl RoundWatch for Keep {
     fn round(&self, _: &[Round], state: &State) -> Result<(), HierarchyError> {
         let mut bytes = Vec::new();
         state.write(&mut bytes).unwrap();
@@ -41,7 +44,7 @@ fn resumed_from_every_state(bench: &Bench) {
     assert!(states.len() >= 2 && states.len() + 1 == whole.rounds.len());
     for bytes in &states {
         let state = State::read(&bench.problem(), &mut bytes.as_slice()).unwrap();
-        let resumed = bench.resume(ACCURACY, Some(state), &Patient);
+        let resumed = bench.resume(ACCURACY, Some(state), &Quiet);
         assert!(whole.links == resumed.links && whole.rounds == resumed.rounds);
         assert!(whole.radiosity == resumed.radiosity && whole.means == resumed.means);
         assert!(whole.error == resumed.error && whole.closure == resumed.closure);

@@ -6,21 +6,21 @@ mod common;
 
 use common::{Bench, SOLVERS, options, room};
 use fredholm_hierarchical::{
-    Goal, HierarchyError, Options, Patient, Problem, Round, Solution, State, Watch, solve,
+    Goal, HierarchyError, Options, Problem, Round, RoundWatch, Solution, State, solve,
 };
-use fredholm_linop::{LinearOperator, MultiVector};
+use fredholm_linop::{LinearOperator, MultiVector, Quiet, Watch};
 use std::sync::Mutex;
 
 const TWO_ROOMS: &str = include_str!("data/two_rooms.toml");
 
-fn reached(problem: &Problem, options: &Options, state: Option<State>, watch: &dyn Watch) -> Solution {
+fn reached(problem: &Problem, options: &Options, state: Option<State>, watch: &dyn RoundWatch) -> Solution {
     solve(problem, options, SOLVERS, state, watch).unwrap()
 }
 
 /// What is found, its stated error and the links of a solution to the goal.
 fn found(bench: &Bench, goal: &Goal, accuracy: f64) -> (f64, f64, usize) {
     let problem = Problem { goal: Some(goal), ..bench.problem() };
-    let solution = reached(&problem, &options(accuracy), None, &Patient);
+    let solution = reached(&problem, &options(accuracy), None, &Quiet);
     let stated = solution.error.unwrap().worst();
     (solution.goal.unwrap().irradiance[0], stated, solution.links.len())
 }
@@ -59,7 +59,7 @@ fn the_dual_sees_the_same_mean_as_the_solution() {
     let goal = Goal::new(&bench.mesh, &["block"]).unwrap();
     let problem = Problem { goal: Some(&goal), ..bench.problem() };
     let exact = Options { residual: 1e-12, ..options(0.1) };
-    let solution = reached(&problem, &exact, None, &Patient);
+    let solution = reached(&problem, &exact, None, &Quiet);
     let importance = &solution.goal.as_ref().unwrap().importance;
     let operator = solution.operator();
     let applied = |x: &MultiVector<f64>| {
@@ -90,7 +90,9 @@ fn the_dual_sees_the_same_mean_as_the_solution() {
 #[derive(Default)]
 struct Keep(Mutex<Vec<Vec<u8>>>);
 
-impl Watch for Keep {
+impl Watch for Keep {}
+
+impl RoundWatch for Keep {
     fn round(&self, _: &[Round], state: &State) -> Result<(), HierarchyError> {
         let mut bytes = Vec::new();
         state.write(&mut bytes).unwrap();
@@ -119,7 +121,7 @@ fn every_saved_state_leads_to_the_same_bits_with_any_number_of_threads() {
     for (threads, bytes) in states.iter().enumerate() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads + 1).build().unwrap();
         let state = State::read(&problem, &mut bytes.as_slice()).unwrap();
-        let resumed = pool.install(|| reached(&problem, &options(0.05), Some(state), &Patient));
+        let resumed = pool.install(|| reached(&problem, &options(0.05), Some(state), &Quiet));
         assert!(same(&whole, &resumed), "{threads}");
     }
 }
@@ -137,7 +139,7 @@ fn foreign_goals_and_unknown_surfaces_are_refused() {
         let read = State::read(&other, &mut bytes.as_slice()).unwrap_err();
         assert!(read.to_string().contains("belongs to another goal"), "{read}");
         let state = State::read(&problem, &mut bytes.as_slice()).unwrap();
-        let solved = solve(&other, &options(0.3), SOLVERS, Some(state), &Patient).unwrap_err();
+        let solved = solve(&other, &options(0.3), SOLVERS, Some(state), &Quiet).unwrap_err();
         assert!(solved.to_string().contains("belongs to another goal"), "{solved}");
     }
     let unknown = Goal::new(&bench.mesh, &["desk", "dsek"]).unwrap_err().to_string();

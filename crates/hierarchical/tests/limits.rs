@@ -8,9 +8,9 @@ mod truth;
 
 use common::{Bench, SOLVERS, options, room};
 use fredholm_hierarchical::{
-    HierarchyError, Options, Patient, Round, State, Stated, Tree, Watch, conclude, solve,
+    HierarchyError, Options, Round, RoundWatch, State, Stated, Tree, conclude, solve,
 };
-use fredholm_linop::StopReason;
+use fredholm_linop::{Quiet, StopReason, Watch};
 use std::ops::ControlFlow;
 use std::sync::Mutex;
 use truth::{error, traced};
@@ -37,7 +37,7 @@ fn what_memory_ends_states_an_error_that_holds_or_none() {
     let mut limited_runs = 0;
     for kilobytes in [2000, 4000, 8000, 12_000, 16_000, 20_000, 24_000, 28_000, 32_000, 40_000] {
         let limited = Options { bytes: kilobytes * 1000, ..options(0.002) };
-        let solution = match solve(&bench.problem(), &limited, SOLVERS, None, &Patient) {
+        let solution = match solve(&bench.problem(), &limited, SOLVERS, None, &Quiet) {
             Err(HierarchyError::Memory { needed, limit }) => {
                 assert!(needed > limit);
                 continue;
@@ -62,12 +62,14 @@ struct Hasty {
 }
 
 impl Watch for Hasty {
-    fn poll(&self) -> ControlFlow<()> {
+    fn go_on(&self) -> ControlFlow<()> {
         let mut looks = self.looks.lock().unwrap();
         *looks = looks.saturating_sub(1);
         if *looks == 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
+}
 
+impl RoundWatch for Hasty {
     fn round(&self, _: &[Round], state: &State) -> Result<(), HierarchyError> {
         let mut bytes = Vec::new();
         state.write(&mut bytes).unwrap();

@@ -7,8 +7,9 @@ mod common;
 mod truth;
 
 use common::{Bench, SOLVERS, options, room};
-use fredholm_hierarchical::{HierarchyError, Patient, Solvers, solve};
+use fredholm_hierarchical::{HierarchyError, Solvers, solve};
 use fredholm_iterative::{Gmres, Neumann};
+use fredholm_linop::Quiet;
 use truth::{error, traced};
 
 #[test]
@@ -125,7 +126,7 @@ fn another_solver_gives_the_same_light() {
         &options(0.05),
         Solvers { first: &Neumann, fallback: &Gmres { restart: 50 } },
         None,
-        &Patient,
+        &Quiet,
     )
     .unwrap();
     let first = bench.solve(0.05);
@@ -138,7 +139,7 @@ fn little_memory_is_respected_and_said() {
     let bench = Bench::shipped("occluder.toml");
     let limited = options(0.001);
     let limited = fredholm_hierarchical::Options { bytes: 12 << 20, ..limited };
-    let solution = solve(&bench.problem(), &limited, SOLVERS, None, &Patient).unwrap();
+    let solution = solve(&bench.problem(), &limited, SOLVERS, None, &Quiet).unwrap();
     assert!(solution.limited && solution.bytes() < 12 << 20, "{} {}", solution.limited, solution.bytes());
     assert!(solution.means.irradiance.as_slice().iter().all(|e| e.is_finite()));
 }
@@ -146,12 +147,11 @@ fn little_memory_is_respected_and_said() {
 #[test]
 fn what_cannot_be_solved_is_refused() {
     let bench = Bench::text(&room(0.5));
-    let refused =
-        |accuracy| solve(&bench.problem(), &options(accuracy), SOLVERS, None, &Patient).unwrap_err();
+    let refused = |accuracy| solve(&bench.problem(), &options(accuracy), SOLVERS, None, &Quiet).unwrap_err();
     assert!(matches!(refused(0.0), HierarchyError::Accuracy { .. }));
     assert!(matches!(refused(f64::NAN), HierarchyError::Accuracy { .. }));
     let other = Bench::text(&room(0.5).replace("[2, 2]", "[3, 3]"));
     let mixed = fredholm_hierarchical::Problem { surfaces: &other.surfaces, ..bench.problem() };
-    let error = solve(&mixed, &options(0.1), SOLVERS, None, &Patient).unwrap_err();
+    let error = solve(&mixed, &options(0.1), SOLVERS, None, &Quiet).unwrap_err();
     assert!(matches!(error, HierarchyError::Shape { expected: 30, .. }), "{error}");
 }

@@ -13,10 +13,7 @@ pub enum MeshError {
         corner: usize,
     },
     /// The corners enclose no area.
-    #[error(
-        "the corners enclose no area (area {area:e} m², longest side {longest:e} m); \
-         remove the face or separate its corners"
-    )]
+    #[error("the corners enclose no area (area {area:e} m², longest side {longest:e} m)")]
     NoArea {
         /// Area found, m².
         area: f64,
@@ -24,15 +21,13 @@ pub enum MeshError {
         longest: f64,
     },
     /// More elements were asked for than an index can hold.
-    #[error("the mesh would have more than {limit} elements; subdivide less")]
+    #[error("the mesh would have more than {limit} elements")]
     TooLarge {
         /// Largest number of elements.
         limit: usize,
     },
     /// Two corners of a quad coincide.
-    #[error(
-        "corners {first} and {second} of the quad are the same point; use a triangle, or move one of them"
-    )]
+    #[error("corners {first} and {second} of the quad are the same point")]
     RepeatedCorner {
         /// One corner.
         first: usize,
@@ -40,24 +35,22 @@ pub enum MeshError {
         second: usize,
     },
     /// The sides of a quad cross.
-    #[error("the sides of the quad cross each other; list its corners in order around the border")]
+    #[error("the sides of the quad cross each other")]
     BowTie,
     /// A quad with a reflex corner was to be cut by lines.
-    #[error("the quad is not convex at corner {corner}, so lines cannot cut it; use a polygon, or two quads")]
+    #[error("the quad is not convex at corner {corner}, so lines cannot cut it")]
     NotConvex {
         /// The reflex corner.
         corner: usize,
     },
     /// A border with fewer than three different corners.
-    #[error("{ring} has fewer than three different corners; add corners or remove it")]
+    #[error("{ring} has fewer than three different corners")]
     TooFewCorners {
         /// The border.
         ring: Ring,
     },
     /// A polygon that is not flat.
-    #[error(
-        "corner {corner} of {ring} is {distance:e} m off the plane of the polygon; move it, or use triangles"
-    )]
+    #[error("corner {corner} of {ring} is {distance:e} m off the plane of the polygon")]
     NotPlanar {
         /// The border.
         ring: Ring,
@@ -67,10 +60,7 @@ pub enum MeshError {
         distance: f64,
     },
     /// A border crosses or touches itself.
-    #[error(
-        "{ring} crosses or touches itself at its sides {first} and {second}; \
-         list its corners in order around the border"
-    )]
+    #[error("{ring} crosses or touches itself at its sides {first} and {second}")]
     SelfIntersecting {
         /// The border.
         ring: Ring,
@@ -80,7 +70,7 @@ pub enum MeshError {
         second: usize,
     },
     /// Two borders of a polygon cross or touch.
-    #[error("{first} and {second} cross or touch; keep them apart, or draw both as one border")]
+    #[error("{first} and {second} cross or touch")]
     Crossing {
         /// One border.
         first: Ring,
@@ -88,13 +78,13 @@ pub enum MeshError {
         second: Ring,
     },
     /// A hole that does not lie in the polygon.
-    #[error("hole {hole} lies outside the outline; move it inside or remove it")]
+    #[error("hole {hole} lies outside the outline")]
     HoleOutside {
         /// Index of the hole.
         hole: usize,
     },
     /// A hole within a hole.
-    #[error("hole {hole} lies inside hole {other}; remove it, or make what it encloses a polygon of its own")]
+    #[error("hole {hole} lies inside hole {other}")]
     HoleInHole {
         /// The inner hole.
         hole: usize,
@@ -102,10 +92,7 @@ pub enum MeshError {
         other: usize,
     },
     /// The triangles of a polygon do not fill it.
-    #[error(
-        "the triangles of the polygon fill {found:e} instead of {expected:e} of its squared extent; \
-         remove corners that all but coincide"
-    )]
+    #[error("the triangles of the polygon fill {found:e} instead of {expected:e} of its squared extent")]
     Triangulation {
         /// Area by the borders, relative to the squared extent of the outline.
         expected: f64,
@@ -121,15 +108,13 @@ pub enum MeshError {
         value: f64,
     },
     /// A curved shape needs at least three segments.
-    #[error("{segments} segments cannot go around a curved shape; give at least 3")]
+    #[error("{segments} segments cannot go around a curved shape")]
     TooFewSegments {
         /// What was asked for.
         segments: usize,
     },
     /// More segments than a curved shape can use.
-    #[error(
-        "{segments} segments around a curved shape are more than {limit}; give fewer, and cut the facets instead"
-    )]
+    #[error("{segments} segments around a curved shape are more than {limit}")]
     TooManySegments {
         /// What was asked for.
         segments: usize,
@@ -143,9 +128,7 @@ pub enum MeshError {
         quantity: &'static str,
     },
     /// Parameters of lines do not run from 0 to 1.
-    #[error(
-        "the {direction} lines must begin with 0, end with 1 and increase strictly; look at number {index}"
-    )]
+    #[error("the {direction} lines must begin with 0, end with 1 and increase strictly")]
     BadLines {
         /// "u" or "v".
         direction: &'static str,
@@ -161,7 +144,7 @@ pub enum MeshError {
         v: usize,
     },
     /// Explicit lines on something that has no parameters.
-    #[error("explicit lines cut quads only; give counts or a largest edge for triangles")]
+    #[error("explicit lines cut quads only")]
     LinesOnTriangles,
     /// A cell to be left out does not exist.
     #[error("cell ({i}, {j}) to be left out is not one of the {u} × {v} cells")]
@@ -176,17 +159,49 @@ pub enum MeshError {
         v: usize,
     },
     /// All cells are left out.
-    #[error("every cell of the quad is left out; remove the quad instead")]
+    #[error("every cell of the quad is left out")]
     NothingLeft,
     /// A face was added before any surface.
-    #[error("a face was added before any surface; start a surface first")]
+    #[error("a face was added before any surface")]
     NoSurface,
     /// An element cannot be split.
-    #[error("element {element} is not a leaf of this mesh; split leaves only")]
+    #[error("element {element} is not a leaf of this mesh")]
     NotALeaf {
         /// Index of the element.
         element: usize,
     },
+}
+
+impl MeshError {
+    /// What to do about it.
+    #[must_use]
+    pub fn help(&self) -> &'static str {
+        match self {
+            Self::NoArea { .. } => "remove the face or separate its corners",
+            Self::TooLarge { .. } => "subdivide less",
+            Self::RepeatedCorner { .. } => "use a triangle, or move one of them",
+            Self::BowTie | Self::SelfIntersecting { .. } => "list its corners in order around the border",
+            Self::NotConvex { .. } => "use a polygon, or two quads",
+            Self::TooFewCorners { .. } => "add corners or remove it",
+            Self::NotPlanar { .. } => "move it, or use triangles",
+            Self::Crossing { .. } => "keep them apart, or draw both as one border",
+            Self::HoleOutside { .. } => "move it inside or remove it",
+            Self::HoleInHole { .. } => "remove it, or make what it encloses a polygon of its own",
+            Self::Triangulation { .. } => "remove corners that all but coincide",
+            Self::TooFewSegments { .. } => "give at least 3",
+            Self::TooManySegments { .. } => "give fewer, and cut the facets instead",
+            Self::LinesOnTriangles => "give counts or a largest edge for triangles",
+            Self::NothingLeft => "remove the quad instead",
+            Self::NoSurface => "start a surface first",
+            Self::NotALeaf { .. } => "split leaves only",
+            Self::NotFinite { .. }
+            | Self::Length { .. }
+            | Self::NoPieces { .. }
+            | Self::BadLines { .. }
+            | Self::UnequalCounts { .. }
+            | Self::NoSuchCell { .. } => "correct the value marked",
+        }
+    }
 }
 
 /// A border of a polygon.

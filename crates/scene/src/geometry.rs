@@ -245,11 +245,9 @@ impl MeshFile {
     }
 
     fn unmeshable(&self, face: &InputFace, error: &MeshError) -> SceneError {
-        let message = error.to_string();
-        let (what, help) = message.split_once("; ").unwrap_or((&message, "correct the corners"));
         let has_holes = |shape: &Shape| matches!(shape, Shape::Polygon { holes, .. } if !holes.is_empty());
-        let help = if face.shapes.iter().any(has_holes) { SUBSURFACES } else { help };
-        self.source.error(ErrorKind::Geometry, face.span.clone(), what, help)
+        let help = if face.shapes.iter().any(has_holes) { SUBSURFACES } else { error.help() };
+        self.source.error(ErrorKind::Geometry, face.span.clone(), error.to_string(), help)
     }
 }
 

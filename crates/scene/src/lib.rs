@@ -23,6 +23,7 @@ mod scene;
 mod schema;
 mod source;
 mod suggest;
+pub mod waves;
 
 pub use check::{Finding, Report, Shown, Warning};
 pub use error::{ErrorKind, Place, SceneError};
@@ -30,4 +31,4 @@ pub use export::{ExportFormat, Exported, Outline, OutlineMaterial, OutlineSurfac
 pub use geometry::{By, Geometry, Rows, Surfaces};
 pub use resolve::{Camera, Material, SolveDefaults, Storage};
 pub use scene::Scene;
-pub use schema::schema;
+pub use schema::{schema, wave_schema};

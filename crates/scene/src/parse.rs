@@ -4,11 +4,10 @@
 
 use std::ops::Range;
 
-use serde::Deserialize;
+use serde::de::DeserializeOwned;
 use toml::de::{DeTable, Deserializer, Error};
 
 use crate::error::{ErrorKind, SceneError};
-use crate::format::SceneEntry;
 use crate::source::Source;
 use crate::suggest::among;
 
@@ -26,9 +25,20 @@ const PLAIN: [(&str, &str); 10] = [
     ("expected a boolean", "expected true or false"),
 ];
 
-pub(crate) fn parse(source: &Source) -> Result<SceneEntry, SceneError> {
+/// Keys that belong elsewhere, or that scene files had once, and what to do about them.
+const ELSEWHERE: [(&str, &str); 2] = [
+    ("wave", "this is a scene of waves: `fredholm waves` computes its fields, `fredholm check` tells of it"),
+    (
+        "shadow",
+        "write method = \"physical-optics\", \"mfie\" (was shadow = \"exact\"), \"dual-surface-mfie\" (was \
+         \"exact-dual\") or \"thesis\", and for physical optics shadows = \"geometric\" or \"radiated\"",
+    ),
+];
+
+/// The entries of a scene file of light or of waves.
+pub(crate) fn parse<T: DeserializeOwned>(source: &Source) -> Result<T, SceneError> {
     let table = DeTable::parse(&source.text).map_err(|e| syntax(source, &e))?;
-    SceneEntry::deserialize(Deserializer::from(table)).map_err(|e| meaning(source, &e))
+    T::deserialize(Deserializer::from(table)).map_err(|e| meaning(source, &e))
 }
 
 fn syntax(source: &Source, error: &Error) -> SceneError {
@@ -65,6 +75,9 @@ fn meaning(source: &Source, error: &Error) -> SceneError {
 
 fn unknown_key(source: &Source, span: Range<usize>, rest: &str) -> SceneError {
     let (key, known) = names(rest);
+    if let Some((_, help)) = ELSEWHERE.iter().find(|(old, _)| *old == key) {
+        return source.error(ErrorKind::UnknownKey, span, format!("unknown key `{key}`"), help);
+    }
     source.error(ErrorKind::UnknownKey, span, format!("unknown key `{key}`"), among(key, known, "keys"))
 }
 

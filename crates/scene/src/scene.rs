@@ -108,7 +108,7 @@ impl Scene {
         path: impl AsRef<Path>,
         files: BTreeMap<PathBuf, Vec<u8>>,
     ) -> Result<Self, SceneError> {
-        let source = Source { path: path.as_ref().to_owned(), text: text.to_owned() };
+        let source = Source { path: path.as_ref().to_owned(), text: text.to_owned(), binary: false };
         let files = Files::beside(&source.path).with(files);
         Self::from_files(source, files)
     }
@@ -254,8 +254,7 @@ impl Scene {
         let emits = |surface: usize| self.emits(mesh_material(&mesh, surface));
         let emitting: Vec<bool> = (0..mesh.surfaces().len()).map(emits).collect();
         mesh.without_covered(|surface| emitting[surface]).map_err(|error| {
-            let (what, help) = (error.to_string(), "use fewer elements");
-            SceneError::new(ErrorKind::TooLarge, &self.source.path, what, help)
+            SceneError::new(ErrorKind::TooLarge, &self.source.path, error.to_string(), error.help())
         })
     }
 
@@ -312,7 +311,7 @@ impl Scene {
 
     pub(crate) fn unmeshable(&self, part: &Part, error: &MeshError) -> SceneError {
         let what = format!("surface `{}`: {error}", part.name);
-        self.source.error(ErrorKind::Geometry, part.span.clone(), what, "correct the shape")
+        self.source.error(ErrorKind::Geometry, part.span.clone(), what, error.help())
     }
 }
 

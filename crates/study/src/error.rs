@@ -47,11 +47,6 @@ impl Error {
         Self { help: Some(help.into()), ..self }
     }
 
-    /// The same of another kind.
-    pub(crate) fn of_kind(self, kind: ErrorKind) -> Self {
-        Self { kind, ..self }
-    }
-
     /// The same with where it happened in front.
     pub(crate) fn within(self, place: &str) -> Self {
         Self { place: Some(place.to_owned()), ..self }

@@ -7,10 +7,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use fredholm_hierarchical::{
-    Goal, HierarchyError, Options as Limits, Problem as Input, RESIDUAL, Round, Solution as Solved, Solvers,
-    State, Surfaces, Watch, expected_bytes,
+    Goal, HierarchyError, Options as Limits, Problem as Input, RESIDUAL, Round, RoundWatch,
+    Solution as Solved, Solvers, State, Surfaces, expected_bytes,
 };
-use fredholm_linop::MultiVector;
+use fredholm_linop::{MultiVector, Watch};
 use fredholm_mesh::{Mesh, MeshBuilder, MeshError, Patch};
 use fredholm_report::{Hierarchy, HierarchyGoal, HierarchyRound};
 use fredholm_scene::Scene;
@@ -373,10 +373,12 @@ struct Follower<'a> {
 }
 
 impl Watch for Follower<'_> {
-    fn poll(&self) -> ControlFlow<()> {
+    fn go_on(&self) -> ControlFlow<()> {
         self.signals.watch.go_on()
     }
+}
 
+impl RoundWatch for Follower<'_> {
     fn round(&self, rounds: &[Round], state: &State) -> Result<(), HierarchyError> {
         let Some(last) = rounds.last() else { return Ok(()) };
         if let Some(folder) = self.folder {

@@ -11,7 +11,7 @@
 //! | pictures at once, and scenes whose matrix would not fit | [`shoot`] |
 //! | the matrix of view factors | [`view_factors`], [`solve_view_factors`] |
 //! | the couplings themselves, for solvers and analyses of one's own | [`couplings`] |
-//! | the fields of a scene of waves | [`waves`], [`compare_waves`] |
+//! | the fields of a scene of waves | [`waves`], [`check_waves`], [`compare_waves`] |
 //! | estimates by random paths | [`trace`] |
 //! | whether a solution and random paths agree | [`crosscheck`] |
 //! | reference values for other programs | [`reference()`] |
@@ -96,6 +96,6 @@ pub use viewfactors::{
     point_closure, solve_view_factors, view_factor_methods, view_factors,
 };
 pub use waves::{
-    Estimated, SolvedFrequency, SolvedWaves, WaveCompareOptions, WaveOptions, build_wave_solver,
-    check_wave_solver, compare_waves, waves,
+    CheckedWaves, Estimated, SolvedFrequency, SolvedWaves, WAVE_FILES, WaveCompareOptions, WaveOptions,
+    build_wave_solver, check_wave_solver, check_waves, compare_waves, waves,
 };

@@ -54,6 +54,23 @@ impl<T> Observer<T> for Signals<'_> {
     }
 }
 
+/// A watch that hears of no stages: those of the parts of one stage are too many to be told.
+pub(crate) struct Unstaged<'a>(pub(crate) &'a dyn Watch);
+
+impl Watch for Unstaged<'_> {
+    fn warn(&self, text: &str) {
+        self.0.warn(text);
+    }
+
+    fn memory(&self, predicted: u128, limit: u128) {
+        self.0.memory(predicted, limit);
+    }
+
+    fn go_on(&self) -> ControlFlow<()> {
+        self.0.go_on()
+    }
+}
+
 /// Runs stages and keeps their times.
 pub(crate) struct Stages<'a> {
     pub(crate) watch: &'a dyn Watch,

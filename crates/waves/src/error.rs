@@ -73,7 +73,7 @@ pub enum WaveError {
     },
     /// The treatment of shadows asks for closed bodies.
     #[error(
-        "the exact equation is made for closed bodies, but facet {facet} belongs to an open sheet; use the geometric or the radiated shadow"
+        "the magnetic field equation is made for closed bodies, but facet {facet} belongs to an open sheet; close the body, or take method = \"physical-optics\" or \"efie\""
     )]
     NotClosed {
         /// Index of the facet.
@@ -81,7 +81,7 @@ pub enum WaveError {
     },
     /// A closed body has no room for a second surface inside.
     #[error(
-        "the point {depth} m behind facet {facet} is not inside the body, which is too thin for the equation on two surfaces; use the exact shadow"
+        "the point {depth} m behind facet {facet} is not inside the body, which is too thin for the equation on two surfaces; take method = \"mfie\" or \"cfie\""
     )]
     Thin {
         /// Index of the facet.
@@ -96,7 +96,7 @@ pub enum WaveError {
     CentresOnly,
     /// A model of perfect conductors meets another material.
     #[error(
-        "{what} knows perfect conductors only, but facet {facet} is of another material; ask for geometric or radiated shadows, without edge currents"
+        "{what} knows perfect conductors only, but facet {facet} is of another material; take method = \"physical-optics\" without edge currents"
     )]
     NotConductor {
         /// The model.

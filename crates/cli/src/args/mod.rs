@@ -80,6 +80,7 @@ const CHECK_EXAMPLES: &str = "\
 Examples:
   fredholm check scenes/cornell_box.toml
   fredholm check house.obj -o out
+  fredholm check scenes/waves/cube.toml
   fredholm check room.toml --memory 8GiB
 
 A mesh file (.obj, .stl, .ply, .gltf, .glb, .msh, .rad, .xml, .vs3) stands for a scene: see
@@ -104,8 +105,9 @@ Examples:
   fredholm info F.csv";
 
 const SCHEMA_EXAMPLES: &str = "\
-Example:
-  fredholm schema > scene.schema.json";
+Examples:
+  fredholm schema > scene.schema.json
+  fredholm schema --waves > waves.schema.json";
 
 const COMPLETIONS_EXAMPLES: &str = "\
 Examples:
@@ -193,7 +195,7 @@ pub(crate) enum Command {
     Info(InfoArgs),
     /// Print the JSON Schema of scene files
     #[command(after_help = SCHEMA_EXAMPLES)]
-    Schema,
+    Schema(SchemaArgs),
     /// Print the completions of a shell
     #[command(after_help = COMPLETIONS_EXAMPLES)]
     Completions(CompletionsArgs),
@@ -459,6 +461,14 @@ pub(crate) struct CheckArgs {
 pub(crate) struct InfoArgs {
     /// Result folder, a file in one, or a file of view factors
     pub(crate) path: PathBuf,
+}
+
+/// Options of `schema`.
+#[derive(Clone, Copy, Debug, Args)]
+pub(crate) struct SchemaArgs {
+    /// The schema of scenes of waves instead of scenes of light
+    #[arg(long)]
+    pub(crate) waves: bool,
 }
 
 /// Options of `completions`.

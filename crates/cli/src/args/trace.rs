@@ -28,7 +28,7 @@ last. Ctrl-C keeps what is there by then. Without --samples, --seconds and --to 
 With --spp image.png is traced pixel by pixel, and pixels.npz has the standard error of each.
 
 surface-sampling, field-particles and amplitude-particles sample the scattered field of a scene of
-waves, one bounce or two, with shadow = \"geometric\"; written are receivers.csv, trace.json and
+waves, one bounce or two, with shadows = \"geometric\"; written are receivers.csv, trace.json and
 run.json. Without --samples, --seconds and --to they draw 65536 samples.";
 
 /// Options of `trace`.

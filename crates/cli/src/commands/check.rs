@@ -1,5 +1,6 @@
 //! `fredholm check`.
 
+use fredholm_scene::waves::is_wave_scene;
 use fredholm_scene::{Report, Scene};
 use fredholm_study::{Checked, Error, Forecast, probe_folder};
 
@@ -28,6 +29,9 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Ending, Error> {
 }
 
 fn report(args: &CheckArgs, terminal: &Terminal) -> Result<Ending, Error> {
+    if is_wave_scene(&args.problem.scene) {
+        return super::waves::check(args, terminal);
+    }
     let picture = args.output.as_ref().map(|folder| folder.join(PICTURE));
     let (path, options) = (&args.problem.scene, args.problem.options());
     let Checked { scene, report, forecast } =

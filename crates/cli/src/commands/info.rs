@@ -7,9 +7,10 @@ use fredholm_report::{
     EXTRAS, FILES, MatrixFormat, ReportError, ViewFactorFiles, read_run, read_view_factors_record,
 };
 
-use fredholm_study::{Error, ErrorKind};
+use fredholm_study::{Error, ErrorKind, WAVE_FILES};
+use serde_json::Value;
 
-use super::viewfactors;
+use super::{viewfactors, waves};
 use crate::args::InfoArgs;
 use crate::ending::Ending;
 use crate::output;
@@ -26,11 +27,20 @@ pub(crate) fn info(args: &InfoArgs) -> Result<Ending, Error> {
     if let Ok(record) = read_view_factors_record(&path) {
         return viewfactors::describe_record(&path, &record);
     }
+    if let Some(record) = wave_record(&path) {
+        return waves::describe(&path, &record);
+    }
     let run = read_run(&path).map_err(|error| unreadable(&path, error))?;
     let mut lines = Lines::default();
     provenance(&run, &mut lines);
     output::print(&lines.under(&path.display().to_string()))?;
     Ok(Ending::Done)
+}
+
+/// The record of a result of waves, where a path is one.
+fn wave_record(path: &Path) -> Option<Value> {
+    let record: Value = serde_json::from_slice(&fs::read(path).ok()?).ok()?;
+    record["format"].as_str()?.starts_with(waves::RECORD_FORMAT).then_some(record)
 }
 
 /// The record that belongs to a path: in the folder, or beside the file of a result. Files of view factors stand for themselves.
@@ -42,8 +52,11 @@ fn record(path: &Path) -> Result<PathBuf, Error> {
     if found.is_dir() {
         return Ok(path.join(RECORD));
     }
-    let is_result =
-        FILES.iter().chain(&EXTRAS).any(|name| path.file_name().is_some_and(|file| file == *name));
+    let is_result = FILES
+        .iter()
+        .chain(&EXTRAS)
+        .chain(&WAVE_FILES)
+        .any(|name| path.file_name().is_some_and(|file| file == *name));
     if is_result {
         return Ok(path.with_file_name(RECORD));
     }

@@ -45,7 +45,7 @@ pub(crate) fn execute(command: &Command) -> Result<Ending, Error> {
         Command::Convert(args) => exchange::convert(args),
         Command::View(args) => view::view(args),
         Command::Info(args) => info::info(args),
-        Command::Schema => schema::schema(),
+        Command::Schema(args) => schema::schema(*args),
         Command::Completions(args) => completions::completions(args),
         Command::Solvers => solvers::solvers(),
         Command::Discretisations => discretisations::discretisations(),

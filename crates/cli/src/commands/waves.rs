@@ -4,14 +4,23 @@ use std::fmt::Write;
 use std::path::Path;
 
 use fredholm_report::{ComparisonRun, WaveComparison};
-use fredholm_study::{Ended, Error, SolvedWaves, Watch, WaveCompareOptions};
+use fredholm_study::{
+    CheckedWaves, Ended, Error, SolvedFrequency, SolvedWaves, Watch, WaveCompareOptions, WaveOptions,
+    check_waves,
+};
+use serde_json::Value;
 
-use crate::args::WavesArgs;
+use crate::args::{CheckArgs, WavesArgs};
 use crate::ending::Ending;
 use crate::output::{self, visible};
 use crate::start::Start;
 use crate::summary::Lines;
 use crate::terminal::Terminal;
+
+/// Beginning of the format of a record of waves.
+pub(super) const RECORD_FORMAT: &str = "fredholm-waves-run/";
+/// Most frequencies that are listed one by one.
+const MOST_LISTED: usize = 8;
 
 /// Computes a scene of waves and writes the results.
 pub(crate) fn waves(args: &WavesArgs) -> Result<Ending, Error> {
@@ -87,8 +96,12 @@ fn row(run: &ComparisonRun) -> String {
 
 fn summarise(args: &WavesArgs, folder: &Path, solved: &SolvedWaves) -> Result<(), Error> {
     let mut lines = Lines::default();
-    lines.add("method", format!("{}, shadows {}", solved.method(), solved.shadow()));
-    for found in solved.frequencies() {
+    lines.add("method", format!("{}, {}", solved.method(), solved.solution()));
+    let all = solved.frequencies();
+    if all.len() > MOST_LISTED {
+        lines.add("frequencies", sweep(all));
+    }
+    for found in all.iter().filter(|_| all.len() <= MOST_LISTED) {
         let residual = found.residuals.last();
         let ending = residual.map_or(String::new(), |residual| {
             format!(", residual {residual:.1e} after {} iterations", found.residuals.len() - 1)
@@ -104,4 +117,90 @@ fn summarise(args: &WavesArgs, folder: &Path, solved: &SolvedWaves) -> Result<()
         }
     }
     output::print(&lines.under(&format!("{} → {}", args.scene.display(), folder.display())))
+}
+
+/// What is to be said of many frequencies together.
+fn sweep(all: &[SolvedFrequency]) -> String {
+    let frequencies: Vec<f64> = all.iter().map(|found| found.frequency).collect();
+    let facets = all.first().map_or(0, |found| found.facets);
+    let residuals = all.iter().filter_map(|found| found.residuals.last().copied());
+    let worst = residuals.fold(None, |worst: Option<f64>, r| Some(worst.map_or(r, |w| w.max(r))));
+    let ending = worst.map_or(String::new(), |residual| format!(", residuals up to {residual:.1e}"));
+    format!("{}, {facets} facets{ending}", self::frequencies(&frequencies))
+}
+
+/// Validates a scene of waves, tells what its mesh is and predicts what its fields will take.
+pub(super) fn check(args: &CheckArgs, terminal: &Terminal) -> Result<Ending, Error> {
+    if args.output.is_some() {
+        terminal.warn("scenes of waves are not drawn by check; -o is left aside");
+    }
+    let options = WaveOptions { memory: args.problem.memory, no_report: true };
+    let checked = check_waves(&args.problem.scene, &options, terminal)?;
+    if !args.log.quiet {
+        output::print(&forecast(&checked))?;
+    }
+    Ok(Ending::Done)
+}
+
+fn forecast(checked: &CheckedWaves) -> String {
+    let mut lines = Lines::default();
+    lines.add_some("title", checked.title.clone());
+    lines.add("method", format!("{}, {}", checked.method, checked.solution));
+    lines.add("frequencies", frequencies(&checked.frequencies));
+    lines.add("mesh", format!("{} facets on {} surfaces", checked.facets, checked.surfaces));
+    checked.findings.iter().for_each(|finding| lines.add("found", finding.to_string()));
+    lines.add("receivers", format!("{} points and directions", checked.places));
+    lines.add("memory", format!("{}: {}", checked.plan.peak(), checked.plan));
+    let coupling = |(unknowns, bytes)| format!("{unknowns} unknowns; {bytes} where its matrix is stored");
+    lines.add_some("coupling", checked.coupling.map(coupling));
+    lines.add("memory limit", checked.limit.to_string());
+    checked.warnings.iter().for_each(|warning| lines.add("warning", warning.to_string()));
+    lines.under(&format!("{}: a valid scene of waves", checked.path.display()))
+}
+
+fn frequencies(all: &[f64]) -> String {
+    let megahertz = |f: &f64| format!("{} MHz", f / 1e6);
+    match all {
+        [first, .., last] if all.len() > 4 => {
+            format!("{} from {} to {}", all.len(), megahertz(first), megahertz(last))
+        }
+        few => few.iter().map(megahertz).collect::<Vec<_>>().join(", "),
+    }
+}
+
+/// What the record of a result of waves tells.
+pub(super) fn describe(path: &Path, record: &Value) -> Result<Ending, Error> {
+    let text = |key: &str| record[key].as_str().map(str::to_owned);
+    let list = |key: &str| record[key].as_array().cloned().unwrap_or_default();
+    let mut lines = Lines::default();
+    lines.add_some("made by", text("program"));
+    lines.add_some("scene", text("scene"));
+    lines.add_some("scene sha256", text("scene_sha256"));
+    lines.add_some("title", text("title"));
+    let method = [text("method"), text("shadows").map(|name| format!("{name} shadows")), text("solution")];
+    lines.add("method", method.into_iter().flatten().collect::<Vec<_>>().join(", "));
+    let found = list("frequencies");
+    let values: Vec<f64> = found.iter().filter_map(|one| one["frequency_hz"].as_f64()).collect();
+    if found.len() > MOST_LISTED {
+        lines.add("frequencies", frequencies(&values));
+    }
+    for found in found.iter().filter(|_| found.len() <= MOST_LISTED) {
+        let megahertz = found["frequency_hz"].as_f64().unwrap_or_default() / 1e6;
+        let ending = match (found["residuals"].as_array().and_then(|all| all.last()), &found["converged"]) {
+            (Some(residual), Value::Bool(true)) => format!(", residual {residual}"),
+            (Some(residual), _) => format!(", residual {residual}, more than was asked for"),
+            (None, _) => String::new(),
+        };
+        lines.add(&format!("{megahertz} MHz"), format!("{} facets{ending}", found["facets"]));
+    }
+    for (what, key) in [("mesh error", "estimated_mesh_errors"), ("form error", "estimated_form_errors")] {
+        for error in list(key) {
+            let relative = error["relative"].as_f64().unwrap_or_default();
+            let name = error["receiver"].as_str().unwrap_or_default();
+            lines.add(what, format!("about {relative:.2e} at {name}"));
+        }
+    }
+    list("warnings").iter().filter_map(Value::as_str).for_each(|warning| lines.add("warning", warning));
+    output::print(&lines.under(&path.display().to_string()))?;
+    Ok(Ending::Done)
 }

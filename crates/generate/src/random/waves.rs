@@ -12,12 +12,18 @@ use crate::files::Files;
 pub(super) fn scene(dice: &mut Dice) -> Files {
     let mut text = String::from("[wave]\nfrequencies_hz = [1e9]\n");
     let closed = dice.chance(0.5);
-    let shadow = if closed {
-        dice.pick(&["geometric", "radiated", "exact", "exact-dual", "thesis"])
+    let method = if closed {
+        dice.pick(&[
+            "shadows = \"geometric\"",
+            "shadows = \"radiated\"",
+            "method = \"mfie\"",
+            "method = \"dual-surface-mfie\"",
+            "method = \"thesis\"",
+        ])
     } else {
-        dice.pick(&["geometric", "radiated"])
+        dice.pick(&["shadows = \"geometric\"", "shadows = \"radiated\""])
     };
-    let _ = writeln!(text, "shadow = \"{shadow}\"");
+    let _ = writeln!(text, "{method}");
     match dice.below(3) {
         0 => {
             let _ = writeln!(text, "bounces = {}", 1 + dice.below(3));

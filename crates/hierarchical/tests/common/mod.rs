@@ -1,8 +1,8 @@
 //! Scenes for the tests, and solving them.
 
-use fredholm_hierarchical::{Options, Patient, Problem, Solution, Solvers, State, Surfaces, Watch, solve};
+use fredholm_hierarchical::{Options, Problem, RoundWatch, Solution, Solvers, State, Surfaces, solve};
 use fredholm_iterative::{CgTheta, Gmres};
-use fredholm_linop::MultiVector;
+use fredholm_linop::{MultiVector, Quiet};
 use fredholm_mesh::Mesh;
 use fredholm_scene::Scene;
 use fredholm_visibility::Occluders;
@@ -50,10 +50,10 @@ impl Bench {
 
     #[allow(dead_code, reason = "not every test needs every helper")]
     pub fn solve(&self, accuracy: f64) -> Solution {
-        self.resume(accuracy, None, &Patient)
+        self.resume(accuracy, None, &Quiet)
     }
 
-    pub fn resume(&self, accuracy: f64, state: Option<State>, watch: &dyn Watch) -> Solution {
+    pub fn resume(&self, accuracy: f64, state: Option<State>, watch: &dyn RoundWatch) -> Solution {
         solve(&self.problem(), &options(accuracy), SOLVERS, state, watch).unwrap()
     }
 

@@ -7,6 +7,7 @@ mod csv;
 mod map;
 mod monostatic;
 mod npz;
+mod over_frequency;
 mod polar;
 mod residuals;
 mod vtu;
@@ -15,7 +16,8 @@ pub use comparison::{WAVE_COMPARISON_FORMAT, WaveComparison, WaveComparisonCase,
 pub use csv::{write_far_csv, write_receivers_csv};
 pub use map::{FieldMap, MapQuantity};
 pub use monostatic::{MonostaticRow, write_monostatic_csv};
-pub use npz::write_receivers_npz;
+pub use npz::{write_far_npz, write_monostatic_npz, write_receivers_npz};
+pub use over_frequency::{FrequencyLine, write_frequency_plot};
 pub use polar::write_polar_plot;
 pub use residuals::{WaveResiduals, write_residuals_csv, write_residuals_plot};
 pub use vtu::{WaveCurrents, write_currents_vtu};

@@ -20,7 +20,9 @@ pub(crate) use at::At;
 pub(crate) use camera::CameraEntry;
 pub(crate) use material::MaterialEntry;
 pub(crate) use per_band::PerBand;
-pub(crate) use shape::{BoxEntry, CylinderEntry, DiscEntry, MeshFileEntry, PolygonEntry, SphereEntry, Turn};
+pub(crate) use shape::{
+    BoxEntry, CylinderEntry, DiscEntry, MeshFileEntry, PolygonEntry, Shapes, SphereEntry, Turn,
+};
 pub(crate) use solve::{SolveEntry, StorageEntry};
 pub(crate) use surface::SurfaceEntry;
 

@@ -7,6 +7,23 @@ use serde::Deserialize;
 
 use super::{At, Triple};
 
+/// The shapes that a surface may have, of light and of waves; exactly one is given.
+#[derive(Clone, Copy)]
+pub(crate) struct Shapes<'a> {
+    /// Name of the surface.
+    pub name: &'a At<String>,
+    pub quad: Option<&'a At<[Triple; 4]>>,
+    pub triangle: Option<&'a At<[Triple; 3]>>,
+    pub polygon: Option<&'a At<PolygonEntry>>,
+    pub cuboid: Option<&'a At<BoxEntry>>,
+    pub sphere: Option<&'a At<SphereEntry>>,
+    pub disc: Option<&'a At<DiscEntry>>,
+    pub cylinder: Option<&'a At<CylinderEntry>>,
+    pub mesh: Option<&'a At<MeshFileEntry>>,
+    /// The same under its first name, of light alone.
+    pub obj: Option<&'a At<MeshFileEntry>>,
+}
+
 /// A flat polygon, not necessarily convex.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a table of a polygon")]

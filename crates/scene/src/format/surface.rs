@@ -3,7 +3,9 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{At, BoxEntry, CylinderEntry, DiscEntry, MeshFileEntry, PolygonEntry, SphereEntry, Triple};
+use super::{
+    At, BoxEntry, CylinderEntry, DiscEntry, MeshFileEntry, PolygonEntry, Shapes, SphereEntry, Triple,
+};
 
 /// A named surface: one shape, made of one material, cut into faces.
 ///
@@ -65,5 +67,21 @@ impl SurfaceEntry {
     /// The mesh file that the surface comes from, where it does.
     pub fn mesh_file(&self) -> Option<&At<MeshFileEntry>> {
         self.mesh.as_ref().or(self.obj.as_ref())
+    }
+
+    /// The shapes that are given.
+    pub fn shapes(&self) -> Shapes<'_> {
+        Shapes {
+            name: &self.name,
+            quad: self.quad.as_ref(),
+            triangle: self.triangle.as_ref(),
+            polygon: self.polygon.as_ref(),
+            cuboid: self.cuboid.as_ref(),
+            sphere: self.sphere.as_ref(),
+            disc: self.disc.as_ref(),
+            cylinder: self.cylinder.as_ref(),
+            mesh: self.mesh.as_ref(),
+            obj: self.obj.as_ref(),
+        }
     }
 }

@@ -73,12 +73,12 @@ pub(super) fn read(
         libraries.push(own(imported));
     }
     for library in &imported.libraries {
-        match load(context.files, Path::new(file.file.as_str()), imported, library) {
+        match load(context.reading.files, Path::new(file.file.as_str()), imported, library) {
             Err(error) if lenient && error.is_io() => {
                 let (file, place) =
                     (imported.source.path.clone(), imported.source.place(library.span.clone()));
                 let (what, help) = (error.what().to_owned(), "put it beside the mesh file".to_owned());
-                context.notes.push(Warning { file, place, what, help });
+                context.reading.notes.push(Warning { file, place, what, help });
             }
             read => libraries.push(read?),
         }
@@ -157,7 +157,7 @@ fn tell(context: &mut Context, library: &Library, entry: &MeshMaterial, material
     }
     let help = format!("another one is given by [materials.\"{}\"] in a scene file", entry.name);
     let (file, place) = (library.source.path.clone(), library.source.place(entry.span.clone()));
-    context.notes.push(Warning { file, place, what, help });
+    context.reading.notes.push(Warning { file, place, what, help });
 }
 
 /// The material, and whether its reflectance was lowered.

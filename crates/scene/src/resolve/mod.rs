@@ -7,8 +7,8 @@ mod faces;
 mod library;
 mod material;
 mod number;
-mod obj;
-mod shape;
+pub(crate) mod obj;
+pub(crate) mod shape;
 mod solve;
 mod surface;
 mod turned;
@@ -52,18 +52,31 @@ pub(crate) struct Resolved {
     pub findings: Vec<Finding>,
 }
 
+/// A scene file being read with the files that it names, and what was found in them.
+pub(crate) struct Reading<'a> {
+    pub source: &'a Source,
+    pub files: &'a mut Files,
+    /// What was read from material libraries and what was mended.
+    pub notes: Vec<Warning>,
+    /// What was found in mesh files while they were read.
+    pub findings: Vec<Finding>,
+}
+
+impl<'a> Reading<'a> {
+    pub fn new(source: &'a Source, files: &'a mut Files) -> Self {
+        Self { source, files, notes: vec![], findings: vec![] }
+    }
+}
+
 /// What the meaning of a surface depends on.
 struct Context<'a> {
-    source: &'a Source,
+    reading: Reading<'a>,
     scene: &'a SceneEntry,
     bands: &'a [String],
     /// Those of the scene, then those of material libraries.
     materials: Vec<Material>,
     /// How many of them are the scene's.
     own: usize,
-    files: &'a mut Files,
-    notes: Vec<Warning>,
-    findings: Vec<Finding>,
     /// What faces are made of that have no material, where a mesh file stands for a scene; none in a scene.
     fallback: Option<usize>,
 }
@@ -86,11 +99,10 @@ pub(crate) fn resolve(
     let materials = material::materials(source, scene, &bands)?;
     let solve = scene.solve.as_ref().map(|entry| solve::solve(source, entry)).transpose()?;
     let camera = scene.camera.as_ref().map(|entry| camera::camera(source, entry)).transpose()?;
-    let (own, notes, findings) = (materials.len(), vec![], vec![]);
-    let mut context =
-        Context { source, scene, bands: &bands, materials, own, files, notes, findings, fallback };
+    let (own, reading) = (materials.len(), Reading::new(source, files));
+    let mut context = Context { reading, scene, bands: &bands, materials, own, fallback };
     let parts = parts(&mut context)?;
-    let Context { materials, notes, findings, .. } = context;
+    let Context { materials, reading: Reading { notes, findings, .. }, .. } = context;
     let named = scene.solve.as_ref();
     let solver = named.and_then(|entry| entry.solver.as_ref()).map(At::span);
     let discretisation = named.and_then(|entry| entry.discretisation.as_ref()).map(At::span);
@@ -99,7 +111,7 @@ pub(crate) fn resolve(
 }
 
 fn parts(context: &mut Context) -> Result<Vec<Part>, SceneError> {
-    let (source, scene) = (context.source, context.scene);
+    let (source, scene) = (context.reading.source, context.scene);
     if scene.surface.is_empty() {
         let help = "add a [[surface]] with a name, a material and a shape";
         let end = source.text.len();
@@ -110,7 +122,7 @@ fn parts(context: &mut Context) -> Result<Vec<Part>, SceneError> {
     let mut elements = 0_u128;
     for entry in &scene.surface {
         for part in surface::parts(context, entry)? {
-            check_name(source, entry, &part.name, &mut names)?;
+            check_name(source, &entry.name, &part.name, &mut names)?;
             elements = elements.saturating_add(part.elements);
             check_number(source, entry, &part, elements)?;
             parts.push(part);
@@ -119,13 +131,14 @@ fn parts(context: &mut Context) -> Result<Vec<Part>, SceneError> {
     Ok(parts)
 }
 
-fn check_name(
+/// Refuses names of surfaces that are none or given twice; `given` is what stands in the file.
+pub(crate) fn check_name(
     source: &Source,
-    entry: &At<SurfaceEntry>,
+    given: &At<String>,
     name: &str,
     names: &mut BTreeSet<String>,
 ) -> Result<(), SceneError> {
-    let at_name = |what: String, help| source.error(ErrorKind::Name, entry.name.span(), what, help);
+    let at_name = |what: String, help| source.error(ErrorKind::Name, given.span(), what, help);
     if name.is_empty() || name.chars().any(char::is_control) {
         return Err(at_name(
             format!("{name:?} is no name for a surface"),

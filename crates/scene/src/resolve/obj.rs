@@ -8,11 +8,11 @@ use std::path::Path;
 
 use fredholm_mesh::{Cutting, MeshError, Shape, Vec3};
 
-use super::Context;
 use super::faces::Mended;
 use super::library::{self, Library};
 use super::number::FARTHEST;
 use super::surface::{find_material, geometry, part};
+use super::{Context, Reading};
 use crate::check::Warning;
 use crate::error::{ErrorKind, SceneError};
 use crate::format::{At, MeshFileEntry, SurfaceEntry, Turn};
@@ -28,12 +28,12 @@ pub(super) fn parts(
     file: &MeshFileEntry,
     cutting: &Cutting,
 ) -> Result<(Vec<Part>, Vec<bool>), SceneError> {
-    let source = context.source;
-    let imported = load(context, file)?;
+    let source = context.reading.source;
+    let imported = load(&mut context.reading, file)?;
     let placing = Placing::new(source, file)?;
     let libraries = libraries(context, file, &imported)?;
     unused_names(source, file, &imported)?;
-    let mended = mended(context, &imported, &placing)?;
+    let mended = mended(&mut context.reading, &imported, &placing)?;
     let mut shapes = mended.shapes.into_iter();
     let (mut parts, mut two_sided) = (vec![], vec![]);
     for group in &imported.groups {
@@ -53,7 +53,7 @@ pub(super) fn parts(
             two_sided.push(group.two_sided);
             parts.push(part(
                 entry,
-                &name(entry, group, &imported.groups),
+                &group_name(&entry.name, group, &imported.groups),
                 material,
                 shapes,
                 cutting,
@@ -74,7 +74,11 @@ pub(super) fn parts(
 }
 
 /// The faces of all groups where they come to stand, fit to be meshed; what was done to them is noted.
-fn mended(context: &mut Context, imported: &Imported, placing: &Placing) -> Result<Mended, SceneError> {
+pub(crate) fn mended(
+    reading: &mut Reading,
+    imported: &Imported,
+    placing: &Placing,
+) -> Result<Mended, SceneError> {
     let mut faces = vec![];
     for face in imported.groups.iter().flat_map(|group| &group.faces) {
         placing.check(face, &imported.source)?;
@@ -87,9 +91,9 @@ fn mended(context: &mut Context, imported: &Imported, placing: &Placing) -> Resu
     if let Some(what) = mended.left_out() {
         let (file, place) = (imported.source.path.clone(), imported.source.place(span));
         let help = "nothing is to be done; an export with more digits avoids it".to_owned();
-        context.notes.push(Warning { file, place, what, help });
+        reading.notes.push(Warning { file, place, what, help });
     }
-    context.findings.extend(mended.findings());
+    reading.findings.extend(mended.findings());
     Ok(mended)
 }
 
@@ -103,26 +107,27 @@ fn counted_shapes(
     shapes.into_iter().map(counted).collect()
 }
 
-fn load(context: &mut Context, file: &MeshFileEntry) -> Result<Imported, SceneError> {
+/// The faces of a mesh file, at least one.
+pub(crate) fn load(reading: &mut Reading, file: &MeshFileEntry) -> Result<Imported, SceneError> {
     let name = Path::new(file.file.as_str());
-    let bytes = context.files.load(name).map_err(|error| {
+    let bytes = reading.files.load(name).map_err(|error| {
         let what = format!("cannot read `{}`: {error}", *file.file);
         let help = "correct the name; it is taken relative to the folder of the scene file";
-        context.source.error(ErrorKind::Io, file.file.span(), what, help).caused_by(error)
+        reading.source.error(ErrorKind::Io, file.file.span(), what, help).caused_by(error)
     })?;
-    let imported = import(name, bytes, context.files).unwrap_or_else(|| {
+    let imported = import(name, bytes, reading.files).unwrap_or_else(|| {
         let what = format!("`{}` is of no known mesh format", *file.file);
         let help = format!("give a file whose name ends in {}", endings());
-        Err(context.source.error(ErrorKind::Format, file.file.span(), what, help))
+        Err(reading.source.error(ErrorKind::Format, file.file.span(), what, help))
     })?;
     for note in &imported.notes {
         let (file, place) = (imported.source.path.clone(), imported.source.place(note.span.clone()));
-        context.notes.push(Warning { file, place, what: note.what.clone(), help: note.help.clone() });
+        reading.notes.push(Warning { file, place, what: note.what.clone(), help: note.help.clone() });
     }
     if imported.groups.is_empty() {
         let what = format!("`{}` holds no face", *file.file);
         let help = "give a file with faces (lines that begin with f in an OBJ)";
-        return Err(context.source.error(ErrorKind::Empty, file.file.span(), what, help));
+        return Err(reading.source.error(ErrorKind::Empty, file.file.span(), what, help));
     }
     Ok(imported)
 }
@@ -142,12 +147,17 @@ fn libraries(
     library::read(context, file, imported).map(Some)
 }
 
-fn mapped<'a>(file: &'a MeshFileEntry, name: &Name) -> Option<&'a At<String>> {
+/// The material of the scene that the entry names for a material of the file.
+pub(crate) fn mapped<'a>(file: &'a MeshFileEntry, name: &Name) -> Option<&'a At<String>> {
     file.materials.iter().find(|(from, _)| ***from == name.text).map(|(_, to)| to)
 }
 
 /// Refuses names in the entry's table of materials that the file does not use.
-fn unused_names(source: &Source, file: &MeshFileEntry, imported: &Imported) -> Result<(), SceneError> {
+pub(crate) fn unused_names(
+    source: &Source,
+    file: &MeshFileEntry,
+    imported: &Imported,
+) -> Result<(), SceneError> {
     let name = |group: &Group| group.material.as_ref().map(|name| name.text.clone()).or(group.object.clone());
     let used: BTreeSet<String> = imported.groups.iter().filter_map(name).collect();
     let Some(name) = file.materials.keys().find(|name| !used.contains(name.as_str())) else { return Ok(()) };
@@ -172,11 +182,11 @@ impl Lookup<'_> {
     fn of(&self, context: &mut Context, group: &Group) -> Result<usize, SceneError> {
         match &group.material {
             Some(name) => match mapped(self.file, name) {
-                Some(to) => find_material(context.source, to, context.own()),
+                Some(to) => find_material(context.reading.source, to, context.own()),
                 None => self.by_same_name(context, name),
             },
             None => match self.of_object(group).or(self.entry.material.as_ref()) {
-                Some(name) => find_material(context.source, name, context.own()),
+                Some(name) => find_material(context.reading.source, name, context.own()),
                 None => Err(self.nameless(group)),
             },
         }
@@ -221,15 +231,15 @@ impl Lookup<'_> {
 }
 
 /// NAME/object, with the material behind it where an object has several.
-fn name(entry: &SurfaceEntry, group: &Group, groups: &[Group]) -> String {
+pub(crate) fn group_name(surface: &str, group: &Group, groups: &[Group]) -> String {
     let several = groups.iter().filter(|other| other.object == group.object).count() > 1;
     let material = group.material.as_ref().filter(|_| several).map(|name| name.text.as_str());
-    let parts = [Some(entry.name.as_str()), group.object.as_deref(), material];
+    let parts = [Some(surface), group.object.as_deref(), material];
     parts.into_iter().flatten().collect::<Vec<_>>().join("/")
 }
 
 /// Where a file's points come to stand.
-struct Placing {
+pub(crate) struct Placing {
     scale: f64,
     axis: Vec3,
     cosine: f64,
@@ -238,7 +248,7 @@ struct Placing {
 }
 
 impl Placing {
-    fn new(source: &Source, file: &MeshFileEntry) -> Result<Self, SceneError> {
+    pub fn new(source: &Source, file: &MeshFileEntry) -> Result<Self, SceneError> {
         let scale = file.scale.as_ref().map_or(Ok(1.0), |scale| source.positive(scale, "scale"))?;
         let translate = file.translate.as_ref();
         let translate = translate.map_or(Ok(Vec3::ZERO), |t| source.vector(t, "translate"))?;

@@ -5,9 +5,7 @@ use std::ops::Range;
 use fredholm_mesh::{Shape, Vec3};
 
 use crate::error::{ErrorKind, SceneError};
-use crate::format::{
-    At, BoxEntry, CylinderEntry, DiscEntry, PolygonEntry, SphereEntry, SurfaceEntry, Triple,
-};
+use crate::format::{At, BoxEntry, CylinderEntry, DiscEntry, PolygonEntry, Shapes, SphereEntry, Triple};
 use crate::source::Source;
 
 /// Edges around a sphere, where the scene does not say.
@@ -16,34 +14,34 @@ const AROUND_SPHERE: usize = 20;
 const AROUND_DISC: usize = 32;
 
 /// Place of the one shape of a surface.
-pub(super) fn only_shape(source: &Source, entry: &SurfaceEntry) -> Result<Range<usize>, SceneError> {
+pub(crate) fn only_shape(source: &Source, entry: &Shapes) -> Result<Range<usize>, SceneError> {
     let shapes = present(entry);
     let help = "give exactly one of quad, triangle, polygon, box, sphere, disc, cylinder, mesh, obj";
     match &shapes[..] {
         [(_, span)] => Ok(span.clone()),
         [] => {
-            let what = format!("the surface `{}` has no shape", *entry.name);
+            let what = format!("the surface `{}` has no shape", **entry.name);
             Err(source.error(ErrorKind::MissingKey, entry.name.span(), what, help))
         }
         [(first, _), (second, span), ..] => {
-            let what = format!("the surface `{}` has two shapes, {first} and {second}", *entry.name);
+            let what = format!("the surface `{}` has two shapes, {first} and {second}", **entry.name);
             Err(source.error(ErrorKind::Value, span.clone(), what, format!("{help}; make two surfaces")))
         }
     }
 }
 
 /// The shapes of an entry in the order of the file.
-fn present(entry: &SurfaceEntry) -> Vec<(&'static str, Range<usize>)> {
+fn present(entry: &Shapes) -> Vec<(&'static str, Range<usize>)> {
     let all = [
-        ("quad", entry.quad.as_ref().map(At::span)),
-        ("triangle", entry.triangle.as_ref().map(At::span)),
-        ("polygon", entry.polygon.as_ref().map(At::span)),
-        ("box", entry.cuboid.as_ref().map(At::span)),
-        ("sphere", entry.sphere.as_ref().map(At::span)),
-        ("disc", entry.disc.as_ref().map(At::span)),
-        ("cylinder", entry.cylinder.as_ref().map(At::span)),
-        ("mesh", entry.mesh.as_ref().map(At::span)),
-        ("obj", entry.obj.as_ref().map(At::span)),
+        ("quad", entry.quad.map(At::span)),
+        ("triangle", entry.triangle.map(At::span)),
+        ("polygon", entry.polygon.map(At::span)),
+        ("box", entry.cuboid.map(At::span)),
+        ("sphere", entry.sphere.map(At::span)),
+        ("disc", entry.disc.map(At::span)),
+        ("cylinder", entry.cylinder.map(At::span)),
+        ("mesh", entry.mesh.map(At::span)),
+        ("obj", entry.obj.map(At::span)),
     ];
     let mut present: Vec<_> = all.into_iter().filter_map(|(key, span)| Some((key, span?))).collect();
     present.sort_by_key(|(_, span)| span.start);
@@ -51,18 +49,14 @@ fn present(entry: &SurfaceEntry) -> Vec<(&'static str, Range<usize>)> {
 }
 
 /// The shape of an entry, or `None` where it comes from a file.
-pub(super) fn shape(source: &Source, entry: &SurfaceEntry) -> Result<Option<Shape>, SceneError> {
-    if let (Some(skip), None) = (&entry.skip, &entry.quad) {
-        let what = "only a quad has cells to skip".to_owned();
-        return Err(source.value_error(skip, what, "remove skip, or make the surface a quad"));
-    }
-    let flat = match (&entry.quad, &entry.triangle, &entry.polygon) {
-        (Some(quad), _, _) => Some(self::quad(source, quad, entry)?),
+pub(crate) fn shape(source: &Source, entry: &Shapes) -> Result<Option<Shape>, SceneError> {
+    let flat = match (entry.quad, entry.triangle, entry.polygon) {
+        (Some(corners), _, _) => Some(Shape::Quad { corners: points(source, corners)?, skip: vec![] }),
         (_, Some(corners), _) => Some(Shape::Triangle { corners: points(source, corners)? }),
         (_, _, Some(polygon)) => Some(self::polygon(source, polygon)?),
         _ => None,
     };
-    let solid = match (&entry.cuboid, &entry.sphere, &entry.disc, &entry.cylinder) {
+    let solid = match (entry.cuboid, entry.sphere, entry.disc, entry.cylinder) {
         (Some(cuboid), _, _, _) => Some(self::cuboid(source, cuboid)?),
         (_, Some(sphere), _, _) => Some(self::sphere(source, sphere)?),
         (_, _, Some(disc), _) => Some(self::disc(source, disc)?),
@@ -70,11 +64,6 @@ pub(super) fn shape(source: &Source, entry: &SurfaceEntry) -> Result<Option<Shap
         _ => None,
     };
     Ok(flat.or(solid))
-}
-
-fn quad(source: &Source, corners: &[Triple; 4], entry: &SurfaceEntry) -> Result<Shape, SceneError> {
-    let skip = entry.skip.as_ref().map_or(Vec::new(), |skip| skip.iter().map(|cell| **cell).collect());
-    Ok(Shape::Quad { corners: points(source, corners)?, skip })
 }
 
 fn polygon(source: &Source, entry: &PolygonEntry) -> Result<Shape, SceneError> {

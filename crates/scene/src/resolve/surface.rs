@@ -14,10 +14,10 @@ use crate::suggest::among;
 
 /// The surfaces that an entry stands for: one, several from a file, and the backs of those that have two sides.
 pub(super) fn parts(context: &mut Context, entry: &SurfaceEntry) -> Result<Vec<Part>, SceneError> {
-    let span = shape::only_shape(context.source, entry)?;
-    let cutting = cutting::cutting(context.source, context.scene, entry)?;
+    let span = shape::only_shape(context.reading.source, &entry.shapes())?;
+    let cutting = cutting::cutting(context.reading.source, context.scene, entry)?;
     let mut said = vec![];
-    let mut parts = match (shape::shape(context.source, entry)?, entry.mesh_file()) {
+    let mut parts = match (own_shape(context.reading.source, entry)?, entry.mesh_file()) {
         (None, Some(file)) => {
             let (parts, two_sided) = obj::parts(context, entry, file, &cutting)?;
             said = two_sided;
@@ -29,6 +29,17 @@ pub(super) fn parts(context: &mut Context, entry: &SurfaceEntry) -> Result<Vec<P
     let sides = two_sided(context, entry, &parts, &said)?;
     add_backs(context, entry, &mut parts, &sides)?;
     Ok(parts)
+}
+
+/// The shape of an entry with the cells that are left out, or `None` where it comes from a file.
+fn own_shape(source: &Source, entry: &SurfaceEntry) -> Result<Option<Shape>, SceneError> {
+    let shape = shape::shape(source, &entry.shapes())?;
+    let Some(cells) = &entry.skip else { return Ok(shape) };
+    if let Some(Shape::Quad { corners, .. }) = shape {
+        return Ok(Some(Shape::Quad { corners, skip: cells.iter().map(|cell| **cell).collect() }));
+    }
+    let what = "only a quad has cells to skip".to_owned();
+    Err(source.value_error(cells, what, "remove skip, or make the surface a quad"))
 }
 
 /// Which parts have two sides: as the entry says, else those that the file `said` have, and the objects of a file whose faces
@@ -53,7 +64,7 @@ fn own(
     cutting: &Cutting,
     span: Range<usize>,
 ) -> Result<Part, SceneError> {
-    let source = context.source;
+    let source = context.reading.source;
     let Some(name) = &entry.material else {
         let what = format!("the surface `{}` has no material", *entry.name);
         let help = "add a line material = \"…\" with the name of a material";
@@ -85,10 +96,15 @@ fn add_backs(
     sides: &[bool],
 ) -> Result<(), SceneError> {
     let material = entry.back_material.as_ref();
-    let material = material.map(|name| find_material(context.source, name, context.own())).transpose()?;
+    let material =
+        material.map(|name| find_material(context.reading.source, name, context.own())).transpose()?;
     if let (Some(name), false) = (&entry.back_material, sides.contains(&true)) {
         let what = "a surface with one side has no back to give a material".to_owned();
-        return Err(context.source.value_error(name, what, "add two_sided = true, or remove back_material"));
+        return Err(context.reading.source.value_error(
+            name,
+            what,
+            "add two_sided = true, or remove back_material",
+        ));
     }
     let backs: Vec<Part> =
         parts.iter().zip(sides).filter(|(_, two)| **two).map(|(front, _)| back(front, material)).collect();
@@ -121,11 +137,7 @@ pub(super) fn geometry(
     error: &MeshError,
     origin: (&Source, Range<usize>),
 ) -> SceneError {
-    let message = error.to_string();
-    let (what, help) = message.split_once("; ").unwrap_or((&message, "correct the value marked"));
-    // The number that it tells to look at is marked.
-    let help = if matches!(error, MeshError::BadLines { .. }) { "correct the value marked" } else { help };
-    let what = format!("surface `{}`: {what}", *entry.name);
+    let (what, help) = (format!("surface `{}`: {error}", *entry.name), error.help());
     let kind = match error {
         MeshError::TooLarge { .. } => ErrorKind::TooLarge,
         _ => ErrorKind::Geometry,

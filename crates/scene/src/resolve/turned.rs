@@ -21,7 +21,8 @@ pub(super) fn two_sided(
     parts: &[Part],
     said: &[bool],
 ) -> Result<Vec<bool>, SceneError> {
-    let (source, mut pieces, mut part_of): (_, Vec<Patch>, Vec<usize>) = (context.source, vec![], vec![]);
+    let (source, mut pieces, mut part_of): (_, Vec<Patch>, Vec<usize>) =
+        (context.reading.source, vec![], vec![]);
     for (number, part) in parts.iter().enumerate() {
         for shape in part.shapes.iter() {
             let own = shape.blockers(&part.cutting);
@@ -57,7 +58,7 @@ pub(super) fn two_sided(
         );
         let help = "turn the faces one way in the program that made the file, or set two_sided = false to light fronts only";
         let (file, place) = (source.path.clone(), source.place(entry.name.span()));
-        context.notes.push(Warning { file, place, what, help: help.to_owned() });
+        context.reading.notes.push(Warning { file, place, what, help: help.to_owned() });
     }
     Ok(sides)
 }

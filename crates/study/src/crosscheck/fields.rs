@@ -11,6 +11,7 @@ use fredholm_montecarlo::waves::FieldEstimate;
 use fredholm_report::{
     COMPONENTS, CROSSCHECK_FORMAT, CrosscheckRecord, FieldScore, WorstPlace, write_field_crosscheck,
 };
+use fredholm_scene::waves::Places;
 use fredholm_waves::TOLERANCE;
 
 use super::record::WORST;
@@ -20,7 +21,7 @@ use crate::options::SceneSource;
 use crate::solve::report_failure;
 use crate::stages::Stages;
 use crate::stochastic::{FieldPoint, FieldRun, failure, field_points};
-use crate::waves::{self, Band, Method, Model, Outcome, Places};
+use crate::waves::{self, Band, Method, Model, Outcome};
 
 /// Method where none is asked for, and the error it is asked for.
 const USUAL: &str = "surface-sampling";
@@ -155,7 +156,7 @@ fn record(
         format: CROSSCHECK_FORMAT.to_owned(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
         scene: model.path().display().to_string(),
-        scene_sha256: model.text.sha256(),
+        scene_sha256: model.scene.sha256().to_owned(),
         verdict: if significant == 0 { "agree" } else { "disagree" }.to_owned(),
         significance: asked.significance,
         correction: asked.correction.correction().name().to_owned(),

@@ -11,6 +11,7 @@ use fredholm_montecarlo::light::{Estimator, estimator};
 use fredholm_montecarlo::statistics::{Comparison, Correction, Crosscheck, Place, crosscheck as compare};
 use fredholm_montecarlo::{Enclosure, State};
 use fredholm_report::{CrosscheckRecord, Exposure, View, score_map, write_crosscheck};
+use fredholm_scene::waves::is_wave_scene;
 
 use places::Places;
 
@@ -24,7 +25,6 @@ use crate::stages::Stages;
 use crate::stochastic::{
     FIELD_METHODS, PathOptions, TraceStop, Tracer, enclosure, expected_error, face_means, failure,
 };
-use crate::waves::is_scene;
 
 /// Method where none is asked for.
 const USUAL: &str = "light";
@@ -134,7 +134,7 @@ pub fn crosscheck(
     let (source, stages) = (source.into(), Stages::new(watch).part("check"));
     let fields = match &asked.method {
         Some(name) => FIELD_METHODS.contains(&name.as_str()),
-        None => is_scene(source.path()),
+        None => is_wave_scene(source.path()),
     };
     let run = if fields { fields::run } else { run };
     run(&source, asked, folder.as_ref(), stages)

@@ -7,12 +7,13 @@ use fredholm_montecarlo::waves::{
     Scattering, SurfaceSampling,
 };
 use fredholm_montecarlo::{Stop, WAVE};
-use fredholm_waves::{PhysicalOptics, Shadow, Source, Wave, WaveError};
+use fredholm_scene::waves::Places;
+use fredholm_waves::{PhysicalOptics, Shadow, Wave, WaveError};
 
 use super::options::{PathOptions, TraceStop};
 use super::tracer::failure;
 use crate::error::{Error, ErrorKind};
-use crate::waves::{Band, Method, Model, Places};
+use crate::waves::{Band, Method, Model};
 
 /// Names of the methods that sample the fields of scenes of waves.
 pub const FIELD_METHODS: [&str; 3] = ["surface-sampling", "field-particles", "amplitude-particles"];
@@ -92,9 +93,9 @@ impl FieldRun {
         watch: &dyn Watch,
     ) -> Result<FieldEstimate, Error> {
         let refused = |error: WaveError| model.refused(&error, None);
-        let scatterer = model.geometry.scatterer(band.materials.clone()).map_err(refused)?;
+        let scatterer = model.geometry.scatterer(&band.materials).map_err(refused)?;
         scatterer.check_conductor("the sampling of fields").map_err(refused)?;
-        let sources: Vec<&dyn Source> = model.sources.iter().map(AsRef::as_ref).collect();
+        let sources = model.sources();
         let optics =
             PhysicalOptics::new(&scatterer, band.wave, &sources, Shadow::Geometric).map_err(refused)?;
         let problem = Scattering::new(&scatterer, &optics, band.wave, self.bounces).map_err(failure)?;
@@ -123,10 +124,10 @@ fn batches(paths: &PathOptions, stop: &TraceStop) -> Option<u64> {
 
 fn admit(method: &str, paths: &PathOptions, model: &Model) -> Result<(), Error> {
     let refused = |text: String, help: &str| Err(Error::new(ErrorKind::Input, text).with_help(help));
-    if model.shadow != Shadow::Geometric {
-        let name = model.shadow.name();
-        let help = "shadow = \"geometric\" in [wave], or `fredholm waves`";
-        return refused(format!("shadows `{name}` cannot be sampled"), help);
+    if model.galerkin.is_some() || model.shadow != Shadow::Geometric {
+        let name = model.method_in_words();
+        let help = "method = \"physical-optics\" with shadows = \"geometric\" in [wave], or `fredholm waves`";
+        return refused(format!("{name} cannot be sampled"), help);
     }
     if !paths.is_plain() {
         let text = format!("{method} takes --seed and --batch, but neither --points nor switches of paths");

@@ -29,9 +29,9 @@ pub(super) fn run(
     let batches = FieldRun::at_once(&asked.paths, &asked.stop);
     let load = || Model::load_sampled(source.path(), asked.problem.memory, batches);
     let model = stages.run("scene", load)?;
-    stages.tell(&model.plan, model.limit);
+    model.tell(stages);
     let run = FieldRun::new(&asked.method, &asked.paths, &asked.stop, &model, stages.watch)?;
-    let origin = Origin::new(asked, &model.text.sha256(), run.bounces());
+    let origin = Origin::new(asked, model.scene.sha256(), run.bounces());
     let earlier: Vec<FieldEstimate> = if asked.go_on { origin.earlier(folder)? } else { Vec::new() };
     stages.begin_saving()?;
     let states = sampled(&run, &model, earlier, stages)?;
@@ -110,7 +110,7 @@ fn record(
     RunRecord {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         scene: model.path().display().to_string(),
-        scene_sha256: model.text.sha256(),
+        scene_sha256: model.scene.sha256().to_owned(),
         options: json!({ "method": asked.method, "paths": asked.paths, "stop": asked.stop, "frequencies": frequencies }),
         timings: stages.timings().to_vec(),
         means: "random samples; standard errors in receivers.csv".to_owned(),

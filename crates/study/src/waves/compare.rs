@@ -3,7 +3,7 @@
 
 use fredholm_linop::{SecondKind, Solver, Stop, StopReason};
 use fredholm_report::{ComparisonRun, WAVE_COMPARISON_FORMAT, WaveComparison, WaveComparisonCase};
-use fredholm_waves::{Complex64, PhysicalOptics, Source, System, WaveError, spectral_radius};
+use fredholm_waves::{Complex64, PhysicalOptics, System, WaveError, spectral_radius};
 use serde_json::json;
 
 use super::model::Band;
@@ -23,6 +23,11 @@ pub(crate) fn compare(
     stop: &Stop,
     stages: &mut Stages,
 ) -> Result<WaveComparison, Error> {
+    if model.galerkin.is_some() {
+        let what = format!("solvers are compared on currents on facets, not on {}", model.method_name());
+        let error = Error::new(ErrorKind::Input, what);
+        return Err(error.with_help("take method = \"mfie\" or \"physical-optics\""));
+    }
     let mut cases = Vec::new();
     for band in &model.bands {
         cases.push(case(model, band, (solvers, stop), stages)?);
@@ -35,7 +40,8 @@ pub(crate) fn compare(
             "solvers": solvers,
             "tolerance": stop.tolerance,
             "max_iterations": stop.max_iterations,
-            "shadow": model.shadow.name(),
+            "method": model.method_name(),
+            "shadows": model.shadows_name(),
             "start": "x = 0",
         }),
         cases,
@@ -50,9 +56,9 @@ fn case(
     stages: &mut Stages,
 ) -> Result<WaveComparisonCase, Error> {
     let refused = |error: WaveError| model.refused(&error, None);
-    let scatterer = model.geometry.scatterer(band.materials.clone()).map_err(refused)?;
+    let scatterer = model.geometry.scatterer(&band.materials).map_err(refused)?;
     scatterer.check_resolution(&band.wave).map_err(refused)?;
-    let sources: Vec<&dyn Source> = model.sources.iter().map(AsRef::as_ref).collect();
+    let sources = model.sources();
     let first = PhysicalOptics::new(&scatterer, band.wave, &sources, model.shadow).map_err(refused)?;
     let name = format!("{} MHz", band.wave.frequency() / 1e6);
     let signals = &stages.signals();

@@ -1,23 +1,25 @@
 //! The currents and the fields at all frequencies.
 
+use fredholm_linop::Steps;
 use fredholm_mesh::Vec3;
 use fredholm_report::{FarRow, WaveCurrents, WaveRow};
+use fredholm_scene::waves::{Places, direction};
 use fredholm_waves::{
     Bounced, ComplexVector, Current, EdgeCurrents, FacetCurrents, FarField, Field, PhysicalOptics, Radiator,
     Sampling, Scatterer, Shadow, Source, System, TOLERANCE, WaveError, cross_section, incident,
 };
 use rayon::prelude::*;
 
-use super::estimate;
 use super::geometry::Geometry;
 use super::model::Band;
 use super::monostatic::Sweep;
-use super::receivers::{Places, Receiver};
+use super::over_frequency::MOST_PICTURED;
 use super::record::Solved;
 use super::solving::{self, Solution};
 use super::{Model, Outcome};
+use super::{estimate, galerkin};
 use crate::error::Error;
-use crate::stages::{Signals, Stages};
+use crate::stages::{Signals, Stages, Unstaged};
 
 /// Computes everything that the model asks for.
 pub(crate) fn compute(model: &Model, stages: &mut Stages) -> Result<Outcome, Error> {
@@ -45,19 +47,47 @@ struct Variant<'a> {
 }
 
 fn variant(model: &Model, variant: Variant<'_>, stages: &mut Stages) -> Result<Outcome, Error> {
-    let mut outcome = Outcome::default();
-    for band in &model.bands {
-        let refused = |error: WaveError| model.refused(&error, None);
-        let scatterer = variant.geometry.scatterer(band.materials.clone()).map_err(refused)?;
-        if !model.is_closed_form() {
-            scatterer.check_resolution(&band.wave).map_err(refused)?;
-        }
-        let sources: Vec<&dyn Source> = model.sources.iter().map(AsRef::as_ref).collect();
-        let first = PhysicalOptics::new(&scatterer, band.wave, &sources, variant.shadow).map_err(refused)?;
-        let task = Task { model, variant, band, scatterer: &scatterer, first: &first, sources: &sources };
-        task.carry_out(stages, &mut outcome)?;
+    if let Some(equation) = model.galerkin {
+        return galerkin::run(model, (variant.geometry, variant.name), equation, stages);
     }
-    Ok(outcome)
+    let mut outcome = Outcome::default();
+    if model.bands.len() <= MOST_PICTURED {
+        for band in &model.bands {
+            at_frequency(model, variant, band, stages, &mut outcome)?;
+        }
+        return Ok(outcome);
+    }
+    let (watch, count) = (stages.watch, model.bands.len());
+    let steps = Steps::new(watch, count as u64, "frequencies");
+    stages.run(&format!("{count} frequencies{}", variant.name), || {
+        let unstaged = Unstaged(watch);
+        let mut inner = Stages::new(&unstaged);
+        for band in &model.bands {
+            at_frequency(model, variant, band, &mut inner, &mut outcome)?;
+            if steps.add(1).is_break() {
+                return Err(Error::cancelled());
+            }
+        }
+        Ok(outcome)
+    })
+}
+
+fn at_frequency(
+    model: &Model,
+    variant: Variant<'_>,
+    band: &Band,
+    stages: &mut Stages,
+    outcome: &mut Outcome,
+) -> Result<(), Error> {
+    let refused = |error: WaveError| model.refused(&error, None);
+    let scatterer = variant.geometry.scatterer(&band.materials).map_err(refused)?;
+    if !model.is_closed_form() {
+        scatterer.check_resolution(&band.wave).map_err(refused)?;
+    }
+    let sources = model.sources();
+    let first = PhysicalOptics::new(&scatterer, band.wave, &sources, variant.shadow).map_err(refused)?;
+    let task = Task { model, variant, band, scatterer: &scatterer, first: &first, sources: &sources };
+    task.carry_out(stages, outcome)
 }
 
 /// One frequency.
@@ -181,12 +211,17 @@ impl Task<'_> {
             match &receiver.places {
                 Places::Near { points, .. } => {
                     let scattered = near(radiator, edges.as_ref(), points).map_err(refused)?;
-                    outcome.near.extend(self.rows(index, points, &scattered).map_err(refused)?);
+                    let rows = near_rows(self.model, self.band, index, points, &scattered);
+                    outcome.near.extend(rows.map_err(refused)?);
                 }
                 Places::Far(angles) => {
                     let far = self.far(radiator, all.is_none(), edges.as_ref(), angles).map_err(refused)?;
                     let rows = far.iter().zip(angles).enumerate();
-                    outcome.far.extend(rows.map(|(i, (far, angles))| self.far_row([index, i], *angles, far)));
+                    outcome.far.extend(
+                        rows.map(|(i, (far, angles))| {
+                            far_row(self.model, self.band, [index, i], *angles, far)
+                        }),
+                    );
                 }
                 Places::Monostatic(_) => {}
             }
@@ -202,7 +237,7 @@ impl Task<'_> {
         edges: Option<&EdgeCurrents>,
         angles: &[[f64; 2]],
     ) -> Result<Vec<FarField>, WaveError> {
-        let directions = Receiver::directions(angles);
+        let directions = directions(angles);
         let closed = if one_bounce { self.first.linear_phase_far_field(&directions) } else { None };
         let mut far = closed.unwrap_or_else(|| radiator.far_field(&directions))?;
         if let Some(edges) = edges {
@@ -224,40 +259,60 @@ impl Task<'_> {
         });
         found.map(Some).map_err(|error| self.refused(&error))
     }
+}
 
-    fn rows(&self, receiver: usize, points: &[Vec3], scattered: &[Field]) -> Result<Vec<WaveRow>, WaveError> {
-        let row = |(index, (&p, scattered)): (usize, (&Vec3, &Field))| {
-            let incident = incident(self.sources, &self.band.wave, p);
-            if !incident.is_finite() {
-                return Err(WaveError::InSource { receiver: index });
-            }
-            Ok(WaveRow {
-                receiver,
-                index,
-                position: p.to_array(),
-                frequency: self.band.wave.frequency(),
-                incident: pair(incident.e, incident.h),
-                scattered: pair(scattered.e, scattered.h),
-            })
-        };
-        points.par_iter().zip(scattered).enumerate().map(row).collect()
-    }
-
-    fn far_row(&self, at: [usize; 2], angles: [f64; 2], far: &FarField) -> FarRow {
-        let [theta, phi] = far.polar();
-        let section = |wave: fredholm_waves::source::PlaneWave| {
-            [theta, phi].map(|part| cross_section(part, wave.amplitude()))
-        };
-        FarRow {
-            receiver: at[0],
-            index: at[1],
-            theta_degrees: angles[0],
-            phi_degrees: angles[1],
-            frequency: self.band.wave.frequency(),
-            amplitude: [theta.re, theta.im, phi.re, phi.im],
-            cross_section: self.model.plane_wave.map(section),
+/// A row a point, with the fields of the sources.
+pub(super) fn near_rows(
+    model: &Model,
+    band: &Band,
+    receiver: usize,
+    points: &[Vec3],
+    scattered: &[Field],
+) -> Result<Vec<WaveRow>, WaveError> {
+    let sources = model.sources();
+    let row = |(index, (&p, scattered)): (usize, (&Vec3, &Field))| {
+        let incident = incident(&sources, &band.wave, p);
+        if !incident.is_finite() {
+            return Err(WaveError::InSource { receiver: index });
         }
+        Ok(WaveRow {
+            receiver,
+            index,
+            position: p.to_array(),
+            frequency: band.wave.frequency(),
+            incident: pair(incident.e, incident.h),
+            scattered: pair(scattered.e, scattered.h),
+        })
+    };
+    points.par_iter().zip(scattered).enumerate().map(row).collect()
+}
+
+/// A row of a direction: numbers of receiver and direction, and its angles, degrees.
+pub(super) fn far_row(
+    model: &Model,
+    band: &Band,
+    at: [usize; 2],
+    angles: [f64; 2],
+    far: &FarField,
+) -> FarRow {
+    let [theta, phi] = far.polar();
+    let section = |wave: fredholm_waves::source::PlaneWave| {
+        [theta, phi].map(|part| cross_section(part, wave.amplitude()))
+    };
+    FarRow {
+        receiver: at[0],
+        index: at[1],
+        theta_degrees: angles[0],
+        phi_degrees: angles[1],
+        frequency: band.wave.frequency(),
+        amplitude: [theta.re, theta.im, phi.re, phi.im],
+        cross_section: model.plane_wave.map(section),
     }
+}
+
+/// The unit vectors of directions given as θ and φ, degrees.
+pub(super) fn directions(angles: &[[f64; 2]]) -> Vec<Vec3> {
+    angles.iter().map(|&[theta, phi]| direction(theta, phi)).collect()
 }
 
 /// The scattered fields at some points.
@@ -273,7 +328,7 @@ fn near(
     Ok(scattered)
 }
 
-fn current(current: &Current) -> [f64; 12] {
+pub(super) fn current(current: &Current) -> [f64; 12] {
     pair(current.j, current.m)
 }
 

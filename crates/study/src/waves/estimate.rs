@@ -37,7 +37,8 @@ impl Estimated {
 /// Whether the magnetic form is a second opinion: not on itself, nor on what it does not know.
 pub(super) fn has_magnetic_form(model: &Model) -> bool {
     let conductors = model.bands.iter().flat_map(|band| &band.materials).all(|m| *m == Material::Conductor);
-    conductors && matches!(model.shadow, Shadow::Geometric | Shadow::Radiated)
+    let optics = matches!(model.shadow, Shadow::Geometric | Shadow::Radiated);
+    conductors && optics && model.galerkin.is_none()
 }
 
 /// A third of the difference.

@@ -8,16 +8,33 @@ use std::path::Path;
 use fredholm_report::{
     FieldMap, MapQuantity, REPORT, ReportAxis, ReportError, ReportModel, ReportPage, ReportPlot,
     ReportSeries, Timing, WaveReport, WaveResiduals, WaveRow, current_phasors, write_atomically,
-    write_currents_vtu, write_far_csv, write_monostatic_csv, write_polar_plot, write_receivers_csv,
-    write_receivers_npz, write_residuals_csv, write_residuals_plot,
+    write_currents_vtu, write_far_csv, write_far_npz, write_frequency_plot, write_monostatic_csv,
+    write_monostatic_npz, write_polar_plot, write_receivers_csv, write_receivers_npz, write_residuals_csv,
+    write_residuals_plot,
 };
 
-use super::model::Method;
-use super::receivers::{Layout, Places, Receiver};
+use fredholm_scene::waves::{Layout, Places};
+
+use super::model::{Method, Receiver};
+use super::over_frequency::{MOST_PICTURED, levels, plot};
 use super::{Model, Outcome};
 
 const COMPONENTS: [&str; 6] = ["ex", "ey", "ez", "hx", "hy", "hz"];
 const LAST: &str = "run.json";
+/// Most rows of a table that is written as text, some 600 bytes a row of fields.
+const MOST_ROWS: usize = 50_000;
+
+/// Tables and arrays of a result, beside those of single receivers.
+pub const WAVE_FILES: [&str; 8] = [
+    "receivers.csv",
+    "receivers.npz",
+    "far.csv",
+    "far.npz",
+    "monostatic.csv",
+    "monostatic.npz",
+    "currents.vtu",
+    "residuals.csv",
+];
 
 /// Writes all files.
 pub(crate) fn write(
@@ -32,18 +49,31 @@ pub(crate) fn write(
     let put = |name: &str, fill: &dyn Fn(&mut dyn io::Write) -> io::Result<()>| {
         write_atomically(&folder.join(name), fill)
     };
-    put("receivers.csv", &|out| write_receivers_csv(&names, &outcome.near, out))?;
-    put("receivers.npz", &|out| write_receivers_npz(&outcome.near, out))?;
-    if !outcome.far.is_empty() {
-        put("far.csv", &|out| write_far_csv(&names, &outcome.far, out))?;
+    if is_table(outcome.near.len()) {
+        put("receivers.csv", &|out| write_receivers_csv(&names, &outcome.near, out))?;
     }
-    if !outcome.monostatic.is_empty() {
-        put("monostatic.csv", &|out| write_monostatic_csv(&names, &outcome.monostatic, out))?;
+    put("receivers.npz", &|out| write_receivers_npz(&outcome.near, out))?;
+    match outcome.far.len() {
+        0 => {}
+        rows if is_table(rows) => put("far.csv", &|out| write_far_csv(&names, &outcome.far, out))?,
+        _ => put("far.npz", &|out| write_far_npz(&outcome.far, out))?,
+    }
+    match outcome.monostatic.len() {
+        0 => {}
+        rows if is_table(rows) => {
+            put("monostatic.csv", &|out| write_monostatic_csv(&names, &outcome.monostatic, out))?;
+        }
+        _ => put("monostatic.npz", &|out| write_monostatic_npz(&outcome.monostatic, out))?,
     }
     put("currents.vtu", &|out| write_currents_vtu(&model.geometry.mesh, &outcome.currents, out))?;
     residuals(folder, model, outcome)?;
     for (index, receiver) in model.receivers.iter().enumerate() {
-        pictures(folder, model, outcome, (index, receiver))?;
+        if model.bands.len() <= MOST_PICTURED {
+            pictures(folder, model, outcome, (index, receiver))?;
+        }
+        if model.bands.len() > 1 {
+            over_frequency(folder, model, outcome, (index, receiver))?;
+        }
     }
     if report {
         page(folder, model, outcome, timings)?;
@@ -52,24 +82,50 @@ pub(crate) fn write(
     put(LAST, &|out| serde_json::to_writer_pretty(out, &record).map_err(io::Error::other))
 }
 
+/// Whether so many rows are written as text; more are arrays only.
+pub(super) fn is_table(rows: usize) -> bool {
+    rows <= MOST_ROWS
+}
+
+/// The levels of a receiver over the frequencies.
+fn over_frequency(
+    folder: &Path,
+    model: &Model,
+    outcome: &Outcome,
+    (index, receiver): (usize, &Receiver),
+) -> Result<(), ReportError> {
+    let Some(levels) = levels(model, outcome, index, receiver) else { return Ok(()) };
+    let frequencies: Vec<f64> = model.bands.iter().map(|band| band.wave.frequency()).collect();
+    let title = format!("{}: {}", receiver.name, levels.quantity);
+    if let Some((columns, values)) = &levels.map {
+        let picture = FieldMap { columns: *columns, values }.draw(MapQuantity::Magnitude);
+        let path = folder.join(format!("{}_over_frequency.png", receiver.name));
+        write_atomically(&path, |out| picture.write_png(out))?;
+    }
+    let path = folder.join(format!("{}_over_frequency.svg", receiver.name));
+    write_atomically(&path, |out| write_frequency_plot(&title, levels.unit, &frequencies, &levels.lines, out))
+}
+
 /// `report.html`: the surface currents in three dimensions, and the cross-sections over angles.
 fn page(folder: &Path, model: &Model, outcome: &Outcome, timings: &[Timing]) -> Result<(), ReportError> {
     let mesh = &model.geometry.mesh;
-    let phasors = current_phasors(mesh, &outcome.currents);
+    let shown = outcome.currents.len().min(MOST_PICTURED);
+    let phasors = current_phasors(mesh, &outcome.currents[..shown]);
     let shown = ReportModel { phasors: &phasors, ..ReportModel::bare(mesh) };
     let path = model.path().display().to_string();
     let seconds: f64 = timings.iter().map(|timing| timing.seconds).sum();
     let known = [
         ("Program", format!("Fredholm {}", env!("CARGO_PKG_VERSION"))),
         ("Scene", path.clone()),
-        ("Method", model.method.name()),
-        ("Shadows", model.shadow.name().to_owned()),
+        ("Method", model.method_in_words()),
+        ("Solution", model.method.name()),
         ("Time", format!("{seconds:.2} s")),
     ];
     let report = WaveReport {
-        title: model.title.clone().unwrap_or(path),
-        method: model.method.name(),
+        title: model.scene.title().map_or(path, str::to_owned),
+        method: model.method_in_words(),
         across: across(model).to_owned(),
+        warnings: model.warnings.iter().map(ToString::to_string).collect(),
         statements: statements(model, outcome),
         plots: curves(model, outcome),
         provenance: known.map(|(name, value)| (name.to_owned(), value)).into(),
@@ -103,7 +159,11 @@ fn statements(model: &Model, outcome: &Outcome) -> Vec<String> {
 fn curves(model: &Model, outcome: &Outcome) -> Vec<ReportPlot> {
     let mut plots = Vec::new();
     for (index, receiver) in model.receivers.iter().enumerate() {
-        for band in &model.bands {
+        if model.bands.len() > 1 {
+            let levels = levels(model, outcome, index, receiver);
+            plots.extend(levels.map(|levels| plot(model, receiver, &levels)));
+        }
+        for band in model.bands.iter().filter(|_| model.bands.len() <= MOST_PICTURED) {
             let frequency = band.wave.frequency();
             let far =
                 outcome.far.iter().filter(|row| row.receiver == index && same(row.frequency, frequency));

@@ -1,6 +1,7 @@
 //! The memory of a scene of waves, known before it is taken.
 
-use super::format::{AnglesEntry, FarEntry, ReceiverEntry, SceneEntry};
+use fredholm_scene::waves::{Receiver, WaveScene};
+
 use crate::memory::Plan;
 
 /// Bytes of a facet: its patch in the mesh, its frame, what blocks the view, radiating points, and
@@ -22,9 +23,9 @@ const BATCH: u128 = 48;
 const ESTIMATED: u128 = 440;
 
 /// What so many facets take, and the fields at all points sampled so many batches at once.
-pub(super) fn sampled(facets: u128, entry: &SceneEntry, batches: u32) -> Plan {
-    let bands = entry.wave.get_ref().frequencies_hz.get_ref().len() as u128;
-    let places = all_places(entry);
+pub(super) fn sampled(facets: u128, scene: &WaveScene, batches: u32) -> Plan {
+    let bands = scene.waves().len() as u128;
+    let places = all_places(scene);
     let sampling = places.saturating_mul(SAMPLED + BATCH * (2 + u128::from(batches)));
     Plan::default()
         .hold(format!("{facets} facets"), facets.saturating_mul(FACET))
@@ -34,35 +35,15 @@ pub(super) fn sampled(facets: u128, entry: &SceneEntry, batches: u32) -> Plan {
 }
 
 /// Points and directions of all receivers.
-fn all_places(entry: &SceneEntry) -> u128 {
-    entry.receiver.iter().map(|receiver| places(receiver.get_ref())).sum()
+fn all_places(scene: &WaveScene) -> u128 {
+    scene.receivers().iter().map(Receiver::count).sum()
 }
 
 /// What so many facets and all receivers take.
-pub(super) fn plan(facets: u128, entry: &SceneEntry) -> Plan {
-    let bands = entry.wave.get_ref().frequencies_hz.get_ref().len() as u128;
-    let places = all_places(entry);
+pub(super) fn plan(facets: u128, scene: &WaveScene) -> Plan {
+    let bands = scene.waves().len() as u128;
+    let places = all_places(scene);
     Plan::default()
         .hold(format!("{facets} facets"), facets.saturating_mul(FACET + CURRENTS * bands))
         .hold(format!("{places} points and directions"), places.saturating_mul(POINT + ROW * bands))
-}
-
-/// Points and directions of a receiver.
-fn places(entry: &ReceiverEntry) -> u128 {
-    let angles = |entry: &AnglesEntry| match entry {
-        AnglesEntry::One(_) => 1,
-        AnglesEntry::List(angles) => angles.len() as u128,
-        AnglesEntry::Range { points, .. } => (*points).into(),
-    };
-    let directions = |far: &FarEntry| angles(&far.theta_degrees) * angles(&far.phi_degrees);
-    let ReceiverEntry { points, line, circle, grid, far, monostatic, .. } = entry;
-    let counts = [
-        points.as_ref().map(|points| points.len() as u128),
-        line.as_ref().map(|line| line.points.into()),
-        circle.as_ref().map(|circle| circle.points.into()),
-        grid.as_ref().map(|grid| u128::from(grid.columns) * u128::from(grid.rows)),
-        far.as_ref().map(directions),
-        monostatic.as_ref().map(directions),
-    ];
-    counts.into_iter().flatten().sum()
 }

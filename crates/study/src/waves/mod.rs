@@ -1,27 +1,27 @@
 //! Scenes of waves: their files, what they mean, and what is written.
 
+mod check;
 mod compare;
 mod compute;
 mod estimate;
 mod files;
-mod format;
+mod galerkin;
 mod geometry;
-mod located;
 mod memory;
 mod model;
 mod monostatic;
-mod receivers;
+mod over_frequency;
 mod record;
 mod registry;
 mod solving;
-mod sources;
 mod study;
 
+pub use check::{CheckedWaves, check_waves};
 pub(crate) use compare::compare;
 pub(crate) use compute::compute;
 pub use estimate::Estimated;
-pub(crate) use model::{Band, Method, Model, is_scene};
-pub(crate) use receivers::Places;
+pub use files::WAVE_FILES;
+pub(crate) use model::{Band, Method, Model};
 pub(crate) use record::Outcome;
 pub use record::Solved as SolvedFrequency;
 pub use registry::build as build_wave_solver;

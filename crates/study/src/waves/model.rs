@@ -1,21 +1,23 @@
 //! From a scene file to what is computed.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use std::sync::Arc;
 
 use fredholm_linop::Solver;
+use fredholm_moments::Equation;
+use fredholm_scene::waves::{self as scene, About, Cuts, Places, Settings, Shadows, WaveScene};
+use fredholm_scene::{SceneError, Warning};
 use fredholm_waves::material::Material;
 use fredholm_waves::source::PlaneWave;
 use fredholm_waves::{Complex64, Origin, Shadow, Source, Wave, WaveError};
 
-use super::format::{ReceiverEntry, SceneEntry, WaveEntry};
-use super::geometry::{Geometry, materials};
-use super::located::SceneText;
+use super::geometry::Geometry;
 use super::memory::{plan as memory_of, sampled};
-use super::receivers::{Places, Receiver, receivers};
-use super::sources::{Placed, placed};
 use crate::error::Error;
 use crate::memory::{self, Limit, Plan};
+use crate::problem::scene_failure;
 use crate::size::Bytes;
+use crate::stages::Stages;
 
 /// How to need less memory.
 const HELP: &str = "take longer edges, or fewer points and directions of receivers";
@@ -23,6 +25,10 @@ const HELP: &str = "take longer edges, or fewer points and directions of receive
 const TOLERANCE: f64 = 1e-6;
 /// Iterations where the scene does not say.
 const ITERATIONS: u32 = 500;
+/// Solvers of equations where the scene does not say: of those by products, and of those whose
+/// matrix is stored and may be ill-conditioned.
+const BY_PRODUCTS: &str = "gmres";
+const BY_MATRIX: &str = "lu";
 
 /// How many bounces are summed.
 pub(crate) enum Method {
@@ -46,26 +52,43 @@ impl Method {
 /// One frequency.
 pub(crate) struct Band {
     pub(crate) wave: Wave,
+    /// The conductor, then those of the scene.
     pub(crate) materials: Vec<Material>,
+}
+
+/// A receiver with its places.
+pub(crate) struct Receiver {
+    pub(crate) name: String,
+    pub(crate) places: Places,
+    /// Its number in the scene.
+    number: usize,
+}
+
+impl Receiver {
+    /// Whether it is in directions of the far field, not at points.
+    pub(crate) fn places_are_directions(&self) -> bool {
+        !matches!(self.places, Places::Near { .. })
+    }
 }
 
 /// What a scene file asks for.
 pub(crate) struct Model {
-    pub(crate) text: SceneText,
-    pub(crate) title: Option<String>,
+    pub(crate) scene: Arc<WaveScene>,
     pub(crate) bands: Vec<Band>,
     pub(crate) shadow: Shadow,
+    /// The equation of boundary elements, where one is asked for instead of currents on facets.
+    pub(crate) galerkin: Option<Equation>,
     pub(crate) method: Method,
     /// Whether edge currents are added.
     pub(crate) edge_currents: bool,
-    pub(crate) sources: Vec<Box<dyn Source>>,
     /// The source, where it is a single plane wave.
     pub(crate) plane_wave: Option<PlaneWave>,
     pub(crate) geometry: Geometry,
     /// The same with edges twice as long, where errors are to be estimated.
     pub(crate) coarse: Option<Geometry>,
     pub(crate) receivers: Vec<Receiver>,
-    surfaces: Vec<std::ops::Range<usize>>,
+    /// What is allowed, but probably not meant.
+    pub(crate) warnings: Vec<Warning>,
     /// Memory of everything but a coupling, and what all may take.
     pub(crate) plan: Plan,
     pub(crate) limit: Limit,
@@ -79,7 +102,7 @@ impl Model {
 
     /// The same where the fields are sampled, so many batches at once.
     pub(crate) fn load_sampled(path: &Path, memory: Option<Bytes>, batches: u32) -> Result<Self, Error> {
-        Self::read(path, memory, false, &|facets, entry| sampled(facets, entry, batches))
+        Self::read(path, memory, false, &|facets, scene| sampled(facets, scene, batches))
     }
 
     /// The same with errors estimated, whether the scene asks for it or not.
@@ -91,60 +114,88 @@ impl Model {
         path: &Path,
         memory: Option<Bytes>,
         estimated: bool,
-        memory_of: &dyn Fn(u128, &SceneEntry) -> Plan,
+        memory_of: &dyn Fn(u128, &WaveScene) -> Plan,
     ) -> Result<Self, Error> {
-        let text = SceneText::read(path)?;
-        let entry: SceneEntry = text.parse()?;
-        let bands = bands(&text, &entry)?;
-        let shadow = shadow(&text, entry.wave.get_ref())?;
-        let method = method(&text, &entry.wave, shadow)?;
-        let edge_currents = edge_currents(&text, entry.wave.get_ref(), shadow)?;
-        let placed = sources(&text, &entry)?;
-        let plane_wave = if let [only] = placed.as_slice() { only.plane_wave } else { None };
-        let shortest = bands.iter().map(|band| band.wave.wavelength()).fold(f64::INFINITY, f64::min);
+        let scene = Arc::new(WaveScene::load(path).map_err(scene_failure)?);
+        let settings = scene.settings();
+        let estimated = estimated || settings.estimate_errors;
+        let method = method(&scene)?;
+        let bands = bands(&scene)?;
+        let closed_form = !estimated && is_closed_form(&scene, &method);
         let limit = memory::limit(memory);
-        let admit = |facets| memory_of(facets, &entry).admit(limit, HELP);
-        let cut = |stretch| Geometry::new(&text, &entry.surface, shortest, stretch, &admit);
+        let admit = |facets| memory_of(facets, &scene).admit(limit, HELP);
+        let wavelength = scene.waves().iter().map(Wave::wavelength).fold(f64::INFINITY, f64::min);
+        let cut = |stretch| Geometry::new(&scene, Cuts { wavelength, stretch, whole: closed_form }, &admit);
         let geometry = cut(1.0)?;
-        let coarse = (estimated || entry.wave.get_ref().estimate_errors).then(|| cut(2.0)).transpose()?;
+        let coarse = estimated.then(|| cut(2.0)).transpose()?;
         let facets = geometry.mesh.len() + coarse.as_ref().map_or(0, |coarse| coarse.mesh.len());
-        let plan = memory_of(facets as u128, &entry);
+        let plan = memory_of(facets as u128, &scene);
         plan.admit(limit, HELP)?;
-        let receivers = receivers(&text, &entry.receiver)?;
-        let surfaces = entry.surface.iter().map(toml::Spanned::span).collect();
-        let sources = placed.into_iter().map(|placed| placed.source).collect();
-        let title = entry.title;
+        let warnings = scene.check().map_err(scene_failure)?;
         Ok(Self {
-            text,
-            title,
             bands,
-            shadow,
+            shadow: shadow(settings),
+            galerkin: galerkin(settings),
             method,
-            edge_currents,
-            sources,
-            plane_wave,
+            edge_currents: settings.edge_currents.unwrap_or(false),
+            plane_wave: only_plane_wave(&scene),
             geometry,
             coarse,
-            receivers,
-            surfaces,
+            receivers: receivers(&scene),
+            warnings,
             plan,
             limit,
+            scene,
         })
     }
 
+    /// Tells what the memory is and what is probably not meant.
+    pub(crate) fn tell(&self, stages: &Stages) {
+        stages.tell(&self.plan, self.limit);
+        self.warnings.iter().for_each(|warning| stages.watch.warn(&warning.to_string()));
+    }
+
     /// The scene file.
-    pub(crate) fn path(&self) -> &PathBuf {
-        &self.text.path
+    pub(crate) fn path(&self) -> &Path {
+        self.scene.path()
+    }
+
+    /// The method, as scenes name it.
+    pub(crate) fn method_name(&self) -> &'static str {
+        match (self.galerkin, self.shadow) {
+            (Some(Equation::Electric), _) => scene::Method::Efie,
+            (Some(_), _) => scene::Method::Cfie,
+            (None, Shadow::Geometric | Shadow::Radiated) => scene::Method::PhysicalOptics,
+            (None, Shadow::Exact) => scene::Method::Mfie,
+            (None, Shadow::ExactDual) => scene::Method::DualSurfaceMfie,
+            (None, Shadow::Thesis) => scene::Method::Thesis,
+        }
+        .name()
+    }
+
+    /// What blocks waves, as scenes name it, where that is a choice.
+    pub(crate) fn shadows_name(&self) -> Option<&'static str> {
+        match (self.galerkin, self.shadow) {
+            (None, Shadow::Geometric) => Some(Shadows::Geometric.name()),
+            (None, Shadow::Radiated) => Some(Shadows::Radiated.name()),
+            _ => None,
+        }
+    }
+
+    /// The method with what blocks waves.
+    pub(crate) fn method_in_words(&self) -> String {
+        let shadows = self.shadows_name().map(|name| format!(", {name} shadows"));
+        format!("{}{}", self.method_name(), shadows.unwrap_or_default())
+    }
+
+    /// The sources.
+    pub(crate) fn sources(&self) -> Vec<&dyn Source> {
+        sources(&self.scene)
     }
 
     /// Whether facets may be of any size: one bounce of plane waves, looked at from far away only.
     pub(crate) fn is_closed_form(&self) -> bool {
-        let far = |receiver: &Receiver| !matches!(receiver.places, Places::Near { .. });
-        let plane = self.sources.iter().all(|source| matches!(source.origin(), Origin::Direction(_)));
-        matches!(self.method, Method::Bounces(1))
-            && self.coarse.is_none()
-            && plane
-            && self.receivers.iter().all(far)
+        self.coarse.is_none() && is_closed_form(&self.scene, &self.method)
     }
 
     /// Whether any receiver is there for the sources of the scene.
@@ -159,101 +210,74 @@ impl Model {
 
     /// What the library says, at the surface or receiver that it is about.
     pub(crate) fn refused(&self, error: &WaveError, receiver: Option<&Receiver>) -> Error {
-        let facet = match error {
-            WaveError::Coarse { facet, .. }
-            | WaveError::NotClosed { facet }
-            | WaveError::NotConductor { facet, .. } => Some(*facet),
-            _ => None,
-        };
-        let surface = facet.and_then(|facet| self.surfaces.get(self.geometry.mesh.surface_of(facet)));
-        let span = receiver.map(|receiver| receiver.span.clone()).or_else(|| surface.cloned());
-        self.text.refused(span.unwrap_or(0..0), error)
+        let about = receiver.map_or(About::Scene, |receiver| About::Receiver(receiver.number));
+        scene_failure(self.scene.refused(about, error, Some(&self.geometry.mesh)))
     }
 }
 
-/// Whether a file is a scene of waves: it has a table `wave`. What cannot be read is none.
-pub(crate) fn is_scene(path: &Path) -> bool {
-    let table = SceneText::read(path).and_then(|text| text.parse::<toml::Table>());
-    table.is_ok_and(|table| table.contains_key("wave"))
+fn sources(scene: &WaveScene) -> Vec<&dyn Source> {
+    scene.sources().iter().map(|placed| &*placed.source as &dyn Source).collect()
 }
 
-/// The sources, at least one unless all receivers send their own waves.
-fn sources(text: &SceneText, entry: &SceneEntry) -> Result<Vec<Placed>, Error> {
-    let own = |receiver: &toml::Spanned<ReceiverEntry>| receiver.get_ref().monostatic.is_some();
-    if entry.source.is_empty() && !entry.receiver.iter().all(own) {
-        let help = "add a [[source]] such as kind = \"plane-wave\"";
-        return Err(text.fault(text.end(), "the scene has no source", help));
-    }
-    entry.source.iter().map(|source| placed(text, source)).collect()
+fn only_plane_wave(scene: &WaveScene) -> Option<PlaneWave> {
+    if let [only] = scene.sources() { only.plane_wave } else { None }
 }
 
-/// The method, where the treatment of shadows has a use for it.
-fn method(text: &SceneText, entry: &toml::Spanned<WaveEntry>, shadow: Shadow) -> Result<Method, Error> {
-    let found = asked(text, entry.get_ref())?;
-    if let (true, Method::Bounces(_)) = (shadow.is_equation(), &found) {
-        let what = "the exact treatment is an equation, whose first bounces mean nothing by themselves";
-        return Err(text.fault(entry.span(), what, "add solver = \"lu\", say"));
-    }
-    Ok(found)
+fn is_closed_form(scene: &WaveScene, method: &Method) -> bool {
+    matches!(method, Method::Bounces(1))
+        && sources(scene).iter().all(|source| matches!(source.origin(), Origin::Direction(_)))
+        && !scene.receivers().iter().any(scene::Receiver::is_near)
 }
 
-fn bands(text: &SceneText, entry: &SceneEntry) -> Result<Vec<Band>, Error> {
-    let frequencies = &entry.wave.get_ref().frequencies_hz;
-    if frequencies.get_ref().is_empty() {
-        let help = "write frequencies_hz = [1e9], say";
-        return Err(text.fault(frequencies.span(), "there is no frequency", help));
-    }
-    let band = |frequency: &toml::Spanned<f64>| {
-        let wave = Wave::new(*frequency.get_ref()).map_err(|error| text.refused(frequency.span(), &error))?;
-        Ok(Band { wave, materials: materials(text, entry, &wave)? })
+fn receivers(scene: &WaveScene) -> Vec<Receiver> {
+    let receiver = |(number, receiver): (usize, &scene::Receiver)| Receiver {
+        name: receiver.name.clone(),
+        places: receiver.places(),
+        number,
     };
-    frequencies.get_ref().iter().map(band).collect()
+    scene.receivers().iter().enumerate().map(receiver).collect()
 }
 
-fn shadow(text: &SceneText, entry: &WaveEntry) -> Result<Shadow, Error> {
-    let Some(name) = &entry.shadow else { return Ok(Shadow::default()) };
-    Shadow::ALL.into_iter().find(|shadow| shadow.name() == name.get_ref()).ok_or_else(|| {
-        let known = Shadow::ALL.map(Shadow::name).join(", ");
-        text.fault(name.span(), format!("unknown shadow `{}`", name.get_ref()), format!("known: {known}"))
-    })
+fn bands(scene: &WaveScene) -> Result<Vec<Band>, Error> {
+    let band = |wave: &Wave| Ok(Band { wave: *wave, materials: scene.materials(wave)? });
+    scene.waves().iter().map(band).collect::<Result<_, SceneError>>().map_err(scene_failure)
 }
 
-fn edge_currents(text: &SceneText, entry: &WaveEntry, shadow: Shadow) -> Result<bool, Error> {
-    let Some(wanted) = &entry.edge_currents else { return Ok(false) };
-    if *wanted.get_ref() && (shadow.is_equation() || shadow == Shadow::Thesis) {
-        let what = "edge currents complete physical optics, not this treatment of shadows";
-        return Err(text.fault(
-            wanted.span(),
-            what,
-            "take shadow = \"geometric\", or leave edge_currents out",
-        ));
+/// The treatment of shadows that belongs to a method.
+fn shadow(settings: &Settings) -> Shadow {
+    match (settings.method, settings.shadows) {
+        (Some(scene::Method::Mfie), _) => Shadow::Exact,
+        (Some(scene::Method::DualSurfaceMfie), _) => Shadow::ExactDual,
+        (Some(scene::Method::Thesis), _) => Shadow::Thesis,
+        (_, Some(Shadows::Radiated)) => Shadow::Radiated,
+        (_, _) => Shadow::Geometric,
     }
-    Ok(*wanted.get_ref())
 }
 
-fn asked(text: &SceneText, entry: &WaveEntry) -> Result<Method, Error> {
-    let Some(name) = &entry.solver else {
-        return match &entry.bounces {
-            Some(bounces) if *bounces.get_ref() == 0 => {
-                Err(text.fault(bounces.span(), "without a bounce nothing is scattered", "write at least 1"))
-            }
-            bounces => Ok(Method::Bounces(bounces.as_ref().map_or(1, |b| *b.get_ref() as usize))),
-        };
+/// The equation of boundary elements that a method asks for.
+fn galerkin(settings: &Settings) -> Option<Equation> {
+    match settings.method {
+        Some(scene::Method::Efie) => Some(Equation::Electric),
+        Some(scene::Method::Cfie) => Some(Equation::default()),
+        _ => None,
+    }
+}
+
+fn method(scene: &WaveScene) -> Result<Method, Error> {
+    let settings = scene.settings();
+    let usual = match settings.method {
+        Some(scene::Method::Efie | scene::Method::Cfie) => Some(BY_MATRIX),
+        Some(method) if method.is_equation() => Some(BY_PRODUCTS),
+        _ => None,
     };
-    if let Some(bounces) = &entry.bounces {
-        let help = "keep one of them";
-        return Err(text.fault(bounces.span(), "bounces and solver are both given", help));
-    }
-    let tolerance = entry.tolerance.as_ref().map_or(TOLERANCE, |t| *t.get_ref());
-    if !(tolerance > 0.0 && tolerance < 1.0) {
-        let span = entry.tolerance.as_ref().map_or(0..0, toml::Spanned::span);
-        return Err(text.fault(span, "the tolerance is no number between 0 and 1", "write 1e-6, say"));
-    }
-    let max_iterations = entry.max_iterations.unwrap_or(ITERATIONS) as usize;
-    let solver = super::registry::build(name.get_ref()).map_err(|error| {
+    let name = settings.solver.as_deref().or(usual);
+    let Some(name) = name else { return Ok(Method::Bounces(settings.bounces.unwrap_or(1) as usize)) };
+    let tolerance = settings.tolerance.unwrap_or(TOLERANCE);
+    let max_iterations = settings.max_iterations.unwrap_or(ITERATIONS) as usize;
+    let solver = super::registry::build(name).map_err(|error| {
         let message = error.to_string();
         let (what, help) = message.split_once("; ").unwrap_or((&message, "correct the name or the options"));
-        text.fault(name.span(), what, help)
+        scene_failure(scene.error(About::Solver, fredholm_scene::ErrorKind::Name, what, help))
     })?;
     Ok(Method::Solver { solver, tolerance, max_iterations })
 }

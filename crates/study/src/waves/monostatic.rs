@@ -11,7 +11,7 @@ use fredholm_waves::{
 use rayon::prelude::*;
 
 use super::Model;
-use super::receivers::Receiver;
+use super::compute::directions;
 use super::solving::{Solution, solution};
 use crate::error::Error;
 use crate::stages::Signals;
@@ -43,7 +43,7 @@ impl Sweep<'_> {
         let (mut rows, mut worst): Swept = (Vec::new(), None);
         for (chunk, angles) in angles.chunks(TOGETHER).enumerate() {
             signals.check()?;
-            let (echoes, solution) = self.echoes(&Receiver::directions(angles), signals)?;
+            let (echoes, solution) = self.echoes(&directions(angles), signals)?;
             let row = |(i, (angles, echo)): (usize, (&[f64; 2], &[Complex64; 4]))| MonostaticRow {
                 receiver,
                 index: chunk * TOGETHER + i,
@@ -123,7 +123,7 @@ impl Sweep<'_> {
 }
 
 /// Waves of 1 V/m from these directions, along θ̂ and φ̂ in turn.
-fn plane_waves(directions: &[Vec3]) -> Result<Vec<PlaneWave>, WaveError> {
+pub(super) fn plane_waves(directions: &[Vec3]) -> Result<Vec<PlaneWave>, WaveError> {
     let pair = |&u: &Vec3| polar_frame(u).map(|along| PlaneWave::new(-u, along, Complex64::ONE));
     directions.iter().flat_map(pair).collect()
 }

@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use super::Model;
 use super::estimate::Estimated;
+use super::files::is_table;
 
 /// How the currents at one frequency were found.
 #[derive(Clone, Debug)]
@@ -49,6 +50,16 @@ impl Outcome {
         self.solved.iter().all(Solved::converged)
     }
 
+    /// Tables that are too large for text, and are arrays only.
+    fn left_out(&self) -> Vec<&'static str> {
+        let all = [
+            ("receivers.csv", self.near.len()),
+            ("far.csv", self.far.len()),
+            ("monostatic.csv", self.monostatic.len()),
+        ];
+        all.into_iter().filter(|(_, rows)| !is_table(*rows)).map(|(name, _)| name).collect()
+    }
+
     /// The run record.
     pub(crate) fn record(&self, model: &Model, timings: &[fredholm_report::Timing]) -> Value {
         let solved = |solved: &Solved| {
@@ -64,14 +75,18 @@ impl Outcome {
             "format": "fredholm-waves-run/1",
             "program": concat!("fredholm ", env!("CARGO_PKG_VERSION")),
             "scene": model.path(),
-            "title": model.title,
-            "shadow": model.shadow.name(),
-            "method": model.method.name(),
+            "scene_sha256": model.scene.sha256(),
+            "title": model.scene.title(),
+            "method": model.method_name(),
+            "shadows": model.shadows_name(),
+            "solution": model.method.name(),
             "edge_currents": model.edge_currents,
             "receivers": model.receivers.iter().map(|receiver| &receiver.name).collect::<Vec<_>>(),
             "estimated_mesh_errors": self.mesh_errors.iter().map(|e| e.record(model)).collect::<Vec<_>>(),
             "estimated_form_errors": self.form_errors.iter().map(|e| e.record(model)).collect::<Vec<_>>(),
             "frequencies": self.solved.iter().map(solved).collect::<Vec<_>>(),
+            "left_out_as_text": self.left_out(),
+            "warnings": model.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
             "timings": timings,
         })
     }

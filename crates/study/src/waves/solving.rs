@@ -1,6 +1,6 @@
 //! From incident currents to all bounces, by the method that the scene asks for.
 
-use fredholm_linop::{MultiVector, SecondKind, Solver, Stop, StopReason};
+use fredholm_linop::{LinearOperator, MultiVector, SecondKind, Solver, Stop, StopReason};
 use fredholm_waves::{
     Bounces, Complex64, Discretisation, NystromCoupling, Scatterer, Shadow, System, Wave, WaveError,
 };
@@ -101,10 +101,7 @@ pub(super) fn solution(
 ) -> Result<Solution, Error> {
     match method {
         Method::Bounces(count) => bounced(system, b, *count, signals),
-        Method::Solver { solver, tolerance, max_iterations } => {
-            let stop = Stop { tolerance: *tolerance, max_iterations: *max_iterations };
-            solved(system, b, (&**solver, &stop), signals)
-        }
+        Method::Solver { .. } => solved(system.coupling(), b, method, signals),
     }
 }
 
@@ -127,17 +124,22 @@ pub(super) fn bounced(
     }
 }
 
-fn solved(
-    system: &System<'_>,
+/// Solves x = b + K x for all lanes of b by the solver of a method.
+pub(super) fn solved(
+    coupling: &dyn LinearOperator<Complex64>,
     b: &Vectors,
-    (solver, stop): (&dyn Solver<Complex64>, &Stop),
+    method: &Method,
     signals: &Signals<'_>,
 ) -> Result<Solution, Error> {
+    let Method::Solver { solver, tolerance, max_iterations } = method else {
+        return Err(Error::new(ErrorKind::Input, "an equation is solved, not summed bounce by bounce"));
+    };
+    let stop = Stop { tolerance: *tolerance, max_iterations: *max_iterations };
     let one = Vectors::from_fn(b.dim(), b.lanes(), |_, _| Complex64::ONE);
-    let a = SecondKind::new(system.coupling(), one).map_err(|error| Error::new(ErrorKind::Input, error))?;
+    let a = SecondKind::new(coupling, one).map_err(|error| Error::new(ErrorKind::Input, error))?;
     let mut x = Vectors::zeros(b.dim(), b.lanes());
     let report = solver
-        .solve(&a, b, &mut x, stop, &mut signals.clone())
+        .solve(&a, b, &mut x, &stop, &mut signals.clone())
         .map_err(|error| Error::new(ErrorKind::Input, error))?;
     let residuals: Vec<f64> = report.history.iter().map(|entry| worst(&entry.residuals)).collect();
     match report.reason {

@@ -105,7 +105,7 @@ pub fn check_wave_solver(text: &str) -> Result<(), OptionError> {
 
 fn load(scene: &Path, asked: &WaveOptions, stages: &mut Stages) -> Result<Model, Error> {
     let model = stages.run("scene", || Model::load(scene, asked.memory))?;
-    stages.tell(&model.plan, model.limit);
+    model.tell(stages);
     Ok(model)
 }
 
@@ -147,16 +147,16 @@ impl SolvedWaves<'_> {
         self.model.receivers.get(number).map(|receiver| receiver.name.as_str())
     }
 
-    /// The method, as it is reported.
+    /// The method as scenes name it, with what blocks waves where that is a choice.
     #[must_use]
     pub fn method(&self) -> String {
-        self.model.method.name()
+        self.model.method_in_words()
     }
 
-    /// The treatment of shadows, as scenes name it.
+    /// How many bounces were summed, or the solver.
     #[must_use]
-    pub fn shadow(&self) -> &'static str {
-        self.model.shadow.name()
+    pub fn solution(&self) -> String {
+        self.model.method.name()
     }
 
     /// How the currents at each frequency were found.

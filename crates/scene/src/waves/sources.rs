@@ -1,31 +1,44 @@
 //! Sources of a scene.
 
+use std::fmt;
 use std::ops::Range;
 
 use fredholm_mesh::Vec3;
 use fredholm_waves::source::{HalfWaveDipole, HertzianDipole, Omnidirectional, PlaneWave};
-use fredholm_waves::{Complex64, Source, WaveError, polar_frame};
-use toml::Spanned;
+use fredholm_waves::{Complex64, Source as Sends, WaveError, polar_frame};
 
-use super::format::{PolarisationEntry, SourceEntry};
-use super::located::SceneText;
-use crate::error::Error;
+use super::choices::PolarisationEntry;
+use super::format::SourceEntry;
+use super::receiver::direction;
+use super::scene::refused;
+use crate::error::{ErrorKind, SceneError};
+use crate::format::At;
+use crate::source::Source;
+use crate::suggest::among;
 
 /// A source, and the plane wave that it is, if it is one.
-pub(super) struct Placed {
-    pub(super) source: Box<dyn Source>,
-    pub(super) plane_wave: Option<PlaneWave>,
+pub struct Placed {
+    /// The source.
+    pub source: Box<dyn Sends + Send>,
+    /// The plane wave that it is.
+    pub plane_wave: Option<PlaneWave>,
+}
+
+impl fmt::Debug for Placed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Placed({:?})", self.source.origin())
+    }
 }
 
 /// The source of an entry.
-pub(super) fn placed(scene: &SceneText, entry: &Spanned<SourceEntry>) -> Result<Placed, Error> {
-    let refused = |error: WaveError| scene.refused(entry.span(), &error);
-    let source: Box<dyn Source> = match entry.get_ref() {
+pub(super) fn placed(source: &Source, entry: &At<SourceEntry>) -> Result<Placed, SceneError> {
+    let refused = |error: WaveError| refused(source, entry.span(), &error);
+    let found: Box<dyn Sends + Send> = match &**entry {
         SourceEntry::PlaneWave { polarisation, amplitude_v_per_m, phase_degrees, .. } => {
-            let travel = travel(scene, entry)?;
-            let polarisation = self::polarisation(scene, entry.span(), polarisation, travel)?;
+            let travel = travel(source, entry)?;
+            let along = self::polarisation(source, entry.span(), polarisation, travel)?;
             let amplitude = phasor(*amplitude_v_per_m, *phase_degrees);
-            let wave = PlaneWave::new(travel, polarisation, amplitude).map_err(refused)?;
+            let wave = PlaneWave::new(travel, along, amplitude).map_err(refused)?;
             return Ok(Placed { source: Box::new(wave), plane_wave: Some(wave) });
         }
         SourceEntry::Omnidirectional { position, axis, power_w } => {
@@ -40,26 +53,19 @@ pub(super) fn placed(scene: &SceneText, entry: &Spanned<SourceEntry>) -> Result<
             Box::new(HalfWaveDipole::new(vector(position), vector(axis), current).map_err(refused)?)
         }
     };
-    Ok(Placed { source, plane_wave: None })
+    Ok(Placed { source: found, plane_wave: None })
 }
 
 pub(super) fn vector(v: &[f64; 3]) -> Vec3 {
     Vec3::from_array(*v)
 }
 
-/// The unit vector with the angles θ from +z and φ from +x about z.
-pub(super) fn direction(theta_degrees: f64, phi_degrees: f64) -> Vec3 {
-    let (sin_theta, cos_theta) = theta_degrees.to_radians().sin_cos();
-    let (sin_phi, cos_phi) = phi_degrees.to_radians().sin_cos();
-    Vec3::new(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta)
-}
-
 fn phasor(amplitude: f64, phase_degrees: f64) -> Complex64 {
     Complex64::from_polar(amplitude, phase_degrees.to_radians())
 }
 
-fn travel(scene: &SceneText, entry: &Spanned<SourceEntry>) -> Result<Vec3, Error> {
-    let SourceEntry::PlaneWave { travel, from_theta_degrees, from_phi_degrees, .. } = entry.get_ref() else {
+fn travel(source: &Source, entry: &At<SourceEntry>) -> Result<Vec3, SceneError> {
+    let SourceEntry::PlaneWave { travel, from_theta_degrees, from_phi_degrees, .. } = &**entry else {
         return Ok(Vec3::ZERO);
     };
     match (travel, from_theta_degrees, from_phi_degrees) {
@@ -68,17 +74,17 @@ fn travel(scene: &SceneText, entry: &Spanned<SourceEntry>) -> Result<Vec3, Error
         _ => {
             let what = "a plane wave needs one direction";
             let help = "give travel = [x, y, z], or from_theta_degrees and from_phi_degrees, and not both";
-            Err(scene.fault(entry.span(), what, help))
+            Err(source.error(ErrorKind::Value, entry.span(), what, help))
         }
     }
 }
 
 fn polarisation(
-    scene: &SceneText,
+    source: &Source,
     span: Range<usize>,
     entry: &PolarisationEntry,
     travel: Vec3,
-) -> Result<Vec3, Error> {
+) -> Result<Vec3, SceneError> {
     let [theta, phi] = polar_frame(-travel.normalize_or_zero());
     match entry {
         PolarisationEntry::Vector(along) => Ok(vector(along)),
@@ -86,7 +92,8 @@ fn polarisation(
         PolarisationEntry::Name(name) if name == "phi" => Ok(phi),
         PolarisationEntry::Name(name) => {
             let what = format!("unknown polarisation `{name}`");
-            Err(scene.fault(span, what, "write \"theta\", \"phi\" or a vector such as [0, 0, 1]"))
+            let known = among(name, ["theta", "phi"], "polarisations");
+            Err(source.error(ErrorKind::Value, span, what, format!("{known}; or a vector such as [0, 0, 1]")))
         }
     }
 }

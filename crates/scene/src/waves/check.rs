@@ -1,0 +1,295 @@
+//! Mistakes that only the whole geometry shows.
+//!
+//! A point is inside a closed body where the solid angles of its faces, seen from the point, add up
+//! to ±4π; outside they add up to 0. A triangle with the corners a, b, c seen from the origin has the
+//! solid angle Ω with tan(Ω/2) = a·(b × c)/(abc + (a·b) c + (b·c) a + (c·a) b) (A. van Oosterom,
+//! J. Strackee, IEEE Trans. Biomed. Eng. 30 (1983) 125).
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+use fredholm_mesh::{Bounds, Contacts, Cutting, Patch, Topology, Vec3};
+use fredholm_waves::{Kind, Origin};
+
+use super::receiver::Places;
+use super::scene::{About, WaveScene};
+use super::settings::Method;
+use crate::check::{Finding, Warning};
+use crate::error::{ErrorKind, SceneError};
+
+/// Distance over the extent of the scene below which a source is on a surface.
+const ON_SURFACE: f64 = 1e-9;
+/// Points of a receiver that are looked at to tell whether all are inside a body.
+const SAMPLED: usize = 64;
+/// Pairs of surfaces that are told one by one.
+const TOLD: usize = 4;
+
+/// The pieces of the surfaces, and how they hang together.
+struct Pieces {
+    patches: Vec<Patch>,
+    /// Part of each piece.
+    part_of: Vec<usize>,
+    topology: Topology,
+    /// Length of the box around all, m.
+    extent: f64,
+}
+
+/// A closed body.
+struct Body<'a> {
+    /// Part of its first piece.
+    part: usize,
+    patches: Vec<&'a Patch>,
+    bounds: Bounds,
+    /// Whether the body is around the room that its faces enclose.
+    hollow: bool,
+}
+
+pub(super) fn check(scene: &WaveScene) -> Result<Vec<Warning>, SceneError> {
+    let pieces = Pieces::of(scene);
+    let mut warnings: Vec<Warning> = closed(scene, &pieces)?.into_iter().collect();
+    let bodies = pieces.bodies(scene);
+    warnings.extend(inside_out(scene, &bodies));
+    warnings.extend(overlaps(scene, &pieces)?);
+    warnings.extend(nested(scene, &bodies)?);
+    sources(scene, &pieces, &bodies)?;
+    warnings.extend(receivers(scene, &bodies));
+    Ok(warnings)
+}
+
+/// What the pieces are.
+pub(super) fn findings(scene: &WaveScene) -> Vec<Finding> {
+    let pieces = Pieces::of(scene);
+    let Topology { components, open, slivers, .. } = &pieces.topology;
+    let closed = components.iter().filter(|component| component.closed).count();
+    let first = open.first().map_or_else(String::new, |([a, b], _)| format!("the first from {a} to {b} m"));
+    let at = slivers.first().map(|&piece| pieces.patches[piece as usize].centroid());
+    let at = at.map_or_else(String::new, |p| format!("the first at {p} m"));
+    let all = [
+        ("flat pieces", pieces.patches.len(), format!("{:.3} m from end to end", pieces.extent)),
+        ("objects", components.len(), format!("{closed} of them closed")),
+        ("open sides", open.len(), first),
+        ("slivers", slivers.len(), format!("{at}; lower than a thousandth of their longest side")),
+    ];
+    let found = all.into_iter().filter(|(_, count, _)| *count > 0);
+    found.map(|(name, count, what)| Finding { name, count, what }).collect()
+}
+
+impl Pieces {
+    fn of(scene: &WaveScene) -> Self {
+        let (mut patches, mut part_of) = (vec![], vec![]);
+        for (number, part) in scene.parts().iter().enumerate() {
+            for shape in &part.shapes {
+                // What cannot be meshed was refused before.
+                patches.extend(shape.blockers(&Cutting::default()).unwrap_or_default());
+            }
+            part_of.resize(patches.len(), number);
+        }
+        let topology = Topology::of(&patches);
+        let bounds = Bounds::around(patches.iter().flat_map(|patch| patch.corners().iter().copied()));
+        let extent = bounds.map_or(0.0, |bounds| bounds.diagonal());
+        Self { patches, part_of, topology, extent }
+    }
+
+    fn is_closed(&self, scene: &WaveScene, piece: u32) -> bool {
+        scene.parts()[self.part_of[piece as usize]].kind == Kind::Closed
+    }
+
+    /// The components that are closed bodies.
+    fn bodies(&self, scene: &WaveScene) -> Vec<Body<'_>> {
+        let mut patches: Vec<Vec<&Patch>> = vec![vec![]; self.topology.components.len()];
+        for (patch, &component) in self.patches.iter().zip(&self.topology.component_of) {
+            patches[component as usize].push(patch);
+        }
+        let components = self.topology.components.iter().zip(patches);
+        let bodies =
+            components.filter(|(component, _)| component.closed && self.is_closed(scene, component.first));
+        bodies
+            .filter_map(|(component, patches)| {
+                let corners = patches.iter().flat_map(|patch| patch.corners().iter().copied());
+                let bounds = Bounds::around(corners)?;
+                let part = self.part_of[component.first as usize];
+                Some(Body { part, patches, bounds, hollow: component.volume < 0.0 })
+            })
+            .collect()
+    }
+}
+
+impl Body<'_> {
+    /// Whether a point is inside what the faces enclose.
+    fn encloses(&self, p: Vec3) -> bool {
+        let within = p.cmpge(self.bounds.min).all() && p.cmple(self.bounds.max).all();
+        within && self.patches.iter().map(|patch| solid_angle(patch, p)).sum::<f64>().abs() > TAU
+    }
+
+    /// Whether a point is inside the body, where there is no field.
+    fn holds(&self, p: Vec3) -> bool {
+        self.encloses(p) != self.hollow
+    }
+}
+
+/// Solid angle of a patch seen from `p`, positive from its back.
+fn solid_angle(patch: &Patch, p: Vec3) -> f64 {
+    let triangle = |i: usize| {
+        let [a, b, c] = [0, i, i + 1].map(|corner| patch.corner(corner) - p);
+        let [la, lb, lc] = [a, b, c].map(Vec3::length);
+        let below = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+        2.0 * a.dot(b.cross(c)).atan2(below)
+    };
+    (1..patch.sides() - 1).map(triangle).sum()
+}
+
+/// Refuses surfaces declared closed that have open sides, or faces turned differently. Where corners
+/// lie inside the sides of others, open sides may be closed by several, which is not told apart.
+fn closed(scene: &WaveScene, pieces: &Pieces) -> Result<Option<Warning>, SceneError> {
+    let Topology { open, clashes, junctions, .. } = &pieces.topology;
+    let part = |piece: u32| pieces.part_of[piece as usize];
+    let of_closed = |piece: &u32| pieces.is_closed(scene, *piece);
+    if let Some(([a, b], clash)) = clashes.iter().find(|(_, clash)| clash.iter().all(of_closed)) {
+        let number = part(clash[1]);
+        let what = format!(
+            "neighbouring faces of the closed body `{}` are turned differently: both run from {a} to {b} m",
+            scene.parts()[number].name
+        );
+        let help = "list the corners of one of them in the other direction";
+        return Err(scene.error(About::Surface(number), ErrorKind::Geometry, what, help));
+    }
+    let mut open = open.iter().filter(|(_, piece)| of_closed(piece));
+    let Some(([a, b], piece)) = open.next() else { return Ok(None) };
+    let number = part(*piece);
+    let what = format!(
+        "`{}` is declared part of a closed body, which is open: {} sides belong to one face only, the first \
+         from {a} to {b} m",
+        scene.parts()[number].name,
+        1 + open.count()
+    );
+    if let Some(p) = junctions.first() {
+        let what = format!(
+            "whether `{}` is closed cannot be told, since corners lie inside the sides of others, such as at {p} m",
+            scene.parts()[number].name
+        );
+        let help = "divide the sides there, so that corners meet corners";
+        return Ok(Some(scene.warning(About::Surface(number), what, help)));
+    }
+    let help = "add what closes the body, or write closed = false for a thin sheet";
+    Err(scene.error(About::Surface(number), ErrorKind::Geometry, what, help))
+}
+
+/// Bodies of mesh files whose normals point inwards.
+fn inside_out(scene: &WaveScene, bodies: &[Body]) -> Vec<Warning> {
+    let wrong = bodies.iter().filter(|body| body.hollow && scene.parts()[body.part].imported);
+    let warning = |body: &Body| {
+        let what = format!(
+            "the normals of `{}` point inwards, so that the body is what lies around it, as of a room",
+            scene.parts()[body.part].name
+        );
+        scene.warning(About::Surface(body.part), what, "turn its faces in the program that made the file")
+    };
+    wrong.map(warning).collect()
+}
+
+impl WaveScene {
+    fn warning(&self, about: About, what: String, help: &str) -> Warning {
+        let (file, place) = (self.path().to_owned(), self.source().place(self.span(about)));
+        Warning { file, place, what, help: help.to_owned() }
+    }
+
+    /// Refuses for equations of closed bodies what physical optics is only warned about.
+    fn refuse_or_warn(&self, surface: usize, what: String, help: &str) -> Result<Warning, SceneError> {
+        if self.settings().method.is_some_and(Method::is_equation) {
+            return Err(self.error(About::Surface(surface), ErrorKind::Geometry, what, help));
+        }
+        Ok(self.warning(About::Surface(surface), what, help))
+    }
+}
+
+/// Faces that lie on each other, and closed bodies that cross.
+fn overlaps(scene: &WaveScene, pieces: &Pieces) -> Result<Vec<Warning>, SceneError> {
+    let contacts = Contacts::of(&pieces.patches);
+    let mut pairs: BTreeMap<[usize; 2], &str> = BTreeMap::new();
+    let key = |pair: [u32; 2]| {
+        let [a, b] = pair.map(|piece| pieces.part_of[piece as usize]);
+        [a.min(b), a.max(b)]
+    };
+    for overlap in &contacts.overlaps {
+        pairs.insert(key(overlap.pieces), "lie on each other, so that their currents count twice");
+    }
+    for crossing in &contacts.crossings {
+        if crossing.iter().any(|piece| pieces.is_closed(scene, *piece)) {
+            pairs.entry(key(*crossing)).or_insert("cross, so that parts of them are inside a body");
+        }
+    }
+    let told = pairs.iter().take(TOLD).map(|([first, second], how)| {
+        let name = |part: usize| &scene.parts()[part].name;
+        let who = if first == second {
+            format!("faces of `{}`", name(*first))
+        } else {
+            format!("`{}` and `{}`", name(*first), name(*second))
+        };
+        let help = "move them apart, or make them one body without the faces inside";
+        scene.refuse_or_warn(*second, format!("{who} {how}"), help)
+    });
+    told.collect()
+}
+
+/// Bodies inside of others.
+fn nested(scene: &WaveScene, bodies: &[Body]) -> Result<Vec<Warning>, SceneError> {
+    let mut warnings = vec![];
+    for (number, body) in bodies.iter().enumerate() {
+        let first = body.patches[0].centroid();
+        let around = |(other, outer): &(usize, &Body)| *other != number && outer.holds(first);
+        if let Some((_, outer)) = bodies.iter().enumerate().find(around) {
+            let name = |body: &Body| &scene.parts()[body.part].name;
+            let what = format!("`{}` lies inside the closed body `{}`", name(body), name(outer));
+            let help = "remove it, or make the outer one a thin sheet: closed = false";
+            warnings.push(scene.refuse_or_warn(body.part, what, help)?);
+        }
+    }
+    Ok(warnings)
+}
+
+/// Refuses sources inside bodies or on surfaces.
+fn sources(scene: &WaveScene, pieces: &Pieces, bodies: &[Body]) -> Result<(), SceneError> {
+    for (number, placed) in scene.sources().iter().enumerate() {
+        let Origin::Point(p) = placed.source.origin() else { continue };
+        let refuse = |what: String| {
+            let help = "move the source off the surfaces and out of the bodies";
+            Err(scene.error(About::Source(number), ErrorKind::Geometry, what, help))
+        };
+        let near = ON_SURFACE * pieces.extent;
+        if let Some(piece) = pieces.patches.iter().position(|patch| is_on(patch, p, near)) {
+            let name = &scene.parts()[pieces.part_of[piece]].name;
+            return refuse(format!("the source lies on the surface `{name}`"));
+        }
+        if let Some(body) = bodies.iter().find(|body| body.holds(p)) {
+            let name = &scene.parts()[body.part].name;
+            return refuse(format!("the source lies inside the closed body `{name}`"));
+        }
+    }
+    Ok(())
+}
+
+/// Whether a point is within `near` of a patch.
+fn is_on(patch: &Patch, p: Vec3, near: f64) -> bool {
+    let normal = patch.normal();
+    let inside = |i: usize| {
+        let (a, b) = (patch.corner(i), patch.corner(i + 1));
+        (b - a).cross(p - a).dot(normal) >= -near * (b - a).length()
+    };
+    (p - patch.corner(0)).dot(normal).abs() <= near && (0..patch.sides()).all(inside)
+}
+
+/// Receivers all of whose points are inside a body.
+fn receivers(scene: &WaveScene, bodies: &[Body]) -> Vec<Warning> {
+    let mut warnings = vec![];
+    for (number, receiver) in scene.receivers().iter().enumerate().filter(|(_, r)| r.is_near()) {
+        let Places::Near { points, .. } = receiver.places() else { continue };
+        let step = points.len().div_ceil(SAMPLED).max(1);
+        let inside = |p: &Vec3| bodies.iter().any(|body| body.holds(*p));
+        if points.iter().step_by(step).all(inside) {
+            let what = format!("all points of the receiver `{}` lie inside closed bodies", receiver.name);
+            let help = "the total field is 0 there but for errors; move them out where that is not meant";
+            warnings.push(scene.warning(About::Receiver(number), what, help));
+        }
+    }
+    warnings
+}

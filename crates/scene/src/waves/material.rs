@@ -1,0 +1,89 @@
+//! Materials of a scene, which depend on the frequency.
+
+use fredholm_waves::material::{Layer, Material, itu_permittivity};
+use fredholm_waves::{Complex64, Wave};
+
+use super::format::{LayerEntry, MaterialEntry, SceneEntry};
+use super::scene::refused;
+use crate::error::{ErrorKind, SceneError};
+use crate::format::At;
+use crate::source::Source;
+use crate::suggest::among;
+
+/// The material that is always there.
+pub(super) const CONDUCTOR: &str = "conductor";
+
+/// The materials at one frequency: the conductor, then those of the scene by name.
+pub(super) fn materials(
+    source: &Source,
+    scene: &SceneEntry,
+    wave: &Wave,
+) -> Result<Vec<Material>, SceneError> {
+    let mut materials = vec![Material::Conductor];
+    for (name, entry) in &scene.materials {
+        let found = material(source, entry, wave)?;
+        found.check(name).map_err(|error| refused(source, entry.span(), &error))?;
+        materials.push(found);
+    }
+    Ok(materials)
+}
+
+/// Number of the material of this name in [`materials`].
+pub(super) fn number(scene: &SceneEntry, name: &str) -> Option<usize> {
+    let own = scene.materials.keys().position(|known| known.as_str() == name);
+    own.map(|own| own + 1).or_else(|| (name == CONDUCTOR).then_some(0))
+}
+
+/// The same, or the error of a name that is unknown.
+pub(super) fn find(source: &Source, scene: &SceneEntry, name: &At<String>) -> Result<usize, SceneError> {
+    number(scene, name).ok_or_else(|| {
+        let what = format!("there is no material `{}`", **name);
+        source.error(ErrorKind::Name, name.span(), what, known(scene, name))
+    })
+}
+
+/// The names of all materials, the nearest to `name` first.
+pub(super) fn known(scene: &SceneEntry, name: &str) -> String {
+    let names = scene.materials.keys().map(|name| name.as_str());
+    among(name, [CONDUCTOR].into_iter().chain(names), "materials")
+}
+
+fn material(source: &Source, entry: &At<MaterialEntry>, wave: &Wave) -> Result<Material, SceneError> {
+    let MaterialEntry { impedance_ohm, half_space, layers } = &**entry;
+    let dielectric = |permittivity: Option<[f64; 2]>, itu: &Option<String>| {
+        dielectric(source, entry, (permittivity, itu.as_deref()), wave)
+    };
+    match (impedance_ohm, half_space, layers) {
+        (Some([re, im]), None, None) => Ok(Material::Impedance(Complex64::new(*re, *im))),
+        (None, Some(half), None) => Ok(Material::HalfSpace(dielectric(half.permittivity, &half.itu)?)),
+        (None, None, Some(layers)) => {
+            let layer = |layer: &LayerEntry| {
+                let permittivity = dielectric(layer.permittivity, &layer.itu)?;
+                Ok(Layer { permittivity, thickness: layer.thickness_m })
+            };
+            Ok(Material::Slab(layers.iter().map(layer).collect::<Result<_, SceneError>>()?))
+        }
+        _ => {
+            let help = "give exactly one of impedance_ohm, half_space, layers";
+            Err(source.error(ErrorKind::Value, entry.span(), "a material is made of one thing", help))
+        }
+    }
+}
+
+fn dielectric(
+    source: &Source,
+    entry: &At<MaterialEntry>,
+    given: (Option<[f64; 2]>, Option<&str>),
+    wave: &Wave,
+) -> Result<Complex64, SceneError> {
+    match given {
+        (Some([re, im]), None) => Ok(Complex64::new(re, im)),
+        (None, Some(name)) => {
+            itu_permittivity(name, wave.frequency()).map_err(|error| refused(source, entry.span(), &error))
+        }
+        _ => {
+            let help = "give permittivity = [ε′, −ε″] or itu = \"concrete\", and not both";
+            Err(source.error(ErrorKind::Value, entry.span(), "a dielectric needs one permittivity", help))
+        }
+    }
+}

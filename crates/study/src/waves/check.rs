@@ -1,0 +1,97 @@
+//! What a scene of waves and its mesh are, and what its fields will take; nothing is solved.
+
+use std::path::{Path, PathBuf};
+
+use fredholm_linop::{Dense, Watch};
+use fredholm_scene::waves::Receiver;
+use fredholm_scene::{Finding, Warning};
+use fredholm_waves::{Complex64, System, Wave, WaveError};
+
+use super::{Method, Model, WaveOptions, galerkin};
+use crate::error::Error;
+use crate::memory::{Limit, Plan};
+use crate::size::Bytes;
+use crate::stages::Stages;
+
+/// A valid scene of waves, its mesh, and what its fields will take.
+#[derive(Debug)]
+pub struct CheckedWaves {
+    /// The scene file.
+    pub path: PathBuf,
+    /// What the scene is called.
+    pub title: Option<String>,
+    /// The method as scenes name it, with what blocks waves where that is a choice.
+    pub method: String,
+    /// How many bounces are summed, or the solver.
+    pub solution: String,
+    /// The frequencies, Hz.
+    pub frequencies: Vec<f64>,
+    /// Facets.
+    pub facets: usize,
+    /// Surfaces.
+    pub surfaces: usize,
+    /// Unknowns of the coupling, where there is more than one bounce, and the bytes of its matrix
+    /// where that is stored.
+    pub coupling: Option<(usize, Bytes)>,
+    /// Points and directions of all receivers.
+    pub places: u128,
+    /// Memory by use, but for the coupling.
+    pub plan: Plan,
+    /// Memory allowed.
+    pub limit: Limit,
+    /// What the pieces of the surfaces are, and what is remarkable about them.
+    pub findings: Vec<Finding>,
+    /// What is allowed, but probably not meant.
+    pub warnings: Vec<Warning>,
+}
+
+/// Validates a scene of waves, tells what its mesh is, and predicts what its fields will take.
+///
+/// # Errors
+/// What is wrong with the scene, with line and column.
+pub fn check_waves(
+    scene: impl AsRef<Path>,
+    asked: &WaveOptions,
+    watch: &dyn Watch,
+) -> Result<CheckedWaves, Error> {
+    let mut stages = Stages::new(watch);
+    let model = stages.run("scene", || Model::load(scene.as_ref(), asked.memory))?;
+    let coupling = stages.run("mesh", || admitted(&model))?;
+    let findings = stages.run("report", || Ok(model.scene.findings()))?;
+    Ok(CheckedWaves {
+        path: model.path().to_owned(),
+        title: model.scene.title().map(str::to_owned),
+        method: model.method_in_words(),
+        solution: model.method.name(),
+        frequencies: model.scene.waves().iter().map(Wave::frequency).collect(),
+        facets: model.geometry.mesh.len(),
+        surfaces: model.geometry.mesh.surfaces().len(),
+        coupling,
+        places: model.scene.receivers().iter().map(Receiver::count).sum(),
+        plan: model.plan,
+        limit: model.limit,
+        findings,
+        warnings: model.warnings,
+    })
+}
+
+/// Unknowns and bytes of the coupling, where there is one, of a scatterer that the method admits at
+/// all frequencies.
+fn admitted(model: &Model) -> Result<Option<(usize, Bytes)>, Error> {
+    let refused = |error: WaveError| model.refused(&error, None);
+    if model.galerkin.is_some() {
+        let unknowns = galerkin::basis(model, &model.geometry)?.len();
+        let bytes = Dense::<Complex64>::bytes(unknowns);
+        return Ok(Some((unknowns, Bytes(bytes.into()))));
+    }
+    let mut coupling = None;
+    for band in &model.bands {
+        let scatterer = model.geometry.scatterer(&band.materials).map_err(refused)?;
+        model.shadow.check(&scatterer).map_err(refused)?;
+        if !model.is_closed_form() {
+            scatterer.check_resolution(&band.wave).map_err(refused)?;
+        }
+        coupling = Some((System::unknowns(&scatterer), Bytes(System::bytes(&scatterer).into())));
+    }
+    Ok(coupling.filter(|_| !matches!(model.method, Method::Bounces(1))))
+}

@@ -1,0 +1,143 @@
+//! Studies of waves: boundary elements against exact answers, sweeps, files.
+
+#![allow(clippy::unwrap_used, reason = "tests may panic")]
+
+use std::fs;
+use std::path::Path;
+
+use fredholm_mesh::Vec3;
+use fredholm_study::{Quiet, SolvedWaves, WaveOptions, waves};
+use fredholm_waves::source::PlaneWave;
+use fredholm_waves::{ConductingSphere, Wave};
+
+const SOURCE: &str = "[[source]]\nkind = \"plane-wave\"\ntravel = [0, 1, 0]\npolarisation = [0, 0, 1]\n";
+
+fn solved(folder: &Path, text: &str) -> SolvedWaves<'static> {
+    let path = folder.join("scene.toml");
+    fs::write(&path, text).unwrap();
+    let options = WaveOptions { no_report: true, ..WaveOptions::default() };
+    waves(&path, &options, &Quiet).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A sphere of 0.4 wavelengths against the series of Mie, by all equations: E at 2 m.
+#[test]
+fn equations_agree_with_the_exact_answer_on_a_sphere() {
+    let folder = tempfile::tempdir().unwrap();
+    let wave = Wave::new(1e9).unwrap();
+    let radius = 0.4 * wave.wavelength();
+    let source = PlaneWave::new(Vec3::Y, Vec3::Z, 1.0.into()).unwrap();
+    let ball = ConductingSphere::new(radius).unwrap();
+    for (method, bound) in [("efie", 0.02), ("cfie", 0.04), ("mfie", 0.02), ("dual-surface-mfie", 0.02)] {
+        let text = format!(
+            "[wave]\nfrequencies_hz = [1e9]\nmethod = \"{method}\"\n{SOURCE}[[surface]]\nname = \"ball\"\n\
+             sphere = {{ centre = [0, 0, 0], radius = {radius} }}\nedge = \"lambda/8\"\n\
+             [[receiver]]\nname = \"circle\"\n\
+             circle = {{ centre = [0, 0, 0], radius = 2, normal = [0, 0, 1], start = [1, 0, 0], points = 36 }}\n"
+        );
+        let found = solved(folder.path(), &text);
+        let (mut gap, mut size) = (0.0_f64, 0.0_f64);
+        for row in found.near() {
+            let exact = ball.scattered(&wave, &source, Vec3::from_array(row.position)).components();
+            for (c, exact) in exact.iter().enumerate() {
+                gap +=
+                    (row.scattered[2 * c] - exact.re).powi(2) + (row.scattered[2 * c + 1] - exact.im).powi(2);
+                size += exact.norm_sqr();
+            }
+        }
+        let error = (gap / size).sqrt();
+        assert!(error < bound && found.method() == method, "{method}: {error}");
+    }
+}
+
+/// What a sweep of plane waves sends back is what the plane wave from there scatters there.
+#[test]
+fn boundary_elements_sweep_as_they_scatter() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "[wave]\nfrequencies_hz = [1e9]\nmethod = \"efie\"\n\
+                [[source]]\nkind = \"plane-wave\"\nfrom_theta_degrees = 70\nfrom_phi_degrees = 20\npolarisation = \"theta\"\n\
+                [[surface]]\nname = \"plate\"\nquad = [[0, -0.1, -0.1], [0, 0.1, -0.1], [0, 0.1, 0.1], [0, -0.1, 0.1]]\n\
+                [[receiver]]\nname = \"far\"\nfar = { theta_degrees = 70, phi_degrees = 20 }\n\
+                [[receiver]]\nname = \"back\"\nmonostatic = { theta_degrees = [30, 70], phi_degrees = 20 }\n";
+    let found = solved(folder.path(), text);
+    let (far, back) = (&found.far()[0], &found.monostatic()[1]);
+    let expected = far.cross_section.unwrap();
+    let sections = back.cross_sections();
+    assert!(expected[0] > 1e-4);
+    for (found, expected) in [sections[0], sections[1]].iter().zip(expected) {
+        assert!((found - expected).abs() < 1e-9 * sections[0], "{sections:?} {expected:?}");
+    }
+}
+
+/// A cube from a file scatters as the box does.
+#[test]
+fn a_mesh_file_scatters_as_the_shape_does() {
+    let folder = tempfile::tempdir().unwrap();
+    let cube = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
+                f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+    fs::write(folder.path().join("cube.obj"), cube).unwrap();
+    let field = |shape: &str| {
+        let text = format!(
+            "[wave]\nfrequencies_hz = [1e9]\nmethod = \"mfie\"\n{SOURCE}[[surface]]\nname = \"cube\"\n{shape}\n\
+             edge = \"lambda/8\"\n[[receiver]]\nname = \"p\"\npoints = [[0.3, -1, 0.2]]\n"
+        );
+        solved(folder.path(), &text).near()[0].scattered
+    };
+    let exact = field("box = { min = [0, 0, 0], max = [0.12, 0.12, 0.12] }");
+    let file = field("mesh = { file = \"cube.obj\", scale = 0.12 }");
+    let size = exact.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    assert!(exact.iter().zip(file).all(|(a, b)| (a - b).abs() < 1e-5 * size), "{exact:?} {file:?}");
+}
+
+/// Many frequencies: one table, one plot of each receiver, and the closed form of a plate.
+#[test]
+fn a_sweep_has_one_plot_and_the_closed_form() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = format!(
+        "[wave]\nfrequencies_hz = {{ from = 5e8, to = 1.5e9, points = 101 }}\n{SOURCE}[[surface]]\nname = \"plate\"\n\
+         quad = [[-0.75, 0, -0.75], [0.75, 0, -0.75], [0.75, 0, 0.75], [-0.75, 0, 0.75]]\n\
+         [[receiver]]\nname = \"back\"\nfar = {{ theta_degrees = 90, phi_degrees = 270 }}\n\
+         [[receiver]]\nname = \"around\"\nfar = {{ theta_degrees = 90, phi_degrees = {{ from = 180, to = 360, points = 9 }} }}\n"
+    );
+    let mut found = solved(folder.path(), &text);
+    assert_eq!((found.frequencies().len(), found.frequencies()[0].facets), (101, 1));
+    for row in found.far().iter().filter(|row| row.receiver == 0) {
+        let wavelength = 299_792_458.0 / row.frequency;
+        let closed = 4.0 * std::f64::consts::PI * (2.25 / wavelength).powi(2);
+        assert!((row.cross_section.unwrap()[0] / closed - 1.0).abs() < 1e-9, "{row:?}");
+    }
+    let results = folder.path().join("out");
+    found.write(&results).unwrap();
+    let mut names: Vec<String> =
+        fs::read_dir(&results).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    let expected = [
+        "around_over_frequency.png",
+        "around_over_frequency.svg",
+        "back_over_frequency.svg",
+        "currents.vtu",
+        "far.csv",
+        "receivers.csv",
+        "receivers.npz",
+        "run.json",
+    ];
+    assert_eq!(names, expected);
+    assert_eq!(fs::read_to_string(results.join("far.csv")).unwrap().lines().count(), 1 + 101 * 10);
+}
+
+/// Above the stated number of rows a table is arrays only, and the record says so.
+#[test]
+fn large_tables_are_arrays_only() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = format!(
+        "[wave]\nfrequencies_hz = [1e9]\n{SOURCE}[[surface]]\nname = \"plate\"\n\
+         quad = [[-0.1, 0, -0.1], [0.1, 0, -0.1], [0.1, 0, 0.1], [-0.1, 0, 0.1]]\n\
+         [[receiver]]\nname = \"far\"\nfar = {{ theta_degrees = {{ from = 0, to = 180, points = 201 }}, phi_degrees = {{ from = 0, to = 359, points = 250 }} }}\n"
+    );
+    let mut found = solved(folder.path(), &text);
+    let results = folder.path().join("out");
+    found.write(&results).unwrap();
+    assert!(results.join("far.npz").exists() && !results.join("far.csv").exists());
+    let record: serde_json::Value =
+        serde_json::from_slice(&fs::read(results.join("run.json")).unwrap()).unwrap();
+    assert_eq!(record["left_out_as_text"], serde_json::json!(["far.csv"]));
+}
