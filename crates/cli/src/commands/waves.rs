@@ -87,7 +87,11 @@ fn row(run: &ComparisonRun) -> String {
 
 fn summarise(args: &WavesArgs, folder: &Path, solved: &SolvedWaves) -> Result<(), Error> {
     let mut lines = Lines::default();
-    lines.add("method", format!("{}, shadows {}", solved.method(), solved.shadow()));
+    let edges = if solved.edge_currents() { ", edge currents" } else { "" };
+    lines.add("method", format!("{}, shadows {}{edges}", solved.method(), solved.shadow()));
+    if let Some(reason) = solved.reason() {
+        lines.add("chosen", reason.to_owned());
+    }
     for found in solved.frequencies() {
         let residual = found.residuals.last();
         let ending = residual.map_or(String::new(), |residual| {

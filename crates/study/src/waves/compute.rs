@@ -217,11 +217,10 @@ impl Task<'_> {
         if !self.model.edge_currents || self.variant.shadow == Shadow::Thesis {
             return Ok(None);
         }
-        let lit = EdgeCurrents::new(self.scatterer, self.band.wave, self.sources);
-        let found = lit.and_then(|lit| match all {
-            Some(all) => lit.with_bounces(self.scatterer, all),
-            None => Ok(lit),
-        });
+        let found = match all {
+            Some(all) => EdgeCurrents::of_bounces(self.scatterer, self.band.wave, self.sources, all),
+            None => EdgeCurrents::new(self.scatterer, self.band.wave, self.sources),
+        };
         found.map(Some).map_err(|error| self.refused(&error))
     }
 

@@ -65,6 +65,11 @@ impl Geometry {
         Ok(Self { mesh: builder.build(), kinds, spheres })
     }
 
+    /// What each surface is part of.
+    pub(super) fn kinds(&self) -> &[Kind] {
+        &self.kinds
+    }
+
     /// The scatterer at one frequency.
     pub(crate) fn scatterer(&self, materials: Vec<Material>) -> Result<Scatterer, WaveError> {
         let mut scatterer = Scatterer::new(&self.mesh, |surface| self.kinds[surface])?.made_of(materials)?;

@@ -1,5 +1,6 @@
 //! Scenes of waves: their files, what they mean, and what is written.
 
+mod choice;
 mod compare;
 mod compute;
 mod estimate;

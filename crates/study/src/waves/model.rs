@@ -7,6 +7,7 @@ use fredholm_waves::material::Material;
 use fredholm_waves::source::PlaneWave;
 use fredholm_waves::{Complex64, Origin, Shadow, Source, Wave, WaveError};
 
+use super::choice::{Asked, Taken, taken};
 use super::format::{ReceiverEntry, SceneEntry, WaveEntry};
 use super::geometry::{Geometry, materials};
 use super::located::SceneText;
@@ -58,6 +59,10 @@ pub(crate) struct Model {
     pub(crate) method: Method,
     /// Whether edge currents are added.
     pub(crate) edge_currents: bool,
+    /// Why this method, where the scene left it open.
+    pub(crate) reason: Option<String>,
+    /// What should be known of the method.
+    pub(crate) warnings: Vec<String>,
     pub(crate) sources: Vec<Box<dyn Source>>,
     /// The source, where it is a single plane wave.
     pub(crate) plane_wave: Option<PlaneWave>,
@@ -74,31 +79,29 @@ pub(crate) struct Model {
 impl Model {
     /// Reads a scene file and cuts its surfaces, where they fit the memory asked for.
     pub(crate) fn load(path: &Path, memory: Option<Bytes>) -> Result<Self, Error> {
-        Self::read(path, memory, false, &memory_of)
+        Self::read(path, memory, [false, true], &memory_of)
     }
 
     /// The same where the fields are sampled, so many batches at once.
     pub(crate) fn load_sampled(path: &Path, memory: Option<Bytes>, batches: u32) -> Result<Self, Error> {
-        Self::read(path, memory, false, &|facets, entry| sampled(facets, entry, batches))
+        Self::read(path, memory, [false; 2], &|facets, entry| sampled(facets, entry, batches))
     }
 
     /// The same with errors estimated, whether the scene asks for it or not.
     pub(crate) fn load_estimated(path: &Path, memory: Option<Bytes>) -> Result<Self, Error> {
-        Self::read(path, memory, true, &memory_of)
+        Self::read(path, memory, [true, false], &memory_of)
     }
 
     fn read(
         path: &Path,
         memory: Option<Bytes>,
-        estimated: bool,
+        [estimated, chooses]: [bool; 2],
         memory_of: &dyn Fn(u128, &SceneEntry) -> Plan,
     ) -> Result<Self, Error> {
         let text = SceneText::read(path)?;
         let entry: SceneEntry = text.parse()?;
         let bands = bands(&text, &entry)?;
-        let shadow = shadow(&text, entry.wave.get_ref())?;
-        let method = method(&text, &entry.wave, shadow)?;
-        let edge_currents = edge_currents(&text, entry.wave.get_ref(), shadow)?;
+        let asked = asked(&text, &entry.wave)?;
         let placed = sources(&text, &entry)?;
         let plane_wave = if let [only] = placed.as_slice() { only.plane_wave } else { None };
         let shortest = bands.iter().map(|band| band.wave.wavelength()).fold(f64::INFINITY, f64::min);
@@ -106,6 +109,8 @@ impl Model {
         let admit = |facets| memory_of(facets, &entry).admit(limit, HELP);
         let cut = |stretch| Geometry::new(&text, &entry.surface, shortest, stretch, &admit);
         let geometry = cut(1.0)?;
+        let Taken { shadow, method, edge_currents, reason, warnings } =
+            if chooses { taken(asked, &geometry, &bands) } else { asked.plain() };
         let coarse = (estimated || entry.wave.get_ref().estimate_errors).then(|| cut(2.0)).transpose()?;
         let facets = geometry.mesh.len() + coarse.as_ref().map_or(0, |coarse| coarse.mesh.len());
         let plan = memory_of(facets as u128, &entry);
@@ -121,6 +126,8 @@ impl Model {
             shadow,
             method,
             edge_currents,
+            reason,
+            warnings,
             sources,
             plane_wave,
             geometry,
@@ -187,14 +194,17 @@ fn sources(text: &SceneText, entry: &SceneEntry) -> Result<Vec<Placed>, Error> {
     entry.source.iter().map(|source| placed(text, source)).collect()
 }
 
-/// The method, where the treatment of shadows has a use for it.
-fn method(text: &SceneText, entry: &toml::Spanned<WaveEntry>, shadow: Shadow) -> Result<Method, Error> {
-    let found = asked(text, entry.get_ref())?;
-    if let (true, Method::Bounces(_)) = (shadow.is_equation(), &found) {
+/// What a scene says of the method, where that goes together.
+fn asked(text: &SceneText, entry: &toml::Spanned<WaveEntry>) -> Result<Asked, Error> {
+    let wave = entry.get_ref();
+    let shadow = shadow(text, wave)?;
+    let method = method(text, wave)?;
+    let equation = shadow.is_some_and(Shadow::is_equation);
+    if let (true, None | Some(Method::Bounces(_))) = (equation, &method) {
         let what = "the exact treatment is an equation, whose first bounces mean nothing by themselves";
         return Err(text.fault(entry.span(), what, "add solver = \"lu\", say"));
     }
-    Ok(found)
+    Ok(Asked { shadow, method, edge_currents: edge_currents(text, wave, shadow)? })
 }
 
 fn bands(text: &SceneText, entry: &SceneEntry) -> Result<Vec<Band>, Error> {
@@ -210,17 +220,23 @@ fn bands(text: &SceneText, entry: &SceneEntry) -> Result<Vec<Band>, Error> {
     frequencies.get_ref().iter().map(band).collect()
 }
 
-fn shadow(text: &SceneText, entry: &WaveEntry) -> Result<Shadow, Error> {
-    let Some(name) = &entry.shadow else { return Ok(Shadow::default()) };
-    Shadow::ALL.into_iter().find(|shadow| shadow.name() == name.get_ref()).ok_or_else(|| {
+fn shadow(text: &SceneText, entry: &WaveEntry) -> Result<Option<Shadow>, Error> {
+    let Some(name) = &entry.shadow else { return Ok(None) };
+    let found = Shadow::ALL.into_iter().find(|shadow| shadow.name() == name.get_ref());
+    found.map(Some).ok_or_else(|| {
         let known = Shadow::ALL.map(Shadow::name).join(", ");
         text.fault(name.span(), format!("unknown shadow `{}`", name.get_ref()), format!("known: {known}"))
     })
 }
 
-fn edge_currents(text: &SceneText, entry: &WaveEntry, shadow: Shadow) -> Result<bool, Error> {
-    let Some(wanted) = &entry.edge_currents else { return Ok(false) };
-    if *wanted.get_ref() && (shadow.is_equation() || shadow == Shadow::Thesis) {
+fn edge_currents(
+    text: &SceneText,
+    entry: &WaveEntry,
+    shadow: Option<Shadow>,
+) -> Result<Option<bool>, Error> {
+    let Some(wanted) = &entry.edge_currents else { return Ok(None) };
+    let other = shadow.is_some_and(|shadow| shadow.is_equation() || shadow == Shadow::Thesis);
+    if *wanted.get_ref() && other {
         let what = "edge currents complete physical optics, not this treatment of shadows";
         return Err(text.fault(
             wanted.span(),
@@ -228,16 +244,16 @@ fn edge_currents(text: &SceneText, entry: &WaveEntry, shadow: Shadow) -> Result<
             "take shadow = \"geometric\", or leave edge_currents out",
         ));
     }
-    Ok(*wanted.get_ref())
+    Ok(Some(*wanted.get_ref()))
 }
 
-fn asked(text: &SceneText, entry: &WaveEntry) -> Result<Method, Error> {
+fn method(text: &SceneText, entry: &WaveEntry) -> Result<Option<Method>, Error> {
     let Some(name) = &entry.solver else {
         return match &entry.bounces {
             Some(bounces) if *bounces.get_ref() == 0 => {
                 Err(text.fault(bounces.span(), "without a bounce nothing is scattered", "write at least 1"))
             }
-            bounces => Ok(Method::Bounces(bounces.as_ref().map_or(1, |b| *b.get_ref() as usize))),
+            bounces => Ok(bounces.as_ref().map(|b| Method::Bounces(*b.get_ref() as usize))),
         };
     };
     if let Some(bounces) = &entry.bounces {
@@ -255,5 +271,5 @@ fn asked(text: &SceneText, entry: &WaveEntry) -> Result<Method, Error> {
         let (what, help) = message.split_once("; ").unwrap_or((&message, "correct the name or the options"));
         text.fault(name.span(), what, help)
     })?;
-    Ok(Method::Solver { solver, tolerance, max_iterations })
+    Ok(Some(Method::Solver { solver, tolerance, max_iterations }))
 }

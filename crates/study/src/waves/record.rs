@@ -68,6 +68,8 @@ impl Outcome {
             "shadow": model.shadow.name(),
             "method": model.method.name(),
             "edge_currents": model.edge_currents,
+            "chosen_because": model.reason,
+            "warnings": model.warnings,
             "receivers": model.receivers.iter().map(|receiver| &receiver.name).collect::<Vec<_>>(),
             "estimated_mesh_errors": self.mesh_errors.iter().map(|e| e.record(model)).collect::<Vec<_>>(),
             "estimated_form_errors": self.form_errors.iter().map(|e| e.record(model)).collect::<Vec<_>>(),

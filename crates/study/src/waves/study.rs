@@ -106,6 +106,7 @@ pub fn check_wave_solver(text: &str) -> Result<(), OptionError> {
 fn load(scene: &Path, asked: &WaveOptions, stages: &mut Stages) -> Result<Model, Error> {
     let model = stages.run("scene", || Model::load(scene, asked.memory))?;
     stages.tell(&model.plan, model.limit);
+    model.warnings.iter().for_each(|text| stages.watch.warn(text));
     Ok(model)
 }
 
@@ -144,6 +145,18 @@ impl SolvedWaves<'_> {
     #[must_use]
     pub fn shadow(&self) -> &'static str {
         self.model.shadow.name()
+    }
+
+    /// Why this method was taken, where the scene left it open.
+    #[must_use]
+    pub fn reason(&self) -> Option<&str> {
+        self.model.reason.as_deref()
+    }
+
+    /// Whether edge currents are added.
+    #[must_use]
+    pub fn edge_currents(&self) -> bool {
+        self.model.edge_currents
     }
 
     /// How the currents at each frequency were found.
