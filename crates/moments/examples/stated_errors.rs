@@ -48,10 +48,14 @@ fn run(case: &Case, body: &Scatterer, shadow: Shadow, truth: &[ComplexVector], u
     let currents = system.currents(&all(&system, &system.right_hand_side(&[&first])), 0);
     let currents = Bounced::new(body, &first, &currents);
     let radiator = system.radiator(&currents);
-    let far: Vec<ComplexVector> = radiator.far_field(u).unwrap().into_iter().map(|far| far.amplitude).collect();
+    let far: Vec<ComplexVector> =
+        radiator.far_field(u).unwrap().into_iter().map(|far| far.amplitude).collect();
     if let Some(inside) = field_inside(body, &wave(), &sources, &radiator).unwrap() {
-        let indicator =
-            if shadow.is_equation() { Indicator::InsideEquation(inside) } else { Indicator::InsideOptics(inside) };
+        let indicator = if shadow.is_equation() {
+            Indicator::InsideEquation(inside)
+        } else {
+            Indicator::InsideOptics(inside)
+        };
         return row(case, shadow, indicator, error(&far, truth));
     }
     let edges = EdgeCurrents::of_bounces(body, wave(), &sources, &currents).unwrap();

@@ -29,7 +29,13 @@ fn all(system: &System<'_>, b: &Vectors) -> Vectors {
     x
 }
 
-fn amplitudes(system: &System<'_>, body: &Scatterer, first: &PhysicalOptics<'_>, x: &Vectors, u: &[Vec3]) -> Vec<ComplexVector> {
+fn amplitudes(
+    system: &System<'_>,
+    body: &Scatterer,
+    first: &PhysicalOptics<'_>,
+    x: &Vectors,
+    u: &[Vec3],
+) -> Vec<ComplexVector> {
     let currents = Bounced::new(body, first, &system.currents(x, 0));
     system.radiator(&currents).far_field(u).unwrap().into_iter().map(|far| far.amplitude).collect()
 }
@@ -66,37 +72,16 @@ fn row(case: &Case, body: &Scatterer, shadow: Shadow, truth: &[ComplexVector], u
     println!(" all {none:.3} {lit:.3} {bounced:.3}");
 }
 
-fn cached(case: &Case, u: &[Vec3]) -> Vec<ComplexVector> {
-    let path = format!("/tmp/truthf_{}.txt", case.name.replace(' ', "_"));
-    if let Ok(text) = std::fs::read_to_string(&path) {
-        return text
-            .lines()
-            .map(|l| {
-                let n: Vec<f64> = l.split(' ').map(|x| x.parse().unwrap()).collect();
-                ComplexVector { re: Vec3::new(n[0], n[1], n[2]), im: Vec3::new(n[3], n[4], n[5]) }
-            })
-            .collect();
-    }
-    let truth = case.truth(u, 8.0, 1);
-    let text: Vec<String> = truth
-        .iter()
-        .map(|v| format!("{} {} {} {} {} {}", v.re.x, v.re.y, v.re.z, v.im.x, v.im.y, v.im.z))
-        .collect();
-    std::fs::write(path, text.join("\n")).unwrap();
-    truth
-}
-
 fn main() {
     let wanted = std::env::args().nth(1).unwrap_or_default();
     let u = directions();
-    println!("case, treatment; after 1, 2, 3, 4 and all bounces: without edges, with those of the incident wave, of all waves");
+    println!(
+        "case, treatment; after 1, 2, 3, 4 and all bounces: without edges, with those of the incident wave, of all waves"
+    );
     for case in cases().into_iter().filter(|case| case.name.contains(&wanted)) {
-        let truth = cached(&case, &u);
+        let truth = case.truth(&u, 8.0, 1);
         let body = case.scatterer(8.0);
         let mut shadows = vec![Shadow::Geometric, Shadow::Radiated];
-        if wanted.is_empty() && !case.name.contains("shadowed") {
-            shadows.remove(0);
-        }
         if !matches!(case.body, Body::Plates(_)) {
             shadows.extend([Shadow::Exact, Shadow::ExactDual]);
         }

@@ -88,6 +88,6 @@ pub use viewfactors::{
     view_factor_methods, view_factors,
 };
 pub use waves::{
-    Estimated, SolvedFrequency, SolvedWaves, WaveCompareOptions, WaveOptions, check_wave_solver,
-    compare_waves, waves,
+    CouplingStorage, Estimated, SolvedFrequency, SolvedWaves, WaveCompareOptions, WaveOptions,
+    check_wave_solver, compare_waves, waves,
 };

@@ -2,7 +2,7 @@
 //!
 //! Two indicators, each times a factor that was measured on bodies with known answers (`tests/data/wave/stated_errors.csv`,
 //! written by the example `stated_errors` of `fredholm-moments`), so that the product is above the true error in at least 95
-//! of 100 runs:
+//! of 100 runs there, and in the median less than four times as large:
 //!
 //! - Sheets: the share of the edge currents in the field. Physical optics lacks all of them; with them added, what edges
 //!   send to edges is missing, which is a part of it.
@@ -36,10 +36,10 @@ impl Indicator {
     #[must_use]
     pub fn factor(self) -> f64 {
         match self {
-            Self::EdgesLeft(_) => 1.0,
-            Self::EdgesAdded(_) => 1.0,
-            Self::InsideEquation(_) => 1.0,
-            Self::InsideOptics(_) => 1.0,
+            Self::EdgesLeft(_) => 1.15,
+            Self::EdgesAdded(_) => 1.05,
+            Self::InsideEquation(_) => 2.2,
+            Self::InsideOptics(_) => 1.4,
         }
     }
 
@@ -85,4 +85,36 @@ pub fn field_inside(
         size += incident.e.norm_squared();
     }
     Ok((size > 0.0).then(|| (left / size).sqrt()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    /// The committed runs: what is stated holds in 95 of 100, and is not idle.
+    #[test]
+    fn the_factors_are_those_of_the_calibration() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/wave/stated_errors.csv");
+        let text = std::fs::read_to_string(path).unwrap();
+        let indicator = |kind: &str, value: f64| match kind {
+            "EdgesLeft" => Indicator::EdgesLeft(value),
+            "EdgesAdded" => Indicator::EdgesAdded(value),
+            "InsideEquation" => Indicator::InsideEquation(value),
+            _ => Indicator::InsideOptics(value),
+        };
+        for kind in ["EdgesLeft", "EdgesAdded", "InsideEquation", "InsideOptics"] {
+            let runs = text.lines().skip(1).map(|line| line.split(',').collect::<Vec<_>>());
+            let ratio = |cells: Vec<&str>| {
+                let [value, truth] = [3, 4].map(|i| cells[i].parse::<f64>().unwrap());
+                indicator(kind, value).error() / truth
+            };
+            let mut ratios: Vec<f64> = runs.filter(|cells| cells[2] == kind).map(ratio).collect();
+            ratios.sort_by(f64::total_cmp);
+            let count = ratios.len();
+            let failed = ratios.iter().filter(|&&ratio| ratio < 1.0).count();
+            assert!(count >= 19 && 20 * failed <= count, "{kind}: {failed} of {count}");
+            assert!(ratios[count / 2] < 4.0, "{kind}: {}", ratios[count / 2]);
+        }
+    }
 }

@@ -81,7 +81,9 @@ fn turned_plates(turn: &dyn Fn(Vec3) -> Vec3, shift: Vec3, order: [usize; 2]) ->
     let far = |&u: &Vec3| {
         let u = turn(u);
         let optics = optics.radiator(Sampling::Tolerance(1e-3)).far_field(&[u]).unwrap()[0].amplitude;
-        let back = Complex64::cis(-wave().wavenumber() * u.dot(shift) + wave().wavenumber() * turn(Vec3::X).dot(shift));
+        let back = Complex64::cis(
+            -wave().wavenumber() * u.dot(shift) + wave().wavenumber() * turn(Vec3::X).dot(shift),
+        );
         (optics + edges.far_amplitude(u)) * back
     };
     observers.iter().map(far).collect()

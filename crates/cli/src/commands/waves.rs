@@ -100,6 +100,11 @@ fn summarise(args: &WavesArgs, folder: &Path, solved: &SolvedWaves) -> Result<()
         let text = format!("{} facets{ending}", found.facets);
         lines.add(&format!("{} MHz", found.frequency / 1e6), text);
     }
+    for error in solved.stated_errors() {
+        let name = solved.receiver(error.receiver).unwrap_or_default();
+        let text = format!("below {:.2e} at {name}, {} MHz", error.relative, error.frequency / 1e6);
+        lines.add("stated error", text);
+    }
     for (what, errors) in [("mesh error", solved.mesh_errors()), ("form error", solved.form_errors())] {
         for error in errors {
             let name = solved.receiver(error.receiver).unwrap_or_default();

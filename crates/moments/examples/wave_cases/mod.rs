@@ -172,9 +172,24 @@ pub fn cases() -> Vec<Case> {
     vec![
         Case::new("plate 3", Body::Plates(vec![upright(3.0, 0.0, 0.0)]), y, z),
         Case::new("plate 3 at 60", Body::Plates(vec![upright(3.0, 0.0, 0.0)]), [0.866, 0.5, 0.0], z),
-        Case::new("plate 3 at 60 H", Body::Plates(vec![upright(3.0, 0.0, 0.0)]), [0.866, 0.5, 0.0], [0.5, -0.866, 0.0]),
-        Case::new("plate 3 at 80 H", Body::Plates(vec![upright(3.0, 0.0, 0.0)]), [0.985, 0.1736, 0.0], [0.1736, -0.985, 0.0]),
-        Case::new("plate 3 askew", Body::Plates(vec![upright(3.0, 0.0, 0.0)]), [0.5, 0.6, 0.4], [0.1, 0.3, 1.0]),
+        Case::new(
+            "plate 3 at 60 H",
+            Body::Plates(vec![upright(3.0, 0.0, 0.0)]),
+            [0.866, 0.5, 0.0],
+            [0.5, -0.866, 0.0],
+        ),
+        Case::new(
+            "plate 3 at 80 H",
+            Body::Plates(vec![upright(3.0, 0.0, 0.0)]),
+            [0.985, 0.1736, 0.0],
+            [0.1736, -0.985, 0.0],
+        ),
+        Case::new(
+            "plate 3 askew",
+            Body::Plates(vec![upright(3.0, 0.0, 0.0)]),
+            [0.5, 0.6, 0.4],
+            [0.1, 0.3, 1.0],
+        ),
         Case::new("shadowed", shadowed(), y, z),
         Case::new("shadowed H", shadowed(), y, x),
         Case::new("shadowed askew", shadowed(), [0.3, 0.9, 0.2], z),

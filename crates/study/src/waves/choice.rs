@@ -141,7 +141,9 @@ fn chosen(seen: &Seen) -> Taken {
     let mut warnings = Vec::new();
     let (method, shadow, edge_currents, why) = if !seen.conductors {
         if !seen.flat {
-            warnings.push("several bounces between materials are not taken unasked; write bounces = 3, say".to_owned());
+            warnings.push(
+                "several bounces between materials are not taken unasked; write bounces = 3, say".to_owned(),
+            );
         }
         let shadow = if seen.panes { Shadow::Radiated } else { Shadow::Geometric };
         one(shadow, false, "the scene has other materials than conductors")
@@ -156,7 +158,11 @@ fn chosen(seen: &Seen) -> Taken {
     } else if seen.closed_conductors() && seen.edge <= EQUATION {
         all(Shadow::ExactDual, false, "closed conductors have an equation without approximation")
     } else if seen.closed_conductors() {
-        all(Shadow::Geometric, false, "facets are above a quarter of a wavelength, too long for the equation of closed bodies")
+        all(
+            Shadow::Geometric,
+            false,
+            "facets are above a quarter of a wavelength, too long for the equation of closed bodies",
+        )
     } else {
         all(Shadow::Radiated, true, "sheets light and shadow each other through their currents")
     };

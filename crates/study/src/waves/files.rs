@@ -96,7 +96,13 @@ fn statements(model: &Model, outcome: &Outcome) -> Vec<String> {
             format!("E at {name}, {megahertz} MHz, is off by about {percent:.2} % through {source}.")
         })
     });
-    solved.chain(estimated).collect()
+    let stated = outcome.stated_errors.iter().map(|error| {
+        let (name, megahertz) = (&model.receivers[error.receiver].name, error.frequency / 1e6);
+        let percent = 100.0 * error.relative;
+        format!("The error of E at {name}, {megahertz} MHz, is stated to be below {percent:.2} %.")
+    });
+    let reason = model.reason.iter().map(|reason| format!("The method was chosen: {reason}."));
+    reason.chain(solved).chain(stated).chain(estimated).collect()
 }
 
 /// Radar cross-sections of all receivers over the angle that is stepped through.

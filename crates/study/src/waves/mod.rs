@@ -25,4 +25,6 @@ pub(crate) use model::{Band, Method, Model, is_scene};
 pub(crate) use receivers::Places;
 pub(crate) use record::Outcome;
 pub use record::Solved as SolvedFrequency;
-pub use study::{SolvedWaves, WaveCompareOptions, WaveOptions, check_wave_solver, compare_waves, waves};
+pub use study::{
+    CouplingStorage, SolvedWaves, WaveCompareOptions, WaveOptions, check_wave_solver, compare_waves, waves,
+};

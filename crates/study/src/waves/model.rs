@@ -7,6 +7,7 @@ use fredholm_waves::material::Material;
 use fredholm_waves::source::PlaneWave;
 use fredholm_waves::{Complex64, Origin, Shadow, Source, Wave, WaveError};
 
+use super::CouplingStorage;
 use super::choice::{Asked, Taken, taken};
 use super::format::{ReceiverEntry, SceneEntry, WaveEntry};
 use super::geometry::{Geometry, materials};
@@ -71,6 +72,8 @@ pub(crate) struct Model {
     pub(crate) coarse: Option<Geometry>,
     pub(crate) receivers: Vec<Receiver>,
     surfaces: Vec<std::ops::Range<usize>>,
+    /// Whether the coupling is stored, where it is said.
+    pub(crate) storage: Option<CouplingStorage>,
     /// Memory of everything but a coupling, and what all may take.
     pub(crate) plan: Plan,
     pub(crate) limit: Limit,
@@ -134,6 +137,7 @@ impl Model {
             coarse,
             receivers,
             surfaces,
+            storage: None,
             plan,
             limit,
         })
@@ -229,11 +233,7 @@ fn shadow(text: &SceneText, entry: &WaveEntry) -> Result<Option<Shadow>, Error> 
     })
 }
 
-fn edge_currents(
-    text: &SceneText,
-    entry: &WaveEntry,
-    shadow: Option<Shadow>,
-) -> Result<Option<bool>, Error> {
+fn edge_currents(text: &SceneText, entry: &WaveEntry, shadow: Option<Shadow>) -> Result<Option<bool>, Error> {
     let Some(wanted) = &entry.edge_currents else { return Ok(None) };
     let other = shadow.is_some_and(|shadow| shadow.is_equation() || shadow == Shadow::Thesis);
     if *wanted.get_ref() && other {

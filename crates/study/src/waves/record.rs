@@ -36,6 +36,8 @@ pub(crate) struct Outcome {
     pub(crate) monostatic: Vec<MonostaticRow>,
     pub(crate) currents: Vec<WaveCurrents>,
     pub(crate) solved: Vec<Solved>,
+    /// Stated relative errors of E at the receivers and of their far fields.
+    pub(crate) stated_errors: Vec<Estimated>,
     /// Estimated relative errors of E at the receivers from the mesh.
     pub(crate) mesh_errors: Vec<Estimated>,
     /// Half the difference between the electric and the magnetic form: what physical optics itself
@@ -71,6 +73,7 @@ impl Outcome {
             "chosen_because": model.reason,
             "warnings": model.warnings,
             "receivers": model.receivers.iter().map(|receiver| &receiver.name).collect::<Vec<_>>(),
+            "stated_errors": self.stated_errors.iter().map(|e| e.record(model)).collect::<Vec<_>>(),
             "estimated_mesh_errors": self.mesh_errors.iter().map(|e| e.record(model)).collect::<Vec<_>>(),
             "estimated_form_errors": self.form_errors.iter().map(|e| e.record(model)).collect::<Vec<_>>(),
             "frequencies": self.solved.iter().map(solved).collect::<Vec<_>>(),

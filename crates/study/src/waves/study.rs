@@ -23,6 +23,17 @@ pub struct WaveOptions {
     pub memory: Option<Bytes>,
     /// Whether report.html is left out.
     pub no_report: bool,
+    /// Whether the coupling is stored or computed anew; what is predicted to be quicker where it is not said.
+    pub storage: Option<CouplingStorage>,
+}
+
+/// Where the coupling of facets comes from in every iteration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CouplingStorage {
+    /// A stored matrix.
+    Matrix,
+    /// Products that are computed anew each time.
+    Products,
 }
 
 /// What is asked of [`compare_waves`] besides.
@@ -104,7 +115,8 @@ pub fn check_wave_solver(text: &str) -> Result<(), OptionError> {
 }
 
 fn load(scene: &Path, asked: &WaveOptions, stages: &mut Stages) -> Result<Model, Error> {
-    let model = stages.run("scene", || Model::load(scene, asked.memory))?;
+    let mut model = stages.run("scene", || Model::load(scene, asked.memory))?;
+    model.storage = asked.storage;
     stages.tell(&model.plan, model.limit);
     model.warnings.iter().for_each(|text| stages.watch.warn(text));
     Ok(model)
@@ -163,6 +175,12 @@ impl SolvedWaves<'_> {
     #[must_use]
     pub fn frequencies(&self) -> &[Solved] {
         &self.outcome.solved
+    }
+
+    /// Stated relative errors of the scattered fields at the receivers and of their far fields, where they are known.
+    #[must_use]
+    pub fn stated_errors(&self) -> &[Estimated] {
+        &self.outcome.stated_errors
     }
 
     /// Estimated errors of the scattered fields at the receivers from the mesh, where the scene

@@ -41,8 +41,7 @@ pub(crate) fn inner_points(
     if shadow != Shadow::ExactDual {
         return Ok(None);
     }
-    let depths: Vec<f64> =
-        scatterer.facets().par_iter().map(|facet| depth(scatterer, wave, facet)).collect();
+    let depths: Vec<f64> = scatterer.facets().par_iter().map(|facet| depth(scatterer, wave, facet)).collect();
     if let Some(facet) = depths.iter().position(|&depth| depth < LEAST * wave.wavelength()) {
         return Err(WaveError::Thin { facet, depth: depths[facet] });
     }

@@ -67,11 +67,7 @@ pub(super) fn half_plane(c: f64, source: f64, depth: f64) -> Strip {
         (soft, across)
     };
     let hard = grazing(depth, sin) * (-4.0 * sign);
-    Strip {
-        soft: soft * (-2.0 * sin),
-        across: hard * across,
-        ends: hard * (phase * scaled(w) - 0.5),
-    }
+    Strip { soft: soft * (-2.0 * sin), across: hard * across, ends: hard * (phase * scaled(w) - 0.5) }
 }
 
 /// (½ − F(v))/v.

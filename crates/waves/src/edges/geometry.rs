@@ -99,9 +99,8 @@ impl Edge {
 fn reach(scatterer: &Scatterer, face: usize, place: Vec3, ray: Vec3) -> f64 {
     let faces = scatterer.occluders().patches();
     let (normal, margin) = (faces[face].normal(), SAME * scatterer.extent());
-    let lies = |other: &&Patch| {
-        other.corners().iter().all(|&corner| normal.dot(corner - place).abs() <= margin)
-    };
+    let lies =
+        |other: &&Patch| other.corners().iter().all(|&corner| normal.dot(corner - place).abs() <= margin);
     let mut parts: Vec<[f64; 2]> =
         faces.iter().filter(lies).filter_map(|other| inside(other, place, ray, margin)).collect();
     parts.sort_by(|a, b| a[0].total_cmp(&b[0]));

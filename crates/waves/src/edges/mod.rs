@@ -24,8 +24,8 @@ use crate::{
     Complex64, ComplexVector, Current, Field, Gate, Radiator, Sampling, Scatterer, SurfaceCurrent, TOLERANCE,
     Wave, WaveError, electric_element, magnetic_element,
 };
-use fredholm_mesh::Vec3;
 use coefficients::{half_plane, wedge};
+use fredholm_mesh::Vec3;
 use geometry::{Edge, Piece, edges};
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
@@ -240,7 +240,8 @@ impl Element {
         let sin_squared = 1.0 - self.along * self.along;
         let factor = Complex64::new(0.0, 2.0 / (k * sin_squared));
         // What lies farther from the edge than the point itself does not count for it.
-        let depths = self.depths.map(|depth| k * sin_squared * depth / (1.0 + depth / distance));
+        let reaches = self.depths.map(|depth| depth / (1.0 + (depth / distance).powi(2)).sqrt());
+        let depths = reaches.map(|reach| k * sin_squared * reach);
         let [e, h] = self.strength;
         if !self.edge.is_sheet() {
             let [f, g] = wedge(self.edge.opening, self.edge.angle(u), self.source_angle, depths);
@@ -249,7 +250,10 @@ impl Element {
         }
         let sine = sin_squared.sqrt();
         let ray = t * self.along + self.edge.along() * sine;
-        let c = (u.dot(ray) - self.along * self.along) / sin_squared;
+        // The end of the strip has its own way to a point that is not far away.
+        let nearer = |reach: f64| (distance - (u * distance - ray * reach).length()) / reach;
+        let slope = if distance.is_finite() { nearer(reaches[0]) } else { u.dot(ray) };
+        let c = (slope - self.along * self.along) / sin_squared;
         let strip = half_plane(c, self.source_angle, depths[0]);
         let oblique = (strip.ends - strip.across * Complex64::new(0.0, c)) * h * (0.5 * self.along);
         let along = (strip.soft * e / IMPEDANCE + oblique) * factor;
