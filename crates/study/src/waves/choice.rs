@@ -24,6 +24,8 @@ const EQUATION: f64 = 0.26;
 const BOUNCES: f64 = 0.5 * (1.0 + 1e-9);
 /// Most facets for which all bounces are taken unasked: a product then takes some seconds a core.
 const MOST: usize = 60_000;
+/// Longest sides of all faces together for which edge currents are added unasked, in wavelengths.
+const LONGEST: f64 = 20_000.0;
 /// The residual of GMRES where it is taken unasked: below the error of any mesh.
 const TOLERANCE: f64 = 1e-4;
 /// What is asked for where the scene names no method.
@@ -72,6 +74,8 @@ struct Seen {
     facets: usize,
     /// Longest edge in the shortest wavelength.
     edge: f64,
+    /// Length of the sides of all faces, in the shortest wavelength.
+    sides: f64,
 }
 
 impl Seen {
@@ -79,12 +83,16 @@ impl Seen {
         let materials = || bands.iter().flat_map(|band| &band.materials);
         let mesh = &geometry.mesh;
         let shortest = bands.iter().map(|band| band.wave.wavelength()).fold(f64::INFINITY, f64::min);
+        let sides = |patch: &fredholm_mesh::Patch| -> f64 {
+            (0..patch.sides()).map(|i| patch.corner(i).distance(patch.corner(i + 1))).sum()
+        };
         let side = |patch: &fredholm_mesh::Patch| {
             let sides = (0..patch.sides()).map(|i| patch.corner(i).distance(patch.corner(i + 1)));
             sides.fold(0.0, f64::max)
         };
         let sheets = geometry.kinds().contains(&Kind::Sheet);
         Self {
+            sides: mesh.occluders().iter().map(sides).sum::<f64>() / shortest,
             conductors: materials().all(|material| *material == Material::Conductor),
             panes: sheets && materials().any(|material| matches!(material, Material::Slab(_))),
             sheets,
@@ -166,7 +174,14 @@ fn chosen(seen: &Seen) -> Taken {
     } else {
         all(Shadow::Radiated, true, "sheets light and shadow each other through their currents")
     };
-    Taken { shadow, method, edge_currents, reason: Some(why), warnings }
+    let long = seen.sides > LONGEST;
+    if edge_currents && long {
+        warnings.push(
+            "the edges are too long for edge currents unasked; write edge_currents = true for them"
+                .to_owned(),
+        );
+    }
+    Taken { shadow, method, edge_currents: edge_currents && !long, reason: Some(why), warnings }
 }
 
 /// The rest of what a scene that asks for a part gets.

@@ -20,6 +20,9 @@ use super::{Model, Outcome};
 use crate::error::Error;
 use crate::stages::{Signals, Stages};
 
+/// Most elements of edges that errors are stated from.
+const MOST_ELEMENTS: f64 = 2e5;
+
 /// Computes everything that the model asks for.
 pub(crate) fn compute(model: &Model, stages: &mut Stages) -> Result<Outcome, Error> {
     let as_asked = Variant { name: "", geometry: &model.geometry, shadow: model.shadow };
@@ -234,6 +237,9 @@ impl Task<'_> {
             return Ok(Some(Stating::Inside { inside, equation: self.model.shadow.is_equation() }));
         }
         if self.scatterer.facets().iter().any(|facet| facet.kind == Kind::Closed) {
+            return Ok(None);
+        }
+        if EdgeCurrents::predicted(self.scatterer, &self.band.wave) > MOST_ELEMENTS {
             return Ok(None);
         }
         let edges = self.known_edges(all)?;

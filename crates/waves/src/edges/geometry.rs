@@ -207,7 +207,8 @@ impl Sides {
     /// The first other face with the side between these ends.
     fn neighbour(&self, faces: &[Patch], face: usize, ends: [Vec3; 2]) -> Option<usize> {
         let key = self.key(ends[0].midpoint(ends[1]));
-        let near = |i: usize| [0, 1, 2].map(|axis| key[axis] + (i / 3_usize.pow(axis as u32) % 3) as i64 - 1);
+        let step = |i: usize, axis: u32| (i / 3_usize.pow(axis) % 3) as i64 - 1;
+        let near = |i: usize| [0, 1, 2].map(|axis| key[axis].saturating_add(step(i, axis as u32)));
         let candidates = (0..27).filter_map(|i| self.at.get(&near(i))).flatten().copied();
         let shares = |&other: &usize| other != face && has_side(&faces[other], ends, 0.25 * self.cell);
         candidates.filter(shares).min()

@@ -32,6 +32,8 @@ use std::f64::consts::{PI, TAU};
 
 /// Shortest edge and shallowest face, in wavelengths.
 const SHORTEST: f64 = 0.5;
+/// Elements a wavelength along an edge.
+const PER_WAVELENGTH: f64 = 10.0;
 /// sin²β below which a wave runs along the edge.
 const ALONG: f64 = 1e-6;
 
@@ -179,6 +181,16 @@ impl EdgeCurrents {
         let depths = edge.depths(scatterer, piece.place, along);
         let strength = [e.dot(t), h.dot(t)];
         Some(Element { piece, edge: *edge, source_angle, along, depths, strength })
+    }
+
+    /// Elements that the edges of a scatterer take at most, for each source: known before they are made.
+    #[must_use]
+    pub fn predicted(scatterer: &Scatterer, wave: &Wave) -> f64 {
+        let sides = |face: &fredholm_mesh::Patch| -> f64 {
+            (0..face.sides()).map(|i| face.corner(i).distance(face.corner(i + 1))).sum()
+        };
+        let total: f64 = scatterer.occluders().patches().iter().map(sides).sum();
+        PER_WAVELENGTH * total / wave.wavelength()
     }
 
     /// Number of elements.
