@@ -64,6 +64,7 @@ pub(super) struct Taken {
 }
 
 /// What decides.
+#[allow(clippy::struct_excessive_bools, reason = "each is a fact of its own")]
 struct Seen {
     conductors: bool,
     /// Whether a sheet lets something through.
@@ -98,7 +99,7 @@ impl Seen {
             sheets,
             flat: is_flat(geometry),
             facets: mesh.len(),
-            edge: mesh.patches().map(|patch| side(&patch)).fold(0.0, f64::max) / shortest,
+            edge: mesh.patches().map(side).fold(0.0, f64::max) / shortest,
         }
     }
 
@@ -113,7 +114,7 @@ fn is_flat(geometry: &Geometry) -> bool {
     let (Some(first), Some(bounds)) = (faces.first(), geometry.mesh.bounds()) else { return false };
     let margin = 1e-9 * bounds.max.distance(bounds.min);
     let height = |p: &fredholm_mesh::Vec3| first.normal().dot(*p - first.corner(0)).abs();
-    let corners = || faces.iter().flat_map(|face| face.corners());
+    let corners = || faces.iter().flat_map(fredholm_mesh::Patch::corners);
     geometry.kinds().iter().all(|kind| *kind == Kind::Sheet) && corners().all(|p| height(p) <= margin)
 }
 

@@ -298,7 +298,7 @@ impl Task<'_> {
         let Some(first) = faces.first() else { return false };
         let margin = 1e-9 * self.scatterer.extent();
         let height = |p: &Vec3| first.normal().dot(*p - first.corner(0)).abs();
-        faces.iter().flat_map(|face| face.corners()).all(|p| height(p) <= margin)
+        faces.iter().flat_map(fredholm_mesh::Patch::corners).all(|p| height(p) <= margin)
     }
 
     fn rows(&self, receiver: usize, points: &[Vec3], scattered: &[Field]) -> Result<Vec<WaveRow>, WaveError> {

@@ -135,7 +135,7 @@ impl EdgeCurrents {
             for &source in sources.iter().filter(|source| sees(&piece, **source)) {
                 let towards = source.origin().seen_from(piece.place);
                 let field = source.field(&self.wave, piece.place);
-                self.elements.extend(self.element(scatterer, (edge, piece), towards, field));
+                self.elements.extend(Self::element(scatterer, (edge, piece), towards, field));
             }
         }
     }
@@ -158,7 +158,7 @@ impl EdgeCurrents {
         self.light(scatterer, edge, sources, &|_, _| true);
         for (piece, field) in pieces.into_iter().zip(fields) {
             if let Some(flow) = field.power_density().try_normalize() {
-                self.elements.extend(self.element(scatterer, (edge, piece), -flow, field));
+                self.elements.extend(Self::element(scatterer, (edge, piece), -flow, field));
             }
         }
         Ok(())
@@ -167,7 +167,6 @@ impl EdgeCurrents {
     /// The element of a piece that a wave from the direction `towards` its source meets; none for a wave from within the
     /// body or along the edge.
     fn element(
-        &self,
         scatterer: &Scatterer,
         (edge, piece): (&Edge, Piece),
         towards: Vec3,
