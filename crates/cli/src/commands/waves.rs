@@ -90,7 +90,7 @@ fn summarise(args: &WavesArgs, folder: &Path, solved: &SolvedWaves) -> Result<()
     let edges = if solved.edge_currents() { ", edge currents" } else { "" };
     lines.add("method", format!("{}, shadows {}{edges}", solved.method(), solved.shadow()));
     if let Some(reason) = solved.reason() {
-        lines.add("chosen", reason.to_owned());
+        lines.add("chosen", reason);
     }
     for found in solved.frequencies() {
         let residual = found.residuals.last();
