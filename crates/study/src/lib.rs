@@ -96,6 +96,6 @@ pub use viewfactors::{
     point_closure, solve_view_factors, view_factor_methods, view_factors,
 };
 pub use waves::{
-    CheckedWaves, Estimated, SolvedFrequency, SolvedWaves, WAVE_FILES, WaveCompareOptions, WaveOptions,
-    build_wave_solver, check_wave_solver, check_waves, compare_waves, waves,
+    CheckedWaves, CouplingStorage, Estimated, SolvedFrequency, SolvedWaves, WAVE_FILES, WaveCompareOptions,
+    WaveOptions, build_wave_solver, check_wave_solver, check_waves, compare_waves, waves,
 };

@@ -69,7 +69,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let currents = Bounced::new(&plates, &first, &system.currents(&gmres, 0));
         let fields = system.radiator(&currents).fields(&circle)?;
         print!("  gmres {:.4} ({:.4})", error(&fields, 0.0), error(&fields, 1.0));
-        let bounced = EdgeCurrents::new(&plates, wave, &sources)?.with_bounces(&plates, &currents)?;
+        let bounced = EdgeCurrents::of_bounces(&plates, wave, &sources, &currents)?;
         let both: Vec<Field> =
             fields.iter().zip(bounced.fields(&circle)).map(|(&field, edge)| field + edge).collect();
         println!(" [{:.4}]", error(&both, 0.0));

@@ -81,7 +81,7 @@ pub enum WaveError {
     },
     /// A closed body has no room for a second surface inside.
     #[error(
-        "the point {depth} m behind facet {facet} is not inside the body, which is too thin for the equation on two surfaces; take method = \"mfie\" or \"cfie\""
+        "the second surface would be {depth} m behind facet {facet}, too close to the first for the equation on two surfaces; take method = \"mfie\" or \"cfie\", or make the body thicker there"
     )]
     Thin {
         /// Index of the facet.

@@ -20,6 +20,7 @@ mod optics;
 mod radiation;
 mod rule;
 pub mod source;
+mod stated;
 pub mod surface;
 
 pub use complex::ComplexVector;
@@ -37,4 +38,5 @@ pub use num_complex::Complex64;
 pub use optics::{PhysicalOptics, Shadow};
 pub use radiation::{FarField, Gate, Pattern, Radiator, Sampling, TOLERANCE, cross_section, polar_frame};
 pub use source::{Origin, Source, incident};
+pub use stated::{Indicator, field_inside};
 pub use surface::{Facet, Kind, Scatterer};

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
-use fredholm_study::{Bytes, WaveCompareOptions, WaveOptions, check_wave_solver};
+use clap::{Args, ValueEnum};
+use fredholm_study::{Bytes, CouplingStorage, WaveCompareOptions, WaveOptions, check_wave_solver};
 
 use super::{LogArgs, tolerance};
 
@@ -32,6 +32,10 @@ pub(crate) struct WavesArgs {
     /// Memory allowed, such as 4GiB or 800MB [default: what leaves the machine usable]
     #[arg(long, value_name = "LIMIT")]
     pub(crate) memory: Option<Bytes>,
+    /// Where the coupling of the facets comes from: a stored matrix, or products computed anew [default: what is predicted
+    /// to be quicker]
+    #[arg(long, value_name = "STORAGE")]
+    pub(crate) storage: Option<StorageArg>,
     /// Compare solvers on the coupling instead, with their options, or all: neumann,gmres:restart=100,southwell
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = solver)]
     pub(crate) compare: Vec<String>,
@@ -48,6 +52,15 @@ pub(crate) struct WavesArgs {
     pub(crate) log: LogArgs,
 }
 
+/// Where the coupling comes from.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum StorageArg {
+    /// A stored matrix
+    Matrix,
+    /// Products computed anew in every iteration
+    Products,
+}
+
 /// A solver that can be made, or all of them.
 fn solver(text: &str) -> Result<String, String> {
     if text != "all" {
@@ -58,7 +71,11 @@ fn solver(text: &str) -> Result<String, String> {
 
 impl WavesArgs {
     pub(crate) fn options(&self) -> WaveOptions {
-        WaveOptions { memory: self.memory, no_report: self.no_report }
+        let storage = self.storage.map(|storage| match storage {
+            StorageArg::Matrix => CouplingStorage::Matrix,
+            StorageArg::Products => CouplingStorage::Products,
+        });
+        WaveOptions { memory: self.memory, no_report: self.no_report, storage }
     }
 
     /// The solvers to compare, where there are any.

@@ -96,7 +96,11 @@ fn row(run: &ComparisonRun) -> String {
 
 fn summarise(args: &WavesArgs, folder: &Path, solved: &SolvedWaves) -> Result<(), Error> {
     let mut lines = Lines::default();
-    lines.add("method", format!("{}, {}", solved.method(), solved.solution()));
+    let edges = if solved.edge_currents() { ", edge currents" } else { "" };
+    lines.add("method", format!("{}{edges}, {}", solved.method(), solved.solution()));
+    if let Some(reason) = solved.reason() {
+        lines.add("chosen", reason);
+    }
     let all = solved.frequencies();
     if all.len() > MOST_LISTED {
         lines.add("frequencies", sweep(all));
@@ -108,6 +112,11 @@ fn summarise(args: &WavesArgs, folder: &Path, solved: &SolvedWaves) -> Result<()
         });
         let text = format!("{} facets{ending}", found.facets);
         lines.add(&format!("{} MHz", found.frequency / 1e6), text);
+    }
+    for error in solved.stated_errors() {
+        let name = solved.receiver(error.receiver).unwrap_or_default();
+        let text = format!("below {:.2e} at {name}, {} MHz", error.relative, error.frequency / 1e6);
+        lines.add("stated error", text);
     }
     for (what, errors) in [("mesh error", solved.mesh_errors()), ("form error", solved.form_errors())] {
         for error in errors {
@@ -134,7 +143,7 @@ pub(super) fn check(args: &CheckArgs, terminal: &Terminal) -> Result<Ending, Err
     if args.output.is_some() {
         terminal.warn("scenes of waves are not drawn by check; -o is left aside");
     }
-    let options = WaveOptions { memory: args.problem.memory, no_report: true };
+    let options = WaveOptions { memory: args.problem.memory, no_report: true, ..WaveOptions::default() };
     let checked = check_waves(&args.problem.scene, &options, terminal)?;
     if !args.log.quiet {
         output::print(&forecast(&checked))?;

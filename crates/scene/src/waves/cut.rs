@@ -134,6 +134,12 @@ impl Cut<'_> {
 }
 
 impl WaveScene {
+    /// Whether each surface is a sheet or a part of a closed body.
+    #[must_use]
+    pub fn kinds(&self) -> Vec<Kind> {
+        self.parts().iter().map(|part| part.kind).collect()
+    }
+
     /// The scatterer of a mesh of this scene, made of these materials (those of
     /// [`materials`](Self::materials)).
     ///

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use fredholm_linop::{Dense, Watch};
+use fredholm_scene::Finding;
 use fredholm_scene::waves::Receiver;
-use fredholm_scene::{Finding, Warning};
 use fredholm_waves::{Complex64, System, Wave, WaveError};
 
 use super::{Method, Model, WaveOptions, galerkin};
@@ -42,7 +42,7 @@ pub struct CheckedWaves {
     /// What the pieces of the surfaces are, and what is remarkable about them.
     pub findings: Vec<Finding>,
     /// What is allowed, but probably not meant.
-    pub warnings: Vec<Warning>,
+    pub warnings: Vec<String>,
 }
 
 /// Validates a scene of waves, tells what its mesh is, and predicts what its fields will take.

@@ -65,7 +65,8 @@ fn case(
     let made = solvers.iter().map(|text| build(text)).collect::<Result<Vec<_>, _>>()?;
     let system = stages.run(&format!("coupling at {name}"), || {
         let all: Vec<&dyn Solver<Complex64>> = made.iter().map(AsRef::as_ref).collect();
-        coupled(model, &scatterer, (band.wave, model.shadow), &all, signals)
+        let products = (STEPS + 40 * all.len()) as f64;
+        coupled(model, &scatterer, (band.wave, model.shadow), (&all, products), signals)
     })?;
     let radius = stages.run(&format!("spectral radius at {name}"), || radius(&system, signals))?;
     let b = system.right_hand_side(&[&first]);

@@ -5,11 +5,14 @@ use fredholm_mesh::Vec3;
 use fredholm_report::{FarRow, WaveCurrents, WaveRow};
 use fredholm_scene::waves::{Places, direction};
 use fredholm_waves::{
-    Bounced, ComplexVector, Current, EdgeCurrents, FacetCurrents, FarField, Field, PhysicalOptics, Radiator,
-    Sampling, Scatterer, Shadow, Source, System, TOLERANCE, WaveError, cross_section, incident,
+    Bounced, ComplexVector, Current, EdgeCurrents, FacetCurrents, FarField, Field, Kind, PhysicalOptics,
+    Radiator, Sampling, Scatterer, Shadow, Source, System, TOLERANCE, WaveError, cross_section, field_inside,
+    incident,
 };
 use rayon::prelude::*;
 
+use super::estimate::{self, Estimated, Stating};
+use super::galerkin;
 use super::geometry::Geometry;
 use super::model::Band;
 use super::monostatic::Sweep;
@@ -17,9 +20,11 @@ use super::over_frequency::MOST_PICTURED;
 use super::record::Solved;
 use super::solving::{self, Solution};
 use super::{Model, Outcome};
-use super::{estimate, galerkin};
 use crate::error::Error;
 use crate::stages::{Signals, Stages, Unstaged};
+
+/// Most elements of edges that errors are stated from.
+const MOST_ELEMENTS: f64 = 2e5;
 
 /// Computes everything that the model asks for.
 pub(crate) fn compute(model: &Model, stages: &mut Stages) -> Result<Outcome, Error> {
@@ -109,7 +114,8 @@ impl Task<'_> {
         if self.model.has_bistatic() {
             let (currents, solved) =
                 stages.run(&format!("currents at {name}"), || self.currents(system, signals))?;
-            stages.run(&format!("fields at {name}"), || self.radiate(system, &currents, outcome))?;
+            let left = self.left(system, &solved);
+            stages.run(&format!("fields at {name}"), || self.radiate(system, &currents, left, outcome))?;
             let values = currents.values().iter().map(current).collect();
             outcome.currents.push(WaveCurrents { name: name.clone(), values });
             outcome.solved.push(solved);
@@ -184,18 +190,20 @@ impl Task<'_> {
         Ok(())
     }
 
-    /// Fields at all receivers.
+    /// Fields at all receivers; what is left of the bounces is `residual`, where it is known.
     fn radiate(
         &self,
         system: Option<&System<'_>>,
         currents: &FacetCurrents,
+        residual: Option<f64>,
         outcome: &mut Outcome,
     ) -> Result<(), Error> {
         let Some(system) = system else {
-            return self.receive(&self.first.radiator(Sampling::Tolerance(TOLERANCE)), None, outcome);
+            let radiator = self.first.radiator(Sampling::Tolerance(TOLERANCE));
+            return self.receive(&radiator, None, residual, outcome);
         };
         let all = Bounced::new(self.scatterer, self.first, currents);
-        self.receive(&system.radiator(&all), Some(&all), outcome)
+        self.receive(&system.radiator(&all), Some(&all), residual, outcome)
     }
 
     /// `all` are the currents where there is more than one bounce.
@@ -203,16 +211,21 @@ impl Task<'_> {
         &self,
         radiator: &Radiator<'_>,
         all: Option<&Bounced<'_>>,
+        residual: Option<f64>,
         outcome: &mut Outcome,
     ) -> Result<(), Error> {
         let edges = self.edges(all)?;
+        let stating = self.stating(radiator, all, residual)?;
         for (index, receiver) in self.model.receivers.iter().enumerate() {
             let refused = |error: WaveError| self.model.refused(&error, Some(receiver));
-            match &receiver.places {
+            let indicator = match &receiver.places {
                 Places::Near { points, .. } => {
                     let scattered = near(radiator, edges.as_ref(), points).map_err(refused)?;
                     let rows = near_rows(self.model, self.band, index, points, &scattered);
                     outcome.near.extend(rows.map_err(refused)?);
+                    let fields: Vec<ComplexVector> = scattered.iter().map(|field| field.e).collect();
+                    let edge = |edges: &EdgeCurrents, p: Vec3| edges.fields(&[p])[0].e;
+                    stating.as_ref().map(|stating| stating.indicator(points, &fields, &edge))
                 }
                 Places::Far(angles) => {
                     let far = self.far(radiator, all.is_none(), edges.as_ref(), angles).map_err(refused)?;
@@ -222,11 +235,54 @@ impl Task<'_> {
                             far_row(self.model, self.band, [index, i], *angles, far)
                         }),
                     );
+                    let fields: Vec<ComplexVector> = far.iter().map(|far| far.amplitude).collect();
+                    let edge = |edges: &EdgeCurrents, u: Vec3| edges.far_amplitude(u);
+                    let directions: Vec<Vec3> =
+                        angles.iter().map(|&[theta, phi]| direction(theta, phi)).collect();
+                    stating.as_ref().map(|stating| stating.indicator(&directions, &fields, &edge))
                 }
-                Places::Monostatic(_) => {}
+                Places::Monostatic(_) => None,
+            };
+            if let (Some(indicator), Some(residual)) = (indicator, residual) {
+                let frequency = self.band.wave.frequency();
+                let relative = indicator.error() + residual;
+                outcome.stated_errors.push(Estimated { receiver: index, frequency, relative });
             }
         }
         Ok(())
+    }
+
+    /// What the error is stated from: of conductors that are all closed, or all sheets, where the bounces are known.
+    fn stating(
+        &self,
+        radiator: &Radiator<'_>,
+        all: Option<&Bounced<'_>>,
+        residual: Option<f64>,
+    ) -> Result<Option<Stating>, Error> {
+        let conductors = self.scatterer.check_conductor("").is_ok();
+        if residual.is_none()
+            || !conductors
+            || !self.variant.name.is_empty()
+            || self.model.shadow == Shadow::Thesis
+        {
+            return Ok(None);
+        }
+        let refused = |error: WaveError| self.refused(&error);
+        let inside =
+            field_inside(self.scatterer, &self.band.wave, self.sources, radiator).map_err(refused)?;
+        if let Some(inside) = inside {
+            return Ok(Some(Stating::Inside { inside, equation: self.model.shadow.is_equation() }));
+        }
+        if self.scatterer.facets().iter().any(|facet| facet.kind == Kind::Closed) {
+            return Ok(None);
+        }
+        if EdgeCurrents::predicted(self.scatterer, &self.band.wave) > MOST_ELEMENTS {
+            return Ok(None);
+        }
+        let edges = self.known_edges(all)?;
+        // Where no edge is one that the theory knows, nothing is.
+        let known = !edges.is_empty() && edges.small() == 0;
+        Ok(known.then_some(Stating::Edges { edges, added: self.model.edge_currents }))
     }
 
     /// The far fields in some directions; of one bounce of plane waves in closed form.
@@ -252,12 +308,34 @@ impl Task<'_> {
         if !self.model.edge_currents || self.variant.shadow == Shadow::Thesis {
             return Ok(None);
         }
-        let lit = EdgeCurrents::new(self.scatterer, self.band.wave, self.sources);
-        let found = lit.and_then(|lit| match all {
-            Some(all) => lit.with_bounces(self.scatterer, all),
-            None => Ok(lit),
-        });
-        found.map(Some).map_err(|error| self.refused(&error))
+        self.known_edges(all).map(Some)
+    }
+
+    fn known_edges(&self, all: Option<&Bounced<'_>>) -> Result<EdgeCurrents, Error> {
+        let found = match all {
+            Some(all) => EdgeCurrents::of_bounces(self.scatterer, self.band.wave, self.sources, all),
+            None => EdgeCurrents::new(self.scatterer, self.band.wave, self.sources),
+        };
+        found.map_err(|error| self.refused(&error))
+    }
+
+    /// What is left of the bounces, relative to the first: nothing for one bounce where there can be no second.
+    fn left(&self, system: Option<&System<'_>>, solved: &Solved) -> Option<f64> {
+        let last = solved.residuals.last().copied();
+        if system.is_none() && (self.is_flat() || self.all_closed()) { last.or(Some(0.0)) } else { last }
+    }
+
+    fn all_closed(&self) -> bool {
+        self.scatterer.facets().iter().all(|facet| facet.kind == Kind::Closed)
+    }
+
+    /// Whether all facets are in one plane.
+    fn is_flat(&self) -> bool {
+        let faces = self.scatterer.occluders().patches();
+        let Some(first) = faces.first() else { return false };
+        let margin = 1e-9 * self.scatterer.extent();
+        let height = |p: &Vec3| first.normal().dot(*p - first.corner(0)).abs();
+        faces.iter().flat_map(fredholm_mesh::Patch::corners).all(|p| height(p) <= margin)
     }
 }
 

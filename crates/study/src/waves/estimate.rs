@@ -3,6 +3,7 @@
 //!
 //! | estimate | from |
 //! |---|---|
+//! | stated | the share of the edge currents, or the field inside closed bodies, times a measured factor ([`Indicator`]), and what is left of the bounces |
 //! | mesh | Richardson: a third of the difference to edges twice as long, for the second order of the rules |
 //! | form | half the difference between the currents 2 n × H and 2 n × E, which a true conductor does not tell apart |
 //!
@@ -10,8 +11,9 @@
 
 use std::collections::BTreeMap;
 
-use fredholm_waves::Shadow;
+use fredholm_mesh::Vec3;
 use fredholm_waves::material::Material;
+use fredholm_waves::{ComplexVector, EdgeCurrents, Indicator, Shadow};
 use serde_json::{Value, json};
 
 use super::{Model, Outcome};
@@ -31,6 +33,42 @@ impl Estimated {
     pub(super) fn record(&self, model: &Model) -> Value {
         let name = model.receivers.get(self.receiver).map(|receiver| &receiver.name);
         json!({ "receiver": name, "frequency_hz": self.frequency, "relative": self.relative })
+    }
+}
+
+/// Most points or directions of a receiver that the share of edge currents is taken from.
+const SAMPLE: usize = 60;
+
+/// What the error of a receiver is stated from.
+pub(super) enum Stating {
+    /// The field inside closed bodies, and whether the currents solve an equation.
+    Inside { inside: f64, equation: bool },
+    /// The edge currents, and whether they are part of the field.
+    Edges { edges: EdgeCurrents, added: bool },
+}
+
+impl Stating {
+    /// The indicator of a receiver with these points or directions and fields.
+    pub(super) fn indicator(
+        &self,
+        places: &[Vec3],
+        fields: &[ComplexVector],
+        edge: &(dyn Fn(&EdgeCurrents, Vec3) -> ComplexVector + Sync),
+    ) -> Indicator {
+        match self {
+            Self::Inside { inside, equation: true } => Indicator::InsideEquation(*inside),
+            Self::Inside { inside, equation: false } => Indicator::InsideOptics(*inside),
+            Self::Edges { edges, added } => {
+                let step = places.len().div_ceil(SAMPLE).max(1);
+                let (mut share, mut size) = (0.0, 0.0);
+                for (&place, field) in places.iter().zip(fields).step_by(step) {
+                    share += edge(edges, place).norm_squared();
+                    size += field.norm_squared();
+                }
+                let share = if size > 0.0 { (share / size).sqrt() } else { 0.0 };
+                if *added { Indicator::EdgesAdded(share) } else { Indicator::EdgesLeft(share) }
+            }
+        }
     }
 }
 

@@ -125,7 +125,7 @@ fn page(folder: &Path, model: &Model, outcome: &Outcome, timings: &[Timing]) -> 
         title: model.scene.title().map_or(path, str::to_owned),
         method: model.method_in_words(),
         across: across(model).to_owned(),
-        warnings: model.warnings.iter().map(ToString::to_string).collect(),
+        warnings: model.warnings.clone(),
         statements: statements(model, outcome),
         plots: curves(model, outcome),
         provenance: known.map(|(name, value)| (name.to_owned(), value)).into(),
@@ -152,7 +152,13 @@ fn statements(model: &Model, outcome: &Outcome) -> Vec<String> {
             format!("E at {name}, {megahertz} MHz, is off by about {percent:.2} % through {source}.")
         })
     });
-    solved.chain(estimated).collect()
+    let stated = outcome.stated_errors.iter().map(|error| {
+        let (name, megahertz) = (&model.receivers[error.receiver].name, error.frequency / 1e6);
+        let percent = 100.0 * error.relative;
+        format!("The error of E at {name}, {megahertz} MHz, is stated to be below {percent:.2} %.")
+    });
+    let reason = model.reason.iter().map(|reason| format!("The method was chosen: {reason}."));
+    reason.chain(solved).chain(stated).chain(estimated).collect()
 }
 
 /// Radar cross-sections of all receivers over the angle that is stepped through.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use fredholm_mesh::Mesh;
 use fredholm_scene::waves::{Cuts, WaveScene};
 use fredholm_waves::material::Material;
-use fredholm_waves::{Scatterer, WaveError};
+use fredholm_waves::{Kind, Scatterer, WaveError};
 
 use crate::error::Error;
 use crate::problem::scene_failure;
@@ -26,6 +26,11 @@ impl Geometry {
         let cut = scene.cut(cuts).map_err(scene_failure)?;
         admit(cut.facets())?;
         Ok(Self { mesh: cut.mesh().map_err(scene_failure)?, scene: Arc::clone(scene) })
+    }
+
+    /// What each surface is part of.
+    pub(super) fn kinds(&self) -> Vec<Kind> {
+        self.scene.kinds()
     }
 
     /// The scatterer at one frequency.

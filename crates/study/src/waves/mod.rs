@@ -1,6 +1,7 @@
 //! Scenes of waves: their files, what they mean, and what is written.
 
 mod check;
+mod choice;
 mod compare;
 mod compute;
 mod estimate;
@@ -25,4 +26,6 @@ pub(crate) use model::{Band, Method, Model};
 pub(crate) use record::Outcome;
 pub use record::Solved as SolvedFrequency;
 pub use registry::build as build_wave_solver;
-pub use study::{SolvedWaves, WaveCompareOptions, WaveOptions, check_wave_solver, compare_waves, waves};
+pub use study::{
+    CouplingStorage, SolvedWaves, WaveCompareOptions, WaveOptions, check_wave_solver, compare_waves, waves,
+};

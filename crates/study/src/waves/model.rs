@@ -5,12 +5,14 @@ use std::sync::Arc;
 
 use fredholm_linop::Solver;
 use fredholm_moments::Equation;
+use fredholm_scene::SceneError;
 use fredholm_scene::waves::{self as scene, About, Cuts, Places, Settings, Shadows, WaveScene};
-use fredholm_scene::{SceneError, Warning};
 use fredholm_waves::material::Material;
 use fredholm_waves::source::PlaneWave;
 use fredholm_waves::{Complex64, Origin, Shadow, Source, Wave, WaveError};
 
+use super::CouplingStorage;
+use super::choice::{Asked, Taken, taken};
 use super::geometry::Geometry;
 use super::memory::{plan as memory_of, sampled};
 use crate::error::Error;
@@ -81,14 +83,18 @@ pub(crate) struct Model {
     pub(crate) method: Method,
     /// Whether edge currents are added.
     pub(crate) edge_currents: bool,
+    /// Why this method, where the scene left it open.
+    pub(crate) reason: Option<String>,
     /// The source, where it is a single plane wave.
     pub(crate) plane_wave: Option<PlaneWave>,
     pub(crate) geometry: Geometry,
     /// The same with edges twice as long, where errors are to be estimated.
     pub(crate) coarse: Option<Geometry>,
     pub(crate) receivers: Vec<Receiver>,
-    /// What is allowed, but probably not meant.
-    pub(crate) warnings: Vec<Warning>,
+    /// What is allowed, but probably not meant, and what should be known of the method.
+    pub(crate) warnings: Vec<String>,
+    /// Whether the coupling is stored, where it is said.
+    pub(crate) storage: Option<CouplingStorage>,
     /// Memory of everything but a coupling, and what all may take.
     pub(crate) plan: Plan,
     pub(crate) limit: Limit,
@@ -97,52 +103,60 @@ pub(crate) struct Model {
 impl Model {
     /// Reads a scene file and cuts its surfaces, where they fit the memory asked for.
     pub(crate) fn load(path: &Path, memory: Option<Bytes>) -> Result<Self, Error> {
-        Self::read(path, memory, false, &memory_of)
+        Self::read(path, memory, [false, true], &memory_of)
     }
 
     /// The same where the fields are sampled, so many batches at once.
     pub(crate) fn load_sampled(path: &Path, memory: Option<Bytes>, batches: u32) -> Result<Self, Error> {
-        Self::read(path, memory, false, &|facets, scene| sampled(facets, scene, batches))
+        Self::read(path, memory, [false; 2], &|facets, scene| sampled(facets, scene, batches))
     }
 
     /// The same with errors estimated, whether the scene asks for it or not.
     pub(crate) fn load_estimated(path: &Path, memory: Option<Bytes>) -> Result<Self, Error> {
-        Self::read(path, memory, true, &memory_of)
+        Self::read(path, memory, [true, false], &memory_of)
     }
 
     fn read(
         path: &Path,
         memory: Option<Bytes>,
-        estimated: bool,
+        [estimated, chooses]: [bool; 2],
         memory_of: &dyn Fn(u128, &WaveScene) -> Plan,
     ) -> Result<Self, Error> {
         let scene = Arc::new(WaveScene::load(path).map_err(scene_failure)?);
         let settings = scene.settings();
         let estimated = estimated || settings.estimate_errors;
-        let method = method(&scene)?;
+        let asked = asked(&scene)?;
         let bands = bands(&scene)?;
-        let closed_form = !estimated && is_closed_form(&scene, &method);
         let limit = memory::limit(memory);
         let admit = |facets| memory_of(facets, &scene).admit(limit, HELP);
         let wavelength = scene.waves().iter().map(Wave::wavelength).fold(f64::INFINITY, f64::min);
-        let cut = |stretch| Geometry::new(&scene, Cuts { wavelength, stretch, whole: closed_form }, &admit);
-        let geometry = cut(1.0)?;
-        let coarse = estimated.then(|| cut(2.0)).transpose()?;
+        let cut = |stretch, whole| Geometry::new(&scene, Cuts { wavelength, stretch, whole }, &admit);
+        let whole = !estimated && asked.method.as_ref().is_some_and(|method| is_closed_form(&scene, method));
+        let geometry = cut(1.0, whole)?;
+        let galerkin = galerkin(settings);
+        let Taken { shadow, method, edge_currents, reason, warnings } =
+            if chooses && galerkin.is_none() { taken(asked, &geometry, &bands) } else { asked.plain() };
+        // One bounce that was not asked for may do without cutting, too.
+        let geometry =
+            if !whole && !estimated && is_closed_form(&scene, &method) { cut(1.0, true)? } else { geometry };
+        let coarse = estimated.then(|| cut(2.0, false)).transpose()?;
         let facets = geometry.mesh.len() + coarse.as_ref().map_or(0, |coarse| coarse.mesh.len());
         let plan = memory_of(facets as u128, &scene);
         plan.admit(limit, HELP)?;
-        let warnings = scene.check().map_err(scene_failure)?;
+        let doubts = scene.check().map_err(scene_failure)?;
         Ok(Self {
             bands,
-            shadow: shadow(settings),
-            galerkin: galerkin(settings),
+            shadow,
+            galerkin,
             method,
-            edge_currents: settings.edge_currents.unwrap_or(false),
+            edge_currents,
+            reason,
             plane_wave: only_plane_wave(&scene),
             geometry,
             coarse,
             receivers: receivers(&scene),
-            warnings,
+            warnings: doubts.iter().map(ToString::to_string).chain(warnings).collect(),
+            storage: None,
             plan,
             limit,
             scene,
@@ -152,7 +166,7 @@ impl Model {
     /// Tells what the memory is and what is probably not meant.
     pub(crate) fn tell(&self, stages: &Stages) {
         stages.tell(&self.plan, self.limit);
-        self.warnings.iter().for_each(|warning| stages.watch.warn(&warning.to_string()));
+        self.warnings.iter().for_each(|warning| stages.watch.warn(warning));
     }
 
     /// The scene file.
@@ -243,14 +257,26 @@ fn bands(scene: &WaveScene) -> Result<Vec<Band>, Error> {
     scene.waves().iter().map(band).collect::<Result<_, SceneError>>().map_err(scene_failure)
 }
 
-/// The treatment of shadows that belongs to a method.
-fn shadow(settings: &Settings) -> Shadow {
+/// What a scene says of the method.
+fn asked(scene: &WaveScene) -> Result<Asked, Error> {
+    let settings = scene.settings();
+    Ok(Asked {
+        shadow: shadow(settings),
+        optics: settings.method == Some(scene::Method::PhysicalOptics),
+        method: method(scene)?,
+        edge_currents: settings.edge_currents,
+    })
+}
+
+/// The treatment of shadows that is asked for.
+fn shadow(settings: &Settings) -> Option<Shadow> {
     match (settings.method, settings.shadows) {
-        (Some(scene::Method::Mfie), _) => Shadow::Exact,
-        (Some(scene::Method::DualSurfaceMfie), _) => Shadow::ExactDual,
-        (Some(scene::Method::Thesis), _) => Shadow::Thesis,
-        (_, Some(Shadows::Radiated)) => Shadow::Radiated,
-        (_, _) => Shadow::Geometric,
+        (Some(scene::Method::Mfie), _) => Some(Shadow::Exact),
+        (Some(scene::Method::DualSurfaceMfie), _) => Some(Shadow::ExactDual),
+        (Some(scene::Method::Thesis), _) => Some(Shadow::Thesis),
+        (_, Some(Shadows::Radiated)) => Some(Shadow::Radiated),
+        (_, Some(Shadows::Geometric)) => Some(Shadow::Geometric),
+        (_, None) => None,
     }
 }
 
@@ -263,7 +289,8 @@ fn galerkin(settings: &Settings) -> Option<Equation> {
     }
 }
 
-fn method(scene: &WaveScene) -> Result<Method, Error> {
+/// The bounces or the solver, where they are asked for.
+fn method(scene: &WaveScene) -> Result<Option<Method>, Error> {
     let settings = scene.settings();
     let usual = match settings.method {
         Some(scene::Method::Efie | scene::Method::Cfie) => Some(BY_MATRIX),
@@ -271,7 +298,7 @@ fn method(scene: &WaveScene) -> Result<Method, Error> {
         _ => None,
     };
     let name = settings.solver.as_deref().or(usual);
-    let Some(name) = name else { return Ok(Method::Bounces(settings.bounces.unwrap_or(1) as usize)) };
+    let Some(name) = name else { return Ok(settings.bounces.map(|n| Method::Bounces(n as usize))) };
     let tolerance = settings.tolerance.unwrap_or(TOLERANCE);
     let max_iterations = settings.max_iterations.unwrap_or(ITERATIONS) as usize;
     let solver = super::registry::build(name).map_err(|error| {
@@ -279,5 +306,5 @@ fn method(scene: &WaveScene) -> Result<Method, Error> {
         let (what, help) = message.split_once("; ").unwrap_or((&message, "correct the name or the options"));
         scene_failure(scene.error(About::Solver, fredholm_scene::ErrorKind::Name, what, help))
     })?;
-    Ok(Method::Solver { solver, tolerance, max_iterations })
+    Ok(Some(Method::Solver { solver, tolerance, max_iterations }))
 }

@@ -99,19 +99,19 @@ impl Sweep<'_> {
         known: Option<(&Solution, usize)>,
     ) -> Result<[Complex64; 2], WaveError> {
         let mut edges = None;
-        if self.model.edge_currents {
-            edges = Some(EdgeCurrents::new(self.scatterer, self.wave, sources)?);
-        }
-        let mut far = match (self.system, known) {
-            (Some(system), Some((solution, lane))) => {
-                let currents = system.currents(&solution.x, lane);
-                let all = Bounced::new(self.scatterer, first, &currents);
-                edges = edges.map(|edges| edges.with_bounces(self.scatterer, &all)).transpose()?;
-                system.radiator(&all).far_field(&[u])?
+        let mut far = if let (Some(system), Some((solution, lane))) = (self.system, known) {
+            let currents = system.currents(&solution.x, lane);
+            let all = Bounced::new(self.scatterer, first, &currents);
+            if self.model.edge_currents {
+                edges = Some(EdgeCurrents::of_bounces(self.scatterer, self.wave, sources, &all)?);
             }
-            _ => first
-                .linear_phase_far_field(&[u])
-                .unwrap_or_else(|| first.radiator(Sampling::Tolerance(TOLERANCE)).far_field(&[u]))?,
+            system.radiator(&all).far_field(&[u])?
+        } else {
+            if self.model.edge_currents {
+                edges = Some(EdgeCurrents::new(self.scatterer, self.wave, sources)?);
+            }
+            let closed = first.linear_phase_far_field(&[u]);
+            closed.unwrap_or_else(|| first.radiator(Sampling::Tolerance(TOLERANCE)).far_field(&[u]))?
         };
         if let Some(edges) = edges {
             for far in &mut far {

@@ -37,6 +37,8 @@ pub(crate) struct Outcome {
     pub(crate) monostatic: Vec<MonostaticRow>,
     pub(crate) currents: Vec<WaveCurrents>,
     pub(crate) solved: Vec<Solved>,
+    /// Stated relative errors of E at the receivers and of their far fields.
+    pub(crate) stated_errors: Vec<Estimated>,
     /// Estimated relative errors of E at the receivers from the mesh.
     pub(crate) mesh_errors: Vec<Estimated>,
     /// Half the difference between the electric and the magnetic form: what physical optics itself
@@ -81,12 +83,14 @@ impl Outcome {
             "shadows": model.shadows_name(),
             "solution": model.method.name(),
             "edge_currents": model.edge_currents,
+            "chosen_because": model.reason,
             "receivers": model.receivers.iter().map(|receiver| &receiver.name).collect::<Vec<_>>(),
+            "stated_errors": self.stated_errors.iter().map(|e| e.record(model)).collect::<Vec<_>>(),
             "estimated_mesh_errors": self.mesh_errors.iter().map(|e| e.record(model)).collect::<Vec<_>>(),
             "estimated_form_errors": self.form_errors.iter().map(|e| e.record(model)).collect::<Vec<_>>(),
             "frequencies": self.solved.iter().map(solved).collect::<Vec<_>>(),
             "left_out_as_text": self.left_out(),
-            "warnings": model.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
+            "warnings": model.warnings,
             "timings": timings,
         })
     }

@@ -23,6 +23,17 @@ pub struct WaveOptions {
     pub memory: Option<Bytes>,
     /// Whether report.html is left out.
     pub no_report: bool,
+    /// Whether the coupling is stored or computed anew; what is predicted to be quicker where it is not said.
+    pub storage: Option<CouplingStorage>,
+}
+
+/// Where the coupling of facets comes from in every iteration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CouplingStorage {
+    /// A stored matrix.
+    Matrix,
+    /// Products that are computed anew each time.
+    Products,
 }
 
 /// What is asked of [`compare_waves`] besides.
@@ -104,7 +115,8 @@ pub fn check_wave_solver(text: &str) -> Result<(), OptionError> {
 }
 
 fn load(scene: &Path, asked: &WaveOptions, stages: &mut Stages) -> Result<Model, Error> {
-    let model = stages.run("scene", || Model::load(scene, asked.memory))?;
+    let mut model = stages.run("scene", || Model::load(scene, asked.memory))?;
+    model.storage = asked.storage;
     model.tell(stages);
     Ok(model)
 }
@@ -159,10 +171,28 @@ impl SolvedWaves<'_> {
         self.model.method.name()
     }
 
+    /// Why this method was taken, where the scene left it open.
+    #[must_use]
+    pub fn reason(&self) -> Option<&str> {
+        self.model.reason.as_deref()
+    }
+
+    /// Whether edge currents are added.
+    #[must_use]
+    pub fn edge_currents(&self) -> bool {
+        self.model.edge_currents
+    }
+
     /// How the currents at each frequency were found.
     #[must_use]
     pub fn frequencies(&self) -> &[Solved] {
         &self.outcome.solved
+    }
+
+    /// Stated relative errors of the scattered fields at the receivers and of their far fields, where they are known.
+    #[must_use]
+    pub fn stated_errors(&self) -> &[Estimated] {
+        &self.outcome.stated_errors
     }
 
     /// Estimated errors of the scattered fields at the receivers from the mesh, where the scene

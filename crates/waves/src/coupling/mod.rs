@@ -36,6 +36,7 @@ pub use material::MaterialCoupling;
 pub use nystrom::NystromCoupling;
 pub use system::{Bounced, Discretisation, System};
 
+pub(crate) use inner::depth as inner_depth;
 pub(crate) use pair::{Block, block};
 pub(crate) use sides::Sides;
 pub(crate) use view::View;

@@ -153,8 +153,10 @@ impl<'a> NystromCoupling<'a> {
         near.filter_map(move |q| {
             let sign = sign(q);
             (sign != 0.0).then(|| {
+                // The second surface may be closer than the size of a facet, where one point is not enough.
+                let apart = self.facet(q).diameter <= 2.0 * x.distance(self.centres[p]);
                 let smooth = self.normals[p].dot(self.normals[q]) > SMOOTH;
-                let g = if smooth {
+                let g = if smooth && (apart || x == self.centres[p]) {
                     midpoint(&self.wave, x, self.facet(q))
                 } else {
                     integral(&self.wave, x, self.facet(q), TOLERANCE)

@@ -16,6 +16,9 @@ use crate::{Wave, WaveError};
 use fredholm_mesh::{Mesh, Patch, Vec3};
 use fredholm_visibility::Occluders;
 
+/// Cosine between a direction and a normal up to which the direction lies in the plane.
+pub(crate) const GRAZING: f64 = 1e-9;
+
 /// What a facet is part of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -73,12 +76,14 @@ impl Facet {
         sides.map(|i| self.patch.corner(i).distance(self.patch.corner(i + 1))).fold(0.0, f64::max)
     }
 
-    /// +1 if `towards` (from the facet) is on the side of the normal; −1 behind a sheet, 0 behind a closed body.
+    /// +1 if `towards` (unit vector from the facet) is on the side of the normal; −1 behind a sheet, 0 behind a closed body
+    /// and, whatever rounding says, in the plane of the facet.
     #[must_use]
     pub fn side(&self, towards: Vec3) -> f64 {
-        if self.normal.dot(towards) > 0.0 {
+        let height = self.normal.dot(towards);
+        if height > GRAZING {
             1.0
-        } else if self.kind == Kind::Sheet {
+        } else if self.kind == Kind::Sheet && height < -GRAZING {
             -1.0
         } else {
             0.0
@@ -94,6 +99,8 @@ pub struct Scatterer {
     extent: f64,
     /// Per surface; perfect conductors beyond the end.
     materials: Vec<Material>,
+    /// Centres and radii of spheres that faces stand for.
+    spheres: Vec<(Vec3, f64)>,
 }
 
 impl Scatterer {
@@ -107,7 +114,8 @@ impl Scatterer {
         let facet = |(patch, surface)| Facet { surface, ..Facet::new(patch, kind(surface)) };
         let facets = mesh.patches().zip(surfaces).map(facet).collect();
         let occluders = Occluders::new(mesh.occluders())?;
-        Ok(Self { facets, occluders, extent: bounds.max.distance(bounds.min), materials: Vec::new() })
+        let extent = bounds.max.distance(bounds.min);
+        Ok(Self { facets, occluders, extent, materials: Vec::new(), spheres: Vec::new() })
     }
 
     /// The same of these materials, one a surface of the mesh; it is a perfect conductor before.
@@ -152,7 +160,17 @@ impl Scatterer {
             let first = first.normalize_or_zero();
             facet.tangents = [first, facet.normal.cross(first)];
         }
+        self.spheres.push((centre, radius));
         self
+    }
+
+    /// Whether a face stands for a part of a sphere.
+    #[must_use]
+    pub fn is_curved(&self, face: &Patch) -> bool {
+        let on = |&(centre, radius): &(Vec3, f64)| {
+            face.corners().iter().all(|p| (p.distance(centre) - radius).abs() <= 1e-9 * radius)
+        };
+        self.spheres.iter().any(on)
     }
 
     /// The facets.

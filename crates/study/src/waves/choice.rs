@@ -1,0 +1,214 @@
+//! The method that suits a scene, where it does not name one.
+//!
+//! | scene | method | why |
+//! |---|---|---|
+//! | closed conductors, edges up to λ/4 | `dual-surface-mfie`, GMRES | an equation without approximation but the mesh |
+//! | conductors, sheets among them | `radiated`, GMRES, edge currents | currents make the shadow themselves: what hides a part of what stands behind is counted once |
+//! | one flat sheet | one bounce, edge currents | its facets do not light each other |
+//! | panes and other materials | one bounce; `radiated` where something is let through | bounces have to be asked for |
+//! | edges above λ/2 | one bounce | nothing else is known on such facets |
+//!
+//! The figures are in `docs/waves.md`, treatment by treatment and bounce by bounce. Where bounces are asked for, what makes
+//! the sum converge to the truth is `radiated` on sheets: in `geometric` the current on the front of a sheet radiates the
+//! shadow behind it, too, where what is blocked has none already.
+
+use fredholm_waves::material::Material;
+use fredholm_waves::{Kind, Shadow};
+
+use super::geometry::Geometry;
+use super::model::{Band, Method};
+
+/// Longest edge for the equation, in wavelengths.
+const EQUATION: f64 = 0.26;
+/// Longest edge for several bounces, in wavelengths.
+const BOUNCES: f64 = 0.5 * (1.0 + 1e-9);
+/// Most facets for which all bounces are taken unasked: a product then takes some seconds a core.
+const MOST: usize = 60_000;
+/// Longest sides of all faces together for which edge currents are added unasked, in wavelengths.
+const LONGEST: f64 = 20_000.0;
+/// The residual of GMRES where it is taken unasked: below the error of any mesh.
+const TOLERANCE: f64 = 1e-4;
+/// What is asked for where the scene names no method.
+const SOLVER: &str = "gmres:restart=60";
+const ITERATIONS: usize = 500;
+
+/// What a scene says of the method.
+pub(super) struct Asked {
+    pub(super) shadow: Option<Shadow>,
+    /// Whether physical optics is asked for, with whatever shadows suit it.
+    pub(super) optics: bool,
+    pub(super) method: Option<Method>,
+    pub(super) edge_currents: Option<bool>,
+}
+
+impl Asked {
+    /// One bounce with geometric shadows but for what is asked: for what samples or compares that.
+    pub(super) fn plain(self) -> Taken {
+        Taken {
+            shadow: self.shadow.unwrap_or_default(),
+            method: self.method.unwrap_or(Method::Bounces(1)),
+            edge_currents: self.edge_currents.unwrap_or(false),
+            reason: None,
+            warnings: Vec::new(),
+        }
+    }
+}
+
+/// What is computed.
+pub(super) struct Taken {
+    pub(super) shadow: Shadow,
+    pub(super) method: Method,
+    pub(super) edge_currents: bool,
+    /// Why, where the scene left it open.
+    pub(super) reason: Option<String>,
+    /// What should be known of what the scene asked for.
+    pub(super) warnings: Vec<String>,
+}
+
+/// What decides.
+#[allow(clippy::struct_excessive_bools, reason = "each is a fact of its own")]
+struct Seen {
+    conductors: bool,
+    /// Whether a sheet lets something through.
+    panes: bool,
+    sheets: bool,
+    /// Whether all is in one plane.
+    flat: bool,
+    facets: usize,
+    /// Longest edge in the shortest wavelength.
+    edge: f64,
+    /// Length of the sides of all faces, in the shortest wavelength.
+    sides: f64,
+}
+
+impl Seen {
+    fn of(geometry: &Geometry, bands: &[Band]) -> Self {
+        let materials = || bands.iter().flat_map(|band| &band.materials);
+        let mesh = &geometry.mesh;
+        let shortest = bands.iter().map(|band| band.wave.wavelength()).fold(f64::INFINITY, f64::min);
+        let sides = |patch: &fredholm_mesh::Patch| -> f64 {
+            (0..patch.sides()).map(|i| patch.corner(i).distance(patch.corner(i + 1))).sum()
+        };
+        let side = |patch: &fredholm_mesh::Patch| {
+            let sides = (0..patch.sides()).map(|i| patch.corner(i).distance(patch.corner(i + 1)));
+            sides.fold(0.0, f64::max)
+        };
+        let sheets = geometry.kinds().contains(&Kind::Sheet);
+        Self {
+            sides: mesh.occluders().iter().map(sides).sum::<f64>() / shortest,
+            conductors: materials().all(|material| *material == Material::Conductor),
+            panes: sheets && materials().any(|material| matches!(material, Material::Slab(_))),
+            sheets,
+            flat: is_flat(geometry),
+            facets: mesh.len(),
+            edge: mesh.patches().map(side).fold(0.0, f64::max) / shortest,
+        }
+    }
+
+    fn closed_conductors(&self) -> bool {
+        self.conductors && !self.sheets
+    }
+}
+
+/// Whether all sheets are in one plane.
+fn is_flat(geometry: &Geometry) -> bool {
+    let faces = geometry.mesh.occluders();
+    let (Some(first), Some(bounds)) = (faces.first(), geometry.mesh.bounds()) else { return false };
+    let margin = 1e-9 * bounds.max.distance(bounds.min);
+    let height = |p: &fredholm_mesh::Vec3| first.normal().dot(*p - first.corner(0)).abs();
+    let corners = || faces.iter().flat_map(fredholm_mesh::Patch::corners);
+    geometry.kinds().iter().all(|kind| *kind == Kind::Sheet) && corners().all(|p| height(p) <= margin)
+}
+
+/// What is computed of a scene that asks for this.
+pub(super) fn taken(asked: Asked, geometry: &Geometry, bands: &[Band]) -> Taken {
+    let seen = Seen::of(geometry, bands);
+    let mut taken = match (asked.method, asked.shadow) {
+        (None, None) if !asked.optics => chosen(&seen),
+        (method, shadow) => completed(method.unwrap_or(Method::Bounces(1)), (asked.optics, shadow), &seen),
+    };
+    if let Some(edge_currents) = asked.edge_currents {
+        taken.edge_currents = edge_currents;
+    }
+    if taken.edge_currents && (taken.shadow.is_equation() || taken.shadow == Shadow::Thesis) {
+        // Asked for without a treatment: that which they complete is meant.
+        let shadow = if seen.sheets { Shadow::Radiated } else { Shadow::Geometric };
+        taken = Taken { shadow, reason: Some("edge currents complete physical optics".to_owned()), ..taken };
+    }
+    taken
+}
+
+fn chosen(seen: &Seen) -> Taken {
+    let one = |shadow, edge_currents, why: &str| {
+        (Method::Bounces(1), shadow, edge_currents, format!("one bounce: {why}"))
+    };
+    let all = |shadow, edge_currents, why: &str| match super::registry::build(SOLVER) {
+        Ok(solver) => {
+            let method = Method::Solver { solver, tolerance: TOLERANCE, max_iterations: ITERATIONS };
+            (method, shadow, edge_currents, why.to_owned())
+        }
+        Err(_) => (Method::Bounces(1), shadow, edge_currents, why.to_owned()),
+    };
+    let mut warnings = Vec::new();
+    let (method, shadow, edge_currents, why) = if !seen.conductors {
+        if !seen.flat {
+            warnings.push(
+                "several bounces between materials are not taken unasked; write bounces = 3, say".to_owned(),
+            );
+        }
+        let shadow = if seen.panes { Shadow::Radiated } else { Shadow::Geometric };
+        one(shadow, false, "the scene has other materials than conductors")
+    } else if seen.flat {
+        one(Shadow::Geometric, true, "everything is in one plane, where nothing lights anything else")
+    } else if seen.edge > BOUNCES {
+        warnings.push("edges are above half a wavelength: one bounce is all that is known of such facets; mesh finer for more".to_owned());
+        one(Shadow::Geometric, seen.sheets, "facets are above half a wavelength")
+    } else if seen.facets > MOST {
+        warnings.push(format!("{} facets: one bounce is taken; write a solver for all of them", seen.facets));
+        one(Shadow::Geometric, seen.sheets, "there are too many facets for more unasked")
+    } else if seen.closed_conductors() && seen.edge <= EQUATION {
+        all(Shadow::ExactDual, false, "closed conductors have an equation without approximation")
+    } else if seen.closed_conductors() {
+        all(
+            Shadow::Geometric,
+            false,
+            "facets are above a quarter of a wavelength, too long for the equation of closed bodies",
+        )
+    } else {
+        all(Shadow::Radiated, true, "sheets light and shadow each other through their currents")
+    };
+    let long = seen.sides > LONGEST;
+    if edge_currents && long {
+        warnings.push(
+            "the edges are too long for edge currents unasked; write edge_currents = true for them"
+                .to_owned(),
+        );
+    }
+    Taken { shadow, method, edge_currents: edge_currents && !long, reason: Some(why), warnings }
+}
+
+/// The rest of what a scene that asks for a part gets.
+fn completed(method: Method, (optics, shadow): (bool, Option<Shadow>), seen: &Seen) -> Taken {
+    let several = !matches!(method, Method::Bounces(1));
+    let rigorous = !optics && matches!(&method, Method::Solver { solver, .. } if solver.name() != "neumann");
+    let mut warnings = Vec::new();
+    if shadow == Some(Shadow::Geometric) && several && seen.sheets && !seen.flat {
+        warnings.push(
+            "geometric shadows with several bounces count the shadow behind a sheet twice; take shadows = \"radiated\" unless no sheet hides another"
+                .to_owned(),
+        );
+    }
+    let suits = || {
+        if !several {
+            (Shadow::Geometric, "one bounce: what is hidden is dark")
+        } else if seen.sheets || seen.panes {
+            (Shadow::Radiated, "sheets light and shadow each other through their currents")
+        } else if rigorous && seen.closed_conductors() && seen.edge <= EQUATION {
+            (Shadow::ExactDual, "closed conductors have an equation without approximation")
+        } else {
+            (Shadow::Geometric, "bounces between closed bodies: what is hidden is dark")
+        }
+    };
+    let reason = shadow.is_none().then(|| suits().1.to_owned());
+    Taken { shadow: shadow.unwrap_or_else(|| suits().0), method, edge_currents: false, reason, warnings }
+}

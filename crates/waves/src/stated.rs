@@ -1,0 +1,120 @@
+//! Stated errors of scattered fields: what is known of a result without the exact one.
+//!
+//! Two indicators, each times a factor that was measured on bodies with known answers (`tests/data/wave/stated_errors.csv`,
+//! written by the example `stated_errors` of `fredholm-moments`), so that the product is above the true error in at least 95
+//! of 100 runs there, and in the median less than four times as large:
+//!
+//! - Sheets: the share of the edge currents in the field. Physical optics lacks all of them; with them added, what edges
+//!   send to edges is missing, which is a part of it.
+//! - Closed bodies: the total field inside, where there is none, over the incident one. It sees the mesh, the form of the
+//!   currents and the solver together.
+//!
+//! Errors are relative in the L² norm over the points or directions of a receiver.
+
+use crate::coupling::inner_depth;
+use crate::{Field, Kind, Radiator, Scatterer, Source, Wave, WaveError, incident};
+use fredholm_mesh::Vec3;
+
+/// Most points inside that are looked at.
+const POINTS: usize = 64;
+
+/// The indicator, and what it is multiplied by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Indicator {
+    /// Share of the edge currents, which are not part of the field.
+    EdgesLeft(f64),
+    /// Share of the edge currents, which are part of the field.
+    EdgesAdded(f64),
+    /// Total over incident field inside a closed body whose currents solve an equation.
+    InsideEquation(f64),
+    /// The same for currents of physical optics.
+    InsideOptics(f64),
+}
+
+impl Indicator {
+    /// The factor that was measured.
+    #[must_use]
+    pub fn factor(self) -> f64 {
+        match self {
+            Self::EdgesLeft(_) => 1.15,
+            Self::EdgesAdded(_) => 1.05,
+            Self::InsideEquation(_) => 2.2,
+            Self::InsideOptics(_) => 1.4,
+        }
+    }
+
+    /// The indicator itself.
+    #[must_use]
+    pub fn value(self) -> f64 {
+        match self {
+            Self::EdgesLeft(value)
+            | Self::EdgesAdded(value)
+            | Self::InsideEquation(value)
+            | Self::InsideOptics(value) => value,
+        }
+    }
+
+    /// The stated relative error.
+    #[must_use]
+    pub fn error(self) -> f64 {
+        self.factor() * self.value()
+    }
+}
+
+/// The total field inside over the incident one, where all bodies are closed.
+///
+/// # Errors
+/// [`WaveError::NotFinite`] where a coordinate of the mesh is none.
+pub fn field_inside(
+    scatterer: &Scatterer,
+    wave: &Wave,
+    sources: &[&dyn Source],
+    radiator: &Radiator<'_>,
+) -> Result<Option<f64>, WaveError> {
+    let facets = scatterer.facets();
+    if facets.iter().any(|facet| facet.kind == Kind::Sheet) {
+        return Ok(None);
+    }
+    let step = facets.len().div_ceil(POINTS);
+    let inside = |facet: &crate::Facet| facet.centre - facet.normal * inner_depth(scatterer, wave, facet);
+    let points: Vec<Vec3> = facets.iter().step_by(step).map(inside).collect();
+    let (mut left, mut size) = (0.0, 0.0);
+    for (scattered, &p) in radiator.fields(&points)?.into_iter().zip(&points) {
+        let incident: Field = incident(sources, wave, p);
+        left += (scattered + incident).e.norm_squared();
+        size += incident.e.norm_squared();
+    }
+    Ok((size > 0.0).then(|| (left / size).sqrt()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    /// The committed runs: what is stated holds in 95 of 100, and is not idle.
+    #[test]
+    fn the_factors_are_those_of_the_calibration() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/wave/stated_errors.csv");
+        let text = std::fs::read_to_string(path).unwrap();
+        let indicator = |kind: &str, value: f64| match kind {
+            "EdgesLeft" => Indicator::EdgesLeft(value),
+            "EdgesAdded" => Indicator::EdgesAdded(value),
+            "InsideEquation" => Indicator::InsideEquation(value),
+            _ => Indicator::InsideOptics(value),
+        };
+        for kind in ["EdgesLeft", "EdgesAdded", "InsideEquation", "InsideOptics"] {
+            let runs = text.lines().skip(1).map(|line| line.split(',').collect::<Vec<_>>());
+            let ratio = |cells: Vec<&str>| {
+                let [value, truth] = [3, 4].map(|i| cells[i].parse::<f64>().unwrap());
+                indicator(kind, value).error() / truth
+            };
+            let mut ratios: Vec<f64> = runs.filter(|cells| cells[2] == kind).map(ratio).collect();
+            ratios.sort_by(f64::total_cmp);
+            let count = ratios.len();
+            let failed = ratios.iter().filter(|&&ratio| ratio < 1.0).count();
+            assert!(count >= 19 && 20 * failed <= count, "{kind}: {failed} of {count}");
+            assert!(ratios[count / 2] < 4.0, "{kind}: {}", ratios[count / 2]);
+        }
+    }
+}
