@@ -24,7 +24,8 @@ pub(crate) fn waves(
     problem: Problem,
     how: How,
 ) -> PyResult<Py<PyAny>> {
-    let options = WaveOptions { memory: problem.options(py)?.memory, no_report: !report, ..WaveOptions::default() };
+    let options =
+        WaveOptions { memory: problem.options(py)?.memory, no_report: !report, ..WaveOptions::default() };
     let work =
         move |watch: &dyn Watch| fredholm_study::waves(path, &options, watch).map(SolvedWaves::unwatched);
     run(py, how, work, |solved| Ok(Py::new(py, Waves(Mutex::new(solved)))?.into_any()))
@@ -39,7 +40,8 @@ pub(crate) fn compare_waves(
     problem: Problem,
     how: How,
 ) -> PyResult<Py<PyAny>> {
-    let options = WaveOptions { memory: problem.options(py)?.memory, no_report: true, ..WaveOptions::default() };
+    let options =
+        WaveOptions { memory: problem.options(py)?.memory, no_report: true, ..WaveOptions::default() };
     let (solvers, tolerance, max_iterations) = asked;
     let solvers = WaveCompareOptions { solvers, tolerance, max_iterations };
     crate::studies::study(py, how, move |folder, watch| {

@@ -17,6 +17,7 @@ use fredholm_waves::{Kind, Shadow};
 
 use super::geometry::Geometry;
 use super::model::{Band, Method};
+use super::over_frequency::MOST_PICTURED;
 
 /// Longest edge for the equation, in wavelengths.
 const EQUATION: f64 = 0.26;
@@ -79,6 +80,8 @@ struct Seen {
     edge: f64,
     /// Length of the sides of all faces, in the shortest wavelength.
     sides: f64,
+    /// Whether there are many frequencies.
+    sweep: bool,
 }
 
 impl Seen {
@@ -101,6 +104,7 @@ impl Seen {
             sheets,
             flat: is_flat(geometry),
             facets: mesh.len(),
+            sweep: bands.len() > MOST_PICTURED,
             edge: mesh.patches().map(side).fold(0.0, f64::max) / shortest,
         }
     }
@@ -184,7 +188,14 @@ fn chosen(seen: &Seen) -> Taken {
                 .to_owned(),
         );
     }
-    Taken { shadow, method, edge_currents: edge_currents && !long, reason: Some(why), warnings }
+    if edge_currents && seen.sweep {
+        warnings.push(
+            "edge currents are left out of a sweep of many frequencies; write edge_currents = true for them"
+                .to_owned(),
+        );
+    }
+    let edge_currents = edge_currents && !long && !seen.sweep;
+    Taken { shadow, method, edge_currents, reason: Some(why), warnings }
 }
 
 /// The rest of what a scene that asks for a part gets.
