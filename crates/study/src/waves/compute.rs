@@ -290,9 +290,8 @@ impl Task<'_> {
     /// takes less than its error.
     fn is_told_apart(&self) -> bool {
         let bands = &self.model.bands;
-        let this = self.band.wave.frequency();
         let mut ends = [bands.first(), bands.last()].into_iter().flatten();
-        bands.len() <= MOST_PICTURED || ends.any(|band| band.wave.frequency() == this)
+        bands.len() <= MOST_PICTURED || ends.any(|band| std::ptr::eq(band, self.band))
     }
 
     /// The far fields in some directions; of one bounce of plane waves in closed form.
