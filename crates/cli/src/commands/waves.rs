@@ -163,7 +163,7 @@ fn forecast(checked: &CheckedWaves) -> String {
     let coupling = |(unknowns, bytes)| format!("{unknowns} unknowns; {bytes} where its matrix is stored");
     lines.add_some("coupling", checked.coupling.map(coupling));
     lines.add("memory limit", checked.limit.to_string());
-    checked.warnings.iter().for_each(|warning| lines.add("warning", warning.to_string()));
+    checked.warnings.iter().for_each(|warning| lines.add("warning", warning));
     lines.under(&format!("{}: a valid scene of waves", checked.path.display()))
 }
 
