@@ -186,7 +186,7 @@ class Waves:
     receivers : list of str
         Names of the receivers.
     record : dict
-        What made the fields: the method, the treatment of shadows, facets and residuals of every
+        What made the fields: the method, what blocks waves, facets and residuals of every
         frequency, and estimated errors where the scene asks for them.
     """
 
@@ -267,8 +267,11 @@ class Waves:
         facts = [
             ("ended", self.ended),
             ("method", self.method),
-            ("shadows", str(self.record["shadow"])),
+            ("solution", str(self.record["solution"])),
         ]
+        for name, key in (("shadows", "shadows"), ("chosen", "chosen_because")):
+            if self.record[key] is not None:
+                facts.insert(-1, (name, str(self.record[key])))
         for found in self.record["frequencies"]:
             last = found["residuals"][-1] if found["residuals"] else None
             residual = "" if last is None else f", residual {last:.1e}"

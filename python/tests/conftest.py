@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import os
 import pathlib
+import signal
+
 import pytest
 
 ROOT = pathlib.Path(__file__).parents[2]
 SCENES = ROOT / "scenes"
+
+# What runs in the background may have been told to ignore Ctrl-C: Python then has no KeyboardInterrupt.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 #: A closed room of which every wall emits: the radiosity is M/(1 − ρ) everywhere.
 FURNACE = """

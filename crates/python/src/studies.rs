@@ -38,7 +38,7 @@ pub(crate) struct Study {
 
 #[pymethods]
 impl Study {
-    /// Names of the files, the record last.
+    /// Paths of the files in the folder, the record last.
     #[getter]
     fn files(&self, py: Python<'_>) -> PyResult<Vec<String>> {
         names(self.folder.path()).map_err(|error| failure(py, &error))
@@ -59,12 +59,19 @@ fn files(error: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> Error {
     Error::new(ErrorKind::Files, error)
 }
 
-/// Names of the files of a folder: the records come last, since where they stand the folder is
-/// complete.
+/// Paths of the files of a folder and of the folders in it: the records come last, since where they
+/// stand the folder is complete.
 fn names(folder: &Path) -> Result<Vec<String>, Error> {
-    let entry = |entry: io::Result<fs::DirEntry>| Ok(entry?.file_name().to_string_lossy().into_owned());
-    let found = fs::read_dir(folder).and_then(|all| all.map(entry).collect::<io::Result<Vec<String>>>());
-    let mut names = found.map_err(files)?;
+    let (mut names, mut folders) = (vec![], vec![String::new()]);
+    while let Some(inside) = folders.pop() {
+        for entry in fs::read_dir(folder.join(&inside)).map_err(files)? {
+            let entry = entry.map_err(files)?;
+            let name = entry.file_name().to_string_lossy().into_owned();
+            let path = if inside.is_empty() { name } else { format!("{inside}/{name}") };
+            let list = if entry.path().is_dir() { &mut folders } else { &mut names };
+            list.push(path);
+        }
+    }
     names.sort_by_key(|name| (is_record(name), name.clone()));
     Ok(names)
 }
@@ -85,6 +92,9 @@ fn copy(from: &Path, to: &Path) -> Result<(), Error> {
     }
     for name in &names {
         let bytes = fs::read(from.join(name)).map_err(files)?;
+        if let Some(folder) = Path::new(name).parent() {
+            fs::create_dir_all(to.join(folder)).map_err(files)?;
+        }
         write_atomically(&to.join(name), |out: &mut dyn Write| out.write_all(&bytes)).map_err(files)?;
     }
     Ok(())
