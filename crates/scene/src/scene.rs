@@ -13,7 +13,7 @@ use crate::import::is_mesh;
 use crate::parse::parse;
 use crate::part::Part;
 use crate::resolve::{Camera, Material, Resolved, SolveDefaults, resolve};
-use crate::source::{Source, read};
+use crate::source::Source;
 use crate::suggest::among;
 
 /// A scene file and the files it names, read and checked. Lengths in metres, exitance in W/m².
@@ -63,12 +63,7 @@ impl Scene {
             let (source, meaning) = bare::meaning(path, &mut files)?;
             return Self::new(source, None, meaning, &files);
         }
-        let bytes = read(path).map_err(|error| {
-            let what = format!("cannot read the scene: {error}");
-            let help = "correct the name of the scene file, or its permissions";
-            SceneError::new(ErrorKind::Io, path, what, help).caused_by(error)
-        })?;
-        Self::from_source(Source::decode(path, bytes)?)
+        Self::from_source(Source::load(path)?)
     }
 
     /// Reads a scene from text. Files that it names are looked for in the folder of `path`.

@@ -28,6 +28,16 @@ pub(crate) struct Source {
 const BYTE_ORDER_MARK: char = '\u{feff}';
 
 impl Source {
+    /// Reads the text of a scene file.
+    pub fn load(path: &Path) -> Result<Self, SceneError> {
+        let bytes = read(path).map_err(|error| {
+            let what = format!("cannot read the scene: {error}");
+            let help = "correct the name of the scene file, or its permissions";
+            SceneError::new(ErrorKind::Io, path, what, help).caused_by(error)
+        })?;
+        Self::decode(path, bytes)
+    }
+
     /// Takes bytes for UTF-8, with or without a byte-order mark.
     pub fn decode(path: &Path, bytes: Vec<u8>) -> Result<Self, SceneError> {
         match String::from_utf8(bytes) {

@@ -20,7 +20,7 @@ use crate::files::Files;
 use crate::format::At;
 use crate::parse::parse;
 use crate::resolve::Reading;
-use crate::source::{Source, read};
+use crate::source::Source;
 
 /// Most frequencies of a scene.
 const MOST_FREQUENCIES: usize = 10_000;
@@ -88,7 +88,7 @@ pub struct WaveScene {
 /// Whether a file is a scene of waves: it has a table `wave`. What cannot be read is none.
 #[must_use]
 pub fn is_wave_scene(path: &Path) -> bool {
-    let text = read(path).ok().and_then(|bytes| Source::decode(path, bytes).ok());
+    let text = Source::load(path).ok();
     let table = text.and_then(|source| source.text.parse::<toml::Table>().ok());
     table.is_some_and(|table| table.contains_key("wave"))
 }
@@ -99,13 +99,7 @@ impl WaveScene {
     /// # Errors
     /// [`SceneError`], with file and line, for anything that is wrong with them.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, SceneError> {
-        let path = path.as_ref();
-        let bytes = read(path).map_err(|error| {
-            let what = format!("cannot read the scene: {error}");
-            let help = "correct the name of the scene file, or its permissions";
-            SceneError::new(ErrorKind::Io, path, what, help).caused_by(error)
-        })?;
-        Self::from_source(Source::decode(path, bytes)?)
+        Self::from_source(Source::load(path.as_ref())?)
     }
 
     /// Reads a scene from text. Files that it names are looked for in the folder of `path`.

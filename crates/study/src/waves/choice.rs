@@ -117,11 +117,16 @@ impl Seen {
 /// Whether all sheets are in one plane.
 fn is_flat(geometry: &Geometry) -> bool {
     let faces = geometry.mesh.occluders();
-    let (Some(first), Some(bounds)) = (faces.first(), geometry.mesh.bounds()) else { return false };
-    let margin = 1e-9 * bounds.max.distance(bounds.min);
+    let Some(bounds) = geometry.mesh.bounds() else { return false };
+    let sheets = geometry.kinds().iter().all(|kind| *kind == Kind::Sheet);
+    sheets && in_one_plane(faces, bounds.max.distance(bounds.min))
+}
+
+/// Whether all faces of something of this extent, m, are in one plane.
+pub(super) fn in_one_plane(faces: &[fredholm_mesh::Patch], extent: f64) -> bool {
+    let Some(first) = faces.first() else { return false };
     let height = |p: &fredholm_mesh::Vec3| first.normal().dot(*p - first.corner(0)).abs();
-    let corners = || faces.iter().flat_map(fredholm_mesh::Patch::corners);
-    geometry.kinds().iter().all(|kind| *kind == Kind::Sheet) && corners().all(|p| height(p) <= margin)
+    faces.iter().flat_map(fredholm_mesh::Patch::corners).all(|p| height(p) <= 1e-9 * extent)
 }
 
 /// What is computed of a scene that asks for this.

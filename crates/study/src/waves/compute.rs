@@ -11,6 +11,7 @@ use fredholm_waves::{
 };
 use rayon::prelude::*;
 
+use super::choice::in_one_plane;
 use super::estimate::{self, Estimated, Stating};
 use super::galerkin;
 use super::geometry::Geometry;
@@ -340,11 +341,7 @@ impl Task<'_> {
 
     /// Whether all facets are in one plane.
     fn is_flat(&self) -> bool {
-        let faces = self.scatterer.occluders().patches();
-        let Some(first) = faces.first() else { return false };
-        let margin = 1e-9 * self.scatterer.extent();
-        let height = |p: &Vec3| first.normal().dot(*p - first.corner(0)).abs();
-        faces.iter().flat_map(fredholm_mesh::Patch::corners).all(|p| height(p) <= margin)
+        in_one_plane(self.scatterer.occluders().patches(), self.scatterer.extent())
     }
 }
 
