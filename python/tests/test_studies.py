@@ -35,7 +35,8 @@ def room() -> fredholm.Scene:
 def written(study: fredholm.Study, folder: pathlib.Path) -> None:
     """All files arrive, the record last."""
     study.write(folder)
-    assert sorted(path.name for path in folder.iterdir()) == sorted(study.files)
+    found = [path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()]
+    assert sorted(found) == sorted(study.files)
     assert study.files[-1].endswith(".json")
     assert study._repr_html_() and repr(study)
 
