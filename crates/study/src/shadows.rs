@@ -9,8 +9,12 @@ use rayon::prelude::*;
 
 use crate::pictures::Gathered;
 
-/// Most lines that cut an element: the longest ones within it.
+/// Most lines that cut an element, where elements are few: the longest ones within it.
 const LINES: usize = 24;
+/// Triangles that all elements together are cut into, about. `n` lines cut an element into `n²`
+/// triangles at most. Many small elements show the borders of shadows by themselves already, and
+/// light is gathered at every corner: that must not take longer than the solution.
+const TRIANGLES: usize = 200_000;
 /// How far from a corner of a triangle its irradiance is gathered, over the distance of the
 /// centroid: each side of a border has its own.
 const INSET: f64 = 1e-5;
@@ -20,9 +24,12 @@ impl Gathered<'_> {
     pub(crate) fn shadows(&self) -> ShadowMesh {
         let mesh = &self.problem.mesh;
         let polygons = mesh.anchored(Weld::Everywhere).polygons;
-        let lamps = lamps(self.gather.tree(), &|leaf| self.emits(leaf));
+        let edges = Edges {
+            lamps: lamps(self.gather.tree(), &|leaf| self.emits(leaf)),
+            most: most_lines(mesh.len()),
+        };
         let faces: Vec<ShadowMesh> =
-            (0..mesh.faces().len()).into_par_iter().map(|face| self.face(face, &polygons, &lamps)).collect();
+            (0..mesh.faces().len()).into_par_iter().map(|face| self.face(face, &polygons, &edges)).collect();
         let mut whole = ShadowMesh::default();
         for face in faces {
             whole.triangles.extend(face.triangles);
@@ -33,19 +40,19 @@ impl Gathered<'_> {
     }
 
     /// The elements of a face, cut.
-    fn face(&self, face: usize, polygons: &Welded, lamps: &[Patch]) -> ShadowMesh {
+    fn face(&self, face: usize, polygons: &Welded, edges: &Edges) -> ShadowMesh {
         let mesh = &self.problem.mesh;
         let mut gatherer = self.gather.gatherer();
         let (mut cut, mut plane, mut lines) = (ShadowMesh::default(), None, Vec::new());
         for leaf in mesh.leaves_of_face(face) {
             let patch = mesh.patch(leaf);
             if plane != Some(patch.normal()) {
-                lines = shadow_edges(lamps, self.gather.bodies(), patch);
+                lines = shadow_edges(&edges.lamps, self.gather.bodies(), patch);
                 plane = Some(patch.normal());
             }
             let corners: Vec<Vec3> = polygons.patch(leaf).iter().map(|&k| polygons.vertices[k]).collect();
-            for triangle in cut_polygon(&corners, patch.normal(), &longest(&corners, patch.normal(), &lines))
-            {
+            let cuts = longest(&corners, patch.normal(), &lines, edges.most);
+            for triangle in cut_polygon(&corners, patch.normal(), &cuts) {
                 self.light(leaf, triangle, &mut gatherer, &mut cut.irradiance);
                 cut.triangles.push(triangle);
                 cut.elements.push(leaf);
@@ -64,12 +71,25 @@ impl Gathered<'_> {
     }
 }
 
-/// The parts of lines in a polygon that are longest.
-fn longest(corners: &[Vec3], normal: Vec3, lines: &[[Vec3; 2]]) -> Vec<[Vec3; 2]> {
+/// What cuts the elements.
+struct Edges {
+    /// What casts the shadows.
+    lamps: Vec<Patch>,
+    /// Most lines that cut an element.
+    most: usize,
+}
+
+/// Most lines that cut each of some elements.
+fn most_lines(elements: usize) -> usize {
+    (TRIANGLES / elements.max(1)).isqrt().min(LINES)
+}
+
+/// The parts of lines in a polygon that are longest, some at most.
+fn longest(corners: &[Vec3], normal: Vec3, lines: &[[Vec3; 2]], most: usize) -> Vec<[Vec3; 2]> {
     let mut parts: Vec<[Vec3; 2]> =
         lines.iter().filter_map(|&line| part_inside(corners, normal, line)).collect();
     parts.sort_by(|[a, b], [c, d]| c.distance(*d).total_cmp(&a.distance(*b)));
-    parts.truncate(LINES);
+    parts.truncate(most);
     parts
 }
 

@@ -93,6 +93,8 @@ pub(crate) fn solve_from<'a>(
 ) -> Result<Solved<'a>, Error> {
     let (settings, problem, solution) = answer(source, asked, checkpoint, &mut stages)?;
     let settings = SolveSettings { recorded: asked.recorded.clone(), ..settings };
+    let interrupted = solution.report.reason == StopReason::Interrupted;
+    let settings = if interrupted { quick_settings(settings) } else { settings };
     Ok(Solved { settings, problem, solution, stages })
 }
 
@@ -429,6 +431,12 @@ pub(crate) fn view_camera(camera: &fredholm_scene::Camera) -> Camera {
         width: camera.width,
         height: camera.height,
     }
+}
+
+/// The settings without what takes long to write: whoever has pressed Ctrl-C waits for no final
+/// gather. `resume` goes on with the settings as they were.
+fn quick_settings(settings: SolveSettings) -> SolveSettings {
+    SolveSettings { final_gather: false, discontinuity: false, ..settings }
 }
 
 /// The view in few pixels: whoever has pressed Ctrl-C does not wait for a large picture.
