@@ -9,7 +9,7 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum MomentsError {
     /// There is no triangle.
-    #[error("the surface has no triangles; add a shape")]
+    #[error("the surface has no triangles")]
     Empty,
     /// A triangle names a vertex that is not there.
     #[error("triangle {triangle} names vertex {vertex}, but there are only {vertices}")]
@@ -28,15 +28,13 @@ pub enum MomentsError {
         vertex: usize,
     },
     /// A triangle has no area.
-    #[error("triangle {triangle} has no area; remove it and join its corners")]
+    #[error("triangle {triangle} has no area")]
     Degenerate {
         /// The triangle.
         triangle: usize,
     },
     /// The same three corners make two triangles.
-    #[error(
-        "triangles {first} and {second} have the same corners; a box without thickness is one sheet: remove one of them"
-    )]
+    #[error("triangles {first} and {second} have the same corners, but a box without thickness is one sheet")]
     Repeated {
         /// The first of them.
         first: usize,
@@ -44,9 +42,7 @@ pub enum MomentsError {
         second: usize,
     },
     /// A vertex lies within an edge of another triangle.
-    #[error(
-        "vertex {vertex} lies within an open edge of triangle {triangle}, where no current could cross; split that triangle at the vertex"
-    )]
+    #[error("vertex {vertex} lies within an open edge of triangle {triangle}, where no current could cross")]
     TJunction {
         /// The vertex.
         vertex: usize,
@@ -54,9 +50,7 @@ pub enum MomentsError {
         triangle: usize,
     },
     /// Two vertices are at the same place.
-    #[error(
-        "vertices {first} and {second} are at the same place, so that no current crosses there; join them (`Surface::welded`)"
-    )]
+    #[error("vertices {first} and {second} are at the same place, so that no current crosses there")]
     DuplicateVertices {
         /// The first of them.
         first: usize,
@@ -64,12 +58,10 @@ pub enum MomentsError {
         second: usize,
     },
     /// No edge has two triangles.
-    #[error("no edge of the surface joins two triangles, so that no current can flow; mesh it finer")]
+    #[error("no edge of the surface joins two triangles, so that no current can flow")]
     NoInnerEdge,
     /// An equation for closed bodies meets an open surface.
-    #[error(
-        "{equation} is made for closed bodies, but edge {edge} of triangle {triangle} is open; close the surface or use the electric field equation"
-    )]
+    #[error("{equation} is made for closed bodies, but edge {edge} of triangle {triangle} is open")]
     NotClosed {
         /// The equation.
         equation: &'static str,
@@ -80,7 +72,7 @@ pub enum MomentsError {
     },
     /// An equation for closed bodies meets a junction of several surfaces.
     #[error(
-        "{equation} is made for bodies with an inside and an outside, but {triangles} triangles meet at edge {edge}; use the electric field equation"
+        "{equation} is made for bodies with an inside and an outside, but {triangles} triangles meet at edge {edge}"
     )]
     Junction {
         /// The equation.
@@ -92,7 +84,7 @@ pub enum MomentsError {
     },
     /// Neighbours do not agree on which side is outside.
     #[error(
-        "triangles {first} and {second} are neighbours, but their normals are on different sides of the surface; turn one over (`Surface::oriented`)"
+        "triangles {first} and {second} are neighbours, but their normals are on different sides of the surface"
     )]
     Orientation {
         /// A triangle.
@@ -101,17 +93,13 @@ pub enum MomentsError {
         second: usize,
     },
     /// The normals of a closed body point into it.
-    #[error(
-        "the normals of the closed body with triangle {triangle} point inwards; turn it over (`Surface::oriented`)"
-    )]
+    #[error("the normals of the closed body with triangle {triangle} point inwards")]
     InsideOut {
         /// The first triangle of the body.
         triangle: usize,
     },
     /// Triangles are too large for the wave.
-    #[error(
-        "edge {edge} is {length} m long, which is more than a third of the wavelength of {wavelength} m; mesh finer, λ/10 is usual"
-    )]
+    #[error("edge {edge} is {length} m long, which is more than a third of the wavelength of {wavelength} m")]
     Coarse {
         /// The edge.
         edge: usize,
@@ -131,9 +119,7 @@ pub enum MomentsError {
         expected: &'static str,
     },
     /// A point lies on the surface, where the field jumps.
-    #[error(
-        "point {point} of the receivers lies on triangle {triangle}, where the field jumps; move it off the surface"
-    )]
+    #[error("point {point} of the receivers lies on triangle {triangle}, where the field jumps")]
     OnSurface {
         /// The point.
         point: usize,
@@ -146,4 +132,29 @@ pub enum MomentsError {
     /// A matrix cannot be built.
     #[error(transparent)]
     Linop(#[from] LinopError),
+}
+
+impl MomentsError {
+    /// What to do about it, where that is more than to correct the value.
+    #[must_use]
+    pub fn help(&self) -> Option<&'static str> {
+        match self {
+            Self::Empty => Some("add a shape"),
+            Self::Degenerate { .. } => Some("remove it and join its corners"),
+            Self::Repeated { .. } => Some("remove one of them"),
+            Self::TJunction { .. } => Some("split that triangle at the vertex"),
+            Self::DuplicateVertices { .. } => Some("join them (`Surface::welded`)"),
+            Self::NoInnerEdge => Some("mesh it finer"),
+            Self::NotClosed { .. } => Some("close the surface or use the electric field equation"),
+            Self::Junction { .. } => Some("use the electric field equation"),
+            Self::Orientation { .. } => Some("turn one over (`Surface::oriented`)"),
+            Self::InsideOut { .. } => Some("turn it over (`Surface::oriented`)"),
+            Self::Coarse { .. } => Some("mesh finer, λ/10 is usual"),
+            Self::OnSurface { .. } => Some("move it off the surface"),
+            Self::Wave(error) => error.help(),
+            Self::NoSuchVertex { .. } | Self::NotFinite { .. } | Self::Parameter { .. } | Self::Linop(_) => {
+                None
+            }
+        }
+    }
 }

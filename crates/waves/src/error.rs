@@ -30,7 +30,7 @@ pub enum WaveError {
         what: &'static str,
     },
     /// A polarisation points along the direction of travel.
-    #[error("the polarisation is parallel to the direction of travel; give one across it")]
+    #[error("the polarisation is parallel to the direction of travel")]
     Polarisation,
     /// An amplitude or a coordinate is NaN or infinite.
     #[error("{what} is not a finite number")]
@@ -39,11 +39,11 @@ pub enum WaveError {
         what: &'static str,
     },
     /// There is no facet.
-    #[error("the scatterer has no facets; add a surface")]
+    #[error("the scatterer has no facets")]
     NoFacets,
     /// Facets are too large for the wave.
     #[error(
-        "facet {facet} has edges up to {edge} m, which is more than half the wavelength of {wavelength} m; mesh finer, λ/10 is usual"
+        "facet {facet} has edges up to {edge} m, which is more than half the wavelength of {wavelength} m"
     )]
     Coarse {
         /// Index of the facet.
@@ -54,9 +54,7 @@ pub enum WaveError {
         wavelength: f64,
     },
     /// A receiver lies on a facet, where the field jumps.
-    #[error(
-        "point {receiver} of the receivers lies on facet {facet}, where the field jumps; move it off the surface"
-    )]
+    #[error("point {receiver} of the receivers lies on facet {facet}, where the field jumps")]
     OnSurface {
         /// Index of the point.
         receiver: usize,
@@ -64,16 +62,14 @@ pub enum WaveError {
         facet: usize,
     },
     /// A receiver lies in a source.
-    #[error(
-        "the field of a source at point {receiver} of the receivers is not finite; move the point out of the source"
-    )]
+    #[error("the field of a source at point {receiver} of the receivers is not finite")]
     InSource {
         /// Index of the point.
         receiver: usize,
     },
     /// The treatment of shadows asks for closed bodies.
     #[error(
-        "the magnetic field equation is made for closed bodies, but facet {facet} belongs to an open sheet; close the body, or take method = \"physical-optics\" or \"efie\""
+        "the magnetic field equation is made for closed bodies, but facet {facet} belongs to an open sheet"
     )]
     NotClosed {
         /// Index of the facet.
@@ -81,7 +77,7 @@ pub enum WaveError {
     },
     /// A closed body has no room for a second surface inside.
     #[error(
-        "the second surface would be {depth} m behind facet {facet}, too close to the first for the equation on two surfaces; take method = \"mfie\" or \"cfie\", or make the body thicker there"
+        "the second surface would be {depth} m behind facet {facet}, too close to the first for the equation on two surfaces"
     )]
     Thin {
         /// Index of the facet.
@@ -90,14 +86,10 @@ pub enum WaveError {
         depth: f64,
     },
     /// The equation on two surfaces is asked for as means over facets.
-    #[error(
-        "the equation on two surfaces is made discrete at the centres of the facets only; ask for Nyström"
-    )]
+    #[error("the equation on two surfaces is made discrete at the centres of the facets only")]
     CentresOnly,
     /// A model of perfect conductors meets another material.
-    #[error(
-        "{what} knows perfect conductors only, but facet {facet} is of another material; take method = \"physical-optics\" without edge currents"
-    )]
+    #[error("{what} knows perfect conductors only, but facet {facet} is of another material")]
     NotConductor {
         /// The model.
         what: &'static str,
@@ -121,4 +113,32 @@ pub enum WaveError {
     /// A matrix cannot be built.
     #[error(transparent)]
     Linop(#[from] LinopError),
+}
+
+impl WaveError {
+    /// What to do about it, where that is more than to correct the value.
+    #[must_use]
+    pub fn help(&self) -> Option<&'static str> {
+        match self {
+            Self::Polarisation => Some("give one across it"),
+            Self::NoFacets => Some("add a surface"),
+            Self::Coarse { .. } => Some("mesh finer, λ/10 is usual"),
+            Self::OnSurface { .. } => Some("move it off the surface"),
+            Self::InSource { .. } => Some("move the point out of the source"),
+            Self::NotClosed { .. } => {
+                Some("close the body, or take method = \"physical-optics\" or \"efie\"")
+            }
+            Self::Thin { .. } => Some("take method = \"mfie\" or \"cfie\", or make the body thicker there"),
+            Self::CentresOnly => Some("ask for Nyström"),
+            Self::NotConductor { .. } => Some("take method = \"physical-optics\" without edge currents"),
+            Self::Mesh(error) => Some(error.help()),
+            Self::Frequency { .. }
+            | Self::Length { .. }
+            | Self::Direction { .. }
+            | Self::NotFinite { .. }
+            | Self::Material { .. }
+            | Self::Visibility(_)
+            | Self::Linop(_) => None,
+        }
+    }
 }

@@ -263,15 +263,14 @@ impl WaveScene {
     }
 }
 
-/// What the library of waves says about the piece at `span`: the part after a semicolon is the help.
+/// What the library of waves says about the piece at `span`.
 pub(super) fn refused(source: &Source, span: Range<usize>, error: &WaveError) -> SceneError {
-    if let WaveError::Mesh(error) = error {
-        return source.error(ErrorKind::Geometry, span, error.to_string(), error.help());
-    }
-    let message = error.to_string();
-    let (what, help) = message.split_once("; ").unwrap_or((&message, "correct the entry that begins here"));
-    let kind = if matches!(error, WaveError::Linop(_)) { ErrorKind::TooLarge } else { ErrorKind::Value };
-    source.error(kind, span, what, help)
+    let kind = match error {
+        WaveError::Mesh(_) => ErrorKind::Geometry,
+        WaveError::Linop(_) => ErrorKind::TooLarge,
+        _ => ErrorKind::Value,
+    };
+    source.error(kind, span, error.to_string(), error.help().unwrap_or("correct the entry that begins here"))
 }
 
 /// The sources, at least one unless all receivers send their own waves.

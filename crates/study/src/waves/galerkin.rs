@@ -36,11 +36,10 @@ pub(super) fn basis(model: &Model, geometry: &Geometry) -> Result<Basis, Error> 
     Basis::new(surface).map_err(|error| refused(model, &error))
 }
 
-/// What the library of boundary elements says: the part after a semicolon is the help.
+/// What the library of boundary elements says.
 fn refused(model: &Model, error: &MomentsError) -> Error {
-    let message = error.to_string();
-    let (what, help) = message.split_once("; ").unwrap_or((&message, "correct the surfaces"));
-    scene_failure(model.scene.error(About::Method, SceneFault::Geometry, what, help))
+    let help = error.help().unwrap_or("correct the surfaces");
+    scene_failure(model.scene.error(About::Method, SceneFault::Geometry, error.to_string(), help))
 }
 
 /// Computes everything that the model asks for on one of its meshes.
@@ -178,9 +177,9 @@ impl Task<'_> {
 
     fn near(&self, currents: &Currents<'_>, receiver: usize, points: &[Vec3]) -> Result<Vec<Field>, Error> {
         currents.fields(points).map_err(|error| {
-            let message = error.to_string();
-            let (what, help) = message.split_once("; ").unwrap_or((&message, "move the points"));
-            scene_failure(self.model.scene.error(About::Receiver(receiver), SceneFault::Geometry, what, help))
+            let (about, what) = (About::Receiver(receiver), error.to_string());
+            let help = error.help().unwrap_or("move the points");
+            scene_failure(self.model.scene.error(about, SceneFault::Geometry, what, help))
         })
     }
 

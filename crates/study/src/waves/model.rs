@@ -302,9 +302,8 @@ fn method(scene: &WaveScene) -> Result<Option<Method>, Error> {
     let tolerance = settings.tolerance.unwrap_or(TOLERANCE);
     let max_iterations = settings.max_iterations.unwrap_or(ITERATIONS) as usize;
     let solver = super::registry::build(name).map_err(|error| {
-        let message = error.to_string();
-        let (what, help) = message.split_once("; ").unwrap_or((&message, "correct the name or the options"));
-        scene_failure(scene.error(About::Solver, fredholm_scene::ErrorKind::Name, what, help))
+        let help = "correct the name or the options";
+        scene_failure(scene.error(About::Solver, fredholm_scene::ErrorKind::Name, error.to_string(), help))
     })?;
     Ok(Some(Method::Solver { solver, tolerance, max_iterations }))
 }
