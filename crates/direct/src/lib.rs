@@ -19,22 +19,33 @@ pub use faer::traits::ComplexField;
 pub use mixed_lu::{MixedLu, Single};
 pub use spectrum::{Spectrum, SpectrumError, spectrum, spectrum_bytes};
 
-use fredholm_linop::{Entry, Options, Solver};
+use fredholm_linop::{Access, Entry, Options, Solver};
 
 /// All solvers of this crate, by name. T is f64 or Complex64.
 #[must_use]
 pub fn entries<T: Single + ComplexField>() -> Vec<Entry<dyn Solver<T>>> {
     let none = "a matrix that is not singular to working precision";
     vec![
-        Entry { name: "lu", requirements: none, options: &[], make: |_| Ok(Box::new(DenseLu)) },
+        Entry {
+            name: "lu",
+            access: Access::Entries,
+            symmetric: false,
+            requirements: none,
+            options: &[],
+            make: |_| Ok(Box::new(DenseLu)),
+        },
         Entry {
             name: "lu-mixed",
+            access: Access::Entries,
+            symmetric: false,
             requirements: "a condition below about a million",
             options: &[],
             make: |_| Ok(Box::new(MixedLu)),
         },
         Entry {
             name: "cholesky",
+            access: Access::Entries,
+            symmetric: true,
             requirements: "a symmetric coupling, factors at least 0, positive definite",
             options: &[],
             make: |_| Ok(Box::new(Cholesky)),

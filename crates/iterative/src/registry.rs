@@ -5,7 +5,7 @@ use crate::{
     GroupShooting, Hgs1, Hgs2, Hybrid, Jacobi, Minres, Neumann, PcgCholesky, PcgJacobi, PcgSsor, Progressive,
     Sor, Southwell, Ssor, Sur,
 };
-use fredholm_linop::{Entry, OptionError, Options, Scalar, Scheme, Solver, build};
+use fredholm_linop::{Access, Entry, OptionError, Options, Scalar, Scheme, Solver, build};
 
 /// All schemes of this crate, by name.
 ///
@@ -46,10 +46,12 @@ const SYMMETRIC: &str = "a symmetric coupling, factors at least 0, positive defi
 
 fn relaxations<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
     vec![
-        plain("gauss-seidel", DIAGONAL, |_| Ok(Box::new(GaussSeidel))),
-        plain("neumann", "none", |_| Ok(Box::new(Neumann))),
+        plain("gauss-seidel", Access::Entries, DIAGONAL, |_| Ok(Box::new(GaussSeidel))),
+        plain("neumann", Access::Products, "none", |_| Ok(Box::new(Neumann))),
         Entry {
             name: "jacobi",
+            access: Access::Diagonal,
+            symmetric: false,
             requirements: DIAGONAL,
             options: &[("omega", "weight above 0, default 1")],
             make: |options| {
@@ -59,12 +61,16 @@ fn relaxations<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
         },
         Entry {
             name: "sor",
+            access: Access::Entries,
+            symmetric: false,
             requirements: DIAGONAL,
             options: &[("omega", "factor between 0 and 2, default automatic")],
             make: |options| Ok(Box::new(Sor { omega: omega(options, 2.0)? })),
         },
         Entry {
             name: "sur",
+            access: Access::Entries,
+            symmetric: false,
             requirements: DIAGONAL,
             options: &[("omega", "factor between 0 and 1, default 0.8")],
             make: |options| {
@@ -73,6 +79,8 @@ fn relaxations<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
         },
         Entry {
             name: "ssor",
+            access: Access::Entries,
+            symmetric: false,
             requirements: DIAGONAL,
             options: &[("omega", "factor between 0 and 2, default 1")],
             make: |options| {
@@ -84,9 +92,11 @@ fn relaxations<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
 
 fn shootings<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
     vec![
-        plain("southwell", DIAGONAL, |_| Ok(Box::new(Southwell))),
+        plain("southwell", Access::Entries, DIAGONAL, |_| Ok(Box::new(Southwell))),
         Entry {
             name: "progressive",
+            access: Access::Entries,
+            symmetric: false,
             requirements: DIAGONAL,
             options: &[
                 ("overshoot", "yes or no, default no; real unknowns only"),
@@ -99,6 +109,8 @@ fn shootings<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
         },
         Entry {
             name: "group-shooting",
+            access: Access::Entries,
+            symmetric: false,
             requirements: "groups that are not singular",
             options: &[("size", "patches in a group, default 16")],
             make: |options| {
@@ -113,6 +125,8 @@ fn blocks<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
     vec![
         Entry {
             name: "block-jacobi",
+            access: Access::Entries,
+            symmetric: false,
             requirements: "diagonal blocks that are not singular",
             options: &[("size", "unknowns in a block, default 3")],
             make: |options| {
@@ -122,6 +136,8 @@ fn blocks<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
         },
         Entry {
             name: "block-gauss-seidel",
+            access: Access::Entries,
+            symmetric: false,
             requirements: "diagonal blocks that are not singular",
             options: &[("size", "unknowns in a block, default 3")],
             make: |options| {
@@ -134,11 +150,13 @@ fn blocks<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
 
 fn krylov<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
     vec![
-        plain("cg-psi", SYMMETRIC, |_| Ok(Box::new(CgPsi))),
-        plain("cg-theta", SYMMETRIC, |_| Ok(Box::new(CgTheta))),
-        plain("pcg-jacobi", SYMMETRIC, |_| Ok(Box::new(PcgJacobi))),
+        plain("cg-psi", Access::Products, SYMMETRIC, |_| Ok(Box::new(CgPsi))),
+        plain("cg-theta", Access::Products, SYMMETRIC, |_| Ok(Box::new(CgTheta))),
+        plain("pcg-jacobi", Access::Diagonal, SYMMETRIC, |_| Ok(Box::new(PcgJacobi))),
         Entry {
             name: "pcg-ssor",
+            access: Access::Entries,
+            symmetric: true,
             requirements: SYMMETRIC,
             options: &[("omega", "factor between 0 and 2, default 1")],
             make: |options| {
@@ -147,6 +165,8 @@ fn krylov<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
         },
         Entry {
             name: "pcg-ic",
+            access: Access::Entries,
+            symmetric: true,
             requirements: SYMMETRIC,
             options: &[("threshold", "what is left out, relative to the mean of a row, default 10")],
             make: |options| {
@@ -158,13 +178,19 @@ fn krylov<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
         },
         Entry {
             name: "chebyshev",
+            access: Access::Products,
+            symmetric: true,
             requirements: "a real positive spectrum: given, or a symmetric coupling and factors at least 0",
             options: &[("low", "lowest eigenvalue, with high"), ("high", "highest eigenvalue, with low")],
             make: chebyshev,
         },
-        plain("minres", "a symmetric coupling, factors at least 0", |_| Ok(Box::new(Minres))),
+        plain("minres", Access::Products, "a symmetric coupling, factors at least 0", |_| {
+            Ok(Box::new(Minres))
+        }),
         Entry {
             name: "gmres",
+            access: Access::Products,
+            symmetric: false,
             requirements: "none",
             options: &[("restart", "steps before it begins anew, default 30")],
             make: |options| {
@@ -172,9 +198,11 @@ fn krylov<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
                 Ok(Box::new(restart.map_or_else(Gmres::default, |restart| Gmres { restart })))
             },
         },
-        plain("bicgstab", "none", |_| Ok(Box::new(Bicgstab))),
+        plain("bicgstab", Access::Products, "none", |_| Ok(Box::new(Bicgstab))),
         Entry {
             name: "anderson",
+            access: Access::Products,
+            symmetric: false,
             requirements: "none",
             options: &[("depth", "differences remembered, default 5")],
             make: |options| {
@@ -189,6 +217,8 @@ fn hybrids<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
     vec![
         Entry {
             name: "hgs1",
+            access: Access::Entries,
+            symmetric: false,
             requirements: "those of the sequence",
             options: &[("sequence", "name of a scheme, default gauss-seidel")],
             make: |options| {
@@ -196,9 +226,11 @@ fn hybrids<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
                 Ok(Box::new(sequence.map_or_else(Hgs1::default, |sequence| Hgs1 { sequence })))
             },
         },
-        plain("hgs2", DIAGONAL, |_| Ok(Box::new(Hgs2))),
+        plain("hgs2", Access::Entries, DIAGONAL, |_| Ok(Box::new(Hgs2))),
         Entry {
             name: "hybrid",
+            access: Access::Entries,
+            symmetric: false,
             requirements: "those of both schemes",
             options: &[
                 ("first", "name of a scheme, default gauss-seidel"),
@@ -216,10 +248,12 @@ fn hybrids<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
 
 fn plain<T: Scalar>(
     name: &'static str,
+    access: Access,
     requirements: &'static str,
     make: fn(&mut Options) -> Made<T>,
 ) -> Entry<dyn Scheme<T>> {
-    Entry { name, requirements, options: &[], make }
+    let symmetric = requirements.contains("symmetric");
+    Entry { name, access, symmetric, requirements, options: &[], make }
 }
 
 fn omega(options: &mut Options, below: f64) -> Result<Option<f64>, OptionError> {

@@ -2,10 +2,26 @@
 
 use thiserror::Error;
 
+/// What of the matrix a solver asks for. The order is that of what an operator has to offer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Access {
+    /// Products with vectors alone.
+    Products,
+    /// Products, and the diagonal.
+    Diagonal,
+    /// Rows, columns or single entries too. An operator that computes or compresses its matrix may
+    /// have to make a product for each of them.
+    Entries,
+}
+
 /// A solver that can be asked for by name: a [`Solver`](crate::Solver) or a [`Scheme`](crate::Scheme).
 pub struct Entry<S: ?Sized> {
     /// Lower case, words joined by hyphens.
     pub name: &'static str,
+    /// What it asks of the matrix.
+    pub access: Access,
+    /// Whether it is made for symmetric couplings.
+    pub symmetric: bool,
     /// What it asks of the system, in one line; what does not have it is refused.
     pub requirements: &'static str,
     /// Options: name, and meaning with the default.
@@ -151,6 +167,8 @@ mod tests {
 
     const ENTRIES: &[Entry<str>] = &[Entry {
         name: "echo",
+        access: Access::Products,
+        symmetric: false,
         requirements: "",
         options: &[("factor", "default 2")],
         make: |options| {

@@ -36,7 +36,7 @@ mod solver;
 mod sweep;
 mod watch;
 
-pub use catalogue::{Entry, OptionError, Options, build};
+pub use catalogue::{Access, Entry, OptionError, Options, build};
 pub use dense::Dense;
 pub use error::{LinopError, SolveError};
 pub use lazy::{Columns, Lazy};

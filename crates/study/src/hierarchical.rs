@@ -10,7 +10,7 @@ use fredholm_hierarchical::{
     Goal, HierarchyError, Options as Limits, Problem as Input, RESIDUAL, Round, RoundWatch,
     Solution as Solved, Solvers, State, Surfaces, expected_bytes,
 };
-use fredholm_linop::{MultiVector, Watch};
+use fredholm_linop::{Access, MultiVector, Watch};
 use fredholm_mesh::{Mesh, MeshBuilder, MeshError, Patch};
 use fredholm_report::{Hierarchy, HierarchyGoal, HierarchyRound};
 use fredholm_scene::Scene;
@@ -34,20 +34,8 @@ const NAME: &str = "hierarchical";
 const FALLBACK: &str = "gmres";
 /// The solver where none is asked for.
 const SOLVER: &str = "cg-theta";
-/// Solvers that know the matrix by applications alone. Others read rows or columns, each of which
-/// is an application here.
-const SUITABLE: [&str; 10] = [
-    "neumann",
-    "jacobi",
-    "cg-psi",
-    "cg-theta",
-    "pcg-jacobi",
-    "chebyshev",
-    "minres",
-    "gmres",
-    "bicgstab",
-    "anderson",
-];
+/// What the operator of the links offers. A row or column of it takes a product.
+const OFFERED: Access = Access::Diagonal;
 /// How to need less memory.
 const HELP: &str = "use fewer faces, or a smaller picture";
 /// Pictures: of the field, of the elements, of links.
@@ -68,8 +56,11 @@ pub(crate) fn options(asked: &SolveOptions, scene: &Scene, accuracy: f64) -> Res
     NAME.clone_into(&mut problem.discretisation);
     if asked.problem.solver.is_none() && scene.solve().solver.is_none() {
         SOLVER.clone_into(&mut problem.solver);
-    } else if !SUITABLE.contains(&problem.solver.as_str()) {
-        return Err(unsuitable(&problem.solver));
+    } else {
+        let entry = registry::build(&problem.solver).map_err(|e| Error::new(ErrorKind::Input, e))?;
+        if entry.access > OFFERED {
+            return Err(unsuitable(&problem.solver));
+        }
     }
     let mut options = SolveSettings::new(problem, asked.stop, scene.solve());
     options.accuracy = Some(accuracy);
@@ -112,7 +103,7 @@ fn goal(options: &SolveSettings, mesh: &Mesh) -> Result<Option<Goal>, Error> {
 fn unsuitable(solver: &str) -> Error {
     let text =
         format!("{solver} reads rows or columns of a matrix, which hierarchical radiosity does not have");
-    let help = format!("with an accuracy choose one of {}", SUITABLE.join(", "));
+    let help = format!("with an accuracy choose one of {}", registry::names_within(OFFERED));
     Error::new(ErrorKind::Input, text).with_help(help)
 }
 

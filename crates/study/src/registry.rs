@@ -1,6 +1,6 @@
 //! The solvers of all crates, by name.
 
-use fredholm_linop::{OptionError, Options, Solver};
+use fredholm_linop::{Access, OptionError, Options, Solver};
 
 /// The solver where none is asked for.
 pub(crate) const DEFAULT: &str = "gauss-seidel";
@@ -11,6 +11,8 @@ pub struct SolverEntry {
     pub solver: Box<dyn Solver<f64>>,
     /// Whether there are iterates on the way that are worth keeping.
     pub iterative: bool,
+    /// What it asks of the matrix.
+    pub access: Access,
     /// What it asks of the system.
     pub requirements: &'static str,
     /// Its options and what they mean.
@@ -29,6 +31,12 @@ pub fn names() -> Vec<&'static str> {
     iterative.chain(fredholm_direct::entries::<f64>().into_iter().map(|entry| entry.name)).collect()
 }
 
+/// The names of the solvers of real systems that ask for no more of the matrix.
+pub(crate) fn names_within(access: Access) -> String {
+    let within = solvers().filter(|entry| entry.access <= access);
+    within.map(|entry| entry.solver.name()).collect::<Vec<_>>().join(", ")
+}
+
 /// The solver of this name, where there is one.
 pub(crate) fn find(name: &str) -> Option<SolverEntry> {
     build(name).ok()
@@ -43,14 +51,14 @@ pub fn build(text: &str) -> Result<SolverEntry, OptionError> {
     let scheme = fredholm_iterative::entries::<f64>().into_iter().find(|entry| entry.name == name);
     if let Some(entry) = scheme {
         let solver = Box::new(entry.build(given)?);
-        let (requirements, options) = (entry.requirements, entry.options);
-        return Ok(SolverEntry { solver, iterative: true, requirements, options });
+        let (access, requirements, options) = (entry.access, entry.requirements, entry.options);
+        return Ok(SolverEntry { solver, iterative: true, access, requirements, options });
     }
     let direct = fredholm_direct::entries::<f64>().into_iter().find(|entry| entry.name == name);
     let unknown = || OptionError::Solver { name, known: names().join(", ") };
     let entry = direct.ok_or_else(unknown)?;
-    let (requirements, options) = (entry.requirements, entry.options);
-    Ok(SolverEntry { solver: entry.build(given)?, iterative: false, requirements, options })
+    let (access, requirements, options) = (entry.access, entry.requirements, entry.options);
+    Ok(SolverEntry { solver: entry.build(given)?, iterative: false, access, requirements, options })
 }
 
 #[cfg(test)]

@@ -1,12 +1,22 @@
 //! The solvers of complex systems, by name.
 
-use fredholm_linop::{OptionError, Options, Solver};
+use fredholm_linop::{Access, OptionError, Options, Solver};
 use fredholm_waves::Complex64;
 
 /// The names of all solvers.
 pub(crate) fn names() -> Vec<&'static str> {
     let iterative = fredholm_iterative::entries::<Complex64>().into_iter().map(|entry| entry.name);
     iterative.chain(fredholm_direct::entries::<Complex64>().into_iter().map(|entry| entry.name)).collect()
+}
+
+/// The names of those that ask for products only and take any coupling: where the matrix does not
+/// fit, they compute it anew each time.
+pub(super) fn by_products() -> Vec<&'static str> {
+    let entries = fredholm_iterative::entries::<Complex64>().into_iter();
+    entries
+        .filter(|entry| entry.access == Access::Products && !entry.symmetric)
+        .map(|entry| entry.name)
+        .collect()
 }
 
 /// The solver of complex systems that a text such as `gmres:restart=100` asks for.

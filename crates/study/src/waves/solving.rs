@@ -10,14 +10,11 @@ use super::CouplingStorage;
 use super::Model;
 use super::memory::COUPLED;
 use super::model::Method;
+use super::registry::by_products;
 use crate::error::{Error, ErrorKind};
 use crate::memory::Plan;
 use crate::prediction::of_threads;
 use crate::stages::Signals;
-
-/// Solvers that ask for products only: where the matrix does not fit, they compute it anew each
-/// time.
-const PRODUCTS_ONLY: [&str; 4] = ["neumann", "gmres", "bicgstab", "anderson"];
 
 pub(super) type Vectors = MultiVector<Complex64>;
 
@@ -104,11 +101,12 @@ pub(super) fn coupled<'a>(
         .hold(format!("the coupling of {unknowns} unknowns"), bytes.into())
         .hold("the solver", solver.into())
         .aside(of_threads(addresses));
-    let other = solvers.iter().find(|solver| !PRODUCTS_ONLY.contains(&solver.name()));
+    let by_products = by_products();
+    let other = solvers.iter().find(|solver| !by_products.contains(&solver.name()));
     let wants_matrix = match (model.storage, other) {
         (Some(CouplingStorage::Products), Some(solver)) => {
             let what = format!("{} needs the matrix, which is not to be stored", solver.name());
-            let help = format!("--storage matrix, or a solver that needs none: {}", PRODUCTS_ONLY.join(", "));
+            let help = format!("--storage matrix, or a solver that needs none: {}", by_products.join(", "));
             return Err(Error::new(ErrorKind::Input, what).with_help(help));
         }
         (Some(storage), _) => storage == CouplingStorage::Matrix,
@@ -121,7 +119,7 @@ pub(super) fn coupled<'a>(
     if !wants_matrix {
         return lazy(model, scatterer, (wave, shadow), signals);
     }
-    let help = format!("mesh coarser, or take a solver that needs no matrix: {}", PRODUCTS_ONLY.join(", "));
+    let help = format!("mesh coarser, or take a solver that needs no matrix: {}", by_products.join(", "));
     plan.admit(model.limit, &help)?;
     plan.tell(model.limit, signals.watch);
     System::stored(scatterer, wave, shadow, Discretisation::Nystrom)
