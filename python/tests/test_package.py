@@ -1,4 +1,4 @@
-"""The package as a whole: imports, stubs, examples, and the code of the documentation."""
+"""The package as a whole: imports, stubs, examples. `tests/book.py` runs the code of the pages."""
 
 import json
 import pathlib
@@ -6,14 +6,13 @@ import re
 import runpy
 import subprocess
 import sys
-from typing import Any, List
+from typing import Any
 
 import pytest
 from conftest import ROOT
 
 import fredholm
 
-PAGE = ROOT / "docs" / "python.md"
 EXAMPLES = sorted((ROOT / "examples" / "python").glob("*.py"))
 
 
@@ -45,26 +44,6 @@ def test_stubs_are_those_of_the_module() -> None:
     command = [sys.executable, "-m", "mypy.stubtest", "fredholm._core"]
     found = subprocess.run(command, capture_output=True, text=True, cwd=ROOT / "python" / "tests")
     assert found.returncode == 0, found.stdout + found.stderr
-
-
-def blocks() -> List[Any]:
-    """The code of the page: the blocks of one heading belong together."""
-    parts = re.split(r"^## ", PAGE.read_text(), flags=re.MULTILINE)
-    code = [
-        (part.splitlines()[0], re.findall(r"```python\n(.*?)```", part, re.DOTALL))
-        for part in parts
-    ]
-    return [pytest.param("\n".join(found), id=title) for title, found in code if found]
-
-
-@pytest.mark.filterwarnings("ignore::fredholm.FredholmWarning")
-@pytest.mark.parametrize("code", blocks())
-def test_the_code_of_the_page_runs(code: str, tmp_path: pathlib.Path, monkeypatch: Any) -> None:
-    for name in set(re.findall(r"^\s*(?:import|from) (\w+)", code, re.MULTILINE)):
-        pytest.importorskip(name)
-    (tmp_path / "scenes").symlink_to(ROOT / "scenes")
-    monkeypatch.chdir(tmp_path)
-    exec(compile(code, str(PAGE), "exec"), {"__name__": "__main__"})
 
 
 @pytest.mark.filterwarnings("ignore::fredholm.FredholmWarning")

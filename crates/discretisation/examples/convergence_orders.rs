@@ -1,4 +1,5 @@
-//! Measures the order of every discretisation on the manufactured problems and prints the tables of docs/discretisations.md.
+//! Measures the order of every discretisation on the manufactured problems and prints the tables of
+//! docs/notes/discretisations.md.
 //!
 //! Words on the command line choose the lines that hold all of them.
 

@@ -69,7 +69,8 @@ fn near_and_inside_a_sphere_the_field_is_that_of_the_series() {
     }
 }
 
-/// The stored references have rooftops on graded cells; coarser cells here, for time. docs/moments.md has the fine ones.
+/// The stored references have rooftops on graded cells; coarser cells here, for time.
+/// docs/notes/moments.md has the fine ones.
 #[test]
 fn plates_agree_with_the_stored_method_of_moments() {
     let plate = |per: f64, halvings| plate(5.0 * WAVELENGTH, WAVELENGTH / per, Grading { halvings }).unwrap();

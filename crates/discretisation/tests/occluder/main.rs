@@ -88,7 +88,7 @@ fn difference_from_lu(mesh: &Mesh, lit: &Lit) -> f64 {
     differences.fold(0.0, f64::max) / size
 }
 
-/// Prints a line of the table of docs/discretisations.md.
+/// Prints a line of the table of docs/notes/discretisations.md.
 fn check(name: &str, cuts: &Cuts) {
     let mesh = cuts.mesh();
     let occluders = Occluders::new(mesh.occluders()).unwrap();

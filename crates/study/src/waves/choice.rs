@@ -8,8 +8,8 @@
 //! | panes and other materials | one bounce; `radiated` where something is let through | bounces have to be asked for |
 //! | edges above λ/2 | one bounce | nothing else is known on such facets |
 //!
-//! The figures are in `docs/waves.md`, treatment by treatment and bounce by bounce. Where bounces are asked for, what makes
-//! the sum converge to the truth is `radiated` on sheets: in `geometric` the current on the front of a sheet radiates the
+//! The figures are in `docs/notes/waves.md`, treatment by treatment and bounce by bounce. Where
+//! bounces are asked for, what makes the sum converge to the truth is `radiated` on sheets: in `geometric` the current on the front of a sheet radiates the
 //! shadow behind it, too, where what is blocked has none already.
 
 use fredholm_waves::material::Material;

@@ -1,7 +1,7 @@
 //! A part of the source: the integral over it, and how well that is known.
 //!
 //! s is the change from the rule before (at least [`ROUNDING`] times the integral), v the range of h times the area (for a higher rule on a part where all points are of one topology: the change before), m the
-//! area times the largest value that h could have at the first points, r the reach. The error is, with measured shares (docs/form-factors.md),
+//! area times the largest value that h could have at the first points, r the reach. The error is, with measured shares (docs/notes/form-factors.md),
 //!
 //! | | r ≤ 1 | r > 1 |
 //! |---|---|---|
