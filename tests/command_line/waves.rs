@@ -263,6 +263,7 @@ fn threads_change_no_byte_of_any_mode() {
     let small = "box = { min = [0, 0, 0], max = [0.3, 0.4, 0.35] }\nedge = \"lambda/6\"";
     let glass = "\n[materials.glass]\nlayers = [{ itu = \"glass\", thickness_m = 0.006 }]\n";
     let modes = [
+        ("", corner, ""),
         ("bounces = 3", corner, ""),
         ("bounces = 2\nedge_currents = true\nestimate_errors = true", corner, ""),
         ("shadows = \"radiated\"\nsolver = \"gmres\"", corner, ""),
@@ -286,6 +287,39 @@ fn threads_change_no_byte_of_any_mode() {
         assert!(one.iter().all(|file| file.len() > 50), "{method}");
         assert!(results("2") == one && results("4") == one, "{method}");
     }
+}
+
+/// Small sheets are solved by boundary elements unasked: the answer is that of a finer mesh within the stated error.
+#[test]
+fn small_sheets_are_solved_rigorously_within_the_stated_error() {
+    let corner = |edge: &str| {
+        format!(
+            "quad = [[-0.2, 0, -0.2], [0.2, 0, -0.2], [0.2, 0, 0.2], [-0.2, 0, 0.2]]\nedge = \"{edge}\"\n\n\
+             [[surface]]\nname = \"wing\"\nquad = [[-0.2, 0, -0.2], [-0.2, 0, 0.2], [-0.2, -0.4, 0.2], [-0.2, -0.4, -0.2]]\n\
+             edge = \"{edge}\""
+        )
+    };
+    let far = "far = { theta_degrees = { from = 10, to = 170, points = 9 }, phi_degrees = { from = 0, to = 330, points = 12 } }";
+    let run = |edge: &str| {
+        let bench = Bench::new(&changed(&[(PLATE, &corner(edge)), (POINT, far)]));
+        let run = bench.run(&["waves", "scene.toml"]);
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        let record: serde_json::Value = serde_json::from_str(&read(&bench, "run.json")).unwrap();
+        assert_eq!(record["method"], "efie", "{}", record["chosen_because"]);
+        let table = read(&bench, "far.csv");
+        let header: Vec<&str> = table.lines().next().unwrap().split(',').collect();
+        let first = header.iter().position(|name| *name == "f_theta_re").unwrap();
+        let amplitudes = table.lines().skip(1).flat_map(|line| {
+            let cells: Vec<&str> = line.split(',').collect();
+            (first..first + 4).map(move |i| cells[i].parse::<f64>().unwrap())
+        });
+        (amplitudes.collect::<Vec<_>>(), record["stated_errors"][0]["relative"].as_f64().unwrap())
+    };
+    let ((coarse, stated), (fine, finer)) = (run("lambda/5"), run("lambda/10"));
+    let square = |values: &mut dyn Iterator<Item = f64>| values.map(|x| x * x).sum::<f64>();
+    let gap = square(&mut coarse.iter().zip(&fine).map(|(a, b)| a - b));
+    let error = (gap / square(&mut fine.iter().copied())).sqrt();
+    assert!(error > 0.01 && error < stated && stated < 0.25 && finer < stated, "{error} {stated} {finer}");
 }
 
 /// The residual after the bounces asked for, and the estimates, are in the record.

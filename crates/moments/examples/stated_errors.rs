@@ -16,7 +16,7 @@ use fredholm_waves::{
     Bounced, Complex64, ComplexVector, EdgeCurrents, Indicator, PhysicalOptics, Scatterer, Shadow, Source,
     System, field_inside,
 };
-use wave_cases::{Body, Case, calibration, directions, error};
+use wave_cases::{Body, Case, calibration, directions, error, small_sheets};
 
 type Vectors = MultiVector<Complex64>;
 
@@ -65,6 +65,24 @@ fn run(case: &Case, body: &Scatterer, shadow: Shadow, truth: &[ComplexVector], u
     row(case, shadow, Indicator::EdgesAdded(norm(&edge) / norm(&both)), error(&both, truth));
 }
 
+/// The electric field equation on even cells of several sizes, beside cells far finer and graded.
+fn boundary_elements(u: &[Vec3]) {
+    for bodies in small_sheets() {
+        let truths = Case::truths(&bodies, u, 20.0, 2);
+        for per in [4.5, 6.0, 8.0, 10.0] {
+            let indicator = Indicator::BoundaryElements(bodies[0].longest_edge(per));
+            for ((case, far), truth) in bodies.iter().zip(Case::truths(&bodies, u, per, 0)).zip(&truths) {
+                println!(
+                    "{},efie,BoundaryElements,{:.5},{:.5}",
+                    case.name,
+                    indicator.value(),
+                    error(&far, truth)
+                );
+            }
+        }
+    }
+}
+
 fn main() {
     let u = directions();
     println!("case,treatment,indicator,value,true_error");
@@ -82,4 +100,5 @@ fn main() {
             }
         }
     }
+    boundary_elements(&u);
 }

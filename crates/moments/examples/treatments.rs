@@ -80,6 +80,14 @@ fn main() {
     );
     for case in cases().into_iter().filter(|case| case.name.contains(&wanted)) {
         let truth = case.truth(&u, 8.0, 1);
+        if matches!(case.body, Body::Plates(_)) {
+            // What small scenes get unasked.
+            println!(
+                "{}, efie on even cells of λ/6: {:.3}",
+                case.name,
+                error(&case.truth(&u, 6.0, 0), &truth)
+            );
+        }
         let body = case.scatterer(8.0);
         let mut shadows = vec![Shadow::Geometric, Shadow::Radiated];
         if !matches!(case.body, Body::Plates(_)) {

@@ -216,6 +216,12 @@ impl Topology {
         }
     }
 
+    /// The length of the longest edge, m.
+    #[must_use]
+    pub fn longest_edge(&self, surface: &Surface) -> f64 {
+        self.edges.iter().map(|edge| length(surface, edge)).fold(0.0, f64::max)
+    }
+
     /// Refuses edges above a third of the wavelength (m), on which no wave can be told from its alias.
     ///
     /// # Errors

@@ -36,7 +36,9 @@ pub use medium::Wave;
 pub use mie::{ConductingSphere, DielectricSphere};
 pub use num_complex::Complex64;
 pub use optics::{PhysicalOptics, Shadow};
-pub use radiation::{FarField, Gate, Pattern, Radiator, Sampling, TOLERANCE, cross_section, polar_frame};
+pub use radiation::{
+    FarField, Gate, Pattern, Radiator, Sampling, TOLERANCE, cross_section, even_directions, polar_frame,
+};
 pub use source::{Origin, Source, incident};
 pub use stated::{Indicator, field_inside};
 pub use surface::{Facet, Kind, Scatterer};

@@ -6,10 +6,10 @@
 use super::common::{WAVELENGTH, solved, wave};
 use fredholm_mesh::{Cutting, Lines, MeshBuilder, Shape, Vec3};
 use fredholm_moments::meshing::{Grading, cuboid, rectangle};
-use fredholm_moments::{Basis, Conductor, Currents, Equation, Surface};
+use fredholm_moments::{Basis, Conductor, Currents, Equation, Surface, Topology};
 use fredholm_waves::source::PlaneWave;
 use fredholm_waves::surface::{cube, sphere};
-use fredholm_waves::{ComplexVector, ConductingSphere, Kind, Scatterer, Source};
+use fredholm_waves::{ComplexVector, ConductingSphere, Kind, Scatterer, Source, even_directions};
 
 /// What scatters; lengths in wavelengths.
 #[derive(Clone, Debug)]
@@ -87,6 +87,12 @@ impl Case {
         (0..cases.len()).map(far).collect()
     }
 
+    /// The longest edge of the even mesh of plates and cubes with cells up to λ over `per`, in wavelengths.
+    pub fn longest_edge(&self, per: f64) -> f64 {
+        let surface = surface(&self.body, WAVELENGTH / per, Grading::default());
+        Topology::new(&surface).longest_edge(&surface) / WAVELENGTH
+    }
+
     /// From the field far away; the distance is in it as λ/r, some millionths.
     fn mie(&self, radius: f64, directions: &[Vec3]) -> Vec<ComplexVector> {
         let (ball, far) = (ConductingSphere::new(radius).unwrap(), 1e6 * WAVELENGTH);
@@ -114,16 +120,9 @@ fn surface(body: &Body, edge: f64, grading: Grading) -> Surface {
     }
 }
 
-/// Directions that cover the sphere evenly, on a spiral.
+/// Directions that cover the sphere evenly.
 pub fn directions() -> Vec<Vec3> {
-    let count = 600;
-    let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
-    let place = |i: i32| {
-        let z = (2.0 * f64::from(i) + 1.0) / f64::from(count) - 1.0;
-        let (sin, cos) = (golden * f64::from(i)).sin_cos();
-        Vec3::new(cos * (1.0 - z * z).sqrt(), sin * (1.0 - z * z).sqrt(), z)
-    };
-    (0..count).map(place).collect()
+    even_directions(600)
 }
 
 /// ‖a − b‖₂/‖b‖₂.
@@ -209,18 +208,7 @@ pub fn cases() -> Vec<Case> {
 /// Runs with known answers, one list a body: plates, pairs of plates, a dihedral, cubes and spheres in waves of several
 /// angles and polarisations.
 pub fn calibration() -> Vec<Vec<Case>> {
-    let ways = [
-        ([0.0, 1.0, 0.0], [0.0, 0.0, 1.0]),
-        ([0.5, 0.866, 0.0], [0.0, 0.0, 1.0]),
-        ([0.5, 0.866, 0.0], [0.866, -0.5, 0.0]),
-        ([0.766, 0.643, 0.0], [0.0, 0.0, 1.0]),
-        ([0.766, 0.643, 0.0], [0.643, -0.766, 0.0]),
-        ([0.4, 0.8, 0.45], [0.1, 0.3, 1.0]),
-        ([-0.3, 0.7, -0.6], [1.0, 0.2, 0.1]),
-    ];
-    let of = |name: &'static str, body: Body| -> Vec<Case> {
-        ways.iter().map(|&(travel, along)| Case::new(name, body.clone(), travel, along)).collect()
-    };
+    let of = |name, body| in_waves(name, &body);
     let known = cases();
     let named = |name: &str| known.iter().find(|case| case.name == name).unwrap().body.clone();
     vec![
@@ -237,5 +225,40 @@ pub fn calibration() -> Vec<Vec<Case>> {
         of("dihedral 90", named("dihedral 90")),
         of("shadowed", named("shadowed")),
         of("two facing", named("two facing")),
+    ]
+}
+
+/// The body in waves of several angles and polarisations.
+fn in_waves(name: &'static str, body: &Body) -> Vec<Case> {
+    let ways = [
+        ([0.0, 1.0, 0.0], [0.0, 0.0, 1.0]),
+        ([0.5, 0.866, 0.0], [0.0, 0.0, 1.0]),
+        ([0.5, 0.866, 0.0], [0.866, -0.5, 0.0]),
+        ([0.766, 0.643, 0.0], [0.0, 0.0, 1.0]),
+        ([0.766, 0.643, 0.0], [0.643, -0.766, 0.0]),
+        ([0.4, 0.8, 0.45], [0.1, 0.3, 1.0]),
+        ([-0.3, 0.7, -0.6], [1.0, 0.2, 0.1]),
+    ];
+    ways.iter().map(|&(travel, along)| Case::new(name, body.clone(), travel, along)).collect()
+}
+
+/// Sheets small enough for a mesh far finer than usual, one list a body.
+pub fn small_sheets() -> Vec<Vec<Case>> {
+    let of = |name, plates: Vec<[Vec3; 3]>| in_waves(name, &Body::Plates(plates));
+    let slope = 0.5_f64.sqrt();
+    let (left, right) = (Vec3::new(-slope, -slope, 0.0), Vec3::new(slope, -slope, 0.0));
+    vec![
+        of("plate 1.5", vec![upright(1.5, 0.0, 0.0)]),
+        of("plate 0.7", vec![upright(0.7, 0.0, 0.0)]),
+        of("strip 2 x 0.4", vec![square([0.0; 3], [2.0, 0.0, 0.0], [0.0, 0.0, 0.4])]),
+        of(
+            "dihedral 1.1",
+            vec![[Vec3::ZERO, Vec3::Z * 1.1, right * 1.1], [Vec3::ZERO, left * 1.1, Vec3::Z * 1.1]],
+        ),
+        of("shadowed 1", vec![upright(1.0, 0.0, 0.0), upright(1.0, 0.5, 0.8)]),
+        of(
+            "askew pair",
+            vec![upright(1.0, 0.0, 0.0), square([0.4, 0.7, 0.2], [0.8, 0.3, 0.0], [0.0, 0.2, 0.7])],
+        ),
     ]
 }

@@ -3,7 +3,8 @@
 //! | scene | method | why |
 //! |---|---|---|
 //! | closed conductors, edges up to λ/4 | `dual-surface-mfie`, GMRES | an equation without approximation but the mesh |
-//! | conductors, sheets among them | `radiated`, GMRES, edge currents | currents make the shadow themselves: what hides a part of what stands behind is counted once |
+//! | conductors, sheets among them, small | `efie`, LU | an equation without approximation but the mesh; the matrix is stored |
+//! | conductors, sheets among them, larger | `radiated`, GMRES, edge currents | currents make the shadow themselves: what hides a part of what stands behind is counted once |
 //! | one flat sheet | one bounce, edge currents | its facets do not light each other |
 //! | panes and other materials | one bounce; `radiated` where something is let through | bounces have to be asked for |
 //! | edges above λ/2 | one bounce | nothing else is known on such facets |
@@ -12,15 +13,21 @@
 //! bounces are asked for, what makes the sum converge to the truth is `radiated` on sheets: in `geometric` the current on the front of a sheet radiates the
 //! shadow behind it, too, where what is blocked has none already.
 
+use fredholm_moments::{Basis, Equation, Surface, Topology};
 use fredholm_waves::material::Material;
-use fredholm_waves::{Kind, Shadow};
+use fredholm_waves::{Complex64, Kind, Shadow};
 
 use super::geometry::Geometry;
-use super::model::{Band, Method};
+use super::model::{BY_MATRIX, Band, Method};
 use super::over_frequency::MOST_PICTURED;
 
 /// Longest edge for the equation, in wavelengths.
 const EQUATION: f64 = 0.26;
+/// Most unknowns of boundary elements that are taken unasked: assembly and factorisation then take
+/// some tens of seconds a core.
+const MOST_UNKNOWNS: usize = 6_000;
+/// Matrices that the factorisation holds at once.
+const MATRICES: u128 = 2;
 /// Longest edge for several bounces, in wavelengths.
 const BOUNCES: f64 = 0.5 * (1.0 + 1e-9);
 /// Most facets for which all bounces are taken unasked: a product then takes some seconds a core.
@@ -47,6 +54,7 @@ impl Asked {
     pub(super) fn plain(self) -> Taken {
         Taken {
             shadow: self.shadow.unwrap_or_default(),
+            galerkin: None,
             method: self.method.unwrap_or(Method::Bounces(1)),
             edge_currents: self.edge_currents.unwrap_or(false),
             reason: None,
@@ -58,6 +66,8 @@ impl Asked {
 /// What is computed.
 pub(super) struct Taken {
     pub(super) shadow: Shadow,
+    /// The equation of boundary elements, where that is taken instead of currents on facets.
+    pub(super) galerkin: Option<Equation>,
     pub(super) method: Method,
     pub(super) edge_currents: bool,
     /// Why, where the scene left it open.
@@ -82,10 +92,12 @@ struct Seen {
     sides: f64,
     /// Whether there are many frequencies.
     sweep: bool,
+    /// Whether boundary elements are possible on the mesh, and quick.
+    small: bool,
 }
 
 impl Seen {
-    fn of(geometry: &Geometry, bands: &[Band]) -> Self {
+    fn of(geometry: &Geometry, bands: &[Band], fits: &dyn Fn(u128) -> bool) -> Self {
         let materials = || bands.iter().flat_map(|band| &band.materials);
         let mesh = &geometry.mesh;
         let shortest = bands.iter().map(|band| band.wave.wavelength()).fold(f64::INFINITY, f64::min);
@@ -105,6 +117,7 @@ impl Seen {
             flat: is_flat(geometry),
             facets: mesh.len(),
             sweep: bands.len() > MOST_PICTURED,
+            small: is_small(geometry, shortest, fits),
             edge: mesh.patches().map(side).fold(0.0, f64::max) / shortest,
         }
     }
@@ -112,6 +125,21 @@ impl Seen {
     fn closed_conductors(&self) -> bool {
         self.conductors && !self.sheets
     }
+}
+
+/// Whether boundary elements are possible on the mesh, their unknowns few, and their matrix fits.
+fn is_small(geometry: &Geometry, wavelength: f64, fits: &dyn Fn(u128) -> bool) -> bool {
+    if geometry.mesh.len() > MOST_UNKNOWNS {
+        return false;
+    }
+    let Ok(surface) = Surface::from_mesh(&geometry.mesh) else { return false };
+    if Topology::new(&surface).check_resolution(&surface, wavelength).is_err() {
+        return false;
+    }
+    Basis::new(surface).is_ok_and(|basis| {
+        let matrix = (basis.len() * basis.len() * size_of::<Complex64>()) as u128;
+        basis.len() <= MOST_UNKNOWNS && fits(MATRICES * matrix)
+    })
 }
 
 /// Whether all sheets are in one plane.
@@ -129,11 +157,12 @@ pub(super) fn in_one_plane(faces: &[fredholm_mesh::Patch], extent: f64) -> bool 
     faces.iter().flat_map(fredholm_mesh::Patch::corners).all(|p| height(p) <= 1e-9 * extent)
 }
 
-/// What is computed of a scene that asks for this.
-pub(super) fn taken(asked: Asked, geometry: &Geometry, bands: &[Band]) -> Taken {
-    let seen = Seen::of(geometry, bands);
+/// What is computed of a scene that asks for this, where a matrix of some bytes `fits`.
+pub(super) fn taken(asked: Asked, geometry: &Geometry, bands: &[Band], fits: &dyn Fn(u128) -> bool) -> Taken {
+    let seen = Seen::of(geometry, bands, fits);
     let mut taken = match (asked.method, asked.shadow) {
-        (None, None) if !asked.optics => chosen(&seen),
+        // Edge currents complete physical optics: who asks for them, or for none, means that.
+        (None, None) if !asked.optics => chosen(&seen, asked.edge_currents.is_none()),
         (method, shadow) => completed(method.unwrap_or(Method::Bounces(1)), (asked.optics, shadow), &seen),
     };
     if let Some(edge_currents) = asked.edge_currents {
@@ -147,7 +176,24 @@ pub(super) fn taken(asked: Asked, geometry: &Geometry, bands: &[Band]) -> Taken 
     taken
 }
 
-fn chosen(seen: &Seen) -> Taken {
+fn chosen(seen: &Seen, rigorous: bool) -> Taken {
+    let boundary_elements = rigorous && seen.conductors && seen.sheets && !seen.flat && !seen.sweep;
+    if boundary_elements
+        && seen.small
+        && let Ok(solver) = super::registry::build(BY_MATRIX)
+    {
+        return Taken {
+            shadow: Shadow::default(),
+            galerkin: Some(Equation::Electric),
+            method: Method::Solver { solver, tolerance: TOLERANCE, max_iterations: ITERATIONS },
+            edge_currents: false,
+            reason: Some(
+                "conductors, sheets among them, with few unknowns: an equation without approximation"
+                    .to_owned(),
+            ),
+            warnings: Vec::new(),
+        };
+    }
     let one = |shadow, edge_currents, why: &str| {
         (Method::Bounces(1), shadow, edge_currents, format!("one bounce: {why}"))
     };
@@ -200,7 +246,7 @@ fn chosen(seen: &Seen) -> Taken {
         );
     }
     let edge_currents = edge_currents && !long && !seen.sweep;
-    Taken { shadow, method, edge_currents, reason: Some(why), warnings }
+    Taken { shadow, galerkin: None, method, edge_currents, reason: Some(why), warnings }
 }
 
 /// The rest of what a scene that asks for a part gets.
@@ -226,5 +272,6 @@ fn completed(method: Method, (optics, shadow): (bool, Option<Shadow>), seen: &Se
         }
     };
     let reason = shadow.is_none().then(|| suits().1.to_owned());
-    Taken { shadow: shadow.unwrap_or_else(|| suits().0), method, edge_currents: false, reason, warnings }
+    let shadow = shadow.unwrap_or_else(|| suits().0);
+    Taken { shadow, galerkin: None, method, edge_currents: false, reason, warnings }
 }

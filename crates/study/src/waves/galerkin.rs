@@ -5,14 +5,15 @@ use std::slice;
 
 use fredholm_linop::{LinearOperator, MultiVector};
 use fredholm_mesh::Vec3;
-use fredholm_moments::{Basis, Conductor, Currents, Equation, MomentsError, Surface};
+use fredholm_moments::{Basis, Conductor, Currents, Equation, MomentsError, Surface, Topology};
 use fredholm_report::{MonostaticRow, WaveCurrents};
 use fredholm_scene::ErrorKind as SceneFault;
 use fredholm_scene::waves::{About, Places};
 use fredholm_waves::material::Material;
-use fredholm_waves::{Complex64, Current, FarField, Field, Source};
+use fredholm_waves::{Complex64, Current, FarField, Field, Indicator, Kind, Source, even_directions};
 
 use super::compute::{current, directions, far_row, near_rows};
+use super::estimate::Estimated;
 use super::geometry::Geometry;
 use super::model::{Band, Receiver};
 use super::monostatic::plane_waves;
@@ -27,6 +28,8 @@ use crate::stages::{Signals, Stages};
 
 /// Relative error of the integrals over each pair of triangles, below that of usual meshes.
 const INTEGRALS: f64 = 1e-3;
+/// Directions in which the mean scattered field is taken that errors are compared with.
+const DIRECTIONS: usize = 200;
 /// Copies of the right-hand sides that a solver holds.
 const VECTORS: u128 = 3;
 
@@ -50,13 +53,25 @@ pub(super) fn run(
     stages: &mut Stages,
 ) -> Result<Outcome, Error> {
     let basis = basis(model, geometry)?;
+    let edge = longest_edge(geometry, equation).filter(|_| name.is_empty());
     let mut outcome = Outcome::default();
     for band in &model.bands {
         check_conductor(model, band)?;
         let name = format!("{} MHz{name}", band.wave.frequency() / 1e6);
-        Task { model, geometry, basis: &basis, band, equation }.carry_out(&name, stages, &mut outcome)?;
+        Task { model, geometry, basis: &basis, band, equation, edge }.carry_out(
+            &name,
+            stages,
+            &mut outcome,
+        )?;
     }
     Ok(outcome)
+}
+
+/// The longest edge of sheets, m, which tells the error of the electric equation.
+fn longest_edge(geometry: &Geometry, equation: Equation) -> Option<f64> {
+    let known = equation == Equation::Electric && geometry.kinds().iter().all(|kind| *kind == Kind::Sheet);
+    let surface = known.then(|| Surface::from_mesh(&geometry.mesh).ok()).flatten()?;
+    Some(Topology::new(&surface).longest_edge(&surface))
 }
 
 fn check_conductor(model: &Model, band: &Band) -> Result<(), Error> {
@@ -76,6 +91,8 @@ struct Task<'a> {
     basis: &'a Basis,
     band: &'a Band,
     equation: Equation,
+    /// The longest edge, m, where the error is stated from it.
+    edge: Option<f64>,
 }
 
 impl Task<'_> {
@@ -93,7 +110,8 @@ impl Task<'_> {
             let solution =
                 stages.run(&format!("currents at {name}"), || self.solve(&coupling, &b, signals))?;
             let currents = Currents::new(self.basis, self.band.wave, &solution.x.lane(0), None);
-            stages.run(&format!("fields at {name}"), || self.receive(&currents, outcome))?;
+            let error = self.error(&currents, solution.residuals.last())?;
+            stages.run(&format!("fields at {name}"), || self.receive(&currents, error, outcome))?;
             let values = self.on_facets(&currents).iter().map(current).collect();
             outcome.currents.push(WaveCurrents { name: name.to_owned(), values });
             outcome.solved.push(self.record(solution));
@@ -150,26 +168,51 @@ impl Task<'_> {
         Solved { frequency, facets, residuals: solution.residuals, reason: solution.reason }
     }
 
+    /// The expected error of the scattered field, where it is known.
+    fn error(&self, currents: &Currents<'_>, residual: Option<&f64>) -> Result<Option<MeanError>, Error> {
+        let (Some(edge), Some(residual)) = (self.edge, residual) else { return Ok(None) };
+        let relative = Indicator::BoundaryElements(edge / self.band.wave.wavelength()).error() + residual;
+        let far = self.far(currents, &even_directions(DIRECTIONS))?;
+        let mean = far.iter().map(|far| far.amplitude.norm_squared()).sum::<f64>() / far.len() as f64;
+        let Some(bounds) = self.geometry.mesh.bounds() else { return Ok(None) };
+        let centre = 0.5 * (bounds.min + bounds.max);
+        Ok(Some(MeanError { relative, mean: mean.sqrt(), centre, radius: bounds.max.distance(centre) }))
+    }
+
     /// Fields at all receivers of the scene's sources.
-    fn receive(&self, currents: &Currents<'_>, outcome: &mut Outcome) -> Result<(), Error> {
+    fn receive(
+        &self,
+        currents: &Currents<'_>,
+        error: Option<MeanError>,
+        outcome: &mut Outcome,
+    ) -> Result<(), Error> {
         for (index, receiver) in self.model.receivers.iter().enumerate() {
-            match &receiver.places {
-                Places::Near { points, .. } => {
-                    let scattered = self.near(currents, index, points)?;
-                    let rows = near_rows(self.model, self.band, index, points, &scattered);
-                    let rows = rows.map_err(|error| self.model.refused(&error, Some(receiver)))?;
-                    outcome.near.extend(rows);
-                }
-                Places::Far(angles) => {
-                    let far = self.far(currents, &directions(angles))?;
-                    let rows = far.iter().zip(angles).enumerate();
-                    outcome.far.extend(
-                        rows.map(|(i, (far, angles))| {
+            let relative =
+                match &receiver.places {
+                    Places::Near { points, .. } => {
+                        let scattered = self.near(currents, index, points)?;
+                        let rows = near_rows(self.model, self.band, index, points, &scattered);
+                        let rows = rows.map_err(|error| self.model.refused(&error, Some(receiver)))?;
+                        outcome.near.extend(rows);
+                        let squares = scattered.iter().map(|field| field.e.norm_squared());
+                        error.as_ref().map(|error| {
+                            error.relative(squares, points.iter().map(|&p| error.centre.distance(p)))
+                        })
+                    }
+                    Places::Far(angles) => {
+                        let far = self.far(currents, &directions(angles))?;
+                        let rows = far.iter().zip(angles).enumerate();
+                        outcome.far.extend(rows.map(|(i, (far, angles))| {
                             far_row(self.model, self.band, [index, i], *angles, far)
-                        }),
-                    );
-                }
-                Places::Monostatic(_) => {}
+                        }));
+                        let squares = far.iter().map(|far| far.amplitude.norm_squared());
+                        error.as_ref().map(|error| error.relative_far(squares))
+                    }
+                    Places::Monostatic(_) => None,
+                };
+            if let Some(relative) = relative {
+                let frequency = self.band.wave.frequency();
+                outcome.stated_errors.push(Estimated { receiver: index, frequency, relative });
             }
         }
         Ok(())
@@ -232,5 +275,40 @@ impl Task<'_> {
             Current { j: sum * (1.0 / count as f64), ..Current::default() }
         };
         self.geometry.mesh.patches().map(|patch| facet(patch.sides())).collect()
+    }
+}
+
+/// The error of a scattered field, spread evenly over all directions.
+///
+/// What was measured is the error over the whole sphere, relative to the field there. Where a
+/// receiver gets less than the mean field, the error is a larger part of it.
+struct MeanError {
+    /// Over all directions.
+    relative: f64,
+    /// Root mean square of the far amplitude over all directions, V.
+    mean: f64,
+    /// Middle of the body, m.
+    centre: Vec3,
+    /// Radius of a ball that holds the body, m: fields within are not expected to be larger.
+    radius: f64,
+}
+
+impl MeanError {
+    /// The error relative to the field at some points, from |E|² (V²/m²) and the distances from the
+    /// middle, m.
+    fn relative(&self, squares: impl Iterator<Item = f64>, distances: impl Iterator<Item = f64>) -> f64 {
+        let mean = |distance: f64| self.mean / distance.max(self.radius);
+        self.over(squares, distances.map(|distance| mean(distance).powi(2)).sum())
+    }
+
+    /// The same in directions, from the squares of the amplitudes, V².
+    fn relative_far(&self, squares: impl ExactSizeIterator<Item = f64>) -> f64 {
+        let count = squares.len() as f64;
+        self.over(squares, count * self.mean * self.mean)
+    }
+
+    fn over(&self, squares: impl Iterator<Item = f64>, expected: f64) -> f64 {
+        let found: f64 = squares.sum();
+        if found > 0.0 { self.relative * (expected / found).sqrt().max(1.0) } else { self.relative }
     }
 }

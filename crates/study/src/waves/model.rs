@@ -30,7 +30,7 @@ const ITERATIONS: u32 = 500;
 /// Solvers of equations where the scene does not say: of those by products, and of those whose
 /// matrix is stored and may be ill-conditioned.
 const BY_PRODUCTS: &str = "gmres";
-const BY_MATRIX: &str = "lu";
+pub(super) const BY_MATRIX: &str = "lu";
 
 /// How many bounces are summed.
 pub(crate) enum Method {
@@ -133,9 +133,15 @@ impl Model {
         let cut = |stretch, whole| Geometry::new(&scene, Cuts { wavelength, stretch, whole }, &admit);
         let whole = !estimated && asked.method.as_ref().is_some_and(|method| is_closed_form(&scene, method));
         let geometry = cut(1.0, whole)?;
-        let galerkin = galerkin(settings);
-        let Taken { shadow, method, edge_currents, reason, warnings } =
-            if chooses && galerkin.is_none() { taken(asked, &geometry, &bands) } else { asked.plain() };
+        let named = galerkin(settings);
+        let Taken { shadow, galerkin, method, edge_currents, reason, warnings } =
+            if chooses && named.is_none() {
+                let fits = |bytes| Plan::default().hold("the matrix", bytes).fits(limit);
+                taken(asked, &geometry, &bands, &fits)
+            } else {
+                asked.plain()
+            };
+        let galerkin = named.or(galerkin);
         // One bounce that was not asked for may do without cutting, too.
         let geometry =
             if !whole && !estimated && is_closed_form(&scene, &method) { cut(1.0, true)? } else { geometry };

@@ -30,6 +30,19 @@ impl FarField {
     }
 }
 
+/// Unit directions that cover the sphere evenly, on a spiral that turns by the golden angle.
+/// R. Swinbank, R. J. Purser, Q. J. R. Meteorol. Soc. 132 (2006) 1769, doi:10.1256/qj.05.227.
+#[must_use]
+pub fn even_directions(count: usize) -> Vec<Vec3> {
+    let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
+    let place = |i: usize| {
+        let z = (2.0 * i as f64 + 1.0) / count as f64 - 1.0;
+        let (sin, cos) = (golden * i as f64).sin_cos();
+        Vec3::new(cos * (1.0 - z * z).sqrt(), sin * (1.0 - z * z).sqrt(), z)
+    };
+    (0..count).map(place).collect()
+}
+
 /// θ̂ and φ̂ of a direction.
 #[must_use]
 pub fn polar_frame(direction: Vec3) -> [Vec3; 2] {

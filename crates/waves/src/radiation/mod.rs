@@ -12,7 +12,7 @@ mod kernel;
 mod linear_phase;
 mod near;
 
-pub use far::{FarField, Pattern, cross_section, polar_frame};
+pub use far::{FarField, Pattern, cross_section, even_directions, polar_frame};
 pub(crate) use kernel::{Element, Evaluate, Group, Observers};
 pub(crate) use near::Run;
 
