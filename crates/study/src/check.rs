@@ -1,11 +1,9 @@
 //! What a scene and its mesh are, and what its solution will take; nothing is solved.
 
-use std::io::Write;
-use std::path::Path;
 use std::sync::Arc;
 
 use fredholm_linop::Watch;
-use fredholm_report::{Back, Camera, Field, Side, render_sides, write_atomically};
+use fredholm_report::{Back, Camera, Field, ResultFolder, Side, render_sides};
 use fredholm_scene::{Report, Scene};
 
 use crate::error::{Error, ErrorKind};
@@ -64,14 +62,14 @@ pub struct Forecast {
 pub fn check(
     source: impl Into<SceneSource>,
     asked: &ProblemOptions,
-    picture: Option<&Path>,
+    picture: Option<(&ResultFolder, &str)>,
     watch: &dyn Watch,
 ) -> Result<Checked, Error> {
     let mut stages = Stages::new(watch);
     let scene = source.into().load(&mut stages)?;
     let report = stages.run("report", || Ok(scene.report()))?;
-    if let Some(path) = picture {
-        stages.run("picture", || draw(&scene, &report, path))?;
+    if let Some((folder, name)) = picture {
+        stages.run("picture", || draw(&scene, &report, (folder, name)))?;
     }
     let settings = ProblemSettings::new(asked, scene.solve());
     let more = |plan, scene: &Scene, n| with_results(plan, scene, n, (1, 0));
@@ -107,7 +105,7 @@ fn forecast(problem: Problem, stages: &mut Stages) -> Result<Forecast, Error> {
 }
 
 /// Draws the mesh by its sides.
-fn draw(scene: &Scene, found: &Report, path: &Path) -> Result<(), Error> {
+fn draw(scene: &Scene, found: &Report, (folder, name): (&ResultFolder, &str)) -> Result<(), Error> {
     let camera = match scene.camera() {
         Some(camera) => view_camera(camera),
         None => framing(scene)?,
@@ -122,11 +120,7 @@ fn draw(scene: &Scene, found: &Report, path: &Path) -> Result<(), Error> {
     };
     let sides: Vec<Side> = found.shown.iter().map(side).collect();
     let picture = render_sides(&sides, &found.open, &camera).map_err(report_failure)?;
-    let folder = path.parent().unwrap_or(Path::new(""));
-    std::fs::create_dir_all(folder).map_err(|error| {
-        Error::new(ErrorKind::Files, format!("cannot make {}: {error}", folder.display()))
-    })?;
-    write_atomically(path, |out: &mut dyn Write| picture.write_png(out)).map_err(report_failure)
+    folder.write(name, |out| picture.write_png(out)).map(drop).map_err(report_failure)
 }
 
 /// A camera that sees the whole scene.

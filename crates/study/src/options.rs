@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use fredholm_coupling::Receiver;
 use fredholm_mesh::Vec3;
-use fredholm_report::{FIELD_GLB, FIELD_PLY};
+use fredholm_report::{FIELD_GLB, FIELD_PLY, ResultFolder};
 use fredholm_scene::{Scene, SolveDefaults, Storage};
 use serde::{Deserialize, Serialize, Serializer};
 use serde_json::{Map, Value};
@@ -199,7 +199,7 @@ pub struct SolveOptions {
     pub stop: StopOptions,
     /// Folder in which the state is kept between rounds of a run to an accuracy, so that
     /// [`resume`](crate::resume) can go on from there. None: an interrupted run leaves nothing.
-    pub folder: Option<PathBuf>,
+    pub folder: Option<ResultFolder>,
     /// What else the record of the run is to say.
     pub recorded: Recorded,
 }
