@@ -67,6 +67,10 @@ SCENES = {
     "b.toml": ROOM.format(rho=0.3, n=3),
     "deep.toml": ROOM.format(rho=0.9, n=1).replace("width = 64", "width = 32"),
     "w.toml": PLATE,
+    # For limits of memory: 2400 elements, 2000 facets, a large picture.
+    "large.toml": ROOM.format(rho=0.7, n=20),
+    "wide.toml": ROOM.format(rho=0.7, n=2).replace("width = 64\nheight = 48", "width = 4000\nheight = 3000"),
+    "lw.toml": PLATE.replace('name = "plate"', 'name = "plate"\nlargest_edge = 0.02'),
 }
 
 # What may be run into a folder, by name.
@@ -119,7 +123,9 @@ class Stress:
                 sys.exit(f"{name} ends with {done.returncode}: {done.stderr}")
             found.append(contents(folder))
         first, second = found
-        self.known[name] = {file: sum_ if second.get(file) == sum_ else None for file, sum_ in first.items()}
+        # Records and pages tell times, which may be the same by chance.
+        fixed = {file for file, sum_ in first.items() if second.get(file) == sum_ and not timed(file)}
+        self.known[name] = {file: sum_ if file in fixed else None for file, sum_ in first.items()}
 
     def fresh(self):
         folder = self.bench / "out"
@@ -225,16 +231,19 @@ class Stress:
 
     def memory(self, _):
         ends = collections.Counter()
-        free = {name: run for name, run in RUNS.items()}
+        large = {"a.toml": "large.toml", "b.toml": "large.toml", "w.toml": "lw.toml"}
+        runs = {name: [large.get(word, word) for word in run] for name, run in RUNS.items()}
         files = {
-            "check": ["check", "a.toml"],
-            "viewfactors": ["viewfactors", "a.toml"],
-            "export": ["export", "a.toml", "--to", "obj"],
+            "wide picture": ["solve", "wide.toml"],
+            "wide trace": ["trace", "wide.toml", "--samples", "64"],
+            "check": ["check", "large.toml"],
+            "viewfactors": ["viewfactors", "large.toml"],
+            "export": ["export", "a.toml", "--to", "obj", "--band", "r"],
             "schema": ["schema"],
         }
-        for name, arguments in {**free, **files}.items():
+        for name, arguments in {**runs, **files}.items():
             limited = name not in ("export", "schema")
-            for mib in [11, 14, 18, 40, 200] if limited else []:
+            for mib in [16, 40, 80, 150, 400] if limited else []:
                 place = ["-o", str(self.fresh() / ("F.npz" if name == "viewfactors" else ""))]
                 command = [self.program, *arguments, *place, "--threads", "1", "--memory", f"{mib}MiB"]
                 code, peak, text = peak_of(command, self.bench, None)
@@ -242,13 +251,17 @@ class Stress:
                 within = code == 4 or peak <= (mib + 20) * 2**20
                 self.expect(f"{name} --memory {mib}MiB: {code}, {peak >> 20} MiB, {text}", code in FINE | {4} and within)
                 ends[f"--memory: {code}"] += 1
-            for mib in [60, 150, 300, 600, 2000]:
+            for mib in [60, 150, 300, 500, 2000]:
                 place = [] if name == "schema" else ["-o", str(self.fresh() / ("F.npz" if name == "viewfactors" else ""))]
                 command = [self.program, *arguments, *place]
                 code, peak, text = peak_of(command, self.bench, mib * 2**20)
                 self.expect(f"{name} ulimit -v {mib}MiB: {code} {text}", code in FINE | {4})
                 ends[f"ulimit -v: {code}"] += 1
         return dict(ends)
+
+
+def timed(file):
+    return file.endswith((".html", ".json"))
 
 
 def contents(folder):

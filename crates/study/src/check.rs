@@ -7,9 +7,10 @@ use fredholm_report::{Back, Camera, Field, ResultFolder, Side, render_sides};
 use fredholm_scene::{Report, Scene};
 
 use crate::error::{Error, ErrorKind};
-use crate::memory::{Limit, Plan};
+use crate::memory::{Limit, Plan, limit};
 use crate::options::{ProblemOptions, ProblemSettings, SceneSource};
-use crate::problem::{Problem, scene_failure, with_results};
+use crate::prediction::pictured;
+use crate::problem::{Problem, pixels, scene_failure, with_results};
 use crate::sample;
 use crate::solve::{report_failure, view_camera};
 use crate::stages::Stages;
@@ -66,9 +67,15 @@ pub fn check(
     watch: &dyn Watch,
 ) -> Result<Checked, Error> {
     let mut stages = Stages::new(watch);
-    let scene = source.into().load(&mut stages)?;
+    let scene = source.into().load(asked.memory, &mut stages)?;
     let report = stages.run("report", || Ok(scene.report()))?;
     if let Some((folder, name)) = picture {
+        let plan = Plan::default().stage("the picture", pictured(pixels(&scene), 1));
+        stages.admit(
+            &plan,
+            limit(asked.memory),
+            "ask for a smaller picture (width, height of the camera)",
+        )?;
         stages.run("picture", || draw(&scene, &report, (folder, name)))?;
     }
     let settings = ProblemSettings::new(asked, scene.solve());

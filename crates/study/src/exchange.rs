@@ -40,7 +40,7 @@ pub fn export(
     folder: &ResultFolder,
     watch: &dyn Watch,
 ) -> Result<Written, Error> {
-    let scene = source.into().load(&mut Stages::new(watch))?;
+    let scene = source.into().load(None, &mut Stages::new(watch))?;
     let stem = scene.path().file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     write(&outline(&scene, band)?, format, folder, &stem)
 }
@@ -92,7 +92,7 @@ pub fn convert(
         let text = format!("`{}` has the ending of no format that is written", target.display());
         Error::new(ErrorKind::Input, text).with_help(format!("end its name in {}", endings.join(", ")))
     })?;
-    let scene = source.into().load(&mut Stages::new(watch))?;
+    let scene = source.into().load(None, &mut Stages::new(watch))?;
     let mut outline = scene.outline(None).map_err(scene_failure)?.bare(&scene);
     outline.camera = None;
     let stem = target.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());

@@ -258,7 +258,7 @@ fn answer(
     checkpoint: Option<&Checkpoint>,
     stages: &mut Stages,
 ) -> Result<(SolveSettings, Problem, Solution), Error> {
-    let scene = source.load(stages)?;
+    let scene = source.load(asked.problem.memory, stages)?;
     // Without points there is nothing to be said of them.
     if let bytes @ 1.. = asked.points.bytes(scene.bands().len()) {
         let points = Plan::default().hold("points", bytes);

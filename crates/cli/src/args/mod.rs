@@ -419,7 +419,7 @@ impl StopArgs {
 /// Options of `converge`.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct ConvergeArgs {
-    /// Folder for the results [default: out/<name of the scene file>]
+    /// Folder for the results [default: out/<name of the scene file>-converge]
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
     /// Number of meshes: that of the scene, and finer ones

@@ -18,6 +18,7 @@ use crate::check::{Finding, Warning};
 use crate::error::{ErrorKind, SceneError};
 use crate::files::Files;
 use crate::format::At;
+use crate::import::is_mesh;
 use crate::parse::parse;
 use crate::resolve::Reading;
 use crate::source::Source;
@@ -88,7 +89,8 @@ pub struct WaveScene {
 /// Whether a file is a scene of waves: it has a table `wave`. What cannot be read is none.
 #[must_use]
 pub fn is_wave_scene(path: &Path) -> bool {
-    let text = Source::load(path).ok();
+    // A mesh is not looked into: one may be larger than what its text would take as a table.
+    let text = if is_mesh(path) { None } else { Source::load(path).ok() };
     let table = text.and_then(|source| source.text.parse::<toml::Table>().ok());
     table.is_some_and(|table| table.contains_key("wave"))
 }

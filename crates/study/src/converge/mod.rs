@@ -78,7 +78,7 @@ fn problems(
     asked: &ConvergeOptions,
     stages: &mut Stages,
 ) -> Result<Vec<Problem>, Error> {
-    let scene = source.load(stages)?;
+    let scene = source.load(asked.problem.memory, stages)?;
     let settings = ProblemSettings::new(&asked.problem, scene.solve());
     // Each of the coarser meshes has a quarter of the elements of the next.
     let others = |plan: Plan, _: &Scene, n: usize| plan.hold("coarser meshes", n as u128 * MESH / 3);
