@@ -9,7 +9,8 @@ use crate::support::{Bench, furnace};
 
 /// The names of the files of a folder that are not hidden.
 fn names(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let entries =
+        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
     let mut names: Vec<String> = entries.filter(|name| !name.starts_with('.')).collect();
     names.sort();
     names
@@ -24,7 +25,10 @@ fn a_second_run_into_the_same_folder_is_refused() {
         let run = bench.run(&[&[verb, "scene.toml", "-o", "here"], more].concat());
         assert_eq!(run.code, 5, "{verb}: {}", run.stderr);
         assert!(run.stderr.contains("another run of Fredholm writes into here"), "{}", run.stderr);
-        assert!(run.stderr.contains("help: wait until it has ended, or write elsewhere with -o DIR"), "{verb}");
+        assert!(
+            run.stderr.contains("help: wait until it has ended, or write elsewhere with -o DIR"),
+            "{verb}"
+        );
     }
     drop(first);
     bench.solve(&["-o", "here", "--quiet"]);
