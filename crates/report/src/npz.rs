@@ -103,7 +103,7 @@ mod tests {
         let face: Array1<i64> = npz.by_name("face").unwrap();
         let surface: Array1<i64> = npz.by_name("surface").unwrap();
         assert_eq!((face, surface), (array![0, 1, 2], array![0, 0, 1]));
-        assert_eq!(npz.len(), 8);
+        assert_eq!(npz.len(), 9);
         let mut again = Vec::new();
         write_npz(&field, &mut again).unwrap();
         assert!(out == again, "no time stamp may enter the file");
