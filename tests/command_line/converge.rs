@@ -115,7 +115,7 @@ fn the_furnace_scene_shows_errors_of_rounding() {
     assert_eq!(run.code, 0, "{}", run.stderr);
     // Two levels may agree by symmetry: that they settle takes three.
     assert_eq!(run.stdout.matches("that takes three levels").count(), 4, "{}", run.stdout);
-    let record = fs::read(bench.path("out/furnace/converge.json")).unwrap();
+    let record = fs::read(bench.path("out/furnace-converge/converge.json")).unwrap();
     let record: Value = serde_json::from_slice(&record).unwrap();
     for band in record["bands"].as_array().unwrap() {
         assert!(band["differences"][0].as_f64().unwrap() < 1e-12, "{band}");
@@ -140,5 +140,5 @@ fn a_level_that_is_not_solved_is_told() {
     let run = bench.run(&["converge", "scene.toml", "--levels", "2", "--max-iterations", "1"]);
     assert_eq!(run.code, 3, "{}", run.stderr);
     assert!(run.stdout.contains("a level was not solved"), "{}", run.stdout);
-    assert!(bench.path("out/scene/converge.json").is_file());
+    assert!(bench.path("out/scene-converge/converge.json").is_file());
 }

@@ -9,6 +9,7 @@ mod determinism;
 mod discretisations;
 mod exit_codes;
 mod first_contact;
+mod folders;
 mod formats;
 mod furnace;
 mod help;

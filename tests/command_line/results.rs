@@ -71,7 +71,7 @@ fn a_second_run_replaces_the_first() {
     assert!(radiosity.iter().all(|b| (b - 4.0).abs() < 1e-3), "{radiosity:?}");
     assert_eq!(fs::read(bench.path("out/scene/notes.txt")).unwrap(), b"mine");
     let files = fs::read_dir(bench.path("out/scene")).unwrap().count();
-    assert_eq!(files, fredholm::report::FILES.len() + 1);
+    assert_eq!(files, fredholm::report::FILES.len() + 2, "the files, their list and the note");
 }
 
 #[test]

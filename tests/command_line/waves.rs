@@ -166,7 +166,14 @@ fn read(bench: &Bench, name: &str) -> String {
 fn a_comparison_tells_what_diverges() {
     let bench =
         Bench::new(&changed(&[("[wave]", "[wave]\nmethod = \"mfie\"\nsolver = \"lu\""), (PLATE, CUBE)]));
-    let run = bench.run(&["waves", "scene.toml", "--compare", "neumann,gmres:restart=100,cg-theta"]);
+    let run = bench.run(&[
+        "waves",
+        "scene.toml",
+        "--compare",
+        "neumann,gmres:restart=100,cg-theta",
+        "-o",
+        "out/scene",
+    ]);
     assert_eq!(run.code, 3, "{}", run.stderr);
     let table = read(&bench, "compare.csv");
     let rows: Vec<Vec<&str>> = table.lines().skip(1).map(|line| line.split(',').collect()).collect();

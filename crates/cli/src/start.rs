@@ -3,7 +3,9 @@
 
 use std::path::{Path, PathBuf};
 
-use fredholm_study::{Bytes, Error, less_than_asked, peak_memory, probe_folder, thread_pool};
+use fredholm_study::{
+    Bytes, Error, ResultFolder, claim_folder, claim_folder_to_add, less_than_asked, peak_memory, thread_pool,
+};
 use serde_json::{Value, json};
 
 use crate::args::{LogArgs, ProblemArgs};
@@ -14,6 +16,8 @@ use crate::terminal::Terminal;
 pub(crate) struct Start<'a> {
     pub(crate) scene: &'a Path,
     pub(crate) output: Option<&'a PathBuf>,
+    /// What the name of the usual folder ends in, so that no verb removes the results of another; empty for `solve`.
+    pub(crate) verb: &'static str,
     pub(crate) threads: Option<u16>,
     pub(crate) memory: Option<Bytes>,
     pub(crate) log: LogArgs,
@@ -21,19 +25,39 @@ pub(crate) struct Start<'a> {
 
 impl<'a> Start<'a> {
     /// That of a verb with the options of a problem.
-    pub(crate) fn of(problem: &'a ProblemArgs, output: Option<&'a PathBuf>, log: LogArgs) -> Self {
+    pub(crate) fn of(
+        problem: &'a ProblemArgs,
+        output: Option<&'a PathBuf>,
+        verb: &'static str,
+        log: LogArgs,
+    ) -> Self {
         let ProblemArgs { scene, threads, memory, .. } = problem;
-        Self { scene, output, threads: *threads, memory: *memory, log }
+        Self { scene, output, verb, threads: *threads, memory: *memory, log }
     }
 
     /// Runs a verb on its threads, with the folder for its results.
     pub(crate) fn run(
         &self,
-        verb: impl FnOnce(&Path, &Terminal) -> Result<Ending, Error> + Send,
+        verb: impl FnOnce(&ResultFolder, &Terminal) -> Result<Ending, Error> + Send,
+    ) -> Result<Ending, Error> {
+        self.run_in(claim_folder, verb)
+    }
+
+    /// Runs a verb whose files are added to a folder.
+    pub(crate) fn run_beside(
+        &self,
+        verb: impl FnOnce(&ResultFolder, &Terminal) -> Result<Ending, Error> + Send,
+    ) -> Result<Ending, Error> {
+        self.run_in(claim_folder_to_add, verb)
+    }
+
+    fn run_in(
+        &self,
+        claim: impl FnOnce(&Path, &str) -> Result<ResultFolder, Error>,
+        verb: impl FnOnce(&ResultFolder, &Terminal) -> Result<Ending, Error> + Send,
     ) -> Result<Ending, Error> {
         let terminal = Terminal::new(self.log)?;
-        let folder = folder(self.output, self.scene);
-        probe_folder(&folder, "-o DIR")?;
+        let folder = claim(&folder(self.output, self.scene, self.verb), "-o DIR")?;
         run(&terminal, self.threads, self.memory, || verb(&folder, &terminal))
     }
 }
@@ -56,10 +80,14 @@ pub(crate) fn run(
     ended
 }
 
-/// The folder asked for, or `out/` and the name of the scene file without its ending.
-fn folder(output: Option<&PathBuf>, scene: &Path) -> PathBuf {
-    let stem = scene.file_stem().unwrap_or_else(|| "scene".as_ref());
-    output.cloned().unwrap_or_else(|| Path::new("out").join(stem))
+/// The folder asked for, or `out/` and the name of the scene file without its ending, and then the verb.
+fn folder(output: Option<&PathBuf>, scene: &Path, verb: &str) -> PathBuf {
+    let mut name = scene.file_stem().unwrap_or_else(|| "scene".as_ref()).to_owned();
+    if !verb.is_empty() {
+        name.push("-");
+        name.push(verb);
+    }
+    output.cloned().unwrap_or_else(|| Path::new("out").join(name))
 }
 
 /// How the program was asked to show what goes on, for the record.
@@ -74,7 +102,8 @@ mod tests {
 
     #[test]
     fn results_go_to_a_folder_of_the_name_of_the_scene() {
-        assert_eq!(folder(None, Path::new("a/b.toml")), Path::new("out/b"));
-        assert_eq!(folder(Some(&"c".into()), Path::new("a/b.toml")), Path::new("c"));
+        assert_eq!(folder(None, Path::new("a/b.toml"), ""), Path::new("out/b"));
+        assert_eq!(folder(None, Path::new("a/b.toml"), "trace"), Path::new("out/b-trace"));
+        assert_eq!(folder(Some(&"c".into()), Path::new("a/b.toml"), "trace"), Path::new("c"));
     }
 }

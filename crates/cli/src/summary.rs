@@ -7,9 +7,6 @@ use fredholm_study::Bytes;
 
 use crate::output::visible;
 
-/// Bands whose energy balance is listed.
-const BANDS: usize = 8;
-
 /// Row sums that differ more from 1 are those of an open scene.
 const OPEN: f64 = 0.01;
 
@@ -63,7 +60,7 @@ pub(crate) fn provenance(run: &RunRecord, lines: &mut Lines) {
     let work: Vec<_> = run.work.iter().map(|(name, count)| format!("{name} {count}")).collect();
     lines.add("work", work.join(", "));
     lines.add_some("files", (!run.files.is_empty()).then(|| run.files.join(", ")));
-    run.energy.iter().take(BANDS).for_each(|energy| lines.add_some("energy", balance(energy)));
+    run.energy.iter().for_each(|energy| lines.add_some("energy", balance(energy)));
     lines.add("options", format!("{:#}", run.options));
 }
 

@@ -1,4 +1,5 @@
-//! What can be wrong with geometry, and how to mend it. Corners, holes and cells are counted from 0.
+//! What can be wrong with geometry, and how to mend it. Corners, sides and holes are indices from 0 in the fields, and are
+//! counted from 1 in messages.
 
 use thiserror::Error;
 
@@ -7,7 +8,7 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum MeshError {
     /// A coordinate is NaN or infinite.
-    #[error("corner {corner} has a coordinate that is not a finite number")]
+    #[error("corner {} has a coordinate that is not a finite number", .corner + 1)]
     NotFinite {
         /// Index of the corner.
         corner: usize,
@@ -27,7 +28,7 @@ pub enum MeshError {
         limit: usize,
     },
     /// Two corners of a quad coincide.
-    #[error("corners {first} and {second} of the quad are the same point")]
+    #[error("corners {} and {} of the quad are the same point", .first + 1, .second + 1)]
     RepeatedCorner {
         /// One corner.
         first: usize,
@@ -38,7 +39,7 @@ pub enum MeshError {
     #[error("the sides of the quad cross each other")]
     BowTie,
     /// A quad with a reflex corner was to be cut by lines.
-    #[error("the quad is not convex at corner {corner}, so lines cannot cut it")]
+    #[error("the quad is not convex at corner {}, so lines cannot cut it", .corner + 1)]
     NotConvex {
         /// The reflex corner.
         corner: usize,
@@ -50,7 +51,7 @@ pub enum MeshError {
         ring: Ring,
     },
     /// A polygon that is not flat.
-    #[error("corner {corner} of {ring} is {distance:e} m off the plane of the polygon")]
+    #[error("corner {} of {ring} is {distance:e} m off the plane of the polygon", .corner + 1)]
     NotPlanar {
         /// The border.
         ring: Ring,
@@ -60,7 +61,7 @@ pub enum MeshError {
         distance: f64,
     },
     /// A border crosses or touches itself.
-    #[error("{ring} crosses or touches itself at its sides {first} and {second}")]
+    #[error("{ring} crosses or touches itself at its sides {} and {}", .first + 1, .second + 1)]
     SelfIntersecting {
         /// The border.
         ring: Ring,
@@ -78,13 +79,13 @@ pub enum MeshError {
         second: Ring,
     },
     /// A hole that does not lie in the polygon.
-    #[error("hole {hole} lies outside the outline")]
+    #[error("hole {} lies outside the outline", .hole + 1)]
     HoleOutside {
         /// Index of the hole.
         hole: usize,
     },
     /// A hole within a hole.
-    #[error("hole {hole} lies inside hole {other}")]
+    #[error("hole {} lies inside hole {}", .hole + 1, .other + 1)]
     HoleInHole {
         /// The inner hole.
         hole: usize,
@@ -224,7 +225,7 @@ impl std::fmt::Display for Ring {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Outline => f.write_str("the outline"),
-            Self::Hole(hole) => write!(f, "hole {hole}"),
+            Self::Hole(hole) => write!(f, "hole {}", hole + 1),
         }
     }
 }

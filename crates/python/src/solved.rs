@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 
 use fredholm_mesh::{Mesh, Patch};
-use fredholm_study::{Ended, SolveOptions};
+use fredholm_study::{Ended, SolveOptions, claim_folder};
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -207,7 +207,10 @@ impl Solved {
 
     /// Writes all results into a folder.
     fn write(&self, py: Python<'_>, folder: PathBuf) -> PyResult<()> {
-        let written = py.detach(|| locked(&self.0).write(folder).map(drop));
+        let written = py.detach(|| {
+            let folder = claim_folder(&folder, "another path")?;
+            locked(&self.0).write(&folder).map(drop)
+        });
         written.map_err(|error| failure(py, &error))
     }
 }

@@ -5,14 +5,12 @@
 //! Ctrl-C can write nothing that the user sees.
 
 use std::fs;
-use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use fredholm_report::write_atomically;
 use fredholm_study::{
     CompareOptions, ConvergeOptions, CrosscheckOptions, Error, ErrorKind, MultipleTests, ProblemOptions,
-    ReferenceOptions, SceneSource, SpectrumOptions, TraceOptions, Watch,
+    ReferenceOptions, ResultFolder, SceneSource, SpectrumOptions, TraceOptions, Watch, claim_folder,
 };
 use pyo3::prelude::*;
 use serde_json::json;
@@ -67,6 +65,10 @@ fn names(folder: &Path) -> Result<Vec<String>, Error> {
         for entry in fs::read_dir(folder.join(&inside)).map_err(files)? {
             let entry = entry.map_err(files)?;
             let name = entry.file_name().to_string_lossy().into_owned();
+            // The list of the files is the folder's own.
+            if name.starts_with('.') {
+                continue;
+            }
             let path = if inside.is_empty() { name } else { format!("{inside}/{name}") };
             let list = if entry.path().is_dir() { &mut folders } else { &mut names };
             list.push(path);
@@ -80,22 +82,13 @@ fn is_record(name: &str) -> bool {
     Path::new(name).extension().is_some_and(|ending| ending == "json")
 }
 
-/// Copies all files; the records of an older result are removed first.
+/// Copies all files; what an older result has left is removed first.
 fn copy(from: &Path, to: &Path) -> Result<(), Error> {
     let names = names(from)?;
-    fs::create_dir_all(to).map_err(|error| files(format!("cannot make {}: {error}", to.display())))?;
-    for name in names.iter().filter(|name| is_record(name)) {
-        match fs::remove_file(to.join(name)) {
-            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(files(error)),
-            _ => {}
-        }
-    }
+    let to = claim_folder(to, "another path")?;
     for name in &names {
         let bytes = fs::read(from.join(name)).map_err(files)?;
-        if let Some(folder) = Path::new(name).parent() {
-            fs::create_dir_all(to.join(folder)).map_err(files)?;
-        }
-        write_atomically(&to.join(name), |out: &mut dyn Write| out.write_all(&bytes)).map_err(files)?;
+        to.write(name, |out| out.write_all(&bytes)).map_err(files)?;
     }
     Ok(())
 }
@@ -107,11 +100,12 @@ type Answer = (serde_json::Result<String>, &'static str);
 pub(crate) fn study(
     py: Python<'_>,
     how: How,
-    work: impl FnOnce(&Path, &dyn Watch) -> Result<Answer, Error> + Send + 'static,
+    work: impl FnOnce(&ResultFolder, &dyn Watch) -> Result<Answer, Error> + Send + 'static,
 ) -> PyResult<Py<PyAny>> {
     let inside = move |watch: &dyn Watch| {
         let folder = tempfile::tempdir().map_err(files)?;
-        let (record, ended) = work(folder.path(), watch)?;
+        let place = claim_folder(folder.path(), "another path")?;
+        let (record, ended) = work(&place, watch)?;
         Ok(Study { folder, record: record.map_err(files)?, ended })
     };
     run(py, how, inside, |found| Ok(Py::new(py, found)?.into_any()))
@@ -300,7 +294,7 @@ pub(crate) fn reference(
 pub(crate) fn check(py: Python<'_>, scene: &Scene, problem: Problem, how: How) -> PyResult<Py<PyAny>> {
     let (scene, options) = (Arc::clone(&scene.0), problem.options(py)?);
     study(py, how, move |folder, watch| {
-        let found = fredholm_study::check(scene, &options, Some(&folder.join("check.png")), watch)?;
+        let found = fredholm_study::check(scene, &options, Some((folder, "check.png")), watch)?;
         let report = &found.report;
         let mut record = json!({
             "pieces": report.pieces,

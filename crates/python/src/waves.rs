@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Mutex;
 
 use fredholm_report::{FarRow, MonostaticRow, WaveRow};
-use fredholm_study::{SolvedWaves, Watch, WaveCompareOptions, WaveOptions};
+use fredholm_study::{SolvedWaves, Watch, WaveCompareOptions, WaveOptions, claim_folder};
 use numpy::{Complex64, PyArray2};
 use pyo3::prelude::*;
 
@@ -141,6 +141,10 @@ impl Waves {
 
     /// Writes all results into a folder.
     fn write(&self, py: Python<'_>, folder: PathBuf) -> PyResult<()> {
-        py.detach(|| locked(&self.0).write(folder)).map_err(|error| failure(py, &error))
+        let written = py.detach(|| {
+            let folder = claim_folder(&folder, "another path")?;
+            locked(&self.0).write(&folder)
+        });
+        written.map_err(|error| failure(py, &error))
     }
 }

@@ -12,6 +12,9 @@ use tempfile::{Builder, NamedTempFile};
 
 use crate::ReportError;
 
+/// Ending of the names of temporary files.
+pub(crate) const TEMPORARY: &str = ".tmp";
+
 /// Writes `path` whole or not at all. `fill` writes the contents.
 ///
 /// The folder must exist. A file already there is replaced.
@@ -31,12 +34,23 @@ pub fn write_atomically<F>(path: &Path, fill: F) -> Result<(), ReportError>
 where
     F: FnOnce(&mut dyn Write) -> io::Result<()>,
 {
-    replace(path, fill).map_err(|source| ReportError::Write { path: path.to_owned(), source })
+    write_with_prefix(path, ".fredholm-", fill)
 }
 
-fn replace(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+/// The same with the beginning of the name of the temporary file.
+pub(crate) fn write_with_prefix<F>(path: &Path, prefix: &str, fill: F) -> Result<(), ReportError>
+where
+    F: FnOnce(&mut dyn Write) -> io::Result<()>,
+{
+    replace(path, prefix, fill).map_err(|source| ReportError::Write { path: path.to_owned(), source })
+}
+
+fn replace<F>(path: &Path, prefix: &str, fill: F) -> io::Result<()>
+where
+    F: FnOnce(&mut dyn Write) -> io::Result<()>,
+{
     let folder = folder_of(path);
-    let mut file = temporary(folder)?;
+    let mut file = temporary(folder, prefix)?;
     let mut out = BufWriter::with_capacity(1 << 16, file.as_file_mut());
     fill(&mut out)?;
     out.flush()?;
@@ -50,9 +64,9 @@ fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
+fn temporary(folder: &Path, prefix: &str) -> io::Result<NamedTempFile> {
     let mut builder = Builder::new();
-    builder.prefix(".fredholm-").suffix(".tmp");
+    builder.prefix(prefix).suffix(TEMPORARY);
     // Temporary files are private by default; a result is as readable as any other new file.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));

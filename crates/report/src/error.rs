@@ -17,6 +17,21 @@ pub enum ReportError {
         /// What the system said.
         source: io::Error,
     },
+    /// Another run writes to the same place.
+    #[error("another run of Fredholm writes into {}; wait until it has ended, or choose another folder", path.display())]
+    Busy {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A file stands where one of a result would be written, and no run is known to have written it.
+    #[error(
+        "{} would be replaced, but is not listed as the file of an earlier run; move it away, or choose another folder",
+        path.display()
+    )]
+    Occupied {
+        /// The file.
+        path: PathBuf,
+    },
     /// A file could not be read.
     #[error("cannot read {}: {source}", path.display())]
     Read {

@@ -24,7 +24,7 @@
 //! [`write_face_estimates`], [`write_crosscheck`] and [`write_reference`] write what random paths came to, beside deterministic solutions.
 //! [`write_refinement`] writes a study of convergence: `converge.csv`, `converge.svg`, `converge.json`.
 //!
-//! Every file appears whole or not at all. Units: metres, W/m², W, seconds.
+//! A [`ResultFolder`] is claimed by one run at a time, which removes what earlier ones have left. Every file appears whole or not at all. Units: metres, W/m², W, seconds.
 
 mod atomic;
 mod axis;
@@ -41,10 +41,12 @@ mod eye;
 mod faces_csv;
 mod field;
 mod field_csv;
+mod folder;
 mod hierarchy;
 mod html;
 mod interpolate;
 mod mean;
+mod names;
 mod nodal;
 mod npz;
 mod number;
@@ -83,11 +85,13 @@ pub use eye::Eye;
 pub use faces_csv::write_faces_csv;
 pub use field::Field;
 pub use field_csv::write_field_csv;
+pub use folder::ResultFolder;
 pub use hierarchy::{Hierarchy, HierarchyGoal, HierarchyRound};
 pub use html::{
     ElementPhasors, ElementValues, FieldStep, ReportAxis, ReportBadge, ReportCell, ReportColumn, ReportModel,
     ReportPage, ReportPlot, ReportSeries, ReportTable, WaveReport, current_phasors, face_scores,
 };
+pub use names::{CHECKPOINT, PIXELS, TRACE_STATE, WAVE_FILES};
 pub use npz::write_npz;
 pub use outputs::{
     EXTRAS, Extras, FIELD_GLB, FIELD_PLY, FILES, IMAGE, REPORT, RunReport, View, write_all, write_with,

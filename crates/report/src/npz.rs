@@ -8,16 +8,20 @@
 //! | `centroid` | f64 | n × 3 | m |
 //! | `normal` | f64 | n × 3 | unit, to the lit side |
 //! | `face`, `surface` | i64 | n | numbers, from 0 |
+//! | `bands` | text | bands | names |
 //!
-//! The names of bands are in `run.json`, the names of surfaces in `surfaces.csv`, both in the order of these arrays.
+//! The names of surfaces are in `surfaces.csv`, in the order of these numbers.
 
 use std::io::{self, Cursor, Write};
 
 use fredholm_mesh::{Patch, Vec3};
 use ndarray::{Array1, Array2, ArrayView2};
 use ndarray_npy::{NpzWriter, WriteNpzError};
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use crate::Field;
+use crate::viewfactors::write_texts;
 
 /// Writes the leaf elements as arrays. The file is composed in memory: about 8 (2 bands + 10) bytes an element.
 ///
@@ -39,7 +43,18 @@ fn compose(field: &Field<'_>) -> Result<Vec<u8>, WriteNpzError> {
     npz.add_array("normal", &vectors(mesh.patches().map(Patch::normal)))?;
     npz.add_array("face", &numbers(mesh.len(), |leaf| mesh.face_of(leaf)))?;
     npz.add_array("surface", &numbers(mesh.len(), |leaf| mesh.surface_of(leaf)))?;
-    Ok(npz.finish()?.into_inner())
+    named(npz.finish()?.into_inner(), field.bands()).map_err(|error| WriteNpzError::Zip(error.into()))
+}
+
+/// Adds the names of the bands.
+fn named(file: Vec<u8>, bands: &[String]) -> io::Result<Vec<u8>> {
+    let mut archive = ZipWriter::new_append(Cursor::new(file)).map_err(io::Error::other)?;
+    let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
+    archive
+        .start_file("bands.npy", options.last_modified_time(DateTime::default()))
+        .map_err(io::Error::other)?;
+    write_texts(&mut archive, bands)?;
+    Ok(archive.finish().map_err(io::Error::other)?.into_inner())
 }
 
 fn rows<'a>(field: &Field<'_>, values: &'a [f64]) -> Result<ArrayView2<'a, f64>, WriteNpzError> {
@@ -88,7 +103,7 @@ mod tests {
         let face: Array1<i64> = npz.by_name("face").unwrap();
         let surface: Array1<i64> = npz.by_name("surface").unwrap();
         assert_eq!((face, surface), (array![0, 1, 2], array![0, 0, 1]));
-        assert_eq!(npz.len(), 8);
+        assert_eq!(npz.len(), 9);
         let mut again = Vec::new();
         write_npz(&field, &mut again).unwrap();
         assert!(out == again, "no time stamp may enter the file");

@@ -1,14 +1,14 @@
 //! The result folder.
 //!
-//! `run.json` is removed first and written last: a folder that has one is complete, and all its files belong together.
+//! `run.json` is written last: a folder that has one is complete, and all its files belong together, since what earlier
+//! runs have left is removed first.
 
-use std::fs;
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::{
-    Camera, Exposure, Field, FieldStep, Layer, PointTable, ReportError, ReportModel, ReportPage, RunRecord,
-    ShadowMesh, render_layers, write_atomically, write_convergence, write_faces_csv, write_field_csv,
+    Camera, Exposure, Field, FieldStep, Layer, PointTable, ReportError, ReportModel, ReportPage,
+    ResultFolder, RunRecord, ShadowMesh, render_layers, write_convergence, write_faces_csv, write_field_csv,
     write_field_glb, write_field_ply, write_npz, write_points_csv, write_run, write_shadows_vtu,
     write_surfaces_csv, write_vtu,
 };
@@ -88,13 +88,13 @@ impl View {
     }
 }
 
-/// Writes all files of a result into a folder, which is made where it does not exist, and returns their paths.
+/// Writes all files of a result into a folder and returns their paths.
 ///
 /// # Errors
 /// [`ReportError::Write`] with the file or folder that could not be written; the errors of [`render`](crate::render) for a view that makes
 /// no picture. The folder then has no `run.json`.
 pub fn write_all(
-    folder: &Path,
+    folder: &ResultFolder,
     field: &Field<'_>,
     run: &RunRecord,
     view: &View,
@@ -102,12 +102,12 @@ pub fn write_all(
     write_with(folder, field, run, Some(view), &Extras::default())
 }
 
-/// As [`write_all`], with more. Without a view no picture is drawn. What of [`EXTRAS`], and of pictures, an older result left is removed.
+/// As [`write_all`], with more. Without a view no picture is drawn.
 ///
 /// # Errors
 /// As for [`write_all`].
 pub fn write_with(
-    folder: &Path,
+    folder: &ResultFolder,
     field: &Field<'_>,
     run: &RunRecord,
     view: Option<&View>,
@@ -117,33 +117,22 @@ pub fn write_with(
     let drawn = view.map(|view| render_layers(field, &view.camera, view.exposure, layers)).transpose()?;
     let mut pictures = drawn.unwrap_or_default().into_iter();
     let picture = pictures.next();
-    prepare(folder, &folder.join(FILES[FILES.len() - 1]))?;
-    EXTRAS.iter().chain([&IMAGE, &REPORT]).try_for_each(|name| remove(&folder.join(name)))?;
     let mut paths = Vec::new();
     for ((name, _), picture) in more.pictures.iter().zip(pictures) {
-        paths.push(folder.join(name));
-        write_atomically(&folder.join(name), |out: &mut dyn Write| picture.write_png(out))?;
+        paths.push(folder.write(name, |out| picture.write_png(out))?);
     }
     if let Some(table) = &more.points {
-        paths.push(folder.join("points.csv"));
-        write_atomically(&folder.join("points.csv"), |out: &mut dyn Write| {
-            write_points_csv(table, field.bands(), out)
-        })?;
+        paths.push(folder.write("points.csv", |out| write_points_csv(table, field.bands(), out))?);
     }
     if let Some(mesh) = &more.shadows {
-        paths.push(folder.join("shadows.vtu"));
-        write_atomically(&folder.join("shadows.vtu"), |out: &mut dyn Write| {
-            write_shadows_vtu(mesh, field.bands(), out)
-        })?;
+        paths.push(folder.write("shadows.vtu", |out| write_shadows_vtu(mesh, field.bands(), out))?);
     }
     let exposure = view.map_or(Exposure::Auto, |view| view.exposure);
     for name in &more.baked {
-        let path = folder.join(name);
-        write_atomically(&path, |out: &mut dyn Write| match *name {
+        paths.push(folder.write(name, |out| match *name {
             FIELD_PLY => write_field_ply(field, exposure, out),
             _ => write_field_glb(field, exposure, out),
-        })?;
-        paths.push(path);
+        })?);
     }
     let page = more.report.map(|RunReport { title, view, steps: (steps_title, steps) }| {
         let model = ReportModel { steps, steps_title, ..ReportModel::lit(field, view) };
@@ -168,41 +157,16 @@ pub fn write_with(
         _ => true,
     };
     for (name, write) in FILES.into_iter().zip(writers).filter(|(name, _)| wanted(name)) {
-        let path = folder.join(name);
-        write_atomically(&path, write)?;
-        paths.push(path);
+        paths.push(folder.write(name, write)?);
     }
     Ok(paths)
 }
 
-/// Makes the folder and removes the mark of completeness of an older result.
-pub(crate) fn prepare(folder: &Path, mark: &Path) -> Result<(), ReportError> {
-    let failed = |path: &Path| {
-        let path = path.to_owned();
-        move |source| ReportError::Write { path, source }
-    };
-    fs::create_dir_all(folder).map_err(failed(folder))?;
-    remove(mark)
-}
-
-/// Writes the page of a folder, or removes that of an older result.
-pub(crate) fn write_page(folder: &Path, page: Option<&ReportPage<'_>>) -> Result<(), ReportError> {
-    let path = folder.join(REPORT);
-    page.map_or_else(|| remove(&path), |page| write_atomically(&path, |out| page.write(out)))
-}
-
-/// Removes a file, if it is there.
-pub(crate) fn remove(path: &Path) -> Result<(), ReportError> {
-    match fs::remove_file(path) {
-        Err(source) if source.kind() != io::ErrorKind::NotFound => {
-            Err(ReportError::Write { path: path.to_owned(), source })
-        }
-        _ => Ok(()),
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use std::fs;
+    use std::path::Path;
+
     use super::*;
     use crate::field::tests::{names, sample};
     use crate::read_run;
@@ -216,26 +180,26 @@ mod tests {
         let view = View::framing(&field);
         let base = tempfile::tempdir().unwrap();
         let folder = base.path().join("new").join("result");
-        let paths = write_all(&folder, &field, &record(), &view).unwrap();
+        let claim = |folder: &Path| ResultFolder::claim(folder).unwrap();
+        let paths = write_all(&claim(&folder), &field, &record(), &view).unwrap();
         let named: Vec<PathBuf> = FILES.iter().map(|name| folder.join(name)).collect();
         let usual = [&named[..7], &named[8..]].concat();
         assert_eq!(paths, usual, "no page was asked for");
         let report = RunReport { title: "box", view: &view, steps: ("", &[]) };
         let more = Extras { report: Some(report), ..Extras::default() };
-        let paths = write_with(&folder, &field, &record(), Some(&view), &more).unwrap();
+        let paths = write_with(&claim(&folder), &field, &record(), Some(&view), &more).unwrap();
         assert_eq!(paths, named);
         assert!(paths.iter().all(|path| fs::metadata(path).unwrap().len() > 50));
-        assert_eq!(fs::read_dir(&folder).unwrap().count(), FILES.len());
+        let count = || fs::read_dir(&folder).unwrap().count();
+        assert_eq!(count(), FILES.len() + 1, "the files and their list");
         assert_eq!(read_run(&paths[8]).unwrap(), record());
-        // A folder in the place of a file makes the second attempt fail half-way.
+        // A folder in the place of a file makes the third attempt fail.
         fs::remove_file(&paths[4]).unwrap();
         fs::create_dir(&paths[4]).unwrap();
-        let error = write_all(&folder, &field, &record(), &view).unwrap_err();
+        let error = write_all(&claim(&folder), &field, &record(), &view).unwrap_err();
         assert!(error.to_string().contains("field.npz"), "{error}");
         assert!(!paths[8].exists());
-        // Picture and page of the first attempt are gone too: none of an earlier result stays.
-        assert!(!folder.join(IMAGE).exists() && !folder.join(REPORT).exists());
-        assert_eq!(fs::read_dir(&folder).unwrap().count(), FILES.len() - 3);
+        assert_eq!(count(), 2, "no file of an earlier result stays, but their list");
     }
 
     #[test]
@@ -244,9 +208,10 @@ mod tests {
         let values = [1.0; 6];
         let field = Field::new(&mesh, &bands, &values, &values).unwrap();
         let folder = tempfile::tempdir().unwrap();
-        write_all(folder.path(), &field, &record(), &View::framing(&field)).unwrap();
+        let claim = || ResultFolder::claim(folder.path()).unwrap();
+        write_all(&claim(), &field, &record(), &View::framing(&field)).unwrap();
         assert!(folder.path().join(IMAGE).exists());
-        let paths = write_with(folder.path(), &field, &record(), None, &Extras::default()).unwrap();
+        let paths = write_with(&claim(), &field, &record(), None, &Extras::default()).unwrap();
         assert_eq!(paths.len(), FILES.len() - 2);
         assert!(!folder.path().join(IMAGE).exists() && paths.iter().all(|path| path.exists()));
     }
@@ -259,7 +224,7 @@ mod tests {
         let view = View { exposure: Exposure::Fixed(-1.0), ..View::framing(&field) };
         let base = tempfile::tempdir().unwrap();
         assert!(matches!(
-            write_all(base.path(), &field, &record(), &view),
+            write_all(&ResultFolder::claim(base.path()).unwrap(), &field, &record(), &view),
             Err(ReportError::Exposure { .. })
         ));
         assert_eq!(fs::read_dir(base.path()).unwrap().count(), 0);

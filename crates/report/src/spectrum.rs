@@ -3,9 +3,7 @@
 //! Columns of the table: `band`, `matrix` (`reflection` is R F, `jacobi` J, `gauss_seidel` L₁, `psi` Ψ, `theta` Θ), `index`, `re`, `im`. The plot shows the band of
 //! the largest radius: eigenvalues in the plane, and their moduli in falling order.
 
-use std::fs;
 use std::io::{self, Write};
-use std::path::Path;
 
 use serde::Serialize;
 
@@ -13,7 +11,7 @@ use crate::chart::{Panel, Series, draw};
 use crate::csv::quoted;
 use crate::number::Number;
 use crate::svg::Point;
-use crate::{ReportError, Timing, write_atomically};
+use crate::{ReportError, ResultFolder, Timing};
 
 /// Name of the format of `spectrum.json`.
 pub const SPECTRUM_FORMAT: &str = "fredholm-spectrum-1";
@@ -83,19 +81,19 @@ pub struct Eigenvalues {
     pub values: Vec<[f64; 2]>,
 }
 
-/// Writes an analysis into a folder, which is made where there is none.
+/// Writes an analysis into a folder.
 ///
 /// # Errors
 /// [`ReportError::Write`] with the path.
-pub fn write_spectrum(folder: &Path, record: &SpectrumRecord) -> Result<(), ReportError> {
-    fs::create_dir_all(folder).map_err(|source| ReportError::Write { path: folder.to_owned(), source })?;
-    let [table, plot, json] = SPECTRUM_FILES.map(|name| folder.join(name));
-    write_atomically(&table, |out| write_spectrum_csv(record, out))?;
-    write_atomically(&plot, |out| write_spectrum_plot(record, out))?;
-    write_atomically(&json, |out| {
+pub fn write_spectrum(folder: &ResultFolder, record: &SpectrumRecord) -> Result<(), ReportError> {
+    let [table, plot, json] = SPECTRUM_FILES;
+    folder.write(table, |out| write_spectrum_csv(record, out))?;
+    folder.write(plot, |out| write_spectrum_plot(record, out))?;
+    let record = |out: &mut dyn Write| {
         serde_json::to_writer_pretty(&mut *out, record)?;
         writeln!(out)
-    })
+    };
+    folder.write(json, record).map(drop)
 }
 
 /// Writes the table of eigenvalues.
@@ -140,6 +138,8 @@ fn line(of: &Eigenvalues) -> Series {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
     use crate::csv::tests::parse;
     use crate::xml::tests::tags;
@@ -176,7 +176,7 @@ mod tests {
     #[test]
     fn all_files_are_written_and_every_eigenvalue_is_a_dot_in_both_panels() {
         let folder = tempfile::tempdir().unwrap();
-        write_spectrum(folder.path(), &sample()).unwrap();
+        write_spectrum(&ResultFolder::claim(folder.path()).unwrap(), &sample()).unwrap();
         let text = fs::read_to_string(folder.path().join("spectrum.svg")).unwrap();
         assert_eq!(tags(&text).iter().filter(|(name, _)| name == "circle").count(), 4);
         let json = fs::read(folder.path().join("spectrum.json")).unwrap();

@@ -69,8 +69,35 @@ fn meaning(source: &Source, error: &Error) -> SceneError {
         let help = "write a number between -1.7e308 and 1.7e308";
         return source.error(ErrorKind::Value, span, "the number is too large", help);
     }
+    if let Some(key) = table_as_list(source, &span) {
+        let help = format!("write {key} = {{ {} }}", form(key));
+        return source.error(ErrorKind::Type, span, format!("`{key}` is a table, not a list"), help);
+    }
     let message = PLAIN.iter().fold(message.to_owned(), |m, (from, to)| m.replace(from, to));
     source.error(ErrorKind::Type, span, message, "write a value of the type that is expected here")
+}
+
+/// Shapes that are tables, and what is in them.
+const FORMS: [(&str, &str); 5] = [
+    ("polygon", "outline = [[x, y, z], …]"),
+    ("box", "min = [x, y, z], max = [x, y, z]"),
+    ("sphere", "centre = [x, y, z], radius = …"),
+    ("disc", "centre = [x, y, z], normal = [x, y, z], radius = …"),
+    ("cylinder", "base = [x, y, z], axis = [x, y, z], radius = …"),
+];
+
+fn form(shape: &str) -> &'static str {
+    FORMS.iter().find(|(name, _)| *name == shape).map_or("", |(_, form)| form)
+}
+
+/// The shape that a line gives as a list, where the piece at `span` is in it: the reader takes a list for the values of
+/// the table in their order, and complains of one of them.
+fn table_as_list(source: &Source, span: &Range<usize>) -> Option<&'static str> {
+    let before = source.text.get(..span.start)?;
+    let line = &source.text[before.rfind('\n').map_or(0, |end| end + 1)..];
+    let (key, value) = line.split_once('=')?;
+    let (name, _) = FORMS.iter().find(|(name, _)| *name == key.trim())?;
+    value.trim_start().starts_with('[').then_some(name)
 }
 
 fn unknown_key(source: &Source, span: Range<usize>, rest: &str) -> SceneError {

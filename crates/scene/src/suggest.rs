@@ -11,10 +11,41 @@ pub(crate) fn among<'a>(name: &str, known: impl IntoIterator<Item = &'a str>, pl
     }
     let list: Vec<String> = known.iter().map(|k| format!("`{k}`")).collect();
     let list = format!("known {plural}: {}", list.join(", "));
-    match nearest(name, &known) {
+    match nearest(name, &known).or_else(|| foreign(name, &known)) {
         Some(near) => format!("did you mean `{near}`? {list}"),
         None => list,
     }
+}
+
+/// Names by which scene files of other programs, and the literature, know some keys.
+const FOREIGN: [(&str, &[&str]); 14] = [
+    (
+        "reflectance",
+        &["albedo", "diffuse", "rho", "kd", "color", "colour", "base_color", "diffuse_reflectance"],
+    ),
+    (
+        "exitance",
+        &["emission", "emissive", "emittance", "emit", "ke", "radiosity", "light", "power", "intensity"],
+    ),
+    ("eye", &["position", "origin", "from", "location", "camera_position"]),
+    ("target", &["look_at", "lookat", "at", "to", "center", "centre", "aim"]),
+    ("up", &["up_vector", "world_up"]),
+    ("vertical_fov_degrees", &["fov", "vfov", "yfov", "fov_degrees", "field_of_view", "angle"]),
+    ("width", &["resolution", "image_width", "xres"]),
+    ("height", &["image_height", "yres"]),
+    ("surface", &["shape", "shapes", "object", "objects", "geometry", "mesh"]),
+    ("materials", &["bsdf", "brdf"]),
+    ("polygon", &["outline", "vertices", "points", "corners", "face"]),
+    ("mesh", &["file", "filename", "path"]),
+    ("box", &["cube", "cuboid"]),
+    ("outline", &["vertices", "points", "corners"]),
+];
+
+/// The known name that has the meaning of one of [`FOREIGN`].
+fn foreign<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
+    let name = name.to_lowercase().replace('-', "_");
+    let meant = FOREIGN.iter().filter(|(_, others)| others.contains(&name.as_str()));
+    meant.filter_map(|(ours, _)| known.iter().copied().find(|known| known == ours)).next()
 }
 
 fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
@@ -49,6 +80,20 @@ mod tests {
             assert_eq!(distance(a, b), expected, "{a} {b}");
             assert_eq!(distance(b, a), expected, "{b} {a}");
         }
+    }
+
+    #[test]
+    fn words_of_other_programs_are_known() {
+        let camera = ["eye", "target", "up", "vertical_fov_degrees", "width", "height", "exposure"];
+        for (word, meant) in [("position", "eye"), ("look_at", "target"), ("fov", "vertical_fov_degrees")] {
+            assert!(among(word, camera, "keys").starts_with(&format!("did you mean `{meant}`?")), "{word}");
+        }
+        let material = ["reflectance", "exitance"];
+        for (word, meant) in [("emission", "exitance"), ("Kd", "reflectance"), ("albedo", "reflectance")] {
+            assert!(among(word, material, "keys").starts_with(&format!("did you mean `{meant}`?")), "{word}");
+        }
+        // What is no key here is not offered.
+        assert_eq!(foreign("albedo", &camera), None);
     }
 
     #[test]

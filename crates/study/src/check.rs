@@ -1,17 +1,16 @@
 //! What a scene and its mesh are, and what its solution will take; nothing is solved.
 
-use std::io::Write;
-use std::path::Path;
 use std::sync::Arc;
 
 use fredholm_linop::Watch;
-use fredholm_report::{Back, Camera, Field, Side, render_sides, write_atomically};
+use fredholm_report::{Back, Camera, Field, ResultFolder, Side, render_sides};
 use fredholm_scene::{Report, Scene};
 
 use crate::error::{Error, ErrorKind};
-use crate::memory::{Limit, Plan};
+use crate::memory::{Limit, Plan, limit};
 use crate::options::{ProblemOptions, ProblemSettings, SceneSource};
-use crate::problem::{Problem, scene_failure, with_results};
+use crate::prediction::pictured;
+use crate::problem::{Problem, pixels, scene_failure, with_results};
 use crate::sample;
 use crate::solve::{report_failure, view_camera};
 use crate::stages::Stages;
@@ -64,14 +63,20 @@ pub struct Forecast {
 pub fn check(
     source: impl Into<SceneSource>,
     asked: &ProblemOptions,
-    picture: Option<&Path>,
+    picture: Option<(&ResultFolder, &str)>,
     watch: &dyn Watch,
 ) -> Result<Checked, Error> {
     let mut stages = Stages::new(watch);
-    let scene = source.into().load(&mut stages)?;
+    let scene = source.into().load(asked.memory, &mut stages)?;
     let report = stages.run("report", || Ok(scene.report()))?;
-    if let Some(path) = picture {
-        stages.run("picture", || draw(&scene, &report, path))?;
+    if let Some((folder, name)) = picture {
+        let plan = Plan::default().stage("the picture", pictured(pixels(&scene), 1));
+        stages.admit(
+            &plan,
+            limit(asked.memory),
+            "ask for a smaller picture (width, height of the camera)",
+        )?;
+        stages.run("picture", || draw(&scene, &report, (folder, name)))?;
     }
     let settings = ProblemSettings::new(asked, scene.solve());
     let more = |plan, scene: &Scene, n| with_results(plan, scene, n, (1, 0));
@@ -107,7 +112,7 @@ fn forecast(problem: Problem, stages: &mut Stages) -> Result<Forecast, Error> {
 }
 
 /// Draws the mesh by its sides.
-fn draw(scene: &Scene, found: &Report, path: &Path) -> Result<(), Error> {
+fn draw(scene: &Scene, found: &Report, (folder, name): (&ResultFolder, &str)) -> Result<(), Error> {
     let camera = match scene.camera() {
         Some(camera) => view_camera(camera),
         None => framing(scene)?,
@@ -122,11 +127,7 @@ fn draw(scene: &Scene, found: &Report, path: &Path) -> Result<(), Error> {
     };
     let sides: Vec<Side> = found.shown.iter().map(side).collect();
     let picture = render_sides(&sides, &found.open, &camera).map_err(report_failure)?;
-    let folder = path.parent().unwrap_or(Path::new(""));
-    std::fs::create_dir_all(folder).map_err(|error| {
-        Error::new(ErrorKind::Files, format!("cannot make {}: {error}", folder.display()))
-    })?;
-    write_atomically(path, |out: &mut dyn Write| picture.write_png(out)).map_err(report_failure)
+    folder.write(name, |out| picture.write_png(out)).map(drop).map_err(report_failure)
 }
 
 /// A camera that sees the whole scene.

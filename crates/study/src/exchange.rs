@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use fredholm_linop::Watch;
-use fredholm_report::write_atomically;
+use fredholm_report::ResultFolder;
 use fredholm_scene::{Camera, ExportFormat, Exported, Outline, Scene};
 
 use crate::check::framing;
 use crate::error::{Error, ErrorKind};
+use crate::folder::claim_to_add;
 use crate::options::SceneSource;
 use crate::problem::scene_failure;
 use crate::solve::report_failure;
@@ -36,12 +37,12 @@ pub fn export(
     source: impl Into<SceneSource>,
     format: ExportFormat,
     band: Option<&str>,
-    folder: impl AsRef<Path>,
+    folder: &ResultFolder,
     watch: &dyn Watch,
 ) -> Result<Written, Error> {
-    let scene = source.into().load(&mut Stages::new(watch))?;
+    let scene = source.into().load(None, &mut Stages::new(watch))?;
     let stem = scene.path().file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-    write(&outline(&scene, band)?, format, folder.as_ref(), &stem)
+    write(&outline(&scene, band)?, format, folder, &stem)
 }
 
 /// The scene as others read it, with a camera.
@@ -60,20 +61,14 @@ pub(crate) fn outline(scene: &Scene, band: Option<&str>) -> Result<Outline, Erro
 pub(crate) fn write(
     outline: &Outline,
     format: ExportFormat,
-    folder: &Path,
+    folder: &ResultFolder,
     stem: &str,
 ) -> Result<Written, Error> {
     let Exported { files, notes } = outline.export(format, stem);
     let mut paths = vec![];
     // The main file is written last: where it stands, the others do.
     for (name, bytes) in files.iter().rev() {
-        let path = folder.join(name);
-        let parent = path.parent().unwrap_or(folder);
-        std::fs::create_dir_all(parent).map_err(|error| {
-            Error::new(ErrorKind::Files, format!("cannot make {}: {error}", parent.display()))
-        })?;
-        write_atomically(&path, |out| out.write_all(bytes)).map_err(report_failure)?;
-        paths.push(path);
+        paths.push(folder.write(name, |out| out.write_all(bytes)).map_err(report_failure)?);
     }
     paths.reverse();
     let surfaces = outline.surfaces.len();
@@ -97,12 +92,12 @@ pub fn convert(
         let text = format!("`{}` has the ending of no format that is written", target.display());
         Error::new(ErrorKind::Input, text).with_help(format!("end its name in {}", endings.join(", ")))
     })?;
-    let scene = source.into().load(&mut Stages::new(watch))?;
+    let scene = source.into().load(None, &mut Stages::new(watch))?;
     let mut outline = scene.outline(None).map_err(scene_failure)?.bare(&scene);
     outline.camera = None;
     let stem = target.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-    let folder = target.parent().unwrap_or(Path::new(""));
-    let mut written = write(&outline, format, folder, &stem)?;
+    let folder = claim_to_add(target.parent().unwrap_or(Path::new("")), "another name")?;
+    let mut written = write(&outline, format, &folder, &stem)?;
     written.notes.splice(0..0, scene.notes().iter().map(ToString::to_string));
     Ok(written)
 }

@@ -2,7 +2,6 @@
 //! results as of any other.
 
 use std::ops::ControlFlow;
-use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -12,7 +11,7 @@ use fredholm_hierarchical::{
 };
 use fredholm_linop::{Access, MultiVector, Watch};
 use fredholm_mesh::{Mesh, MeshBuilder, MeshError, Patch};
-use fredholm_report::{Hierarchy, HierarchyGoal, HierarchyRound};
+use fredholm_report::{Hierarchy, HierarchyGoal, HierarchyRound, ResultFolder};
 use fredholm_scene::Scene;
 use fredholm_visibility::Occluders;
 
@@ -153,7 +152,7 @@ impl Forecast {
 pub(crate) fn compute(
     scene: &Arc<Scene>,
     options: &SolveSettings,
-    (accuracy, checkpoint, folder): (f64, Option<&Checkpoint>, Option<&Path>),
+    (accuracy, checkpoint, folder): (f64, Option<&Checkpoint>, Option<&ResultFolder>),
     stages: &mut Stages,
 ) -> Result<(Problem, Solution), Error> {
     let admit = |plan: &Plan, stages: &Stages| stages.admit(plan, options.problem.memory_limit(), HELP);
@@ -195,7 +194,8 @@ pub(crate) fn compute(
         // there.
         Err(HierarchyError::Interrupted) => {
             let saved = watch.folder.filter(|_| watch.saved.load(Ordering::Relaxed));
-            let state = self::state(&checkpoint::read(saved.ok_or_else(interrupted)?)?, scene, &input)?;
+            let state =
+                self::state(&checkpoint::read(saved.ok_or_else(interrupted)?.path())?, scene, &input)?;
             fredholm_hierarchical::conclude(&input, &limits, solvers, state).map_err(failure)
         }
         solved => solved.map_err(failure),
@@ -358,7 +358,7 @@ struct Follower<'a> {
     header: Header,
     accuracy: f64,
     /// Where checkpoints are kept.
-    folder: Option<&'a Path>,
+    folder: Option<&'a ResultFolder>,
     /// Whether there is a checkpoint of this run.
     saved: AtomicBool,
 }

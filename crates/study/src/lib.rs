@@ -69,11 +69,12 @@ pub use couplings::{Couplings, couplings};
 pub use crosscheck::{CrosscheckOptions, MultipleTests, Verdict, crosscheck};
 pub use error::{Error, ErrorKind};
 pub use exchange::{Written, convert, export};
-pub use folder::probe as probe_folder;
+pub use folder::{claim as claim_folder, claim_to_add as claim_folder_to_add};
 pub use fredholm_coupling::Receiver;
 pub use fredholm_discretisation::{discretisation, discretisations};
 pub use fredholm_linop::{Quiet, Watch};
 pub use fredholm_mesh::Vec3;
+pub use fredholm_report::{ResultFolder, WAVE_FILES};
 pub use fredholm_scene::ExportFormat;
 pub use memory::{
     Limit as MemoryLimit, Plan as MemoryPlan, addresses_are_limited, less_than_asked, peak as peak_memory,
@@ -96,6 +97,6 @@ pub use viewfactors::{
     point_closure, solve_view_factors, view_factor_methods, view_factors,
 };
 pub use waves::{
-    CheckedWaves, CouplingStorage, Estimated, SolvedFrequency, SolvedWaves, WAVE_FILES, WaveCompareOptions,
-    WaveOptions, build_wave_solver, check_wave_solver, check_waves, compare_waves, waves,
+    CheckedWaves, CouplingStorage, Estimated, SolvedFrequency, SolvedWaves, WaveCompareOptions, WaveOptions,
+    build_wave_solver, check_wave_solver, check_waves, compare_waves, waves,
 };

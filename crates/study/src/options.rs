@@ -6,13 +6,13 @@ use std::sync::Arc;
 
 use fredholm_coupling::Receiver;
 use fredholm_mesh::Vec3;
-use fredholm_report::{FIELD_GLB, FIELD_PLY};
+use fredholm_report::{FIELD_GLB, FIELD_PLY, ResultFolder};
 use fredholm_scene::{Scene, SolveDefaults, Storage};
 use serde::{Deserialize, Serialize, Serializer};
 use serde_json::{Map, Value};
 
 use crate::error::Error;
-use crate::memory::{self, Limit};
+use crate::memory::{self, Limit, Plan};
 use crate::problem::scene_failure;
 use crate::size::Bytes;
 use crate::stages::Stages;
@@ -47,10 +47,13 @@ pub enum SceneSource {
 }
 
 impl SceneSource {
-    /// The scene, read in a stage of its own.
-    pub(crate) fn load(&self, stages: &mut Stages) -> Result<Arc<Scene>, Error> {
+    /// The scene, read in a stage of its own; refused where reading it takes more than there may be.
+    pub(crate) fn load(&self, memory: Option<Bytes>, stages: &mut Stages) -> Result<Arc<Scene>, Error> {
         stages.run("scene", || match self {
-            Self::File(path) => Scene::load(path).map(Arc::new).map_err(scene_failure),
+            Self::File(path) => {
+                admit_file(path, memory)?;
+                Scene::load(path).map(Arc::new).map_err(scene_failure)
+            }
             Self::Scene(scene) => Ok(Arc::clone(scene)),
         })
     }
@@ -62,6 +65,20 @@ impl SceneSource {
             Self::Scene(scene) => scene.path(),
         }
     }
+}
+
+/// Bytes that reading takes for every byte of a scene file, and of a mesh: measured on files of 80 and 100 MB, rounded up.
+const READ_SCENE: u128 = 60;
+const READ_MESH: u128 = 30;
+
+/// Refuses a file that is too large to be read.
+pub(crate) fn admit_file(path: &Path, memory: Option<Bytes>) -> Result<(), Error> {
+    // A file that is not there is for the reader to complain of.
+    let Ok(found) = std::fs::metadata(path) else { return Ok(()) };
+    let text = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
+    let each = if text { READ_SCENE } else { READ_MESH };
+    let plan = Plan::default().stage("reading the scene", each.saturating_mul(found.len().into()));
+    plan.admit(memory::limit(memory), "give a smaller scene, its large parts as mesh files")
 }
 
 impl From<Scene> for SceneSource {
@@ -199,7 +216,7 @@ pub struct SolveOptions {
     pub stop: StopOptions,
     /// Folder in which the state is kept between rounds of a run to an accuracy, so that
     /// [`resume`](crate::resume) can go on from there. None: an interrupted run leaves nothing.
-    pub folder: Option<PathBuf>,
+    pub folder: Option<ResultFolder>,
     /// What else the record of the run is to say.
     pub recorded: Recorded,
 }

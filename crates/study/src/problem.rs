@@ -47,7 +47,7 @@ impl Problem {
         more: More,
         stages: &mut Stages,
     ) -> Result<Self, Error> {
-        let scene = source.load(stages)?;
+        let scene = source.load(asked.memory, stages)?;
         let options = ProblemSettings::new(asked, scene.solve());
         Self::refined(scene, options, (1, more), stages)
     }
@@ -143,7 +143,7 @@ impl Open {
         kept: Bytes,
         stages: &mut Stages,
     ) -> Result<Self, Error> {
-        let scene = source.load(stages)?;
+        let scene = source.load(asked.memory, stages)?;
         let options = ProblemSettings::new(asked, scene.solve());
         let bands = scene.bands().len();
         let pixels = pixels(&scene);

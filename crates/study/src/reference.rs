@@ -1,11 +1,9 @@
 //! Reference values with stated errors, to check other tracers with.
 
-use std::path::Path;
-
 use fredholm_linop::Watch;
 use fredholm_montecarlo::State;
 use fredholm_montecarlo::light::PathTracing;
-use fredholm_report::{REFERENCE_FORMAT, ReferenceRecord, ReferenceTable, write_reference};
+use fredholm_report::{REFERENCE_FORMAT, ReferenceRecord, ReferenceTable, ResultFolder, write_reference};
 use fredholm_scene::{ExportFormat, Scene};
 
 use crate::error::Error;
@@ -57,7 +55,7 @@ pub struct References {
 pub fn reference(
     source: impl Into<SceneSource>,
     asked: &ReferenceOptions,
-    folder: impl AsRef<Path>,
+    folder: &ResultFolder,
     watch: &dyn Watch,
 ) -> Result<References, Error> {
     let mut stages = Stages::new(watch).part("reference");
@@ -66,13 +64,13 @@ pub fn reference(
     let state = traced(asked, &problem, &solution, &mut stages)?;
     let table = table(&problem, &solution, &state);
     let record = record(&problem, &table, &state, &stages);
-    scenes(&problem, folder.as_ref())?;
-    write_reference(folder.as_ref(), &problem.mesh, &table, &record).map_err(report_failure)?;
+    scenes(&problem, folder)?;
+    write_reference(folder, &problem.mesh, &table, &record).map_err(report_failure)?;
     Ok(References { record, faces: problem.mesh.faces().len() })
 }
 
 /// Writes the scene for Mitsuba 3 and pbrt-v4, where its bands are colours or grey.
-fn scenes(problem: &Problem, folder: &Path) -> Result<(), Error> {
+fn scenes(problem: &Problem, folder: &ResultFolder) -> Result<(), Error> {
     let Ok(outline) = outline(&problem.scene, None) else { return Ok(()) };
     for format in [ExportFormat::Mitsuba, ExportFormat::Pbrt] {
         write(&outline, format, folder, "scene")?;

@@ -1,12 +1,12 @@
 //! The radiosity of a scene: on its elements, or to an accuracy.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use fredholm_linop::{MultiVector, StopReason, Watch};
 use fredholm_mesh::Mesh;
 use fredholm_report::{
-    Camera, Exposure, Extras, Field, Layer, ReportError, RunRecord, RunReport, View, render, write_with,
+    CHECKPOINT, Camera, Exposure, Extras, Field, Layer, ReportError, ResultFolder, RunRecord, RunReport,
+    View, render, write_with,
 };
 use fredholm_scene::Scene;
 
@@ -81,6 +81,9 @@ pub fn resume<'a>(
     asked: &SolveOptions,
     watch: &'a dyn Watch,
 ) -> Result<Solved<'a>, Error> {
+    if let Some(folder) = &asked.folder {
+        folder.keep(CHECKPOINT);
+    }
     solve_from(&checkpoint.scene().into(), asked, Some(checkpoint), Stages::new(watch))
 }
 
@@ -230,15 +233,14 @@ impl Solved<'_> {
         record(&self.problem, &self.settings, &self.solution, &self.stages)
     }
 
-    /// Writes all results into a folder, which is made where it does not exist, and returns the
+    /// Writes all results into a folder and returns the
     /// record with the time of writing. The checkpoint there of a run that is complete is removed.
     ///
     /// # Errors
     /// [`ErrorKind::Files`] with the file that could not be written; the folder then has no
     /// `run.json`.
-    pub fn write(&mut self, folder: impl AsRef<Path>) -> Result<RunRecord, Error> {
-        let folder = folder.as_ref();
-        self.settings.output = folder.display().to_string();
+    pub fn write(&mut self, folder: &ResultFolder) -> Result<RunRecord, Error> {
+        self.settings.output = folder.path().display().to_string();
         let record = self.record();
         let Self { settings, problem, solution, stages } = self;
         stages.run("results", || write(problem, settings, solution, &record, folder))?;
@@ -256,7 +258,7 @@ fn answer(
     checkpoint: Option<&Checkpoint>,
     stages: &mut Stages,
 ) -> Result<(SolveSettings, Problem, Solution), Error> {
-    let scene = source.load(stages)?;
+    let scene = source.load(asked.problem.memory, stages)?;
     // Without points there is nothing to be said of them.
     if let bytes @ 1.. = asked.points.bytes(scene.bands().len()) {
         let points = Plan::default().hold("points", bytes);
@@ -317,8 +319,9 @@ fn to_accuracy(
         }
     }
     let options = hierarchical::options(asked, scene, accuracy)?;
-    let options = SolveSettings { choice: choice.map(|choice| choice.to_string()), ..options };
-    let saved = (accuracy, checkpoint, asked.folder.as_deref());
+    let choice = choice.map(|choice| choice.to_string());
+    let options = SolveSettings { choice: choice.or_else(|| checkpoint?.header.choice.clone()), ..options };
+    let saved = (accuracy, checkpoint, asked.folder.as_ref());
     let (problem, solution) = hierarchical::compute(scene, &options, saved, stages)?;
     Ok((options, problem, solution))
 }
@@ -380,7 +383,7 @@ fn write(
     options: &SolveSettings,
     solution: &Solution,
     record: &RunRecord,
-    folder: &Path,
+    folder: &ResultFolder,
 ) -> Result<(), Error> {
     let exitance = problem.scene.exitance(&problem.mesh);
     let (irradiance, radiosity) = (solution.means.irradiance.as_slice(), solution.means.radiosity.as_slice());

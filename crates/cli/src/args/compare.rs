@@ -28,7 +28,7 @@ const VALUES: usize = 10;
 pub(crate) struct CompareArgs {
     /// Scene file (TOML)
     pub(crate) scene: PathBuf,
-    /// Folder for the results [default: out/<name of the scene file>]
+    /// Folder for the results [default: out/<name of the scene file>-compare]
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
     /// Solvers with their options, as `fredholm solvers` lists them, or all: gauss-seidel,sor:omega=1.2,gmres

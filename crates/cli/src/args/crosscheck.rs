@@ -47,7 +47,7 @@ pub(crate) struct CrosscheckArgs {
     /// How many tests are taken into account
     #[arg(long, value_enum, value_name = "NAME", default_value_t = CorrectionName::Holm)]
     pub(crate) correction: CorrectionName,
-    /// Folder for the results [default: out/<name of the scene file>]
+    /// Folder for the results [default: out/<name of the scene file>-crosscheck]
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
     /// Write no report.html

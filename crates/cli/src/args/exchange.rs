@@ -39,7 +39,7 @@ pub(crate) struct ExportArgs {
     /// Program or format to write for
     #[arg(long, value_name = "FORMAT", value_parser = PossibleValuesParser::new(ExportFormat::ALL.map(|(_, name, _)| name)))]
     to: String,
-    /// Folder for the files [default: out/<name of the scene file>]
+    /// Folder for the files [default: out/<name of the scene file>-export]
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
     /// Band that stands for grey, for bands that are no colours

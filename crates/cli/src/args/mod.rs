@@ -19,8 +19,8 @@ use clap::builder::PossibleValuesParser;
 use clap::{Arg, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use fredholm_study::{
-    Bytes, ConvergeOptions, GatherPoints, PointGrid, ProblemOptions, Receiver, SolveOptions, StopOptions,
-    discretisation, solver_names,
+    Bytes, ConvergeOptions, GatherPoints, PointGrid, ProblemOptions, Receiver, ResultFolder, SolveOptions,
+    StopOptions, discretisation, solver_names,
 };
 use serde::Serialize;
 
@@ -370,7 +370,7 @@ pub(crate) struct SolveArgs {
 
 impl SolveArgs {
     /// What is asked for; checkpoints are kept in the folder for the results.
-    pub(crate) fn options(&self, folder: PathBuf) -> SolveOptions {
+    pub(crate) fn options(&self, folder: ResultFolder) -> SolveOptions {
         SolveOptions {
             accuracy: self.accuracy,
             goal: self.goal.clone(),
@@ -419,7 +419,7 @@ impl StopArgs {
 /// Options of `converge`.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct ConvergeArgs {
-    /// Folder for the results [default: out/<name of the scene file>]
+    /// Folder for the results [default: out/<name of the scene file>-converge]
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
     /// Number of meshes: that of the scene, and finer ones

@@ -23,7 +23,7 @@ Ctrl-C ends the run with nothing written.";
 /// Options of `reference`.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct ReferenceArgs {
-    /// Folder for the bundle [default: out/<name of the scene file>]
+    /// Folder for the bundle [default: out/<name of the scene file>-reference]
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
     #[command(flatten)]

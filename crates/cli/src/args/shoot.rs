@@ -24,7 +24,7 @@ shots.json last. After Ctrl-C the field so far is written.";
 pub(crate) struct ShootArgs {
     /// Scene file (.toml), or mesh file that stands for a scene (.obj, .vs3)
     pub(crate) scene: PathBuf,
-    /// Folder for the results [default: out/<name of the scene file>]
+    /// Folder for the results [default: out/<name of the scene file>-shoot]
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
     /// Share of the power of the solution to distribute, such as 90% or 0.9

@@ -21,7 +21,7 @@ written.";
 pub(crate) struct SpectrumArgs {
     /// Scene file (TOML)
     pub(crate) scene: PathBuf,
-    /// Folder for the results [default: out/<name of the scene file>]
+    /// Folder for the results [default: out/<name of the scene file>-spectrum]
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
     /// Most unknowns for dense methods; beyond, there are estimates by the Lanczos process

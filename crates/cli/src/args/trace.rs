@@ -37,7 +37,7 @@ pub(crate) struct TraceArgs {
     /// Method
     #[arg(long, value_name = "NAME", default_value = "path", value_parser = PossibleValuesParser::new(LIGHT_METHODS.iter().chain(&FIELD_METHODS)))]
     pub(crate) method: String,
-    /// Folder for the results [default: out/<name of the scene file>]
+    /// Folder for the results [default: out/<name of the scene file>-trace]
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
     /// Solve the scene first and sample only what the discretisation missed (path, walk-gathering)

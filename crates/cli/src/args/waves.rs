@@ -23,7 +23,7 @@ compare.svg and compare.json instead. Ctrl-C ends the run with nothing written."
 pub(crate) struct WavesArgs {
     /// Scene of waves (TOML), see docs/waves.md
     pub(crate) scene: PathBuf,
-    /// Folder for the results [default: out/<name of the scene file>]
+    /// Folder for the results [default: out/<name of the scene file>, with -compare at its end for --compare]
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
     /// Threads; any number gives the same results [default: one a core]

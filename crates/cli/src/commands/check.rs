@@ -2,7 +2,7 @@
 
 use fredholm_scene::waves::is_wave_scene;
 use fredholm_scene::{Report, Scene};
-use fredholm_study::{Checked, Error, Forecast, probe_folder};
+use fredholm_study::{Checked, Error, Forecast, ResultFolder, claim_folder_to_add};
 
 use crate::args::CheckArgs;
 use crate::duration::in_words;
@@ -21,21 +21,19 @@ const INSTEAD: &str = "solve --accuracy 5% needs no matrix: links between groups
 /// Validates a scene, tells what its mesh is and predicts what its solution will take.
 pub(crate) fn check(args: &CheckArgs) -> Result<Ending, Error> {
     let terminal = Terminal::new(args.log)?;
-    if let Some(folder) = &args.output {
-        probe_folder(folder, "-o DIR")?;
-    }
+    let folder = args.output.as_ref().map(|folder| claim_folder_to_add(folder, "-o DIR")).transpose()?;
     let (threads, memory) = (args.problem.threads, args.problem.memory);
-    start::run(&terminal, threads, memory, || report(args, &terminal))
+    start::run(&terminal, threads, memory, || report(args, folder.as_ref(), &terminal))
 }
 
-fn report(args: &CheckArgs, terminal: &Terminal) -> Result<Ending, Error> {
+fn report(args: &CheckArgs, folder: Option<&ResultFolder>, terminal: &Terminal) -> Result<Ending, Error> {
     if is_wave_scene(&args.problem.scene) {
         return super::waves::check(args, terminal);
     }
-    let picture = args.output.as_ref().map(|folder| folder.join(PICTURE));
+    let picture = folder.map(|folder| folder.path().join(PICTURE));
     let (path, options) = (&args.problem.scene, args.problem.options());
     let Checked { scene, report, forecast } =
-        fredholm_study::check(path, &options, picture.as_deref(), terminal)?;
+        fredholm_study::check(path, &options, folder.map(|folder| (folder, PICTURE)), terminal)?;
     if args.log.quiet {
         return Ok(Ending::Done);
     }

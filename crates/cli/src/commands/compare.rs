@@ -16,6 +16,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<Ending, Error> {
     let start = Start {
         scene: &args.scene,
         output: args.output.as_ref(),
+        verb: "compare",
         threads: args.threads,
         memory: args.memory,
         log: args.log,
@@ -24,7 +25,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<Ending, Error> {
         let (record, ended) = fredholm_study::compare(&args.scene, &args.options(), folder, terminal)?;
         record.warnings.iter().for_each(|warning| terminal.warn(warning));
         if !args.log.quiet {
-            print(folder, &record)?;
+            print(folder.path(), &record)?;
         }
         Ok(ended.into())
     })

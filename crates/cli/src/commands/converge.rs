@@ -13,13 +13,13 @@ use crate::summary::Lines;
 
 /// Solves a scene on finer and finer meshes and writes what that tells.
 pub(crate) fn converge(args: &ConvergeArgs) -> Result<Ending, Error> {
-    let start = Start::of(&args.problem, args.output.as_ref(), args.log);
+    let start = Start::of(&args.problem, args.output.as_ref(), "converge", args.log);
     start.run(|folder, terminal| {
         let scene = &args.problem.scene;
         let (record, ended) = fredholm_study::converge(scene, &args.options(), folder, terminal)?;
         record.warnings.iter().for_each(|warning| terminal.warn(warning));
         if !args.log.quiet {
-            print(folder, &record)?;
+            print(folder.path(), &record)?;
         }
         Ok(ended.into())
     })

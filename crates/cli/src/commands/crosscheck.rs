@@ -13,12 +13,12 @@ use crate::summary::{Lines, times};
 
 /// Solves and traces a scene, and says whether the two agree.
 pub(crate) fn crosscheck(args: &CrosscheckArgs) -> Result<Ending, Error> {
-    let start = Start::of(&args.problem, args.output.as_ref(), args.log);
+    let start = Start::of(&args.problem, args.output.as_ref(), "crosscheck", args.log);
     start.run(|folder, terminal| {
         let scene = &args.problem.scene;
         let (record, verdict) = fredholm_study::crosscheck(scene, &args.options(), folder, terminal)?;
         if !args.log.quiet {
-            summarise(folder, &record, verdict)?;
+            summarise(folder.path(), &record, verdict)?;
         }
         Ok(verdict.into())
     })

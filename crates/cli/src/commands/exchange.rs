@@ -14,8 +14,9 @@ use crate::terminal::Terminal;
 /// Writes a scene for another program.
 pub(crate) fn export(args: &ExportArgs) -> Result<Ending, Error> {
     let ExportArgs { scene, output, band, log, .. } = args;
-    let start = Start { scene, output: output.as_ref(), threads: None, memory: None, log: *log };
-    start.run(|folder, terminal| {
+    let start =
+        Start { scene, output: output.as_ref(), verb: "export", threads: None, memory: None, log: *log };
+    start.run_beside(|folder, terminal| {
         // The parser lets no other name pass.
         let Some(format) = args.format() else { return Ok(Ending::Input) };
         let written = fredholm_study::export(scene, format, band.as_deref(), folder, terminal)?;

@@ -10,7 +10,7 @@ use crate::summary::{Lines, times};
 
 /// Solves, traces and writes the bundle.
 pub(crate) fn reference(args: &ReferenceArgs) -> Result<Ending, Error> {
-    let start = Start::of(&args.problem, args.output.as_ref(), args.log);
+    let start = Start::of(&args.problem, args.output.as_ref(), "reference", args.log);
     start.run(|folder, terminal| {
         let scene = &args.problem.scene;
         let References { record, faces } =
@@ -20,7 +20,7 @@ pub(crate) fn reference(args: &ReferenceArgs) -> Result<Ending, Error> {
             lines.add("values", format!("{faces} faces, {} bands", record.bands.len()));
             lines.add("stated error", format!("{:.3} % (RMS over faces)", 100.0 * record.relative_error));
             lines.add("time", times(&record.timings));
-            output::print(&lines.under(&format!("{} → {}", record.scene, folder.display())))?;
+            output::print(&lines.under(&format!("{} → {}", record.scene, folder.path().display())))?;
         }
         Ok(Ending::Done)
     })

@@ -14,18 +14,19 @@ pub(crate) fn resume(args: &ResumeArgs) -> Result<Ending, Error> {
     let memory = args.memory.or(saved.problem.memory);
     let asked = SolveOptions {
         problem: ProblemOptions { threads: args.threads, memory, ..saved.problem },
-        folder: Some(args.folder.clone()),
         recorded: recorded(args.log),
         ..saved
     };
     let start = Start {
         scene: checkpoint.scene(),
         output: Some(&args.folder),
+        verb: "",
         threads: args.threads,
         memory,
         log: args.log,
     };
     start.run(|folder, terminal| {
+        let asked = SolveOptions { folder: Some(folder.clone()), ..asked };
         let solved = fredholm_study::resume(&checkpoint, &asked, terminal)?;
         finish(solved, folder, args.log, terminal)
     })

@@ -16,6 +16,7 @@ pub(crate) fn shoot(args: &ShootArgs) -> Result<Ending, Error> {
     let start = Start {
         scene: &args.scene,
         output: args.output.as_ref(),
+        verb: "shoot",
         threads: args.threads,
         memory: args.memory,
         log: args.log,
@@ -24,7 +25,7 @@ pub(crate) fn shoot(args: &ShootArgs) -> Result<Ending, Error> {
         let (record, ended) = fredholm_study::shoot(&args.scene, &args.options(), folder, terminal)?;
         record.warnings.iter().for_each(|warning| terminal.warn(warning));
         if !args.log.quiet {
-            print(folder, &record, !args.no_pictures)?;
+            print(folder.path(), &record, !args.no_pictures)?;
         }
         Ok(ended.into())
     })

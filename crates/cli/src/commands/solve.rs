@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use fredholm_report::{IMAGE, RunRecord};
-use fredholm_study::{Error, Solved, Watch};
+use fredholm_study::{Error, ResultFolder, Solved, Watch};
 
 use crate::args::{LogArgs, SolveArgs};
 use crate::ending::Ending;
@@ -14,9 +14,9 @@ use crate::terminal::Terminal;
 
 /// Solves a scene and writes the results.
 pub(crate) fn solve(args: &SolveArgs) -> Result<Ending, Error> {
-    let start = Start::of(&args.problem, args.output.as_ref(), args.log);
+    let start = Start::of(&args.problem, args.output.as_ref(), "", args.log);
     start.run(|folder, terminal| {
-        let asked = args.options(folder.to_owned());
+        let asked = args.options(folder.clone());
         let solved = fredholm_study::solve(&args.problem.scene, &asked, terminal)?;
         finish(solved, folder, args.log, terminal)
     })
@@ -25,7 +25,7 @@ pub(crate) fn solve(args: &SolveArgs) -> Result<Ending, Error> {
 /// Writes the results and says what came of the run.
 pub(super) fn finish(
     mut solved: Solved,
-    folder: &Path,
+    folder: &ResultFolder,
     log: LogArgs,
     terminal: &Terminal,
 ) -> Result<Ending, Error> {
@@ -36,7 +36,7 @@ pub(super) fn finish(
         terminal.warn("interrupted when the solution was there: the results are complete all the same");
     }
     if !log.quiet {
-        summarise(folder, &record)?;
+        summarise(folder.path(), &record)?;
     }
     Ok(solved.ended().into())
 }

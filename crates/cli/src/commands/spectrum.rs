@@ -16,6 +16,7 @@ pub(crate) fn spectrum(args: &SpectrumArgs) -> Result<Ending, Error> {
     let start = Start {
         scene: &args.scene,
         output: args.output.as_ref(),
+        verb: "spectrum",
         threads: args.threads,
         memory: args.memory,
         log: args.log,
@@ -23,7 +24,7 @@ pub(crate) fn spectrum(args: &SpectrumArgs) -> Result<Ending, Error> {
     start.run(|folder, terminal| {
         let (record, ended) = fredholm_study::spectrum(&args.scene, &args.options(), folder, terminal)?;
         if !args.log.quiet {
-            print(folder, &record)?;
+            print(folder.path(), &record)?;
         }
         Ok(ended.into())
     })

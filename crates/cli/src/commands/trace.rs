@@ -12,14 +12,14 @@ use crate::summary::{Lines, times};
 
 /// Traces a scene and writes the results.
 pub(crate) fn trace(args: &TraceArgs) -> Result<Ending, Error> {
-    let start = Start::of(&args.problem, args.output.as_ref(), args.log);
+    let start = Start::of(&args.problem, args.output.as_ref(), "trace", args.log);
     start.run(|folder, terminal| {
         let scene = &args.problem.scene;
         let (traced, ended) = fredholm_study::trace(scene, &args.options(), folder, terminal)?;
         if !args.log.quiet {
             let fields = FIELD_METHODS.contains(&args.method.as_str());
-            let lines = if fields { fields_of(&traced) } else { light_of(&traced, args, folder) };
-            let heading = format!("{} → {}", traced.record.solver, folder.display());
+            let lines = if fields { fields_of(&traced) } else { light_of(&traced, args, folder.path()) };
+            let heading = format!("{} → {}", traced.record.solver, folder.path().display());
             output::print(&lines.under(&heading))?;
         }
         Ok(ended.into())

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use fredholm_report::{ComparisonRun, WaveComparison};
 use fredholm_study::{
-    CheckedWaves, Ended, Error, SolvedFrequency, SolvedWaves, Watch, WaveCompareOptions, WaveOptions,
-    check_waves,
+    CheckedWaves, Ended, Error, ResultFolder, SolvedFrequency, SolvedWaves, Watch, WaveCompareOptions,
+    WaveOptions, check_waves,
 };
 use serde_json::Value;
 
@@ -27,6 +27,7 @@ pub(crate) fn waves(args: &WavesArgs) -> Result<Ending, Error> {
     let start = Start {
         scene: &args.scene,
         output: args.output.as_ref(),
+        verb: if args.comparison().is_some() { "compare" } else { "" },
         threads: args.threads,
         memory: args.memory,
         log: args.log,
@@ -37,14 +38,14 @@ pub(crate) fn waves(args: &WavesArgs) -> Result<Ending, Error> {
     })
 }
 
-fn run(args: &WavesArgs, folder: &Path, terminal: &Terminal) -> Result<Ending, Error> {
+fn run(args: &WavesArgs, folder: &ResultFolder, terminal: &Terminal) -> Result<Ending, Error> {
     let mut solved = fredholm_study::waves(&args.scene, &args.options(), terminal)?;
     solved.write(folder)?;
     if solved.ended() != Ended::Done {
         terminal.warn("the residual asked for was not reached; the results are those of the last iteration");
     }
     if !args.log.quiet {
-        summarise(args, folder, &solved)?;
+        summarise(args, folder.path(), &solved)?;
     }
     Ok(solved.ended().into())
 }
@@ -52,13 +53,13 @@ fn run(args: &WavesArgs, folder: &Path, terminal: &Terminal) -> Result<Ending, E
 fn compare(
     args: &WavesArgs,
     comparison: &WaveCompareOptions,
-    folder: &Path,
+    folder: &ResultFolder,
     terminal: &Terminal,
 ) -> Result<Ending, Error> {
     let (scene, options) = (&args.scene, args.options());
     let (record, ended) = fredholm_study::compare_waves(scene, &options, comparison, folder, terminal)?;
     if !args.log.quiet {
-        tabulate(folder, &record)?;
+        tabulate(folder.path(), &record)?;
     }
     Ok(ended.into())
 }

@@ -7,13 +7,11 @@ mod plot;
 mod record;
 
 use std::io::{self, Write};
-use std::path::Path;
 
 use crate::number::Number;
-use crate::outputs::{prepare, remove, write_page};
 use crate::{
-    Field, ReportError, ReportModel, ReportPage, RunReport, View, render, write_atomically, write_faces_csv,
-    write_npz, write_vtu,
+    Field, REPORT, ReportError, ReportModel, ReportPage, ResultFolder, RunReport, View, render,
+    write_faces_csv, write_npz, write_vtu,
 };
 
 pub use plot::write_shooting_plot;
@@ -23,55 +21,53 @@ pub use record::{SHOOTING_FORMAT, ShootingRecord, Shot};
 pub const SHOOTING_FILES: [&str; 7] =
     ["faces.csv", "field.npz", "field.vtu", "image.png", "shots.csv", "shots.svg", "shots.json"];
 
-/// Writes the field so far and the record into a folder, which is made where there is none. Without a view no picture is drawn,
+/// Writes the field so far and the record into a folder. Without a view no picture is drawn,
 /// without what makes a report none is written.
 ///
 /// # Errors
 /// [`ReportError::Write`] with the path, and what [`render`] refuses.
 pub fn write_shooting(
-    folder: &Path,
+    folder: &ResultFolder,
     field: &Field<'_>,
     record: &ShootingRecord,
     view: Option<&View>,
     report: Option<&RunReport<'_>>,
 ) -> Result<(), ReportError> {
     let picture = view.map(|view| render(field, &view.camera, view.exposure)).transpose()?;
-    let [faces, npz, vtu, image, table, plot, json] = SHOOTING_FILES.map(|name| folder.join(name));
-    prepare(folder, &json)?;
-    write_atomically(&faces, |out| write_faces_csv(field, out))?;
-    write_atomically(&npz, |out| write_npz(field, out))?;
-    write_atomically(&vtu, |out| write_vtu(field, out))?;
-    let page = report.map(|report| {
+    let [faces, npz, vtu, image, table, plot, json] = SHOOTING_FILES;
+    folder.write(faces, |out| write_faces_csv(field, out))?;
+    folder.write(npz, |out| write_npz(field, out))?;
+    folder.write(vtu, |out| write_vtu(field, out))?;
+    if let Some(report) = report {
         let (steps_title, steps) = report.steps;
         let model = ReportModel { steps, steps_title, ..ReportModel::lit(field, report.view) };
-        ReportPage::of_shooting(report.title, field, record, model, picture.as_ref())
-    });
-    write_page(folder, page.as_ref())?;
-    match &picture {
-        Some(picture) => write_atomically(&image, |out| picture.write_png(out))?,
-        None => remove(&image)?,
+        let page = ReportPage::of_shooting(report.title, field, record, model, picture.as_ref());
+        folder.write(REPORT, |out| page.write(out))?;
     }
-    write_atomically(&table, |out| write_shots_csv(record, out))?;
-    write_atomically(&plot, |out| write_shooting_plot(record, out))?;
-    write_atomically(&json, |out| {
+    if let Some(picture) = &picture {
+        folder.write(image, |out| picture.write_png(out))?;
+    }
+    folder.write(table, |out| write_shots_csv(record, out))?;
+    folder.write(plot, |out| write_shooting_plot(record, out))?;
+    let record = |out: &mut dyn Write| {
         serde_json::to_writer_pretty(&mut *out, record)?;
         writeln!(out)
-    })
+    };
+    folder.write(json, record).map(drop)
 }
 
-/// Writes the picture after some shots, `shot_00010.png`, into a folder, which is made where there is none.
+/// Writes the picture after some shots, `shot_00010.png`, into a folder.
 ///
 /// # Errors
 /// As for [`write_shooting`].
 pub fn write_shot_picture(
-    folder: &Path,
+    folder: &ResultFolder,
     shots: u64,
     field: &Field<'_>,
     view: &View,
 ) -> Result<(), ReportError> {
     let picture = render(field, &view.camera, view.exposure)?;
-    prepare(folder, &folder.join(SHOOTING_FILES[6]))?;
-    write_atomically(&folder.join(format!("shot_{shots:05}.png")), |out| picture.write_png(out))
+    folder.write(&format!("shot_{shots:05}.png"), |out| picture.write_png(out)).map(drop)
 }
 
 /// Writes the table of shots.

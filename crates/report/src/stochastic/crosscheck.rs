@@ -4,7 +4,7 @@
 //! `z`, `p`, and `significant` (1 or 0).
 
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use fredholm_mesh::Mesh;
 use serde::Serialize;
@@ -12,8 +12,7 @@ use serde::Serialize;
 use super::faces::{COLUMNS, place};
 use super::histogram::write_score_histogram;
 use crate::csv::{numbers, quoted};
-use crate::outputs::{prepare, write_page};
-use crate::{Picture, ReportError, ReportModel, ReportPage, Timing, View, face_scores, write_atomically};
+use crate::{Picture, REPORT, ReportError, ReportModel, ReportPage, ResultFolder, Timing, View, face_scores};
 
 /// Names of the files, in the order in which they are written.
 pub const CROSSCHECK_FILES: [&str; 4] =
@@ -147,34 +146,32 @@ pub fn write_crosscheck_csv(
     Ok(())
 }
 
-/// Writes all files into a folder, which is made where it does not exist, and returns their paths; with a title,
+/// Writes all files into a folder and returns their paths; with a title,
 /// `report.html` too, where the scores are seen on the faces, from where the view has them.
 ///
 /// # Errors
 /// [`ReportError::Write`] with the file or folder that could not be written. The folder then has no `crosscheck.json`.
 pub fn write_crosscheck(
-    folder: &Path,
+    folder: &ResultFolder,
     mesh: &Mesh,
     bands: &[String],
     (rows, map): (&[CrosscheckRow], &Picture),
     record: &CrosscheckRecord,
     report: Option<(&str, Option<&View>)>,
 ) -> Result<Vec<PathBuf>, ReportError> {
-    let paths = CROSSCHECK_FILES.map(|name| folder.join(name));
-    prepare(folder, &paths[3])?;
+    let [table, histogram, drawn, last] = CROSSCHECK_FILES;
     let scores: Vec<f64> = rows.iter().map(|row| row.z).collect();
     let title = record.headline();
-    write_atomically(&paths[0], |out| write_crosscheck_csv(mesh, bands, rows, out))?;
-    write_atomically(&paths[1], |out| write_score_histogram(&title, &scores, out))?;
-    write_atomically(&paths[2], |out| map.write_png(out))?;
+    let table = folder.write(table, |out| write_crosscheck_csv(mesh, bands, rows, out))?;
+    let histogram = folder.write(histogram, |out| write_score_histogram(&title, &scores, out))?;
+    let drawn = folder.write(drawn, |out| map.write_png(out))?;
     let values = report.map(|_| face_scores(mesh, bands, rows)).unwrap_or_default();
-    let page = report.map(|(title, view)| {
+    if let Some((title, view)) = report {
         let model = ReportModel { view, values: &values, ..ReportModel::bare(mesh) };
-        ReportPage::of_crosscheck(title, record, rows, model, Some(map))
-    });
-    write_page(folder, page.as_ref())?;
-    write_atomically(&paths[3], |out| json(record, out))?;
-    Ok(paths.to_vec())
+        let page = ReportPage::of_crosscheck(title, record, rows, model, Some(map));
+        folder.write(REPORT, |out| page.write(out))?;
+    }
+    Ok(vec![table, histogram, drawn, folder.write(last, |out| json(record, out))?])
 }
 
 pub(super) fn json(record: &impl Serialize, out: &mut dyn Write) -> io::Result<()> {

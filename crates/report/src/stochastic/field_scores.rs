@@ -4,13 +4,11 @@
 //! `score`, `p`, and `significant` (1 or 0). A component is `ex_re`, `ex_im`, … `ez_im`.
 
 use std::io::{self, Write};
-use std::path::Path;
 
 use super::crosscheck::{CrosscheckRecord, json};
 use super::histogram::write_score_histogram;
 use crate::csv::{numbers, quoted};
-use crate::outputs::prepare;
-use crate::{ReportError, write_atomically};
+use crate::{CROSSCHECK_FILES, ReportError, ResultFolder};
 
 /// Names of the six numbers of a field.
 pub const COMPONENTS: [&str; 6] = ["ex_re", "ex_im", "ey_re", "ey_im", "ez_re", "ez_im"];
@@ -53,23 +51,20 @@ fn table(rows: &[FieldScore], out: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes table, histogram and record into a folder, which is made where it does not exist.
+/// Writes table, histogram and record into a folder.
 ///
 /// # Errors
 /// [`ReportError::Write`] with the file or folder that could not be written. The folder then has no `crosscheck.json`.
 pub fn write_field_crosscheck(
-    folder: &Path,
+    folder: &ResultFolder,
     rows: &[FieldScore],
     record: &CrosscheckRecord,
 ) -> Result<(), ReportError> {
-    let last = folder.join("crosscheck.json");
-    prepare(folder, &last)?;
+    let [values, histogram, _, last] = CROSSCHECK_FILES;
     let scores: Vec<f64> = rows.iter().map(|row| row.score).collect();
-    write_atomically(&folder.join("crosscheck.csv"), |out| table(rows, out))?;
-    write_atomically(&folder.join("crosscheck.svg"), |out| {
-        write_score_histogram(&record.headline(), &scores, out)
-    })?;
-    write_atomically(&last, |out| json(record, out))
+    folder.write(values, |out| table(rows, out))?;
+    folder.write(histogram, |out| write_score_histogram(&record.headline(), &scores, out))?;
+    folder.write(last, |out| json(record, out)).map(drop)
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 //! `patches.obj`: the outlines, an object a surface, a group a face; lit on the side from which corners run counter-clockwise.
 
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use fredholm_mesh::Mesh;
 use serde::Serialize;
@@ -14,8 +14,7 @@ use super::crosscheck::json;
 use super::faces::{COLUMNS, place};
 use crate::csv::{header, numbers};
 use crate::number::Number;
-use crate::outputs::prepare;
-use crate::{ReportError, Timing, write_atomically};
+use crate::{ReportError, ResultFolder, Timing};
 
 /// Names of the files, in the order in which they are written.
 pub const REFERENCE_FILES: [&str; 3] = ["reference.csv", "patches.obj", "reference.json"];
@@ -66,12 +65,12 @@ pub struct ReferenceRecord {
     pub timings: Vec<Timing>,
 }
 
-/// Writes all files into a folder, which is made where it does not exist, and returns their paths.
+/// Writes all files into a folder and returns their paths.
 ///
 /// # Errors
 /// [`ReportError::Length`] for a table of another length, [`ReportError::Write`] with the file that could not be written.
 pub fn write_reference(
-    folder: &Path,
+    folder: &ResultFolder,
     mesh: &Mesh,
     table: &ReferenceTable,
     record: &ReferenceRecord,
@@ -82,12 +81,12 @@ pub fn write_reference(
     if columns.iter().any(|column| column.len() != expected) {
         return Err(ReportError::Length { what: "the reference table", expected, found });
     }
-    let paths = REFERENCE_FILES.map(|name| folder.join(name));
-    prepare(folder, &paths[2])?;
-    write_atomically(&paths[0], |out| csv(mesh, table, &record.bands, out))?;
-    write_atomically(&paths[1], |out| obj(mesh, out))?;
-    write_atomically(&paths[2], |out| json(record, out))?;
-    Ok(paths.to_vec())
+    let [values, patches, last] = REFERENCE_FILES;
+    Ok(vec![
+        folder.write(values, |out| csv(mesh, table, &record.bands, out))?,
+        folder.write(patches, |out| obj(mesh, out))?,
+        folder.write(last, |out| json(record, out))?,
+    ])
 }
 
 fn csv(mesh: &Mesh, table: &ReferenceTable, bands: &[String], out: &mut dyn Write) -> io::Result<()> {

@@ -1,16 +1,15 @@
 //! The files of a matrix: the matrix itself, a heat map (`.png`), a histogram of the closure errors (`.svg`) and the record (`.json`).
 //!
-//! The record is removed first and written last: where it stands, the files beside it belong together.
+//! The record is written last: where it stands, the files beside it belong together.
 
-use std::fs;
-use std::io;
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use super::heat_map::heat_map;
 use super::histogram::write_closure_histogram;
 use super::matrix::ViewFactors;
 use super::record::ViewFactorsRecord;
-use crate::{ReportError, write_atomically};
+use crate::{ReportError, ResultFolder};
 
 /// Forms of the matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,45 +57,35 @@ impl ViewFactorFiles {
     }
 }
 
-/// Writes all files; the folder is made where it does not exist.
+/// Writes all files to a place that was claimed for them.
 ///
 /// # Errors
 /// [`ReportError::Write`] with the file or folder that could not be written. There is then no record.
 pub fn write_view_factors(
-    files: &ViewFactorFiles,
+    (place, files): (&ResultFolder, &ViewFactorFiles),
     format: MatrixFormat,
     factors: &ViewFactors,
     record: &ViewFactorsRecord,
 ) -> Result<(), ReportError> {
-    prepare(files)?;
-    write_atomically(&files.matrix, |out| match format {
+    place.write(&name(&files.matrix), |out| match format {
         MatrixFormat::Npz => factors.write_npz(out),
         MatrixFormat::Csv => factors.write_csv(out),
         MatrixFormat::View3d => factors.write_view3d(record.enforced.is_some(), out),
     })?;
-    write_atomically(&files.picture, |out| heat_map(factors).write_png(out))?;
-    write_atomically(&files.histogram, |out| write_closure_histogram(factors, out))?;
-    write_atomically(&files.record, |out| record.write(out))
+    place.write(&name(&files.picture), |out| heat_map(factors).write_png(out))?;
+    place.write(&name(&files.histogram), |out| write_closure_histogram(factors, out))?;
+    place.write(&name(&files.record), |out| record.write(out)).map(drop)
 }
 
-/// Makes the folder and removes the record of an older matrix.
-fn prepare(files: &ViewFactorFiles) -> Result<(), ReportError> {
-    let failed = |path: &Path| {
-        let path = path.to_owned();
-        move |source| ReportError::Write { path, source }
-    };
-    if let Some(folder) = files.matrix.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-        fs::create_dir_all(folder).map_err(failed(folder))?;
-    }
-    match fs::remove_file(&files.record) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(failed(&files.record)(error)),
-        _ => Ok(()),
-    }
+fn name(path: &Path) -> String {
+    path.file_name().map(OsStr::to_string_lossy).unwrap_or_default().into_owned()
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::matrix::tests::sample;
+    use std::fs;
+
     use super::*;
     use crate::read_view_factors_record;
 
@@ -105,14 +94,16 @@ mod tests {
         let base = tempfile::tempdir().unwrap();
         let files = ViewFactorFiles::beside(&base.path().join("new/F.npz"));
         let record = ViewFactorsRecord::default();
-        write_view_factors(&files, MatrixFormat::Npz, &sample(None), &record).unwrap();
+        let claim = || ResultFolder::of_matrix(&files).unwrap();
+        write_view_factors((&claim(), &files), MatrixFormat::Npz, &sample(None), &record).unwrap();
         assert_eq!(ViewFactors::read_npz(&files.matrix).unwrap(), sample(None));
         assert_eq!(read_view_factors_record(&files.record).unwrap(), record);
         let picture = image::open(&files.picture).unwrap();
         assert!(picture.width() > 100 && fs::read_to_string(&files.histogram).unwrap().contains("</svg>"));
         fs::remove_file(&files.picture).unwrap();
         fs::create_dir(&files.picture).unwrap();
-        let error = write_view_factors(&files, MatrixFormat::Npz, &sample(None), &record).unwrap_err();
+        let error =
+            write_view_factors((&claim(), &files), MatrixFormat::Npz, &sample(None), &record).unwrap_err();
         assert!(error.to_string().contains("F.png") && !files.record.exists(), "{error}");
     }
 

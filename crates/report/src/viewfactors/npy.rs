@@ -62,7 +62,7 @@ pub(super) fn write<T: Number>(out: &mut dyn Write, shape: &[usize], values: &[T
 }
 
 /// Writes texts as UCS-4, padded with zeros to the longest.
-pub(super) fn write_texts(out: &mut dyn Write, texts: &[String]) -> io::Result<()> {
+pub(crate) fn write_texts(out: &mut dyn Write, texts: &[String]) -> io::Result<()> {
     let width = texts.iter().map(|text| text.chars().count()).max().unwrap_or(0).max(1);
     out.write_all(&header(&format!("<U{width}"), &[texts.len()]))?;
     for text in texts {

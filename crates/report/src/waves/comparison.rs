@@ -5,9 +5,7 @@
 //! read), `seconds`, `residual`, `error`, `reason`; of the second: `frequency`, `solver`, `iteration`, `entries`, `seconds`,
 //! `residual`. What is not known is empty.
 
-use std::fs;
 use std::io::{self, Write};
-use std::path::Path;
 
 use serde::Serialize;
 use serde_json::Value;
@@ -15,7 +13,7 @@ use serde_json::Value;
 use crate::chart::{Panel, Series, draw};
 use crate::csv::quoted;
 use crate::number::Number;
-use crate::{ComparisonRun, ReportError, Timing, write_atomically};
+use crate::{COMPARISON_FILES, ComparisonRun, ReportError, ResultFolder, Timing};
 
 /// Name of the format of `compare.json`.
 pub const WAVE_COMPARISON_FORMAT: &str = "fredholm-waves-compare-1";
@@ -57,19 +55,20 @@ pub struct WaveComparisonCase {
     pub runs: Vec<ComparisonRun>,
 }
 
-/// Writes a comparison into a folder, which is made where there is none.
+/// Writes a comparison into a folder.
 ///
 /// # Errors
 /// [`ReportError::Write`] with the path.
-pub fn write_wave_comparison(folder: &Path, record: &WaveComparison) -> Result<(), ReportError> {
-    fs::create_dir_all(folder).map_err(|source| ReportError::Write { path: folder.to_owned(), source })?;
-    write_atomically(&folder.join("compare.csv"), |out| table(record, out))?;
-    write_atomically(&folder.join("compare_history.csv"), |out| history(record, out))?;
-    write_atomically(&folder.join("compare.svg"), |out| plot(record, out))?;
-    write_atomically(&folder.join("compare.json"), |out| {
+pub fn write_wave_comparison(folder: &ResultFolder, record: &WaveComparison) -> Result<(), ReportError> {
+    let [all, histories, drawn, json] = COMPARISON_FILES;
+    folder.write(all, |out| table(record, out))?;
+    folder.write(histories, |out| history(record, out))?;
+    folder.write(drawn, |out| plot(record, out))?;
+    let record = |out: &mut dyn Write| {
         serde_json::to_writer_pretty(&mut *out, record)?;
         writeln!(out)
-    })
+    };
+    folder.write(json, record).map(drop)
 }
 
 fn runs(record: &WaveComparison) -> impl Iterator<Item = (&WaveComparisonCase, &ComparisonRun)> {
@@ -129,6 +128,8 @@ fn line(run: &ComparisonRun) -> Series {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
     use crate::ComparisonHistory;
     use crate::csv::tests::parse;
@@ -197,7 +198,7 @@ mod tests {
         let text = String::from_utf8(out).unwrap();
         assert_eq!(tags(&text).iter().filter(|(name, _)| name == "polyline").count(), 2);
         let folder = tempfile::tempdir().unwrap();
-        write_wave_comparison(folder.path(), &sample()).unwrap();
+        write_wave_comparison(&ResultFolder::claim(folder.path()).unwrap(), &sample()).unwrap();
         let json = fs::read(folder.path().join("compare.json")).unwrap();
         let json: Value = serde_json::from_slice(&json).unwrap();
         assert_eq!(json["cases"][0]["runs"][0]["history"]["residual"][1], 40.0);

@@ -1,5 +1,7 @@
 //! Names of the bands.
 
+use std::collections::BTreeSet;
+
 use crate::error::{ErrorKind, SceneError};
 use crate::format::{At, SceneEntry};
 use crate::source::Source;
@@ -13,9 +15,10 @@ pub(super) fn bands(source: &Source, entry: &SceneEntry) -> Result<Vec<String>, 
         let help = "name at least one band, or leave the key out for the one band `grey`";
         return Err(source.value_error(list, "the list of bands is empty".to_owned(), help));
     }
-    for (i, band) in list.iter().enumerate() {
+    let mut seen = BTreeSet::new();
+    for band in list.iter() {
         check_name(source, band)?;
-        if list[..i].contains(band) {
+        if !seen.insert(band.as_str()) {
             let what = format!("the band `{}` is named twice", **band);
             let help = "give every band a name of its own";
             return Err(source.error(ErrorKind::Name, band.span(), what, help));

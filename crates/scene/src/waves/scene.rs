@@ -18,6 +18,7 @@ use crate::check::{Finding, Warning};
 use crate::error::{ErrorKind, SceneError};
 use crate::files::Files;
 use crate::format::At;
+use crate::import::is_mesh;
 use crate::parse::parse;
 use crate::resolve::Reading;
 use crate::source::Source;
@@ -88,9 +89,15 @@ pub struct WaveScene {
 /// Whether a file is a scene of waves: it has a table `wave`. What cannot be read is none.
 #[must_use]
 pub fn is_wave_scene(path: &Path) -> bool {
-    let text = Source::load(path).ok();
-    let table = text.and_then(|source| source.text.parse::<toml::Table>().ok());
-    table.is_some_and(|table| table.contains_key("wave"))
+    // A mesh is not looked into, nor is the text read as a table, which takes many times its size.
+    let text = if is_mesh(path) { None } else { Source::load(path).ok() };
+    text.is_some_and(|source| source.text.lines().any(is_of_waves))
+}
+
+/// Whether a line begins the table `wave`, or sets something in it.
+fn is_of_waves(line: &str) -> bool {
+    let key = line.trim_start().trim_start_matches('[').trim_start();
+    key.strip_prefix("wave").is_some_and(|rest| rest.trim_start().starts_with([']', '.', '=']))
 }
 
 impl WaveScene {

@@ -3,11 +3,9 @@
 mod case;
 mod trial;
 
-use std::path::Path;
-
 use fredholm_coupling::Radiosity;
 use fredholm_linop::{OptionError, PackedSymmetric, Stop, Storage, Watch};
-use fredholm_report::{COMPARISON_FORMAT, ComparisonCase, ComparisonRecord, write_comparison};
+use fredholm_report::{COMPARISON_FORMAT, ComparisonCase, ComparisonRecord, ResultFolder, write_comparison};
 use fredholm_scene::Scene;
 use serde_json::json;
 
@@ -119,7 +117,7 @@ pub fn check_solver(text: &str) -> Result<(), OptionError> {
 pub fn compare(
     source: impl Into<SceneSource>,
     asked: &CompareOptions,
-    folder: impl AsRef<Path>,
+    folder: &ResultFolder,
     watch: &dyn Watch,
 ) -> Result<(ComparisonRecord, Ended), Error> {
     let mut stages = Stages::new(watch);
@@ -135,7 +133,7 @@ pub fn compare(
     }?;
     stages.begin_saving()?;
     let title = (!asked.no_report).then(|| title(&problem.scene));
-    write_comparison(folder.as_ref(), &record, title.as_deref()).map_err(report_failure)?;
+    write_comparison(folder, &record, title.as_deref()).map_err(report_failure)?;
     let ended = ended(&record, &stages);
     Ok((record, ended))
 }

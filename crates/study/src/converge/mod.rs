@@ -3,11 +3,10 @@
 mod level;
 mod study;
 
-use std::path::Path;
 use std::sync::Arc;
 
 use fredholm_linop::{StopReason, Watch};
-use fredholm_report::{RefinementRecord, write_refinement};
+use fredholm_report::{RefinementRecord, ResultFolder, write_refinement};
 use fredholm_scene::Scene;
 
 use crate::error::{Error, ErrorKind};
@@ -51,17 +50,17 @@ impl Default for ConvergeOptions {
 pub fn converge(
     source: impl Into<SceneSource>,
     asked: &ConvergeOptions,
-    folder: impl AsRef<Path>,
+    folder: &ResultFolder,
     watch: &dyn Watch,
 ) -> Result<(RefinementRecord, Ended), Error> {
-    let (mut stages, folder) = (Stages::new(watch), folder.as_ref());
+    let mut stages = Stages::new(watch);
     let problems = problems(&source.into(), asked, &mut stages)?;
     let Some(coarsest) = problems.first() else {
         let error = Error::new(ErrorKind::Input, "a study of convergence without a level");
         return Err(error.with_help("ask for 3 levels or more"));
     };
     let settings = SolveSettings::new(coarsest.options.clone(), asked.stop, coarsest.scene.solve());
-    let (output, recorded) = (folder.display().to_string(), asked.recorded.clone());
+    let (output, recorded) = (folder.path().display().to_string(), asked.recorded.clone());
     let settings = SolveSettings { output, recorded, ..settings };
     let solve = |(number, problem)| solved(number, problem, &settings, &stages);
     let levels: Vec<Level> = problems.iter().enumerate().map(solve).collect::<Result<_, _>>()?;
@@ -79,7 +78,7 @@ fn problems(
     asked: &ConvergeOptions,
     stages: &mut Stages,
 ) -> Result<Vec<Problem>, Error> {
-    let scene = source.load(stages)?;
+    let scene = source.load(asked.problem.memory, stages)?;
     let settings = ProblemSettings::new(&asked.problem, scene.solve());
     // Each of the coarser meshes has a quarter of the elements of the next.
     let others = |plan: Plan, _: &Scene, n: usize| plan.hold("coarser meshes", n as u128 * MESH / 3);

@@ -3,16 +3,15 @@
 //! δ of a number is the estimated error of the mesh and that of the radiation integral together,
 //! relative to the root mean square of the scattered E over the points of its receiver.
 
-use std::collections::BTreeMap;
-use std::path::Path;
-
 use fredholm_montecarlo::statistics::{Comparison, Correction, Place, Suite, crosscheck as compare};
 use fredholm_montecarlo::waves::FieldEstimate;
 use fredholm_report::{
-    COMPONENTS, CROSSCHECK_FORMAT, CrosscheckRecord, FieldScore, WorstPlace, write_field_crosscheck,
+    COMPONENTS, CROSSCHECK_FORMAT, CrosscheckRecord, FieldScore, ResultFolder, WorstPlace,
+    write_field_crosscheck,
 };
 use fredholm_scene::waves::Places;
 use fredholm_waves::TOLERANCE;
+use std::collections::BTreeMap;
 
 use super::record::WORST;
 use super::{CrosscheckOptions, Verdict};
@@ -30,7 +29,7 @@ const ERROR: f64 = 0.01;
 pub(super) fn run(
     source: &SceneSource,
     asked: &CrosscheckOptions,
-    folder: &Path,
+    folder: &ResultFolder,
     mut stages: Stages,
 ) -> Result<(CrosscheckRecord, Verdict), Error> {
     let load = || Model::load_estimated(source.path(), asked.problem.memory);

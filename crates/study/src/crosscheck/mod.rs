@@ -4,13 +4,11 @@ mod fields;
 mod places;
 mod record;
 
-use std::path::Path;
-
 use fredholm_linop::Watch;
 use fredholm_montecarlo::light::{Estimator, estimator};
 use fredholm_montecarlo::statistics::{Comparison, Correction, Crosscheck, Place, crosscheck as compare};
 use fredholm_montecarlo::{Enclosure, State};
-use fredholm_report::{CrosscheckRecord, Exposure, View, score_map, write_crosscheck};
+use fredholm_report::{CrosscheckRecord, Exposure, ResultFolder, View, score_map, write_crosscheck};
 use fredholm_scene::waves::is_wave_scene;
 
 use places::Places;
@@ -128,7 +126,7 @@ impl Verdict {
 pub fn crosscheck(
     source: impl Into<SceneSource>,
     asked: &CrosscheckOptions,
-    folder: impl AsRef<Path>,
+    folder: &ResultFolder,
     watch: &dyn Watch,
 ) -> Result<(CrosscheckRecord, Verdict), Error> {
     let (source, stages) = (source.into(), Stages::new(watch).part("check"));
@@ -137,7 +135,7 @@ pub fn crosscheck(
         None => is_wave_scene(source.path()),
     };
     let run = if fields { fields::run } else { run };
-    run(&source, asked, folder.as_ref(), stages)
+    run(&source, asked, folder, stages)
 }
 
 impl CrosscheckOptions {
@@ -150,7 +148,7 @@ impl CrosscheckOptions {
 fn run(
     source: &SceneSource,
     asked: &CrosscheckOptions,
-    folder: &Path,
+    folder: &ResultFolder,
     stages: Stages,
 ) -> Result<(CrosscheckRecord, Verdict), Error> {
     let Solved { problem, solution, mut stages, .. } = answer(source, asked, folder, stages)?;
@@ -194,7 +192,7 @@ fn verdict(found: &Crosscheck, power: &Power) -> Verdict {
 fn answer<'a>(
     source: &SceneSource,
     asked: &CrosscheckOptions,
-    folder: &Path,
+    folder: &ResultFolder,
     stages: Stages<'a>,
 ) -> Result<Solved<'a>, Error> {
     let solve = SolveOptions {
@@ -202,7 +200,7 @@ fn answer<'a>(
         no_pictures: true,
         no_report: true,
         problem: asked.problem.clone(),
-        folder: Some(folder.to_owned()),
+        folder: Some(folder.clone()),
         ..SolveOptions::default()
     };
     let watch = stages.watch;

@@ -2,14 +2,14 @@
 
 mod light;
 
-use std::path::Path;
 use std::time::Instant;
 
 use fredholm_coupling::{Emitters, Groups, MeshError};
 use fredholm_iterative::{Frame, MultilevelShooting};
 use fredholm_linop::{Columns, Lazy, MultiVector, Watch};
 use fredholm_report::{
-    FieldStep, RunReport, SHOOTING_FORMAT, ShootingRecord, Shot, write_shooting, write_shot_picture,
+    FieldStep, ResultFolder, RunReport, SHOOTING_FORMAT, ShootingRecord, Shot, write_shooting,
+    write_shot_picture,
 };
 use serde_json::json;
 
@@ -87,7 +87,7 @@ impl ShootOptions {
 pub fn shoot(
     source: impl Into<SceneSource>,
     asked: &ShootOptions,
-    folder: impl AsRef<Path>,
+    folder: &ResultFolder,
     watch: &dyn Watch,
 ) -> Result<(ShootingRecord, Ended), Error> {
     let mut stages = Stages::new(watch);
@@ -96,7 +96,7 @@ pub fn shoot(
     let groups = stages.run("groups", || Ok(light.groups(&scene)))?;
     let tolerance = scene.options.form_factor_tolerance;
     let emitters = Emitters::new(scene.patches(), &groups, &scene.occluders, tolerance);
-    let job = Job { asked, folder: folder.as_ref(), scene: &scene, light: &light, groups: &groups };
+    let job = Job { asked, folder, scene: &scene, light: &light, groups: &groups };
     stages.begin_saving()?;
     let (shots, steps, received, unshot) = stages.run("shots", || job.shoot(&emitters, watch))?;
     let error = stages.run("errors", || light.error(&scene, (&received, &unshot), watch))?;
@@ -116,7 +116,7 @@ const KEPT_NUMBERS: usize = 1 << 21;
 /// A scene that is shot through, and where its results go.
 struct Job<'a> {
     asked: &'a ShootOptions,
-    folder: &'a Path,
+    folder: &'a ResultFolder,
     scene: &'a Open,
     light: &'a Light,
     groups: &'a Groups,

@@ -2,11 +2,9 @@
 
 mod analysis;
 
-use std::path::Path;
-
 use fredholm_direct::{spectrum_bytes, thread_addresses};
 use fredholm_linop::{SecondKind, Stop, Storage, Watch};
-use fredholm_report::{SPECTRUM_FORMAT, SpectrumRecord, write_spectrum};
+use fredholm_report::{ResultFolder, SPECTRUM_FORMAT, SpectrumRecord, write_spectrum};
 use fredholm_scene::Scene;
 
 use crate::error::{Error, ErrorKind};
@@ -63,7 +61,7 @@ impl SpectrumOptions {
 pub fn spectrum(
     source: impl Into<SceneSource>,
     asked: &SpectrumOptions,
-    folder: impl AsRef<Path>,
+    folder: &ResultFolder,
     watch: &dyn Watch,
 ) -> Result<(SpectrumRecord, Ended), Error> {
     let mut stages = Stages::new(watch);
@@ -80,7 +78,7 @@ pub fn spectrum(
         Precision::F32 => analysed::<f32>(asked, &problem, &mut stages),
     }?;
     stages.begin_saving()?;
-    write_spectrum(folder.as_ref(), &record).map_err(report_failure)?;
+    write_spectrum(folder, &record).map_err(report_failure)?;
     let ended = if stages.is_cancelled() { Ended::Interrupted } else { Ended::Done };
     Ok((record, ended))
 }

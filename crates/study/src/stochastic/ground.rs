@@ -43,7 +43,7 @@ impl Ground {
         picture: &dyn Fn(&Scene) -> Drawn,
         stages: &mut Stages,
     ) -> Result<Self, Error> {
-        let scene = source.load(stages)?;
+        let scene = source.load(asked.memory, stages)?;
         admit(&scene, asked, &picture(&scene), stages)?;
         let mesh = stages.run("mesh", || scene.mesh().map_err(scene_failure))?;
         let warnings = check(&scene, &mesh, stages)?;

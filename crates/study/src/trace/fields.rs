@@ -1,15 +1,12 @@
 //! Scenes of waves by random sampling.
 
-use std::path::Path;
-
 use fredholm_montecarlo::waves::FieldEstimate;
 use fredholm_report::{
-    ReportError, RunRecord, SampledField, write_atomically, write_run, write_sampled_fields,
+    ReportError, ResultFolder, RunRecord, SampledField, TRACE_STATE, write_run, write_sampled_fields,
 };
 use serde_json::json;
 
-use super::files::prepare;
-use super::saved::{Origin, STATE};
+use super::saved::Origin;
 use super::{TraceOptions, Traced};
 use crate::error::{Error, ErrorKind};
 use crate::options::SceneSource;
@@ -22,7 +19,7 @@ use crate::waves::Model;
 pub(super) fn run(
     source: &SceneSource,
     asked: &TraceOptions,
-    folder: &Path,
+    folder: &ResultFolder,
     stages: &mut Stages,
 ) -> Result<(Traced, Ended), Error> {
     admit(asked)?;
@@ -37,7 +34,6 @@ pub(super) fn run(
     let states = sampled(&run, &model, earlier, stages)?;
     let record = record(asked, &model, (&run, &states), stages);
     let rows = rows(&model, &states);
-    prepare(folder)?;
     write(folder, &rows, (&origin, &states), &record).map_err(report_failure)?;
     let ended = if record.partial { Ended::Interrupted } else { Ended::Done };
     let seconds = states.iter().map(|state| state.seconds).sum();
@@ -122,12 +118,12 @@ fn record(
 }
 
 fn write(
-    folder: &Path,
+    folder: &ResultFolder,
     rows: &[SampledField],
     (origin, states): (&Origin, &[FieldEstimate]),
     record: &RunRecord,
 ) -> Result<(), ReportError> {
-    write_atomically(&folder.join("receivers.csv"), |out| write_sampled_fields(rows, out))?;
-    write_atomically(&folder.join(STATE), |out| origin.save(&states, out))?;
-    write_atomically(&folder.join("run.json"), |out| write_run(record, out))
+    folder.write("receivers.csv", |out| write_sampled_fields(rows, out))?;
+    folder.write(TRACE_STATE, |out| origin.save(&states, out))?;
+    folder.write("run.json", |out| write_run(record, out)).map(drop)
 }

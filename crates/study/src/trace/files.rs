@@ -1,18 +1,16 @@
 //! The files of a traced run.
 
 use std::collections::BTreeMap;
-use std::io;
-use std::path::Path;
 
 use fredholm_montecarlo::State;
 use fredholm_report::{
-    Counts, FaceEstimates, Field, Picture, Pixels, ReportError, RunRecord, View, render, write_atomically,
-    write_face_estimates, write_run,
+    Counts, FaceEstimates, Field, PIXELS, Picture, Pixels, ReportError, ResultFolder, RunRecord, TRACE_STATE,
+    View, render, write_face_estimates, write_run,
 };
 use serde_json::Value;
 
 use super::InForce;
-use super::saved::{Origin, STATE};
+use super::saved::Origin;
 use crate::error::Error;
 use crate::memory;
 use crate::solve::{report_failure, view_of};
@@ -105,7 +103,7 @@ impl<'a> Estimates<'a> {
     /// Writes the files, with a picture where one is to be drawn; `run.json` last.
     pub(super) fn write(
         &self,
-        folder: &Path,
+        folder: &ResultFolder,
         origin: &Origin,
         (drawn, pixels): (bool, Option<&Pixels>),
         record: &RunRecord,
@@ -114,37 +112,17 @@ impl<'a> Estimates<'a> {
         let errors = state.groups.standard_errors();
         let faces = FaceEstimates::new(mesh, bands, state.groups.mean(), &errors).map_err(report_failure)?;
         let picture = drawn.then(|| self.picture(pixels)).transpose()?;
-        prepare(folder)?;
-        remove(&folder.join("image.png"))?;
         let write = || -> Result<(), ReportError> {
-            write_atomically(&folder.join("faces.csv"), |out| write_face_estimates(&faces, out))?;
+            folder.write("faces.csv", |out| write_face_estimates(&faces, out))?;
             if let Some(picture) = &picture {
-                write_atomically(&folder.join("image.png"), |out| picture.write_png(out))?;
+                folder.write("image.png", |out| picture.write_png(out))?;
             }
             if let Some(pixels) = pixels {
-                write_atomically(&folder.join("pixels.npz"), |out| pixels.write_npz(out))?;
+                folder.write(PIXELS, |out| pixels.write_npz(out))?;
             }
-            write_atomically(&folder.join(STATE), |out| origin.save(state, out))?;
-            write_atomically(&folder.join("run.json"), |out| write_run(record, out))
+            folder.write(TRACE_STATE, |out| origin.save(state, out))?;
+            folder.write("run.json", |out| write_run(record, out)).map(drop)
         };
         write().map_err(report_failure)
     }
-}
-
-/// Makes the folder and removes the mark of completeness of an older result.
-pub(super) fn prepare(folder: &Path) -> Result<(), Error> {
-    std::fs::create_dir_all(folder).map_err(|error| failed(folder, error))?;
-    remove(&folder.join("run.json"))
-}
-
-/// Removes a file, if it is there.
-fn remove(path: &Path) -> Result<(), Error> {
-    match std::fs::remove_file(path) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(failed(path, error)),
-        _ => Ok(()),
-    }
-}
-
-fn failed(path: &Path, source: io::Error) -> Error {
-    report_failure(ReportError::Write { path: path.to_owned(), source })
 }

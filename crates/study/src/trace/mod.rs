@@ -5,12 +5,10 @@ mod files;
 mod picture;
 mod saved;
 
-use std::path::Path;
-
 use fredholm_linop::Watch;
 use fredholm_montecarlo::light::{Estimator, METHODS, PathTracing, estimator};
 use fredholm_montecarlo::{Enclosure, State};
-use fredholm_report::RunRecord;
+use fredholm_report::{ResultFolder, RunRecord};
 use serde::Serialize;
 
 use self::files::Estimates;
@@ -94,19 +92,19 @@ pub struct Traced {
 pub fn trace(
     source: impl Into<SceneSource>,
     asked: &TraceOptions,
-    folder: impl AsRef<Path>,
+    folder: &ResultFolder,
     watch: &dyn Watch,
 ) -> Result<(Traced, Ended), Error> {
     let (source, mut stages) = (source.into(), Stages::new(watch));
     let waves = FIELD_METHODS.contains(&asked.method.as_str());
     let run = if waves { fields::run } else { run };
-    run(&source, asked, folder.as_ref(), &mut stages)
+    run(&source, asked, folder, &mut stages)
 }
 
 fn run(
     source: &SceneSource,
     asked: &TraceOptions,
-    folder: &Path,
+    folder: &ResultFolder,
     stages: &mut Stages,
 ) -> Result<(Traced, Ended), Error> {
     picture::admit(asked)?;
@@ -158,7 +156,7 @@ fn in_force(asked: &TraceOptions, stop: TraceStop) -> InForce<'_> {
 /// The irradiances, and why their tracing has ended.
 fn traced(
     (source, asked): (&SceneSource, &TraceOptions),
-    folder: &Path,
+    folder: &ResultFolder,
     (ground, scene, origin): (&Ground, &Enclosure, &Origin),
     stop: &TraceStop,
     stages: &mut Stages,

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, Write};
-use std::path::Path;
 
 use fredholm_montecarlo::MonteCarloError;
+use fredholm_report::{ResultFolder, TRACE_STATE};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
@@ -13,8 +13,6 @@ use super::TraceOptions;
 use crate::error::{Error, ErrorKind};
 use crate::stochastic::failure;
 
-/// Name of the file.
-pub(super) const STATE: &str = "trace.json";
 /// What helps where it cannot be read.
 const ANEW: &str = "without --continue the run starts anew";
 
@@ -53,9 +51,10 @@ impl Origin {
         Err(MonteCarloError::Foreign { what })
     }
 
-    /// The state that an earlier run of the same kind has left in a folder.
-    pub(super) fn earlier<S: DeserializeOwned>(&self, folder: &Path) -> Result<S, Error> {
-        let path = folder.join(STATE);
+    /// The state that an earlier run of the same kind has left in a folder, where it is kept until there is a newer one.
+    pub(super) fn earlier<S: DeserializeOwned>(&self, folder: &ResultFolder) -> Result<S, Error> {
+        folder.keep(TRACE_STATE);
+        let path = folder.path().join(TRACE_STATE);
         let text = fs::read_to_string(&path).map_err(|error| {
             Error::new(ErrorKind::Files, format!("cannot read {}: {error}", path.display())).with_help(ANEW)
         })?;

@@ -59,7 +59,8 @@ impl SolvedViewFactors {
     /// [`ErrorKind::Files`] with the file that could not be written.
     pub fn write(&self, files: &MatrixFiles) -> Result<(), Error> {
         let record = recorded(&self.record, files);
-        write_view_factors(&files.files, files.format, &self.factors, &record).map_err(report_failure)
+        write_view_factors((&files.place, &files.files), files.format, &self.factors, &record)
+            .map_err(report_failure)
     }
 }
 

@@ -15,7 +15,7 @@ use super::options::{Settings, ViewFactorOptions};
 use super::plan::{help, plan};
 use crate::error::{Error, ErrorKind};
 use crate::memory::Plan;
-use crate::options::SceneSource;
+use crate::options::{SceneSource, admit_file};
 use crate::problem::scene_failure;
 use crate::stages::Stages;
 
@@ -40,6 +40,7 @@ impl Problem {
     /// Reads and meshes; refuses before memory is taken what does not fit.
     pub(super) fn load(asked: &ViewFactorOptions, stages: &mut Stages) -> Result<Self, Error> {
         let method = method(asked)?;
+        admit_file(asked.input.path(), asked.memory)?;
         let geometry = stages.run("geometry", || geometry(&asked.input))?;
         let options = Settings::new(asked, &geometry, method.as_ref());
         let more = if options.sky { SKY_PATCHES } else { 0 };

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use fredholm_report::{MatrixFormat, ViewFactorFiles};
+use fredholm_report::{MatrixFormat, ResultFolder, ViewFactorFiles};
 
 use crate::error::{Error, ErrorKind};
 use crate::folder;
@@ -17,6 +17,8 @@ pub struct MatrixFiles {
     pub files: ViewFactorFiles,
     /// Form of the matrix.
     pub format: MatrixFormat,
+    /// The place of the files, claimed.
+    pub(crate) place: ResultFolder,
 }
 
 impl MatrixFiles {
@@ -26,14 +28,13 @@ impl MatrixFiles {
     ///
     /// # Errors
     /// [`ErrorKind::Input`] for a name whose form is not known, or which is that of a file beside
-    /// the matrix; [`ErrorKind::Files`] where they cannot be written.
+    /// the matrix; [`ErrorKind::Files`] while another run writes them, for files of these names that are not those of
+    /// a run, and where they cannot be written.
     pub fn new(input: &Path, output: Option<&Path>, form: Option<MatrixFormat>) -> Result<Self, Error> {
         let stem = input.file_stem().unwrap_or_else(|| "F".as_ref());
         let default = || Path::new("out").join(stem).with_added_extension("npz");
         let path = output.map_or_else(default, Path::to_owned);
         let format = format(&path, form)?;
-        let parent = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-        folder::probe(parent.unwrap_or(Path::new(".")), "-o FILE")?;
         let files = ViewFactorFiles::beside(&path);
         for file in [&files.matrix, &files.picture, &files.histogram, &files.record] {
             if file.is_dir() {
@@ -42,7 +43,8 @@ impl MatrixFiles {
                 return Err(error.with_help("choose another file with -o FILE"));
             }
         }
-        Ok(Self { files, format })
+        let place = folder::claim_matrix(&files, "-o FILE")?;
+        Ok(Self { files, format, place })
     }
 }
 

@@ -1,13 +1,11 @@
 //! The files of a result folder. `run.json` is written last: where it stands, the folder is
 //! complete.
 
-use std::fs;
 use std::io;
-use std::path::Path;
 
 use fredholm_report::{
     FieldMap, MapQuantity, REPORT, ReportAxis, ReportError, ReportModel, ReportPage, ReportPlot,
-    ReportSeries, Timing, WaveReport, WaveResiduals, WaveRow, current_phasors, write_atomically,
+    ReportSeries, ResultFolder, Timing, WaveReport, WaveResiduals, WaveRow, current_phasors,
     write_currents_vtu, write_far_csv, write_far_npz, write_frequency_plot, write_monostatic_csv,
     write_monostatic_npz, write_polar_plot, write_receivers_csv, write_receivers_npz, write_residuals_csv,
     write_residuals_plot,
@@ -24,31 +22,17 @@ const LAST: &str = "run.json";
 /// Most rows of a table that is written as text, some 600 bytes a row of fields.
 const MOST_ROWS: usize = 50_000;
 
-/// Tables and arrays of a result, beside those of single receivers.
-pub const WAVE_FILES: [&str; 8] = [
-    "receivers.csv",
-    "receivers.npz",
-    "far.csv",
-    "far.npz",
-    "monostatic.csv",
-    "monostatic.npz",
-    "currents.vtu",
-    "residuals.csv",
-];
-
 /// Writes all files.
 pub(crate) fn write(
-    folder: &Path,
+    folder: &ResultFolder,
     model: &Model,
     outcome: &Outcome,
     timings: &[Timing],
     report: bool,
 ) -> Result<(), ReportError> {
-    prepare(folder)?;
     let names: Vec<String> = model.receivers.iter().map(|receiver| receiver.name.clone()).collect();
-    let put = |name: &str, fill: &dyn Fn(&mut dyn io::Write) -> io::Result<()>| {
-        write_atomically(&folder.join(name), fill)
-    };
+    let put =
+        |name: &str, fill: &dyn Fn(&mut dyn io::Write) -> io::Result<()>| folder.write(name, fill).map(drop);
     if is_table(outcome.near.len()) {
         put("receivers.csv", &|out| write_receivers_csv(&names, &outcome.near, out))?;
     }
@@ -89,7 +73,7 @@ pub(super) fn is_table(rows: usize) -> bool {
 
 /// The levels of a receiver over the frequencies.
 fn over_frequency(
-    folder: &Path,
+    folder: &ResultFolder,
     model: &Model,
     outcome: &Outcome,
     (index, receiver): (usize, &Receiver),
@@ -99,15 +83,20 @@ fn over_frequency(
     let title = format!("{}: {}", receiver.name, levels.quantity);
     if let Some((columns, values)) = &levels.map {
         let picture = FieldMap { columns: *columns, values }.draw(MapQuantity::Magnitude);
-        let path = folder.join(format!("{}_over_frequency.png", receiver.name));
-        write_atomically(&path, |out| picture.write_png(out))?;
+        folder.write(&format!("{}_over_frequency.png", receiver.name), |out| picture.write_png(out))?;
     }
-    let path = folder.join(format!("{}_over_frequency.svg", receiver.name));
-    write_atomically(&path, |out| write_frequency_plot(&title, levels.unit, &frequencies, &levels.lines, out))
+    let draw =
+        |out: &mut dyn io::Write| write_frequency_plot(&title, levels.unit, &frequencies, &levels.lines, out);
+    folder.write(&format!("{}_over_frequency.svg", receiver.name), draw).map(drop)
 }
 
 /// `report.html`: the surface currents in three dimensions, and the cross-sections over angles.
-fn page(folder: &Path, model: &Model, outcome: &Outcome, timings: &[Timing]) -> Result<(), ReportError> {
+fn page(
+    folder: &ResultFolder,
+    model: &Model,
+    outcome: &Outcome,
+    timings: &[Timing],
+) -> Result<(), ReportError> {
     let mesh = &model.geometry.mesh;
     let shown = outcome.currents.len().min(MOST_PICTURED);
     let phasors = current_phasors(mesh, &outcome.currents[..shown]);
@@ -133,7 +122,7 @@ fn page(folder: &Path, model: &Model, outcome: &Outcome, timings: &[Timing]) -> 
         ..WaveReport::default()
     };
     let page = ReportPage::of_waves(report, shown, &histories(outcome));
-    write_atomically(&folder.join(REPORT), |out| page.write(out))
+    folder.write(REPORT, |out| page.write(out)).map(drop)
 }
 
 /// What is known of the errors, in words.
@@ -229,29 +218,20 @@ fn across(model: &Model) -> &'static str {
 }
 
 /// The residual after every iteration or bounce, where there is any.
-fn residuals(folder: &Path, model: &Model, outcome: &Outcome) -> Result<(), ReportError> {
+fn residuals(folder: &ResultFolder, model: &Model, outcome: &Outcome) -> Result<(), ReportError> {
     let lines = histories(outcome);
     if lines.is_empty() {
         return Ok(());
     }
-    write_atomically(&folder.join("residuals.csv"), |out| write_residuals_csv(&lines, out))?;
-    write_atomically(&folder.join("residuals.svg"), |out| {
-        write_residuals_plot(&model.method.name(), across(model), &lines, out)
-    })
-}
-
-fn prepare(folder: &Path) -> Result<(), ReportError> {
-    let failed = |source| ReportError::Write { path: folder.to_owned(), source };
-    fs::create_dir_all(folder).map_err(failed)?;
-    match fs::remove_file(folder.join(LAST)) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(failed(error)),
-        _ => Ok(()),
-    }
+    folder.write("residuals.csv", |out| write_residuals_csv(&lines, out))?;
+    let draw =
+        |out: &mut dyn io::Write| write_residuals_plot(&model.method.name(), across(model), &lines, out);
+    folder.write("residuals.svg", draw).map(drop)
 }
 
 /// The plots and maps of one receiver.
 fn pictures(
-    folder: &Path,
+    folder: &ResultFolder,
     model: &Model,
     outcome: &Outcome,
     (index, receiver): (usize, &Receiver),
@@ -277,20 +257,18 @@ fn pictures(
 }
 
 /// |E| of the scattered and the total field over the angle, dB above 1 V/m.
-fn polar(folder: &Path, stem: &str, degrees: &[f64], rows: &[&WaveRow]) -> Result<(), ReportError> {
+fn polar(folder: &ResultFolder, stem: &str, degrees: &[f64], rows: &[&WaveRow]) -> Result<(), ReportError> {
     let line = |name: &str, of: &dyn Fn(&WaveRow) -> [f64; 12]| {
         let level = |row: &&WaveRow| 10.0 * of(row)[..6].iter().map(|x| x * x).sum::<f64>().log10();
         (name.to_owned(), degrees.iter().copied().zip(rows.iter().map(level)).collect())
     };
     let lines = [line("scattered", &|row| row.scattered), line("total", &WaveRow::total)];
     let title = format!("{stem}: |E|");
-    write_atomically(&folder.join(format!("{stem}.svg")), |out| {
-        write_polar_plot(&title, "dB(V/m)", &lines, out)
-    })
+    folder.write(&format!("{stem}.svg"), |out| write_polar_plot(&title, "dB(V/m)", &lines, out)).map(drop)
 }
 
 /// The strongest component of E, total field: magnitude, phase and real part.
-fn maps(folder: &Path, stem: &str, columns: usize, rows: &[&WaveRow]) -> Result<(), ReportError> {
+fn maps(folder: &ResultFolder, stem: &str, columns: usize, rows: &[&WaveRow]) -> Result<(), ReportError> {
     let totals: Vec<[f64; 12]> = rows.iter().map(|row| row.total()).collect();
     let power = |c: usize| totals.iter().map(|t| t[2 * c].powi(2) + t[2 * c + 1].powi(2)).sum::<f64>();
     let strongest = (0..3).max_by(|&a, &b| power(a).total_cmp(&power(b))).unwrap_or(0);
@@ -298,14 +276,14 @@ fn maps(folder: &Path, stem: &str, columns: usize, rows: &[&WaveRow]) -> Result<
     let map = FieldMap { columns, values: &values };
     for quantity in MapQuantity::ALL {
         let name = format!("{stem}_{}_{}.png", COMPONENTS[strongest], quantity.name());
-        write_atomically(&folder.join(name), |out| map.draw(quantity).write_png(out))?;
+        folder.write(&name, |out| map.draw(quantity).write_png(out))?;
     }
     Ok(())
 }
 
 /// Radar cross-section over the angle that is stepped through, where a plane wave is incident.
 fn far(
-    folder: &Path,
+    folder: &ResultFolder,
     stem: &str,
     outcome: &Outcome,
     (index, frequency): (usize, f64),
@@ -320,7 +298,7 @@ fn far(
 
 /// The same of a monostatic sweep, for either polarisation and across.
 fn sweep(
-    folder: &Path,
+    folder: &ResultFolder,
     stem: &str,
     outcome: &Outcome,
     (index, frequency): (usize, f64),
@@ -340,7 +318,7 @@ fn same(a: f64, b: f64) -> bool {
 
 /// Lines of cross-sections (m²) over φ where θ stays the same, else over θ.
 fn cross_sections(
-    folder: &Path,
+    folder: &ResultFolder,
     stem: &str,
     angles: &[[f64; 2]],
     lines: &[(String, Vec<f64>)],
@@ -354,7 +332,5 @@ fn cross_sections(
     };
     let lines: Vec<(String, Vec<(f64, f64)>)> = lines.iter().map(line).collect();
     let title = format!("{stem}: radar cross-section over {}", if over_phi { "φ" } else { "θ" });
-    write_atomically(&folder.join(format!("{stem}.svg")), |out| {
-        write_polar_plot(&title, "dB(m²)", &lines, out)
-    })
+    folder.write(&format!("{stem}.svg"), |out| write_polar_plot(&title, "dB(m²)", &lines, out)).map(drop)
 }

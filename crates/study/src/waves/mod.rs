@@ -21,7 +21,6 @@ pub use check::{CheckedWaves, check_waves};
 pub(crate) use compare::compare;
 pub(crate) use compute::compute;
 pub use estimate::Estimated;
-pub use files::WAVE_FILES;
 pub(crate) use model::{Band, Method, Model};
 pub(crate) use record::Outcome;
 pub use record::Solved as SolvedFrequency;

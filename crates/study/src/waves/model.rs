@@ -17,6 +17,7 @@ use super::geometry::Geometry;
 use super::memory::{plan as memory_of, sampled};
 use crate::error::Error;
 use crate::memory::{self, Limit, Plan};
+use crate::options::admit_file;
 use crate::problem::scene_failure;
 use crate::size::Bytes;
 use crate::stages::Stages;
@@ -122,6 +123,7 @@ impl Model {
         [estimated, chooses]: [bool; 2],
         memory_of: &dyn Fn(u128, &WaveScene) -> Plan,
     ) -> Result<Self, Error> {
+        admit_file(path, memory)?;
         let scene = Arc::new(WaveScene::load(path).map_err(scene_failure)?);
         let settings = scene.settings();
         let estimated = estimated || settings.estimate_errors;

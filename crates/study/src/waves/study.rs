@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use fredholm_linop::{OptionError, Stop, Watch};
-use fredholm_report::{FarRow, MonostaticRow, WaveComparison, WaveRow, write_wave_comparison};
+use fredholm_report::{FarRow, MonostaticRow, ResultFolder, WaveComparison, WaveRow, write_wave_comparison};
 
 use super::estimate::Estimated;
 use super::model::Model;
@@ -91,7 +91,7 @@ pub fn compare_waves(
     scene: impl AsRef<Path>,
     asked: &WaveOptions,
     solvers: &WaveCompareOptions,
-    folder: impl AsRef<Path>,
+    folder: &ResultFolder,
     watch: &dyn Watch,
 ) -> Result<(WaveComparison, Ended), Error> {
     let mut stages = Stages::new(watch);
@@ -100,7 +100,7 @@ pub fn compare_waves(
     let names = written_out(&solvers.solvers, &registry::names());
     let record = super::compare(&model, &names, &stop, &mut stages)?;
     stages.begin_saving()?;
-    write_wave_comparison(folder.as_ref(), &record).map_err(report_failure)?;
+    write_wave_comparison(folder, &record).map_err(report_failure)?;
     let any = record.cases.iter().any(|case| case.runs.iter().any(failed));
     Ok((record, if any { Ended::NotConverged } else { Ended::Done }))
 }
@@ -215,16 +215,16 @@ impl SolvedWaves<'_> {
         if self.outcome.converged() { Ended::Done } else { Ended::NotConverged }
     }
 
-    /// Writes all results into a folder, which is made where it does not exist.
+    /// Writes all results into a folder.
     ///
     /// # Errors
     /// [`Files`](crate::ErrorKind::Files) with the file that could not be written; the folder then
     /// has no `run.json`.
-    pub fn write(&mut self, folder: impl AsRef<Path>) -> Result<(), Error> {
+    pub fn write(&mut self, folder: &ResultFolder) -> Result<(), Error> {
         let timings = self.stages.timings().to_vec();
         let Self { model, outcome, stages, report } = self;
         stages.run("results", || {
-            files::write(folder.as_ref(), model, outcome, &timings, *report).map_err(report_failure)
+            files::write(folder, model, outcome, &timings, *report).map_err(report_failure)
         })
     }
 }
