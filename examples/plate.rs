@@ -6,7 +6,7 @@
 use std::error::Error;
 use std::f64::consts::PI;
 
-use fredholm::study::{Quiet, WaveOptions, waves};
+use fredholm::study::{Quiet, ResultFolder, WaveOptions, waves};
 use fredholm::waves::medium::SPEED_OF_LIGHT;
 
 /// Side of the plate of the scene, m.
@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let expected = 4.0 * PI * SIDE.powi(4) / (wavelength * wavelength);
     println!("strongest at φ = {}°: {theta:.2} m², squarely {expected:.2} m²", row.phi_degrees);
     let folder = std::env::temp_dir().join("fredholm-plate");
-    solved.write(&folder)?;
+    solved.write(&ResultFolder::claim(&folder)?)?;
     println!("written to {}", folder.display());
     Ok(())
 }

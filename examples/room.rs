@@ -1,12 +1,12 @@
 //! A room made in code, solved, compared and written: `cargo run --release --example room`.
 //!
 //! The lamp hangs at several heights; what comes out is the irradiance of the table with its stated
-//! error. Of the last room the solvers are compared, and a folder is written.
+//! error. Of the last room the solvers are compared. A folder holds the results of one run.
 
 use std::error::Error;
 
 use fredholm::scene::Scene;
-use fredholm::study::{CompareOptions, Quiet, SolveOptions, compare, solve};
+use fredholm::study::{CompareOptions, Quiet, ResultFolder, SolveOptions, compare, solve};
 
 /// A closed room of 4 m × 3 m × 2.5 m with a square lamp of 1 m² at some height (m).
 fn room(height: f64) -> Result<Scene, Box<dyn Error>> {
@@ -45,11 +45,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         let table = solved.surface("table").ok_or("there is no table")?;
         let (irradiance, error) = (table.irradiance[0], table.error[0]);
         println!("lamp at {height} m: {irradiance:.3} ± {error:.3} W/m² on the table");
-        solved.write(&folder)?;
+        solved.write(&ResultFolder::claim(folder.join(format!("lamp-{height}")))?)?;
     }
     let solvers = ["gauss-seidel", "cg-theta", "lu"].map(str::to_owned).to_vec();
     let options = CompareOptions { solvers, ..CompareOptions::default() };
-    let (record, _) = compare(room(2.4)?, &options, &folder, &Quiet)?;
+    let compared = ResultFolder::claim(folder.join("compared"))?;
+    let (record, _) = compare(room(2.4)?, &options, &compared, &Quiet)?;
     for run in record.cases.iter().flat_map(|case| &case.runs) {
         println!("{}: {} iterations, error {:.1e}", run.solver, run.iterations, run.error);
     }

@@ -11,14 +11,14 @@
 //! error, and the results are written into a folder.
 //!
 //! ```
-//! use fredholm::study::{Quiet, SolveOptions, solve};
+//! use fredholm::study::{Quiet, ResultFolder, SolveOptions, solve};
 //! # let folder = tempfile::tempdir()?;
 //!
 //! let options = SolveOptions { accuracy: Some(0.01), ..SolveOptions::default() };
 //! let mut solved = solve("scenes/occluder.toml", &options, &Quiet)?;
 //! let floor = solved.surface("floor").ok_or("the scene has no floor")?;
 //! println!("{:.4} ± {:.4} W/m²", floor.irradiance[0], floor.error[0]);
-//! solved.write(&folder)?;
+//! solved.write(&ResultFolder::claim(&folder)?)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!

@@ -340,7 +340,9 @@ mod tests {
     fn a_run_removes_what_others_wrote_and_nothing_else() {
         let base = tempfile::tempdir().unwrap();
         let first = ResultFolder::claim(base.path()).unwrap();
-        ["run.json", "a.svg", "below/b.ply"].iter().for_each(|name| put(&first, name));
+        for name in ["run.json", "a.svg", "below/b.ply"] {
+            put(&first, name);
+        }
         drop(first);
         fs::write(base.path().join("mine.txt"), "x").unwrap();
         let second = ResultFolder::claim(base.path()).unwrap();
@@ -354,7 +356,9 @@ mod tests {
     fn what_a_run_goes_on_with_stays() {
         let base = tempfile::tempdir().unwrap();
         let first = ResultFolder::claim(base.path()).unwrap();
-        ["trace.json", "a.svg"].iter().for_each(|name| put(&first, name));
+        for name in ["trace.json", "a.svg"] {
+            put(&first, name);
+        }
         drop(first);
         let second = ResultFolder::claim(base.path()).unwrap();
         second.keep("trace.json");
@@ -390,7 +394,9 @@ mod tests {
     fn unfinished_files_are_removed() {
         let base = tempfile::tempdir().unwrap();
         let (left, other) = (base.path().join(".fredholm-x1.tmp"), base.path().join(".F.fredholm-x1.tmp"));
-        [&left, &other].into_iter().for_each(|path| fs::write(path, "x").unwrap());
+        for path in [&left, &other] {
+            fs::write(path, "x").unwrap();
+        }
         drop(ResultFolder::claim(base.path()).unwrap());
         assert!(!left.exists() && other.exists(), "a matrix beside may be in the making");
     }

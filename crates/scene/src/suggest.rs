@@ -44,8 +44,8 @@ const FOREIGN: [(&str, &[&str]); 14] = [
 /// The known name that has the meaning of one of [`FOREIGN`].
 fn foreign<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
     let name = name.to_lowercase().replace('-', "_");
-    let meant = FOREIGN.iter().filter(|(_, others)| others.contains(&name.as_str()));
-    meant.filter_map(|(ours, _)| known.iter().copied().find(|known| known == ours)).next()
+    let mut meant = FOREIGN.iter().filter(|(_, others)| others.contains(&name.as_str()));
+    meant.find_map(|(ours, _)| known.iter().copied().find(|known| known == ours))
 }
 
 fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use fredholm_scene::{Scene, SceneError};
-use fredholm_study::{Checkpoint, Ended, ErrorKind, Quiet, SolveOptions, Watch, solve};
+use fredholm_study::{Checkpoint, Ended, ErrorKind, Quiet, ResultFolder, SolveOptions, Watch, solve};
 
 /// A closed room of one material: the irradiance is M/(1 − ρ) everywhere.
 const FURNACE: &str = r#"
@@ -40,7 +40,7 @@ fn the_irradiance_of_a_surface_is_right_within_its_stated_error() {
 fn a_folder_is_written_without_a_command_line() {
     let folder = tempfile::tempdir().unwrap();
     let mut solved = solve(furnace().unwrap(), &SolveOptions::default(), &Quiet).unwrap();
-    let record = solved.write(folder.path()).unwrap();
+    let record = solved.write(&ResultFolder::claim(folder.path()).unwrap()).unwrap();
     assert!(record.files.iter().all(|name| folder.path().join(name).is_file()));
     assert_eq!(record.options["output"], folder.path().display().to_string());
     assert!(record.timings.iter().any(|timing| timing.stage == "results"));

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use fredholm_mesh::Vec3;
-use fredholm_study::{Quiet, SolvedWaves, WaveOptions, waves};
+use fredholm_study::{Quiet, ResultFolder, SolvedWaves, WaveOptions, waves};
 use fredholm_waves::source::PlaneWave;
 use fredholm_waves::{ConductingSphere, Wave};
 
@@ -106,7 +106,7 @@ fn a_sweep_has_one_plot_and_the_closed_form() {
         assert!((row.cross_section.unwrap()[0] / closed - 1.0).abs() < 1e-9, "{row:?}");
     }
     let results = folder.path().join("out");
-    found.write(&results).unwrap();
+    found.write(&ResultFolder::claim(&results).unwrap()).unwrap();
     let mut names: Vec<String> =
         fs::read_dir(&results).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
@@ -135,7 +135,7 @@ fn large_tables_are_arrays_only() {
     );
     let mut found = solved(folder.path(), &text);
     let results = folder.path().join("out");
-    found.write(&results).unwrap();
+    found.write(&ResultFolder::claim(&results).unwrap()).unwrap();
     assert!(results.join("far.npz").exists() && !results.join("far.csv").exists());
     let record: serde_json::Value =
         serde_json::from_slice(&fs::read(results.join("run.json")).unwrap()).unwrap();

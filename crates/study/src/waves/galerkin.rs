@@ -111,7 +111,7 @@ impl Task<'_> {
                 stages.run(&format!("currents at {name}"), || self.solve(&coupling, &b, signals))?;
             let currents = Currents::new(self.basis, self.band.wave, &solution.x.lane(0), None);
             let error = self.error(&currents, solution.residuals.last())?;
-            stages.run(&format!("fields at {name}"), || self.receive(&currents, error, outcome))?;
+            stages.run(&format!("fields at {name}"), || self.receive(&currents, error.as_ref(), outcome))?;
             let values = self.on_facets(&currents).iter().map(current).collect();
             outcome.currents.push(WaveCurrents { name: name.to_owned(), values });
             outcome.solved.push(self.record(solution));
@@ -183,7 +183,7 @@ impl Task<'_> {
     fn receive(
         &self,
         currents: &Currents<'_>,
-        error: Option<MeanError>,
+        error: Option<&MeanError>,
         outcome: &mut Outcome,
     ) -> Result<(), Error> {
         for (index, receiver) in self.model.receivers.iter().enumerate() {
@@ -206,7 +206,7 @@ impl Task<'_> {
                             far_row(self.model, self.band, [index, i], *angles, far)
                         }));
                         let squares = far.iter().map(|far| far.amplitude.norm_squared());
-                        error.as_ref().map(|error| error.relative_far(squares))
+                        error.map(|error| error.relative_far(squares))
                     }
                     Places::Monostatic(_) => None,
                 };
