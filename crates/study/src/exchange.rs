@@ -41,8 +41,8 @@ const BEFORE: f64 = 0.02;
 const WIDE: f64 = 75.0;
 
 /// Writes a scene in the format of another program: geometry, diffuse reflectances, emitters and the
-/// camera. Where the scene has none, it takes in the whole scene, or stands inside of the wall that
-/// it would see from behind. `band` is the band that stands
+/// camera. Where the scene has none, it takes in the whole scene; an eye that would see a wall from
+/// behind is moved through it. `band` is the band that stands
 /// for grey, for a scene whose bands are no colours.
 ///
 /// # Errors
@@ -67,19 +67,21 @@ pub(crate) fn outline(scene: &Scene, band: Option<&str>) -> Result<Outline, Erro
 }
 
 /// The camera of a scene; where it has none, one that takes in the whole scene. Other programs show
-/// the backs of walls, which the pictures here leave out, so that such an eye is moved through
-/// those that stand before what is to be seen.
+/// the backs of walls, which the pictures here leave out, so that an eye is moved through those that
+/// stand before what is to be seen.
 pub(crate) fn camera(scene: &Scene) -> Result<Camera, Error> {
-    if let Some(&camera) = scene.camera() {
-        return Ok(camera);
-    }
-    let fredholm_report::Camera { eye, target, up, vertical_fov_degrees, width, height } = framing(scene)?;
-    let camera = Camera { eye, target, up, vertical_fov_degrees, width, height, exposure: None };
+    let camera = scene.camera().copied().map_or_else(|| whole(scene), Ok)?;
     let mesh = scene.face_mesh().map_err(scene_failure)?;
-    Ok(match before_backs(&mesh, eye, target)? {
+    Ok(match before_backs(&mesh, camera.eye, camera.target)? {
         Some(eye) => Camera { eye, vertical_fov_degrees: WIDE, ..camera },
         None => camera,
     })
+}
+
+/// A camera that takes in the whole scene.
+fn whole(scene: &Scene) -> Result<Camera, Error> {
+    let fredholm_report::Camera { eye, target, up, vertical_fov_degrees, width, height } = framing(scene)?;
+    Ok(Camera { eye, target, up, vertical_fov_degrees, width, height, exposure: None })
 }
 
 /// Where an eye stands that has gone through all walls that it sees from behind on its way to the

@@ -54,7 +54,7 @@ pub struct ReferencePixels {
     pub width: u32,
     /// Rows of pixels, from the top.
     pub height: u32,
-    /// Whether the scene has no camera, so that one was chosen.
+    /// Whether the scene has no camera, or one that stands behind a wall, so that one was chosen.
     pub chosen: bool,
     /// Batches of samples of a pixel.
     pub batches: u32,

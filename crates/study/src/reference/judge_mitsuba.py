@@ -13,7 +13,7 @@ pixel by pixel and band by band and for the whole picture:
 z is the normal score of t, which follows Student's law with one degree of freedom less than there
 are seeds (D. L. Wallace, Ann. Math. Stat. 30 (1959) 1121). The pictures disagree where a pixel is
 significantly apart after Holm's correction for the number of pixels. The exit code is 0 where they
-agree and 6 where they do not. `fredholm judge` looks at parts of the picture, too.
+agree and 6 where they do not, 3 where all of the reference is black. `fredholm judge` looks at parts of the picture, too.
 """
 
 import argparse
@@ -69,6 +69,9 @@ def main():
     stored = np.load(HERE / "pixels.npz")
     # A radiosity is pi times the radiance of a diffuse surface.
     known, error = stored["radiosity"] / np.pi, stored["standard_error"] / np.pi
+    if not known.any():
+        print("undecided: all pixels of the reference are black")
+        return 3
     pictures = render(asked.scene, asked.seeds, asked.spp, asked.variant)
     if asked.save:
         np.save(asked.save, pictures)

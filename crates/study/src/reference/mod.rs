@@ -78,8 +78,8 @@ pub struct References {
 /// every face and the radiosity of every pixel with their stated errors into a folder, with the scene
 /// for Mitsuba 3 and pbrt-v4 where its bands are colours or grey, and a script that judges Mitsuba.
 ///
-/// The camera is that of the scene; without one it takes in the whole scene, or stands inside of the
-/// wall that it would see from behind.
+/// The camera is that of the scene; without one it takes in the whole scene. An eye that would see a
+/// wall from behind is moved through it.
 ///
 /// # Errors
 /// What is wrong with the scene or the options; [`Resources`](crate::ErrorKind::Resources) before
@@ -100,7 +100,8 @@ pub fn reference(
     let sampling = sampling(asked);
     let pixels = pictured(asked, &scene, (&camera, sampling), &mut stages)?;
     let table = table(&problem, &solution, &state);
-    let seen = seen(&camera, problem.scene.camera().is_none(), sampling, &pixels);
+    let chosen = problem.scene.camera().is_none_or(|own| own.eye != camera.eye);
+    let seen = seen(&camera, chosen, sampling, &pixels);
     if pixels.covered.iter().all(|&share| share == 0.0) {
         stages.watch.warn("the camera sees no lit side of any surface: all pixels are black");
     }
