@@ -18,14 +18,14 @@ Examples:
 The irradiance of every face by path tracing, with the deterministic solution as control
 variate: what remains are the standard error and the error of the form factors, both stated. And
 the radiosity of every pixel of the camera by path tracing alone, with its standard error. Without
---size the picture is that of the scene, made smaller to 64 pixels along its longer side. Where the
-scene has no camera one is chosen that takes in all of it. Other programs show the backs of walls: an
-eye that would see one is moved through it.
+--size the picture is that of the scene, made smaller to 64 pixels along its longer side. Where
+the scene has no camera one is chosen that takes in all of it. Other programs show the backs of
+walls: an eye that would see one is moved through it.
 
-Written are reference.csv, patches.obj, pixels.npz, the scene for Mitsuba 3 (scene.xml) and pbrt-v4
-(scene.pbrt) and judge_mitsuba.py where its bands are colours or grey, and reference.json last, which
-says what the numbers mean. `fredholm judge` judges what other tracers find. Ctrl-C ends the run with
-nothing written.";
+Written are reference.csv, patches.obj, pixels.npz, the scene for Mitsuba 3 (scene.xml) and for
+pbrt-v4 (scene.pbrt) and judge_mitsuba.py where its bands are colours or grey, and reference.json
+last, which says what the numbers mean. `fredholm judge` judges what other tracers find. Ctrl-C
+ends the run with nothing written.";
 
 /// Options of `reference`.
 #[derive(Clone, Debug, Args)]
