@@ -344,7 +344,7 @@ quad = [[0.9, 0.9, 1.8], [0.9, 1.4, 1.8], [1.4, 1.4, 1.8], [1.4, 0.9, 1.8]]
         reference(scene(ROOM), &asked, &two, &Quiet).unwrap();
         let (out, table) = (folder.path().join("out"), two.join("reference.csv"));
         let options = JudgeOptions::default();
-        let (record, verdict) = judge(&one, &[table.clone()], &options, &out, &Quiet).unwrap();
+        let (record, verdict) = judge(&one, std::slice::from_ref(&table), &options, &out, &Quiet).unwrap();
         assert_eq!((verdict, record.error_from.as_str()), (Verdict::Agree, "sigma"), "{:?}", record.worst);
         // Of one face 20 % more.
         let text = fs::read_to_string(&table).unwrap();
@@ -353,7 +353,7 @@ quad = [[0.9, 0.9, 1.8], [0.9, 1.4, 1.8], [1.4, 1.4, 1.8], [1.4, 0.9, 1.8]]
         cells[6] = (1.2 * cells[6].parse::<f64>().unwrap()).to_string();
         lines[3] = cells.join(",");
         fs::write(&table, lines.join("\n")).unwrap();
-        let (record, verdict) = judge(&one, &[table.clone()], &options, &out, &Quiet).unwrap();
+        let (record, verdict) = judge(&one, std::slice::from_ref(&table), &options, &out, &Quiet).unwrap();
         assert_eq!((verdict, record.worst[0].place), (Verdict::Disagree, 2), "{:?}", record.worst);
         let bare: Vec<String> = lines.iter().map(|line| line.replace("E_error", "sd")).collect();
         fs::write(&table, bare.join("\n")).unwrap();
@@ -361,7 +361,7 @@ quad = [[0.9, 0.9, 1.8], [0.9, 1.4, 1.8], [1.4, 1.4, 1.8], [1.4, 0.9, 1.8]]
             let error = judge(&one, files, &options, &out, &Quiet).unwrap_err().to_string();
             assert!(error.contains(what), "{error}");
         };
-        failed(&[table.clone()], "the random error of the tracer is not known");
+        failed(std::slice::from_ref(&table), "the random error of the tracer is not known");
         failed(&[table, one.join("pixels.npz")], "cannot be judged together");
         failed(&[], "cannot be judged together");
         fs::write(one.join("reference.json"), "{\"format\": \"fredholm-reference-1\"}").unwrap();
