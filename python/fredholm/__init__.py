@@ -30,7 +30,18 @@ from ._errors import (
 )
 from ._scene import Material, Scene, Surface
 from ._solution import Faces, Solution, SurfaceLight
-from ._studies import Check, Comparison, Convergence, Crosscheck, Reference, Spectrum, Study, Trace
+from ._studies import (
+    Check,
+    Comparison,
+    Convergence,
+    Crosscheck,
+    Judgement,
+    Reference,
+    Spectrum,
+    Study,
+    Trace,
+    judge,
+)
 from ._viewfactors import ViewFactors, view_factor_methods, view_factors
 from ._waves import FarField, Monostatic, NearField, Waves, WaveScene
 
@@ -48,6 +59,7 @@ __all__ = [
     "FredholmWarning",
     "InputError",
     "Interrupted",
+    "Judgement",
     "Material",
     "Monostatic",
     "NearField",
@@ -65,6 +77,7 @@ __all__ = [
     "WaveScene",
     "Waves",
     "__version__",
+    "judge",
     "solvers",
     "view_factor_methods",
     "view_factors",

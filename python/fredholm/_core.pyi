@@ -21,6 +21,7 @@ __all__ = [
     "compare",
     "converge",
     "crosscheck",
+    "judge",
     "reference",
     "spectrum",
     "trace",
@@ -186,8 +187,9 @@ def spectrum(scene: Scene, asked: Tuple[int, int], problem: _Options, how: _Opti
 def trace(source: Union[Scene, _Path], asked: _Options, how: _Options) -> Study: ...
 def crosscheck(source: Union[Scene, _Path], asked: _Options, how: _Options) -> Study: ...
 def reference(
-    scene: Scene, paths: _Options, tracing: _Options, problem: _Options, how: _Options
+    scene: Scene, size: Optional[Tuple[int, int]], asked: _Options, how: _Options
 ) -> Study: ...
+def judge(asked: _Options, how: _Options) -> Study: ...
 def waves(path: _Path, report: bool, problem: _Options, how: _Options) -> Waves: ...
 def compare_waves(
     path: _Path, asked: Tuple[Sequence[str], float, int], problem: _Options, how: _Options

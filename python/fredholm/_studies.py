@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import os
+import tempfile
 from typing import (
     TYPE_CHECKING,
     Any,
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from ._scene import Scene
 
 Floats = NDArray[np.float64]
+Path = Union[str, "os.PathLike[str]"]
 S = TypeVar("S", bound="Study")
 
 
@@ -180,7 +182,21 @@ class Crosscheck(Study):
 
 
 class Reference(Study):
-    """Reference values with stated errors for other programs: reference.csv among the files."""
+    """Reference values with stated errors for other programs: reference.csv (faces) and pixels.npz
+    among the files. ``write(folder)`` makes the bundle that :func:`judge` reads."""
+
+
+class Judgement(Study):
+    """Another tracer and reference values, place by place: ``ended`` is "agree", "disagree" or
+    "undecided".
+
+    ``record`` has the power and the worst places; ``table("judge.csv")`` the z of every place.
+    """
+
+    @property
+    def agrees(self) -> bool:
+        """Whether the two agree, and a deviation worth the name would have been found."""
+        return self.ended == "agree"
 
 
 def _found(make: Type[S], run: Callable[[], _core.Study]) -> S:
@@ -357,12 +373,76 @@ def crosscheck(
     return _found(Crosscheck, lambda: _core.crosscheck(_source(scene), asked, how))
 
 
-def reference(scene: Scene, *, progress: Progress = None, **options: Any) -> Reference:
+def reference(
+    scene: Scene,
+    *,
+    size: Optional[Tuple[int, int]] = None,
+    progress: Progress = None,
+    **options: Any,
+) -> Reference:
     """Solves, and traces with the solution as control variate up to the standard error ``to``
-    (0.002)."""
+    (0.002). The pixels of the camera are sampled ``spp`` (1024) times each; the picture has the
+    width and height ``size``, else those of the scene, at most 64 along the longer side."""
     asked, how = sampling(None, **options), _options.how(options.get("threads"), progress)
-    paths, tracing, problem = asked["paths"], asked["tracing"], asked["problem"]
-    return _found(Reference, lambda: _core.reference(scene._core, paths, tracing, problem, how))
+    return _found(Reference, lambda: _core.reference(scene._core, size, asked, how))
+
+
+def judge(
+    bundle: Path,
+    found: Union[Path, Sequence[Path], Any],
+    *,
+    significance: float = 0.01,
+    correction: str = "holm",
+    exact: bool = False,
+    rounding: Optional[float] = None,
+    progress: Progress = None,
+) -> Judgement:
+    """Judges what another tracer has found by a bundle of :meth:`Scene.reference`.
+
+    Parameters
+    ----------
+    bundle : path
+        Folder of the bundle.
+    found : path, sequence of paths or array
+        Tables of faces (.csv: irradiance, W/m²) or pictures (.npy, .exr: radiance, W/(m² sr)), or
+        an array of radiances: height × width × bands, or seeds × height × width × bands, rows from
+        the top. Several files or pictures are independent runs.
+    significance : float
+        Probability of a false alarm that is allowed.
+    correction : {"holm", "benjamini-hochberg"}
+        How the number of tests is taken into account.
+    exact : bool
+        Whether the values have no random error, as those of a deterministic program.
+    rounding : float, optional
+        Standard deviation of rounding, relative to the value; 1e-5 where nothing is said.
+
+    Raises
+    ------
+    InputError
+        For values that cannot be used, or whose error is not known.
+    FileError
+        For files that cannot be read.
+    """
+    _options.share("significance", significance)
+    _options.share("rounding", rounding)
+    with tempfile.TemporaryDirectory() as folder:
+        if hasattr(found, "__array__"):
+            files = [os.path.join(folder, "found.npy")]
+            np.save(files[0], np.asarray(found, dtype=np.float64))
+        elif isinstance(found, (str, os.PathLike)):
+            files = [os.fspath(found)]
+        else:
+            files = [os.fspath(file) for file in found]
+        asked = {
+            "bundle": os.fspath(bundle),
+            "files": files,
+            "significance": significance,
+            "correction": correction,
+            "exact": exact,
+            "rounding": rounding,
+        }
+        how = _options.how(None, progress)
+        return _found(Judgement, lambda: _core.judge(asked, how))
 
 
 def _source(scene: Any) -> Any:

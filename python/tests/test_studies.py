@@ -92,10 +92,27 @@ def test_crosscheck(room: fredholm.Scene, tmp_path: pathlib.Path) -> None:
 
 
 def test_reference(room: fredholm.Scene, tmp_path: pathlib.Path) -> None:
-    found = room.reference(to=0.02)
+    found = room.reference(to=0.02, size=(16, 12), spp=256)
     assert found.record["relative_error"] > 0.0
     written(found, tmp_path)
+    assert (found.record["pixels"]["width"], found.record["pixels"]["height"]) == (16, 12)
     assert "reference.csv" in found.files and len(found.table("reference.csv")["face"]) == 25
+
+
+def test_judge(room: fredholm.Scene, tmp_path: pathlib.Path) -> None:
+    room.reference(to=0.02, size=(16, 12), spp=1024).write(tmp_path / "bundle")
+    stored = np.load(tmp_path / "bundle" / "pixels.npz")
+    known, error = stored["radiosity"] / np.pi, stored["standard_error"] / np.pi
+    noise = np.random.default_rng(1).normal(size=(16, *known.shape))
+    right = fredholm.judge(tmp_path / "bundle", known + 4.0 * error * noise)
+    assert right.agrees and right.record["seeds"] == 16, right.record
+    assert np.allclose(right.table("judge.csv")["reference"][: known.size], known.ravel())
+    wrong = fredholm.judge(tmp_path / "bundle", 1.05 * known + 4.0 * error * noise)
+    assert wrong.ended == "disagree" and not wrong.agrees, wrong.record
+    with pytest.raises(fredholm.InputError, match="random error of the tracer is not known"):
+        fredholm.judge(tmp_path / "bundle", known)
+    with pytest.raises(fredholm.FileError):
+        fredholm.judge(tmp_path, known)
 
 
 def test_waves(scenes: pathlib.Path) -> None:

@@ -113,7 +113,7 @@ fn too_few_samples_are_no_agreement() {
 #[test]
 fn a_reference_holds_the_exact_values_of_a_furnace() {
     let bench = Bench::new(&furnace(2, &[0.5]));
-    let run = bench.run(&["reference", "scene.toml", "-o", "bundle", "--quiet"]);
+    let run = bench.run(&["reference", "scene.toml", "-o", "bundle", "--size", "4x3"]);
     assert_eq!(run.code, 0, "{}", run.stderr);
     let rows = text(&bench, "bundle/reference.csv");
     assert!(
@@ -125,7 +125,48 @@ fn a_reference_holds_the_exact_values_of_a_furnace() {
     }
     assert!(text(&bench, "bundle/patches.obj").lines().filter(|line| line.starts_with("f ")).count() == 24);
     let record: Value = serde_json::from_str(&text(&bench, "bundle/reference.json")).unwrap();
-    assert_eq!(record["format"], "fredholm-reference-1");
+    assert_eq!(record["format"], "fredholm-reference-2");
+    assert_eq!((&record["pixels"]["width"], &record["pixels"]["chosen"]), (&4.into(), &true.into()));
+}
+
+/// An eye behind a wall is moved into the room, where every pixel is M/(1 − ρ).
+#[test]
+fn pixels_of_a_furnace_are_exact_and_other_tracers_are_judged_by_them() {
+    let bench = Bench::new(&furnace(2, &[0.5]));
+    let go = |folder: &str, more: &[&str]| {
+        let usual = ["reference", "scene.toml", "--size", "8x6", "--spp", "256", "--to", "5%", "-o", folder];
+        let run = bench.run(&[&usual, more].concat());
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        serde_json::from_str::<Value>(&text(&bench, &format!("{folder}/reference.json"))).unwrap()
+    };
+    let record = go("bundle", &["--threads", "1"]);
+    assert_eq!(record["pixels"]["chosen"], true);
+    let error = record["pixels"]["relative_error"].as_f64().unwrap();
+    assert!(error > 0.0 && error < 0.02, "{error}");
+    // The values are the same with any number of threads.
+    go("again", &["--threads", "2"]);
+    let [one, two] = ["bundle", "again"].map(|name| fs::read(bench.path(name).join("pixels.npz")).unwrap());
+    assert!(one == two);
+    // Other paths agree with it, and so does the closed form; what is 10 % brighter does not.
+    go("other", &["--seed", "2"]);
+    let judge = |found: &str, more: &[&str]| {
+        let run = bench.run(&[&["judge", "bundle", found, "-o", "judged"], more].concat());
+        (run.code, format!("{}{}", run.stdout, run.stderr))
+    };
+    let (code, said) = judge("other/pixels.npz", &[]);
+    assert!(code == 0 && said.contains("agrees: 0 of 50 places apart"), "{said}");
+    let table = |e: f64| (0..24).fold("face,value\n".to_owned(), |rows, face| format!("{rows}{face},{e}\n"));
+    for (irradiance, code, verdict) in [(2.0, 0, "agrees"), (2.2, 6, "disagrees")] {
+        fs::write(bench.path("found.csv"), table(irradiance)).unwrap();
+        let (found, said) = judge("found.csv", &["--exact"]);
+        assert!(found == code && said.contains(verdict) && said.contains("nine times out of ten"), "{said}");
+        let record: Value = serde_json::from_str(&text(&bench, "judged/judge.json")).unwrap();
+        assert_eq!((&record["format"], &record["seeds"]), (&"fredholm-judge-1".into(), &1.into()));
+    }
+    let (code, said) = judge("found.csv", &[]);
+    assert!(code == 2 && said.contains("random error of the tracer is not known"), "{said}");
+    let (code, said) = judge("none.npy", &[]);
+    assert!(code == 5 && said.contains("cannot read none.npy"), "{said}");
 }
 
 /// The plate seen from three points.
@@ -235,7 +276,7 @@ fn traced_pixels_show_what_the_solution_shows() {
 
 #[test]
 fn the_verbs_explain_themselves() {
-    for verb in ["trace", "crosscheck", "reference"] {
+    for verb in ["trace", "crosscheck", "reference", "judge"] {
         let run = fredholm_in(std::path::Path::new("."), &[verb, "--help"]);
         assert_eq!(run.code, 0);
         insta::assert_snapshot!(format!("help-{verb}"), run.stdout);

@@ -7,7 +7,7 @@
 //! | 3 | not converged; the results are written all the same |
 //! | 4 | resources refused |
 //! | 5 | a file could not be read or written |
-//! | 6 | two solutions disagree |
+//! | 6 | two solutions disagree, or a tracer with the reference |
 //! | 130 | interrupted |
 
 use std::process::ExitCode;

@@ -3,8 +3,8 @@
 //!
 //! [`run`] reads the arguments, carries out the verb and returns the exit code: 0 done, 2 bad input
 //! or usage, 3 not converged (the results are written all the same), 4 resources refused, 5 a file
-//! could not be read or written, 6 two solutions disagree, 130 interrupted. Standard output carries
-//! results and summaries, standard error progress, warnings and errors.
+//! could not be read or written, 6 two solutions or a tracer disagree, 130 interrupted. Standard
+//! output carries results and summaries, standard error progress, warnings and errors.
 
 mod args;
 mod commands;

@@ -34,7 +34,7 @@ mod _core {
     #[pymodule_export]
     use crate::solvers::{solve_system, solvers};
     #[pymodule_export]
-    use crate::studies::{Study, check, compare, converge, crosscheck, reference, spectrum, trace};
+    use crate::studies::{Study, check, compare, converge, crosscheck, judge, reference, spectrum, trace};
     #[pymodule_export]
     use crate::viewfactors::{ViewFactors, methods, view_factors};
     #[pymodule_export]

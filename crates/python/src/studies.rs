@@ -9,8 +9,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use fredholm_study::{
+<<<<<<< HEAD
     CompareOptions, ConvergeOptions, CrosscheckOptions, Error, ErrorKind, MultipleTests, ProblemOptions,
     ReferenceOptions, ResultFolder, SceneSource, SpectrumOptions, TraceOptions, Watch, claim_folder,
+=======
+    CompareOptions, ConvergeOptions, CrosscheckOptions, Error, ErrorKind, JudgeOptions, MultipleTests,
+    ProblemOptions, ReferenceOptions, SceneSource, SpectrumOptions, TraceOptions, Watch,
+>>>>>>> cd71ea0 (Pixels of the camera among reference values; fredholm judge judges other tracers by them)
 };
 use pyo3::prelude::*;
 use serde_json::json;
@@ -237,6 +242,18 @@ pub(crate) fn trace(py: Python<'_>, source: Source<'_>, asked: Sampling, how: Ho
     })
 }
 
+/// A correction for many tests, by its name.
+fn correction(py: Python<'_>, name: &str) -> PyResult<MultipleTests> {
+    match name {
+        "holm" => Ok(MultipleTests::Holm),
+        "benjamini-hochberg" => Ok(MultipleTests::BenjaminiHochberg),
+        other => {
+            let help = "use holm or benjamini-hochberg";
+            Err(input(py, format!("there is no correction {other:?}"), Some(help)))
+        }
+    }
+}
+
 /// Solves and traces a scene, and decides whether the two agree.
 #[pyfunction]
 pub(crate) fn crosscheck(
@@ -246,14 +263,7 @@ pub(crate) fn crosscheck(
     how: How,
 ) -> PyResult<Py<PyAny>> {
     let source = SceneSource::from(source);
-    let correction = match asked.correction.as_str() {
-        "holm" => MultipleTests::Holm,
-        "benjamini-hochberg" => MultipleTests::BenjaminiHochberg,
-        other => {
-            let help = "use holm or benjamini-hochberg";
-            return Err(input(py, format!("there is no correction {other:?}"), Some(help)));
-        }
-    };
+    let correction = correction(py, &asked.correction)?;
     let options = CrosscheckOptions {
         method: asked.method,
         accuracy: asked.accuracy,
@@ -275,17 +285,40 @@ pub(crate) fn crosscheck(
 pub(crate) fn reference(
     py: Python<'_>,
     scene: &Scene,
-    paths: Paths,
-    tracing: Tracing,
-    problem: Problem,
+    size: Option<[u32; 2]>,
+    asked: Sampling,
     how: How,
 ) -> PyResult<Py<PyAny>> {
     let scene = Arc::clone(&scene.0);
-    let (paths, problem) = (paths.options(py)?, problem.options(py)?);
-    let options = ReferenceOptions { paths, stop: tracing.into(), problem };
+    let (paths, problem) = (asked.paths.options(py)?, asked.problem.options(py)?);
+    let options = ReferenceOptions { size, spp: asked.spp, paths, stop: asked.tracing.into(), problem };
     study(py, how, move |folder, watch| {
         let found = fredholm_study::reference(scene, &options, folder, watch)?;
         Ok((serde_json::to_string(&found.record), "done"))
+    })
+}
+
+/// What is asked of a judgement.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Judging {
+    bundle: PathBuf,
+    files: Vec<PathBuf>,
+    significance: f64,
+    correction: String,
+    exact: bool,
+    rounding: Option<f64>,
+}
+
+/// Judges what another tracer has found by reference values.
+#[pyfunction]
+pub(crate) fn judge(py: Python<'_>, asked: Judging, how: How) -> PyResult<Py<PyAny>> {
+    let Judging { bundle, files, significance, exact, rounding, .. } = asked;
+    let correction = correction(py, &asked.correction)?;
+    let options = JudgeOptions { significance, correction, exact, rounding };
+    study(py, how, move |folder, watch| {
+        let (record, verdict) = fredholm_study::judge(bundle, &files, &options, folder, watch)?;
+        Ok((serde_json::to_string(&record), verdict.name()))
     })
 }
 

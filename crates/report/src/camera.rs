@@ -107,6 +107,16 @@ impl Camera {
         Axes { forward, right: right * (tangent * aspect), up: right.cross(forward) * tangent }
     }
 
+    /// The unit directions of rays through places of the picture: column and row from the upper
+    /// left, in pixels.
+    ///
+    /// # Errors
+    /// [`ReportError::Camera`] for settings that make no picture.
+    pub fn rays(&self) -> Result<impl Fn(f64, f64) -> Vec3 + Send + Sync + use<>, ReportError> {
+        let (camera, axes) = (*self, self.axes()?);
+        Ok(move |x, y| camera.direction(&axes, x, y))
+    }
+
     /// Unit direction of the ray through the picture at column `x`, row `y` from the upper left, in pixels.
     pub(crate) fn direction(&self, axes: &Axes, x: f64, y: f64) -> Vec3 {
         let (x, y) = (2.0 * x / f64::from(self.width) - 1.0, 1.0 - 2.0 * y / f64::from(self.height));

@@ -35,28 +35,57 @@ pub(crate) fn numbers(out: &mut dyn Write, values: impl IntoIterator<Item = f64>
     values.into_iter().try_for_each(|value| write!(out, ",{}", Number(value)))
 }
 
+/// A row that was read.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Row {
+    /// The line on which it begins, from 1.
+    pub(crate) line: usize,
+    pub(crate) fields: Vec<String>,
+}
+
+/// Splits a table into rows of fields by the grammar of RFC 4180. Empty lines are left out; a
+/// carriage return before a line feed is no part of a field. `None` where a quote is not closed.
+pub(crate) fn rows(text: &str) -> Option<Vec<Row>> {
+    let (mut rows, mut line, mut begun) = (Vec::new(), 1, 1);
+    let (mut fields, mut field) = (Vec::new(), String::new());
+    let (mut inside, mut chars) = (false, text.chars().peekable());
+    let mut end = |fields: &mut Vec<String>, mut field: String, line: usize| {
+        if field.ends_with('\r') {
+            field.pop();
+        }
+        fields.push(field);
+        let fields = std::mem::take(fields);
+        if fields.len() > 1 || !fields[0].is_empty() {
+            rows.push(Row { line, fields });
+        }
+    };
+    while let Some(c) = chars.next() {
+        line += usize::from(c == '\n');
+        match c {
+            '"' if inside && chars.peek() == Some(&'"') => field.extend(chars.next()),
+            '"' => inside = !inside,
+            ',' if !inside => fields.push(std::mem::take(&mut field)),
+            '\n' if !inside => {
+                end(&mut fields, std::mem::take(&mut field), begun);
+                begun = line;
+            }
+            c => field.push(c),
+        }
+    }
+    if !field.is_empty() || !fields.is_empty() {
+        end(&mut fields, field, begun);
+    }
+    (!inside).then_some(rows)
+}
+
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
 
-    /// Splits a table into rows of fields by the grammar of RFC 4180.
+    /// The fields of all rows of a table that ends in a line feed.
     pub(crate) fn parse(text: &str) -> Vec<Vec<String>> {
-        let (mut rows, mut row, mut field) = (Vec::new(), Vec::new(), String::new());
-        let (mut inside, mut chars) = (false, text.chars().peekable());
-        while let Some(c) = chars.next() {
-            match c {
-                '"' if inside && chars.peek() == Some(&'"') => field.extend(chars.next()),
-                '"' => inside = !inside,
-                ',' if !inside => row.push(std::mem::take(&mut field)),
-                '\n' if !inside => {
-                    row.push(std::mem::take(&mut field));
-                    rows.push(std::mem::take(&mut row));
-                }
-                c => field.push(c),
-            }
-        }
-        assert!(field.is_empty() && row.is_empty(), "the last row must end in a line feed");
-        rows
+        assert!(text.ends_with('\n'), "the last row must end in a line feed");
+        rows(text).unwrap().into_iter().map(|row| row.fields).collect()
     }
 
     /// The numbers of one row, from column `first` on.

@@ -1,7 +1,7 @@
 //! What can go wrong when results are written or read.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
@@ -103,4 +103,21 @@ pub enum ReportError {
         /// Format that this version reads.
         expected: &'static str,
     },
+    /// A file of values that cannot be used.
+    #[error("{}: {what}\n  help: {help}", place(path, *line))]
+    Values {
+        /// File.
+        path: PathBuf,
+        /// Line, from 1, where there is one.
+        line: Option<usize>,
+        /// What is wrong.
+        what: String,
+        /// How to mend it.
+        help: String,
+    },
+}
+
+/// A file, and a line of it.
+fn place(path: &Path, line: Option<usize>) -> String {
+    line.map_or_else(|| path.display().to_string(), |line| format!("{}:{line}", path.display()))
 }

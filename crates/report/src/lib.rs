@@ -45,6 +45,7 @@ mod folder;
 mod hierarchy;
 mod html;
 mod interpolate;
+mod judgement;
 mod mean;
 mod names;
 mod nodal;
@@ -91,7 +92,15 @@ pub use html::{
     ElementPhasors, ElementValues, FieldStep, ReportAxis, ReportBadge, ReportCell, ReportColumn, ReportModel,
     ReportPage, ReportPlot, ReportSeries, ReportTable, WaveReport, current_phasors, face_scores,
 };
+<<<<<<< HEAD
 pub use names::{CHECKPOINT, PIXELS, TRACE_STATE, WAVE_FILES};
+=======
+pub use judgement::{
+    JUDGE_FILES, JUDGE_FORMAT, JudgeRecord, JudgedPlace, Measured, PictureShape, ReferenceFaces,
+    ReferenceValues, read_measured_faces, read_measured_pixels, read_reference_faces, read_reference_pixels,
+    read_reference_record, write_judgement,
+};
+>>>>>>> cd71ea0 (Pixels of the camera among reference values; fredholm judge judges other tracers by them)
 pub use npz::write_npz;
 pub use outputs::{
     EXTRAS, Extras, FIELD_GLB, FIELD_PLY, FILES, IMAGE, REPORT, RunReport, View, write_all, write_with,
@@ -117,9 +126,10 @@ pub use spectrum::{
 };
 pub use stochastic::{
     COMPONENTS, CROSSCHECK_FILES, CROSSCHECK_FORMAT, CrosscheckPower, CrosscheckRecord, CrosscheckRow,
-    FaceEstimates, FieldScore, Pixels, REFERENCE_FILES, REFERENCE_FORMAT, ReferenceRecord, ReferenceTable,
-    SampledField, WorstPlace, score_map, write_crosscheck, write_crosscheck_csv, write_face_estimates,
-    write_field_crosscheck, write_reference, write_sampled_fields, write_score_histogram,
+    FaceEstimates, FieldScore, Pixels, REFERENCE_FILES, REFERENCE_FORMAT, ReferencePixels, ReferenceRecord,
+    ReferenceTable, SampledField, WorstPlace, score_map, write_crosscheck, write_crosscheck_csv,
+    write_face_estimates, write_field_crosscheck, write_reference, write_sampled_fields,
+    write_score_histogram,
 };
 pub use surfaces_csv::write_surfaces_csv;
 pub use tone::Exposure;

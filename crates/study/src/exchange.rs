@@ -3,8 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use fredholm_linop::Watch;
+<<<<<<< HEAD
 use fredholm_report::ResultFolder;
+=======
+use fredholm_mesh::{Mesh, Vec3};
+use fredholm_report::write_atomically;
+>>>>>>> cd71ea0 (Pixels of the camera among reference values; fredholm judge judges other tracers by them)
 use fredholm_scene::{Camera, ExportFormat, Exported, Outline, Scene};
+use fredholm_visibility::Occluders;
 
 use crate::check::framing;
 use crate::error::{Error, ErrorKind};
@@ -27,8 +33,16 @@ pub struct Written {
     pub polygons: usize,
 }
 
+/// Cosine below which a surface is seen edge-on.
+const EDGE_ON: f64 = 1e-9;
+/// Share of the way to the target by which the eye stands before a wall that it was moved through.
+const BEFORE: f64 = 0.02;
+/// Vertical field of view of an eye inside a room, degrees.
+const WIDE: f64 = 75.0;
+
 /// Writes a scene in the format of another program: geometry, diffuse reflectances, emitters and the
-/// camera, which takes in the whole scene where the scene has none. `band` is the band that stands
+/// camera. Where the scene has none, it takes in the whole scene; an eye that would see a wall from
+/// behind is moved through it. `band` is the band that stands
 /// for grey, for a scene whose bands are no colours.
 ///
 /// # Errors
@@ -48,13 +62,43 @@ pub fn export(
 /// The scene as others read it, with a camera.
 pub(crate) fn outline(scene: &Scene, band: Option<&str>) -> Result<Outline, Error> {
     let mut outline = scene.outline(band).map_err(scene_failure)?;
-    if outline.camera.is_none() {
-        let fredholm_report::Camera { eye, target, up, vertical_fov_degrees, width, height } =
-            framing(scene)?;
-        let exposure = None;
-        outline.camera = Some(Camera { eye, target, up, vertical_fov_degrees, width, height, exposure });
-    }
+    outline.camera = Some(camera(scene)?);
     Ok(outline)
+}
+
+/// The camera of a scene; where it has none, one that takes in the whole scene. Other programs show
+/// the backs of walls, which the pictures here leave out, so that an eye is moved through those that
+/// stand before what is to be seen.
+pub(crate) fn camera(scene: &Scene) -> Result<Camera, Error> {
+    let camera = scene.camera().copied().map_or_else(|| whole(scene), Ok)?;
+    let mesh = scene.face_mesh().map_err(scene_failure)?;
+    Ok(match before_backs(&mesh, camera.eye, camera.target)? {
+        Some(eye) => Camera { eye, vertical_fov_degrees: WIDE, ..camera },
+        None => camera,
+    })
+}
+
+/// A camera that takes in the whole scene.
+fn whole(scene: &Scene) -> Result<Camera, Error> {
+    let fredholm_report::Camera { eye, target, up, vertical_fov_degrees, width, height } = framing(scene)?;
+    Ok(Camera { eye, target, up, vertical_fov_degrees, width, height, exposure: None })
+}
+
+/// Where an eye stands that has gone through all walls that it sees from behind on its way to the
+/// target; none where there are none.
+fn before_backs(mesh: &Mesh, eye: Vec3, target: Vec3) -> Result<Option<Vec3>, Error> {
+    let pieces = mesh.occluders();
+    let occluders = Occluders::new(pieces).map_err(|error| Error::new(ErrorKind::Input, error))?;
+    let (way, mut last) = ((target - eye).normalize_or_zero(), None);
+    loop {
+        let from: Vec3 = last.unwrap_or(eye);
+        let hit = occluders.closest(from, way, (target - from).length());
+        let back = hit.filter(|hit| pieces[hit.patch].normal().dot(way) > EDGE_ON);
+        match back {
+            Some(hit) => last = Some(hit.point),
+            None => return Ok(last.map(|wall| wall + (target - wall) * BEFORE)),
+        }
+    }
 }
 
 /// Writes the files of a format into a folder.

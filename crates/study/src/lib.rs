@@ -15,6 +15,7 @@
 //! | estimates by random paths | [`trace`] |
 //! | whether a solution and random paths agree | [`crosscheck`] |
 //! | reference values for other programs | [`reference()`] |
+//! | whether another tracer agrees with such values | [`judge()`] |
 //! | a scene for other programs, a mesh in another format | [`export`], [`convert`] |
 //!
 //! Options are structs with defaults: what is not asked for is as the scene says, else as usual.
@@ -36,6 +37,7 @@ mod error;
 mod exchange;
 mod folder;
 mod hierarchical;
+mod judge;
 mod memory;
 mod mesh_error;
 mod options;
@@ -76,6 +78,7 @@ pub use fredholm_linop::{Quiet, Watch};
 pub use fredholm_mesh::Vec3;
 pub use fredholm_report::{ResultFolder, WAVE_FILES};
 pub use fredholm_scene::ExportFormat;
+pub use judge::{JudgeOptions, judge};
 pub use memory::{
     Limit as MemoryLimit, Plan as MemoryPlan, addresses_are_limited, less_than_asked, peak as peak_memory,
 };

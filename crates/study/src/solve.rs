@@ -452,7 +452,7 @@ fn quick(view: View) -> View {
 
 pub(crate) fn report_failure(error: ReportError) -> Error {
     let ending = match error {
-        ReportError::Write { .. } => ErrorKind::Files,
+        ReportError::Write { .. } | ReportError::Read { .. } => ErrorKind::Files,
         ReportError::NotFinite { .. } => ErrorKind::NotConverged,
         _ => ErrorKind::Input,
     };

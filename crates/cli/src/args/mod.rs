@@ -3,6 +3,7 @@
 mod compare;
 mod crosscheck;
 mod exchange;
+mod judge;
 mod paths;
 mod reference;
 mod resume;
@@ -29,6 +30,7 @@ use crate::start::recorded;
 pub(crate) use compare::CompareArgs;
 pub(crate) use crosscheck::CrosscheckArgs;
 pub(crate) use exchange::{ConvertArgs, ExportArgs};
+pub(crate) use judge::JudgeArgs;
 pub(crate) use reference::ReferenceArgs;
 pub(crate) use resume::ResumeArgs;
 pub(crate) use shoot::ShootArgs;
@@ -49,7 +51,7 @@ Exit codes:
   3    not converged; the results are written all the same
   4    resources refused, such as memory
   5    a file could not be read or written, those that the scene names included
-  6    two solutions disagree
+  6    two solutions disagree, or a tracer with the reference
   130  interrupted";
 
 const SOLVE_EXAMPLES: &str = "\
@@ -181,6 +183,9 @@ pub(crate) enum Command {
     /// Write reference values with stated errors, to check other tracers with
     #[command(after_help = reference::EXAMPLES)]
     Reference(ReferenceArgs),
+    /// Judge what another tracer has found by reference values
+    #[command(after_help = judge::EXAMPLES)]
+    Judge(JudgeArgs),
     /// Write a scene for another program: Mitsuba, pbrt, Radiance, Gmsh, or as a mesh
     #[command(after_help = exchange::EXPORT_EXAMPLES)]
     Export(ExportArgs),
@@ -223,6 +228,7 @@ impl Command {
             Self::Trace(args) => args.log.log,
             Self::Crosscheck(args) => args.log.log,
             Self::Reference(args) => args.log.log,
+            Self::Judge(args) => args.log.log,
             Self::Export(args) => args.log.log,
             Self::Convert(args) => args.log.log,
             _ => LogFormat::Plain,

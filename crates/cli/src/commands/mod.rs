@@ -8,6 +8,7 @@ mod crosscheck;
 mod discretisations;
 mod exchange;
 mod info;
+mod judge;
 mod reference;
 mod resume;
 mod schema;
@@ -41,6 +42,7 @@ pub(crate) fn execute(command: &Command) -> Result<Ending, Error> {
         Command::Trace(args) => trace::trace(args),
         Command::Crosscheck(args) => crosscheck::crosscheck(args),
         Command::Reference(args) => reference::reference(args),
+        Command::Judge(args) => judge::judge(args),
         Command::Export(args) => exchange::export(args),
         Command::Convert(args) => exchange::convert(args),
         Command::View(args) => view::view(args),

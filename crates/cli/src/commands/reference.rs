@@ -19,6 +19,14 @@ pub(crate) fn reference(args: &ReferenceArgs) -> Result<Ending, Error> {
             let mut lines = Lines::default();
             lines.add("values", format!("{faces} faces, {} bands", record.bands.len()));
             lines.add("stated error", format!("{:.3} % (RMS over faces)", 100.0 * record.relative_error));
+            let seen = &record.pixels;
+            let picture = format!(
+                "{} × {} pixels, {:.3} % (RMS)",
+                seen.width,
+                seen.height,
+                100.0 * seen.relative_error
+            );
+            lines.add("picture", picture);
             lines.add("time", times(&record.timings));
             output::print(&lines.under(&format!("{} → {}", record.scene, folder.path().display())))?;
         }

@@ -174,7 +174,7 @@ pub fn write_crosscheck(
     Ok(vec![table, histogram, drawn, folder.write(last, |out| json(record, out))?])
 }
 
-pub(super) fn json(record: &impl Serialize, out: &mut dyn Write) -> io::Result<()> {
+pub(crate) fn json(record: &impl Serialize, out: &mut dyn Write) -> io::Result<()> {
     serde_json::to_writer_pretty(&mut *out, record)?;
     writeln!(out)
 }

@@ -21,13 +21,15 @@ pub fn score_map(mesh: &Mesh, scores: &[f64], camera: Option<&Camera>) -> Result
         return Err(ReportError::Length { what: "the scores of faces", expected, found });
     }
     let bands = ["r", "g", "b"].map(str::to_owned);
-    let colours: Vec<f64> = (0..mesh.len()).flat_map(|leaf| colour(scores[mesh.face_of(leaf)])).collect();
+    let colours: Vec<f64> =
+        (0..mesh.len()).flat_map(|leaf| score_colour(scores[mesh.face_of(leaf)])).collect();
     let field = Field::new(mesh, &bands, &colours, &colours)?;
     let camera = camera.copied().unwrap_or_else(|| Camera::framing(&field));
     render(&field, &camera, Exposure::Fixed(1.0))
 }
 
-fn colour(z: f64) -> [f64; 3] {
+/// The linear colour of a score.
+pub(crate) fn score_colour(z: f64) -> [f64; 3] {
     let share = (z / FULL).clamp(-1.0, 1.0);
     let faded = BRIGHT * (1.0 - share.abs());
     if share > 0.0 { [BRIGHT, faded, faded] } else { [faded, faded, BRIGHT] }

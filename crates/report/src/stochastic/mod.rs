@@ -9,6 +9,7 @@ mod map;
 mod pixels;
 mod reference;
 
+pub(crate) use crosscheck::json;
 pub use crosscheck::{
     CROSSCHECK_FILES, CROSSCHECK_FORMAT, CrosscheckPower, CrosscheckRecord, CrosscheckRow, WorstPlace,
     write_crosscheck, write_crosscheck_csv,
@@ -17,6 +18,9 @@ pub use faces::{FaceEstimates, write_face_estimates};
 pub use field_scores::{COMPONENTS, FieldScore, write_field_crosscheck};
 pub use fields::{SampledField, write_sampled_fields};
 pub use histogram::write_score_histogram;
+pub(crate) use map::score_colour;
 pub use map::score_map;
 pub use pixels::Pixels;
-pub use reference::{REFERENCE_FILES, REFERENCE_FORMAT, ReferenceRecord, ReferenceTable, write_reference};
+pub use reference::{
+    REFERENCE_FILES, REFERENCE_FORMAT, ReferencePixels, ReferenceRecord, ReferenceTable, write_reference,
+};

@@ -67,7 +67,7 @@ impl Pixels {
         if reflecting.is_empty() { of(true) } else { reflecting }
     }
 
-    fn check(&self, bands: usize) -> Result<(), ReportError> {
+    pub(super) fn check(&self, bands: usize) -> Result<(), ReportError> {
         let pixels = self.width as usize * self.height as usize;
         let lengths = [
             ("the radiosity of pixels", pixels * bands, self.radiosity.len()),

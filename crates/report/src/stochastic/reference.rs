@@ -1,5 +1,6 @@
 //! A bundle of reference values with stated errors, for checking other tracers. `reference.json` is written last.
 //!
+//! `pixels.npz`: the pixels of the camera ([`Pixels`](super::Pixels)); their radiance is the radiosity over π.
 //! `reference.csv`: a row a face, `face, surface, cx, cy, cz, area`, then band by band `E_BAND` (mean irradiance over the whole face, W/m²), `E_error_BAND` (one standard deviation, all
 //! known errors together), `E_deterministic_BAND`, `B_BAND` (radiosity, M + ρ E), `rho_BAND` and `M_BAND`.
 //! `patches.obj`: the outlines, an object a surface, a group a face; lit on the side from which corners run counter-clockwise.
@@ -8,8 +9,9 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 
 use fredholm_mesh::Mesh;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
+use super::Pixels;
 use super::crosscheck::json;
 use super::faces::{COLUMNS, place};
 use crate::csv::{header, numbers};
@@ -17,9 +19,9 @@ use crate::number::Number;
 use crate::{ReportError, ResultFolder, Timing};
 
 /// Names of the files, in the order in which they are written.
-pub const REFERENCE_FILES: [&str; 3] = ["reference.csv", "patches.obj", "reference.json"];
+pub const REFERENCE_FILES: [&str; 4] = ["reference.csv", "patches.obj", "pixels.npz", "reference.json"];
 /// Name and version of the format of the record.
-pub const REFERENCE_FORMAT: &str = "fredholm-reference-1";
+pub const REFERENCE_FORMAT: &str = "fredholm-reference-2";
 
 /// Values of every face and band, face-major.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,8 +38,35 @@ pub struct ReferenceTable {
     pub exitance: Vec<f64>,
 }
 
+/// The camera whose pixels are known, and how they were sampled. A sample is at an even place of its
+/// pixel (a box filter).
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ReferencePixels {
+    /// Where the eye stands, m.
+    pub eye: [f64; 3],
+    /// The point in the middle of the picture, m.
+    pub target: [f64; 3],
+    /// Direction that is up in the picture.
+    pub up: [f64; 3],
+    /// Field of view from the lower to the upper edge, degrees.
+    pub vertical_fov_degrees: f64,
+    /// Pixels in a row.
+    pub width: u32,
+    /// Rows of pixels, from the top.
+    pub height: u32,
+    /// Whether the scene has no camera, or one that stands behind a wall, so that one was chosen.
+    pub chosen: bool,
+    /// Batches of samples of a pixel.
+    pub batches: u32,
+    /// Samples of a batch.
+    pub samples: u32,
+    /// Standard error over the value, RMS over the pixels and bands that are not black.
+    pub relative_error: f64,
+}
+
 /// What made the values.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct ReferenceRecord {
     /// Format of the record: [`REFERENCE_FORMAT`].
     pub format: String,
@@ -61,6 +90,8 @@ pub struct ReferenceRecord {
     pub seed: u64,
     /// Batches.
     pub batches: u64,
+    /// The camera and its pixels.
+    pub pixels: ReferencePixels,
     /// Wall-clock time of each stage.
     pub timings: Vec<Timing>,
 }
@@ -72,7 +103,7 @@ pub struct ReferenceRecord {
 pub fn write_reference(
     folder: &ResultFolder,
     mesh: &Mesh,
-    table: &ReferenceTable,
+    (table, pixels): (&ReferenceTable, &Pixels),
     record: &ReferenceRecord,
 ) -> Result<Vec<PathBuf>, ReportError> {
     let (expected, found) = (mesh.faces().len() * record.bands.len(), table.irradiance.len());
@@ -81,12 +112,23 @@ pub fn write_reference(
     if columns.iter().any(|column| column.len() != expected) {
         return Err(ReportError::Length { what: "the reference table", expected, found });
     }
+<<<<<<< HEAD
     let [values, patches, last] = REFERENCE_FILES;
     Ok(vec![
         folder.write(values, |out| csv(mesh, table, &record.bands, out))?,
         folder.write(patches, |out| obj(mesh, out))?,
         folder.write(last, |out| json(record, out))?,
     ])
+=======
+    let paths = REFERENCE_FILES.map(|name| folder.join(name));
+    pixels.check(record.bands.len())?;
+    prepare(folder, &paths[3])?;
+    write_atomically(&paths[0], |out| csv(mesh, table, &record.bands, out))?;
+    write_atomically(&paths[1], |out| obj(mesh, out))?;
+    write_atomically(&paths[2], |out| pixels.write_npz(out))?;
+    write_atomically(&paths[3], |out| json(record, out))?;
+    Ok(paths.to_vec())
+>>>>>>> cd71ea0 (Pixels of the camera among reference values; fredholm judge judges other tracers by them)
 }
 
 fn csv(mesh: &Mesh, table: &ReferenceTable, bands: &[String], out: &mut dyn Write) -> io::Result<()> {

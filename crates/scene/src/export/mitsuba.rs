@@ -13,10 +13,14 @@ pub(super) fn export(outline: &Outline, stem: &str) -> Exported {
     let mut notes =
         vec!["Mitsuba computes in f32: coordinates and colours are rounded to 7 digits".to_owned()];
     let mut text = "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<scene version=\"3.0.0\">\n".to_owned();
-    text.push_str("  <default name=\"spp\" value=\"256\"/>\n  <integrator type=\"path\">\n");
-    text.push_str("    <integer name=\"max_depth\" value=\"-1\"/>\n    <integer name=\"rr_depth\" value=\"1000\"/>\n  </integrator>\n");
-    text.push_str(&outline.camera.as_ref().map(sensor).unwrap_or_default());
     // Writing to a string cannot fail.
+    // Paths have no bound; from rr_depth on they end by chance, which has no bias.
+    for (name, value) in [("spp", 256), ("max_depth", -1), ("rr_depth", 8)] {
+        let _ = writeln!(text, "  <default name=\"{name}\" value=\"{value}\"/>");
+    }
+    text.push_str("  <integrator type=\"path\">\n    <integer name=\"max_depth\" value=\"$max_depth\"/>\n");
+    text.push_str("    <integer name=\"rr_depth\" value=\"$rr_depth\"/>\n  </integrator>\n");
+    text.push_str(&outline.camera.as_ref().map(sensor).unwrap_or_default());
     for (material, id) in outline.materials.iter().zip(&materials) {
         let _ = writeln!(text, "  {}", bsdf(material, &format!(" id=\"{}\"", escaped(id))));
     }

@@ -1,8 +1,8 @@
 //! A scene solved and traced, and the statistics that decide whether the two agree.
 
 mod fields;
-mod places;
-mod record;
+pub(crate) mod places;
+pub(crate) mod record;
 
 use fredholm_linop::Watch;
 use fredholm_montecarlo::light::{Estimator, estimator};
@@ -86,7 +86,7 @@ pub enum MultipleTests {
 }
 
 impl MultipleTests {
-    fn correction(self) -> Correction {
+    pub(crate) fn correction(self) -> Correction {
         match self {
             Self::Holm => Correction::Holm,
             Self::BenjaminiHochberg => Correction::BenjaminiHochberg,
@@ -180,7 +180,7 @@ fn run(
     Ok((record, verdict))
 }
 
-fn verdict(found: &Crosscheck, power: &Power) -> Verdict {
+pub(crate) fn verdict(found: &Crosscheck, power: &Power) -> Verdict {
     match (found.agrees(), power.suffices()) {
         (false, _) => Verdict::Disagree,
         (true, true) => Verdict::Agree,
@@ -231,7 +231,7 @@ fn errors(
 
 /// The smallest deviations that would have been found nine times out of ten, over the irradiance,
 /// in the worst band.
-pub(super) struct Power {
+pub(crate) struct Power {
     whole: f64,
     /// Medians.
     surface: f64,
@@ -239,7 +239,7 @@ pub(super) struct Power {
 }
 
 impl Power {
-    fn new(places: &Places, values: &[f64], found: &Crosscheck) -> Self {
+    pub(crate) fn new(places: &Places, values: &[f64], found: &Crosscheck) -> Self {
         let of = |kind: fn(places::Place) -> bool| -> Vec<f64> {
             let own = found.places.iter().filter(|place| kind(places.at(place.index).0));
             // What is dark on both sides has nothing to deviate from.

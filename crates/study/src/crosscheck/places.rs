@@ -14,7 +14,8 @@ use crate::problem::Problem;
 use crate::stochastic::failure;
 
 /// Faces, then surfaces, then the whole, each with its bands.
-pub(super) struct Places {
+#[derive(Clone, Debug)]
+pub(crate) struct Places {
     bands: usize,
     surface_of: Vec<usize>,
     /// m².
@@ -24,7 +25,7 @@ pub(super) struct Places {
 
 /// A place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Place {
+pub(crate) enum Place {
     Face(usize),
     Surface(usize),
     Whole,
@@ -32,13 +33,15 @@ pub(super) enum Place {
 
 impl Places {
     pub(super) fn new(problem: &Problem) -> Self {
-        let mesh = &problem.mesh;
-        Self {
-            bands: problem.scene.bands().len(),
-            surface_of: mesh.faces().iter().map(|face| face.surface).collect(),
-            areas: mesh.faces().iter().map(|face| face.area).collect(),
-            surfaces: mesh.surfaces().len(),
-        }
+        let (mesh, bands) = (&problem.mesh, problem.scene.bands().len());
+        let surface_of = mesh.faces().iter().map(|face| face.surface).collect();
+        let areas = mesh.faces().iter().map(|face| face.area).collect();
+        Self { bands, surface_of, areas, surfaces: mesh.surfaces().len() }
+    }
+
+    /// Places of these areas (of any unit), each on one of so many surfaces.
+    pub(crate) fn of(bands: usize, (surface_of, surfaces): (Vec<usize>, usize), areas: Vec<f64>) -> Self {
+        Self { bands, surface_of, areas, surfaces }
     }
 
     /// The same groups of the elements that are traced, whose faces are the same.
@@ -57,12 +60,12 @@ impl Places {
     }
 
     /// Numbers of faces and bands: what stands before surfaces and the whole.
-    pub(super) fn of_faces(&self) -> usize {
+    pub(crate) fn of_faces(&self) -> usize {
         self.faces() * self.bands
     }
 
     /// Place and band of a number.
-    pub(super) fn at(&self, index: usize) -> (Place, usize) {
+    pub(crate) fn at(&self, index: usize) -> (Place, usize) {
         let (number, band) = (index / self.bands, index % self.bands);
         let place = match number.checked_sub(self.faces()) {
             None => Place::Face(number),
@@ -73,13 +76,30 @@ impl Places {
     }
 
     /// Values of faces, followed by their means over surfaces and the whole.
-    pub(super) fn means(&self, faces: &[f64]) -> Vec<f64> {
+    pub(crate) fn means(&self, faces: &[f64]) -> Vec<f64> {
         self.followed(faces, |x| x, |x| x)
     }
 
     /// Errors of faces, followed by their root mean squares.
-    pub(super) fn root_mean_squares(&self, faces: &[f64]) -> Vec<f64> {
+    pub(crate) fn root_mean_squares(&self, faces: &[f64]) -> Vec<f64> {
         self.followed(faces, |x| x * x, f64::sqrt)
+    }
+
+    /// Errors of faces that have nothing to do with each other, followed by those of the means:
+    /// √(Σ A² δ²)/Σ A.
+    pub(crate) fn independent(&self, faces: &[f64]) -> Vec<f64> {
+        let of = |face: usize| self.areas[face];
+        let weighed: Vec<f64> =
+            faces.iter().enumerate().map(|(at, error)| error * of(at / self.bands).sqrt()).collect();
+        let roots = self.root_mean_squares(&weighed);
+        let areas = self.all_areas();
+        let mean = |(at, root): (usize, &f64)| match areas[at / self.bands] {
+            area if at >= faces.len() && area > 0.0 => root / area.sqrt(),
+            _ => *root,
+        };
+        let mut errors: Vec<f64> = roots.iter().enumerate().map(mean).collect();
+        errors[..faces.len()].copy_from_slice(faces);
+        errors
     }
 
     /// What one path brings, W/m²: the emitted power of the band over all paths. Nothing is known
@@ -143,5 +163,25 @@ impl Places {
             if area > 0.0 { back(sum / area) } else { 0.0 }
         };
         faces.iter().copied().chain(sums.iter().enumerate().map(mean)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_of_means_are_those_of_independent_or_of_common_errors() {
+        let places = Places::of(1, (vec![0, 0, 1], 2), vec![1.0, 3.0, 4.0]);
+        let (errors, close) = ([0.4, 0.2, 0.1], |a: &[f64], b: [f64; 6]| {
+            a.len() == 6 && a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-15)
+        });
+        // √(0.4² + (3 × 0.2)²)/4, 0.1, and √(0.4² + (3 × 0.2)² + (4 × 0.1)²)/8.
+        let [first, whole] = [0.52_f64.sqrt() / 4.0, 0.68_f64.sqrt() / 8.0];
+        assert!(close(&places.independent(&errors), [0.4, 0.2, 0.1, first, 0.1, whole]));
+        // √((0.4² + 3 × 0.2²)/4), and √((0.4² + 3 × 0.2² + 4 × 0.1²)/8).
+        let [first, whole] = [0.07_f64.sqrt(), 0.04_f64.sqrt()];
+        assert!(close(&places.root_mean_squares(&errors), [0.4, 0.2, 0.1, first, 0.1, whole]));
+        assert!(close(&places.means(&[8.0, 4.0, 1.0]), [8.0, 4.0, 1.0, 5.0, 1.0, 3.0]));
     }
 }

@@ -10,7 +10,7 @@ use crate::problem::Problem;
 use crate::stages::Stages;
 
 /// Places that are named.
-pub(super) const WORST: usize = 5;
+pub(crate) const WORST: usize = 5;
 
 /// What the comparison came to.
 pub(super) fn record(
@@ -48,7 +48,7 @@ pub(super) fn record(
 }
 
 impl Power {
-    fn record(&self) -> CrosscheckPower {
+    pub(crate) fn record(&self) -> CrosscheckPower {
         let known = |part: f64| part.is_finite().then_some(part);
         CrosscheckPower { whole: known(self.whole), surface: known(self.surface), face: known(self.face) }
     }

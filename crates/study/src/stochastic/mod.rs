@@ -3,10 +3,12 @@
 mod fields;
 mod ground;
 mod options;
+mod pixels;
 mod tracer;
 
 pub use fields::FIELD_METHODS;
 pub(crate) use fields::{FieldPoint, FieldRun, field_points};
 pub(crate) use ground::{Drawn, Ground, control, enclosure, expected_error, face_means, faces, with_tracing};
 pub use options::{PathOptions, SamplePoints, TraceStop};
+pub(crate) use pixels::PixelTracer;
 pub(crate) use tracer::{Tracer, failure};

@@ -115,7 +115,7 @@ fn run(
     let origin = Origin::new(asked, ground.scene.sha256(), 0);
     let (state, reason) = traced((source, asked), folder, (&ground, &scene, &origin), &stop, stages)?;
     let estimates = Estimates::new(&ground, &state);
-    let tracer = picture::Tracer::new(asked, &ground, &scene, &estimates.view()?.camera)?;
+    let tracer = picture::tracer(asked, &ground, &scene, &estimates.view()?.camera)?;
     let watch = stages.watch;
     let pixels = match tracer {
         Some(tracer) if !stages.is_cancelled() => stages.run("picture", || Ok(tracer.trace(watch)))?,

@@ -1,0 +1,269 @@
+//! Reference values with stated errors, to check other tracers with.
+
+use std::path::Path;
+
+use fredholm_linop::Watch;
+use fredholm_montecarlo::light::PathTracing;
+use fredholm_montecarlo::light::pixels::PixelSampling;
+use fredholm_montecarlo::{Enclosure, State};
+use fredholm_report::{
+    Pixels, REFERENCE_FORMAT, ReferencePixels, ReferenceRecord, ReferenceTable, write_atomically,
+    write_reference,
+};
+use fredholm_scene::{Camera, ExportFormat, Scene};
+
+use crate::error::{Error, ErrorKind};
+use crate::exchange::{camera, outline, write};
+use crate::options::{ProblemOptions, SceneSource, SolveSettings, StopOptions};
+use crate::problem::{Problem, with_results};
+use crate::solution::{Solution, compute};
+use crate::solve::{report_failure, view_camera};
+use crate::stages::Stages;
+use crate::stochastic::{
+    PathOptions, PixelTracer, TraceStop, Tracer, control, enclosure, expected_error, face_means, faces,
+    with_tracing,
+};
+
+/// The script that renders the scene with Mitsuba and judges it, and its name.
+const JUDGE_MITSUBA: &str = include_str!("judge_mitsuba.py");
+const SCRIPT: &str = "judge_mitsuba.py";
+/// Error that is asked for where nothing is.
+const ERROR: f64 = 0.002;
+/// Error of a row of form factors where neither the caller nor the scene asks for one: small beside
+/// what is compared.
+const FORM_FACTORS: f64 = 1e-5;
+
+/// Longer side of the picture where no size is asked for, pixels: the error of every pixel is to be
+/// small, which takes many samples.
+const SIDE: u32 = 64;
+/// Largest side that may be asked for, pixels.
+const LARGEST: u32 = 4096;
+/// Samples of a pixel where nothing is asked for.
+const SAMPLES: u32 = 1024;
+/// Batches of a pixel: so many that its standard error is well known, of at least so many samples
+/// that they share out the pixel.
+const BATCHES: u32 = 128;
+const BATCH: u32 = 16;
+/// Bytes of a pixel and of each of its bands, in memory and in the file.
+const PIXEL: u128 = 18;
+const BAND: u128 = 32;
+
+/// What is asked of [`reference()`].
+#[derive(Clone, Debug, Default)]
+pub struct ReferenceOptions {
+    /// Width and height of the picture, pixels, each from 1 to 4096. None: the camera's, its longer
+    /// side no more than 64.
+    pub size: Option<[u32; 2]>,
+    /// Samples of each pixel, at least. None: 1024.
+    pub spp: Option<u32>,
+    /// How paths are made.
+    pub paths: PathOptions,
+    /// When tracing ends; without anything at a standard error of 0.2 %.
+    pub stop: TraceStop,
+    /// What decides the size and the effort; form factors are computed to 1e-5 where nothing is
+    /// said.
+    pub problem: ProblemOptions,
+}
+
+/// Reference values, which are written.
+#[derive(Clone, Debug)]
+pub struct References {
+    /// The record of the run.
+    pub record: ReferenceRecord,
+    /// Number of faces.
+    pub faces: usize,
+}
+
+/// Solves a scene, traces it with the solution as control variate, and writes the irradiance of
+/// every face and the radiosity of every pixel with their stated errors into a folder, with the scene
+/// for Mitsuba 3 and pbrt-v4 where its bands are colours or grey, and a script that judges Mitsuba.
+///
+/// The camera is that of the scene; without one it takes in the whole scene. An eye that would see a
+/// wall from behind is moved through it.
+///
+/// # Errors
+/// What is wrong with the scene or the options; [`Resources`](crate::ErrorKind::Resources) before
+/// memory is taken that the limit does not allow; [`Interrupted`](crate::ErrorKind::Interrupted)
+/// for a run that was cancelled.
+pub fn reference(
+    source: impl Into<SceneSource>,
+    asked: &ReferenceOptions,
+    folder: impl AsRef<Path>,
+    watch: &dyn Watch,
+) -> Result<References, Error> {
+    let mut stages = Stages::new(watch).part("reference");
+    let (problem, settings) = load(&source.into(), asked, &mut stages)?;
+    let camera = sized(camera(&problem.scene)?, asked.size)?;
+    let solution = compute(&problem, &settings, &mut stages)?;
+    let scene = enclosure(&problem.scene, &problem.mesh)?;
+    let state = traced(asked, &problem, (&scene, &solution), &mut stages)?;
+    let sampling = sampling(asked);
+    let pixels = pictured(asked, &scene, (&camera, sampling), &mut stages)?;
+    let table = table(&problem, &solution, &state);
+    let chosen = problem.scene.camera().is_none_or(|own| own.eye != camera.eye);
+    let seen = seen(&camera, chosen, sampling, &pixels);
+    if pixels.covered.iter().all(|&share| share == 0.0) {
+        stages.watch.warn("the camera sees no lit side of any surface: all pixels are black");
+    }
+    let record = record(&problem, &table, (&state, seen), &stages);
+    scenes(&problem, &camera, folder.as_ref())?;
+    write_reference(folder.as_ref(), &problem.mesh, (&table, &pixels), &record).map_err(report_failure)?;
+    Ok(References { record, faces: problem.mesh.faces().len() })
+}
+
+/// The camera with a picture of the size asked for, or else of a longer side that is not too long.
+fn sized(camera: Camera, asked: Option<[u32; 2]>) -> Result<Camera, Error> {
+    let longer = camera.width.max(camera.height).max(1);
+    let less = |side: u32| {
+        let scaled = f64::from(side) * f64::from(SIDE.min(longer)) / f64::from(longer);
+        (scaled.round() as u32).max(1)
+    };
+    let [width, height] = asked.unwrap_or([less(camera.width), less(camera.height)]);
+    if ![width, height].iter().all(|side| (1..=LARGEST).contains(side)) {
+        let text = format!("a picture of {width} × {height} pixels is asked for");
+        let error = Error::new(ErrorKind::Input, text);
+        return Err(error.with_help(format!("give each side from 1 to {LARGEST} pixels")));
+    }
+    Ok(Camera { width, height, ..camera })
+}
+
+fn sampling(asked: &ReferenceOptions) -> PixelSampling {
+    let spp = asked.spp.unwrap_or(SAMPLES).max(1);
+    let batches = (spp / BATCH).clamp(2, BATCHES);
+    PixelSampling { seed: asked.paths.seed, batches, samples: spp.div_ceil(batches) }
+}
+
+/// The pixels of the camera, as any other tracer sees them: backs are black.
+fn pictured(
+    asked: &ReferenceOptions,
+    scene: &Enclosure,
+    (camera, sampling): (&Camera, PixelSampling),
+    stages: &mut Stages,
+) -> Result<Pixels, Error> {
+    let rays = view_camera(camera).rays().map_err(report_failure)?;
+    let (eye, size) = (camera.eye, [camera.width, camera.height]);
+    let estimator = Box::new(PathTracing::continuous(asked.paths.switches()));
+    let see = Box::new(move |x, y| scene.cast(eye, rays(x, y)));
+    let tracer = PixelTracer { scene, estimator, size, sampling, see };
+    let watch = stages.watch;
+    stages.run("pixels", || tracer.trace(watch).ok_or_else(Error::cancelled))
+}
+
+/// The camera and how well its pixels are known.
+fn seen(camera: &Camera, chosen: bool, sampling: PixelSampling, pixels: &Pixels) -> ReferencePixels {
+    let [eye, target, up] = [camera.eye, camera.target, camera.up].map(|v| v.to_array());
+    ReferencePixels {
+        eye,
+        target,
+        up,
+        vertical_fov_degrees: camera.vertical_fov_degrees,
+        width: camera.width,
+        height: camera.height,
+        chosen,
+        batches: sampling.batches,
+        samples: sampling.samples,
+        relative_error: relative(&pixels.radiosity, &pixels.standard_error),
+    }
+}
+
+/// Error over the value, RMS over what is not 0.
+fn relative(values: &[f64], errors: &[f64]) -> f64 {
+    let lit = values.iter().zip(errors).filter(|(value, _)| **value > 0.0);
+    let (sum, count) = lit.fold((0.0, 0.0), |(sum, n), (x, s)| (sum + (s / x).powi(2), n + 1.0));
+    if count > 0.0 { f64::sqrt(sum / count) } else { 0.0 }
+}
+
+/// Writes the scene for Mitsuba 3 and pbrt-v4, where its bands are colours or grey, and what judges
+/// Mitsuba.
+fn scenes(problem: &Problem, camera: &Camera, folder: &Path) -> Result<(), Error> {
+    let Ok(mut outline) = outline(&problem.scene, None) else { return Ok(()) };
+    outline.camera = Some(*camera);
+    for format in [ExportFormat::Mitsuba, ExportFormat::Pbrt] {
+        write(&outline, format, folder, "scene")?;
+    }
+    write_atomically(&folder.join(SCRIPT), |out| out.write_all(JUDGE_MITSUBA.as_bytes()))
+        .map_err(report_failure)
+}
+
+/// The problem, with form factors more exact than for a picture.
+fn load(
+    source: &SceneSource,
+    asked: &ReferenceOptions,
+    stages: &mut Stages,
+) -> Result<(Problem, SolveSettings), Error> {
+    let [width, height] = asked.size.unwrap_or([SIDE; 2]).map(u128::from);
+    let pixel = |scene: &Scene| PIXEL + BAND * scene.bands().len() as u128;
+    let more = |plan, scene: &Scene, n| {
+        with_results(with_tracing(plan, scene, n), scene, n, (1, width * height * pixel(scene)))
+    };
+    let asked = &asked.problem;
+    let mut problem = Problem::load(source, asked, &more, stages)?;
+    let tolerance = asked.form_factor_tolerance.or(problem.scene.solve().form_factor_tolerance);
+    problem.options.form_factor_tolerance = tolerance.unwrap_or(FORM_FACTORS);
+    let (settings, scene) = (problem.options.clone(), problem.scene.solve());
+    let settings = SolveSettings::new(settings, StopOptions::default(), scene);
+    Ok((problem, settings))
+}
+
+fn traced(
+    asked: &ReferenceOptions,
+    problem: &Problem,
+    (scene, solution): (&Enclosure, &Solution),
+    stages: &mut Stages,
+) -> Result<State, Error> {
+    let known = control(scene, solution, false)?;
+    let method = PathTracing::continuous(asked.paths.switches()).with_control(known);
+    let stop = asked.stop.or_to(ERROR);
+    let tracer = Tracer::new(scene, &method, faces(&problem.mesh, scene)?, &asked.paths, &stop)?;
+    let mut state = tracer.start();
+    let watch = stages.watch;
+    stages.run("tracing", || tracer.run(&mut state, watch))?;
+    if stages.is_cancelled() { Err(Error::cancelled()) } else { Ok(state) }
+}
+
+fn table(problem: &Problem, solution: &Solution, state: &State) -> ReferenceTable {
+    let factors = expected_error(problem, solution, false);
+    let (mesh, scene) = (&problem.mesh, &problem.scene);
+    let error = state.groups.standard_errors().iter().zip(&factors).map(|(s, f)| s.hypot(*f)).collect();
+    let material = |face: usize| &scene.materials()[mesh.surfaces()[mesh.faces()[face].surface].material];
+    let all = || 0..mesh.faces().len();
+    ReferenceTable {
+        irradiance: state.groups.mean().to_vec(),
+        error,
+        deterministic: face_means(problem, solution),
+        reflectance: all().flat_map(|face| material(face).reflectance.clone()).collect(),
+        exitance: all().flat_map(|face| material(face).exitance.clone()).collect(),
+    }
+}
+
+fn record(
+    problem: &Problem,
+    table: &ReferenceTable,
+    (state, pixels): (&State, ReferencePixels),
+    stages: &Stages,
+) -> ReferenceRecord {
+    let conventions = [
+        "lengths in m; irradiance E, radiosity B and exitance M in W/m²; an emitter has the radiance M/π",
+        "faces are Lambertian, and lit on the side from which their corners run counter-clockwise",
+        "E is the mean over the whole face; what is buried under an object counts as 0",
+        "E_error is one standard deviation of all known errors: standard error and form factors",
+        "pixels.npz: radiosity is the mean over a pixel, rows from the top; its radiance is radiosity/π",
+        "pixels.npz: standard_error is one standard deviation of all known errors",
+        "what is seen of nothing, or of the back of a face, counts as 0",
+    ];
+    ReferenceRecord {
+        format: REFERENCE_FORMAT.to_owned(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        scene: problem.scene.path().display().to_string(),
+        scene_sha256: problem.scene.sha256().to_owned(),
+        conventions: conventions.map(str::to_owned).to_vec(),
+        method: "path tracing, the deterministic solution as control variate".to_owned(),
+        bands: problem.scene.bands().to_vec(),
+        relative_error: relative(&table.irradiance, &table.error),
+        form_factor_tolerance: problem.options.form_factor_tolerance,
+        seed: state.seed,
+        batches: state.batches(),
+        pixels,
+        timings: stages.timings().to_vec(),
+    }
+}
