@@ -6,7 +6,7 @@
 mod common;
 
 use common::{SQUARES, furnace, method, run, samples, single, sphere, squares, whole};
-use fredholm_montecarlo::light::pixels::pixel;
+use fredholm_montecarlo::light::pixels::{PixelSampling, pixel};
 use fredholm_montecarlo::light::{METHODS, PICTURED, Switches, point_estimator};
 use fredholm_montecarlo::statistics::{Suite, normal_score};
 use fredholm_montecarlo::{Enclosure, Groups};
@@ -103,7 +103,8 @@ fn pixels_show_the_radiosity_within_their_errors() {
         let half = |patch: usize, [u, v]: [f64; 2]| (u < 0.5).then(|| scene.point(patch, [2.0 * u, v]));
         let difference = |number: u32| {
             let see = |place| half(number as usize % scene.len(), place);
-            let found = pixel(&scene, &*estimator, (3, number, 32), &see);
+            let sampling = PixelSampling { seed: 3, batches: 32, samples: 4 };
+            let found = pixel(&scene, &*estimator, number, sampling, &see);
             assert!((found.covered - 0.5).abs() < 1e-12 && found.standard_error[0] < 0.2, "{found:?}");
             [found.radiosity[0] - 0.5 * 2.0, found.standard_error[0]]
         };

@@ -9,13 +9,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use fredholm_study::{
-<<<<<<< HEAD
-    CompareOptions, ConvergeOptions, CrosscheckOptions, Error, ErrorKind, MultipleTests, ProblemOptions,
-    ReferenceOptions, ResultFolder, SceneSource, SpectrumOptions, TraceOptions, Watch, claim_folder,
-=======
     CompareOptions, ConvergeOptions, CrosscheckOptions, Error, ErrorKind, JudgeOptions, MultipleTests,
-    ProblemOptions, ReferenceOptions, SceneSource, SpectrumOptions, TraceOptions, Watch,
->>>>>>> cd71ea0 (Pixels of the camera among reference values; fredholm judge judges other tracers by them)
+    ProblemOptions, ReferenceOptions, ResultFolder, SceneSource, SpectrumOptions, TraceOptions, Watch,
+    claim_folder,
 };
 use pyo3::prelude::*;
 use serde_json::json;

@@ -92,15 +92,12 @@ pub use html::{
     ElementPhasors, ElementValues, FieldStep, ReportAxis, ReportBadge, ReportCell, ReportColumn, ReportModel,
     ReportPage, ReportPlot, ReportSeries, ReportTable, WaveReport, current_phasors, face_scores,
 };
-<<<<<<< HEAD
-pub use names::{CHECKPOINT, PIXELS, TRACE_STATE, WAVE_FILES};
-=======
 pub use judgement::{
     JUDGE_FILES, JUDGE_FORMAT, JudgeRecord, JudgedPlace, Measured, PictureShape, ReferenceFaces,
     ReferenceValues, read_measured_faces, read_measured_pixels, read_reference_faces, read_reference_pixels,
     read_reference_record, write_judgement,
 };
->>>>>>> cd71ea0 (Pixels of the camera among reference values; fredholm judge judges other tracers by them)
+pub use names::{CHECKPOINT, PIXELS, TRACE_STATE, WAVE_FILES};
 pub use npz::write_npz;
 pub use outputs::{
     EXTRAS, Extras, FIELD_GLB, FIELD_PLY, FILES, IMAGE, REPORT, RunReport, View, write_all, write_with,

@@ -1,6 +1,7 @@
 //! Names that the files of results have.
 
 use crate::comparison::{COMPARISON_FILES, SWEEP};
+use crate::judgement::JUDGE_FILES;
 use crate::outputs::{EXTRAS, FILES};
 use crate::refinement::REFINEMENT_FILES;
 use crate::shooting::SHOOTING_FILES;
@@ -29,7 +30,7 @@ pub const PIXELS: &str = "pixels.npz";
 
 /// Whether a name is one of a file that some run writes into its folder, whatever the scene.
 pub(crate) fn is_result(name: &str) -> bool {
-    let known: [&[&str]; 10] = [
+    let known: [&[&str]; 11] = [
         &FILES,
         &EXTRAS,
         &COMPARISON_FILES,
@@ -38,6 +39,7 @@ pub(crate) fn is_result(name: &str) -> bool {
         &REFINEMENT_FILES,
         &CROSSCHECK_FILES,
         &REFERENCE_FILES,
+        &JUDGE_FILES,
         &WAVE_FILES,
         &[SWEEP, CHECKPOINT, TRACE_STATE, PIXELS],
     ];

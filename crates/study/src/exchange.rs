@@ -3,12 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use fredholm_linop::Watch;
-<<<<<<< HEAD
-use fredholm_report::ResultFolder;
-=======
 use fredholm_mesh::{Mesh, Vec3};
-use fredholm_report::write_atomically;
->>>>>>> cd71ea0 (Pixels of the camera among reference values; fredholm judge judges other tracers by them)
+use fredholm_report::ResultFolder;
 use fredholm_scene::{Camera, ExportFormat, Exported, Outline, Scene};
 use fredholm_visibility::Occluders;
 

@@ -1,9 +1,7 @@
 //! `fredholm judge`.
 
-use std::path::Path;
-
 use fredholm_report::{JudgeRecord, JudgedPlace};
-use fredholm_study::{Error, Verdict};
+use fredholm_study::{Error, ResultFolder, Verdict};
 
 use crate::args::JudgeArgs;
 use crate::ending::Ending;
@@ -14,7 +12,8 @@ use crate::summary::Lines;
 /// Judges what a tracer has found by a bundle.
 pub(crate) fn judge(args: &JudgeArgs) -> Result<Ending, Error> {
     let output = args.output.as_ref();
-    let start = Start { scene: &args.bundle, output, threads: None, memory: None, log: args.log };
+    let start =
+        Start { scene: &args.bundle, output, verb: "judge", threads: None, memory: None, log: args.log };
     start.run(|folder, terminal| {
         let (record, verdict) =
             fredholm_study::judge(&args.bundle, &args.files, &args.options(), folder, terminal)?;
@@ -25,7 +24,7 @@ pub(crate) fn judge(args: &JudgeArgs) -> Result<Ending, Error> {
     })
 }
 
-fn summarise(folder: &Path, record: &JudgeRecord, verdict: Verdict) -> Result<(), Error> {
+fn summarise(folder: &ResultFolder, record: &JudgeRecord, verdict: Verdict) -> Result<(), Error> {
     let mut lines = Lines::default();
     let JudgeRecord { significant, places, significance, correction, power, .. } = record;
     let said = match verdict {
@@ -57,7 +56,7 @@ fn summarise(folder: &Path, record: &JudgeRecord, verdict: Verdict) -> Result<()
         "compared",
         format!("{}, independent runs: {}, error from: {}", record.quantity, record.seeds, record.error_from),
     );
-    output::print(&lines.under(&format!("{} → {}", record.bundle, folder.display())))
+    output::print(&lines.under(&format!("{} → {}", record.bundle, folder.path().display())))
 }
 
 /// One of the places farthest apart, in words.

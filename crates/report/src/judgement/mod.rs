@@ -11,7 +11,6 @@ mod pictures;
 mod table;
 
 use std::io::{self, Write};
-use std::path::Path;
 
 use serde::Serialize;
 
@@ -22,10 +21,9 @@ pub use pictures::{PictureShape, read_measured_pixels};
 pub use table::read_measured_faces;
 
 use crate::csv::{numbers, quoted};
-use crate::outputs::prepare;
 use crate::stochastic::{json, score_colour};
 use crate::tone::encode;
-use crate::{CrosscheckPower, Picture, ReportError, Timing, write_atomically, write_score_histogram};
+use crate::{CrosscheckPower, Picture, ReportError, ResultFolder, Timing, write_score_histogram};
 
 /// Names of the files, in the order in which they are written.
 pub const JUDGE_FILES: [&str; 4] = ["judge.csv", "judge.svg", "judge.png", "judge.json"];
@@ -109,32 +107,30 @@ pub struct JudgeRecord {
     pub timings: Vec<Timing>,
 }
 
-/// Writes all files into a folder, which is made where it does not exist. `size` is that of the
-/// picture, whose pixels are then the first places.
+/// Writes all files into a folder. `shape` is that of the picture, whose pixels are then the first places.
 ///
 /// # Errors
 /// [`ReportError::Write`] with the file or folder that could not be written. The folder then has no
 /// `judge.json`.
 pub fn write_judgement(
-    folder: &Path,
+    folder: &ResultFolder,
     places: &[JudgedPlace],
     shape: Option<PictureShape>,
     record: &JudgeRecord,
 ) -> Result<(), ReportError> {
-    let paths = JUDGE_FILES.map(|name| folder.join(name));
-    prepare(folder, &paths[3])?;
+    let [values, histogram, image, last] = JUDGE_FILES;
     let scores: Vec<f64> = places.iter().map(|place| place.z).collect();
     let title = format!(
         "{}: {} of {} places apart, mean z {:.2}, mean z² {:.2}",
         record.verdict, record.significant, record.places, record.score_mean, record.score_variance
     );
-    write_atomically(&paths[0], |out| table(places, out))?;
-    write_atomically(&paths[1], |out| write_score_histogram(&title, &scores, out))?;
+    folder.write(values, |out| table(places, out))?;
+    folder.write(histogram, |out| write_score_histogram(&title, &scores, out))?;
     if let Some(shape) = shape {
         let picture = picture(&scores, shape);
-        write_atomically(&paths[2], |out| picture.write_png(out))?;
+        folder.write(image, |out| picture.write_png(out))?;
     }
-    write_atomically(&paths[3], |out| json(record, out))
+    folder.write(last, |out| json(record, out)).map(drop)
 }
 
 fn table(places: &[JudgedPlace], out: &mut dyn Write) -> io::Result<()> {

@@ -112,23 +112,14 @@ pub fn write_reference(
     if columns.iter().any(|column| column.len() != expected) {
         return Err(ReportError::Length { what: "the reference table", expected, found });
     }
-<<<<<<< HEAD
-    let [values, patches, last] = REFERENCE_FILES;
+    pixels.check(record.bands.len())?;
+    let [values, patches, picture, last] = REFERENCE_FILES;
     Ok(vec![
         folder.write(values, |out| csv(mesh, table, &record.bands, out))?,
         folder.write(patches, |out| obj(mesh, out))?,
+        folder.write(picture, |out| pixels.write_npz(out))?,
         folder.write(last, |out| json(record, out))?,
     ])
-=======
-    let paths = REFERENCE_FILES.map(|name| folder.join(name));
-    pixels.check(record.bands.len())?;
-    prepare(folder, &paths[3])?;
-    write_atomically(&paths[0], |out| csv(mesh, table, &record.bands, out))?;
-    write_atomically(&paths[1], |out| obj(mesh, out))?;
-    write_atomically(&paths[2], |out| pixels.write_npz(out))?;
-    write_atomically(&paths[3], |out| json(record, out))?;
-    Ok(paths.to_vec())
->>>>>>> cd71ea0 (Pixels of the camera among reference values; fredholm judge judges other tracers by them)
 }
 
 fn csv(mesh: &Mesh, table: &ReferenceTable, bands: &[String], out: &mut dyn Write) -> io::Result<()> {

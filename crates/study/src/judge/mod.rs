@@ -14,7 +14,8 @@ use std::path::{Path, PathBuf};
 use fredholm_linop::Watch;
 use fredholm_montecarlo::statistics::{Comparison, Crosscheck, Moments, Place, Suite, crosscheck};
 use fredholm_report::{
-    JUDGE_FORMAT, JudgeRecord, JudgedPlace, Measured, ReferenceRecord, read_reference_record, write_judgement,
+    JUDGE_FORMAT, JudgeRecord, JudgedPlace, Measured, ReferenceRecord, ResultFolder, read_reference_record,
+    write_judgement,
 };
 
 use known::Known;
@@ -65,7 +66,7 @@ pub fn judge(
     bundle: impl AsRef<Path>,
     files: &[PathBuf],
     asked: &JudgeOptions,
-    folder: impl AsRef<Path>,
+    folder: &ResultFolder,
     watch: &dyn Watch,
 ) -> Result<(JudgeRecord, Verdict), Error> {
     let (bundle, mut stages) = (bundle.as_ref(), Stages::new(watch).part("judge"));
@@ -102,7 +103,7 @@ pub fn judge(
         worst: compared.worst(WORST).iter().map(|place| sides.judged(place)).collect(),
         timings: stages.timings().to_vec(),
     };
-    write_judgement(folder.as_ref(), &places, known.shape, &judged).map_err(report_failure)?;
+    write_judgement(folder, &places, known.shape, &judged).map_err(report_failure)?;
     Ok((judged, verdict))
 }
 
@@ -141,7 +142,9 @@ impl Found {
     fn new(known: &Known, measured: &Measured, exact: bool) -> Result<Self, Error> {
         let Measured { seeds, sigma, .. } = measured;
         let mut moments = Moments::new(known.places.means(&seeds[0]).len());
-        seeds.iter().for_each(|seed| moments.push(&known.places.means(seed)));
+        for seed in seeds {
+            moments.push(&known.places.means(seed));
+        }
         let mean = moments.mean().to_vec();
         if exact {
             let error = vec![0.0; mean.len()];
@@ -298,13 +301,17 @@ quad = [[0.9, 0.9, 1.8], [0.9, 1.4, 1.8], [1.4, 1.4, 1.8], [1.4, 0.9, 1.8]]
         }
     }
 
+    fn claim(folder: &Path) -> ResultFolder {
+        ResultFolder::claim(folder).unwrap()
+    }
+
     #[test]
     fn what_is_right_agrees_and_every_planted_fault_is_found() {
         let folder = tempfile::tempdir().unwrap();
         let bundle = folder.path().join("bundle");
         let stop = TraceStop { error: Some(0.01), ..TraceStop::default() };
         let asked = ReferenceOptions { spp: Some(4096), stop, ..ReferenceOptions::default() };
-        reference(scene(ROOM), &asked, &bundle, &Quiet).unwrap();
+        reference(scene(ROOM), &asked, &claim(&bundle), &Quiet).unwrap();
         let plain = || PathTracing::continuous(Switches::default());
         let short = Switches { bounces: Some(4), ..Switches::default() };
         let dark =
@@ -325,7 +332,7 @@ quad = [[0.9, 0.9, 1.8], [0.9, 1.4, 1.8], [1.4, 1.4, 1.8], [1.4, 0.9, 1.8]]
             pictured(&text, paths, 7, &found);
             let out = folder.path().join(what);
             let asked = JudgeOptions::default();
-            let (record, verdict) = judge(&bundle, &[found], &asked, &out, &Quiet).unwrap();
+            let (record, verdict) = judge(&bundle, &[found], &asked, &claim(&out), &Quiet).unwrap();
             println!("{what}: {} apart, mean z² {:.2}", record.significant, record.score_variance);
             assert_eq!(verdict, expected, "{what}: {:?}", record.worst);
             assert!(out.join("judge.json").exists() && out.join("judge.png").exists());
@@ -339,12 +346,13 @@ quad = [[0.9, 0.9, 1.8], [0.9, 1.4, 1.8], [1.4, 1.4, 1.8], [1.4, 0.9, 1.8]]
         let stop = TraceStop { error: Some(0.01), ..TraceStop::default() };
         let mut asked =
             ReferenceOptions { spp: Some(32), size: Some([4, 3]), stop, ..ReferenceOptions::default() };
-        reference(scene(ROOM), &asked, &one, &Quiet).unwrap();
+        reference(scene(ROOM), &asked, &claim(&one), &Quiet).unwrap();
         asked.paths.seed = 2;
-        reference(scene(ROOM), &asked, &two, &Quiet).unwrap();
+        reference(scene(ROOM), &asked, &claim(&two), &Quiet).unwrap();
         let (out, table) = (folder.path().join("out"), two.join("reference.csv"));
         let options = JudgeOptions::default();
-        let (record, verdict) = judge(&one, std::slice::from_ref(&table), &options, &out, &Quiet).unwrap();
+        let (record, verdict) =
+            judge(&one, std::slice::from_ref(&table), &options, &claim(&out), &Quiet).unwrap();
         assert_eq!((verdict, record.error_from.as_str()), (Verdict::Agree, "sigma"), "{:?}", record.worst);
         // Of one face 20 % more.
         let text = fs::read_to_string(&table).unwrap();
@@ -353,12 +361,13 @@ quad = [[0.9, 0.9, 1.8], [0.9, 1.4, 1.8], [1.4, 1.4, 1.8], [1.4, 0.9, 1.8]]
         cells[6] = (1.2 * cells[6].parse::<f64>().unwrap()).to_string();
         lines[3] = cells.join(",");
         fs::write(&table, lines.join("\n")).unwrap();
-        let (record, verdict) = judge(&one, std::slice::from_ref(&table), &options, &out, &Quiet).unwrap();
+        let (record, verdict) =
+            judge(&one, std::slice::from_ref(&table), &options, &claim(&out), &Quiet).unwrap();
         assert_eq!((verdict, record.worst[0].place), (Verdict::Disagree, 2), "{:?}", record.worst);
         let bare: Vec<String> = lines.iter().map(|line| line.replace("E_error", "sd")).collect();
         fs::write(&table, bare.join("\n")).unwrap();
         let failed = |files: &[PathBuf], what: &str| {
-            let error = judge(&one, files, &options, &out, &Quiet).unwrap_err().to_string();
+            let error = judge(&one, files, &options, &claim(&out), &Quiet).unwrap_err().to_string();
             assert!(error.contains(what), "{error}");
         };
         failed(std::slice::from_ref(&table), "the random error of the tracer is not known");

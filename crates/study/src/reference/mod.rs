@@ -1,14 +1,11 @@
 //! Reference values with stated errors, to check other tracers with.
 
-use std::path::Path;
-
 use fredholm_linop::Watch;
 use fredholm_montecarlo::light::PathTracing;
 use fredholm_montecarlo::light::pixels::PixelSampling;
 use fredholm_montecarlo::{Enclosure, State};
 use fredholm_report::{
-    Pixels, REFERENCE_FORMAT, ReferencePixels, ReferenceRecord, ReferenceTable, write_atomically,
-    write_reference,
+    Pixels, REFERENCE_FORMAT, ReferencePixels, ReferenceRecord, ReferenceTable, ResultFolder, write_reference,
 };
 use fredholm_scene::{Camera, ExportFormat, Scene};
 
@@ -88,7 +85,7 @@ pub struct References {
 pub fn reference(
     source: impl Into<SceneSource>,
     asked: &ReferenceOptions,
-    folder: impl AsRef<Path>,
+    folder: &ResultFolder,
     watch: &dyn Watch,
 ) -> Result<References, Error> {
     let mut stages = Stages::new(watch).part("reference");
@@ -106,8 +103,8 @@ pub fn reference(
         stages.watch.warn("the camera sees no lit side of any surface: all pixels are black");
     }
     let record = record(&problem, &table, (&state, seen), &stages);
-    scenes(&problem, &camera, folder.as_ref())?;
-    write_reference(folder.as_ref(), &problem.mesh, (&table, &pixels), &record).map_err(report_failure)?;
+    scenes(&problem, &camera, folder)?;
+    write_reference(folder, &problem.mesh, (&table, &pixels), &record).map_err(report_failure)?;
     Ok(References { record, faces: problem.mesh.faces().len() })
 }
 
@@ -175,14 +172,13 @@ fn relative(values: &[f64], errors: &[f64]) -> f64 {
 
 /// Writes the scene for Mitsuba 3 and pbrt-v4, where its bands are colours or grey, and what judges
 /// Mitsuba.
-fn scenes(problem: &Problem, camera: &Camera, folder: &Path) -> Result<(), Error> {
+fn scenes(problem: &Problem, camera: &Camera, folder: &ResultFolder) -> Result<(), Error> {
     let Ok(mut outline) = outline(&problem.scene, None) else { return Ok(()) };
     outline.camera = Some(*camera);
     for format in [ExportFormat::Mitsuba, ExportFormat::Pbrt] {
         write(&outline, format, folder, "scene")?;
     }
-    write_atomically(&folder.join(SCRIPT), |out| out.write_all(JUDGE_MITSUBA.as_bytes()))
-        .map_err(report_failure)
+    folder.write(SCRIPT, |out| out.write_all(JUDGE_MITSUBA.as_bytes())).map(drop).map_err(report_failure)
 }
 
 /// The problem, with form factors more exact than for a picture.
