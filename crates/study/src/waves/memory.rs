@@ -16,6 +16,8 @@ const ROW: u128 = 716;
 /// Bytes of a facet in a coupling: its frame in lanes, and the blocks of what is near.
 pub(super) const COUPLED: u128 = 5000;
 
+/// Bytes of the plots and of the page with its viewer while they are written.
+const PAGE: u128 = 4 << 20;
 /// Bytes of a point while its field is sampled, of each batch that is in memory, and of a point at
 /// one frequency while the results are written.
 const SAMPLED: u128 = 72;
@@ -46,4 +48,5 @@ pub(super) fn plan(facets: u128, scene: &WaveScene) -> Plan {
     Plan::default()
         .hold(format!("{facets} facets"), facets.saturating_mul(FACET + CURRENTS * bands))
         .hold(format!("{places} points and directions"), places.saturating_mul(POINT + ROW * bands))
+        .hold("plots and the page", PAGE)
 }
