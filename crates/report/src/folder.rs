@@ -85,8 +85,13 @@ impl ResultFolder {
         list.push(LIST);
         let claim = Claim::lock(folder_of(&files.matrix), list, false)?;
         let all = [&files.matrix, &files.picture, &files.histogram, &files.record];
-        let taken = all.into_iter().filter(|path| path.exists());
-        claim.refuse(taken.filter_map(|path| Some(path.file_name()?.to_string_lossy().into_owned())))?;
+        let name = |path: &PathBuf| Some(path.file_name()?.to_string_lossy().into_owned());
+        claim.refuse(all.into_iter().filter(|path| path.exists()).filter_map(name))?;
+        let ours: BTreeSet<String> = all.into_iter().filter_map(name).collect();
+        let mut state = claim.state();
+        // The same matrix in another form stays.
+        state.kept = state.listed.difference(&ours).cloned().collect();
+        drop(state);
         Ok(Self(Arc::new(claim)))
     }
 

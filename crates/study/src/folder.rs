@@ -45,7 +45,11 @@ fn unusable(place: &Path, option: &str, error: ReportError) -> Error {
             failed(text).with_help(format!("move it away, or {elsewhere}"))
         }
         ReportError::Write { source, .. } => {
-            let what = if place.is_file() { "it is a file".to_owned() } else { source.to_string() };
+            let what = if place.exists() && !place.is_dir() {
+                "it is a file".to_owned()
+            } else {
+                source.to_string()
+            };
             failed(format!("cannot write results to {}: {what}", place.display())).with_help(elsewhere)
         }
         other => Error::new(ErrorKind::Files, other).with_help(elsewhere),

@@ -71,13 +71,21 @@ impl SceneSource {
 const READ_SCENE: u128 = 60;
 const READ_MESH: u128 = 30;
 
+/// Bytes for reading that are not worth a question: what is wrong with a small scene, and what
+/// would fit, can then still be told.
+const LITTLE: u128 = 1 << 20;
+
 /// Refuses a file that is too large to be read.
 pub(crate) fn admit_file(path: &Path, memory: Option<Bytes>) -> Result<(), Error> {
     // A file that is not there is for the reader to complain of.
     let Ok(found) = std::fs::metadata(path) else { return Ok(()) };
     let text = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
     let each = if text { READ_SCENE } else { READ_MESH };
-    let plan = Plan::default().stage("reading the scene", each.saturating_mul(found.len().into()));
+    let bytes = each.saturating_mul(found.len().into());
+    if bytes < LITTLE {
+        return Ok(());
+    }
+    let plan = Plan::default().stage("reading the scene", bytes);
     plan.admit(memory::limit(memory), "give a smaller scene, its large parts as mesh files")
 }
 
