@@ -177,5 +177,6 @@ fn refusal_of(shape: &Shape) -> MeshError {
 #[test]
 fn messages_name_borders() {
     assert_eq!(Ring::Outline.to_string(), "the outline");
-    assert_eq!(Ring::Hole(2).to_string(), "hole 2");
+    // Counted from 0 inside, from 1 in messages.
+    assert_eq!(Ring::Hole(2).to_string(), "hole 3");
 }

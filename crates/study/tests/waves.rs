@@ -111,6 +111,7 @@ fn a_sweep_has_one_plot_and_the_closed_form() {
         fs::read_dir(&results).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
     let expected = [
+        ".fredholm",
         "around_over_frequency.png",
         "around_over_frequency.svg",
         "back_over_frequency.svg",
