@@ -150,9 +150,9 @@ fn blocks<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
 
 fn krylov<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
     vec![
-        plain("cg-psi", Access::Products, SYMMETRIC, |_| Ok(Box::new(CgPsi))),
-        plain("cg-theta", Access::Products, SYMMETRIC, |_| Ok(Box::new(CgTheta))),
-        plain("pcg-jacobi", Access::Diagonal, SYMMETRIC, |_| Ok(Box::new(PcgJacobi))),
+        symmetric("cg-psi", Access::Products, SYMMETRIC, |_| Ok(Box::new(CgPsi))),
+        symmetric("cg-theta", Access::Products, SYMMETRIC, |_| Ok(Box::new(CgTheta))),
+        symmetric("pcg-jacobi", Access::Diagonal, SYMMETRIC, |_| Ok(Box::new(PcgJacobi))),
         Entry {
             name: "pcg-ssor",
             access: Access::Entries,
@@ -184,7 +184,7 @@ fn krylov<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
             options: &[("low", "lowest eigenvalue, with high"), ("high", "highest eigenvalue, with low")],
             make: chebyshev,
         },
-        plain("minres", Access::Products, "a symmetric coupling, factors at least 0", |_| {
+        symmetric("minres", Access::Products, "a symmetric coupling, factors at least 0", |_| {
             Ok(Box::new(Minres))
         }),
         Entry {
@@ -246,14 +246,23 @@ fn hybrids<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
     ]
 }
 
+/// One for symmetric couplings.
+fn symmetric<T: Scalar>(
+    name: &'static str,
+    access: Access,
+    requirements: &'static str,
+    make: fn(&mut Options) -> Made<T>,
+) -> Entry<dyn Scheme<T>> {
+    Entry { symmetric: true, ..plain(name, access, requirements, make) }
+}
+
 fn plain<T: Scalar>(
     name: &'static str,
     access: Access,
     requirements: &'static str,
     make: fn(&mut Options) -> Made<T>,
 ) -> Entry<dyn Scheme<T>> {
-    let symmetric = requirements.contains("symmetric");
-    Entry { name, access, symmetric, requirements, options: &[], make }
+    Entry { name, access, symmetric: false, requirements, options: &[], make }
 }
 
 fn omega(options: &mut Options, below: f64) -> Result<Option<f64>, OptionError> {

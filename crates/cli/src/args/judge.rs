@@ -42,7 +42,7 @@ pub(crate) struct JudgeArgs {
     /// What the tracer has found: .csv, .npy, .npz or .exr; several files are independent runs
     #[arg(required = true, value_name = "FILE")]
     pub(crate) files: Vec<PathBuf>,
-    /// Folder for the results [default: out/<name of the bundle>]
+    /// Folder for the results [default: out/<name of the bundle>-judge]
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
     /// Probability of a false alarm that is allowed

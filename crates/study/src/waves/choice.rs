@@ -13,7 +13,7 @@
 //! bounces are asked for, what makes the sum converge to the truth is `radiated` on sheets: in `geometric` the current on the front of a sheet radiates the
 //! shadow behind it, too, where what is blocked has none already.
 
-use fredholm_moments::{Basis, Equation, Surface, Topology};
+use fredholm_moments::{Basis, Equation, Surface};
 use fredholm_waves::material::Material;
 use fredholm_waves::{Complex64, Kind, Shadow};
 
@@ -92,15 +92,13 @@ struct Seen {
     sides: f64,
     /// Whether there are many frequencies.
     sweep: bool,
-    /// Whether boundary elements are possible on the mesh, and quick.
-    small: bool,
 }
 
 impl Seen {
-    fn of(geometry: &Geometry, bands: &[Band], fits: &dyn Fn(u128) -> bool) -> Self {
+    fn of(geometry: &Geometry, bands: &[Band]) -> Self {
         let materials = || bands.iter().flat_map(|band| &band.materials);
         let mesh = &geometry.mesh;
-        let shortest = bands.iter().map(|band| band.wave.wavelength()).fold(f64::INFINITY, f64::min);
+        let shortest = shortest(bands);
         let sides = |patch: &fredholm_mesh::Patch| -> f64 {
             (0..patch.sides()).map(|i| patch.corner(i).distance(patch.corner(i + 1))).sum()
         };
@@ -117,7 +115,6 @@ impl Seen {
             flat: is_flat(geometry),
             facets: mesh.len(),
             sweep: bands.len() > MOST_PICTURED,
-            small: is_small(geometry, shortest, fits),
             edge: mesh.patches().map(side).fold(0.0, f64::max) / shortest,
         }
     }
@@ -127,18 +124,20 @@ impl Seen {
     }
 }
 
+/// The shortest wavelength, m.
+fn shortest(bands: &[Band]) -> f64 {
+    bands.iter().map(|band| band.wave.wavelength()).fold(f64::INFINITY, f64::min)
+}
+
 /// Whether boundary elements are possible on the mesh, their unknowns few, and their matrix fits.
 fn is_small(geometry: &Geometry, wavelength: f64, fits: &dyn Fn(u128) -> bool) -> bool {
     if geometry.mesh.len() > MOST_UNKNOWNS {
         return false;
     }
-    let Ok(surface) = Surface::from_mesh(&geometry.mesh) else { return false };
-    if Topology::new(&surface).check_resolution(&surface, wavelength).is_err() {
-        return false;
-    }
-    Basis::new(surface).is_ok_and(|basis| {
+    Surface::from_mesh(&geometry.mesh).and_then(Basis::new).is_ok_and(|basis| {
         let matrix = (basis.len() * basis.len() * size_of::<Complex64>()) as u128;
-        basis.len() <= MOST_UNKNOWNS && fits(MATRICES * matrix)
+        let resolved = basis.topology().check_resolution(basis.surface(), wavelength).is_ok();
+        resolved && basis.len() <= MOST_UNKNOWNS && fits(MATRICES * matrix)
     })
 }
 
@@ -159,10 +158,13 @@ pub(super) fn in_one_plane(faces: &[fredholm_mesh::Patch], extent: f64) -> bool 
 
 /// What is computed of a scene that asks for this, where a matrix of some bytes `fits`.
 pub(super) fn taken(asked: Asked, geometry: &Geometry, bands: &[Band], fits: &dyn Fn(u128) -> bool) -> Taken {
-    let seen = Seen::of(geometry, bands, fits);
+    let seen = Seen::of(geometry, bands);
     let mut taken = match (asked.method, asked.shadow) {
         // Edge currents complete physical optics: who asks for them, or for none, means that.
-        (None, None) if !asked.optics => chosen(&seen, asked.edge_currents.is_none()),
+        (None, None) if !asked.optics => {
+            let small = || asked.edge_currents.is_none() && is_small(geometry, shortest(bands), fits);
+            chosen(&seen, &small)
+        }
         (method, shadow) => completed(method.unwrap_or(Method::Bounces(1)), (asked.optics, shadow), &seen),
     };
     if let Some(edge_currents) = asked.edge_currents {
@@ -176,10 +178,10 @@ pub(super) fn taken(asked: Asked, geometry: &Geometry, bands: &[Band], fits: &dy
     taken
 }
 
-fn chosen(seen: &Seen, rigorous: bool) -> Taken {
-    let boundary_elements = rigorous && seen.conductors && seen.sheets && !seen.flat && !seen.sweep;
+fn chosen(seen: &Seen, small: &dyn Fn() -> bool) -> Taken {
+    let boundary_elements = seen.conductors && seen.sheets && !seen.flat && !seen.sweep;
     if boundary_elements
-        && seen.small
+        && small()
         && let Ok(solver) = super::registry::build(BY_MATRIX)
     {
         return Taken {

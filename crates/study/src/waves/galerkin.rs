@@ -5,7 +5,7 @@ use std::slice;
 
 use fredholm_linop::{LinearOperator, MultiVector};
 use fredholm_mesh::Vec3;
-use fredholm_moments::{Basis, Conductor, Currents, Equation, MomentsError, Surface, Topology};
+use fredholm_moments::{Basis, Conductor, Currents, Equation, MomentsError, Surface};
 use fredholm_report::{MonostaticRow, WaveCurrents};
 use fredholm_scene::ErrorKind as SceneFault;
 use fredholm_scene::waves::{About, Places};
@@ -53,7 +53,7 @@ pub(super) fn run(
     stages: &mut Stages,
 ) -> Result<Outcome, Error> {
     let basis = basis(model, geometry)?;
-    let edge = longest_edge(geometry, equation).filter(|_| name.is_empty());
+    let edge = longest_edge(geometry, &basis, equation).filter(|_| name.is_empty());
     let mut outcome = Outcome::default();
     for band in &model.bands {
         check_conductor(model, band)?;
@@ -68,10 +68,9 @@ pub(super) fn run(
 }
 
 /// The longest edge of sheets, m, which tells the error of the electric equation.
-fn longest_edge(geometry: &Geometry, equation: Equation) -> Option<f64> {
+fn longest_edge(geometry: &Geometry, basis: &Basis, equation: Equation) -> Option<f64> {
     let known = equation == Equation::Electric && geometry.kinds().iter().all(|kind| *kind == Kind::Sheet);
-    let surface = known.then(|| Surface::from_mesh(&geometry.mesh).ok()).flatten()?;
-    Some(Topology::new(&surface).longest_edge(&surface))
+    known.then(|| basis.topology().longest_edge(basis.surface()))
 }
 
 fn check_conductor(model: &Model, band: &Band) -> Result<(), Error> {
@@ -195,7 +194,7 @@ impl Task<'_> {
                         let rows = rows.map_err(|error| self.model.refused(&error, Some(receiver)))?;
                         outcome.near.extend(rows);
                         let squares = scattered.iter().map(|field| field.e.norm_squared());
-                        error.as_ref().map(|error| {
+                        error.map(|error| {
                             error.relative(squares, points.iter().map(|&p| error.centre.distance(p)))
                         })
                     }
