@@ -236,6 +236,7 @@ class Scene:
         self,
         *,
         accuracy: Optional[float] = None,
+        way: Optional[str] = None,
         goal: Union[str, Sequence[str]] = (),
         solver: Optional[str] = None,
         discretisation: Optional[str] = None,
@@ -258,6 +259,9 @@ class Scene:
         accuracy : float, optional
             Relative error of the irradiance of the faces to reach, above 0 and below 1; the
             elements are then chosen where they are needed. Left out: the elements of the scene.
+        way : {"links", "paths"}, optional
+            How the accuracy is reached: by hierarchical radiosity, or by random paths from the
+            lamps; left out, as is predicted to cost least.
         goal : str or sequence of str
             Surfaces whose mean irradiance is to have the accuracy; all else is only as exact as
             that needs.
@@ -297,6 +301,7 @@ class Scene:
         _options.share("accuracy", accuracy)
         asked = {
             "accuracy": accuracy,
+            "way": way,
             "goal": _options.texts(goal),
             "final_gather": final_gather,
             "discontinuity": discontinuity,

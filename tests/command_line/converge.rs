@@ -99,14 +99,17 @@ fn a_furnace_is_settled_and_two_levels_have_no_order() {
 }
 
 #[test]
-fn the_furnace_scene_shows_errors_of_rounding() {
-    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/furnace.toml");
-    let bench = Bench::new("");
+fn a_furnace_shows_errors_of_rounding() {
+    let bench = Bench::new(&furnace(4, &[0.1, 0.5, 0.9, 0.99]));
     let run = bench.run(&[
         "converge",
-        scene,
+        "scene.toml",
         "--levels",
         "2",
+        "--form-factor-tolerance",
+        "1e-12",
+        "--tolerance",
+        "1e-13",
         "--solver",
         "gauss-seidel",
         "--max-iterations",
@@ -115,7 +118,7 @@ fn the_furnace_scene_shows_errors_of_rounding() {
     assert_eq!(run.code, 0, "{}", run.stderr);
     // Two levels may agree by symmetry: that they settle takes three.
     assert_eq!(run.stdout.matches("that takes three levels").count(), 4, "{}", run.stdout);
-    let record = fs::read(bench.path("out/furnace-converge/converge.json")).unwrap();
+    let record = fs::read(bench.path("out/scene-converge/converge.json")).unwrap();
     let record: Value = serde_json::from_slice(&record).unwrap();
     for band in record["bands"].as_array().unwrap() {
         assert!(band["differences"][0].as_f64().unwrap() < 1e-12, "{band}");

@@ -119,6 +119,30 @@ fn nothing_is_written_by_a_study_cut_short() {
     }
 }
 
+/// Runs with a limit of time of half a second.
+fn limited(bench: &Bench, arguments: &[&str]) -> (i32, String, Duration) {
+    let started = Instant::now();
+    let line = [&["solve", "scene.toml", "--time-limit", "0.5s"], arguments].concat();
+    let run = bench.run(&line);
+    (run.code, run.stderr, started.elapsed())
+}
+
+#[test]
+fn the_limit_of_time_does_what_a_signal_does() {
+    let bench = long_assembly();
+    let (code, stderr, time) = limited(&bench, &LONG_ASSEMBLY);
+    assert_eq!(code, 3);
+    assert!(stderr.contains("time limit of 0.5 s has passed") && stderr.contains("help: "), "{stderr}");
+    assert!(time < 2 * PROMPT && !bench.path("out").exists(), "{time:?}");
+    let bench = long_solution();
+    let (code, stderr, time) = limited(&bench, &LONG_SOLUTION);
+    assert_eq!(code, 3);
+    assert!(stderr.contains("time limit of 0.5 s has passed: the results are those until then"), "{stderr}");
+    assert!(time < 2 * PROMPT, "{time:?}");
+    let record = bench.record("out/scene");
+    assert_eq!((&record["partial"], &record["options"]["time_limit_s"]), (&true.into(), &0.5.into()));
+}
+
 #[test]
 fn elimination_has_no_iterate_to_write() {
     // A factorisation for every band: several seconds.

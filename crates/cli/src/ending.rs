@@ -4,7 +4,7 @@
 //! |---|---|
 //! | 0 | done |
 //! | 2 | bad input or usage |
-//! | 3 | not converged; the results are written all the same |
+//! | 3 | not converged, or out of time; the results so far are written all the same |
 //! | 4 | resources refused |
 //! | 5 | a file could not be read or written |
 //! | 6 | two solutions disagree, or a tracer with the reference |

@@ -73,7 +73,7 @@ pub(crate) fn run(
         let text = format!("--memory {asked} is more than there may be: the limit is {limit}");
         terminal.console.warn(&text);
     }
-    let ended = thread_pool(threads)?.install(verb);
+    let ended = terminal.interrupt.ended(thread_pool(threads)?.install(verb), &*terminal.console);
     if let Some(peak) = peak_memory() {
         terminal.console.held(peak);
     }
@@ -92,8 +92,10 @@ fn folder(output: Option<&PathBuf>, scene: &Path, verb: &str) -> PathBuf {
 
 /// How the program was asked to show what goes on, for the record.
 pub(crate) fn recorded(log: LogArgs) -> fredholm_study::Recorded {
-    let LogArgs { log, quiet } = log;
-    [("log".to_owned(), json!(log)), ("quiet".to_owned(), Value::Bool(quiet))].into_iter().collect()
+    let LogArgs { log, quiet, time_limit } = log;
+    let limit = time_limit.map(|limit| ("time_limit_s".to_owned(), json!(limit.as_secs_f64())));
+    let shown = [("log".to_owned(), json!(log)), ("quiet".to_owned(), Value::Bool(quiet))];
+    shown.into_iter().chain(limit).collect()
 }
 
 #[cfg(test)]

@@ -83,6 +83,9 @@ fn number(count: u64, thing: &str) -> String {
 }
 
 fn solution(run: &RunRecord) -> String {
+    if let (true, Some(paths)) = (run.history.iterations.is_empty(), run.work.get("paths")) {
+        return format!("{} after {paths} paths, without a system of equations", run.stop_reason);
+    }
     let iterations = run.history.iterations.last().copied().unwrap_or(0);
     let last = run.history.residual.iter().filter_map(|band| band.last());
     let residual = last.fold(0.0, |worst: f64, &r| if r > worst || r.is_nan() { r } else { worst });

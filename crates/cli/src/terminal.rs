@@ -18,7 +18,7 @@ pub(crate) struct Terminal {
 impl Terminal {
     /// Listens to the signals from now on.
     pub(crate) fn new(log: LogArgs) -> Result<Self, Error> {
-        let interrupt = Interrupt::install(log.log)?;
+        let interrupt = Interrupt::install(log)?;
         Ok(Self { console: console::choose(log), interrupt })
     }
 }

@@ -2,7 +2,7 @@
 
 use fredholm_study::{
     Bytes, GatherPoints, PathOptions, Precision, ProblemOptions, Receiver, SamplePoints, StopOptions,
-    TraceStop, Vec3,
+    TraceStop, Vec3, Way,
 };
 use pyo3::prelude::*;
 
@@ -45,6 +45,15 @@ fn precision(py: Python<'_>, name: &str) -> PyResult<Precision> {
         "f64" => Ok(Precision::F64),
         "f32" => Ok(Precision::F32),
         _ => Err(input(py, format!("there is no number format {name:?}"), Some("use \"f64\" or \"f32\""))),
+    }
+}
+
+/// The way to an accuracy of this name.
+pub(crate) fn way(py: Python<'_>, name: &str) -> PyResult<Way> {
+    match name {
+        "links" => Ok(Way::Links),
+        "paths" => Ok(Way::Paths),
+        _ => Err(input(py, format!("there is no way {name:?}"), Some("use \"links\" or \"paths\""))),
     }
 }
 

@@ -12,7 +12,7 @@ use pyo3::types::PyBytes;
 use crate::arrays::{moved, shared};
 use crate::failure::{failure, internal};
 use crate::locks::{Guard, attached, locked};
-use crate::options::{Problem, Stop};
+use crate::options::{Problem, Stop, way};
 use crate::run::{How, run};
 use crate::scene::Scene;
 
@@ -25,6 +25,7 @@ type Array<'py, T> = Bound<'py, PyArray2<T>>;
 #[allow(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub(crate) struct Asked {
     accuracy: Option<f64>,
+    way: Option<String>,
     goal: Vec<String>,
     final_gather: bool,
     discontinuity: bool,
@@ -39,6 +40,7 @@ pub(crate) struct Asked {
 pub(crate) fn solve(py: Python<'_>, scene: &Scene, asked: Asked, how: How) -> PyResult<Py<PyAny>> {
     let options = SolveOptions {
         accuracy: asked.accuracy,
+        way: asked.way.map(|name| way(py, &name)).transpose()?,
         goal: asked.goal,
         final_gather: asked.final_gather,
         discontinuity: asked.discontinuity,

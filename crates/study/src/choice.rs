@@ -7,6 +7,9 @@
 
 use std::fmt;
 
+use crate::options::Way;
+use crate::sampled;
+
 /// Links a face at 1 %, one for both ways.
 const LINKS: f64 = 160.0;
 /// Exponent of 1 %/ε.
@@ -17,6 +20,13 @@ const PAIRS: f64 = 6.0;
 /// Most links at 1 % over √(faces): cells of a wall, and small things far away, are linked as
 /// wholes.
 const TOGETHER: f64 = 10_000.0;
+/// Faces from which on random paths may take the place of links, and the least accuracy.
+const MANY_FACES: usize = 8000;
+const LEAST_ACCURACY: f64 = 0.01;
+/// Paths that take the time of all links of a run, over the links of its first round: about ten
+/// times as many come of them, and one takes about as long as five paths. Measured on cities and
+/// curved objects (docs/notes/hierarchical.md).
+const PATHS: f64 = 50.0;
 /// Links of an element.
 const OF_ELEMENT: f64 = 10.0;
 
@@ -44,6 +54,10 @@ pub(crate) enum Choice {
     Coarse,
     /// Links alone know a goal.
     Goal,
+    /// The way that was asked for.
+    Asked(Way),
+    /// The links of the first round were so many that paths cost less.
+    Paths { links: f64, paths: f64 },
     /// The matrix costs more: pairs and links.
     Links { pairs: f64, links: f64 },
     /// The matrix does not fit the memory.
@@ -73,6 +87,23 @@ impl Choice {
         2.0 * PAIRS * LINKS * (0.01 / accuracy).powf(POWER)
     }
 
+    /// Random paths that answer a scene of so many faces, where they may: on fewer faces light that
+    /// changes over a face would not be seen.
+    pub(crate) fn paths(faces: usize, accuracy: f64) -> Option<f64> {
+        let suit = faces >= MANY_FACES && accuracy >= LEAST_ACCURACY;
+        suit.then(|| sampled::expected_paths(faces, accuracy))
+    }
+
+    /// Whether the links of a first round promise more work than these paths.
+    pub(crate) fn too_many(links: f64, paths: f64) -> bool {
+        paths < PATHS * links
+    }
+
+    /// Whether paths were asked for.
+    pub(crate) fn is_paths(self) -> bool {
+        self == Self::Asked(Way::Paths)
+    }
+
     pub(crate) fn is_matrix(self) -> bool {
         matches!(self, Self::Matrix { .. })
     }
@@ -85,6 +116,12 @@ impl fmt::Display for Choice {
                 "hierarchical, since a matrix of faces of fewer than 4 elements is seldom exact enough",
             ),
             Self::Goal => f.write_str("hierarchical, since elements are chosen for a goal"),
+            Self::Asked(Way::Links) => f.write_str("hierarchical, as asked for"),
+            Self::Asked(Way::Paths) => f.write_str("random paths, as asked for"),
+            Self::Paths { links, paths } => write!(
+                f,
+                "random paths, since {links:.1e} links in the first round promised more work than about {paths:.1e} paths"
+            ),
             Self::Links { pairs, links } => {
                 write!(
                     f,
@@ -130,6 +167,17 @@ mod tests {
             "few links are enough for little accuracy"
         );
         assert_eq!(choice(96.0, 1, 0.01), Choice::Coarse);
+    }
+
+    #[test]
+    fn paths_take_the_place_of_many_links_only() {
+        // Cities of 13,000 and 40,000 faces at 5 %, with the links of their first rounds.
+        for (faces, links) in [(13_000, 7.4e5), (40_000, 1.9e6)] {
+            assert!(Choice::paths(faces, 0.05).is_some_and(|paths| Choice::too_many(links, paths)));
+        }
+        // A curved object of 100,000 triangles at 2 % has 1.6 million links in the end.
+        assert!(Choice::paths(100_000, 0.02).is_some_and(|paths| !Choice::too_many(1.6e6, paths)));
+        assert!(Choice::paths(3000, 0.05).is_none() && Choice::paths(13_000, 0.001).is_none());
     }
 
     #[test]

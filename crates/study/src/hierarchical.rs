@@ -2,8 +2,8 @@
 //! results as of any other.
 
 use std::ops::ControlFlow;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
 
 use fredholm_hierarchical::{
     Goal, HierarchyError, Options as Limits, Problem as Input, RESIDUAL, Round, RoundWatch,
@@ -16,7 +16,7 @@ use fredholm_scene::Scene;
 use fredholm_visibility::Occluders;
 
 use crate::checkpoint::{self, Checkpoint, Header};
-use crate::choice::expected;
+use crate::choice::{Choice, expected};
 use crate::error::{Error, ErrorKind};
 use crate::memory::{Limit, Plan};
 use crate::options::{Precision, ProblemSettings, RADIOSITY, SolveOptions, SolveSettings};
@@ -148,13 +148,22 @@ impl Forecast {
     }
 }
 
-/// Solves a scene to an accuracy.
+/// What a run came to.
+pub(crate) enum Answer {
+    /// A solution.
+    Solved(Box<(Problem, Solution)>),
+    /// So many links in the first round that random paths cost less, about so many.
+    TooMany { links: f64, paths: f64 },
+}
+
+/// Solves a scene to an accuracy, but for one that random paths suit better, where `free` allows it.
 pub(crate) fn compute(
     scene: &Arc<Scene>,
     options: &SolveSettings,
     (accuracy, checkpoint, folder): (f64, Option<&Checkpoint>, Option<&ResultFolder>),
+    free: bool,
     stages: &mut Stages,
-) -> Result<(Problem, Solution), Error> {
+) -> Result<Answer, Error> {
     let admit = |plan: &Plan, stages: &Stages| stages.admit(plan, options.problem.memory_limit(), HELP);
     let count = usize::try_from(scene.predicted_faces()).unwrap_or(usize::MAX);
     admit(&plan(scene, count, options), stages)?;
@@ -188,30 +197,37 @@ pub(crate) fn compute(
         accuracy,
         folder,
         saved: AtomicBool::new(false),
+        paths: Choice::paths(faces.len(), accuracy).filter(|_| free),
+        too_many: OnceLock::new(),
     };
     let solve = || match fredholm_hierarchical::solve(&input, &limits, solvers, state, &watch) {
+        Err(HierarchyError::Interrupted) if watch.too_many.get().is_some() => Ok(None),
         // What the last round came to is in the checkpoint, which stays: the run can go on from
         // there.
         Err(HierarchyError::Interrupted) => {
             let saved = watch.folder.filter(|_| watch.saved.load(Ordering::Relaxed));
             let state =
                 self::state(&checkpoint::read(saved.ok_or_else(interrupted)?.path())?, scene, &input)?;
-            fredholm_hierarchical::conclude(&input, &limits, solvers, state).map_err(failure)
+            fredholm_hierarchical::conclude(&input, &limits, solvers, state).map_err(failure).map(Some)
         }
-        solved => solved.map_err(failure),
+        solved => solved.map_err(failure).map(Some),
     };
     let solved = stages.run("solution", solve)?;
+    if let Some(&[links, paths]) = watch.too_many.get() {
+        return Ok(Answer::TooMany { links, paths });
+    }
+    let Some(solved) = solved else { return Err(interrupted()) };
     stages.begin_saving()?;
     if let Some(plan) = forecast.after(&solved.rounds, true) {
         stages.tell(&plan, forecast.limit);
     }
     let mesh = refined(&faces, &solved).map_err(|e| Error::new(ErrorKind::Input, e))?;
     let problem = problem((scene, options), mesh, (warnings, occluders), (entry, plan))?;
-    Ok((problem, solution(solved, options, accuracy)))
+    Ok(Answer::Solved(Box::new((problem, solution(solved, options, accuracy)))))
 }
 
 /// The problem that was solved, on the elements that it came to.
-fn problem(
+pub(crate) fn problem(
     (scene, options): (&Arc<Scene>, &SolveSettings),
     mesh: Mesh,
     (warnings, occluders): (Vec<String>, Occluders),
@@ -312,6 +328,7 @@ fn solution(solved: Solved, options: &SolveSettings, accuracy: f64) -> Solution 
         mesh_error: solved.error.as_ref().filter(|_| solved.goal.is_none()).map(stated),
         hierarchy: Some(hierarchy(&solved, options, accuracy)),
         tree: Some(crate::pictures::Hierarchy { tree: solved.tree, links: solved.links }),
+        paths: None,
         means: solved.means,
         report: solved.report,
         means_of: "H B_h, over links",
@@ -361,6 +378,10 @@ struct Follower<'a> {
     folder: Option<&'a ResultFolder>,
     /// Whether there is a checkpoint of this run.
     saved: AtomicBool,
+    /// Random paths that would answer the scene, where they may.
+    paths: Option<f64>,
+    /// The links of the first round and those paths, where the paths cost less.
+    too_many: OnceLock<[f64; 2]>,
 }
 
 impl Watch for Follower<'_> {
@@ -372,6 +393,11 @@ impl Watch for Follower<'_> {
 impl RoundWatch for Follower<'_> {
     fn round(&self, rounds: &[Round], state: &State) -> Result<(), HierarchyError> {
         let Some(last) = rounds.last() else { return Ok(()) };
+        let links = last.links as f64;
+        if let Some(paths) = self.paths.filter(|&paths| rounds.len() == 1 && Choice::too_many(links, paths)) {
+            self.too_many.get_or_init(|| [links, paths]);
+            return Err(HierarchyError::Interrupted);
+        }
         if let Some(folder) = self.folder {
             checkpoint::write(folder, &self.header, state).map_err(|why| HierarchyError::Save { why })?;
             self.saved.store(true, Ordering::Relaxed);

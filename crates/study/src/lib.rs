@@ -48,6 +48,7 @@ mod record;
 mod reference;
 mod registry;
 mod sample;
+mod sampled;
 mod shadows;
 mod shoot;
 mod size;
@@ -84,7 +85,7 @@ pub use memory::{
 };
 pub use options::{
     FieldFile, GatherPoints, PointGrid, Precision, ProblemOptions, Recorded, SceneSource, SolveOptions,
-    StopOptions,
+    StopOptions, Way,
 };
 pub use reference::{ReferenceOptions, References, reference};
 pub use registry::{SolverEntry, build as build_solver, names as solver_names, solvers};

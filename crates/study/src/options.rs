@@ -203,6 +203,8 @@ pub struct SolveOptions {
     /// Relative error of the irradiance of the faces to reach, above 0 and below 1; the elements
     /// are then chosen where they are needed. None: the scene's, else the elements of the scene.
     pub accuracy: Option<f64>,
+    /// How the accuracy is to be reached. None: as is predicted to cost least.
+    pub way: Option<Way>,
     /// Surfaces, by their names, whose mean irradiance is to have the accuracy; all else is only as
     /// exact as that needs.
     pub goal: Vec<String>,
@@ -227,6 +229,15 @@ pub struct SolveOptions {
     pub folder: Option<ResultFolder>,
     /// What else the record of the run is to say.
     pub recorded: Recorded,
+}
+
+/// A way to an accuracy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// Hierarchical radiosity: elements are chosen where they are needed, and linked.
+    Links,
+    /// Random paths from the lamps; the elements are those of the scene.
+    Paths,
 }
 
 /// A further file with the field.

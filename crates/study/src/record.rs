@@ -14,6 +14,7 @@ use crate::memory;
 use crate::options::SolveSettings;
 use crate::pictures;
 use crate::problem::Problem;
+use crate::sampled::Paths;
 use crate::solution::{Solution, reason};
 use crate::stages::Stages;
 
@@ -41,9 +42,9 @@ pub(crate) fn record(
         discretisation: options.problem.discretisation.clone(),
         means: solution.means_of.to_owned(),
         solver: options.problem.solver.clone(),
-        tolerance: Some(options.tolerance),
+        tolerance: solution.paths.is_none().then_some(options.tolerance),
         history: history(report, problem.scene.bands().len()),
-        work: work(&report.work),
+        work: solution.paths.as_ref().map_or_else(|| work(&report.work), traced),
         stop_reason: reason(report.reason).to_owned(),
         closure: closure(problem, &solution.closure),
         form_factor_error: form_factor_error(options, solution),
@@ -82,6 +83,9 @@ fn unfinished(solution: &Solution) -> Option<String> {
         StopReason::Interrupted if solution.hierarchy.is_some() => {
             "interrupted: the results are those of the last round, marked partial; `fredholm resume DIR`, with the folder of the results, goes on from there"
         }
+        StopReason::Interrupted if solution.paths.is_some() => {
+            "interrupted: the results are those of the paths so far, marked partial"
+        }
         StopReason::Interrupted => "interrupted: the results are those of the last iterate, marked partial",
         StopReason::IterationLimit | StopReason::Diverged => {
             "the tolerance was not met; allow more with --max-iterations or --tolerance, or choose another --solver"
@@ -112,7 +116,8 @@ pub(crate) const LARGE: f64 = 0.1;
 
 /// Whether constants on the elements are far off.
 fn large(solution: &Solution) -> Option<String> {
-    let error = solution.mesh_error.as_ref().filter(|_| solution.hierarchy.is_none())?;
+    let error =
+        solution.mesh_error.as_ref().filter(|_| solution.hierarchy.is_none() && solution.paths.is_none())?;
     let worst = error.relative_l2.iter().copied().fold(0.0, f64::max);
     (worst > LARGE).then(|| {
         format!(
@@ -169,6 +174,10 @@ fn work(work: &Work) -> BTreeMap<String, u64> {
         ("entries_touched", work.entries_touched),
     ];
     counters.map(|(name, count)| (name.to_owned(), count)).into()
+}
+
+fn traced(paths: &Paths) -> BTreeMap<String, u64> {
+    [("paths", paths.begun), ("rays", paths.rays)].map(|(name, count)| (name.to_owned(), count)).into()
 }
 
 fn closure(problem: &Problem, closure: &[f64]) -> Closure {

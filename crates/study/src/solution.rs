@@ -17,6 +17,7 @@ use crate::options::Precision;
 use crate::options::SolveSettings;
 use crate::pictures;
 use crate::problem::{Problem, prepare};
+use crate::sampled::Paths;
 use crate::stages::Stages;
 use crate::watcher::Watcher;
 
@@ -50,6 +51,8 @@ pub(crate) struct Solution {
     pub(crate) hierarchy: Option<Hierarchy>,
     /// Elements, clusters and links of hierarchical radiosity, where it did it.
     pub(crate) tree: Option<pictures::Hierarchy>,
+    /// What random paths came to, where they were traced.
+    pub(crate) paths: Option<Paths>,
     /// Relative error of the field as polynomials, per band.
     pub(crate) field_error: Option<Vec<f64>>,
     /// Which solver took the place of the one asked for, and why.
@@ -59,7 +62,11 @@ pub(crate) struct Solution {
 impl Solution {
     /// Whether the accuracy asked for was reached, where one was.
     pub(crate) fn is_accurate(&self) -> bool {
-        self.hierarchy.as_ref().is_none_or(|h| h.stated.is_some_and(|error| error <= h.accuracy))
+        let stated = self.mesh_error.as_ref().map(|error| error.relative_l2.iter().copied());
+        let worst = stated.and_then(|errors| errors.reduce(f64::max));
+        let known = |stated: Option<f64>, accuracy: f64| stated.is_some_and(|error| error <= accuracy);
+        self.hierarchy.as_ref().is_none_or(|h| known(h.stated, h.accuracy))
+            && self.paths.as_ref().is_none_or(|paths| known(worst, paths.accuracy))
     }
 }
 
@@ -136,6 +143,7 @@ fn assess<S: Storage>(
         mesh_error,
         hierarchy: None,
         tree: None,
+        paths: None,
         field_error: None,
         replaced: None,
     })

@@ -13,8 +13,9 @@ use fredholm_scene::Scene;
 use crate::checkpoint::{self, Checkpoint};
 use crate::choice::{Choice, Extent};
 use crate::error::{Error, ErrorKind};
+use crate::hierarchical::Answer;
 use crate::memory::{self, Plan};
-use crate::options::{ProblemSettings, SceneSource, SolveOptions, SolveSettings};
+use crate::options::{ProblemSettings, SceneSource, SolveOptions, SolveSettings, Way};
 use crate::pictures::{Gathered, Source, gathering, pictures};
 use crate::prediction::{MESH, Prediction, Size};
 use crate::problem::{Problem, scene_failure, with_results};
@@ -22,7 +23,7 @@ use crate::record::{record, remarks};
 use crate::solution::{Solution, compute};
 use crate::stages::Stages;
 use crate::stochastic::expected_error;
-use crate::{hierarchical, registry};
+use crate::{hierarchical, registry, sampled};
 
 /// Pixels of the picture of a partial result.
 const QUICK_PIXELS: f64 = 40_000.0;
@@ -270,6 +271,7 @@ fn answer(
             Err(error.with_help("ask for one above 0 and below 1, such as 0.01"))
         }
         Some(accuracy) => to_accuracy(asked, &scene, (accuracy, checkpoint), stages),
+        None if asked.way.is_some() => Err(way_alone()),
         None if !asked.goal.is_empty() => Err(hierarchical::goal_alone()),
         None => dense(asked, &scene, stages),
     }
@@ -311,6 +313,9 @@ fn to_accuracy(
     if checkpoint.is_none() {
         let predicted = predicted(asked, scene, accuracy)?;
         choice = Some(predicted);
+        if predicted.is_paths() {
+            return on_paths(asked, scene, (accuracy, predicted), stages);
+        }
         if predicted.is_matrix() {
             match on_matrix(asked, scene, (accuracy, predicted), stages)? {
                 Ok(solved) => return Ok(solved),
@@ -319,17 +324,33 @@ fn to_accuracy(
         }
     }
     let options = hierarchical::options(asked, scene, accuracy)?;
+    // Whoever names a way, a goal or a solver has links in mind.
+    let free = checkpoint.is_none() && asked.way.is_none() && asked.goal.is_empty();
+    let free = free && asked.problem.solver.is_none() && scene.solve().solver.is_none();
     let choice = choice.map(|choice| choice.to_string());
     let options = SolveSettings { choice: choice.or_else(|| checkpoint?.header.choice.clone()), ..options };
     let saved = (accuracy, checkpoint, asked.folder.as_ref());
-    let (problem, solution) = hierarchical::compute(scene, &options, saved, stages)?;
-    Ok((options, problem, solution))
+    match hierarchical::compute(scene, &options, saved, free, stages)? {
+        Answer::Solved(solved) => {
+            let (problem, solution) = *solved;
+            Ok((options, problem, solution))
+        }
+        Answer::TooMany { links, paths } => {
+            on_paths(asked, scene, (accuracy, Choice::Paths { links, paths }), stages)
+        }
+    }
 }
 
 /// The way that is predicted to cost less.
 fn predicted(asked: &SolveOptions, scene: &Scene, accuracy: f64) -> Result<Choice, Error> {
-    if !asked.goal.is_empty() {
-        return Ok(Choice::Goal);
+    match asked.way {
+        Some(Way::Paths) if !asked.goal.is_empty() => {
+            let error = Error::new(ErrorKind::Input, "random paths know no goal");
+            return Err(error.with_help("leave out the goal, or the way"));
+        }
+        Some(way) => return Ok(Choice::Asked(way)),
+        None if !asked.goal.is_empty() => return Ok(Choice::Goal),
+        None => {}
     }
     let elements = scene.predicted_elements() as f64;
     if elements >= Choice::most_elements(accuracy) {
@@ -376,6 +397,26 @@ fn on_matrix(
     }
     let choice = Some(choice.to_string());
     Ok(Ok((SolveSettings { accuracy: Some(accuracy), choice, ..options }, problem, solution)))
+}
+
+/// By random paths, on the elements of the scene.
+fn on_paths(
+    asked: &SolveOptions,
+    scene: &Arc<Scene>,
+    (accuracy, choice): (f64, Choice),
+    stages: &mut Stages,
+) -> Result<(SolveSettings, Problem, Solution), Error> {
+    let mut options = hierarchical::options(asked, scene, accuracy)?;
+    sampled::NAME.clone_into(&mut options.problem.discretisation);
+    sampled::NAME.clone_into(&mut options.problem.solver);
+    let options = SolveSettings { choice: Some(choice.to_string()), ..options };
+    let (problem, solution) = sampled::compute(scene, &options, accuracy, stages)?;
+    Ok((options, problem, solution))
+}
+
+/// Refuses a way without an accuracy.
+fn way_alone() -> Error {
+    Error::new(ErrorKind::Input, "a way to an accuracy needs one").with_help("add it, such as --accuracy 1%")
 }
 
 fn write(

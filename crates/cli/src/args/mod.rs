@@ -15,6 +15,7 @@ mod waves;
 
 use std::ffi::OsString;
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
@@ -26,6 +27,7 @@ use fredholm_study::{
 use serde::Serialize;
 
 use crate::commands::{VIEW_EXAMPLES, ViewArgs};
+use crate::duration;
 use crate::start::recorded;
 pub(crate) use compare::CompareArgs;
 pub(crate) use crosscheck::CrosscheckArgs;
@@ -48,7 +50,7 @@ Examples:
 Exit codes:
   0    done
   2    bad input or usage
-  3    not converged; the results are written all the same
+  3    not converged, or out of time; the results so far are written all the same
   4    resources refused, such as memory
   5    a file could not be read or written, those that the scene names included
   6    two solutions disagree, or a tracer with the reference
@@ -64,14 +66,15 @@ Examples:
   fredholm solve room.toml --accuracy 1% --goal desk,board
   fredholm solve room.toml --accuracy 1% --final-gather --point 1,2,0.8,0,0,1
   fredholm solve house.obj --accuracy 5%
+  fredholm solve city.obj --accuracy 5% --way paths --time-limit 10min
   fredholm solve room.glb --also ply,glb
 
 A mesh file stands for a scene: .obj, .stl, .ply, .gltf, .glb, .msh (Gmsh 4.1), .rad (Radiance), .xml
 (Mitsuba 3) or .vs3 (View3D). Reflectances and lamps are those of the file (of an OBJ those of its .mtl
 file: Kd and Ke); where nothing emits, light comes evenly from all sides. What was taken is told.
 
-An accuracy is reached by hierarchical radiosity or by the matrix of the scene's elements, whichever
-is predicted to cost less; the summary says which. With the former, mesh.png shows the elements and
+An accuracy is reached by hierarchical radiosity, by the matrix of the scene's elements, or in scenes
+of many faces by random paths, whichever is predicted to cost least; the summary says which. With the former, mesh.png shows the elements and
 links.png what the element in the middle of the picture receives its light from.
 
 Ctrl-C during the assembly ends the run with nothing written; during the solution by an
@@ -236,7 +239,7 @@ impl Command {
     }
 }
 
-/// How to show what is going on.
+/// How to show what is going on, and how long it may go on.
 #[derive(Clone, Copy, Debug, Args)]
 pub(crate) struct LogArgs {
     /// Form of progress and errors on standard error
@@ -245,6 +248,10 @@ pub(crate) struct LogArgs {
     /// Show neither progress nor warnings nor summary, errors only
     #[arg(long, short)]
     pub(crate) quiet: bool,
+    /// End the run after this time, such as 30s, 10min or 2h: what there is then is kept as after
+    /// Ctrl-C, and the exit code is 3
+    #[arg(long, value_name = "TIME", value_parser = duration::parse)]
+    pub(crate) time_limit: Option<Duration>,
 }
 
 /// Form of what goes to standard error.
@@ -256,6 +263,24 @@ pub(crate) enum LogFormat {
     Plain,
     /// A JSON object a line
     Json,
+}
+
+/// A way to an accuracy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Way {
+    /// Hierarchical radiosity: elements are chosen where they are needed, and linked
+    Links,
+    /// Random paths from the lamps to the elements of the scene
+    Paths,
+}
+
+impl From<Way> for fredholm_study::Way {
+    fn from(way: Way) -> Self {
+        match way {
+            Way::Links => Self::Links,
+            Way::Paths => Self::Paths,
+        }
+    }
 }
 
 /// A further file with the field.
@@ -343,6 +368,9 @@ pub(crate) struct SolveArgs {
     /// radiosity [default: the scene's, else its elements]
     #[arg(long, value_name = "E", value_parser = accuracy)]
     pub(crate) accuracy: Option<f64>,
+    /// How to reach the accuracy [default: the way that is predicted to cost least]
+    #[arg(long, value_enum, value_name = "WAY")]
+    pub(crate) way: Option<Way>,
     /// Surfaces, by their names, whose mean irradiance is to have the accuracy; all else is only as exact as that needs, and
     /// the elements are chosen by hierarchical radiosity
     #[arg(long, value_name = "SURFACE", value_delimiter = ',')]
@@ -379,6 +407,7 @@ impl SolveArgs {
     pub(crate) fn options(&self, folder: ResultFolder) -> SolveOptions {
         SolveOptions {
             accuracy: self.accuracy,
+            way: self.way.map(Into::into),
             goal: self.goal.clone(),
             final_gather: self.final_gather,
             discontinuity: self.discontinuity,
