@@ -10,8 +10,9 @@ use fredholm_generate::Case;
 
 use crate::settings::{first, keep, number};
 
-/// CPU time of a run, s.
+/// CPU time of a run, s, and the time that it is given: bright rooms may take longer, and then it has to end by itself.
 const SECONDS: u64 = 60;
+const GIVEN: &str = "25s";
 /// Elapsed time of a run: a run that only waits ends too.
 const ELAPSED: Duration = Duration::from_mins(10);
 /// Address space of a run, KiB.
@@ -81,6 +82,11 @@ impl Run {
         message.contains("\n  help: ") || message.contains("; ")
     }
 
+    /// Whether the time that it was given has ended it.
+    fn is_out_of_time(&self) -> bool {
+        self.code == Some(3) && self.errors.contains("the time limit of")
+    }
+
     /// The message of a refusal.
     fn message(&self) -> &str {
         self.errors.find("error: ").map_or("", |start| self.errors[start..].trim_end())
@@ -91,12 +97,15 @@ impl Run {
 fn random_scenes_are_answered_or_refused() {
     let (asked, started) = (number("FREDHOLM_CASES"), Instant::now());
     let (mut faults, mut count, mut answered, mut slowest) = (vec![], 0, 0, Duration::ZERO);
+    let mut late = 0;
     while asked.map_or(started.elapsed() < IN_ALL, |asked| count < asked) {
         let seed = first() + count;
         count += 1;
         let (case, folder) = (Case::random(seed), tempfile::tempdir().unwrap());
         case.files.write(folder.path()).unwrap();
-        let run = Run::of(&case.arguments, folder.path());
+        let given = ["--time-limit", GIVEN].map(str::to_owned);
+        let run = Run::of(&[&case.arguments[..], &given].concat(), folder.path());
+        late += u64::from(run.is_out_of_time());
         answered += usize::from(run.code == Some(0));
         slowest = slowest.max(run.spent);
         if let Some(fault) = run.fault() {
@@ -121,7 +130,11 @@ fn random_scenes_are_answered_or_refused() {
             }
         }
     }
-    println!("{count} cases, {answered} answered, {} faults, slowest {slowest:.1?}", faults.len());
+    println!(
+        "{count} cases, {answered} answered, {late} out of time, {} faults, slowest {slowest:.1?}",
+        faults.len()
+    );
+    assert!(asked.is_none() || 20 * late <= count, "{late} of {count} cases take longer than {GIVEN}");
     assert!(faults.is_empty(), "{} of {count} cases:\n{}", faults.len(), faults.join("\n"));
     assert!(2 * answered as u64 > count, "only {answered} of {count} cases are answered");
 }
