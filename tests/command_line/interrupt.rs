@@ -144,6 +144,25 @@ fn the_limit_of_time_does_what_a_signal_does() {
 }
 
 #[test]
+fn what_is_gathered_is_left_out_of_a_run_cut_short() {
+    // A picture of many pixels, and walls of many faces, are several seconds of work each.
+    let drawn = room(8).replace("width = 64\nheight = 48\n", "width = 480\nheight = 360\n");
+    let cases = [("--final-gather", "gather.png", drawn), ("--discontinuity", "shadows.vtu", room(16))];
+    for (switch, file, scene) in cases {
+        let bench = Bench::new(&scene);
+        let arguments = [switch, "--threads", "1", "--form-factor-tolerance", "0.1"];
+        let (code, time) = end(solving(&bench, &arguments, "results"), "-INT");
+        assert_eq!(code, 130, "{switch}");
+        assert!(time < 2 * PROMPT, "{switch}: {time:?}");
+        let record = bench.record("out/scene");
+        let has = |name: &str| record["files"].as_array().unwrap().iter().any(|file| file == name);
+        assert!(has("field.npz") && has("image.png") && !has(file), "{}", record["files"]);
+        assert!(!bench.path(&format!("out/scene/{file}")).exists());
+        assert!(record["warnings"].to_string().contains(file) && record["partial"] != true);
+    }
+}
+
+#[test]
 fn elimination_has_no_iterate_to_write() {
     // A factorisation for every band: several seconds.
     let reflectance: Vec<f64> = (0..40).map(|band| 0.5 + 0.01 * f64::from(band)).collect();

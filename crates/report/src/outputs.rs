@@ -7,8 +7,8 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 
 use crate::{
-    Camera, Exposure, Field, FieldStep, Layer, PointTable, ReportError, ReportModel, ReportPage,
-    ResultFolder, RunRecord, ShadowMesh, render_layers, write_convergence, write_faces_csv, write_field_csv,
+    Camera, Exposure, Field, FieldStep, Picture, PointTable, ReportError, ReportModel, ReportPage,
+    ResultFolder, RunRecord, ShadowMesh, render, write_convergence, write_faces_csv, write_field_csv,
     write_field_glb, write_field_ply, write_npz, write_points_csv, write_run, write_shadows_vtu,
     write_surfaces_csv, write_vtu,
 };
@@ -34,9 +34,12 @@ pub const REPORT: &str = "report.html";
 
 /// Names of further files that a result folder may hold: pictures of the mesh, of links and of the final gather, the table of points, triangles cut along shadows, and the field as a mesh
 /// with colours.
-pub const EXTRAS: [&str; 7] =
-    ["mesh.png", "links.png", "gather.png", "points.csv", "shadows.vtu", FIELD_PLY, FIELD_GLB];
+pub const EXTRAS: [&str; 7] = ["mesh.png", "links.png", GATHER, "points.csv", SHADOWS, FIELD_PLY, FIELD_GLB];
 
+/// The picture for which every pixel gathers its light.
+pub const GATHER: &str = "gather.png";
+/// The elements cut along the borders of shadows.
+pub const SHADOWS: &str = "shadows.vtu";
 /// The field as a mesh with colours, as PLY.
 pub const FIELD_PLY: &str = "field.ply";
 /// The same as binary glTF.
@@ -45,8 +48,12 @@ pub const FIELD_GLB: &str = "field.glb";
 /// What a result folder holds besides the usual files.
 #[derive(Default)]
 pub struct Extras<'a> {
-    /// Pictures with their names, which are among [`EXTRAS`].
-    pub pictures: Vec<(&'static str, Layer<'a>)>,
+    /// The usual picture.
+    pub image: Option<Picture>,
+    /// Further pictures with their names, which are among [`EXTRAS`].
+    pub pictures: Vec<(&'static str, Picture)>,
+    /// How bright the colours of [`FIELD_PLY`] and [`FIELD_GLB`] are.
+    pub exposure: Exposure,
     /// The irradiance of points.
     pub points: Option<PointTable>,
     /// Triangles cut along the borders of shadows.
@@ -99,46 +106,42 @@ pub fn write_all(
     run: &RunRecord,
     view: &View,
 ) -> Result<Vec<PathBuf>, ReportError> {
-    write_with(folder, field, run, Some(view), &Extras::default())
+    let image = Some(render(field, &view.camera, view.exposure)?);
+    write_with(folder, field, run, &Extras { image, exposure: view.exposure, ..Extras::default() })
 }
 
-/// As [`write_all`], with more. Without a view no picture is drawn.
+/// As [`write_all`], with what was drawn and computed before, and nothing else.
 ///
 /// # Errors
-/// As for [`write_all`].
+/// [`ReportError::Write`], as for [`write_all`].
 pub fn write_with(
     folder: &ResultFolder,
     field: &Field<'_>,
     run: &RunRecord,
-    view: Option<&View>,
     more: &Extras<'_>,
 ) -> Result<Vec<PathBuf>, ReportError> {
-    let layers = std::iter::once(&Layer::Field).chain(more.pictures.iter().map(|(_, layer)| layer));
-    let drawn = view.map(|view| render_layers(field, &view.camera, view.exposure, layers)).transpose()?;
-    let mut pictures = drawn.unwrap_or_default().into_iter();
-    let picture = pictures.next();
+    let picture = more.image.as_ref();
     let mut paths = Vec::new();
-    for ((name, _), picture) in more.pictures.iter().zip(pictures) {
+    for (name, picture) in &more.pictures {
         paths.push(folder.write(name, |out| picture.write_png(out))?);
     }
     if let Some(table) = &more.points {
         paths.push(folder.write("points.csv", |out| write_points_csv(table, field.bands(), out))?);
     }
     if let Some(mesh) = &more.shadows {
-        paths.push(folder.write("shadows.vtu", |out| write_shadows_vtu(mesh, field.bands(), out))?);
+        paths.push(folder.write(SHADOWS, |out| write_shadows_vtu(mesh, field.bands(), out))?);
     }
-    let exposure = view.map_or(Exposure::Auto, |view| view.exposure);
     for name in &more.baked {
         paths.push(folder.write(name, |out| match *name {
-            FIELD_PLY => write_field_ply(field, exposure, out),
-            _ => write_field_glb(field, exposure, out),
+            FIELD_PLY => write_field_ply(field, more.exposure, out),
+            _ => write_field_glb(field, more.exposure, out),
         })?);
     }
     let page = more.report.map(|RunReport { title, view, steps: (steps_title, steps) }| {
         let model = ReportModel { steps, steps_title, ..ReportModel::lit(field, view) };
-        ReportPage::of_run(title, field, run, model, picture.as_ref())
+        ReportPage::of_run(title, field, run, model, picture)
     });
-    let draw = |out: &mut dyn Write| picture.as_ref().map_or(Ok(()), |picture| picture.write_png(out));
+    let draw = |out: &mut dyn Write| picture.map_or(Ok(()), |picture| picture.write_png(out));
     let show = |out: &mut dyn Write| page.as_ref().map_or(Ok(()), |page| page.write(out));
     let writers: [&Writer; 9] = [
         &|out| write_field_csv(field, out),
@@ -186,8 +189,9 @@ mod tests {
         let usual = [&named[..7], &named[8..]].concat();
         assert_eq!(paths, usual, "no page was asked for");
         let report = RunReport { title: "box", view: &view, steps: ("", &[]) };
-        let more = Extras { report: Some(report), ..Extras::default() };
-        let paths = write_with(&claim(&folder), &field, &record(), Some(&view), &more).unwrap();
+        let image = Some(render(&field, &view.camera, view.exposure).unwrap());
+        let more = Extras { image, report: Some(report), ..Extras::default() };
+        let paths = write_with(&claim(&folder), &field, &record(), &more).unwrap();
         assert_eq!(paths, named);
         assert!(paths.iter().all(|path| fs::metadata(path).unwrap().len() > 50));
         let count = || fs::read_dir(&folder).unwrap().count();
@@ -203,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_view_an_old_picture_goes_and_all_else_is_written() {
+    fn without_a_picture_an_old_one_goes_and_all_else_is_written() {
         let (mesh, bands) = (sample(), names(&["r", "g"]));
         let values = [1.0; 6];
         let field = Field::new(&mesh, &bands, &values, &values).unwrap();
@@ -211,7 +215,7 @@ mod tests {
         let claim = || ResultFolder::claim(folder.path()).unwrap();
         write_all(&claim(), &field, &record(), &View::framing(&field)).unwrap();
         assert!(folder.path().join(IMAGE).exists());
-        let paths = write_with(&claim(), &field, &record(), None, &Extras::default()).unwrap();
+        let paths = write_with(&claim(), &field, &record(), &Extras::default()).unwrap();
         assert_eq!(paths.len(), FILES.len() - 2);
         assert!(!folder.path().join(IMAGE).exists() && paths.iter().all(|path| path.exists()));
     }

@@ -1,6 +1,7 @@
 //! What a solution is seen by: pictures of the elements, of links, and of the light that every
 //! pixel gathers.
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use fredholm_coupling::Receiver;
@@ -13,6 +14,7 @@ use crate::error::{Error, ErrorKind};
 use crate::options::{FieldFile, SolveSettings};
 use crate::problem::Problem;
 use crate::solution::Solution;
+use crate::stages::Signals;
 
 /// Error that a node may leave in the irradiance of a pixel, over the accuracy asked for.
 const SHARE: f64 = 0.1;
@@ -78,7 +80,11 @@ impl<'a> Source<'a> {
     }
 
     /// What gathers, where that was asked for.
-    pub(crate) fn gather(&self, options: &SolveSettings) -> Result<Option<Gathered<'_>>, Error> {
+    pub(crate) fn gather<'s>(
+        &'s self,
+        options: &SolveSettings,
+        signals: &'s Signals<'s>,
+    ) -> Result<Option<Gathered<'s>>, Error> {
         let Some(light) = &self.light else { return Ok(None) };
         let tree = light.tree.as_ref().or(self.hierarchy.map(|h| &h.tree));
         let Some(tree) = tree else { return Ok(None) };
@@ -87,7 +93,7 @@ impl<'a> Source<'a> {
         let share = options.accuracy.map_or(ALONE, |accuracy| SHARE * accuracy);
         let points: Vec<Vec3> = options.points.iter().map(|receiver| receiver.point).collect();
         let gather = Gather::new(tree, &leaves, &self.problem.occluders, &points, share).map_err(failure)?;
-        Ok(Some(Gathered { problem: self.problem, light, gather }))
+        Ok(Some(Gathered { problem: self.problem, light, gather, signals }))
     }
 
     /// The links of an element as they are drawn.
@@ -195,6 +201,7 @@ pub(crate) struct Gathered<'a> {
     pub(crate) problem: &'a Problem,
     light: &'a Light,
     pub(crate) gather: Gather<'a>,
+    signals: &'a Signals<'a>,
 }
 
 impl Gathered<'_> {
@@ -233,6 +240,10 @@ impl Gathering for Gathered<'_> {
             let (rho, m) = (reflectance.row(element), exitance.row(element));
             (0..e.len()).map(|band| m[band] + rho[band] * e[band]).collect()
         })
+    }
+
+    fn go_on(&self) -> ControlFlow<()> {
+        self.signals.watch.go_on()
     }
 }
 

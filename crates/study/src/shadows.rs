@@ -4,7 +4,7 @@
 use fredholm_coupling::Receiver;
 use fredholm_hierarchical::{Gatherer, Tree, shadow_edges};
 use fredholm_mesh::{Patch, Vec3, Weld, Welded, cut_polygon, part_inside};
-use fredholm_report::ShadowMesh;
+use fredholm_report::{Gathering, ShadowMesh};
 use rayon::prelude::*;
 
 use crate::pictures::Gathered;
@@ -20,27 +20,27 @@ const TRIANGLES: usize = 200_000;
 const INSET: f64 = 1e-5;
 
 impl Gathered<'_> {
-    /// All elements, cut.
-    pub(crate) fn shadows(&self) -> ShadowMesh {
+    /// All elements, cut; nothing where the run was cancelled before the end.
+    pub(crate) fn shadows(&self) -> Option<ShadowMesh> {
         let mesh = &self.problem.mesh;
         let polygons = mesh.anchored(Weld::Everywhere).polygons;
         let edges = Edges {
             lamps: lamps(self.gather.tree(), &|leaf| self.emits(leaf)),
             most: most_lines(mesh.len()),
         };
-        let faces: Vec<ShadowMesh> =
-            (0..mesh.faces().len()).into_par_iter().map(|face| self.face(face, &polygons, &edges)).collect();
+        let faces = (0..mesh.faces().len()).into_par_iter().map(|face| self.face(face, &polygons, &edges));
+        let faces = faces.collect::<Option<Vec<ShadowMesh>>>()?;
         let mut whole = ShadowMesh::default();
         for face in faces {
             whole.triangles.extend(face.triangles);
             whole.elements.extend(face.elements);
             whole.irradiance.extend(face.irradiance);
         }
-        whole
+        Some(whole)
     }
 
-    /// The elements of a face, cut.
-    fn face(&self, face: usize, polygons: &Welded, edges: &Edges) -> ShadowMesh {
+    /// The elements of a face, cut; nothing where the run was cancelled.
+    fn face(&self, face: usize, polygons: &Welded, edges: &Edges) -> Option<ShadowMesh> {
         let mesh = &self.problem.mesh;
         let mut gatherer = self.gather.gatherer();
         let (mut cut, mut plane, mut lines) = (ShadowMesh::default(), None, Vec::new());
@@ -53,12 +53,15 @@ impl Gathered<'_> {
             let corners: Vec<Vec3> = polygons.patch(leaf).iter().map(|&k| polygons.vertices[k]).collect();
             let cuts = longest(&corners, patch.normal(), &lines, edges.most);
             for triangle in cut_polygon(&corners, patch.normal(), &cuts) {
+                if self.go_on().is_break() {
+                    return None;
+                }
                 self.light(leaf, triangle, &mut gatherer, &mut cut.irradiance);
                 cut.triangles.push(triangle);
                 cut.elements.push(leaf);
             }
         }
-        cut
+        Some(cut)
     }
 
     /// Appends the irradiance at the corners of a triangle.

@@ -1,12 +1,13 @@
 //! The radiosity of a scene: on its elements, or to an accuracy.
 
 use std::sync::Arc;
+use std::{iter, mem};
 
 use fredholm_linop::{MultiVector, StopReason, Watch};
 use fredholm_mesh::Mesh;
 use fredholm_report::{
-    CHECKPOINT, Camera, Exposure, Extras, Field, Layer, ReportError, ResultFolder, RunRecord, RunReport,
-    View, render, write_with,
+    CHECKPOINT, Camera, Exposure, Extras, Field, GATHER, Layer, Picture, ReportError, ResultFolder,
+    RunRecord, RunReport, SHADOWS, View, render, render_layers, write_with,
 };
 use fredholm_scene::Scene;
 
@@ -21,7 +22,7 @@ use crate::prediction::{MESH, Prediction, Size};
 use crate::problem::{Problem, scene_failure, with_results};
 use crate::record::{record, remarks};
 use crate::solution::{Solution, compute};
-use crate::stages::Stages;
+use crate::stages::{Signals, Stages};
 use crate::stochastic::expected_error;
 use crate::{hierarchical, registry, sampled};
 
@@ -242,9 +243,10 @@ impl Solved<'_> {
     /// `run.json`.
     pub fn write(&mut self, folder: &ResultFolder) -> Result<RunRecord, Error> {
         self.settings.output = folder.path().display().to_string();
-        let record = self.record();
+        let mut record = self.record();
         let Self { settings, problem, solution, stages } = self;
-        stages.run("results", || write(problem, settings, solution, &record, folder))?;
+        let signals = stages.signals();
+        stages.run("results", || write(problem, settings, solution, &mut record, (folder, &signals)))?;
         if !record.partial {
             checkpoint::remove(folder)?;
         }
@@ -423,34 +425,63 @@ fn write(
     problem: &Problem,
     options: &SolveSettings,
     solution: &Solution,
-    record: &RunRecord,
-    folder: &ResultFolder,
+    record: &mut RunRecord,
+    (folder, signals): (&ResultFolder, &Signals),
 ) -> Result<(), Error> {
     let exitance = problem.scene.exitance(&problem.mesh);
     let (irradiance, radiosity) = (solution.means.irradiance.as_slice(), solution.means.radiosity.as_slice());
-    let field = Field::new(&problem.mesh, &record.bands, irradiance, radiosity)
+    let bands = problem.scene.bands();
+    let field = Field::new(&problem.mesh, bands, irradiance, radiosity)
         .and_then(|field| field.with_exitance(&exitance))
         .and_then(|field| field.with_exposed(&solution.exposed))
         .map_err(report_failure)?;
     let view = view_of(problem.scene.camera(), &field);
     let view = if record.partial { quick(view) } else { view };
     let source = Source::new(problem, options, solution)?;
-    let (links, gathered) = (|element| source.linked(element), source.gather(options)?);
+    let (links, gathered) = (|element| source.linked(element), source.gather(options, signals)?);
     let layer = |name| match (name, &gathered) {
         ("mesh.png", _) => Layer::Elements,
         ("links.png", _) => Layer::Links(&links),
         (_, Some(gathered)) => Layer::Gathered(gathered),
         _ => Layer::Field,
     };
-    let pictures = pictures(options, solution).map(|name| (name, layer(name))).collect();
+    let names: Vec<&str> = pictures(options, solution).collect();
+    let layers: Vec<Layer> = iter::once(Layer::Field).chain(names.iter().map(|name| layer(name))).collect();
+    let drawn = (!options.no_pictures)
+        .then(|| render_layers(&field, &view.camera, view.exposure, &layers))
+        .transpose()
+        .map_err(report_failure)?;
+    let mut drawn = drawn.unwrap_or_default().into_iter();
+    let image = drawn.next().flatten();
+    let pictures = names.into_iter().zip(drawn);
+    let pictures: Vec<_> = pictures.filter_map(|(name, picture)| Some((name, picture?))).collect();
     let points = gathered.as_ref().map(|gathered| gathered.points(options)).transpose()?.flatten();
-    let shadows = gathered.as_ref().filter(|_| options.discontinuity).map(Gathered::shadows);
+    let shadows = gathered.as_ref().filter(|_| options.discontinuity).and_then(Gathered::shadows);
+    if signals.is_cancelled() && !record.partial {
+        leave_out(record, &pictures, shadows.is_some(), signals);
+    }
     let title = title(&problem.scene);
     let report = (!options.no_report).then_some(RunReport { title: &title, view: &view, steps: ("", &[]) });
-    let view = (!options.no_pictures).then_some(&view);
     let baked = options.also.iter().map(|file| file.name()).collect();
-    let more = Extras { pictures, points, shadows, baked, report };
-    write_with(folder, &field, record, view, &more).map(drop).map_err(report_failure)
+    let more = Extras { image, pictures, exposure: view.exposure, points, shadows, baked, report };
+    write_with(folder, &field, record, &more).map(drop).map_err(report_failure)
+}
+
+/// Takes what a cancelled run has not finished from the list of its files, and says so.
+fn leave_out(record: &mut RunRecord, pictures: &[(&str, Picture)], shadows: bool, signals: &Signals) {
+    let missing = |name: &str| match name {
+        GATHER => pictures.iter().all(|(drawn, _)| *drawn != name),
+        SHADOWS => !shadows,
+        _ => false,
+    };
+    let (left_out, written) = mem::take(&mut record.files).into_iter().partition(|name| missing(name));
+    record.files = written;
+    let left_out: Vec<String> = left_out;
+    if !left_out.is_empty() {
+        let text = format!("interrupted: {} left out; the solution itself is whole", left_out.join(" and "));
+        signals.watch.warn(&text);
+        record.warnings.push(text);
+    }
 }
 
 /// The title of the scene, or the name of its file.

@@ -33,7 +33,7 @@ pub(super) fn finish(
     let record = solved.write(folder)?;
     solved.remarks().for_each(|remark| terminal.warn(&remark));
     if terminal.interrupt.requested() && !record.partial {
-        terminal.warn("interrupted when the solution was there: the results are complete all the same");
+        terminal.warn("interrupted when the solution was there: the solution is complete all the same");
     }
     if !log.quiet {
         summarise(folder.path(), &record)?;

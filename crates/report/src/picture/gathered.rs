@@ -3,9 +3,12 @@
 //! The samples of a pixel that lie on one plane of one surface have one colour: it is gathered at the one nearest to their mean. So borders are drawn as finely as in the interpolated picture, and
 //! light is gathered little more than once a pixel. W/m².
 
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use fredholm_mesh::Vec3;
 
-use super::{Brush, Painter, SAMPLES, Sample, mean};
+use super::{BACKGROUND, Brush, Painter, SAMPLES, Sample, mean};
 use crate::Field;
 use crate::colour::{Colouring, Rgb};
 
@@ -16,17 +19,24 @@ const TURN: f64 = 1e-9;
 pub trait Gathering: Sync {
     /// A gatherer for one thread: the radiosity of a point of an element, of each band, W/m².
     fn gatherer(&self) -> Box<dyn FnMut(usize, Vec3) -> Vec<f64> + '_>;
+
+    /// Whether the picture is still wanted; asked for every pixel.
+    fn go_on(&self) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
 }
 
 pub(super) struct GatherPainter<'a> {
     field: Field<'a>,
     gathering: &'a dyn Gathering,
     colouring: Colouring,
+    /// Whether a pixel was left out because the picture was not wanted any more.
+    stopped: AtomicBool,
 }
 
 impl<'a> GatherPainter<'a> {
     pub fn new(field: Field<'a>, gathering: &'a dyn Gathering) -> Self {
-        Self { field, gathering, colouring: Colouring::new(field.bands()) }
+        Self { field, gathering, colouring: Colouring::new(field.bands()), stopped: AtomicBool::new(false) }
     }
 
     /// Whether two samples lie on one plane of one surface.
@@ -54,6 +64,10 @@ impl Painter for GatherPainter<'_> {
     fn brush(&self) -> Brush<'_> {
         let mut gather = self.gathering.gatherer();
         Box::new(move |_, tone, samples| {
+            if self.stopped.load(Ordering::Relaxed) || self.gathering.go_on().is_break() {
+                self.stopped.store(true, Ordering::Relaxed);
+                return [BACKGROUND; 3];
+            }
             let mut known: Vec<(Sample, Rgb)> = Vec::new();
             mean(samples, |sample| {
                 if let Some((_, colour)) = known.iter().find(|(other, _)| self.alike(other, sample)) {
@@ -65,5 +79,9 @@ impl Painter for GatherPainter<'_> {
                 colour
             })
         })
+    }
+
+    fn is_whole(&self) -> bool {
+        !self.stopped.load(Ordering::Relaxed)
     }
 }

@@ -75,11 +75,12 @@ pub enum Layer<'a> {
 /// [`ReportError::Camera`] or [`ReportError::Exposure`] for settings that make no picture,
 /// [`ReportError::Visibility`] where the surfaces cannot be prepared for ray casting.
 pub fn render(field: &Field<'_>, camera: &Camera, exposure: Exposure) -> Result<Picture, ReportError> {
-    let mut pictures = render_layers(field, camera, exposure, &[Layer::Field])?;
-    Ok(pictures.swap_remove(0))
+    let mut pictures = drawn(field, camera, exposure, &[Layer::Field])?;
+    Ok(pictures.swap_remove(0).0)
 }
 
 /// Draws several pictures of a field as a camera sees it, all of one exposure, and casts the rays once.
+/// There is none of what [`Gathering::go_on`] did not want any more before it was whole.
 ///
 /// # Errors
 /// As for [`render`].
@@ -88,7 +89,18 @@ pub fn render_layers<'a>(
     camera: &Camera,
     exposure: Exposure,
     layers: impl IntoIterator<Item = &'a Layer<'a>>,
-) -> Result<Vec<Picture>, ReportError> {
+) -> Result<Vec<Option<Picture>>, ReportError> {
+    let pictures = drawn(field, camera, exposure, layers)?;
+    Ok(pictures.into_iter().map(|(picture, whole)| whole.then_some(picture)).collect())
+}
+
+/// The pictures, and whether each is whole.
+fn drawn<'a>(
+    field: &Field<'_>,
+    camera: &Camera,
+    exposure: Exposure,
+    layers: impl IntoIterator<Item = &'a Layer<'a>>,
+) -> Result<Vec<(Picture, bool)>, ReportError> {
     let view = Viewer::new(field, camera)?;
     let tone = Tone::new(exposure, &view.meter(field))?;
     let painters: Vec<Box<dyn Painter + '_>> =
@@ -103,7 +115,7 @@ pub fn render_layers<'a>(
         let pixels = rows.chunks_exact(width).flat_map(part).collect();
         let mut picture = Picture { width: camera.width, height: camera.height, pixels };
         painter.finish(&view, &mut picture);
-        pictures.push(picture);
+        pictures.push((picture, painter.is_whole()));
     }
     Ok(pictures)
 }
@@ -124,6 +136,11 @@ trait Painter: Sync {
 
     /// Adds what is drawn over the whole picture.
     fn finish(&self, _view: &Viewer<'_>, _picture: &mut Picture) {}
+
+    /// Whether all pixels were painted.
+    fn is_whole(&self) -> bool {
+        true
+    }
 }
 
 /// Paints a pixel.
@@ -239,6 +256,8 @@ mod tests {
     use crate::field::tests::{grid, names};
     use fredholm_mesh::{Mesh, MeshBuilder, Patch, Vec3};
     use rayon::ThreadPoolBuilder;
+    use std::ops::ControlFlow;
+    use std::sync::atomic::{AtomicUsize, Ordering};
 
     /// Looks down on the unit square from 2 m: the picture is 4 m wide and high.
     fn above(width: u32, height: u32) -> Camera {
@@ -355,7 +374,8 @@ mod tests {
     fn layers(layers: &[Layer<'_>]) -> Vec<Picture> {
         let (mesh, bands) = (square(2), names(&["grey"]));
         let field = Field::new(&mesh, &bands, &[2.0; 4], &[2.0; 4]).unwrap();
-        render_layers(&field, &above(80, 80), Exposure::Fixed(0.5), layers).unwrap()
+        let pictures = render_layers(&field, &above(80, 80), Exposure::Fixed(0.5), layers).unwrap();
+        pictures.into_iter().map(Option::unwrap).collect()
     }
 
     #[test]
@@ -422,5 +442,29 @@ mod tests {
             assert!(low <= found && found <= high, "{x}: {found} is not from {low} to {high}");
         }
         assert_eq!(pixel(picture, 2, 2), pixel(picture, 70, 70), "nothing is gathered beside the square");
+    }
+
+    /// Whoever wants the first pixels only.
+    struct Impatient(AtomicUsize);
+
+    impl Gathering for Impatient {
+        fn gatherer(&self) -> Box<dyn FnMut(usize, Vec3) -> Vec<f64> + '_> {
+            Ramp.gatherer()
+        }
+
+        fn go_on(&self) -> ControlFlow<()> {
+            let asked = self.0.fetch_add(1, Ordering::Relaxed);
+            if asked < 100 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        }
+    }
+
+    #[test]
+    fn a_picture_that_is_not_whole_is_none() {
+        let (mesh, bands) = (square(2), names(&["grey"]));
+        let field = Field::new(&mesh, &bands, &[2.0; 4], &[2.0; 4]).unwrap();
+        let gathering = Impatient(AtomicUsize::new(0));
+        let layers = [Layer::Field, Layer::Gathered(&gathering)];
+        let pictures = render_layers(&field, &above(80, 80), Exposure::Fixed(0.5), &layers).unwrap();
+        assert!(pictures[0].is_some() && pictures[1].is_none());
     }
 }
