@@ -145,9 +145,14 @@ fn the_limit_of_time_does_what_a_signal_does() {
 
 #[test]
 fn what_is_gathered_is_left_out_of_a_run_cut_short() {
-    // A picture of many pixels, and walls of many faces, are several seconds of work each.
+    // A picture of many pixels, walls of many faces, and many points are several seconds of work each.
     let drawn = room(8).replace("width = 64\nheight = 48\n", "width = 480\nheight = 360\n");
-    let cases = [("--final-gather", "gather.png", drawn), ("--discontinuity", "shadows.vtu", room(16))];
+    let plane = "--plane=0.1,0.1,0.5,0.8,0,0,0,0.8,0,400,400";
+    let cases = [
+        ("--final-gather", "gather.png", drawn),
+        ("--discontinuity", "shadows.vtu", room(16)),
+        (plane, "points.csv", room(8)),
+    ];
     for (switch, file, scene) in cases {
         let bench = Bench::new(&scene);
         let arguments = [switch, "--threads", "1", "--form-factor-tolerance", "0.1"];

@@ -44,7 +44,7 @@ fn gathered(
     let expected = MultiVector::from_fn(points.len(), irradiance.lanes(), |k, band| {
         irradiance.row(receivers[k].0)[band]
     });
-    gather.irradiance(&points, &expected).unwrap()
+    gather.irradiance(&points, &expected, &Quiet).unwrap()
 }
 
 /// Factor from a point to a parallel rectangle at height h over it whose corner is over the point (Howell B-3).
@@ -191,7 +191,7 @@ fn behind_many_bodies_the_strong_senders_are_cut_and_the_weak_ones_sampled() {
     let places =
         (0..25).map(|k| Vec3::new(0.1 + 0.17 * f64::from(k % 5), 0.13 + 0.17 * f64::from(k / 5), 0.0));
     let points: Vec<Receiver> = places.map(|p| Receiver::new(p, Vec3::Z).unwrap()).collect();
-    let found = gather.irradiance(&points, &MultiVector::from_fn(25, 2, |_, _| 0.1)).unwrap();
+    let found = gather.irradiance(&points, &MultiVector::from_fn(25, 2, |_, _| 0.1), &Quiet).unwrap();
     let patches: Vec<&Patch> = bench.mesh.patches().collect();
     let row_of: Vec<usize> = (0..n).map(|i| i.min(3)).collect();
     let targets = Targets { patches: &patches, row_of: &row_of, rows: 4, occluders: &bench.occluders };
@@ -230,5 +230,5 @@ fn lists_of_another_length_are_refused() {
     let exposed = exposed(&solution);
     let gather =
         Gather::new(&solution.tree, &Leaves { exposed: &exposed, ..leaves }, &bench.occluders, &[], 1e-3);
-    assert!(gather.unwrap().irradiance(&[up], &MultiVector::zeros(2, 1)).is_err());
+    assert!(gather.unwrap().irradiance(&[up], &MultiVector::zeros(2, 1), &Quiet).is_err());
 }

@@ -34,10 +34,12 @@ pub const REPORT: &str = "report.html";
 
 /// Names of further files that a result folder may hold: pictures of the mesh, of links and of the final gather, the table of points, triangles cut along shadows, and the field as a mesh
 /// with colours.
-pub const EXTRAS: [&str; 7] = ["mesh.png", "links.png", GATHER, "points.csv", SHADOWS, FIELD_PLY, FIELD_GLB];
+pub const EXTRAS: [&str; 7] = ["mesh.png", "links.png", GATHER, POINTS, SHADOWS, FIELD_PLY, FIELD_GLB];
 
 /// The picture for which every pixel gathers its light.
 pub const GATHER: &str = "gather.png";
+/// The irradiance of points.
+pub const POINTS: &str = "points.csv";
 /// The elements cut along the borders of shadows.
 pub const SHADOWS: &str = "shadows.vtu";
 /// The field as a mesh with colours, as PLY.
@@ -126,7 +128,7 @@ pub fn write_with(
         paths.push(folder.write(name, |out| picture.write_png(out))?);
     }
     if let Some(table) = &more.points {
-        paths.push(folder.write("points.csv", |out| write_points_csv(table, field.bands(), out))?);
+        paths.push(folder.write(POINTS, |out| write_points_csv(table, field.bands(), out))?);
     }
     if let Some(mesh) = &more.shadows {
         paths.push(folder.write(SHADOWS, |out| write_shadows_vtu(mesh, field.bands(), out))?);

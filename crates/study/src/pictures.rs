@@ -215,7 +215,8 @@ impl Gathered<'_> {
         self.light.irradiance.row(element)
     }
 
-    /// The irradiance of the points that were asked for.
+    /// The irradiance of the points that were asked for; nothing where the run was cancelled before
+    /// the end.
     pub(crate) fn points(&self, options: &SolveSettings) -> Result<Option<PointTable>, Error> {
         if options.points.is_empty() {
             return Ok(None);
@@ -223,8 +224,11 @@ impl Gathered<'_> {
         let usual = self.gather.usual();
         let usual = MultiVector::from_fn(options.points.len(), usual.len(), |_, band| usual[band]);
         // What comes of the first time tells how exact the second one has to be.
-        let first = self.gather.irradiance(&options.points, &usual).map_err(failure)?;
-        let found = self.gather.irradiance(&options.points, &first).map_err(failure)?;
+        let gathered = |expected: &_| self.gather.irradiance(&options.points, expected, self.signals.watch);
+        let found = match gathered(&usual).and_then(|first| gathered(&first)) {
+            Err(HierarchyError::Interrupted) => return Ok(None),
+            found => found.map_err(failure)?,
+        };
         let points = options.points.iter().map(|receiver| [receiver.point, receiver.normal]).collect();
         Ok(Some(PointTable { points, irradiance: found.as_slice().to_vec() }))
     }

@@ -6,7 +6,7 @@ use std::{iter, mem};
 use fredholm_linop::{MultiVector, StopReason, Watch};
 use fredholm_mesh::Mesh;
 use fredholm_report::{
-    CHECKPOINT, Camera, Exposure, Extras, Field, GATHER, Layer, Picture, ReportError, ResultFolder,
+    CHECKPOINT, Camera, Exposure, Extras, Field, GATHER, Layer, POINTS, Picture, ReportError, ResultFolder,
     RunRecord, RunReport, SHADOWS, View, render, render_layers, write_with,
 };
 use fredholm_scene::Scene;
@@ -458,7 +458,7 @@ fn write(
     let points = gathered.as_ref().map(|gathered| gathered.points(options)).transpose()?.flatten();
     let shadows = gathered.as_ref().filter(|_| options.discontinuity).and_then(Gathered::shadows);
     if signals.is_cancelled() && !record.partial {
-        leave_out(record, &pictures, shadows.is_some(), signals);
+        leave_out(record, &pictures, (points.is_some(), shadows.is_some()), signals);
     }
     let title = title(&problem.scene);
     let report = (!options.no_report).then_some(RunReport { title: &title, view: &view, steps: ("", &[]) });
@@ -468,9 +468,15 @@ fn write(
 }
 
 /// Takes what a cancelled run has not finished from the list of its files, and says so.
-fn leave_out(record: &mut RunRecord, pictures: &[(&str, Picture)], shadows: bool, signals: &Signals) {
+fn leave_out(
+    record: &mut RunRecord,
+    pictures: &[(&str, Picture)],
+    (points, shadows): (bool, bool),
+    signals: &Signals,
+) {
     let missing = |name: &str| match name {
         GATHER => pictures.iter().all(|(drawn, _)| *drawn != name),
+        POINTS => !points,
         SHADOWS => !shadows,
         _ => false,
     };

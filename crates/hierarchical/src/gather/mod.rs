@@ -11,9 +11,11 @@ mod senders;
 mod shadows;
 mod walk;
 
+use std::ops::ControlFlow;
+
 use crate::{HierarchyError, Tree};
 use fredholm_coupling::Receiver;
-use fredholm_linop::MultiVector;
+use fredholm_linop::{MultiVector, Watch};
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::Occluders;
 use fredholm_visibility::body::Bodies;
@@ -114,11 +116,13 @@ impl<'a> Gather<'a> {
     /// Irradiance of receivers, receivers × bands, W/m², in parallel; `expected` has a row for each of them.
     ///
     /// # Errors
-    /// [`HierarchyError::Shape`] unless `expected` has a row a receiver.
+    /// [`HierarchyError::Shape`] unless `expected` has a row a receiver, [`HierarchyError::Interrupted`]
+    /// where the watch wants it no more: it is asked for every receiver.
     pub fn irradiance(
         &self,
         receivers: &[Receiver],
         expected: &MultiVector<f64>,
+        watch: &dyn Watch,
     ) -> Result<MultiVector<f64>, HierarchyError> {
         if expected.dim() != receivers.len() {
             let (found, expected) = (expected.dim(), receivers.len());
@@ -127,14 +131,16 @@ impl<'a> Gather<'a> {
         let bands = self.floor.len();
         let mut found = MultiVector::zeros(receivers.len(), bands);
         let chunks = found.as_mut_slice().par_chunks_mut(CHUNK * bands).enumerate();
-        chunks.for_each(|(chunk, rows)| {
+        let gathered = chunks.try_for_each(|(chunk, rows)| {
             let mut gatherer = self.gatherer();
             for (k, row) in rows.chunks_exact_mut(bands).enumerate() {
+                watch.go_on()?;
                 let at = chunk * CHUNK + k;
                 row.copy_from_slice(gatherer.irradiance(&receivers[at], expected.row(at)));
             }
+            ControlFlow::Continue(())
         });
-        Ok(found)
+        if gathered.is_break() { Err(HierarchyError::Interrupted) } else { Ok(found) }
     }
 }
 
