@@ -79,7 +79,9 @@ mod tests {
     #[test]
     fn the_least_of_the_last_entries_comes_first() {
         let mut stack = Stack::default();
-        [9, 1, 5, 3, 7, 4].iter().for_each(|&i| stack.push(i));
+        for i in [9, 1, 5, 3, 7, 4] {
+            stack.push(i);
+        }
         stack.sort_from(2, |a, b| a < b);
         let popped: Vec<i32> = std::iter::from_fn(|| stack.pop()).collect();
         assert_eq!(popped, [3, 4, 5, 7, 1, 9]);
