@@ -64,4 +64,15 @@ pub struct FarRow {
     pub amplitude: [f64; 4],
     /// Radar cross-sections for reception along θ̂ and φ̂, m², where a plane wave is incident.
     pub cross_section: Option<[f64; 2]>,
+    /// The far field with that of the sources, where all of them are at places.
+    pub total: Option<FarTotal>,
+}
+
+/// The far field of located sources and of all that they light, in a direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FarTotal {
+    /// F along θ̂ and φ̂: real and imaginary part, V.
+    pub amplitude: [f64; 4],
+    /// 4π times the power per solid angle over the power that the sources supply; not a number where that is not known.
+    pub gain: f64,
 }

@@ -5,8 +5,10 @@
 //! | closed conductors, edges up to λ/4 | `dual-surface-mfie`, GMRES | an equation without approximation but the mesh |
 //! | conductors, sheets among them, small | `efie`, LU | an equation without approximation but the mesh; the matrix is stored |
 //! | conductors, sheets among them, larger | `radiated`, GMRES, edge currents | currents make the shadow themselves: what hides a part of what stands behind is counted once |
-//! | one flat sheet | one bounce, edge currents | its facets do not light each other |
+//! | one flat sheet, small | `efie`, LU | as above: it costs no second |
+//! | one flat sheet, larger | one bounce, edge currents | its facets do not light each other |
 //! | panes and other materials | one bounce; `radiated` where something is let through | bounces have to be asked for |
+//! | many incident waves, where the scene names no solver | LU | one factorisation for all of them |
 //! | edges above λ/2 | one bounce | nothing else is known on such facets |
 //!
 //! The figures are in `docs/notes/waves.md`, treatment by treatment and bounce by bounce. Where
@@ -26,6 +28,13 @@ const EQUATION: f64 = 0.26;
 /// Most unknowns of boundary elements that are taken unasked: assembly and factorisation then take
 /// some tens of seconds a core.
 const MOST_UNKNOWNS: usize = 6_000;
+/// The same of one flat sheet, which one bounce with edge currents describes well where it is larger.
+const MOST_FLAT: usize = 1_500;
+/// Incident waves from which on a factorisation is taken for all of them, and the largest matrix for it, bytes.
+const MANY_WAVES: usize = 16;
+const MOST_FACTORISED: u128 = 4 << 30;
+/// Extent over the wavelength below which physical optics says nothing.
+const OPTICAL: f64 = 0.5;
 /// Matrices that the factorisation holds at once.
 const MATRICES: u128 = 2;
 /// Longest edge for several bounces, in wavelengths.
@@ -47,6 +56,10 @@ pub(super) struct Asked {
     pub(super) optics: bool,
     pub(super) method: Option<Method>,
     pub(super) edge_currents: Option<bool>,
+    /// Whether a solver is named.
+    pub(super) solver: bool,
+    /// Incident waves that are solved for.
+    pub(super) waves: usize,
 }
 
 impl Asked {
@@ -130,14 +143,14 @@ fn shortest(bands: &[Band]) -> f64 {
 }
 
 /// Whether boundary elements are possible on the mesh, their unknowns few, and their matrix fits.
-fn is_small(geometry: &Geometry, wavelength: f64, fits: &dyn Fn(u128) -> bool) -> bool {
-    if geometry.mesh.len() > MOST_UNKNOWNS {
+fn is_small(geometry: &Geometry, (wavelength, most): (f64, usize), fits: &dyn Fn(u128) -> bool) -> bool {
+    if geometry.mesh.len() > most {
         return false;
     }
     Surface::from_mesh(&geometry.mesh).and_then(Basis::new).is_ok_and(|basis| {
         let matrix = (basis.len() * basis.len() * size_of::<Complex64>()) as u128;
         let resolved = basis.topology().check_resolution(basis.surface(), wavelength).is_ok();
-        resolved && basis.len() <= MOST_UNKNOWNS && fits(MATRICES * matrix)
+        resolved && basis.len() <= most && fits(MATRICES * matrix)
     })
 }
 
@@ -162,7 +175,9 @@ pub(super) fn taken(asked: Asked, geometry: &Geometry, bands: &[Band], fits: &dy
     let mut taken = match (asked.method, asked.shadow) {
         // Edge currents complete physical optics: who asks for them, or for none, means that.
         (None, None) if !asked.optics => {
-            let small = || asked.edge_currents.is_none() && is_small(geometry, shortest(bands), fits);
+            let most = if seen.flat { MOST_FLAT } else { MOST_UNKNOWNS };
+            let size = (shortest(bands), most);
+            let small = || asked.edge_currents.is_none() && is_small(geometry, size, fits);
             chosen(&seen, &small)
         }
         (method, shadow) => completed(method.unwrap_or(Method::Bounces(1)), (asked.optics, shadow), &seen),
@@ -175,11 +190,35 @@ pub(super) fn taken(asked: Asked, geometry: &Geometry, bands: &[Band], fits: &dy
         let shadow = if seen.sheets { Shadow::Radiated } else { Shadow::Geometric };
         taken = Taken { shadow, reason: Some("edge currents complete physical optics".to_owned()), ..taken };
     }
+    if !asked.solver && asked.waves >= MANY_WAVES {
+        factorise(&mut taken, &seen, fits);
+    }
+    let longest = bands.iter().map(|band| band.wave.wavelength()).fold(0.0, f64::max);
+    let extent = geometry.mesh.bounds().map_or(0.0, |bounds| bounds.diagonal()) / longest;
+    if taken.galerkin.is_none() && !taken.shadow.is_equation() && seen.conductors && extent < OPTICAL {
+        taken.warnings.push(format!(
+            "the surfaces are {extent:.2e} wavelengths from end to end, where physical optics says nothing; take method = \"efie\""
+        ));
+    }
     taken
 }
 
+/// Takes LU for many incident waves, where the matrix of the facets is not too large for that.
+fn factorise(taken: &mut Taken, seen: &Seen, fits: &dyn Fn(u128) -> bool) {
+    let matrix = (2 * seen.facets as u128).pow(2) * size_of::<Complex64>() as u128;
+    if let Method::Solver { solver, .. } = &mut taken.method
+        && taken.galerkin.is_none()
+        && seen.conductors
+        && matrix <= MOST_FACTORISED
+        && fits(MATRICES * matrix)
+        && let Ok(lu) = super::registry::build(BY_MATRIX)
+    {
+        *solver = lu;
+    }
+}
+
 fn chosen(seen: &Seen, small: &dyn Fn() -> bool) -> Taken {
-    let boundary_elements = seen.conductors && seen.sheets && !seen.flat && !seen.sweep;
+    let boundary_elements = seen.conductors && seen.sheets && !seen.sweep;
     if boundary_elements
         && small()
         && let Ok(solver) = super::registry::build(BY_MATRIX)
@@ -190,7 +229,7 @@ fn chosen(seen: &Seen, small: &dyn Fn() -> bool) -> Taken {
             method: Method::Solver { solver, tolerance: TOLERANCE, max_iterations: ITERATIONS },
             edge_currents: false,
             reason: Some(
-                "conductors, sheets among them, with few unknowns: an equation without approximation"
+                "conductors, sheets among them, of few unknowns: an equation without approximation"
                     .to_owned(),
             ),
             warnings: Vec::new(),
@@ -259,6 +298,12 @@ fn completed(method: Method, (optics, shadow): (bool, Option<Shadow>), seen: &Se
     if shadow == Some(Shadow::Geometric) && several && seen.sheets && !seen.flat {
         warnings.push(
             "geometric shadows with several bounces count the shadow behind a sheet twice; take shadows = \"radiated\" unless no sheet hides another"
+                .to_owned(),
+        );
+    }
+    if shadow == Some(Shadow::Geometric) && seen.panes && !seen.flat {
+        warnings.push(
+            "geometric shadows let what is behind a pane be dark; take shadows = \"radiated\" where something is let through"
                 .to_owned(),
         );
     }

@@ -293,7 +293,11 @@ fn far(
     let (angles, sections): (Vec<_>, Vec<_>) = known.unzip();
     let lines = [("θ", 0), ("φ", 1)];
     let line = |(name, part): (&str, usize)| (name.to_owned(), sections.iter().map(|s| s[part]).collect());
-    cross_sections(folder, stem, &angles, &lines.map(line))
+    over_angle(folder, stem, ("radar cross-section", "dB(m²)"), &angles, &lines.map(line))?;
+    let here = outcome.far.iter().filter(|row| row.receiver == index && same(row.frequency, frequency));
+    let known = here.filter_map(|row| Some(([row.theta_degrees, row.phi_degrees], row.total?.gain)));
+    let (angles, gains): (Vec<_>, Vec<_>) = known.filter(|(_, gain)| gain.is_finite()).unzip();
+    over_angle(folder, stem, ("gain", "dBi"), &angles, &[("gain".to_owned(), gains)])
 }
 
 /// The same of a monostatic sweep, for either polarisation and across.
@@ -309,28 +313,29 @@ fn sweep(
     let (angles, sections): (Vec<_>, Vec<_>) = known.unzip();
     let lines = [("θθ", 0), ("φφ", 3), ("φθ", 1)];
     let line = |(name, part): (&str, usize)| (name.to_owned(), sections.iter().map(|s| s[part]).collect());
-    cross_sections(folder, stem, &angles, &lines.map(line))
+    over_angle(folder, stem, ("radar cross-section", "dB(m²)"), &angles, &lines.map(line))
 }
 
 fn same(a: f64, b: f64) -> bool {
     a.total_cmp(&b).is_eq()
 }
 
-/// Lines of cross-sections (m²) over φ where θ stays the same, else over θ.
-fn cross_sections(
+/// Decibels of a quantity, by name and unit, over φ where θ stays the same, else over θ; nothing where there is no angle.
+fn over_angle(
     folder: &ResultFolder,
     stem: &str,
+    (quantity, unit): (&str, &str),
     angles: &[[f64; 2]],
     lines: &[(String, Vec<f64>)],
 ) -> Result<(), ReportError> {
     let Some(first) = angles.first() else { return Ok(()) };
     let over_phi = angles.iter().all(|angle| same(angle[0], first[0]));
     let across = angles.iter().map(|angle| angle[usize::from(over_phi)]);
-    let line = |(name, sections): &(String, Vec<f64>)| {
-        let levels = sections.iter().map(|section| 10.0 * section.log10());
+    let line = |(name, values): &(String, Vec<f64>)| {
+        let levels = values.iter().map(|value| 10.0 * value.log10());
         (name.clone(), across.clone().zip(levels).collect())
     };
     let lines: Vec<(String, Vec<(f64, f64)>)> = lines.iter().map(line).collect();
-    let title = format!("{stem}: radar cross-section over {}", if over_phi { "φ" } else { "θ" });
-    folder.write(&format!("{stem}.svg"), |out| write_polar_plot(&title, "dB(m²)", &lines, out)).map(drop)
+    let title = format!("{stem}: {quantity} over {}", if over_phi { "φ" } else { "θ" });
+    folder.write(&format!("{stem}.svg"), |out| write_polar_plot(&title, unit, &lines, out)).map(drop)
 }

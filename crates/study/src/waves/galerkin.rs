@@ -12,6 +12,7 @@ use fredholm_scene::waves::{About, Places};
 use fredholm_waves::material::Material;
 use fredholm_waves::{Complex64, Current, FarField, Field, Indicator, Kind, Source, even_directions};
 
+use super::balance::{Balancing, Reciprocity, power};
 use super::compute::{current, directions, far_row, near_rows};
 use super::estimate::Estimated;
 use super::geometry::Geometry;
@@ -53,12 +54,13 @@ pub(super) fn run(
     stages: &mut Stages,
 ) -> Result<Outcome, Error> {
     let basis = basis(model, geometry)?;
-    let edge = longest_edge(geometry, &basis, equation).filter(|_| name.is_empty());
+    let first = name.is_empty();
+    let edge = longest_edge(geometry, &basis, equation).filter(|_| first);
     let mut outcome = Outcome::default();
     for band in &model.bands {
         check_conductor(model, band)?;
         let name = format!("{} MHz{name}", band.wave.frequency() / 1e6);
-        Task { model, geometry, basis: &basis, band, equation, edge }.carry_out(
+        Task { model, geometry, basis: &basis, band, equation, edge, first }.carry_out(
             &name,
             stages,
             &mut outcome,
@@ -92,6 +94,8 @@ struct Task<'a> {
     equation: Equation,
     /// The longest edge, m, where the error is stated from it.
     edge: Option<f64>,
+    /// Whether this is the run itself, not one that errors are estimated from.
+    first: bool,
 }
 
 impl Task<'_> {
@@ -119,6 +123,7 @@ impl Task<'_> {
             if let Places::Monostatic(angles) = &receiver.places {
                 let sweep = || self.sweep(&conductor, &coupling, (index, angles), signals);
                 let (rows, solution) = stages.run(&format!("sweep at {name}"), sweep)?;
+                outcome.reciprocity.extend(Reciprocity::of(&rows));
                 outcome.monostatic.extend(rows);
                 outcome.solved.push(self.record(solution));
             }
@@ -185,6 +190,21 @@ impl Task<'_> {
         error: Option<&MeanError>,
         outcome: &mut Outcome,
     ) -> Result<(), Error> {
+        let power = power(self.model, self.band, &|p| currents.fields(&[p]).ok().map(|fields| fields[0].e));
+        if self.first {
+            let unknowns = self.basis.len() as f64;
+            let balancing = Balancing {
+                model: self.model,
+                band: self.band,
+                geometry: self.geometry,
+                elements: unknowns,
+                // An entry of the matrix takes some ten times as long as a direction of an element.
+                pairs: 10.0 * unknowns * unknowns,
+                power,
+            };
+            let far = |u: &[Vec3]| Ok(self.far(currents, u)?.into_iter().map(|far| far.amplitude).collect());
+            outcome.balances.extend(balancing.balance(&far)?);
+        }
         for (index, receiver) in self.model.receivers.iter().enumerate() {
             let relative =
                 match &receiver.places {
@@ -202,7 +222,7 @@ impl Task<'_> {
                         let far = self.far(currents, &directions(angles))?;
                         let rows = far.iter().zip(angles).enumerate();
                         outcome.far.extend(rows.map(|(i, (far, angles))| {
-                            far_row(self.model, self.band, [index, i], *angles, far)
+                            far_row((self.model, self.band, power), [index, i], *angles, far)
                         }));
                         let squares = far.iter().map(|far| far.amplitude.norm_squared());
                         error.map(|error| error.relative_far(squares))

@@ -273,7 +273,14 @@ fn asked(scene: &WaveScene) -> Result<Asked, Error> {
         optics: settings.method == Some(scene::Method::PhysicalOptics),
         method: method(scene)?,
         edge_currents: settings.edge_currents,
+        solver: settings.solver.is_some(),
+        waves: scene.receivers().iter().filter(|receiver| receiver.is_monostatic()).map(incident).sum(),
     })
+}
+
+/// Incident waves of a monostatic receiver.
+fn incident(receiver: &scene::Receiver) -> usize {
+    usize::try_from(2 * receiver.count()).unwrap_or(usize::MAX)
 }
 
 /// The treatment of shadows that is asked for.
