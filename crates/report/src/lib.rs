@@ -138,9 +138,9 @@ pub use viewfactors::{
 };
 pub use vtu::write_vtu;
 pub use waves::{
-    FarRow, FarTotal, FieldMap, FrequencyLine, MapQuantity, MonostaticRow, WAVE_COMPARISON_FORMAT, WaveComparison,
-    WaveComparisonCase, WaveCurrents, WaveResiduals, WaveRow, write_currents_vtu, write_far_csv,
-    write_far_npz, write_frequency_plot, write_monostatic_csv, write_monostatic_npz, write_polar_plot,
-    write_receivers_csv, write_receivers_npz, write_residuals_csv, write_residuals_plot,
+    FarRow, FarTotal, FieldMap, FrequencyLine, MapQuantity, MonostaticRow, WAVE_COMPARISON_FORMAT,
+    WaveComparison, WaveComparisonCase, WaveCurrents, WaveResiduals, WaveRow, write_currents_vtu,
+    write_far_csv, write_far_npz, write_frequency_plot, write_monostatic_csv, write_monostatic_npz,
+    write_polar_plot, write_receivers_csv, write_receivers_npz, write_residuals_csv, write_residuals_plot,
     write_wave_comparison,
 };

@@ -142,3 +142,61 @@ fn large_tables_are_arrays_only() {
         serde_json::from_slice(&fs::read(results.join("run.json")).unwrap()).unwrap();
     assert_eq!(record["left_out_as_text"], serde_json::json!(["far.csv"]));
 }
+
+const BALL: &str =
+    "[[surface]]\nname = \"ball\"\nsphere = { centre = [0, 0, 0], radius = 0.12 }\nedge = \"lambda/10\"\n";
+
+/// A conductor absorbs nothing: of plane waves it scatters what they lose, and dipoles beside it radiate what they supply.
+#[test]
+fn powers_balance_on_a_sphere() {
+    let folder = tempfile::tempdir().unwrap();
+    let dipole = "[[source]]\nkind = \"half-wave-dipole\"\nposition = [0.3, 0, 0]\naxis = [0, 0, 1]\ncurrent_a = 1\n\
+                  [[source]]\nkind = \"hertzian-dipole\"\nposition = [0, -0.25, 0.1]\naxis = [0, 1, 1]\nmoment_a_m = 0.1\n";
+    let far = "[[receiver]]\nname = \"f\"\nfar = { theta_degrees = [30, 70], phi_degrees = 20 }\n";
+    for source in [SOURCE, dipole] {
+        let text = format!("[wave]\nfrequencies_hz = [1e9]\n{source}{BALL}{far}");
+        let found = solved(folder.path(), &text);
+        let ratio = found.balances()[0].ratio();
+        assert!((ratio - 1.0).abs() < 3e-3, "{ratio}");
+        let total = found.far()[0].total;
+        assert_eq!(total.is_some(), source == dipole);
+        if let Some(total) = total {
+            assert!(total.gain > 0.01 && total.gain < 10.0, "{}", total.gain);
+        }
+    }
+}
+
+/// A dipole beside a screen so small that it does nothing has its own far field and gain.
+#[test]
+fn the_far_field_has_the_sources_in() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "[wave]\nfrequencies_hz = [1e9]\n\
+        [[source]]\nkind = \"half-wave-dipole\"\nposition = [0, 0, 0]\naxis = [0, 0, 1]\ncurrent_a = 1\n\
+        [[surface]]\nname = \"speck\"\nquad = [[5, 0, 0], [5.001, 0, 0], [5.001, 0, 0.001], [5, 0, 0.001]]\n\
+        [[receiver]]\nname = \"f\"\nfar = { theta_degrees = [90, 45], phi_degrees = 20 }\n";
+    let found = solved(folder.path(), text);
+    let totals: Vec<_> = found.far().iter().map(|row| row.total.unwrap()).collect();
+    // 1.6409 across the wire, and |F| = η/(2π) there.
+    assert!((totals[0].gain - 1.640_9).abs() < 1e-3, "{}", totals[0].gain);
+    assert!((totals[0].amplitude[1].hypot(totals[0].amplitude[0]) - 59.958).abs() < 0.01);
+    let pattern = (std::f64::consts::FRAC_PI_2 * 0.5_f64.sqrt()).cos() / 0.5_f64.sqrt();
+    assert!((totals[1].gain / totals[0].gain - pattern * pattern).abs() < 1e-3);
+}
+
+/// Sweeps tell how reciprocal they are: the electric equation is, to rounding and the integrals of its entries.
+#[test]
+fn sweeps_tell_their_reciprocity() {
+    let folder = tempfile::tempdir().unwrap();
+    let back = "[[receiver]]\nname = \"b\"\nmonostatic = { theta_degrees = [30, 50, 70, 110], phi_degrees = [20, 50, 110] }\n";
+    let defect = |method: &str, surface: &str| {
+        let text = format!("[wave]\nfrequencies_hz = [1e9]\nmethod = \"{method}\"\n{surface}{back}");
+        let found = solved(folder.path(), &text);
+        let kept = found.reciprocity();
+        assert_eq!(kept.len(), 1);
+        kept[0].defect
+    };
+    let cube = "[[surface]]\nname = \"cube\"\nbox = { min = [0, 0, 0], max = [0.2, 0.15, 0.25] }\nedge = \"lambda/8\"\n";
+    let (electric, dual) = (defect("efie", cube), defect("dual-surface-mfie", cube));
+    assert!(electric < 1e-9, "{electric}");
+    assert!(dual < 0.02 && dual > electric, "{dual}");
+}

@@ -66,8 +66,8 @@ fn name(names: &[String], receiver: usize) -> &str {
 #[allow(clippy::float_cmp, reason = "numbers are written so that they read back to the same bits")]
 pub(super) mod tests {
     use super::*;
-    use crate::waves::FarTotal;
     use crate::csv::tests::{parse, values};
+    use crate::waves::FarTotal;
 
     pub(in crate::waves) fn rows() -> Vec<WaveRow> {
         let fill = |start: f64| std::array::from_fn(|i| start + i as f64 / 7.0);

@@ -29,7 +29,7 @@ const EQUATION: f64 = 0.26;
 /// some tens of seconds a core.
 const MOST_UNKNOWNS: usize = 6_000;
 /// The same of one flat sheet, which one bounce with edge currents describes well where it is larger.
-const MOST_FLAT: usize = 1_500;
+const MOST_FLAT: usize = 500;
 /// Incident waves from which on a factorisation is taken for all of them, and the largest matrix for it, bytes.
 const MANY_WAVES: usize = 16;
 const MOST_FACTORISED: u128 = 4 << 30;

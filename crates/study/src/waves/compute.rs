@@ -264,11 +264,9 @@ impl Task<'_> {
                     let directions = directions(angles);
                     let far = far_of(&directions).map_err(refused)?;
                     let rows = far.iter().zip(angles).enumerate();
-                    outcome.far.extend(
-                        rows.map(|(i, (far, angles))| {
-                            far_row((self.model, self.band, power), [index, i], *angles, far)
-                        }),
-                    );
+                    outcome.far.extend(rows.map(|(i, (far, angles))| {
+                        far_row((self.model, self.band, power), [index, i], *angles, far)
+                    }));
                     let fields: Vec<ComplexVector> = far.iter().map(|far| far.amplitude).collect();
                     let edge = |edges: &EdgeCurrents, u: Vec3| edges.far_amplitude(u);
                     stating.as_ref().map(|stating| stating.indicator(&directions, &fields, &edge))

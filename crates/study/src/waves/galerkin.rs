@@ -206,29 +206,28 @@ impl Task<'_> {
             outcome.balances.extend(balancing.balance(&far)?);
         }
         for (index, receiver) in self.model.receivers.iter().enumerate() {
-            let relative =
-                match &receiver.places {
-                    Places::Near { points, .. } => {
-                        let scattered = self.near(currents, index, points)?;
-                        let rows = near_rows(self.model, self.band, index, points, &scattered);
-                        let rows = rows.map_err(|error| self.model.refused(&error, Some(receiver)))?;
-                        outcome.near.extend(rows);
-                        let squares = scattered.iter().map(|field| field.e.norm_squared());
-                        error.map(|error| {
-                            error.relative(squares, points.iter().map(|&p| error.centre.distance(p)))
-                        })
-                    }
-                    Places::Far(angles) => {
-                        let far = self.far(currents, &directions(angles))?;
-                        let rows = far.iter().zip(angles).enumerate();
-                        outcome.far.extend(rows.map(|(i, (far, angles))| {
-                            far_row((self.model, self.band, power), [index, i], *angles, far)
-                        }));
-                        let squares = far.iter().map(|far| far.amplitude.norm_squared());
-                        error.map(|error| error.relative_far(squares))
-                    }
-                    Places::Monostatic(_) => None,
-                };
+            let relative = match &receiver.places {
+                Places::Near { points, .. } => {
+                    let scattered = self.near(currents, index, points)?;
+                    let rows = near_rows(self.model, self.band, index, points, &scattered);
+                    let rows = rows.map_err(|error| self.model.refused(&error, Some(receiver)))?;
+                    outcome.near.extend(rows);
+                    let squares = scattered.iter().map(|field| field.e.norm_squared());
+                    error.map(|error| {
+                        error.relative(squares, points.iter().map(|&p| error.centre.distance(p)))
+                    })
+                }
+                Places::Far(angles) => {
+                    let far = self.far(currents, &directions(angles))?;
+                    let rows = far.iter().zip(angles).enumerate();
+                    outcome.far.extend(rows.map(|(i, (far, angles))| {
+                        far_row((self.model, self.band, power), [index, i], *angles, far)
+                    }));
+                    let squares = far.iter().map(|far| far.amplitude.norm_squared());
+                    error.map(|error| error.relative_far(squares))
+                }
+                Places::Monostatic(_) => None,
+            };
             if let Some(relative) = relative {
                 let frequency = self.band.wave.frequency();
                 outcome.stated_errors.push(Estimated { receiver: index, frequency, relative });

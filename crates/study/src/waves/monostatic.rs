@@ -10,10 +10,10 @@ use fredholm_waves::{
 };
 use rayon::prelude::*;
 
-use super::{Method, Model};
 use super::compute::directions;
 use super::registry::by_products;
 use super::solving::{Solution, solution};
+use super::{Method, Model};
 use crate::error::Error;
 use crate::stages::Signals;
 

@@ -79,6 +79,11 @@ impl Source for HalfWaveDipole {
         Origin::Point(self.centre)
     }
 
+    fn wire(&self, wave: &Wave) -> Option<[Vec3; 2]> {
+        let half = self.axis * (0.25 * wave.wavelength());
+        Some([self.centre - half, self.centre + half])
+    }
+
     fn far_amplitude(&self, wave: &Wave, u: Vec3) -> Option<ComplexVector> {
         let cosine = u.dot(self.axis);
         let across = self.axis - u * cosine;

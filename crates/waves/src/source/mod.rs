@@ -44,6 +44,11 @@ pub trait Source: Send + Sync {
     /// Where it comes from: decides what is lit.
     fn origin(&self) -> Origin;
 
+    /// The ends (m) of the wire that its current runs along, where it has a length.
+    fn wire(&self, _wave: &Wave) -> Option<[Vec3; 2]> {
+        None
+    }
+
     /// F (V) of its own far field F e^{−jkr}/r in the direction of the unit vector u; none of a wave from infinity.
     fn far_amplitude(&self, _wave: &Wave, _u: Vec3) -> Option<ComplexVector> {
         None
