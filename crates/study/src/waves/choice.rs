@@ -3,6 +3,7 @@
 //! | scene | method | why |
 //! |---|---|---|
 //! | closed conductors, edges up to λ/4 | `dual-surface-mfie`, GMRES | an equation without approximation but the mesh |
+//! | closed conductors that are thin or pointed, small | `cfie`, LU | facets that are not small beside the thickness do not follow the current around a rim |
 //! | conductors, sheets among them, small | `efie`, LU | an equation without approximation but the mesh; the matrix is stored |
 //! | conductors, sheets among them, larger | `radiated`, GMRES, edge currents | currents make the shadow themselves: what hides a part of what stands behind is counted once |
 //! | one flat sheet, small | `efie`, LU | as above: it costs no second |
@@ -30,6 +31,13 @@ const EQUATION: f64 = 0.26;
 const MOST_UNKNOWNS: usize = 6_000;
 /// The same of one flat sheet, which one bounce with edge currents describes well where it is larger.
 const MOST_FLAT: usize = 500;
+/// The same of thin closed bodies, for which there is nothing else that is exact.
+const MOST_CLOSED: usize = 8_000;
+/// A facet is of a thin part where the surface opposite is nearer than both of these: shares of the extent and of the
+/// wavelength, below which the second surface of the dual equation has no room for its full depth.
+const THIN: [f64; 2] = [0.3, 0.6];
+/// Share of such facets from which a body is thin.
+const THIN_SHARE: f64 = 0.1;
 /// Incident waves from which on a factorisation is taken for all of them, and the largest matrix for it, bytes.
 const MANY_WAVES: usize = 16;
 const MOST_FACTORISED: u128 = 4 << 30;
@@ -105,6 +113,8 @@ struct Seen {
     sides: f64,
     /// Whether there are many frequencies.
     sweep: bool,
+    /// Whether it is closed, and thin beside the longest wavelength and its own extent.
+    thin: bool,
 }
 
 impl Seen {
@@ -128,6 +138,7 @@ impl Seen {
             flat: is_flat(geometry),
             facets: mesh.len(),
             sweep: bands.len() > MOST_PICTURED,
+            thin: !sheets && bands.iter().any(|band| is_thin(geometry, band)),
             edge: mesh.patches().map(side).fold(0.0, f64::max) / shortest,
         }
     }
@@ -136,6 +147,20 @@ impl Seen {
         self.conductors && !self.sheets
     }
 }
+
+/// Whether a good part of closed bodies is thin at a frequency.
+fn is_thin(geometry: &Geometry, band: &Band) -> bool {
+    let Ok(scatterer) = geometry.scatterer(&band.materials) else { return false };
+    let most = (THIN[0] * scatterer.extent()).min(THIN[1] * band.wave.wavelength());
+    let opposite = |facet: &&fredholm_waves::Facet| {
+        scatterer.occluders().closest(facet.patch.centroid(), -facet.normal, most).is_some()
+    };
+    let thin = scatterer.facets().iter().filter(opposite).count();
+    thin as f64 > THIN_SHARE * scatterer.facets().len() as f64
+}
+
+/// What is said of equations on facets of thin bodies.
+const ON_THIN: &str = "the body is thin or pointed, where equations on facets may be tenths off; take method = \"cfie\" where its matrix fits";
 
 /// The shortest wavelength, m.
 fn shortest(bands: &[Band]) -> f64 {
@@ -175,7 +200,11 @@ pub(super) fn taken(asked: Asked, geometry: &Geometry, bands: &[Band], fits: &dy
     let mut taken = match (asked.method, asked.shadow) {
         // Edge currents complete physical optics: who asks for them, or for none, means that.
         (None, None) if !asked.optics => {
-            let most = if seen.flat { MOST_FLAT } else { MOST_UNKNOWNS };
+            let most = match (seen.flat, seen.thin) {
+                (true, _) => MOST_FLAT,
+                (_, true) => MOST_CLOSED,
+                _ => MOST_UNKNOWNS,
+            };
             let size = (shortest(bands), most);
             let small = || asked.edge_currents.is_none() && is_small(geometry, size, fits);
             chosen(&seen, &small)
@@ -218,20 +247,22 @@ fn factorise(taken: &mut Taken, seen: &Seen, fits: &dyn Fn(u128) -> bool) {
 }
 
 fn chosen(seen: &Seen, small: &dyn Fn() -> bool) -> Taken {
-    let boundary_elements = seen.conductors && seen.sheets && !seen.sweep;
+    let boundary_elements = seen.conductors && (seen.sheets || seen.thin) && !seen.sweep;
     if boundary_elements
         && small()
         && let Ok(solver) = super::registry::build(BY_MATRIX)
     {
         return Taken {
             shadow: Shadow::default(),
-            galerkin: Some(Equation::Electric),
+            galerkin: Some(if seen.sheets { Equation::Electric } else { Equation::default() }),
             method: Method::Solver { solver, tolerance: TOLERANCE, max_iterations: ITERATIONS },
             edge_currents: false,
-            reason: Some(
-                "conductors, sheets among them, of few unknowns: an equation without approximation"
-                    .to_owned(),
-            ),
+            reason: Some(if seen.sheets {
+                "conductors, sheets among them, of few unknowns: an equation without approximation".to_owned()
+            } else {
+                "thin or pointed closed conductors of few unknowns: an equation without approximation"
+                    .to_owned()
+            }),
             warnings: Vec::new(),
         };
     }
@@ -273,6 +304,9 @@ fn chosen(seen: &Seen, small: &dyn Fn() -> bool) -> Taken {
     } else {
         all(Shadow::Radiated, true, "sheets light and shadow each other through their currents")
     };
+    if shadow == Shadow::ExactDual && seen.thin {
+        warnings.push(ON_THIN.to_owned());
+    }
     let long = seen.sides > LONGEST;
     if edge_currents && long {
         warnings.push(
@@ -306,6 +340,9 @@ fn completed(method: Method, (optics, shadow): (bool, Option<Shadow>), seen: &Se
             "geometric shadows let what is behind a pane be dark; take shadows = \"radiated\" where something is let through"
                 .to_owned(),
         );
+    }
+    if shadow.is_some_and(Shadow::is_equation) && seen.thin {
+        warnings.push(ON_THIN.to_owned());
     }
     let suits = || {
         if !several {
