@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use fredholm_generate::{City, Files, Room, Scan};
+use fredholm_generate::{Almond, City, Files, Room, Scan};
 use fredholm_mesh::{Mesh, Vec3};
 use fredholm_scene::Scene;
 
@@ -93,4 +93,50 @@ fn the_same_seed_gives_the_same_files_and_another_gives_others() {
     let room = |seed| Room { seed, ..Room::default() }.files();
     assert_eq!(room(1), room(1));
     assert_ne!(room(1).others, room(2).others);
+}
+
+/// Closed, its normals outwards, of the measured extent, with edges near those asked for.
+#[test]
+fn an_almond_is_closed_and_has_its_measures() {
+    let almond = Almond::default();
+    let text = &almond.files().others[0].1;
+    let numbers = |line: &str| line[2..].split(' ').map(|x| x.parse::<f64>().unwrap()).collect::<Vec<_>>();
+    let corners: Vec<Vec3> = text
+        .lines()
+        .filter(|line| line.starts_with("v "))
+        .map(|line| Vec3::from_slice(&numbers(line)))
+        .collect();
+    let faces: Vec<[usize; 3]> = text
+        .lines()
+        .filter(|line| line.starts_with("f "))
+        .map(|line| [0, 1, 2].map(|i| numbers(line)[i] as usize - 1))
+        .collect();
+    let mut sides = std::collections::HashMap::new();
+    let mut volume = 0.0;
+    let mut longest = 0.0_f64;
+    for face in &faces {
+        let [a, b, c] = face.map(|i| corners[i]);
+        volume += a.dot(b.cross(c)) / 6.0;
+        for i in 0..3 {
+            *sides.entry((face[i], face[(i + 1) % 3])).or_insert(0) += 1;
+            longest = longest.max(corners[face[i]].distance(corners[face[(i + 1) % 3]]));
+        }
+    }
+    assert!(sides.iter().all(|(&(a, b), &count)| count == 1 && sides.contains_key(&(b, a))));
+    assert_eq!(corners.len() + faces.len(), sides.len() / 2 + 2);
+    // Half an ellipsoid, 2π/3 a b c, and the ogive: π A B ∫ (√(1 − (t/τ)²) − 0.96)² dt.
+    let d = almond.length;
+    let blunt = std::f64::consts::TAU / 3.0 * 0.416_667 * 0.193_333 * 0.064_444 * d.powi(3);
+    let slice = |i: usize| {
+        let t: f64 = 0.583_333 * (i as f64 + 0.5) / 1e4;
+        ((1.0 - (t / 2.083_35).powi(2)).sqrt() - 0.96).powi(2)
+    };
+    let ogive: f64 = (0..10_000).map(slice).sum::<f64>() * 0.583_333 / 1e4;
+    let expected = blunt + std::f64::consts::PI * 4.83345 * 1.61115 * ogive * d.powi(3);
+    assert!((volume / expected - 1.0).abs() < 0.01, "{volume} {expected}");
+    assert!(
+        longest < 1.6 * almond.edge && (3_000..9_000).contains(&faces.len()),
+        "{longest} {}",
+        faces.len()
+    );
 }
