@@ -86,7 +86,7 @@ fn dielectric_bodies_have_the_field_of_the_series_near_and_far_and_inside() {
         let error = gap(&scattered(&found), &series);
         assert!(error < bound && found.method() == "pmchwt", "{distance}: {error}");
     }
-    let small = solved(folder.path(), &ball("pmchwt", 0.005, "0.0025", 0.002, glass));
+    let small = solved(folder.path(), &ball("pmchwt", 0.005, "lambda/120", 0.002, glass));
     let expected = 3.0 / (permittivity + 2.0);
     for row in small.near() {
         let incident = source.field(&wave, Vec3::from_array(row.position)).e.components()[2];
