@@ -6,17 +6,96 @@ use std::fs;
 use std::path::Path;
 
 use fredholm_mesh::Vec3;
-use fredholm_study::{Quiet, ResultFolder, SolvedWaves, WaveOptions, waves};
+use fredholm_study::{CouplingStorage, Error, Quiet, ResultFolder, SolvedWaves, WaveOptions, waves};
 use fredholm_waves::source::PlaneWave;
-use fredholm_waves::{ConductingSphere, Wave};
+use fredholm_waves::{Complex64, ConductingSphere, DielectricSphere, Source, Wave};
 
 const SOURCE: &str = "[[source]]\nkind = \"plane-wave\"\ntravel = [0, 1, 0]\npolarisation = [0, 0, 1]\n";
 
 fn solved(folder: &Path, text: &str) -> SolvedWaves<'static> {
+    stored(folder, text, None).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn stored(
+    folder: &Path,
+    text: &str,
+    storage: Option<CouplingStorage>,
+) -> Result<SolvedWaves<'static>, Error> {
     let path = folder.join("scene.toml");
     fs::write(&path, text).unwrap();
-    let options = WaveOptions { no_report: true, ..WaveOptions::default() };
-    waves(&path, &options, &Quiet).unwrap_or_else(|error| panic!("{error}"))
+    waves(&path, &WaveOptions { no_report: true, storage, ..WaveOptions::default() }, &Quiet)
+}
+
+/// ‖a − b‖₂/‖b‖₂ of scattered fields.
+fn gap(a: &[[f64; 6]], b: &[[f64; 6]]) -> f64 {
+    let difference: f64 = a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| (a - b).powi(2)).sum();
+    (difference / b.iter().flatten().map(|b| b * b).sum::<f64>()).sqrt()
+}
+
+/// A ball with a circle of points around it, and whatever else.
+fn ball(method: &str, radius: f64, edge: &str, distance: f64, more: &str) -> String {
+    format!(
+        "[wave]\nfrequencies_hz = [1e9]\nmethod = \"{method}\"\n{SOURCE}[[surface]]\nname = \"ball\"\n\
+         sphere = {{ centre = [0, 0, 0], radius = {radius} }}\nedge = \"{edge}\"\n{more}\n\
+         [[receiver]]\nname = \"circle\"\n\
+         circle = {{ centre = [0, 0, 0], radius = {distance}, normal = [0, 0, 1], start = [1, 0, 0], points = 36 }}\n"
+    )
+}
+
+/// E of the scattered field at all points, V/m.
+fn scattered(found: &SolvedWaves<'_>) -> Vec<[f64; 6]> {
+    found.near().iter().map(|row| std::array::from_fn(|i| row.scattered[i])).collect()
+}
+
+/// The compressed matrix gives the answer of the whole one, and what does not go together is refused.
+#[test]
+fn boundary_elements_are_compressed_where_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = ball("cfie", 0.12, "lambda/8", 2.0, "");
+    let run = |text: &str, storage| stored(folder.path(), text, storage);
+    let whole = run(&text, Some(CouplingStorage::Matrix)).unwrap();
+    let compressed = run(&text, Some(CouplingStorage::Compressed)).unwrap();
+    assert!(whole.frequencies()[0].residuals.len() < 3 && compressed.frequencies()[0].residuals.len() > 5);
+    let difference = gap(&scattered(&compressed), &scattered(&whole));
+    assert!(difference > 0.0 && difference < 2e-3, "{difference:e}");
+    let refused = |text: &str, storage| run(text, Some(storage)).map(drop).unwrap_err().to_string();
+    assert!(refused(&text, CouplingStorage::Products).contains("--storage matrix or compressed"));
+    let lu = text.replace("method", "solver = \"lu\"\nmethod");
+    assert!(refused(&lu, CouplingStorage::Compressed).contains("needs all entries"));
+    let facets = text.replace("cfie", "mfie");
+    assert!(refused(&facets, CouplingStorage::Compressed).contains("--storage matrix or products"));
+}
+
+/// A dielectric ball against its series outside; one that is small has 3/(ε + 2) of the incident field inside.
+#[test]
+fn dielectric_bodies_have_the_field_of_the_series_near_and_far_and_inside() {
+    let folder = tempfile::tempdir().unwrap();
+    let wave = Wave::new(1e9).unwrap();
+    let source = PlaneWave::new(Vec3::Y, Vec3::Z, 1.0.into()).unwrap();
+    let glass = "material = \"glass\"\n[materials.glass]\nhalf_space = { permittivity = [3, -0.1] }";
+    let permittivity = Complex64::new(3.0, -0.1);
+    let radius = 0.05;
+    let exact = DielectricSphere::new(radius, permittivity).unwrap();
+    for (distance, bound) in [(0.08, 0.02), (5.0, 0.02)] {
+        let found = solved(folder.path(), &ball("pmchwt", radius, "lambda/18", distance, glass));
+        let series = |p: [f64; 3]| {
+            let e = exact.scattered(&wave, &source, Vec3::from_array(p)).components();
+            [e[0].re, e[0].im, e[1].re, e[1].im, e[2].re, e[2].im]
+        };
+        let series: Vec<[f64; 6]> = found.near().iter().map(|row| series(row.position)).collect();
+        let error = gap(&scattered(&found), &series);
+        assert!(error < bound && found.method() == "pmchwt", "{distance}: {error}");
+    }
+    let small = solved(folder.path(), &ball("pmchwt", 0.005, "lambda/120", 0.002, glass));
+    let expected = 3.0 / (permittivity + 2.0);
+    for row in small.near() {
+        let incident = source.field(&wave, Vec3::from_array(row.position)).e.components()[2];
+        let total = Complex64::new(row.scattered[4], row.scattered[5]) + incident;
+        assert!((total - expected * incident).norm() < 0.08, "{total} {expected}");
+    }
+    let bare = ball("pmchwt", radius, "lambda/18", 1.0, "");
+    let refused = stored(folder.path(), &bare, None).map(drop).unwrap_err().to_string();
+    assert!(refused.contains("half_space"), "{refused}");
 }
 
 /// A sphere of 0.4 wavelengths against the series of Mie, by all equations: E at 2 m.

@@ -16,10 +16,11 @@
 //! bounces are asked for, what makes the sum converge to the truth is `radiated` on sheets: in `geometric` the current on the front of a sheet radiates the
 //! shadow behind it, too, where what is blocked has none already.
 
-use fredholm_moments::{Basis, Equation, Surface};
+use fredholm_moments::{Basis, Surface};
 use fredholm_waves::material::Material;
 use fredholm_waves::{Complex64, Kind, Shadow};
 
+use super::galerkin::Equations;
 use super::geometry::Geometry;
 use super::model::{BY_MATRIX, Band, Method};
 use super::over_frequency::MOST_PICTURED;
@@ -87,8 +88,8 @@ impl Asked {
 /// What is computed.
 pub(super) struct Taken {
     pub(super) shadow: Shadow,
-    /// The equation of boundary elements, where that is taken instead of currents on facets.
-    pub(super) galerkin: Option<Equation>,
+    /// The equations of boundary elements, where they are taken instead of currents on facets.
+    pub(super) galerkin: Option<Equations>,
     pub(super) method: Method,
     pub(super) edge_currents: bool,
     /// Why, where the scene left it open.
@@ -254,7 +255,7 @@ fn chosen(seen: &Seen, small: &dyn Fn() -> bool) -> Taken {
     {
         return Taken {
             shadow: Shadow::default(),
-            galerkin: Some(if seen.sheets { Equation::Electric } else { Equation::default() }),
+            galerkin: Some(if seen.sheets { Equations::Electric } else { Equations::Combined }),
             method: Method::Solver { solver, tolerance: TOLERANCE, max_iterations: ITERATIONS },
             edge_currents: false,
             reason: Some(if seen.sheets {

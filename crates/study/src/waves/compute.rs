@@ -55,8 +55,8 @@ struct Variant<'a> {
 }
 
 fn variant(model: &Model, variant: Variant<'_>, stages: &mut Stages) -> Result<Outcome, Error> {
-    if let Some(equation) = model.galerkin {
-        return galerkin::run(model, (variant.geometry, variant.name), equation, stages);
+    if let Some(equations) = model.galerkin {
+        return galerkin::run(model, (variant.geometry, variant.name), equations, stages);
     }
     let mut outcome = Outcome::default();
     if model.bands.len() <= MOST_PICTURED {

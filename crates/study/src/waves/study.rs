@@ -11,7 +11,7 @@ use super::model::Model;
 use super::record::{Outcome, Solved};
 use super::{files, registry};
 use crate::compare::written_out;
-use crate::error::Error;
+use crate::error::{Error, ErrorKind};
 use crate::size::Bytes;
 use crate::solve::{Ended, report_failure};
 use crate::stages::Stages;
@@ -28,13 +28,15 @@ pub struct WaveOptions {
     pub storage: Option<CouplingStorage>,
 }
 
-/// Where the coupling of facets comes from in every iteration.
+/// Where the coupling comes from in every iteration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CouplingStorage {
     /// A stored matrix.
     Matrix,
-    /// Products that are computed anew each time.
+    /// Products that are computed anew each time: of facets only.
     Products,
+    /// A compressed matrix: of boundary elements only.
+    Compressed,
 }
 
 /// What is asked of [`compare_waves`] besides.
@@ -120,6 +122,15 @@ pub fn check_wave_solver(text: &str) -> Result<(), OptionError> {
 
 fn load(scene: &Path, asked: &WaveOptions, stages: &mut Stages) -> Result<Model, Error> {
     let mut model = stages.run("scene", || Model::load(scene, asked.memory))?;
+    let (storage, help) = match (asked.storage, model.galerkin) {
+        (Some(CouplingStorage::Products), Some(_)) => ("computed anew", "matrix or compressed"),
+        (Some(CouplingStorage::Compressed), None) => ("compressed", "matrix or products"),
+        _ => ("", ""),
+    };
+    if !storage.is_empty() {
+        let what = format!("the coupling of {} is not {storage}", model.method_name());
+        return Err(Error::new(ErrorKind::Input, what).with_help(format!("take --storage {help}, or none")));
+    }
     model.storage = asked.storage;
     model.tell(stages);
     Ok(model)
