@@ -100,10 +100,13 @@ pub use judgement::{
 pub use names::{CHECKPOINT, PIXELS, TRACE_STATE, WAVE_FILES};
 pub use npz::write_npz;
 pub use outputs::{
-    EXTRAS, Extras, FIELD_GLB, FIELD_PLY, FILES, GATHER, IMAGE, POINTS, REPORT, RunReport, SHADOWS, View,
-    write_all, write_with,
+    EXTRAS, Extras, FIELD_EXR, FIELD_GLB, FIELD_PLY, FILES, GATHER, IMAGE, POINTS, REPORT, RunReport,
+    SHADOWS, View, write_all, write_with,
 };
-pub use picture::{Back, Gathering, Layer, Link, Linked, Picture, Side, render, render_layers, render_sides};
+pub use picture::{
+    Back, Gathering, LampLight, Layer, Link, Linked, Lit, LitPicture, Picture, Side, render, render_layers,
+    render_lit, render_sides,
+};
 pub use points_csv::{PointTable, write_points_csv};
 pub use refinement::{
     BandConvergence, REFINEMENT_FILES, REFINEMENT_FORMAT, RefinementLevel, RefinementRecord,

@@ -38,6 +38,7 @@ mod exchange;
 mod folder;
 mod hierarchical;
 mod judge;
+mod lamplight;
 mod memory;
 mod mesh_error;
 mod options;
