@@ -235,9 +235,10 @@ fn draw_panel<DB: DrawingBackend>(area: &DrawingArea<DB, Shift>, panel: &Panel) 
     let (across, up) = panel.scales();
     let mut chart = ChartBuilder::on(area)
         .margin_top(8 * UNIT)
+        .margin_left(MARGIN * UNIT)
         .margin_right(2 * MARGIN * UNIT)
         .x_label_area_size(BELOW * UNIT)
-        .y_label_area_size(BESIDE * UNIT)
+        .y_label_area_size((BESIDE - MARGIN) * UNIT)
         .build_cartesian_2d(across.clone(), up.clone())?;
     draw_axes(&mut chart, (&panel.across.label, &panel.up.label), UNIT)?;
     let fill = super::distinct(0).0;
@@ -268,6 +269,7 @@ pub(super) fn draw_axes<DB: DrawingBackend>(
         .x_labels(7)
         .y_labels(8)
         .max_light_lines(0)
+        .set_all_tick_mark_size(5 * unit)
         .bold_line_style(GRID.stroke_width(width))
         .light_line_style(plotters::style::TRANSPARENT)
         .axis_style(MUTED.stroke_width(width))

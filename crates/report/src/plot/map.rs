@@ -80,8 +80,9 @@ impl Heat<'_> {
         let (across, up) = (&self.across, &self.up);
         let mut chart = ChartBuilder::on(area)
             .margin_bottom(14 * UNIT)
+            .margin_left(14 * UNIT)
             .x_label_area_size(BELOW * UNIT)
-            .y_label_area_size(LEFT * UNIT)
+            .y_label_area_size((LEFT - 14) * UNIT)
             .build_cartesian_2d(across.1.clone(), up.1.clone())
             .map_err(failed)?;
         draw_axes(&mut chart, (across.0, up.0), UNIT).map_err(failed)?;
@@ -106,8 +107,8 @@ impl Heat<'_> {
     fn draw_bar(&self, area: &Area<'_>, tall: i32) -> io::Result<()> {
         let mut chart = ChartBuilder::on(&area.split_vertically(tall * UNIT).0)
             .margin_left(18 * UNIT)
-            .margin_right((area.dim_in_pixel().0 as i32 / UNIT - BAR).max(0) * UNIT)
-            .right_y_label_area_size(98 * UNIT)
+            .margin_right(((area.dim_in_pixel().0 as i32 / UNIT - BAR).max(0) + 14) * UNIT)
+            .right_y_label_area_size(84 * UNIT)
             .build_cartesian_2d(Scale::linear(0.0, 1.0), self.bar.scale.clone())
             .map_err(failed)?;
         chart
@@ -116,6 +117,7 @@ impl Heat<'_> {
             .disable_mesh()
             .y_desc(self.bar.label)
             .y_labels(7)
+            .set_all_tick_mark_size(5 * UNIT)
             .axis_style(INK)
             .label_style(text(SMALL, UNIT, INK))
             .axis_desc_style(text(TEXT, UNIT, INK))
