@@ -62,11 +62,11 @@ pub fn write_angle_plot(
     let AngleQuantity { name, level_unit, unit, angle, per_decade } = quantity;
     let level = |value: f64| per_decade * value.log10();
     let mapped = |of: &dyn Fn(f64) -> f64| -> Vec<Line> {
-        let line = |(number, (name, points)): (usize, &(String, Vec<(f64, f64)>))| Line {
+        let line = |number: usize, (name, points): &(String, Vec<(f64, f64)>)| Line {
             shape: number % 3,
             ..Line::distinct(name, points.iter().map(|&(angle, value)| (angle, of(value))).collect(), number)
         };
-        lines.iter().enumerate().map(line).collect()
+        lines.iter().enumerate().map(|(number, named)| line(number, named)).collect()
     };
     let (across, up) = (format!("{angle}, degrees"), format!("{name}, {level_unit}"));
     let straight = Panel {

@@ -14,6 +14,9 @@ const NEAR: f64 = 1e-9;
 /// Cosine from which on an axis is that of the coordinates.
 const ALONG: f64 = 1.0 - 1e-12;
 
+/// The ends of a line on the axes of a map.
+type Segment = [(f64, f64); 2];
+
 /// A rectangle of points that a map is drawn over.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapPlane {
@@ -75,7 +78,7 @@ impl MapPlane {
         let size = self.sides[0].length().max(self.sides[1].length());
         let normal = self.sides[0].cross(self.sides[1]);
         let normal = normal / normal.length();
-        let mut flat: BTreeMap<[[i64; 2]; 2], (usize, [(f64, f64); 2])> = BTreeMap::new();
+        let mut flat: BTreeMap<[[i64; 2]; 2], (usize, Segment)> = BTreeMap::new();
         let mut lines = Vec::new();
         for patch in mesh.patches() {
             let corners = patch.corners();
@@ -96,7 +99,7 @@ impl MapPlane {
                 continue;
             }
             let crossing = sides.filter_map(|(i, j)| match (heights[i], heights[j]) {
-                (a, _) if a == 0.0 => Some(corners[i]),
+                (0.0, _) => Some(corners[i]),
                 (a, b) if a * b < 0.0 => Some(corners[i] + (corners[j] - corners[i]) * (a / (a - b))),
                 _ => None,
             });

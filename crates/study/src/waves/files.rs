@@ -3,6 +3,7 @@
 
 use std::io;
 
+use fredholm_mesh::Mesh;
 use fredholm_report::{
     AngleQuantity, FieldMap, MapAxis, MapPlane, MapQuantity, REPORT, ReportAxis, ReportError, ReportModel,
     ReportPage, ReportPlot, ReportSeries, ResultFolder, Timing, WaveReport, WaveResiduals, WaveRow,
@@ -265,9 +266,8 @@ fn pictures(
             Places::Near { layout: Layout::Circle(degrees), .. } => circle(folder, &stem, degrees, &rows)?,
             Places::Near { layout: Layout::Grid(columns), points } => {
                 let plane = MapPlane::of(points, *columns);
-                let outline = plane.map_or_else(Vec::new, |plane| plane.outline(&model.geometry.mesh));
                 let title = format!("{}, {} MHz", receiver.name, frequency / 1e6);
-                maps(folder, (&stem, &title), *columns, &rows, (plane, &outline))?;
+                maps(folder, (&stem, &title), *columns, &rows, (plane, &model.geometry.mesh))?;
             }
             Places::Near { layout: Layout::Points, .. } => {}
             Places::Far(_) => far(folder, &stem, outcome, (index, frequency))?,
@@ -294,7 +294,7 @@ fn maps(
     (stem, place): (&str, &str),
     columns: usize,
     rows: &[&WaveRow],
-    (plane, outline): (Option<MapPlane>, &[[(f64, f64); 2]]),
+    (plane, mesh): (Option<MapPlane>, &Mesh),
 ) -> Result<(), ReportError> {
     let totals: Vec<[f64; 12]> = rows.iter().map(|row| row.total()).collect();
     let power = |c: usize| totals.iter().map(|t| t[2 * c].powi(2) + t[2 * c + 1].powi(2)).sum::<f64>();
@@ -307,6 +307,7 @@ fn maps(
         || [counted("column", columns), counted("row", values.len() / columns.max(1))],
         |plane| plane.axes(),
     );
+    let outline = plane.map_or_else(Vec::new, |plane| plane.outline(mesh));
     let title = format!("Total field at {place}");
     let map = FieldMap {
         title: &title,
@@ -315,7 +316,7 @@ fn maps(
         aspect: plane.map(|plane| plane.aspect()),
         columns,
         values: &values,
-        outline,
+        outline: &outline,
     };
     for quantity in MapQuantity::ALL {
         let name = format!("{stem}_{}_{}.png", COMPONENTS[strongest], quantity.name());
