@@ -68,6 +68,16 @@ pub(crate) struct Receiver {
 }
 
 impl Receiver {
+    /// The angle that directions of the far field step through, and its degrees.
+    pub(crate) fn angles(&self) -> (&'static str, Vec<f64>) {
+        let (Places::Far(angles) | Places::Monostatic(angles)) = &self.places else {
+            return ("angle", Vec::new());
+        };
+        let over_phi = angles.iter().all(|angle| angle[0].total_cmp(&angles[0][0]).is_eq());
+        let degrees = angles.iter().map(|angle| angle[usize::from(over_phi)]).collect();
+        (if over_phi { "φ" } else { "θ" }, degrees)
+    }
+
     /// Whether it is in directions of the far field, not at points.
     pub(crate) fn places_are_directions(&self) -> bool {
         !matches!(self.places, Places::Near { .. })
