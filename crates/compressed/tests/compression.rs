@@ -142,6 +142,15 @@ fn a_preconditioned_system_has_the_solution_of_the_whole_one() {
     assert!(norm(&x) < 1e-4 * norm(&exact), "{:e}", norm(&x) / norm(&exact));
 }
 
+/// Wants nothing.
+struct Ended;
+
+impl Watch for Ended {
+    fn go_on(&self) -> ControlFlow<()> {
+        ControlFlow::Break(())
+    }
+}
+
 #[test]
 fn what_does_not_fit_is_refused() {
     let waves = Waves::new(300, 4.0, 0.0);
@@ -152,13 +161,6 @@ fn what_does_not_fit_is_refused() {
     assert!(matches!(new(&waves.places, bad), Err(CompressionError::Setting { .. })));
     let little = Settings { limit: 1000, ..Settings::default() };
     assert!(matches!(new(&waves.places, little), Err(CompressionError::Memory { limit: 1000, .. })));
-    /// Wants nothing.
-    struct Ended;
-    impl Watch for Ended {
-        fn go_on(&self) -> ControlFlow<()> {
-            ControlFlow::Break(())
-        }
-    }
     let ended = Hierarchical::new(&waves, &waves.places, Settings::default(), &Ended).map(|_| ());
     assert_eq!(ended, Err(CompressionError::Interrupted));
     let mut lost = waves.places.clone();

@@ -1,5 +1,7 @@
 //! What points receive of lamps agrees with sums over small parts of the lamps, each seen or not by a ray.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
 use fredholm_coupling::form_factor::point_to_polygon;
 use fredholm_hierarchical::Lamps;
 use fredholm_mesh::{Patch, Vec3};

@@ -102,8 +102,8 @@ pub use outputs::{
     SHADOWS, View, write_all, write_with,
 };
 pub use picture::{
-    Back, Gathering, LampLight, Layer, Link, Linked, Lit, LitPicture, Picture, Side, render, render_layers,
-    render_lit, render_sides,
+    Back, Gathering, LampLight, Layer, Lighter, Link, Linked, Lit, LitPicture, Picture, Side, render,
+    render_layers, render_lit, render_sides,
 };
 pub use points_csv::{PointTable, write_points_csv};
 pub use refinement::{

@@ -1,7 +1,9 @@
 //! Pictures with the light of lamps at every pixel: the solution's own part of it is taken out, and the factors put in.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
 use fredholm_mesh::{Mesh, MeshBuilder, Patch, Vec3};
-use fredholm_report::{Camera, Exposure, Field, LampLight, Lit, render_lit};
+use fredholm_report::{Camera, Exposure, Field, LampLight, Lighter, Lit, render_lit};
 use rayon::ThreadPoolBuilder;
 
 /// The square −1 … 1 of n × n faces.
@@ -37,7 +39,7 @@ impl LampLight for Half {
         1
     }
 
-    fn lighter(&self) -> Box<dyn FnMut(usize, Vec3, &mut [f64]) + '_> {
+    fn lighter(&self) -> Lighter<'_> {
         Box::new(|_, point, factors| factors[0] = if point.x < 0.0 { 0.5 } else { 0.0 })
     }
 }
@@ -50,7 +52,7 @@ impl LampLight for Dark {
         0
     }
 
-    fn lighter(&self) -> Box<dyn FnMut(usize, Vec3, &mut [f64]) + '_> {
+    fn lighter(&self) -> Lighter<'_> {
         Box::new(|_, _, _| {})
     }
 }

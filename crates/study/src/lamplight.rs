@@ -1,8 +1,8 @@
 //! The lamps of a scene as its picture sees them: elements that emit alike are one lamp.
 
 use fredholm_hierarchical::Lamps;
-use fredholm_mesh::{Patch, Vec3};
-use fredholm_report::{LampLight, Lit};
+use fredholm_mesh::Patch;
+use fredholm_report::{LampLight, Lighter, Lit};
 
 use crate::error::{Error, ErrorKind};
 use crate::problem::Problem;
@@ -69,7 +69,7 @@ impl LampLight for Lamplight<'_> {
         self.lamps.as_ref().map_or(0, |(lamps, _)| lamps.len())
     }
 
-    fn lighter(&self) -> Box<dyn FnMut(usize, Vec3, &mut [f64]) + '_> {
+    fn lighter(&self) -> Lighter<'_> {
         match &self.lamps {
             Some((lamps, _)) => {
                 let mut lighter = lamps.lighter();

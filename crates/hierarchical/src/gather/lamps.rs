@@ -67,7 +67,7 @@ pub struct Lamps<'a> {
     bodies: Option<Bodies>,
     balls: Vec<(Vec3, f64)>,
     pieces: Vec<Piece>,
-    lamps: usize,
+    count: usize,
     sights: Vec<OnceLock<Vec<Sight>>>,
 }
 
@@ -97,19 +97,19 @@ impl<'a> Lamps<'a> {
         let list = bodies.as_ref().map_or(&[][..], Bodies::as_slice);
         let balls = list.iter().map(|body| ball(body.corners())).collect();
         let sights = elements.iter().map(|_| OnceLock::new()).collect();
-        Ok(Some(Self { occluders, elements, bodies, balls, pieces, lamps: lamps.len(), sights }))
+        Ok(Some(Self { occluders, elements, bodies, balls, pieces, count: lamps.len(), sights }))
     }
 
     /// Number of lamps.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.lamps
+        self.count
     }
 
     /// Whether there is none.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.lamps == 0
+        self.count == 0
     }
 
     /// Looks at the lamps for one thread.

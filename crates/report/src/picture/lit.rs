@@ -30,13 +30,16 @@ const PASSES: usize = 3;
 /// No leaf.
 const NOTHING: u32 = u32::MAX;
 
+/// Tells the factors from a point (m) of a leaf to what it sees of each lamp.
+pub type Lighter<'a> = Box<dyn FnMut(usize, Vec3, &mut [f64]) + 'a>;
+
 /// Looks at the lamps of a scene.
 pub trait LampLight: Sync {
     /// Number of lamps.
     fn lamps(&self) -> usize;
 
-    /// Looks for one thread: the factors from a point (m) of a leaf to what it sees of each lamp.
-    fn lighter(&self) -> Box<dyn FnMut(usize, Vec3, &mut [f64]) + '_>;
+    /// Looks for one thread.
+    fn lighter(&self) -> Lighter<'_>;
 }
 
 /// What a solution is drawn with.
@@ -102,7 +105,7 @@ impl<'a> LitView<'a> {
             let rho = field.row(lit.reflectance, leaf);
             for (lamp, m) in lit.exitance.chunks_exact(bands).enumerate() {
                 let sent = &mut sent[mesh.surface_of(leaf) * lit.light.lamps() + lamp];
-                if *sent == [0.0; 3] {
+                if sent.iter().all(|part| *part == 0.0) {
                     let both: Vec<f64> = rho.iter().zip(m).map(|(rho, m)| rho * m).collect();
                     *sent = colouring.colour(&both);
                 }

@@ -28,7 +28,7 @@ pub use gathered::Gathering;
 use links::LinkPainter;
 pub use links::{Link, Linked};
 use lit::LitView;
-pub use lit::{LampLight, Lit, LitPicture};
+pub use lit::{LampLight, Lighter, Lit, LitPicture};
 pub use sides::{Back, Side, render_sides};
 
 /// Samples of a pixel.

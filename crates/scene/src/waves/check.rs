@@ -194,8 +194,12 @@ fn told_apart(scene: &WaveScene, pieces: &Pieces) -> Result<(), SceneError> {
 fn half_closed(scene: &WaveScene, pieces: &Pieces) -> Vec<Warning> {
     let Topology { open, clashes, component_of, components, .. } = &pieces.topology;
     let mut faults = vec![[0_usize; 2]; components.len()];
-    open.iter().for_each(|(_, piece)| faults[component_of[*piece as usize] as usize][0] += 1);
-    clashes.iter().for_each(|(_, [piece, _])| faults[component_of[*piece as usize] as usize][1] += 1);
+    for (_, piece) in open {
+        faults[component_of[*piece as usize] as usize][0] += 1;
+    }
+    for (_, [piece, _]) in clashes {
+        faults[component_of[*piece as usize] as usize][1] += 1;
+    }
     let mut sides = vec![0_usize; components.len()];
     for (patch, &component) in pieces.patches.iter().zip(component_of) {
         sides[component as usize] += patch.sides();

@@ -195,7 +195,7 @@ impl Shape {
     /// Whether a line has no length, or a grid no area, though it is to have several points there.
     fn is_collapsed(&self) -> bool {
         match self {
-            Self::Line(line) => line.points > 1 && line.from == line.to,
+            Self::Line(line) => line.points > 1 && vector(&line.from) == vector(&line.to),
             Self::Grid(grid) => {
                 let (u, v) = (vector(&grid.u), vector(&grid.v));
                 let (across, up) = (grid.columns > 1, grid.rows > 1);

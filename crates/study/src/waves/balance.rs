@@ -93,6 +93,9 @@ pub(super) fn of_sources(model: &Model, band: &Band, u: Vec3) -> Option<ComplexV
     model.sources().iter().map(|source| source.far_amplitude(&band.wave, u)).sum()
 }
 
+/// The far fields, V, in some directions.
+pub(super) type FarFields<'a> = &'a dyn Fn(&[Vec3]) -> Result<Vec<ComplexVector>, Error>;
+
 /// What is computed of the powers: the body, and how much work a direction is.
 pub(super) struct Balancing<'a> {
     pub(super) model: &'a Model,
@@ -108,10 +111,7 @@ pub(super) struct Balancing<'a> {
 
 impl Balancing<'_> {
     /// The powers, where the body is a conductor, the sources are of one kind, and the work is small beside that of the run.
-    pub(super) fn balance(
-        &self,
-        far: &dyn Fn(&[Vec3]) -> Result<Vec<ComplexVector>, Error>,
-    ) -> Result<Option<Balance>, Error> {
+    pub(super) fn balance(&self, far: FarFields<'_>) -> Result<Option<Balance>, Error> {
         let conductors = self.band.materials.iter().all(|material| *material == Material::Conductor);
         let sources = self.model.sources();
         let located = sources.iter().filter_map(|source| match source.origin() {

@@ -82,7 +82,9 @@ pub fn waves<'a>(
     let mut model = load(scene.as_ref(), asked, &mut stages)?;
     let outcome = super::compute(&model, &mut stages)?;
     let doubts = doubts(&model, &outcome);
-    doubts.iter().for_each(|doubt| stages.watch.warn(doubt));
+    for doubt in &doubts {
+        stages.watch.warn(doubt);
+    }
     model.warnings.extend(doubts);
     stages.begin_saving()?;
     Ok(SolvedWaves { model, outcome, stages, report: !asked.no_report })
