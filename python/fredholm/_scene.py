@@ -420,7 +420,7 @@ def _surface(surface: Surface, file: str, edge: str) -> List[str]:
     lines = ["[[surface]]", f"name = {_toml(surface.name)}"]
     if surface.material is not None:
         lines += [f"material = {_toml(surface.material)}"]
-    lines += [f"obj = {{ file = {_toml(file)} }}"]
+    lines += [f"mesh = {{ file = {_toml(file)} }}"]
     if surface.two_sided:
         lines += ["two_sided = true"]
     if surface.largest_edge is not None:
