@@ -1,10 +1,17 @@
 //! What does a ray meet first?
+//!
+//! One walk finds the nearest crossing and what lies within the tolerance of it: of all that was met, that which may still
+//! be as near as the nearest is kept.
+
+#![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
 
 use fredholm_mesh::Vec3;
 
 use crate::Occluders;
+use crate::eight::{Eight, Work, run};
+use crate::packet::Ends;
 use crate::probe::Probe;
-use crate::tree::Beam;
+use crate::tree::{Beam, Seeker};
 
 /// Where a ray first meets a patch.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,44 +41,113 @@ impl Occluders {
         }
         let length = direction.length();
         let span = t_max.min(self.frame.beyond(origin) / length);
-        let probe = Probe::ray(origin, origin + direction * span, &self.frame)?;
-        let beam = Beam::new(&probe, &self.frame)?;
-        let nearest = self.nearest(&probe, &beam)?;
-        let alike = nearest + self.tolerance() / (span * length);
-        let patch = self.foremost(&probe, &beam, alike)?;
-        let t = nearest * span;
+        let (fraction, patch) = run(First { occluders: self, origin, direction, span })?;
+        let t = fraction * span;
         Some(Hit { patch: patch as usize, t, point: origin + direction * t })
     }
+}
 
-    /// Least fraction of the probe at which a facet is crossed.
-    fn nearest(&self, probe: &Probe, beam: &Beam) -> Option<f64> {
-        let mut least = f64::INFINITY;
-        self.tree.nearest(beam, |run| {
-            for facet in &self.facets[run] {
-                if let Some(fraction) = self.crossing(facet, probe) {
-                    least = least.min(fraction);
-                }
+/// What does a ray of a span meet first, and at what fraction of it?
+struct First<'a> {
+    occluders: &'a Occluders,
+    origin: Vec3,
+    direction: Vec3,
+    span: f64,
+}
+
+impl Work for First<'_> {
+    type Output = Option<(f64, u32)>;
+
+    #[inline(always)]
+    fn run<E: Eight>(self, eight: E) -> Self::Output {
+        let Self { occluders, origin, direction, span } = self;
+        let probe = Probe::ray(origin, origin + direction * span, &occluders.frame)?;
+        let beam = Beam::new(&probe, &occluders.frame)?;
+        let alike = occluders.frame.tolerance / probe.p.distance(probe.q);
+        let ends = Ends::new(eight, &probe);
+        let found = Found { alike, nearest: f64::INFINITY, best: None, others: Vec::new() };
+        let mut ray = Ray { occluders, probe: &probe, beam: &beam, ends, end: 1.0, found };
+        occluders.tree.nearest(eight, &mut beam.splat(eight), &mut ray);
+        ray.found.foremost().map(|patch| (ray.found.nearest, patch))
+    }
+}
+
+/// A ray on its way to the first facet that it crosses.
+struct Ray<'a, E: Eight> {
+    occluders: &'a Occluders,
+    probe: &'a Probe,
+    beam: &'a Beam,
+    ends: Ends<E>,
+    /// The fraction of the probe beyond which nothing matters.
+    end: f64,
+    found: Found,
+}
+
+impl<E: Eight> Seeker<E> for Ray<'_, E> {
+    #[inline(always)]
+    fn leaf(&mut self, eight: E, leaf: usize) -> f32 {
+        let packet = &self.occluders.packets[leaf];
+        let mut left = packet.crossed(eight, &self.ends, self.end as f32).may;
+        while left != 0 {
+            let facet = &self.occluders.facets[packet.place(left.trailing_zeros())];
+            left &= left - 1;
+            if let Some(fraction) = self.occluders.crossing(facet, self.probe)
+                && fraction <= self.end
+            {
+                let rank = (facet.height(self.probe.p) < 0.0, facet.patch);
+                self.found.add(Met { fraction, rank });
+                self.end = self.end.min(self.found.nearest + self.found.alike);
             }
-            least
-        });
-        least.is_finite().then_some(least)
+        }
+        self.beam.place(self.end)
+    }
+}
+
+/// A facet that was met: facets whose lit side is turned to the start of the ray rank first, then those of patches that
+/// come first.
+#[derive(Clone, Copy, Debug)]
+struct Met {
+    fraction: f64,
+    rank: (bool, u32),
+}
+
+/// The nearest that was met, and what else may be as near as it.
+struct Found {
+    /// What fractions may differ by and count as one.
+    alike: f64,
+    nearest: f64,
+    best: Option<Met>,
+    others: Vec<Met>,
+}
+
+impl Found {
+    #[inline(always)]
+    fn add(&mut self, met: Met) {
+        self.nearest = self.nearest.min(met.fraction);
+        match self.best {
+            Some(best) if best.fraction <= self.nearest + self.alike => self.weigh(best, met),
+            _ => self.best = Some(met),
+        }
     }
 
-    /// Of the patches crossed up to a fraction of the probe, those that face its start, and of those the first.
-    fn foremost(&self, probe: &Probe, beam: &Beam, alike: f64) -> Option<u32> {
-        let mut best: Option<(bool, u32)> = None;
-        let beam = beam.up_to(alike);
-        self.tree.any(
-            |node| beam.meets(node),
-            |run| {
-                let facets = self.facets[run].iter();
-                let met =
-                    facets.filter(|f| self.crossing(f, probe).is_some_and(|fraction| fraction <= alike));
-                let ranked = met.map(|f| (f.height(probe.p) < 0.0, f.patch));
-                best = best.into_iter().chain(ranked).min();
-                false
-            },
-        );
-        best.map(|(_, patch)| patch)
+    /// Of two that may be alike the nearer one that ranks first stands for both; else both are kept.
+    #[cold]
+    fn weigh(&mut self, best: Met, met: Met) {
+        let key = |met: &Met| (met.fraction, met.rank);
+        let (near, far) = if key(&met) < key(&best) { (met, best) } else { (best, met) };
+        self.best = Some(near);
+        if far.rank < near.rank {
+            self.others.push(far);
+        }
+    }
+
+    /// The patch that ranks first of those as near as the nearest.
+    #[inline(always)]
+    fn foremost(&self) -> Option<u32> {
+        let met = self.best.iter().chain(&self.others);
+        met.filter(|met| met.fraction <= self.nearest + self.alike)
+            .map(|met| met.rank)
+            .min()
+            .map(|rank| rank.1)
     }
 }

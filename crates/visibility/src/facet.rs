@@ -41,7 +41,7 @@ pub(crate) struct Facet {
     /// Roundings of U, V and D, over M D and over M².
     doubt: [f32; 2],
     /// 1 for a triangle, 0 for a parallelogram: the third condition is max(U, V) + triangle · min(U, V) ≤ D.
-    triangle: f32,
+    pub triangle: f32,
     /// Index of the patch it belongs to.
     pub patch: u32,
 }
@@ -122,6 +122,22 @@ impl Facet {
         let rest = d - (most + self.triangle * least);
         let doubt = probe.reach * (self.doubt[0] * d + self.doubt[1] * probe.reach);
         (if least < rest { least } else { rest }, doubt)
+    }
+
+    /// The unit normal and the offset: the height of x is n·x + offset.
+    pub(crate) fn plane(&self) -> [f64; 4] {
+        [self.normal.x, self.normal.y, self.normal.z, self.offset]
+    }
+
+    /// ∂/∂x, ∂/∂y, ∂/∂z and the value at 0 of u and of v.
+    pub(crate) fn slopes(&self) -> [[f32; 4]; 2] {
+        let ([u_x, v_x, u_y, v_y], [u_z, v_z, u, v]) = (self.slopes_xy.to_array(), self.slopes_z.to_array());
+        [[u_x, u_y, u_z, u], [v_x, v_y, v_z, v]]
+    }
+
+    /// g, and what changes U, V and D whatever they are rounded to, over M².
+    pub(crate) fn doubts(&self) -> (f32, f32) {
+        (self.doubt[0] / (ROUNDINGS_32 as f32 * f32::EPSILON), self.doubt[1])
     }
 
     /// Height of a point over the plane.

@@ -48,11 +48,13 @@
 
 pub mod body;
 mod closest;
+mod eight;
 mod error;
 mod exact;
 mod facet;
 mod frame;
 mod occluders;
+mod packet;
 mod probe;
 mod segment;
 mod shaft;

@@ -6,11 +6,12 @@ use crate::VisibilityError;
 use crate::exact::line_crosses;
 use crate::facet::{Crossing, Facet};
 use crate::frame::Frame;
+use crate::packet::Packet;
 use crate::probe::Probe;
-use crate::tree::{Tree, bounds};
+use crate::tree::{Built, Tree, bounds};
 
-/// Facets are counted in 32 bits, and a patch may need two.
-const LIMIT: usize = (u32::MAX / 2) as usize;
+/// Facets are counted in 31 bits, and a patch may need two.
+const LIMIT: usize = (u32::MAX / 4) as usize;
 /// A quad this close to a parallelogram, over the tolerance of length, is tested as one.
 const SKEW: f64 = 1e-2;
 
@@ -22,6 +23,8 @@ pub struct Occluders {
     /// In the order of the leaves of the tree.
     pub(crate) facets: Vec<Facet>,
     pub(crate) tree: Tree,
+    /// The facets of each leaf of the tree.
+    pub(crate) packets: Vec<Packet>,
     /// The corners of each facet, local; a triangle repeats its last.
     pub(crate) outlines: Vec<[Vec3; 4]>,
     /// Where the facets of each patch are; the two places are the same where it has only one.
@@ -33,7 +36,7 @@ impl Occluders {
     /// nothing blocks.
     ///
     /// # Errors
-    /// [`VisibilityError::TooMany`] past 2³¹ − 1 patches; [`VisibilityError::Span`] for a scene larger than 1e50 m or
+    /// [`VisibilityError::TooMany`] past 2³⁰ − 1 patches; [`VisibilityError::Span`] for a scene larger than 1e50 m or
     /// smaller than 1e-50 m.
     pub fn new(patches: &[Patch]) -> Result<Self, VisibilityError> {
         if patches.len() > LIMIT {
@@ -43,10 +46,12 @@ impl Occluders {
         let pieces: Vec<(Facet, [Vec3; 4])> =
             patches.iter().zip(0..).flat_map(|(patch, index)| pieces(patch, index, &frame)).collect();
         let boxes: Vec<_> = pieces.iter().map(|(_, outline)| bounds(outline)).collect();
-        let (tree, order) = Tree::new(&boxes);
+        let Built { tree, order, leaves } = Tree::over(&boxes);
         let (facets, outlines): (Vec<_>, Vec<_>) = order.iter().map(|&i| pieces[i as usize]).unzip();
+        let packets =
+            leaves.into_iter().map(|leaf| Packet::new(&facets[leaf.clone()], leaf.start as u32)).collect();
         let places = places(&facets, patches.len());
-        Ok(Self { frame, patches: patches.to_vec(), facets, outlines, tree, places })
+        Ok(Self { frame, patches: patches.to_vec(), facets, outlines, tree, packets, places })
     }
 
     /// The patches, as they were given.

@@ -1,11 +1,14 @@
 //! Which patches could come between two patches, or between a point and a patch?
 
+#![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
+
 use fredholm_mesh::{Patch, Vec3};
 
 use super::Shaft;
 use crate::Occluders;
 use crate::body::Body;
-use crate::tree::Sieve;
+use crate::eight::{Eight, Work, run};
+use crate::tree::{Node, Sieve, Visitor};
 
 impl Occluders {
     /// Lists the patches that could block a segment between a point of `a` and a point of `b`, by rising index.
@@ -68,13 +71,7 @@ impl Occluders {
     /// Whether all of them were listed.
     fn sift(&self, shaft: &Shaft, most: usize, candidates: &mut Vec<u32>) -> bool {
         let sieve = Sieve::new(shaft.planes());
-        let ended = self.tree.any(
-            |node| sieve.passes(node),
-            |run| {
-                candidates.extend(run.filter(|&k| self.cuts(shaft, k)).map(|k| self.facets[k].patch));
-                candidates.len() > most
-            },
-        );
+        let ended = run(Sift { occluders: self, shaft, sieve: &sieve, most, candidates });
         candidates.sort_unstable();
         candidates.dedup();
         !ended
@@ -90,5 +87,38 @@ impl Occluders {
         }
         let apart = low < -tolerance && high > tolerance;
         apart && !shaft.planes().iter().any(|plane| plane.excludes(&self.outlines[k]))
+    }
+}
+
+/// The search for what reaches into a shaft, which ends after more than `most` were found.
+struct Sift<'a> {
+    occluders: &'a Occluders,
+    shaft: &'a Shaft,
+    sieve: &'a Sieve,
+    most: usize,
+    candidates: &'a mut Vec<u32>,
+}
+
+impl Work for Sift<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<E: Eight>(mut self, eight: E) -> bool {
+        self.occluders.tree.any(eight, &mut self)
+    }
+}
+
+impl<E: Eight> Visitor<E> for Sift<'_> {
+    #[inline(always)]
+    fn meets(&self, eight: E, node: &Node) -> u32 {
+        self.sieve.passes(eight, node)
+    }
+
+    #[inline(always)]
+    fn leaf(&mut self, _: E, leaf: usize) -> bool {
+        let Self { occluders, shaft, .. } = *self;
+        let cutting = occluders.packets[leaf].places().filter(|&k| occluders.cuts(shaft, k));
+        self.candidates.extend(cutting.map(|k| occluders.facets[k].patch));
+        self.candidates.len() > self.most
     }
 }

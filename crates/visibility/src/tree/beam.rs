@@ -3,18 +3,20 @@
 //! Along o + t d a slab between two planes of one axis is met for t between (near − o)/d and (far − o)/d; a box is met
 //! where the largest entry is not past the smallest exit.
 //!
-//! With all coordinates in [−1, 1] the rounding of o and d moves the segment by less than ε/2 and that of the
-//! three operations moves a plane by less than 3 ε, together less than half of the padding of the boxes (ε = 2⁻²³).
+//! With o and the planes c in [−1, 1] the rounding of o moves the segment by less than ε/2, and that of d by less than ε
+//! within the scene; c/d − o/d with each quotient rounded moves a plane by less than 3 ε more, together less than the
+//! padding of the boxes (ε = 2⁻²³).
 
-use glam::Vec4;
+#![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
 
-use super::{Node, PADDING, VECTORS};
+use super::{Node, PADDING};
+use crate::eight::Eight;
 use crate::frame::Frame;
 use crate::probe::Probe;
 use fredholm_mesh::Vec3;
 
-/// Largest coordinate of a beam; where a segment reaches farther, it is first cut to the scene.
-const LIMIT: f64 = 1.0;
+/// Largest coordinates of the start and of the end of a beam; a segment that reaches farther is first cut to the scene.
+const LIMITS: [f64; 2] = [1.0, 1e6];
 /// A component of a direction that is smaller than this is replaced by it: that keeps every quotient finite, and
 /// moves the segment by less than any rounding.
 const LEAST: f32 = 1e-20;
@@ -22,22 +24,37 @@ const LEAST: f32 = 1e-20;
 /// A segment in the coordinates of the boxes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Beam {
-    origin: [Vec4; 3],
-    inverse: [Vec4; 3],
-    near: [usize; 3],
-    /// Largest t, from 0 to 1 on the whole beam.
-    end: Vec4,
+    origin: [f32; 3],
+    inverse: [f32; 3],
     /// Where the beam starts and what share of the probe it covers: t = 0 is the fraction `part[0]` of the probe, and
     /// t = 1 is `part[0] + part[1]`.
     part: [f64; 2],
 }
 
+/// A beam in the lanes of vectors.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Splat<E: Eight> {
+    /// Over d: −o.
+    origin: [E::Vector; 3],
+    inverse: [E::Vector; 3],
+    /// 1 where d is negative.
+    near: [usize; 3],
+    zero: E::Vector,
+    /// Largest t, from 0 to 1 on the whole beam.
+    end: f32,
+    ends: E::Vector,
+}
+
 impl Beam {
     /// The part of the segment that can meet a box, or `None` where there is no such part.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn new(probe: &Probe, frame: &Frame) -> Option<Self> {
         let (p, q) = (probe.p, probe.q);
-        if within(p) && within(q) { Some(Self::between(p, q, [0.0, 1.0])) } else { Self::inside(p, q, frame) }
+        if within(p, LIMITS[0]) && within(q, LIMITS[1]) {
+            Some(Self::between(p, q, [0.0, 1.0]))
+        } else {
+            Self::inside(p, q, frame)
+        }
     }
 
     /// The part inside the bounding box of the scene.
@@ -49,58 +66,74 @@ impl Beam {
         Some(Self::between(at(enter), at(leave), [enter, leave - enter]))
     }
 
-    #[inline]
+    #[inline(always)]
     fn between(p: Vec3, q: Vec3, part: [f64; 2]) -> Self {
-        let (o, q) = (p.as_vec3(), q.as_vec3());
-        let d = (q - o).to_array().map(|c| if c.abs() < LEAST { LEAST } else { c });
-        Self {
-            origin: o.to_array().map(Vec4::splat),
-            inverse: d.map(|c| Vec4::splat(1.0 / c)),
-            near: d.map(|c| usize::from(c < 0.0)),
-            end: Vec4::ONE,
-            part,
+        let d = (q - p).as_vec3().to_array().map(|c| if c.abs() < LEAST { LEAST } else { c });
+        Self { origin: p.as_vec3().to_array(), inverse: d.map(|c| 1.0 / c), part }
+    }
+
+    /// The place on the beam of a fraction of the probe, or a little farther.
+    #[inline(always)]
+    pub(crate) fn place(&self, fraction: f64) -> f32 {
+        let t = ((fraction - self.part[0]) / self.part[1]) as f32;
+        (t.max(0.0) + f32::EPSILON).min(1.0)
+    }
+
+    #[inline(always)]
+    pub(crate) fn splat<E: Eight>(&self, eight: E) -> Splat<E> {
+        let ([o_x, o_y, o_z], [x, y, z]) = (self.origin, self.inverse);
+        Splat {
+            origin: [eight.splat(-o_x * x), eight.splat(-o_y * y), eight.splat(-o_z * z)],
+            inverse: [eight.splat(x), eight.splat(y), eight.splat(z)],
+            near: [usize::from(x < 0.0), usize::from(y < 0.0), usize::from(z < 0.0)],
+            zero: eight.splat(0.0),
+            end: 1.0,
+            ends: eight.splat(1.0),
         }
     }
+}
 
-    /// The beam up to a fraction of the probe, or a little farther.
-    pub(crate) fn up_to(self, fraction: f64) -> Self {
-        let t = ((fraction - self.part[0]) / self.part[1]) as f32;
-        Self { end: Vec4::splat(t.max(0.0) + f32::EPSILON).min(Vec4::ONE), ..self }
+impl<E: Eight> Splat<E> {
+    /// Whether the beam goes on to t.
+    #[inline(always)]
+    pub(crate) fn reaches(&self, t: f32) -> bool {
+        t <= self.end
     }
 
-    /// Whether the beam goes on to t.
-    pub(crate) fn reaches(&self, t: f32) -> bool {
-        t <= self.end.x
+    /// Ends the beam at t, where it goes on so far.
+    #[inline(always)]
+    pub(crate) fn shorten(&mut self, eight: E, t: f32) {
+        if t < self.end {
+            self.end = t;
+            self.ends = eight.splat(t);
+        }
     }
 
     /// Bit i is set where box i is met.
-    #[inline]
-    pub(crate) fn meets(&self, node: &Node) -> u32 {
-        let mut met = 0;
-        for i in 0..VECTORS {
-            let (enter, leave) = self.slabs(node, i);
-            met |= enter.cmple(leave).bitmask() << (4 * i);
-        }
-        met
+    #[inline(always)]
+    pub(crate) fn meets(&self, eight: E, node: &Node) -> u32 {
+        let (enter, leave) = self.slabs(eight, node);
+        eight.at_most(enter, leave)
     }
 
-    /// Where the boxes of group `i` are entered and left.
-    #[inline]
-    pub(crate) fn slabs(&self, node: &Node, i: usize) -> (Vec4, Vec4) {
-        let (mut enter, mut leave) = (Vec4::ZERO, self.end);
+    /// Where the boxes are entered and left.
+    #[inline(always)]
+    pub(crate) fn slabs(&self, eight: E, node: &Node) -> (E::Vector, E::Vector) {
+        let (mut enter, mut leave) = (self.zero, self.ends);
         for axis in 0..3 {
             let near = self.near[axis] & 1;
+            let (inverse, origin) = (self.inverse[axis], self.origin[axis]);
             let planes = &node.planes[axis];
-            enter = ((planes[near][i] - self.origin[axis]) * self.inverse[axis]).max(enter);
-            leave = ((planes[1 - near][i] - self.origin[axis]) * self.inverse[axis]).min(leave);
+            enter = eight.max(eight.mul_add(eight.load(&planes[near]), inverse, origin), enter);
+            leave = eight.min(eight.mul_add(eight.load(&planes[1 - near]), inverse, origin), leave);
         }
         (enter, leave)
     }
 }
 
-#[inline]
-fn within(p: Vec3) -> bool {
-    (p.x.abs() <= LIMIT) & (p.y.abs() <= LIMIT) & (p.z.abs() <= LIMIT)
+#[inline(always)]
+fn within(p: Vec3, limit: f64) -> bool {
+    (p.x.abs() <= limit) & (p.y.abs() <= limit) & (p.z.abs() <= limit)
 }
 
 /// The fractions between which the segment lies inside the box from −half to half.

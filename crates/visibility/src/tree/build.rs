@@ -2,21 +2,23 @@
 
 use std::time::Duration;
 
-use glam::{Vec3A, Vec4};
+use glam::Vec3A;
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
-use obvhs::bvh2::node::Bvh2Node;
 
-use super::{Child, Node, PADDING, Tree, VECTORS, WIDTH};
+use super::{Built, Child, Node, PADDING, Tree, WIDTH};
 use fredholm_mesh::Vec3;
 
 /// The padded box of a facet.
 pub(crate) type Bounds = Aabb;
 
-/// Facets in a leaf, at most.
-const LEAF: u32 = 4;
+/// Facets in a leaf, at most: those of a packet.
+const LEAF: u32 = WIDTH as u32;
+/// What it costs to go through a node of two boxes, over the test of one facet. A packet is tested as a whole, so that as
+/// many facets as it holds stay together.
+const TRAVERSAL: f32 = 16.0;
 
 /// The padded box of some points.
 pub(crate) fn bounds(corners: &[Vec3]) -> Bounds {
@@ -29,38 +31,41 @@ pub(crate) fn bounds(corners: &[Vec3]) -> Bounds {
 }
 
 impl Tree {
-    /// The tree over the boxes, and the order in which its leaves refer to them.
-    pub(crate) fn new(boxes: &[Bounds]) -> (Self, Vec<u32>) {
+    /// The tree over the boxes.
+    pub(crate) fn over(boxes: &[Bounds]) -> Built {
         let params = BvhBuildParams {
             pre_split: false,
             max_prims_per_leaf: LEAF,
+            collapse_traversal_cost: TRAVERSAL,
             ..BvhBuildParams::very_slow_build()
         };
         let binary = build_bvh2(boxes, params, &mut Duration::default());
-        let mut tree = Self { nodes: vec![Node::empty()] };
-        let mut order = Vec::with_capacity(boxes.len());
+        let mut built = Built {
+            tree: Self { nodes: vec![Node::empty()] },
+            order: Vec::with_capacity(boxes.len()),
+            leaves: Vec::new(),
+        };
         let mut pending = if boxes.is_empty() { vec![] } else { vec![(0, 0)] };
         while let Some((index, source)) = pending.pop() {
             for (slot, &below) in widen(&binary, source).iter().enumerate() {
                 let node = &binary.nodes[below];
+                let nodes = &mut built.tree.nodes;
                 let child = if node.is_leaf() {
-                    leaf(node, &binary.primitive_indices, &mut order)
+                    let (first, run) = (built.order.len(), node.first_index as usize);
+                    let end = run + node.prim_count as usize;
+                    built.order.extend_from_slice(&binary.primitive_indices[run..end]);
+                    built.leaves.push(first..built.order.len());
+                    Child::leaf(built.leaves.len() - 1)
                 } else {
-                    pending.push((tree.nodes.len(), below));
-                    tree.nodes.push(Node::empty());
-                    Child { first: tree.nodes.len() as u32 - 1, count: 0 }
+                    pending.push((nodes.len(), below));
+                    nodes.push(Node::empty());
+                    Child::node(nodes.len() - 1)
                 };
-                tree.nodes[index].set(slot, node.aabb(), child);
+                nodes[index].set(slot, node.aabb(), child);
             }
         }
-        (tree, order)
+        built
     }
-}
-
-fn leaf(node: &Bvh2Node, indices: &[u32], order: &mut Vec<u32>) -> Child {
-    let (first, run) = (order.len() as u32, node.first_index as usize);
-    order.extend_from_slice(&indices[run..run + node.prim_count as usize]);
-    Child { first, count: node.prim_count }
 }
 
 /// Up to eight descendants of a node of the binary tree that cover it: the largest is opened first.
@@ -81,14 +86,14 @@ fn widen(binary: &Bvh2, root: usize) -> Vec<usize> {
 impl Node {
     /// Boxes that nothing meets.
     fn empty() -> Self {
-        let slab = [[Vec4::INFINITY; VECTORS], [Vec4::NEG_INFINITY; VECTORS]];
+        let slab = [[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]];
         Self { planes: [slab; 3], children: [Child::default(); WIDTH] }
     }
 
     fn set(&mut self, slot: usize, aabb: &Aabb, child: Child) {
         for axis in 0..3 {
-            self.planes[axis][0][slot / 4][slot % 4] = aabb.min[axis];
-            self.planes[axis][1][slot / 4][slot % 4] = aabb.max[axis];
+            self.planes[axis][0][slot] = aabb.min[axis];
+            self.planes[axis][1][slot] = aabb.max[axis];
         }
         self.children[slot] = child;
     }

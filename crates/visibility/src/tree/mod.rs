@@ -9,6 +9,8 @@
 //! Comput. Graph. 24 (2018) 1345–1353, [doi:10.1109/TVCG.2017.2669983](https://doi.org/10.1109/TVCG.2017.2669983), for
 //! the binary tree they are made from.
 
+#![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
+
 mod beam;
 mod build;
 mod nearest;
@@ -17,37 +19,51 @@ mod stack;
 
 use std::ops::Range;
 
-use glam::Vec4;
+pub(crate) use crate::eight::WIDTH;
 
-pub(crate) use beam::Beam;
+use crate::eight::Eight;
+pub(crate) use beam::{Beam, Splat};
 pub(crate) use build::bounds;
+pub(crate) use nearest::Seeker;
 pub(crate) use sieve::Sieve;
 use stack::Stack;
 
 /// What boxes are padded with: 8 units in the last place of 1, the extent of the scene.
 pub(crate) const PADDING: f32 = 8.0 * f32::EPSILON;
 
-/// Vectors of four boxes in a node.
-const VECTORS: usize = 2;
-/// Children of a node.
-const WIDTH: usize = 4 * VECTORS;
-
-/// One number for each box.
-type Lanes = [Vec4; VECTORS];
-
 /// Eight boxes and what they hold.
 #[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
 pub(crate) struct Node {
     /// For each axis the least and the largest coordinates of the boxes.
-    pub planes: [[Lanes; 2]; 3],
+    pub planes: [[[f32; WIDTH]; 2]; 3],
     children: [Child; WIDTH],
 }
 
-/// A node (`count` is 0), or a run of facets that starts at `first`.
-#[derive(Clone, Copy, Debug, Default)]
-struct Child {
-    first: u32,
-    count: u32,
+/// A node, or a leaf: by its place, and a bit that tells which.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Child(u32);
+
+impl Child {
+    const LEAF: u32 = 1 << 31;
+
+    fn node(place: usize) -> Self {
+        Self(place as u32)
+    }
+
+    fn leaf(place: usize) -> Self {
+        Self(place as u32 | Self::LEAF)
+    }
+
+    #[inline(always)]
+    fn is_leaf(self) -> bool {
+        self.0 & Self::LEAF != 0
+    }
+
+    #[inline(always)]
+    fn place(self) -> usize {
+        (self.0 & !Self::LEAF) as usize
+    }
 }
 
 /// The nodes; the root is the first.
@@ -56,36 +72,44 @@ pub(crate) struct Tree {
     nodes: Vec<Node>,
 }
 
+/// What goes down the tree to leaves in any order.
+pub(crate) trait Visitor<E: Eight> {
+    /// Bit i is set where box i is met.
+    fn meets(&self, eight: E, node: &Node) -> u32;
+
+    /// Looks at a leaf; `true` ends the walk.
+    fn leaf(&mut self, eight: E, leaf: usize) -> bool;
+}
+
+/// A new tree, and what its leaves hold.
+pub(crate) struct Built {
+    pub tree: Tree,
+    /// The boxes by their places in the leaves.
+    pub order: Vec<u32>,
+    /// The run of `order` in each leaf.
+    pub leaves: Vec<Range<usize>>,
+}
+
 impl Tree {
-    /// Walks down to every leaf whose boxes `meets` accepts (bit i of its answer for box i), until `found` accepts one.
-    #[inline]
-    pub(crate) fn any(
-        &self,
-        meets: impl Fn(&Node) -> u32,
-        mut found: impl FnMut(Range<usize>) -> bool,
-    ) -> bool {
+    /// Walks down to every leaf whose boxes the visitor meets, until it ends the walk. Returns whether it did.
+    #[inline(always)]
+    pub(crate) fn any<E: Eight>(&self, eight: E, visitor: &mut impl Visitor<E>) -> bool {
         let mut stack = Stack::default();
         let mut next = Some(0);
         while let Some(index) = next {
             let node = &self.nodes[index as usize];
-            let mut met = meets(node);
+            let mut met = visitor.meets(eight, node);
             while met != 0 {
                 let child = node.children[met.trailing_zeros() as usize % WIDTH];
                 met &= met - 1;
-                if child.count == 0 {
-                    stack.push(child.first);
-                } else if found(child.range()) {
+                if !child.is_leaf() {
+                    stack.push(child.0);
+                } else if visitor.leaf(eight, child.place()) {
                     return true;
                 }
             }
             next = stack.pop();
         }
         false
-    }
-}
-
-impl Child {
-    fn range(self) -> Range<usize> {
-        self.first as usize..(self.first + self.count) as usize
     }
 }

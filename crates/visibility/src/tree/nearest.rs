@@ -1,61 +1,65 @@
 //! Leaves in the order in which a beam meets them.
 
-use std::ops::Range;
+#![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
 
-use super::{Beam, Node, Tree, VECTORS, WIDTH};
+use super::beam::Splat;
+use super::{Child, Stack, Tree, WIDTH};
+use crate::eight::Eight;
 
-/// A child that was met, and where.
+/// What looks for the first of what a beam meets.
+pub(crate) trait Seeker<E: Eight> {
+    /// Looks at a leaf. Beyond the place on the beam that it returns nothing matters any more.
+    fn leaf(&mut self, eight: E, leaf: usize) -> f32;
+}
+
+/// A child by where the beam enters it; a place on a beam is never negative, so its bits are in the order of its value.
 #[derive(Clone, Copy, Debug, Default)]
-struct Met {
-    enter: f32,
-    slot: usize,
+struct Entry(u64);
+
+impl Entry {
+    #[inline(always)]
+    fn new(enter: f32, child: Child) -> Self {
+        Self(u64::from(enter.to_bits()) << 32 | u64::from(child.0))
+    }
+
+    #[inline(always)]
+    fn enter(self) -> f32 {
+        f32::from_bits((self.0 >> 32) as u32)
+    }
+
+    #[inline(always)]
+    fn child(self) -> Child {
+        Child(self.0 as u32)
+    }
 }
 
 impl Tree {
-    /// Walks down to the leaves that the beam meets, near ones first. `found` answers the fraction of the probe from
-    /// which on nothing matters any more.
-    pub(crate) fn nearest(&self, beam: &Beam, mut found: impl FnMut(Range<usize>) -> f64) {
-        let mut beam = *beam;
-        let mut pending: Vec<(f32, u32)> = vec![(0.0, 0)];
-        while let Some((enter, index)) = pending.pop() {
-            if !beam.reaches(enter) {
-                continue;
-            }
-            let node = &self.nodes[index as usize];
-            let (met, count) = sorted(&beam, node);
-            for met in met[..count].iter().rev() {
-                let child = node.children[met.slot];
-                if child.count == 0 {
-                    pending.push((met.enter, child.first));
+    /// Walks down to the leaves that the beam meets, near ones first.
+    #[inline(always)]
+    pub(crate) fn nearest<E: Eight>(&self, eight: E, beam: &mut Splat<E>, seeker: &mut impl Seeker<E>) {
+        let mut stack: Stack<Entry> = Stack::default();
+        let mut next = Some(Entry::default());
+        while let Some(entry) = next {
+            if beam.reaches(entry.enter()) {
+                let child = entry.child();
+                if child.is_leaf() {
+                    let end = seeker.leaf(eight, child.place());
+                    beam.shorten(eight, end);
+                } else {
+                    let node = &self.nodes[child.place()];
+                    let (enter, leave) = beam.slabs(eight, node);
+                    let mut met = eight.at_most(enter, leave);
+                    let enter = eight.store(enter);
+                    let base = stack.len();
+                    while met != 0 {
+                        let lane = met.trailing_zeros() as usize % WIDTH;
+                        met &= met - 1;
+                        stack.push(Entry::new(enter[lane], node.children[lane]));
+                    }
+                    stack.sort_from(base, |a, b| a.0 < b.0);
                 }
             }
-            for met in &met[..count] {
-                let child = node.children[met.slot];
-                if child.count > 0 && beam.reaches(met.enter) {
-                    beam = beam.up_to(found(child.range()));
-                }
-            }
+            next = stack.pop();
         }
     }
-}
-
-/// The met boxes by rising entry.
-fn sorted(beam: &Beam, node: &Node) -> ([Met; WIDTH], usize) {
-    let (mut sorted, mut count) = ([Met::default(); WIDTH], 0);
-    for i in 0..VECTORS {
-        let (enter, leave) = beam.slabs(node, i);
-        let mut mask = enter.cmple(leave).bitmask();
-        while mask != 0 {
-            let lane = mask.trailing_zeros() as usize % 4;
-            mask &= mask - 1;
-            let mut place = count;
-            while place > 0 && sorted[place - 1].enter > enter[lane] {
-                sorted[place] = sorted[place - 1];
-                place -= 1;
-            }
-            sorted[place] = Met { enter: enter[lane], slot: 4 * i + lane };
-            count += 1;
-        }
-    }
-    (sorted, count)
 }

@@ -4,9 +4,10 @@
 //! to the sum 1 and coordinates in [−½, ½] the f32 value of N·x − c errs by less than 3 ε, less than the padding of the
 //! boxes; where c is larger than 1 its sign is beyond doubt.
 
-use glam::Vec4;
+#![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
 
-use super::{Node, VECTORS, WIDTH};
+use super::{Node, WIDTH};
+use crate::eight::Eight;
 use crate::shaft::{HalfSpace, PLANES};
 
 /// A half-space in the coordinates of the boxes.
@@ -35,11 +36,11 @@ impl Sieve {
     }
 
     /// Bit i is set where box i may reach into all the half-spaces.
-    #[inline]
-    pub(crate) fn passes(&self, node: &Node) -> u32 {
+    #[inline(always)]
+    pub(crate) fn passes<E: Eight>(&self, eight: E, node: &Node) -> u32 {
         let mut inside = (1 << WIDTH) - 1;
         for side in &self.sides[..self.count] {
-            inside &= side.reached(node);
+            inside &= side.reached(eight, node);
             if inside == 0 {
                 break;
             }
@@ -56,14 +57,13 @@ impl Side {
         Self { normal, offset: (plane.offset * scale) as f32, far }
     }
 
-    #[inline]
-    fn reached(&self, node: &Node) -> u32 {
-        let mut reached = 0;
-        for i in 0..VECTORS {
-            let [x, y, z] = [0, 1, 2].map(|axis| node.planes[axis][self.far[axis] & 1][i]);
-            let along = x * self.normal[0] + y * self.normal[1] + z * self.normal[2];
-            reached |= along.cmpgt(Vec4::splat(self.offset)).bitmask() << (4 * i);
-        }
-        reached
+    #[inline(always)]
+    fn reached<E: Eight>(&self, e: E, node: &Node) -> u32 {
+        let ([a, b, c], [i, j, k]) = (self.normal, self.far.map(|side| side & 1));
+        let [x, y, z] = &node.planes;
+        let along = e.mul(e.load(&z[k]), e.splat(c));
+        let along = e.mul_add(e.load(&y[j]), e.splat(b), along);
+        let along = e.mul_add(e.load(&x[i]), e.splat(a), along);
+        e.less(e.splat(self.offset), along)
     }
 }
