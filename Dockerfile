@@ -17,7 +17,6 @@ RUN apt-get update \
 WORKDIR /src
 COPY . .
 RUN cargo build --release --locked --bin fredholm \
-    && strip target/release/fredholm \
     && python3 packaging/notices.py -o /THIRD-PARTY-LICENSES.txt
 
 FROM debian:bookworm-slim

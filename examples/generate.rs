@@ -4,7 +4,7 @@ use std::error::Error;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
-use fredholm_generate::{City, Files, Room, Scan};
+use fredholm_generate::{Almond, City, Files, Room, Scan};
 
 /// Writes a scene made from a number: an OBJ and a scene file beside it.
 #[derive(Debug, Parser)]
@@ -64,6 +64,18 @@ enum Kind {
         #[command(flatten)]
         common: Common,
     },
+    /// The NASA almond with a monostatic sweep of 181 angles, a scene of waves
+    Almond {
+        /// Frequency, Hz
+        #[arg(long, value_name = "HZ", default_value_t = 1e9)]
+        frequency: f64,
+        /// Length of the edges, m [default: a tenth of the wavelength, at most 6 mm]
+        #[arg(long, value_name = "M")]
+        edge: Option<f64>,
+        /// Folder for the files
+        #[arg(long, short, value_name = "DIR")]
+        output: PathBuf,
+    },
 }
 
 impl Kind {
@@ -79,6 +91,7 @@ impl Kind {
                 let room = Room { reflectance, furnace, boxes, divide: divide.into(), seed: common.seed };
                 (room.files(), common.output)
             }
+            Self::Almond { frequency, edge, output } => (Almond { frequency, edge }.files(), output),
         }
     }
 }

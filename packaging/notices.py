@@ -9,7 +9,8 @@ only builds or tests. Where a crate may be had under several licences, MIT is ta
 them. A licence that is not in ACCEPTED ends the script with exit code 1: somebody has to read it.
 
 The licences of what is bundled into the page of a result are appended from
-crates/report/viewer/dist/LICENSES.txt; every page carries them as well. Fonts are not bundled.
+crates/report/viewer/dist/LICENSES.txt; every page carries them as well. Those of the font that plots
+are drawn with are appended from crates/report/assets/LICENSE-plot-font.txt.
 
 The standard library suffices, of Python 3.9 or later; cargo has to have fetched the crates.
 """
@@ -112,6 +113,8 @@ def main():
     blocks = ["\n".join(names) + f"\n\n{text}" for text, names in users.items()]
     page = ROOT / "crates/report/viewer/dist/LICENSES.txt"
     blocks.append(f"In the page of a result:\n\n{page.read_text(encoding='utf-8').strip()}")
+    font = ROOT / "crates/report/assets/LICENSE-plot-font.txt"
+    blocks.append(f"In the pictures of plots:\n\n{font.read_text(encoding='utf-8').strip()}")
     written = f"\n\n{RULE}\n\n".join(blocks) + "\n"
     if output:
         output.write_text(written, encoding="utf-8")

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import base64
+import os
+import tempfile
 from html import escape
-from typing import Iterable, Optional, Sequence, Tuple
+from typing import Callable, Iterable, Optional, Sequence, Tuple
+
+from ._errors import wrong
 
 #: Rows of a table that are shown.
 ROWS = 50
@@ -33,6 +37,17 @@ class Page:
 
     def __repr__(self) -> str:
         return f"<Page of {len(self.html)} characters>"
+
+
+def written(write: Callable[[str], None], height: int) -> Page:
+    """The page among the files that a result writes."""
+    with tempfile.TemporaryDirectory() as folder:
+        write(folder)
+        path = os.path.join(folder, "report.html")
+        if not os.path.exists(path):
+            raise wrong("the solution was asked for without its page", "solve with report=True")
+        with open(path, encoding="utf-8") as file:
+            return Page(file.read(), height)
 
 
 def _cells(tag: str, row: Sequence[str]) -> str:

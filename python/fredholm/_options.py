@@ -56,7 +56,7 @@ def stop(tolerance: Optional[float], max_iterations: Optional[int]) -> Dict[str,
 def share(name: str, value: Optional[float]) -> None:
     """Refuses what is not above 0 and below 1."""
     if value is not None and not 0.0 < value < 1.0:
-        raise wrong(f"{name} is {value}", f"give a {name} above 0 and below 1, such as 0.01")
+        raise wrong(f"{name} is {value}", f"give a value above 0 and below 1, such as 0.01")
 
 
 def known(name: str, names: Iterable[str], what: str) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,10 +15,8 @@ from ._coupling import Couplings
 from ._errors import wrong
 from ._options import Memory, Path, Progress
 from ._solution import Solution, solved
-
-if TYPE_CHECKING:
-    from ._studies import Check, Comparison, Convergence, Crosscheck, Reference, Spectrum, Trace
-    from ._viewfactors import ViewFactors
+from ._studies import LightStudies
+from ._viewfactors import ViewFactors, view_factors
 
 #: One number for all bands, one for each, or a number by the name of the band.
 PerBand = Union[float, Sequence[float], Mapping[str, float]]
@@ -54,12 +52,13 @@ class Surface:
         ``vertices`` and ``faces``, with ``points`` and ``cells``, or with ``points`` and ``faces``.
         Vertices are an array (n, 3), m. Faces are an array (m, 3) or (m, 4) of indices of vertices,
         or a list of such lists of any length; they run counter-clockwise seen from the lit side.
-    material : str
-        Name of its material.
+    material : str, optional
+        Name of its material; of waves, a perfect conductor where it is left out.
     two_sided : bool
         Whether it is lit on both sides; the back is then a surface called NAME/back.
     largest_edge : float, optional
-        Faces are cut so that no edge is longer, m. Not at all where it is left out.
+        Faces are cut so that no edge is longer, m. Where it is left out they are not, and those of
+        waves as the frequency asks for.
     elements_per_face : int, optional
         Elements that every face is computed on, a square number. That of the scene where it is left
         out.
@@ -67,13 +66,13 @@ class Surface:
 
     name: str
     mesh: Any
-    material: str
+    material: Optional[str] = None
     two_sided: bool = False
     largest_edge: Optional[float] = None
     elements_per_face: Optional[int] = None
 
 
-class Scene:
+class Scene(LightStudies):
     """Surfaces, what they are made of, and how to look at them.
 
     Made by :meth:`load`, :meth:`from_toml` or :meth:`build`.
@@ -156,7 +155,6 @@ class Scene:
         ...     {"grey": Material(0.5), "lamp": Material(0.0, exitance=1.0)},
         ... )
         """
-        files = {f"surface{number}.obj": _obj(surface) for number, surface in enumerate(surfaces)}
         head: Dict[str, Any] = {"elements_per_face": elements_per_face}
         if title is not None:
             head["title"] = title
@@ -168,9 +166,8 @@ class Scene:
         for name, material in materials.items():
             lines += [f"[materials.{_toml(name)}]", f"reflectance = {_toml(material.reflectance)}"]
             lines += [f"exitance = {_toml(material.exitance)}"]
-        for number, surface in enumerate(surfaces):
-            lines += _surface(surface, f"surface{number}.obj")
-        return cls.from_toml("\n".join(lines) + "\n", "built.toml", files)
+        text, files = with_surfaces("\n".join(lines) + "\n", surfaces, "largest_edge")
+        return cls.from_toml(text, "built.toml", files)
 
     @property
     def path(self) -> str:
@@ -340,53 +337,37 @@ class Scene:
         how = _options.how(threads, progress)
         return Couplings(_core.couplings(self._core, problem, how), self.bands)
 
-    def view_factors(self, **options: Any) -> ViewFactors:
-        """Computes the matrix of view factors; see :func:`fredholm.view_factors`."""
-        from ._viewfactors import view_factors
-
-        return view_factors(self, **options)
-
-    def check(self, **options: Any) -> Check:
-        """Tells what the mesh is and what a solution will take; see :class:`Check`."""
-        from . import _studies
-
-        return _studies.check(self, **options)
-
-    def compare(self, solvers: Union[str, Sequence[str]] = "all", **options: Any) -> Comparison:
-        """Runs solvers on the system of the scene; see :class:`Comparison`."""
-        from . import _studies
-
-        return _studies.compare(self, solvers, **options)
-
-    def converge(self, levels: int = 3, **options: Any) -> Convergence:
-        """Solves on finer and finer meshes; see :class:`Convergence`."""
-        from . import _studies
-
-        return _studies.converge(self, levels, **options)
-
-    def spectrum(self, **options: Any) -> Spectrum:
-        """Analyses the matrix of the scene; see :class:`Spectrum`."""
-        from . import _studies
-
-        return _studies.spectrum(self, **options)
-
-    def trace(self, method: str = "path", **options: Any) -> Trace:
-        """Estimates the irradiance by random paths; see :class:`Trace`."""
-        from . import _studies
-
-        return _studies.trace(self, method, **options)
-
-    def crosscheck(self, method: Optional[str] = None, **options: Any) -> Crosscheck:
-        """Solves and traces, and decides whether the two agree; see :class:`Crosscheck`."""
-        from . import _studies
-
-        return _studies.crosscheck(self, method, **options)
-
-    def reference(self, **options: Any) -> Reference:
-        """Computes reference values with stated errors; see :class:`Reference`."""
-        from . import _studies
-
-        return _studies.reference(self, **options)
+    def view_factors(
+        self,
+        *,
+        rows: str = "face",
+        tolerance: Optional[float] = None,
+        method: str = "auto",
+        setting: Optional[str] = None,
+        threshold: Optional[float] = None,
+        close: bool = False,
+        sky: bool = False,
+        points: Optional[ArrayLike] = None,
+        threads: Optional[int] = None,
+        memory: Memory = None,
+        progress: Progress = None,
+    ) -> ViewFactors:
+        """Computes the matrix of view factors; the arguments are those of
+        :func:`fredholm.view_factors`."""
+        return view_factors(
+            self._core,
+            rows=rows,
+            tolerance=tolerance,
+            method=method,
+            setting=setting,
+            threshold=threshold,
+            close=close,
+            sky=sky,
+            points=points,
+            threads=threads,
+            memory=memory,
+            progress=progress,
+        )
 
     def __repr__(self) -> str:
         title = f" {self.title!r}" if self.title else ""
@@ -422,18 +403,28 @@ def _toml(value: Any) -> str:
     return "[" + ", ".join(_toml(item) for item in value) + "]"
 
 
-def _surface(surface: Surface, file: str) -> List[str]:
+def with_surfaces(
+    text: str, surfaces: Sequence[Surface], edge: str
+) -> Tuple[str, Dict[str, bytes]]:
+    """A scene file with tables for some surfaces at its end, in which ``edge`` is the key of the
+    longest edge, and their mesh files by name."""
+    files = {f"surface{number}.obj": _obj(surface) for number, surface in enumerate(surfaces)}
+    lines = [text]
+    for surface, file in zip(surfaces, files):
+        lines += _surface(surface, file, edge)
+    return "\n".join(lines) + "\n", files
+
+
+def _surface(surface: Surface, file: str, edge: str) -> List[str]:
     """The lines of a surface."""
-    lines = [
-        "[[surface]]",
-        f"name = {_toml(surface.name)}",
-        f"material = {_toml(surface.material)}",
-    ]
-    lines += [f"obj = {{ file = {_toml(file)} }}"]
+    lines = ["[[surface]]", f"name = {_toml(surface.name)}"]
+    if surface.material is not None:
+        lines += [f"material = {_toml(surface.material)}"]
+    lines += [f"mesh = {{ file = {_toml(file)} }}"]
     if surface.two_sided:
         lines += ["two_sided = true"]
     if surface.largest_edge is not None:
-        lines += [f"largest_edge = {_toml(surface.largest_edge)}"]
+        lines += [f"{edge} = {_toml(surface.largest_edge)}"]
     if surface.elements_per_face is not None:
         lines += [f"elements_per_face = {_toml(surface.elements_per_face)}"]
     return lines

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import tempfile
 import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Callable, Dict, Iterator, List, Mapping, Optional, Tuple
@@ -245,13 +244,7 @@ class Solution:
         height : int
             Height of the frame in pixels.
         """
-        with tempfile.TemporaryDirectory() as folder:
-            self.write(folder)
-            path = os.path.join(folder, "report.html")
-            if not os.path.exists(path):
-                raise wrong("the solution was asked for without its page", "solve with report=True")
-            with open(path, encoding="utf-8") as file:
-                return _html.Page(file.read(), height)
+        return _html.written(self.write, height)
 
     def to_pandas(self) -> Any:
         """The faces as a ``pandas.DataFrame``: surface, centroid (m), area (m²), and for every band

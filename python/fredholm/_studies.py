@@ -7,7 +7,6 @@ import io
 import os
 import tempfile
 from typing import (
-    TYPE_CHECKING,
     Any,
     Callable,
     Dict,
@@ -27,12 +26,12 @@ from . import _core, _html, _options
 from ._errors import Interrupted, wrong
 from ._options import Memory, Progress
 
-if TYPE_CHECKING:
-    from ._scene import Scene
-
 Floats = NDArray[np.float64]
 Path = Union[str, "os.PathLike[str]"]
 S = TypeVar("S", bound="Study")
+#: Seed, points and batch; samples, seconds and standard error.
+Paths = Tuple[int, str, Optional[int]]
+Tracing = Tuple[Optional[int], Optional[float], Optional[float]]
 
 
 class Study:
@@ -71,6 +70,18 @@ class Study:
             The folder. The record is written last: where it stands, the folder is complete.
         """
         self._core.write(os.fspath(folder))
+
+    def page(self, height: int = 600) -> _html.Page:
+        """The page report.html, which notebooks show in a frame.
+
+        Parameters
+        ----------
+        height : int
+            Height of the frame in pixels.
+        """
+        if "report.html" not in self.files:
+            raise wrong("this study has no page", "ask for it with report=True, or see .record")
+        return _html.Page(bytes(self._core.read("report.html")).decode(), height)
 
     def table(self, file: str) -> Dict[str, NDArray[Any]]:
         """The columns of one of the files that end in .csv, by their names.
@@ -199,7 +210,7 @@ class Judgement(Study):
         return self.ended == "agree"
 
 
-def _found(make: Type[S], run: Callable[[], _core.Study]) -> S:
+def answered(make: Type[S], run: Callable[[], _core.Study]) -> S:
     """The answer of a run; what Ctrl-C leaves of it is one, too."""
     try:
         return make(run())
@@ -209,105 +220,12 @@ def _found(make: Type[S], run: Callable[[], _core.Study]) -> S:
         raise
 
 
-def check(
-    scene: Scene,
-    *,
-    threads: Optional[int] = None,
-    discretisation: Optional[str] = None,
-    solver: Optional[str] = None,
-    form_factor_tolerance: Optional[float] = None,
-    storage: Optional[str] = None,
-    memory: Memory = None,
-    progress: Progress = None,
-) -> Check:
-    """See :class:`Check`; the arguments are those of :meth:`Scene.solve`."""
-    problem = _options.problem(
-        threads, discretisation, solver, form_factor_tolerance, storage, memory
-    )
-    how = _options.how(threads, progress)
-    return _found(Check, lambda: _core.check(scene._core, problem, how))
-
-
-def compare(
-    scene: Scene,
-    solvers: Union[str, Sequence[str]] = "all",
-    *,
-    tolerance: float = 1e-10,
-    max_iterations: int = 1000,
-    sweep: Optional[Sequence[float]] = None,
-    report: bool = True,
-    form_factor_tolerance: Optional[float] = None,
-    storage: Optional[str] = None,
-    threads: Optional[int] = None,
-    memory: Memory = None,
-    progress: Progress = None,
-) -> Comparison:
-    """Runs ``solvers`` (names, such as "gmres:restart=20", or "all") to a residual of ``tolerance``
-    in at most ``max_iterations``; ``sweep`` are largest reflectances to which all are scaled in
-    turn."""
-    _options.stop(tolerance, max_iterations)
-    asked = {
-        "solvers": _options.texts(solvers),
-        "tolerance": tolerance,
-        "max_iterations": max_iterations,
-        "sweep": None if sweep is None else [float(value) for value in sweep],
-        "report": report,
-        "problem": _options.problem(threads, None, None, form_factor_tolerance, storage, memory),
-    }
-    known = [entry[0] for entry in _core.solvers()] + ["all"]
-    for text in _options.texts(solvers):
-        _options.known(text.split(":")[0], known, "solver")
-    how = _options.how(threads, progress)
-    return _found(Comparison, lambda: _core.compare(scene._core, asked, how))
-
-
-def converge(
-    scene: Scene,
-    levels: int = 3,
-    *,
-    discretisation: Optional[str] = None,
-    solver: Optional[str] = None,
-    tolerance: Optional[float] = None,
-    max_iterations: Optional[int] = None,
-    form_factor_tolerance: Optional[float] = None,
-    report: bool = True,
-    threads: Optional[int] = None,
-    memory: Memory = None,
-    progress: Progress = None,
-) -> Convergence:
-    """Solves on ``levels`` meshes: that of the scene, and each with 2 × 2 elements for one of the
-    last."""
-    if not 1 <= levels <= 20:
-        raise wrong(
-            f"levels is {levels}", "ask for 3 levels or more, the fewest that show an order"
-        )
-    problem = _options.problem(threads, discretisation, solver, form_factor_tolerance, None, memory)
-    stop, how = _options.stop(tolerance, max_iterations), _options.how(threads, progress)
-    return _found(
-        Convergence, lambda: _core.converge(scene._core, (levels, report), problem, stop, how)
-    )
-
-
-def spectrum(
-    scene: Scene,
-    *,
-    dense: int = 2000,
-    steps: int = 60,
-    form_factor_tolerance: Optional[float] = None,
-    threads: Optional[int] = None,
-    memory: Memory = None,
-    progress: Progress = None,
-) -> Spectrum:
-    """Analyses the matrix: by dense methods up to ``dense`` unknowns, beyond by so many ``steps``
-    of the Lanczos process."""
-    problem = _options.problem(threads, None, None, form_factor_tolerance, None, memory)
-    how = _options.how(threads, progress)
-    return _found(Spectrum, lambda: _core.spectrum(scene._core, (dense, steps), problem, how))
-
-
 def sampling(
     method: Optional[str],
     *,
+    paths: Paths,
+    tracing: Tracing,
+    problem: Dict[str, Any],
     control: bool = False,
     spp: Optional[int] = None,
     pictures: bool = True,
@@ -315,22 +233,12 @@ def sampling(
     accuracy: Optional[float] = None,
     significance: float = 0.01,
     correction: str = "holm",
-    seed: int = 1,
-    points: str = "sobol",
-    batch: Optional[int] = None,
-    samples: Optional[int] = None,
-    seconds: Optional[float] = None,
-    to: Optional[float] = None,
-    threads: Optional[int] = None,
-    discretisation: Optional[str] = None,
-    solver: Optional[str] = None,
-    form_factor_tolerance: Optional[float] = None,
-    memory: Memory = None,
 ) -> Dict[str, Any]:
-    """What is asked of random paths."""
+    """What is asked of random paths: how they are made (seed, points, batch), and when they end
+    (samples, seconds, standard error)."""
     _options.share("accuracy", accuracy)
     _options.share("significance", significance)
-    _options.share("to", to)
+    _options.share("to", tracing[2])
     return {
         "method": method,
         "control": control,
@@ -340,51 +248,310 @@ def sampling(
         "accuracy": accuracy,
         "significance": significance,
         "correction": correction,
-        "paths": {"seed": seed, "points": points, "batch": batch},
-        "tracing": {"samples": samples, "seconds": seconds, "error": to},
-        "problem": _options.problem(
-            threads, discretisation, solver, form_factor_tolerance, None, memory
-        ),
+        "paths": dict(zip(("seed", "points", "batch"), paths)),
+        "tracing": dict(zip(("samples", "seconds", "error"), tracing)),
+        "problem": problem,
     }
 
 
-def trace(scene: Any, method: str = "path", *, progress: Progress = None, **options: Any) -> Trace:
-    """Estimates the irradiance of the faces by random paths.
+class LightStudies:
+    """The studies of a scene of light whose answers are records and files."""
 
-    ``method`` is path, light, bidirectional, walk-gathering or another one that the command line
-    lists. Tracing ends at the first of ``samples``, ``seconds`` and the standard error ``to``
-    (0.01). ``seed``, ``points`` and ``batch`` say how paths are made, ``control`` whether the scene
-    is solved first and only sampled for the rest, ``spp`` how often each pixel is sampled.
-    """
-    asked, how = sampling(method, **options), _options.how(options.get("threads"), progress)
-    return _found(Trace, lambda: _core.trace(_source(scene), asked, how))
+    _core: _core.Scene
 
+    def check(
+        self,
+        *,
+        threads: Optional[int] = None,
+        discretisation: Optional[str] = None,
+        solver: Optional[str] = None,
+        form_factor_tolerance: Optional[float] = None,
+        storage: Optional[str] = None,
+        memory: Memory = None,
+        progress: Progress = None,
+    ) -> Check:
+        """Tells what the mesh is and what a solution will take; see :class:`Check`.
 
-def crosscheck(
-    scene: Any, method: Optional[str] = None, *, progress: Progress = None, **options: Any
-) -> Crosscheck:
-    """Solves and traces, and decides by statistics whether the two agree.
+        Parameters
+        ----------
+        threads, discretisation, solver, form_factor_tolerance, storage, memory, progress
+            As for :meth:`Scene.solve`.
+        """
+        problem = _options.problem(
+            threads, discretisation, solver, form_factor_tolerance, storage, memory
+        )
+        how = _options.how(threads, progress)
+        return answered(Check, lambda: _core.check(self._core, problem, how))
 
-    ``method`` and the options of tracing are those of :func:`trace`; ``accuracy`` is asked of the
-    solution, ``significance`` is the probability of a false alarm, ``correction`` "holm" or
-    "benjamini-hochberg".
-    """
-    asked, how = sampling(method, **options), _options.how(options.get("threads"), progress)
-    return _found(Crosscheck, lambda: _core.crosscheck(_source(scene), asked, how))
+    def compare(
+        self,
+        solvers: Union[str, Sequence[str]] = "all",
+        *,
+        tolerance: float = 1e-10,
+        max_iterations: int = 1000,
+        sweep: Optional[Sequence[float]] = None,
+        report: bool = True,
+        form_factor_tolerance: Optional[float] = None,
+        storage: Optional[str] = None,
+        threads: Optional[int] = None,
+        memory: Memory = None,
+        progress: Progress = None,
+    ) -> Comparison:
+        """Runs solvers on the system of the scene; see :class:`Comparison`.
 
+        Parameters
+        ----------
+        solvers : str or sequence of str
+            Their names, such as "gmres:restart=20", or "all".
+        tolerance : float
+            Relative residual to reach.
+        max_iterations : int
+            Iterations allowed.
+        sweep : sequence of float, optional
+            Largest reflectances to which all are scaled in turn.
+        report : bool
+            Whether report.html is written.
+        form_factor_tolerance, storage, threads, memory, progress
+            As for :meth:`Scene.solve`.
+        """
+        _options.stop(tolerance, max_iterations)
+        asked = {
+            "solvers": _options.texts(solvers),
+            "tolerance": tolerance,
+            "max_iterations": max_iterations,
+            "sweep": None if sweep is None else [float(value) for value in sweep],
+            "report": report,
+            "problem": _options.problem(
+                threads, None, None, form_factor_tolerance, storage, memory
+            ),
+        }
+        known = [entry[0] for entry in _core.solvers()] + ["all"]
+        for text in _options.texts(solvers):
+            _options.known(text.split(":")[0], known, "solver")
+        how = _options.how(threads, progress)
+        return answered(Comparison, lambda: _core.compare(self._core, asked, how))
 
-def reference(
-    scene: Scene,
-    *,
-    size: Optional[Tuple[int, int]] = None,
-    progress: Progress = None,
-    **options: Any,
-) -> Reference:
-    """Solves, and traces with the solution as control variate up to the standard error ``to``
-    (0.002). The pixels of the camera are sampled ``spp`` (1024) times each; the picture has the
-    width and height ``size``, else those of the scene, at most 64 along the longer side."""
-    asked, how = sampling(None, **options), _options.how(options.get("threads"), progress)
-    return _found(Reference, lambda: _core.reference(scene._core, size, asked, how))
+    def converge(
+        self,
+        levels: int = 3,
+        *,
+        discretisation: Optional[str] = None,
+        solver: Optional[str] = None,
+        tolerance: Optional[float] = None,
+        max_iterations: Optional[int] = None,
+        form_factor_tolerance: Optional[float] = None,
+        report: bool = True,
+        threads: Optional[int] = None,
+        memory: Memory = None,
+        progress: Progress = None,
+    ) -> Convergence:
+        """Solves on finer and finer meshes; see :class:`Convergence`.
+
+        Parameters
+        ----------
+        levels : int
+            Meshes: that of the scene, and each with 2 × 2 elements for one of the last.
+        report : bool
+            Whether report.html is written.
+        discretisation, solver, tolerance, max_iterations, form_factor_tolerance, threads, memory, \
+progress
+            As for :meth:`Scene.solve`.
+        """
+        if not 1 <= levels <= 20:
+            raise wrong(
+                f"levels is {levels}", "ask for 3 levels or more, the fewest that show an order"
+            )
+        problem = _options.problem(
+            threads, discretisation, solver, form_factor_tolerance, None, memory
+        )
+        stop, how = _options.stop(tolerance, max_iterations), _options.how(threads, progress)
+        return answered(
+            Convergence, lambda: _core.converge(self._core, (levels, report), problem, stop, how)
+        )
+
+    def spectrum(
+        self,
+        *,
+        dense: int = 2000,
+        steps: int = 60,
+        form_factor_tolerance: Optional[float] = None,
+        threads: Optional[int] = None,
+        memory: Memory = None,
+        progress: Progress = None,
+    ) -> Spectrum:
+        """Analyses the matrix of the scene; see :class:`Spectrum`.
+
+        Parameters
+        ----------
+        dense : int
+            Unknowns up to which dense methods are taken.
+        steps : int
+            Steps of the Lanczos process beyond.
+        form_factor_tolerance, threads, memory, progress
+            As for :meth:`Scene.solve`.
+        """
+        problem = _options.problem(threads, None, None, form_factor_tolerance, None, memory)
+        how = _options.how(threads, progress)
+        return answered(Spectrum, lambda: _core.spectrum(self._core, (dense, steps), problem, how))
+
+    def trace(
+        self,
+        method: str = "path",
+        *,
+        samples: Optional[int] = None,
+        seconds: Optional[float] = None,
+        to: Optional[float] = None,
+        control: bool = False,
+        spp: Optional[int] = None,
+        seed: int = 1,
+        points: str = "sobol",
+        batch: Optional[int] = None,
+        pictures: bool = True,
+        report: bool = True,
+        discretisation: Optional[str] = None,
+        solver: Optional[str] = None,
+        form_factor_tolerance: Optional[float] = None,
+        threads: Optional[int] = None,
+        memory: Memory = None,
+        progress: Progress = None,
+    ) -> Trace:
+        """Estimates the irradiance of the faces by random paths; see :class:`Trace`.
+
+        Parameters
+        ----------
+        method : str
+            path, light, bidirectional, walk-gathering or another one that ``fredholm trace --help``
+            lists.
+        samples, seconds, to : int, float, float, optional
+            Tracing ends at the first of so many samples, so many seconds, and this standard error,
+            relative to the mean; 0.01 where none is given.
+        control : bool
+            Whether the scene is solved first and only the rest is sampled.
+        spp : int, optional
+            Samples of every pixel, where a picture is to be traced.
+        seed, points, batch : int, str, int
+            How paths are made: ``points`` is independent, jittered, n-rooks, multi-jittered or
+            sobol.
+        pictures, report : bool
+            Whether pictures and report.html are written.
+        discretisation, solver, form_factor_tolerance, threads, memory, progress
+            As for :meth:`Scene.solve`.
+        """
+        asked = sampling(
+            method,
+            control=control,
+            spp=spp,
+            pictures=pictures,
+            report=report,
+            paths=(seed, points, batch),
+            tracing=(samples, seconds, to),
+            problem=_options.problem(
+                threads, discretisation, solver, form_factor_tolerance, None, memory
+            ),
+        )
+        how = _options.how(threads, progress)
+        return answered(Trace, lambda: _core.trace(self._core, asked, how))
+
+    def crosscheck(
+        self,
+        method: Optional[str] = None,
+        *,
+        accuracy: Optional[float] = None,
+        significance: float = 0.01,
+        correction: str = "holm",
+        samples: Optional[int] = None,
+        seconds: Optional[float] = None,
+        to: Optional[float] = None,
+        seed: int = 1,
+        points: str = "sobol",
+        batch: Optional[int] = None,
+        report: bool = True,
+        discretisation: Optional[str] = None,
+        solver: Optional[str] = None,
+        form_factor_tolerance: Optional[float] = None,
+        threads: Optional[int] = None,
+        memory: Memory = None,
+        progress: Progress = None,
+    ) -> Crosscheck:
+        """Solves and traces, and decides by statistics whether the two agree; see
+        :class:`Crosscheck`.
+
+        Parameters
+        ----------
+        accuracy : float, optional
+            What is asked of the solution.
+        significance : float
+            Probability of a false alarm that is allowed.
+        correction : {"holm", "benjamini-hochberg"}
+            How the number of tests is taken into account.
+        method, samples, seconds, to, seed, points, batch
+            As for :meth:`trace`.
+        report : bool
+            Whether report.html is written.
+        discretisation, solver, form_factor_tolerance, threads, memory, progress
+            As for :meth:`Scene.solve`.
+        """
+        asked = sampling(
+            method,
+            accuracy=accuracy,
+            significance=significance,
+            correction=correction,
+            report=report,
+            paths=(seed, points, batch),
+            tracing=(samples, seconds, to),
+            problem=_options.problem(
+                threads, discretisation, solver, form_factor_tolerance, None, memory
+            ),
+        )
+        how = _options.how(threads, progress)
+        return answered(Crosscheck, lambda: _core.crosscheck(self._core, asked, how))
+
+    def reference(
+        self,
+        *,
+        size: Optional[Tuple[int, int]] = None,
+        spp: Optional[int] = None,
+        samples: Optional[int] = None,
+        seconds: Optional[float] = None,
+        to: Optional[float] = None,
+        seed: int = 1,
+        points: str = "sobol",
+        batch: Optional[int] = None,
+        discretisation: Optional[str] = None,
+        solver: Optional[str] = None,
+        form_factor_tolerance: Optional[float] = None,
+        threads: Optional[int] = None,
+        memory: Memory = None,
+        progress: Progress = None,
+    ) -> Reference:
+        """Solves, and traces with the solution as control variate: values with stated errors for
+        other tracers; see :class:`Reference`.
+
+        Parameters
+        ----------
+        size : (int, int), optional
+            Width and height of the picture; that of the scene, at most 64 along the longer side.
+        spp : int, optional
+            Samples of every pixel; 1024.
+        samples, seconds, to : int, float, float, optional
+            Tracing of the faces ends at the first of these; a standard error of 0.002 where none
+            is given.
+        seed, points, batch
+            As for :meth:`trace`.
+        discretisation, solver, form_factor_tolerance, threads, memory, progress
+            As for :meth:`Scene.solve`.
+        """
+        asked = sampling(
+            None,
+            spp=spp,
+            paths=(seed, points, batch),
+            tracing=(samples, seconds, to),
+            problem=_options.problem(
+                threads, discretisation, solver, form_factor_tolerance, None, memory
+            ),
+        )
+        how = _options.how(threads, progress)
+        return answered(Reference, lambda: _core.reference(self._core, size, asked, how))
 
 
 def judge(
@@ -442,9 +609,4 @@ def judge(
             "rounding": rounding,
         }
         how = _options.how(None, progress)
-        return _found(Judgement, lambda: _core.judge(asked, how))
-
-
-def _source(scene: Any) -> Any:
-    """A scene as it was read, or the file of one of waves."""
-    return getattr(scene, "_core", None) or scene.path
+        return answered(Judgement, lambda: _core.judge(asked, how))

@@ -25,7 +25,7 @@ def view_factor_methods() -> List[str]:
 
 
 def view_factors(
-    source: Union[Scene, Path],
+    source: Union[Scene, _core.Scene, Path],
     *,
     rows: str = "face",
     tolerance: Optional[float] = None,
@@ -88,7 +88,8 @@ def view_factors(
         "points": places.tolist(),
         "problem": _options.problem(threads, memory=memory),
     }
-    given = getattr(source, "_core", None) or os.fspath(source)  # type: ignore[arg-type]
+    given = source if isinstance(source, _core.Scene) else getattr(source, "_core", None)
+    given = given or os.fspath(source)  # type: ignore[arg-type]
     return ViewFactors(_core.view_factors(given, asked, _options.how(threads, progress)))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import tempfile
 from dataclasses import dataclass
 from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from . import _core, _html, _options, _studies
 from ._errors import FileError, Interrupted
 from ._options import Memory, Path, Progress
+from ._scene import Surface, with_surfaces
 
 Floats = NDArray[np.float64]
 Phasors = NDArray[np.complex128]
@@ -102,13 +104,16 @@ class Monostatic:
 
 
 class WaveScene:
-    """A scene of waves, by its file.
+    """A scene of waves: that of a file, or by :meth:`build` one with surfaces from arrays.
 
     Parameters
     ----------
     path : str or path
-        The file.
+        The file, which is read when it is solved.
     """
+
+    #: Where a scene is that was built; removed together with it.
+    _folder: Optional[tempfile.TemporaryDirectory[str]] = None
 
     def __init__(self, path: Path) -> None:
         self.path = os.fspath(path)
@@ -123,6 +128,32 @@ class WaveScene:
     def load(cls, path: Path) -> WaveScene:
         """The scene of a file, which is read when it is solved."""
         return cls(path)
+
+    @classmethod
+    def build(cls, text: str, surfaces: Sequence[Surface] = ()) -> WaveScene:
+        """A scene from the text of a scene file, and surfaces from arrays.
+
+        Parameters
+        ----------
+        text : str
+            Frequencies, method, sources, receivers, materials, and any surfaces that the text has
+            itself, as scene files have them (docs/waves.md).
+        surfaces : sequence of Surface
+            Surfaces that are added to it; vertices in m.
+
+        Examples
+        --------
+        >>> plate = ([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2, 3]])
+        >>> scene = WaveScene.build(text, [Surface("plate", plate)])
+        """
+        folder = tempfile.TemporaryDirectory(prefix="fredholm-")
+        whole, files = with_surfaces(text, surfaces, "edge")
+        for name, data in [("scene.toml", whole.encode()), *files.items()]:
+            with open(os.path.join(folder.name, name), "wb") as file:
+                file.write(data)
+        scene = cls(os.path.join(folder.name, "scene.toml"))
+        scene._folder = folder
+        return scene
 
     def solve(
         self,
@@ -163,16 +194,77 @@ class WaveScene:
         _options.stop(tolerance, max_iterations)
         asked = (_options.texts(solvers), tolerance, max_iterations)
         problem, how = _options.problem(threads, memory=memory), _options.how(threads, progress)
-        return _studies.Comparison(_core.compare_waves(self.path, asked, problem, how))
+        compared = _studies.Comparison
+        return _studies.answered(
+            compared, lambda: _core.compare_waves(self.path, asked, problem, how)
+        )
 
-    def trace(self, method: str = "surface-sampling", **options: Any) -> _studies.Trace:
-        """Estimates the fields by random paths; see :class:`fredholm.Trace`."""
-        return _studies.trace(self, method, **options)
+    def trace(
+        self,
+        method: str = "surface-sampling",
+        *,
+        samples: Optional[int] = None,
+        seconds: Optional[float] = None,
+        to: Optional[float] = None,
+        seed: int = 1,
+        points: str = "sobol",
+        batch: Optional[int] = None,
+        threads: Optional[int] = None,
+        memory: Memory = None,
+        progress: Progress = None,
+    ) -> _studies.Trace:
+        """Estimates the fields by random paths; see :class:`fredholm.Trace`.
 
-    def crosscheck(self, method: Optional[str] = None, **options: Any) -> _studies.Crosscheck:
+        Parameters
+        ----------
+        method, samples, seconds, to, seed, points, batch, threads, memory, progress
+            As for :meth:`fredholm.Scene.trace`.
+        """
+        asked = _studies.sampling(
+            method,
+            paths=(seed, points, batch),
+            tracing=(samples, seconds, to),
+            problem=_options.problem(threads, memory=memory),
+        )
+        how = _options.how(threads, progress)
+        return _studies.answered(_studies.Trace, lambda: _core.trace(self.path, asked, how))
+
+    def crosscheck(
+        self,
+        method: str = "surface-sampling",
+        *,
+        significance: float = 0.01,
+        correction: str = "holm",
+        samples: Optional[int] = None,
+        seconds: Optional[float] = None,
+        to: Optional[float] = None,
+        seed: int = 1,
+        points: str = "sobol",
+        batch: Optional[int] = None,
+        threads: Optional[int] = None,
+        memory: Memory = None,
+        progress: Progress = None,
+    ) -> _studies.Crosscheck:
         """Solves and samples, and decides whether the two agree; see
-        :class:`fredholm.Crosscheck`."""
-        return _studies.crosscheck(self, method or "surface-sampling", **options)
+        :class:`fredholm.Crosscheck`.
+
+        Parameters
+        ----------
+        method, significance, correction, samples, seconds, to, seed, points, batch, threads, \
+memory, progress
+            As for :meth:`fredholm.Scene.crosscheck`.
+        """
+        asked = _studies.sampling(
+            method,
+            significance=significance,
+            correction=correction,
+            paths=(seed, points, batch),
+            tracing=(samples, seconds, to),
+            problem=_options.problem(threads, memory=memory),
+        )
+        how = _options.how(threads, progress)
+        check = _studies.Crosscheck
+        return _studies.answered(check, lambda: _core.crosscheck(self.path, asked, how))
 
     def __repr__(self) -> str:
         return f"<WaveScene from {self.path}>"
@@ -238,6 +330,16 @@ class Waves:
         """Writes what the command line writes into a folder, which is made where it does not
         exist."""
         self._core.write(os.fspath(folder))
+
+    def page(self, height: int = 600) -> _html.Page:
+        """The page report.html, which notebooks show in a frame.
+
+        Parameters
+        ----------
+        height : int
+            Height of the frame in pixels.
+        """
+        return _html.written(self.write, height)
 
     def to_pandas(self) -> Any:
         """The fields at points as a ``pandas.DataFrame``, or the far fields where there are no

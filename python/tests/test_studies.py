@@ -148,3 +148,30 @@ def test_view_factors(scenes: pathlib.Path, tmp_path: pathlib.Path) -> None:
     with pytest.raises(fredholm.InputError, match="no method 'magic'"):
         fredholm.view_factors(scenes / "occluder.toml", method="magic")
     assert "auto" in fredholm.view_factor_methods()
+
+
+def test_a_scene_of_waves_takes_surfaces_from_arrays() -> None:
+    text = """
+[wave]
+frequencies_hz = [1e8]
+method = "physical-optics"
+[[source]]
+kind = "plane-wave"
+travel = [0, 0, -1]
+polarisation = [1, 0, 0]
+[[receiver]]
+name = "back"
+far = { theta_degrees = 0, phi_degrees = 0 }
+"""
+    sides = ([[0, 0, 0], [6, 0, 0], [6, 6, 0], [0, 6, 0]], [[0, 1, 2, 3]])
+    solved = fredholm.WaveScene.build(text, [fredholm.Surface("plate", sides)]).solve()
+    # The radar cross-section of a plate that is met head on: 4π A²/λ².
+    wavelength = 299_792_458.0 / 1e8
+    expected = 4 * np.pi * 36.0**2 / wavelength**2
+    assert abs(solved.far.cross_section[0, 0] / expected - 1) < 1e-6
+    assert "<iframe" in solved.page()._repr_html_()
+
+
+def test_a_study_has_a_page() -> None:
+    page = fredholm.Scene.from_toml(ROOM).compare("gmres").page(height=300)
+    assert "height:300px" in page._repr_html_()

@@ -14,6 +14,7 @@ mod formats;
 mod furnace;
 mod help;
 mod hostile;
+mod hostile_waves;
 #[cfg(unix)]
 mod interrupt;
 #[cfg(unix)]

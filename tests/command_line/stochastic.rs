@@ -193,7 +193,9 @@ fn sampled_waves_agree_with_the_radiation_integral() {
     let run = bench.run(&["waves", "scene.toml", "-o", "solved", "--quiet"]);
     assert_eq!(run.code, 0, "{}", run.stderr);
     let exact = fields(&text(&bench, "solved/receivers.csv"));
-    for method in ["surface-sampling", "field-particles", "amplitude-particles"] {
+    for method in
+        ["surface-sampling", "field-particles", "field-particles-von-mises-fisher", "amplitude-particles"]
+    {
         trace(&bench, &["--method", method, "--samples", "131072", "--batch", "4096", "-o", method]);
         for (found, exact) in fields(&text(&bench, &format!("{method}/receivers.csv"))).iter().zip(&exact) {
             let gap = found.iter().zip(exact).take(6).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();

@@ -288,7 +288,7 @@ fn the_form_follows_the_name_or_the_option() {
     let picture = fs::read(bench.path("deep/er/F.png")).unwrap();
     assert!(
         picture.starts_with(b"\x89PNG")
-            && fs::read_to_string(bench.path("F.svg")).unwrap().contains("closure of 4 rows")
+            && fs::read_to_string(bench.path("F.svg")).unwrap().contains("Closure of 4 rows")
     );
     for name in ["F.png", "F.xyz", "F"] {
         let refused = run(&bench, &data("blocked.vs3"), &["-o", name]);

@@ -9,6 +9,8 @@ use crate::Entries;
 use crate::low_rank::{LowRank, inner, square};
 use fredholm_linop::Scalar;
 
+/// Blocks up to this many groups high and wide are computed whole before they are compressed.
+const SMALL: usize = 128;
 /// Groups of which all rows are compared in the end.
 const CHECKS: usize = 6;
 /// Share of the block from one of them to the next; multiples of the golden ratio meet no pattern of the rows.
@@ -23,10 +25,35 @@ pub(crate) struct Block<'a, T: Scalar, E: Entries<T>> {
     pub(crate) columns: &'a [usize],
     pub(crate) row_set: &'a E::Set,
     pub(crate) column_set: &'a E::Set,
-    pub(crate) scalar: std::marker::PhantomData<T>,
+    /// All entries, row by row, where that costs less than the rows and columns of the crosses one by one.
+    whole: Option<Vec<T>>,
 }
 
-impl<T: Scalar, E: Entries<T>> Block<'_, T, E> {
+impl<'a, T: Scalar, E: Entries<T>> Block<'a, T, E> {
+    /// The block of some groups, which the sets hold.
+    pub(crate) fn new(
+        entries: &'a E,
+        [rows, columns]: [&'a [usize]; 2],
+        [row_set, column_set]: [&'a E::Set; 2],
+    ) -> Self {
+        let mut block = Self { entries, rows, columns, row_set, column_set, whole: None };
+        if rows.len() * columns.len() <= SMALL * SMALL {
+            block.whole = Some(block.computed());
+        }
+        block
+    }
+
+    /// All entries, row by row.
+    pub(crate) fn into_whole(mut self) -> Vec<T> {
+        self.whole.take().unwrap_or_else(|| self.computed())
+    }
+
+    fn computed(&self) -> Vec<T> {
+        let mut whole = vec![T::zero(); self.height() * self.breadth()];
+        self.entries.fill(self.row_set, self.column_set, &mut whole);
+        whole
+    }
+
     fn height(&self) -> usize {
         self.rows.len() * self.entries.width()
     }
@@ -36,6 +63,9 @@ impl<T: Scalar, E: Entries<T>> Block<'_, T, E> {
     }
 
     fn row(&self, i: usize) -> Vec<T> {
+        if let Some(whole) = &self.whole {
+            return whole[i * self.breadth()..(i + 1) * self.breadth()].to_vec();
+        }
         let width = self.entries.width();
         let set = self.entries.prepare(&self.rows[i / width..=i / width]);
         let mut out = vec![T::zero(); width * self.breadth()];
@@ -44,6 +74,9 @@ impl<T: Scalar, E: Entries<T>> Block<'_, T, E> {
     }
 
     fn column(&self, j: usize) -> Vec<T> {
+        if let Some(whole) = &self.whole {
+            return whole.iter().skip(j).step_by(self.breadth()).copied().collect();
+        }
         let width = self.entries.width();
         let set = self.entries.prepare(&self.columns[j / width..=j / width]);
         let mut out = vec![T::zero(); width * self.height()];
@@ -206,14 +239,7 @@ mod tests {
             let entries = Rows { coupling };
             let (rows, columns) = (&groups[..25], &groups[35..]);
             let (row_set, column_set) = (entries.prepare(rows), entries.prepare(columns));
-            let block = Block {
-                entries: &entries,
-                rows,
-                columns,
-                row_set: &row_set,
-                column_set: &column_set,
-                scalar: std::marker::PhantomData,
-            };
+            let block = Block::new(&entries, [rows, columns], [&row_set, &column_set]);
             for tolerance in [1e-2, 1e-4, 1e-8] {
                 let low = block.compressed(tolerance).unwrap();
                 let (mut difference, mut size) = (0.0, 0.0);

@@ -46,4 +46,7 @@ pub enum CompressionError {
         /// The block.
         block: usize,
     },
+    /// The matrix is no longer wanted.
+    #[error("the compression was interrupted")]
+    Interrupted,
 }

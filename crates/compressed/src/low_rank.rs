@@ -7,6 +7,9 @@ use fredholm_linop::Scalar;
 
 /// Sweeps of rotations; six are usual.
 const SWEEPS: usize = 30;
+/// Product of two columns over the square of the Frobenius norm below which they are orthogonal: what is left of columns that
+/// depend on others shrinks with every rotation, and would underflow in the end.
+const NOTHING: f64 = 1e-32;
 
 /// U and V, column by column.
 #[derive(Clone, Debug)]
@@ -99,6 +102,7 @@ fn rotate<T: Scalar>(columns: &mut [Vec<T>]) -> Vec<Vec<T>> {
     let rank = columns.len();
     let unit = |j: usize| (0..rank).map(|i| if i == j { T::one() } else { T::zero() }).collect();
     let mut turns: Vec<Vec<T>> = (0..rank).map(unit).collect();
+    let nothing = NOTHING * columns.iter().map(|column| square(column)).sum::<f64>();
     for _ in 0..SWEEPS {
         let mut largest = 0.0_f64;
         for p in 0..rank {
@@ -106,7 +110,7 @@ fn rotate<T: Scalar>(columns: &mut [Vec<T>]) -> Vec<Vec<T>> {
                 let (a, b) = (square(&columns[p]), square(&columns[q]));
                 let along = inner(&columns[p], &columns[q]);
                 let size = along.abs();
-                if size <= 1e-15 * (a * b).sqrt() || size == 0.0 {
+                if size <= 1e-15 * (a * b).sqrt() || size <= nothing {
                     continue;
                 }
                 largest = largest.max(size / (a * b).sqrt());
@@ -133,5 +137,23 @@ fn turn<T: Scalar>(columns: &mut [Vec<T>], [p, q]: [usize; 2], cosine: f64, sine
         let (old, other) = (*x, *y * phase);
         *x = old.scale(cosine) - other.scale(sine);
         *y = old.scale(sine) + other.scale(cosine);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use num_complex::Complex64;
+
+    /// What rotations leave of columns that depend on others underflows when it is squared.
+    #[test]
+    fn columns_that_have_become_nothing_are_left_alone() {
+        let small = 1e-161;
+        let columns = [[1.0, 0.0, 0.0], [small, small, 0.0], [0.0, small, small]];
+        let mut columns = columns.map(|column| column.map(Complex64::from).to_vec()).to_vec();
+        let turns = rotate(&mut columns);
+        assert!(columns.iter().chain(&turns).flatten().all(|x| x.is_finite()), "{columns:?} {turns:?}");
+        let low = LowRank::truncated(columns.clone(), columns, 1e-12);
+        assert!(low.rank == 1 && low.u.iter().chain(&low.v).all(|x| x.is_finite()));
     }
 }

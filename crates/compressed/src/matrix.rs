@@ -4,7 +4,7 @@ use crate::clusters::Tree;
 use crate::cross::Block;
 use crate::low_rank::LowRank;
 use crate::{CompressionError, Entries};
-use fredholm_linop::{LinearOperator, MultiVector, Scalar, Symmetry};
+use fredholm_linop::{LinearOperator, MultiVector, Scalar, Steps, Symmetry, Watch};
 use fredholm_mesh::Vec3;
 use rayon::prelude::*;
 use std::marker::PhantomData;
@@ -81,11 +81,13 @@ impl<T: Scalar> Hierarchical<T> {
     ///
     /// # Errors
     /// [`CompressionError::Places`], [`CompressionError::NotFinite`] and [`CompressionError::Setting`] for what does not fit,
-    /// [`CompressionError::Memory`] where the blocks are predicted to take more than the limit.
+    /// [`CompressionError::Memory`] where the blocks are predicted to take more than the limit,
+    /// [`CompressionError::Interrupted`] where `watch` no longer wants it.
     pub fn new<E: Entries<T>>(
         entries: &E,
         places: &[Vec3],
         settings: Settings,
+        watch: &dyn Watch,
     ) -> Result<Self, CompressionError> {
         check(entries.groups(), places, settings)?;
         let tree = Tree::new(places, settings.leaf);
@@ -106,11 +108,15 @@ impl<T: Scalar> Hierarchical<T> {
         if predicted > settings.limit {
             return Err(CompressionError::Memory { needed: predicted, limit: settings.limit });
         }
-        let blocks: Vec<Stored<T>> = pairs
-            .par_iter()
-            .with_max_len(1)
-            .map(|&(row, column, far)| builder.stored(row, column, far))
-            .collect();
+        let steps = Steps::new(watch, pairs.len() as u64, "blocks");
+        let stored = |&(row, column, far): &(usize, usize, bool)| {
+            if steps.begin().is_break() {
+                return Err(CompressionError::Interrupted);
+            }
+            Ok(builder.stored(row, column, far))
+        };
+        let blocks: Vec<Stored<T>> =
+            pairs.par_iter().with_max_len(1).map(stored).collect::<Result<_, _>>()?;
         let width = entries.width();
         let mut leaves: Vec<Range<usize>> =
             tree.leaves().iter().map(|&leaf| scaled(&tree.clusters[leaf].range, width)).collect();
@@ -255,16 +261,11 @@ impl<T: Scalar, E: Entries<T>> Builder<'_, T, E> {
             return Kind::Whole(Vec::new());
         };
         let (rows, columns) = (self.tree.groups(row), self.tree.groups(column));
-        if far {
-            let block =
-                Block { entries: self.entries, rows, columns, row_set, column_set, scalar: PhantomData };
-            if let Some(low) = block.compressed(self.tolerance) {
-                return Kind::Low(low);
-            }
+        let block = Block::new(self.entries, [rows, columns], [row_set, column_set]);
+        if far && let Some(low) = block.compressed(self.tolerance) {
+            return Kind::Low(low);
         }
-        let mut whole = vec![T::zero(); rows.len() * columns.len() * self.entries.width().pow(2)];
-        self.entries.fill(row_set, column_set, &mut whole);
-        Kind::Whole(whole)
+        Kind::Whole(block.into_whole())
     }
 
     /// Bytes of all blocks: near ones are counted, far ones taken to be like some of their level.

@@ -4,9 +4,12 @@
 
 use fredholm_compressed::{BlockDiagonal, CompressionError, Entries, Hierarchical, Preconditioned, Settings};
 use fredholm_iterative::Gmres;
-use fredholm_linop::{LinearOperator, MultiVector, Quiet, SecondKind, Solver, Stop, StopReason, Symmetry};
+use fredholm_linop::{
+    LinearOperator, MultiVector, Quiet, SecondKind, Solver, Stop, StopReason, Symmetry, Watch,
+};
 use fredholm_mesh::Vec3;
 use num_complex::Complex64;
+use std::ops::ControlFlow;
 
 /// e^{−jkR}/R between points of a sphere, with its own diagonal; `skew` makes it unsymmetric. Two unknowns a point.
 struct Waves {
@@ -90,7 +93,7 @@ fn products_are_within_the_tolerance_and_memory_within_the_prediction() {
         let mut shares = Vec::new();
         for tolerance in [1e-2, 1e-4, 1e-7] {
             let settings = Settings { tolerance, leaf: 24, ..Settings::default() };
-            let matrix = Hierarchical::new(&waves, &waves.places, settings).unwrap();
+            let matrix = Hierarchical::new(&waves, &waves.places, settings, &Quiet).unwrap();
             let mut found = MultiVector::zeros(3000, 2);
             matrix.apply(&x, &mut found);
             found.add_scaled(&[-Complex64::ONE; 2], &exact);
@@ -112,7 +115,7 @@ fn products_have_the_same_bits_for_any_number_of_threads() {
     let products = [1, 2, 4].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let matrix = Hierarchical::new(&waves, &waves.places, Settings::default()).unwrap();
+            let matrix = Hierarchical::new(&waves, &waves.places, Settings::default(), &Quiet).unwrap();
             let mut y = MultiVector::zeros(1200, 1);
             matrix.apply(&x, &mut y);
             y
@@ -125,7 +128,7 @@ fn products_have_the_same_bits_for_any_number_of_threads() {
 fn a_preconditioned_system_has_the_solution_of_the_whole_one() {
     let waves = Waves::new(500, 4.0, 0.2);
     let settings = Settings { tolerance: 1e-9, ..Settings::default() };
-    let matrix = Hierarchical::new(&waves, &waves.places, settings).unwrap();
+    let matrix = Hierarchical::new(&waves, &waves.places, settings, &Quiet).unwrap();
     let inverse = BlockDiagonal::new(&matrix).unwrap();
     let system = Preconditioned::new(&matrix, &inverse);
     let exact = vector(1000, 1);
@@ -139,16 +142,27 @@ fn a_preconditioned_system_has_the_solution_of_the_whole_one() {
     assert!(norm(&x) < 1e-4 * norm(&exact), "{:e}", norm(&x) / norm(&exact));
 }
 
+/// Wants nothing.
+struct Ended;
+
+impl Watch for Ended {
+    fn go_on(&self) -> ControlFlow<()> {
+        ControlFlow::Break(())
+    }
+}
+
 #[test]
 fn what_does_not_fit_is_refused() {
     let waves = Waves::new(300, 4.0, 0.0);
-    let new = |places: &[Vec3], settings| Hierarchical::new(&waves, places, settings).map(|_| ());
+    let new = |places: &[Vec3], settings| Hierarchical::new(&waves, places, settings, &Quiet).map(|_| ());
     let short = new(&waves.places[1..], Settings::default());
     assert_eq!(short, Err(CompressionError::Places { expected: 300, found: 299 }));
     let bad = Settings { tolerance: 0.0, ..Settings::default() };
     assert!(matches!(new(&waves.places, bad), Err(CompressionError::Setting { .. })));
     let little = Settings { limit: 1000, ..Settings::default() };
     assert!(matches!(new(&waves.places, little), Err(CompressionError::Memory { limit: 1000, .. })));
+    let ended = Hierarchical::new(&waves, &waves.places, Settings::default(), &Ended).map(|_| ());
+    assert_eq!(ended, Err(CompressionError::Interrupted));
     let mut lost = waves.places.clone();
     lost[7] = Vec3::NAN;
     assert_eq!(new(&lost, Settings::default()), Err(CompressionError::NotFinite { group: 7 }));

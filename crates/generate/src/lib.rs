@@ -3,6 +3,7 @@
 //! - [`City`]: blocks of houses that touch, overlap and go through each other, under a lit sky;
 //! - [`Scan`]: a creased figure with noisy normals, as a scanner gives, in a closed room;
 //! - [`Room`]: a closed room of any reflectance, whose energy balance is known;
+//! - [`Almond`]: the NASA almond, a body for radar cross-sections, with a scene of waves;
 //! - [`Case`]: a random valid scene and a command line for it, to look for crashes with;
 //! - [`mutated`]: a text with random damages.
 //!
@@ -19,6 +20,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod almond;
 mod body;
 mod city;
 mod dice;
@@ -28,6 +30,7 @@ mod random;
 mod room;
 mod scan;
 
+pub use almond::Almond;
 pub use city::City;
 pub use dice::Dice;
 pub use files::Files;

@@ -2,9 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use fredholm_generate::{City, Files, Room, Scan};
+use fredholm_generate::{Almond, City, Files, Room, Scan};
 use fredholm_mesh::{Mesh, Vec3};
 use fredholm_scene::Scene;
+use fredholm_scene::waves::{Cuts, WaveScene};
 
 fn read(files: &Files) -> (Scene, Mesh) {
     let folder = tempfile::tempdir().unwrap();
@@ -93,4 +94,26 @@ fn the_same_seed_gives_the_same_files_and_another_gives_others() {
     let room = |seed| Room { seed, ..Room::default() }.files();
     assert_eq!(room(1), room(1));
     assert_ne!(room(1).others, room(2).others);
+}
+
+/// The volume tends to that of the formulae (3.716661e-4 m³ by fine quadrature).
+#[test]
+fn the_almond_is_closed_and_has_its_size() {
+    for edge in [0.012, 0.003] {
+        let folder = tempfile::tempdir().unwrap();
+        let files = Almond { frequency: 3.5e9, edge: Some(edge) }.files();
+        let scene = WaveScene::load(files.write(folder.path()).unwrap()).unwrap();
+        assert!(scene.check().unwrap().is_empty(), "{:?}", scene.check());
+        let mesh =
+            scene.cut(Cuts { wavelength: 0.0857, stretch: 1.0, whole: false }).unwrap().mesh().unwrap();
+        let longest = mesh.patches().flat_map(|patch| {
+            (0..3).map(|i| patch.corner(i).distance(patch.corner(i + 1))).collect::<Vec<_>>()
+        });
+        let longest = longest.fold(0.0, f64::max);
+        assert!(longest < 2.0 * edge && longest > 0.9 * edge, "{longest}");
+        let volume: f64 = mesh.patches().map(|p| p.centroid().dot(p.normal()) * p.area() / 3.0).sum();
+        assert!((volume / 3.716_661e-4 - 1.0).abs() < 1.5e3 * edge * edge, "{volume}");
+        let tip = mesh.patches().flat_map(|p| p.corners().to_vec()).map(|p| p.x).fold(0.0, f64::max);
+        assert!((tip - 0.147_217).abs() < 1e-5, "{tip}");
+    }
 }

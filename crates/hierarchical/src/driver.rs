@@ -164,6 +164,8 @@ pub struct Solution {
     pub links: Arc<Vec<Link>>,
     /// Irradiance and radiosity of the leaves, W/m², in the order of [`Tree::leaves`].
     pub means: Means,
+    /// The part of the irradiance that comes straight from what emits, W/m²: the links' own mean of it.
+    pub direct: MultiVector<f64>,
     /// The system of the leaves.
     pub system: Radiosity,
     /// Radiosity of the exposed parts of the leaves, W/m².
@@ -708,6 +710,7 @@ impl Run<'_> {
         let System { operator, radiosity: system, .. } = system;
         let (scale, replaced) = (operator.scale().to_vec(), self.replaced.clone());
         let means = system.means(&operator, &state.radiosity);
+        let direct = system.means(&operator, system.exitance()).irradiance;
         let closed = |(sum, size): (f64, &Extent)| if size.exposed > 0.0 { sum / size.exposed } else { 1.0 };
         let closure = operator.row_sums().into_iter().zip(system.elements()).map(closed).collect();
         let State { tree, links, radiosity, importance, faces, rounds, error, limited, .. } = state;
@@ -719,6 +722,7 @@ impl Run<'_> {
             tree,
             links,
             means,
+            direct,
             system,
             radiosity,
             closure,

@@ -29,7 +29,7 @@ pub use driver::{
     Options, Problem, RESIDUAL, Round, RoundWatch, Solution, Solvers, Stated, conclude, expected_bytes, solve,
 };
 pub use error::HierarchyError;
-pub use gather::{Gather, Gatherer, Leaves};
+pub use gather::{Gather, Gatherer, Lamps, Leaves, Lighter};
 pub use goal::{Goal, Reached};
 pub use light::Surfaces;
 pub use link::Link;

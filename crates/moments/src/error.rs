@@ -1,5 +1,6 @@
 //! What can be wrong with a surface or a problem, and how to mend it. Everything is counted from 0.
 
+use fredholm_compressed::CompressionError;
 use fredholm_linop::LinopError;
 use fredholm_waves::WaveError;
 use thiserror::Error;
@@ -132,6 +133,9 @@ pub enum MomentsError {
     /// A matrix cannot be built.
     #[error(transparent)]
     Linop(#[from] LinopError),
+    /// A matrix cannot be compressed as asked.
+    #[error(transparent)]
+    Compression(#[from] CompressionError),
 }
 
 impl MomentsError {
@@ -152,9 +156,11 @@ impl MomentsError {
             Self::Coarse { .. } => Some("mesh finer, λ/10 is usual"),
             Self::OnSurface { .. } => Some("move it off the surface"),
             Self::Wave(error) => error.help(),
-            Self::NoSuchVertex { .. } | Self::NotFinite { .. } | Self::Parameter { .. } | Self::Linop(_) => {
-                None
-            }
+            Self::NoSuchVertex { .. }
+            | Self::NotFinite { .. }
+            | Self::Parameter { .. }
+            | Self::Linop(_)
+            | Self::Compression(_) => None,
         }
     }
 }

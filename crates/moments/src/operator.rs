@@ -13,7 +13,9 @@
 use crate::pairs::Integrator;
 use crate::set::Set;
 use crate::{Basis, MomentsError};
-use fredholm_linop::{Dense, LinopError, Symmetry};
+use fredholm_compressed::{Entries, Hierarchical, Settings};
+use fredholm_linop::{Dense, LinopError, Symmetry, Watch};
+use fredholm_mesh::Vec3;
 use num_complex::Complex64;
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -166,6 +168,20 @@ impl<'a> Operator<'a> {
         Ok(Dense::new(self.dim(), entries)?.with_symmetry(self.symmetry)?)
     }
 
+    /// The matrix Z compressed, block by block.
+    ///
+    /// # Errors
+    /// [`MomentsError::Compression`] for settings out of range, where it is predicted to take more than the limit, and where
+    /// `watch` no longer wants it.
+    pub fn compressed(
+        &self,
+        settings: Settings,
+        watch: &dyn Watch,
+    ) -> Result<Hierarchical<Complex64>, MomentsError> {
+        let places: Vec<Vec3> = (0..self.basis.len()).map(|function| self.basis.centre(function)).collect();
+        Ok(Hierarchical::new(self, &places, settings, watch)?)
+    }
+
     /// The entries of Z, row by row.
     fn entries(&self) -> Result<Vec<Complex64>, MomentsError> {
         let dim = self.dim();
@@ -199,6 +215,30 @@ impl<'a> Operator<'a> {
                 strip[first..first + width].copy_from_slice(block);
             }
         }
+    }
+}
+
+impl Entries<Complex64> for Operator<'_> {
+    type Set = Set;
+
+    fn groups(&self) -> usize {
+        self.basis.len()
+    }
+
+    fn width(&self) -> usize {
+        self.kinds
+    }
+
+    fn symmetry(&self) -> Symmetry {
+        self.symmetry
+    }
+
+    fn prepare(&self, groups: &[usize]) -> Set {
+        Operator::prepare(self, groups.iter().copied())
+    }
+
+    fn fill(&self, rows: &Set, columns: &Set, out: &mut [Complex64]) {
+        Operator::fill(self, rows, columns, out);
     }
 }
 

@@ -74,11 +74,14 @@ impl Integrator {
         for eight in 0..set.eights.len() {
             let lanes = eight * WIDTH..((eight + 1) * WIDTH).min(set.shapes.len());
             let (classes, spread) = self.classes(shape, set, eight);
-            if let Some(class) = classes.iter().flatten().copied().max() {
-                self.regular(&mut one, set, eight, class, spread, observes, &mut values);
-            }
+            // Every lane by its own rule: the integrals of a pair do not depend on what is computed with it.
+            let mut computed = None;
             for (lane, other) in lanes.enumerate() {
-                if classes[lane].is_some() {
+                if let Some(class) = classes[lane] {
+                    if computed != Some(class) {
+                        self.regular(&mut one, set, eight, class, spread, observes, &mut values);
+                        computed = Some(class);
+                    }
                     visit(other, &Pair::of(&values, lane));
                 } else {
                     let (near, names) = (&set.shapes[other], [name, set.triangles[other]]);

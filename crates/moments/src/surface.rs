@@ -2,6 +2,7 @@
 
 use crate::{MomentsError, Topology};
 use fredholm_mesh::{Mesh, Vec3, Weld};
+use std::f64::consts::TAU;
 
 /// Area over the square of the longest side below which a triangle has none.
 const FLAT: f64 = 1e-12;
@@ -105,6 +106,20 @@ impl Surface {
         Self { vertices: self.vertices.clone(), triangles }
     }
 
+    /// Whether a point (m) is inside the closed bodies of the surface: they fill more than half of all directions seen from
+    /// there, by the solid angle of each triangle (A. van Oosterom, J. Strackee, IEEE Trans. Biomed. Eng. 30 (1983) 125,
+    /// doi:10.1109/TBME.1983.325207).
+    #[must_use]
+    pub fn holds(&self, point: Vec3) -> bool {
+        let angle = |triangle: usize| {
+            let [a, b, c] = self.corners(triangle).map(|corner| corner - point);
+            let [p, q, r] = [a, b, c].map(Vec3::length);
+            let below = p * q * r + a.dot(b) * r + b.dot(c) * p + c.dot(a) * q;
+            2.0 * a.dot(b.cross(c)).atan2(below)
+        };
+        (0..self.triangles.len()).map(angle).sum::<f64>() > TAU
+    }
+
     /// Positions, m.
     #[must_use]
     pub fn vertices(&self) -> &[Vec3] {
@@ -154,5 +169,24 @@ impl Surface {
     pub fn area(&self, triangle: usize) -> f64 {
         let [a, b, c] = self.corners(triangle);
         0.5 * (b - a).cross(c - a).length()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::meshing::{Grading, cuboid};
+
+    #[test]
+    fn points_are_inside_the_bodies_that_hold_them() {
+        let box_at = |x: f64| {
+            let surface = cuboid(Vec3::splat(1.0), 0.4, Grading::default()).unwrap();
+            let vertices = surface.vertices().iter().map(|v| *v + Vec3::X * x).collect();
+            Surface::new(vertices, surface.triangles().to_vec()).unwrap()
+        };
+        let both = box_at(0.0).with(&box_at(3.0)).unwrap();
+        for (x, held) in [(0.0, true), (0.49, true), (0.51, false), (1.5, false), (2.6, true), (9.0, false)] {
+            assert_eq!(both.holds(Vec3::new(x, 0.1, -0.2)), held, "{x}");
+        }
     }
 }

@@ -27,10 +27,8 @@
 //! A [`ResultFolder`] is claimed by one run at a time, which removes what earlier ones have left. Every file appears whole or not at all. Units: metres, W/m², W, seconds.
 
 mod atomic;
-mod axis;
 mod baked;
 mod camera;
-mod chart;
 mod cie;
 mod colour;
 mod comparison;
@@ -52,8 +50,8 @@ mod nodal;
 mod npz;
 mod number;
 mod outputs;
-mod palette;
 mod picture;
+mod plot;
 mod points_csv;
 mod refinement;
 mod run;
@@ -63,11 +61,11 @@ mod shooting;
 mod spectrum;
 mod stochastic;
 mod surfaces_csv;
-mod svg;
 mod tone;
 mod viewfactors;
 mod vtu;
 mod waves;
+mod words;
 mod xml;
 
 pub use atomic::write_atomically;
@@ -100,10 +98,13 @@ pub use judgement::{
 pub use names::{CHECKPOINT, PIXELS, TRACE_STATE, WAVE_FILES};
 pub use npz::write_npz;
 pub use outputs::{
-    EXTRAS, Extras, FIELD_GLB, FIELD_PLY, FILES, GATHER, IMAGE, POINTS, REPORT, RunReport, SHADOWS, View,
-    write_all, write_with,
+    EXTRAS, Extras, FIELD_EXR, FIELD_GLB, FIELD_PLY, FILES, GATHER, IMAGE, POINTS, REPORT, RunReport,
+    SHADOWS, View, write_all, write_with,
 };
-pub use picture::{Back, Gathering, Layer, Link, Linked, Picture, Side, render, render_layers, render_sides};
+pub use picture::{
+    Back, Gathering, LampLight, Layer, Lighter, Link, Linked, Lit, LitPicture, Picture, Side, render,
+    render_layers, render_lit, render_sides,
+};
 pub use points_csv::{PointTable, write_points_csv};
 pub use refinement::{
     BandConvergence, REFINEMENT_FILES, REFINEMENT_FORMAT, RefinementLevel, RefinementRecord,
@@ -138,9 +139,9 @@ pub use viewfactors::{
 };
 pub use vtu::write_vtu;
 pub use waves::{
-    FarRow, FieldMap, FrequencyLine, MapQuantity, MonostaticRow, WAVE_COMPARISON_FORMAT, WaveComparison,
-    WaveComparisonCase, WaveCurrents, WaveResiduals, WaveRow, write_currents_vtu, write_far_csv,
-    write_far_npz, write_frequency_plot, write_monostatic_csv, write_monostatic_npz, write_polar_plot,
-    write_receivers_csv, write_receivers_npz, write_residuals_csv, write_residuals_plot,
-    write_wave_comparison,
+    AngleQuantity, FarRow, FarTotal, FieldMap, FrequencyLine, MapAxis, MapPlane, MapQuantity, MonostaticRow,
+    WAVE_COMPARISON_FORMAT, WaveComparison, WaveComparisonCase, WaveCurrents, WaveResiduals, WaveRow,
+    scaled_frequencies, write_angle_plot, write_currents_vtu, write_far_csv, write_far_npz,
+    write_frequency_plot, write_monostatic_csv, write_monostatic_npz, write_receivers_csv,
+    write_receivers_npz, write_residuals_csv, write_residuals_plot, write_wave_comparison,
 };

@@ -34,7 +34,8 @@ pub const REPORT: &str = "report.html";
 
 /// Names of further files that a result folder may hold: pictures of the mesh, of links and of the final gather, the table of points, triangles cut along shadows, and the field as a mesh
 /// with colours.
-pub const EXTRAS: [&str; 7] = ["mesh.png", "links.png", GATHER, POINTS, SHADOWS, FIELD_PLY, FIELD_GLB];
+pub const EXTRAS: [&str; 8] =
+    ["mesh.png", "links.png", GATHER, POINTS, SHADOWS, FIELD_PLY, FIELD_GLB, FIELD_EXR];
 
 /// The picture for which every pixel gathers its light.
 pub const GATHER: &str = "gather.png";
@@ -47,11 +48,16 @@ pub const FIELD_PLY: &str = "field.ply";
 /// The same as binary glTF.
 pub const FIELD_GLB: &str = "field.glb";
 
+/// The linear colours of the picture, as OpenEXR.
+pub const FIELD_EXR: &str = "image.exr";
+
 /// What a result folder holds besides the usual files.
 #[derive(Default)]
 pub struct Extras<'a> {
     /// The usual picture.
     pub image: Option<Picture>,
+    /// Its linear colours, for [`FIELD_EXR`].
+    pub linear: Vec<[f32; 3]>,
     /// Further pictures with their names, which are among [`EXTRAS`].
     pub pictures: Vec<(&'static str, Picture)>,
     /// How bright the colours of [`FIELD_PLY`] and [`FIELD_GLB`] are.
@@ -60,7 +66,7 @@ pub struct Extras<'a> {
     pub points: Option<PointTable>,
     /// Triangles cut along the borders of shadows.
     pub shadows: Option<ShadowMesh>,
-    /// Which of [`FIELD_PLY`] and [`FIELD_GLB`] are wanted.
+    /// Which of [`FIELD_PLY`], [`FIELD_GLB`] and [`FIELD_EXR`] are wanted.
     pub baked: Vec<&'static str>,
     /// What makes the page.
     pub report: Option<RunReport<'a>>,
@@ -136,6 +142,7 @@ pub fn write_with(
     for name in &more.baked {
         paths.push(folder.write(name, |out| match *name {
             FIELD_PLY => write_field_ply(field, more.exposure, out),
+            FIELD_EXR => picture.map_or(Ok(()), |picture| picture.write_exr(&more.linear, out)),
             _ => write_field_glb(field, more.exposure, out),
         })?);
     }

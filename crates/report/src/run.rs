@@ -69,6 +69,9 @@ pub struct RunRecord {
     /// Where an accuracy was asked for: the way it was reached, and why.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub choice: Option<String>,
+    /// How the picture was made: where its light comes from, and how it was mapped to what a screen shows.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub picture: Option<String>,
     /// Estimated error of the field as piecewise polynomials.
     pub field_error: Option<FieldError>,
     /// Largest violation of `A_i F_ij = A_j F_ji` among the partly occluded pairs checked, as a form factor.
@@ -110,6 +113,7 @@ impl Default for RunRecord {
             mesh_error: None,
             hierarchy: None,
             choice: None,
+            picture: None,
             field_error: None,
             reciprocity: None,
             form_factor_error: FormFactorError::default(),

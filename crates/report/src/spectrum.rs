@@ -7,10 +7,9 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
-use crate::chart::{Panel, Series, draw};
 use crate::csv::quoted;
 use crate::number::Number;
-use crate::svg::Point;
+use crate::plot::{Axis, Figure, Line, Panel, Part, Point, Span, write_svg};
 use crate::{ReportError, ResultFolder, Timing};
 
 /// Name of the format of `spectrum.json`.
@@ -117,23 +116,47 @@ pub fn write_spectrum_csv(record: &SpectrumRecord, out: &mut dyn Write) -> io::R
 /// # Errors
 /// What `out` reports.
 pub fn write_spectrum_plot(record: &SpectrumRecord, out: &mut dyn Write) -> io::Result<()> {
-    let panels = [
-        Panel { across: "real part", up: "imaginary part", decades: false, dots: true },
-        Panel { across: "rank", up: "modulus", decades: true, dots: true },
+    let Some(band) = record.widest() else {
+        return write_svg(&Figure { title: "No bands".to_owned(), parts: Vec::new() }, out);
+    };
+    let panel = |across: &str, up: Axis, points: fn(&Eigenvalues) -> Vec<Point>| {
+        let line = |(number, of): (usize, &Eigenvalues)| Line {
+            joined: false,
+            ..Line::distinct(&of.matrix, points(of), number)
+        };
+        let lines = band.eigenvalues.iter().enumerate().map(line).collect();
+        Part::Panel(Panel::new(Axis::new(across, Span::WithZero), up, lines))
+    };
+    let parts = vec![
+        panel("real part of λ", Axis::new("imaginary part of λ", Span::WithZero), Eigenvalues::in_the_plane),
+        panel("rank", Axis::new("modulus |λ|", Span::Decades), Eigenvalues::ranked),
     ];
-    let worst = record.bands.iter().max_by(|u, v| u.reflection_radius.total_cmp(&v.reflection_radius));
-    let Some(band) = worst else { return draw("no bands", &panels, &[], out) };
-    let series: Vec<Series> = band.eigenvalues.iter().map(line).collect();
-    let title = format!("{}, {}: {} unknowns, {}", record.scene, band.band, record.unknowns, record.method);
-    draw(&title, &panels, &series, out)
+    let title = format!(
+        "{}, {}: eigenvalues, {} unknowns, {}",
+        record.scene, band.band, record.unknowns, record.method
+    );
+    write_svg(&Figure { title, parts }, out)
 }
 
-fn line(of: &Eigenvalues) -> Series {
-    let plane: Vec<Point> = of.values.iter().map(|&[re, im]| (re, im)).collect();
-    let mut moduli: Vec<f64> = of.values.iter().map(|[re, im]| re.hypot(*im)).collect();
-    moduli.sort_by(|u, v| v.total_cmp(u));
-    let ranked = moduli.into_iter().enumerate().map(|(rank, modulus)| (rank as f64, modulus)).collect();
-    Series { name: of.matrix.clone(), points: vec![plane, ranked] }
+impl SpectrumRecord {
+    /// The band of the largest spectral radius.
+    pub(crate) fn widest(&self) -> Option<&BandSpectrum> {
+        self.bands.iter().max_by(|u, v| u.reflection_radius.total_cmp(&v.reflection_radius))
+    }
+}
+
+impl Eigenvalues {
+    /// Real and imaginary parts.
+    pub(crate) fn in_the_plane(&self) -> Vec<Point> {
+        self.values.iter().map(|&[re, im]| (re, im)).collect()
+    }
+
+    /// Ranks and moduli, the largest first.
+    pub(crate) fn ranked(&self) -> Vec<Point> {
+        let mut moduli: Vec<f64> = self.values.iter().map(|[re, im]| re.hypot(*im)).collect();
+        moduli.sort_by(|u, v| v.total_cmp(u));
+        moduli.into_iter().enumerate().map(|(rank, modulus)| ((rank + 1) as f64, modulus)).collect()
+    }
 }
 
 #[cfg(test)]
@@ -178,7 +201,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         write_spectrum(&ResultFolder::claim(folder.path()).unwrap(), &sample()).unwrap();
         let text = fs::read_to_string(folder.path().join("spectrum.svg")).unwrap();
-        assert_eq!(tags(&text).iter().filter(|(name, _)| name == "circle").count(), 4);
+        // One in the legend besides.
+        assert_eq!(tags(&text).iter().filter(|(name, _)| name == "circle").count(), 5);
         let json = fs::read(folder.path().join("spectrum.json")).unwrap();
         let json: serde_json::Value = serde_json::from_slice(&json).unwrap();
         assert!(json["bands"][0]["jacobi_radius"].is_null() && json["format"] == SPECTRUM_FORMAT);

@@ -44,6 +44,11 @@ impl Tone {
         }
     }
 
+    /// The factor that colours are multiplied by first, m²/W.
+    pub(crate) fn exposure(self) -> f64 {
+        self.exposure
+    }
+
     /// Linear display values from 0 to 1.
     pub(crate) fn display(self, colour: Rgb) -> Rgb {
         let colour = colour.map(|c| c.max(0.0) * self.exposure);

@@ -132,6 +132,21 @@ fn two_sided_surfaces_stay_so_in_mitsuba() {
 }
 
 #[test]
+fn surfaces_back_to_back_are_one_of_two_sides_in_mitsuba() {
+    let plate = "[[surface]]\nname = \"plate\"\nmaterial = \"white wall\"\nquad = [[0, 0, 1], [1, 0, 1], \
+                 [1, 1, 1], [0, 1, 1]]\n[[surface]]\nname = \"below\"\nmaterial = \"lamp\"\nquad = [[1, 1, 1], \
+                 [1, 0, 1], [0, 0, 1], [0, 1, 1]]\n";
+    let outline = Scene::from_str(&format!("{SCENE}{plate}"), "scene.toml").unwrap().outline(None).unwrap();
+    let exported = outline.export(ExportFormat::Mitsuba, "scene");
+    assert!(exported.notes.iter().any(|note| note == "`plate` is written as the back of `below`"));
+    let text = String::from_utf8(exported.files[0].1.clone()).unwrap();
+    let shape = text.split("<shape").find(|shape| shape.contains("id=\"below\"")).unwrap();
+    assert!(shape.contains("twosided") && shape.contains("emitter"), "{shape}");
+    assert!(!text.contains("id=\"plate\""));
+    assert_eq!(text.matches("<shape").count(), 4);
+}
+
+#[test]
 fn a_mesh_is_a_surface_of_a_scene_and_its_objects_take_materials() {
     let folder = tempfile::tempdir().unwrap();
     written(&scene().outline(None).unwrap(), ExportFormat::Gmsh, folder.path());

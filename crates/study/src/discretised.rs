@@ -80,6 +80,7 @@ fn unassessed(lit: &Lit, exposed: Vec<f64>) -> Solution {
         mesh_error: None,
         hierarchy: None,
         tree: None,
+        direct: None,
         paths: None,
         field_error: None,
         replaced: None,

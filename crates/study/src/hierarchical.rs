@@ -330,6 +330,7 @@ fn solution(solved: Solved, options: &SolveSettings, accuracy: f64) -> Solution 
         tree: Some(crate::pictures::Hierarchy { tree: solved.tree, links: solved.links }),
         paths: None,
         means: solved.means,
+        direct: Some(solved.direct),
         report: solved.report,
         means_of: "H B_h, over links",
         entries,

@@ -38,6 +38,7 @@ mod exchange;
 mod folder;
 mod hierarchical;
 mod judge;
+mod lamplight;
 mod memory;
 mod mesh_error;
 mod options;
@@ -101,6 +102,6 @@ pub use viewfactors::{
     point_closure, solve_view_factors, view_factor_methods, view_factors,
 };
 pub use waves::{
-    CheckedWaves, CouplingStorage, Estimated, SolvedFrequency, SolvedWaves, WaveCompareOptions, WaveOptions,
-    build_wave_solver, check_wave_solver, check_waves, compare_waves, waves,
+    Balance, CheckedWaves, CouplingStorage, Estimated, Reciprocity, SolvedFrequency, SolvedWaves,
+    WaveCompareOptions, WaveOptions, build_wave_solver, check_wave_solver, check_waves, compare_waves, waves,
 };

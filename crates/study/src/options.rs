@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use fredholm_coupling::Receiver;
 use fredholm_mesh::Vec3;
-use fredholm_report::{FIELD_GLB, FIELD_PLY, ResultFolder};
+use fredholm_report::{FIELD_EXR, FIELD_GLB, FIELD_PLY, ResultFolder};
 use fredholm_scene::{Scene, SolveDefaults, Storage};
 use serde::{Deserialize, Serialize, Serializer};
 use serde_json::{Map, Value};
@@ -248,6 +248,8 @@ pub enum FieldFile {
     Ply,
     /// field.glb: elements with colours and radiosity at their corners.
     Glb,
+    /// image.exr: the linear colours of the picture.
+    Exr,
 }
 
 impl FieldFile {
@@ -257,6 +259,7 @@ impl FieldFile {
         match self {
             Self::Ply => FIELD_PLY,
             Self::Glb => FIELD_GLB,
+            Self::Exr => FIELD_EXR,
         }
     }
 }

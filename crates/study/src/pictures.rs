@@ -41,7 +41,8 @@ pub(crate) fn files(options: &SolveSettings, solution: &Solution) -> impl Iterat
     let linked = solution.tree.is_some() && !options.no_pictures;
     let points = !options.points.is_empty();
     let [ply, glb] = [FieldFile::Ply, FieldFile::Glb].map(|file| options.also.contains(&file));
-    let wanted = [linked, linked, options.final_gather, points, options.discontinuity, ply, glb];
+    let exr = options.also.contains(&FieldFile::Exr) && !options.no_pictures;
+    let wanted = [linked, linked, options.final_gather, points, options.discontinuity, ply, glb, exr];
     EXTRAS.into_iter().zip(wanted).filter(|(_, wanted)| *wanted).map(|(name, _)| name)
 }
 

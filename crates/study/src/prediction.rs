@@ -27,6 +27,12 @@ const RETAINED: u128 = 2;
 /// for the picture, welded corners, the composed file of arrays.
 const RESULTS: u128 = 650;
 const VALUE: u128 = 50;
+/// Bytes of an element in the picture with lamps, and of each of its values: colours at corners, how it
+/// lies to eight parts of lamps, reflectance and direct light. Of a pixel: what is seen through its
+/// middle, and its linear colours.
+const LIT: u128 = 500;
+const LIT_VALUE: u128 = 24;
+const LIT_PIXEL: u128 = 32;
 /// Bytes of a pixel while the exposure is found, and in each picture: while it is drawn, and when
 /// all are taken apart. Besides, what the last rows take.
 const METERED: u128 = 10;
@@ -185,8 +191,8 @@ pub(crate) fn without_matrix(elements: usize, bands: usize, kept: Bytes) -> Plan
 
 /// Bytes of the results of so many elements and of pictures of so many pixels.
 pub(crate) fn results(elements: usize, bands: usize, pixels: u128, pictures: usize) -> u128 {
-    let fields = elements as u128 * (RESULTS + VALUE * bands as u128);
-    fields.saturating_add(pictured(pixels, pictures))
+    let fields = elements as u128 * (RESULTS + LIT + (VALUE + LIT_VALUE) * bands as u128);
+    fields.saturating_add(pictured(pixels, pictures).max(pixels.saturating_mul(LIT_PIXEL)))
 }
 
 /// Bytes of so many pictures of so many pixels.

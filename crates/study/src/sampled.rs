@@ -199,6 +199,7 @@ fn solution(
         mesh_error: Some(error),
         hierarchy: None,
         tree: None,
+        direct: None,
         paths: Some(Paths { accuracy, begun: state.paths, rays: state.rays }),
         field_error: None,
         replaced: None,

@@ -25,6 +25,9 @@ use crate::watcher::Watcher;
 pub(crate) struct Solution {
     /// Irradiance and radiosity of the elements, W/m².
     pub(crate) means: Means,
+    /// The part of the irradiance that comes straight from what emits, W/m², as the same equation has
+    /// it; none where the method does not tell it apart.
+    pub(crate) direct: Option<MultiVector<f64>>,
     /// What the solver did.
     pub(crate) report: Report,
     /// What the values of elements are means of.
@@ -129,6 +132,7 @@ fn assess<S: Storage>(
     let exposed = radiosity.elements().iter().map(|size| size.exposed / size.area).collect();
     Ok(Solution {
         means,
+        direct: Some(radiosity.means(matrix, radiosity.exitance()).irradiance),
         report,
         // The means of a Galerkin solution with constants are those of H B_h.
         means_of: "H B_h, from form factors",

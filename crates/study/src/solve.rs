@@ -1,13 +1,13 @@
 //! The radiosity of a scene: on its elements, or to an accuracy.
 
+use std::mem;
 use std::sync::Arc;
-use std::{iter, mem};
 
 use fredholm_linop::{MultiVector, StopReason, Watch};
 use fredholm_mesh::Mesh;
 use fredholm_report::{
-    CHECKPOINT, Camera, Exposure, Extras, Field, GATHER, Layer, POINTS, Picture, ReportError, ResultFolder,
-    RunRecord, RunReport, SHADOWS, View, render, render_layers, write_with,
+    CHECKPOINT, Camera, Exposure, Extras, Field, GATHER, Layer, LitPicture, POINTS, Picture, ReportError,
+    ResultFolder, RunRecord, RunReport, SHADOWS, View, render_layers, render_lit, write_with,
 };
 use fredholm_scene::Scene;
 
@@ -15,8 +15,9 @@ use crate::checkpoint::{self, Checkpoint};
 use crate::choice::{Choice, Extent};
 use crate::error::{Error, ErrorKind};
 use crate::hierarchical::Answer;
+use crate::lamplight::Lamplight;
 use crate::memory::{self, Plan};
-use crate::options::{ProblemSettings, SceneSource, SolveOptions, SolveSettings, Way};
+use crate::options::{FieldFile, ProblemSettings, SceneSource, SolveOptions, SolveSettings, Way};
 use crate::pictures::{Gathered, Source, gathering, pictures};
 use crate::prediction::{MESH, Prediction, Size};
 use crate::problem::{Problem, scene_failure, with_results};
@@ -169,7 +170,8 @@ impl Solved<'_> {
         let view = view_of(self.problem.scene.camera(), &field);
         let height = f64::from(width) * f64::from(view.camera.height) / f64::from(view.camera.width);
         let camera = Camera { width, height: (height.round() as u32).max(1), ..view.camera };
-        let picture = render(&field, &camera, view.exposure).map_err(report_failure)?;
+        let view = View { camera, ..view };
+        let (LitPicture { picture, .. }, _) = picture(&self.problem, &self.solution, (&field, &view), false)?;
         let mut png = Vec::new();
         picture.write_png(&mut png).map_err(|error| Error::new(ErrorKind::Files, error))?;
         Ok(png)
@@ -445,14 +447,23 @@ fn write(
         (_, Some(gathered)) => Layer::Gathered(gathered),
         _ => Layer::Field,
     };
-    let names: Vec<&str> = pictures(options, solution).collect();
-    let layers: Vec<Layer> = iter::once(Layer::Field).chain(names.iter().map(|name| layer(name))).collect();
-    let drawn = (!options.no_pictures)
-        .then(|| render_layers(&field, &view.camera, view.exposure, &layers))
-        .transpose()
-        .map_err(report_failure)?;
-    let mut drawn = drawn.unwrap_or_default().into_iter();
-    let image = drawn.next().flatten();
+    let exact = options.also.contains(&FieldFile::Exr);
+    let drawn = (!options.no_pictures).then(|| picture(problem, solution, (&field, &view), exact));
+    // All pictures are as bright as the first.
+    let (image, linear, exposure) = match drawn.transpose()? {
+        Some((LitPicture { picture, linear, exposure }, how)) => {
+            record.picture = Some(how);
+            (Some(picture), linear, Exposure::Fixed(exposure))
+        }
+        None => (None, Vec::new(), view.exposure),
+    };
+    let names: Vec<&str> = pictures(options, solution).filter(|_| !options.no_pictures).collect();
+    let layers: Vec<Layer> = names.iter().map(|name| layer(name)).collect();
+    let drawn = if layers.is_empty() {
+        Vec::new()
+    } else {
+        render_layers(&field, &view.camera, exposure, &layers).map_err(report_failure)?
+    };
     let pictures = names.into_iter().zip(drawn);
     let pictures: Vec<_> = pictures.filter_map(|(name, picture)| Some((name, picture?))).collect();
     let points = gathered.as_ref().map(|gathered| gathered.points(options)).transpose()?.flatten();
@@ -462,10 +473,30 @@ fn write(
     }
     let title = title(&problem.scene);
     let report = (!options.no_report).then_some(RunReport { title: &title, view: &view, steps: ("", &[]) });
-    let baked = options.also.iter().map(|file| file.name()).collect();
-    let more = Extras { image, pictures, exposure: view.exposure, points, shadows, baked, report };
+    let wanted = |file: &&FieldFile| **file != FieldFile::Exr || !options.no_pictures;
+    let baked = options.also.iter().filter(wanted).map(|file| file.name()).collect();
+    let more = Extras { image, linear, pictures, exposure: view.exposure, points, shadows, baked, report };
     write_with(folder, &field, record, &more).map(drop).map_err(report_failure)
 }
+
+/// The picture of a solution, and how it was made: the light of lamps at every pixel where the solution tells that
+/// part of the irradiance apart, else what its elements have.
+fn picture(
+    problem: &Problem,
+    solution: &Solution,
+    (field, view): (&Field, &View),
+    linear: bool,
+) -> Result<(LitPicture, String), Error> {
+    let lamplight = Lamplight::new(problem, solution)?;
+    let drawn = render_lit(field, &view.camera, view.exposure, &lamplight.lit(), linear);
+    let drawn = drawn.map_err(report_failure)?;
+    let how = format!("{}; {TONE}; exposure {:.4e} m²/W", lamplight.words(), drawn.exposure);
+    Ok((drawn, how))
+}
+
+/// How colours become what a screen shows.
+const TONE: &str =
+    "tone mapping of luminance by L (1 + L/w²)/(1 + L) with white at w = 4 (Reinhard et al. 2002), sRGB";
 
 /// Takes what a cancelled run has not finished from the list of its files, and says so.
 fn leave_out(

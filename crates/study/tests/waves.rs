@@ -6,17 +6,96 @@ use std::fs;
 use std::path::Path;
 
 use fredholm_mesh::Vec3;
-use fredholm_study::{Quiet, ResultFolder, SolvedWaves, WaveOptions, waves};
+use fredholm_study::{CouplingStorage, Error, Quiet, ResultFolder, SolvedWaves, WaveOptions, waves};
 use fredholm_waves::source::PlaneWave;
-use fredholm_waves::{ConductingSphere, Wave};
+use fredholm_waves::{Complex64, ConductingSphere, DielectricSphere, Source, Wave};
 
 const SOURCE: &str = "[[source]]\nkind = \"plane-wave\"\ntravel = [0, 1, 0]\npolarisation = [0, 0, 1]\n";
 
 fn solved(folder: &Path, text: &str) -> SolvedWaves<'static> {
+    stored(folder, text, None).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn stored(
+    folder: &Path,
+    text: &str,
+    storage: Option<CouplingStorage>,
+) -> Result<SolvedWaves<'static>, Error> {
     let path = folder.join("scene.toml");
     fs::write(&path, text).unwrap();
-    let options = WaveOptions { no_report: true, ..WaveOptions::default() };
-    waves(&path, &options, &Quiet).unwrap_or_else(|error| panic!("{error}"))
+    waves(&path, &WaveOptions { no_report: true, storage, ..WaveOptions::default() }, &Quiet)
+}
+
+/// ‖a − b‖₂/‖b‖₂ of scattered fields.
+fn gap(a: &[[f64; 6]], b: &[[f64; 6]]) -> f64 {
+    let difference: f64 = a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| (a - b).powi(2)).sum();
+    (difference / b.iter().flatten().map(|b| b * b).sum::<f64>()).sqrt()
+}
+
+/// A ball with a circle of points around it, and whatever else.
+fn ball(method: &str, radius: f64, edge: &str, distance: f64, more: &str) -> String {
+    format!(
+        "[wave]\nfrequencies_hz = [1e9]\nmethod = \"{method}\"\n{SOURCE}[[surface]]\nname = \"ball\"\n\
+         sphere = {{ centre = [0, 0, 0], radius = {radius} }}\nedge = \"{edge}\"\n{more}\n\
+         [[receiver]]\nname = \"circle\"\n\
+         circle = {{ centre = [0, 0, 0], radius = {distance}, normal = [0, 0, 1], start = [1, 0, 0], points = 36 }}\n"
+    )
+}
+
+/// E of the scattered field at all points, V/m.
+fn scattered(found: &SolvedWaves<'_>) -> Vec<[f64; 6]> {
+    found.near().iter().map(|row| std::array::from_fn(|i| row.scattered[i])).collect()
+}
+
+/// The compressed matrix gives the answer of the whole one, and what does not go together is refused.
+#[test]
+fn boundary_elements_are_compressed_where_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = ball("cfie", 0.12, "lambda/8", 2.0, "");
+    let run = |text: &str, storage| stored(folder.path(), text, storage);
+    let whole = run(&text, Some(CouplingStorage::Matrix)).unwrap();
+    let compressed = run(&text, Some(CouplingStorage::Compressed)).unwrap();
+    assert!(whole.frequencies()[0].residuals.len() < 3 && compressed.frequencies()[0].residuals.len() > 5);
+    let difference = gap(&scattered(&compressed), &scattered(&whole));
+    assert!(difference > 0.0 && difference < 2e-3, "{difference:e}");
+    let refused = |text: &str, storage| run(text, Some(storage)).map(drop).unwrap_err().to_string();
+    assert!(refused(&text, CouplingStorage::Products).contains("--storage matrix or compressed"));
+    let lu = text.replace("method", "solver = \"lu\"\nmethod");
+    assert!(refused(&lu, CouplingStorage::Compressed).contains("needs all entries"));
+    let facets = text.replace("cfie", "mfie");
+    assert!(refused(&facets, CouplingStorage::Compressed).contains("--storage matrix or products"));
+}
+
+/// A dielectric ball against its series outside; one that is small has 3/(ε + 2) of the incident field inside.
+#[test]
+fn dielectric_bodies_have_the_field_of_the_series_near_and_far_and_inside() {
+    let folder = tempfile::tempdir().unwrap();
+    let wave = Wave::new(1e9).unwrap();
+    let source = PlaneWave::new(Vec3::Y, Vec3::Z, 1.0.into()).unwrap();
+    let glass = "material = \"glass\"\n[materials.glass]\nhalf_space = { permittivity = [3, -0.1] }";
+    let permittivity = Complex64::new(3.0, -0.1);
+    let radius = 0.05;
+    let exact = DielectricSphere::new(radius, permittivity).unwrap();
+    for (distance, bound) in [(0.08, 0.02), (5.0, 0.02)] {
+        let found = solved(folder.path(), &ball("pmchwt", radius, "lambda/18", distance, glass));
+        let series = |p: [f64; 3]| {
+            let e = exact.scattered(&wave, &source, Vec3::from_array(p)).components();
+            [e[0].re, e[0].im, e[1].re, e[1].im, e[2].re, e[2].im]
+        };
+        let series: Vec<[f64; 6]> = found.near().iter().map(|row| series(row.position)).collect();
+        let error = gap(&scattered(&found), &series);
+        assert!(error < bound && found.method() == "pmchwt", "{distance}: {error}");
+    }
+    let small = solved(folder.path(), &ball("pmchwt", 0.005, "lambda/120", 0.002, glass));
+    let expected = 3.0 / (permittivity + 2.0);
+    for row in small.near() {
+        let incident = source.field(&wave, Vec3::from_array(row.position)).e.components()[2];
+        let total = Complex64::new(row.scattered[4], row.scattered[5]) + incident;
+        assert!((total - expected * incident).norm() < 0.08, "{total} {expected}");
+    }
+    let bare = ball("pmchwt", radius, "lambda/18", 1.0, "");
+    let refused = stored(folder.path(), &bare, None).map(drop).unwrap_err().to_string();
+    assert!(refused.contains("half_space"), "{refused}");
 }
 
 /// A sphere of 0.4 wavelengths against the series of Mie, by all equations: E at 2 m.
@@ -141,4 +220,62 @@ fn large_tables_are_arrays_only() {
     let record: serde_json::Value =
         serde_json::from_slice(&fs::read(results.join("run.json")).unwrap()).unwrap();
     assert_eq!(record["left_out_as_text"], serde_json::json!(["far.csv"]));
+}
+
+const BALL: &str =
+    "[[surface]]\nname = \"ball\"\nsphere = { centre = [0, 0, 0], radius = 0.12 }\nedge = \"lambda/10\"\n";
+
+/// A conductor absorbs nothing: of plane waves it scatters what they lose, and dipoles beside it radiate what they supply.
+#[test]
+fn powers_balance_on_a_sphere() {
+    let folder = tempfile::tempdir().unwrap();
+    let dipole = "[[source]]\nkind = \"half-wave-dipole\"\nposition = [0.3, 0, 0]\naxis = [0, 0, 1]\ncurrent_a = 1\n\
+                  [[source]]\nkind = \"hertzian-dipole\"\nposition = [0, -0.25, 0.1]\naxis = [0, 1, 1]\nmoment_a_m = 0.1\n";
+    let far = "[[receiver]]\nname = \"f\"\nfar = { theta_degrees = [30, 70], phi_degrees = 20 }\n";
+    for source in [SOURCE, dipole] {
+        let text = format!("[wave]\nfrequencies_hz = [1e9]\n{source}{BALL}{far}");
+        let found = solved(folder.path(), &text);
+        let ratio = found.balances()[0].ratio();
+        assert!((ratio - 1.0).abs() < 3e-3, "{ratio}");
+        let total = found.far()[0].total;
+        assert_eq!(total.is_some(), source == dipole);
+        if let Some(total) = total {
+            assert!(total.gain > 0.01 && total.gain < 10.0, "{}", total.gain);
+        }
+    }
+}
+
+/// A dipole beside a screen so small that it does nothing has its own far field and gain.
+#[test]
+fn the_far_field_has_the_sources_in() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "[wave]\nfrequencies_hz = [1e9]\n\
+        [[source]]\nkind = \"half-wave-dipole\"\nposition = [0, 0, 0]\naxis = [0, 0, 1]\ncurrent_a = 1\n\
+        [[surface]]\nname = \"speck\"\nquad = [[5, 0, 0], [5.001, 0, 0], [5.001, 0, 0.001], [5, 0, 0.001]]\n\
+        [[receiver]]\nname = \"f\"\nfar = { theta_degrees = [90, 45], phi_degrees = 20 }\n";
+    let found = solved(folder.path(), text);
+    let totals: Vec<_> = found.far().iter().map(|row| row.total.unwrap()).collect();
+    // 1.6409 across the wire, and |F| = η/(2π) there.
+    assert!((totals[0].gain - 1.640_9).abs() < 1e-3, "{}", totals[0].gain);
+    assert!((totals[0].amplitude[1].hypot(totals[0].amplitude[0]) - 59.958).abs() < 0.01);
+    let pattern = (std::f64::consts::FRAC_PI_2 * 0.5_f64.sqrt()).cos() / 0.5_f64.sqrt();
+    assert!((totals[1].gain / totals[0].gain - pattern * pattern).abs() < 1e-3);
+}
+
+/// Sweeps tell how reciprocal they are: the electric equation is, to rounding and the integrals of its entries.
+#[test]
+fn sweeps_tell_their_reciprocity() {
+    let folder = tempfile::tempdir().unwrap();
+    let back = "[[receiver]]\nname = \"b\"\nmonostatic = { theta_degrees = [30, 50, 70, 110], phi_degrees = [20, 50, 110] }\n";
+    let defect = |method: &str, surface: &str| {
+        let text = format!("[wave]\nfrequencies_hz = [1e9]\nmethod = \"{method}\"\n{surface}{back}");
+        let found = solved(folder.path(), &text);
+        let kept = found.reciprocity();
+        assert_eq!(kept.len(), 1);
+        kept[0].defect
+    };
+    let cube = "[[surface]]\nname = \"cube\"\nbox = { min = [0, 0, 0], max = [0.2, 0.15, 0.25] }\nedge = \"lambda/8\"\n";
+    let (electric, dual) = (defect("efie", cube), defect("dual-surface-mfie", cube));
+    assert!(electric < 1e-9, "{electric}");
+    assert!(dual < 0.02 && dual > electric, "{dual}");
 }

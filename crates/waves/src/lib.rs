@@ -17,6 +17,7 @@ pub mod material;
 pub mod medium;
 mod mie;
 mod optics;
+mod power;
 mod radiation;
 mod rule;
 pub mod source;
@@ -36,6 +37,7 @@ pub use medium::Wave;
 pub use mie::{ConductingSphere, DielectricSphere};
 pub use num_complex::Complex64;
 pub use optics::{PhysicalOptics, Shadow};
+pub use power::{extinct, radiated, sphere_rule, supplied};
 pub use radiation::{
     FarField, Gate, Pattern, Radiator, Sampling, TOLERANCE, cross_section, even_directions, polar_frame,
 };

@@ -290,6 +290,8 @@ pub(crate) enum FieldFile {
     Ply,
     /// Colours and radiosity at the corners
     Glb,
+    /// Linear colours of the picture
+    Exr,
 }
 
 impl From<FieldFile> for fredholm_study::FieldFile {
@@ -297,6 +299,7 @@ impl From<FieldFile> for fredholm_study::FieldFile {
         match file {
             FieldFile::Ply => Self::Ply,
             FieldFile::Glb => Self::Glb,
+            FieldFile::Exr => Self::Exr,
         }
     }
 }
@@ -385,7 +388,8 @@ pub(crate) struct SolveArgs {
     /// Write no report.html
     #[arg(long)]
     pub(crate) no_report: bool,
-    /// Also write the elements with their light as colours and numbers: field.ply, field.glb
+    /// Also write the elements with their light as colours and numbers, field.ply and field.glb, or the
+    /// linear colours of the picture, image.exr
     #[arg(long, value_enum, value_name = "FORMAT", value_delimiter = ',')]
     pub(crate) also: Vec<FieldFile>,
     /// Also write shadows.vtu, for which the elements are cut along the borders of the shadows that lamps cast and gather

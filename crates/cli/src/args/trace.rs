@@ -28,8 +28,10 @@ last. Ctrl-C keeps what is there by then. Without --samples, --seconds and --to 
 With --spp image.png is traced pixel by pixel, and pixels.npz has the standard error of each.
 
 surface-sampling, field-particles and amplitude-particles sample the scattered field of a scene of
-waves, one bounce or two, with shadows = \"geometric\"; written are receivers.csv, trace.json and
-run.json. Without --samples, --seconds and --to they draw 65536 samples.";
+waves, one bounce or two, with shadows = \"geometric\"; directions of field-particles are by the
+solid angles of the facets, or uniform, by the cosine, or by the density of von Mises and Fisher
+about the direction to the scatterer, as the end of the name says. Written are receivers.csv,
+trace.json and run.json. Without --samples, --seconds and --to they draw 65536 samples.";
 
 /// Options of `trace`.
 #[derive(Clone, Debug, Args)]

@@ -32,8 +32,8 @@ pub(crate) struct WavesArgs {
     /// Memory allowed, such as 4GiB or 800MB [default: what leaves the machine usable]
     #[arg(long, value_name = "LIMIT")]
     pub(crate) memory: Option<Bytes>,
-    /// Where the coupling of the facets comes from: a stored matrix, or products computed anew [default: what is predicted
-    /// to be quicker]
+    /// Where the coupling comes from: a stored matrix, products computed anew (facets), or a compressed matrix (boundary
+    /// elements) [default: what is predicted to fit and to be quicker]
     #[arg(long, value_name = "STORAGE")]
     pub(crate) storage: Option<StorageArg>,
     /// Compare solvers on the coupling instead, with their options, or all: neumann,gmres:restart=100,southwell
@@ -59,6 +59,8 @@ pub(crate) enum StorageArg {
     Matrix,
     /// Products computed anew in every iteration
     Products,
+    /// A compressed matrix: efie, cfie, pmchwt
+    Compressed,
 }
 
 /// A solver that can be made, or all of them.
@@ -74,6 +76,7 @@ impl WavesArgs {
         let storage = self.storage.map(|storage| match storage {
             StorageArg::Matrix => CouplingStorage::Matrix,
             StorageArg::Products => CouplingStorage::Products,
+            StorageArg::Compressed => CouplingStorage::Compressed,
         });
         WaveOptions { memory: self.memory, no_report: self.no_report, storage }
     }

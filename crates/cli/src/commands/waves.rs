@@ -119,6 +119,19 @@ fn summarise(args: &WavesArgs, folder: &Path, solved: &SolvedWaves) -> Result<()
         let text = format!("below {:.2e} at {name}, {} MHz", error.relative, error.frequency / 1e6);
         lines.add("stated error", text);
     }
+    for balance in solved.balances() {
+        let text = format!(
+            "{:.4} of what the sources give is radiated, {} MHz",
+            balance.ratio(),
+            balance.frequency / 1e6
+        );
+        lines.add("power", text);
+    }
+    for found in solved.reciprocity().iter().take(MOST_LISTED) {
+        let name = solved.receiver(found.receiver).unwrap_or_default();
+        let text = format!("within {:.1e} at {name}, {} MHz", found.defect, found.frequency / 1e6);
+        lines.add("reciprocity", text);
+    }
     for (what, errors) in [("mesh error", solved.mesh_errors()), ("form error", solved.form_errors())] {
         for error in errors {
             let name = solved.receiver(error.receiver).unwrap_or_default();
@@ -202,6 +215,10 @@ pub(super) fn describe(path: &Path, record: &Value) -> Result<Ending, Error> {
             (None, _) => String::new(),
         };
         lines.add(&format!("{megahertz} MHz"), format!("{} facets{ending}", found["facets"]));
+    }
+    for power in list("power") {
+        let ratio = power["ratio"].as_f64().unwrap_or_default();
+        lines.add("power", format!("{ratio:.4} of what the sources give is radiated"));
     }
     for (what, key) in [("mesh error", "estimated_mesh_errors"), ("form error", "estimated_form_errors")] {
         for error in list(key) {

@@ -7,6 +7,7 @@
 //! Factors are Lambert's sums over the edges of what is visible (P. Schröder & P. Hanrahan, SIGGRAPH 1993, doi:10.1145/166117.166138). Final gathering: M. C. Reichert, *A two-pass radiosity method
 //! driven by lights and viewer position*, Cornell University 1992; D. Lischinski, F. Tampieri, D. P. Greenberg, SIGGRAPH 1993, doi:10.1145/166117.166143. W/m².
 
+mod lamps;
 mod senders;
 mod shadows;
 mod walk;
@@ -19,6 +20,7 @@ use fredholm_linop::{MultiVector, Watch};
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::Occluders;
 use fredholm_visibility::body::Bodies;
+pub use lamps::{Lamps, Lighter};
 use rayon::prelude::*;
 use senders::Senders;
 pub use walk::Gatherer;

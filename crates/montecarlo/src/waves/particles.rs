@@ -31,7 +31,12 @@ impl FieldParticles {
 
 impl FieldEstimator for FieldParticles {
     fn name(&self) -> &'static str {
-        "field-particles"
+        match self.aim {
+            Aim::Facets => "field-particles",
+            Aim::Sphere => "field-particles-uniform",
+            Aim::Cosine => "field-particles-cosine",
+            Aim::Lobe(_) => "field-particles-von-mises-fisher",
+        }
     }
 
     fn batch(&self, problem: &Scattering<'_>, receivers: &[Vec3], batch: &Batch) -> Vec<ComplexVector> {

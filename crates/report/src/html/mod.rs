@@ -16,7 +16,6 @@ mod run;
 mod studies;
 mod table;
 mod waves;
-mod words;
 
 pub use model::{ElementPhasors, ElementValues, FieldStep, ReportModel};
 pub use page::{ReportBadge, ReportPage};

@@ -4,8 +4,8 @@ use super::model::ReportModel;
 use super::page::{ReportBadge, ReportPage};
 use super::plot::{ReportAxis, ReportPlot, ReportSeries};
 use super::table::{ReportCell, ReportColumn, ReportTable};
-use super::words::{count, number, percent};
 use crate::mean::Means;
+use crate::words::{count, number, percent};
 use crate::{Energy, Field, Hierarchy, MeshError, Picture, RunRecord, Timing};
 
 impl<'a> ReportPage<'a> {

@@ -8,7 +8,7 @@ use super::page::{ReportBadge, ReportPage};
 use super::plot::{ReportAxis, ReportPlot, ReportSeries};
 use super::run::{elements, level_line, surfaces, times};
 use super::table::{ReportCell, ReportColumn, ReportTable};
-use super::words::{count, number, percent};
+use crate::words::{count, number, percent};
 use crate::{
     BandConvergence, ComparisonCase, ComparisonRecord, ComparisonRun, CrosscheckRecord, CrosscheckRow, Field,
     Picture, RefinementRecord, ShootingRecord, Timing, WorstPlace,

@@ -3,8 +3,8 @@
 
 use std::io::{self, Write};
 
-use super::words;
 use crate::number::Number;
+use crate::words;
 use crate::xml::escaped;
 
 /// Most rows of a table that are written.

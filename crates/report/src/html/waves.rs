@@ -6,7 +6,7 @@ use serde_json::Value;
 use super::model::{ElementPhasors, ReportModel};
 use super::page::{ReportBadge, ReportPage};
 use super::plot::{ReportAxis, ReportPlot, ReportSeries};
-use super::words::count;
+use crate::words::count;
 use crate::{WaveCurrents, WaveResiduals};
 
 /// Names of the components along the axes.

@@ -8,10 +8,12 @@
 mod elements;
 mod gathered;
 mod links;
+mod lit;
 mod sides;
 
-use std::io::{self, Write};
+use std::io::{self, Cursor, Write};
 
+use exr::prelude::{SpecificChannels, WritableImage};
 use fredholm_mesh::Vec3;
 use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
 use rayon::prelude::*;
@@ -25,6 +27,8 @@ use gathered::GatherPainter;
 pub use gathered::Gathering;
 use links::LinkPainter;
 pub use links::{Link, Linked};
+use lit::LitView;
+pub use lit::{LampLight, Lighter, Lit, LitPicture};
 pub use sides::{Back, Side, render_sides};
 
 /// Samples of a pixel.
@@ -46,6 +50,23 @@ pub struct Picture {
 }
 
 impl Picture {
+    /// Writes linear colours as OpenEXR: channels R, G and B of 32-bit numbers, radiosity as linear sRGB, W/m².
+    ///
+    /// # Errors
+    /// What `out` reports.
+    pub fn write_exr(&self, linear: &[[f32; 3]], out: &mut dyn Write) -> io::Result<()> {
+        let (width, height) = (self.width as usize, self.height as usize);
+        let colour = |at: exr::prelude::Vec2<usize>| {
+            let [red, green, blue] = linear.get(at.y() * width + at.x()).copied().unwrap_or_default();
+            (red, green, blue)
+        };
+        let image = exr::prelude::Image::from_channels((width, height), SpecificChannels::rgb(colour));
+        // The writer goes back to fill in where the lines are.
+        let mut file = Cursor::new(Vec::new());
+        image.write().non_parallel().to_buffered(&mut file).map_err(io::Error::other)?;
+        out.write_all(file.get_ref())
+    }
+
     /// Writes the picture as PNG.
     ///
     /// # Errors
@@ -79,6 +100,22 @@ pub fn render(field: &Field<'_>, camera: &Camera, exposure: Exposure) -> Result<
     Ok(pictures.swap_remove(0).0)
 }
 
+/// Draws a field as a camera sees it, with the light of the lamps taken at every pixel; `linear` colours come with it where
+/// they are wanted.
+///
+/// # Errors
+/// As for [`render`], and [`ReportError::Length`] for vectors that do not fit the field.
+pub fn render_lit(
+    field: &Field<'_>,
+    camera: &Camera,
+    exposure: Exposure,
+    lit: &Lit<'_>,
+    linear: bool,
+) -> Result<LitPicture, ReportError> {
+    let eye = Eye::new(field.mesh(), camera)?;
+    LitView::new(*field, &eye, lit)?.draw(exposure, linear)
+}
+
 /// Draws several pictures of a field as a camera sees it, all of one exposure, and casts the rays once.
 /// There is none of what [`Gathering::go_on`] did not want any more before it was whole.
 ///
@@ -102,7 +139,8 @@ fn drawn<'a>(
     layers: impl IntoIterator<Item = &'a Layer<'a>>,
 ) -> Result<Vec<(Picture, bool)>, ReportError> {
     let view = Viewer::new(field, camera)?;
-    let tone = Tone::new(exposure, &view.meter(field))?;
+    let metered = if exposure == Exposure::Auto { view.meter(field) } else { Vec::new() };
+    let tone = Tone::new(exposure, &metered)?;
     let painters: Vec<Box<dyn Painter + '_>> =
         layers.into_iter().map(|layer| view.painter(field, layer)).collect();
     let row_bytes = 3 * camera.width as usize;

@@ -3,42 +3,43 @@
 use std::io::{self, Write};
 
 use super::record::{ShootingRecord, Shot};
-use crate::chart::{Panel, Series, draw};
-use crate::svg::Point;
+use crate::plot::{Axis, Figure, Line, Panel, Part, Span, write_svg};
 
 /// Writes the plot.
 ///
 /// # Errors
 /// What `out` reports.
 pub fn write_shooting_plot(record: &ShootingRecord, out: &mut dyn Write) -> io::Result<()> {
-    let panel =
-        |across| Panel { across, up: "share of the power still to be shot", decades: true, dots: false };
-    let panels = [panel("shots"), panel("columns computed"), panel("seconds")];
-    let against = |across: fn(usize, &Shot) -> f64| -> Vec<Point> {
+    let over = |label: &str, across: fn(usize, &Shot) -> f64| {
         let points = record.shots.iter().enumerate();
-        points.map(|(number, shot)| (across(number + 1, shot), 1.0 - shot.distributed)).collect()
+        let points = points.map(|(number, shot)| (across(number + 1, shot), 1.0 - shot.distributed));
+        let up = Axis::new("share of the power still to be shot", Span::Decades);
+        let line = Line::distinct("", points.collect(), 0);
+        Part::Panel(Panel::new(Axis::new(label, Span::WithZero), up, vec![line]))
     };
-    let points = vec![
-        against(|number, _| number as f64),
-        against(|_, shot| shot.columns as f64),
-        against(|_, shot| shot.seconds),
+    let parts = vec![
+        over("shots", |number, _| number as f64),
+        over("columns computed", |_, shot| shot.columns as f64),
+        over("time, s", |_, shot| shot.seconds),
     ];
-    let title = format!("{}: {} elements, {} groups", record.scene, record.elements, record.groups);
-    draw(&title, &panels, &[Series { name: "progressive".to_owned(), points }], out)
+    let (elements, groups) = (record.elements, record.groups);
+    let title = format!("{}: progressive radiosity, {elements} elements, {groups} groups", record.scene);
+    write_svg(&Figure { title, parts }, out)
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::record::tests::sample;
     use super::*;
+    use crate::plot::tests::texts;
 
     #[test]
     fn every_panel_is_drawn() {
         let mut out = Vec::new();
         write_shooting_plot(&sample(), &mut out).unwrap();
         let text = String::from_utf8(out).unwrap();
-        for label in ["shots", "columns computed", "seconds", "8 elements, 12 groups"] {
-            assert!(text.contains(label), "{label}");
+        for label in ["shots", "columns computed", "time, s", "8 elements, 12 groups"] {
+            assert!(texts(&text).iter().any(|text| text.contains(label)), "{label}");
         }
     }
 }

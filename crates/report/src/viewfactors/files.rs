@@ -72,7 +72,7 @@ pub fn write_view_factors(
         MatrixFormat::Csv => factors.write_csv(out),
         MatrixFormat::View3d => factors.write_view3d(record.enforced.is_some(), out),
     })?;
-    place.write(&name(&files.picture), |out| heat_map(factors).write_png(out))?;
+    place.write(&name(&files.picture), |out| heat_map(factors)?.write_png(out))?;
     place.write(&name(&files.histogram), |out| write_closure_histogram(factors, out))?;
     place.write(&name(&files.record), |out| record.write(out)).map(drop)
 }

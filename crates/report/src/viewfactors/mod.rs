@@ -5,8 +5,7 @@
 mod csv;
 mod error;
 mod files;
-pub(crate) mod glyphs;
-pub(crate) mod heat_map;
+mod heat_map;
 mod histogram;
 mod matrix;
 mod npy;

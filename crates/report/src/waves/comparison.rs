@@ -10,9 +10,9 @@ use std::io::{self, Write};
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::chart::{Panel, Series, draw};
 use crate::csv::quoted;
 use crate::number::Number;
+use crate::plot::{Axis, Figure, Line, Panel, Part, Point, Span, write_svg};
 use crate::{COMPARISON_FILES, ComparisonRun, ReportError, ResultFolder, Timing};
 
 /// Name of the format of `compare.json`.
@@ -104,11 +104,16 @@ fn history(record: &WaveComparison, out: &mut dyn Write) -> io::Result<()> {
 
 /// Iterations on a logarithmic axis of residuals, and seconds.
 fn plot(record: &WaveComparison, out: &mut dyn Write) -> io::Result<()> {
-    let panel = |across| Panel { across, up: RESIDUAL, decades: true, dots: false };
-    let panels = [panel("iterations"), panel("seconds")];
-    let Some(case) = record.cases.last() else { return draw("nothing to compare", &panels, &[], out) };
-    let solved = case.runs.iter().filter(|run| !run.history.residual.is_empty());
-    let series: Vec<Series> = solved.map(line).collect();
+    let Some(case) = record.cases.last() else {
+        return write_svg(&Figure { title: "Nothing to compare".to_owned(), parts: Vec::new() }, out);
+    };
+    let over = |across: &str, points: fn(&ComparisonRun) -> Vec<Point>| {
+        let solved = case.runs.iter().filter(|run| !run.history.residual.is_empty());
+        let line = |(number, run): (usize, &ComparisonRun)| Line::distinct(&run.solver, points(run), number);
+        let lines = solved.enumerate().map(line).collect();
+        let (across, up) = (Axis::new(across, Span::WithZero), Axis::new(RESIDUAL, Span::Decades));
+        Part::Panel(Panel::new(across, up, lines))
+    };
     let title = format!(
         "{}: {} unknowns, spectral radius {:.3}, {} MHz",
         record.scene,
@@ -116,14 +121,17 @@ fn plot(record: &WaveComparison, out: &mut dyn Write) -> io::Result<()> {
         case.spectral_radius,
         case.frequency / 1e6
     );
-    draw(&title, &panels, &series, out)
+    let parts = vec![over("iterations", over_iterations), over("time, s", over_time)];
+    write_svg(&Figure { title, parts }, out)
 }
 
-fn line(run: &ComparisonRun) -> Series {
-    let residuals = || run.history.residual.iter().copied();
-    let counted = residuals().enumerate().map(|(iteration, residual)| (iteration as f64, residual));
-    let timed = run.history.seconds.iter().copied().zip(residuals());
-    Series { name: run.solver.clone(), points: vec![counted.collect(), timed.collect()] }
+fn over_iterations(run: &ComparisonRun) -> Vec<Point> {
+    let counted = run.history.residual.iter().copied().enumerate();
+    counted.map(|(iteration, residual)| (iteration as f64, residual)).collect()
+}
+
+fn over_time(run: &ComparisonRun) -> Vec<Point> {
+    run.history.seconds.iter().copied().zip(run.history.residual.iter().copied()).collect()
 }
 
 #[cfg(test)]
@@ -133,7 +141,7 @@ mod tests {
     use super::*;
     use crate::ComparisonHistory;
     use crate::csv::tests::parse;
-    use crate::xml::tests::tags;
+    use crate::plot::tests::curves;
 
     fn sample() -> WaveComparison {
         let history = ComparisonHistory {
@@ -196,7 +204,7 @@ mod tests {
         let mut out = Vec::new();
         plot(&sample(), &mut out).unwrap();
         let text = String::from_utf8(out).unwrap();
-        assert_eq!(tags(&text).iter().filter(|(name, _)| name == "polyline").count(), 2);
+        assert_eq!(curves(&text).len(), 2);
         let folder = tempfile::tempdir().unwrap();
         write_wave_comparison(&ResultFolder::claim(folder.path()).unwrap(), &sample()).unwrap();
         let json = fs::read(folder.path().join("compare.json")).unwrap();

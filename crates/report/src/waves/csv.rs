@@ -3,7 +3,8 @@
 //! Columns of `receivers.csv`: `receiver` (name), `index`, `x, y, z` (m), `frequency` (Hz), then with the prefixes `inc_`
 //! (incident), `sca_` (scattered) and `tot_` (both) the phasors `ex_re, ex_im, … hz_im` (V/m, A/m). Columns of `far.csv`:
 //! `receiver`, `index`, `theta_degrees`, `phi_degrees`, `frequency`, `f_theta_re, f_theta_im, f_phi_re, f_phi_im` (V),
-//! `rcs_theta, rcs_phi` (m², empty without an incident plane wave).
+//! `rcs_theta, rcs_phi` (m², empty without an incident plane wave), and with the sources in, where all are at places and else
+//! empty, `t_theta_re, t_theta_im, t_phi_re, t_phi_im` (V) and `gain` (over the power that the sources supply).
 
 use std::io::{self, Write};
 
@@ -12,7 +13,7 @@ use crate::csv::{numbers, quoted};
 
 const PREFIXES: [&str; 3] = ["inc", "sca", "tot"];
 const COMPONENTS: [&str; 6] = ["ex", "ey", "ez", "hx", "hy", "hz"];
-const FAR: &str = "receiver,index,theta_degrees,phi_degrees,frequency,f_theta_re,f_theta_im,f_phi_re,f_phi_im,rcs_theta,rcs_phi";
+const FAR: &str = "receiver,index,theta_degrees,phi_degrees,frequency,f_theta_re,f_theta_im,f_phi_re,f_phi_im,rcs_theta,rcs_phi,t_theta_re,t_theta_im,t_phi_re,t_phi_im,gain";
 
 /// Writes the fields at the receivers, whose names are given in their order.
 ///
@@ -48,6 +49,10 @@ pub fn write_far_csv(names: &[String], rows: &[FarRow], out: &mut dyn Write) -> 
             Some(sections) => numbers(out, sections)?,
             None => write!(out, ",,")?,
         }
+        match row.total {
+            Some(total) => numbers(out, total.amplitude.into_iter().chain([total.gain]))?,
+            None => write!(out, ",,,,,")?,
+        }
         writeln!(out)?;
     }
     Ok(())
@@ -62,6 +67,7 @@ fn name(names: &[String], receiver: usize) -> &str {
 pub(super) mod tests {
     use super::*;
     use crate::csv::tests::{parse, values};
+    use crate::waves::FarTotal;
 
     pub(in crate::waves) fn rows() -> Vec<WaveRow> {
         let fill = |start: f64| std::array::from_fn(|i| start + i as f64 / 7.0);
@@ -104,13 +110,16 @@ pub(super) mod tests {
             frequency: 1e9,
             amplitude: [1.0, 2.0, 3.0, 4.0],
             cross_section: None,
+            total: Some(FarTotal { amplitude: [5.0, 6.0, 7.0, 8.0], gain: 1.5 }),
         };
-        let with = FarRow { cross_section: Some([0.5, 0.25]), ..row.clone() };
+        let with = FarRow { cross_section: Some([0.5, 0.25]), total: None, ..row.clone() };
         let mut out = Vec::new();
         write_far_csv(&["f".to_owned()], &[row, with], &mut out).unwrap();
         let table = parse(&String::from_utf8(out).unwrap());
-        assert_eq!(table[1][9..], ["", ""]);
-        assert_eq!(values(&table[2], 1), [4.0, 90.0, 270.0, 1e9, 1.0, 2.0, 3.0, 4.0, 0.5, 0.25]);
+        assert_eq!(table[1][9..11], ["", ""]);
+        assert_eq!(values(&table[1], 11), [5.0, 6.0, 7.0, 8.0, 1.5]);
+        assert_eq!(values(&table[2][..11], 1), [4.0, 90.0, 270.0, 1e9, 1.0, 2.0, 3.0, 4.0, 0.5, 0.25]);
+        assert_eq!(table[2][11..], ["", "", "", "", ""]);
         assert_eq!(table[0].len(), table[1].len());
     }
 }

@@ -7,19 +7,21 @@ mod csv;
 mod map;
 mod monostatic;
 mod npz;
+mod over_angle;
 mod over_frequency;
-mod polar;
 mod residuals;
+mod section;
 mod vtu;
 
 pub use comparison::{WAVE_COMPARISON_FORMAT, WaveComparison, WaveComparisonCase, write_wave_comparison};
 pub use csv::{write_far_csv, write_receivers_csv};
-pub use map::{FieldMap, MapQuantity};
+pub use map::{FieldMap, MapAxis, MapQuantity};
 pub use monostatic::{MonostaticRow, write_monostatic_csv};
 pub use npz::{write_far_npz, write_monostatic_npz, write_receivers_npz};
-pub use over_frequency::{FrequencyLine, write_frequency_plot};
-pub use polar::write_polar_plot;
+pub use over_angle::{AngleQuantity, write_angle_plot};
+pub use over_frequency::{FrequencyLine, scaled_frequencies, write_frequency_plot};
 pub use residuals::{WaveResiduals, write_residuals_csv, write_residuals_plot};
+pub use section::MapPlane;
 pub use vtu::{WaveCurrents, write_currents_vtu};
 
 /// The fields at a point of a receiver.
@@ -64,4 +66,15 @@ pub struct FarRow {
     pub amplitude: [f64; 4],
     /// Radar cross-sections for reception along θ̂ and φ̂, m², where a plane wave is incident.
     pub cross_section: Option<[f64; 2]>,
+    /// The far field with that of the sources, where all of them are at places.
+    pub total: Option<FarTotal>,
+}
+
+/// The far field of located sources and of all that they light, in a direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FarTotal {
+    /// F along θ̂ and φ̂: real and imaginary part, V.
+    pub amplitude: [f64; 4],
+    /// 4π times the power per solid angle over the power that the sources supply; not a number where that is not known.
+    pub gain: f64,
 }

@@ -16,6 +16,8 @@
 //! | `frequency` | f64 | n | Hz |
 //! | `amplitude` (far) | f64 | n × 2 × 2 | along θ̂ and φ̂ (V); real, imaginary part |
 //! | `cross_section` (far) | f64 | n × 2 | m²; not a number without an incident plane wave |
+//! | `total` (far) | f64 | n × 2 × 2 | with the sources in, V; not a number where one of them is a plane wave |
+//! | `gain` (far) | f64 | n | over the power that the sources supply; not a number where one of them is a plane wave |
 //! | `scattering` (monostatic) | f64 | n × 4 × 2 | S_θθ, S_φθ, S_θφ, S_φφ (m), received then incident |
 
 use std::io::{self, Cursor, Write};
@@ -50,6 +52,12 @@ pub fn write_far_npz(rows: &[FarRow], out: &mut dyn Write) -> io::Result<()> {
         npz.add_array("amplitude", &Array3::from_shape_fn((rows.len(), 2, 2), part))?;
         let section = |row: &FarRow| row.cross_section.unwrap_or([f64::NAN; 2]);
         npz.add_array("cross_section", &Array2::from(rows.iter().map(section).collect::<Vec<_>>()))?;
+        let part = |(i, along, part): (usize, usize, usize)| {
+            rows[i].total.map_or(f64::NAN, |total| total.amplitude[2 * along + part])
+        };
+        npz.add_array("total", &Array3::from_shape_fn((rows.len(), 2, 2), part))?;
+        let gain = |row: &FarRow| row.total.map_or(f64::NAN, |total| total.gain);
+        npz.add_array("gain", &rows.iter().map(gain).collect::<Array1<f64>>())?;
         Ok(npz.finish()?.into_inner())
     };
     out.write_all(&compose().map_err(io::Error::other)?)
@@ -136,6 +144,7 @@ mod tests {
             frequency: 1e9,
             amplitude: [1.0, 2.0, 3.0, 4.0],
             cross_section: Some([0.5, 0.25]),
+            total: None,
         };
         let back = MonostaticRow {
             receiver: 0,
@@ -153,6 +162,8 @@ mod tests {
         assert_eq!(amplitude.iter().copied().skip(4).collect::<Vec<_>>(), [1.0, 2.0, 3.0, 4.0]);
         let sections: Array2<f64> = npz.by_name("cross_section").unwrap();
         assert_eq!(sections.row(1).to_vec(), [0.5, 0.25]);
+        let gain: Array1<f64> = npz.by_name("gain").unwrap();
+        assert!(gain.iter().all(|gain| gain.is_nan()));
         let mut npz = NpzReader::new(Cursor::new(other)).unwrap();
         let scattering: Array3<f64> = npz.by_name("scattering").unwrap();
         assert_eq!(scattering.iter().copied().collect::<Vec<_>>(), [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0]);

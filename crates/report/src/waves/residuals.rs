@@ -3,8 +3,8 @@
 
 use std::io::{self, Write};
 
-use crate::chart::{Panel, Series, draw};
 use crate::number::Number;
+use crate::plot::{Axis, Figure, Line, Panel, Part, Span, write_svg};
 
 /// The residuals at one frequency, from the start on.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,20 +39,20 @@ pub fn write_residuals_plot(
     residuals: &[WaveResiduals],
     out: &mut dyn Write,
 ) -> io::Result<()> {
-    let panel =
-        Panel { across, up: "relative residual ‖b − x + K x‖ / ‖b‖", decades: true, dots: false };
-    let line = |WaveResiduals { frequency, values }: &WaveResiduals| Series {
-        name: format!("{} MHz", frequency / 1e6),
-        points: vec![values.iter().enumerate().map(|(i, &value)| (i as f64, value)).collect()],
+    let line = |(number, WaveResiduals { frequency, values }): (usize, &WaveResiduals)| {
+        let points = values.iter().enumerate().map(|(i, &value)| (i as f64, value)).collect();
+        Line::distinct(&format!("{} MHz", frequency / 1e6), points, number)
     };
-    let lines: Vec<Series> = residuals.iter().map(line).collect();
-    draw(title, &[panel], &lines, out)
+    let up = Axis::new("relative residual ‖b − x + K x‖ / ‖b‖", Span::Decades);
+    let lines = residuals.iter().enumerate().map(line).collect();
+    let panel = Panel::new(Axis::new(across, Span::WithZero), up, lines);
+    write_svg(&Figure { title: title.to_owned(), parts: vec![Part::Panel(panel)] }, out)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::xml::tests::tags;
+    use crate::plot::tests::curves;
 
     #[test]
     fn every_iteration_has_a_row_and_every_frequency_a_line() {
@@ -67,6 +67,6 @@ mod tests {
         assert_eq!(table.lines().count(), 6);
         write_residuals_plot("a & b", "bounces", &residuals, &mut plot).unwrap();
         let plot = String::from_utf8(plot).unwrap();
-        assert_eq!(tags(&plot).iter().filter(|(name, _)| name == "polyline").count(), 2);
+        assert_eq!(curves(&plot).len(), 2);
     }
 }

@@ -21,6 +21,14 @@ use crate::error::{ErrorKind, SceneError};
 const ON_SURFACE: f64 = 1e-9;
 /// Points of a receiver that are looked at to tell whether all are inside a body.
 const SAMPLED: usize = 64;
+/// Phase that may be lost in the rounding of a coordinate.
+const LOST: f64 = 1e-6;
+/// Extent of a scene over the wavelength below which it is doubted.
+const LEAST: f64 = 1e-4;
+/// Share of the sides of an object that may be open so that it looks like a body with a fault.
+const FEW: f64 = 0.2;
+/// Points of a receiver that are asked how far away they are.
+const AWAY: usize = 4096;
 /// Pairs of surfaces that are told one by one.
 const TOLD: usize = 4;
 
@@ -46,12 +54,19 @@ struct Body<'a> {
 
 pub(super) fn check(scene: &WaveScene) -> Result<Vec<Warning>, SceneError> {
     let pieces = Pieces::of(scene);
+    told_apart(scene, &pieces)?;
     let mut warnings: Vec<Warning> = closed(scene, &pieces)?.into_iter().collect();
+    warnings.extend(half_closed(scene, &pieces));
+    warnings.extend(frequencies(scene));
+    warnings.extend(lost_in_the_wave(scene, &pieces));
+    warnings.extend(slabs_on_bodies(scene)?);
     let bodies = pieces.bodies(scene);
     warnings.extend(inside_out(scene, &bodies));
     warnings.extend(overlaps(scene, &pieces)?);
     warnings.extend(nested(scene, &bodies)?);
+    warnings.extend(sheets_inside(scene, &pieces, &bodies));
     sources(scene, &pieces, &bodies)?;
+    warnings.extend(weak_or_near(scene, &pieces));
     warnings.extend(receivers(scene, &bodies));
     Ok(warnings)
 }
@@ -61,9 +76,11 @@ pub(super) fn findings(scene: &WaveScene) -> Vec<Finding> {
     let pieces = Pieces::of(scene);
     let Topology { components, open, slivers, .. } = &pieces.topology;
     let closed = components.iter().filter(|component| component.closed).count();
-    let first = open.first().map_or_else(String::new, |([a, b], _)| format!("the first from {a} to {b} m"));
+    let first = open
+        .first()
+        .map_or_else(String::new, |([a, b], _)| format!("the first from {} to {} m", told(*a), told(*b)));
     let at = slivers.first().map(|&piece| pieces.patches[piece as usize].centroid());
-    let at = at.map_or_else(String::new, |p| format!("the first at {p} m"));
+    let at = at.map_or_else(String::new, |p| format!("the first at {} m", told(p)));
     let all = [
         ("flat pieces", pieces.patches.len(), format!("{:.3} m from end to end", pieces.extent)),
         ("objects", components.len(), format!("{closed} of them closed")),
@@ -138,6 +155,205 @@ fn solid_angle(patch: &Patch, p: Vec3) -> f64 {
     (1..patch.sides() - 1).map(triangle).sum()
 }
 
+/// A point with seven digits, zero where it is lost in the rounding of the others.
+fn told(p: Vec3) -> String {
+    let largest = p.abs().max_element();
+    let short = |x: f64| if x.abs() < 1e-7 * largest { 0.0 } else { format!("{x:.6e}").parse().unwrap_or(x) };
+    format!("[{}, {}, {}]", short(p.x), short(p.y), short(p.z))
+}
+
+/// Refuses coordinates so large that their rounding loses the phase.
+fn told_apart(scene: &WaveScene, pieces: &Pieces) -> Result<(), SceneError> {
+    let wavenumber = scene.waves().iter().map(fredholm_waves::Wave::wavenumber).fold(0.0, f64::max);
+    let most = LOST / (wavenumber * f64::EPSILON);
+    let refuse = |about: About, p: Vec3| {
+        let what = format!(
+            "{} m is so far from the origin that rounding loses the phase of a wave of {:.3e} m",
+            told(p),
+            TAU / wavenumber
+        );
+        let help = format!("move the scene to the origin: coordinates may be up to {most:.0e} m");
+        Err(scene.error(about, ErrorKind::Geometry, what, help))
+    };
+    for (patch, &part) in pieces.patches.iter().zip(&pieces.part_of) {
+        if let Some(&p) = patch.corners().iter().find(|p| p.length() > most) {
+            return refuse(About::Surface(part), p);
+        }
+    }
+    for (number, receiver) in scene.receivers().iter().enumerate().filter(|(_, r)| r.is_near()) {
+        let Places::Near { points, .. } = receiver.places() else { continue };
+        let step = points.len().div_ceil(AWAY).max(1);
+        if let Some(&p) = points.iter().step_by(step).find(|p| p.length() > most) {
+            return refuse(About::Receiver(number), p);
+        }
+    }
+    Ok(())
+}
+
+/// Objects of mesh files that are taken as sheets, but look like bodies with a fault.
+fn half_closed(scene: &WaveScene, pieces: &Pieces) -> Vec<Warning> {
+    let Topology { open, clashes, component_of, components, .. } = &pieces.topology;
+    let mut faults = vec![[0_usize; 2]; components.len()];
+    for (_, piece) in open {
+        faults[component_of[*piece as usize] as usize][0] += 1;
+    }
+    for (_, [piece, _]) in clashes {
+        faults[component_of[*piece as usize] as usize][1] += 1;
+    }
+    let mut sides = vec![0_usize; components.len()];
+    for (patch, &component) in pieces.patches.iter().zip(component_of) {
+        sides[component as usize] += patch.sides();
+    }
+    let warning = |number: usize| {
+        let ([open, turned], first) = (faults[number], components[number].first);
+        let part = &scene.parts()[pieces.part_of[first as usize]];
+        let sheet = part.imported && part.kind == Kind::Sheet && !part.said;
+        let few = open as f64 <= FEW * sides[number] as f64;
+        (sheet && open + turned > 0 && few).then(|| {
+            let what = format!(
+                "`{}` is taken as a thin sheet, though nearly closed: {open} sides belong to one face only, along {turned} \
+                 both faces run the same way",
+                part.name
+            );
+            let help = "mend it in the program that made the file, or write closed = false where a sheet is meant";
+            scene.warning(About::Surface(pieces.part_of[first as usize]), what, help)
+        })
+    };
+    (0..components.len()).filter_map(warning).take(TOLD).collect()
+}
+
+/// Frequencies that are there twice.
+fn frequencies(scene: &WaveScene) -> Option<Warning> {
+    let mut all: Vec<f64> = scene.waves().iter().map(fredholm_waves::Wave::frequency).collect();
+    all.sort_by(f64::total_cmp);
+    let twice = all.windows(2).find(|pair| pair[0].total_cmp(&pair[1]).is_eq())?[0];
+    let what = format!("the frequency {twice} Hz is there more than once");
+    Some(scene.warning(
+        About::Frequencies,
+        what,
+        "remove it where it is repeated, or let the sweep have a length",
+    ))
+}
+
+/// A scene that is next to nothing beside the wave: a frequency in other units, most probably.
+fn lost_in_the_wave(scene: &WaveScene, pieces: &Pieces) -> Option<Warning> {
+    let longest = scene.waves().iter().map(fredholm_waves::Wave::wavelength).fold(0.0, f64::max);
+    let share = pieces.extent / longest;
+    let warning = || {
+        let what = format!("the surfaces are {share:.1e} wavelengths of {longest:.3e} m from end to end");
+        let help = "are the frequencies in Hz and the lengths in metres? results so far below a wavelength lose digits";
+        scene.warning(About::Frequencies, what, help)
+    };
+    (share < LEAST).then(warning)
+}
+
+/// Layers on closed bodies, which let nothing through.
+fn slabs_on_bodies(scene: &WaveScene) -> Result<Vec<Warning>, SceneError> {
+    let Some(wave) = scene.waves().first() else { return Ok(vec![]) };
+    let materials = scene.materials(wave)?;
+    let slab = |part: &super::surface::Part| {
+        part.kind == Kind::Closed
+            && matches!(materials.get(part.material), Some(fredholm_waves::material::Material::Slab(_)))
+    };
+    let warning = |(number, part): (usize, &super::surface::Part)| {
+        let what = format!("the layers of `{}` let nothing through: it is a closed body", part.name);
+        scene.warning(
+            About::Surface(number),
+            what,
+            "take sheets (closed = false) for walls, or a half_space for a solid",
+        )
+    };
+    Ok(scene.parts().iter().enumerate().filter(|(_, part)| slab(part)).map(warning).collect())
+}
+
+/// Sheets inside of closed bodies, where there is no field.
+fn sheets_inside(scene: &WaveScene, pieces: &Pieces, bodies: &[Body]) -> Vec<Warning> {
+    let components = pieces.topology.components.iter();
+    let sheets = components.filter(|component| !pieces.is_closed(scene, component.first));
+    let warning = |component: &fredholm_mesh::Component| {
+        let (part, p) =
+            (pieces.part_of[component.first as usize], pieces.patches[component.first as usize].centroid());
+        let outer = bodies.iter().find(|body| body.holds(p))?;
+        let what = format!(
+            "`{}` lies inside the closed body `{}`",
+            scene.parts()[part].name,
+            scene.parts()[outer.part].name
+        );
+        Some(scene.warning(
+            About::Surface(part),
+            what,
+            "remove it, or make the outer one a thin sheet: closed = false",
+        ))
+    };
+    sheets.filter_map(warning).take(TOLD).collect()
+}
+
+/// Distance of a point from a patch, m.
+fn distance(patch: &Patch, p: Vec3) -> f64 {
+    let normal = patch.normal();
+    let inside = (0..patch.sides()).all(|i| {
+        let (a, b) = (patch.corner(i), patch.corner(i + 1));
+        (b - a).cross(p - a).dot(normal) >= 0.0
+    });
+    if inside {
+        return (p - patch.corner(0)).dot(normal).abs();
+    }
+    let side = |i: usize| {
+        let (a, b) = (patch.corner(i), patch.corner(i + 1));
+        let share = (p - a).dot(b - a) / (b - a).length_squared();
+        p.distance(a.lerp(b, share.clamp(0.0, 1.0)))
+    };
+    (0..patch.sides()).map(side).fold(f64::INFINITY, f64::min)
+}
+
+/// Whether a segment goes through a patch.
+fn crosses(patch: &Patch, [a, b]: [Vec3; 2], near: f64) -> bool {
+    let normal = patch.normal();
+    let [h, k] = [a, b].map(|p| (p - patch.corner(0)).dot(normal));
+    h * k <= 0.0 && (h - k).abs() > 0.0 && is_on(patch, a.lerp(b, h / (h - k)), near)
+}
+
+/// Sources without a field, and those so near to a surface that its facets do not follow their field.
+fn weak_or_near(scene: &WaveScene, pieces: &Pieces) -> Vec<Warning> {
+    let waves = scene.waves();
+    let shortest = waves.iter().map(fredholm_waves::Wave::wavelength).fold(f64::INFINITY, f64::min);
+    let Some(wave) = waves.first() else { return vec![] };
+    let mut warnings = vec![];
+    for (number, placed) in scene.sources().iter().enumerate() {
+        let place = match placed.source.origin() {
+            Origin::Point(p) => p,
+            Origin::Direction(_) => Vec3::ZERO,
+        };
+        let beside = place + Vec3::new(0.36, 0.48, 0.8) * wave.wavelength();
+        if placed.source.field(wave, beside).e.norm() == 0.0 {
+            let what = "the source has no strength: all fields are 0".to_owned();
+            warnings.push(scene.warning(
+                About::Source(number),
+                what,
+                "give it an amplitude, a current or a power above 0",
+            ));
+        }
+        let Origin::Point(p) = placed.source.origin() else { continue };
+        let closest =
+            pieces.patches.iter().zip(&pieces.part_of).map(|(patch, &part)| (distance(patch, p), part));
+        let Some((gap, part)) = closest.min_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
+        let part = &scene.parts()[part];
+        if gap < 0.5 * part.edge.metres(shortest) {
+            let what = format!(
+                "the source is {gap:.2e} m from `{}`, whose facets of {:.2e} m do not follow its field",
+                part.name,
+                part.edge.metres(shortest)
+            );
+            warnings.push(scene.warning(
+                About::Source(number),
+                what,
+                "take a shorter edge there, or move the source away",
+            ));
+        }
+    }
+    warnings
+}
+
 /// Refuses surfaces declared closed that have open sides, or faces turned differently. Where corners
 /// lie inside the sides of others, open sides may be closed by several, which is not told apart.
 fn closed(scene: &WaveScene, pieces: &Pieces) -> Result<Option<Warning>, SceneError> {
@@ -147,8 +363,10 @@ fn closed(scene: &WaveScene, pieces: &Pieces) -> Result<Option<Warning>, SceneEr
     if let Some(([a, b], clash)) = clashes.iter().find(|(_, clash)| clash.iter().all(of_closed)) {
         let number = part(clash[1]);
         let what = format!(
-            "neighbouring faces of the closed body `{}` are turned differently: both run from {a} to {b} m",
-            scene.parts()[number].name
+            "neighbouring faces of the closed body `{}` are turned differently: both run from {} to {} m",
+            scene.parts()[number].name,
+            told(*a),
+            told(*b)
         );
         let help = "list the corners of one of them in the other direction";
         return Err(scene.error(About::Surface(number), ErrorKind::Geometry, what, help));
@@ -158,14 +376,17 @@ fn closed(scene: &WaveScene, pieces: &Pieces) -> Result<Option<Warning>, SceneEr
     let number = part(*piece);
     let what = format!(
         "`{}` is declared part of a closed body, which is open: {} sides belong to one face only, the first \
-         from {a} to {b} m",
+         from {} to {} m",
         scene.parts()[number].name,
-        1 + open.count()
+        1 + open.count(),
+        told(*a),
+        told(*b)
     );
     if let Some(p) = junctions.first() {
         let what = format!(
-            "whether `{}` is closed cannot be told, since corners lie inside the sides of others, such as at {p} m",
-            scene.parts()[number].name
+            "whether `{}` is closed cannot be told, since corners lie inside the sides of others, such as at {} m",
+            scene.parts()[number].name,
+            told(*p)
         );
         let help = "divide the sides there, so that corners meet corners";
         return Ok(Some(scene.warning(About::Surface(number), what, help)));
@@ -259,6 +480,14 @@ fn sources(scene: &WaveScene, pieces: &Pieces, bodies: &[Body]) -> Result<(), Sc
         if let Some(piece) = pieces.patches.iter().position(|patch| is_on(patch, p, near)) {
             let name = &scene.parts()[pieces.part_of[piece]].name;
             return refuse(format!("the source lies on the surface `{name}`"));
+        }
+        let longest = scene.waves().iter().max_by(|a, b| a.wavelength().total_cmp(&b.wavelength()));
+        let wire = longest.and_then(|wave| placed.source.wire(wave));
+        if let Some(piece) =
+            wire.and_then(|wire| pieces.patches.iter().position(|patch| crosses(patch, wire, near)))
+        {
+            let name = &scene.parts()[pieces.part_of[piece]].name;
+            return refuse(format!("the wire of the source goes through the surface `{name}`"));
         }
         if let Some(body) = bodies.iter().find(|body| body.holds(p)) {
             let name = &scene.parts()[body.part].name;

@@ -54,7 +54,7 @@ impl WaveScene {
             if facets > MOST_FACETS {
                 let what = format!("the scene would have {facets} facets, more than {MOST_FACETS}");
                 let span = part.edge_span.clone();
-                return Err(self.source().error(ErrorKind::TooLarge, span, what, "take longer edges"));
+                return Err(self.source().error(ErrorKind::TooLarge, span, what, "take longer edges; or are the lengths not in metres? mesh = { …, scale = 0.001 } takes millimetres"));
             }
             parts.push(shapes);
         }

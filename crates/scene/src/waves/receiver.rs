@@ -179,6 +179,11 @@ fn shape(source: &Source, entry: &At<ReceiverEntry>) -> Result<Shape, SceneError
             return Err(source.error(ErrorKind::Value, entry.span(), what, help));
         }
     };
+    if found.is_collapsed() {
+        let what = format!("all points of the receiver `{}` fall together, or onto a line", *entry.name);
+        let help = "give the line a length, and the grid two directions";
+        return Err(source.error(ErrorKind::Value, entry.span(), what, help));
+    }
     if found.is_finite() {
         return Ok(found);
     }
@@ -187,6 +192,19 @@ fn shape(source: &Source, entry: &At<ReceiverEntry>) -> Result<Shape, SceneError
 }
 
 impl Shape {
+    /// Whether a line has no length, or a grid no area, though it is to have several points there.
+    fn is_collapsed(&self) -> bool {
+        match self {
+            Self::Line(line) => line.points > 1 && vector(&line.from) == vector(&line.to),
+            Self::Grid(grid) => {
+                let (u, v) = (vector(&grid.u), vector(&grid.v));
+                let (across, up) = (grid.columns > 1, grid.rows > 1);
+                across && u == Vec3::ZERO || up && v == Vec3::ZERO || across && up && u.cross(v) == Vec3::ZERO
+            }
+            _ => false,
+        }
+    }
+
     /// Whether all numbers that it is described by are finite.
     fn is_finite(&self) -> bool {
         let finite = |vectors: &[[f64; 3]]| vectors.iter().flatten().all(|x| x.is_finite());

@@ -35,6 +35,8 @@ pub enum About {
     Method,
     /// The solver.
     Solver,
+    /// The frequencies.
+    Frequencies,
     /// A surface of the mesh, by its number.
     Surface(usize),
     /// A source, by its number.
@@ -261,6 +263,7 @@ impl WaveScene {
         match about {
             About::Scene => Some(0..0),
             About::Method => Some(wave.method.as_ref().map_or(wave.span(), At::span)),
+            About::Frequencies => Some(wave.frequencies_hz.span()),
             About::Solver => Some(wave.solver.as_ref().map_or(wave.span(), At::span)),
             About::Surface(number) => self.parts.get(number).map(|part| part.span.clone()),
             About::Source(number) => self.entry.source.get(number).map(At::span),

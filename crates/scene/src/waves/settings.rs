@@ -24,6 +24,9 @@ pub enum Method {
     /// The combined field integral equation of closed conductors, by boundary elements; it has no
     /// resonances.
     Cfie,
+    /// The equations of Poggio, Miller, Chang, Harrington, Wu and Tsai for both currents of a
+    /// homogeneous dielectric body, by boundary elements.
+    Pmchwt,
     /// M = 2 n × E with n turned to the observer (G. Viennot, Limoges 2012).
     Thesis,
 }
@@ -38,6 +41,7 @@ impl Method {
             Self::DualSurfaceMfie => "dual-surface-mfie",
             Self::Efie => "efie",
             Self::Cfie => "cfie",
+            Self::Pmchwt => "pmchwt",
             Self::Thesis => "thesis",
         }
     }

@@ -16,7 +16,14 @@ use crate::error::{Error, ErrorKind};
 use crate::waves::{Band, Method, Model};
 
 /// Names of the methods that sample the fields of scenes of waves.
-pub const FIELD_METHODS: [&str; 3] = ["surface-sampling", "field-particles", "amplitude-particles"];
+pub const FIELD_METHODS: [&str; 6] = [
+    "surface-sampling",
+    "field-particles",
+    "field-particles-uniform",
+    "field-particles-cosine",
+    "field-particles-von-mises-fisher",
+    "amplitude-particles",
+];
 
 /// Samples of a batch, and in all, where nothing is asked for.
 const BATCH: u32 = 1024;
@@ -160,6 +167,9 @@ fn bounces(model: &Model, watch: &dyn Watch) -> Bounces {
 fn estimator(name: &str, wave: &Wave) -> Box<dyn FieldEstimator> {
     match name {
         "field-particles" => Box::new(FieldParticles::new(Aim::Facets)),
+        "field-particles-uniform" => Box::new(FieldParticles::new(Aim::Sphere)),
+        "field-particles-cosine" => Box::new(FieldParticles::new(Aim::Cosine)),
+        "field-particles-von-mises-fisher" => Box::new(FieldParticles::new(Aim::Lobe(None))),
         "amplitude-particles" => Box::new(AmplitudeParticles::new(CELL * wave.wavelength(), SECOND)),
         _ => Box::new(SurfaceSampling),
     }

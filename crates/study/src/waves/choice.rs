@@ -3,20 +3,24 @@
 //! | scene | method | why |
 //! |---|---|---|
 //! | closed conductors, edges up to λ/4 | `dual-surface-mfie`, GMRES | an equation without approximation but the mesh |
+//! | closed conductors that are thin or pointed, small | `cfie`, LU | facets that are not small beside the thickness do not follow the current around a rim |
 //! | conductors, sheets among them, small | `efie`, LU | an equation without approximation but the mesh; the matrix is stored |
 //! | conductors, sheets among them, larger | `radiated`, GMRES, edge currents | currents make the shadow themselves: what hides a part of what stands behind is counted once |
-//! | one flat sheet | one bounce, edge currents | its facets do not light each other |
+//! | one flat sheet, small | `efie`, LU | as above: it costs no second |
+//! | one flat sheet, larger | one bounce, edge currents | its facets do not light each other |
 //! | panes and other materials | one bounce; `radiated` where something is let through | bounces have to be asked for |
+//! | many incident waves, where the scene names no solver | LU | one factorisation for all of them |
 //! | edges above λ/2 | one bounce | nothing else is known on such facets |
 //!
 //! The figures are in `docs/notes/waves.md`, treatment by treatment and bounce by bounce. Where
 //! bounces are asked for, what makes the sum converge to the truth is `radiated` on sheets: in `geometric` the current on the front of a sheet radiates the
 //! shadow behind it, too, where what is blocked has none already.
 
-use fredholm_moments::{Basis, Equation, Surface};
+use fredholm_moments::{Basis, Surface};
 use fredholm_waves::material::Material;
 use fredholm_waves::{Complex64, Kind, Shadow};
 
+use super::galerkin::Equations;
 use super::geometry::Geometry;
 use super::model::{BY_MATRIX, Band, Method};
 use super::over_frequency::MOST_PICTURED;
@@ -26,6 +30,20 @@ const EQUATION: f64 = 0.26;
 /// Most unknowns of boundary elements that are taken unasked: assembly and factorisation then take
 /// some tens of seconds a core.
 const MOST_UNKNOWNS: usize = 6_000;
+/// The same of one flat sheet, which one bounce with edge currents describes well where it is larger.
+const MOST_FLAT: usize = 500;
+/// The same of thin closed bodies, for which there is nothing else that is exact.
+const MOST_CLOSED: usize = 8_000;
+/// A facet is of a thin part where the surface opposite is nearer than both of these: shares of the extent and of the
+/// wavelength, below which the second surface of the dual equation has no room for its full depth.
+const THIN: [f64; 2] = [0.3, 0.6];
+/// Share of such facets from which a body is thin.
+const THIN_SHARE: f64 = 0.1;
+/// Incident waves from which on a factorisation is taken for all of them, and the largest matrix for it, bytes.
+const MANY_WAVES: usize = 16;
+const MOST_FACTORISED: u128 = 4 << 30;
+/// Extent over the wavelength below which physical optics says nothing.
+const OPTICAL: f64 = 0.5;
 /// Matrices that the factorisation holds at once.
 const MATRICES: u128 = 2;
 /// Longest edge for several bounces, in wavelengths.
@@ -47,6 +65,10 @@ pub(super) struct Asked {
     pub(super) optics: bool,
     pub(super) method: Option<Method>,
     pub(super) edge_currents: Option<bool>,
+    /// Whether a solver is named.
+    pub(super) solver: bool,
+    /// Incident waves that are solved for.
+    pub(super) waves: usize,
 }
 
 impl Asked {
@@ -66,8 +88,8 @@ impl Asked {
 /// What is computed.
 pub(super) struct Taken {
     pub(super) shadow: Shadow,
-    /// The equation of boundary elements, where that is taken instead of currents on facets.
-    pub(super) galerkin: Option<Equation>,
+    /// The equations of boundary elements, where they are taken instead of currents on facets.
+    pub(super) galerkin: Option<Equations>,
     pub(super) method: Method,
     pub(super) edge_currents: bool,
     /// Why, where the scene left it open.
@@ -92,6 +114,8 @@ struct Seen {
     sides: f64,
     /// Whether there are many frequencies.
     sweep: bool,
+    /// Whether it is closed, and thin beside the longest wavelength and its own extent.
+    thin: bool,
 }
 
 impl Seen {
@@ -115,6 +139,7 @@ impl Seen {
             flat: is_flat(geometry),
             facets: mesh.len(),
             sweep: bands.len() > MOST_PICTURED,
+            thin: !sheets && bands.iter().any(|band| is_thin(geometry, band)),
             edge: mesh.patches().map(side).fold(0.0, f64::max) / shortest,
         }
     }
@@ -124,20 +149,34 @@ impl Seen {
     }
 }
 
+/// Whether a good part of closed bodies is thin at a frequency.
+fn is_thin(geometry: &Geometry, band: &Band) -> bool {
+    let Ok(scatterer) = geometry.scatterer(&band.materials) else { return false };
+    let most = (THIN[0] * scatterer.extent()).min(THIN[1] * band.wave.wavelength());
+    let opposite = |facet: &&fredholm_waves::Facet| {
+        scatterer.occluders().closest(facet.patch.centroid(), -facet.normal, most).is_some()
+    };
+    let thin = scatterer.facets().iter().filter(opposite).count();
+    thin as f64 > THIN_SHARE * scatterer.facets().len() as f64
+}
+
+/// What is said of equations on facets of thin bodies.
+const ON_THIN: &str = "the body is thin or pointed, where equations on facets may be tenths off; take method = \"cfie\" where its matrix fits";
+
 /// The shortest wavelength, m.
 fn shortest(bands: &[Band]) -> f64 {
     bands.iter().map(|band| band.wave.wavelength()).fold(f64::INFINITY, f64::min)
 }
 
 /// Whether boundary elements are possible on the mesh, their unknowns few, and their matrix fits.
-fn is_small(geometry: &Geometry, wavelength: f64, fits: &dyn Fn(u128) -> bool) -> bool {
-    if geometry.mesh.len() > MOST_UNKNOWNS {
+fn is_small(geometry: &Geometry, (wavelength, most): (f64, usize), fits: &dyn Fn(u128) -> bool) -> bool {
+    if geometry.mesh.len() > most {
         return false;
     }
     Surface::from_mesh(&geometry.mesh).and_then(Basis::new).is_ok_and(|basis| {
         let matrix = (basis.len() * basis.len() * size_of::<Complex64>()) as u128;
         let resolved = basis.topology().check_resolution(basis.surface(), wavelength).is_ok();
-        resolved && basis.len() <= MOST_UNKNOWNS && fits(MATRICES * matrix)
+        resolved && basis.len() <= most && fits(MATRICES * matrix)
     })
 }
 
@@ -162,7 +201,13 @@ pub(super) fn taken(asked: Asked, geometry: &Geometry, bands: &[Band], fits: &dy
     let mut taken = match (asked.method, asked.shadow) {
         // Edge currents complete physical optics: who asks for them, or for none, means that.
         (None, None) if !asked.optics => {
-            let small = || asked.edge_currents.is_none() && is_small(geometry, shortest(bands), fits);
+            let most = match (seen.flat, seen.thin) {
+                (true, _) => MOST_FLAT,
+                (_, true) => MOST_CLOSED,
+                _ => MOST_UNKNOWNS,
+            };
+            let size = (shortest(bands), most);
+            let small = || asked.edge_currents.is_none() && is_small(geometry, size, fits);
             chosen(&seen, &small)
         }
         (method, shadow) => completed(method.unwrap_or(Method::Bounces(1)), (asked.optics, shadow), &seen),
@@ -175,24 +220,50 @@ pub(super) fn taken(asked: Asked, geometry: &Geometry, bands: &[Band], fits: &dy
         let shadow = if seen.sheets { Shadow::Radiated } else { Shadow::Geometric };
         taken = Taken { shadow, reason: Some("edge currents complete physical optics".to_owned()), ..taken };
     }
+    if !asked.solver && asked.waves >= MANY_WAVES {
+        factorise(&mut taken, &seen, fits);
+    }
+    let longest = bands.iter().map(|band| band.wave.wavelength()).fold(0.0, f64::max);
+    let extent = geometry.mesh.bounds().map_or(0.0, |bounds| bounds.diagonal()) / longest;
+    if taken.galerkin.is_none() && !taken.shadow.is_equation() && seen.conductors && extent < OPTICAL {
+        taken.warnings.push(format!(
+            "the surfaces are {extent:.2e} wavelengths from end to end, where physical optics says nothing; take method = \"efie\""
+        ));
+    }
     taken
 }
 
+/// Takes LU for many incident waves, where the matrix of the facets is not too large for that.
+fn factorise(taken: &mut Taken, seen: &Seen, fits: &dyn Fn(u128) -> bool) {
+    let matrix = (2 * seen.facets as u128).pow(2) * size_of::<Complex64>() as u128;
+    if let Method::Solver { solver, .. } = &mut taken.method
+        && taken.galerkin.is_none()
+        && seen.conductors
+        && matrix <= MOST_FACTORISED
+        && fits(MATRICES * matrix)
+        && let Ok(lu) = super::registry::build(BY_MATRIX)
+    {
+        *solver = lu;
+    }
+}
+
 fn chosen(seen: &Seen, small: &dyn Fn() -> bool) -> Taken {
-    let boundary_elements = seen.conductors && seen.sheets && !seen.flat && !seen.sweep;
+    let boundary_elements = seen.conductors && (seen.sheets || seen.thin) && !seen.sweep;
     if boundary_elements
         && small()
         && let Ok(solver) = super::registry::build(BY_MATRIX)
     {
         return Taken {
             shadow: Shadow::default(),
-            galerkin: Some(Equation::Electric),
+            galerkin: Some(if seen.sheets { Equations::Electric } else { Equations::Combined }),
             method: Method::Solver { solver, tolerance: TOLERANCE, max_iterations: ITERATIONS },
             edge_currents: false,
-            reason: Some(
-                "conductors, sheets among them, with few unknowns: an equation without approximation"
-                    .to_owned(),
-            ),
+            reason: Some(if seen.sheets {
+                "conductors, sheets among them, of few unknowns: an equation without approximation".to_owned()
+            } else {
+                "thin or pointed closed conductors of few unknowns: an equation without approximation"
+                    .to_owned()
+            }),
             warnings: Vec::new(),
         };
     }
@@ -234,6 +305,9 @@ fn chosen(seen: &Seen, small: &dyn Fn() -> bool) -> Taken {
     } else {
         all(Shadow::Radiated, true, "sheets light and shadow each other through their currents")
     };
+    if shadow == Shadow::ExactDual && seen.thin {
+        warnings.push(ON_THIN.to_owned());
+    }
     let long = seen.sides > LONGEST;
     if edge_currents && long {
         warnings.push(
@@ -261,6 +335,15 @@ fn completed(method: Method, (optics, shadow): (bool, Option<Shadow>), seen: &Se
             "geometric shadows with several bounces count the shadow behind a sheet twice; take shadows = \"radiated\" unless no sheet hides another"
                 .to_owned(),
         );
+    }
+    if shadow == Some(Shadow::Geometric) && seen.panes && !seen.flat {
+        warnings.push(
+            "geometric shadows let what is behind a pane be dark; take shadows = \"radiated\" where something is let through"
+                .to_owned(),
+        );
+    }
+    if shadow.is_some_and(Shadow::is_equation) && seen.thin {
+        warnings.push(ON_THIN.to_owned());
     }
     let suits = || {
         if !several {

@@ -2,8 +2,9 @@
 
 use fredholm_linop::Steps;
 use fredholm_mesh::Vec3;
-use fredholm_report::{FarRow, WaveCurrents, WaveRow};
+use fredholm_report::{FarRow, FarTotal, WaveCurrents, WaveRow};
 use fredholm_scene::waves::{Places, direction};
+use fredholm_waves::medium::IMPEDANCE;
 use fredholm_waves::{
     Bounced, ComplexVector, Current, EdgeCurrents, FacetCurrents, FarField, Field, Kind, PhysicalOptics,
     Radiator, Sampling, Scatterer, Shadow, Source, System, TOLERANCE, WaveError, cross_section, field_inside,
@@ -11,6 +12,7 @@ use fredholm_waves::{
 };
 use rayon::prelude::*;
 
+use super::balance::{Balancing, Reciprocity, of_sources, power};
 use super::choice::in_one_plane;
 use super::estimate::{self, Estimated, Stating};
 use super::galerkin;
@@ -53,8 +55,8 @@ struct Variant<'a> {
 }
 
 fn variant(model: &Model, variant: Variant<'_>, stages: &mut Stages) -> Result<Outcome, Error> {
-    if let Some(equation) = model.galerkin {
-        return galerkin::run(model, (variant.geometry, variant.name), equation, stages);
+    if let Some(equations) = model.galerkin {
+        return galerkin::run(model, (variant.geometry, variant.name), equations, stages);
     }
     let mut outcome = Outcome::default();
     if model.bands.len() <= MOST_PICTURED {
@@ -184,6 +186,7 @@ impl Task<'_> {
         for (index, receiver) in model.receivers.iter().enumerate() {
             if let Places::Monostatic(angles) = &receiver.places {
                 let (rows, worst) = sweep.run(index, angles, signals)?;
+                outcome.reciprocity.extend(Reciprocity::of(&rows));
                 outcome.monostatic.extend(rows);
                 outcome.solved.push(self.solved(worst));
             }
@@ -216,6 +219,35 @@ impl Task<'_> {
         outcome: &mut Outcome,
     ) -> Result<(), Error> {
         let edges = self.edges(all)?;
+        let small = edges.as_ref().map_or(0, EdgeCurrents::small);
+        if small > 0 && self.variant.name.is_empty() {
+            outcome.notes.push(format!(
+                "{small} edges have no edge currents at {} MHz: they, or their faces, are below half a wavelength; method = \"efie\" has them",
+                self.band.wave.frequency() / 1e6
+            ));
+        }
+        let power = power(self.model, self.band, &|p| {
+            near(radiator, edges.as_ref(), &[p]).ok().map(|fields| fields[0].e)
+        });
+        let far_of = |directions: &[Vec3]| self.far(radiator, all.is_none(), edges.as_ref(), directions);
+        if self.variant.name.is_empty() && self.is_told_apart() {
+            let facets = self.scatterer.facets().len() as f64;
+            let solved = if all.is_some() { facets * facets } else { 0.0 };
+            let edges = edges.as_ref().map_or(0, EdgeCurrents::len) as f64;
+            let balancing = Balancing {
+                model: self.model,
+                band: self.band,
+                geometry: self.variant.geometry,
+                elements: facets + 4.0 * edges,
+                pairs: solved,
+                power,
+            };
+            let far = |u: &[Vec3]| {
+                let far = far_of(u).map_err(|error| self.refused(&error))?;
+                Ok(far.into_iter().map(|far| far.amplitude).collect())
+            };
+            outcome.balances.extend(balancing.balance(&far)?);
+        }
         let stating = self.stating(radiator, all, residual)?;
         for (index, receiver) in self.model.receivers.iter().enumerate() {
             let refused = |error: WaveError| self.model.refused(&error, Some(receiver));
@@ -229,17 +261,14 @@ impl Task<'_> {
                     stating.as_ref().map(|stating| stating.indicator(points, &fields, &edge))
                 }
                 Places::Far(angles) => {
-                    let far = self.far(radiator, all.is_none(), edges.as_ref(), angles).map_err(refused)?;
+                    let directions = directions(angles);
+                    let far = far_of(&directions).map_err(refused)?;
                     let rows = far.iter().zip(angles).enumerate();
-                    outcome.far.extend(
-                        rows.map(|(i, (far, angles))| {
-                            far_row(self.model, self.band, [index, i], *angles, far)
-                        }),
-                    );
+                    outcome.far.extend(rows.map(|(i, (far, angles))| {
+                        far_row((self.model, self.band, power), [index, i], *angles, far)
+                    }));
                     let fields: Vec<ComplexVector> = far.iter().map(|far| far.amplitude).collect();
                     let edge = |edges: &EdgeCurrents, u: Vec3| edges.far_amplitude(u);
-                    let directions: Vec<Vec3> =
-                        angles.iter().map(|&[theta, phi]| direction(theta, phi)).collect();
                     stating.as_ref().map(|stating| stating.indicator(&directions, &fields, &edge))
                 }
                 Places::Monostatic(_) => None,
@@ -301,11 +330,10 @@ impl Task<'_> {
         radiator: &Radiator<'_>,
         one_bounce: bool,
         edges: Option<&EdgeCurrents>,
-        angles: &[[f64; 2]],
+        directions: &[Vec3],
     ) -> Result<Vec<FarField>, WaveError> {
-        let directions = directions(angles);
-        let closed = if one_bounce { self.first.linear_phase_far_field(&directions) } else { None };
-        let mut far = closed.unwrap_or_else(|| radiator.far_field(&directions))?;
+        let closed = if one_bounce { self.first.linear_phase_far_field(directions) } else { None };
+        let mut far = closed.unwrap_or_else(|| radiator.far_field(directions))?;
         if let Some(edges) = edges {
             let add = |far: &mut FarField| far.amplitude += edges.far_amplitude(far.direction);
             far.par_iter_mut().for_each(add);
@@ -371,10 +399,9 @@ pub(super) fn near_rows(
     points.par_iter().zip(scattered).enumerate().map(row).collect()
 }
 
-/// A row of a direction: numbers of receiver and direction, and its angles, degrees.
+/// A row of a direction: numbers of receiver and direction, and its angles, degrees; `power` is what located sources supply, W.
 pub(super) fn far_row(
-    model: &Model,
-    band: &Band,
+    (model, band, power): (&Model, &Band, Option<f64>),
     at: [usize; 2],
     angles: [f64; 2],
     far: &FarField,
@@ -391,6 +418,13 @@ pub(super) fn far_row(
         frequency: band.wave.frequency(),
         amplitude: [theta.re, theta.im, phi.re, phi.im],
         cross_section: model.plane_wave.map(section),
+        total: of_sources(model, band, far.direction).map(|sources| {
+            let all = FarField { amplitude: far.amplitude + sources, ..*far };
+            let [theta, phi] = all.polar();
+            let per_angle = all.amplitude.norm_squared() / (2.0 * IMPEDANCE);
+            let gain = power.map_or(f64::NAN, |power| 4.0 * std::f64::consts::PI * per_angle / power);
+            FarTotal { amplitude: [theta.re, theta.im, phi.re, phi.im], gain }
+        }),
     }
 }
 

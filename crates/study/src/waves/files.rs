@@ -3,12 +3,13 @@
 
 use std::io;
 
+use fredholm_mesh::Mesh;
 use fredholm_report::{
-    FieldMap, MapQuantity, REPORT, ReportAxis, ReportError, ReportModel, ReportPage, ReportPlot,
-    ReportSeries, ResultFolder, Timing, WaveReport, WaveResiduals, WaveRow, current_phasors,
-    write_currents_vtu, write_far_csv, write_far_npz, write_frequency_plot, write_monostatic_csv,
-    write_monostatic_npz, write_polar_plot, write_receivers_csv, write_receivers_npz, write_residuals_csv,
-    write_residuals_plot,
+    AngleQuantity, FieldMap, MapAxis, MapPlane, MapQuantity, REPORT, ReportAxis, ReportError, ReportModel,
+    ReportPage, ReportPlot, ReportSeries, ResultFolder, Timing, WaveReport, WaveResiduals, WaveRow,
+    current_phasors, scaled_frequencies, write_angle_plot, write_currents_vtu, write_far_csv, write_far_npz,
+    write_frequency_plot, write_monostatic_csv, write_monostatic_npz, write_receivers_csv,
+    write_receivers_npz, write_residuals_csv, write_residuals_plot,
 };
 
 use fredholm_scene::waves::{Layout, Places};
@@ -82,11 +83,27 @@ fn over_frequency(
     let frequencies: Vec<f64> = model.bands.iter().map(|band| band.wave.frequency()).collect();
     let title = format!("{}: {}", receiver.name, levels.quantity);
     if let Some((columns, values)) = &levels.map {
-        let picture = FieldMap { columns: *columns, values }.draw(MapQuantity::Magnitude);
-        folder.write(&format!("{}_over_frequency.png", receiver.name), |out| picture.write_png(out))?;
+        let (scaled, unit) = scaled_frequencies(&frequencies);
+        let ends = |values: &[f64]| values.first().copied().zip(values.last().copied()).unwrap_or((0.0, 1.0));
+        let (angle, degrees) = receiver.angles();
+        let axis = |label: String, (from, to): (f64, f64)| MapAxis { label, from, to };
+        let map = FieldMap {
+            title: &title,
+            quantity: ("√σ", "m"),
+            axes: [
+                axis(format!("{angle}, degrees"), ends(&degrees)),
+                axis(format!("frequency, {unit}"), ends(&scaled)),
+            ],
+            aspect: None,
+            columns: *columns,
+            values,
+            outline: &[],
+        };
+        let draw = |out: &mut dyn io::Write| map.draw(MapQuantity::Magnitude)?.write_png(out);
+        folder.write(&format!("{}_over_frequency.png", receiver.name), draw)?;
     }
-    let draw =
-        |out: &mut dyn io::Write| write_frequency_plot(&title, levels.unit, &frequencies, &levels.lines, out);
+    let up = format!("{}, {}", levels.quantity, levels.unit);
+    let draw = |out: &mut dyn io::Write| write_frequency_plot(&title, &up, &frequencies, &levels.lines, out);
     folder.write(&format!("{}_over_frequency.svg", receiver.name), draw).map(drop)
 }
 
@@ -246,8 +263,12 @@ fn pictures(
         let here = |row: &&WaveRow| row.receiver == index && row.frequency.total_cmp(&frequency).is_eq();
         let rows: Vec<&WaveRow> = outcome.near.iter().filter(here).collect();
         match &receiver.places {
-            Places::Near { layout: Layout::Circle(degrees), .. } => polar(folder, &stem, degrees, &rows)?,
-            Places::Near { layout: Layout::Grid(columns), .. } => maps(folder, &stem, *columns, &rows)?,
+            Places::Near { layout: Layout::Circle(degrees), .. } => circle(folder, &stem, degrees, &rows)?,
+            Places::Near { layout: Layout::Grid(columns), points } => {
+                let plane = MapPlane::of(points, *columns);
+                let title = format!("{}, {} MHz", receiver.name, frequency / 1e6);
+                maps(folder, (&stem, &title), *columns, &rows, (plane, &model.geometry.mesh))?;
+            }
             Places::Near { layout: Layout::Points, .. } => {}
             Places::Far(_) => far(folder, &stem, outcome, (index, frequency))?,
             Places::Monostatic(_) => sweep(folder, &stem, outcome, (index, frequency))?,
@@ -256,27 +277,50 @@ fn pictures(
     Ok(())
 }
 
-/// |E| of the scattered and the total field over the angle, dB above 1 V/m.
-fn polar(folder: &ResultFolder, stem: &str, degrees: &[f64], rows: &[&WaveRow]) -> Result<(), ReportError> {
+/// |E| of the scattered and the total field over the angle.
+fn circle(folder: &ResultFolder, stem: &str, degrees: &[f64], rows: &[&WaveRow]) -> Result<(), ReportError> {
     let line = |name: &str, of: &dyn Fn(&WaveRow) -> [f64; 12]| {
-        let level = |row: &&WaveRow| 10.0 * of(row)[..6].iter().map(|x| x * x).sum::<f64>().log10();
-        (name.to_owned(), degrees.iter().copied().zip(rows.iter().map(level)).collect())
+        let size = |row: &&WaveRow| of(row)[..6].iter().map(|x| x * x).sum::<f64>().sqrt();
+        (name.to_owned(), degrees.iter().copied().zip(rows.iter().map(size)).collect())
     };
-    let lines = [line("scattered", &|row| row.scattered), line("total", &WaveRow::total)];
-    let title = format!("{stem}: |E|");
-    folder.write(&format!("{stem}.svg"), |out| write_polar_plot(&title, "dB(V/m)", &lines, out)).map(drop)
+    let lines = [line("scattered field", &|row| row.scattered), line("total field", &WaveRow::total)];
+    let (title, quantity) = (format!("{stem}: magnitude of E"), AngleQuantity::field("angle"));
+    folder.write(&format!("{stem}.svg"), |out| write_angle_plot(&title, &quantity, &lines, out)).map(drop)
 }
 
 /// The strongest component of E, total field: magnitude, phase and real part.
-fn maps(folder: &ResultFolder, stem: &str, columns: usize, rows: &[&WaveRow]) -> Result<(), ReportError> {
+fn maps(
+    folder: &ResultFolder,
+    (stem, place): (&str, &str),
+    columns: usize,
+    rows: &[&WaveRow],
+    (plane, mesh): (Option<MapPlane>, &Mesh),
+) -> Result<(), ReportError> {
     let totals: Vec<[f64; 12]> = rows.iter().map(|row| row.total()).collect();
     let power = |c: usize| totals.iter().map(|t| t[2 * c].powi(2) + t[2 * c + 1].powi(2)).sum::<f64>();
     let strongest = (0..3).max_by(|&a, &b| power(a).total_cmp(&power(b))).unwrap_or(0);
     let values: Vec<[f64; 2]> = totals.iter().map(|t| [t[2 * strongest], t[2 * strongest + 1]]).collect();
-    let map = FieldMap { columns, values: &values };
+    // Points in a single line span no plane: they are counted.
+    let counted =
+        |label: &str, count: usize| MapAxis { label: label.to_owned(), from: 1.0, to: count.max(1) as f64 };
+    let axes = plane.map_or_else(
+        || [counted("column", columns), counted("row", values.len() / columns.max(1))],
+        |plane| plane.axes(),
+    );
+    let outline = plane.map_or_else(Vec::new, |plane| plane.outline(mesh));
+    let title = format!("Total field at {place}");
+    let map = FieldMap {
+        title: &title,
+        quantity: (["Ex", "Ey", "Ez"][strongest], "V/m"),
+        axes,
+        aspect: plane.map(|plane| plane.aspect()),
+        columns,
+        values: &values,
+        outline: &outline,
+    };
     for quantity in MapQuantity::ALL {
         let name = format!("{stem}_{}_{}.png", COMPONENTS[strongest], quantity.name());
-        folder.write(&name, |out| map.draw(quantity).write_png(out))?;
+        folder.write(&name, |out| map.draw(quantity)?.write_png(out))?;
     }
     Ok(())
 }
@@ -291,9 +335,13 @@ fn far(
     let here = outcome.far.iter().filter(|row| row.receiver == index && same(row.frequency, frequency));
     let known = here.filter_map(|row| Some(([row.theta_degrees, row.phi_degrees], row.cross_section?)));
     let (angles, sections): (Vec<_>, Vec<_>) = known.unzip();
-    let lines = [("θ", 0), ("φ", 1)];
+    let lines = [("received θ", 0), ("received φ", 1)];
     let line = |(name, part): (&str, usize)| (name.to_owned(), sections.iter().map(|s| s[part]).collect());
-    cross_sections(folder, stem, &angles, &lines.map(line))
+    over_angle(folder, stem, AngleQuantity::cross_section, &angles, &lines.map(line))?;
+    let here = outcome.far.iter().filter(|row| row.receiver == index && same(row.frequency, frequency));
+    let known = here.filter_map(|row| Some(([row.theta_degrees, row.phi_degrees], row.total?.gain)));
+    let (angles, gains): (Vec<_>, Vec<_>) = known.filter(|(_, gain)| gain.is_finite()).unzip();
+    over_angle(folder, stem, AngleQuantity::gain, &angles, &[("gain".to_owned(), gains)])
 }
 
 /// The same of a monostatic sweep, for either polarisation and across.
@@ -307,30 +355,38 @@ fn sweep(
     let here = rows.filter(|row| row.receiver == index && same(row.frequency, frequency));
     let known = here.map(|row| ([row.theta_degrees, row.phi_degrees], row.cross_sections()));
     let (angles, sections): (Vec<_>, Vec<_>) = known.unzip();
-    let lines = [("θθ", 0), ("φφ", 3), ("φθ", 1)];
+    let lines = [("σ θθ", 0), ("σ φφ", 3), ("σ φθ", 1)];
     let line = |(name, part): (&str, usize)| (name.to_owned(), sections.iter().map(|s| s[part]).collect());
-    cross_sections(folder, stem, &angles, &lines.map(line))
+    over_angle(folder, stem, AngleQuantity::cross_section, &angles, &lines.map(line))
 }
 
 fn same(a: f64, b: f64) -> bool {
     a.total_cmp(&b).is_eq()
 }
 
-/// Lines of cross-sections (m²) over φ where θ stays the same, else over θ.
-fn cross_sections(
+/// A quantity in decibels and in its unit over φ where θ stays the same, else over θ; nothing where there is no angle.
+fn over_angle(
     folder: &ResultFolder,
     stem: &str,
+    quantity: fn(&str) -> AngleQuantity,
     angles: &[[f64; 2]],
     lines: &[(String, Vec<f64>)],
 ) -> Result<(), ReportError> {
     let Some(first) = angles.first() else { return Ok(()) };
     let over_phi = angles.iter().all(|angle| same(angle[0], first[0]));
     let across = angles.iter().map(|angle| angle[usize::from(over_phi)]);
-    let line = |(name, sections): &(String, Vec<f64>)| {
-        let levels = sections.iter().map(|section| 10.0 * section.log10());
-        (name.clone(), across.clone().zip(levels).collect())
+    let line = |(name, values): &(String, Vec<f64>)| {
+        (name.clone(), across.clone().zip(values.iter().copied()).collect())
     };
     let lines: Vec<(String, Vec<(f64, f64)>)> = lines.iter().map(line).collect();
-    let title = format!("{stem}: radar cross-section over {}", if over_phi { "φ" } else { "θ" });
-    folder.write(&format!("{stem}.svg"), |out| write_polar_plot(&title, "dB(m²)", &lines, out)).map(drop)
+    let (angle, other, held) = if over_phi { ("φ", "θ", first[0]) } else { ("θ", "φ", first[1]) };
+    let quantity = quantity(angle);
+    let title = format!("{stem}: {} over {angle} at {other} = {}°", quantity.name, fixed(held));
+    folder.write(&format!("{stem}.svg"), |out| write_angle_plot(&title, &quantity, &lines, out)).map(drop)
+}
+
+/// An angle with the decimals it needs, five at most.
+fn fixed(degrees: f64) -> String {
+    let text = format!("{degrees:.5}");
+    text.trim_end_matches('0').trim_end_matches('.').replace('-', "−")
 }

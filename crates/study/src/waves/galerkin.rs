@@ -1,26 +1,32 @@
-//! Conductors by boundary elements: the electric and the combined field integral equation with
-//! Rao–Wilton–Glisson functions on triangles (crate `moments`, docs/moments.md).
+//! Boundary elements: the electric and the combined field integral equation of conductors, and the
+//! equations of homogeneous dielectric bodies, with Rao–Wilton–Glisson functions on triangles (crate
+//! `moments`, docs/moments.md), their matrix stored or compressed (crate `compressed`).
 
 use std::slice;
 
-use fredholm_linop::{LinearOperator, MultiVector};
+use fredholm_compressed::{BlockDiagonal, CompressionError, Hierarchical, Preconditioned, Settings};
+use fredholm_linop::{Dense, MultiVector, Solver};
 use fredholm_mesh::Vec3;
-use fredholm_moments::{Basis, Conductor, Currents, Equation, MomentsError, Surface};
+use fredholm_moments::{Basis, Conductor, Currents, Dielectric, Equation, MomentsError, Operator, Surface};
 use fredholm_report::{MonostaticRow, WaveCurrents};
 use fredholm_scene::ErrorKind as SceneFault;
 use fredholm_scene::waves::{About, Places};
 use fredholm_waves::material::Material;
-use fredholm_waves::{Complex64, Current, FarField, Field, Indicator, Kind, Source, even_directions};
+use fredholm_waves::{
+    Complex64, ComplexVector, Current, FarField, Field, Indicator, Kind, Source, even_directions, incident,
+};
 
+use super::balance::{Balancing, Reciprocity, power};
 use super::compute::{current, directions, far_row, near_rows};
 use super::estimate::Estimated;
 use super::geometry::Geometry;
 use super::model::{Band, Receiver};
 use super::monostatic::plane_waves;
 use super::record::Solved;
+use super::registry::{build, by_products};
 use super::solving::{Solution, solved};
-use super::{Method, Model, Outcome};
-use crate::error::Error;
+use super::{CouplingStorage, Method, Model, Outcome};
+use crate::error::{Error, ErrorKind};
 use crate::memory::Plan;
 use crate::prediction::of_threads;
 use crate::problem::scene_failure;
@@ -28,6 +34,15 @@ use crate::stages::{Signals, Stages};
 
 /// Relative error of the integrals over each pair of triangles, below that of usual meshes.
 const INTEGRALS: f64 = 1e-3;
+/// Relative error of the blocks of a compressed matrix: that of the integrals.
+const COMPRESSION: f64 = INTEGRALS;
+/// The solver of compressed matrices where the scene names none.
+const ITERATIVE: &str = "gmres:restart=100";
+/// Unknowns of the combined equation from which on compressing its matrix and iterating on it takes
+/// less time than to store and to factorise it, for few right-hand sides (docs/notes/moments.md).
+const MANY: usize = 12_000;
+/// Right-hand sides that are few.
+const FEW: usize = 4;
 /// Directions in which the mean scattered field is taken that errors are compared with.
 const DIRECTIONS: usize = 200;
 /// Copies of the right-hand sides that a solver holds.
@@ -45,20 +60,32 @@ fn refused(model: &Model, error: &MomentsError) -> Error {
     scene_failure(model.scene.error(About::Method, SceneFault::Geometry, error.to_string(), help))
 }
 
+/// Which equations are solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Equations {
+    /// The electric field equation of conductors.
+    Electric,
+    /// The combined field equation of closed conductors.
+    Combined,
+    /// Those of a homogeneous dielectric body.
+    Dielectric,
+}
+
 /// Computes everything that the model asks for on one of its meshes.
 pub(super) fn run(
     model: &Model,
     (geometry, name): (&Geometry, &str),
-    equation: Equation,
+    equations: Equations,
     stages: &mut Stages,
 ) -> Result<Outcome, Error> {
     let basis = basis(model, geometry)?;
-    let edge = longest_edge(geometry, &basis, equation).filter(|_| name.is_empty());
+    let first = name.is_empty();
+    let edge = longest_edge(geometry, &basis, equations).filter(|_| first);
     let mut outcome = Outcome::default();
     for band in &model.bands {
-        check_conductor(model, band)?;
+        let body = Body::new(model, &basis, band, equations)?;
         let name = format!("{} MHz{name}", band.wave.frequency() / 1e6);
-        Task { model, geometry, basis: &basis, band, equation, edge }.carry_out(
+        Task { model, geometry, basis: &basis, band, body, edge, first }.carry_out(
             &name,
             stages,
             &mut outcome,
@@ -68,19 +95,86 @@ pub(super) fn run(
 }
 
 /// The longest edge of sheets, m, which tells the error of the electric equation.
-fn longest_edge(geometry: &Geometry, basis: &Basis, equation: Equation) -> Option<f64> {
-    let known = equation == Equation::Electric && geometry.kinds().iter().all(|kind| *kind == Kind::Sheet);
+fn longest_edge(geometry: &Geometry, basis: &Basis, equations: Equations) -> Option<f64> {
+    let sheets = geometry.kinds().iter().all(|kind| *kind == Kind::Sheet);
+    let known = equations == Equations::Electric && sheets;
     known.then(|| basis.topology().longest_edge(basis.surface()))
 }
 
-fn check_conductor(model: &Model, band: &Band) -> Result<(), Error> {
-    let other = |&material: &usize| band.materials[material] != Material::Conductor;
+/// What scatters, with its equations at one frequency.
+enum Body<'a> {
+    Conductor(Conductor<'a>),
+    Dielectric(Dielectric<'a>),
+}
+
+impl<'a> Body<'a> {
+    fn new(model: &Model, basis: &'a Basis, band: &Band, equations: Equations) -> Result<Self, Error> {
+        let conductor = |equation| {
+            all_of(model, band, |material| *material == Material::Conductor)?;
+            Conductor::new(basis, band.wave, equation, INTEGRALS)
+                .map(Self::Conductor)
+                .map_err(|error| refused(model, &error))
+        };
+        match equations {
+            Equations::Electric => conductor(Equation::Electric),
+            Equations::Combined => conductor(Equation::default()),
+            Equations::Dielectric => {
+                let permittivity = permittivity(model, band)?;
+                Dielectric::new(basis, band.wave, permittivity, INTEGRALS)
+                    .map(Self::Dielectric)
+                    .map_err(|error| refused(model, &error))
+            }
+        }
+    }
+
+    fn operator(&self) -> &Operator<'a> {
+        match self {
+            Self::Conductor(body) => body.operator(),
+            Self::Dielectric(body) => body.operator(),
+        }
+    }
+
+    fn right_hand_side(&self, excitations: &[&[&dyn Source]]) -> MultiVector<Complex64> {
+        match self {
+            Self::Conductor(body) => body.right_hand_side(excitations),
+            Self::Dielectric(body) => body.right_hand_side(excitations),
+        }
+    }
+
+    fn currents(&self, x: &[Complex64]) -> Currents<'a> {
+        match self {
+            Self::Conductor(body) => Currents::new(body.basis(), body.wave(), x, None),
+            Self::Dielectric(body) => body.currents(x),
+        }
+    }
+}
+
+/// Refuses a surface whose material does not suit.
+fn all_of(model: &Model, band: &Band, suits: impl Fn(&Material) -> bool) -> Result<(), Error> {
+    let other = |&material: &usize| !suits(&band.materials[material]);
     let Some(surface) = model.scene.materials_of_surfaces().position(|material| other(&material)) else {
         return Ok(());
     };
-    let what = format!("{} knows perfect conductors only", model.method_name());
-    let help = "leave the material out, or take method = \"physical-optics\"";
+    let (what, help) = if model.galerkin == Some(Equations::Dielectric) {
+        (
+            "knows one homogeneous dielectric only, the same on all surfaces",
+            "give all surfaces one material with half_space, whose permittivity is that of the body",
+        )
+    } else {
+        ("knows perfect conductors only", "leave the material out, or take method = \"physical-optics\"")
+    };
+    let what = format!("{} {what}", model.method_name());
     Err(scene_failure(model.scene.error(About::Surface(surface), SceneFault::Value, what, help)))
+}
+
+/// The permittivity of the body that all surfaces bound.
+fn permittivity(model: &Model, band: &Band) -> Result<Complex64, Error> {
+    let first = model.scene.materials_of_surfaces().next().map(|material| &band.materials[material]);
+    let Some(Material::HalfSpace(permittivity)) = first else {
+        return all_of(model, band, |_| false).map(|()| Complex64::ONE);
+    };
+    all_of(model, band, |material| *material == Material::HalfSpace(*permittivity))?;
+    Ok(*permittivity)
 }
 
 /// One frequency.
@@ -89,26 +183,36 @@ struct Task<'a> {
     geometry: &'a Geometry,
     basis: &'a Basis,
     band: &'a Band,
-    equation: Equation,
+    body: Body<'a>,
     /// The longest edge, m, where the error is stated from it.
     edge: Option<f64>,
+    /// Whether this is the run itself, not one that errors are estimated from.
+    first: bool,
+}
+
+/// The matrix, as it is held.
+enum Matrix {
+    /// 1 − Z.
+    Whole(Dense<Complex64>),
+    /// Z, the inverse of its blocks on the diagonal, and the solver.
+    Compressed(Box<Compressed>),
+}
+
+struct Compressed {
+    matrix: Hierarchical<Complex64>,
+    inverse: BlockDiagonal<Complex64>,
+    method: Method,
 }
 
 impl Task<'_> {
     fn carry_out(&self, name: &str, stages: &mut Stages, outcome: &mut Outcome) -> Result<(), Error> {
         let signals = &stages.signals();
-        let conductor = Conductor::new(self.basis, self.band.wave, self.equation, INTEGRALS)
-            .map_err(|error| refused(self.model, &error))?;
-        self.admit(&conductor, signals)?;
-        let coupling = stages.run(&format!("coupling at {name}"), || {
-            conductor.operator().coupling().map_err(|error| refused(self.model, &error))
-        })?;
+        let matrix = stages.run(&format!("coupling at {name}"), || self.matrix(signals))?;
         if self.model.has_bistatic() {
             let sources = self.model.sources();
-            let b = conductor.right_hand_side(&[&sources]);
-            let solution =
-                stages.run(&format!("currents at {name}"), || self.solve(&coupling, &b, signals))?;
-            let currents = Currents::new(self.basis, self.band.wave, &solution.x.lane(0), None);
+            let b = self.body.right_hand_side(&[&sources]);
+            let solution = stages.run(&format!("currents at {name}"), || self.solve(&matrix, &b, signals))?;
+            let currents = self.body.currents(&solution.x.lane(0));
             let error = self.error(&currents, solution.residuals.last())?;
             stages.run(&format!("fields at {name}"), || self.receive(&currents, error.as_ref(), outcome))?;
             let values = self.on_facets(&currents).iter().map(current).collect();
@@ -117,8 +221,9 @@ impl Task<'_> {
         }
         for (index, receiver) in self.model.receivers.iter().enumerate() {
             if let Places::Monostatic(angles) = &receiver.places {
-                let sweep = || self.sweep(&conductor, &coupling, (index, angles), signals);
+                let sweep = || self.sweep(&matrix, (index, angles), signals);
                 let (rows, solution) = stages.run(&format!("sweep at {name}"), sweep)?;
+                outcome.reciprocity.extend(Reciprocity::of(&rows));
                 outcome.monostatic.extend(rows);
                 outcome.solved.push(self.record(solution));
             }
@@ -126,22 +231,89 @@ impl Task<'_> {
         Ok(())
     }
 
-    /// Refuses a matrix that does not fit, before it is made.
-    fn admit(&self, conductor: &Conductor<'_>, signals: &Signals<'_>) -> Result<(), Error> {
-        let unknowns = self.basis.len();
-        let lanes = self.lanes() as u128;
-        let Method::Solver { solver, .. } = &self.model.method else { return Ok(()) };
-        let plan: Plan = self
-            .model
+    /// The matrix, whole or compressed: as asked for, or what fits and is quicker.
+    fn matrix(&self, signals: &Signals<'_>) -> Result<Matrix, Error> {
+        let Method::Solver { solver, .. } = &self.model.method else {
+            return Err(Error::new(ErrorKind::Input, "an equation is solved, not summed bounce by bounce"));
+        };
+        let unknowns = self.body.operator().dim();
+        let bytes = self.body.operator().dense_bytes();
+        let plan = self
+            .plan(&**solver)
+            .hold(format!("the matrix of {unknowns} unknowns"), bytes.into())
+            .aside(of_threads(solver.addresses()));
+        let compress = match self.model.storage {
+            Some(storage) => storage == CouplingStorage::Compressed,
+            None if self.needs_matrix() => false,
+            None => {
+                let quicker = self.model.galerkin == Some(Equations::Combined)
+                    && unknowns > MANY
+                    && self.lanes() <= FEW;
+                quicker || !plan.fits(self.model.limit)
+            }
+        };
+        if compress {
+            return self.compressed(signals);
+        }
+        plan.admit(
+            self.model.limit,
+            "take longer edges, --storage compressed, or method = \"physical-optics\"",
+        )?;
+        plan.tell(self.model.limit, signals.watch);
+        let whole = self.body.operator().coupling().map_err(|error| refused(self.model, &error))?;
+        Ok(Matrix::Whole(whole))
+    }
+
+    /// Memory besides the matrix.
+    fn plan(&self, solver: &dyn Solver<Complex64>) -> Plan {
+        let (unknowns, lanes) = (self.body.operator().dim(), self.lanes());
+        let vectors = VECTORS * (lanes * unknowns * size_of::<Complex64>()) as u128;
+        self.model
             .plan
             .clone()
-            .hold(format!("the matrix of {unknowns} unknowns"), conductor.operator().dense_bytes().into())
-            .hold("the solver", solver.bytes(unknowns, self.lanes()).into())
-            .hold("the right-hand sides", VECTORS * lanes * unknowns as u128 * size_of::<Complex64>() as u128)
-            .aside(of_threads(solver.addresses()));
-        plan.admit(self.model.limit, "take longer edges, or method = \"physical-optics\"")?;
-        plan.tell(self.model.limit, signals.watch);
-        Ok(())
+            .hold("the solver", solver.bytes(unknowns, lanes).into())
+            .hold("the right-hand sides", vectors)
+    }
+
+    /// Whether the scene names a solver that needs the entries of the matrix.
+    fn needs_matrix(&self) -> bool {
+        let named = self.model.scene.settings().solver.is_some();
+        named && !by_products().contains(&self.model.method.name().as_str())
+    }
+
+    fn compressed(&self, signals: &Signals<'_>) -> Result<Matrix, Error> {
+        let Method::Solver { solver: named, tolerance, max_iterations } = &self.model.method else {
+            return Err(Error::new(ErrorKind::Input, "an equation is solved, not summed bounce by bounce"));
+        };
+        if self.needs_matrix() {
+            let what = format!("{} needs all entries of the matrix, which is to be compressed", named.name());
+            let help = format!("--storage matrix, or a solver that needs none: {}", by_products().join(", "));
+            return Err(Error::new(ErrorKind::Input, what).with_help(help));
+        }
+        let asked = self.model.scene.settings().solver.as_deref().unwrap_or(ITERATIVE);
+        let solver = build(asked).map_err(|error| Error::new(ErrorKind::Input, error))?;
+        let (limit, help) = (self.model.limit, "take longer edges, or method = \"physical-optics\"");
+        let plan = self.plan(&*solver);
+        plan.admit(limit, help)?;
+        let unknowns = self.body.operator().dim();
+        let with = |bytes: u64| {
+            plan.clone().hold(format!("the compressed matrix of {unknowns} unknowns"), bytes.into())
+        };
+        let left = u64::try_from(limit.bytes().0 - plan.peak().0).unwrap_or(u64::MAX);
+        let settings = Settings { tolerance: COMPRESSION, limit: left, ..Settings::default() };
+        let matrix = match self.body.operator().compressed(settings, signals.watch) {
+            Ok(matrix) => matrix,
+            Err(MomentsError::Compression(CompressionError::Memory { needed, .. })) => {
+                with(needed).admit(limit, help)?;
+                return Err(Error::new(ErrorKind::Resources, "the compressed matrix does not fit"));
+            }
+            Err(MomentsError::Compression(CompressionError::Interrupted)) => return Err(Error::cancelled()),
+            Err(error) => return Err(refused(self.model, &error)),
+        };
+        with(matrix.summary().bytes).tell(limit, signals.watch);
+        let inverse = BlockDiagonal::new(&matrix).map_err(|error| refused(self.model, &error.into()))?;
+        let method = Method::Solver { solver, tolerance: *tolerance, max_iterations: *max_iterations };
+        Ok(Matrix::Compressed(Box::new(Compressed { matrix, inverse, method })))
     }
 
     /// Most right-hand sides that are solved for at once.
@@ -155,11 +327,17 @@ impl Task<'_> {
 
     fn solve(
         &self,
-        coupling: &dyn LinearOperator<Complex64>,
+        matrix: &Matrix,
         b: &MultiVector<Complex64>,
         signals: &Signals<'_>,
     ) -> Result<Solution, Error> {
-        solved(coupling, b, &self.model.method, signals)
+        match matrix {
+            Matrix::Whole(coupling) => solved(coupling, b, &self.model.method, signals),
+            Matrix::Compressed(parts) => {
+                let system = Preconditioned::new(&parts.matrix, &parts.inverse);
+                solved(&system, &system.right_hand_side(b), &parts.method, signals)
+            }
+        }
     }
 
     fn record(&self, solution: Solution) -> Solved {
@@ -185,30 +363,44 @@ impl Task<'_> {
         error: Option<&MeanError>,
         outcome: &mut Outcome,
     ) -> Result<(), Error> {
+        let power = power(self.model, self.band, &|p| currents.fields(&[p]).ok().map(|fields| fields[0].e));
+        if self.first {
+            let unknowns = self.basis.len() as f64;
+            let balancing = Balancing {
+                model: self.model,
+                band: self.band,
+                geometry: self.geometry,
+                elements: unknowns,
+                // An entry of the matrix takes some ten times as long as a direction of an element.
+                pairs: 10.0 * unknowns * unknowns,
+                power,
+            };
+            let far = |u: &[Vec3]| Ok(self.far(currents, u)?.into_iter().map(|far| far.amplitude).collect());
+            outcome.balances.extend(balancing.balance(&far)?);
+        }
         for (index, receiver) in self.model.receivers.iter().enumerate() {
-            let relative =
-                match &receiver.places {
-                    Places::Near { points, .. } => {
-                        let scattered = self.near(currents, index, points)?;
-                        let rows = near_rows(self.model, self.band, index, points, &scattered);
-                        let rows = rows.map_err(|error| self.model.refused(&error, Some(receiver)))?;
-                        outcome.near.extend(rows);
-                        let squares = scattered.iter().map(|field| field.e.norm_squared());
-                        error.map(|error| {
-                            error.relative(squares, points.iter().map(|&p| error.centre.distance(p)))
-                        })
-                    }
-                    Places::Far(angles) => {
-                        let far = self.far(currents, &directions(angles))?;
-                        let rows = far.iter().zip(angles).enumerate();
-                        outcome.far.extend(rows.map(|(i, (far, angles))| {
-                            far_row(self.model, self.band, [index, i], *angles, far)
-                        }));
-                        let squares = far.iter().map(|far| far.amplitude.norm_squared());
-                        error.map(|error| error.relative_far(squares))
-                    }
-                    Places::Monostatic(_) => None,
-                };
+            let relative = match &receiver.places {
+                Places::Near { points, .. } => {
+                    let scattered = self.near(currents, index, points)?;
+                    let rows = near_rows(self.model, self.band, index, points, &scattered);
+                    let rows = rows.map_err(|error| self.model.refused(&error, Some(receiver)))?;
+                    outcome.near.extend(rows);
+                    let squares = scattered.iter().map(|field| field.e.norm_squared());
+                    error.map(|error| {
+                        error.relative(squares, points.iter().map(|&p| error.centre.distance(p)))
+                    })
+                }
+                Places::Far(angles) => {
+                    let far = self.far(currents, &directions(angles))?;
+                    let rows = far.iter().zip(angles).enumerate();
+                    outcome.far.extend(rows.map(|(i, (far, angles))| {
+                        far_row((self.model, self.band, power), [index, i], *angles, far)
+                    }));
+                    let squares = far.iter().map(|far| far.amplitude.norm_squared());
+                    error.map(|error| error.relative_far(squares))
+                }
+                Places::Monostatic(_) => None,
+            };
             if let Some(relative) = relative {
                 let frequency = self.band.wave.frequency();
                 outcome.stated_errors.push(Estimated { receiver: index, frequency, relative });
@@ -217,12 +409,25 @@ impl Task<'_> {
         Ok(())
     }
 
+    /// The scattered field; in a dielectric body that is the field there less the incident one.
     fn near(&self, currents: &Currents<'_>, receiver: usize, points: &[Vec3]) -> Result<Vec<Field>, Error> {
-        currents.fields(points).map_err(|error| {
+        let refused = |error: MomentsError| {
             let (about, what) = (About::Receiver(receiver), error.to_string());
             let help = error.help().unwrap_or("move the points");
             scene_failure(self.model.scene.error(about, SceneFault::Geometry, what, help))
-        })
+        };
+        let mut fields = currents.fields(points).map_err(refused)?;
+        if let Body::Dielectric(body) = &self.body {
+            let held = |&i: &usize| self.basis.surface().holds(points[i]);
+            let inside: Vec<usize> = (0..points.len()).filter(held).collect();
+            let places: Vec<Vec3> = inside.iter().map(|&i| points[i]).collect();
+            let found = body.fields_inside(currents, &places).map_err(refused)?;
+            let sources = self.model.sources();
+            for (&i, field) in inside.iter().zip(found) {
+                fields[i] = field - incident(&sources, &self.band.wave, points[i]);
+            }
+        }
+        Ok(fields)
     }
 
     fn far(&self, currents: &Currents<'_>, directions: &[Vec3]) -> Result<Vec<FarField>, Error> {
@@ -232,8 +437,7 @@ impl Task<'_> {
     /// What plane waves from these directions send back, all solved for together.
     fn sweep(
         &self,
-        conductor: &Conductor<'_>,
-        coupling: &dyn LinearOperator<Complex64>,
+        matrix: &Matrix,
         (receiver, angles): (usize, &[[f64; 2]]),
         signals: &Signals<'_>,
     ) -> Result<(Vec<MonostaticRow>, Solution), Error> {
@@ -241,14 +445,14 @@ impl Task<'_> {
         let waves = plane_waves(&directions).map_err(|error| self.model.refused(&error, None))?;
         let sources: Vec<&dyn Source> = waves.iter().map(|wave| wave as &dyn Source).collect();
         let lanes: Vec<&[&dyn Source]> = sources.iter().map(slice::from_ref).collect();
-        let solution = self.solve(coupling, &conductor.right_hand_side(&lanes), signals)?;
+        let solution = self.solve(matrix, &self.body.right_hand_side(&lanes), signals)?;
         let mut rows = Vec::with_capacity(angles.len());
         for (index, (&[theta_degrees, phi_degrees], u)) in angles.iter().zip(&directions).enumerate() {
             signals.check()?;
             let mut scattering = [[0.0; 2]; 4];
             for along in 0..2 {
                 let x = solution.x.lane(2 * index + along);
-                let currents = Currents::new(self.basis, self.band.wave, &x, None);
+                let currents = self.body.currents(&x);
                 for (part, far) in
                     self.far(&currents, slice::from_ref(u))?.iter().flat_map(FarField::polar).enumerate()
                 {
@@ -261,17 +465,20 @@ impl Task<'_> {
         Ok((rows, solution))
     }
 
-    /// J at the centres of the facets: of a quadrilateral the mean of its two triangles.
+    /// J and M at the centres of the facets: of a quadrilateral the mean of its two triangles.
     fn on_facets(&self, currents: &Currents<'_>) -> Vec<Current> {
         let mut next = 0;
         let mut facet = |sides: usize| {
             let count = sides - 2;
             let triangles = next..next + count;
             next += count;
-            let sum = triangles
-                .map(|triangle| currents.electric(triangle))
-                .fold(fredholm_waves::ComplexVector::ZERO, |sum, j| sum + j);
-            Current { j: sum * (1.0 / count as f64), ..Current::default() }
+            let [mut j, mut m] = [ComplexVector::ZERO; 2];
+            for triangle in triangles {
+                j += currents.electric(triangle);
+                m += currents.magnetic(triangle);
+            }
+            let share = 1.0 / count as f64;
+            Current { j: j * share, m: m * share }
         };
         self.geometry.mesh.patches().map(|patch| facet(patch.sides())).collect()
     }

@@ -1,5 +1,6 @@
 //! Scenes of waves: their files, what they mean, and what is written.
 
+mod balance;
 mod check;
 mod choice;
 mod compare;
@@ -17,6 +18,7 @@ mod registry;
 mod solving;
 mod study;
 
+pub use balance::{Balance, Reciprocity};
 pub use check::{CheckedWaves, check_waves};
 pub(crate) use compare::compare;
 pub(crate) use compute::compute;

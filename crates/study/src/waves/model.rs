@@ -4,7 +4,6 @@ use std::path::Path;
 use std::sync::Arc;
 
 use fredholm_linop::Solver;
-use fredholm_moments::Equation;
 use fredholm_scene::SceneError;
 use fredholm_scene::waves::{self as scene, About, Cuts, Places, Settings, Shadows, WaveScene};
 use fredholm_waves::material::Material;
@@ -13,6 +12,7 @@ use fredholm_waves::{Complex64, Origin, Shadow, Source, Wave, WaveError};
 
 use super::CouplingStorage;
 use super::choice::{Asked, Taken, taken};
+use super::galerkin::Equations;
 use super::geometry::Geometry;
 use super::memory::{plan as memory_of, sampled};
 use crate::error::Error;
@@ -68,6 +68,16 @@ pub(crate) struct Receiver {
 }
 
 impl Receiver {
+    /// The angle that directions of the far field step through, and its degrees.
+    pub(crate) fn angles(&self) -> (&'static str, Vec<f64>) {
+        let (Places::Far(angles) | Places::Monostatic(angles)) = &self.places else {
+            return ("angle", Vec::new());
+        };
+        let over_phi = angles.iter().all(|angle| angle[0].total_cmp(&angles[0][0]).is_eq());
+        let degrees = angles.iter().map(|angle| angle[usize::from(over_phi)]).collect();
+        (if over_phi { "φ" } else { "θ" }, degrees)
+    }
+
     /// Whether it is in directions of the far field, not at points.
     pub(crate) fn places_are_directions(&self) -> bool {
         !matches!(self.places, Places::Near { .. })
@@ -79,8 +89,8 @@ pub(crate) struct Model {
     pub(crate) scene: Arc<WaveScene>,
     pub(crate) bands: Vec<Band>,
     pub(crate) shadow: Shadow,
-    /// The equation of boundary elements, where one is asked for instead of currents on facets.
-    pub(crate) galerkin: Option<Equation>,
+    /// The equations of boundary elements, where they are taken instead of currents on facets.
+    pub(crate) galerkin: Option<Equations>,
     pub(crate) method: Method,
     /// Whether edge currents are added.
     pub(crate) edge_currents: bool,
@@ -185,8 +195,9 @@ impl Model {
     /// The method, as scenes name it.
     pub(crate) fn method_name(&self) -> &'static str {
         match (self.galerkin, self.shadow) {
-            (Some(Equation::Electric), _) => scene::Method::Efie,
-            (Some(_), _) => scene::Method::Cfie,
+            (Some(Equations::Electric), _) => scene::Method::Efie,
+            (Some(Equations::Combined), _) => scene::Method::Cfie,
+            (Some(Equations::Dielectric), _) => scene::Method::Pmchwt,
             (None, Shadow::Geometric | Shadow::Radiated) => scene::Method::PhysicalOptics,
             (None, Shadow::Exact) => scene::Method::Mfie,
             (None, Shadow::ExactDual) => scene::Method::DualSurfaceMfie,
@@ -273,7 +284,14 @@ fn asked(scene: &WaveScene) -> Result<Asked, Error> {
         optics: settings.method == Some(scene::Method::PhysicalOptics),
         method: method(scene)?,
         edge_currents: settings.edge_currents,
+        solver: settings.solver.is_some(),
+        waves: scene.receivers().iter().filter(|receiver| receiver.is_monostatic()).map(incident).sum(),
     })
+}
+
+/// Incident waves of a monostatic receiver.
+fn incident(receiver: &scene::Receiver) -> usize {
+    usize::try_from(2 * receiver.count()).unwrap_or(usize::MAX)
 }
 
 /// The treatment of shadows that is asked for.
@@ -288,11 +306,12 @@ fn shadow(settings: &Settings) -> Option<Shadow> {
     }
 }
 
-/// The equation of boundary elements that a method asks for.
-fn galerkin(settings: &Settings) -> Option<Equation> {
+/// The equations of boundary elements that a method asks for.
+fn galerkin(settings: &Settings) -> Option<Equations> {
     match settings.method {
-        Some(scene::Method::Efie) => Some(Equation::Electric),
-        Some(scene::Method::Cfie) => Some(Equation::default()),
+        Some(scene::Method::Efie) => Some(Equations::Electric),
+        Some(scene::Method::Cfie) => Some(Equations::Combined),
+        Some(scene::Method::Pmchwt) => Some(Equations::Dielectric),
         _ => None,
     }
 }
@@ -301,7 +320,7 @@ fn galerkin(settings: &Settings) -> Option<Equation> {
 fn method(scene: &WaveScene) -> Result<Option<Method>, Error> {
     let settings = scene.settings();
     let usual = match settings.method {
-        Some(scene::Method::Efie | scene::Method::Cfie) => Some(BY_MATRIX),
+        _ if galerkin(settings).is_some() => Some(BY_MATRIX),
         Some(method) if method.is_equation() => Some(BY_PRODUCTS),
         _ => None,
     };

@@ -10,9 +10,10 @@ use fredholm_waves::{
 };
 use rayon::prelude::*;
 
-use super::Model;
 use super::compute::directions;
+use super::registry::by_products;
 use super::solving::{Solution, solution};
+use super::{Method, Model};
 use crate::error::Error;
 use crate::stages::Signals;
 
@@ -41,12 +42,17 @@ impl Sweep<'_> {
         signals: &Signals<'_>,
     ) -> Result<Swept, Error> {
         let (mut rows, mut worst): Swept = (Vec::new(), None);
-        for (chunk, angles) in angles.chunks(TOGETHER).enumerate() {
+        // A factorisation serves all waves; others need memory for every wave that they solve for.
+        let together = match &self.model.method {
+            Method::Solver { solver, .. } if !by_products().contains(&solver.name()) => angles.len().max(1),
+            _ => TOGETHER,
+        };
+        for (chunk, angles) in angles.chunks(together).enumerate() {
             signals.check()?;
             let (echoes, solution) = self.echoes(&directions(angles), signals)?;
             let row = |(i, (angles, echo)): (usize, (&[f64; 2], &[Complex64; 4]))| MonostaticRow {
                 receiver,
-                index: chunk * TOGETHER + i,
+                index: chunk * together + i,
                 theta_degrees: angles[0],
                 phi_degrees: angles[1],
                 frequency: self.wave.frequency(),

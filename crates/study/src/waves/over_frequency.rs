@@ -46,7 +46,7 @@ pub(super) fn levels(model: &Model, outcome: &Outcome, index: usize, receiver: &
                 rows().filter_map(|row| Some((row.frequency, row.cross_section?[part]))).collect()
             };
             let tables = vec![table("θ", part(0)), table("φ", part(1))];
-            ("radar cross-section", "dB(m²)", tables)
+            ("radar cross-section", "dBsm", tables)
         }
         Places::Monostatic(_) => {
             let rows = || outcome.monostatic.iter().filter(|row| row.receiver == index);
@@ -54,7 +54,7 @@ pub(super) fn levels(model: &Model, outcome: &Outcome, index: usize, receiver: &
                 rows().map(|row| (row.frequency, row.cross_sections()[part])).collect()
             };
             let tables = vec![table("θθ", part(0)), table("φφ", part(3)), table("φθ", part(1))];
-            ("radar cross-section", "dB(m²)", tables)
+            ("radar cross-section", "dBsm", tables)
         }
     };
     let lines: Vec<FrequencyLine> = tables.iter().flat_map(|table| lines(table, &receiver.places)).collect();

@@ -5,6 +5,7 @@ use fredholm_report::{FarRow, MonostaticRow, WaveCurrents, WaveRow};
 use serde_json::{Value, json};
 
 use super::Model;
+use super::balance::{Balance, Reciprocity};
 use super::estimate::Estimated;
 use super::files::is_table;
 
@@ -44,6 +45,12 @@ pub(crate) struct Outcome {
     /// Half the difference between the electric and the magnetic form: what physical optics itself
     /// may be wrong by.
     pub(crate) form_errors: Vec<Estimated>,
+    /// Radiated beside supplied powers.
+    pub(crate) balances: Vec<Balance>,
+    /// How far sweeps are from being reciprocal.
+    pub(crate) reciprocity: Vec<Reciprocity>,
+    /// What should be known of the results.
+    pub(crate) notes: Vec<String>,
 }
 
 impl Outcome {
@@ -88,6 +95,8 @@ impl Outcome {
             "stated_errors": self.stated_errors.iter().map(|e| e.record(model)).collect::<Vec<_>>(),
             "estimated_mesh_errors": self.mesh_errors.iter().map(|e| e.record(model)).collect::<Vec<_>>(),
             "estimated_form_errors": self.form_errors.iter().map(|e| e.record(model)).collect::<Vec<_>>(),
+            "power": self.balances.iter().map(Balance::record).collect::<Vec<_>>(),
+            "reciprocity": self.reciprocity.iter().map(|r| r.record(model)).collect::<Vec<_>>(),
             "frequencies": self.solved.iter().map(solved).collect::<Vec<_>>(),
             "left_out_as_text": self.left_out(),
             "warnings": model.warnings,

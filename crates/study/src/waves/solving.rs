@@ -94,7 +94,8 @@ pub(super) fn coupled<'a>(
     signals: &Signals<'_>,
 ) -> Result<System<'a>, Error> {
     let unknowns = System::unknowns(scatterer);
-    let solver = solvers.iter().map(|solver| solver.bytes(unknowns, 1)).max().unwrap_or(0);
+    let solver =
+        solvers.iter().map(|solver| solver.bytes(unknowns, lanes(model) as usize)).max().unwrap_or(0);
     let addresses = solvers.iter().map(|solver| solver.addresses()).max().unwrap_or(0);
     let bytes = System::bytes(scatterer);
     let plan = coupling(model.plan.clone(), scatterer, shadow)

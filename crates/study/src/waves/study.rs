@@ -5,12 +5,13 @@ use std::path::Path;
 use fredholm_linop::{OptionError, Stop, Watch};
 use fredholm_report::{FarRow, MonostaticRow, ResultFolder, WaveComparison, WaveRow, write_wave_comparison};
 
+use super::balance::{Balance, Reciprocity};
 use super::estimate::Estimated;
 use super::model::Model;
 use super::record::{Outcome, Solved};
 use super::{files, registry};
 use crate::compare::written_out;
-use crate::error::Error;
+use crate::error::{Error, ErrorKind};
 use crate::size::Bytes;
 use crate::solve::{Ended, report_failure};
 use crate::stages::Stages;
@@ -27,13 +28,15 @@ pub struct WaveOptions {
     pub storage: Option<CouplingStorage>,
 }
 
-/// Where the coupling of facets comes from in every iteration.
+/// Where the coupling comes from in every iteration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CouplingStorage {
     /// A stored matrix.
     Matrix,
-    /// Products that are computed anew each time.
+    /// Products that are computed anew each time: of facets only.
     Products,
+    /// A compressed matrix: of boundary elements only.
+    Compressed,
 }
 
 /// What is asked of [`compare_waves`] besides.
@@ -76,8 +79,13 @@ pub fn waves<'a>(
     watch: &'a dyn Watch,
 ) -> Result<SolvedWaves<'a>, Error> {
     let mut stages = Stages::new(watch);
-    let model = load(scene.as_ref(), asked, &mut stages)?;
+    let mut model = load(scene.as_ref(), asked, &mut stages)?;
     let outcome = super::compute(&model, &mut stages)?;
+    let doubts = doubts(&model, &outcome);
+    for doubt in &doubts {
+        stages.watch.warn(doubt);
+    }
+    model.warnings.extend(doubts);
     stages.begin_saving()?;
     Ok(SolvedWaves { model, outcome, stages, report: !asked.no_report })
 }
@@ -116,12 +124,63 @@ pub fn check_wave_solver(text: &str) -> Result<(), OptionError> {
 
 fn load(scene: &Path, asked: &WaveOptions, stages: &mut Stages) -> Result<Model, Error> {
     let mut model = stages.run("scene", || Model::load(scene, asked.memory))?;
+    let (storage, help) = match (asked.storage, model.galerkin) {
+        (Some(CouplingStorage::Products), Some(_)) => ("computed anew", "matrix or compressed"),
+        (Some(CouplingStorage::Compressed), None) => ("compressed", "matrix or products"),
+        _ => ("", ""),
+    };
+    if !storage.is_empty() {
+        let what = format!("the coupling of {} is not {storage}", model.method_name());
+        return Err(Error::new(ErrorKind::Input, what).with_help(format!("take --storage {help}, or none")));
+    }
     model.storage = asked.storage;
     model.tell(stages);
     Ok(model)
 }
 
+/// Stated error above which a result is warned about.
+const DOUBTFUL: f64 = 0.5;
+/// Share of the supplied power that may be missing, or too much, before it is warned about.
+const UNBALANCED: f64 = 0.25;
+
+/// What should be known of results.
+fn doubts(model: &Model, outcome: &Outcome) -> Vec<String> {
+    let mut doubts = outcome.notes.clone();
+    let worst = outcome.stated_errors.iter().max_by(|a, b| a.relative.total_cmp(&b.relative));
+    if let Some(error) = worst.filter(|error| error.relative > DOUBTFUL) {
+        let name = model.receivers.get(error.receiver).map_or("", |receiver| &receiver.name);
+        doubts.push(format!(
+            "the stated error at `{name}`, {} MHz, is {:.0} % of the field there: not a result; take finer edges, or another method ({})",
+            error.frequency / 1e6,
+            100.0 * error.relative,
+            if model.shadow.is_equation() { "cfie and dual-surface-mfie have no resonances" } else { "efie, or dual-surface-mfie for closed bodies" },
+        ));
+    }
+    let off = |balance: &&Balance| (balance.ratio() - 1.0).abs();
+    let worst = outcome.balances.iter().max_by(|a, b| off(a).total_cmp(&off(b)));
+    if let Some(balance) = worst.filter(|balance| off(balance) > UNBALANCED) {
+        doubts.push(format!(
+            "{:.2} times the power that the sources give at {} MHz is radiated, where nothing is absorbed; take finer edges, or an equation (efie, dual-surface-mfie)",
+            balance.ratio(),
+            balance.frequency / 1e6
+        ));
+    }
+    doubts
+}
+
 impl SolvedWaves<'_> {
+    /// Radiated beside supplied powers, where they are cheap to compute: 1 where nothing is absorbed.
+    #[must_use]
+    pub fn balances(&self) -> &[Balance] {
+        &self.outcome.balances
+    }
+
+    /// How far the monostatic sweeps are from being reciprocal.
+    #[must_use]
+    pub fn reciprocity(&self) -> &[Reciprocity] {
+        &self.outcome.reciprocity
+    }
+
     /// The same without its watch, for a caller that keeps the result longer than that.
     #[must_use]
     pub fn unwatched(self) -> SolvedWaves<'static> {

@@ -7,16 +7,24 @@
 //! E_z = −jη I/(4π) [e^{−jkR₁}/R₁ + e^{−jkR₂}/R₂],   H_φ = jI/(4πρ) [e^{−jkR₁} + e^{−jkR₂}]
 //! E_ρ = jη I/(4πρ) [(z − λ/4) e^{−jkR₁}/R₁ + (z + λ/4) e^{−jkR₂}/R₂]
 //! ```
+//!
+//! Far away F = −jη I/(2π) cos(½π cosθ)/sin²θ (ẑ − u cosθ) e^{jk u·c}, and its radiation resistance is η Cin(2π)/(4π), 73.13 Ω.
 
 use super::{Origin, Source, finite, finite_point, unit};
 use crate::medium::IMPEDANCE;
 use crate::{ComplexVector, Field, Wave, WaveError};
 use fredholm_mesh::Vec3;
+use fredholm_quadrature::gauss_legendre;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 /// Distance from the wire's line, over λ, below which a point is on it: beyond the wire the transverse parts are 0 there.
 const ON_LINE: f64 = 1e-9;
+
+/// ∫₀^{2π} (1 − cos t)/t dt.
+const CIN_2PI: f64 = 2.437_653_392_946_447;
+/// Points along the wire where the field of all else is taken.
+const POINTS: usize = 12;
 
 /// A wire of half a wavelength with a cosine current.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,13 +78,42 @@ impl Source for HalfWaveDipole {
     fn origin(&self) -> Origin {
         Origin::Point(self.centre)
     }
+
+    fn wire(&self, wave: &Wave) -> Option<[Vec3; 2]> {
+        let half = self.axis * (0.25 * wave.wavelength());
+        Some([self.centre - half, self.centre + half])
+    }
+
+    fn far_amplitude(&self, wave: &Wave, u: Vec3) -> Option<ComplexVector> {
+        let cosine = u.dot(self.axis);
+        let across = self.axis - u * cosine;
+        let sine_squared = across.length_squared();
+        if sine_squared < ON_LINE {
+            return Some(ComplexVector::ZERO);
+        }
+        let pattern = (0.25 * TAU * cosine).cos() / sine_squared;
+        let phase = Complex64::cis(wave.wavenumber() * u.dot(self.centre));
+        let factor = self.current * phase * Complex64::new(0.0, -IMPEDANCE / TAU * pattern);
+        Some(ComplexVector::along(across, factor))
+    }
+
+    fn supplied(&self, wave: &Wave, other: &dyn Fn(Vec3) -> ComplexVector) -> Option<f64> {
+        let own = IMPEDANCE * CIN_2PI / (2.0 * TAU) * 0.5 * self.current.norm_sqr();
+        let (rule, length) = (gauss_legendre(POINTS), 0.5 * wave.wavelength());
+        let piece = |(&t, &w): (&f64, &f64)| {
+            let z = (t - 0.5) * length;
+            let weight = w * length * (wave.wavenumber() * z).cos();
+            other(self.centre + self.axis * z).dot(self.axis) * weight
+        };
+        let voltage: Complex64 = rule.points.iter().zip(&rule.weights).map(piece).sum();
+        Some(own - 0.5 * (self.current.conj() * voltage).re)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::electric_element;
-    use fredholm_quadrature::gauss_legendre;
 
     #[test]
     fn the_closed_form_is_the_sum_of_hertzian_dipoles() {

@@ -13,7 +13,7 @@ pub use hertzian::HertzianDipole;
 pub use omnidirectional::Omnidirectional;
 pub use plane_wave::PlaneWave;
 
-use crate::{Field, Wave, WaveError};
+use crate::{ComplexVector, Field, Wave, WaveError};
 use fredholm_mesh::Vec3;
 
 /// Where a wave comes from.
@@ -43,6 +43,22 @@ pub trait Source: Send + Sync {
 
     /// Where it comes from: decides what is lit.
     fn origin(&self) -> Origin;
+
+    /// The ends (m) of the wire that its current runs along, where it has a length.
+    fn wire(&self, _wave: &Wave) -> Option<[Vec3; 2]> {
+        None
+    }
+
+    /// F (V) of its own far field F e^{−jkr}/r in the direction of the unit vector u; none of a wave from infinity.
+    fn far_amplitude(&self, _wave: &Wave, _u: Vec3) -> Option<ComplexVector> {
+        None
+    }
+
+    /// The mean power (W) that it gives away against the field E (V/m) of all else: its own in free space and −½ Re ∫ I* E·dl
+    /// along it, none of a wave from infinity. Of an omnidirectional one, which has no current, the first part only.
+    fn supplied(&self, _wave: &Wave, _other: &dyn Fn(Vec3) -> ComplexVector) -> Option<f64> {
+        None
+    }
 }
 
 /// The field of all sources together at `p`.

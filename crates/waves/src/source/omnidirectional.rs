@@ -54,6 +54,16 @@ impl Source for Omnidirectional {
     fn origin(&self) -> Origin {
         Origin::Point(self.position)
     }
+
+    fn far_amplitude(&self, wave: &Wave, u: Vec3) -> Option<ComplexVector> {
+        let polar = (u * u.dot(self.axis) - self.axis).normalize_or_zero();
+        let phase = Complex64::cis(wave.wavenumber() * u.dot(self.position));
+        Some(ComplexVector::along(polar, phase * self.amplitude))
+    }
+
+    fn supplied(&self, _wave: &Wave, _other: &dyn Fn(Vec3) -> ComplexVector) -> Option<f64> {
+        Some(std::f64::consts::TAU * self.amplitude.powi(2) / IMPEDANCE)
+    }
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Numbers and shares as they stand in sentences.
 
 /// A number of three significant digits, with powers of ten where it is very large or small.
-pub(super) fn number(value: f64) -> String {
+pub(crate) fn number(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
@@ -23,7 +23,7 @@ pub(super) fn number(value: f64) -> String {
 }
 
 /// A share in per cent.
-pub(super) fn percent(share: f64) -> String {
+pub(crate) fn percent(share: f64) -> String {
     format!("{} %", number(100.0 * share))
 }
 
@@ -40,7 +40,7 @@ fn minus(text: &str) -> String {
     text.replace('-', "−")
 }
 
-fn raised(exponent: i32) -> String {
+pub(crate) fn raised(exponent: i32) -> String {
     let digit = |c: char| match c.to_digit(10) {
         Some(d) => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][d as usize],
         None => '⁻',
@@ -56,7 +56,7 @@ fn grouped(digits: &str) -> String {
 }
 
 /// A number of things.
-pub(super) fn count(number: u64, one: &str, more: &str) -> String {
+pub(crate) fn count(number: u64, one: &str, more: &str) -> String {
     format!("{} {}", grouped(&number.to_string()), if number == 1 { one } else { more })
 }
 

@@ -1,0 +1,99 @@
+//! Compressed matrices of the equations against the stored ones, their memory, solutions, and threads.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+mod common;
+
+use common::{WAVELENGTH, circle, mie, relative_error, solved, source, vertical, wave};
+use fredholm_compressed::{BlockDiagonal, CompressionError, Preconditioned, Settings};
+use fredholm_iterative::Gmres;
+use fredholm_linop::{LinearOperator, MultiVector, Quiet, SecondKind, Solver, Stop, StopReason};
+use fredholm_moments::meshing::{Grading, plate, sphere};
+use fredholm_moments::{Basis, Conductor, Currents, Dielectric, Equation, MomentsError, Operator};
+use fredholm_waves::{Complex64, Source};
+
+/// ‖(Z − Z̃) x‖/‖Z x‖ of a vector that looks like chance.
+fn product_error(operator: &Operator<'_>, tolerance: f64) -> (f64, f64) {
+    let x = MultiVector::from_fn(operator.dim(), 1, |i, _| Complex64::cis((i * i % 97) as f64));
+    let product = |matrix: &dyn LinearOperator<Complex64>| {
+        let mut y = MultiVector::zeros(x.dim(), 1);
+        matrix.apply(&x, &mut y);
+        y.lane(0)
+    };
+    let compressed =
+        operator.compressed(Settings { tolerance, leaf: 24, ..Settings::default() }, &Quiet).unwrap();
+    let summary = compressed.summary();
+    assert!(summary.low_rank > 0, "{summary:?}");
+    let ratio = summary.bytes as f64 / summary.predicted as f64;
+    assert!((0.7..1.4).contains(&ratio), "{summary:?}");
+    (relative_error(&product(&compressed), &product(&operator.dense().unwrap())), summary.share)
+}
+
+#[test]
+fn products_of_every_equation_are_within_the_tolerance() {
+    let ball = Basis::new(sphere(0.5 * WAVELENGTH, WAVELENGTH / 8.0).unwrap()).unwrap();
+    let sheet = Basis::new(plate(1.5 * WAVELENGTH, WAVELENGTH / 10.0, Grading::default()).unwrap()).unwrap();
+    let conductor =
+        |basis, equation| Conductor::new(basis, wave(), equation, 1e-3).unwrap().operator().clone();
+    let small = Basis::new(sphere(0.25 * WAVELENGTH, WAVELENGTH / 14.0).unwrap()).unwrap();
+    let body = Dielectric::new(&small, wave(), 2.0.into(), 1e-3).unwrap();
+    let operators = [
+        conductor(&sheet, Equation::Electric),
+        conductor(&ball, Equation::default()),
+        body.operator().clone(),
+    ];
+    for (operator, name) in operators.iter().zip(["electric", "combined", "dielectric"]) {
+        for tolerance in [1e-2, 1e-3, 1e-4] {
+            let (error, share) = product_error(operator, tolerance);
+            println!("{name} {}: {tolerance:e} error {error:.2e}, share {share:.2}", operator.dim());
+            assert!(error < tolerance, "{name} {tolerance}: {error:e}");
+        }
+    }
+}
+
+#[test]
+fn a_compressed_sphere_has_the_field_of_the_series_and_the_same_bits_with_any_number_of_threads() {
+    let radius = 0.5 * WAVELENGTH;
+    let basis = Basis::new(sphere(radius, WAVELENGTH / 8.0).unwrap()).unwrap();
+    let conductor = Conductor::new(&basis, wave(), Equation::default(), 1e-3).unwrap();
+    let source = source();
+    let sources: [&dyn Source; 1] = [&source];
+    let b = conductor.right_hand_side(&[&sources]);
+    let solve = || {
+        let settings = Settings { tolerance: 1e-3, leaf: 24, ..Settings::default() };
+        let matrix = conductor.operator().compressed(settings, &Quiet).unwrap();
+        let inverse = BlockDiagonal::new(&matrix).unwrap();
+        let system = Preconditioned::new(&matrix, &inverse);
+        let right = system.right_hand_side(&b);
+        let ones = MultiVector::from_fn(b.dim(), 1, |_, _| Complex64::ONE);
+        let a = SecondKind::new(&system, ones).unwrap();
+        let mut x = MultiVector::zeros(b.dim(), 1);
+        let stop = Stop { tolerance: 1e-4, max_iterations: 60 };
+        let report = Gmres { restart: 60 }.solve(&a, &right, &mut x, &stop, &mut Quiet).unwrap();
+        assert_eq!(report.reason, StopReason::Converged);
+        x.lane(0)
+    };
+    let [one, two, four] = [1, 2, 4].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(solve)
+    });
+    assert!(one == two && one == four);
+    let field =
+        |x: &[Complex64]| vertical(&Currents::new(&basis, wave(), x, None).fields(&circle()).unwrap());
+    let whole = solved(&conductor.operator().coupling().unwrap(), &b).lane(0);
+    let (difference, error) =
+        (relative_error(&field(&one), &field(&whole)), relative_error(&field(&one), &mie(radius)));
+    assert!(difference < 1e-3 && error < 0.02, "{difference:e} {error}");
+}
+
+#[test]
+fn what_is_predicted_not_to_fit_is_refused() {
+    let basis = Basis::new(sphere(0.5 * WAVELENGTH, WAVELENGTH / 6.0).unwrap()).unwrap();
+    let conductor = Conductor::new(&basis, wave(), Equation::default(), 1e-3).unwrap();
+    let refused = conductor.operator().compressed(Settings { limit: 1 << 16, ..Settings::default() }, &Quiet);
+    let Err(MomentsError::Compression(CompressionError::Memory { needed, limit })) = refused.map(|_| ())
+    else {
+        panic!("65 kB are not enough");
+    };
+    assert!(needed > limit && limit == 1 << 16);
+}

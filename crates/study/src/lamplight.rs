@@ -1,0 +1,81 @@
+//! The lamps of a scene as its picture sees them: elements that emit alike are one lamp.
+
+use fredholm_hierarchical::Lamps;
+use fredholm_mesh::Patch;
+use fredholm_report::{LampLight, Lighter, Lit};
+
+use crate::error::{Error, ErrorKind};
+use crate::problem::Problem;
+use crate::solution::Solution;
+
+/// What the light of lamps at pixels is taken from.
+pub(crate) struct Lamplight<'a> {
+    /// None where there are no lamps, or too many, or where the solution does not tell their light apart.
+    lamps: Option<(Lamps<'a>, &'a [f64])>,
+    /// Exitance of each lamp, lamps × bands, W/m².
+    exitance: Vec<f64>,
+    reflectance: Vec<f64>,
+}
+
+impl<'a> Lamplight<'a> {
+    /// The lamps of a solved scene.
+    pub(crate) fn new(problem: &'a Problem, solution: &'a Solution) -> Result<Self, Error> {
+        let (scene, mesh) = (&problem.scene, &problem.mesh);
+        let reflectance = scene.reflectance(mesh);
+        let none = |reflectance| Self { lamps: None, exitance: Vec::new(), reflectance };
+        let Some(direct) = &solution.direct else { return Ok(none(reflectance)) };
+        let bands = scene.bands().len();
+        let of_elements = scene.exitance(mesh);
+        let (mut exitance, mut kinds): (Vec<f64>, Vec<Vec<&Patch>>) = (Vec::new(), Vec::new());
+        for (m, patch) in of_elements.chunks_exact(bands).zip(mesh.patches()) {
+            if m.iter().all(|m| *m <= 0.0) {
+                continue;
+            }
+            match exitance.chunks_exact(bands).position(|known| known == m) {
+                Some(kind) => kinds[kind].push(patch),
+                None if kinds.len() == MOST_KINDS => return Ok(none(reflectance)),
+                None => {
+                    exitance.extend(m);
+                    kinds.push(vec![patch]);
+                }
+            }
+        }
+        let lamps = Lamps::new(&kinds, mesh.patches().collect(), &problem.occluders);
+        let lamps = lamps.map_err(|error| Error::new(ErrorKind::Input, error))?;
+        let Some(lamps) = lamps.filter(|lamps| !lamps.is_empty()) else { return Ok(none(reflectance)) };
+        Ok(Self { lamps: Some((lamps, direct.as_slice())), exitance, reflectance })
+    }
+
+    /// What the picture is drawn with.
+    pub(crate) fn lit(&self) -> Lit<'_> {
+        let Self { lamps, exitance, reflectance } = self;
+        Lit { light: self, exitance, reflectance, direct: lamps.as_ref().map(|(_, direct)| *direct) }
+    }
+
+    /// Where the light of the picture comes from.
+    pub(crate) fn words(&self) -> &'static str {
+        match self.lamps {
+            Some(_) => "light of the lamps at every pixel, the rest interpolated between elements",
+            None => "light interpolated between elements",
+        }
+    }
+}
+
+/// Exitances that differ, at most: scenes of more have no lamps that are few.
+const MOST_KINDS: usize = 128;
+
+impl LampLight for Lamplight<'_> {
+    fn lamps(&self) -> usize {
+        self.lamps.as_ref().map_or(0, |(lamps, _)| lamps.len())
+    }
+
+    fn lighter(&self) -> Lighter<'_> {
+        match &self.lamps {
+            Some((lamps, _)) => {
+                let mut lighter = lamps.lighter();
+                Box::new(move |element, point, factors| lighter.factors(element, point, factors))
+            }
+            None => Box::new(|_, _, _| {}),
+        }
+    }
+}
