@@ -14,6 +14,9 @@ use std::sync::OnceLock;
 
 /// Pieces of lamps that are looked at for every point; lamps of more have none.
 const MOST_PIECES: usize = 128;
+/// Parts of lamps times bodies that may stand before them, at most: what every pixel may have to look
+/// through.
+const MOST_PAIRS: usize = 16_384;
 /// Occluders up to which their shadows are cut out exactly.
 const MANY: usize = 20_000;
 /// Patches of a piece up to which the room between it and an element is a shaft for each.
@@ -95,6 +98,9 @@ impl<'a> Lamps<'a> {
         }
         let bodies = exact.then(|| Bodies::new(occluders, &elements, &[]));
         let list = bodies.as_ref().map_or(&[][..], Bodies::as_slice);
+        if pieces.len() * list.len() > MOST_PAIRS {
+            return Ok(None);
+        }
         let balls = list.iter().map(|body| ball(body.corners())).collect();
         let sights = elements.iter().map(|_| OnceLock::new()).collect();
         Ok(Some(Self { occluders, elements, bodies, balls, pieces, count: lamps.len(), sights }))
