@@ -70,7 +70,7 @@ SCENES = {
     # For limits of memory: 2400 elements, 2000 facets, a large picture.
     "large.toml": ROOM.format(rho=0.7, n=20),
     "wide.toml": ROOM.format(rho=0.7, n=2).replace("width = 64\nheight = 48", "width = 4000\nheight = 3000"),
-    "lw.toml": PLATE.replace('name = "plate"', 'name = "plate"\nlargest_edge = 0.02'),
+    "lw.toml": PLATE.replace('name = "plate"', 'name = "plate"\nedge = 0.02'),
 }
 
 # What may be run into a folder, by name.

@@ -142,7 +142,7 @@ class Check(Study):
     """What the mesh of a scene is, and what its solution will take.
 
     ``record`` has pieces, components, closed, diagonal (m) and findings of the mesh; elements,
-    faces, surfaces, occluders, unknowns, memory_bytes, seconds (of the form factors, from a sample)
+    faces, surfaces, occluders, unknowns, memory_bytes, seconds (of one thread, from samples)
     and warnings of a solution, or refused, why it does not fit the memory. check.png shows the
     sides.
     """

@@ -34,7 +34,7 @@ fn bad_input_is_2() {
         refused(&bench, &[verb, "scene.toml"], 2, "did you mean `southwell`?");
     }
     fs::write(bench.path("notes.json"), "{}").unwrap();
-    refused(&bench, &["info", "notes.json"], 2, "is not a run record");
+    refused(&bench, &["info", "notes.json"], 2, "is no record of a result");
     refused(&bench, &["info", "scene.toml"], 2, "none of the files of a result");
 }
 

@@ -15,6 +15,7 @@ mod furnace;
 mod help;
 mod hostile;
 mod hostile_waves;
+mod info;
 #[cfg(unix)]
 mod interrupt;
 #[cfg(unix)]
@@ -22,6 +23,7 @@ mod memory;
 mod meshes;
 mod methods;
 mod results;
+mod results_page;
 mod shoot;
 mod stochastic;
 mod support;

@@ -15,7 +15,6 @@ mod heap;
 mod interrupt;
 mod output;
 mod start;
-mod summary;
 mod terminal;
 
 use std::process::ExitCode;

@@ -2,8 +2,21 @@
 
 use std::fmt::Display;
 use std::io::{self, Write};
+use std::path::Path;
 
-use fredholm_study::{Error, ErrorKind};
+use fredholm_study::{Error, ErrorKind, Summarise, summary};
+
+use crate::args::LogArgs;
+
+/// Says what a run came to, whose files are in a folder, unless nothing is to be said.
+pub(crate) fn summarise(record: &impl Summarise, folder: &Path, log: LogArgs) -> Result<(), Error> {
+    if log.quiet { Ok(()) } else { report(&summary(record, folder)) }
+}
+
+/// Prints what a scene or a result tells, whose names can hold any characters.
+pub(crate) fn report(text: &str) -> Result<(), Error> {
+    print(&visible(text))
+}
 
 /// Writes `text` to standard output. A reader that has gone away (`fredholm schema | head`) is no failure.
 pub(crate) fn print(text: &str) -> Result<(), Error> {
@@ -17,7 +30,7 @@ pub(crate) fn print(text: &str) -> Result<(), Error> {
 }
 
 /// Text without characters that could command a terminal: names in files can hold any.
-pub(crate) fn visible(text: &str) -> String {
+fn visible(text: &str) -> String {
     let shown = |c: char| if c.is_control() && c != '\n' { char::REPLACEMENT_CHARACTER } else { c };
     text.chars().map(shown).collect()
 }

@@ -6,7 +6,8 @@
 use crate::CouplingError;
 use crate::form_factor::{Exchange, Method, PairIntegrator, Workspace};
 use crate::occlusion::{Clusters, Panel, walk};
-use fredholm_linop::{PackedSymmetric, Steps, Storage, Watch};
+use crate::pair_sample::scattered;
+use fredholm_linop::{PackedSymmetric, Quiet, Steps, Storage, Watch};
 use rayon::prelude::*;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -80,6 +81,29 @@ pub fn assemble<S: Storage>(
     watch: &dyn Watch,
 ) -> Result<Assembled<S>, CouplingError> {
     assembly(integrator, watch, Vec::new()).map(|(assembled, _)| assembled)
+}
+
+/// Seconds that [`assemble`] takes one thread, from panels in all parts of the mesh: the mean time of
+/// their pairs, times the number of all. `spent` tells the seconds that the calling thread has worked;
+/// panels are computed until `budget` (s) is spent, one at least.
+pub fn assembly_seconds(integrator: &PairIntegrator, budget: f64, spent: &dyn Fn() -> f64) -> f64 {
+    let n = integrator.len();
+    let progress = Progress::new(pairs(n), &Quiet);
+    let started = spent();
+    let clusters = integrator.clusters();
+    let panels = clusters.panels(PANEL);
+    let prepared = spent();
+    let mut done = 0;
+    for panel in scattered(panels.len()).map(|at| panels[at]) {
+        let strip = Strip::<f64>::compute(integrator, &clusters, panel, false, &progress);
+        std::hint::black_box(strip.rows.len());
+        done += clusters.nodes[panel].places.clone().map(|place| place as u64).sum::<u64>();
+        if spent() - started > budget {
+            break;
+        }
+    }
+    let of_all = if done == 0 { 0.0 } else { pairs(n) as f64 / done as f64 };
+    prepared - started + (spent() - prepared) * of_all
 }
 
 /// As [`assemble`], with the estimated error of every G_ij, m²: 8 bytes more a pair.

@@ -4,6 +4,7 @@
 //! buried: it receives nothing and nothing sees it. w is the share of points, on a grid over the element, of which at least one ray of a fixed bundle
 //! meets a lit side or nothing at all. Dimensionless; the grid is refined where both kinds of point occur.
 
+use crate::pair_sample::scattered;
 use crate::polygon::folded;
 use crate::radiosity::Extent;
 use fredholm_mesh::{Patch, Vec3};
@@ -21,6 +22,22 @@ const RING: usize = 6;
 #[must_use]
 pub fn exposed_shares(patches: &[&Patch], lit: &Occluders) -> Vec<f64> {
     patches.par_iter().map(|patch| share(patch, patches, lit)).collect()
+}
+
+/// Seconds that [`exposed_shares`] takes one thread, from patches in all parts of the mesh; `budget` and `spent` as in
+/// [`assembly_seconds`](crate::assembly_seconds).
+#[must_use]
+pub fn exposure_seconds(patches: &[&Patch], lit: &Occluders, budget: f64, spent: &dyn Fn() -> f64) -> f64 {
+    let started = spent();
+    let mut done = 0;
+    for patch in scattered(patches.len()).map(|at| patches[at]) {
+        std::hint::black_box(share(patch, patches, lit));
+        done += 1;
+        if spent() - started > budget {
+            break;
+        }
+    }
+    if done == 0 { 0.0 } else { (spent() - started) * patches.len() as f64 / f64::from(done) }
 }
 
 /// Areas and exposed areas (m²) of patches with given shares; `rows` are the sums Σ_j G_ij (m²).

@@ -21,11 +21,13 @@ mod reciprocity;
 mod residual;
 
 pub use aggregate::aggregate;
-pub use assembly::{Assembled, MethodCounts, assemble, assemble_with_errors, waiting_bytes};
+pub use assembly::{
+    Assembled, MethodCounts, assemble, assemble_with_errors, assembly_seconds, waiting_bytes,
+};
 pub use closure::{Closed, ClosureError, enforce_closure};
 pub use emitters::{Emitters, Groups};
 pub use error::CouplingError;
-pub use exposure::{exposed_share, exposed_shares, extents};
+pub use exposure::{exposed_share, exposed_shares, exposure_seconds, extents};
 pub use pair_sample::sample_pairs;
 pub use radiosity::{Energy, Extent, Means, Radiosity};
 pub use receiver::{Receiver, Targets, sky, sky_exchanges, with_sky};

@@ -16,3 +16,34 @@ pub fn sample_pairs(n: usize) -> impl Iterator<Item = [usize; 2]> {
     let place = move |k: u64, step: f64| ((k as f64 * step).fract() * n as f64) as usize;
     (1u64..).map(move |k| STEPS.map(|step| place(k, step)))
 }
+
+/// All indices below `n`, each once, so that any first few of them are spread evenly: multiples of a step near n/φ that has
+/// no divisor in common with n.
+pub(crate) fn scattered(n: usize) -> impl Iterator<Item = usize> {
+    let near = (n as f64 * 0.618_033_988_749_895) as usize;
+    let step = (near..near + n.max(1)).find(|&step| divisor(step, n) == 1).unwrap_or(1);
+    (0..n).map(move |k| ((k as u128 * step as u128) % n as u128) as usize)
+}
+
+/// Greatest common divisor.
+fn divisor(a: usize, b: usize) -> usize {
+    if b == 0 { a } else { divisor(b, a % b) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_index_comes_once_and_few_are_spread() {
+        for n in [0, 1, 2, 3, 12, 60, 97, 1000] {
+            let mut all: Vec<usize> = scattered(n).collect();
+            all.sort_unstable();
+            assert_eq!(all, (0..n).collect::<Vec<_>>());
+        }
+        for tenth in 0..10 {
+            let inside = scattered(1000).take(100).filter(|i| i / 100 == tenth).count();
+            assert!((8..=12).contains(&inside), "{tenth}: {inside}");
+        }
+    }
+}

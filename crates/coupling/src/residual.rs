@@ -16,6 +16,7 @@
 //! Power in W, irradiance in W/m².
 
 use crate::CouplingError;
+use crate::pair_sample::scattered;
 use crate::radiosity::Extent;
 use crate::receiver::{Receiver, Targets};
 use fredholm_linop::{MultiVector, Watch};
@@ -151,6 +152,29 @@ impl Constants<'_> {
             }
         }
         Ok(Residual { power, draws })
+    }
+
+    /// Seconds that [`residual`](Self::residual) takes one thread, from elements in all parts of the mesh. `spent` tells the seconds that the calling thread has
+    /// worked; elements are looked at until `budget` (s) is spent, one at least.
+    #[must_use]
+    pub fn seconds(&self, budget: f64, spent: &dyn Fn() -> f64) -> f64 {
+        let n = self.patches.len();
+        let started = spent();
+        let bodies = Bodies::new(self.occluders, self.patches, &[]);
+        let (chosen, grid) = self.choose(points(n, bodies.as_slice().len()));
+        let rows: Vec<usize> = (0..n).collect();
+        let targets = Targets { patches: self.patches, row_of: &rows, rows: n, occluders: self.occluders };
+        let prepared = spent();
+        let mut done = 0;
+        for one in scattered(chosen.len()).map(|at| &chosen[at]) {
+            std::hint::black_box(self.spread(one.element, &one.places(grid), &targets, &bodies));
+            done += 1;
+            if spent() - started > budget {
+                break;
+            }
+        }
+        let of_all = if done == 0 { 0.0 } else { chosen.len() as f64 / f64::from(done) };
+        prepared - started + (spent() - prepared) * of_all
     }
 
     /// What the residual of one element does to all, W, element-major, from some places on it.

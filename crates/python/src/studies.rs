@@ -289,8 +289,8 @@ pub(crate) fn reference(
     let (paths, problem) = (asked.paths.options(py)?, asked.problem.options(py)?);
     let options = ReferenceOptions { size, spp: asked.spp, paths, stop: asked.tracing.into(), problem };
     study(py, how, move |folder, watch| {
-        let found = fredholm_study::reference(scene, &options, folder, watch)?;
-        Ok((serde_json::to_string(&found.record), "done"))
+        let record = fredholm_study::reference(scene, &options, folder, watch)?;
+        Ok((serde_json::to_string(&record), "done"))
     })
 }
 

@@ -1,9 +1,10 @@
 //! What hierarchical radiosity did, in the record of a run.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Rounds of refinement and what they came to.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Hierarchy {
     /// Relative error that was asked for: of the irradiance of the faces, L2, or of the mean irradiance of the goal alone, where there is one.
@@ -22,7 +23,7 @@ pub struct Hierarchy {
 }
 
 /// The mean irradiance that an accuracy was asked for.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct HierarchyGoal {
     /// Names of the surfaces that it is the mean over.
@@ -34,7 +35,7 @@ pub struct HierarchyGoal {
 }
 
 /// A round.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct HierarchyRound {
     /// Relative error that one link was allowed to leave.

@@ -29,6 +29,7 @@
 mod atomic;
 mod baked;
 mod camera;
+mod catalogue;
 mod cie;
 mod colour;
 mod comparison;
@@ -53,6 +54,7 @@ mod outputs;
 mod picture;
 mod plot;
 mod points_csv;
+mod reading;
 mod refinement;
 mod run;
 mod shading;
@@ -71,6 +73,7 @@ mod xml;
 pub use atomic::write_atomically;
 pub use baked::{write_field_glb, write_field_ply};
 pub use camera::{Camera, FRAMED};
+pub use catalogue::{CataloguedFile, catalogue, results_page};
 pub use cie::colour_matching;
 pub use colour::Colouring;
 pub use comparison::{
@@ -95,7 +98,7 @@ pub use judgement::{
     ReferenceValues, read_measured_faces, read_measured_pixels, read_reference_faces, read_reference_pixels,
     read_reference_record, write_judgement,
 };
-pub use names::{CHECKPOINT, PIXELS, TRACE_STATE, WAVE_FILES};
+pub use names::{CHECKPOINT, PIXELS, TRACE_STATE, WAVE_FILES, is_result};
 pub use npz::write_npz;
 pub use outputs::{
     EXTRAS, Extras, FIELD_EXR, FIELD_GLB, FIELD_PLY, FILES, GATHER, IMAGE, POINTS, REPORT, RunReport,
@@ -111,8 +114,8 @@ pub use refinement::{
     write_refinement, write_refinement_csv, write_refinement_plot,
 };
 pub use run::{
-    Closure, Counts, Energy, FORMAT, FieldError, FormFactorError, History, MeshError, RunRecord, Timing,
-    read_run, write_run,
+    Closure, Counts, Energy, FORMAT, FieldError, FormFactorError, History, MeshError, Received, RunRecord,
+    Timing, read_run, write_run,
 };
 pub use shadows_vtu::{ShadowMesh, write_shadows_vtu};
 pub use shooting::{

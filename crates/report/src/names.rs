@@ -29,7 +29,8 @@ pub const TRACE_STATE: &str = "trace.json";
 pub const PIXELS: &str = "pixels.npz";
 
 /// Whether a name is one of a file that some run writes into its folder, whatever the scene.
-pub(crate) fn is_result(name: &str) -> bool {
+#[must_use]
+pub fn is_result(name: &str) -> bool {
     let known: [&[&str]; 11] = [
         &FILES,
         &EXTRAS,

@@ -7,10 +7,11 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
-use serde::{Deserialize, Deserializer, Serialize};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::{Hierarchy, ReportError};
+use crate::{Hierarchy, ReportError, reading};
 
 /// Name and version of the format of run records.
 pub const FORMAT: &str = "fredholm-run-1";
@@ -19,7 +20,7 @@ pub const FORMAT: &str = "fredholm-run-1";
 ///
 /// Reading is lenient: unknown keys are passed over and missing ones take their default, so that records of older and
 /// newer programs with the same format name can be read. A number that is not finite is written as `null`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct RunRecord {
     /// Format of the record: [`FORMAT`].
@@ -57,6 +58,12 @@ pub struct RunRecord {
     pub work: BTreeMap<String, u64>,
     /// Why the solver stopped.
     pub stop_reason: String,
+    /// What the faces receive, one entry a band.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub received: Vec<Received>,
+    /// Standard error of the irradiance of the faces over the irradiance, RMS over faces and bands, where it was traced.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub standard_error: Option<f64>,
     /// Row sums of the form factors against 1.
     pub closure: Closure,
     /// Pairs of elements by the method that computed their form factor.
@@ -108,6 +115,8 @@ impl Default for RunRecord {
             history: History::default(),
             work: BTreeMap::new(),
             stop_reason: String::new(),
+            received: Vec::new(),
+            standard_error: None,
             closure: Closure::default(),
             pairs: BTreeMap::new(),
             mesh_error: None,
@@ -126,7 +135,7 @@ impl Default for RunRecord {
 }
 
 /// Sizes of a problem.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Counts {
     /// Named surfaces.
@@ -146,7 +155,7 @@ pub struct Counts {
 }
 
 /// Estimated error of the irradiance of faces from the size of the elements.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct MeshError {
     /// Relative L2 norm over the faces, per band.
@@ -156,7 +165,7 @@ pub struct MeshError {
 }
 
 /// Estimated error of the irradiance as piecewise polynomials E_h, from the iterated one H B_h.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct FieldError {
     /// ‖E_h − H B_h‖/‖H B_h‖ in L2 over the surfaces, per band.
@@ -164,7 +173,7 @@ pub struct FieldError {
 }
 
 /// Wall-clock time of a stage.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Timing {
     /// Name of the stage.
@@ -174,21 +183,35 @@ pub struct Timing {
 }
 
 /// Residuals along the way. All vectors have one entry a point; `residual` has one such vector a band.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct History {
     /// Iterations done.
     pub iterations: Vec<u64>,
     /// Seconds since the solver started.
-    #[serde(deserialize_with = "row")]
+    #[serde(deserialize_with = "reading::row")]
     pub seconds: Vec<f64>,
     /// ‖b − A x‖₂/‖b‖₂: `residual[band][point]`.
-    #[serde(deserialize_with = "rows")]
+    #[serde(deserialize_with = "reading::rows")]
     pub residual: Vec<Vec<f64>>,
 }
 
-/// How far the row sums `Σ_j F_ij` are from 1.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+/// Irradiance of the faces in a band, W/m².
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Received {
+    /// Name of the band.
+    pub band: String,
+    /// Area mean.
+    pub mean: f64,
+    /// Of the darkest face.
+    pub least: f64,
+    /// Of the brightest.
+    pub most: f64,
+}
+
+/// How far the row sums `Σ_j F_ij` are from 1, and where the light goes that they lack. A share is dimensionless.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Closure {
     /// Largest `|Σ_j F_ij − 1|`.
@@ -199,10 +222,20 @@ pub struct Closure {
     pub worst_element: Option<u64>,
     /// Surface of the largest.
     pub worst_surface: Option<String>,
+    /// What the row sums lack of 1, the mean over the exposed area.
+    pub missing: Option<f64>,
+    /// Rays that were cast from the wholly exposed elements, with even places and the directions of light.
+    pub rays: Option<u64>,
+    /// Share of them that meets nothing: the openings of the scene.
+    pub open: Option<f64>,
+    /// Share of them that ends on the back of a one-sided surface.
+    pub backs: Option<f64>,
+    /// Share of the area that is buried: other surfaces stand on it, and it sees nothing.
+    pub buried: Option<f64>,
 }
 
 /// Estimated error of the form factors.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct FormFactorError {
     /// Error asked for.
@@ -214,7 +247,7 @@ pub struct FormFactorError {
 }
 
 /// Energy balance of a band, W.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Energy {
     /// Name of the band.
@@ -225,19 +258,6 @@ pub struct Energy {
     pub absorbed: Option<f64>,
     /// What leaves through openings, `Σ A_i B_i (1 − Σ_j F_ij)`.
     pub escaped: Option<f64>,
-}
-
-fn row<'de, D: Deserializer<'de>>(source: D) -> Result<Vec<f64>, D::Error> {
-    Vec::<Option<f64>>::deserialize(source).map(numbers)
-}
-
-fn rows<'de, D: Deserializer<'de>>(source: D) -> Result<Vec<Vec<f64>>, D::Error> {
-    let rows = Vec::<Vec<Option<f64>>>::deserialize(source)?;
-    Ok(rows.into_iter().map(numbers).collect())
-}
-
-fn numbers(row: Vec<Option<f64>>) -> Vec<f64> {
-    row.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect()
 }
 
 /// Writes a run record as indented JSON.

@@ -5,12 +5,13 @@
 
 use std::io::{self, Write};
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use crate::csv::quoted;
 use crate::number::Number;
 use crate::plot::{Axis, Figure, Line, Panel, Part, Point, Span, write_svg};
-use crate::{ReportError, ResultFolder, Timing};
+use crate::{ReportError, ResultFolder, Timing, reading};
 
 /// Name of the format of `spectrum.json`.
 pub const SPECTRUM_FORMAT: &str = "fredholm-spectrum-1";
@@ -18,7 +19,8 @@ pub const SPECTRUM_FORMAT: &str = "fredholm-spectrum-1";
 pub const SPECTRUM_FILES: [&str; 3] = ["spectrum.csv", "spectrum.svg", "spectrum.json"];
 
 /// Everything that an analysis found.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct SpectrumRecord {
     /// [`SPECTRUM_FORMAT`].
     pub format: String,
@@ -39,15 +41,18 @@ pub struct SpectrumRecord {
 }
 
 /// The system of one band. What was not computed is missing.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct BandSpectrum {
     /// Name of the band.
     pub band: String,
     /// Spectral radius of R F.
+    #[serde(deserialize_with = "reading::number")]
     pub reflection_radius: f64,
     /// Spectral radius of Jacobi's iteration matrix.
     pub jacobi_radius: Option<f64>,
     /// Spectral radius of Gauss–Seidel's iteration matrix.
+    #[serde(deserialize_with = "reading::number")]
     pub gauss_seidel_radius: f64,
     /// cond₂ of Φ = I − R F.
     pub condition_phi: Option<f64>,
@@ -72,7 +77,8 @@ pub struct BandSpectrum {
 }
 
 /// Eigenvalues of one matrix.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct Eigenvalues {
     /// Name of the matrix.
     pub matrix: String,

@@ -48,7 +48,8 @@ pub struct Forecast {
     pub plan: Plan,
     /// Memory allowed.
     pub limit: Limit,
-    /// Seconds for the form factors, from a sample of their pairs; none for other discretisations.
+    /// Seconds that everything takes one thread, from samples of its parts; none for other
+    /// discretisations.
     pub seconds: Option<f64>,
     /// Warnings about the scene.
     pub warnings: Vec<String>,
@@ -90,7 +91,7 @@ pub fn check(
 fn forecast(problem: Problem, stages: &mut Stages) -> Result<Forecast, Error> {
     // The sample is one of pairs of elements.
     let seconds = if problem.is_radiosity() {
-        Some(stages.run("sample", || Ok(sample::assembly_seconds(&problem)))?)
+        Some(stages.run("sample", || Ok(sample::seconds(&problem)))?)
     } else {
         None
     };

@@ -41,6 +41,7 @@ mod judge;
 mod lamplight;
 mod memory;
 mod mesh_error;
+mod openness;
 mod options;
 mod pictures;
 mod prediction;
@@ -58,6 +59,7 @@ mod solve;
 mod spectrum;
 mod stages;
 mod stochastic;
+mod summary;
 mod threads;
 mod trace;
 mod trial;
@@ -88,13 +90,14 @@ pub use options::{
     FieldFile, GatherPoints, PointGrid, Precision, ProblemOptions, Recorded, SceneSource, SolveOptions,
     StopOptions, Way,
 };
-pub use reference::{ReferenceOptions, References, reference};
+pub use reference::{ReferenceOptions, reference};
 pub use registry::{SolverEntry, build as build_solver, names as solver_names, solvers};
 pub use shoot::{ShootOptions, shoot};
 pub use size::Bytes;
 pub use solve::{Ended, Solved, SurfaceLight, resume, solve};
 pub use spectrum::{SpectrumOptions, spectrum};
 pub use stochastic::{FIELD_METHODS, PathOptions, SamplePoints, TraceStop};
+pub use summary::{Lines, Made, Summarise, WaveRecord, extent, frequencies, info, summary};
 pub use threads::thread_pool;
 pub use trace::{LIGHT_METHODS, TraceOptions, Traced, trace};
 pub use viewfactors::{
@@ -102,6 +105,7 @@ pub use viewfactors::{
     point_closure, solve_view_factors, view_factor_methods, view_factors,
 };
 pub use waves::{
-    Balance, CheckedWaves, CouplingStorage, Estimated, Reciprocity, SolvedFrequency, SolvedWaves,
-    WaveCompareOptions, WaveOptions, build_wave_solver, check_wave_solver, check_waves, compare_waves, waves,
+    Balance, CheckedCoupling, CheckedWaves, CouplingStorage, Estimated, Reciprocity, SolvedFrequency,
+    SolvedWaves, WaveCompareOptions, WaveOptions, build_wave_solver, check_wave_solver, check_waves,
+    compare_waves, waves,
 };

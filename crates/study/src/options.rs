@@ -7,11 +7,12 @@ use std::sync::Arc;
 use fredholm_coupling::Receiver;
 use fredholm_mesh::Vec3;
 use fredholm_report::{FIELD_EXR, FIELD_GLB, FIELD_PLY, ResultFolder};
-use fredholm_scene::{Scene, SolveDefaults, Storage};
+use fredholm_scene::waves::is_wave_scene;
+use fredholm_scene::{Scene, SceneError, SolveDefaults, Storage};
 use serde::{Deserialize, Serialize, Serializer};
 use serde_json::{Map, Value};
 
-use crate::error::Error;
+use crate::error::{Error, ErrorKind};
 use crate::memory::{self, Limit, Plan};
 use crate::problem::scene_failure;
 use crate::size::Bytes;
@@ -52,7 +53,7 @@ impl SceneSource {
         stages.run("scene", || match self {
             Self::File(path) => {
                 admit_file(path, memory)?;
-                Scene::load(path).map(Arc::new).map_err(scene_failure)
+                Scene::load(path).map(Arc::new).map_err(|error| of_light(path, error))
             }
             Self::Scene(scene) => Ok(Arc::clone(scene)),
         })
@@ -65,6 +66,30 @@ impl SceneSource {
             Self::Scene(scene) => scene.path(),
         }
     }
+}
+
+/// What is wrong with a scene that was read as one of light: one of waves has a command of its own.
+fn of_light(path: &Path, error: SceneError) -> Error {
+    if !is_wave_scene(path) {
+        return scene_failure(error);
+    }
+    let shown = path.display();
+    let help = format!(
+        "compute its fields with `fredholm waves {shown}`; `fredholm check {shown}` tells what it is"
+    );
+    Error::new(ErrorKind::Input, format!("{shown} is a scene of waves, not of light")).with_help(help)
+}
+
+/// What is wrong with a scene that was read as one of waves, in the same way.
+pub(crate) fn of_waves(path: &Path, error: SceneError) -> Error {
+    if is_wave_scene(path) || Scene::load(path).is_err() {
+        return scene_failure(error);
+    }
+    let shown = path.display();
+    let help = format!(
+        "compute its light with `fredholm solve {shown}`; a scene of waves has a table [wave] (`fredholm schema --waves`)"
+    );
+    Error::new(ErrorKind::Input, format!("{shown} is a scene of light, not of waves")).with_help(help)
 }
 
 /// Bytes that reading takes for every byte of a scene file, and of a mesh: measured on files of 80 and 100 MB, rounded up.

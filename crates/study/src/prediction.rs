@@ -35,7 +35,7 @@ const LIT_VALUE: u128 = 24;
 const LIT_PIXEL: u128 = 32;
 /// Bytes of a pixel while the exposure is found, and in each picture: while it is drawn, and when
 /// all are taken apart. Besides, what the last rows take.
-const METERED: u128 = 10;
+const METERED: u128 = 14;
 const LAYER: u128 = 6;
 const ROWS: u128 = 2;
 /// Vectors of all bands held at once: system and results, and six sources of errors with their

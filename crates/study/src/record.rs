@@ -5,12 +5,13 @@ use std::collections::BTreeMap;
 use fredholm_coupling::MethodCounts;
 use fredholm_linop::{Report, StopReason, Work};
 use fredholm_report::{
-    Closure, Counts, Energy, FILES, FieldError, FormFactorError, Hierarchy, History, IMAGE, MeshError,
-    REPORT, RunRecord,
+    Closure, Counts, Energy, FILES, Field, FieldError, FormFactorError, Hierarchy, History, IMAGE, MeshError,
+    REPORT, Received, RunRecord,
 };
 use serde_json::Value;
 
 use crate::memory;
+use crate::openness::openness;
 use crate::options::SolveSettings;
 use crate::pictures;
 use crate::problem::Problem;
@@ -46,7 +47,8 @@ pub(crate) fn record(
         history: history(report, problem.scene.bands().len()),
         work: solution.paths.as_ref().map_or_else(|| work(&report.work), traced),
         stop_reason: reason(report.reason).to_owned(),
-        closure: closure(problem, &solution.closure),
+        received: field(problem, solution).map_or_else(Vec::new, |field| received(&field)),
+        closure: openness(closure(problem, &solution.closure, &solution.exposed), problem, &solution.exposed),
         form_factor_error: form_factor_error(options, solution),
         pairs: solution.methods.as_ref().map(pairs).unwrap_or_default(),
         mesh_error: solution.mesh_error.as_ref().map(mesh_error),
@@ -180,16 +182,40 @@ fn traced(paths: &Paths) -> BTreeMap<String, u64> {
     [("paths", paths.begun), ("rays", paths.rays)].map(|(name, count)| (name.to_owned(), count)).into()
 }
 
-fn closure(problem: &Problem, closure: &[f64]) -> Closure {
+/// The irradiance of the faces of a field, band by band.
+pub(crate) fn received(field: &Field<'_>) -> Vec<Received> {
+    let (faces, [irradiance, _]) = (field.mesh().faces(), field.face_means());
+    let (bands, area) = (field.bands(), faces.iter().map(|face| face.area).sum::<f64>());
+    let of = |(at, band): (usize, &String)| {
+        let all = || irradiance.iter().skip(at).step_by(bands.len()).copied();
+        Received {
+            band: band.clone(),
+            mean: all().zip(faces).map(|(e, face)| e * face.area).sum::<f64>() / area,
+            least: all().fold(f64::INFINITY, f64::min),
+            most: all().fold(0.0, f64::max),
+        }
+    };
+    if faces.is_empty() { Vec::new() } else { bands.iter().enumerate().map(of).collect() }
+}
+
+fn field<'a>(problem: &'a Problem, solution: &'a Solution) -> Option<Field<'a>> {
+    let (irradiance, radiosity) = (solution.means.irradiance.as_slice(), solution.means.radiosity.as_slice());
+    Field::new(&problem.mesh, problem.scene.bands(), irradiance, radiosity).ok()
+}
+
+fn closure(problem: &Problem, closure: &[f64], exposed: &[f64]) -> Closure {
     let mut found = Closure::default();
     if closure.is_empty() {
         return found;
     }
     let (mut sum, mut area) = (0.0, 0.0);
+    let (mut missing, mut seeing) = (0.0, 0.0);
     for (element, (patch, row)) in problem.mesh.patches().zip(closure).enumerate() {
         let defect = (row - 1.0).abs();
         sum += patch.area() * defect;
         area += patch.area();
+        missing += patch.area() * exposed[element] * (1.0 - row);
+        seeing += patch.area() * exposed[element];
         if found.max.is_none_or(|max| defect > max) {
             found.max = Some(defect);
             found.worst_element = Some(element as u64);
@@ -198,6 +224,7 @@ fn closure(problem: &Problem, closure: &[f64]) -> Closure {
     let surface = found.worst_element.map(|element| problem.mesh.surface_of(element as usize));
     found.worst_surface = surface.map(|surface| problem.mesh.surfaces()[surface].name.clone());
     found.mean = Some(sum / area);
+    found.missing = (seeing > 0.0).then_some(missing / seeing);
     found
 }
 

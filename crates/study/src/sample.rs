@@ -1,37 +1,96 @@
-//! The time of an assembly, from a sample of its pairs.
+//! The time of a solution on elements, before it is computed.
+//!
+//! What takes most of it is tried on a part: form factors of some panels, the exposure of some
+//! elements, and rows of the residual that states the error. A system of n unknowns and b bands
+//! takes n² b numbers an iteration, and an elimination n³/3 multiplications (Cholesky) to 2 n³/3.
+//! Times are those of one thread that has a core to itself.
 
-use std::time::{Duration, Instant};
+use std::fs;
+use std::sync::OnceLock;
+use std::time::Instant;
 
-use fredholm_coupling::form_factor::{PairIntegrator, Workspace};
-use fredholm_coupling::sample_pairs;
+use fredholm_coupling::{Constants, DRAWS, Extent, assembly_seconds, exposure_seconds};
+use fredholm_linop::MultiVector;
+use fredholm_mesh::Patch;
 
-use crate::problem::Problem;
-use crate::threads;
+use crate::problem::{Problem, pixels, prepare};
 
-/// Pairs sampled at most, and the time they may take.
-const PAIRS: usize = 20_000;
-const BUDGET: Duration = Duration::from_millis(500);
+/// Seconds that each sample may take.
+const BUDGET: f64 = 0.4;
+/// Seconds for a number of the matrix in a product, in one band; for a multiplication of an
+/// elimination; for a value in the files; and for a pixel of the picture. Measured on one core at
+/// 2 to 3 GHz (docs/notes/build.md).
+const NUMBER: f64 = 2.5e-10;
+const MULTIPLICATION: f64 = 5e-11;
+const VALUE: f64 = 2e-6;
+const PIXEL: f64 = 2e-6;
+/// Relative residual at which the sources of errors are no longer followed.
+const FOLLOWED: f64 = 1e-3;
 
-/// Seconds that the form factors will take: the mean time of a pair, times their number, over the
-/// threads.
-pub(crate) fn assembly_seconds(problem: &Problem) -> f64 {
-    let integrator = problem.integrator();
-    let pairs = integrator.len() as f64 * (integrator.len() as f64 - 1.0) / 2.0;
-    // More threads than cores take turns.
-    let at_once = problem.options.threads.min(threads::cores());
-    mean_seconds(&integrator) * pairs / at_once as f64
+/// Seconds that this thread has worked, where the system tells, else that have passed.
+fn spent() -> f64 {
+    static STARTED: OnceLock<Instant> = OnceLock::new();
+    // Nanoseconds on a processor, waiting for one, and turns.
+    let text = fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
+    let worked = text.split_ascii_whitespace().next().and_then(|first| first.parse::<f64>().ok());
+    let passed = STARTED.get_or_init(Instant::now).elapsed().as_secs_f64();
+    worked.filter(|&nanoseconds| nanoseconds > 0.0).map_or(passed, |nanoseconds| 1e-9 * nanoseconds)
 }
 
-fn mean_seconds(integrator: &PairIntegrator) -> f64 {
-    let mut work = Workspace::default();
-    let started = Instant::now();
-    let mut count = 0.0;
-    for [i, j] in sample_pairs(integrator.len()).take(PAIRS) {
-        std::hint::black_box(integrator.exchange(i, j, &mut work));
-        count += 1.0;
-        if started.elapsed() > BUDGET {
-            break;
-        }
+/// Seconds that a solution on the elements takes one thread, with its files and its picture.
+pub(crate) fn seconds(problem: &Problem) -> f64 {
+    let form_factors = assembly_seconds(&problem.integrator(), BUDGET, &spent);
+    let patches = problem.patches();
+    let owned: Vec<Patch> = problem.mesh.patches().copied().collect();
+    let exposure = prepare(&owned).map_or(0.0, |lit| exposure_seconds(&patches, &lit, BUDGET, &spent));
+    let values = problem.mesh.len() as f64 * problem.scene.bands().len() as f64;
+    let files = VALUE * values + PIXEL * pixels(&problem.scene) as f64;
+    form_factors + exposure + solving(problem) + errors(problem, &patches) + files
+}
+
+/// Seconds of the solver.
+fn solving(problem: &Problem) -> f64 {
+    let (n, bands) = (problem.unknowns as f64, problem.scene.bands().len() as f64);
+    if problem.solver.iterative {
+        NUMBER * n * n * bands * iterations(problem, TOLERANCE)
+    } else {
+        MULTIPLICATION * n.powi(3) * bands
     }
-    started.elapsed().as_secs_f64() / count
+}
+
+/// Usual residual.
+const TOLERANCE: f64 = 1e-10;
+
+/// Iterations to a residual: light that is reflected once loses 1 − ρ of its power, and a sweep
+/// follows two reflections.
+fn iterations(problem: &Problem, residual: f64) -> f64 {
+    let (mesh, bands) = (&problem.mesh, problem.scene.bands().len());
+    let reflectance = problem.scene.reflectance(mesh);
+    let area: f64 = mesh.patches().map(Patch::area).sum();
+    let mean = |band: usize| {
+        mesh.patches().enumerate().map(|(i, p)| p.area() * reflectance[i * bands + band]).sum::<f64>() / area
+    };
+    let rho = (0..bands).map(mean).fold(0.0, f64::max).clamp(0.1, 0.9999);
+    (residual.ln() / (2.0 * rho.ln())).max(1.0)
+}
+
+/// Seconds of the stated error: its residual, and the sources of errors that are followed.
+fn errors(problem: &Problem, patches: &[&Patch]) -> f64 {
+    let (n, bands) = (patches.len(), problem.scene.bands().len());
+    let elements: Vec<Extent> =
+        patches.iter().map(|p| Extent { area: p.area(), exposed: p.area() }).collect();
+    let Ok(reflectance) = problem.multivector(problem.scene.reflectance(&problem.mesh)) else { return 0.0 };
+    // Any light takes the same time.
+    let light = MultiVector::from_fn(n, bands, |i, _| 1.0 + i as f64 / n as f64);
+    let constants = Constants {
+        patches,
+        occluders: &problem.occluders,
+        elements: &elements,
+        reflectance: &reflectance,
+        radiosity: &light,
+        irradiance: &light,
+    };
+    let lanes = (DRAWS + 2) as f64 * bands as f64;
+    let followed = NUMBER * (n as f64).powi(2) * lanes * iterations(problem, FOLLOWED);
+    constants.seconds(BUDGET, &spent) + followed
 }

@@ -2,12 +2,11 @@
 
 use fredholm_scene::waves::is_wave_scene;
 use fredholm_scene::{Report, Scene};
-use fredholm_study::{Checked, Error, Forecast, ResultFolder, claim_folder_to_add};
+use fredholm_study::{Checked, Error, Forecast, Lines, ResultFolder, claim_folder_to_add, extent};
 
 use crate::args::CheckArgs;
 use crate::duration::in_words;
 use crate::ending::Ending;
-use crate::summary::{Lines, extent};
 use crate::terminal::Terminal;
 use crate::{output, start};
 
@@ -43,7 +42,7 @@ fn report(args: &CheckArgs, folder: Option<&ResultFolder>, terminal: &Terminal) 
     match forecast {
         Ok(forecast) => {
             solution(&forecast, &mut lines);
-            output::print(&lines.under(&format!("{}: a valid scene", scene.path().display())))?;
+            output::report(&lines.under(&format!("{}: a valid scene", scene.path().display())))?;
         }
         Err(error) => too_large(&scene, &error, lines)?,
     }
@@ -56,7 +55,7 @@ fn too_large(scene: &Scene, error: &Error, mut lines: Lines) -> Result<(), Error
     lines.add("instead", INSTEAD);
     scene.notes().iter().for_each(|note| lines.add("warning", note.to_string()));
     let heading = format!("{}: a valid scene whose matrix does not fit", scene.path().display());
-    output::print(&lines.under(&heading))
+    output::report(&lines.under(&heading))
 }
 
 /// What the solution will take.
@@ -68,7 +67,10 @@ fn solution(forecast: &Forecast, lines: &mut Lines) {
     lines.add("memory", format!("{}: {}", forecast.plan.peak(), forecast.plan));
     lines.add("memory limit", forecast.limit.to_string());
     let time = |seconds: f64| {
-        format!("{} for the form factors on {threads} threads, then {solver}", in_words(seconds))
+        let all = *threads as f64;
+        let shared =
+            if *threads > 1 { format!(", {} on {threads}", in_words(seconds / all)) } else { String::new() };
+        format!("{} on one thread{shared}, by {solver}", in_words(seconds))
     };
     lines.add_some("time", seconds.map(time));
     lines.add_some("instead", seconds.filter(|&seconds| seconds > LONG).map(|_| INSTEAD.to_owned()));

@@ -2,13 +2,12 @@
 
 use std::path::Path;
 
-use fredholm_study::{Error, Written};
+use fredholm_study::{Error, Lines, Written};
 
 use crate::args::{ConvertArgs, ExportArgs, LogArgs};
 use crate::ending::Ending;
 use crate::output;
 use crate::start::Start;
-use crate::summary::Lines;
 use crate::terminal::Terminal;
 
 /// Writes a scene for another program.
@@ -47,6 +46,6 @@ fn told(scene: &Path, written: &Written, log: LogArgs) -> Result<Ending, Error> 
             more.map(|path| if count > 1 { format!("{path} and {} more", count - 1) } else { path }),
         );
     }
-    output::print(&lines.under(&format!("{} → {main}", scene.display())))?;
+    output::report(&lines.under(&format!("{} → {main}", scene.display())))?;
     Ok(Ending::Done)
 }

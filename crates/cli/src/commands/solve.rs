@@ -1,15 +1,11 @@
 //! `fredholm solve`.
 
-use std::path::Path;
-
-use fredholm_report::{IMAGE, RunRecord};
 use fredholm_study::{Error, ResultFolder, Solved, Watch};
 
 use crate::args::{LogArgs, SolveArgs};
 use crate::ending::Ending;
 use crate::output;
 use crate::start::Start;
-use crate::summary::{Lines, quality};
 use crate::terminal::Terminal;
 
 /// Solves a scene and writes the results.
@@ -35,16 +31,6 @@ pub(super) fn finish(
     if terminal.interrupt.requested() && !record.partial {
         terminal.warn("interrupted when the solution was there: the solution is complete all the same");
     }
-    if !log.quiet {
-        summarise(folder.path(), &record)?;
-    }
+    output::summarise(&record, folder.path(), log)?;
     Ok(solved.ended().into())
-}
-
-fn summarise(folder: &Path, record: &RunRecord) -> Result<(), Error> {
-    let mut lines = Lines::default();
-    let picture = record.files.iter().any(|name| name == IMAGE);
-    lines.add_some("picture", picture.then(|| folder.join(IMAGE).display().to_string()));
-    quality(record, &mut lines);
-    output::print(&lines.under(&format!("{} → {}", record.scene, folder.display())))
 }

@@ -1,15 +1,17 @@
 //! What a comparison of solvers on one system comes to.
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::Timing;
+use crate::{Timing, reading};
 
 /// Name of the format of `compare.json`.
 pub const COMPARISON_FORMAT: &str = "fredholm-compare-1";
 
 /// Everything that made a comparison, and what it found.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct ComparisonRecord {
     /// [`COMPARISON_FORMAT`].
     pub format: String,
@@ -38,20 +40,24 @@ pub struct ComparisonRecord {
 }
 
 /// All solvers on one system.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct ComparisonCase {
     /// Largest reflectance of any material in any band.
+    #[serde(deserialize_with = "reading::number")]
     pub reflectance: f64,
     /// Solver that the errors are measured against.
     pub reference: String,
     /// Residual of the reference, worst band.
+    #[serde(deserialize_with = "reading::number")]
     pub reference_residual: f64,
     /// Solvers in the order asked for.
     pub runs: Vec<ComparisonRun>,
 }
 
 /// One solver on one system.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct ComparisonRun {
     /// The solver as it was asked for, options included.
     pub solver: String,
@@ -70,23 +76,29 @@ pub struct ComparisonRun {
     /// Stored entries read.
     pub entries: u64,
     /// Seconds.
+    #[serde(deserialize_with = "reading::number")]
     pub seconds: f64,
     /// ‖b − A x‖₂/‖b‖₂ at the end, worst band.
+    #[serde(deserialize_with = "reading::number")]
     pub residual: f64,
     /// ‖x − x*‖₂/‖x*‖₂ against the reference, worst band.
+    #[serde(deserialize_with = "reading::number")]
     pub error: f64,
     /// Residuals on the way.
     pub history: ComparisonHistory,
 }
 
 /// Residuals of a run, one entry an iteration from the start on.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct ComparisonHistory {
     /// Stored entries read by then.
     pub entries: Vec<u64>,
     /// Seconds by then.
+    #[serde(deserialize_with = "reading::row")]
     pub seconds: Vec<f64>,
     /// ‖b − A x‖₂/‖b‖₂, worst band.
+    #[serde(deserialize_with = "reading::row")]
     pub residual: Vec<f64>,
 }
 

@@ -10,9 +10,11 @@ mod bundle;
 mod pictures;
 mod table;
 
+use std::borrow::Cow;
 use std::io::{self, Write};
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 pub use bundle::{
     ReferenceFaces, ReferenceValues, read_reference_faces, read_reference_pixels, read_reference_record,
@@ -23,7 +25,7 @@ pub use table::read_measured_faces;
 use crate::csv::{numbers, quoted};
 use crate::stochastic::{json, score_colour};
 use crate::tone::encode;
-use crate::{CrosscheckPower, Picture, ReportError, ResultFolder, Timing, write_score_histogram};
+use crate::{CrosscheckPower, Picture, ReportError, ResultFolder, Timing, reading, write_score_histogram};
 
 /// Names of the files, in the order in which they are written.
 pub const JUDGE_FILES: [&str; 4] = ["judge.csv", "judge.svg", "judge.png", "judge.json"];
@@ -42,10 +44,11 @@ pub struct Measured {
 }
 
 /// One place in one band.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct JudgedPlace {
     /// `pixel`, `tile`, `picture`, or `face`, `surface`, `whole`.
-    pub kind: &'static str,
+    pub kind: Cow<'static, str>,
     /// Its number.
     pub place: usize,
     /// Where it is, in words.
@@ -57,15 +60,18 @@ pub struct JudgedPlace {
     /// The tracer's value and its standard error.
     pub found: [f64; 2],
     /// Normal score of the difference.
+    #[serde(deserialize_with = "reading::number")]
     pub z: f64,
     /// Two-sided probability of it.
+    #[serde(deserialize_with = "reading::number")]
     pub p: f64,
     /// Whether it is significant.
     pub significant: bool,
 }
 
 /// What a judgement came to.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct JudgeRecord {
     /// Format of the record: [`JUDGE_FORMAT`].
     pub format: String,
@@ -98,8 +104,10 @@ pub struct JudgeRecord {
     /// What would have been found; face, surface and whole stand for pixel, tile and picture.
     pub power: CrosscheckPower,
     /// Mean of the scores of faces or pixels, without those where neither side has an error.
+    #[serde(deserialize_with = "reading::number")]
     pub score_mean: f64,
     /// Mean of their squares.
+    #[serde(deserialize_with = "reading::number")]
     pub score_variance: f64,
     /// The worst places.
     pub worst: Vec<JudgedPlace>,

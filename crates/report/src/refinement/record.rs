@@ -4,6 +4,7 @@
 
 use std::io::{self, Write};
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -13,7 +14,7 @@ use crate::Timing;
 pub const REFINEMENT_FORMAT: &str = "fredholm-converge-1";
 
 /// A scene solved on meshes that are each twice as fine as the one before.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct RefinementRecord {
     /// [`REFINEMENT_FORMAT`].
@@ -59,7 +60,7 @@ impl Default for RefinementRecord {
 }
 
 /// One mesh and its solution.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct RefinementLevel {
     /// Number of refinements.
@@ -83,7 +84,7 @@ pub struct RefinementLevel {
 }
 
 /// Convergence of a band; vectors have an entry a level.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct BandConvergence {
     /// Name of the band.

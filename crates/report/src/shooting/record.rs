@@ -1,14 +1,16 @@
 //! The record of progressive radiosity without a matrix.
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-use crate::{MeshError, Timing};
+use crate::{MeshError, Timing, reading};
 
 /// Name of the format of `shots.json`.
 pub const SHOOTING_FORMAT: &str = "fredholm-shots-1";
 
 /// One shot, and where it has led.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct Shot {
     /// Elements that shot as one.
     pub elements: u64,
@@ -17,11 +19,13 @@ pub struct Shot {
     /// Seconds since the first shot began, without the pictures.
     pub seconds: f64,
     /// Share of the power of the solution that has been shot, at least, in the slowest band.
+    #[serde(deserialize_with = "reading::number")]
     pub distributed: f64,
 }
 
 /// Everything about a run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct ShootingRecord {
     /// [`SHOOTING_FORMAT`].
     pub format: String,
@@ -39,11 +43,14 @@ pub struct ShootingRecord {
     pub elements: u64,
     /// Number of elements and groups of elements that could shoot.
     pub groups: u64,
+    /// Whether the picture was drawn.
+    pub drawn: bool,
     /// Whether the share asked for was reached.
     pub reached: bool,
     /// Estimated error of the irradiance of the faces: of the mesh, and of what is unshot; none where the run was interrupted.
     pub mesh_error: Option<MeshError>,
     /// Largest estimated error of a form factor of the columns computed.
+    #[serde(deserialize_with = "reading::number")]
     pub form_factor_error: f64,
     /// Largest memory held, bytes, where the system tells.
     pub peak_memory_bytes: Option<u64>,
@@ -71,6 +78,7 @@ pub(super) mod tests {
             bands: vec!["grey".into()],
             elements: 8,
             groups: 12,
+            drawn: true,
             reached: false,
             mesh_error: None,
             form_factor_error: 1e-4,

@@ -7,12 +7,15 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 
 use fredholm_mesh::Mesh;
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::faces::{COLUMNS, place};
 use super::histogram::write_score_histogram;
 use crate::csv::{numbers, quoted};
-use crate::{Picture, REPORT, ReportError, ReportModel, ReportPage, ResultFolder, Timing, View, face_scores};
+use crate::{
+    Picture, REPORT, ReportError, ReportModel, ReportPage, ResultFolder, Timing, View, face_scores, reading,
+};
 
 /// Names of the files, in the order in which they are written.
 pub const CROSSCHECK_FILES: [&str; 4] =
@@ -40,7 +43,8 @@ pub struct CrosscheckRow {
 }
 
 /// A place far apart.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct WorstPlace {
     /// `face`, `surface`, `whole`, or `point` of a receiver.
     pub kind: String,
@@ -53,13 +57,16 @@ pub struct WorstPlace {
     /// The band, or component and frequency.
     pub band: String,
     /// The score.
+    #[serde(deserialize_with = "reading::number")]
     pub z: f64,
     /// Difference over the deterministic value.
+    #[serde(deserialize_with = "reading::number")]
     pub relative: f64,
 }
 
 /// The smallest deviations that would have been found nine times out of ten, over the irradiance; none where nothing is lit.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct CrosscheckPower {
     /// Of the mean over everything, in the worst band.
     pub whole: Option<f64>,
@@ -70,7 +77,8 @@ pub struct CrosscheckPower {
 }
 
 /// What a comparison came to.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct CrosscheckRecord {
     /// Format of the record: [`CROSSCHECK_FORMAT`].
     pub format: String,
@@ -94,8 +102,10 @@ pub struct CrosscheckRecord {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub power: Option<CrosscheckPower>,
     /// Mean of the scores, and mean of their squares.
+    #[serde(deserialize_with = "reading::number")]
     pub score_mean: f64,
     /// Mean of the squares of the scores.
+    #[serde(deserialize_with = "reading::number")]
     pub score_variance: f64,
     /// The worst places.
     pub worst: Vec<WorstPlace>,
@@ -106,6 +116,7 @@ pub struct CrosscheckRecord {
     /// Batches.
     pub batches: u64,
     /// Relative standard error, RMS over the faces.
+    #[serde(deserialize_with = "reading::number")]
     pub relative_error: f64,
     /// Deterministic solver.
     pub solver: String,

@@ -9,6 +9,7 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 
 use fredholm_mesh::Mesh;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Pixels;
@@ -40,7 +41,7 @@ pub struct ReferenceTable {
 
 /// The camera whose pixels are known, and how they were sampled. A sample is at an even place of its
 /// pixel (a box filter).
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ReferencePixels {
     /// Where the eye stands, m.
     pub eye: [f64; 3],
@@ -65,7 +66,7 @@ pub struct ReferencePixels {
 }
 
 /// What made the values.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct ReferenceRecord {
     /// Format of the record: [`REFERENCE_FORMAT`].
@@ -82,6 +83,8 @@ pub struct ReferenceRecord {
     pub method: String,
     /// Names of the bands.
     pub bands: Vec<String>,
+    /// Number of faces.
+    pub faces: usize,
     /// Stated error over the value, RMS over faces and bands.
     pub relative_error: f64,
     /// Error asked for in a row of form factors.

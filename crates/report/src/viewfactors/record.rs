@@ -5,6 +5,7 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -15,7 +16,7 @@ use crate::{Closure, FormFactorError, Timing};
 pub const VIEW_FACTORS_FORMAT: &str = "fredholm-viewfactors-1";
 
 /// What made a matrix of view factors, and how far it can be trusted. Reading is lenient, as of a run record.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct ViewFactorsRecord {
     /// [`VIEW_FACTORS_FORMAT`].
@@ -57,7 +58,7 @@ pub struct ViewFactorsRecord {
 }
 
 /// What enforcing closure changed.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct ClosureChange {
     /// Largest `|Σ_j F_ij − 1|` before.

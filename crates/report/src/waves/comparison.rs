@@ -7,13 +7,14 @@
 
 use std::io::{self, Write};
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::csv::quoted;
 use crate::number::Number;
 use crate::plot::{Axis, Figure, Line, Panel, Part, Point, Span, write_svg};
-use crate::{COMPARISON_FILES, ComparisonRun, ReportError, ResultFolder, Timing};
+use crate::{COMPARISON_FILES, ComparisonRun, ReportError, ResultFolder, Timing, reading};
 
 /// Name of the format of `compare.json`.
 pub const WAVE_COMPARISON_FORMAT: &str = "fredholm-waves-compare-1";
@@ -24,7 +25,8 @@ const HISTORY_COLUMNS: &str = "frequency,solver,iteration,entries,seconds,residu
 const RESIDUAL: &str = "relative residual ‖b − x + K x‖ / ‖b‖";
 
 /// What solvers did, and what made it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct WaveComparison {
     /// [`WAVE_COMPARISON_FORMAT`].
     pub format: String,
@@ -41,13 +43,15 @@ pub struct WaveComparison {
 }
 
 /// All solvers on one system.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct WaveComparisonCase {
     /// Frequency, Hz.
     pub frequency: f64,
     /// Complex unknowns.
     pub unknowns: u64,
     /// Estimate of ϱ(K): the series of bounces converges where it is below 1.
+    #[serde(deserialize_with = "reading::number")]
     pub spectral_radius: f64,
     /// Solver that the errors are measured against.
     pub reference: String,

@@ -197,7 +197,7 @@ impl Sides<'_> {
         let at = place.index;
         let (kind, number, name, band) = self.known.named(at);
         JudgedPlace {
-            kind,
+            kind: kind.into(),
             place: number,
             name,
             band: self.record.bands[band].clone(),

@@ -62,18 +62,10 @@ pub struct ReferenceOptions {
     pub problem: ProblemOptions,
 }
 
-/// Reference values, which are written.
-#[derive(Clone, Debug)]
-pub struct References {
-    /// The record of the run.
-    pub record: ReferenceRecord,
-    /// Number of faces.
-    pub faces: usize,
-}
-
 /// Solves a scene, traces it with the solution as control variate, and writes the irradiance of
 /// every face and the radiosity of every pixel with their stated errors into a folder, with the scene
 /// for Mitsuba 3 and pbrt-v4 where its bands are colours or grey, and a script that judges Mitsuba.
+/// The record is returned.
 ///
 /// The camera is that of the scene; without one it takes in the whole scene. An eye that would see a
 /// wall from behind is moved through it.
@@ -87,7 +79,7 @@ pub fn reference(
     asked: &ReferenceOptions,
     folder: &ResultFolder,
     watch: &dyn Watch,
-) -> Result<References, Error> {
+) -> Result<ReferenceRecord, Error> {
     let mut stages = Stages::new(watch).part("reference");
     let (problem, settings) = load(&source.into(), asked, &mut stages)?;
     let camera = sized(camera(&problem.scene)?, asked.size)?;
@@ -105,7 +97,7 @@ pub fn reference(
     let record = record(&problem, &table, (&state, seen), &stages);
     scenes(&problem, &camera, folder)?;
     write_reference(folder, &problem.mesh, (&table, &pixels), &record).map_err(report_failure)?;
-    Ok(References { record, faces: problem.mesh.faces().len() })
+    Ok(record)
 }
 
 /// The camera with a picture of the size asked for, or else of a longer side that is not too long.
@@ -255,6 +247,7 @@ fn record(
         conventions: conventions.map(str::to_owned).to_vec(),
         method: "path tracing, the deterministic solution as control variate".to_owned(),
         bands: problem.scene.bands().to_vec(),
+        faces: problem.mesh.faces().len(),
         relative_error: relative(&table.irradiance, &table.error),
         form_factor_tolerance: problem.options.form_factor_tolerance,
         seed: state.seed,

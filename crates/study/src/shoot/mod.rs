@@ -218,6 +218,7 @@ fn shooting_record(
         bands: scene.scene.bands().to_vec(),
         elements: scene.mesh.len() as u64,
         groups: emitters.count() as u64,
+        drawn: !asked.no_pictures,
         reached: shots.last().is_none_or(|shot| shot.distributed >= asked.share),
         mesh_error: error.as_ref().map(record::mesh_error),
         form_factor_error: emitters.largest_error(),

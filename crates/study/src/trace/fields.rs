@@ -112,6 +112,7 @@ fn record(
         means: "random samples; standard errors in receivers.csv".to_owned(),
         solver: asked.method.clone(),
         stop_reason: states.last().map_or(String::new(), |state| run.reason(state)),
+        standard_error: states.iter().map(FieldEstimate::relative_error).reduce(f64::max),
         partial: stages.is_cancelled(),
         ..RunRecord::default()
     }

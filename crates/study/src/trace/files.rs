@@ -13,44 +13,10 @@ use super::InForce;
 use super::saved::Origin;
 use crate::error::Error;
 use crate::memory;
+use crate::record::received;
 use crate::solve::{report_failure, view_of};
 use crate::stages::Stages;
 use crate::stochastic::Ground;
-
-/// Everything that is worth knowing of a traced run.
-pub(super) fn record(
-    ground: &Ground,
-    state: &State,
-    options: &InForce<'_>,
-    reason: String,
-    stages: &Stages,
-) -> RunRecord {
-    let (scene, mesh) = (&ground.scene, &ground.mesh);
-    RunRecord {
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        scene: scene.path().display().to_string(),
-        scene_sha256: scene.sha256().to_owned(),
-        options: serde_json::to_value(options).unwrap_or(Value::Null),
-        bands: scene.bands().to_vec(),
-        counts: Counts {
-            surfaces: mesh.surfaces().len() as u64,
-            faces: mesh.faces().len() as u64,
-            elements: mesh.len() as u64,
-            occluders: mesh.occluders().len() as u64,
-            bands: scene.bands().len() as u64,
-            ..Counts::default()
-        },
-        timings: stages.timings().to_vec(),
-        peak_memory_bytes: memory::peak_bytes(),
-        means: "random paths; standard errors in faces.csv".to_owned(),
-        solver: state.method.clone(),
-        work: work(state),
-        stop_reason: reason,
-        warnings: ground.warnings.clone(),
-        partial: stages.is_cancelled(),
-        ..RunRecord::default()
-    }
-}
 
 fn work(state: &State) -> BTreeMap<String, u64> {
     let counters = [
@@ -83,6 +49,42 @@ impl<'a> Estimates<'a> {
         Field::new(mesh, bands, self.state.patches.mean(), &self.radiosity)
             .and_then(|field| field.with_exitance(&self.exitance))
             .map_err(report_failure)
+    }
+
+    /// Everything that is worth knowing of the run.
+    pub(super) fn record(
+        &self,
+        options: &InForce<'_>,
+        reason: String,
+        stages: &Stages,
+    ) -> Result<RunRecord, Error> {
+        let (scene, mesh) = (&self.ground.scene, &self.ground.mesh);
+        Ok(RunRecord {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            scene: scene.path().display().to_string(),
+            scene_sha256: scene.sha256().to_owned(),
+            options: serde_json::to_value(options).unwrap_or(Value::Null),
+            bands: scene.bands().to_vec(),
+            counts: Counts {
+                surfaces: mesh.surfaces().len() as u64,
+                faces: mesh.faces().len() as u64,
+                elements: mesh.len() as u64,
+                occluders: mesh.occluders().len() as u64,
+                bands: scene.bands().len() as u64,
+                ..Counts::default()
+            },
+            timings: stages.timings().to_vec(),
+            peak_memory_bytes: memory::peak_bytes(),
+            means: "random paths; standard errors in faces.csv".to_owned(),
+            solver: self.state.method.clone(),
+            work: work(self.state),
+            stop_reason: reason,
+            received: received(&self.field()?),
+            standard_error: Some(self.state.relative_error()),
+            warnings: self.ground.warnings.clone(),
+            partial: stages.is_cancelled(),
+            ..RunRecord::default()
+        })
     }
 
     /// Where pictures are taken from.

@@ -121,7 +121,7 @@ fn run(
         Some(tracer) if !stages.is_cancelled() => stages.run("picture", || Ok(tracer.trace(watch)))?,
         _ => None,
     };
-    let record = files::record(&ground, &state, &in_force(asked, stop), reason, stages);
+    let record = estimates.record(&in_force(asked, stop), reason, stages)?;
     let drawn = (!asked.no_pictures, pixels.as_ref());
     stages.run("results", || estimates.write(folder, &origin, drawn, &record))?;
     let ended = if stages.is_cancelled() { Ended::Interrupted } else { Ended::Done };

@@ -30,9 +30,8 @@ pub struct CheckedWaves {
     pub facets: usize,
     /// Surfaces.
     pub surfaces: usize,
-    /// Unknowns of the coupling, where there is more than one bounce, and the bytes of its matrix
-    /// where that is stored.
-    pub coupling: Option<(usize, Bytes)>,
+    /// The coupling, where there is more than one bounce.
+    pub coupling: Option<CheckedCoupling>,
     /// Points and directions of all receivers.
     pub places: u128,
     /// Memory by use, but for the coupling.
@@ -43,6 +42,17 @@ pub struct CheckedWaves {
     pub findings: Vec<Finding>,
     /// What is allowed, but probably not meant.
     pub warnings: Vec<String>,
+}
+
+/// The coupling of the facets or edges of a scene of waves.
+#[derive(Clone, Copy, Debug)]
+pub struct CheckedCoupling {
+    /// Unknowns.
+    pub unknowns: usize,
+    /// Bytes of its matrix where that is stored whole.
+    pub bytes: Bytes,
+    /// Whether it will be compressed, unless a scene or an option says otherwise.
+    pub compressed: bool,
 }
 
 /// Validates a scene of waves, tells what its mesh is, and predicts what its fields will take.
@@ -75,14 +85,16 @@ pub fn check_waves(
     })
 }
 
-/// Unknowns and bytes of the coupling, where there is one, of a scatterer that the method admits at
+/// The coupling, where there is one, of a scatterer that the method admits at
 /// all frequencies.
-fn admitted(model: &Model) -> Result<Option<(usize, Bytes)>, Error> {
+fn admitted(model: &Model) -> Result<Option<CheckedCoupling>, Error> {
     let refused = |error: WaveError| model.refused(&error, None);
     if model.galerkin.is_some() {
         let unknowns = galerkin::basis(model, &model.geometry)?.len();
-        let bytes = Dense::<Complex64>::bytes(unknowns);
-        return Ok(Some((unknowns, Bytes(bytes.into()))));
+        let bytes = Bytes(Dense::<Complex64>::bytes(unknowns).into());
+        let fits = model.plan.clone().hold("the matrix", bytes.0).fits(model.limit);
+        let compressed = galerkin::is_quicker_compressed(model, unknowns) || !fits;
+        return Ok(Some(CheckedCoupling { unknowns, bytes, compressed }));
     }
     let mut coupling = None;
     for band in &model.bands {
@@ -91,7 +103,11 @@ fn admitted(model: &Model) -> Result<Option<(usize, Bytes)>, Error> {
         if !model.is_closed_form() {
             scatterer.check_resolution(&band.wave).map_err(refused)?;
         }
-        coupling = Some((System::unknowns(&scatterer), Bytes(System::bytes(&scatterer).into())));
+        coupling = Some(CheckedCoupling {
+            unknowns: System::unknowns(&scatterer),
+            bytes: Bytes(System::bytes(&scatterer).into()),
+            compressed: false,
+        });
     }
     Ok(coupling.filter(|_| !matches!(model.method, Method::Bounces(1))))
 }

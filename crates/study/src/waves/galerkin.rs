@@ -198,6 +198,20 @@ enum Matrix {
     Compressed(Box<Compressed>),
 }
 
+/// Most right-hand sides that a model has at once.
+fn lanes(model: &Model) -> usize {
+    let of = |receiver: &Receiver| match &receiver.places {
+        Places::Monostatic(angles) => 2 * angles.len(),
+        _ => 1,
+    };
+    model.receivers.iter().map(of).max().unwrap_or(1)
+}
+
+/// Whether a compressed matrix of so many unknowns takes less time than a whole one.
+pub(super) fn is_quicker_compressed(model: &Model, unknowns: usize) -> bool {
+    model.galerkin == Some(Equations::Combined) && unknowns > MANY && lanes(model) <= FEW
+}
+
 struct Compressed {
     matrix: Hierarchical<Complex64>,
     inverse: BlockDiagonal<Complex64>,
@@ -245,12 +259,7 @@ impl Task<'_> {
         let compress = match self.model.storage {
             Some(storage) => storage == CouplingStorage::Compressed,
             None if self.needs_matrix() => false,
-            None => {
-                let quicker = self.model.galerkin == Some(Equations::Combined)
-                    && unknowns > MANY
-                    && self.lanes() <= FEW;
-                quicker || !plan.fits(self.model.limit)
-            }
+            None => is_quicker_compressed(self.model, unknowns) || !plan.fits(self.model.limit),
         };
         if compress {
             return self.compressed(signals);
@@ -318,11 +327,7 @@ impl Task<'_> {
 
     /// Most right-hand sides that are solved for at once.
     fn lanes(&self) -> usize {
-        let of = |receiver: &Receiver| match &receiver.places {
-            Places::Monostatic(angles) => 2 * angles.len(),
-            _ => 1,
-        };
-        self.model.receivers.iter().map(of).max().unwrap_or(1)
+        lanes(self.model)
     }
 
     fn solve(

@@ -19,7 +19,7 @@ mod solving;
 mod study;
 
 pub use balance::{Balance, Reciprocity};
-pub use check::{CheckedWaves, check_waves};
+pub use check::{CheckedCoupling, CheckedWaves, check_waves};
 pub(crate) use compare::compare;
 pub(crate) use compute::compute;
 pub use estimate::Estimated;

@@ -17,7 +17,7 @@ use super::geometry::Geometry;
 use super::memory::{plan as memory_of, sampled};
 use crate::error::Error;
 use crate::memory::{self, Limit, Plan};
-use crate::options::admit_file;
+use crate::options::{admit_file, of_waves};
 use crate::problem::scene_failure;
 use crate::size::Bytes;
 use crate::stages::Stages;
@@ -134,7 +134,7 @@ impl Model {
         memory_of: &dyn Fn(u128, &WaveScene) -> Plan,
     ) -> Result<Self, Error> {
         admit_file(path, memory)?;
-        let scene = Arc::new(WaveScene::load(path).map_err(scene_failure)?);
+        let scene = Arc::new(WaveScene::load(path).map_err(|error| of_waves(path, error))?);
         let settings = scene.settings();
         let estimated = estimated || settings.estimate_errors;
         let asked = asked(&scene)?;

@@ -8,6 +8,7 @@ use super::Model;
 use super::balance::{Balance, Reciprocity};
 use super::estimate::Estimated;
 use super::files::is_table;
+use crate::summary::WAVES_FORMAT;
 
 /// How the currents at one frequency were found.
 #[derive(Clone, Debug)]
@@ -81,7 +82,7 @@ impl Outcome {
             })
         };
         json!({
-            "format": "fredholm-waves-run/1",
+            "format": WAVES_FORMAT,
             "program": concat!("fredholm ", env!("CARGO_PKG_VERSION")),
             "scene": model.path(),
             "scene_sha256": model.scene.sha256(),
