@@ -293,3 +293,20 @@ fn what_memory_ends_says_so_and_states_no_error_that_is_not_known() {
     }
     assert!(unknown > 0);
 }
+
+#[test]
+fn nearly_white_rooms_keep_their_energy_within_the_stated_error() {
+    for rho in ["0.99", "0.999", "0.9999"] {
+        let bench =
+            Bench::new(&room(2).replace("reflectance = [0.7, 0.5]", &format!("reflectance = [{rho}, 0.5]")));
+        for accuracy in ["5%", "1%"] {
+            bench.solve(&["--accuracy", accuracy, "--no-pictures", "--no-report", "-o", "out"]);
+            let record = bench.record("out");
+            let stated = record["hierarchy"]["stated"].as_f64().unwrap();
+            let [emitted, absorbed] =
+                ["emitted", "absorbed"].map(|power| record["energy"][0][power].as_f64().unwrap());
+            let off = (absorbed / emitted - 1.0).abs();
+            assert!(off < stated, "{rho} at {accuracy}: {off:.1e} off, {stated:.1e} stated");
+        }
+    }
+}

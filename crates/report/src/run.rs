@@ -210,7 +210,7 @@ pub struct Received {
     pub most: f64,
 }
 
-/// How far the row sums `Σ_j F_ij` are from 1, and where the light goes that they lack. A share is dimensionless.
+/// How far the row sums `Σ_j F_ij` of the elements that see anything are from 1, and where the light goes that they lack. A share is dimensionless.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Closure {
@@ -222,16 +222,16 @@ pub struct Closure {
     pub worst_element: Option<u64>,
     /// Surface of the largest.
     pub worst_surface: Option<String>,
-    /// What the row sums lack of 1, the mean over the exposed area.
-    pub missing: Option<f64>,
-    /// Rays that were cast from the wholly exposed elements, with even places and the directions of light.
+    /// Share of the area that sees nothing: other surfaces stand on it, it lies on one, or it looks into the void.
+    pub blind: Option<f64>,
+    /// Rays that were cast from the elements all of which sees something, with even places and the directions of light.
     pub rays: Option<u64>,
     /// Share of them that meets nothing: the openings of the scene.
     pub open: Option<f64>,
     /// Share of them that ends on the back of a one-sided surface.
     pub backs: Option<f64>,
-    /// Share of the area that is buried: other surfaces stand on it, and it sees nothing.
-    pub buried: Option<f64>,
+    /// What the row sums of these elements lack of 1, the area mean.
+    pub missing: Option<f64>,
 }
 
 /// Estimated error of the form factors.

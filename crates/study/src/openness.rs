@@ -30,18 +30,29 @@ struct Ends {
     back: usize,
 }
 
-/// Adds to a closure what is buried of the area, and where light goes from the rest; `exposed` has
-/// the share of every element that is not buried.
-pub(crate) fn openness(closure: Closure, problem: &Problem, exposed: &[f64]) -> Closure {
+/// Row sums below which an element sees nothing.
+pub(crate) const BLIND: f64 = 1e-9;
+
+/// Adds to a closure how much of the area sees nothing, and where light goes from the rest; `exposed`
+/// has the share of every element that is not buried, `rows` its row sums where they are known.
+pub(crate) fn openness(closure: Closure, problem: &Problem, exposed: &[f64], rows: &[f64]) -> Closure {
     let mesh = &problem.mesh;
     let areas: Vec<f64> = mesh.patches().map(Patch::area).collect();
     let area: f64 = areas.iter().sum();
-    let buried: f64 = areas.iter().zip(exposed).map(|(area, share)| area * (1.0 - share)).sum();
-    let closure = Closure { buried: (area > 0.0).then_some(buried / area), ..closure };
-    let whole: Vec<usize> = (0..areas.len()).filter(|&i| exposed[i] >= 1.0 && areas[i] > 0.0).collect();
+    // A face that lies on another looks into the void, as a ray does that begins there.
+    let sees = |i: usize| rows.get(i).is_none_or(|&row| row > BLIND);
+    let seeing: f64 = (0..areas.len()).filter(|&i| sees(i)).map(|i| areas[i] * exposed[i]).sum();
+    let closure = Closure { blind: (area > 0.0).then_some((1.0 - seeing / area).max(0.0)), ..closure };
+    let whole: Vec<usize> =
+        (0..areas.len()).filter(|&i| exposed[i] >= 1.0 && areas[i] > 0.0 && sees(i)).collect();
+    let missing = |i: &usize| rows.get(*i).map(|row| areas[*i] * (1.0 - row));
+    let lacking: Option<f64> = whole.iter().map(missing).sum();
+    let total: f64 = whole.iter().map(|&i| areas[i]).sum();
+    let missing = lacking.filter(|_| total > 0.0).map(|lacking| lacking / total);
     let Some(ends) = ends(&whole, &areas, problem) else { return closure };
     let share = |count: usize| Some(count as f64 / RAYS as f64);
-    Closure { rays: Some(RAYS as u64), open: share(ends.nowhere), backs: share(ends.back), ..closure }
+    let (open, backs) = (share(ends.nowhere), share(ends.back));
+    Closure { rays: Some(RAYS as u64), open, backs, missing, ..closure }
 }
 
 /// Where the rays from these elements end; none where there are no elements.

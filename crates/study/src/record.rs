@@ -11,7 +11,7 @@ use fredholm_report::{
 use serde_json::Value;
 
 use crate::memory;
-use crate::openness::openness;
+use crate::openness::{BLIND, openness};
 use crate::options::SolveSettings;
 use crate::pictures;
 use crate::problem::Problem;
@@ -48,7 +48,7 @@ pub(crate) fn record(
         work: solution.paths.as_ref().map_or_else(|| work(&report.work), traced),
         stop_reason: reason(report.reason).to_owned(),
         received: field(problem, solution).map_or_else(Vec::new, |field| received(&field)),
-        closure: openness(closure(problem, &solution.closure, &solution.exposed), problem, &solution.exposed),
+        closure: openness(closure(problem, &solution.closure), problem, &solution.exposed, &solution.closure),
         form_factor_error: form_factor_error(options, solution),
         pairs: solution.methods.as_ref().map(pairs).unwrap_or_default(),
         mesh_error: solution.mesh_error.as_ref().map(mesh_error),
@@ -203,19 +203,20 @@ fn field<'a>(problem: &'a Problem, solution: &'a Solution) -> Option<Field<'a>> 
     Field::new(&problem.mesh, problem.scene.bands(), irradiance, radiosity).ok()
 }
 
-fn closure(problem: &Problem, closure: &[f64], exposed: &[f64]) -> Closure {
+fn closure(problem: &Problem, closure: &[f64]) -> Closure {
     let mut found = Closure::default();
     if closure.is_empty() {
         return found;
     }
     let (mut sum, mut area) = (0.0, 0.0);
-    let (mut missing, mut seeing) = (0.0, 0.0);
     for (element, (patch, row)) in problem.mesh.patches().zip(closure).enumerate() {
+        // What sees nothing has no error.
+        if *row <= BLIND {
+            continue;
+        }
         let defect = (row - 1.0).abs();
         sum += patch.area() * defect;
         area += patch.area();
-        missing += patch.area() * exposed[element] * (1.0 - row);
-        seeing += patch.area() * exposed[element];
         if found.max.is_none_or(|max| defect > max) {
             found.max = Some(defect);
             found.worst_element = Some(element as u64);
@@ -223,8 +224,7 @@ fn closure(problem: &Problem, closure: &[f64], exposed: &[f64]) -> Closure {
     }
     let surface = found.worst_element.map(|element| problem.mesh.surface_of(element as usize));
     found.worst_surface = surface.map(|surface| problem.mesh.surfaces()[surface].name.clone());
-    found.mean = Some(sum / area);
-    found.missing = (seeing > 0.0).then_some(missing / seeing);
+    found.mean = (area > 0.0).then_some(sum / area);
     found
 }
 

@@ -23,7 +23,7 @@ const BUDGET: f64 = 0.4;
 const NUMBER: f64 = 2.5e-10;
 const MULTIPLICATION: f64 = 5e-11;
 const VALUE: f64 = 2e-6;
-const PIXEL: f64 = 2e-6;
+const PIXEL: f64 = 1e-6;
 /// Relative residual at which the sources of errors are no longer followed.
 const FOLLOWED: f64 = 1e-3;
 

@@ -66,7 +66,7 @@ pub(super) fn percent(part: f64) -> String {
     let percent = 100.0 * part;
     match percent.abs() {
         0.0 => "0 %".to_owned(),
-        size if size < 0.01 || size >= 1e4 => format!("{percent:.1e} %"),
+        size if !(0.01..1e4).contains(&size) => format!("{percent:.1e} %"),
         size => {
             let digits = (1.0 - size.log10().floor()).clamp(0.0, 4.0);
             format!("{percent:.0$} %", digits as usize)

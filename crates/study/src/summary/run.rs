@@ -125,20 +125,15 @@ fn stated(run: &RunRecord) -> Stated {
         );
         return Stated { text, closer: (worst > LARGE).then(|| "use more elements".to_owned()) };
     }
-    match run.mesh_error.as_ref().and_then(|error| worst(&error.relative_l2)) {
-        Some(worst) => {
-            let text =
-                format!("{} of the irradiance of the faces (L2, worst band; estimate)", percent(worst));
-            Stated { text, closer: finer(Some(worst)) }
-        }
-        None => {
-            let why = match run.stop_reason.as_str() {
-                "converged" => "what the form factors lose or add has no end",
-                _ => "that takes a solution within the tolerance",
-            };
-            Stated { text: format!("not known: {why}"), closer: further(run) }
-        }
+    if let Some(worst) = run.mesh_error.as_ref().and_then(|error| worst(&error.relative_l2)) {
+        let text = format!("{} of the irradiance of the faces (L2, worst band; estimate)", percent(worst));
+        return Stated { text, closer: finer(Some(worst)) };
     }
+    let why = match run.stop_reason.as_str() {
+        "converged" => "what the form factors lose or add has no end",
+        _ => "that takes a solution within the tolerance",
+    };
+    Stated { text: format!("not known: {why}"), closer: further(run) }
 }
 
 /// How an error that is stated becomes smaller.
@@ -199,10 +194,9 @@ fn closure(run: &RunRecord, lines: &mut Lines) {
         }
         _ => lines.add_some("closure", off),
     }
-    let buried = found.buried.filter(|&share| share > 0.0);
-    let text =
-        |share| format!("{} of the area: other surfaces stand on it, and it sees nothing", percent(share));
-    lines.add_some("buried", buried.map(text));
+    let blind = found.blind.filter(|&share| share > 0.0);
+    let why = "other surfaces stand on it, it lies on one, or it looks into the void";
+    lines.add_some("sees nothing", blind.map(|share| format!("{} of the area: {why}", percent(share))));
 }
 
 fn openings(closure: &Closure, [open, backs]: [f64; 2], rays: u64) -> String {
