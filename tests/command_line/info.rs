@@ -86,7 +86,7 @@ fn what_is_no_result_is_refused_with_a_way_out() {
 #[test]
 fn the_command_for_a_scene_is_named_where_another_was_taken() {
     let bench = bench();
-    for command in ["solve", "trace", "shoot", "compare", "spectrum", "crosscheck", "reference"] {
+    for command in ["solve", "trace", "shoot", "compare", "spectrum", "reference"] {
         let run = bench.run(&[command, "plate.toml"]);
         assert_eq!(run.code, 2, "{command}: {}", run.stderr);
         for words in ["plate.toml is a scene of waves, not of light", "`fredholm waves plate.toml`"] {
