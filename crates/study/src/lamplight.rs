@@ -108,7 +108,7 @@ impl LampLight for Lamplight<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::options::{ProblemSettings, SceneSource};
+    use crate::options::{ProblemOptions, ProblemSettings, SceneSource};
     use crate::solve::view_of;
     use crate::stages::Stages;
     use fredholm_linop::Quiet;
@@ -122,7 +122,7 @@ mod tests {
         let source = SceneSource::from(&path);
         let mut stages = Stages::new(&Quiet);
         let scene = source.load(None, &mut stages).unwrap();
-        let options = ProblemSettings::new(&Default::default(), scene.solve());
+        let options = ProblemSettings::new(&ProblemOptions::default(), scene.solve());
         let problem = Problem::refined(scene, options, (1, &|plan, _, _| plan), &mut stages).unwrap();
         let (mesh, bands) = (&problem.mesh, problem.scene.bands());
         let exitance = problem.scene.exitance(mesh);

@@ -431,8 +431,11 @@ impl Region {
     }
 }
 
+/// Which of the 3 × 3 nodes of a region.
+type Node = [usize; 2];
+
 /// The nodes of a region, the corners first; and for those between two others, these.
-const NODES: [([usize; 2], Option<[[usize; 2]; 2]>); 9] = [
+const NODES: [(Node, Option<[Node; 2]>); 9] = [
     ([0, 0], None),
     ([2, 2], None),
     ([0, 2], None),
@@ -469,7 +472,7 @@ fn is_apart(region: &[Vec3], piece: &[Vec3], body: &[Vec3]) -> bool {
         }
         let way = (a - b) - v;
         let share = (-v.dot(way) / way.length_squared()).clamp(0.0, 1.0);
-        if !(share > 0.0) {
+        if share.is_nan() || share <= 0.0 {
             return false;
         }
         v += share * way;
