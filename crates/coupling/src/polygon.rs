@@ -48,6 +48,59 @@ pub fn clip(corners: &[Vec3], plane: HalfSpace, tolerance: f64, inside: &mut Vec
     }
 }
 
+/// How a convex polygon lies to a plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// No corner is above the tolerance.
+    Below,
+    /// No corner is below it.
+    Above,
+    /// It is cut in two.
+    Both,
+}
+
+/// Cuts a polygon by a plane where it lies on both sides: `above` and `below` then hold the parts, as [`clip`] leaves
+/// them, and are not touched otherwise. Heights of at most `tolerance` count as 0.
+pub fn part(
+    corners: &[Vec3],
+    plane: HalfSpace,
+    tolerance: f64,
+    (above, below): (&mut Vec<Vec3>, &mut Vec<Vec3>),
+) -> Side {
+    let height = |x: Vec3| snap(plane.height(x), tolerance);
+    let (mut low, mut high) = (0.0_f64, 0.0_f64);
+    for &corner in corners {
+        let height = height(corner);
+        (low, high) = (low.min(height), high.max(height));
+    }
+    if high <= 0.0 {
+        return Side::Below;
+    }
+    if low >= 0.0 {
+        return Side::Above;
+    }
+    above.clear();
+    below.clear();
+    let last = corners[corners.len() - 1];
+    let mut from = (last, height(last));
+    for &corner in corners {
+        let to = (corner, height(corner));
+        if from.1 * to.1 < 0.0 {
+            let between = crossing(from, to);
+            above.push(between);
+            below.push(between);
+        }
+        if to.1 >= 0.0 {
+            above.push(corner);
+        }
+        if to.1 <= 0.0 {
+            below.push(corner);
+        }
+        from = to;
+    }
+    Side::Both
+}
+
 /// The point of the segment where the height vanishes.
 pub(crate) fn crossing(from: (Vec3, f64), to: (Vec3, f64)) -> Vec3 {
     // Always from the same end, so that neighbours that share the segment cut it at the same point.
@@ -93,6 +146,23 @@ mod tests {
     fn a_plane_through_the_middle_leaves_half() {
         assert!((clipped_area(Vec3::splat(0.5), Vec3::X) - 0.5).abs() < 1e-15);
         assert!((clipped_area(Vec3::splat(0.5), Vec3::new(1.0, 1.0, 0.0).normalize()) - 0.5).abs() < 1e-15);
+    }
+
+    #[test]
+    fn both_parts_are_those_that_clipping_leaves() {
+        let normal = Vec3::new(1.0, 2.0, 0.0).normalize();
+        let plane = HalfSpace::through(Vec3::splat(0.4), normal);
+        let opposite = HalfSpace { normal: -normal, offset: -plane.offset };
+        let (mut above, mut below) = (Vec::new(), Vec::new());
+        assert_eq!(part(&SQUARE, plane, 1e-14, (&mut above, &mut below)), Side::Both);
+        for (found, half) in [(&above, plane), (&below, opposite)] {
+            let mut clipped = Vec::new();
+            clip(&SQUARE, half, 1e-14, &mut clipped);
+            assert_eq!(*found, clipped);
+        }
+        let beside = |point: Vec3| HalfSpace::through(point, Vec3::X);
+        let mut side = |plane| part(&SQUARE, plane, 1e-14, (&mut above, &mut below));
+        assert_eq!([side(beside(Vec3::X)), side(beside(Vec3::ZERO))], [Side::Below, Side::Above]);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! What points receive of lamps agrees with sums over small parts of the lamps, each seen or not by a ray.
 
+#![allow(clippy::float_cmp, reason = "what is dark is exactly so")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use fredholm_coupling::form_factor::point_to_polygon;
@@ -60,7 +61,7 @@ fn compare(lamp: &[Patch], bodies: &[Patch], tolerance: f64) -> [usize; 3] {
         let at = |r: f64| (f64::from(k) * r).fract() * 4.0 - 2.0;
         let x = Vec3::new(at(0.754_877_666), at(0.569_840_291), 0.0);
         let mut found = [f64::NAN];
-        lighter.factors(0, x, &mut found);
+        lighter.factors(0, &[x], &mut found);
         let expected = counted(x, lamp, &occluders);
         let whole = counted(x, lamp, &Occluders::new(&[]).unwrap());
         assert!((found[0] - expected).abs() <= tolerance * whole, "{x}: {} {expected} {whole}", found[0]);
@@ -74,6 +75,33 @@ fn compare(lamp: &[Patch], bodies: &[Patch], tolerance: f64) -> [usize; 3] {
         kinds[kind] += 1;
     }
     kinds
+}
+
+#[test]
+fn points_looked_at_together_are_as_those_alone() {
+    let ground = floor();
+    let leg = block([0.7, 0.7, 0.0], [0.71, 0.71, 0.9]);
+    let all = [&[ground][..], &panel(), &block([-0.6, -0.5, 0.3], [0.3, 0.6, 1.1]), &leg].concat();
+    let occluders = Occluders::new(&all).unwrap();
+    let panel = panel();
+    let lamps = Lamps::new(&[panel.iter().collect()], all.iter().collect(), &occluders).unwrap().unwrap();
+    let mut lighter = lamps.lighter();
+    let place = |k: i32| 0.02 * f64::from(k) + 0.003;
+    let points: Vec<Vec3> =
+        (-90..90).flat_map(|i| (-90..90).map(move |j| Vec3::new(place(i), place(j), 0.0))).collect();
+    let mut together = vec![f64::NAN; points.len()];
+    lighter.factors(0, &points, &mut together);
+    let (mut dark, mut between) = (0, 0);
+    for (&x, &found) in points.iter().zip(&together) {
+        let mut alone = [f64::NAN];
+        lighter.factors(0, &[x], &mut alone);
+        // Nearly linear means to half a percent in either direction; edges of the block that pass those of the lamp
+        // make bends of that size.
+        assert!((found - alone[0]).abs() <= 1e-2 * alone[0], "{x}: {found} {}", alone[0]);
+        dark += usize::from(alone[0] == 0.0);
+        between += usize::from(found != alone[0]);
+    }
+    assert!(dark > 100 && between > 10_000, "{dark} {between}");
 }
 
 #[test]
@@ -104,6 +132,6 @@ fn a_point_below_the_lamp_plane_sees_nothing_of_it() {
     let occluders = Occluders::new(&all).unwrap();
     let lamps = Lamps::new(&[panel.iter().collect()], all.iter().collect(), &occluders).unwrap().unwrap();
     let mut found = [1.0];
-    lamps.lighter().factors(0, Vec3::new(0.1, 0.1, 3.0), &mut found);
+    lamps.lighter().factors(0, &[Vec3::new(0.1, 0.1, 3.0)], &mut found);
     assert!(found[0].abs() < 1e-300);
 }

@@ -5,6 +5,8 @@
 use fredholm_mesh::{Mesh, MeshBuilder, Patch, Vec3};
 use fredholm_report::{Camera, Exposure, Field, LampLight, Lighter, Lit, render_lit};
 use rayon::ThreadPoolBuilder;
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The square −1 … 1 of n × n faces.
 fn square(n: usize) -> Mesh {
@@ -40,7 +42,11 @@ impl LampLight for Half {
     }
 
     fn lighter(&self) -> Lighter<'_> {
-        Box::new(|_, point, factors| factors[0] = if point.x < 0.0 { 0.5 } else { 0.0 })
+        Box::new(|_, points, factors| {
+            for (factor, point) in factors.iter_mut().zip(points) {
+                *factor = if point.x < 0.0 { 0.5 } else { 0.0 };
+            }
+        })
     }
 }
 
@@ -64,7 +70,7 @@ fn drawn(cells: usize) -> (Vec<u8>, Vec<[f32; 3]>) {
     let field = Field::new(&mesh, &bands, &irradiance, &radiosity).unwrap();
     let (reflectance, direct) = (vec![0.5; mesh.len()], vec![2.0; mesh.len()]);
     let lit = Lit { light: &Half, exitance: &[6.0], reflectance: &reflectance, direct: Some(&direct) };
-    let drawn = render_lit(&field, &camera(), Exposure::Fixed(0.2), &lit, true).unwrap();
+    let drawn = render_lit(&field, &camera(), Exposure::Fixed(0.2), &lit, true).unwrap().unwrap();
     (drawn.picture.pixels, drawn.linear)
 }
 
@@ -96,12 +102,44 @@ fn a_smooth_rest_keeps_its_means_up_to_the_edge() {
     let field = Field::new(&mesh, &bands, &radiosity, &radiosity).unwrap();
     let (reflectance, direct) = (vec![1.0; mesh.len()], vec![0.0; mesh.len()]);
     let lit = Lit { light: &Dark, exitance: &[], reflectance: &reflectance, direct: Some(&direct) };
-    let linear = render_lit(&field, &camera(), Exposure::Fixed(0.2), &lit, true).unwrap().linear;
+    let linear = render_lit(&field, &camera(), Exposure::Fixed(0.2), &lit, true).unwrap().unwrap().linear;
     // Corners at the edge of the square that had the mean of their elements would lack 0.125.
     for (x, y) in [(17, 32), (32, 32), (46, 20), (46, 46)] {
         let expected = 2.0 + (x as f64 + 0.5 - 32.0) / 16.0;
         let found = f64::from(linear[64 * y + x][0]);
         assert!((found - expected).abs() < 0.03, "({x}, {y}): {found} {expected}");
+    }
+}
+
+/// A picture that is wanted until it was asked so often.
+struct Impatient(AtomicUsize);
+
+impl LampLight for Impatient {
+    fn lamps(&self) -> usize {
+        0
+    }
+
+    fn lighter(&self) -> Lighter<'_> {
+        Box::new(|_, _, _| {})
+    }
+
+    fn go_on(&self) -> ControlFlow<()> {
+        let left = self.0.fetch_sub(1, Ordering::Relaxed);
+        if left == 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
+#[test]
+fn a_picture_that_is_not_wanted_any_more_is_none() {
+    let (mesh, bands) = (square(3), vec!["grey".to_owned()]);
+    let values = vec![1.5; mesh.len()];
+    let field = Field::new(&mesh, &bands, &values, &values).unwrap();
+    // Two looks at each of four tiles, and one more where there are borders.
+    for (asks, whole) in [(0, false), (3, false), (6, false), (100, true)] {
+        let light = Impatient(AtomicUsize::new(asks));
+        let lit = Lit { light: &light, exitance: &[], reflectance: &values, direct: None };
+        let drawn = render_lit(&field, &camera(), Exposure::Fixed(0.2), &lit, false).unwrap();
+        assert_eq!(drawn.is_some(), whole, "{asks}");
     }
 }
 

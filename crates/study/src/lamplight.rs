@@ -1,12 +1,14 @@
 //! The lamps of a scene as its picture sees them: elements that emit alike are one lamp.
 
+use std::ops::ControlFlow;
+
 use fredholm_hierarchical::Lamps;
+use fredholm_linop::{MultiVector, Watch};
 use fredholm_mesh::Patch;
 use fredholm_report::{LampLight, Lighter, Lit};
 
 use crate::error::{Error, ErrorKind};
 use crate::problem::Problem;
-use crate::solution::Solution;
 
 /// What the light of lamps at pixels is taken from.
 pub(crate) struct Lamplight<'a> {
@@ -15,15 +17,21 @@ pub(crate) struct Lamplight<'a> {
     /// Exitance of each lamp, lamps × bands, W/m².
     exitance: Vec<f64>,
     reflectance: Vec<f64>,
+    /// Whoever waits for the picture.
+    watch: &'a dyn Watch,
 }
 
 impl<'a> Lamplight<'a> {
-    /// The lamps of a solved scene.
-    pub(crate) fn new(problem: &'a Problem, solution: &'a Solution) -> Result<Self, Error> {
+    /// The lamps of a scene, of which the irradiance of the elements has a part `direct`, W/m², where that is known.
+    pub(crate) fn new(
+        problem: &'a Problem,
+        direct: Option<&'a MultiVector<f64>>,
+        watch: &'a dyn Watch,
+    ) -> Result<Self, Error> {
         let (scene, mesh) = (&problem.scene, &problem.mesh);
         let reflectance = scene.reflectance(mesh);
-        let none = |reflectance| Self { lamps: None, exitance: Vec::new(), reflectance };
-        let Some(direct) = &solution.direct else { return Ok(none(reflectance)) };
+        let none = |reflectance| Self { lamps: None, exitance: Vec::new(), reflectance, watch };
+        let Some(direct) = direct else { return Ok(none(reflectance)) };
         let bands = scene.bands().len();
         let of_elements = scene.exitance(mesh);
         let (mut exitance, mut kinds): (Vec<f64>, Vec<Vec<&Patch>>) = (Vec::new(), Vec::new());
@@ -49,12 +57,12 @@ impl<'a> Lamplight<'a> {
         let lamps = Lamps::new(&kinds, mesh.patches().collect(), &problem.occluders);
         let lamps = lamps.map_err(|error| Error::new(ErrorKind::Input, error))?;
         let Some(lamps) = lamps.filter(|lamps| !lamps.is_empty()) else { return Ok(none(reflectance)) };
-        Ok(Self { lamps: Some((lamps, direct.as_slice())), exitance, reflectance })
+        Ok(Self { lamps: Some((lamps, direct.as_slice())), exitance, reflectance, watch })
     }
 
     /// What the picture is drawn with.
     pub(crate) fn lit(&self) -> Lit<'_> {
-        let Self { lamps, exitance, reflectance } = self;
+        let Self { lamps, exitance, reflectance, .. } = self;
         Lit { light: self, exitance, reflectance, direct: lamps.as_ref().map(|(_, direct)| *direct) }
     }
 
@@ -82,9 +90,56 @@ impl LampLight for Lamplight<'_> {
         match &self.lamps {
             Some((lamps, _)) => {
                 let mut lighter = lamps.lighter();
-                Box::new(move |element, point, factors| lighter.factors(element, point, factors))
+                Box::new(move |element, points, factors| lighter.factors(element, points, factors))
             }
             None => Box::new(|_, _, _| {}),
         }
+    }
+
+    fn advance(&self, share: f64) {
+        self.watch.advance(share, &|| "picture".to_owned());
+    }
+
+    fn go_on(&self) -> ControlFlow<()> {
+        self.watch.go_on()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::options::{ProblemOptions, ProblemSettings, SceneSource};
+    use crate::solve::view_of;
+    use crate::stages::Stages;
+    use fredholm_linop::Quiet;
+    use fredholm_report::{Field, render_lit};
+    use std::time::Instant;
+
+    #[test]
+    #[ignore = "tells how long the usual picture of FREDHOLM_SCENE takes, of any solution"]
+    fn what_the_picture_of_a_scene_takes() {
+        let path = std::path::PathBuf::from(std::env::var("FREDHOLM_SCENE").unwrap());
+        let source = SceneSource::from(&path);
+        let mut stages = Stages::new(&Quiet);
+        let scene = source.load(None, &mut stages).unwrap();
+        let options = ProblemSettings::new(&ProblemOptions::default(), scene.solve());
+        let problem = Problem::refined(scene, options, (1, &|plan, _, _| plan), &mut stages).unwrap();
+        let (mesh, bands) = (&problem.mesh, problem.scene.bands());
+        let exitance = problem.scene.exitance(mesh);
+        let rho = problem.scene.reflectance(mesh);
+        let values: Vec<f64> = exitance.iter().zip(&rho).map(|(m, r)| m + 3.0 * r).collect();
+        let direct = MultiVector::zeros(mesh.len(), bands.len());
+        let field = Field::new(mesh, bands, &values, &values).unwrap().with_exitance(&exitance).unwrap();
+        let view = view_of(problem.scene.camera(), &field);
+        let start = Instant::now();
+        let light = Lamplight::new(&problem, Some(&direct), &Quiet).unwrap();
+        let made = start.elapsed().as_secs_f64();
+        let drawn = render_lit(&field, &view.camera, view.exposure, &light.lit(), true).unwrap().unwrap();
+        let all = start.elapsed().as_secs_f64();
+        if let Ok(out) = std::env::var("FREDHOLM_OUT") {
+            let bytes: Vec<u8> = drawn.linear.iter().flatten().flat_map(|c| c.to_le_bytes()).collect();
+            std::fs::write(out, bytes).unwrap();
+        }
+        println!("lamps {made:.2} s, picture {all:.2} s, {} elements", mesh.len());
     }
 }

@@ -29,10 +29,10 @@ const RESULTS: u128 = 650;
 const VALUE: u128 = 50;
 /// Bytes of an element in the picture with lamps, and of each of its values: colours at corners, how it
 /// lies to eight parts of lamps, reflectance and direct light. Of a pixel: what is seen through its
-/// middle, and its linear colours.
+/// middle, its linear colours, and either once more in the tiles that it is put together from.
 const LIT: u128 = 500;
 const LIT_VALUE: u128 = 24;
-const LIT_PIXEL: u128 = 32;
+const LIT_PIXEL: u128 = 48;
 /// Bytes of a pixel while the exposure is found, and in each picture: while it is drawn, and when
 /// all are taken apart. Besides, what the last rows take.
 const METERED: u128 = 14;

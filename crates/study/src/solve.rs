@@ -3,11 +3,12 @@
 use std::mem;
 use std::sync::Arc;
 
-use fredholm_linop::{MultiVector, StopReason, Watch};
+use fredholm_linop::{MultiVector, Quiet, StopReason, Watch};
 use fredholm_mesh::Mesh;
 use fredholm_report::{
-    CHECKPOINT, Camera, Exposure, Extras, Field, GATHER, Layer, LitPicture, POINTS, Picture, ReportError,
-    ResultFolder, RunRecord, RunReport, SHADOWS, View, render_layers, render_lit, write_with,
+    CHECKPOINT, Camera, Exposure, Extras, FIELD_EXR, Field, GATHER, IMAGE, Layer, LitPicture, POINTS,
+    Picture, ReportError, ResultFolder, RunRecord, RunReport, SHADOWS, View, render_layers, render_lit,
+    write_with,
 };
 use fredholm_scene::Scene;
 
@@ -171,7 +172,9 @@ impl Solved<'_> {
         let height = f64::from(width) * f64::from(view.camera.height) / f64::from(view.camera.width);
         let camera = Camera { width, height: (height.round() as u32).max(1), ..view.camera };
         let view = View { camera, ..view };
-        let (LitPicture { picture, .. }, _) = picture(&self.problem, &self.solution, (&field, &view), false)?;
+        // Nobody cancels it: there is all of it.
+        let drawn = picture(&self.problem, &self.solution, (&field, &view, false), &Quiet)?;
+        let Some((LitPicture { picture, .. }, _)) = drawn else { return Err(Error::cancelled()) };
         let mut png = Vec::new();
         picture.write_png(&mut png).map_err(|error| Error::new(ErrorKind::Files, error))?;
         Ok(png)
@@ -438,7 +441,10 @@ fn write(
         .and_then(|field| field.with_exposed(&solution.exposed))
         .map_err(report_failure)?;
     let view = view_of(problem.scene.camera(), &field);
-    let view = if record.partial { quick(view) } else { view };
+    // Whoever has cancelled the run gets a small picture at once; one that is cancelled meanwhile is left out.
+    let cancelled = record.partial || signals.is_cancelled();
+    let view = if cancelled { quick(view) } else { view };
+    let watch = if cancelled { &Quiet } else { signals.watch };
     let source = Source::new(problem, options, solution)?;
     let (links, gathered) = (|element| source.linked(element), source.gather(options, signals)?);
     let layer = |name| match (name, &gathered) {
@@ -448,9 +454,10 @@ fn write(
         _ => Layer::Field,
     };
     let exact = options.also.contains(&FieldFile::Exr);
-    let drawn = (!options.no_pictures).then(|| picture(problem, solution, (&field, &view), exact));
+    let draw = || picture(problem, solution, (&field, &view, exact), watch);
+    let drawn = if options.no_pictures { None } else { draw()? };
     // All pictures are as bright as the first.
-    let (image, linear, exposure) = match drawn.transpose()? {
+    let (image, linear, exposure) = match drawn {
         Some((LitPicture { picture, linear, exposure }, how)) => {
             record.picture = Some(how);
             (Some(picture), linear, Exposure::Fixed(exposure))
@@ -459,7 +466,7 @@ fn write(
     };
     let names: Vec<&str> = pictures(options, solution).filter(|_| !options.no_pictures).collect();
     let layers: Vec<Layer> = names.iter().map(|name| layer(name)).collect();
-    let drawn = if layers.is_empty() {
+    let drawn = if layers.is_empty() || (image.is_none() && signals.is_cancelled()) {
         Vec::new()
     } else {
         render_layers(&field, &view.camera, exposure, &layers).map_err(report_failure)?
@@ -469,29 +476,33 @@ fn write(
     let points = gathered.as_ref().map(|gathered| gathered.points(options)).transpose()?.flatten();
     let shadows = gathered.as_ref().filter(|_| options.discontinuity).and_then(Gathered::shadows);
     if signals.is_cancelled() && !record.partial {
-        leave_out(record, &pictures, (points.is_some(), shadows.is_some()), signals);
+        let image = image.is_some() || options.no_pictures;
+        leave_out(record, &pictures, [image, points.is_some(), shadows.is_some()], signals);
     }
     let title = title(&problem.scene);
     let report = (!options.no_report).then_some(RunReport { title: &title, view: &view, steps: ("", &[]) });
-    let wanted = |file: &&FieldFile| **file != FieldFile::Exr || !options.no_pictures;
+    let wanted = |file: &&FieldFile| **file != FieldFile::Exr || image.is_some();
     let baked = options.also.iter().filter(wanted).map(|file| file.name()).collect();
     let more = Extras { image, linear, pictures, exposure: view.exposure, points, shadows, baked, report };
     write_with(folder, &field, record, &more).map(drop).map_err(report_failure)
 }
 
-/// The picture of a solution, and how it was made: the light of lamps at every pixel where the solution tells that
-/// part of the irradiance apart, else what its elements have.
+/// The picture of a solution, with its linear colours where these are wanted, and how it was made: the light of lamps at
+/// every pixel where the solution tells that part of the irradiance apart, else what its elements have. There is none where
+/// the watch did not want it any more.
 fn picture(
     problem: &Problem,
     solution: &Solution,
-    (field, view): (&Field, &View),
-    linear: bool,
-) -> Result<(LitPicture, String), Error> {
-    let lamplight = Lamplight::new(problem, solution)?;
+    (field, view, linear): (&Field, &View, bool),
+    watch: &dyn Watch,
+) -> Result<Option<(LitPicture, String)>, Error> {
+    let lamplight = Lamplight::new(problem, solution.direct.as_ref(), watch)?;
     let drawn = render_lit(field, &view.camera, view.exposure, &lamplight.lit(), linear);
-    let drawn = drawn.map_err(report_failure)?;
-    let how = format!("{}; {TONE}; exposure {:.4e} m²/W", lamplight.words(), drawn.exposure);
-    Ok((drawn, how))
+    let how = |exposure| format!("{}; {TONE}; exposure {exposure:.4e} m²/W", lamplight.words());
+    Ok(drawn
+        .map_err(report_failure)?
+        .map(|drawn| (how(drawn.exposure), drawn))
+        .map(|(how, drawn)| (drawn, how)))
 }
 
 /// How colours become what a screen shows.
@@ -502,11 +513,12 @@ const TONE: &str =
 fn leave_out(
     record: &mut RunRecord,
     pictures: &[(&str, Picture)],
-    (points, shadows): (bool, bool),
+    [image, points, shadows]: [bool; 3],
     signals: &Signals,
 ) {
     let missing = |name: &str| match name {
-        GATHER => pictures.iter().all(|(drawn, _)| *drawn != name),
+        IMAGE | FIELD_EXR => !image,
+        "mesh.png" | "links.png" | GATHER => pictures.iter().all(|(drawn, _)| *drawn != name),
         POINTS => !points,
         SHADOWS => !shadows,
         _ => false,

@@ -8,8 +8,9 @@ use super::shadows::{Covers, FLAT, Shadows};
 use fredholm_coupling::form_factor::point_to_polygon;
 use fredholm_coupling::polygon::{HalfSpace, clip};
 use fredholm_mesh::{Patch, Vec3};
-use fredholm_visibility::body::{Bodies, Body};
+use fredholm_visibility::body::{Bodies, Body, Shadow, ShadowVolume};
 use fredholm_visibility::{Occluders, VisibilityError};
+use std::ops::Range;
 use std::sync::OnceLock;
 
 /// Pieces of lamps that are looked at for every point; lamps of more have none.
@@ -25,6 +26,20 @@ const FEW_PATCHES: usize = 8;
 const HALVINGS: u32 = 3;
 /// Points without which no plane through the scene has anything on both of its sides, in radii.
 const FAR: f64 = 10.0;
+/// Points that are looked at one by one, behind what may come between any of them and a piece.
+const FEW_POINTS: usize = 12;
+/// Bodies that hide parts of a piece from all points between which its factors are interpolated, at most: where they are
+/// more, they are too small to do so.
+const FEW_BODIES: usize = 8;
+/// Points between which factors are interpolated where they change smoothly.
+const MANY_POINTS: usize = 20;
+/// The same at most: in a larger region a bend between the nodes might not show at them.
+const MOST_POINTS: usize = 256;
+/// How far such factors may be from being linear between two nodes, over their size. What the polynomial of
+/// degree 2 leaves is much less.
+const BENT: f64 = 0.005;
+/// How often a plane between two convex sets is looked for.
+const TRIALS: usize = 6;
 /// Relative difference of areas that is none.
 const SAME: f64 = 1e-6;
 
@@ -124,9 +139,12 @@ impl<'a> Lamps<'a> {
         Lighter {
             lamps: self,
             shadows: Shadows::default(),
+            volume: ShadowVolume::default(),
             outline: Vec::new(),
             above: Vec::new(),
             list: Vec::new(),
+            between: Vec::new(),
+            order: Vec::new(),
         }
     }
 
@@ -195,6 +213,11 @@ impl Piece {
                 .iter()
                 .all(|x| self.corners.iter().any(|own| own.distance_squared(*x) <= tolerance * tolerance)),
         }
+    }
+
+    /// A length that counts as none, seen from `x`, m.
+    fn least(&self, x: Vec3) -> f64 {
+        FLAT * (self.ball.0.distance(x) + self.ball.1)
     }
 
     /// The corners of the outline as seen from `x`, relative to it; none where nothing is seen.
@@ -337,61 +360,309 @@ fn beside(body: &Body, a: &[Vec3], b: &[Vec3], tolerance: f64) -> bool {
     body.faces().iter().any(|face| a.iter().chain(b).all(|x| face.height(*x) >= -tolerance))
 }
 
+/// Points of an element before a piece of a lamp.
+#[derive(Clone, Copy)]
+struct Group<'g> {
+    piece: &'g Piece,
+    element: &'g Patch,
+    points: &'g [Vec3],
+}
+
+/// A box round points, with sides along their element.
+struct Region {
+    axes: [Vec3; 3],
+    low: [f64; 3],
+    high: [f64; 3],
+    /// The corners, of which the first four are enough where it is flat.
+    corners: [Vec3; 8],
+    count: usize,
+}
+
+impl Region {
+    /// The box round some of the points of a group.
+    fn new(group: Group, order: &[u32], tolerance: f64) -> Self {
+        let normal = group.element.normal();
+        let along = (group.element.corner(1) - group.element.corner(0)).normalize_or_zero();
+        let axes = [along, normal.cross(along), normal];
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for &k in order {
+            for (i, axis) in axes.iter().enumerate() {
+                let place = axis.dot(group.points[k as usize]);
+                (low[i], high[i]) = (low[i].min(place), high[i].max(place));
+            }
+        }
+        let corner = |k: usize| {
+            let place = |i: usize| if k >> i & 1 == 1 { high[i] } else { low[i] };
+            axes[0] * place(0) + axes[1] * place(1) + axes[2] * place(2)
+        };
+        let count = if high[2] - low[2] > tolerance { 8 } else { 4 };
+        Self { axes, low, high, corners: std::array::from_fn(corner), count }
+    }
+
+    fn corners(&self) -> &[Vec3] {
+        &self.corners[..self.count]
+    }
+
+    fn is_flat(&self) -> bool {
+        self.count == 4
+    }
+
+    /// The axis along which it is longer, and the middle on it, m.
+    fn middle(&self) -> (Vec3, f64) {
+        let longer = usize::from(self.high[1] - self.low[1] > self.high[0] - self.low[0]);
+        (self.axes[longer], 0.5 * (self.low[longer] + self.high[longer]))
+    }
+
+    /// Node i, j of the 3 × 3 of a flat one.
+    fn node(&self, [i, j]: [usize; 2]) -> Vec3 {
+        let share = |k: usize, i: usize| self.low[k] + 0.5 * i as f64 * (self.high[k] - self.low[k]);
+        self.axes[0] * share(0, i) + self.axes[1] * share(1, j) + self.axes[2] * self.low[2]
+    }
+
+    /// The value at a point of the polynomial of degree 2 in each direction through those at the nodes.
+    fn interpolated(&self, values: &[[f64; 3]; 3], x: Vec3) -> f64 {
+        let weights = |k: usize| {
+            let size = self.high[k] - self.low[k];
+            let t = if size > 0.0 { (self.axes[k].dot(x) - self.low[k]) / size } else { 0.0 };
+            [(2.0 * t - 1.0) * (t - 1.0), 4.0 * t * (1.0 - t), t * (2.0 * t - 1.0)]
+        };
+        let [u, v] = [weights(0), weights(1)];
+        (0..9).map(|k| u[k / 3] * v[k % 3] * values[k / 3][k % 3]).sum()
+    }
+}
+
+/// Which of the 3 × 3 nodes of a region.
+type Node = [usize; 2];
+
+/// The nodes of a region, the corners first; and for those between two others, these.
+const NODES: [(Node, Option<[Node; 2]>); 9] = [
+    ([0, 0], None),
+    ([2, 2], None),
+    ([0, 2], None),
+    ([2, 0], None),
+    ([0, 1], Some([[0, 0], [0, 2]])),
+    ([2, 1], Some([[2, 0], [2, 2]])),
+    ([1, 0], Some([[0, 0], [2, 0]])),
+    ([1, 2], Some([[0, 2], [2, 2]])),
+    ([1, 1], Some([[1, 0], [1, 2]])),
+];
+
+/// Whether a plane is found that has the segments from a convex region to a piece on one side and a body on the other.
+///
+/// The difference of the two convex sets does not hold the origin then. A point of it is moved towards the farthest one
+/// against it (E. G. Gilbert, SIAM J. Control 4, 1966, doi:10.1137/0304007) until that one is on its side; that it is not soon
+/// found says nothing.
+fn is_apart(region: &[Vec3], piece: &[Vec3], body: &[Vec3]) -> bool {
+    let least = |along: Vec3, points: &mut dyn Iterator<Item = &Vec3>| {
+        let mut found = (f64::INFINITY, Vec3::ZERO);
+        for &y in points {
+            let height = along.dot(y);
+            if height < found.0 {
+                found = (height, y);
+            }
+        }
+        found
+    };
+    let mut v = region[0] - body[0];
+    for _ in 0..TRIALS {
+        let (height, a) = least(v, &mut region.iter().chain(piece));
+        let (depth, b) = least(-v, &mut body.iter());
+        if height + depth > 0.0 {
+            return true;
+        }
+        let way = (a - b) - v;
+        let share = (-v.dot(way) / way.length_squared()).clamp(0.0, 1.0);
+        if share.is_nan() || share <= 0.0 {
+            return false;
+        }
+        v += share * way;
+    }
+    false
+}
+
 /// Looks at lamps for one thread; buffers are kept from point to point.
 #[derive(Debug)]
 pub struct Lighter<'l> {
     lamps: &'l Lamps<'l>,
     shadows: Shadows,
+    volume: ShadowVolume,
     outline: Vec<Vec3>,
     above: Vec<Vec3>,
     list: Vec<u32>,
+    /// Bodies that may come between, one list behind the other.
+    between: Vec<u32>,
+    /// Numbers of the points, those of a region next to each other.
+    order: Vec<u32>,
 }
 
 impl Lighter<'_> {
-    /// The factors from a point of an element to what it sees of each lamp.
-    pub fn factors(&mut self, element: usize, point: Vec3, factors: &mut [f64]) {
+    /// The factors from points (m) of an element to what they see of each lamp, points × lamps. Points near each other are
+    /// quicker together: what comes between none of them and a lamp is found for all of them at once.
+    pub fn factors(&mut self, element: usize, points: &[Vec3], factors: &mut [f64]) {
         factors.fill(0.0);
         let lamps = self.lamps;
-        let normal = lamps.elements[element].normal();
+        let patch = lamps.elements[element];
         for (piece, sight) in lamps.pieces.iter().zip(lamps.sights(element)) {
-            if !matches!(sight, Sight::Away) {
-                factors[piece.lamp] += self.factor(piece, sight, point, normal);
+            let group = Group { piece, element: patch, points };
+            self.between.clear();
+            self.order.clear();
+            self.order.extend(0..points.len() as u32);
+            match sight {
+                Sight::Away => {}
+                Sight::Open => self.part(group, (0..points.len(), 0..0), factors),
+                Sight::Behind(found) => {
+                    self.between.extend_from_slice(found);
+                    self.part(group, (0..points.len(), 0..found.len()), factors);
+                }
+                Sight::Rays => {
+                    for (k, &x) in points.iter().enumerate() {
+                        if self.look(piece, x, patch.normal()) {
+                            factors[k * lamps.count + piece.lamp] += self.counted(x, patch.normal());
+                        }
+                    }
+                }
             }
         }
     }
 
-    fn factor(&mut self, piece: &Piece, sight: &Sight, x: Vec3, normal: Vec3) -> f64 {
-        let tolerance = self.lamps.occluders.tolerance();
-        piece.outline(x, tolerance, &mut self.outline);
-        let flat = FLAT * (piece.ball.0.distance(x) + piece.ball.1);
-        // The part above the horizon.
-        self.above.clear();
-        clip(&self.outline, HalfSpace { normal, offset: 0.0 }, flat, &mut self.above);
-        if self.above.len() < 3 {
-            return 0.0;
+    /// Adds the factors of some points of a group, from bodies that may come between: those that come between none of them
+    /// are left out, and where some are left, either half of the points is looked at by itself.
+    fn part(&mut self, group: Group, (own, among): (Range<usize>, Range<usize>), factors: &mut [f64]) {
+        if own.len() <= FEW_POINTS {
+            return self.each(group, (own, among), factors);
         }
-        let open = |corners: &[Vec3]| point_to_polygon(normal, corners.iter().copied()).max(0.0);
-        match sight {
-            Sight::Away => 0.0,
-            Sight::Open => open(&self.above),
-            Sight::Behind(found) => {
-                let bodies = self.lamps.bodies.as_ref().map_or(&[][..], Bodies::as_slice);
-                let between = found.iter().map(|&k| &bodies[k as usize]);
-                self.shadows.cast(x, normal, between, tolerance);
-                self.list.clear();
-                for shadow in 0..self.shadows.len() as u32 {
-                    match self.shadows.covers(shadow, &self.above, flat) {
-                        Covers::Nothing => {}
-                        Covers::Part => self.list.push(shadow),
-                        Covers::All => return 0.0,
-                    }
-                }
-                if self.list.is_empty() {
-                    return open(&self.above);
-                }
-                self.shadows.factor(normal, &self.above, &self.list, flat)
+        let region = Region::new(group, &self.order[own.clone()], self.lamps.occluders.tolerance());
+        let bodies = self.lamps.bodies.as_ref().map_or(&[][..], Bodies::as_slice);
+        let start = self.between.len();
+        for k in among {
+            let number = self.between[k];
+            let body = &bodies[number as usize];
+            if is_apart(region.corners(), &group.piece.corners, body.corners()) {
+                continue;
             }
-            Sight::Rays => self.counted(x, normal),
+            if self.hides(body, group.piece, region.corners()) {
+                self.between.truncate(start);
+                return;
+            }
+            self.between.push(number);
+        }
+        let between = start..self.between.len();
+        let smooth = region.is_flat()
+            && (MANY_POINTS..=MOST_POINTS).contains(&own.len())
+            && between.len() <= FEW_BODIES;
+        let values = if smooth { self.values(group, &region, between.clone()) } else { None };
+        if let Some(values) = values {
+            for &k in &self.order[own] {
+                let value = region.interpolated(&values, group.points[k as usize]).max(0.0);
+                factors[k as usize * self.lamps.count + group.piece.lamp] += value;
+            }
+        } else if between.is_empty() && own.len() < MANY_POINTS {
+            self.each(group, (own, between), factors);
+        } else {
+            let middle = own.start + self.parted(group, own.clone(), &region);
+            self.part(group, (own.start..middle, between.clone()), factors);
+            self.part(group, (middle..own.end, between), factors);
+        }
+        self.between.truncate(start);
+    }
+
+    /// Puts the points before the middle of a region first, and returns their number.
+    fn parted(&mut self, group: Group, own: Range<usize>, region: &Region) -> usize {
+        let (order, (along, middle)) = (&mut self.order[own], region.middle());
+        let mut count = 0;
+        for k in 0..order.len() {
+            if along.dot(group.points[order[k] as usize]) < middle {
+                order.swap(k, count);
+                count += 1;
+            }
+        }
+        // Points that all lie in one place are halved as they come.
+        if count == 0 { order.len() / 2 } else { count }
+    }
+
+    /// Whether a body hides a piece from all corners of a convex region: then it does so from all of its points, since
+    /// where a convex body meets two sides of a triangle, it meets all segments between them.
+    fn hides(&mut self, body: &Body, piece: &Piece, region: &[Vec3]) -> bool {
+        let (tolerance, volume) = (self.lamps.occluders.tolerance(), &mut self.volume);
+        region.iter().all(|&x| {
+            let inside = |&(normal, offset, _): &(Vec3, f64, u32)| {
+                piece.corners.iter().all(|y| normal.dot(*y - x) >= offset)
+            };
+            body.shadow(x, tolerance, volume) == Shadow::Volume && volume.planes().iter().all(inside)
+        })
+    }
+
+    /// The factors at the nodes of a region; none unless they determine those in it. They do where each of the bodies hides a
+    /// part of the piece from all nodes, so that no border of a shadow passes between them, and where the factor is
+    /// nearly linear.
+    fn values(&mut self, group: Group, region: &Region, between: Range<usize>) -> Option<[[f64; 3]; 3]> {
+        let mut values = [[0.0_f64; 3]; 3];
+        let normal = group.element.normal();
+        for ([i, j], ends) in NODES {
+            let x = region.node([i, j]);
+            let sight = self.sight(group.piece, between.clone(), x, normal);
+            if sight == Covers::All || self.list.len() < between.len() {
+                return None;
+            }
+            let value = self.factor(sight, group.piece.least(x), normal);
+            values[i][j] = value;
+            let at = |[i, j]: [usize; 2]| values[i][j];
+            if ends.is_some_and(|[a, b]| (value - 0.5 * (at(a) + at(b))).abs() > BENT * value) {
+                return None;
+            }
+        }
+        Some(values)
+    }
+
+    /// Adds the factor of each of some points, behind some bodies.
+    fn each(&mut self, group: Group, (own, between): (Range<usize>, Range<usize>), factors: &mut [f64]) {
+        let normal = group.element.normal();
+        for k in own {
+            let at = self.order[k] as usize;
+            let x = group.points[at];
+            let sight = self.sight(group.piece, between.clone(), x, normal);
+            factors[at * self.lamps.count + group.piece.lamp] +=
+                self.factor(sight, group.piece.least(x), normal);
+        }
+    }
+
+    /// Finds the part of a piece above the horizon; false where there is none.
+    fn look(&mut self, piece: &Piece, x: Vec3, normal: Vec3) -> bool {
+        piece.outline(x, self.lamps.occluders.tolerance(), &mut self.outline);
+        self.above.clear();
+        clip(&self.outline, HalfSpace { normal, offset: 0.0 }, piece.least(x), &mut self.above);
+        self.above.len() >= 3
+    }
+
+    /// Looks at a piece from a point behind some bodies: finds those that hide a part of it.
+    fn sight(&mut self, piece: &Piece, between: Range<usize>, x: Vec3, normal: Vec3) -> Covers {
+        if !self.look(piece, x, normal) {
+            return Covers::All;
+        }
+        let bodies = self.lamps.bodies.as_ref().map_or(&[][..], Bodies::as_slice);
+        let between = self.between[between].iter().map(|&k| &bodies[k as usize]);
+        self.shadows.cast(x, normal, between, self.lamps.occluders.tolerance());
+        self.shadows.turn(&self.above);
+        self.list.clear();
+        for shadow in 0..self.shadows.len() as u32 {
+            if !self.shadows.meets(shadow) {
+                continue;
+            }
+            match self.shadows.covers(shadow, &self.above, piece.least(x)) {
+                Covers::Nothing => {}
+                Covers::Part => self.list.push(shadow),
+                Covers::All => return Covers::All,
+            }
+        }
+        if self.list.is_empty() { Covers::Nothing } else { Covers::Part }
+    }
+
+    /// The factor of what was looked at.
+    fn factor(&mut self, sight: Covers, flat: f64, normal: Vec3) -> f64 {
+        match sight {
+            Covers::All => 0.0,
+            Covers::Nothing => point_to_polygon(normal, self.above.iter().copied()).max(0.0),
+            Covers::Part => self.shadows.factor(normal, &self.above, &self.list, flat),
         }
     }
 

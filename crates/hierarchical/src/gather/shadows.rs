@@ -4,7 +4,7 @@
 //! T. Nishita & E. Nakamae, SIGGRAPH 1985, doi:10.1145/325165.325169. Places relative to the point, m.
 
 use fredholm_coupling::form_factor::point_to_polygon;
-use fredholm_coupling::polygon::{HalfSpace, clip};
+use fredholm_coupling::polygon::{HalfSpace, Side, part};
 use fredholm_mesh::Vec3;
 use fredholm_visibility::body::{Body, Shadow, ShadowVolume};
 use std::ops::Range;
@@ -14,6 +14,9 @@ use std::ops::Range;
 const MOST_PIECES: usize = 4096;
 /// How often the triangles of a polygon are halved both ways where there would be more.
 const HALVINGS: u32 = 5;
+
+/// Cosine of the angle from the middle of a polygon up to which it is seen on a screen.
+const NARROWEST: f64 = 0.1;
 
 /// Heights below this part of the distance count as 0.
 pub(super) const FLAT: f64 = 1e-12;
@@ -31,11 +34,19 @@ pub(super) enum Covers {
 pub(super) struct Shadows {
     planes: Vec<HalfSpace>,
     spans: Vec<Range<usize>>,
+    /// Corners of the bodies, one behind the other, and where those of each begin.
+    tips: Vec<Vec3>,
+    starts: Vec<usize>,
+    screen: Screen,
+    /// What a polygon and each shadow cover on the screen.
+    seen: Bounds,
+    dark: Vec<Bounds>,
     volume: ShadowVolume,
     pieces: Pieces,
     next: Pieces,
     rest: Vec<Vec3>,
     cut: Vec<Vec3>,
+    off: Vec<Vec3>,
 }
 
 impl Shadows {
@@ -49,6 +60,8 @@ impl Shadows {
     ) {
         self.planes.clear();
         self.spans.clear();
+        self.tips.clear();
+        self.starts.clear();
         for body in bodies {
             let below = body.corners().iter().all(|y| normal.dot(*y - x) <= tolerance);
             if below || body.shadow(x, tolerance, &mut self.volume) == Shadow::Nothing {
@@ -59,7 +72,24 @@ impl Shadows {
                 |&(n, c, _): &(Vec3, f64, u32)| HalfSpace { normal: n / n.length(), offset: c / n.length() };
             self.planes.extend(self.volume.planes().iter().map(unit));
             self.spans.push(start..self.planes.len());
+            self.starts.push(self.tips.len());
+            self.tips.extend(body.corners().iter().map(|y| *y - x));
         }
+        self.starts.push(self.tips.len());
+    }
+
+    /// Turns to a polygon, of which [`factor`](Self::factor) is then asked.
+    pub fn turn(&mut self, polygon: &[Vec3]) {
+        let Self { tips, starts, screen, dark, .. } = self;
+        *screen = Screen::before(polygon);
+        self.seen = screen.bounds(polygon);
+        dark.clear();
+        dark.extend(starts.windows(2).map(|ends| screen.bounds(&tips[ends[0]..ends[1]])));
+    }
+
+    /// Whether a shadow may cover a part of the polygon turned to.
+    pub fn meets(&self, shadow: u32) -> bool {
+        self.dark[shadow as usize].meets(&self.seen)
     }
 
     pub fn len(&self) -> usize {
@@ -99,16 +129,21 @@ impl Shadows {
         self.planes[self.spans[shadow as usize].clone()].iter().map(move |plane| plane.height(y))
     }
 
-    /// Factor from the point with normal `n` to what of a polygon above its horizon lies in none of some shadows.
+    /// Factor from the point with normal `n` to what of the polygon turned to, which lies above its horizon, lies in none of
+    /// some shadows.
     pub fn factor(&mut self, n: Vec3, polygon: &[Vec3], shadows: &[u32], flat: f64) -> f64 {
         self.pieces.clear();
-        self.pieces.push(polygon);
+        self.pieces.push(polygon, &self.screen);
         for &shadow in shadows {
             self.next.clear();
-            for k in 0..self.pieces.len() {
-                self.darken(k, shadow, flat);
+            for k in (0..self.pieces.len()).rev() {
+                // Most pieces lie beside most shadows.
+                let meets = self.pieces.bounds(k).meets(&self.dark[shadow as usize]);
+                if meets && self.darken(k, shadow, flat) {
+                    self.pieces.remove(k);
+                }
             }
-            std::mem::swap(&mut self.pieces, &mut self.next);
+            self.pieces.append(&self.next);
             if self.pieces.len() > MOST_PIECES {
                 return self.sampled(n, polygon, shadows);
             }
@@ -142,68 +177,137 @@ impl Shadows {
         sum.max(0.0)
     }
 
-    /// Adds what a shadow leaves of a piece to the next pieces.
-    fn darken(&mut self, k: usize, shadow: u32, flat: f64) {
+    /// Adds what a shadow leaves of a piece to the next pieces; false where it leaves all of it.
+    fn darken(&mut self, k: usize, shadow: u32, flat: f64) -> bool {
         let start = self.next.len();
         self.rest.clear();
         self.rest.extend_from_slice(self.pieces.get(k));
         for plane in &self.planes[self.spans[shadow as usize].clone()] {
-            let beyond = HalfSpace { normal: -plane.normal, offset: -plane.offset };
-            self.cut.clear();
-            clip(&self.rest, beyond, flat, &mut self.cut);
-            self.next.push(&self.cut);
-            self.cut.clear();
-            clip(&self.rest, *plane, flat, &mut self.cut);
-            std::mem::swap(&mut self.rest, &mut self.cut);
-            if self.rest.len() < 3 {
-                // Nothing lies in the shadow: the piece stays whole.
-                self.next.truncate(start);
-                self.next.push(self.pieces.get(k));
-                return;
+            match part(&self.rest, *plane, flat, (&mut self.cut, &mut self.off)) {
+                Side::Above => {}
+                Side::Both => {
+                    self.next.push(&self.off, &self.screen);
+                    std::mem::swap(&mut self.rest, &mut self.cut);
+                }
+                Side::Below => {
+                    // Nothing lies in the shadow: the piece stays whole.
+                    self.next.truncate(start);
+                    return false;
+                }
             }
         }
+        true
     }
 }
 
-/// Convex polygons, one behind the other.
+/// A plane at distance 1 from the point on which polygons are seen: its axes and the direction to it, none for what is seen
+/// all round.
+#[derive(Clone, Copy, Debug, Default)]
+struct Screen(Option<[Vec3; 3]>);
+
+/// A rectangle on the screen: least and largest coordinates.
+#[derive(Clone, Copy, Debug, Default)]
+struct Bounds([f64; 2], [f64; 2]);
+
+impl Screen {
+    fn before(polygon: &[Vec3]) -> Self {
+        let to = polygon.iter().sum::<Vec3>().normalize_or_zero();
+        if polygon.iter().any(|&y| is_beside(to, y)) {
+            return Self(None);
+        }
+        let (u, v) = to.any_orthonormal_pair();
+        Self(Some([u, v, to]))
+    }
+
+    /// Bounds of the convex hull of some points; no narrower ones than all where that is not before the screen.
+    fn bounds(&self, points: &[Vec3]) -> Bounds {
+        let Some([u, v, to]) = self.0 else { return Bounds::ALL };
+        let mut bounds = Bounds::NOTHING;
+        for &y in points {
+            if is_beside(to, y) {
+                return Bounds::ALL;
+            }
+            let inverse = 1.0 / to.dot(y);
+            for (i, place) in [u.dot(y) * inverse, v.dot(y) * inverse].into_iter().enumerate() {
+                bounds.0[i] = bounds.0[i].min(place);
+                bounds.1[i] = bounds.1[i].max(place);
+            }
+        }
+        bounds
+    }
+}
+
+/// Whether a point is seen far from a direction, or behind.
+fn is_beside(to: Vec3, y: Vec3) -> bool {
+    let along = to.dot(y);
+    along <= 0.0 || along * along <= NARROWEST * NARROWEST * y.length_squared()
+}
+
+impl Bounds {
+    const ALL: Self = Self([f64::NEG_INFINITY; 2], [f64::INFINITY; 2]);
+    const NOTHING: Self = Self([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+
+    fn meets(&self, other: &Self) -> bool {
+        (0..2).all(|i| self.0[i] <= other.1[i] && other.0[i] <= self.1[i])
+    }
+}
+
+/// Convex polygons and their bounds, corners one behind the other.
 #[derive(Debug, Default)]
 struct Pieces {
     corners: Vec<Vec3>,
-    ends: Vec<usize>,
+    spans: Vec<(Range<usize>, Bounds)>,
 }
 
 impl Pieces {
     fn clear(&mut self) {
-        self.truncate(0);
+        self.corners.clear();
+        self.spans.clear();
     }
 
     fn len(&self) -> usize {
-        self.ends.len()
-    }
-
-    fn start(&self, k: usize) -> usize {
-        if k == 0 { 0 } else { self.ends[k - 1] }
+        self.spans.len()
     }
 
     fn get(&self, k: usize) -> &[Vec3] {
-        &self.corners[self.start(k)..self.ends[k]]
+        &self.corners[self.spans[k].0.clone()]
+    }
+
+    fn bounds(&self, k: usize) -> &Bounds {
+        &self.spans[k].1
     }
 
     fn iter(&self) -> impl Iterator<Item = &[Vec3]> {
         (0..self.len()).map(|k| self.get(k))
     }
 
+    /// Forgets those from `count` on; their corners stay until all are cleared.
     fn truncate(&mut self, count: usize) {
-        self.corners.truncate(self.start(count));
-        self.ends.truncate(count);
+        self.spans.truncate(count);
+    }
+
+    /// Puts the last one in the place of one.
+    fn remove(&mut self, k: usize) {
+        self.spans.swap_remove(k);
+    }
+
+    fn append(&mut self, others: &Self) {
+        for (span, bounds) in &others.spans {
+            self.add(&others.corners[span.clone()], *bounds);
+        }
     }
 
     /// Adds a polygon, if it is one.
-    fn push(&mut self, corners: &[Vec3]) {
+    fn push(&mut self, corners: &[Vec3], screen: &Screen) {
         if corners.len() >= 3 {
-            self.corners.extend_from_slice(corners);
-            self.ends.push(self.corners.len());
+            self.add(corners, screen.bounds(corners));
         }
+    }
+
+    fn add(&mut self, corners: &[Vec3], bounds: Bounds) {
+        let start = self.corners.len();
+        self.corners.extend_from_slice(corners);
+        self.spans.push((start..self.corners.len(), bounds));
     }
 }
 
@@ -225,7 +329,10 @@ mod tests {
                 shadows.planes.push(HalfSpace { normal, offset: 0.0 });
             }
             shadows.spans.push(start..shadows.planes.len());
+            shadows.starts.push(shadows.tips.len());
+            shadows.tips.extend(corners);
         }
+        shadows.starts.push(shadows.tips.len());
         shadows
     }
 
@@ -236,6 +343,7 @@ mod tests {
         for count in [1, 8, 30] {
             let mut shadows = shadows(count);
             let all: Vec<u32> = (0..count as u32).collect();
+            shadows.turn(&polygon);
             let exact = shadows.factor(up, &polygon, &all, 1e-12);
             let sampled = shadows.sampled(up, &polygon, &all);
             let whole = point_to_polygon(up, polygon.iter().copied());
@@ -248,6 +356,7 @@ mod tests {
         let mut shadows = shadows(2000);
         let all: Vec<u32> = (0..2000).collect();
         let polygon = [(-2.0, -2.0), (-2.0, 2.0), (2.0, 2.0), (2.0, -2.0)].map(|(x, y)| Vec3::new(x, y, 1.0));
+        shadows.turn(&polygon);
         let factor = shadows.factor(Vec3::Z, &polygon, &all, 1e-12);
         let whole = point_to_polygon(Vec3::Z, polygon.iter().copied());
         assert!(factor >= 0.0 && factor < 0.5 * whole, "{factor} of {whole}");

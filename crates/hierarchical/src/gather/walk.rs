@@ -174,7 +174,10 @@ impl<'g> Gatherer<'g> {
         let open = || point_to_polygon(normal, self.front.iter().copied()).max(0.0);
         let factor = match (self.is_exact(), own.is_empty()) {
             (true, true) => open(),
-            (true, false) => self.shadows.factor(normal, &self.front, &self.lists[own], flat),
+            (true, false) => {
+                self.shadows.turn(&self.front);
+                self.shadows.factor(normal, &self.front, &self.lists[own], flat)
+            }
             (false, _) => {
                 let open = open();
                 self.behind_many(index, open, flat)
@@ -204,6 +207,7 @@ impl<'g> Gatherer<'g> {
         let reaches = |body: &&Body| shaft.as_ref().is_some_and(|shaft| occluders.reaches(body, shaft));
         self.shadows.cast(point, normal, bodies.as_slice().iter().filter(reaches), bodies.tolerance());
         let all: Vec<u32> = (0..self.shadows.len() as u32).collect();
+        self.shadows.turn(&self.front);
         (all.len() <= FEW).then(|| self.shadows.factor(normal, &self.front, &all, flat))
     }
 

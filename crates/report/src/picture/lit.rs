@@ -6,6 +6,9 @@
 //! Every pixel is first looked at through its middle. One whose neighbours show another plane, surface or brightness is then the mean of [`FINE`] points of a lattice: borders of bodies, of lamps and of
 //! shadows are smooth (adaptive supersampling, T. Whitted, CACM 23(6), 1980, doi:10.1145/358876.358882). W/m².
 
+use std::ops::{ControlFlow, Range};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use rayon::prelude::*;
 
 use fredholm_mesh::Vec3;
@@ -19,9 +22,15 @@ use crate::{Camera, Eye, Field, ReportError};
 /// Points of a pixel at a border, and the generator of their lattice.
 const FINE: usize = 16;
 const GENERATOR: usize = 7;
+/// Pixels in a row of a tile.
+const SIDE: usize = 32;
+/// Pixels at borders that are looked at together.
+const TOGETHER: usize = 64;
 /// Difference of linear display values between neighbours, over the larger, from which there is a border; and of
 /// values so dark that none is seen.
 const STEP: f64 = 0.06;
+/// The same between neighbours on different planes or surfaces.
+const EDGE: f64 = 0.02;
 const DARK: f64 = 0.01;
 /// Cosine, less than 1 by this, up to which two elements have one normal.
 const TURN: f64 = 1e-9;
@@ -30,8 +39,8 @@ const PASSES: usize = 3;
 /// No leaf.
 const NOTHING: u32 = u32::MAX;
 
-/// Tells the factors from a point (m) of a leaf to what it sees of each lamp.
-pub type Lighter<'a> = Box<dyn FnMut(usize, Vec3, &mut [f64]) + 'a>;
+/// Tells the factors from points (m) of a leaf to what they see of each lamp, points × lamps.
+pub type Lighter<'a> = Box<dyn FnMut(usize, &[Vec3], &mut [f64]) + 'a>;
 
 /// Looks at the lamps of a scene.
 pub trait LampLight: Sync {
@@ -40,6 +49,14 @@ pub trait LampLight: Sync {
 
     /// Looks for one thread.
     fn lighter(&self) -> Lighter<'_>;
+
+    /// The picture has come to `share`, 0 to 1, of its way.
+    fn advance(&self, _share: f64) {}
+
+    /// Whether the picture is still wanted; asked often.
+    fn go_on(&self) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
 }
 
 /// What a solution is drawn with.
@@ -82,8 +99,69 @@ pub(super) struct LitView<'a> {
     sent: Vec<Rgb>,
 }
 
+/// What is seen through a point of the picture: a leaf, and where (m).
+type Seen = Option<(usize, Vec3)>;
+
 /// Colours points for one thread.
-type Brush<'a> = Box<dyn FnMut(usize, Vec3) -> Rgb + 'a>;
+struct Brush<'v> {
+    view: &'v LitView<'v>,
+    look: Lighter<'v>,
+    /// Numbers of the samples by their leaves.
+    order: Vec<(u32, u32)>,
+    points: Vec<Vec3>,
+    factors: Vec<f64>,
+}
+
+impl Brush<'_> {
+    /// Linear colours of samples, W/m²; 0 where nothing is seen. The samples of one leaf are looked at together.
+    fn colours(&mut self, samples: &[Seen]) -> Vec<Rgb> {
+        let mut colours = vec![[0.0; 3]; samples.len()];
+        let LitView { field, lit, rest, sent, .. } = self.view;
+        let lamps = lit.light.lamps();
+        self.order.clear();
+        let seen = samples.iter().enumerate();
+        self.order.extend(seen.filter_map(|(k, seen)| seen.map(|(leaf, _)| (leaf as u32, k as u32))));
+        self.order.sort_unstable();
+        for group in self.order.chunk_by(|a, b| a.0 == b.0) {
+            let leaf = group[0].0 as usize;
+            self.points.clear();
+            self.points.extend(group.iter().filter_map(|(_, k)| samples[*k as usize].map(|(_, x)| x)));
+            self.factors.resize(lamps * self.points.len(), 0.0);
+            (self.look)(leaf, &self.points, &mut self.factors);
+            let surface = field.mesh().surface_of(leaf);
+            let sent = &sent[surface * lamps..(surface + 1) * lamps];
+            for (i, ((_, k), &point)) in group.iter().zip(&self.points).enumerate() {
+                let factors = &self.factors[i * lamps..(i + 1) * lamps];
+                let add = |sum: Rgb, (f, c): (&f64, &Rgb)| [0, 1, 2].map(|i| sum[i] + f * c[i]);
+                colours[*k as usize] = factors.iter().zip(sent).fold(rest.colour(leaf, point), add);
+            }
+        }
+        colours
+    }
+}
+
+/// A part of the picture that one thread draws, pixels.
+struct Tile {
+    xs: Range<usize>,
+    ys: Range<usize>,
+}
+
+impl Tile {
+    /// The tiles of a picture.
+    fn all(w: usize, h: usize) -> Vec<Self> {
+        let part = |k: usize, end: usize| k * SIDE..((k + 1) * SIDE).min(end);
+        let row = |j: usize| (0..w.div_ceil(SIDE)).map(move |i| Self { xs: part(i, w), ys: part(j, h) });
+        (0..h.div_ceil(SIDE)).flat_map(row).collect()
+    }
+
+    /// Its pixels, row by row.
+    fn pixels(&self) -> impl Iterator<Item = (usize, usize)> {
+        self.ys.clone().flat_map(|y| self.xs.clone().map(move |x| (x, y)))
+    }
+}
+
+/// A pixel as it is shown, and its linear colour.
+type Painted = ([u8; 3], [f32; 3]);
 
 impl<'a> LitView<'a> {
     pub fn new(field: Field<'a>, eye: &'a Eye, lit: &'a Lit<'a>) -> Result<Self, ReportError> {
@@ -120,66 +198,95 @@ impl<'a> LitView<'a> {
     }
 
     fn brush(&self) -> Brush<'_> {
-        let lamps = self.lit.light.lamps();
-        let mut factors = vec![0.0; lamps];
-        let mut look = self.lit.light.lighter();
-        Box::new(move |leaf, point| {
-            look(leaf, point, &mut factors);
-            let surface = self.field.mesh().surface_of(leaf);
-            let sent = &self.sent[surface * lamps..(surface + 1) * lamps];
-            let rest = self.rest.colour(leaf, point);
-            factors.iter().zip(sent).fold(rest, |sum, (f, c)| [0, 1, 2].map(|i| sum[i] + f * c[i]))
-        })
+        let look = self.lit.light.lighter();
+        Brush { view: self, look, order: Vec::new(), points: Vec::new(), factors: Vec::new() }
     }
 
-    /// The picture, with its linear colours where these are wanted.
-    pub fn draw(&self, exposure: Exposure, linear: bool) -> Result<LitPicture, ReportError> {
+    /// The picture, with its linear colours where these are wanted; none where it was not wanted any more before it was whole.
+    pub fn draw(&self, exposure: Exposure, linear: bool) -> Result<Option<LitPicture>, ReportError> {
         let Camera { width, height, .. } = *self.eye.camera();
         let (w, h) = (width as usize, height as usize);
-        let nothing = Middle { leaf: NOTHING, colour: [0.0; 3] };
-        let mut middles = vec![nothing; w * h];
-        middles.par_chunks_mut(w).enumerate().for_each(|(y, row)| {
-            let mut brush = self.brush();
-            for (x, middle) in row.iter_mut().enumerate() {
-                if let Some((leaf, point)) = self.eye.hit(x as f64 + 0.5, y as f64 + 0.5) {
-                    *middle = Middle { leaf: leaf as u32, colour: brush(leaf, point).map(|c| c as f32) };
-                }
-            }
+        let tiles = Tile::all(w, h);
+        let done = AtomicUsize::new(0);
+        let finished = || {
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            self.lit.light.advance(done as f64 / (2 * tiles.len()) as f64);
+        };
+        let looked = tiles.par_iter().map(|tile| {
+            let looked = self.middles(tile)?;
+            finished();
+            Some(looked)
         });
+        let Some(looked) = looked.collect::<Option<Vec<_>>>() else { return Ok(None) };
+        let mut middles = vec![Middle { leaf: NOTHING, colour: [0.0; 3] }; w * h];
+        for (tile, looked) in tiles.iter().zip(looked) {
+            tile.pixels().zip(looked).for_each(|((x, y), middle)| middles[y * w + x] = middle);
+        }
         let tone = Tone::new(exposure, &self.metered(&middles))?;
+        let painted = tiles.par_iter().map(|tile| {
+            let painted = self.painted(tile, &middles, tone)?;
+            finished();
+            Some(painted)
+        });
+        let Some(painted) = painted.collect::<Option<Vec<_>>>() else { return Ok(None) };
         let mut colours = vec![[0.0_f32; 3]; if linear { w * h } else { 0 }];
         let mut pixels = vec![0; 3 * w * h];
-        let paint = |brush: &mut Brush, x: usize, y: usize| {
-            let middle = &middles[y * w + x];
-            if self.is_border(&middles, (w, h), (x, y), tone) {
-                self.supersampled((x, y), tone, brush)
-            } else if middle.leaf == NOTHING {
-                ([BACKGROUND; 3], [0.0; 3])
-            } else {
-                let colour = middle.colour.map(f64::from);
-                (tone.display(colour), colour)
+        for (tile, painted) in tiles.iter().zip(painted) {
+            for ((x, y), (shown, seen)) in tile.pixels().zip(painted) {
+                let at = y * w + x;
+                pixels[3 * at..3 * at + 3].copy_from_slice(&shown);
+                colours.get_mut(at).into_iter().for_each(|colour| *colour = seen);
             }
-        };
-        let rows = pixels.par_chunks_mut(3 * w).enumerate();
-        if linear {
-            rows.zip(colours.par_chunks_mut(w)).for_each(|((y, row), colours)| {
-                let mut brush = self.brush();
-                for (x, (pixel, exact)) in row.chunks_exact_mut(3).zip(colours).enumerate() {
-                    let (shown, seen) = paint(&mut brush, x, y);
-                    pixel.copy_from_slice(&shown.map(encode));
-                    *exact = seen.map(|c| c as f32);
-                }
-            });
-        } else {
-            rows.for_each(|(y, row)| {
-                let mut brush = self.brush();
-                for (x, pixel) in row.chunks_exact_mut(3).enumerate() {
-                    pixel.copy_from_slice(&paint(&mut brush, x, y).0.map(encode));
-                }
-            });
         }
         let picture = Picture { width, height, pixels };
-        Ok(LitPicture { picture, linear: colours, exposure: tone.exposure() })
+        Ok(Some(LitPicture { picture, linear: colours, exposure: tone.exposure() }))
+    }
+
+    /// What is seen through the middles of the pixels of a tile; none where the picture is not wanted any more.
+    fn middles(&self, tile: &Tile) -> Option<Vec<Middle>> {
+        if self.lit.light.go_on().is_break() {
+            return None;
+        }
+        let look = |(x, y)| self.eye.hit(x as f64 + 0.5, y as f64 + 0.5);
+        let samples: Vec<Seen> = tile.pixels().map(look).collect();
+        let colours = self.brush().colours(&samples);
+        let middle = |(seen, colour): (&Seen, Rgb)| Middle {
+            leaf: seen.map_or(NOTHING, |(leaf, _)| leaf as u32),
+            colour: colour.map(|c| c as f32),
+        };
+        Some(samples.iter().zip(colours).map(middle).collect())
+    }
+
+    /// The pixels of a tile; none where the picture is not wanted any more.
+    fn painted(&self, tile: &Tile, middles: &[Middle], tone: Tone) -> Option<Vec<Painted>> {
+        let Camera { width, height, .. } = *self.eye.camera();
+        let (w, h) = (width as usize, height as usize);
+        let mut brush = self.brush();
+        let mut painted = Vec::with_capacity(tile.xs.len() * tile.ys.len());
+        let mut borders = Vec::new();
+        for (x, y) in tile.pixels() {
+            let middle = &middles[y * w + x];
+            if self.is_border(middles, (w, h), (x, y), tone) {
+                borders.push((painted.len(), (x, y)));
+            }
+            let shown = match middle.leaf {
+                NOTHING => [BACKGROUND; 3],
+                _ => tone.display(middle.colour.map(f64::from)),
+            };
+            painted.push((shown.map(encode), middle.colour));
+        }
+        for borders in borders.chunks(TOGETHER) {
+            if self.lit.light.go_on().is_break() {
+                return None;
+            }
+            let samples: Vec<Seen> = borders.iter().flat_map(|(_, at)| self.lattice(*at)).collect();
+            let colours = brush.colours(&samples);
+            let pixels = samples.chunks(FINE).zip(colours.chunks(FINE));
+            for ((place, _), (samples, colours)) in borders.iter().zip(pixels) {
+                painted[*place] = mean(samples, colours, tone);
+            }
+        }
+        Some(painted)
     }
 
     /// Luminances that an automatic exposure goes by: of lit surfaces, or of lamps where there is nothing else.
@@ -210,11 +317,10 @@ impl<'a> LitView<'a> {
         let (xs, ys) = (x.saturating_sub(1)..=(x + 1).min(w - 1), y.saturating_sub(1)..=(y + 1).min(h - 1));
         ys.flat_map(|v| xs.clone().map(move |u| v * w + u)).any(|at| {
             let other = &middles[at];
-            if !self.is_alike(own.leaf, other.leaf) {
-                return true;
-            }
+            // A change on one plane is a shadow's, which is seen less than an edge.
+            let step = if self.is_alike(own.leaf, other.leaf) { STEP } else { EDGE };
             let beside = shown(other);
-            (0..3).any(|i| (colour[i] - beside[i]).abs() > STEP * colour[i].max(beside[i]).max(DARK / STEP))
+            (0..3).any(|i| (colour[i] - beside[i]).abs() > step * colour[i].max(beside[i]).max(DARK / step))
         })
     }
 
@@ -234,18 +340,20 @@ impl<'a> LitView<'a> {
             && (q.corner(0) - p.corner(0)).dot(p.normal()).abs() <= TURN * (p.diameter() + q.diameter())
     }
 
-    /// The display value and the linear colour of a pixel from points of a lattice.
-    fn supersampled(&self, (x, y): (usize, usize), tone: Tone, brush: &mut Brush) -> (Rgb, Rgb) {
+    /// What is seen through the points of a lattice in a pixel.
+    fn lattice(&self, (x, y): (usize, usize)) -> [Seen; FINE] {
         let place = |i: usize| (i as f64 + 0.5) / FINE as f64;
-        let (mut shown, mut seen) = ([0.0; 3], [0.0; 3]);
-        for k in 0..FINE {
-            let at = (x as f64 + place(k), y as f64 + place(GENERATOR * k % FINE));
-            let colour = self.eye.hit(at.0, at.1).map(|(leaf, point)| brush(leaf, point));
-            let display = colour.map_or([BACKGROUND; 3], |colour| tone.display(colour));
-            let colour = colour.unwrap_or_default();
-            shown = [0, 1, 2].map(|i| shown[i] + display[i] / FINE as f64);
-            seen = [0, 1, 2].map(|i| seen[i] + colour[i] / FINE as f64);
-        }
-        (shown, seen)
+        std::array::from_fn(|k| self.eye.hit(x as f64 + place(k), y as f64 + place(GENERATOR * k % FINE)))
     }
+}
+
+/// A pixel from its samples: the means of their display values and of their colours.
+fn mean(samples: &[Seen], colours: &[Rgb], tone: Tone) -> Painted {
+    let (mut shown, mut seen) = ([0.0; 3], [0.0; 3]);
+    for (sample, colour) in samples.iter().zip(colours) {
+        let display = if sample.is_some() { tone.display(*colour) } else { [BACKGROUND; 3] };
+        shown = [0, 1, 2].map(|i| shown[i] + display[i] / FINE as f64);
+        seen = [0, 1, 2].map(|i| seen[i] + colour[i] / FINE as f64);
+    }
+    (shown.map(encode), seen.map(|c| c as f32))
 }

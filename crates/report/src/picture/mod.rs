@@ -101,7 +101,7 @@ pub fn render(field: &Field<'_>, camera: &Camera, exposure: Exposure) -> Result<
 }
 
 /// Draws a field as a camera sees it, with the light of the lamps taken at every pixel; `linear` colours come with it where
-/// they are wanted.
+/// they are wanted. There is none where [`LampLight::go_on`] did not want it any more before it was whole.
 ///
 /// # Errors
 /// As for [`render`], and [`ReportError::Length`] for vectors that do not fit the field.
@@ -111,7 +111,7 @@ pub fn render_lit(
     exposure: Exposure,
     lit: &Lit<'_>,
     linear: bool,
-) -> Result<LitPicture, ReportError> {
+) -> Result<Option<LitPicture>, ReportError> {
     let eye = Eye::new(field.mesh(), camera)?;
     LitView::new(*field, &eye, lit)?.draw(exposure, linear)
 }
