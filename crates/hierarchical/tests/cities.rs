@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use common::{Bench, options};
 use fredholm_generate::City;
-use fredholm_hierarchical::Solution;
+use fredholm_hierarchical::{Solution, Stated};
 use fredholm_iterative::solvers;
 use fredholm_linop::{MultiVector, Quiet, SecondKind, Stop, StopReason};
 use fredholm_scene::Scene;
@@ -46,7 +46,7 @@ fn city(faces: usize, jitter: f64, accuracy: f64) {
     let scene = City { faces, jitter, seed: 1 }.files().write(folder.path()).unwrap();
     let bench = Bench::new(Scene::load(scene).unwrap());
     let solution = bench.resume(accuracy, None, &Quiet);
-    let (links, stated) = (solution.links.len(), solution.error.as_ref().map(|error| error.worst()));
+    let (links, stated) = (solution.links.len(), solution.error.as_ref().map(Stated::worst));
     println!("{faces} faces, {jitter} m: {links} links, stated {stated:?}, limited {}", solution.limited);
     let (row, converged) = solved(&solution, accuracy);
     println!("largest row sum {row}");
