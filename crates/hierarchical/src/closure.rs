@@ -16,6 +16,9 @@ const STEPS: usize = 40;
 const POWER: f64 = 2.0 / 3.0;
 /// Mean change of the factors that is small enough: least and most. Single leaves that move on do not matter.
 const NEAR: [f64; 2] = [1e-7, 1e-4];
+/// Times that what is above is cut, at most, and the relative excess that one cut takes for good.
+const CUTS: usize = 4;
+const UNCUT: f64 = 5e-3;
 /// A leaf whose links bring much too little lacks some of them: scaling does not stand in for those.
 const MOST: f64 = 1.25;
 
@@ -110,17 +113,25 @@ pub(crate) fn balance(operator: &mut HierarchicalOperator, aims: &[Aim], wholes:
             break;
         }
     }
-    // What is above in the end is cut off: smaller factors make no other row sum larger.
-    let rows = operator.row_sums();
-    let leaves = operator.scale().iter().zip(&rows).zip(aims);
-    // Linear functions may leave a nearly buried leaf less than nothing.
-    let cut = leaves.map(|((&scale, &row), aim)| match row {
-        _ if row > aim.most => scale * aim.most / row,
-        _ if row < 0.0 => 0.0,
-        _ => scale,
-    });
-    let scale = cut.collect();
-    operator.set_scale(scale);
+    // What is above in the end is cut off. Smaller factors make other row sums smaller, but for the few that links with
+    // a steep gradient bring less than nothing: they may rise, and are cut again.
+    for _ in 0..CUTS {
+        let rows = operator.row_sums();
+        let above = |(&row, aim): (&f64, &Aim)| if row > aim.most { row / aim.most - 1.0 } else { 0.0 };
+        let most = rows.iter().zip(aims).map(above).fold(0.0, f64::max);
+        let leaves = operator.scale().iter().zip(&rows).zip(aims);
+        // Linear functions may leave a nearly buried leaf less than nothing.
+        let cut = leaves.map(|((&scale, &row), aim)| match row {
+            _ if row > aim.most => scale * aim.most / row,
+            _ if row < 0.0 => 0.0,
+            _ => scale,
+        });
+        let scale = cut.collect();
+        operator.set_scale(scale);
+        if most <= UNCUT {
+            break;
+        }
+    }
 }
 
 /// Whether the factors of the leaves, each with the one of the next step, move by no more than `tolerance` in the mean,

@@ -17,7 +17,7 @@ const ROW: u128 = 716;
 pub(super) const COUPLED: u128 = 5000;
 
 /// Bytes of the plots and of the page with its viewer while they are written.
-const PAGE: u128 = 4 << 20;
+const PAGE: u128 = 6 << 20;
 /// Bytes of a point while its field is sampled, of each batch that is in memory, and of a point at
 /// one frequency while the results are written.
 const SAMPLED: u128 = 72;
