@@ -51,9 +51,9 @@ impl Indicator {
         match self {
             Self::EdgesLeft(_) => 1.15,
             Self::EdgesAdded(_) => 1.05,
-            Self::InsideEquation(_) => 2.2,
+            Self::InsideEquation(_) | Self::InsideDielectric(_) => 2.2,
             Self::InsideOptics(_) => 1.4,
-            Self::InsideElectric(_) | Self::InsideDielectric(_) => 1.35,
+            Self::InsideElectric(_) => 1.35,
             Self::InsideCombined(_) => 1.75,
             Self::BoundaryElements(_) => 0.65,
         }
