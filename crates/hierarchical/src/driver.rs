@@ -47,7 +47,8 @@ const LEAST: f64 = 1e-10;
 
 /// What row sums may exceed 1 by where it is not known whether something leaves: cutting off all that is above, and adding nothing to what is below, would lose power.
 const SLACK: f64 = 0.04;
-/// Relative change of the factors at which scaling ends, over the least slack: what is left to be cut is small beside it.
+/// Mean relative change of the factors at which scaling ends, over the least slack and the accuracy: what is left to be
+/// cut is small beside them.
 const UNCUT: f64 = 0.05;
 /// Row sum up to which a leaf of a closed scene is not believed to lack links alone.
 const LEAST_ROW: f64 = 0.7;
@@ -388,7 +389,8 @@ impl Run<'_> {
         let told = self.whole_rows(tree, &rows, roots);
         let wholes = told.into_iter().zip(kept).map(|(told, kept)| told.or(kept)).collect();
         let least = (0..tree.roots().len() as u32).map(slack).fold(SLACK, f64::min);
-        balance(operator, &aims, &Wholes { of_leaf: roots, aims: wholes }, UNCUT * least);
+        let uncut = UNCUT * least * self.options.accuracy;
+        balance(operator, &aims, &Wholes { of_leaf: roots, aims: wholes }, uncut);
     }
 
     /// What the leaves of each input element should receive together, m², where something is lost.

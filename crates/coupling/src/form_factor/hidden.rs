@@ -8,7 +8,7 @@ use super::ev_events::CriticalPlane;
 use super::pieces::{Breaks, Pieces, PiecesWork};
 use super::shadow::Topology;
 use super::together::Together;
-use super::{Segment, point_to_polygon, to_segments};
+use super::{ErrorModel, Segment, point_to_polygon, to_segments};
 use fredholm_mesh::Vec3;
 use fredholm_quadrature::Estimate;
 use fredholm_visibility::body::Screen;
@@ -42,8 +42,20 @@ pub(crate) struct HiddenWork {
     edges: Vec<Segment>,
 }
 
+impl HiddenWork {
+    /// Points at which the hidden part was asked for, of all integrals.
+    pub(crate) fn points(&self) -> u64 {
+        self.pieces.points_asked
+    }
+}
+
 /// The hidden part of the exchange (m²), to an absolute `goal` (m²).
-pub(crate) fn hidden_exchange(scene: &Occluded, goal: f64, work: &mut HiddenWork) -> Estimate {
+pub(crate) fn hidden_exchange(
+    scene: &Occluded,
+    model: &ErrorModel,
+    goal: f64,
+    work: &mut HiddenWork,
+) -> Estimate {
     let HiddenWork { together, critical, pieces, edges } = work;
     let steep = Steep::of(scene, edges);
     let (events, ev_events) = critical.events(scene.source, scene.target, scene.screens, scene.tolerance);
@@ -52,7 +64,7 @@ pub(crate) fn hidden_exchange(scene: &Occluded, goal: f64, work: &mut HiddenWork
     let breaks =
         Breaks { events, ev_events, sure, flat: scene.tolerance, distance: |x| steep.distance(x), most };
     let h = |points: &[Vec3], found: &mut Vec<_>| scene.hidden(points, together, found);
-    Pieces::new(h, breaks, pieces, goal).integrate(scene.source, scene.open)
+    Pieces::new(h, breaks, pieces, model, goal).integrate(scene.source, scene.open)
 }
 
 /// What makes the hidden part steep where it is close: edges that may cut the target, and of those that lie on the source the ends.

@@ -4,6 +4,7 @@
 
 pub(crate) mod contour;
 mod critical;
+mod error_model;
 mod ev_batch;
 mod ev_events;
 mod facing;
@@ -23,6 +24,7 @@ mod unoccluded;
 mod visible;
 
 pub use contour::contour_integral;
+pub use error_model::ErrorModel;
 pub(crate) use facing::{Segment, Side, extent, facing_exchange, flat, front, front_of, to_segments};
 pub(crate) use jacobian::jacobian;
 pub(crate) use lanes::{LANES, Lanes, Lanes3, any, ask, each, heights, range, same};

@@ -16,7 +16,7 @@ use super::hidden::{HiddenWork, Occluded, hidden_exchange};
 use super::rung::rung;
 use super::sampled::sampled;
 use super::small_receiver::small_receiver;
-use super::{Side, Unoccluded, Work, facing_exchange, front};
+use super::{ErrorModel, Side, Unoccluded, Work, facing_exchange, front};
 use crate::occlusion::{Clusters, Sight};
 use crate::polygon::HalfSpace;
 use fredholm_mesh::{Patch, Vec3};
@@ -82,6 +82,14 @@ pub struct Workspace {
     hidden: HiddenWork,
 }
 
+impl Workspace {
+    /// Points at which the part behind bodies was asked for, of all exchanges so far: what they cost.
+    #[must_use]
+    pub fn points_behind_bodies(&self) -> u64 {
+        self.hidden.points()
+    }
+}
+
 /// Which patch the outer integral goes over.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Outer {
@@ -103,6 +111,7 @@ pub struct PairIntegrator<'a> {
     tolerance: f64,
     /// Bodies up to which exact shadows come first.
     few: usize,
+    model: ErrorModel,
 }
 
 impl<'a> PairIntegrator<'a> {
@@ -127,12 +136,18 @@ impl<'a> PairIntegrator<'a> {
         patches.extend(groups);
         let open = Unoccluded::new(&patches, OPEN * tolerance);
         let sides = patches.iter().map(|patch| Side::of(patch)).collect();
-        Self { patches, sides, open, occluders, bodies, tolerance, few: FEW }
+        Self { patches, sides, open, occluders, bodies, tolerance, few: FEW, model: ErrorModel::FITTED }
     }
 
     /// Computes exact shadows behind any number of bodies.
     pub(crate) fn without_sampling(self) -> Self {
         Self { few: usize::MAX, ..self }
+    }
+
+    /// States errors behind bodies by another model than the fitted one.
+    #[must_use]
+    pub fn with_error_model(self, model: ErrorModel) -> Self {
+        Self { model, ..self }
     }
 
     /// Number of patches.
@@ -306,7 +321,7 @@ impl<'a> PairIntegrator<'a> {
             open: open.value,
             tolerance,
         };
-        let hidden = hidden_exchange(&scene, goal, &mut work.hidden);
+        let hidden = hidden_exchange(&scene, &self.model, goal, &mut work.hidden);
         let left = Estimate { value: open.value - hidden.value, error: open.error + hidden.error };
         Exchange::new(Method::Clipped, left)
     }

@@ -3,6 +3,7 @@
 // A test that cannot run should panic, in its helpers too.
 #![allow(clippy::unwrap_used)]
 
+mod behind;
 mod generator;
 mod occluded;
 mod open;

@@ -1,6 +1,7 @@
 //! Pairs behind a few occluders, or behind many.
 
-use crate::generator::{Kind, Random, axes, pair, patch, polygon};
+use crate::behind::{PAIRS, SETS, facing, resolved, scenes};
+use crate::generator::{Kind, Random, pair, patch, polygon};
 use crate::reference::{self, Reference};
 use fredholm_coupling::form_factor::{Exchange, Method, PairIntegrator, Workspace};
 use fredholm_mesh::{Patch, Vec3};
@@ -14,51 +15,6 @@ fn exchange(patches: &[Patch], tolerance: f64) -> Exchange {
 
 fn smaller(patches: &[Patch]) -> f64 {
     patches[0].area().min(patches[1].area())
-}
-
-fn facing(patches: &[Patch]) -> f64 {
-    let d2 = patches[0].centroid().distance_squared(patches[1].centroid());
-    (patches[0].area() * patches[1].area() / (std::f64::consts::PI * d2)).min(smaller(patches))
-}
-
-/// A point of a patch, even in its parameters.
-fn point(patch: &Patch, random: &mut Random) -> Vec3 {
-    let (u, v) = (random.between(0.1, 0.9), random.between(0.1, 0.9));
-    if patch.sides() == 3 && u + v > 1.0 { patch.point(1.0 - u, 1.0 - v) } else { patch.point(u, v) }
-}
-
-/// Something between two patches: free, standing on the first, touching the second with a corner, or lying on it face down.
-fn occluder(a: &Patch, b: &Patch, size: f64, random: &mut Random) -> Option<Patch> {
-    let (p, q) = (point(a, random), point(b, random));
-    match random.below(8) {
-        0 | 1 => {
-            let [u, _] = axes(a.normal(), random);
-            let (side, height) = (u * size, a.normal() * (size * random.between(0.3, 2.0)));
-            patch(&[p, p + side, p + side + height, p + height])
-        }
-        2 => {
-            let n = random.direction();
-            let [u, v] = axes(n, random);
-            patch(&[q, q + u * size, q + v * size])
-        }
-        3 => {
-            let shrunk: Vec<Vec3> = b.flipped().corners().iter().map(|&x| q + (x - q) * 0.4).collect();
-            patch(&shrunk)
-        }
-        _ => Some(polygon(p + (q - p) * random.between(0.1, 0.9), random.direction(), size, 1.5, random)),
-    }
-}
-
-/// A pair with `count` things between, partly seen.
-fn scene(count: usize, random: &mut Random) -> Vec<Patch> {
-    let kind = [Kind::Near, Kind::Apart, Kind::SharedEdge, Kind::Crossing][random.below(4)];
-    let mut patches = pair(kind, random).to_vec();
-    while patches.len() < 2 + count {
-        let size = random.scale(0.05, 0.7);
-        let (a, b) = (patches[0], patches[1]);
-        patches.extend(occluder(&a, &b, size, random));
-    }
-    patches
 }
 
 /// The value by other formulas than those of the crate, to about `goal` (m²).
@@ -105,31 +61,15 @@ impl Figures {
     }
 }
 
-/// Sets of pairs, by the seeds they start from, and pairs of each.
-const SETS: [u64; 5] = [5, 21, 22, 23, 24];
-const PAIRS: usize = 500;
-
 /// Partly occluded pairs, with one to six things between, set after set.
 fn occluded(tolerance: f64) -> impl Iterator<Item = (Vec<Patch>, Exchange)> {
     SETS.into_iter().flat_map(move |seed| {
-        let mut random = Random::new(seed);
-        let scenes = std::iter::repeat_with(move || {
-            let count = 1 + random.below(6);
-            scene(count, &mut random)
-        });
-        let computed = scenes.map(move |patches| {
+        let computed = scenes(seed).map(move |patches| {
             let got = exchange(&patches, tolerance);
             (patches, got)
         });
         computed.filter(|(_, got)| got.method == Method::Clipped).take(PAIRS)
     })
-}
-
-/// Over-resolved exchanges of these pairs, m².
-fn resolved() -> Vec<f64> {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/occluded_pairs.csv");
-    let text = std::fs::read_to_string(path).unwrap();
-    text.lines().skip(1).map(|line| line.split(',').next().unwrap().parse().unwrap()).collect()
 }
 
 fn measure(tolerance: f64) -> Figures {

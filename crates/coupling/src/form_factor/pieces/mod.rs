@@ -12,6 +12,7 @@ mod observed;
 mod piece;
 mod shape;
 
+use super::ErrorModel;
 use super::critical::Plane;
 use super::ev_events::{Active, CriticalPlane, EdgeVertexEvents, chord};
 use super::shadow::Topology;
@@ -71,6 +72,7 @@ pub(crate) struct Pieces<'a, H, D, M> {
     h: H,
     breaks: Breaks<'a, D, M>,
     work: &'a mut PiecesWork,
+    model: &'a ErrorModel,
     observed: Observed,
     points: usize,
     goal: f64,
@@ -81,6 +83,8 @@ pub(crate) struct Pieces<'a, H, D, M> {
 /// Buffers of one thread.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PiecesWork {
+    /// Points at which h was asked for, of all integrals.
+    pub(crate) points_asked: u64,
     parts: Vec<Piece>,
     /// Lines through parts, each list by its range. A part of a part looks no further than into the list of the whole.
     cutting: Vec<Cutting>,
@@ -124,11 +128,17 @@ where
     M: Fn(Vec3) -> f64,
 {
     /// Prepares the integral of h to an absolute `goal`. `h` appends the values and the topologies at given points.
-    pub(crate) fn new(h: H, breaks: Breaks<'a, D, M>, work: &'a mut PiecesWork, goal: f64) -> Self {
+    pub(crate) fn new(
+        h: H,
+        breaks: Breaks<'a, D, M>,
+        work: &'a mut PiecesWork,
+        model: &'a ErrorModel,
+        goal: f64,
+    ) -> Self {
         work.parts.clear();
         work.cutting.clear();
-        let observed = Observed::new(breaks.sure);
-        Self { h, breaks, work, observed, points: 0, goal, density: 0.0 }
+        let observed = Observed::new(*model, breaks.sure);
+        Self { h, breaks, work, model, observed, points: 0, goal, density: 0.0 }
     }
 
     /// The integral over a convex polygon; it is at most `most`.
@@ -139,6 +149,7 @@ where
         loop {
             let error = self.observed.error(&self.work.parts);
             if error <= self.goal || self.points >= POINTS {
+                self.work.points_asked += self.points as u64;
                 return Estimate { value: self.work.parts.iter().map(|p| p.value).sum(), error };
             }
             self.improve_worst();
@@ -235,7 +246,7 @@ where
         if piece.asks_most() {
             piece.most = self.most(&piece);
         }
-        piece.raise(value, self.work.points.topology(), self.goal);
+        piece.raise(self.model, value, self.work.points.topology(), self.goal);
         if self.observed.scale() * piece.error < self.goal {
             self.look_behind(&mut piece);
         }
@@ -277,7 +288,7 @@ where
             self.points += 1;
             points.leave_out(lines, flat);
             if points.judge(plane) == Line::Active {
-                piece.reveal((plane, share), points.jump() * share * piece.shape.area());
+                piece.reveal(self.model, (plane, share), points.jump() * share * piece.shape.area());
             }
         }
     }
@@ -309,7 +320,7 @@ where
     /// Cuts a part along a line, or halves its sides. Where most of its error is what may hide between its points near lines, it is cut along these although none is known to be active: halves
     /// that they still cut keep most of that error.
     fn divide(&mut self, piece: &Piece) {
-        let hidden = if piece.hides_most() { self.widest(piece) } else { None };
+        let hidden = if piece.hides_most(self.model) { self.widest(piece) } else { None };
         match piece.line.or(hidden) {
             Some((plane, _)) => self.cut(piece, plane),
             None => {
@@ -408,7 +419,7 @@ mod tests {
             distance: |x: Vec3| x.distance(near),
             most: |_| 0.7,
         };
-        Pieces::new(h, breaks, &mut PiecesWork::default(), goal).integrate(&square, 0.7)
+        Pieces::new(h, breaks, &mut PiecesWork::default(), &ErrorModel::FITTED, goal).integrate(&square, 0.7)
     }
 
     #[test]

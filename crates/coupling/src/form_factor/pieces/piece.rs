@@ -1,15 +1,9 @@
 //! A part of the source: the integral over it, and how well that is known.
-//!
-//! s is the change from the rule before (at least [`ROUNDING`] times the integral), v the range of h times the area (for a higher rule on a part where all points are of one topology: the change before), m the
-//! area times the largest value that h could have at the first points, r the reach. The error is, with measured shares (docs/notes/form-factors.md),
-//!
-//! | | r ≤ 1 | r > 1 |
-//! |---|---|---|
-//! | all points of one topology | r √r √(a² s v + a′² v² + a″² s²) | √r √((b m)² + (c s)²) |
-//! | topologies differ | d √(s v) | r √(e² s m + (f m)² + (g s)²) |
+//! Its error is estimated by the [`error_model`](crate::form_factor::error_model), which has the formula.
 
 use super::shape::{DEGREES, Shape};
 use super::{Lines, merit};
+use crate::form_factor::ErrorModel;
 use crate::form_factor::critical::Plane;
 use crate::form_factor::shadow::Topology;
 
@@ -19,18 +13,6 @@ const PAYS_FIRST: f64 = 0.26;
 /// Radius of a part, in its distances from what makes h steep, above which its sides are halved.
 /// No simple number: in a scene with right angles the two are often equal, and rounding would decide.
 const NEAR: f64 = 1.000_001;
-/// The shares a, a′ and a″ of the table,
-const SMOOTH: [f64; 3] = [0.11, 0.02, 0.32];
-/// b and c,
-const SMOOTH_NEAR: [f64; 2] = [0.0106, 0.18];
-/// d,
-const BROKEN: f64 = 0.1;
-/// and e, f and g.
-const BROKEN_NEAR: [f64; 3] = [0.05, 0.008, 0.014];
-/// Share of the largest value, and of the width behind a line through a part, that small shadows between its points may hide; each next rule leaves this part of it.
-const BETWEEN: [f64; 2] = [1e-3, 0.22];
-/// Share of the hidden part that may lie beyond an active line with no points of the rule behind it.
-const BEHIND: f64 = 1.3;
 
 /// Changes below these shares of an integral and of the goal count as that: else rounding would decide what is improved next.
 const ROUNDING: f64 = 1e-10;
@@ -95,46 +77,47 @@ impl Piece {
         self.degree == 0 && (self.is_near() || self.cut > 0.0)
     }
 
-    /// Takes the integral by the next rule, with the topology of its points. `goal` is the error allowed to the whole, m².
-    pub(super) fn raise(&mut self, value: f64, topology: Option<Topology>, goal: f64) {
+    /// Takes the integral by the next rule, with the topology of its points. `goal` is the error allowed to the whole,
+    /// m².
+    pub(super) fn raise(&mut self, model: &ErrorModel, value: f64, topology: Option<Topology>, goal: f64) {
         let negligible = (ROUNDING * value.abs()).min(BESIDE_THE_GOAL * goal);
         let step = (value - self.value).abs().max(negligible);
         let first = self.degree == 0;
         self.topology = topology.filter(|_| first || self.topology == topology);
         let before = if first || self.topology.is_none() { self.range } else { self.step }.max(step);
         self.degree += 1;
-        self.error = self.estimate(step, before) + self.between();
-        let quick = step < if first { PAYS_FIRST } else { PAYS } * before || self.hides_most();
+        self.error = self.estimate(model, step, before) + self.between(model);
+        let quick = step < if first { PAYS_FIRST } else { PAYS } * before || self.hides_most(model);
         self.pays = self.topology.is_some() && !self.is_near() && quick && self.degree + 1 < DEGREES.len();
         (self.value, self.step) = (value, step);
     }
 
     /// Whether what may hide between its points is most of its error.
-    pub(super) fn hides_most(&self) -> bool {
-        2.0 * self.between() > self.error
+    pub(super) fn hides_most(&self, model: &ErrorModel) -> bool {
+        2.0 * self.between(model) > self.error
     }
 
     /// What may hide between the points near a line, m².
-    fn between(&self) -> f64 {
-        BETWEEN[0] * BETWEEN[1].powi(self.degree as i32 - 1) * self.cut * self.most
+    fn between(&self, model: &ErrorModel) -> f64 {
+        model.between[0] * model.between[1].powi(self.degree as i32 - 1) * self.cut * self.most
     }
 
-    fn estimate(&self, s: f64, v: f64) -> f64 {
+    fn estimate(&self, model: &ErrorModel, s: f64, v: f64) -> f64 {
         let (r, m) = (self.reach, self.most);
-        let ([a, a1, a2], [b, c], [e, f, g]) = (SMOOTH, SMOOTH_NEAR, BROKEN_NEAR);
+        let ([a, a1, a2], [b, c], [e, f, g]) = (model.smooth, model.smooth_near, model.broken_near);
         match (self.topology.is_some(), r <= NEAR) {
             (true, true) => r * (r * (a * a * s * v + a1 * a1 * v * v + a2 * a2 * s * s)).sqrt(),
-            (false, true) => BROKEN * (s * v).sqrt(),
+            (false, true) => model.broken * (s * v).sqrt(),
             (true, false) => (r * (b * b * m * m + c * c * s * s)).sqrt(),
             (false, false) => r * (e * e * s * m + f * f * m * m + g * g * s * s).sqrt(),
         }
     }
 
     /// An active line has no point of the rule behind it; `missed` is by how much the integral may be off, m².
-    pub(super) fn reveal(&mut self, line: (Plane, f64), missed: f64) {
+    pub(super) fn reveal(&mut self, model: &ErrorModel, line: (Plane, f64), missed: f64) {
         self.topology = None;
         self.pays = false;
-        self.error = self.error.max(BEHIND * missed);
+        self.error = self.error.max(model.behind * missed);
         if self.line.is_none_or(|other| merit(&line) > merit(&other)) {
             self.line = Some(line);
         }
