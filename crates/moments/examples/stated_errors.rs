@@ -23,6 +23,10 @@ use fredholm_waves::{
 use wave_cases::{Body, Case, calibration, directions, error, small_bodies, small_sheets};
 
 type Vectors = MultiVector<Complex64>;
+/// What several excitations give.
+type RightHandSide<'a> = dyn Fn(&[&[&dyn Source]]) -> Vectors + 'a;
+/// A part of the calibration, seen from some directions.
+type Part = fn(&[Vec3]);
 
 fn all(system: &System<'_>, b: &Vectors) -> Vectors {
     let one = Vectors::from_fn(b.dim(), 1, |_, _| Complex64::ONE);
@@ -141,7 +145,7 @@ fn closed_elements(u: &[Vec3]) {
 fn lanes_solved(
     cases: &[Case],
     coupling: &dyn LinearOperator<Complex64>,
-    right_hand_side: &dyn Fn(&[&[&dyn Source]]) -> Vectors,
+    right_hand_side: &RightHandSide<'_>,
 ) -> Vectors {
     let sources: Vec<PlaneWave> = cases.iter().map(Case::source).collect();
     let lanes: Vec<[&dyn Source; 1]> = sources.iter().map(|source| [source as &dyn Source]).collect();
@@ -189,7 +193,7 @@ fn main() {
     let u = directions();
     let wanted = std::env::args().nth(1).unwrap_or_default();
     println!("case,treatment,indicator,value,true_error");
-    let parts: [(&str, fn(&[Vec3])); 3] =
+    let parts: [(&str, Part); 3] =
         [("facets", facets), ("sheets", boundary_elements), ("closed", closed_elements)];
     for (_, part) in parts.iter().filter(|(name, _)| name.contains(&wanted)) {
         part(&u);

@@ -115,6 +115,9 @@ fn at_frequency(
     task.carry_out(stages, outcome)
 }
 
+/// A far field along θ̂ and φ̂, and the squares of its error (V²), where that is known, and of itself.
+pub(super) type Echo = ([Complex64; 2], (Option<f64>, f64));
+
 /// One frequency.
 #[derive(Clone, Copy)]
 pub(super) struct Task<'a> {
@@ -403,7 +406,7 @@ impl Task<'_> {
         radiator: &Radiator<'_>,
         all: Option<&Bounced<'_>>,
         residual: Option<f64>,
-    ) -> Result<([Complex64; 2], (Option<f64>, f64)), Error> {
+    ) -> Result<Echo, Error> {
         let refused = |error: WaveError| self.refused(&error);
         let edges = self.edges(all)?;
         let back = self.far(radiator, all.is_none(), edges.as_ref(), &[u]).map_err(refused)?;

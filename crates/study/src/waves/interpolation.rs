@@ -151,7 +151,9 @@ impl Samples {
             whole += share;
             sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += share * value);
         }
-        sum.iter_mut().for_each(|sum| *sum /= whole);
+        for sum in &mut sum {
+            *sum /= whole;
+        }
         sum
     }
 
@@ -310,13 +312,14 @@ mod tests {
         for (i, &x) in at.iter().enumerate().rev() {
             samples.add(i, x, vec![cubic(x), Complex64::ONE]);
         }
-        for x in [0.1, 0.4, 1.0, 1.95] {
+        assert_eq!(samples.value(0.4, 1)[0], cubic(0.4));
+        for x in [0.1, 1.0, 1.95] {
             let found = samples.value(x, 3);
             assert!(
                 (found[0] - cubic(x)).norm() < 1e-12 && (found[1] - 1.0).norm() < 1e-12,
                 "{x}: {found:?}"
             );
-            assert!((samples.value(x, 1)[0] - cubic(x)).norm() > 1e-4 || x == 0.4);
+            assert!((samples.value(x, 1)[0] - cubic(x)).norm() > 1e-4);
         }
     }
 }
