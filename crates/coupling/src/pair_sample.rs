@@ -41,9 +41,10 @@ mod tests {
             all.sort_unstable();
             assert_eq!(all, (0..n).collect::<Vec<_>>());
         }
+        // Independent random indices would stray by 3 in the mean.
         for tenth in 0..10 {
             let inside = scattered(1000).take(100).filter(|i| i / 100 == tenth).count();
-            assert!((8..=12).contains(&inside), "{tenth}: {inside}");
+            assert!((7..=13).contains(&inside), "{tenth}: {inside}");
         }
     }
 }

@@ -105,7 +105,7 @@ pub use viewfactors::{
     point_closure, solve_view_factors, view_factor_methods, view_factors,
 };
 pub use waves::{
-    Balance, CheckedCoupling, CheckedWaves, CouplingStorage, Estimated, Reciprocity, SolvedFrequency,
-    SolvedWaves, WaveCompareOptions, WaveOptions, build_wave_solver, check_wave_solver, check_waves,
-    compare_waves, waves,
+    Balance, CheckedCoupling, CheckedWaves, CouplingStorage, Estimated, InterpolatedSweep, Reciprocity,
+    SolvedFrequency, SolvedWaves, WaveCompareOptions, WaveOptions, build_wave_solver, check_wave_solver,
+    check_waves, compare_waves, waves,
 };

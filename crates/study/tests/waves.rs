@@ -279,3 +279,101 @@ fn sweeps_tell_their_reciprocity() {
     assert!(electric < 1e-9, "{electric}");
     assert!(dual < 0.02 && dual > electric, "{dual}");
 }
+
+/// What a sphere sends back, along the polarisation of the wave: |S|, m.
+fn echo_of_a_sphere(radius: f64, permittivity: Option<Complex64>) -> Complex64 {
+    let wave = Wave::new(1e9).unwrap();
+    let source = PlaneWave::new(Vec3::Y, Vec3::Z, 1.0.into()).unwrap();
+    let p = Vec3::Y * -3e5;
+    let e = match permittivity {
+        Some(permittivity) => {
+            DielectricSphere::new(radius, permittivity).unwrap().scattered(&wave, &source, p)
+        }
+        None => ConductingSphere::new(radius).unwrap().scattered(&wave, &source, p),
+    };
+    e.components()[2] * Complex64::cis(wave.wavenumber() * 3e5) * 3e5
+}
+
+/// The errors of sweeps are stated, by facets and by boundary elements, of conductors and of dielectric bodies.
+#[test]
+fn errors_of_sweeps_are_stated_and_hold() {
+    let folder = tempfile::tempdir().unwrap();
+    let glass = "material = \"glass\"\n[materials.glass]\nhalf_space = { permittivity = [3, -0.1] }\n";
+    let back = "[[receiver]]\nname = \"b\"\nmonostatic = { theta_degrees = [30, 90], phi_degrees = [20, 50, 110, 170] }\n";
+    for (method, edge, more) in [
+        ("efie", "lambda/8", ""),
+        ("cfie", "lambda/8", ""),
+        ("dual-surface-mfie", "lambda/8", ""),
+        ("physical-optics", "lambda/8", ""),
+        ("pmchwt", "lambda/16", glass),
+    ] {
+        let radius = if more.is_empty() { 0.12 } else { 0.05 };
+        let text = format!(
+            "[wave]\nfrequencies_hz = [1e9]\nmethod = \"{method}\"\n[[surface]]\nname = \"ball\"\n\
+             sphere = {{ centre = [0, 0, 0], radius = {radius} }}\nedge = \"{edge}\"\n{more}{back}"
+        );
+        let found = solved(folder.path(), &text);
+        let permittivity = (!more.is_empty()).then(|| Complex64::new(3.0, -0.1));
+        let exact = echo_of_a_sphere(radius, permittivity);
+        let (mut gap, mut size) = (0.0, 0.0);
+        for row in found.monostatic() {
+            for (part, truth) in [(0, exact), (1, Complex64::ZERO), (2, Complex64::ZERO), (3, exact)] {
+                let [re, im] = row.scattering[part];
+                gap += (Complex64::new(re, im) - truth).norm_sqr();
+                size += truth.norm_sqr();
+            }
+        }
+        let [stated] = found.stated_errors() else { panic!("{method}: {:?}", found.stated_errors()) };
+        let (error, stated) = ((gap / size).sqrt(), stated.relative);
+        eprintln!("{method}: error {error:.4}, stated {stated:.4}");
+        assert!(error < stated && stated < 20.0 * error, "{method}: {error} {stated}");
+    }
+}
+
+/// What is interpolated over the frequency is as exact as stated, beside all frequencies computed.
+#[test]
+fn interpolated_sweeps_are_as_exact_as_stated() {
+    let folder = tempfile::tempdir().unwrap();
+    let receivers = "[[receiver]]\nname = \"f\"\nfar = { theta_degrees = [40, 90], phi_degrees = [20, 130, 270] }\n\
+                     [[receiver]]\nname = \"p\"\npoints = [[3, 1, 0], [-0.5, 0.1, 0.2]]\n\
+                     [[receiver]]\nname = \"b\"\nmonostatic = { theta_degrees = 80, phi_degrees = [10, 60] }\n";
+    // Apart from the origin, and a pair of plates with waves to and fro between them.
+    let ball =
+        "[[surface]]\nname = \"ball\"\nsphere = { centre = [0.5, 0.2, 0], radius = 0.1 }\nedge = 0.04\n";
+    let pair = "[[surface]]\nname = \"a\"\nquad = [[0, 0, 0], [0.2, 0, 0], [0.2, 0.2, 0], [0, 0.2, 0]]\nedge = 0.04\n\
+                [[surface]]\nname = \"b\"\nquad = [[0, 0, 0.06], [0.2, 0, 0.06], [0.2, 0.2, 0.06], [0, 0.2, 0.06]]\nedge = 0.04\n";
+    let values = |found: &SolvedWaves<'_>, receiver: usize| -> Vec<f64> {
+        let near = found.near().iter().filter(|row| row.receiver == receiver).flat_map(|row| row.scattered);
+        let far = found.far().iter().filter(|row| row.receiver == receiver).flat_map(|row| row.amplitude);
+        let back = found.monostatic().iter().filter(|row| row.receiver == receiver);
+        near.chain(far).chain(back.flat_map(|row| row.scattering.into_iter().flatten())).collect()
+    };
+    for (method, surfaces, accuracy) in [("efie", pair, 1e-2), ("dual-surface-mfie", ball, 5e-3)] {
+        let text = |more: &str| {
+            format!(
+                "[wave]\nfrequencies_hz = {{ from = 8e8, to = 1.2e9, points = 61 }}\nmethod = \"{method}\"\n\
+                 {more}\n{SOURCE}{surfaces}{receivers}"
+            )
+        };
+        let all = solved(folder.path(), &text(""));
+        let some = solved(folder.path(), &text(&format!("sweep_accuracy = {accuracy}")));
+        let stated = *some.interpolated().unwrap();
+        assert_eq!((some.far().len(), some.near().len()), (all.far().len(), all.near().len()));
+        let mut worst = 0.0_f64;
+        for receiver in 0..3 {
+            let (a, b) = (values(&some, receiver), values(&all, receiver));
+            let size = b.iter().map(|x| x * x).sum::<f64>() / 61.0;
+            let one = b.len() / 61;
+            for (a, b) in a.chunks(one).zip(b.chunks(one)) {
+                let gap: f64 = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum();
+                worst = worst.max((gap / size).sqrt());
+            }
+        }
+        eprintln!(
+            "{method} {accuracy}: {} of 61, stated {:.1e}, true {worst:.1e}",
+            stated.computed, stated.relative
+        );
+        assert!(worst <= stated.relative && stated.relative <= accuracy);
+        assert!(stated.computed < 50);
+    }
+}

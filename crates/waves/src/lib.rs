@@ -42,5 +42,5 @@ pub use radiation::{
     FarField, Gate, Pattern, Radiator, Sampling, TOLERANCE, cross_section, even_directions, polar_frame,
 };
 pub use source::{Origin, Source, incident};
-pub use stated::{Indicator, field_inside};
+pub use stated::{Indicator, field_inside, inside_points, left_inside, of_closed_elements};
 pub use surface::{Facet, Kind, Scatterer};

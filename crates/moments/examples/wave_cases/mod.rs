@@ -8,7 +8,7 @@ use fredholm_mesh::{Cutting, Lines, MeshBuilder, Shape, Vec3};
 use fredholm_moments::meshing::{Grading, cuboid, rectangle};
 use fredholm_moments::{Basis, Conductor, Currents, Equation, Surface, Topology};
 use fredholm_waves::source::PlaneWave;
-use fredholm_waves::surface::{cube, sphere};
+use fredholm_waves::surface::{cube, cuboid as cuboid_of_facets, sphere, sphere_segments};
 use fredholm_waves::{ComplexVector, ConductingSphere, Kind, Scatterer, Source, even_directions};
 
 /// What scatters; lengths in wavelengths.
@@ -18,6 +18,8 @@ pub enum Body {
     Plates(Vec<[Vec3; 3]>),
     /// The side of a cube.
     Cube(f64),
+    /// The sides of a box.
+    Box(Vec3),
     /// The radius of a sphere.
     Sphere(f64),
 }
@@ -56,6 +58,7 @@ impl Case {
                 Scatterer::new(&builder.build(), |_| Kind::Sheet).unwrap()
             }
             Body::Cube(side) => cube(side * WAVELENGTH, edge).unwrap(),
+            Body::Box(sides) => cuboid_of_facets(*sides * WAVELENGTH, edge).unwrap(),
             Body::Sphere(radius) => sphere(radius * WAVELENGTH, edge).unwrap(),
         }
     }
@@ -87,6 +90,22 @@ impl Case {
         (0..cases.len()).map(far).collect()
     }
 
+    /// The even mesh with edges up to λ over `per`: of spheres the triangles of [`Self::scatterer`].
+    pub fn surface(&self, per: f64) -> Surface {
+        match &self.body {
+            Body::Sphere(radius) => {
+                let (radius, edge) = (radius * WAVELENGTH, WAVELENGTH / per);
+                let segments = sphere_segments(radius, edge).unwrap();
+                let shape = Shape::Sphere { centre: Vec3::ZERO, radius, inward: false, segments };
+                let mut builder = MeshBuilder::default();
+                builder.surface("", 0);
+                builder.add(&shape, &Cutting::default()).unwrap();
+                Surface::from_mesh(&builder.build()).unwrap()
+            }
+            body => surface(body, WAVELENGTH / per, Grading::default()),
+        }
+    }
+
     /// The longest edge of the even mesh of plates and cubes with cells up to λ over `per`, in wavelengths.
     pub fn longest_edge(&self, per: f64) -> f64 {
         let surface = surface(&self.body, WAVELENGTH / per, Grading::default());
@@ -116,6 +135,7 @@ fn surface(body: &Body, edge: f64, grading: Grading) -> Surface {
             whole.unwrap().welded(1e-6 * WAVELENGTH).unwrap()
         }
         Body::Cube(side) => cuboid(Vec3::splat(side * WAVELENGTH), edge, grading).unwrap(),
+        Body::Box(sides) => cuboid(*sides * WAVELENGTH, edge, grading).unwrap(),
         Body::Sphere(_) => unreachable!("spheres have a series"),
     }
 }
@@ -141,7 +161,7 @@ fn upright(side: f64, x: f64, y: f64) -> [Vec3; 3] {
     square([x, y, 0.0], [side, 0.0, 0.0], [0.0, 0.0, side])
 }
 
-/// The bodies of the table of treatments.
+/// The bodies of the table of treatments, as the example `treatments` of `fredholm-study` prints it.
 pub fn cases() -> Vec<Case> {
     let (y, z, x) = ([0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
     let shadowed = || Body::Plates(vec![upright(3.0, 0.0, 0.0), upright(3.0, 1.5, 2.0)]);
@@ -261,4 +281,19 @@ pub fn small_sheets() -> Vec<Vec<Case>> {
             vec![upright(1.0, 0.0, 0.0), square([0.4, 0.7, 0.2], [0.8, 0.3, 0.0], [0.0, 0.2, 0.7])],
         ),
     ]
+}
+
+/// Closed conductors small enough for a mesh far finer than usual, one list a body.
+pub fn small_bodies() -> Vec<Vec<Case>> {
+    let of = |name, body: Body| in_waves(name, &body);
+    let mut all = vec![
+        of("cube 0.5", Body::Cube(0.5)),
+        of("cube 0.9", Body::Cube(0.9)),
+        of("box 1 x 0.5 x 0.2", Body::Box(Vec3::new(1.0, 0.5, 0.2))),
+        of("box 0.9 x 0.7 x 0.1", Body::Box(Vec3::new(0.9, 0.7, 0.1))),
+    ];
+    for radius in [0.2, 0.4, 0.6] {
+        all.push(of("ball", Body::Sphere(radius)).into_iter().take(1).collect());
+    }
+    all
 }

@@ -67,6 +67,9 @@ pub(crate) struct WaveEntry {
     /// Estimate the errors by further runs. Default: false.
     #[serde(default)]
     pub estimate_errors: bool,
+    /// Relative error up to which frequencies may be interpolated between computed ones, above 0
+    /// and below 1. Default: all frequencies are computed.
+    pub sweep_accuracy: Option<At<f64>>,
 }
 
 /// A source.

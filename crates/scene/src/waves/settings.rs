@@ -94,6 +94,8 @@ pub struct Settings {
     pub edge_currents: Option<bool>,
     /// Whether errors are estimated by further runs.
     pub estimate_errors: bool,
+    /// Relative error up to which frequencies may be interpolated, above 0 and below 1.
+    pub sweep_accuracy: Option<f64>,
 }
 
 pub(super) fn settings(source: &Source, entry: &WaveEntry) -> Result<Settings, SceneError> {
@@ -113,6 +115,11 @@ pub(super) fn settings(source: &Source, entry: &WaveEntry) -> Result<Settings, S
         max_iterations: at_least_1(&entry.max_iterations, "max_iterations")?,
         edge_currents: entry.edge_currents.as_ref().map(|wanted| **wanted),
         estimate_errors: entry.estimate_errors,
+        sweep_accuracy: entry
+            .sweep_accuracy
+            .as_ref()
+            .map(|accuracy| source.below(accuracy, 1.0, "sweep_accuracy"))
+            .transpose()?,
     })
 }
 
@@ -136,6 +143,13 @@ fn agreement(source: &Source, entry: &WaveEntry) -> Result<(), SceneError> {
         let what = format!("{} has no choice of shadows", method.name());
         let help = "leave shadows out, or take method = \"physical-optics\"";
         return Err(source.value_error(shadows, what, help));
+    }
+    if let (Some(accuracy), true) = (&entry.sweep_accuracy, entry.estimate_errors) {
+        return Err(source.value_error(
+            accuracy,
+            "errors are not estimated by further runs of interpolated frequencies".to_owned(),
+            "leave sweep_accuracy or estimate_errors out",
+        ));
     }
     match &entry.edge_currents {
         Some(wanted) if **wanted && !optics => {

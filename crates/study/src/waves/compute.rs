@@ -1,14 +1,16 @@
 //! The currents and the fields at all frequencies.
 
+use std::slice;
+
 use fredholm_linop::Steps;
 use fredholm_mesh::Vec3;
 use fredholm_report::{FarRow, FarTotal, WaveCurrents, WaveRow};
 use fredholm_scene::waves::{Places, direction};
 use fredholm_waves::medium::IMPEDANCE;
 use fredholm_waves::{
-    Bounced, ComplexVector, Current, EdgeCurrents, FacetCurrents, FarField, Field, Kind, PhysicalOptics,
-    Radiator, Sampling, Scatterer, Shadow, Source, System, TOLERANCE, WaveError, cross_section, field_inside,
-    incident,
+    Bounced, Complex64, ComplexVector, Current, EdgeCurrents, FacetCurrents, FarField, Field, Kind,
+    PhysicalOptics, Radiator, Sampling, Scatterer, Shadow, Source, System, TOLERANCE, Wave, WaveError,
+    cross_section, even_directions, field_inside, incident,
 };
 use rayon::prelude::*;
 
@@ -17,6 +19,7 @@ use super::choice::in_one_plane;
 use super::estimate::{self, Estimated, Stating};
 use super::galerkin;
 use super::geometry::Geometry;
+use super::interpolation;
 use super::model::Band;
 use super::monostatic::Sweep;
 use super::over_frequency::MOST_PICTURED;
@@ -28,6 +31,8 @@ use crate::stages::{Signals, Stages, Unstaged};
 
 /// Most elements of edges that errors are stated from.
 const MOST_ELEMENTS: f64 = 2e5;
+/// Directions in which the mean field of a wave of a sweep is taken.
+const DIRECTIONS: usize = 100;
 
 /// Computes everything that the model asks for.
 pub(crate) fn compute(model: &Model, stages: &mut Stages) -> Result<Outcome, Error> {
@@ -55,10 +60,22 @@ struct Variant<'a> {
 }
 
 fn variant(model: &Model, variant: Variant<'_>, stages: &mut Stages) -> Result<Outcome, Error> {
-    if let Some(equations) = model.galerkin {
-        return galerkin::run(model, (variant.geometry, variant.name), equations, stages);
+    if let Some(accuracy) = interpolation::accuracy(model) {
+        let mut compute = |band: &Band, outcome: &mut Outcome| match model.galerkin {
+            Some(equations) => {
+                let bodies = (variant.geometry, variant.name);
+                galerkin::run(model, slice::from_ref(band), bodies, equations, (stages, outcome))
+            }
+            None => at_frequency(model, variant, band, stages, outcome),
+        };
+        return interpolation::swept(model, accuracy, &mut compute);
     }
     let mut outcome = Outcome::default();
+    if let Some(equations) = model.galerkin {
+        let bodies = (variant.geometry, variant.name);
+        galerkin::run(model, &model.bands, bodies, equations, (stages, &mut outcome))?;
+        return Ok(outcome);
+    }
     if model.bands.len() <= MOST_PICTURED {
         for band in &model.bands {
             at_frequency(model, variant, band, stages, &mut outcome)?;
@@ -98,14 +115,18 @@ fn at_frequency(
     task.carry_out(stages, outcome)
 }
 
+/// A far field along θ̂ and φ̂, and the squares of its error (V²), where that is known, and of itself.
+pub(super) type Echo = ([Complex64; 2], (Option<f64>, f64));
+
 /// One frequency.
-struct Task<'a> {
-    model: &'a Model,
+#[derive(Clone, Copy)]
+pub(super) struct Task<'a> {
+    pub(super) model: &'a Model,
     variant: Variant<'a>,
     band: &'a Band,
-    scatterer: &'a Scatterer,
-    first: &'a PhysicalOptics<'a>,
-    sources: &'a [&'a dyn Source],
+    pub(super) scatterer: &'a Scatterer,
+    pub(super) first: &'a PhysicalOptics<'a>,
+    pub(super) sources: &'a [&'a dyn Source],
 }
 
 impl Task<'_> {
@@ -117,7 +138,7 @@ impl Task<'_> {
         if self.model.has_bistatic() {
             let (currents, solved) =
                 stages.run(&format!("currents at {name}"), || self.currents(system, signals))?;
-            let left = self.left(system, &solved);
+            let left = self.left(solved.residuals.last().copied(), system.is_some());
             stages.run(&format!("fields at {name}"), || self.radiate(system, &currents, left, outcome))?;
             let values = currents.values().iter().map(current).collect();
             outcome.currents.push(WaveCurrents { name: name.clone(), values });
@@ -180,12 +201,11 @@ impl Task<'_> {
         signals: &Signals<'_>,
         outcome: &mut Outcome,
     ) -> Result<(), Error> {
-        let (model, scatterer, wave, shadow) =
-            (self.model, self.scatterer, self.band.wave, self.variant.shadow);
-        let sweep = Sweep { model, scatterer, wave, shadow, system };
-        for (index, receiver) in model.receivers.iter().enumerate() {
+        let sweep = Sweep { task: *self, system };
+        for (index, receiver) in self.model.receivers.iter().enumerate() {
             if let Places::Monostatic(angles) = &receiver.places {
-                let (rows, worst) = sweep.run(index, angles, signals)?;
+                let (rows, worst, stated) = sweep.run(index, angles, signals)?;
+                outcome.stated_errors.extend(stated);
                 outcome.reciprocity.extend(Reciprocity::of(&rows));
                 outcome.monostatic.extend(rows);
                 outcome.solved.push(self.solved(worst));
@@ -357,10 +377,58 @@ impl Task<'_> {
         found.map_err(|error| self.refused(&error))
     }
 
-    /// What is left of the bounces, relative to the first: nothing for one bounce where there can be no second.
-    fn left(&self, system: Option<&System<'_>>, solved: &Solved) -> Option<f64> {
-        let last = solved.residuals.last().copied();
-        if system.is_none() && (self.is_flat() || self.all_closed()) { last.or(Some(0.0)) } else { last }
+    /// What is left of the bounces, relative to the first, where `last` is the last residual and several are summed:
+    /// nothing for one bounce where there can be no second.
+    pub(super) fn left(&self, last: Option<f64>, several: bool) -> Option<f64> {
+        if !several && (self.is_flat() || self.all_closed()) { last.or(Some(0.0)) } else { last }
+    }
+
+    /// The same with other sources.
+    pub(super) fn lit_by<'b>(&self, first: &'b PhysicalOptics<'b>, sources: &'b [&'b dyn Source]) -> Task<'b>
+    where
+        Self: 'b,
+    {
+        Task { first, sources, ..*self }
+    }
+
+    pub(super) fn wave(&self) -> Wave {
+        self.band.wave
+    }
+
+    pub(super) fn shadow(&self) -> Shadow {
+        self.variant.shadow
+    }
+
+    /// The far field towards u along θ̂ and φ̂, and the squares of its error (V²), where `residual` is known, and of itself.
+    pub(super) fn echo(
+        &self,
+        u: Vec3,
+        radiator: &Radiator<'_>,
+        all: Option<&Bounced<'_>>,
+        residual: Option<f64>,
+    ) -> Result<Echo, Error> {
+        let refused = |error: WaveError| self.refused(&error);
+        let edges = self.edges(all)?;
+        let back = self.far(radiator, all.is_none(), edges.as_ref(), &[u]).map_err(refused)?;
+        let Some(back) = back.first() else { return Ok(([Complex64::ZERO; 2], (None, 0.0))) };
+        let found = back.amplitude.norm_squared();
+        let error = match (self.stating(radiator, all, residual)?, residual) {
+            (Some(stating), Some(residual)) => {
+                let edge = |edges: &EdgeCurrents, u: Vec3| edges.far_amplitude(u);
+                let relative = stating.indicator(&[u], &[back.amplitude], &edge).error() + residual;
+                let size = match stating {
+                    Stating::Edges { .. } => found,
+                    Stating::Inside { .. } => {
+                        let far = radiator.far_field(&even_directions(DIRECTIONS)).map_err(refused)?;
+                        let sum: f64 = far.iter().map(|far| far.amplitude.norm_squared()).sum();
+                        found.max(sum / far.len() as f64)
+                    }
+                };
+                Some(relative * relative * size)
+            }
+            _ => None,
+        };
+        Ok((back.polar(), (error, found)))
     }
 
     fn all_closed(&self) -> bool {
@@ -451,7 +519,7 @@ pub(super) fn current(current: &Current) -> [f64; 12] {
 }
 
 /// Components of two vectors, real parts first.
-fn pair(a: ComplexVector, b: ComplexVector) -> [f64; 12] {
+pub(super) fn pair(a: ComplexVector, b: ComplexVector) -> [f64; 12] {
     let part = |i: usize| if i < 6 { a.components()[i / 2] } else { b.components()[i / 2 - 3] };
     std::array::from_fn(|i| if i.is_multiple_of(2) { part(i).re } else { part(i).im })
 }

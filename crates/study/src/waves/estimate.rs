@@ -7,6 +7,9 @@
 //! | mesh | Richardson: a third of the difference to edges twice as long, for the second order of the rules |
 //! | form | half the difference between the currents 2 n × H and 2 n × E, which a true conductor does not tell apart |
 //!
+//! Of a monostatic sweep the error is stated from some of its waves. Where the indicator is one of the whole scattered
+//! field, the error is spread evenly over all directions: what goes back may be far less than what goes on.
+//!
 //! What is left of the bounces is the residual of the solver, in the run record too.
 
 use std::collections::BTreeMap;
@@ -38,6 +41,38 @@ impl Estimated {
 
 /// Most points or directions of a receiver that the share of edge currents is taken from.
 const SAMPLE: usize = 60;
+
+/// Directions of a sweep that its error is stated from, at most some more.
+const SWEPT: usize = 8;
+
+/// The error of a monostatic sweep, from that of some of its waves: root mean square over that of what they send back.
+#[derive(Default)]
+pub(super) struct SweepError {
+    /// Sums of the squares of the errors and of the fields, V².
+    sums: [f64; 2],
+    /// Whether the error of some wave is not known.
+    unknown: bool,
+}
+
+impl SweepError {
+    /// Whether a direction of so many is one of the sample.
+    pub(super) fn samples(index: usize, count: usize) -> bool {
+        index.is_multiple_of(count.div_ceil(SWEPT).max(1))
+    }
+
+    /// Squares of the error, where it is known, and of the field, V².
+    pub(super) fn add(&mut self, error: Option<f64>, field: f64) {
+        self.unknown |= error.is_none();
+        self.sums[0] += error.unwrap_or(0.0);
+        self.sums[1] += field;
+    }
+
+    /// What is stated.
+    pub(super) fn estimated(&self, receiver: usize, frequency: f64) -> Option<Estimated> {
+        let known = !self.unknown && self.sums[1] > 0.0;
+        known.then(|| Estimated { receiver, frequency, relative: (self.sums[0] / self.sums[1]).sqrt() })
+    }
+}
 
 /// What the error of a receiver is stated from.
 pub(super) enum Stating {

@@ -14,11 +14,12 @@ use fredholm_scene::waves::{About, Places};
 use fredholm_waves::material::Material;
 use fredholm_waves::{
     Complex64, ComplexVector, Current, FarField, Field, Indicator, Kind, Source, even_directions, incident,
+    inside_points, left_inside, of_closed_elements,
 };
 
 use super::balance::{Balancing, Reciprocity, power};
 use super::compute::{current, directions, far_row, near_rows};
-use super::estimate::Estimated;
+use super::estimate::{Estimated, SweepError};
 use super::geometry::Geometry;
 use super::model::{Band, Receiver};
 use super::monostatic::plane_waves;
@@ -71,34 +72,55 @@ pub(crate) enum Equations {
     Dielectric,
 }
 
-/// Computes everything that the model asks for on one of its meshes.
+/// Computes everything that the model asks for at some of its frequencies on one of its meshes.
 pub(super) fn run(
     model: &Model,
+    bands: &[Band],
     (geometry, name): (&Geometry, &str),
     equations: Equations,
-    stages: &mut Stages,
-) -> Result<Outcome, Error> {
+    (stages, outcome): (&mut Stages, &mut Outcome),
+) -> Result<(), Error> {
     let basis = basis(model, geometry)?;
     let first = name.is_empty();
-    let edge = longest_edge(geometry, &basis, equations).filter(|_| first);
-    let mut outcome = Outcome::default();
-    for band in &model.bands {
+    for band in bands {
         let body = Body::new(model, &basis, band, equations)?;
         let name = format!("{} MHz{name}", band.wave.frequency() / 1e6);
-        Task { model, geometry, basis: &basis, band, body, edge, first }.carry_out(
-            &name,
-            stages,
-            &mut outcome,
-        )?;
+        let known = if first { Known::of(geometry, &basis, band, equations) } else { None };
+        Task { model, geometry, basis: &basis, band, body, known, first }
+            .carry_out(&name, stages, outcome)?;
     }
-    Ok(outcome)
+    Ok(())
 }
 
-/// The longest edge of sheets, m, which tells the error of the electric equation.
-fn longest_edge(geometry: &Geometry, basis: &Basis, equations: Equations) -> Option<f64> {
-    let sheets = geometry.kinds().iter().all(|kind| *kind == Kind::Sheet);
-    let known = equations == Equations::Electric && sheets;
-    known.then(|| basis.topology().longest_edge(basis.surface()))
+/// What the error is stated from.
+enum Known {
+    /// The longest edge of sheets, m, by the electric equation.
+    Edge(f64),
+    /// Points inside closed bodies, the longest edge over the shortest wavelength, and the indicator.
+    Inside { points: Vec<Vec3>, edge: f64, indicator: fn(f64) -> Indicator },
+}
+
+impl Known {
+    /// Of surfaces that are all sheets or all closed.
+    fn of(geometry: &Geometry, basis: &Basis, band: &Band, equations: Equations) -> Option<Self> {
+        let edge = basis.topology().longest_edge(basis.surface());
+        if geometry.kinds().iter().all(|kind| *kind == Kind::Sheet) {
+            return (equations == Equations::Electric).then_some(Self::Edge(edge));
+        }
+        let scatterer = geometry.scatterer(&band.materials).ok()?;
+        let indicator = match equations {
+            Equations::Electric => Indicator::InsideElectric,
+            Equations::Combined => Indicator::InsideCombined,
+            Equations::Dielectric => Indicator::InsideDielectric,
+        };
+        let denser = |material: &Material| match material {
+            Material::HalfSpace(permittivity) => permittivity.sqrt().norm(),
+            _ => 1.0,
+        };
+        let shortest = band.wave.wavelength() / band.materials.iter().map(denser).fold(1.0, f64::max);
+        let edge = edge / shortest;
+        inside_points(&scatterer, &band.wave).map(|points| Self::Inside { points, edge, indicator })
+    }
 }
 
 /// What scatters, with its equations at one frequency.
@@ -184,8 +206,8 @@ struct Task<'a> {
     basis: &'a Basis,
     band: &'a Band,
     body: Body<'a>,
-    /// The longest edge, m, where the error is stated from it.
-    edge: Option<f64>,
+    /// What the error is stated from, where it is.
+    known: Option<Known>,
     /// Whether this is the run itself, not one that errors are estimated from.
     first: bool,
 }
@@ -227,7 +249,7 @@ impl Task<'_> {
             let b = self.body.right_hand_side(&[&sources]);
             let solution = stages.run(&format!("currents at {name}"), || self.solve(&matrix, &b, signals))?;
             let currents = self.body.currents(&solution.x.lane(0));
-            let error = self.error(&currents, solution.residuals.last())?;
+            let error = self.error(&currents, &sources, solution.residuals.last())?;
             stages.run(&format!("fields at {name}"), || self.receive(&currents, error.as_ref(), outcome))?;
             let values = self.on_facets(&currents).iter().map(current).collect();
             outcome.currents.push(WaveCurrents { name: name.to_owned(), values });
@@ -236,7 +258,8 @@ impl Task<'_> {
         for (index, receiver) in self.model.receivers.iter().enumerate() {
             if let Places::Monostatic(angles) = &receiver.places {
                 let sweep = || self.sweep(&matrix, (index, angles), signals);
-                let (rows, solution) = stages.run(&format!("sweep at {name}"), sweep)?;
+                let (rows, solution, stated) = stages.run(&format!("sweep at {name}"), sweep)?;
+                outcome.stated_errors.extend(stated);
                 outcome.reciprocity.extend(Reciprocity::of(&rows));
                 outcome.monostatic.extend(rows);
                 outcome.solved.push(self.record(solution));
@@ -350,10 +373,25 @@ impl Task<'_> {
         Solved { frequency, facets, residuals: solution.residuals, reason: solution.reason }
     }
 
-    /// The expected error of the scattered field, where it is known.
-    fn error(&self, currents: &Currents<'_>, residual: Option<&f64>) -> Result<Option<MeanError>, Error> {
-        let (Some(edge), Some(residual)) = (self.edge, residual) else { return Ok(None) };
-        let relative = Indicator::BoundaryElements(edge / self.band.wave.wavelength()).error() + residual;
+    /// The expected error of the scattered field of these sources, where it is known.
+    fn error(
+        &self,
+        currents: &Currents<'_>,
+        sources: &[&dyn Source],
+        residual: Option<&f64>,
+    ) -> Result<Option<MeanError>, Error> {
+        let (Some(known), Some(residual)) = (&self.known, residual) else { return Ok(None) };
+        let indicator = match known {
+            Known::Edge(edge) => Indicator::BoundaryElements(edge / self.band.wave.wavelength()),
+            Known::Inside { points, edge, indicator } => {
+                let scattered = currents.fields(points).map_err(|error| refused(self.model, &error))?;
+                let Some(left) = left_inside(&self.band.wave, sources, points, &scattered) else {
+                    return Ok(None);
+                };
+                indicator(of_closed_elements(left, *edge))
+            }
+        };
+        let relative = indicator.error() + residual;
         let far = self.far(currents, &even_directions(DIRECTIONS))?;
         let mean = far.iter().map(|far| far.amplitude.norm_squared()).sum::<f64>() / far.len() as f64;
         let Some(bounds) = self.geometry.mesh.bounds() else { return Ok(None) };
@@ -439,35 +477,40 @@ impl Task<'_> {
         currents.far_field(directions).map_err(|error| refused(self.model, &error))
     }
 
-    /// What plane waves from these directions send back, all solved for together.
+    /// What plane waves from these directions send back, all solved for together, and the error stated of it.
     fn sweep(
         &self,
         matrix: &Matrix,
         (receiver, angles): (usize, &[[f64; 2]]),
         signals: &Signals<'_>,
-    ) -> Result<(Vec<MonostaticRow>, Solution), Error> {
+    ) -> Result<(Vec<MonostaticRow>, Solution, Option<Estimated>), Error> {
         let directions = directions(angles);
         let waves = plane_waves(&directions).map_err(|error| self.model.refused(&error, None))?;
         let sources: Vec<&dyn Source> = waves.iter().map(|wave| wave as &dyn Source).collect();
         let lanes: Vec<&[&dyn Source]> = sources.iter().map(slice::from_ref).collect();
         let solution = self.solve(matrix, &self.body.right_hand_side(&lanes), signals)?;
         let mut rows = Vec::with_capacity(angles.len());
+        let (frequency, mut stated) = (self.band.wave.frequency(), SweepError::default());
         for (index, (&[theta_degrees, phi_degrees], u)) in angles.iter().zip(&directions).enumerate() {
             signals.check()?;
             let mut scattering = [[0.0; 2]; 4];
             for along in 0..2 {
                 let x = solution.x.lane(2 * index + along);
                 let currents = self.body.currents(&x);
-                for (part, far) in
-                    self.far(&currents, slice::from_ref(u))?.iter().flat_map(FarField::polar).enumerate()
-                {
+                let back = self.far(&currents, slice::from_ref(u))?;
+                for (part, far) in back.iter().flat_map(FarField::polar).enumerate() {
                     scattering[2 * along + part] = [far.re, far.im];
                 }
+                if SweepError::samples(index, angles.len()) {
+                    let last = solution.residuals.last();
+                    let error = self.error(&currents, lanes[2 * index + along], last)?;
+                    let square = back.iter().map(|far| far.amplitude.norm_squared()).sum();
+                    stated.add(error.map(|error| error.square(square)), square);
+                }
             }
-            let frequency = self.band.wave.frequency();
             rows.push(MonostaticRow { receiver, index, theta_degrees, phi_degrees, frequency, scattering });
         }
-        Ok((rows, solution))
+        Ok((rows, solution, stated.estimated(receiver, frequency)))
     }
 
     /// J and M at the centres of the facets: of a quadrilateral the mean of its two triangles.
@@ -516,6 +559,11 @@ impl MeanError {
     fn relative_far(&self, squares: impl ExactSizeIterator<Item = f64>) -> f64 {
         let count = squares.len() as f64;
         self.over(squares, count * self.mean * self.mean)
+    }
+
+    /// The square of the error in one direction, V², of a field whose square is this.
+    fn square(&self, found: f64) -> f64 {
+        self.relative * self.relative * found.max(self.mean * self.mean)
     }
 
     fn over(&self, squares: impl Iterator<Item = f64>, expected: f64) -> f64 {

@@ -5,15 +5,15 @@ use fredholm_mesh::Vec3;
 use fredholm_report::MonostaticRow;
 use fredholm_waves::source::PlaneWave;
 use fredholm_waves::{
-    Bounced, Complex64, EdgeCurrents, PhysicalOptics, Sampling, Scatterer, Shadow, Source, System, TOLERANCE,
-    Wave, WaveError, polar_frame,
+    Bounced, Complex64, PhysicalOptics, Sampling, Source, System, TOLERANCE, WaveError, polar_frame,
 };
 use rayon::prelude::*;
 
-use super::compute::directions;
+use super::Method;
+use super::compute::{Task, directions};
+use super::estimate::{Estimated, SweepError};
 use super::registry::by_products;
 use super::solving::{Solution, solution};
-use super::{Method, Model};
 use crate::error::Error;
 use crate::stages::Signals;
 
@@ -22,16 +22,17 @@ const TOGETHER: usize = 8;
 
 /// What a sweep is made on.
 pub(super) struct Sweep<'a> {
-    pub(super) model: &'a Model,
-    pub(super) scatterer: &'a Scatterer,
-    pub(super) wave: Wave,
-    pub(super) shadow: Shadow,
+    /// The frequency, whose sources are not those of the sweep.
+    pub(super) task: Task<'a>,
     /// None where one bounce is all.
     pub(super) system: Option<&'a System<'a>>,
 }
 
-/// Rows of a sweep, and how the worst part of it was solved.
-pub(super) type Swept = (Vec<MonostaticRow>, Option<Solution>);
+/// Rows of a sweep, how the worst part of it was solved, and the error stated of it.
+pub(super) type Swept = (Vec<MonostaticRow>, Option<Solution>, Option<Estimated>);
+
+/// What one wave sends back along θ̂ and φ̂, and of a sample the squares of the error, where it is known, and of the field.
+type Echo = ([Complex64; 2], Option<(Option<f64>, f64)>);
 
 impl Sweep<'_> {
     /// Goes through the directions of a receiver, given by its index.
@@ -41,90 +42,89 @@ impl Sweep<'_> {
         angles: &[[f64; 2]],
         signals: &Signals<'_>,
     ) -> Result<Swept, Error> {
-        let (mut rows, mut worst): Swept = (Vec::new(), None);
+        let (mut rows, mut worst) = (Vec::new(), None);
+        let (frequency, mut stated) = (self.task.wave().frequency(), SweepError::default());
         // A factorisation serves all waves; others need memory for every wave that they solve for.
-        let together = match &self.model.method {
+        let together = match &self.task.model.method {
             Method::Solver { solver, .. } if !by_products().contains(&solver.name()) => angles.len().max(1),
             _ => TOGETHER,
         };
+        let count = angles.len();
         for (chunk, angles) in angles.chunks(together).enumerate() {
             signals.check()?;
-            let (echoes, solution) = self.echoes(&directions(angles), signals)?;
-            let row = |(i, (angles, echo)): (usize, (&[f64; 2], &[Complex64; 4]))| MonostaticRow {
-                receiver,
-                index: chunk * together + i,
-                theta_degrees: angles[0],
-                phi_degrees: angles[1],
-                frequency: self.wave.frequency(),
-                scattering: echo.map(|s| [s.re, s.im]),
-            };
-            rows.extend(angles.iter().zip(&echoes).enumerate().map(row));
+            let sampled = |i: usize| SweepError::samples(chunk * together + i, count);
+            let (echoes, solution) = self.echoes(&directions(angles), &sampled, signals)?;
+            for (i, (angles, pair)) in angles.iter().zip(echoes.chunks_exact(2)).enumerate() {
+                let back = [pair[0].0[0], pair[0].0[1], pair[1].0[0], pair[1].0[1]];
+                rows.push(MonostaticRow {
+                    receiver,
+                    index: chunk * together + i,
+                    theta_degrees: angles[0],
+                    phi_degrees: angles[1],
+                    frequency,
+                    scattering: back.map(|s| [s.re, s.im]),
+                });
+                pair.iter().filter_map(|echo| echo.1).for_each(|(error, field)| stated.add(error, field));
+            }
             let last = |solution: &Option<Solution>| {
                 solution.as_ref().and_then(|s| s.residuals.last().copied()).unwrap_or(-1.0)
             };
             worst = if last(&solution) > last(&worst) { solution } else { worst };
         }
-        Ok((rows, worst))
+        Ok((rows, worst, stated.estimated(receiver, frequency)))
     }
 
-    /// S_θθ, S_φθ, S_θφ, S_φφ (m), received then incident, of some directions.
+    /// What waves along θ̂ and φ̂ of some directions send back, in turn.
     fn echoes(
         &self,
         directions: &[Vec3],
+        sampled: &(dyn Fn(usize) -> bool + Sync),
         signals: &Signals<'_>,
-    ) -> Result<(Vec<[Complex64; 4]>, Option<Solution>), Error> {
-        let refused = |error: WaveError| self.model.refused(&error, None);
+    ) -> Result<(Vec<Echo>, Option<Solution>), Error> {
+        let refused = |error: WaveError| self.task.model.refused(&error, None);
         let waves = plane_waves(directions).map_err(refused)?;
         let sources: Vec<[&dyn Source; 1]> = waves.iter().map(|wave| [wave as &dyn Source]).collect();
         let optics: Vec<PhysicalOptics<'_>> = sources
             .iter()
-            .map(|sources| PhysicalOptics::new(self.scatterer, self.wave, sources, self.shadow))
+            .map(|sources| {
+                PhysicalOptics::new(self.task.scatterer, self.task.wave(), sources, self.task.shadow())
+            })
             .collect::<Result<_, _>>()
             .map_err(refused)?;
         let lanes: Vec<&PhysicalOptics<'_>> = optics.iter().collect();
         let solve = |system: &System<'_>| {
-            solution(&self.model.method, system, &system.right_hand_side(&lanes), signals)
+            solution(&self.task.model.method, system, &system.right_hand_side(&lanes), signals)
         };
         let solution = self.system.map(solve).transpose()?;
         let back = |lane: usize| {
             let u = directions[lane / 2];
             let known = solution.as_ref().map(|solution| (solution, lane));
-            self.back(u, (&optics[lane], &sources[lane]), known)
+            let task = self.task.lit_by(&optics[lane], &sources[lane]);
+            self.back(u, task, known, sampled(lane / 2))
         };
-        let pairs: Vec<[Complex64; 2]> =
-            (0..waves.len()).into_par_iter().map(back).collect::<Result<_, _>>().map_err(refused)?;
-        let echoes = pairs.chunks_exact(2).map(|pair| [pair[0][0], pair[0][1], pair[1][0], pair[1][1]]);
-        Ok((echoes.collect(), solution))
+        let echoes: Vec<Echo> = (0..waves.len()).into_par_iter().map(back).collect::<Result<_, _>>()?;
+        Ok((echoes, solution))
     }
 
-    /// The far field towards u along θ̂ and φ̂, of one incident wave.
+    /// What one incident wave sends back towards u, and its error where it is asked for.
     fn back(
         &self,
         u: Vec3,
-        (first, sources): (&PhysicalOptics<'_>, &[&dyn Source]),
+        task: Task<'_>,
         known: Option<(&Solution, usize)>,
-    ) -> Result<[Complex64; 2], WaveError> {
-        let mut edges = None;
-        let mut far = if let (Some(system), Some((solution, lane))) = (self.system, known) {
+        sampled: bool,
+    ) -> Result<Echo, Error> {
+        let residual = |solution: &Solution| solution.residuals.last().copied();
+        if let (Some(system), Some((solution, lane))) = (self.system, known) {
             let currents = system.currents(&solution.x, lane);
-            let all = Bounced::new(self.scatterer, first, &currents);
-            if self.model.edge_currents {
-                edges = Some(EdgeCurrents::of_bounces(self.scatterer, self.wave, sources, &all)?);
-            }
-            system.radiator(&all).far_field(&[u])?
+            let all = Bounced::new(task.scatterer, task.first, &currents);
+            let left = task.left(residual(solution), true);
+            task.echo(u, &system.radiator(&all), Some(&all), left.filter(|_| sampled))
         } else {
-            if self.model.edge_currents {
-                edges = Some(EdgeCurrents::new(self.scatterer, self.wave, sources)?);
-            }
-            let closed = first.linear_phase_far_field(&[u]);
-            closed.unwrap_or_else(|| first.radiator(Sampling::Tolerance(TOLERANCE)).far_field(&[u]))?
-        };
-        if let Some(edges) = edges {
-            for far in &mut far {
-                far.amplitude += edges.far_amplitude(far.direction);
-            }
+            let left = task.left(None, false);
+            task.echo(u, &task.first.radiator(Sampling::Tolerance(TOLERANCE)), None, left.filter(|_| sampled))
         }
-        Ok(far.first().map_or([Complex64::ZERO; 2], fredholm_waves::FarField::polar))
+        .map(|(back, stated)| (back, if sampled { Some(stated) } else { None }))
     }
 }
 

@@ -8,6 +8,7 @@ use super::Model;
 use super::balance::{Balance, Reciprocity};
 use super::estimate::Estimated;
 use super::files::is_table;
+use super::interpolation::Interpolated;
 use crate::summary::WAVES_FORMAT;
 
 /// How the currents at one frequency were found.
@@ -50,11 +51,28 @@ pub(crate) struct Outcome {
     pub(crate) balances: Vec<Balance>,
     /// How far sweeps are from being reciprocal.
     pub(crate) reciprocity: Vec<Reciprocity>,
+    /// How the frequencies were interpolated, where they were.
+    pub(crate) interpolated: Option<Interpolated>,
     /// What should be known of the results.
     pub(crate) notes: Vec<String>,
 }
 
 impl Outcome {
+    /// Adds what another frequency has.
+    pub(super) fn append(&mut self, other: Self) {
+        self.near.extend(other.near);
+        self.far.extend(other.far);
+        self.monostatic.extend(other.monostatic);
+        self.currents.extend(other.currents);
+        self.solved.extend(other.solved);
+        self.stated_errors.extend(other.stated_errors);
+        self.mesh_errors.extend(other.mesh_errors);
+        self.form_errors.extend(other.form_errors);
+        self.balances.extend(other.balances);
+        self.reciprocity.extend(other.reciprocity);
+        self.notes.extend(other.notes);
+    }
+
     /// Whether every residual asked for was met.
     pub(crate) fn converged(&self) -> bool {
         self.solved.iter().all(Solved::converged)
@@ -98,6 +116,7 @@ impl Outcome {
             "estimated_form_errors": self.form_errors.iter().map(|e| e.record(model)).collect::<Vec<_>>(),
             "power": self.balances.iter().map(Balance::record).collect::<Vec<_>>(),
             "reciprocity": self.reciprocity.iter().map(|r| r.record(model)).collect::<Vec<_>>(),
+            "interpolated": self.interpolated.as_ref().map(Interpolated::record),
             "frequencies": self.solved.iter().map(solved).collect::<Vec<_>>(),
             "left_out_as_text": self.left_out(),
             "warnings": model.warnings,

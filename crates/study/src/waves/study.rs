@@ -7,6 +7,7 @@ use fredholm_report::{FarRow, MonostaticRow, ResultFolder, WaveComparison, WaveR
 
 use super::balance::{Balance, Reciprocity};
 use super::estimate::Estimated;
+use super::interpolation::Interpolated;
 use super::model::Model;
 use super::record::{Outcome, Solved};
 use super::{files, registry};
@@ -246,6 +247,12 @@ impl SolvedWaves<'_> {
     #[must_use]
     pub fn frequencies(&self) -> &[Solved] {
         &self.outcome.solved
+    }
+
+    /// How the frequencies were interpolated, where the scene allows it.
+    #[must_use]
+    pub fn interpolated(&self) -> Option<&Interpolated> {
+        self.outcome.interpolated.as_ref()
     }
 
     /// Stated relative errors of the scattered fields at the receivers and of their far fields, where they are known.

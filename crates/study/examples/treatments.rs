@@ -1,21 +1,24 @@
-//! Relative L² error of the scattered far field, treatment by treatment and bounce by bounce.
+//! Relative L² error of the scattered far field, treatment by treatment and bounce by bounce, and of what a scene gets that
+//! names no method: against Galerkin solutions, the series of Mie, and the stored references.
 //!
-//!     cargo run --release -p fredholm-moments --example treatments -- [part of a name]
+//!     cargo run --release -p fredholm-study --example treatments -- [part of a name]
 
 #![allow(clippy::unwrap_used, reason = "an example shows the way, not what may go wrong on it")]
 
-#[path = "../tests/common/mod.rs"]
-mod common;
-mod wave_cases;
+#[path = "../tests/known/mod.rs"]
+mod known;
 
-use common::wave;
+use std::path::Path;
+
 use fredholm_iterative::Gmres;
 use fredholm_linop::{MultiVector, Quiet, SecondKind, Solver, Stop};
 use fredholm_mesh::Vec3;
 use fredholm_waves::{
     Bounced, Complex64, ComplexVector, EdgeCurrents, PhysicalOptics, Scatterer, Shadow, Source, System,
 };
-use wave_cases::{Body, Case, cases, directions, error};
+use known::common::{WAVELENGTH, mie, reference, relative_error, wave};
+use known::wave_cases::{Body, Case, cases, error};
+use known::{directions, far, scene, solved};
 
 type Vectors = MultiVector<Complex64>;
 
@@ -72,22 +75,55 @@ fn row(case: &Case, body: &Scatterer, shadow: Shadow, truth: &[ComplexVector], u
     println!(" all {none:.3} {lit:.3} {bounced:.3}");
 }
 
+/// The stored references: name, scene file, and the column.
+const STORED: [(&str, &str, &str); 4] = [
+    ("plate 5", "plate.toml", "plate_5lambda_normal.csv"),
+    ("two plates 5", "two_plates.toml", "two_plates_normal.csv"),
+    ("cube 5", "cube.toml", "cube_5lambda_normal.csv"),
+    ("sphere 1", "sphere.toml", ""),
+];
+
+/// What the scene of a reference gets without its settings, and after one bounce.
+fn stored(folder: &Path, (name, file, column): (&str, &str, &str)) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/waves").join(file);
+    let text = std::fs::read_to_string(path).unwrap();
+    let kept = |line: &&str| {
+        let key = line.split('=').next().unwrap_or("").trim();
+        !["method", "shadows", "bounces", "solver", "tolerance", "edge_currents", "edge"].contains(&key)
+    };
+    let bare: Vec<&str> = text.lines().filter(kept).collect();
+    let bare = bare.join("\n");
+    let truth = if column.is_empty() { mie(WAVELENGTH) } else { reference(column) };
+    let run = |settings: &str| {
+        let found = solved(folder, &bare.replacen("[wave]", &format!("[wave]\n{settings}"), 1));
+        let ez = |row: &fredholm_report::WaveRow| Complex64::new(row.scattered[4], row.scattered[5]);
+        let fields: Vec<Complex64> = found.near().iter().map(ez).collect();
+        (relative_error(&fields, &truth), format!("{}, {}", found.method(), found.solution()))
+    };
+    let (one, _) = run("method = \"physical-optics\"\nbounces = 1");
+    let (unasked, method) = run("");
+    println!("{name:<18} unasked: {unasked:.4} by {method}; one bounce {one:.3}; circle of 25 m");
+}
+
 fn main() {
     let wanted = std::env::args().nth(1).unwrap_or_default();
+    let folder = tempfile::tempdir().unwrap();
+    for body in STORED.into_iter().filter(|(name, ..)| name.contains(&wanted)) {
+        stored(folder.path(), body);
+    }
     let u = directions();
     println!(
         "case, treatment; after 1, 2, 3, 4 and all bounces: without edges, with those of the incident wave, of all waves"
     );
     for case in cases().into_iter().filter(|case| case.name.contains(&wanted)) {
-        let truth = case.truth(&u, 8.0, 1);
-        if matches!(case.body, Body::Plates(_)) {
-            // What small scenes get unasked.
-            println!(
-                "{}, efie on even cells of λ/6: {:.3}",
-                case.name,
-                error(&case.truth(&u, 6.0, 0), &truth)
-            );
-        }
+        let truth = case.truth(&u, 8.0, 2);
+        let run = |settings: &str| {
+            let found = solved(folder.path(), &scene(&case, settings));
+            (error(&far(&found), &truth), format!("{}, {}", found.method(), found.solution()))
+        };
+        let (one, _) = run("method = \"physical-optics\"\nbounces = 1");
+        let (unasked, method) = run("");
+        println!("{:<18} unasked: {unasked:.3} by {method}; one bounce {one:.3}", case.name);
         let body = case.scatterer(8.0);
         let mut shadows = vec![Shadow::Geometric, Shadow::Radiated];
         if !matches!(case.body, Body::Plates(_)) {
