@@ -32,7 +32,7 @@ const VALUE: u128 = 50;
 /// middle, its linear colours, and either once more in the tiles that it is put together from.
 const LIT: u128 = 500;
 const LIT_VALUE: u128 = 24;
-const LIT_PIXEL: u128 = 48;
+const LIT_PIXEL: u128 = 40;
 /// Bytes of a pixel while the exposure is found, and in each picture: while it is drawn, and when
 /// all are taken apart. Besides, what the last rows take.
 const METERED: u128 = 14;
