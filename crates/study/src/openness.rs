@@ -9,6 +9,7 @@
 
 use std::f64::consts::TAU;
 
+use fredholm_coupling::polygon::folded;
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_report::Closure;
 use fredholm_visibility::Occluders;
@@ -74,7 +75,7 @@ fn ends(whole: &[usize], areas: &[f64], problem: &Problem) -> Option<Ends> {
         let element = sums.partition_point(|&sum| sum < at).min(whole.len() - 1);
         let [u, v, tilt, turn] = numbers(ray);
         let patch = mesh.patch(whole[element]);
-        let [u, v] = if patch.sides() == 3 && u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] };
+        let (u, v) = folded(patch, u, v);
         let direction = direction(patch.normal(), tilt, turn);
         ended(patch.point(u, v), direction, &faces, &lit)
     };
