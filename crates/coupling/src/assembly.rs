@@ -7,6 +7,7 @@ use crate::CouplingError;
 use crate::form_factor::{Exchange, Method, PairIntegrator, Workspace};
 use crate::occlusion::{Clusters, Panel, walk};
 use crate::pair_sample::scattered;
+use bytemuck::allocation::try_zeroed_vec;
 use fredholm_linop::{PackedSymmetric, Quiet, Steps, Storage, Watch};
 use rayon::prelude::*;
 use std::ops::ControlFlow;
@@ -164,12 +165,10 @@ fn pairs(n: usize) -> u64 {
     n * n.saturating_sub(1) / 2
 }
 
+/// Zeros of all entries, taken as such from the system: what stays 0 is never touched.
 fn zeros<S: Storage>(n: usize) -> Result<Vec<S>, CouplingError> {
     let needed = PackedSymmetric::<S>::bytes(n);
-    let mut packed = Vec::new();
-    packed.try_reserve_exact(n * (n + 1) / 2).map_err(|_| CouplingError::Allocation { needed })?;
-    packed.resize(n * (n + 1) / 2, S::from_f64(0.0));
-    Ok(packed)
+    try_zeroed_vec(n * (n + 1) / 2).map_err(|()| CouplingError::Allocation { needed })
 }
 
 /// The packed lower triangles on their way.
@@ -218,12 +217,12 @@ impl<S: Storage> Strip<S> {
         }
         let sight = integrator.sight(clusters);
         let mut found = walk(&sight, panel);
-        let mut work = Workspace::default();
+        let (mut work, mut exchanges) = (Workspace::default(), Vec::new());
         for (row, place) in clusters.nodes[panel].places.clone().enumerate() {
             if progress.state().is_break() {
                 return strip;
             }
-            strip.row(integrator, clusters.order[place], row, &mut found, &mut work);
+            strip.row(integrator, clusters.order[place], row, &mut found, (&mut work, &mut exchanges));
             progress.advance(place as u64);
         }
         strip
@@ -235,19 +234,18 @@ impl<S: Storage> Strip<S> {
         i: u32,
         row: usize,
         found: &mut Panel,
-        work: &mut Workspace,
+        (work, exchanges): (&mut Workspace, &mut Vec<Exchange>),
     ) {
         let mut columns = std::mem::take(&mut found.seen[row]);
         let wholly = columns.len();
         columns.extend(found.partly[row].iter().map(|(j, _)| *j));
-        let mut exchanges = Vec::new();
-        integrator.open_row(i as usize, &columns, work, &mut exchanges);
+        integrator.open_row(i as usize, &columns, work, exchanges);
         for (k, (_, list)) in found.partly[row].iter().enumerate() {
             let k = wholly + k;
             let pair = [i, columns[k]].map(|patch| patch as usize);
             exchanges[k] = integrator.behind(pair, &found.lists[list.clone()], exchanges[k], work);
         }
-        for (&j, exchange) in columns.iter().zip(&exchanges) {
+        for (&j, exchange) in columns.iter().zip(&*exchanges) {
             let area = integrator.smaller_area(i as usize, j as usize);
             self.report.add(i as usize, j as usize, exchange, area);
         }

@@ -6,6 +6,7 @@ pub mod form_factor;
 pub mod kernel;
 pub mod method;
 pub mod polygon;
+pub mod rays;
 
 mod aggregate;
 mod assembly;

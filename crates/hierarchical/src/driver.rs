@@ -10,7 +10,6 @@
 use crate::closure::{Aim, Wholes, balance};
 use crate::exposure::Exposure;
 use crate::goal::{Estimate, Goal, Reached, expected, weights};
-use crate::opening::Opening;
 use crate::oracle::Light;
 use crate::refine::{Limits, bytes, refine};
 use crate::transport::Sight;
@@ -273,12 +272,11 @@ fn with_run<T>(
     let patches: Vec<&Patch> = problem.mesh.patches().collect();
     let many = problem.occluders.len() > MANY;
     let bodies = if many { Bodies::default() } else { Bodies::new(problem.occluders, &patches, &[]) };
-    let exposure = Exposure::new(problem.mesh)?;
     let reflectances = problem.surfaces.reflectance.as_slice();
-    let opening = exposure.opening(reflectances.iter().copied().fold(0.0, f64::max));
+    let exposure = Exposure::new(problem.mesh, reflectances.iter().copied().fold(0.0, f64::max))?;
     let sight = Sight { occluders: problem.occluders, bodies: &bodies, many };
     let dual = problem.goal.map(|goal| (goal, goal.dual(problem.mesh, problem.surfaces)));
-    f(&mut Run { problem, options, solvers, watch, sight, exposure, opening, dual, replaced: None })
+    f(&mut Run { problem, options, solvers, watch, sight, exposure, dual, replaced: None })
 }
 
 /// The operator of some links and the system that it makes.
@@ -306,7 +304,6 @@ struct Run<'a> {
     watch: &'a dyn RoundWatch,
     sight: Sight<'a>,
     exposure: Exposure<'a>,
-    opening: Opening,
     /// With a goal: the dual problem, of the same reflectances.
     dual: Option<(&'a Goal, Surfaces)>,
     /// Why the fallback solves.
@@ -377,7 +374,7 @@ impl Run<'_> {
             SLACK.min(0.5 * (1.0 / reflectance - 1.0))
         };
         let aim = |((size, &root), row): ((&Extent, &u32), f64)| {
-            if self.opening.loses_nothing(root as usize) && row > LEAST_ROW * size.exposed {
+            if self.exposure.opening().loses_nothing(root as usize) && row > LEAST_ROW * size.exposed {
                 Aim { least: size.exposed, most: size.exposed }
             } else {
                 Aim { least: 0.0, most: (1.0 + slack(root)) * size.exposed }
@@ -405,7 +402,7 @@ impl Run<'_> {
         roots.iter().zip(rows).for_each(|(&root, row)| sums[root as usize] += row);
         let area = |element: usize| tree.nodes()[tree.roots()[element] as usize].area();
         let told = |element| {
-            let [row, error] = self.opening.row(element)?;
+            let [row, error] = self.exposure.opening().row(element)?;
             Some([area(element) * row, area(element) * error])
         };
         let together = lost_together(&sums, &area, &told);
@@ -646,14 +643,14 @@ impl Run<'_> {
         // The rays of one element say the same of all of its leaves, so their errors add up.
         let mut unsure = sent;
         for (root, [exposed, row]) in wholes.into_iter().enumerate() {
-            let [open, variance] = self.opening.lost(root);
+            let [open, error] = self.exposure.opening().lost(root);
             let missing = if exposed > 0.0 { 1.0 - open - row / exposed } else { 0.0 };
             for (sent, lost) in unsure.row_mut(root).iter_mut().zip(&mut lost) {
                 *lost += *sent * missing;
-                *sent *= variance.sqrt();
+                *sent *= error;
             }
         }
-        let threshold = if self.opening.closed() { 0.0 } else { state.threshold };
+        let threshold = if self.exposure.opening().closed() { 0.0 } else { state.threshold };
         let share = |(((lost, unsure), gone), received): (((&f64, f64), &f64), f64)| match *gone {
             gone if gone > 0.0 => {
                 let unseen = (UNSEEN * threshold * (received / gone - OFTEN)).clamp(0.0, HIDDEN);

@@ -2,6 +2,7 @@
 //!
 //! All functions give the symmetric quantity A_i F_ij = ∫_i ∫_j cosθ cosθ' V / (π r²) in m², with an estimated absolute error.
 
+mod angle;
 pub(crate) mod contour;
 mod critical;
 mod error_model;

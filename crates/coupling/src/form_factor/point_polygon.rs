@@ -7,6 +7,7 @@
 #![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
 #![allow(clippy::needless_bitwise_bool, reason = "a jump a lane costs more than to ask both")]
 
+use super::angle::angle;
 use super::lanes::{LANES, Lanes, Lanes3, any, ask, cross, dot, each, only, same};
 use fredholm_mesh::Vec3;
 use std::f64::consts::FRAC_1_PI;
@@ -54,7 +55,7 @@ fn edge_term(n: Vec3, from: Vec3, to: Vec3) -> f64 {
         return cross.dot(n) * inverse * arc_over_tangent(sine2 * inverse * inverse);
     }
     let sine = sine2.sqrt();
-    if sine == 0.0 { 0.0 } else { cross.dot(n) * (sine.atan2(cosine) / sine) }
+    if sine == 0.0 { 0.0 } else { cross.dot(n) * (angle(sine, cosine) / sine) }
 }
 
 /// Θ (Γ · n) of one edge a lane: the same bits as [`edge_term`].
@@ -69,18 +70,12 @@ pub(super) fn edge_terms(n: Vec3, from: &Lanes3, to: &Lanes3) -> Lanes {
     let mut terms = only(&narrow, &each(|m| up[m] * inverse[m] * shares[m]));
     let wide = ask(|m| (sine2[m] > 0.0) & (narrow[m] == 0));
     if any(&wide) {
-        add_wide(&mut terms, &only(&wide, &sine2), &cosine, &up);
+        let sine = each(|m| sine2[m].sqrt());
+        let angles = each(|m| up[m] * (angle(sine[m], cosine[m]) / sine[m]));
+        let wide = only(&wide, &angles);
+        terms = each(|m| terms[m] + wide[m]);
     }
     terms
-}
-
-/// Writes the terms of the lanes of which `sine2` is not 0.
-#[inline(never)]
-fn add_wide(terms: &mut Lanes, sine2: &Lanes, cosine: &Lanes, up: &Lanes) {
-    for m in (0..LANES).filter(|&m| sine2[m] > 0.0) {
-        let sine = sine2[m].sqrt();
-        terms[m] = up[m] * (sine.atan2(cosine[m]) / sine);
-    }
 }
 
 /// As [`arc_over_tangent`].

@@ -4,6 +4,7 @@
 //! height of p it is ½ L ln(r₀ r₁) + ½ (t₀ + t₁) ln(r₁/r₀) − L + h θ, θ the angle under which p sees the edge. Every term is of the order of L:
 //! nothing cancels where the edge is short and far. Lengths in a typical distance of the pair.
 
+use crate::form_factor::angle::angle;
 use fredholm_mesh::Vec3;
 
 /// Rounding of one edge pair, relative to the largest term of its closed form.
@@ -45,6 +46,6 @@ pub(crate) fn log_integral(p: Vec3, f: Edge) -> f64 {
     let middle = t0 + t1;
     let ratio = 0.5 * (f.length * middle.abs() / near).ln_1p();
     let h = h2.sqrt();
-    let angle = (h * f.length).atan2(h2 + t0 * t1);
+    let angle = angle(h * f.length, h2 + t0 * t1);
     0.25 * f.length * (r0 * r1).ln() + 0.5 * middle.abs() * ratio - f.length + h * angle
 }
