@@ -7,7 +7,6 @@ use crate::CouplingError;
 use crate::form_factor::{Exchange, Method, PairIntegrator, Workspace};
 use crate::occlusion::{Clusters, Panel, walk};
 use crate::pair_sample::scattered;
-use bytemuck::allocation::try_zeroed_vec;
 use fredholm_linop::{PackedSymmetric, Quiet, Steps, Storage, Watch};
 use rayon::prelude::*;
 use std::ops::ControlFlow;
@@ -16,10 +15,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Patches of a panel at most.
 const PANEL: usize = 32;
 /// Entries that wait for their place in the matrix at most, as far as a batch of panels can tell.
-const WAITING: usize = 1 << 21;
-/// Panels of a batch at least, and for each thread: enough to keep many threads busy.
-const BATCH: usize = 32;
-const OF_A_THREAD: usize = 4;
+const WAITING: usize = 1 << 20;
+/// Panels of a batch for each thread, at least: enough to keep it busy until the last one of them ends.
+const OF_A_THREAD: usize = 8;
 
 /// How many pairs each method computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -157,7 +155,7 @@ pub fn waiting_bytes<S: Storage>(n: usize, errors: bool) -> u64 {
 
 /// Panels of a batch.
 fn batch(n: usize) -> usize {
-    (WAITING / PANEL / n.max(1)).max(BATCH).max(OF_A_THREAD * rayon::current_num_threads())
+    (WAITING / PANEL / n.max(1)).max(OF_A_THREAD * rayon::current_num_threads())
 }
 
 fn pairs(n: usize) -> u64 {
@@ -165,10 +163,12 @@ fn pairs(n: usize) -> u64 {
     n * n.saturating_sub(1) / 2
 }
 
-/// Zeros of all entries, taken as such from the system: what stays 0 is never touched.
 fn zeros<S: Storage>(n: usize) -> Result<Vec<S>, CouplingError> {
     let needed = PackedSymmetric::<S>::bytes(n);
-    try_zeroed_vec(n * (n + 1) / 2).map_err(|()| CouplingError::Allocation { needed })
+    let mut packed = Vec::new();
+    packed.try_reserve_exact(n * (n + 1) / 2).map_err(|_| CouplingError::Allocation { needed })?;
+    packed.resize(n * (n + 1) / 2, S::from_f64(0.0));
+    Ok(packed)
 }
 
 /// The packed lower triangles on their way.

@@ -14,7 +14,6 @@ mod strip;
 mod sweep;
 
 use crate::{Dense, LinearOperator, LinopError, MultiVector, Relax, Sweep, Symmetry};
-use bytemuck::Zeroable;
 use rayon::prelude::*;
 use std::ops::ControlFlow;
 
@@ -32,7 +31,7 @@ mod sealed {
 }
 
 /// How an entry is stored: f64 or f32.
-pub trait Storage: sealed::Sealed + Zeroable + Copy + Send + Sync + 'static {
+pub trait Storage: sealed::Sealed + Copy + Send + Sync + 'static {
     /// The nearest stored value.
     fn from_f64(value: f64) -> Self;
     /// The stored value, exactly.

@@ -91,7 +91,8 @@ pub fn shoot(
     watch: &dyn Watch,
 ) -> Result<(ShootingRecord, Ended), Error> {
     let mut stages = Stages::new(watch);
-    let scene = Open::load(&source.into(), &asked.problem(), asked.keep, &mut stages)?;
+    let pictures = usize::from(!asked.no_pictures);
+    let scene = Open::load(&source.into(), &asked.problem(), (asked.keep, pictures), &mut stages)?;
     let light = stages.run("exposure", || Light::new(&scene))?;
     let groups = stages.run("groups", || Ok(light.groups(&scene)))?;
     let tolerance = scene.options.form_factor_tolerance;
