@@ -108,7 +108,8 @@ pub fn shoot(
     Ok((record, ended))
 }
 
-/// The shots, fields on the way, what each element has received, W, and what it has still to send, W/m².
+/// The shots, fields on the way, what each element has received, W, and what it has still to send,
+/// W/m².
 type Shots = (Vec<Shot>, Vec<FieldStep>, MultiVector<f64>, MultiVector<f64>);
 
 /// Numbers of all fields on the way that are kept for the page.
@@ -162,7 +163,7 @@ impl Job<'_> {
     /// long as there is room.
     fn keeps(&self, shots: usize, kept: usize) -> bool {
         let power = 10_usize.pow(shots.ilog10());
-        let numbers = self.light.exitance.dim() * self.light.exitance.lanes();
+        let numbers = self.light.exitance.dim() * self.light.exitance.rhs_count();
         let room = (kept + 1) * numbers <= KEPT_NUMBERS;
         !self.asked.no_report && (shots == power || shots == 3 * power) && room
     }
