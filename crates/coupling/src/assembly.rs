@@ -1,7 +1,9 @@
 //! Assembly of the symmetric matrix G_ij = A_i F_ij (m²) of a mesh, in parallel.
 //!
-//! Each pair is computed once, so that reciprocity A_i F_ij = A_j F_ji holds exactly. The patches are cut into panels of neighbours; a panel finds out what stands between
-//! its patches and those before it, computes its pairs, and what it reports is folded in the order of the panels, so that the number of threads changes no bit.
+//! Each pair is computed once, so that reciprocity A_i F_ij = A_j F_ji holds exactly. The patches
+//! are cut into panels of neighbours; a panel finds out what stands between its patches and those
+//! before it, computes its pairs, and what it reports is folded in the order of the panels, so that
+//! the number of threads changes no bit.
 
 use crate::CouplingError;
 use crate::form_factor::{Exchange, Method, PairIntegrator, Workspace};
@@ -16,7 +18,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 const PANEL: usize = 32;
 /// Entries that wait for their place in the matrix at most, as far as a batch of panels can tell.
 const WAITING: usize = 1 << 20;
-/// Panels of a batch for each thread, at least: enough to keep it busy until the last one of them ends.
+/// Panels of a batch for each thread, at least: enough to keep it busy until the last one of them
+/// ends.
 const OF_A_THREAD: usize = 8;
 
 /// How many pairs each method computed.
@@ -82,9 +85,9 @@ pub fn assemble<S: Storage>(
     assembly(integrator, watch, Vec::new()).map(|(assembled, _)| assembled)
 }
 
-/// Seconds that [`assemble`] takes one thread, from panels in all parts of the mesh: the mean time of
-/// their pairs, times the number of all. `spent` tells the seconds that the calling thread has worked;
-/// panels are computed until `budget` (s) is spent, one at least.
+/// Seconds that [`assemble`] takes one thread, from panels in all parts of the mesh: the mean time
+/// of their pairs, times the number of all. `spent` tells the seconds that the calling thread has
+/// worked; panels are computed until `budget` (s) is spent, one at least.
 pub fn assembly_seconds(integrator: &PairIntegrator, budget: f64, spent: &dyn Fn() -> f64) -> f64 {
     let n = integrator.len();
     let progress = Progress::new(pairs(n), &Quiet);
@@ -144,7 +147,8 @@ fn assembly<S: Storage>(
     Ok((Assembled { matrix, error, largest, methods }, packed.errors))
 }
 
-/// Bytes of the entries of `n` patches that wait for their place in the matrix at most, besides the matrix; with or without their errors.
+/// Bytes of the entries of `n` patches that wait for their place in the matrix at most, besides the
+/// matrix; with or without their errors.
 #[must_use]
 pub fn waiting_bytes<S: Storage>(n: usize, errors: bool) -> u64 {
     // The last batch has the longest rows.

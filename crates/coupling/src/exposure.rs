@@ -1,8 +1,10 @@
 //! The exposed share w of every element: the part that sees a lit side or the open.
 //!
-//! A box that stands on a floor has no bottom, so the floor under it is a patch of which every ray ends on the back of a side. Such a part is
-//! buried: it receives nothing and nothing sees it. w is the share of points, on a grid over the element, of which at least one ray of a fixed bundle
-//! meets a lit side or nothing at all. Dimensionless; the grid is refined where both kinds of point occur.
+//! A box that stands on a floor has no bottom, so the floor under it is a patch of which every ray
+//! ends on the back of a side. Such a part is buried: it receives nothing and nothing sees it. w is
+//! the share of points, on a grid over the element, of which at least one ray of a fixed bundle
+//! meets a lit side or nothing at all. Dimensionless; the grid is refined where both kinds of point
+//! occur.
 
 use crate::pair_sample::scattered;
 use crate::polygon::folded;
@@ -21,8 +23,8 @@ pub fn exposed_shares(patches: &[&Patch], lit: &Occluders) -> Vec<f64> {
     patches.par_iter().map(|patch| share(patch, patches, lit)).collect()
 }
 
-/// Seconds that [`exposed_shares`] takes one thread, from patches in all parts of the mesh; `budget` and `spent` as in
-/// [`assembly_seconds`](crate::assembly_seconds).
+/// Seconds that [`exposed_shares`] takes one thread, from patches in all parts of the mesh;
+/// `budget` and `spent` as in [`assembly_seconds`](crate::assembly_seconds).
 #[must_use]
 pub fn exposure_seconds(patches: &[&Patch], lit: &Occluders, budget: f64, spent: &dyn Fn() -> f64) -> f64 {
     let started = spent();
@@ -39,7 +41,8 @@ pub fn exposure_seconds(patches: &[&Patch], lit: &Occluders, budget: f64, spent:
 
 /// Areas and exposed areas (m²) of patches with given shares; `rows` are the sums Σ_j G_ij (m²).
 ///
-/// What a patch exchanges cannot exceed what it exposes, Σ_j G_ij ≤ w A, which is sharper than a grid where little is exposed.
+/// What a patch exchanges cannot exceed what it exposes, Σ_j G_ij ≤ w A, which is sharper than a
+/// grid where little is exposed.
 #[must_use]
 pub fn extents(patches: &[&Patch], shares: &[f64], rows: &[f64]) -> Vec<Extent> {
     let of = |((patch, &share), &row): ((&&Patch, &f64), &f64)| {
@@ -54,7 +57,8 @@ fn share(patch: &Patch, patches: &[&Patch], lit: &Occluders) -> f64 {
     if first > 0.0 && first < 1.0 { exposed_share(patch, GRIDS[1], patches, lit) } else { first }
 }
 
-/// Exposed share in [0, 1] of one patch, from a grid of n × n points; it may be a part of one of those that `lit` holds in order.
+/// Exposed share in [0, 1] of one patch, from a grid of n × n points; it may be a part of one of
+/// those that `lit` holds in order.
 #[must_use]
 pub fn exposed_share(patch: &Patch, n: usize, patches: &[&Patch], lit: &Occluders) -> f64 {
     let bundle = Bundle::of(patch);

@@ -1,9 +1,10 @@
 //! Rays from elements: where they begin, where they go and what they meet.
 //!
-//! What an element sends is spread as cosθ dω/π over the half-space before it. Rays whose origins are even over its area
-//! and whose directions follow that density tell where the light goes, without any form factor: the share that meets the
-//! lit side of a patch is Σ_j F_ij. Their numbers are those of the additive recurrence x_k = x_0 + k (φ⁻¹, φ⁻², φ⁻³, φ⁻⁴)
-//! mod 1 with φ⁵ = φ + 1 (M. Roberts, *The Unreasonable Effectiveness of Quasirandom Sequences*, 2018).
+//! What an element sends is spread as cosθ dω/π over the half-space before it. Rays whose origins
+//! are even over its area and whose directions follow that density tell where the light goes,
+//! without any form factor: the share that meets the lit side of a patch is Σ_j F_ij. Their numbers
+//! are those of the additive recurrence x_k = x_0 + k (φ⁻¹, φ⁻², φ⁻³, φ⁻⁴) mod 1 with φ⁵ = φ + 1
+//! (M. Roberts, *The Unreasonable Effectiveness of Quasirandom Sequences*, 2018).
 
 use crate::polygon::folded;
 use fredholm_mesh::{Patch, Vec3};
@@ -13,7 +14,8 @@ use std::f64::consts::TAU;
 /// φ⁻¹, φ⁻², φ⁻³, φ⁻⁴ with φ⁵ = φ + 1.
 const STEPS: [f64; 4] =
     [0.856_674_883_854_502_9, 0.733_891_856_627_126, 0.628_706_721_037_808_6, 0.538_597_257_223_61];
-/// Tilts (cosines) of the rings of rays about the normal that tell whether a point is buried, and rays in a ring.
+/// Tilts (cosines) of the rings of rays about the normal that tell whether a point is buried, and
+/// rays in a ring.
 const TILTS: [f64; 2] = [0.75, 0.3];
 const RING: usize = 6;
 
@@ -23,8 +25,8 @@ pub fn recurrence(k: usize, start: [f64; 4]) -> [f64; 4] {
     std::array::from_fn(|i| (start[i] + k as f64 * STEPS[i]).fract())
 }
 
-/// A ray of a patch from four numbers in [0, 1): its origin, even over the parameters of the patch, and its direction, a
-/// unit vector of density cosθ/π about the normal.
+/// A ray of a patch from four numbers in [0, 1): its origin, even over the parameters of the patch,
+/// and its direction, a unit vector of density cosθ/π about the normal.
 #[must_use]
 pub fn cosine_ray(patch: &Patch, [u, v, tilt, turn]: [f64; 4]) -> (Vec3, Vec3) {
     let (u, v) = folded(patch, u, v);
@@ -56,7 +58,8 @@ pub fn meets(from: Vec3, direction: Vec3, patches: &[&Patch], lit: &Occluders) -
     }
 }
 
-/// The directions that decide whether a point is buried: the normal of its patch and two rings about it.
+/// The directions that decide whether a point is buried: the normal of its patch and two rings
+/// about it.
 #[derive(Clone, Debug)]
 pub struct Bundle(Vec<Vec3>);
 

@@ -1,7 +1,8 @@
-//! Which part of every leaf sees a lit side or the open: what stands on a floor buries the part under it.
+//! Which part of every leaf sees a lit side or the open: what stands on a floor buries the part
+//! under it.
 //!
-//! Of an input element its rays tell it; where it is partly buried, it and its parts are looked at once, on grids of points. What is wholly
-//! exposed or wholly buried is so in all of its parts.
+//! Of an input element its rays tell it; where it is partly buried, it and its parts are looked at
+//! once, on grids of points. What is wholly exposed or wholly buried is so in all of its parts.
 
 use crate::opening::Opening;
 use crate::{HierarchyError, Tree};
@@ -38,7 +39,8 @@ impl<'a> Exposure<'a> {
         &self.opening
     }
 
-    /// Areas and exposed areas of the leaves, m². The tree must be that of the call before, or grown from it.
+    /// Areas and exposed areas of the leaves, m². The tree must be that of the call before, or
+    /// grown from it.
     pub fn extents(&mut self, tree: &Tree, leaves: &[u32]) -> Vec<Extent> {
         let known = self.shares.len();
         self.shares.resize(tree.nodes().len(), f64::NAN);

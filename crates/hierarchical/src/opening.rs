@@ -1,7 +1,11 @@
-//! How much of what an element sends meets no lit side: it leaves the scene, or ends on the back of a surface.
+//! How much of what an element sends meets no lit side: it leaves the scene, or ends on the back of
+//! a surface.
 //!
-//! The sum of the form factors of an element over all others is 1 less that share, which rays tell without any form factor: so they tell how far the row sums of the links can be right. Of each element they are those of
-//! [`rays`](fredholm_coupling::rays), one a point, their numbers moved by the golden ratio from element to element. Points from which all rays meet backs are buried: nothing is sent from there.
+//! The sum of the form factors of an element over all others is 1 less that share, which rays tell
+//! without any form factor: so they tell how far the row sums of the links can be right. Of each
+//! element they are those of [`rays`](fredholm_coupling::rays), one a point, their numbers moved by
+//! the golden ratio from element to element. Points from which all rays meet backs are buried:
+//! nothing is sent from there.
 
 use fredholm_coupling::rays::{Bundle, Meets, cosine_ray, meets, recurrence};
 use fredholm_mesh::Patch;
@@ -9,15 +13,18 @@ use fredholm_visibility::Occluders;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Rays of the whole scene, about: at first, and where something is lost and much reflection amplifies what they do not know.
+/// Rays of the whole scene, about: at first, and where something is lost and much reflection
+/// amplifies what they do not know.
 const RAYS: [usize; 2] = [1 << 16, 1 << 20];
 /// Reflectance from which on that is so.
 const BRIGHT: f64 = 0.85;
 /// Rays of an element at first, at least.
 const FIRST: usize = 36;
-/// Rays of an element that tell its row sum where the scene loses something, at least; and of any, at most.
+/// Rays of an element that tell its row sum where the scene loses something, at least; and of any,
+/// at most.
 const ROW: [usize; 2] = [128, 16384];
-/// Share of all rays that may meet nothing lit where a scene still counts as closed: seams of rounded coordinates let some through.
+/// Share of all rays that may meet nothing lit where a scene still counts as closed: seams of
+/// rounded coordinates let some through.
 const SEAMS: f64 = 1e-3;
 /// Golden ratio less one.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
@@ -55,7 +62,8 @@ impl Opening {
             rays.par_iter_mut().enumerate().for_each(|(k, of)| send(k, of, numbers.clone(), patches, lit));
         };
         send_all(&mut rays, 0..first);
-        // What loses all it sends looks at the outside, as the backs of walls do, or lies on another surface: it is no part of what may be closed.
+        // What loses all it sends looks at the outside, as the backs of walls do, or lies on
+        // another surface: it is no part of what may be closed.
         let inside = || rays.iter().filter(|rays| rays.met > 0);
         let sum = |of: fn(&Rays) -> u32| inside().map(|rays| u64::from(of(rays))).sum::<u64>() as f64;
         let closed = sum(|rays| rays.lost()) <= SEAMS * sum(|rays| rays.all - rays.buried);
@@ -71,7 +79,8 @@ impl Opening {
         self.closed
     }
 
-    /// Whether all that an element sends is known to arrive: in a scene that loses nothing, and by its own rays.
+    /// Whether all that an element sends is known to arrive: in a scene that loses nothing, and by
+    /// its own rays.
     pub fn loses_nothing(&self, element: usize) -> bool {
         self.closed && self.rays[element].lost() == 0
     }
@@ -82,7 +91,8 @@ impl Opening {
         f64::from(all - buried) / f64::from(all)
     }
 
-    /// What the row sums over an element come to, over its area, and the standard error of that; none in a closed scene.
+    /// What the row sums over an element come to, over its area, and the standard error of that;
+    /// none in a closed scene.
     pub fn row(&self, element: usize) -> Option<[f64; 2]> {
         let Rays { all, met, .. } = self.rays[element];
         (!self.closed).then(|| share(met, all))
@@ -96,8 +106,8 @@ impl Opening {
     }
 }
 
-/// The share that some rays are of all, and its standard error as if there were one ray more of either kind: a few that agree do
-/// not make sure.
+/// The share that some rays are of all, and its standard error as if there were one ray more of
+/// either kind: a few that agree do not make sure.
 fn share(some: u32, all: u32) -> [f64; 2] {
     let (some, all) = (f64::from(some), f64::from(all));
     let likely = (some + 1.0) / (all + 2.0);

@@ -1,9 +1,10 @@
-//! The angle of a sine and a cosine by elementary operations: faster than the library's arc tangent of two arguments, and
-//! loops over it become vector code with the same bits everywhere.
+//! The angle of a sine and a cosine by elementary operations: faster than the library's arc tangent
+//! of two arguments, and loops over it become vector code with the same bits everywhere.
 //!
-//! θ is reduced to at most π/8 by θ = π − θ', θ = π/2 − θ' and atan u = π/4 + atan((u − 1)/(u + 1)); there
-//! atan(t)/t = 1 + z P(z), z = t², P the polynomial of degree 9 of the least largest relative error (Remez's exchange),
-//! which is 4e-17. The result is within two units in the last place of π/4 or, below π/8, of itself.
+//! θ is reduced to at most π/8 by θ = π − θ', θ = π/2 − θ' and atan u = π/4 + atan((u − 1)/(u +
+//! 1)); there atan(t)/t = 1 + z P(z), z = t², P the polynomial of degree 9 of the least largest
+//! relative error (Remez's exchange), which is 4e-17. The result is within two units in the last
+//! place of π/4 or, below π/8, of itself.
 
 #![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
 
@@ -26,7 +27,8 @@ const SERIES: [f64; 10] = [
     0.021_259_822_311_738_253,
 ];
 
-/// θ in [0, π] with the sine and the cosine given up to one positive factor; the sine must not be negative, nor both 0.
+/// θ in [0, π] with the sine and the cosine given up to one positive factor; the sine must not be
+/// negative, nor both 0.
 #[inline(always)]
 pub(super) fn angle(sine: f64, cosine: f64) -> f64 {
     let positive = cosine.abs();
@@ -41,7 +43,8 @@ pub(super) fn angle(sine: f64, cosine: f64) -> f64 {
     if cosine < 0.0 { PI - acute } else { acute }
 }
 
-/// atan t for |t| ≤ [`STEEP`]. Terms with even and odd powers of t² are summed apart, so that no sum waits for the other.
+/// atan t for |t| ≤ [`STEEP`]. Terms with even and odd powers of t² are summed apart, so that no
+/// sum waits for the other.
 #[inline(always)]
 fn arc_tangent(t: f64) -> f64 {
     let z = t * t;

@@ -1,8 +1,10 @@
-//! A_i F_ij behind many occluders: the unoccluded factor times the share of it that reaches through,
-//! G_ij = G⁰_ij Σ w_k V_k / Σ w_k over pairs of points, w the point-to-point kernel times the areas the points stand for.
+//! A_i F_ij behind many occluders: the unoccluded factor times the share of it that reaches
+//! through, G_ij = G⁰_ij Σ w_k V_k / Σ w_k over pairs of points, w the point-to-point kernel times
+//! the areas the points stand for.
 //!
-//! The pairs follow the four-dimensional additive recurrence of `rays`, the same for every pair of patches. Their number is multiplied by four until the
-//! tripled standard error over eight batches meets the tolerance, or until there are more than exact shadows would cost. In m².
+//! The pairs follow the four-dimensional additive recurrence of `rays`, the same for every pair of
+//! patches. Their number is multiplied by four until the tripled standard error over eight batches
+//! meets the tolerance, or until there are more than exact shadows would cost. In m².
 
 use super::jacobian;
 use crate::kernel::lambert;
@@ -15,7 +17,8 @@ const BATCHES: usize = 8;
 const FIRST: usize = 64;
 const MOST: usize = 16384;
 
-/// A_i F_ij (m²) of two patches whose unoccluded value is `open`; `sees` answers whether two points see each other.
+/// A_i F_ij (m²) of two patches whose unoccluded value is `open`; `sees` answers whether two points
+/// see each other.
 pub(crate) fn sampled(
     a: &Patch,
     b: &Patch,
@@ -32,7 +35,8 @@ pub(crate) fn sampled(
         }
         done = until;
         let (share, spread) = summary(&batches);
-        // Eight batches may agree by luck, but seldom both with each other and with the stage before.
+        // Eight batches may agree by luck, but seldom both with each other and with the stage
+        // before.
         let error = spread.max((share - last).abs());
         last = share;
         let total = open.value * error + open.error * share;
@@ -72,8 +76,9 @@ fn weighted(patch: &Patch, u: f64, v: f64) -> (Vec3, f64) {
     (patch.point(u, v), jacobian(patch, u, v))
 }
 
-/// Mean share and three standard errors over the batches, 98 % of a t-distribution with seven degrees of freedom; never less than the heaviest pair's worth.
-/// Where no pair has any weight nothing is known.
+/// Mean share and three standard errors over the batches, 98 % of a t-distribution with seven
+/// degrees of freedom; never less than the heaviest pair's worth. Where no pair has any weight
+/// nothing is known.
 fn summary(batches: &[Share]) -> (f64, f64) {
     let all: f64 = batches.iter().map(|s| s.all).sum();
     if all == 0.0 {

@@ -1,7 +1,8 @@
 //! Oriented edges, and the logarithm integrated along one: ∫ ln |p − q(t)| dt.
 //!
-//! With r₀, r₁ the distances of the ends of an edge of length L from p, t₀, t₁ = t₀ + L their places along it from the foot of p and h the
-//! height of p it is ½ L ln(r₀ r₁) + ½ (t₀ + t₁) ln(r₁/r₀) − L + h θ, θ the angle under which p sees the edge. Every term is of the order of L:
+//! With r₀, r₁ the distances of the ends of an edge of length L from p, t₀, t₁ = t₀ + L their
+//! places along it from the foot of p and h the height of p it is ½ L ln(r₀ r₁) + ½ (t₀ + t₁)
+//! ln(r₁/r₀) − L + h θ, θ the angle under which p sees the edge. Every term is of the order of L:
 //! nothing cancels where the edge is short and far. Lengths in a typical distance of the pair.
 
 use crate::form_factor::angle::angle;
@@ -24,8 +25,9 @@ impl Edge {
     }
 }
 
-/// Rounding of ∫∫ ln r ds dt with the outer integral over `e`: that of the terms of the inner integral, and that of a point of `e`, of order 1,
-/// times the change of the inner integral with it, the angle under which it sees `f`.
+/// Rounding of ∫∫ ln r ds dt with the outer integral over `e`: that of the terms of the inner
+/// integral, and that of a point of `e`, of order 1, times the change of the inner integral with
+/// it, the angle under which it sees `f`.
 pub(crate) fn rounding(e: Edge, f: Edge) -> f64 {
     let gap = e.start.distance(f.start) - e.length - f.length;
     let angle = f.length / gap.max(f.length);
