@@ -1,4 +1,5 @@
-//! Times of the stages of a light solution on shipped scenes: form factors, and the solution for all bands.
+//! Times of the stages of a light solution on shipped scenes: form factors, and the solution for
+//! all bands.
 //!
 //! `cargo bench --bench light`; stored results stand in `benches/README.md`.
 

@@ -1,4 +1,5 @@
-//! Writes a generated scene: `cargo run --release --example generate -- city --faces 13000 --seed 1 -o DIR`.
+//! Writes a generated scene:
+//! `cargo run --release --example generate -- city --faces 13000 --seed 1 -o DIR`.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -25,7 +26,8 @@ struct Common {
 
 #[derive(Debug, Subcommand)]
 enum Kind {
-    /// Touching, overlapping and interpenetrating blocks with courtyards and thin walls, under a lit sky
+    /// Touching, overlapping and interpenetrating blocks with courtyards and thin walls, under a
+    /// lit sky
     City {
         /// Most faces in all
         #[arg(long, value_name = "N", default_value_t = 13_000)]

@@ -1,8 +1,8 @@
 //! An operator of one's own in a registered solver: `cargo run --release --example own_operator`.
 //!
-//! Love's equation for the field between two coaxial discs of equal radius, as far apart as that radius
-//! (E. R. Love, The electrostatic field of two equal circular co-axial conducting disks, Quarterly
-//! Journal of Mechanics and Applied Mathematics 2, 1949):
+//! Love's equation for the field between two coaxial discs of equal radius, as far apart as that
+//! radius (E. R. Love, The electrostatic field of two equal circular co-axial conducting disks,
+//! Quarterly Journal of Mechanics and Applied Mathematics 2, 1949):
 //!
 //! x(s) − (1/π) ∫₋₁¹ x(t)/(1 + (s − t)²) dt = 1.
 //!
@@ -29,12 +29,12 @@ impl LinearOperator<f64> for Love {
 
     fn apply(&self, x: &MultiVector<f64>, y: &mut MultiVector<f64>) {
         for (i, s) in self.points.iter().enumerate() {
-            for lane in 0..x.lanes() {
+            for rhs in 0..x.rhs_count() {
                 let part = |(j, (t, weight)): (usize, (&f64, &f64))| {
-                    weight * x.row(j)[lane] / (PI * (1.0 + (s - t) * (s - t)))
+                    weight * x.row(j)[rhs] / (PI * (1.0 + (s - t) * (s - t)))
                 };
                 let sum = self.points.iter().zip(&self.weights).enumerate().map(part).sum();
-                y.row_mut(i)[lane] = sum;
+                y.row_mut(i)[rhs] = sum;
             }
         }
     }

@@ -1,7 +1,7 @@
 //! The waves that a conducting plate scatters: `cargo run --release --example plate`.
 //!
-//! Seen squarely, the radar cross-section of a plate of area A is 4πA²/λ² by physical optics (Knott,
-//! Shaeffer and Tuley, Radar Cross Section, 2004, section 5.3).
+//! Seen squarely, the radar cross-section of a plate of area A is 4πA²/λ² by physical optics
+//! (Knott, Shaeffer and Tuley, Radar Cross Section, 2004, section 5.3).
 
 use std::error::Error;
 use std::f64::consts::PI;

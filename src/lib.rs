@@ -1,14 +1,16 @@
-//! Fredholm solves x = b + K x on the surfaces of a scene; this crate re-exports the public face of its parts.
+//! Fredholm solves x = b + K x on the surfaces of a scene; this crate re-exports the public face of
+//! its parts.
 //!
-//! Data flows one way: a [`scene`] is cut into a [`mesh`]; [`coupling`] assembles what its elements exchange, with
-//! [`visibility`] and [`quadrature`]; a solver of [`iterative`] or [`direct`], whose contract is [`linop`], finds the
-//! field; [`discretisation`] has other bases and equations than constants on elements; [`hierarchical`] finds the elements that an
-//! accuracy asks for, and links between elements of any size instead of a matrix; [`waves`] has the electromagnetic couplings; [`montecarlo`] estimates
-//! the same fields from random paths; [`report`] writes what people look at; [`study`] puts all of it
-//! together: a scene, a question and its answer.
+//! Data flows one way: a [`scene`] is cut into a [`mesh`]; [`coupling`] assembles what its elements
+//! exchange, with [`visibility`] and [`quadrature`]; a solver of [`iterative`] or [`direct`], whose
+//! contract is [`linop`], finds the field; [`discretisation`] has other bases and equations than
+//! constants on elements; [`hierarchical`] finds the elements that an accuracy asks for, and links
+//! between elements of any size instead of a matrix; [`waves`] has the electromagnetic couplings;
+//! [`montecarlo`] estimates the same fields from random paths; [`report`] writes what people look
+//! at; [`study`] puts all of it together: a scene, a question and its answer.
 //!
-//! A study in whole: a scene is solved to 1 %, the irradiance of a surface is printed with its stated
-//! error, and the results are written into a folder.
+//! A study in whole: a scene is solved to 1 %, the irradiance of a surface is printed with its
+//! stated error, and the results are written into a folder.
 //!
 //! ```
 //! use fredholm::study::{Quiet, ResultFolder, SolveOptions, solve};
@@ -22,8 +24,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The parts can be used one by one, too. In a closed room of one material the radiosity is M/(1 − ρ)
-//! everywhere:
+//! The parts can be used one by one, too. In a closed room of one material the radiosity is M/(1 −
+//! ρ) everywhere:
 //!
 //! ```
 //! use fredholm::coupling::form_factor::PairIntegrator;

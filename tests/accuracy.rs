@@ -1,7 +1,8 @@
 //! Asking for twice the accuracy never makes form factors worse, on any of the shipped scenes.
 //!
-//! Worse: the largest error of a factor, or the root of their mean square, is larger at T/2 than at T. Errors are against T = 1e-7, over a sample of the pairs of each scene, as parts of
-//! what leaves the smaller patch.
+//! Worse: the largest error of a factor, or the root of their mean square, is larger at T/2 than at
+//! T. Errors are against T = 1e-7, over a sample of the pairs of each scene, as parts of what
+//! leaves the smaller patch.
 
 // A test that cannot run should panic, in its helpers too.
 #![allow(clippy::unwrap_used)]
@@ -39,7 +40,8 @@ struct Sample<'a> {
 }
 
 impl<'a> Sample<'a> {
-    /// As many pairs with something between as pairs with nothing between, as far as a scene has them.
+    /// As many pairs with something between as pairs with nothing between, as far as a scene has
+    /// them.
     fn new(mesh: &'a Mesh, occluders: &'a Occluders) -> Self {
         let integrator = PairIntegrator::new(mesh.patches(), occluders, FIRST);
         let mut work = Workspace::default();

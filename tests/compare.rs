@@ -1,4 +1,5 @@
-//! `fredholm compare` and `fredholm spectrum`: files, agreement of the solvers, refusals, exit codes, the same residuals for any number of threads.
+//! `fredholm compare` and `fredholm spectrum`: files, agreement of the solvers, refusals, exit
+//! codes, the same residuals for any number of threads.
 
 // A test that cannot run should panic, in its helpers too.
 #![allow(clippy::unwrap_used)]

@@ -1,6 +1,8 @@
-//! What every command says it will hold, against what it held; and that none is killed under a limit of the system.
+//! What every command says it will hold, against what it held; and that none is killed under a
+//! limit of the system.
 //!
-//! `cargo test --release --test memory -- --ignored --nocapture` prints the table of all runs; a few short ones are tested always.
+//! `cargo test --release --test memory -- --ignored --nocapture` prints the table of all runs; a
+//! few short ones are tested always.
 
 // A test that cannot run should panic, in its helpers too.
 #![allow(clippy::unwrap_used)]
@@ -91,7 +93,8 @@ fn scenes() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes")
 }
 
-/// A closed room of 6 n² elements with a lamp for a ceiling, seen in a picture of `pixels` × `pixels`.
+/// A closed room of 6 n² elements with a lamp for a ceiling, seen in a picture of `pixels` ×
+/// `pixels`.
 fn room(n: usize, bands: &str, pixels: usize) -> String {
     let walls = [
         ("floor", "white", "[[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]"),
@@ -150,7 +153,8 @@ fn cases(lines: &[&str]) -> Vec<Case> {
     lines.iter().map(case).collect()
 }
 
-/// All runs agree with their prediction, and keep every limit, which is given as an option and set by the system.
+/// All runs agree with their prediction, and keep every limit, which is given as an option and set
+/// by the system.
 fn agree(cases: &[Case]) {
     let bench = Bench::new();
     let mut failures = String::new();

@@ -55,7 +55,8 @@ fn partner(ours: &Table, reference: &Table, at: usize) -> usize {
     found.next().unwrap()
 }
 
-/// √(Σ A (E − E')² / Σ A E'²) in the worst band, and the root mean square of (E − E')/E' over faces and bands.
+/// √(Σ A (E − E')² / Σ A E'²) in the worst band, and the root mean square of (E − E')/E' over faces
+/// and bands.
 fn errors(ours: &Table, reference: &Table, bands: &[(&str, &str)]) -> (f64, f64) {
     let (mut worst, mut squares, mut count) = (0.0, 0.0, 0.0);
     for (our_band, their_band) in bands {
@@ -84,7 +85,8 @@ fn compare(name: &str, bands: &[(&str, &str)], faces: usize) {
     let (l2, rms) = errors(&ours, &reference, bands);
     println!("{name}: L2 {:.3} %, RMS over faces {:.3} %", 100.0 * l2, 100.0 * rms);
     assert!(l2 <= 0.005 && rms <= 0.015, "L2 {l2:e}, RMS {rms:e}");
-    // The program's own estimate must not be below what the comparison finds beyond the noise of the reference.
+    // The program's own estimate must not be below what the comparison finds beyond the noise of
+    // the reference.
     let run: serde_json::Value =
         serde_json::from_slice(&fs::read(folder.path().join("run.json")).unwrap()).unwrap();
     let stated = run["mesh_error"]["relative_l2"].as_array().unwrap();

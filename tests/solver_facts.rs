@@ -1,4 +1,5 @@
-//! The facts that M. Leblond states of radiosity matrices and schemes (Mathématiques et radiosité, GdR ALP 2002), on scenes of the size and kind that he used.
+//! The facts that M. Leblond states of radiosity matrices and schemes (Mathématiques et radiosité,
+//! GdR ALP 2002), on scenes of the size and kind that he used.
 
 // A test that cannot run should panic, in its helpers too.
 #![allow(clippy::unwrap_used)]

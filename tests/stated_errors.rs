@@ -15,7 +15,8 @@ const REFLECTANCES: [f64; 5] = [0.5, 0.8, 0.9, 0.95, 0.98];
 /// No picture worth the time.
 const CAMERA: &str = "[camera]\neye = [0.5, -2, 0.5]\ntarget = [0.5, 0.5, 0.5]\nwidth = 16\nheight = 16\n";
 
-/// A closed room: its size, how its walls are cut, whether all of its ceiling shines, and what stands or hangs in it.
+/// A closed room: its size, how its walls are cut, whether all of its ceiling shines, and what
+/// stands or hangs in it.
 struct Room {
     name: &'static str,
     size: [f64; 3],
@@ -240,7 +241,8 @@ fn stated_errors_of_shooting_hold_wherever_it_ends() {
 
 #[test]
 fn an_error_beyond_a_tenth_is_stated_and_warned_of() {
-    // A lamp shines at the ceiling close above it: all of the light comes from a spot that constants spread over the ceiling.
+    // A lamp shines at the ceiling close above it: all of the light comes from a spot that
+    // constants spread over the ceiling.
     let scene = |side: usize| {
         format!(
             "bands = [\"grey\"]\nelements_per_face = {}\n{CAMERA}\

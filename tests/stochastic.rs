@@ -1,4 +1,5 @@
-//! Every stochastic method on the shipped scenes, against the deterministic solution and against independent references.
+//! Every stochastic method on the shipped scenes, against the deterministic solution and against
+//! independent references.
 
 // A test that cannot run should panic, in its helpers too.
 #![allow(clippy::unwrap_used)]
@@ -67,7 +68,8 @@ fn values(csv: &Path, value: &str, error: &str) -> Values {
     rows.iter().map(|row| (place(row, &row["band"]), [number(row, value), number(row, error)])).collect()
 }
 
-/// Probabilities of the differences of an estimate from the reference; of a method that estimates constants on elements, `mesh` is their error.
+/// Probabilities of the differences of an estimate from the reference; of a method that estimates
+/// constants on elements, `mesh` is their error.
 fn probabilities(
     found: &Values,
     reference: &Values,

@@ -1,4 +1,5 @@
-//! Runs to an accuracy: results as of any other run, an error that is stated and held, the same bits for any number of threads and after a stop.
+//! Runs to an accuracy: results as of any other run, an error that is stated and held, the same
+//! bits for any number of threads and after a stop.
 
 use std::fs;
 use std::process::{Command, Stdio};
@@ -93,7 +94,8 @@ fn results_are_the_same_with_1_2_and_4_threads() {
     }
 }
 
-/// Starts a run and kills it a while after its first checkpoint; whether the run was still under way.
+/// Starts a run and kills it a while after its first checkpoint; whether the run was still under
+/// way.
 fn killed_after_a_round(bench: &Bench, more: &[&str], pause: Duration) -> bool {
     let mut command = Command::new(program());
     command.current_dir(bench.folder.path()).args([
@@ -178,7 +180,8 @@ fn pictures_of_the_elements_and_links_are_among_the_results() {
 
 #[test]
 fn points_gather_their_irradiance() {
-    // In a room of one reflectance and exitance, E = M/(1 − ρ) everywhere; from outside nothing is seen.
+    // In a room of one reflectance and exitance, E = M/(1 − ρ) everywhere; from outside nothing is
+    // seen.
     let bench = Bench::new(&furnace(4, &[0.5, 0.9]));
     for accuracy in [&[][..], &["--accuracy", "1%"]] {
         let places = ["--point", "0.2,0.3,0.4,1,-2,3", "--plane", "0,0,0,1,0,0,0,1,0,3,2", "-o", "out"];

@@ -8,7 +8,8 @@ use crate::support::{Bench, room};
 
 const SAME: [&str; 6] = ["field.csv", "faces.csv", "surfaces.csv", "field.vtu", "field.npz", "image.png"];
 
-/// The record without what may differ: times, memory, and the options that say where and by how many.
+/// The record without what may differ: times, memory, and the options that say where and by how
+/// many.
 fn timeless(bench: &Bench, folder: &str) -> Value {
     let mut record = bench.record(folder);
     for key in ["timings", "peak_memory_bytes"] {
@@ -20,7 +21,8 @@ fn timeless(bench: &Bench, folder: &str) -> Value {
     record
 }
 
-/// The curves over iterations: they come before those over seconds. Axes and legend are of another width.
+/// The curves over iterations: they come before those over seconds. Axes and legend are of another
+/// width.
 fn curves(bench: &Bench, folder: &str) -> Vec<String> {
     let svg = fs::read_to_string(bench.path(folder).join("convergence.svg")).unwrap();
     let curve = |line: &&str| line.starts_with("<polyline") && line.contains("stroke-width=\"18\"");

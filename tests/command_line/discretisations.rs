@@ -38,7 +38,8 @@ fn a_furnace_is_exitance_over_absorptance_by_every_discretisation() {
                 let radiosity = column(&bench.path("out/scene/field.csv"), &format!("radiosity_{band}"));
                 assert_eq!(radiosity.len(), 6);
                 let worst = radiosity.iter().map(|b| (b / exact - 1.0).abs()).fold(0.0, f64::max);
-                // Form factors of constants are as exact as their tolerance; the others close exactly at every point.
+                // Form factors of constants are as exact as their tolerance; the others close
+                // exactly at every point.
                 let allowed = if name == "galerkin-0" { 1e-4 } else { 1e-8 };
                 assert!(worst < allowed, "{name} by {solver}: {worst:e}");
             }

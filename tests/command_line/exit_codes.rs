@@ -4,7 +4,8 @@ use std::fs;
 
 use crate::support::{Bench, furnace};
 
-/// Expects an exit code, a message on standard error that contains `hint`, and nothing on standard output.
+/// Expects an exit code, a message on standard error that contains `hint`, and nothing on standard
+/// output.
 fn refused(bench: &Bench, arguments: &[&str], code: i32, hint: &str) {
     let run = bench.run(arguments);
     assert_eq!(run.code, code, "{arguments:?}: {}", run.stderr);
@@ -54,7 +55,8 @@ fn not_converged_is_3_and_writes_the_results() {
 fn too_little_memory_is_4() {
     let bench = Bench::new(&furnace(4, &[0.5]));
     refused(&bench, &["solve", "scene.toml", "--memory", "10kB"], 4, "--memory");
-    // To predict that is what `check` is for: what the mesh is, and the way without a matrix, are told all the same.
+    // To predict that is what `check` is for: what the mesh is, and the way without a matrix, are
+    // told all the same.
     let run = bench.run(&["check", "scene.toml", "--memory", "10kB"]);
     assert!(run.code == 0 && run.stdout.contains("--memory"), "{}{}", run.stdout, run.stderr);
     assert!(run.stdout.contains("6 flat pieces") && run.stdout.contains("--accuracy 5%"), "{}", run.stdout);

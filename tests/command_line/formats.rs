@@ -50,7 +50,8 @@ fn a_scene_has_the_same_light_in_every_format_that_holds_materials() {
     for file in ["a.obj", "a.glb", "a.rad", "a.xml"] {
         assert_eq!(bench.run(&["convert", "scene.toml", file, "--quiet"]).code, 0, "{file}");
         let found = light(file);
-        // Quads are two triangles in glTF and for Mitsuba, so that the light is that of a finer mesh.
+        // Quads are two triangles in glTF and for Mitsuba, so that the light is that of a finer
+        // mesh.
         let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
         let (a, b) = (mean(&expected), mean(&found));
         let tolerance = if matches!(file, "a.glb" | "a.xml") { 0.1 } else { 1e-9 };

@@ -1,4 +1,5 @@
-//! Scenes of waves that are wrong or make no sense: each ends with an error or a warning that says what, where, and what helps.
+//! Scenes of waves that are wrong or make no sense: each ends with an error or a warning that says
+//! what, where, and what helps.
 //!
 //! The first line of each says how: `# exit CODE: WORDS`.
 

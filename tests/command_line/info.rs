@@ -1,5 +1,5 @@
-//! What `info` tells of every kind of result, and what is said where a scene of light and one of waves are mistaken for
-//! each other.
+//! What `info` tells of every kind of result, and what is said where a scene of light and one of
+//! waves are mistaken for each other.
 
 use std::fs;
 

@@ -35,7 +35,8 @@ fn a_hundred_gibibytes_are_refused_at_once() {
 
 #[test]
 fn what_fits_in_single_precision_is_not_refused_there() {
-    // 864 elements: a matrix of 3.0 MB in double, 1.5 MB in single precision, 4.5 or 3.0 MB that wait for it, and 11.8 MB for all the rest.
+    // 864 elements: a matrix of 3.0 MB in double, 1.5 MB in single precision, 4.5 or 3.0 MB that
+    // wait for it, and 11.8 MB for all the rest.
     let bench = Bench::new(&furnace(12, &[0.5]));
     let limit = ["--memory", "18MB"];
     let run =

@@ -1,4 +1,5 @@
-//! Meshes with one defect each: the report names it, and the answer is that of the mended mesh, or the mesh is refused with a cure.
+//! Meshes with one defect each: the report names it, and the answer is that of the mended mesh, or
+//! the mesh is refused with a cure.
 
 use std::fmt::Write;
 use std::fs;

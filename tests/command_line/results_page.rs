@@ -1,4 +1,5 @@
-//! `docs/results.md`: it is what its source makes, and names all columns, arrays and keys that the commands write.
+//! `docs/results.md`: it is what its source makes, and names all columns, arrays and keys that the
+//! commands write.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -42,7 +43,8 @@ fn columns(path: &Path) -> BTreeSet<String> {
     text.lines().next().unwrap().split(',').map(of_any_band).collect()
 }
 
-/// Names in the directory of an archive: a signature, 24 bytes, the length of the name, 16 bytes more, the name.
+/// Names in the directory of an archive: a signature, 24 bytes, the length of the name, 16 bytes
+/// more, the name.
 fn arrays(path: &Path) -> BTreeSet<String> {
     let bytes = fs::read(path).unwrap();
     let starts = (0..bytes.len() - 4).filter(|&at| bytes[at..at + 4] == *b"PK\x01\x02");

@@ -1,4 +1,5 @@
-//! `fredholm shoot`: files, agreement with `solve`, the same results for any number of threads, endings.
+//! `fredholm shoot`: files, agreement with `solve`, the same results for any number of threads,
+//! endings.
 
 use std::fs;
 

@@ -247,7 +247,8 @@ fn sampled_waves_are_checked_against_computed_ones() {
     }
 }
 
-/// Every pixel traced by itself shows what the solution shows, up to its noise and to the elements of the solution.
+/// Every pixel traced by itself shows what the solution shows, up to its noise and to the elements
+/// of the solution.
 #[test]
 fn traced_pixels_show_what_the_solution_shows() {
     let bench = Bench::new(&room(6).replace("height = 48\n", "height = 48\nexposure = 1.0\n"));

@@ -11,10 +11,12 @@ use serde_json::Value;
 
 use crate::support::{Bench, Run, furnace, program};
 
-/// Unit squares at distance 1, and at a right angle with a common edge (J. R. Howell, C-11 and C-14).
+/// Unit squares at distance 1, and at a right angle with a common edge (J. R. Howell, C-11 and
+/// C-14).
 const PARALLEL: f64 = 0.199_824_895_698_387_5;
 const PERPENDICULAR: f64 = 0.200_043_776_075_403_1;
-/// The parallel squares with a centred square of side 0.5 halfway: exact shadow inside, 400 Gauss points outside.
+/// The parallel squares with a centred square of side 0.5 halfway: exact shadow inside, 400 Gauss
+/// points outside.
 const BLOCKED: f64 = 0.099_506_294_598_985;
 
 fn data(name: &str) -> String {

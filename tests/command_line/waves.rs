@@ -161,7 +161,8 @@ fn read(bench: &Bench, name: &str) -> String {
     fs::read_to_string(bench.path("out/scene").join(name)).unwrap()
 }
 
-/// On the closed cube of 2.1λ the bounces diverge, and GMRES does not: told, with exit code 3, and no field is written.
+/// On the closed cube of 2.1λ the bounces diverge, and GMRES does not: told, with exit code 3, and
+/// no field is written.
 #[test]
 fn a_comparison_tells_what_diverges() {
     let bench =
@@ -296,7 +297,8 @@ fn threads_change_no_byte_of_any_mode() {
     }
 }
 
-/// Small sheets are solved by boundary elements unasked: the answer is that of a finer mesh within the stated error.
+/// Small sheets are solved by boundary elements unasked: the answer is that of a finer mesh within
+/// the stated error.
 #[test]
 fn small_sheets_are_solved_rigorously_within_the_stated_error() {
     let corner = |edge: &str| {
@@ -349,7 +351,8 @@ fn errors_are_estimated_for_mesh_bounces_and_form() {
     assert!(record["frequencies"][0]["residuals"][1].as_f64().unwrap() < 1e-12);
 }
 
-/// Numbers that are none, or beyond all measure, end with a message and a code, in no time and without a file.
+/// Numbers that are none, or beyond all measure, end with a message and a code, in no time and
+/// without a file.
 #[test]
 fn hostile_numbers_are_refused_or_harmless() {
     let refused = [
@@ -398,8 +401,8 @@ fn hostile_numbers_are_refused_or_harmless() {
     }
 }
 
-/// One bounce of plane waves seen from far away is a closed form: a plate of 20 wavelengths needs no mesh in wavelengths,
-/// and has 4πA²/λ² straight back.
+/// One bounce of plane waves seen from far away is a closed form: a plate of 20 wavelengths needs
+/// no mesh in wavelengths, and has 4πA²/λ² straight back.
 #[test]
 fn far_fields_of_large_plates_need_one_facet() {
     let start = GOOD.find("[[source]]").unwrap();

@@ -1,4 +1,5 @@
-//! Damaged scenes and mesh files through all that `check` does before it computes: reading, meshing, checks of the whole.
+//! Damaged scenes and mesh files through all that `check` does before it computes: reading,
+//! meshing, checks of the whole.
 
 use std::any::Any;
 use std::fs;
@@ -38,7 +39,8 @@ struct Original {
     opened: String,
 }
 
-/// Whatever has a format: the scenes that are shipped, random ones with their OBJ files, an OBJ with its materials, a View3D file.
+/// Whatever has a format: the scenes that are shipped, random ones with their OBJ files, an OBJ
+/// with its materials, a View3D file.
 fn original(seed: u64, shipped: &[(String, String)]) -> Original {
     let of = |files: Vec<(String, String)>, damaged: usize| {
         let opened = files[0].0.clone();

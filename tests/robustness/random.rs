@@ -10,7 +10,8 @@ use fredholm_generate::Case;
 
 use crate::settings::{first, keep, number};
 
-/// CPU time of a run, s, and the time that it is given: bright rooms may take longer, and then it has to end by itself.
+/// CPU time of a run, s, and the time that it is given: bright rooms may take longer, and then it
+/// has to end by itself.
 const SECONDS: u64 = 60;
 const GIVEN: &str = "25s";
 /// Elapsed time of a run: a run that only waits ends too.

@@ -1,4 +1,5 @@
-//! The inverse of the blocks on the diagonal: the cheapest preconditioner that knows the strongest couplings.
+//! The inverse of the blocks on the diagonal: the cheapest preconditioner that knows the strongest
+//! couplings.
 
 use crate::{CompressionError, Hierarchical};
 use fredholm_linop::{LinearOperator, MultiVector, Scalar};
@@ -35,10 +36,10 @@ impl<T: Scalar> LinearOperator<T> for BlockDiagonal<T> {
     fn apply(&self, x: &MultiVector<T>, y: &mut MultiVector<T>) {
         for (unknowns, inverse) in &self.blocks {
             for (row, &i) in inverse.chunks_exact(unknowns.len()).zip(unknowns) {
-                for lane in 0..x.lanes() {
+                for rhs in 0..x.rhs_count() {
                     let terms = row.iter().zip(unknowns);
-                    y.row_mut(i)[lane] =
-                        terms.fold(T::zero(), |sum, (&entry, &j)| sum + entry * x.row(j)[lane]);
+                    y.row_mut(i)[rhs] =
+                        terms.fold(T::zero(), |sum, (&entry, &j)| sum + entry * x.row(j)[rhs]);
                 }
             }
         }

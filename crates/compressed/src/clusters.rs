@@ -55,8 +55,8 @@ impl Tree {
         (0..self.clusters.len()).filter(|&at| self.clusters[at].halves.is_none()).collect()
     }
 
-    /// The pairs (row, column) of clusters that cover the matrix, or its lower half, and whether each is far: the smaller box
-    /// is no larger than `eta` times the distance.
+    /// The pairs (row, column) of clusters that cover the matrix, or its lower half, and whether
+    /// each is far: the smaller box is no larger than `eta` times the distance.
     pub(crate) fn pairs(&self, eta: f64, lower: bool) -> Vec<(usize, usize, bool)> {
         let (mut pairs, mut waiting) = (Vec::new(), vec![(0, 0)]);
         while let Some((row, column)) = waiting.pop() {

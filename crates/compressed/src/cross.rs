@@ -1,9 +1,10 @@
 //! Adaptive cross approximation: a block of low rank from few of its rows and columns.
 //!
-//! M. Bebendorf, Approximation of boundary element matrices, Numer. Math. 86 (2000) 565, doi:10.1007/PL00005410, with partial
-//! pivoting. The row and the column through the largest entry of what is left are taken until their product is small
-//! against the sum. That alone may stop too early where a block falls apart into blocks that do not couple: all rows of some groups spread over
-//! the block are then compared with the sum, and the worst of them goes on.
+//! M. Bebendorf, Approximation of boundary element matrices, Numer. Math. 86 (2000) 565,
+//! doi:10.1007/PL00005410, with partial pivoting. The row and the column through the largest entry
+//! of what is left are taken until their product is small against the sum. That alone may stop too
+//! early where a block falls apart into blocks that do not couple: all rows of some groups spread
+//! over the block are then compared with the sum, and the worst of them goes on.
 
 use crate::Entries;
 use crate::low_rank::{LowRank, inner, square};
@@ -13,9 +14,11 @@ use fredholm_linop::Scalar;
 const SMALL: usize = 128;
 /// Groups of which all rows are compared in the end.
 const CHECKS: usize = 6;
-/// Share of the block from one of them to the next; multiples of the golden ratio meet no pattern of the rows.
+/// Share of the block from one of them to the next; multiples of the golden ratio meet no pattern
+/// of the rows.
 const STEP: f64 = 0.618_033_988_749_895;
-/// What is asked of the crosses, over the tolerance of the block: the rest is left to the truncation.
+/// What is asked of the crosses, over the tolerance of the block: the rest is left to the
+/// truncation.
 const SHARE: f64 = 0.3;
 
 /// Rows and columns of a block on demand.
@@ -25,7 +28,8 @@ pub(crate) struct Block<'a, T: Scalar, E: Entries<T>> {
     pub(crate) columns: &'a [usize],
     pub(crate) row_set: &'a E::Set,
     pub(crate) column_set: &'a E::Set,
-    /// All entries, row by row, where that costs less than the rows and columns of the crosses one by one.
+    /// All entries, row by row, where that costs less than the rows and columns of the crosses one
+    /// by one.
     whole: Option<Vec<T>>,
 }
 
@@ -84,7 +88,8 @@ impl<'a, T: Scalar, E: Entries<T>> Block<'a, T, E> {
         out.iter().skip(j % width).step_by(width).copied().collect()
     }
 
-    /// The block to a relative tolerance in the Frobenius norm; none where that takes as much as storing it whole.
+    /// The block to a relative tolerance in the Frobenius norm; none where that takes as much as
+    /// storing it whole.
     pub(crate) fn compressed(&self, tolerance: f64) -> Option<LowRank<T>> {
         let most = self.height() * self.breadth() / (self.height() + self.breadth());
         let mut crosses = Crosses {

@@ -2,8 +2,8 @@
 
 use fredholm_linop::{Scalar, Symmetry};
 
-/// A square matrix of which blocks are computed on demand. Its unknowns come in groups that share a place: group g has the
-/// unknowns g · width … g · width + width − 1.
+/// A square matrix of which blocks are computed on demand. Its unknowns come in groups that share a
+/// place: group g has the unknowns g · width … g · width + width − 1.
 pub trait Entries<T: Scalar>: Sync {
     /// Groups that are prepared for filling blocks.
     type Set: Send + Sync;
@@ -22,6 +22,7 @@ pub trait Entries<T: Scalar>: Sync {
     /// Prepares some groups.
     fn prepare(&self, groups: &[usize]) -> Self::Set;
 
-    /// Writes the entries of all unknowns of some groups, row by row. The same sets give the same bits.
+    /// Writes the entries of all unknowns of some groups, row by row. The same sets give the same
+    /// bits.
     fn fill(&self, rows: &Self::Set, columns: &Self::Set, out: &mut [T]);
 }

@@ -1,12 +1,15 @@
-//! Hierarchical matrices: couplings of all with all in little memory, from entries that are computed on demand.
+//! Hierarchical matrices: couplings of all with all in little memory, from entries that are
+//! computed on demand.
 //!
-//! Unknowns are sorted into a tree of clusters. Two clusters that are far from each other, compared with their size, couple by a
-//! block of low rank, which is found from few of its rows and columns (adaptive cross approximation); blocks of close ones are
-//! stored whole. W. Hackbusch, Hierarchical Matrices: Algorithms and Analysis, Springer 2015, doi:10.1007/978-3-662-47324-5.
+//! Unknowns are sorted into a tree of clusters. Two clusters that are far from each other, compared
+//! with their size, couple by a block of low rank, which is found from few of its rows and columns
+//! (adaptive cross approximation); blocks of close ones are stored whole. W. Hackbusch,
+//! Hierarchical Matrices: Algorithms and Analysis, Springer 2015, doi:10.1007/978-3-662-47324-5.
 //!
-//! Every block is approximated to a relative tolerance in the Frobenius norm, so that the error of a product is at most about
-//! the tolerance times the norm of the matrix. Products and blocks have the same bits for any number of threads: a block is
-//! the work of one thread, and each part of a product is summed in the order of the blocks.
+//! Every block is approximated to a relative tolerance in the Frobenius norm, so that the error of
+//! a product is at most about the tolerance times the norm of the matrix. Products and blocks have
+//! the same bits for any number of threads: a block is the work of one thread, and each part of a
+//! product is summed in the order of the blocks.
 
 mod block_diagonal;
 mod clusters;

@@ -1,14 +1,16 @@
 //! A block of low rank, A = U Vᵀ, and the smallest rank that keeps it to a tolerance.
 //!
-//! With orthonormal factors U = Q_u R_u and V = Q_v R_v, the singular values of A are those of the small R_u R_vᵀ, which one-sided
-//! rotations find (G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., Johns Hopkins University Press 2013, § 8.6.3).
+//! With orthonormal factors U = Q_u R_u and V = Q_v R_v, the singular values of A are those of the
+//! small R_u R_vᵀ, which one-sided rotations find (G. H. Golub, C. F. Van Loan, Matrix
+//! Computations, 4th ed., Johns Hopkins University Press 2013, § 8.6.3).
 
 use fredholm_linop::Scalar;
 
 /// Sweeps of rotations; six are usual.
 const SWEEPS: usize = 30;
-/// Product of two columns over the square of the Frobenius norm below which they are orthogonal: what is left of columns that
-/// depend on others shrinks with every rotation, and would underflow in the end.
+/// Product of two columns over the square of the Frobenius norm below which they are orthogonal:
+/// what is left of columns that depend on others shrinks with every rotation, and would underflow
+/// in the end.
 const NOTHING: f64 = 1e-32;
 
 /// U and V, column by column.
@@ -20,7 +22,8 @@ pub(crate) struct LowRank<T> {
 }
 
 impl<T: Scalar> LowRank<T> {
-    /// From columns of U and V, with the least rank that leaves `tolerance` times the Frobenius norm.
+    /// From columns of U and V, with the least rank that leaves `tolerance` times the Frobenius
+    /// norm.
     pub(crate) fn truncated(mut u: Vec<Vec<T>>, mut v: Vec<Vec<T>>, tolerance: f64) -> Self {
         let (left, right) = (orthonormal(&mut u), orthonormal(&mut v));
         let rank = u.len();
@@ -64,8 +67,8 @@ pub(crate) fn inner<T: Scalar>(x: &[T], y: &[T]) -> T {
     x.iter().zip(y).fold(T::zero(), |sum, (&x, &y)| sum + x.conj() * y)
 }
 
-/// Makes columns orthonormal by Gram and Schmidt, twice; returns the columns of the triangle R. Columns that depend on
-/// those before become 0.
+/// Makes columns orthonormal by Gram and Schmidt, twice; returns the columns of the triangle R.
+/// Columns that depend on those before become 0.
 fn orthonormal<T: Scalar>(columns: &mut [Vec<T>]) -> Vec<Vec<T>> {
     let mut triangle = Vec::with_capacity(columns.len());
     for k in 0..columns.len() {

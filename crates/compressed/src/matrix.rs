@@ -77,12 +77,14 @@ pub struct Hierarchical<T> {
 }
 
 impl<T: Scalar> Hierarchical<T> {
-    /// Compresses a matrix whose groups of unknowns are at these places (m), in parallel over the blocks.
+    /// Compresses a matrix whose groups of unknowns are at these places (m), in parallel over the
+    /// blocks.
     ///
     /// # Errors
-    /// [`CompressionError::Places`], [`CompressionError::NotFinite`] and [`CompressionError::Setting`] for what does not fit,
-    /// [`CompressionError::Memory`] where the blocks are predicted to take more than the limit,
-    /// [`CompressionError::Interrupted`] where `watch` no longer wants it.
+    /// [`CompressionError::Places`], [`CompressionError::NotFinite`] and
+    /// [`CompressionError::Setting`] for what does not fit, [`CompressionError::Memory`] where the
+    /// blocks are predicted to take more than the limit, [`CompressionError::Interrupted`] where
+    /// `watch` no longer wants it.
     pub fn new<E: Entries<T>>(
         entries: &E,
         places: &[Vec3],
@@ -157,7 +159,7 @@ impl<T: Scalar> Hierarchical<T> {
         self.blocks.iter().filter_map(on_diagonal).collect()
     }
 
-    /// y = A x of one lane, both in the order of the tree.
+    /// y = A x of one right-hand side, both in the order of the tree.
     fn product(&self, x: &[T]) -> Vec<T> {
         let symmetric = self.symmetry == Symmetry::Symmetric;
         let inner: Vec<[Vec<T>; 2]> = self
@@ -191,7 +193,8 @@ impl<T: Scalar> Stored<T> {
         (entries * size_of::<T>()) as u64
     }
 
-    /// Adds the rows of a leaf of the block, or of its transpose, times x. `inner` has the products with the other factor.
+    /// Adds the rows of a leaf of the block, or of its transpose, times x. `inner` has the products
+    /// with the other factor.
     fn add(&self, leaf: &Range<usize>, x: &[T], inner: &[T], turned: bool, y: &mut [T]) {
         let (own, other) = if turned { (&self.columns, &self.rows) } else { (&self.rows, &self.columns) };
         let first = leaf.start - own.start;
@@ -224,10 +227,10 @@ impl<T: Scalar> LinearOperator<T> for Hierarchical<T> {
     }
 
     fn apply(&self, x: &MultiVector<T>, y: &mut MultiVector<T>) {
-        for lane in 0..x.lanes() {
-            let sorted: Vec<T> = self.order.iter().map(|&i| x.row(i)[lane]).collect();
+        for rhs in 0..x.rhs_count() {
+            let sorted: Vec<T> = self.order.iter().map(|&i| x.row(i)[rhs]).collect();
             let product = self.product(&sorted);
-            self.order.iter().zip(product).for_each(|(&i, value)| y.row_mut(i)[lane] = value);
+            self.order.iter().zip(product).for_each(|(&i, value)| y.row_mut(i)[rhs] = value);
         }
     }
 

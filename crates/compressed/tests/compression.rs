@@ -11,7 +11,8 @@ use fredholm_mesh::Vec3;
 use num_complex::Complex64;
 use std::ops::ControlFlow;
 
-/// e^{−jkR}/R between points of a sphere, with its own diagonal; `skew` makes it unsymmetric. Two unknowns a point.
+/// e^{−jkR}/R between points of a sphere, with its own diagonal; `skew` makes it unsymmetric. Two
+/// unknowns a point.
 struct Waves {
     places: Vec<Vec3>,
     k: f64,
@@ -68,13 +69,13 @@ impl Entries<Complex64> for Waves {
     }
 }
 
-fn vector(dim: usize, lanes: usize) -> MultiVector<Complex64> {
-    MultiVector::from_fn(dim, lanes, |i, l| Complex64::cis((i * i % 97 + 3 * l) as f64))
+fn vector(dim: usize, rhs_count: usize) -> MultiVector<Complex64> {
+    MultiVector::from_fn(dim, rhs_count, |i, l| Complex64::cis((i * i % 97 + 3 * l) as f64))
 }
 
 /// The product without compression.
 fn whole(waves: &Waves, x: &MultiVector<Complex64>) -> MultiVector<Complex64> {
-    MultiVector::from_fn(x.dim(), x.lanes(), |i, l| {
+    MultiVector::from_fn(x.dim(), x.rhs_count(), |i, l| {
         let term = |j: usize| waves.entry(i / 2, j / 2, (i % 2) ^ (j % 2)) * x.row(j)[l];
         (0..x.dim()).map(term).sum()
     })

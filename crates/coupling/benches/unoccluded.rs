@@ -1,6 +1,7 @@
 //! Exchanges of all pairs of the unit cube with 24 × 24 patches a wall.
 //!
-//! `cargo bench -p fredholm-coupling --bench unoccluded`; the CPU seconds are printed first, criterion measures wall time.
+//! `cargo bench -p fredholm-coupling --bench unoccluded`; the CPU seconds are printed first,
+//! criterion measures wall time.
 
 #![allow(clippy::unwrap_used, missing_docs)]
 

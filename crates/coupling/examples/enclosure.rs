@@ -2,7 +2,8 @@
 //!
 //! cargo run --release -p fredholm-coupling --example enclosure -- N BOX T [THREADS]
 //!
-//! N × N patches a wall; with BOX = 1 an opaque box of side 0.4 in the middle, 4 × 4 patches a face. T is the tolerance of a form factor.
+//! N × N patches a wall; with BOX = 1 an opaque box of side 0.4 in the middle, 4 × 4 patches a
+//! face. T is the tolerance of a form factor.
 
 use fredholm_coupling::form_factor::PairIntegrator;
 use fredholm_coupling::{Assembled, assemble};

@@ -1,10 +1,11 @@
-//! Measures how far the errors that are stated for exchanges behind bodies hold, and fits the constants of the error model:
+//! Measures how far the errors that are stated for exchanges behind bodies hold, and fits the
+//! constants of the error model:
 //! `cargo run --release -p fredholm-coupling --example error_model [-- --fit]`.
 //!
-//! The pairs are made from seeds, with one to six things between; what they exchange is known to many more digits. Two
-//! sets of pairs, which the fit does not see, judge it. The fit goes down in single steps: each constant is made smaller
-//! or larger by a tenth and stays so where that costs fewer points, as long as 99 % of true errors are below the stated
-//! ones at every tolerance.
+//! The pairs are made from seeds, with one to six things between; what they exchange is known to
+//! many more digits. Two sets of pairs, which the fit does not see, judge it. The fit goes down in
+//! single steps: each constant is made smaller or larger by a tenth and stays so where that costs
+//! fewer points, as long as 99 % of true errors are below the stated ones at every tolerance.
 
 // A program that measures should panic where it cannot.
 #![allow(clippy::unwrap_used)]
@@ -130,7 +131,8 @@ fn constants(model: &mut ErrorModel) -> Vec<&mut f64> {
     lists.into_iter().flatten().chain(single).collect()
 }
 
-/// What a model costs, the mean over the tolerances of the logarithm of points; none where it states too little.
+/// What a model costs, the mean over the tolerances of the logarithm of points; none where it
+/// states too little.
 fn cost(trials: &[&Trial], model: ErrorModel) -> Option<f64> {
     let mut sum = 0.0;
     for tolerance in TOLERANCES {

@@ -1,8 +1,10 @@
-//! How long the form factors of a room with the fifty boxes of `scenes/fifty_boxes.toml` take, and how well its rows sum to 1.
+//! How long the form factors of a room with the fifty boxes of `scenes/fifty_boxes.toml` take, and
+//! how well its rows sum to 1.
 //!
 //! cargo run --release -p fredholm-coupling --example fifty_boxes -- T [THREADS] [SCALE] [SHIFT]
 //!
-//! T is the tolerance of a form factor; the room is scaled and then moved by SHIFT (m) along each axis. Rows of patches on which a box stands, and of what stands on them, are left out.
+//! T is the tolerance of a form factor; the room is scaled and then moved by SHIFT (m) along each
+//! axis. Rows of patches on which a box stands, and of what stands on them, are left out.
 
 use fredholm_coupling::form_factor::PairIntegrator;
 use fredholm_coupling::{Assembled, assemble};
@@ -37,7 +39,8 @@ fn all(patches: &[Patch], tolerance: f64) -> Result<Assembled<f64>, Box<dyn Erro
     Ok(assemble(&integrator, &Quiet)?)
 }
 
-/// The room in squares of half a metre and the boxes with 2 × 2 patches a face, put in their place, and the numbers of the patches that nothing covers.
+/// The room in squares of half a metre and the boxes with 2 × 2 patches a face, put in their place,
+/// and the numbers of the patches that nothing covers.
 fn room(place: impl Fn(Vec3) -> Vec3) -> Result<(Vec<Patch>, Vec<usize>), Box<dyn Error>> {
     let walls = [Vec3::ZERO, Vec3::new(10.0, 10.0, 3.5)];
     let boxes = boxes()?;

@@ -1,4 +1,5 @@
-//! Every form-factor method on the catalogued pairs: relative error, evaluations and CPU time, as Markdown.
+//! Every form-factor method on the catalogued pairs: relative error, evaluations and CPU time, as
+//! Markdown.
 //!
 //!     cargo run --release -p fredholm-coupling --example method_table
 

@@ -1,11 +1,13 @@
 //! The matrix of coarser patches: G_IJ = Σ_{i∈I} Σ_{j∈J} G_ij.
 //!
-//! Exchanges add up exactly (A_i F_ij is an integral over both patches), so the matrix of the faces follows from that of their elements. Solving both
-//! shows how far the field still moves with the mesh: an estimate of the discretisation error without a second assembly.
+//! Exchanges add up exactly (A_i F_ij is an integral over both patches), so the matrix of the faces
+//! follows from that of their elements. Solving both shows how far the field still moves with the
+//! mesh: an estimate of the discretisation error without a second assembly.
 
 use fredholm_linop::{LinopError, PackedSymmetric, Storage};
 
-/// Sums the entries of `fine` (m²) by group: `group[i]`, below `count`, is the coarse index of element i.
+/// Sums the entries of `fine` (m²) by group: `group[i]`, below `count`, is the coarse index of
+/// element i.
 ///
 /// # Errors
 /// A matrix that cannot be built.

@@ -1,7 +1,9 @@
 //! Assembly of the symmetric matrix G_ij = A_i F_ij (m²) of a mesh, in parallel.
 //!
-//! Each pair is computed once, so that reciprocity A_i F_ij = A_j F_ji holds exactly. The patches are cut into panels of neighbours; a panel finds out what stands between
-//! its patches and those before it, computes its pairs, and what it reports is folded in the order of the panels, so that the number of threads changes no bit.
+//! Each pair is computed once, so that reciprocity A_i F_ij = A_j F_ji holds exactly. The patches
+//! are cut into panels of neighbours; a panel finds out what stands between its patches and those
+//! before it, computes its pairs, and what it reports is folded in the order of the panels, so that
+//! the number of threads changes no bit.
 
 use crate::CouplingError;
 use crate::form_factor::{Exchange, Method, PairIntegrator, Workspace};
@@ -15,10 +17,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Patches of a panel at most.
 const PANEL: usize = 32;
 /// Entries that wait for their place in the matrix at most, as far as a batch of panels can tell.
-const WAITING: usize = 1 << 21;
-/// Panels of a batch at least, and for each thread: enough to keep many threads busy.
-const BATCH: usize = 32;
-const OF_A_THREAD: usize = 4;
+const WAITING: usize = 1 << 20;
+/// Panels of a batch for each thread, at least: enough to keep it busy until the last one of them
+/// ends.
+const OF_A_THREAD: usize = 8;
 
 /// How many pairs each method computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -83,9 +85,9 @@ pub fn assemble<S: Storage>(
     assembly(integrator, watch, Vec::new()).map(|(assembled, _)| assembled)
 }
 
-/// Seconds that [`assemble`] takes one thread, from panels in all parts of the mesh: the mean time of
-/// their pairs, times the number of all. `spent` tells the seconds that the calling thread has worked;
-/// panels are computed until `budget` (s) is spent, one at least.
+/// Seconds that [`assemble`] takes one thread, from panels in all parts of the mesh: the mean time
+/// of their pairs, times the number of all. `spent` tells the seconds that the calling thread has
+/// worked; panels are computed until `budget` (s) is spent, one at least.
 pub fn assembly_seconds(integrator: &PairIntegrator, budget: f64, spent: &dyn Fn() -> f64) -> f64 {
     let n = integrator.len();
     let progress = Progress::new(pairs(n), &Quiet);
@@ -145,7 +147,8 @@ fn assembly<S: Storage>(
     Ok((Assembled { matrix, error, largest, methods }, packed.errors))
 }
 
-/// Bytes of the entries of `n` patches that wait for their place in the matrix at most, besides the matrix; with or without their errors.
+/// Bytes of the entries of `n` patches that wait for their place in the matrix at most, besides the
+/// matrix; with or without their errors.
 #[must_use]
 pub fn waiting_bytes<S: Storage>(n: usize, errors: bool) -> u64 {
     // The last batch has the longest rows.
@@ -156,7 +159,7 @@ pub fn waiting_bytes<S: Storage>(n: usize, errors: bool) -> u64 {
 
 /// Panels of a batch.
 fn batch(n: usize) -> usize {
-    (WAITING / PANEL / n.max(1)).max(BATCH).max(OF_A_THREAD * rayon::current_num_threads())
+    (WAITING / PANEL / n.max(1)).max(OF_A_THREAD * rayon::current_num_threads())
 }
 
 fn pairs(n: usize) -> u64 {
@@ -218,12 +221,12 @@ impl<S: Storage> Strip<S> {
         }
         let sight = integrator.sight(clusters);
         let mut found = walk(&sight, panel);
-        let mut work = Workspace::default();
+        let (mut work, mut exchanges) = (Workspace::default(), Vec::new());
         for (row, place) in clusters.nodes[panel].places.clone().enumerate() {
             if progress.state().is_break() {
                 return strip;
             }
-            strip.row(integrator, clusters.order[place], row, &mut found, &mut work);
+            strip.row(integrator, clusters.order[place], row, &mut found, (&mut work, &mut exchanges));
             progress.advance(place as u64);
         }
         strip
@@ -235,19 +238,18 @@ impl<S: Storage> Strip<S> {
         i: u32,
         row: usize,
         found: &mut Panel,
-        work: &mut Workspace,
+        (work, exchanges): (&mut Workspace, &mut Vec<Exchange>),
     ) {
         let mut columns = std::mem::take(&mut found.seen[row]);
         let wholly = columns.len();
         columns.extend(found.partly[row].iter().map(|(j, _)| *j));
-        let mut exchanges = Vec::new();
-        integrator.open_row(i as usize, &columns, work, &mut exchanges);
+        integrator.open_row(i as usize, &columns, work, exchanges);
         for (k, (_, list)) in found.partly[row].iter().enumerate() {
             let k = wholly + k;
             let pair = [i, columns[k]].map(|patch| patch as usize);
             exchanges[k] = integrator.behind(pair, &found.lists[list.clone()], exchanges[k], work);
         }
-        for (&j, exchange) in columns.iter().zip(&exchanges) {
+        for (&j, exchange) in columns.iter().zip(&*exchanges) {
             let area = integrator.smaller_area(i as usize, j as usize);
             self.report.add(i as usize, j as usize, exchange, area);
         }

@@ -1,4 +1,5 @@
-//! Closure enforced: the symmetric, non-negative matrix nearest to G = A F whose row sums are the areas.
+//! Closure enforced: the symmetric, non-negative matrix nearest to G = A F whose row sums are the
+//! areas.
 //!
 //! Least squares with the exchange itself as the weight,
 //!
@@ -6,21 +7,25 @@
 //! min ½ Σ_ij (G'_ij − G_ij)² / G_ij   subject to   Σ_j G'_ij = A_i,   G' symmetric,   G' ≥ 0,
 //! ```
 //!
-//! so that a pair changes in proportion to what it exchanges, and a pair that sees nothing stays so. Weighted least squares for view
-//! factors: H. A. J. Vercammen & G. F. Froment, Int. J. Heat Mass Transfer 23 (1980) 329; R. P. Taylor & R. Luck, *A case study of view-factor
-//! rectification procedures for diffuse-gray radiation enclosure computations*, NASA N95-27353, 1995. The conditions of the minimum give
+//! so that a pair changes in proportion to what it exchanges, and a pair that sees nothing stays
+//! so. Weighted least squares for view factors: H. A. J. Vercammen & G. F. Froment, Int. J. Heat
+//! Mass Transfer 23 (1980) 329; R. P. Taylor & R. Luck, *A case study of view-factor rectification
+//! procedures for diffuse-gray radiation enclosure computations*, NASA N95-27353, 1995. The
+//! conditions of the minimum give
 //!
 //! ```text
 //! G'_ij = G_ij max(0, 1 + λ_i + λ_j),
 //! ```
 //!
-//! with one multiplier λ a row. They maximise the concave dual Σ A_i λ_i − ¼ Σ_ij G_ij max(0, 1 + λ_i + λ_j)²: Newton's method, the linear
-//! systems by conjugate gradients with the diagonal as the preconditioner. Areas and exchanges in m², λ dimensionless.
+//! with one multiplier λ a row. They maximise the concave dual Σ A_i λ_i − ¼ Σ_ij G_ij max(0, 1 +
+//! λ_i + λ_j)²: Newton's method, the linear systems by conjugate gradients with the diagonal as the
+//! preconditioner. Areas and exchanges in m², λ dimensionless.
 
 use fredholm_linop::{LinopError, PackedSymmetric};
 use thiserror::Error;
 
-/// Row sums of F that differ more from 1 are those of an open scene, unless their stated error is larger still.
+/// Row sums of F that differ more from 1 are those of an open scene, unless their stated error is
+/// larger still.
 const OPEN: f64 = 0.01;
 /// Stated errors of a row by which a closed row may differ from 1.
 const STATED: f64 = 3.0;
@@ -91,11 +96,13 @@ pub struct Closed {
     pub steps: usize,
 }
 
-/// Enforces Σ_j G_ij = A_i (`areas`, m²) for the first `closing` rows; the others, as that of the sky, take what comes. `error` is the stated
-/// error of every row sum of F: it tells an inexact row from an open one.
+/// Enforces Σ_j G_ij = A_i (`areas`, m²) for the first `closing` rows; the others, as that of the
+/// sky, take what comes. `error` is the stated error of every row sum of F: it tells an inexact row
+/// from an open one.
 ///
 /// # Errors
-/// [`ClosureError::Open`] for a row whose sum is not near 1, [`ClosureError::Infeasible`] where there is no such matrix.
+/// [`ClosureError::Open`] for a row whose sum is not near 1, [`ClosureError::Infeasible`] where
+/// there is no such matrix.
 pub fn enforce_closure(
     matrix: &PackedSymmetric<f64>,
     areas: &[f64],
@@ -166,7 +173,8 @@ impl Dual<'_> {
         (linear - quadratic, gradient)
     }
 
-    /// Minus the second derivative, applied to `v`: Σ_j G_ij (v_i + v_j) over the pairs that are above 0.
+    /// Minus the second derivative, applied to `v`: Σ_j G_ij (v_i + v_j) over the pairs that are
+    /// above 0.
     fn curvature(&self, multipliers: &[f64], v: &[f64]) -> Vec<f64> {
         let mut product = vec![0.0; v.len()];
         self.each(multipliers, |i, j, entry, factor| {
@@ -203,7 +211,8 @@ impl Dual<'_> {
         Err(ClosureError::Infeasible { row, defect })
     }
 
-    /// The first of the halved steps that gains enough, or one that the dual function no longer resolves but that lessens the defect.
+    /// The first of the halved steps that gains enough, or one that the dual function no longer
+    /// resolves but that lessens the defect.
     #[allow(clippy::type_complexity, reason = "a point with its value and gradient")]
     fn search(
         &self,
@@ -249,7 +258,8 @@ impl Dual<'_> {
         x
     }
 
-    /// The diagonal of the curvature; a row of which nothing is left takes its area, so that it can move.
+    /// The diagonal of the curvature; a row of which nothing is left takes its area, so that it can
+    /// move.
     fn diagonal(&self, multipliers: &[f64]) -> Vec<f64> {
         let mut diagonal = vec![0.0; multipliers.len()];
         self.each(multipliers, |i, j, entry, factor| {
@@ -338,7 +348,8 @@ mod tests {
 
     #[test]
     fn no_entry_becomes_negative_and_none_appears() {
-        // Row 0 is far too large with a large stated error: the least squares without the bound would turn entries negative.
+        // Row 0 is far too large with a large stated error: the least squares without the bound
+        // would turn entries negative.
         let n = 12;
         let mut entries: Vec<f64> =
             (0..n).flat_map(|i| (0..=i).map(move |j| if i == j { 0.0 } else { 1.0 / 11.0 })).collect();
@@ -355,8 +366,9 @@ mod tests {
 
     #[test]
     fn the_bound_is_met_where_it_binds() {
-        // Rows 0 and 1 exchange too much with rows 2 to 5, and those too little with each other. From 1 + λ₀ + λ₂ = ¼ and 1 + 2 λ₂ = 2
-        // follows 1 + 2 λ₀ = −1.5: the pair (0, 1) is left with nothing.
+        // Rows 0 and 1 exchange too much with rows 2 to 5, and those too little with each other.
+        // From 1 + λ₀ + λ₂ = ¼ and 1 + 2 λ₂ = 2 follows 1 + 2 λ₀ = −1.5: the pair (0, 1) is left
+        // with nothing.
         let exchange = |i: usize, j: usize| match (i < 2, j < 2) {
             _ if i == j => 0.0,
             (true, true) => 0.3,

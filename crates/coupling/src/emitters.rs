@@ -1,8 +1,11 @@
-//! Columns of the exchange matrix for single elements and for flat groups of them, computed when they are asked for: G_iS = Σ_{j∈S} G_ij (m²).
+//! Columns of the exchange matrix for single elements and for flat groups of them, computed when
+//! they are asked for: G_iS = Σ_{j∈S} G_ij (m²).
 //!
-//! A group is a rectangle that its elements fill, so its column is the exchange of the rectangle with every element and costs as much as that of one element. Shooting from
-//! patches that are larger than the elements which receive is due to M. F. Cohen, D. P. Greenberg, D. S. Immel & P. J. Brock, IEEE Computer Graphics and Applications 6 (3), 1986,
-//! doi:10.1109/MCG.1986.276629; here patches of all sizes shoot.
+//! A group is a rectangle that its elements fill, so its column is the exchange of the rectangle
+//! with every element and costs as much as that of one element. Shooting from patches that are
+//! larger than the elements which receive is due to M. F. Cohen, D. P. Greenberg, D. S. Immel & P.
+//! J. Brock, IEEE Computer Graphics and Applications 6 (3), 1986, doi:10.1109/MCG.1986.276629; here
+//! patches of all sizes shoot.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -30,7 +33,8 @@ pub struct Groups {
 }
 
 impl Groups {
-    /// Groups elements of the same `kinds`; places nearer than `tolerance` (m) count as one. An element of a kind of its own shoots alone.
+    /// Groups elements of the same `kinds`; places nearer than `tolerance` (m) count as one. An
+    /// element of a kind of its own shoots alone.
     ///
     /// # Panics
     /// There are fewer kinds than elements.
@@ -103,7 +107,8 @@ pub struct Emitters<'a> {
 }
 
 impl<'a> Emitters<'a> {
-    /// Prepares the columns; `occluders` are what may stand between elements, `tolerance` is that of [`PairIntegrator`].
+    /// Prepares the columns; `occluders` are what may stand between elements, `tolerance` is that
+    /// of [`PairIntegrator`].
     #[must_use]
     pub fn new(
         elements: Vec<&'a Patch>,

@@ -1,22 +1,21 @@
 //! The exposed share w of every element: the part that sees a lit side or the open.
 //!
-//! A box that stands on a floor has no bottom, so the floor under it is a patch of which every ray ends on the back of a side. Such a part is
-//! buried: it receives nothing and nothing sees it. w is the share of points, on a grid over the element, of which at least one ray of a fixed bundle
-//! meets a lit side or nothing at all. Dimensionless; the grid is refined where both kinds of point occur.
+//! A box that stands on a floor has no bottom, so the floor under it is a patch of which every ray
+//! ends on the back of a side. Such a part is buried: it receives nothing and nothing sees it. w is
+//! the share of points, on a grid over the element, of which at least one ray of a fixed bundle
+//! meets a lit side or nothing at all. Dimensionless; the grid is refined where both kinds of point
+//! occur.
 
 use crate::pair_sample::scattered;
 use crate::polygon::folded;
 use crate::radiosity::Extent;
+use crate::rays::Bundle;
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::Occluders;
 use rayon::prelude::*;
-use std::f64::consts::TAU;
 
 /// Points along a side of the first grid, and of the one for elements that are partly buried.
 const GRIDS: [usize; 2] = [8, 32];
-/// Tilts (cosines) of the rings of rays about the normal, and rays in a ring.
-const TILTS: [f64; 2] = [0.75, 0.3];
-const RING: usize = 6;
 
 /// Exposed shares in [0, 1] of the patches of a mesh; `lit` holds these patches, in order.
 #[must_use]
@@ -24,8 +23,8 @@ pub fn exposed_shares(patches: &[&Patch], lit: &Occluders) -> Vec<f64> {
     patches.par_iter().map(|patch| share(patch, patches, lit)).collect()
 }
 
-/// Seconds that [`exposed_shares`] takes one thread, from patches in all parts of the mesh; `budget` and `spent` as in
-/// [`assembly_seconds`](crate::assembly_seconds).
+/// Seconds that [`exposed_shares`] takes one thread, from patches in all parts of the mesh;
+/// `budget` and `spent` as in [`assembly_seconds`](crate::assembly_seconds).
 #[must_use]
 pub fn exposure_seconds(patches: &[&Patch], lit: &Occluders, budget: f64, spent: &dyn Fn() -> f64) -> f64 {
     let started = spent();
@@ -42,7 +41,8 @@ pub fn exposure_seconds(patches: &[&Patch], lit: &Occluders, budget: f64, spent:
 
 /// Areas and exposed areas (m²) of patches with given shares; `rows` are the sums Σ_j G_ij (m²).
 ///
-/// What a patch exchanges cannot exceed what it exposes, Σ_j G_ij ≤ w A, which is sharper than a grid where little is exposed.
+/// What a patch exchanges cannot exceed what it exposes, Σ_j G_ij ≤ w A, which is sharper than a
+/// grid where little is exposed.
 #[must_use]
 pub fn extents(patches: &[&Patch], shares: &[f64], rows: &[f64]) -> Vec<Extent> {
     let of = |((patch, &share), &row): ((&&Patch, &f64), &f64)| {
@@ -57,33 +57,13 @@ fn share(patch: &Patch, patches: &[&Patch], lit: &Occluders) -> f64 {
     if first > 0.0 && first < 1.0 { exposed_share(patch, GRIDS[1], patches, lit) } else { first }
 }
 
-/// Exposed share in [0, 1] of one patch, from a grid of n × n points; it may be a part of one of those that `lit` holds in order.
+/// Exposed share in [0, 1] of one patch, from a grid of n × n points; it may be a part of one of
+/// those that `lit` holds in order.
 #[must_use]
 pub fn exposed_share(patch: &Patch, n: usize, patches: &[&Patch], lit: &Occluders) -> f64 {
-    let directions = bundle(patch);
-    let exposed = grid(patch, n).filter(|&p| directions.iter().any(|&d| is_open(p, d, patches, lit))).count();
+    let bundle = Bundle::of(patch);
+    let exposed = grid(patch, n).filter(|&point| !bundle.buried(point, patches, lit)).count();
     exposed as f64 / (n * n) as f64
-}
-
-/// Whether a ray meets a lit side, or nothing.
-fn is_open(p: Vec3, direction: Vec3, patches: &[&Patch], lit: &Occluders) -> bool {
-    lit.closest(p, direction, f64::INFINITY)
-        .is_none_or(|hit| patches[hit.patch].normal().dot(direction) < 0.0)
-}
-
-/// The normal and rings of directions about it.
-fn bundle(patch: &Patch) -> Vec<Vec3> {
-    let n = patch.normal();
-    let across = n.any_orthonormal_vector();
-    let other = n.cross(across);
-    let ring = |tilt: f64| {
-        let sine = (1.0 - tilt * tilt).sqrt();
-        (0..RING).map(move |k| {
-            let angle = TAU * (k as f64 + tilt) / RING as f64;
-            n * tilt + (across * angle.cos() + other * angle.sin()) * sine
-        })
-    };
-    std::iter::once(n).chain(TILTS.into_iter().flat_map(ring)).collect()
 }
 
 /// Midpoints of an n × n grid.

@@ -1,11 +1,13 @@
 //! Form factors: kernels, occlusion and the operators assembled from them.
 //!
-//! The operator of diffuse light is K = R F with A_i F_ij = ∫_i ∫_j cosθ cosθ' V / (π r²) dA dA' (m²).
+//! The operator of diffuse light is K = R F with A_i F_ij = ∫_i ∫_j cosθ cosθ' V / (π r²) dA dA'
+//! (m²).
 
 pub mod form_factor;
 pub mod kernel;
 pub mod method;
 pub mod polygon;
+pub mod rays;
 
 mod aggregate;
 mod assembly;

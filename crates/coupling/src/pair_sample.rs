@@ -1,7 +1,7 @@
 //! A fixed sequence of pairs that spreads evenly over all pairs of n elements.
 //!
-//! The additive recurrence with the fractional parts of the powers of 1/φ, φ³ = φ + 1 (M. Roberts, *The Unreasonable Effectiveness of
-//! Quasirandom Sequences*, 2018).
+//! The additive recurrence with the fractional parts of the powers of 1/φ, φ³ = φ + 1 (M. Roberts,
+//! *The Unreasonable Effectiveness of Quasirandom Sequences*, 2018).
 
 const STEPS: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
 
@@ -17,8 +17,8 @@ pub fn sample_pairs(n: usize) -> impl Iterator<Item = [usize; 2]> {
     (1u64..).map(move |k| STEPS.map(|step| place(k, step)))
 }
 
-/// All indices below `n`, each once, so that any first few of them are spread evenly: multiples of a step near n/φ that has
-/// no divisor in common with n.
+/// All indices below `n`, each once, so that any first few of them are spread evenly: multiples of
+/// a step near n/φ that has no divisor in common with n.
 pub(crate) fn scattered(n: usize) -> impl Iterator<Item = usize> {
     let near = (n as f64 * 0.618_033_988_749_895) as usize;
     let step = (near..near + n.max(1)).find(|&step| divisor(step, n) == 1).unwrap_or(1);

@@ -1,6 +1,7 @@
 //! Convex polygons as lists of corners, and their clipping by half-spaces.
 //!
-//! Sutherland & Hodgman, Commun. ACM 17(1) 32, 1974, doi:10.1145/360767.360802, for one half-space at a time.
+//! Sutherland & Hodgman, Commun. ACM 17(1) 32, 1974, doi:10.1145/360767.360802, for one half-space
+//! at a time.
 
 use fredholm_mesh::{Patch, Vec3};
 
@@ -112,7 +113,8 @@ fn snap(height: f64, tolerance: f64) -> f64 {
     if height.abs() <= tolerance { 0.0 } else { height }
 }
 
-/// Parameters of a point of the patch for a point of the unit square; on a triangle the upper half of the square is folded down.
+/// Parameters of a point of the patch for a point of the unit square; on a triangle the upper half
+/// of the square is folded down.
 #[must_use]
 pub fn folded(patch: &Patch, u: f64, v: f64) -> (f64, f64) {
     if patch.sides() == 3 && u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) }

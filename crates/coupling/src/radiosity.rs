@@ -1,11 +1,13 @@
 //! The radiosity system (I − R F) B = M, for all bands at once.
 //!
-//! B radiosity, M exitance (W/m²), R = diag(ρ), A_i F_ij = G_ij (m²). With D = diag(ρ_i / A_i) the system is I − D G, so that one symmetric G
-//! serves every band. C. M. Goral et al., SIGGRAPH 1984, doi:10.1145/800031.808601.
+//! B radiosity, M exitance (W/m²), R = diag(ρ), A_i F_ij = G_ij (m²). With D = diag(ρ_i / A_i) the
+//! system is I − D G, so that one symmetric G serves every band. C. M. Goral et al., SIGGRAPH 1984,
+//! doi:10.1145/800031.808601.
 //!
-//! Part of an element may be buried, as the floor is under a box: it sees nothing and nothing sees it. The unknown is the radiosity of the
-//! exposed part, w_i A_i, which takes the place of A_i in D. What is reported are means over whole elements, the buried part
-//! having irradiance 0: E_i = Σ_j G_ij B_j / A_i.
+//! Part of an element may be buried, as the floor is under a box: it sees nothing and nothing sees
+//! it. The unknown is the radiosity of the exposed part, w_i A_i, which takes the place of A_i in
+//! D. What is reported are means over whole elements, the buried part having irradiance 0: E_i =
+//! Σ_j G_ij B_j / A_i.
 
 use crate::CouplingError;
 use fredholm_linop::{LinearOperator, MultiVector, PackedSymmetric, Storage};
@@ -43,7 +45,8 @@ pub struct Energy {
     pub emitted: f64,
     /// Σ A (1 − ρ) E.
     pub absorbed: f64,
-    /// Σ w A B (1 − Σ_j F_ij): what leaves through openings, and what errors of the form factors lose or add.
+    /// Σ w A B (1 − Σ_j F_ij): what leaves through openings, and what errors of the form factors
+    /// lose or add.
     pub escaped: f64,
 }
 
@@ -51,14 +54,16 @@ impl Radiosity {
     /// Takes sizes, reflectances and exitances (W/m²; elements × bands).
     ///
     /// # Errors
-    /// [`CouplingError::Dimension`] where the three do not have the same number of elements, or the last two not the same number of bands.
+    /// [`CouplingError::Dimension`] where the three do not have the same number of elements, or the
+    /// last two not the same number of bands.
     pub fn new(
         elements: Vec<Extent>,
         reflectance: MultiVector<f64>,
         exitance: MultiVector<f64>,
     ) -> Result<Self, CouplingError> {
         let n = elements.len();
-        let fits = reflectance.dim() == n && exitance.dim() == n && reflectance.lanes() == exitance.lanes();
+        let fits =
+            reflectance.dim() == n && exitance.dim() == n && reflectance.rhs_count() == exitance.rhs_count();
         if !fits {
             return Err(CouplingError::Dimension {
                 elements: n,
@@ -86,7 +91,8 @@ impl Radiosity {
         &self.exitance
     }
 
-    /// D = ρ / (w A), 1/m²: the system is I − D G. An element with nothing exposed reflects nothing.
+    /// D = ρ / (w A), 1/m²: the system is I − D G. An element with nothing exposed reflects
+    /// nothing.
     #[must_use]
     pub fn scaling(&self) -> MultiVector<f64> {
         self.map(|i, l| match self.elements[i].exposed {
@@ -98,7 +104,7 @@ impl Radiosity {
     /// Means over whole elements for a solution `x`, the radiosity of the exposed parts.
     #[must_use]
     pub fn means(&self, matrix: &dyn LinearOperator<f64>, x: &MultiVector<f64>) -> Means {
-        let mut power = MultiVector::zeros(x.dim(), x.lanes());
+        let mut power = MultiVector::zeros(x.dim(), x.rhs_count());
         matrix.apply(x, &mut power);
         let irradiance = self.map(|i, l| power.row(i)[l] / self.elements[i].area);
         let reflected = |i: usize, l: usize| self.reflectance.row(i)[l] * irradiance.row(i)[l];
@@ -106,7 +112,8 @@ impl Radiosity {
         Means { irradiance, radiosity }
     }
 
-    /// Σ_j F_ij of the exposed part of every element: 1 in a closed scene. An element with nothing exposed has 1 too: it loses nothing.
+    /// Σ_j F_ij of the exposed part of every element: 1 in a closed scene. An element with nothing
+    /// exposed has 1 too: it loses nothing.
     #[must_use]
     pub fn closure<S: Storage>(&self, matrix: &PackedSymmetric<S>) -> Vec<f64> {
         let rows = matrix.row_sums();
@@ -117,7 +124,7 @@ impl Radiosity {
     /// The balance of every band for a solution `x`, its means and the closure.
     #[must_use]
     pub fn energy(&self, x: &MultiVector<f64>, means: &Means, closure: &[f64]) -> Vec<Energy> {
-        let mut energy = vec![Energy::default(); self.exitance.lanes()];
+        let mut energy = vec![Energy::default(); self.exitance.rhs_count()];
         for (i, size) in self.elements.iter().enumerate() {
             for (l, band) in energy.iter_mut().enumerate() {
                 let absorbed = (1.0 - self.reflectance.row(i)[l]) * means.irradiance.row(i)[l];
@@ -130,6 +137,6 @@ impl Radiosity {
     }
 
     fn map(&self, value: impl FnMut(usize, usize) -> f64) -> MultiVector<f64> {
-        MultiVector::from_fn(self.elements.len(), self.exitance.lanes(), value)
+        MultiVector::from_fn(self.elements.len(), self.exitance.rhs_count(), value)
     }
 }

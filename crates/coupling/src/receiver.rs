@@ -1,11 +1,13 @@
-//! What a point with a normal sees: F_j = ∫_j cosθ cosθ' V / (π r²) dA', the share of its hemisphere, weighted by the cosine, that patch j
-//! covers. Dimensionless.
+//! What a point with a normal sees: F_j = ∫_j cosθ cosθ' V / (π r²) dA', the share of its
+//! hemisphere, weighted by the cosine, that patch j covers. Dimensionless.
 //!
-//! Closed form: Lambert's sum over the edges of what is visible of the polygon ([`point_to_polygon`](crate::form_factor::point_to_polygon);
-//! P. Schröder & P. Hanrahan, SIGGRAPH 1993, doi:10.1145/166117.166138), less what convex bodies hide of them, exactly.
-//! Nothing is integrated numerically: a point inside a closed room has Σ_j F_j = 1 up to rounding.
+//! Closed form: Lambert's sum over the edges of what is visible of the polygon
+//! ([`point_to_polygon`](crate::form_factor::point_to_polygon); P. Schröder & P. Hanrahan, SIGGRAPH
+//! 1993, doi:10.1145/166117.166138), less what convex bodies hide of them, exactly. Nothing is
+//! integrated numerically: a point inside a closed room has Σ_j F_j = 1 up to rounding.
 //!
-//! The sky is a box around everything: what a point or a patch sees of it is what no surface covers.
+//! The sky is a box around everything: what a point or a patch sees of it is what no surface
+//! covers.
 
 use crate::CouplingError;
 use crate::form_factor::{Exchange, Hiding, PairIntegrator, Workspace, point_to_polygon};
@@ -31,15 +33,16 @@ pub struct Receiver {
 }
 
 impl Receiver {
-    /// A receiver at `point`; `None` where a coordinate is not finite or the normal has no direction.
+    /// A receiver at `point`; `None` where a coordinate is not finite or the normal has no
+    /// direction.
     #[must_use]
     pub fn new(point: Vec3, normal: Vec3) -> Option<Self> {
         let normal = normal.try_normalize()?;
         point.is_finite().then_some(Self { point, normal })
     }
 
-    /// The middles of `counts[0]` × `counts[1]` cells of the parallelogram spanned by `u` and `v` at `origin`, row by row along `u`; the
-    /// normal is that of u × v.
+    /// The middles of `counts[0]` × `counts[1]` cells of the parallelogram spanned by `u` and `v`
+    /// at `origin`, row by row along `u`; the normal is that of u × v.
     #[must_use]
     pub fn plane(origin: Vec3, [u, v]: [Vec3; 2], counts: [usize; 2]) -> Option<Vec<Self>> {
         let middle = |k: usize, n: usize| (k as f64 + 0.5) / n as f64;
@@ -65,8 +68,8 @@ pub struct Targets<'a> {
 impl Targets<'_> {
     /// Form factors from every receiver to every row, receivers × rows.
     ///
-    /// A receiver sees a patch from its lit side only; one that lies in the plane of a patch sees nothing of it. `watch` is asked before every
-    /// receiver whether to go on.
+    /// A receiver sees a patch from its lit side only; one that lies in the plane of a patch sees
+    /// nothing of it. `watch` is asked before every receiver whether to go on.
     ///
     /// # Errors
     /// [`CouplingError::Interrupted`] where the watch stops it.
@@ -127,8 +130,9 @@ impl Sight {
     }
 }
 
-/// Six patches around everything within `bounds`, lit inside: the sky. Every ray that leaves the scene ends on one of them, so that
-/// F_i,sky is found as any other form factor, from what nothing covers, and not as what the others leave of 1.
+/// Six patches around everything within `bounds`, lit inside: the sky. Every ray that leaves the
+/// scene ends on one of them, so that F_i,sky is found as any other form factor, from what nothing
+/// covers, and not as what the others leave of 1.
 ///
 /// # Errors
 /// [`MeshError`] for bounds that are not finite or hold a single point.
@@ -139,16 +143,18 @@ pub fn sky(bounds: Bounds) -> Result<Vec<Patch>, MeshError> {
         let pick = |bit: usize, low: f64, high: f64| if k & bit == 0 { low } else { high };
         Vec3::new(pick(1, low.x, high.x), pick(2, low.y, high.y), pick(4, low.z, high.z))
     };
-    // Corner k has bit 1 for high x, 2 for high y, 4 for high z; counter-clockwise seen from inside.
+    // Corner k has bit 1 for high x, 2 for high y, 4 for high z; counter-clockwise seen from
+    // inside.
     let faces = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
     let quads = faces.map(|face| Patch::quad(face.map(corner)));
     quads.into_iter().filter_map(Result::transpose).collect()
 }
 
-/// What each of the first `surfaces` patches of `integrator` exchanges with the others, those of the sky: Σ_k A_i F_ik and its stated error, m².
+/// What each of the first `surfaces` patches of `integrator` exchanges with the others, those of
+/// the sky: Σ_k A_i F_ik and its stated error, m².
 ///
-/// The outer integral goes over the surface: the sky is large, and most of it sees nothing of a surface among others, so that
-/// points on it would miss what little there is.
+/// The outer integral goes over the surface: the sky is large, and most of it sees nothing of a
+/// surface among others, so that points on it would miss what little there is.
 ///
 /// # Errors
 /// [`CouplingError::Interrupted`] where the watch, asked before every patch, stops it.
@@ -171,7 +177,8 @@ pub fn sky_exchanges(
     found.into_iter().collect::<Option<_>>().ok_or(stopped)
 }
 
-/// The matrix with a last row for the sky, which exchanges `sky[i]` (m²) with row i and nothing with itself.
+/// The matrix with a last row for the sky, which exchanges `sky[i]` (m²) with row i and nothing
+/// with itself.
 ///
 /// # Errors
 /// [`LinopError::Length`] unless `sky` has an entry a row.
@@ -275,7 +282,8 @@ mod tests {
 
     #[test]
     fn walls_of_a_court_see_the_sky_as_a_lid() {
-        // The open room of above, one patch a wall: what a wall exchanges with the sky it exchanged with the lid (Howell C-11, C-14).
+        // The open room of above, one patch a wall: what a wall exchanges with the sky it exchanged
+        // with the lid (Howell C-11, C-14).
         let whole = Shape::Box { min: Vec3::ZERO, max: Vec3::ONE, inward: true };
         let mut builder = MeshBuilder::default();
         builder.surface("room", 0);

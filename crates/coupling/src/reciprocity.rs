@@ -1,6 +1,7 @@
 //! How well A_i F_ij = A_j F_ji holds when both sides are computed.
 //!
-//! The matrix stores one value per pair. Here some pairs are computed a second time with the order of integration exchanged.
+//! The matrix stores one value per pair. Here some pairs are computed a second time with the order
+//! of integration exchanged.
 
 use crate::form_factor::{Method, PairIntegrator, Workspace};
 use crate::sample_pairs;
@@ -9,8 +10,8 @@ use crate::sample_pairs;
 const LOOKS: usize = 20_000;
 const COMPARED: usize = 100;
 
-/// Largest difference of the two orders, relative to the smaller area (that is, of the larger form factor), over a fixed sample of
-/// partly occluded pairs; `None` where the sample has none.
+/// Largest difference of the two orders, relative to the smaller area (that is, of the larger form
+/// factor), over a fixed sample of partly occluded pairs; `None` where the sample has none.
 #[must_use]
 pub fn reciprocity(integrator: &PairIntegrator) -> Option<f64> {
     let mut work = Workspace::default();

@@ -1,19 +1,25 @@
-//! How far constants on elements are from the light of the continuous equation: an estimate of the error of the irradiance of faces.
+//! How far constants on elements are from the light of the continuous equation: an estimate of the
+//! error of the irradiance of faces.
 //!
-//! The solution B_h is constant on every element, and what is stated of an element is the mean of E = K B_h over it. At a point q the continuous equation asks for
-//! M + ρ E(q) where B_h has the mean, so that a residual r = ρ (E(q) − Ē_j) is left. It has no mean over an element; what it does to element i is
+//! The solution B_h is constant on every element, and what is stated of an element is the mean of E
+//! = K B_h over it. At a point q the continuous equation asks for M + ρ E(q) where B_h has the
+//! mean, so that a residual r = ρ (E(q) − Ē_j) is left. It has no mean over an element; what it
+//! does to element i is
 //!
 //! ```text
 //! p_i = ∫ r(q) F_q,i dA = Σ_j ρ_j A_j cov_j(F_·,i , E)    W,
 //! ```
 //!
-//! F_q,i the exact form factor from the point q to element i. Both factors follow from one row of form factors, Σ_i F_q,i B_i = E(q), so that a few exact rows a
-//! element say what its residual does to all others. From there on it is reflected as light is: (I − D G) δB = D p. To first order in the residual that is the
-//! error of the solution.
+//! F_q,i the exact form factor from the point q to element i. Both factors follow from one row of
+//! form factors, Σ_i F_q,i B_i = E(q), so that a few exact rows a element say what its residual
+//! does to all others. From there on it is reflected as light is: (I − D G) δB = D p. To first
+//! order in the residual that is the error of the solution.
 //!
-//! The covariance is taken over a k × k grid of each element, times k²/(k² − 1), which is exact where both factors are linear. Where so many rows cost too much, elements are drawn in
-//! proportion to what they reflect, in [`DRAWS`] interleaved sequences whose differences tell the noise, and each has the ends of one of two diagonals of its 2 × 2 grid in turn.
-//! Power in W, irradiance in W/m².
+//! The covariance is taken over a k × k grid of each element, times k²/(k² − 1), which is exact
+//! where both factors are linear. Where so many rows cost too much, elements are drawn in
+//! proportion to what they reflect, in [`DRAWS`] interleaved sequences whose differences tell the
+//! noise, and each has the ends of one of two diagonals of its 2 × 2 grid in turn. Power in W,
+//! irradiance in W/m².
 
 use crate::CouplingError;
 use crate::pair_sample::scattered;
@@ -29,10 +35,12 @@ use rayon::prelude::*;
 pub const DRAWS: usize = 4;
 /// Form factors from points that may always be computed: what a tenth of a second is for.
 const FREE: usize = 1 << 17;
-/// Points per element where nothing stands between, so that a form factor costs as much as an exchange, and where it costs a small part of one.
+/// Points per element where nothing stands between, so that a form factor costs as much as an
+/// exchange, and where it costs a small part of one.
 const OPEN: f64 = 0.25;
 const BLOCKED: f64 = 0.5;
-/// Bodies from which on looking through all of them costs more than everything else of a form factor.
+/// Bodies from which on looking through all of them costs more than everything else of a form
+/// factor.
 const MANY: f64 = 256.0;
 /// Fewest elements that are drawn.
 const FEWEST: usize = 32;
@@ -61,7 +69,7 @@ impl MeshError {
     /// From δ of every face and band (W/m²), the irradiances and the areas (m²).
     #[must_use]
     pub fn new(per_face: Vec<f64>, irradiance: &MultiVector<f64>, areas: &[f64]) -> Self {
-        let bands = irradiance.lanes();
+        let bands = irradiance.rhs_count();
         let (mut errors, mut squares, mut largest) = (vec![0.0; bands], vec![0.0; bands], vec![0.0; bands]);
         for (i, area) in areas.iter().enumerate() {
             for l in 0..bands {
@@ -97,7 +105,8 @@ pub struct Constants<'a> {
 /// What the residual of constants does to the elements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Residual {
-    /// p of every draw, W: elements × (draws × bands), the bands of a draw side by side. The mean over the draws is the estimate.
+    /// p of every draw, W: elements × (draws × bands), the bands of a draw side by side. The mean
+    /// over the draws is the estimate.
     pub power: MultiVector<f64>,
     /// 1 where every element was looked at, else [`DRAWS`].
     pub draws: usize,
@@ -125,7 +134,7 @@ impl Constants<'_> {
     /// # Errors
     /// [`CouplingError::Interrupted`] where the watch stops it.
     pub fn residual(&self, watch: &dyn Watch) -> Result<Residual, CouplingError> {
-        let (n, bands) = (self.patches.len(), self.irradiance.lanes());
+        let (n, bands) = (self.patches.len(), self.irradiance.rhs_count());
         let bodies = Bodies::new(self.occluders, self.patches, &[]);
         let (chosen, grid) = self.choose(points(n, bodies.as_slice().len()));
         let draws = chosen.iter().map(|one| one.draw + 1).max().unwrap_or(1);
@@ -154,8 +163,9 @@ impl Constants<'_> {
         Ok(Residual { power, draws })
     }
 
-    /// Seconds that [`residual`](Self::residual) takes one thread, from elements in all parts of the mesh. `spent` tells the seconds that the calling thread has
-    /// worked; elements are looked at until `budget` (s) is spent, one at least.
+    /// Seconds that [`residual`](Self::residual) takes one thread, from elements in all parts of
+    /// the mesh. `spent` tells the seconds that the calling thread has worked; elements are looked
+    /// at until `budget` (s) is spent, one at least.
     #[must_use]
     pub fn seconds(&self, budget: f64, spent: &dyn Fn() -> f64) -> f64 {
         let n = self.patches.len();
@@ -185,7 +195,7 @@ impl Constants<'_> {
         targets: &Targets<'_>,
         bodies: &Bodies,
     ) -> Vec<f64> {
-        let (patch, bands) = (self.patches[element], self.irradiance.lanes());
+        let (patch, bands) = (self.patches[element], self.irradiance.rhs_count());
         let size = self.elements[element];
         let whole = size.exposed >= size.area;
         let mut rows: Vec<Vec<f64>> = Vec::with_capacity(places.len());
@@ -204,7 +214,8 @@ impl Constants<'_> {
         let seen = |row: &Vec<f64>| self.seen(row);
         let seen: Vec<Vec<f64>> = rows.iter().map(seen).collect();
         let count = rows.len() as f64;
-        // The variance of a linear function over an element is that over a k × k grid times k²/(k² − 1), of two ends of a diagonal as of all four cells.
+        // The variance of a linear function over an element is that over a k × k grid times k²/(k²
+        // − 1), of two ends of a diagonal as of all four cells.
         let cells = (places.len() as f64).max(4.0);
         let weight = size.exposed / count * cells / (cells - 1.0);
         for band in 0..bands {
@@ -221,14 +232,15 @@ impl Constants<'_> {
 
     /// E of every band at a point with these form factors.
     fn seen(&self, row: &[f64]) -> Vec<f64> {
-        let mut seen = vec![0.0; self.irradiance.lanes()];
+        let mut seen = vec![0.0; self.irradiance.rhs_count()];
         for (factor, light) in row.iter().zip(self.radiosity.rows()).filter(|(factor, _)| **factor > 0.0) {
             seen.iter_mut().zip(light).for_each(|(seen, light)| *seen += factor * light);
         }
         seen
     }
 
-    /// All elements and the side of their grids, or else some elements, for which the side is 1: two ends of a diagonal.
+    /// All elements and the side of their grids, or else some elements, for which the side is 1:
+    /// two ends of a diagonal.
     fn choose(&self, points: usize) -> (Vec<Chosen>, usize) {
         let n = self.patches.len();
         let side = ((points as f64 / n as f64).sqrt() as usize).min(SIDE);
@@ -257,9 +269,10 @@ impl Constants<'_> {
         chosen
     }
 
-    /// Reflected power of the elements, in the band where it is the largest share of the whole; no less than that of an element in some light.
+    /// Reflected power of the elements, in the band where it is the largest share of the whole; no
+    /// less than that of an element in some light.
     fn weights(&self) -> Vec<f64> {
-        let (n, bands) = (self.patches.len(), self.irradiance.lanes());
+        let (n, bands) = (self.patches.len(), self.irradiance.rhs_count());
         let mut weights = vec![0.0; n];
         let area: f64 = self.elements.iter().map(|size| size.area).sum();
         for band in 0..bands {
@@ -307,12 +320,14 @@ fn at_once(bands: usize) -> usize {
     (CHUNK * BANDS / bands.max(1)).clamp(some.min(CHUNK), CHUNK)
 }
 
-/// The point of a patch for two numbers in [0, 1], as many on equal areas; of a quad that is no parallelogram nearly so.
+/// The point of a patch for two numbers in [0, 1], as many on equal areas; of a quad that is no
+/// parallelogram nearly so.
 fn even_point(patch: &Patch, [u, v]: [f64; 2]) -> Vec3 {
     if patch.sides() == 4 {
         return patch.point(u, v);
     }
-    // √u is the share of the way from the first corner to the side opposite (G. Turk, Graphics Gems, 1990).
+    // √u is the share of the way from the first corner to the side opposite (G. Turk, Graphics
+    // Gems, 1990).
     let way = u.sqrt();
     patch.point(way * (1.0 - v), way * v)
 }
@@ -372,9 +387,9 @@ mod tests {
             for _ in 0..400 {
                 b = irradiance(&b).iter().zip(&m).map(|(e, m)| m + rho * e).collect();
             }
-            let lane = |values| MultiVector::from_vec(count, 1, values).unwrap();
-            let irradiance = lane(irradiance(&b));
-            Self { sizes, reflectance: lane(vec![rho; count]), radiosity: lane(b), irradiance, mesh }
+            let rhs = |values| MultiVector::from_vec(count, 1, values).unwrap();
+            let irradiance = rhs(irradiance(&b));
+            Self { sizes, reflectance: rhs(vec![rho; count]), radiosity: rhs(b), irradiance, mesh }
         }
 
         fn residual(&self) -> Residual {

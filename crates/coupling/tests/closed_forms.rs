@@ -55,7 +55,8 @@ fn blocked_squares() -> [Patch; 4] {
     [a, b, block, block.flipped()]
 }
 
-/// Unit squares at distance 1 with a centred square of side ½ halfway: by superposition of rectangles.
+/// Unit squares at distance 1 with a centred square of side ½ halfway: by superposition of
+/// rectangles.
 #[test]
 fn a_centred_block_takes_half_away() {
     let exact = 0.099_506_294_598_985;
@@ -71,8 +72,9 @@ fn a_centred_block_takes_half_away() {
     }
 }
 
-/// Element to a coaxial disc R = 1 at H = 1 behind a coaxial disc of radius ¼ halfway: sin² of the outer cone less sin² of the inner
-/// one, ½ − 1/5. The discs are polygons of the same area with 128 sides.
+/// Element to a coaxial disc R = 1 at H = 1 behind a coaxial disc of radius ¼ halfway: sin² of the
+/// outer cone less sin² of the inner one, ½ − 1/5. The discs are polygons of the same area with 128
+/// sides.
 #[test]
 fn an_element_behind_a_disc_sees_a_ring() {
     let half = 1e-3;

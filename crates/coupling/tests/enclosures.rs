@@ -116,7 +116,8 @@ fn the_watch_stops_the_assembly() {
     assert!(matches!(stopped, Err(fredholm_coupling::CouplingError::Interrupted { .. })));
 }
 
-/// Elements of which no Gauss point sees another, though a corner does: the rows must still close within what is stated.
+/// Elements of which no Gauss point sees another, though a corner does: the rows must still close
+/// within what is stated.
 #[test]
 fn a_glimpse_past_a_block_is_not_lost() {
     let mut builder = MeshBuilder::default();
@@ -134,7 +135,8 @@ fn a_glimpse_past_a_block_is_not_lost() {
     }
 }
 
-/// Groups of patches decide together what stands between their members; the pairs must come out as if each was asked alone.
+/// Groups of patches decide together what stands between their members; the pairs must come out as
+/// if each was asked alone.
 #[test]
 fn the_assembly_has_the_exchanges_of_the_pairs() {
     let mut builder = MeshBuilder::default();

@@ -1,4 +1,5 @@
-//! Size, place and numbering of a scene change no factor: every F_ij of a furnished cube before and after, relative to the largest.
+//! Size, place and numbering of a scene change no factor: every F_ij of a furnished cube before and
+//! after, relative to the largest.
 
 // A test that cannot run should panic, in its helpers too.
 #![allow(clippy::unwrap_used)]
@@ -13,7 +14,8 @@ use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::Occluders;
 use std::f64::consts::{PI, TAU};
 
-/// An n × n grid on each side of a parallelepiped, seen from inside or outside. Corners that meet have the same bits.
+/// An n × n grid on each side of a parallelepiped, seen from inside or outside. Corners that meet
+/// have the same bits.
 fn sides(corner: Vec3, edges: [Vec3; 3], n: usize, inward: bool) -> Vec<Patch> {
     let at = |k: [usize; 3]| {
         let [a, b, c] = k.map(|k| k as f64 / n as f64);
@@ -52,7 +54,8 @@ fn with_a_tilted_box_and_a_ball() -> Vec<Patch> {
     patches
 }
 
-/// A ball of 8 × 4 faces, counter-clockwise from outside: triangles round the poles, trapezia between.
+/// A ball of 8 × 4 faces, counter-clockwise from outside: triangles round the poles, trapezia
+/// between.
 fn ball(centre: Vec3, radius: f64) -> Vec<Patch> {
     let (around, down) = (6, 3);
     let at = |i: usize, j: usize| {
@@ -85,7 +88,8 @@ fn exchanges(patches: &[Patch], tolerance: f64) -> PackedSymmetric<f64> {
     assemble(&integrator, &Quiet).unwrap().matrix
 }
 
-/// The k-th place of a fixed random order, by the linear congruential generator of Numerical Recipes.
+/// The k-th place of a fixed random order, by the linear congruential generator of Numerical
+/// Recipes.
 fn shuffled(n: usize) -> Vec<usize> {
     let mut state = 7u32;
     let mut order: Vec<usize> = (0..n).collect();
@@ -110,7 +114,8 @@ struct Change {
     places: Vec<usize>,
 }
 
-/// Largest change of a factor over the largest factor, and over the factor itself as far as that is at least a millionth of the largest.
+/// Largest change of a factor over the largest factor, and over the factor itself as far as that is
+/// at least a millionth of the largest.
 #[derive(Clone, Copy, Debug)]
 struct Effect {
     of_largest: f64,
@@ -123,7 +128,8 @@ impl Scene {
         Self { patches, matrix, tolerance }
     }
 
-    /// The factors of all pairs before and after a change, as shares of what leaves the smaller patch.
+    /// The factors of all pairs before and after a change, as shares of what leaves the smaller
+    /// patch.
     fn factors(&self, change: &Change) -> Vec<[f64; 2]> {
         let moved = moved(&self.patches, change.scale, change.shift);
         let other: Vec<Patch> = change.places.iter().map(|&k| moved[k]).collect();

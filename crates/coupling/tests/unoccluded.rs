@@ -1,4 +1,5 @@
-//! Many exchanges at once: against closed forms, the contour integral pair by pair, and the closure of a cube.
+//! Many exchanges at once: against closed forms, the contour integral pair by pair, and the closure
+//! of a cube.
 
 // A test that cannot run should panic, in its helpers too.
 #![allow(clippy::unwrap_used)]

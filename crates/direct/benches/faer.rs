@@ -1,7 +1,9 @@
-//! LU and Cholesky through the solvers beside calling faer on the same matrix, taken in turns so that other load hits all alike.
+//! LU and Cholesky through the solvers beside calling faer on the same matrix, taken in turns so
+//! that other load hits all alike.
 //!
-//! `cargo bench -p fredholm-direct`. Shown are the best of the rounds in seconds, and what the solver takes relative to faer. The solver also
-//! turns the operator into a matrix, applies it twice and checks the pivots.
+//! `cargo bench -p fredholm-direct`. Shown are the best of the rounds in seconds, and what the
+//! solver takes relative to faer. The solver also turns the operator into a matrix, applies it
+//! twice and checks the pivots.
 
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};

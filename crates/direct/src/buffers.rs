@@ -18,7 +18,8 @@ pub(crate) fn touched(dim: usize, entry: usize) -> u64 {
     (dim as u64).saturating_mul(DEPTH * entry as u64)
 }
 
-/// Bytes of addresses that every thread sets aside for products of dense matrices, and hardly touches.
+/// Bytes of addresses that every thread sets aside for products of dense matrices, and hardly
+/// touches.
 #[must_use]
 pub fn thread_addresses() -> u64 {
     2 * last_cache(Path::new("/sys/devices/system/cpu"))

@@ -1,13 +1,16 @@
 //! Dense Cholesky on the symmetric form: Θ = I − D^½ K D^½ = L Lᴴ, z = L⁻ᴴ L⁻¹ D^(−½) b, x = D^½ z.
 //!
-//! Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., Johns Hopkins University Press 2013, § 4.2. Ψ = D^(−½) Θ D^(−½)
-//! has the same factor up to the scaling of its rows; Θ has no entries of different size.
+//! Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., Johns Hopkins University
+//! Press 2013, § 4.2. Ψ = D^(−½) Θ D^(−½) has the same factor up to the scaling of its rows; Θ has
+//! no entries of different size.
 //!
-//! Requires a coupling that is known to be symmetric (Hermitian, for complex unknowns), D real and ≥ 0, and Θ positive definite, which
-//! light has with ρ < 1. Unknowns with d_i = 0, black patches, are b_i, and their light moves to the right-hand side.
+//! Requires a coupling that is known to be symmetric (Hermitian, for complex unknowns), D real and
+//! ≥ 0, and Θ positive definite, which light has with ρ < 1. Unknowns with d_i = 0, black patches,
+//! are b_i, and their light moves to the right-hand side.
 //!
-//! Cost: one factorisation (n³/3 real operations, 4n³/3 for complex entries) for each different matrix, half of LU. Memory: n² entries.
-//! In the history, iteration k has k matrices factorised; the observer can stop the solver before each, not within one.
+//! Cost: one factorisation (n³/3 real operations, 4n³/3 for complex entries) for each different
+//! matrix, half of LU. Memory: n² entries. In the history, iteration k has k matrices factorised;
+//! the observer can stop the solver before each, not within one.
 //!
 //! ```
 //! use fredholm_direct::Cholesky;
@@ -41,7 +44,7 @@ const NAME: &str = "cholesky";
 /// Rows that are turned into columns at a time: their entries of a column lie together in memory.
 const ROWS: usize = 16;
 
-/// Factorises the symmetric form, once for all lanes that share it.
+/// Factorises the symmetric form, once for all right-hand sides that share it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Cholesky;
 
@@ -54,10 +57,11 @@ impl<T: Scalar + ComplexField> Solver<T> for Cholesky {
         "Dense Cholesky of the symmetrised system: exact to rounding, half the time of lu, n² memory"
     }
 
-    // The matrix, the right-hand sides with the product and the light of black unknowns, and a diagonal.
-    fn bytes(&self, dim: usize, lanes: usize) -> u64 {
+    // The matrix, the right-hand sides with the product and the light of black unknowns, and a
+    // diagonal.
+    fn bytes(&self, dim: usize, rhs_count: usize) -> u64 {
         let (n, entry) = (dim as u64, size_of::<T>() as u64);
-        let vectors = (lanes as u64).saturating_mul(4).saturating_add(2);
+        let vectors = (rhs_count as u64).saturating_mul(4).saturating_add(2);
         let matrix = n.saturating_add(vectors).saturating_mul(n).saturating_mul(entry);
         matrix.saturating_add(buffers::touched(dim, size_of::<T>()))
     }
@@ -75,40 +79,40 @@ impl<T: Scalar + ComplexField> Solver<T> for Cholesky {
         observer: &mut dyn Observer<T>,
     ) -> Result<Report, SolveError> {
         a.check_self_adjoint(NAME)?;
-        in_groups(a, b, x, stop, observer, solve_lanes)
+        in_groups(a, b, x, stop, observer, solve_all)
     }
 }
 
-fn solve_lanes<T: Scalar + ComplexField>(run: &mut Run<'_, '_, T>, lanes: &[usize]) -> Result<(), Ended> {
-    let (n, lane) = (run.a.dim(), lanes[0]);
-    let roots: Vec<f64> = (0..n).map(|i| run.a.factor().row(i)[lane].re().sqrt()).collect();
-    let mut matrix = theta(run.a, lane, &roots)?;
+fn solve_all<T: Scalar + ComplexField>(run: &mut Run<'_, '_, T>, group: &[usize]) -> Result<(), Ended> {
+    let (n, rhs) = (run.a.dim(), group[0]);
+    let roots: Vec<f64> = (0..n).map(|i| run.a.factor().row(i)[rhs].re().sqrt()).collect();
+    let mut matrix = theta(run.a, rhs, &roots)?;
     run.work.row_visits += n as u64;
     run.work.entries_touched += run.a.entries();
-    factorise(&mut matrix, n)?.ok_or(SolveError::Indefinite { solver: NAME, lane })?;
-    let mut solutions = columns(&right_side(run), lanes);
+    factorise(&mut matrix, n)?.ok_or(SolveError::Indefinite { solver: NAME, rhs })?;
+    let mut solutions = columns(&right_side(run), group);
     for solution in solutions.chunks_exact_mut(n) {
         let inverse = |root: f64| if root > 0.0 { root.recip() } else { 1.0 };
         solution.iter_mut().zip(&roots).for_each(|(value, &root)| *value = value.scale(inverse(root)));
     }
     substitute(&matrix, n, &mut solutions)?;
-    for (&lane, solution) in lanes.iter().zip(solutions.chunks_exact_mut(n)) {
+    for (&rhs, solution) in group.iter().zip(solutions.chunks_exact_mut(n)) {
         let factor = |root: f64| if root > 0.0 { root } else { 1.0 };
         solution.iter_mut().zip(&roots).for_each(|(value, &root)| *value = value.scale(factor(root)));
-        run.x.set_lane(lane, solution);
+        run.x.set_vector(rhs, solution);
     }
     Ok(())
 }
 
 /// The lower triangle of Θ, column by column.
-fn theta<T: Scalar>(a: &SecondKind<'_, T>, lane: usize, roots: &[f64]) -> Result<Vec<T>, SolveError> {
+fn theta<T: Scalar>(a: &SecondKind<'_, T>, rhs: usize, roots: &[f64]) -> Result<Vec<T>, SolveError> {
     let n = a.dim();
     let mut matrix = Dense::zeros(n)?.into_vec();
     let mut rows = vec![T::zero(); n * ROWS];
     for first in (0..n).step_by(ROWS) {
         let last = (first + ROWS).min(n);
         for i in first..last {
-            a.coupling().lower_row(i, lane, &mut rows[(i - first) * n..][..=i]);
+            a.coupling().lower_row(i, rhs, &mut rows[(i - first) * n..][..=i]);
         }
         for (j, column) in matrix.chunks_exact_mut(n.max(1)).enumerate().take(last) {
             for i in first.max(j)..last {
@@ -128,7 +132,7 @@ fn right_side<T: Scalar>(run: &mut Run<'_, '_, T>) -> MultiVector<T> {
         return right;
     }
     let black = |i: usize, l: usize| if factor.row(i)[l] == T::zero() { run.b.row(i)[l] } else { T::zero() };
-    let known = MultiVector::from_fn(run.b.dim(), run.b.lanes(), black);
+    let known = MultiVector::from_fn(run.b.dim(), run.b.rhs_count(), black);
     run.a.apply(&known, &mut run.product);
     run.work.operator_applications += 1;
     run.work.entries_touched += run.a.entries();

@@ -1,13 +1,16 @@
 //! Dense LU: A = L U by Gaussian elimination with partial pivoting, then x = U⁻¹ L⁻¹ b.
 //!
-//! Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., Johns Hopkins University Press 2013, § 3.4.
+//! Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., Johns Hopkins University
+//! Press 2013, § 3.4.
 //!
-//! Requires a matrix that is not singular to working precision: the smallest pivot must exceed n ε times the largest.
+//! Requires a matrix that is not singular to working precision: the smallest pivot must exceed n ε
+//! times the largest.
 //!
-//! Cost: one factorisation (2n³/3 real operations, 8n³/3 for complex entries) for each different matrix, so one for
-//! all the lanes that have the same. Memory: n² entries. The starting guess does not matter, except that nothing is
-//! done if it meets the tolerance. In the history, iteration k has k matrices factorised; the observer can stop the
-//! solver before each, not within one.
+//! Cost: one factorisation (2n³/3 real operations, 8n³/3 for complex entries) for each different
+//! matrix, so one for all the right-hand sides that have the same. Memory: n² entries. The starting
+//! guess does not matter, except that nothing is done if it meets the tolerance. In the history,
+//! iteration k has k matrices factorised; the observer can stop the solver before each, not within
+//! one.
 //!
 //! ```
 //! use fredholm_direct::DenseLu;
@@ -33,7 +36,7 @@ use fredholm_linop::{
     LinearOperator, MultiVector, Observer, Report, Scalar, SecondKind, SolveError, Solver, Stop,
 };
 
-/// Factorises the matrix, once for all lanes that share it.
+/// Factorises the matrix, once for all right-hand sides that share it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DenseLu;
 
@@ -46,11 +49,11 @@ impl<T: Scalar + ComplexField> Solver<T> for DenseLu {
         "Dense LU with partial pivoting: exact to rounding, n² memory and n³ time; for up to some thousand unknowns"
     }
 
-    // The matrix with the scratch of its factorisation, the right-hand sides with their scratch and the product, and
-    // three permutations.
-    fn bytes(&self, dim: usize, lanes: usize) -> u64 {
+    // The matrix with the scratch of its factorisation, the right-hand sides with their scratch and
+    // the product, and three permutations.
+    fn bytes(&self, dim: usize, rhs_count: usize) -> u64 {
         let (n, entry, index) = (dim as u64, size_of::<T>() as u64, size_of::<usize>() as u64);
-        let vectors = (lanes as u64).saturating_mul(3 * entry).saturating_add(3 * index);
+        let vectors = (rhs_count as u64).saturating_mul(3 * entry).saturating_add(3 * index);
         n.saturating_mul(entry)
             .saturating_add(vectors)
             .saturating_mul(n)
@@ -70,22 +73,22 @@ impl<T: Scalar + ComplexField> Solver<T> for DenseLu {
         stop: &Stop,
         observer: &mut dyn Observer<T>,
     ) -> Result<Report, SolveError> {
-        in_groups(a, b, x, stop, observer, solve_lanes)
+        in_groups(a, b, x, stop, observer, solve_all)
     }
 }
 
-fn solve_lanes<T: Scalar + ComplexField>(run: &mut Run<'_, '_, T>, lanes: &[usize]) -> Result<(), Ended> {
-    let matrix = run.a.dense(lanes[0])?;
+fn solve_all<T: Scalar + ComplexField>(run: &mut Run<'_, '_, T>, group: &[usize]) -> Result<(), Ended> {
+    let matrix = run.a.dense(group[0])?;
     run.work.row_visits += run.a.dim() as u64;
     run.work.entries_touched += run.a.entries();
     let factorisation = Factorisation::new(matrix.dim(), matrix.into_vec())?;
     if factorisation.is_singular(f64::EPSILON, Scalar::abs) {
-        return Err(SolveError::Singular { lane: lanes[0] }.into());
+        return Err(SolveError::Singular { rhs: group[0] }.into());
     }
-    let mut solutions = columns(run.b, lanes);
+    let mut solutions = columns(run.b, group);
     factorisation.solve(&mut solutions)?;
-    for (&lane, solution) in lanes.iter().zip(solutions.chunks_exact(run.a.dim())) {
-        run.x.set_lane(lane, solution);
+    for (&rhs, solution) in group.iter().zip(solutions.chunks_exact(run.a.dim())) {
+        run.x.set_vector(rhs, solution);
     }
     Ok(())
 }

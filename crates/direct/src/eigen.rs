@@ -1,7 +1,8 @@
 //! Eigenvalues and singular values of dense real matrices, by faer.
 //!
-//! Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., Johns Hopkins University Press 2013, chapters 7 and 8. Cost: about
-//! 10n³ operations for eigenvalues of a general matrix, 4n³/3 for a symmetric one, 8n³/3 for singular values. Memory: n² entries more.
+//! Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., Johns Hopkins University
+//! Press 2013, chapters 7 and 8. Cost: about 10n³ operations for eigenvalues of a general matrix,
+//! 4n³/3 for a symmetric one, 8n³/3 for singular values. Memory: n² entries more.
 
 use crate::factorisation::{par, scratch};
 use crate::spectrum::SpectrumError;

@@ -1,7 +1,9 @@
-//! P Aᵀ = L U with partial pivoting, by faer; Aᵀ because that is what a matrix stored row by row is column by column.
+//! P Aᵀ = L U with partial pivoting, by faer; Aᵀ because that is what a matrix stored row by row is
+//! column by column.
 //!
-//! Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., Johns Hopkins University Press 2013, § 3.4.
-//! Cost: 2n³/3 real or 8n³/3 complex operations, and 2n² or 8n² for each right-hand side.
+//! Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., Johns Hopkins University
+//! Press 2013, § 3.4. Cost: 2n³/3 real or 8n³/3 complex operations, and 2n² or 8n² for each
+//! right-hand side.
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::lu::partial_pivoting::{factor, solve};
@@ -10,7 +12,8 @@ use faer::traits::ComplexField;
 use faer::{MatMut, MatRef, Par, Spec};
 use fredholm_linop::LinopError;
 
-/// The parts that faer cuts its work into. The bits of the result depend on this number, not on that of the threads.
+/// The parts that faer cuts its work into. The bits of the result depend on this number, not on
+/// that of the threads.
 const PARTS: usize = 8;
 
 /// The factors of one matrix, in the memory that held it.
@@ -40,7 +43,8 @@ impl<T: ComplexField + Copy> Factorisation<T> {
         Ok(Self { dim, factors, order, inverse_order })
     }
 
-    /// Whether the smallest pivot is lost in the rounding of the largest, or is no number. `epsilon` is the rounding of T.
+    /// Whether the smallest pivot is lost in the rounding of the largest, or is no number.
+    /// `epsilon` is the rounding of T.
     pub fn is_singular(&self, epsilon: f64, size: impl Fn(T) -> f64) -> bool {
         let pivots = || (0..self.dim).map(|i| size(self.factors[i * self.dim + i]));
         let largest = pivots().fold(0.0, f64::max);
@@ -71,7 +75,8 @@ impl<T: ComplexField + Copy> Factorisation<T> {
     }
 }
 
-/// Bytes of scratch that a factorisation takes besides the matrix; any number for those beyond all memory.
+/// Bytes of scratch that a factorisation takes besides the matrix; any number for those beyond all
+/// memory.
 pub(crate) fn scratch_bytes<T: ComplexField>(dim: usize) -> u64 {
     if dim > u32::MAX as usize {
         return u64::MAX;

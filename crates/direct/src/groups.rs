@@ -1,4 +1,4 @@
-//! One factorisation after the other, each for all the lanes that share a matrix.
+//! One factorisation after the other, each for all the right-hand sides that share a matrix.
 
 use fredholm_linop::{
     LinearOperator, Monitor, MultiVector, Observer, Report, Scalar, SecondKind, SolveError, Stop, StopReason,
@@ -6,7 +6,7 @@ use fredholm_linop::{
 };
 use std::ops::ControlFlow;
 
-/// A solution in the making: what solves the lanes of one matrix works on this.
+/// A solution in the making: what solves the right-hand sides of one matrix works on this.
 pub(crate) struct Run<'r, 'a, T> {
     pub a: &'r SecondKind<'r, T>,
     pub b: &'r MultiVector<T>,
@@ -41,7 +41,8 @@ impl<T: Scalar> Run<'_, '_, T> {
     }
 }
 
-/// Solves the lanes of one matrix after those of the other, by `solve`. The matrix of all lanes of a group is that of its first.
+/// Solves the right-hand sides of one matrix after those of the other, by `solve`. The matrix of
+/// all right-hand sides of a group is that of its first.
 pub(crate) fn in_groups<T: Scalar>(
     a: &SecondKind<'_, T>,
     b: &MultiVector<T>,
@@ -52,12 +53,12 @@ pub(crate) fn in_groups<T: Scalar>(
 ) -> Result<Report, SolveError> {
     let stop = Stop { max_iterations: usize::MAX, ..*stop };
     let monitor = Monitor::start(a, b, x, &stop, observer)?;
-    let product = MultiVector::zeros(x.dim(), x.lanes());
-    let groups = lanes_by_matrix(a, monitor.norms());
+    let product = MultiVector::zeros(x.dim(), x.rhs_count());
+    let groups = rhs_by_matrix(a, monitor.norms());
     let mut run = Run { a, b, x, product, work: Work::default(), monitor };
     let mut flow = run.record();
-    for lanes in groups {
-        flow = flow.and_then(|()| solve(&mut run, &lanes)).and_then(|()| run.record());
+    for group in groups {
+        flow = flow.and_then(|()| solve(&mut run, &group)).and_then(|()| run.record());
     }
     match flow {
         Ok(()) => Ok(run.monitor.finish(StopReason::IterationLimit, run.work)),
@@ -66,19 +67,19 @@ pub(crate) fn in_groups<T: Scalar>(
     }
 }
 
-/// The lanes that have something to solve, grouped by their matrix.
-fn lanes_by_matrix<T: Scalar>(a: &SecondKind<'_, T>, norms: &[f64]) -> Vec<Vec<usize>> {
+/// The right-hand sides that have something to solve, grouped by their matrix.
+fn rhs_by_matrix<T: Scalar>(a: &SecondKind<'_, T>, norms: &[f64]) -> Vec<Vec<usize>> {
     let mut groups: Vec<Vec<usize>> = Vec::new();
-    for lane in (0..norms.len()).filter(|&lane| norms[lane] > 0.0) {
-        match groups.iter_mut().find(|group| a.same_matrix(group[0], lane)) {
-            Some(group) => group.push(lane),
-            None => groups.push(vec![lane]),
+    for rhs in (0..norms.len()).filter(|&rhs| norms[rhs] > 0.0) {
+        match groups.iter_mut().find(|group| a.same_matrix(group[0], rhs)) {
+            Some(group) => group.push(rhs),
+            None => groups.push(vec![rhs]),
         }
     }
     groups
 }
 
-/// Lanes of a vector, one after the other.
-pub(crate) fn columns<T: Scalar>(v: &MultiVector<T>, lanes: &[usize]) -> Vec<T> {
-    lanes.iter().flat_map(|&lane| v.lane(lane)).collect()
+/// Right-hand sides of a vector, one after the other.
+pub(crate) fn columns<T: Scalar>(v: &MultiVector<T>, group: &[usize]) -> Vec<T> {
+    group.iter().flat_map(|&rhs| v.vector(rhs)).collect()
 }

@@ -1,7 +1,8 @@
 //! Direct solvers of (I − D K) x = b, and its spectrum.
 //!
-//! A solver is one file here and one entry in the registry, see [`entries`]. All report the same residual ‖b − A x‖₂/‖b‖₂ per lane as the
-//! iterative ones, see [`fredholm_linop::Monitor`].
+//! A solver is one file here and one entry in the registry, see [`entries`]. All report the same
+//! residual ‖b − A x‖₂/‖b‖₂ per right-hand side as the iterative ones, see
+//! [`fredholm_linop::Monitor`].
 
 mod buffers;
 mod cholesky;

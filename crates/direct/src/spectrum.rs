@@ -1,12 +1,15 @@
-//! What decides how iterative schemes fare on A = I − D K: spectra, conditions, and the properties that the theory asks for.
+//! What decides how iterative schemes fare on A = I − D K: spectra, conditions, and the properties
+//! that the theory asks for.
 //!
-//! With Φ = A, C = diag(A), A = C + L + U and H = D⁻¹: J = I − C⁻¹ A is Jacobi's iteration matrix, L₁ = −(C + L)⁻¹ U that of
-//! Gauss–Seidel, Ψ = H Φ and Θ = H^½ Φ H^(−½) are symmetric for light. Source: M. Leblond, Numerical Linear Algebra with Applications 9,
-//! 2002; A. Berman, R. J. Plemmons, Nonnegative Matrices in the Mathematical Sciences, SIAM 1994, chapter 6,
-//! DOI 10.1137/1.9781611971262.
+//! With Φ = A, C = diag(A), A = C + L + U and H = D⁻¹: J = I − C⁻¹ A is Jacobi's iteration matrix,
+//! L₁ = −(C + L)⁻¹ U that of Gauss–Seidel, Ψ = H Φ and Θ = H^½ Φ H^(−½) are symmetric for light.
+//! Source: M. Leblond, Numerical Linear Algebra with Applications 9, 2002; A. Berman, R. J.
+//! Plemmons, Nonnegative Matrices in the Mathematical Sciences, SIAM 1994, chapter 6, DOI
+//! 10.1137/1.9781611971262.
 //!
-//! Φ is an M-matrix if no entry beside the diagonal is positive and the inverse has no negative one; a symmetric M-matrix is a Stieltjes
-//! matrix. Ψ is that of the unknowns with d_i > 0; black ones have no row in it.
+//! Φ is an M-matrix if no entry beside the diagonal is positive and the inverse has no negative
+//! one; a symmetric M-matrix is a Stieltjes matrix. Ψ is that of the unknowns with d_i > 0; black
+//! ones have no row in it.
 //!
 //! ```
 //! use fredholm_direct::spectrum;
@@ -30,7 +33,7 @@ use thiserror::Error;
 /// Rounding of an entry of the inverse, relative to the largest.
 const ROUNDING: f64 = 1e-12;
 
-/// Spectra, conditions and properties of the system of one lane.
+/// Spectra, conditions and properties of the system of one right-hand side.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
     /// Eigenvalues of D K (R F for light), by falling modulus.
@@ -51,7 +54,8 @@ pub struct Spectrum {
     pub m_matrix: bool,
     /// Whether every unknown acts on every other, maybe over others.
     pub irreducible: bool,
-    /// The field of values {xᴴ Φ x : ‖x‖ = 1} fits these bounds: real from, real to, and imaginary on either side of 0.
+    /// The field of values {xᴴ Φ x : ‖x‖ = 1} fits these bounds: real from, real to, and imaginary
+    /// on either side of 0.
     pub field_of_values: [f64; 3],
 }
 
@@ -129,14 +133,15 @@ pub fn spectrum_bytes(dim: usize) -> u64 {
     Dense::<f64>::bytes(dim).saturating_mul(9)
 }
 
-/// Computes it all for one lane, by dense methods: n³ operations, some n² entries of memory.
+/// Computes it all for one right-hand side, by dense methods: n³ operations, some n² entries of
+/// memory.
 ///
 /// # Errors
 /// No memory, an eigenvalue method that does not end, or a diagonal entry of 0.
-pub fn spectrum(a: &SecondKind<'_, f64>, lane: usize) -> Result<Spectrum, SpectrumError> {
-    let phi = a.dense(lane)?;
-    let factors: Vec<f64> = (0..a.dim()).map(|i| a.factor().row(i)[lane]).collect();
-    let (psi, theta, symmetry_defect) = symmetric_forms(a, &factors, lane)?;
+pub fn spectrum(a: &SecondKind<'_, f64>, rhs: usize) -> Result<Spectrum, SpectrumError> {
+    let phi = a.dense(rhs)?;
+    let factors: Vec<f64> = (0..a.dim()).map(|i| a.factor().row(i)[rhs]).collect();
+    let (psi, theta, symmetry_defect) = symmetric_forms(a, &factors, rhs)?;
     let singular = singular_values(&phi)?;
     Ok(Spectrum {
         reflection: sorted(eigenvalues(&map(&phi, |i, j, entry| diagonal(i, j) - entry)?)?),
@@ -201,9 +206,9 @@ fn gauss_seidel(phi: &Dense<f64>) -> Result<Dense<f64>, LinopError> {
 fn symmetric_forms(
     a: &SecondKind<'_, f64>,
     factors: &[f64],
-    lane: usize,
+    rhs: usize,
 ) -> Result<(Vec<f64>, Vec<f64>, f64), SpectrumError> {
-    let coupling = a.coupling().dense(lane)?;
+    let coupling = a.coupling().dense(rhs)?;
     let defect = symmetry_defect(&coupling, factors);
     if factors.iter().any(|&d| d < 0.0) {
         return Ok((Vec::new(), Vec::new(), defect));
@@ -268,7 +273,8 @@ fn is_irreducible(phi: &Dense<f64>) -> bool {
     reaches_all(&|i, j| phi.get(i, j) != 0.0) && reaches_all(&|i, j| phi.get(j, i) != 0.0)
 }
 
-/// Eigenvalues of the symmetric part bound it along the real axis, those of the skew part along the imaginary one.
+/// Eigenvalues of the symmetric part bound it along the real axis, those of the skew part along the
+/// imaginary one.
 fn field_of_values(phi: &Dense<f64>) -> Result<[f64; 3], SpectrumError> {
     let symmetric = symmetric_eigenvalues(&map(phi, |i, j, entry| 0.5 * (entry + phi.get(j, i)))?)?;
     let skew = singular_values(&map(phi, |i, j, entry| 0.5 * (entry - phi.get(j, i)))?)?;

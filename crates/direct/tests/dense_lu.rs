@@ -1,4 +1,5 @@
-//! What is particular to dense LU: singular matrices, lanes that share one, memory, threads.
+//! What is particular to dense LU: singular matrices, right-hand sides that share one, memory,
+//! threads.
 
 #![allow(clippy::float_cmp, clippy::needless_range_loop, clippy::unwrap_used)]
 
@@ -24,12 +25,12 @@ fn solve<T: Scalar + ComplexField>(
     observer: &mut dyn Observer<T>,
 ) -> Result<(Report, MultiVector<T>), SolveError> {
     let a = SecondKind::new(coupling, factor)?;
-    let mut x = MultiVector::zeros(b.dim(), b.lanes());
+    let mut x = MultiVector::zeros(b.dim(), b.rhs_count());
     DenseLu.solve(&a, b, &mut x, &STOP, observer).map(|report| (report, x))
 }
 
-fn ones(dim: usize, lanes: usize) -> MultiVector<f64> {
-    MultiVector::from_fn(dim, lanes, |_, _| 1.0)
+fn ones(dim: usize, rhs_count: usize) -> MultiVector<f64> {
+    MultiVector::from_fn(dim, rhs_count, |_, _| 1.0)
 }
 
 #[test]
@@ -37,14 +38,14 @@ fn singular_matrices_are_refused() {
     // A = 0, and a closed scene that reflects everything: A = I − F with Σ_j F_ij = 1.
     let unit = Dense::new(2, vec![1.0, 0.0, 0.0, 1.0]).unwrap();
     let refusal = solve(&unit, ones(2, 1), &ones(2, 1), &mut Quiet).unwrap_err();
-    assert_eq!(refusal, SolveError::Singular { lane: 0 });
+    assert_eq!(refusal, SolveError::Singular { rhs: 0 });
     let n = 50;
     let mirror = |i: usize, j: usize| if i == j { 0.0 } else { 1.0 + scattered(i.max(j) * n + i.min(j)) };
     let sum = |i: usize| (0..n).map(|j| mirror(i, j)).sum::<f64>();
     let closed = Dense::new(n, (0..n * n).map(|at| mirror(at / n, at % n) / sum(at / n)).collect()).unwrap();
     let factor = MultiVector::from_fn(n, 2, |_, l| [0.99, 1.0][l]);
     let refusal = solve(&closed, factor, &ones(n, 2), &mut Quiet).unwrap_err();
-    assert_eq!(refusal, SolveError::Singular { lane: 1 });
+    assert_eq!(refusal, SolveError::Singular { rhs: 1 });
 }
 
 #[test]
@@ -57,7 +58,7 @@ fn pivots_are_exchanged_where_the_diagonal_is_zero() {
 }
 
 #[test]
-fn lanes_with_the_same_matrix_share_one_factorisation() {
+fn right_hand_sides_with_the_same_matrix_share_one_factorisation() {
     let n = 12;
     let coupling = Dense::new(n, (0..n * n).map(|at| scattered(at) / 12.0).collect()).unwrap();
     let b = MultiVector::from_fn(n, 4, |i, l| scattered(i * 4 + l));
@@ -84,8 +85,8 @@ fn an_observer_stops_it_before_the_next_factorisation() {
     };
     let (report, x) = solve(&coupling, factor, &ones(2, 2), &mut observer).unwrap();
     assert_eq!(report.reason, StopReason::Interrupted);
-    assert_eq!(x.lane(1), [0.0, 0.0]);
-    assert!(x.lane(0).iter().all(|value| (value - 2.0).abs() < 1e-15));
+    assert_eq!(x.vector(1), [0.0, 0.0]);
+    assert!(x.vector(0).iter().all(|value| (value - 2.0).abs() < 1e-15));
 }
 
 fn bits_on<T: Scalar + ComplexField>(threads: usize, n: usize, draw: fn(usize) -> T) -> Vec<[u64; 2]> {
@@ -130,7 +131,7 @@ fn a_matrix_beyond_all_memory_is_refused() {
 
 #[test]
 fn memory_is_predicted_without_overflow() {
-    let bytes = |n, lanes| Solver::<Complex64>::bytes(&DenseLu, n, lanes);
+    let bytes = |n, rhs_count| Solver::<Complex64>::bytes(&DenseLu, n, rhs_count);
     // Matrix, vectors, permutation, and what products pack: 512 rows of entries at a time.
     let known = 16_000_000 + 3 * 16_000 + 3 * 8_000 + 512 * 16_000;
     // The scratch of the factorisation is small beside the matrix.

@@ -1,11 +1,13 @@
-//! Spectra against closed forms, and the checks on matrices that have and have not what they look for.
+//! Spectra against closed forms, and the checks on matrices that have and have not what they look
+//! for.
 
 #![allow(clippy::unwrap_used)] // a test that cannot run should panic
 
 use fredholm_direct::{SpectrumError, spectrum};
 use fredholm_linop::{Dense, MultiVector, PackedSymmetric, SecondKind};
 
-/// An integrating sphere of n equal patches: F = 1/n everywhere, so that R F has the eigenvalue ρ once, else 0.
+/// An integrating sphere of n equal patches: F = 1/n everywhere, so that R F has the eigenvalue ρ
+/// once, else 0.
 fn sphere(n: usize, rho: f64) -> (PackedSymmetric<f64>, MultiVector<f64>) {
     let coupling = PackedSymmetric::new(n, vec![1.0 / n as f64; n * (n + 1) / 2]).unwrap();
     (coupling, MultiVector::from_fn(n, 1, |_, _| rho))
@@ -44,7 +46,8 @@ fn gauss_seidel_of_a_tridiagonal_matrix_squares_the_radius_of_jacobi() {
 
 #[test]
 fn what_is_missing_is_told() {
-    // K = [0 −1; 2 0]: a positive entry beside the diagonal of Φ, eigenvalues ±i√2 of K, not symmetric.
+    // K = [0 −1; 2 0]: a positive entry beside the diagonal of Φ, eigenvalues ±i√2 of K, not
+    // symmetric.
     let coupling = Dense::new(2, vec![0.0, -1.0, 2.0, 0.0]).unwrap();
     let a =
         |d: [f64; 2]| SecondKind::new(&coupling, MultiVector::from_vec(2, 1, d.to_vec()).unwrap()).unwrap();

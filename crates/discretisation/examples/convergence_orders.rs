@@ -31,7 +31,8 @@ fn meshes(problem: &Manufactured) -> [usize; 5] {
     }
 }
 
-/// Gauss points along the sides of an element: their error is far below that of the method. Lambert's kernel inside a tube needs the most.
+/// Gauss points along the sides of an element: their error is far below that of the method.
+/// Lambert's kernel inside a tube needs the most.
 fn points(problem: &Manufactured, method: &dyn Discretisation) -> usize {
     let number = method.name().chars().find_map(|c| c.to_digit(10)).unwrap_or(2) as usize;
     let degree = if method.name().starts_with("nystrom") { number - 1 } else { number };

@@ -1,8 +1,11 @@
-//! What H B_h says of a solution B_h: means over the elements, the error of the polynomials, and what is seen of the scene.
+//! What H B_h says of a solution B_h: means over the elements, the error of the polynomials, and
+//! what is seen of the scene.
 //!
-//! G. Peyré's article, section 3.1. The iterated irradiance H B_h, W/m², is not bound to the polynomials of the elements and converges faster where the field is smooth
-//! (I. H. Sloan, Math. Comp. 30 (1976) 758, doi:10.2307/2005395). It is integrated over every element at (k + 2)² Gauss points, k the degree. H 1, dimensionless, is
-//! what a point sees of all surfaces: 1 in a closed scene.
+//! G. Peyré's article, section 3.1. The iterated irradiance H B_h, W/m², is not bound to the
+//! polynomials of the elements and converges faster where the field is smooth (I. H. Sloan, Math.
+//! Comp. 30 (1976) 758, doi:10.2307/2005395). It is integrated over every element at (k + 2)² Gauss
+//! points, k the degree. H 1, dimensionless, is what a point sees of all surfaces: 1 in a closed
+//! scene.
 
 use crate::surface::Rules;
 use crate::transfer::irradiance_at;
@@ -34,14 +37,16 @@ pub struct Assessment {
 }
 
 impl Lit<'_> {
-    /// Compares the irradiance as a piecewise polynomial with H B_h, which is closer to the truth where the field is smooth, and shows what the
-    /// polynomials cannot follow where it is not. It costs about as much as the assembly.
+    /// Compares the irradiance as a piecewise polynomial with H B_h, which is closer to the truth
+    /// where the field is smooth, and shows what the polynomials cannot follow where it is not. It
+    /// costs about as much as the assembly.
     #[must_use]
     pub fn error(&self) -> FieldError {
         self.assess().error
     }
 
-    /// Integrates H B_h over all elements: what [`error`](Self::error) gives, and more for the same cost.
+    /// Integrates H B_h over all elements: what [`error`](Self::error) gives, and more for the same
+    /// cost.
     #[must_use]
     pub fn assess(&self) -> Assessment {
         let integrals = self.integrator();
@@ -49,7 +54,8 @@ impl Lit<'_> {
         self.assessment(&elements.into_par_iter().map(integrals).collect::<Vec<_>>())
     }
 
-    /// The same while `watch` says so, which is asked before each element from any thread; `None` where it did not.
+    /// The same while `watch` says so, which is asked before each element from any thread; `None`
+    /// where it did not.
     #[must_use]
     pub fn assess_while(&self, watch: &dyn Watch) -> Option<Assessment> {
         let integrals = self.integrator();
@@ -65,7 +71,7 @@ impl Lit<'_> {
     }
 
     fn assessment(&self, found: &[Integrals]) -> Assessment {
-        let bands = self.x.lanes();
+        let bands = self.x.rhs_count();
         let relative_l2 = (0..bands).map(|band| relative(found, band)).collect();
         let root = |i: usize, band: usize| (found[i].error[band] / found[i].area).sqrt();
         let per_element = MultiVector::from_fn(found.len(), bands, root);
@@ -78,7 +84,7 @@ impl Lit<'_> {
     }
 
     fn integrals(&self, coefficients: &MultiVector<f64>, rules: &Rules, i: usize) -> Integrals {
-        let (space, bands) = (self.system.space(), self.x.lanes());
+        let (space, bands) = (self.system.space(), self.x.rhs_count());
         let placed = space.surface().place(i, rules.of(space.surface().chart(i).sides()));
         let sites: Vec<Site> = placed.iter().map(|(site, _)| *site).collect();
         let iterated = self.iterated_with_one(&sites);
@@ -95,8 +101,8 @@ impl Lit<'_> {
 
     /// H B_h in all bands and H 1 at sites of one element, sites × (bands + 1).
     fn iterated_with_one(&self, sites: &[Site]) -> MultiVector<f64> {
-        let (equation, bands) = (self.system.equation(), self.x.lanes());
-        let field = |site: &Site, lane: usize| if lane < bands { self.radiosity_at(site, lane) } else { 1.0 };
+        let (equation, bands) = (self.system.equation(), self.x.rhs_count());
+        let field = |site: &Site, rhs: usize| if rhs < bands { self.radiosity_at(site, rhs) } else { 1.0 };
         irradiance_at(equation.transfer(), bands + 1, self.system.space().degree(), sites, &field)
     }
 }
@@ -108,7 +114,8 @@ fn relative(found: &[Integrals], band: usize) -> f64 {
     if square > 0.0 { (error / square).sqrt() } else { 0.0 }
 }
 
-/// Integrals over one element: 1, and per band H B_h, (H B_h)² and (E_h − H B_h)²; over the points that see anything 1 and H 1.
+/// Integrals over one element: 1, and per band H B_h, (H B_h)² and (E_h − H B_h)²; over the points
+/// that see anything 1 and H 1.
 struct Integrals {
     area: f64,
     value: Vec<f64>,

@@ -1,7 +1,9 @@
-//! Cholesky factorisation A = L Lᵀ of a small symmetric positive definite matrix, and solution of A x = b.
+//! Cholesky factorisation A = L Lᵀ of a small symmetric positive definite matrix, and solution of A
+//! x = b.
 //!
-//! G. H. Golub, C. F. Van Loan, *Matrix Computations*, 4th ed., Johns Hopkins University Press 2013, section 4.2. For mass matrices, whose
-//! blocks have a few to some hundred rows. One thread, so the bits never depend on their number.
+//! G. H. Golub, C. F. Van Loan, *Matrix Computations*, 4th ed., Johns Hopkins University Press
+//! 2013, section 4.2. For mass matrices, whose blocks have a few to some hundred rows. One thread,
+//! so the bits never depend on their number.
 
 /// The lower triangle L, row by row in full storage.
 #[derive(Clone, Debug)]
@@ -11,7 +13,8 @@ pub(crate) struct Cholesky {
 }
 
 impl Cholesky {
-    /// Factorises the matrix, of which the lower triangle is read; `None` where it is not positive definite to working precision.
+    /// Factorises the matrix, of which the lower triangle is read; `None` where it is not positive
+    /// definite to working precision.
     pub(crate) fn new(dim: usize, mut a: Vec<f64>) -> Option<Self> {
         for i in 0..dim {
             for j in 0..=i {
@@ -29,7 +32,8 @@ impl Cholesky {
         Some(Self { dim, lower: a })
     }
 
-    /// Solves A X = B for right-hand sides that are the columns of `b`, `width` of them, stored row by row.
+    /// Solves A X = B for right-hand sides that are the columns of `b`, `width` of them, stored row
+    /// by row.
     pub(crate) fn solve(&self, b: &mut [f64], width: usize) {
         for i in 0..self.dim {
             let (before, after) = b.split_at_mut(i * width);

@@ -1,9 +1,11 @@
 //! Convergence on meshes that are each twice as fine as the one before: E_l = E + C h_l^p + …
 //!
-//! With steps δ_l = E_l − E_(l−1) the observed order is p = log₂(‖δ_(l−1)‖/‖δ_l‖), the limit is Richardson's E ≈ E_l + δ_l/(2^p − 1), and what remains is
-//! ‖E − E_l‖ = ‖δ_l‖/(2^p − 1): L. F. Richardson, J. A. Gaunt, Phil. Trans. R. Soc. A 226 (1927) 299, doi:10.1098/rsta.1927.0008. The norm is
-//! ‖E‖ = √(Σ w E²) over values that exist on every mesh, such as means over faces with their areas as weights. A sequence whose steps do not fall, or do not
-//! point the same way, has no order. Everything stated is relative to the norm of the finest values.
+//! With steps δ_l = E_l − E_(l−1) the observed order is p = log₂(‖δ_(l−1)‖/‖δ_l‖), the limit is
+//! Richardson's E ≈ E_l + δ_l/(2^p − 1), and what remains is ‖E − E_l‖ = ‖δ_l‖/(2^p − 1): L. F.
+//! Richardson, J. A. Gaunt, Phil. Trans. R. Soc. A 226 (1927) 299, doi:10.1098/rsta.1927.0008. The
+//! norm is ‖E‖ = √(Σ w E²) over values that exist on every mesh, such as means over faces with
+//! their areas as weights. A sequence whose steps do not fall, or do not point the same way, has no
+//! order. Everything stated is relative to the norm of the finest values.
 
 use fredholm_quadrature::richardson;
 
@@ -22,7 +24,8 @@ pub enum Verdict {
         /// ‖E − E_L‖/‖E_L‖, by this order or the highest that lasts.
         remaining: f64,
     },
-    /// The last two steps are no larger than what the values are known to. One alone may be so by symmetry.
+    /// The last two steps are no larger than what the values are known to. One alone may be so by
+    /// symmetry.
     Settled,
     /// The last step is no larger than what the values are known to, the one before is.
     Lost,
@@ -47,8 +50,9 @@ pub struct Convergence {
     pub verdict: Verdict,
 }
 
-/// Follows values on successive meshes, meshes × values, with their weights. Steps up to `noise`, relative to the norm, are taken for rounding. An order above `highest`, the method's
-/// own on smooth fields, is stated but does not last: what remains follows from `highest` then.
+/// Follows values on successive meshes, meshes × values, with their weights. Steps up to `noise`,
+/// relative to the norm, are taken for rounding. An order above `highest`, the method's own on
+/// smooth fields, is stated but does not last: what remains follows from `highest` then.
 ///
 /// ```
 /// use fredholm_discretisation::{Verdict, convergence};

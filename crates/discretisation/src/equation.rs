@@ -1,11 +1,12 @@
 //! The equation x(p) = b(p) + ρ(p) ∫_S k(p, q) x(q) dA(q) that is discretised.
 //!
-//! G. Peyré's article, eq. 1.41 and 3.1. ρ is constant on every element and may differ from lane to lane (band); the transfer H is common to all lanes.
+//! G. Peyré's article, eq. 1.41 and 3.1. ρ is constant on every element and may differ from
+//! right-hand side to right-hand side (band); the transfer H is common to all right-hand sides.
 
 use crate::{DiscretisationError, Site, Transfer};
 use fredholm_linop::MultiVector;
 
-/// A source b(p) in a lane, W/m².
+/// A source b(p) in a right-hand side, W/m².
 pub type Source<'a> = dyn Fn(&Site, usize) -> f64 + Sync + 'a;
 
 /// H and ρ.
@@ -13,12 +14,12 @@ pub type Source<'a> = dyn Fn(&Site, usize) -> f64 + Sync + 'a;
 pub struct Equation<'a> {
     /// H.
     pub(crate) transfer: &'a dyn Transfer,
-    /// ρ, elements × lanes.
+    /// ρ, elements × right-hand sides.
     pub(crate) reflectance: &'a MultiVector<f64>,
 }
 
 impl<'a> Equation<'a> {
-    /// `reflectance` is ρ, elements × lanes.
+    /// `reflectance` is ρ, elements × right-hand sides.
     ///
     /// # Errors
     /// [`DiscretisationError::Dimension`] where it does not fit the surface.
@@ -39,15 +40,15 @@ impl<'a> Equation<'a> {
         self.transfer
     }
 
-    /// ρ, elements × lanes.
+    /// ρ, elements × right-hand sides.
     #[must_use]
     pub fn reflectance(&self) -> &'a MultiVector<f64> {
         self.reflectance
     }
 
-    /// Number of lanes.
+    /// Number of right-hand sides.
     #[must_use]
-    pub fn lanes(&self) -> usize {
-        self.reflectance.lanes()
+    pub fn rhs_count(&self) -> usize {
+        self.reflectance.rhs_count()
     }
 }

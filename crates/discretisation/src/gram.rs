@@ -1,12 +1,13 @@
 //! The Gram matrix G = EᵀE of the columns of E, one half of it computed and mirrored.
 //!
-//! G. H. Golub, C. F. Van Loan, *Matrix Computations*, 4th ed., Johns Hopkins University Press 2013, section 1.2.8; by faer. Cost: m n² operations for m
-//! rows of n numbers.
+//! G. H. Golub, C. F. Van Loan, *Matrix Computations*, 4th ed., Johns Hopkins University Press
+//! 2013, section 1.2.8; by faer. Cost: m n² operations for m rows of n numbers.
 
 use faer::linalg::matmul::triangular::{BlockStructure, matmul};
 use faer::{Accum, MatMut, MatRef, Par};
 
-/// The parts that faer cuts its work into. The bits of the result depend on this number, not on that of the threads.
+/// The parts that faer cuts its work into. The bits of the result depend on this number, not on
+/// that of the threads.
 const PARTS: usize = 8;
 
 /// Fills `product`, n × n, with EᵀE; `e` holds E row by row.

@@ -1,8 +1,9 @@
 //! The parameters (u, v) of a point on a flat patch: X(u, v) = x.
 //!
-//! Affine on triangles and parallelograms. On another quad X is bilinear, and Newton's method runs from the middle until it stands; convex quads
-//! have one solution in the unit square. C. T. Kelley, *Solving Nonlinear Equations with Newton's Method*, SIAM 2003, doi:10.1137/1.9780898718898.
-//! Dimensionless.
+//! Affine on triangles and parallelograms. On another quad X is bilinear, and Newton's method runs
+//! from the middle until it stands; convex quads have one solution in the unit square. C. T.
+//! Kelley, *Solving Nonlinear Equations with Newton's Method*, SIAM 2003,
+//! doi:10.1137/1.9780898718898. Dimensionless.
 
 use fredholm_mesh::{Patch, Vec3};
 
@@ -10,7 +11,8 @@ use fredholm_mesh::{Patch, Vec3};
 const STEPS: usize = 20;
 /// Step below which (u, v) stands.
 const SMALL: f64 = 1e-14;
-/// Distance of a corner from that of the parallelogram, relative to its diameter, that is taken for rounding.
+/// Distance of a corner from that of the parallelogram, relative to its diameter, that is taken for
+/// rounding.
 const SKEW: f64 = 1e-14;
 
 /// The inverse of one patch's parametrisation.

@@ -1,11 +1,14 @@
-//! Lagrange polynomials: φ_a of degree k with φ_a(x_b) = δ_ab. P_k on the triangle, Q_k (degree k in each direction) on the square.
+//! Lagrange polynomials: φ_a of degree k with φ_a(x_b) = δ_ab. P_k on the triangle, Q_k (degree k
+//! in each direction) on the square.
 //!
-//! G. Peyré's article on integral equations, section 3.2; P. G. Ciarlet, *The Finite Element Method for Elliptic Problems*, North-Holland 1978,
-//! section 2.2. Two sets of nodes:
+//! G. Peyré's article on integral equations, section 3.2; P. G. Ciarlet, *The Finite Element Method
+//! for Elliptic Problems*, North-Holland 1978, section 2.2. Two sets of nodes:
 //!
-//! - [`Nodes::Interior`]: the (k + 1)² Gauss points of the square; on the triangle the 1, 3 and 6 points of the symmetric rules of degree 1, 2 and 4. They are
-//!   the points of collocation and of Nyström's rule, and lie off the edges, where normals jump.
-//! - [`Nodes::Border`]: equally spaced from corner to corner, for continuity across edges. Of degree 1 and 2.
+//! - [`Nodes::Interior`]: the (k + 1)² Gauss points of the square; on the triangle the 1, 3 and 6
+//!   points of the symmetric rules of degree 1, 2 and 4. They are the points of collocation and of
+//!   Nyström's rule, and lie off the edges, where normals jump.
+//! - [`Nodes::Border`]: equally spaced from corner to corner, for continuity across edges. Of
+//!   degree 1 and 2.
 //!
 //! Dimensionless.
 
@@ -38,7 +41,8 @@ pub struct Lagrange {
 enum Form {
     /// Products of one-dimensional polynomials with these nodes.
     Product(Vec<f64>),
-    /// Σ_b c_ab ψ_b with ψ the basis of equally spaced nodes of this degree; no matrix where it is that basis.
+    /// Σ_b c_ab ψ_b with ψ the basis of equally spaced nodes of this degree; no matrix where it is
+    /// that basis.
     Triangle(usize, Option<Vec<f64>>),
 }
 

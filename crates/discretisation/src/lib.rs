@@ -1,11 +1,15 @@
-//! Discretisations of x = b + K x on the surfaces of a scene: x(p) = b(p) + ρ(p) ∫_S k(p, q) x(q) dA(q).
+//! Discretisations of x = b + K x on the surfaces of a scene: x(p) = b(p) + ρ(p) ∫_S k(p, q) x(q)
+//! dA(q).
 //!
-//! An [`Equation`] is a [`Transfer`] (the kernel on a [`Surface`] of [`Chart`]s, with the strategy that integrates it) and a reflectance. A [`Discretisation`] turns it into a
-//! [`System`]: a linear operator for the solvers, right-hand sides for any source and any number of lanes, and the evaluation of the
+//! An [`Equation`] is a [`Transfer`] (the kernel on a [`Surface`] of [`Chart`]s, with the strategy
+//! that integrates it) and a reflectance. A [`Discretisation`] turns it into a
+//! [`System`]: a linear operator for the solvers, right-hand sides for any number of sources, and the evaluation of the
 //! solution anywhere. [`discretisations`] lists them all.
 //!
-//! The theory is that of G. Peyré's article on integral equations, sections 1.2 to 1.4 and 3, and of K. E. Atkinson, *The Numerical Solution of Integral Equations of the
-//! Second Kind*, Cambridge University Press 1997, doi:10.1017/CBO9780511626340. Lengths in metres; for light x and b in W/m², k in 1/m².
+//! The theory is that of G. Peyré's article on integral equations, sections 1.2 to 1.4 and 3, and
+//! of K. E. Atkinson, *The Numerical Solution of Integral Equations of the Second Kind*, Cambridge
+//! University Press 1997, doi:10.1017/CBO9780511626340. Lengths in metres; for light x and b in
+//! W/m², k in 1/m².
 
 mod assessment;
 mod chart;

@@ -1,8 +1,12 @@
-//! Diffuse light on a mesh by any discretisation and any solver: B = M + ρ H B, from M and ρ constant on every element.
+//! Diffuse light on a mesh by any discretisation and any solver: B = M + ρ H B, from M and ρ
+//! constant on every element.
 //!
-//! G. Peyré's article, section 3.1. B radiosity, M exitance, E = H B irradiance, W/m², one lane a band. Results are means over whole elements, as those of
-//! [`Radiosity`](fredholm_coupling::Radiosity), and values at the nodes. With `galerkin-0` the system and the means are those of that type, the treatment of elements that
-//! are partly buried included. The other methods look at points: a buried point receives nothing and is seen by nobody.
+//! G. Peyré's article, section 3.1. B radiosity, M exitance, E = H B irradiance, W/m², one
+//! right-hand side a band. Results are means over whole elements, as those of
+//! [`Radiosity`](fredholm_coupling::Radiosity), and values at the nodes. With `galerkin-0` the
+//! system and the means are those of that type, the treatment of elements that are partly buried
+//! included. The other methods look at points: a buried point receives nothing and is seen by
+//! nobody.
 
 use crate::surface::Rules;
 use crate::transfer::irradiance_at;
@@ -20,8 +24,9 @@ pub struct Light<'a> {
 }
 
 impl<'a> Light<'a> {
-    /// Takes the leaves of a mesh, what may stand between them, and their reflectance and exitance (W/m²), elements × bands. `tolerance` is that of the form
-    /// factors, as in [`PairIntegrator`](fredholm_coupling::form_factor::PairIntegrator).
+    /// Takes the leaves of a mesh, what may stand between them, and their reflectance and exitance
+    /// (W/m²), elements × bands. `tolerance` is that of the form factors, as in
+    /// [`PairIntegrator`](fredholm_coupling::form_factor::PairIntegrator).
     ///
     /// # Errors
     /// [`DiscretisationError::Dimension`] where the values do not fit the mesh or each other.
@@ -34,7 +39,7 @@ impl<'a> Light<'a> {
     ) -> Result<Self, DiscretisationError> {
         let elements = mesh.len();
         for (what, values) in [("the reflectance", &reflectance), ("the exitance", &exitance)] {
-            if (values.dim(), values.lanes()) != (elements, reflectance.lanes()) {
+            if (values.dim(), values.rhs_count()) != (elements, reflectance.rhs_count()) {
                 return Err(DiscretisationError::Dimension { what, found: values.dim(), elements });
             }
         }
@@ -149,13 +154,14 @@ impl Lit<'_> {
         self.system.irradiance(&|site, band| self.light.emitted(site, band), &self.x)
     }
 
-    /// Means over the elements of the irradiance as a polynomial; [`assess`](Self::assess) has closer ones.
+    /// Means over the elements of the irradiance as a polynomial; [`assess`](Self::assess) has
+    /// closer ones.
     #[must_use]
     pub fn means(&self) -> ElementMeans {
         let space = self.system.space();
         let coefficients = self.irradiance();
         let rules = Rules::gauss(space.degree() + 1);
-        let mut irradiance = MultiVector::zeros(space.surface().len(), coefficients.lanes());
+        let mut irradiance = MultiVector::zeros(space.surface().len(), coefficients.rhs_count());
         for i in 0..irradiance.dim() {
             let weights = weights(&*self.system, &rules, i);
             for (&dof, weight) in space.dofs(i).iter().zip(weights) {
@@ -169,7 +175,7 @@ impl Lit<'_> {
     /// Adds B = M + ρ E to means of E.
     pub(crate) fn with_radiosity(&self, irradiance: MultiVector<f64>) -> ElementMeans {
         let light = self.light;
-        let radiosity = MultiVector::from_fn(irradiance.dim(), irradiance.lanes(), |i, band| {
+        let radiosity = MultiVector::from_fn(irradiance.dim(), irradiance.rhs_count(), |i, band| {
             light.exitance.row(i)[band] + light.reflectance.row(i)[band] * irradiance.row(i)[band]
         });
         ElementMeans { irradiance, radiosity }
@@ -180,7 +186,7 @@ impl Lit<'_> {
     pub fn nodal(&self) -> Nodal {
         let sites = self.system.space().node_sites();
         let source = |site: &Site, band: usize| self.light.emitted(site, band);
-        let radiosity = MultiVector::from_fn(sites.len(), self.x.lanes(), |at, band| {
+        let radiosity = MultiVector::from_fn(sites.len(), self.x.rhs_count(), |at, band| {
             self.system.value(&source, &self.x, &sites[at], band)
         });
         Nodal { sites, radiosity }
@@ -191,12 +197,13 @@ impl Lit<'_> {
         self.system.value(&|site, band| self.light.emitted(site, band), &self.x, site, band)
     }
 
-    /// H B_h at sites of one element, sites × bands: the irradiance of the solution, not bound to the polynomials of the elements.
+    /// H B_h at sites of one element, sites × bands: the irradiance of the solution, not bound to
+    /// the polynomials of the elements.
     #[must_use]
     pub fn irradiance_at(&self, sites: &[Site]) -> MultiVector<f64> {
         let field = |site: &Site, band: usize| self.radiosity_at(site, band);
         let equation = self.system.equation();
-        irradiance_at(equation.transfer(), equation.lanes(), self.system.space().degree(), sites, &field)
+        irradiance_at(equation.transfer(), equation.rhs_count(), self.system.space().degree(), sites, &field)
     }
 }
 

@@ -1,7 +1,8 @@
 //! The L² projection onto a space: M c = ∫ φ f dA with M_ab = ∫ φ_a φ_b dA.
 //!
-//! G. Peyré's article, eq. 1.56. M falls into blocks of unknowns that share elements: one block an element in a discontinuous space, one a smooth face in a
-//! conforming one. Each block is factorised once. Integrals over the receiving elements use the transfer's outer rule. M in m².
+//! G. Peyré's article, eq. 1.56. M falls into blocks of unknowns that share elements: one block an
+//! element in a discontinuous space, one a smooth face in a conforming one. Each block is
+//! factorised once. Integrals over the receiving elements use the transfer's outer rule. M in m².
 
 use crate::cholesky::Cholesky;
 use crate::surface::Rules;

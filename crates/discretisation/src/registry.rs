@@ -25,8 +25,8 @@ pub fn discretisations() -> Vec<Box<dyn Discretisation>> {
     all
 }
 
-/// The discretisation of this name. A `p` or `q` before the degree is read over: `galerkin-q1` is `galerkin-1`, since a degree means P on triangles and
-/// Q on quads.
+/// The discretisation of this name. A `p` or `q` before the degree is read over: `galerkin-q1` is
+/// `galerkin-1`, since a degree means P on triangles and Q on quads.
 ///
 /// # Errors
 /// [`DiscretisationError::Unknown`], with all names, where there is none.

@@ -1,8 +1,10 @@
 //! The space of trial functions x_h = Σ_j x_j φ_j on a surface, discontinuous or continuous.
 //!
-//! Discontinuous, each element has the unknowns of its own Lagrange basis. Conforming, nodes that coincide are one unknown where the elements belong to one
-//! face and their normals differ by at most an angle; a node that lies on the middle of a neighbour's edge (a hanging node) is not joined.
-//! P. G. Ciarlet, *The Finite Element Method for Elliptic Problems*, North-Holland 1978, section 2.3.
+//! Discontinuous, each element has the unknowns of its own Lagrange basis. Conforming, nodes that
+//! coincide are one unknown where the elements belong to one face and their normals differ by at
+//! most an angle; a node that lies on the middle of a neighbour's edge (a hanging node) is not
+//! joined. P. G. Ciarlet, *The Finite Element Method for Elliptic Problems*, North-Holland 1978,
+//! section 2.3.
 
 use crate::lagrange::{Lagrange, MOST, Nodes};
 use crate::{DiscretisationError, Site, Surface};
@@ -39,8 +41,8 @@ impl<'a> Space<'a> {
         Ok(space)
     }
 
-    /// Continuous within every face, across edges where the normals differ by at most `degrees`. Of degree 1 or 2; with 0 this is
-    /// [`discontinuous`](Self::discontinuous).
+    /// Continuous within every face, across edges where the normals differ by at most `degrees`. Of
+    /// degree 1 or 2; with 0 this is [`discontinuous`](Self::discontinuous).
     ///
     /// # Errors
     /// Not for the degrees 0, 1 and 2.
@@ -121,14 +123,15 @@ impl<'a> Space<'a> {
         self.basis(i).nodes().iter().map(|p| self.surface.site(i, p.u, p.v)).collect()
     }
 
-    /// x_h(u, v) on element `i` in one lane of the coefficients `x` (unknowns × lanes).
+    /// x_h(u, v) on element `i` in one right-hand side of the coefficients `x` (unknowns ×
+    /// right-hand sides).
     ///
     /// # Panics
-    /// Where there is no such element or lane.
+    /// Where there is no such element or right-hand side.
     #[must_use]
-    pub fn value(&self, x: &MultiVector<f64>, lane: usize, i: usize, u: f64, v: f64) -> f64 {
+    pub fn value(&self, x: &MultiVector<f64>, rhs: usize, i: usize, u: f64, v: f64) -> f64 {
         let values = self.basis(i).values(u, v);
-        self.dofs(i).iter().zip(values).map(|(&dof, phi)| phi * x.row(dof)[lane]).sum()
+        self.dofs(i).iter().zip(values).map(|(&dof, phi)| phi * x.row(dof)[rhs]).sum()
     }
 
     /// Σ over points (u, v, w) of element `i` of w φ_a(u, v), for all a.
@@ -143,7 +146,8 @@ impl<'a> Space<'a> {
     }
 }
 
-/// Nodes that have become unknowns, found by position. The map is ordered, and only asked for single cubes.
+/// Nodes that have become unknowns, found by position. The map is ordered, and only asked for
+/// single cubes.
 struct Joints {
     cosine: f64,
     tolerance: f64,
@@ -204,7 +208,8 @@ mod tests {
 
     #[test]
     fn conforming_unknowns_are_the_nodes_of_the_grid() {
-        // A square of n × n cells has (k n + 1)² nodes, of quads as of triangles; a sphere of six faces 6 (k n)² + 2.
+        // A square of n × n cells has (k n + 1)² nodes, of quads as of triangles; a sphere of six
+        // faces 6 (k n)² + 2.
         for (n, k) in [(1, 1), (3, 1), (3, 2)] {
             let nodes = 2 * (k * n + 1) * (k * n + 1);
             for problem in [facing_squares(), facing_triangles()] {

@@ -5,7 +5,8 @@ use fredholm_mesh::Mesh;
 use fredholm_quadrature::{PlanePoint, collapsed_triangle, tensor_quad};
 use std::borrow::Borrow;
 
-/// Elements with their geometry. Elements of one *face* may share unknowns where they meet smoothly.
+/// Elements with their geometry. Elements of one *face* may share unknowns where they meet
+/// smoothly.
 #[derive(Debug)]
 pub struct Surface {
     charts: Vec<Box<dyn Chart>>,

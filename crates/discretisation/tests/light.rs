@@ -1,4 +1,5 @@
-//! Diffuse light by every discretisation: against the radiosity system, closed forms and adaptive integration.
+//! Diffuse light by every discretisation: against the radiosity system, closed forms and adaptive
+//! integration.
 
 // A test that cannot run should panic, in its helpers too.
 #![allow(clippy::unwrap_used)]
@@ -22,7 +23,8 @@ fn cut(n: usize) -> Cutting {
     Cutting { lines: Lines::Counts { u: n, v: n }, ..Cutting::default() }
 }
 
-/// A room; with a box on its floor that has no bottom, so that part of the floor is buried, where `block` says so.
+/// A room; with a box on its floor that has no bottom, so that part of the floor is buried, where
+/// `block` says so.
 fn room(n: usize, block: bool) -> Mesh {
     let mut builder = MeshBuilder::default();
     builder.surface("room", 0);
@@ -117,7 +119,8 @@ fn a_furnace_is_exitance_over_absorptance_by_every_method_and_solver() {
             let lit = light.solve(&*method, solver, &STOP, &mut Quiet).unwrap();
             let nodal = lit.nodal().radiosity;
             let worst = nodal.as_slice().iter().map(|b| (b - 1.0).abs()).fold(0.0, f64::max);
-            // All pairs of so coarse a room are near, so that Nyström's weights are corrected everywhere.
+            // All pairs of so coarse a room are near, so that Nyström's weights are corrected
+            // everywhere.
             assert!(worst < 1e-9, "{} by {}: {worst:e}", method.name(), solver.name());
         }
     }
@@ -131,7 +134,8 @@ fn corner(gap: f64) -> Vec<Patch> {
     [floor, wall].map(|corners| Patch::quad(corners).unwrap().unwrap()).to_vec()
 }
 
-/// (H φ_j)(p) for the last basis function of the wall at the first node of the floor, by the matrix and by adaptive integration.
+/// (H φ_j)(p) for the last basis function of the wall at the first node of the floor, by the matrix
+/// and by adaptive integration.
 fn entry(name: &str, patches: &[Patch], occluders: &Occluders) -> (f64, f64) {
     let transfer = FlatLambert::new(patches.to_vec(), vec![0, 1], occluders, 1e-6).unwrap();
     let reflectance = MultiVector::from_fn(2, 1, |_, _| 0.5);

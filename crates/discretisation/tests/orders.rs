@@ -1,7 +1,9 @@
-//! Measured orders of convergence on smooth problems with a known solution, flat and curved, against theory.
+//! Measured orders of convergence on smooth problems with a known solution, flat and curved,
+//! against theory.
 //!
-//! Five meshes, four refinements, and three meshes for linear functions inside the sphere and the tube; the order of each must be within 0.15 of theory. The
-//! meshes begin where the first term of the error rules: on coarser ones the second term, smaller by h or h², shows.
+//! Five meshes, four refinements, and three meshes for linear functions inside the sphere and the
+//! tube; the order of each must be within 0.15 of theory. The meshes begin where the first term of
+//! the error rules: on coarser ones the second term, smaller by h or h², shows.
 
 // A test that cannot run should panic, in its helpers too.
 #![allow(clippy::unwrap_used)]
@@ -20,7 +22,8 @@ const COARSE: [usize; 5] = [4, 5, 6, 7, 8];
 const MIDDLE: [usize; 5] = [5, 6, 7, 8, 9];
 /// Closed surfaces have three or six times the elements.
 const CLOSED: [usize; 5] = [3, 4, 5, 6, 7];
-/// Gauss points along the sides of an element inside the sphere and the tube: the error of fewer shows beside that of the methods.
+/// Gauss points along the sides of an element inside the sphere and the tube: the error of fewer
+/// shows beside that of the methods.
 const INSIDE: usize = 6;
 /// Errors below this are rounding, and have no order.
 const ROUNDING: f64 = 1e-12;
@@ -75,8 +78,9 @@ fn check_all(problem: &Manufactured, of: impl Fn(&str) -> bool, meshes: &[usize]
     }
 }
 
-/// Conforming quadratics err less in the layer of elements along the border of a face, where fewer neighbours bind them: the error is C h⁶ (1 − c h), and the orders
-/// are 6 − c h. Continued to h = 0 they must come to 6.
+/// Conforming quadratics err less in the layer of elements along the border of a face, where fewer
+/// neighbours bind them: the error is C h⁶ (1 − c h), and the orders are 6 − c h. Continued to h =
+/// 0 they must come to 6.
 fn check_layer(label: &str, errors: &[f64], meshes: &[usize]) {
     let orders = orders(errors, meshes);
     let middle = |at: usize| 2.0 / (meshes[at] + meshes[at + 1]) as f64;
@@ -131,7 +135,8 @@ fn curved_surfaces_keep_the_orders_of_constants_and_linear_functions() {
     check_all(&smooth_kernel_on_a_sphere(), |name| name == "galerkin-0", &CLOSED);
 }
 
-/// Lambert's kernel is constant there and lies in every basis: Galerkin's iterated solution is exact, and has no order.
+/// Lambert's kernel is constant there and lies in every basis: Galerkin's iterated solution is
+/// exact, and has no order.
 #[test]
 fn galerkin_has_its_order_inside_a_sphere() {
     for (name, meshes) in [("galerkin-0", &CLOSED[..]), ("galerkin-1", &CLOSED[..3])] {

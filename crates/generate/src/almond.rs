@@ -7,8 +7,8 @@
 //! 0 < t < 7/12:   y = 4.83345 d (√(1 − (t/2.08335)²) − 0.96),    z = y/3
 //! ```
 //!
-//! (A. C. Woo, H. T. G. Wang, M. J. Schuh, M. L. Sanders, IEEE Antennas Propag. Mag. 35(1) (1993) 84,
-//! doi:10.1109/74.210840).
+//! (A. C. Woo, H. T. G. Wang, M. J. Schuh, M. L. Sanders, IEEE Antennas Propag. Mag. 35(1) (1993)
+//! 84, doi:10.1109/74.210840).
 
 use std::f64::consts::TAU;
 

@@ -25,7 +25,8 @@ impl Body {
         Self { corners, faces }
     }
 
-    /// A house with a pitched roof over a horizontal quad: the ridge runs between the middles of the sides 1 and 3.
+    /// A house with a pitched roof over a horizontal quad: the ridge runs between the middles of
+    /// the sides 1 and 3.
     pub fn gabled(base: [DVec3; 4], height: f64, rise: f64, wall: &'static str, roof: &'static str) -> Self {
         let mut body = Self::prism(base, height, wall, roof);
         let lift = DVec3::Z * (height + rise);
@@ -45,8 +46,8 @@ impl Body {
         self
     }
 
-    /// Moves every corner by this length in a random direction. Faces become fans of triangles, since they are no longer
-    /// flat.
+    /// Moves every corner by this length in a random direction. Faces become fans of triangles,
+    /// since they are no longer flat.
     pub fn jittered(mut self, length: f64, dice: &mut Dice) -> Self {
         for corner in &mut self.corners {
             *corner += dice.direction() * length;
@@ -59,14 +60,16 @@ impl Body {
     }
 }
 
-/// The corners of a horizontal rectangle about `centre`, its length along the direction at `angle` radians.
+/// The corners of a horizontal rectangle about `centre`, its length along the direction at `angle`
+/// radians.
 pub(crate) fn rectangle(centre: DVec3, length: f64, width: f64, angle: f64) -> [DVec3; 4] {
     let (sine, cosine) = angle.sin_cos();
     let (u, v) = (DVec3::new(cosine, sine, 0.0) * 0.5 * length, DVec3::new(-sine, cosine, 0.0) * 0.5 * width);
     [centre - u - v, centre + u - v, centre + u + v, centre - u + v]
 }
 
-/// The text of an OBJ file of named objects, each of several bodies; coordinates are rounded to micrometres.
+/// The text of an OBJ file of named objects, each of several bodies; coordinates are rounded to
+/// micrometres.
 pub(crate) fn wavefront<'a>(objects: impl IntoIterator<Item = (String, &'a [Body])>) -> String {
     let (mut text, mut first) = (String::new(), 1);
     for (name, bodies) in objects {

@@ -1,8 +1,9 @@
 //! A city: blocks of houses around courtyards.
 //!
-//! It has what meshes of real cities have: party walls that coincide, houses that overlap by a little or cross at the
-//! corners of a block, sheds that stand turned through the walls of courtyards, walls a hand thick, foundations that go
-//! through the ground, some houses closed from below, and with moved corners cracks between everything.
+//! It has what meshes of real cities have: party walls that coincide, houses that overlap by a
+//! little or cross at the corners of a block, sheds that stand turned through the walls of
+//! courtyards, walls a hand thick, foundations that go through the ground, some houses closed from
+//! below, and with moved corners cracks between everything.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -30,8 +31,8 @@ pub struct City {
     pub faces: usize,
     /// The same seed gives the same city.
     pub seed: u64,
-    /// How far every corner of a house is moved, m. Above 0, all faces of houses are triangles, and what touched has
-    /// cracks between.
+    /// How far every corner of a house is moved, m. Above 0, all faces of houses are triangles, and
+    /// what touched has cracks between.
     pub jitter: f64,
 }
 

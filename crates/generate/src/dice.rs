@@ -1,7 +1,8 @@
 //! Random numbers that never change.
 //!
-//! SplitMix64: G. L. Steele, D. Lea, C. H. Flood: Fast splittable pseudorandom number generators, OOPSLA 2014. It is
-//! written out here because the files that are made from a number have to stay the same whatever a library changes.
+//! SplitMix64: G. L. Steele, D. Lea, C. H. Flood: Fast splittable pseudorandom number generators,
+//! OOPSLA 2014. It is written out here because the files that are made from a number have to stay
+//! the same whatever a library changes.
 
 use std::f64::consts::TAU;
 
@@ -66,7 +67,8 @@ mod tests {
 
     #[test]
     fn the_numbers_are_those_of_the_published_algorithm() {
-        // The first three numbers of SplitMix64 from the seed 1234567, as its reference implementation in C prints them.
+        // The first three numbers of SplitMix64 from the seed 1234567, as its reference
+        // implementation in C prints them.
         let mut dice = Dice::new(1_234_567);
         let expected = [6_457_827_717_110_365_317, 3_203_168_211_198_807_973, 9_817_491_932_198_370_423];
         assert_eq!([dice.bits(), dice.bits(), dice.bits()], expected);

@@ -16,7 +16,8 @@ pub struct Files {
 }
 
 impl Files {
-    /// Writes the files into a folder, which is made where there is none; tells where the scene file lies.
+    /// Writes the files into a folder, which is made where there is none; tells where the scene
+    /// file lies.
     ///
     /// # Errors
     /// What the operating system says.

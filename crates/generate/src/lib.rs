@@ -1,4 +1,5 @@
-//! Scenes made from a number, for tests, examples and benchmarks. The same number gives the same files on every machine.
+//! Scenes made from a number, for tests, examples and benchmarks. The same number gives the same
+//! files on every machine.
 //!
 //! - [`City`]: blocks of houses that touch, overlap and go through each other, under a lit sky;
 //! - [`Scan`]: a creased figure with noisy normals, as a scanner gives, in a closed room;

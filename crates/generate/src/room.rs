@@ -1,4 +1,5 @@
-//! Closed rooms, whose balance of energy is known: what is emitted is absorbed, Σ A M = Σ A (1 − ρ) E.
+//! Closed rooms, whose balance of energy is known: what is emitted is absorbed, Σ A M = Σ A (1 − ρ)
+//! E.
 
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::Write;
@@ -11,7 +12,8 @@ use crate::files::Files;
 
 /// Length, width and height, m.
 const SIZE: [f64; 3] = [4.0, 3.0, 2.5];
-/// Gap between boxes and floor, m: nothing touches, so that nothing but the accuracy disturbs the balance.
+/// Gap between boxes and floor, m: nothing touches, so that nothing but the accuracy disturbs the
+/// balance.
 const GAP: f64 = 0.1;
 
 /// A closed room with boxes that hover over its floor, all of one reflectance.
@@ -19,7 +21,8 @@ const GAP: f64 = 0.1;
 pub struct Room {
     /// Reflectance of everything, from 0 to below 1.
     pub reflectance: f64,
-    /// Whether everything emits 1 W/m²; then B = M/(1 − ρ) everywhere. Otherwise a lamp in the ceiling emits.
+    /// Whether everything emits 1 W/m²; then B = M/(1 − ρ) everywhere. Otherwise a lamp in the
+    /// ceiling emits.
     pub furnace: bool,
     /// Number of boxes.
     pub boxes: usize,
@@ -86,7 +89,8 @@ impl Room {
     }
 }
 
-/// The walls of a closed room of the materials `wall` and `lamp`: the lamp is a cell of the ceiling, in its middle.
+/// The walls of a closed room of the materials `wall` and `lamp`: the lamp is a cell of the
+/// ceiling, in its middle.
 pub(crate) fn shell(size: [f64; 3], divide: usize) -> String {
     let [x, y, z] = size;
     let walls = [

@@ -74,8 +74,8 @@ impl Scan {
     }
 }
 
-/// The figure at a part `t` of its height and an angle, radians: body and head, with folds as of cloth, which are sharp
-/// where the absolute value turns.
+/// The figure at a part `t` of its height and an angle, radians: body and head, with folds as of
+/// cloth, which are sharp where the absolute value turns.
 fn on_figure(t: f64, angle: f64, phase: [f64; 2]) -> DVec3 {
     let bump = |middle: f64, width: f64| (-((t - middle) / width).powi(2)).exp();
     let profile =

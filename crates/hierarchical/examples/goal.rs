@@ -1,4 +1,5 @@
-//! The mean irradiance of a surface, from solutions to the accuracy of everything and to that of the surface alone, against one that is refined much further:
+//! The mean irradiance of a surface, from solutions to the accuracy of everything and to that of
+//! the surface alone, against one that is refined much further:
 //! `cargo run --release -p fredholm-hierarchical --example goal -- SCENE SURFACE[,SURFACE] ACCURACY...`.
 
 use fredholm_hierarchical::{Goal, Options, Problem, RESIDUAL, Solution, Solvers, Stated, Surfaces, solve};
@@ -62,7 +63,7 @@ fn to(problem: &Problem, accuracy: f64) -> Result<Solution, Box<dyn Error>> {
 
 /// Mean irradiance of the goal, W/m².
 fn means(goal: &Goal, mesh: &Mesh, solution: &Solution) -> Vec<f64> {
-    let bands = solution.means.irradiance.lanes();
+    let bands = solution.means.irradiance.rhs_count();
     let mut faces = vec![0.0; mesh.faces().len() * bands];
     for (i, leaf) in solution.tree.leaves().into_iter().enumerate() {
         let node = &solution.tree.nodes()[leaf as usize];

@@ -1,4 +1,5 @@
-//! Writes a room with a curved object of about N triangles into a folder, as `object.toml` and `object.obj`:
+//! Writes a room with a curved object of about N triangles into a folder, as `object.toml` and
+//! `object.obj`:
 //! `cargo run --release -p fredholm-hierarchical --example object -- ball|ring|bowl N DIR`.
 
 #[path = "../tests/common/shapes.rs"]

@@ -1,4 +1,5 @@
-//! Solves a scene to an accuracy and prints its rounds, with the true error where a reference is given:
+//! Solves a scene to an accuracy and prints its rounds, with the true error where a reference is
+//! given:
 //! `cargo run --release -p fredholm-hierarchical --example rounds -- SCENE ACCURACY [constant|linear] [REFERENCE.csv]`.
 
 use fredholm_hierarchical::{
@@ -117,7 +118,8 @@ fn rounded(x: f64) -> i64 {
     (x * 1e6 + 0.25).round() as i64
 }
 
-/// Relative L2 error of the worst band and root mean square over faces and bands against a reference.
+/// Relative L2 error of the worst band and root mean square over faces and bands against a
+/// reference.
 fn errors(mesh: &Mesh, found: &[f64], reference: &[f64]) -> (f64, f64) {
     let bands = found.len() / mesh.faces().len();
     let (mut worst, mut squares, mut count) = (0.0, 0.0, 0.0);

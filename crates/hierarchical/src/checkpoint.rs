@@ -1,4 +1,5 @@
-//! The state between two rounds as bytes, little-endian: what was split, the links, the radiosity, the goal with the importance, and the rounds. Floating-point numbers keep their bits.
+//! The state between two rounds as bytes, little-endian: what was split, the links, the radiosity,
+//! the goal with the importance, and the rounds. Floating-point numbers keep their bits.
 //!
 //! The tree is not saved but grown again: the same splits of the same mesh give the same tree.
 
@@ -54,11 +55,11 @@ impl State {
             grow(&mut state.tree, split)?;
         }
         state.links = Arc::new(source.list(Source::link)?);
-        let (lanes, leaves) = (state.radiosity.lanes(), state.tree.leaves().len());
+        let (bands, leaves) = (state.radiosity.rhs_count(), state.tree.leaves().len());
         let foreign = |_| HierarchyError::State { why: "belongs to another scene" };
-        state.radiosity = MultiVector::from_vec(leaves, lanes, source.numbers()?).map_err(foreign)?;
-        let lanes = state.importance.lanes();
-        state.importance = MultiVector::from_vec(leaves, lanes, source.numbers()?).map_err(foreign)?;
+        state.radiosity = MultiVector::from_vec(leaves, bands, source.numbers()?).map_err(foreign)?;
+        let bands = state.importance.rhs_count();
+        state.importance = MultiVector::from_vec(leaves, bands, source.numbers()?).map_err(foreign)?;
         state.faces = source.numbers()?;
         state.threshold = source.number()?;
         state.rounds = source.list(Source::round)?;
@@ -72,7 +73,7 @@ impl State {
     fn checked(self, problem: &Problem) -> Result<Self, HierarchyError> {
         let nodes = self.tree.nodes();
         let known = |index: u32| (index as usize) < nodes.len();
-        let faces = problem.mesh.faces().len() * self.radiosity.lanes();
+        let faces = problem.mesh.faces().len() * self.radiosity.rhs_count();
         let fits = self.links.iter().all(|link| known(link.a) && known(link.b) && link.open.is_finite())
             && (self.faces.len() == faces || self.rounds.is_empty())
             && self.radiosity.not_finite().is_none()

@@ -1,12 +1,16 @@
 //! Row sums that hold: no leaf sends more than it exposes, and in a closed scene no less.
 //!
-//! The sum of the exchanges of a leaf with all others is its exposed area times the share of its rays that meet a lit side: at most the exposed area, and all of it in a closed scene. Estimates of partly visible
-//! links, and links that follow a form factor to first order only, miss that. Multiple reflection multiplies what they miss by 1/(1 − ρ). So the operator is scaled on both sides, S G S with a
-//! diagonal S > 0: it stays symmetric, and with reflectances below 1 the system is positive definite. The scaling that makes the row sums given numbers is found by the fixed point of
-//! s_i ← s_i (t_i/(s_i (G s)_i))^α (P. A. Knight, D. Ruiz, B. Uçar, SIAM J. Matrix Anal. Appl. 35 (2014) 931–955,
-//! doi:10.1137/110825753, with α = 1/2 for symmetric scaling). A step leaves 1 − α (1 + μ) of an error that is an
-//! eigenvector of the operator with the eigenvalue μ. Between 0 and 1, where nearly all of them lie, α = 2/3 makes the
-//! largest of these factors 1/3. What is left of each row sum is reported.
+//! The sum of the exchanges of a leaf with all others is its exposed area times the share of its
+//! rays that meet a lit side: at most the exposed area, and all of it in a closed scene. Estimates
+//! of partly visible links, and links that follow a form factor to first order only, miss that.
+//! Multiple reflection multiplies what they miss by 1/(1 − ρ). So the operator is scaled on both
+//! sides, S G S with a diagonal S > 0: it stays symmetric, and with reflectances below 1 the system
+//! is positive definite. The scaling that makes the row sums given numbers is found by the fixed
+//! point of s_i ← s_i (t_i/(s_i (G s)_i))^α (P. A. Knight, D. Ruiz, B. Uçar, SIAM J. Matrix Anal.
+//! Appl. 35 (2014) 931–955, doi:10.1137/110825753, with α = 1/2 for symmetric scaling). A step
+//! leaves 1 − α (1 + μ) of an error that is an eigenvector of the operator with the eigenvalue μ.
+//! Between 0 and 1, where nearly all of them lie, α = 2/3 makes the largest of these factors 1/3.
+//! What is left of each row sum is reported.
 
 use crate::HierarchicalOperator;
 
@@ -14,12 +18,14 @@ use crate::HierarchicalOperator;
 const STEPS: usize = 40;
 /// α of a step.
 const POWER: f64 = 2.0 / 3.0;
-/// Mean change of the factors that is small enough: least and most. Single leaves that move on do not matter.
+/// Mean change of the factors that is small enough: least and most. Single leaves that move on do
+/// not matter.
 const NEAR: [f64; 2] = [1e-7, 1e-4];
 /// Times that what is above is cut, at most, and the relative excess that one cut takes for good.
 const CUTS: usize = 4;
 const UNCUT: f64 = 5e-3;
-/// A leaf whose links bring much too little lacks some of them: scaling does not stand in for those.
+/// A leaf whose links bring much too little lacks some of them: scaling does not stand in for
+/// those.
 const MOST: f64 = 1.25;
 
 /// What a row sum may be, m².
@@ -30,7 +36,8 @@ pub(crate) struct Aim {
 }
 
 impl Aim {
-    /// The sum that a row sum should move to: a factor other than 1 stays only as long as a bound asks for it.
+    /// The sum that a row sum should move to: a factor other than 1 stays only as long as a bound
+    /// asks for it.
     fn wanted(self, scale: f64, row: f64) -> f64 {
         let held = if scale < 1.0 {
             self.most
@@ -80,10 +87,11 @@ impl Wholes<'_> {
     }
 }
 
-/// Scales an operator until its row sums are within their bounds, as far as that goes; none stays above. Every leaf has
-/// a factor of its own and shares another with the leaves of its input element; they take turns. They stop at mean
-/// relative changes of `tolerance`, weighted by what the leaves receive, or where row sums must be 1 at smaller ones:
-/// what is left above is cut, which loses power.
+/// Scales an operator until its row sums are within their bounds, as far as that goes; none stays
+/// above. Every leaf has a factor of its own and shares another with the leaves of its input
+/// element; they take turns. They stop at mean relative changes of `tolerance`, weighted by what
+/// the leaves receive, or where row sums must be 1 at smaller ones: what is left above is cut,
+/// which loses power.
 pub(crate) fn balance(operator: &mut HierarchicalOperator, aims: &[Aim], wholes: &Wholes, tolerance: f64) {
     let (mut own, mut shared) = (vec![1.0; aims.len()], vec![1.0; wholes.aims.len()]);
     let products = |own: &[f64], shared: &[f64]| -> Vec<f64> {
@@ -113,8 +121,9 @@ pub(crate) fn balance(operator: &mut HierarchicalOperator, aims: &[Aim], wholes:
             break;
         }
     }
-    // What is above in the end is cut off. Smaller factors make other row sums smaller, but for the few that links with
-    // a steep gradient bring less than nothing: they may rise, and are cut again.
+    // What is above in the end is cut off. Smaller factors make other row sums smaller, but for the
+    // few that links with a steep gradient bring less than nothing: they may rise, and are cut
+    // again.
     for _ in 0..CUTS {
         let rows = operator.row_sums();
         let above = |(&row, aim): (&f64, &Aim)| if row > aim.most { row / aim.most - 1.0 } else { 0.0 };
@@ -134,8 +143,8 @@ pub(crate) fn balance(operator: &mut HierarchicalOperator, aims: &[Aim], wholes:
     }
 }
 
-/// Whether the factors of the leaves, each with the one of the next step, move by no more than `tolerance` in the mean,
-/// weighted by the row sums, m².
+/// Whether the factors of the leaves, each with the one of the next step, move by no more than
+/// `tolerance` in the mean, weighted by the row sums, m².
 fn near(rows: &[f64], factors: impl Iterator<Item = [f64; 2]>, tolerance: f64) -> bool {
     let (mut moved, mut all) = (0.0, 0.0);
     for (row, [now, next]) in rows.iter().zip(factors) {

@@ -1,16 +1,22 @@
-//! Solve, refine where the solution says so, solve again: until the change from one solution to the next says that the accuracy is reached.
+//! Solve, refine where the solution says so, solve again: until the change from one solution to the
+//! next says that the accuracy is reached.
 //!
-//! Every round lowers the error that a link may leave by [`STEP`]. The irradiance of the input faces then changes by about what the round before was wrong by; what remains is less. The stated error
-//! is [`CONFIDENCE`] times the relative change ‖E − E'‖/‖E‖ in the area-weighted L2 norm over the faces, in the worst band; a change is not believed to be less than [`LEAP`] times the one before. To it comes what the balance of energy
-//! tells: the power that row sums lose or gain against what rays say, over the power that is absorbed; and what the residual of the solver leaves, amplified as reflection may amplify it. The irradiances are solutions, so that multiple reflection has amplified it already.
+//! Every round lowers the error that a link may leave by [`STEP`]. The irradiance of the input
+//! faces then changes by about what the round before was wrong by; what remains is less. The stated
+//! error is [`CONFIDENCE`] times the relative change ‖E − E'‖/‖E‖ in the area-weighted L2 norm over
+//! the faces, in the worst band; a change is not believed to be less than [`LEAP`] times the one
+//! before. To it comes what the balance of energy tells: the power that row sums lose or gain
+//! against what rays say, over the power that is absorbed; and what the residual of the solver
+//! leaves, amplified as reflection may amplify it. The irradiances are solutions, so that multiple
+//! reflection has amplified it already.
 //!
-//! A round that refined nothing tells nothing: it keeps the error that was stated before. So does a round that memory ended, but for a larger change. With a [`Goal`] the dual problem is solved in every round too, and the error is
-//! that of the mean irradiance of the goal ([`crate::goal`]).
+//! A round that refined nothing tells nothing: it keeps the error that was stated before. So does a
+//! round that memory ended, but for a larger change. With a [`Goal`] the dual problem is solved in
+//! every round too, and the error is that of the mean irradiance of the goal ([`crate::goal`]).
 
 use crate::closure::{Aim, Wholes, balance};
 use crate::exposure::Exposure;
 use crate::goal::{Estimate, Goal, Reached, expected, weights};
-use crate::opening::Opening;
 use crate::oracle::Light;
 use crate::refine::{Limits, bytes, refine};
 use crate::transport::Sight;
@@ -45,24 +51,27 @@ const EXCHANGE: f64 = 0.1;
 /// Least area of an element, over that of the scene.
 const LEAST: f64 = 1e-10;
 
-/// What row sums may exceed 1 by where it is not known whether something leaves: cutting off all that is above, and adding nothing to what is below, would lose power.
+/// What row sums may exceed 1 by where it is not known whether something leaves: cutting off all
+/// that is above, and adding nothing to what is below, would lose power.
 const SLACK: f64 = 0.04;
-/// Mean relative change of the factors at which scaling ends, over the least slack and the accuracy: what is left to be
-/// cut is small beside them.
+/// Mean relative change of the factors at which scaling ends, over the least slack and the
+/// accuracy: what is left to be cut is small beside them.
 const UNCUT: f64 = 0.05;
 /// Row sum up to which a leaf of a closed scene is not believed to lack links alone.
 const LEAST_ROW: f64 = 0.7;
 
-/// What links that are not divided may hide, over the share of the light that each may carry: found by trying nearly
-/// white rooms that lose light.
+/// What links that are not divided may hide, over the share of the light that each may carry: found
+/// by trying nearly white rooms that lose light.
 const UNSEEN: f64 = 3.0;
 /// The most that was found hidden: 24 % by 33 links.
 const HIDDEN: f64 = 0.25;
 /// How often light is received in the mean, up to which changes from round to round tell enough.
 const OFTEN: f64 = 4.0;
-/// Standard errors from which on a difference between rays and links of the whole scene is taken for a fault of the links.
+/// Standard errors from which on a difference between rays and links of the whole scene is taken
+/// for a fault of the links.
 const CLEAR: f64 = 2.0;
-/// Least part of the differences between rays and links that is worth taking for faults of the links.
+/// Least part of the differences between rays and links that is worth taking for faults of the
+/// links.
 const LEAST_PART: f64 = 0.2;
 
 /// Occluders that are put together to bodies, at most.
@@ -84,11 +93,14 @@ pub struct Problem<'a> {
 /// How far to go.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
-    /// Relative error to reach: of the irradiance of the faces, L2, or of the mean irradiance of the goal.
+    /// Relative error to reach: of the irradiance of the faces, L2, or of the mean irradiance of
+    /// the goal.
     pub accuracy: f64,
-    /// Whether links follow the variation of the form factor to first order; else it is constant over each node.
+    /// Whether links follow the variation of the form factor to first order; else it is constant
+    /// over each node.
     pub linear: bool,
-    /// Relative residual ‖b − A x‖₂/‖b‖₂ to which each system is solved; [`RESIDUAL`] times the accuracy is small beside it.
+    /// Relative residual ‖b − A x‖₂/‖b‖₂ to which each system is solved; [`RESIDUAL`] times the
+    /// accuracy is small beside it.
     pub residual: f64,
     /// Bytes that tree and links may take.
     pub bytes: u64,
@@ -105,8 +117,9 @@ pub struct Round {
     pub elements: usize,
     /// Links, each of which serves both ways.
     pub links: usize,
-    /// Relative change of the irradiance of the faces since the round before, L2, worst band; none in the first. With a goal, that of its mean irradiance, or what the input
-    /// elements have to do with it if that is more.
+    /// Relative change of the irradiance of the faces since the round before, L2, worst band; none
+    /// in the first. With a goal, that of its mean irradiance, or what the input elements have to
+    /// do with it if that is more.
     pub change: Option<f64>,
 }
 
@@ -165,7 +178,8 @@ pub struct Solution {
     pub links: Arc<Vec<Link>>,
     /// Irradiance and radiosity of the leaves, W/m², in the order of [`Tree::leaves`].
     pub means: Means,
-    /// The part of the irradiance that comes straight from what emits, W/m²: the links' own mean of it.
+    /// The part of the irradiance that comes straight from what emits, W/m²: the links' own mean of
+    /// it.
     pub direct: MultiVector<f64>,
     /// The system of the leaves.
     pub system: Radiosity,
@@ -177,13 +191,15 @@ pub struct Solution {
     pub report: Report,
     /// All rounds.
     pub rounds: Vec<Round>,
-    /// Estimated error of the irradiance of the faces, or of the goal where there is one; none after a single round, or two with a goal.
+    /// Estimated error of the irradiance of the faces, or of the goal where there is one; none
+    /// after a single round, or two with a goal.
     pub error: Option<Stated>,
     /// What was reached of the goal, where there is one.
     pub goal: Option<Reached>,
     /// Whether memory ended the refinement before the accuracy was reached.
     pub limited: bool,
-    /// Factors of the leaves on both sides of the operator of the links, which make its row sums hold.
+    /// Factors of the leaves on both sides of the operator of the links, which make its row sums
+    /// hold.
     pub scale: Vec<f64>,
     /// Why the solver asked for was replaced by the other one, where it was.
     pub replaced: Option<String>,
@@ -239,7 +255,8 @@ pub fn solve(
     })
 }
 
-/// The solution that a saved state holds, such as that of the last round before a run was interrupted, with the error that was stated then. Nothing is refined or solved.
+/// The solution that a saved state holds, such as that of the last round before a run was
+/// interrupted, with the error that was stated then. Nothing is refined or solved.
 ///
 /// # Errors
 /// [`HierarchyError::State`] for a state without a round, or one of another goal.
@@ -273,12 +290,11 @@ fn with_run<T>(
     let patches: Vec<&Patch> = problem.mesh.patches().collect();
     let many = problem.occluders.len() > MANY;
     let bodies = if many { Bodies::default() } else { Bodies::new(problem.occluders, &patches, &[]) };
-    let exposure = Exposure::new(problem.mesh)?;
     let reflectances = problem.surfaces.reflectance.as_slice();
-    let opening = exposure.opening(reflectances.iter().copied().fold(0.0, f64::max));
+    let exposure = Exposure::new(problem.mesh, reflectances.iter().copied().fold(0.0, f64::max))?;
     let sight = Sight { occluders: problem.occluders, bodies: &bodies, many };
     let dual = problem.goal.map(|goal| (goal, goal.dual(problem.mesh, problem.surfaces)));
-    f(&mut Run { problem, options, solvers, watch, sight, exposure, opening, dual, replaced: None })
+    f(&mut Run { problem, options, solvers, watch, sight, exposure, dual, replaced: None })
 }
 
 /// The operator of some links and the system that it makes.
@@ -306,7 +322,6 @@ struct Run<'a> {
     watch: &'a dyn RoundWatch,
     sight: Sight<'a>,
     exposure: Exposure<'a>,
-    opening: Opening,
     /// With a goal: the dual problem, of the same reflectances.
     dual: Option<(&'a Goal, Surfaces)>,
     /// Why the fallback solves.
@@ -326,7 +341,7 @@ impl Solution {
     /// Bytes of the tree, the links and the vectors on them.
     #[must_use]
     pub fn bytes(&self) -> u64 {
-        bytes(self.tree.nodes().len(), self.links.len(), self.radiosity.lanes())
+        bytes(self.tree.nodes().len(), self.links.len(), self.radiosity.rhs_count())
     }
 }
 
@@ -354,12 +369,15 @@ impl Run<'_> {
         }
         let root = |&leaf: &u32| tree.nodes()[leaf as usize].root().unwrap_or(0) as u32;
         let roots: Vec<u32> = operator.leaves().iter().map(root).collect();
-        // Far from a goal elements are coarse and row sums rough: to correct them would disturb what the goal receives.
+        // Far from a goal elements are coarse and row sums rough: to correct them would disturb
+        // what the goal receives.
         if self.dual.is_none() {
             self.close(tree, &mut operator, &extents, &roots);
         }
         let of_leaves = |values: &MultiVector<f64>| {
-            MultiVector::from_fn(roots.len(), values.lanes(), |i, band| values.row(roots[i] as usize)[band])
+            MultiVector::from_fn(roots.len(), values.rhs_count(), |i, band| {
+                values.row(roots[i] as usize)[band]
+            })
         };
         let Surfaces { reflectance, exitance } = self.problem.surfaces;
         let radiosity = Radiosity::new(extents, of_leaves(reflectance), of_leaves(exitance))?;
@@ -367,8 +385,9 @@ impl Run<'_> {
         Ok(System { operator, radiosity, roots, dual })
     }
 
-    /// Scales the operator until its row sums hold: none above 1 by more than a tolerance, and 1 exactly in a closed scene. A row sum that is far too small there has another cause, such as a buried part that no
-    /// grid saw, and is left as it is.
+    /// Scales the operator until its row sums hold: none above 1 by more than a tolerance, and 1
+    /// exactly in a closed scene. A row sum that is far too small there has another cause, such as
+    /// a buried part that no grid saw, and is left as it is.
     fn close(&self, tree: &Tree, operator: &mut HierarchicalOperator, extents: &[Extent], roots: &[u32]) {
         let slack = |root: u32| {
             let reflectances = self.problem.surfaces.reflectance.row(root as usize);
@@ -377,7 +396,7 @@ impl Run<'_> {
             SLACK.min(0.5 * (1.0 / reflectance - 1.0))
         };
         let aim = |((size, &root), row): ((&Extent, &u32), f64)| {
-            if self.opening.loses_nothing(root as usize) && row > LEAST_ROW * size.exposed {
+            if self.exposure.opening().loses_nothing(root as usize) && row > LEAST_ROW * size.exposed {
                 Aim { least: size.exposed, most: size.exposed }
             } else {
                 Aim { least: 0.0, most: (1.0 + slack(root)) * size.exposed }
@@ -395,17 +414,18 @@ impl Run<'_> {
 
     /// What the leaves of each input element should receive together, m², where something is lost.
     ///
-    /// Rays say it without a systematic error, but with a standard error σ; links have none of chance. How far both
-    /// differ tells which to believe: of a difference D the part 1 − σ²/D² is taken to be a fault of the links, first of
-    /// all that is lost together, then, with D² in the mean over all elements, of each element (W. James, C. Stein,
-    /// Proc. 4th Berkeley Symp. 1, 361–379, 1961; shrinking to a common mean: B. Efron, C. Morris, J. Am. Stat. Assoc.
-    /// 68, 117–130, 1973). Fine links stay as they are.
+    /// Rays say it without a systematic error, but with a standard error σ; links have none of
+    /// chance. How far both differ tells which to believe: of a difference D the part 1 − σ²/D² is
+    /// taken to be a fault of the links, first of all that is lost together, then, with D² in the
+    /// mean over all elements, of each element (W. James, C. Stein, Proc. 4th Berkeley Symp. 1,
+    /// 361–379, 1961; shrinking to a common mean: B. Efron, C. Morris, J. Am. Stat. Assoc. 68,
+    /// 117–130, 1973). Fine links stay as they are.
     fn whole_rows(&self, tree: &Tree, rows: &[f64], roots: &[u32]) -> Vec<Option<Aim>> {
         let mut sums = vec![0.0; tree.roots().len()];
         roots.iter().zip(rows).for_each(|(&root, row)| sums[root as usize] += row);
         let area = |element: usize| tree.nodes()[tree.roots()[element] as usize].area();
         let told = |element| {
-            let [row, error] = self.opening.row(element)?;
+            let [row, error] = self.exposure.opening().row(element)?;
             Some([area(element) * row, area(element) * error])
         };
         let together = lost_together(&sums, &area, &told);
@@ -506,7 +526,8 @@ impl Run<'_> {
             .collect();
         let known = if refined.changed { error.map(|error| error.with(&further)) } else { None };
         state.error = match (known, state.error.take()) {
-            // Memory may have ended the round early: it mends a part only of what the last one stated.
+            // Memory may have ended the round early: it mends a part only of what the last one
+            // stated.
             (Some(known), Some(earlier)) if state.limited => Some(known.or_more(&earlier)),
             (Some(known), _) if !state.limited => Some(known),
             (_, earlier) => earlier,
@@ -526,13 +547,13 @@ impl Run<'_> {
             least_area: LEAST * area,
             tolerance: EXCHANGE * self.options.accuracy,
             bytes: self.options.bytes,
-            bands: self.problem.surfaces.exitance.lanes(),
+            bands: self.problem.surfaces.exitance.rhs_count(),
             watch: self.watch,
         }
     }
 
-    /// The residual to solve to: what is asked for, or less where reflection may amplify that to more than
-    /// [`UNSOLVED`] of the accuracy.
+    /// The residual to solve to: what is asked for, or less where reflection may amplify that to
+    /// more than [`UNSOLVED`] of the accuracy.
     fn residual(&self) -> f64 {
         let reflectances = self.problem.surfaces.reflectance.as_slice();
         let absorbed = 1.0 - reflectances.iter().copied().fold(0.0, f64::max);
@@ -575,31 +596,32 @@ impl Run<'_> {
     /// Irradiance of the input faces, faces × bands, W/m².
     fn faces(&self, state: &State, system: &System, x: &MultiVector<f64>) -> Vec<f64> {
         let means = system.radiosity.means(&system.operator, x);
-        let (lanes, faces) = (x.lanes(), self.problem.mesh.faces());
-        let mut irradiance = vec![0.0; faces.len() * lanes];
+        let (bands, faces) = (x.rhs_count(), self.problem.mesh.faces());
+        let mut irradiance = vec![0.0; faces.len() * bands];
         for (i, &leaf) in system.operator.leaves().iter().enumerate() {
             let node = &state.tree.nodes()[leaf as usize];
             let face = node.face().unwrap_or(0);
             let share = node.area() / faces[face].area;
-            for (sum, e) in irradiance[face * lanes..].iter_mut().zip(means.irradiance.row(i)) {
+            for (sum, e) in irradiance[face * bands..].iter_mut().zip(means.irradiance.row(i)) {
                 *sum += share * e;
             }
         }
         irradiance
     }
 
-    /// The error that the change from the irradiance of the faces before lets expect, and that change, relative, of the worst band; none in the first round.
+    /// The error that the change from the irradiance of the faces before lets expect, and that
+    /// change, relative, of the worst band; none in the first round.
     fn change(&self, state: &State, now: &[f64]) -> Option<(Stated, f64)> {
         let before = &state.faces;
         if before.is_empty() {
             return None;
         }
-        let lanes = self.problem.surfaces.exitance.lanes();
-        let (mut squares, mut norms) = (vec![0.0; lanes], vec![0.0; lanes]);
-        let mut largest = vec![0.0; lanes];
+        let bands = self.problem.surfaces.exitance.rhs_count();
+        let (mut squares, mut norms) = (vec![0.0; bands], vec![0.0; bands]);
+        let mut largest = vec![0.0; bands];
         for (k, face) in self.problem.mesh.faces().iter().enumerate() {
-            for band in 0..lanes {
-                let (e, old) = (now[k * lanes + band], before[k * lanes + band]);
+            for band in 0..bands {
+                let (e, old) = (now[k * bands + band], before[k * bands + band]);
                 squares[band] += face.area * (e - old) * (e - old);
                 norms[band] += face.area * e * e;
                 largest[band] = f64::max(largest[band], CONFIDENCE * (e - old).abs());
@@ -614,20 +636,22 @@ impl Run<'_> {
         Some((Stated { relative_l2: changes.into_iter().map(believed).collect(), largest }, worst))
     }
 
-    /// The power that row sums lose or gain against what rays say, beyond twice the standard error of the rays, over the power that is absorbed or leaves, of each band.
+    /// The power that row sums lose or gain against what rays say, beyond twice the standard error
+    /// of the rays, over the power that is absorbed or leaves, of each band.
     ///
-    /// Rays tell of whole input elements only: within one, darker parts may lose more than brighter ones. So sums over
-    /// input elements are compared, each with its mean radiosity. Coarse links do not see such parts, and two rounds
-    /// that are too coarse may agree: as long as links that are not divided may carry a share of the light, the stated
-    /// error holds that share times the reflections that repeat it.
+    /// Rays tell of whole input elements only: within one, darker parts may lose more than brighter
+    /// ones. So sums over input elements are compared, each with its mean radiosity. Coarse links
+    /// do not see such parts, and two rounds that are too coarse may agree: as long as links that
+    /// are not divided may carry a share of the light, the stated error holds that share times the
+    /// reflections that repeat it.
     fn unbalanced(&self, state: &State, system: &System, x: &MultiVector<f64>) -> Vec<f64> {
         let System { operator, radiosity, roots, .. } = system;
         let (rows, means) = (operator.row_sums(), radiosity.means(operator, x));
-        let (lanes, inputs) = (x.lanes(), self.problem.mesh.len());
-        let (mut gone, mut received) = (vec![0.0; lanes], vec![0.0; lanes]);
+        let (bands, inputs) = (x.rhs_count(), self.problem.mesh.len());
+        let (mut gone, mut received) = (vec![0.0; bands], vec![0.0; bands]);
         // Of each input element: exposed area, row sum, and exposed area times radiosity.
         let mut wholes = vec![[0.0; 2]; inputs];
-        let mut sent = MultiVector::<f64>::zeros(inputs, lanes);
+        let mut sent = MultiVector::<f64>::zeros(inputs, bands);
         for (i, size) in radiosity.elements().iter().enumerate() {
             let root = roots[i] as usize;
             wholes[root][0] += size.exposed;
@@ -642,18 +666,18 @@ impl Run<'_> {
                 *gone += absorbed + b * (size.exposed - rows[i]);
             }
         }
-        let mut lost = vec![0.0; lanes];
+        let mut lost = vec![0.0; bands];
         // The rays of one element say the same of all of its leaves, so their errors add up.
         let mut unsure = sent;
         for (root, [exposed, row]) in wholes.into_iter().enumerate() {
-            let [open, variance] = self.opening.lost(root);
+            let [open, error] = self.exposure.opening().lost(root);
             let missing = if exposed > 0.0 { 1.0 - open - row / exposed } else { 0.0 };
             for (sent, lost) in unsure.row_mut(root).iter_mut().zip(&mut lost) {
                 *lost += *sent * missing;
-                *sent *= variance.sqrt();
+                *sent *= error;
             }
         }
-        let threshold = if self.opening.closed() { 0.0 } else { state.threshold };
+        let threshold = if self.exposure.opening().closed() { 0.0 } else { state.threshold };
         let share = |(((lost, unsure), gone), received): (((&f64, f64), &f64), f64)| match *gone {
             gone if gone > 0.0 => {
                 let unseen = (UNSEEN * threshold * (received / gone - OFTEN)).clamp(0.0, HIDDEN);
@@ -664,11 +688,11 @@ impl Run<'_> {
         lost.iter().zip(unsure.norms()).zip(&gone).zip(received).map(share).collect()
     }
 
-    /// The error that the residual of the solver leaves at most, of each band: relative, times 1/(1 − ρ) of the
-    /// brightest surface.
+    /// The error that the residual of the solver leaves at most, of each band: relative, times 1/(1
+    /// − ρ) of the brightest surface.
     fn unsolved(&self, report: &Report) -> Vec<f64> {
         let reflectance = &self.problem.surfaces.reflectance;
-        let mut largest = vec![0.0f64; reflectance.lanes()];
+        let mut largest = vec![0.0f64; reflectance.rhs_count()];
         let Some(record) = report.history.last() else { return largest };
         for row in reflectance.rows() {
             largest.iter_mut().zip(row).for_each(|(largest, rho)| *largest = largest.max(*rho));
@@ -689,7 +713,7 @@ impl Run<'_> {
         let System { operator, radiosity, .. } = system;
         let [old, unlit] =
             [&before.radiosity, irradiance].map(|nodes| inherited(&state.tree, operator, nodes));
-        let means = [&state.faces, faces].map(|faces| goal.means(self.problem.mesh, faces, x.lanes()));
+        let means = [&state.faces, faces].map(|faces| goal.means(self.problem.mesh, faces, x.rhs_count()));
         let estimate = Estimate {
             tree: &state.tree,
             operator,
@@ -717,7 +741,7 @@ impl Run<'_> {
         let closure = operator.row_sums().into_iter().zip(system.elements()).map(closed).collect();
         let State { tree, links, radiosity, importance, faces, rounds, error, limited, .. } = state;
         let goal = self.dual.as_ref().map(|(goal, _)| {
-            let irradiance = goal.means(self.problem.mesh, &faces, radiosity.lanes());
+            let irradiance = goal.means(self.problem.mesh, &faces, radiosity.rhs_count());
             Reached { irradiance, importance }
         });
         Solution {
@@ -739,7 +763,8 @@ impl Run<'_> {
     }
 }
 
-/// The radiosity of leaves from that of the nodes before a refinement: new elements have that of the one they were cut from.
+/// The radiosity of leaves from that of the nodes before a refinement: new elements have that of
+/// the one they were cut from.
 fn inherited(tree: &Tree, operator: &HierarchicalOperator, before: &MultiVector<f64>) -> MultiVector<f64> {
     let known = |leaf: u32| {
         let mut node = leaf;
@@ -749,11 +774,11 @@ fn inherited(tree: &Tree, operator: &HierarchicalOperator, before: &MultiVector<
         node as usize
     };
     let leaves = operator.leaves();
-    MultiVector::from_fn(leaves.len(), before.lanes(), |i, band| before.row(known(leaves[i]))[band])
+    MultiVector::from_fn(leaves.len(), before.rhs_count(), |i, band| before.row(known(leaves[i]))[band])
 }
 
-/// The part of what the links lose that rays say is not lost, negative where they lose too little; none where both
-/// agree.
+/// The part of what the links lose that rays say is not lost, negative where they lose too little;
+/// none where both agree.
 fn lost_together(
     sums: &[f64],
     area: &impl Fn(usize) -> f64,
@@ -770,10 +795,12 @@ fn lost_together(
     clear.then(|| difference * (1.0 - variance / (difference * difference)) / lost)
 }
 
-/// What the leaves of each input element receive together, m², where a leaf receives more than it may.
+/// What the leaves of each input element receive together, m², where a leaf receives more than it
+/// may.
 ///
-/// Errors of links make the row sums of some leaves too large and of others too small. To cut the large ones alone would
-/// lose power in the mean, and reflection multiplies a loss by 1/(1 − ρ): so their element keeps its sum.
+/// Errors of links make the row sums of some leaves too large and of others too small. To cut the
+/// large ones alone would lose power in the mean, and reflection multiplies a loss by 1/(1 − ρ): so
+/// their element keeps its sum.
 fn kept_rows(aims: &[Aim], rows: &[f64], roots: &[u32], elements: usize) -> Vec<Option<Aim>> {
     let (mut sums, mut mosts, mut above) = (vec![0.0; elements], vec![0.0; elements], vec![false; elements]);
     for ((aim, &row), &root) in aims.iter().zip(rows).zip(roots) {
@@ -794,7 +821,9 @@ fn exposed(extents: &[Extent]) -> Vec<f64> {
     extents.iter().map(|extent| extent.exposed).collect()
 }
 
-/// Where a part of an element is buried, a grid of points tells how much. What the links exchange cannot be more than what is exposed, up to the whole area, so that they know better where little is. Says whether anything grew.
+/// Where a part of an element is buried, a grid of points tells how much. What the links exchange
+/// cannot be more than what is exposed, up to the whole area, so that they know better where little
+/// is. Says whether anything grew.
 fn widen(extents: &mut [Extent], rows: &[f64]) -> bool {
     let mut grown = false;
     for (extent, &row) in extents.iter_mut().zip(rows) {

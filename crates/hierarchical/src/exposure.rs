@@ -1,6 +1,8 @@
-//! Which part of every leaf sees a lit side or the open: what stands on a floor buries the part under it.
+//! Which part of every leaf sees a lit side or the open: what stands on a floor buries the part
+//! under it.
 //!
-//! A node is looked at once, on a grid of points; what is wholly exposed or wholly buried is so in all of its parts.
+//! Of an input element its rays tell it; where it is partly buried, it and its parts are looked at
+//! once, on grids of points. What is wholly exposed or wholly buried is so in all of its parts.
 
 use crate::opening::Opening;
 use crate::{HierarchyError, Tree};
@@ -9,32 +11,36 @@ use fredholm_mesh::{Mesh, Patch};
 use fredholm_visibility::Occluders;
 use rayon::prelude::*;
 
-/// Points along a side of the grid over an input element, and of the one where it is partly buried.
-const WHOLE: [usize; 2] = [6, 16];
-/// Points along a side of the grid over a part of a partly buried element.
+/// Points along a side of the grid over an input element that is partly buried.
+const WHOLE: usize = 16;
+/// Points along a side of the grid over a part of it.
 const PART: usize = 4;
 
 /// Exposed shares of the nodes that were looked at, and what is needed to look at others.
 pub(crate) struct Exposure<'a> {
     patches: Vec<&'a Patch>,
     lit: Occluders,
+    opening: Opening,
     /// Of the nodes of a tree; not a number where it is not known.
     shares: Vec<f64>,
 }
 
 impl<'a> Exposure<'a> {
-    pub fn new(mesh: &'a Mesh) -> Result<Self, HierarchyError> {
+    /// Sends the rays of the elements; `reflectance` is the largest one.
+    pub fn new(mesh: &'a Mesh, reflectance: f64) -> Result<Self, HierarchyError> {
         let patches: Vec<&Patch> = mesh.patches().collect();
         let lit = Occluders::new(&patches.iter().map(|patch| **patch).collect::<Vec<_>>())?;
-        Ok(Self { patches, lit, shares: Vec::new() })
+        let opening = Opening::new(&patches, &lit, reflectance);
+        Ok(Self { patches, lit, opening, shares: Vec::new() })
     }
 
-    /// What rays from the input elements meet; `reflectance` is the largest one.
-    pub fn opening(&self, reflectance: f64) -> Opening {
-        Opening::new(&self.patches, &self.lit, reflectance)
+    /// What rays from the input elements meet.
+    pub fn opening(&self) -> &Opening {
+        &self.opening
     }
 
-    /// Areas and exposed areas of the leaves, m². The tree must be that of the call before, or grown from it.
+    /// Areas and exposed areas of the leaves, m². The tree must be that of the call before, or
+    /// grown from it.
     pub fn extents(&mut self, tree: &Tree, leaves: &[u32]) -> Vec<Extent> {
         let known = self.shares.len();
         self.shares.resize(tree.nodes().len(), f64::NAN);
@@ -76,10 +82,12 @@ impl<'a> Exposure<'a> {
         let node = &tree.nodes()[index as usize];
         let Some(patch) = node.patch() else { return 1.0 };
         let on_grid = |n: usize| exposed_share(patch, n, &self.patches, &self.lit);
-        if node.root().is_none_or(|root| tree.roots()[root] != index) {
-            return on_grid(PART);
+        match node.root().filter(|&root| tree.roots()[root] == index) {
+            None => on_grid(PART),
+            Some(element) => {
+                let first = self.opening.exposed(element);
+                if first > 0.0 && first < 1.0 { on_grid(WHOLE) } else { first }
+            }
         }
-        let first = on_grid(WHOLE[0]);
-        if first > 0.0 && first < 1.0 { on_grid(WHOLE[1]) } else { first }
     }
 }

@@ -1,13 +1,20 @@
 //! Goals: the mean irradiance of some surfaces alone, and what every element matters to it.
 //!
-//! With the exchanges G (m²), D = ρ/A, and x = M + D G x, the mean irradiance of the goal is Q = ⟨w, G x⟩, w = 1/A_goal on the goal and 0 elsewhere (1/m²). The *importance* z = w + D G z is what the radiosity
-//! would be if the goal shone with w: the same links serve, since G is symmetric, and ⟨w, G x⟩ = ⟨M, G z⟩. An error δG of the exchanges changes the goal by δQ = ⟨z, δG x⟩, to first order: an error e
-//! of the irradiance of an area A matters z A e. So the change from one operator to the next is weighed ([`Estimate`]).
+//! With the exchanges G (m²), D = ρ/A, and x = M + D G x, the mean irradiance of the goal is Q =
+//! ⟨w, G x⟩, w = 1/A_goal on the goal and 0 elsewhere (1/m²). The *importance* z = w + D G z is
+//! what the radiosity would be if the goal shone with w: the same links serve, since G is
+//! symmetric, and ⟨w, G x⟩ = ⟨M, G z⟩. An error δG of the exchanges changes the goal by δQ = ⟨z, δG
+//! x⟩, to first order: an error e of the irradiance of an area A matters z A e. So the change from
+//! one operator to the next is weighed ([`Estimate`]).
 //!
-//! A relative error ε of the irradiance of a face matters I ε, I = A z E/Q. Such errors add up, mostly with one sign, and a face that may have the error ε costs about 1/ε. The least cost for Σ I ε has
-//! ε ∝ 1/√I: the oracle weighs by √(I/I_max), on a cluster by the root of the area mean of I/I_max.
+//! A relative error ε of the irradiance of a face matters I ε, I = A z E/Q. Such errors add up,
+//! mostly with one sign, and a face that may have the error ε costs about 1/ε. The least cost for Σ
+//! I ε has ε ∝ 1/√I: the oracle weighs by √(I/I_max), on a cluster by the root of the area mean of
+//! I/I_max.
 //!
-//! B. Smits, J. Arvo, D. Salesin, *An importance-driven radiosity algorithm*, SIGGRAPH 1992, doi:10.1145/142920.134080; R. Becker, R. Rannacher, Acta Numerica 10 (2001), doi:10.1017/S0962492901000010.
+//! B. Smits, J. Arvo, D. Salesin, *An importance-driven radiosity algorithm*, SIGGRAPH 1992,
+//! doi:10.1145/142920.134080; R. Becker, R. Rannacher, Acta Numerica 10 (2001),
+//! doi:10.1017/S0962492901000010.
 
 use crate::driver::{STEP, Stated};
 use crate::light::ambient;
@@ -16,7 +23,8 @@ use fredholm_coupling::Radiosity;
 use fredholm_linop::{LinearOperator, LinopError, MultiVector, SecondKind};
 use fredholm_mesh::Mesh;
 
-/// Stated error over the last change. The errors of a goal have mostly one sign, since light is lost or gained behind the same edges, and fall more slowly than those of faces.
+/// Stated error over the last change. The errors of a goal have mostly one sign, since light is
+/// lost or gained behind the same edges, and fall more slowly than those of faces.
 const CONFIDENCE: f64 = 2.5;
 
 /// Surfaces whose mean irradiance is asked for.
@@ -87,19 +95,20 @@ impl Goal {
     pub(crate) fn dual(&self, mesh: &Mesh, surfaces: &Surfaces) -> Surfaces {
         let weight = 1.0 / self.area(mesh);
         let w = |k: usize, _| if self.holds(mesh, mesh.face_of(k)) { weight } else { 0.0 };
-        let exitance = MultiVector::from_fn(mesh.len(), surfaces.exitance.lanes(), w);
+        let exitance = MultiVector::from_fn(mesh.len(), surfaces.exitance.rhs_count(), w);
         Surfaces { reflectance: surfaces.reflectance.clone(), exitance }
     }
 }
 
-/// √(I/I_max) of all nodes from the importance and the irradiance on all nodes; where there is no irradiance yet it is taken to be the same everywhere.
+/// √(I/I_max) of all nodes from the importance and the irradiance on all nodes; where there is no
+/// irradiance yet it is taken to be the same everywhere.
 pub(crate) fn weights(tree: &Tree, z: &MultiVector<f64>, irradiance: Option<&MultiVector<f64>>) -> Vec<f64> {
     let matter = |node: u32, band: usize| {
         let e = irradiance.map_or(1.0, |e| e.row(node as usize)[band]);
         (tree.nodes()[node as usize].area() * z.row(node as usize)[band] * e).max(0.0)
     };
     let most = |band| tree.roots().iter().map(|&root| matter(root, band)).fold(0.0, f64::max);
-    let most: Vec<f64> = (0..z.lanes()).map(most).collect();
+    let most: Vec<f64> = (0..z.rhs_count()).map(most).collect();
     let share = |root: u32| {
         let bands = most.iter().enumerate();
         bands
@@ -132,7 +141,8 @@ fn is_whole(tree: &Tree, index: usize) -> bool {
     tree.nodes()[index].root().is_none_or(|root| tree.roots()[root] as usize == index)
 }
 
-/// The importance before there is a solution, on the nodes of the input elements: all reflect what the whole scene would have of w if it were spread evenly.
+/// The importance before there is a solution, on the nodes of the input elements: all reflect what
+/// the whole scene would have of w if it were spread evenly.
 pub(crate) fn expected(tree: &Tree, dual: &Surfaces) -> MultiVector<f64> {
     let even = ambient(tree, dual);
     let mut z = MultiVector::zeros(tree.nodes().len(), even.len());
@@ -168,9 +178,11 @@ pub(crate) struct Estimate<'a> {
 }
 
 impl Estimate<'_> {
-    /// [`CONFIDENCE`] times the change of the goal, or the root of the summed squares of what the input elements have to do with it where that is more, and what the residual of the solver may do.
-    /// A change is not believed to be smaller than [`STEP`] times the `earlier` one, that of the round before, relative and of the worst band: it may be so by chance. So nothing is stated where there is no earlier
-    /// one. With it comes the change of this round.
+    /// [`CONFIDENCE`] times the change of the goal, or the root of the summed squares of what the
+    /// input elements have to do with it where that is more, and what the residual of the solver
+    /// may do. A change is not believed to be smaller than [`STEP`] times the `earlier` one, that
+    /// of the round before, relative and of the worst band: it may be so by chance. So nothing is
+    /// stated where there is no earlier one. With it comes the change of this round.
     ///
     /// # Errors
     /// [`LinopError`] where the vectors do not fit.
@@ -190,11 +202,12 @@ impl Estimate<'_> {
         Ok((earlier.map(|_| stated), worst))
     }
 
-    /// √Σ s², where s = Σ z A ΔE, over the leaves of an input element, is what the new exchanges change there, as the goal sees it, W/m².
+    /// √Σ s², where s = Σ z A ΔE, over the leaves of an input element, is what the new exchanges
+    /// change there, as the goal sees it, W/m².
     fn shares(&self) -> Vec<f64> {
         let [x, old] = self.before;
         let new = self.radiosity.means(self.operator, x).irradiance;
-        let mut shares = MultiVector::<f64>::zeros(self.tree.roots().len(), x.lanes());
+        let mut shares = MultiVector::<f64>::zeros(self.tree.roots().len(), x.rhs_count());
         for (i, &leaf) in self.leaves.iter().enumerate() {
             let node = &self.tree.nodes()[leaf as usize];
             let change = new.row(i).iter().zip(old.row(i)).zip(self.importance.row(i));
@@ -208,10 +221,10 @@ impl Estimate<'_> {
     /// |⟨G z, M − A x⟩|: what the solver has left of the goal, W/m².
     fn unsolved(&self) -> Result<Vec<f64>, LinopError> {
         let a = SecondKind::new(self.operator, self.radiosity.scaling())?;
-        let [mut product, mut seen] = [(); 2].map(|()| MultiVector::zeros(self.x.dim(), self.x.lanes()));
+        let [mut product, mut seen] = [(); 2].map(|()| MultiVector::zeros(self.x.dim(), self.x.rhs_count()));
         a.apply(self.x, &mut product);
         self.operator.apply(self.importance, &mut seen);
-        let mut residual = MultiVector::zeros(self.x.dim(), self.x.lanes());
+        let mut residual = MultiVector::zeros(self.x.dim(), self.x.rhs_count());
         residual.set_difference(self.radiosity.exitance(), &product);
         Ok(seen.dots(&residual).into_iter().map(f64::abs).collect())
     }

@@ -1,10 +1,14 @@
-//! Hierarchical radiosity: B = M + R F B on elements that are as small as the accuracy asked for needs, with links between elements of any size.
+//! Hierarchical radiosity: B = M + R F B on elements that are as small as the accuracy asked for
+//! needs, with links between elements of any size.
 //!
-//! Input elements are grouped to clusters above and split into quarters below ([`Tree`]). A [`Link`] stands for all pairs of leaves of two nodes; an oracle splits those that
-//! leave too large an error, and the [`HierarchicalOperator`] of all links is solved like any other. [`solve`] goes on until the irradiance of the faces has the accuracy asked for, and
-//! states an estimate of its error.
+//! Input elements are grouped to clusters above and split into quarters below ([`Tree`]). A
+//! [`Link`] stands for all pairs of leaves of two nodes; an oracle splits those that leave too
+//! large an error, and the [`HierarchicalOperator`] of all links is solved like any other.
+//! [`solve`] goes on until the irradiance of the faces has the accuracy asked for, and states an
+//! estimate of its error.
 //!
-//! Source: P. Hanrahan, D. Salzman, L. Aupperle, *A rapid hierarchical radiosity algorithm*, SIGGRAPH 1991, doi:10.1145/122718.122740. Units: metres, W/m².
+//! Source: P. Hanrahan, D. Salzman, L. Aupperle, *A rapid hierarchical radiosity algorithm*,
+//! SIGGRAPH 1991, doi:10.1145/122718.122740. Units: metres, W/m².
 
 mod checkpoint;
 mod closure;

@@ -1,6 +1,8 @@
-//! Brightness, contrast and level of the nodes, from a solution or, before the first one, from an estimate.
+//! Brightness, contrast and level of the nodes, from a solution or, before the first one, from an
+//! estimate.
 //!
-//! Before there is a solution, every element is taken to receive the ambient irradiance Σ A M/Σ A (1 − ρ), which a closed room of one reflectance has.
+//! Before there is a solution, every element is taken to receive the ambient irradiance Σ A M/Σ A
+//! (1 − ρ), which a closed room of one reflectance has.
 
 use crate::oracle::{FLOOR, Light};
 use crate::tree::Tree;
@@ -56,7 +58,8 @@ impl Light {
         light
     }
 
-    /// The level of a cluster is the harmonic mean over its parts: relative errors weigh more where it is dark. What is buried does not count.
+    /// The level of a cluster is the harmonic mean over its parts: relative errors weigh more where
+    /// it is dark. What is buried does not count.
     fn darken(&mut self, tree: &Tree, operator: &HierarchicalOperator) {
         for (index, node) in tree.nodes().iter().enumerate().rev() {
             if operator.is_buried(index) {
@@ -143,7 +146,7 @@ const GUESS: f64 = 0.3;
 
 /// The ambient irradiance of each band, W/m².
 pub(crate) fn ambient(tree: &Tree, surfaces: &Surfaces) -> Vec<f64> {
-    let bands = surfaces.exitance.lanes();
+    let bands = surfaces.exitance.rhs_count();
     let (mut emitted, mut absorbing) = (vec![0.0; bands], vec![0.0; bands]);
     for (root, &node) in tree.roots().iter().enumerate() {
         let area = tree.nodes()[node as usize].area();
@@ -157,7 +160,7 @@ pub(crate) fn ambient(tree: &Tree, surfaces: &Surfaces) -> Vec<f64> {
 
 /// Root-mean-square irradiance of the input elements in each band, W/m².
 fn unit(tree: &Tree, irradiance: &MultiVector<f64>) -> Vec<f64> {
-    let (mut squares, mut area) = (vec![0.0; irradiance.lanes()], 0.0);
+    let (mut squares, mut area) = (vec![0.0; irradiance.rhs_count()], 0.0);
     for &root in tree.roots() {
         let size = tree.nodes()[root as usize].area();
         area += size;

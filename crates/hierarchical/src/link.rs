@@ -1,8 +1,11 @@
 //! Links: exchanges between two nodes of any levels, and what is known of their errors.
 //!
-//! A link stands for all pairs of leaves of its two nodes. The form factor is not the same all over a node: to first order it is 1 + g·(x − c) times its mean, with a gradient g for each side. What that leaves,
-//! and all of the variation where a node is not divided, are errors: relative to the open exchange, the *deviation* of a side is the standard deviation of the form factor over it, the
-//! *rest* that from the linear function, and the *doubt* the uncertainty of the share that gets through.
+//! A link stands for all pairs of leaves of its two nodes. The form factor is not the same all over
+//! a node: to first order it is 1 + g·(x − c) times its mean, with a gradient g for each side. What
+//! that leaves, and all of the variation where a node is not divided, are errors: relative to the
+//! open exchange, the *deviation* of a side is the standard deviation of the form factor over it,
+//! the *rest* that from the linear function, and the *doubt* the uncertainty of the share that gets
+//! through.
 
 use glam::Vec3;
 

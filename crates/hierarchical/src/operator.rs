@@ -1,13 +1,18 @@
 //! The operator of all links, y = G x on the leaves of the tree, without its n² entries.
 //!
-//! Every node has the mean X of the radiosity x over the exposed areas w of its leaves and the first moment M = Σ w x (c_leaf − c)/Σ w about its centre c (*pull*). A link of p and q with the exchange
-//! g (m²) and the gradients g_p and g_q brings the power s = g (X_q + g_q·M_q) to p, as s (1 + g_p·(x − c_p)) over its area, and the like to q (*gather*). A node shares its power and its gradient among its
-//! children (*push*). So G_ij = Σ g v_i v_j over the links of nodes p that hold i and q that hold j, v_i = (w_i/W_p) (1 + g_p·(c_i − c_p)): symmetric, with the exchanges of the links as sums.
-//! Row sums that exceed what a leaf can send are taken back by a diagonal scaling S on both sides, S G S ([`crate::closure`]).
-//! One pass over the links serves all bands. P. Hanrahan, D. Salzman, L. Aupperle, SIGGRAPH 1991, doi:10.1145/122718.122740, for constants; H. R. Zatz, SIGGRAPH 1993, doi:10.1145/166117.166150,
-//! for higher orders.
+//! Every node has the mean X of the radiosity x over the exposed areas w of its leaves and the
+//! first moment M = Σ w x (c_leaf − c)/Σ w about its centre c (*pull*). A link of p and q with the
+//! exchange g (m²) and the gradients g_p and g_q brings the power s = g (X_q + g_q·M_q) to p, as s
+//! (1 + g_p·(x − c_p)) over its area, and the like to q (*gather*). A node shares its power and its
+//! gradient among its children (*push*). So G_ij = Σ g v_i v_j over the links of nodes p that hold
+//! i and q that hold j, v_i = (w_i/W_p) (1 + g_p·(c_i − c_p)): symmetric, with the exchanges of the
+//! links as sums. Row sums that exceed what a leaf can send are taken back by a diagonal scaling S
+//! on both sides, S G S ([`crate::closure`]). One pass over the links serves all bands. P.
+//! Hanrahan, D. Salzman, L. Aupperle, SIGGRAPH 1991, doi:10.1145/122718.122740, for constants; H.
+//! R. Zatz, SIGGRAPH 1993, doi:10.1145/166117.166150, for higher orders.
 //!
-//! The links of a receiver are summed in order, by one thread: the bits do not depend on the number of threads.
+//! The links of a receiver are summed in order, by one thread: the bits do not depend on the number
+//! of threads.
 
 use crate::Link;
 use crate::tree::{Node, Tree};
@@ -38,7 +43,8 @@ pub struct HierarchicalOperator {
     buried: Vec<bool>,
     leaves: Vec<u32>,
     links: Arc<Vec<Link>>,
-    /// The links of receiver p are those that `ends` numbers from `starts[p]` up to `starts[p + 1]`, with a bit for the side on which p is.
+    /// The links of receiver p are those that `ends` numbers from `starts[p]` up to
+    /// `starts[p + 1]`, with a bit for the side on which p is.
     starts: Vec<usize>,
     ends: Vec<u32>,
     /// S, of each leaf.
@@ -46,7 +52,8 @@ pub struct HierarchicalOperator {
 }
 
 impl HierarchicalOperator {
-    /// The operator of some links between nodes of a tree. `exposed` are the exposed areas of the leaves, m²: what is buried neither sends nor receives.
+    /// The operator of some links between nodes of a tree. `exposed` are the exposed areas of the
+    /// leaves, m²: what is buried neither sends nor receives.
     pub(crate) fn new(tree: &Tree, links: Arc<Vec<Link>>, exposed: &[f64]) -> Self {
         let (nodes, leaves) = (tree.nodes(), tree.leaves());
         let starts = starts(nodes.len(), &links);
@@ -96,14 +103,14 @@ impl HierarchicalOperator {
         let ones = MultiVector::from_fn(self.leaves.len(), 1, |_, _| 1.0);
         let mut sums = MultiVector::zeros(self.leaves.len(), 1);
         self.apply(&ones, &mut sums);
-        sums.lane(0)
+        sums.vector(0)
     }
 
-    /// Means over the exposed areas of all nodes of values on the leaves, nodes × lanes.
+    /// Means over the exposed areas of all nodes of values on the leaves, nodes × right-hand sides.
     #[must_use]
     pub fn means(&self, x: &MultiVector<f64>) -> MultiVector<f64> {
         let pulled = self.pull(x, |_| 1.0);
-        MultiVector::from_fn(self.parents.len(), x.lanes(), |node, lane| pulled.row(node)[NUMBERS * lane])
+        MultiVector::from_fn(self.parents.len(), x.rhs_count(), |node, rhs| pulled.row(node)[NUMBERS * rhs])
     }
 
     /// What a node exchanges with itself, m²; such links have no gradient.
@@ -120,7 +127,7 @@ impl HierarchicalOperator {
 
     /// Means and moments of all nodes of values on the leaves, each times a factor.
     fn pull(&self, x: &MultiVector<f64>, factor: impl Fn(usize) -> f64) -> MultiVector<f64> {
-        let mut pulled = MultiVector::zeros(self.parents.len(), NUMBERS * x.lanes());
+        let mut pulled = MultiVector::zeros(self.parents.len(), NUMBERS * x.rhs_count());
         for (i, &leaf) in self.leaves.iter().enumerate() {
             let numbers = pulled.row_mut(leaf as usize).chunks_exact_mut(NUMBERS);
             let factor = factor(i);
@@ -137,7 +144,8 @@ impl HierarchicalOperator {
         pulled
     }
 
-    /// Offset of the centre of a child from that of its parent, m, and its share of the exposed area.
+    /// Offset of the centre of a child from that of its parent, m, and its share of the exposed
+    /// area.
     fn place(&self, child: usize) -> (Vec3, f64) {
         let parent = self.parents[child] as usize;
         (self.centres[child] - self.centres[parent], self.areas[child] / self.areas[parent])
@@ -145,7 +153,7 @@ impl HierarchicalOperator {
 
     /// The power and its gradient that reach each node over its own links.
     fn gather(&self, pulled: &MultiVector<f64>) -> MultiVector<f64> {
-        let width = pulled.lanes();
+        let width = pulled.rhs_count();
         let mut power = MultiVector::zeros(pulled.dim(), width);
         power.as_mut_slice().par_chunks_mut(CHUNK * width).enumerate().for_each(|(chunk, rows)| {
             for (at, row) in rows.chunks_exact_mut(width).enumerate() {
@@ -184,12 +192,13 @@ impl HierarchicalOperator {
 
 /// Two rows, the lower one first.
 fn rows(vector: &mut MultiVector<f64>, lower: usize, higher: usize) -> (&mut [f64], &mut [f64]) {
-    let width = vector.lanes();
+    let width = vector.rhs_count();
     let (before, after) = vector.as_mut_slice().split_at_mut(higher * width);
     (&mut before[lower * width..(lower + 1) * width], &mut after[..width])
 }
 
-/// Exposed areas of all nodes, m², and their centres. Where nothing is exposed, a small part of the area stands for it, so that shares are numbers.
+/// Exposed areas of all nodes, m², and their centres. Where nothing is exposed, a small part of the
+/// area stands for it, so that shares are numbers.
 fn areas(tree: &Tree, leaves: &[u32], exposed: &[f64]) -> (Vec<f64>, Vec<Vec3>) {
     let nodes = tree.nodes();
     let (mut areas, mut centres) = (vec![0.0; nodes.len()], vec![Vec3::ZERO; nodes.len()]);
@@ -242,7 +251,8 @@ impl LinearOperator<f64> for HierarchicalOperator {
         (self.ends.len() + 2 * self.parents.len()) as u64
     }
 
-    /// No element sees itself, but a bent cluster that is linked with itself gives each of its elements a share of its own light.
+    /// No element sees itself, but a bent cluster that is linked with itself gives each of its
+    /// elements a share of its own light.
     fn diagonal(&self, _: usize, out: &mut [f64]) {
         let mut own: Vec<f64> = (0..self.parents.len()).map(|node| self.own_exchange(node)).collect();
         for child in 1..own.len() {

@@ -4,14 +4,17 @@
 //! the radiosity within the node; its *level* η, the irradiance in that unit; the latter two may be any number ≥ 0. A link of p and q with form factor F_pq leaves the
 //! errors, with what it does not resolve of the variation over each side, s_p and s_q (all of it over a leaf, else what a linear function leaves),
 //!
-//! - β_q F_pq s_p on the points of p: one function stands for a field that varies otherwise. Splitting p cures it. What the parts of a large sender do to p goes the same way and adds up: F_pq is
-//!   taken to be that of a sender of at least the size of p, and at most 1;
+//! - β_q F_pq s_p on the points of p: one function stands for a field that varies otherwise.
+//!   Splitting p cures it. What the parts of a large sender do to p goes the same way and adds up:
+//!   F_pq is taken to be that of a sender of at least the size of p, and at most 1;
 //! - γ_q F_pq s_q on the mean of p: the same for a sender of some contrast. Splitting q cures it;
 //! - β_q F_pq d with the uncertainty d of what gets through. Splitting the larger node cures it.
 //!
-//! They are compared with the irradiance of p. Below the faces an error weighs less: it is the means of faces that accuracy is promised for. On the part of a face that p
-//! is, A_p/A_face is the weight of an error of a mean, and a further [`DETAIL`] that of a deviation from it. The weighting by brightness is that of P. Hanrahan, D. Salzman,
-//! L. Aupperle, SIGGRAPH 1991, doi:10.1145/122718.122740.
+//! They are compared with the irradiance of p. Below the faces an error weighs less: it is the
+//! means of faces that accuracy is promised for. On the part of a face that p is, A_p/A_face is the
+//! weight of an error of a mean, and a further [`DETAIL`] that of a deviation from it. The
+//! weighting by brightness is that of P. Hanrahan, D. Salzman, L. Aupperle, SIGGRAPH 1991,
+//! doi:10.1145/122718.122740.
 //!
 //! With a [`crate::Goal`] all of this is multiplied by the weight of p in it ([`crate::goal`]).
 
@@ -102,7 +105,8 @@ impl Oracle<'_> {
         ]
     }
 
-    /// What is not resolved of a variation over a node: all of it over a leaf, else what a linear function leaves.
+    /// What is not resolved of a variation over a node: all of it over a leaf, else what a linear
+    /// function leaves.
     fn left(&self, index: u32, [deviation, rest]: [f64; 2]) -> f64 {
         if self.linear && !self.node(index).is_leaf() { rest } else { deviation }
     }

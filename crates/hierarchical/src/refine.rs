@@ -1,10 +1,16 @@
-//! Refinement: pairs of nodes that are too coarse become pairs of their children, until every pair is fine enough for the oracle.
+//! Refinement: pairs of nodes that are too coarse become pairs of their children, until every pair
+//! is fine enough for the oracle.
 //!
-//! Pairs wait on a stack, from which blocks of them are taken. Each pair of a block is judged by itself, in parallel; then the nodes to be split are split in the order of the pairs, and the pairs of
-//! children go on the stack. So the links do not depend on the number of threads, and few pairs wait at any time. What a pair sees wholly its parts see wholly, and what sees nothing is gone.
+//! Pairs wait on a stack, from which blocks of them are taken. Each pair of a block is judged by
+//! itself, in parallel; then the nodes to be split are split in the order of the pairs, and the
+//! pairs of children go on the stack. So the links do not depend on the number of threads, and few
+//! pairs wait at any time. What a pair sees wholly its parts see wholly, and what sees nothing is
+//! gone.
 //!
-//! **Memory.** Before a block is taken over, what tree, links and waiting pairs will need is compared with what they may take, every waiting pair counted as a link. Where it is more, nothing is refined any further: what waits is linked as it is,
-//! but for pairs that cannot be a link.
+//! **Memory.** Before a block is taken over, what tree, links and waiting pairs will need is
+//! compared with what they may take, every waiting pair counted as a link. Where it is more,
+//! nothing is refined any further: what waits is linked as it is, but for pairs that cannot be a
+//! link.
 
 use crate::operator::MOST_LINKS;
 use crate::oracle::{Candidate, Light, Oracle, Verdict};
@@ -22,7 +28,8 @@ const CHUNK: usize = 256;
 /// Pairs that are judged before the tree grows.
 const BLOCK: usize = 1 << 15;
 
-/// Input elements from which on clusters that face all ways are linked as wholes. Where there are fewer, the links of their parts are few enough, and more exact.
+/// Input elements from which on clusters that face all ways are linked as wholes. Where there are
+/// fewer, the links of their parts are few enough, and more exact.
 const PLENTY: usize = 4096;
 
 /// A pair of nodes to be judged.
@@ -76,11 +83,14 @@ pub(crate) fn bytes(nodes: usize, links: usize, bands: usize) -> u64 {
     (nodes as u64 * node as u64).saturating_add((links as u64).saturating_mul(Link::BYTES))
 }
 
-/// Bytes of a node in the operator, in the preparation of exchanges and in what is known of the light.
+/// Bytes of a node in the operator, in the preparation of exchanges and in what is known of the
+/// light.
 const NODE_WORK: usize = 320;
-/// Bytes of a node for each band: means, moments, power and gradients of a product, and the vectors of a solver.
+/// Bytes of a node for each band: means, moments, power and gradients of a product, and the vectors
+/// of a solver.
 const BAND_WORK: usize = 176;
-/// Share of the memory from which on nothing is refined any further: the rest is for pairs that cannot be links.
+/// Share of the memory from which on nothing is refined any further: the rest is for pairs that
+/// cannot be links.
 const SOFT: f64 = 0.85;
 
 /// Refines links, or the pair of the whole scene with itself where there are none yet.
@@ -132,7 +142,8 @@ pub(crate) fn refine(
     Ok(Refined { links: kept, changed, limited })
 }
 
-/// Nodes of the tree, and links and pairs in the place of a block, when it has become what was found.
+/// Nodes of the tree, and links and pairs in the place of a block, when it has become what was
+/// found.
 fn outcome(tree: &Tree, fates: &[Fate]) -> [usize; 2] {
     let mut pairs = 0;
     let mut split: Vec<u32> = Vec::new();

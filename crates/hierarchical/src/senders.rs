@@ -1,4 +1,5 @@
-//! What one element receives its light from: its own links and those of all nodes that it is a part of.
+//! What one element receives its light from: its own links and those of all nodes that it is a part
+//! of.
 
 use crate::{Link, Tree};
 
@@ -15,7 +16,8 @@ pub struct Sender {
     pub exchange: f64,
 }
 
-/// The senders of a node, those of its own links first, then level by level of what it is a part of.
+/// The senders of a node, those of its own links first, then level by level of what it is a part
+/// of.
 #[must_use]
 pub fn senders(tree: &Tree, links: &[Link], element: u32) -> Vec<Sender> {
     let up = std::iter::successors(Some(element), |&node| tree.nodes()[node as usize].parent());

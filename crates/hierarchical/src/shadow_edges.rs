@@ -1,8 +1,12 @@
-//! Lines on a polygon along which shadows begin and end: the irradiance from a polygonal lamp, or its derivative, jumps or bends there.
+//! Lines on a polygon along which shadows begin and end: the irradiance from a polygonal lamp, or
+//! its derivative, jumps or bends there.
 //!
-//! A corner of the lamp and an edge of a body, or an edge of the lamp and a corner of a body, span a plane; where the part of it behind the body meets the polygon, the lamp begins or ceases to be seen
-//! in part. An edge that lies on the polygon is the line where body and polygon meet. P. Heckbert, *Discontinuity meshing for radiosity*, Eurographics Workshop on Rendering 1992;
-//! D. Lischinski, F. Tampieri, D. P. Greenberg, IEEE Comput. Graph. Appl. 12(6) 1992, doi:10.1109/38.163622. Lines that three edges make are left out. Metres.
+//! A corner of the lamp and an edge of a body, or an edge of the lamp and a corner of a body, span
+//! a plane; where the part of it behind the body meets the polygon, the lamp begins or ceases to be
+//! seen in part. An edge that lies on the polygon is the line where body and polygon meet. P.
+//! Heckbert, *Discontinuity meshing for radiosity*, Eurographics Workshop on Rendering 1992; D.
+//! Lischinski, F. Tampieri, D. P. Greenberg, IEEE Comput. Graph. Appl. 12(6) 1992,
+//! doi:10.1109/38.163622. Lines that three edges make are left out. Metres.
 
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::body::{Bodies, Body, Edge, Face};
@@ -12,7 +16,8 @@ const BELOW: f64 = 1.0 - 1e-6;
 /// Difference of heights, over that of the corner of the lamp, below which an edge is level.
 const LEVEL: f64 = 1e-14;
 
-/// The lines that lamps and bodies make on the plane of `onto`; they may lie outside of it, or where another body hides the lamp.
+/// The lines that lamps and bodies make on the plane of `onto`; they may lie outside of it, or
+/// where another body hides the lamp.
 #[must_use]
 pub fn shadow_edges(lamps: &[Patch], bodies: &Bodies, onto: &Patch) -> Vec<[Vec3; 2]> {
     let (plane, flat) = (Face::through(onto.corner(0), onto.normal()), bodies.tolerance());
@@ -49,8 +54,8 @@ fn of_edge(plane: &Face, lamp: [Vec3; 2], corner: Vec3) -> Option<[Vec3; 2]> {
     Some([from?, to?])
 }
 
-/// Where the line from a corner of a lamp through a point below it meets the plane; none for a point that is not between, or a lamp
-/// in the plane.
+/// Where the line from a corner of a lamp through a point below it meets the plane; none for a
+/// point that is not between, or a lamp in the plane.
 fn project(plane: &Face, lamp: Vec3, x: Vec3) -> Option<Vec3> {
     let (high, low) = (plane.height(lamp), plane.height(x));
     (high > 0.0 && low >= 0.0 && low <= BELOW * high).then(|| lamp.lerp(x, high / (high - low)))

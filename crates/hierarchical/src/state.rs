@@ -12,7 +12,7 @@ pub struct State {
     pub(crate) links: Arc<Vec<Link>>,
     /// Radiosity of the exposed parts of the leaves, W/m².
     pub(crate) radiosity: MultiVector<f64>,
-    /// Importance of the exposed parts of the leaves, 1/m²; without a goal there are no lanes.
+    /// Importance of the exposed parts of the leaves, 1/m²; without a goal no column.
     pub(crate) importance: MultiVector<f64>,
     /// Surfaces of the goal; none without one.
     pub(crate) goal: Vec<usize>,
@@ -28,7 +28,7 @@ pub struct State {
 impl State {
     /// The start.
     pub(crate) fn new(problem: &Problem, threshold: f64) -> Result<Self, HierarchyError> {
-        let bands = problem.surfaces.exitance.lanes();
+        let bands = problem.surfaces.exitance.rhs_count();
         let (expected, surfaces) = (problem.mesh.len(), problem.surfaces);
         for (what, rows) in [("the reflectance", &surfaces.reflectance), ("the exitance", &surfaces.exitance)]
         {
@@ -37,12 +37,12 @@ impl State {
             }
         }
         let goal = problem.goal.map_or(Vec::new(), |goal| goal.surfaces().to_vec());
-        let lanes = if goal.is_empty() { 0 } else { bands };
+        let columns = if goal.is_empty() { 0 } else { bands };
         Ok(Self {
             tree: Tree::new(problem.mesh, problem.occluders.tolerance())?,
             links: Arc::default(),
             radiosity: MultiVector::zeros(problem.mesh.len(), bands),
-            importance: MultiVector::zeros(problem.mesh.len(), lanes),
+            importance: MultiVector::zeros(problem.mesh.len(), columns),
             goal,
             faces: Vec::new(),
             threshold,
@@ -78,7 +78,7 @@ impl State {
     /// Area means over all nodes of values of the leaves.
     pub(crate) fn nodes_means(&self, values: &MultiVector<f64>) -> MultiVector<f64> {
         let nodes = self.tree.nodes();
-        let mut means = MultiVector::zeros(nodes.len(), values.lanes());
+        let mut means = MultiVector::zeros(nodes.len(), values.rhs_count());
         for (i, leaf) in self.tree.leaves().into_iter().enumerate() {
             means.row_mut(leaf as usize).copy_from_slice(values.row(i));
         }

@@ -1,7 +1,8 @@
-//! Links of generated cities: row sums that hold, and a system that every solver of products solves.
+//! Links of generated cities: row sums that hold, and a system that every solver of products
+//! solves.
 //!
-//! `cargo test --release -p fredholm-hierarchical --test cities -- --ignored --nocapture` takes cities of 13,000 and
-//! 40,000 faces within 4 GiB.
+//! `cargo test --release -p fredholm-hierarchical --test cities -- --ignored --nocapture` takes
+//! cities of 13,000 and 40,000 faces within 4 GiB.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot run should panic, in its helpers too")]
 
@@ -16,13 +17,14 @@ use fredholm_iterative::solvers;
 use fredholm_linop::{MultiVector, Quiet, SecondKind, Stop, StopReason};
 use fredholm_scene::Scene;
 
-/// Solvers that ask for products alone. `cg-psi` is not among them: its matrix has areas over reflectances on the
-/// diagonal, here from m² to cm², and without a preconditioner its steps grow with the root of their quotient. Scaled by
-/// that diagonal it is `cg-theta`.
+/// Solvers that ask for products alone. `cg-psi` is not among them: its matrix has areas over
+/// reflectances on the diagonal, here from m² to cm², and without a preconditioner its steps grow
+/// with the root of their quotient. Scaled by that diagonal it is `cg-theta`.
 const PRODUCTS: [&str; 9] =
     ["neumann", "jacobi", "cg-theta", "pcg-jacobi", "chebyshev", "minres", "gmres", "bicgstab", "anderson"];
 
-/// Largest row sum, and how many solvers of products end at the residual that the accuracy asks for.
+/// Largest row sum, and how many solvers of products end at the residual that the accuracy asks
+/// for.
 fn solved(solution: &Solution, accuracy: f64) -> (f64, usize) {
     let operator = solution.operator();
     let a = SecondKind::new(&operator, solution.system.scaling()).unwrap();
@@ -30,7 +32,7 @@ fn solved(solution: &Solution, accuracy: f64) -> (f64, usize) {
     let stop = Stop { tolerance: options(accuracy).residual, max_iterations: 2000 };
     let mut converged = 0;
     for solver in solvers::<f64>().iter().filter(|solver| PRODUCTS.contains(&solver.name())) {
-        let mut x = MultiVector::zeros(rhs.dim(), rhs.lanes());
+        let mut x = MultiVector::zeros(rhs.dim(), rhs.rhs_count());
         let start = Instant::now();
         let report = solver.solve(&a, rhs, &mut x, &stop, &mut Quiet).unwrap();
         let (steps, seconds) = (report.history.len(), start.elapsed().as_secs_f64());

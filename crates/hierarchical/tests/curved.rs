@@ -12,7 +12,8 @@ mod traced;
 
 use traced::Parts;
 
-/// Relative L2 errors of the parts less the noise of tracing, of all and of the object alone, and what is stated.
+/// Relative L2 errors of the parts less the noise of tracing, of all and of the object alone, and
+/// what is stated.
 fn errors(name: &str, (count, accuracy): (usize, f64), (whole_walls, batches): (bool, u64)) -> [f64; 3] {
     let bench = objects::bench(name, count);
     let parts = Parts::of(&bench, whole_walls);

@@ -41,13 +41,14 @@ fn gathered(
     let leaves = Leaves { radiosity, irradiance, exposed: &exposed };
     let gather = Gather::new(&solution.tree, &leaves, &bench.occluders, &[], share).unwrap();
     let points: Vec<Receiver> = receivers.iter().map(|(_, receiver)| *receiver).collect();
-    let expected = MultiVector::from_fn(points.len(), irradiance.lanes(), |k, band| {
+    let expected = MultiVector::from_fn(points.len(), irradiance.rhs_count(), |k, band| {
         irradiance.row(receivers[k].0)[band]
     });
     gather.irradiance(&points, &expected, &Quiet).unwrap()
 }
 
-/// Factor from a point to a parallel rectangle at height h over it whose corner is over the point (Howell B-3).
+/// Factor from a point to a parallel rectangle at height h over it whose corner is over the point
+/// (Howell B-3).
 fn corner(a: f64, b: f64, h: f64) -> f64 {
     let (a, b) = (a / h, b / h);
     let side = |a: f64, b: f64| a / (1.0 + a * a).sqrt() * (b / (1.0 + a * a).sqrt()).atan();
@@ -118,7 +119,8 @@ fn whole_nodes_stand_for_their_leaves_within_the_error_allowed() {
     assert!(rms < 5e-3 && rms > 1e-9, "{rms:e}");
 }
 
-/// Irradiance of the face with some centroid, of each band, from particle tracing; its noise is 0.14 % in the median.
+/// Irradiance of the face with some centroid, of each band, from particle tracing; its noise is
+/// 0.14 % in the median.
 fn traced(centroid: Vec3) -> [f64; 3] {
     let text = include_str!("../../../tests/data/cornell_planar_reference.csv");
     let numbers =
@@ -163,7 +165,8 @@ fn means_of_points_are_those_of_particle_tracing() {
 
 #[test]
 fn behind_many_bodies_the_strong_senders_are_cut_and_the_weak_ones_sampled() {
-    // A lamp and an even ceiling over a grid of plates over a floor: the factors of both are those of the exact clipping.
+    // A lamp and an even ceiling over a grid of plates over a floor: the factors of both are those
+    // of the exact clipping.
     let quad = |name: &str, [x0, x1, y0, y1, z]: [f64; 5], up: bool| {
         let (a, b) = if up { ([x1, y0], [x0, y1]) } else { ([x0, y1], [x1, y0]) };
         format!(

@@ -1,4 +1,5 @@
-//! Goals: the mean irradiance of some surfaces against over-refined solutions, the dual identity, states, and the same bits for any number of threads.
+//! Goals: the mean irradiance of some surfaces against over-refined solutions, the dual identity,
+//! states, and the same bits for any number of threads.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot run should panic, in its helpers too")]
 
@@ -30,7 +31,8 @@ fn the_stated_error_holds_with_far_fewer_links_than_everything_needs() {
     let bench = Bench::text(TWO_ROOMS);
     let fine = bench.solve(0.01);
     let faces = bench.faces(&fine);
-    // The lamp lights the table; the desk stands in the room next door. The fine solution has 0.03 % and 0.7 % there.
+    // The lamp lights the table; the desk stands in the room next door. The fine solution has 0.03
+    // % and 0.7 % there.
     for (name, accuracy, fewer) in [("table", 0.02, 5), ("table", 0.01, 5), ("desk", 0.1, 5)] {
         let goal = Goal::new(&bench.mesh, &[name]).unwrap();
         let exact = goal.means(&bench.mesh, &faces, 1)[0];
@@ -63,7 +65,7 @@ fn the_dual_sees_the_same_mean_as_the_solution() {
     let importance = &solution.goal.as_ref().unwrap().importance;
     let operator = solution.operator();
     let applied = |x: &MultiVector<f64>| {
-        let mut y = MultiVector::zeros(x.dim(), x.lanes());
+        let mut y = MultiVector::zeros(x.dim(), x.rhs_count());
         operator.apply(x, &mut y);
         y
     };

@@ -1,4 +1,5 @@
-//! What points receive of lamps agrees with sums over small parts of the lamps, each seen or not by a ray.
+//! What points receive of lamps agrees with sums over small parts of the lamps, each seen or not by
+//! a ray.
 
 #![allow(clippy::float_cmp, reason = "what is dark is exactly so")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
@@ -95,8 +96,8 @@ fn points_looked_at_together_are_as_those_alone() {
     for (&x, &found) in points.iter().zip(&together) {
         let mut alone = [f64::NAN];
         lighter.factors(0, &[x], &mut alone);
-        // Nearly linear means to half a percent in either direction; edges of the block that pass those of the lamp
-        // make bends of that size.
+        // Nearly linear means to half a percent in either direction; edges of the block that pass
+        // those of the lamp make bends of that size.
         assert!((found - alone[0]).abs() <= 1e-2 * alone[0], "{x}: {found} {}", alone[0]);
         dark += usize::from(alone[0] == 0.0);
         between += usize::from(found != alone[0]);

@@ -1,4 +1,5 @@
-//! Runs that memory or the user ends state errors that hold, row sums are bounded, and no mesh makes the tree endless.
+//! Runs that memory or the user ends state errors that hold, row sums are bounded, and no mesh
+//! makes the tree endless.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot run should panic, in its helpers too")]
 
@@ -17,7 +18,8 @@ use truth::{error, traced};
 
 #[test]
 fn planes_that_are_nearly_one_make_no_endless_tree() {
-    // The second square is in the plane of the first up to the tolerance, but not the first in that of the second.
+    // The second square is in the plane of the first up to the tolerance, but not the first in that
+    // of the second.
     for tilt in [1e-9, 5e-9, 1e-7, 5e-7, 1e-6] {
         let bench = Bench::text(&format!(
             "[materials.wall]\nreflectance = 0.5\nexitance = 1\n\

@@ -1,4 +1,5 @@
-//! The operator of the links: symmetric, closed, and equal to a dense matrix where the links are fine.
+//! The operator of the links: symmetric, closed, and equal to a dense matrix where the links are
+//! fine.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot run should panic, in its helpers too")]
 
@@ -51,10 +52,10 @@ fn several_bands_are_several_single_ones() {
     let both = MultiVector::from_fn(n, 2, |i, l| if l == 0 { first.row(i)[0] } else { second.row(i)[0] });
     let mut image = MultiVector::zeros(n, 2);
     operator.apply(&both, &mut image);
-    for (lane, x) in [first, second].iter().enumerate() {
+    for (rhs, x) in [first, second].iter().enumerate() {
         let mut single = MultiVector::zeros(n, 1);
         operator.apply(x, &mut single);
-        assert_eq!(single.lane(0), image.lane(lane));
+        assert_eq!(single.vector(0), image.vector(rhs));
     }
 }
 

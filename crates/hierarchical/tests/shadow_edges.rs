@@ -8,7 +8,8 @@ use fredholm_hierarchical::shadow_edges;
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::body::Bodies;
 
-/// A square lamp of half width 0.1 at height 1 over a plate of half width 0.2 at height ½, both over the middle of a unit floor; on the floor stands a box.
+/// A square lamp of half width 0.1 at height 1 over a plate of half width 0.2 at height ½, both
+/// over the middle of a unit floor; on the floor stands a box.
 fn scene() -> Bench {
     Bench::text(
         "[materials.black]\nreflectance = 0\n[materials.lamp]\nreflectance = 0\nexitance = 1\n\

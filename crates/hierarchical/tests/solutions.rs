@@ -1,4 +1,5 @@
-//! Solutions against closed forms and independent references, their stated errors, energy, and the same bits for any number of threads.
+//! Solutions against closed forms and independent references, their stated errors, energy, and the
+//! same bits for any number of threads.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot run should panic, in its helpers too")]
 
@@ -79,8 +80,9 @@ fn nearly_white_rooms_reach_their_accuracy() {
     }
 }
 
-/// A nearly white room that loses light: a lamp below the ceiling has a black back, and a board sticks through a wall.
-/// What its row sums miss is multiplied by 15: links that lose one part in a hundred lose a seventh of the light.
+/// A nearly white room that loses light: a lamp below the ceiling has a black back, and a board
+/// sticks through a wall. What its row sums miss is multiplied by 15: links that lose one part in a
+/// hundred lose a seventh of the light.
 #[test]
 fn nearly_white_rooms_that_lose_light_reach_their_accuracy() {
     let bench = Bench::text(

@@ -70,7 +70,8 @@ const TABLE: &str = "[materials.wall]\nreflectance = 0.5\n[materials.lamp]\nrefl
     [[surface]]\nname = \"table\"\nmaterial = \"wall\"\nbox = { min = [1.2, 1, 0.7], max = [2.6, 1.9, 0.75] }\ndivide = [3, 3]\n\
     [[surface]]\nname = \"lamp\"\nmaterial = \"lamp\"\nquad = [[1.7, 1.3, 2.2], [1.7, 1.6, 2.2], [2.0, 1.6, 2.2], [2.0, 1.3, 2.2]]\n";
 
-/// Solves, prints, and counts how many true errors are below the stated ones, and the median share of the stated one that is true.
+/// Solves, prints, and counts how many true errors are below the stated ones, and the median share
+/// of the stated one that is true.
 fn table(trials: &[Trial], accuracies: &[f64]) -> (usize, usize, f64) {
     let mut shares = Vec::new();
     println!("{:>18} {:>8} {:>10} {:>10} {:>6}", "scene", "accuracy", "true", "stated", "ratio");

@@ -1,11 +1,12 @@
-//! Anderson acceleration of successive approximations: x ← x + r − Σ_j γ_j (Δx_j + Δr_j) with the γ that minimise
-//! ‖r − Σ_j γ_j Δr_j‖₂ over the last m differences.
+//! Anderson acceleration of successive approximations: x ← x + r − Σ_j γ_j (Δx_j + Δr_j) with the γ
+//! that minimise ‖r − Σ_j γ_j Δr_j‖₂ over the last m differences.
 //!
-//! Source: H. F. Walker, P. Ni, Anderson acceleration for fixed-point iterations, SIAM Journal on Numerical Analysis 49, 2011,
-//! DOI 10.1137/10078356X. The differences are made orthonormal as they come, so that the γ are inner products; the oldest is forgotten
-//! when there are m.
+//! Source: H. F. Walker, P. Ni, Anderson acceleration for fixed-point iterations, SIAM Journal on
+//! Numerical Analysis 49, 2011, DOI 10.1137/10078356X. The differences are made orthonormal as they
+//! come, so that the γ are inner products; the oldest is forgotten when there are m.
 //!
-//! Requires nothing. For linear systems it is GMRES in disguise while nothing is forgotten; short memories converge for light.
+//! Requires nothing. For linear systems it is GMRES in disguise while nothing is forgotten; short
+//! memories converge for light.
 //!
 //! Cost of an iteration: one application, and 6 m vector operations. Memory: 2 m + 6 vectors.
 //!
@@ -65,9 +66,9 @@ impl<T: Scalar> Scheme<T> for Anderson {
         "Anderson acceleration: successive approximations mixed with the last few for the smallest residual"
     }
 
-    fn bytes(&self, dim: usize, lanes: usize) -> u64 {
+    fn bytes(&self, dim: usize, rhs_count: usize) -> u64 {
         let vectors = (self.depth as u64).saturating_mul(2).saturating_add(6);
-        let entries = (dim as u64).saturating_mul(lanes as u64);
+        let entries = (dim as u64).saturating_mul(rhs_count as u64);
         vectors.saturating_mul(size_of::<T>() as u64).saturating_mul(entries)
     }
 
@@ -83,7 +84,7 @@ impl<T: Scalar> Scheme<T> for Anderson {
             depth: self.depth.max(1),
             differences: Vec::new(),
             before: None,
-            product: MultiVector::zeros(b.dim(), b.lanes()),
+            product: MultiVector::zeros(b.dim(), b.rhs_count()),
         }))
     }
 }
@@ -104,7 +105,8 @@ impl<T: Scalar> Mixing<'_, T> {
         }
     }
 
-    /// Makes Δr a unit vector orthogonal to the known ones, and Δx its counterpart; 0 where nothing but rounding is left.
+    /// Makes Δr a unit vector orthogonal to the known ones, and Δx its counterpart; 0 where nothing
+    /// but rounding is left.
     fn orthogonalise(&self, [dx, dr]: &mut [MultiVector<T>; 2]) {
         let before = dr.norms();
         for _ in 0..2 {
@@ -117,7 +119,7 @@ impl<T: Scalar> Mixing<'_, T> {
         let inverse =
             |(after, &before): (f64, &f64)| if after > 1e-12 * before { after.recip() } else { 0.0 };
         let factors: Vec<f64> = dr.norms().into_iter().zip(&before).map(inverse).collect();
-        let zeros = MultiVector::zeros(dx.dim(), dx.lanes());
+        let zeros = MultiVector::zeros(dx.dim(), dx.rhs_count());
         dx.scale_and_add(&reals(&factors), &zeros);
         dr.scale_and_add(&reals(&factors), &zeros);
     }
@@ -134,7 +136,7 @@ impl<T: Scalar> Iteration<T> for Mixing<'_, T> {
         let mut residual = self.b.clone();
         residual.set_difference(self.b, &self.product);
         self.remember(x, &residual);
-        x.add_scaled(&vec![T::one(); x.lanes()], &residual);
+        x.add_scaled(&vec![T::one(); x.rhs_count()], &residual);
         for [dx, dr] in &self.differences {
             let gamma = minus(&dr.dots(&residual));
             x.add_scaled(&gamma, dx);

@@ -1,10 +1,10 @@
 //! BiCGSTAB: biconjugate gradients with a step of smallest residual after each.
 //!
-//! Source: H. A. van der Vorst, SIAM Journal on Scientific and Statistical Computing 13, 1992, DOI 10.1137/0913035. The shadow residual is
-//! the first residual.
+//! Source: H. A. van der Vorst, SIAM Journal on Scientific and Statistical Computing 13, 1992, DOI
+//! 10.1137/0913035. The shadow residual is the first residual.
 //!
-//! Requires nothing; A not singular. It converges for most systems, without a guarantee; a lane that breaks down stands still, and ends
-//! above the tolerance.
+//! Requires nothing; A not singular. It converges for most systems, without a guarantee; a
+//! right-hand side that breaks down stands still, and ends above the tolerance.
 //!
 //! Cost of an iteration: two applications.
 //!
@@ -42,7 +42,7 @@ struct Biconjugate<'a, T> {
     /// A p and A s.
     images: [MultiVector<T>; 2],
     product: MultiVector<T>,
-    /// (shadow, r), α and ω per lane; empty before the first step from a new start.
+    /// (shadow, r), α and ω per right-hand side; empty before the first step from a new start.
     power: Vec<T>,
     alpha: Vec<T>,
     omega: Vec<T>,
@@ -59,8 +59,8 @@ impl<T: Scalar> Scheme<T> for Bicgstab {
         "BiCGSTAB: short recurrences for any matrix; two applications an iteration"
     }
 
-    fn bytes(&self, dim: usize, lanes: usize) -> u64 {
-        (6 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(lanes as u64)
+    fn bytes(&self, dim: usize, rhs_count: usize) -> u64 {
+        (6 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(rhs_count as u64)
     }
 
     fn begin<'a>(
@@ -69,7 +69,7 @@ impl<T: Scalar> Scheme<T> for Bicgstab {
         b: &'a MultiVector<T>,
         _: &mut Context<'_>,
     ) -> Result<Box<dyn Iteration<T> + 'a>, Halt> {
-        let zeros = MultiVector::zeros(b.dim(), b.lanes());
+        let zeros = MultiVector::zeros(b.dim(), b.rhs_count());
         Ok(Box::new(Biconjugate {
             a,
             b,

@@ -1,11 +1,14 @@
-//! Block Gauss–Seidel: x_S += A_SS⁻¹ r_S for one block S of neighbouring unknowns after the other, r −= A_·S of the step.
+//! Block Gauss–Seidel: x_S += A_SS⁻¹ r_S for one block S of neighbouring unknowns after the other,
+//! r −= A_·S of the step.
 //!
 //! Source: Y. Saad, Iterative Methods for Sparse Linear Systems, 2nd ed., SIAM 2003, § 4.1.1,
 //! DOI 10.1137/1.9780898718003. Blocks of 2 or 3 are the components of a vector unknown.
 //!
-//! Requires that no A_SS is singular. Converges for M-matrices and for Hermitian positive definite ones.
+//! Requires that no A_SS is singular. Converges for M-matrices and for Hermitian positive definite
+//! ones.
 //!
-//! Cost of an iteration: n columns, twice the stored entries where the matrix is packed; the blocks take one reading of the matrix.
+//! Cost of an iteration: n columns, twice the stored entries where the matrix is packed; the blocks
+//! take one reading of the matrix.
 //!
 //! ```
 //! use fredholm_iterative::BlockGaussSeidel;
@@ -63,8 +66,9 @@ impl<T: Scalar> Scheme<T> for BlockGaussSeidel {
     }
 
     // The factors of the blocks with their orders, the residual, the product and a column.
-    fn bytes(&self, dim: usize, lanes: usize) -> u64 {
-        let vectors = (lanes as u64).saturating_mul((self.size as u64).saturating_add(3)).saturating_add(1);
+    fn bytes(&self, dim: usize, rhs_count: usize) -> u64 {
+        let vectors =
+            (rhs_count as u64).saturating_mul((self.size as u64).saturating_add(3)).saturating_add(1);
         vectors.saturating_mul(dim as u64).saturating_mul(size_of::<T>() as u64)
     }
 
@@ -75,7 +79,7 @@ impl<T: Scalar> Scheme<T> for BlockGaussSeidel {
         context: &mut Context<'_>,
     ) -> Result<Box<dyn Iteration<T> + 'a>, Halt> {
         let blocks = Blocks::new(NAME, a, self.size.max(1), context)?;
-        let zeros = MultiVector::zeros(b.dim(), b.lanes());
+        let zeros = MultiVector::zeros(b.dim(), b.rhs_count());
         let column = vec![T::zero(); b.dim()];
         Ok(Box::new(InOrder { a, b, blocks, residual: zeros.clone(), product: zeros, column }))
     }

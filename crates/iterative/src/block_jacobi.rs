@@ -3,7 +3,8 @@
 //! Source: Y. Saad, Iterative Methods for Sparse Linear Systems, 2nd ed., SIAM 2003, § 4.1.1,
 //! DOI 10.1137/1.9780898718003. Blocks of 2 or 3 are the components of a vector unknown.
 //!
-//! Requires that no A_SS is singular. Converges for M-matrices and for block diagonally dominant ones.
+//! Requires that no A_SS is singular. Converges for M-matrices and for block diagonally dominant
+//! ones.
 //!
 //! Cost of an iteration: one application; the blocks take one reading of the matrix.
 //!
@@ -53,8 +54,8 @@ impl<T: Scalar> Scheme<T> for BlockJacobi {
     }
 
     // The factors of the blocks with their orders, and three vectors.
-    fn bytes(&self, dim: usize, lanes: usize) -> u64 {
-        let vectors = (lanes as u64).saturating_mul((self.size as u64).saturating_add(4));
+    fn bytes(&self, dim: usize, rhs_count: usize) -> u64 {
+        let vectors = (rhs_count as u64).saturating_mul((self.size as u64).saturating_add(4));
         vectors.saturating_mul(dim as u64).saturating_mul(size_of::<T>() as u64)
     }
 

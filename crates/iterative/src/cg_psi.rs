@@ -1,12 +1,14 @@
 //! Conjugate gradients on Ψ x = H b: Ψ = H A = D⁻¹ − K, H = D⁻¹.
 //!
-//! Source: M. Leblond, F. Rousselle, C. Renaud, Hybridization techniques for fast radiosity solvers, Computer Graphics
-//! International 2000 (there CG_Ψ); M. R. Hestenes, E. Stiefel, Journal of Research of the National
-//! Bureau of Standards 49, 1952, DOI 10.6028/jres.049.044. H spreads over the areas and reflectances of the patches, and with it the
-//! condition of Ψ: that of Θ is the smaller one as a rule, see [`CgTheta`](crate::CgTheta).
+//! Source: M. Leblond, F. Rousselle, C. Renaud, Hybridization techniques for fast radiosity
+//! solvers, Computer Graphics International 2000 (there CG_Ψ); M. R. Hestenes, E. Stiefel, Journal
+//! of Research of the National Bureau of Standards 49, 1952, DOI 10.6028/jres.049.044. H spreads
+//! over the areas and reflectances of the patches, and with it the condition of Ψ: that of Θ is the
+//! smaller one as a rule, see [`CgTheta`](crate::CgTheta).
 //!
-//! Requires a coupling that is known to be symmetric (Hermitian, for complex unknowns), D real and ≥ 0, and Ψ positive definite,
-//! which light has with ρ < 1. Unknowns with d_i = 0, black patches, are set to b_i before the first step.
+//! Requires a coupling that is known to be symmetric (Hermitian, for complex unknowns), D real and
+//! ≥ 0, and Ψ positive definite, which light has with ρ < 1. Unknowns with d_i = 0, black patches,
+//! are set to b_i before the first step.
 //!
 //! Cost of an iteration: one application.
 //!
@@ -46,8 +48,8 @@ impl<T: Scalar> Scheme<T> for CgPsi {
         "Conjugate gradients on H A; slower than cg-theta where areas or reflectances differ much"
     }
 
-    fn bytes(&self, dim: usize, lanes: usize) -> u64 {
-        (7 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(lanes as u64)
+    fn bytes(&self, dim: usize, rhs_count: usize) -> u64 {
+        (7 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(rhs_count as u64)
     }
 
     fn begin<'a>(

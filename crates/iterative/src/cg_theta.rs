@@ -1,12 +1,13 @@
 //! Conjugate gradients on Θ z = H^½ b, x = H^(−½) z: Θ = H^½ A H^(−½) = I − D^½ K D^½, H = D⁻¹.
 //!
-//! Source: M. Leblond, F. Rousselle, C. Renaud, Hybridization techniques for fast radiosity solvers, Computer Graphics
-//! International 2000 (there CG_Θ); M. R. Hestenes, E. Stiefel, Journal of Research of the National
-//! Bureau of Standards 49, 1952, DOI 10.6028/jres.049.044. It is conjugate gradients on A in the inner product of H, which needs
-//! no square roots.
+//! Source: M. Leblond, F. Rousselle, C. Renaud, Hybridization techniques for fast radiosity
+//! solvers, Computer Graphics International 2000 (there CG_Θ); M. R. Hestenes, E. Stiefel, Journal
+//! of Research of the National Bureau of Standards 49, 1952, DOI 10.6028/jres.049.044. It is
+//! conjugate gradients on A in the inner product of H, which needs no square roots.
 //!
-//! Requires a coupling that is known to be symmetric (Hermitian, for complex unknowns), D real and ≥ 0, and Ψ positive definite,
-//! which light has with ρ < 1. Unknowns with d_i = 0, black patches, are set to b_i before the first step.
+//! Requires a coupling that is known to be symmetric (Hermitian, for complex unknowns), D real and
+//! ≥ 0, and Ψ positive definite, which light has with ρ < 1. Unknowns with d_i = 0, black patches,
+//! are set to b_i before the first step.
 //!
 //! Cost of an iteration: one application.
 //!
@@ -46,8 +47,8 @@ impl<T: Scalar> Scheme<T> for CgTheta {
         "Conjugate gradients on the symmetrised system; fast for light, whatever the reflectance"
     }
 
-    fn bytes(&self, dim: usize, lanes: usize) -> u64 {
-        (6 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(lanes as u64)
+    fn bytes(&self, dim: usize, rhs_count: usize) -> u64 {
+        (6 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(rhs_count as u64)
     }
 
     fn begin<'a>(

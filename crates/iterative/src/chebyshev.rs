@@ -1,12 +1,15 @@
-//! Chebyshev iteration: the residual polynomial is the Chebyshev polynomial of an interval that holds the spectrum of A.
+//! Chebyshev iteration: the residual polynomial is the Chebyshev polynomial of an interval that
+//! holds the spectrum of A.
 //!
-//! Source: Y. Saad, Iterative Methods for Sparse Linear Systems, 2nd ed., SIAM 2003, algorithm 12.1, DOI 10.1137/1.9780898718003. No
-//! inner products: nothing is summed over all unknowns. The interval is that of 24 steps of the Lanczos process in the inner product of H = D⁻¹,
-//! widened by a twentieth, or given.
+//! Source: Y. Saad, Iterative Methods for Sparse Linear Systems, 2nd ed., SIAM 2003, algorithm
+//! 12.1, DOI 10.1137/1.9780898718003. No inner products: nothing is summed over all unknowns. The
+//! interval is that of 24 steps of the Lanczos process in the inner product of H = D⁻¹, widened by
+//! a twentieth, or given.
 //!
-//! Requires a real spectrum in a positive interval. Without a given interval: a coupling that is known to be symmetric (Hermitian,
-//! for complex unknowns), D real and ≥ 0, and Ψ positive definite. An interval that leaves out small eigenvalues costs iterations only;
-//! eigenvalues above twice its middle make it diverge.
+//! Requires a real spectrum in a positive interval. Without a given interval: a coupling that is
+//! known to be symmetric (Hermitian, for complex unknowns), D real and ≥ 0, and Ψ positive
+//! definite. An interval that leaves out small eigenvalues costs iterations only; eigenvalues above
+//! twice its middle make it diverge.
 //!
 //! Cost of an iteration: one application. The automatic interval takes 24 applications first.
 //!
@@ -38,14 +41,14 @@ const MARGIN: f64 = 0.05;
 /// Chebyshev iteration.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Chebyshev {
-    /// Lowest and highest eigenvalue of A, or automatic ones for each lane.
+    /// Lowest and highest eigenvalue of A, or automatic ones for each right-hand side.
     pub interval: Option<(f64, f64)>,
 }
 
 struct Steps<'a, T> {
     a: &'a SecondKind<'a, T>,
     b: &'a MultiVector<T>,
-    /// Middle and half width of the interval, and ρ of the recurrence, per lane.
+    /// Middle and half width of the interval, and ρ of the recurrence, per right-hand side.
     middle: Vec<f64>,
     half: Vec<f64>,
     rho: Vec<f64>,
@@ -65,8 +68,8 @@ impl<T: Scalar> Scheme<T> for Chebyshev {
         "Chebyshev iteration over the interval of the spectrum; no inner products"
     }
 
-    fn bytes(&self, dim: usize, lanes: usize) -> u64 {
-        (5 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(lanes as u64)
+    fn bytes(&self, dim: usize, rhs_count: usize) -> u64 {
+        (5 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(rhs_count as u64)
     }
 
     fn begin<'a>(
@@ -76,7 +79,7 @@ impl<T: Scalar> Scheme<T> for Chebyshev {
         context: &mut Context<'_>,
     ) -> Result<Box<dyn Iteration<T> + 'a>, Halt> {
         let intervals = self.intervals(a, context)?;
-        let zeros = MultiVector::zeros(b.dim(), b.lanes());
+        let zeros = MultiVector::zeros(b.dim(), b.rhs_count());
         Ok(Box::new(Steps {
             a,
             b,
@@ -91,7 +94,7 @@ impl<T: Scalar> Scheme<T> for Chebyshev {
 }
 
 impl Chebyshev {
-    /// The interval of every lane.
+    /// The interval of every right-hand side.
     fn intervals<T: Scalar>(
         &self,
         a: &SecondKind<'_, T>,
@@ -99,19 +102,19 @@ impl Chebyshev {
     ) -> Result<Vec<(f64, f64)>, Halt> {
         if let Some((low, high)) = self.interval {
             if 0.0 < low && low <= high && high.is_finite() {
-                return Ok(vec![(low, high); a.factor().lanes()]);
+                return Ok(vec![(low, high); a.factor().rhs_count()]);
             }
             let reason = format!("the interval is {low} … {high}, but must be above 0 and in order");
             return Err(SolveError::Unsuitable { solver: NAME, reason }.into());
         }
         let found = lanczos(a, &Metric::new(NAME, a)?, STEPS, false, context)?;
         let mut intervals = Vec::with_capacity(found.len());
-        for (lane, t) in found.iter().enumerate() {
+        for (rhs, t) in found.iter().enumerate() {
             // Black unknowns have the eigenvalue 1.
             let last = t.diagonal.len().saturating_sub(1);
             let (low, high) = (t.eigenvalue(0).min(1.0), t.eigenvalue(last).max(1.0));
             if low <= 0.0 {
-                return Err(SolveError::Indefinite { solver: NAME, lane }.into());
+                return Err(SolveError::Indefinite { solver: NAME, rhs }.into());
             }
             let margin = MARGIN * (high - low);
             intervals.push(((low - margin).max(0.5 * low), high + margin));
@@ -121,7 +124,7 @@ impl Chebyshev {
 }
 
 impl<T: Scalar> Steps<'_, T> {
-    /// The factors of the old step and of the residual in the next step, per lane.
+    /// The factors of the old step and of the residual in the next step, per right-hand side.
     fn factors(&mut self) -> (Vec<f64>, Vec<f64>) {
         if self.rho.is_empty() {
             self.rho = self.half.iter().zip(&self.middle).map(|(half, middle)| half / middle).collect();
@@ -150,10 +153,10 @@ impl<T: Scalar> Iteration<T> for Steps<'_, T> {
         context.poll()?;
         self.residual.set_difference(self.b, &self.product);
         let (old, new) = self.factors();
-        let zeros = MultiVector::zeros(x.dim(), x.lanes());
+        let zeros = MultiVector::zeros(x.dim(), x.rhs_count());
         self.step.scale_and_add(&reals(&old), &zeros);
         self.step.add_scaled(&reals(&new), &self.residual);
-        x.add_scaled(&vec![T::one(); x.lanes()], &self.step);
+        x.add_scaled(&vec![T::one(); x.rhs_count()], &self.step);
         context.apply(self.a, x, &mut self.product)
     }
 

@@ -1,5 +1,5 @@
-//! What a matrix that is too large for dense methods tells of its spectrum: eigenvalues by the Lanczos process, and the radius of Gauss–Seidel
-//! by its own sweeps.
+//! What a matrix that is too large for dense methods tells of its spectrum: eigenvalues by the
+//! Lanczos process, and the radius of Gauss–Seidel by its own sweeps.
 
 use crate::GaussSeidel;
 use crate::core::{Metric, lanczos};
@@ -7,8 +7,9 @@ use fredholm_linop::{
     Context, Halt, LinearOperator, MultiVector, Scalar, Scheme, SecondKind, SolveError, Watch, Work,
 };
 
-/// Estimated eigenvalues of A per lane, ascending: those of the Lanczos process in the inner product of H = D⁻¹ after `steps` steps with
-/// whole orthogonalisation. The extreme ones are the best. Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., § 10.1.
+/// Estimated eigenvalues of A per right-hand side, ascending: those of the Lanczos process in the
+/// inner product of H = D⁻¹ after `steps` steps with whole orthogonalisation. The extreme ones are
+/// the best. Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., § 10.1.
 ///
 /// Memory: `steps` + 2 vectors. Cost: `steps` applications.
 ///
@@ -24,8 +25,8 @@ use fredholm_linop::{
 /// ```
 ///
 /// # Errors
-/// [`SolveError::Unsuitable`] where A is not known to be self-adjoint in that product. Where `watch` breaks, what was found by then is lost and
-/// the lists are empty.
+/// [`SolveError::Unsuitable`] where A is not known to be self-adjoint in that product. Where
+/// `watch` breaks, what was found by then is lost and the lists are empty.
 pub fn ritz_values<T: Scalar>(
     a: &SecondKind<'_, T>,
     steps: usize,
@@ -37,12 +38,13 @@ pub fn ritz_values<T: Scalar>(
         Ok(found) => {
             Ok(found.iter().map(|t| (0..t.diagonal.len()).map(|k| t.eigenvalue(k)).collect()).collect())
         }
-        Err(Halt::Interrupted) => Ok(vec![Vec::new(); a.factor().lanes()]),
+        Err(Halt::Interrupted) => Ok(vec![Vec::new(); a.factor().rhs_count()]),
         Err(Halt::Refused(error)) => Err(error),
     }
 }
 
-/// Estimated spectral radius of Gauss–Seidel's iteration matrix per lane: the growth of an error in the last of `sweeps` sweeps.
+/// Estimated spectral radius of Gauss–Seidel's iteration matrix per right-hand side: the growth of
+/// an error in the last of `sweeps` sweeps.
 ///
 /// ```
 /// use fredholm_iterative::gauss_seidel_radius;
@@ -56,19 +58,20 @@ pub fn ritz_values<T: Scalar>(
 /// ```
 ///
 /// # Errors
-/// [`SolveError::Unsuitable`] where a diagonal entry is 0. Where `watch` breaks, the estimates are those found by then.
+/// [`SolveError::Unsuitable`] where a diagonal entry is 0. Where `watch` breaks, the estimates are
+/// those found by then.
 pub fn gauss_seidel_radius<T: Scalar>(
     a: &SecondKind<'_, T>,
     sweeps: usize,
     watch: &dyn Watch,
 ) -> Result<Vec<f64>, SolveError> {
     // With b = 0 the iterate is its own error.
-    let b = MultiVector::zeros(a.dim(), a.factor().lanes());
-    let mut x = MultiVector::from_fn(b.dim(), b.lanes(), |_, _| T::one());
+    let b = MultiVector::zeros(a.dim(), a.factor().rhs_count());
+    let mut x = MultiVector::from_fn(b.dim(), b.rhs_count(), |_, _| T::one());
     let mut work = Work::default();
     let mut poll = || watch.go_on();
     let mut context = Context::new(&mut work, &mut poll);
-    let mut growth = vec![0.0; b.lanes()];
+    let mut growth = vec![0.0; b.rhs_count()];
     let mut sweep = || -> Result<(), Halt> {
         let mut iteration = GaussSeidel.begin(a, &b, &mut context)?;
         iteration.restart(&mut x, &mut context)?;

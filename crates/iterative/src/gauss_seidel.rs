@@ -1,13 +1,14 @@
 //! Gauss–Seidel: x_i = (b_i − Σ_{j≠i} a_ij x_j)/a_ii for i = 0 … n−1, with the x_j already relaxed.
 //!
-//! Source: Y. Saad, Iterative Methods for Sparse Linear Systems, 2nd ed., SIAM 2003, § 4.1,
-//! DOI 10.1137/1.9780898718003. For light it gathers, for one patch after the other, what the others send.
+//! Source: Y. Saad, Iterative Methods for Sparse Linear Systems, 2nd ed., SIAM 2003, § 4.1, DOI
+//! 10.1137/1.9780898718003. For light it gathers, for one patch after the other, what the others
+//! send.
 //!
-//! Requires a_ii ≠ 0. Converges for strictly or irreducibly diagonally dominant matrices, which light has with ρ < 1,
-//! and for Hermitian positive definite ones.
+//! Requires a_ii ≠ 0. Converges for strictly or irreducibly diagonally dominant matrices, which
+//! light has with ρ < 1, and for Hermitian positive definite ones.
 //!
-//! Cost of an iteration: one sweep, which reads every stored entry once for all lanes and gives the residual for
-//! nothing. A starting guess other than 0 costs one sweep more.
+//! Cost of an iteration: one sweep, which reads every stored entry once for all right-hand sides
+//! and gives the residual for nothing. A starting guess other than 0 costs one sweep more.
 //!
 //! ```
 //! use fredholm_iterative::GaussSeidel;
@@ -46,8 +47,8 @@ impl<T: Scalar> Scheme<T> for GaussSeidel {
     }
 
     // The sums on both sides of the diagonal and the product A x.
-    fn bytes(&self, dim: usize, lanes: usize) -> u64 {
-        (3 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(lanes as u64)
+    fn bytes(&self, dim: usize, rhs_count: usize) -> u64 {
+        (3 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(rhs_count as u64)
     }
 
     fn begin<'a>(

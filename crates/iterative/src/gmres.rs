@@ -1,12 +1,16 @@
-//! GMRES(m): of all iterates in the Krylov space, the one with the smallest ‖b − A x‖₂, by the Arnoldi process, begun anew after m steps.
+//! GMRES(m): of all iterates in the Krylov space, the one with the smallest ‖b − A x‖₂, by the
+//! Arnoldi process, begun anew after m steps.
 //!
-//! Source: Y. Saad, M. H. Schultz, GMRES, SIAM Journal on Scientific and Statistical Computing 7, 1986, DOI 10.1137/0907058; modified
-//! Gram–Schmidt done twice, rotations after Y. Saad, Iterative Methods for Sparse Linear Systems, 2nd ed., SIAM 2003, § 6.5.3,
-//! DOI 10.1137/1.9780898718003. The iterate of every step is formed, which costs as much as the orthogonalisation.
+//! Source: Y. Saad, M. H. Schultz, GMRES, SIAM Journal on Scientific and Statistical Computing 7,
+//! 1986, DOI 10.1137/0907058; modified Gram–Schmidt done twice, rotations after Y. Saad, Iterative
+//! Methods for Sparse Linear Systems, 2nd ed., SIAM 2003, § 6.5.3, DOI 10.1137/1.9780898718003. The
+//! iterate of every step is formed, which costs as much as the orthogonalisation.
 //!
-//! Requires nothing; A not singular. Converges where the field of values keeps away from 0, after at most n steps if m ≥ n.
+//! Requires nothing; A not singular. Converges where the field of values keeps away from 0, after
+//! at most n steps if m ≥ n.
 //!
-//! Cost of an iteration: one application, and 6 j vector operations at step j. Memory: m + 4 vectors.
+//! Cost of an iteration: one application, and 6 j vector operations at step j. Memory: m + 4
+//! vectors.
 //!
 //! ```
 //! use fredholm_iterative::Gmres;
@@ -47,13 +51,14 @@ struct Arnoldi<'a, T> {
     b: &'a MultiVector<T>,
     steps: usize,
     basis: Vec<MultiVector<T>>,
-    lanes: Vec<Fit<T>>,
+    fits: Vec<Fit<T>>,
     /// x and A x where the basis began.
     origin: [MultiVector<T>; 2],
     product: MultiVector<T>,
 }
 
-/// The least-squares problem of a lane: the columns of the Hessenberg matrix, and rotated to a triangle.
+/// The least-squares problem of a right-hand side: the columns of the Hessenberg matrix, and
+/// rotated to a triangle.
 struct Fit<T> {
     columns: Vec<Vec<T>>,
     triangle: Vec<Vec<T>>,
@@ -72,9 +77,9 @@ impl<T: Scalar> Scheme<T> for Gmres {
         "GMRES: smallest residual over the Krylov space, for any matrix; restarted"
     }
 
-    fn bytes(&self, dim: usize, lanes: usize) -> u64 {
+    fn bytes(&self, dim: usize, rhs_count: usize) -> u64 {
         let vectors = (self.restart as u64).saturating_add(6).saturating_mul(size_of::<T>() as u64);
-        vectors.saturating_mul(dim as u64).saturating_mul(lanes as u64)
+        vectors.saturating_mul(dim as u64).saturating_mul(rhs_count as u64)
     }
 
     fn begin<'a>(
@@ -83,13 +88,13 @@ impl<T: Scalar> Scheme<T> for Gmres {
         b: &'a MultiVector<T>,
         _: &mut Context<'_>,
     ) -> Result<Box<dyn Iteration<T> + 'a>, Halt> {
-        let zeros = MultiVector::zeros(b.dim(), b.lanes());
+        let zeros = MultiVector::zeros(b.dim(), b.rhs_count());
         Ok(Box::new(Arnoldi {
             a,
             b,
             steps: self.restart.max(1),
             basis: Vec::new(),
-            lanes: Vec::new(),
+            fits: Vec::new(),
             origin: [zeros.clone(), zeros.clone()],
             product: zeros,
         }))
@@ -104,16 +109,17 @@ impl<T: Scalar> Arnoldi<'_, T> {
         residual.set_difference(self.b, &self.product);
         let lengths = normalise(&mut residual);
         self.basis = vec![residual];
-        self.lanes = lengths.into_iter().map(Fit::new).collect();
+        self.fits = lengths.into_iter().map(Fit::new).collect();
     }
 
-    /// A v_j made orthogonal to the basis, twice; a column of the Hessenberg matrix per lane.
+    /// A v_j made orthogonal to the basis, twice; a column of the Hessenberg matrix per right-hand
+    /// side.
     fn extend(&mut self, context: &mut Context<'_>) -> Result<(), Halt> {
         let last = &self.basis[self.basis.len() - 1];
         let mut next = last.clone();
         context.apply(self.a, last, &mut next)?;
         let scale = next.norms();
-        let mut columns = vec![vec![T::zero(); self.basis.len()]; self.lanes.len()];
+        let mut columns = vec![vec![T::zero(); self.basis.len()]; self.fits.len()];
         for _ in 0..2 {
             for (j, v) in self.basis.iter().enumerate() {
                 let along = v.dots(&next);
@@ -123,9 +129,9 @@ impl<T: Scalar> Arnoldi<'_, T> {
         }
         clear_lost(&mut next, &scale);
         let lengths = normalise(&mut next);
-        for ((lane, mut column), &length) in self.lanes.iter_mut().zip(columns).zip(&lengths) {
+        for ((fit, mut column), &length) in self.fits.iter_mut().zip(columns).zip(&lengths) {
             column.push(T::from_real(length));
-            lane.take(column);
+            fit.take(column);
         }
         self.basis.push(next);
         Ok(())
@@ -133,12 +139,12 @@ impl<T: Scalar> Arnoldi<'_, T> {
 
     /// x = x_0 + V y, A x = A x_0 + V H y.
     fn form(&mut self, x: &mut MultiVector<T>) {
-        let (y, images): (Vec<Vec<T>>, Vec<Vec<T>>) = self.lanes.iter().map(Fit::solve).unzip();
+        let (y, images): (Vec<Vec<T>>, Vec<Vec<T>>) = self.fits.iter().map(Fit::solve).unzip();
         x.copy_from(&self.origin[0]);
         self.product.copy_from(&self.origin[1]);
         for (j, v) in self.basis.iter().enumerate() {
-            let part = |lanes: &[Vec<T>]| -> Vec<T> {
-                lanes.iter().map(|lane| lane.get(j).copied().unwrap_or(T::zero())).collect()
+            let part = |all: &[Vec<T>]| -> Vec<T> {
+                all.iter().map(|steps| steps.get(j).copied().unwrap_or(T::zero())).collect()
             };
             x.add_scaled(&part(&y), v);
             self.product.add_scaled(&part(&images), v);
@@ -203,19 +209,19 @@ fn rotate<T: Scalar>(cosine: f64, sine: T, u: T, v: T) -> (T, T) {
     (u.scale(cosine) + sine * v, v.scale(cosine) - sine.conj() * u)
 }
 
-/// Sets lanes to 0 of which orthogonalisation has left nothing but rounding.
+/// Sets the vectors to 0 of which orthogonalisation has left nothing but rounding.
 fn clear_lost<T: Scalar>(v: &mut MultiVector<T>, before: &[f64]) {
     let kept = |(after, before): (f64, &f64)| f64::from(u8::from(after > 1e-14 * before));
     let factors: Vec<f64> = v.norms().into_iter().zip(before).map(kept).collect();
-    let zeros = MultiVector::zeros(v.dim(), v.lanes());
+    let zeros = MultiVector::zeros(v.dim(), v.rhs_count());
     v.scale_and_add(&reals(&factors), &zeros);
 }
 
-/// Makes unit vectors of the lanes that are not 0; returns their lengths.
+/// Makes unit vectors of the vectors that are not 0; returns their lengths.
 fn normalise<T: Scalar>(v: &mut MultiVector<T>) -> Vec<f64> {
     let lengths = v.norms();
     let inverse = |&length: &f64| if length > 0.0 { length.recip() } else { 0.0 };
-    let zeros = MultiVector::zeros(v.dim(), v.lanes());
+    let zeros = MultiVector::zeros(v.dim(), v.rhs_count());
     v.scale_and_add(&reals(&lengths.iter().map(inverse).collect::<Vec<_>>()), &zeros);
     lengths
 }

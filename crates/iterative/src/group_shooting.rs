@@ -1,13 +1,16 @@
-//! Group accelerated shooting: the m patches with the most unshot power exchange their light until it is settled among
-//! them, then send it to all others.
+//! Group accelerated shooting: the m patches with the most unshot power exchange their light until
+//! it is settled among them, then send it to all others.
 //!
-//! Source: F. Rousselle, C. Renaud, Group accelerated shooting methods for radiosity, Eurographics Workshop on Rendering
+//! Source: F. Rousselle, C. Renaud, Group accelerated shooting methods for radiosity, Eurographics
+//! Workshop on Rendering
 //! 1999. With S the group, A_SS s = r_S is solved, here by elimination; x_S += s,
-//! r −= A_·S s. Of several lanes, a patch counts with its largest A_i |r_il|/‖b_l‖₂.
+//! r −= A_·S s. Of several right-hand sides, a patch counts with its largest A_i |r_il|/‖b_l‖₂.
 //!
-//! Requires that no A_SS is singular, which M-matrices and Hermitian positive definite ones assure. Converges for these.
+//! Requires that no A_SS is singular, which M-matrices and Hermitian positive definite ones assure.
+//! Converges for these.
 //!
-//! Cost of an iteration: n columns in groups of m, and m³/3 operations a group; the weights take one reading of the matrix.
+//! Cost of an iteration: n columns in groups of m, and m³/3 operations a group; the weights take
+//! one reading of the matrix.
 //!
 //! ```
 //! use fredholm_iterative::GroupShooting;
@@ -66,9 +69,9 @@ impl<T: Scalar> Scheme<T> for GroupShooting {
     }
 
     // The residual, the product, the weights, the columns of a group and its matrix.
-    fn bytes(&self, dim: usize, lanes: usize) -> u64 {
+    fn bytes(&self, dim: usize, rhs_count: usize) -> u64 {
         let group = self.size as u64;
-        let vectors = (lanes as u64).saturating_mul(2).saturating_add(1).saturating_add(group);
+        let vectors = (rhs_count as u64).saturating_mul(2).saturating_add(1).saturating_add(group);
         vectors
             .saturating_mul(dim as u64)
             .saturating_add(group.saturating_mul(group))
@@ -81,7 +84,7 @@ impl<T: Scalar> Scheme<T> for GroupShooting {
         b: &'a MultiVector<T>,
         context: &mut Context<'_>,
     ) -> Result<Box<dyn Iteration<T> + 'a>, Halt> {
-        let zeros = MultiVector::zeros(b.dim(), b.lanes());
+        let zeros = MultiVector::zeros(b.dim(), b.rhs_count());
         let size = self.size.clamp(1, b.dim().max(1));
         let scale = |norm: f64| if norm > 0.0 { norm.recip() } else { 0.0 };
         Ok(Box::new(Groups {
@@ -119,41 +122,41 @@ impl<T: Scalar> Groups<'_, T> {
         x: &mut MultiVector<T>,
         context: &mut Context<'_>,
     ) -> Result<(), SolveError> {
-        for lane in 0..x.lanes() {
-            self.read(group, lane, context);
-            let steps = self.settle(group, lane)?;
+        for rhs in 0..x.rhs_count() {
+            self.read(group, rhs, context);
+            let steps = self.settle(group, rhs)?;
             for ((&j, &step), column) in group.iter().zip(&steps).zip(&self.columns) {
-                x.row_mut(j)[lane] += step;
-                self.residual.row_mut(j)[lane] -= step;
+                x.row_mut(j)[rhs] += step;
+                self.residual.row_mut(j)[rhs] -= step;
                 for (i, &entry) in column.iter().enumerate() {
-                    self.residual.row_mut(i)[lane] += self.a.factor().row(i)[lane] * entry * step;
+                    self.residual.row_mut(i)[rhs] += self.a.factor().row(i)[rhs] * entry * step;
                 }
             }
         }
         Ok(())
     }
 
-    /// The columns of K of a group, which lanes that share a coupling have in common.
-    fn read(&mut self, group: &[usize], lane: usize, context: &mut Context<'_>) {
-        if lane > 0 && self.a.coupling().lanes().is_none() {
+    /// The columns of K of a group, which right-hand sides that share a coupling have in common.
+    fn read(&mut self, group: &[usize], rhs: usize, context: &mut Context<'_>) {
+        if rhs > 0 && self.a.coupling().rhs_count().is_none() {
             return;
         }
         for (&j, column) in group.iter().zip(&mut self.columns) {
-            self.a.coupling().column(j, lane, column);
+            self.a.coupling().column(j, rhs, column);
             context.work.column_visits += 1;
             context.work.entries_touched += column.len() as u64;
         }
     }
 
     /// s of A_SS s = r_S.
-    fn settle(&self, group: &[usize], lane: usize) -> Result<Vec<T>, SolveError> {
+    fn settle(&self, group: &[usize], rhs: usize) -> Result<Vec<T>, SolveError> {
         let entry = |&i: &usize, at: usize| {
-            let off = -(self.a.factor().row(i)[lane] * self.columns[at][i]);
+            let off = -(self.a.factor().row(i)[rhs] * self.columns[at][i]);
             if group[at] == i { off + T::one() } else { off }
         };
         let count = group.len();
         let matrix = group.iter().flat_map(|i| (0..count).map(move |at| entry(i, at))).collect();
-        let residual: Vec<T> = group.iter().map(|&i| self.residual.row(i)[lane]).collect();
+        let residual: Vec<T> = group.iter().map(|&i| self.residual.row(i)[rhs]).collect();
         let lu = SmallLu::new(count, matrix).ok_or_else(|| SolveError::Unsuitable {
             solver: NAME,
             reason: format!("the exchange among unknowns {group:?} is singular; use lu"),

@@ -1,10 +1,12 @@
-//! Hybrid Gauss–Seidel, first case: z_k = α x_k + (1 − α) z_(k−1) with the α of smallest residual, x_k the iterates of an untouched
-//! sequence.
+//! Hybrid Gauss–Seidel, first case: z_k = α x_k + (1 − α) z_(k−1) with the α of smallest residual,
+//! x_k the iterates of an untouched sequence.
 //!
-//! Source: C. Brezinski, M. Redivo Zaglia, Hybrid procedures for solving linear systems, Numerische Mathematik 67, 1994,
-//! DOI 10.1007/s002110050015; M. Leblond, F. Rousselle, C. Renaud, Hybridization techniques for fast radiosity solvers, Computer Graphics
-//! International 2000. Any scheme can give the sequence; by default it is
-//! Gauss–Seidel. ‖b − A z_k‖₂ is at most ‖b − A x_k‖₂ and never grows. A z_k is blended as z_k is, and computed anew before it counts as converged.
+//! Source: C. Brezinski, M. Redivo Zaglia, Hybrid procedures for solving linear systems, Numerische
+//! Mathematik 67, 1994, DOI 10.1007/s002110050015; M. Leblond, F. Rousselle, C. Renaud,
+//! Hybridization techniques for fast radiosity solvers, Computer Graphics International 2000. Any
+//! scheme can give the sequence; by default it is Gauss–Seidel. ‖b − A z_k‖₂ is at most ‖b − A
+//! x_k‖₂ and never grows. A z_k is blended as z_k is, and computed anew before it counts as
+//! converged.
 //!
 //! Requires what the scheme of the sequence requires.
 //!
@@ -64,9 +66,9 @@ impl<T: Scalar> Scheme<T> for Hgs1<T> {
         "Hybrid Gauss–Seidel 1: blended with the iterates of an untouched sequence for the smallest residual"
     }
 
-    fn bytes(&self, dim: usize, lanes: usize) -> u64 {
-        let own = (4 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(lanes as u64);
-        own.saturating_add(Scheme::bytes(&self.sequence, dim, lanes))
+    fn bytes(&self, dim: usize, rhs_count: usize) -> u64 {
+        let own = (4 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(rhs_count as u64);
+        own.saturating_add(Scheme::bytes(&self.sequence, dim, rhs_count))
     }
 
     fn begin<'a>(
@@ -76,7 +78,13 @@ impl<T: Scalar> Scheme<T> for Hgs1<T> {
         context: &mut Context<'_>,
     ) -> Result<Box<dyn Iteration<T> + 'a>, Halt> {
         let sequence = self.sequence.begin(a, b, context)?;
-        Ok(Box::new(Smoothed { a, b, sequence, x: None, product: MultiVector::zeros(b.dim(), b.lanes()) }))
+        Ok(Box::new(Smoothed {
+            a,
+            b,
+            sequence,
+            x: None,
+            product: MultiVector::zeros(b.dim(), b.rhs_count()),
+        }))
     }
 }
 

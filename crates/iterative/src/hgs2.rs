@@ -1,9 +1,11 @@
-//! Hybrid Gauss–Seidel, second case: z_k = α x_k + (1 − α) z_(k−1) with the α of smallest residual, x_k one sweep from z_(k−1).
+//! Hybrid Gauss–Seidel, second case: z_k = α x_k + (1 − α) z_(k−1) with the α of smallest residual,
+//! x_k one sweep from z_(k−1).
 //!
-//! Source: C. Brezinski, M. Redivo Zaglia, Hybrid procedures for solving linear systems, Numerische Mathematik 67, 1994,
-//! DOI 10.1007/s002110050015; M. Leblond, F. Rousselle, C. Renaud, Hybridization techniques for fast radiosity solvers, Computer Graphics
-//! International 2000. The
-//! state of a sweep is linear in x, so that it is blended as the iterates are, and no product is computed.
+//! Source: C. Brezinski, M. Redivo Zaglia, Hybrid procedures for solving linear systems, Numerische
+//! Mathematik 67, 1994, DOI 10.1007/s002110050015; M. Leblond, F. Rousselle, C. Renaud,
+//! Hybridization techniques for fast radiosity solvers, Computer Graphics International 2000. The
+//! state of a sweep is linear in x, so that it is blended as the iterates are, and no product is
+//! computed.
 //!
 //! Requires a_ii ≠ 0. ‖b − A z_k‖₂ never grows and is at most that of the sweep.
 //!
@@ -54,8 +56,8 @@ impl<T: Scalar> Scheme<T> for Hgs2 {
         "Hybrid Gauss–Seidel 2: every sweep starts from the iterate blended for the smallest residual"
     }
 
-    fn bytes(&self, dim: usize, lanes: usize) -> u64 {
-        (9 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(lanes as u64)
+    fn bytes(&self, dim: usize, rhs_count: usize) -> u64 {
+        (9 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(rhs_count as u64)
     }
 
     fn begin<'a>(
@@ -65,14 +67,14 @@ impl<T: Scalar> Scheme<T> for Hgs2 {
         _: &mut Context<'_>,
     ) -> Result<Box<dyn Iteration<T> + 'a>, Halt> {
         divisors(NAME, a)?;
-        let product = MultiVector::zeros(b.dim(), b.lanes());
-        Ok(Box::new(Blended { a, b, sweep: Sweep::new(b.dim(), b.lanes()), product }))
+        let product = MultiVector::zeros(b.dim(), b.rhs_count());
+        Ok(Box::new(Blended { a, b, sweep: Sweep::new(b.dim(), b.rhs_count()), product }))
     }
 }
 
 impl<T: Scalar> Iteration<T> for Blended<'_, T> {
     fn restart(&mut self, x: &mut MultiVector<T>, context: &mut Context<'_>) -> Result<(), Halt> {
-        self.sweep = Sweep::new(x.dim(), x.lanes());
+        self.sweep = Sweep::new(x.dim(), x.rhs_count());
         if !x.is_zero() {
             visit_all(self.a, context, |_| (), |relax| self.a.sweep(x, &mut self.sweep, relax))?;
         }

@@ -1,9 +1,11 @@
-//! The hybrid of two schemes: both run by themselves, z_k = α x'_k + (1 − α) x''_k with the α of smallest residual.
+//! The hybrid of two schemes: both run by themselves, z_k = α x'_k + (1 − α) x''_k with the α of
+//! smallest residual.
 //!
-//! Source: C. Brezinski, M. Redivo Zaglia, Hybrid procedures for solving linear systems, Numerische Mathematik 67, 1994,
-//! DOI 10.1007/s002110050015; M. Leblond, F. Rousselle, C. Renaud, Hybridization techniques for fast radiosity solvers, Computer Graphics
-//! International 2000. ‖b − A z_k‖₂
-//! is at most the smaller one of both schemes' residuals. With progressive radiosity as one of them this is the hybrid that the second source proposes.
+//! Source: C. Brezinski, M. Redivo Zaglia, Hybrid procedures for solving linear systems, Numerische
+//! Mathematik 67, 1994, DOI 10.1007/s002110050015; M. Leblond, F. Rousselle, C. Renaud,
+//! Hybridization techniques for fast radiosity solvers, Computer Graphics International 2000. ‖b −
+//! A z_k‖₂ is at most the smaller one of both schemes' residuals. With progressive radiosity as one
+//! of them this is the hybrid that the second source proposes.
 //!
 //! Requires what both schemes require.
 //!
@@ -65,12 +67,12 @@ impl<T: Scalar> Scheme<T> for Hybrid<T> {
         "Hybrid of two schemes, run side by side and blended for the smallest residual"
     }
 
-    fn bytes(&self, dim: usize, lanes: usize) -> u64 {
-        let own = (5 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(lanes as u64);
-        own.saturating_add(Scheme::bytes(&self.first, dim, lanes)).saturating_add(Scheme::bytes(
+    fn bytes(&self, dim: usize, rhs_count: usize) -> u64 {
+        let own = (5 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(rhs_count as u64);
+        own.saturating_add(Scheme::bytes(&self.first, dim, rhs_count)).saturating_add(Scheme::bytes(
             &self.second,
             dim,
-            lanes,
+            rhs_count,
         ))
     }
 
@@ -81,7 +83,13 @@ impl<T: Scalar> Scheme<T> for Hybrid<T> {
         context: &mut Context<'_>,
     ) -> Result<Box<dyn Iteration<T> + 'a>, Halt> {
         let schemes = [self.first.begin(a, b, context)?, self.second.begin(a, b, context)?];
-        Ok(Box::new(Pair { a, b, schemes, iterates: None, product: MultiVector::zeros(b.dim(), b.lanes()) }))
+        Ok(Box::new(Pair {
+            a,
+            b,
+            schemes,
+            iterates: None,
+            product: MultiVector::zeros(b.dim(), b.rhs_count()),
+        }))
     }
 }
 

@@ -1,10 +1,12 @@
 //! Jacobi: x_i += ω (b_i − Σ_j a_ij x_j)/a_ii, all unknowns at once; weighted if ω ≠ 1.
 //!
-//! Source: Y. Saad, Iterative Methods for Sparse Linear Systems, 2nd ed., SIAM 2003, § 4.1 and § 13.2.2,
-//! DOI 10.1137/1.9780898718003. Where a_ii = 1, as on flat patches, ω = 1 is the Neumann series.
+//! Source: Y. Saad, Iterative Methods for Sparse Linear Systems, 2nd ed., SIAM 2003, § 4.1 and
+//! § 13.2.2, DOI 10.1137/1.9780898718003. Where a_ii = 1, as on flat patches, ω = 1 is the Neumann
+//! series.
 //!
-//! Requires a_ii ≠ 0 and 0 < ω. Converges with ω = 1 for strictly or irreducibly diagonally dominant matrices, with
-//! ω < 2/λ_max(diag(A)⁻¹ A) for those that are similar to a Hermitian positive definite one.
+//! Requires a_ii ≠ 0 and 0 < ω. Converges with ω = 1 for strictly or irreducibly diagonally
+//! dominant matrices, with ω < 2/λ_max(diag(A)⁻¹ A) for those that are similar to a Hermitian
+//! positive definite one.
 //!
 //! Cost of an iteration: one application.
 //!
@@ -53,8 +55,8 @@ impl<T: Scalar> Scheme<T> for Jacobi {
         "Jacobi: every unknown from the old values of the others; weighted with omega"
     }
 
-    fn bytes(&self, dim: usize, lanes: usize) -> u64 {
-        (4 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(lanes as u64)
+    fn bytes(&self, dim: usize, rhs_count: usize) -> u64 {
+        (4 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(rhs_count as u64)
     }
 
     fn begin<'a>(

@@ -1,7 +1,8 @@
 //! Iterative solvers of (I − D K) x = b, one algorithm a file.
 //!
-//! A scheme is one file here and one entry in the registry, see [`entries`]. Every scheme is a [`fredholm_linop::Solver`]; all report
-//! the same residual ‖b − A x‖₂/‖b‖₂ per lane, see [`fredholm_linop::Monitor`].
+//! A scheme is one file here and one entry in the registry, see [`entries`]. Every scheme is a
+//! [`fredholm_linop::Solver`]; all report the same residual ‖b − A x‖₂/‖b‖₂ per right-hand side,
+//! see [`fredholm_linop::Monitor`].
 
 mod core;
 

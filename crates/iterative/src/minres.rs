@@ -1,12 +1,15 @@
-//! MINRES: of all iterates in the Krylov space, the one with the smallest residual of Θ, by the Lanczos process.
+//! MINRES: of all iterates in the Krylov space, the one with the smallest residual of Θ, by the
+//! Lanczos process.
 //!
-//! Source: C. C. Paige, M. A. Saunders, Solution of sparse indefinite systems of linear equations, SIAM Journal on Numerical
-//! Analysis 12, 1975, DOI 10.1137/0712047; the recurrences as in A. Greenbaum, Iterative Methods for Solving Linear Systems, SIAM 1997,
-//! § 2.4, DOI 10.1137/1.9781611970937. It is applied to A in the inner product of H = D⁻¹, as Θ z = H^½ b is; what it makes smaller at every
-//! step is ‖r‖_H.
+//! Source: C. C. Paige, M. A. Saunders, Solution of sparse indefinite systems of linear equations,
+//! SIAM Journal on Numerical Analysis 12, 1975, DOI 10.1137/0712047; the recurrences as in A.
+//! Greenbaum, Iterative Methods for Solving Linear Systems, SIAM 1997, § 2.4, DOI
+//! 10.1137/1.9781611970937. It is applied to A in the inner product of H = D⁻¹, as Θ z = H^½ b is;
+//! what it makes smaller at every step is ‖r‖_H.
 //!
-//! Requires a coupling that is known to be symmetric (Hermitian, for complex unknowns), D real and ≥ 0; A may be indefinite, but not singular. Unknowns
-//! with d_i = 0 are set to b_i before the first step.
+//! Requires a coupling that is known to be symmetric (Hermitian, for complex unknowns), D real and
+//! ≥ 0; A may be indefinite, but not singular. Unknowns with d_i = 0 are set to b_i before the
+//! first step.
 //!
 //! Cost of an iteration: one application.
 //!
@@ -49,7 +52,7 @@ struct Lanczos<'a, T> {
     rotations: Vec<Rotations>,
 }
 
-/// The last two rotations of a lane, its β and what is left of the right-hand side.
+/// The last two rotations for a right-hand side, β, and what they have left of ‖r₀‖ e₁.
 #[derive(Clone, Copy, Debug)]
 struct Rotations {
     cosines: [f64; 2],
@@ -58,7 +61,8 @@ struct Rotations {
     eta: f64,
 }
 
-/// What a step takes of the known directions, per lane: the new direction is (v − third w_(k−2) − second w_(k−1)) scale.
+/// What a step takes of the known directions, per right-hand side. The new direction is (v − third
+/// w_(k−2) − second w_(k−1)) scale.
 #[derive(Default)]
 struct Parts<T> {
     third: Vec<T>,
@@ -78,8 +82,8 @@ impl<T: Scalar> Scheme<T> for Minres {
         "MINRES on the symmetrised system: smallest residual over the Krylov space; takes indefinite systems"
     }
 
-    fn bytes(&self, dim: usize, lanes: usize) -> u64 {
-        (11 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(lanes as u64)
+    fn bytes(&self, dim: usize, rhs_count: usize) -> u64 {
+        (11 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(rhs_count as u64)
     }
 
     fn begin<'a>(
@@ -88,7 +92,7 @@ impl<T: Scalar> Scheme<T> for Minres {
         b: &'a MultiVector<T>,
         _: &mut Context<'_>,
     ) -> Result<Box<dyn Iteration<T> + 'a>, Halt> {
-        let zeros = MultiVector::zeros(b.dim(), b.lanes());
+        let zeros = MultiVector::zeros(b.dim(), b.rhs_count());
         let pair = || [zeros.clone(), zeros.clone()];
         Ok(Box::new(Lanczos {
             a,
@@ -111,7 +115,7 @@ impl<T: Scalar> Lanczos<'_, T> {
         self.metric.eliminate(self.a, self.b, x, state, context)?;
         let lengths: Vec<f64> =
             self.metric.real_dots(&self.residual, &self.residual).into_iter().map(f64::sqrt).collect();
-        let empty = MultiVector::zeros(x.dim(), x.lanes());
+        let empty = MultiVector::zeros(x.dim(), x.rhs_count());
         self.v[1] = self.residual.clone();
         self.v[1].scale_and_add(&inverses(&lengths), &empty);
         self.v[0] = empty.clone();
@@ -136,15 +140,15 @@ impl<T: Scalar> Lanczos<'_, T> {
         next.add_scaled(&minus(&reals(&alpha)), newest);
         next.add_scaled(&minus(&reals(&beta)), before);
         let lengths: Vec<f64> = self.metric.real_dots(next, next).into_iter().map(f64::sqrt).collect();
-        next.scale_and_add(&inverses(&lengths), &MultiVector::zeros(image.dim(), image.lanes()));
+        next.scale_and_add(&inverses(&lengths), &MultiVector::zeros(image.dim(), image.rhs_count()));
         Ok((alpha, lengths))
     }
 
-    /// Rotates the new column of T of every lane.
+    /// Rotates the new column of T of every right-hand side.
     fn rotate(&mut self, alpha: &[f64], beta: &[f64]) -> Parts<T> {
         let mut parts = Parts::default();
-        for (lane, rotations) in self.rotations.iter_mut().enumerate() {
-            let ([third, second, scale], length) = rotations.take(alpha[lane], beta[lane]);
+        for (rhs, rotations) in self.rotations.iter_mut().enumerate() {
+            let ([third, second, scale], length) = rotations.take(alpha[rhs], beta[rhs]);
             parts.third.push(T::from_real(-third));
             parts.second.push(T::from_real(-second));
             parts.scale.push(T::from_real(scale));
@@ -155,7 +159,8 @@ impl<T: Scalar> Lanczos<'_, T> {
 }
 
 impl Rotations {
-    /// Takes in α and the new β; returns the parts of the new direction and the length to go along it.
+    /// Takes in α and the new β; returns the parts of the new direction and the length to go along
+    /// it.
     fn take(&mut self, alpha: f64, beta: f64) -> ([f64; 3], f64) {
         let ([c0, c1], [s0, s1]) = (self.cosines, self.sines);
         let delta = c1 * alpha - c0 * s1 * self.beta;
@@ -175,9 +180,10 @@ fn inverses<T: Scalar>(lengths: &[f64]) -> Vec<T> {
     reals(&lengths.iter().map(inverse).collect::<Vec<_>>())
 }
 
-/// The newest of two directions becomes the older one; its place takes (start − third older − second newer) scale.
+/// The newest of two directions becomes the older one; its place takes (start − third older −
+/// second newer) scale.
 fn replace<T: Scalar>(pair: &mut [MultiVector<T>; 2], start: &MultiVector<T>, parts: &Parts<T>) {
-    let zeros = MultiVector::zeros(start.dim(), start.lanes());
+    let zeros = MultiVector::zeros(start.dim(), start.rhs_count());
     let [older, newer] = pair;
     older.scale_and_add(&parts.third, start);
     older.add_scaled(&parts.second, newer);
@@ -197,7 +203,7 @@ impl<T: Scalar> Iteration<T> for Lanczos<'_, T> {
         if self.rotations.is_empty() {
             self.begin(x, context)?;
         }
-        let mut image = MultiVector::zeros(x.dim(), x.lanes());
+        let mut image = MultiVector::zeros(x.dim(), x.rhs_count());
         let (alpha, beta) = self.extend(&mut image, context)?;
         let parts = self.rotate(&alpha, &beta);
         replace(&mut self.w, &self.v[1], &parts);

@@ -1,10 +1,11 @@
-//! Successive approximations: x ← b + K x, with A = I − K. From x = 0 its iterates are the partial sums of the Neumann
-//! series b + K b + K² b + …: for light, what has bounced at most k times.
+//! Successive approximations: x ← b + K x, with A = I − K. From x = 0 its iterates are the partial
+//! sums of the Neumann series b + K b + K² b + …: for light, what has bounced at most k times.
 //!
-//! Source: Y. Saad, Iterative Methods for Sparse Linear Systems, 2nd ed., SIAM 2003, § 4.2 (Richardson's iteration with
-//! factor 1), DOI 10.1137/1.9780898718003.
+//! Source: Y. Saad, Iterative Methods for Sparse Linear Systems, 2nd ed., SIAM 2003, § 4.2
+//! (Richardson's iteration with factor 1), DOI 10.1137/1.9780898718003.
 //!
-//! Requires nothing. Converges if the spectral radius of D K is below 1, which light has with ρ < 1.
+//! Requires nothing. Converges if the spectral radius of D K is below 1, as it is for light with
+//! ρ < 1.
 //!
 //! Cost of an iteration: one application.
 //!
@@ -44,8 +45,8 @@ impl<T: Scalar> Scheme<T> for Neumann {
         "Successive approximations: one bounce an iteration; the Neumann series"
     }
 
-    fn bytes(&self, dim: usize, lanes: usize) -> u64 {
-        (3 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(lanes as u64)
+    fn bytes(&self, dim: usize, rhs_count: usize) -> u64 {
+        (3 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(rhs_count as u64)
     }
 
     fn begin<'a>(

@@ -1,15 +1,19 @@
-//! Conjugate gradients on Θ = I − D^½ K D^½, preconditioned by an incomplete Cholesky factor with threshold: Θ ≈ L Lᴴ.
+//! Conjugate gradients on Θ = I − D^½ K D^½, preconditioned by an incomplete Cholesky factor with
+//! threshold: Θ ≈ L Lᴴ.
 //!
-//! Source: J. A. Meijerink, H. A. van der Vorst, Mathematics of Computation 31, 1977, DOI 10.1090/S0025-5718-1977-0438681-4 (it exists
-//! for M-matrices, whatever is left out); Y. Saad, Iterative Methods for Sparse Linear Systems, 2nd ed., SIAM 2003, § 10.4,
-//! DOI 10.1137/1.9780898718003. Row i of L is computed from row i of Θ; entries below τ times the mean size of an entry of that row
-//! are left out before and while that is done.
+//! Source: J. A. Meijerink, H. A. van der Vorst, Mathematics of Computation 31, 1977, DOI
+//! 10.1090/S0025-5718-1977-0438681-4 (it exists for M-matrices, whatever is left out); Y. Saad,
+//! Iterative Methods for Sparse Linear Systems, 2nd ed., SIAM 2003, § 10.4, DOI
+//! 10.1137/1.9780898718003. Row i of L is computed from row i of Θ; entries below τ times the mean
+//! size of an entry of that row are left out before and while that is done.
 //!
-//! Requires a coupling that is known to be symmetric (Hermitian, for complex unknowns), D real and ≥ 0, and Ψ positive definite,
-//! which light has with ρ < 1. Unknowns with d_i = 0, black patches, are set to b_i before the first step.
+//! Requires a coupling that is known to be symmetric (Hermitian, for complex unknowns), D real and
+//! ≥ 0, and Ψ positive definite, which light has with ρ < 1. Unknowns with d_i = 0, black patches,
+//! are set to b_i before the first step.
 //!
-//! Cost of an iteration: one application and two substitutions with the entries that are left; the factors, one for each lane, take one
-//! reading of the lower triangle each. Memory: at most n²/2 entries a lane, as the threshold leaves.
+//! Cost of an iteration: one application and two substitutions with the entries that are left; the
+//! factors, one for each right-hand side, take one reading of the lower triangle each. Memory: at
+//! most n²/2 entries a right-hand side, as the threshold leaves.
 //!
 //! ```
 //! use fredholm_iterative::PcgCholesky;
@@ -47,16 +51,16 @@ impl Default for PcgCholesky {
     }
 }
 
-/// L of a lane, column by column: (row, entry) below the diagonal, and the diagonal.
+/// L of a right-hand side, column by column: (row, entry) below the diagonal, and the diagonal.
 struct Factor<T> {
     columns: Vec<Vec<(u32, T)>>,
     diagonal: Vec<T>,
 }
 
-/// The factors of all lanes.
+/// The factors of all right-hand sides.
 struct Factors<'a, T> {
     a: &'a SecondKind<'a, T>,
-    lanes: Vec<Factor<T>>,
+    factors: Vec<Factor<T>>,
 }
 
 solve_by_steps!(PcgCholesky);
@@ -70,13 +74,14 @@ impl<T: Scalar> Scheme<T> for PcgCholesky {
         "Conjugate gradients preconditioned by an incomplete Cholesky factor with threshold"
     }
 
-    // Of a row no more than 1/τ of the entries can be τ times their mean; the lists of columns grow by doubling.
-    fn bytes(&self, dim: usize, lanes: usize) -> u64 {
+    // Of a row no more than 1/τ of the entries can be τ times their mean; the lists of columns grow
+    // by doubling.
+    fn bytes(&self, dim: usize, rhs_count: usize) -> u64 {
         let (n, entry) = (dim as u64, size_of::<T>() as u64);
         let kept = (n as f64 * n as f64 / self.threshold.max(1.0)) as u64;
         let factor = kept.saturating_mul(size_of::<(u32, T)>() as u64);
         let vectors = n.saturating_mul(7).saturating_mul(entry);
-        factor.saturating_add(vectors).saturating_mul(lanes as u64)
+        factor.saturating_add(vectors).saturating_mul(rhs_count as u64)
     }
 
     fn begin<'a>(
@@ -86,16 +91,16 @@ impl<T: Scalar> Scheme<T> for PcgCholesky {
         context: &mut Context<'_>,
     ) -> Result<Box<dyn Iteration<T> + 'a>, Halt> {
         let metric = Metric::new(NAME, a)?;
-        let factor = |lane| Factor::new(a, lane, self.threshold, context);
-        let lanes: Vec<_> = (0..b.lanes()).map(factor).collect::<Result<_, _>>()?;
-        Ok(Box::new(Conjugate::new(NAME, (a, b), metric, Factors { a, lanes })))
+        let factor = |rhs| Factor::new(a, rhs, self.threshold, context);
+        let factors: Vec<_> = (0..b.rhs_count()).map(factor).collect::<Result<_, _>>()?;
+        Ok(Box::new(Conjugate::new(NAME, (a, b), metric, Factors { a, factors })))
     }
 }
 
 impl<T: Scalar> Factor<T> {
     fn new(
         a: &SecondKind<'_, T>,
-        lane: usize,
+        rhs: usize,
         threshold: f64,
         context: &mut Context<'_>,
     ) -> Result<Self, Halt> {
@@ -104,10 +109,10 @@ impl<T: Scalar> Factor<T> {
         let mut row = vec![T::zero(); dim];
         for i in 0..dim {
             context.poll()?;
-            read_theta(a, i, lane, &mut row[..=i]);
+            read_theta(a, i, rhs, &mut row[..=i]);
             let pivot = factor.add_row(&mut row[..=i], threshold);
             if pivot.is_nan() || pivot <= 0.0 {
-                return Err(SolveError::Indefinite { solver: NAME, lane }.into());
+                return Err(SolveError::Indefinite { solver: NAME, rhs }.into());
             }
         }
         context.work.row_visits += dim as u64;
@@ -153,9 +158,9 @@ impl<T: Scalar> Factor<T> {
 }
 
 /// Row i of Θ up to the diagonal: θ_ij = δ_ij − √d_i k_ij √d_j.
-fn read_theta<T: Scalar>(a: &SecondKind<'_, T>, i: usize, lane: usize, row: &mut [T]) {
-    let root = |j: usize| a.factor().row(j)[lane].re().sqrt();
-    a.coupling().lower_row(i, lane, row);
+fn read_theta<T: Scalar>(a: &SecondKind<'_, T>, i: usize, rhs: usize, row: &mut [T]) {
+    let root = |j: usize| a.factor().row(j)[rhs].re().sqrt();
+    a.coupling().lower_row(i, rhs, row);
     row.iter_mut().enumerate().for_each(|(j, entry)| *entry = -entry.scale(root(i) * root(j)));
     row[i] += T::one();
 }
@@ -163,14 +168,14 @@ fn read_theta<T: Scalar>(a: &SecondKind<'_, T>, i: usize, lane: usize, row: &mut
 impl<T: Scalar> Precondition<T> for Factors<'_, T> {
     /// z = D^½ (L Lᴴ)⁻¹ D^(−½) r.
     fn apply(&mut self, r: &MultiVector<T>, z: &mut MultiVector<T>, _: &mut Context<'_>) -> Result<(), Halt> {
-        for (lane, factor) in self.lanes.iter().enumerate() {
-            let root = |i: usize| self.a.factor().row(i)[lane].re().sqrt();
+        for (rhs, factor) in self.factors.iter().enumerate() {
+            let root = |i: usize| self.a.factor().row(i)[rhs].re().sqrt();
             let scaled =
-                |i: usize| if root(i) > 0.0 { r.row(i)[lane].scale(root(i).recip()) } else { T::zero() };
+                |i: usize| if root(i) > 0.0 { r.row(i)[rhs].scale(root(i).recip()) } else { T::zero() };
             let mut v: Vec<T> = (0..r.dim()).map(scaled).collect();
             factor.solve(&mut v);
             v.iter_mut().enumerate().for_each(|(i, v)| *v = v.scale(root(i)));
-            z.set_lane(lane, &v);
+            z.set_vector(rhs, &v);
         }
         Ok(())
     }

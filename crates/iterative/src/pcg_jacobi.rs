@@ -1,10 +1,12 @@
 //! Conjugate gradients on Ψ = H A, preconditioned by its diagonal: z_i = r_i/a_ii.
 //!
-//! Source: Y. Saad, Iterative Methods for Sparse Linear Systems, 2nd ed., SIAM 2003, § 9.2, DOI 10.1137/1.9780898718003. Where a_ii = 1,
-//! as on flat patches, diag(Ψ) = H, and this is conjugate gradients on Θ.
+//! Source: Y. Saad, Iterative Methods for Sparse Linear Systems, 2nd ed., SIAM 2003, § 9.2, DOI
+//! 10.1137/1.9780898718003. Where a_ii = 1, as on flat patches, diag(Ψ) = H, and this is conjugate
+//! gradients on Θ.
 //!
-//! Requires a coupling that is known to be symmetric (Hermitian, for complex unknowns), D real and ≥ 0, and Ψ positive definite,
-//! which light has with ρ < 1. Unknowns with d_i = 0, black patches, are set to b_i before the first step.
+//! Requires a coupling that is known to be symmetric (Hermitian, for complex unknowns), D real and
+//! ≥ 0, and Ψ positive definite, which light has with ρ < 1. Unknowns with d_i = 0, black patches,
+//! are set to b_i before the first step.
 //!
 //! Cost of an iteration: one application.
 //!
@@ -44,8 +46,8 @@ impl<T: Scalar> Scheme<T> for PcgJacobi {
         "Conjugate gradients preconditioned by the diagonal; the same as cg-theta on flat patches"
     }
 
-    fn bytes(&self, dim: usize, lanes: usize) -> u64 {
-        (7 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(lanes as u64)
+    fn bytes(&self, dim: usize, rhs_count: usize) -> u64 {
+        (7 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(rhs_count as u64)
     }
 
     fn begin<'a>(

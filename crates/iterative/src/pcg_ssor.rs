@@ -1,12 +1,13 @@
-//! Conjugate gradients on Ψ, preconditioned by a symmetric relaxation: A = C + L + U with C = diag(A),
-//! M = (C/ω + L) (C/ω)⁻¹ (C/ω + U).
+//! Conjugate gradients on Ψ, preconditioned by a symmetric relaxation: A = C + L + U with C =
+//! diag(A), M = (C/ω + L) (C/ω)⁻¹ (C/ω + U).
 //!
-//! Source: Y. Saad, Iterative Methods for Sparse Linear Systems, 2nd ed., SIAM 2003, § 10.2, DOI 10.1137/1.9780898718003. M⁻¹ r is a
-//! forward substitution, a forward sweep from 0, and a backward one; factors that are the same in every direction change nothing and
-//! are left out.
+//! Source: Y. Saad, Iterative Methods for Sparse Linear Systems, 2nd ed., SIAM 2003, § 10.2, DOI
+//! 10.1137/1.9780898718003. M⁻¹ r is a forward substitution, a forward sweep from 0, and a backward
+//! one; factors that are the same in every direction change nothing and are left out.
 //!
-//! Requires a coupling that is known to be symmetric (Hermitian, for complex unknowns), D real and ≥ 0, and Ψ positive definite,
-//! which light has with ρ < 1. Unknowns with d_i = 0, black patches, are set to b_i before the first step. Requires 0 < ω < 2.
+//! Requires a coupling that is known to be symmetric (Hermitian, for complex unknowns), D real and
+//! ≥ 0, and Ψ positive definite, which light has with ρ < 1. Unknowns with d_i = 0, black patches,
+//! are set to b_i before the first step. Requires 0 < ω < 2.
 //!
 //! Cost of an iteration: one application and two sweeps, three readings of the matrix.
 //!
@@ -65,8 +66,8 @@ impl<T: Scalar> Scheme<T> for PcgSsor {
         "Conjugate gradients preconditioned by symmetric relaxation; few iterations of three readings each"
     }
 
-    fn bytes(&self, dim: usize, lanes: usize) -> u64 {
-        (9 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(lanes as u64)
+    fn bytes(&self, dim: usize, rhs_count: usize) -> u64 {
+        (9 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(rhs_count as u64)
     }
 
     fn begin<'a>(
@@ -78,7 +79,7 @@ impl<T: Scalar> Scheme<T> for PcgSsor {
         divisors(NAME, a)?;
         check(NAME, self.omega, 2.0)?;
         let metric = Metric::new(NAME, a)?;
-        let sweep = Sweep::new(b.dim(), b.lanes());
+        let sweep = Sweep::new(b.dim(), b.rhs_count());
         let inverse = Substitutions { a, omega: self.omega, sweep };
         Ok(Box::new(Conjugate::new(NAME, (a, b), metric, inverse)))
     }

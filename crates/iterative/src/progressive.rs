@@ -1,21 +1,26 @@
-//! Progressive radiosity, Southwell's relaxation as shooting: the patch with the most unshot power sends it to all others.
+//! Progressive radiosity, Southwell's relaxation as shooting: the patch with the most unshot power
+//! sends it to all others.
 //!
-//! Source: M. F. Cohen, S. E. Chen, J. R. Wallace, D. P. Greenberg, A progressive refinement approach to fast radiosity image
-//! generation, SIGGRAPH 1988, DOI 10.1145/54852.378487; S. J. Gortler, M. F. Cohen, P. Slusallek, IEEE Computer Graphics and
-//! Applications 14 (6), 1994, DOI 10.1109/38.329094. The residual r is the unshot radiosity ΔB, and the patch chosen has the
-//! largest A_i |r_i|; x_i += r_i/a_ii, r −= A e_i r_i/a_ii. Where no areas are given, what a patch sends, Σ_k |k_ki| = A_i Σ_k F_ik,
-//! stands for its area. From x = 0 no application is needed, and a shot reads one column: the matrix may be one that computes
-//! its columns when they are asked for.
+//! Source: M. F. Cohen, S. E. Chen, J. R. Wallace, D. P. Greenberg, A progressive refinement
+//! approach to fast radiosity image generation, SIGGRAPH 1988, DOI 10.1145/54852.378487; S. J.
+//! Gortler, M. F. Cohen, P. Slusallek, IEEE Computer Graphics and Applications 14 (6), 1994, DOI
+//! 10.1109/38.329094. The residual r is the unshot radiosity ΔB, and the patch chosen has the
+//! largest A_i |r_i|; x_i += r_i/a_ii, r −= A e_i r_i/a_ii. Where no areas are given, what a patch
+//! sends, Σ_k |k_ki| = A_i Σ_k F_ik, stands for its area. From x = 0 no application is needed, and
+//! a shot reads one column: the matrix may be one that computes its columns when they are asked
+//! for.
 //!
-//! Overshooting (M. Feda, W. Purgathofer, Accelerating radiosity by overshooting, Eurographics Workshop on Rendering 1992): the patch
-//! sends in advance what it will receive of the unshot light by the ambient estimate, s = r_i + ρ_i Amb with
-//! Amb = Σ A_j r_j/(Σ A_j (1 − ρ̄)), ρ_i = d_i A_i and ρ̄ their mean over areas, but at most 1.9 r_i: between 0 and 2 r_i every step
-//! comes nearer to the solution in the norm of Ψ.
+//! Overshooting (M. Feda, W. Purgathofer, Accelerating radiosity by overshooting, Eurographics
+//! Workshop on Rendering 1992): the patch sends in advance what it will receive of the unshot light
+//! by the ambient estimate, s = r_i + ρ_i Amb with Amb = Σ A_j r_j/(Σ A_j (1 − ρ̄)), ρ_i = d_i A_i
+//! and ρ̄ their mean over areas, but at most 1.9 r_i: between 0 and 2 r_i every step comes nearer
+//! to the solution in the norm of Ψ.
 //!
-//! Requires a_ii ≠ 0; overshooting, real unknowns. Converges for strictly diagonally dominant matrices (without overshooting)
-//! and for Hermitian positive definite ones.
+//! Requires a_ii ≠ 0; overshooting, real unknowns. Converges for strictly diagonally dominant
+//! matrices (without overshooting) and for Hermitian positive definite ones.
 //!
-//! Cost of an iteration: n shots, each of one column; areas that are not given take one reading of the matrix.
+//! Cost of an iteration: n shots, each of one column; areas that are not given take one reading of
+//! the matrix.
 //!
 //! ```
 //! use fredholm_iterative::Progressive;
@@ -71,8 +76,8 @@ impl<T: Scalar> Scheme<T> for Progressive {
     }
 
     // The residual, the product, the diagonal, the areas twice and one column.
-    fn bytes(&self, dim: usize, lanes: usize) -> u64 {
-        let vectors = (lanes as u64).saturating_mul(3).saturating_add(3);
+    fn bytes(&self, dim: usize, rhs_count: usize) -> u64 {
+        let vectors = (rhs_count as u64).saturating_mul(3).saturating_add(3);
         vectors.saturating_mul(dim as u64).saturating_mul(size_of::<T>() as u64)
     }
 
@@ -92,7 +97,7 @@ impl<T: Scalar> Scheme<T> for Progressive {
             let reason = "overshooting adds an ambient power, which complex unknowns do not have".to_owned();
             return Err(SolveError::Unsuitable { solver: NAME, reason }.into());
         }
-        let rule = Overshooting { a, areas: areas.clone(), ambient: vec![T::zero(); b.lanes()] };
+        let rule = Overshooting { a, areas: areas.clone(), ambient: vec![T::zero(); b.rhs_count()] };
         Ok(Box::new(Shooting::new(a, b, (diagonal, areas), rule).with_shots(shots)))
     }
 }
@@ -138,10 +143,11 @@ fn overshot(r: f64, ahead: f64) -> f64 {
     r * (1.0 + relative.clamp(0.0, 0.9))
 }
 
-/// The ambient radiosity per lane: Amb = Σ A_j r_j/(Σ A_j (1 − ρ̄)), what the unshot light comes to if it is spread evenly.
+/// The ambient radiosity per right-hand side: Amb = Σ A_j r_j/(Σ A_j (1 − ρ̄)), what the unshot
+/// light comes to if it is spread evenly.
 pub(crate) fn ambient<T: Scalar>(factor: &MultiVector<T>, areas: &[f64], unshot: &MultiVector<T>) -> Vec<T> {
     let total: f64 = areas.iter().sum();
-    let mut sums = vec![(T::zero(), 0.0); unshot.lanes()];
+    let mut sums = vec![(T::zero(), 0.0); unshot.rhs_count()];
     for ((row, d), &area) in unshot.rows().zip(factor.rows()).zip(areas) {
         for (l, (light, reflected)) in sums.iter_mut().enumerate() {
             *light += row[l].scale(area);
@@ -153,9 +159,11 @@ pub(crate) fn ambient<T: Scalar>(factor: &MultiVector<T>, areas: &[f64], unshot:
     sums.into_iter().map(|sum| if escape(sum.1) > 0.0 { mean(sum) } else { T::zero() }).collect()
 }
 
-/// What to show of an unfinished solution: B + ΔB + ρ Amb, with the residual ΔB = b − A x and ρ_i = d_i A_i. `areas` in m².
+/// What to show of an unfinished solution: B + ΔB + ρ Amb, with the residual ΔB = b − A x and ρ_i =
+/// d_i A_i. `areas` in m².
 ///
-/// The ambient term spreads the unshot light evenly; it is exact in an integrating sphere of one material.
+/// The ambient term spreads the unshot light evenly; it is exact in an integrating sphere of one
+/// material.
 ///
 /// # Errors
 /// [`SolveError::Shape`] where areas, x or residual do not fit `a`.
@@ -166,21 +174,21 @@ pub fn with_ambient<T: Scalar>(
     residual: &MultiVector<T>,
 ) -> Result<MultiVector<T>, SolveError> {
     let factor = a.factor();
-    let (expected, expected_lanes) = (factor.dim(), factor.lanes());
+    let (expected, expected_rhs) = (factor.dim(), factor.rhs_count());
     let shapes = [
-        ("areas", areas.len(), expected_lanes),
-        ("solution", x.dim(), x.lanes()),
-        ("residual", residual.dim(), residual.lanes()),
+        ("areas", areas.len(), expected_rhs),
+        ("solution", x.dim(), x.rhs_count()),
+        ("residual", residual.dim(), residual.rhs_count()),
     ];
-    if let Some(&(vector, found, found_lanes)) =
-        shapes.iter().find(|&&(_, dim, lanes)| (dim, lanes) != (expected, expected_lanes))
+    if let Some(&(vector, found, found_rhs)) =
+        shapes.iter().find(|&&(_, dim, rhs_count)| (dim, rhs_count) != (expected, expected_rhs))
     {
-        return Err(SolveError::Shape { vector, found, found_lanes, expected, expected_lanes });
+        return Err(SolveError::Shape { vector, found, found_rhs, expected, expected_rhs });
     }
     let ambient = ambient(factor, areas, residual);
     let shown = |i: usize, l: usize| {
         let reflectance = factor.row(i)[l].scale(areas[i]);
         x.row(i)[l] + residual.row(i)[l] + reflectance * ambient[l]
     };
-    Ok(MultiVector::from_fn(expected, expected_lanes, shown))
+    Ok(MultiVector::from_fn(expected, expected_rhs, shown))
 }

@@ -1,11 +1,14 @@
-//! Successive relaxation: x_i += ω ((b_i − Σ_{j≠i} a_ij x_j)/a_ii − x_i) in order, with the x_j already relaxed.
+//! Successive relaxation: x_i += ω ((b_i − Σ_{j≠i} a_ij x_j)/a_ii − x_i) in order, with the x_j
+//! already relaxed.
 //!
-//! Over-relaxation (SOR) for ω > 1, under-relaxation (SUR) for ω < 1. Source: D. M. Young, Iterative Solution of Large
-//! Linear Systems, Academic Press 1971. Where no ω is given it is Young's 2/(1 + √(1 − ρ(J)²)) for each lane, ρ(J) by the power
-//! method; for matrices that are not consistently ordered, such as full ones, that is a guess, and often too large.
+//! Over-relaxation (SOR) for ω > 1, under-relaxation (SUR) for ω < 1. Source: D. M. Young,
+//! Iterative Solution of Large Linear Systems, Academic Press 1971. Where no ω is given it is
+//! Young's 2/(1 + √(1 − ρ(J)²)) for each right-hand side, ρ(J) by the power method; for matrices
+//! that are not consistently ordered, such as full ones, that is a guess, and often too large.
 //!
-//! Requires a_ii ≠ 0 and 0 < ω < 2, outside of which it cannot converge (W. Kahan). Converges for Hermitian positive
-//! definite matrices with any such ω (A. M. Ostrowski, Rendiconti di Matematica 14, 1954), light with ρ < 1 included, and for M-matrices with ω ≤ 1, the slower the smaller.
+//! Requires a_ii ≠ 0 and 0 < ω < 2, outside of which it cannot converge (W. Kahan). Converges for
+//! Hermitian positive definite matrices with any such ω (A. M. Ostrowski, Rendiconti di Matematica
+//! 14, 1954), light with ρ < 1 included, and for M-matrices with ω ≤ 1, the slower the smaller.
 //!
 //! Cost of an iteration: one sweep. The automatic ω takes up to 30 applications first.
 //!
@@ -34,7 +37,7 @@ const UNDER: &str = "sur";
 /// Over-relaxation.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sor {
-    /// ω between 0 and 2, or an automatic one for each lane.
+    /// ω between 0 and 2, or an automatic one for each right-hand side.
     pub omega: Option<f64>,
 }
 
@@ -63,8 +66,8 @@ impl<T: Scalar> Scheme<T> for Sor {
     }
 
     // The state of the sweep, and the vector of the power method.
-    fn bytes(&self, dim: usize, lanes: usize) -> u64 {
-        (4 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(lanes as u64)
+    fn bytes(&self, dim: usize, rhs_count: usize) -> u64 {
+        (4 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(rhs_count as u64)
     }
 
     fn begin<'a>(
@@ -89,8 +92,8 @@ impl<T: Scalar> Scheme<T> for Sur {
         "Successive under-relaxation: Gauss–Seidel steps shortened by omega; slower than Gauss–Seidel for light"
     }
 
-    fn bytes(&self, dim: usize, lanes: usize) -> u64 {
-        Scheme::<T>::bytes(&Sor::default(), dim, lanes)
+    fn bytes(&self, dim: usize, rhs_count: usize) -> u64 {
+        Scheme::<T>::bytes(&Sor::default(), dim, rhs_count)
     }
 
     fn begin<'a>(
@@ -101,12 +104,12 @@ impl<T: Scalar> Scheme<T> for Sur {
     ) -> Result<Box<dyn Iteration<T> + 'a>, Halt> {
         divisors(UNDER, a)?;
         check(UNDER, self.omega, 1.0)?;
-        let omega = vec![self.omega; b.lanes()];
+        let omega = vec![self.omega; b.rhs_count()];
         Ok(Box::new(Sweeping::forward(a, b, move |b, visit| relax_by(&omega, b, visit))))
     }
 }
 
-/// ω of every lane.
+/// ω of every right-hand side.
 fn factors<T: Scalar>(
     a: &SecondKind<'_, T>,
     omega: Option<f64>,
@@ -116,7 +119,7 @@ fn factors<T: Scalar>(
     match omega {
         Some(omega) => {
             check(NAME, omega, 2.0)?;
-            Ok(vec![omega; divisors.lanes()])
+            Ok(vec![omega; divisors.rhs_count()])
         }
         None => Ok(jacobi_radius(a, &divisors, context)?.into_iter().map(young).collect()),
     }

@@ -1,14 +1,18 @@
-//! Southwell: relax the unknown with the largest residual, x_i += r_i/a_ii, and take a_ki r_i/a_ii from every r_k.
+//! Southwell: relax the unknown with the largest residual, x_i += r_i/a_ii, and take a_ki r_i/a_ii
+//! from every r_k.
 //!
-//! Source: R. V. Southwell, Relaxation Methods in Engineering Science, Oxford 1940; for light in its gathering form,
-//! S. J. Gortler, M. F. Cohen, P. Slusallek, Radiosity and relaxation methods, IEEE Computer Graphics and
-//! Applications 14 (6), 1994, DOI 10.1109/38.329094. Several lanes are relaxed together: the unknown chosen has the largest
-//! |r_il|/‖b_l‖₂ of all lanes l, the first one of equals.
+//! Source: R. V. Southwell, Relaxation Methods in Engineering Science, Oxford 1940; for light in
+//! its gathering form, S. J. Gortler, M. F. Cohen, P. Slusallek, Radiosity and relaxation methods,
+//! IEEE Computer Graphics and Applications 14 (6), 1994, DOI 10.1109/38.329094. Several right-hand
+//! sides are relaxed together: the unknown chosen has the largest
+//! |r_il|/‖b_l‖₂ of all right-hand sides l, the first one of equals.
 //!
-//! Requires a_ii ≠ 0. Converges for strictly diagonally dominant matrices and for Hermitian positive definite ones.
+//! Requires a_ii ≠ 0. Converges for strictly diagonally dominant matrices and for Hermitian
+//! positive definite ones.
 //!
-//! Cost of an iteration: n relaxations, each of one column, and one application. The residual that is reported and
-//! that the next n relaxations start from is computed anew, so that rounding does not pile up in it.
+//! Cost of an iteration: n relaxations, each of one column, and one application. The residual that
+//! is reported and that the next n relaxations start from is computed anew, so that rounding does
+//! not pile up in it.
 //!
 //! ```
 //! use fredholm_iterative::Southwell;
@@ -50,8 +54,8 @@ impl<T: Scalar> Scheme<T> for Southwell {
     }
 
     // The residual, the product, the diagonal, the weights and one column.
-    fn bytes(&self, dim: usize, lanes: usize) -> u64 {
-        let vectors = (lanes as u64).saturating_mul(3).saturating_add(2);
+    fn bytes(&self, dim: usize, rhs_count: usize) -> u64 {
+        let vectors = (rhs_count as u64).saturating_mul(3).saturating_add(2);
         vectors.saturating_mul(dim as u64).saturating_mul(size_of::<T>() as u64)
     }
 

@@ -1,13 +1,16 @@
-//! Symmetric relaxation: a backward sweep, i = n−1 … 0, then a forward one, x_i += ω ((b_i − Σ_{j≠i} a_ij x_j)/a_ii − x_i).
+//! Symmetric relaxation: a backward sweep, i = n−1 … 0, then a forward one, x_i += ω ((b_i −
+//! Σ_{j≠i} a_ij x_j)/a_ii − x_i).
 //!
-//! Symmetric Gauss–Seidel for ω = 1. Source: Y. Saad, Iterative Methods for Sparse Linear Systems, 2nd ed., SIAM 2003,
-//! § 4.1, DOI 10.1137/1.9780898718003; the sums over the part of the row that has not changed are kept from one sweep to
-//! the next (V. Conrad, Y. Wallach, Numerische Mathematik 32, 1979).
+//! Symmetric Gauss–Seidel for ω = 1. Source: Y. Saad, Iterative Methods for Sparse Linear Systems,
+//! 2nd ed., SIAM 2003, § 4.1, DOI 10.1137/1.9780898718003; the sums over the part of the row that
+//! has not changed are kept from one sweep to the next (V. Conrad, Y. Wallach, Numerische
+//! Mathematik 32, 1979).
 //!
-//! Requires a_ii ≠ 0 and 0 < ω < 2. Converges for Hermitian positive definite matrices with any such ω; its iteration
-//! matrix then has real eigenvalues, which acceleration needs.
+//! Requires a_ii ≠ 0 and 0 < ω < 2. Converges for Hermitian positive definite matrices with any
+//! such ω; its iteration matrix then has real eigenvalues, which acceleration needs.
 //!
-//! Cost of an iteration: two sweeps, each of which reads every stored entry once; the backward one does half the arithmetic.
+//! Cost of an iteration: two sweeps, each of which reads every stored entry once; the backward one
+//! does half the arithmetic.
 //!
 //! ```
 //! use fredholm_iterative::Ssor;
@@ -55,8 +58,8 @@ impl<T: Scalar> Scheme<T> for Ssor {
         "Symmetric over-relaxation: a sweep back and a sweep forth; symmetric Gauss–Seidel with omega 1"
     }
 
-    fn bytes(&self, dim: usize, lanes: usize) -> u64 {
-        (3 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(lanes as u64)
+    fn bytes(&self, dim: usize, rhs_count: usize) -> u64 {
+        (3 * size_of::<T>() as u64).saturating_mul(dim as u64).saturating_mul(rhs_count as u64)
     }
 
     fn begin<'a>(
@@ -67,7 +70,7 @@ impl<T: Scalar> Scheme<T> for Ssor {
     ) -> Result<Box<dyn Iteration<T> + 'a>, Halt> {
         divisors(NAME, a)?;
         check(NAME, self.omega, 2.0)?;
-        let omega = vec![self.omega; b.lanes()];
+        let omega = vec![self.omega; b.rhs_count()];
         Ok(Box::new(Sweeping::back_and_forth(a, b, move |b, visit| relax_by(&omega, b, visit))))
     }
 }

@@ -1,6 +1,7 @@
 //! Every registered solver on every kind of system, against solutions known by construction.
 //!
-//! x is chosen, and b = A x is formed by plain loops over a full matrix. Solvers that need a symmetric coupling must refuse the others.
+//! x is chosen, and b = A x is formed by plain loops over a full matrix. Solvers that need a
+//! symmetric coupling must refuse the others.
 
 #![allow(clippy::float_cmp, clippy::needless_range_loop, clippy::unwrap_used)]
 
@@ -101,14 +102,14 @@ impl<T: Scalar> Case<T> {
 
     /// A x by plain loops.
     fn product(&self, x: &MultiVector<T>) -> MultiVector<T> {
-        MultiVector::from_fn(x.dim(), x.lanes(), |i, l| {
+        MultiVector::from_fn(x.dim(), x.rhs_count(), |i, l| {
             let sum = (0..x.dim()).fold(T::zero(), |sum, j| sum + (self.entry)(i, j) * x.row(j)[l]);
             x.row(i)[l] - self.factor.row(i)[l] * sum
         })
     }
 
     fn solve(&self, solver: &dyn Solver<T>, observer: &mut dyn Observer<T>) -> (Report, MultiVector<T>) {
-        let mut x = MultiVector::zeros(self.x.dim(), self.x.lanes());
+        let mut x = MultiVector::zeros(self.x.dim(), self.x.rhs_count());
         let report = solver.solve(&self.system(), &self.product(&self.x), &mut x, &STOP, observer).unwrap();
         (report, x)
     }
@@ -171,7 +172,8 @@ fn complex_dominant(n: usize) -> Case<Complex64> {
     Case { name: "complex dominant", symmetric: false, coupling, entry, factor, x }
 }
 
-/// Hermitian K with Σ_j |k_ij| ≤ 0.8, so that I − D K is similar to a positive definite matrix for 0 ≤ D ≤ 1.
+/// Hermitian K with Σ_j |k_ij| ≤ 0.8, so that I − D K is similar to a positive definite matrix for
+/// 0 ≤ D ≤ 1.
 fn hermitian(n: usize) -> Case<Complex64> {
     let mut random = random();
     let mut draw = move || Complex64::new(random.next() - 0.5, random.next() - 0.5);
@@ -199,7 +201,7 @@ fn partly_black(n: usize) -> Case<f64> {
 }
 
 fn refuses<T: Scalar>(case: &Case<T>, solver: &dyn Solver<T>) {
-    let mut x = MultiVector::zeros(case.x.dim(), case.x.lanes());
+    let mut x = MultiVector::zeros(case.x.dim(), case.x.rhs_count());
     let refusal =
         solver.solve(&case.system(), &case.product(&case.x), &mut x, &STOP, &mut Quiet).unwrap_err();
     assert!(matches!(&refusal, SolveError::Unsuitable { solver: name, .. } if *name == solver.name()));
@@ -219,13 +221,13 @@ fn check<T: Scalar>(case: &Case<T>, solvers: &[Box<dyn Solver<T>>]) {
         let product = case.product(&x);
         let last = &report.history[report.history.len() - 1];
         assert_eq!(last.iteration + 1, report.history.len(), "{name}");
-        for l in 0..x.lanes() {
-            let error = norm(&difference(&x.lane(l), &case.x.lane(l))) / norm(&case.x.lane(l));
-            assert!(error < 1e-10, "{name}: error {error:e} in lane {l}");
-            let residual = norm(&difference(&b.lane(l), &product.lane(l))) / norm(&b.lane(l));
+        for l in 0..x.rhs_count() {
+            let error = norm(&difference(&x.vector(l), &case.x.vector(l))) / norm(&case.x.vector(l));
+            assert!(error < 1e-10, "{name}: error {error:e} in right-hand side {l}");
+            let residual = norm(&difference(&b.vector(l), &product.vector(l))) / norm(&b.vector(l));
             assert!(
                 (residual - last.residuals[l]).abs() < 5e-15,
-                "{name}: residual {residual:e} in lane {l}"
+                "{name}: residual {residual:e} in right-hand side {l}"
             );
             assert!((report.history[0].residuals[l] - 1.0).abs() < 1e-15, "{name}");
         }
@@ -281,9 +283,10 @@ fn two_hundred_random_m_matrices_are_solved() {
     }
 }
 
-/// A matrix per lane: K' = I − D K as the coupling of A = I − D' K' with D' = −½, so that A = (3 I − D K)/2.
+/// A matrix per right-hand side: K' = I − D K as the coupling of A = I − D' K' with D' = −½, so
+/// that A = (3 I − D K)/2.
 #[test]
-fn every_solver_takes_a_matrix_per_lane() {
+fn every_solver_takes_a_matrix_per_right_hand_side() {
     let case = radiosity::<f64>(30);
     let inner = case.system();
     let a = SecondKind::new(&inner, MultiVector::from_fn(30, 3, |_, _| -0.5)).unwrap();
@@ -295,7 +298,7 @@ fn every_solver_takes_a_matrix_per_lane() {
         let report = solver.solve(&a, &b, &mut x, &STOP, &mut Quiet).unwrap();
         assert_eq!(report.reason, StopReason::Converged, "{}", solver.name());
         for l in 0..3 {
-            let error = norm(&difference(&x.lane(l), &case.x.lane(l))) / norm(&case.x.lane(l));
+            let error = norm(&difference(&x.vector(l), &case.x.vector(l))) / norm(&case.x.vector(l));
             assert!(error < 1e-12, "{}: {error:e}", solver.name());
         }
     }
@@ -329,13 +332,13 @@ fn any_starting_guess_leads_to_the_solution() {
     for solver in real_solvers() {
         let case = if SYMMETRIC.contains(&solver.name()) { &symmetric } else { &general };
         let b = case.product(&case.x);
-        let mut x = MultiVector::from_fn(30, case.x.lanes(), |i, l| (i * 7 % 5 + l) as f64);
-        let residual = difference(&b.lane(1), &case.product(&x).lane(1));
+        let mut x = MultiVector::from_fn(30, case.x.rhs_count(), |i, l| (i * 7 % 5 + l) as f64);
+        let residual = difference(&b.vector(1), &case.product(&x).vector(1));
         let report = solver.solve(&case.system(), &b, &mut x, &STOP, &mut Quiet).unwrap();
         let first = report.history[0].residuals[1];
-        assert!((first / (norm(&residual) / norm(&b.lane(1))) - 1.0).abs() < 1e-13, "{}", solver.name());
-        for l in 0..x.lanes() {
-            let error = norm(&difference(&x.lane(l), &case.x.lane(l))) / norm(&case.x.lane(l));
+        assert!((first / (norm(&residual) / norm(&b.vector(1))) - 1.0).abs() < 1e-13, "{}", solver.name());
+        for l in 0..x.rhs_count() {
+            let error = norm(&difference(&x.vector(l), &case.x.vector(l))) / norm(&case.x.vector(l));
             assert!(error < 1e-11, "{}: {error:e}", solver.name());
         }
     }
@@ -370,7 +373,7 @@ fn single_precision_storage_moves_the_solution_by_less_than_a_millionth() {
         let mut x = MultiVector::zeros(50, 3);
         solver.solve(&a, &b, &mut x, &STOP, &mut Quiet).unwrap();
         for l in 0..3 {
-            let change = norm(&difference(&x.lane(l), &double.x.lane(l))) / norm(&x.lane(l));
+            let change = norm(&difference(&x.vector(l), &double.x.vector(l))) / norm(&x.vector(l));
             assert!(change > 0.0 && change < 1e-6, "{}: {change:e}", solver.name());
         }
     }
@@ -392,12 +395,12 @@ fn no_light_has_no_radiosity() {
 #[test]
 fn a_dark_band_stays_dark_beside_lit_ones() {
     let mut case = radiosity::<f64>(40);
-    case.x.set_lane(1, &[0.0; 40]);
+    case.x.set_vector(1, &[0.0; 40]);
     for solver in real_solvers() {
         let (report, x) = case.solve(&*solver, &mut Quiet);
         assert_eq!(report.reason, StopReason::Converged, "{}", solver.name());
-        assert!(x.lane(1).iter().all(|&value| value == 0.0), "{}", solver.name());
-        assert!(norm(&difference(&x.lane(0), &case.x.lane(0))) < 1e-10, "{}", solver.name());
+        assert!(x.vector(1).iter().all(|&value| value == 0.0), "{}", solver.name());
+        assert!(norm(&difference(&x.vector(0), &case.x.vector(0))) < 1e-10, "{}", solver.name());
         assert!(report.history.iter().all(|record| record.residuals[1] == 0.0), "{}", solver.name());
     }
 }
@@ -443,7 +446,7 @@ fn an_observer_can_stop_within_an_iteration() {
         }
         assert_eq!(report.history.len(), 2, "{}", solver.name());
         let b = case.product(&case.x);
-        let residual = norm(&difference(&b.lane(0), &case.product(&x).lane(0))) / norm(&b.lane(0));
+        let residual = norm(&difference(&b.vector(0), &case.product(&x).vector(0))) / norm(&b.vector(0));
         assert!(residual < report.history[1].residuals[0], "{}", solver.name());
     }
 }
@@ -492,7 +495,7 @@ fn indefinite_systems_are_solved_or_refused_by_krylov_and_direct_methods() {
         match solver.name() {
             "cg-psi" | "cg-theta" | "pcg-jacobi" | "pcg-ssor" | "pcg-ic" | "chebyshev" | "cholesky" => {
                 let refusal = solve_indefinite(&*solver).unwrap_err();
-                let expected = SolveError::Indefinite { solver: solver.name(), lane: 0 };
+                let expected = SolveError::Indefinite { solver: solver.name(), rhs: 0 };
                 assert_eq!(refusal, expected);
             }
             "minres" | "gmres" | "bicgstab" | "anderson" | "lu" | "lu-mixed" => {
@@ -542,7 +545,7 @@ fn a_diagonal_of_zero_is_refused_by_those_that_divide_by_it() {
     {
         let refusal = made(name).solve(&a, &b, &mut MultiVector::zeros(2, 1), &STOP, &mut Quiet).unwrap_err();
         assert!(matches!(&refusal, SolveError::Unsuitable { .. }), "{name}");
-        assert!(refusal.to_string().contains("entry (0, 0) of lane 0"), "{refusal}");
+        assert!(refusal.to_string().contains("entry (0, 0) of right-hand side 0"), "{refusal}");
     }
     for name in ["gmres", "block-jacobi", "block-gauss-seidel", "group-shooting"] {
         let mut x = MultiVector::zeros(2, 1);
@@ -561,15 +564,15 @@ fn vectors_that_do_not_fit_are_refused() {
     let case = radiosity::<f64>(10);
     let b = case.product(&case.x);
     for solver in real_solvers() {
-        let solve = |b: &MultiVector<f64>, dim, lanes| {
-            let mut x = MultiVector::zeros(dim, lanes);
+        let solve = |b: &MultiVector<f64>, dim, rhs_count| {
+            let mut x = MultiVector::zeros(dim, rhs_count);
             solver.solve(&case.system(), b, &mut x, &STOP, &mut Quiet).unwrap_err()
         };
         assert!(matches!(solve(&b, 11, 3), SolveError::Shape { vector: "starting guess", .. }));
-        assert!(matches!(solve(&MultiVector::zeros(10, 2), 10, 3), SolveError::Shape { found_lanes: 2, .. }));
+        assert!(matches!(solve(&MultiVector::zeros(10, 2), 10, 3), SolveError::Shape { found_rhs: 2, .. }));
         let nan = MultiVector::from_fn(10, 3, |_, _| f64::NAN);
         let refusal =
-            SolveError::Linop(LinopError::NotFinite { what: "right-hand side", unknown: 0, lane: 0 });
+            SolveError::Linop(LinopError::NotFinite { what: "right-hand side", unknown: 0, rhs: 0 });
         assert_eq!(solve(&nan, 10, 3), refusal);
     }
 }
@@ -585,7 +588,7 @@ mod formulas {
 
     fn iterate(solver: &dyn Solver<f64>, case: &Case<f64>, iterations: usize) -> (Report, MultiVector<f64>) {
         let stop = Stop { tolerance: 0.0, max_iterations: iterations };
-        let mut x = MultiVector::zeros(case.x.dim(), case.x.lanes());
+        let mut x = MultiVector::zeros(case.x.dim(), case.x.rhs_count());
         let b = case.product(&case.x);
         let report = solver.solve(&case.system(), &b, &mut x, &stop, &mut Quiet).unwrap();
         (report, x)
@@ -605,7 +608,7 @@ mod formulas {
                     u[i] = (b.row(i)[l] - others) / a(i, i);
                 }
             }
-            assert!(norm(&difference(&x.lane(l), &u)) < 1e-14);
+            assert!(norm(&difference(&x.vector(l), &u)) < 1e-14);
         }
         assert_eq!((report.work.row_visits, report.work.entries_touched), (60, 1200));
         assert_eq!(report.work.operator_applications, 0);
@@ -617,7 +620,7 @@ mod formulas {
         let b = case.product(&case.x);
         let (report, x) = iterate(&Southwell, &case, 2);
         let a = [a(&case, 0), a(&case, 1)];
-        let weight = [norm(&b.lane(0)), norm(&b.lane(1))];
+        let weight = [norm(&b.vector(0)), norm(&b.vector(1))];
         let (mut u, mut r) = (MultiVector::<f64>::zeros(20, 2), b.clone());
         for _ in 0..40 {
             let size = |i: &usize| (0..2).map(|l| r.row(*i)[l].abs() / weight[l]).fold(0.0, f64::max);

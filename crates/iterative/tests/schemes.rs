@@ -1,4 +1,5 @@
-//! What is particular to single schemes, against their formulas by plain loops and against closed forms.
+//! What is particular to single schemes, against their formulas by plain loops and against closed
+//! forms.
 
 // Tests end where something is missing; indices follow the formulas.
 #![allow(clippy::needless_range_loop, clippy::unwrap_used)]
@@ -16,7 +17,8 @@ use std::ops::ControlFlow;
 
 const N: usize = 24;
 
-/// A closed scene of N patches: G symmetric, areas its row sums, reflectance and light without a pattern.
+/// A closed scene of N patches: G symmetric, areas its row sums, reflectance and light without a
+/// pattern.
 struct Scene {
     coupling: PackedSymmetric<f64>,
     areas: Vec<f64>,
@@ -55,7 +57,7 @@ impl Scene {
     fn follow(&self, solver: &dyn Solver<f64>, iterations: usize) -> (Vec<Vec<f64>>, Report) {
         let mut iterates = Vec::new();
         let mut observer = |progress: &Progress<'_, f64>| {
-            iterates.push(progress.x.lane(0));
+            iterates.push(progress.x.vector(0));
             ControlFlow::Continue(())
         };
         let stop = Stop { tolerance: 0.0, max_iterations: iterations };
@@ -80,7 +82,7 @@ fn distance(u: &[f64], v: &[f64]) -> f64 {
 #[test]
 fn neumann_sums_the_bounces() {
     let scene = scene();
-    let (mut bounce, mut sum) = (scene.b.lane(0), vec![0.0; N]);
+    let (mut bounce, mut sum) = (scene.b.vector(0), vec![0.0; N]);
     for _ in 0..6 {
         (0..N).for_each(|i| sum[i] += bounce[i]);
         let k = |i: usize, j: usize| scene.factor.row(i)[0] * scene.coupling.get(i, j);
@@ -163,7 +165,7 @@ fn blocks_are_solved_exactly() {
 #[test]
 fn progressive_radiosity_shoots_from_the_most_unshot_power() {
     let scene = scene();
-    let (mut x, mut unshot) = (vec![0.0; N], scene.b.lane(0));
+    let (mut x, mut unshot) = (vec![0.0; N], scene.b.vector(0));
     for _ in 0..10 {
         let power = |i: &usize| scene.areas[*i] * unshot[*i].abs();
         let i = (0..N).max_by(|i, j| power(i).total_cmp(&power(j))).unwrap();
@@ -207,8 +209,8 @@ fn the_ambient_term_is_exact_in_an_integrating_sphere() {
         a.apply(&x, &mut product);
         residual.set_difference(&b, &product);
         let shown = with_ambient(&a, &areas, &x, &residual).unwrap();
-        assert!(distance(&shown.lane(0), &exact) < 1e-13, "{shots} shots");
-        assert!(distance(&x.lane(0), &exact) > 0.1);
+        assert!(distance(&shown.vector(0), &exact) < 1e-13, "{shots} shots");
+        assert!(distance(&x.vector(0), &exact) > 0.1);
     }
     assert!(with_ambient(&a, &areas[1..], &b, &b).is_err());
 }
@@ -255,7 +257,7 @@ fn shooting_computes_no_more_columns_than_it_shoots() {
     let mut x = MultiVector::zeros(N, 1);
     solver.solve(&system, &scene.b, &mut x, &stop, &mut Quiet).unwrap();
     assert!(lazy.computed() <= 6 && lazy.computed() > 1, "{}", lazy.computed());
-    assert_eq!(x.lane(0), scene.last(&solver, 2));
+    assert_eq!(x.vector(0), scene.last(&solver, 2));
 }
 
 #[test]
@@ -278,7 +280,8 @@ fn conjugate_gradients_have_the_smallest_error_of_their_space() {
         (0..N).map(|i| e[i] * row(i)).sum::<f64>()
     };
     let best = |solver: &dyn Solver<f64>| energy(&scene.last(solver, 6));
-    // Both spaces of CG on Θ are those of successive approximations, of which Jacobi is one iterate.
+    // Both spaces of CG on Θ are those of successive approximations, of which Jacobi is one
+    // iterate.
     assert!(best(&CgTheta) < energy(&scene.last(&Neumann, 6)));
     assert!(best(&CgTheta) < energy(&scene.last(&Chebyshev::default(), 6)));
     assert!(best(&CgTheta) <= energy(&scene.last(&Minres, 6)));
@@ -385,7 +388,7 @@ fn every_residual_of_the_history_is_that_of_its_iterate() {
         let (iterates, report) = scene.follow(&*solver, 9);
         assert_ne!(report.reason, StopReason::Diverged);
         for (x, record) in iterates.iter().zip(&report.history) {
-            let residual = norm(&scene.residual(x)) / norm(&scene.b.lane(0));
+            let residual = norm(&scene.residual(x)) / norm(&scene.b.vector(0));
             let error = (residual - record.residuals[0]).abs();
             assert!(error < 1e-14, "{}: {error:e}", solver.name());
         }
@@ -447,7 +450,7 @@ fn shooting_from_groups_and_elements_reaches_the_solution_and_saves_columns() {
         while shooting.distributed() < share && shooting.shoot().is_some() {
             shots += 1;
         }
-        (shots, lazy.computed(), shooting.radiosity().lane(0))
+        (shots, lazy.computed(), shooting.radiosity().vector(0))
     };
     let (_, _, found) = shots(&groups, 1.0 - 1e-12);
     let largest = exact.iter().copied().fold(0.0, f64::max);

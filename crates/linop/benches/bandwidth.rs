@@ -1,7 +1,8 @@
-//! The products of 1, 3 and 8 bands beside a plain copy of the same memory, taken in turns so that other load hits all alike.
+//! The products of 1, 3 and 8 bands beside a plain copy of the same memory, taken in turns so that
+//! other load hits all alike.
 //!
-//! `cargo bench -p fredholm-linop --bench bandwidth`. The best of the rounds is shown: GB/s of stored entries, of a copy GB/s read and
-//! written, and times relative to that of one band.
+//! `cargo bench -p fredholm-linop --bench bandwidth`. The best of the rounds is shown: GB/s of
+//! stored entries, of a copy GB/s read and written, and times relative to that of one band.
 
 use fredholm_linop::{LinearOperator, MultiVector, PackedSymmetric, Storage, Sweep};
 use rayon::prelude::*;
@@ -42,17 +43,17 @@ fn measure<S: Storage>(storage: &str) -> Option<()> {
     let matrix = PackedSymmetric::new(DIM, data).ok()?;
     let bytes = PackedSymmetric::<S>::bytes(DIM);
     let mut trials = vec![Trial::new("copy", 2 * bytes, || copy(&from, &mut to))];
-    for lanes in [1, 3, 8] {
-        let x = MultiVector::from_fn(DIM, lanes, |i, l| (i + l) as f64);
-        let mut y = MultiVector::zeros(DIM, lanes);
+    for rhs_count in [1, 3, 8] {
+        let x = MultiVector::from_fn(DIM, rhs_count, |i, l| (i + l) as f64);
+        let mut y = MultiVector::zeros(DIM, rhs_count);
         let matrix = &matrix;
-        trials.push(Trial::new(format!("apply {lanes}"), bytes, move || matrix.apply(&x, &mut y)));
+        trials.push(Trial::new(format!("apply {rhs_count}"), bytes, move || matrix.apply(&x, &mut y)));
     }
-    for lanes in [1, 3, 8] {
-        let mut x = MultiVector::from_fn(DIM, lanes, |i, l| (i + l) as f64);
-        let mut sweep = Sweep::new(DIM, lanes);
+    for rhs_count in [1, 3, 8] {
+        let mut x = MultiVector::from_fn(DIM, rhs_count, |i, l| (i + l) as f64);
+        let mut sweep = Sweep::new(DIM, rhs_count);
         let matrix = &matrix;
-        trials.push(Trial::new(format!("sweep {lanes}"), bytes, move || {
+        trials.push(Trial::new(format!("sweep {rhs_count}"), bytes, move || {
             let _ = matrix.sweep(&mut x, &mut sweep, &mut |_| ControlFlow::Continue(()));
         }));
     }

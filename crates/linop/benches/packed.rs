@@ -1,6 +1,8 @@
-//! The product and the sweep of a packed symmetric matrix beside a plain read and a plain copy of the same memory.
+//! The product and the sweep of a packed symmetric matrix beside a plain read and a plain copy of
+//! the same memory.
 //!
-//! `cargo bench -p fredholm-linop`. Throughput is in bytes of stored entries; of a copy, in bytes read and written.
+//! `cargo bench -p fredholm-linop`. Throughput is in bytes of stored entries; of a copy, in bytes
+//! read and written.
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use fredholm_linop::{LinearOperator, MultiVector, PackedSymmetric, Storage, Sweep};
@@ -44,14 +46,14 @@ fn measure<S: Storage>(c: &mut Criterion, storage: &str) {
     drop(copied);
     group.throughput(Throughput::Bytes(PackedSymmetric::<S>::bytes(DIM)));
     let Ok(matrix) = PackedSymmetric::new(DIM, data) else { return };
-    for lanes in [1, 3, 8] {
-        let mut x = MultiVector::from_fn(DIM, lanes, |i, l| (i + l) as f64);
-        let mut y = MultiVector::zeros(DIM, lanes);
-        group.bench_function(BenchmarkId::new("apply", lanes), |bench| {
+    for rhs_count in [1, 3, 8] {
+        let mut x = MultiVector::from_fn(DIM, rhs_count, |i, l| (i + l) as f64);
+        let mut y = MultiVector::zeros(DIM, rhs_count);
+        group.bench_function(BenchmarkId::new("apply", rhs_count), |bench| {
             bench.iter(|| matrix.apply(&x, &mut y));
         });
-        let mut sweep = Sweep::new(DIM, lanes);
-        group.bench_function(BenchmarkId::new("sweep", lanes), |bench| {
+        let mut sweep = Sweep::new(DIM, rhs_count);
+        group.bench_function(BenchmarkId::new("sweep", rhs_count), |bench| {
             bench.iter(|| matrix.sweep(&mut x, &mut sweep, &mut |_| ControlFlow::Continue(())));
         });
     }

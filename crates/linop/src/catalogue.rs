@@ -14,7 +14,8 @@ pub enum Access {
     Entries,
 }
 
-/// A solver that can be asked for by name: a [`Solver`](crate::Solver) or a [`Scheme`](crate::Scheme).
+/// A solver that can be asked for by name: a [`Solver`](crate::Solver) or a
+/// [`Scheme`](crate::Scheme).
 pub struct Entry<S: ?Sized> {
     /// Lower case, words joined by hyphens.
     pub name: &'static str,

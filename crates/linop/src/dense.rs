@@ -3,7 +3,8 @@
 use crate::{LinearOperator, LinopError, MultiVector, Scalar, Symmetry};
 use rayon::prelude::*;
 
-/// A square matrix stored row by row: k_ij at i · dim + j. It serves any number of lanes.
+/// A square matrix stored row by row: k_ij at i · dim + j. It serves any number of right-hand
+/// sides.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dense<T> {
     dim: usize,
@@ -112,10 +113,10 @@ impl<T: Scalar> LinearOperator<T> for Dense<T> {
 
     // Each thread sums whole rows in their order, so the number of threads changes no bit.
     fn apply(&self, x: &MultiVector<T>, y: &mut MultiVector<T>) {
-        let lanes = x.lanes().max(1);
-        y.as_mut_slice().par_chunks_mut(lanes).enumerate().with_min_len(16).for_each(|(i, y)| {
+        let rhs_count = x.rhs_count().max(1);
+        y.as_mut_slice().par_chunks_mut(rhs_count).enumerate().with_min_len(16).for_each(|(i, y)| {
             y.fill(T::zero());
-            for (&entry, x) in self.row_slice(i).iter().zip(x.as_slice().chunks_exact(lanes)) {
+            for (&entry, x) in self.row_slice(i).iter().zip(x.as_slice().chunks_exact(rhs_count)) {
                 y.iter_mut().zip(x).for_each(|(y, &x)| *y += entry * x);
             }
         });
@@ -125,19 +126,19 @@ impl<T: Scalar> LinearOperator<T> for Dense<T> {
         self.symmetry
     }
 
-    fn row(&self, i: usize, _lane: usize, out: &mut [T]) {
+    fn row(&self, i: usize, _rhs: usize, out: &mut [T]) {
         out.copy_from_slice(self.row_slice(i));
     }
 
-    fn column(&self, j: usize, _lane: usize, out: &mut [T]) {
+    fn column(&self, j: usize, _rhs: usize, out: &mut [T]) {
         out.iter_mut().enumerate().for_each(|(i, out)| *out = self.get(i, j));
     }
 
-    fn diagonal(&self, _lane: usize, out: &mut [T]) {
+    fn diagonal(&self, _rhs: usize, out: &mut [T]) {
         out.iter_mut().enumerate().for_each(|(i, out)| *out = self.get(i, i));
     }
 
-    fn dense(&self, _lane: usize) -> Result<Dense<T>, LinopError> {
+    fn dense(&self, _rhs: usize) -> Result<Dense<T>, LinopError> {
         let mut copy = Self::zeros(self.dim)?;
         copy.entries.copy_from_slice(&self.entries);
         copy.symmetry = self.symmetry;

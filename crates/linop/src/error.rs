@@ -1,4 +1,5 @@
-//! What can be wrong with operators and systems, and how to mend it. Unknowns and lanes are counted from 0.
+//! What can be wrong with operators and systems, and how to mend it. Unknowns and right-hand sides
+//! are counted from 0.
 
 use thiserror::Error;
 
@@ -18,27 +19,27 @@ pub enum LinopError {
     },
     /// The diagonal factor does not fit the operator.
     #[error(
-        "the diagonal factor is {found} unknowns × {lanes} lanes, but the operator is {expected} × {operator_lanes}"
+        "the diagonal factor is {found} unknowns × {rhs_count} right-hand sides, but the operator is {expected} × {operator_rhs}"
     )]
     Factor {
         /// Unknowns of the factor.
         found: usize,
-        /// Lanes of the factor.
-        lanes: usize,
+        /// Right-hand sides of the factor.
+        rhs_count: usize,
         /// Unknowns of the operator.
         expected: usize,
-        /// Lanes of the operator.
-        operator_lanes: usize,
+        /// Right-hand sides of the operator.
+        operator_rhs: usize,
     },
     /// A number is NaN or infinite.
-    #[error("{what} of unknown {unknown} in lane {lane} is not a finite number")]
+    #[error("{what} of unknown {unknown} in right-hand side {rhs} is not a finite number")]
     NotFinite {
         /// What the number is.
         what: &'static str,
         /// Index of the unknown.
         unknown: usize,
-        /// Index of the lane.
-        lane: usize,
+        /// Index of the right-hand side.
+        rhs: usize,
     },
     /// A matrix is not as symmetric as was said.
     #[error(
@@ -74,19 +75,19 @@ pub enum SolveError {
     },
     /// A vector does not fit the system.
     #[error(
-        "the {vector} is {found} unknowns × {found_lanes} lanes, but the system is {expected} × {expected_lanes}"
+        "the {vector} is {found} unknowns × {found_rhs} right-hand sides, but the system is {expected} × {expected_rhs}"
     )]
     Shape {
         /// Which vector.
         vector: &'static str,
         /// Its unknowns.
         found: usize,
-        /// Its lanes.
-        found_lanes: usize,
+        /// Its right-hand sides.
+        found_rhs: usize,
         /// Unknowns of the system.
         expected: usize,
-        /// Lanes of the system.
-        expected_lanes: usize,
+        /// Right-hand sides of the system.
+        expected_rhs: usize,
     },
     /// The tolerance is no bound.
     #[error("the tolerance is {value}, but must be a number of at least 0")]
@@ -96,21 +97,21 @@ pub enum SolveError {
     },
     /// The matrix has no inverse in double precision.
     #[error(
-        "the matrix of lane {lane} is singular to working precision; the system has no unique solution (is the reflectance below 1?)"
+        "the matrix of right-hand side {rhs} is singular to working precision; the system has no unique solution (is the reflectance below 1?)"
     )]
     Singular {
-        /// Index of the lane.
-        lane: usize,
+        /// Index of the right-hand side.
+        rhs: usize,
     },
     /// The matrix is not positive definite, as the method needs it.
     #[error(
-        "{solver} does not suit this system: the matrix of lane {lane} is not positive definite (is the reflectance below 1?); minres, gmres and lu do without"
+        "{solver} does not suit this system: the matrix of right-hand side {rhs} is not positive definite (is the reflectance below 1?); minres, gmres and lu do without"
     )]
     Indefinite {
         /// Name of the solver.
         solver: &'static str,
-        /// Index of the lane.
-        lane: usize,
+        /// Index of the right-hand side.
+        rhs: usize,
     },
     /// An operator or vector cannot be built.
     #[error(transparent)]

@@ -1,8 +1,10 @@
 //! A matrix whose columns are computed when they are asked for, and kept within a limit of memory.
 //!
-//! A shooting step reads one column of K, so that progressive radiosity starts at once on a matrix that would not fit, or of which most is
-//! never needed. The columns used last are kept (least recently used go first). What is kept decides the time and nothing else: a
-//! column has the same bits whenever it is computed. There may be more columns than unknowns: sums of columns over groups, which a step may shoot from as one.
+//! A shooting step reads one column of K, so that progressive radiosity starts at once on a matrix
+//! that would not fit, or of which most is never needed. The columns used last are kept (least
+//! recently used go first). What is kept decides the time and nothing else: a column has the same
+//! bits whenever it is computed. There may be more columns than unknowns: sums of columns over
+//! groups, which a step may shoot from as one.
 //!
 //! ```
 //! use fredholm_linop::{Columns, Lazy, LinearOperator, Symmetry};
@@ -65,7 +67,7 @@ pub trait Columns<T: Scalar>: Sync {
     fn column(&self, j: usize, out: &mut [T]);
 }
 
-/// An operator over computed columns. It serves any number of lanes.
+/// An operator over computed columns. It serves any number of right-hand sides.
 pub struct Lazy<'a, T> {
     columns: &'a dyn Columns<T>,
     kept: Mutex<Kept<T>>,
@@ -169,8 +171,8 @@ impl<T: Scalar> LinearOperator<T> for Lazy<'_, T> {
         for group in needed.chunks(TOGETHER) {
             columns.par_iter_mut().zip(group).for_each(|(column, &j)| self.read(j, column));
             for (column, &j) in columns.iter().zip(group) {
-                let lanes = y.lanes().max(1);
-                for (y, &entry) in y.as_mut_slice().chunks_exact_mut(lanes).zip(column) {
+                let rhs_count = y.rhs_count().max(1);
+                for (y, &entry) in y.as_mut_slice().chunks_exact_mut(rhs_count).zip(column) {
                     y.iter_mut().zip(x.row(j)).for_each(|(y, &x)| *y += entry * x);
                 }
             }
@@ -181,11 +183,11 @@ impl<T: Scalar> LinearOperator<T> for Lazy<'_, T> {
         self.columns.symmetry()
     }
 
-    fn column(&self, j: usize, _lane: usize, out: &mut [T]) {
+    fn column(&self, j: usize, _rhs: usize, out: &mut [T]) {
         self.read(j, out);
     }
 
-    fn diagonal(&self, _lane: usize, out: &mut [T]) {
+    fn diagonal(&self, _rhs: usize, out: &mut [T]) {
         out.iter_mut().enumerate().for_each(|(i, out)| *out = self.columns.diagonal(i));
     }
 }

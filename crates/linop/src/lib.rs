@@ -1,10 +1,12 @@
-//! The contract between couplings and solvers of x = b + K x: scalars, multivectors, operators, solvers.
+//! The contract between couplings and solvers of x = b + K x: scalars, multivectors, operators,
+//! solvers.
 //!
-//! An operator K is anything that implements [`LinearOperator`]: [`Dense`], [`PackedSymmetric`], or one that never
-//! stores its entries. [`SecondKind`] makes A = I − D K of it, and a [`Solver`] finds x with A x = b. Several bands
-//! (lanes) share one pass over the entries of K: they are the neighbours in a row of a [`MultiVector`].
+//! An operator K is anything that implements [`LinearOperator`]: [`Dense`], [`PackedSymmetric`], or
+//! one that never stores its entries. [`SecondKind`] makes A = I − D K of it, and a [`Solver`]
+//! finds x with A x = b. Several bands (right-hand sides) share one pass over the entries of K:
+//! they are the neighbours in a row of a [`MultiVector`].
 //!
-//! One [`Monitor`] defines the residual ‖b − A x‖₂/‖b‖₂, per lane, for all solvers.
+//! One [`Monitor`] defines the residual ‖b − A x‖₂/‖b‖₂, per right-hand side, for all solvers.
 //!
 //! ```
 //! use fredholm_linop::{LinearOperator, MultiVector, PackedSymmetric, SecondKind};

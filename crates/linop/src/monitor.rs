@@ -1,6 +1,7 @@
-//! The one definition of the residual, ‖b − A x‖₂/‖b‖₂ per lane, and of when to stop.
+//! The one definition of the residual, ‖b − A x‖₂/‖b‖₂ per right-hand side, and of when to stop.
 //!
-//! A lane with b = 0 has the solution 0: its x is set to 0 at the start, and its residual is ‖A x‖₂, which stays 0.
+//! A right-hand side with b = 0 has the solution 0: its x is set to 0 at the start, and its
+//! residual is ‖A x‖₂, which stays 0.
 
 use crate::multivector::norms;
 use crate::{
@@ -25,7 +26,7 @@ pub struct Monitor<'a, T> {
 }
 
 impl<'a, T: Scalar> Monitor<'a, T> {
-    /// Checks the system and starts the clock. Lanes of `x` whose b is 0 are set to 0.
+    /// Checks the system and starts the clock. Right-hand sides of `x` whose b is 0 are set to 0.
     ///
     /// # Errors
     /// A vector does not fit `a` or is not finite, or the tolerance is no bound.
@@ -43,12 +44,12 @@ impl<'a, T: Scalar> Monitor<'a, T> {
         check(a, b, "right-hand side")?;
         check(a, x, "starting guess")?;
         let norms = b.norms();
-        clear_lanes_of_zero(&norms, x);
+        clear_right_hand_sides_of_zero(&norms, x);
         Ok(Self { b, norms, stop: *stop, observer, history: Vec::new(), best: f64::INFINITY, start })
     }
 
-    /// Records the next iteration, of which `product` is A x and before which `work` was done. Breaks when it is
-    /// time to stop.
+    /// Records the next iteration, of which `product` is A x and before which `work` was done.
+    /// Breaks when it is time to stop.
     pub fn record(
         &mut self,
         x: &MultiVector<T>,
@@ -64,7 +65,7 @@ impl<'a, T: Scalar> Monitor<'a, T> {
         verdict.map_or(ControlFlow::Continue(()), ControlFlow::Break)
     }
 
-    /// Whether every lane would meet the tolerance with this A x.
+    /// Whether every right-hand side would meet the tolerance with this A x.
     #[must_use]
     pub fn converged(&self, product: &MultiVector<T>) -> bool {
         self.residuals(product).iter().all(|&residual| residual <= self.stop.tolerance)
@@ -75,7 +76,7 @@ impl<'a, T: Scalar> Monitor<'a, T> {
         self.observer.poll()
     }
 
-    /// ‖b‖₂ per lane.
+    /// ‖b‖₂ per right-hand side.
     #[must_use]
     pub fn norms(&self) -> &[f64] {
         &self.norms
@@ -122,18 +123,18 @@ fn check<T: Scalar>(
     v: &MultiVector<T>,
     vector: &'static str,
 ) -> Result<(), SolveError> {
-    let (expected, expected_lanes) = (a.dim(), a.factor().lanes());
-    let (found, found_lanes) = (v.dim(), v.lanes());
-    if (found, found_lanes) != (expected, expected_lanes) {
-        return Err(SolveError::Shape { vector, found, found_lanes, expected, expected_lanes });
+    let (expected, expected_rhs) = (a.dim(), a.factor().rhs_count());
+    let (found, found_rhs) = (v.dim(), v.rhs_count());
+    if (found, found_rhs) != (expected, expected_rhs) {
+        return Err(SolveError::Shape { vector, found, found_rhs, expected, expected_rhs });
     }
     match v.not_finite() {
-        Some((unknown, lane)) => Err(LinopError::NotFinite { what: vector, unknown, lane }.into()),
+        Some((unknown, rhs)) => Err(LinopError::NotFinite { what: vector, unknown, rhs }.into()),
         None => Ok(()),
     }
 }
 
-fn clear_lanes_of_zero<T: Scalar>(norms: &[f64], x: &mut MultiVector<T>) {
+fn clear_right_hand_sides_of_zero<T: Scalar>(norms: &[f64], x: &mut MultiVector<T>) {
     for i in 0..x.dim() {
         x.row_mut(i)
             .iter_mut()

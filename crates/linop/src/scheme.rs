@@ -1,10 +1,12 @@
 //! Iterative schemes, one step at a time, and the one loop that makes a [`Solver`] of each.
 //!
-//! A [`Scheme`] says how x_k becomes x_(k+1); history, residuals, stopping, counting and interruption are the same
-//! for all. Because a scheme can be stepped, two of them can be run side by side, as hybrid procedures do.
+//! A [`Scheme`] says how x_k becomes x_(k+1); history, residuals, stopping, counting and
+//! interruption are the same for all. Because a scheme can be stepped, two of them can be run side
+//! by side, as hybrid procedures do.
 //!
-//! A scheme that updates A x by a recurrence drifts away from it by rounding. Where such a product meets the
-//! tolerance, it is computed anew before it counts, and the scheme goes on from it if it was too good.
+//! A scheme that updates A x by a recurrence drifts away from it by rounding. Where such a product
+//! meets the tolerance, it is computed anew before it counts, and the scheme goes on from it if it
+//! was too good.
 
 use crate::{
     LinearOperator, Monitor, MultiVector, Observer, Report, Scalar, SecondKind, SolveError, Solver, Stop,
@@ -21,7 +23,7 @@ pub trait Scheme<T: Scalar>: Send + Sync {
     fn description(&self) -> &'static str;
 
     /// Bytes it needs besides the operator, b and x.
-    fn bytes(&self, dim: usize, lanes: usize) -> u64;
+    fn bytes(&self, dim: usize, rhs_count: usize) -> u64;
 
     /// Prepares the iteration. What it takes is counted in `context`.
     ///
@@ -46,7 +48,8 @@ pub trait Iteration<T: Scalar> {
     /// One iteration from the x that it left last.
     ///
     /// # Errors
-    /// It was interrupted, x being what was reached by then; or it found that the scheme does not suit A.
+    /// It was interrupted, x being what was reached by then; or it found that the scheme does not
+    /// suit A.
     fn advance(&mut self, x: &mut MultiVector<T>, context: &mut Context<'_>) -> Result<(), Halt>;
 
     /// A x of the x that was left last.
@@ -138,8 +141,8 @@ impl<T: Scalar, S: Scheme<T> + ?Sized> Scheme<T> for Box<S> {
         (**self).description()
     }
 
-    fn bytes(&self, dim: usize, lanes: usize) -> u64 {
-        (**self).bytes(dim, lanes)
+    fn bytes(&self, dim: usize, rhs_count: usize) -> u64 {
+        (**self).bytes(dim, rhs_count)
     }
 
     fn begin<'a>(
@@ -161,8 +164,8 @@ impl<T: Scalar> Solver<T> for Box<dyn Scheme<T>> {
         Scheme::description(self)
     }
 
-    fn bytes(&self, dim: usize, lanes: usize) -> u64 {
-        Scheme::bytes(self, dim, lanes)
+    fn bytes(&self, dim: usize, rhs_count: usize) -> u64 {
+        Scheme::bytes(self, dim, rhs_count)
     }
 
     fn solve(

@@ -7,7 +7,7 @@ use crate::{
 };
 use std::ops::ControlFlow;
 
-/// A = I − D K around any operator K, with a diagonal D for each lane.
+/// A = I − D K around any operator K, with a diagonal D for each right-hand side.
 #[derive(Clone)]
 pub struct SecondKind<'a, T> {
     coupling: &'a dyn LinearOperator<T>,
@@ -15,18 +15,19 @@ pub struct SecondKind<'a, T> {
 }
 
 impl<'a, T: Scalar> SecondKind<'a, T> {
-    /// `factor` is D: d_i of lane l in row i.
+    /// `factor` is D: d_i of right-hand side l in row i.
     ///
     /// # Errors
-    /// [`LinopError::Factor`] if it does not fit the coupling, [`LinopError::NotFinite`] if it holds NaN or infinity.
+    /// [`LinopError::Factor`] if it does not fit the coupling, [`LinopError::NotFinite`] if it
+    /// holds NaN or infinity.
     pub fn new(coupling: &'a dyn LinearOperator<T>, factor: MultiVector<T>) -> Result<Self, LinopError> {
-        let (found, lanes) = (factor.dim(), factor.lanes());
-        let (expected, operator_lanes) = (coupling.dim(), coupling.lanes().unwrap_or(lanes));
-        if (found, lanes) != (expected, operator_lanes) {
-            return Err(LinopError::Factor { found, lanes, expected, operator_lanes });
+        let (found, rhs_count) = (factor.dim(), factor.rhs_count());
+        let (expected, operator_rhs) = (coupling.dim(), coupling.rhs_count().unwrap_or(rhs_count));
+        if (found, rhs_count) != (expected, operator_rhs) {
+            return Err(LinopError::Factor { found, rhs_count, expected, operator_rhs });
         }
-        if let Some((unknown, lane)) = factor.not_finite() {
-            return Err(LinopError::NotFinite { what: "the diagonal factor", unknown, lane });
+        if let Some((unknown, rhs)) = factor.not_finite() {
+            return Err(LinopError::NotFinite { what: "the diagonal factor", unknown, rhs });
         }
         Ok(Self { coupling, factor })
     }
@@ -43,15 +44,16 @@ impl<'a, T: Scalar> SecondKind<'a, T> {
         &self.factor
     }
 
-    /// Whether two lanes have the same matrix, as far as that is known without reading K.
+    /// Whether two right-hand sides have the same matrix, as far as that is known without reading
+    /// K.
     #[must_use]
-    pub fn same_matrix(&self, lane: usize, other: usize) -> bool {
-        let equal = |i| self.factor.row(i)[lane] == self.factor.row(i)[other];
-        lane == other || (self.coupling.lanes().is_none() && (0..self.factor.dim()).all(equal))
+    pub fn same_matrix(&self, rhs: usize, other: usize) -> bool {
+        let equal = |i| self.factor.row(i)[rhs] == self.factor.row(i)[other];
+        rhs == other || (self.coupling.rhs_count().is_none() && (0..self.factor.dim()).all(equal))
     }
 
-    /// Whether A is self-adjoint in the inner product Σ_i conj(u_i) v_i/d_i, so that D⁻¹ A is Hermitian: K symmetric (Hermitian for
-    /// complex unknowns), D real and ≥ 0.
+    /// Whether A is self-adjoint in the inner product Σ_i conj(u_i) v_i/d_i, so that D⁻¹ A is
+    /// Hermitian: K symmetric (Hermitian for complex unknowns), D real and ≥ 0.
     ///
     /// # Errors
     /// [`SolveError::Unsuitable`] for this solver, where that is not so or not known.
@@ -70,15 +72,15 @@ impl<'a, T: Scalar> SecondKind<'a, T> {
         }
         let wrong = |&d: &T| d != T::from_real(d.re()) || d.re() < 0.0;
         let Some(at) = self.factor.as_slice().iter().position(wrong) else { return Ok(()) };
-        let (i, lane) = (at / self.factor.lanes(), at % self.factor.lanes());
+        let (i, rhs) = (at / self.factor.rhs_count(), at % self.factor.rhs_count());
         let found = self.factor.as_slice()[at];
         refuse(format!(
-            "it needs factors that are real and at least 0, but that of unknown {i} in lane {lane} is {found:?}"
+            "it needs factors that are real and at least 0, but that of unknown {i} in right-hand side {rhs} is {found:?}"
         ))
     }
 
-    /// r −= A e_j s: what a step s (per lane) of unknown j takes from a residual. `column` is dim entries of scratch.
-    /// Returns the entries of K read.
+    /// r −= A e_j s: what a step s (per right-hand side) of unknown j takes from a residual.
+    /// `column` is dim entries of scratch. Returns the entries of K read.
     pub fn subtract_column(
         &self,
         j: usize,
@@ -87,8 +89,8 @@ impl<'a, T: Scalar> SecondKind<'a, T> {
         column: &mut [T],
     ) -> u64 {
         residual.row_mut(j).iter_mut().zip(step).for_each(|(r, &step)| *r -= step);
-        // Lanes that share a column are taken together.
-        let together = if self.coupling.lanes().is_some() { 1 } else { step.len().max(1) };
+        // Right-hand sides that share a column are taken together.
+        let together = if self.coupling.rhs_count().is_some() { 1 } else { step.len().max(1) };
         let mut reads = 0;
         for first in (0..step.len()).step_by(together) {
             self.coupling.column(j, first, column);
@@ -104,8 +106,8 @@ impl<'a, T: Scalar> SecondKind<'a, T> {
     }
 
     /// Turns row i of K into row i of A.
-    fn turn_row(&self, i: usize, lane: usize, row: &mut [T]) {
-        let factor = self.factor.row(i)[lane];
+    fn turn_row(&self, i: usize, rhs: usize, row: &mut [T]) {
+        let factor = self.factor.row(i)[rhs];
         for entry in row.iter_mut() {
             *entry = -(factor * *entry);
         }
@@ -129,40 +131,40 @@ impl<T: Scalar> LinearOperator<T> for SecondKind<'_, T> {
         self.turn_product(x, y);
     }
 
-    fn lanes(&self) -> Option<usize> {
-        Some(self.factor.lanes())
+    fn rhs_count(&self) -> Option<usize> {
+        Some(self.factor.rhs_count())
     }
 
     fn entries(&self) -> u64 {
         self.coupling.entries()
     }
 
-    fn row(&self, i: usize, lane: usize, out: &mut [T]) {
-        self.coupling.row(i, lane, out);
-        self.turn_row(i, lane, out);
+    fn row(&self, i: usize, rhs: usize, out: &mut [T]) {
+        self.coupling.row(i, rhs, out);
+        self.turn_row(i, rhs, out);
     }
 
-    fn lower_row(&self, i: usize, lane: usize, out: &mut [T]) {
-        self.coupling.lower_row(i, lane, out);
-        self.turn_row(i, lane, out);
+    fn lower_row(&self, i: usize, rhs: usize, out: &mut [T]) {
+        self.coupling.lower_row(i, rhs, out);
+        self.turn_row(i, rhs, out);
     }
 
-    fn column(&self, j: usize, lane: usize, out: &mut [T]) {
-        self.coupling.column(j, lane, out);
-        out.iter_mut().enumerate().for_each(|(i, entry)| *entry = -(self.factor.row(i)[lane] * *entry));
+    fn column(&self, j: usize, rhs: usize, out: &mut [T]) {
+        self.coupling.column(j, rhs, out);
+        out.iter_mut().enumerate().for_each(|(i, entry)| *entry = -(self.factor.row(i)[rhs] * *entry));
         out[j] += T::one();
     }
 
-    fn diagonal(&self, lane: usize, out: &mut [T]) {
-        self.coupling.diagonal(lane, out);
+    fn diagonal(&self, rhs: usize, out: &mut [T]) {
+        self.coupling.diagonal(rhs, out);
         out.iter_mut()
             .enumerate()
-            .for_each(|(i, entry)| *entry = T::one() - self.factor.row(i)[lane] * *entry);
+            .for_each(|(i, entry)| *entry = T::one() - self.factor.row(i)[rhs] * *entry);
     }
 
-    fn dense(&self, lane: usize) -> Result<Dense<T>, LinopError> {
-        let mut dense = self.coupling.dense(lane)?;
-        (0..self.dim()).for_each(|i| self.turn_row(i, lane, dense.row_slice_mut(i)));
+    fn dense(&self, rhs: usize) -> Result<Dense<T>, LinopError> {
+        let mut dense = self.coupling.dense(rhs)?;
+        (0..self.dim()).for_each(|i| self.turn_row(i, rhs, dense.row_slice_mut(i)));
         Ok(dense)
     }
 
@@ -198,7 +200,7 @@ struct Turned<'a, T> {
 
 impl<'a, T: Scalar> Turned<'a, T> {
     fn new(factor: &'a MultiVector<T>) -> Self {
-        let zeros = vec![T::zero(); factor.lanes()];
+        let zeros = vec![T::zero(); factor.rhs_count()];
         Self { factor, off_diagonal: zeros.clone(), diagonal: zeros }
     }
 

@@ -3,7 +3,7 @@
 use crate::{MultiVector, Scalar, SecondKind, SolveError};
 use std::ops::ControlFlow;
 
-/// A method that solves A x = b, all lanes together.
+/// A method that solves A x = b, all right-hand sides together.
 pub trait Solver<T: Scalar>: Send + Sync {
     /// The name it is chosen by: lower case, words joined by hyphens.
     fn name(&self) -> &'static str;
@@ -12,7 +12,7 @@ pub trait Solver<T: Scalar>: Send + Sync {
     fn description(&self) -> &'static str;
 
     /// Bytes it needs besides the operator, b and x.
-    fn bytes(&self, dim: usize, lanes: usize) -> u64;
+    fn bytes(&self, dim: usize, rhs_count: usize) -> u64;
 
     /// Bytes of addresses that every thread sets aside besides, and of which it touches no more
     /// than [`bytes`](Self::bytes) counts. They matter only where the address space is limited.
@@ -20,13 +20,14 @@ pub trait Solver<T: Scalar>: Send + Sync {
         0
     }
 
-    /// Solves A x = b from the starting guess `x`, which becomes the solution. The residual of every iteration goes
-    /// to `observer`, and into the report.
+    /// Solves A x = b from the starting guess `x`, which becomes the solution. The residual of
+    /// every iteration goes to `observer`, and into the report.
     ///
     /// However it stops, x is the best that was reached by then, and the report says why.
     ///
     /// # Errors
-    /// The method does not suit A, b or x do not fit it or are not finite, or no memory. x is then of no use.
+    /// The method does not suit A, b or x do not fit it or are not finite, or no memory. x is then
+    /// of no use.
     fn solve(
         &self,
         a: &SecondKind<'_, T>,
@@ -40,7 +41,7 @@ pub trait Solver<T: Scalar>: Send + Sync {
 /// When to stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stop {
-    /// Residual that every lane must reach.
+    /// Residual that every right-hand side must reach.
     pub tolerance: f64,
     /// Most iterations. Direct solvers do not iterate, and do not look at it.
     pub max_iterations: usize,
@@ -49,7 +50,7 @@ pub struct Stop {
 /// Why a solver stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StopReason {
-    /// Every lane met the tolerance.
+    /// Every right-hand side met the tolerance.
     Converged,
     /// The iterations ran out, or a direct solver ended above the tolerance.
     IterationLimit,
@@ -66,13 +67,14 @@ pub struct Record {
     pub iteration: usize,
     /// Seconds since the start.
     pub seconds: f64,
-    /// Stored entries read so far, for all lanes together.
+    /// Stored entries read so far, for all right-hand sides together.
     pub entries_touched: u64,
-    /// ‖b − A x‖₂/‖b‖₂ per lane.
+    /// ‖b − A x‖₂/‖b‖₂ per right-hand side.
     pub residuals: Vec<f64>,
 }
 
-/// Work done. For all lanes together: an entry that serves several lanes counts once.
+/// Work done. For all right-hand sides together: an entry that serves several right-hand sides
+/// counts once.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Work {
     /// Applications y = A x.

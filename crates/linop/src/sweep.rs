@@ -1,23 +1,27 @@
-//! The forward sweep: relaxation of every unknown in order, with the product K x of the new x for nothing.
+//! The forward sweep: relaxation of every unknown in order, with the product K x of the new x for
+//! nothing.
 //!
-//! While unknowns i = 0 … n−1 are visited, split (K x)_i = L_i + k_ii x_i + U_i with L_i = Σ_{j<i} k_ij x_j and
-//! U_i = Σ_{j>i} k_ij x_j. At the visit of i, L_i is summed with the x_j just relaxed and U_i is known from before.
-//! Once x_i is set, k_ki x_i is added to U_k of all k < i: by the end of the sweep, U belongs to the new x, and
-//! ‖b − A x‖ costs no second pass. Where the matrix is symmetric, the entries k_ki are those that L_i has just read.
+//! While unknowns i = 0 … n−1 are visited, split (K x)_i = L_i + k_ii x_i + U_i with L_i = Σ_{j<i}
+//! k_ij x_j and U_i = Σ_{j>i} k_ij x_j. At the visit of i, L_i is summed with the x_j just relaxed
+//! and U_i is known from before. Once x_i is set, k_ki x_i is added to U_k of all k < i: by the end
+//! of the sweep, U belongs to the new x, and ‖b − A x‖ costs no second pass. Where the matrix is
+//! symmetric, the entries k_ki are those that L_i has just read.
 //!
 //! A sweep that changes nothing computes U and K x of any starting x.
 //!
-//! The backward sweep visits i = n−1 … 0. At the visit of i, L_i is that of the forward sweep before it, because no
-//! unknown before i has changed since, and U_i has gathered the x_j just relaxed: only the part k_ki x_i, k < i, is
-//! read. It leaves U of the new x, from which the next forward sweep starts; L and K x are then out of date.
-//! (V. Conrad, Y. Wallach, Numerische Mathematik 32, 1979.)
+//! The backward sweep visits i = n−1 … 0. At the visit of i, L_i is that of the forward sweep
+//! before it, because no unknown before i has changed since, and U_i has gathered the x_j just
+//! relaxed: only the part k_ki x_i, k < i, is read. It leaves U of the new x, from which the next
+//! forward sweep starts; L and K x are then out of date. (V. Conrad, Y. Wallach, Numerische
+//! Mathematik 32, 1979.)
 
 use crate::{LinearOperator, MultiVector, Scalar, Symmetry};
 use std::ops::ControlFlow;
 
 /// What [`LinearOperator::sweep`] carries from one sweep to the next.
 ///
-/// It belongs to one operator and one x, which nothing but sweeps may change between them. A new one belongs to x = 0.
+/// It belongs to one operator and one x, which nothing but sweeps may change between them. A new
+/// one belongs to x = 0.
 #[derive(Clone, Debug)]
 pub struct Sweep<T> {
     pub(crate) lower: MultiVector<T>,
@@ -28,8 +32,8 @@ pub struct Sweep<T> {
 impl<T: Scalar> Sweep<T> {
     /// The state of x = 0.
     #[must_use]
-    pub fn new(dim: usize, lanes: usize) -> Self {
-        let zeros = MultiVector::zeros(dim, lanes);
+    pub fn new(dim: usize, rhs_count: usize) -> Self {
+        let zeros = MultiVector::zeros(dim, rhs_count);
         Self { lower: zeros.clone(), upper: zeros.clone(), product: zeros }
     }
 
@@ -39,7 +43,8 @@ impl<T: Scalar> Sweep<T> {
         &self.product
     }
 
-    /// L_i = Σ_{j<i} k_ij x_j of the last forward sweep. An operator sets it at the visits of a forward sweep.
+    /// L_i = Σ_{j<i} k_ij x_j of the last forward sweep. An operator sets it at the visits of a
+    /// forward sweep.
     pub fn lower_mut(&mut self) -> &mut MultiVector<T> {
         &mut self.lower
     }
@@ -50,8 +55,8 @@ impl<T: Scalar> Sweep<T> {
         &self.upper
     }
 
-    /// Makes this the state of α x' + (1 − α) x'', α for each lane, of which it is the state of x' and `other` that
-    /// of x''. All parts are linear in x.
+    /// Makes this the state of α x' + (1 − α) x'', α for each right-hand side, of which it is the
+    /// state of x' and `other` that of x''. All parts are linear in x.
     ///
     /// # Panics
     /// The states do not have the same shape.
@@ -63,14 +68,14 @@ impl<T: Scalar> Sweep<T> {
             (&mut self.product, &other.product),
         ];
         for (part, other) in parts {
-            let zeros = MultiVector::zeros(part.dim(), part.lanes());
+            let zeros = MultiVector::zeros(part.dim(), part.rhs_count());
             part.scale_and_add(alpha, &zeros);
             part.add_scaled(&rest, other);
         }
     }
 
-    /// U_i = Σ_{j>i} k_ij x_j, all unknowns and lanes. An operator reads row i at visit i, sets it to 0, and adds to
-    /// it from the later ones.
+    /// U_i = Σ_{j>i} k_ij x_j, all unknowns and right-hand sides. An operator reads row i at visit
+    /// i, sets it to 0, and adds to it from the later ones.
     pub fn upper_mut(&mut self) -> &mut MultiVector<T> {
         &mut self.upper
     }
@@ -98,23 +103,24 @@ impl<T: Scalar> Sweep<T> {
     }
 }
 
-/// One unknown as a sweep presents it, all lanes.
+/// One unknown as a sweep presents it, all right-hand sides.
 #[derive(Debug)]
 pub struct Visit<'a, T> {
     /// Index i of the unknown.
     pub index: usize,
-    /// Σ_{j≠i} k_ij x_j per lane, with the x_j already relaxed.
+    /// Σ_{j≠i} k_ij x_j per right-hand side, with the x_j already relaxed.
     pub off_diagonal: &'a [T],
-    /// k_ii per lane.
+    /// k_ii per right-hand side.
     pub diagonal: &'a [T],
-    /// x_i per lane, to be set.
+    /// x_i per right-hand side, to be set.
     pub x: &'a mut [T],
 }
 
 /// Sets x_i at each visit; a break stops the sweep.
 pub type Relax<'a, T> = dyn FnMut(Visit<'_, T>) -> ControlFlow<()> + 'a;
 
-/// The sweep of an operator that is asked for each row, and each column unless it follows from the row.
+/// The sweep of an operator that is asked for each row, and each column unless it follows from the
+/// row.
 pub(crate) fn sweep_by_rows<T: Scalar, A: LinearOperator<T> + ?Sized>(
     a: &A,
     x: &mut MultiVector<T>,
@@ -122,7 +128,7 @@ pub(crate) fn sweep_by_rows<T: Scalar, A: LinearOperator<T> + ?Sized>(
     relax: &mut Relax<'_, T>,
 ) -> ControlFlow<()> {
     let mut lines = Lines::new(a);
-    let mut terms = Terms::new(x.lanes());
+    let mut terms = Terms::new(x.rhs_count());
     for index in 0..x.dim() {
         lines.read_row(index);
         terms.gather(&lines, index, x, sweep);
@@ -144,11 +150,11 @@ pub(crate) fn sweep_back_by_columns<T: Scalar, A: LinearOperator<T> + ?Sized>(
     relax: &mut Relax<'_, T>,
 ) -> ControlFlow<()> {
     let mut lines = Lines::new(a);
-    let mut terms = Terms::new(x.lanes());
+    let mut terms = Terms::new(x.rhs_count());
     sweep.upper.fill(T::zero());
     for index in (0..x.dim()).rev() {
         lines.read_row(index);
-        (0..x.lanes()).for_each(|l| terms.diagonal[l] = lines.of_lane(l)[index]);
+        (0..x.rhs_count()).for_each(|l| terms.diagonal[l] = lines.of_rhs(l)[index]);
         sweep.sum_parts(index, &mut terms.off_diagonal);
         let Terms { off_diagonal, diagonal, .. } = &terms;
         relax(Visit { index, off_diagonal, diagonal, x: x.row_mut(index) })?;
@@ -158,7 +164,7 @@ pub(crate) fn sweep_back_by_columns<T: Scalar, A: LinearOperator<T> + ?Sized>(
     ControlFlow::Continue(())
 }
 
-/// A row or column of the matrix of each lane, or one for all lanes.
+/// A row or column of the matrix of each right-hand side, or one for all right-hand sides.
 struct Lines<'a, T, A: ?Sized> {
     a: &'a A,
     lines: Vec<Vec<T>>,
@@ -166,38 +172,38 @@ struct Lines<'a, T, A: ?Sized> {
 
 impl<'a, T: Scalar, A: LinearOperator<T> + ?Sized> Lines<'a, T, A> {
     fn new(a: &'a A) -> Self {
-        Self { a, lines: vec![vec![T::zero(); a.dim()]; a.lanes().unwrap_or(1)] }
+        Self { a, lines: vec![vec![T::zero(); a.dim()]; a.rhs_count().unwrap_or(1)] }
     }
 
-    fn of_lane(&self, lane: usize) -> &[T] {
-        &self.lines[if self.a.lanes().is_some() { lane } else { 0 }]
+    fn of_rhs(&self, rhs: usize) -> &[T] {
+        &self.lines[if self.a.rhs_count().is_some() { rhs } else { 0 }]
     }
 
     fn read_row(&mut self, i: usize) {
-        self.lines.iter_mut().enumerate().for_each(|(lane, line)| self.a.row(i, lane, line));
+        self.lines.iter_mut().enumerate().for_each(|(rhs, line)| self.a.row(i, rhs, line));
     }
 
     /// U_k += k_ki x_i for k < i.
     fn scatter(&self, i: usize, x: &MultiVector<T>, sweep: &mut Sweep<T>) {
-        for l in 0..x.lanes() {
-            let (column, x) = (self.of_lane(l), x.row(i)[l]);
+        for l in 0..x.rhs_count() {
+            let (column, x) = (self.of_rhs(l), x.row(i)[l]);
             (0..i).for_each(|k| sweep.upper.row_mut(k)[l] += column[k] * x);
         }
     }
 
     /// Makes column i of row i.
     fn turn_into_column(&mut self, i: usize) {
-        for (lane, line) in self.lines.iter_mut().enumerate() {
+        for (rhs, line) in self.lines.iter_mut().enumerate() {
             match self.a.symmetry() {
                 Symmetry::Symmetric => {}
                 Symmetry::Hermitian => line.iter_mut().for_each(|entry| *entry = entry.conj()),
-                Symmetry::General => self.a.column(i, lane, line),
+                Symmetry::General => self.a.column(i, rhs, line),
             }
         }
     }
 }
 
-/// The terms of (K x)_i at a visit, per lane.
+/// The terms of (K x)_i at a visit, per right-hand side.
 struct Terms<T> {
     lower: Vec<T>,
     diagonal: Vec<T>,
@@ -205,8 +211,8 @@ struct Terms<T> {
 }
 
 impl<T: Scalar> Terms<T> {
-    fn new(lanes: usize) -> Self {
-        let zeros = vec![T::zero(); lanes];
+    fn new(rhs_count: usize) -> Self {
+        let zeros = vec![T::zero(); rhs_count];
         Self { lower: zeros.clone(), diagonal: zeros.clone(), off_diagonal: zeros }
     }
 
@@ -215,8 +221,8 @@ impl<T: Scalar> Terms<T> {
         A: LinearOperator<T> + ?Sized,
     {
         sweep.take_upper(i, &mut self.off_diagonal);
-        for l in 0..x.lanes() {
-            let row = rows.of_lane(l);
+        for l in 0..x.rhs_count() {
+            let row = rows.of_rhs(l);
             self.lower[l] = (0..i).fold(T::zero(), |sum, j| sum + row[j] * x.row(j)[l]);
             self.off_diagonal[l] += self.lower[l];
             self.diagonal[l] = row[i];

@@ -8,7 +8,7 @@ use fredholm_linop::{
 };
 use std::ops::ControlFlow;
 
-/// K of 2 × 2, so that A = [1 −½; −¼ 1] in lane 0 and [1 −1; −½ 1] in lane 1.
+/// K of 2 × 2, so that A = [1 −½; −¼ 1] in right-hand side 0 and [1 −1; −½ 1] in right-hand side 1.
 fn coupling() -> Dense<f64> {
     Dense::new(2, vec![0.0, 0.5, 0.25, 0.0]).unwrap()
 }
@@ -38,8 +38,9 @@ fn follow(b: &[f64], stop: Stop, iterates: &[[f64; 4]], observer: &mut dyn Obser
 const STOP: Stop = Stop { tolerance: 1e-12, max_iterations: 2 };
 
 #[test]
-fn the_residual_is_relative_and_per_lane() {
-    // x = 0 in lane 0; in lane 1, b = (6, 8) and x = (2, 2) give A x = (0, 1) and b − A x = (6, 7).
+fn the_residual_is_relative_and_per_right_hand_side() {
+    // x = 0 in right-hand side 0; in right-hand side 1, b = (6, 8) and x = (2, 2) give A x = (0, 1)
+    // and b − A x = (6, 7).
     let iterates = [[0.0; 4], [0.0, 2.0, 0.0, 2.0], [0.0; 4]];
     let report = follow(&[3.0, 6.0, 4.0, 8.0], STOP, &iterates, &mut Quiet);
     assert_eq!(report.reason, StopReason::IterationLimit);
@@ -52,8 +53,8 @@ fn the_residual_is_relative_and_per_lane() {
 }
 
 #[test]
-fn all_lanes_must_converge() {
-    // A (4, 4) = (2, 3) in lane 0, A (3, 2) = (1, ½) in lane 1.
+fn all_right_hand_sides_must_converge() {
+    // A (4, 4) = (2, 3) in right-hand side 0, A (3, 2) = (1, ½) in right-hand side 1.
     let b = [2.0, 1.0, 3.0, 0.5];
     let report = follow(&b, STOP, &[[4.0, 0.0, 4.0, 0.0], [4.0, 3.0, 4.0, 2.0]], &mut Quiet);
     assert_eq!((report.reason, report.history.len()), (StopReason::Converged, 2));
@@ -64,9 +65,9 @@ fn all_lanes_must_converge() {
 fn growth_and_numbers_that_are_not_finite_are_divergence() {
     let b = [1.0, 1.0, 1.0, 1.0];
     for bad in [3e6, f64::NAN, f64::INFINITY] {
-        for lane in 0..2 {
+        for rhs in 0..2 {
             let mut iterate = [0.0; 4];
-            iterate[lane] = bad;
+            iterate[rhs] = bad;
             let report = follow(&b, STOP, &[[0.0; 4], iterate], &mut Quiet);
             assert_eq!((report.reason, report.history.len()), (StopReason::Diverged, 2), "{bad}");
         }
@@ -88,7 +89,7 @@ fn the_observer_sees_every_record_and_can_stop() {
 }
 
 #[test]
-fn a_lane_without_a_right_hand_side_starts_solved() {
+fn a_right_hand_side_of_zeros_starts_solved() {
     let coupling = coupling();
     let a = system(&coupling);
     let b = MultiVector::from_vec(2, 2, vec![0.0, 1.0, 0.0, 1.0]).unwrap();
@@ -111,13 +112,13 @@ fn systems_that_make_no_sense_are_refused() {
     };
     let good = MultiVector::from_vec(2, 2, vec![1.0; 4]).unwrap();
     assert_eq!(start(&good, good.clone(), 0.0), None);
-    let shape = |vector, found, found_lanes| {
-        Some(SolveError::Shape { vector, found, found_lanes, expected: 2, expected_lanes: 2 })
+    let shape = |vector, found, found_rhs| {
+        Some(SolveError::Shape { vector, found, found_rhs, expected: 2, expected_rhs: 2 })
     };
     assert_eq!(start(&MultiVector::zeros(3, 2), good.clone(), 0.0), shape("right-hand side", 3, 2));
     assert_eq!(start(&good, MultiVector::zeros(2, 1), 0.0), shape("starting guess", 2, 1));
     let bad = MultiVector::from_vec(2, 2, vec![1.0, 1.0, f64::NAN, 1.0]).unwrap();
-    let not_finite = |what| Some(LinopError::NotFinite { what, unknown: 1, lane: 0 }.into());
+    let not_finite = |what| Some(LinopError::NotFinite { what, unknown: 1, rhs: 0 }.into());
     assert_eq!(start(&bad, good.clone(), 0.0), not_finite("right-hand side"));
     assert_eq!(start(&good, bad, 0.0), not_finite("starting guess"));
     assert_eq!(start(&good, good.clone(), -1.0), Some(SolveError::Tolerance { value: -1.0 }));

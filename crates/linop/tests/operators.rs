@@ -25,11 +25,11 @@ struct Trial<'a, T> {
 /// Checks every operator, and I − D K around it.
 fn for_each_trial<T: Draw>(cases: &[Case<T>], random: &mut Random, check: fn(&Trial<'_, T>)) {
     for Case { name, operator, matrices } in cases {
-        for lanes in operator.lanes().map_or(vec![1, 2, 3, 5], |lanes| vec![lanes]) {
+        for rhs_count in operator.rhs_count().map_or(vec![1, 2, 3, 5], |rhs_count| vec![rhs_count]) {
             let (dim, operator) = (operator.dim(), &**operator);
-            let name = format!("{name}, n = {dim}, {lanes} lanes");
-            let x = draw_vector(dim, lanes, random);
-            let factor = draw_vector(dim, lanes, random);
+            let name = format!("{name}, n = {dim}, {rhs_count} right-hand sides");
+            let x = draw_vector(dim, rhs_count, random);
+            let factor = draw_vector(dim, rhs_count, random);
             let system = SecondKind::new(operator, factor.clone()).unwrap();
             let matrices_of_system = second_kind(matrices, &factor);
             let name_of_system = format!("second kind around {name}");
@@ -51,7 +51,7 @@ fn for_all(sizes: &[usize], real: fn(&Trial<'_, f64>), complex: fn(&Trial<'_, Co
 }
 
 fn check_product<T: Draw>(trial: &Trial<'_, T>) {
-    let mut y = MultiVector::from_fn(trial.x.dim(), trial.x.lanes(), |_, _| T::from_real(f64::NAN));
+    let mut y = MultiVector::from_fn(trial.x.dim(), trial.x.rhs_count(), |_, _| T::from_real(f64::NAN));
     trial.operator.apply(&trial.x, &mut y);
     let expected = product(trial.matrices, &trial.x);
     assert_close(y.as_slice(), expected.as_slice(), TOLERANCE, &trial.name);
@@ -71,16 +71,16 @@ fn products_cut_into_many_runs_are_the_plain_sums() {
 fn check_entries<T: Draw>(trial: &Trial<'_, T>) {
     let n = trial.operator.dim();
     let (mut row, mut column, mut diagonal) = (vec![T::zero(); n], vec![T::zero(); n], vec![T::zero(); n]);
-    for lane in 0..trial.x.lanes() {
-        let full = &trial.matrices[lane % trial.matrices.len()];
-        let dense = trial.operator.dense(lane).unwrap();
-        trial.operator.diagonal(lane, &mut diagonal);
+    for rhs in 0..trial.x.rhs_count() {
+        let full = &trial.matrices[rhs % trial.matrices.len()];
+        let dense = trial.operator.dense(rhs).unwrap();
+        trial.operator.diagonal(rhs, &mut diagonal);
         for i in 0..n {
-            trial.operator.row(i, lane, &mut row);
-            trial.operator.column(i, lane, &mut column);
+            trial.operator.row(i, rhs, &mut row);
+            trial.operator.column(i, rhs, &mut column);
             let expected: Vec<T> = (0..n).map(|k| full[k][i]).collect();
             assert_close(&row, &full[i], TOLERANCE, &trial.name);
-            trial.operator.lower_row(i, lane, &mut row[..=i]);
+            trial.operator.lower_row(i, rhs, &mut row[..=i]);
             assert_close(&row[..=i], &full[i][..=i], TOLERANCE, &trial.name);
             assert_close(&column, &expected, TOLERANCE, &trial.name);
             assert_close(dense.row_slice(i), &full[i], TOLERANCE, &trial.name);
@@ -97,7 +97,7 @@ fn rows_columns_and_diagonals_are_those_of_the_matrix() {
 /// Two sweeps that add random steps, after one that changes nothing.
 fn check_sweep<T: Draw>(trial: &Trial<'_, T>) {
     let (mut random, mut x) = (Random::new(3), trial.x.clone());
-    let mut sweep = Sweep::new(trial.x.dim(), trial.x.lanes());
+    let mut sweep = Sweep::new(trial.x.dim(), trial.x.rhs_count());
     for size in [0.0, 1.0, 1.0] {
         let mut shadow = x.clone();
         let mut next = 0;
@@ -106,7 +106,7 @@ fn check_sweep<T: Draw>(trial: &Trial<'_, T>) {
             next += 1;
             let i = visit.index;
             let whole = product(trial.matrices, &shadow);
-            for l in 0..shadow.lanes() {
+            for l in 0..shadow.rhs_count() {
                 let diagonal = trial.matrices[l % trial.matrices.len()][i][i];
                 let rest = whole.row(i)[l] - diagonal * shadow.row(i)[l];
                 if size > 0.0 {
@@ -132,7 +132,7 @@ fn sweeps_see_the_newest_values_and_end_with_the_product() {
 /// Backward sweeps that add random steps, each between two forward ones.
 fn check_sweep_back<T: Draw>(trial: &Trial<'_, T>) {
     let (mut random, mut x) = (Random::new(5), trial.x.clone());
-    let mut sweep = Sweep::new(trial.x.dim(), trial.x.lanes());
+    let mut sweep = Sweep::new(trial.x.dim(), trial.x.rhs_count());
     let _ = trial.operator.sweep(&mut x, &mut sweep, &mut |_| ControlFlow::Continue(()));
     for _ in 0..2 {
         let mut shadow = x.clone();
@@ -142,7 +142,7 @@ fn check_sweep_back<T: Draw>(trial: &Trial<'_, T>) {
             assert_eq!(visit.index, next);
             let i = visit.index;
             let whole = product(trial.matrices, &shadow);
-            for l in 0..shadow.lanes() {
+            for l in 0..shadow.rhs_count() {
                 let diagonal = trial.matrices[l % trial.matrices.len()][i][i];
                 let rest = whole.row(i)[l] - diagonal * shadow.row(i)[l];
                 assert_close(&visit.off_diagonal[l..=l], &[rest], TOLERANCE, &trial.name);
@@ -174,16 +174,17 @@ fn backward_sweeps_see_the_newest_values_and_leave_the_state_of_the_next_forward
 fn states_of_sweeps_are_blended_as_the_vectors_are() {
     let mut random = Random::new(6);
     for case in real_cases(9, &mut random) {
-        let lanes = case.operator.lanes().unwrap_or(2);
-        let [u, v] = [0, 1].map(|_| draw_vector::<f64>(9, lanes, &mut random));
+        let rhs_count = case.operator.rhs_count().unwrap_or(2);
+        let [u, v] = [0, 1].map(|_| draw_vector::<f64>(9, rhs_count, &mut random));
         let state = |x: &MultiVector<f64>| {
-            let mut sweep = Sweep::new(9, lanes);
+            let mut sweep = Sweep::new(9, rhs_count);
             let _ = case.operator.sweep(&mut x.clone(), &mut sweep, &mut |_| ControlFlow::Continue(()));
             sweep
         };
-        let alpha: Vec<f64> = (0..lanes).map(|l| 0.3 + 1.1 * l as f64).collect();
-        let mixed =
-            MultiVector::from_fn(9, lanes, |i, l| alpha[l] * u.row(i)[l] + (1.0 - alpha[l]) * v.row(i)[l]);
+        let alpha: Vec<f64> = (0..rhs_count).map(|l| 0.3 + 1.1 * l as f64).collect();
+        let mixed = MultiVector::from_fn(9, rhs_count, |i, l| {
+            alpha[l] * u.row(i)[l] + (1.0 - alpha[l]) * v.row(i)[l]
+        });
         let (mut blended, expected) = (state(&u), state(&mixed));
         blended.mix(&alpha, &state(&v));
         assert_close(blended.product().as_slice(), expected.product().as_slice(), TOLERANCE, &case.name);
@@ -218,16 +219,20 @@ fn the_number_of_threads_changes_no_bit() {
     let mut operators = real_cases(600, &mut random);
     operators.push(cases::<f64>(600, &mut random).swap_remove(0));
     for case in operators {
-        for lanes in [1, 2, 3] {
-            let x = draw_vector(600, lanes, &mut random);
+        for rhs_count in [1, 2, 3] {
+            let x = draw_vector(600, rhs_count, &mut random);
             let on = |threads| {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-                let mut y = MultiVector::zeros(600, lanes);
+                let mut y = MultiVector::zeros(600, rhs_count);
                 pool.install(|| case.operator.apply(&x, &mut y));
                 bits(&y)
             };
             let one = on(1);
-            assert!([2, 3, 4].into_iter().all(|threads| on(threads) == one), "{}, {lanes} lanes", case.name);
+            assert!(
+                [2, 3, 4].into_iter().all(|threads| on(threads) == one),
+                "{}, {rhs_count} right-hand sides",
+                case.name
+            );
         }
     }
 }
@@ -265,41 +270,41 @@ fn stored_entries_are_counted_once() {
 #[test]
 fn a_factor_that_does_not_fit_is_refused() {
     let coupling = PackedSymmetric::new(2, vec![0.0; 3]).unwrap();
-    let wrong = LinopError::Factor { found: 3, lanes: 1, expected: 2, operator_lanes: 1 };
+    let wrong = LinopError::Factor { found: 3, rhs_count: 1, expected: 2, operator_rhs: 1 };
     assert_eq!(SecondKind::new(&coupling, MultiVector::zeros(3, 1)).err(), Some(wrong));
     let factor = MultiVector::from_vec(2, 2, vec![0.0, 0.0, 0.0, f64::NAN]).unwrap();
-    let wrong = LinopError::NotFinite { what: "the diagonal factor", unknown: 1, lane: 1 };
+    let wrong = LinopError::NotFinite { what: "the diagonal factor", unknown: 1, rhs: 1 };
     assert_eq!(SecondKind::new(&coupling, factor).err(), Some(wrong));
-    let per_lane = cases::<f64>(2, &mut Random::new(1)).pop().unwrap();
-    let wrong = LinopError::Factor { found: 2, lanes: 3, expected: 2, operator_lanes: 2 };
-    assert_eq!(SecondKind::new(&*per_lane.operator, MultiVector::zeros(2, 3)).err(), Some(wrong));
+    let per_rhs = cases::<f64>(2, &mut Random::new(1)).pop().unwrap();
+    let wrong = LinopError::Factor { found: 2, rhs_count: 3, expected: 2, operator_rhs: 2 };
+    assert_eq!(SecondKind::new(&*per_rhs.operator, MultiVector::zeros(2, 3)).err(), Some(wrong));
 }
 
 #[test]
-fn lanes_of_equal_factors_have_the_same_matrix() {
+fn right_hand_sides_of_equal_factors_have_the_same_matrix() {
     let coupling = PackedSymmetric::new(2, vec![0.0; 3]).unwrap();
     let factor = MultiVector::from_vec(2, 3, vec![0.5, 0.1, 0.5, 0.2, 0.2, 0.2]).unwrap();
     let system = SecondKind::new(&coupling, factor).unwrap();
     assert!(system.same_matrix(0, 2) && system.same_matrix(1, 1) && !system.same_matrix(0, 1));
-    let per_lane = cases::<f64>(2, &mut Random::new(1)).pop().unwrap();
-    let system = SecondKind::new(&*per_lane.operator, MultiVector::zeros(2, 2)).unwrap();
+    let per_rhs = cases::<f64>(2, &mut Random::new(1)).pop().unwrap();
+    let system = SecondKind::new(&*per_rhs.operator, MultiVector::zeros(2, 2)).unwrap();
     assert!(!system.same_matrix(0, 1));
 }
 
 fn check_column_step<T: Draw>(trial: &Trial<'_, T>) {
     let n = trial.operator.dim();
     let mut random = Random::new(11);
-    let factor: MultiVector<T> = draw_vector(n, trial.x.lanes(), &mut random);
+    let factor: MultiVector<T> = draw_vector(n, trial.x.rhs_count(), &mut random);
     let system = SecondKind::new(trial.operator, factor.clone()).unwrap();
     let matrices = second_kind(trial.matrices, &factor);
-    let (j, step) = (n / 2, draw_vector::<T>(1, trial.x.lanes(), &mut random));
+    let (j, step) = (n / 2, draw_vector::<T>(1, trial.x.rhs_count(), &mut random));
     let mut residual = trial.x.clone();
     let reads = system.subtract_column(j, step.row(0), &mut residual, &mut vec![T::zero(); n]);
-    let expected = MultiVector::from_fn(n, trial.x.lanes(), |i, l| {
+    let expected = MultiVector::from_fn(n, trial.x.rhs_count(), |i, l| {
         trial.x.row(i)[l] - matrices[l][i][j] * step.row(0)[l]
     });
     assert_close(residual.as_slice(), expected.as_slice(), TOLERANCE, &trial.name);
-    assert_eq!(reads, (n * trial.operator.lanes().unwrap_or(1)) as u64);
+    assert_eq!(reads, (n * trial.operator.rhs_count().unwrap_or(1)) as u64);
 }
 
 #[test]

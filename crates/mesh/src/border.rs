@@ -1,7 +1,8 @@
 //! Borders of a polygon in its plane: do they cross, touch or contain each other?
 //!
-//! Sides are sorted by their least x; a side is compared with those that begin before it ends: a sweep as in M. I.
-//! Shamos and D. Hoey, 1976, doi:10.1109/SFCS.1976.16, without their ordered tree. Any unit of length.
+//! Sides are sorted by their least x; a side is compared with those that begin before it ends: a
+//! sweep as in M. I. Shamos and D. Hoey, 1976, doi:10.1109/SFCS.1976.16, without their ordered
+//! tree. Any unit of length.
 
 use glam::DVec2;
 

@@ -44,8 +44,8 @@ impl MeshBuilder {
     /// Adds a face of the last surface, computed on the given root elements, and returns its index.
     ///
     /// # Errors
-    /// [`MeshError::NoSurface`] before the first surface; [`MeshError::TooLarge`] past 2³² − 1 elements;
-    /// [`MeshError::NoArea`] for a face of no element.
+    /// [`MeshError::NoSurface`] before the first surface; [`MeshError::TooLarge`] past 2³² − 1
+    /// elements; [`MeshError::NoArea`] for a face of no element.
     pub fn face(&mut self, roots: &[Patch]) -> Result<usize, MeshError> {
         let surface = self.mesh.surfaces.len().checked_sub(1).ok_or(MeshError::NoSurface)?;
         let (area, centroid) = mean(roots)?;
@@ -59,15 +59,16 @@ impl MeshBuilder {
         Ok(face)
     }
 
-    /// Cuts a shape into faces of the last surface, adds what it blocks, and returns the indices of the faces.
+    /// Cuts a shape into faces of the last surface, adds what it blocks, and returns the indices of
+    /// the faces.
     ///
-    /// The undivided flat pieces of the shape become occluders, unless the cutting is flipped. On an error nothing is
-    /// added.
+    /// The undivided flat pieces of the shape become occluders, unless the cutting is flipped. On
+    /// an error nothing is added.
     ///
     /// # Errors
-    /// [`MeshError::NoSurface`] before the first surface; [`MeshError::TooLarge`] past 2³² − 1 elements, before memory
-    /// is taken; any other [`MeshError`] for a shape that encloses no area or crosses itself, or lines that do not fit
-    /// it.
+    /// [`MeshError::NoSurface`] before the first surface; [`MeshError::TooLarge`] past 2³² − 1
+    /// elements, before memory is taken; any other [`MeshError`] for a shape that encloses no area
+    /// or crosses itself, or lines that do not fit it.
     pub fn add(&mut self, shape: &Shape, cutting: &Cutting) -> Result<Range<usize>, MeshError> {
         let solid = Solid::new(shape)?;
         self.check_room(solid.count(cutting)?)?;

@@ -1,7 +1,7 @@
 //! Boxes with their sides along the axes.
 //!
-//! Axes a, b, c in cyclic order make a right-handed frame, so that the side whose outward normal is +a has u along b and
-//! v along c; on the opposite side u and v change places. Metres.
+//! Axes a, b, c in cyclic order make a right-handed frame, so that the side whose outward normal is
+//! +a has u along b and v along c; on the opposite side u and v change places. Metres.
 
 use crate::cutting::Form;
 use crate::facet::{Facet, Group};

@@ -1,7 +1,10 @@
-//! A convex polygon cut along segments: the constrained Delaunay triangulation of its corners with the segments as sides.
+//! A convex polygon cut along segments: the constrained Delaunay triangulation of its corners with
+//! the segments as sides.
 //!
-//! L. P. Chew, Algorithmica 4 (1989) 97–108, doi:10.1007/BF01553881; the triangulation itself is spade's. Segments that cross are cut where they do. Places that nearly coincide are made one and
-//! crossings are computed before the triangulation sees them: it then only connects given points, which its exact predicates always can, and invents none that rounding may put on the wrong side
+//! L. P. Chew, Algorithmica 4 (1989) 97–108, doi:10.1007/BF01553881; the triangulation itself is
+//! spade's. Segments that cross are cut where they do. Places that nearly coincide are made one and
+//! crossings are computed before the triangulation sees them: it then only connects given points,
+//! which its exact predicates always can, and invents none that rounding may put on the wrong side
 //! of a constraint. Metres.
 
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
@@ -12,12 +15,16 @@ use crate::Vec3;
 const NEAR: f64 = 1e-7;
 /// Area, over that of the polygon, below which a triangle is one of rounding.
 const SLIVER: f64 = 1e-12;
-/// Sine of the angle between segments below which they do not cross but lie beside or on each other.
+/// Sine of the angle between segments below which they do not cross but lie beside or on each
+/// other.
 const PARALLEL: f64 = 1e-12;
 
-/// Triangles, counter-clockwise about `normal`, that fill a convex polygon and have the parts of segments in its plane that lie in it as sides. `corners` may have any number of corners on one side.
+/// Triangles, counter-clockwise about `normal`, that fill a convex polygon and have the parts of
+/// segments in its plane that lie in it as sides. `corners` may have any number of corners on one
+/// side.
 ///
-/// A part of a segment that comes to cross another one when their ends are made one with what is near is left out. A polygon that cannot be triangulated gives no triangle.
+/// A part of a segment that comes to cross another one when their ends are made one with what is
+/// near is left out. A polygon that cannot be triangulated gives no triangle.
 #[must_use]
 pub fn cut_polygon(corners: &[Vec3], normal: Vec3, segments: &[[Vec3; 2]]) -> Vec<[Vec3; 3]> {
     let Some(plane) = Plane::new(corners, normal) else { return Vec::new() };
@@ -107,7 +114,8 @@ impl Plane {
     }
 }
 
-/// The part of a segment inside a convex polygon (M. Cyrus, J. Beck, Comput. Graph. 3 (1978) 23–28, doi:10.1016/0097-8493(78)90021-3).
+/// The part of a segment inside a convex polygon (M. Cyrus, J. Beck, Comput. Graph. 3 (1978) 23–28,
+/// doi:10.1016/0097-8493(78)90021-3).
 #[must_use]
 pub fn part_inside(corners: &[Vec3], normal: Vec3, [from, to]: [Vec3; 2]) -> Option<[Vec3; 2]> {
     let (mut low, mut high) = (0.0, 1.0);
@@ -161,7 +169,8 @@ mod tests {
         for [from, to] in &segments[..3] {
             let side = |x: Vec3| (*to - *from).cross(x - *from).z;
             for triangle in &triangles {
-                // Where a triangle has corners on both sides of the line, the segment does not reach it.
+                // Where a triangle has corners on both sides of the line, the segment does not
+                // reach it.
                 let heights = triangle.map(side);
                 let both = heights.iter().any(|h| *h > 1e-9) && heights.iter().any(|h| *h < -1e-9);
                 let middle = (triangle[0] + triangle[1] + triangle[2]) / 3.0;
@@ -171,8 +180,8 @@ mod tests {
         }
     }
 
-    /// Segments as the shadows of tilted bodies make them: many through one place, copies moved or turned by almost nothing, ends almost on
-    /// others, on sides and in corners.
+    /// Segments as the shadows of tilted bodies make them: many through one place, copies moved or
+    /// turned by almost nothing, ends almost on others, on sides and in corners.
     fn tangled(seed: u64) -> Vec<[Vec3; 2]> {
         let mut state = seed;
         let mut unit = || {

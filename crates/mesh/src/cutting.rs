@@ -1,7 +1,7 @@
 //! How a shape is cut into faces, and faces into elements.
 //!
-//! A quad cut M × N by lines, with k elements per side, has M N faces of k² elements each; a triangle cut N times has
-//! N² faces of k² elements each.
+//! A quad cut M × N by lines, with k elements per side, has M N faces of k² elements each; a
+//! triangle cut N times has N² faces of k² elements each.
 
 use crate::MeshError;
 
@@ -11,10 +11,12 @@ const ROUNDING: f64 = 1e-9;
 /// Lines that cut a shape into faces, the pieces that results are reported on.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Lines {
-    /// No lines: a quad, a triangle or a polygon is one face; a box, sphere, disc or cylinder has one face a facet.
+    /// No lines: a quad, a triangle or a polygon is one face; a box, sphere, disc or cylinder has
+    /// one face a facet.
     #[default]
     Whole,
-    /// Equal spacing: u pieces along u times v pieces along v. Triangles need u = v and become u² triangles.
+    /// Equal spacing: u pieces along u times v pieces along v. Triangles need u = v and become u²
+    /// triangles.
     Counts {
         /// Pieces along u.
         u: usize,
@@ -28,8 +30,8 @@ pub enum Lines {
         /// Parameters along v.
         v: Vec<f64>,
     },
-    /// As few pieces as keep every edge at most this long, m. The diagonal that halves a cell that is not flat does
-    /// not count as an edge. The triangles of one shape are all cut alike.
+    /// As few pieces as keep every edge at most this long, m. The diagonal that halves a cell that
+    /// is not flat does not count as an edge. The triangles of one shape are all cut alike.
     LargestEdge(f64),
 }
 
@@ -38,9 +40,11 @@ pub enum Lines {
 pub struct Cutting {
     /// Lines that cut the shape into faces.
     pub lines: Lines,
-    /// Every face (each of its triangles, where it has several) is split into this number squared of elements.
+    /// Every face (each of its triangles, where it has several) is split into this number squared
+    /// of elements.
     pub elements_per_side: usize,
-    /// Lit from the other side. This is the back of a two-sided surface, whose front blocks the view already.
+    /// Lit from the other side. This is the back of a two-sided surface, whose front blocks the
+    /// view already.
     pub flipped: bool,
 }
 
@@ -55,7 +59,8 @@ impl Default for Cutting {
 pub(crate) enum Form {
     /// Triangles with this longest edge.
     Triangle { longest: f64 },
-    /// Quads with these longest edges along u and v; those that are not flat have two triangles a cell.
+    /// Quads with these longest edges along u and v; those that are not flat have two triangles a
+    /// cell.
     Quad { u: f64, v: f64, flat: bool },
 }
 
@@ -81,8 +86,8 @@ impl Cuts<'_> {
         }
     }
 
-    /// Weights of the two ends at line `i`. Even lines give the same two numbers from either end, so that neighbours
-    /// that run opposite ways meet in the same bits.
+    /// Weights of the two ends at line `i`. Even lines give the same two numbers from either end,
+    /// so that neighbours that run opposite ways meet in the same bits.
     pub fn weights(&self, i: usize) -> [f64; 2] {
         match self {
             Self::Even(n) => [(n - i) as f64 / *n as f64, i as f64 / *n as f64],

@@ -1,6 +1,7 @@
 //! Cylinders: a regular prism, closed by the polygons of discs where it has caps.
 //!
-//! Side and caps share one polygon of radius R. With n segments, height h and true radius r, the total area
+//! Side and caps share one polygon of radius R. With n segments, height h and true radius r, the
+//! total area
 //!
 //! 2 n R h sin(π/n) + c n R² sin(2π/n) = 2π r h + 2π c r²,  c = 1 with caps and 0 without,
 //!

@@ -1,8 +1,8 @@
 //! Discs: rings of triangles.
 //!
-//! A regular n-gon of radius R has the area ½ n R² sin(2π/n). Setting it to π r² gives R. Inside, ring j of m = ⌊n/6⌋
-//! has radius R j/m and 6 j corners (the outermost n), which makes the triangles nearly equilateral:
-//! 6 m (m − 1) + n of them. Metres.
+//! A regular n-gon of radius R has the area ½ n R² sin(2π/n). Setting it to π r² gives R. Inside,
+//! ring j of m = ⌊n/6⌋ has radius R j/m and 6 j corners (the outermost n), which makes the
+//! triangles nearly equilateral: 6 m (m − 1) + n of them. Metres.
 
 use std::f64::consts::TAU;
 
@@ -57,7 +57,8 @@ impl Rings {
         facets.into_iter().collect()
     }
 
-    /// The whole polygon as few convex pieces: quads, and a triangle where the number of corners is odd.
+    /// The whole polygon as few convex pieces: quads, and a triangle where the number of corners is
+    /// odd.
     pub fn blockers(&self) -> Result<Vec<Patch>, MeshError> {
         let last = self.segments - 1;
         let piece = |k: usize| {
@@ -92,7 +93,8 @@ impl Rings {
         }
     }
 
-    /// The triangles between a ring and the next: whichever ring's next side has its middle first gets a triangle.
+    /// The triangles between a ring and the next: whichever ring's next side has its middle first
+    /// gets a triangle.
     fn band(&self, ring: usize, visit: &mut impl FnMut([Vec3; 3])) {
         let (inner, outer) = (self.corners_on(ring), self.corners_on(ring + 1));
         let (mut i, mut j) = (0, 0);

@@ -1,5 +1,5 @@
-//! What can be wrong with geometry, and how to mend it. Corners, sides and holes are indices from 0 in the fields, and are
-//! counted from 1 in messages.
+//! What can be wrong with geometry, and how to mend it. Corners, sides and holes are indices from 0
+//! in the fields, and are counted from 1 in messages.
 
 use thiserror::Error;
 

@@ -1,18 +1,21 @@
 //! Polygons that are nearly flat, as rounded coordinates make them, become flat.
 //!
-//! Each corner is moved onto the planes of all flat or nearly flat polygons that share it, by projecting it onto one after the
-//! other (S. Kaczmarz, Bull. Int. Acad. Polon. Sci. A 35, 355, 1937), and the planes are fitted anew, until all are flat. Corners at one place
-//! move together, so that neighbours stay neighbours, bit for bit. Metres.
+//! Each corner is moved onto the planes of all flat or nearly flat polygons that share it, by
+//! projecting it onto one after the other (S. Kaczmarz, Bull. Int. Acad. Polon. Sci. A 35, 355,
+//! 1937), and the planes are fitted anew, until all are flat. Corners at one place move together,
+//! so that neighbours stay neighbours, bit for bit. Metres.
 
 use std::collections::HashMap;
 
 use crate::{Bounds, Vec3};
 
-/// Height of a corner over the mean plane, relative to the extent of all polygons, up to which a polygon is nearly flat.
+/// Height of a corner over the mean plane, relative to the extent of all polygons, up to which a
+/// polygon is nearly flat.
 const OF_ALL: f64 = 1e-6;
 /// The same, relative to the longest side of the polygon.
 const OF_SIDE: f64 = 1e-4;
-/// Height, relative to the longest side, up to which a polygon counts as flat: well within what [`Patch`](crate::Patch) asks for.
+/// Height, relative to the longest side, up to which a polygon counts as flat: well within what
+/// [`Patch`](crate::Patch) asks for.
 const FLAT: f64 = 1e-11;
 /// Most fits of the planes, and projections of a corner onto its planes for each.
 const ROUNDS: usize = 200;
@@ -29,8 +32,9 @@ pub struct Flattened {
     pub left: usize,
 }
 
-/// Moves the corners of polygons that are flat within 1e-6 of the extent of all of them, and within 1e-4 of their longest side,
-/// so that they are flat to rounding. Corners with the same coordinates stay together. Where nothing is to be done no bit changes.
+/// Moves the corners of polygons that are flat within 1e-6 of the extent of all of them, and within
+/// 1e-4 of their longest side, so that they are flat to rounding. Corners with the same coordinates
+/// stay together. Where nothing is to be done no bit changes.
 ///
 /// ```
 /// use fredholm_mesh::{Patch, Vec3, flatten};
@@ -275,7 +279,8 @@ mod tests {
 
     #[test]
     fn what_cannot_be_flat_together_is_told() {
-        // Two quads over the same four corners, whose planes cross at an angle that is too small to agree on a line.
+        // Two quads over the same four corners, whose planes cross at an angle that is too small to
+        // agree on a line.
         let v = Vec3::new;
         let corners = [v(0., 0., 0.), v(1., 0., 1e-7), v(1., 1., 0.), v(0., 1., 2e-7)];
         let mut polygons = vec![corners.to_vec()];

@@ -1,10 +1,12 @@
 //! Surfaces, faces, patches and element trees.
 //!
-//! A *surface* is what the scene file names. It is cut into *faces*, the input faces that results are reported on.
-//! A face is computed on *elements*: quads or triangles, organised as trees whose leaves are the unknowns. Every leaf
-//! is a [`Patch`]: a flat convex polygon of three or four corners, counter-clockwise seen from its lit side.
+//! A *surface* is what the scene file names. It is cut into *faces*, the input faces that results
+//! are reported on. A face is computed on *elements*: quads or triangles, organised as trees whose
+//! leaves are the unknowns. Every leaf is a [`Patch`]: a flat convex polygon of three or four
+//! corners, counter-clockwise seen from its lit side.
 //!
-//! A [`MeshBuilder`] cuts [`Shape`]s as a [`Cutting`] says, or takes faces that an importer has made.
+//! A [`MeshBuilder`] cuts [`Shape`]s as a [`Cutting`] says, or takes faces that an importer has
+//! made.
 //!
 //! Units: metres. No input or output happens here.
 

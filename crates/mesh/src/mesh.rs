@@ -119,7 +119,8 @@ impl Mesh {
         self.leaves.iter().map(|&e| &self.elements[e].patch)
     }
 
-    /// The undivided flat pieces of the input geometry: what blocks the view, as few polygons as possible.
+    /// The undivided flat pieces of the input geometry: what blocks the view, as few polygons as
+    /// possible.
     #[must_use]
     pub fn occluders(&self) -> &[Patch] {
         &self.occluders

@@ -7,10 +7,12 @@ use crate::{MeshError, Vec3, quad, triangle};
 
 /// Relative area (area over squared longest side) below which corners enclose no area.
 const SLIVER: f64 = 1e-13;
-/// Distance from the mean plane, relative to the longest side, up to which four corners count as flat.
+/// Distance from the mean plane, relative to the longest side, up to which four corners count as
+/// flat.
 const FLAT: f64 = 1e-10;
 
-/// A flat convex polygon with three or four corners, counter-clockwise seen from the lit side. Lengths in metres.
+/// A flat convex polygon with three or four corners, counter-clockwise seen from the lit side.
+/// Lengths in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patch {
     corners: [Vec3; 4],
@@ -29,7 +31,8 @@ impl Patch {
         Self::new([a, b, c, c], 3)
     }
 
-    /// The quadrilateral a, b, c, d, or `None` where it is not flat or not convex: such a one is two triangles.
+    /// The quadrilateral a, b, c, d, or `None` where it is not flat or not convex: such a one is
+    /// two triangles.
     ///
     /// # Errors
     /// A coordinate that is not finite, or corners that enclose no area.
@@ -46,8 +49,8 @@ impl Patch {
         Self { corners, sides, normal: doubled.normalize_or_zero(), area: 0.5 * doubled.length() }.checked()
     }
 
-    /// A piece of a flat polygon with this normal. Whether it is flat and convex is not asked again: rounding could
-    /// answer differently for a small piece far from the origin.
+    /// A piece of a flat polygon with this normal. Whether it is flat and convex is not asked
+    /// again: rounding could answer differently for a small piece far from the origin.
     pub(crate) fn piece(corners: [Vec3; 4], sides: usize, normal: Vec3) -> Result<Self, MeshError> {
         let area = 0.5 * doubled_area(&corners[..sides]).dot(normal);
         Self { corners, sides, normal, area }.checked()
@@ -127,7 +130,8 @@ impl Patch {
         pairs.map(|(i, j)| corners[i].distance(corners[j])).fold(0.0, f64::max)
     }
 
-    /// The point at (u, v): bilinear in [0, 1]² on a quad, a + u (b − a) + v (c − a) with u + v ≤ 1 on a triangle.
+    /// The point at (u, v): bilinear in [0, 1]² on a quad, a + u (b − a) + v (c − a) with u + v ≤ 1
+    /// on a triangle.
     #[must_use]
     pub fn point(&self, u: f64, v: f64) -> Vec3 {
         let [a, b, c, d] = self.corners;
@@ -137,8 +141,8 @@ impl Patch {
         a * ((1.0 - u) * (1.0 - v)) + b * (u * (1.0 - v)) + c * (u * v) + d * ((1.0 - u) * v)
     }
 
-    /// Piece `index` of n² similar ones: cell (i, j) of a quad, i along u and j along v, at i n + j; the triangles of a
-    /// triangle row by row away from corner a, row r starting at r².
+    /// Piece `index` of n² similar ones: cell (i, j) of a quad, i along u and j along v, at i n +
+    /// j; the triangles of a triangle row by row away from corner a, row r starting at r².
     pub(crate) fn piece_of(&self, n: usize, index: usize) -> Result<Self, MeshError> {
         if self.sides == 4 {
             let cell = quad::cell(&self.corners, Grid::even(n, n), index);
@@ -148,11 +152,13 @@ impl Patch {
         Self::piece([a, b, c, c], 3, self.normal)
     }
 
-    /// Four similar pieces, cut at the middles of the sides. Of a quad, piece (i, j), i along u and j along v, is
-    /// number 2 i + j; of a triangle they are those at its corners a and b, the middle one and that at c.
+    /// Four similar pieces, cut at the middles of the sides. Of a quad, piece (i, j), i along u and
+    /// j along v, is number 2 i + j; of a triangle they are those at its corners a and b, the
+    /// middle one and that at c.
     ///
     /// # Errors
-    /// [`MeshError::NoArea`] where the pieces would be too small for the precision of their coordinates.
+    /// [`MeshError::NoArea`] where the pieces would be too small for the precision of their
+    /// coordinates.
     pub fn split(&self) -> Result<[Self; 4], MeshError> {
         let [a, b, c, d] = [0, 1, 2, 3].map(|index| self.piece_of(2, index));
         Ok([a?, b?, c?, d?])
@@ -171,7 +177,8 @@ fn longest_side(corners: &[Vec3]) -> f64 {
     (0..corners.len()).map(|i| corners[i].distance(corners[(i + 1) % corners.len()])).fold(0.0, f64::max)
 }
 
-/// Twice the area vector: the cross product of two sides of a triangle, or of the diagonals of a quad.
+/// Twice the area vector: the cross product of two sides of a triangle, or of the diagonals of a
+/// quad.
 fn doubled_area(corners: &[Vec3]) -> Vec3 {
     match *corners {
         [a, b, c, d] => (c - a).cross(d - b),

@@ -1,7 +1,7 @@
 //! The plane of a polygon, and its borders in it.
 //!
-//! Normal along the area vector ½ Σ (pᵢ − p₀) × (pᵢ₊₁ − p₀) of the outline. Lengths in metres, in the plane relative to
-//! the extent of the outline.
+//! Normal along the area vector ½ Σ (pᵢ − p₀) × (pᵢ₊₁ − p₀) of the outline. Lengths in metres, in
+//! the plane relative to the extent of the outline.
 
 use glam::DVec2;
 
@@ -36,7 +36,8 @@ impl Plane {
         let crosses =
             outline.windows(2).map(|side| (side[0] - origin).cross(side[1] - origin) / (extent * extent));
         let area: Vec3 = crosses.clone().sum();
-        // The lobes of a border that crosses itself may cancel: then any of its triangles tells the plane.
+        // The lobes of a border that crosses itself may cancel: then any of its triangles tells the
+        // plane.
         let longer = |a: Vec3, b: Vec3| if b.length_squared() > a.length_squared() { b } else { a };
         let vector = if area.length() > STRAIGHT { area } else { crosses.fold(area, longer) };
         if extent <= 0.0 || vector.length() <= STRAIGHT {

@@ -1,7 +1,8 @@
 //! Quads: what makes sense of four corners, and how lines cut them.
 //!
-//! Bilinear surface: p(u, v) = (1 − u)(1 − v) a + u (1 − v) b + u v c + (1 − u) v d. Its cells are flat everywhere or
-//! nowhere, because the determinant of ∂p/∂u, ∂p/∂v and ∂²p/∂u∂v is constant. Metres.
+//! Bilinear surface: p(u, v) = (1 − u)(1 − v) a + u (1 − v) b + u v c + (1 − u) v d. Its cells are
+//! flat everywhere or nowhere, because the determinant of ∂p/∂u, ∂p/∂v and ∂²p/∂u∂v is constant.
+//! Metres.
 
 use crate::cutting::{Form, Grid};
 use crate::facet::{Facet, Group};
@@ -59,7 +60,8 @@ impl<'a> Quad<'a> {
         if cells.len() as u128 == grid.cells() { Err(MeshError::NothingLeft) } else { Ok(cells) }
     }
 
-    /// The undivided quad, or the flat pieces of its cells where some are left out or it is not flat.
+    /// The undivided quad, or the flat pieces of its cells where some are left out or it is not
+    /// flat.
     pub fn blockers(&self, grid: Grid) -> Result<Vec<Patch>, MeshError> {
         let skipped = self.skipped(grid)?;
         if let (Some(patch), true) = (self.facet.flat(), skipped.is_empty()) {
@@ -86,7 +88,8 @@ pub(crate) fn flat_cell(patch: &Patch, grid: Grid, index: usize) -> Result<Patch
     Patch::piece(cell(&corners, grid, index), 4, patch.normal())
 }
 
-/// Bilinear mean of the corners. On a side two terms vanish, and the neighbour that shares it finds the same bits.
+/// Bilinear mean of the corners. On a side two terms vanish, and the neighbour that shares it finds
+/// the same bits.
 fn point(&[a, b, c, d]: &[Vec3; 4], u: [f64; 2], v: [f64; 2]) -> Vec3 {
     a * (u[0] * v[0]) + b * (u[1] * v[0]) + c * (u[1] * v[1]) + d * (u[0] * v[1])
 }
@@ -116,8 +119,9 @@ fn refuse_repeated(corners: &[Vec3; 4]) -> Result<(), MeshError> {
 
 /// The reflex corner, where there is one. Sides that cross are refused.
 ///
-/// The turn at a corner is twice the area of its triangle over the squared longest side, about the normal of the quad.
-/// A simple quad turns right at one corner at most, one whose sides cross at two.
+/// The turn at a corner is twice the area of its triangle over the squared longest side, about the
+/// normal of the quad. A simple quad turns right at one corner at most, one whose sides cross at
+/// two.
 fn reflex(corners: &[Vec3; 4]) -> Result<Option<usize>, MeshError> {
     let scale = longest(corners).powi(2);
     let at = |i: usize| corners[i % 4];

@@ -1,8 +1,9 @@
 //! How good a mesh is to compute on.
 //!
-//! Aspect ratio of a patch with longest side L, perimeter P and area A: L P / (4 A) for a quad, L P / (4 √3 A) for a
-//! triangle; 1 for a square and for an equilateral triangle, larger otherwise. C. J. Stimpson et al., The Verdict
-//! Geometric Quality Library, SAND2007-1751, 2007. Metres and degrees.
+//! Aspect ratio of a patch with longest side L, perimeter P and area A: L P / (4 A) for a quad, L P
+//! / (4 √3 A) for a triangle; 1 for a square and for an equilateral triangle, larger otherwise. C.
+//! J. Stimpson et al., The Verdict Geometric Quality Library, SAND2007-1751, 2007. Metres and
+//! degrees.
 
 use crate::{Bounds, Mesh, Patch, Vec3};
 

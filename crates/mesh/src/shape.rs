@@ -7,19 +7,20 @@ use crate::{Cutting, MeshError, Patch, Vec3};
 
 /// A piece of surface, before it is cut. Lengths in metres.
 ///
-/// Curved shapes are polyhedra of flat facets. Their corners are moved outwards a little so that the facets together
-/// have exactly the area of the true shape (for a cylinder with caps: side and caps together). Power is area times
-/// exitance, so that a curved lamp emits the power it should; volume and cross-section are met only in the limit of
-/// many segments.
+/// Curved shapes are polyhedra of flat facets. Their corners are moved outwards a little so that
+/// the facets together have exactly the area of the true shape (for a cylinder with caps: side and
+/// caps together). Power is area times exitance, so that a curved lamp emits the power it should;
+/// volume and cross-section are met only in the limit of many segments.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     /// Four corners, counter-clockwise seen from the lit side.
     ///
-    /// u runs from corner 0 to corner 1, v from corner 0 to corner 3. Cell (i, j) of M × N is face i N + j:
-    /// j, along v, runs fastest. Cells in `skip` are left out and later faces move up.
+    /// u runs from corner 0 to corner 1, v from corner 0 to corner 3. Cell (i, j) of M × N is face
+    /// i N + j: j, along v, runs fastest. Cells in `skip` are left out and later faces move up.
     ///
-    /// Corners that are not coplanar span the bilinear surface through them, sampled where the lines cross: each cell
-    /// is then one face of two triangles. A quad that is not convex is two triangles too, and cannot be cut by lines.
+    /// Corners that are not coplanar span the bilinear surface through them, sampled where the
+    /// lines cross: each cell is then one face of two triangles. A quad that is not convex is two
+    /// triangles too, and cannot be cut by lines.
     Quad {
         /// Corners, m.
         corners: [Vec3; 4],
@@ -31,18 +32,20 @@ pub enum Shape {
         /// Corners, m.
         corners: [Vec3; 3],
     },
-    /// A flat polygon, not necessarily convex, with holes. It is lit where its outline runs counter-clockwise.
+    /// A flat polygon, not necessarily convex, with holes. It is lit where its outline runs
+    /// counter-clockwise.
     ///
-    /// Left [`Whole`](crate::Lines::Whole) it is one face of several triangles; otherwise each triangle of its
-    /// constrained Delaunay triangulation is cut alike.
+    /// Left [`Whole`](crate::Lines::Whole) it is one face of several triangles; otherwise each
+    /// triangle of its constrained Delaunay triangulation is cut alike.
     Polygon {
         /// Corners of the border, m.
         outline: Vec<Vec3>,
         /// Corners of each hole, m, either way round.
         holes: Vec<Vec<Vec3>>,
     },
-    /// A box with its sides along the axes: six quads in the order −x, +x, −y, +y, −z, +z. On the +x side u runs along
-    /// y and v along z, on the −x side the other way round, and so on cyclically.
+    /// A box with its sides along the axes: six quads in the order −x, +x, −y, +y, −z, +z. On the
+    /// +x side u runs along y and v along z, on the −x side the other way round, and so on
+    /// cyclically.
     Box {
         /// Corner of least coordinates, m.
         min: Vec3,
@@ -91,8 +94,9 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// Number of elements that the shape would be cut into: exactly what [`MeshBuilder::add`](crate::MeshBuilder::add)
-    /// creates, found without creating them. Memory is taken for the triangles of a polygon only.
+    /// Number of elements that the shape would be cut into: exactly what
+    /// [`MeshBuilder::add`](crate::MeshBuilder::add) creates, found without creating them. Memory
+    /// is taken for the triangles of a polygon only.
     ///
     /// ```
     /// use fredholm_mesh::{Cutting, Lines, Shape, Vec3};
@@ -103,14 +107,15 @@ impl Shape {
     /// ```
     ///
     /// # Errors
-    /// Any [`MeshError`] for a shape that encloses no area or crosses itself, or lines that do not fit it;
-    /// [`MeshError::TooLarge`] where the number has more than 128 bits.
+    /// Any [`MeshError`] for a shape that encloses no area or crosses itself, or lines that do not
+    /// fit it; [`MeshError::TooLarge`] where the number has more than 128 bits.
     pub fn count(&self, cutting: &Cutting) -> Result<u128, MeshError> {
         Solid::new(self)?.count(cutting)
     }
 
-    /// The undivided flat pieces of the shape that [`MeshBuilder::add`](crate::MeshBuilder::add) makes occluders, whatever side the
-    /// cutting says is lit: as few polygons as possible, lit as the shape is.
+    /// The undivided flat pieces of the shape that [`MeshBuilder::add`](crate::MeshBuilder::add)
+    /// makes occluders, whatever side the cutting says is lit: as few polygons as possible, lit as
+    /// the shape is.
     ///
     /// # Errors
     /// Those of [`Self::count`].

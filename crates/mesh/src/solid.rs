@@ -1,6 +1,8 @@
-//! A shape whose sense has been checked: its facets, how many elements they give, and what blocks the view.
+//! A shape whose sense has been checked: its facets, how many elements they give, and what blocks
+//! the view.
 //!
-//! Number of elements: Σ facets × cells × flat pieces a cell × k², with k elements per side. Metres.
+//! Number of elements: Σ facets × cells × flat pieces a cell × k², with k elements per side.
+//! Metres.
 
 use crate::builder::LIMIT;
 use crate::cuboid::Cuboid;

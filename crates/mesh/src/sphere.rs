@@ -1,9 +1,10 @@
 //! Spheres: geodesic polyhedra on the icosahedron.
 //!
-//! The corner with barycentric weights wᵢ, multiples of 1/f, in a triangle v₀, v₁, v₂ of the icosahedron lies in the
-//! direction Σ sin(wᵢ θ) vᵢ, cos θ = 1/√5, on the sphere of radius R. Along the edges this divides the arc evenly
-//! (K. Shoemake, 1985, doi:10.1145/325334.325242), and neighbours meet in the same corners. The 20 f² flat facets have
-//! edges that differ by less than 1.2 : 1. R makes their total area 4π r². Metres.
+//! The corner with barycentric weights wᵢ, multiples of 1/f, in a triangle v₀, v₁, v₂ of the
+//! icosahedron lies in the direction Σ sin(wᵢ θ) vᵢ, cos θ = 1/√5, on the sphere of radius R. Along
+//! the edges this divides the arc evenly (K. Shoemake, 1985, doi:10.1145/325334.325242), and
+//! neighbours meet in the same corners. The 20 f² flat facets have edges that differ by less than
+//! 1.2 : 1. R makes their total area 4π r². Metres.
 
 use std::f64::consts::PI;
 

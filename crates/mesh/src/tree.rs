@@ -1,7 +1,7 @@
 //! Element trees: splitting leaves, and walking from parent to children.
 //!
-//! A split replaces a leaf by four similar elements in its place, so that the leaves of a face stay together and the
-//! order of the unknowns does not depend on the order of the splits.
+//! A split replaces a leaf by four similar elements in its place, so that the leaves of a face stay
+//! together and the order of the unknowns does not depend on the order of the splits.
 
 use std::iter::successors;
 use std::ops::Range;
@@ -12,11 +12,13 @@ use crate::{Mesh, MeshError};
 
 impl Mesh {
     /// Splits a leaf into four elements at the middles of its sides and returns their indices in
-    /// [`elements`](Self::elements). Its unknown is replaced by four; the unknowns behind it move by three.
+    /// [`elements`](Self::elements). Its unknown is replaced by four; the unknowns behind it move
+    /// by three.
     ///
     /// # Errors
-    /// [`MeshError::NotALeaf`] for an element that has children or does not exist; [`MeshError::NoArea`] where the
-    /// pieces would be too small for the precision of their coordinates; [`MeshError::TooLarge`] past 2³² − 1 elements.
+    /// [`MeshError::NotALeaf`] for an element that has children or does not exist;
+    /// [`MeshError::NoArea`] where the pieces would be too small for the precision of their
+    /// coordinates; [`MeshError::TooLarge`] past 2³² − 1 elements.
     pub fn split(&mut self, element: usize) -> Result<[usize; 4], MeshError> {
         let leaf = self.leaf_of(element).ok_or(MeshError::NotALeaf { element })?;
         let Element { patch, face, level, .. } = self.elements[element];

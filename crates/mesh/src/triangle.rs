@@ -1,12 +1,13 @@
 //! Regular subdivision of a triangle into n² congruent ones.
 //!
-//! Corner s of row r is a (n − r)/n + b (r − s)/n + c s/n, 0 ≤ s ≤ r ≤ n. Row r holds 2 r + 1 triangles, so that
-//! triangle t lies in row ⌊√t⌋. Any units of length.
+//! Corner s of row r is a (n − r)/n + b (r − s)/n + c s/n, 0 ≤ s ≤ r ≤ n. Row r holds 2 r + 1
+//! triangles, so that triangle t lies in row ⌊√t⌋. Any units of length.
 
 use crate::Vec3;
 
-/// Triangle `index` of the n² that corners a, b, c are divided into, in the orientation of the whole. On a side one
-/// weight vanishes, and the neighbour that shares the side finds the same bits.
+/// Triangle `index` of the n² that corners a, b, c are divided into, in the orientation of the
+/// whole. On a side one weight vanishes, and the neighbour that shares the side finds the same
+/// bits.
 pub(crate) fn piece([a, b, c]: [Vec3; 3], n: usize, index: usize) -> [Vec3; 3] {
     weights(n, index).map(|w| a * w[0] + b * w[1] + c * w[2])
 }

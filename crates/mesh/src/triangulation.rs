@@ -1,8 +1,9 @@
 //! Constrained Delaunay triangulation of a flat region bounded by borders.
 //!
-//! L. P. Chew, Constrained Delaunay triangulations, Algorithmica 4 (1989) 97–108, doi:10.1007/BF01553881; the
-//! triangulation itself is spade's. Triangles belong to the region when an odd number of borders separates them from
-//! the outside. Lengths relative to the size of the region.
+//! L. P. Chew, Constrained Delaunay triangulations, Algorithmica 4 (1989) 97–108,
+//! doi:10.1007/BF01553881; the triangulation itself is spade's. Triangles belong to the region when
+//! an odd number of borders separates them from the outside. Lengths relative to the size of the
+//! region.
 
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
@@ -13,7 +14,8 @@ type Cdt = ConstrainedDelaunayTriangulation<Point2<f64>>;
 /// Below this a coordinate is zero: spade refuses numbers near underflow.
 const ZERO: f64 = 1e-30;
 
-/// Triangles, counter-clockwise, as indices of corners counted through all rings; `None` where the borders conflict.
+/// Triangles, counter-clockwise, as indices of corners counted through all rings; `None` where the
+/// borders conflict.
 pub(crate) fn triangulate(rings: &[Vec<Corner>]) -> Option<Vec<[usize; 3]>> {
     let number = |x: f64| if x.abs() < ZERO { 0.0 } else { x };
     let points = rings.iter().flatten().map(|c| Point2::new(number(c.at.x), number(c.at.y))).collect();
@@ -39,7 +41,8 @@ fn inside(cdt: &Cdt) -> Vec<[usize; 3]> {
     chosen.map(|face| face.vertices().map(|vertex| vertex.index())).collect()
 }
 
-/// Whether each face lies inside, spread from the outer face; every border that is crossed turns the answer round.
+/// Whether each face lies inside, spread from the outer face; every border that is crossed turns
+/// the answer round.
 fn flood(cdt: &Cdt) -> Vec<Option<bool>> {
     let outer = cdt.outer_face().index();
     let mut inside = vec![None; cdt.num_all_faces()];

@@ -1,8 +1,8 @@
 //! Shared vertices of the leaves.
 //!
-//! Corners closer than 1e-9 of the mesh's diagonal become one vertex. Points are sorted into cubes four times as wide,
-//! so that a corner is compared with the points of one to eight cubes. Vertices are numbered in the order of the leaves
-//! and stand where the first corner stood. Metres.
+//! Corners closer than 1e-9 of the mesh's diagonal become one vertex. Points are sorted into cubes
+//! four times as wide, so that a corner is compared with the points of one to eight cubes. Vertices
+//! are numbered in the order of the leaves and stand where the first corner stood. Metres.
 
 use std::collections::HashMap;
 
@@ -18,20 +18,22 @@ const CUBE: f64 = 4.0;
 pub enum Weld {
     /// All of them.
     Everywhere,
-    /// Those of one surface whose normals are within this angle of that of the vertex's first leaf: for shading that is
-    /// smooth over curved surfaces and keeps their edges.
+    /// Those of one surface whose normals are within this angle of that of the vertex's first leaf:
+    /// for shading that is smooth over curved surfaces and keeps their edges.
     Smooth {
         /// Largest angle between normals, in degrees.
         degrees: f64,
     },
 }
 
-/// The leaves of a mesh over shared vertices, and without cracks between leaves of different size, as long as these come from halving the same sides.
+/// The leaves of a mesh over shared vertices, and without cracks between leaves of different size,
+/// as long as these come from halving the same sides.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Anchored {
     /// The leaves with their own corners.
     pub leaves: Welded,
-    /// The same with the corners of smaller neighbours that lie on their sides: a side is one of two leaves, or of one on the border.
+    /// The same with the corners of smaller neighbours that lie on their sides: a side is one of
+    /// two leaves, or of one on the border.
     pub polygons: Welded,
     /// Vertices in the middle of sides, those of the longest sides first.
     pub hanging: Vec<Hanging>,
@@ -157,7 +159,8 @@ impl Mesh {
     }
 }
 
-/// Vertices, found by their position. The map is only ever asked for a cube, so that its order plays no part.
+/// Vertices, found by their position. The map is only ever asked for a cube, so that its order
+/// plays no part.
 pub(crate) struct Points {
     origin: Vec3,
     /// m.
@@ -186,7 +189,8 @@ impl Points {
         })
     }
 
-    /// Appends the vertices between two ends of a side: the one in the middle, where there is one, and those of both halves.
+    /// Appends the vertices between two ends of a side: the one in the middle, where there is one,
+    /// and those of both halves.
     fn between(
         &self,
         [a, b]: [usize; 2],

@@ -1,4 +1,5 @@
-//! The predicted number of elements is the true one, and hopeless requests are refused before memory is taken.
+//! The predicted number of elements is the true one, and hopeless requests are refused before
+//! memory is taken.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod common;

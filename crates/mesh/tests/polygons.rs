@@ -116,7 +116,8 @@ fn largest_edge_cuts_all_triangles_alike() {
 #[test]
 fn borders_that_touch_or_cross_are_refused() {
     let crossing = |hole| MeshError::Crossing { first: Ring::Outline, second: Ring::Hole(hole) };
-    // A hole that shares a part of a side, a corner on a side, a corner with a corner; one that sticks out.
+    // A hole that shares a part of a side, a corner on a side, a corner with a corner; one that
+    // sticks out.
     assert_eq!(refusal(&holed(vec![square(1.0, 0.0, 1.0)])), crossing(0));
     assert_eq!(refusal(&holed(vec![flat(&[[2.0, 0.0], [3.0, 1.0], [1.0, 1.0]])])), crossing(0));
     assert_eq!(refusal(&holed(vec![square(0.0, 0.0, 1.0)])), crossing(0));

@@ -1,4 +1,5 @@
-//! The combined equation of a sphere, compressed, against the series of Mie: unknowns, CPU seconds, memory and error.
+//! The combined equation of a sphere, compressed, against the series of Mie: unknowns, CPU seconds,
+//! memory and error.
 //!
 //! ```text
 //! cargo run --release -p fredholm-moments --example compressed -- RADIUS EDGES TOLERANCE
@@ -42,7 +43,7 @@ fn main() {
     let stop = Stop { tolerance: 1e-4, max_iterations: 300 };
     let (report, solution) =
         timed(|| Gmres { restart: 100 }.solve(&a, &right, &mut x, &stop, &mut Quiet).unwrap());
-    let currents = Currents::new(&basis, wave(), &x.lane(0), None);
+    let currents = Currents::new(&basis, wave(), &x.vector(0), None);
     let error = relative_error(&vertical(&currents.fields(&circle()).unwrap()), &mie(radius));
     println!(
         "{} unknowns: assembly {assembly:.1} CPU s, {:.3} GB ({:.3} predicted, {:.3} of the whole), largest rank {}; {:?} \
@@ -57,7 +58,8 @@ fn main() {
     );
 }
 
-/// Seconds of the processor on all threads, user and system, as Linux counts them; of the clock elsewhere.
+/// Seconds of the processor on all threads, user and system, as Linux counts them; of the clock
+/// elsewhere.
 fn timed<T>(run: impl FnOnce() -> T) -> (T, f64) {
     let spent = || {
         let text = std::fs::read_to_string("/proc/self/stat").ok()?;

@@ -1,10 +1,12 @@
-//! Conductors against exact answers: the error of the scattered field at 25 m, radiated over extinguished power, seconds.
+//! Conductors against exact answers: the error of the scattered field at 25 m, radiated over
+//! extinguished power, seconds.
 //!
 //!     cargo run --release -p fredholm-moments --example conductors -- sphere 0.5 10
 //!     cargo run --release -p fredholm-moments --example conductors -- plate 5 10 2
 //!
-//! The arguments are the body (sphere, plate, two-plates), its size (radius or side in wavelengths), cells a wavelength
-//! and halvings of the cells towards open edges. Plates are compared with tests/data/wave, which has sides of 5 λ.
+//! The arguments are the body (sphere, plate, two-plates), its size (radius or side in
+//! wavelengths), cells a wavelength and halvings of the cells towards open edges. Plates are
+//! compared with tests/data/wave, which has sides of 5 λ.
 
 #![allow(clippy::unwrap_used, reason = "an example shows the way, not what may go wrong on it")]
 
@@ -29,7 +31,7 @@ fn show(basis: &Basis, equation: Equation, exact: &[Complex64]) {
     let sources: [&dyn Source; 1] = [&source];
     let b = conductor.right_hand_side(&[&sources]);
     let (x, solution) = seconds(|| solved(&coupling, &b));
-    let currents = Currents::new(basis, wave(), &x.lane(0), None);
+    let currents = Currents::new(basis, wave(), &x.vector(0), None);
     let (fields, radiation) = seconds(|| currents.fields(&circle()).unwrap());
     let power = currents.radiated_power().unwrap() / currents.extinguished_power(&source).unwrap();
     println!(

@@ -1,4 +1,5 @@
-//! Indicators of the error beside the true one, as CSV: what `fredholm_waves::Indicator` is calibrated on.
+//! Indicators of the error beside the true one, as CSV: what `fredholm_waves::Indicator` is
+//! calibrated on.
 //!
 //!     cargo run --release -p fredholm-moments --example stated_errors > tests/data/wave/stated_errors.csv
 //!
@@ -91,7 +92,8 @@ fn boundary_elements(u: &[Vec3]) {
     }
 }
 
-/// Boundary elements of closed bodies on even cells of several sizes: conductors by both equations, and dielectric balls.
+/// Boundary elements of closed bodies on even cells of several sizes: conductors by both equations,
+/// and dielectric balls.
 fn closed_elements(u: &[Vec3]) {
     for bodies in small_bodies() {
         let truths = Case::truths(&bodies, u, 14.0, 1);
@@ -101,11 +103,13 @@ fn closed_elements(u: &[Vec3]) {
             let points = inside_points(&bodies[0].scatterer(per), &wave()).unwrap();
             for equation in [Equation::Electric, Equation::default()] {
                 let conductor = Conductor::new(&basis, wave(), equation, 1e-3).unwrap();
-                let x = lanes_solved(&bodies, &conductor.operator().coupling().unwrap(), &|lanes| {
-                    conductor.right_hand_side(lanes)
-                });
-                for (lane, (case, truth)) in bodies.iter().zip(&truths).enumerate() {
-                    let currents = Currents::new(&basis, wave(), &x.lane(lane), None);
+                let x = right_hand_sides_solved(
+                    &bodies,
+                    &conductor.operator().coupling().unwrap(),
+                    &|excitations| conductor.right_hand_side(excitations),
+                );
+                for (rhs, (case, truth)) in bodies.iter().zip(&truths).enumerate() {
+                    let currents = Currents::new(&basis, wave(), &x.vector(rhs), None);
                     let electric = equation == Equation::Electric;
                     let of = if electric { Indicator::InsideElectric } else { Indicator::InsideCombined };
                     let name = if electric { "efie" } else { "cfie" };
@@ -129,10 +133,11 @@ fn closed_elements(u: &[Vec3]) {
                 let basis = Basis::new(bodies[0].surface(per)).unwrap();
                 let points = inside_points(&bodies[0].scatterer(per), &wave()).unwrap();
                 let body = Dielectric::new(&basis, wave(), permittivity, 1e-3).unwrap();
-                let x = lanes_solved(&bodies, &body.operator().coupling().unwrap(), &|lanes| {
-                    body.right_hand_side(lanes)
-                });
-                let currents = body.currents(&x.lane(0));
+                let x =
+                    right_hand_sides_solved(&bodies, &body.operator().coupling().unwrap(), &|excitations| {
+                        body.right_hand_side(excitations)
+                    });
+                let currents = body.currents(&x.vector(0));
                 let shorter = permittivity.sqrt().norm();
                 let of = ("pmchwt", shorter, &Indicator::InsideDielectric as &dyn Fn(f64) -> Indicator);
                 inside_row(&bodies[0], of, (&currents, &basis), &points, (&truth, u));
@@ -142,15 +147,15 @@ fn closed_elements(u: &[Vec3]) {
 }
 
 /// The solution for every case.
-fn lanes_solved(
+fn right_hand_sides_solved(
     cases: &[Case],
     coupling: &dyn LinearOperator<Complex64>,
     right_hand_side: &RightHandSide<'_>,
 ) -> Vectors {
     let sources: Vec<PlaneWave> = cases.iter().map(Case::source).collect();
-    let lanes: Vec<[&dyn Source; 1]> = sources.iter().map(|source| [source as &dyn Source]).collect();
-    let lanes: Vec<&[&dyn Source]> = lanes.iter().map(|lane| &lane[..]).collect();
-    solved(coupling, &right_hand_side(&lanes))
+    let excitations: Vec<[&dyn Source; 1]> = sources.iter().map(|source| [source as &dyn Source]).collect();
+    let excitations: Vec<&[&dyn Source]> = excitations.iter().map(|sources| &sources[..]).collect();
+    solved(coupling, &right_hand_side(&excitations))
 }
 
 fn inside_row(

@@ -1,21 +1,23 @@
 //! Rao–Wilton–Glisson functions: div-conforming currents on pairs of triangles.
 //!
-//! S. M. Rao, D. R. Wilton, A. W. Glisson, Electromagnetic scattering by surfaces of arbitrary shape, IEEE Trans.
-//! Antennas Propag. 30 (1982) 409, doi:10.1109/TAP.1982.1142818. For an edge of length l between triangles T₊ and T₋
-//! with areas A± and opposite corners v±,
+//! S. M. Rao, D. R. Wilton, A. W. Glisson, Electromagnetic scattering by surfaces of arbitrary
+//! shape, IEEE Trans. Antennas Propag. 30 (1982) 409, doi:10.1109/TAP.1982.1142818. For an edge of
+//! length l between triangles T₊ and T₋ with areas A± and opposite corners v±,
 //!
 //! ```text
 //! f(r) = ±l/(2A±) (r − v±) on T±,   div f = ±l/A±
 //! ```
 //!
-//! Here every function is divided by its norm ‖f‖ = √∫|f|² dA, so that ∫|f|² dA = 1 and the entries of the equations are of
-//! order one on any mesh. Functions are in 1/m, coefficients of an electric current in A. An edge where n > 2 triangles meet
-//! has n − 1 functions, each between the first of them and another, so that the sum of the currents into it is 0.
+//! Here every function is divided by its norm ‖f‖ = √∫|f|² dA, so that ∫|f|² dA = 1 and the entries
+//! of the equations are of order one on any mesh. Functions are in 1/m, coefficients of an electric
+//! current in A. An edge where n > 2 triangles meet has n − 1 functions, each between the first of
+//! them and another, so that the sum of the currents into it is 0.
 
 use crate::{MomentsError, Surface, Topology};
 use fredholm_mesh::Vec3;
 
-/// Half a function: on its triangle f = weight/(2A) (r − v), with v the corner. The weight is ±l/‖f‖.
+/// Half a function: on its triangle f = weight/(2A) (r − v), with v the corner. The weight is
+/// ±l/‖f‖.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Half {
     /// The triangle.
@@ -146,7 +148,8 @@ fn share(surface: &Surface, triangle: u32, corner: u8) -> f64 {
     (a.length_squared() + b.length_squared() + a.dot(b)) / (24.0 * surface.area(triangle as usize))
 }
 
-/// The order of points along a curve that fills their box (G. M. Morton 1966): the bits of the coordinates interleaved.
+/// The order of points along a curve that fills their box (G. M. Morton 1966): the bits of the
+/// coordinates interleaved.
 pub(crate) fn along_curve(points: &[Vec3]) -> Vec<usize> {
     let low = points.iter().copied().reduce(Vec3::min).unwrap_or_default();
     let high = points.iter().copied().reduce(Vec3::max).unwrap_or_default();

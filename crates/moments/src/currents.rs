@@ -1,6 +1,7 @@
 //! Surface currents and the fields that they radiate.
 //!
-//! With J and M on the surface, in a medium with wavenumber k and impedance η (time factor e^{+jωt}):
+//! With J and M on the surface, in a medium with wavenumber k and impedance η (time factor
+//! e^{+jωt}):
 //!
 //! ```text
 //! E = −jkη [∫ G J dA + ∇∫ G div J dA/k²] − ∫ ∇G × M dA
@@ -8,8 +9,9 @@
 //! E → F e^{−jkr}/r,   F(u) = −(jk/4π) ∫ [η (J − u (u·J)) − u × M] e^{jk u·q} dA
 //! ```
 //!
-//! (C. A. Balanis, Advanced Engineering Electromagnetics, 2nd ed., Wiley 2012, ch. 6 and 7). The charges are taken from
-//! the divergence of the functions, so that close to the surface, too, no line charge of a triangle's border is left.
+//! (C. A. Balanis, Advanced Engineering Electromagnetics, 2nd ed., Wiley 2012, ch. 6 and 7). The
+//! charges are taken from the divergence of the functions, so that close to the surface, too, no
+//! line charge of a triangle's border is left.
 
 use crate::kernel::{Eights, Medium, Points, Seen, WIDTH};
 use crate::rules::{CLASSES, Rules};
@@ -177,8 +179,8 @@ impl<'a> Currents<'a> {
         Ok(sum * 4.0 * PI / (2 * rings) as f64 / (2.0 * IMPEDANCE))
     }
 
-    /// Power (W) that is taken from a plane wave, scattered or absorbed, by the optical theorem: the far field straight
-    /// ahead interferes with the wave.
+    /// Power (W) that is taken from a plane wave, scattered or absorbed, by the optical theorem:
+    /// the far field straight ahead interferes with the wave.
     ///
     /// # Errors
     /// Those of [`Currents::far_field`].
@@ -307,7 +309,8 @@ impl Viewer<'_> {
     }
 }
 
-/// E and H of an electric current in a medium of impedance 1, `e` from the centre: −jk (A − Q div/k²) and J(e) × Q.
+/// E and H of an electric current in a medium of impedance 1, `e` from the centre: −jk (A − Q
+/// div/k²) and J(e) × Q.
 fn element(
     current: Linear,
     k: Complex64,

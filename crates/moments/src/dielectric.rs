@@ -1,16 +1,18 @@
 //! Homogeneous dielectric bodies: the equations of Poggio, Miller, Chang, Harrington, Wu and Tsai.
 //!
-//! The surface has J = n × H and M = −n × E. Outside (medium 1) the field is the incident one and that of J and M; inside
-//! (medium 2) it is that of −J and −M. Equal tangential parts on both sides, tested with the functions of the currents:
+//! The surface has J = n × H and M = −n × E. Outside (medium 1) the field is the incident one and
+//! that of J and M; inside (medium 2) it is that of −J and −M. Equal tangential parts on both
+//! sides, tested with the functions of the currents:
 //!
 //! ```text
 //! (η₁ T₁ + η₂ T₂) J + (K₁ + K₂) M                =  ⟨f, E_i⟩
 //! (K₁ + K₂) J       − (T₁/η₁ + T₂/η₂) M          = −⟨f, H_i⟩
 //! ```
 //!
-//! A. J. Poggio, E. K. Miller, in R. Mittra (ed.), Computer Techniques for Electromagnetics, Pergamon 1973, ch. 4; J. R. Mautz,
-//! R. F. Harrington, AEÜ 33 (1979) 71. It has no resonances and is symmetric. The permeability is that of free space.
-//! Unknowns are η₀ J and M of every function, side by side, in V.
+//! A. J. Poggio, E. K. Miller, in R. Mittra (ed.), Computer Techniques for Electromagnetics,
+//! Pergamon 1973, ch. 4; J. R. Mautz, R. F. Harrington, AEÜ 33 (1979) 71. It has no resonances and
+//! is symmetric. The permeability is that of free space. Unknowns are η₀ J and M of every function,
+//! side by side, in V.
 
 use crate::currents::Space;
 use crate::equation::tested;
@@ -37,12 +39,13 @@ pub struct Dielectric<'a> {
 }
 
 impl<'a> Dielectric<'a> {
-    /// A body of relative permittivity ε′ − jε″ in free space, with integrals to a relative `tolerance` for each pair of
-    /// triangles.
+    /// A body of relative permittivity ε′ − jε″ in free space, with integrals to a relative
+    /// `tolerance` for each pair of triangles.
     ///
     /// # Errors
     /// [`MomentsError::Coarse`] for edges above a third of the shorter wavelength, those of
-    /// [`Topology::check_closed`](crate::Topology::check_closed), [`MomentsError::Parameter`] for numbers out of range.
+    /// [`Topology::check_closed`](crate::Topology::check_closed), [`MomentsError::Parameter`] for
+    /// numbers out of range.
     pub fn new(
         basis: &'a Basis,
         wave: Wave,
@@ -69,15 +72,15 @@ impl<'a> Dielectric<'a> {
         &self.operator
     }
 
-    /// One lane for each of the sets of sources outside, V.
+    /// One right-hand side for each of the sets of sources outside, V.
     #[must_use]
     pub fn right_hand_side(&self, excitations: &[&[&dyn Source]]) -> MultiVector<Complex64> {
         let mut b = MultiVector::zeros(self.operator.dim(), excitations.len());
-        for (lane, sources) in excitations.iter().enumerate() {
+        for (rhs, sources) in excitations.iter().enumerate() {
             let electric = tested(self.basis, &self.wave, sources, |field, _| field.e);
             let magnetic = tested(self.basis, &self.wave, sources, |field, _| field.h * -IMPEDANCE);
             let both: Vec<Complex64> = electric.into_iter().zip(magnetic).flat_map(|(e, h)| [e, h]).collect();
-            b.set_lane(lane, &both);
+            b.set_vector(rhs, &both);
         }
         b
     }

@@ -8,11 +8,12 @@
 //! combined  (closed bodies): α electric + (1 − α) magnetic
 //! ```
 //!
-//! R. F. Harrington, Field Computation by Moment Methods, Macmillan 1968; J. R. Mautz, R. F. Harrington, H-field,
-//! E-field, and combined-field solutions for conducting bodies of revolution, AEÜ 32 (1978) 157. The first is of the first kind
-//! and symmetric. Closed bodies have resonances inside, at which the first two have solutions without a source: only
-//! the combination has one answer at every frequency. Unknowns are η J (V/m times a function of 1/m, so V); the residual
-//! of every solver is that of these equations.
+//! R. F. Harrington, Field Computation by Moment Methods, Macmillan 1968; J. R. Mautz, R. F.
+//! Harrington, H-field, E-field, and combined-field solutions for conducting bodies of revolution,
+//! AEÜ 32 (1978) 157. The first is of the first kind and symmetric. Closed bodies have resonances
+//! inside, at which the first two have solutions without a source: only the combination has one
+//! answer at every frequency. Unknowns are η J (V/m times a function of 1/m, so V); the residual of
+//! every solver is that of these equations.
 
 use crate::kernel::{Medium, Wanted};
 use crate::operator::{Kinds, Operator, Term};
@@ -99,12 +100,13 @@ pub struct Conductor<'a> {
 }
 
 impl<'a> Conductor<'a> {
-    /// Sets up an equation with integrals to a relative `tolerance` for each pair of triangles (1e-3 is usual: errors of
-    /// pairs are smaller than those of the mesh by then).
+    /// Sets up an equation with integrals to a relative `tolerance` for each pair of triangles
+    /// (1e-3 is usual: errors of pairs are smaller than those of the mesh by then).
     ///
     /// # Errors
-    /// [`MomentsError::Coarse`] for edges above λ/3, those of [`Topology::check_closed`](crate::Topology::check_closed)
-    /// for equations of closed bodies, [`MomentsError::Parameter`] for numbers out of range.
+    /// [`MomentsError::Coarse`] for edges above λ/3, those of
+    /// [`Topology::check_closed`](crate::Topology::check_closed) for equations of closed bodies,
+    /// [`MomentsError::Parameter`] for numbers out of range.
     pub fn new(
         basis: &'a Basis,
         wave: Wave,
@@ -148,16 +150,16 @@ impl<'a> Conductor<'a> {
         self.wave
     }
 
-    /// One lane for each of the sets of sources, V.
+    /// One right-hand side for each of the sets of sources, V.
     #[must_use]
     pub fn right_hand_side(&self, excitations: &[&[&dyn Source]]) -> MultiVector<Complex64> {
         let [electric, magnetic] = self.equation.shares();
         let mut b = MultiVector::zeros(self.basis.len(), excitations.len());
-        for (lane, sources) in excitations.iter().enumerate() {
+        for (rhs, sources) in excitations.iter().enumerate() {
             let tested = tested(self.basis, &self.wave, sources, |field, normal| {
                 field.e * electric + field.h.crossed_by(normal) * (magnetic * IMPEDANCE)
             });
-            b.set_lane(lane, &tested);
+            b.set_vector(rhs, &tested);
         }
         b
     }

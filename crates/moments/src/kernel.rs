@@ -1,19 +1,21 @@
 //! The integrals of pairs of triangles, eight pairs at once.
 //!
-//! With half functions (r − a) on the observing triangle and (r′ − b) on the source triangle, both without their
-//! factors, d = r − r′, R = |d|, g = e^{−jkR}/R and q = (1 + jkR) g/R² d (which is −4π ∇G), this computes
+//! With half functions (r − a) on the observing triangle and (r′ − b) on the source triangle, both
+//! without their factors, d = r − r′, R = |d|, g = e^{−jkR}/R and q = (1 + jkR) g/R² d (which is
+//! −4π ∇G), this computes
 //!
 //! ```text
 //! electric_ab = jk ∫∫ [(r − a)·(r′ − b) − 4/k²] g,      magnetic_ab = −∫∫ t_a · (q × (r′ − b))
 //! ```
 //!
-//! with t_a = r − a, or its turned form (r − a) × n, over the unit triangles (each measures ½). Because q is along d and
-//! r′ − b = (r − b) − d, the inner integral of the magnetic part is (r − b) × Q with Q = ∫ q: both parts need
-//! few sums over the points (the moments), from which all nine pairs of corners follow. Everything is relative to the
-//! centres of the triangles, so that nothing cancels far from the origin.
+//! with t_a = r − a, or its turned form (r − a) × n, over the unit triangles (each measures ½).
+//! Because q is along d and r′ − b = (r − b) − d, the inner integral of the magnetic part is (r −
+//! b) × Q with Q = ∫ q: both parts need few sums over the points (the moments), from which all nine
+//! pairs of corners follow. Everything is relative to the centres of the triangles, so that nothing
+//! cancels far from the origin.
 //!
-//! The wavenumber k = k′ − jκ may have losses, κ ≥ 0: e^{−κR} is e^{−κR₀} of the distance R₀ of the centres, times a
-//! series for the rest.
+//! The wavenumber k = k′ − jκ may have losses, κ ≥ 0: e^{−κR} is e^{−κR₀} of the distance R₀ of the
+//! centres, times a series for the rest.
 
 #![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
 
@@ -169,7 +171,8 @@ impl Apart<'_> {
     }
 }
 
-/// Eight pairs of points of two triangles that touch: positions on both relative to the centres, and weights.
+/// Eight pairs of points of two triangles that touch: positions on both relative to the centres,
+/// and weights.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct PairPoints {
     pub(crate) observer: [Eight; 2],
@@ -177,8 +180,8 @@ pub(crate) struct PairPoints {
     pub(crate) weight: Eight,
 }
 
-/// One pair of triangles by a rule for pairs of points, in lane 0 of the values. The corners in the order of the rule
-/// are given apart from those of the triangles.
+/// One pair of triangles by a rule for pairs of points, in lane 0 of the values. The corners in the
+/// order of the rule are given apart from those of the triangles.
 pub(crate) struct Touching<'a> {
     pub(crate) medium: Medium,
     pub(crate) wanted: Wanted,
@@ -386,7 +389,8 @@ struct Moments<S: Simd, const ELECTRIC: bool, const MAGNETIC: bool> {
     own: [Complex<S>; 3],
     other: [Complex<S>; 3],
     product: Complex<S>,
-    /// ∫ Q, ∫ e × Q, ∫ t × Q, ∫ t·(e × Q), with e from the source's centre to the point and t the test function.
+    /// ∫ Q, ∫ e × Q, ∫ t × Q, ∫ t·(e × Q), with e from the source's centre to the point and t the
+    /// test function.
     gradient: [Complex<S>; 3],
     turned: [Complex<S>; 3],
     tested: [Complex<S>; 3],
@@ -536,7 +540,8 @@ fn crossed<S: Simd>(a: [Lanes<S>; 3], b: [Complex<S>; 3]) -> [Complex<S>; 3] {
     })
 }
 
-/// The integrals ∫ g, ∫ g r′ and Q over eight source triangles, seen from a point: seven complex numbers each.
+/// The integrals ∫ g, ∫ g r′ and Q over eight source triangles, seen from a point: seven complex
+/// numbers each.
 pub(crate) struct Seen<'a> {
     pub(crate) medium: Medium,
     pub(crate) point: Vec3,

@@ -1,8 +1,9 @@
-//! Exact waves by the method of moments: Galerkin boundary elements for Maxwell's equations on triangle surfaces.
+//! Exact waves by the method of moments: Galerkin boundary elements for Maxwell's equations on
+//! triangle surfaces.
 //!
-//! Time factor e^{+jωt}, outgoing waves G = e^{−jkR}/(4πR), SI units, peak phasors. The unknown surface currents are
-//! sums of Rao–Wilton–Glisson functions; the equations are tested with the same functions and integrated to a stated
-//! tolerance.
+//! Time factor e^{+jωt}, outgoing waves G = e^{−jkR}/(4πR), SI units, peak phasors. The unknown
+//! surface currents are sums of Rao–Wilton–Glisson functions; the equations are tested with the
+//! same functions and integrated to a stated tolerance.
 
 mod basis;
 mod currents;

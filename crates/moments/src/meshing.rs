@@ -1,8 +1,9 @@
 //! Surfaces of triangles for shapes with known answers, their edges up to a given length. Metres.
 //!
-//! The current of a flat sheet grows with the distance d from an open edge as 1/√d along it and falls as √d across it
-//! (J. Meixner, IEEE Trans. Antennas Propag. 20 (1972) 442, doi:10.1109/TAP.1972.1140243), which even cells follow slowly. A
-//! grading halves the cells towards the edges as often as asked.
+//! The current of a flat sheet grows with the distance d from an open edge as 1/√d along it and
+//! falls as √d across it (J. Meixner, IEEE Trans. Antennas Propag. 20 (1972) 442,
+//! doi:10.1109/TAP.1972.1140243), which even cells follow slowly. A grading halves the cells
+//! towards the edges as often as asked.
 
 use crate::{MomentsError, Surface};
 use fredholm_mesh::{Cutting, MeshBuilder, Shape, Vec3};
@@ -22,7 +23,8 @@ fn check(edge: f64) -> Result<(), MomentsError> {
     Err(MomentsError::Parameter { what: "the largest edge", value: edge, expected: "finite and above 0" })
 }
 
-/// Places from 0 to 1 that cut a side of this length; the steps at both ends are halved `halvings` times.
+/// Places from 0 to 1 that cut a side of this length; the steps at both ends are halved `halvings`
+/// times.
 fn lines(length: f64, edge: f64, halvings: usize) -> Vec<f64> {
     let cells = (length / edge - 1e-9).ceil().max(1.0) as usize;
     let even: Vec<f64> = (0..=cells).map(|i| i as f64 / cells as f64).collect();
@@ -39,11 +41,12 @@ fn lines(length: f64, edge: f64, halvings: usize) -> Vec<f64> {
     places
 }
 
-/// The flat rectangle with these sides from a corner; its normal is along u × v. Cells are cut into two triangles, with
-/// diagonals that alternate. `edge` bounds the sides of the cells.
+/// The flat rectangle with these sides from a corner; its normal is along u × v. Cells are cut into
+/// two triangles, with diagonals that alternate. `edge` bounds the sides of the cells.
 ///
 /// # Errors
-/// [`MomentsError::Parameter`] for an edge that is none, those of [`Surface::new`] for sides that are none.
+/// [`MomentsError::Parameter`] for an edge that is none, those of [`Surface::new`] for sides that
+/// are none.
 pub fn rectangle(
     corner: Vec3,
     u: Vec3,
@@ -76,7 +79,8 @@ pub fn plate(side: f64, edge: f64, grading: Grading) -> Result<Surface, MomentsE
     rectangle(corner, Vec3::X * side, Vec3::Z * side, edge, grading)
 }
 
-/// Two squares of this side at (∓offset, 0, 0) that face each other at a right angle, their normals (±1, −1, 0)/√2.
+/// Two squares of this side at (∓offset, 0, 0) that face each other at a right angle, their normals
+/// (±1, −1, 0)/√2.
 ///
 /// # Errors
 /// Those of [`rectangle`].
@@ -108,7 +112,8 @@ pub fn cuboid(sides: Vec3, edge: f64, grading: Grading) -> Result<Surface, Momen
     whole.welded(1e-9 * sides.length())
 }
 
-/// The closed sphere around the origin as a geodesic polyhedron with edges up to `edge`; its area is that of the sphere.
+/// The closed sphere around the origin as a geodesic polyhedron with edges up to `edge`; its area
+/// is that of the sphere.
 ///
 /// # Errors
 /// [`MomentsError::Wave`] for lengths that are none.

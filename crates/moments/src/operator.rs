@@ -7,8 +7,8 @@
 //! T_mn = jk ∫∫ G [f_m·f_n′ − div f_m div f_n′/k²],   K_mn = ∫∫ f_m·(∇G × f_n′)  or  ∫∫ (f_m × n)·(∇G × f_n′)
 //! ```
 //!
-//! where α and β number the kinds of unknowns of a function (electric and magnetic currents), one or two. Unknown
-//! (n, β) stands at n · kinds + β. T and the first form of K are symmetric.
+//! where α and β number the kinds of unknowns of a function (electric and magnetic currents), one
+//! or two. Unknown (n, β) stands at n · kinds + β. T and the first form of K are symmetric.
 
 use crate::pairs::Integrator;
 use crate::set::Set;
@@ -85,7 +85,8 @@ impl<'a> Operator<'a> {
         Set::new(self.basis, functions)
     }
 
-    /// Writes the entries of all unknowns of some functions, row by row: (rows · kinds) × (columns · kinds).
+    /// Writes the entries of all unknowns of some functions, row by row: (rows · kinds) × (columns
+    /// · kinds).
     ///
     /// # Panics
     /// Like a slice, where `out` is shorter.
@@ -171,8 +172,8 @@ impl<'a> Operator<'a> {
     /// The matrix Z compressed, block by block.
     ///
     /// # Errors
-    /// [`MomentsError::Compression`] for settings out of range, where it is predicted to take more than the limit, and where
-    /// `watch` no longer wants it.
+    /// [`MomentsError::Compression`] for settings out of range, where it is predicted to take more
+    /// than the limit, and where `watch` no longer wants it.
     pub fn compressed(
         &self,
         settings: Settings,

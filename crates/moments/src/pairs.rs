@@ -11,7 +11,8 @@ use pulp::Arch;
 const DEEPEST: usize = 24;
 /// Elongation beyond which touching triangles are halved.
 const ELONGATED: f64 = 3.0;
-/// Product of the shares of both areas below which they are not: a sharp corner stays one however it is cut.
+/// Product of the shares of both areas below which they are not: a sharp corner stays one however
+/// it is cut.
 const SMALL: f64 = 1.0 / 500.0;
 
 /// Both parts of all pairs of corners (3a + b) of a pair of triangles: the integrals of the kernel.
@@ -66,7 +67,8 @@ impl Integrator {
         }
     }
 
-    /// Visits the integrals of one triangle with all of a set; `observes` says which of them is the observer.
+    /// Visits the integrals of one triangle with all of a set; `observes` says which of them is the
+    /// observer.
     fn one(&self, shape: &Shape, name: u32, set: &Set, observes: bool, mut visit: impl FnMut(usize, &Pair)) {
         let eights = Eights::splat(shape.centre, shape.normal, shape.corners);
         let mut one = One::new(shape, &eights);
@@ -74,7 +76,8 @@ impl Integrator {
         for eight in 0..set.eights.len() {
             let lanes = eight * WIDTH..((eight + 1) * WIDTH).min(set.shapes.len());
             let (classes, spread) = self.classes(shape, set, eight);
-            // Every lane by its own rule: the integrals of a pair do not depend on what is computed with it.
+            // Every lane by its own rule: the integrals of a pair do not depend on what is computed
+            // with it.
             let mut computed = None;
             for (lane, other) in lanes.enumerate() {
                 if let Some(class) = classes[lane] {
@@ -137,8 +140,8 @@ impl Integrator {
         self.arch.dispatch(Apart { medium, wanted, observers, sources, spread, out });
     }
 
-    /// The integrals of an observer and a source that touch or are close; `names` tell triangles apart. A flat triangle
-    /// has no magnetic part with itself.
+    /// The integrals of an observer and a source that touch or are close; `names` tell triangles
+    /// apart. A flat triangle has no magnetic part with itself.
     fn near(&self, shapes: [&Shape; 2], names: [u32; 2]) -> Pair {
         let mut parts = Parts { integrator: self, shapes, waiting: Default::default(), sum: Pair::default() };
         parts.add(shapes.map(|shape| shape.places), [1.0; 2], 0);
@@ -148,8 +151,8 @@ impl Integrator {
     }
 }
 
-/// Pairs of parts of two triangles. They are halved until a rule suits them; those of one rule are collected until there
-/// are eight.
+/// Pairs of parts of two triangles. They are halved until a rule suits them; those of one rule are
+/// collected until there are eight.
 struct Parts<'a> {
     integrator: &'a Integrator,
     shapes: [&'a Shape; 2],
@@ -179,8 +182,8 @@ impl Parts<'_> {
         self.halve(corners, shares, depth + 1);
     }
 
-    /// Adds the parts of a pair, halved along the longest side of both. Where that is a common side, both are halved there,
-    /// so that the parts have whole sides in common.
+    /// Adds the parts of a pair, halved along the longest side of both. Where that is a common
+    /// side, both are halved there, so that the parts have whole sides in common.
     fn halve(&mut self, corners: [[Vec3; 3]; 2], shares: [f64; 2], depth: usize) {
         let longest = corners.map(longest_side);
         let side = usize::from(length(corners[1], longest[1]) > length(corners[0], longest[0]));
@@ -317,8 +320,8 @@ fn elongation(corners: [Vec3; 3]) -> f64 {
     length(corners, longest_side(corners)).powi(2) / (b - a).cross(c - a).length()
 }
 
-/// Orders of the corners of both triangles with the common ones first, and their number. Corners of one surface are
-/// common where they are the same point, bit by bit.
+/// Orders of the corners of both triangles with the common ones first, and their number. Corners of
+/// one surface are common where they are the same point, bit by bit.
 fn matched(corners: [[Vec3; 3]; 2]) -> ([[usize; 3]; 2], usize) {
     let mut orders = [[0, 1, 2]; 2];
     let mut common = 0;
@@ -380,7 +383,8 @@ mod tests {
         ]
     }
 
-    /// Numbers between −1 and 1 without order: the fractional parts of multiples of an irrational number.
+    /// Numbers between −1 and 1 without order: the fractional parts of multiples of an irrational
+    /// number.
     fn number(i: usize) -> f64 {
         2.0 * (0.5 + i as f64 * 0.754_877_666_246_692_7).fract() - 1.0
     }
@@ -442,7 +446,8 @@ mod tests {
         assert!(worst > 0.05, "the rules are finer than asked for: {worst}");
     }
 
-    /// Pairs of a grid of right triangles with cells 1 × `height`, folded about y = 0, with labels for equal corners.
+    /// Pairs of a grid of right triangles with cells 1 × `height`, folded about y = 0, with labels
+    /// for equal corners.
     fn contacts(height: f64, fold: f64) -> Vec<([usize; 3], [[Vec3; 3]; 2])> {
         let at = |x: f64, y: f64| {
             let (sin, cos) = if y < 0.0 { fold.sin_cos() } else { (0.0, 1.0) };
@@ -504,7 +509,8 @@ mod tests {
         }
     }
 
-    /// For slow waves the electric part is −(4j/k) ∫∫ 1/R, which is known for a square: 4/3 (1 − √2) + 4 asinh 1.
+    /// For slow waves the electric part is −(4j/k) ∫∫ 1/R, which is known for a square: 4/3 (1 −
+    /// √2) + 4 asinh 1.
     #[test]
     fn slow_waves_have_the_static_energy_of_a_square() {
         let k = 1e-7;

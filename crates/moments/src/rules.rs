@@ -1,9 +1,10 @@
 //! Which rule suits which pair of triangles.
 //!
-//! Pairs that do not touch are integrated by products of symmetric rules. With the distance D of their centres and radii
-//! a and b around them, a rule of degree d leaves an error that falls with ((a + b)/D)^{d + 1} for the static part and with
-//! (k (a + b)/2)^{d + 1}/(d + 1)! for the phase; the constants before both were measured over pairs of all kinds (see the
-//! tests). Pairs that no rule suits are halved; pairs that touch have the rules of Sauter and Schwab, in which the
+//! Pairs that do not touch are integrated by products of symmetric rules. With the distance D of
+//! their centres and radii a and b around them, a rule of degree d leaves an error that falls with
+//! ((a + b)/D)^{d + 1} for the static part and with (k (a + b)/2)^{d + 1}/(d + 1)! for the phase;
+//! the constants before both were measured over pairs of all kinds (see the tests). Pairs that no
+//! rule suits are halved; pairs that touch have the rules of Sauter and Schwab, in which the
 //! singularity is gone.
 
 use crate::MomentsError;
@@ -15,7 +16,8 @@ use num_complex::Complex64;
 const DEGREES: [usize; CLASSES] = [2, 5, 8, 12];
 /// Number of rules.
 pub(crate) const CLASSES: usize = 4;
-/// Measured errors of a rule of degree d without and with the magnetic part: this times ((a + b)/D)^{d + 1}.
+/// Measured errors of a rule of degree d without and with the magnetic part: this times ((a +
+/// b)/D)^{d + 1}.
 const STATIC: [[f64; CLASSES]; 2] = [[2.4e-3, 7e-5, 5e-6, 8e-9], [9e-2, 5e-3, 3e-4, 1e-6]];
 /// Measured error of the phase: this times (|k| (a + b)/2)^{d + 1}.
 const PHASE: [[f64; CLASSES]; 2] = [[3e-3, 1e-5, 5e-10, 1e-14], [1e-2, 4e-5, 1e-9, 1e-14]];
@@ -43,7 +45,8 @@ pub(crate) struct Rules {
 }
 
 impl Rules {
-    /// For a relative error of `tolerance` of a pair, the magnetic part included or not, and waves up to |k| (1/m).
+    /// For a relative error of `tolerance` of a pair, the magnetic part included or not, and waves
+    /// up to |k| (1/m).
     pub(crate) fn new(tolerance: f64, k: Complex64, magnetic: bool) -> Result<Self, MomentsError> {
         let [low, high] = TOLERANCES;
         if !(low..=high).contains(&tolerance) {
@@ -59,8 +62,8 @@ impl Rules {
         Ok(Self { classes, touching: touching(directions(tolerance, magnetic)) })
     }
 
-    /// The first rule that suits triangles with radii that sum to `radii` at a distance of `ratio` times that; none where
-    /// they have to be halved.
+    /// The first rule that suits triangles with radii that sum to `radii` at a distance of `ratio`
+    /// times that; none where they have to be halved.
     pub(crate) fn class(&self, ratio: f64, radii: f64) -> Option<usize> {
         self.classes.iter().position(|rule| ratio >= rule.reach && radii <= rule.largest)
     }
@@ -80,8 +83,9 @@ impl Rule {
     }
 }
 
-/// Gauss points a direction for pairs that touch. With five the measured error is 3e-5 without and 1e-3 with the magnetic
-/// part, and it falls by about a factor of five with each more (see the tests).
+/// Gauss points a direction for pairs that touch. With five the measured error is 3e-5 without and
+/// 1e-3 with the magnetic part, and it falls by about a factor of five with each more (see the
+/// tests).
 fn directions(tolerance: f64, magnetic: bool) -> usize {
     let with_five: f64 = if magnetic { 1e-3 } else { 3e-5 };
     (5.0 + (with_five / tolerance).log(5.0)).ceil().clamp(2.0, 14.0) as usize

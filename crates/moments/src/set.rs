@@ -40,7 +40,8 @@ impl Shape {
     }
 }
 
-/// A half function of a set: its corner, which of the functions of the set it belongs to, and its weight.
+/// A half function of a set: its corner, which of the functions of the set it belongs to, and its
+/// weight.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Entry {
     pub(crate) corner: usize,

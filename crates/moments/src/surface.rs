@@ -7,8 +7,8 @@ use std::f64::consts::TAU;
 /// Area over the square of the longest side below which a triangle has none.
 const FLAT: f64 = 1e-12;
 
-/// Triangles over common vertices: only vertices that are the same, not those that are at the same place, join
-/// triangles to a surface that carries current from one to the other.
+/// Triangles over common vertices: only vertices that are the same, not those that are at the same
+/// place, join triangles to a surface that carries current from one to the other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
     vertices: Vec<Vec3>,
@@ -16,7 +16,8 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Takes vertices (m) and the three vertices of every triangle, counter-clockwise seen from the side of its normal.
+    /// Takes vertices (m) and the three vertices of every triangle, counter-clockwise seen from the
+    /// side of its normal.
     ///
     /// # Errors
     /// [`MomentsError::Empty`], [`MomentsError::NoSuchVertex`], [`MomentsError::NotFinite`] and
@@ -45,7 +46,8 @@ impl Surface {
         if self.area(triangle) > FLAT * longest { Ok(()) } else { Err(MomentsError::Degenerate { triangle }) }
     }
 
-    /// The leaves of a mesh, quadrilaterals cut along the shorter diagonal, corners at the same place joined.
+    /// The leaves of a mesh, quadrilaterals cut along the shorter diagonal, corners at the same
+    /// place joined.
     ///
     /// # Errors
     /// Those of [`Surface::new`].
@@ -82,8 +84,8 @@ impl Surface {
         Self::new(self.vertices, self.triangles)
     }
 
-    /// The surface with vertices closer to each other than `tolerance` (m) joined to the first of them: the cure for
-    /// duplicate vertices.
+    /// The surface with vertices closer to each other than `tolerance` (m) joined to the first of
+    /// them: the cure for duplicate vertices.
     ///
     /// # Errors
     /// [`MomentsError::Degenerate`] where that closes a triangle.
@@ -96,8 +98,9 @@ impl Surface {
         Self::new(self.vertices.clone(), triangles)
     }
 
-    /// The surface with triangles turned over so that neighbours agree, and closed bodies have their normals outwards:
-    /// the cure for inverted triangles. Of an open surface the first triangle keeps its side.
+    /// The surface with triangles turned over so that neighbours agree, and closed bodies have
+    /// their normals outwards: the cure for inverted triangles. Of an open surface the first
+    /// triangle keeps its side.
     #[must_use]
     pub fn oriented(&self) -> Self {
         let turned = Topology::new(self).turned(self);
@@ -106,9 +109,9 @@ impl Surface {
         Self { vertices: self.vertices.clone(), triangles }
     }
 
-    /// Whether a point (m) is inside the closed bodies of the surface: they fill more than half of all directions seen from
-    /// there, by the solid angle of each triangle (A. van Oosterom, J. Strackee, IEEE Trans. Biomed. Eng. 30 (1983) 125,
-    /// doi:10.1109/TBME.1983.325207).
+    /// Whether a point (m) is inside the closed bodies of the surface: they fill more than half of
+    /// all directions seen from there, by the solid angle of each triangle (A. van Oosterom, J.
+    /// Strackee, IEEE Trans. Biomed. Eng. 30 (1983) 125, doi:10.1109/TBME.1983.325207).
     #[must_use]
     pub fn holds(&self, point: Vec3) -> bool {
         let angle = |triangle: usize| {

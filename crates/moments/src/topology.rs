@@ -1,13 +1,15 @@
 //! Which triangles meet at which edges, and what that says of a surface.
 //!
-//! An edge has one triangle (open), two (inside a surface) or more (a junction). Two neighbours agree on the side of
-//! the surface that is outside where they run through their common edge in opposite directions.
+//! An edge has one triangle (open), two (inside a surface) or more (a junction). Two neighbours
+//! agree on the side of the surface that is outside where they run through their common edge in
+//! opposite directions.
 
 use crate::{MomentsError, Surface};
 use fredholm_mesh::Vec3;
 use std::fmt;
 
-/// Distance over the length of an edge (or the diagonal of the surface) below which a point is on it.
+/// Distance over the length of an edge (or the diagonal of the surface) below which a point is on
+/// it.
 const CLOSE: f64 = 1e-9;
 /// Longest edge over the wavelength beyond which the report warns.
 const LONG: f64 = 1.0 / 6.0;
@@ -43,7 +45,8 @@ pub struct Component {
     pub closed: bool,
     /// Whether all neighbours agree on the outside.
     pub oriented: bool,
-    /// Signed volume of a closed component (m³), negative where its normals point inwards; 0 of an open one.
+    /// Signed volume of a closed component (m³), negative where its normals point inwards; 0 of an
+    /// open one.
     pub volume: f64,
 }
 
@@ -86,7 +89,8 @@ impl Topology {
         &self.edges
     }
 
-    /// Which triangles have to be turned over for neighbours to agree and closed bodies to have their normals outwards.
+    /// Which triangles have to be turned over for neighbours to agree and closed bodies to have
+    /// their normals outwards.
     pub(crate) fn turned(&self, surface: &Surface) -> Vec<bool> {
         let mut neighbours = vec![Vec::new(); surface.triangles().len()];
         for edge in &self.edges {
@@ -167,12 +171,12 @@ impl Topology {
         self.edges.iter().enumerate().filter(move |(_, edge)| differ(edge)).map(|(index, _)| index)
     }
 
-    /// Refuses surfaces on which no current can be expanded as meant: duplicate vertices on open edges, T-junctions,
-    /// repeated triangles, no inner edge.
+    /// Refuses surfaces on which no current can be expanded as meant: duplicate vertices on open
+    /// edges, T-junctions, repeated triangles, no inner edge.
     ///
     /// # Errors
-    /// [`MomentsError::Repeated`], [`MomentsError::DuplicateVertices`], [`MomentsError::TJunction`],
-    /// [`MomentsError::NoInnerEdge`].
+    /// [`MomentsError::Repeated`], [`MomentsError::DuplicateVertices`],
+    /// [`MomentsError::TJunction`], [`MomentsError::NoInnerEdge`].
     pub fn check(&self, surface: &Surface) -> Result<(), MomentsError> {
         if let Some([first, second]) = repeated(surface.triangles()) {
             return Err(MomentsError::Repeated { first, second });
@@ -222,7 +226,8 @@ impl Topology {
         self.edges.iter().map(|edge| length(surface, edge)).fold(0.0, f64::max)
     }
 
-    /// Refuses edges above a third of the wavelength (m), on which no wave can be told from its alias.
+    /// Refuses edges above a third of the wavelength (m), on which no wave can be told from its
+    /// alias.
     ///
     /// # Errors
     /// [`MomentsError::Coarse`] with the first such edge.

@@ -1,4 +1,5 @@
-//! Compressed matrices of the equations against the stored ones, their memory, solutions, and threads.
+//! Compressed matrices of the equations against the stored ones, their memory, solutions, and
+//! threads.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -18,7 +19,7 @@ fn product_error(operator: &Operator<'_>, tolerance: f64) -> (f64, f64) {
     let product = |matrix: &dyn LinearOperator<Complex64>| {
         let mut y = MultiVector::zeros(x.dim(), 1);
         matrix.apply(&x, &mut y);
-        y.lane(0)
+        y.vector(0)
     };
     let compressed =
         operator.compressed(Settings { tolerance, leaf: 24, ..Settings::default() }, &Quiet).unwrap();
@@ -69,7 +70,7 @@ fn a_compressed_sphere_has_the_field_of_the_series_and_the_same_bits_with_any_nu
         let stop = Stop { tolerance: 1e-4, max_iterations: 60 };
         let report = Gmres { restart: 60 }.solve(&a, &right, &mut x, &stop, &mut Quiet).unwrap();
         assert_eq!(report.reason, StopReason::Converged);
-        x.lane(0)
+        x.vector(0)
     };
     let [one, two, four] = [1, 2, 4].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -78,7 +79,7 @@ fn a_compressed_sphere_has_the_field_of_the_series_and_the_same_bits_with_any_nu
     assert!(one == two && one == four);
     let field =
         |x: &[Complex64]| vertical(&Currents::new(&basis, wave(), x, None).fields(&circle()).unwrap());
-    let whole = solved(&conductor.operator().coupling().unwrap(), &b).lane(0);
+    let whole = solved(&conductor.operator().coupling().unwrap(), &b).vector(0);
     let (difference, error) =
         (relative_error(&field(&one), &field(&whole)), relative_error(&field(&one), &mie(radius)));
     assert!(difference < 1e-3 && error < 0.02, "{difference:e} {error}");

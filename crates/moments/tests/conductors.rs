@@ -1,4 +1,5 @@
-//! Conductors against the series of Mie and stored references, power, reciprocity, the same bits for any number of threads.
+//! Conductors against the series of Mie and stored references, power, reciprocity, the same bits
+//! for any number of threads.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -111,11 +112,11 @@ fn transmitter_and_receiver_may_be_exchanged() {
     let places = [Vec3::new(0.1, 0.2, -0.05), Vec3::new(-0.2, 0.15, 0.3)];
     let axes = [Vec3::new(1.0, 0.5, 0.2), Vec3::new(0.3, -0.2, 1.0)].map(Vec3::normalize);
     let dipoles = [0, 1].map(|i| HertzianDipole::new(places[i], axes[i], 1.0.into()).unwrap());
-    let lanes = dipoles.each_ref().map(|dipole| [dipole as &dyn Source]);
-    let b = conductor.right_hand_side(&[&lanes[0], &lanes[1]]);
+    let excitations = dipoles.each_ref().map(|dipole| [dipole as &dyn Source]);
+    let b = conductor.right_hand_side(&[&excitations[0], &excitations[1]]);
     let x = solved(&conductor.operator().coupling().unwrap(), &b);
     let seen = [0, 1].map(|i| {
-        let currents = Currents::new(&basis, wave(), &x.lane(i), None);
+        let currents = Currents::new(&basis, wave(), &x.vector(i), None);
         currents.fields(&[places[1 - i]]).unwrap()[0].e.dot(axes[1 - i])
     });
     assert!((seen[0] - seen[1]).norm() < 1e-5 * seen[0].norm(), "{seen:?}");

@@ -18,7 +18,7 @@ fn errors(radius: f64, edge: f64, permittivity: Complex64) -> [f64; 3] {
     let sources: [&dyn Source; 1] = [&source];
     let b = body.right_hand_side(&[&sources]);
     let x = solved(&body.operator().coupling().unwrap(), &b);
-    let currents = body.currents(&x.lane(0));
+    let currents = body.currents(&x.vector(0));
     let exact = DielectricSphere::new(radius, permittivity).unwrap();
     let error = |points: &[Vec3]| {
         let series: Vec<Complex64> =
@@ -31,7 +31,8 @@ fn errors(radius: f64, edge: f64, permittivity: Complex64) -> [f64; 3] {
     [error(&circle()), error(&near), power]
 }
 
-/// Close to the surface the tangential fields of both sides are the same up to what the mesh leaves.
+/// Close to the surface the tangential fields of both sides are the same up to what the mesh
+/// leaves.
 fn inside_and_outside_agree(body: &Dielectric<'_>, currents: &fredholm_moments::Currents<'_>, radius: f64) {
     let (mut difference, mut size) = (0.0, 0.0);
     for p in circle().iter().step_by(15).map(|p| p.normalize()) {

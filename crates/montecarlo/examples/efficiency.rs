@@ -1,5 +1,6 @@
-//! What each way to reduce the variance is worth: variance × CPU seconds of one batch, of the mean irradiance of faces, with and without; and, of each method, CPU seconds to
-//! a standard error of 1 % (RMS over faces).
+//! What each way to reduce the variance is worth: variance × CPU seconds of one batch, of the mean
+//! irradiance of faces, with and without; and, of each method, CPU seconds to a standard error of 1
+//! % (RMS over faces).
 //!
 //! `cargo run -p fredholm-montecarlo --example efficiency [-- SCENE …]`, from the repository.
 

@@ -1,7 +1,8 @@
 //! The scene as a tracer sees it: flat patches that emit and reflect diffusely on their lit side.
 //!
-//! Irradiance at a point p of patch i: E(p) = ∫ κ(p, q) B(q) dA, κ = cosθ cosθ′ V/(π r²) (1/m²), B = M + ρ E. A ray with density cosθ/π from p
-//! meets q with density κ(p, q) per area. A ray that ends on a back, or nowhere, brings nothing. Lengths in metres, exitance in W/m².
+//! Irradiance at a point p of patch i: E(p) = ∫ κ(p, q) B(q) dA, κ = cosθ cosθ′ V/(π r²) (1/m²), B
+//! = M + ρ E. A ray with density cosθ/π from p meets q with density κ(p, q) per area. A ray that
+//! ends on a back, or nowhere, brings nothing. Lengths in metres, exitance in W/m².
 
 use crate::MonteCarloError;
 use crate::density::{Cosine, DirectionDensity, Frame, LampDensity, SurfaceDensity};
@@ -39,8 +40,9 @@ impl Enclosure {
     /// Takes patches, and for each and every band reflectance and exitance (W/m²), patch-major.
     ///
     /// # Errors
-    /// [`MonteCarloError::Length`] for vectors of other lengths, [`MonteCarloError::Range`] for a reflectance outside [0, 1) or an exitance that is
-    /// negative or not finite, [`MonteCarloError::NoLight`], [`MonteCarloError::Visibility`].
+    /// [`MonteCarloError::Length`] for vectors of other lengths, [`MonteCarloError::Range`] for a
+    /// reflectance outside [0, 1) or an exitance that is negative or not finite,
+    /// [`MonteCarloError::NoLight`], [`MonteCarloError::Visibility`].
     pub fn new(
         patches: Vec<Patch>,
         bands: usize,
@@ -73,7 +75,8 @@ impl Enclosure {
         })
     }
 
-    /// The same traced against these pieces instead of the patches, which together they must cover: as few as possible, as a mesh has them.
+    /// The same traced against these pieces instead of the patches, which together they must cover:
+    /// as few as possible, as a mesh has them.
     ///
     /// # Errors
     /// [`MonteCarloError::Visibility`].
@@ -83,7 +86,8 @@ impl Enclosure {
         Ok(self)
     }
 
-    /// The same with the exposed share of each patch, which patch-wise walks need: what is buried reflects nothing.
+    /// The same with the exposed share of each patch, which patch-wise walks need: what is buried
+    /// reflects nothing.
     ///
     /// # Errors
     /// [`MonteCarloError::Length`], [`MonteCarloError::Range`] for a share outside [0, 1].
@@ -135,7 +139,8 @@ impl Enclosure {
         self.exposed[patch]
     }
 
-    /// Largest reflectance of a patch over the bands: the probability to go on that keeps weights from growing.
+    /// Largest reflectance of a patch over the bands: the probability to go on that keeps weights
+    /// from growing.
     #[must_use]
     pub fn survival(&self, patch: usize) -> f64 {
         self.survival[patch]
@@ -166,7 +171,8 @@ impl Enclosure {
         self.ray(from, Cosine.sample(numbers))
     }
 
-    /// The lit side that a ray meets first; the direction is in the frame of the patch, its normal z.
+    /// The lit side that a ray meets first; the direction is in the frame of the patch, its normal
+    /// z.
     #[must_use]
     pub fn ray(&self, from: Site, direction: Vec3) -> Option<Site> {
         self.cast(from.point, self.world(from, direction))
@@ -196,7 +202,8 @@ impl Enclosure {
         lit.then_some(Site { patch, point: hit.point })
     }
 
-    /// Whether a ray of this direction, in the frame of the patch, meets a lit side or nothing: under what stands on a patch no ray does.
+    /// Whether a ray of this direction, in the frame of the patch, meets a lit side or nothing:
+    /// under what stands on a patch no ray does.
     #[must_use]
     pub fn opens(&self, from: Site, direction: Vec3) -> bool {
         let world = self.world(from, direction);
@@ -204,7 +211,8 @@ impl Enclosure {
             || self.ray(from, direction).is_some()
     }
 
-    /// cosθ cosθ′/(π r²) between two sites that face each other, else 0; 1/m². Visibility is not asked.
+    /// cosθ cosθ′/(π r²) between two sites that face each other, else 0; 1/m². Visibility is not
+    /// asked.
     #[must_use]
     pub fn kernel(&self, p: Site, q: Site) -> f64 {
         let between = q.point - p.point;

@@ -1,7 +1,9 @@
-//! Stochastic counterparts of the deterministic solvers: x = b + K x by random paths, with standard errors.
+//! Stochastic counterparts of the deterministic solvers: x = b + K x by random paths, with standard
+//! errors.
 //!
-//! [`light`] estimates the irradiance of patches in seven ways, [`statistics`] decides whether two solutions agree, [`Tracing`] runs batches until there are
-//! enough. Random numbers are those of a key, [`points`]: no result depends on the number of threads, or on whether a run was continued.
+//! [`light`] estimates the irradiance of patches in seven ways, [`statistics`] decides whether two
+//! solutions agree, [`Tracing`] runs batches until there are enough. Random numbers are those of a
+//! key, [`points`]: no result depends on the number of threads, or on whether a run was continued.
 //!
 //! ```
 //! use fredholm_linop::Quiet;

@@ -1,7 +1,8 @@
 //! Which patch of a fine mesh lies at a point of a coarse one.
 //!
-//! Rays are traced against the undivided pieces of the geometry, which are few; each piece has a grid of the patches in its plane. At a border the patch is taken that the point is
-//! deepest inside of.
+//! Rays are traced against the undivided pieces of the geometry, which are few; each piece has a
+//! grid of the patches in its plane. At a border the patch is taken that the point is deepest
+//! inside of.
 
 use fredholm_mesh::{Patch, Vec3};
 

@@ -1,7 +1,8 @@
 //! Philox4x32-10: random numbers by key and counter, with no state to carry along.
 //!
-//! Ten rounds of (c₀, c₁, c₂, c₃) → (hi(M₁ c₂) ⊕ c₁ ⊕ k₀, lo(M₁ c₂), hi(M₀ c₀) ⊕ c₃ ⊕ k₁, lo(M₀ c₀)); the key grows by Weyl constants.
-//! J. K. Salmon, M. A. Moraes, R. O. Dror, D. E. Shaw, SC 2011, doi:10.1145/2063384.2063405.
+//! Ten rounds of (c₀, c₁, c₂, c₃) → (hi(M₁ c₂) ⊕ c₁ ⊕ k₀, lo(M₁ c₂), hi(M₀ c₀) ⊕ c₃ ⊕ k₁, lo(M₀
+//! c₀)); the key grows by Weyl constants. J. K. Salmon, M. A. Moraes, R. O. Dror, D. E. Shaw, SC
+//! 2011, doi:10.1145/2063384.2063405.
 
 /// M₀, M₁.
 const MULTIPLIERS: [u32; 2] = [0xD251_1F53, 0xCD9E_8D57];

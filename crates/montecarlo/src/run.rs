@@ -1,7 +1,8 @@
 //! A run: batch after batch, until there are enough.
 //!
-//! Batches are computed in parallel, [`WAVE`] at a time, and folded in their order: the result of so many batches does not depend on the number of threads,
-//! nor on whether the run was continued. W/m².
+//! Batches are computed in parallel, [`WAVE`] at a time, and folded in their order: the result of
+//! so many batches does not depend on the number of threads, nor on whether the run was continued.
+//! W/m².
 
 use crate::light::{Batch, Estimator, Work};
 use crate::points::PointSet;
@@ -109,7 +110,8 @@ impl State {
         self.patches.count()
     }
 
-    /// √ of the mean of (s/x)² over the groups and bands with x ≠ 0: what a target error is compared with. Infinite below two batches.
+    /// √ of the mean of (s/x)² over the groups and bands with x ≠ 0: what a target error is
+    /// compared with. Infinite below two batches.
     #[must_use]
     pub fn relative_error(&self) -> f64 {
         let errors = self.groups.standard_errors();
@@ -219,7 +221,8 @@ impl<'a> Tracing<'a> {
         }
     }
 
-    /// Goes on until the run is to end or `watch`, which is told between waves how far it is, breaks.
+    /// Goes on until the run is to end or `watch`, which is told between waves how far it is,
+    /// breaks.
     ///
     /// # Errors
     /// [`MonteCarloError::Foreign`] for a state of other settings.

@@ -1,4 +1,5 @@
-//! The comparison of a deterministic with a stochastic solution: twenty scenes that are right, and planted faults.
+//! The comparison of a deterministic with a stochastic solution: twenty scenes that are right, and
+//! planted faults.
 
 // A test that cannot run should panic, in its helpers too.
 #![allow(clippy::unwrap_used)]

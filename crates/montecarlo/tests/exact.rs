@@ -1,4 +1,5 @@
-//! Every estimator of light against closed forms: means, and the distribution of their scores over many seeds.
+//! Every estimator of light against closed forms: means, and the distribution of their scores over
+//! many seeds.
 
 // A test that cannot run should panic, in its helpers too.
 #![allow(clippy::unwrap_used)]
@@ -93,8 +94,9 @@ fn means_are_within_three_standard_errors_of_the_exact_values() {
     }
 }
 
-/// B = M/(1 − ρ) through every pixel of a furnace, here half of each: the mean of many pixels within their errors, and the scores of the single ones with variance near 1. Their mean is below 0, as
-/// that of every t of a skewed quantity such as the length of paths.
+/// B = M/(1 − ρ) through every pixel of a furnace, here half of each: the mean of many pixels
+/// within their errors, and the scores of the single ones with variance near 1. Their mean is below
+/// 0, as that of every t of a skewed quantity such as the length of paths.
 #[test]
 fn pixels_show_the_radiosity_within_their_errors() {
     let scene = furnace(0.5);

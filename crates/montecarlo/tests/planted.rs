@@ -1,4 +1,5 @@
-//! Twenty planted faults, each in the answer of an otherwise right solution, against light tracing of the unchanged scene; and how seldom and how surely deviations are found.
+//! Twenty planted faults, each in the answer of an otherwise right solution, against light tracing
+//! of the unchanged scene; and how seldom and how surely deviations are found.
 
 // A test that cannot run should panic, in its helpers too.
 #![allow(clippy::unwrap_used)]
@@ -135,7 +136,8 @@ fn materials() -> [Material; FACES] {
     materials
 }
 
-/// Everything that is compared: the right answer, what it states of its error, and the trace of the unchanged scene.
+/// Everything that is compared: the right answer, what it states of its error, and the trace of the
+/// unchanged scene.
 struct Bench {
     exchanges: Vec<Vec<f64>>,
     room: Room,
@@ -178,7 +180,8 @@ impl Bench {
         crosscheck(&comparison, Correction::Holm, SIGNIFICANCE).unwrap()
     }
 
-    /// The answer with the exchanges changed, face by face: what a set of links between two faces carries.
+    /// The answer with the exchanges changed, face by face: what a set of links between two faces
+    /// carries.
     fn relinked(&self, factor: impl Fn(usize, usize) -> f64) -> Vec<f64> {
         let mut exchanges = self.exchanges.clone();
         for (i, row) in exchanges.iter_mut().enumerate() {

@@ -129,7 +129,8 @@ fn slope(errors: &[f64]) -> f64 {
     covariance / x.iter().map(|x| (x - a).powi(2)).sum::<f64>()
 }
 
-/// Errors fall with the root of the number of samples, or faster where the order of the points helps; they are what is stated, and on the two plates small enough to say something.
+/// Errors fall with the root of the number of samples, or faster where the order of the points
+/// helps; they are what is stated, and on the two plates small enough to say something.
 #[test]
 fn particles_and_surface_samples_converge_to_the_radiation_integral() {
     let wave = Wave::new(1e9).unwrap();
@@ -166,7 +167,8 @@ fn particles_and_surface_samples_converge_to_the_radiation_integral() {
     }
 }
 
-/// Half a degree off the plane of a plate the particles burst, and the samples of the surface do not.
+/// Half a degree off the plane of a plate the particles burst, and the samples of the surface do
+/// not.
 #[test]
 fn surface_samples_have_no_burst_in_the_plane_of_a_plate() {
     let wave = Wave::new(1e9).unwrap();

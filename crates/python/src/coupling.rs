@@ -69,11 +69,11 @@ impl Couplings {
     /// I − R F of a band.
     fn system(&self, py: Python<'_>, band: usize) -> PyResult<Coupling> {
         let scaling = self.radiosity.scaling();
-        if band >= scaling.lanes() {
-            let text = format!("there is no band {band}; there are {}", scaling.lanes());
+        if band >= scaling.rhs_count() {
+            let text = format!("there is no band {band}; there are {}", scaling.rhs_count());
             return Err(input(py, text, Some("count the bands from 0")));
         }
-        Ok(self.operator(scaling.lane(band), self.ones(), true))
+        Ok(self.operator(scaling.vector(band), self.ones(), true))
     }
 
     #[getter]
@@ -90,14 +90,14 @@ impl Couplings {
     #[getter]
     fn reflectance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let values = self.radiosity.reflectance();
-        moved(py, values.as_slice().to_vec(), values.lanes())
+        moved(py, values.as_slice().to_vec(), values.rhs_count())
     }
 
     /// Exitance of the elements, elements × bands, W/m².
     #[getter]
     fn exitance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let values = self.radiosity.exitance();
-        moved(py, values.as_slice().to_vec(), values.lanes())
+        moved(py, values.as_slice().to_vec(), values.rhs_count())
     }
 }
 
@@ -118,7 +118,7 @@ impl Coupling {
                 v.row_mut(i).iter_mut().for_each(|value| *value *= factor);
             }
         };
-        let (mut scaled, mut product) = (x.clone(), MultiVector::zeros(x.dim(), x.lanes()));
+        let (mut scaled, mut product) = (x.clone(), MultiVector::zeros(x.dim(), x.rhs_count()));
         scale(&mut scaled, before);
         self.exchange.apply(&scaled, &mut product);
         scale(&mut product, after);

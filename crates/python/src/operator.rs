@@ -111,11 +111,11 @@ impl<T: Scalar + Element> LinearOperator<T> for Operator<T> {
     }
 
     fn apply(&self, x: &MultiVector<T>, y: &mut MultiVector<T>) {
-        for lane in 0..x.lanes() {
+        for rhs in 0..x.rhs_count() {
             // After a failure the numbers do not matter: the run ends.
-            let product = self.product(x.lane(lane)).unwrap_or_else(|| vec![T::zero(); self.dim]);
-            let rest = |i: usize| x.row(i)[lane] - product[i].scale(self.scale.recip());
-            (0..self.dim).for_each(|i| y.row_mut(i)[lane] = rest(i));
+            let product = self.product(x.vector(rhs)).unwrap_or_else(|| vec![T::zero(); self.dim]);
+            let rest = |i: usize| x.row(i)[rhs] - product[i].scale(self.scale.recip());
+            (0..self.dim).for_each(|i| y.row_mut(i)[rhs] = rest(i));
         }
     }
 
@@ -123,19 +123,19 @@ impl<T: Scalar + Element> LinearOperator<T> for Operator<T> {
         self.symmetry
     }
 
-    fn row(&self, i: usize, _lane: usize, out: &mut [T]) {
+    fn row(&self, i: usize, _rhs: usize, out: &mut [T]) {
         self.of_all(|all| out.copy_from_slice(all.row_slice(i)));
     }
 
-    fn column(&self, j: usize, lane: usize, out: &mut [T]) {
-        self.of_all(|all| all.column(j, lane, out));
+    fn column(&self, j: usize, rhs: usize, out: &mut [T]) {
+        self.of_all(|all| all.column(j, rhs, out));
     }
 
-    fn diagonal(&self, lane: usize, out: &mut [T]) {
-        self.of_all(|all| all.diagonal(lane, out));
+    fn diagonal(&self, rhs: usize, out: &mut [T]) {
+        self.of_all(|all| all.diagonal(rhs, out));
     }
 
-    fn dense(&self, lane: usize) -> Result<Dense<T>, LinopError> {
-        self.all()?.dense(lane)
+    fn dense(&self, rhs: usize) -> Result<Dense<T>, LinopError> {
+        self.all()?.dense(rhs)
     }
 }

@@ -87,14 +87,14 @@ impl Solved {
     fn irradiance<'py>(slf: &Bound<'py, Self>) -> PyResult<Array<'py, f64>> {
         let solved = slf.get().get();
         let values = solved.irradiance();
-        shared(slf.clone().into_any(), values.as_slice(), values.lanes())
+        shared(slf.clone().into_any(), values.as_slice(), values.rhs_count())
     }
 
     #[getter]
     fn radiosity<'py>(slf: &Bound<'py, Self>) -> PyResult<Array<'py, f64>> {
         let solved = slf.get().get();
         let values = solved.radiosity();
-        shared(slf.clone().into_any(), values.as_slice(), values.lanes())
+        shared(slf.clone().into_any(), values.as_slice(), values.rhs_count())
     }
 
     /// Where the irradiance and the radiosity lie in memory.
@@ -156,8 +156,9 @@ impl Solved {
     #[getter]
     fn face_means<'py>(&self, py: Python<'py>) -> PyResult<[Array<'py, f64>; 2]> {
         let [irradiance, radiosity] = self.get().face_means().map_err(|error| failure(py, &error))?;
-        let array =
-            |values: &fredholm_linop::MultiVector<f64>| moved(py, values.as_slice().to_vec(), values.lanes());
+        let array = |values: &fredholm_linop::MultiVector<f64>| {
+            moved(py, values.as_slice().to_vec(), values.rhs_count())
+        };
         Ok([array(&irradiance)?, array(&radiosity)?])
     }
 

@@ -187,8 +187,8 @@ impl<T: Scalar + Element> System<T> {
         watch: &dyn Watch,
     ) -> Result<Report, Error> {
         let Asked { tolerance, max_iterations, scale, .. } = self.asked;
-        let ones = MultiVector::from_fn(b.dim(), b.lanes(), |_, _| T::one());
-        let b = MultiVector::from_fn(b.dim(), b.lanes(), |i, l| b.row(i)[l].scale(scale.recip()));
+        let ones = MultiVector::from_fn(b.dim(), b.rhs_count(), |_, _| T::one());
+        let b = MultiVector::from_fn(b.dim(), b.rhs_count(), |i, l| b.row(i)[l].scale(scale.recip()));
         let input = |error| Error::new(ErrorKind::Input, error);
         let system = SecondKind::new(coupling.as_operator(), ones).map_err(input)?;
         if self.iterative && watch.begin_saving().is_break() {
@@ -223,11 +223,11 @@ fn found<T: Scalar + Element>(py: Python<'_>, solution: Solution<T>) -> PyResult
         StopReason::Interrupted => "interrupted",
         StopReason::Diverged => "diverged",
     };
-    let (lanes, iterations) = (x.lanes(), report.history.last().map_or(0, |record| record.iteration));
+    let (rhs_count, iterations) = (x.rhs_count(), report.history.last().map_or(0, |record| record.iteration));
     let residuals = report.history.into_iter().flat_map(|record| record.residuals).collect();
     let products = report.work.operator_applications;
-    let answer = moved(py, x.as_slice().to_vec(), lanes)?;
+    let answer = moved(py, x.as_slice().to_vec(), rhs_count)?;
     let found: Found<'_, T> =
-        (answer, reason, iterations, moved(py, residuals, lanes)?, products, report.seconds);
+        (answer, reason, iterations, moved(py, residuals, rhs_count)?, products, report.seconds);
     Ok(found.into_pyobject(py)?.into_any().unbind())
 }

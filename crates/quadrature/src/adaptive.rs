@@ -1,9 +1,10 @@
 //! Adaptive bisection on an interval: split until ∫ₐᵇ ≈ Q[a, b] and Q[a, m] + Q[m, b] agree.
 //!
-//! P. J. Davis, P. Rabinowitz, *Methods of Numerical Integration*, 2nd ed., Academic Press 1984, section 6.2.
-//! The difference of the two values is the error estimate of the coarser one; the finer one is returned, so
-//! that the estimate errs on the safe side where halving gains more than a factor of two. Where it gains less,
-//! as on x^(−1/2), [`adaptive_interval`](crate::adaptive_interval) estimates the rest of the series too.
+//! P. J. Davis, P. Rabinowitz, *Methods of Numerical Integration*, 2nd ed., Academic Press 1984,
+//! section 6.2. The difference of the two values is the error estimate of the coarser one; the
+//! finer one is returned, so that the estimate errs on the safe side where halving gains more than
+//! a factor of two. Where it gains less, as on x^(−1/2),
+//! [`adaptive_interval`](crate::adaptive_interval) estimates the rest of the series too.
 
 use crate::IntervalRule;
 
@@ -34,9 +35,10 @@ impl std::ops::Add for Estimate {
 /// Relative difference that counts as rounding: smaller ones are not bisected.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// ∫ₐᵇ f by `rule`, bisected until each half meets its share of `tolerance` (absolute), or comes to rounding, or `depth` bisections
-/// are spent. What could not be met shows in the error of the result. Where f is not a number, or infinite at points of
-/// a part and of its halves, that part is not bisected further, and the error is NaN.
+/// ∫ₐᵇ f by `rule`, bisected until each half meets its share of `tolerance` (absolute), or comes to
+/// rounding, or `depth` bisections are spent. What could not be met shows in the error of the
+/// result. Where f is not a number, or infinite at points of a part and of its halves, that part is
+/// not bisected further, and the error is NaN.
 ///
 /// ```
 /// let rule = fredholm_quadrature::gauss_legendre(8);
@@ -66,7 +68,8 @@ fn bisect(
     let (left, right) = (rule.integrate(a, middle, f), rule.integrate(middle, b, f));
     let error = (left + right - whole).abs();
     let rounding = ROUNDING * (left.abs() + right.abs());
-    // No bisection mends an error that is not a number; an infinite one may come from a pole that the halves miss.
+    // No bisection mends an error that is not a number; an infinite one may come from a pole that
+    // the halves miss.
     if error <= tolerance.max(rounding) || error.is_nan() || depth == 0 {
         return Estimate { value: left + right, error };
     }

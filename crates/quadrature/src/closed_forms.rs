@@ -1,7 +1,8 @@
 //! Closed forms that the tests compare with.
 //!
-//! A. E. Ruehli, P. A. Brennan, IEEE Trans. Microw. Theory Tech. 21 (1973) 76, doi:10.1109/TMTT.1973.1127927:
-//! ∫∫∫∫ 1/r over two parallel rectangles is Σ ± f over the 16 differences of their sides.
+//! A. E. Ruehli, P. A. Brennan, IEEE Trans. Microw. Theory Tech. 21 (1973) 76,
+//! doi:10.1109/TMTT.1973.1127927: ∫∫∫∫ 1/r over two parallel rectangles is Σ ± f over the 16
+//! differences of their sides.
 
 /// ∫∫∫∫ 1/r over the rectangles [x₀, x₁, y₀, y₁] `a` and `b`, a distance `z` apart.
 pub fn coplanar(a: [f64; 4], b: [f64; 4], z: f64) -> f64 {
@@ -19,8 +20,8 @@ pub fn coplanar(a: [f64; 4], b: [f64; 4], z: f64) -> f64 {
 /// f with ∂⁴f/∂x²∂y² = 1/r.
 fn primitive(x: f64, y: f64, z: f64) -> f64 {
     let r = (x * x + y * y + z * z).sqrt();
-    // asinh in place of the published logarithm drops a part linear in p, which the differences cancel, and needs no
-    // care where p + r cancels.
+    // asinh in place of the published logarithm drops a part linear in p, which the differences
+    // cancel, and needs no care where p + r cancels.
     let log = |p: f64, q: f64| {
         if q.hypot(z) == 0.0 { 0.0 } else { 0.5 * p * (q * q - z * z) * (p / q.hypot(z)).asinh() }
     };

@@ -1,8 +1,10 @@
-//! Composed rules: the domain is cut into equal parts, and each gets a scaled copy of one rule of degree d.
+//! Composed rules: the domain is cut into equal parts, and each gets a scaled copy of one rule of
+//! degree d.
 //!
-//! P. J. Davis, P. Rabinowitz, *Methods of Numerical Integration*, 2nd ed., Academic Press 1984, section 2.1.
-//! With parts of width h the error is O(h^(d+1)) on smooth integrands; the degree stays d. Two numbers of
-//! parts give an error estimate, [`Estimate::from_pair`](crate::Estimate::from_pair).
+//! P. J. Davis, P. Rabinowitz, *Methods of Numerical Integration*, 2nd ed., Academic Press 1984,
+//! section 2.1. With parts of width h the error is O(h^(d+1)) on smooth integrands; the degree
+//! stays d. Two numbers of parts give an error estimate,
+//! [`Estimate::from_pair`](crate::Estimate::from_pair).
 
 use crate::{IntervalRule, PlanePoint};
 
@@ -35,7 +37,8 @@ pub fn composed_quad(rule: &[PlanePoint], parts: usize) -> Vec<PlanePoint> {
     cells.flat_map(|corner| scaled(rule, corner, h)).collect()
 }
 
-/// A rule for the unit triangle on each of `parts`² equal triangles, those of the odd half upside down.
+/// A rule for the unit triangle on each of `parts`² equal triangles, those of the odd half upside
+/// down.
 ///
 /// ```
 /// let rule = fredholm_quadrature::composed_triangle(&fredholm_quadrature::collapsed_triangle(2), 3);

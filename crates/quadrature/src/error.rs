@@ -12,7 +12,8 @@ pub enum RuleError {
         /// Highest degree in the table.
         highest: usize,
     },
-    /// Equally spaced points: too few to span an interval, or so many that rounding eats the result.
+    /// Equally spaced points: too few to span an interval, or so many that rounding eats the
+    /// result.
     #[error(
         "this kind of Newton–Cotes rule has {lowest} to {highest} points, not {points}: compose one of fewer"
     )]

@@ -1,9 +1,9 @@
-//! What the tests of every rule share: all monomials of its degree to 1e-14, and a polynomial of the next degree
-//! that it misses.
+//! What the tests of every rule share: all monomials of its degree to 1e-14, and a polynomial of
+//! the next degree that it misses.
 //!
-//! The bound is relative to the measure times the largest value of the monomial, which is what rounding is
-//! relative to. Beyond the degree Chebyshev polynomials are tried: on a monomial the error of a good rule falls
-//! like 4^(−degree) and soon drowns in rounding.
+//! The bound is relative to the measure times the largest value of the monomial, which is what
+//! rounding is relative to. Beyond the degree Chebyshev polynomials are tried: on a monomial the
+//! error of a good rule falls like 4^(−degree) and soon drowns in rounding.
 
 use crate::{IntervalRule, PlanePoint, gauss_legendre};
 

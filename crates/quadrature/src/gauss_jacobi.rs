@@ -1,5 +1,5 @@
-//! Gauss–Jacobi rules for the weight (1 − s)^α on [0, 1]: ∫₀¹ (1 − s)^α f(s) ds ≈ Σ wᵢ f(sᵢ), n points,
-//! degree 2n − 1.
+//! Gauss–Jacobi rules for the weight (1 − s)^α on [0, 1]: ∫₀¹ (1 − s)^α f(s) ds ≈ Σ wᵢ f(sᵢ), n
+//! points, degree 2n − 1.
 //!
 //! Points are the roots of Pₙ^(α,0) (DLMF 18.9.1 for the recurrence, 18.9.17 for the derivative,
 //! <https://dlmf.nist.gov/18.9>); with β = 0 the weights on [−1, 1] are 2^(α+1) / ((1 − xᵢ²) Pₙ′(xᵢ)²). The
@@ -11,7 +11,8 @@ use std::f64::consts::PI;
 /// Newton steps with the known roots divided out, then without.
 const NEWTON_STEPS: [usize; 2] = [12, 2];
 
-/// The rule with `n` points for the weight (1 − s)^α. The weights sum to 1/(α + 1); α = 0 is Gauss–Legendre.
+/// The rule with `n` points for the weight (1 − s)^α. The weights sum to 1/(α + 1); α = 0 is
+/// Gauss–Legendre.
 ///
 /// ```
 /// let rule = fredholm_quadrature::gauss_jacobi(2, 1);

@@ -1,8 +1,8 @@
 //! Integration rules on the interval, the triangle and the quadrilateral.
 //!
-//! A rule of degree d with points xᵢ and weights wᵢ satisfies Σ wᵢ p(xᵢ) = ∫ p for every polynomial p of
-//! degree ≤ d. The domains are the unit ones: [0, 1], [0, 1]², and the triangle u, v ≥ 0, u + v ≤ 1. Weights
-//! sum to the measure of the domain. Everything is dimensionless.
+//! A rule of degree d with points xᵢ and weights wᵢ satisfies Σ wᵢ p(xᵢ) = ∫ p for every polynomial
+//! p of degree ≤ d. The domains are the unit ones: [0, 1], [0, 1]², and the triangle u, v ≥ 0, u +
+//! v ≤ 1. Weights sum to the measure of the domain. Everything is dimensionless.
 //!
 //! | domain | rules |
 //! |---|---|

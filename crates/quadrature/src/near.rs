@@ -1,24 +1,25 @@
-//! Nearly singular rules: ∫ over a triangle of f(y), f peaked where y comes close to a point x: 1/|x − y| and
-//! its like.
+//! Nearly singular rules: ∫ over a triangle of f(y), f peaked where y comes close to a point x:
+//! 1/|x − y| and its like.
 //!
-//! The triangle is split at p, its point closest to x, and each part collapsed towards p (M. G. Duffy, SIAM
-//! J. Numer. Anal. 19 (1982) 1260, doi:10.1137/0719090), y = p + r (e(t) − p). Along a ray |x − y|² ≈ d² + r²
-//! ρ(t)² with d = |x − p| and ρ the ray's length, and across the rays ρ² = h² + L² (t − t₀)². In both
-//! directions a sinh map spreads the points so that the integrand loses its scale (P. R. Johnston, D.
-//! Elliott, Int. J. Numer. Methods Eng. 62 (2005) 564, doi:10.1002/nme.1208).
+//! The triangle is split at p, its point closest to x, and each part collapsed towards p (M. G.
+//! Duffy, SIAM J. Numer. Anal. 19 (1982) 1260, doi:10.1137/0719090), y = p + r (e(t) − p). Along a
+//! ray |x − y|² ≈ d² + r² ρ(t)² with d = |x − p| and ρ the ray's length, and across the rays ρ² =
+//! h² + L² (t − t₀)². In both directions a sinh map spreads the points so that the integrand loses
+//! its scale (P. R. Johnston, D. Elliott, Int. J. Numer. Methods Eng. 62 (2005) 564,
+//! doi:10.1002/nme.1208).
 
 use crate::{IntervalRule, PairPoint, PlanePoint, gauss_legendre};
 
 type Vector = [f64; 3];
 
-/// Distance over edge length below which x lies on the triangle: closer points are lost in the rounding of x
-/// − y.
+/// Distance over edge length below which x lies on the triangle: closer points are lost in the
+/// rounding of x − y.
 const TOUCHING: f64 = 1e-12;
 
-/// The rule with n × n points in each of up to three parts for the triangle with these corners, seen from `x`
-/// (any unit of length). Points and weights are in the parameters of the unit triangle, so that the weights
-/// sum to about ½: the rule is exact for no polynomial, and converges exponentially in n. No points for a
-/// triangle without area.
+/// The rule with n × n points in each of up to three parts for the triangle with these corners,
+/// seen from `x` (any unit of length). Points and weights are in the parameters of the unit
+/// triangle, so that the weights sum to about ½: the rule is exact for no polynomial, and converges
+/// exponentially in n. No points for a triangle without area.
 ///
 /// ```
 /// let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
@@ -44,9 +45,9 @@ pub fn near_triangle(corners: [Vector; 3], x: Vector, n: usize) -> Vec<PlanePoin
     points
 }
 
-/// The rule for two triangles close to each other: `outer` on the first, and from each of its points
-/// [`near_triangle`] on the second. The inner integral still varies over the distance of the two near the
-/// edges of the second, so that `outer` must resolve that: compose it, or run
+/// The rule for two triangles close to each other: `outer` on the first, and from each of its
+/// points [`near_triangle`] on the second. The inner integral still varies over the distance of the
+/// two near the edges of the second, so that `outer` must resolve that: compose it, or run
 /// [`adaptive_triangle`](crate::adaptive_triangle) over the inner rule.
 ///
 /// ```
@@ -97,8 +98,8 @@ struct Rays {
 }
 
 impl Rays {
-    /// The rays to the edge from `a` to `b` (both seen from p); `None` where p lies on the edge or the edge
-    /// is a point.
+    /// The rays to the edge from `a` to `b` (both seen from p); `None` where p lies on the edge or
+    /// the edge is a point.
     fn new(a: Vector, b: Vector, d: f64) -> Option<Self> {
         let edge = minus(b, a);
         let scale = length(edge);

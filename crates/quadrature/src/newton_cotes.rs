@@ -1,9 +1,10 @@
 //! Newton–Cotes rules: n equally spaced points, degree n − 1, or n where n is odd.
 //!
-//! P. J. Davis, P. Rabinowitz, *Methods of Numerical Integration*, 2nd ed., Academic Press 1984, section 2.5.
-//! The weights are wᵢ = (1/L) ∫₀ᴸ Πⱼ≠ᵢ (t − tⱼ)/(tᵢ − tⱼ) dt with integer nodes tⱼ. They are rational, and
-//! are found in integers, so that only the last division rounds. Some are negative for 9 points (open: 3) and
-//! for most counts beyond; Σ|wᵢ| then grows without bound, and the rounding with it.
+//! P. J. Davis, P. Rabinowitz, *Methods of Numerical Integration*, 2nd ed., Academic Press 1984,
+//! section 2.5. The weights are wᵢ = (1/L) ∫₀ᴸ Πⱼ≠ᵢ (t − tⱼ)/(tᵢ − tⱼ) dt with integer nodes tⱼ.
+//! They are rational, and are found in integers, so that only the last division rounds. Some are
+//! negative for 9 points (open: 3) and for most counts beyond; Σ|wᵢ| then grows without bound, and
+//! the rounding with it.
 
 use crate::{IntervalRule, RuleError};
 

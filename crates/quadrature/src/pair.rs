@@ -1,19 +1,20 @@
 //! Rules for pairs of patches that touch: ∫∫ f(x, y) dy dx with f singular where x = y.
 //!
 //! S. A. Sauter, C. Schwab, *Boundary Element Methods*, Springer 2011, section 5.2,
-//! doi:10.1007/978-3-540-68093-2. The four dimensions are cut into pieces that the map (ξ, η₁, η₂, η₃) of the unit
-//! cube covers, with |x − y| proportional to a product of coordinates that the Jacobian contains: a kernel
-//! 1/|x − y| becomes analytic, and Gauss–Legendre converges exponentially. Polynomials are exact to total
-//! degree 2n − 4, since the factor ξ³ of the Jacobian takes three.
+//! doi:10.1007/978-3-540-68093-2. The four dimensions are cut into pieces that the map (ξ, η₁, η₂,
+//! η₃) of the unit cube covers, with |x − y| proportional to a product of coordinates that the
+//! Jacobian contains: a kernel 1/|x − y| becomes analytic, and Gauss–Legendre converges
+//! exponentially. Polynomials are exact to total degree 2n − 4, since the factor ξ³ of the Jacobian
+//! takes three.
 //!
-//! Corners carry labels; equal labels are the same corner. A quadrilateral is cut into two triangles along a
-//! diagonal, and the degree stays. The parameters of a triangle's corners are (0, 0), (1, 0), (0, 1), those of a quadrilateral's
-//! (0, 0), (1, 0), (1, 1), (0, 1).
+//! Corners carry labels; equal labels are the same corner. A quadrilateral is cut into two
+//! triangles along a diagonal, and the degree stays. The parameters of a triangle's corners are (0,
+//! 0), (1, 0), (0, 1), those of a quadrilateral's (0, 0), (1, 0), (1, 1), (0, 1).
 
 use crate::{PlanePoint, collapsed_triangle, tensor_quad};
 
-/// A point of a pair rule: the parameters on both patches, and the weight. The weights sum to the product of
-/// both measures.
+/// A point of a pair rule: the parameters on both patches, and the weight. The weights sum to the
+/// product of both measures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairPoint {
     /// Parameters (u, v) on the first patch.
@@ -29,9 +30,9 @@ type Point = [f64; 2];
 /// The parameters of the three corners of a triangle in its patch.
 type Corners = [Point; 3];
 
-/// The rule with n points a direction for two triangles with corner labels `a` and `b`: 6n⁴ points where they
-/// are the same, 5n⁴ with a common edge, 2n⁴ with a common corner (degree 2n − 4 each), n⁴ apart (degree
-/// 2n − 1 in each of x and y).
+/// The rule with n points a direction for two triangles with corner labels `a` and `b`: 6n⁴ points
+/// where they are the same, 5n⁴ with a common edge, 2n⁴ with a common corner (degree 2n − 4 each),
+/// n⁴ apart (degree 2n − 1 in each of x and y).
 ///
 /// ```
 /// let touching = fredholm_quadrature::triangle_pair([0, 1, 2], [2, 1, 3], 4);
@@ -44,8 +45,9 @@ pub fn triangle_pair(a: [usize; 3], b: [usize; 3], n: usize) -> Vec<PairPoint> {
     place((a, corners), (b, corners), n)
 }
 
-/// The rule for two quadrilaterals, the sum of the rules of four pairs of triangles, whose degree it has. It holds for any
-/// parametrisation that is smooth on both sides of the diagonal, the bilinear one among them.
+/// The rule for two quadrilaterals, the sum of the rules of four pairs of triangles, whose degree
+/// it has. It holds for any parametrisation that is smooth on both sides of the diagonal, the
+/// bilinear one among them.
 ///
 /// ```
 /// let same = fredholm_quadrature::quad_pair([0, 1, 2, 3], [0, 1, 2, 3], 3);
@@ -78,7 +80,8 @@ fn halves(labels: [usize; 4], start: usize) -> [([usize; 3], Corners); 2] {
 fn place(a: ([usize; 3], Corners), b: ([usize; 3], Corners), n: usize) -> Vec<PairPoint> {
     let (first, second, common) = matched(a.0, b.0);
     let (p, q) = (first.map(|i| a.1[i]), second.map(|i| b.1[i]));
-    // Twice the area of each triangle is the Jacobian; in its patch's parameters that is 1, for a half square too.
+    // Twice the area of each triangle is the Jacobian; in its patch's parameters that is 1, for a
+    // half square too.
     let put = |x: PairPoint| PairPoint { x: on(&p, x.x), y: on(&q, x.y), weight: x.weight };
     reference(common, n).into_iter().map(put).collect()
 }
@@ -209,7 +212,8 @@ mod tests {
     ];
 
     impl Family {
-        /// Largest error over products with these degrees in (x, y), relative to measure and largest value.
+        /// Largest error over products with these degrees in (x, y), relative to measure and
+        /// largest value.
         fn worst(&self, points: &[PairPoint], degrees: &[[usize; 4]]) -> f64 {
             // Sums of sums: that of many thousand points in a row rounds by more than 1e-14.
             let mut sums = vec![0.0; degrees.len()];

@@ -1,12 +1,13 @@
 //! Global adaptive integration: the cell with the largest error is cut, until Σ errors ≤ tolerance.
 //!
-//! R. Piessens et al., *QUADPACK*, Springer 1983, section 2.2.3, doi:10.1007/978-3-642-61786-7, for the
-//! strategy. The value of a cell is that of its parts, and its step d = |Q(cell) − Σ Q(parts)|. Steps that
-//! fall by q from one cut to the next leave d q/(1 − q) to come, more than d where a singularity makes q > ½;
-//! the error taken is the larger of the two. Ties go to the older cell, so that the result never depends on
-//! chance. A peak that falls between all points of the first rule is not seen: start from a composed rule
-//! that is fine enough. A value that is not a number ends the work with an error of NaN, and so does an infinite one
-//! that the cell and its parts both have; the cell is cut on where only one of them meets the pole.
+//! R. Piessens et al., *QUADPACK*, Springer 1983, section 2.2.3, doi:10.1007/978-3-642-61786-7, for
+//! the strategy. The value of a cell is that of its parts, and its step d = |Q(cell) − Σ Q(parts)|.
+//! Steps that fall by q from one cut to the next leave d q/(1 − q) to come, more than d where a
+//! singularity makes q > ½; the error taken is the larger of the two. Ties go to the older cell, so
+//! that the result never depends on chance. A peak that falls between all points of the first rule
+//! is not seen: start from a composed rule that is fine enough. A value that is not a number ends
+//! the work with an error of NaN, and so does an infinite one that the cell and its parts both
+//! have; the cell is cut on where only one of them meets the pole.
 
 use crate::{Estimate, IntervalRule, PlanePoint};
 use std::cmp::Ordering;
@@ -17,7 +18,8 @@ use std::collections::BinaryHeap;
 pub struct Goal {
     /// Absolute error to reach, in the unit of the integral.
     pub tolerance: f64,
-    /// Most cells to cut; where they do not suffice, the error of the result stays above the tolerance.
+    /// Most cells to cut; where they do not suffice, the error of the result stays above the
+    /// tolerance.
     pub cuts: usize,
 }
 
@@ -166,7 +168,8 @@ fn refine<C>(whole: &C, goal: Goal, cut: impl Fn(&C) -> Vec<C>, mut q: impl FnMu
     let (mut error, mut born) = (first[0].error, 1);
     let mut heap = BinaryHeap::from(first);
     for _ in 0..goal.cuts {
-        // The running sum drifts by rounding and loses all in ∞ − ∞, so that only a fresh one may end the work.
+        // The running sum drifts by rounding and loses all in ∞ − ∞, so that only a fresh one may
+        // end the work.
         if error <= goal.tolerance || error.is_nan() {
             error = heap.iter().map(|region| region.error).sum();
         }

@@ -1,11 +1,13 @@
-//! Richardson's extrapolation: A(h) = A + c₁ h^p₁ + c₂ h^p₂ + … is combined over h, h/r, h/r², … to cancel
-//! the terms in turn, Tₖⱼ = Tₖ,ⱼ₋₁ + (Tₖ,ⱼ₋₁ − Tₖ₋₁,ⱼ₋₁) / (r^pⱼ − 1).
+//! Richardson's extrapolation: A(h) = A + c₁ h^p₁ + c₂ h^p₂ + … is combined over h, h/r, h/r², … to
+//! cancel the terms in turn, Tₖⱼ = Tₖ,ⱼ₋₁ + (Tₖ,ⱼ₋₁ − Tₖ₋₁,ⱼ₋₁) / (r^pⱼ − 1).
 //!
-//! L. F. Richardson, J. A. Gaunt, Phil. Trans. R. Soc. A 226 (1927) 299, doi:10.1098/rsta.1927.0008.
+//! L. F. Richardson, J. A. Gaunt, Phil. Trans. R. Soc. A 226 (1927) 299,
+//! doi:10.1098/rsta.1927.0008.
 
 use crate::Estimate;
 
-/// The limit of `values` = A(h), A(h/r), A(h/r²), …, r = `ratio` > 1, whose error has the `exponents` p₁ < p₂
+/// The limit of `values` = A(h), A(h/r), A(h/r²), …, r = `ratio` > 1, whose error has the
+/// `exponents` p₁ < p₂
 /// < …; k + 1 values cancel the first k terms. The error is the step that the last value brought; it is
 /// infinite for fewer than two.
 ///

@@ -1,21 +1,24 @@
-//! Romberg's method: trapezoids with 1, 2, 4, … panels, extrapolated to h = 0 over the even powers of h.
+//! Romberg's method: trapezoids with 1, 2, 4, … panels, extrapolated to h = 0 over the even powers
+//! of h.
 //!
-//! W. Romberg, Det Kongelige Norske Videnskabers Selskab Forhandlinger 28 (1955) 30; the even powers are the
-//! Euler–Maclaurin formula's (DLMF 3.5.9, <https://dlmf.nist.gov/3.5>). Level k uses 2ᵏ + 1 points and has
-//! degree 2k + 1.
+//! W. Romberg, Det Kongelige Norske Videnskabers Selskab Forhandlinger 28 (1955) 30; the even
+//! powers are the Euler–Maclaurin formula's (DLMF 3.5.9, <https://dlmf.nist.gov/3.5>). Level k uses
+//! 2ᵏ + 1 points and has degree 2k + 1.
 
 use crate::{Estimate, richardson::extend};
 
-/// Levels before which agreement is not believed: few equally spaced points agree by accident on a periodic
-/// integrand.
+/// Levels before which agreement is not believed: few equally spaced points agree by accident on a
+/// periodic integrand.
 const FIRST_TRUSTED: u32 = 4;
 
-/// Most halvings that are made, a billion points: no integrand that needs more should be given to this method.
+/// Most halvings that are made, a billion points: no integrand that needs more should be given to
+/// this method.
 const MOST_LEVELS: u32 = 30;
 
-/// ∫ₐᵇ f, refined until two levels agree to `tolerance` (absolute) or `levels` halvings (at most 30) are spent. What could
-/// not be met shows in the error; a value that is not finite ends the work with an error of NaN. For smooth
-/// integrands up to both ends; elsewhere the adaptive rules need fewer points.
+/// ∫ₐᵇ f, refined until two levels agree to `tolerance` (absolute) or `levels` halvings (at most
+/// 30) are spent. What could not be met shows in the error; a value that is not finite ends the
+/// work with an error of NaN. For smooth integrands up to both ends; elsewhere the adaptive rules
+/// need fewer points.
 ///
 /// ```
 /// let got = fredholm_quadrature::romberg(0.0, 1.0, 1e-12, 20, f64::exp);

@@ -1,9 +1,10 @@
-//! Fully symmetric rules on the unit triangle, degrees 1 to 30, with positive weights and all points inside.
+//! Fully symmetric rules on the unit triangle, degrees 1 to 30, with positive weights and all
+//! points inside.
 //!
-//! H. Xiao, Z. Gimbutas, *A numerical algorithm for the construction of efficient quadrature rules in two and
-//! higher dimensions*, Comput. Math. Appl. 59 (2010) 663, doi:10.1016/j.camwa.2009.10.027. The tables list
-//! one point per orbit of the triangle's six symmetries, as barycentric coordinates with the weight for a
-//! triangle of area 1.
+//! H. Xiao, Z. Gimbutas, *A numerical algorithm for the construction of efficient quadrature rules
+//! in two and higher dimensions*, Comput. Math. Appl. 59 (2010) 663,
+//! doi:10.1016/j.camwa.2009.10.027. The tables list one point per orbit of the triangle's six
+//! symmetries, as barycentric coordinates with the weight for a triangle of area 1.
 
 use crate::{PlanePoint, RuleError};
 
@@ -18,8 +19,8 @@ struct Orbits {
 #[allow(clippy::unreadable_literal, reason = "a table of numbers")]
 static TABLE: &[Orbits] = &include!("../data/triangle_symmetric.in");
 
-/// The rule of fewest points on u, v ≥ 0, u + v ≤ 1 that is exact to total degree `degree`; degree 3 gets the
-/// rule of degree 4.
+/// The rule of fewest points on u, v ≥ 0, u + v ≤ 1 that is exact to total degree `degree`; degree
+/// 3 gets the rule of degree 4.
 ///
 /// # Errors
 /// [`RuleError::DegreeBeyondTable`] above degree 30.

@@ -1,8 +1,9 @@
-//! Collapsed (conical product) rules on the unit triangle: u = s, v = (1 − s) t, du dv = (1 − s) ds dt.
+//! Collapsed (conical product) rules on the unit triangle: u = s, v = (1 − s) t, du dv = (1 − s) ds
+//! dt.
 //!
 //! A. H. Stroud, *Approximate Calculation of Multiple Integrals*, Prentice-Hall 1971, section 2.4.
-//! Gauss–Jacobi in s carries the factor 1 − s as its weight, so that n × n points are exact to degree 2n − 1,
-//! as on the square.
+//! Gauss–Jacobi in s carries the factor 1 − s as its weight, so that n × n points are exact to
+//! degree 2n − 1, as on the square.
 
 use crate::{PlanePoint, gauss_jacobi, gauss_legendre};
 

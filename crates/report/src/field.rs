@@ -21,7 +21,8 @@ impl<'a> Field<'a> {
     /// A field of `mesh.len()` × `bands.len()` values of irradiance and of radiosity, W/m².
     ///
     /// # Errors
-    /// [`ReportError::Length`] for a vector of another length, [`ReportError::NotFinite`] for NaN or infinity.
+    /// [`ReportError::Length`] for a vector of another length, [`ReportError::NotFinite`] for NaN
+    /// or infinity.
     pub fn new(
         mesh: &'a Mesh,
         bands: &'a [String],
@@ -34,8 +35,8 @@ impl<'a> Field<'a> {
         Ok(field)
     }
 
-    /// The field with its exitance M, W/m², of the same shape: it adds powers to the table of surfaces and tells the
-    /// picture which elements are lamps.
+    /// The field with its exitance M, W/m², of the same shape: it adds powers to the table of
+    /// surfaces and tells the picture which elements are lamps.
     ///
     /// # Errors
     /// As for [`Field::new`].
@@ -45,8 +46,9 @@ impl<'a> Field<'a> {
         Ok(self)
     }
 
-    /// The field with the exposed share of each leaf, in [0, 1]: 1 but where an element is partly buried, as the floor is
-    /// under a box. Values of the field are means over whole elements; the picture shows the exposed part.
+    /// The field with the exposed share of each leaf, in [0, 1]: 1 but where an element is partly
+    /// buried, as the floor is under a box. Values of the field are means over whole elements; the
+    /// picture shows the exposed part.
     ///
     /// # Errors
     /// [`ReportError::Length`] for a vector that has not one share a leaf.
@@ -128,8 +130,8 @@ impl<'a> Field<'a> {
 
     /// The values of one leaf in all bands.
     pub(crate) fn row(&self, values: &'a [f64], leaf: usize) -> &'a [f64] {
-        let lanes = self.bands.len();
-        &values[leaf * lanes..(leaf + 1) * lanes]
+        let bands = self.bands.len();
+        &values[leaf * bands..(leaf + 1) * bands]
     }
 }
 
@@ -138,7 +140,8 @@ pub(crate) mod tests {
     use super::*;
     use fredholm_mesh::{MeshBuilder, Patch, Vec3};
 
-    /// A wall of nx × ny rectangles in the plane z = 0, one face each, lit towards +z, between the given lines.
+    /// A wall of nx × ny rectangles in the plane z = 0, one face each, lit towards +z, between the
+    /// given lines.
     pub(crate) fn grid(builder: &mut MeshBuilder, xs: &[f64], ys: &[f64]) {
         for y in ys.windows(2) {
             for x in xs.windows(2) {

@@ -1,13 +1,15 @@
 //! `field.vtu`: a VTK unstructured grid for `ParaView`.
 //!
-//! Format: VTK XML, version 1.0, little endian, appended data in blocks of 1 MiB, each compressed by zlib (RFC 1950), `UInt64` headers
-//! (<https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html>). Each cell is a leaf element: a triangle
-//! (type 5), a quad (type 9), or a polygon (type 7) where smaller elements have corners on its sides: so every side within a face is one of two cells, and
-//! there are no cracks. Elements that shade smoothly into each other share their points, so that a smoothing filter
+//! Format: VTK XML, version 1.0, little endian, appended data in blocks of 1 MiB, each compressed
+//! by zlib (RFC 1950), `UInt64` headers
+//! (<https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html>). Each cell is a leaf
+//! element: a triangle (type 5), a quad (type 9), or a polygon (type 7) where smaller elements have
+//! corners on its sides: so every side within a face is one of two cells, and there are no cracks.
+//! Elements that shade smoothly into each other share their points, so that a smoothing filter
 //! keeps surfaces and edges apart. Points in metres.
 //!
-//! Cell data: `element`, `face`, `surface` (numbers, from 0), `area` (m²), `exposed` (share not buried), and band by band `irradiance_BAND` and
-//! `radiosity_BAND` (W/m²).
+//! Cell data: `element`, `face`, `surface` (numbers, from 0), `area` (m²), `exposed` (share not
+//! buried), and band by band `irradiance_BAND` and `radiosity_BAND` (W/m²).
 
 use std::io::{self, Write};
 
@@ -61,7 +63,8 @@ impl<'a> Array<'a> {
         writeln!(out, " format=\"appended\" offset=\"{offset}\"/>")
     }
 
-    /// The number of blocks, their size, that of the last one where it is smaller, the sizes of the compressed blocks, and these.
+    /// The number of blocks, their size, that of the last one where it is smaller, the sizes of the
+    /// compressed blocks, and these.
     fn compressed(&self) -> io::Result<Vec<u8>> {
         let mut blocks = Blocks::default();
         (self.fill)(&mut blocks)?;
@@ -204,13 +207,13 @@ fn data<'a>(field: &Field<'a>) -> Vec<Array<'a>> {
         Array::floats("exposed".to_owned(), 1, move || (0..n).map(move |leaf| field.exposed(leaf))),
     ];
     for band in 0..field.bands().len() {
-        arrays.push(lane(&field, "irradiance", field.irradiance(), band));
-        arrays.push(lane(&field, "radiosity", field.radiosity(), band));
+        arrays.push(of_band(&field, "irradiance", field.irradiance(), band));
+        arrays.push(of_band(&field, "radiosity", field.radiosity(), band));
     }
     arrays
 }
 
-fn lane<'a>(field: &Field<'a>, what: &str, values: &'a [f64], band: usize) -> Array<'a> {
+fn of_band<'a>(field: &Field<'a>, what: &str, values: &'a [f64], band: usize) -> Array<'a> {
     let bands = field.bands();
     let picked = move || values.iter().skip(band).step_by(bands.len()).copied();
     Array::floats(format!("{what}_{}", bands[band]), 1, picked)

@@ -1,4 +1,5 @@
-//! A mesh file on its own as a scene: materials from its libraries, light from all sides where nothing emits, a camera before it.
+//! A mesh file on its own as a scene: materials from its libraries, light from all sides where
+//! nothing emits, a camera before it.
 
 use std::f64::consts::PI;
 use std::path::Path;

@@ -41,8 +41,8 @@ impl Files {
         Ok(bytes)
     }
 
-    /// SHA-256 (FIPS 180-4) of the scene's text and of the name, length and bytes of every other file, in the order
-    /// of the names; in hexadecimal. It does not depend on where the files lie.
+    /// SHA-256 (FIPS 180-4) of the scene's text and of the name, length and bytes of every other
+    /// file, in the order of the names; in hexadecimal. It does not depend on where the files lie.
     pub fn fingerprint(&self, scene: &str) -> String {
         let mut digest = Sha256::new();
         digest.update((scene.len() as u64).to_le_bytes());

@@ -1,8 +1,10 @@
-//! Geometry for a view-factor matrix: from a scene, or from a bare mesh file whose faces are the patches.
+//! Geometry for a view-factor matrix: from a scene, or from a bare mesh file whose faces are the
+//! patches.
 //!
-//! A bare file has no materials: faces are lit on the side from which their corners run counter-clockwise. In a View3D file
-//! surfaces may be combined into one (the combine column), lie within another (the base column: the base is what is left
-//! around them) and block the view without radiating. Metres.
+//! A bare file has no materials: faces are lit on the side from which their corners run
+//! counter-clockwise. In a View3D file surfaces may be combined into one (the combine column), lie
+//! within another (the base column: the base is what is left around them) and block the view
+//! without radiating. Metres.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -176,8 +178,8 @@ impl Geometry {
         }
     }
 
-    /// Number of elements of a scene, known without meshing it; of a mesh file, the number of its faces, of which some may have
-    /// several elements.
+    /// Number of elements of a scene, known without meshing it; of a mesh file, the number of its
+    /// faces, of which some may have several elements.
     #[must_use]
     pub fn predicted_elements(&self) -> u128 {
         match &self.origin {
@@ -252,8 +254,8 @@ impl MeshFile {
 }
 
 impl Surfaces {
-    /// The rows of a matrix by elements, faces or surfaces. A row that is alone in its surface has the surface's name, others have a
-    /// number behind it.
+    /// The rows of a matrix by elements, faces or surfaces. A row that is alone in its surface has
+    /// the surface's name, others have a number behind it.
     #[must_use]
     pub fn rows(&self, by: By) -> Rows {
         let mesh = &self.mesh;
@@ -332,7 +334,8 @@ fn mesh_file(imported: Imported) -> Result<MeshFile, SceneError> {
     Ok(MeshFile { source, title: None, surfaces, obstructions: vec![], tolerance: None, warnings })
 }
 
-/// Says where faces lie on each other and are lit on the same side: each has its row, and light is counted twice.
+/// Says where faces lie on each other and are lit on the same side: each has its row, and light is
+/// counted twice.
 fn doubled(mended: &Mended) -> Option<String> {
     let blockers = |shape: &Shape| shape.blockers(&Cutting::default()).unwrap_or_default();
     // What makes no blockers is refused when it is meshed.
@@ -370,7 +373,8 @@ fn within_reach<'a>(
     Err(source.error(ErrorKind::Value, span.clone(), what, "scale the coordinates down"))
 }
 
-/// The surfaces of a View3D file: combined ones are one surface, subsurfaces are cut out of their base.
+/// The surfaces of a View3D file: combined ones are one surface, subsurfaces are cut out of their
+/// base.
 fn view3d(file: View3d) -> Result<MeshFile, SceneError> {
     let mut surfaces: Vec<Input> = vec![];
     let mut place = vec![0; file.surfaces.len()];

@@ -1,10 +1,11 @@
 //! Scene files: from TOML and OBJ to a meshed problem.
 //!
-//! A scene file names surfaces, what they are made of and how they are cut. [`Scene::load`] reads it and the files it
-//! names, and refuses what makes no sense with a [`SceneError`] that points at the place. [`Scene::mesh`] cuts the
-//! surfaces, [`Scene::check`] looks for mistakes that only the whole geometry shows, [`Scene::report`] tells what a mesh is. A mesh file
-//! stands for a scene, too. [`Scene::outline`] is the scene as other programs read it. [`schema()`] is the JSON Schema of
-//! the format.
+//! A scene file names surfaces, what they are made of and how they are cut. [`Scene::load`] reads
+//! it and the files it names, and refuses what makes no sense with a [`SceneError`] that points at
+//! the place. [`Scene::mesh`] cuts the surfaces, [`Scene::check`] looks for mistakes that only the
+//! whole geometry shows, [`Scene::report`] tells what a mesh is. A mesh file stands for a scene,
+//! too. [`Scene::outline`] is the scene as other programs read it. [`schema()`] is the JSON Schema
+//! of the format.
 //!
 //! Units: metres, degrees where a name says so, W/m².
 

@@ -1,4 +1,5 @@
-//! From the text of a scene file to its entries; what the TOML reader says becomes a [`SceneError`].
+//! From the text of a scene file to its entries; what the TOML reader says becomes a
+//! [`SceneError`].
 //!
 //! TOML 1.1: <https://toml.io/en/v1.1.0>.
 
@@ -90,8 +91,8 @@ fn form(shape: &str) -> &'static str {
     FORMS.iter().find(|(name, _)| *name == shape).map_or("", |(_, form)| form)
 }
 
-/// The shape that a line gives as a list, where the piece at `span` is in it: the reader takes a list for the values of
-/// the table in their order, and complains of one of them.
+/// The shape that a line gives as a list, where the piece at `span` is in it: the reader takes a
+/// list for the values of the table in their order, and complains of one of them.
 fn table_as_list(source: &Source, span: &Range<usize>) -> Option<&'static str> {
     let before = source.text.get(..span.start)?;
     let line = &source.text[before.rfind('\n').map_or(0, |end| end + 1)..];

@@ -51,8 +51,9 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Reads a scene file and the files it names, or a mesh file (OBJ, STL, PLY, glTF, Gmsh, Radiance, Mitsuba,
-    /// View3D, known by the ending of its name) that stands for a scene: with the materials of its libraries, and evenly lit from all sides where none of them emits.
+    /// Reads a scene file and the files it names, or a mesh file (OBJ, STL, PLY, glTF, Gmsh,
+    /// Radiance, Mitsuba, View3D, known by the ending of its name) that stands for a scene: with
+    /// the materials of its libraries, and evenly lit from all sides where none of them emits.
     ///
     /// # Errors
     /// [`SceneError`], with file and line, for anything that is wrong with them.
@@ -74,8 +75,8 @@ impl Scene {
         Self::from_source(Source::of(path.as_ref(), text.to_owned()))
     }
 
-    /// Reads a scene from text, and the files that it names from memory: bytes by the name that the text has for
-    /// the file. Other files are looked for in the folder of `path`.
+    /// Reads a scene from text, and the files that it names from memory: bytes by the name that the
+    /// text has for the file. Other files are looked for in the folder of `path`.
     ///
     /// ```
     /// use fredholm_scene::Scene;
@@ -216,18 +217,22 @@ impl Scene {
         self.refined_mesh(1)
     }
 
-    /// Cuts the surfaces into the same faces as [`mesh`](Self::mesh), and every element of those into `refinement` × `refinement`.
+    /// Cuts the surfaces into the same faces as [`mesh`](Self::mesh), and every element of those
+    /// into `refinement` × `refinement`.
     ///
     /// # Errors
-    /// [`SceneError`] with the line of a surface that cannot be meshed, or would have more elements than an index can hold.
+    /// [`SceneError`] with the line of a surface that cannot be meshed, or would have more elements
+    /// than an index can hold.
     pub fn refined_mesh(&self, refinement: usize) -> Result<Mesh, SceneError> {
         self.mesh_with(|per_side| per_side.saturating_mul(refinement))
     }
 
-    /// Cuts the surfaces into the same faces as [`mesh`](Self::mesh), and those into as few elements as they are flat pieces.
+    /// Cuts the surfaces into the same faces as [`mesh`](Self::mesh), and those into as few
+    /// elements as they are flat pieces.
     ///
     /// # Errors
-    /// [`SceneError`] with the line of a surface that cannot be meshed, or would have more elements than an index can hold.
+    /// [`SceneError`] with the line of a surface that cannot be meshed, or would have more elements
+    /// than an index can hold.
     pub fn face_mesh(&self) -> Result<Mesh, SceneError> {
         self.mesh_with(|_| 1)
     }
@@ -258,13 +263,15 @@ impl Scene {
         self.materials()[material].exitance.iter().any(|&exitance| exitance > 0.0)
     }
 
-    /// Reflectance of every leaf of a mesh of this scene, leaf-major: that of leaf i in band l is at i × bands + l.
+    /// Reflectance of every leaf of a mesh of this scene, leaf-major: that of leaf i in band l is
+    /// at i × bands + l.
     #[must_use]
     pub fn reflectance(&self, mesh: &Mesh) -> Vec<f64> {
         self.per_leaf(mesh, |material| &material.reflectance)
     }
 
-    /// Exitance of every leaf of a mesh of this scene, W/m², leaf-major: that of leaf i in band l is at i × bands + l.
+    /// Exitance of every leaf of a mesh of this scene, W/m², leaf-major: that of leaf i in band l
+    /// is at i × bands + l.
     #[must_use]
     pub fn exitance(&self, mesh: &Mesh) -> Vec<f64> {
         self.per_leaf(mesh, |material| &material.exitance)
@@ -285,7 +292,8 @@ impl Scene {
         &self.meaning.findings
     }
 
-    /// What was read from material libraries and what was mended. [`check`](Self::check) tells it, too.
+    /// What was read from material libraries and what was mended. [`check`](Self::check) tells it,
+    /// too.
     #[must_use]
     pub fn notes(&self) -> &[Warning] {
         &self.meaning.notes

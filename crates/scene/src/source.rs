@@ -46,8 +46,8 @@ impl Source {
         }
     }
 
-    /// Takes bytes for UTF-8 or else for Latin-1, in which old programs write names and comments of mesh files. What holds a zero
-    /// byte is no text.
+    /// Takes bytes for UTF-8 or else for Latin-1, in which old programs write names and comments of
+    /// mesh files. What holds a zero byte is no text.
     pub fn decode_mesh(path: &Path, bytes: Vec<u8>) -> Result<Self, SceneError> {
         if let Some(offset) = bytes.iter().position(|&byte| byte == 0) {
             return Err(not_text(path, &bytes, offset));

@@ -1,7 +1,7 @@
 //! The known name that was probably meant.
 //!
-//! Distance of two words: the fewest insertions, deletions and replacements of a character that turn one into the
-//! other (V. I. Levenshtein, Soviet Physics Doklady 10, 707, 1966).
+//! Distance of two words: the fewest insertions, deletions and replacements of a character that
+//! turn one into the other (V. I. Levenshtein, Soviet Physics Doklady 10, 707, 1966).
 
 /// Help for an unknown name: the nearest known one, then all of them. `plural` names what they are.
 pub(crate) fn among<'a>(name: &str, known: impl IntoIterator<Item = &'a str>, plural: &str) -> String {

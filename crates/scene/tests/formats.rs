@@ -1,5 +1,6 @@
-//! Files in the formats of others: what is written is read back with the same values, and damaged files
-//! are read or refused at a line or a byte, without a panic and without memory for what is not there.
+//! Files in the formats of others: what is written is read back with the same values, and damaged
+//! files are read or refused at a line or a byte, without a panic and without memory for what is
+//! not there.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -273,7 +274,8 @@ fn put(folder: &Path, files: &[(String, Vec<u8>)]) {
     }
 }
 
-/// Numbers by a linear congruential generator (D. E. Knuth, The Art of Computer Programming, vol. 2).
+/// Numbers by a linear congruential generator (D. E. Knuth, The Art of Computer Programming, vol.
+/// 2).
 struct Chance(u64);
 
 impl Chance {

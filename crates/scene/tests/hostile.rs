@@ -1,4 +1,5 @@
-//! Scenes that are wrong: each is refused with the file, the place, the offending text and what to do.
+//! Scenes that are wrong: each is refused with the file, the place, the offending text and what to
+//! do.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 

@@ -50,7 +50,8 @@ fn the_references_have_the_faces_of_their_patches() {
     }
     let (scene, mesh) = load("cornell_planar.toml");
     assert_eq!(scene.bands(), ["r", "g", "b"]);
-    // A cell of the ceiling that touches the lamp: 71 mm × 75.667 mm, beginning at x = 142 mm, z = 151.333 mm.
+    // A cell of the ceiling that touches the lamp: 71 mm × 75.667 mm, beginning at x = 142 mm, z =
+    // 151.333 mm.
     let near = Vec3::new(0.1775, 0.5488, 0.189_166_666_666_666_67);
     let face = mesh.faces().iter().find(|face| face.centroid.distance(near) < 1e-9).unwrap();
     assert_close(face.area, 0.071 * 0.227 / 3.0, "cell");
@@ -85,7 +86,8 @@ fn the_cornell_box_is_the_published_one() {
 #[test]
 fn the_left_wall_of_the_cornell_box_is_a_bilinear_surface() {
     let (_, mesh) = load("cornell_box.toml");
-    // x(u, v) = 552.8 − 3.2 u + v (3.2 + 3.2 u) mm at z = 559.2 u, y = 548.8 v; area by the midpoint rule.
+    // x(u, v) = 552.8 − 3.2 u + v (3.2 + 3.2 u) mm at z = 559.2 u, y = 548.8 v; area by the
+    // midpoint rule.
     let (w, h, n) = (0.5592, 0.5488, 400);
     let cell = |i: usize, j: usize| {
         let [u, v] = [i, j].map(|k| (k as f64 + 0.5) / f64::from(n));

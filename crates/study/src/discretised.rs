@@ -100,7 +100,7 @@ fn closed(seen: f64, share: f64) -> f64 {
 fn energy(problem: &Problem, means: &Means, exposed: &[f64], closure: &[f64]) -> Result<Vec<Energy>, Error> {
     let reflectance = problem.multivector(problem.scene.reflectance(&problem.mesh))?;
     let exitance = problem.multivector(problem.scene.exitance(&problem.mesh))?;
-    let x = MultiVector::from_fn(exitance.dim(), exitance.lanes(), |i, band| {
+    let x = MultiVector::from_fn(exitance.dim(), exitance.rhs_count(), |i, band| {
         let reflected = reflectance.row(i)[band] * means.irradiance.row(i)[band];
         exitance.row(i)[band] + if exposed[i] > 0.0 { reflected / exposed[i] } else { 0.0 }
     });

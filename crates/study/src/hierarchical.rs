@@ -20,7 +20,7 @@ use crate::choice::{Choice, expected};
 use crate::error::{Error, ErrorKind};
 use crate::memory::{Limit, Plan};
 use crate::options::{Precision, ProblemSettings, RADIOSITY, SolveOptions, SolveSettings};
-use crate::prediction::{Dense, MESH, Prediction, Size, results};
+use crate::prediction::{Dense, MESH, Pictures, Prediction, Size, results};
 use crate::problem::{Problem, check, occluders, pixels, scene_failure};
 use crate::registry::{self, SolverEntry};
 use crate::size::Bytes;
@@ -43,8 +43,9 @@ const PICTURES: usize = 3;
 /// for results of the elements, whose number is not known before.
 const SHARE: f64 = 0.6;
 
-/// Share of what tree and links take that is still there when the results are written.
-const KEPT: f64 = 0.87;
+/// Share of what tree and links take that is still there when the results are written and has no room
+/// for them.
+const KEPT: f64 = 0.5;
 /// Growth of elements and links in a round, where none is known yet, and the most that is expected.
 const GROWTH: f64 = 2.0;
 const MOST_GROWTH: f64 = 3.0;
@@ -110,8 +111,7 @@ fn unsuitable(solver: &str) -> Error {
 struct Forecast {
     faces: usize,
     bands: usize,
-    pixels: u128,
-    pictures: usize,
+    pictures: Pictures,
     /// Bytes that tree and links may take.
     most: u64,
     limit: Limit,
@@ -128,7 +128,7 @@ impl Forecast {
                 (bytes as f64 * KEPT) as u128,
             )
             .stage("their solution", (bytes as f64 * (1.0 - KEPT)) as u128)
-            .stage("results and pictures", results(elements, self.bands, self.pixels, self.pictures))
+            .stage("results and pictures", results(elements, self.bands, self.pictures))
     }
 
     /// After so many rounds: what there is, or where the accuracy is not reached yet what the next
@@ -154,8 +154,7 @@ impl Forecast {
         Self {
             faces,
             bands: scene.bands().len(),
-            pixels: pixels(scene),
-            pictures: pictures(options),
+            pictures: pictures(scene, options),
             most,
             limit: options.problem.memory_limit(),
         }
@@ -279,12 +278,14 @@ fn plan(scene: &Scene, count: usize, options: &SolveSettings) -> Plan {
     let bands = scene.bands().len();
     Plan::default()
         .hold(format!("{count} faces"), MESH * count as u128)
-        .hold("results and pictures", results(count, bands, pixels(scene), pictures(options)))
+        .hold("results and pictures", results(count, bands, pictures(scene, options)))
 }
 
 /// Pictures that are drawn.
-fn pictures(options: &SolveSettings) -> usize {
-    PICTURES + usize::from(options.final_gather)
+fn pictures(scene: &Scene, options: &SolveSettings) -> Pictures {
+    let drawn = PICTURES + usize::from(options.final_gather);
+    let count = if options.no_pictures { 0 } else { drawn };
+    Pictures { pixels: pixels(scene), count, lit: true }
 }
 
 fn limits(options: &SolveSettings, accuracy: f64, plan: &Plan) -> Limits {

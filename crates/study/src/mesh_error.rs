@@ -3,7 +3,7 @@
 //!
 //! Both are sources of light that the solution does not have, and are reflected as light is: an
 //! error δE of the irradiance follows from its source p (W) by (I − D G) δB = D p, δE = (p + G
-//! δB)/A, with the matrix that is there. Sources are, in lanes side by side:
+//! δB)/A, with the matrix that is there. Sources are, side by side:
 //!
 //! - the residual of the continuous equation at sampled points ([`fredholm_coupling::Constants`]),
 //!   once a draw;
@@ -96,7 +96,7 @@ impl Rows {
             let defect = 0.5 * (1.0 - sums[i]);
             if closed { defect } else { defect.min(0.0) }
         };
-        let (n, bands) = (x.dim(), x.lanes());
+        let (n, bands) = (x.dim(), x.rhs_count());
         let weighed = MultiVector::from_fn(n, bands, |i, l| half(i) * x.row(i)[l]);
         let given = radiosity.means(&assembled.matrix, &weighed).irradiance;
         let closing = MultiVector::from_fn(n, bands, |i, l| {
@@ -115,29 +115,29 @@ impl Rows {
     }
 }
 
-/// δE of the elements, W/m²: elements × (lanes of the residual, closing rows, stated errors of
-/// rows).
+/// δE of the elements, W/m²: elements × (right-hand sides of the residual, closing rows, stated
+/// errors of rows).
 fn follow<S: Storage>(
     radiosity: &Radiosity,
     assembled: &Assembled<S>,
     (residual, rows): (&Residual, &Rows),
     watcher: Watcher,
 ) -> Result<Option<MultiVector<f64>>, Error> {
-    let bands = rows.closing.lanes();
+    let bands = rows.closing.rhs_count();
     let sampled = residual.draws * bands;
-    let lanes = sampled + 2 * bands;
-    let source = MultiVector::from_fn(rows.closing.dim(), lanes, |i, lane| match lane {
-        _ if lane < sampled => residual.power.row(i)[lane],
-        _ if lane < sampled + bands => rows.closing.row(i)[lane - sampled],
-        _ => rows.stated.row(i)[lane - sampled - bands],
+    let rhs_count = sampled + 2 * bands;
+    let source = MultiVector::from_fn(rows.closing.dim(), rhs_count, |i, rhs| match rhs {
+        _ if rhs < sampled => residual.power.row(i)[rhs],
+        _ if rhs < sampled + bands => rows.closing.row(i)[rhs - sampled],
+        _ => rows.stated.row(i)[rhs - sampled - bands],
     });
-    let stays = |lane: usize| rows.closed && lane >= sampled + bands;
+    let stays = |rhs: usize| rows.closed && rhs >= sampled + bands;
     let (scaling, sizes) = (radiosity.scaling(), radiosity.elements());
-    let emitted = MultiVector::from_fn(source.dim(), lanes, |i, lane| {
-        if stays(lane) { 0.0 } else { scaling.row(i)[lane % bands] * source.row(i)[lane] }
+    let emitted = MultiVector::from_fn(source.dim(), rhs_count, |i, rhs| {
+        if stays(rhs) { 0.0 } else { scaling.row(i)[rhs % bands] * source.row(i)[rhs] }
     });
     let reflectance =
-        MultiVector::from_fn(source.dim(), lanes, |i, lane| radiosity.reflectance().row(i)[lane % bands]);
+        MultiVector::from_fn(source.dim(), rhs_count, |i, rhs| radiosity.reflectance().row(i)[rhs % bands]);
     let system = Radiosity::new(sizes.to_vec(), reflectance, emitted).map_err(coupling_failure)?;
     let solver = registry::build(registry::DEFAULT).map_err(|error| Error::new(ErrorKind::Input, error))?;
     let (change, report) = solve_with(&*solver.solver, &system, &assembled.matrix, watcher.until(STOP))?;
@@ -145,15 +145,15 @@ fn follow<S: Storage>(
         return Ok(None);
     }
     let received = system.means(&assembled.matrix, &change).irradiance;
-    Ok(Some(MultiVector::from_fn(source.dim(), lanes, |i, lane| {
-        source.row(i)[lane] / sizes[i].area + received.row(i)[lane]
+    Ok(Some(MultiVector::from_fn(source.dim(), rhs_count, |i, rhs| {
+        source.row(i)[rhs] / sizes[i].area + received.row(i)[rhs]
     })))
 }
 
 /// The stated error of the faces: the sampled part without most of its noise, and the errors of the
 /// form factors.
 fn stated(mesh: &Mesh, irradiance: &MultiVector<f64>, errors: &MultiVector<f64>, draws: usize) -> MeshError {
-    let (bands, areas) = (irradiance.lanes(), areas(mesh));
+    let (bands, areas) = (irradiance.rhs_count(), areas(mesh));
     let (values, errors) = (of_faces(mesh, irradiance), of_faces(mesh, errors));
     let sampled = Sampled::new(&errors, (draws, bands), &areas);
     let delta = |face: usize, band: usize| {
@@ -207,8 +207,8 @@ fn areas(mesh: &Mesh) -> Vec<f64> {
 
 /// Area means over the faces.
 fn of_faces(mesh: &Mesh, values: &MultiVector<f64>) -> MultiVector<f64> {
-    MultiVector::from_fn(mesh.faces().len(), values.lanes(), |face, lane| {
-        let part = |leaf: usize| mesh.patch(leaf).area() * values.row(leaf)[lane];
+    MultiVector::from_fn(mesh.faces().len(), values.rhs_count(), |face, rhs| {
+        let part = |leaf: usize| mesh.patch(leaf).area() * values.row(leaf)[rhs];
         mesh.leaves_of_face(face).map(part).sum::<f64>() / mesh.faces()[face].area
     })
 }
@@ -230,22 +230,22 @@ pub(crate) fn of_shooting(
         Err(CouplingError::Interrupted { .. }) => return Ok(None),
         Err(error) => return Err(coupling_failure(error)),
     };
-    let (bands, sizes) = (unshot.lanes(), constants.elements);
+    let (bands, sizes) = (unshot.rhs_count(), constants.elements);
     let sampled = residual.draws * bands;
     let all = || 0..mesh.len();
-    let reflected = |lane: usize| -> f64 {
-        let rho = |i: usize| constants.reflectance.row(i)[lane % bands];
-        all().map(|i| rho(i) * residual.power.row(i)[lane]).sum()
+    let reflected = |rhs: usize| -> f64 {
+        let rho = |i: usize| constants.reflectance.row(i)[rhs % bands];
+        all().map(|i| rho(i) * residual.power.row(i)[rhs]).sum()
     };
     let left = |band: usize| all().map(|i| sizes[i].exposed * unshot.row(i)[band].abs()).sum::<f64>();
     let missing: Vec<f64> = (0..bands).map(|band| left(band) / absorbing(constants, band)).collect();
     let ambient: Vec<f64> = (0..sampled)
-        .map(|lane| reflected(lane) / absorbing(constants, lane % bands))
+        .map(|rhs| reflected(rhs) / absorbing(constants, rhs % bands))
         .chain(missing.iter().map(|missing| UNEVEN * missing))
         .collect();
-    let errors = MultiVector::from_fn(mesh.len(), sampled + 2 * bands, |i, lane| match lane {
-        _ if lane < sampled => residual.power.row(i)[lane] / sizes[i].area + ambient[lane],
-        _ if lane < sampled + bands => ambient[lane],
+    let errors = MultiVector::from_fn(mesh.len(), sampled + 2 * bands, |i, rhs| match rhs {
+        _ if rhs < sampled => residual.power.row(i)[rhs] / sizes[i].area + ambient[rhs],
+        _ if rhs < sampled + bands => ambient[rhs],
         _ => 0.0,
     });
     // What the error is relative to has the light in it that is still to come.

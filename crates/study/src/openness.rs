@@ -3,16 +3,12 @@
 //!
 //! What a surface sends is spread as cos θ dω/π. A set of rays whose origins are even over the area
 //! and whose directions follow that density meets nothing with the probability that light leaves the
-//! scene. The points are those of the additive recurrence x_k = (k α_1, …, k α_4) mod 1 with
-//! α_i = g^−i, g⁵ = g + 1 (M. Roberts, "The unreasonable effectiveness of quasirandom sequences",
-//! 2018); along the area they are equidistant.
+//! scene. Along the area they are equidistant, otherwise those of
+//! [`rays`](fredholm_coupling::rays).
 
-use std::f64::consts::TAU;
-
-use fredholm_coupling::polygon::folded;
-use fredholm_mesh::{Patch, Vec3};
+use fredholm_coupling::rays::{Meets, cosine_ray, meets, recurrence};
+use fredholm_mesh::Patch;
 use fredholm_report::Closure;
-use fredholm_visibility::Occluders;
 use rayon::prelude::*;
 
 use crate::problem::{Problem, prepare};
@@ -21,8 +17,6 @@ use crate::problem::{Problem, prepare};
 const RAYS: usize = 1 << 14;
 /// Rays that are cast one after the other.
 const CHUNK: usize = 256;
-/// The root g of g⁵ = g + 1.
-const ROOT: f64 = 1.167_303_978_261_418_7;
 
 /// Where a ray ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -70,14 +64,16 @@ fn ends(whole: &[usize], areas: &[f64], problem: &Problem) -> Option<Ends> {
     // The sides of the faces: an occluder stands for both sides of a plate.
     let faces: Vec<Patch> = problem.scene.face_mesh().ok()?.patches().copied().collect();
     let lit = prepare(&faces).ok()?;
+    let faces: Vec<&Patch> = faces.iter().collect();
     let end = |ray: usize| {
         let at = (ray as f64 + 0.5) / RAYS as f64 * total;
         let element = sums.partition_point(|&sum| sum < at).min(whole.len() - 1);
-        let [u, v, tilt, turn] = numbers(ray);
-        let patch = mesh.patch(whole[element]);
-        let (u, v) = folded(patch, u, v);
-        let direction = direction(patch.normal(), tilt, turn);
-        ended(patch.point(u, v), direction, &faces, &lit)
+        let (from, direction) = cosine_ray(mesh.patch(whole[element]), recurrence(ray, [0.5; 4]));
+        match meets(from, direction, &faces, &lit) {
+            Meets::Nothing => Ends { nowhere: 1, back: 0 },
+            Meets::Back => Ends { nowhere: 0, back: 1 },
+            Meets::Lit => Ends::default(),
+        }
     };
     let counts: Vec<Ends> = (0..RAYS.div_ceil(CHUNK))
         .into_par_iter()
@@ -88,46 +84,4 @@ fn ends(whole: &[usize], areas: &[f64], problem: &Problem) -> Option<Ends> {
 
 fn add(a: Ends, b: Ends) -> Ends {
     Ends { nowhere: a.nowhere + b.nowhere, back: a.back + b.back }
-}
-
-/// Four numbers in [0, 1), those of the recurrence.
-fn numbers(k: usize) -> [f64; 4] {
-    [1, 2, 3, 4].map(|power| (0.5 + (k as f64) * ROOT.powi(-power)).fract())
-}
-
-/// A direction of the density cos θ/π about a normal, from two numbers in [0, 1).
-fn direction(normal: Vec3, tilt: f64, turn: f64) -> Vec3 {
-    let across = normal.any_orthonormal_vector();
-    let other = normal.cross(across);
-    let (sine, (y, x)) = (tilt.sqrt(), (TAU * turn).sin_cos());
-    normal * (1.0 - tilt).sqrt() + (across * x + other * y) * sine
-}
-
-fn ended(from: Vec3, direction: Vec3, faces: &[Patch], lit: &Occluders) -> Ends {
-    match lit.closest(from, direction, f64::INFINITY) {
-        None => Ends { nowhere: 1, back: 0 },
-        Some(hit) if faces[hit.patch].normal().dot(direction) > 0.0 => Ends { nowhere: 0, back: 1 },
-        Some(_) => Ends::default(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn directions_follow_the_cosine() {
-        let n = 4096;
-        let mean = |of: fn(Vec3) -> f64| {
-            let all = (0..n).map(|k| {
-                let [_, _, tilt, turn] = numbers(k);
-                of(direction(Vec3::Z, tilt, turn))
-            });
-            all.sum::<f64>() / f64::from(n as u32)
-        };
-        // ∫ cos θ · cos θ/π dω = 2/3, ∫ sin² θ cos² φ cos θ/π dω = 1/4.
-        assert!((mean(|d| d.z) - 2.0 / 3.0).abs() < 1e-3);
-        assert!((mean(|d| d.x * d.x) - 0.25).abs() < 1e-3);
-        assert!(mean(|d| d.y).abs() < 1e-3);
-    }
 }

@@ -134,7 +134,7 @@ impl<'a> Source<'a> {
             let all = means.irradiance.row(element)[band];
             if all > 0.0 { brought / all } else { 0.0 }
         };
-        (0..means.irradiance.lanes()).map(share).fold(0.0, f64::max)
+        (0..means.irradiance.rhs_count()).map(share).fold(0.0, f64::max)
     }
 }
 

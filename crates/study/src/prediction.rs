@@ -18,21 +18,27 @@ use crate::stages::Stages;
 pub(crate) const MESH: u128 = 600;
 /// Bytes of an element while its exchanges are computed: quadrature points, clusters, error sums.
 pub(crate) const ASSEMBLY: u128 = 800;
-/// Bytes of an element that is shot from: quadrature points, groups, the tree of elements.
-const SHOT: u128 = 1500;
+/// Bytes of an element that is shot from: quadrature points, groups, the tree of elements. Of each of
+/// its values while shots go on; of it and of each of its values while errors are followed.
+const SHOT: u128 = 1450;
+const SHOT_VALUE: u128 = 200;
+const SHOT_ERRORS: u128 = 130;
+const SHOT_ERROR_VALUE: u128 = 630;
 /// Of the entries on their way, many small pieces, the C library still has one in so many when they
 /// have arrived.
 const RETAINED: u128 = 2;
-/// Bytes of an element while results are written, and of each of its values: what rays are cast at
-/// for the picture, welded corners, the composed file of arrays.
+/// Bytes while results are written: of any, for the page and the plots; of an element and of each of
+/// its values, for welded corners and the composed file of arrays.
+const PAGE: u128 = 2 << 20;
 const RESULTS: u128 = 650;
 const VALUE: u128 = 50;
-/// Bytes of an element in the picture with lamps, and of each of its values: colours at corners, how it
-/// lies to eight parts of lamps, reflectance and direct light. Of a pixel: what is seen through its
-/// middle, its linear colours, and either once more in the tiles that it is put together from.
-const LIT: u128 = 500;
+/// Bytes of an element while pictures are drawn: what rays are cast at, how it lies to eight parts of
+/// lamps. Of each of its values where lamps light the picture: colours at corners, reflectance and
+/// direct light. Of a pixel there: what is seen through its middle, its linear colours, and either once
+/// more in the tiles that it is put together from.
+const DRAWN: u128 = 500;
 const LIT_VALUE: u128 = 24;
-const LIT_PIXEL: u128 = 40;
+const LIT_PIXEL: u128 = 37;
 /// Bytes of a pixel while the exposure is found, and in each picture: while it is drawn, and when
 /// all are taken apart. Besides, what the last rows take.
 const METERED: u128 = 14;
@@ -180,19 +186,34 @@ pub(crate) fn waiting<S: Storage>(elements: usize, errors: bool) -> u64 {
 /// A computation without a matrix, where columns may take `kept`; groups of elements take as much
 /// as elements.
 pub(crate) fn without_matrix(elements: usize, bands: usize, kept: Bytes) -> Plan {
-    let n = elements as u128;
+    let (n, values) = (elements as u128, elements as u128 * bands as u128);
     Plan::default()
-        .hold(
-            format!("{elements} elements and groups of them"),
-            n * (MESH + SHOT + VECTORS * 8 * bands as u128),
-        )
-        .hold("columns that are kept", kept.0)
+        .hold(format!("{elements} elements and groups of them"), n * (MESH + SHOT))
+        .stage("columns that are kept, and the field", kept.0.saturating_add(values * SHOT_VALUE))
+        .stage("the errors of the field", n * SHOT_ERRORS + values * SHOT_ERROR_VALUE)
 }
 
-/// Bytes of the results of so many elements and of pictures of so many pixels.
-pub(crate) fn results(elements: usize, bands: usize, pixels: u128, pictures: usize) -> u128 {
-    let fields = elements as u128 * (RESULTS + LIT + (VALUE + LIT_VALUE) * bands as u128);
-    fields.saturating_add(pictured(pixels, pictures).max(pixels.saturating_mul(LIT_PIXEL)))
+/// The pictures of a run.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pictures {
+    /// Pixels of each.
+    pub(crate) pixels: u128,
+    pub(crate) count: usize,
+    /// Whether lamps light one of them, so that shadows are seen as they are.
+    pub(crate) lit: bool,
+}
+
+/// Bytes of the results of so many elements, with pictures.
+pub(crate) fn results(elements: usize, bands: usize, pictures: Pictures) -> u128 {
+    let (n, values) = (elements as u128, elements as u128 * bands as u128);
+    let files = PAGE + n * RESULTS + values * VALUE;
+    let Pictures { pixels, count, lit } = pictures;
+    if count == 0 {
+        return files;
+    }
+    let drawn = n * DRAWN + if lit { values * LIT_VALUE } else { 0 };
+    let of_pixels = pictured(pixels, count).max(if lit { pixels.saturating_mul(LIT_PIXEL) } else { 0 });
+    files.saturating_add(drawn).saturating_add(of_pixels)
 }
 
 /// Bytes of so many pictures of so many pixels.
@@ -243,7 +264,9 @@ mod tests {
 
     #[test]
     fn a_large_picture_counts() {
-        assert!(results(600, 3, 16_384 * 16_384, 1) > 2 << 30);
-        assert!(results(usize::MAX, 3, u128::MAX, 1) == u128::MAX);
+        let pictures = |pixels, count| Pictures { pixels, count, lit: true };
+        assert!(results(600, 3, pictures(16_384 * 16_384, 1)) > 2 << 30);
+        assert!(results(600, 3, pictures(16_384 * 16_384, 0)) < 4 << 20);
+        assert!(results(1 << 60, 3, pictures(u128::MAX, 1)) == u128::MAX);
     }
 }

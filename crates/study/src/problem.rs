@@ -14,7 +14,7 @@ use fredholm_visibility::Occluders;
 use crate::error::{Error, ErrorKind};
 use crate::memory::Plan;
 use crate::options::{Precision, ProblemOptions, ProblemSettings, RADIOSITY, SceneSource};
-use crate::prediction::{Dense, Prediction, Size, results, without_matrix};
+use crate::prediction::{Dense, Pictures, Prediction, Size, results, without_matrix};
 use crate::registry::{self, SolverEntry};
 use crate::size::Bytes;
 use crate::stages::Stages;
@@ -136,19 +136,19 @@ pub(crate) struct Open {
 
 impl Open {
     /// Reads, meshes and checks a scene; refuses it before memory is taken where the mesh and
-    /// `kept` do not fit.
+    /// `kept` do not fit, and so many pictures.
     pub(crate) fn load(
         source: &SceneSource,
         asked: &ProblemOptions,
-        kept: Bytes,
+        (kept, pictures): (Bytes, usize),
         stages: &mut Stages,
     ) -> Result<Self, Error> {
         let scene = source.load(asked.memory, stages)?;
         let options = ProblemSettings::new(asked, scene.solve());
         let bands = scene.bands().len();
-        let pixels = pixels(&scene);
+        let pictures = Pictures { pixels: pixels(&scene), count: pictures, lit: false };
         let admit = |elements: usize, stages: &Stages| {
-            let results = results(elements, bands, pixels, 1);
+            let results = results(elements, bands, pictures);
             let plan = without_matrix(elements, bands, kept).stage("results and pictures", results);
             let help = "keep less with --keep, use fewer elements (elements_per_face, divide, largest_edge in the scene)";
             stages.admit(&plan, options.memory_limit(), help)
@@ -174,13 +174,9 @@ pub(crate) fn pixels(scene: &Scene) -> u128 {
 }
 
 /// Results and so many pictures after a solution, and what these take besides.
-pub(crate) fn with_results(
-    plan: Plan,
-    scene: &Scene,
-    elements: usize,
-    (pictures, more): (usize, u128),
-) -> Plan {
-    let bytes = results(elements, scene.bands().len(), pixels(scene), pictures);
+pub(crate) fn with_results(plan: Plan, scene: &Scene, elements: usize, (count, more): (usize, u128)) -> Plan {
+    let pictures = Pictures { pixels: pixels(scene), count, lit: true };
+    let bytes = results(elements, scene.bands().len(), pictures);
     plan.stage("results and pictures", bytes.saturating_add(more))
 }
 

@@ -77,7 +77,7 @@ fn errors(problem: &Problem, patches: &[&Patch]) -> f64 {
         radiosity: &light,
         irradiance: &light,
     };
-    let lanes = (DRAWS + 2) as f64 * bands as f64;
-    let followed = NUMBER * (n as f64).powi(2) * lanes * iterations(problem, FOLLOWED);
+    let rhs_count = (DRAWS + 2) as f64 * bands as f64;
+    let followed = NUMBER * (n as f64).powi(2) * rhs_count * iterations(problem, FOLLOWED);
     constants.seconds(BUDGET, &spent) + followed
 }

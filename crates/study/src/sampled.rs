@@ -22,7 +22,7 @@ use crate::error::{Error, ErrorKind};
 use crate::hierarchical;
 use crate::memory::Plan;
 use crate::options::SolveSettings;
-use crate::prediction::{MESH, results};
+use crate::prediction::{MESH, Pictures, results};
 use crate::problem::{Problem, check, occluders, pixels, scene_failure};
 use crate::registry::{self, SolverEntry};
 use crate::solution::Solution;
@@ -86,10 +86,11 @@ fn solver() -> Result<SolverEntry, Error> {
 }
 
 fn plan(scene: &Scene, elements: usize, options: &SolveSettings) -> Plan {
-    let pictures = 1 + usize::from(options.final_gather);
+    let count = if options.no_pictures { 0 } else { 1 + usize::from(options.final_gather) };
+    let pictures = Pictures { pixels: pixels(scene), count, lit: true };
     let plan = Plan::default().hold(format!("{elements} elements"), MESH.saturating_mul(elements as u128));
     with_tracing(plan, scene, elements)
-        .stage("results and pictures", results(elements, scene.bands().len(), pixels(scene), pictures))
+        .stage("results and pictures", results(elements, scene.bands().len(), pictures))
 }
 
 /// Paths that a scene of so many faces is likely to need.

@@ -309,7 +309,8 @@ fn dense(
         let bands = scene.bands().len();
         let wanted = asked.final_gather || asked.discontinuity || asked.points.bytes(bands) > 0;
         let gathering = if wanted { gathering(elements, bands) + asked.points.bytes(bands) } else { 0 };
-        with_results(plan, scene, elements, (1 + usize::from(asked.final_gather), gathering))
+        let pictures = if asked.no_pictures { 0 } else { 1 + usize::from(asked.final_gather) };
+        with_results(plan, scene, elements, (pictures, gathering))
     };
     let problem = Problem::refined(Arc::clone(scene), options, (1, &more), stages)?;
     let options = SolveSettings::new(problem.options.clone(), asked.stop, scene.solve());

@@ -1,5 +1,5 @@
-//! Segments, rays and shafts per second on one core, in a room with two boxes and in a room with four finely
-//! tessellated spheres; and the time to build the larger.
+//! Segments, rays and shafts per second on one core, in a room with two boxes and in a room with
+//! four finely tessellated spheres; and the time to build the larger.
 //!
 //! The ends of the segments are points of the surfaces, uniform by area and in random order.
 
@@ -25,7 +25,8 @@ impl Random {
     }
 }
 
-/// The six sides of a box of the given half sides, turned about z, lit on the outside or, reversed, on the inside.
+/// The six sides of a box of the given half sides, turned about z, lit on the outside or, reversed,
+/// on the inside.
 fn cuboid(centre: Vec3, half: Vec3, turn: f64, reversed: bool) -> Vec<[Vec3; 4]> {
     let (sin, cos) = turn.sin_cos();
     let (x, y, z) = (Vec3::new(cos, sin, 0.0) * half.x, Vec3::new(-sin, cos, 0.0) * half.y, Vec3::Z * half.z);

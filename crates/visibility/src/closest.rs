@@ -1,7 +1,7 @@
 //! What does a ray meet first?
 //!
-//! One walk finds the nearest crossing and what lies within the tolerance of it: of all that was met, that which may still
-//! be as near as the nearest is kept.
+//! One walk finds the nearest crossing and what lies within the tolerance of it: of all that was
+//! met, that which may still be as near as the nearest is kept.
 
 #![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
 
@@ -27,13 +27,16 @@ pub struct Hit {
 impl Occluders {
     /// The first patch that the ray from `origin` meets, at 0 < t < `t_max`, from either side.
     ///
-    /// The direction need not be of unit length; `t_max` may be infinite. A patch whose plane is within the
-    /// [tolerance](Self::tolerance) of the origin is not met, so a ray may start on a surface.
+    /// The direction need not be of unit length; `t_max` may be infinite. A patch whose plane is
+    /// within the [tolerance](Self::tolerance) of the origin is not met, so a ray may start on a
+    /// surface.
     ///
-    /// Where several patches are met within the tolerance of the first, as on the two faces of a plate, the one
-    /// that turns its lit side to the origin is the answer, and among equals the one of the smallest index.
+    /// Where several patches are met within the tolerance of the first, as on the two faces of a
+    /// plate, the one that turns its lit side to the origin is the answer, and among equals the one
+    /// of the smallest index.
     ///
-    /// `None` where nothing is met, and for a ray without a direction or with coordinates that are not finite.
+    /// `None` where nothing is met, and for a ray without a direction or with coordinates that are
+    /// not finite.
     #[must_use]
     pub fn closest(&self, origin: Vec3, direction: Vec3, t_max: f64) -> Option<Hit> {
         if t_max.is_nan() || t_max <= 0.0 {
@@ -103,8 +106,8 @@ impl<E: Eight> Seeker<E> for Ray<'_, E> {
     }
 }
 
-/// A facet that was met: facets whose lit side is turned to the start of the ray rank first, then those of patches that
-/// come first.
+/// A facet that was met: facets whose lit side is turned to the start of the ray rank first, then
+/// those of patches that come first.
 #[derive(Clone, Copy, Debug)]
 struct Met {
     fraction: f64,
@@ -130,7 +133,8 @@ impl Found {
         }
     }
 
-    /// Of two that may be alike the nearer one that ranks first stands for both; else both are kept.
+    /// Of two that may be alike the nearer one that ranks first stands for both; else both are
+    /// kept.
     #[cold]
     fn weigh(&mut self, best: Met, met: Met) {
         let key = |met: &Met| (met.fraction, met.rank);

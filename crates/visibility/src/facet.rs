@@ -1,20 +1,23 @@
-//! Does a segment cross a triangle or a parallelogram? Decided at once, or left to exact arithmetic where in doubt.
+//! Does a segment cross a triangle or a parallelogram? Decided at once, or left to exact arithmetic
+//! where in doubt.
 //!
-//! A facet has a corner a, two edges b and c from it, and the unit normal n. Every point x has the height
-//! s = n·(x − a) over its plane, and the coordinates u and v with x = a + u b + v c + s n. A segment from p to q whose
-//! ends are on different sides crosses the plane where the height is zero; there u and v are U/D and V/D with
+//! A facet has a corner a, two edges b and c from it, and the unit normal n. Every point x has the
+//! height s = n·(x − a) over its plane, and the coordinates u and v with x = a + u b + v c + s n. A
+//! segment from p to q whose ends are on different sides crosses the plane where the height is
+//! zero; there u and v are U/D and V/D with
 //!
 //! ```text
 //! D = |s_p| + |s_q|,   U = u_p |s_q| + u_q |s_p|,   V = v_p |s_q| + v_q |s_p|.
 //! ```
 //!
-//! The crossing is inside where U ≥ 0, V ≥ 0 and, for a triangle, U + V ≤ D, for a parallelogram, max(U, V) ≤ D.
-//! Swapping p and q changes no bit of this.
+//! The crossing is inside where U ≥ 0, V ≥ 0 and, for a triangle, U + V ≤ D, for a parallelogram,
+//! max(U, V) ≤ D. Swapping p and q changes no bit of this.
 //!
-//! Heights are f64, since they are compared with the tolerance; u and v are f32. With g = |∇u| + |∇v|, the
-//! condition number κ = |b| |c| / |b × c| and the length M that bounds all distances in the query, roundings change
-//! U, V and D by less than a small multiple of g M (ε₃₂ D + κ ε₆₄ M). What is closer to zero than that is *in doubt*.
-//! A fourth corner that lies the distance h off the parallelogram changes them by less than 3 g M h.
+//! Heights are f64, since they are compared with the tolerance; u and v are f32. With g = |∇u| +
+//! |∇v|, the condition number κ = |b| |c| / |b × c| and the length M that bounds all distances in
+//! the query, roundings change U, V and D by less than a small multiple of g M (ε₃₂ D + κ ε₆₄ M).
+//! What is closer to zero than that is *in doubt*. A fourth corner that lies the distance h off the
+//! parallelogram changes them by less than 3 g M h.
 //!
 //! All lengths are local, that is over the extent of the scene.
 
@@ -23,7 +26,8 @@ use glam::{Vec4, Vec4Swizzles};
 
 use crate::probe::Probe;
 
-/// Counts of the roundings on the way to U, V and D, about twice what a term by term estimate gives.
+/// Counts of the roundings on the way to U, V and D, about twice what a term by term estimate
+/// gives.
 const ROUNDINGS_32: f64 = 16.0;
 const ROUNDINGS_64: f64 = 64.0;
 /// The factor 3 above, over the least M, which is ½.
@@ -40,7 +44,8 @@ pub(crate) struct Facet {
     slopes_z: Vec4,
     /// Roundings of U, V and D, over M D and over M².
     doubt: [f32; 2],
-    /// 1 for a triangle, 0 for a parallelogram: the third condition is max(U, V) + triangle · min(U, V) ≤ D.
+    /// 1 for a triangle, 0 for a parallelogram: the third condition is max(U, V) + triangle ·
+    /// min(U, V) ≤ D.
     pub triangle: f32,
     /// Index of the patch it belongs to.
     pub patch: u32,
@@ -63,8 +68,8 @@ impl Facet {
         Self::new(a, edges, 0.0, patch)
     }
 
-    /// The parallelogram with the corner a and the edges b and c from it, whose fourth corner may lie the distance
-    /// `slack` off.
+    /// The parallelogram with the corner a and the edges b and c from it, whose fourth corner may
+    /// lie the distance `slack` off.
     pub(crate) fn parallelogram(a: Vec3, edges: [Vec3; 2], slack: f64, patch: u32) -> Self {
         Self { triangle: 0.0, ..Self::new(a, edges, slack, patch) }
     }

@@ -1,7 +1,7 @@
 //! The bounding box of the occluders and the lengths that follow from it.
 //!
-//! Inside this crate coordinates are *local*: the centre of the bounding box is 0 and its longest side is 1, so that
-//! f32 serves every scene alike. Units outside: metres.
+//! Inside this crate coordinates are *local*: the centre of the bounding box is 0 and its longest
+//! side is 1, so that f32 serves every scene alike. Units outside: metres.
 
 use fredholm_mesh::{Patch, Vec3};
 
@@ -9,9 +9,11 @@ use crate::VisibilityError;
 
 /// Tolerance of length relative to the extent of the scene.
 const TOLERANCE: f64 = 1e-9;
-/// Tolerance of length relative to the largest coordinate: where that rules, coordinates resolve no better.
+/// Tolerance of length relative to the largest coordinate: where that rules, coordinates resolve no
+/// better.
 const RESOLUTION: f64 = 16.0 * f64::EPSILON;
-/// Least and largest coordinates, m: products of three lengths, as the exact predicates form them, stay in range.
+/// Least and largest coordinates, m: products of three lengths, as the exact predicates form them,
+/// stay in range.
 const LEAST: f64 = 1e-50;
 const MOST: f64 = 1e50;
 

@@ -1,5 +1,5 @@
-//! Segment, ray and shaft queries against the surfaces of a scene: V(p, q) is 1 where nothing lies between p and q,
-//! else 0.
+//! Segment, ray and shaft queries against the surfaces of a scene: V(p, q) is 1 where nothing lies
+//! between p and q, else 0.
 //!
 //! [`Occluders`] holds flat convex patches that block the view from both sides. It answers
 //! - [`unoccluded`](Occluders::unoccluded): is there anything between two points?
@@ -10,18 +10,20 @@
 //!
 //! # What is exact, and what is tolerated
 //!
-//! *Outlines are exact.* Whether a segment crosses a patch or passes beside it is decided as if with exact arithmetic:
-//! what rounding could decide goes to exact predicates. A segment through an edge or a corner that patches share
-//! always meets at least one of them, so a closed surface has no leak. Neighbours share an edge if its two ends have
-//! the same coordinates, bit for bit.
+//! *Outlines are exact.* Whether a segment crosses a patch or passes beside it is decided as if
+//! with exact arithmetic: what rounding could decide goes to exact predicates. A segment through an
+//! edge or a corner that patches share always meets at least one of them, so a closed surface has
+//! no leak. Neighbours share an edge if its two ends have the same coordinates, bit for bit.
 //!
-//! *Ends are tolerant.* The points of a surface lie on it up to rounding only. An end whose height over the plane of
-//! a patch is at most the [tolerance](Occluders::tolerance) is on that patch, and the patch does not block. That
-//! tolerance is 1e-9 of the longest side of the bounding box, or more where coordinates resolve less. So a surface
-//! does not hide its own points; a segment may end on a plate without thickness, made of two coincident faces, on
-//! either side, but cannot cross it; and a segment that ends on an edge that several patches share is free of them all.
+//! *Ends are tolerant.* The points of a surface lie on it up to rounding only. An end whose height
+//! over the plane of a patch is at most the [tolerance](Occluders::tolerance) is on that patch, and
+//! the patch does not block. That tolerance is 1e-9 of the longest side of the bounding box, or
+//! more where coordinates resolve less. So a surface does not hide its own points; a segment may
+//! end on a plate without thickness, made of two coincident faces, on either side, but cannot cross
+//! it; and a segment that ends on an edge that several patches share is free of them all.
 //!
-//! *Boxes are generous.* The tree of boxes that finds the patches is f32 with padded boxes. It decides nothing.
+//! *Boxes are generous.* The tree of boxes that finds the patches is f32 with padded boxes. It
+//! decides nothing.
 //!
 //! No answer depends on the order of the tree or on the number of threads.
 //!

@@ -32,12 +32,12 @@ pub struct Occluders {
 }
 
 impl Occluders {
-    /// Prepares the patches for queries. Later answers name a patch by its index in the slice. An empty slice is legal:
-    /// nothing blocks.
+    /// Prepares the patches for queries. Later answers name a patch by its index in the slice. An
+    /// empty slice is legal: nothing blocks.
     ///
     /// # Errors
-    /// [`VisibilityError::TooMany`] past 2³⁰ − 1 patches; [`VisibilityError::Span`] for a scene larger than 1e50 m or
-    /// smaller than 1e-50 m.
+    /// [`VisibilityError::TooMany`] past 2³⁰ − 1 patches; [`VisibilityError::Span`] for a scene
+    /// larger than 1e50 m or smaller than 1e-50 m.
     pub fn new(patches: &[Patch]) -> Result<Self, VisibilityError> {
         if patches.len() > LIMIT {
             return Err(VisibilityError::TooMany { count: patches.len(), limit: LIMIT });
@@ -72,14 +72,15 @@ impl Occluders {
         self.patches.is_empty()
     }
 
-    /// Length up to which two places count as one, m: 1e-9 of the longest side of the bounding box, and no less
-    /// than 16 units in the last place of the largest coordinate.
+    /// Length up to which two places count as one, m: 1e-9 of the longest side of the bounding box,
+    /// and no less than 16 units in the last place of the largest coordinate.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         self.frame.metres(self.frame.tolerance)
     }
 
-    /// How far along the probe the facet is crossed, as a fraction of its length, or `None` where it is not.
+    /// How far along the probe the facet is crossed, as a fraction of its length, or `None` where
+    /// it is not.
     #[inline]
     pub(crate) fn crossing(&self, facet: &Facet, probe: &Probe) -> Option<f64> {
         match facet.crossing(probe) {
@@ -96,9 +97,11 @@ impl Occluders {
     }
 }
 
-/// A triangle is one facet, and so is a quad that is a parallelogram; any other quad is two triangles.
+/// A triangle is one facet, and so is a quad that is a parallelogram; any other quad is two
+/// triangles.
 ///
-/// Edges are differences of the corners as given: those of local coordinates lose digits of small patches.
+/// Edges are differences of the corners as given: those of local coordinates lose digits of small
+/// patches.
 fn pieces(patch: &Patch, index: u32, frame: &Frame) -> impl Iterator<Item = (Facet, [Vec3; 4])> + use<> {
     let [a, b, c, d] = [0, 1, 2, 3].map(|i| patch.corner(i.min(patch.sides() - 1)));
     let [to_b, to_c, to_d] = [b, c, d].map(|corner| frame.edge(corner - a));

@@ -1,16 +1,18 @@
 //! Which of eight facets may a segment cross?
 //!
-//! The heights and coordinates of a [facet](crate::facet), all in f32 and for eight facets at once. With the heights
-//! s_p and s_q of the ends, signed, and their difference D = s_p − s_q, the crossing of the plane is inside where
+//! The heights and coordinates of a [facet](crate::facet), all in f32 and for eight facets at once.
+//! With the heights s_p and s_q of the ends, signed, and their difference D = s_p − s_q, the
+//! crossing of the plane is inside where
 //!
 //! ```text
 //! U = s_p u_q − s_q u_p,   V = s_p v_q − s_q v_p,   D − U − V   (for a parallelogram D − max(U, V) and min(U, V))
 //! ```
 //!
-//! have no two different signs. With ε = 2⁻²³ the heights err by less than H = 4 ε M, where M bounds all distances, and
-//! u by less than 4 ε |∇u| M; so U errs by less than 4 ε |∇u| M (|D| + 2 M), and the three of them by less than
-//! g M ε (8 |D| + 32 M), where g = |∇u| + |∇v|, plus what a parallelogram that is not quite one adds. What is farther
-//! from zero is sure. The rest, and all that lies within H of a plane, is left to [`Facet`].
+//! have no two different signs. With ε = 2⁻²³ the heights err by less than H = 4 ε M, where M
+//! bounds all distances, and u by less than 4 ε |∇u| M; so U errs by less than 4 ε |∇u| M (|D| + 2
+//! M), and the three of them by less than g M ε (8 |D| + 32 M), where g = |∇u| + |∇v|, plus what a
+//! parallelogram that is not quite one adds. What is farther from zero is sure. The rest, and all
+//! that lies within H of a plane, is left to [`Facet`].
 
 #![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
 

@@ -5,7 +5,8 @@ use glam::Vec4;
 
 use crate::frame::Frame;
 
-/// A segment from p to q, with what the tests of all facets share. Local coordinates, but for the ends.
+/// A segment from p to q, with what the tests of all facets share. Local coordinates, but for the
+/// ends.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Probe {
     /// The ends as they were given, m.

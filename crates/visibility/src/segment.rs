@@ -17,19 +17,22 @@ const CHUNK: usize = 1024;
 impl Occluders {
     /// Whether no patch blocks the open segment from `p` to `q`.
     ///
-    /// A patch blocks the segment where its plane has `p` and `q` on different sides, both farther from it than the
-    /// [tolerance](Self::tolerance), and the segment crosses the patch, outline included. So a patch that contains an
-    /// end does not block, from either side, and both directions have the same answer. A segment without length, or
-    /// with coordinates that are not finite or beyond 1e38 times the extent of the scene, meets nothing.
+    /// A patch blocks the segment where its plane has `p` and `q` on different sides, both farther
+    /// from it than the [tolerance](Self::tolerance), and the segment crosses the patch, outline
+    /// included. So a patch that contains an end does not block, from either side, and both
+    /// directions have the same answer. A segment without length, or with coordinates that are not
+    /// finite or beyond 1e38 times the extent of the scene, meets nothing.
     #[must_use]
     pub fn unoccluded(&self, p: Vec3, q: Vec3) -> bool {
         !run(Blocked { occluders: self, p, q })
     }
 
-    /// Whether none of the `candidates`, indices of patches, blocks the open segment from `p` to `q`.
+    /// Whether none of the `candidates`, indices of patches, blocks the open segment from `p` to
+    /// `q`.
     ///
-    /// With the list of [`shaft`](Self::shaft) this answers as [`unoccluded`](Self::unoccluded) for the segments that
-    /// the list was made for, and faster where it is short. An index that names no patch blocks nothing.
+    /// With the list of [`shaft`](Self::shaft) this answers as [`unoccluded`](Self::unoccluded) for
+    /// the segments that the list was made for, and faster where it is short. An index that names
+    /// no patch blocks nothing.
     #[must_use]
     pub fn unoccluded_by(&self, p: Vec3, q: Vec3, candidates: &[u32]) -> bool {
         let Some(probe) = Probe::segment(p, q, &self.frame) else { return true };

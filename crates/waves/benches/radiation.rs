@@ -1,5 +1,6 @@
-//! Source × receiver interactions of the radiation integral (E and H, all terms, f64) on one thread: vectorised, and the
-//! plain formula in the same run. `cargo bench -p fredholm-waves`; the throughput is in interactions.
+//! Source × receiver interactions of the radiation integral (E and H, all terms, f64) on one
+//! thread: vectorised, and the plain formula in the same run. `cargo bench -p fredholm-waves`; the
+//! throughput is in interactions.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use fredholm_mesh::Vec3;

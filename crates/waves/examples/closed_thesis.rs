@@ -1,6 +1,7 @@
-//! The thesis's model of closed bodies, read in two ways, against the stored columns (relative L² error of E_z on the
-//! circle, one bounce, λ/20): lit facets that radiate to both sides, n turned to the observer (`method = "thesis"`), and
-//! all facets, each into its own front half-space only (huygens_f_vol of G. Viennot, thesis, Limoges 2012).
+//! The thesis's model of closed bodies, read in two ways, against the stored columns (relative L²
+//! error of E_z on the circle, one bounce, λ/20): lit facets that radiate to both sides, n turned
+//! to the observer (`method = "thesis"`), and all facets, each into its own front half-space only
+//! (huygens_f_vol of G. Viennot, thesis, Limoges 2012).
 //! `cargo run --release -p fredholm-waves --example closed_thesis`, from the repository.
 
 use fredholm_mesh::Vec3;

@@ -1,5 +1,6 @@
-//! Backscatter of a square dihedral (two bounces) and a triangular trihedral (three) beside their closed forms
-//! 8πa²b²/λ² and 4πa⁴/(3λ²): `cargo run --release -p fredholm-waves --example corner_reflectors -- 6 12 24`, sides in
+//! Backscatter of a square dihedral (two bounces) and a triangular trihedral (three) beside their
+//! closed forms 8πa²b²/λ² and 4πa⁴/(3λ²):
+//! `cargo run --release -p fredholm-waves --example corner_reflectors -- 6 12 24`, sides in
 //! wavelengths.
 
 use fredholm_linop::MultiVector;

@@ -1,11 +1,14 @@
 //! The magnetic field equation on one and on two surfaces (`exact`, `exact-dual`), measured:
 //!
-//! - `-- spheres`: spheres of radius λ and 3λ against the series of Mie at 25 m, orders of convergence;
-//! - `-- backscatter`: spheres of ka = 5 to 15, or as given, beside the series, physical optics in closed form, and its specular part;
-//! - `-- resonance`: a sphere and the cube of 5λ near resonances of their interior (from the repository).
+//! - `-- spheres`: spheres of radius λ and 3λ against the series of Mie at 25 m, orders of
+//!   convergence;
+//! - `-- backscatter`: spheres of ka = 5 to 15, or as given, beside the series, physical optics in
+//!   closed form, and its specular part;
+//! - `-- resonance`: a sphere and the cube of 5λ near resonances of their interior (from the
+//!   repository).
 //!
-//! `cargo run --release -p fredholm-waves --example exact_equation -- spheres`. Products are computed anew by GMRES: no
-//! matrix is stored.
+//! `cargo run --release -p fredholm-waves --example exact_equation -- spheres`. Products are
+//! computed anew by GMRES: no matrix is stored.
 
 use fredholm_iterative::Gmres;
 use fredholm_linop::{MultiVector, Quiet, SecondKind, Solver, Stop};
@@ -96,8 +99,8 @@ fn spheres() -> Done {
     Ok(())
 }
 
-/// Physical optics of a sphere in closed form, with or without what its currents' end at the shadow line radiates:
-/// σ/(πa²) = |1 + j/(2x) − j e^{−2jx}/(2x)|², the last term being that of the end.
+/// Physical optics of a sphere in closed form, with or without what its currents' end at the shadow
+/// line radiates: σ/(πa²) = |1 + j/(2x) − j e^{−2jx}/(2x)|², the last term being that of the end.
 fn optics(x: f64, with_end: f64) -> f64 {
     let end = Complex64::cis(-2.0 * x) * (0.5 / x * with_end);
     (Complex64::ONE + Complex64::I * (0.5 / x) - Complex64::I * end).norm_sqr()

@@ -1,5 +1,6 @@
-//! Source × receiver interactions per second of the radiation integral (E and H, all terms, f64), on one thread, beside
-//! the plain scalar formula: `cargo run --release -p fredholm-waves --example radiation_rate`.
+//! Source × receiver interactions per second of the radiation integral (E and H, all terms, f64),
+//! on one thread, beside the plain scalar formula:
+//! `cargo run --release -p fredholm-waves --example radiation_rate`.
 
 use fredholm_mesh::Vec3;
 use fredholm_waves::source::PlaneWave;

@@ -1,5 +1,6 @@
-//! Iterations of every complex solver on a dihedral, two facing plates and a closed cube, with the spectral radius of K:
-//! `cargo run --release -p fredholm-waves --example solvers_compared`. Mesh λ/6, residual 1e-6.
+//! Iterations of every complex solver on a dihedral, two facing plates and a closed cube, with the
+//! spectral radius of K: `cargo run --release -p fredholm-waves --example solvers_compared`. Mesh
+//! λ/6, residual 1e-6.
 
 use fredholm_linop::{MultiVector, Quiet, SecondKind, Solver, Stop};
 use fredholm_mesh::Vec3;

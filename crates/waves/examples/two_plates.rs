@@ -1,7 +1,8 @@
-//! Two plates at a right angle, bounce by bounce and then by GMRES, beside the stored method of moments: relative L² error
-//! of the scattered E_z on the circle, with edge currents of the incident wave in round brackets and of the bounces too in
-//! square ones (they complete the electric form only).
-//! `cargo run --release -p fredholm-waves --example two_plates`, from the repository.
+//! Two plates at a right angle, bounce by bounce and then by GMRES, beside the stored method of
+//! moments: relative L² error of the scattered E_z on the circle, with edge currents of the
+//! incident wave in round brackets and of the bounces too in square ones (they complete the
+//! electric form only). `cargo run --release -p fredholm-waves --example two_plates`, from the
+//! repository.
 
 use fredholm_iterative::Gmres;
 use fredholm_linop::{MultiVector, Quiet, SecondKind, Solver, Stop};

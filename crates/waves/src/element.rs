@@ -1,6 +1,7 @@
 //! The field of a current element, exact at any distance.
 //!
-//! With d = r − q, R = |d|, u = d/R and g = e^{−jkR}/(4πR) (C. A. Balanis, Antenna Theory, 4th ed., Wiley 2016, § 3.6):
+//! With d = r − q, R = |d|, u = d/R and g = e^{−jkR}/(4πR) (C. A. Balanis, Antenna Theory, 4th ed.,
+//! Wiley 2016, § 3.6):
 //!
 //! ```text
 //! electric element J dA:  E = −jkη g [J (1 + 1/(jkR) − 1/(kR)²) − u (u·J) (1 + 3/(jkR) − 3/(kR)²)] dA
@@ -99,7 +100,8 @@ mod tests {
 
     #[test]
     fn the_power_of_a_hertzian_dipole_is_that_of_the_textbook() {
-        // P = η k² |Il|²/(12π), from the far power density of one direction: S = (3/2) P sin²θ/(4πr²).
+        // P = η k² |Il|²/(12π), from the far power density of one direction: S = (3/2) P
+        // sin²θ/(4πr²).
         let wave = Wave::new(3e8).unwrap();
         let r = 1e4;
         let field = electric_element(&wave, ComplexVector::along(Vec3::Z, 1.0.into()), Vec3::X * r);

@@ -1,4 +1,5 @@
-//! The electromagnetic field at a point: E (V/m) and H (A/m), peak phasors with time factor e^{+jωt}.
+//! The electromagnetic field at a point: E (V/m) and H (A/m), peak phasors with time factor
+//! e^{+jωt}.
 
 use crate::ComplexVector;
 use fredholm_mesh::Vec3;

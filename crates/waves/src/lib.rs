@@ -1,7 +1,8 @@
 //! Waves: perfect conductors and other bodies in a time-harmonic field, by surface currents.
 //!
-//! The field of given currents is an integral without approximation ([`Radiator`]); what the currents are is the
-//! question. Time factor e^{+jωt}, outgoing waves e^{−jkr}/(4πr), SI units, peak phasors.
+//! The field of given currents is an integral without approximation ([`Radiator`]); what the
+//! currents are is the question. Time factor e^{+jωt}, outgoing waves e^{−jkr}/(4πr), SI units,
+//! peak phasors.
 //!
 //! Here u = (p − q)/R points from the source q to the observer p, and g = e^{−jkR}/(4πR).
 

@@ -1,8 +1,10 @@
-//! The exact scattering of a plane wave by a sphere, perfectly conducting or dielectric: the series of Mie.
+//! The exact scattering of a plane wave by a sphere, perfectly conducting or dielectric: the series
+//! of Mie.
 //!
-//! G. Mie, Ann. Phys. 330 (1908) 377, doi:10.1002/andp.19083300302; here as C. F. Bohren, D. R. Huffman, Absorption and
-//! Scattering of Light by Small Particles, Wiley 1983, § 4.3 and 4.4, whose time factor e^{−iωt} makes ours the
-//! conjugate. For E_i = x̂ e^{ikz}, with x = ka, ψ(x) = x j_n, ξ(x) = x h_n and E_n = iⁿ (2n + 1)/(n(n + 1)),
+//! G. Mie, Ann. Phys. 330 (1908) 377, doi:10.1002/andp.19083300302; here as C. F. Bohren, D. R.
+//! Huffman, Absorption and Scattering of Light by Small Particles, Wiley 1983, § 4.3 and 4.4, whose
+//! time factor e^{−iωt} makes ours the conjugate. For E_i = x̂ e^{ikz}, with x = ka, ψ(x) = x j_n,
+//! ξ(x) = x h_n and E_n = iⁿ (2n + 1)/(n(n + 1)),
 //!
 //! ```text
 //! E_s = Σ E_n (i a_n N_n − b_n M_n)
@@ -12,8 +14,8 @@
 //!
 //! where m = √ε and D_n = ψ_n′(mx)/ψ_n(mx), which is computed downwards (eq. 4.89).
 //!
-//! Backscatter: σ/(πa²) = |Σ (−1)ⁿ (2n + 1)/(ξ_n ξ_n′)|²/x² (C. A. Balanis, Advanced Engineering Electromagnetics,
-//! 2nd ed., Wiley 2012, eq. 11-247). Lengths in metres.
+//! Backscatter: σ/(πa²) = |Σ (−1)ⁿ (2n + 1)/(ξ_n ξ_n′)|²/x² (C. A. Balanis, Advanced Engineering
+//! Electromagnetics, 2nd ed., Wiley 2012, eq. 11-247). Lengths in metres.
 
 use crate::source::PlaneWave;
 use crate::{ComplexVector, Wave, WaveError};
@@ -72,8 +74,8 @@ impl DielectricSphere {
     /// The sphere of this radius (m) and relative permittivity ε′ − jε″.
     ///
     /// # Errors
-    /// [`WaveError::Length`] unless the radius is finite and above 0, [`WaveError::Material`] unless ε is finite with
-    /// ε′ > 0 and ε″ ≥ 0.
+    /// [`WaveError::Length`] unless the radius is finite and above 0, [`WaveError::Material`]
+    /// unless ε is finite with ε′ > 0 and ε″ ≥ 0.
     pub fn new(radius: f64, permittivity: Complex64) -> Result<Self, WaveError> {
         ConductingSphere::new(radius)?;
         if permittivity.re > 0.0 && permittivity.im <= 0.0 && permittivity.is_finite() {
@@ -174,8 +176,8 @@ impl Series {
     }
 }
 
-/// Terms that leave an error far below rounding (W. J. Wiscombe, Appl. Opt. 19 (1980) 1505, doi:10.1364/AO.19.001505,
-/// with some more).
+/// Terms that leave an error far below rounding (W. J. Wiscombe, Appl. Opt. 19 (1980) 1505,
+/// doi:10.1364/AO.19.001505, with some more).
 fn terms(x: f64) -> usize {
     (x + 4.05 * x.cbrt() + 10.0).ceil() as usize
 }
@@ -189,7 +191,8 @@ struct Riccati {
 
 impl Riccati {
     fn new(x: f64, last: usize) -> Self {
-        // Below the turning point n = x both functions oscillate, and upwards is stable; beyond it only χ = −x y_n grows.
+        // Below the turning point n = x both functions oscillate, and upwards is stable; beyond it
+        // only χ = −x y_n grows.
         let (sin, cos) = x.sin_cos();
         let chi = upwards(x, last, cos, cos / x + sin);
         let psi = if x > last as f64 { upwards(x, last, sin, sin / x - cos) } else { downwards(x, last) };
@@ -223,7 +226,8 @@ fn upwards(x: f64, last: usize, zero: f64, one: f64) -> Vec<f64> {
     values
 }
 
-/// ψ_n downwards from far above the turning point (J. C. P. Miller), scaled by the larger of ψ₀ and ψ₁.
+/// ψ_n downwards from far above the turning point (J. C. P. Miller), scaled by the larger of ψ₀ and
+/// ψ₁.
 fn downwards(x: f64, last: usize) -> Vec<f64> {
     let start = last + 30;
     let mut values = vec![0.0; start + 2];

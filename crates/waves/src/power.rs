@@ -1,12 +1,14 @@
-//! Powers: what sources give away, what a body takes from plane waves, and what leaves over the sphere.
+//! Powers: what sources give away, what a body takes from plane waves, and what leaves over the
+//! sphere.
 //!
 //! ```text
 //! radiated  P = 1/(2η) ∮ |F|² dΩ
 //! extinct   P = −2π/(kη) Im Σ E₀* ê·F(K̂)          (the optical theorem)
 //! ```
 //!
-//! Where nothing is absorbed, what is extinct of plane waves is what the scattered field radiates, and what located sources
-//! supply is what they and the scattered field radiate together (R. G. Newton, Am. J. Phys. 44 (1976) 639). Powers in W, F in V.
+//! Where nothing is absorbed, what is extinct of plane waves is what the scattered field radiates,
+//! and what located sources supply is what they and the scattered field radiate together (R. G.
+//! Newton, Am. J. Phys. 44 (1976) 639). Powers in W, F in V.
 //!
 //! |F|² of a body within a ball of radius a has no more than 2 k a degrees to speak of, so that a rule of that degree, Gauss in
 //! cosθ and even in φ, integrates it.
@@ -23,7 +25,8 @@ use crate::{ComplexVector, Source, Wave};
 /// Degrees beyond k a, for a body of any size: terms of the far field fall below 1e-4 within them.
 const BEYOND: f64 = 4.0;
 
-/// Directions over the sphere and their solid angles (sr), which integrate |F|² of what is within a ball of this radius (m).
+/// Directions over the sphere and their solid angles (sr), which integrate |F|² of what is within a
+/// ball of this radius (m).
 #[must_use]
 pub fn sphere_rule(wave: &Wave, radius: f64) -> Vec<(Vec3, f64)> {
     let ka = wave.wavenumber() * radius;
@@ -47,7 +50,8 @@ pub fn radiated(rule: &[(Vec3, f64)], amplitudes: &[ComplexVector]) -> f64 {
     sum / (2.0 * IMPEDANCE)
 }
 
-/// The mean power that plane waves lose, from the scattered amplitude in the direction of travel of each, W.
+/// The mean power that plane waves lose, from the scattered amplitude in the direction of travel of
+/// each, W.
 #[must_use]
 pub fn extinct(wave: &Wave, waves: &[(PlaneWave, ComplexVector)]) -> f64 {
     let one = |(wave, forward): &(PlaneWave, ComplexVector)| {
@@ -56,8 +60,8 @@ pub fn extinct(wave: &Wave, waves: &[(PlaneWave, ComplexVector)]) -> f64 {
     -TAU / (wave.wavenumber() * IMPEDANCE) * waves.iter().map(one).sum::<f64>()
 }
 
-/// The mean power that located sources give away together against the scattered E at a point, W; none where one of them is a
-/// wave from infinity.
+/// The mean power that located sources give away together against the scattered E at a point, W;
+/// none where one of them is a wave from infinity.
 #[must_use]
 pub fn supplied(
     sources: &[&dyn Source],

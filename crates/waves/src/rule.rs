@@ -1,14 +1,16 @@
 //! How many Gauss points a facet needs, and the points themselves.
 //!
-//! Over a side of length h, the integrand e^{jκx} f(x) has two enemies of an n-point Gauss rule (P. J. Davis, P.
-//! Rabinowitz, Methods of Numerical Integration, 2nd ed., Academic Press 1984, § 2.7 and 4.6), relative to its size:
+//! Over a side of length h, the integrand e^{jκx} f(x) has two enemies of an n-point Gauss rule (P.
+//! J. Davis, P. Rabinowitz, Methods of Numerical Integration, 2nd ed., Academic Press 1984, § 2.7
+//! and 4.6), relative to its size:
 //!
 //! ```text
 //! the phase:    (n!)⁴ (κh)^{2n} / ((2n + 1) ((2n)!)³)
 //! the distance: C ϱ^{−2n}, ϱ = s + √(s² − 1), for a pole s half-diameters from the centre
 //! ```
 //!
-//! C = 6 stands for the growth of up to 1/R³ on the ellipse of ϱ and both directions. Lengths in metres.
+//! C = 6 stands for the growth of up to 1/R³ on the ellipse of ϱ and both directions. Lengths in
+//! metres.
 
 use crate::Facet;
 use fredholm_mesh::{Patch, Vec3};
@@ -35,7 +37,8 @@ pub(crate) fn phase_error(n: usize, phase: f64) -> f64 {
     2.0 * factor / (2 * n + 1) as f64
 }
 
-/// Distance of the pole, in half-diameters, beyond which n points have the relative error `tolerance`.
+/// Distance of the pole, in half-diameters, beyond which n points have the relative error
+/// `tolerance`.
 #[must_use]
 pub(crate) fn reach(n: usize, tolerance: f64) -> f64 {
     let ellipse = (GROWTH / tolerance).powf(0.5 / n as f64).max(1.0);
@@ -48,14 +51,15 @@ pub(crate) fn points_for_phase(phase: f64, tolerance: f64) -> usize {
     (1..MOST).find(|&n| phase_error(n, phase) <= tolerance).unwrap_or(MOST)
 }
 
-/// Fewest points a side for a pole `distance` half-diameters away, where a rule of at most [`MOST`] reaches so close.
+/// Fewest points a side for a pole `distance` half-diameters away, where a rule of at most [`MOST`]
+/// reaches so close.
 #[must_use]
 pub(crate) fn points_for_distance(distance: f64, tolerance: f64) -> Option<usize> {
     (1..=MOST).find(|&n| reach(n, tolerance) <= distance)
 }
 
-/// Points (m) and weights (m²) of n × n Gauss points, or of the triangle's rule of the same degree. One point is the
-/// centroid.
+/// Points (m) and weights (m²) of n × n Gauss points, or of the triangle's rule of the same degree.
+/// One point is the centroid.
 #[must_use]
 pub(crate) fn regular(facet: &Facet, n: usize) -> Vec<(Vec3, f64)> {
     if n <= 1 {
@@ -65,7 +69,8 @@ pub(crate) fn regular(facet: &Facet, n: usize) -> Vec<(Vec3, f64)> {
     if patch.sides() == 4 {
         placed(facet, &tensor_quad(n), |u, v| quad_jacobian(patch, u, v))
     } else {
-        // The degrees asked for, at most 2 · MOST − 1, exist; the product rule is as good where one should not.
+        // The degrees asked for, at most 2 · MOST − 1, exist; the product rule is as good where one
+        // should not.
         let rule =
             symmetric_triangle(2 * n - 1).unwrap_or_else(|_| fredholm_quadrature::collapsed_triangle(n));
         placed(facet, &rule, |_, _| 2.0 * patch.area())
@@ -103,7 +108,8 @@ pub(crate) fn near(facet: &Facet, x: Vec3) -> Vec<(Vec3, f64)> {
     (1..patch.sides() - 1).flat_map(|i| points(triangle(i))).collect()
 }
 
-/// The rule for a kernel seen from `x`: Gauss where the error bound allows, else the nearly singular rule.
+/// The rule for a kernel seen from `x`: Gauss where the error bound allows, else the nearly
+/// singular rule.
 #[must_use]
 pub(crate) fn seen_from(facet: &Facet, x: Vec3, phase: f64, tolerance: f64) -> Vec<(Vec3, f64)> {
     let distance = x.distance(facet.centre) / (0.5 * facet.diameter);

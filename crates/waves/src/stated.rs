@@ -1,18 +1,21 @@
 //! Stated errors of scattered fields: what is known of a result without the exact one.
 //!
-//! Four indicators, each times a factor that was measured on bodies with known answers (`tests/data/wave/stated_errors.csv`,
-//! written by the example `stated_errors` of `fredholm-moments`), so that the product is above the true error in at least 95
-//! of 100 runs there, and in the median less than four times as large:
+//! Four indicators, each times a factor that was measured on bodies with known answers
+//! (`tests/data/wave/stated_errors.csv`, written by the example `stated_errors` of
+//! `fredholm-moments`), so that the product is above the true error in at least 95 of 100 runs
+//! there, and in the median less than four times as large:
 //!
-//! - Sheets: the share of the edge currents in the field. Physical optics lacks all of them; with them added, what edges
-//!   send to edges is missing, which is a part of it.
-//! - Closed bodies: the total field inside, where there is none, over the incident one. It sees the mesh, the form of the
-//!   currents and the solver together.
-//! - Boundary elements of closed bodies: the same and half the square of the longest edge in wavelengths, in the medium
-//!   where they are shortest. What the currents radiate inside has to take the incident field away, of conductors and of
-//!   dielectric bodies alike; that flat triangles are not the curved body is not seen from there, hence the second part.
-//! - Boundary elements on open sheets: the longest edge in wavelengths. At an open edge the current along it grows as one
-//!   over the root of the distance, which even cells follow slowly, whatever the body: so their size tells the error.
+//! - Sheets: the share of the edge currents in the field. Physical optics lacks all of them; with
+//!   them added, what edges send to edges is missing, which is a part of it.
+//! - Closed bodies: the total field inside, where there is none, over the incident one. It sees the
+//!   mesh, the form of the currents and the solver together.
+//! - Boundary elements of closed bodies: the same and half the square of the longest edge in
+//!   wavelengths, in the medium where they are shortest. What the currents radiate inside has to
+//!   take the incident field away, of conductors and of dielectric bodies alike; that flat
+//!   triangles are not the curved body is not seen from there, hence the second part.
+//! - Boundary elements on open sheets: the longest edge in wavelengths. At an open edge the current
+//!   along it grows as one over the root of the distance, which even cells follow slowly, whatever
+//!   the body: so their size tells the error.
 //!
 //! Errors are relative in the L² norm over the points or directions of a receiver.
 
@@ -40,7 +43,8 @@ pub enum Indicator {
     InsideCombined(f64),
     /// [`of_closed_elements`] of a homogeneous dielectric body.
     InsideDielectric(f64),
-    /// Longest edge of the boundary elements of the electric field equation on open sheets, in wavelengths.
+    /// Longest edge of the boundary elements of the electric field equation on open sheets, in
+    /// wavelengths.
     BoundaryElements(f64),
 }
 
@@ -81,14 +85,15 @@ impl Indicator {
     }
 }
 
-/// The value of the indicator of boundary elements of closed bodies: from the total field inside over the incident one, and
-/// the longest edge over the shortest wavelength.
+/// The value of the indicator of boundary elements of closed bodies: from the total field inside
+/// over the incident one, and the longest edge over the shortest wavelength.
 #[must_use]
 pub fn of_closed_elements(inside: f64, edge: f64) -> f64 {
     inside + 0.5 * edge * edge
 }
 
-/// Points inside closed bodies where the total field of the currents vanishes; none where there is a sheet.
+/// Points inside closed bodies where the total field of the currents vanishes; none where there is
+/// a sheet.
 #[must_use]
 pub fn inside_points(scatterer: &Scatterer, wave: &Wave) -> Option<Vec<Vec3>> {
     let facets = scatterer.facets();
@@ -100,8 +105,8 @@ pub fn inside_points(scatterer: &Scatterer, wave: &Wave) -> Option<Vec<Vec3>> {
     Some(facets.iter().step_by(step).map(inside).collect())
 }
 
-/// The total E at points over the incident one, root mean square, from what is scattered there; none where nothing is
-/// incident.
+/// The total E at points over the incident one, root mean square, from what is scattered there;
+/// none where nothing is incident.
 #[must_use]
 pub fn left_inside(
     wave: &Wave,

@@ -33,9 +33,9 @@ fn attempt(
     b: &Vectors,
     tolerance: f64,
 ) -> Result<(Vectors, Report), SolveError> {
-    let one = MultiVector::from_fn(b.dim(), b.lanes(), |_, _| Complex64::ONE);
+    let one = MultiVector::from_fn(b.dim(), b.rhs_count(), |_, _| Complex64::ONE);
     let a = SecondKind::new(system.coupling(), one).unwrap();
-    let mut x = MultiVector::zeros(b.dim(), b.lanes());
+    let mut x = MultiVector::zeros(b.dim(), b.rhs_count());
     let stop = Stop { tolerance, max_iterations: 400 };
     let report = solver.solve(&a, b, &mut x, &stop, &mut Quiet)?;
     Ok((x, report))
@@ -87,7 +87,8 @@ fn scattered(fields: &[Field]) -> Vec<Complex64> {
     fields.iter().map(|field| field.e.components()[2]).collect()
 }
 
-/// The magnetic field equation on spheres of radius λ: second order in the edge, below 0.5 % with 1,280 facets.
+/// The magnetic field equation on spheres of radius λ: second order in the edge, below 0.5 % with
+/// 1,280 facets.
 #[test]
 fn the_exact_treatment_meets_the_series_of_mie() {
     let source = source();
@@ -107,8 +108,9 @@ fn the_exact_treatment_meets_the_series_of_mie() {
     assert!(fine < 0.003 && order > 1.9, "{coarse} {fine}: order {order}");
 }
 
-/// Two plates at a right angle: one bounce has 0.79 of error, the converged currents less than a quarter of it. What
-/// remains is mostly the current at the edges, which no form of physical optics has.
+/// Two plates at a right angle: one bounce has 0.79 of error, the converged currents less than a
+/// quarter of it. What remains is mostly the current at the edges, which no form of physical optics
+/// has.
 #[test]
 fn two_plates_converge_to_less_than_half_the_error_of_one_bounce() {
     let plates = facing_plates(5.0 * WAVELENGTH, 2.0, WAVELENGTH / 6.0).unwrap();
@@ -143,7 +145,8 @@ fn two_plates_converge_to_less_than_half_the_error_of_one_bounce() {
     }
 }
 
-/// Every registered solver that suits a coupling without symmetry and converges finds the same currents of a dihedral.
+/// Every registered solver that suits a coupling without symmetry and converges finds the same
+/// currents of a dihedral.
 #[test]
 fn all_solvers_agree() {
     let pair = dihedral(1.5 * WAVELENGTH, 1.5 * WAVELENGTH, FRAC_PI_2, WAVELENGTH / 6.0).unwrap();
@@ -170,7 +173,8 @@ fn all_solvers_agree() {
     assert!(converged >= 10, "{converged}");
 }
 
-/// Spectral radii of an independent code at λ/6; beyond 1 the series of bounces diverges, which is reported.
+/// Spectral radii of an independent code at λ/6; beyond 1 the series of bounces diverges, which is
+/// reported.
 #[test]
 fn spectral_radii_and_a_series_that_diverges() {
     let edge = WAVELENGTH / 6.0;

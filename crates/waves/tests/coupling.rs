@@ -10,15 +10,15 @@ use fredholm_waves::surface::{cube, dihedral, facing_plates, trihedral};
 use fredholm_waves::{Complex64, NystromCoupling, Scatterer, Shadow, WaveError, galerkin};
 use std::f64::consts::FRAC_PI_2;
 
-fn arbitrary(dim: usize, lanes: usize) -> MultiVector<Complex64> {
-    MultiVector::from_fn(dim, lanes, |i, l| {
+fn arbitrary(dim: usize, rhs_count: usize) -> MultiVector<Complex64> {
+    MultiVector::from_fn(dim, rhs_count, |i, l| {
         let t = (i * 7 + l * 3 + 1) as f64;
         Complex64::new((t * 0.37).sin(), (t * 0.91).cos())
     })
 }
 
 fn product(a: &dyn LinearOperator<Complex64>, x: &MultiVector<Complex64>) -> MultiVector<Complex64> {
-    let mut y = MultiVector::zeros(x.dim(), x.lanes());
+    let mut y = MultiVector::zeros(x.dim(), x.rhs_count());
     a.apply(x, &mut y);
     y
 }

@@ -37,8 +37,9 @@ fn edge_currents_bring_a_plate_closer_to_the_method_of_moments() {
     assert!((without - 0.111).abs() < 0.003 && with < 0.015, "{without} {with}");
 }
 
-/// Lit squarely, every edge of a cube has a face that the wave grazes, and no current; turned a little, those that see the
-/// source have. A body much smaller than the wave has none that the theory knows.
+/// Lit squarely, every edge of a cube has a face that the wave grazes, and no current; turned a
+/// little, those that see the source have. A body much smaller than the wave has none that the
+/// theory knows.
 #[test]
 fn edges_are_those_that_the_theory_knows() {
     let body = cube(WAVELENGTH, WAVELENGTH / 5.0).unwrap();

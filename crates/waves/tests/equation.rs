@@ -47,7 +47,8 @@ fn backscatter(ka: f64, per_wavelength: f64, shadow: Shadow) -> f64 {
     10.0 * (sigma / ConductingSphere::new(1.0).unwrap().backscatter(&wave)).log10()
 }
 
-/// Where physical optics is up to 1.8 dB off. ka = 7 is next to a resonance (6.988), where one surface has 0.18 dB.
+/// Where physical optics is up to 1.8 dB off. ka = 7 is next to a resonance (6.988), where one
+/// surface has 0.18 dB.
 #[test]
 fn backscatter_is_within_a_tenth_of_a_decibel_of_the_series() {
     let dual = [5.0, 5.5, 7.0].map(|ka| (ka, Shadow::ExactDual));

@@ -1,4 +1,5 @@
-//! Several bounces between materials: the limit of conductors, closed forms of two bounces, and what gets through.
+//! Several bounces between materials: the limit of conductors, closed forms of two bounces, and
+//! what gets through.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -23,7 +24,7 @@ fn glass() -> Material {
 }
 
 fn product(a: &dyn LinearOperator<Complex64>, x: &Vectors) -> Vectors {
-    let mut y = Vectors::zeros(x.dim(), x.lanes());
+    let mut y = Vectors::zeros(x.dim(), x.rhs_count());
     a.apply(x, &mut y);
     y
 }
@@ -117,8 +118,8 @@ fn a_dihedral_returns_the_square_of_the_coefficient() {
     }
 }
 
-/// The part that is diffracted past the second plate dies out: `cargo test -p fredholm-waves --test materials -- --ignored
-/// --nocapture`, a minute.
+/// The part that is diffracted past the second plate dies out:
+/// `cargo test -p fredholm-waves --test materials -- --ignored --nocapture`, a minute.
 #[test]
 #[ignore = "a minute"]
 fn the_square_of_the_coefficient_is_the_limit_of_large_dihedrals() {
@@ -130,8 +131,8 @@ fn the_square_of_the_coefficient_is_the_limit_of_large_dihedrals() {
     }
 }
 
-/// A pane before a metal plate, in the treatment where currents radiate the shadow: what arrives at the plate is the
-/// incident wave and all that the pane radiates.
+/// A pane before a metal plate, in the treatment where currents radiate the shadow: what arrives at
+/// the plate is the incident wave and all that the pane radiates.
 #[test]
 fn what_gets_through_a_pane_lights_what_is_behind() {
     let pane = |y: f64, side: f64| {

@@ -1,9 +1,9 @@
 //! Reciprocity: which method has it, and how far the others are from it.
 //!
-//! The current 2 n × H of a wave i, tested by a wave s, gives ∫ n·(E_s × H_i), and so does 2 n × E of s, tested by i: what
-//! the electric form sends from i to s the magnetic form sends from s to i, bounce by bounce, exactly where no integral of
-//! a near pair comes in. Neither is reciprocal alone; their mean is. The equations of closed bodies are in the limit of
-//! fine meshes.
+//! The current 2 n × H of a wave i, tested by a wave s, gives ∫ n·(E_s × H_i), and so does 2 n × E
+//! of s, tested by i: what the electric form sends from i to s the magnetic form sends from s to i,
+//! bounce by bounce, exactly where no integral of a near pair comes in. Neither is reciprocal
+//! alone; their mean is. The equations of closed bodies are in the limit of fine meshes.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -21,7 +21,8 @@ use fredholm_waves::{
 /// A direction and a polarisation.
 type Port = (Vec3, Vec3);
 
-/// The far field along the polarisation of `to`, of the wave that comes from `from`, after so many bounces.
+/// The far field along the polarisation of `to`, of the wave that comes from `from`, after so many
+/// bounces.
 fn scattered(body: &Scatterer, shadow: Shadow, bounces: usize, from: Port, to: Port) -> Complex64 {
     let source = PlaneWave::new(-from.0, from.1, 1.0.into()).unwrap();
     let sources: [&dyn Source; 1] = [&source];
@@ -83,7 +84,8 @@ fn free_space_is_reciprocal() {
     assert!((dipole.field(&wave(), q).e.dot(b) - there).norm() < 1e-12 * there.norm());
 }
 
-/// The equation is made discrete at points, which is not symmetric: its defect goes with the error of the mesh.
+/// The equation is made discrete at points, which is not symmetric: its defect goes with the error
+/// of the mesh.
 #[test]
 fn the_equation_of_a_cube_is_reciprocal_in_the_limit() {
     let (lu, [i, s]) = (fredholm_direct::solvers().remove(0), ports());

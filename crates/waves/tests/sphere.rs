@@ -47,8 +47,9 @@ fn one_bounce_backscatter_is_that_of_physical_optics_in_closed_form() {
     }
 }
 
-/// At the ka of the stored table of exact σ/(πa²) (`tests/data/README.md` has its origin). Between them the creeping wave, which physical optics has not, moves the exact value by up to 1.8 dB
-/// (ka = 5.5).
+/// At the ka of the stored table of exact σ/(πa²) (`tests/data/README.md` has its origin). Between
+/// them the creeping wave, which physical optics has not, moves the exact value by up to 1.8 dB (ka
+/// = 5.5).
 #[test]
 fn one_bounce_backscatter_is_within_a_tenth_of_a_decibel_of_the_exact_table() {
     for (ka, exact, per_wavelength) in

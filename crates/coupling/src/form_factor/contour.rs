@@ -1,8 +1,10 @@
 //! Polygon to polygon as a contour integral: A_i F_ij = (1/2π) Σₑ Σ_f (dₑ·d_f) ∫ₑ∫_f ln r ds dt.
 //!
-//! Stokes' theorem twice; E. M. Sparrow 1963, doi:10.1115/1.3686055; J.-F. Viennot's thesis, eq. 1.41. In m². Both polygons must lie in
-//! front of each other and be counter-clockwise about their normals. The inner integral is closed. So is the outer one for edges that are
-//! parallel, and for edges in one plane, as all that touch are. Others take as many Gauss points as a proven bound asks for.
+//! Stokes' theorem twice; E. M. Sparrow 1963, doi:10.1115/1.3686055; J.-F. Viennot's thesis, eq.
+//! 1.41. In m². Both polygons must lie in front of each other and be counter-clockwise about their
+//! normals. The inner integral is closed. So is the outer one for edges that are parallel, and for
+//! edges in one plane, as all that touch are. Others take as many Gauss points as a proven bound
+//! asks for.
 
 mod coplanar;
 mod edge;
@@ -17,13 +19,14 @@ use gauss::Outer;
 use parallel::parallel;
 use std::f64::consts::TAU;
 
-/// Error of a closed form, over the rounding of the inner integrals alone, at which it is used: its terms grow with the distance and cancel;
-/// quadrature of the inner integral does not.
+/// Error of a closed form, over the rounding of the inner integrals alone, at which it is used: its
+/// terms grow with the distance and cancel; quadrature of the inner integral does not.
 const CANCELLING: f64 = 50.0;
 /// Gauss points up to which they cost less than a closed form.
 const FEW: usize = 6;
 
-/// A_i F_ij (m²) between two polygons given by their corners, to an absolute `tolerance` (m²) as far as rounding lets it.
+/// A_i F_ij (m²) between two polygons given by their corners, to an absolute `tolerance` (m²) as
+/// far as rounding lets it.
 ///
 /// ```
 /// use fredholm_coupling::form_factor::contour_integral;
@@ -39,8 +42,8 @@ pub fn contour_integral(a: &[Vec3], b: &[Vec3], tolerance: f64) -> Estimate {
     over_edges(a, b, tolerance, edge_pair)
 }
 
-/// The double sum over the edges of both polygons, in m²; `pair` computes (dₑ·d_f) ∫∫ ln r ds dt to its share of the tolerance, in the
-/// pair's own unit of length.
+/// The double sum over the edges of both polygons, in m²; `pair` computes (dₑ·d_f) ∫∫ ln r ds dt to
+/// its share of the tolerance, in the pair's own unit of length.
 pub(crate) fn over_edges(
     a: &[Vec3],
     b: &[Vec3],
@@ -60,7 +63,8 @@ pub(crate) fn over_edges(
     Estimate { value: sum.value * scale, error: sum.error * scale }
 }
 
-/// A typical distance. Lengths are measured in it: a constant added to ln r integrates to 0 round a closed contour, but its rounding does not.
+/// A typical distance. Lengths are measured in it: a constant added to ln r integrates to 0 round a
+/// closed contour, but its rounding does not.
 fn unit_of_length(origin: Vec3, a: &[Vec3], b: &[Vec3]) -> f64 {
     let far = a.iter().chain(b).map(|x| x.distance(origin)).fold(0.0, f64::max);
     if far > 0.0 { 0.5 * far } else { 1.0 }

@@ -1,17 +1,20 @@
 //! Where on a source patch the hidden part of a target is not a smooth function: critical lines.
 //!
-//! Seen from a point x, the shadow of a convex body on a polygon changes its topology where a corner of the body lines up with an edge of the target, an edge of the body
-//! with a corner of the target, or a face of the body turns edge-on. Each of these happens on a plane, which meets the source in a line:
-//! vertex–edge, edge–vertex and face events. C. Campbell & D. Fussell, "An analytic approach to illumination with area light sources" (1991);
-//! G. Drettakis & E. Fiume, SIGGRAPH 1994, doi:10.1145/192161.192207. The same happens between two bodies. Events
-//! of three edges are curves and not listed.
+//! Seen from a point x, the shadow of a convex body on a polygon changes its topology where a
+//! corner of the body lines up with an edge of the target, an edge of the body with a corner of the
+//! target, or a face of the body turns edge-on. Each of these happens on a plane, which meets the
+//! source in a line: vertex–edge, edge–vertex and face events. C. Campbell & D. Fussell, "An
+//! analytic approach to illumination with area light sources" (1991); G. Drettakis & E. Fiume,
+//! SIGGRAPH 1994, doi:10.1145/192161.192207. The same happens between two bodies. Events of three
+//! edges are curves and not listed.
 
 use super::ev_batch::{Aligned, EdgeVertexBatch, Region};
 use super::ev_events::{CriticalPlane, EdgeVertexEvent, EdgeVertexEvents, chord};
 use fredholm_mesh::Vec3;
 use fredholm_visibility::body::{ODD, Screen};
 
-/// Lines that are listed at most: among many, most are not active, and a part that any of them cuts counts as not smooth.
+/// Lines that are listed at most: among many, most are not active, and a part that any of them cuts
+/// counts as not smooth.
 const LINES: usize = 400;
 
 /// A plane n·x = c with a unit normal.
@@ -42,8 +45,9 @@ pub(crate) struct Critical {
 }
 
 impl Critical {
-    /// Finds the events of `screens` before `target` on planes that cut the `source` polygon. Those of single bodies come first, long ones before short
-    /// ones, and at most [`LINES`] are kept. Lengths below `flat` (m) count as 0.
+    /// Finds the events of `screens` before `target` on planes that cut the `source` polygon. Those
+    /// of single bodies come first, long ones before short ones, and at most [`LINES`] are kept.
+    /// Lengths below `flat` (m) count as 0.
     pub(crate) fn events(
         &mut self,
         source: &[Vec3],
@@ -164,7 +168,8 @@ impl Search<'_> {
         self.found.truncate(LINES);
     }
 
-    /// Events where the outline `near` lines up with `far` behind it. Those of two bodies matter only in front of the target.
+    /// Events where the outline `near` lines up with `far` behind it. Those of two bodies matter
+    /// only in front of the target.
     fn events(&mut self, near: &Outline, far: &Outline, before: bool) {
         self.batch.clear();
         for &edge in near.edges {
@@ -220,7 +225,8 @@ impl Search<'_> {
         self.found.iter().position(same)
     }
 
-    /// Sorts the lines from `start` on, long ones first: the order of bodies and of their corners has no say in which are used.
+    /// Sorts the lines from `start` on, long ones first: the order of bodies and of their corners
+    /// has no say in which are used.
     fn sort(&mut self, start: usize) {
         if self.found.len() < start + 2 {
             return;

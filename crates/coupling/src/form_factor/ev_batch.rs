@@ -1,7 +1,9 @@
-//! Which corners and edges line up, seen from somewhere in a polygon: eight pairs at once, one a lane.
+//! Which corners and edges line up, seen from somewhere in a polygon: eight pairs at once, one a
+//! lane.
 //!
-//! A corner w and an edge a b do where the plane through them passes through the polygon, det(b − a, w − a, x − a) having both signs there, and where on the line in which it does the ray
-//! to the corner meets the edge ([`EdgeVertexEvent`]). Most planes miss the polygon. Lengths in metres.
+//! A corner w and an edge a b do where the plane through them passes through the polygon, det(b −
+//! a, w − a, x − a) having both signs there, and where on the line in which it does the ray to the
+//! corner meets the edge ([`EdgeVertexEvent`]). Most planes miss the polygon. Lengths in metres.
 
 #![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
 #![allow(clippy::needless_bitwise_bool, reason = "a jump a lane costs more than to ask both")]
@@ -106,7 +108,8 @@ impl EdgeVertexBatch {
     }
 }
 
-/// A question, compiled for each width of vectors: a closure would be compiled once, for the narrowest.
+/// A question, compiled for each width of vectors: a closure would be compiled once, for the
+/// narrowest.
 struct Ask<'a> {
     blocks: &'a [Block],
     place: Region<'a>,
@@ -256,7 +259,8 @@ fn shrunk(a: &Lanes3, b: &Lanes3) -> Lanes3 {
     moved
 }
 
-/// Where the line from a point through the corner meets the line of the edge, as in [`EdgeVertexEvent`].
+/// Where the line from a point through the corner meets the line of the edge, as in
+/// [`EdgeVertexEvent`].
 struct Meeting {
     /// Whether the edge and the corner come in the right order.
     order: Mask,
@@ -283,7 +287,8 @@ fn meeting(block: &Block, c: &Lanes3, n: &Lanes3, across: &Lanes3) -> Meeting {
     }
 }
 
-/// Whether corner and edge line up somewhere between two points, as in [`EdgeVertexEvent::is_active`].
+/// Whether corner and edge line up somewhere between two points, as in
+/// [`EdgeVertexEvent::is_active`].
 #[inline(always)]
 fn lines_up(first: &Meeting, last: &Meeting) -> Mask {
     let mut active = [0; LANES];

@@ -1,14 +1,18 @@
 //! Where on the line of an event a corner and an edge line up.
 //!
-//! From a point c of the plane that a corner and an edge span, the ray to the corner meets the line of the edge. The event is there where it meets the edge itself, before the corner
-//! or behind it. Both places change along the line without turning back, so that its two ends tell. Lengths in metres.
+//! From a point c of the plane that a corner and an edge span, the ray to the corner meets the line
+//! of the edge. The event is there where it meets the edge itself, before the corner or behind it.
+//! Both places change along the line without turning back, so that its two ends tell. Lengths in
+//! metres.
 
 use super::critical::Plane;
 use fredholm_mesh::Vec3;
 
-/// Part of an edge by which a point must be inside its ends to meet it: in scenes with right angles lines often go exactly through corners.
+/// Part of an edge by which a point must be inside its ends to meet it: in scenes with right angles
+/// lines often go exactly through corners.
 pub(super) const MARGIN: f64 = 1e-7;
-/// Part of a chord that is left out at its ends, where lines of sight are often exactly parallel to the edge.
+/// Part of a chord that is left out at its ends, where lines of sight are often exactly parallel to
+/// the edge.
 pub(super) const INSIDE: f64 = 1e-6;
 
 /// A corner and an edge that line up.
@@ -36,7 +40,8 @@ impl EdgeVertexEvent {
         }
     }
 
-    /// Where the line from c through the corner meets the line of the edge; `across` is the normal of the edge in the plane.
+    /// Where the line from c through the corner meets the line of the edge; `across` is the normal
+    /// of the edge in the plane.
     #[inline]
     fn meeting(&self, c: Vec3, n: Vec3, across: Vec3) -> Meeting {
         let (d, a) = (self.corner - c, self.edge[0] - c);
@@ -55,7 +60,8 @@ impl EdgeVertexEvent {
     }
 }
 
-/// A point of the line of an edge, seen through a corner: its distance in distances of the corner, and its place along the edge from 0 to 1, both times `whole`, which is not negative.
+/// A point of the line of an edge, seen through a corner: its distance in distances of the corner,
+/// and its place along the edge from 0 to 1, both times `whole`, which is not negative.
 struct Meeting {
     whole: f64,
     distance: f64,
@@ -108,7 +114,8 @@ impl CriticalPlane {
     }
 }
 
-/// Whether a critical line is active on a polygon: whether the topology of the shadow differs on its two sides.
+/// Whether a critical line is active on a polygon: whether the topology of the shadow differs on
+/// its two sides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Active {
     Yes,
@@ -134,7 +141,8 @@ impl EdgeVertexEvents {
         event.sure &= sure;
     }
 
-    /// Whether a critical plane is active on the line in which it cuts a convex polygon, given by the two ends.
+    /// Whether a critical plane is active on the line in which it cuts a convex polygon, given by
+    /// the two ends.
     pub(super) fn ask(&self, event: &CriticalPlane, chord: Option<[Vec3; 2]>) -> Active {
         if event.always {
             return Active::Yes;
@@ -152,7 +160,8 @@ impl EdgeVertexEvents {
     }
 }
 
-/// The two ends of the line in which a plane cuts a convex polygon, given the heights of its corners over the plane, each of which is asked for once.
+/// The two ends of the line in which a plane cuts a convex polygon, given the heights of its
+/// corners over the plane, each of which is asked for once.
 #[inline]
 pub(super) fn chord(corners: &[Vec3], mut height: impl FnMut(usize) -> f64) -> Option<[Vec3; 2]> {
     let (mut ends, mut found) = ([Vec3::ZERO; 2], 0);

@@ -1,4 +1,5 @@
-//! How two patches lie to each other: what counts as flat, which parts face each other, and the exchange that tolerances are relative to.
+//! How two patches lie to each other: what counts as flat, which parts face each other, and the
+//! exchange that tolerances are relative to.
 
 use crate::polygon::{HalfSpace, clip};
 use fredholm_mesh::{Patch, Vec3};
@@ -50,7 +51,8 @@ pub(crate) fn flat(a: &Patch, b: &Patch) -> f64 {
     Side::of(a).flat(&Side::of(b))
 }
 
-/// A_i A_j / (π d²), at most the smaller area, m²: the exchange of two patches squarely facing each other.
+/// A_i A_j / (π d²), at most the smaller area, m²: the exchange of two patches squarely facing each
+/// other.
 pub(crate) fn facing_exchange(a: &Patch, b: &Patch) -> f64 {
     Side::of(a).facing_exchange(&Side::of(b))
 }

@@ -1,7 +1,9 @@
-//! What bodies hide of an exchange: ∫_i h(x) dA with h(x) the exact form factor from x to the hidden part of j, in m².
+//! What bodies hide of an exchange: ∫_i h(x) dA with h(x) the exact form factor from x to the
+//! hidden part of j, in m².
 //!
-//! h is smooth between the critical lines ([`critical`](super::critical)), along which the source is cut where that pays ([`Pieces`]). The unoccluded exchange is computed
-//! apart, which keeps the singularity of touching patches out of this integral.
+//! h is smooth between the critical lines ([`critical`](super::critical)), along which the source
+//! is cut where that pays ([`Pieces`]). The unoccluded exchange is computed apart, which keeps the
+//! singularity of touching patches out of this integral.
 
 use super::critical::Critical;
 use super::ev_events::CriticalPlane;
@@ -67,7 +69,8 @@ pub(crate) fn hidden_exchange(
     Pieces::new(h, breaks, pieces, model, goal).integrate(scene.source, scene.open)
 }
 
-/// What makes the hidden part steep where it is close: edges that may cut the target, and of those that lie on the source the ends.
+/// What makes the hidden part steep where it is close: edges that may cut the target, and of those
+/// that lie on the source the ends.
 struct Steep<'a> {
     edges: &'a [Segment],
 }

@@ -1,7 +1,9 @@
-//! Blocks of eight things of one kind (pairs, points, edges, segments): one lane each, every quantity an array over the lanes.
+//! Blocks of eight things of one kind (pairs, points, edges, segments): one lane each, every
+//! quantity an array over the lanes.
 //!
-//! Loops run over lanes with additions, multiplications, divisions and roots only, never fused, so that a result has the same bits whatever the
-//! width of the machine's vectors and whatever stands beside it.
+//! Loops run over lanes with additions, multiplications, divisions and roots only, never fused, so
+//! that a result has the same bits whatever the width of the machine's vectors and whatever stands
+//! beside it.
 
 #![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
 

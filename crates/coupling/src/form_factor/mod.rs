@@ -1,7 +1,9 @@
 //! Form factors: shares of the power that leaves one patch and reaches another.
 //!
-//! All functions give the symmetric quantity A_i F_ij = ∫_i ∫_j cosθ cosθ' V / (π r²) in m², with an estimated absolute error.
+//! All functions give the symmetric quantity A_i F_ij = ∫_i ∫_j cosθ cosθ' V / (π r²) in m², with
+//! an estimated absolute error.
 
+mod angle;
 pub(crate) mod contour;
 mod critical;
 mod error_model;

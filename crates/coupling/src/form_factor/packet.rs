@@ -1,8 +1,11 @@
 //! What one body hides of a convex polygon from several points at once: one lane a point.
 //!
-//! From most parts of a source the hidden part looks alike: the same half-spaces cut the same sides of the target. So the points go the same way through the clipping (I. E.
-//! Sutherland & G. W. Hodgman, Commun. ACM 17(1) 32, 1974, doi:10.1145/360767.360802), and only the numbers differ. Those for which a corner lies on another side than for the first
-//! are left for another turn. I. Wald et al., Comput. Graph. Forum 20(3) 153, 2001, doi:10.1111/1467-8659.00508, trace packets of rays on the same ground. Lengths in metres.
+//! From most parts of a source the hidden part looks alike: the same half-spaces cut the same sides
+//! of the target. So the points go the same way through the clipping (I. E. Sutherland & G. W.
+//! Hodgman, Commun. ACM 17(1) 32, 1974, doi:10.1145/360767.360802), and only the numbers differ.
+//! Those for which a corner lies on another side than for the first are left for another turn. I.
+//! Wald et al., Comput. Graph. Forum 20(3) 153, 2001, doi:10.1111/1467-8659.00508, trace packets of
+//! rays on the same ground. Lengths in metres.
 
 #![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
 
@@ -50,7 +53,8 @@ impl Default for Polygon {
     }
 }
 
-/// A polygon that is cut, the place for what is left of it, and what the last plane told of its corners.
+/// A polygon that is cut, the place for what is left of it, and what the last plane told of its
+/// corners.
 #[derive(Clone, Debug)]
 struct Cover {
     polygons: [Polygon; 2],
@@ -109,7 +113,8 @@ impl Left {
     }
 }
 
-/// What is found for each point: the factor of the hidden part and its topology, and the shadows that meet the target.
+/// What is found for each point: the factor of the hidden part and its topology, and the shadows
+/// that meet the target.
 pub(super) struct Found<'a> {
     pub hidden: &'a mut [(f64, Topology)],
     pub shadows: &'a mut [Shadows],
@@ -183,7 +188,8 @@ impl Packet {
         }
     }
 
-    /// Adds what is hidden from those of the points that are left for which it looks as for the first. Returns the others, with those that `differs` marks.
+    /// Adds what is hidden from those of the points that are left for which it looks as for the
+    /// first. Returns the others, with those that `differs` marks.
     fn alike(
         &mut self,
         points: &[Vec3],
@@ -216,7 +222,8 @@ impl Packet {
         }
     }
 
-    /// The factors of those of the points for which the hidden part looks as for the first; the others are marked. `None` where nothing is hidden.
+    /// The factors of those of the points for which the hidden part looks as for the first; the
+    /// others are marked. `None` where nothing is hidden.
     fn ask(&mut self, points: &Lanes3, target: Target, screen: &Screen, differs: &mut Mask) -> Option<Lanes> {
         let Self { arch, sides, cover, .. } = self;
         let (edges, tolerance) = (screen.edges(), screen.tolerance());
@@ -224,7 +231,8 @@ impl Packet {
     }
 }
 
-/// A question, compiled for each width of vectors: a closure would be compiled once, for the narrowest.
+/// A question, compiled for each width of vectors: a closure would be compiled once, for the
+/// narrowest.
 struct Ask<'a> {
     points: &'a Lanes3,
     target: Target<'a>,
@@ -274,7 +282,8 @@ fn size(v: &Lanes3) -> Lanes {
     each(|m| v[0][m].abs() + v[1][m].abs() + v[2][m].abs())
 }
 
-/// On which side the first lane has a height, which up to `flat` counts as 0. Lanes that do not agree are marked.
+/// On which side the first lane has a height, which up to `flat` counts as 0. Lanes that do not
+/// agree are marked.
 #[inline(always)]
 fn agree(height: &Lanes, flat: &Lanes, differs: &mut Mask) -> i8 {
     let (side, others) = if height[0] > flat[0] {
@@ -318,7 +327,8 @@ impl Cover {
     ) -> bool {
         let Self { polygons, now, heights: over, sides } = self;
         let polygon = &polygons[*now];
-        // A loop of its own: compiled together with what asks about the first lane alone, it is not one of wide vectors.
+        // A loop of its own: compiled together with what asks about the first lane alone, it is not
+        // one of wide vectors.
         for (height, corner) in over.iter_mut().zip(&polygon.corners[..polygon.len]) {
             *height = heights(normal, offset, corner);
         }

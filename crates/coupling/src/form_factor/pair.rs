@@ -8,9 +8,10 @@
 //! | bodies between | the unoccluded value less its hidden part: exact shadows inside, rules between critical lines outside |
 //! | many bodies between | sampled share of the unoccluded value, where that is exact enough |
 //!
-//! The tolerance T is relative to the exchange the two patches would have squarely facing each other,
-//! A_i A_j / (π d²), or the smaller area where that is less: stated errors of a row of F then add up to about 2 T. It is rounded down to a power of ten: a little
-//! more accuracy asked for then never gives a little less.
+//! The tolerance T is relative to the exchange the two patches would have squarely facing each
+//! other, A_i A_j / (π d²), or the smaller area where that is less: stated errors of a row of F
+//! then add up to about 2 T. It is rounded down to a power of ten: a little more accuracy asked for
+//! then never gives a little less.
 
 use super::hidden::{HiddenWork, Occluded, hidden_exchange};
 use super::rung::rung;
@@ -30,7 +31,8 @@ const FEW: usize = 128;
 /// Tolerance of exchanges with nothing between, in T: a digit more costs them next to nothing.
 const OPEN: f64 = 0.1;
 
-/// Distance of a small patch from a large one, in diameters of the large one, and its own diameter, up to which points of the small one are cheaper than points along the edges.
+/// Distance of a small patch from a large one, in diameters of the large one, and its own diameter,
+/// up to which points of the small one are cheaper than points along the edges.
 const CLOSE: f64 = 1.0;
 const SMALL: f64 = 0.1;
 
@@ -83,7 +85,8 @@ pub struct Workspace {
 }
 
 impl Workspace {
-    /// Points at which the part behind bodies was asked for, of all exchanges so far: what they cost.
+    /// Points at which the part behind bodies was asked for, of all exchanges so far: what they
+    /// cost.
     #[must_use]
     pub fn points_behind_bodies(&self) -> u64 {
         self.hidden.points()
@@ -93,8 +96,8 @@ impl Workspace {
 /// Which patch the outer integral goes over.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Outer {
-    /// The one that the occluders stand farther from. One that stands on a patch makes the outer integrand jump there, but not the
-    /// inner integral.
+    /// The one that the occluders stand farther from. One that stands on a patch makes the outer
+    /// integrand jump there, but not the inner integral.
     Clearer,
     /// The first.
     First,
@@ -115,7 +118,8 @@ pub struct PairIntegrator<'a> {
 }
 
 impl<'a> PairIntegrator<'a> {
-    /// Prepares the patches; `occluders` are what may stand between them, `tolerance` is T of the module's text.
+    /// Prepares the patches; `occluders` are what may stand between them, `tolerance` is T of the
+    /// module's text.
     pub fn new(
         patches: impl IntoIterator<Item = &'a Patch>,
         occluders: &'a Occluders,
@@ -124,7 +128,8 @@ impl<'a> PairIntegrator<'a> {
         Self::with_groups(patches.into_iter().collect(), [], occluders, tolerance)
     }
 
-    /// As [`new`](Self::new), and prepares patches that stand for several of `patches`; their numbers follow.
+    /// As [`new`](Self::new), and prepares patches that stand for several of `patches`; their
+    /// numbers follow.
     pub(crate) fn with_groups(
         mut patches: Vec<&'a Patch>,
         groups: impl IntoIterator<Item = &'a Patch>,
@@ -173,7 +178,8 @@ impl<'a> PairIntegrator<'a> {
         self.compute(i, j, Outer::Clearer, work)
     }
 
-    /// A_i F_ij with the outer integral, where there is one, over patch i: against the same of (j, i) it tests reciprocity.
+    /// A_i F_ij with the outer integral, where there is one, over patch i: against the same of (j,
+    /// i) it tests reciprocity.
     pub fn exchange_from(&self, i: usize, j: usize, work: &mut Workspace) -> Exchange {
         self.compute(i, j, Outer::First, work)
     }
@@ -334,8 +340,8 @@ fn between(body: &Body, a: Side, b: Side, tolerance: f64) -> Option<Body> {
     part.as_ref().unwrap_or(body).in_front(&second, tolerance).or(part)
 }
 
-/// Whether a body blocks every segment between two patches. The points that a body hides from a point make a convex set, on either side: what holds for
-/// the corners holds for all.
+/// Whether a body blocks every segment between two patches. The points that a body hides from a
+/// point make a convex set, on either side: what holds for the corners holds for all.
 pub(crate) fn blocks(body: &Body, a: &Patch, b: &Patch, tolerance: f64, volume: &mut ShadowVolume) -> bool {
     a.corners().iter().all(|&x| match body.shadow(x, tolerance, volume) {
         Shadow::Nothing => false,
@@ -347,7 +353,8 @@ fn rises(patch: &Patch, plane: HalfSpace, flat: f64) -> bool {
     patch.corners().iter().any(|&x| plane.height(x) > flat)
 }
 
-/// Whether the bodies stand farther from the first patch. Ties are broken by place, so that neither the numbers of the patches nor rounding decide.
+/// Whether the bodies stand farther from the first patch. Ties are broken by place, so that neither
+/// the numbers of the patches nor rounding decide.
 fn clearer(a: Side, b: Side, bodies: &[&Body]) -> bool {
     let [here, there] = [clearance(a, bodies), clearance(b, bodies)];
     if (here - there).abs() > TIE * here.abs().max(there.abs()).max(1.0) {

@@ -1,17 +1,20 @@
 //! Point to polygon in closed form: F = (1/2π) Σₑ Θₑ (Γₑ · n).
 //!
-//! J. H. Lambert 1760; P. Schröder & P. Hanrahan, SIGGRAPH 1993, doi:10.1145/166117.166138, eq. 3. Γₑ is the unit vector along rₑ × rₑ₊₁,
-//! Θₑ the angle between rₑ and rₑ₊₁, r the corners seen from the point. Dimensionless. The polygon must lie above the horizon of
-//! the point and be counter-clockwise seen from it.
+//! J. H. Lambert 1760; P. Schröder & P. Hanrahan, SIGGRAPH 1993, doi:10.1145/166117.166138, eq. 3.
+//! Γₑ is the unit vector along rₑ × rₑ₊₁, Θₑ the angle between rₑ and rₑ₊₁, r the corners seen from
+//! the point. Dimensionless. The polygon must lie above the horizon of the point and be
+//! counter-clockwise seen from it.
 
 #![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
 #![allow(clippy::needless_bitwise_bool, reason = "a jump a lane costs more than to ask both")]
 
+use super::angle::angle;
 use super::lanes::{LANES, Lanes, Lanes3, any, ask, cross, dot, each, only, same};
 use fredholm_mesh::Vec3;
 use std::f64::consts::FRAC_1_PI;
 
-/// Form factor from a point at the origin with unit normal `n` to the polygon with corners `r` relative to the point.
+/// Form factor from a point at the origin with unit normal `n` to the polygon with corners `r`
+/// relative to the point.
 ///
 /// ```
 /// use fredholm_coupling::form_factor::point_to_polygon;
@@ -34,7 +37,8 @@ pub fn point_to_polygon(n: Vec3, r: impl IntoIterator<Item = Vec3>) -> f64 {
 
 /// The form factor for the sum of the terms of the edges.
 pub(super) fn factor(sum: f64) -> f64 {
-    // Seen from the point, a polygon that faces it runs clockwise about the normal of the point: hence the sign.
+    // Seen from the point, a polygon that faces it runs clockwise about the normal of the point:
+    // hence the sign.
     -0.5 * FRAC_1_PI * sum
 }
 
@@ -54,7 +58,7 @@ fn edge_term(n: Vec3, from: Vec3, to: Vec3) -> f64 {
         return cross.dot(n) * inverse * arc_over_tangent(sine2 * inverse * inverse);
     }
     let sine = sine2.sqrt();
-    if sine == 0.0 { 0.0 } else { cross.dot(n) * (sine.atan2(cosine) / sine) }
+    if sine == 0.0 { 0.0 } else { cross.dot(n) * (angle(sine, cosine) / sine) }
 }
 
 /// Θ (Γ · n) of one edge a lane: the same bits as [`edge_term`].
@@ -69,18 +73,12 @@ pub(super) fn edge_terms(n: Vec3, from: &Lanes3, to: &Lanes3) -> Lanes {
     let mut terms = only(&narrow, &each(|m| up[m] * inverse[m] * shares[m]));
     let wide = ask(|m| (sine2[m] > 0.0) & (narrow[m] == 0));
     if any(&wide) {
-        add_wide(&mut terms, &only(&wide, &sine2), &cosine, &up);
+        let sine = each(|m| sine2[m].sqrt());
+        let angles = each(|m| up[m] * (angle(sine[m], cosine[m]) / sine[m]));
+        let wide = only(&wide, &angles);
+        terms = each(|m| terms[m] + wide[m]);
     }
     terms
-}
-
-/// Writes the terms of the lanes of which `sine2` is not 0.
-#[inline(never)]
-fn add_wide(terms: &mut Lanes, sine2: &Lanes, cosine: &Lanes, up: &Lanes) {
-    for m in (0..LANES).filter(|&m| sine2[m] > 0.0) {
-        let sine = sine2[m].sqrt();
-        terms[m] = up[m] * (sine.atan2(cosine[m]) / sine);
-    }
 }
 
 /// As [`arc_over_tangent`].
@@ -95,7 +93,8 @@ fn arcs_over_tangents(t2: &Lanes) -> Lanes {
     each(|m| even[m] - t2[m] * odd[m])
 }
 
-/// atan(t)/t = Σ (−t²)^k/(2k + 1) for t² up to [`NARROW`]: eleven terms leave 2e-17. Terms with even and odd k are summed apart, so that no sum waits for the other.
+/// atan(t)/t = Σ (−t²)^k/(2k + 1) for t² up to [`NARROW`]: eleven terms leave 2e-17. Terms with
+/// even and odd k are summed apart, so that no sum waits for the other.
 #[inline(always)]
 fn arc_over_tangent(t2: f64) -> f64 {
     let (mut even, mut odd, t4) = (0.0, 0.0, t2 * t2);

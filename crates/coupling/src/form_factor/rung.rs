@@ -1,9 +1,11 @@
 //! The accuracies that are computed to: powers of ten.
 //!
-//! Errors lie below what is asked for by factors that scatter from pair to pair. Asking for twice the accuracy could then give a slightly larger error. A step of ten in the
-//! tolerance is larger than the scatter of the largest error in a scene.
+//! Errors lie below what is asked for by factors that scatter from pair to pair. Asking for twice
+//! the accuracy could then give a slightly larger error. A step of ten in the tolerance is larger
+//! than the scatter of the largest error in a scene.
 
-/// Finest tolerance: what is asked for below it is lost in rounding, and looking for it makes results worse.
+/// Finest tolerance: what is asked for below it is lost in rounding, and looking for it makes
+/// results worse.
 const FINEST: f64 = 1e-14;
 
 /// Relative distance below a power of ten that counts as rounding.

@@ -1,24 +1,24 @@
-//! A_i F_ij behind many occluders: the unoccluded factor times the share of it that reaches through,
-//! G_ij = G⁰_ij Σ w_k V_k / Σ w_k over pairs of points, w the point-to-point kernel times the areas the points stand for.
+//! A_i F_ij behind many occluders: the unoccluded factor times the share of it that reaches
+//! through, G_ij = G⁰_ij Σ w_k V_k / Σ w_k over pairs of points, w the point-to-point kernel times
+//! the areas the points stand for.
 //!
-//! The pairs follow the four-dimensional additive recurrence with the generalised golden ratio φ⁵ = φ + 1 (M. Roberts, *The Unreasonable
-//! Effectiveness of Quasirandom Sequences*, 2018), the same for every pair of patches. Their number is multiplied by four until the
-//! tripled standard error over eight batches meets the tolerance, or until there are more than exact shadows would cost. In m².
+//! The pairs follow the four-dimensional additive recurrence of `rays`, the same for every pair of
+//! patches. Their number is multiplied by four until the tripled standard error over eight batches
+//! meets the tolerance, or until there are more than exact shadows would cost. In m².
 
 use super::jacobian;
 use crate::kernel::lambert;
 use crate::polygon::folded;
+use crate::rays::recurrence;
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_quadrature::Estimate;
 
-/// φ⁻¹, φ⁻², φ⁻³, φ⁻⁴ with φ⁵ = φ + 1.
-const STEPS: [f64; 4] =
-    [0.856_674_883_854_502_9, 0.733_891_856_627_126, 0.628_706_721_185_640_4, 0.538_597_257_223_612_2];
 const BATCHES: usize = 8;
 const FIRST: usize = 64;
 const MOST: usize = 16384;
 
-/// A_i F_ij (m²) of two patches whose unoccluded value is `open`; `sees` answers whether two points see each other.
+/// A_i F_ij (m²) of two patches whose unoccluded value is `open`; `sees` answers whether two points
+/// see each other.
 pub(crate) fn sampled(
     a: &Patch,
     b: &Patch,
@@ -35,7 +35,8 @@ pub(crate) fn sampled(
         }
         done = until;
         let (share, spread) = summary(&batches);
-        // Eight batches may agree by luck, but seldom both with each other and with the stage before.
+        // Eight batches may agree by luck, but seldom both with each other and with the stage
+        // before.
         let error = spread.max((share - last).abs());
         last = share;
         let total = open.value * error + open.error * share;
@@ -66,7 +67,7 @@ impl Share {
 }
 
 fn pair_parameters(k: usize) -> [f64; 4] {
-    STEPS.map(|step| (0.5 + step * k as f64).fract())
+    recurrence(k, [0.5; 4])
 }
 
 /// A point of the patch and the area it stands for, up to a constant.
@@ -75,8 +76,9 @@ fn weighted(patch: &Patch, u: f64, v: f64) -> (Vec3, f64) {
     (patch.point(u, v), jacobian(patch, u, v))
 }
 
-/// Mean share and three standard errors over the batches, 98 % of a t-distribution with seven degrees of freedom; never less than the heaviest pair's worth.
-/// Where no pair has any weight nothing is known.
+/// Mean share and three standard errors over the batches, 98 % of a t-distribution with seven
+/// degrees of freedom; never less than the heaviest pair's worth. Where no pair has any weight
+/// nothing is known.
 fn summary(batches: &[Share]) -> (f64, f64) {
     let all: f64 = batches.iter().map(|s| s.all).sum();
     if all == 0.0 {

@@ -1,7 +1,10 @@
-//! What convex bodies hide of a convex polygon from a point, exactly: F = Σ over the pieces of the polygon that lie in the shadows.
+//! What convex bodies hide of a convex polygon from a point, exactly: F = Σ over the pieces of the
+//! polygon that lie in the shadows.
 //!
-//! The shadow of a body is an intersection of half-spaces. Clipping a convex polygon by them leaves the hidden piece, convex again; what is cut off on the
-//! way stays visible and is asked about the next body. T. Nishita & E. Nakamae, SIGGRAPH 1985, doi:10.1145/325165.325169, treat the same geometry.
+//! The shadow of a body is an intersection of half-spaces. Clipping a convex polygon by them leaves
+//! the hidden piece, convex again; what is cut off on the way stays visible and is asked about the
+//! next body. T. Nishita & E. Nakamae, SIGGRAPH 1985, doi:10.1145/325165.325169, treat the same
+//! geometry.
 
 use crate::form_factor::point_to_polygon;
 use crate::polygon::crossing;
@@ -84,7 +87,8 @@ struct Cutter {
 }
 
 impl Cutter {
-    /// Splits a convex polygon into its parts with n·x ≥ c and ≤ c, which are in `inside` and `outside` only where the plane cuts it.
+    /// Splits a convex polygon into its parts with n·x ≥ c and ≤ c, which are in `inside` and
+    /// `outside` only where the plane cuts it.
     #[inline]
     fn split(&mut self, polygon: &Polygon, (n, c, side_id): (Vec3, f64, SideId), tolerance: f64) -> Cut {
         let (mut above, mut below) = (false, false);
@@ -145,12 +149,14 @@ enum Cut {
     Both,
 }
 
-/// The topology of the shadow, as a hash of what its sides come from: over a part of the source where it does not change, the hidden part is a smooth function.
+/// The topology of the shadow, as a hash of what its sides come from: over a part of the source
+/// where it does not change, the hidden part is a smooth function.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Topology(u64);
 
 impl Topology {
-    /// The number of the first half-space of body `k`: those of other bodies, and sides of the target, have other numbers.
+    /// The number of the first half-space of body `k`: those of other bodies, and sides of the
+    /// target, have other numbers.
     pub(super) fn first(k: usize) -> SideId {
         (k as SideId + 1) << 10
     }
@@ -168,8 +174,8 @@ impl Topology {
     }
 }
 
-/// Spreads a number over all bits. D. Stafford's variant 13 of the finalizer of MurmurHash3, as in G. L. Steele et al., OOPSLA 2014,
-/// doi:10.1145/2660193.2660195.
+/// Spreads a number over all bits. D. Stafford's variant 13 of the finalizer of MurmurHash3, as in
+/// G. L. Steele et al., OOPSLA 2014, doi:10.1145/2660193.2660195.
 fn scatter(z: u64) -> u64 {
     let z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
@@ -190,7 +196,8 @@ pub(crate) struct Hiding {
 }
 
 impl Hiding {
-    /// Form factor from the point `x` with normal `n` to what `screens`, given with their numbers, hide of `target`, which lies in front of the point.
+    /// Form factor from the point `x` with normal `n` to what `screens`, given with their numbers,
+    /// hide of `target`, which lies in front of the point.
     pub(crate) fn hidden_factor<'s>(
         &mut self,
         x: Vec3,
@@ -248,7 +255,8 @@ impl Hiding {
         hidden
     }
 
-    /// Whether the volume has nothing of the target. Where that is in one piece, asking about it is as quick.
+    /// Whether the volume has nothing of the target. Where that is in one piece, asking about it is
+    /// as quick.
     fn misses(&self, flat: f64) -> bool {
         let outside = |&(m, c, _): &(Vec3, f64, SideId)| {
             let least = c + flat * size(m);
@@ -257,7 +265,8 @@ impl Hiding {
         self.visible.len() > 1 && self.volume.planes().iter().any(outside)
     }
 
-    /// Form factor of the part of a visible piece that lies in the volume; with `keep` the rest goes to the next pieces.
+    /// Form factor of the part of a visible piece that lies in the volume; with `keep` the rest
+    /// goes to the next pieces.
     fn darken(&mut self, i: usize, n: Vec3, keep: bool, first: SideId, flat: f64) -> f64 {
         let (corners, side_ids) = self.visible.get(i);
         self.rest.clear();

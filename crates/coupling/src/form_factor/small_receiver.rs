@@ -1,8 +1,11 @@
-//! The exchange of a large polygon with a small patch before it: A F = ∫ F(x → polygon) dA by the rule of degree 2 or 3 over the small patch.
+//! The exchange of a large polygon with a small patch before it: A F = ∫ F(x → polygon) dA by the
+//! rule of degree 2 or 3 over the small patch.
 //!
-//! F from a point in closed form is smooth over a patch that is far from the edges of the polygon, measured in its radius. The error is that of the midpoint rule times the ratio of both:
-//! the next terms of the expansion are smaller by its square. The second derivative of F across an edge at a distance d is at most 0.43/d², that of ½(1 + x/√(x² + d²)), which bounds
-//! the error of the midpoint rule where that suffices. In m².
+//! F from a point in closed form is smooth over a patch that is far from the edges of the polygon,
+//! measured in its radius. The error is that of the midpoint rule times the ratio of both: the next
+//! terms of the expansion are smaller by its square. The second derivative of F across an edge at a
+//! distance d is at most 0.43/d², that of ½(1 + x/√(x² + d²)), which bounds the error of the
+//! midpoint rule where that suffices. In m².
 
 use super::{Segment, flat, front_of, jacobian, point_to_polygon, to_segments};
 use crate::polygon::HalfSpace;
@@ -12,13 +15,15 @@ use std::sync::LazyLock;
 
 /// Radius of the patch over its distance from the edges of the polygon, at most.
 const REACH: f64 = 0.5;
-/// Error of the midpoint rule over the square of that ratio, at most. One straight edge gives 0.43/12; several may add up, and be nearer to the other points.
+/// Error of the midpoint rule over the square of that ratio, at most. One straight edge gives
+/// 0.43/12; several may add up, and be nearer to the other points.
 const MIDPOINT: f64 = 0.125;
 
 static TRIANGLE: LazyLock<Vec<PlanePoint>> = LazyLock::new(|| symmetric_triangle(2).unwrap_or_default());
 static QUAD: LazyLock<Vec<PlanePoint>> = LazyLock::new(|| tensor_quad(2));
 
-/// The exchange to an absolute `goal` (m²), or `None` where the patches do not face each other wholly or the rule does not suffice.
+/// The exchange to an absolute `goal` (m²), or `None` where the patches do not face each other
+/// wholly or the rule does not suffice.
 pub(crate) fn small_receiver(large: &Patch, small: &Patch, goal: f64) -> Option<Estimate> {
     let (before_large, before_small) = (front_of(large), front_of(small));
     let faces = in_front(small, before_large, flat(large, small))

@@ -1,7 +1,8 @@
 //! What bodies hide of a convex polygon from several points of one source.
 //!
-//! Most points see the shadow of one body only: the part of the target in its shadow volume is the hidden part, and nothing of what is left is needed. Where the shadows of several bodies
-//! meet the target, they are subtracted one after the other ([`Hiding`]). Lengths in metres.
+//! Most points see the shadow of one body only: the part of the target in its shadow volume is the
+//! hidden part, and nothing of what is left is needed. Where the shadows of several bodies meet the
+//! target, they are subtracted one after the other ([`Hiding`]). Lengths in metres.
 
 use super::packet::{Found, POINTS, Packet, Shadows, Target};
 use super::shadow::{Hiding, SideId, Topology};
@@ -19,7 +20,8 @@ pub(crate) struct Together {
 }
 
 impl Together {
-    /// Appends the form factor from each of the `points` with normal `n` to what `screens` hide of `target`, and what makes the hidden part.
+    /// Appends the form factor from each of the `points` with normal `n` to what `screens` hide of
+    /// `target`, and what makes the hidden part.
     pub(crate) fn hidden_factors(
         &mut self,
         points: &[Vec3],

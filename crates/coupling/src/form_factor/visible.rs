@@ -1,7 +1,8 @@
 //! The parts of a flat patch that points of another one see, exactly: convex polygons.
 //!
-//! The target is clipped by the horizon of the source, and the shadows of the occluders between both are cut out of it. T. Nishita & E. Nakamae,
-//! SIGGRAPH 1985, doi:10.1145/325165.325169, treat the same geometry. Lengths in metres. For integrals of the kernel times a function over what is
+//! The target is clipped by the horizon of the source, and the shadows of the occluders between
+//! both are cut out of it. T. Nishita & E. Nakamae, SIGGRAPH 1985, doi:10.1145/325165.325169, treat
+//! the same geometry. Lengths in metres. For integrals of the kernel times a function over what is
 //! seen; the factor alone is the integral of the kernel.
 
 use super::shadow::Hiding;
@@ -70,7 +71,8 @@ impl<'a> VisibleParts<'a> {
         &self.target
     }
 
-    /// Form factor from the point `p` of the source patch to what it sees of the target; [`parts`](Self::parts) then are what it sees.
+    /// Form factor from the point `p` of the source patch to what it sees of the target;
+    /// [`parts`](Self::parts) then are what it sees.
     pub fn factor(&mut self, p: Vec3) -> f64 {
         let front = self.behind.is_some_and(|plane| plane.height(p) > self.flat);
         let target = if front { &self.target[..] } else { &[] };

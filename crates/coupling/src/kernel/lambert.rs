@@ -1,7 +1,8 @@
 //! The kernel of diffuse light, cosθp cosθq / (π r²) (1/m²), without visibility.
 //!
-//! M. F. Cohen, J. R. Wallace, *Radiosity and Realistic Image Synthesis*, Academic Press 1993, eq. 4.4. Symmetric in p and q; 0 when
-//! either point is behind the other; singular as 1/r² where both cosines stay away from 0, bounded on a flat patch.
+//! M. F. Cohen, J. R. Wallace, *Radiosity and Realistic Image Synthesis*, Academic Press 1993, eq.
+//! 4.4. Symmetric in p and q; 0 when either point is behind the other; singular as 1/r² where both
+//! cosines stay away from 0, bounded on a flat patch.
 
 use fredholm_mesh::Vec3;
 use std::f64::consts::FRAC_1_PI;

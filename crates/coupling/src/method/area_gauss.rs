@@ -1,9 +1,11 @@
-//! Double area integral: A_i F_ij ≈ Σ_k Σ_l w_k w_l cosθ_k cosθ_l V_kl / (π r_kl²), n × n Gauss points on both patches.
+//! Double area integral: A_i F_ij ≈ Σ_k Σ_l w_k w_l cosθ_k cosθ_l V_kl / (π r_kl²), n × n Gauss
+//! points on both patches.
 //!
-//! J.-F. Viennot's thesis, eq. 1.39. In m². Where the patches share corners the kernel jumps
-//! there; the rules of S. A. Sauter & C. Schwab (2011, section 5.2) for triangles with a common corner or edge make it analytic. So
-//! the error falls geometrically with n for patches that are apart or share whole edges; the closer they come without
-//! touching, the slower. Where they touch otherwise (part of an edge), or something stands between, it falls algebraically.
+//! J.-F. Viennot's thesis, eq. 1.39. In m². Where the patches share corners the kernel jumps there;
+//! the rules of S. A. Sauter & C. Schwab (2011, section 5.2) for triangles with a common corner or
+//! edge make it analytic. So the error falls geometrically with n for patches that are apart or
+//! share whole edges; the closer they come without touching, the slower. Where they touch otherwise
+//! (part of an edge), or something stands between, it falls algebraically.
 
 use super::facing::Facing;
 use super::orders::{cost, placed, settled};
@@ -66,7 +68,8 @@ pub(super) fn tensor(facing: &Facing, n: usize) -> f64 {
     a.iter().map(|&(p, weight)| weight * inner(p)).sum()
 }
 
-/// Two triangles with labels that are equal where corners are; no labels where there are no such corners.
+/// Two triangles with labels that are equal where corners are; no labels where there are no such
+/// corners.
 struct TrianglePair {
     triangles: [Patch; 2],
     labels: Option<[[usize; 3]; 2]>,
@@ -80,7 +83,8 @@ fn touching_pairs(facing: &Facing) -> Vec<TrianglePair> {
     pairs.map(|triangles| TrianglePair { labels: labels(&triangles, reach), triangles }).collect()
 }
 
-/// Labels 0, 1, 2 for the first triangle; a corner of the second has that of the corner it lies on, or one of its own.
+/// Labels 0, 1, 2 for the first triangle; a corner of the second has that of the corner it lies on,
+/// or one of its own.
 fn labels([a, b]: &[Patch; 2], reach: f64) -> Option<[[usize; 3]; 2]> {
     let on = |k: usize| a.corners().iter().position(|x| x.distance(b.corner(k)) <= reach);
     let second = [0, 1, 2].map(|k| on(k).unwrap_or(3 + k));

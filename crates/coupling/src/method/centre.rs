@@ -1,7 +1,8 @@
 //! Centre to centre: A_i F_ij ≈ A_i A_j cosθ cosθ' V / (π r²) between the centroids.
 //!
-//! J.-F. Viennot's thesis, eq. 1.42. In m². For small patches far from each other only. The odd terms of the kernel's expansion about the
-//! centroids vanish; the stated error is the size of the second ones, a few times (R_i² + R_j²)/r² of A_i A_j / (π r²).
+//! J.-F. Viennot's thesis, eq. 1.42. In m². For small patches far from each other only. The odd
+//! terms of the kernel's expansion about the centroids vanish; the stated error is the size of the
+//! second ones, a few times (R_i² + R_j²)/r² of A_i A_j / (π r²).
 
 use super::facing::{Facing, Part};
 use super::{Evaluated, FormFactorMethod, MethodError, Setting};

@@ -1,7 +1,8 @@
-//! Contour integral: A_i F_ij = (1/2π) ∮∮ ln r dx·dy over the outlines of the parts that face each other.
+//! Contour integral: A_i F_ij = (1/2π) ∮∮ ln r dx·dy over the outlines of the parts that face each
+//! other.
 //!
-//! Stokes' theorem twice; E. M. Sparrow 1963, doi:10.1115/1.3686055; J.-F. Viennot's thesis, eq. 1.41. In m². See
-//! [`contour_integral`]. It knows no visibility.
+//! Stokes' theorem twice; E. M. Sparrow 1963, doi:10.1115/1.3686055; J.-F. Viennot's thesis, eq.
+//! 1.41. In m². See [`contour_integral`]. It knows no visibility.
 
 use super::facing::Facing;
 use super::{Evaluated, FormFactorMethod, MethodError, Setting};

@@ -1,8 +1,9 @@
 //! The complex dilogarithm Li₂(z) = −∫₀ᶻ ln(1 − t)/t dt = Σ zᵏ/k².
 //!
-//! L. Lewin, *Polylogarithms and Associated Functions*, North-Holland 1981; J. Vollinga & S. Weinzierl, Comput. Phys. Commun. 167
-//! (2005) 177, doi:10.1016/j.cpc.2004.12.009, section 3. Dimensionless. Inversion (|z| > 1) and reflection (Re z > ½) bring z to where
-//! u = −ln(1 − z) has |u| < 1.1; there Li₂ = Σ Bₖ uᵏ⁺¹/(k + 1)!, whose terms fall by (|u|/2π)² ≤ 0.03. On the branch
+//! L. Lewin, *Polylogarithms and Associated Functions*, North-Holland 1981; J. Vollinga & S.
+//! Weinzierl, Comput. Phys. Commun. 167 (2005) 177, doi:10.1016/j.cpc.2004.12.009, section 3.
+//! Dimensionless. Inversion (|z| > 1) and reflection (Re z > ½) bring z to where u = −ln(1 − z) has
+//! |u| < 1.1; there Li₂ = Σ Bₖ uᵏ⁺¹/(k + 1)!, whose terms fall by (|u|/2π)² ≤ 0.03. On the branch
 //! cut, real z > 1, the sign of the imaginary zero chooses the side.
 
 use num_complex::Complex64;
@@ -70,7 +71,8 @@ mod tests {
         Complex64::new(re, im)
     }
 
-    /// Points of all regions: about 0, 1 and ∞, on both sides of every line where the formula changes.
+    /// Points of all regions: about 0, 1 and ∞, on both sides of every line where the formula
+    /// changes.
     fn points() -> impl Iterator<Item = Complex64> {
         let radii = [1e-8, 0.1, 0.499, 0.501, 0.9, 0.999_999, 1.0, 1.000_001, 1.5, 7.0, 1e6];
         let angle = |k: usize| 0.05 + 0.31 * k as f64;

@@ -1,8 +1,9 @@
 //! Point to disc: A_i F_ij ≈ A_i A_j cosθ cosθ' V / (π r² + A_j), j the larger patch.
 //!
-//! J. R. Wallace, K. A. Elmquist, E. A. Haines, SIGGRAPH 1989, doi:10.1145/74333.74366, after the exact factor of a coaxial disc,
-//! A_j / (π r² + A_j). In m². It stays below the area where the patches are close, but knows neither the shape of j nor the extent
-//! of i. The larger patch is the disc, so that A_i F_ij = A_j F_ji.
+//! J. R. Wallace, K. A. Elmquist, E. A. Haines, SIGGRAPH 1989, doi:10.1145/74333.74366, after the
+//! exact factor of a coaxial disc, A_j / (π r² + A_j). In m². It stays below the area where the
+//! patches are close, but knows neither the shape of j nor the extent of i. The larger patch is the
+//! disc, so that A_i F_ij = A_j F_ji.
 
 use super::centre::second_terms;
 use super::facing::Facing;

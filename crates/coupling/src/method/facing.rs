@@ -1,7 +1,8 @@
 //! The parts of two patches that face each other, and what stands between them.
 //!
-//! Points of i behind the plane of j see nothing of it: A_i F_ij = ∫ ∫ over {p ∈ i : n_j·(p − c_j) ≥ 0} and the same of j. All methods integrate
-//! over these parts only, so that patches that cross each other's plane are right. Lengths in metres.
+//! Points of i behind the plane of j see nothing of it: A_i F_ij = ∫ ∫ over {p ∈ i : n_j·(p − c_j)
+//! ≥ 0} and the same of j. All methods integrate over these parts only, so that patches that cross
+//! each other's plane are right. Lengths in metres.
 
 use super::Evaluated;
 use crate::form_factor::{extent, flat, front, front_of};
@@ -51,7 +52,8 @@ impl<'a> Facing<'a> {
         self.extent
     }
 
-    /// The estimate, its error no larger than the value or the smaller area: the truth lies between 0 and that area.
+    /// The estimate, its error no larger than the value or the smaller area: the truth lies between
+    /// 0 and that area.
     pub(super) fn evaluated(&self, estimate: Estimate, evaluations: u64) -> Evaluated {
         let got = Evaluated::new(estimate, evaluations);
         let most = got.value.max(self.a.area().min(self.b.area()));
@@ -95,7 +97,8 @@ impl Part {
         self.corners.iter().map(|x| x.distance(centre)).fold(0.0, f64::max)
     }
 
-    /// Smallest height of the corners of another part over the plane of this one, m: no point of it is closer.
+    /// Smallest height of the corners of another part over the plane of this one, m: no point of it
+    /// is closer.
     pub(super) fn clearance(&self, other: &Self) -> f64 {
         let height = |x: &Vec3| (*x - self.corners[0]).dot(self.normal);
         other.corners.iter().map(height).fold(f64::INFINITY, f64::min)
@@ -127,7 +130,8 @@ pub(super) fn fan(corners: &[Vec3]) -> Vec<Patch> {
     (2..corners.len()).filter_map(triangle).collect()
 }
 
-/// Number of occluders that reach into the space in front of both planes, as far as the shaft of the pair finds them.
+/// Number of occluders that reach into the space in front of both planes, as far as the shaft of
+/// the pair finds them.
 fn between(a: &Patch, b: &Patch, planes: [HalfSpace; 2], flat: f64, occluders: &Occluders) -> usize {
     let mut candidates = Vec::new();
     occluders.shaft(a, b, &mut candidates);

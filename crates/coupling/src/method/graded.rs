@@ -1,8 +1,10 @@
 //! ∫ f dA over a convex polygon, f with layers along its edges and peaks at its corners.
 //!
-//! Fanned into triangles, each collapsed towards a corner (M. G. Duffy, SIAM J. Numer. Anal. 19 (1982) 1260, doi:10.1137/0719090) and graded towards
-//! all edges by x = 1/(1 + e^(−π sinh τ)) (H. Takahasi & M. Mori, Publ. RIMS 9 (1974) 721, doi:10.2977/prims/1195192451), which leaves a layer of
-//! width δ a width of the order of 1/ln(1/δ). Cells in τ are then cut where the error is largest. In m² times the unit of f.
+//! Fanned into triangles, each collapsed towards a corner (M. G. Duffy, SIAM J. Numer. Anal. 19
+//! (1982) 1260, doi:10.1137/0719090) and graded towards all edges by x = 1/(1 + e^(−π sinh τ)) (H.
+//! Takahasi & M. Mori, Publ. RIMS 9 (1974) 721, doi:10.2977/prims/1195192451), which leaves a layer
+//! of width δ a width of the order of 1/ln(1/δ). Cells in τ are then cut where the error is
+//! largest. In m² times the unit of f.
 
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_quadrature::{Estimate, Goal, PlanePoint, adaptive_quad};

@@ -1,9 +1,11 @@
 //! Hemicube: A_i F_ij ≈ A_i Σ ΔF over the pixels through which the centroid of i sees j.
 //!
-//! M. F. Cohen & D. P. Greenberg, SIGGRAPH 1985, doi:10.1145/325165.325171. In m². A half cube of half side 1 stands over the centroid; a pixel of
-//! area ΔA has ΔF = ΔA/(π (x² + y² + 1)²) on the top and z ΔA/(π (y² + z² + 1)²) on a side. The classical comparator: with
-//! rising resolution it converges (raggedly, about as 1/N) to A_i times the factor of the centroid, not to A_i F_ij. The stated error is half
-//! the pixels on the outline, one pixel at least, and the difference between the centroid and the mean. It is not reciprocal.
+//! M. F. Cohen & D. P. Greenberg, SIGGRAPH 1985, doi:10.1145/325165.325171. In m². A half cube of
+//! half side 1 stands over the centroid; a pixel of area ΔA has ΔF = ΔA/(π (x² + y² + 1)²) on the
+//! top and z ΔA/(π (y² + z² + 1)²) on a side. The classical comparator: with rising resolution it
+//! converges (raggedly, about as 1/N) to A_i times the factor of the centroid, not to A_i F_ij. The
+//! stated error is half the pixels on the outline, one pixel at least, and the difference between
+//! the centroid and the mean. It is not reciprocal.
 
 use super::facing::Facing;
 use super::nystrom::collocation;

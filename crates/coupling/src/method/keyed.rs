@@ -1,7 +1,8 @@
-//! Random numbers by key: the number of (seed, sample, dimension) never depends on which others were drawn.
+//! Random numbers by key: the number of (seed, sample, dimension) never depends on which others
+//! were drawn.
 //!
-//! The mixing function of SplitMix64, G. L. Steele, D. Lea, C. H. Flood, OOPSLA 2014, doi:10.1145/2660193.2660195, once for each part of the key. Even in
-//! [0, 1), 53 bits.
+//! The mixing function of SplitMix64, G. L. Steele, D. Lea, C. H. Flood, OOPSLA 2014,
+//! doi:10.1145/2660193.2660195, once for each part of the key. Even in [0, 1), 53 bits.
 
 const GAMMA: u64 = 0x9E37_79B9_7F4A_7C15;
 
@@ -22,7 +23,8 @@ fn mix(mut z: u64) -> u64 {
 mod tests {
     use super::*;
 
-    /// Mean of products of pairs of dimensions, samples and seeds: ¼ for independent numbers, with standard deviation √(7/144 N).
+    /// Mean of products of pairs of dimensions, samples and seeds: ¼ for independent numbers, with
+    /// standard deviation √(7/144 N).
     #[test]
     fn neighbouring_keys_are_uncorrelated() {
         let n = 20_000u64;

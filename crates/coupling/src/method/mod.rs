@@ -1,8 +1,9 @@
-//! Form-factor methods by name: A_i F_ij = ∫_i ∫_j cosθ cosθ' V / (π r²) dA dA' (m²), each in its own way, for study.
+//! Form-factor methods by name: A_i F_ij = ∫_i ∫_j cosθ cosθ' V / (π r²) dA dA' (m²), each in its
+//! own way, for study.
 //!
-//! M. F. Cohen, J. R. Wallace, *Radiosity and Realistic Image Synthesis*, Academic Press 1993, chapter 4, compares most of them. A
-//! method is one file here and one line in [`methods`]. Assemblies use [`PairIntegrator`](crate::form_factor::PairIntegrator), here
-//! called `auto`.
+//! M. F. Cohen, J. R. Wallace, *Radiosity and Realistic Image Synthesis*, Academic Press 1993,
+//! chapter 4, compares most of them. A method is one file here and one line in [`methods`].
+//! Assemblies use [`PairIntegrator`](crate::form_factor::PairIntegrator), here called `auto`.
 //!
 //! | name | what it computes | setting | converges to A_i F_ij |
 //! |---|---|---|---|
@@ -17,8 +18,8 @@
 //! | `hemicube` | pixels about the centroid of i | resolution | no |
 //! | `auto` | the cheapest that meets the tolerance | tolerance | yes |
 //!
-//! A tolerance is relative to the exchange that the patches would have squarely facing each other, A_i A_j / (π d²), or the smaller
-//! area where that is less. Errors are absolute, in m².
+//! A tolerance is relative to the exchange that the patches would have squarely facing each other,
+//! A_i A_j / (π d²), or the smaller area where that is less. Errors are absolute, in m².
 
 mod area_gauss;
 mod auto;
@@ -55,8 +56,9 @@ pub struct Evaluated {
     pub value: f64,
     /// Estimated absolute error, m². Of `monte-carlo`: one standard error.
     pub error: f64,
-    /// Evaluations of the innermost formula: point pairs (`centre`, `disc`, `area-gauss`, `nystrom`, `monte-carlo`), points (`point-polygon`),
-    /// pairs of edges (`contour`, `schroeder-hanrahan`), pixels (`hemicube`); 1 where the method does not count (`auto`).
+    /// Evaluations of the innermost formula: point pairs (`centre`, `disc`, `area-gauss`,
+    /// `nystrom`, `monte-carlo`), points (`point-polygon`), pairs of edges (`contour`,
+    /// `schroeder-hanrahan`), pixels (`hemicube`); 1 where the method does not count (`auto`).
     pub evaluations: u64,
 }
 
@@ -82,10 +84,12 @@ pub trait FormFactorMethod: Send + Sync {
     /// The setting for everyday use.
     fn default_setting(&self) -> Setting;
 
-    /// A_i F_ij (m²) of `a` (patch i) and `b` (patch j) behind `occluders`. Patches that do not face each other have 0.
+    /// A_i F_ij (m²) of `a` (patch i) and `b` (patch j) behind `occluders`. Patches that do not
+    /// face each other have 0.
     ///
     /// # Errors
-    /// A setting of another kind or out of range, or occluders between the patches that the method cannot treat.
+    /// A setting of another kind or out of range, or occluders between the patches that the method
+    /// cannot treat.
     fn exchange(
         &self,
         a: &Patch,

@@ -1,9 +1,12 @@
-//! Monte Carlo: A_i F_ij = A_i E[ k V / (½/A_j + ½ k) ] over points q of j, half of them even on j, half where cosine-weighted rays from p meet it.
+//! Monte Carlo: A_i F_ij = A_i E[ k V / (½/A_j + ½ k) ] over points q of j, half of them even on j,
+//! half where cosine-weighted rays from p meet it.
 //!
-//! E. Veach & L. J. Guibas, SIGGRAPH 1995, doi:10.1145/218380.218498, the balance heuristic of two densities in the measure of area: 1/A_j, and the kernel
-//! k = cosθ cosθ'/(π r²) itself. In m². p is even on i. Points alone have no finite variance where patches share an edge, rays alone waste
-//! themselves on small and far patches; together no sample exceeds 2 A_i. The error is one standard error: it is estimated from the samples, falls
-//! as N^(−1/2), and is 0 where no sample sees anything.
+//! E. Veach & L. J. Guibas, SIGGRAPH 1995, doi:10.1145/218380.218498, the balance heuristic of two
+//! densities in the measure of area: 1/A_j, and the kernel k = cosθ cosθ'/(π r²) itself. In m². p
+//! is even on i. Points alone have no finite variance where patches share an edge, rays alone waste
+//! themselves on small and far patches; together no sample exceeds 2 A_i. The error is one standard
+//! error: it is estimated from the samples, falls as N^(−1/2), and is 0 where no sample sees
+//! anything.
 
 use super::facing::{Facing, Part};
 use super::keyed::keyed;

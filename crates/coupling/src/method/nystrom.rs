@@ -1,10 +1,12 @@
-//! Nyström points: A_i F_ij ≈ A_i Σ_k w_k cosθ cosθ_k V_k / (π r_k²), quadrature points y_k of j seen from the centroid of i.
+//! Nyström points: A_i F_ij ≈ A_i Σ_k w_k cosθ cosθ_k V_k / (π r_k²), quadrature points y_k of j
+//! seen from the centroid of i.
 //!
-//! G. Peyré, *Équations intégrales et radiosité*, eq. 1.25–1.29: the method replaces the operator K by Σ_k w_k k(x, y_k), and its matrix
-//! rows are points x, never means over a patch. What it means for a pair is therefore the row of one point of i, here the
-//! centroid, times the area of i (m²). With rising order this converges to A_i times the point's factor, not to A_i F_ij: the
-//! remaining difference is that of collocation, of second order in the size of i. The stated error has both parts.
-//! It is not reciprocal.
+//! G. Peyré, *Équations intégrales et radiosité*, eq. 1.25–1.29: the method replaces the operator K
+//! by Σ_k w_k k(x, y_k), and its matrix rows are points x, never means over a patch. What it means
+//! for a pair is therefore the row of one point of i, here the centroid, times the area of i (m²).
+//! With rising order this converges to A_i times the point's factor, not to A_i F_ij: the remaining
+//! difference is that of collocation, of second order in the size of i. The stated error has both
+//! parts. It is not reciprocal.
 
 use super::area_gauss::tensor;
 use super::facing::Facing;
@@ -17,7 +19,8 @@ use fredholm_visibility::Occluders;
 
 /// Highest order.
 const MOST: usize = 64;
-/// Points a direction on both patches for the difference between centroid and mean behind occluders.
+/// Points a direction on both patches for the difference between centroid and mean behind
+/// occluders.
 const BEHIND: usize = 6;
 
 pub(super) struct Nystrom;
@@ -57,8 +60,8 @@ impl FormFactorMethod for Nystrom {
     }
 }
 
-/// Difference between A_i F_ij and the factor of the centroid times the area, m²: closed forms of both where nothing is between, else Gauss
-/// points and their error.
+/// Difference between A_i F_ij and the factor of the centroid times the area, m²: closed forms of
+/// both where nothing is between, else Gauss points and their error.
 pub(super) fn collocation(facing: &Facing) -> f64 {
     let (p, area) = (facing.a.centroid(), facing.a.area());
     if facing.between() > 0 {

@@ -1,9 +1,11 @@
 //! Points of a Gauss rule on the parts of a patch, and the error that successive orders tell.
 //!
-//! With d_n = |Q_n − Q_{n−1}| and q = d_n/d_{n−1}, the steps still to come add up to d_n q/(1 − q) where they fall geometrically. Where the error falls as
-//! n^(−p) they add up to d_n n/p, and q/(1 − q) is n/(p + 1): twice as much covers p ≥ 2 from n = 4. The larger of that and d_n is the stated error. Next to a
-//! much larger patch the steps change sign, so that a small ratio may be an accident: q counts as 0.06 at least. Where the integrand jumps (something is between) the values scatter about the limit,
-//! and the root of d_n² + d_{n−1}² measures how far.
+//! With d_n = |Q_n − Q_{n−1}| and q = d_n/d_{n−1}, the steps still to come add up to d_n q/(1 − q)
+//! where they fall geometrically. Where the error falls as n^(−p) they add up to d_n n/p, and q/(1
+//! − q) is n/(p + 1): twice as much covers p ≥ 2 from n = 4. The larger of that and d_n is the
+//! stated error. Next to a much larger patch the steps change sign, so that a small ratio may be an
+//! accident: q counts as 0.06 at least. Where the integrand jumps (something is between) the values
+//! scatter about the limit, and the root of d_n² + d_{n−1}² measures how far.
 
 use crate::form_factor::jacobian;
 use fredholm_mesh::{Patch, Vec3};
@@ -29,7 +31,8 @@ pub(super) fn placed(cells: &[Patch], n: usize) -> Vec<(Vec3, f64)> {
     cells.iter().flat_map(on).collect()
 }
 
-/// The value of order `n` with its error from the two orders below; order 0 is the value 0. Behind occluders (`jumps`) values scatter.
+/// The value of order `n` with its error from the two orders below; order 0 is the value 0. Behind
+/// occluders (`jumps`) values scatter.
 pub(super) fn settled(n: usize, jumps: bool, at: impl Fn(usize) -> f64) -> Estimate {
     let below = |k: usize| if n > k { at(n - k) } else { 0.0 };
     let (value, lower, lowest) = (at(n), below(1), below(2));

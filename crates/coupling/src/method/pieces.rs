@@ -1,8 +1,10 @@
-//! The outer polygon cut up so that the factor to a close target has its layers along edges and its peaks at corners of the pieces only.
+//! The outer polygon cut up so that the factor to a close target has its layers along edges and its
+//! peaks at corners of the pieces only.
 //!
-//! For a point p of the outer polygon, F(p → target) varies over the distance from p to the outline of the target: along the projection of each edge of
-//! the target that is low over the outer plane, and about that of each low corner. Cuts run along these projections, and across them at corners where
-//! both edges project onto nearly one line. Lengths in metres.
+//! For a point p of the outer polygon, F(p → target) varies over the distance from p to the outline
+//! of the target: along the projection of each edge of the target that is low over the outer plane,
+//! and about that of each low corner. Cuts run along these projections, and across them at corners
+//! where both edges project onto nearly one line. Lengths in metres.
 
 use super::facing::Part;
 use crate::polygon::{HalfSpace, clip};

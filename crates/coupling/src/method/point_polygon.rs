@@ -1,9 +1,12 @@
-//! Point to polygon inside, adaptive outside: A_i F_ij = ∫_i F(p → j) dA, F(p → j) Lambert's closed form.
+//! Point to polygon inside, adaptive outside: A_i F_ij = ∫_i F(p → j) dA, F(p → j) Lambert's closed
+//! form.
 //!
-//! Inner integral: see [`point_to_polygon`]. In m². The outer integral goes over the patch of the smaller diameter, cut where the
-//! error is largest (R. Piessens et al., *QUADPACK*, 1983, section 2.2.3). Where j is close, F(p → j) has layers along the projection of its edges and no
-//! limit at corners that touch: then the patch is cut along these projections (`pieces`) and graded towards the cuts (`graded`). With occluders
-//! between, what the point sees is cut out exactly; see [`PairIntegrator`].
+//! Inner integral: see [`point_to_polygon`]. In m². The outer integral goes over the patch of the
+//! smaller diameter, cut where the error is largest (R. Piessens et al., *QUADPACK*, 1983, section
+//! 2.2.3). Where j is close, F(p → j) has layers along the projection of its edges and no limit at
+//! corners that touch: then the patch is cut along these projections (`pieces`) and graded towards
+//! the cuts (`graded`). With occluders between, what the point sees is cut out exactly; see
+//! [`PairIntegrator`].
 
 use super::facing::{Facing, Part, fan};
 use super::graded::graded;
@@ -87,7 +90,8 @@ fn open(outer: &Part, target: &Part, tolerance: f64) -> Evaluated {
     Evaluated::new(Estimate { error: SAFETY * sum.error + rounding, ..sum }, evaluations.get())
 }
 
-/// Whether points of both parts may be so close that the factor varies over a small part of the outer one.
+/// Whether points of both parts may be so close that the factor varies over a small part of the
+/// outer one.
 fn is_close(outer: &Part, target: &Part) -> bool {
     let gap = outer.centroid().distance(target.centroid()) - outer.radius() - target.radius();
     gap.max(outer.clearance(target)).max(target.clearance(outer)) < CLOSE * outer.radius()

@@ -1,8 +1,11 @@
-//! Polygon to polygon in closed form: A_i F_ij = (1/2π) Σₑ Σ_f (dₑ·d_f) ∫ₑ∫_f ln r ds dt with every double integral closed.
+//! Polygon to polygon in closed form: A_i F_ij = (1/2π) Σₑ Σ_f (dₑ·d_f) ∫ₑ∫_f ln r ds dt with every
+//! double integral closed.
 //!
-//! P. Schröder & P. Hanrahan, "On the form factor between two polygons", SIGGRAPH 1993, doi:10.1145/166117.166138. In m². Skew and intersecting edges: see
-//! `skew_edges`; parallel ones: the closed form that the contour method uses too. Where the closed form of a pair of edges loses more than ten times what bisection
-//! loses (nearly parallel, or short and far), that pair alone has its outer integral bisected to rounding. The stated error is rounding.
+//! P. Schröder & P. Hanrahan, "On the form factor between two polygons", SIGGRAPH 1993,
+//! doi:10.1145/166117.166138. In m². Skew and intersecting edges: see `skew_edges`; parallel ones:
+//! the closed form that the contour method uses too. Where the closed form of a pair of edges loses
+//! more than ten times what bisection loses (nearly parallel, or short and far), that pair alone
+//! has its outer integral bisected to rounding. The stated error is rounding.
 
 use super::facing::Facing;
 use super::skew_edges::skew_edges;

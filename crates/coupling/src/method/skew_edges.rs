@@ -1,20 +1,26 @@
 //! ∫ₑ∫_f ln r ds dt over two edges that are not parallel, in closed form.
 //!
-//! What P. Schröder & P. Hanrahan, "On the form factor between two polygons", SIGGRAPH 1993, doi:10.1145/166117.166138 (report TR-404-93, Princeton),
-//! compute with a table of cases, in a form without cases. Measure s and t from the feet of the common perpendicular of both lines, of length d, with θ the
-//! angle between the directions: r² = s² + t² − 2 s t cosθ + d². Since ∇·(s ln r, t ln r) = 2 ln r + 1 − d²/r²,
+//! What P. Schröder & P. Hanrahan, "On the form factor between two polygons", SIGGRAPH 1993,
+//! doi:10.1145/166117.166138 (report TR-404-93, Princeton), compute with a table of cases, in a
+//! form without cases. Measure s and t from the feet of the common perpendicular of both lines, of
+//! length d, with θ the angle between the directions: r² = s² + t² − 2 s t cosθ + d². Since ∇·(s ln
+//! r, t ln r) = 2 ln r + 1 − d²/r²,
 //!
 //! ∫∫ ln r = ½ ( [s ∫ ln r dt]ₛ + [t ∫ ln r ds]ₜ − L_e L_f + d² ∫∫ ds dt/r² ),
 //!
-//! brackets being differences between the ends of an edge. The single integrals are elementary. For the last one let d sinh u = s sinθ and
-//! d sinh v = t sinθ. The integral over t is an arc tangent, the argument of (1 − e^{u−v+iθ}) (1 + e^{u+v+iθ}) up to a constant, and each
-//! factor stays on one side of the real axis: its logarithm has no branch to cross. So
+//! brackets being differences between the ends of an edge. The single integrals are elementary. For
+//! the last one let d sinh u = s sinθ and d sinh v = t sinθ. The integral over t is an arc tangent,
+//! the argument of (1 − e^{u−v+iθ}) (1 + e^{u+v+iθ}) up to a constant, and each factor stays on one
+//! side of the real axis: its logarithm has no branch to cross. So
 //!
-//! d² ∫∫ ds dt/r² = (d²/sinθ) [[ Λ(u + v, π − θ) + |u + v| θ/2 − Λ(u − v, θ) − |u − v| (π − θ)/2 ]],
+//! d² ∫∫ ds dt/r² = (d²/sinθ) [[ Λ(u + v, π − θ) + |u + v| θ/2 − Λ(u − v, θ) − |u − v| (π − θ)/2
+//! ]],
 //!
-//! Λ(x, θ) = Im Li₂(e^{−|x| + iθ}), double brackets the differences between the ends of both edges. With d = 0 (lines that meet) it
-//! vanishes. Dimensionless lengths in the unit of the pair. The terms are of the size of the distance to the feet, and the rounding of the directions
-//! turns the common perpendicular by its 1/sinθ-fold: edges that are nearly parallel, or short and far, cancel, and the stated rounding says so.
+//! Λ(x, θ) = Im Li₂(e^{−|x| + iθ}), double brackets the differences between the ends of both edges.
+//! With d = 0 (lines that meet) it vanishes. Dimensionless lengths in the unit of the pair. The
+//! terms are of the size of the distance to the feet, and the rounding of the directions turns the
+//! common perpendicular by its 1/sinθ-fold: edges that are nearly parallel, or short and far,
+//! cancel, and the stated rounding says so.
 
 use super::dilogarithm;
 use crate::form_factor::contour::{Edge, ROUNDING, log_integral};
@@ -22,7 +28,8 @@ use fredholm_quadrature::Estimate;
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
-/// Both lines seen from the feet of their common perpendicular: ends of the edges, angle and distance.
+/// Both lines seen from the feet of their common perpendicular: ends of the edges, angle and
+/// distance.
 struct Feet {
     s: [f64; 2],
     t: [f64; 2],
@@ -38,7 +45,8 @@ impl Feet {
         let common = cross / sine;
         let w = e.start - f.start;
         let s = w.cross(f.direction).dot(common) / sine;
-        // From the foot on e, not from the start of e: the rounding of both feet is then the same, and cancels.
+        // From the foot on e, not from the start of e: the rounding of both feet is then the same,
+        // and cancels.
         let t = -(w - e.direction * s).dot(f.direction);
         let angle = sine.atan2(e.direction.dot(f.direction));
         Self { s: [s, s + e.length], t: [t, t + f.length], sine, angle, distance: w.dot(common).abs() }

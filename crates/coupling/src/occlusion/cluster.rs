@@ -1,7 +1,9 @@
-//! A binary tree over the patches of a scene: first by place, then by plane, then by place in the plane.
+//! A binary tree over the patches of a scene: first by place, then by plane, then by place in the
+//! plane.
 //!
-//! A node whose patches lie in one plane and face the same side is bounded by a rectangle in that plane, which stands for its patches in questions of visibility.
-//! Other nodes are bounded by boxes. Lengths in metres.
+//! A node whose patches lie in one plane and face the same side is bounded by a rectangle in that
+//! plane, which stands for its patches in questions of visibility. Other nodes are bounded by
+//! boxes. Lengths in metres.
 
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::body::ODD;
@@ -114,7 +116,8 @@ impl Builder<'_> {
             && (patch.corner(0) - first.corner(0)).dot(first.normal()).abs() <= self.tolerance
     }
 
-    /// One patch of each plane, in a geometrical order that the numbering does not change; more than [`PLANES`] are not told apart.
+    /// One patch of each plane, in a geometrical order that the numbering does not change; more
+    /// than [`PLANES`] are not told apart.
     fn planes(&self, order: &[u32]) -> Vec<u32> {
         let mut planes: Vec<u32> = Vec::new();
         for &k in order {
@@ -128,9 +131,10 @@ impl Builder<'_> {
         planes
     }
 
-    /// Sorts the patches of the first half of the planes to the front. A patch belongs to the first plane that it lies in: where
-    /// one patch lies in the plane of another but not the other way round, as nearly flat quads make them, each plane keeps its own
-    /// patch, so that neither part is empty.
+    /// Sorts the patches of the first half of the planes to the front. A patch belongs to the first
+    /// plane that it lies in: where one patch lies in the plane of another but not the other way
+    /// round, as nearly flat quads make them, each plane keeps its own patch, so that neither part
+    /// is empty.
     fn between_planes(&self, order: &mut [u32], planes: &[u32]) -> usize {
         let mut sorted = planes.to_vec();
         let key = |&p: &u32| {
@@ -152,7 +156,8 @@ impl Builder<'_> {
         // Extents that are equal but for rounding: the same axis wherever the scene stands.
         let most = size.max_element() * (1.0 - 1e-9);
         let axis = (0..3).find(|&axis| size[axis] >= most).unwrap_or(0);
-        // Patches at one place along the axis are told apart by a small shear, not by their numbers.
+        // Patches at one place along the axis are told apart by a small shear, not by their
+        // numbers.
         let key = |&k: &u32| self.centres[k as usize][axis] + SHEAR * self.centres[k as usize].dot(ODD);
         order.sort_by(|a, b| key(a).total_cmp(&key(b)));
         let place = |k: usize| self.centres[order[k] as usize][axis];
@@ -198,7 +203,8 @@ fn rectangle<'a, I: Iterator<Item = &'a Vec3>>(first: &Patch, corners: &impl Fn(
 mod tests {
     use super::*;
 
-    /// A unit square that looks down, its corner at `corner` and its side along x falling by `slope`.
+    /// A unit square that looks down, its corner at `corner` and its side along x falling by
+    /// `slope`.
     fn square(corner: Vec3, slope: f64) -> Patch {
         let (u, v) = (Vec3::new(1.0, 0.0, -slope), Vec3::Y);
         Patch::quad([corner, corner + v, corner + u + v, corner + u]).unwrap().unwrap()
@@ -206,7 +212,8 @@ mod tests {
 
     #[test]
     fn a_patch_in_the_plane_of_another_that_is_not_in_its_own_ends_the_tree() {
-        // The level square's plane goes through the corner of the tilted one, that of the tilted one passes 1e-7 below the level one.
+        // The level square's plane goes through the corner of the tilted one, that of the tilted
+        // one passes 1e-7 below the level one.
         let patches = [square(Vec3::ZERO, 1e-7), square(Vec3::X * 3.0, 0.0)];
         let tree = Clusters::new(&patches.each_ref(), 1e-9);
         assert_eq!(tree.nodes.len(), 3);

@@ -1,7 +1,9 @@
-//! Some segments between two patches against one convex body: what they tell about all segments costs little.
+//! Some segments between two patches against one convex body: what they tell about all segments
+//! costs little.
 //!
-//! Heights over the faces of the body are affine along a segment. A segment that gets below all faces passes through the body: M. Cyrus & J. Beck, Comput. Graph. 3(1) 23,
-//! 1978, doi:10.1016/0097-8493(78)90021-3. Lengths in metres.
+//! Heights over the faces of the body are affine along a segment. A segment that gets below all
+//! faces passes through the body: M. Cyrus & J. Beck, Comput. Graph. 3(1) 23, 1978,
+//! doi:10.1016/0097-8493(78)90021-3. Lengths in metres.
 
 #![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
 
@@ -12,7 +14,8 @@ use pulp::{Arch, NullaryFnOnce};
 
 /// Height over a body, in lengths of a segment, that is not rounding.
 const CERTAIN: f64 = 1e-6;
-/// The corners of the second patch to which the segments from those of the first go: to those of the same place and of the opposite,
+/// The corners of the second patch to which the segments from those of the first go: to those of
+/// the same place and of the opposite,
 const FIRST: [usize; LANES] = [0, 1, 2, 3, 2, 3, 0, 1];
 /// and to the others.
 const OTHERS: [usize; LANES] = [1, 2, 3, 0, 3, 0, 1, 2];
@@ -26,7 +29,8 @@ pub(crate) enum Stands {
     Partly,
     /// In the way of all segments as far as a few of them tell.
     Across,
-    /// In the way of all segments: the points that a body hides from a point make a convex set, on either side.
+    /// In the way of all segments: the points that a body hides from a point make a convex set, on
+    /// either side.
     Certainly,
     /// In the way of none of them.
     Unknown,
@@ -39,7 +43,8 @@ impl Stands {
     }
 }
 
-/// Segments between the corners of two patches, one a lane: those that are asked about first, and then others from the same starts.
+/// Segments between the corners of two patches, one a lane: those that are asked about first, and
+/// then others from the same starts.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lines {
     starts: Lanes3,
@@ -85,7 +90,8 @@ pub(crate) struct Heights {
     to: Lanes,
 }
 
-/// A question, compiled for each width of vectors: a closure would be compiled once, for the narrowest.
+/// A question, compiled for each width of vectors: a closure would be compiled once, for the
+/// narrowest.
 struct Ask<'a> {
     lines: &'a Lines,
     body: &'a Body,

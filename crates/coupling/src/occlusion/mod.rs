@@ -1,4 +1,5 @@
-//! Which pairs of patches see each other wholly, in part or not at all, decided for groups of patches at once.
+//! Which pairs of patches see each other wholly, in part or not at all, decided for groups of
+//! patches at once.
 
 mod cluster;
 mod lines;

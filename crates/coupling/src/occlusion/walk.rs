@@ -1,9 +1,12 @@
-//! The pairs of one panel of patches with all patches before it, sorted by what they see of each other.
+//! The pairs of one panel of patches with all patches before it, sorted by what they see of each
+//! other.
 //!
-//! Node against node: where no body reaches into the shaft between two bounding rectangles their patches see each other wholly; where one body blocks every
-//! segment between the rectangles they see nothing; otherwise the larger node is halved and each half keeps the bodies that may matter to it.
-//! Both answers are conservative. E. A. Haines & J. R. Wallace 1994, doi:10.1007/978-3-642-57963-9_12, treat the shaft; S. Teller & P. Hanrahan,
-//! SIGGRAPH 1993, doi:10.1145/166117.166148, the descent with lists of blockers.
+//! Node against node: where no body reaches into the shaft between two bounding rectangles their
+//! patches see each other wholly; where one body blocks every segment between the rectangles they
+//! see nothing; otherwise the larger node is halved and each half keeps the bodies that may matter
+//! to it. Both answers are conservative. E. A. Haines & J. R. Wallace 1994,
+//! doi:10.1007/978-3-642-57963-9_12, treat the shaft; S. Teller & P. Hanrahan, SIGGRAPH 1993,
+//! doi:10.1145/166117.166148, the descent with lists of blockers.
 
 use super::cluster::{Bound, Clusters, Node};
 use super::lines::{Heights, Lines, Stands};
@@ -54,7 +57,8 @@ pub(crate) fn walk(sight: &Sight, panel: usize) -> Panel {
     walker.found
 }
 
-/// Sorts the pairs (i, j) with i the one patch of `node` and j any patch below the root; the pair of a patch with itself is among them.
+/// Sorts the pairs (i, j) with i the one patch of `node` and j any patch below the root; the pair
+/// of a patch with itself is among them.
 pub(crate) fn walk_from(sight: &Sight, node: usize) -> Panel {
     let first = sight.clusters.nodes[node].places.start;
     let found = Panel { seen: vec![Vec::new()], partly: vec![Vec::new()], lists: Vec::new() };

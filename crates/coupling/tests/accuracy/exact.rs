@@ -25,7 +25,8 @@ fn classes(name: &str) -> Vec<(usize, usize, f64)> {
     text.lines().skip(1).map(parse).collect()
 }
 
-/// Largest difference of an entry F_ij over the largest entry; every entry off the diagonal is looked at.
+/// Largest difference of an entry F_ij over the largest entry; every entry off the diagonal is
+/// looked at.
 fn compare(name: &str, tolerance: f64) -> f64 {
     let patches = patches(&format!("{name}.vs3"));
     let matrix = assembled(&patches, tolerance).matrix;
@@ -72,7 +73,8 @@ fn rows_of_a_cube_with_a_box_add_up_to_one() {
     }
 }
 
-/// Closed forms of rectangles face to face, superposed: unit squares at distance 1 behind a square of side 0.5 halfway.
+/// Closed forms of rectangles face to face, superposed: unit squares at distance 1 behind a square
+/// of side 0.5 halfway.
 const BLOCKED: f64 = 0.099_506_294_598_985;
 
 #[test]

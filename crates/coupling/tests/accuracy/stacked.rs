@@ -1,4 +1,5 @@
-//! A box on the floor of a room, and a smaller one on top of it: what they stand on sees nothing, all else sees the whole room. A hollow box sees itself.
+//! A box on the floor of a room, and a smaller one on top of it: what they stand on sees nothing,
+//! all else sees the whole room. A hollow box sees itself.
 
 use crate::exact::assembled;
 use fredholm_mesh::{Patch, Vec3};

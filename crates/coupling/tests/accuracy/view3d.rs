@@ -1,4 +1,5 @@
-//! The corners and surfaces of View3D files (`V n x y z`, `S n v1 v2 v3 v4 …`, corners counted from 1 and v4 = 0 for triangles).
+//! The corners and surfaces of View3D files (`V n x y z`, `S n v1 v2 v3 v4 …`, corners counted from
+//! 1 and v4 = 0 for triangles).
 
 use fredholm_mesh::{Patch, Vec3};
 

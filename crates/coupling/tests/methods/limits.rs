@@ -41,7 +41,8 @@ fn far_patches_have_the_kernel_between_their_centroids() {
 
 #[test]
 fn both_orders_give_the_same() {
-    // Two see from one side only, and the singular rules of the third treat the two sides differently.
+    // Two see from one side only, and the singular rules of the third treat the two sides
+    // differently.
     let one_sided = ["nystrom", "hemicube", "area-gauss"];
     for kind in [Kind::Apart, Kind::Near, Kind::SharedEdge, Kind::Crossing, Kind::Sizes(10.0)] {
         let mut random = Random::new(31);

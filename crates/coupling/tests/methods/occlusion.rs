@@ -5,7 +5,8 @@ use fredholm_coupling::method::{MethodError, Setting, method, methods};
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::Occluders;
 
-/// Unit squares at distance 1 with a centred square of side ½ halfway: by superposition of rectangles.
+/// Unit squares at distance 1 with a centred square of side ½ halfway: by superposition of
+/// rectangles.
 const HALF_HIDDEN: f64 = 0.099_506_294_598_985;
 const CLOSED: [&str; 2] = ["contour", "schroeder-hanrahan"];
 

@@ -1,4 +1,5 @@
-//! Random pairs: closed form, contour integral and adaptive area integral agree within their stated errors.
+//! Random pairs: closed form, contour integral and adaptive area integral agree within their stated
+//! errors.
 
 use crate::generator::{KINDS, Random, axes, pair, polygon};
 use crate::{open, smaller};
@@ -28,7 +29,8 @@ impl Outcome {
         })
     }
 
-    /// Differences over the sums of the stated errors: closed to contour, closed to area, contour to area.
+    /// Differences over the sums of the stated errors: closed to contour, closed to area, contour
+    /// to area.
     fn ratios(&self) -> [f64; 3] {
         [[0, 1], [0, 2], [1, 2]].map(|[i, k]| {
             let difference = (self.got[i].value - self.got[k].value).abs();

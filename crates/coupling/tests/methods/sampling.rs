@@ -5,7 +5,8 @@ use crate::open;
 use fredholm_coupling::form_factor::point_to_polygon;
 use fredholm_coupling::method::Setting;
 
-/// Of z = (value − exact)/(standard error), mean 0 with standard deviation n^(−1/2) and mean square 1 with √(2/n).
+/// Of z = (value − exact)/(standard error), mean 0 with standard deviation n^(−1/2) and mean square
+/// 1 with √(2/n).
 #[test]
 fn monte_carlo_scatters_as_its_standard_error_says() {
     let n = 400u64;

@@ -8,7 +8,8 @@ use std::f64::consts::PI;
 pub const SETS: [u64; 5] = [5, 21, 22, 23, 24];
 pub const PAIRS: usize = 500;
 
-/// The exchange that two patches would have squarely facing each other, or the smaller area where that is less, m².
+/// The exchange that two patches would have squarely facing each other, or the smaller area where
+/// that is less, m².
 pub fn facing(patches: &[Patch]) -> f64 {
     let d2 = patches[0].centroid().distance_squared(patches[1].centroid());
     let [a, b] = [patches[0].area(), patches[1].area()];
@@ -21,7 +22,8 @@ fn point(patch: &Patch, random: &mut Random) -> Vec3 {
     if patch.sides() == 3 && u + v > 1.0 { patch.point(1.0 - u, 1.0 - v) } else { patch.point(u, v) }
 }
 
-/// Something between two patches: free, standing on the first, touching the second with a corner, or lying on it face down.
+/// Something between two patches: free, standing on the first, touching the second with a corner,
+/// or lying on it face down.
 fn occluder(a: &Patch, b: &Patch, size: f64, random: &mut Random) -> Option<Patch> {
     let (p, q) = (point(a, random), point(b, random));
     match random.below(8) {
@@ -64,7 +66,8 @@ pub fn scenes(seed: u64) -> impl Iterator<Item = Vec<Patch>> {
     })
 }
 
-/// Over-resolved exchanges, m², of the first [`PAIRS`] of each set that are computed by exact shadows, set after set.
+/// Over-resolved exchanges, m², of the first [`PAIRS`] of each set that are computed by exact
+/// shadows, set after set.
 pub fn resolved() -> Vec<f64> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/occluded_pairs.csv");
     let text = std::fs::read_to_string(path).unwrap();

@@ -52,7 +52,8 @@ pub fn axes(n: Vec3, random: &mut Random) -> [Vec3; 2] {
     [u, n.cross(u)]
 }
 
-/// A convex triangle or quad about `centre` facing `n`: points of an ellipse of half axes `size` and `size / aspect`.
+/// A convex triangle or quad about `centre` facing `n`: points of an ellipse of half axes `size`
+/// and `size / aspect`.
 pub fn polygon(centre: Vec3, n: Vec3, size: f64, aspect: f64, random: &mut Random) -> Patch {
     let [u, v] = axes(n, random);
     let sides = 3 + random.below(2);
@@ -166,7 +167,8 @@ fn attempt(kind: Kind, random: &mut Random) -> Option<[Patch; 2]> {
     }
 }
 
-/// Two patches with centres at a random distance, the second one turned so that it may face the first.
+/// Two patches with centres at a random distance, the second one turned so that it may face the
+/// first.
 fn free(n: Vec3, size: (f64, f64), distance: (f64, f64), aspect: f64, random: &mut Random) -> [Patch; 2] {
     let towards = random.direction();
     let centre = towards * random.scale(distance.0, distance.1);

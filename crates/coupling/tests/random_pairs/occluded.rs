@@ -114,7 +114,8 @@ fn resolved_exchanges_are_true() {
     assert!(agree >= 59 && worst < 0.01);
 }
 
-/// In the other sets the integral of the other formulas misses a small shadow now and then: to a tenth of the goal these pairs agree to 0.005 T.
+/// In the other sets the integral of the other formulas misses a small shadow now and then: to a
+/// tenth of the goal these pairs agree to 0.005 T.
 #[test]
 fn resolved_exchanges_of_all_sets_are_true() {
     let (agree, worst) = agreement(occluded(1e-2).zip(resolved()).step_by(40), [2.0, 5e-3]);
@@ -125,7 +126,8 @@ fn resolved_exchanges_of_all_sets_are_true() {
 const SCREEN: (f64, f64, i32) = (0.07, 0.1, 10);
 const SEGMENTS: usize = 200_000;
 
-/// Two patches on the planes z = 0 and z = 2 and a screen of squares with slits between them on z = 1.1.
+/// Two patches on the planes z = 0 and z = 2 and a screen of squares with slits between them on z =
+/// 1.1.
 fn behind_a_screen(random: &mut Random) -> Vec<Patch> {
     let mut patches = vec![polygon(Vec3::ZERO, Vec3::Z, 1.0, 1.0, random)];
     patches.push(polygon(Vec3::Z * 2.0, -Vec3::Z, 1.0, 1.0, random));
@@ -207,7 +209,8 @@ fn where_sampling_does_not_reach_the_tolerance_shadows_are_exact() {
     assert!(clipped >= 4, "{clipped}");
 }
 
-/// Two squares at distance 2, slightly skewed, and m × m squares between them, at even or uneven distances.
+/// Two squares at distance 2, slightly skewed, and m × m squares between them, at even or uneven
+/// distances.
 fn behind_a_grid(m: usize, even: bool, random: &mut Random) -> Vec<Patch> {
     let quad = |c: Vec3, u: Vec3, v: Vec3| patch(&[c, c + u, c + u + v, c + v]);
     let mut r = |low: f64, high: f64| random.between(low, high);

@@ -19,7 +19,8 @@ fn smaller(pair: &[Patch; 2]) -> f64 {
     pair[0].area().min(pair[1].area())
 }
 
-/// What the quadrature of the reference resolves, as a part of the smaller area: it is coarse where the integrand has a narrow layer.
+/// What the quadrature of the reference resolves, as a part of the smaller area: it is coarse where
+/// the integrand has a narrow layer.
 fn resolved(kind: Kind) -> f64 {
     match kind {
         Kind::Gap(_) | Kind::Plates(_) | Kind::SliverEdge(_) => 2e-4,
@@ -42,7 +43,8 @@ fn the_contour_integral_agrees_with_quadrature_of_point_to_polygon() {
     }
 }
 
-/// The defect of the whole against the sum of its 16 parts and against the reverse order, and the sum of the stated errors.
+/// The defect of the whole against the sum of its 16 parts and against the reverse order, and the
+/// sum of the stated errors.
 fn defect(p: &[Patch; 2]) -> (f64, f64) {
     let (whole, back) = (exchange(&p[0], &p[1], EXACT), exchange(&p[1], &p[0], EXACT));
     assert!(whole.value >= 0.0 && whole.value <= smaller(p) * (1.0 + 1e-9), "{whole:?}");

@@ -1,8 +1,9 @@
 //! Form factors by other formulas than those of the crate.
 //!
-//! Outer integral: nested triangles, 4-point Gauss in both collapsed directions, split until a triangle and its four parts agree. Inner
-//! integral: Lambert's sum with angles by arc cosine of the unit directions where that is accurate, else by the chord; shadows by
-//! inclusion and exclusion over all sets of occluders, each set an intersection of half-spaces.
+//! Outer integral: nested triangles, 4-point Gauss in both collapsed directions, split until a
+//! triangle and its four parts agree. Inner integral: Lambert's sum with angles by arc cosine of
+//! the unit directions where that is accurate, else by the chord; shadows by inclusion and
+//! exclusion over all sets of occluders, each set an intersection of half-spaces.
 
 use fredholm_mesh::{Patch, Vec3};
 use std::f64::consts::PI;

@@ -41,7 +41,8 @@ fn turned(a: f64, b: f64, c: f64) -> [Vec3; 3] {
     [x, y * c.cos() + z * c.sin(), z * c.cos() - y * c.sin()]
 }
 
-/// The sides of a box with `n` patches along each edge, seen from inside or outside. Corners that meet have the same bits.
+/// The sides of a box with `n` patches along each edge, seen from inside or outside. Corners that
+/// meet have the same bits.
 fn sides(corner: Vec3, edges: [Vec3; 3], n: [usize; 3], inward: bool) -> Vec<Patch> {
     let at = |k: [usize; 3]| {
         let [a, b, c] = [0, 1, 2].map(|axis| edges[axis] * (k[axis] as f64 / n[axis] as f64));
@@ -86,7 +87,8 @@ pub fn cube_with_a_tilted_box(n: usize) -> Vec<Patch> {
     patches
 }
 
-/// A room of 4 m × 3 m × 2 m with a box on the floor, and three more at some angle in the air; 2n patches along its height.
+/// A room of 4 m × 3 m × 2 m with a box on the floor, and three more at some angle in the air; 2n
+/// patches along its height.
 pub fn furnished_room(n: usize) -> Vec<Patch> {
     let mut patches =
         sides(Vec3::ZERO, [Vec3::X * 4.0, Vec3::Y * 3.0, Vec3::Z * 2.0], [4 * n, 3 * n, 2 * n], true);

@@ -1,4 +1,5 @@
-//! Stated errors of rows: in a closed room the row sums of F are 1, so that the distance from 1 is the true error.
+//! Stated errors of rows: in a closed room the row sums of F are 1, so that the distance from 1 is
+//! the true error.
 
 // A test that cannot run should panic, in its helpers too.
 #![allow(clippy::unwrap_used)]
@@ -37,7 +38,8 @@ fn rows(patches: &[Patch], tolerance: f64) -> Vec<Row> {
     sums.map(row).collect()
 }
 
-/// The row errors of a scene at some tolerances. Returns the largest stated error over the tolerance.
+/// The row errors of a scene at some tolerances. Returns the largest stated error over the
+/// tolerance.
 fn prove(name: &str, patches: &[Patch], tolerances: &[f64]) -> f64 {
     let mut largest = 0.0f64;
     for &tolerance in tolerances {

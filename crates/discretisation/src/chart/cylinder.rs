@@ -1,11 +1,13 @@
-//! A strip of a circular cylinder about the z axis: X = (r cos φ, r sin φ, z), dA = r dφ dz. Metres and radians.
+//! A strip of a circular cylinder about the z axis: X = (r cos φ, r sin φ, z), dA = r dφ dz. Metres
+//! and radians.
 //!
 //! M. do Carmo, *Differential Geometry of Curves and Surfaces*, Prentice-Hall 1976, section 2-5.
 
 use super::Chart;
 use fredholm_mesh::Vec3;
 
-/// Angles and heights between two values each: φ runs with u, z with v; the other way round in φ where the inner side is lit.
+/// Angles and heights between two values each: φ runs with u, z with v; the other way round in φ
+/// where the inner side is lit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CylinderStrip {
     /// Radius r, m.

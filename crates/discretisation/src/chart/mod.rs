@@ -1,7 +1,8 @@
 //! Charts: the geometry of an element, X(u, v) with dA = |∂X/∂u × ∂X/∂v| du dv.
 //!
-//! The domain is [0, 1]² with four sides and u, v ≥ 0, u + v ≤ 1 with three. Lengths in metres. M. do Carmo, *Differential Geometry of
-//! Curves and Surfaces*, Prentice-Hall 1976, section 2-5, for the area element.
+//! The domain is [0, 1]² with four sides and u, v ≥ 0, u + v ≤ 1 with three. Lengths in metres. M.
+//! do Carmo, *Differential Geometry of Curves and Surfaces*, Prentice-Hall 1976, section 2-5, for
+//! the area element.
 
 mod cylinder;
 mod flat;

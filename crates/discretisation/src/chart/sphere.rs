@@ -1,13 +1,16 @@
-//! A patch of a sphere about the origin: a rectangle on a face of the cube, thrown onto the sphere from the centre.
+//! A patch of a sphere about the origin: a rectangle on a face of the cube, thrown onto the sphere
+//! from the centre.
 //!
-//! With a, b = tan of angles from −π/4 to π/4, X = r (1, a, b)/√(1 + a² + b²) and its rotations. Six whole faces make the sphere, and no point
-//! is singular. C. Ronchi, R. Iacono, P. S. Paolucci, J. Comput. Phys. 124 (1996) 93, doi:10.1006/jcph.1996.0047. Metres.
+//! With a, b = tan of angles from −π/4 to π/4, X = r (1, a, b)/√(1 + a² + b²) and its rotations.
+//! Six whole faces make the sphere, and no point is singular. C. Ronchi, R. Iacono, P. S. Paolucci,
+//! J. Comput. Phys. 124 (1996) 93, doi:10.1006/jcph.1996.0047. Metres.
 
 use super::Chart;
 use fredholm_mesh::Vec3;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
-/// The part of one of the six faces between two values of u and of v, in [0, 1]. It is mirrored in u where the inner side is lit.
+/// The part of one of the six faces between two values of u and of v, in [0, 1]. It is mirrored in
+/// u where the inner side is lit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpherePatch {
     /// Radius r, m.

@@ -1,7 +1,10 @@
-//! Cylinders: two convex strips that face each other, and the inside of a tube. Lambert's kernel, ρ = 0.8.
+//! Cylinders: two convex strips that face each other, and the inside of a tube. Lambert's kernel, ρ
+//! = 0.8.
 //!
-//! In a tube of radius 1 from z = 0 to L the kernel between points with angle δ between them is c⁴/(4π (c² + t²)²), c = 2 sin(δ/2), t the difference of
-//! heights. For x(φ) the integral over t is closed: ∫ c⁴/(c² + t²)² dt = ½ [c² t/(c² + t²) + c atan(t/c)], which leaves one over δ with an analytic integrand.
+//! In a tube of radius 1 from z = 0 to L the kernel between points with angle δ between them is
+//! c⁴/(4π (c² + t²)²), c = 2 sin(δ/2), t the difference of heights. For x(φ) the integral over t is
+//! closed: ∫ c⁴/(c² + t²)² dt = ½ [c² t/(c² + t²) + c atan(t/c)], which leaves one over δ with an
+//! analytic integrand.
 
 use super::{Manufactured, resolved};
 use crate::{Chart, CylinderStrip};

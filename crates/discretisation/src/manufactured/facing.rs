@@ -1,4 +1,5 @@
-//! Two facing unit squares at distance 1, of quads or of triangles: x = e^{x/2} cos y + z sin(x + y), Lambert's kernel, ρ = 0.8.
+//! Two facing unit squares at distance 1, of quads or of triangles: x = e^{x/2} cos y + z sin(x +
+//! y), Lambert's kernel, ρ = 0.8.
 
 use super::{Manufactured, resolved};
 use crate::{Chart, FlatChart};

@@ -1,8 +1,10 @@
-//! Manufactured solutions: a smooth x is chosen, b = x − ρ H x is computed by other means, and a method must give x back.
+//! Manufactured solutions: a smooth x is chosen, b = x − ρ H x is computed by other means, and a
+//! method must give x back.
 //!
-//! P. J. Roache, J. Fluids Eng. 124 (2002) 4, doi:10.1115/1.1436090. The scenes are smooth, flat and curved, with exact charts, so that nothing limits the
-//! order of a method but the method. H x is integrated by a rule of one or two large charts that is far finer than any mesh, or is known in closed form.
-//! Lengths in metres.
+//! P. J. Roache, J. Fluids Eng. 124 (2002) 4, doi:10.1115/1.1436090. The scenes are smooth, flat
+//! and curved, with exact charts, so that nothing limits the order of a method but the method. H x
+//! is integrated by a rule of one or two large charts that is far finer than any mesh, or is known
+//! in closed form. Lengths in metres.
 
 mod cylinder;
 mod facing;

@@ -1,8 +1,9 @@
 //! The inside of the unit sphere, with ρ = 0.8.
 //!
-//! Lambert's kernel is the constant 1/(4π) there and H x the mean of x: x = e^z with mean sinh 1. And the kernel e^{p·q}/(4π sinh 1), which is smooth and lies in no basis: by
-//! the formula of Funk and Hecke a spherical harmonic of degree l is multiplied by λ_l = ∫ e^t P_l(t) dt/(2 sinh 1) over [−1, 1]; C. Müller, *Spherical Harmonics*,
-//! Springer 1966, doi:10.1007/BFb0094775.
+//! Lambert's kernel is the constant 1/(4π) there and H x the mean of x: x = e^z with mean sinh 1.
+//! And the kernel e^{p·q}/(4π sinh 1), which is smooth and lies in no basis: by the formula of Funk
+//! and Hecke a spherical harmonic of degree l is multiplied by λ_l = ∫ e^t P_l(t) dt/(2 sinh 1)
+//! over [−1, 1]; C. Müller, *Spherical Harmonics*, Springer 1966, doi:10.1007/BFb0094775.
 
 use super::Manufactured;
 use crate::{Chart, SpherePatch};
@@ -25,7 +26,8 @@ pub fn inside_of_a_sphere() -> Manufactured {
     }
 }
 
-/// The unit sphere with the kernel e^{p·q}/(4π sinh 1): x = 2 + z + P₂(x), closed and smooth, without an edge.
+/// The unit sphere with the kernel e^{p·q}/(4π sinh 1): x = 2 + z + P₂(x), closed and smooth,
+/// without an edge.
 #[must_use]
 pub fn smooth_kernel_on_a_sphere() -> Manufactured {
     let unit = 4.0 * PI * 1f64.sinh();

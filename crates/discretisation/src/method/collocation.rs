@@ -1,9 +1,12 @@
-//! Collocation: x_h(p_i) = b(p_i) + ρ Σ_j (H φ_j)(p_i) x_j at the nodes p_i of a discontinuous Lagrange basis.
+//! Collocation: x_h(p_i) = b(p_i) + ρ Σ_j (H φ_j)(p_i) x_j at the nodes p_i of a discontinuous
+//! Lagrange basis.
 //!
-//! G. Peyré's article, eq. 1.47 and 1.48. The nodes are the Gauss points of quads and the 1, 3 or 6 points of symmetric rules on triangles. Order k + 1 in L²;
-//! the iterated solution reaches 2k + 2 where the nodes are Gauss points, and on triangles k + 2 rounded up to an even number where pairs of
-//! triangles form parallelograms: K. E. Atkinson, *The Numerical Solution of Integral Equations of the Second Kind*, Cambridge University Press 1997,
-//! sections 3.4 and 5.1, doi:10.1017/CBO9780511626340.
+//! G. Peyré's article, eq. 1.47 and 1.48. The nodes are the Gauss points of quads and the 1, 3 or 6
+//! points of symmetric rules on triangles. Order k + 1 in L²; the iterated solution reaches 2k + 2
+//! where the nodes are Gauss points, and on triangles k + 2 rounded up to an even number where
+//! pairs of triangles form parallelograms: K. E. Atkinson, *The Numerical Solution of Integral
+//! Equations of the Second Kind*, Cambridge University Press 1997, sections 3.4 and 5.1,
+//! doi:10.1017/CBO9780511626340.
 
 use crate::system::{at_nodes, product, spread};
 use crate::transfer::{fill_rows, matrix_by_element};
@@ -80,7 +83,7 @@ impl System for AtNodes<'_> {
         product(&self.matrix, x)
     }
 
-    fn value(&self, _: &Source, x: &MultiVector<f64>, site: &Site, lane: usize) -> f64 {
-        self.space.value(x, lane, site.element, site.u, site.v)
+    fn value(&self, _: &Source, x: &MultiVector<f64>, site: &Site, rhs: usize) -> f64 {
+        self.space.value(x, rhs, site.element, site.u, site.v)
     }
 }

@@ -1,9 +1,12 @@
-//! Degenerate kernel: k(p, q) ≈ Σ_j φ_j(p) k(p_j, q), so that x = b + Σ_j y_j φ_j with (I − R H_n) y = R (H b)(p_i).
+//! Degenerate kernel: k(p, q) ≈ Σ_j φ_j(p) k(p_j, q), so that x = b + Σ_j y_j φ_j with (I − R H_n)
+//! y = R (H b)(p_i).
 //!
-//! G. Peyré's article, eq. 1.31 to 1.33 and 1.40: the kernel is interpolated in p at the nodes of the elements. ⟨a_k, b_j⟩ = ∫ k(p_j, q) φ_k(q) dA is the matrix of
-//! collocation, but the unknowns are the reflected part y alone, and b is kept as it is: where b jumps or peaks within elements that is
-//! what the method is for. Order k + 1 in L², the iterated solution as for collocation: K. E. Atkinson, *The Numerical Solution of
-//! Integral Equations of the Second Kind*, Cambridge University Press 1997, section 2.3, doi:10.1017/CBO9780511626340.
+//! G. Peyré's article, eq. 1.31 to 1.33 and 1.40: the kernel is interpolated in p at the nodes of
+//! the elements. ⟨a_k, b_j⟩ = ∫ k(p_j, q) φ_k(q) dA is the matrix of collocation, but the unknowns
+//! are the reflected part y alone, and b is kept as it is: where b jumps or peaks within elements
+//! that is what the method is for. Order k + 1 in L², the iterated solution as for collocation: K.
+//! E. Atkinson, *The Numerical Solution of Integral Equations of the Second Kind*, Cambridge
+//! University Press 1997, section 2.3, doi:10.1017/CBO9780511626340.
 
 use super::collocation::collocation_matrix;
 use crate::system::{product, spread};
@@ -52,9 +55,10 @@ struct Reflected<'a> {
 impl Reflected<'_> {
     /// (H b)(p_i).
     fn direct(&self, source: &Source) -> MultiVector<f64> {
-        let (transfer, lanes) = (self.equation.transfer(), self.equation.lanes());
-        let rows = |i| irradiance_at(transfer, lanes, self.space.degree(), &self.space.nodes_of(i), source);
-        by_element(self.space.surface(), lanes, rows)
+        let (transfer, rhs_count) = (self.equation.transfer(), self.equation.rhs_count());
+        let rows =
+            |i| irradiance_at(transfer, rhs_count, self.space.degree(), &self.space.nodes_of(i), source);
+        by_element(self.space.surface(), rhs_count, rows)
     }
 }
 
@@ -88,7 +92,7 @@ impl System for Reflected<'_> {
         irradiance
     }
 
-    fn value(&self, source: &Source, x: &MultiVector<f64>, site: &Site, lane: usize) -> f64 {
-        source(site, lane) + self.space.value(x, lane, site.element, site.u, site.v)
+    fn value(&self, source: &Source, x: &MultiVector<f64>, site: &Site, rhs: usize) -> f64 {
+        source(site, rhs) + self.space.value(x, rhs, site.element, site.u, site.v)
     }
 }

@@ -1,10 +1,14 @@
-//! Galerkin: ⟨x_h − ρ H x_h − b, φ_i⟩ = 0 for all trial functions, with the L² product on the surface.
+//! Galerkin: ⟨x_h − ρ H x_h − b, φ_i⟩ = 0 for all trial functions, with the L² product on the
+//! surface.
 //!
-//! G. Peyré's article, eq. 1.56. With M the mass matrix and G_ij = ⟨φ_i, H φ_j⟩ the system is (I − R M⁻¹ G) x = M⁻¹ ⟨b, φ⟩: ρ is constant over the support of a
-//! function, so that R and M commute and one K = M⁻¹ G serves all lanes. H φ_j is integrated by the transfer for every point of the outer
-//! rule on i. Order k + 1 in L², and 2k + 2 for the iterated solution: I. H. Sloan, Math. Comp. 30 (1976) 758, doi:10.2307/2005395.
+//! G. Peyré's article, eq. 1.56. With M the mass matrix and G_ij = ⟨φ_i, H φ_j⟩ the system is (I −
+//! R M⁻¹ G) x = M⁻¹ ⟨b, φ⟩: ρ is constant over the support of a function, so that R and M commute
+//! and one K = M⁻¹ G serves all right-hand sides. H φ_j is integrated by the transfer for every
+//! point of the outer rule on i. Order k + 1 in L², and 2k + 2 for the iterated solution: I. H.
+//! Sloan, Math. Comp. 30 (1976) 758, doi:10.2307/2005395.
 //!
-//! The constant basis uses the transfer's own integrals over pairs where it has them ([`zonal`](super::zonal)).
+//! The constant basis uses the transfer's own integrals over pairs where it has them
+//! ([`zonal`](super::zonal)).
 
 use super::zonal::Zonal;
 use crate::lagrange::MOST;
@@ -23,7 +27,8 @@ const SMOOTH: f64 = 30.0;
 pub struct Galerkin {
     /// Degree of the basis.
     pub degree: Degree,
-    /// Continuous within faces, across edges where the normals differ by at most 30°. Without effect on constants.
+    /// Continuous within faces, across edges where the normals differ by at most 30°. Without
+    /// effect on constants.
     pub conforming: bool,
 }
 
@@ -61,7 +66,8 @@ impl Discretisation for Galerkin {
         }
     }
 
-    /// The matrix and the rows that wait to be added to it; a conforming basis projects by blocks as large as the matrix at most.
+    /// The matrix and the rows that wait to be added to it; a conforming basis projects by blocks
+    /// as large as the matrix at most.
     fn numbers(&self, space: &Space, _: usize) -> u128 {
         let n = space.dim() as u128;
         let blocks = if self.conforming { 2 * n * n } else { 0 };
@@ -100,7 +106,8 @@ fn projected(equation: &Equation, space: &Space, mass: &Mass) -> Result<Dense<f6
     let n = space.dim();
     let mut values = Dense::zeros(n)?.into_vec();
     let block = |i| tested_rows(equation, space, mass, i);
-    // Runs keep the blocks that wait for their turn small; their length does not show in the result.
+    // Runs keep the blocks that wait for their turn small; their length does not show in the
+    // result.
     for start in (0..space.surface().len()).step_by(RUN) {
         let run = start..(start + RUN).min(space.surface().len());
         let blocks: Vec<Vec<f64>> = run.clone().into_par_iter().map(block).collect();
@@ -135,24 +142,25 @@ fn tested_rows(equation: &Equation, space: &Space, mass: &Mass, i: usize) -> Vec
     tested
 }
 
-/// Coefficients of the L² projection of a function of the site, its index among those of the element, and the lane.
+/// Coefficients of the L² projection of a function of the site, its index among those of the
+/// element, and the right-hand side.
 pub(super) fn projection(
     space: &Space,
     mass: &Mass,
-    lanes: usize,
+    rhs_count: usize,
     f: &dyn Fn(&Site, usize, usize) -> f64,
 ) -> MultiVector<f64> {
-    let mut sums = MultiVector::zeros(space.dim(), lanes);
+    let mut sums = MultiVector::zeros(space.dim(), rhs_count);
     for i in 0..space.surface().len() {
         for (at, (site, weight)) in mass.sites(space, i).into_iter().enumerate() {
             let values = space.basis(i).values(site.u, site.v);
             for (&dof, phi) in space.dofs(i).iter().zip(values) {
                 let row = sums.row_mut(dof).iter_mut().enumerate();
-                row.for_each(|(lane, sum)| *sum += weight * phi * f(&site, at, lane));
+                row.for_each(|(rhs, sum)| *sum += weight * phi * f(&site, at, rhs));
             }
         }
     }
-    mass.solve(sums.as_mut_slice(), lanes);
+    mass.solve(sums.as_mut_slice(), rhs_count);
     sums
 }
 
@@ -181,14 +189,14 @@ impl System for Projected<'_> {
     }
 
     fn right_hand_side(&self, source: &Source) -> MultiVector<f64> {
-        projection(&self.space, &self.mass, self.equation.lanes(), &|site, _, lane| source(site, lane))
+        projection(&self.space, &self.mass, self.equation.rhs_count(), &|site, _, rhs| source(site, rhs))
     }
 
     fn irradiance(&self, _: &Source, x: &MultiVector<f64>) -> MultiVector<f64> {
         product(&self.matrix, x)
     }
 
-    fn value(&self, _: &Source, x: &MultiVector<f64>, site: &Site, lane: usize) -> f64 {
-        self.space.value(x, lane, site.element, site.u, site.v)
+    fn value(&self, _: &Source, x: &MultiVector<f64>, site: &Site, rhs: usize) -> f64 {
+        self.space.value(x, rhs, site.element, site.u, site.v)
     }
 }

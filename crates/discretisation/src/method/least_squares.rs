@@ -1,12 +1,14 @@
 //! Least squares: x_h minimises ‖x_h − ρ H x_h − b‖ in L².
 //!
-//! G. Peyré's article, eq. 1.52: ⟨û_i, û_j⟩ x = ⟨b, û_i⟩ with û = u − ρ H u. The integrals are sums over the points s of the outer rule: with E the matrix of
-//! û_j(s) and W the weights, EᵀW E x = EᵀW b. ρ enters squared, so each reflectance has its own matrix. The rows are divided by the diagonal,
-//! which changes no iterate of Gauss–Seidel, and that converges: the matrix is symmetric positive definite. Order k + 1 in L²; the iterated
-//! solution reaches 2k + 2 as for Galerkin. Memory: points × unknowns.
+//! G. Peyré's article, eq. 1.52: ⟨û_i, û_j⟩ x = ⟨b, û_i⟩ with û = u − ρ H u. The integrals are sums
+//! over the points s of the outer rule: with E the matrix of û_j(s) and W the weights, EᵀW E x =
+//! EᵀW b. ρ enters squared, so each reflectance has its own matrix. The rows are divided by the
+//! diagonal, which changes no iterate of Gauss–Seidel, and that converges: the matrix is symmetric
+//! positive definite. Order k + 1 in L²; the iterated solution reaches 2k + 2 as for Galerkin.
+//! Memory: points × unknowns.
 
 use super::galerkin::projection;
-use super::lane_matrices::LaneMatrices;
+use super::rhs_matrices::RhsMatrices;
 use crate::gram::gram;
 use crate::mass::Mass;
 use crate::transfer::fill_rows;
@@ -51,14 +53,15 @@ impl Discretisation for LeastSquares {
         let space = self.space(equation.transfer().surface())?;
         let mass = Mass::new(&space, equation.transfer().outer(self.0.number()))?;
         let samples = Samples::new(&equation, &space, &mass)?;
-        let mut system = Residual { equation, space, mass, samples, lanes: Vec::new(), matrices: none() };
+        let mut system =
+            Residual { equation, space, mass, samples, by_reflectance: Vec::new(), matrices: none() };
         system.assemble()?;
         Ok(Box::new(system))
     }
 }
 
-fn none() -> LaneMatrices {
-    LaneMatrices { matrices: Vec::new(), of_lane: Vec::new(), dim: 0 }
+fn none() -> RhsMatrices {
+    RhsMatrices { matrices: Vec::new(), of_rhs: Vec::new(), dim: 0 }
 }
 
 /// (H φ_j)(s) at the points s of all elements, points × unknowns.
@@ -103,7 +106,7 @@ fn reserve(len: usize) -> Result<Vec<f64>, LinopError> {
 }
 
 /// √W E of one reflectance, points × unknowns, and the inverse diagonal of EᵀW E.
-struct Lane {
+struct Rhs {
     weighted: Vec<f64>,
     scale: Vec<f64>,
 }
@@ -113,29 +116,29 @@ struct Residual<'a> {
     space: Space<'a>,
     mass: Mass,
     samples: Samples,
-    lanes: Vec<Lane>,
-    matrices: LaneMatrices,
+    by_reflectance: Vec<Rhs>,
+    matrices: RhsMatrices,
 }
 
 impl Residual<'_> {
     fn assemble(&mut self) -> Result<(), LinopError> {
-        let of_lane = self.lanes_by_reflectance();
-        let count = of_lane.iter().max().map_or(0, |last| last + 1);
+        let of_rhs = self.rhs_by_reflectance();
+        let count = of_rhs.iter().max().map_or(0, |last| last + 1);
         let mut matrices = Vec::with_capacity(count);
         for at in 0..count {
-            let lane = of_lane.iter().position(|&other| other == at).unwrap_or(0);
-            let (lane, matrix) = self.normal_equations(lane)?;
-            self.lanes.push(lane);
+            let rhs = of_rhs.iter().position(|&other| other == at).unwrap_or(0);
+            let (rhs, matrix) = self.normal_equations(rhs)?;
+            self.by_reflectance.push(rhs);
             matrices.push(matrix);
         }
-        self.matrices = LaneMatrices { matrices, of_lane, dim: self.space.dim() };
+        self.matrices = RhsMatrices { matrices, of_rhs, dim: self.space.dim() };
         Ok(())
     }
 
-    /// Numbers the different reflectances in the order of the lanes.
-    fn lanes_by_reflectance(&self) -> Vec<usize> {
+    /// Numbers the different reflectances in the order of the right-hand sides.
+    fn rhs_by_reflectance(&self) -> Vec<usize> {
         let columns: Vec<_> =
-            (0..self.equation.lanes()).map(|lane| self.equation.reflectance().lane(lane)).collect();
+            (0..self.equation.rhs_count()).map(|rhs| self.equation.reflectance().vector(rhs)).collect();
         let mut different: Vec<&Vec<f64>> = Vec::new();
         let number = |column| {
             different.iter().position(|other| *other == column).unwrap_or_else(|| {
@@ -147,9 +150,9 @@ impl Residual<'_> {
     }
 
     /// I − diag(EᵀW E)⁻¹ EᵀW E.
-    fn normal_equations(&self, lane: usize) -> Result<(Lane, Dense<f64>), LinopError> {
+    fn normal_equations(&self, rhs: usize) -> Result<(Rhs, Dense<f64>), LinopError> {
         let n = self.space.dim();
-        let weighted = self.residuals(lane)?;
+        let weighted = self.residuals(rhs)?;
         let mut product = Dense::zeros(n)?.into_vec();
         gram(&weighted, n, &mut product);
         let scale: Vec<f64> = (0..n).map(|i| 1.0 / product[i * n + i]).collect();
@@ -157,15 +160,15 @@ impl Residual<'_> {
             multiply(row, -scale[i]);
             row[i] += 1.0;
         }
-        Ok((Lane { weighted, scale }, Dense::new(n, product)?))
+        Ok((Rhs { weighted, scale }, Dense::new(n, product)?))
     }
 
     /// √W (φ − ρ H φ).
-    fn residuals(&self, lane: usize) -> Result<Vec<f64>, LinopError> {
+    fn residuals(&self, rhs: usize) -> Result<Vec<f64>, LinopError> {
         let n = self.space.dim();
         let mut weighted = reserve(self.samples.rows.len())?;
         for (s, (site, weight)) in self.samples.sites.iter().enumerate() {
-            let rho = self.equation.reflectance().row(site.element)[lane];
+            let rho = self.equation.reflectance().row(site.element)[rhs];
             let row = &mut weighted[s * n..(s + 1) * n];
             row.iter_mut().zip(self.samples.row(s)).for_each(|(e, h)| *e = -rho * h);
             let values = self.space.basis(site.element).values(site.u, site.v);
@@ -196,41 +199,41 @@ impl System for Residual<'_> {
     }
 
     fn factor(&self) -> MultiVector<f64> {
-        MultiVector::from_fn(self.space.dim(), self.equation.lanes(), |_, _| 1.0)
+        MultiVector::from_fn(self.space.dim(), self.equation.rhs_count(), |_, _| 1.0)
     }
 
     /// diag(EᵀW E)⁻¹ EᵀW b.
     fn right_hand_side(&self, source: &Source) -> MultiVector<f64> {
         let n = self.space.dim();
-        let mut sums = MultiVector::zeros(n, self.equation.lanes());
-        for (lane, &at) in self.matrices.of_lane.iter().enumerate() {
-            let Lane { weighted, scale } = &self.lanes[at];
+        let mut sums = MultiVector::zeros(n, self.equation.rhs_count());
+        for (rhs, &at) in self.matrices.of_rhs.iter().enumerate() {
+            let Rhs { weighted, scale } = &self.by_reflectance[at];
             let mut column = vec![0.0; n];
             for ((site, weight), row) in self.samples.sites.iter().zip(weighted.chunks_exact(n.max(1))) {
-                let factor = weight.sqrt() * source(site, lane);
+                let factor = weight.sqrt() * source(site, rhs);
                 column.iter_mut().zip(row).for_each(|(sum, e)| *sum += factor * e);
             }
             column.iter_mut().zip(scale).for_each(|(b, scale)| *b *= scale);
-            sums.set_lane(lane, &column);
+            sums.set_vector(rhs, &column);
         }
         sums
     }
 
     /// The projection of H x_h.
     fn irradiance(&self, _: &Source, x: &MultiVector<f64>) -> MultiVector<f64> {
-        let lanes = self.equation.lanes();
-        let at_samples = MultiVector::from_fn(self.samples.sites.len(), lanes, |s, lane| {
+        let rhs_count = self.equation.rhs_count();
+        let at_samples = MultiVector::from_fn(self.samples.sites.len(), rhs_count, |s, rhs| {
             let row = self.samples.row(s).iter().enumerate();
-            row.map(|(j, h)| h * x.row(j)[lane]).sum()
+            row.map(|(j, h)| h * x.row(j)[rhs]).sum()
         });
         let starts = self.first_samples();
-        projection(&self.space, &self.mass, lanes, &|site, at, lane| {
-            at_samples.row(starts[site.element] + at)[lane]
+        projection(&self.space, &self.mass, rhs_count, &|site, at, rhs| {
+            at_samples.row(starts[site.element] + at)[rhs]
         })
     }
 
-    fn value(&self, _: &Source, x: &MultiVector<f64>, site: &Site, lane: usize) -> f64 {
-        self.space.value(x, lane, site.element, site.u, site.v)
+    fn value(&self, _: &Source, x: &MultiVector<f64>, site: &Site, rhs: usize) -> f64 {
+        self.space.value(x, rhs, site.element, site.u, site.v)
     }
 }
 

@@ -3,9 +3,9 @@
 mod collocation;
 mod degenerate_kernel;
 mod galerkin;
-mod lane_matrices;
 mod least_squares;
 mod nystrom;
+mod rhs_matrices;
 mod zonal;
 
 pub use collocation::Collocation;

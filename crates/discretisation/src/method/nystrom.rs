@@ -1,11 +1,13 @@
 //! Nyström: x_i = b(p_i) + ρ Σ_j w_j k(p_i, p_j) x_j at the points of a quadrature rule.
 //!
-//! G. Peyré's article, eq. 1.28, and 1.29 for the interpolant x(p) = b(p) + ρ(p) Σ_j w_j k(p, p_j) x_j. The rule has m × m Gauss points on a quad and the 1, 3 or 6
-//! points of degree 1, 2 and 4 on a triangle, for m = 1, 2, 3. Order 2m; on triangles that holds where pairs of them form parallelograms, and
-//! is 2m − 1 otherwise.
+//! G. Peyré's article, eq. 1.28, and 1.29 for the interpolant x(p) = b(p) + ρ(p) Σ_j w_j k(p, p_j)
+//! x_j. The rule has m × m Gauss points on a quad and the 1, 3 or 6 points of degree 1, 2 and 4 on
+//! a triangle, for m = 1, 2, 3. Order 2m; on triangles that holds where pairs of them form
+//! parallelograms, and is 2m − 1 otherwise.
 //!
-//! Near and occluded elements would spoil the rule. There the weights are those of product integration, ∫_j k(p, q) φ_b(q) dA with φ_b the Lagrange
-//! basis of the same points: local correction, L. F. Canino et al., J. Comput. Phys. 146 (1998) 627, doi:10.1006/jcph.1998.6077.
+//! Near and occluded elements would spoil the rule. There the weights are those of product
+//! integration, ∫_j k(p, q) φ_b(q) dA with φ_b the Lagrange basis of the same points: local
+//! correction, L. F. Canino et al., J. Comput. Phys. 146 (1998) 627, doi:10.1006/jcph.1998.6077.
 
 use crate::system::{at_nodes, product, spread};
 use crate::transfer::matrix_by_element;
@@ -14,7 +16,8 @@ use crate::{
 };
 use fredholm_linop::{Dense, LinearOperator, MultiVector};
 
-/// Nyström's method with m × m points, m one more than the degree of the basis that interpolates at them.
+/// Nyström's method with m × m points, m one more than the degree of the basis that interpolates at
+/// them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Nystrom(pub Degree);
 
@@ -125,20 +128,20 @@ impl System for AtPoints<'_> {
     }
 
     /// The polynomial through the points of the element.
-    fn value(&self, _: &Source, x: &MultiVector<f64>, site: &Site, lane: usize) -> f64 {
-        self.space.value(x, lane, site.element, site.u, site.v)
+    fn value(&self, _: &Source, x: &MultiVector<f64>, site: &Site, rhs: usize) -> f64 {
+        self.space.value(x, rhs, site.element, site.u, site.v)
     }
 
     /// Nyström's interpolant.
     fn reconstruct(&self, source: &Source, x: &MultiVector<f64>, sites: &[Site]) -> MultiVector<f64> {
-        let (n, lanes) = (self.space.dim(), self.equation.lanes());
+        let (n, rhs_count) = (self.space.dim(), self.equation.rhs_count());
         let mut rows = vec![0.0; sites.len() * n];
         self.points.fill(self.equation.transfer(), &self.space, sites, &mut rows);
-        MultiVector::from_fn(sites.len(), lanes, |at, lane| {
+        MultiVector::from_fn(sites.len(), rhs_count, |at, rhs| {
             let row = rows[at * n..(at + 1) * n].iter().enumerate();
-            let irradiance: f64 = row.map(|(j, entry)| entry * x.row(j)[lane]).sum();
-            let rho = self.equation.reflectance().row(sites[at].element)[lane];
-            source(&sites[at], lane) + rho * irradiance
+            let irradiance: f64 = row.map(|(j, entry)| entry * x.row(j)[rhs]).sum();
+            let rho = self.equation.reflectance().row(sites[at].element)[rhs];
+            source(&sites[at], rhs) + rho * irradiance
         })
     }
 

@@ -1,9 +1,13 @@
-//! Lambert's kernel cosθ cosθ' V / (π r²) between flat elements behind occluders, with what a point sees of an element cut out exactly.
+//! Lambert's kernel cosθ cosθ' V / (π r²) between flat elements behind occluders, with what a point
+//! sees of an element cut out exactly.
 //!
-//! From p, the visible part of element j is a few convex polygons ([`VisibleParts`]). On each, a rule is chosen by the distance: symmetric rules of rising degree, and
-//! within about a size of the polygon the nearly singular rule. Its weights are then multiplied so that their sum is the exact form factor of the polygon
-//! (Lambert's sum over edges): constants are integrated exactly, so that in a closed scene the weights of all elements sum to 1 at every p, and only
-//! the moments of higher degree carry the error of the rule. For degree 0 one point with the exact factor suffices.
+//! From p, the visible part of element j is a few convex polygons ([`VisibleParts`]). On each, a
+//! rule is chosen by the distance: symmetric rules of rising degree, and within about a size of the
+//! polygon the nearly singular rule. Its weights are then multiplied so that their sum is the exact
+//! form factor of the polygon (Lambert's sum over edges): constants are integrated exactly, so that
+//! in a closed scene the weights of all elements sum to 1 at every p, and only the moments of
+//! higher degree carry the error of the rule. For degree 0 one point with the exact factor
+//! suffices.
 
 use super::{Exchanges, Sink, Transfer};
 use crate::inverse::Inverse;
@@ -18,7 +22,8 @@ use fredholm_quadrature::{PlanePoint, near_triangle, symmetric_triangle};
 use fredholm_visibility::Occluders;
 use fredholm_visibility::body::Bodies;
 
-/// Distance over radius of a triangle above which a rule of the degree does, with the largest first.
+/// Distance over radius of a triangle above which a rule of the degree does, with the largest
+/// first.
 const RULES: [(f64, usize); 4] = [(12.0, 4), (6.0, 6), (3.5, 10), (2.0, 16)];
 /// Points a direction of the nearly singular rule.
 const NEAR: usize = 8;
@@ -41,8 +46,8 @@ pub struct FlatLambert<'a> {
 }
 
 impl<'a> FlatLambert<'a> {
-    /// Takes flat elements with their faces; `occluders` are what may stand between them. `tolerance` is that of the form factors of degree 0, relative as in
-    /// [`PairIntegrator`].
+    /// Takes flat elements with their faces; `occluders` are what may stand between them.
+    /// `tolerance` is that of the form factors of degree 0, relative as in [`PairIntegrator`].
     ///
     /// # Errors
     /// [`DiscretisationError::Dimension`] where there is not one face for each patch.
@@ -68,7 +73,8 @@ impl<'a> FlatLambert<'a> {
         self
     }
 
-    /// Weighted points for the parts of element j that p sees, `factor` being the exact form factor of all.
+    /// Weighted points for the parts of element j that p sees, `factor` being the exact form factor
+    /// of all.
     fn points(&self, p: &Site, j: usize, view: &VisibleParts, points: &mut Vec<PlanePoint>) {
         points.clear();
         for part in view.parts() {
@@ -185,7 +191,8 @@ impl Transfer for FlatLambert<'_> {
 }
 
 impl FlatLambert<'_> {
-    /// The form factors of the radiosity system, with the exposed areas of elements that are partly buried.
+    /// The form factors of the radiosity system, with the exposed areas of elements that are partly
+    /// buried.
     fn integrate_pairs(&self) -> Result<Exchanges, DiscretisationError> {
         let integrator = PairIntegrator::new(&self.patches, self.occluders, self.tolerance);
         let assembled: Assembled<f64> = assemble(&integrator, &Quiet)?;

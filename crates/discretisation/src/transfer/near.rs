@@ -1,7 +1,9 @@
 //! Points on an element graded towards a point p close to it or on it, in the element's parameters.
 //!
-//! The domain is cut into triangles, and each gets the nearly singular rule of [`near_triangle`], which collapses it towards its point closest to p. On the element
-//! of p itself that is p's own parameters; elsewhere the closest point of the flat triangle through the corners, which grades well enough.
+//! The domain is cut into triangles, and each gets the nearly singular rule of [`near_triangle`],
+//! which collapses it towards its point closest to p. On the element of p itself that is p's own
+//! parameters; elsewhere the closest point of the flat triangle through the corners, which grades
+//! well enough.
 
 use crate::{Chart, Site};
 use fredholm_quadrature::{PlanePoint, near_triangle};
@@ -15,7 +17,8 @@ fn triangles(sides: usize) -> &'static [[Corner; 3]] {
     if sides == 3 { &HALVES[..1] } else { &HALVES }
 }
 
-/// The graded rule for the domain of `chart` (element `j`) seen from `p`; weights sum to about the measure of the domain.
+/// The graded rule for the domain of `chart` (element `j`) seen from `p`; weights sum to about the
+/// measure of the domain.
 pub(super) fn graded(chart: &dyn Chart, j: usize, p: &Site, n: usize) -> Vec<PlanePoint> {
     let mut points = Vec::new();
     for corners in triangles(chart.sides()) {

@@ -1,7 +1,9 @@
-//! Kernels that are smooth on the surface, by Gauss points; or peaked where p and q meet, by points graded towards p.
+//! Kernels that are smooth on the surface, by Gauss points; or peaked where p and q meet, by points
+//! graded towards p.
 //!
-//! n × n Gauss points an element converge as h^{2n} for a smooth kernel. A kernel that is bounded but has no limit at p = q, as Lambert's on a curved surface, is
-//! integrated by graded points on elements nearer than a ratio of their size.
+//! n × n Gauss points an element converge as h^{2n} for a smooth kernel. A kernel that is bounded
+//! but has no limit at p = q, as Lambert's on a curved surface, is integrated by graded points on
+//! elements nearer than a ratio of their size.
 
 use super::{Sink, Transfer, near::graded};
 use crate::surface::Rules;
@@ -42,7 +44,8 @@ impl<'a> SmoothTransfer<'a> {
         Self { surface, kernel, order, near: -1.0, placed, balls }
     }
 
-    /// Grades the points between elements whose centres are nearer than `ratio` times the sum of their radii: for a kernel with a peak at p = q.
+    /// Grades the points between elements whose centres are nearer than `ratio` times the sum of
+    /// their radii: for a kernel with a peak at p = q.
     #[must_use]
     pub fn with_peak(mut self, ratio: f64) -> Self {
         self.near = ratio;

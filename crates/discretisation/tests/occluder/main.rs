@@ -1,7 +1,7 @@
 //! The scene scenes/occluder.toml by every discretisation, against particle tracing.
 //!
-//! On every face H B_h must be within 0.3 % of the reference; the polynomials must be within their stated error; and LU must find
-//! what Gauss–Seidel finds.
+//! On every face H B_h must be within 0.3 % of the reference; the polynomials must be within their
+//! stated error; and LU must find what Gauss–Seidel finds.
 
 // A test that cannot run should panic, in its helpers too.
 #![allow(clippy::unwrap_used)]

@@ -1,7 +1,10 @@
-//! The reference: means of the irradiance over 936 faces by particle tracing, pooled over the symmetries of the scene.
+//! The reference: means of the irradiance over 936 faces by particle tracing, pooled over the
+//! symmetries of the scene.
 //!
-//! The eight symmetries of a square map the room onto itself. A class is the faces that they map onto each other; its mean weighs each by 1/σ², σ its standard
-//! error. The scatter within the classes is that of the standard errors (χ² = 798 at 810 degrees of freedom), so a class of eight is known √8 times better than one face.
+//! The eight symmetries of a square map the room onto itself. A class is the faces that they map
+//! onto each other; its mean weighs each by 1/σ², σ its standard error. The scatter within the
+//! classes is that of the standard errors (χ² = 798 at 810 degrees of freedom), so a class of eight
+//! is known √8 times better than one face.
 
 use fredholm_mesh::Vec3;
 use std::collections::BTreeMap;

@@ -1,4 +1,5 @@
-//! The scene scenes/occluder.toml, a room with a lamp in its ceiling and a plate under the lamp, on meshes that are finer where the walls meet.
+//! The scene scenes/occluder.toml, a room with a lamp in its ceiling and a plate under the lamp, on
+//! meshes that are finer where the walls meet.
 
 use fredholm_discretisation::Light;
 use fredholm_linop::MultiVector;
@@ -8,7 +9,8 @@ use fredholm_visibility::Occluders;
 /// Name, corners, reflectance.
 type Piece = (&'static str, [[f64; 3]; 4], f64);
 
-/// The walls are in two pieces, an upper one that the lamp shines on at close range and a lower one.
+/// The walls are in two pieces, an upper one that the lamp shines on at close range and a lower
+/// one.
 const PIECES: [Piece; 13] = [
     ("floor", [[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]], 0.7),
     ("ceiling", [[0., 0., 1.], [0., 1., 1.], [1., 1., 1.], [1., 0., 1.]], 0.7),
@@ -33,7 +35,8 @@ const LAMP: f64 = 0.35;
 /// Elements of equal width up to a line, and their number.
 pub type Part = (f64, usize);
 
-/// The lines of the elements. Those along horizontal sides are given up to the middle, and mirrored.
+/// The lines of the elements. Those along horizontal sides are given up to the middle, and
+/// mirrored.
 pub struct Cuts {
     pub floor: &'static [Part],
     pub ceiling: &'static [Part],

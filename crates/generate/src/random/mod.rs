@@ -1,7 +1,8 @@
 //! Random valid input: a scene and a command line for it.
 //!
-//! The scenes are small but not kind: quads tilted by anything, bodies that touch, coincide and cross, coordinates rounded as files
-//! round them, polygons with holes, OBJ files whose quads are not quite flat, several bands, any scale.
+//! The scenes are small but not kind: quads tilted by anything, bodies that touch, coincide and
+//! cross, coordinates rounded as files round them, polygons with holes, OBJ files whose quads are
+//! not quite flat, several bands, any scale.
 
 mod command;
 mod frame;

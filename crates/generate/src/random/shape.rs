@@ -8,7 +8,8 @@ use glam::{DQuat, DVec3};
 use super::frame::{Frame, somewhere, turn};
 use crate::dice::Dice;
 
-/// A shape: its key and value, and whether it can be cut by lines, by the same count along both directions, or not.
+/// A shape: its key and value, and whether it can be cut by lines, by the same count along both
+/// directions, or not.
 pub(super) struct Shape {
     pub text: String,
     pub cut: Cut,
@@ -71,7 +72,8 @@ fn triangle(dice: &mut Dice, frame: &Frame, on_grid: bool) -> Shape {
     Shape::new(format!("triangle = {}", frame.points(&corners)), Cut::Triangles, true)
 }
 
-/// A star-shaped polygon, sometimes with holes, in a plane along the axes so that rounding leaves it flat.
+/// A star-shaped polygon, sometimes with holes, in a plane along the axes so that rounding leaves
+/// it flat.
 fn polygon(dice: &mut Dice, frame: &Frame, on_grid: bool) -> Shape {
     let (centre, facing) = (somewhere(dice, on_grid), dice.below(3));
     let axes = [[DVec3::X, DVec3::Y], [DVec3::Y, DVec3::Z], [DVec3::Z, DVec3::X]][facing];
@@ -180,7 +182,8 @@ impl Mesh {
     }
 }
 
-/// A turned prism of three to six sides, sometimes without a lid, with a face turned round, or a face twice.
+/// A turned prism of three to six sides, sometimes without a lid, with a face turned round, or a
+/// face twice.
 fn solid(dice: &mut Dice, mesh: &mut Mesh, place: &Place, on_grid: bool) {
     let sides = dice.pick(&[4, 4, 4, 3, 5, 6]);
     let (radius, height) = (0.6 * size(dice, on_grid), size(dice, on_grid));

@@ -1,8 +1,12 @@
-//! What points receive of lamps, with true borders of shadows: F(x→g), the factor of what x sees of all surfaces of lamp g, so that E(x) = Σ_g M_g F(x→g) is their light.
+//! What points receive of lamps, with true borders of shadows: F(x→g), the factor of what x sees of
+//! all surfaces of lamp g, so that E(x) = Σ_g M_g F(x→g) is their light.
 //!
-//! Neighbouring patches of a lamp are put together to convex polygons and closed convex solids. By Lambert's formula the factor of such a piece is a sum over the edges of its outline, whatever lies within
-//! (Schröder & Hanrahan, doi:10.1145/166117.166138). Of the outline the shadows of the bodies between are cut out exactly. Which bodies may come between an element and a piece is found
-//! once an element; what nothing can come between is open for all of its points. In scenes of very many occluders rays to a grid on each piece are counted instead. Metres.
+//! Neighbouring patches of a lamp are put together to convex polygons and closed convex solids. By
+//! Lambert's formula the factor of such a piece is a sum over the edges of its outline, whatever
+//! lies within (Schröder & Hanrahan, doi:10.1145/166117.166138). Of the outline the shadows of the
+//! bodies between are cut out exactly. Which bodies may come between an element and a piece is
+//! found once an element; what nothing can come between is open for all of its points. In scenes of
+//! very many occluders rays to a grid on each piece are counted instead. Metres.
 
 use super::shadows::{Covers, FLAT, Shadows};
 use fredholm_coupling::form_factor::point_to_polygon;
@@ -15,8 +19,8 @@ use std::sync::OnceLock;
 
 /// Pieces of lamps that are looked at for every point; lamps of more have none.
 const MOST_PIECES: usize = 128;
-/// Parts of lamps times bodies that may stand before them, at most: what every pixel may have to look
-/// through.
+/// Parts of lamps times bodies that may stand before them, at most: what every pixel may have to
+/// look through.
 const MOST_PAIRS: usize = 16_384;
 /// Occluders up to which their shadows are cut out exactly.
 const MANY: usize = 20_000;
@@ -28,15 +32,15 @@ const HALVINGS: u32 = 3;
 const FAR: f64 = 10.0;
 /// Points that are looked at one by one, behind what may come between any of them and a piece.
 const FEW_POINTS: usize = 12;
-/// Bodies that hide parts of a piece from all points between which its factors are interpolated, at most: where they are
-/// more, they are too small to do so.
+/// Bodies that hide parts of a piece from all points between which its factors are interpolated, at
+/// most: where they are more, they are too small to do so.
 const FEW_BODIES: usize = 8;
 /// Points between which factors are interpolated where they change smoothly.
 const MANY_POINTS: usize = 20;
 /// The same at most: in a larger region a bend between the nodes might not show at them.
 const MOST_POINTS: usize = 256;
-/// How far such factors may be from being linear between two nodes, over their size. What the polynomial of
-/// degree 2 leaves is much less.
+/// How far such factors may be from being linear between two nodes, over their size. What the
+/// polynomial of degree 2 leaves is much less.
 const BENT: f64 = 0.005;
 /// How often a plane between two convex sets is looked for.
 const TRIALS: usize = 6;
@@ -90,7 +94,8 @@ pub struct Lamps<'a> {
 }
 
 impl<'a> Lamps<'a> {
-    /// Lamps of some patches each, before elements and what blocks the view; none where there are too many of them.
+    /// Lamps of some patches each, before elements and what blocks the view; none where there are
+    /// too many of them.
     ///
     /// # Errors
     /// [`VisibilityError`] for patches that cannot be prepared.
@@ -234,7 +239,8 @@ impl Piece {
     }
 }
 
-/// The outline of a convex solid: its edges between a face that looks at `x` and one that does not, one behind the other.
+/// The outline of a convex solid: its edges between a face that looks at `x` and one that does not,
+/// one behind the other.
 fn silhouette(body: &Body, x: Vec3, tolerance: f64, out: &mut Vec<Vec3>) {
     const NONE: u32 = u32::MAX;
     let lit: Vec<bool> = body.faces().iter().map(|face| face.height(x) > tolerance).collect();
@@ -261,7 +267,8 @@ fn silhouette(body: &Body, x: Vec3, tolerance: f64, out: &mut Vec<Vec3>) {
     out.clear();
 }
 
-/// Convex pieces of the patches of a lamp: merged where that keeps their area and the sides that they are lit on, else as they are.
+/// Convex pieces of the patches of a lamp: merged where that keeps their area and the sides that
+/// they are lit on, else as they are.
 fn put_together(lamp: usize, patches: &[&Patch], exact: bool) -> Result<Vec<Piece>, VisibilityError> {
     let owned: Vec<Patch> = patches.iter().map(|patch| **patch).collect();
     let corners: Vec<Vec3> = owned.iter().flat_map(|patch| patch.corners().iter().copied()).collect();
@@ -355,7 +362,8 @@ fn near((a, ra): (Vec3, f64), (b, rb): (Vec3, f64), (c, rc): (Vec3, f64)) -> boo
     c.distance(a + t * along) <= ra.max(rb) + rc
 }
 
-/// Whether a face of a body has both groups of points wholly outside: then no segment between them meets the body.
+/// Whether a face of a body has both groups of points wholly outside: then no segment between them
+/// meets the body.
 fn beside(body: &Body, a: &[Vec3], b: &[Vec3], tolerance: f64) -> bool {
     body.faces().iter().any(|face| a.iter().chain(b).all(|x| face.height(*x) >= -tolerance))
 }
@@ -419,7 +427,8 @@ impl Region {
         self.axes[0] * share(0, i) + self.axes[1] * share(1, j) + self.axes[2] * self.low[2]
     }
 
-    /// The value at a point of the polynomial of degree 2 in each direction through those at the nodes.
+    /// The value at a point of the polynomial of degree 2 in each direction through those at the
+    /// nodes.
     fn interpolated(&self, values: &[[f64; 3]; 3], x: Vec3) -> f64 {
         let weights = |k: usize| {
             let size = self.high[k] - self.low[k];
@@ -447,11 +456,12 @@ const NODES: [(Node, Option<[Node; 2]>); 9] = [
     ([1, 1], Some([[1, 0], [1, 2]])),
 ];
 
-/// Whether a plane is found that has the segments from a convex region to a piece on one side and a body on the other.
+/// Whether a plane is found that has the segments from a convex region to a piece on one side and a
+/// body on the other.
 ///
-/// The difference of the two convex sets does not hold the origin then. A point of it is moved towards the farthest one
-/// against it (E. G. Gilbert, SIAM J. Control 4, 1966, doi:10.1137/0304007) until that one is on its side; that it is not soon
-/// found says nothing.
+/// The difference of the two convex sets does not hold the origin then. A point of it is moved
+/// towards the farthest one against it (E. G. Gilbert, SIAM J. Control 4, 1966,
+/// doi:10.1137/0304007) until that one is on its side; that it is not soon found says nothing.
 fn is_apart(region: &[Vec3], piece: &[Vec3], body: &[Vec3]) -> bool {
     let least = |along: Vec3, points: &mut dyn Iterator<Item = &Vec3>| {
         let mut found = (f64::INFINITY, Vec3::ZERO);
@@ -496,8 +506,9 @@ pub struct Lighter<'l> {
 }
 
 impl Lighter<'_> {
-    /// The factors from points (m) of an element to what they see of each lamp, points × lamps. Points near each other are
-    /// quicker together: what comes between none of them and a lamp is found for all of them at once.
+    /// The factors from points (m) of an element to what they see of each lamp, points × lamps.
+    /// Points near each other are quicker together: what comes between none of them and a lamp is
+    /// found for all of them at once.
     pub fn factors(&mut self, element: usize, points: &[Vec3], factors: &mut [f64]) {
         factors.fill(0.0);
         let lamps = self.lamps;
@@ -525,8 +536,9 @@ impl Lighter<'_> {
         }
     }
 
-    /// Adds the factors of some points of a group, from bodies that may come between: those that come between none of them
-    /// are left out, and where some are left, either half of the points is looked at by itself.
+    /// Adds the factors of some points of a group, from bodies that may come between: those that
+    /// come between none of them are left out, and where some are left, either half of the points
+    /// is looked at by itself.
     fn part(&mut self, group: Group, (own, among): (Range<usize>, Range<usize>), factors: &mut [f64]) {
         if own.len() <= FEW_POINTS {
             return self.each(group, (own, among), factors);
@@ -580,8 +592,9 @@ impl Lighter<'_> {
         if count == 0 { order.len() / 2 } else { count }
     }
 
-    /// Whether a body hides a piece from all corners of a convex region: then it does so from all of its points, since
-    /// where a convex body meets two sides of a triangle, it meets all segments between them.
+    /// Whether a body hides a piece from all corners of a convex region: then it does so from all
+    /// of its points, since where a convex body meets two sides of a triangle, it meets all
+    /// segments between them.
     fn hides(&mut self, body: &Body, piece: &Piece, region: &[Vec3]) -> bool {
         let (tolerance, volume) = (self.lamps.occluders.tolerance(), &mut self.volume);
         region.iter().all(|&x| {
@@ -592,9 +605,9 @@ impl Lighter<'_> {
         })
     }
 
-    /// The factors at the nodes of a region; none unless they determine those in it. They do where each of the bodies hides a
-    /// part of the piece from all nodes, so that no border of a shadow passes between them, and where the factor is
-    /// nearly linear.
+    /// The factors at the nodes of a region; none unless they determine those in it. They do where
+    /// each of the bodies hides a part of the piece from all nodes, so that no border of a shadow
+    /// passes between them, and where the factor is nearly linear.
     fn values(&mut self, group: Group, region: &Region, between: Range<usize>) -> Option<[[f64; 3]; 3]> {
         let mut values = [[0.0_f64; 3]; 3];
         let normal = group.element.normal();

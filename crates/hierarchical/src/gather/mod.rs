@@ -1,11 +1,17 @@
-//! Final gather: the irradiance of a point from the radiosity of all nodes, E(x) = Σ_q B_q F(x→q), with exact factors of what the point sees of each polygon.
+//! Final gather: the irradiance of a point from the radiosity of all nodes, E(x) = Σ_q B_q F(x→q),
+//! with exact factors of what the point sees of each polygon.
 //!
-//! The tree is walked from the top. A node is taken as a whole where its radiosity varies too little to matter: of the radiosity B and the kernel K over a node of area A, with
-//! standard deviations σ_B and σ_K, the product of the means leaves |∫ (B − B̄)(K − K̄) dA| ≤ A σ_B σ_K (Cauchy and Schwarz). A K is at most the bound F of the factor
-//! of a ball round the node, and σ_K/K at most about 2 r/d where nothing is in the way, else 1. A node is taken where that is below a share of the irradiance expected at the point; leaves always.
+//! The tree is walked from the top. A node is taken as a whole where its radiosity varies too
+//! little to matter: of the radiosity B and the kernel K over a node of area A, with standard
+//! deviations σ_B and σ_K, the product of the means leaves |∫ (B − B̄)(K − K̄) dA| ≤ A σ_B σ_K
+//! (Cauchy and Schwarz). A K is at most the bound F of the factor of a ball round the node, and
+//! σ_K/K at most about 2 r/d where nothing is in the way, else 1. A node is taken where that is
+//! below a share of the irradiance expected at the point; leaves always.
 //!
-//! Factors are Lambert's sums over the edges of what is visible (P. Schröder & P. Hanrahan, SIGGRAPH 1993, doi:10.1145/166117.166138). Final gathering: M. C. Reichert, *A two-pass radiosity method
-//! driven by lights and viewer position*, Cornell University 1992; D. Lischinski, F. Tampieri, D. P. Greenberg, SIGGRAPH 1993, doi:10.1145/166117.166143. W/m².
+//! Factors are Lambert's sums over the edges of what is visible (P. Schröder & P. Hanrahan,
+//! SIGGRAPH 1993, doi:10.1145/166117.166138). Final gathering: M. C. Reichert, *A two-pass
+//! radiosity method driven by lights and viewer position*, Cornell University 1992; D. Lischinski,
+//! F. Tampieri, D. P. Greenberg, SIGGRAPH 1993, doi:10.1145/166117.166143. W/m².
 
 mod lamps;
 mod senders;
@@ -55,7 +61,8 @@ pub struct Leaves<'a> {
 }
 
 impl<'a> Gather<'a> {
-    /// Prepares the gathering from the leaves of a tree. A node may leave an error of `share` of the irradiance expected at a point; `points` are those that do not lie on the surfaces.
+    /// Prepares the gathering from the leaves of a tree. A node may leave an error of `share` of
+    /// the irradiance expected at a point; `points` are those that do not lie on the surfaces.
     ///
     /// # Errors
     /// [`HierarchyError::Shape`] for vectors that have not a row a leaf.
@@ -115,11 +122,13 @@ impl<'a> Gather<'a> {
         Gatherer::new(self)
     }
 
-    /// Irradiance of receivers, receivers × bands, W/m², in parallel; `expected` has a row for each of them.
+    /// Irradiance of receivers, receivers × bands, W/m², in parallel; `expected` has a row for each
+    /// of them.
     ///
     /// # Errors
-    /// [`HierarchyError::Shape`] unless `expected` has a row a receiver, [`HierarchyError::Interrupted`]
-    /// where the watch wants it no more: it is asked for every receiver.
+    /// [`HierarchyError::Shape`] unless `expected` has a row a receiver,
+    /// [`HierarchyError::Interrupted`] where the watch wants it no more: it is asked for every
+    /// receiver.
     pub fn irradiance(
         &self,
         receivers: &[Receiver],
@@ -148,7 +157,7 @@ impl<'a> Gather<'a> {
 
 /// The least irradiance that is resolved: a share of its root mean square over the leaves.
 fn floor(tree: &Tree, order: &[u32], irradiance: &MultiVector<f64>) -> Vec<f64> {
-    let (mut squares, mut area) = (vec![0.0; irradiance.lanes()], 0.0);
+    let (mut squares, mut area) = (vec![0.0; irradiance.rhs_count()], 0.0);
     for (i, &leaf) in order.iter().enumerate() {
         let size = tree.nodes()[leaf as usize].area();
         area += size;

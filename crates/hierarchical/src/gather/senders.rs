@@ -1,4 +1,5 @@
-//! What all nodes send: mean and standard deviation of the radiosity over their exposed leaves, and a ball round each.
+//! What all nodes send: mean and standard deviation of the radiosity over their exposed leaves, and
+//! a ball round each.
 //!
 //! σ² = Σ w (σ_c² + (B̄_c − B̄)²)/Σ w over the children c with exposed areas w. W/m², metres.
 
@@ -22,7 +23,7 @@ pub(super) struct Senders {
 
 impl Senders {
     pub fn new(tree: &Tree, order: &[u32], leaves: &Leaves) -> Self {
-        let (nodes, bands) = (tree.nodes().len(), leaves.radiosity.lanes());
+        let (nodes, bands) = (tree.nodes().len(), leaves.radiosity.rhs_count());
         let mut senders = Self {
             mean: MultiVector::zeros(nodes, bands),
             deviation: MultiVector::zeros(nodes, bands),
@@ -51,7 +52,7 @@ impl Senders {
             return;
         }
         areas[node] = children.iter().map(|&c| areas[c as usize]).sum();
-        for band in 0..self.mean.lanes() {
+        for band in 0..self.mean.rhs_count() {
             let share = |c: u32| areas[c as usize] / areas[node];
             let mean: f64 = children.iter().map(|&c| share(c) * self.mean.row(c as usize)[band]).sum();
             let square = |&c: &u32| {

@@ -1,7 +1,9 @@
 //! The shadows of all bodies from one point, and the factor of what they leave of a polygon.
 //!
-//! A shadow is an intersection of half-spaces, the same for all polygons that the point looks at. What lies in none of the shadows that reach a polygon is cut out of it in convex pieces; the factor is the sum of theirs.
-//! T. Nishita & E. Nakamae, SIGGRAPH 1985, doi:10.1145/325165.325169. Places relative to the point, m.
+//! A shadow is an intersection of half-spaces, the same for all polygons that the point looks at.
+//! What lies in none of the shadows that reach a polygon is cut out of it in convex pieces; the
+//! factor is the sum of theirs. T. Nishita & E. Nakamae, SIGGRAPH 1985, doi:10.1145/325165.325169.
+//! Places relative to the point, m.
 
 use fredholm_coupling::form_factor::point_to_polygon;
 use fredholm_coupling::polygon::{HalfSpace, Side, part};
@@ -9,8 +11,8 @@ use fredholm_mesh::Vec3;
 use fredholm_visibility::body::{Body, Shadow, ShadowVolume};
 use std::ops::Range;
 
-/// Pieces of a polygon up to which what many shadows leave of it is cut out exactly. Inside a crowded body the
-/// shadows cross each other so often that the pieces would never end.
+/// Pieces of a polygon up to which what many shadows leave of it is cut out exactly. Inside a
+/// crowded body the shadows cross each other so often that the pieces would never end.
 const MOST_PIECES: usize = 4096;
 /// How often the triangles of a polygon are halved both ways where there would be more.
 const HALVINGS: u32 = 5;
@@ -129,8 +131,8 @@ impl Shadows {
         self.planes[self.spans[shadow as usize].clone()].iter().map(move |plane| plane.height(y))
     }
 
-    /// Factor from the point with normal `n` to what of the polygon turned to, which lies above its horizon, lies in none of
-    /// some shadows.
+    /// Factor from the point with normal `n` to what of the polygon turned to, which lies above its
+    /// horizon, lies in none of some shadows.
     pub fn factor(&mut self, n: Vec3, polygon: &[Vec3], shadows: &[u32], flat: f64) -> f64 {
         self.pieces.clear();
         self.pieces.push(polygon, &self.screen);
@@ -200,8 +202,8 @@ impl Shadows {
     }
 }
 
-/// A plane at distance 1 from the point on which polygons are seen: its axes and the direction to it, none for what is seen
-/// all round.
+/// A plane at distance 1 from the point on which polygons are seen: its axes and the direction to
+/// it, none for what is seen all round.
 #[derive(Clone, Copy, Debug, Default)]
 struct Screen(Option<[Vec3; 3]>);
 
@@ -219,7 +221,8 @@ impl Screen {
         Self(Some([u, v, to]))
     }
 
-    /// Bounds of the convex hull of some points; no narrower ones than all where that is not before the screen.
+    /// Bounds of the convex hull of some points; no narrower ones than all where that is not before
+    /// the screen.
     fn bounds(&self, points: &[Vec3]) -> Bounds {
         let Some([u, v, to]) = self.0 else { return Bounds::ALL };
         let mut bounds = Bounds::NOTHING;

@@ -12,7 +12,8 @@ use fredholm_visibility::body::Body;
 use std::f64::consts::PI;
 use std::ops::Range;
 
-/// Bodies in a scene up to which their shadows are cut out exactly; behind more of them segments to points of a node are tested.
+/// Bodies in a scene up to which their shadows are cut out exactly; behind more of them segments to
+/// points of a node are tested.
 const FEW: usize = 256;
 /// Bodies in a scene up to which those before strong senders are looked for.
 const MOST: usize = 10_000;
@@ -55,7 +56,8 @@ impl<'g> Gatherer<'g> {
         }
     }
 
-    /// Irradiance of a receiver, of each band, W/m². `expected` is about what it will be, W/m²: errors are relative to it.
+    /// Irradiance of a receiver, of each band, W/m². `expected` is about what it will be, W/m²:
+    /// errors are relative to it.
     pub fn irradiance(&mut self, receiver: &Receiver, expected: &[f64]) -> &[f64] {
         let Gather { share, floor, bodies, .. } = self.gather;
         self.receiver = *receiver;
@@ -109,7 +111,8 @@ impl<'g> Gatherer<'g> {
         self.lists.truncate(start);
     }
 
-    /// Looks at a patch: whether it faces the point. Its corners are then those relative to the point.
+    /// Looks at a patch: whether it faces the point. Its corners are then those relative to the
+    /// point.
     fn face(&mut self, patch: &Patch, flat: f64) -> bool {
         let x = self.receiver.point;
         self.polygon.clear();
@@ -117,7 +120,8 @@ impl<'g> Gatherer<'g> {
         self.polygon[0].dot(patch.normal()) < -flat
     }
 
-    /// Appends the shadows that cover a part of what is looked at; false where one covers all of it.
+    /// Appends the shadows that cover a part of what is looked at; false where one covers all of
+    /// it.
     fn keep(&mut self, among: Range<usize>, covers: impl Fn(&Self, u32) -> Covers) -> bool {
         for k in among {
             let shadow = self.lists[k];
@@ -151,7 +155,8 @@ impl<'g> Gatherer<'g> {
         deviations.zip(&self.allowed).all(|(deviation, allowed)| error * deviation <= *allowed)
     }
 
-    /// Bounds of the factor of some area in a ball, and of the relative deviation of the kernel over it.
+    /// Bounds of the factor of some area in a ball, and of the relative deviation of the kernel
+    /// over it.
     fn bound(&self, to: Vec3, radius: f64, area: f64) -> (f64, f64) {
         let distance = to.length();
         if distance <= radius {
@@ -187,7 +192,8 @@ impl<'g> Gatherer<'g> {
         self.sum.iter_mut().zip(mean).for_each(|(sum, b)| *sum += factor * b);
     }
 
-    /// Factor of a node with the factor `open` if nothing stood between: exact where it brings much.
+    /// Factor of a node with the factor `open` if nothing stood between: exact where it brings
+    /// much.
     fn behind_many(&mut self, index: u32, open: f64, flat: f64) -> f64 {
         let Some(patch) = self.node(index).patch() else { return open };
         let expected = self.expected.iter().zip(self.senders().mean(index));
@@ -211,7 +217,8 @@ impl<'g> Gatherer<'g> {
         (all.len() <= FEW).then(|| self.shadows.factor(normal, &self.front, &all, flat))
     }
 
-    /// Share of what comes from a grid of points on a node that is seen; the grid is finer on nodes that bring a larger part of the irradiance.
+    /// Share of what comes from a grid of points on a node that is seen; the grid is finer on nodes
+    /// that bring a larger part of the irradiance.
     fn sampled(&self, patch: &Patch, part: f64) -> f64 {
         let side = (SIDE * part.sqrt()).ceil().clamp(1.0, SIDE) as usize;
         let middle = |k: usize| (k as f64 + 0.5) / side as f64;

@@ -1,8 +1,11 @@
 //! What a bent cluster exchanges with a polygon or with another one, and how that varies over both.
 //!
-//! A part with the area vector a = |a| n and the area A receives (|a|/A) F from afar, F the form factor of a point with its normal: the polygon as it is, or the parts of the other cluster as discs. Over the
-//! cluster that is taken to be linear in space, which on a smooth surface is linear in the normal too; what real members receive otherwise is the rest. Rays between members, which every pair draws for itself, tell what gets through,
-//! those that the cluster itself stops included. Lengths in metres, exchanges in m².
+//! A part with the area vector a = |a| n and the area A receives (|a|/A) F from afar, F the form
+//! factor of a point with its normal: the polygon as it is, or the parts of the other cluster as
+//! discs. Over the cluster that is taken to be linear in space, which on a smooth surface is linear
+//! in the normal too; what real members receive otherwise is the rest. Rays between members, which
+//! every pair draws for itself, tell what gets through, those that the cluster itself stops
+//! included. Lengths in metres, exchanges in m².
 
 use super::draw::Places;
 use super::sample::{Sample, fit, samples};
@@ -41,7 +44,8 @@ impl Place {
     }
 }
 
-/// What two sides exchange: relative to the open exchange the share that gets through, the variation over either side, and the uncertainty of the share.
+/// What two sides exchange: relative to the open exchange the share that gets through, the
+/// variation over either side, and the uncertainty of the share.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Meeting {
     pub open: f64,
@@ -116,7 +120,8 @@ impl<'a> End<'a> {
         }
     }
 
-    /// What form factors from the parts, and from members with `share` of them, tell of the function.
+    /// What form factors from the parts, and from members with `share` of them, tell of the
+    /// function.
     pub(super) fn side(&self, values: &[f64], probes: &[f64]) -> Side {
         match self {
             Self::Flat(_, points) => {
@@ -134,7 +139,8 @@ impl<'a> End<'a> {
     }
 }
 
-/// Open form factors from the parts of a side, those from members, and what they tell of the function.
+/// Open form factors from the parts of a side, those from members, and what they tell of the
+/// function.
 struct Outlook {
     open: Vec<f64>,
     probes: Vec<f64>,
@@ -148,7 +154,8 @@ impl Outlook {
         Self { open, probes, side }
     }
 
-    /// The share that is left where each part sees a share of what it would, and how that varies; none where nothing is in front.
+    /// The share that is left where each part sees a share of what it would, and how that varies;
+    /// none where nothing is in front.
     fn seen(&self, from: &End, shares: &[f64]) -> Option<(f64, Side)> {
         let through = |values: &[f64]| values.iter().zip(shares).map(|(v, s)| v * s).collect::<Vec<_>>();
         let side = from.side(&through(&self.open), &through(&self.probes));
@@ -157,7 +164,8 @@ impl Outlook {
     }
 }
 
-/// The exchange of two sides that lie apart, at least one of them bent; the larger one of two near ones varies by as much as itself. The open exchange is 0 where no part sees another.
+/// The exchange of two sides that lie apart, at least one of them bent; the larger one of two near
+/// ones varies by as much as itself. The open exchange is 0 where no part sees another.
 pub(super) fn meet(viewer: &mut Viewer, ends: [&End; 2], near: bool) -> Meeting {
     let [a, b] = ends;
     let looks = [Outlook::of(a, b, &mut viewer.front), Outlook::of(b, a, &mut viewer.front)];
@@ -182,7 +190,8 @@ pub(super) fn exact(ends: [&End; 2]) -> usize {
     usize::from(matches!(ends[0], End::Flat(..)))
 }
 
-/// Shares that the places of both sides see of each other, weighted by what they exchange, and the numbers of rays and of clear ones.
+/// Shares that the places of both sides see of each other, weighted by what they exchange, and the
+/// numbers of rays and of clear ones.
 fn rays(viewer: &mut Viewer, [a, b]: [&End; 2]) -> ([Vec<f64>; 2], [usize; 2]) {
     let (xs, ys) = (a.places(), b.places());
     let mut sums = [vec![[0.0; 2]; xs.len()], vec![[0.0; 2]; ys.len()]];

@@ -1,12 +1,13 @@
-//! Numbers that follow no pattern, the same in every run: where the points of a pair of patches or nodes begin.
+//! Numbers that follow no pattern, the same in every run: where the points of a pair of patches or
+//! nodes begin.
 //!
-//! Two pairs must not share their points. Else the errors of many small links of one receiver would go the same way
-//! and add up, where errors of their own average out.
+//! Two pairs must not share their points. Else the errors of many small links of one receiver would
+//! go the same way and add up, where errors of their own average out.
 
 use fredholm_mesh::Vec3;
 
-/// Powers of the inverse root of x⁷ = x + 1 (the sequence R_d of M. Roberts 2018): a member and a place on it for
-/// either side.
+/// Powers of the inverse root of x⁷ = x + 1 (the sequence R_d of M. Roberts 2018): a member and a
+/// place on it for either side.
 const R6: [f64; 6] = [
     0.898_653_712_628_699_2,
     0.807_578_495_221_344_7,
@@ -16,8 +17,8 @@ const R6: [f64; 6] = [
     0.526_687_986_700_735_7,
 ];
 
-/// Numbers in [0, 1) from a seed (the generator SplitMix64 of G. L. Steele, D. Lea, C. H. Flood 2014,
-/// doi:10.1145/2660193.2660195).
+/// Numbers in [0, 1) from a seed (the generator SplitMix64 of G. L. Steele, D. Lea, C. H. Flood
+/// 2014, doi:10.1145/2660193.2660195).
 fn start<const N: usize>(seed: u64) -> [f64; N] {
     let mut state = seed;
     std::array::from_fn(|_| {
@@ -29,7 +30,8 @@ fn start<const N: usize>(seed: u64) -> [f64; N] {
     })
 }
 
-/// For both sides of a pair a member, as a number in [0, 1), and a place on it in [0, 1)²; one after the other.
+/// For both sides of a pair a member, as a number in [0, 1), and a place on it in [0, 1)²; one
+/// after the other.
 pub(super) struct Places {
     start: [f64; 6],
     drawn: u32,

@@ -1,4 +1,5 @@
-//! What two nodes exchange of which at least one is bent, or a bent one with itself: apart, near, touching, or hardly in sight of each other. Exchanges in m².
+//! What two nodes exchange of which at least one is bent, or a bent one with itself: apart, near,
+//! touching, or hardly in sight of each other. Exchanges in m².
 
 use super::bent::{End, Meeting, exact, meet};
 use super::side::Side;
@@ -34,7 +35,8 @@ fn near(p: &Node, q: &Node) -> bool {
     p.cone().centre.distance(q.cone().centre) < NEAR * (p.cone().radius + q.cone().radius)
 }
 
-/// Share of what two nodes would exchange face to face that they may exchange where no part of one is seen from the parts of the other, but some members may be.
+/// Share of what two nodes would exchange face to face that they may exchange where no part of one
+/// is seen from the parts of the other, but some members may be.
 const GRAZING: f64 = 0.02;
 
 /// Nodes that hardly see each other.
@@ -77,7 +79,8 @@ mod tests {
     use fredholm_visibility::Occluders;
     use fredholm_visibility::body::Bodies;
 
-    /// A mesh of a hill of some height over the unit square, 0 at its border; a basin where the height is negative.
+    /// A mesh of a hill of some height over the unit square, 0 at its border; a basin where the
+    /// height is negative.
     fn hill(height: f64) -> Tree {
         let n = 12;
         let at = |i: usize, j: usize| {
@@ -128,7 +131,8 @@ mod tests {
 
     #[test]
     fn a_basin_sees_itself_as_its_opening_says_and_a_hill_does_not() {
-        // Of a basin that sees nothing else, all that does not leave through the opening reaches the basin: A − 1.
+        // Of a basin that sees nothing else, all that does not leave through the opening reaches
+        // the basin: A − 1.
         let basin = hill(-0.2);
         let node = &basin.nodes()[0];
         let most = bound(node, node, true);

@@ -9,7 +9,8 @@ use rayon::prelude::*;
 /// Links that one thread takes at a time.
 const CHUNK: usize = 512;
 
-/// Sets the open exchanges of links between flat nodes to a relative `tolerance`; the links must be sorted by their first node.
+/// Sets the open exchanges of links between flat nodes to a relative `tolerance`; the links must be
+/// sorted by their first node.
 pub(crate) fn exchanges(tree: &Tree, links: &mut [Link], tolerance: f64) {
     let nodes = tree.nodes();
     let flat = |link: &Link| [link.a, link.b].iter().all(|&node| nodes[node as usize].patch().is_some());

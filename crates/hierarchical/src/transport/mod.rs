@@ -1,4 +1,5 @@
-//! What a pair of nodes exchanges: bounds and spreads before it is computed, the open exchange, and what gets through.
+//! What a pair of nodes exchanges: bounds and spreads before it is computed, the open exchange, and
+//! what gets through.
 
 mod bent;
 mod draw;

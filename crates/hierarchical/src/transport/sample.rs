@@ -1,14 +1,16 @@
 //! The parts that stand for a bent cluster, and a function over it from its values at them.
 //!
-//! The function is fitted by 1 + g·(x − c) times its mean in space, not in a plane: on a smooth surface that is linear in the normal too. What it leaves of the values at the parts, or at real members if that is more,
-//! is the rest. Lengths in metres.
+//! The function is fitted by 1 + g·(x − c) times its mean in space, not in a plane: on a smooth
+//! surface that is linear in the normal too. What it leaves of the values at the parts, or at real
+//! members if that is more, is the rest. Lengths in metres.
 
 use super::scattered::place;
 use super::side::{OUTER, Points, Side};
 use crate::tree::{Node, Tree};
 use fredholm_mesh::{Patch, Vec3};
 
-/// Part of the variance of places that is added in all directions before a linear function is fitted.
+/// Part of the variance of places that is added in all directions before a linear function is
+/// fitted.
 const RIDGE: f64 = 1e-3;
 
 /// Radius of a flat part, over that of the cluster, from which on its quarters stand for it.

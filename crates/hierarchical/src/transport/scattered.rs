@@ -1,9 +1,14 @@
-//! What two nodes exchange of which at least one faces all ways, such as a piece of furniture or a house: an estimate from a few pairs of points.
+//! What two nodes exchange of which at least one faces all ways, such as a piece of furniture or a
+//! house: an estimate from a few pairs of points.
 //!
-//! G = ∫∫ cosθ cosθ'/(π r²) over both nodes is A A' times the mean over points of either, which are taken from low-discrepancy sequences with a start of their own for every pair of nodes, members in proportion to their areas. So the estimates are
-//! free of a systematic error, the same in every run, and their errors have nothing to do with each other: over the many small links of a receiver they average out. The standard error of the mean is the doubt of the link, so that an oracle
-//! divides what matters. The members of a scattered node receive very differently, which counts as a deviation of [`UNEVEN`]. Exchanges in m², lengths in metres.
-//! B. Smits, J. Arvo, D. Greenberg, SIGGRAPH 1994, doi:10.1145/192161.192277, for links of clusters that face all ways.
+//! G = ∫∫ cosθ cosθ'/(π r²) over both nodes is A A' times the mean over points of either, which are
+//! taken from low-discrepancy sequences with a start of their own for every pair of nodes, members
+//! in proportion to their areas. So the estimates are free of a systematic error, the same in every
+//! run, and their errors have nothing to do with each other: over the many small links of a
+//! receiver they average out. The standard error of the mean is the doubt of the link, so that an
+//! oracle divides what matters. The members of a scattered node receive very differently, which
+//! counts as a deviation of [`UNEVEN`]. Exchanges in m², lengths in metres. B. Smits, J. Arvo, D.
+//! Greenberg, SIGGRAPH 1994, doi:10.1145/192161.192277, for links of clusters that face all ways.
 
 use super::draw::Places;
 use super::sight::Viewer;
@@ -15,12 +20,15 @@ use std::f64::consts::PI;
 
 /// Pairs of points.
 const PAIRS: usize = 16;
-/// Distance of the centres over the sum of the radii from which on two nodes are apart: the kernel has no peaks then.
+/// Distance of the centres over the sum of the radii from which on two nodes are apart: the kernel
+/// has no peaks then.
 const APART: f64 = 1.5;
-/// Deviation over a scattered node, over its mean. Members that face the sender receive up to five times the mean of a box, others nothing, and what many senders on one side do to them goes the same way and adds up: so such links must be small
-/// beside what counts.
+/// Deviation over a scattered node, over its mean. Members that face the sender receive up to five
+/// times the mean of a box, others nothing, and what many senders on one side do to them goes the
+/// same way and adds up: so such links must be small beside what counts.
 const UNEVEN: f64 = 20.0;
-/// Share of what two nodes would exchange face to face that they may exchange where no pair of points does.
+/// Share of what two nodes would exchange face to face that they may exchange where no pair of
+/// points does.
 const GRAZING: f64 = 0.02;
 /// Pairs of points of two nodes.
 pub(crate) struct Chance {
@@ -61,7 +69,8 @@ impl Chance {
         }
         let areas = a.area() * b.area();
         let distance = a.cone().centre.distance(b.cone().centre);
-        // What faces one way sees a sender of about this size under angles that vary by its own size over the distance.
+        // What faces one way sees a sender of about this size under angles that vary by its own
+        // size over the distance.
         let deviations = [a, b]
             .map(|node| if node.faces_one_way() { 2.0 * node.cone().radius / distance } else { UNEVEN });
         if sum <= 0.0 {
@@ -77,7 +86,8 @@ impl Chance {
         Self { open: (mean * areas).min(a.area()).min(b.area()), deviations, pairs, error }
     }
 
-    /// The share of the open exchange that gets through, and its doubt, that of the open exchange included.
+    /// The share of the open exchange that gets through, and its doubt, that of the open exchange
+    /// included.
     pub fn seen(&self, viewer: &Viewer) -> [f64; 2] {
         let clear = |([x, y], weight): &([Vec3; 2], f64)| if viewer.sees(*x, *y) { *weight } else { 0.0 };
         let share: f64 = self.pairs.iter().map(clear).sum();

@@ -1,11 +1,12 @@
-//! The share of an exchange that gets through, ∫∫ K V dA dA'/∫∫ K dA dA' with the kernel K and the visibility V, from
-//! segments between two patches.
+//! The share of an exchange that gets through, ∫∫ K V dA dA'/∫∫ K dA dA' with the kernel K and the
+//! visibility V, from segments between two patches.
 //!
-//! Where the patches are near each other K varies by orders, and of a few uniform segments hardly one is among those
-//! that count: the ratio of two sums is then too small or too large by several per cent, the same way in all pairs of a
-//! kind. So many segments are drawn, which costs little, and [`TESTED`] of them are tested, each chosen as likely as it
-//! weighs (resampling: D. B. Rubin, J. Am. Stat. Assoc. 82, 543–546, 1987; one at every step of the running sum: G.
-//! Kitagawa, J. Comput. Graph. Stat. 5, 1–25, 1996). The share is the part of them that gets through.
+//! Where the patches are near each other K varies by orders, and of a few uniform segments hardly
+//! one is among those that count: the ratio of two sums is then too small or too large by several
+//! per cent, the same way in all pairs of a kind. So many segments are drawn, which costs little,
+//! and [`TESTED`] of them are tested, each chosen as likely as it weighs (resampling: D. B. Rubin,
+//! J. Am. Stat. Assoc. 82, 543–546, 1987; one at every step of the running sum: G. Kitagawa, J.
+//! Comput. Graph. Stat. 5, 1–25, 1996). The share is the part of them that gets through.
 
 use super::draw::Places;
 use super::side::{OUTER, POINTS, Points, Side};
@@ -16,8 +17,8 @@ use fredholm_mesh::{Patch, Vec3};
 const TESTED: usize = 16;
 /// Standard errors by which a share is taken to be uncertain.
 const ERRORS: f64 = 1.7;
-/// Distances of the centroids over the sum of the diameters, and how many segments are drawn for each part of either
-/// side below them.
+/// Distances of the centroids over the sum of the diameters, and how many segments are drawn for
+/// each part of either side below them.
 const DRAWN: [(f64, usize); 2] = [(0.75, 16), (1.5, 4)];
 
 /// A segment, the parts of the patches that its ends are on, and the kernel between its ends, 1/m².
@@ -99,7 +100,8 @@ impl Segments {
     }
 }
 
-/// What the segments of a part of a side weigh, how many of them were tested, and how many of those got through.
+/// What the segments of a part of a side weigh, how many of them were tested, and how many of those
+/// got through.
 #[derive(Clone, Copy, Debug, Default)]
 struct Tally {
     weight: f64,
@@ -114,7 +116,8 @@ impl Tally {
         self.passed += passed;
     }
 
-    /// What the part sees, of its weight. A part with few segments of its own is taken to see about what the others do.
+    /// What the part sees, of its weight. A part with few segments of its own is taken to see about
+    /// what the others do.
     fn seen(&self, share: f64) -> f64 {
         self.weight * (self.passed + share) / (self.tested + 1.0)
     }
@@ -132,8 +135,8 @@ fn varied(points: &Points, tallies: &[Tally; OUTER], share: f64) -> Side {
     seen.scaled(if open.mean > 0.0 { seen.mean / open.mean } else { share })
 }
 
-/// How uncertain a share is where so many of the tested segments got through: as if one more got through and one more
-/// did not (A. Agresti, B. A. Coull, Am. Stat. 52, 119–126, 1998).
+/// How uncertain a share is where so many of the tested segments got through: as if one more got
+/// through and one more did not (A. Agresti, B. A. Coull, Am. Stat. 52, 119–126, 1998).
 fn doubt(passed: f64) -> f64 {
     let number = TESTED as f64 + 2.0;
     let share = (passed + 1.0) / number;
@@ -151,7 +154,8 @@ mod tests {
         Patch::quad(corners.map(Vec3::from)).unwrap().unwrap()
     }
 
-    /// Shares of what floors receive from walls they touch, of sizes and places that differ, whose upper part is hidden.
+    /// Shares of what floors receive from walls they touch, of sizes and places that differ, whose
+    /// upper part is hidden.
     #[test]
     fn shares_of_near_pairs_are_right_in_the_mean() {
         let (mut found, mut truth, mut doubts, mut number) = (0.0, 0.0, 0.0, 0);

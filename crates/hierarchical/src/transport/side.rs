@@ -1,7 +1,10 @@
-//! A function over a patch from its values at five points: mean, gradient, and how far it deviates from either.
+//! A function over a patch from its values at five points: mean, gradient, and how far it deviates
+//! from either.
 //!
-//! Four points have equal weights and give the mean and, by least squares, a linear function; what is left of them, and the distance of the fifth, at the centroid, from the mean, is the *rest*. For
-//! a quadratic function on a parallelogram that distance is 1.1 times the standard deviation of the quadratic part in each direction. All relative to the mean; gradients in 1/m.
+//! Four points have equal weights and give the mean and, by least squares, a linear function; what
+//! is left of them, and the distance of the fifth, at the centroid, from the mean, is the *rest*.
+//! For a quadratic function on a parallelogram that distance is 1.1 times the standard deviation of
+//! the quadratic part in each direction. All relative to the mean; gradients in 1/m.
 
 use fredholm_mesh::{Patch, Vec3};
 
@@ -11,7 +14,8 @@ pub(crate) const POINTS: usize = 5;
 pub(super) const OUTER: usize = POINTS - 1;
 /// Places of the two Gauss points of the unit interval.
 const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
-/// Places on a triangle of the centroids of three of its quarters, and of the fourth a little off the middle, which is the fifth point.
+/// Places on a triangle of the centroids of three of its quarters, and of the fourth a little off
+/// the middle, which is the fifth point.
 const QUARTERS: [[f64; 2]; OUTER] =
     [[1.0 / 6.0, 1.0 / 6.0], [2.0 / 3.0, 1.0 / 6.0], [1.0 / 6.0, 2.0 / 3.0], [1.0 / 3.0, 1.0 / 3.0]];
 
@@ -65,7 +69,8 @@ impl<'a> Points<'a> {
         Self { at, patch }
     }
 
-    /// A place in the part of the patch that a point stands for: a quarter, or as much about the middle.
+    /// A place in the part of the patch that a point stands for: a quarter, or as much about the
+    /// middle.
     pub fn within(&self, k: usize, [r, s]: [f64; 2]) -> Vec3 {
         let half = |corner: f64, x: f64| 0.5 * (corner + x);
         let (u, v) = if self.patch.sides() == 3 {

@@ -1,8 +1,12 @@
 //! What gets through between two flat nodes: all, nothing, or a share of it.
 //!
-//! No body in the shaft of the two polygons, and all gets through; one convex body across all segments between their corners, and nothing does. Else points of each polygon
-//! see the other one exactly clipped, and the share is Σ F_seen/Σ F_open over the points; what both sides make of it differs by an estimate of its error. Behind many bodies
-//! segments take the place of the clipping ([`super::segments`]), between places of either side that every pair draws for itself: what they miss is as often too much as too little. E. A. Haines & J. R. Wallace 1994, doi:10.1007/978-3-642-57963-9_12, for the shaft.
+//! No body in the shaft of the two polygons, and all gets through; one convex body across all
+//! segments between their corners, and nothing does. Else points of each polygon see the other one
+//! exactly clipped, and the share is Σ F_seen/Σ F_open over the points; what both sides make of it
+//! differs by an estimate of its error. Behind many bodies segments take the place of the clipping
+//! ([`super::segments`]), between places of either side that every pair draws for itself: what they
+//! miss is as often too much as too little. E. A. Haines & J. R. Wallace 1994,
+//! doi:10.1007/978-3-642-57963-9_12, for the shaft.
 
 use super::segments::{Segments, Through};
 use super::side::{POINTS, Points, Side};
@@ -38,7 +42,8 @@ pub(crate) enum View {
     Open,
     /// Nothing gets through.
     Nothing,
-    /// A share of the open exchange; relative to that, how both sides deviate, and the uncertainty of the share.
+    /// A share of the open exchange; relative to that, how both sides deviate, and the uncertainty
+    /// of the share.
     Part { share: f64, sides: [Side; 2], doubt: f64 },
 }
 
@@ -143,14 +148,16 @@ pub(super) fn weigh(a: Option<(f64, Side)>, b: Option<(f64, Side)>) -> (f64, [Si
     (share, sides, doubt)
 }
 
-/// Share that one side sees and how that varies, relative to the open factor; none where no point is in front.
+/// Share that one side sees and how that varies, relative to the open factor; none where no point
+/// is in front.
 fn side(points: &Points, [open, seen]: [[f64; POINTS]; 2]) -> Option<(f64, Side)> {
     let (open, seen) = (points.side(&open), points.side(&seen));
     let share = if open.mean > 0.0 { (seen.mean / open.mean).min(1.0) } else { 0.0 };
     (open.mean > 0.0).then(|| (share, seen.scaled(share)))
 }
 
-/// Whether a convex body is across every segment between two patches: what holds for their corners holds for all of their points.
+/// Whether a convex body is across every segment between two patches: what holds for their corners
+/// holds for all of their points.
 fn blocks(body: &Body, a: &Patch, b: &Patch, tolerance: f64, volume: &mut ShadowVolume) -> bool {
     a.corners().iter().all(|&x| match body.shadow(x, tolerance, volume) {
         Shadow::Nothing => false,

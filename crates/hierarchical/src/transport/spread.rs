@@ -1,7 +1,9 @@
 //! How the form factor varies over the two patches of an open pair, from a few points of each.
 //!
-//! A patch is five points: four of a quarter each and the centroid. Between points the kernel is that of a disc, F(x) = cosθ cosθ' A/(π r² + A) with A a quarter of the larger
-//! patch: it stays below 1 where patches touch. J. R. Wallace, K. A. Elmquist, E. A. Haines, SIGGRAPH 1989, doi:10.1145/74334.74366. Points of close pairs see the other patch as it is.
+//! A patch is five points: four of a quarter each and the centroid. Between points the kernel is
+//! that of a disc, F(x) = cosθ cosθ' A/(π r² + A) with A a quarter of the larger patch: it stays
+//! below 1 where patches touch. J. R. Wallace, K. A. Elmquist, E. A. Haines, SIGGRAPH 1989,
+//! doi:10.1145/74334.74366. Points of close pairs see the other patch as it is.
 
 use super::side::{POINTS, Points, Side};
 use fredholm_coupling::form_factor::point_to_polygon;
@@ -11,7 +13,8 @@ use std::f64::consts::PI;
 
 /// Distance, over the mean diameter, below which a pair is close.
 pub(crate) const NEAR: f64 = 1.5;
-/// Least deviation over the larger patch of a close pair, and over a side of which no point sees anything.
+/// Least deviation over the larger patch of a close pair, and over a side of which no point sees
+/// anything.
 pub(super) const STEEP: f64 = 1.0;
 
 /// How far inside a corner its factor is taken, over the distance from the centroid.
@@ -116,7 +119,8 @@ mod tests {
 
     #[test]
     fn a_square_at_right_angles_varies_as_its_height() {
-        // Far away the factor is proportional to the height over the other plane: a deviation of 1/√3, all of it a gradient of 2 a metre.
+        // Far away the factor is proportional to the height over the other plane: a deviation of
+        // 1/√3, all of it a gradient of 2 a metre.
         let corner = |y: f64, z: f64| Vec3::new(100.0, y, z);
         let wall = Patch::quad([corner(-0.5, 0.), corner(-0.5, 1.), corner(0.5, 1.), corner(0.5, 0.)]);
         let found = look(&square(0.0, 0.5, true), &wall.unwrap().unwrap());

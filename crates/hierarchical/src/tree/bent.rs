@@ -1,8 +1,10 @@
 //! Bent clusters: elements that lie near each other and face about the same way, linked as one.
 //!
-//! Such a cluster stands for its members by up to [`PARTS`] of its parts. What a part far from a source receives is a·Φ with its area vector a = Σ A n and the vector irradiance
-//! Φ, as long as all members look at the source. A. J. Willmott, P. S. Heckbert, M. Garland, *Face cluster radiosity*, Rendering Techniques '99, 293–304; F. X. Sillion 1995,
-//! doi:10.1109/2945.466719. Lengths in metres.
+//! Such a cluster stands for its members by up to [`PARTS`] of its parts. What a part far from a
+//! source receives is a·Φ with its area vector a = Σ A n and the vector irradiance Φ, as long as
+//! all members look at the source. A. J. Willmott, P. S. Heckbert, M. Garland, *Face cluster
+//! radiosity*, Rendering Techniques '99, 293–304; F. X. Sillion 1995, doi:10.1109/2945.466719.
+//! Lengths in metres.
 
 use super::{NONE, Node, Tree};
 use fredholm_mesh::Vec3;
@@ -35,8 +37,8 @@ pub(super) fn summarise(tree: &mut Tree) {
     }
 }
 
-/// Whether a function over a cluster may be linear: it has many parts, or few elements that hardly bend. Over the two
-/// sides of an edge it is not, whatever is sent there.
+/// Whether a function over a cluster may be linear: it has many parts, or few elements that hardly
+/// bend. Over the two sides of an edge it is not, whatever is sent there.
 fn is_fine(tree: &Tree, index: u32) -> bool {
     let (parts, angle) = (tree.parts(index), tree.nodes[index as usize].cone.angle);
     let elements = || parts.iter().all(|&part| tree.nodes[part as usize].root != NONE);
@@ -54,7 +56,8 @@ fn gist(tree: &Tree, node: &Node) -> Gist {
 }
 
 impl Tree {
-    /// The parts that stand for a cluster: the largest ones are divided, down to flat nodes, until there are enough.
+    /// The parts that stand for a cluster: the largest ones are divided, down to flat nodes, until
+    /// there are enough.
     pub(crate) fn parts(&self, index: u32) -> Vec<u32> {
         let mut parts = Vec::with_capacity(PARTS);
         parts.push(index);

@@ -1,7 +1,10 @@
-//! Clusters of input elements: a binary tree, first by place, then by plane, then by place in the plane.
+//! Clusters of input elements: a binary tree, first by place, then by plane, then by place in the
+//! plane.
 //!
-//! Elements of at most [`PLANES`] planes are parted between planes, others through the middle of their longest extent. Where nearly each element has a plane of its own, normals count as places, so
-//! that what faces elsewhere is parted from what only lies elsewhere. Elements of one plane are parted along a line that cuts none of them, where there is one. Lengths in metres.
+//! Elements of at most [`PLANES`] planes are parted between planes, others through the middle of
+//! their longest extent. Where nearly each element has a plane of its own, normals count as places,
+//! so that what faces elsewhere is parted from what only lies elsewhere. Elements of one plane are
+//! parted along a line that cuts none of them, where there is one. Lengths in metres.
 
 use super::hull::filled;
 use super::{Cone, NONE, Node, Tree};
@@ -62,7 +65,8 @@ impl<'a> Builder<'a> {
         Node::cluster(flat, Cone::around(list.iter().copied()), area)
     }
 
-    /// Parts a group of at least two. Both parts have members: where rounding puts all on one side, the middle of the list parts them.
+    /// Parts a group of at least two. Both parts have members: where rounding puts all on one side,
+    /// the middle of the list parts them.
     fn part(&self, order: Vec<u32>) -> (Vec<u32>, Vec<u32>) {
         let (planes, met) = self.planes(&order);
         let (mut low, mut high) = match planes.len() {
@@ -84,7 +88,8 @@ impl<'a> Builder<'a> {
             && (patch.corner(0) - first.corner(0)).dot(first.normal()).abs() <= self.tolerance
     }
 
-    /// One element of each plane, and how many elements were asked; more than [`PLANES`] are not told apart.
+    /// One element of each plane, and how many elements were asked; more than [`PLANES`] are not
+    /// told apart.
     fn planes(&self, order: &[u32]) -> (Vec<u32>, usize) {
         let mut planes: Vec<u32> = Vec::new();
         for (met, &k) in order.iter().enumerate() {
@@ -108,7 +113,8 @@ impl<'a> Builder<'a> {
         };
         let mut planes = found.to_vec();
         planes.sort_by(by_key);
-        // Each element goes with the first plane that takes it, as when the planes were found: what lies in one plane up to rounding is not the same both ways.
+        // Each element goes with the first plane that takes it, as when the planes were found: what
+        // lies in one plane up to rounding is not the same both ways.
         let low: Vec<u32> = planes[..planes.len() / 2].to_vec();
         let plane = |k: u32| found.iter().find(|&&plane| self.same_plane(k, plane));
         order.into_iter().partition(|&k| plane(k).is_some_and(|plane| low.contains(plane)))

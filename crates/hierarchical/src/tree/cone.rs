@@ -1,8 +1,11 @@
-//! A ball round a group of patches and a cone round their normals: can two groups see each other at all?
+//! A ball round a group of patches and a cone round their normals: can two groups see each other at
+//! all?
 //!
-//! From any point of a ball round c with radius r the direction to any point of another ball, at the distance d of the centres, deviates from the line of the centres
-//! by at most δ = asin((r + r')/d). A patch sees what is less than 90° off its normal; normals within α of an axis a see nothing along u where
-//! the angle of a and u is at least 90° + α + δ. Lengths in metres, angles in radians.
+//! From any point of a ball round c with radius r the direction to any point of another ball, at
+//! the distance d of the centres, deviates from the line of the centres by at most δ = asin((r +
+//! r')/d). A patch sees what is less than 90° off its normal; normals within α of an axis a see
+//! nothing along u where the angle of a and u is at least 90° + α + δ. Lengths in metres, angles in
+//! radians.
 
 use super::radius;
 use fredholm_mesh::{Patch, Vec3};
@@ -36,7 +39,8 @@ impl Cone {
         Self { centre, radius: far, axis, angle }
     }
 
-    /// Whether no point of the group looks at any point of a patch, or the other way round. The places that nobody in the ball with any normal of the cone looks at are an intersection of
+    /// Whether no point of the group looks at any point of a patch, or the other way round. The
+    /// places that nobody in the ball with any normal of the cone looks at are an intersection of
     /// half-spaces, so that it is enough to ask for the corners.
     pub fn apart_from(&self, patch: &Patch) -> bool {
         let height = (self.centre - patch.corner(0)).dot(patch.normal());

@@ -1,11 +1,13 @@
 //! The convex polygon of up to four corners that coplanar patches fill, where they do.
 //!
-//! A. M. Andrew, Inform. Process. Lett. 9 (1979) 216–219, doi:10.1016/0020-0190(79)90072-3, for the convex hull. Patches that do not overlap fill their hull where their areas add up to
-//! that of the hull. Lengths in metres.
+//! A. M. Andrew, Inform. Process. Lett. 9 (1979) 216–219, doi:10.1016/0020-0190(79)90072-3, for the
+//! convex hull. Patches that do not overlap fill their hull where their areas add up to that of the
+//! hull. Lengths in metres.
 
 use fredholm_mesh::{Patch, Vec3};
 
-/// Relative difference of areas up to which the hull counts as filled, and of the doubled area of a corner's triangle up to which it is none.
+/// Relative difference of areas up to which the hull counts as filled, and of the doubled area of a
+/// corner's triangle up to which it is none.
 const FILLED: f64 = 1e-9;
 
 /// Tangent of the angle between a side and the order of corners: no simple number.
@@ -14,7 +16,8 @@ const ASKEW: f64 = 0.412_7;
 /// A point in the plane and in space.
 type Corner = ([f64; 2], Vec3);
 
-/// The hull of patches in one plane that face as the first does, if it has at most four corners and they fill it.
+/// The hull of patches in one plane that face as the first does, if it has at most four corners and
+/// they fill it.
 pub(super) fn filled(patches: &[&Patch]) -> Option<Patch> {
     let area: f64 = patches.iter().map(|patch| patch.area()).sum();
     let corners = hull(&plane_corners(patches), area);
@@ -30,7 +33,8 @@ pub(super) fn filled(patches: &[&Patch]) -> Option<Patch> {
 fn plane_corners(patches: &[&Patch]) -> Vec<Corner> {
     let (n, origin) = (patches[0].normal(), patches[0].corner(0));
     let side = (patches[0].corner(1) - origin).normalize();
-    // Askew to the sides: of corners on a side across the order, rounding would decide which is the first.
+    // Askew to the sides: of corners on a side across the order, rounding would decide which is the
+    // first.
     let u = (side + n.cross(side) * ASKEW).normalize();
     let v = n.cross(u);
     let flat = |x: &Vec3| ([(*x - origin).dot(u), (*x - origin).dot(v)], *x);

@@ -1,9 +1,12 @@
 //! The tree of elements: clusters above the input elements, similar quarters below them.
 //!
-//! A child has a higher number than its parent, so that a pass over the numbers, forward or backward, visits parents before or after their children. A node is *flat* where
-//! its elements fill a convex polygon of three or four corners: then it has a patch. It is *bent* where its elements face about the same way, and *scattered* where they face all ways.
-//! P. Hanrahan, D. Salzman, L. Aupperle, SIGGRAPH 1991, doi:10.1145/122718.122740, for the quarters; B. Smits, J. Arvo, D. Greenberg, SIGGRAPH 1994,
-//! doi:10.1145/192161.192277, for the clusters. Lengths in metres.
+//! A child has a higher number than its parent, so that a pass over the numbers, forward or
+//! backward, visits parents before or after their children. A node is *flat* where its elements
+//! fill a convex polygon of three or four corners: then it has a patch. It is *bent* where its
+//! elements face about the same way, and *scattered* where they face all ways. P. Hanrahan, D.
+//! Salzman, L. Aupperle, SIGGRAPH 1991, doi:10.1145/122718.122740, for the quarters; B. Smits, J.
+//! Arvo, D. Greenberg, SIGGRAPH 1994, doi:10.1145/192161.192277, for the clusters. Lengths in
+//! metres.
 
 mod bent;
 mod cluster;
@@ -111,7 +114,8 @@ pub struct Tree {
 }
 
 impl Tree {
-    /// The tree over the leaves of a mesh, none of them split; places nearer than `tolerance` (m) count as one.
+    /// The tree over the leaves of a mesh, none of them split; places nearer than `tolerance` (m)
+    /// count as one.
     ///
     /// # Errors
     /// [`HierarchyError::Empty`] for a mesh without elements.
@@ -143,7 +147,8 @@ impl Tree {
         &self.splits
     }
 
-    /// Numbers of the leaves in the order of the input elements, children in order: one unknown each.
+    /// Numbers of the leaves in the order of the input elements, children in order: one unknown
+    /// each.
     #[must_use]
     pub fn leaves(&self) -> Vec<u32> {
         let mut leaves = Vec::new();
@@ -160,8 +165,8 @@ impl Tree {
     /// Splits a leaf into four quarters; an element that has children stays as it is.
     ///
     /// # Errors
-    /// [`HierarchyError::Mesh`] where the quarters would be too small for the precision of their coordinates, and
-    /// [`HierarchyError::TooLarge`] past 2³² − 2 nodes.
+    /// [`HierarchyError::Mesh`] where the quarters would be too small for the precision of their
+    /// coordinates, and [`HierarchyError::TooLarge`] past 2³² − 2 nodes.
     pub fn split(&mut self, index: u32) -> Result<(), HierarchyError> {
         let node = &self.nodes[index as usize];
         let Some(patch) = node.patch.filter(|_| node.is_leaf()) else { return Ok(()) };
@@ -193,7 +198,8 @@ impl Node {
 }
 
 impl Tree {
-    /// An input element, or a flat node, of a node, chosen with a probability in proportion to its area by a number `u` in [0, 1).
+    /// An input element, or a flat node, of a node, chosen with a probability in proportion to its
+    /// area by a number `u` in [0, 1).
     pub(crate) fn member(&self, mut index: u32, mut u: f64) -> Option<&Patch> {
         loop {
             let node = &self.nodes[index as usize];

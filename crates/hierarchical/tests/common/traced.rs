@@ -10,7 +10,8 @@ use fredholm_montecarlo::{Enclosure, Groups, Stop, Tracing};
 /// Particles of a batch.
 const BATCH: u32 = 1 << 16;
 
-/// Faces put together: those of the last surface by where they lie about its middle and whether they look up, those of a wall each by itself or all to one.
+/// Faces put together: those of the last surface by where they lie about its middle and whether
+/// they look up, those of a wall each by itself or all to one.
 pub struct Parts {
     pub of: Vec<usize>,
     pub count: usize,

@@ -1,4 +1,5 @@
-//! What a solution should be: closed forms, particle tracing from files, and solutions refined much further.
+//! What a solution should be: closed forms, particle tracing from files, and solutions refined much
+//! further.
 
 use super::common::Bench;
 use std::collections::HashMap;
@@ -36,7 +37,8 @@ pub fn traced(bench: &Bench, name: &str, columns: &[&str]) -> Vec<f64> {
     exact
 }
 
-/// Irradiance where every surface has the same reflectance and exitance and nothing leaves: E = M/(1 − ρ).
+/// Irradiance where every surface has the same reflectance and exitance and nothing leaves: E =
+/// M/(1 − ρ).
 #[allow(dead_code, reason = "not every test needs it")]
 pub fn furnace(bench: &Bench) -> Vec<f64> {
     let (rho, m) = (bench.surfaces.reflectance.row(0), bench.surfaces.exitance.row(0));

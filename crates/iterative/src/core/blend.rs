@@ -1,7 +1,8 @@
 //! z = α x' + (1 − α) x'' with the α that minimises ‖b − A z‖₂: α = −(r'', r' − r'')/‖r' − r''‖².
 //!
-//! Source: C. Brezinski, M. Redivo Zaglia, Hybrid procedures for solving linear systems, Numerische Mathematik 67,
-//! 1994, DOI 10.1007/s002110050015. The residual of z is at most the smaller one of r' and r''. Per lane.
+//! Source: C. Brezinski, M. Redivo Zaglia, Hybrid procedures for solving linear systems, Numerische
+//! Mathematik 67, 1994, DOI 10.1007/s002110050015. The residual of z is at most the smaller one of
+//! r' and r''. Per right-hand side.
 
 use super::quotients;
 use fredholm_linop::{MultiVector, Scalar};
@@ -12,7 +13,8 @@ pub(crate) struct Blend<'a, T> {
     pub product: &'a MultiVector<T>,
 }
 
-/// Blends x' into z, which is x'' before, and A x' into `product`, which is A x'' before. Returns α.
+/// Blends x' into z, which is x'' before, and A x' into `product`, which is A x'' before. Returns
+/// α.
 pub(crate) fn blend<T: Scalar>(
     b: &MultiVector<T>,
     first: &Blend<'_, T>,
@@ -25,7 +27,8 @@ pub(crate) fn blend<T: Scalar>(
     alpha
 }
 
-/// α of every lane: 1 where both residuals are the same. An iterate that is not finite has no part in z.
+/// α of every right-hand side: 1 where both residuals are the same. An iterate that is not finite
+/// has no part in z.
 fn best<T: Scalar>(b: &MultiVector<T>, first: &MultiVector<T>, second: &MultiVector<T>) -> Vec<T> {
     let (mut residual, mut difference) = (b.clone(), b.clone());
     residual.set_difference(b, second);
@@ -39,7 +42,7 @@ fn best<T: Scalar>(b: &MultiVector<T>, first: &MultiVector<T>, second: &MultiVec
         _ if (0..b.dim()).all(|i| first.row(i)[l].is_finite()) => T::one(),
         _ => T::zero(),
     };
-    (0..b.lanes()).map(choose).collect()
+    (0..b.rhs_count()).map(choose).collect()
 }
 
 /// z = α x + (1 − α) z; a part with the factor 0 is left out, whatever it is.

@@ -1,9 +1,11 @@
-//! Conjugate gradients in the inner product of a [`Metric`], preconditioned: the core of all the variants.
+//! Conjugate gradients in the inner product of a [`Metric`], preconditioned: the core of all the
+//! variants.
 //!
-//! For a self-adjoint A that is positive definite in ⟨·,·⟩ and z = M⁻¹ r: q = A p, α = ⟨z, r⟩/⟨p, q⟩, x += α p, r −= α q,
-//! p = z + β p, β = ⟨z, r⟩_new/⟨z, r⟩_old. Source: Y. Saad, Iterative Methods for Sparse Linear Systems, 2nd ed., SIAM 2003,
-//! § 9.2, DOI 10.1137/1.9780898718003; M. R. Hestenes, E. Stiefel, Journal of Research of the National Bureau of Standards 49,
-//! 1952, DOI 10.6028/jres.049.044.
+//! For a self-adjoint A that is positive definite in ⟨·,·⟩ and z = M⁻¹ r: q = A p, α = ⟨z, r⟩/⟨p,
+//! q⟩, x += α p, r −= α q, p = z + β p, β = ⟨z, r⟩_new/⟨z, r⟩_old. Source: Y. Saad, Iterative
+//! Methods for Sparse Linear Systems, 2nd ed., SIAM 2003, § 9.2, DOI 10.1137/1.9780898718003; M. R.
+//! Hestenes, E. Stiefel, Journal of Research of the National Bureau of Standards 49, 1952, DOI
+//! 10.6028/jres.049.044.
 
 use super::{Metric, Precondition, minus, reals};
 use fredholm_linop::{Context, Halt, Iteration, MultiVector, Scalar, SecondKind, SolveError};
@@ -20,7 +22,7 @@ pub(crate) struct Conjugate<'a, T, M> {
     direction: MultiVector<T>,
     image: MultiVector<T>,
     product: MultiVector<T>,
-    /// ⟨z, r⟩ per lane; empty before the first step from a new start.
+    /// ⟨z, r⟩ per right-hand side; empty before the first step from a new start.
     power: Vec<f64>,
 }
 
@@ -31,7 +33,7 @@ impl<'a, T: Scalar, M: Precondition<T>> Conjugate<'a, T, M> {
         metric: Metric<T>,
         inverse: M,
     ) -> Self {
-        let zeros = MultiVector::zeros(b.dim(), b.lanes());
+        let zeros = MultiVector::zeros(b.dim(), b.rhs_count());
         Self {
             solver,
             a,
@@ -67,17 +69,17 @@ impl<'a, T: Scalar, M: Precondition<T>> Conjugate<'a, T, M> {
         Ok(())
     }
 
-    /// α per lane.
+    /// α per right-hand side.
     fn lengths(&self) -> Result<Vec<T>, Halt> {
         let curvature = self.metric.real_dots(&self.direction, &self.image);
         match curvature.iter().position(|&value| value < 0.0) {
-            Some(lane) => Err(SolveError::Indefinite { solver: self.solver, lane }.into()),
+            Some(rhs) => Err(SolveError::Indefinite { solver: self.solver, rhs }.into()),
             None => Ok(self.power.iter().zip(&curvature).map(|(&z, &p)| T::from_real(ratio(z, p))).collect()),
         }
     }
 }
 
-/// u/v, or 0 where a lane is solved exactly.
+/// u/v, or 0 where a right-hand side is solved exactly.
 fn ratio(u: f64, v: f64) -> f64 {
     if v == 0.0 { 0.0 } else { u / v }
 }

@@ -1,7 +1,8 @@
 //! ρ(J), the spectral radius of J = I − diag(A)⁻¹ A, by the power method from (1, …, 1).
 //!
-//! Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., Johns Hopkins University Press 2013, § 7.3. For
-//! J ≥ 0, as light has it, the start is near the Perron vector, and a few steps are enough.
+//! Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., Johns Hopkins University
+//! Press 2013, § 7.3. For J ≥ 0, as light has it, the start is near the Perron vector, and a few
+//! steps are enough.
 
 use fredholm_linop::{Context, Halt, MultiVector, Scalar, SecondKind};
 
@@ -10,16 +11,16 @@ const STEPS: usize = 30;
 /// Relative change of the estimate that ends it.
 const CHANGE: f64 = 1e-3;
 
-/// The estimate per lane. One application of A a step.
+/// The estimate per right-hand side. One application of A a step.
 pub(crate) fn jacobi_radius<T: Scalar>(
     a: &SecondKind<'_, T>,
     divisors: &MultiVector<T>,
     context: &mut Context<'_>,
 ) -> Result<Vec<f64>, Halt> {
-    let (dim, lanes) = (divisors.dim(), divisors.lanes());
-    let mut v = MultiVector::from_fn(dim, lanes, |_, _| T::one());
+    let (dim, rhs_count) = (divisors.dim(), divisors.rhs_count());
+    let mut v = MultiVector::from_fn(dim, rhs_count, |_, _| T::one());
     let mut image = v.clone();
-    let mut radius = vec![0.0; lanes];
+    let mut radius = vec![0.0; rhs_count];
     for _ in 0..STEPS {
         normalise(&mut v);
         context.apply(a, &v, &mut image)?;
@@ -38,8 +39,8 @@ pub(crate) fn jacobi_radius<T: Scalar>(
 fn normalise<T: Scalar>(v: &mut MultiVector<T>) {
     let scales: Vec<f64> =
         v.norms().iter().map(|&norm| if norm > 0.0 { norm.recip() } else { 0.0 }).collect();
-    let lanes = v.lanes().max(1);
-    for row in v.as_mut_slice().chunks_exact_mut(lanes) {
+    let rhs_count = v.rhs_count().max(1);
+    for row in v.as_mut_slice().chunks_exact_mut(rhs_count) {
         row.iter_mut().zip(&scales).for_each(|(value, &scale)| *value = value.scale(scale));
     }
 }

@@ -1,20 +1,22 @@
-//! The Lanczos process for A in the inner product of a [`Metric`]: A V = V T, T real, symmetric and tridiagonal.
+//! The Lanczos process for A in the inner product of a [`Metric`]: A V = V T, T real, symmetric and
+//! tridiagonal.
 //!
-//! Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., Johns Hopkins University Press 2013, § 10.1; eigenvalues
-//! of T by bisection with Sturm sequences, § 8.4.1. The extreme eigenvalues of T come near to those of A first.
+//! Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., Johns Hopkins University
+//! Press 2013, § 10.1; eigenvalues of T by bisection with Sturm sequences, § 8.4.1. The extreme
+//! eigenvalues of T come near to those of A first.
 
 use super::{Metric, minus, reals};
 use fredholm_linop::{Context, Halt, MultiVector, Scalar, SecondKind};
 
-/// T of one lane: α on the diagonal, β beside it.
+/// T of one right-hand side: α on the diagonal, β beside it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Tridiagonal {
     pub diagonal: Vec<f64>,
     pub beside: Vec<f64>,
 }
 
-/// T per lane after at most `steps` steps from a start without a pattern. With `whole`, every new vector is made orthogonal to all
-/// before it, so that no eigenvalue comes twice.
+/// T per right-hand side after at most `steps` steps from a start without a pattern. With `whole`,
+/// every new vector is made orthogonal to all before it, so that no eigenvalue comes twice.
 pub(crate) fn lanczos<T: Scalar>(
     a: &SecondKind<'_, T>,
     metric: &Metric<T>,
@@ -22,10 +24,10 @@ pub(crate) fn lanczos<T: Scalar>(
     whole: bool,
     context: &mut Context<'_>,
 ) -> Result<Vec<Tridiagonal>, Halt> {
-    let (dim, lanes) = (a.factor().dim(), a.factor().lanes());
-    let mut found = vec![Tridiagonal::default(); lanes];
+    let (dim, rhs_count) = (a.factor().dim(), a.factor().rhs_count());
+    let mut found = vec![Tridiagonal::default(); rhs_count];
     let mut basis = vec![start(metric)];
-    let mut image = MultiVector::zeros(dim, lanes);
+    let mut image = MultiVector::zeros(dim, rhs_count);
     for step in 0..steps.min(dim) {
         let v = &basis[basis.len() - 1];
         context.apply(a, v, &mut image)?;
@@ -55,7 +57,7 @@ pub(crate) fn lanczos<T: Scalar>(
 fn start<T: Scalar>(metric: &Metric<T>) -> MultiVector<T> {
     let weights = metric.weights();
     let mut state = 0x9e37_79b9_7f4a_7c15_u64;
-    let mut v = MultiVector::from_fn(weights.dim(), weights.lanes(), |i, l| {
+    let mut v = MultiVector::from_fn(weights.dim(), weights.rhs_count(), |i, l| {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         let value = 0.5 + (state >> 11) as f64 / (1_u64 << 53) as f64;
         let weight = weights.row(i)[l].re();
@@ -79,7 +81,7 @@ fn clear<T: Scalar>(metric: &Metric<T>, basis: &[MultiVector<T>], v: &mut MultiV
 fn normalise<T: Scalar>(metric: &Metric<T>, v: &mut MultiVector<T>) -> Vec<f64> {
     let lengths = metric.real_dots(v, v).into_iter().map(f64::sqrt);
     let lengths: Vec<f64> = lengths.map(|length| if length > 1e-13 { length } else { 0.0 }).collect();
-    let zeros = MultiVector::zeros(v.dim(), v.lanes());
+    let zeros = MultiVector::zeros(v.dim(), v.rhs_count());
     let inverse = lengths.iter().map(|&length| if length > 0.0 { length.recip() } else { 0.0 });
     v.scale_and_add(&reals(&inverse.collect::<Vec<_>>()), &zeros);
     lengths

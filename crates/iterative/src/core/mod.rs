@@ -42,8 +42,8 @@ macro_rules! solve_by_steps {
                 ::fredholm_linop::Scheme::<T>::description(self)
             }
 
-            fn bytes(&self, dim: usize, lanes: usize) -> u64 {
-                ::fredholm_linop::Scheme::<T>::bytes(self, dim, lanes)
+            fn bytes(&self, dim: usize, rhs_count: usize) -> u64 {
+                ::fredholm_linop::Scheme::<T>::bytes(self, dim, rhs_count)
             }
 
             fn solve(

@@ -1,12 +1,13 @@
-//! One unknown after the other, the one with the largest weighted residual first: x_i += s, r −= A e_i s.
+//! One unknown after the other, the one with the largest weighted residual first: x_i += s, r −= A
+//! e_i s.
 
 use fredholm_linop::{Context, Halt, Iteration, MultiVector, Scalar, SecondKind};
 
-/// The step s of an unknown i, per lane: of the residual r and diag(A).
+/// The step s of an unknown i, per right-hand side: of the residual r and diag(A).
 pub(crate) trait Step<T> {
     /// Before the shots of an iteration.
     fn prepare(&mut self, residual: &MultiVector<T>);
-    /// s, all lanes.
+    /// s for all right-hand sides.
     fn step(&self, i: usize, residual: &[T], diagonal: &[T]) -> Vec<T>;
 }
 
@@ -34,7 +35,7 @@ impl<'a, T: Scalar, S: Step<T>> Shooting<'a, T, S> {
         (diagonal, weights): (MultiVector<T>, Vec<f64>),
         step: S,
     ) -> Self {
-        let zeros = MultiVector::zeros(b.dim(), b.lanes());
+        let zeros = MultiVector::zeros(b.dim(), b.rhs_count());
         let scale = |norm: f64| if norm > 0.0 { norm.recip() } else { 0.0 };
         Self {
             a,

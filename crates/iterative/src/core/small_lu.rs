@@ -1,6 +1,7 @@
 //! P M = L U of a small matrix, by elimination with partial pivoting.
 //!
-//! Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., Johns Hopkins University Press 2013, § 3.4.
+//! Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., Johns Hopkins University
+//! Press 2013, § 3.4.
 
 use fredholm_linop::Scalar;
 

@@ -15,7 +15,7 @@ pub(crate) struct Stationary<'a, T, M> {
 
 impl<'a, T: Scalar, M: Precondition<T>> Stationary<'a, T, M> {
     pub fn new(a: &'a SecondKind<'a, T>, b: &'a MultiVector<T>, inverse: M) -> Self {
-        let zeros = MultiVector::zeros(b.dim(), b.lanes());
+        let zeros = MultiVector::zeros(b.dim(), b.rhs_count());
         Self { a, b, inverse, residual: zeros.clone(), step: zeros.clone(), product: zeros }
     }
 }
@@ -29,7 +29,7 @@ impl<T: Scalar, M: Precondition<T>> Iteration<T> for Stationary<'_, T, M> {
         self.residual.set_difference(self.b, &self.product);
         self.inverse.apply(&self.residual, &mut self.step, context)?;
         context.poll()?;
-        x.add_scaled(&vec![T::one(); x.lanes()], &self.step);
+        x.add_scaled(&vec![T::one(); x.rhs_count()], &self.step);
         context.apply(self.a, x, &mut self.product)
     }
 

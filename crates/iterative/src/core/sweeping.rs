@@ -16,7 +16,7 @@ pub(crate) struct Sweeping<'a, T, R> {
 
 impl<'a, T: Scalar, R: Fn(&MultiVector<T>, Visit<'_, T>)> Sweeping<'a, T, R> {
     pub fn forward(a: &'a SecondKind<'a, T>, b: &'a MultiVector<T>, relax: R) -> Self {
-        Self { a, b, sweep: Sweep::new(b.dim(), b.lanes()), relax, back: false }
+        Self { a, b, sweep: Sweep::new(b.dim(), b.rhs_count()), relax, back: false }
     }
 
     pub fn back_and_forth(a: &'a SecondKind<'a, T>, b: &'a MultiVector<T>, relax: R) -> Self {
@@ -27,7 +27,7 @@ impl<'a, T: Scalar, R: Fn(&MultiVector<T>, Visit<'_, T>)> Sweeping<'a, T, R> {
 impl<T: Scalar, R: Fn(&MultiVector<T>, Visit<'_, T>)> Iteration<T> for Sweeping<'_, T, R> {
     fn restart(&mut self, x: &mut MultiVector<T>, context: &mut Context<'_>) -> Result<(), Halt> {
         if x.is_zero() {
-            self.sweep = Sweep::new(x.dim(), x.lanes());
+            self.sweep = Sweep::new(x.dim(), x.rhs_count());
             return Ok(());
         }
         // Nothing changes: this gives the product of the starting guess.
@@ -66,7 +66,7 @@ pub(crate) fn visit_all<T: Scalar>(
     if flow.is_break() { Err(Halt::Interrupted) } else { Ok(()) }
 }
 
-/// x_i = (b_i − Σ_{j≠i} a_ij x_j)/a_ii in all lanes.
+/// x_i = (b_i − Σ_{j≠i} a_ij x_j)/a_ii in all right-hand sides.
 pub(crate) fn relax_fully<T: Scalar>(b: &MultiVector<T>, visit: Visit<'_, T>) {
     let Visit { index, off_diagonal, diagonal, x } = visit;
     let known = b.row(index).iter().zip(off_diagonal).zip(diagonal);
@@ -75,7 +75,7 @@ pub(crate) fn relax_fully<T: Scalar>(b: &MultiVector<T>, visit: Visit<'_, T>) {
     }
 }
 
-/// x_i += ω ((b_i − Σ_{j≠i} a_ij x_j)/a_ii − x_i), with an ω for each lane.
+/// x_i += ω ((b_i − Σ_{j≠i} a_ij x_j)/a_ii − x_i), with an ω for each right-hand side.
 pub(crate) fn relax_by<T: Scalar>(omega: &[f64], b: &MultiVector<T>, visit: Visit<'_, T>) {
     let Visit { index, off_diagonal, diagonal, x } = visit;
     let known = b.row(index).iter().zip(off_diagonal).zip(diagonal);

@@ -1,7 +1,9 @@
-//! y = G x from one read of the lower triangle: row i gives y_i += Σ_{j≤i} g_ij x_j, and y_j += g_ij x_i for j < i.
+//! y = G x from one read of the lower triangle: row i gives y_i += Σ_{j≤i} g_ij x_j, and y_j +=
+//! g_ij x_i for j < i.
 //!
-//! Rows are cut into fixed runs of about equal numbers of entries, each run sums into a vector of its own, and the
-//! vectors are added in the order of the runs: the number of threads changes no bit.
+//! Rows are cut into fixed runs of about equal numbers of entries, each run sums into a vector of
+//! its own, and the vectors are added in the order of the runs: the number of threads changes no
+//! bit.
 
 use super::planar::{Planar, PlanarMut};
 use super::strip::{Both, Strip};
@@ -21,40 +23,40 @@ const BLOCK: usize = 1 << 10;
 pub(super) fn apply<S: Storage>(matrix: &PackedSymmetric<S>, x: &MultiVector<f64>, y: &mut MultiVector<f64>) {
     let (planar, runs) = (Planar::copied(x), runs(matrix.dim()));
     // One piece of memory for all, which the next product is likely to be given again.
-    let mut memory = vec![0.0; runs.iter().map(|rows| rows.end * x.lanes()).sum()];
-    let mut parts = split(&mut memory, &runs, x.lanes());
+    let mut memory = vec![0.0; runs.iter().map(|rows| rows.end * x.rhs_count()).sum()];
+    let mut parts = split(&mut memory, &runs, x.rhs_count());
     let tasks = parts.par_iter_mut().zip(runs).with_max_len(1);
     tasks.for_each(|(part, rows)| {
-        Arch::new().dispatch(Whole(&mut Product::new(matrix, rows, x.lanes(), &planar, part.view_mut())));
+        Arch::new().dispatch(Whole(&mut Product::new(matrix, rows, x.rhs_count(), &planar, part.view_mut())));
     });
-    let lanes = x.lanes().max(1);
-    y.as_mut_slice().par_chunks_mut(BLOCK * lanes).enumerate().for_each(|(at, y)| {
+    let rhs_count = x.rhs_count().max(1);
+    y.as_mut_slice().par_chunks_mut(BLOCK * rhs_count).enumerate().for_each(|(at, y)| {
         let mut sums = [0.0; BLOCK];
-        for lane in 0..x.lanes() {
-            let sums = &mut sums[..y.len() / lanes];
+        for rhs in 0..x.rhs_count() {
+            let sums = &mut sums[..y.len() / rhs_count];
             sums.fill(0.0);
             for part in &parts {
-                let part = part.lane(lane).iter().skip(at * BLOCK);
+                let part = part.vector(rhs).iter().skip(at * BLOCK);
                 sums.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
             }
-            y.iter_mut().skip(lane).step_by(lanes).zip(sums).for_each(|(y, sum)| *y = *sum);
+            y.iter_mut().skip(rhs).step_by(rhs_count).zip(sums).for_each(|(y, sum)| *y = *sum);
         }
     });
 }
 
-/// For each run of rows its share of y: all lanes up to the last of its rows.
-fn split<'a>(mut memory: &'a mut [f64], runs: &[Range<usize>], lanes: usize) -> Vec<PlanarMut<'a>> {
+/// For each run of rows its share of y: all right-hand sides up to the last of its rows.
+fn split<'a>(mut memory: &'a mut [f64], runs: &[Range<usize>], rhs_count: usize) -> Vec<PlanarMut<'a>> {
     let mut parts = Vec::with_capacity(runs.len());
     for rows in runs {
-        let (part, rest) = memory.split_at_mut(rows.end * lanes);
+        let (part, rest) = memory.split_at_mut(rows.end * rhs_count);
         parts.push(PlanarMut::new(rows.end, part));
         memory = rest;
     }
     parts
 }
 
-/// Runs of rows that depend on the dimension alone. Row i ends at about i²/2 entries, so equal shares end at equal
-/// steps of i².
+/// Runs of rows that depend on the dimension alone. Row i ends at about i²/2 entries, so equal
+/// shares end at equal steps of i².
 fn runs(dim: usize) -> Vec<Range<usize>> {
     let count = (dim * (dim + 1) / 2 / LEAST).clamp(1, RUNS);
     let end = |run: usize| (dim as f64 * (run as f64 / count as f64).sqrt()).round() as usize;
@@ -65,7 +67,7 @@ fn runs(dim: usize) -> Vec<Range<usize>> {
 struct Product<'a, S> {
     matrix: &'a PackedSymmetric<S>,
     rows: Range<usize>,
-    lanes: usize,
+    rhs_count: usize,
     x: &'a Planar,
     /// y up to the last of the rows.
     y: PlanarMut<'a>,
@@ -96,22 +98,23 @@ impl<'a, S: Storage> Product<'a, S> {
     fn new(
         matrix: &'a PackedSymmetric<S>,
         rows: Range<usize>,
-        lanes: usize,
+        rhs_count: usize,
         x: &'a Planar,
         y: PlanarMut<'a>,
     ) -> Self {
-        let zeros = vec![0.0; ROWS * lanes];
-        Self { matrix, rows, lanes, x, y, sums: zeros.clone(), factors: zeros }
+        let zeros = vec![0.0; ROWS * rhs_count];
+        Self { matrix, rows, rhs_count, x, y, sums: zeros.clone(), factors: zeros }
     }
 
-    /// Rows first … first + R − 1: the columns before `first` together, then those of each row up to its diagonal.
+    /// Rows first … first + R − 1: the columns before `first` together, then those of each row up
+    /// to its diagonal.
     #[inline(always)]
     fn add_rows<V: Simd, const R: usize>(&mut self, simd: V, first: usize) {
         let rows = self.matrix.packed_rows::<R>(first);
-        let count = R * self.lanes;
+        let count = R * self.rhs_count;
         self.sums.fill(0.0);
         for r in 0..R {
-            let factors = &mut self.factors[r * self.lanes..(r + 1) * self.lanes];
+            let factors = &mut self.factors[r * self.rhs_count..(r + 1) * self.rhs_count];
             factors.iter_mut().zip(self.x.row(first + r)).for_each(|(factor, x)| *factor = x);
         }
         for from in (0..first).step_by(TILE) {
@@ -125,12 +128,13 @@ impl<'a, S: Storage> Product<'a, S> {
         (0..R).for_each(|r| self.add_corner(&rows[r][first..], first, r));
     }
 
-    /// Row `first` + r from column `first` to the diagonal, and what the columns before have summed.
+    /// Row `first` + r from column `first` to the diagonal, and what the columns before have
+    /// summed.
     fn add_corner(&mut self, row: &[S], first: usize, r: usize) {
-        let own = r * self.lanes..(r + 1) * self.lanes;
+        let own = r * self.rhs_count..(r + 1) * self.rhs_count;
         for (k, entry) in row[..r].iter().enumerate() {
             let entry = entry.to_f64();
-            let above = &self.factors[k * self.lanes..(k + 1) * self.lanes];
+            let above = &self.factors[k * self.rhs_count..(k + 1) * self.rhs_count];
             self.sums[own.clone()].iter_mut().zip(above).for_each(|(sum, x)| *sum += entry * x);
             let factors = self.factors[own.clone()].iter();
             self.y.add_row(first + k, factors.map(|x| entry * x));

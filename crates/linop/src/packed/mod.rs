@@ -1,7 +1,9 @@
-//! A real symmetric matrix whose lower triangle is stored once: g_ij = g_ji at i(i+1)/2 + j for j ≤ i.
+//! A real symmetric matrix whose lower triangle is stored once: g_ij = g_ji at i(i+1)/2 + j for j ≤
+//! i.
 //!
-//! This holds G_ij = A_i F_ij (m²) of light: row i of the triangle has i + 1 entries, n(n+1)/2 in all. Storage may be
-//! f32, which halves the memory at 6e-8 relative error an entry; arithmetic is always f64.
+//! This holds G_ij = A_i F_ij (m²) of light: row i of the triangle has i + 1 entries, n(n+1)/2 in
+//! all. Storage may be f32, which halves the memory at 6e-8 relative error an entry; arithmetic is
+//! always f64.
 
 #![allow(
     clippy::inline_always,
@@ -21,7 +23,8 @@ use std::ops::ControlFlow;
 const ROWS: usize = 4;
 /// Fewest entries of a column worth a thread.
 const LEAST: usize = 1 << 11;
-/// Columns taken at a time: four rows of them stay in the innermost cache for both directions and all lanes.
+/// Columns taken at a time: four rows of them stay in the innermost cache for both directions and
+/// all right-hand sides.
 const TILE: usize = 1 << 9;
 
 mod sealed {
@@ -58,7 +61,8 @@ impl Storage for f32 {
     }
 }
 
-/// A symmetric matrix stored as its packed lower triangle. It serves any number of lanes.
+/// A symmetric matrix stored as its packed lower triangle. It serves any number of right-hand
+/// sides.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PackedSymmetric<S> {
     dim: usize,
@@ -148,29 +152,30 @@ impl<S: Storage> LinearOperator<f64> for PackedSymmetric<S> {
         self.packed.len() as u64
     }
 
-    fn row(&self, i: usize, _lane: usize, out: &mut [f64]) {
+    fn row(&self, i: usize, _rhs: usize, out: &mut [f64]) {
         let (left, right) = out.split_at_mut(i + 1);
         left.iter_mut().zip(self.packed_row(i)).for_each(|(out, entry)| *out = entry.to_f64());
-        // Below the diagonal every entry lies in another page of memory: several threads wait for several at once.
+        // Below the diagonal every entry lies in another page of memory: several threads wait for
+        // several at once.
         let below = right.par_iter_mut().with_min_len(LEAST).enumerate();
         below.for_each(|(k, out)| *out = self.packed_row(i + 1 + k)[i].to_f64());
     }
 
-    fn lower_row(&self, i: usize, _lane: usize, out: &mut [f64]) {
+    fn lower_row(&self, i: usize, _rhs: usize, out: &mut [f64]) {
         out.iter_mut().zip(self.packed_row(i)).for_each(|(out, entry)| *out = entry.to_f64());
     }
 
-    fn column(&self, j: usize, lane: usize, out: &mut [f64]) {
-        self.row(j, lane, out);
+    fn column(&self, j: usize, rhs: usize, out: &mut [f64]) {
+        self.row(j, rhs, out);
     }
 
-    fn diagonal(&self, _lane: usize, out: &mut [f64]) {
+    fn diagonal(&self, _rhs: usize, out: &mut [f64]) {
         out.iter_mut().enumerate().for_each(|(i, out)| *out = self.get(i, i));
     }
 
-    fn dense(&self, lane: usize) -> Result<Dense<f64>, LinopError> {
+    fn dense(&self, rhs: usize) -> Result<Dense<f64>, LinopError> {
         let mut dense = Dense::zeros(self.dim)?;
-        (0..self.dim).for_each(|i| self.row(i, lane, dense.row_slice_mut(i)));
+        (0..self.dim).for_each(|i| self.row(i, rhs, dense.row_slice_mut(i)));
         Ok(dense)
     }
 

@@ -1,11 +1,12 @@
-//! A few equally long rows of a real matrix against all lanes of a vector: s_rl += Σ_j g_rj x_jl and
-//! u_jl += Σ_r g_rj f_rl.
+//! A few equally long rows of a real matrix against all right-hand sides of a vector: s_rl += Σ_j
+//! g_rj x_jl and u_jl += Σ_r g_rj f_rl.
 //!
-//! Taking several rows at a time divides the traffic of x and u, which do not fit the innermost cache, by their
-//! number. At most [`LANES`] lanes and [`PAIR`] rows are taken at a time by the innermost loops, so that everything
-//! that is summed stays in registers, the widest ones of the machine; a strip is short enough for the innermost cache to
-//! serve the repetitions. Every sum runs in [`WIDTH`] parts that are added in a fixed order, by fused operations that a machine
-//! without them emulates: the bits depend on the code alone, not on the machine.
+//! Taking several rows at a time divides the traffic of x and u, which do not fit the innermost
+//! cache, by their number. At most [`RHS_AT_ONCE`] right-hand sides and [`PAIR`] rows are taken at
+//! a time by the innermost loops, so that everything that is summed stays in registers, the widest
+//! ones of the machine; a strip is short enough for the innermost cache to serve the repetitions.
+//! Every sum runs in [`WIDTH`] parts that are added in a fixed order, by fused operations that a
+//! machine without them emulates: the bits depend on the code alone, not on the machine.
 
 use super::planar::{Planar, PlanarMut};
 use super::{ROWS, Storage};
@@ -13,12 +14,12 @@ use pulp::{Simd, WithSimd};
 
 /// Parts of a sum: no register holds more numbers.
 const WIDTH: usize = 8;
-/// Most lanes at a time.
-const LANES: usize = 3;
-/// Rows at a time, where there are several lanes.
+/// Most right-hand sides at a time.
+const RHS_AT_ONCE: usize = 3;
+/// Rows at a time, where there are several right-hand sides.
 const PAIR: usize = 2;
-/// Pieces that a row is read ahead of its products, where there are several lanes: products that wait for an entry fill up
-/// the machine, and it asks for the next entries too late.
+/// Pieces that a row is read ahead of its products, where there are several right-hand sides:
+/// products that wait for an entry fill up the machine, and it asks for the next entries too late.
 const AHEAD: usize = 8;
 
 /// Up to [`ROWS`] rows whose first entry stands in column `from`.
@@ -28,21 +29,22 @@ pub(super) struct Strip<'a, S> {
     pub from: usize,
 }
 
-/// s_rl += Σ_j g_rj x_jl, s_rl at r · lanes + l.
+/// s_rl += Σ_j g_rj x_jl, s_rl at r · count + l.
 pub(super) struct Dot<'a, S> {
     pub strip: Strip<'a, S>,
     pub x: &'a Planar,
     pub sums: &'a mut [f64],
 }
 
-/// u_jl += Σ_r g_rj f_rl, f_rl at r · lanes + l.
+/// u_jl += Σ_r g_rj f_rl, f_rl at r · count + l.
 pub(super) struct Add<'a, S> {
     pub strip: Strip<'a, S>,
     pub factors: &'a [f64],
     pub u: PlanarMut<'a>,
 }
 
-/// Both at once, where the factors are known before: while one entry is used for both, the next ones come from memory.
+/// Both at once, where the factors are known before: while one entry is used for both, the next
+/// ones come from memory.
 pub(super) struct Both<'a, S> {
     pub strip: Strip<'a, S>,
     pub x: &'a Planar,
@@ -53,12 +55,12 @@ pub(super) struct Both<'a, S> {
     pub columns: usize,
 }
 
-/// Some rows, and the lanes from one on.
+/// Some rows, and the right-hand sides from one on.
 #[derive(Clone, Copy)]
 struct Place {
     row: usize,
-    lane: usize,
-    lanes: usize,
+    rhs: usize,
+    rhs_count: usize,
 }
 
 impl<S: Storage> WithSimd for Dot<'_, S> {
@@ -76,17 +78,17 @@ impl<S: Storage> WithSimd for Dot<'_, S> {
 }
 
 impl<S: Storage> Dot<'_, S> {
-    /// All lanes, with K registers to a sum.
+    /// All right-hand sides, with K registers to a sum.
     #[inline(always)]
     fn all<V: Simd, const K: usize>(self, simd: V) {
         let Self { strip, x, sums } = self;
-        let lanes = sums.len() / strip.rows.len().max(1);
-        for lane in (0..lanes).step_by(LANES) {
-            let at = Place { row: 0, lane, lanes };
-            match lanes - lane {
+        let rhs_count = sums.len() / strip.rows.len().max(1);
+        for rhs in (0..rhs_count).step_by(RHS_AT_ONCE) {
+            let at = Place { row: 0, rhs, rhs_count };
+            match rhs_count - rhs {
                 1 => strip.dots::<V, ROWS, 1, K>(simd, at, x, sums),
                 2 => strip.dots::<V, PAIR, 2, K>(simd, at, x, sums),
-                _ => strip.dots::<V, PAIR, LANES, K>(simd, at, x, sums),
+                _ => strip.dots::<V, PAIR, RHS_AT_ONCE, K>(simd, at, x, sums),
             }
         }
     }
@@ -98,13 +100,13 @@ impl<S: Storage> WithSimd for Add<'_, S> {
     #[inline(always)]
     fn with_simd<V: Simd>(self, simd: V) {
         let Self { strip, factors, mut u } = self;
-        let lanes = factors.len() / strip.rows.len().max(1);
-        for lane in (0..lanes).step_by(LANES) {
-            let at = Place { row: 0, lane, lanes };
-            match lanes - lane {
+        let rhs_count = factors.len() / strip.rows.len().max(1);
+        for rhs in (0..rhs_count).step_by(RHS_AT_ONCE) {
+            let at = Place { row: 0, rhs, rhs_count };
+            match rhs_count - rhs {
                 1 => strip.adds::<V, ROWS, 1>(simd, at, factors, &mut u),
                 2 => strip.adds::<V, PAIR, 2>(simd, at, factors, &mut u),
-                _ => strip.adds::<V, PAIR, LANES>(simd, at, factors, &mut u),
+                _ => strip.adds::<V, PAIR, RHS_AT_ONCE>(simd, at, factors, &mut u),
             }
         }
     }
@@ -125,26 +127,26 @@ impl<S: Storage> WithSimd for Both<'_, S> {
 }
 
 impl<S: Storage> Both<'_, S> {
-    /// All lanes, with K registers to a sum.
+    /// All right-hand sides, with K registers to a sum.
     #[inline(always)]
     fn all<V: Simd, const K: usize>(mut self, simd: V) {
-        let lanes = self.sums.len() / self.strip.rows.len().max(1);
-        for lane in (0..lanes).step_by(LANES) {
-            let at = Place { row: 0, lane, lanes };
-            match lanes - lane {
-                1 => self.lanes::<V, ROWS, 1, K>(simd, at),
-                2 if K == 1 => self.lanes::<V, ROWS, 2, K>(simd, at),
-                2 => self.lanes::<V, PAIR, 2, K>(simd, at),
-                _ if K == 1 => self.lanes::<V, ROWS, LANES, K>(simd, at),
+        let rhs_count = self.sums.len() / self.strip.rows.len().max(1);
+        for rhs in (0..rhs_count).step_by(RHS_AT_ONCE) {
+            let at = Place { row: 0, rhs, rhs_count };
+            match rhs_count - rhs {
+                1 => self.vectors::<V, ROWS, 1, K>(simd, at),
+                2 if K == 1 => self.vectors::<V, ROWS, 2, K>(simd, at),
+                2 => self.vectors::<V, PAIR, 2, K>(simd, at),
+                _ if K == 1 => self.vectors::<V, ROWS, RHS_AT_ONCE, K>(simd, at),
                 // Machines of narrow registers have few of them, too: no more sums than fit.
-                _ => self.lanes::<V, 1, LANES, K>(simd, at),
+                _ => self.vectors::<V, 1, RHS_AT_ONCE, K>(simd, at),
             }
         }
     }
 
-    /// L lanes: R rows at a time, then those that are left one by one.
+    /// L right-hand sides: R rows at a time, then those that are left one by one.
     #[inline(always)]
-    fn lanes<V: Simd, const R: usize, const L: usize, const K: usize>(&mut self, simd: V, at: Place) {
+    fn vectors<V: Simd, const R: usize, const L: usize, const K: usize>(&mut self, simd: V, at: Place) {
         let (groups, rest) = self.strip.rows.as_chunks::<R>();
         for (group, rows) in groups.iter().enumerate() {
             self.rows::<V, R, L, K>(simd, *rows, Place { row: group * R, ..at });
@@ -162,8 +164,8 @@ impl<S: Storage> Both<'_, S> {
         at: Place,
     ) {
         let columns = self.strip.from..self.strip.from + self.columns;
-        let xs = self.x.lanes::<L>(at.lane).map(|x| &x[columns.clone()]);
-        let us = self.u.lanes_mut::<L>(at.lane).map(|u| &mut u[columns.clone()]);
+        let xs = self.x.vectors::<L>(at.rhs).map(|x| &x[columns.clone()]);
+        let us = self.u.vectors_mut::<L>(at.rhs).map(|u| &mut u[columns.clone()]);
         both::<V, S, R, L, K>(simd, rows, xs, us, (self.factors, self.sums), at);
     }
 }
@@ -173,7 +175,7 @@ impl<S: Storage> Strip<'_, S> {
         self.rows.first().map_or(0, |row| row.len())
     }
 
-    /// L lanes: R rows at a time, then those that are left one by one.
+    /// L right-hand sides: R rows at a time, then those that are left one by one.
     #[inline(always)]
     fn dots<V: Simd, const R: usize, const L: usize, const K: usize>(
         &self,
@@ -182,7 +184,7 @@ impl<S: Storage> Strip<'_, S> {
         x: &Planar,
         sums: &mut [f64],
     ) {
-        let xs = x.lanes::<L>(at.lane).map(|x| &x[self.from..self.from + self.len()]);
+        let xs = x.vectors::<L>(at.rhs).map(|x| &x[self.from..self.from + self.len()]);
         let (groups, rest) = self.rows.as_chunks::<R>();
         for (group, rows) in groups.iter().enumerate() {
             dot::<V, S, R, L, K>(simd, *rows, xs, Place { row: group * R, ..at }, sums);
@@ -192,7 +194,7 @@ impl<S: Storage> Strip<'_, S> {
         }
     }
 
-    /// L lanes: R rows at a time, then those that are left one by one.
+    /// L right-hand sides: R rows at a time, then those that are left one by one.
     #[inline(always)]
     fn adds<V: Simd, const R: usize, const L: usize>(
         &self,
@@ -201,7 +203,7 @@ impl<S: Storage> Strip<'_, S> {
         factors: &[f64],
         u: &mut PlanarMut<'_>,
     ) {
-        let mut us = u.lanes_mut::<L>(at.lane).map(|u| &mut u[self.from..self.from + self.rows[0].len()]);
+        let mut us = u.vectors_mut::<L>(at.rhs).map(|u| &mut u[self.from..self.from + self.rows[0].len()]);
         let (groups, rest) = self.rows.as_chunks::<R>();
         for (group, rows) in groups.iter().enumerate() {
             add::<V, S, R, L>(simd, *rows, factors, Place { row: group * R, ..at }, &mut us);
@@ -245,7 +247,8 @@ fn dot<V: Simd, S: Storage, const R: usize, const L: usize, const K: usize>(
     finish(&mut numbers(simd, &parts), rows, xs, at, sums);
 }
 
-/// All parts as numbers: in a small loop of its own, which is unrolled, so that the parts can stay in registers.
+/// All parts as numbers: in a small loop of its own, which is unrolled, so that the parts can stay
+/// in registers.
 #[inline(always)]
 fn numbers<V: Simd, const R: usize, const L: usize, const K: usize>(
     simd: V,
@@ -275,7 +278,7 @@ fn finish<S: Storage, const R: usize, const L: usize>(
             for ((part, entry), x) in part.iter_mut().zip(&row[whole..]).zip(&x[whole..]) {
                 *part += entry.to_f64() * x;
             }
-            sums[(at.row + r) * at.lanes + at.lane + l] += folded(part);
+            sums[(at.row + r) * at.rhs_count + at.rhs + l] += folded(part);
         }
     }
 }
@@ -310,7 +313,7 @@ fn add<V: Simd, S: Storage, const R: usize, const L: usize>(
     at: Place,
     us: &mut [&mut [f64]; L],
 ) {
-    let factor = |r: usize, l: usize| factors[(at.row + r) * at.lanes + at.lane + l];
+    let factor = |r: usize, l: usize| factors[(at.row + r) * at.rhs_count + at.rhs + l];
     let blocks = rows[0].len() / WIDTH;
     let (whole, count) = (blocks * WIDTH, blocks * registers::<V>());
     let pieces = rows.map(|row| &row.as_chunks::<WIDTH>().0[..blocks]);
@@ -347,7 +350,7 @@ fn both<V: Simd, S: Storage, const R: usize, const L: usize, const K: usize>(
     (factors, sums): (&[f64], &mut [f64]),
     at: Place,
 ) {
-    let factor = |r: usize, l: usize| factors[(at.row + r) * at.lanes + at.lane + l];
+    let factor = |r: usize, l: usize| factors[(at.row + r) * at.rhs_count + at.rhs + l];
     let blocks = xs[0].len() / WIDTH;
     for (l, u) in us.iter_mut().enumerate() {
         for (k, u) in u.iter_mut().enumerate().skip(blocks * WIDTH) {
@@ -397,27 +400,29 @@ mod tests {
         (0..count).map(|at| (at * at % period) as f64 - 3.0).collect()
     }
 
-    fn check(count: usize, n: usize, lanes: usize) {
+    fn check(count: usize, n: usize, rhs_count: usize) {
         let (from, dim) = (2, n + 5);
         let entries = integers(count * n, 11);
-        let x = MultiVector::from_vec(dim, lanes, integers(dim * lanes, 7)).unwrap();
-        let factors = integers(count * lanes, 5);
+        let x = MultiVector::from_vec(dim, rhs_count, integers(dim * rhs_count, 7)).unwrap();
+        let factors = integers(count * rhs_count, 5);
         let rows: Vec<&[f64]> = (0..count).map(|r| &entries[r * n..(r + 1) * n]).collect();
         let strip = Strip { rows: &rows, from };
         let dot = |r: usize, l: usize| (0..n).map(|j| rows[r][j] * x.row(from + j)[l]).sum::<f64>();
         let inside = |i: usize| i >= from && i < from + n;
         let add = |i: usize, l: usize| {
-            let term = |r: usize| if inside(i) { rows[r][i - from] * factors[r * lanes + l] } else { 0.0 };
+            let term =
+                |r: usize| if inside(i) { rows[r][i - from] * factors[r * rhs_count + l] } else { 0.0 };
             x.row(i)[l] + (0..count).map(term).sum::<f64>()
         };
-        let expected: Vec<f64> = (0..count * lanes).map(|at| 9.0 + dot(at / lanes, at % lanes)).collect();
-        let added: Vec<f64> = (0..dim * lanes).map(|at| add(at / lanes, at % lanes)).collect();
+        let expected: Vec<f64> =
+            (0..count * rhs_count).map(|at| 9.0 + dot(at / rhs_count, at % rhs_count)).collect();
+        let added: Vec<f64> = (0..dim * rhs_count).map(|at| add(at / rhs_count, at % rhs_count)).collect();
 
         for arch in [Arch::new(), Arch::Scalar] {
-            let (mut sums, mut u) = (vec![9.0; count * lanes], Planar::copied(&x));
+            let (mut sums, mut u) = (vec![9.0; count * rhs_count], Planar::copied(&x));
             arch.dispatch(Dot { strip, x: &Planar::copied(&x), sums: &mut sums });
             arch.dispatch(Add { strip, factors: &factors, u: u.view_mut() });
-            let (mut sums_too, mut u_too) = (vec![9.0; count * lanes], Planar::copied(&x));
+            let (mut sums_too, mut u_too) = (vec![9.0; count * rhs_count], Planar::copied(&x));
             let both = Both {
                 strip,
                 x: &Planar::copied(&x),
@@ -432,33 +437,33 @@ mod tests {
             assert_eq!(
                 (&sums_too, &rows_of(&u_too)),
                 (&expected, &added),
-                "{count} × {n}, {lanes} lanes at once"
+                "{count} × {n}, {rhs_count} right-hand sides at once"
             );
             let u: Vec<f64> = (0..dim).flat_map(|i| u.row(i).collect::<Vec<_>>()).collect();
-            assert_eq!((&sums, &u), (&expected, &added), "{count} × {n}, {lanes} lanes");
+            assert_eq!((&sums, &u), (&expected, &added), "{count} × {n}, {rhs_count} right-hand sides");
         }
     }
 
     #[test]
-    fn every_lane_count_and_remainder_gives_the_plain_sums() {
-        for lanes in 0..9 {
+    fn every_right_hand_side_count_and_remainder_gives_the_plain_sums() {
+        for rhs_count in 0..9 {
             for n in 0..20 {
-                (1..=ROWS).for_each(|rows| check(rows, n, lanes));
+                (1..=ROWS).for_each(|rows| check(rows, n, rhs_count));
             }
         }
     }
 
     #[test]
     fn the_width_of_the_registers_changes_no_bit() {
-        let (n, lanes) = (77, 4);
+        let (n, rhs_count) = (77, 4);
         let values = |seed: usize, count: usize| -> Vec<f64> {
             (0..count).map(|at| ((at * seed + 1) as f64 * 0.618_033_988_749_895).fract()).collect()
         };
         let entries = values(3, 4 * n);
         let rows: Vec<&[f64]> = entries.chunks_exact(n).collect();
-        let x = Planar::copied(&MultiVector::from_vec(n, lanes, values(7, n * lanes)).unwrap());
+        let x = Planar::copied(&MultiVector::from_vec(n, rhs_count, values(7, n * rhs_count)).unwrap());
         let on = |arch: Arch| {
-            let mut sums = vec![0.0; 4 * lanes];
+            let mut sums = vec![0.0; 4 * rhs_count];
             arch.dispatch(Dot { strip: Strip { rows: &rows, from: 0 }, x: &x, sums: &mut sums });
             sums.iter().map(|sum| sum.to_bits()).collect::<Vec<u64>>()
         };

@@ -1,8 +1,10 @@
-//! The forward sweep over a packed lower triangle. Row i, g_i0 … g_i(i−1), gives L_i, and being column i above the
-//! diagonal, it is read again from cache for U once x_i is set: every entry comes from memory once a sweep.
+//! The forward sweep over a packed lower triangle. Row i, g_i0 … g_i(i−1), gives L_i, and being
+//! column i above the diagonal, it is read again from cache for U once x_i is set: every entry
+//! comes from memory once a sweep.
 //!
-//! A few rows at a time share the sums over the columns before the first of them; those between them follow as
-//! their unknowns are relaxed. The backward sweep has its L from the forward one and reads each entry once, for U.
+//! A few rows at a time share the sums over the columns before the first of them; those between
+//! them follow as their unknowns are relaxed. The backward sweep has its L from the forward one and
+//! reads each entry once, for U.
 
 use super::planar::Planar;
 use super::strip::{Add, Dot, Strip};
@@ -37,7 +39,7 @@ pub(super) fn sweep_back<S: Storage>(
     sweep: &mut Sweep<f64>,
     relax: &mut Relax<'_, f64>,
 ) -> ControlFlow<()> {
-    let upper = Planar::zeros(x.dim(), x.lanes());
+    let upper = Planar::zeros(x.dim(), x.rhs_count());
     let mut pass = Pass::new(x, sweep, upper);
     let whole = matrix.dim() / ROWS * ROWS;
     for first in (whole..matrix.dim()).rev() {
@@ -50,9 +52,9 @@ pub(super) fn sweep_back<S: Storage>(
     ControlFlow::Continue(())
 }
 
-/// What a sweep works on, and what a visit shows, per lane.
+/// What a sweep works on, and what a visit shows, per right-hand side.
 struct Pass<'a> {
-    lanes: usize,
+    rhs_count: usize,
     x: &'a mut MultiVector<f64>,
     sweep: &'a mut Sweep<f64>,
     /// x and U as the inner loops read them.
@@ -68,10 +70,10 @@ struct Pass<'a> {
 
 impl<'a> Pass<'a> {
     fn new(x: &'a mut MultiVector<f64>, sweep: &'a mut Sweep<f64>, upper: Planar) -> Self {
-        let lanes = x.lanes();
-        let (row, rows) = (vec![0.0; lanes], vec![0.0; ROWS * lanes]);
+        let rhs_count = x.rhs_count();
+        let (row, rows) = (vec![0.0; rhs_count], vec![0.0; ROWS * rhs_count]);
         Self {
-            lanes,
+            rhs_count,
             known: Planar::copied(x),
             x,
             sweep,
@@ -115,9 +117,9 @@ impl<'a> Pass<'a> {
         r: usize,
         relax: &mut Relax<'_, f64>,
     ) -> ControlFlow<()> {
-        let (index, own) = (first + r, r * self.lanes..(r + 1) * self.lanes);
+        let (index, own) = (first + r, r * self.rhs_count..(r + 1) * self.rhs_count);
         for (k, entry) in row[..r].iter().enumerate() {
-            let above = &self.factors[k * self.lanes..(k + 1) * self.lanes];
+            let above = &self.factors[k * self.rhs_count..(k + 1) * self.rhs_count];
             let lower = self.lower[own.clone()].iter_mut();
             lower.zip(above).for_each(|(sum, x)| *sum += entry.to_f64() * x);
         }
@@ -133,7 +135,8 @@ impl<'a> Pass<'a> {
         ControlFlow::Continue(())
     }
 
-    /// Shows an unknown, takes its new value and adds it to U of those before it among the rows taken together.
+    /// Shows an unknown, takes its new value and adds it to U of those before it among the rows
+    /// taken together.
     fn relax<S: Storage>(
         &mut self,
         row: &[S],
@@ -146,14 +149,15 @@ impl<'a> Pass<'a> {
         let (off_diagonal, diagonal, x) = (&self.off_diagonal, &self.diagonal, self.x.row_mut(index));
         relax(Visit { index, off_diagonal, diagonal, x: &mut *x })?;
         self.known.set_row(index, x);
-        self.factors[r * self.lanes..(r + 1) * self.lanes].copy_from_slice(x);
+        self.factors[r * self.rhs_count..(r + 1) * self.rhs_count].copy_from_slice(x);
         for (k, entry) in row[..r].iter().enumerate() {
             self.upper.view_mut().add_row(first + k, x.iter().map(|x| entry.to_f64() * x));
         }
         ControlFlow::Continue(())
     }
 
-    /// Visits the unknowns of R rows from the last to the first, and adds to the columns before `first` together.
+    /// Visits the unknowns of R rows from the last to the first, and adds to the columns before
+    /// `first` together.
     fn visit_rows_back<S: Storage, const R: usize>(
         &mut self,
         rows: [&[S]; R],
@@ -186,7 +190,7 @@ impl<S: Storage, const R: usize> WithSimd for Gather<'_, '_, '_, S, R> {
         pass.lower.fill(0.0);
         for from in (0..first).step_by(TILE) {
             let tile = rows.map(|row| &row[from..(from + TILE).min(first)]);
-            let (strip, sums) = (Strip { rows: &tile, from }, &mut pass.lower[..R * pass.lanes]);
+            let (strip, sums) = (Strip { rows: &tile, from }, &mut pass.lower[..R * pass.rhs_count]);
             Dot { strip, x: &pass.known, sums }.with_simd(simd);
         }
     }
@@ -207,7 +211,7 @@ impl<S: Storage, const R: usize> WithSimd for Scatter<'_, '_, '_, S, R> {
         let Self { pass, rows, first } = self;
         for from in (0..first).step_by(TILE) {
             let tile = rows.map(|row| &row[from..(from + TILE).min(first)]);
-            let (strip, factors) = (Strip { rows: &tile, from }, &pass.factors[..R * pass.lanes]);
+            let (strip, factors) = (Strip { rows: &tile, from }, &pass.factors[..R * pass.rhs_count]);
             Add { strip, factors, u: pass.upper.view_mut() }.with_simd(simd);
         }
     }

@@ -39,8 +39,8 @@ impl Draw for Complex64 {
     }
 }
 
-pub fn draw_vector<T: Draw>(dim: usize, lanes: usize, random: &mut Random) -> MultiVector<T> {
-    MultiVector::from_fn(dim, lanes, |_, _| T::draw(random))
+pub fn draw_vector<T: Draw>(dim: usize, rhs_count: usize, random: &mut Random) -> MultiVector<T> {
+    MultiVector::from_fn(dim, rhs_count, |_, _| T::draw(random))
 }
 
 pub fn draw_full<T: Draw>(dim: usize, random: &mut Random) -> Full<T> {
@@ -66,10 +66,10 @@ pub fn packed<S: Storage>(full: &Full<f64>) -> PackedSymmetric<S> {
     PackedSymmetric::new(full.len(), rows.collect()).unwrap()
 }
 
-/// Σ_j k_ij x_jl of lane l with the matrix of that lane.
+/// Σ_j k_ij x_jl of right-hand side l with the matrix of that right-hand side.
 pub fn product<T: Scalar>(matrices: &[Full<T>], x: &MultiVector<T>) -> MultiVector<T> {
     let matrix = |l: usize| &matrices[l % matrices.len()];
-    MultiVector::from_fn(x.dim(), x.lanes(), |i, l| {
+    MultiVector::from_fn(x.dim(), x.rhs_count(), |i, l| {
         (0..x.dim()).fold(T::zero(), |sum, j| sum + matrix(l)[i][j] * x.row(j)[l])
     })
 }
@@ -82,7 +82,8 @@ pub fn assert_close<T: Scalar>(found: &[T], expected: &[T], tolerance: f64, what
     }
 }
 
-/// An operator that knows no more than it must: one matrix for all lanes, or one per lane.
+/// An operator that knows no more than it must: one matrix for all right-hand sides, or one per
+/// right-hand side.
 pub struct Bare<T> {
     pub matrices: Vec<Full<T>>,
     pub symmetry: Symmetry,
@@ -97,7 +98,7 @@ impl<T: Scalar> LinearOperator<T> for Bare<T> {
         *y = product(&self.matrices, x);
     }
 
-    fn lanes(&self) -> Option<usize> {
+    fn rhs_count(&self) -> Option<usize> {
         (self.matrices.len() > 1).then_some(self.matrices.len())
     }
 
@@ -106,7 +107,8 @@ impl<T: Scalar> LinearOperator<T> for Bare<T> {
     }
 }
 
-/// An operator with its matrices by plain loops, one for all lanes or one per lane.
+/// An operator with its matrices by plain loops, one for all right-hand sides or one per right-hand
+/// side.
 pub struct Case<T> {
     pub name: String,
     pub operator: Box<dyn LinearOperator<T>>,
@@ -133,8 +135,8 @@ pub fn cases<T: Draw>(dim: usize, random: &mut Random) -> Vec<Case<T>> {
         Case::bare("bare", vec![full], Symmetry::General),
         Case::bare("bare symmetric", vec![symmetric.clone()], Symmetry::Symmetric),
         Case::bare("bare hermitian", vec![hermitian], Symmetry::Hermitian),
-        Case::bare("a matrix per lane", vec![draw(), draw(), draw()], Symmetry::General),
-        Case::bare("a symmetric matrix per lane", vec![symmetric, other], Symmetry::Symmetric),
+        Case::bare("a matrix per right-hand side", vec![draw(), draw(), draw()], Symmetry::General),
+        Case::bare("a symmetric matrix per right-hand side", vec![symmetric, other], Symmetry::Symmetric),
     ]
 }
 
@@ -153,12 +155,12 @@ pub fn real_cases(dim: usize, random: &mut Random) -> Vec<Case<f64>> {
     ]
 }
 
-/// I − D K by plain loops, a matrix per lane.
+/// I − D K by plain loops, a matrix per right-hand side.
 pub fn second_kind<T: Scalar>(matrices: &[Full<T>], factor: &MultiVector<T>) -> Vec<Full<T>> {
     let unit = |i: usize, j: usize| if i == j { T::one() } else { T::zero() };
     let row = |l: usize, i: usize| {
         let k = &matrices[l % matrices.len()][i];
         (0..factor.dim()).map(|j| unit(i, j) - factor.row(i)[l] * k[j]).collect()
     };
-    (0..factor.lanes()).map(|l| (0..factor.dim()).map(|i| row(l, i)).collect()).collect()
+    (0..factor.rhs_count()).map(|l| (0..factor.dim()).map(|i| row(l, i)).collect()).collect()
 }

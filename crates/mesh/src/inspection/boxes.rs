@@ -1,4 +1,5 @@
-//! Which boxes meet: a tree of boxes, halved at the middle box along the longest side of the centres.
+//! Which boxes meet: a tree of boxes, halved at the middle box along the longest side of the
+//! centres.
 
 use crate::{Bounds, Vec3};
 

@@ -4,8 +4,9 @@ use super::boxes::Boxes;
 use super::overlap::{area, common, cross};
 use crate::{Bounds, Patch, Vec3};
 
-/// Distance, relative to the longest side of the box around all, up to which pieces lie in one plane. Files mostly hold
-/// coordinates of six or seven digits: what was meant to be in one plane is so within their rounding only.
+/// Distance, relative to the longest side of the box around all, up to which pieces lie in one
+/// plane. Files mostly hold coordinates of six or seven digits: what was meant to be in one plane
+/// is so within their rounding only.
 const TOGETHER: f64 = 1e-7;
 /// Roundings of the largest coordinate that it is no less than.
 const ROUNDINGS: f64 = 16.0;

@@ -1,4 +1,5 @@
-//! Light would be counted twice where elements lie on each other and are lit on the same side: each place is left to one of them.
+//! Light would be counted twice where elements lie on each other and are lit on the same side: each
+//! place is left to one of them.
 
 use super::boxes::Boxes;
 use super::contacts::{around, tolerance};
@@ -7,10 +8,11 @@ use crate::mesh::Cut;
 use crate::{Bounds, Mesh, MeshBuilder, MeshError, Patch, Vec3};
 
 impl Mesh {
-    /// The mesh without what other elements cover that are lit on the same side. A lamp (a surface for which `emits` holds) covers what
-    /// does not emit; else the smaller face covers the larger one, and the one with the smaller number what is as large. Faces of which nothing
-    /// is left are gone. What is covered does not block the view either: the planes of both are the same up to rounding only, and
-    /// it could hide what covers it. The mesh must not have been split.
+    /// The mesh without what other elements cover that are lit on the same side. A lamp (a surface
+    /// for which `emits` holds) covers what does not emit; else the smaller face covers the larger
+    /// one, and the one with the smaller number what is as large. Faces of which nothing is left
+    /// are gone. What is covered does not block the view either: the planes of both are the same up
+    /// to rounding only, and it could hide what covers it. The mesh must not have been split.
     ///
     /// # Errors
     /// [`MeshError::TooLarge`] past 2³² − 1 elements.
@@ -61,8 +63,8 @@ impl Mesh {
         uncovered(patch, &others, tolerance).iter().flat_map(|part| pieces(part, patch)).collect()
     }
 
-    /// The occluders, without what is covered: in the place of those of a shape of which something is, what is left of
-    /// its leaves.
+    /// The occluders, without what is covered: in the place of those of a shape of which something
+    /// is, what is left of its leaves.
     fn blocking(&self, covers: &[Vec<u32>], tolerance: f64) -> Vec<Patch> {
         let mut found = Vec::with_capacity(self.occluders.len());
         let mut next = 0;
@@ -139,7 +141,8 @@ impl Order {
     }
 }
 
-/// Triangles of a convex polygon in the plane of a patch; corners that are all but on a line give none.
+/// Triangles of a convex polygon in the plane of a patch; corners that are all but on a line give
+/// none.
 fn pieces<'a>(polygon: &'a [Vec3], patch: &'a Patch) -> impl Iterator<Item = Patch> + 'a {
     let fan = polygon[1..].windows(2).map(|side| [polygon[0], side[0], side[1]]);
     fan.filter_map(|[a, b, c]| Patch::piece([a, b, c, c], 3, patch.normal()).ok())
@@ -199,7 +202,8 @@ mod tests {
         assert_eq!(left, clean);
     }
 
-    /// Coordinates of six digits: two walls that were meant to lie in one plane, with a corner that rounding moved.
+    /// Coordinates of six digits: two walls that were meant to lie in one plane, with a corner that
+    /// rounding moved.
     #[test]
     fn what_is_covered_does_not_hide_what_covers_it() {
         let wall = |x: f64, y: f64| {

@@ -1,7 +1,8 @@
-//! Two flat convex polygons: do they lie on each other, do they cross, and what of one is not covered by others?
+//! Two flat convex polygons: do they lie on each other, do they cross, and what of one is not
+//! covered by others?
 //!
-//! Polygons are clipped at the sides of others: I. E. Sutherland and G. W. Hodgman, Comm. ACM 17 (1974) 32–42, doi:10.1145/360767.360802.
-//! Metres.
+//! Polygons are clipped at the sides of others: I. E. Sutherland and G. W. Hodgman, Comm. ACM 17
+//! (1974) 32–42, doi:10.1145/360767.360802. Metres.
 
 use crate::{Patch, Vec3};
 
@@ -33,7 +34,8 @@ fn sides(patch: &Patch, normal: Vec3) -> impl Iterator<Item = HalfPlane> + '_ {
     })
 }
 
-/// The parts of a convex polygon to the left and to the right of a line; what is within `tolerance` of the line is on it.
+/// The parts of a convex polygon to the left and to the right of a line; what is within `tolerance`
+/// of the line is on it.
 fn cut(polygon: &[Vec3], line: &HalfPlane, tolerance: f64) -> [Vec<Vec3>; 2] {
     let heights: Vec<f64> = polygon.iter().map(|&p| line.height(p)).collect();
     let (mut left, mut right) = (Vec::new(), Vec::new());
@@ -81,7 +83,8 @@ pub(super) fn common(a: &Patch, b: &Patch, tolerance: f64) -> Option<Vec<Vec3>> 
     (width > WIDTH * tolerance && polygon.iter().all(|p| off(p) <= tolerance)).then_some(polygon)
 }
 
-/// The parts of `a`, as convex polygons, that none of the others covers. They must lie in its plane.
+/// The parts of `a`, as convex polygons, that none of the others covers. They must lie in its
+/// plane.
 pub(super) fn uncovered(a: &Patch, others: &[&Patch], tolerance: f64) -> Vec<Vec<Vec3>> {
     let mut parts = vec![a.corners().to_vec()];
     for other in others {
@@ -123,8 +126,8 @@ fn extent(polygon: &[Vec3]) -> f64 {
     polygon.iter().map(|p| p.distance(polygon[0])).fold(f64::MIN_POSITIVE, f64::max)
 }
 
-/// Whether two polygons cross: points of each lie on both sides of the other, farther than `tolerance`, and the lines along which they
-/// meet the planes have a piece in common.
+/// Whether two polygons cross: points of each lie on both sides of the other, farther than
+/// `tolerance`, and the lines along which they meet the planes have a piece in common.
 pub(super) fn cross(a: &Patch, b: &Patch, tolerance: f64) -> bool {
     let (Some(p), Some(q)) = (line_in(a, b, tolerance), line_in(b, a, tolerance)) else { return false };
     let along = (p[1] - p[0]).try_normalize().or_else(|| (q[1] - q[0]).try_normalize());
@@ -137,7 +140,8 @@ pub(super) fn cross(a: &Patch, b: &Patch, tolerance: f64) -> bool {
     a1.min(b1) - a0.max(b0) > WIDTH * tolerance
 }
 
-/// The segment in which a polygon meets the plane of another, where corners lie on both sides of it.
+/// The segment in which a polygon meets the plane of another, where corners lie on both sides of
+/// it.
 fn line_in(a: &Patch, b: &Patch, tolerance: f64) -> Option<[Vec3; 2]> {
     let height = |p: Vec3| (p - b.corner(0)).dot(b.normal());
     let heights: Vec<f64> = a.corners().iter().map(|&p| height(p)).collect();

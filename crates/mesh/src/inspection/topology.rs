@@ -16,7 +16,8 @@ pub struct Component {
     pub pieces: usize,
     /// Its first piece.
     pub first: u32,
-    /// Whether each of its sides is shared by two of its pieces that run along it in opposite directions.
+    /// Whether each of its sides is shared by two of its pieces that run along it in opposite
+    /// directions.
     pub closed: bool,
     /// Volume enclosed where it is closed, m³; negative where it is lit inside.
     pub volume: f64,

@@ -40,8 +40,8 @@ pub fn volume(mesh: &Mesh) -> f64 {
     mesh.patches().map(|patch| patch.area() * patch.normal().dot(patch.centroid()) / 3.0).sum()
 }
 
-/// Number of welded edges that only one leaf has. Edges of two leaves must run in opposite directions, and no edge may
-/// belong to more.
+/// Number of welded edges that only one leaf has. Edges of two leaves must run in opposite
+/// directions, and no edge may belong to more.
 pub fn border_edges(mesh: &Mesh) -> usize {
     let welded = mesh.welded(Weld::Everywhere);
     let mut edges = BTreeSet::new();

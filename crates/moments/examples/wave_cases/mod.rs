@@ -1,4 +1,5 @@
-//! Bodies whose scattered far field is known: from the series of Mie, or from Galerkin boundary elements.
+//! Bodies whose scattered far field is known: from the series of Mie, or from Galerkin boundary
+//! elements.
 
 #![allow(dead_code, reason = "every example uses its part")]
 #![allow(clippy::unwrap_used, reason = "an example shows the way, not what may go wrong on it")]
@@ -63,8 +64,8 @@ impl Case {
         }
     }
 
-    /// The far field E·r e^{jkr} (V) in these directions, without approximation but the mesh of edges up to λ over
-    /// `per`, halved `halvings` times towards the edges.
+    /// The far field E·r e^{jkr} (V) in these directions, without approximation but the mesh of
+    /// edges up to λ over `per`, halved `halvings` times towards the edges.
     pub fn truth(&self, directions: &[Vec3], per: f64, halvings: usize) -> Vec<ComplexVector> {
         Self::truths(std::slice::from_ref(self), directions, per, halvings).remove(0)
     }
@@ -80,17 +81,19 @@ impl Case {
         let basis = Basis::new(surface).unwrap();
         let conductor = Conductor::new(&basis, wave(), Equation::Electric, 1e-3).unwrap();
         let sources: Vec<PlaneWave> = cases.iter().map(Self::source).collect();
-        let lanes: Vec<[&dyn Source; 1]> = sources.iter().map(|source| [source as &dyn Source]).collect();
-        let lanes: Vec<&[&dyn Source]> = lanes.iter().map(|lane| &lane[..]).collect();
-        let x = solved(&conductor.operator().coupling().unwrap(), &conductor.right_hand_side(&lanes));
-        let far = |lane: usize| {
-            let currents = Currents::new(&basis, wave(), &x.lane(lane), None);
+        let excitations: Vec<[&dyn Source; 1]> =
+            sources.iter().map(|source| [source as &dyn Source]).collect();
+        let excitations: Vec<&[&dyn Source]> = excitations.iter().map(|sources| &sources[..]).collect();
+        let x = solved(&conductor.operator().coupling().unwrap(), &conductor.right_hand_side(&excitations));
+        let far = |rhs: usize| {
+            let currents = Currents::new(&basis, wave(), &x.vector(rhs), None);
             currents.far_field(directions).unwrap().into_iter().map(|far| far.amplitude).collect()
         };
         (0..cases.len()).map(far).collect()
     }
 
-    /// The even mesh with edges up to λ over `per`: of spheres the triangles of [`Self::scatterer`].
+    /// The even mesh with edges up to λ over `per`: of spheres the triangles of
+    /// [`Self::scatterer`].
     pub fn surface(&self, per: f64) -> Surface {
         match &self.body {
             Body::Sphere(radius) => {
@@ -106,7 +109,8 @@ impl Case {
         }
     }
 
-    /// The longest edge of the even mesh of plates and cubes with cells up to λ over `per`, in wavelengths.
+    /// The longest edge of the even mesh of plates and cubes with cells up to λ over `per`, in
+    /// wavelengths.
     pub fn longest_edge(&self, per: f64) -> f64 {
         let surface = surface(&self.body, WAVELENGTH / per, Grading::default());
         Topology::new(&surface).longest_edge(&surface) / WAVELENGTH
@@ -161,7 +165,8 @@ fn upright(side: f64, x: f64, y: f64) -> [Vec3; 3] {
     square([x, y, 0.0], [side, 0.0, 0.0], [0.0, 0.0, side])
 }
 
-/// The bodies of the table of treatments, as the example `treatments` of `fredholm-study` prints it.
+/// The bodies of the table of treatments, as the example `treatments` of `fredholm-study` prints
+/// it.
 pub fn cases() -> Vec<Case> {
     let (y, z, x) = ([0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
     let shadowed = || Body::Plates(vec![upright(3.0, 0.0, 0.0), upright(3.0, 1.5, 2.0)]);
@@ -225,8 +230,8 @@ pub fn cases() -> Vec<Case> {
     ]
 }
 
-/// Runs with known answers, one list a body: plates, pairs of plates, a dihedral, cubes and spheres in waves of several
-/// angles and polarisations.
+/// Runs with known answers, one list a body: plates, pairs of plates, a dihedral, cubes and spheres
+/// in waves of several angles and polarisations.
 pub fn calibration() -> Vec<Vec<Case>> {
     let of = |name, body| in_waves(name, &body);
     let known = cases();

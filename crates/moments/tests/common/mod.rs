@@ -68,9 +68,9 @@ pub fn relative_error(a: &[Complex64], b: &[Complex64]) -> f64 {
 
 /// Z x = b, with K = 1 − Z.
 pub fn solved(k: &dyn LinearOperator<Complex64>, b: &MultiVector<Complex64>) -> MultiVector<Complex64> {
-    let ones = MultiVector::from_fn(b.dim(), b.lanes(), |_, _| Complex64::ONE);
+    let ones = MultiVector::from_fn(b.dim(), b.rhs_count(), |_, _| Complex64::ONE);
     let a = SecondKind::new(k, ones).unwrap();
-    let mut x = MultiVector::zeros(b.dim(), b.lanes());
+    let mut x = MultiVector::zeros(b.dim(), b.rhs_count());
     let stop = Stop { tolerance: 1e-9, max_iterations: 1 };
     let report = DenseLu.solve(&a, b, &mut x, &stop, &mut Quiet).unwrap();
     assert_eq!(report.reason, StopReason::Converged);
@@ -83,5 +83,5 @@ pub fn currents<'a>(conductor: &Conductor<'a>, basis: &'a Basis) -> Currents<'a>
     let sources: [&dyn Source; 1] = [&source];
     let b = conductor.right_hand_side(&[&sources]);
     let x = solved(&conductor.operator().coupling().unwrap(), &b);
-    Currents::new(basis, conductor.wave(), &x.lane(0), None)
+    Currents::new(basis, conductor.wave(), &x.vector(0), None)
 }

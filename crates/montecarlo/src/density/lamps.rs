@@ -1,4 +1,5 @@
-//! Points of lamps in proportion to what they emit: w/(W A) per area on a patch of weight w = A M, M the mean exitance over the bands.
+//! Points of lamps in proportion to what they emit: w/(W A) per area on a patch of weight w = A M,
+//! M the mean exitance over the bands.
 
 use super::SurfaceDensity;
 use fredholm_mesh::{Patch, Vec3};

@@ -1,6 +1,7 @@
 //! Densities to sample from, each with what its probability is.
 //!
-//! A density of directions is about an axis, the z of a [`Frame`], in 1/sr; one of points is per area, in 1/m².
+//! A density of directions is about an axis, the z of a [`Frame`], in 1/sr; one of points is per
+//! area, in 1/m².
 
 mod cosine;
 mod frame;
@@ -41,8 +42,8 @@ mod tests {
     use statrs::distribution::{ChiSquared, ContinuousCDF};
     use std::f64::consts::TAU;
 
-    /// Rings between values of t = 1 − cosθ, quarters of a turn each: χ² of counts against the integral of the density, which
-    /// must be 1 in all.
+    /// Rings between values of t = 1 − cosθ, quarters of a turn each: χ² of counts against the
+    /// integral of the density, which must be 1 in all.
     fn check(density: &dyn DirectionDensity, edges: &[f64], name: &str) {
         let n = 20_000;
         let (rings, quarters) = (edges.len() - 1, 4);

@@ -49,7 +49,8 @@ mod tests {
     use super::*;
     use crate::points::{Draw, Key, PointSet};
 
-    /// Moments of a trapezoid and a triangle: mean is the centroid, and as many points fall on each side of a line as area.
+    /// Moments of a trapezoid and a triangle: mean is the centroid, and as many points fall on each
+    /// side of a line as area.
     #[test]
     fn points_are_spread_by_area() {
         let corner = |x, y| Vec3::new(x, y, 0.5);

@@ -1,7 +1,8 @@
-//! The density of von Mises and Fisher, κ e^{κ (cosθ − 1)}/(2π (1 − e^{−2κ})) (R. Fisher, Proc. R. Soc. A 217 (1953) 295,
-//! doi:10.1098/rspa.1953.0064).
+//! The density of von Mises and Fisher, κ e^{κ (cosθ − 1)}/(2π (1 − e^{−2κ})) (R. Fisher, Proc. R.
+//! Soc. A 217 (1953) 295, doi:10.1098/rspa.1953.0064).
 //!
-//! 1 − cosθ = −ln(ξ + (1 − ξ) e^{−2κ})/κ, written with log1p and expm1 so that nothing is lost at κ = 1e-8 and nothing overflows at 1e8.
+//! 1 − cosθ = −ln(ξ + (1 − ξ) e^{−2κ})/κ, written with log1p and expm1 so that nothing is lost at κ
+//! = 1e-8 and nothing overflows at 1e8.
 
 use super::{DirectionDensity, at};
 use fredholm_mesh::Vec3;

@@ -1,9 +1,12 @@
-//! Bidirectional path tracing: a path from the patch and one from a lamp, all their vertices joined.
+//! Bidirectional path tracing: a path from the patch and one from a lamp, all their vertices
+//! joined.
 //!
-//! A path z₀ … z_k from the patch to a lamp has edges e_j = κ(z_{j−1}, z_j). With t vertices from the patch and the others from the lamp, the edge e_t is the one that joins; its density is p_L Π e / e_t
-//! times the survivals q, and without any from the lamp Π e. By the balance heuristic every technique then scores the same,
-//! M Π ρ/q / (1 + p_L Σ_j 1/(e_j q_{j−1} q_j)), with q = 1 at both ends. E. P. Lafortune, Y. D. Willems, Compugraphics 1993; E. Veach, L. J. Guibas, Eurographics workshop on rendering 1994,
-//! doi:10.1007/978-3-642-87825-1_11.
+//! A path z₀ … z_k from the patch to a lamp has edges e_j = κ(z_{j−1}, z_j). With t vertices from
+//! the patch and the others from the lamp, the edge e_t is the one that joins; its density is p_L Π
+//! e / e_t times the survivals q, and without any from the lamp Π e. By the balance heuristic every
+//! technique then scores the same, M Π ρ/q / (1 + p_L Σ_j 1/(e_j q_{j−1} q_j)), with q = 1 at both
+//! ends. E. P. Lafortune, Y. D. Willems, Compugraphics 1993; E. Veach, L. J. Guibas, Eurographics
+//! workshop on rendering 1994, doi:10.1007/978-3-642-87825-1_11.
 
 use super::{Batch, Estimator, PointEstimator, Switches, Work, add, gather};
 use crate::points::Draw;

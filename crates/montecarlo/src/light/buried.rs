@@ -1,6 +1,7 @@
 //! The exposed part of patches that something stands on: where photons can arrive, m².
 //!
-//! A patch is cut into [`SIDE`]² parts of equal area; one of which no ray out of a fixed bundle meets a lit side or nothing is buried. Patches whose exposed share is 0 or 1 need no parts.
+//! A patch is cut into [`SIDE`]² parts of equal area; one of which no ray out of a fixed bundle
+//! meets a lit side or nothing is buried. Patches whose exposed share is 0 or 1 need no parts.
 
 use crate::density::{Cosine, DirectionDensity};
 use crate::{Enclosure, Site};

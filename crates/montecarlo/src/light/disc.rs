@@ -1,7 +1,7 @@
 //! Area that a disc and a polygon of one plane share, m².
 //!
-//! The sum over the sides (a, b) of the signed area that the disc shares with the triangle from its centre: of what lies inside the half cross product, of
-//! what lies outside the sector.
+//! The sum over the sides (a, b) of the signed area that the disc shares with the triangle from its
+//! centre: of what lies inside the half cross product, of what lies outside the sector.
 
 use fredholm_mesh::{Patch, Vec3};
 

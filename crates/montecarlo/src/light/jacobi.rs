@@ -1,8 +1,11 @@
-//! Stochastic Jacobi iteration: the unshot power of all patches is shot at once, by lines in proportion to it.
+//! Stochastic Jacobi iteration: the unshot power of all patches is shot at once, by lines in
+//! proportion to it.
 //!
-//! P ← R Fᵀ P: every line carries the same power φ = Σ A M/N, averaged over the bands; patch i sends ⌊c_i + ξ⌋ − ⌊c_{i−1} + ξ⌋ lines, c the running sum of the unshot powers over φ and ξ one random
-//! number, so that each gets its share in the mean. The lines become fewer as power is absorbed, and the iteration ends where none is left: nothing is
-//! cut off. L. Neumann, Monte Carlo radiosity, Computing 55 (1995) 23, doi:10.1007/BF02238235; P. Bekaert, thesis, Leuven 1999.
+//! P ← R Fᵀ P: every line carries the same power φ = Σ A M/N, averaged over the bands; patch i
+//! sends ⌊c_i + ξ⌋ − ⌊c_{i−1} + ξ⌋ lines, c the running sum of the unshot powers over φ and ξ one
+//! random number, so that each gets its share in the mean. The lines become fewer as power is
+//! absorbed, and the iteration ends where none is left: nothing is cut off. L. Neumann, Monte Carlo
+//! radiosity, Computing 55 (1995) 23, doi:10.1007/BF02238235; P. Bekaert, thesis, Leuven 1999.
 
 use super::{Batch, Estimator, Work, per_area, scale};
 use crate::Enclosure;

@@ -1,6 +1,8 @@
-//! A kd-tree of points: which lie within a distance of a place (J. L. Bentley, Commun. ACM 18 (1975) 509, doi:10.1145/361002.361007).
+//! A kd-tree of points: which lie within a distance of a place (J. L. Bentley, Commun. ACM 18
+//! (1975) 509, doi:10.1145/361002.361007).
 //!
-//! The middle of a range of the array is the node, by the axis along which the range is widest; what is below stands before it.
+//! The middle of a range of the array is the node, by the axis along which the range is widest;
+//! what is below stands before it.
 
 use fredholm_mesh::Vec3;
 
@@ -22,7 +24,8 @@ impl KdTree {
         Self { points, axes }
     }
 
-    /// Calls `found` with the number of each point within `radius` of `centre`, always in the same order.
+    /// Calls `found` with the number of each point within `radius` of `centre`, always in the same
+    /// order.
     pub(crate) fn within(&self, centre: Vec3, radius: f64, found: &mut dyn FnMut(u32)) {
         self.search(0, self.points.len(), centre, radius, found);
     }

@@ -1,7 +1,8 @@
 //! Estimators of the mean irradiance of patches, by random paths.
 //!
-//! All estimate the same E_i = (1/A_i) ∫ E dA (W/m²), the mean over the *whole* patch, hidden parts counting as 0. An estimator turns a [`Batch`] into one
-//! unbiased estimate of all patches; means and standard errors come from many batches, which are independent even where the samples of one
+//! All estimate the same E_i = (1/A_i) ∫ E dA (W/m²), the mean over the *whole* patch, hidden parts
+//! counting as 0. An estimator turns a [`Batch`] into one unbiased estimate of all patches; means
+//! and standard errors come from many batches, which are independent even where the samples of one
 //! are not. Of [`Switches`] each takes what it can use:
 //!
 //! | method | estimates | roulette | next event | multiple importance | control |
@@ -14,8 +15,8 @@
 //! | `walk-shooting` | the same, from the lamps | yes | | | |
 //! | `jacobi` | the same, all patches at once | | | | |
 //!
-//! A patch-wise walk goes on from a new point of the patch that it met, so that its transitions are the form factors: it estimates what the solvers solve,
-//! without discretisation error.
+//! A patch-wise walk goes on from a new point of the patch that it met, so that its transitions are
+//! the form factors: it estimates what the solvers solve, without discretisation error.
 
 mod bidirectional;
 mod buried;
@@ -130,13 +131,15 @@ pub trait Estimator: Sync {
         false
     }
 
-    /// Writes the estimate of one batch, W/m², patch-major, into `out`, which has patches × bands places.
+    /// Writes the estimate of one batch, W/m², patch-major, into `out`, which has patches × bands
+    /// places.
     fn batch(&self, scene: &Enclosure, batch: &Batch, out: &mut [f64]) -> Work;
 }
 
 /// What estimates the irradiance of a point.
 pub trait PointEstimator: Sync {
-    /// Adds one sample of the irradiance (W/m²) at a site to `out`, one place a band, and returns the rays it took.
+    /// Adds one sample of the irradiance (W/m²) at a site to `out`, one place a band, and returns
+    /// the rays it took.
     fn irradiance(&self, scene: &Enclosure, at: Site, draw: &mut Draw, out: &mut [f64]) -> u64;
 }
 

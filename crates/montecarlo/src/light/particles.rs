@@ -1,8 +1,10 @@
-//! Light tracing and patch-wise shooting walks: particles leave the lamps and leave their power where they arrive.
+//! Light tracing and patch-wise shooting walks: particles leave the lamps and leave their power
+//! where they arrive.
 //!
-//! A particle starts at q with the density p_L per area and the power M(q)/(p_L n), W; directions have the density cosθ/π. Every patch that it meets
-//! receives the power, and reflects ρ of it. E_i is the power received over A_i. J. Arvo, SIGGRAPH course notes 1986; S. N. Pattanaik, S. P. Mudur, Eurographics workshop
-//! on rendering 1992.
+//! A particle starts at q with the density p_L per area and the power M(q)/(p_L n), W; directions
+//! have the density cosθ/π. Every patch that it meets receives the power, and reflects ρ of it. E_i
+//! is the power received over A_i. J. Arvo, SIGGRAPH course notes 1986; S. N. Pattanaik, S. P.
+//! Mudur, Eurographics workshop on rendering 1992.
 
 use super::{Batch, Estimator, Switches, Work, per_area, scale};
 use crate::points::Draw;
@@ -27,7 +29,8 @@ impl ParticleTracing {
         Self { switches, patchwise: true }
     }
 
-    /// One particle: tells `arrive` of every patch it meets and the power it brings; returns the rays it took.
+    /// One particle: tells `arrive` of every patch it meets and the power it brings; returns the
+    /// rays it took.
     pub(crate) fn fly(
         &self,
         scene: &Enclosure,

@@ -1,11 +1,15 @@
-//! Path tracing and patch-wise gathering walks: E(p) = E[Σ_k W_k D(y_k)] along a path p = y₀, y₁, … with directions of density cosθ/π.
+//! Path tracing and patch-wise gathering walks: E(p) = E[Σ_k W_k D(y_k)] along a path p = y₀, y₁, …
+//! with directions of density cosθ/π.
 //!
-//! W_k = Π ρ, and D is what arrives from lamps directly. It is estimated by the lamp that the next ray meets, by a point q of a lamp with density p_L (next
-//! event), or both weighed by the balance heuristic, M κ/(p_L + κ) and M κ/(p_L + κ) · 1/κ (E. Veach, L. J. Guibas, SIGGRAPH 1995, doi:10.1145/218380.218498).
-//! Random walks on a Fredholm equation: J. T. Kajiya, SIGGRAPH 1986, doi:10.1145/15922.15902; patch-wise: M. Sbert, Comput. Graph. 17 (1993) 635.
+//! W_k = Π ρ, and D is what arrives from lamps directly. It is estimated by the lamp that the next
+//! ray meets, by a point q of a lamp with density p_L (next event), or both weighed by the balance
+//! heuristic, M κ/(p_L + κ) and M κ/(p_L + κ) · 1/κ (E. Veach, L. J. Guibas, SIGGRAPH 1995,
+//! doi:10.1145/218380.218498). Random walks on a Fredholm equation: J. T. Kajiya, SIGGRAPH 1986,
+//! doi:10.1145/15922.15902; patch-wise: M. Sbert, Comput. Graph. 17 (1993) 635.
 //!
-//! *Control variate.* With known irradiances Ẽ of patches, whose mean after one application of the operator is Ẽ again, E_i = Ẽ_i + E[Σ_{k≥1} W_k (D(y_k) + ρ Ẽ(y_{k+1}) − Ẽ(y_k))]:
-//! only what the discretisation missed is sampled. The result is then as exact as the form factors behind Ẽ.
+//! *Control variate.* With known irradiances Ẽ of patches, whose mean after one application of the
+//! operator is Ẽ again, E_i = Ẽ_i + E[Σ_{k≥1} W_k (D(y_k) + ρ Ẽ(y_{k+1}) − Ẽ(y_k))]: only what the
+//! discretisation missed is sampled. The result is then as exact as the form factors behind Ẽ.
 
 use super::{Batch, Estimator, PointEstimator, Switches, Work, add, gather, scale};
 use crate::density::{Cosine, DirectionDensity};
@@ -112,7 +116,8 @@ impl PathTracing {
         }
     }
 
-    /// What the control variate has put in the place of the irradiance here, or of what is reflected next.
+    /// What the control variate has put in the place of the irradiance here, or of what is
+    /// reflected next.
     fn correct(&self, scene: &Enclosure, patch: usize, weight: &[f64], sign: f64, out: &mut [f64]) {
         if let Some(control) = &self.control {
             let bands = scene.bands();

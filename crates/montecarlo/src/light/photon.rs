@@ -1,10 +1,14 @@
 //! Photon maps: particles are kept where they arrive, and read where gathering rays end.
 //!
-//! E(p) is direct light plus E[ρ Ê(y)] over rays of density cosθ/π, Ê(y) = Σ φ/N(y) over the photons within r of y on the same flat piece, N(y) the area of that piece within r: constant irradiance is
-//! read without bias up to its edges, and up to what stands on it ([`super::buried`]). A ray shorter than [`NEAR`] radii is reflected where it ends, as a path: a corner sees every
-//! gradient beside it, what is far away only its mean. H. W. Jensen, Eurographics workshop on rendering 1996, doi:10.1007/978-3-7091-7484-5_3.
-//! The bias of Ê falls with r², which shrinks from batch to batch, r²_{b+1} = r²_b (b + α)/(b + 1), so that the mean of the batches tends to the true value
-//! (C. Knaus, M. Zwicker, ACM Trans. Graph. 30 (2011) 25, doi:10.1145/1966394.1966404).
+//! E(p) is direct light plus E[ρ Ê(y)] over rays of density cosθ/π, Ê(y) = Σ φ/N(y) over the
+//! photons within r of y on the same flat piece, N(y) the area of that piece within r: constant
+//! irradiance is read without bias up to its edges, and up to what stands on it
+//! ([`super::buried`]). A ray shorter than [`NEAR`] radii is reflected where it ends, as a path: a
+//! corner sees every gradient beside it, what is far away only its mean. H. W. Jensen, Eurographics
+//! workshop on rendering 1996, doi:10.1007/978-3-7091-7484-5_3. The bias of Ê falls with r², which
+//! shrinks from batch to batch, r²_{b+1} = r²_b (b + α)/(b + 1), so that the mean of the batches
+//! tends to the true value (C. Knaus, M. Zwicker, ACM Trans. Graph. 30 (2011) 25,
+//! doi:10.1145/1966394.1966404).
 
 use super::buried::{ExposedPart, partly_buried};
 use super::disc::shared;
@@ -24,7 +28,8 @@ const ALPHA: f64 = 2.0 / 3.0;
 const HELD: f64 = 8.0;
 /// Rays up to so many radii long are reflected where they end.
 const NEAR: f64 = 3.0;
-/// Cosine between normals, and distance from the plane over the size of the scene, up to which patches are one flat piece.
+/// Cosine between normals, and distance from the plane over the size of the scene, up to which
+/// patches are one flat piece.
 const PARALLEL: f64 = 1.0 - 1e-9;
 const COPLANAR: f64 = 1e-7;
 /// Streams of photons lie beyond those of patches.
@@ -123,7 +128,8 @@ struct Map<'a> {
 }
 
 impl Map<'_> {
-    /// Exposed area of a patch within the radius of a point of its plane, m²: what is buried receives no photons.
+    /// Exposed area of a patch within the radius of a point of its plane, m²: what is buried
+    /// receives no photons.
     fn piece(&self, scene: &Enclosure, patch: usize, point: Vec3) -> f64 {
         let outline = self.of.outlines[patch];
         let square = outline.centre.distance_squared(point);

@@ -1,6 +1,8 @@
-//! Pixels, each estimated by itself: the mean radiosity of what is seen through it, B = M + ρ E, W/m².
+//! Pixels, each estimated by itself: the mean radiosity of what is seen through it, B = M + ρ E,
+//! W/m².
 //!
-//! The places within the pixel and the paths behind them are the samples of one batch; batches are independent, and the standard error comes from them.
+//! The places within the pixel and the paths behind them are the samples of one batch; batches are
+//! independent, and the standard error comes from them.
 
 use super::{PointEstimator, add};
 use crate::points::{Draw, Key, PointSet};
@@ -32,7 +34,8 @@ pub struct PixelEstimate {
     pub covered: f64,
 }
 
-/// Estimates pixel `number` (below 2³¹); `see` is what is seen through a place of the unit square of the pixel.
+/// Estimates pixel `number` (below 2³¹); `see` is what is seen through a place of the unit square
+/// of the pixel.
 pub fn pixel(
     scene: &Enclosure,
     estimator: &dyn PointEstimator,

@@ -28,7 +28,8 @@ pub fn estimator(name: &str, scene: &Enclosure, switches: Switches) -> Option<Bo
     })
 }
 
-/// Names of the methods that estimate the light at a point, so that pictures can be traced pixel by pixel.
+/// Names of the methods that estimate the light at a point, so that pictures can be traced pixel by
+/// pixel.
 pub const PICTURED: [&str; 2] = ["path", "bidirectional"];
 
 /// The method of this name as it estimates the irradiance of points.

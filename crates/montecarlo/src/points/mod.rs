@@ -1,8 +1,9 @@
 //! Point sets: how the random numbers of the samples of one batch share out the unit square.
 //!
-//! Sample s of n draws its numbers one pair after the other, by a [`Draw`]. In every set each number of each sample is even in [0, 1) by itself, so
-//! that means stay unbiased; the sets differ in how the samples of a batch go together. Every pair is a pattern of its own, and the
-//! batches are independent of each other: errors are estimated between batches.
+//! Sample s of n draws its numbers one pair after the other, by a [`Draw`]. In every set each
+//! number of each sample is even in [0, 1) by itself, so that means stay unbiased; the sets differ
+//! in how the samples of a batch go together. Every pair is a pattern of its own, and the batches
+//! are independent of each other: errors are estimated between batches.
 //!
 //! | set | pair d of the n samples |
 //! |---|---|
@@ -86,7 +87,8 @@ pub struct Draw {
     index: u32,
 }
 
-/// Dimensions from here on seed the patterns of a batch, so that they share no number with the samples.
+/// Dimensions from here on seed the patterns of a batch, so that they share no number with the
+/// samples.
 const PATTERN: u32 = 1 << 31;
 
 impl Draw {
@@ -137,7 +139,8 @@ impl Draw {
         dimension
     }
 
-    /// Shuffles the points for a new block of dimensions: met in the same order they would be the same ones.
+    /// Shuffles the points for a new block of dimensions: met in the same order they would be the
+    /// same ones.
     fn enter(&mut self) {
         if self.set == PointSet::Sobol {
             let shuffle = self.key.words(1, PATTERN + self.dimension / DIMENSIONS);
@@ -188,7 +191,8 @@ mod tests {
         }
     }
 
-    /// The first two dimensions of Sobol's sequence are a (0, m, 2)-net: one point in every elementary interval of area 1/n.
+    /// The first two dimensions of Sobol's sequence are a (0, m, 2)-net: one point in every
+    /// elementary interval of area 1/n.
     #[test]
     fn the_first_pair_of_sobol_is_a_net() {
         let set = points(PointSet::Sobol, 256, 0, 9);
@@ -208,7 +212,8 @@ mod tests {
         }
     }
 
-    /// Means of f = x y and of x₀ x₁ of two pairs: unbiased over batches, and ordered sets have less variance.
+    /// Means of f = x y and of x₀ x₁ of two pairs: unbiased over batches, and ordered sets have
+    /// less variance.
     #[test]
     fn means_are_unbiased_and_strata_reduce_the_variance() {
         let (size, batches) = (16, 2000);

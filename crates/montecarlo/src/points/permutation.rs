@@ -3,7 +3,8 @@
 //! An invertible mixing of the bits of the next power of two is walked until it lands below n.
 //! A. Kensler, Correlated multi-jittered sampling, Pixar Technical Memo 13-01, 2013.
 
-/// Image of `i` < `n` under the permutation of this seed. A random turn at the end makes every image equally likely, whatever the mixing is worth.
+/// Image of `i` < `n` under the permutation of this seed. A random turn at the end makes every
+/// image equally likely, whatever the mixing is worth.
 pub(super) fn permuted(i: u32, n: u32, seed: u32) -> u32 {
     if n <= 1 {
         return 0;
@@ -28,7 +29,8 @@ fn mixed(i: u32, mask: u32, seed: u32) -> u32 {
     })
 }
 
-/// A bijection of 32 bits in which each bit depends on all (C. Wellons, hash prospector, constants of the least known bias).
+/// A bijection of 32 bits in which each bit depends on all (C. Wellons, hash prospector, constants
+/// of the least known bias).
 pub(super) fn hash(x: u32) -> u32 {
     let x = (x ^ (x >> 16)).wrapping_mul(0x7FEB_352D);
     let x = (x ^ (x >> 15)).wrapping_mul(0x846C_A68B);

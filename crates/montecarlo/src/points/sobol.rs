@@ -1,8 +1,10 @@
 //! Sobol's points, scrambled after Owen.
 //!
-//! Coordinate d of point i is ⊕ over the bits b of i of the direction number v_d(b). Direction numbers: S. Joe, F. Y. Kuo, SIAM J. Sci. Comput. 30
-//! (2008) 2635, doi:10.1137/070709359, the file new-joe-kuo-6.21201, its first rows. The scrambling hashes each bit
-//! with those above it (S. Laine, T. Karras, Comput. Graph. Forum 30 (2011) 1275, doi:10.1111/j.1467-8659.2011.01972.x; B. Burley, JCGT 9(4), 2020).
+//! Coordinate d of point i is ⊕ over the bits b of i of the direction number v_d(b). Direction
+//! numbers: S. Joe, F. Y. Kuo, SIAM J. Sci. Comput. 30 (2008) 2635, doi:10.1137/070709359, the file
+//! new-joe-kuo-6.21201, its first rows. The scrambling hashes each bit with those above it (S.
+//! Laine, T. Karras, Comput. Graph. Forum 30 (2011) 1275, doi:10.1111/j.1467-8659.2011.01972.x; B.
+//! Burley, JCGT 9(4), 2020).
 
 use std::sync::LazyLock;
 
@@ -59,7 +61,8 @@ pub(super) fn point(index: u32, dimension: u32, seed: u32) -> f64 {
     f64::from(scrambled(x.reverse_bits(), seed)) / 2_f64.powi(32)
 }
 
-/// Owen's scrambling of the number whose bits, the highest last, are `reversed`: each bit changes by those above it only.
+/// Owen's scrambling of the number whose bits, the highest last, are `reversed`: each bit changes
+/// by those above it only.
 pub(super) fn scrambled(reversed: u32, seed: u32) -> u32 {
     let mut x = reversed;
     x ^= x.wrapping_mul(0x3d20_adea);
@@ -74,7 +77,8 @@ pub(super) fn scrambled(reversed: u32, seed: u32) -> u32 {
 mod tests {
     use super::*;
 
-    /// Points 0 to 7 of dimensions 1 to 4 in natural order, from the recurrences worked out by hand.
+    /// Points 0 to 7 of dimensions 1 to 4 in natural order, from the recurrences worked out by
+    /// hand.
     #[test]
     fn the_first_points_are_those_of_sobol() {
         let plain = |i: u32, d: usize| {

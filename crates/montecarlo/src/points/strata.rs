@@ -1,7 +1,8 @@
 //! Jittered, N-rooks and multi-jittered points, each sample by itself.
 //!
-//! n = a b cells, a the largest divisor of n up to √n. Multi-jittered: sample s has the cell (i, j) = (s mod a, ⌊s/a⌋), in it the column
-//! σ(j) of b and the row τ(i) of a, so that each of the n columns and n rows has one sample.
+//! n = a b cells, a the largest divisor of n up to √n. Multi-jittered: sample s has the cell (i, j)
+//! = (s mod a, ⌊s/a⌋), in it the column σ(j) of b and the row τ(i) of a, so that each of the n
+//! columns and n rows has one sample.
 
 use super::PointSet;
 use super::permutation::{hash, permuted};
@@ -16,7 +17,8 @@ pub(super) fn place(set: PointSet, s: u32, n: u32, pattern: [u32; 4], jitter: [f
         PointSet::MultiJittered => {
             let s = permuted(s, n, pattern[2]);
             let (i, j) = (s % columns, s / columns);
-            // The column depends on the cell's row, shuffled for each column apart, and the other way round.
+            // The column depends on the cell's row, shuffled for each column apart, and the other
+            // way round.
             let across = permuted(j, rows, pattern[0] ^ hash(i));
             let up = permuted(i, columns, pattern[1] ^ hash(j));
             [within(i * rows + across, n, jitter[0]), within(j * columns + up, n, jitter[1])]

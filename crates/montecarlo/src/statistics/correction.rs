@@ -1,8 +1,10 @@
 //! Many tests at once: which of them are significant.
 //!
-//! Holm: the k-th smallest of n probabilities is compared with α/(n − k + 1), from the smallest on until one fails; the probability of any false alarm is at
-//! most α whatever depends on what (S. Holm, Scand. J. Stat. 6 (1979) 65). Benjamini and Hochberg: up to the last k with p_k ≤ α k/n; the expected share of false
-//! alarms is at most α (J. R. Stat. Soc. B 57 (1995) 289, doi:10.1111/j.2517-6161.1995.tb02031.x).
+//! Holm: the k-th smallest of n probabilities is compared with α/(n − k + 1), from the smallest on
+//! until one fails; the probability of any false alarm is at most α whatever depends on what (S.
+//! Holm, Scand. J. Stat. 6 (1979) 65). Benjamini and Hochberg: up to the last k with p_k ≤ α k/n;
+//! the expected share of false alarms is at most α (J. R. Stat. Soc. B 57 (1995) 289,
+//! doi:10.1111/j.2517-6161.1995.tb02031.x).
 
 use serde::{Deserialize, Serialize};
 
@@ -51,7 +53,8 @@ impl Correction {
 mod tests {
     use super::*;
 
-    /// The fifteen probabilities of the paper of Benjamini and Hochberg, § 4: four are found at 5 %, three by Bonferroni and by Holm.
+    /// The fifteen probabilities of the paper of Benjamini and Hochberg, § 4: four are found at 5
+    /// %, three by Bonferroni and by Holm.
     #[test]
     fn the_example_of_the_paper_comes_out() {
         let p = [

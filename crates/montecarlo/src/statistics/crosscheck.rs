@@ -1,10 +1,14 @@
 //! Do a deterministic and a stochastic solution agree?
 //!
-//! Of each place t = (x_mc − x_det)/√(s² + δ²), s the standard error of n batches and δ what the deterministic side says of its own error, with the degrees of freedom n − 1 of s alone;
-//! z is the normal score. A place is at fault where its probability is significant after the correction for all places. All values in one unit.
+//! Of each place t = (x_mc − x_det)/√(s² + δ²), s the standard error of n batches and δ what the
+//! deterministic side says of its own error, with the degrees of freedom n − 1 of s alone; z is the
+//! normal score. A place is at fault where its probability is significant after the correction for
+//! all places. All values in one unit.
 //!
-//! What such a comparison can find is stated with it: a place that deviates by t_c √(s² + δ²) + 1.28 s √(1 + t_c² s²/(2 (n − 1) (s² + δ²))) from what the deterministic side has, t_c the bound of significance for one of
-//! all places, is found nine times out of ten. Where no sample has arrived, s is not 0 but what a single one would have brought.
+//! What such a comparison can find is stated with it: a place that deviates by t_c √(s² + δ²) +
+//! 1.28 s √(1 + t_c² s²/(2 (n − 1) (s² + δ²))) from what the deterministic side has, t_c the bound
+//! of significance for one of all places, is found nine times out of ten. Where no sample has
+//! arrived, s is not 0 but what a single one would have brought.
 
 use super::significance::critical_t;
 use super::{Correction, Suite, normal_score, two_sided_p};
@@ -122,7 +126,8 @@ impl Comparison<'_> {
         self.stochastic_error(i).hypot(self.deterministic_error[i])
     }
 
-    /// The deviation that is beyond the bound nine times out of ten: both the value and the bound, which follows s, vary by chance.
+    /// The deviation that is beyond the bound nine times out of ten: both the value and the bound,
+    /// which follows s, vary by chance.
     fn found(&self, i: usize, bound: f64) -> f64 {
         let (s, deviation) = (self.stochastic_error(i), self.deviation(i));
         let spread = if deviation > 0.0 { bound * s / deviation } else { 0.0 };

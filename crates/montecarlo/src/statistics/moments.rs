@@ -1,8 +1,9 @@
 //! Mean and variance of vectors in one pass, and their merging.
 //!
-//! δ = x − m, m ← m + δ/n, S ← S + δ (x − m); two parts merge by S = S_a + S_b + δ² n_a n_b/n (B. P. Welford, Technometrics 4 (1962) 419,
-//! doi:10.1080/00401706.1962.10490022; T. F. Chan, G. H. Golub, R. J. LeVeque, Am. Stat. 37 (1983) 242, doi:10.1080/00031305.1983.10483115).
-//! The standard error of the mean is √(S/(n (n − 1))). In the unit of the values.
+//! δ = x − m, m ← m + δ/n, S ← S + δ (x − m); two parts merge by S = S_a + S_b + δ² n_a n_b/n (B.
+//! P. Welford, Technometrics 4 (1962) 419, doi:10.1080/00401706.1962.10490022; T. F. Chan, G. H.
+//! Golub, R. J. LeVeque, Am. Stat. 37 (1983) 242, doi:10.1080/00031305.1983.10483115). The standard
+//! error of the mean is √(S/(n (n − 1))). In the unit of the values.
 
 use serde::{Deserialize, Serialize};
 

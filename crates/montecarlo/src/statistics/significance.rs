@@ -1,13 +1,15 @@
 //! From differences to probabilities.
 //!
-//! A difference over a standard error that was estimated from n batches follows Student's t with n − 1 degrees of freedom; the normal score is the z of the same
-//! probability. Probabilities are dimensionless, two-sided where nothing else is said.
+//! A difference over a standard error that was estimated from n batches follows Student's t with n
+//! − 1 degrees of freedom; the normal score is the z of the same probability. Probabilities are
+//! dimensionless, two-sided where nothing else is said.
 
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal, StudentsT};
 use statrs::function::erf::{erfc, erfc_inv};
 use std::f64::consts::SQRT_2;
 
-/// Degrees of freedom from which on Student's t is taken as normal: the scores then differ by less than 1e-5 at |z| = 3.
+/// Degrees of freedom from which on Student's t is taken as normal: the scores then differ by less
+/// than 1e-5 at |z| = 3.
 const NORMAL: f64 = 1e6;
 
 /// Probability that a normal score is as far from 0 as this one.
@@ -92,7 +94,8 @@ impl Suite {
 mod tests {
     use super::*;
 
-    /// Tables: M. Abramowitz, I. A. Stegun, Handbook of Mathematical Functions, tables 26.1, 26.8 and 26.10.
+    /// Tables: M. Abramowitz, I. A. Stegun, Handbook of Mathematical Functions, tables 26.1, 26.8
+    /// and 26.10.
     #[test]
     fn probabilities_are_those_of_the_tables() {
         for (z, p) in [(1.959_964, 0.05), (2.575_829, 0.01), (3.890_592, 1e-4)] {

@@ -1,7 +1,10 @@
-//! Where rays go that look for a scatterer: by a lobe about it, or by the solid angles of its facets.
+//! Where rays go that look for a scatterer: by a lobe about it, or by the solid angles of its
+//! facets.
 //!
-//! Of facets: f is chosen with P_f in proportion to A_f |cosθ_f|/R_f², and on it an even point q; a direction then has the density Σ P_f R²/(A_f |cosθ|) over all facets f that its line meets, in 1/sr,
-//! since each of them may have sent it there. The weight R²/(|cosθ| pdf) of a facet met is at most A_f/P_f: that of a plate stays even in its plane.
+//! Of facets: f is chosen with P_f in proportion to A_f |cosθ_f|/R_f², and on it an even point q; a
+//! direction then has the density Σ P_f R²/(A_f |cosθ|) over all facets f that its line meets, in
+//! 1/sr, since each of them may have sent it there. The weight R²/(|cosθ| pdf) of a facet met is at
+//! most A_f/P_f: that of a plate stays even in its plane.
 
 use super::Scattering;
 use super::scattering::{Spot, pick};

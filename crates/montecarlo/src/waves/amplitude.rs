@@ -1,10 +1,13 @@
 //! Amplitude particles: rays from the receiver, their impacts merged to cells, each evaluated once.
 //!
-//! The share of the rays that a cell receives estimates its solid angle Ω = Σ 1/(N pdf), its area is Ω R²/|cosθ| at the mean of the impacts, and *fields* multiply along the tree of impacts:
-//! from each cell rays go out anew and are merged again. A kd-tree finds the impacts of a cell. (G. Viennot, thesis, Limoges 2012, § 3.2, where particles carry √area and their
-//! squares multiply, which fails at the second bounce.)
+//! The share of the rays that a cell receives estimates its solid angle Ω = Σ 1/(N pdf), its area
+//! is Ω R²/|cosθ| at the mean of the impacts, and *fields* multiply along the tree of impacts: from
+//! each cell rays go out anew and are merged again. A kd-tree finds the impacts of a cell. (G.
+//! Viennot, thesis, Limoges 2012, § 3.2, where particles carry √area and their squares multiply,
+//! which fails at the second bounce.)
 //!
-//! The phase turns within a cell, so that the estimate is biased: of a cell of radius a seen at the angle θ by about (k a sinθ)²/8 of its field.
+//! The phase turns within a cell, so that the estimate is biased: of a cell of radius a seen at the
+//! angle θ by about (k a sinθ)²/8 of its field.
 
 use super::aim::{Aim, Directions, SolidAngles, shown};
 use super::scattering::Spot;
@@ -23,7 +26,8 @@ pub struct AmplitudeParticles {
 }
 
 impl AmplitudeParticles {
-    /// Impacts within `radius` (m) are one cell; `second` rays leave each cell for the second bounce.
+    /// Impacts within `radius` (m) are one cell; `second` rays leave each cell for the second
+    /// bounce.
     #[must_use]
     pub fn new(radius: f64, second: u32) -> Self {
         Self { radius, second: second.max(1) }

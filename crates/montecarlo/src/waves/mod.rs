@@ -1,8 +1,10 @@
 //! Scattered fields by random sampling: one and two bounces of physical optics on conductors.
 //!
-//! E(r) = ∫ 𝒢(r, q) J₁(q) dA + ∫∫ 𝒢(r, q) J₂(q ← q′) dA dA′, with 𝒢 the field of a current element, J₁ = 2 n × H_i on what is lit and
-//! J₂(q ← q′) = 2 n × H(q) of the element J₁(q′) dA′ where q and q′ face and see each other (G. Viennot, thesis, Limoges 2012, ch. 3 and 4, in the electric form).
-//! Fields add with their phases, so that errors fall as N^(−1/2) of the *whole* surface, not of what a specular zone leaves of it.
+//! E(r) = ∫ 𝒢(r, q) J₁(q) dA + ∫∫ 𝒢(r, q) J₂(q ← q′) dA dA′, with 𝒢 the field of a current element,
+//! J₁ = 2 n × H_i on what is lit and J₂(q ← q′) = 2 n × H(q) of the element J₁(q′) dA′ where q and
+//! q′ face and see each other (G. Viennot, thesis, Limoges 2012, ch. 3 and 4, in the electric
+//! form). Fields add with their phases, so that errors fall as N^(−1/2) of the *whole* surface, not
+//! of what a specular zone leaves of it.
 //!
 //! | method | samples | weight |
 //! |---|---|---|
@@ -10,7 +12,8 @@
 //! | [`SurfaceSampling`] | points of the surface, for all receivers at once | the area |
 //! | [`AmplitudeParticles`] | directions, hits merged to cells | the cell's Ω R²/cosθ; biased by its size |
 //!
-//! *More than two bounces are not offered:* a random walk over bounces needs a spectral radius of |K| below 1, and a dihedral of 1.5λ has 1.10, one of 4.5λ 3.13, where K itself has 0.40.
+//! *More than two bounces are not offered:* a random walk over bounces needs a spectral radius of
+//! |K| below 1, and a dihedral of 1.5λ has 1.10, one of 4.5λ 3.13, where K itself has 0.40.
 //!
 //! Lengths in metres, E in V/m, e^{+jωt}.
 

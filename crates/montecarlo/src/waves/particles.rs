@@ -1,7 +1,9 @@
 //! Field particles: rays from the receiver, dA = R² dω/|cosθ| where they pierce a surface.
 //!
-//! The second bounce at q takes two partners q′: an even point of all surfaces, and where a ray from q ends, cosine-distributed about the normal or about the mirror image of the
-//! direction to the receiver (specular-guided). By the balance heuristic either weighs 1/(1/A + p_ω |cosθ′|/R²), which is at most A: nothing seen edge-on bursts.
+//! The second bounce at q takes two partners q′: an even point of all surfaces, and where a ray
+//! from q ends, cosine-distributed about the normal or about the mirror image of the direction to
+//! the receiver (specular-guided). By the balance heuristic either weighs 1/(1/A + p_ω |cosθ′|/R²),
+//! which is at most A: nothing seen edge-on bursts.
 
 use super::aim::{Aim, Directions, shown};
 use super::scattering::Spot;
@@ -109,7 +111,8 @@ impl Partner {
         (direction.dot(normal) > 0.0).then(|| problem.met(self.spot.point, direction)).flatten()
     }
 
-    /// The frame about the mirror direction on the side of a normal, or straight on where the receiver is on the other.
+    /// The frame about the mirror direction on the side of a normal, or straight on where the
+    /// receiver is on the other.
     fn lobe(&self, normal: Vec3) -> Frame {
         let away = (self.receiver - self.spot.point).normalize_or(normal);
         let mirrored = normal * (2.0 * normal.dot(away)) - away;

@@ -144,7 +144,8 @@ impl<'a> Scattering<'a> {
         self.optics.at(spot.facet, spot.point).j
     }
 
-    /// J₂ at `spot` of the first current of `area` m² at `from`, A/m; 0 where they do not face each other. Visibility is not asked.
+    /// J₂ at `spot` of the first current of `area` m² at `from`, A/m; 0 where they do not face each
+    /// other. Visibility is not asked.
     pub(super) fn second(&self, spot: Spot, from: Spot, area: f64) -> ComplexVector {
         let (here, there) = (self.facet(spot), self.facet(from));
         let between = from.point - spot.point;
@@ -173,7 +174,8 @@ impl<'a> Scattering<'a> {
     }
 }
 
-/// The place of a number in [0, 1) among running sums, and what is left of the number, even again in [0, 1).
+/// The place of a number in [0, 1) among running sums, and what is left of the number, even again
+/// in [0, 1).
 pub(super) fn pick(cumulated: &[f64], u: f64) -> (usize, f64) {
     let place = u * cumulated.last().copied().unwrap_or(0.0);
     let at = cumulated.partition_point(|&end| end <= place).min(cumulated.len() - 1);

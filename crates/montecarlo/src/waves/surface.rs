@@ -1,6 +1,8 @@
-//! Direct sampling of the surface: q even on the surfaces, weight A; of the second bounce q and q′, weight A².
+//! Direct sampling of the surface: q even on the surfaces, weight A; of the second bounce q and q′,
+//! weight A².
 //!
-//! The weight has no cosine: nothing bursts in the plane of a plate. Samples serve all receivers at once, so that this is the light tracer with receivers too.
+//! The weight has no cosine: nothing bursts in the plane of a plate. Samples serve all receivers at
+//! once, so that this is the light tracer with receivers too.
 
 use super::{FieldEstimator, Scattering};
 use crate::light::Batch;

@@ -41,14 +41,16 @@ impl FieldEstimate {
         errors.chunks_exact(NUMBERS).map(|row| row.iter().map(|s| s * s).sum::<f64>().sqrt()).collect()
     }
 
-    /// Standard errors of the real and the imaginary part of each component at each receiver: x, y, z, real parts first.
+    /// Standard errors of the real and the imaginary part of each component at each receiver: x, y,
+    /// z, real parts first.
     #[must_use]
     pub fn component_errors(&self) -> Vec<[f64; NUMBERS]> {
         let errors = self.moments.standard_errors();
         errors.chunks_exact(NUMBERS).map(|row| std::array::from_fn(|i| row[i])).collect()
     }
 
-    /// √(Σ s²/Σ |E|²) over the receivers: what a target error is compared with. Infinite below two batches.
+    /// √(Σ s²/Σ |E|²) over the receivers: what a target error is compared with. Infinite below two
+    /// batches.
     #[must_use]
     pub fn relative_error(&self) -> f64 {
         let square = |values: &[f64]| values.iter().map(|x| x * x).sum::<f64>();
@@ -102,8 +104,8 @@ impl<'a> FieldTracing<'a> {
         }
     }
 
-    /// Goes on until the run is to end or `watch`, which is told between waves of batches how far it is, breaks; the same bits for any number of threads and
-    /// of continuations.
+    /// Goes on until the run is to end or `watch`, which is told between waves of batches how far
+    /// it is, breaks; the same bits for any number of threads and of continuations.
     ///
     /// # Errors
     /// [`MonteCarloError::Foreign`] for a state of other settings.

@@ -318,15 +318,16 @@ impl Blobs<'_> {
         let lawful = (0..bands).all(|band| holds(field, &laws, band));
         let mut light = Light { exposed: self.exposed(field)?, ..Light::default() };
         for band in 0..bands {
-            light.irradiance.push(self.values(lane(field.irradiance(), band, bands))?);
+            light.irradiance.push(self.values(of_band(field.irradiance(), band, bands))?);
             let stored = !lawful && !holds(field, &laws, band);
-            let radiosity = stored.then(|| self.values(lane(field.radiosity(), band, bands))).transpose()?;
+            let radiosity =
+                stored.then(|| self.values(of_band(field.radiosity(), band, bands))).transpose()?;
             light.radiosity.push(radiosity);
         }
         // Only the law gives the radiosity of a step.
         let fits = |step: &&FieldStep| lawful && step.irradiance.len() == field.irradiance().len();
         for step in steps.iter().filter(fits) {
-            let packed = (0..bands).map(|band| self.values(lane(&step.irradiance, band, bands)));
+            let packed = (0..bands).map(|band| self.values(of_band(&step.irradiance, band, bands)));
             light
                 .steps
                 .push(Step { label: step.label.clone(), irradiance: packed.collect::<io::Result<_>>()? });
@@ -361,7 +362,7 @@ impl Blobs<'_> {
 }
 
 /// One band of leaf-major values.
-fn lane(values: &[f64], band: usize, bands: usize) -> impl Iterator<Item = f64> + Clone + '_ {
+fn of_band(values: &[f64], band: usize, bands: usize) -> impl Iterator<Item = f64> + Clone + '_ {
     values.iter().skip(band).step_by(bands.max(1)).copied()
 }
 

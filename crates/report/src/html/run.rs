@@ -6,7 +6,7 @@ use super::plot::{ReportAxis, ReportPlot, ReportSeries};
 use super::table::{ReportCell, ReportColumn, ReportTable};
 use crate::mean::Means;
 use crate::words::{count, number, percent};
-use crate::{Energy, Field, Hierarchy, MeshError, Picture, RunRecord, Timing};
+use crate::{Closure, Energy, Field, Hierarchy, MeshError, Picture, RunRecord, Timing};
 
 impl<'a> ReportPage<'a> {
     /// The page of a solved scene, called `title`. The model shows the field; the picture stands
@@ -135,13 +135,40 @@ fn form_factors(run: &RunRecord) -> Option<String> {
     Some(format!("The form factors of a row are off by about {} together at most{asked}.", number(row)))
 }
 
+/// Where light goes that row sums lack, or how far they are from 1 where nothing is open; and what sees nothing.
 fn closure(run: &RunRecord) -> Option<String> {
-    let largest = run.closure.max?;
-    let mean = run.closure.mean.map(|m| format!(", by {} in the mean", number(m))).unwrap_or_default();
-    let place = run.closure.worst_surface.as_ref();
+    let found = &run.closure;
+    let ends = [(found.open, "is empty"), (found.backs, "is backs of one-sided surfaces, which are black")];
+    let ends: Vec<String> = ends
+        .into_iter()
+        .filter_map(|(share, what)| share.filter(|&share| share > 0.0).map(|share| (share, what)))
+        .map(|(share, what)| format!("{} {what}", percent(share)))
+        .collect();
+    let seen = if ends.is_empty() {
+        row_sums(found)?
+    } else {
+        let missing = found.missing.map(|m| format!("; the form factors lack {}", percent(m)));
+        format!("Of what the surfaces see, {}{}.", ends.join(", "), missing.unwrap_or_default())
+    };
+    let blind = found.blind.filter(|&share| share > 0.0);
+    let blind = blind.map(|share| {
+        format!(
+            " {} of the area sees nothing: other surfaces stand on it, it lies on one, or it looks into \
+             the void.",
+            percent(share)
+        )
+    });
+    Some(seen + &blind.unwrap_or_default())
+}
+
+fn row_sums(found: &Closure) -> Option<String> {
+    let largest = found.max?;
+    let mean = found.mean.map(|m| format!(", by {} in the mean", number(m))).unwrap_or_default();
+    let place = found.worst_surface.as_ref();
     let place = place.map(|name| format!(", most on surface {name}")).unwrap_or_default();
+    let open = if found.rays.is_none() { "; openings count as well" } else { "" };
     Some(format!(
-        "Row sums of the form factors differ from 1 by {} at most{mean}{place}; openings count as well.",
+        "Row sums of the form factors differ from 1 by {} at most{mean}{place}{open}.",
         number(largest)
     ))
 }

@@ -1,7 +1,8 @@
-//! `faces.csv` of a stochastic run: means of the irradiance over input faces with their standard errors.
+//! `faces.csv` of a stochastic run: means of the irradiance over input faces with their standard
+//! errors.
 //!
-//! Columns: `face` (number, from 0), `surface` (name), `cx, cy, cz` (centroid, m), `area` (m²), then band by band `irradiance_BAND` and
-//! `standard_error_BAND` (W/m²).
+//! Columns: `face` (number, from 0), `surface` (name), `cx, cy, cz` (centroid, m), `area` (m²),
+//! then band by band `irradiance_BAND` and `standard_error_BAND` (W/m²).
 
 use std::io::{self, Write};
 
@@ -47,11 +48,11 @@ impl<'a> FaceEstimates<'a> {
 /// # Errors
 /// What `out` reports.
 pub fn write_face_estimates(faces: &FaceEstimates<'_>, out: &mut dyn Write) -> io::Result<()> {
-    let lanes = faces.bands.len();
+    let bands = faces.bands.len();
     header(out, COLUMNS, &["irradiance", "standard_error"], faces.bands)?;
     for face in 0..faces.mesh.faces().len() {
         place(faces.mesh, face, out)?;
-        let at = face * lanes..(face + 1) * lanes;
+        let at = face * bands..(face + 1) * bands;
         numbers(out, at.flat_map(|at| [faces.irradiance[at], faces.error[at]]))?;
         writeln!(out)?;
     }

@@ -1,7 +1,8 @@
 //! Whether lit sides face each other.
 //!
-//! Patch j can receive light from patch i only where a part of each lies in front of the plane of the other. Patches
-//! are convex, so it is enough to look at corners. Nothing in between is looked at.
+//! Patch j can receive light from patch i only where a part of each lies in front of the plane of
+//! the other. Patches are convex, so it is enough to look at corners. Nothing in between is looked
+//! at.
 
 use fredholm_mesh::{Mesh, Patch, Vec3};
 
@@ -11,7 +12,8 @@ use crate::scene::Scene;
 
 /// Sine of the angle above a plane, up to which a corner counts as lying in it.
 const GRAZING: f64 = 1e-9;
-/// Most patches that are compared with each other; of larger scenes, every n-th patch of every surface.
+/// Most patches that are compared with each other; of larger scenes, every n-th patch of every
+/// surface.
 const SAMPLES: usize = 4000;
 
 const HELP: &str = "a face is lit on the side from which its corners run counter-clockwise: \

@@ -38,12 +38,13 @@ impl fmt::Display for Warning {
 }
 
 impl Scene {
-    /// Looks at a mesh of this scene as a whole: whether anything emits, whether lit sides face each other, whether faces lie on each other and
-    /// objects are turned inside out. What was read from material libraries and what was mended comes first.
+    /// Looks at a mesh of this scene as a whole: whether anything emits, whether lit sides face
+    /// each other, whether faces lie on each other and objects are turned inside out. What was read
+    /// from material libraries and what was mended comes first.
     ///
     /// # Errors
-    /// [`ErrorKind::Inverted`](crate::ErrorKind::Inverted) where no lit side can receive light, as in a room whose
-    /// walls are lit outside.
+    /// [`ErrorKind::Inverted`](crate::ErrorKind::Inverted) where no lit side can receive light, as
+    /// in a room whose walls are lit outside.
     pub fn check(&self, mesh: &Mesh) -> Result<Vec<Warning>, SceneError> {
         let mut warnings: Vec<Warning> = self.notes().to_vec();
         warnings.extend(lamps::check(self, mesh));

@@ -1,4 +1,5 @@
-//! Surfaces that lie on each other and are lit on the same side: light would be counted twice, so each place is left to one of them.
+//! Surfaces that lie on each other and are lit on the same side: light would be counted twice, so
+//! each place is left to one of them.
 
 use std::collections::BTreeMap;
 

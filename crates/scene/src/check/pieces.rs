@@ -35,7 +35,8 @@ impl Pieces {
         Ok(Self { overlap, ..pieces })
     }
 
-    /// What would be counted twice: pieces that lie on each other and are lit on the same side, backs included.
+    /// What would be counted twice: pieces that lie on each other and are lit on the same side,
+    /// backs included.
     pub fn doubled(&self) -> impl Iterator<Item = &Overlap> {
         let has_back = |piece: &u32| self.two_sided[self.part_of[*piece as usize]];
         self.contacts.overlaps.iter().filter(move |o| o.same_side || o.pieces.iter().any(has_back))

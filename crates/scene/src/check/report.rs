@@ -66,8 +66,9 @@ pub struct Shown {
 }
 
 impl Scene {
-    /// Looks at the pieces of the surfaces as they come: sides that are open, shared by too many or run along in one direction by both neighbours, pieces that
-    /// are repeated, thin, buried, cross or lie on each other, objects that are lit inside, and the unit of length.
+    /// Looks at the pieces of the surfaces as they come: sides that are open, shared by too many or
+    /// run along in one direction by both neighbours, pieces that are repeated, thin, buried, cross
+    /// or lie on each other, objects that are lit inside, and the unit of length.
     ///
     /// ```
     /// let text = "[materials.clay]\nreflectance = 0.5\n[[surface]]\nname = \"a\"\nmaterial = \"clay\"\n\

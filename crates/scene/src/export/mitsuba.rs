@@ -1,4 +1,5 @@
-//! Mitsuba 3: a PLY file of triangles a surface, diffuse BSDFs, area emitters, a perspective sensor.
+//! Mitsuba 3: a PLY file of triangles a surface, diffuse BSDFs, area emitters, a perspective
+//! sensor.
 
 use std::collections::HashMap;
 use std::fmt::Write;
@@ -11,7 +12,8 @@ use crate::resolve::Camera;
 pub(super) fn export(outline: &Outline, stem: &str) -> Exported {
     let (joined, mut notes) = back_to_back(outline);
     let outline = &joined;
-    // No two things may have the same id: surfaces keep their names, materials get a number where need be.
+    // No two things may have the same id: surfaces keep their names, materials get a number where
+    // need be.
     let surfaces = outline.surfaces.iter().map(|surface| surface.name.as_str());
     let mut names = words(surfaces.chain(outline.materials.iter().map(|material| material.name.as_str())));
     let materials = names.split_off(outline.surfaces.len());
@@ -83,8 +85,8 @@ fn back_to_back(outline: &Outline) -> (Outline, Vec<String>) {
     (joined, notes)
 }
 
-/// Where faces are, whichever comes first and whichever corner each begins with; as seen from behind,
-/// if they are turned. The fourth corner of a triangle is its first.
+/// Where faces are, whichever comes first and whichever corner each begins with; as seen from
+/// behind, if they are turned. The fourth corner of a triangle is its first.
 fn faces_in_order(faces: &[Vec<Vec3>], turned: bool) -> Vec<[[u64; 3]; 4]> {
     let place = |face: &Vec<Vec3>| {
         // Both zeros are one.

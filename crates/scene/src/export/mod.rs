@@ -1,8 +1,8 @@
-//! A scene in the formats of others: the flat pieces of its surfaces, what they reflect and emit in red,
-//! green and blue, and its camera.
+//! A scene in the formats of others: the flat pieces of its surfaces, what they reflect and emit in
+//! red, green and blue, and its camera.
 //!
-//! A format is one file in this folder and one row of [`ExportFormat::ALL`]. The radiance of an emitter
-//! is M/π, where M is its exitance.
+//! A format is one file in this folder and one row of [`ExportFormat::ALL`]. The radiance of an
+//! emitter is M/π, where M is its exitance.
 
 mod glb;
 mod gmsh;
@@ -129,8 +129,8 @@ pub struct Exported {
 }
 
 impl Scene {
-    /// The surfaces as others read them, in red, green and blue. Of a scene with other bands, one is
-    /// taken for grey.
+    /// The surfaces as others read them, in red, green and blue. Of a scene with other bands, one
+    /// is taken for grey.
     ///
     /// # Errors
     /// [`ErrorKind::Name`] for a scene with several bands that are no colours, and for an unknown
@@ -251,8 +251,8 @@ impl Outline {
         }
     }
 
-    /// The same with fronts only, the light around a mesh file left out, and names without the first
-    /// part, which stands for the file.
+    /// The same with fronts only, the light around a mesh file left out, and names without the
+    /// first part, which stands for the file.
     #[must_use]
     pub fn bare(mut self, scene: &Scene) -> Self {
         let sky: Vec<&str> =

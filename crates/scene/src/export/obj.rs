@@ -1,4 +1,5 @@
-//! Wavefront OBJ with a material library: an object a surface, `Kd` the reflectance, `Ke` the radiance.
+//! Wavefront OBJ with a material library: an object a surface, `Kd` the reflectance, `Ke` the
+//! radiance.
 
 use std::fmt::Write;
 

@@ -1,7 +1,8 @@
 //! pbrt-v4: triangle meshes, diffuse materials, diffuse area lights, a perspective camera.
 //!
-//! Format: M. Pharr, W. Jakob, G. Humphreys, pbrt-v4 input file format. Camera space is left-handed,
-//! hence the scale by −1 along x; the angle of view is that along the shorter side of the picture.
+//! Format: M. Pharr, W. Jakob, G. Humphreys, pbrt-v4 input file format. Camera space is
+//! left-handed, hence the scale by −1 along x; the angle of view is that along the shorter side of
+//! the picture.
 
 use std::fmt::Write;
 

@@ -16,12 +16,14 @@ pub(crate) struct CameraEntry {
     pub target: Triple,
     /// Direction that points up in the picture. Default: [0, 0, 1].
     pub up: Option<Triple>,
-    /// Angle from the lower to the upper edge of the picture, degrees, above 0 and below 180. Default: 45.
+    /// Angle from the lower to the upper edge of the picture, degrees, above 0 and below 180.
+    /// Default: 45.
     pub vertical_fov_degrees: Option<At<f64>>,
     /// Width of the picture in pixels, 1 to 16384. Default: 800.
     pub width: Option<At<u32>>,
     /// Height of the picture in pixels, 1 to 16384. Default: 800.
     pub height: Option<At<u32>>,
-    /// Factor on the brightness of the picture, above 0. Default: chosen from the light in the scene.
+    /// Factor on the brightness of the picture, above 0. Default: chosen from the light in the
+    /// scene.
     pub exposure: Option<At<f64>>,
 }

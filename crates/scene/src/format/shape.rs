@@ -31,7 +31,8 @@ pub(crate) struct Shapes<'a> {
 pub(crate) struct PolygonEntry {
     /// Corners of the border, m, counter-clockwise seen from the lit side.
     pub outline: Vec<Triple>,
-    /// Corners of each hole, m, either way round. Holes touch neither each other nor the border. Default: none.
+    /// Corners of each hole, m, either way round. Holes touch neither each other nor the border.
+    /// Default: none.
     #[serde(default)]
     pub holes: Vec<Vec<Triple>>,
 }
@@ -81,7 +82,8 @@ pub(crate) struct DiscEntry {
     pub segments: Option<At<u32>>,
 }
 
-/// A cylinder of flat quads, with triangles for its caps, with exactly the area of the true cylinder.
+/// A cylinder of flat quads, with triangles for its caps, with exactly the area of the true
+/// cylinder.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a table of a cylinder")]
 #[schemars(rename = "Cylinder")]
@@ -101,8 +103,9 @@ pub(crate) struct CylinderEntry {
     pub segments: Option<At<u32>>,
 }
 
-/// Faces from a mesh file: OBJ, STL, PLY, glTF (.gltf, .glb), Gmsh 4.1 (.msh), Radiance (.rad), Mitsuba 3 (.xml) or
-/// View3D (.vs3), known by the ending of its name. Every object, group, solid or node becomes a surface called NAME/object.
+/// Faces from a mesh file: OBJ, STL, PLY, glTF (.gltf, .glb), Gmsh 4.1 (.msh), Radiance (.rad),
+/// Mitsuba 3 (.xml) or View3D (.vs3), known by the ending of its name. Every object, group, solid
+/// or node becomes a surface called NAME/object.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a table of a mesh file")]
 #[schemars(rename = "Mesh")]
@@ -115,9 +118,10 @@ pub(crate) struct MeshFileEntry {
     pub turn: Option<Turn>,
     /// Moved after turning, m. Default: [0, 0, 0].
     pub translate: Option<Triple>,
-    /// Material of the scene for each material of the file; for faces without one, for each object. Default: the one of
-    /// the same name as the material, else what the file or its material library says: the reflectance, and the exitance
-    /// π L of a radiance L (in an .mtl file Kd and Ke).
+    /// Material of the scene for each material of the file; for faces without one, for each object.
+    /// Default: the one of the same name as the material, else what the file or its material
+    /// library says: the reflectance, and the exitance π L of a radiance L (in an .mtl file Kd and
+    /// Ke).
     #[serde(default)]
     pub materials: BTreeMap<At<String>, At<String>>,
 }

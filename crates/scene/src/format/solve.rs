@@ -10,7 +10,8 @@ use super::At;
 #[serde(deny_unknown_fields, expecting = "a table of solver settings")]
 #[schemars(rename = "Solve")]
 pub(crate) struct SolveEntry {
-    /// Name of the discretisation, such as "galerkin-1". Default: "galerkin-0", constants on the elements.
+    /// Name of the discretisation, such as "galerkin-1". Default: "galerkin-0", constants on the
+    /// elements.
     pub discretisation: Option<At<String>>,
     /// Name of the solver. Default: chosen by the program.
     pub solver: Option<At<String>>,
@@ -18,9 +19,11 @@ pub(crate) struct SolveEntry {
     pub tolerance: Option<At<f64>>,
     /// Most iterations, at least 1. Default: chosen by the program.
     pub max_iterations: Option<At<u64>>,
-    /// Largest estimated error of a form factor, above 0 and below 1. Default: chosen by the program.
+    /// Largest estimated error of a form factor, above 0 and below 1. Default: chosen by the
+    /// program.
     pub form_factor_tolerance: Option<At<f64>>,
-    /// Relative error of the irradiance of faces to reach, above 0 and below 1: elements are then chosen by the program. Default: elements as given.
+    /// Relative error of the irradiance of faces to reach, above 0 and below 1: elements are then
+    /// chosen by the program. Default: elements as given.
     pub accuracy: Option<At<f64>>,
     /// Precision in which form factors are stored. Default: "f64".
     pub storage: Option<StorageEntry>,

@@ -1,5 +1,5 @@
-//! A place in the bytes of a file that moves forwards and never past the end: what a header promises
-//! takes no memory, since every number is fetched from bytes that are there.
+//! A place in the bytes of a file that moves forwards and never past the end: what a header
+//! promises takes no memory, since every number is fetched from bytes that are there.
 
 use std::ops::Range;
 

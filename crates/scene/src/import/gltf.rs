@@ -1,11 +1,12 @@
-//! glTF 2.0, as JSON (.gltf) or binary (.glb): the triangles of the meshes at the nodes of the scene.
+//! glTF 2.0, as JSON (.gltf) or binary (.glb): the triangles of the meshes at the nodes of the
+//! scene.
 //!
-//! Format: Khronos Group, glTF 2.0 Specification (ISO/IEC 12113:2022). Lengths are metres. A point of
-//! a mesh comes to stand at G p, where G is the product of the matrices of the nodes from the root;
-//! where its determinant is negative, the corners run the other way round (§3.7.4). The reflectance
-//! is `baseColorFactor`; `emissiveFactor`, times the strength of `KHR_materials_emissive_strength`,
-//! is the radiance. Pictures, skins, morph targets and lights without a surface are not read, which
-//! is told.
+//! Format: Khronos Group, glTF 2.0 Specification (ISO/IEC 12113:2022). Lengths are metres. A point
+//! of a mesh comes to stand at G p, where G is the product of the matrices of the nodes from the
+//! root; where its determinant is negative, the corners run the other way round (§3.7.4). The
+//! reflectance is `baseColorFactor`; `emissiveFactor`, times the strength of
+//! `KHR_materials_emissive_strength`, is the radiance. Pictures, skins, morph targets and lights
+//! without a surface are not read, which is told.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;

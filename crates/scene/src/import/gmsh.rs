@@ -1,8 +1,8 @@
 //! Gmsh meshes (.msh), version 4.1, as text or binary: triangles and quads of surfaces.
 //!
-//! Format: C. Geuzaine, J.-F. Remacle, Gmsh Reference Manual, "MSH file format". A physical group of
-//! surfaces is a surface; where a surface belongs to several, the first counts. Points, lines and
-//! volumes are passed over. Elements with curved sides are taken as flat between their corners,
+//! Format: C. Geuzaine, J.-F. Remacle, Gmsh Reference Manual, "MSH file format". A physical group
+//! of surfaces is a surface; where a surface belongs to several, the first counts. Points, lines
+//! and volumes are passed over. Elements with curved sides are taken as flat between their corners,
 //! which is told.
 
 use std::collections::{BTreeMap, HashMap};

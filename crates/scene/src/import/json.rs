@@ -1,4 +1,5 @@
-//! JSON (RFC 8259) whose values know where they stand, so that errors about their meaning name a place.
+//! JSON (RFC 8259) whose values know where they stand, so that errors about their meaning name a
+//! place.
 
 use std::ops::Range;
 

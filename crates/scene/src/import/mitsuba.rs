@@ -1,9 +1,10 @@
-//! Mitsuba 3 scenes (.xml) of diffuse surfaces: rectangles, cubes, OBJ and PLY meshes, area emitters.
+//! Mitsuba 3 scenes (.xml) of diffuse surfaces: rectangles, cubes, OBJ and PLY meshes, area
+//! emitters.
 //!
-//! Format: W. Jakob et al., Mitsuba 3 documentation, "Scene format" and the pages of the plugins. The
-//! steps of a transformation are carried out one after the other. A BSDF without a reflectance, and
-//! a shape without a BSDF, reflect 0.5. The radiance of an area emitter is taken as it stands. What
-//! is not diffuse, lights without a surface, volumes and includes are refused: without them it
+//! Format: W. Jakob et al., Mitsuba 3 documentation, "Scene format" and the pages of the plugins.
+//! The steps of a transformation are carried out one after the other. A BSDF without a reflectance,
+//! and a shape without a BSDF, reflect 0.5. The radiance of an area emitter is taken as it stands.
+//! What is not diffuse, lights without a surface, volumes and includes are refused: without them it
 //! would be another scene.
 
 use std::collections::HashMap;
@@ -549,8 +550,8 @@ fn linear(byte: u8) -> f64 {
     if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
 }
 
-/// The angle from the lower to the upper edge, degrees, from the one along an axis of a picture that
-/// is `aspect` times as wide as high.
+/// The angle from the lower to the upper edge, degrees, from the one along an axis of a picture
+/// that is `aspect` times as wide as high.
 fn vertical(fov: f64, axis: &str, aspect: f64) -> f64 {
     let tangent = (0.5 * fov.to_radians()).tan();
     let half = match axis {

@@ -33,7 +33,8 @@ pub(crate) use mtl::{MeshMaterial, mesh_materials};
 /// Most corners of a face: it is cut into triangles in a time that grows with their square.
 const MOST_CORNERS: usize = 10_000;
 
-/// Most faces of a file that may name the same mesh many times: a small file could ask for any number.
+/// Most faces of a file that may name the same mesh many times: a small file could ask for any
+/// number.
 const MOST_FACES: usize = 20_000_000;
 
 /// Endings of the names of files that [`import`] reads, and what they are.

@@ -1,7 +1,8 @@
 //! Wavefront material libraries (.mtl): names, diffuse colours (`Kd`) and emission (`Ke`).
 //!
-//! Format: Wavefront Technologies, Advanced Visualizer Manual, appendix B2; `Ke` is a later custom. Everything else, such as
-//! gloss, transparency and pictures, does not apply to diffuse surfaces and is passed over; pictures are told.
+//! Format: Wavefront Technologies, Advanced Visualizer Manual, appendix B2; `Ke` is a later custom.
+//! Everything else, such as gloss, transparency and pictures, does not apply to diffuse surfaces
+//! and is passed over; pictures are told.
 
 use std::ops::Range;
 
@@ -12,7 +13,8 @@ use crate::source::Source;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct MeshMaterial {
     pub name: String,
-    /// Diffuse reflectance of red, green and blue, and where it stands; none where the library does not say.
+    /// Diffuse reflectance of red, green and blue, and where it stands; none where the library does
+    /// not say.
     pub diffuse: Option<([f64; 3], Range<usize>)>,
     /// Emitted red, green and blue, and where they stand.
     pub emission: Option<([f64; 3], Range<usize>)>,

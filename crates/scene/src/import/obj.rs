@@ -1,8 +1,9 @@
 //! Wavefront OBJ: corners, faces, objects and material names.
 //!
-//! Format: Wavefront Technologies, Advanced Visualizer Manual, appendix B1. Indices count from 1; negative ones count
-//! back from the last corner read so far. Texture coordinates, normals, lines and points are passed over; free-form
-//! surfaces are refused, since a part of the geometry would be missing without notice.
+//! Format: Wavefront Technologies, Advanced Visualizer Manual, appendix B1. Indices count from 1;
+//! negative ones count back from the last corner read so far. Texture coordinates, normals, lines
+//! and points are passed over; free-form surfaces are refused, since a part of the geometry would
+//! be missing without notice.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;

@@ -1,7 +1,9 @@
-//! PLY, the Stanford polygon format: vertices and faces, as text or binary in either order of bytes.
+//! PLY, the Stanford polygon format: vertices and faces, as text or binary in either order of
+//! bytes.
 //!
 //! Format: G. Turk, The PLY Polygon File Format, 1994. Of the vertices x, y and z are read, of the
-//! faces the list `vertex_indices` or `vertex_index`; other elements and properties are passed over.
+//! faces the list `vertex_indices` or `vertex_index`; other elements and properties are passed
+//! over.
 
 use std::ops::Range;
 use std::path::Path;

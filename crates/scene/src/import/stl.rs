@@ -1,9 +1,9 @@
 //! STL: triangles, as text or binary.
 //!
-//! Format: 3D Systems, StereoLithography Interface Specification, 1988. A binary file is a header of
-//! 80 bytes, the number of triangles (u32) and 50 bytes a triangle: normal, three corners (f32),
-//! and two bytes that are passed over. All numbers are little endian. Normals are not read: the
-//! lit side is the one from which the corners run counter-clockwise.
+//! Format: 3D Systems, StereoLithography Interface Specification, 1988. A binary file is a header
+//! of 80 bytes, the number of triangles (u32) and 50 bytes a triangle: normal, three corners (f32),
+//! and two bytes that are passed over. All numbers are little endian. Normals are not read: the lit
+//! side is the one from which the corners run counter-clockwise.
 
 use std::path::Path;
 

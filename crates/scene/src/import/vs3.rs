@@ -1,7 +1,9 @@
-//! View3D geometry (.vs3), vertices and surfaces (`F 3`): what radiates, what only blocks the view, what is combined.
+//! View3D geometry (.vs3), vertices and surfaces (`F 3`): what radiates, what only blocks the view,
+//! what is combined.
 //!
-//! Format: G. N. Walton, *Calculation of Obstructed View Factors by Adaptive Integration*, NISTIR 6925, 2002, and the View3D
-//! user manual, version 3.3. A record is a line; its first letter, in either case, says which:
+//! Format: G. N. Walton, *Calculation of Obstructed View Factors by Adaptive Integration*, NISTIR
+//! 6925, 2002, and the View3D user manual, version 3.3. A record is a line; its first letter, in
+//! either case, says which:
 //!
 //! | record | contents |
 //! |---|---|
@@ -14,7 +16,8 @@
 //! | `!`, `/` | comment |
 //! | `E`, `*` | end |
 //!
-//! Vertices run counter-clockwise seen from the front. Masks (`M`), null surfaces (`N`) and the form `3a` are refused.
+//! Vertices run counter-clockwise seen from the front. Masks (`M`), null surfaces (`N`) and the
+//! form `3a` are refused.
 
 use std::ops::Range;
 
@@ -25,7 +28,8 @@ use crate::error::{ErrorKind, SceneError};
 use crate::source::Source;
 use crate::suggest::among;
 
-/// Controls that View3D knows. Those that no function here reads steer how View3D integrates or what it prints.
+/// Controls that View3D knows. Those that no function here reads steer how View3D integrates or
+/// what it prints.
 const CONTROLS: [&str; 13] =
     ["eps", "encl", "emit", "out", "list", "maxu", "maxo", "mino", "maxd", "maxv", "row", "col", "prjd"];
 

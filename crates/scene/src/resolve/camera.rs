@@ -25,7 +25,8 @@ pub struct Camera {
     pub width: u32,
     /// Height of the picture, pixels.
     pub height: u32,
-    /// Factor on the brightness of the picture; `None` where it is to be chosen from the light in the scene.
+    /// Factor on the brightness of the picture; `None` where it is to be chosen from the light in
+    /// the scene.
     pub exposure: Option<f64>,
 }
 

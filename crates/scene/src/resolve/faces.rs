@@ -1,4 +1,5 @@
-//! Faces as files give them, made fit to be meshed: corners that are given twice, faces without area, quads that rounding has bent.
+//! Faces as files give them, made fit to be meshed: corners that are given twice, faces without
+//! area, quads that rounding has bent.
 
 use fredholm_mesh::{Cutting, Flattened, MeshError, Shape, Vec3, flatten};
 

@@ -1,8 +1,8 @@
-//! Materials from mesh files and their libraries: a reflectance, and the exitance π L of a radiance L (in a
-//! material library Kd and Ke, as renderers take them).
+//! Materials from mesh files and their libraries: a reflectance, and the exitance π L of a radiance
+//! L (in a material library Kd and Ke, as renderers take them).
 //!
-//! A colour goes to the bands r, g, b (or red, green, blue); a grey one to any bands, and any to a single band as its luminance
-//! 0.2126 r + 0.7152 g + 0.0722 b (ITU-R BT.709).
+//! A colour goes to the bands r, g, b (or red, green, blue); a grey one to any bands, and any to a
+//! single band as its luminance 0.2126 r + 0.7152 g + 0.0722 b (ITU-R BT.709).
 
 use std::f64::consts::PI;
 use std::fmt::Write;
@@ -61,7 +61,8 @@ pub(crate) fn own(imported: &Imported) -> Library {
     Library { source, materials, terms }
 }
 
-/// Reads the libraries of a mesh file; with `lenient`, those that cannot be read are told and passed over.
+/// Reads the libraries of a mesh file; with `lenient`, those that cannot be read are told and
+/// passed over.
 pub(super) fn read(
     context: &mut Context,
     file: &MeshFileEntry,
@@ -105,7 +106,8 @@ pub(crate) fn load(
     Ok(Library { source: Arc::new(source), materials, terms: MTL })
 }
 
-/// Index of the material that a library defines by this name; it is added where it is new. None where no library says anything of it.
+/// Index of the material that a library defines by this name; it is added where it is new. None
+/// where no library says anything of it.
 pub(super) fn find(
     context: &mut Context,
     libraries: &[Library],

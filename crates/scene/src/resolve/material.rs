@@ -1,4 +1,5 @@
-//! Materials: reflectance ρ in [0, 1), so that B = M + ρ E has a solution, and exitance M ≥ 0 in W/m².
+//! Materials: reflectance ρ in [0, 1), so that B = M + ρ E has a solution, and exitance M ≥ 0 in
+//! W/m².
 
 use std::ops::Range;
 

@@ -1,4 +1,5 @@
-//! From what is written in a scene file to what it means: ranges, names and geometry are checked here.
+//! From what is written in a scene file to what it means: ranges, names and geometry are checked
+//! here.
 
 mod bands;
 mod camera;
@@ -31,7 +32,8 @@ pub use camera::Camera;
 pub use material::Material;
 pub use solve::{SolveDefaults, Storage};
 
-/// Most elements of a scene: about 20 GB of mesh, and well below the 2³² − 1 that an index can hold.
+/// Most elements of a scene: about 20 GB of mesh, and well below the 2³² − 1 that an index can
+/// hold.
 pub(crate) const MOST_ELEMENTS: u128 = 100_000_000;
 
 /// The meaning of a scene file.
@@ -77,7 +79,8 @@ struct Context<'a> {
     materials: Vec<Material>,
     /// How many of them are the scene's.
     own: usize,
-    /// What faces are made of that have no material, where a mesh file stands for a scene; none in a scene.
+    /// What faces are made of that have no material, where a mesh file stands for a scene; none in
+    /// a scene.
     fallback: Option<usize>,
 }
 
@@ -88,7 +91,8 @@ impl Context<'_> {
     }
 }
 
-/// Finds the meaning of a scene. `fallback` is the material of faces without one, where a mesh file stands for a scene.
+/// Finds the meaning of a scene. `fallback` is the material of faces without one, where a mesh file
+/// stands for a scene.
 pub(crate) fn resolve(
     source: &Source,
     scene: &SceneEntry,

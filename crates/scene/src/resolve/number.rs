@@ -6,7 +6,8 @@ use crate::error::{ErrorKind, SceneError};
 use crate::format::{At, Triple};
 use crate::source::Source;
 
-/// Largest coordinate, metres: its cube, and the product of two areas, are far from the end of the numbers.
+/// Largest coordinate, metres: its cube, and the product of two areas, are far from the end of the
+/// numbers.
 pub(crate) const FARTHEST: f64 = 1e30;
 
 /// A number without rows of zeros.

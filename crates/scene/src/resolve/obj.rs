@@ -1,7 +1,7 @@
 //! Surfaces from a mesh file: placed in the scene, their materials found by name.
 //!
-//! A point p of the file comes to stand at t + R (s p): scaled by s, turned by R (Rodrigues' rotation formula), moved
-//! by t.
+//! A point p of the file comes to stand at t + R (s p): scaled by s, turned by R (Rodrigues'
+//! rotation formula), moved by t.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -73,7 +73,8 @@ pub(super) fn parts(
     Ok((parts, two_sided))
 }
 
-/// The faces of all groups where they come to stand, fit to be meshed; what was done to them is noted.
+/// The faces of all groups where they come to stand, fit to be meshed; what was done to them is
+/// noted.
 pub(crate) fn mended(
     reading: &mut Reading,
     imported: &Imported,
@@ -132,7 +133,8 @@ pub(crate) fn load(reading: &mut Reading, file: &MeshFileEntry) -> Result<Import
     Ok(imported)
 }
 
-/// The material libraries, or `None` where there is none or where none is needed, since the scene has a material for every name.
+/// The material libraries, or `None` where there is none or where none is needed, since the scene
+/// has a material for every name.
 fn libraries(
     context: &mut Context,
     file: &MeshFileEntry,

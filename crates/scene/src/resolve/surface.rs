@@ -12,7 +12,8 @@ use crate::part::{Origin, Part};
 use crate::source::Source;
 use crate::suggest::among;
 
-/// The surfaces that an entry stands for: one, several from a file, and the backs of those that have two sides.
+/// The surfaces that an entry stands for: one, several from a file, and the backs of those that
+/// have two sides.
 pub(super) fn parts(context: &mut Context, entry: &SurfaceEntry) -> Result<Vec<Part>, SceneError> {
     let span = shape::only_shape(context.reading.source, &entry.shapes())?;
     let cutting = cutting::cutting(context.reading.source, context.scene, entry)?;
@@ -42,8 +43,8 @@ fn own_shape(source: &Source, entry: &SurfaceEntry) -> Result<Option<Shape>, Sce
     Err(source.value_error(cells, what, "remove skip, or make the surface a quad"))
 }
 
-/// Which parts have two sides: as the entry says, else those that the file `said` have, and the objects of a file whose faces
-/// are turned inconsistently.
+/// Which parts have two sides: as the entry says, else those that the file `said` have, and the
+/// objects of a file whose faces are turned inconsistently.
 fn two_sided(
     context: &mut Context,
     entry: &SurfaceEntry,

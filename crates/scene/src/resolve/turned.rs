@@ -1,5 +1,6 @@
-//! Objects of a file that are lit on both sides: those whose faces are turned inconsistently, since nobody knows which side is
-//! meant, and those that the file says to be two-sided, unless they are closed: nobody sees the inside.
+//! Objects of a file that are lit on both sides: those whose faces are turned inconsistently, since
+//! nobody knows which side is meant, and those that the file says to be two-sided, unless they are
+//! closed: nobody sees the inside.
 
 use fredholm_mesh::{Patch, Topology};
 
@@ -13,8 +14,8 @@ use crate::part::Part;
 /// Names that are listed.
 const LISTED: usize = 4;
 
-/// Which of the parts of one file have neighbouring faces that run along their common side in the same direction, or have two
-/// sides as the file `said` and an open border.
+/// Which of the parts of one file have neighbouring faces that run along their common side in the
+/// same direction, or have two sides as the file `said` and an open border.
 pub(super) fn two_sided(
     context: &mut Context,
     entry: &SurfaceEntry,

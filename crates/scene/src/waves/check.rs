@@ -1,9 +1,9 @@
 //! Mistakes that only the whole geometry shows.
 //!
 //! A point is inside a closed body where the solid angles of its faces, seen from the point, add up
-//! to ±4π; outside they add up to 0. A triangle with the corners a, b, c seen from the origin has the
-//! solid angle Ω with tan(Ω/2) = a·(b × c)/(abc + (a·b) c + (b·c) a + (c·a) b) (A. van Oosterom,
-//! J. Strackee, IEEE Trans. Biomed. Eng. 30 (1983) 125).
+//! to ±4π; outside they add up to 0. A triangle with the corners a, b, c seen from the origin has
+//! the solid angle Ω with tan(Ω/2) = a·(b × c)/(abc + (a·b) c + (b·c) a + (c·a) b) (A. van
+//! Oosterom, J. Strackee, IEEE Trans. Biomed. Eng. 30 (1983) 125).
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -313,7 +313,8 @@ fn crosses(patch: &Patch, [a, b]: [Vec3; 2], near: f64) -> bool {
     h * k <= 0.0 && (h - k).abs() > 0.0 && is_on(patch, a.lerp(b, h / (h - k)), near)
 }
 
-/// Sources without a field, and those so near to a surface that its facets do not follow their field.
+/// Sources without a field, and those so near to a surface that its facets do not follow their
+/// field.
 fn weak_or_near(scene: &WaveScene, pieces: &Pieces) -> Vec<Warning> {
     let waves = scene.waves();
     let shortest = waves.iter().map(fredholm_waves::Wave::wavelength).fold(f64::INFINITY, f64::min);
@@ -354,8 +355,9 @@ fn weak_or_near(scene: &WaveScene, pieces: &Pieces) -> Vec<Warning> {
     warnings
 }
 
-/// Refuses surfaces declared closed that have open sides, or faces turned differently. Where corners
-/// lie inside the sides of others, open sides may be closed by several, which is not told apart.
+/// Refuses surfaces declared closed that have open sides, or faces turned differently. Where
+/// corners lie inside the sides of others, open sides may be closed by several, which is not told
+/// apart.
 fn closed(scene: &WaveScene, pieces: &Pieces) -> Result<Option<Warning>, SceneError> {
     let Topology { open, clashes, junctions, .. } = &pieces.topology;
     let part = |piece: u32| pieces.part_of[piece as usize];

@@ -38,7 +38,8 @@ impl WaveScene {
     /// Finds how the surfaces are cut, and into how many facets.
     ///
     /// # Errors
-    /// [`SceneError`] with the surface that cannot be cut so, or into more facets than there may be.
+    /// [`SceneError`] with the surface that cannot be cut so, or into more facets than there may
+    /// be.
     pub fn cut(&self, cuts: Cuts) -> Result<Cut<'_>, SceneError> {
         let whole = cuts.whole && self.is_one_convex_shape();
         let (mut parts, mut facets) = (vec![], 0_u128);

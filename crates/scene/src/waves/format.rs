@@ -86,8 +86,8 @@ pub(crate) enum SourceEntry {
         from_theta_degrees: Option<f64>,
         /// φ of the direction that it comes from, degrees.
         from_phi_degrees: Option<f64>,
-        /// Direction of E: a vector, or "theta" or "phi" for θ̂ or φ̂ of the direction that the wave
-        /// comes from.
+        /// Direction of E: a vector, or "theta" or "phi" for θ̂ or φ̂ of the direction that the
+        /// wave comes from.
         polarisation: PolarisationEntry,
         /// Peak value of E, V/m. Default: 1.
         #[serde(default = "one")]
@@ -208,8 +208,8 @@ pub(crate) struct SurfaceEntry {
     /// Default: "lambda/10"; a single flat plate or box seen from far away in one bounce of plane
     /// waves is left whole.
     pub edge: Option<At<EdgeEntry>>,
-    /// Part of a closed body, not a thin sheet. Default: boxes, spheres and cylinders with caps are,
-    /// and the objects of a file that are closed.
+    /// Part of a closed body, not a thin sheet. Default: boxes, spheres and cylinders with caps
+    /// are, and the objects of a file that are closed.
     pub closed: Option<At<bool>>,
 }
 

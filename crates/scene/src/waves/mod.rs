@@ -2,9 +2,9 @@
 //!
 //! They are read as scenes of light are: the same located TOML, the same shapes and mesh files, the
 //! same suggestions for unknown names. [`WaveScene::load`] reads a file and refuses what makes no
-//! sense, [`WaveScene::cut`] says how the surfaces are cut for a wavelength and how many facets that
-//! gives, [`Cut::mesh`] cuts them, and [`WaveScene::check`] looks for mistakes that only the whole
-//! geometry shows.
+//! sense, [`WaveScene::cut`] says how the surfaces are cut for a wavelength and how many facets
+//! that gives, [`Cut::mesh`] cuts them, and [`WaveScene::check`] looks for mistakes that only the
+//! whole geometry shows.
 
 mod check;
 mod choices;

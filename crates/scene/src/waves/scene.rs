@@ -191,7 +191,8 @@ impl WaveScene {
         material::materials(&self.source, &self.entry, wave)
     }
 
-    /// The materials of the surfaces of the mesh, by their numbers in [`materials`](Self::materials).
+    /// The materials of the surfaces of the mesh, by their numbers in
+    /// [`materials`](Self::materials).
     pub fn materials_of_surfaces(&self) -> impl Iterator<Item = usize> {
         self.parts.iter().map(|part| part.material)
     }
@@ -233,9 +234,9 @@ impl WaveScene {
     /// whether bodies overlap, and whether sources and receivers lie inside of them.
     ///
     /// # Errors
-    /// [`SceneError`] for what has no meaning: a body that is declared closed and is not, faces that
-    /// are turned differently from their neighbours, a source inside a body or on a surface, bodies
-    /// that cross in an equation of closed bodies.
+    /// [`SceneError`] for what has no meaning: a body that is declared closed and is not, faces
+    /// that are turned differently from their neighbours, a source inside a body or on a surface,
+    /// bodies that cross in an equation of closed bodies.
     pub fn check(&self) -> Result<Vec<Warning>, SceneError> {
         let mut warnings = self.notes.clone();
         warnings.extend(check::check(self)?);

@@ -30,14 +30,14 @@ pub(super) struct Outcome {
 impl Bench<'_> {
     /// Solves from x = 0.
     pub(super) fn run(&self, text: &str, entry: &SolverEntry) -> Result<Outcome, Error> {
-        let (dim, lanes) = (self.b.dim(), self.b.lanes());
-        let bytes = u128::from(entry.solver.bytes(dim, lanes))
+        let (dim, rhs_count) = (self.b.dim(), self.b.rhs_count());
+        let bytes = u128::from(entry.solver.bytes(dim, rhs_count))
             + self.limit.counted(of_threads(entry.solver.addresses()));
         if bytes > self.memory {
             let reason = format!("it takes {bytes} bytes of memory and {} are left", self.memory);
             return Ok(Outcome { run: trial::refused(text, reason), x: None });
         }
-        let mut x = MultiVector::zeros(dim, lanes);
+        let mut x = MultiVector::zeros(dim, rhs_count);
         let (stop, mut watcher) = (self.watcher.stop(), self.watcher);
         let solved = entry.solver.solve(self.system, self.b, &mut x, &stop, &mut watcher);
         if watcher.go_on().is_break() {

@@ -60,7 +60,7 @@ fn means(
     groups: usize,
     group: impl Fn(usize) -> usize,
 ) -> MultiVector<f64> {
-    let mut sums = MultiVector::<f64>::zeros(groups, values.lanes());
+    let mut sums = MultiVector::<f64>::zeros(groups, values.rhs_count());
     let mut areas = vec![0.0; groups];
     for (leaf, patch) in mesh.patches().enumerate() {
         let area = patch.area();
@@ -68,7 +68,7 @@ fn means(
         let sums = sums.row_mut(group(leaf)).iter_mut().zip(values.row(leaf));
         sums.for_each(|(sum, value)| *sum += area * value);
     }
-    MultiVector::from_fn(groups, values.lanes(), |i, band| {
+    MultiVector::from_fn(groups, values.rhs_count(), |i, band| {
         if areas[i] > 0.0 { sums.row(i)[band] / areas[i] } else { 0.0 }
     })
 }

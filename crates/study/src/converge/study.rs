@@ -39,7 +39,7 @@ pub(super) fn record(problem: &Problem, options: &SolveSettings, levels: &[Level
 
 /// Convergence of the means over the faces in a band.
 fn follow(problem: &Problem, options: &SolveSettings, levels: &[Level], band: usize) -> Convergence {
-    let values: Vec<Vec<f64>> = levels.iter().map(|level| level.faces.lane(band)).collect();
+    let values: Vec<Vec<f64>> = levels.iter().map(|level| level.faces.vector(band)).collect();
     let areas: Vec<f64> = problem.mesh.faces().iter().map(|face| face.area).collect();
     convergence(&values, &areas, noise(problem, options, band), problem.discretisation.order())
 }

@@ -45,7 +45,7 @@ impl Light {
 
     /// D = ρ/(w A), 1/m².
     pub(super) fn scaling(&self) -> MultiVector<f64> {
-        MultiVector::from_fn(self.areas.len(), self.exitance.lanes(), |i, l| match self.exposed[i] {
+        MultiVector::from_fn(self.areas.len(), self.exitance.rhs_count(), |i, l| match self.exposed[i] {
             exposed if exposed > 0.0 => self.reflectance.row(i)[l] / exposed,
             _ => 0.0,
         })
@@ -77,7 +77,7 @@ impl Light {
         watch: &dyn Watch,
     ) -> Result<Option<MeshError>, Error> {
         let scaling = self.scaling();
-        let radiosity = MultiVector::from_fn(received.dim(), received.lanes(), |i, l| {
+        let radiosity = MultiVector::from_fn(received.dim(), received.rhs_count(), |i, l| {
             self.exitance.row(i)[l] + scaling.row(i)[l] * received.row(i)[l]
         });
         let irradiance = self.irradiance(received);
@@ -97,12 +97,12 @@ impl Light {
 
     /// Means over whole elements, W/m², from the power that each has received.
     pub(super) fn irradiance(&self, received: &MultiVector<f64>) -> MultiVector<f64> {
-        MultiVector::from_fn(received.dim(), received.lanes(), |i, l| received.row(i)[l] / self.areas[i])
+        MultiVector::from_fn(received.dim(), received.rhs_count(), |i, l| received.row(i)[l] / self.areas[i])
     }
 
     /// M + ρ E, means over whole elements, W/m², from the power that each has received.
     pub(super) fn means(&self, received: &MultiVector<f64>) -> MultiVector<f64> {
-        MultiVector::from_fn(received.dim(), received.lanes(), |i, l| {
+        MultiVector::from_fn(received.dim(), received.rhs_count(), |i, l| {
             self.exitance.row(i)[l] + self.reflectance.row(i)[l] * received.row(i)[l] / self.areas[i]
         })
     }

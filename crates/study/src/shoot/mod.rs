@@ -91,7 +91,8 @@ pub fn shoot(
     watch: &dyn Watch,
 ) -> Result<(ShootingRecord, Ended), Error> {
     let mut stages = Stages::new(watch);
-    let scene = Open::load(&source.into(), &asked.problem(), asked.keep, &mut stages)?;
+    let pictures = usize::from(!asked.no_pictures);
+    let scene = Open::load(&source.into(), &asked.problem(), (asked.keep, pictures), &mut stages)?;
     let light = stages.run("exposure", || Light::new(&scene))?;
     let groups = stages.run("groups", || Ok(light.groups(&scene)))?;
     let tolerance = scene.options.form_factor_tolerance;
@@ -107,7 +108,8 @@ pub fn shoot(
     Ok((record, ended))
 }
 
-/// The shots, fields on the way, what each element has received, W, and what it has still to send, W/m².
+/// The shots, fields on the way, what each element has received, W, and what it has still to send,
+/// W/m².
 type Shots = (Vec<Shot>, Vec<FieldStep>, MultiVector<f64>, MultiVector<f64>);
 
 /// Numbers of all fields on the way that are kept for the page.
@@ -161,7 +163,7 @@ impl Job<'_> {
     /// long as there is room.
     fn keeps(&self, shots: usize, kept: usize) -> bool {
         let power = 10_usize.pow(shots.ilog10());
-        let numbers = self.light.exitance.dim() * self.light.exitance.lanes();
+        let numbers = self.light.exitance.dim() * self.light.exitance.rhs_count();
         let room = (kept + 1) * numbers <= KEPT_NUMBERS;
         !self.asked.no_report && (shots == power || shots == 3 * power) && room
     }

@@ -16,8 +16,8 @@ pub(super) fn exact(
     stages: &mut Stages,
 ) -> Result<Vec<BandSpectrum>, Error> {
     let mut found = Vec::new();
-    for (lane, band) in bands.iter().enumerate() {
-        let work = || spectrum(system, lane).map_err(|error| Error::new(ErrorKind::NotConverged, error));
+    for (rhs, band) in bands.iter().enumerate() {
+        let work = || spectrum(system, rhs).map_err(|error| Error::new(ErrorKind::NotConverged, error));
         found.push(told(band, &stages.run(&format!("spectrum of {band}"), work)?));
     }
     Ok(found)

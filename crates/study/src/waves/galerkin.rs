@@ -1,6 +1,6 @@
 //! Boundary elements: the electric and the combined field integral equation of conductors, and the
-//! equations of homogeneous dielectric bodies, with Rao–Wilton–Glisson functions on triangles (crate
-//! `moments`, docs/moments.md), their matrix stored or compressed (crate `compressed`).
+//! equations of homogeneous dielectric bodies, with Rao–Wilton–Glisson functions on triangles
+//! (crate `moments`, docs/moments.md), their matrix stored or compressed (crate `compressed`).
 
 use std::slice;
 
@@ -96,7 +96,8 @@ pub(super) fn run(
 enum Known {
     /// The longest edge of sheets, m, by the electric equation.
     Edge(f64),
-    /// Points inside closed bodies, the longest edge over the shortest wavelength, and the indicator.
+    /// Points inside closed bodies, the longest edge over the shortest wavelength, and the
+    /// indicator.
     Inside { points: Vec<Vec3>, edge: f64, indicator: fn(f64) -> Indicator },
 }
 
@@ -221,7 +222,7 @@ enum Matrix {
 }
 
 /// Most right-hand sides that a model has at once.
-fn lanes(model: &Model) -> usize {
+fn rhs_count(model: &Model) -> usize {
     let of = |receiver: &Receiver| match &receiver.places {
         Places::Monostatic(angles) => 2 * angles.len(),
         _ => 1,
@@ -231,7 +232,7 @@ fn lanes(model: &Model) -> usize {
 
 /// Whether a compressed matrix of so many unknowns takes less time than a whole one.
 pub(super) fn is_quicker_compressed(model: &Model, unknowns: usize) -> bool {
-    model.galerkin == Some(Equations::Combined) && unknowns > MANY && lanes(model) <= FEW
+    model.galerkin == Some(Equations::Combined) && unknowns > MANY && rhs_count(model) <= FEW
 }
 
 /// Whether the scene names a solver that needs the entries of the matrix.
@@ -254,7 +255,7 @@ impl Task<'_> {
             let sources = self.model.sources();
             let b = self.body.right_hand_side(&[&sources]);
             let solution = stages.run(&format!("currents at {name}"), || self.solve(&matrix, &b, signals))?;
-            let currents = self.body.currents(&solution.x.lane(0));
+            let currents = self.body.currents(&solution.x.vector(0));
             let error = self.error(&currents, &sources, solution.residuals.last())?;
             stages.run(&format!("fields at {name}"), || self.receive(&currents, error.as_ref(), outcome))?;
             let values = self.on_facets(&currents).iter().map(current).collect();
@@ -304,12 +305,12 @@ impl Task<'_> {
 
     /// Memory besides the matrix.
     fn plan(&self, solver: &dyn Solver<Complex64>) -> Plan {
-        let (unknowns, lanes) = (self.body.operator().dim(), self.lanes());
-        let vectors = VECTORS * (lanes * unknowns * size_of::<Complex64>()) as u128;
+        let (unknowns, rhs_count) = (self.body.operator().dim(), self.rhs_count());
+        let vectors = VECTORS * (rhs_count * unknowns * size_of::<Complex64>()) as u128;
         self.model
             .plan
             .clone()
-            .hold("the solver", solver.bytes(unknowns, lanes).into())
+            .hold("the solver", solver.bytes(unknowns, rhs_count).into())
             .hold("the right-hand sides", vectors)
     }
 
@@ -349,8 +350,8 @@ impl Task<'_> {
     }
 
     /// Most right-hand sides that are solved for at once.
-    fn lanes(&self) -> usize {
-        lanes(self.model)
+    fn rhs_count(&self) -> usize {
+        rhs_count(self.model)
     }
 
     fn solve(
@@ -477,7 +478,8 @@ impl Task<'_> {
         currents.far_field(directions).map_err(|error| refused(self.model, &error))
     }
 
-    /// What plane waves from these directions send back, all solved for together, and the error stated of it.
+    /// What plane waves from these directions send back, all solved for together, and the error
+    /// stated of it.
     fn sweep(
         &self,
         matrix: &Matrix,
@@ -487,15 +489,15 @@ impl Task<'_> {
         let directions = directions(angles);
         let waves = plane_waves(&directions).map_err(|error| self.model.refused(&error, None))?;
         let sources: Vec<&dyn Source> = waves.iter().map(|wave| wave as &dyn Source).collect();
-        let lanes: Vec<&[&dyn Source]> = sources.iter().map(slice::from_ref).collect();
-        let solution = self.solve(matrix, &self.body.right_hand_side(&lanes), signals)?;
+        let excitations: Vec<&[&dyn Source]> = sources.iter().map(slice::from_ref).collect();
+        let solution = self.solve(matrix, &self.body.right_hand_side(&excitations), signals)?;
         let mut rows = Vec::with_capacity(angles.len());
         let (frequency, mut stated) = (self.band.wave.frequency(), SweepError::default());
         for (index, (&[theta_degrees, phi_degrees], u)) in angles.iter().zip(&directions).enumerate() {
             signals.check()?;
             let mut scattering = [[0.0; 2]; 4];
             for along in 0..2 {
-                let x = solution.x.lane(2 * index + along);
+                let x = solution.x.vector(2 * index + along);
                 let currents = self.body.currents(&x);
                 let back = self.far(&currents, slice::from_ref(u))?;
                 for (part, far) in back.iter().flat_map(FarField::polar).enumerate() {
@@ -503,7 +505,7 @@ impl Task<'_> {
                 }
                 if SweepError::samples(index, angles.len()) {
                     let last = solution.residuals.last();
-                    let error = self.error(&currents, lanes[2 * index + along], last)?;
+                    let error = self.error(&currents, excitations[2 * index + along], last)?;
                     let square = back.iter().map(|far| far.amplitude.norm_squared()).sum();
                     stated.add(error.map(|error| error.square(square)), square);
                 }

@@ -13,7 +13,7 @@ const CURRENTS: u128 = 240;
 /// together and written.
 const POINT: u128 = 24;
 const ROW: u128 = 716;
-/// Bytes of a facet in a coupling: its frame in lanes, and the blocks of what is near.
+/// Bytes of a facet in a coupling: its frame in SIMD lanes, and the blocks of what is near.
 pub(super) const COUPLED: u128 = 5000;
 
 /// Bytes of the plots and of the page with its viewer while they are written.

@@ -31,7 +31,8 @@ pub(super) struct Sweep<'a> {
 /// Rows of a sweep, how the worst part of it was solved, and the error stated of it.
 pub(super) type Swept = (Vec<MonostaticRow>, Option<Solution>, Option<Estimated>);
 
-/// What one wave sends back along θ̂ and φ̂, and of a sample the squares of the error, where it is known, and of the field.
+/// What one wave sends back along θ̂ and φ̂, and of a sample the squares of the error, where it is
+/// known, and of the field.
 type Echo = ([Complex64; 2], Option<(Option<f64>, f64)>);
 
 impl Sweep<'_> {
@@ -91,16 +92,16 @@ impl Sweep<'_> {
             })
             .collect::<Result<_, _>>()
             .map_err(refused)?;
-        let lanes: Vec<&PhysicalOptics<'_>> = optics.iter().collect();
+        let excitations: Vec<&PhysicalOptics<'_>> = optics.iter().collect();
         let solve = |system: &System<'_>| {
-            solution(&self.task.model.method, system, &system.right_hand_side(&lanes), signals)
+            solution(&self.task.model.method, system, &system.right_hand_side(&excitations), signals)
         };
         let solution = self.system.map(solve).transpose()?;
-        let back = |lane: usize| {
-            let u = directions[lane / 2];
-            let known = solution.as_ref().map(|solution| (solution, lane));
-            let task = self.task.lit_by(&optics[lane], &sources[lane]);
-            self.back(u, task, known, sampled(lane / 2))
+        let back = |excitation: usize| {
+            let u = directions[excitation / 2];
+            let known = solution.as_ref().map(|solution| (solution, excitation));
+            let task = self.task.lit_by(&optics[excitation], &sources[excitation]);
+            self.back(u, task, known, sampled(excitation / 2))
         };
         let echoes: Vec<Echo> = (0..waves.len()).into_par_iter().map(back).collect::<Result<_, _>>()?;
         Ok((echoes, solution))
@@ -115,8 +116,8 @@ impl Sweep<'_> {
         sampled: bool,
     ) -> Result<Echo, Error> {
         let residual = |solution: &Solution| solution.residuals.last().copied();
-        if let (Some(system), Some((solution, lane))) = (self.system, known) {
-            let currents = system.currents(&solution.x, lane);
+        if let (Some(system), Some((solution, excitation))) = (self.system, known) {
+            let currents = system.currents(&solution.x, excitation);
             let all = Bounced::new(task.scatterer, task.first, &currents);
             let left = task.left(residual(solution), true);
             task.echo(u, &system.radiator(&all), Some(&all), left.filter(|_| sampled))

@@ -18,10 +18,10 @@ use crate::stages::Signals;
 
 pub(super) type Vectors = MultiVector<Complex64>;
 
-/// The currents of all bounces, a lane an incident wave.
+/// The currents of all bounces: a right-hand side for each incident wave.
 pub(super) struct Solution {
     pub(super) x: Vectors,
-    /// Relative residual of the worst lane, from the start on.
+    /// Relative residual of the worst right-hand side, from the start on.
     pub(super) residuals: Vec<f64>,
     pub(super) reason: Option<StopReason>,
 }
@@ -37,7 +37,7 @@ pub(super) fn system<'a>(
         Method::Bounces(1) => Ok(None),
         Method::Bounces(_) => lazy(model, scatterer, (wave, shadow), signals).map(Some),
         Method::Solver { solver, .. } => {
-            let products = EXPECTED * lanes(model);
+            let products = EXPECTED * rhs_count(model);
             coupled(model, scatterer, (wave, shadow), (&[&**solver], products), signals).map(Some)
         }
     }
@@ -63,7 +63,7 @@ const EXPECTED: f64 = 40.0;
 const UNASKED: u64 = 1 << 30;
 
 /// Incident waves of a run.
-fn lanes(model: &Model) -> f64 {
+fn rhs_count(model: &Model) -> f64 {
     let sweep = |receiver: &super::model::Receiver| match &receiver.places {
         Places::Monostatic(angles) => 2 * angles.len(),
         _ => 0,
@@ -72,9 +72,10 @@ fn lanes(model: &Model) -> f64 {
     (swept + usize::from(model.has_bistatic())) as f64
 }
 
-/// Whether a matrix is quicker than so many products computed anew. Measured on two cores, in products computed anew: storing
-/// takes 26 of conductors and 4 of other materials, whose blocks are four times as large; a product with the stored matrix,
-/// bound by memory, 0.85, on two surfaces 0.4, of other materials 0.1.
+/// Whether a matrix is quicker than so many products computed anew. Measured on two cores, in
+/// products computed anew: storing takes 26 of conductors and 4 of other materials, whose blocks
+/// are four times as large; a product with the stored matrix, bound by memory, 0.85, on two
+/// surfaces 0.4, of other materials 0.1.
 fn is_quicker_stored(scatterer: &Scatterer, shadow: Shadow, products: f64) -> bool {
     let (storing, stored) = match (scatterer.check_conductor("").is_ok(), shadow) {
         (false, _) => (4.0, 0.1),
@@ -93,7 +94,7 @@ fn stored_plan(
 ) -> Plan {
     let unknowns = System::unknowns(scatterer);
     let solver =
-        solvers.iter().map(|solver| solver.bytes(unknowns, lanes(model) as usize)).max().unwrap_or(0);
+        solvers.iter().map(|solver| solver.bytes(unknowns, rhs_count(model) as usize)).max().unwrap_or(0);
     let addresses = solvers.iter().map(|solver| solver.addresses()).max().unwrap_or(0);
     coupling(model.plan.clone(), scatterer, shadow)
         .hold(format!("the coupling of {unknowns} unknowns"), System::bytes(scatterer).into())
@@ -134,7 +135,7 @@ pub(super) fn is_stored(
     shadow: Shadow,
     solver: &dyn Solver<Complex64>,
 ) -> Result<bool, Error> {
-    wants_matrix(model, scatterer, shadow, (&[solver], EXPECTED * lanes(model)))
+    wants_matrix(model, scatterer, shadow, (&[solver], EXPECTED * rhs_count(model)))
 }
 
 /// The system for these solvers, from which so many products are expected.
@@ -166,7 +167,7 @@ fn coupling(plan: Plan, scatterer: &Scatterer, shadow: Shadow) -> Plan {
     )
 }
 
-/// Solves for all lanes of b by a model's method.
+/// Solves for all right-hand sides of b by a model's method.
 pub(super) fn solution(
     method: &Method,
     system: &System<'_>,
@@ -187,7 +188,7 @@ pub(super) fn bounced(
     signals: &Signals<'_>,
 ) -> Result<Solution, Error> {
     let sum = Bounces::sum(system.coupling(), b, count, signals.watch).ok_or_else(Error::cancelled)?;
-    let residuals: Vec<f64> = sum.residuals.iter().map(|lanes| worst(lanes)).collect();
+    let residuals: Vec<f64> = sum.residuals.iter().map(|residuals| worst(residuals)).collect();
     // A next bounce stronger than what comes from the sources: the sum is no approximation of
     // anything.
     match residuals.last() {
@@ -208,7 +209,7 @@ pub(super) fn bounced(
 /// Residual above which a sum of bounces is told to be unfinished.
 const UNSETTLED: f64 = 0.1;
 
-/// Solves x = b + K x for all lanes of b by the solver of a method.
+/// Solves x = b + K x for all right-hand sides of b by the solver of a method.
 pub(super) fn solved(
     coupling: &dyn LinearOperator<Complex64>,
     b: &Vectors,
@@ -219,9 +220,9 @@ pub(super) fn solved(
         return Err(Error::new(ErrorKind::Input, "an equation is solved, not summed bounce by bounce"));
     };
     let stop = Stop { tolerance: *tolerance, max_iterations: *max_iterations };
-    let one = Vectors::from_fn(b.dim(), b.lanes(), |_, _| Complex64::ONE);
+    let one = Vectors::from_fn(b.dim(), b.rhs_count(), |_, _| Complex64::ONE);
     let a = SecondKind::new(coupling, one).map_err(|error| Error::new(ErrorKind::Input, error))?;
-    let mut x = Vectors::zeros(b.dim(), b.lanes());
+    let mut x = Vectors::zeros(b.dim(), b.rhs_count());
     let report = solver
         .solve(&a, b, &mut x, &stop, &mut signals.clone())
         .map_err(|error| Error::new(ErrorKind::Input, error))?;
@@ -233,8 +234,11 @@ pub(super) fn solved(
     }
 }
 
-fn worst(lanes: &[f64]) -> f64 {
-    lanes.iter().copied().fold(0.0, |worst, lane| if lane > worst || lane.is_nan() { lane } else { worst })
+fn worst(residuals: &[f64]) -> f64 {
+    residuals
+        .iter()
+        .copied()
+        .fold(0.0, |worst, next| if next > worst || next.is_nan() { next } else { worst })
 }
 
 fn diverged(solver: &str, residuals: &[f64]) -> Error {

@@ -1,4 +1,5 @@
-//! The bodies of a scene: what of its occluders can come between its elements, put together as far as it is convex.
+//! The bodies of a scene: what of its occluders can come between its elements, put together as far
+//! as it is convex.
 
 use fredholm_mesh::{Patch, Vec3};
 
@@ -16,8 +17,9 @@ pub struct Bodies {
 }
 
 impl Bodies {
-    /// Puts the patches of `occluders` together: neighbours in one plane to convex polygons, and faces that close round a convex volume to solids. A polygon
-    /// with all `elements` and `points` on one side of its plane blocks nothing between them and is left out.
+    /// Puts the patches of `occluders` together: neighbours in one plane to convex polygons, and
+    /// faces that close round a convex volume to solids. A polygon with all `elements` and `points`
+    /// on one side of its plane blocks nothing between them and is left out.
     #[must_use]
     pub fn new(occluders: &Occluders, elements: &[&Patch], points: &[Vec3]) -> Self {
         let tolerance = occluders.tolerance();

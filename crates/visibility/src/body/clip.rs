@@ -1,14 +1,16 @@
 //! The part of a body in front of a plane.
 //!
-//! Every face that the plane crosses gets a new edge from where its border leaves the front to where it comes back; a solid gets the cut as a new face.
+//! Every face that the plane crosses gets a new edge from where its border leaves the front to
+//! where it comes back; a solid gets the cut as a new face.
 
 use fredholm_mesh::Vec3;
 
 use super::{Body, Edge, Face};
 
 impl Body {
-    /// The part at heights ≥ 0 over `plane`, or `None` where that is the whole body. Heights of at most `tolerance` (m) count as 0. A body of which
-    /// nothing is in front keeps no edge and hides nothing.
+    /// The part at heights ≥ 0 over `plane`, or `None` where that is the whole body. Heights of at
+    /// most `tolerance` (m) count as 0. A body of which nothing is in front keeps no edge and hides
+    /// nothing.
     #[must_use]
     pub fn in_front(&self, plane: &Face, tolerance: f64) -> Option<Self> {
         let snapped = |h: f64| if h.abs() <= tolerance { 0.0 } else { h };

@@ -4,13 +4,16 @@ use fredholm_mesh::Vec3;
 
 use super::weld::{Polygon, connected, undirected};
 
-/// Part of its area, or of its perimeter, by which a hull may differ from the polygons that fill it.
+/// Part of its area, or of its perimeter, by which a hull may differ from the polygons that fill
+/// it.
 const FILLED: f64 = 1e-9;
 
-/// Tangent of the angle between the first side of a polygon and the direction along which corners are sorted.
+/// Tangent of the angle between the first side of a polygon and the direction along which corners
+/// are sorted.
 const OBLIQUE: f64 = 0.573_1;
 
-/// Merges polygons that share a side and lie in one plane up to `tolerance` (m). A group that is not convex is halved until its parts are.
+/// Merges polygons that share a side and lie in one plane up to `tolerance` (m). A group that is
+/// not convex is halved until its parts are.
 pub(super) fn merge(points: &[Vec3], polygons: &[Polygon], tolerance: f64) -> Vec<Polygon> {
     let flat = |a: &Polygon, b: &Polygon| {
         let origin = points[a.corners[0] as usize];
@@ -24,7 +27,8 @@ pub(super) fn merge(points: &[Vec3], polygons: &[Polygon], tolerance: f64) -> Ve
     merged
 }
 
-/// Joins a list to one polygon, or else parts of it. A list can be parted as often as it is long, too deep for a recursion.
+/// Joins a list to one polygon, or else parts of it. A list can be parted as often as it is long,
+/// too deep for a recursion.
 fn join(points: &[Vec3], polygons: &[Polygon], list: &[usize], merged: &mut Vec<Polygon>) {
     let mut lists = vec![list.to_vec()];
     while let Some(list) = lists.pop() {
@@ -60,7 +64,8 @@ impl<'a> Plane<'a> {
         Self { points, normal: polygon.normal, axes: [u, polygon.normal.cross(u)] }
     }
 
-    /// Where a corner lies along a direction that no side is expected to be at right angles to: places of corners on such a side differ by rounding alone, and their order would be none.
+    /// Where a corner lies along a direction that no side is expected to be at right angles to:
+    /// places of corners on such a side differ by rounding alone, and their order would be none.
     fn place(&self, k: u32) -> [f64; 2] {
         let [u, v] = self.axes;
         [u + v * OBLIQUE, v - u * OBLIQUE].map(|axis| axis.dot(self.points[k as usize]))
@@ -95,8 +100,8 @@ impl<'a> Plane<'a> {
         sides.chunk_by(|a, b| a == b).filter(|run| run.len() == 1).map(|run| self.length(run[0])).sum()
     }
 
-    /// The corners of the convex hull, counter-clockwise about the normal, without those on its sides. A. M. Andrew, Inf. Process. Lett. 9 (1979)
-    /// 216–219, doi:10.1016/0020-0190(79)90072-3.
+    /// The corners of the convex hull, counter-clockwise about the normal, without those on its
+    /// sides. A. M. Andrew, Inf. Process. Lett. 9 (1979) 216–219, doi:10.1016/0020-0190(79)90072-3.
     fn hull(&self, mut corners: Vec<u32>) -> Vec<u32> {
         let order = |a: &u32, b: &u32| {
             let (a, b) = (self.place(*a), self.place(*b));

@@ -1,8 +1,9 @@
 //! Convex bodies that block the view, and the shadow that one casts from a point.
 //!
-//! Seen from a point x, the shadow of a convex body is the volume within its outline, {y : m_k·(y − x) ≥ 0} with m_k = (a − x) × (b − x) for the edges a b of the
-//! outline, and behind the faces that look at x. An edge is on the outline where one of its two faces looks at x and the other does not. A flat polygon is a
-//! body with two faces. Lengths in metres.
+//! Seen from a point x, the shadow of a convex body is the volume within its outline, {y : m_k·(y −
+//! x) ≥ 0} with m_k = (a − x) × (b − x) for the edges a b of the outline, and behind the faces that
+//! look at x. An edge is on the outline where one of its two faces looks at x and the other does
+//! not. A flat polygon is a body with two faces. Lengths in metres.
 
 mod bodies;
 mod clip;
@@ -130,10 +131,12 @@ impl Body {
     }
 }
 
-/// A direction along which parts of a scene have different places, whatever its design: an order along it does not depend on numbers.
+/// A direction along which parts of a scene have different places, whatever its design: an order
+/// along it does not depend on numbers.
 pub const ODD: Vec3 = Vec3::new(0.573_1, 0.319_7, 0.754_5);
 
-/// Where points lie in the mean along [`ODD`], m: an order that the numbers of the patches do not change.
+/// Where points lie in the mean along [`ODD`], m: an order that the numbers of the patches do not
+/// change.
 fn place<'a>(points: impl ExactSizeIterator<Item = &'a Vec3>) -> f64 {
     let n = points.len() as f64;
     points.sum::<Vec3>().dot(ODD) / n

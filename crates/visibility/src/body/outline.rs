@@ -21,7 +21,8 @@ impl Bits {
     }
 }
 
-/// Sine of the angle by which a point that counts as hidden may lie outside: where it lies exactly on the border, rounding does not decide.
+/// Sine of the angle by which a point that counts as hidden may lie outside: where it lies exactly
+/// on the border, rounding does not decide.
 const GRAZING: f64 = 1e-9;
 
 /// What a body hides from a point.
@@ -40,8 +41,9 @@ pub struct ShadowVolume {
 }
 
 impl ShadowVolume {
-    /// Normals n (of any length), offsets c and numbers: those behind the faces, and those of the outline, for which c = 0. Half-spaces of one body that the same face or edge
-    /// makes have the same number from all points.
+    /// Normals n (of any length), offsets c and numbers: those behind the faces, and those of the
+    /// outline, for which c = 0. Half-spaces of one body that the same face or edge makes have the
+    /// same number from all points.
     #[must_use]
     #[inline]
     pub fn planes(&self) -> &[(Vec3, f64, u32)] {
@@ -76,8 +78,8 @@ pub(super) fn edge_number(k: u32) -> u32 {
 }
 
 impl Body {
-    /// What the body hides from `x`; where that is a volume, `volume` holds it. Heights of at most `tolerance` (m) over a face count as none: a point of the
-    /// surface does not shade itself.
+    /// What the body hides from `x`; where that is a volume, `volume` holds it. Heights of at most
+    /// `tolerance` (m) over a face count as none: a point of the surface does not shade itself.
     pub fn shadow(&self, x: Vec3, tolerance: f64, volume: &mut ShadowVolume) -> Shadow {
         volume.clear();
         if self.edges.is_empty() {
@@ -85,7 +87,8 @@ impl Body {
         }
         let lit = self.behind(x, tolerance, volume);
         if lit == Bits::default() {
-            // From a point of a solid, all that lies behind the faces at that point is seen through the solid.
+            // From a point of a solid, all that lies behind the faces at that point is seen through
+            // the solid.
             self.behind(x, -tolerance, volume);
             return if self.solid { Shadow::Volume } else { Shadow::Nothing };
         }
@@ -97,7 +100,8 @@ impl Body {
         Shadow::Volume
     }
 
-    /// Adds the shadow volumes behind the faces over which x is higher than `least`, and returns those faces.
+    /// Adds the shadow volumes behind the faces over which x is higher than `least`, and returns
+    /// those faces.
     fn behind(&self, x: Vec3, least: f64, volume: &mut ShadowVolume) -> Bits {
         let mut lit = Bits::default();
         for (k, face) in self.faces.iter().enumerate() {

@@ -1,7 +1,9 @@
 //! A body between a source and a target polygon: what of its outline can matter there.
 //!
-//! det(a − x, b − x, y − x) is affine in x and in y. An edge a b that has all corners y of the target on its inner side from all corners x of the source has so from all
-//! points of the source: it never cuts the target. Faces that look at all of the source or at none of it need no second look either.
+//! det(a − x, b − x, y − x) is affine in x and in y. An edge a b that has all corners y of the
+//! target on its inner side from all corners x of the source has so from all points of the source:
+//! it never cuts the target. Faces that look at all of the source or at none of it need no second
+//! look either.
 
 use fredholm_mesh::Vec3;
 
@@ -22,7 +24,8 @@ pub struct Screen<'a> {
     edges: Vec<[Vec3; 2]>,
     /// What decides about each of them.
     borders: Vec<Border>,
-    /// Faces whose planes pass through the source, by their numbers, and whether part of the target lies before them.
+    /// Faces whose planes pass through the source, by their numbers, and whether part of the target
+    /// lies before them.
     turning: Vec<(u32, Face, bool)>,
     /// Faces that look at all of the source and do not have all of the target behind them.
     front: Vec<(u32, Face)>,
@@ -33,7 +36,8 @@ pub struct Screen<'a> {
     tolerance: f64,
 }
 
-/// An edge, by the number of its half-space, and the bits of its faces: it shows where one of them looks at a point and the other does not.
+/// An edge, by the number of its half-space, and the bits of its faces: it shows where one of them
+/// looks at a point and the other does not.
 #[derive(Clone, Copy, Debug)]
 struct Border {
     number: u32,
@@ -83,7 +87,8 @@ impl Looking {
 }
 
 impl<'a> Screen<'a> {
-    /// Prepares `body` between two polygons. Heights of at most `tolerance` (m) over a face count as none.
+    /// Prepares `body` between two polygons. Heights of at most `tolerance` (m) over a face count
+    /// as none.
     #[must_use]
     pub fn new(body: &'a Body, source: &[Vec3], target: &[Vec3], tolerance: f64) -> Self {
         let edges = Vec::with_capacity(8);
@@ -146,8 +151,9 @@ impl<'a> Screen<'a> {
         }
     }
 
-    /// The edges near which what is hidden of the target may be a steep function on the source, m: those that may cut the target, or all edges of a body that has part of the source inside
-    /// or on it.
+    /// The edges near which what is hidden of the target may be a steep function on the source, m:
+    /// those that may cut the target, or all edges of a body that has part of the source inside or
+    /// on it.
     pub fn steep(&self) -> impl Iterator<Item = [Vec3; 2]> {
         let all = self.lit == 0 || self.edges.is_empty();
         let whole = self.body.edges.iter().filter(move |_| all).map(|edge| self.body.ends(edge));
@@ -168,7 +174,8 @@ impl<'a> Screen<'a> {
         !self.plain && self.borders[edge].faces.iter().all(|&bit| bit >= DARK)
     }
 
-    /// The faces whose planes pass through the source, and whether any edge that may cut the target is theirs.
+    /// The faces whose planes pass through the source, and whether any edge that may cut the target
+    /// is theirs.
     #[inline]
     pub fn turning(&self) -> impl Iterator<Item = (&Face, bool)> {
         let cuts = |bit: usize| self.borders.iter().any(|border| border.faces.contains(&(bit as u8)));
@@ -182,7 +189,8 @@ impl<'a> Screen<'a> {
         self.tolerance
     }
 
-    /// What of the target is hidden from a point `x` of the source; where that is a volume, `volume` holds it.
+    /// What of the target is hidden from a point `x` of the source; where that is a volume,
+    /// `volume` holds it.
     pub fn shadow(&self, x: Vec3, volume: &mut ShadowVolume) -> Shadow {
         let Some(looking) = self.looking(x) else { return self.body.shadow(x, self.tolerance, volume) };
         volume.clear();
@@ -197,7 +205,8 @@ impl<'a> Screen<'a> {
         Shadow::Volume
     }
 
-    /// Which faces look at a point of the source: from points where this is the same, the same faces and edges make the shadow. `None` where the body itself is asked.
+    /// Which faces look at a point of the source: from points where this is the same, the same
+    /// faces and edges make the shadow. `None` where the body itself is asked.
     #[must_use]
     #[inline]
     pub fn looking(&self, x: Vec3) -> Option<Looking> {

@@ -1,7 +1,8 @@
 //! Faces that close round a convex volume become one solid, so that its shadow is one convex shape.
 //!
-//! A solid may lack one face: a segment that crosses the volume enters and leaves through different faces, so one of the two is there. It may lack more where each is covered by another
-//! face, or has all elements on one side: nothing is seen through those.
+//! A solid may lack one face: a segment that crosses the volume enters and leaves through different
+//! faces, so one of the two is there. It may lack more where each is covered by another face, or
+//! has all elements on one side: nothing is seen through those.
 
 use std::collections::BTreeMap;
 
@@ -56,7 +57,8 @@ pub(super) struct Lid {
 }
 
 impl Lid {
-    /// The face within a ring of sides of the others, which run the other way round it; `None` where they do not lie in a plane.
+    /// The face within a ring of sides of the others, which run the other way round it; `None`
+    /// where they do not lie in a plane.
     fn over(points: &[Vec3], ring: &[Side], tolerance: f64) -> Option<Self> {
         let corners: Vec<Vec3> = ring.iter().rev().map(|(side, _)| points[side[1] as usize]).collect();
         let origin = *corners.first()?;
@@ -76,7 +78,8 @@ fn turned_outward(points: &[Vec3], polygon: &Polygon, corners: &[Vec3]) -> Polyg
     if above { polygon.clone().flipped() } else { polygon.clone() }
 }
 
-/// The edges where two polygons meet, and the sides that belong to one only; `None` where polygons overlap.
+/// The edges where two polygons meet, and the sides that belong to one only; `None` where polygons
+/// overlap.
 fn edges(polygons: &[Polygon]) -> Option<(Vec<Edge>, Vec<Side>)> {
     let mut sides: BTreeMap<[u32; 2], Vec<Side>> = BTreeMap::new();
     for (polygon, face) in polygons.iter().zip(0..) {
@@ -97,7 +100,8 @@ fn edges(polygons: &[Polygon]) -> Option<(Vec<Edge>, Vec<Side>)> {
     Some((edges, open))
 }
 
-/// The sides of polygons that belong to one only, put together to rings; `None` where a corner has two of them.
+/// The sides of polygons that belong to one only, put together to rings; `None` where a corner has
+/// two of them.
 fn rings(open: Vec<Side>) -> Option<Vec<Vec<Side>>> {
     let count = open.len();
     let mut from: BTreeMap<u32, Side> = open.into_iter().map(|side| (side.0[0], side)).collect();
@@ -128,9 +132,10 @@ fn bounds(face: &Face, corners: &[Vec3], tolerance: f64) -> bool {
 const PART: f64 = 1e-6;
 
 impl Solid {
-    /// Whether one solid hides what its faces hide: no point is in it, no element reaches into it, and those that lie on it looking in are covered by its faces, as what stands on a body or
-    /// under it is, and are not the inner sides of a hollow body.
-    /// `covered` tells whether another face covers a missing one.
+    /// Whether one solid hides what its faces hide: no point is in it, no element reaches into it,
+    /// and those that lie on it looking in are covered by its faces, as what stands on a body or
+    /// under it is, and are not the inner sides of a hollow body. `covered` tells whether another
+    /// face covers a missing one.
     pub fn stands_for_its_faces(
         &self,
         elements: &[&Patch],
@@ -199,7 +204,8 @@ impl Solid {
         }
     }
 
-    /// Whether part of an element lies deeper than `tolerance` below all faces. Beside an edge of the solid it may lie outside without being before any one face.
+    /// Whether part of an element lies deeper than `tolerance` below all faces. Beside an edge of
+    /// the solid it may lie outside without being before any one face.
     fn holds_part(&self, element: &Patch, tolerance: f64) -> bool {
         let mut part = element.corners().to_vec();
         for face in self.body.faces() {
@@ -208,7 +214,8 @@ impl Solid {
         !part.is_empty()
     }
 
-    /// Whether an element in the plane of face `k` may overlap that face: no other face has all of it outside.
+    /// Whether an element in the plane of face `k` may overlap that face: no other face has all of
+    /// it outside.
     fn covers_part(&self, element: &Patch, k: usize) -> bool {
         let outside = |face: &Face| element.corners().iter().all(|&x| face.height(x) >= 0.0);
         !self.body.faces().iter().enumerate().any(|(other, face)| other != k && outside(face))

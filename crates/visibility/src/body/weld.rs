@@ -33,7 +33,8 @@ pub(super) fn undirected([a, b]: [u32; 2]) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// The corners of all patches, each once, and the patches as polygons; a patch that repeats another, or its back, is left out.
+/// The corners of all patches, each once, and the patches as polygons; a patch that repeats
+/// another, or its back, is left out.
 pub(super) fn weld(patches: &[Patch]) -> (Vec<Vec3>, Vec<Polygon>) {
     let (mut numbers, mut points) = (HashMap::new(), Vec::new());
     let mut seen = HashSet::new();
@@ -59,7 +60,8 @@ fn number(x: Vec3, numbers: &mut HashMap<[u64; 3], u32>, points: &mut Vec<Vec3>)
     })
 }
 
-/// Lists of polygons that hang together through sides for which `joins` holds, each list and the whole by rising index.
+/// Lists of polygons that hang together through sides for which `joins` holds, each list and the
+/// whole by rising index.
 pub(super) fn connected(polygons: &[Polygon], joins: impl Fn(usize, usize) -> bool) -> Vec<Vec<usize>> {
     let mut sides: Vec<([u32; 2], usize)> = Vec::new();
     for (k, polygon) in polygons.iter().enumerate() {

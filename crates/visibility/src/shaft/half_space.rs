@@ -31,7 +31,8 @@ impl HalfSpace {
     }
 }
 
-/// The sum of the coordinates' sizes: between the length and √3 times the length, and free of a square root.
+/// The sum of the coordinates' sizes: between the length and √3 times the length, and free of a
+/// square root.
 pub(crate) fn norm1(v: Vec3) -> f64 {
     v.x.abs() + v.y.abs() + v.z.abs()
 }

@@ -1,11 +1,12 @@
 //! Shafts: the room that all segments between two patches keep to.
 //!
-//! The segments between the points of two convex polygons fill their convex hull. The hull is the intersection of
-//! half-spaces: the front sides of the two polygons, and the supporting planes through an edge of one and a corner of
-//! the other. A patch that lies outside one of them blocks no segment.
+//! The segments between the points of two convex polygons fill their convex hull. The hull is the
+//! intersection of half-spaces: the front sides of the two polygons, and the supporting planes
+//! through an edge of one and a corner of the other. A patch that lies outside one of them blocks
+//! no segment.
 //!
-//! Reference: E. A. Haines, J. R. Wallace, "Shaft culling for efficient ray-cast radiosity", in: Photorealistic
-//! Rendering in Computer Graphics, Springer 1994, 122–138,
+//! Reference: E. A. Haines, J. R. Wallace, "Shaft culling for efficient ray-cast radiosity", in:
+//! Photorealistic Rendering in Computer Graphics, Springer 1994, 122–138,
 //! [doi:10.1007/978-3-642-57963-9_12](https://doi.org/10.1007/978-3-642-57963-9_12).
 
 mod half_space;
@@ -35,7 +36,8 @@ pub struct Shaft {
 }
 
 impl Shaft {
-    /// The hull of the parts of two patches that lie in front of each other, or `None` where no such parts exist.
+    /// The hull of the parts of two patches that lie in front of each other, or `None` where no
+    /// such parts exist.
     pub(crate) fn between(a: &Patch, b: &Patch, frame: &Frame) -> Option<Self> {
         let (whole_a, whole_b) = (Outline::of(a, frame), Outline::of(b, frame));
         let (front_a, front_b) = (whole_a.front(), whole_b.front());
@@ -75,7 +77,8 @@ impl Shaft {
         Self { planes, plane_count: 0, corners: [Vec3::ZERO; CORNERS], corner_count: 0 }
     }
 
-    /// The half-spaces, less a layer of the tolerance so that a patch that merely touches the shaft is outside.
+    /// The half-spaces, less a layer of the tolerance so that a patch that merely touches the shaft
+    /// is outside.
     pub(crate) fn planes(&self) -> &[HalfSpace] {
         &self.planes[..self.plane_count]
     }

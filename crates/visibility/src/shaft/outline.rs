@@ -1,7 +1,7 @@
 //! The part of a convex polygon in front of a plane.
 //!
-//! Reference: I. E. Sutherland, G. W. Hodgman, "Reentrant polygon clipping", Commun. ACM 17 (1974) 32–42,
-//! [doi:10.1145/360767.360802](https://doi.org/10.1145/360767.360802).
+//! Reference: I. E. Sutherland, G. W. Hodgman, "Reentrant polygon clipping", Commun. ACM 17 (1974)
+//! 32–42, [doi:10.1145/360767.360802](https://doi.org/10.1145/360767.360802).
 
 use fredholm_mesh::{Patch, Vec3};
 
@@ -60,7 +60,8 @@ impl Outline {
         kept
     }
 
-    /// A convex polygon cut by one plane has at most one corner more; a sixth could only come from rounding.
+    /// A convex polygon cut by one plane has at most one corner more; a sixth could only come from
+    /// rounding.
     fn push(&mut self, corner: Vec3) {
         if let Some(slot) = self.corners.get_mut(self.len) {
             *slot = corner;

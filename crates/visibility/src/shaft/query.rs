@@ -11,14 +11,16 @@ use crate::eight::{Eight, Work, run};
 use crate::tree::{Node, Sieve, Visitor};
 
 impl Occluders {
-    /// Lists the patches that could block a segment between a point of `a` and a point of `b`, by rising index.
+    /// Lists the patches that could block a segment between a point of `a` and a point of `b`, by
+    /// rising index.
     ///
-    /// Only segments that leave `a` and reach `b` on their lit sides count: they carry light. Every patch that
-    /// [`unoccluded`](Self::unoccluded) finds on such a segment is in the list, so where the list is empty each patch
-    /// sees all of the other that is in front of it. The list may name patches that block nothing. Patches that only
-    /// touch the room between `a` and `b`, or reach into it by less than twice the [tolerance](Self::tolerance), are
-    /// not in it: neighbours that share an edge, the floor below a box, and `a` and `b` themselves. Where no part of
-    /// one lies in front of the other the list is empty.
+    /// Only segments that leave `a` and reach `b` on their lit sides count: they carry light. Every
+    /// patch that [`unoccluded`](Self::unoccluded) finds on such a segment is in the list, so where
+    /// the list is empty each patch sees all of the other that is in front of it. The list may name
+    /// patches that block nothing. Patches that only touch the room between `a` and `b`, or reach
+    /// into it by less than twice the [tolerance](Self::tolerance), are not in it: neighbours that
+    /// share an edge, the floor below a box, and `a` and `b` themselves. Where no part of one lies
+    /// in front of the other the list is empty.
     ///
     /// `candidates` is cleared first; a buffer that is used again costs no allocation.
     pub fn shaft(&self, a: &Patch, b: &Patch, candidates: &mut Vec<u32>) {
@@ -28,16 +30,18 @@ impl Occluders {
         }
     }
 
-    /// As [`shaft`](Self::shaft), but the search ends after more than `most` patches were found. Returns whether the list holds all of them.
+    /// As [`shaft`](Self::shaft), but the search ends after more than `most` patches were found.
+    /// Returns whether the list holds all of them.
     pub fn shaft_up_to(&self, a: &Patch, b: &Patch, most: usize, candidates: &mut Vec<u32>) -> bool {
         candidates.clear();
         Shaft::between(a, b, &self.frame).is_none_or(|shaft| self.sift(&shaft, most, candidates))
     }
 
-    /// Lists the patches that could block a segment between the point `p` and a point of `b`, by rising index.
+    /// Lists the patches that could block a segment between the point `p` and a point of `b`, by
+    /// rising index.
     ///
-    /// As [`shaft`](Self::shaft), for segments that reach `b` on its lit side. Where `p` is not in front of `b` the
-    /// list is empty.
+    /// As [`shaft`](Self::shaft), for segments that reach `b` on its lit side. Where `p` is not in
+    /// front of `b` the list is empty.
     pub fn shaft_point(&self, p: Vec3, b: &Patch, candidates: &mut Vec<u32>) {
         candidates.clear();
         if let Some(shaft) = Shaft::from_point(p, b, &self.frame) {
@@ -45,19 +49,22 @@ impl Occluders {
         }
     }
 
-    /// The room that the segments between two patches keep to, or `None` where no part of one lies in front of the other.
+    /// The room that the segments between two patches keep to, or `None` where no part of one lies
+    /// in front of the other.
     #[must_use]
     pub fn shaft_between(&self, a: &Patch, b: &Patch) -> Option<Shaft> {
         Shaft::between(a, b, &self.frame)
     }
 
-    /// The room that the segments between a point and a patch keep to, or `None` where the point is not in front of it.
+    /// The room that the segments between a point and a patch keep to, or `None` where the point is
+    /// not in front of it.
     #[must_use]
     pub fn shaft_from(&self, p: Vec3, b: &Patch) -> Option<Shaft> {
         Shaft::from_point(p, b, &self.frame)
     }
 
-    /// Whether a body could block a segment that keeps to the shaft. It may say so of one that does not.
+    /// Whether a body could block a segment that keeps to the shaft. It may say so of one that does
+    /// not.
     #[must_use]
     pub fn reaches(&self, body: &Body, shaft: &Shaft) -> bool {
         let tolerance = self.frame.tolerance;
@@ -77,7 +84,8 @@ impl Occluders {
         !ended
     }
 
-    /// Whether facet `k` has parts of the shaft on both sides, and reaches into it as far as its half-spaces tell.
+    /// Whether facet `k` has parts of the shaft on both sides, and reaches into it as far as its
+    /// half-spaces tell.
     fn cuts(&self, shaft: &Shaft, k: usize) -> bool {
         let tolerance = self.frame.tolerance;
         let (mut low, mut high) = (0.0f64, 0.0f64);

@@ -1,13 +1,13 @@
 //! Planes through an edge of one convex polygon that leave both it and another polygon on one side.
 //!
-//! Around the line of an edge of P every point has an angle, counted from the inside of P towards its lit side. Where
-//! Q lies in front of P, the corner of Q with the largest angle θ ≤ π spans, with the edge, a plane that has P
-//! (angle 0) and all of Q (angles 0 to θ) on one side. With the coordinates x = (w − p)·m and z = (w − p)·n of a corner
-//! w of Q, where p starts the edge e, n is the normal of P and m = n × e points into P, the normal of that plane is
-//! N = z m − x n.
+//! Around the line of an edge of P every point has an angle, counted from the inside of P towards
+//! its lit side. Where Q lies in front of P, the corner of Q with the largest angle θ ≤ π spans,
+//! with the edge, a plane that has P (angle 0) and all of Q (angles 0 to θ) on one side. With the
+//! coordinates x = (w − p)·m and z = (w − p)·n of a corner w of Q, where p starts the edge e, n is
+//! the normal of P and m = n × e points into P, the normal of that plane is N = z m − x n.
 //!
-//! Reference: E. A. Haines, J. R. Wallace, "Shaft culling for efficient ray-cast radiosity", in: Photorealistic
-//! Rendering in Computer Graphics, Springer 1994, 122–138,
+//! Reference: E. A. Haines, J. R. Wallace, "Shaft culling for efficient ray-cast radiosity", in:
+//! Photorealistic Rendering in Computer Graphics, Springer 1994, 122–138,
 //! [doi:10.1007/978-3-642-57963-9_12](https://doi.org/10.1007/978-3-642-57963-9_12).
 
 use fredholm_mesh::Vec3;
@@ -16,11 +16,12 @@ use super::HalfSpace;
 use super::half_space::norm1;
 use super::outline::Outline;
 
-/// An edge, or the distance of a corner from the edge, that is shorter than this many tolerances points nowhere for
-/// sure. Such a plane is left out, which only makes the shaft larger.
+/// An edge, or the distance of a corner from the edge, that is shorter than this many tolerances
+/// points nowhere for sure. Such a plane is left out, which only makes the shaft larger.
 const SURE: f64 = 1e3;
 
-/// Hands the supporting plane of every edge of `polygon` to `found`. All the `others` lie in front of the polygon.
+/// Hands the supporting plane of every edge of `polygon` to `found`. All the `others` lie in front
+/// of the polygon.
 pub(crate) fn supporting_planes(
     polygon: &Outline,
     others: &[Vec3],
@@ -66,7 +67,8 @@ mod tests {
         Patch::quad(corners.map(Vec3::from)).unwrap().unwrap()
     }
 
-    /// The wall stands in the plane of the floor's first side: seen from an edge of the wall, that side lies at the angles 0 and π.
+    /// The wall stands in the plane of the floor's first side: seen from an edge of the wall, that
+    /// side lies at the angles 0 and π.
     #[test]
     fn a_screen_before_a_floor_that_ends_under_a_wall_is_in_the_shaft() {
         let floor = quad([[2.0, 8.5, 0.0], [4.0, 8.5, 0.0], [4.0, 10.0, 0.0], [2.0, 10.0, 0.0]]);

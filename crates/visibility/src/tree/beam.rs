@@ -1,11 +1,11 @@
 //! Which boxes of a node does a segment meet?
 //!
-//! Along o + t d a slab between two planes of one axis is met for t between (near − o)/d and (far − o)/d; a box is met
-//! where the largest entry is not past the smallest exit.
+//! Along o + t d a slab between two planes of one axis is met for t between (near − o)/d and (far −
+//! o)/d; a box is met where the largest entry is not past the smallest exit.
 //!
-//! With o and the planes c in [−1, 1] the rounding of o moves the segment by less than ε/2, and that of d by less than ε
-//! within the scene; c/d − o/d with each quotient rounded moves a plane by less than 3 ε more, together less than the
-//! padding of the boxes (ε = 2⁻²³).
+//! With o and the planes c in [−1, 1] the rounding of o moves the segment by less than ε/2, and
+//! that of d by less than ε within the scene; c/d − o/d with each quotient rounded moves a plane by
+//! less than 3 ε more, together less than the padding of the boxes (ε = 2⁻²³).
 
 #![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
 
@@ -15,10 +15,11 @@ use crate::frame::Frame;
 use crate::probe::Probe;
 use fredholm_mesh::Vec3;
 
-/// Largest coordinates of the start and of the end of a beam; a segment that reaches farther is first cut to the scene.
+/// Largest coordinates of the start and of the end of a beam; a segment that reaches farther is
+/// first cut to the scene.
 const LIMITS: [f64; 2] = [1.0, 1e6];
-/// A component of a direction that is smaller than this is replaced by it: that keeps every quotient finite, and
-/// moves the segment by less than any rounding.
+/// A component of a direction that is smaller than this is replaced by it: that keeps every
+/// quotient finite, and moves the segment by less than any rounding.
 const LEAST: f32 = 1e-20;
 
 /// A segment in the coordinates of the boxes.
@@ -26,8 +27,8 @@ const LEAST: f32 = 1e-20;
 pub(crate) struct Beam {
     origin: [f32; 3],
     inverse: [f32; 3],
-    /// Where the beam starts and what share of the probe it covers: t = 0 is the fraction `part[0]` of the probe, and
-    /// t = 1 is `part[0] + part[1]`.
+    /// Where the beam starts and what share of the probe it covers: t = 0 is the fraction `part[0]`
+    /// of the probe, and t = 1 is `part[0] + part[1]`.
     part: [f64; 2],
 }
 

@@ -16,8 +16,8 @@ pub(crate) type Bounds = Aabb;
 
 /// Facets in a leaf, at most: those of a packet.
 const LEAF: u32 = WIDTH as u32;
-/// What it costs to go through a node of two boxes, over the test of one facet. A packet is tested as a whole, so that as
-/// many facets as it holds stay together.
+/// What it costs to go through a node of two boxes, over the test of one facet. A packet is tested
+/// as a whole, so that as many facets as it holds stay together.
 const TRAVERSAL: f32 = 16.0;
 
 /// The padded box of some points.

@@ -1,13 +1,15 @@
 //! A tree of boxes, eight to a node, over the facets of the scene.
 //!
-//! Boxes are f32, in local coordinates. Each is larger than its contents by [`PADDING`], more than all roundings of a
-//! test, so that a box is never missed; what is met in vain costs time and nothing else.
+//! Boxes are f32, in local coordinates. Each is larger than its contents by [`PADDING`], more than
+//! all roundings of a test, so that a box is never missed; what is met in vain costs time and
+//! nothing else.
 //!
-//! References: I. Wald, C. Benthin, S. Boulos, "Getting rid of packets", IEEE Symp. Interactive Ray Tracing 2008,
-//! 49–57, [doi:10.1109/RT.2008.4634620](https://doi.org/10.1109/RT.2008.4634620), for the wide nodes; D. Meister,
-//! J. Bittner, "Parallel locally-ordered clustering for bounding volume hierarchy construction", IEEE Trans. Vis.
-//! Comput. Graph. 24 (2018) 1345–1353, [doi:10.1109/TVCG.2017.2669983](https://doi.org/10.1109/TVCG.2017.2669983), for
-//! the binary tree they are made from.
+//! References: I. Wald, C. Benthin, S. Boulos, "Getting rid of packets", IEEE Symp. Interactive Ray
+//! Tracing 2008, 49–57, [doi:10.1109/RT.2008.4634620](https://doi.org/10.1109/RT.2008.4634620), for
+//! the wide nodes; D. Meister, J. Bittner, "Parallel locally-ordered clustering for bounding volume
+//! hierarchy construction", IEEE Trans. Vis. Comput. Graph. 24 (2018) 1345–1353,
+//! [doi:10.1109/TVCG.2017.2669983](https://doi.org/10.1109/TVCG.2017.2669983), for the binary tree
+//! they are made from.
 
 #![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
 
@@ -91,7 +93,8 @@ pub(crate) struct Built {
 }
 
 impl Tree {
-    /// Walks down to every leaf whose boxes the visitor meets, until it ends the walk. Returns whether it did.
+    /// Walks down to every leaf whose boxes the visitor meets, until it ends the walk. Returns
+    /// whether it did.
     #[inline(always)]
     pub(crate) fn any<E: Eight>(&self, eight: E, visitor: &mut impl Visitor<E>) -> bool {
         let mut stack = Stack::default();

@@ -12,7 +12,8 @@ pub(crate) trait Seeker<E: Eight> {
     fn leaf(&mut self, eight: E, leaf: usize) -> f32;
 }
 
-/// A child by where the beam enters it; a place on a beam is never negative, so its bits are in the order of its value.
+/// A child by where the beam enters it; a place on a beam is never negative, so its bits are in the
+/// order of its value.
 #[derive(Clone, Copy, Debug, Default)]
 struct Entry(u64);
 

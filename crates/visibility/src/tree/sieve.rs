@@ -1,8 +1,9 @@
 //! Which boxes of a node reach into all of some half-spaces?
 //!
-//! A box lies outside N·x ≥ c where even its corner farthest along N does. With the sizes of the coordinates of N scaled
-//! to the sum 1 and coordinates in [−½, ½] the f32 value of N·x − c errs by less than 3 ε, less than the padding of the
-//! boxes; where c is larger than 1 its sign is beyond doubt.
+//! A box lies outside N·x ≥ c where even its corner farthest along N does. With the sizes of the
+//! coordinates of N scaled to the sum 1 and coordinates in [−½, ½] the f32 value of N·x − c errs by
+//! less than 3 ε, less than the padding of the boxes; where c is larger than 1 its sign is beyond
+//! doubt.
 
 #![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
 

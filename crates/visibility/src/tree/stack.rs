@@ -2,8 +2,8 @@
 
 #![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
 
-/// Entries kept on the machine's stack. A tree of a hundred thousand facets is about six levels deep, and a level
-/// leaves seven entries at most.
+/// Entries kept on the machine's stack. A tree of a hundred thousand facets is about six levels
+/// deep, and a level leaves seven entries at most.
 const INLINE: usize = 48;
 
 /// A stack that only allocates for trees of unusual depth.
@@ -48,7 +48,8 @@ impl<T: Copy> Stack<T> {
         self.inline.get(self.len).copied()
     }
 
-    /// Sorts the entries from a place on, the least last; those that did not find room stay as they are.
+    /// Sorts the entries from a place on, the least last; those that did not find room stay as they
+    /// are.
     #[inline(always)]
     pub(crate) fn sort_from(&mut self, base: usize, less: impl Fn(&T, &T) -> bool) {
         let entries = &mut self.inline[..self.len];

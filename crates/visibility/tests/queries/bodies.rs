@@ -41,7 +41,8 @@ fn the_walls_of_a_room_block_nothing_and_a_box_in_it_is_one_solid() {
     }
 }
 
-/// Corners on a side that is at right angles to the axis by which they are sorted differ by rounding alone.
+/// Corners on a side that is at right angles to the axis by which they are sorted differ by
+/// rounding alone.
 #[test]
 fn a_turned_box_of_small_patches_is_one_solid_in_a_turned_room_and_before_large_walls() {
     for k in 1..12 {
@@ -58,7 +59,8 @@ fn a_turned_box_of_small_patches_is_one_solid_in_a_turned_room_and_before_large_
     }
 }
 
-/// A patch that no face of a box has wholly before it, but of which nothing is in the box, leaves it a solid; one that reaches into it does not.
+/// A patch that no face of a box has wholly before it, but of which nothing is in the box, leaves
+/// it a solid; one that reaches into it does not.
 #[test]
 fn a_patch_beside_an_edge_of_a_box_leaves_it_a_solid() {
     let block = cuboid(Vec3::ZERO, Vec3::splat(0.5), 0.0, false);

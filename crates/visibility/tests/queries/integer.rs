@@ -1,4 +1,5 @@
-//! Scenes on an integer grid, where i64 decides every crossing exactly, through edges and corners too.
+//! Scenes on an integer grid, where i64 decides every crossing exactly, through edges and corners
+//! too.
 
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::Occluders;
@@ -22,7 +23,8 @@ fn sign(a: Point, b: Point, c: Point) -> i64 {
         .signum()
 }
 
-/// Whether the open segment crosses the convex polygon, outline included, from one side of its plane to the other.
+/// Whether the open segment crosses the convex polygon, outline included, from one side of its
+/// plane to the other.
 fn crosses(p: Point, q: Point, corners: &[Point]) -> bool {
     let side = |x| sign(minus(corners[1], corners[0]), minus(corners[2], corners[0]), minus(x, corners[0]));
     let turn = |i: usize| {

@@ -16,7 +16,8 @@ fn target(random: &mut Random, corners: &[Vec3], kind: usize) -> Vec3 {
     }
 }
 
-/// Aims segments from the inside at edges and corners of the first patches, and counts those that get out.
+/// Aims segments from the inside at edges and corners of the first patches, and counts those that
+/// get out.
 fn leaks(patches: &[Patch], targets: usize, centre: Vec3, radius: f64, segments: usize) -> usize {
     let occluders = Occluders::new(patches).unwrap();
     let mut random = Random(7);

@@ -1,4 +1,5 @@
-//! Queries compared with what other arithmetic, other algorithms or geometry itself says of the same scenes.
+//! Queries compared with what other arithmetic, other algorithms or geometry itself says of the
+//! same scenes.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 

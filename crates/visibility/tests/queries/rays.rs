@@ -35,7 +35,8 @@ fn agrees_with_every_patch_tested_alone() {
             let found = occluders.closest(o, d, f64::INFINITY);
             assert_eq!(found.is_some(), expected.is_some(), "from {o} along {d}");
             if let (Some(hit), Some(t)) = (found, expected) {
-                // A box stands on the floor, so either may be named; what is named must be where the hit is.
+                // A box stands on the floor, so either may be named; what is named must be where
+                // the hit is.
                 let named = first(&patches[hit.patch..=hit.patch], o, d).unwrap();
                 assert!(
                     (hit.t - t).abs() <= 1e-9 && (named - t).abs() <= 1e-9,

@@ -19,8 +19,8 @@ fn faces(patch: &Patch, point: Vec3) -> bool {
     patch.normal().dot(point - patch.corner(0)) > 0.0
 }
 
-/// Samples segments between the patches; every blocker must be in the list, and the list must decide visibility.
-/// Returns the number of blocked segments.
+/// Samples segments between the patches; every blocker must be in the list, and the list must
+/// decide visibility. Returns the number of blocked segments.
 fn check(
     scene: &Occluders,
     alone: &[Occluders],
@@ -136,7 +136,8 @@ fn every_blocker_among_thousands_is_listed() {
             }
         }
     }
-    // From any part of the room the outer hemisphere is in view, so only walls hide behind the sphere.
+    // From any part of the room the outer hemisphere is in view, so only walls hide behind the
+    // sphere.
     let (left, right) = (patches[0], patches[3]);
     scene.shaft(&left, &right, &mut list);
     assert!(list.len() > 1_000, "{}", list.len());
@@ -177,7 +178,8 @@ fn quarters(patch: &Patch) -> Vec<Patch> {
 
 #[test]
 fn what_only_touches_is_not_listed() {
-    // A box that stands on the floor: from its side to the floor in front of it nothing is in the way.
+    // A box that stands on the floor: from its side to the floor in front of it nothing is in the
+    // way.
     let floor = quad([(-3.0, -3.0), (3.0, -3.0), (3.0, 3.0), (-3.0, 3.0)].map(|(x, y)| Vec3::new(x, y, 0.0)));
     let mut patches = cuboid(Vec3::new(0.0, 0.0, 1.0), Vec3::ONE, 0.0, false);
     patches.push(floor);

@@ -1,9 +1,10 @@
 //! The Neumann series x_n = b + K b + … + K^{n−1} b, one bounce a term, and how fast it converges.
 //!
-//! The residual of x_n is b − x_n + K x_n = Kⁿ b, so that every bounce tells the error in the equation of the sum before
-//! it. The growth of a term tends to the spectral radius ϱ(K) (I. Gelfand, Mat. Sb. 9 (1941) 3; as the power method J. H.
-//! Wilkinson, The Algebraic Eigenvalue Problem, Oxford 1965, ch. 9): above 1 the series diverges. The power method
-//! carries on from an arbitrary start, since the incident wave may miss what grows.
+//! The residual of x_n is b − x_n + K x_n = Kⁿ b, so that every bounce tells the error in the
+//! equation of the sum before it. The growth of a term tends to the spectral radius ϱ(K) (I.
+//! Gelfand, Mat. Sb. 9 (1941) 3; as the power method J. H. Wilkinson, The Algebraic Eigenvalue
+//! Problem, Oxford 1965, ch. 9): above 1 the series diverges. The power method carries on from an
+//! arbitrary start, since the incident wave may miss what grows.
 
 use fredholm_linop::{LinearOperator, MultiVector, Watch};
 use num_complex::Complex64;
@@ -15,7 +16,8 @@ type Vectors = MultiVector<Complex64>;
 pub struct Bounces {
     /// x_n.
     pub x: Vectors,
-    /// ‖Kᵐ b‖₂/‖b‖₂ for m = 0 … n, each lane: the residuals after so many bounces. 0 where b is.
+    /// ‖Kᵐ b‖₂/‖b‖₂ for m = 0 … n, each right-hand side: the residuals after so many bounces. 0
+    /// where b is.
     pub residuals: Vec<Vec<f64>>,
 }
 
@@ -34,7 +36,7 @@ impl Bounces {
             shares.map(|(norm, &scale)| if scale > 0.0 { norm / scale } else { 0.0 }).collect()
         };
         let mut bounces = Self { x: b.clone(), residuals: vec![relative(b)] };
-        let one = vec![Complex64::ONE; b.lanes()];
+        let one = vec![Complex64::ONE; b.rhs_count()];
         let mut term = b.clone();
         for bounce in 1..=count.max(1) {
             if watch.go_on().is_break() {
@@ -50,7 +52,8 @@ impl Bounces {
     }
 }
 
-/// ϱ(K) as the mean growth of a vector over the later half of `steps` applications, or `None` where `watch` breaks.
+/// ϱ(K) as the mean growth of a vector over the later half of `steps` applications, or `None` where
+/// `watch` breaks.
 #[must_use]
 pub fn spectral_radius(
     coupling: &dyn LinearOperator<Complex64>,
@@ -75,7 +78,7 @@ pub fn spectral_radius(
 }
 
 fn product(coupling: &dyn LinearOperator<Complex64>, x: &Vectors) -> Vectors {
-    let mut y = Vectors::zeros(x.dim(), x.lanes());
+    let mut y = Vectors::zeros(x.dim(), x.rhs_count());
     coupling.apply(x, &mut y);
     y
 }

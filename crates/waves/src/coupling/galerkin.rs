@@ -1,6 +1,6 @@
-//! Galerkin with constant currents on the facets: K_ab as the mean over the observer of the integral over the source,
-//! both by Gauss rules from kR, the distance and the size; close pairs by the nearly singular rule from every point of
-//! the observer.
+//! Galerkin with constant currents on the facets: K_ab as the mean over the observer of the
+//! integral over the source, both by Gauss rules from kR, the distance and the size; close pairs by
+//! the nearly singular rule from every point of the observer.
 //!
 //! R. F. Harrington, Field Computation by Moment Methods, Macmillan 1968, § 1-3.
 
@@ -19,9 +19,8 @@ const CLOSE: usize = 6;
 /// The matrix K (2N × 2N for N facets), `tolerance` relative to a block.
 ///
 /// # Errors
-/// [`WaveError::NotClosed`] where the shadow asks for closed bodies; [`WaveError::CentresOnly`] for the equation on two
-/// surfaces; [`WaveError::Linop`] where it does not fit in
-/// memory.
+/// [`WaveError::NotClosed`] where the shadow asks for closed bodies; [`WaveError::CentresOnly`] for
+/// the equation on two surfaces; [`WaveError::Linop`] where it does not fit in memory.
 pub fn galerkin(
     scatterer: &Scatterer,
     wave: &Wave,

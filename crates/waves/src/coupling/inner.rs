@@ -1,4 +1,5 @@
-//! The second surface of the dual equation: points a depth δ behind the facets, inside the conductor.
+//! The second surface of the dual equation: points a depth δ behind the facets, inside the
+//! conductor.
 //!
 //! There the total H vanishes. Adding j times that to the magnetic field equation,
 //!
@@ -6,9 +7,10 @@
 //! J = 2 n × (H_i(p) + j H_i(p − δn)) + K J + j K_δ J,   K_δ J = 2 n × H[J](p − δn),
 //! ```
 //!
-//! leaves no current that solves it without a source, at any frequency, while δ < λ/2 (R. A. Shore, A. D. Yaghjian,
-//! Dual-surface integral equations in electromagnetic scattering, IEEE Trans. Antennas Propag. 53 (2005) 1706). δ = λ/4,
-//! less in small bodies, and behind each facet less where the body is thin there.
+//! leaves no current that solves it without a source, at any frequency, while δ < λ/2 (R. A. Shore,
+//! A. D. Yaghjian, Dual-surface integral equations in electromagnetic scattering, IEEE Trans.
+//! Antennas Propag. 53 (2005) 1706). δ = λ/4, less in small bodies, and behind each facet less
+//! where the body is thin there.
 
 use crate::{Facet, Scatterer, Shadow, Wave, WaveError};
 use fredholm_mesh::Vec3;

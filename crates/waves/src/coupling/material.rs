@@ -1,15 +1,16 @@
 //! Several bounces between any materials: K of the currents J and M/η₀, by Nyström at the centres.
 //!
-//! What facet q sends is at facet p a wave that comes from q, so that its angle of incidence is known pair by pair and the
-//! coefficients of reflection and transmission apply as to the wave of a source: J = n × (H + H_r − H_t), M = −n × (E + E_r
-//! − E_t). Coefficients are made for waves with both fields across their travel u: of J the H is taken as it is, and E =
-//! η₀ H × u; of M the E is, and H = u × E/η₀. So facets of one plane do not couple. On perfect conductors this is the
-//! coupling of the electric form, with M = 0. It is physical optics at every bounce (F. Obelleiro-Basteiro, J. L. Rodriguez,
-//! R. J. Burkholder, IEEE Trans. Antennas Propag. 43 (1995) 356, with
-//! the tangent plane's coefficients instead of those of a conductor).
+//! What facet q sends is at facet p a wave that comes from q, so that its angle of incidence is
+//! known pair by pair and the coefficients of reflection and transmission apply as to the wave of a
+//! source: J = n × (H + H_r − H_t), M = −n × (E + E_r − E_t). Coefficients are made for waves with
+//! both fields across their travel u: of J the H is taken as it is, and E = η₀ H × u; of M the E
+//! is, and H = u × E/η₀. So facets of one plane do not couple. On perfect conductors this is the
+//! coupling of the electric form, with M = 0. It is physical optics at every bounce (F.
+//! Obelleiro-Basteiro, J. L. Rodriguez, R. J. Burkholder, IEEE Trans. Antennas Propag. 43 (1995)
+//! 356, with the tangent plane's coefficients instead of those of a conductor).
 //!
-//! Unknowns of facet i are 4i … 4i + 3: J along t₁ and t₂, M/η₀ along t₁ and t₂, all in A/m. Products are computed
-//! pair by pair; nothing but the view is stored.
+//! Unknowns of facet i are 4i … 4i + 3: J along t₁ and t₂, M/η₀ along t₁ and t₂, all in A/m.
+//! Products are computed pair by pair; nothing but the view is stored.
 
 use super::View;
 use super::dense::assemble;
@@ -71,7 +72,8 @@ impl<'a> MaterialCoupling<'a> {
         terms.fold(Current::default(), |sum, term| Current { j: sum.j + term.j, m: sum.m + term.m })
     }
 
-    /// Whether one point of the source is enough, as for conductors: beyond its reach, or on the same smooth surface.
+    /// Whether one point of the source is enough, as for conductors: beyond its reach, or on the
+    /// same smooth surface.
     fn is_far(&self, p: &Facet, q: &Facet) -> bool {
         let error = phase_error(1, self.wave.wavenumber() * q.edge()).clamp(TOLERANCE, 0.1);
         let near = 0.5 * q.diameter * reach(1, error);
@@ -134,7 +136,7 @@ impl LinearOperator<Complex64> for MaterialCoupling<'_> {
 
     fn apply(&self, x: &MultiVector<Complex64>, y: &mut MultiVector<Complex64>) {
         let facets = self.scatterer.facets();
-        for l in 0..x.lanes() {
+        for l in 0..x.rhs_count() {
             let unknowns = |q: usize| std::array::from_fn(|a| x.row(UNKNOWNS * q + a)[l]);
             let sent: Vec<Current> = (0..facets.len()).map(|q| current(&facets[q], unknowns(q))).collect();
             let rows: Vec<[Complex64; UNKNOWNS]> = (0..facets.len())
@@ -154,21 +156,21 @@ impl LinearOperator<Complex64> for MaterialCoupling<'_> {
         }
     }
 
-    fn row(&self, i: usize, _lane: usize, out: &mut [Complex64]) {
+    fn row(&self, i: usize, _rhs: usize, out: &mut [Complex64]) {
         let (p, a) = (i / UNKNOWNS, i % UNKNOWNS);
         for (q, entries) in out.chunks_exact_mut(UNKNOWNS).enumerate() {
             entries.copy_from_slice(&self.block(p, q)[a]);
         }
     }
 
-    fn column(&self, j: usize, _lane: usize, out: &mut [Complex64]) {
+    fn column(&self, j: usize, _rhs: usize, out: &mut [Complex64]) {
         let (q, b) = (j / UNKNOWNS, j % UNKNOWNS);
         for (p, entries) in out.chunks_exact_mut(UNKNOWNS).enumerate() {
             entries.copy_from_slice(&self.block(p, q).map(|row| row[b]));
         }
     }
 
-    fn diagonal(&self, _lane: usize, out: &mut [Complex64]) {
+    fn diagonal(&self, _rhs: usize, out: &mut [Complex64]) {
         out.fill(Complex64::ZERO);
     }
 }

@@ -1,7 +1,8 @@
 //! Several bounces: the current x = b + K x with the dyadic kernel between facets.
 //!
-//! Unknowns are the tangential parts of the current, 2i along t₁ and 2i + 1 along t₂ of facet i. With the integral
-//! G = −∫_q (jk + 1/R) g u dA over the source facet, H of a constant tangent t is G × t, so that the blocks are
+//! Unknowns are the tangential parts of the current, 2i along t₁ and 2i + 1 along t₂ of facet i.
+//! With the integral G = −∫_q (jk + 1/R) g u dA over the source facet, H of a constant tangent t is
+//! G × t, so that the blocks are
 //!
 //! ```text
 //! J form, x = J = 2 n × H:  K_ab = +2 s [(t_a·G) (n_p·t_b) − (t_a·t_b) (n_p·G)]

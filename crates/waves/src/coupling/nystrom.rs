@@ -1,11 +1,13 @@
-//! Nyström at the centres: K x at the centre of every facet, far sources by their centre alone, near ones integrated
-//! with their current constant.
+//! Nyström at the centres: K x at the centre of every facet, far sources by their centre alone,
+//! near ones integrated with their current constant.
 //!
-//! A source is near within the reach of one point at the error that its phase causes anyway. The operator stores the
-//! near pairs only; the far ones are evaluated anew by the loop of the radiation integral in every application.
+//! A source is near within the reach of one point at the error that its phase causes anyway. The
+//! operator stores the near pairs only; the far ones are evaluated anew by the loop of the
+//! radiation integral in every application.
 //!
-//! Neighbours on a smooth surface stay with one point: there the kernel is as smooth as the surface, which flat facets
-//! are not. On a sphere of radius λ with 1,280 facets the midpoint rule has 0.2 % of error, integrated neighbours 2.9 %.
+//! Neighbours on a smooth surface stay with one point: there the kernel is as smooth as the
+//! surface, which flat facets are not. On a sphere of radius λ with 1,280 facets the midpoint rule
+//! has 0.2 % of error, integrated neighbours 2.9 %.
 
 use super::dense::assemble;
 use super::inner::{FACTOR, inner_points};
@@ -50,8 +52,8 @@ impl<'a> NystromCoupling<'a> {
     /// Finds what sees each other, and integrates the near pairs.
     ///
     /// # Errors
-    /// [`WaveError::NotClosed`] where the shadow asks for closed bodies, [`WaveError::Thin`] where the second surface
-    /// does not fit inside.
+    /// [`WaveError::NotClosed`] where the shadow asks for closed bodies, [`WaveError::Thin`] where
+    /// the second surface does not fit inside.
     pub fn new(scatterer: &'a Scatterer, wave: Wave, shadow: Shadow) -> Result<Self, WaveError> {
         shadow.check(scatterer)?;
         scatterer.check_conductor("the coupling of currents")?;
@@ -91,7 +93,8 @@ impl<'a> NystromCoupling<'a> {
         Ok(dense)
     }
 
-    /// Bytes that the view and the near pairs of so many facets take, at most: before anything is computed.
+    /// Bytes that the view and the near pairs of so many facets take, at most: before anything is
+    /// computed.
     #[must_use]
     pub fn bytes(scatterer: &Scatterer, shadow: Shadow) -> u64 {
         let facets = scatterer.facets().len();
@@ -153,7 +156,8 @@ impl<'a> NystromCoupling<'a> {
         near.filter_map(move |q| {
             let sign = sign(q);
             (sign != 0.0).then(|| {
-                // The second surface may be closer than the size of a facet, where one point is not enough.
+                // The second surface may be closer than the size of a facet, where one point is not
+                // enough.
                 let apart = self.facet(q).diameter <= 2.0 * x.distance(self.centres[p]);
                 let smooth = self.normals[p].dot(self.normals[q]) > SMOOTH;
                 let g = if smooth && (apart || x == self.centres[p]) {
@@ -166,7 +170,7 @@ impl<'a> NystromCoupling<'a> {
         })
     }
 
-    /// The elements of lane `l` of the currents `x`.
+    /// The elements of right-hand side `l` of the currents `x`.
     fn elements(&self, x: &MultiVector<Complex64>, l: usize) -> Vec<Element> {
         let element = |(i, facet): (usize, &Facet)| {
             let current = tangential(facet, [x.row(2 * i)[l], x.row(2 * i + 1)[l]]);
@@ -199,7 +203,7 @@ impl<'a> NystromCoupling<'a> {
         fields
     }
 
-    /// Row pair p of K x, lane l, from the far field and the near blocks.
+    /// Row pair p of K x, right-hand side l, from the far field and the near blocks.
     fn gather(&self, p: usize, far: &Field, x: &MultiVector<Complex64>, l: usize) -> [Complex64; 2] {
         let facet = self.facet(p);
         let factor = if self.shadow == Shadow::Thesis { -2.0 } else { 2.0 };
@@ -238,7 +242,7 @@ impl LinearOperator<Complex64> for NystromCoupling<'_> {
     }
 
     fn apply(&self, x: &MultiVector<Complex64>, y: &mut MultiVector<Complex64>) {
-        for l in 0..x.lanes() {
+        for l in 0..x.rhs_count() {
             let far = self.far_fields(&self.elements(x, l));
             let rows: Vec<[Complex64; 2]> =
                 far.par_iter().enumerate().map(|(p, far)| self.gather(p, far, x, l)).collect();
@@ -248,7 +252,7 @@ impl LinearOperator<Complex64> for NystromCoupling<'_> {
         }
     }
 
-    fn row(&self, i: usize, _lane: usize, out: &mut [Complex64]) {
+    fn row(&self, i: usize, _rhs: usize, out: &mut [Complex64]) {
         let (p, a) = (i / 2, i % 2);
         for q in 0..self.centres.len() {
             out[2 * q..2 * q + 2].copy_from_slice(&self.far_block(p, q)[a]);
@@ -258,7 +262,7 @@ impl LinearOperator<Complex64> for NystromCoupling<'_> {
         }
     }
 
-    fn column(&self, j: usize, _lane: usize, out: &mut [Complex64]) {
+    fn column(&self, j: usize, _rhs: usize, out: &mut [Complex64]) {
         let (q, b) = (j / 2, j % 2);
         for p in 0..self.centres.len() {
             let near = self.near[p].binary_search_by_key(&(q as u32), |(q, _)| *q);
@@ -268,7 +272,7 @@ impl LinearOperator<Complex64> for NystromCoupling<'_> {
         }
     }
 
-    fn diagonal(&self, _lane: usize, out: &mut [Complex64]) {
+    fn diagonal(&self, _rhs: usize, out: &mut [Complex64]) {
         for (p, near) in self.near.iter().enumerate() {
             let own = near.binary_search_by_key(&(p as u32), |(q, _)| *q);
             let near = own.map_or_else(|_| Block::default(), |at| near[at].1);

@@ -1,4 +1,5 @@
-//! The system x = b + K x of a scatterer, its sources and a treatment of shadows, and the currents it gives.
+//! The system x = b + K x of a scatterer, its sources and a treatment of shadows, and the currents
+//! it gives.
 
 use super::inner::{FACTOR, inner_points};
 use super::material::{UNKNOWNS, current, values};
@@ -38,7 +39,8 @@ pub struct System<'a> {
 }
 
 impl<'a> System<'a> {
-    /// The system with K stored, see [`System::bytes`]; by Nyström where there are other materials than conductors.
+    /// The system with K stored, see [`System::bytes`]; by Nyström where there are other materials
+    /// than conductors.
     ///
     /// # Errors
     /// Those of [`NystromCoupling::new`], [`MaterialCoupling::new`] and [`galerkin`].
@@ -95,7 +97,7 @@ impl<'a> System<'a> {
         }
     }
 
-    /// b: one lane for each of the given incident fields, as the currents of one bounce.
+    /// b: one right-hand side for each of the given incident fields, as the currents of one bounce.
     #[must_use]
     pub fn right_hand_side(&self, incident: &[&PhysicalOptics<'_>]) -> MultiVector<Complex64> {
         let mut b = MultiVector::zeros(self.coupling().dim(), incident.len());
@@ -118,7 +120,7 @@ impl<'a> System<'a> {
         self.coupling().dim() / self.scatterer.facets().len().max(1)
     }
 
-    /// Writes the unknowns of facet i in lane l.
+    /// Writes the unknowns of facet i in right-hand side l.
     fn put(&self, b: &mut MultiVector<Complex64>, (i, l): (usize, usize), current: Current) {
         let (each, facet) = (self.each(), &self.scatterer.facets()[i]);
         let known = if self.shadow == Shadow::Thesis { current.m } else { current.j };
@@ -128,7 +130,7 @@ impl<'a> System<'a> {
         values.iter().enumerate().for_each(|(a, value)| b.row_mut(each * i + a)[l] = *value);
     }
 
-    /// Lane `l` of a solution as currents on the facets.
+    /// Right-hand side `l` of a solution as currents on the facets.
     #[must_use]
     pub fn currents(&self, x: &MultiVector<Complex64>, l: usize) -> FacetCurrents {
         let each = self.each();

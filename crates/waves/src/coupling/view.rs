@@ -11,7 +11,8 @@ pub(crate) struct View {
 }
 
 impl View {
-    /// The view of all facets, or `None` where every pair sees each other or the treatment does not ask.
+    /// The view of all facets, or `None` where every pair sees each other or the treatment does not
+    /// ask.
     pub(crate) fn new(scatterer: &Scatterer, shadow: Shadow) -> Option<Self> {
         if shadow != Shadow::Geometric || !can_block(scatterer) {
             return None;

@@ -1,30 +1,33 @@
 //! The strength of the fringe currents of an edge on faces of finite depth.
 //!
-//! On a half-plane y = 0, x > 0 with its edge along z they are known in closed form (A. Sommerfeld, Math. Ann. 47 (1896)
-//! 317): with F(a) = (e^{jπ/4}/√π) ∫_a^∞ e^{−jt²} dt, C = |cos φ′/2|, κ = k sin β and w = √(2κx) C, the exact current has
-//! more than physical optics
+//! On a half-plane y = 0, x > 0 with its edge along z they are known in closed form (A. Sommerfeld,
+//! Math. Ann. 47 (1896) 317): with F(a) = (e^{jπ/4}/√π) ∫_a^∞ e^{−jt²} dt, C = |cos φ′/2|, κ = k
+//! sin β and w = √(2κx) C, the exact current has more than physical optics
 //!
 //! ```text
 //! J_x = ∓4 H_z e^{jκx cos φ′} F(w)
 //! J_z = (j/κ²) [k cos β ∂J_x/∂x − (k/η) E_z (−4jκ |sin φ′| e^{jκx cos φ′} F(w) + 2 √(2jκ/(πx)) sin(φ′/2) e^{−jκx})]
 //! ```
 //!
-//! with the upper sign for φ′ < π. They run on the strip from each point of the edge along the ray on the face to its far
-//! side, σ = ẑ cos β + x̂ sin β, so deep as the face is (A. Michaeli, IEEE Trans. Antennas Propag. 34 (1986) 912; truncated:
-//! P. M. Johansen, the same 44 (1996) 989). Towards u the strip has the phase e^{jκxc} with c = (u·σ − cos²β)/sin²β,
-//! cos φ on the cone of diffracted rays. With S = √((1 − c)/2), ν = kL sin²β, v = √(2ν) S, w = √(2ν) C, E(a) = e^{ja²} F(a)
-//! and E[w, v] its divided difference, the integrals over the strip are
+//! with the upper sign for φ′ < π. They run on the strip from each point of the edge along the ray
+//! on the face to its far side, σ = ẑ cos β + x̂ sin β, so deep as the face is (A. Michaeli, IEEE
+//! Trans. Antennas Propag. 34 (1986) 912; truncated: P. M. Johansen, the same 44 (1996) 989).
+//! Towards u the strip has the phase e^{jκxc} with c = (u·σ − cos²β)/sin²β, cos φ on the cone of
+//! diffracted rays. With S = √((1 − c)/2), ν = kL sin²β, v = √(2ν) S, w = √(2ν) C, E(a) = e^{ja²}
+//! F(a) and E[w, v] its divided difference, the integrals over the strip are
 //!
 //! ```text
 //! κ ∫ F(w) e^{jκx (c + cos φ′)} dx = √(2ν)/(2j (C + S)) [(½ − F(v))/v + e^{−jv²} E[w, v]]
 //! f = −2 sin(φ′/2)/(C + S) [½ − e^{−jv²} (E(w) + v E[w, v])],   ∫ J_z dx = 2j f E_z/(kη sin²β) without H_z
 //! ```
 //!
-//! which are finite for every pair of directions and have no jumps. Where the wave grazes the face, what the far edge of the
-//! face leaves of H is met: it has the factor 1 − 2F(√(2ν) sin φ′/2) for that.
+//! which are finite for every pair of directions and have no jumps. Where the wave grazes the face,
+//! what the far edge of the face leaves of H is met: it has the factor 1 − 2F(√(2ν) sin φ′/2) for
+//! that.
 //!
-//! On a wedge of outer angle nπ the line currents of infinite strips are taken, f − f₀ and g − g₀ (P. Ya. Ufimtsev,
-//! Fundamentals of the Physical Theory of Diffraction, 2nd ed., Wiley 2014, ch. 2), with that factor at both faces.
+//! On a wedge of outer angle nπ the line currents of infinite strips are taken, f − f₀ and g − g₀
+//! (P. Ya. Ufimtsev, Fundamentals of the Physical Theory of Diffraction, 2nd ed., Wiley 2014, ch.
+//! 2), with that factor at both faces.
 
 use super::fresnel::{divided, factor, scaled};
 use crate::surface::GRAZING;
@@ -179,7 +182,8 @@ mod tests {
         }
     }
 
-    /// No jump in the plane of the face, at the boundaries of light and shadow, nor where the wave grazes the face.
+    /// No jump in the plane of the face, at the boundaries of light and shadow, nor where the wave
+    /// grazes the face.
     #[test]
     fn they_are_continuous() {
         let step = 1e-9;
@@ -193,7 +197,8 @@ mod tests {
                     assert!(gap < (1.0 + depth) * step.sqrt(), "{depth} {source} {c}: {gap}");
                 }
             }
-            // At π, where the wave comes over the face, only with physical optics, whose sides change there.
+            // At π, where the wave comes over the face, only with physical optics, whose sides
+            // change there.
             for c in [-0.8, 0.0, 0.9] {
                 let go = |d: f64| half_plane(c, d.rem_euclid(TAU), depth);
                 assert!(near(go(-step), go(step)) < 1e-6, "{depth} {c}");

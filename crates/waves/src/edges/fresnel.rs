@@ -1,8 +1,9 @@
-//! The Fresnel integral of diffraction, E(a) = e^{ja²} (e^{jπ/4}/√π) ∫_a^∞ e^{−jt²} dt for a ≥ 0, and its divided
-//! differences.
+//! The Fresnel integral of diffraction, E(a) = e^{ja²} (e^{jπ/4}/√π) ∫_a^∞ e^{−jt²} dt for a ≥ 0,
+//! and its divided differences.
 //!
-//! E(a) = ½ erfcx(e^{jπ/4} a), E(0) = ½, E → e^{−jπ/4}/(2√π a) for large a (M. Abramowitz, I. A. Stegun, Handbook of
-//! Mathematical Functions, 1964, 7.1.5 for the series and 7.1.14 for the continued fraction).
+//! E(a) = ½ erfcx(e^{jπ/4} a), E(0) = ½, E → e^{−jπ/4}/(2√π a) for large a (M. Abramowitz, I. A.
+//! Stegun, Handbook of Mathematical Functions, 1964, 7.1.5 for the series and 7.1.14 for the
+//! continued fraction).
 
 use num_complex::Complex64;
 use std::f64::consts::{FRAC_PI_4, PI};

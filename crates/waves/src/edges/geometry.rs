@@ -11,7 +11,8 @@ const PIECE: f64 = 0.5;
 const POINTS: usize = 5;
 /// Cosine between normals above which two faces meet smoothly.
 const SMOOTH: f64 = 0.9;
-/// Distance, over the extent, within which corners are at the same place and faces in the same plane.
+/// Distance, over the extent, within which corners are at the same place and faces in the same
+/// plane.
 const SAME: f64 = 1e-9;
 
 /// A straight edge between two faces, or of one thin face.
@@ -74,7 +75,8 @@ impl Edge {
         (0..count).flat_map(piece).collect()
     }
 
-    /// How far the two faces reach from a point of the edge along the ray of a wave that runs with `travel`·t along it, m.
+    /// How far the two faces reach from a point of the edge along the ray of a wave that runs with
+    /// `travel`·t along it, m.
     pub(super) fn depths(&self, scatterer: &Scatterer, place: Vec3, along_edge: f64) -> [f64; 2] {
         let across = (1.0 - along_edge * along_edge).max(0.0).sqrt();
         let second = self.opening * PI;
@@ -127,8 +129,8 @@ fn inside(face: &Patch, place: Vec3, ray: Vec3, margin: f64) -> Option<[f64; 2]>
     (to > from).then_some([from, to])
 }
 
-/// The edges: those that two faces of closed bodies share at an angle, and those of one sheet alone. Tessellated spheres
-/// have none.
+/// The edges: those that two faces of closed bodies share at an angle, and those of one sheet
+/// alone. Tessellated spheres have none.
 pub(super) fn edges(scatterer: &Scatterer) -> Vec<Edge> {
     let faces = scatterer.occluders().patches();
     let sides = Sides::new(faces, SAME * scatterer.extent());

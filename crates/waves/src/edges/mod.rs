@@ -1,18 +1,20 @@
-//! Edge currents: what physical optics lacks near straight edges of conductors (first-order physical theory of
-//! diffraction).
+//! Edge currents: what physical optics lacks near straight edges of conductors (first-order
+//! physical theory of diffraction).
 //!
-//! P. Ya. Ufimtsev, Fundamentals of the Physical Theory of Diffraction, 2nd ed., Wiley 2014, ch. 2 and 7. On sheets they
-//! are the fringe currents of the half-plane, which radiate from the strip of the face behind each point of the edge; on
-//! wedges, with β between the edge t and the travel, line currents (E. F. Knott, T. B. A. Senior, Proc. IEEE 62 (1974)
-//! 1468, doi:10.1109/PROC.1974.9658)
+//! P. Ya. Ufimtsev, Fundamentals of the Physical Theory of Diffraction, 2nd ed., Wiley 2014, ch. 2
+//! and 7. On sheets they are the fringe currents of the half-plane, which radiate from the strip of
+//! the face behind each point of the edge; on wedges, with β between the edge t and the travel,
+//! line currents (E. F. Knott, T. B. A. Senior, Proc. IEEE 62 (1974) 1468,
+//! doi:10.1109/PROC.1974.9658)
 //!
 //! ```text
 //! I = 2j f E_i·t/(kη sin²β),   M = 2jη g H_i·t/(k sin²β)
 //! ```
 //!
-//! with the coefficients f and g of [`coefficients`]. Left out are corners, diffraction
-//! from edge to edge beyond the depth of the face, waves along the edge, and edges that are short or whose face is
-//! shallow against the wavelength, where the half-plane says nothing. I in A, M in V, lengths in metres.
+//! with the coefficients f and g of [`coefficients`]. Left out are corners, diffraction from edge
+//! to edge beyond the depth of the face, waves along the edge, and edges that are short or whose
+//! face is shallow against the wavelength, where the half-plane says nothing. I in A, M in V,
+//! lengths in metres.
 
 mod coefficients;
 mod fresnel;
@@ -61,7 +63,8 @@ pub struct EdgeCurrents {
 }
 
 impl EdgeCurrents {
-    /// The edges of the undivided faces in the light of the sources, where nothing hides them: for one bounce.
+    /// The edges of the undivided faces in the light of the sources, where nothing hides them: for
+    /// one bounce.
     ///
     /// # Errors
     /// [`WaveError::NotConductor`] for other materials than perfect conductors.
@@ -74,15 +77,16 @@ impl EdgeCurrents {
         Ok(found)
     }
 
-    /// The same for several bounces: the sources light all edges, hidden or not, and so does the field of the currents
-    /// on all faces that do not contain the edge, taken as one wave that travels along its mean power flow. Where
-    /// something hides the edge, the latter takes away the former.
+    /// The same for several bounces: the sources light all edges, hidden or not, and so does the
+    /// field of the currents on all faces that do not contain the edge, taken as one wave that
+    /// travels along its mean power flow. Where something hides the edge, the latter takes away the
+    /// former.
     ///
     /// Edges that another face goes through are left out.
     ///
     /// # Errors
-    /// [`WaveError::NotConductor`] for other materials than perfect conductors, [`WaveError::NotFinite`] where a
-    /// coordinate of the mesh is none.
+    /// [`WaveError::NotConductor`] for other materials than perfect conductors,
+    /// [`WaveError::NotFinite`] where a coordinate of the mesh is none.
     pub fn of_bounces(
         scatterer: &Scatterer,
         wave: Wave,
@@ -164,8 +168,8 @@ impl EdgeCurrents {
         Ok(())
     }
 
-    /// The element of a piece that a wave from the direction `towards` its source meets; none for a wave from within the
-    /// body or along the edge.
+    /// The element of a piece that a wave from the direction `towards` its source meets; none for a
+    /// wave from within the body or along the edge.
     fn element(
         scatterer: &Scatterer,
         (edge, piece): (&Edge, Piece),
@@ -182,7 +186,8 @@ impl EdgeCurrents {
         Some(Element { piece, edge: *edge, source_angle, along, depths, strength })
     }
 
-    /// Elements that the edges of a scatterer take at most, for each source: known before they are made.
+    /// Elements that the edges of a scatterer take at most, for each source: known before they are
+    /// made.
     #[must_use]
     pub fn predicted(scatterer: &Scatterer, wave: &Wave) -> f64 {
         let sides = |face: &fredholm_mesh::Patch| -> f64 {
@@ -244,7 +249,8 @@ impl SurfaceCurrent for Others<'_> {
 }
 
 impl Element {
-    /// The electric and the magnetic moment a metre that radiate towards the direction u from this distance (m).
+    /// The electric and the magnetic moment a metre that radiate towards the direction u from this
+    /// distance (m).
     fn moments(&self, wave: &Wave, u: Vec3, distance: f64) -> [ComplexVector; 2] {
         let t = self.edge.tangent();
         let k = wave.wavenumber();

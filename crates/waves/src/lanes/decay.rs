@@ -1,8 +1,8 @@
 //! e^{−x} of many small x at once: what a lossy medium takes from a wave over the size of a patch.
 //!
-//! e^{−x} = (e^{−x/2^m})^{2^m}, where m halvings bring |x| below 1/8 and Taylor's series to the tenth power leaves an
-//! error of 3e-18. Squaring m times multiplies the rounding by 2^m, so that the relative error
-//! stays below 2^{m+2} · 1.1e-16.
+//! e^{−x} = (e^{−x/2^m})^{2^m}, where m halvings bring |x| below 1/8 and Taylor's series to the
+//! tenth power leaves an error of 3e-18. Squaring m times multiplies the rounding by 2^m, so that
+//! the relative error stays below 2^{m+2} · 1.1e-16.
 
 #![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
 

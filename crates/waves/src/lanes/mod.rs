@@ -1,7 +1,8 @@
 //! Several numbers in one register: arithmetic written as for one.
 //!
-//! Kernels of surface integrals are written over [`Lanes`] once and compiled for every instruction set by `pulp`. Every
-//! operation rounds once, as it does in one lane alone, so that no result depends on the width of the registers.
+//! Kernels of surface integrals are written over [`Lanes`] once and compiled for every instruction
+//! set by `pulp`. Every operation rounds once, as it does in one lane alone, so that no result
+//! depends on the width of the registers.
 
 #![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
 
@@ -108,7 +109,8 @@ impl<S: Simd> Lanes<S> {
         Self { simd: self.simd, value: self.simd.min_f64s(self.value, other.value) }
     }
 
-    /// 1 in the lanes where self > 0, else 0. Positive numbers below 1e-200 count as something between.
+    /// 1 in the lanes where self > 0, else 0. Positive numbers below 1e-200 count as something
+    /// between.
     #[inline(always)]
     #[must_use]
     pub fn step(self) -> Self {

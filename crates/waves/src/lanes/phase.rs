@@ -1,9 +1,10 @@
 //! cos x and sin x of many x at once.
 //!
-//! x = q π/2 + r with q = round(2x/π) and |r| ≤ π/4, the product q π/2 in two parts (W. J. Cody, W. Waite, Software
-//! Manual for the Elementary Functions, Prentice-Hall 1980); cos r and sin r by the minimax polynomials of fdlibm
-//! (Sun Microsystems 1993, `k_cos.c`, `k_sin.c`). The quarter turns are undone without a branch: with h = q mod 4 in
-//! −2 … 2, cos(hπ/2) = 1 − |h| and sin(hπ/2) = h (2 − |h|).
+//! x = q π/2 + r with q = round(2x/π) and |r| ≤ π/4, the product q π/2 in two parts (W. J. Cody, W.
+//! Waite, Software Manual for the Elementary Functions, Prentice-Hall 1980); cos r and sin r by the
+//! minimax polynomials of fdlibm (Sun Microsystems 1993, `k_cos.c`, `k_sin.c`). The quarter turns
+//! are undone without a branch: with h = q mod 4 in −2 … 2, cos(hπ/2) = 1 − |h| and sin(hπ/2) = h
+//! (2 − |h|).
 //!
 //! The error is below 4e-16 for |x| ≤ 1e6, and grows as 1e-22 |x| beyond.
 

@@ -1,14 +1,14 @@
 //! Fresnel's coefficients between two half-spaces, the first one free space.
 //!
-//! With w = √(ε − sin²θ), Im w ≤ 0, which is n₂ cos θ_t, and the admittances p₁ = cos θ, p₂ = w (TE, of E) or w/ε (TM,
-//! of H):
+//! With w = √(ε − sin²θ), Im w ≤ 0, which is n₂ cos θ_t, and the admittances p₁ = cos θ, p₂ = w
+//! (TE, of E) or w/ε (TM, of H):
 //!
 //! ```text
 //! r = (p₁ − p₂)/(p₁ + p₂),   t = 2 p₁/(p₁ + p₂)
 //! ```
 //!
-//! M. Born, E. Wolf, Principles of Optics, 7th ed., Cambridge 1999, § 1.5. r∥ is that of H, so that r⊥ and r∥ of a
-//! conductor are −1 and +1; t∥ of E is t∥ of H over n₂.
+//! M. Born, E. Wolf, Principles of Optics, 7th ed., Cambridge 1999, § 1.5. r∥ is that of H, so that
+//! r⊥ and r∥ of a conductor are −1 and +1; t∥ of E is t∥ of H over n₂.
 
 use super::Coefficients;
 use num_complex::Complex64;
@@ -25,7 +25,8 @@ pub(super) fn admittances(permittivity: Complex64, sin_squared: f64) -> [Complex
     [slowness, slowness / permittivity]
 }
 
-/// Reflection and transmission from free space into the relative permittivity ε′ − jε″, at cos θ (0 … 1).
+/// Reflection and transmission from free space into the relative permittivity ε′ − jε″, at cos θ (0
+/// … 1).
 #[must_use]
 pub fn half_space(permittivity: Complex64, cos: f64) -> Coefficients {
     let second = admittances(permittivity, 1.0 - cos * cos);

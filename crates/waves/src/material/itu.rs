@@ -1,7 +1,9 @@
-//! Building materials by name and frequency: ε′ = a f^b, σ = c f^d (f in GHz, σ in S/m), ε = ε′ − jσ/(ωε₀).
+//! Building materials by name and frequency: ε′ = a f^b, σ = c f^d (f in GHz, σ in S/m), ε = ε′ −
+//! jσ/(ωε₀).
 //!
-//! Source: Recommendation ITU-R P.2040-3 (08/2023), Effects of building materials and structures on radiowave
-//! propagation above about 100 MHz, Table 3, <https://www.itu.int/rec/R-REC-P.2040>. The table is `itu_p2040_3.csv`.
+//! Source: Recommendation ITU-R P.2040-3 (08/2023), Effects of building materials and structures on
+//! radiowave propagation above about 100 MHz, Table 3, <https://www.itu.int/rec/R-REC-P.2040>. The
+//! table is `itu_p2040_3.csv`.
 
 use crate::WaveError;
 use crate::medium::PERMITTIVITY;
@@ -38,7 +40,8 @@ fn row(line: &'static str) -> Option<ItuMaterial> {
 /// The relative permittivity of a material of the table at a frequency, Hz.
 ///
 /// # Errors
-/// [`WaveError::Material`] for a name that is not in the table, or a frequency that it does not hold for.
+/// [`WaveError::Material`] for a name that is not in the table, or a frequency that it does not
+/// hold for.
 pub fn itu_permittivity(name: &str, frequency: f64) -> Result<Complex64, WaveError> {
     let fail = |reason| Err(WaveError::Material { what: name.to_owned(), reason });
     let gigahertz = frequency / 1e9;

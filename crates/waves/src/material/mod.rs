@@ -1,7 +1,8 @@
 //! Materials: what a flat surface reflects and lets through.
 //!
-//! With the angle of incidence θ, the reflected and the transmitted wave are r and t times the incident one, apart for
-//! E across the plane of incidence (TE, r⊥ of E) and E in it (TM, r∥ of **H**): a perfect conductor has r⊥ = −1, r∥ = 1.
+//! With the angle of incidence θ, the reflected and the transmitted wave are r and t times the
+//! incident one, apart for E across the plane of incidence (TE, r⊥ of E) and E in it (TM, r∥ of
+//! **H**): a perfect conductor has r⊥ = −1, r∥ = 1.
 //!
 //! | material | reflects | lets through |
 //! |---|---|---|
@@ -106,8 +107,9 @@ impl Material {
 
 /// Leontovich's condition: r⊥ = (Z cos θ − η)/(Z cos θ + η), r∥ = (η cos θ − Z)/(η cos θ + Z).
 ///
-/// M. A. Leontovich, Investigations on Radiowave Propagation II, Academy of Sciences, Moscow 1948; T. B. A. Senior, J. L.
-/// Volakis, Approximate Boundary Conditions in Electromagnetics, IEE 1995, § 2.2.
+/// M. A. Leontovich, Investigations on Radiowave Propagation II, Academy of Sciences, Moscow 1948;
+/// T. B. A. Senior, J. L. Volakis, Approximate Boundary Conditions in Electromagnetics, IEE 1995, §
+/// 2.2.
 fn impedance(z: Complex64, cos: f64) -> [Complex64; 2] {
     let grazing = z * cos;
     let eta = IMPEDANCE * cos;

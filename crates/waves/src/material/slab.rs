@@ -1,14 +1,15 @@
 //! Layers between two half-spaces of free space.
 //!
-//! From the last interface forwards, with the coefficients r₀₁ of the interface before a layer of thickness d and
-//! r′, t′ of all behind it (M. Born, E. Wolf, Principles of Optics, 7th ed., Cambridge 1999, § 1.6; the recursion of
-//! P. Rouard 1937), δ = k d √(ε − sin²θ):
+//! From the last interface forwards, with the coefficients r₀₁ of the interface before a layer of
+//! thickness d and r′, t′ of all behind it (M. Born, E. Wolf, Principles of Optics, 7th ed.,
+//! Cambridge 1999, § 1.6; the recursion of P. Rouard 1937), δ = k d √(ε − sin²θ):
 //!
 //! ```text
 //! r = (r₀₁ + r′ e^{−2jδ})/(1 + r₀₁ r′ e^{−2jδ}),   t = t₀₁ t′ e^{−jδ}/(1 + r₀₁ r′ e^{−2jδ})
 //! ```
 //!
-//! No exponential grows, so layers may be as thick and lossy as they like. t leads from the front to the back.
+//! No exponential grows, so layers may be as thick and lossy as they like. t leads from the front
+//! to the back.
 
 use super::Coefficients;
 use super::fresnel::{admittances, slowness};

@@ -1,9 +1,11 @@
-//! The currents of a wave on a flat material: J = n × (H_i + H_r − H_t), M = −n × (E_i + E_r − E_t).
+//! The currents of a wave on a flat material: J = n × (H_i + H_r − H_t), M = −n × (E_i + E_r −
+//! E_t).
 //!
-//! They radiate the reflected wave in front, and behind what takes the incident wave away and puts the transmitted one in
-//! its place (the tangent plane approximation with the equivalence theorem: C. A. Balanis, Advanced Engineering
-//! Electromagnetics, 2nd ed., Wiley 2012, § 7.8). Only sheets let something through to their other side. Of a slab the
-//! mesh is the front, and the transmitted wave is continued back to it, so that the phase behind is right.
+//! They radiate the reflected wave in front, and behind what takes the incident wave away and puts
+//! the transmitted one in its place (the tangent plane approximation with the equivalence theorem:
+//! C. A. Balanis, Advanced Engineering Electromagnetics, 2nd ed., Wiley 2012, § 7.8). Only sheets
+//! let something through to their other side. Of a slab the mesh is the front, and the transmitted
+//! wave is continued back to it, so that the phase behind is right.
 
 use crate::material::{Coefficients, Material};
 use crate::{ComplexVector, Current, Facet, Field, Kind, Wave};
@@ -43,7 +45,8 @@ fn totals(material: &Material, wave: &Wave, (side, cos): (f64, f64), kind: Kind)
     let found = if side > 0.0 {
         material.coefficients(wave, cos)
     } else {
-        // The back is met first, a thickness before the mesh: the wave that it reflects is ahead by twice that.
+        // The back is met first, a thickness before the mesh: the wave that it reflects is ahead by
+        // twice that.
         let Coefficients { reflected, transmitted } = material.turned().coefficients(wave, cos);
         Coefficients { reflected: reflected.map(|r| r * back * back), transmitted }
     };
@@ -79,8 +82,8 @@ mod tests {
         optics.radiator(Sampling::Tolerance(1e-6)).far_field(&[to]).unwrap()[0].amplitude
     }
 
-    /// The mirror direction has r, and straight on 1 − t, times what a perfect conductor has there: exactly, since a
-    /// sheet of uniform current radiates plane waves.
+    /// The mirror direction has r, and straight on 1 − t, times what a perfect conductor has there:
+    /// exactly, since a sheet of uniform current radiates plane waves.
     #[test]
     fn the_mirror_and_the_shadow_have_the_coefficients_of_the_material() {
         let wave = Wave::new(1e9).unwrap();

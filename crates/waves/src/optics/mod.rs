@@ -1,8 +1,8 @@
 //! One bounce: physical optics, J = 2 n × H_i, and the magnetic form M = 2 n × E_i.
 //!
-//! On an infinite perfectly conducting plane these currents are exact (C. A. Balanis, Advanced Engineering
-//! Electromagnetics, 2nd ed., Wiley 2012, § 7.10). [`Shadow`] says which facets carry them; n is the normal on the lit
-//! side.
+//! On an infinite perfectly conducting plane these currents are exact (C. A. Balanis, Advanced
+//! Engineering Electromagnetics, 2nd ed., Wiley 2012, § 7.10). [`Shadow`] says which facets carry
+//! them; n is the normal on the lit side.
 
 mod fresnel;
 
@@ -17,23 +17,23 @@ use crate::{
 use fredholm_mesh::Vec3;
 use rayon::prelude::*;
 
-/// The treatment of shadows. One must be used throughout: a blocked scattered field, or an unblocked one of lit facets
-/// only, counts the shadow twice or never.
+/// The treatment of shadows. One must be used throughout: a blocked scattered field, or an
+/// unblocked one of lit facets only, counts the shadow twice or never.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shadow {
     /// A: facets see what nothing blocks (iterative physical optics).
     #[default]
     Geometric,
-    /// B: nothing blocks; the currents radiate the shadow (D. Gershenzon, Y. Brick, A. Boag, IEEE Trans. Antennas
-    /// Propag. 66 (2018) 871, doi:10.1109/TAP.2017.2783324).
+    /// B: nothing blocks; the currents radiate the shadow (D. Gershenzon, Y. Brick, A. Boag, IEEE
+    /// Trans. Antennas Propag. 66 (2018) 871, doi:10.1109/TAP.2017.2783324).
     Radiated,
     /// C: the magnetic field equation of closed bodies, of which physical optics is the first term.
     Exact,
-    /// C, and j times the same on a second surface λ/4 inside, which takes away the resonances of the interior (R. A.
-    /// Shore, A. D. Yaghjian, IEEE Trans. Antennas Propag. 53 (2005) 1706).
+    /// C, and j times the same on a second surface λ/4 inside, which takes away the resonances of
+    /// the interior (R. A. Shore, A. D. Yaghjian, IEEE Trans. Antennas Propag. 53 (2005) 1706).
     ExactDual,
-    /// M = 2 n × E on lit facets, n turned to the observer for every pair, and nothing blocks (G. Viennot, thesis,
-    /// Limoges 2012, eq. 2.15 and annex B).
+    /// M = 2 n × E on lit facets, n turned to the observer for every pair, and nothing blocks (G.
+    /// Viennot, thesis, Limoges 2012, eq. 2.15 and annex B).
     Thesis,
 }
 
@@ -68,8 +68,8 @@ impl Shadow {
     /// Refuses a scatterer that the treatment is not made for.
     ///
     /// # Errors
-    /// [`WaveError::NotClosed`] for a sheet and the exact equation, [`WaveError::NotConductor`] for other materials and
-    /// the exact equation or the thesis.
+    /// [`WaveError::NotClosed`] for a sheet and the exact equation, [`WaveError::NotConductor`] for
+    /// other materials and the exact equation or the thesis.
     pub fn check(self, scatterer: &Scatterer) -> Result<(), WaveError> {
         if self.is_equation() || self == Self::Thesis {
             scatterer.check_conductor("this treatment of shadows")?;
@@ -108,7 +108,8 @@ impl<'a> PhysicalOptics<'a> {
         Ok(Self { scatterer, sources, wave, shadow, lit })
     }
 
-    /// The side of each facet (+1 along the normal, −1 against it, 0 none) that a source, by its index, lights.
+    /// The side of each facet (+1 along the normal, −1 against it, 0 none) that a source, by its
+    /// index, lights.
     ///
     /// # Panics
     /// There is no such source.
@@ -165,7 +166,8 @@ impl SurfaceCurrent for PhysicalOptics<'_> {
     }
 }
 
-/// The current that a wave makes on a facet that it meets on `side`, coming from the direction `towards` its source.
+/// The current that a wave makes on a facet that it meets on `side`, coming from the direction
+/// `towards` its source.
 pub(crate) fn response(
     material: &Material,
     wave: &Wave,

@@ -4,7 +4,8 @@
 //! F(u) = −(jk/4π) ∫ [η (J − u (u·J)) − u × M] e^{jk u·q} dA,   H = (1/η) u × E
 //! ```
 //!
-//! (C. A. Balanis, Antenna Theory, 4th ed., Wiley 2016, § 3.6). F in V, directions are unit vectors from the origin.
+//! (C. A. Balanis, Antenna Theory, 4th ed., Wiley 2016, § 3.6). F in V, directions are unit vectors
+//! from the origin.
 
 use super::Radiator;
 use crate::medium::IMPEDANCE;
@@ -50,7 +51,8 @@ pub fn polar_frame(direction: Vec3) -> [Vec3; 2] {
     [azimuth.cross(direction), azimuth]
 }
 
-/// Radar cross-section 4π |F|²/|E₀|² (m²) of a far amplitude F (V) along one polarisation, E₀ (V/m) incident.
+/// Radar cross-section 4π |F|²/|E₀|² (m²) of a far amplitude F (V) along one polarisation, E₀ (V/m)
+/// incident.
 #[must_use]
 pub fn cross_section(amplitude: Complex64, incident: Complex64) -> f64 {
     4.0 * std::f64::consts::PI * amplitude.norm_sqr() / incident.norm_sqr()

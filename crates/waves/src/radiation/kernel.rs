@@ -1,7 +1,8 @@
 //! The hot loop: the fields of many elements at several points at once, one point a lane.
 //!
-//! The equations are those of [`electric_element`](crate::electric_element), split into real and imaginary parts:
-//! with i = 1/R, E/η = (across) J + (along) d (d·J) and H = (curl) d × J. Moments are J dA/(4π), A m.
+//! The equations are those of [`electric_element`](crate::electric_element), split into real and
+//! imaginary parts: with i = 1/R, E/η = (across) J + (along) d (d·J) and H = (curl) d × J. Moments
+//! are J dA/(4π), A m.
 
 #![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
 
@@ -52,7 +53,8 @@ impl Group {
         &elements[self.first..self.first + self.count]
     }
 
-    /// Whether the point `d` from the centre is left out: in the arithmetic of the lanes, so that none is counted twice.
+    /// Whether the point `d` from the centre is left out: in the arithmetic of the lanes, so that
+    /// none is counted twice.
     pub(crate) fn leaves_out(&self, d: Vec3) -> bool {
         d.z.mul_add(d.z, d.y.mul_add(d.y, d.x * d.x)) <= self.near_squared
     }

@@ -1,15 +1,18 @@
-//! The far field of one bounce of plane waves in closed form: on a flat facet both the current and the way to a far
-//! observer turn by a linear phase, so that a facet of any size is integrated without error.
+//! The far field of one bounce of plane waves in closed form: on a flat facet both the current and
+//! the way to a far observer turn by a linear phase, so that a facet of any size is integrated
+//! without error.
 //!
-//! With w = k (u − K̂), its part w_t along the facet, the sides Δ_i around the normal n and their middles m_i (W. B.
-//! Gordon, IEEE Trans. Antennas Propag. 23 (1975) 590, doi:10.1109/TAP.1975.1141105):
+//! With w = k (u − K̂), its part w_t along the facet, the sides Δ_i around the normal n and their
+//! middles m_i (W. B. Gordon, IEEE Trans. Antennas Propag. 23 (1975) 590,
+//! doi:10.1109/TAP.1975.1141105):
 //!
 //! ```text
 //! ∫ e^{jw·q} dA = (1/(j|w_t|²)) Σ w_t·(Δ_i × n) e^{jw·m_i} sin(w·Δ_i/2)/(w·Δ_i/2)
 //! ```
 //!
-//! Where the phase over the facet is below ½ rad that is a difference of near numbers, and Gauss points take its place
-//! (relative error below 2e-8). Nothing has to be meshed in wavelengths then, but the line between light and shadow.
+//! Where the phase over the facet is below ½ rad that is a difference of near numbers, and Gauss
+//! points take its place (relative error below 2e-8). Nothing has to be meshed in wavelengths then,
+//! but the line between light and shadow.
 
 use super::{FarField, Pattern};
 use crate::medium::IMPEDANCE;
@@ -26,8 +29,8 @@ const SMALL: f64 = 0.5;
 const POINTS: usize = 3;
 
 impl PhysicalOptics<'_> {
-    /// F (V) in these directions (any length), in parallel, exact for facets of any size; `None` where a source is no
-    /// plane wave.
+    /// F (V) in these directions (any length), in parallel, exact for facets of any size; `None`
+    /// where a source is no plane wave.
     ///
     /// # Errors
     /// [`WaveError::Direction`] for a direction that is none.
@@ -146,7 +149,8 @@ mod tests {
         );
     }
 
-    /// One facet of 20 wavelengths: 4πA²/λ² straight back, and the pattern of a uniform square beside.
+    /// One facet of 20 wavelengths: 4πA²/λ² straight back, and the pattern of a uniform square
+    /// beside.
     #[test]
     fn a_large_plate_needs_one_facet() {
         let wave = Wave::new(1e9).unwrap();

@@ -1,9 +1,11 @@
-//! The radiation integral: E and H of surface currents at any point, all components and all near terms.
+//! The radiation integral: E and H of surface currents at any point, all components and all near
+//! terms.
 //!
-//! E(r) = ∫ (element of J + element of M) dA, see [`electric_element`](crate::electric_element). A facet far from a
-//! point is its Gauss points, as many as its phase 2kh asks for; closer than the reach of that rule (see the error
-//! bounds in `rule`) it is integrated for that point alone, with more points, and next to it by a nearly singular rule.
-//! So the field at a point does not depend on the other points, nor on the number of threads.
+//! E(r) = ∫ (element of J + element of M) dA, see [`electric_element`](crate::electric_element). A
+//! facet far from a point is its Gauss points, as many as its phase 2kh asks for; closer than the
+//! reach of that rule (see the error bounds in `rule`) it is integrated for that point alone, with
+//! more points, and next to it by a nearly singular rule. So the field at a point does not depend
+//! on the other points, nor on the number of threads.
 //!
 //! Currents radiate in free space: nothing is occluded on the way to a point. Lengths in metres.
 
@@ -32,8 +34,8 @@ pub enum Gate {
     /// To both: what a current does.
     #[default]
     Open,
-    /// To both, with the normal turned to the observer: opposite signs on the two sides (G. Viennot, thesis, Limoges
-    /// 2012, annex B.4.1).
+    /// To both, with the normal turned to the observer: opposite signs on the two sides (G.
+    /// Viennot, thesis, Limoges 2012, annex B.4.1).
     ObserverSide,
 }
 
@@ -107,7 +109,8 @@ impl<'a> Radiator<'a> {
         }
     }
 
-    /// Largest phase over a facet, rad: the wave to the observer and the current both turn by up to k a metre.
+    /// Largest phase over a facet, rad: the wave to the observer and the current both turn by up to
+    /// k a metre.
     fn phase(&self, facet: &Facet) -> f64 {
         2.0 * self.wave.wavenumber() * facet.edge()
     }
@@ -148,7 +151,8 @@ impl<'a> Radiator<'a> {
     /// E and H at these points (m), in parallel.
     ///
     /// # Errors
-    /// [`WaveError::OnSurface`] for a point on a facet, [`WaveError::NotFinite`] for one that is none.
+    /// [`WaveError::OnSurface`] for a point on a facet, [`WaveError::NotFinite`] for one that is
+    /// none.
     pub fn fields(&self, points: &[Vec3]) -> Result<Vec<Field>, WaveError> {
         if points.iter().any(|p| !p.is_finite()) {
             return Err(WaveError::NotFinite { what: "a coordinate of a receiver" });

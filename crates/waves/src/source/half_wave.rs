@@ -1,14 +1,16 @@
-//! The half-wave dipole: the thin wire of length λ/2 with the current I cos(kz), exact at any distance.
+//! The half-wave dipole: the thin wire of length λ/2 with the current I cos(kz), exact at any
+//! distance.
 //!
-//! With z along the wire, ρ from it, and R₁, R₂ the distances from the ends at z = +λ/4, −λ/4 (C. A. Balanis, Antenna
-//! Theory, 4th ed., Wiley 2016, § 8.5.2, with cos(kl/2) = 0):
+//! With z along the wire, ρ from it, and R₁, R₂ the distances from the ends at z = +λ/4, −λ/4 (C.
+//! A. Balanis, Antenna Theory, 4th ed., Wiley 2016, § 8.5.2, with cos(kl/2) = 0):
 //!
 //! ```text
 //! E_z = −jη I/(4π) [e^{−jkR₁}/R₁ + e^{−jkR₂}/R₂],   H_φ = jI/(4πρ) [e^{−jkR₁} + e^{−jkR₂}]
 //! E_ρ = jη I/(4πρ) [(z − λ/4) e^{−jkR₁}/R₁ + (z + λ/4) e^{−jkR₂}/R₂]
 //! ```
 //!
-//! Far away F = −jη I/(2π) cos(½π cosθ)/sin²θ (ẑ − u cosθ) e^{jk u·c}, and its radiation resistance is η Cin(2π)/(4π), 73.13 Ω.
+//! Far away F = −jη I/(2π) cos(½π cosθ)/sin²θ (ẑ − u cosθ) e^{jk u·c}, and its radiation resistance
+//! is η Cin(2π)/(4π), 73.13 Ω.
 
 use super::{Origin, Source, finite, finite_point, unit};
 use crate::medium::IMPEDANCE;
@@ -18,7 +20,8 @@ use fredholm_quadrature::gauss_legendre;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// Distance from the wire's line, over λ, below which a point is on it: beyond the wire the transverse parts are 0 there.
+/// Distance from the wire's line, over λ, below which a point is on it: beyond the wire the
+/// transverse parts are 0 there.
 const ON_LINE: f64 = 1e-9;
 
 /// ∫₀^{2π} (1 − cos t)/t dt.
@@ -38,7 +41,8 @@ impl HalfWaveDipole {
     /// Centred at `centre` (m), along `axis` (any length), with the feed `current` I, A.
     ///
     /// # Errors
-    /// [`WaveError::Direction`] for an axis without direction, [`WaveError::NotFinite`] for other numbers.
+    /// [`WaveError::Direction`] for an axis without direction, [`WaveError::NotFinite`] for other
+    /// numbers.
     pub fn new(centre: Vec3, axis: Vec3, current: Complex64) -> Result<Self, WaveError> {
         finite(current.re + current.im, "the current of a half-wave dipole")?;
         Ok(Self {

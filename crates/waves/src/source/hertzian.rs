@@ -20,7 +20,8 @@ impl HertzianDipole {
     /// At `position` (m), the current along `axis` (any length); `moment` is I l, A m.
     ///
     /// # Errors
-    /// [`WaveError::Direction`] for an axis without direction, [`WaveError::NotFinite`] for other numbers.
+    /// [`WaveError::Direction`] for an axis without direction, [`WaveError::NotFinite`] for other
+    /// numbers.
     pub fn new(position: Vec3, axis: Vec3, moment: Complex64) -> Result<Self, WaveError> {
         finite(moment.re + moment.im, "the moment of a Hertzian dipole")?;
         Ok(Self {

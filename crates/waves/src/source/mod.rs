@@ -1,5 +1,5 @@
-//! Sources of the incident field. Each is a solution of Maxwell's equations away from itself, save the
-//! [`Omnidirectional`] one, of which that holds far away only.
+//! Sources of the incident field. Each is a solution of Maxwell's equations away from itself, save
+//! the [`Omnidirectional`] one, of which that holds far away only.
 //!
 //! Amplitudes are peak values; E in V/m, H in A/m, lengths in metres, time factor e^{+jωt}.
 
@@ -38,7 +38,8 @@ impl Origin {
 
 /// A source of an incident field.
 pub trait Source: Send + Sync {
-    /// The field at `p` (m) as if the scatterer were not there. At the source itself it is not finite.
+    /// The field at `p` (m) as if the scatterer were not there. At the source itself it is not
+    /// finite.
     fn field(&self, wave: &Wave, p: Vec3) -> Field;
 
     /// Where it comes from: decides what is lit.
@@ -49,13 +50,15 @@ pub trait Source: Send + Sync {
         None
     }
 
-    /// F (V) of its own far field F e^{−jkr}/r in the direction of the unit vector u; none of a wave from infinity.
+    /// F (V) of its own far field F e^{−jkr}/r in the direction of the unit vector u; none of a
+    /// wave from infinity.
     fn far_amplitude(&self, _wave: &Wave, _u: Vec3) -> Option<ComplexVector> {
         None
     }
 
-    /// The mean power (W) that it gives away against the field E (V/m) of all else: its own in free space and −½ Re ∫ I* E·dl
-    /// along it, none of a wave from infinity. Of an omnidirectional one, which has no current, the first part only.
+    /// The mean power (W) that it gives away against the field E (V/m) of all else: its own in free
+    /// space and −½ Re ∫ I* E·dl along it, none of a wave from infinity. Of an omnidirectional one,
+    /// which has no current, the first part only.
     fn supplied(&self, _wave: &Wave, _other: &dyn Fn(Vec3) -> ComplexVector) -> Option<f64> {
         None
     }

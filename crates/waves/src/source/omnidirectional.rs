@@ -1,8 +1,9 @@
-//! The omnidirectional source: the same |E| in all directions, E = A θ̂ e^{−jkr}/r, H = (1/η₀) r̂ × E, with θ̂ the
-//! direction of growing angle from an axis.
+//! The omnidirectional source: the same |E| in all directions, E = A θ̂ e^{−jkr}/r, H = (1/η₀) r̂ ×
+//! E, with θ̂ the direction of growing angle from an axis.
 //!
-//! No true source radiates so: a tangential field of constant length has no direction on the axis itself, where this
-//! one is set to 0. It obeys Maxwell's equations up to terms of order 1/(kr), so it belongs many wavelengths away.
+//! No true source radiates so: a tangential field of constant length has no direction on the axis
+//! itself, where this one is set to 0. It obeys Maxwell's equations up to terms of order 1/(kr), so
+//! it belongs many wavelengths away.
 
 use super::{Origin, Source, finite, finite_point, unit};
 use crate::medium::IMPEDANCE;
@@ -22,7 +23,8 @@ impl Omnidirectional {
     /// At `position` (m), polarised away from `axis` (any length); `amplitude` is |E| r, V.
     ///
     /// # Errors
-    /// [`WaveError::Direction`] for an axis without direction, [`WaveError::NotFinite`] for other numbers.
+    /// [`WaveError::Direction`] for an axis without direction, [`WaveError::NotFinite`] for other
+    /// numbers.
     pub fn new(position: Vec3, axis: Vec3, amplitude: f64) -> Result<Self, WaveError> {
         Ok(Self {
             position: finite_point(position, "the position of an omnidirectional source")?,

@@ -6,7 +6,8 @@ use crate::{ComplexVector, Field, Wave, WaveError};
 use fredholm_mesh::Vec3;
 use num_complex::Complex64;
 
-/// Relative length of the part of a polarisation across the travel below which it counts as parallel.
+/// Relative length of the part of a polarisation across the travel below which it counts as
+/// parallel.
 const PARALLEL: f64 = 1e-9;
 
 /// A linearly polarised plane wave.
@@ -18,12 +19,12 @@ pub struct PlaneWave {
 }
 
 impl PlaneWave {
-    /// Travels along `travel` (any length), E along the part of `polarisation` (any length) that is across it,
-    /// `amplitude` in V/m at the origin.
+    /// Travels along `travel` (any length), E along the part of `polarisation` (any length) that is
+    /// across it, `amplitude` in V/m at the origin.
     ///
     /// # Errors
-    /// [`WaveError::Direction`] for a vector without direction, [`WaveError::Polarisation`] for a polarisation along
-    /// the travel, [`WaveError::NotFinite`] for an amplitude that is not finite.
+    /// [`WaveError::Direction`] for a vector without direction, [`WaveError::Polarisation`] for a
+    /// polarisation along the travel, [`WaveError::NotFinite`] for an amplitude that is not finite.
     pub fn new(travel: Vec3, polarisation: Vec3, amplitude: Complex64) -> Result<Self, WaveError> {
         let travel = unit(travel, "the direction of travel of a plane wave")?;
         let polarisation = unit(polarisation, "the polarisation of a plane wave")?;

@@ -1,7 +1,8 @@
 //! The meshed scatterer: facets with centre, normal and tangents.
 //!
-//! Facet q carries the frame (t₁, t₂, n), right-handed: n = t₁ × t₂ is the normal of its patch, which of a closed body
-//! points outwards; t₁ runs along the first side. A tangential vector is x = x₁ t₁ + x₂ t₂. Lengths in metres.
+//! Facet q carries the frame (t₁, t₂, n), right-handed: n = t₁ × t₂ is the normal of its patch,
+//! which of a closed body points outwards; t₁ runs along the first side. A tangential vector is x =
+//! x₁ t₁ + x₂ t₂. Lengths in metres.
 
 mod shapes;
 
@@ -76,8 +77,8 @@ impl Facet {
         sides.map(|i| self.patch.corner(i).distance(self.patch.corner(i + 1))).fold(0.0, f64::max)
     }
 
-    /// +1 if `towards` (unit vector from the facet) is on the side of the normal; −1 behind a sheet, 0 behind a closed body
-    /// and, whatever rounding says, in the plane of the facet.
+    /// +1 if `towards` (unit vector from the facet) is on the side of the normal; −1 behind a
+    /// sheet, 0 behind a closed body and, whatever rounding says, in the plane of the facet.
     #[must_use]
     pub fn side(&self, towards: Vec3) -> f64 {
         let height = self.normal.dot(towards);
@@ -107,7 +108,8 @@ impl Scatterer {
     /// Takes the leaves of a mesh; `kind` says what each of its surfaces (by index) is.
     ///
     /// # Errors
-    /// [`WaveError::NoFacets`] for an empty mesh, [`WaveError::Visibility`] for one too large or too small.
+    /// [`WaveError::NoFacets`] for an empty mesh, [`WaveError::Visibility`] for one too large or
+    /// too small.
     pub fn new(mesh: &Mesh, kind: impl Fn(usize) -> Kind) -> Result<Self, WaveError> {
         let Some(bounds) = mesh.bounds() else { return Err(WaveError::NoFacets) };
         let surfaces = (0..mesh.len()).map(|leaf| mesh.surface_of(leaf));
@@ -148,8 +150,8 @@ impl Scatterer {
         }
     }
 
-    /// Moves the nodes and normals of a surface of the mesh to the sphere that it stands for: the equation for currents
-    /// at the nodes then has the curvature right. Normals keep their side.
+    /// Moves the nodes and normals of a surface of the mesh to the sphere that it stands for: the
+    /// equation for currents at the nodes then has the curvature right. Normals keep their side.
     #[must_use]
     pub fn on_sphere(mut self, surface: usize, centre: Vec3, radius: f64) -> Self {
         for facet in self.facets.iter_mut().filter(|facet| facet.surface == surface) {

@@ -57,8 +57,8 @@ pub fn cuboid(sides: Vec3, edge: f64) -> Result<Scatterer, WaveError> {
     scatterer(&[Shape::Box { min: -half, max: half, inward: false }], edge, Kind::Closed)
 }
 
-/// The closed sphere around the origin as 20 f² triangles with edges up to `edge`; their areas sum to 4π r², and their
-/// nodes and normals are those of the sphere.
+/// The closed sphere around the origin as 20 f² triangles with edges up to `edge`; their areas sum
+/// to 4π r², and their nodes and normals are those of the sphere.
 ///
 /// # Errors
 /// [`WaveError::Length`] or [`WaveError::Mesh`] for lengths that are none.
@@ -79,13 +79,14 @@ pub fn sphere_segments(radius: f64, edge: f64) -> Result<usize, WaveError> {
     if !(edge > 0.0 && edge.is_finite()) {
         return Err(WaveError::Length { what: "the largest edge", value: edge });
     }
-    // The arc between neighbours of the icosahedron is acos(1/√5); edges exceed their share by less than 1.2 : 1.
+    // The arc between neighbours of the icosahedron is acos(1/√5); edges exceed their share by less
+    // than 1.2 : 1.
     let frequency = (1.2 * radius * 0.2_f64.sqrt().acos() / edge).ceil().clamp(1.0, 1e4);
     Ok(5 * frequency as usize)
 }
 
-/// Two thin squares of this side at (∓offset, 0, 0), their normals (±1, −1, 0)/√2: they face each other at a right
-/// angle and a wave along +y meets each at 45°.
+/// Two thin squares of this side at (∓offset, 0, 0), their normals (±1, −1, 0)/√2: they face each
+/// other at a right angle and a wave along +y meets each at 45°.
 ///
 /// # Errors
 /// [`WaveError::Length`] or [`WaveError::Mesh`] for lengths that are none.
@@ -99,7 +100,8 @@ pub fn facing_plates(side: f64, offset: f64, edge: f64) -> Result<Scatterer, Wav
     scatterer(&[plate(1.0), plate(-1.0)], edge, Kind::Sheet)
 }
 
-/// Two thin squares of this side in the planes y = ∓`distance`/2, centred, their normals towards each other.
+/// Two thin squares of this side in the planes y = ∓`distance`/2, centred, their normals towards
+/// each other.
 ///
 /// # Errors
 /// [`WaveError::Length`] or [`WaveError::Mesh`] for lengths that are none.
@@ -111,8 +113,8 @@ pub fn parallel_plates(side: f64, distance: f64, edge: f64) -> Result<Scatterer,
     scatterer(&[plate(1.0), plate(-1.0)], edge, Kind::Sheet)
 }
 
-/// Two thin rectangles that share the edge on the z axis, 0 ≤ z ≤ `height`, each `width` wide, `angle` (rad) apart and
-/// open towards +x.
+/// Two thin rectangles that share the edge on the z axis, 0 ≤ z ≤ `height`, each `width` wide,
+/// `angle` (rad) apart and open towards +x.
 ///
 /// # Errors
 /// [`WaveError::Length`] or [`WaveError::Mesh`] for lengths that are none.
@@ -124,7 +126,8 @@ pub fn dihedral(width: f64, height: f64, angle: f64, edge: f64) -> Result<Scatte
     scatterer(&[lower, upper], edge, Kind::Sheet)
 }
 
-/// Three thin right triangles in the planes x = 0, y = 0 and z = 0, with sides `side` from the origin along the axes.
+/// Three thin right triangles in the planes x = 0, y = 0 and z = 0, with sides `side` from the
+/// origin along the axes.
 ///
 /// # Errors
 /// [`WaveError::Length`] or [`WaveError::Mesh`] for lengths that are none.

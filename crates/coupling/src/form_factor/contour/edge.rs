@@ -1,9 +1,11 @@
 //! Oriented edges, and the logarithm integrated along one: ∫ ln |p − q(t)| dt.
 //!
-//! With r₀, r₁ the distances of the ends of an edge of length L from p, t₀, t₁ = t₀ + L their places along it from the foot of p and h the
-//! height of p it is ½ L ln(r₀ r₁) + ½ (t₀ + t₁) ln(r₁/r₀) − L + h θ, θ the angle under which p sees the edge. Every term is of the order of L:
+//! With r₀, r₁ the distances of the ends of an edge of length L from p, t₀, t₁ = t₀ + L their
+//! places along it from the foot of p and h the height of p it is ½ L ln(r₀ r₁) + ½ (t₀ + t₁)
+//! ln(r₁/r₀) − L + h θ, θ the angle under which p sees the edge. Every term is of the order of L:
 //! nothing cancels where the edge is short and far. Lengths in a typical distance of the pair.
 
+use crate::form_factor::angle::angle;
 use fredholm_mesh::Vec3;
 
 /// Rounding of one edge pair, relative to the largest term of its closed form.
@@ -23,8 +25,9 @@ impl Edge {
     }
 }
 
-/// Rounding of ∫∫ ln r ds dt with the outer integral over `e`: that of the terms of the inner integral, and that of a point of `e`, of order 1,
-/// times the change of the inner integral with it, the angle under which it sees `f`.
+/// Rounding of ∫∫ ln r ds dt with the outer integral over `e`: that of the terms of the inner
+/// integral, and that of a point of `e`, of order 1, times the change of the inner integral with
+/// it, the angle under which it sees `f`.
 pub(crate) fn rounding(e: Edge, f: Edge) -> f64 {
     let gap = e.start.distance(f.start) - e.length - f.length;
     let angle = f.length / gap.max(f.length);
@@ -45,6 +48,6 @@ pub(crate) fn log_integral(p: Vec3, f: Edge) -> f64 {
     let middle = t0 + t1;
     let ratio = 0.5 * (f.length * middle.abs() / near).ln_1p();
     let h = h2.sqrt();
-    let angle = (h * f.length).atan2(h2 + t0 * t1);
+    let angle = angle(h * f.length, h2 + t0 * t1);
     0.25 * f.length * (r0 * r1).ln() + 0.5 * middle.abs() * ratio - f.length + h * angle
 }

@@ -1,10 +1,11 @@
 //! ∫∫ ln r ds dt by Gauss points on one edge and the closed inner integral along the other.
 //!
-//! On an edge of length L, ln r from a point at distances r₀, r₁ from its ends is analytic inside the ellipse about the ends with
-//! ρ + 1/ρ = 2 (r₀ + r₁)/L, and its Chebyshev coefficients are at most 2 ρ⁻ᵏ/k. So n ≥ 2 points err by at most
-//! 1.07 L L' ρ⁻²ⁿ/(n (1 − ρ⁻²)) (L. N. Trefethen, SIAM Rev. 50(1) 67, 2008, doi:10.1137/060659831), with ρ at the point of the other
-//! edge, of length L', where r₀ + r₁ is least. Edges that come too close are bisected, which
-//! makes ρ grow; where they are nearly parallel too, until values agree.
+//! On an edge of length L, ln r from a point at distances r₀, r₁ from its ends is analytic inside
+//! the ellipse about the ends with ρ + 1/ρ = 2 (r₀ + r₁)/L, and its Chebyshev coefficients are at
+//! most 2 ρ⁻ᵏ/k. So n ≥ 2 points err by at most 1.07 L L' ρ⁻²ⁿ/(n (1 − ρ⁻²)) (L. N. Trefethen, SIAM
+//! Rev. 50(1) 67, 2008, doi:10.1137/060659831), with ρ at the point of the other edge, of length
+//! L', where r₀ + r₁ is least. Edges that come too close are bisected, which makes ρ grow; where
+//! they are nearly parallel too, until values agree.
 
 use super::edge::{Edge, log_integral};
 use fredholm_mesh::Vec3;
@@ -15,8 +16,9 @@ use std::sync::LazyLock;
 const MAX_POINTS: usize = 16;
 /// Points of the rule that is bisected until it agrees with its halves.
 const ADAPTIVE: usize = 10;
-/// Squared sine of the angle between edges above which few parts of one are close to the other. Edges that run along each other would be
-/// bisected everywhere by the bound, which does not know that the inner integral is smooth there.
+/// Squared sine of the angle between edges above which few parts of one are close to the other.
+/// Edges that run along each other would be bisected everywhere by the bound, which does not know
+/// that the inner integral is smooth there.
 const STEEP: f64 = 0.04;
 /// Bisections towards a point that touches: 2⁻⁵⁰ of the edge is below rounding.
 const DEPTH: u32 = 50;
@@ -46,7 +48,8 @@ impl Outer {
         Self { along, other, points, error }
     }
 
-    /// The integral to an absolute error of `goal`; `sine2` is the squared sine of the angle between the edges.
+    /// The integral to an absolute error of `goal`; `sine2` is the squared sine of the angle
+    /// between the edges.
     pub(super) fn integrate(&self, goal: f64, sine2: f64) -> Estimate {
         if self.points <= MAX_POINTS || sine2 > STEEP {
             return self.bisect(goal, DEPTH);
@@ -83,7 +86,8 @@ fn ellipse(e: Edge, f: Edge) -> f64 {
     x + (x * x - 1.0).sqrt()
 }
 
-/// Least r₀ + r₁ over the points of `f`: on its line, where the ray between the ends of `e` is reflected.
+/// Least r₀ + r₁ over the points of `f`: on its line, where the ray between the ends of `e` is
+/// reflected.
 fn nearest_sum(e: Edge, f: Edge) -> f64 {
     let foot = |p: Vec3| {
         let d = p - f.start;

@@ -1,14 +1,16 @@
 //! ∫∫ ln r ds dt over parallel edges, both integrals closed.
 //!
-//! With w the distance along them and h across, Φ(w) = ¼ (w² − h²) ln(w² + h²) − ¾ w² + h w atan(w/h) has Φ″ = ½ ln(w² + h²) up to a constant of
-//! Φ. E. M. Sparrow 1963, doi:10.1115/1.3686055, does the same for opposite squares.
+//! With w the distance along them and h across, Φ(w) = ¼ (w² − h²) ln(w² + h²) − ¾ w² + h w
+//! atan(w/h) has Φ″ = ½ ln(w² + h²) up to a constant of Φ. E. M. Sparrow 1963,
+//! doi:10.1115/1.3686055, does the same for opposite squares.
 
 use super::edge::{Edge, ROUNDING};
 use fredholm_quadrature::Estimate;
 use std::f64::consts::PI;
 
-/// The integral over edges of the same (`sign` 1) or opposite (−1) direction. The error is that of rounding and, where the edges enclose an
-/// angle of sine `sine`, of turning `e` about its middle: a point moved by δ across `f` changes ∫ ln r dt by at most π δ.
+/// The integral over edges of the same (`sign` 1) or opposite (−1) direction. The error is that of
+/// rounding and, where the edges enclose an angle of sine `sine`, of turning `e` about its middle:
+/// a point moved by δ across `f` changes ∫ ln r dt by at most π δ.
 pub(super) fn parallel(e: Edge, f: Edge, sign: f64, sine: f64) -> Estimate {
     let d = e.start + e.direction * (0.5 * e.length) - f.start;
     let along = d.dot(f.direction) * sign - 0.5 * e.length;

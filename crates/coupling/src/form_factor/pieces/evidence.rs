@@ -1,6 +1,8 @@
-//! Which critical lines are active, as far as the points of a rule tell: a line is active if the topology of the shadow differs on its two sides.
+//! Which critical lines are active, as far as the points of a rule tell: a line is active if the
+//! topology of the shadow differs on its two sides.
 //!
-//! A line may also pass between the points and the border of a part. No sample lies beyond such a line: its state is unknown.
+//! A line may also pass between the points and the border of a part. No sample lies beyond such a
+//! line: its state is unknown.
 
 use super::EQUAL;
 use crate::form_factor::critical::Plane;
@@ -36,7 +38,8 @@ impl Points {
         self.bits.clear();
     }
 
-    /// Asks for h at the points that are new, and sorts them by topology. Beyond 64 topologies the rest counts as one.
+    /// Asks for h at the points that are new, and sorts them by topology. Beyond 64 topologies the
+    /// rest counts as one.
     pub(super) fn ask(&mut self, h: &mut impl FnMut(&[Vec3], &mut Vec<(f64, Topology)>)) {
         h(&self.places[self.found.len()..], &mut self.found);
         for (_, topology) in &self.found[self.bits.len()..] {
@@ -49,7 +52,8 @@ impl Points {
         }
     }
 
-    /// Leaves out the topologies of points at heights of at most `flat` over one of the lines: rounding decides about them.
+    /// Leaves out the topologies of points at heights of at most `flat` over one of the lines:
+    /// rounding decides about them.
     pub(super) fn leave_out(&mut self, lines: &[(Plane, f64)], flat: f64) {
         for (x, bit) in self.places.iter().zip(&mut self.bits) {
             if lines.iter().any(|((n, c), _)| (n.dot(*x) - c).abs() <= flat) {

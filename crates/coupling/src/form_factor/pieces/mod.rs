@@ -1,11 +1,16 @@
-//! ∫ h dA over a convex polygon in parts: by cuts along critical lines, by rules of rising degree and by halving, with one error estimate for all.
+//! ∫ h dA over a convex polygon in parts: by cuts along critical lines, by rules of rising degree
+//! and by halving, with one error estimate for all.
 //!
-//! The part with the largest error is improved next. Where its points are of several topologies it is cut along the critical line that parts them, and halves it best; where
-//! there is none its sides are halved. Where all are of one topology it gets the next rule as long as that pays, or its sides are halved. So the cost follows the goal. In m².
+//! The part with the largest error is improved next. Where its points are of several topologies it
+//! is cut along the critical line that parts them, and halves it best; where there is none its
+//! sides are halved. Where all are of one topology it gets the next rule as long as that pays, or
+//! its sides are halved. So the cost follows the goal. In m².
 //!
-//! Most critical lines are not active. Of lines of single bodies it is known where they are, unless another body hides that ([`EdgeVertexEvents`]): the source is cut along those that may matter before anything is asked. Of the others
-//! the topologies of points on both sides tell. A line may also pass between the points and the border of a part: before the part is left as it is, one point behind the line is looked at,
-//! if that could hide something that matters.
+//! Most critical lines are not active. Of lines of single bodies it is known where they are, unless
+//! another body hides that ([`EdgeVertexEvents`]): the source is cut along those that may matter
+//! before anything is asked. Of the others the topologies of points on both sides tell. A line may
+//! also pass between the points and the border of a part: before the part is left as it is, one
+//! point behind the line is looked at, if that could hide something that matters.
 
 mod evidence;
 mod observed;
@@ -32,11 +37,13 @@ const EQUAL: f64 = 1e-6;
 const SIDE: f64 = 0.020_3;
 /// and what it may cost at most that it does not, in goals.
 const LOST: f64 = 0.1;
-/// Heights over a line below this share of the width of a part count as 0: often several lines meet in one point.
+/// Heights over a line below this share of the width of a part count as 0: often several lines meet
+/// in one point.
 const ON_THE_LINE: f64 = 1e-9;
 /// What may be hidden behind a line, in goals, from which on a point there is looked at.
 const MATTERS: f64 = 0.15;
-/// What may be hidden behind a line that is certainly active, in goals, from which on the source is cut along it at once.
+/// What may be hidden behind a line that is certainly active, in goals, from which on the source is
+/// cut along it at once.
 const SURELY: f64 = 2.2;
 /// Points after which an integral ends with the error that it has.
 const POINTS: usize = 100_000;
@@ -86,11 +93,13 @@ pub(crate) struct PiecesWork {
     /// Points at which h was asked for, of all integrals.
     pub(crate) points_asked: u64,
     parts: Vec<Piece>,
-    /// Lines through parts, each list by its range. A part of a part looks no further than into the list of the whole.
+    /// Lines through parts, each list by its range. A part of a part looks no further than into the
+    /// list of the whole.
     cutting: Vec<Cutting>,
     /// The points of the last rules, all on one part.
     points: Points,
-    /// Lines through that part, each with the share of the width on its smaller side, and those that have no point there.
+    /// Lines through that part, each with the share of the width on its smaller side, and those
+    /// that have no point there.
     lines: Vec<(Plane, f64)>,
     unseen: Vec<(Plane, f64)>,
     /// Polygons for the next cuts.
@@ -127,7 +136,8 @@ where
     D: Fn(Vec3) -> f64,
     M: Fn(Vec3) -> f64,
 {
-    /// Prepares the integral of h to an absolute `goal`. `h` appends the values and the topologies at given points.
+    /// Prepares the integral of h to an absolute `goal`. `h` appends the values and the topologies
+    /// at given points.
     pub(crate) fn new(
         h: H,
         breaks: Breaks<'a, D, M>,
@@ -176,7 +186,8 @@ where
         Lines { start, end: list.len() as u32 }
     }
 
-    /// Adds a convex polygon, cut along the lines that are certainly active, where much may be hidden behind them.
+    /// Adds a convex polygon, cut along the lines that are certainly active, where much may be
+    /// hidden behind them.
     fn cut_surely(&mut self, corners: &[Vec3], lines: Lines) {
         let worth = self.side(corners).max(SURELY * self.goal / self.most_over(corners));
         let list = &self.work.cutting[lines.places()];
@@ -253,13 +264,15 @@ where
         piece
     }
 
-    /// Largest value that h could have on a part at the points of its first rules, or at its centre where h is not steep, times the area, m².
+    /// Largest value that h could have on a part at the points of its first rules, or at its centre
+    /// where h is not steep, times the area, m².
     fn most(&self, piece: &Piece) -> f64 {
         let (most, shape) = (&self.breaks.most, &piece.shape);
         shape.area() * if piece.is_near() { self.work.points.largest(most) } else { most(shape.centre()) }
     }
 
-    /// The active line that halves a part best, with the share of the width on its smaller side. Lists the lines behind which no point lies.
+    /// The active line that halves a part best, with the share of the width on its smaller side.
+    /// Lists the lines behind which no point lies.
     fn line_through(&mut self, piece: &Piece) -> Option<(Plane, f64)> {
         let (flat, events) = (self.flat(piece.shape.corners()), self.breaks.events);
         let side = self.side(piece.shape.corners());
@@ -293,7 +306,8 @@ where
         }
     }
 
-    /// Improves the part with the largest error, and those that equal it: rounding does not choose between them.
+    /// Improves the part with the largest error, and those that equal it: rounding does not choose
+    /// between them.
     fn improve_worst(&mut self) {
         let worst = self.work.parts.iter().map(|p| p.error).fold(0.0, f64::max);
         for k in (0..self.work.parts.len()).rev() {
@@ -317,8 +331,9 @@ where
         self.observed.add(value - piece.value, piece.error);
     }
 
-    /// Cuts a part along a line, or halves its sides. Where most of its error is what may hide between its points near lines, it is cut along these although none is known to be active: halves
-    /// that they still cut keep most of that error.
+    /// Cuts a part along a line, or halves its sides. Where most of its error is what may hide
+    /// between its points near lines, it is cut along these although none is known to be active:
+    /// halves that they still cut keep most of that error.
     fn divide(&mut self, piece: &Piece) {
         let hidden = if piece.hides_most(self.model) { self.widest(piece) } else { None };
         match piece.line.or(hidden) {
@@ -356,7 +371,8 @@ where
         self.density * area(corners)
     }
 
-    /// The share of the width of a part which a line must leave on both sides to cut it. Behind a line h has another slope: what a rule misses there grows with the square of the share.
+    /// The share of the width of a part which a line must leave on both sides to cut it. Behind a
+    /// line h has another slope: what a rule misses there grows with the square of the share.
     fn side(&self, corners: &[Vec3]) -> f64 {
         SIDE.min((LOST * self.goal / self.most_over(corners)).sqrt())
     }
@@ -382,12 +398,14 @@ fn area(corners: &[Vec3]) -> f64 {
     0.5 * doubled.sum::<Vec3>().length()
 }
 
-/// How well a line with this share of the width on its smaller side halves a part; of equals, the place decides.
+/// How well a line with this share of the width on its smaller side halves a part; of equals, the
+/// place decides.
 fn merit(((n, _), share): &(Plane, f64)) -> f64 {
     share + 1e-3 * n.dot(ODD).abs()
 }
 
-/// The share of the width of a convex polygon on the smaller side of a plane that cuts it, and the two ends of the cut.
+/// The share of the width of a convex polygon on the smaller side of a plane that cuts it, and the
+/// two ends of the cut.
 fn cut(corners: &[Vec3], (n, c): Plane, flat: f64) -> Option<(f64, Option<[Vec3; 2]>)> {
     let (mut low, mut high) = (0.0f64, 0.0f64);
     let chord = chord(corners, |k| {
@@ -403,7 +421,8 @@ fn cut(corners: &[Vec3], (n, c): Plane, flat: f64) -> Option<(f64, Option<[Vec3;
 mod tests {
     use super::*;
 
-    /// ∫ over the unit square of a function with a kink along x = 0.3 and with its steep place at `near`.
+    /// ∫ over the unit square of a function with a kink along x = 0.3 and with its steep place at
+    /// `near`.
     fn kinked(near: Vec3, events: &[CriticalPlane], goal: f64) -> Estimate {
         let square = [Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Y, Vec3::Y];
         let other = Topology::of(&[1]);

@@ -1,7 +1,7 @@
 //! What refinement changed, and what it says about the errors of the parts that remain.
 //!
-//! Each refinement of a part shows what its error was, and so how far those of the others can be believed: see
-//! [`error_model`](crate::form_factor::error_model) for the formula.
+//! Each refinement of a part shows what its error was, and so how far those of the others can be
+//! believed: see [`error_model`](crate::form_factor::error_model) for the formula.
 
 use super::piece::Piece;
 use crate::form_factor::ErrorModel;

@@ -1,5 +1,5 @@
-//! A part of the source: the integral over it, and how well that is known.
-//! Its error is estimated by the [`error_model`](crate::form_factor::error_model), which has the formula.
+//! A part of the source: the integral over it, and how well that is known. Its error is estimated
+//! by the [`error_model`](crate::form_factor::error_model), which has the formula.
 
 use super::shape::{DEGREES, Shape};
 use super::{Lines, merit};
@@ -7,14 +7,16 @@ use crate::form_factor::ErrorModel;
 use crate::form_factor::critical::Plane;
 use crate::form_factor::shadow::Topology;
 
-/// Ratio of two changes, and of the first change to v, below which the next rule is expected to pay.
+/// Ratio of two changes, and of the first change to v, below which the next rule is expected to
+/// pay.
 const PAYS: f64 = 0.3;
 const PAYS_FIRST: f64 = 0.26;
-/// Radius of a part, in its distances from what makes h steep, above which its sides are halved.
-/// No simple number: in a scene with right angles the two are often equal, and rounding would decide.
+/// Radius of a part, in its distances from what makes h steep, above which its sides are halved. No
+/// simple number: in a scene with right angles the two are often equal, and rounding would decide.
 const NEAR: f64 = 1.000_001;
 
-/// Changes below these shares of an integral and of the goal count as that: else rounding would decide what is improved next.
+/// Changes below these shares of an integral and of the goal count as that: else rounding would
+/// decide what is improved next.
 const ROUNDING: f64 = 1e-10;
 const BESIDE_THE_GOAL: f64 = 1e-5;
 
@@ -26,7 +28,8 @@ pub(super) struct Piece {
     pub lines: Lines,
     /// Radius over the distance from what makes h steep.
     reach: f64,
-    /// Largest value that h could have at the first points, times the area, m², where that has a say.
+    /// Largest value that h could have at the first points, times the area, m², where that has a
+    /// say.
     pub most: f64,
     /// Range of h at the first points, times the area, m².
     range: f64,
@@ -47,7 +50,8 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    /// A part with the lines through it, its reach, the integral by the first rule, and the range of h at the points of the first two times the area.
+    /// A part with the lines through it, its reach, the integral by the first rule, and the range
+    /// of h at the points of the first two times the area.
     pub(super) fn new(shape: Shape, lines: Lines, reach: f64, value: f64, range: f64) -> Self {
         let (most, step, error, cut, topology, line) = (0.0, 0.0, 0.0, 0.0, None, None);
         Self {
@@ -77,8 +81,8 @@ impl Piece {
         self.degree == 0 && (self.is_near() || self.cut > 0.0)
     }
 
-    /// Takes the integral by the next rule, with the topology of its points. `goal` is the error allowed to the whole,
-    /// m².
+    /// Takes the integral by the next rule, with the topology of its points. `goal` is the error
+    /// allowed to the whole, m².
     pub(super) fn raise(&mut self, model: &ErrorModel, value: f64, topology: Option<Topology>, goal: f64) {
         let negligible = (ROUNDING * value.abs()).min(BESIDE_THE_GOAL * goal);
         let step = (value - self.value).abs().max(negligible);
@@ -113,7 +117,8 @@ impl Piece {
         }
     }
 
-    /// An active line has no point of the rule behind it; `missed` is by how much the integral may be off, m².
+    /// An active line has no point of the rule behind it; `missed` is by how much the integral may
+    /// be off, m².
     pub(super) fn reveal(&mut self, model: &ErrorModel, line: (Plane, f64), missed: f64) {
         self.topology = None;
         self.pays = false;

@@ -72,7 +72,8 @@ impl Shape {
         }
     }
 
-    /// A point behind a line, seen from the centre: half way from it to the corners there. Where the line passes within `flat` of the centre, its normal decides.
+    /// A point behind a line, seen from the centre: half way from it to the corners there. Where
+    /// the line passes within `flat` of the centre, its normal decides.
     pub(super) fn behind(&self, (n, c): Plane, flat: f64) -> Vec3 {
         let centre = self.centre();
         let middle = n.dot(centre) - c;

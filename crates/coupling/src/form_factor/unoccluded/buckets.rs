@@ -1,4 +1,5 @@
-//! Pairs sorted by what computes them, so that a block of lanes runs one kernel with one number of points.
+//! Pairs sorted by what computes them, so that a block of lanes runs one kernel with one number of
+//! points.
 
 use super::patches::Outline;
 use super::rules::MAX_POINTS;

@@ -1,8 +1,10 @@
-//! ln(1 + x) and 2 atanh(s) by elementary operations, so that loops over them become vector code with the same bits everywhere.
+//! ln(1 + x) and 2 atanh(s) by elementary operations, so that loops over them become vector code
+//! with the same bits everywhere.
 //!
-//! ln(1 + f) = 2 atanh(f/(2 + f)) after 1 + x = 2ᵏ (1 + f), √½ < 1 + f < √2; the series of 2 atanh by the minimax polynomial of
-//! fdlibm (K. C. Ng, Sun Microsystems 1993, `e_log.c`). Both are accurate to about two units in the last place relative to the
-//! result: nothing cancels where x is small.
+//! ln(1 + f) = 2 atanh(f/(2 + f)) after 1 + x = 2ᵏ (1 + f), √½ < 1 + f < √2; the series of 2 atanh
+//! by the minimax polynomial of fdlibm (K. C. Ng, Sun Microsystems 1993, `e_log.c`). Both are
+//! accurate to about two units in the last place relative to the result: nothing cancels where x is
+//! small.
 
 /// fdlibm's polynomial for (2 atanh(s) − 2 s)/s in z = s².
 const SERIES: [f64; 7] = [

@@ -1,7 +1,9 @@
 //! A_i F_ij = ∫_i ∫_j cosθ cosθ' / (π r²) (m²) of many pairs of patches with nothing between them.
 //!
-//! All of them by the contour integral (1/2π) ∮∮ ln r dx·dx' (E. M. Sparrow 1963, doi:10.1115/1.3686055), which needs n² points where the double area
-//! integral needs n⁴. Pairs are sorted by the number of points that the tolerance asks for, and computed in blocks, one pair a lane:
+//! All of them by the contour integral (1/2π) ∮∮ ln r dx·dx' (E. M. Sparrow 1963,
+//! doi:10.1115/1.3686055), which needs n² points where the double area integral needs n⁴. Pairs are
+//! sorted by the number of points that the tolerance asks for, and computed in blocks, one pair a
+//! lane:
 //!
 //! | the pair | method |
 //! |---|---|
@@ -10,8 +12,9 @@
 //! | others, apart | Gauss along the edges |
 //! | touching, nearly touching, or crossing each other's plane | contour integral of the parts that face each other |
 //!
-//! The number of points is known beforehand from the distance, so nothing is computed twice; see `survey` for the bound. The tolerance T is relative
-//! to the exchange the two patches would have squarely facing each other, A_i A_j / (π d²), or the smaller area where that is less.
+//! The number of points is known beforehand from the distance, so nothing is computed twice; see
+//! `survey` for the bound. The tolerance T is relative to the exchange the two patches would have
+//! squarely facing each other, A_i A_j / (π d²), or the smaller area where that is less.
 
 #![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
 #![allow(clippy::needless_range_loop, reason = "loops over lanes read many arrays at the same place")]
@@ -39,7 +42,8 @@ use survey::{Survey, survey};
 /// Rounding of a sum of points, in units of the last place of the value.
 const ROUNDING: f64 = 16.0;
 
-/// Rounding of the logarithms at the edges of other shapes, over the product of the circumferences: four nodes share one logarithm, which is small.
+/// Rounding of the logarithms at the edges of other shapes, over the product of the circumferences:
+/// four nodes share one logarithm, which is small.
 const EDGES: f64 = 1.0 / 64.0;
 
 /// Computes exchanges between patches of one scene that see each other wholly.
@@ -73,9 +77,9 @@ impl<'a> Unoccluded<'a> {
         }
     }
 
-    /// Writes A_i F_ij (m²) of patch `i` and each of `js` to `out`, as far as both lists reach. A pair has the same bits in either order and
-    /// beside any others. Nothing may stand between the patches; that one lies behind the other, crosses its plane or touches it
-    /// is seen here.
+    /// Writes A_i F_ij (m²) of patch `i` and each of `js` to `out`, as far as both lists reach. A
+    /// pair has the same bits in either order and beside any others. Nothing may stand between the
+    /// patches; that one lies behind the other, crosses its plane or touches it is seen here.
     ///
     /// # Panics
     /// An index beyond the patches.
@@ -98,7 +102,8 @@ impl<'a> Unoccluded<'a> {
     }
 }
 
-/// Looking at the pairs of a row, compiled for each width of vectors: a closure would be compiled once, for the narrowest.
+/// Looking at the pairs of a row, compiled for each width of vectors: a closure would be compiled
+/// once, for the narrowest.
 struct Look<'a> {
     row: &'a Row<'a>,
     work: &'a mut Work,
@@ -195,7 +200,8 @@ impl Row<'_> {
         }
     }
 
-    /// Rounding of the sum over points: relative for parallelograms, of which opposite sides are taken together, else that of the edges.
+    /// Rounding of the sum over points: relative for parallelograms, of which opposite sides are
+    /// taken together, else that of the edges.
     fn rounding(&self, j: u32, value: f64) -> f64 {
         let patches = &self.all.patches;
         let circumference = |k: u32| patches.slenderness[k as usize] * patches.area[k as usize];

@@ -1,14 +1,17 @@
-//! Two parallelograms: A_i F_ij = (1/2π) Σ ± (w·w') ∫∫ atanh(z) ds dt over the four pairs of directions.
+//! Two parallelograms: A_i F_ij = (1/2π) Σ ± (w·w') ∫∫ atanh(z) ds dt over the four pairs of
+//! directions.
 //!
-//! The contour integral (1/4π) ∮∮ ln r² dx·dx' (E. M. Sparrow 1963, doi:10.1115/1.3686055) with opposite sides taken together. With w a side of the
-//! first and o the other side, across which the edges along w lie at ±o/2, and D = c' − c + t w' − s w, the four logarithms are
-//! one: ln(r₊₊² r₋₋² / (r₊₋² r₋₊²)) = 2 atanh(z), z = 2 (P Q − S q) / (S² + q² − P² − Q²), where P = D·o, Q = D·o', q = o·o'/2 and
-//! S = D·D + (o² + o'²)/4. The numerator is of the order of the kernel itself, so nothing cancels between far patches: for these z is the
-//! kernel. S, P and Q are polynomials in s and t, so the points are never placed. Directions at right angles add nothing, which leaves
+//! The contour integral (1/4π) ∮∮ ln r² dx·dx' (E. M. Sparrow 1963, doi:10.1115/1.3686055) with
+//! opposite sides taken together. With w a side of the first and o the other side, across which the
+//! edges along w lie at ±o/2, and D = c' − c + t w' − s w, the four logarithms are one: ln(r₊₊²
+//! r₋₋² / (r₊₋² r₋₊²)) = 2 atanh(z), z = 2 (P Q − S q) / (S² + q² − P² − Q²), where P = D·o, Q =
+//! D·o', q = o·o'/2 and S = D·D + (o² + o'²)/4. The numerator is of the order of the kernel itself,
+//! so nothing cancels between far patches: for these z is the kernel. S, P and Q are polynomials in
+//! s and t, so the points are never placed. Directions at right angles add nothing, which leaves
 //! one pair of four between perpendicular walls and two between parallel ones.
 //!
-//! Nodes ±s, ±t share a weight; their sum is one atanh by tanh(x + y) = (tanh x + tanh y)/(1 + tanh x tanh y). Lengths in any unit, exchanges
-//! in its square.
+//! Nodes ±s, ±t share a weight; their sum is one atanh by tanh(x + y) = (tanh x + tanh y)/(1 + tanh
+//! x tanh y). Lengths in any unit, exchanges in its square.
 
 use super::logarithm::{SERIES_END, ln_1p, twice_atanh};
 use super::patches::Patches;
@@ -19,7 +22,8 @@ use std::f64::consts::TAU;
 /// Cosine below which two directions count as perpendicular.
 const PERPENDICULAR: f64 = 4.0 * f64::EPSILON;
 
-/// A_i F_ij of a block of pairs, with so many points along the sides of the first and of the second.
+/// A_i F_ij of a block of pairs, with so many points along the sides of the first and of the
+/// second.
 #[inline(always)]
 pub(super) fn parallelograms(patches: &Patches, pair: [&Places; 2], points: [usize; 2]) -> Lanes {
     let [u, v] = &patches.side;

@@ -1,7 +1,7 @@
 //! The patches of a scene, one array a quantity.
 //!
-//! Lengths are measured from the middle of the scene in a power of two near its extent: the products of distances stay far from
-//! underflow, and no digit changes.
+//! Lengths are measured from the middle of the scene in a power of two near its extent: the
+//! products of distances stay far from underflow, and no digit changes.
 
 use fredholm_mesh::{Patch, Vec3};
 

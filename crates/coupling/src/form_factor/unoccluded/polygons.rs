@@ -1,9 +1,11 @@
 //! Triangles and quadrilaterals of any shape: A_i F_ij = (1/4π) Σₑ Σ_f (e·f) ∫∫ ln(r²/d²) ds dt.
 //!
-//! The contour integral (E. M. Sparrow 1963, doi:10.1115/1.3686055) with Gauss points along the edges e and f; d is the distance of the centres, and the constant
-//! it adds to the logarithm integrates to 0 round a contour. r²/d² − 1 = x is formed from the offsets of the edges, not as a
-//! difference of distances: the rounding left is that of h/d, not of 1. Nodes ±s, ±t share a weight and one logarithm:
-//! (1 + x)(1 + y) = 1 + (x + y + x y). Lengths in any unit, exchanges in its square.
+//! The contour integral (E. M. Sparrow 1963, doi:10.1115/1.3686055) with Gauss points along the
+//! edges e and f; d is the distance of the centres, and the constant it adds to the logarithm
+//! integrates to 0 round a contour. r²/d² − 1 = x is formed from the offsets of the edges, not as a
+//! difference of distances: the rounding left is that of h/d, not of 1. Nodes ±s, ±t share a weight
+//! and one logarithm: (1 + x)(1 + y) = 1 + (x + y + x y). Lengths in any unit, exchanges in its
+//! square.
 
 use super::logarithm::ln_1p;
 use super::patches::Patches;
@@ -11,7 +13,8 @@ use super::rules::{Node, rule};
 use crate::form_factor::lanes::{LANES, Lanes, Lanes3, Places, difference, dot, each, sum};
 use std::f64::consts::TAU;
 
-/// A_i F_ij of a block of pairs with so many corners, and so many points along the edges of the first and of the second.
+/// A_i F_ij of a block of pairs with so many corners, and so many points along the edges of the
+/// first and of the second.
 #[inline(always)]
 pub(super) fn polygons(
     patches: &Patches,

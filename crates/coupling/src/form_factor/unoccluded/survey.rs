@@ -1,26 +1,32 @@
-//! What a pair is, before anything is integrated: which side of each other's plane the patches lie on, and how many points they need.
+//! What a pair is, before anything is integrated: which side of each other's plane the patches lie
+//! on, and how many points they need.
 //!
-//! Gauss–Legendre with n points on an edge of half length a errs like ρ⁻²ⁿ where the integrand is analytic inside the ellipse with the ends of the
-//! edge as foci and half axes summing to ρ a (L. N. Trefethen, SIAM Rev. 50(1) 67, 2008, doi:10.1137/060659831). ln r² seen from a point at
-//! distances r₀, r₁ from the ends has ρ + 1/ρ = (r₀ + r₁)/a ≥ 2D/a, with D the least distance of the other patch from the middle of the edge.
-//! The error of A_i F_ij from the points on one patch is taken as
+//! Gauss–Legendre with n points on an edge of half length a errs like ρ⁻²ⁿ where the integrand is
+//! analytic inside the ellipse with the ends of the edge as foci and half axes summing to ρ a (L.
+//! N. Trefethen, SIAM Rev. 50(1) 67, 2008, doi:10.1137/060659831). ln r² seen from a point at
+//! distances r₀, r₁ from the ends has ρ + 1/ρ = (r₀ + r₁)/a ≥ 2D/a, with D the least distance of
+//! the other patch from the middle of the edge. The error of A_i F_ij from the points on one patch
+//! is taken as
 //!
-//! E = C n ρ⁻²ⁿ/(1 − ρ⁻²) · A_i A_j / (π d²) · (d/D) · (d/D for a parallelogram, else d · circumference/area).
+//! E = C n ρ⁻²ⁿ/(1 − ρ⁻²) · A_i A_j / (π d²) · (d/D) · (d/D for a parallelogram, else d ·
+//! circumference/area).
 //!
-//! Of a parallelogram the errors on opposite sides cancel to h/D. C is measured, see `tests/unoccluded.rs`. Both patches share the
-//! tolerance evenly.
+//! Of a parallelogram the errors on opposite sides cancel to h/D. C is measured, see
+//! `tests/unoccluded.rs`. Both patches share the tolerance evenly.
 
 use super::patches::Patches;
 use super::rules::MAX_POINTS;
 use crate::form_factor::lanes::{LANES, Lanes, Lanes3, Places, difference, dot, each};
 use std::f64::consts::FRAC_1_PI;
 
-/// C for a parallelogram, and for other patches. The largest errors among 18,000 random pairs are 0.7 and 0.3 of the bound.
+/// C for a parallelogram, and for other patches. The largest errors among 18,000 random pairs are
+/// 0.7 and 0.3 of the bound.
 const PARALLELOGRAM: f64 = 3.0;
 const POLYGON: f64 = 0.3;
 /// Part of the tolerance for each patch; the rest is for rounding.
 const SHARE: f64 = 0.45;
-/// Rounding of the sums, relative to the facing exchange at the least distance, in units of the last place.
+/// Rounding of the sums, relative to the facing exchange at the least distance, in units of the
+/// last place.
 const ROUNDING: f64 = 6.0;
 /// Heights below this part of the pair's extent count as 0.
 const FLAT: f64 = 1e-12;
@@ -33,7 +39,8 @@ pub(super) struct Survey {
     pub behind: Lanes,
     /// 1 where one patch crosses the other's plane.
     pub crosses: Lanes,
-    /// Points along the edges of the first and of the second; above [`MAX_POINTS`] where the patches are too close.
+    /// Points along the edges of the first and of the second; above [`MAX_POINTS`] where the
+    /// patches are too close.
     pub points: [Lanes; 2],
     /// Bound of the error, in squared units.
     pub error: Lanes,
@@ -229,7 +236,8 @@ impl Decay {
     }
 }
 
-/// Whether a lane of `a` is above that of `b`. All lanes are compared, which takes fewer instructions than leaving at the first.
+/// Whether a lane of `a` is above that of `b`. All lanes are compared, which takes fewer
+/// instructions than leaving at the first.
 #[inline(always)]
 fn exceeds(a: &Lanes, b: &Lanes) -> bool {
     let above = each(|m| if a[m] > b[m] { 1.0 } else { 0.0 });

@@ -1,12 +1,14 @@
-//! One lane of progressive radiosity, by place: elements of a group lie together, so that a group is a range and its unshot power a difference of two sums.
+//! One right-hand side of progressive radiosity, in the order of the groups: elements of a group
+//! lie together, so that a group is a range and its unshot power a difference of two sums.
 
 use std::ops::Range;
 
 /// Places that a running sum takes at a time: within them nothing waits for the sum before.
 const STEP: usize = 4;
 
-/// x, G x, r and D of one lane by place, and Σ A r over the places before each.
-pub(super) struct Lane {
+/// x, G x, r and D of one right-hand side in the order of the groups, and Σ A r over the places
+/// before each.
+pub(super) struct Rhs {
     /// D = ρ/A, 1/m².
     pub scaling: Vec<f64>,
     /// Shot radiosity x, W/m².
@@ -27,11 +29,11 @@ pub(super) struct Lane {
     pub loss: f64,
 }
 
-impl Lane {
+impl Rhs {
     /// Nothing shot of the exitance b.
     pub fn new(areas: &[f64], scaling: Vec<f64>, exitance: Vec<f64>, scale: f64) -> Self {
         let zeros = vec![0.0; areas.len()];
-        let mut lane = Self {
+        let mut rhs = Self {
             loss: loss(areas, &scaling),
             scaling,
             shot: zeros.clone(),
@@ -42,8 +44,8 @@ impl Lane {
             sent: 0.0,
             scale,
         };
-        lane.sum_up(areas);
-        lane
+        rhs.sum_up(areas);
+        rhs
     }
 
     /// Σ_S A r of some places, W.
