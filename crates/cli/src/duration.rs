@@ -22,6 +22,16 @@ pub(crate) fn in_words(seconds: f64) -> String {
     format!("about {shown} {name}{plural}")
 }
 
+/// The time of one thread, and where there are more that of all.
+pub(crate) fn on_threads(seconds: f64, threads: usize) -> String {
+    let shared = if threads > 1 {
+        format!(", {} on {threads}", in_words(seconds / threads as f64))
+    } else {
+        String::new()
+    };
+    format!("{} on one thread{shared}", in_words(seconds))
+}
+
 /// Reads a time: a number of seconds, or a number with `s`, `min` or `h`.
 pub(crate) fn parse(text: &str) -> Result<Duration, String> {
     let number = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());

@@ -323,7 +323,7 @@ pub(crate) fn judge(py: Python<'_>, asked: Judging, how: How) -> PyResult<Py<PyA
 pub(crate) fn check(py: Python<'_>, scene: &Scene, problem: Problem, how: How) -> PyResult<Py<PyAny>> {
     let (scene, options) = (Arc::clone(&scene.0), problem.options(py)?);
     study(py, how, move |folder, watch| {
-        let found = fredholm_study::check(scene, &options, Some((folder, "check.png")), watch)?;
+        let found = fredholm_study::check(scene, (&options, None), Some((folder, "check.png")), watch)?;
         let report = &found.report;
         let mut record = json!({
             "pieces": report.pieces,
@@ -343,7 +343,7 @@ pub(crate) fn check(py: Python<'_>, scene: &Scene, problem: Problem, how: How) -
                 "solver": forecast.solver,
                 "threads": forecast.threads,
                 "memory_bytes": u64::try_from(forecast.plan.peak().0).ok(),
-                "seconds": forecast.seconds,
+                "seconds": found.seconds(),
                 "warnings": forecast.warnings,
                 "refused": null,
             }),

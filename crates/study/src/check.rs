@@ -7,12 +7,14 @@ use fredholm_report::{Back, Camera, Field, ResultFolder, Side, render_sides};
 use fredholm_scene::{Report, Scene};
 
 use crate::error::{Error, ErrorKind};
+use crate::hierarchical;
 use crate::memory::{Limit, Plan, limit};
-use crate::options::{ProblemOptions, ProblemSettings, SceneSource};
+use crate::options::{ProblemOptions, ProblemSettings, SceneSource, SolveOptions};
 use crate::prediction::pictured;
 use crate::problem::{Problem, pixels, scene_failure, with_results};
+use crate::rounds;
 use crate::sample;
-use crate::solve::{report_failure, view_camera};
+use crate::solve::{accuracy_of, is_free, predicted, report_failure, view_camera};
 use crate::stages::Stages;
 
 /// A valid scene, its mesh, and what its solution will take.
@@ -23,6 +25,37 @@ pub struct Checked {
     pub report: Report,
     /// What a solution on the elements of the scene will take, or why its matrix does not fit.
     pub forecast: Result<Forecast, Error>,
+    /// What a solution to an accuracy will take, where one is asked for.
+    pub to_accuracy: Option<ToAccuracy>,
+}
+
+/// What a solution to an accuracy will take.
+#[derive(Clone, Debug)]
+pub struct ToAccuracy {
+    /// The accuracy.
+    pub accuracy: f64,
+    /// How it is reached, and why.
+    pub way: String,
+    /// Whether that is the matrix of the scene's elements, whose forecast holds then.
+    pub by_matrix: bool,
+    /// Memory by use, of links as many as are to be expected.
+    pub plan: Option<Plan>,
+    /// Seconds that everything takes one thread, from its first rounds; none where these are too
+    /// long to be tried, and by the matrix.
+    pub seconds: Option<f64>,
+    /// Threads.
+    pub threads: usize,
+}
+
+impl Checked {
+    /// Seconds that the solution takes one thread, where they are known.
+    #[must_use]
+    pub fn seconds(&self) -> Option<f64> {
+        match &self.to_accuracy {
+            Some(found) if !found.by_matrix => found.seconds,
+            _ => self.forecast.as_ref().ok()?.seconds,
+        }
+    }
 }
 
 /// What a solution will take.
@@ -56,14 +89,14 @@ pub struct Forecast {
 }
 
 /// Validates a scene, tells what its mesh is, draws it by its sides where `picture` names a file,
-/// and predicts what its solution will take.
+/// and predicts what its solution will take, to `accuracy` or that of the scene where there is one.
 ///
 /// # Errors
 /// What is wrong with the scene; [`ErrorKind::Files`] for a picture that cannot be written. A
 /// matrix that does not fit the memory is no error, but what was asked.
 pub fn check(
     source: impl Into<SceneSource>,
-    asked: &ProblemOptions,
+    (asked, accuracy): (&ProblemOptions, Option<f64>),
     picture: Option<(&ResultFolder, &str)>,
     watch: &dyn Watch,
 ) -> Result<Checked, Error> {
@@ -79,18 +112,47 @@ pub fn check(
         )?;
         stages.run("picture", || draw(&scene, &report, (folder, name)))?;
     }
+    let to_accuracy = to_accuracy(asked, accuracy, &scene, &mut stages)?;
     let settings = ProblemSettings::new(asked, scene.solve());
     let more = |plan, scene: &Scene, n| with_results(plan, scene, n, (1, 0));
     let forecast = match Problem::refined(Arc::clone(&scene), settings, (1, &more), &mut stages) {
         Err(error) if error.kind() == ErrorKind::Resources => Err(error),
-        loaded => Ok(forecast(loaded?, &mut stages)?),
+        loaded => {
+            let sampled = to_accuracy.as_ref().is_none_or(|found| found.by_matrix);
+            Ok(forecast(loaded?, sampled, &mut stages)?)
+        }
     };
-    Ok(Checked { scene, report, forecast })
+    Ok(Checked { scene, report, forecast, to_accuracy })
 }
 
-fn forecast(problem: Problem, stages: &mut Stages) -> Result<Forecast, Error> {
+/// What a solution to the accuracy asked for will take.
+fn to_accuracy(
+    asked: &ProblemOptions,
+    accuracy: Option<f64>,
+    scene: &Arc<Scene>,
+    stages: &mut Stages,
+) -> Result<Option<ToAccuracy>, Error> {
+    let asked = SolveOptions { accuracy, problem: asked.clone(), ..SolveOptions::default() };
+    let Some(accuracy) = accuracy_of(&asked, scene)? else { return Ok(None) };
+    hierarchical::refuse_dense(&ProblemSettings::new(&asked.problem, scene.solve()))?;
+    let choice = predicted(&asked, scene, accuracy)?;
+    let (way, by_matrix) = (choice.to_string(), choice.is_matrix());
+    let threads = rayon::current_num_threads();
+    if by_matrix {
+        return Ok(Some(ToAccuracy { accuracy, way, by_matrix, plan: None, seconds: None, threads }));
+    }
+    let settings = hierarchical::options(&asked, scene, accuracy)?;
+    let plan = Some(hierarchical::expected_plan(scene, &settings, accuracy));
+    let run = (accuracy, is_free(&asked, scene));
+    let watch = stages.watch;
+    let seconds = stages.run("sample", || Ok(rounds::seconds(scene, &settings, run, watch)))?;
+    stages.check()?;
+    Ok(Some(ToAccuracy { accuracy, way, by_matrix, plan, seconds, threads }))
+}
+
+fn forecast(problem: Problem, sampled: bool, stages: &mut Stages) -> Result<Forecast, Error> {
     // The sample is one of pairs of elements.
-    let seconds = if problem.is_radiosity() {
+    let seconds = if sampled && problem.is_radiosity() {
         Some(stages.run("sample", || Ok(sample::seconds(&problem)))?)
     } else {
         None

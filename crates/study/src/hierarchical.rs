@@ -148,6 +148,26 @@ impl Forecast {
     }
 }
 
+impl Forecast {
+    /// Of a scene of so many faces.
+    fn new(scene: &Scene, faces: usize, options: &SolveSettings, most: u64) -> Self {
+        Self {
+            faces,
+            bands: scene.bands().len(),
+            pictures: pictures(scene, options),
+            most,
+            limit: options.problem.memory_limit(),
+        }
+    }
+}
+
+/// What a run to an accuracy is expected to hold.
+pub(crate) fn expected_plan(scene: &Scene, options: &SolveSettings, accuracy: f64) -> Plan {
+    let count = usize::try_from(scene.predicted_faces()).unwrap_or(usize::MAX);
+    let most = limits(options, accuracy, &plan(scene, count, options)).bytes;
+    Forecast::new(scene, count, options, most).plan(expected(count, accuracy))
+}
+
 /// What a run came to.
 pub(crate) enum Answer {
     /// A solution.
@@ -176,13 +196,7 @@ pub(crate) fn compute(
     let surfaces = surfaces(scene, &faces)?;
     let input = Input { mesh: &faces, occluders: &occluders, surfaces: &surfaces, goal: goal.as_ref() };
     let limits = limits(options, accuracy, &plan);
-    let forecast = Forecast {
-        faces: faces.len(),
-        bands: scene.bands().len(),
-        pictures: pictures(scene, options),
-        most: limits.bytes,
-        limit: options.problem.memory_limit(),
-    };
+    let forecast = Forecast::new(scene, faces.len(), options, limits.bytes);
     let plan = forecast.plan(expected(faces.len(), accuracy));
     stages.tell(&plan, forecast.limit);
     let entry = registry::build(&options.problem.solver).map_err(|e| Error::new(ErrorKind::Input, e))?;

@@ -5,14 +5,11 @@
 //! takes n² b numbers an iteration, and an elimination n³/3 multiplications (Cholesky) to 2 n³/3.
 //! Times are those of one thread that has a core to itself.
 
-use std::fs;
-use std::sync::OnceLock;
-use std::time::Instant;
-
 use fredholm_coupling::{Constants, DRAWS, Extent, assembly_seconds, exposure_seconds};
 use fredholm_linop::MultiVector;
 use fredholm_mesh::Patch;
 
+use crate::meter::spent;
 use crate::problem::{Problem, pixels, prepare};
 
 /// Seconds that each sample may take.
@@ -26,16 +23,6 @@ const VALUE: f64 = 2e-6;
 const PIXEL: f64 = 1e-6;
 /// Relative residual at which the sources of errors are no longer followed.
 const FOLLOWED: f64 = 1e-3;
-
-/// Seconds that this thread has worked, where the system tells, else that have passed.
-fn spent() -> f64 {
-    static STARTED: OnceLock<Instant> = OnceLock::new();
-    // Nanoseconds on a processor, waiting for one, and turns.
-    let text = fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
-    let worked = text.split_ascii_whitespace().next().and_then(|first| first.parse::<f64>().ok());
-    let passed = STARTED.get_or_init(Instant::now).elapsed().as_secs_f64();
-    worked.filter(|&nanoseconds| nanoseconds > 0.0).map_or(passed, |nanoseconds| 1e-9 * nanoseconds)
-}
 
 /// Seconds that a solution on the elements takes one thread, with its files and its picture.
 pub(crate) fn seconds(problem: &Problem) -> f64 {

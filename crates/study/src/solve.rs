@@ -272,16 +272,30 @@ fn answer(
         let points = Plan::default().hold("points", bytes);
         points.admit(memory::limit(asked.problem.memory), "ask for fewer points")?;
     }
-    match asked.accuracy.or(scene.solve().accuracy) {
-        Some(accuracy) if !(accuracy > 0.0 && accuracy < 1.0) => {
-            let error = Error::new(ErrorKind::Input, format!("the accuracy {accuracy} cannot be reached"));
-            Err(error.with_help("ask for one above 0 and below 1, such as 0.01"))
-        }
+    match accuracy_of(asked, &scene)? {
         Some(accuracy) => to_accuracy(asked, &scene, (accuracy, checkpoint), stages),
         None if asked.way.is_some() => Err(way_alone()),
         None if !asked.goal.is_empty() => Err(hierarchical::goal_alone()),
         None => dense(asked, &scene, stages),
     }
+}
+
+/// The accuracy asked for, if any, by the options or by the scene.
+pub(crate) fn accuracy_of(asked: &SolveOptions, scene: &Scene) -> Result<Option<f64>, Error> {
+    match asked.accuracy.or(scene.solve().accuracy) {
+        Some(accuracy) if !(accuracy > 0.0 && accuracy < 1.0) => {
+            let error = Error::new(ErrorKind::Input, format!("the accuracy {accuracy} cannot be reached"));
+            Err(error.with_help("ask for one above 0 and below 1, such as 0.01"))
+        }
+        accuracy => Ok(accuracy),
+    }
+}
+
+/// Whether a run may go over from links to paths: who names a way, a goal or a solver has links in
+/// mind.
+pub(crate) fn is_free(asked: &SolveOptions, scene: &Scene) -> bool {
+    let solver = asked.problem.solver.is_some() || scene.solve().solver.is_some();
+    asked.way.is_none() && asked.goal.is_empty() && !solver
 }
 
 /// On the elements of the scene.
@@ -332,9 +346,7 @@ fn to_accuracy(
         }
     }
     let options = hierarchical::options(asked, scene, accuracy)?;
-    // Whoever names a way, a goal or a solver has links in mind.
-    let free = checkpoint.is_none() && asked.way.is_none() && asked.goal.is_empty();
-    let free = free && asked.problem.solver.is_none() && scene.solve().solver.is_none();
+    let free = checkpoint.is_none() && is_free(asked, scene);
     let choice = choice.map(|choice| choice.to_string());
     let options = SolveSettings { choice: choice.or_else(|| checkpoint?.header.choice.clone()), ..options };
     let saved = (accuracy, checkpoint, asked.folder.as_ref());
@@ -350,7 +362,7 @@ fn to_accuracy(
 }
 
 /// The way that is predicted to cost less.
-fn predicted(asked: &SolveOptions, scene: &Scene, accuracy: f64) -> Result<Choice, Error> {
+pub(crate) fn predicted(asked: &SolveOptions, scene: &Scene, accuracy: f64) -> Result<Choice, Error> {
     match asked.way {
         Some(Way::Paths) if !asked.goal.is_empty() => {
             let error = Error::new(ErrorKind::Input, "random paths know no goal");

@@ -87,6 +87,7 @@ Examples:
   fredholm check house.obj -o out
   fredholm check scenes/waves/cube.toml
   fredholm check room.toml --memory 8GiB
+  fredholm check scenes/leblond_furnished.toml --accuracy 2%
 
 A mesh file (.obj, .stl, .ply, .gltf, .glb, .msh, .rad, .xml, .vs3) stands for a scene: see
 `fredholm solve --help`.";
@@ -489,6 +490,9 @@ pub(crate) struct CheckArgs {
     /// Folder for check.png: fronts blue, backs orange, what lies on or crosses something violet, open sides yellow
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
+    /// Accuracy that the solution is to have, such as 2% or 0.02 [default: that of the scene, else its elements]
+    #[arg(long, value_name = "E", value_parser = accuracy)]
+    pub(crate) accuracy: Option<f64>,
     #[command(flatten)]
     pub(crate) problem: ProblemArgs,
     #[command(flatten)]

@@ -2,10 +2,12 @@
 
 use fredholm_scene::waves::is_wave_scene;
 use fredholm_scene::{Report, Scene};
-use fredholm_study::{Checked, Error, Forecast, Lines, ResultFolder, claim_folder_to_add, extent};
+use fredholm_study::{
+    Checked, Error, Forecast, Lines, MemoryPlan, ResultFolder, ToAccuracy, claim_folder_to_add, extent,
+};
 
 use crate::args::CheckArgs;
-use crate::duration::in_words;
+use crate::duration::on_threads;
 use crate::ending::Ending;
 use crate::terminal::Terminal;
 use crate::{output, start};
@@ -31,20 +33,29 @@ fn report(args: &CheckArgs, folder: Option<&ResultFolder>, terminal: &Terminal) 
     }
     let picture = folder.map(|folder| folder.path().join(PICTURE));
     let (path, options) = (&args.problem.scene, args.problem.options());
-    let Checked { scene, report, forecast } =
-        fredholm_study::check(path, &options, folder.map(|folder| (folder, PICTURE)), terminal)?;
+    let asked = (&options, args.accuracy);
+    let Checked { scene, report, forecast, to_accuracy } =
+        fredholm_study::check(path, asked, folder.map(|folder| (folder, PICTURE)), terminal)?;
     if args.log.quiet {
         return Ok(Ending::Done);
     }
     let mut lines = Lines::default();
     geometry(&scene, &report, &mut lines);
     lines.add_some("picture", picture.map(|path| path.display().to_string()));
-    match forecast {
-        Ok(forecast) => {
+    if let Some(found) = &to_accuracy {
+        lines.add("accuracy", format!("{:.2} %: {}", 100.0 * found.accuracy, found.way));
+    }
+    match (forecast, to_accuracy.filter(|found| !found.by_matrix)) {
+        (forecast, Some(found)) => {
+            chosen(forecast.as_ref().ok(), &found, &mut lines);
+            scene.notes().iter().for_each(|note| lines.add("warning", note.to_string()));
+            output::report(&lines.under(&format!("{}: a valid scene", scene.path().display())))?;
+        }
+        (Ok(forecast), None) => {
             solution(&forecast, &mut lines);
             output::report(&lines.under(&format!("{}: a valid scene", scene.path().display())))?;
         }
-        Err(error) => too_large(&scene, &error, lines)?,
+        (Err(error), None) => too_large(&scene, &error, lines)?,
     }
     Ok(Ending::Done)
 }
@@ -58,6 +69,17 @@ fn too_large(scene: &Scene, error: &Error, mut lines: Lines) -> Result<(), Error
     output::report(&lines.under(&heading))
 }
 
+/// What the solution to an accuracy will take that chooses its elements.
+fn chosen(forecast: Option<&Forecast>, found: &ToAccuracy, lines: &mut Lines) {
+    if let Some(Forecast { elements, faces, surfaces, .. }) = forecast {
+        lines.add("size", extent(*elements as u64, *faces as u64, *surfaces as u64));
+    }
+    let memory = |plan: &MemoryPlan| format!("about {}: {plan}", plan.peak());
+    lines.add_some("memory", found.plan.as_ref().map(memory));
+    lines.add_some("memory limit", forecast.map(|forecast| forecast.limit.to_string()));
+    lines.add_some("time", found.seconds.map(|seconds| on_threads(seconds, found.threads)));
+}
+
 /// What the solution will take.
 fn solution(forecast: &Forecast, lines: &mut Lines) {
     let Forecast { elements, faces, surfaces, threads, solver, seconds, .. } = forecast;
@@ -66,12 +88,7 @@ fn solution(forecast: &Forecast, lines: &mut Lines) {
     lines.add("unknowns", format!("{} in each band, by {}", forecast.unknowns, forecast.discretisation));
     lines.add("memory", format!("{}: {}", forecast.plan.peak(), forecast.plan));
     lines.add("memory limit", forecast.limit.to_string());
-    let time = |seconds: f64| {
-        let all = *threads as f64;
-        let shared =
-            if *threads > 1 { format!(", {} on {threads}", in_words(seconds / all)) } else { String::new() };
-        format!("{} on one thread{shared}, by {solver}", in_words(seconds))
-    };
+    let time = |seconds| format!("{}, by {solver}", on_threads(seconds, *threads));
     lines.add_some("time", seconds.map(time));
     lines.add_some("instead", seconds.filter(|&seconds| seconds > LONG).map(|_| INSTEAD.to_owned()));
     forecast.warnings.iter().for_each(|warning| lines.add("warning", warning));

@@ -6,6 +6,7 @@ use fredholm_study::{
 };
 
 use crate::args::{CheckArgs, WavesArgs};
+use crate::duration::on_threads;
 use crate::ending::Ending;
 use crate::output;
 use crate::start::Start;
@@ -54,6 +55,9 @@ pub(super) fn check(args: &CheckArgs, terminal: &Terminal) -> Result<Ending, Err
     if args.output.is_some() {
         terminal.warn("scenes of waves are not drawn by check; -o is left aside");
     }
+    if args.accuracy.is_some() {
+        terminal.warn("scenes of waves are not solved to an accuracy; --accuracy is left aside");
+    }
     let options = WaveOptions { memory: args.problem.memory, no_report: true, ..WaveOptions::default() };
     let checked = check_waves(&args.problem.scene, &options, terminal)?;
     if !args.log.quiet {
@@ -81,6 +85,7 @@ fn forecast(checked: &CheckedWaves) -> String {
     };
     lines.add_some("coupling", checked.coupling.map(coupling));
     lines.add("memory limit", checked.limit.to_string());
+    lines.add_some("time", checked.seconds.map(|seconds| on_threads(seconds, checked.threads)));
     checked.warnings.iter().for_each(|warning| lines.add("warning", warning));
     lines.under(&format!("{}: a valid scene of waves", checked.path.display()))
 }

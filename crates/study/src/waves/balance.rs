@@ -112,6 +112,9 @@ pub(super) struct Balancing<'a> {
 impl Balancing<'_> {
     /// The powers, where the body is a conductor, the sources are of one kind, and the work is small beside that of the run.
     pub(super) fn balance(&self, far: FarFields<'_>) -> Result<Option<Balance>, Error> {
+        if !self.model.balanced {
+            return Ok(None);
+        }
         let conductors = self.band.materials.iter().all(|material| *material == Material::Conductor);
         let sources = self.model.sources();
         let located = sources.iter().filter_map(|source| match source.origin() {

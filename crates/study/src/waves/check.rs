@@ -7,7 +7,7 @@ use fredholm_scene::Finding;
 use fredholm_scene::waves::Receiver;
 use fredholm_waves::{Complex64, System, Wave, WaveError};
 
-use super::{Method, Model, WaveOptions, galerkin};
+use super::{CouplingStorage, Method, Model, WaveOptions, forecast, galerkin, solving};
 use crate::error::Error;
 use crate::memory::{Limit, Plan};
 use crate::size::Bytes;
@@ -38,6 +38,11 @@ pub struct CheckedWaves {
     pub plan: Plan,
     /// Memory allowed.
     pub limit: Limit,
+    /// Seconds that everything takes one thread, from a run on fewer facets; none where nothing is
+    /// known.
+    pub seconds: Option<f64>,
+    /// Threads.
+    pub threads: usize,
     /// What the pieces of the surfaces are, and what is remarkable about them.
     pub findings: Vec<Finding>,
     /// What is allowed, but probably not meant.
@@ -65,10 +70,10 @@ pub fn check_waves(
     watch: &dyn Watch,
 ) -> Result<CheckedWaves, Error> {
     let mut stages = Stages::new(watch);
-    let model = stages.run("scene", || Model::load(scene.as_ref(), asked.memory))?;
+    let mut model = stages.run("scene", || Model::load(scene.as_ref(), asked.memory))?;
     let coupling = stages.run("mesh", || admitted(&model))?;
     let findings = stages.run("report", || Ok(model.scene.findings()))?;
-    Ok(CheckedWaves {
+    let checked = CheckedWaves {
         path: model.path().to_owned(),
         title: model.scene.title().map(str::to_owned),
         method: model.method_in_words(),
@@ -78,11 +83,33 @@ pub fn check_waves(
         surfaces: model.geometry.mesh.surfaces().len(),
         coupling,
         places: model.scene.receivers().iter().map(Receiver::count).sum(),
-        plan: model.plan,
+        plan: model.plan.clone(),
         limit: model.limit,
+        seconds: None,
+        threads: rayon::current_num_threads(),
         findings,
-        warnings: model.warnings,
-    })
+        warnings: model.warnings.clone(),
+    };
+    model.storage = storage(&model, coupling)?;
+    let seconds = stages.run("sample", || Ok(forecast::seconds(&mut model, watch)))?;
+    stages.check()?;
+    Ok(CheckedWaves { seconds, ..checked })
+}
+
+/// Where the run will have its coupling: a trial on fewer facets might do otherwise.
+fn storage(model: &Model, coupling: Option<CheckedCoupling>) -> Result<Option<CouplingStorage>, Error> {
+    let Some(coupling) = coupling else { return Ok(None) };
+    if model.galerkin.is_some() {
+        let compressed = coupling.compressed && !galerkin::needs_matrix(model);
+        return Ok(Some(if compressed { CouplingStorage::Compressed } else { CouplingStorage::Matrix }));
+    }
+    let (Method::Solver { solver, .. }, Some(band)) = (&model.method, model.bands.first()) else {
+        return Ok(None);
+    };
+    let scatterer =
+        model.geometry.scatterer(&band.materials).map_err(|error: WaveError| model.refused(&error, None))?;
+    let stored = solving::is_stored(model, &scatterer, model.shadow, &**solver)?;
+    Ok(Some(if stored { CouplingStorage::Matrix } else { CouplingStorage::Products }))
 }
 
 /// The coupling, where there is one, of a scatterer that the method admits at

@@ -235,6 +235,12 @@ pub(super) fn is_quicker_compressed(model: &Model, unknowns: usize) -> bool {
     model.galerkin == Some(Equations::Combined) && unknowns > MANY && rhs_count(model) <= FEW
 }
 
+/// Whether the scene names a solver that needs the entries of the matrix.
+pub(super) fn needs_matrix(model: &Model) -> bool {
+    let named = model.scene.settings().solver.is_some();
+    named && !by_products().contains(&model.method.name().as_str())
+}
+
 struct Compressed {
     matrix: Hierarchical<Complex64>,
     inverse: BlockDiagonal<Complex64>,
@@ -282,7 +288,7 @@ impl Task<'_> {
             .aside(of_threads(solver.addresses()));
         let compress = match self.model.storage {
             Some(storage) => storage == CouplingStorage::Compressed,
-            None if self.needs_matrix() => false,
+            None if needs_matrix(self.model) => false,
             None => is_quicker_compressed(self.model, unknowns) || !plan.fits(self.model.limit),
         };
         if compress {
@@ -308,17 +314,11 @@ impl Task<'_> {
             .hold("the right-hand sides", vectors)
     }
 
-    /// Whether the scene names a solver that needs the entries of the matrix.
-    fn needs_matrix(&self) -> bool {
-        let named = self.model.scene.settings().solver.is_some();
-        named && !by_products().contains(&self.model.method.name().as_str())
-    }
-
     fn compressed(&self, signals: &Signals<'_>) -> Result<Matrix, Error> {
         let Method::Solver { solver: named, tolerance, max_iterations } = &self.model.method else {
             return Err(Error::new(ErrorKind::Input, "an equation is solved, not summed bounce by bounce"));
         };
-        if self.needs_matrix() {
+        if needs_matrix(self.model) {
             let what = format!("{} needs all entries of the matrix, which is to be compressed", named.name());
             let help = format!("--storage matrix, or a solver that needs none: {}", by_products().join(", "));
             return Err(Error::new(ErrorKind::Input, what).with_help(help));

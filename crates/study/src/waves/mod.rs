@@ -7,6 +7,7 @@ mod compare;
 mod compute;
 mod estimate;
 mod files;
+mod forecast;
 mod galerkin;
 mod geometry;
 mod interpolation;

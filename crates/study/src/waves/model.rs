@@ -30,7 +30,7 @@ const TOLERANCE: f64 = 1e-6;
 const ITERATIONS: u32 = 500;
 /// Solvers of equations where the scene does not say: of those by products, and of those whose
 /// matrix is stored and may be ill-conditioned.
-const BY_PRODUCTS: &str = "gmres";
+pub(super) const BY_PRODUCTS: &str = "gmres";
 pub(super) const BY_MATRIX: &str = "lu";
 
 /// How many bounces are summed.
@@ -60,11 +60,12 @@ pub(crate) struct Band {
 }
 
 /// A receiver with its places.
+#[derive(Clone)]
 pub(crate) struct Receiver {
     pub(crate) name: String,
     pub(crate) places: Places,
     /// Its number in the scene.
-    number: usize,
+    pub(super) number: usize,
 }
 
 impl Receiver {
@@ -104,6 +105,8 @@ pub(crate) struct Model {
     pub(crate) receivers: Vec<Receiver>,
     /// What is allowed, but probably not meant, and what should be known of the method.
     pub(crate) warnings: Vec<String>,
+    /// Whether powers are compared, where that is cheap beside the rest.
+    pub(crate) balanced: bool,
     /// Whether the coupling is stored, where it is said.
     pub(crate) storage: Option<CouplingStorage>,
     /// Memory of everything but a coupling, and what all may take.
@@ -174,6 +177,7 @@ impl Model {
             coarse,
             receivers: receivers(&scene),
             warnings: doubts.iter().map(ToString::to_string).chain(warnings).collect(),
+            balanced: true,
             storage: None,
             plan,
             limit,

@@ -85,8 +85,60 @@ fn is_quicker_stored(scatterer: &Scatterer, shadow: Shadow, products: f64) -> bo
     storing + stored * products < products
 }
 
-/// The system for these solvers, from which so many products are expected: stored where that is
-/// asked for, quicker, or the only way for one of them.
+/// The memory of a stored coupling with what else there is, for the largest of some solvers.
+fn stored_plan(
+    model: &Model,
+    scatterer: &Scatterer,
+    shadow: Shadow,
+    solvers: &[&dyn Solver<Complex64>],
+) -> Plan {
+    let unknowns = System::unknowns(scatterer);
+    let solver =
+        solvers.iter().map(|solver| solver.bytes(unknowns, rhs_count(model) as usize)).max().unwrap_or(0);
+    let addresses = solvers.iter().map(|solver| solver.addresses()).max().unwrap_or(0);
+    coupling(model.plan.clone(), scatterer, shadow)
+        .hold(format!("the coupling of {unknowns} unknowns"), System::bytes(scatterer).into())
+        .hold("the solver", solver.into())
+        .aside(of_threads(addresses))
+}
+
+/// Whether the coupling for these solvers, from which so many products are expected, is stored:
+/// where that is asked for, quicker, or the only way for one of them.
+fn wants_matrix(
+    model: &Model,
+    scatterer: &Scatterer,
+    shadow: Shadow,
+    (solvers, products): (&[&dyn Solver<Complex64>], f64),
+) -> Result<bool, Error> {
+    let by_products = by_products();
+    let other = solvers.iter().find(|solver| !by_products.contains(&solver.name()));
+    match (model.storage, other) {
+        (Some(CouplingStorage::Products), Some(solver)) => {
+            let what = format!("{} needs the matrix, which is not to be stored", solver.name());
+            let help = format!("--storage matrix, or a solver that needs none: {}", by_products.join(", "));
+            Err(Error::new(ErrorKind::Input, what).with_help(help))
+        }
+        (Some(storage), _) => Ok(storage == CouplingStorage::Matrix),
+        (None, Some(_)) => Ok(true),
+        (None, None) => {
+            let quicker = is_quicker_stored(scatterer, shadow, products);
+            let fits = || stored_plan(model, scatterer, shadow, solvers).fits(model.limit);
+            Ok(quicker && System::bytes(scatterer) <= UNASKED && fits())
+        }
+    }
+}
+
+/// Whether a run of the model stores its coupling for a solver.
+pub(super) fn is_stored(
+    model: &Model,
+    scatterer: &Scatterer,
+    shadow: Shadow,
+    solver: &dyn Solver<Complex64>,
+) -> Result<bool, Error> {
+    wants_matrix(model, scatterer, shadow, (&[solver], EXPECTED * rhs_count(model)))
+}
+
+/// The system for these solvers, from which so many products are expected.
 pub(super) fn coupled<'a>(
     model: &Model,
     scatterer: &'a Scatterer,
@@ -94,34 +146,12 @@ pub(super) fn coupled<'a>(
     (solvers, products): (&[&dyn Solver<Complex64>], f64),
     signals: &Signals<'_>,
 ) -> Result<System<'a>, Error> {
-    let unknowns = System::unknowns(scatterer);
-    let solver =
-        solvers.iter().map(|solver| solver.bytes(unknowns, rhs_count(model) as usize)).max().unwrap_or(0);
-    let addresses = solvers.iter().map(|solver| solver.addresses()).max().unwrap_or(0);
-    let bytes = System::bytes(scatterer);
-    let plan = coupling(model.plan.clone(), scatterer, shadow)
-        .hold(format!("the coupling of {unknowns} unknowns"), bytes.into())
-        .hold("the solver", solver.into())
-        .aside(of_threads(addresses));
-    let by_products = by_products();
-    let other = solvers.iter().find(|solver| !by_products.contains(&solver.name()));
-    let wants_matrix = match (model.storage, other) {
-        (Some(CouplingStorage::Products), Some(solver)) => {
-            let what = format!("{} needs the matrix, which is not to be stored", solver.name());
-            let help = format!("--storage matrix, or a solver that needs none: {}", by_products.join(", "));
-            return Err(Error::new(ErrorKind::Input, what).with_help(help));
-        }
-        (Some(storage), _) => storage == CouplingStorage::Matrix,
-        (None, Some(_)) => true,
-        (None, None) => {
-            let quicker = is_quicker_stored(scatterer, shadow, products);
-            quicker && bytes <= UNASKED && plan.fits(model.limit)
-        }
-    };
-    if !wants_matrix {
+    if !wants_matrix(model, scatterer, shadow, (solvers, products))? {
         return lazy(model, scatterer, (wave, shadow), signals);
     }
-    let help = format!("mesh coarser, or take a solver that needs no matrix: {}", by_products.join(", "));
+    let by_products = by_products().join(", ");
+    let help = format!("mesh coarser, or take a solver that needs no matrix: {by_products}");
+    let plan = stored_plan(model, scatterer, shadow, solvers);
     plan.admit(model.limit, &help)?;
     plan.tell(model.limit, signals.watch);
     System::stored(scatterer, wave, shadow, Discretisation::Nystrom)

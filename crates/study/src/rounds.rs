@@ -1,0 +1,152 @@
+//! The time of a run to an accuracy, from its first rounds.
+//!
+//! The links of a scene grow with a power of the accuracy ε, and so do the seconds:
+//!
+//! ```text
+//! T(ε) = T_k (e_k/ε)^p
+//! ```
+//!
+//! after a round k that states the error e_k. The run is begun, and ended where it takes too long;
+//! p is what its rounds grew with. Random paths take (e/ε)² times what they took to the error e.
+//! The picture is drawn small, and takes as much more as it has more pixels.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use fredholm_linop::{Quiet, Watch};
+use fredholm_report::FRAMED;
+use fredholm_scene::Scene;
+
+use crate::hierarchical::{self, Answer};
+use crate::meter::{Meter, alone, spent};
+use crate::options::SolveSettings;
+use crate::problem::{Problem, pixels};
+use crate::sampled;
+use crate::solution::Solution;
+use crate::solve::Solved;
+use crate::stages::Stages;
+
+/// Seconds after which a run to little accuracy, and one to that asked for, are ended.
+const LOOSE: f64 = 1.6;
+const CLOSE: f64 = 2.0;
+/// The little accuracy.
+const LITTLE: f64 = 0.5;
+/// Exponents of links, as far as they are to be expected, and that which is measured in the mean.
+const EXPONENTS: [f64; 2] = [0.5, 1.6];
+const USUAL: f64 = 0.9;
+/// Widths of the small pictures, pixels.
+const WIDTHS: [u32; 2] = [40, 160];
+/// Seconds for a value in the files, and for a pixel of the pictures of elements and of links.
+const VALUE: f64 = 2e-6;
+const LAYERS: f64 = 2e-6;
+
+/// Seconds that a run to an accuracy takes one thread, with its files and its picture; none where
+/// its first rounds take too long to be tried. A run may be free to go over to random paths.
+pub(crate) fn seconds(
+    scene: &Arc<Scene>,
+    options: &SolveSettings,
+    accuracy: (f64, bool),
+    watch: &dyn Watch,
+) -> Option<f64> {
+    alone(|| by_links(scene, options, accuracy, watch)).flatten()
+}
+
+fn by_links(
+    scene: &Arc<Scene>,
+    options: &SolveSettings,
+    (accuracy, free): (f64, bool),
+    watch: &dyn Watch,
+) -> Option<f64> {
+    let meter = Meter::new(watch, LOOSE);
+    let little = accuracy.max(LITTLE);
+    let loose = SolveSettings { accuracy: Some(little), ..options.clone() };
+    let found = hierarchical::compute(scene, &loose, (little, None, None), free, &mut Stages::new(&meter));
+    let whole = meter.seconds();
+    let Answer::Solved(solved) = found.ok()? else {
+        return by_paths(scene, options, accuracy, watch);
+    };
+    if accuracy >= little {
+        return Some(whole + written(options, *solved)?);
+    }
+    // What comes after the last round, beside it.
+    let after =
+        meter.readings().shares.last().map_or(1.0, |&[last, _]| whole / last.max(1e-3)).clamp(1.0, 2.0);
+    let meter = Meter::new(watch, CLOSE);
+    let found = hierarchical::compute(scene, options, (accuracy, None, None), free, &mut Stages::new(&meter));
+    let whole = meter.seconds();
+    match found {
+        Ok(Answer::Solved(solved)) => Some(whole + written(options, *solved)?),
+        Ok(Answer::TooMany { .. }) => by_paths(scene, options, accuracy, watch),
+        Err(_) if watch.go_on() == ControlFlow::Break(()) => None,
+        Err(_) => {
+            let rounds = extrapolated(&meter.readings().shares, accuracy)?;
+            Some(after * rounds + written(options, *solved)?)
+        }
+    }
+}
+
+/// From the seconds of rounds, and the shares of the digits asked for that they gained, to all.
+fn extrapolated(rounds: &[[f64; 2]], accuracy: f64) -> Option<f64> {
+    let digits = (1.0 / accuracy).ln();
+    // Before an error is stated there are no digits.
+    let known: Vec<[f64; 2]> = rounds
+        .iter()
+        .filter(|round| round[1] > 0.0)
+        .map(|&[t, share]| [t.max(1e-3).ln(), share * digits])
+        .collect();
+    let last = *known.last()?;
+    let n = known.len() as f64;
+    let mean = [0, 1].map(|i| known.iter().map(|round| round[i]).sum::<f64>() / n);
+    let moment = |i: usize| known.iter().map(|r| (r[i] - mean[i]) * (r[1] - mean[1])).sum::<f64>();
+    let exponent = if known.len() > 1 && moment(1) > 0.0 { moment(0) / moment(1) } else { USUAL };
+    Some((last[0] + exponent.clamp(EXPONENTS[0], EXPONENTS[1]) * (digits - last[1])).exp())
+}
+
+fn by_paths(scene: &Arc<Scene>, options: &SolveSettings, accuracy: f64, watch: &dyn Watch) -> Option<f64> {
+    let meter = Meter::new(watch, CLOSE);
+    let (problem, solution) = sampled::compute(scene, options, accuracy, &mut Stages::new(&meter)).ok()?;
+    if watch.go_on() == ControlFlow::Break(()) {
+        return None;
+    }
+    let reached = solution.mesh_error.as_ref()?.relative_l2.iter().copied().fold(0.0, f64::max);
+    let stages = meter.readings().stages;
+    let of = |traced: bool| {
+        let stages = stages.iter().filter(|(stage, _)| (stage == "solution") == traced);
+        stages.map(|(_, seconds)| seconds).sum::<f64>()
+    };
+    let more = (reached / accuracy).powi(2).max(1.0);
+    Some(of(false) + of(true) * more + written(options, (problem, solution))?)
+}
+
+/// Seconds for the picture and the files of a solution.
+fn written(options: &SolveSettings, (problem, solution): (Problem, Solution)) -> Option<f64> {
+    let values = problem.mesh.len() as f64 * problem.scene.bands().len() as f64;
+    let full = f64::from(problem.scene.camera().map_or(FRAMED[0], |camera| camera.width));
+    let solved = Solved { settings: options.clone(), problem, solution, stages: Stages::new(&Quiet) };
+    let drawn = |width: u32| -> Option<f64> {
+        let began = spent();
+        solved.picture(width).ok()?;
+        Some(spent() - began)
+    };
+    let [few, more] = [drawn(WIDTHS[0])?, drawn(WIDTHS[1])?];
+    let square = |width: u32| f64::from(width).powi(2);
+    let each = ((more - few) / (square(WIDTHS[1]) - square(WIDTHS[0]))).max(0.0);
+    let layers = LAYERS * pixels(&solved.problem.scene) as f64;
+    Some(VALUE * values + layers + few + each * (full * full - square(WIDTHS[0])).max(0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounds_are_followed_to_the_accuracy() {
+        // Seconds 0.1/e: at errors of 10 and of 5 %, to 1 %.
+        let share = |error: f64| error.ln() / 0.01_f64.ln();
+        let rounds = [[0.5, 0.0], [1.0, share(0.1)], [2.0, share(0.05)]];
+        let found = extrapolated(&rounds, 0.01).unwrap();
+        assert!((found - 10.0).abs() < 1e-9, "{found}");
+        assert!(extrapolated(&rounds[..1], 0.01).is_none());
+        assert!(extrapolated(&rounds[..2], 0.01).is_some_and(|found| found > 5.0 && found < 10.0));
+    }
+}
