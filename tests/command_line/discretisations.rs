@@ -77,7 +77,7 @@ fn the_record_tells_unknowns_errors_and_what_the_values_are() {
     let info = bench.run(&["info", "out/scene"]).stdout;
     assert!(info.contains("320 unknowns") && info.contains("polynomials"), "{info}");
     let files = fs::read_dir(bench.path("out/scene")).unwrap().count();
-    assert_eq!(files, fredholm::report::FILES.len() + 1, "the files and their list");
+    assert_eq!(files, crate::support::usual_files().count() + 1, "the files and their list");
 }
 
 #[test]

@@ -86,7 +86,7 @@ fn the_iterate_is_written_during_solution() {
     let names = fs::read_dir(bench.path("out/scene")).unwrap().map(|entry| entry.unwrap().file_name());
     // The folder's own list of its files is hidden.
     let files = names.filter(|name| !name.to_string_lossy().starts_with('.')).count();
-    assert_eq!(files, fredholm::report::FILES.len());
+    assert_eq!(files, crate::support::usual_files().count());
     let radiosity = column(&bench.path("out/scene/field.csv"), "radiosity_b0");
     assert_eq!(radiosity.len(), 600);
     // Every iterate lies between the exitance and the solution.

@@ -9,7 +9,7 @@ fn every_file_is_written_and_info_knows_them() {
     let bench = Bench::new(&room(3));
     let run = bench.solve(&["--quiet"]);
     assert_eq!((run.stdout.as_str(), run.stderr.as_str()), ("", ""));
-    for name in fredholm::report::FILES {
+    for name in crate::support::usual_files() {
         let file = format!("out/scene/{name}");
         assert!(fs::metadata(bench.path(&file)).unwrap().len() > 100, "{name}");
         let info = bench.run(&["info", &file]);
@@ -71,7 +71,7 @@ fn a_second_run_replaces_the_first() {
     assert!(radiosity.iter().all(|b| (b - 4.0).abs() < 1e-3), "{radiosity:?}");
     assert_eq!(fs::read(bench.path("out/scene/notes.txt")).unwrap(), b"mine");
     let files = fs::read_dir(bench.path("out/scene")).unwrap().count();
-    assert_eq!(files, fredholm::report::FILES.len() + 2, "the files, their list and the note");
+    assert_eq!(files, crate::support::usual_files().count() + 2, "the files, their list and the note");
 }
 
 #[test]

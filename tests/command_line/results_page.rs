@@ -21,7 +21,7 @@ fn the_page_is_what_its_source_makes() {
 
 /// What the catalogue has of a file.
 fn listed(command: &str, file: &str) -> BTreeSet<String> {
-    let found = catalogue().iter().filter(|known| known.name.split(", ").any(|name| name == file));
+    let found = catalogue().filter(|known| known.name.split(", ").any(|name| name == file));
     let found = found.filter(|known| known.by.split(", ").any(|by| by.split(' ').next() == Some(command)));
     let values = found.flat_map(|known| known.values).flat_map(|(names, _, _)| names.split(", "));
     values.map(str::to_owned).collect()

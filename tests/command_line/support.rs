@@ -125,3 +125,10 @@ pub fn column(csv: &Path, name: &str) -> Vec<f64> {
     let at = lines.next().unwrap().split(',').position(|title| title == name).unwrap();
     lines.map(|line| line.split(',').nth(at).unwrap().parse().unwrap()).collect()
 }
+
+/// The files that a solution has without further wishes.
+pub fn usual_files() -> impl Iterator<Item = &'static str> {
+    use fredholm::report::{Wanted, wanted_files};
+    let wanted = Wanted { image: true, page: true, ..Wanted::default() };
+    wanted_files(&wanted).collect::<Vec<_>>().into_iter()
+}

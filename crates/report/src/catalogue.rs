@@ -8,6 +8,7 @@ use std::fmt::Write;
 use schemars::{JsonSchema, schema_for};
 use serde_json::Value;
 
+use crate::outputs::{OutputFile, output_files};
 use crate::{
     ComparisonRecord, CrosscheckRecord, JudgeRecord, ReferenceRecord, RefinementRecord, RunRecord,
     ShootingRecord, SpectrumRecord, ViewFactorsRecord, WaveComparison,
@@ -28,11 +29,15 @@ pub struct CataloguedFile {
 
 type Values = &'static [(&'static str, &'static str, &'static str)];
 
-const fn file(name: &'static str, by: &'static str, about: &'static str, values: Values) -> CataloguedFile {
+pub(crate) const fn file(
+    name: &'static str,
+    by: &'static str,
+    about: &'static str,
+    values: Values,
+) -> CataloguedFile {
     CataloguedFile { name, by, about, values }
 }
 
-const LIGHT: &str = "solve, resume";
 const SOLVERS: Values = &[
     ("reflectance", "1", "the largest of any material, in the case"),
     ("solver", "", "with its options"),
@@ -51,34 +56,6 @@ const PHASORS: &str = "E in V/m, H in A/m";
 /// All files but records, by command.
 const FILES: &[CataloguedFile] = &[
     file(
-        "field.csv",
-        LIGHT,
-        "a row an element",
-        &[
-            ("element", "", "number of the unknown, from 0"),
-            ("face", "", "number of its input face"),
-            ("surface", "", "name"),
-            ("cx, cy, cz", "m", "centroid"),
-            ("nx, ny, nz", "1", "unit normal to the lit side"),
-            ("area", "m²", "of the whole element"),
-            ("irradiance_BAND", "W/m²", "mean over the whole element"),
-            ("radiosity_BAND", "W/m²", "the same"),
-        ],
-    ),
-    file(
-        "faces.csv",
-        "solve, resume, shoot",
-        "a row an input face: area means over its elements",
-        &[
-            ("face", "", "number, from 0"),
-            ("surface", "", "name"),
-            ("cx, cy, cz", "m", "centroid"),
-            ("area", "m²", ""),
-            ("irradiance_BAND", "W/m²", "mean"),
-            ("radiosity_BAND", "W/m²", "mean"),
-        ],
-    ),
-    file(
         "faces.csv",
         "trace",
         "a row an input face: estimates",
@@ -91,92 +68,6 @@ const FILES: &[CataloguedFile] = &[
             ("standard_error_BAND", "W/m²", "one standard deviation of it"),
         ],
     ),
-    file(
-        "surfaces.csv",
-        LIGHT,
-        "a row a named surface",
-        &[
-            ("surface", "", "name"),
-            ("faces, elements", "1", "numbers of them"),
-            ("area", "m²", ""),
-            ("irradiance_BAND, radiosity_BAND", "W/m²", "area means"),
-            ("emitted_BAND", "W", "Σ A M"),
-            ("reflected_BAND", "W", "Σ A (B − M)"),
-            ("absorbed_BAND", "W", "Σ A (E − (B − M))"),
-        ],
-    ),
-    file(
-        "field.npz",
-        "solve, resume, shoot",
-        "the elements as NumPy arrays",
-        &[
-            ("irradiance, radiosity", "W/m²", "f64, elements × bands"),
-            ("area", "m²", "f64, elements"),
-            ("exposed", "1", "f64, elements: share that is not buried"),
-            ("centroid", "m", "f64, elements × 3"),
-            ("normal", "1", "f64, elements × 3"),
-            ("face, surface", "", "i64, elements: numbers, from 0; names of surfaces are in surfaces.csv"),
-            ("bands", "", "text, bands: their names"),
-        ],
-    ),
-    file(
-        "field.vtu",
-        "solve, resume, shoot",
-        "the elements for ParaView, points in m; cell data",
-        &[
-            ("element, face, surface", "", "numbers, from 0"),
-            ("area", "m²", ""),
-            ("exposed", "1", "share that is not buried"),
-            ("irradiance_BAND, radiosity_BAND", "W/m²", ""),
-        ],
-    ),
-    file(
-        "points.csv",
-        "solve --point, --plane",
-        "a row a point",
-        &[
-            ("x, y, z", "m", ""),
-            ("nx, ny, nz", "1", "unit normal"),
-            ("irradiance_BAND", "W/m²", "gathered from the solution"),
-        ],
-    ),
-    file(
-        "shadows.vtu",
-        "solve --discontinuity",
-        "triangles cut along the borders of shadows, points in m",
-        &[
-            ("irradiance_BAND", "W/m²", "at the corners"),
-            ("element", "", "the element that the triangle is a part of"),
-        ],
-    ),
-    file(
-        "field.ply",
-        "solve --also ply",
-        "the elements with colours at their corners (sRGB); of each",
-        &[("element, face, surface", "", "numbers, from 0"), ("irradiance_BAND, radiosity_BAND", "W/m²", "")],
-    ),
-    file(
-        "field.glb",
-        "solve --also glb",
-        "the same as binary glTF, with the radiosity (W/m²) at the corners",
-        &[],
-    ),
-    file(
-        "image.exr",
-        "solve --also exr",
-        "linear colours of the picture, radiance in W/(m² sr) before exposure",
-        &[],
-    ),
-    file("image.png", "solve, resume, shoot, trace", "the picture", &[]),
-    file(
-        "mesh.png, links.png",
-        "solve --accuracy",
-        "the elements, and from where one of them receives light",
-        &[],
-    ),
-    file("gather.png", "solve --final-gather", "the picture for which every pixel gathers its light", &[]),
-    file("convergence.svg", LIGHT, "residuals over iterations and seconds", &[]),
-    file("report.html", "most commands", "the result on one page for the browser", &[]),
     file(
         "checkpoint.bin",
         "solve --accuracy",
@@ -488,22 +379,21 @@ const FILES: &[CataloguedFile] = &[
 ];
 
 /// All files but records.
-#[must_use]
-pub fn catalogue() -> &'static [CataloguedFile] {
-    FILES
+pub fn catalogue() -> impl Iterator<Item = CataloguedFile> {
+    output_files().filter_map(OutputFile::about).chain(FILES.iter().copied())
 }
 
 /// The page `docs/results.md`.
 #[must_use]
 pub fn results_page() -> String {
     let mut page = HEAD.to_owned();
-    for CataloguedFile { name, by, about, values } in FILES {
+    for CataloguedFile { name, by, about, values } in catalogue() {
         // Writing to a string cannot fail.
         let _ = writeln!(page, "\n### {name} ({by})\n\n{}.", wrapped(&capital(about)));
         if !values.is_empty() {
             page.push_str("\n| name | unit | |\n|---|---|---|\n");
         }
-        for (names, unit, text) in *values {
+        for (names, unit, text) in values {
             let names: Vec<String> = names.split(", ").map(|name| format!("`{name}`")).collect();
             let _ = writeln!(page, "| {} | {unit} | {text} |", names.join(", "));
         }

@@ -98,11 +98,11 @@ pub use judgement::{
     ReferenceValues, read_measured_faces, read_measured_pixels, read_reference_faces, read_reference_pixels,
     read_reference_record, write_judgement,
 };
-pub use names::{CHECKPOINT, PIXELS, TRACE_STATE, WAVE_FILES, is_result};
+pub use names::{CHECKPOINT, PIXELS, TRACE_STATE, WAVE_FILES, is_result, records};
 pub use npz::write_npz;
 pub use outputs::{
-    EXTRAS, Extras, FIELD_EXR, FIELD_GLB, FIELD_PLY, FILES, GATHER, IMAGE, POINTS, REPORT, RunReport,
-    SHADOWS, View, write_all, write_with,
+    Contents, Extras, FIELD_EXR, FIELD_GLB, FIELD_PLY, GATHER, IMAGE, LINKS_PICTURE, MESH_PICTURE,
+    OutputFile, REPORT, RUN, RunReport, View, Wanted, output_files, wanted_files, write_all, write_with,
 };
 pub use picture::{
     Back, Gathering, LampLight, Layer, Lighter, Link, Linked, Lit, LitPicture, Picture, Side, render,

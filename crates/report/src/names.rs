@@ -2,7 +2,7 @@
 
 use crate::comparison::{COMPARISON_FILES, SWEEP};
 use crate::judgement::JUDGE_FILES;
-use crate::outputs::{EXTRAS, FILES};
+use crate::outputs::{RUN, output_files};
 use crate::refinement::REFINEMENT_FILES;
 use crate::shooting::SHOOTING_FILES;
 use crate::spectrum::SPECTRUM_FILES;
@@ -28,24 +28,30 @@ pub const TRACE_STATE: &str = "trace.json";
 /// The pixels of a traced picture as arrays.
 pub const PIXELS: &str = "pixels.npz";
 
+/// The files of a study, by kind; the last is its record.
+const STUDIES: [&[&str]; 7] = [
+    &COMPARISON_FILES,
+    &REFINEMENT_FILES,
+    &SPECTRUM_FILES,
+    &SHOOTING_FILES,
+    &CROSSCHECK_FILES,
+    &REFERENCE_FILES,
+    &JUDGE_FILES,
+];
+
+/// The names of the records of all kinds of folders; a folder has one of them.
+pub fn records() -> impl Iterator<Item = &'static str> {
+    std::iter::once(RUN).chain(STUDIES.iter().filter_map(|files| files.last().copied()))
+}
+
 /// Whether a name is one of a file that some run writes into its folder, whatever the scene.
 #[must_use]
 pub fn is_result(name: &str) -> bool {
-    let known: [&[&str]; 11] = [
-        &FILES,
-        &EXTRAS,
-        &COMPARISON_FILES,
-        &SPECTRUM_FILES,
-        &SHOOTING_FILES,
-        &REFINEMENT_FILES,
-        &CROSSCHECK_FILES,
-        &REFERENCE_FILES,
-        &JUDGE_FILES,
-        &WAVE_FILES,
-        &[SWEEP, CHECKPOINT, TRACE_STATE, PIXELS],
-    ];
     let shot = name.strip_prefix("shot_").and_then(|rest| rest.strip_suffix(".png"));
-    known.iter().any(|names| names.contains(&name))
+    output_files().any(|file| file.name() == name)
+        || STUDIES.iter().any(|names| names.contains(&name))
+        || WAVE_FILES.contains(&name)
+        || [SWEEP, CHECKPOINT, TRACE_STATE, PIXELS].contains(&name)
         || shot.is_some_and(|number| number.len() >= 5 && number.bytes().all(|digit| digit.is_ascii_digit()))
 }
 

@@ -8,10 +8,10 @@ use fredholm_coupling::Receiver;
 use fredholm_hierarchical::{Gather, HierarchyError, Leaves, Link, Sender, Tree, senders};
 use fredholm_linop::MultiVector;
 use fredholm_mesh::{Patch, Vec3};
-use fredholm_report::{EXTRAS, Gathering, Link as Drawn, Linked, PointTable};
+use fredholm_report::{Gathering, Link as Drawn, Linked, PointTable, Wanted};
 
 use crate::error::{Error, ErrorKind};
-use crate::options::{FieldFile, SolveSettings};
+use crate::options::SolveSettings;
 use crate::problem::Problem;
 use crate::solution::Solution;
 use crate::stages::Signals;
@@ -21,9 +21,6 @@ const SHARE: f64 = 0.1;
 /// The same where no accuracy was asked for.
 const ALONE: f64 = 1e-3;
 
-/// How many of the further files are pictures: the first ones.
-const PICTURES: usize = 3;
-
 /// Elements and clusters of a solution, and the links between them.
 #[derive(Debug)]
 pub(crate) struct Hierarchy {
@@ -31,19 +28,17 @@ pub(crate) struct Hierarchy {
     pub(crate) links: Arc<Vec<Link>>,
 }
 
-/// The names of the pictures that are written besides the usual one.
-pub(crate) fn pictures(options: &SolveSettings, solution: &Solution) -> impl Iterator<Item = &'static str> {
-    files(options, solution).filter(|name| EXTRAS[..PICTURES].contains(name))
-}
-
-/// The names of all files that are written besides the usual ones.
-pub(crate) fn files(options: &SolveSettings, solution: &Solution) -> impl Iterator<Item = &'static str> {
-    let linked = solution.tree.is_some() && !options.no_pictures;
-    let points = !options.points.is_empty();
-    let [ply, glb] = [FieldFile::Ply, FieldFile::Glb].map(|file| options.also.contains(&file));
-    let exr = options.also.contains(&FieldFile::Exr) && !options.no_pictures;
-    let wanted = [linked, linked, options.final_gather, points, options.discontinuity, ply, glb, exr];
-    EXTRAS.into_iter().zip(wanted).filter(|(_, wanted)| *wanted).map(|(name, _)| name)
+/// Which files are wanted of a solution.
+pub(crate) fn wanted(options: &SolveSettings, solution: &Solution) -> Wanted {
+    Wanted {
+        image: !options.no_pictures,
+        page: !options.no_report,
+        links: solution.tree.is_some() && !options.no_pictures,
+        gather: options.final_gather,
+        points: !options.points.is_empty(),
+        shadows: options.discontinuity,
+        also: options.also.iter().map(|file| file.name()).collect(),
+    }
 }
 
 /// What pictures are made from.

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use fredholm_coupling::MethodCounts;
 use fredholm_linop::{Report, StopReason, Work};
 use fredholm_report::{
-    Closure, Counts, Energy, FILES, Field, FieldError, FormFactorError, Hierarchy, History, IMAGE, MeshError,
-    REPORT, Received, RunRecord,
+    Closure, Counts, Energy, Field, FieldError, FormFactorError, Hierarchy, History, MeshError, Received,
+    RunRecord, wanted_files,
 };
 use serde_json::Value;
 
@@ -57,20 +57,11 @@ pub(crate) fn record(
         reciprocity: solution.reciprocity,
         choice: options.choice.clone(),
         energy: energy(problem, solution),
-        files: pictures::files(options, solution).chain(usual(options)).map(str::to_owned).collect(),
+        files: wanted_files(&pictures::wanted(options, solution)).map(str::to_owned).collect(),
         warnings: problem.warnings.iter().cloned().chain(remarks(options, solution)).collect(),
         partial: report.reason == StopReason::Interrupted,
         ..RunRecord::default()
     }
-}
-
-/// The names of the usual files, with the picture and the page where these are wanted.
-fn usual(options: &SolveSettings) -> impl Iterator<Item = &'static str> {
-    FILES.into_iter().filter(|name| match *name {
-        IMAGE => !options.no_pictures,
-        REPORT => !options.no_report,
-        _ => true,
-    })
 }
 
 /// What the user should know of the solution.

@@ -6,9 +6,9 @@ use std::sync::Arc;
 use fredholm_linop::{MultiVector, Quiet, StopReason, Watch};
 use fredholm_mesh::Mesh;
 use fredholm_report::{
-    CHECKPOINT, Camera, Exposure, Extras, FIELD_EXR, Field, GATHER, IMAGE, Layer, LitPicture, POINTS,
-    Picture, ReportError, ResultFolder, RunRecord, RunReport, SHADOWS, View, render_layers, render_lit,
-    write_with,
+    CHECKPOINT, Camera, Exposure, Extras, Field, GATHER, LINKS_PICTURE, Layer, LitPicture, MESH_PICTURE,
+    ReportError, ResultFolder, RunRecord, RunReport, View, output_files, render_layers, render_lit,
+    wanted_files, write_with,
 };
 use fredholm_scene::Scene;
 
@@ -19,7 +19,7 @@ use crate::hierarchical::Answer;
 use crate::lamplight::Lamplight;
 use crate::memory::{self, Plan};
 use crate::options::{FieldFile, ProblemSettings, SceneSource, SolveOptions, SolveSettings, Way};
-use crate::pictures::{Gathered, Source, gathering, pictures};
+use crate::pictures::{Gathered, Source, gathering, wanted};
 use crate::prediction::{MESH, Prediction, Size};
 use crate::problem::{Problem, scene_failure, with_results};
 use crate::record::{record, remarks};
@@ -460,11 +460,11 @@ fn write(
     let watch = if cancelled { &Quiet } else { signals.watch };
     let source = Source::new(problem, options, solution)?;
     let (links, gathered) = (|element| source.linked(element), source.gather(options, signals)?);
-    let layer = |name| match (name, &gathered) {
-        ("mesh.png", _) => Layer::Elements,
-        ("links.png", _) => Layer::Links(&links),
-        (_, Some(gathered)) => Layer::Gathered(gathered),
-        _ => Layer::Field,
+    let layer = |name| match name {
+        MESH_PICTURE => Some(Layer::Elements),
+        LINKS_PICTURE => Some(Layer::Links(&links)),
+        GATHER => Some(gathered.as_ref().map_or(Layer::Field, |gathered| Layer::Gathered(gathered))),
+        _ => None,
     };
     let exact = options.also.contains(&FieldFile::Exr);
     let draw = || picture(problem, solution, (&field, &view, exact), watch);
@@ -477,8 +477,10 @@ fn write(
         }
         None => (None, Vec::new(), view.exposure),
     };
-    let names: Vec<&str> = pictures(options, solution).filter(|_| !options.no_pictures).collect();
-    let layers: Vec<Layer> = names.iter().map(|name| layer(name)).collect();
+    let wanted = wanted(options, solution);
+    let names = wanted_files(&wanted).filter(|_| !options.no_pictures);
+    let (names, layers): (Vec<&str>, Vec<Layer>) =
+        names.filter_map(|name| Some((name, layer(name)?))).unzip();
     let drawn = if layers.is_empty() || (image.is_none() && signals.is_cancelled()) {
         Vec::new()
     } else {
@@ -488,15 +490,13 @@ fn write(
     let pictures: Vec<_> = pictures.filter_map(|(name, picture)| Some((name, picture?))).collect();
     let points = gathered.as_ref().map(|gathered| gathered.points(options)).transpose()?.flatten();
     let shadows = gathered.as_ref().filter(|_| options.discontinuity).and_then(Gathered::shadows);
-    if signals.is_cancelled() && !record.partial {
-        let image = image.is_some() || options.no_pictures;
-        leave_out(record, &pictures, [image, points.is_some(), shadows.is_some()], signals);
-    }
     let title = title(&problem.scene);
     let report = (!options.no_report).then_some(RunReport { title: &title, view: &view, steps: ("", &[]) });
-    let wanted = |file: &&FieldFile| **file != FieldFile::Exr || image.is_some();
-    let baked = options.also.iter().filter(wanted).map(|file| file.name()).collect();
-    let more = Extras { image, linear, pictures, exposure: view.exposure, points, shadows, baked, report };
+    let (also, exposure) = (wanted.also, view.exposure);
+    let more = Extras { image, linear, pictures, exposure, points, shadows, also, report };
+    if signals.is_cancelled() && !record.partial {
+        leave_out(record, &more, signals);
+    }
     write_with(folder, &field, record, &more).map(drop).map_err(report_failure)
 }
 
@@ -523,19 +523,8 @@ const TONE: &str =
     "tone mapping of luminance by L (1 + L/w²)/(1 + L) with white at w = 4 (Reinhard et al. 2002), sRGB";
 
 /// Takes what a cancelled run has not finished from the list of its files, and says so.
-fn leave_out(
-    record: &mut RunRecord,
-    pictures: &[(&str, Picture)],
-    [image, points, shadows]: [bool; 3],
-    signals: &Signals,
-) {
-    let missing = |name: &str| match name {
-        IMAGE | FIELD_EXR => !image,
-        "mesh.png" | "links.png" | GATHER => pictures.iter().all(|(drawn, _)| *drawn != name),
-        POINTS => !points,
-        SHADOWS => !shadows,
-        _ => false,
-    };
+fn leave_out(record: &mut RunRecord, more: &Extras<'_>, signals: &Signals) {
+    let missing = |name: &str| output_files().any(|file| file.name() == name && !file.is_ready(more));
     let (left_out, written) = mem::take(&mut record.files).into_iter().partition(|name| missing(name));
     record.files = written;
     let left_out: Vec<String> = left_out;

@@ -10,12 +10,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use fredholm_report::{
-    COMPARISON_FILES, COMPARISON_FORMAT, CROSSCHECK_FILES, CROSSCHECK_FORMAT, ComparisonRecord,
-    CrosscheckRecord, FORMAT, JUDGE_FILES, JUDGE_FORMAT, JudgeRecord, MatrixFormat, REFERENCE_FILES,
-    REFERENCE_FORMAT, REFINEMENT_FILES, REFINEMENT_FORMAT, ReferenceRecord, RefinementRecord, RunRecord,
-    SHOOTING_FILES, SHOOTING_FORMAT, SPECTRUM_FILES, SPECTRUM_FORMAT, ShootingRecord, SpectrumRecord,
-    VIEW_FACTORS_FORMAT, ViewFactorFiles, ViewFactorsRecord, WAVE_COMPARISON_FORMAT, WaveComparison,
-    is_result,
+    COMPARISON_FORMAT, CROSSCHECK_FORMAT, ComparisonRecord, CrosscheckRecord, FORMAT, JUDGE_FORMAT,
+    JudgeRecord, MatrixFormat, REFERENCE_FORMAT, REFINEMENT_FORMAT, RUN, ReferenceRecord, RefinementRecord,
+    RunRecord, SHOOTING_FORMAT, SPECTRUM_FORMAT, ShootingRecord, SpectrumRecord, VIEW_FACTORS_FORMAT,
+    ViewFactorFiles, ViewFactorsRecord, WAVE_COMPARISON_FORMAT, WaveComparison, is_result, records,
 };
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -24,9 +22,6 @@ use crate::error::{Error, ErrorKind};
 pub use lines::{Lines, extent};
 pub(crate) use waves::RECORD_FORMAT as WAVES_FORMAT;
 pub use waves::{WaveRecord, frequencies};
-
-/// The record of a run that has solved or traced a scene.
-const RUN: &str = "run.json";
 
 /// What made a result.
 pub struct Made<'a> {
@@ -118,20 +113,6 @@ fn whole(record: &impl Summarise, path: &Path) -> String {
     lines.under(&path.display().to_string())
 }
 
-/// The record of each kind of folder; a folder has one of them.
-fn records() -> [&'static str; 8] {
-    [
-        RUN,
-        COMPARISON_FILES[3],
-        REFINEMENT_FILES[2],
-        SPECTRUM_FILES[2],
-        SHOOTING_FILES[6],
-        CROSSCHECK_FILES[3],
-        REFERENCE_FILES[3],
-        JUDGE_FILES[3],
-    ]
-}
-
 /// The record that belongs to a path: in the folder, or beside the file of a result. Files of view
 /// factors stand for themselves.
 fn record_of(path: &Path) -> Result<PathBuf, Error> {
@@ -164,7 +145,7 @@ fn record_of(path: &Path) -> Result<PathBuf, Error> {
 
 /// The record that a folder has, or the one that is missed most.
 fn in_folder(folder: &Path) -> PathBuf {
-    let found = records().into_iter().map(|name| folder.join(name)).find(|path| path.is_file());
+    let found = records().map(|name| folder.join(name)).find(|path| path.is_file());
     found.unwrap_or_else(|| folder.join(RUN))
 }
 

@@ -1,55 +1,129 @@
-//! The result folder.
+//! The files of a solution, each a value: its name, when it is written, how, and what it holds.
 //!
-//! `run.json` is written last: a folder that has one is complete, and all its files belong together, since what earlier
+//! A new file is a module here with its [`OutputFile`], and a line in [`ALL`]. `run.json` is written
+//! last: a folder that has one is complete, and all its files belong together, since what earlier
 //! runs have left is removed first.
+
+mod meshes;
+mod page;
+mod pictures;
+mod tables;
 
 use std::io::{self, Write};
 use std::path::PathBuf;
 
+use crate::catalogue::CataloguedFile;
 use crate::{
     Camera, Exposure, Field, FieldStep, Picture, PointTable, ReportError, ReportModel, ReportPage,
-    ResultFolder, RunRecord, ShadowMesh, render, write_convergence, write_faces_csv, write_field_csv,
-    write_field_glb, write_field_ply, write_npz, write_points_csv, write_run, write_shadows_vtu,
-    write_surfaces_csv, write_vtu,
+    ResultFolder, RunRecord, ShadowMesh, render,
 };
 
-/// Names of the files of a result folder, in the order in which they are written.
-pub const FILES: [&str; 9] = [
-    "field.csv",
-    "faces.csv",
-    "surfaces.csv",
-    "field.vtu",
-    "field.npz",
-    "image.png",
-    "convergence.svg",
-    REPORT,
-    "run.json",
+/// The commands that write what every solution has.
+const LIGHT: &str = "solve, resume";
+
+/// All files of a solution, in the order in which they are written.
+const ALL: [&dyn OutputFile; 17] = [
+    &pictures::Mesh,
+    &pictures::Links,
+    &pictures::Gathered,
+    &tables::Points,
+    &meshes::Shadows,
+    &meshes::Ply,
+    &meshes::Glb,
+    &pictures::Exr,
+    &tables::Elements,
+    &tables::Faces,
+    &tables::Surfaces,
+    &meshes::Vtu,
+    &meshes::Npz,
+    &pictures::Image,
+    &page::Convergence,
+    &page::Page,
+    &page::Record,
 ];
 
-/// The picture among them.
+/// The picture.
 pub const IMAGE: &str = "image.png";
-
-/// The page among them.
+/// The page for the browser.
 pub const REPORT: &str = "report.html";
-
-/// Names of further files that a result folder may hold: pictures of the mesh, of links and of the final gather, the table of points, triangles cut along shadows, and the field as a mesh
-/// with colours.
-pub const EXTRAS: [&str; 8] =
-    ["mesh.png", "links.png", GATHER, POINTS, SHADOWS, FIELD_PLY, FIELD_GLB, FIELD_EXR];
-
+/// The picture of the elements.
+pub const MESH_PICTURE: &str = "mesh.png";
+/// The picture of the links of an element.
+pub const LINKS_PICTURE: &str = "links.png";
 /// The picture for which every pixel gathers its light.
 pub const GATHER: &str = "gather.png";
-/// The irradiance of points.
-pub const POINTS: &str = "points.csv";
-/// The elements cut along the borders of shadows.
-pub const SHADOWS: &str = "shadows.vtu";
-/// The field as a mesh with colours, as PLY.
+/// The elements with colours, as PLY.
 pub const FIELD_PLY: &str = "field.ply";
 /// The same as binary glTF.
 pub const FIELD_GLB: &str = "field.glb";
-
 /// The linear colours of the picture, as OpenEXR.
 pub const FIELD_EXR: &str = "image.exr";
+/// The record of a run that has solved or traced a scene.
+pub const RUN: &str = "run.json";
+
+/// A file of the folder of a solution.
+pub trait OutputFile: Sync {
+    /// Its name in the folder.
+    fn name(&self) -> &'static str;
+
+    /// What it holds, for `docs/results.md`. There is none where that of another file tells both, or
+    /// where the keys are told by their type.
+    fn about(&self) -> Option<CataloguedFile>;
+
+    /// Whether a run writes it by its settings.
+    fn is_wanted(&self, wanted: &Wanted) -> bool;
+
+    /// Whether there is what it is made from: a run that was stopped may lack it.
+    fn is_ready(&self, _: &Extras<'_>) -> bool {
+        true
+    }
+
+    /// Writes its contents.
+    ///
+    /// # Errors
+    /// What `out` reports.
+    fn write(&self, contents: &Contents<'_>, out: &mut dyn Write) -> io::Result<()>;
+}
+
+/// All files of a solution, in the order in which they are written.
+pub fn output_files() -> impl Iterator<Item = &'static dyn OutputFile> {
+    ALL.into_iter()
+}
+
+/// The names of the files that a run writes by its settings.
+pub fn wanted_files(wanted: &Wanted) -> impl Iterator<Item = &'static str> {
+    output_files().filter(|file| file.is_wanted(wanted)).map(OutputFile::name)
+}
+
+/// Which files the settings of a run ask for, besides those that every solution has.
+#[derive(Clone, Debug, Default)]
+pub struct Wanted {
+    /// [`IMAGE`].
+    pub image: bool,
+    /// [`REPORT`].
+    pub page: bool,
+    /// [`MESH_PICTURE`] and [`LINKS_PICTURE`].
+    pub links: bool,
+    /// [`GATHER`].
+    pub gather: bool,
+    /// The irradiance of points.
+    pub points: bool,
+    /// The elements cut along the borders of shadows.
+    pub shadows: bool,
+    /// Which of [`FIELD_PLY`], [`FIELD_GLB`] and [`FIELD_EXR`].
+    pub also: Vec<&'static str>,
+}
+
+/// What the files of a solution are made from.
+pub struct Contents<'a> {
+    /// The field.
+    pub field: &'a Field<'a>,
+    /// The record.
+    pub run: &'a RunRecord,
+    /// What was drawn and computed besides.
+    pub more: &'a Extras<'a>,
+    page: Option<ReportPage<'a>>,
+}
 
 /// What a result folder holds besides the usual files.
 #[derive(Default)]
@@ -58,7 +132,7 @@ pub struct Extras<'a> {
     pub image: Option<Picture>,
     /// Its linear colours, for [`FIELD_EXR`].
     pub linear: Vec<[f32; 3]>,
-    /// Further pictures with their names, which are among [`EXTRAS`].
+    /// Further pictures with their names: [`MESH_PICTURE`], [`LINKS_PICTURE`], [`GATHER`].
     pub pictures: Vec<(&'static str, Picture)>,
     /// How bright the colours of [`FIELD_PLY`] and [`FIELD_GLB`] are.
     pub exposure: Exposure,
@@ -67,7 +141,7 @@ pub struct Extras<'a> {
     /// Triangles cut along the borders of shadows.
     pub shadows: Option<ShadowMesh>,
     /// Which of [`FIELD_PLY`], [`FIELD_GLB`] and [`FIELD_EXR`] are wanted.
-    pub baked: Vec<&'static str>,
+    pub also: Vec<&'static str>,
     /// What makes the page.
     pub report: Option<RunReport<'a>>,
 }
@@ -82,9 +156,6 @@ pub struct RunReport<'a> {
     /// The field on the way to the solution, and what the steps are.
     pub steps: (&'a str, &'a [FieldStep]),
 }
-
-/// What fills a file.
-type Writer<'a> = dyn Fn(&mut dyn Write) -> io::Result<()> + 'a;
 
 /// What the picture shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -128,50 +199,13 @@ pub fn write_with(
     run: &RunRecord,
     more: &Extras<'_>,
 ) -> Result<Vec<PathBuf>, ReportError> {
-    let picture = more.image.as_ref();
-    let mut paths = Vec::new();
-    for (name, picture) in &more.pictures {
-        paths.push(folder.write(name, |out| picture.write_png(out))?);
-    }
-    if let Some(table) = &more.points {
-        paths.push(folder.write(POINTS, |out| write_points_csv(table, field.bands(), out))?);
-    }
-    if let Some(mesh) = &more.shadows {
-        paths.push(folder.write(SHADOWS, |out| write_shadows_vtu(mesh, field.bands(), out))?);
-    }
-    for name in &more.baked {
-        paths.push(folder.write(name, |out| match *name {
-            FIELD_PLY => write_field_ply(field, more.exposure, out),
-            FIELD_EXR => picture.map_or(Ok(()), |picture| picture.write_exr(&more.linear, out)),
-            _ => write_field_glb(field, more.exposure, out),
-        })?);
-    }
     let page = more.report.map(|RunReport { title, view, steps: (steps_title, steps) }| {
         let model = ReportModel { steps, steps_title, ..ReportModel::lit(field, view) };
-        ReportPage::of_run(title, field, run, model, picture)
+        ReportPage::of_run(title, field, run, model, more.image.as_ref())
     });
-    let draw = |out: &mut dyn Write| picture.map_or(Ok(()), |picture| picture.write_png(out));
-    let show = |out: &mut dyn Write| page.as_ref().map_or(Ok(()), |page| page.write(out));
-    let writers: [&Writer; 9] = [
-        &|out| write_field_csv(field, out),
-        &|out| write_faces_csv(field, out),
-        &|out| write_surfaces_csv(field, out),
-        &|out| write_vtu(field, out),
-        &|out| write_npz(field, out),
-        &draw,
-        &|out| write_convergence(run, out),
-        &show,
-        &|out| write_run(run, out),
-    ];
-    let wanted = |name: &str| match name {
-        IMAGE => picture.is_some(),
-        REPORT => page.is_some(),
-        _ => true,
-    };
-    for (name, write) in FILES.into_iter().zip(writers).filter(|(name, _)| wanted(name)) {
-        paths.push(folder.write(name, write)?);
-    }
-    Ok(paths)
+    let contents = Contents { field, run, more, page };
+    let ready = output_files().filter(|file| file.is_ready(more));
+    ready.map(|file| folder.write(file.name(), |out| file.write(&contents, out))).collect()
 }
 
 #[cfg(test)]
@@ -184,6 +218,12 @@ mod tests {
     use crate::read_run;
     use crate::run::tests::record;
 
+    /// The files that a solution has without further wishes.
+    fn usual() -> impl Iterator<Item = &'static str> {
+        let wanted = Wanted { image: true, page: true, ..Wanted::default() };
+        wanted_files(&wanted).collect::<Vec<_>>().into_iter()
+    }
+
     #[test]
     fn a_folder_is_complete_or_has_no_record() {
         let (mesh, bands) = (sample(), names(&["r", "g"]));
@@ -194,9 +234,9 @@ mod tests {
         let folder = base.path().join("new").join("result");
         let claim = |folder: &Path| ResultFolder::claim(folder).unwrap();
         let paths = write_all(&claim(&folder), &field, &record(), &view).unwrap();
-        let named: Vec<PathBuf> = FILES.iter().map(|name| folder.join(name)).collect();
-        let usual = [&named[..7], &named[8..]].concat();
-        assert_eq!(paths, usual, "no page was asked for");
+        let named: Vec<PathBuf> = usual().map(|name| folder.join(name)).collect();
+        let without_page = [&named[..7], &named[8..]].concat();
+        assert_eq!(paths, without_page, "no page was asked for");
         let report = RunReport { title: "box", view: &view, steps: ("", &[]) };
         let image = Some(render(&field, &view.camera, view.exposure).unwrap());
         let more = Extras { image, report: Some(report), ..Extras::default() };
@@ -204,7 +244,7 @@ mod tests {
         assert_eq!(paths, named);
         assert!(paths.iter().all(|path| fs::metadata(path).unwrap().len() > 50));
         let count = || fs::read_dir(&folder).unwrap().count();
-        assert_eq!(count(), FILES.len() + 1, "the files and their list");
+        assert_eq!(count(), usual().count() + 1, "the files and their list");
         assert_eq!(read_run(&paths[8]).unwrap(), record());
         // A folder in the place of a file makes the third attempt fail.
         fs::remove_file(&paths[4]).unwrap();
@@ -225,7 +265,7 @@ mod tests {
         write_all(&claim(), &field, &record(), &View::framing(&field)).unwrap();
         assert!(folder.path().join(IMAGE).exists());
         let paths = write_with(&claim(), &field, &record(), &Extras::default()).unwrap();
-        assert_eq!(paths.len(), FILES.len() - 2);
+        assert_eq!(paths.len(), usual().count() - 2);
         assert!(!folder.path().join(IMAGE).exists() && paths.iter().all(|path| path.exists()));
     }
 
