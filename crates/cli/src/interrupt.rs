@@ -1,8 +1,8 @@
 //! Ctrl-C, the termination signal, and the limit of time.
 //!
-//! The first signal asks the run to stop at its next look; the second ends the process at once. Where a run cannot look
-//! up in time, a watchman ends the process, unless there is an iterate or a result worth the wait. The limit of time does
-//! what a first signal does, with another exit code.
+//! The first signal asks the run to stop at its next look; the second ends the process at once.
+//! Where a run cannot look up in time, a watchman ends the process, unless there is an iterate or a
+//! result worth the wait. The limit of time does what a first signal does, with another exit code.
 
 use std::io::{self, IsTerminal};
 use std::ops::ControlFlow;
@@ -60,8 +60,8 @@ impl Interrupt {
         Self { requested, out_of_time, time_limit, phase: Mutex::new(Phase::Preparing), log }
     }
 
-    /// The end of a run: where the limit of time has interrupted it, that is said, and the run counts as
-    /// not converged.
+    /// The end of a run: where the limit of time has interrupted it, that is said, and the run
+    /// counts as not converged.
     pub(crate) fn ended(&self, ended: Result<Ending, Error>, console: &dyn Console) -> Result<Ending, Error> {
         match ended {
             Ok(Ending::Interrupted) if self.out_of_time() => {

@@ -1,4 +1,5 @@
-//! Standard output: summaries and what a verb was asked for, nothing else. Standard error: everything else.
+//! Standard output: summaries and what a verb was asked for, nothing else. Standard error:
+//! everything else.
 
 use std::fmt::Display;
 use std::io::{self, Write};
@@ -18,7 +19,8 @@ pub(crate) fn report(text: &str) -> Result<(), Error> {
     print(&visible(text))
 }
 
-/// Writes `text` to standard output. A reader that has gone away (`fredholm schema | head`) is no failure.
+/// Writes `text` to standard output. A reader that has gone away (`fredholm schema | head`) is no
+/// failure.
 pub(crate) fn print(text: &str) -> Result<(), Error> {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {

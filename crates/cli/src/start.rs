@@ -1,5 +1,5 @@
-//! How a verb that computes and writes begins: signals, a folder that can be written to, the console,
-//! threads.
+//! How a verb that computes and writes begins: signals, a folder that can be written to, the
+//! console, threads.
 
 use std::path::{Path, PathBuf};
 
@@ -16,7 +16,8 @@ use crate::terminal::Terminal;
 pub(crate) struct Start<'a> {
     pub(crate) scene: &'a Path,
     pub(crate) output: Option<&'a PathBuf>,
-    /// What the name of the usual folder ends in, so that no verb removes the results of another; empty for `solve`.
+    /// What the name of the usual folder ends in, so that no verb removes the results of another;
+    /// empty for `solve`.
     pub(crate) verb: &'static str,
     pub(crate) threads: Option<u16>,
     pub(crate) memory: Option<Bytes>,
@@ -80,7 +81,8 @@ pub(crate) fn run(
     ended
 }
 
-/// The folder asked for, or `out/` and the name of the scene file without its ending, and then the verb.
+/// The folder asked for, or `out/` and the name of the scene file without its ending, and then the
+/// verb.
 fn folder(output: Option<&PathBuf>, scene: &Path, verb: &str) -> PathBuf {
     let mut name = scene.file_stem().unwrap_or_else(|| "scene".as_ref()).to_owned();
     if !verb.is_empty() {

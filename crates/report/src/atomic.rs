@@ -1,8 +1,9 @@
 //! A file that appears whole or not at all.
 //!
-//! The contents go to a temporary file in the same folder, which is flushed, synchronised to the disk and renamed;
-//! then the folder itself is synchronised. A rename within a folder replaces the old file in one step (POSIX.1-2017,
-//! `rename`), so a reader finds the old contents or the new, never a part.
+//! The contents go to a temporary file in the same folder, which is flushed, synchronised to the
+//! disk and renamed; then the folder itself is synchronised. A rename within a folder replaces the
+//! old file in one step (POSIX.1-2017, `rename`), so a reader finds the old contents or the new,
+//! never a part.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -20,7 +21,8 @@ pub(crate) const TEMPORARY: &str = ".tmp";
 /// The folder must exist. A file already there is replaced.
 ///
 /// # Errors
-/// [`ReportError::Write`] with the path; no temporary file is left, and an old file keeps its contents.
+/// [`ReportError::Write`] with the path; no temporary file is left, and an old file keeps its
+/// contents.
 ///
 /// # Examples
 /// ```

@@ -1,14 +1,16 @@
 //! `field.ply` and `field.glb`: the elements with the light on them as colours of their corners.
 //!
-//! The radiosity of the corners is that of [`crate::nodal`]; its colour is that of the picture: exposed so
-//! that the mean of log luminance over all elements but lamps becomes mid grey, and compressed.
+//! The radiosity of the corners is that of [`crate::nodal`]; its colour is that of the picture:
+//! exposed so that the mean of log luminance over all elements but lamps becomes mid grey, and
+//! compressed.
 //!
-//! PLY (G. Turk, The PLY Polygon File Format, 1994; binary, little endian): vertices `x y z` (m, f64) and
-//! `red green blue` (sRGB, 0 to 255); faces, one an element, with `element`, `face`, `surface` (numbers from
-//! 0) and band by band `irradiance_BAND`, `radiosity_BAND` (W/m², f64), the values of the elements.
+//! PLY (G. Turk, The PLY Polygon File Format, 1994; binary, little endian): vertices `x y z` (m,
+//! f64) and `red green blue` (sRGB, 0 to 255); faces, one an element, with `element`, `face`,
+//! `surface` (numbers from 0) and band by band `irradiance_BAND`, `radiosity_BAND` (W/m², f64), the
+//! values of the elements.
 //!
-//! GLB (Khronos Group, glTF 2.0 Specification): a node and a mesh a surface, unlit, with `COLOR_0` (linear,
-//! 0 to 1) and `_RADIOSITY` (linear red, green and blue, W/m²), both f32.
+//! GLB (Khronos Group, glTF 2.0 Specification): a node and a mesh a surface, unlit, with `COLOR_0`
+//! (linear, 0 to 1) and `_RADIOSITY` (linear red, green and blue, W/m²), both f32.
 
 use std::io::{self, Write};
 

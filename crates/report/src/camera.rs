@@ -1,7 +1,7 @@
 //! A pinhole camera.
 //!
-//! The ray through the picture at (x, y), from −1 to 1, y upwards, goes along
-//! d = f + x tan(α/2) (width/height) r + y tan(α/2) u, with the unit vectors forward f, right r, up u and the vertical
+//! The ray through the picture at (x, y), from −1 to 1, y upwards, goes along d = f + x tan(α/2)
+//! (width/height) r + y tan(α/2) u, with the unit vectors forward f, right r, up u and the vertical
 //! field of view α.
 
 use fredholm_mesh::{Patch, Vec3};
@@ -52,8 +52,9 @@ pub(crate) struct Axes {
 pub const FRAMED: [u32; 2] = [800, 600];
 
 impl Camera {
-    /// A camera that sees the whole scene: through its opening, or through a wall where it is closed, since walls are
-    /// invisible from behind. Up is opposite to where the lamps shine, else y.
+    /// A camera that sees the whole scene: through its opening, or through a wall where it is
+    /// closed, since walls are invisible from behind. Up is opposite to where the lamps shine, else
+    /// y.
     #[must_use]
     pub fn framing(field: &Field<'_>) -> Self {
         let up = upward(field);
@@ -73,8 +74,9 @@ impl Camera {
     /// The axes of the camera.
     ///
     /// # Errors
-    /// [`ReportError::Camera`] for numbers that are not finite, an eye at the target, an up along the direction of view, a
-    /// field of view outside 0 to 180 degrees, or a size of 0 or above 16,384 pixels.
+    /// [`ReportError::Camera`] for numbers that are not finite, an eye at the target, an up along
+    /// the direction of view, a field of view outside 0 to 180 degrees, or a size of 0 or above
+    /// 16,384 pixels.
     pub(crate) fn axes(&self) -> Result<Axes, ReportError> {
         self.fault().map_or_else(
             || Ok(self.axes_along((self.target - self.eye).normalize())),
@@ -117,7 +119,8 @@ impl Camera {
         Ok(move |x, y| camera.direction(&axes, x, y))
     }
 
-    /// Unit direction of the ray through the picture at column `x`, row `y` from the upper left, in pixels.
+    /// Unit direction of the ray through the picture at column `x`, row `y` from the upper left, in
+    /// pixels.
     pub(crate) fn direction(&self, axes: &Axes, x: f64, y: f64) -> Vec3 {
         let (x, y) = (2.0 * x / f64::from(self.width) - 1.0, 1.0 - 2.0 * y / f64::from(self.height));
         (axes.forward + axes.right * x + axes.up * y).normalize()
@@ -125,7 +128,8 @@ impl Camera {
 }
 
 impl Camera {
-    /// Column and row from the upper left, in pixels, at which a point is seen; none for one that is not before the eye.
+    /// Column and row from the upper left, in pixels, at which a point is seen; none for one that
+    /// is not before the eye.
     pub(crate) fn place(&self, axes: &Axes, point: Vec3) -> Option<(f64, f64)> {
         let line = point - self.eye;
         let depth = line.dot(axes.forward);
@@ -156,8 +160,8 @@ fn nearest_axis(v: Vec3) -> Vec3 {
     axis * axis.dot(v).signum()
 }
 
-/// Direction of view: against the net area vector Σ A n, which points out of the opening of a scene, and a little
-/// downwards, so that level plates are not seen edge-on.
+/// Direction of view: against the net area vector Σ A n, which points out of the opening of a
+/// scene, and a little downwards, so that level plates are not seen edge-on.
 fn view(field: &Field<'_>, up: Vec3) -> Vec3 {
     let total: f64 = field.mesh().patches().map(Patch::area).sum();
     let net: Vec3 = field.mesh().patches().map(|patch| patch.normal() * patch.area()).sum();
@@ -191,7 +195,8 @@ mod tests {
     use crate::field::tests::names;
     use fredholm_mesh::{Mesh, MeshBuilder};
 
-    /// A box from (0, 0, 0) to (3, 2, 4), lit inside, with the walls wanted of x0, x1, y0, y1, z0, z1.
+    /// A box from (0, 0, 0) to (3, 2, 4), lit inside, with the walls wanted of x0, x1, y0, y1, z0,
+    /// z1.
     fn room(walls: &[usize]) -> Mesh {
         let v = |i: usize| {
             Vec3::new(3.0 * (i & 1) as f64, 2.0 * ((i >> 1) & 1) as f64, 4.0 * ((i >> 2) & 1) as f64)

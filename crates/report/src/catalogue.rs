@@ -1,7 +1,8 @@
-//! Every file of every result, with its columns or arrays and their units: the source of `docs/results.md`.
+//! Every file of every result, with its columns or arrays and their units: the source of
+//! `docs/results.md`.
 //!
-//! A name that ends in `_BAND` stands for one column or array a band, `SURFACE_BAND` for one a surface and band. The keys of
-//! records come from their types and the comments there.
+//! A name that ends in `_BAND` stands for one column or array a band, `SURFACE_BAND` for one a
+//! surface and band. The keys of records come from their types and the comments there.
 
 use std::fmt::Write;
 
@@ -468,7 +469,8 @@ fn table(schema: &Value, page: &mut String) {
     }
 }
 
-/// The comment on a type or a field, without the brackets of links and with what would end a cell told apart.
+/// The comment on a type or a field, without the brackets of links and with what would end a cell
+/// told apart.
 fn described(value: &Value) -> String {
     let text = value["description"].as_str().unwrap_or_default();
     let text = text.split_whitespace().collect::<Vec<_>>().join(" ");

@@ -2,8 +2,9 @@
 //!
 //! x̄(λ) = Σ a exp(−½ ((λ − μ)/σ)²), with another σ on each side of μ; likewise ȳ and z̄. λ in nm.
 //!
-//! C. Wyman, P.-P. Sloan, P. Shirley, "Simple Analytic Approximations to the CIE XYZ Color Matching Functions",
-//! Journal of Computer Graphics Techniques 2(2), 2013, the multi-lobe fit. It stays within about 0.02 of the tables.
+//! C. Wyman, P.-P. Sloan, P. Shirley, "Simple Analytic Approximations to the CIE XYZ Color Matching
+//! Functions", Journal of Computer Graphics Techniques 2(2), 2013, the multi-lobe fit. It stays
+//! within about 0.02 of the tables.
 
 /// Amplitude, centre (nm), reciprocal widths below and above the centre (1/nm).
 type Lobe = [f64; 4];

@@ -1,11 +1,13 @@
 //! From bands to colour: linear sRGB (IEC 61966-2-1) as a fixed linear combination of the bands.
 //!
 //! - `r, g, b` or `red, green, blue`, in any order: the three channels themselves.
-//! - wavelengths such as `540nm`: X = Σ wₗ x̄(λₗ) Bₗ with trapezoid weights wₗ over the sorted wavelengths, likewise Y
-//!   and Z; each is scaled so that an equal-energy spectrum becomes the white of sRGB (D65).
+//! - wavelengths such as `540nm`: X = Σ wₗ x̄(λₗ) Bₗ with trapezoid weights wₗ over the sorted
+//!   wavelengths, likewise Y and Z; each is scaled so that an equal-energy spectrum becomes the
+//!   white of sRGB (D65).
 //! - one band, or any other names: the mean of the bands, as grey.
 //!
-//! An equal value in all bands is the same value in all channels. Negative channels mark colours outside sRGB.
+//! An equal value in all bands is the same value in all channels. Negative channels mark colours
+//! outside sRGB.
 
 use crate::cie::colour_matching;
 
@@ -95,7 +97,8 @@ fn spectrum(bands: &[String]) -> Option<Vec<Rgb>> {
     white.iter().all(|&sum| sum > visible).then(|| responses.iter().map(scaled).collect())
 }
 
-/// Weights of the trapezoid rule for points in any order; `None` for fewer than two distinct points.
+/// Weights of the trapezoid rule for points in any order; `None` for fewer than two distinct
+/// points.
 fn trapezoid(points: &[f64]) -> Option<Vec<f64>> {
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_by(|&i, &j| points[i].total_cmp(&points[j]));

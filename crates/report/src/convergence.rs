@@ -1,7 +1,8 @@
-//! `convergence.svg`: the relative residual ‖b − A x‖₂/‖b‖₂ of each band against iterations and against seconds.
+//! `convergence.svg`: the relative residual ‖b − A x‖₂/‖b‖₂ of each band against iterations and
+//! against seconds.
 //!
-//! The residual axis is logarithmic; a residual of 0 is drawn at 10⁻¹⁷, one that is not finite is left out. A dashed line
-//! marks the tolerance.
+//! The residual axis is logarithmic; a residual of 0 is drawn at 10⁻¹⁷, one that is not finite is
+//! left out. A dashed line marks the tolerance.
 
 use std::io::{self, Write};
 

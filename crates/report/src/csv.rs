@@ -5,7 +5,8 @@ use std::io::{self, Write};
 
 use crate::number::Number;
 
-/// A text as a field of a row: in quotes, inner quotes doubled, where it holds a comma, a quote or a line end.
+/// A text as a field of a row: in quotes, inner quotes doubled, where it holds a comma, a quote or
+/// a line end.
 pub(crate) fn quoted(text: &str) -> Cow<'_, str> {
     if text.contains([',', '"', '\n', '\r']) {
         Cow::Owned(format!("\"{}\"", text.replace('"', "\"\"")))
@@ -14,7 +15,8 @@ pub(crate) fn quoted(text: &str) -> Cow<'_, str> {
     }
 }
 
-/// Writes the fixed column names, then each quantity in each band, band by band: `q1_b1,q2_b1,q1_b2,q2_b2`.
+/// Writes the fixed column names, then each quantity in each band, band by band:
+/// `q1_b1,q2_b1,q1_b2,q2_b2`.
 pub(crate) fn header(
     out: &mut dyn Write,
     fixed: &str,

@@ -23,7 +23,8 @@ pub enum ReportError {
         /// The folder.
         path: PathBuf,
     },
-    /// A file stands where one of a result would be written, and no run is known to have written it.
+    /// A file stands where one of a result would be written, and no run is known to have written
+    /// it.
     #[error(
         "{} would be replaced, but is not listed as the file of an earlier run; move it away, or choose another folder",
         path.display()

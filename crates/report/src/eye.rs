@@ -1,6 +1,7 @@
 //! What a camera sees of a mesh.
 //!
-//! Rays are cast among the leaves that turn their lit side to the eye; the others are invisible, so that a closed room shows its inside.
+//! Rays are cast among the leaves that turn their lit side to the eye; the others are invisible, so
+//! that a closed room shows its inside.
 
 use fredholm_mesh::{Mesh, Patch, Vec3};
 use fredholm_visibility::Occluders;
@@ -22,7 +23,8 @@ impl Eye {
     /// Looks at a mesh.
     ///
     /// # Errors
-    /// [`ReportError::Camera`] for settings that make no picture, [`ReportError::Visibility`] where the surfaces cannot be prepared for ray casting.
+    /// [`ReportError::Camera`] for settings that make no picture, [`ReportError::Visibility`] where
+    /// the surfaces cannot be prepared for ray casting.
     pub fn new(mesh: &Mesh, camera: &Camera) -> Result<Self, ReportError> {
         let axes = camera.axes()?;
         let lit = |patch: &Patch| patch.normal().dot(camera.eye - patch.centroid()) > 0.0;

@@ -1,7 +1,7 @@
 //! `faces.csv`: area means over the elements of each input face, x̄ = Σ Aᵢ xᵢ / Σ Aᵢ.
 //!
-//! Columns: `face` (number, from 0), `surface` (name), `cx, cy, cz` (centroid, m), `area` (m²), then band by band
-//! `irradiance_BAND` and `radiosity_BAND` (W/m²).
+//! Columns: `face` (number, from 0), `surface` (name), `cx, cy, cz` (centroid, m), `area` (m²),
+//! then band by band `irradiance_BAND` and `radiosity_BAND` (W/m²).
 
 use std::io::{self, Write};
 

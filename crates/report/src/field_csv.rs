@@ -1,8 +1,8 @@
 //! `field.csv`: a row per leaf element.
 //!
-//! Columns: `element` (number of the unknown, from 0), `face` (number of its input face), `surface` (name), `cx, cy, cz`
-//! (centroid, m), `nx, ny, nz` (unit normal to the lit side), `area` (m²), then band by band `irradiance_BAND` and
-//! `radiosity_BAND` (W/m²).
+//! Columns: `element` (number of the unknown, from 0), `face` (number of its input face), `surface`
+//! (name), `cx, cy, cz` (centroid, m), `nx, ny, nz` (unit normal to the lit side), `area` (m²),
+//! then band by band `irradiance_BAND` and `radiosity_BAND` (W/m²).
 
 use std::io::{self, Write};
 

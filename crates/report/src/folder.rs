@@ -1,9 +1,11 @@
-//! The place that the files of one run go to: locked while it runs, rid of what earlier runs have left.
+//! The place that the files of one run go to: locked while it runs, rid of what earlier runs have
+//! left.
 //!
-//! A hidden file, `.fredholm`, lists the files that runs have written into the folder, and carries the lock of the run
-//! that writes. The lock is the system's (`flock`, `LockFileEx`), so that it ends with the process that holds it, however
-//! that ends. Before its first file a run removes all that is listed: a record never stands beside the files of another
-//! run. What is not listed is left alone; where it has the name of a result, the folder is refused before anything is
+//! A hidden file, `.fredholm`, lists the files that runs have written into the folder, and carries
+//! the lock of the run that writes. The lock is the system's (`flock`, `LockFileEx`), so that it
+//! ends with the process that holds it, however that ends. Before its first file a run removes all
+//! that is listed: a record never stands beside the files of another run. What is not listed is
+//! left alone; where it has the name of a result, the folder is refused before anything is
 //! computed.
 
 use std::collections::BTreeSet;
@@ -21,8 +23,8 @@ use crate::viewfactors::ViewFactorFiles;
 /// Name of the list of a folder, and ending of the lists of single files.
 const LIST: &str = ".fredholm";
 
-/// A folder, or the name of a matrix, that one run writes to. All clones are the same run; the lock is released with the
-/// last of them. One to which nothing was written leaves nothing behind.
+/// A folder, or the name of a matrix, that one run writes to. All clones are the same run; the lock
+/// is released with the last of them. One to which nothing was written leaves nothing behind.
 ///
 /// # Examples
 /// ```
@@ -64,8 +66,9 @@ impl ResultFolder {
     /// Claims a folder for a run; it is made where it does not exist.
     ///
     /// # Errors
-    /// [`ReportError::Busy`] while another run writes there, [`ReportError::Occupied`] for a folder with a file of the name
-    /// of a result that no run is known to have written, [`ReportError::Write`] where nothing can be written.
+    /// [`ReportError::Busy`] while another run writes there, [`ReportError::Occupied`] for a folder
+    /// with a file of the name of a result that no run is known to have written,
+    /// [`ReportError::Write`] where nothing can be written.
     pub fn claim(folder: impl AsRef<Path>) -> Result<Self, ReportError> {
         let claim = Claim::lock(folder.as_ref(), LIST.into(), false)?;
         let entries = fs::read_dir(&claim.folder).map_err(read_failure(&claim.folder))?;
@@ -74,7 +77,8 @@ impl ResultFolder {
         Ok(Self(Arc::new(claim)))
     }
 
-    /// Claims the names of a matrix of view factors and of what comes beside it; other files of the folder are free.
+    /// Claims the names of a matrix of view factors and of what comes beside it; other files of the
+    /// folder are free.
     ///
     /// # Errors
     /// As [`claim`](Self::claim).
@@ -95,8 +99,8 @@ impl ResultFolder {
         Ok(Self(Arc::new(claim)))
     }
 
-    /// Claims a folder to add files that are no result: nothing there is removed, and the files of a result are not
-    /// replaced.
+    /// Claims a folder to add files that are no result: nothing there is removed, and the files of
+    /// a result are not replaced.
     ///
     /// # Errors
     /// [`ReportError::Busy`] and [`ReportError::Write`] as for [`claim`](Self::claim).
@@ -115,8 +119,8 @@ impl ResultFolder {
         self.0.state().kept.insert(name.to_owned());
     }
 
-    /// Removes what earlier runs have left, the records first. What this run writes itself stays: only the first call does
-    /// anything, and [`write`](Self::write) makes it.
+    /// Removes what earlier runs have left, the records first. What this run writes itself stays:
+    /// only the first call does anything, and [`write`](Self::write) makes it.
     ///
     /// # Errors
     /// [`ReportError::Write`] with the file that could not be removed.
@@ -138,11 +142,12 @@ impl ResultFolder {
         Ok(())
     }
 
-    /// Writes a file whole or not at all; `fill` writes the contents. Folders that its name goes through are made. Returns
-    /// its path.
+    /// Writes a file whole or not at all; `fill` writes the contents. Folders that its name goes
+    /// through are made. Returns its path.
     ///
     /// # Errors
-    /// [`ReportError::Write`] with the path, [`ReportError::Occupied`] for a file that is added where a result has one.
+    /// [`ReportError::Write`] with the path, [`ReportError::Occupied`] for a file that is added
+    /// where a result has one.
     pub fn write<F>(&self, name: &str, fill: F) -> Result<PathBuf, ReportError>
     where
         F: FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -168,7 +173,8 @@ impl ResultFolder {
 }
 
 impl Claim {
-    /// Makes the folder, locks its list and reads it; files that a killed run has not finished are removed.
+    /// Makes the folder, locks its list and reads it; files that a killed run has not finished are
+    /// removed.
     fn lock(folder: &Path, list: OsString, adds: bool) -> Result<Self, ReportError> {
         let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
         let made: Vec<PathBuf> = folder
@@ -225,7 +231,8 @@ impl Claim {
         }
     }
 
-    /// Lists a name before its file is there. What is added beside a result is not listed, and may not replace it.
+    /// Lists a name before its file is there. What is added beside a result is not listed, and may
+    /// not replace it.
     fn list(&self, name: &str) -> Result<(), ReportError> {
         let mut state = self.state();
         if self.adds {

@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Hierarchy {
-    /// Relative error that was asked for: of the irradiance of the faces, L2, or of the mean irradiance of the goal alone, where there is one.
+    /// Relative error that was asked for: of the irradiance of the faces, L2, or of the mean
+    /// irradiance of the goal alone, where there is one.
     pub accuracy: f64,
     /// The one that is estimated, in the worst band.
     pub stated: Option<f64>,
@@ -44,6 +45,7 @@ pub struct HierarchyRound {
     pub elements: u64,
     /// Links.
     pub links: u64,
-    /// Relative change of the irradiance of the faces since the round before, L2, or of that of the goal, worst band.
+    /// Relative change of the irradiance of the faces since the round before, L2, or of that of the
+    /// goal, worst band.
     pub change: Option<f64>,
 }

@@ -5,13 +5,14 @@
 //!
 //! (g × f) v² + (e × f + h × g) v + h × e = 0.
 //!
-//! The derivative of the left side at the wanted root is the Jacobian of the map, which is positive on a convex quad.
-//! This selects the root v = −2 k₀ / (k₁ + √(k₁² − 4 k₂ k₀)), whose denominator is positive too, so that parallelograms
-//! (k₂ = 0) need no case of their own.
+//! The derivative of the left side at the wanted root is the Jacobian of the map, which is positive
+//! on a convex quad. This selects the root v = −2 k₀ / (k₁ + √(k₁² − 4 k₂ k₀)), whose denominator
+//! is positive too, so that parallelograms (k₂ = 0) need no case of their own.
 
 use fredholm_mesh::{Patch, Vec3};
 
-/// Weights of the corners at a point of the plane of the patch, clamped to the patch. They add up to 1.
+/// Weights of the corners at a point of the plane of the patch, clamped to the patch. They add up
+/// to 1.
 pub(crate) fn corner_weights(patch: &Patch, point: Vec3) -> [f64; 4] {
     if patch.sides() == 3 {
         return barycentric(patch, point);

@@ -1,6 +1,7 @@
 //! What people look at: tables, VTU, NPZ, pictures and plots.
 //!
-//! [`write_all`] turns a solved [`Field`] and the [`RunRecord`] of how it came about into a result folder:
+//! [`write_all`] turns a solved [`Field`] and the [`RunRecord`] of how it came about into a result
+//! folder:
 //!
 //! | file | contents |
 //! |---|---|
@@ -18,13 +19,16 @@
 //! | `report.html` | all of it as a page to turn, pick and read, where asked for |
 //! | `run.json` | what made all this; written last, so its presence means a complete folder |
 //!
-//! [`write_comparison`] writes a comparison of solvers: `compare.csv`, `compare_history.csv`, `compare.svg`, `compare.json`.
-//! [`write_spectrum`] writes an analysis of the matrix: `spectrum.csv`, `spectrum.svg`, `spectrum.json`.
-//! [`write_shooting`] writes progressive radiosity without a matrix: pictures on the way, `shots.csv`, `shots.svg`, the field so far, `shots.json`.
-//! [`write_face_estimates`], [`write_crosscheck`] and [`write_reference`] write what random paths came to, beside deterministic solutions.
-//! [`write_refinement`] writes a study of convergence: `converge.csv`, `converge.svg`, `converge.json`.
+//! [`write_comparison`] writes a comparison of solvers: `compare.csv`, `compare_history.csv`,
+//! `compare.svg`, `compare.json`. [`write_spectrum`] writes an analysis of the matrix:
+//! `spectrum.csv`, `spectrum.svg`, `spectrum.json`. [`write_shooting`] writes progressive radiosity
+//! without a matrix: pictures on the way, `shots.csv`, `shots.svg`, the field so far, `shots.json`.
+//! [`write_face_estimates`], [`write_crosscheck`] and [`write_reference`] write what random paths
+//! came to, beside deterministic solutions. [`write_refinement`] writes a study of convergence:
+//! `converge.csv`, `converge.svg`, `converge.json`.
 //!
-//! A [`ResultFolder`] is claimed by one run at a time, which removes what earlier ones have left. Every file appears whole or not at all. Units: metres, W/m², W, seconds.
+//! A [`ResultFolder`] is claimed by one run at a time, which removes what earlier ones have left.
+//! Every file appears whole or not at all. Units: metres, W/m², W, seconds.
 
 mod atomic;
 mod baked;

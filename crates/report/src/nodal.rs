@@ -1,9 +1,11 @@
 //! Values at the corners of elements, from the constant values of the elements around them.
 //!
-//! The value at a corner is the mean of the elements that meet there, belong to the same surface and have a similar
-//! normal, with weights 1/Aᵢ. The nearer, that is smaller, elements count more: on a grid of rectangles with any
-//! spacing, the four weights 1/(hᵢ kⱼ) are products of the exact weights in each direction, so that a bilinear function
-//! is reproduced. A corner on a side of a larger element takes the colour of that side: else the two would differ along it. The weight of a partly buried element is its exposed share of that.
+//! The value at a corner is the mean of the elements that meet there, belong to the same surface
+//! and have a similar normal, with weights 1/Aᵢ. The nearer, that is smaller, elements count more:
+//! on a grid of rectangles with any spacing, the four weights 1/(hᵢ kⱼ) are products of the exact
+//! weights in each direction, so that a bilinear function is reproduced. A corner on a side of a
+//! larger element takes the colour of that side: else the two would differ along it. The weight of
+//! a partly buried element is its exposed share of that.
 
 use fredholm_mesh::{Hanging, Mesh, Weld, Welded};
 
@@ -34,7 +36,8 @@ pub(crate) fn vertex_colours(
     sums.into_iter().map(|(sum, total)| sum.map(|value| value / total)).collect()
 }
 
-/// Gives vertices on the sides of larger elements the colour that these have there, so that there is no crack in it: the mean of the ends.
+/// Gives vertices on the sides of larger elements the colour that these have there, so that there
+/// is no crack in it: the mean of the ends.
 pub(crate) fn close(hanging: &[Hanging], vertices: &mut [Rgb]) {
     for Hanging { vertex, ends: [a, b] } in hanging {
         vertices[*vertex] = [0, 1, 2].map(|i| 0.5 * (vertices[*a][i] + vertices[*b][i]));

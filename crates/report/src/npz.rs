@@ -23,7 +23,8 @@ use zip::{CompressionMethod, DateTime, ZipWriter};
 use crate::Field;
 use crate::viewfactors::write_texts;
 
-/// Writes the leaf elements as arrays. The file is composed in memory: about 8 (2 bands + 10) bytes an element.
+/// Writes the leaf elements as arrays. The file is composed in memory: about 8 (2 bands + 10) bytes
+/// an element.
 ///
 /// # Errors
 /// What `out` reports.

@@ -1,5 +1,5 @@
-//! Decimal text that reads back to the same f64: the shortest digits that do, with an exponent where it
-//! saves zeros; zero has no sign.
+//! Decimal text that reads back to the same f64: the shortest digits that do, with an exponent
+//! where it saves zeros; zero has no sign.
 
 use std::fmt;
 

@@ -1,4 +1,5 @@
-//! How records are read back: a number that is not finite is `null` in JSON, and NaN again when it is read.
+//! How records are read back: a number that is not finite is `null` in JSON, and NaN again when it
+//! is read.
 
 use serde::{Deserialize, Deserializer};
 

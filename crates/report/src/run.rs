@@ -1,6 +1,7 @@
 //! `run.json`: what made a result. Format `fredholm-run-1`.
 //!
-//! Units: seconds, bytes; residuals ‖b − A x‖₂/‖b‖₂ and the other figures of quality are dimensionless unless said.
+//! Units: seconds, bytes; residuals ‖b − A x‖₂/‖b‖₂ and the other figures of quality are
+//! dimensionless unless said.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -18,8 +19,9 @@ pub const FORMAT: &str = "fredholm-run-1";
 
 /// What made a result, and how far it can be trusted.
 ///
-/// Reading is lenient: unknown keys are passed over and missing ones take their default, so that records of older and
-/// newer programs with the same format name can be read. A number that is not finite is written as `null`.
+/// Reading is lenient: unknown keys are passed over and missing ones take their default, so that
+/// records of older and newer programs with the same format name can be read. A number that is not
+/// finite is written as `null`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct RunRecord {
@@ -61,7 +63,8 @@ pub struct RunRecord {
     /// What the faces receive, one entry a band.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub received: Vec<Received>,
-    /// Standard error of the irradiance of the faces over the irradiance, RMS over faces and bands, where it was traced.
+    /// Standard error of the irradiance of the faces over the irradiance, RMS over faces and bands,
+    /// where it was traced.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub standard_error: Option<f64>,
     /// Row sums of the form factors against 1.
@@ -76,12 +79,14 @@ pub struct RunRecord {
     /// Where an accuracy was asked for: the way it was reached, and why.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub choice: Option<String>,
-    /// How the picture was made: where its light comes from, and how it was mapped to what a screen shows.
+    /// How the picture was made: where its light comes from, and how it was mapped to what a screen
+    /// shows.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub picture: Option<String>,
     /// Estimated error of the field as piecewise polynomials.
     pub field_error: Option<FieldError>,
-    /// Largest violation of `A_i F_ij = A_j F_ji` among the partly occluded pairs checked, as a form factor.
+    /// Largest violation of `A_i F_ij = A_j F_ji` among the partly occluded pairs checked, as a
+    /// form factor.
     pub reciprocity: Option<f64>,
     /// Estimated error of the form factors.
     pub form_factor_error: FormFactorError,
@@ -182,7 +187,8 @@ pub struct Timing {
     pub seconds: f64,
 }
 
-/// Residuals along the way. All vectors have one entry a point; `residual` has one such vector a band.
+/// Residuals along the way. All vectors have one entry a point; `residual` has one such vector a
+/// band.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct History {
@@ -210,7 +216,8 @@ pub struct Received {
     pub most: f64,
 }
 
-/// How far the row sums `Σ_j F_ij` of the elements that see anything are from 1, and where the light goes that they lack. A share is dimensionless.
+/// How far the row sums `Σ_j F_ij` of the elements that see anything are from 1, and where the
+/// light goes that they lack. A share is dimensionless.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Closure {
@@ -222,9 +229,11 @@ pub struct Closure {
     pub worst_element: Option<u64>,
     /// Surface of the largest.
     pub worst_surface: Option<String>,
-    /// Share of the area that sees nothing: other surfaces stand on it, it lies on one, or it looks into the void.
+    /// Share of the area that sees nothing: other surfaces stand on it, it lies on one, or it looks
+    /// into the void.
     pub blind: Option<f64>,
-    /// Rays that were cast from the elements all of which sees something, with even places and the directions of light.
+    /// Rays that were cast from the elements all of which sees something, with even places and the
+    /// directions of light.
     pub rays: Option<u64>,
     /// Share of them that meets nothing: the openings of the scene.
     pub open: Option<f64>,
@@ -272,8 +281,8 @@ pub fn write_run(run: &RunRecord, out: &mut dyn Write) -> io::Result<()> {
 /// Reads a run record.
 ///
 /// # Errors
-/// [`ReportError::Read`] where the file cannot be read, [`ReportError::BrokenRun`] for a file cut short or damaged,
-/// [`ReportError::ForeignRun`] for JSON of another kind.
+/// [`ReportError::Read`] where the file cannot be read, [`ReportError::BrokenRun`] for a file cut
+/// short or damaged, [`ReportError::ForeignRun`] for JSON of another kind.
 pub fn read_run(path: &Path) -> Result<RunRecord, ReportError> {
     let bytes = fs::read(path).map_err(|source| ReportError::Read { path: path.to_owned(), source })?;
     let broken =

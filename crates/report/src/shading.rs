@@ -27,10 +27,10 @@ impl<'a> Shading<'a> {
 
     /// The same of what is left of the radiosity without a part, W/m² of a leaf and a band.
     ///
-    /// A rest that is smooth is interpolated so that the mean over an element is about that of the element:
-    /// so many times the corners are moved by what the elements around them lack (the iteration of P. van
-    /// Cittert, Zeitschrift für Physik 69, 1931, doi:10.1007/BF01391351). Else dark corners of rooms would be too bright by
-    /// what the light changes within half an element.
+    /// A rest that is smooth is interpolated so that the mean over an element is about that of the
+    /// element: so many times the corners are moved by what the elements around them lack (the
+    /// iteration of P. van Cittert, Zeitschrift für Physik 69, 1931, doi:10.1007/BF01391351). Else
+    /// dark corners of rooms would be too bright by what the light changes within half an element.
     pub(crate) fn of_rest(field: Field<'a>, passes: usize, part: impl Fn(usize, usize) -> f64) -> Self {
         let (mesh, colouring) = (field.mesh(), Colouring::new(field.bands()));
         let colour = |leaf: usize| {

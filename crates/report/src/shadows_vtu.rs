@@ -1,6 +1,9 @@
-//! `shadows.vtu`: triangles that are cut along the borders of shadows, with the irradiance at their corners, as a VTK unstructured grid for `ParaView`.
+//! `shadows.vtu`: triangles that are cut along the borders of shadows, with the irradiance at their
+//! corners, as a VTK unstructured grid for `ParaView`.
 //!
-//! Triangles share no points: on a border each side has its own irradiance. Point data: `irradiance_BAND` (W/m²). Cell data: `element`, the number of the element that the triangle is a part of. Metres.
+//! Triangles share no points: on a border each side has its own irradiance. Point data:
+//! `irradiance_BAND` (W/m²). Cell data: `element`, the number of the element that the triangle is a
+//! part of. Metres.
 
 use std::io::{self, Write};
 

@@ -1,7 +1,8 @@
 //! What an analysis of the matrix leaves: `spectrum.csv`, `spectrum.svg`, and `spectrum.json` last.
 //!
-//! Columns of the table: `band`, `matrix` (`reflection` is R F, `jacobi` J, `gauss_seidel` L₁, `psi` Ψ, `theta` Θ), `index`, `re`, `im`. The plot shows the band of
-//! the largest radius: eigenvalues in the plane, and their moduli in falling order.
+//! Columns of the table: `band`, `matrix` (`reflection` is R F, `jacobi` J, `gauss_seidel` L₁,
+//! `psi` Ψ, `theta` Θ), `index`, `re`, `im`. The plot shows the band of the largest radius:
+//! eigenvalues in the plane, and their moduli in falling order.
 
 use std::io::{self, Write};
 

@@ -1,7 +1,8 @@
 //! `surfaces.csv`: area means and powers of each named surface.
 //!
-//! Columns: `surface` (name), `faces`, `elements`, `area` (m²), then band by band `irradiance_BAND`, `radiosity_BAND`
-//! (area means, W/m²) and, where the exitance M is known, the powers in W
+//! Columns: `surface` (name), `faces`, `elements`, `area` (m²), then band by band
+//! `irradiance_BAND`, `radiosity_BAND` (area means, W/m²) and, where the exitance M is known, the
+//! powers in W
 //!
 //! - `emitted_BAND`   Σ Aᵢ Mᵢ
 //! - `reflected_BAND` Σ Aᵢ (Bᵢ − Mᵢ)

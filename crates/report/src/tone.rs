@@ -1,10 +1,11 @@
 //! Tone mapping: from unbounded linear colour to display values.
 //!
-//! The luminance L = 0.2126 R + 0.7152 G + 0.0722 B is scaled by the exposure and compressed by
-//! L′ = L (1 + L/w²)/(1 + L), so that w becomes white (E. Reinhard, M. Stark, P. Shirley, J. Ferwerda, "Photographic
-//! tone reproduction for digital images", 2002, DOI 10.1145/566654.566575, eq. 4). The channels are scaled alike, which
-//! keeps the hue; a colour that is then too bright for its channel is mixed with white of the same luminance. Display
-//! values are encoded by the curve of sRGB (IEC 61966-2-1).
+//! The luminance L = 0.2126 R + 0.7152 G + 0.0722 B is scaled by the exposure and compressed by L′
+//! = L (1 + L/w²)/(1 + L), so that w becomes white (E. Reinhard, M. Stark, P. Shirley, J. Ferwerda,
+//! "Photographic tone reproduction for digital images", 2002, DOI 10.1145/566654.566575, eq. 4).
+//! The channels are scaled alike, which keeps the hue; a colour that is then too bright for its
+//! channel is mixed with white of the same luminance. Display values are encoded by the curve of
+//! sRGB (IEC 61966-2-1).
 
 use crate::ReportError;
 use crate::colour::Rgb;
@@ -148,7 +149,8 @@ mod tests {
 
     #[test]
     fn codes_of_srgb() {
-        // From the decoding formula of the standard: code 118 is 0.1812, code 188 is 0.5029, code 10 is 0.003035.
+        // From the decoding formula of the standard: code 118 is 0.1812, code 188 is 0.5029, code
+        // 10 is 0.003035.
         for (linear, code) in
             [(0.0, 0), (0.003_035, 10), (0.1812, 118), (0.5029, 188), (1.0, 255), (7.0, 255)]
         {

@@ -1,7 +1,7 @@
 //! Text inside XML.
 
-/// A text fit for XML content and for attributes in double quotes; control characters, which XML forbids, become
-/// spaces.
+/// A text fit for XML content and for attributes in double quotes; control characters, which XML
+/// forbids, become spaces.
 pub(crate) fn escaped(text: &str) -> String {
     text.chars().fold(String::with_capacity(text.len()), |mut out, c| {
         match c {
@@ -20,8 +20,8 @@ pub(crate) fn escaped(text: &str) -> String {
 pub(crate) mod tests {
     use super::*;
 
-    /// The start tags of a document, as (name, attribute text), after checking that tags nest and close properly and
-    /// that no bare `&` or `<` is left.
+    /// The start tags of a document, as (name, attribute text), after checking that tags nest and
+    /// close properly and that no bare `&` or `<` is left.
     pub(crate) fn tags(text: &str) -> Vec<(String, String)> {
         let (mut open, mut found, mut rest) = (Vec::<String>::new(), Vec::new(), text);
         while let Some(start) = rest.find('<') {

@@ -1,4 +1,5 @@
-//! Pictures with the light of lamps at every pixel: the solution's own part of it is taken out, and the factors put in.
+//! Pictures with the light of lamps at every pixel: the solution's own part of it is taken out, and
+//! the factors put in.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -65,7 +66,8 @@ impl LampLight for Dark {
 
 fn drawn(cells: usize) -> (Vec<u8>, Vec<[f32; 3]>) {
     let (mesh, bands) = (square(cells), vec!["grey".to_owned()]);
-    // The lamp sends 6 W/m², of which the solution has 2 everywhere; 1 W/m² comes besides, and half is reflected.
+    // The lamp sends 6 W/m², of which the solution has 2 everywhere; 1 W/m² comes besides, and half
+    // is reflected.
     let (irradiance, radiosity) = (vec![3.0; mesh.len()], vec![1.5; mesh.len()]);
     let field = Field::new(&mesh, &bands, &irradiance, &radiosity).unwrap();
     let (reflectance, direct) = (vec![0.5; mesh.len()], vec![2.0; mesh.len()]);

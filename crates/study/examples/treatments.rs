@@ -1,5 +1,6 @@
-//! Relative L² error of the scattered far field, treatment by treatment and bounce by bounce, and of what a scene gets that
-//! names no method: against Galerkin solutions, the series of Mie, and the stored references.
+//! Relative L² error of the scattered far field, treatment by treatment and bounce by bounce, and
+//! of what a scene gets that names no method: against Galerkin solutions, the series of Mie, and
+//! the stored references.
 //!
 //!     cargo run --release -p fredholm-study --example treatments -- [part of a name]
 

@@ -2,8 +2,9 @@
 //!
 //! The matrix has n(n + 1)/2 pairs. The links are about [`LINKS`] (1 %/ε)^[`POWER`] a face at the
 //! accuracy ε, and one costs as much as [`PAIRS`] pairs, as measured on the scenes of
-//! docs/notes/hierarchical.md. On fewer than 2 × 2 elements a face the matrix is seldom exact enough, and
-//! links would have to follow; else the error that it states decides whether it was enough.
+//! docs/notes/hierarchical.md. On fewer than 2 × 2 elements a face the matrix is seldom exact
+//! enough, and links would have to follow; else the error that it states decides whether it was
+//! enough.
 
 use std::fmt;
 

@@ -58,8 +58,8 @@ impl Error {
         self.kind
     }
 
-    /// What was wrong: the error of the crate that found it, which knows the file and the line where
-    /// there are any, or a message.
+    /// What was wrong: the error of the crate that found it, which knows the file and the line
+    /// where there are any, or a message.
     #[must_use]
     pub fn cause(&self) -> &(dyn std::error::Error + Send + Sync + 'static) {
         &*self.cause

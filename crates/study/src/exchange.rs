@@ -36,10 +36,10 @@ const BEFORE: f64 = 0.02;
 /// Vertical field of view of an eye inside a room, degrees.
 const WIDE: f64 = 75.0;
 
-/// Writes a scene in the format of another program: geometry, diffuse reflectances, emitters and the
-/// camera. Where the scene has none, it takes in the whole scene; an eye that would see a wall from
-/// behind is moved through it. `band` is the band that stands
-/// for grey, for a scene whose bands are no colours.
+/// Writes a scene in the format of another program: geometry, diffuse reflectances, emitters and
+/// the camera. Where the scene has none, it takes in the whole scene; an eye that would see a wall
+/// from behind is moved through it. `band` is the band that stands for grey, for a scene whose
+/// bands are no colours.
 ///
 /// # Errors
 /// What is wrong with the scene; [`ErrorKind::Files`] for a file that cannot be written.
@@ -63,8 +63,8 @@ pub(crate) fn outline(scene: &Scene, band: Option<&str>) -> Result<Outline, Erro
 }
 
 /// The camera of a scene; where it has none, one that takes in the whole scene. Other programs show
-/// the backs of walls, which the pictures here leave out, so that an eye is moved through those that
-/// stand before what is to be seen.
+/// the backs of walls, which the pictures here leave out, so that an eye is moved through those
+/// that stand before what is to be seen.
 pub(crate) fn camera(scene: &Scene) -> Result<Camera, Error> {
     let camera = scene.camera().copied().map_or_else(|| whole(scene), Ok)?;
     let mesh = scene.face_mesh().map_err(scene_failure)?;
@@ -116,8 +116,8 @@ pub(crate) fn write(
     Ok(Written { files: paths, notes, surfaces, polygons })
 }
 
-/// Writes a mesh file, or the surfaces of a scene, as another mesh file; the ending of its name is the
-/// format.
+/// Writes a mesh file, or the surfaces of a scene, as another mesh file; the ending of its name is
+/// the format.
 ///
 /// # Errors
 /// As for [`export`]; [`ErrorKind::Input`] for a name whose ending is that of no known format.

@@ -6,12 +6,12 @@ use fredholm_report::{ReportError, ResultFolder, ViewFactorFiles};
 
 use crate::error::{Error, ErrorKind};
 
-/// Claims a folder for the results of a run, before anything is computed; see [`ResultFolder::claim`]. `option` is what
-/// chooses another one.
+/// Claims a folder for the results of a run, before anything is computed; see
+/// [`ResultFolder::claim`]. `option` is what chooses another one.
 ///
 /// # Errors
-/// [`ErrorKind::Files`] while another run writes there, for a folder with files that are not those of a run, and where
-/// nothing can be written.
+/// [`ErrorKind::Files`] while another run writes there, for a folder with files that are not those
+/// of a run, and where nothing can be written.
 pub fn claim(folder: &Path, option: &str) -> Result<ResultFolder, Error> {
     ResultFolder::claim(folder).map_err(|error| unusable(folder, option, error))
 }

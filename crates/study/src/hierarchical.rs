@@ -43,8 +43,8 @@ const PICTURES: usize = 3;
 /// for results of the elements, whose number is not known before.
 const SHARE: f64 = 0.6;
 
-/// Share of what tree and links take that is still there when the results are written and has no room
-/// for them.
+/// Share of what tree and links take that is still there when the results are written and has no
+/// room for them.
 const KEPT: f64 = 0.5;
 /// Growth of elements and links in a round, where none is known yet, and the most that is expected.
 const GROWTH: f64 = 2.0;
@@ -176,7 +176,8 @@ pub(crate) enum Answer {
     TooMany { links: f64, paths: f64 },
 }
 
-/// Solves a scene to an accuracy, but for one that random paths suit better, where `free` allows it.
+/// Solves a scene to an accuracy, but for one that random paths suit better, where `free` allows
+/// it.
 pub(crate) fn compute(
     scene: &Arc<Scene>,
     options: &SolveSettings,

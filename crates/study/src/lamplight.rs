@@ -12,7 +12,8 @@ use crate::problem::Problem;
 
 /// What the light of lamps at pixels is taken from.
 pub(crate) struct Lamplight<'a> {
-    /// None where there are no lamps, or too many, or where the solution does not tell their light apart.
+    /// None where there are no lamps, or too many, or where the solution does not tell their light
+    /// apart.
     lamps: Option<(Lamps<'a>, &'a [f64])>,
     /// Exitance of each lamp, lamps × bands, W/m².
     exitance: Vec<f64>,
@@ -22,7 +23,8 @@ pub(crate) struct Lamplight<'a> {
 }
 
 impl<'a> Lamplight<'a> {
-    /// The lamps of a scene, of which the irradiance of the elements has a part `direct`, W/m², where that is known.
+    /// The lamps of a scene, of which the irradiance of the elements has a part `direct`, W/m²,
+    /// where that is known.
     pub(crate) fn new(
         problem: &'a Problem,
         direct: Option<&'a MultiVector<f64>>,

@@ -2,8 +2,8 @@
 //! surfaces.
 //!
 //! What a surface sends is spread as cos θ dω/π. A set of rays whose origins are even over the area
-//! and whose directions follow that density meets nothing with the probability that light leaves the
-//! scene. Along the area they are equidistant, otherwise those of
+//! and whose directions follow that density meets nothing with the probability that light leaves
+//! the scene. Along the area they are equidistant, otherwise those of
 //! [`rays`](fredholm_coupling::rays).
 
 use fredholm_coupling::rays::{Meets, cosine_ray, meets, recurrence};
@@ -28,8 +28,9 @@ struct Ends {
 /// Row sums below which an element sees nothing.
 pub(crate) const BLIND: f64 = 1e-9;
 
-/// Adds to a closure how much of the area sees nothing, and where light goes from the rest; `exposed`
-/// has the share of every element that is not buried, `rows` its row sums where they are known.
+/// Adds to a closure how much of the area sees nothing, and where light goes from the rest;
+/// `exposed` has the share of every element that is not buried, `rows` its row sums where they are
+/// known.
 pub(crate) fn openness(closure: Closure, problem: &Problem, exposed: &[f64], rows: &[f64]) -> Closure {
     let mesh = &problem.mesh;
     let areas: Vec<f64> = mesh.patches().map(Patch::area).collect();

@@ -48,7 +48,8 @@ pub enum SceneSource {
 }
 
 impl SceneSource {
-    /// The scene, read in a stage of its own; refused where reading it takes more than there may be.
+    /// The scene, read in a stage of its own; refused where reading it takes more than there may
+    /// be.
     pub(crate) fn load(&self, memory: Option<Bytes>, stages: &mut Stages) -> Result<Arc<Scene>, Error> {
         stages.run("scene", || match self {
             Self::File(path) => {
@@ -92,7 +93,8 @@ pub(crate) fn of_waves(path: &Path, error: SceneError) -> Error {
     Error::new(ErrorKind::Input, format!("{shown} is a scene of light, not of waves")).with_help(help)
 }
 
-/// Bytes that reading takes for every byte of a scene file, and of a mesh: measured on files of 80 and 100 MB, rounded up.
+/// Bytes that reading takes for every byte of a scene file, and of a mesh: measured on files of 80
+/// and 100 MB, rounded up.
 const READ_SCENE: u128 = 60;
 const READ_MESH: u128 = 30;
 

@@ -18,8 +18,8 @@ use crate::stages::Stages;
 pub(crate) const MESH: u128 = 600;
 /// Bytes of an element while its exchanges are computed: quadrature points, clusters, error sums.
 pub(crate) const ASSEMBLY: u128 = 800;
-/// Bytes of an element that is shot from: quadrature points, groups, the tree of elements. Of each of
-/// its values while shots go on; of it and of each of its values while errors are followed.
+/// Bytes of an element that is shot from: quadrature points, groups, the tree of elements. Of each
+/// of its values while shots go on; of it and of each of its values while errors are followed.
 const SHOT: u128 = 1450;
 const SHOT_VALUE: u128 = 200;
 const SHOT_ERRORS: u128 = 130;
@@ -27,15 +27,15 @@ const SHOT_ERROR_VALUE: u128 = 630;
 /// Of the entries on their way, many small pieces, the C library still has one in so many when they
 /// have arrived.
 const RETAINED: u128 = 2;
-/// Bytes while results are written: of any, for the page and the plots; of an element and of each of
-/// its values, for welded corners and the composed file of arrays.
+/// Bytes while results are written: of any, for the page and the plots; of an element and of each
+/// of its values, for welded corners and the composed file of arrays.
 const PAGE: u128 = 2 << 20;
 const RESULTS: u128 = 650;
 const VALUE: u128 = 50;
-/// Bytes of an element while pictures are drawn: what rays are cast at, how it lies to eight parts of
-/// lamps. Of each of its values where lamps light the picture: colours at corners, reflectance and
-/// direct light. Of a pixel there: what is seen through its middle, its linear colours, and either once
-/// more in the tiles that it is put together from.
+/// Bytes of an element while pictures are drawn: what rays are cast at, how it lies to eight parts
+/// of lamps. Of each of its values where lamps light the picture: colours at corners, reflectance
+/// and direct light. Of a pixel there: what is seen through its middle, its linear colours, and
+/// either once more in the tiles that it is put together from.
 const DRAWN: u128 = 500;
 const LIT_VALUE: u128 = 24;
 const LIT_PIXEL: u128 = 37;

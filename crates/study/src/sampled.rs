@@ -163,8 +163,8 @@ fn stated(mesh: &Mesh, state: &State, bands: usize) -> MeshError {
     }
 }
 
-/// The 95 % quantile of √(χ²/k) for so many independent squares (E. B. Wilson, M. M. Hilferty, Proc.
-/// Natl. Acad. Sci. 17, 684–688, 1931), no less than [`CONFIDENCE`].
+/// The 95 % quantile of √(χ²/k) for so many independent squares (E. B. Wilson, M. M. Hilferty,
+/// Proc. Natl. Acad. Sci. 17, 684–688, 1931), no less than [`CONFIDENCE`].
 fn confidence(independent: f64) -> f64 {
     let ninth = 2.0 / (9.0 * independent.max(1.0));
     (1.0 - ninth + 1.645 * ninth.sqrt()).powf(1.5).max(CONFIDENCE)

@@ -25,8 +25,8 @@ use crate::watcher::Watcher;
 pub(crate) struct Solution {
     /// Irradiance and radiosity of the elements, W/m².
     pub(crate) means: Means,
-    /// The part of the irradiance that comes straight from what emits, W/m², as the same equation has
-    /// it; none where the method does not tell it apart.
+    /// The part of the irradiance that comes straight from what emits, W/m², as the same equation
+    /// has it; none where the method does not tell it apart.
     pub(crate) direct: Option<MultiVector<f64>>,
     /// What the solver did.
     pub(crate) report: Report,

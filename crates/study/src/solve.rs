@@ -137,8 +137,8 @@ impl Solved<'_> {
         &self.solution.means.radiosity
     }
 
-    /// Mean irradiance and mean radiosity of the faces, each faces × bands, W/m², as `faces.csv` has
-    /// them.
+    /// Mean irradiance and mean radiosity of the faces, each faces × bands, W/m², as `faces.csv`
+    /// has them.
     ///
     /// # Errors
     /// Never for the field of a solution, which fits its mesh.
@@ -454,7 +454,8 @@ fn write(
         .and_then(|field| field.with_exposed(&solution.exposed))
         .map_err(report_failure)?;
     let view = view_of(problem.scene.camera(), &field);
-    // Whoever has cancelled the run gets a small picture at once; one that is cancelled meanwhile is left out.
+    // Whoever has cancelled the run gets a small picture at once; one that is cancelled meanwhile
+    // is left out.
     let cancelled = record.partial || signals.is_cancelled();
     let view = if cancelled { quick(view) } else { view };
     let watch = if cancelled { &Quiet } else { signals.watch };
@@ -500,9 +501,9 @@ fn write(
     write_with(folder, &field, record, &more).map(drop).map_err(report_failure)
 }
 
-/// The picture of a solution, with its linear colours where these are wanted, and how it was made: the light of lamps at
-/// every pixel where the solution tells that part of the irradiance apart, else what its elements have. There is none where
-/// the watch did not want it any more.
+/// The picture of a solution, with its linear colours where these are wanted, and how it was made:
+/// the light of lamps at every pixel where the solution tells that part of the irradiance apart,
+/// else what its elements have. There is none where the watch did not want it any more.
 fn picture(
     problem: &Problem,
     solution: &Solution,

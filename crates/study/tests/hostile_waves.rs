@@ -1,4 +1,5 @@
-//! Scenes of waves that are hostile or make no sense: a typed error with line and cure, or a warning.
+//! Scenes of waves that are hostile or make no sense: a typed error with line and cure, or a
+//! warning.
 
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
 

@@ -1,4 +1,5 @@
-//! Runs by defaults beside exact answers that had no part in the calibration, and the NASA almond by every method.
+//! Runs by defaults beside exact answers that had no part in the calibration, and the NASA almond
+//! by every method.
 //!
 //!     cargo test --release -p fredholm-study --test known_answers -- --ignored --nocapture
 
@@ -68,7 +69,8 @@ fn body(dice: &mut Dice, kind: usize) -> (&'static str, Body) {
     }
 }
 
-/// 60 random bodies in random waves, with nothing said but the body: the stated error beside the true one.
+/// 60 random bodies in random waves, with nothing said but the body: the stated error beside the
+/// true one.
 #[test]
 #[ignore = "takes minutes"]
 fn stated_errors_hold_by_defaults() {
@@ -121,7 +123,8 @@ impl Sweep {
         Self { scattering: [part(0), part(1)], stated: None }
     }
 
-    /// ‖a − b‖₂/‖b‖₂ and the largest difference of σ (dB) where it is above −60 dBsm, of a polarisation.
+    /// ‖a − b‖₂/‖b‖₂ and the largest difference of σ (dB) where it is above −60 dBsm, of a
+    /// polarisation.
     fn gap(&self, truth: &Self, part: usize) -> (f64, f64) {
         let (mut gap, mut size, mut most) = (0.0, 0.0, 0.0_f64);
         for (a, b) in self.scattering[part].iter().zip(&truth.scattering[part]) {

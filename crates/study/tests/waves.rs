@@ -47,7 +47,8 @@ fn scattered(found: &SolvedWaves<'_>) -> Vec<[f64; 6]> {
     found.near().iter().map(|row| std::array::from_fn(|i| row.scattered[i])).collect()
 }
 
-/// The compressed matrix gives the answer of the whole one, and what does not go together is refused.
+/// The compressed matrix gives the answer of the whole one, and what does not go together is
+/// refused.
 #[test]
 fn boundary_elements_are_compressed_where_asked_for() {
     let folder = tempfile::tempdir().unwrap();
@@ -66,7 +67,8 @@ fn boundary_elements_are_compressed_where_asked_for() {
     assert!(refused(&facets, CouplingStorage::Compressed).contains("--storage matrix or products"));
 }
 
-/// A dielectric ball against its series outside; one that is small has 3/(ε + 2) of the incident field inside.
+/// A dielectric ball against its series outside; one that is small has 3/(ε + 2) of the incident
+/// field inside.
 #[test]
 fn dielectric_bodies_have_the_field_of_the_series_near_and_far_and_inside() {
     let folder = tempfile::tempdir().unwrap();
@@ -225,7 +227,8 @@ fn large_tables_are_arrays_only() {
 const BALL: &str =
     "[[surface]]\nname = \"ball\"\nsphere = { centre = [0, 0, 0], radius = 0.12 }\nedge = \"lambda/10\"\n";
 
-/// A conductor absorbs nothing: of plane waves it scatters what they lose, and dipoles beside it radiate what they supply.
+/// A conductor absorbs nothing: of plane waves it scatters what they lose, and dipoles beside it
+/// radiate what they supply.
 #[test]
 fn powers_balance_on_a_sphere() {
     let folder = tempfile::tempdir().unwrap();
@@ -262,7 +265,8 @@ fn the_far_field_has_the_sources_in() {
     assert!((totals[1].gain / totals[0].gain - pattern * pattern).abs() < 1e-3);
 }
 
-/// Sweeps tell how reciprocal they are: the electric equation is, to rounding and the integrals of its entries.
+/// Sweeps tell how reciprocal they are: the electric equation is, to rounding and the integrals of
+/// its entries.
 #[test]
 fn sweeps_tell_their_reciprocity() {
     let folder = tempfile::tempdir().unwrap();
@@ -294,7 +298,8 @@ fn echo_of_a_sphere(radius: f64, permittivity: Option<Complex64>) -> Complex64 {
     e.components()[2] * Complex64::cis(wave.wavenumber() * 3e5) * 3e5
 }
 
-/// The errors of sweeps are stated, by facets and by boundary elements, of conductors and of dielectric bodies.
+/// The errors of sweeps are stated, by facets and by boundary elements, of conductors and of
+/// dielectric bodies.
 #[test]
 fn errors_of_sweeps_are_stated_and_hold() {
     let folder = tempfile::tempdir().unwrap();

@@ -31,7 +31,8 @@ pub(crate) struct CompareArgs {
     /// Folder for the results [default: out/<name of the scene file>-compare]
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
-    /// Solvers with their options, as `fredholm solvers` lists them, or all: gauss-seidel,sor:omega=1.2,gmres
+    /// Solvers with their options, as `fredholm solvers` lists them, or all:
+    /// gauss-seidel,sor:omega=1.2,gmres
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "all", value_parser = solver)]
     pub(crate) solvers: Vec<String>,
     /// Relative residual ‖b − A x‖₂/‖b‖₂ to reach in every band
@@ -40,7 +41,8 @@ pub(crate) struct CompareArgs {
     /// Iterations allowed
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), default_value_t = 1000)]
     pub(crate) max_iterations: u32,
-    /// Repeat with all reflectances scaled so that the largest takes these values: reflectance=0.1..0.99, or reflectance=0.1..0.9:5 for five of them
+    /// Repeat with all reflectances scaled so that the largest takes these values:
+    /// reflectance=0.1..0.99, or reflectance=0.1..0.9:5 for five of them
     #[arg(long, value_name = "SWEEP", value_parser = sweep)]
     pub(crate) sweep: Option<Sweep>,
     /// Write no report.html
@@ -49,7 +51,8 @@ pub(crate) struct CompareArgs {
     /// Threads; any number gives the same residuals [default: one a core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
-    /// Error asked for in a row of form factors, rounded down to a power of ten, 1e-14 at least [default: the scene's, else 1e-3]
+    /// Error asked for in a row of form factors, rounded down to a power of ten, 1e-14 at least
+    /// [default: the scene's, else 1e-3]
     #[arg(long, value_name = "T", value_parser = tolerance)]
     pub(crate) form_factor_tolerance: Option<f64>,
     /// Number format of the stored matrix [default: the scene's, else f64]

@@ -38,7 +38,8 @@ pub(crate) struct CrosscheckArgs {
     /// Stochastic method [default: light, of waves surface-sampling]
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(LIGHT_METHODS.iter().chain(&FIELD_METHODS)))]
     method: Option<String>,
-    /// Error of the irradiance that `solve` is asked for, whose answer is checked [default: the scene's, else its elements]
+    /// Error of the irradiance that `solve` is asked for, whose answer is checked [default: the
+    /// scene's, else its elements]
     #[arg(long, value_name = "E", value_parser = accuracy)]
     pub(crate) accuracy: Option<f64>,
     /// Probability of a false alarm that is allowed

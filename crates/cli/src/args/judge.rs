@@ -54,7 +54,8 @@ pub(crate) struct JudgeArgs {
     /// The values have no random error, as those of a deterministic program
     #[arg(long)]
     pub(crate) exact: bool,
-    /// Standard deviation of rounding, relative to the value [default: 1e-5, of half precision 2^-11]
+    /// Standard deviation of rounding, relative to the value [default: 1e-5, of half precision
+    /// 2^-11]
     #[arg(long, value_name = "R", value_parser = share)]
     pub(crate) rounding: Option<f64>,
     #[command(flatten)]

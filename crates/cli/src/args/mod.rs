@@ -137,7 +137,8 @@ pub(crate) struct Cli {
 }
 
 impl Cli {
-    /// Reads a command line. Negative numbers are values, so that an option that takes none says itself what it takes.
+    /// Reads a command line. Negative numbers are values, so that an option that takes none says
+    /// itself what it takes.
     pub(crate) fn read<T: Into<OsString> + Clone>(
         line: impl IntoIterator<Item = T>,
     ) -> Result<Self, clap::Error> {
@@ -166,7 +167,8 @@ pub(crate) enum Command {
     /// Run solvers on the same system; tell iterations, work, time and errors
     #[command(after_help = compare::EXAMPLES)]
     Compare(CompareArgs),
-    /// Progressive radiosity without the matrix: pictures at once, and from scenes whose matrix would not fit
+    /// Progressive radiosity without the matrix: pictures at once, and from scenes whose matrix
+    /// would not fit
     #[command(after_help = shoot::EXAMPLES)]
     Shoot(ShootArgs),
     /// Analyse the matrix of a scene: eigenvalues, radii, conditions, properties
@@ -323,21 +325,25 @@ impl From<Precision> for fredholm_study::Precision {
     }
 }
 
-/// What decides the size and the effort of a problem; where given it goes before the scene's `[solve]` table.
+/// What decides the size and the effort of a problem; where given it goes before the scene's
+/// `[solve]` table.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct ProblemArgs {
-    /// Scene file (.toml), or mesh file that stands for a scene (.obj, .stl, .ply, .gltf, .glb, .msh, .rad, .xml, .vs3)
+    /// Scene file (.toml), or mesh file that stands for a scene (.obj, .stl, .ply, .gltf, .glb,
+    /// .msh, .rad, .xml, .vs3)
     pub(crate) scene: PathBuf,
     /// Threads; any number gives the same results [default: one a core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
-    /// Discretisation, as `fredholm discretisations` lists them [default: the scene's, else galerkin-0]
+    /// Discretisation, as `fredholm discretisations` lists them [default: the scene's, else
+    /// galerkin-0]
     #[arg(long, value_name = "NAME", value_parser = discretisation_name)]
     pub(crate) discretisation: Option<String>,
     /// Solver [default: the scene's, else gauss-seidel]
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(solver_names()))]
     pub(crate) solver: Option<String>,
-    /// Error asked for in a row of form factors, rounded down to a power of ten, 1e-14 at least [default: the scene's, else 1e-3]
+    /// Error asked for in a row of form factors, rounded down to a power of ten, 1e-14 at least
+    /// [default: the scene's, else 1e-3]
     #[arg(long, value_name = "T", value_parser = tolerance)]
     pub(crate) form_factor_tolerance: Option<f64>,
     /// Number format of the stored matrix [default: the scene's, else f64]
@@ -368,19 +374,19 @@ pub(crate) struct SolveArgs {
     /// Folder for the results [default: out/<name of the scene file>]
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
-    /// Error of the irradiance of the faces to reach, such as 1% or 0.01; the elements are then chosen by hierarchical
-    /// radiosity [default: the scene's, else its elements]
+    /// Error of the irradiance of the faces to reach, such as 1% or 0.01; the elements are then
+    /// chosen by hierarchical radiosity [default: the scene's, else its elements]
     #[arg(long, value_name = "E", value_parser = accuracy)]
     pub(crate) accuracy: Option<f64>,
     /// How to reach the accuracy [default: the way that is predicted to cost least]
     #[arg(long, value_enum, value_name = "WAY")]
     pub(crate) way: Option<Way>,
-    /// Surfaces, by their names, whose mean irradiance is to have the accuracy; all else is only as exact as that needs, and
-    /// the elements are chosen by hierarchical radiosity
+    /// Surfaces, by their names, whose mean irradiance is to have the accuracy; all else is only as
+    /// exact as that needs, and the elements are chosen by hierarchical radiosity
     #[arg(long, value_name = "SURFACE", value_delimiter = ',')]
     pub(crate) goal: Vec<String>,
-    /// Also draw gather.png, for which every pixel gathers its light from all that it sees; image.png interpolates
-    /// between elements
+    /// Also draw gather.png, for which every pixel gathers its light from all that it sees;
+    /// image.png interpolates between elements
     #[arg(long)]
     pub(crate) final_gather: bool,
     /// Draw no picture
@@ -389,12 +395,12 @@ pub(crate) struct SolveArgs {
     /// Write no report.html
     #[arg(long)]
     pub(crate) no_report: bool,
-    /// Also write the elements with their light as colours and numbers, field.ply and field.glb, or the
-    /// linear colours of the picture, image.exr
+    /// Also write the elements with their light as colours and numbers, field.ply and field.glb, or
+    /// the linear colours of the picture, image.exr
     #[arg(long, value_enum, value_name = "FORMAT", value_delimiter = ',')]
     pub(crate) also: Vec<FieldFile>,
-    /// Also write shadows.vtu, for which the elements are cut along the borders of the shadows that lamps cast and gather
-    /// their irradiance at the corners
+    /// Also write shadows.vtu, for which the elements are cut along the borders of the shadows that
+    /// lamps cast and gather their irradiance at the corners
     #[arg(long)]
     pub(crate) discontinuity: bool,
     #[command(flatten)]
@@ -431,10 +437,12 @@ impl SolveArgs {
 /// Where the irradiance is gathered for points.csv.
 #[derive(Clone, Debug, Default, Args)]
 pub(crate) struct PlaceArgs {
-    /// Point with a normal that receives light, for points.csv: x,y,z,nx,ny,nz (may be given several times)
+    /// Point with a normal that receives light, for points.csv: x,y,z,nx,ny,nz (may be given
+    /// several times)
     #[arg(long, value_name = "POINT", value_parser = point, allow_hyphen_values = true)]
     pub(crate) point: Vec<Receiver>,
-    /// Such points in a parallelogram: ox,oy,oz,ux,uy,uz,vx,vy,vz,NU,NV, normal u × v (may be given several times)
+    /// Such points in a parallelogram: ox,oy,oz,ux,uy,uz,vx,vy,vz,NU,NV, normal u × v (may be given
+    /// several times)
     #[arg(long, value_name = "PLANE", value_parser = plane, allow_hyphen_values = true)]
     pub(crate) plane: Vec<PointGrid>,
 }
@@ -487,10 +495,12 @@ impl ConvergeArgs {
 /// Options of `check`.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct CheckArgs {
-    /// Folder for check.png: fronts blue, backs orange, what lies on or crosses something violet, open sides yellow
+    /// Folder for check.png: fronts blue, backs orange, what lies on or crosses something violet,
+    /// open sides yellow
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
-    /// Accuracy that the solution is to have, such as 2% or 0.02 [default: that of the scene, else its elements]
+    /// Accuracy that the solution is to have, such as 2% or 0.02 [default: that of the scene, else
+    /// its elements]
     #[arg(long, value_name = "E", value_parser = accuracy)]
     pub(crate) accuracy: Option<f64>,
     #[command(flatten)]

@@ -33,7 +33,8 @@ pub(crate) struct ReferenceArgs {
     /// Folder for the bundle [default: out/<name of the scene file>-reference]
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
-    /// Width and height of the picture in pixels, such as 96x64 [default: the scene's, at most 64 along the longer side]
+    /// Width and height of the picture in pixels, such as 96x64 [default: the scene's, at most 64
+    /// along the longer side]
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub(crate) size: Option<[u32; 2]>,
     /// Samples of every pixel, at least [default: 1024]

@@ -33,7 +33,8 @@ pub(crate) struct SpectrumArgs {
     /// Threads; any number gives the same results [default: one a core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
-    /// Error asked for in a row of form factors, rounded down to a power of ten, 1e-14 at least [default: the scene's, else 1e-3]
+    /// Error asked for in a row of form factors, rounded down to a power of ten, 1e-14 at least
+    /// [default: the scene's, else 1e-3]
     #[arg(long, value_name = "T", value_parser = tolerance)]
     pub(crate) form_factor_tolerance: Option<f64>,
     /// Memory allowed, such as 4GiB or 800MB [default: what leaves the machine usable]

@@ -45,7 +45,8 @@ pub(crate) struct TraceArgs {
     /// Solve the scene first and sample only what the discretisation missed (path, walk-gathering)
     #[arg(long)]
     pub(crate) control: bool,
-    /// Trace every pixel of the picture by itself, with at least so many samples (path, bidirectional)
+    /// Trace every pixel of the picture by itself, with at least so many samples (path,
+    /// bidirectional)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
     pub(crate) spp: Option<u32>,
     /// Draw no picture

@@ -42,17 +42,20 @@ pub(crate) struct ViewFactorsArgs {
     /// File for the matrix [default: out/<name of the input>.npz]
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Form of the matrix [default: by the ending of the file: .npz, .csv, or .txt, .out, .vf for view3d]
+    /// Form of the matrix [default: by the ending of the file: .npz, .csv, or .txt, .out, .vf for
+    /// view3d]
     #[arg(long, value_enum, value_name = "FORM")]
     pub(crate) format: Option<Format>,
-    /// Error asked for in a row; with auto rounded down to a power of ten, 1e-14 at least [default: the file's, else 1e-3; of another method than auto, its usual one]
+    /// Error asked for in a row; with auto rounded down to a power of ten, 1e-14 at least [default:
+    /// the file's, else 1e-3; of another method than auto, its usual one]
     #[arg(long, value_name = "T", value_parser = tolerance)]
     pub(crate) tolerance: Option<f64>,
     /// How form factors are computed
     #[arg(long, value_name = "NAME", default_value = "auto",
         value_parser = PossibleValuesParser::new(view_factor_methods()))]
     pub(crate) method: String,
-    /// Setting of a method other than auto: its order, tolerance, samples or pixels [default: its usual one]
+    /// Setting of a method other than auto: its order, tolerance, samples or pixels [default: its
+    /// usual one]
     #[arg(long, value_name = "VALUE")]
     pub(crate) setting: Option<String>,
     /// What a row stands for
@@ -70,7 +73,8 @@ pub(crate) struct ViewFactorsArgs {
     /// Point with a normal that sees the surfaces: x,y,z,nx,ny,nz (may be given several times)
     #[arg(long, value_name = "POINT", value_parser = point, allow_hyphen_values = true)]
     pub(crate) point: Vec<Receiver>,
-    /// Points in a parallelogram: ox,oy,oz,ux,uy,uz,vx,vy,vz,NU,NV, normal u × v (may be given several times)
+    /// Points in a parallelogram: ox,oy,oz,ux,uy,uz,vx,vy,vz,NU,NV, normal u × v (may be given
+    /// several times)
     #[arg(long, value_name = "PLANE", value_parser = plane, allow_hyphen_values = true)]
     pub(crate) plane: Vec<PointGrid>,
     /// Threads; any number gives the same results [default: one a core]

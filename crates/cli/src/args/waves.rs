@@ -23,7 +23,8 @@ compare.svg and compare.json instead. Ctrl-C ends the run with nothing written."
 pub(crate) struct WavesArgs {
     /// Scene of waves (TOML), see docs/waves.md
     pub(crate) scene: PathBuf,
-    /// Folder for the results [default: out/<name of the scene file>, with -compare at its end for --compare]
+    /// Folder for the results [default: out/<name of the scene file>, with -compare at its end for
+    /// --compare]
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
     /// Threads; any number gives the same results [default: one a core]
@@ -32,11 +33,12 @@ pub(crate) struct WavesArgs {
     /// Memory allowed, such as 4GiB or 800MB [default: what leaves the machine usable]
     #[arg(long, value_name = "LIMIT")]
     pub(crate) memory: Option<Bytes>,
-    /// Where the coupling comes from: a stored matrix, products computed anew (facets), or a compressed matrix (boundary
-    /// elements) [default: what is predicted to fit and to be quicker]
+    /// Where the coupling comes from: a stored matrix, products computed anew (facets), or a
+    /// compressed matrix (boundary elements) [default: what is predicted to fit and to be quicker]
     #[arg(long, value_name = "STORAGE")]
     pub(crate) storage: Option<StorageArg>,
-    /// Compare solvers on the coupling instead, with their options, or all: neumann,gmres:restart=100,southwell
+    /// Compare solvers on the coupling instead, with their options, or all:
+    /// neumann,gmres:restart=100,southwell
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = solver)]
     pub(crate) compare: Vec<String>,
     /// Write no report.html

@@ -13,7 +13,8 @@ const STEPS: u64 = 1000;
 /// Time between two frames.
 const FRAME: Duration = Duration::from_millis(100);
 
-/// A clock for the current stage, a bar once it tells of progress; a line stays for each that has ended.
+/// A clock for the current stage, a bar once it tells of progress; a line stays for each that has
+/// ended.
 #[derive(Debug, Default)]
 pub(super) struct Bar {
     current: Mutex<Option<ProgressBar>>,

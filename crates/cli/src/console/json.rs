@@ -1,4 +1,5 @@
-//! Progress and errors as JSON: an object a line, with `event` and `time`, seconds since the first line.
+//! Progress and errors as JSON: an object a line, with `event` and `time`, seconds since the first
+//! line.
 
 use std::sync::{LazyLock, Mutex, PoisonError};
 use std::time::Instant;

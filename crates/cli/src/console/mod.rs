@@ -61,7 +61,8 @@ impl Default for Tenths {
 }
 
 impl Tenths {
-    /// The tenth that `share` completes, where it is a new one; the end of the stage has its own line.
+    /// The tenth that `share` completes, where it is a new one; the end of the stage has its own
+    /// line.
     fn completed(&mut self, share: f64) -> Option<u32> {
         if self.last.elapsed() < PAUSE {
             return None;

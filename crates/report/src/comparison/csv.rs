@@ -1,7 +1,8 @@
 //! `compare.csv`: a row a solver and case; `compare_history.csv`: a row an iteration.
 //!
-//! Columns of the first: `reflectance`, `solver`, `outcome`, `iterations`, `applications`, `rows`, `columns`, `entries`, `seconds`, `residual`, `error`,
-//! `reason`; of the second: `reflectance`, `solver`, `iteration`, `entries`, `seconds`, `residual`. What is not known is empty.
+//! Columns of the first: `reflectance`, `solver`, `outcome`, `iterations`, `applications`, `rows`,
+//! `columns`, `entries`, `seconds`, `residual`, `error`, `reason`; of the second: `reflectance`,
+//! `solver`, `iteration`, `entries`, `seconds`, `residual`. What is not known is empty.
 
 use std::io::{self, Write};
 

@@ -1,4 +1,5 @@
-//! What a comparison of solvers leaves: `compare.csv`, `compare_history.csv`, `compare.svg`, for a sweep `compare_sweep.svg`, and `compare.json` last.
+//! What a comparison of solvers leaves: `compare.csv`, `compare_history.csv`, `compare.svg`, for a
+//! sweep `compare_sweep.svg`, and `compare.json` last.
 
 mod csv;
 mod plot;

@@ -1,7 +1,8 @@
-//! `compare.svg`: the residual of every solver against iterations, entries read and seconds; `compare_sweep.svg`: what the tolerance takes
-//! against the largest reflectance.
+//! `compare.svg`: the residual of every solver against iterations, entries read and seconds;
+//! `compare_sweep.svg`: what the tolerance takes against the largest reflectance.
 //!
-//! Axes end at a few times the median of what the solvers took: the slowest ones run out of the panel.
+//! Axes end at a few times the median of what the solvers took: the slowest ones run out of the
+//! panel.
 
 use std::io::{self, Write};
 
@@ -62,7 +63,8 @@ fn end(lines: &[[Vec<Point>; 3]], at: usize) -> f64 {
     ends.last().copied().unwrap_or(1.0).min(MEDIANS * median)
 }
 
-/// Writes the plot of a sweep: iterations and readings of the matrix of every solver that converged, against the reflectance.
+/// Writes the plot of a sweep: iterations and readings of the matrix of every solver that
+/// converged, against the reflectance.
 ///
 /// # Errors
 /// What `out` reports.

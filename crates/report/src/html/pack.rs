@@ -2,7 +2,8 @@
 //!
 //! - *Words*, 16-bit codes: each is stored as its difference to the one before modulo 2¹⁶, folded
 //!   (0, −1, 1, −2 … become 0, 1, 2, 3 …); all upper bytes come first, then all lower bytes.
-//! - *Varints*, 32-bit integers: seven bits a byte, the lowest first; the highest bit tells that more follow.
+//! - *Varints*, 32-bit integers: seven bits a byte, the lowest first; the highest bit tells that
+//!   more follow.
 //! - *Values*, f64, by a [`Scale`]: words that are logarithms, so that a dark element
 //!   is as exact as a bright one.
 

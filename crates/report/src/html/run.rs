@@ -135,7 +135,8 @@ fn form_factors(run: &RunRecord) -> Option<String> {
     Some(format!("The form factors of a row are off by about {} together at most{asked}.", number(row)))
 }
 
-/// Where light goes that row sums lack, or how far they are from 1 where nothing is open; and what sees nothing.
+/// Where light goes that row sums lack, or how far they are from 1 where nothing is open; and what
+/// sees nothing.
 fn closure(run: &RunRecord) -> Option<String> {
     let found = &run.closure;
     let ends = [(found.open, "is empty"), (found.backs, "is backs of one-sided surfaces, which are black")];

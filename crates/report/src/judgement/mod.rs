@@ -1,10 +1,11 @@
 //! What another tracer has found, and the files of its judgement. `judge.json` is written last.
 //!
-//! Columns of `judge.csv`: `kind` (`pixel`, `tile`, `picture`, or `face`, `surface`, `whole`), `place`
-//! (its number, from 0; pixels and tiles row by row from the top), `band`, then `reference`,
-//! `reference_error`, `found`, `standard_error` (radiance in W/(m² sr), or irradiance in W/m²), `z`, `p`,
-//! and `significant` (1 or 0). `judge.svg` is the histogram of z; `judge.png`, for pixels, their z in the
-//! worst band: red is where the tracer is the brighter, blue where it is the darker; full at |z| = 5.
+//! Columns of `judge.csv`: `kind` (`pixel`, `tile`, `picture`, or `face`, `surface`, `whole`),
+//! `place` (its number, from 0; pixels and tiles row by row from the top), `band`, then
+//! `reference`, `reference_error`, `found`, `standard_error` (radiance in W/(m² sr), or irradiance
+//! in W/m²), `z`, `p`, and `significant` (1 or 0). `judge.svg` is the histogram of z; `judge.png`,
+//! for pixels, their z in the worst band: red is where the tracer is the brighter, blue where it is
+//! the darker; full at |z| = 5.
 
 mod bundle;
 mod pictures;
@@ -115,7 +116,8 @@ pub struct JudgeRecord {
     pub timings: Vec<Timing>,
 }
 
-/// Writes all files into a folder. `shape` is that of the picture, whose pixels are then the first places.
+/// Writes all files into a folder. `shape` is that of the picture, whose pixels are then the first
+/// places.
 ///
 /// # Errors
 /// [`ReportError::Write`] with the file or folder that could not be written. The folder then has no

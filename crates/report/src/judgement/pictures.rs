@@ -1,10 +1,11 @@
-//! Pictures of other programs: the radiance of every pixel, W/(m² sr), rows from the top, as NumPy's
-//! `.npy`, as OpenEXR, or as the `pixels.npz` of `fredholm trace --spp` and of other bundles.
+//! Pictures of other programs: the radiance of every pixel, W/(m² sr), rows from the top, as
+//! NumPy's `.npy`, as OpenEXR, or as the `pixels.npz` of `fredholm trace --spp` and of other
+//! bundles.
 //!
 //! `.npy`: f32 or f64, height × width × channels, or seeds × height × width × channels; in grey the
-//! channels may be left out. `.exr`: the first layer with channels R, G and B, or Y alone. Of a scene
-//! with one band the channels are taken for the same and averaged. `.npz`: radiosity and standard error,
-//! W/m², which are divided by π.
+//! channels may be left out. `.exr`: the first layer with channels R, G and B, or Y alone. Of a
+//! scene with one band the channels are taken for the same and averaged. `.npz`: radiosity and
+//! standard error, W/m², which are divided by π.
 
 use std::f64::consts::FRAC_1_PI;
 use std::fs::File;
@@ -37,8 +38,8 @@ pub struct PictureShape {
 /// Reads a picture, or a stack of several.
 ///
 /// # Errors
-/// [`ReportError::Read`], and [`ReportError::Values`] for a file that is none of the two, of another
-/// size, or with a pixel that is not a finite number.
+/// [`ReportError::Read`], and [`ReportError::Values`] for a file that is none of the two, of
+/// another size, or with a pixel that is not a finite number.
 pub fn read_measured_pixels(path: &Path, shape: PictureShape) -> Result<Measured, ReportError> {
     let file = File::open(path).map_err(|source| ReportError::Read { path: path.to_owned(), source })?;
     let ending = path.extension().map(std::ffi::OsStr::to_ascii_lowercase);

@@ -2,8 +2,8 @@
 //!
 //! Columns of a program's table: `face`, and for every band the value and, where it is known, its
 //! standard error. Their names may be `value_BAND, sigma_BAND`, those of reference.csv
-//! (`E_BAND, E_error_BAND`) or those of a traced run (`irradiance_BAND, standard_error_BAND`); with one
-//! band, `value, sigma` will do.
+//! (`E_BAND, E_error_BAND`) or those of a traced run (`irradiance_BAND, standard_error_BAND`); with
+//! one band, `value, sigma` will do.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,8 +1,8 @@
 //! The files of a solution, each a value: its name, when it is written, how, and what it holds.
 //!
-//! A new file is a module here with its [`OutputFile`], and a line in [`ALL`]. `run.json` is written
-//! last: a folder that has one is complete, and all its files belong together, since what earlier
-//! runs have left is removed first.
+//! A new file is a module here with its [`OutputFile`], and a line in [`ALL`]. `run.json` is
+//! written last: a folder that has one is complete, and all its files belong together, since what
+//! earlier runs have left is removed first.
 
 mod meshes;
 mod page;
@@ -66,8 +66,8 @@ pub trait OutputFile: Sync {
     /// Its name in the folder.
     fn name(&self) -> &'static str;
 
-    /// What it holds, for `docs/results.md`. There is none where that of another file tells both, or
-    /// where the keys are told by their type.
+    /// What it holds, for `docs/results.md`. There is none where that of another file tells both,
+    /// or where the keys are told by their type.
     fn about(&self) -> Option<CataloguedFile>;
 
     /// Whether a run writes it by its settings.
@@ -97,6 +97,7 @@ pub fn wanted_files(wanted: &Wanted) -> impl Iterator<Item = &'static str> {
 
 /// Which files the settings of a run ask for, besides those that every solution has.
 #[derive(Clone, Debug, Default)]
+#[allow(clippy::struct_excessive_bools, reason = "each is a wish of its own")]
 pub struct Wanted {
     /// [`IMAGE`].
     pub image: bool,
@@ -177,8 +178,8 @@ impl View {
 /// Writes all files of a result into a folder and returns their paths.
 ///
 /// # Errors
-/// [`ReportError::Write`] with the file or folder that could not be written; the errors of [`render`](crate::render) for a view that makes
-/// no picture. The folder then has no `run.json`.
+/// [`ReportError::Write`] with the file or folder that could not be written; the errors of
+/// [`render`](crate::render) for a view that makes no picture. The folder then has no `run.json`.
 pub fn write_all(
     folder: &ResultFolder,
     field: &Field<'_>,

@@ -1,4 +1,5 @@
-//! The edges of the elements, drawn over the field: a sample nearer than half a line to an edge of its element takes the colour of the line.
+//! The edges of the elements, drawn over the field: a sample nearer than half a line to an edge of
+//! its element takes the colour of the line.
 //!
 //! The distance is taken in the picture, to the point of the edge that is nearest in space. Pixels.
 

@@ -1,7 +1,8 @@
 //! The radiosity of every pixel, gathered from all that it sees: B(x) = M + ρ E(x).
 //!
-//! The samples of a pixel that lie on one plane of one surface have one colour: it is gathered at the one nearest to their mean. So borders are drawn as finely as in the interpolated picture, and
-//! light is gathered little more than once a pixel. W/m².
+//! The samples of a pixel that lie on one plane of one surface have one colour: it is gathered at
+//! the one nearest to their mean. So borders are drawn as finely as in the interpolated picture,
+//! and light is gathered little more than once a pixel. W/m².
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};

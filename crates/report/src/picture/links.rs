@@ -1,7 +1,10 @@
-//! The links of one element: the elements and clusters from which it and all that it is a part of receive their light.
+//! The links of one element: the elements and clusters from which it and all that it is a part of
+//! receive their light.
 //!
-//! Each linked node is outlined and tinted by the share of the irradiance that it brings, on a logarithmic scale; lines go from the receiver to the middles of the nodes. Outlines and lines have the
-//! colour of the level on which the link arrives: orange for the element itself, then through green to blue for what it is a part of.
+//! Each linked node is outlined and tinted by the share of the irradiance that it brings, on a
+//! logarithmic scale; lines go from the receiver to the middles of the nodes. Outlines and lines
+//! have the colour of the level on which the link arrives: orange for the element itself, then
+//! through green to blue for what it is a part of.
 
 use fredholm_mesh::{Patch, Vec3};
 
@@ -53,7 +56,8 @@ pub(super) struct LinkPainter<'a> {
 }
 
 impl<'a> LinkPainter<'a> {
-    /// The links of the element in the middle of the picture, or of the first one where nothing is there.
+    /// The links of the element in the middle of the picture, or of the first one where nothing is
+    /// there.
     pub fn new(view: &Viewer<'a>, field: &Field<'a>, links: &(dyn Fn(usize) -> Linked + Sync)) -> Self {
         let camera = view.eye.camera();
         let middle = [camera.width, camera.height].map(|side| 0.5 * f64::from(side));
@@ -106,7 +110,8 @@ impl Painter for LinkPainter<'_> {
     }
 }
 
-/// Draws a line of one pixel over a picture, between places in pixels; `cover` is how much of its colour it has.
+/// Draws a line of one pixel over a picture, between places in pixels; `cover` is how much of its
+/// colour it has.
 pub(super) fn line(picture: &mut Picture, [a, b]: [(f64, f64); 2], (colour, cover): ([u8; 3], f64)) {
     let (dx, dy) = (b.0 - a.0, b.1 - a.1);
     let steps = dx.abs().max(dy.abs()).ceil().clamp(1.0, f64::from(picture.width + picture.height));

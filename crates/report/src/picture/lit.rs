@@ -1,10 +1,15 @@
-//! The picture of a solution with the light of lamps taken at every pixel: B(x) = M + ρ (Σ_g M_g F(x→g) + E_r(x)).
+//! The picture of a solution with the light of lamps taken at every pixel: B(x) = M + ρ (Σ_g M_g
+//! F(x→g) + E_r(x)).
 //!
-//! F are factors of what the point sees of each lamp, so that shadows have their true borders whatever the elements; E_r is the rest of the irradiance, E − E_d with the part E_d that the
-//! solution itself has straight from the lamps, interpolated between the corners of elements of one surface: so no light passes under walls or blocks.
+//! F are factors of what the point sees of each lamp, so that shadows have their true borders
+//! whatever the elements; E_r is the rest of the irradiance, E − E_d with the part E_d that the
+//! solution itself has straight from the lamps, interpolated between the corners of elements of one
+//! surface: so no light passes under walls or blocks.
 //!
-//! Every pixel is first looked at through its middle. One whose neighbours show another plane, surface or brightness is then the mean of [`FINE`] points of a lattice: borders of bodies, of lamps and of
-//! shadows are smooth (adaptive supersampling, T. Whitted, CACM 23(6), 1980, doi:10.1145/358876.358882). W/m².
+//! Every pixel is first looked at through its middle. One whose neighbours show another plane,
+//! surface or brightness is then the mean of [`FINE`] points of a lattice: borders of bodies, of
+//! lamps and of shadows are smooth (adaptive supersampling, T. Whitted, CACM 23(6), 1980,
+//! doi:10.1145/358876.358882). W/m².
 
 use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -26,8 +31,8 @@ const GENERATOR: usize = 7;
 const SIDE: usize = 32;
 /// Pixels at borders that are looked at together.
 const TOGETHER: usize = 64;
-/// Difference of linear display values between neighbours, over the larger, from which there is a border; and of
-/// values so dark that none is seen.
+/// Difference of linear display values between neighbours, over the larger, from which there is a
+/// border; and of values so dark that none is seen.
 const STEP: f64 = 0.06;
 /// The same between neighbours on different planes or surfaces.
 const EDGE: f64 = 0.02;
@@ -67,8 +72,9 @@ pub struct Lit<'a> {
     pub exitance: &'a [f64],
     /// Reflectance of the leaves, leaves × bands.
     pub reflectance: &'a [f64],
-    /// The part of the irradiance of the leaves that the solution has straight from these lamps, leaves × bands, W/m²;
-    /// none where there are no lamps that are told apart: then all of it is interpolated.
+    /// The part of the irradiance of the leaves that the solution has straight from these lamps,
+    /// leaves × bands, W/m²; none where there are no lamps that are told apart: then all of it is
+    /// interpolated.
     pub direct: Option<&'a [f64]>,
 }
 
@@ -76,7 +82,8 @@ pub struct Lit<'a> {
 pub struct LitPicture {
     /// The picture.
     pub picture: Picture,
-    /// Linear sRGB of its pixels, W/m², rows from the top, 0 where nothing is seen; empty unless asked for.
+    /// Linear sRGB of its pixels, W/m², rows from the top, 0 where nothing is seen; empty unless
+    /// asked for.
     pub linear: Vec<[f32; 3]>,
     /// The factor that radiosity was multiplied by before tone mapping, m²/W.
     pub exposure: f64,
@@ -113,7 +120,8 @@ struct Brush<'v> {
 }
 
 impl Brush<'_> {
-    /// Linear colours of samples, W/m²; 0 where nothing is seen. The samples of one leaf are looked at together.
+    /// Linear colours of samples, W/m²; 0 where nothing is seen. The samples of one leaf are looked
+    /// at together.
     fn colours(&mut self, samples: &[Seen]) -> Vec<Rgb> {
         let mut colours = vec![[0.0; 3]; samples.len()];
         let LitView { field, lit, rest, sent, .. } = self.view;
@@ -202,7 +210,8 @@ impl<'a> LitView<'a> {
         Brush { view: self, look, order: Vec::new(), points: Vec::new(), factors: Vec::new() }
     }
 
-    /// The picture, with its linear colours where these are wanted; none where it was not wanted any more before it was whole.
+    /// The picture, with its linear colours where these are wanted; none where it was not wanted
+    /// any more before it was whole.
     pub fn draw(&self, exposure: Exposure, linear: bool) -> Result<Option<LitPicture>, ReportError> {
         let Camera { width, height, .. } = *self.eye.camera();
         let (w, h) = (width as usize, height as usize);
@@ -242,7 +251,8 @@ impl<'a> LitView<'a> {
         Ok(Some(LitPicture { picture, linear: colours, exposure: tone.exposure() }))
     }
 
-    /// What is seen through the middles of the pixels of a tile; none where the picture is not wanted any more.
+    /// What is seen through the middles of the pixels of a tile; none where the picture is not
+    /// wanted any more.
     fn middles(&self, tile: &Tile) -> Option<Vec<Middle>> {
         if self.lit.light.go_on().is_break() {
             return None;
@@ -289,7 +299,8 @@ impl<'a> LitView<'a> {
         Some(painted)
     }
 
-    /// Luminances that an automatic exposure goes by: of lit surfaces, or of lamps where there is nothing else.
+    /// Luminances that an automatic exposure goes by: of lit surfaces, or of lamps where there is
+    /// nothing else.
     fn metered(&self, middles: &[Middle]) -> Vec<f64> {
         let seen = || middles.iter().filter(|middle| middle.leaf != NOTHING);
         let of = |lamps: bool| -> Vec<f64> {

@@ -1,9 +1,10 @@
 //! A camera view of a solved field.
 //!
-//! Each pixel is the mean of the display values of [`SAMPLES`] points of a fixed lattice. What a sample sees is found by
-//! ray casting among the leaves that turn their lit side to the eye; the others are invisible, so that a closed room
-//! shows its inside. The colour there is the radiosity, smoothly interpolated. Rows are drawn in parallel, each by
-//! itself, so that the number of threads never changes a pixel. Several pictures of one view share the rays.
+//! Each pixel is the mean of the display values of [`SAMPLES`] points of a fixed lattice. What a
+//! sample sees is found by ray casting among the leaves that turn their lit side to the eye; the
+//! others are invisible, so that a closed room shows its inside. The colour there is the radiosity,
+//! smoothly interpolated. Rows are drawn in parallel, each by itself, so that the number of threads
+//! never changes a pixel. Several pictures of one view share the rays.
 
 mod elements;
 mod gathered;
@@ -50,7 +51,8 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Writes linear colours as OpenEXR: channels R, G and B of 32-bit numbers, radiosity as linear sRGB, W/m².
+    /// Writes linear colours as OpenEXR: channels R, G and B of 32-bit numbers, radiosity as linear
+    /// sRGB, W/m².
     ///
     /// # Errors
     /// What `out` reports.
@@ -84,7 +86,8 @@ pub enum Layer<'a> {
     Field,
     /// The elements, drawn over the field.
     Elements,
-    /// The links of the element in the middle of the picture: what is drawn of an element, of which the number is given.
+    /// The links of the element in the middle of the picture: what is drawn of an element, of which
+    /// the number is given.
     Links(&'a (dyn Fn(usize) -> Linked + Sync)),
     /// The radiosity of every pixel, gathered from all that it sees.
     Gathered(&'a dyn Gathering),
@@ -100,8 +103,9 @@ pub fn render(field: &Field<'_>, camera: &Camera, exposure: Exposure) -> Result<
     Ok(pictures.swap_remove(0).0)
 }
 
-/// Draws a field as a camera sees it, with the light of the lamps taken at every pixel; `linear` colours come with it where
-/// they are wanted. There is none where [`LampLight::go_on`] did not want it any more before it was whole.
+/// Draws a field as a camera sees it, with the light of the lamps taken at every pixel; `linear`
+/// colours come with it where they are wanted. There is none where [`LampLight::go_on`] did not
+/// want it any more before it was whole.
 ///
 /// # Errors
 /// As for [`render`], and [`ReportError::Length`] for vectors that do not fit the field.
@@ -116,8 +120,8 @@ pub fn render_lit(
     LitView::new(*field, &eye, lit)?.draw(exposure, linear)
 }
 
-/// Draws several pictures of a field as a camera sees it, all of one exposure, and casts the rays once.
-/// There is none of what [`Gathering::go_on`] did not want any more before it was whole.
+/// Draws several pictures of a field as a camera sees it, all of one exposure, and casts the rays
+/// once. There is none of what [`Gathering::go_on`] did not want any more before it was whole.
 ///
 /// # Errors
 /// As for [`render`].
@@ -235,11 +239,12 @@ impl<'a> Viewer<'a> {
         self.eye.place(point)
     }
 
-    /// Luminances seen through the middle of each pixel: of lit surfaces, or of lamps where there is nothing else.
+    /// Luminances seen through the middle of each pixel: of lit surfaces, or of lamps where there
+    /// is nothing else.
     fn meter(&self, field: &Field<'_>) -> Vec<f64> {
         let Camera { width, height, .. } = *self.eye.camera();
-        // One list for all: a row that sees nothing somewhere would leave gaps in the heap. Lamps have
-        // the sign of a negative number there, and nothing is no number.
+        // One list for all: a row that sees nothing somewhere would leave gaps in the heap. Lamps
+        // have the sign of a negative number there, and nothing is no number.
         let mut seen = vec![f64::NAN; width as usize * height as usize];
         let look = |(y, row): (usize, &mut [f64])| {
             for (x, value) in row.iter_mut().enumerate() {
@@ -438,7 +443,8 @@ mod tests {
             let patch = Patch::quad(cell(x, y)).unwrap().unwrap();
             Link { patch: Some(patch), centre: patch.centroid(), level: 4, share }
         };
-        // The middle of the picture is a corner of all four elements: the first one is the receiver.
+        // The middle of the picture is a corner of all four elements: the first one is the
+        // receiver.
         let linked = |_: usize| Linked {
             links: vec![link(1.0, 0.0, 0.5), link(1.0, 1.0, 1e-3)],
             link_of: vec![None, Some(0), None, Some(1)],

@@ -1,5 +1,6 @@
-//! Pieces of geometry by the side that is seen: fronts blue, backs orange, marked pieces violet, and lines, such as open sides, in yellow over
-//! everything. Brightness falls with the angle to the line of sight.
+//! Pieces of geometry by the side that is seen: fronts blue, backs orange, marked pieces violet,
+//! and lines, such as open sides, in yellow over everything. Brightness falls with the angle to the
+//! line of sight.
 
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::Occluders;
@@ -49,7 +50,8 @@ pub struct Side {
 /// Draws pieces by their sides, and lines over them.
 ///
 /// # Errors
-/// [`ReportError::Camera`] for settings that make no picture, [`ReportError::Visibility`] where the pieces cannot be prepared for ray casting.
+/// [`ReportError::Camera`] for settings that make no picture, [`ReportError::Visibility`] where the
+/// pieces cannot be prepared for ray casting.
 pub fn render_sides(sides: &[Side], lines: &[[Vec3; 2]], camera: &Camera) -> Result<Picture, ReportError> {
     let axes = camera.axes()?;
     let faces_eye = |patch: &Patch| patch.normal().dot(camera.eye - patch.centroid()) > 0.0;

@@ -157,8 +157,8 @@ pub(crate) fn diverging(place: f64) -> [u8; 3] {
     bytes(DerivedColorMap::new(&colours).get_color(place.clamp(0.0, 1.0)))
 }
 
-/// A ring of colours, 0 and 1 being the same, even in lightness on both halves (after "twilight", B. Bai
-/// for Matplotlib, 2018).
+/// A ring of colours, 0 and 1 being the same, even in lightness on both halves (after "twilight",
+/// B. Bai for Matplotlib, 2018).
 pub(crate) fn twilight(place: f64) -> [u8; 3] {
     let colours = [
         RGBColor(226, 217, 226),

@@ -1,6 +1,7 @@
 //! Plots of all kinds in one theme, drawn by the library plotters: curves, histograms and polar
-//! plots as SVG whose text is text and which follows the light or dark scheme of the reader's screen
-//! (a media query of CSS in the file), and maps with colour bars as PNG with a font of our own.
+//! plots as SVG whose text is text and which follows the light or dark scheme of the reader's
+//! screen (a media query of CSS in the file), and maps with colour bars as PNG with a font of our
+//! own.
 
 mod figure;
 mod map;

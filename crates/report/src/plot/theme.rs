@@ -1,10 +1,10 @@
 //! What all plots have in common: colours, sizes and the font.
 //!
 //! Sizes are in pixels of a drawing 600 pixels wide, where the smallest text has 15: on a phone 390
-//! pixels wide that is 10, in a printed column of 86 mm 6 points. The lines of series have a contrast
-//! of at least 3 : 1 to the light and to the dark ground (WCAG 2.1, criterion 1.4.11), and the first
-//! of them come from a set that most colour-blind readers can tell apart (M. Okabe, K. Ito, "Color
-//! universal design", 2008), darkened where need be.
+//! pixels wide that is 10, in a printed column of 86 mm 6 points. The lines of series have a
+//! contrast of at least 3 : 1 to the light and to the dark ground (WCAG 2.1, criterion 1.4.11), and
+//! the first of them come from a set that most colour-blind readers can tell apart (M. Okabe, K.
+//! Ito, "Color universal design", 2008), darkened where need be.
 
 use std::io;
 use std::sync::OnceLock;
@@ -39,8 +39,8 @@ const DISTINCT: [RGBColor; 8] = [
     RGBColor(118, 118, 118),
 ];
 
-/// The font, by the name that SVG knows. Pictures take it from the program itself: DejaVu Sans 2.37,
-/// cut down to the characters that plots use.
+/// The font, by the name that SVG knows. Pictures take it from the program itself: DejaVu Sans
+/// 2.37, cut down to the characters that plots use.
 const FAMILY: &str = "sans-serif";
 static FONT: &[u8] = include_bytes!("../../assets/plot-font.ttf");
 
@@ -70,8 +70,8 @@ pub(super) fn dark_style() -> String {
     format!("<style>@media screen and (prefers-color-scheme:dark){{{rules}}}</style>")
 }
 
-/// A colour for each of the names: red, green and blue for bands of these names, distinct ones for a
-/// few, and from blue to red in their order for many.
+/// A colour for each of the names: red, green and blue for bands of these names, distinct ones for
+/// a few, and from blue to red in their order for many.
 pub(crate) fn band_colours(names: &[String]) -> Vec<RGBColor> {
     let colour = |(number, name): (usize, &String)| match name.to_ascii_lowercase().as_str() {
         "r" | "red" => RGBColor(208, 52, 44),

@@ -1,7 +1,8 @@
 //! `converge.csv`: a row a level.
 //!
-//! Columns: `level`, `elements`, `unknowns`, `h` (m), `seconds`; band by band `difference_BAND`, `error_BAND`, `order_BAND`, `remaining_BAND`; surface
-//! by surface and band by band `irradiance_SURFACE_BAND` (W/m²). What is not known is empty.
+//! Columns: `level`, `elements`, `unknowns`, `h` (m), `seconds`; band by band `difference_BAND`,
+//! `error_BAND`, `order_BAND`, `remaining_BAND`; surface by surface and band by band
+//! `irradiance_SURFACE_BAND` (W/m²). What is not known is empty.
 
 use std::io::{self, Write};
 

@@ -1,4 +1,5 @@
-//! The files of a study. The record is written last: where it stands, the files beside it belong together.
+//! The files of a study. The record is written last: where it stands, the files beside it belong
+//! together.
 
 use std::path::PathBuf;
 
@@ -10,10 +11,12 @@ use crate::{REPORT, ReportError, ReportPage, ResultFolder};
 /// Names of the files of a study, in the order in which they are written.
 pub const REFINEMENT_FILES: [&str; 3] = ["converge.csv", "converge.svg", "converge.json"];
 
-/// Writes all files of a study into a folder and returns their paths; with a title, `report.html` too.
+/// Writes all files of a study into a folder and returns their paths; with a title, `report.html`
+/// too.
 ///
 /// # Errors
-/// [`ReportError::Write`] with the file or folder that could not be written. The folder then has no `converge.json`.
+/// [`ReportError::Write`] with the file or folder that could not be written. The folder then has no
+/// `converge.json`.
 pub fn write_refinement(
     folder: &ResultFolder,
     record: &RefinementRecord,

@@ -1,7 +1,8 @@
-//! `converge.svg`: error of the irradiance against the size h of the elements, both logarithmic, with slopes h, h² and h⁴.
+//! `converge.svg`: error of the irradiance against the size h of the elements, both logarithmic,
+//! with slopes h, h² and h⁴.
 //!
-//! The error is that against the limit where a band has an order, and else the difference to the finest level; the legend says
-//! which. An error of 0 is drawn at 10⁻¹⁷.
+//! The error is that against the limit where a band has an order, and else the difference to the
+//! finest level; the legend says which. An error of 0 is drawn at 10⁻¹⁷.
 
 use std::io::{self, Write};
 
@@ -41,7 +42,8 @@ pub fn write_refinement_plot(record: &RefinementRecord, out: &mut dyn Write) -> 
     write_svg(&Figure { title, parts: vec![Part::Panel(Panel::new(across, up, lines))] }, out)
 }
 
-/// Lines of slope 1, 2 and 4 from the finest error of the first band that has one, as far up as there are errors.
+/// Lines of slope 1, 2 and 4 from the finest error of the first band that has one, as far up as
+/// there are errors.
 fn slopes(record: &RefinementRecord) -> Vec<Line> {
     let drawn = record.bands.iter().flat_map(curve).filter(|(_, error)| *error > FLOOR);
     let finest = record.bands.iter().find_map(|band| curve(band).last().copied());

@@ -1,6 +1,7 @@
 //! `converge.json`: a study of convergence. Format `fredholm-converge-1`.
 //!
-//! Metres, seconds, W/m²; differences and errors are ‖E_a − E_b‖/‖E‖ over the faces of the scene, √(Σ A E²), dimensionless.
+//! Metres, seconds, W/m²; differences and errors are ‖E_a − E_b‖/‖E‖ over the faces of the scene,
+//! √(Σ A E²), dimensionless.
 
 use std::io::{self, Write};
 

@@ -1,7 +1,9 @@
-//! What progressive radiosity without a matrix leaves: pictures on the way, `shots.csv`, `shots.svg`, the field so far (`faces.csv`, `field.npz`, `field.vtu`, `image.png`),
-//! and `shots.json` last.
+//! What progressive radiosity without a matrix leaves: pictures on the way, `shots.csv`,
+//! `shots.svg`, the field so far (`faces.csv`, `field.npz`, `field.vtu`, `image.png`), and
+//! `shots.json` last.
 //!
-//! Columns of the table: `shot`, `elements` (that shot as one), `columns` (computed so far), `seconds`, `distributed` (share of the power of the solution that has been shot, at least).
+//! Columns of the table: `shot`, `elements` (that shot as one), `columns` (computed so far),
+//! `seconds`, `distributed` (share of the power of the solution that has been shot, at least).
 
 mod plot;
 mod record;

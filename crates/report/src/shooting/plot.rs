@@ -1,4 +1,5 @@
-//! `shots.svg`: the share of power that is still to be shot, against shots, columns computed and seconds.
+//! `shots.svg`: the share of power that is still to be shot, against shots, columns computed and
+//! seconds.
 
 use std::io::{self, Write};
 

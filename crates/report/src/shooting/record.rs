@@ -47,7 +47,8 @@ pub struct ShootingRecord {
     pub drawn: bool,
     /// Whether the share asked for was reached.
     pub reached: bool,
-    /// Estimated error of the irradiance of the faces: of the mesh, and of what is unshot; none where the run was interrupted.
+    /// Estimated error of the irradiance of the faces: of the mesh, and of what is unshot; none
+    /// where the run was interrupted.
     pub mesh_error: Option<MeshError>,
     /// Largest estimated error of a form factor of the columns computed.
     #[serde(deserialize_with = "reading::number")]

@@ -1,7 +1,9 @@
-//! The files of a comparison of a deterministic with a stochastic solution. `crosscheck.json` is written last.
+//! The files of a comparison of a deterministic with a stochastic solution. `crosscheck.json` is
+//! written last.
 //!
-//! Columns of `crosscheck.csv`: `face, surface, cx, cy, cz, area, band`, then `deterministic`, `deterministic_error`, `stochastic`, `standard_error` (irradiance, W/m²),
-//! `z`, `p`, and `significant` (1 or 0).
+//! Columns of `crosscheck.csv`: `face, surface, cx, cy, cz, area, band`, then `deterministic`,
+//! `deterministic_error`, `stochastic`, `standard_error` (irradiance, W/m²), `z`, `p`, and
+//! `significant` (1 or 0).
 
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -64,7 +66,8 @@ pub struct WorstPlace {
     pub relative: f64,
 }
 
-/// The smallest deviations that would have been found nine times out of ten, over the irradiance; none where nothing is lit.
+/// The smallest deviations that would have been found nine times out of ten, over the irradiance;
+/// none where nothing is lit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct CrosscheckPower {
@@ -161,7 +164,8 @@ pub fn write_crosscheck_csv(
 /// `report.html` too, where the scores are seen on the faces, from where the view has them.
 ///
 /// # Errors
-/// [`ReportError::Write`] with the file or folder that could not be written. The folder then has no `crosscheck.json`.
+/// [`ReportError::Write`] with the file or folder that could not be written. The folder then has no
+/// `crosscheck.json`.
 pub fn write_crosscheck(
     folder: &ResultFolder,
     mesh: &Mesh,

@@ -1,6 +1,7 @@
 //! The files of a comparison of sampled with computed waves. `crosscheck.json` is written last.
 //!
-//! Columns of `crosscheck.csv`: `receiver, index, x, y, z, frequency, component`, then `deterministic`, `deterministic_error`, `stochastic`, `standard_error` (scattered E, V/m),
+//! Columns of `crosscheck.csv`: `receiver, index, x, y, z, frequency, component`, then
+//! `deterministic`, `deterministic_error`, `stochastic`, `standard_error` (scattered E, V/m),
 //! `score`, `p`, and `significant` (1 or 0). A component is `ex_re`, `ex_im`, … `ez_im`.
 
 use std::io::{self, Write};
@@ -54,7 +55,8 @@ fn table(rows: &[FieldScore], out: &mut dyn Write) -> io::Result<()> {
 /// Writes table, histogram and record into a folder.
 ///
 /// # Errors
-/// [`ReportError::Write`] with the file or folder that could not be written. The folder then has no `crosscheck.json`.
+/// [`ReportError::Write`] with the file or folder that could not be written. The folder then has no
+/// `crosscheck.json`.
 pub fn write_field_crosscheck(
     folder: &ResultFolder,
     rows: &[FieldScore],

@@ -1,7 +1,8 @@
 //! `receivers.csv` of sampled waves: the scattered field at receivers with its standard error.
 //!
-//! Columns: `receiver` (name), `index`, `x, y, z` (m), `frequency` (Hz), `sca_ex_re, sca_ex_im, … sca_ez_im` and `standard_error` (V/m; root of the sum of
-//! squares over the components).
+//! Columns: `receiver` (name), `index`, `x, y, z` (m), `frequency` (Hz),
+//! `sca_ex_re, sca_ex_im, … sca_ez_im` and `standard_error` (V/m; root of the sum of squares over
+//! the components).
 
 use std::io::{self, Write};
 

@@ -1,4 +1,5 @@
-//! How the scores of a comparison are spread: a histogram over half units of z, beside the density of normal scores.
+//! How the scores of a comparison are spread: a histogram over half units of z, beside the density
+//! of normal scores.
 //!
 //! Scores beyond ±6 stand in the outermost bins.
 

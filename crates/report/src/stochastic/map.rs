@@ -1,6 +1,7 @@
 //! Where two solutions differ: a picture of the scene in the colours of z.
 //!
-//! White is agreement, red is where the stochastic solution is the brighter, blue where it is the darker; full at |z| = 5.
+//! White is agreement, red is where the stochastic solution is the brighter, blue where it is the
+//! darker; full at |z| = 5.
 
 use fredholm_mesh::Mesh;
 

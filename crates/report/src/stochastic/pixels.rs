@@ -111,7 +111,8 @@ impl Pixels {
 mod tests {
     use super::*;
 
-    /// A pixel of nothing is the background, one half covered lies between, and white at a fixed exposure is bright.
+    /// A pixel of nothing is the background, one half covered lies between, and white at a fixed
+    /// exposure is bright.
     #[test]
     fn coverage_mixes_with_the_background() {
         let pixels = Pixels {
@@ -125,7 +126,8 @@ mod tests {
         let names = ["grey".to_owned()];
         let picture = pixels.picture(&names, Exposure::Fixed(1.0)).unwrap();
         let levels: Vec<u8> = picture.pixels.chunks(3).map(|pixel| pixel[0]).collect();
-        // 4 is white: linear 1; half of it over the background 0.012 is 0.506, which sRGB encodes as 188.52/255.
+        // 4 is white: linear 1; half of it over the background 0.012 is 0.506, which sRGB encodes
+        // as 188.52/255.
         assert_eq!(levels, [encode(BACKGROUND), 189, 255]);
         assert!(Pixels { covered: Vec::new(), ..pixels }.picture(&names, Exposure::Auto).is_err());
     }

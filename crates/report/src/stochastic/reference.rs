@@ -1,9 +1,12 @@
-//! A bundle of reference values with stated errors, for checking other tracers. `reference.json` is written last.
+//! A bundle of reference values with stated errors, for checking other tracers. `reference.json` is
+//! written last.
 //!
-//! `pixels.npz`: the pixels of the camera ([`Pixels`](super::Pixels)); their radiance is the radiosity over π.
-//! `reference.csv`: a row a face, `face, surface, cx, cy, cz, area`, then band by band `E_BAND` (mean irradiance over the whole face, W/m²), `E_error_BAND` (one standard deviation, all
-//! known errors together), `E_deterministic_BAND`, `B_BAND` (radiosity, M + ρ E), `rho_BAND` and `M_BAND`.
-//! `patches.obj`: the outlines, an object a surface, a group a face; lit on the side from which corners run counter-clockwise.
+//! `pixels.npz`: the pixels of the camera ([`Pixels`](super::Pixels)); their radiance is the
+//! radiosity over π. `reference.csv`: a row a face, `face, surface, cx, cy, cz, area`, then band by
+//! band `E_BAND` (mean irradiance over the whole face, W/m²), `E_error_BAND` (one standard
+//! deviation, all known errors together), `E_deterministic_BAND`, `B_BAND` (radiosity, M + ρ E),
+//! `rho_BAND` and `M_BAND`. `patches.obj`: the outlines, an object a surface, a group a face; lit
+//! on the side from which corners run counter-clockwise.
 
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -39,8 +42,8 @@ pub struct ReferenceTable {
     pub exitance: Vec<f64>,
 }
 
-/// The camera whose pixels are known, and how they were sampled. A sample is at an even place of its
-/// pixel (a box filter).
+/// The camera whose pixels are known, and how they were sampled. A sample is at an even place of
+/// its pixel (a box filter).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ReferencePixels {
     /// Where the eye stands, m.
@@ -102,7 +105,8 @@ pub struct ReferenceRecord {
 /// Writes all files into a folder and returns their paths.
 ///
 /// # Errors
-/// [`ReportError::Length`] for a table of another length, [`ReportError::Write`] with the file that could not be written.
+/// [`ReportError::Length`] for a table of another length, [`ReportError::Write`] with the file that
+/// could not be written.
 pub fn write_reference(
     folder: &ResultFolder,
     mesh: &Mesh,

@@ -1,7 +1,8 @@
 //! View factors as a table: a row a surface, a column a surface.
 //!
-//! Columns: `name`, `area` (m²), `emissivity` (empty where unknown), `row_sum`, `row_error`, `row_dropped`, then F to every surface, under
-//! its name. Points follow in rows of their own, with an empty area.
+//! Columns: `name`, `area` (m²), `emissivity` (empty where unknown), `row_sum`, `row_error`,
+//! `row_dropped`, then F to every surface, under its name. Points follow in rows of their own, with
+//! an empty area.
 
 use std::io::{self, Write};
 

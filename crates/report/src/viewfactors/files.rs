@@ -1,4 +1,5 @@
-//! The files of a matrix: the matrix itself, a heat map (`.png`), a histogram of the closure errors (`.svg`) and the record (`.json`).
+//! The files of a matrix: the matrix itself, a heat map (`.png`), a histogram of the closure errors
+//! (`.svg`) and the record (`.json`).
 //!
 //! The record is written last: where it stands, the files beside it belong together.
 
@@ -23,7 +24,8 @@ pub enum MatrixFormat {
 }
 
 impl MatrixFormat {
-    /// The format that the ending of a name stands for: `.npz`, `.csv`, or `.txt`, `.out` and `.vf`.
+    /// The format that the ending of a name stands for: `.npz`, `.csv`, or `.txt`, `.out` and
+    /// `.vf`.
     #[must_use]
     pub fn of(path: &Path) -> Option<Self> {
         match path.extension()?.to_str()?.to_lowercase().as_str() {
@@ -60,7 +62,8 @@ impl ViewFactorFiles {
 /// Writes all files to a place that was claimed for them.
 ///
 /// # Errors
-/// [`ReportError::Write`] with the file or folder that could not be written. There is then no record.
+/// [`ReportError::Write`] with the file or folder that could not be written. There is then no
+/// record.
 pub fn write_view_factors(
     (place, files): (&ResultFolder, &ViewFactorFiles),
     format: MatrixFormat,

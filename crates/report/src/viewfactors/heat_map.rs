@@ -1,6 +1,8 @@
-//! The matrix as a picture: row i from the top, column j from the left, the colour by log₁₀ F_ij, with a bar of the decades beside it.
+//! The matrix as a picture: row i from the top, column j from the left, the colour by log₁₀ F_ij,
+//! with a bar of the decades beside it.
 //!
-//! Where there are more surfaces than pixels a pixel shows the largest factor of its block. Zero is light grey.
+//! Where there are more surfaces than pixels a pixel shows the largest factor of its block. Zero is
+//! light grey.
 
 use std::io;
 

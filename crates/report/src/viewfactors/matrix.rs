@@ -1,4 +1,5 @@
-//! The matrix F_ij = G_ij / A_i with what is known of its rows. Areas in m², the rest dimensionless.
+//! The matrix F_ij = G_ij / A_i with what is known of its rows. Areas in m², the rest
+//! dimensionless.
 
 /// View factors between surfaces, and from points to surfaces.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,7 +65,8 @@ pub struct ViewPoints {
 }
 
 impl ViewFactors {
-    /// Divides exchanges by areas. `exchange(i, row, errors)` writes row i of G and the errors stated for it (m²); `threshold` asks for sparse storage.
+    /// Divides exchanges by areas. `exchange(i, row, errors)` writes row i of G and the errors
+    /// stated for it (m²); `threshold` asks for sparse storage.
     ///
     /// ```
     /// use fredholm_report::{SurfaceData, ViewFactors};

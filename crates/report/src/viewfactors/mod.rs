@@ -1,6 +1,8 @@
-//! View-factor matrices: F_ij, the share of what leaves surface i that reaches surface j, with its error; files and pictures of it.
+//! View-factor matrices: F_ij, the share of what leaves surface i that reaches surface j, with its
+//! error; files and pictures of it.
 //!
-//! A_i F_ij = G_ij is symmetric; areas in m², factors dimensionless. Every file appears whole or not at all.
+//! A_i F_ij = G_ij is symmetric; areas in m², factors dimensionless. Every file appears whole or
+//! not at all.
 
 mod csv;
 mod error;

@@ -1,7 +1,9 @@
-//! One array of an NPZ archive in the NPY format, version 1.0: magic, length and text of a header, then the numbers, little-endian, row by
-//! row. NumPy Enhancement Proposal 1, <https://numpy.org/neps/nep-0001-npy-format.html>.
+//! One array of an NPZ archive in the NPY format, version 1.0: magic, length and text of a header,
+//! then the numbers, little-endian, row by row. NumPy Enhancement Proposal 1,
+//! <https://numpy.org/neps/nep-0001-npy-format.html>.
 //!
-//! Written by hand, since rows are streamed and names need the type `<U`, which the library of the other tables does not have.
+//! Written by hand, since rows are streamed and names need the type `<U`, which the library of the
+//! other tables does not have.
 
 use std::io::{self, Write};
 

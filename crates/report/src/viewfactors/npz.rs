@@ -1,4 +1,5 @@
-//! View factors as an NPZ archive: `numpy.load` reads all of it, `scipy.sparse.load_npz` the sparse matrix.
+//! View factors as an NPZ archive: `numpy.load` reads all of it, `scipy.sparse.load_npz` the sparse
+//! matrix.
 //!
 //! | array | type | shape | |
 //! |---|---|---|---|
@@ -56,7 +57,8 @@ impl ViewFactors {
     /// Reads what [`write_npz`](Self::write_npz) wrote, to the same bits.
     ///
     /// # Errors
-    /// [`ViewFactorsError`] with the array and its place for a file that is damaged or holds something else.
+    /// [`ViewFactorsError`] with the array and its place for a file that is damaged or holds
+    /// something else.
     pub fn read_npz(path: &Path) -> Result<Self, ViewFactorsError> {
         Reader::open(path)?.view_factors()
     }

@@ -1,4 +1,5 @@
-//! The record of a matrix, a JSON file beside it. Format `fredholm-viewfactors-1`. Seconds, bytes; the rest dimensionless unless said.
+//! The record of a matrix, a JSON file beside it. Format `fredholm-viewfactors-1`. Seconds, bytes;
+//! the rest dimensionless unless said.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -15,7 +16,8 @@ use crate::{Closure, FormFactorError, Timing};
 /// Name and version of the format.
 pub const VIEW_FACTORS_FORMAT: &str = "fredholm-viewfactors-1";
 
-/// What made a matrix of view factors, and how far it can be trusted. Reading is lenient, as of a run record.
+/// What made a matrix of view factors, and how far it can be trusted. Reading is lenient, as of a
+/// run record.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct ViewFactorsRecord {
@@ -67,7 +69,8 @@ pub struct ClosureChange {
     pub largest: Option<f64>,
     /// Largest `Σ_j |F'_ij − F_ij|` of a row.
     pub row_max: Option<f64>,
-    /// Largest of these over the stated error of its row, over rows with a stated error above rounding.
+    /// Largest of these over the stated error of its row, over rows with a stated error above
+    /// rounding.
     pub over_stated: Option<f64>,
     /// Steps of Newton's method.
     pub steps: u64,
@@ -112,7 +115,8 @@ impl ViewFactorsRecord {
 /// Reads a record.
 ///
 /// # Errors
-/// [`ViewFactorsError::Read`] where the file cannot be read, [`ViewFactorsError::Record`] where it is damaged or of another format.
+/// [`ViewFactorsError::Read`] where the file cannot be read, [`ViewFactorsError::Record`] where it
+/// is damaged or of another format.
 pub fn read_view_factors_record(path: &Path) -> Result<ViewFactorsRecord, ViewFactorsError> {
     let bytes = fs::read(path).map_err(|source| ViewFactorsError::Read { path: path.to_owned(), source })?;
     let broken = |why: String| ViewFactorsError::Record { path: path.to_owned(), why };

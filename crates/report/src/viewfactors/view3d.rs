@@ -1,7 +1,9 @@
-//! View factors as text in the form that View3D writes: `View3D version format encl emit N`, the areas, N rows of F, the emittances.
+//! View factors as text in the form that View3D writes: `View3D version format encl emit N`, the
+//! areas, N rows of F, the emittances.
 //!
-//! View3D user manual, version 3.3, "View Factor Output File" (format 0). Numbers have all their digits; readers split at blanks. Unknown
-//! emittances are written as 1, black. Points are not part of the form.
+//! View3D user manual, version 3.3, "View Factor Output File" (format 0). Numbers have all their
+//! digits; readers split at blanks. Unknown emittances are written as 1, black. Points are not part
+//! of the form.
 
 use std::io::{self, Write};
 

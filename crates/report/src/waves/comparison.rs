@@ -1,9 +1,11 @@
-//! Solvers compared on the couplings of a scene of waves: `compare.csv` (a row a solver and frequency),
-//! `compare_history.csv` (a row an iteration), `compare.svg` (residuals of the last frequency), `compare.json` last.
+//! Solvers compared on the couplings of a scene of waves: `compare.csv` (a row a solver and
+//! frequency), `compare_history.csv` (a row an iteration), `compare.svg` (residuals of the last
+//! frequency), `compare.json` last.
 //!
-//! Columns of the first: `frequency` (Hz), `spectral_radius`, `solver`, `outcome`, `iterations`, `entries` (matrix entries
-//! read), `seconds`, `residual`, `error`, `reason`; of the second: `frequency`, `solver`, `iteration`, `entries`, `seconds`,
-//! `residual`. What is not known is empty.
+//! Columns of the first: `frequency` (Hz), `spectral_radius`, `solver`, `outcome`, `iterations`,
+//! `entries` (matrix entries read), `seconds`, `residual`, `error`, `reason`; of the second:
+//! `frequency`, `solver`, `iteration`, `entries`, `seconds`, `residual`. What is not known is
+//! empty.
 
 use std::io::{self, Write};
 

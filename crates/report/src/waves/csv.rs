@@ -1,10 +1,12 @@
 //! `receivers.csv` and `far.csv`: a row per point (or direction) and frequency.
 //!
-//! Columns of `receivers.csv`: `receiver` (name), `index`, `x, y, z` (m), `frequency` (Hz), then with the prefixes `inc_`
-//! (incident), `sca_` (scattered) and `tot_` (both) the phasors `ex_re, ex_im, … hz_im` (V/m, A/m). Columns of `far.csv`:
-//! `receiver`, `index`, `theta_degrees`, `phi_degrees`, `frequency`, `f_theta_re, f_theta_im, f_phi_re, f_phi_im` (V),
-//! `rcs_theta, rcs_phi` (m², empty without an incident plane wave), and with the sources in, where all are at places and else
-//! empty, `t_theta_re, t_theta_im, t_phi_re, t_phi_im` (V) and `gain` (over the power that the sources supply).
+//! Columns of `receivers.csv`: `receiver` (name), `index`, `x, y, z` (m), `frequency` (Hz), then
+//! with the prefixes `inc_` (incident), `sca_` (scattered) and `tot_` (both) the phasors
+//! `ex_re, ex_im, … hz_im` (V/m, A/m). Columns of `far.csv`: `receiver`, `index`, `theta_degrees`,
+//! `phi_degrees`, `frequency`, `f_theta_re, f_theta_im, f_phi_re, f_phi_im` (V),
+//! `rcs_theta, rcs_phi` (m², empty without an incident plane wave), and with the sources in, where
+//! all are at places and else empty, `t_theta_re, t_theta_im, t_phi_re, t_phi_im` (V) and `gain`
+//! (over the power that the sources supply).
 
 use std::io::{self, Write};
 

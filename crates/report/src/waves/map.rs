@@ -1,7 +1,8 @@
 //! A map of a field component over a grid, with axes and colour bar: magnitude, phase or real part.
 //!
-//! Row 0 of the grid is at the bottom of the picture. Magnitudes run from 0 to the largest, in the colours of the heat
-//! map; real parts from −m to +m, blue over white to red; phases from −180° to 180° round a ring of colours.
+//! Row 0 of the grid is at the bottom of the picture. Magnitudes run from 0 to the largest, in the
+//! colours of the heat map; real parts from −m to +m, blue over white to red; phases from −180° to
+//! 180° round a ring of colours.
 
 use std::io;
 

@@ -1,4 +1,5 @@
-//! Complex fields: E (V/m) and H (A/m) as peak phasors with time factor e^{+jωt}, at receivers and on surfaces.
+//! Complex fields: E (V/m) and H (A/m) as peak phasors with time factor e^{+jωt}, at receivers and
+//! on surfaces.
 //!
 //! A phasor vector pair is twelve numbers: ex, ey, ez, hx, hy, hz, each real part first.
 
@@ -75,6 +76,7 @@ pub struct FarRow {
 pub struct FarTotal {
     /// F along θ̂ and φ̂: real and imaginary part, V.
     pub amplitude: [f64; 4],
-    /// 4π times the power per solid angle over the power that the sources supply; not a number where that is not known.
+    /// 4π times the power per solid angle over the power that the sources supply; not a number
+    /// where that is not known.
     pub gain: f64,
 }

@@ -1,8 +1,9 @@
-//! `monostatic.csv`: what a plane wave from a direction sends back to it, a row per direction and frequency.
+//! `monostatic.csv`: what a plane wave from a direction sends back to it, a row per direction and
+//! frequency.
 //!
-//! Columns: `receiver`, `index`, `theta_degrees`, `phi_degrees`, `frequency` (Hz), the scattering amplitudes
-//! `s_tt_re, s_tt_im, s_pt_…, s_tp_…, s_pp_…` (m; E → S E₀ e^{−jkr}/r, first received, then incident, t along θ̂ and p
-//! along φ̂), and `rcs_tt, rcs_pt, rcs_tp, rcs_pp` = 4π|S|² (m²).
+//! Columns: `receiver`, `index`, `theta_degrees`, `phi_degrees`, `frequency` (Hz), the scattering
+//! amplitudes `s_tt_re, s_tt_im, s_pt_…, s_tp_…, s_pp_…` (m; E → S E₀ e^{−jkr}/r, first received,
+//! then incident, t along θ̂ and p along φ̂), and `rcs_tt, rcs_pt, rcs_tp, rcs_pp` = 4π|S|² (m²).
 
 use std::io::{self, Write};
 

@@ -1,5 +1,5 @@
-//! Fields and cross-sections over an angle: `NAME.svg`, with levels over a straight axis, and polar plots of the levels and of the
-//! values themselves.
+//! Fields and cross-sections over an angle: `NAME.svg`, with levels over a straight axis, and polar
+//! plots of the levels and of the values themselves.
 
 use std::io::{self, Write};
 

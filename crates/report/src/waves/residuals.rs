@@ -1,5 +1,5 @@
-//! The residual ‖b − x + K x‖₂/‖b‖₂ after every iteration or bounce: `residuals.csv` (columns `frequency` in Hz,
-//! `iteration`, `residual`) and `residuals.svg`.
+//! The residual ‖b − x + K x‖₂/‖b‖₂ after every iteration or bounce: `residuals.csv` (columns
+//! `frequency` in Hz, `iteration`, `residual`) and `residuals.svg`.
 
 use std::io::{self, Write};
 

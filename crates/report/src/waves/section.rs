@@ -1,7 +1,7 @@
 //! The plane of a map, and where bodies meet it: the outline that maps are drawn over.
 //!
-//! A facet that crosses the plane leaves the line between the two points where its sides cross it. One that lies in the plane
-//! leaves those of its sides that no other facet in the plane shares.
+//! A facet that crosses the plane leaves the line between the two points where its sides cross it.
+//! One that lies in the plane leaves those of its sides that no other facet in the plane shares.
 
 use std::collections::BTreeMap;
 

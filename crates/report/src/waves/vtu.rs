@@ -1,9 +1,9 @@
 //! `currents.vtu`: the surface currents for `ParaView`, a cell a facet.
 //!
 //! Format: VTK XML, version 1.0, little endian, appended raw data, `UInt64` block headers
-//! (<https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html>). For each frequency the magnitude
-//! √(Σ |c|²) of J (A/m) and M (V/m), their real and imaginary vectors, and the phase (degrees) of the component of J that
-//! is largest on the whole surface.
+//! (<https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html>). For each frequency
+//! the magnitude √(Σ |c|²) of J (A/m) and M (V/m), their real and imaginary vectors, and the phase
+//! (degrees) of the component of J that is largest on the whole surface.
 
 use std::io::{self, Write};
 

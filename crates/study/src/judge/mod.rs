@@ -2,10 +2,10 @@
 //!
 //! Of each place t = (y − x)/√(s² + δ²): y is the mean over the tracer's independent runs and s its
 //! standard error, x the reference, δ the standard deviation of its known errors and of rounding. t
-//! is taken for Student's, with one degree of freedom less than the tracer has runs, or the reference
-//! has batches where these are fewer. Besides single faces or pixels, surfaces or tiles of pixels and
-//! the whole are compared: their means show what no single place does. The statistics are those of
-//! [`crosscheck`](crate::crosscheck).
+//! is taken for Student's, with one degree of freedom less than the tracer has runs, or the
+//! reference has batches where these are fewer. Besides single faces or pixels, surfaces or tiles
+//! of pixels and the whole are compared: their means show what no single place does. The statistics
+//! are those of [`crosscheck`](crate::crosscheck).
 
 mod known;
 
@@ -54,10 +54,10 @@ impl Default for JudgeOptions {
 /// Judges what a tracer has found by a bundle of [`reference`](crate::reference()), and writes what
 /// that came to into a folder.
 ///
-/// `files` are tables of faces (`.csv`: irradiance in W/m²), or pictures (`.npy`, `.exr`: radiance in
-/// W/(m² sr); `.npz` as [`trace`](crate::trace) writes them); several of them, or a stack of pictures,
-/// are independent runs, from whose spread the tracer's error is estimated. A single table, or an
-/// `.npz`, may state standard errors instead.
+/// `files` are tables of faces (`.csv`: irradiance in W/m²), or pictures (`.npy`, `.exr`: radiance
+/// in W/(m² sr); `.npz` as [`trace`](crate::trace) writes them); several of them, or a stack of
+/// pictures, are independent runs, from whose spread the tracer's error is estimated. A single
+/// table, or an `.npz`, may state standard errors instead.
 ///
 /// # Errors
 /// [`ErrorKind::Input`] for files that cannot be used or whose error is not known,

@@ -63,12 +63,12 @@ pub struct ReferenceOptions {
 }
 
 /// Solves a scene, traces it with the solution as control variate, and writes the irradiance of
-/// every face and the radiosity of every pixel with their stated errors into a folder, with the scene
-/// for Mitsuba 3 and pbrt-v4 where its bands are colours or grey, and a script that judges Mitsuba.
-/// The record is returned.
+/// every face and the radiosity of every pixel with their stated errors into a folder, with the
+/// scene for Mitsuba 3 and pbrt-v4 where its bands are colours or grey, and a script that judges
+/// Mitsuba. The record is returned.
 ///
-/// The camera is that of the scene; without one it takes in the whole scene. An eye that would see a
-/// wall from behind is moved through it.
+/// The camera is that of the scene; without one it takes in the whole scene. An eye that would see
+/// a wall from behind is moved through it.
 ///
 /// # Errors
 /// What is wrong with the scene or the options; [`Resources`](crate::ErrorKind::Resources) before

@@ -20,8 +20,8 @@ impl Summarise for RunRecord {
         self.files.iter().any(|name| name == IMAGE).then_some(("picture", IMAGE))
     }
 
-    /// The answer, its error and what makes that smaller, then the figures that say whether to trust
-    /// it.
+    /// The answer, its error and what makes that smaller, then the figures that say whether to
+    /// trust it.
     fn lines(&self, lines: &mut Lines) {
         answer(self, lines);
         lines.add_some("size", (self.counts.elements > 0).then(|| counts(&self.counts)));

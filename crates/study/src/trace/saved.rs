@@ -51,7 +51,8 @@ impl Origin {
         Err(MonteCarloError::Foreign { what })
     }
 
-    /// The state that an earlier run of the same kind has left in a folder, where it is kept until there is a newer one.
+    /// The state that an earlier run of the same kind has left in a folder, where it is kept until
+    /// there is a newer one.
     pub(super) fn earlier<S: DeserializeOwned>(&self, folder: &ResultFolder) -> Result<S, Error> {
         folder.keep(TRACE_STATE);
         let path = folder.path().join(TRACE_STATE);

@@ -28,8 +28,8 @@ impl MatrixFiles {
     ///
     /// # Errors
     /// [`ErrorKind::Input`] for a name whose form is not known, or which is that of a file beside
-    /// the matrix; [`ErrorKind::Files`] while another run writes them, for files of these names that are not those of
-    /// a run, and where they cannot be written.
+    /// the matrix; [`ErrorKind::Files`] while another run writes them, for files of these names
+    /// that are not those of a run, and where they cannot be written.
     pub fn new(input: &Path, output: Option<&Path>, form: Option<MatrixFormat>) -> Result<Self, Error> {
         let stem = input.file_stem().unwrap_or_else(|| "F".as_ref());
         let default = || Path::new("out").join(stem).with_added_extension("npz");

@@ -1,7 +1,9 @@
-//! Checks of a result that need no other one: what is radiated beside what is supplied, and whether a sweep is reciprocal.
+//! Checks of a result that need no other one: what is radiated beside what is supplied, and whether
+//! a sweep is reciprocal.
 //!
-//! Of plane waves the scattered power is compared with what they lose by the optical theorem, of located sources what they and
-//! the scattered field radiate with what they supply ([`fredholm_waves::supplied`]). Where nothing is absorbed, either ratio is
+//! Of plane waves the scattered power is compared with what they lose by the optical theorem, of
+//! located sources what they and the scattered field radiate with what they supply
+//! ([`fredholm_waves::supplied`]). Where nothing is absorbed, either ratio is
 //! 1. S_φθ and S_θφ of a monostatic sweep are the same.
 
 use fredholm_mesh::{Bounds, Vec3};
@@ -110,7 +112,8 @@ pub(super) struct Balancing<'a> {
 }
 
 impl Balancing<'_> {
-    /// The powers, where the body is a conductor, the sources are of one kind, and the work is small beside that of the run.
+    /// The powers, where the body is a conductor, the sources are of one kind, and the work is
+    /// small beside that of the run.
     pub(super) fn balance(&self, far: FarFields<'_>) -> Result<Option<Balance>, Error> {
         if !self.model.balanced {
             return Ok(None);

@@ -13,8 +13,9 @@
 //! | edges above λ/2 | one bounce | nothing else is known on such facets |
 //!
 //! The figures are in `docs/notes/waves.md`, treatment by treatment and bounce by bounce. Where
-//! bounces are asked for, what makes the sum converge to the truth is `radiated` on sheets: in `geometric` the current on the front of a sheet radiates the
-//! shadow behind it, too, where what is blocked has none already.
+//! bounces are asked for, what makes the sum converge to the truth is `radiated` on sheets: in
+//! `geometric` the current on the front of a sheet radiates the shadow behind it, too, where what
+//! is blocked has none already.
 
 use fredholm_moments::{Basis, Surface};
 use fredholm_waves::material::Material;
@@ -30,16 +31,19 @@ const EQUATION: f64 = 0.26;
 /// Most unknowns of boundary elements that are taken unasked: assembly and factorisation then take
 /// some tens of seconds a core.
 const MOST_UNKNOWNS: usize = 6_000;
-/// The same of one flat sheet, which one bounce with edge currents describes well where it is larger.
+/// The same of one flat sheet, which one bounce with edge currents describes well where it is
+/// larger.
 const MOST_FLAT: usize = 500;
 /// The same of thin closed bodies, for which there is nothing else that is exact.
 const MOST_CLOSED: usize = 8_000;
-/// A facet is of a thin part where the surface opposite is nearer than both of these: shares of the extent and of the
-/// wavelength, below which the second surface of the dual equation has no room for its full depth.
+/// A facet is of a thin part where the surface opposite is nearer than both of these: shares of the
+/// extent and of the wavelength, below which the second surface of the dual equation has no room
+/// for its full depth.
 const THIN: [f64; 2] = [0.3, 0.6];
 /// Share of such facets from which a body is thin.
 const THIN_SHARE: f64 = 0.1;
-/// Incident waves from which on a factorisation is taken for all of them, and the largest matrix for it, bytes.
+/// Incident waves from which on a factorisation is taken for all of them, and the largest matrix
+/// for it, bytes.
 const MANY_WAVES: usize = 16;
 const MOST_FACTORISED: u128 = 4 << 30;
 /// Extent over the wavelength below which physical optics says nothing.

@@ -115,7 +115,8 @@ fn at_frequency(
     task.carry_out(stages, outcome)
 }
 
-/// A far field along θ̂ and φ̂, and the squares of its error (V²), where that is known, and of itself.
+/// A far field along θ̂ and φ̂, and the squares of its error (V²), where that is known, and of
+/// itself.
 pub(super) type Echo = ([Complex64; 2], (Option<f64>, f64));
 
 /// One frequency.
@@ -302,7 +303,8 @@ impl Task<'_> {
         Ok(())
     }
 
-    /// What the error is stated from: of conductors that are all closed, or all sheets, where the bounces are known.
+    /// What the error is stated from: of conductors that are all closed, or all sheets, where the
+    /// bounces are known.
     fn stating(
         &self,
         radiator: &Radiator<'_>,
@@ -336,8 +338,8 @@ impl Task<'_> {
         Ok(known.then_some(Stating::Edges { edges, added: self.model.edge_currents }))
     }
 
-    /// Whether errors are stated of this frequency: of sweeps of many only the lowest and the highest, since one bounce
-    /// takes less than its error.
+    /// Whether errors are stated of this frequency: of sweeps of many only the lowest and the
+    /// highest, since one bounce takes less than its error.
     fn is_told_apart(&self) -> bool {
         let bands = &self.model.bands;
         let mut ends = [bands.first(), bands.last()].into_iter().flatten();
@@ -377,8 +379,8 @@ impl Task<'_> {
         found.map_err(|error| self.refused(&error))
     }
 
-    /// What is left of the bounces, relative to the first, where `last` is the last residual and several are summed:
-    /// nothing for one bounce where there can be no second.
+    /// What is left of the bounces, relative to the first, where `last` is the last residual and
+    /// several are summed: nothing for one bounce where there can be no second.
     pub(super) fn left(&self, last: Option<f64>, several: bool) -> Option<f64> {
         if !several && (self.is_flat() || self.all_closed()) { last.or(Some(0.0)) } else { last }
     }
@@ -399,7 +401,8 @@ impl Task<'_> {
         self.variant.shadow
     }
 
-    /// The far field towards u along θ̂ and φ̂, and the squares of its error (V²), where `residual` is known, and of itself.
+    /// The far field towards u along θ̂ and φ̂, and the squares of its error (V²), where `residual`
+    /// is known, and of itself.
     pub(super) fn echo(
         &self,
         u: Vec3,
@@ -467,7 +470,8 @@ pub(super) fn near_rows(
     points.par_iter().zip(scattered).enumerate().map(row).collect()
 }
 
-/// A row of a direction: numbers of receiver and direction, and its angles, degrees; `power` is what located sources supply, W.
+/// A row of a direction: numbers of receiver and direction, and its angles, degrees; `power` is
+/// what located sources supply, W.
 pub(super) fn far_row(
     (model, band, power): (&Model, &Band, Option<f64>),
     at: [usize; 2],

@@ -7,8 +7,9 @@
 //! | mesh | Richardson: a third of the difference to edges twice as long, for the second order of the rules |
 //! | form | half the difference between the currents 2 n × H and 2 n × E, which a true conductor does not tell apart |
 //!
-//! Of a monostatic sweep the error is stated from some of its waves. Where the indicator is one of the whole scattered
-//! field, the error is spread evenly over all directions: what goes back may be far less than what goes on.
+//! Of a monostatic sweep the error is stated from some of its waves. Where the indicator is one of
+//! the whole scattered field, the error is spread evenly over all directions: what goes back may be
+//! far less than what goes on.
 //!
 //! What is left of the bounces is the residual of the solver, in the run record too.
 
@@ -45,7 +46,8 @@ const SAMPLE: usize = 60;
 /// Directions of a sweep that its error is stated from, at most some more.
 const SWEPT: usize = 8;
 
-/// The error of a monostatic sweep, from that of some of its waves: root mean square over that of what they send back.
+/// The error of a monostatic sweep, from that of some of its waves: root mean square over that of
+/// what they send back.
 #[derive(Default)]
 pub(super) struct SweepError {
     /// Sums of the squares of the errors and of the fields, V².

@@ -364,7 +364,8 @@ fn same(a: f64, b: f64) -> bool {
     a.total_cmp(&b).is_eq()
 }
 
-/// A quantity in decibels and in its unit over φ where θ stays the same, else over θ; nothing where there is no angle.
+/// A quantity in decibels and in its unit over φ where θ stays the same, else over θ; nothing where
+/// there is no angle.
 fn over_angle(
     folder: &ResultFolder,
     stem: &str,

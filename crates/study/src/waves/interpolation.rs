@@ -4,11 +4,12 @@
 //! F(f) = Σ w_i F_i/(f − f_i) / Σ w_i/(f − f_i)
 //! ```
 //!
-//! with the weights of M. S. Floater, K. Hormann, Numer. Math. 107 (2007) 315 (doi:10.1007/s00211-007-0093-y): a blend of
-//! polynomials of degree d that has no poles between the frequencies. The next frequency to compute is the one where
-//! degrees d and d − 2 differ most; what is computed there tells how good the interpolation was. Before that the delay on
-//! the way from the source to the middle of the surfaces and on to the receiver is taken out of the phase: what is left
-//! changes with the size of the body only.
+//! with the weights of M. S. Floater, K. Hormann, Numer. Math. 107 (2007) 315
+//! (doi:10.1007/s00211-007-0093-y): a blend of polynomials of degree d that has no poles between
+//! the frequencies. The next frequency to compute is the one where degrees d and d − 2 differ most;
+//! what is computed there tells how good the interpolation was. Before that the delay on the way
+//! from the source to the middle of the surfaces and on to the receiver is taken out of the phase:
+//! what is left changes with the size of the body only.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -31,8 +32,8 @@ const FIRST: usize = 7;
 const DEGREE: usize = 9;
 /// What is stated over the largest difference that was seen.
 const SAFETY: f64 = 2.0;
-/// What the fields themselves jump by from one frequency to the next, since the rules of integrals to 1e-3 and the
-/// iterations of a solver change: no interpolation is more exact.
+/// What the fields themselves jump by from one frequency to the next, since the rules of integrals
+/// to 1e-3 and the iterations of a solver change: no interpolation is more exact.
 const ROUGHNESS: f64 = 2e-3;
 /// Frequencies in turn that have to be as exact as asked for.
 const IN_TURN: usize = 2;
@@ -44,8 +45,8 @@ pub struct Interpolated {
     pub computed: usize,
     /// All frequencies.
     pub frequencies: usize,
-    /// Stated error of the interpolation at any frequency, over the root mean square of the field of a receiver over the
-    /// sweep.
+    /// Stated error of the interpolation at any frequency, over the root mean square of the field
+    /// of a receiver over the sweep.
     pub relative: f64,
 }
 
@@ -157,7 +158,8 @@ impl Samples {
         sum
     }
 
-    /// The largest difference of a group of values, over the root mean square of that group over the samples.
+    /// The largest difference of a group of values, over the root mean square of that group over
+    /// the samples.
     fn gap(&self, a: &[Complex64], b: &[Complex64], groups: &[Range<usize>]) -> f64 {
         let relative = |group: &Range<usize>| {
             let gap: f64 = group.clone().map(|i| (a[i] - b[i]).norm_sqr()).sum();
@@ -242,7 +244,8 @@ impl<'a> Places<'a> {
         Self::advance(band, -2.0 * direction(row.theta_degrees, row.phi_degrees).dot(self.centre))
     }
 
-    /// All complex numbers of an outcome of one frequency without their delays, and in the end the power of located sources.
+    /// All complex numbers of an outcome of one frequency without their delays, and in the end the
+    /// power of located sources.
     fn values(&self, band: &Band, outcome: &Outcome) -> Vec<Complex64> {
         let mut values = Vec::new();
         let mut add = |numbers: &[f64], turn: Complex64| {

@@ -25,7 +25,8 @@ pub struct WaveOptions {
     pub memory: Option<Bytes>,
     /// Whether report.html is left out.
     pub no_report: bool,
-    /// Whether the coupling is stored or computed anew; what is predicted to be quicker where it is not said.
+    /// Whether the coupling is stored or computed anew; what is predicted to be quicker where it is
+    /// not said.
     pub storage: Option<CouplingStorage>,
 }
 
@@ -170,7 +171,8 @@ fn doubts(model: &Model, outcome: &Outcome) -> Vec<String> {
 }
 
 impl SolvedWaves<'_> {
-    /// Radiated beside supplied powers, where they are cheap to compute: 1 where nothing is absorbed.
+    /// Radiated beside supplied powers, where they are cheap to compute: 1 where nothing is
+    /// absorbed.
     #[must_use]
     pub fn balances(&self) -> &[Balance] {
         &self.outcome.balances
@@ -255,7 +257,8 @@ impl SolvedWaves<'_> {
         self.outcome.interpolated.as_ref()
     }
 
-    /// Stated relative errors of the scattered fields at the receivers and of their far fields, where they are known.
+    /// Stated relative errors of the scattered fields at the receivers and of their far fields,
+    /// where they are known.
     #[must_use]
     pub fn stated_errors(&self) -> &[Estimated] {
         &self.outcome.stated_errors

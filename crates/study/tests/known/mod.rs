@@ -69,7 +69,8 @@ pub fn surfaces(body: &Body) -> String {
     text
 }
 
-/// The scene of a case, seen from far away in all directions; `settings` are lines of its first table.
+/// The scene of a case, seen from far away in all directions; `settings` are lines of its first
+/// table.
 pub fn scene(case: &Case, settings: &str) -> String {
     let [theta, phi] = angles();
     let [travel, along] = [case.travel, case.polarisation].map(|v: Vec3| v.to_array());
