@@ -118,12 +118,11 @@ fn share(some: u32, all: u32) -> [f64; 2] {
 fn send(element: usize, rays: &mut Rays, numbers: Range<usize>, patches: &[&Patch], lit: &Occluders) {
     let patch = patches[element];
     let start = [1.0, 2.0, 3.0, 4.0].map(|times| (element as f64 * GOLDEN * times).fract());
-    let bundle = Bundle::of(patch);
     for number in numbers {
         let (from, along) = cosine_ray(patch, recurrence(number + 1, start));
         let met = meets(from, along, patches, lit);
         rays.all += 1;
         rays.met += u32::from(met == Meets::Lit);
-        rays.buried += u32::from(met == Meets::Back && bundle.buried(from, patches, lit));
+        rays.buried += u32::from(met == Meets::Back && Bundle::of(patch).buried(from, patches, lit));
     }
 }

@@ -11,7 +11,7 @@ use crate::hierarchical;
 use crate::memory::{Limit, Plan, limit};
 use crate::options::{ProblemOptions, ProblemSettings, SceneSource, SolveOptions};
 use crate::prediction::pictured;
-use crate::problem::{Problem, pixels, scene_failure, with_results};
+use crate::problem::{Problem, pictures, pixels, scene_failure, with_results};
 use crate::rounds;
 use crate::sample;
 use crate::solve::{accuracy_of, is_free, predicted, report_failure, view_camera};
@@ -114,7 +114,7 @@ pub fn check(
     }
     let to_accuracy = to_accuracy(asked, accuracy, &scene, &mut stages)?;
     let settings = ProblemSettings::new(asked, scene.solve());
-    let more = |plan, scene: &Scene, n| with_results(plan, scene, n, (1, 0));
+    let more = |plan, scene: &Scene, n| with_results(plan, scene, n, (pictures(scene, 1, (false, false)), 0));
     let forecast = match Problem::refined(Arc::clone(&scene), settings, (1, &more), &mut stages) {
         Err(error) if error.kind() == ErrorKind::Resources => Err(error),
         loaded => {

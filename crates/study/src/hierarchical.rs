@@ -21,7 +21,7 @@ use crate::error::{Error, ErrorKind};
 use crate::memory::{Limit, Plan};
 use crate::options::{Precision, ProblemSettings, RADIOSITY, SolveOptions, SolveSettings};
 use crate::prediction::{Dense, MESH, Pictures, Prediction, Size, results};
-use crate::problem::{Problem, check, occluders, pixels, scene_failure};
+use crate::problem::{self, Problem, check, occluders, scene_failure};
 use crate::registry::{self, SolverEntry};
 use crate::size::Bytes;
 use crate::solution::{Solution, coupling_failure, solve_failure};
@@ -118,6 +118,17 @@ struct Forecast {
 }
 
 impl Forecast {
+    /// Of a scene of so many faces.
+    fn new(scene: &Scene, faces: usize, options: &SolveSettings, most: u64) -> Self {
+        Self {
+            faces,
+            bands: scene.bands().len(),
+            pictures: pictures(scene, options),
+            most,
+            limit: options.problem.memory_limit(),
+        }
+    }
+
     /// With so many elements and links in the end.
     fn plan(&self, [elements, links]: [usize; 2]) -> Plan {
         let bytes = expected_bytes(elements, links, self.bands).min(self.most);
@@ -145,19 +156,6 @@ impl Forecast {
             (size(last)[k] as f64 * growth.clamp(1.0, MOST_GROWTH)) as usize
         };
         Some(self.plan([grown(0), grown(1)]))
-    }
-}
-
-impl Forecast {
-    /// Of a scene of so many faces.
-    fn new(scene: &Scene, faces: usize, options: &SolveSettings, most: u64) -> Self {
-        Self {
-            faces,
-            bands: scene.bands().len(),
-            pictures: pictures(scene, options),
-            most,
-            limit: options.problem.memory_limit(),
-        }
     }
 }
 
@@ -284,9 +282,7 @@ fn plan(scene: &Scene, count: usize, options: &SolveSettings) -> Plan {
 
 /// Pictures that are drawn.
 fn pictures(scene: &Scene, options: &SolveSettings) -> Pictures {
-    let drawn = PICTURES + usize::from(options.final_gather);
-    let count = if options.no_pictures { 0 } else { drawn };
-    Pictures { pixels: pixels(scene), count, lit: true }
+    problem::pictures(scene, PICTURES, (options.no_pictures, options.final_gather))
 }
 
 fn limits(options: &SolveSettings, accuracy: f64, plan: &Plan) -> Limits {

@@ -173,9 +173,20 @@ pub(crate) fn pixels(scene: &Scene) -> u128 {
     u128::from(width) * u128::from(height)
 }
 
-/// Results and so many pictures after a solution, and what these take besides.
-pub(crate) fn with_results(plan: Plan, scene: &Scene, elements: usize, (count, more): (usize, u128)) -> Plan {
-    let pictures = Pictures { pixels: pixels(scene), count, lit: true };
+/// The pictures of a solution, of which lamps light one: the usual ones, and that of the final gather
+/// where it is asked for; none where none are wanted.
+pub(crate) fn pictures(scene: &Scene, usual: usize, (no_pictures, final_gather): (bool, bool)) -> Pictures {
+    let count = if no_pictures { 0 } else { usual + usize::from(final_gather) };
+    Pictures { pixels: pixels(scene), count, lit: true }
+}
+
+/// Results and pictures after a solution, and what these take besides.
+pub(crate) fn with_results(
+    plan: Plan,
+    scene: &Scene,
+    elements: usize,
+    (pictures, more): (Pictures, u128),
+) -> Plan {
     let bytes = results(elements, scene.bands().len(), pictures);
     plan.stage("results and pictures", bytes.saturating_add(more))
 }

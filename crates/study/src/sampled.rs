@@ -22,8 +22,8 @@ use crate::error::{Error, ErrorKind};
 use crate::hierarchical;
 use crate::memory::Plan;
 use crate::options::SolveSettings;
-use crate::prediction::{MESH, Pictures, results};
-use crate::problem::{Problem, check, occluders, pixels, scene_failure};
+use crate::prediction::MESH;
+use crate::problem::{Problem, check, occluders, pictures, scene_failure, with_results};
 use crate::registry::{self, SolverEntry};
 use crate::solution::Solution;
 use crate::stages::Stages;
@@ -86,11 +86,9 @@ fn solver() -> Result<SolverEntry, Error> {
 }
 
 fn plan(scene: &Scene, elements: usize, options: &SolveSettings) -> Plan {
-    let count = if options.no_pictures { 0 } else { 1 + usize::from(options.final_gather) };
-    let pictures = Pictures { pixels: pixels(scene), count, lit: true };
+    let pictures = pictures(scene, 1, (options.no_pictures, options.final_gather));
     let plan = Plan::default().hold(format!("{elements} elements"), MESH.saturating_mul(elements as u128));
-    with_tracing(plan, scene, elements)
-        .stage("results and pictures", results(elements, scene.bands().len(), pictures))
+    with_results(with_tracing(plan, scene, elements), scene, elements, (pictures, 0))
 }
 
 /// Paths that a scene of so many faces is likely to need.

@@ -21,7 +21,7 @@ use crate::memory::{self, Plan};
 use crate::options::{FieldFile, ProblemSettings, SceneSource, SolveOptions, SolveSettings, Way};
 use crate::pictures::{Gathered, Source, gathering, wanted};
 use crate::prediction::{MESH, Prediction, Size};
-use crate::problem::{Problem, scene_failure, with_results};
+use crate::problem::{Problem, pictures, scene_failure, with_results};
 use crate::record::{record, remarks};
 use crate::solution::{Solution, compute};
 use crate::stages::{Signals, Stages};
@@ -309,7 +309,7 @@ fn dense(
         let bands = scene.bands().len();
         let wanted = asked.final_gather || asked.discontinuity || asked.points.bytes(bands) > 0;
         let gathering = if wanted { gathering(elements, bands) + asked.points.bytes(bands) } else { 0 };
-        let pictures = if asked.no_pictures { 0 } else { 1 + usize::from(asked.final_gather) };
+        let pictures = pictures(scene, 1, (asked.no_pictures, asked.final_gather));
         with_results(plan, scene, elements, (pictures, gathering))
     };
     let problem = Problem::refined(Arc::clone(scene), options, (1, &more), stages)?;
@@ -479,9 +479,8 @@ fn write(
         None => (None, Vec::new(), view.exposure),
     };
     let wanted = wanted(options, solution);
-    let names = wanted_files(&wanted).filter(|_| !options.no_pictures);
     let (names, layers): (Vec<&str>, Vec<Layer>) =
-        names.filter_map(|name| Some((name, layer(name)?))).unzip();
+        wanted_files(&wanted).filter_map(|name| Some((name, layer(name)?))).unzip();
     let drawn = if layers.is_empty() || (image.is_none() && signals.is_cancelled()) {
         Vec::new()
     } else {

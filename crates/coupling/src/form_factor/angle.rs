@@ -43,16 +43,26 @@ pub(super) fn angle(sine: f64, cosine: f64) -> f64 {
     if cosine < 0.0 { PI - acute } else { acute }
 }
 
-/// atan t for |t| ≤ [`STEEP`]. Terms with even and odd powers of t² are summed apart, so that no
-/// sum waits for the other.
+/// atan t for |t| ≤ [`STEEP`].
 #[inline(always)]
 fn arc_tangent(t: f64) -> f64 {
-    let z = t * t;
+    t + t * series(t * t)
+}
+
+/// atan(t)/t for the square of t, up to that of [`STEEP`].
+#[inline(always)]
+pub(super) fn arc_over_tangent(t2: f64) -> f64 {
+    1.0 + series(t2)
+}
+
+/// z P(z). Terms with even and odd powers of z are summed apart, so that no sum waits for the other.
+#[inline(always)]
+fn series(z: f64) -> f64 {
     let w = z * z;
     let [a, b, c, d, e, f, g, h, i, j] = SERIES;
     let even = a + w * (c + w * (e + w * (g + w * i)));
     let odd = b + w * (d + w * (f + w * (h + w * j)));
-    t + t * (z * (even + z * odd))
+    z * (even + z * odd)
 }
 
 #[cfg(test)]

@@ -8,8 +8,8 @@
 #![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
 #![allow(clippy::needless_bitwise_bool, reason = "a jump a lane costs more than to ask both")]
 
-use super::angle::angle;
-use super::lanes::{LANES, Lanes, Lanes3, any, ask, cross, dot, each, only, same};
+use super::angle::{angle, arc_over_tangent};
+use super::lanes::{Lanes, Lanes3, any, ask, cross, dot, each, only, same};
 use fredholm_mesh::Vec3;
 use std::f64::consts::FRAC_1_PI;
 
@@ -42,11 +42,8 @@ pub(super) fn factor(sum: f64) -> f64 {
     -0.5 * FRAC_1_PI * sum
 }
 
-/// Square of the tangent up to which the series of the arc tangent is used.
+/// Square of the tangent up to which the angle follows from it, without a root.
 const NARROW: f64 = 0.04;
-
-/// Terms of the series, which leave 2e-17.
-const TERMS: usize = 11;
 
 /// Θ (Γ · n) of one edge. An edge that points at the origin spans no angle.
 #[inline]
@@ -69,7 +66,7 @@ pub(super) fn edge_terms(n: Vec3, from: &Lanes3, to: &Lanes3) -> Lanes {
     let up = dot(&cross, &same(n));
     let narrow = ask(|m| (cosine[m] > 0.0) & (sine2[m] < NARROW * cosine[m] * cosine[m]));
     let inverse = each(|m| 1.0 / cosine[m]);
-    let shares = arcs_over_tangents(&each(|m| sine2[m] * inverse[m] * inverse[m]));
+    let shares = each(|m| arc_over_tangent(sine2[m] * inverse[m] * inverse[m]));
     let mut terms = only(&narrow, &each(|m| up[m] * inverse[m] * shares[m]));
     let wide = ask(|m| (sine2[m] > 0.0) & (narrow[m] == 0));
     if any(&wide) {
@@ -81,38 +78,10 @@ pub(super) fn edge_terms(n: Vec3, from: &Lanes3, to: &Lanes3) -> Lanes {
     terms
 }
 
-/// As [`arc_over_tangent`].
-#[inline(always)]
-fn arcs_over_tangents(t2: &Lanes) -> Lanes {
-    let (mut even, mut odd) = ([0.0; LANES], [0.0; LANES]);
-    let t4 = each(|m| t2[m] * t2[m]);
-    for k in (0..TERMS).rev() {
-        let sum = if k % 2 == 0 { &mut even } else { &mut odd };
-        *sum = each(|m| term(k) + sum[m] * t4[m]);
-    }
-    each(|m| even[m] - t2[m] * odd[m])
-}
-
-/// atan(t)/t = Σ (−t²)^k/(2k + 1) for t² up to [`NARROW`]: eleven terms leave 2e-17. Terms with
-/// even and odd k are summed apart, so that no sum waits for the other.
-#[inline(always)]
-fn arc_over_tangent(t2: f64) -> f64 {
-    let (mut even, mut odd, t4) = (0.0, 0.0, t2 * t2);
-    for k in (0..TERMS).rev() {
-        let sum = if k % 2 == 0 { &mut even } else { &mut odd };
-        *sum = term(k) + *sum * t4;
-    }
-    even - t2 * odd
-}
-
-#[inline(always)]
-fn term(k: usize) -> f64 {
-    1.0 / (2 * k + 1) as f64
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::form_factor::LANES;
 
     fn disc(radius: f64, height: f64, sides: usize) -> impl Iterator<Item = Vec3> {
         let angle = move |k: usize| -std::f64::consts::TAU * k as f64 / sides as f64;

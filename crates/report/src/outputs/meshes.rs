@@ -16,7 +16,7 @@ impl OutputFile for Vtu {
 
     fn about(&self) -> Option<CataloguedFile> {
         Some(file(
-            "field.vtu",
+            self.name(),
             "solve, resume, shoot",
             "the elements for ParaView, points in m; cell data",
             &[
@@ -47,7 +47,7 @@ impl OutputFile for Npz {
 
     fn about(&self) -> Option<CataloguedFile> {
         Some(file(
-            "field.npz",
+            self.name(),
             "solve, resume, shoot",
             "the elements as NumPy arrays",
             &[
@@ -85,7 +85,7 @@ impl OutputFile for Shadows {
 
     fn about(&self) -> Option<CataloguedFile> {
         Some(file(
-            "shadows.vtu",
+            self.name(),
             "solve --discontinuity",
             "triangles cut along the borders of shadows, points in m",
             &[
@@ -119,7 +119,7 @@ impl OutputFile for Ply {
 
     fn about(&self) -> Option<CataloguedFile> {
         Some(file(
-            "field.ply",
+            self.name(),
             "solve --also ply",
             "the elements with colours at their corners (sRGB); of each",
             &[
@@ -152,7 +152,7 @@ impl OutputFile for Glb {
 
     fn about(&self) -> Option<CataloguedFile> {
         Some(file(
-            "field.glb",
+            self.name(),
             "solve --also glb",
             "the same as binary glTF, with the radiosity (W/m²) at the corners",
             &[],

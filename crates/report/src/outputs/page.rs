@@ -15,7 +15,7 @@ impl OutputFile for Convergence {
     }
 
     fn about(&self) -> Option<CataloguedFile> {
-        Some(file("convergence.svg", LIGHT, "residuals over iterations and seconds", &[]))
+        Some(file(self.name(), LIGHT, "residuals over iterations and seconds", &[]))
     }
 
     fn is_wanted(&self, _: &Wanted) -> bool {
@@ -36,7 +36,7 @@ impl OutputFile for Page {
     }
 
     fn about(&self) -> Option<CataloguedFile> {
-        Some(file("report.html", "most commands", "the result on one page for the browser", &[]))
+        Some(file(self.name(), "most commands", "the result on one page for the browser", &[]))
     }
 
     fn is_wanted(&self, wanted: &Wanted) -> bool {

@@ -24,7 +24,7 @@ impl OutputFile for Image {
     }
 
     fn about(&self) -> Option<CataloguedFile> {
-        Some(file("image.png", "solve, resume, shoot, trace", "the picture", &[]))
+        Some(file(self.name(), "solve, resume, shoot, trace", "the picture", &[]))
     }
 
     fn is_wanted(&self, wanted: &Wanted) -> bool {
@@ -50,7 +50,7 @@ impl OutputFile for Exr {
 
     fn about(&self) -> Option<CataloguedFile> {
         Some(file(
-            "image.exr",
+            self.name(),
             "solve --also exr",
             "linear colours of the picture, radiance in W/(m² sr) before exposure",
             &[],
@@ -136,7 +136,7 @@ impl OutputFile for Gathered {
 
     fn about(&self) -> Option<CataloguedFile> {
         Some(file(
-            "gather.png",
+            self.name(),
             "solve --final-gather",
             "the picture for which every pixel gathers its light",
             &[],

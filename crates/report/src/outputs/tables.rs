@@ -16,7 +16,7 @@ impl OutputFile for Elements {
 
     fn about(&self) -> Option<CataloguedFile> {
         Some(file(
-            "field.csv",
+            self.name(),
             LIGHT,
             "a row an element",
             &[
@@ -51,7 +51,7 @@ impl OutputFile for Faces {
 
     fn about(&self) -> Option<CataloguedFile> {
         Some(file(
-            "faces.csv",
+            self.name(),
             "solve, resume, shoot",
             "a row an input face: area means over its elements",
             &[
@@ -84,7 +84,7 @@ impl OutputFile for Surfaces {
 
     fn about(&self) -> Option<CataloguedFile> {
         Some(file(
-            "surfaces.csv",
+            self.name(),
             LIGHT,
             "a row a named surface",
             &[
@@ -118,7 +118,7 @@ impl OutputFile for Points {
 
     fn about(&self) -> Option<CataloguedFile> {
         Some(file(
-            "points.csv",
+            self.name(),
             "solve --point, --plane",
             "a row a point",
             &[

@@ -12,7 +12,7 @@ use fredholm_scene::{Camera, ExportFormat, Scene};
 use crate::error::{Error, ErrorKind};
 use crate::exchange::{camera, outline, write};
 use crate::options::{ProblemOptions, SceneSource, SolveSettings, StopOptions};
-use crate::problem::{Problem, with_results};
+use crate::problem::{Problem, pictures, with_results};
 use crate::solution::{Solution, compute};
 use crate::solve::{report_failure, view_camera};
 use crate::stages::Stages;
@@ -182,7 +182,8 @@ fn load(
     let [width, height] = asked.size.unwrap_or([SIDE; 2]).map(u128::from);
     let pixel = |scene: &Scene| PIXEL + BAND * scene.bands().len() as u128;
     let more = |plan, scene: &Scene, n| {
-        with_results(with_tracing(plan, scene, n), scene, n, (1, width * height * pixel(scene)))
+        let pictures = pictures(scene, 1, (false, false));
+        with_results(with_tracing(plan, scene, n), scene, n, (pictures, width * height * pixel(scene)))
     };
     let asked = &asked.problem;
     let mut problem = Problem::load(source, asked, &more, stages)?;

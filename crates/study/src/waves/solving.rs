@@ -37,7 +37,7 @@ pub(super) fn system<'a>(
         Method::Bounces(1) => Ok(None),
         Method::Bounces(_) => lazy(model, scatterer, (wave, shadow), signals).map(Some),
         Method::Solver { solver, .. } => {
-            let products = EXPECTED * rhs_count(model);
+            let products = EXPECTED * incident_waves(model);
             coupled(model, scatterer, (wave, shadow), (&[&**solver], products), signals).map(Some)
         }
     }
@@ -63,7 +63,7 @@ const EXPECTED: f64 = 40.0;
 const UNASKED: u64 = 1 << 30;
 
 /// Incident waves of a run.
-fn rhs_count(model: &Model) -> f64 {
+fn incident_waves(model: &Model) -> f64 {
     let sweep = |receiver: &super::model::Receiver| match &receiver.places {
         Places::Monostatic(angles) => 2 * angles.len(),
         _ => 0,
@@ -93,8 +93,11 @@ fn stored_plan(
     solvers: &[&dyn Solver<Complex64>],
 ) -> Plan {
     let unknowns = System::unknowns(scatterer);
-    let solver =
-        solvers.iter().map(|solver| solver.bytes(unknowns, rhs_count(model) as usize)).max().unwrap_or(0);
+    let solver = solvers
+        .iter()
+        .map(|solver| solver.bytes(unknowns, incident_waves(model) as usize))
+        .max()
+        .unwrap_or(0);
     let addresses = solvers.iter().map(|solver| solver.addresses()).max().unwrap_or(0);
     coupling(model.plan.clone(), scatterer, shadow)
         .hold(format!("the coupling of {unknowns} unknowns"), System::bytes(scatterer).into())
@@ -135,7 +138,7 @@ pub(super) fn is_stored(
     shadow: Shadow,
     solver: &dyn Solver<Complex64>,
 ) -> Result<bool, Error> {
-    wants_matrix(model, scatterer, shadow, (&[solver], EXPECTED * rhs_count(model)))
+    wants_matrix(model, scatterer, shadow, (&[solver], EXPECTED * incident_waves(model)))
 }
 
 /// The system for these solvers, from which so many products are expected.
