@@ -11,7 +11,7 @@ use crate::low_rank::{LowRank, inner, square};
 use fredholm_linop::Scalar;
 
 /// Blocks up to this many groups high and wide are computed whole before they are compressed.
-const SMALL: usize = 128;
+const MOST_WHOLE_GROUPS: usize = 128;
 /// Groups of which all rows are compared in the end.
 const CHECKS: usize = 6;
 /// Share of the block from one of them to the next; multiples of the golden ratio meet no pattern
@@ -19,7 +19,7 @@ const CHECKS: usize = 6;
 const STEP: f64 = 0.618_033_988_749_895;
 /// What is asked of the crosses, over the tolerance of the block: the rest is left to the
 /// truncation.
-const SHARE: f64 = 0.3;
+const CROSS_SHARE_OF_TOLERANCE: f64 = 0.3;
 
 /// Rows and columns of a block on demand.
 pub(crate) struct Block<'a, T: Scalar, E: Entries<T>> {
@@ -41,7 +41,7 @@ impl<'a, T: Scalar, E: Entries<T>> Block<'a, T, E> {
         [row_set, column_set]: [&'a E::Set; 2],
     ) -> Self {
         let mut block = Self { entries, rows, columns, row_set, column_set, whole: None };
-        if rows.len() * columns.len() <= SMALL * SMALL {
+        if rows.len() * columns.len() <= MOST_WHOLE_GROUPS * MOST_WHOLE_GROUPS {
             block.whole = Some(block.computed());
         }
         block
@@ -104,7 +104,7 @@ impl<'a, T: Scalar, E: Entries<T>> Block<'a, T, E> {
             if crosses.u.len() > most {
                 return None;
             }
-            next = crosses.step(row, SHARE * tolerance);
+            next = crosses.step(row, CROSS_SHARE_OF_TOLERANCE * tolerance);
         }
         let low = LowRank::truncated(crosses.u, crosses.v, tolerance);
         (low.rank <= most).then_some(low)

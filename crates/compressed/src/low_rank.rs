@@ -11,7 +11,7 @@ const SWEEPS: usize = 30;
 /// Product of two columns over the square of the Frobenius norm below which they are orthogonal:
 /// what is left of columns that depend on others shrinks with every rotation, and would underflow
 /// in the end.
-const NOTHING: f64 = 1e-32;
+const ORTHOGONAL_BELOW: f64 = 1e-32;
 
 /// U and V, column by column.
 #[derive(Clone, Debug)]
@@ -105,7 +105,7 @@ fn rotate<T: Scalar>(columns: &mut [Vec<T>]) -> Vec<Vec<T>> {
     let rank = columns.len();
     let unit = |j: usize| (0..rank).map(|i| if i == j { T::one() } else { T::zero() }).collect();
     let mut turns: Vec<Vec<T>> = (0..rank).map(unit).collect();
-    let nothing = NOTHING * columns.iter().map(|column| square(column)).sum::<f64>();
+    let nothing = ORTHOGONAL_BELOW * columns.iter().map(|column| square(column)).sum::<f64>();
     for _ in 0..SWEEPS {
         let mut largest = 0.0_f64;
         for p in 0..rank {

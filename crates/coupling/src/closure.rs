@@ -26,11 +26,11 @@ use thiserror::Error;
 
 /// Row sums of F that differ more from 1 are those of an open scene, unless their stated error is
 /// larger still.
-const OPEN: f64 = 0.01;
+const OPEN_SCENE_DEFECT: f64 = 0.01;
 /// Stated errors of a row by which a closed row may differ from 1.
 const STATED: f64 = 3.0;
 /// Largest |Σ_j F_ij − 1| that is left.
-const LEFT: f64 = 1e-13;
+const LARGEST_DEFECT_LEFT: f64 = 1e-13;
 /// Steps of Newton's method; a few suffice where there is a solution.
 const STEPS: usize = 60;
 /// Iterations of the conjugate gradients a step.
@@ -125,7 +125,7 @@ fn refuse_open(matrix: &PackedSymmetric<f64>, areas: &[f64], error: &[f64]) -> R
     for (row, (exchange, (area, &error))) in matrix.row_sums().iter().zip(areas.iter().zip(error)).enumerate()
     {
         let sum = exchange / area;
-        let allowed = OPEN.max(STATED * error);
+        let allowed = OPEN_SCENE_DEFECT.max(STATED * error);
         // A sum that is no number is refused as well.
         let near = (sum - 1.0).abs() <= allowed && sum > 0.0;
         if !near {
@@ -200,7 +200,7 @@ impl Dual<'_> {
         let mut multipliers = vec![0.0; self.areas.len()];
         let (mut value, mut gradient) = self.evaluate(&multipliers);
         for step in 0..STEPS {
-            if self.worst(&gradient).1 <= LEFT {
+            if self.worst(&gradient).1 <= LARGEST_DEFECT_LEFT {
                 return Ok((multipliers, step));
             }
             let direction = self.newton(&multipliers, &gradient);

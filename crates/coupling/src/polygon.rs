@@ -124,7 +124,7 @@ pub fn folded(patch: &Patch, u: f64, v: f64) -> (f64, f64) {
 mod tests {
     use super::*;
 
-    const SQUARE: [Vec3; 4] = [
+    const UNIT_SQUARE: [Vec3; 4] = [
         Vec3::new(0.0, 0.0, 0.0),
         Vec3::new(1.0, 0.0, 0.0),
         Vec3::new(1.0, 1.0, 0.0),
@@ -140,7 +140,7 @@ mod tests {
 
     fn clipped_area(point: Vec3, normal: Vec3) -> f64 {
         let mut inside = Vec::new();
-        clip(&SQUARE, HalfSpace::through(point, normal), 1e-14, &mut inside);
+        clip(&UNIT_SQUARE, HalfSpace::through(point, normal), 1e-14, &mut inside);
         area_vector(&inside).z
     }
 
@@ -156,10 +156,10 @@ mod tests {
         let plane = HalfSpace::through(Vec3::splat(0.4), normal);
         let opposite = HalfSpace { normal: -normal, offset: -plane.offset };
         let (mut above, mut below) = (Vec::new(), Vec::new());
-        assert_eq!(part(&SQUARE, plane, 1e-14, (&mut above, &mut below)), Side::Both);
+        assert_eq!(part(&UNIT_SQUARE, plane, 1e-14, (&mut above, &mut below)), Side::Both);
         for (found, half) in [(&above, plane), (&below, opposite)] {
             let mut clipped = Vec::new();
-            clip(&SQUARE, half, 1e-14, &mut clipped);
+            clip(&UNIT_SQUARE, half, 1e-14, &mut clipped);
             // Heights over opposite planes are rounded in different ways.
             let near = |(a, b): (&Vec3, &Vec3)| a.distance(*b) < 1e-15;
             assert!(
@@ -168,7 +168,7 @@ mod tests {
             );
         }
         let beside = |point: Vec3| HalfSpace::through(point, Vec3::X);
-        let mut side = |plane| part(&SQUARE, plane, 1e-14, (&mut above, &mut below));
+        let mut side = |plane| part(&UNIT_SQUARE, plane, 1e-14, (&mut above, &mut below));
         assert_eq!([side(beside(Vec3::X)), side(beside(Vec3::ZERO))], [Side::Below, Side::Above]);
     }
 

@@ -19,9 +19,9 @@ use fredholm_visibility::body::{Bodies, Body, Screen};
 use rayon::prelude::*;
 
 /// Heights below this part of the distance to the patch count as 0.
-const FLAT: f64 = 1e-12;
+const ZERO_HEIGHT: f64 = 1e-12;
 /// Room between the scene and the sky, in diagonals of the scene.
-const ROOM: f64 = 0.5;
+const SKY_MARGIN: f64 = 0.5;
 
 /// A place that receives, and the direction it looks in.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -107,7 +107,7 @@ impl Sight {
     fn factor(&mut self, receiver: &Receiver, patch: &Patch, occluders: &Occluders, bodies: &Bodies) -> f64 {
         let Receiver { point, normal } = *receiver;
         let plane = HalfSpace::through(patch.centroid(), patch.normal());
-        let flat = FLAT * (point.distance(patch.centroid()) + patch.diameter());
+        let flat = ZERO_HEIGHT * (point.distance(patch.centroid()) + patch.diameter());
         if plane.height(point) <= flat {
             return 0.0;
         }
@@ -137,7 +137,7 @@ impl Sight {
 /// # Errors
 /// [`MeshError`] for bounds that are not finite or hold a single point.
 pub fn sky(bounds: Bounds) -> Result<Vec<Patch>, MeshError> {
-    let room = Vec3::splat(ROOM * bounds.diagonal());
+    let room = Vec3::splat(SKY_MARGIN * bounds.diagonal());
     let (low, high) = (bounds.min - room, bounds.max + room);
     let corner = |k: usize| {
         let pick = |bit: usize, low: f64, high: f64| if k & bit == 0 { low } else { high };

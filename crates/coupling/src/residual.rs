@@ -37,17 +37,17 @@ pub const DRAWS: usize = 4;
 const FREE: usize = 1 << 17;
 /// Points per element where nothing stands between, so that a form factor costs as much as an
 /// exchange, and where it costs a small part of one.
-const OPEN: f64 = 0.25;
+const POINTS_IN_THE_OPEN: f64 = 0.25;
 const BLOCKED: f64 = 0.5;
 /// Bodies from which on looking through all of them costs more than everything else of a form
 /// factor.
-const MANY: f64 = 256.0;
+const MANY_BODIES: f64 = 256.0;
 /// Fewest elements that are drawn.
-const FEWEST: usize = 32;
+const FEWEST_ELEMENTS: usize = 32;
 /// Most points along a side of an element.
-const SIDE: usize = 8;
+const MOST_POINTS_A_SIDE: usize = 8;
 /// Share of the mean irradiance by which elements count at least when they are drawn.
-const DARK: f64 = 0.1;
+const DARK_SHARE: f64 = 0.1;
 /// Elements whose rows are in memory at once, of up to so many bands; of more bands fewer, but
 /// some for each thread.
 const CHUNK: usize = 64;
@@ -243,12 +243,12 @@ impl Constants<'_> {
     /// two ends of a diagonal.
     fn choose(&self, points: usize) -> (Vec<Chosen>, usize) {
         let n = self.patches.len();
-        let side = ((points as f64 / n as f64).sqrt() as usize).min(SIDE);
+        let side = ((points as f64 / n as f64).sqrt() as usize).min(MOST_POINTS_A_SIDE);
         if side >= 2 {
             let all = (0..n).map(|element| Chosen { element, times: 1.0, draw: 0, turn: 0 });
             return (all.collect(), side);
         }
-        (self.draw((points / 2).max(FEWEST)), 1)
+        (self.draw((points / 2).max(FEWEST_ELEMENTS)), 1)
     }
 
     /// About so many elements, drawn in proportion to the light that they reflect.
@@ -281,7 +281,7 @@ impl Constants<'_> {
             if power > 0.0 {
                 let mean = power / area;
                 for (i, weight) in weights.iter_mut().enumerate() {
-                    let light = self.irradiance.row(i)[band] + DARK * mean;
+                    let light = self.irradiance.row(i)[band] + DARK_SHARE * mean;
                     let own = self.elements[i].exposed * self.reflectance.row(i)[band] * light / power;
                     *weight = own.max(*weight);
                 }
@@ -310,7 +310,7 @@ impl Chosen {
 /// Points that are looked from, among so many elements and bodies.
 fn points(elements: usize, bodies: usize) -> usize {
     let n = elements.max(1) as f64;
-    let share = if bodies == 0 { OPEN } else { BLOCKED / (1.0 + bodies as f64 / MANY) };
+    let share = if bodies == 0 { POINTS_IN_THE_OPEN } else { BLOCKED / (1.0 + bodies as f64 / MANY_BODIES) };
     (FREE / elements.max(1)).max((share * n) as usize)
 }
 

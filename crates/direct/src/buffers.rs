@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 /// Rows or columns that are packed at a time.
 const DEPTH: u64 = 512;
 /// Least size that faer takes the last cache for, and its multiple of the one before.
-const LEAST: u64 = 2 << 20;
+const LEAST_CACHE_BYTES: u64 = 2 << 20;
 const MULTIPLE: u64 = 4;
 
 /// Bytes that products of matrices with `dim` rows of entries of `entry` bytes touch.
@@ -32,7 +32,7 @@ fn last_cache(folder: &Path) -> u64 {
     let of = |level: u64| caches.iter().filter_map(move |cache| sizes(cache, level));
     let last: u64 = of(3).map(|[size, sharing]| size / sharing).sum();
     let second = of(2).map(|[size, _]| size).max().unwrap_or(0);
-    last.max(MULTIPLE * second).max(LEAST)
+    last.max(MULTIPLE * second).max(LEAST_CACHE_BYTES)
 }
 
 /// Bytes of a cache of this level, and how many processors share it.
@@ -100,6 +100,6 @@ mod tests {
         let found = last_cache(&root);
         fs::remove_dir_all(&root).unwrap();
         assert_eq!(found, 32 << 20);
-        assert_eq!(last_cache(&root), LEAST);
+        assert_eq!(last_cache(&root), LEAST_CACHE_BYTES);
     }
 }

@@ -10,7 +10,7 @@ use fredholm_mesh::{Patch, Vec3};
 /// Newton steps at most: they double the digits each.
 const STEPS: usize = 20;
 /// Step below which (u, v) stands.
-const SMALL: f64 = 1e-14;
+const SMALLEST_STEP: f64 = 1e-14;
 /// Distance of a corner from that of the parallelogram, relative to its diameter, that is taken for
 /// rounding.
 const SKEW: f64 = 1e-14;
@@ -55,7 +55,7 @@ fn newton(patch: &Patch, x: Vec3) -> (f64, f64) {
         let (r, area) = (x - patch.point(u, v), along_u.cross(along_v).dot(n));
         let (du, dv) = (r.cross(along_v).dot(n) / area, along_u.cross(r).dot(n) / area);
         (u, v) = (u + du, v + dv);
-        if du.abs().max(dv.abs()) < SMALL {
+        if du.abs().max(dv.abs()) < SMALLEST_STEP {
             break;
         }
     }

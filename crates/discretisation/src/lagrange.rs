@@ -17,7 +17,7 @@ use crate::cholesky::Cholesky;
 use fredholm_quadrature::{PlanePoint, gauss_legendre, symmetric_triangle, tensor_quad};
 
 /// Most nodes of an element: those of Q2.
-pub const MOST: usize = 9;
+pub const MOST_NODES: usize = 9;
 /// Highest degree.
 pub const HIGHEST: usize = 2;
 
@@ -95,7 +95,7 @@ impl Lagrange {
 
     /// φ_a(u, v) for all a; entries beyond [`len`](Self::len) are 0.
     #[must_use]
-    pub fn values(&self, u: f64, v: f64) -> [f64; MOST] {
+    pub fn values(&self, u: f64, v: f64) -> [f64; MOST_NODES] {
         match &self.form {
             Form::Product(line) => product_values(line, u, v),
             Form::Triangle(degree, None) => even_values(*degree, u, v),
@@ -104,8 +104,8 @@ impl Lagrange {
     }
 }
 
-fn turned(change: &[f64], count: usize, even: [f64; MOST]) -> [f64; MOST] {
-    let mut values = [0.0; MOST];
+fn turned(change: &[f64], count: usize, even: [f64; MOST_NODES]) -> [f64; MOST_NODES] {
+    let mut values = [0.0; MOST_NODES];
     for (value, row) in values.iter_mut().zip(change.chunks_exact(count)) {
         *value = row.iter().zip(even).map(|(c, psi)| c * psi).sum();
     }
@@ -116,7 +116,7 @@ fn turned(change: &[f64], count: usize, even: [f64; MOST]) -> [f64; MOST] {
 fn inverse_transpose(nodes: &[PlanePoint], degree: usize) -> Option<Vec<f64>> {
     let n = nodes.len();
     let rows: Vec<_> = nodes.iter().map(|p| even_values(degree, p.u, p.v)).collect();
-    let dot = |a: &[f64; MOST], b: &[f64; MOST]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+    let dot = |a: &[f64; MOST_NODES], b: &[f64; MOST_NODES]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
     let gram = rows.iter().flat_map(|a| rows.iter().map(move |b| dot(a, b))).collect();
     let mut change: Vec<f64> = rows.iter().flat_map(|row| row[..n].to_vec()).collect();
     Cholesky::new(n, gram)?.solve(&mut change, n);
@@ -140,9 +140,9 @@ fn even_triangle(degree: usize) -> Vec<PlanePoint> {
 }
 
 /// 1, λ_i, or λ_i (2 λ_i − 1) and 4 λ_i λ_j.
-fn even_values(degree: usize, u: f64, v: f64) -> [f64; MOST] {
+fn even_values(degree: usize, u: f64, v: f64) -> [f64; MOST_NODES] {
     let w = 1.0 - u - v;
-    let mut values = [0.0; MOST];
+    let mut values = [0.0; MOST_NODES];
     match degree {
         0 => values[0] = 1.0,
         1 => values[..3].copy_from_slice(&[w, u, v]),
@@ -155,10 +155,10 @@ fn even_values(degree: usize, u: f64, v: f64) -> [f64; MOST] {
     values
 }
 
-fn product_values(line: &[f64], u: f64, v: f64) -> [f64; MOST] {
+fn product_values(line: &[f64], u: f64, v: f64) -> [f64; MOST_NODES] {
     let n = line.len();
     let (along_u, along_v) = (line_values(line, u), line_values(line, v));
-    let mut values = [0.0; MOST];
+    let mut values = [0.0; MOST_NODES];
     for (at, value) in values[..n * n].iter_mut().enumerate() {
         *value = along_u[at / n] * along_v[at % n];
     }

@@ -6,7 +6,7 @@
 //! joined. P. G. Ciarlet, *The Finite Element Method for Elliptic Problems*, North-Holland 1978,
 //! section 2.3.
 
-use crate::lagrange::{Lagrange, MOST, Nodes};
+use crate::lagrange::{Lagrange, MOST_NODES, Nodes};
 use crate::{DiscretisationError, Site, Surface};
 use fredholm_linop::MultiVector;
 use fredholm_mesh::Vec3;
@@ -135,9 +135,9 @@ impl<'a> Space<'a> {
     }
 
     /// Σ over points (u, v, w) of element `i` of w φ_a(u, v), for all a.
-    pub(crate) fn moments(&self, i: usize, points: &[fredholm_quadrature::PlanePoint]) -> [f64; MOST] {
+    pub(crate) fn moments(&self, i: usize, points: &[fredholm_quadrature::PlanePoint]) -> [f64; MOST_NODES] {
         let basis = self.basis(i);
-        let mut sums = [0.0; MOST];
+        let mut sums = [0.0; MOST_NODES];
         for p in points {
             let values = basis.values(p.u, p.v);
             sums.iter_mut().zip(values).for_each(|(sum, phi)| *sum += p.weight * phi);

@@ -24,7 +24,7 @@ const ENDS: [f64; 2] = [-0.416_667, 0.583_33];
 /// Speed of light, m/s.
 const SPEED_OF_LIGHT: f64 = 299_792_458.0;
 /// Longest edge unless asked for, m: a third of the half thickness.
-const LONGEST: f64 = 0.006;
+const USUAL_EDGE: f64 = 0.006;
 /// Edges a wavelength unless asked for.
 const PER_WAVELENGTH: f64 = 10.0;
 /// Steps by which lengths of arcs are found.
@@ -50,7 +50,7 @@ impl Almond {
     #[must_use]
     pub fn files(&self) -> Files {
         let wavelength = SPEED_OF_LIGHT / self.frequency;
-        let edge = self.edge.unwrap_or(LONGEST.min(wavelength / PER_WAVELENGTH));
+        let edge = self.edge.unwrap_or(USUAL_EDGE.min(wavelength / PER_WAVELENGTH));
         let body = body(edge);
         let obj = wavefront([("almond".to_owned(), &[body][..])]);
         let scene = format!(

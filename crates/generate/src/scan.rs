@@ -12,7 +12,7 @@ use crate::room::shell;
 /// Height of the figure, m.
 const HEIGHT: f64 = 1.8;
 /// Side and height of the room, m.
-const ROOM: [f64; 3] = [4.0, 4.0, 3.0];
+const ROOM_SIZE: [f64; 3] = [4.0, 4.0, 3.0];
 
 /// A creased figure that stands in a closed room with a lamp.
 #[derive(Clone, Debug)]
@@ -47,7 +47,7 @@ impl Scan {
              [materials.plaster]\nreflectance = 0.7\n\n\
              {}\n\
              [[surface]]\nname = \"scan\"\nobj = {{ file = \"scan.obj\" }}\n",
-            shell(ROOM, 6),
+            shell(ROOM_SIZE, 6),
         );
         Files { name: "scan.toml".to_owned(), scene, others: vec![("scan.obj".to_owned(), obj)] }
     }
@@ -58,7 +58,7 @@ impl Scan {
         let columns = ((self.triangles as f64 / 2.0).sqrt() as usize).max(3);
         let rows = (self.triangles / (2 * columns) + 1).max(3);
         let phase = [dice.between(0.0, TAU), dice.between(0.0, TAU)];
-        let foot = DVec3::new(0.5 * ROOM[0], 0.5 * ROOM[1], 0.0);
+        let foot = DVec3::new(0.5 * ROOM_SIZE[0], 0.5 * ROOM_SIZE[1], 0.0);
         let edge = HEIGHT / rows as f64;
         let mut corners = vec![foot];
         for row in 1..rows {

@@ -20,13 +20,13 @@ const STEPS: usize = 40;
 const POWER: f64 = 2.0 / 3.0;
 /// Mean change of the factors that is small enough: least and most. Single leaves that move on do
 /// not matter.
-const NEAR: [f64; 2] = [1e-7, 1e-4];
+const SETTLED_CHANGE: [f64; 2] = [1e-7, 1e-4];
 /// Times that what is above is cut, at most, and the relative excess that one cut takes for good.
 const CUTS: usize = 4;
-const UNCUT: f64 = 5e-3;
+const SMALL_EXCESS: f64 = 5e-3;
 /// A leaf whose links bring much too little lacks some of them: scaling does not stand in for
 /// those.
-const MOST: f64 = 1.25;
+const LARGEST_FACTOR: f64 = 1.25;
 
 /// What a row sum may be, m².
 #[derive(Clone, Copy, Debug)]
@@ -54,7 +54,7 @@ impl Aim {
         if row <= 0.0 {
             return scale;
         }
-        let next = (scale * (self.wanted(scale, row) / row).powf(POWER)).min(MOST);
+        let next = (scale * (self.wanted(scale, row) / row).powf(POWER)).min(LARGEST_FACTOR);
         // On the way back a factor stops at 1.
         match (scale < 1.0 && row < self.most, scale > 1.0 && row > self.least) {
             (true, _) => next.min(1.0),
@@ -78,9 +78,8 @@ impl Wholes<'_> {
         let mut sums = vec![0.0; self.aims.len()];
         self.of_leaf.iter().zip(rows).for_each(|(&whole, row)| sums[whole as usize] += row);
         let next = |((&factor, &sum), aim): ((&f64, &f64), &Option<Aim>)| match aim {
-            Some(aim) if sum > 0.0 => {
-                (factor * (sum.clamp(aim.least, aim.most) / sum).powf(POWER)).clamp(MOST.recip(), MOST)
-            }
+            Some(aim) if sum > 0.0 => (factor * (sum.clamp(aim.least, aim.most) / sum).powf(POWER))
+                .clamp(LARGEST_FACTOR.recip(), LARGEST_FACTOR),
             _ => factor,
         };
         factors.iter().zip(&sums).zip(&self.aims).map(next).collect()
@@ -99,7 +98,8 @@ pub(crate) fn balance(operator: &mut HierarchicalOperator, aims: &[Aim], wholes:
     };
     operator.set_scale(own.clone());
     let exact = aims.iter().any(|aim| aim.least > 0.0);
-    let tolerance = if exact { NEAR[0] } else { tolerance.clamp(NEAR[0], NEAR[1]) };
+    let tolerance =
+        if exact { SETTLED_CHANGE[0] } else { tolerance.clamp(SETTLED_CHANGE[0], SETTLED_CHANGE[1]) };
     let together = wholes.aims.iter().any(Option::is_some);
     for _ in 0..STEPS {
         let mut done = true;
@@ -137,7 +137,7 @@ pub(crate) fn balance(operator: &mut HierarchicalOperator, aims: &[Aim], wholes:
         });
         let scale = cut.collect();
         operator.set_scale(scale);
-        if most <= UNCUT {
+        if most <= SMALL_EXCESS {
             break;
         }
     }
@@ -166,7 +166,7 @@ mod tests {
         let wholes = Wholes { of_leaf: &[0, 1], aims: aims.to_vec() };
         for rows in [[0.5, 0.5], [-0.1, 0.0], [1e-300, 1e300]] {
             let next = wholes.next(&[1.0, 1.0], &rows);
-            let within = |factor: &f64| (MOST.recip()..=MOST).contains(factor);
+            let within = |factor: &f64| (LARGEST_FACTOR.recip()..=LARGEST_FACTOR).contains(factor);
             assert!(next.iter().all(within), "{rows:?}: {next:?}");
         }
     }

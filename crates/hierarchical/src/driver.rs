@@ -33,7 +33,7 @@ use std::sync::Arc;
 /// Factor from one threshold to the next.
 pub(crate) const STEP: f64 = 0.3;
 /// First threshold, over the accuracy.
-const FIRST: f64 = 4.0;
+const FIRST_THRESHOLD: f64 = 4.0;
 /// Stated error over the last change.
 pub(crate) const CONFIDENCE: f64 = 2.0;
 /// Least change that is believed, over that of the round before: a smaller one is chance.
@@ -49,14 +49,14 @@ const LEAST_RESIDUAL: f64 = 1e-13;
 /// Tolerance of exchanges, over the accuracy.
 const EXCHANGE: f64 = 0.1;
 /// Least area of an element, over that of the scene.
-const LEAST: f64 = 1e-10;
+const LEAST_AREA: f64 = 1e-10;
 
 /// What row sums may exceed 1 by where it is not known whether something leaves: cutting off all
 /// that is above, and adding nothing to what is below, would lose power.
-const SLACK: f64 = 0.04;
+const ROW_SUM_SLACK: f64 = 0.04;
 /// Mean relative change of the factors at which scaling ends, over the least slack and the
 /// accuracy: what is left to be cut is small beside them.
-const UNCUT: f64 = 0.05;
+const SCALED_ENOUGH: f64 = 0.05;
 /// Row sum up to which a leaf of a closed scene is not believed to lack links alone.
 const LEAST_ROW: f64 = 0.7;
 
@@ -69,13 +69,13 @@ const HIDDEN: f64 = 0.25;
 const OFTEN: f64 = 4.0;
 /// Standard errors from which on a difference between rays and links of the whole scene is taken
 /// for a fault of the links.
-const CLEAR: f64 = 2.0;
+const CLEAR_STANDARD_ERRORS: f64 = 2.0;
 /// Least part of the differences between rays and links that is worth taking for faults of the
 /// links.
 const LEAST_PART: f64 = 0.2;
 
 /// Occluders that are put together to bodies, at most.
-const MANY: usize = 2048;
+const MOST_JOINED_OCCLUDERS: usize = 2048;
 
 /// What is solved.
 #[derive(Clone, Copy, Debug)]
@@ -239,7 +239,7 @@ pub fn solve(
     with_run(problem, options, solvers, watch, |run| {
         let mut state = match state {
             Some(state) => run.taken(state)?,
-            None => State::new(problem, options.accuracy * FIRST)?,
+            None => State::new(problem, options.accuracy * FIRST_THRESHOLD)?,
         };
         let mut system = run.resumed(&state)?;
         loop {
@@ -288,7 +288,7 @@ fn with_run<T>(
     f: impl FnOnce(&mut Run) -> Result<T, HierarchyError>,
 ) -> Result<T, HierarchyError> {
     let patches: Vec<&Patch> = problem.mesh.patches().collect();
-    let many = problem.occluders.len() > MANY;
+    let many = problem.occluders.len() > MOST_JOINED_OCCLUDERS;
     let bodies = if many { Bodies::default() } else { Bodies::new(problem.occluders, &patches, &[]) };
     let reflectances = problem.surfaces.reflectance.as_slice();
     let exposure = Exposure::new(problem.mesh, reflectances.iter().copied().fold(0.0, f64::max))?;
@@ -393,7 +393,7 @@ impl Run<'_> {
             let reflectances = self.problem.surfaces.reflectance.row(root as usize);
             let reflectance = reflectances.iter().copied().fold(0.0, f64::max);
             // Half of what would make the system indefinite.
-            SLACK.min(0.5 * (1.0 / reflectance - 1.0))
+            ROW_SUM_SLACK.min(0.5 * (1.0 / reflectance - 1.0))
         };
         let aim = |((size, &root), row): ((&Extent, &u32), f64)| {
             if self.exposure.opening().loses_nothing(root as usize) && row > LEAST_ROW * size.exposed {
@@ -407,8 +407,8 @@ impl Run<'_> {
         let kept = kept_rows(&aims, &rows, roots, tree.roots().len());
         let told = self.whole_rows(tree, &rows, roots);
         let wholes = told.into_iter().zip(kept).map(|(told, kept)| told.or(kept)).collect();
-        let least = (0..tree.roots().len() as u32).map(slack).fold(SLACK, f64::min);
-        let uncut = UNCUT * least * self.options.accuracy;
+        let least = (0..tree.roots().len() as u32).map(slack).fold(ROW_SUM_SLACK, f64::min);
+        let uncut = SCALED_ENOUGH * least * self.options.accuracy;
         balance(operator, &aims, &Wholes { of_leaf: roots, aims: wholes }, uncut);
     }
 
@@ -544,7 +544,7 @@ impl Run<'_> {
         Limits {
             threshold: state.threshold,
             linear: self.options.linear,
-            least_area: LEAST * area,
+            least_area: LEAST_AREA * area,
             tolerance: EXCHANGE * self.options.accuracy,
             bytes: self.options.bytes,
             bands: self.problem.surfaces.exitance.rhs_count(),
@@ -791,7 +791,8 @@ fn lost_together(
         variance += error * error;
         lost += (area(element) - sum).abs();
     }
-    let clear = difference * difference > CLEAR * CLEAR * variance && lost > 0.0;
+    let clear =
+        difference * difference > CLEAR_STANDARD_ERRORS * CLEAR_STANDARD_ERRORS * variance && lost > 0.0;
     clear.then(|| difference * (1.0 - variance / (difference * difference)) / lost)
 }
 

@@ -4,7 +4,7 @@
 //! Before there is a solution, every element is taken to receive the ambient irradiance Σ A M/Σ A
 //! (1 − ρ), which a closed room of one reflectance has.
 
-use crate::oracle::{FLOOR, Light};
+use crate::oracle::{LEAST_IRRADIANCE_SHARE, Light};
 use crate::tree::Tree;
 use crate::{HierarchicalOperator, Link};
 use fredholm_linop::MultiVector;
@@ -66,11 +66,11 @@ impl Light {
                 self.nodes[index][2] = 1.0;
             } else if node.root().is_none() {
                 let part = |&child: &u32| {
-                    let level = self.nodes[child as usize][2].min(1.0) + FLOOR;
+                    let level = self.nodes[child as usize][2].min(1.0) + LEAST_IRRADIANCE_SHARE;
                     tree.nodes()[child as usize].area() / node.area() / level
                 };
                 self.nodes[index][2] =
-                    (node.children().iter().map(part).sum::<f64>().recip() - FLOOR).max(0.0);
+                    (node.children().iter().map(part).sum::<f64>().recip() - LEAST_IRRADIANCE_SHARE).max(0.0);
             }
         }
     }

@@ -17,9 +17,9 @@ use std::ops::Range;
 /// amplifies what they do not know.
 const RAYS: [usize; 2] = [1 << 16, 1 << 20];
 /// Reflectance from which on that is so.
-const BRIGHT: f64 = 0.85;
+const BRIGHT_REFLECTANCE: f64 = 0.85;
 /// Rays of an element at first, at least.
-const FIRST: usize = 36;
+const FIRST_RAYS: usize = 36;
 /// Rays of an element that tell its row sum where the scene loses something, at least; and of any,
 /// at most.
 const ROW: [usize; 2] = [128, 16384];
@@ -56,7 +56,7 @@ impl Opening {
     /// Sends the rays; `lit` holds the elements in order, `reflectance` is the largest one.
     pub fn new(patches: &[&Patch], lit: &Occluders, reflectance: f64) -> Self {
         let each = |rays: usize, least: usize| (rays / patches.len().max(1)).clamp(least, ROW[1]);
-        let first = each(RAYS[0], FIRST);
+        let first = each(RAYS[0], FIRST_RAYS);
         let mut rays = vec![Rays::default(); patches.len()];
         let send_all = |rays: &mut Vec<Rays>, numbers: Range<usize>| {
             rays.par_iter_mut().enumerate().for_each(|(k, of)| send(k, of, numbers.clone(), patches, lit));
@@ -68,7 +68,7 @@ impl Opening {
         let sum = |of: fn(&Rays) -> u32| inside().map(|rays| u64::from(of(rays))).sum::<u64>() as f64;
         let closed = sum(|rays| rays.lost()) <= SEAMS * sum(|rays| rays.all - rays.buried);
         if !closed {
-            let rows = each(RAYS[usize::from(reflectance >= BRIGHT)], ROW[0]);
+            let rows = each(RAYS[usize::from(reflectance >= BRIGHT_REFLECTANCE)], ROW[0]);
             send_all(&mut rays, first..rows);
         }
         Self { rays, closed }

@@ -29,9 +29,9 @@ const BURIED: f64 = 1e-9;
 const NUMBERS: usize = 4;
 
 /// The bit of an end that says that the receiver is the second node of its link.
-const SECOND: u32 = 1 << 31;
+const RECEIVER_IS_SECOND: u32 = 1 << 31;
 /// Links that the ends can number.
-pub(crate) const MOST_LINKS: usize = SECOND as usize;
+pub(crate) const MOST_LINKS: usize = RECEIVER_IS_SECOND as usize;
 
 /// G on the leaves of a tree.
 #[derive(Clone, Debug)]
@@ -60,7 +60,7 @@ impl HierarchicalOperator {
         let mut next = starts.clone();
         let mut ends = vec![0; 2 * links.len()];
         for (number, link) in (0..).zip(links.iter()) {
-            for (to, side) in [(link.a, 0), (link.b, SECOND)] {
+            for (to, side) in [(link.a, 0), (link.b, RECEIVER_IS_SECOND)] {
                 ends[next[to as usize]] = number | side;
                 next[to as usize] += 1;
             }
@@ -122,7 +122,9 @@ impl HierarchicalOperator {
     /// The links over which a node receives, each with the side on which the node is.
     fn received(&self, node: usize) -> impl Iterator<Item = (&Link, usize)> {
         let ends = &self.ends[self.starts[node]..self.starts[node + 1]];
-        ends.iter().map(|end| (&self.links[(end & !SECOND) as usize], usize::from(end & SECOND != 0)))
+        ends.iter().map(|end| {
+            (&self.links[(end & !RECEIVER_IS_SECOND) as usize], usize::from(end & RECEIVER_IS_SECOND != 0))
+        })
     }
 
     /// Means and moments of all nodes of values on the leaves, each times a factor.

@@ -23,7 +23,7 @@ use crate::tree::{Node, Tree};
 /// Weight of deviations within a face.
 const DETAIL: f64 = 0.2;
 /// Share of the mean irradiance that counts as present everywhere: nothing is resolved below it.
-pub(crate) const FLOOR: f64 = 0.01;
+pub(crate) const LEAST_IRRADIANCE_SHARE: f64 = 0.01;
 
 /// What is known of the light on the nodes.
 #[derive(Clone, Debug)]
@@ -90,7 +90,9 @@ impl Oracle<'_> {
     fn errors(&self, p: u32, q: u32, pair: &Candidate, side: usize) -> [f64; 3] {
         let (node, [_, _, level]) = (self.node(p), self.light.nodes[p as usize]);
         let [brightness, contrast, _] = self.light.nodes[q as usize];
-        let factor = pair.open / node.area() / (FLOOR + (1.0 - FLOOR) * level.min(1.0));
+        let factor = pair.open
+            / node.area()
+            / (LEAST_IRRADIANCE_SHARE + (1.0 - LEAST_IRRADIANCE_SHARE) * level.min(1.0));
         let [mean, detail] = match &self.light.weights {
             None => self.weights(node),
             Some(weights) => self.weights(node).map(|weight| weight * weights[p as usize]),

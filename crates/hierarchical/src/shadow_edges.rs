@@ -12,7 +12,7 @@ use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::body::{Bodies, Body, Edge, Face};
 
 /// Height of what casts a shadow, over that of the corner of the lamp, at most.
-const BELOW: f64 = 1.0 - 1e-6;
+const MOST_CASTER_HEIGHT: f64 = 1.0 - 1e-6;
 /// Difference of heights, over that of the corner of the lamp, below which an edge is level.
 const LEVEL: f64 = 1e-14;
 
@@ -43,7 +43,7 @@ pub fn shadow_edges(lamps: &[Patch], bodies: &Bodies, onto: &Patch) -> Vec<[Vec3
 /// The shadow of an edge from a corner of a lamp, where it is on the outline.
 fn of_corner(plane: &Face, lamp: Vec3, body: &Body, edge: &Edge, flat: f64) -> Option<[Vec3; 2]> {
     let looks = edge.faces.map(|face| body.faces()[face as usize].height(lamp) > flat);
-    let [a, b] = between(plane, body.ends(edge), BELOW * plane.height(lamp))?;
+    let [a, b] = between(plane, body.ends(edge), MOST_CASTER_HEIGHT * plane.height(lamp))?;
     (looks[0] != looks[1]).then_some(())?;
     Some([project(plane, lamp, a)?, project(plane, lamp, b)?])
 }
@@ -58,7 +58,7 @@ fn of_edge(plane: &Face, lamp: [Vec3; 2], corner: Vec3) -> Option<[Vec3; 2]> {
 /// point that is not between, or a lamp in the plane.
 fn project(plane: &Face, lamp: Vec3, x: Vec3) -> Option<Vec3> {
     let (high, low) = (plane.height(lamp), plane.height(x));
-    (high > 0.0 && low >= 0.0 && low <= BELOW * high).then(|| lamp.lerp(x, high / (high - low)))
+    (high > 0.0 && low >= 0.0 && low <= MOST_CASTER_HEIGHT * high).then(|| lamp.lerp(x, high / (high - low)))
 }
 
 /// The part of a segment from height 0 up to some height.

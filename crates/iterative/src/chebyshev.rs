@@ -36,7 +36,7 @@ const NAME: &str = "chebyshev";
 /// Steps of the Lanczos process.
 const STEPS: usize = 24;
 /// Share of its width by which the interval is widened on either side.
-const MARGIN: f64 = 0.05;
+const INTERVAL_MARGIN: f64 = 0.05;
 
 /// Chebyshev iteration.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -116,7 +116,7 @@ impl Chebyshev {
             if low <= 0.0 {
                 return Err(SolveError::Indefinite { solver: NAME, rhs }.into());
             }
-            let margin = MARGIN * (high - low);
+            let margin = INTERVAL_MARGIN * (high - low);
             intervals.push(((low - margin).max(0.5 * low), high + margin));
         }
         Ok(intervals)

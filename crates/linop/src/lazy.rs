@@ -43,7 +43,7 @@ use rayon::prelude::*;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Columns computed at a time by an application, each by one thread.
-const TOGETHER: usize = 32;
+const COLUMNS_TOGETHER: usize = 32;
 /// Marks a column that is not kept.
 const NONE: usize = usize::MAX;
 
@@ -167,8 +167,8 @@ impl<T: Scalar> LinearOperator<T> for Lazy<'_, T> {
         y.fill(T::zero());
         let needed: Vec<usize> =
             (0..x.dim()).filter(|&j| x.row(j).iter().any(|&value| value != T::zero())).collect();
-        let mut columns = vec![vec![T::zero(); self.dim()]; TOGETHER.min(needed.len())];
-        for group in needed.chunks(TOGETHER) {
+        let mut columns = vec![vec![T::zero(); self.dim()]; COLUMNS_TOGETHER.min(needed.len())];
+        for group in needed.chunks(COLUMNS_TOGETHER) {
             columns.par_iter_mut().zip(group).for_each(|(column, &j)| self.read(j, column));
             for (column, &j) in columns.iter().zip(group) {
                 let rhs_count = y.rhs_count().max(1);

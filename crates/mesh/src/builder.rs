@@ -8,7 +8,7 @@ use crate::solid::Solid;
 use crate::{Cutting, MeshError, Patch, Shape, Vec3};
 
 /// Largest number of elements: indices are stored in 32 bits.
-pub(crate) const LIMIT: usize = u32::MAX as usize;
+pub(crate) const MOST_ELEMENTS: usize = u32::MAX as usize;
 
 /// Collects surfaces, faces and occluders into a [`Mesh`].
 ///
@@ -138,7 +138,7 @@ impl MeshBuilder {
 
     fn check_room(&self, more: u128) -> Result<(), MeshError> {
         let total = more.saturating_add(self.mesh.elements.len() as u128);
-        if total > LIMIT as u128 { Err(MeshError::TooLarge { limit: LIMIT }) } else { Ok(()) }
+        if total > MOST_ELEMENTS as u128 { Err(MeshError::TooLarge { limit: MOST_ELEMENTS }) } else { Ok(()) }
     }
 }
 

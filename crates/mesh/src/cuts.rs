@@ -12,7 +12,7 @@ use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 use crate::Vec3;
 
 /// Distance, over the size of the polygon, below which two places are one.
-const NEAR: f64 = 1e-7;
+const SAME_PLACE_DISTANCE: f64 = 1e-7;
 /// Area, over that of the polygon, below which a triangle is one of rounding.
 const SLIVER: f64 = 1e-12;
 /// Sine of the angle between segments below which they do not cross but lie beside or on each
@@ -28,7 +28,7 @@ const PARALLEL: f64 = 1e-12;
 #[must_use]
 pub fn cut_polygon(corners: &[Vec3], normal: Vec3, segments: &[[Vec3; 2]]) -> Vec<[Vec3; 3]> {
     let Some(plane) = Plane::new(corners, normal) else { return Vec::new() };
-    let near = NEAR * plane.size;
+    let near = SAME_PLACE_DISTANCE * plane.size;
     let parts: Vec<[Vec3; 2]> =
         segments.iter().filter_map(|&segment| part_inside(corners, normal, segment)).collect();
     let places = places(corners, normal, &parts, near);
@@ -139,7 +139,7 @@ pub fn part_inside(corners: &[Vec3], normal: Vec3, [from, to]: [Vec3; 2]) -> Opt
 mod tests {
     use super::*;
 
-    const SQUARE: [Vec3; 5] = [
+    const UNIT_SQUARE: [Vec3; 5] = [
         Vec3::new(0.0, 0.0, 2.0),
         Vec3::new(0.5, 0.0, 2.0),
         Vec3::new(1.0, 0.0, 2.0),
@@ -163,7 +163,7 @@ mod tests {
             [at(0.0, 0.0), at(1.0, 1.0)],
             [at(2.0, 2.0), at(3.0, 0.0)],
         ];
-        let triangles = cut_polygon(&SQUARE, Vec3::Z, &segments);
+        let triangles = cut_polygon(&UNIT_SQUARE, Vec3::Z, &segments);
         assert!((triangles.iter().map(area).sum::<f64>() - 1.0).abs() < 1e-12);
         assert!(triangles.iter().all(|triangle| area(triangle) > 0.0) && triangles.len() >= 10);
         for [from, to] in &segments[..3] {
@@ -199,7 +199,7 @@ mod tests {
                 Some(&[a, b]) if kind == 1 => [a + moved, b],
                 Some(&[a, b]) if kind == 2 => [a + moved, b + moved],
                 Some(&[a, b]) if kind == 3 => [a.lerp(b, unit()) + moved, any[1]],
-                _ if kind == 4 => [SQUARE[3] + moved, any[1]],
+                _ if kind == 4 => [UNIT_SQUARE[3] + moved, any[1]],
                 _ if kind == 5 => [at(unit(), little), at(unit(), 0.0)],
                 _ => any,
             };
@@ -212,11 +212,11 @@ mod tests {
     fn segments_that_nearly_coincide_cut_the_polygon_all_the_same() {
         for seed in 0..2_000 {
             let segments = tangled(seed);
-            let triangles = cut_polygon(&SQUARE, Vec3::Z, &segments);
+            let triangles = cut_polygon(&UNIT_SQUARE, Vec3::Z, &segments);
             let sum = triangles.iter().map(area).sum::<f64>();
             assert!((sum - 1.0).abs() < 1e-6, "{seed}: the triangles fill {sum}");
             let [a, b] = segments[0];
-            let Some([a, b]) = part_inside(&SQUARE, Vec3::Z, [a, b]) else { continue };
+            let Some([a, b]) = part_inside(&UNIT_SQUARE, Vec3::Z, [a, b]) else { continue };
             let height = |x: Vec3| (b - a).cross(x - a).z / a.distance(b);
             let middle = |triangle: &[Vec3; 3]| (triangle[0] + triangle[1] + triangle[2]) / 3.0;
             let beside =
@@ -237,9 +237,9 @@ mod tests {
     #[test]
     fn what_touches_nothing_cuts_nothing() {
         let away = [[at(2.0, 0.0), at(2.0, 1.0)], [at(0.0, 0.0), at(1.0, 0.0)]];
-        let plain = cut_polygon(&SQUARE, Vec3::Z, &[]);
+        let plain = cut_polygon(&UNIT_SQUARE, Vec3::Z, &[]);
         assert_eq!(plain.len(), 3);
-        assert_eq!(cut_polygon(&SQUARE, Vec3::Z, &away), plain);
+        assert_eq!(cut_polygon(&UNIT_SQUARE, Vec3::Z, &away), plain);
         assert!(cut_polygon(&[], Vec3::Z, &away).is_empty());
     }
 }

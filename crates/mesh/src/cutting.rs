@@ -176,7 +176,7 @@ fn pieces(length: f64, edge: f64) -> Result<usize, MeshError> {
     let pieces = (length / edge * (1.0 - ROUNDING)).ceil().max(1.0);
     // Beyond 2⁵³ the count of pieces is no longer exact, and no mesh holds as many.
     if pieces > 2f64.powi(53) {
-        return Err(MeshError::TooLarge { limit: crate::builder::LIMIT });
+        return Err(MeshError::TooLarge { limit: crate::builder::MOST_ELEMENTS });
     }
     Ok(pieces as usize)
 }
@@ -185,7 +185,7 @@ fn pieces(length: f64, edge: f64) -> Result<usize, MeshError> {
 mod tests {
     use super::*;
 
-    const SQUARE: Form = Form::Quad { u: 1.0, v: 1.0, flat: true };
+    const UNIT_SQUARE: Form = Form::Quad { u: 1.0, v: 1.0, flat: true };
     const TRIANGLE: Form = Form::Triangle { longest: 1.0 };
 
     #[test]
@@ -216,7 +216,8 @@ mod tests {
 
     #[test]
     fn lines_that_make_no_sense_are_refused() {
-        let bad = |u: &[f64]| Lines::Explicit { u: u.to_vec(), v: vec![0.0, 1.0] }.grid(SQUARE).unwrap_err();
+        let bad =
+            |u: &[f64]| Lines::Explicit { u: u.to_vec(), v: vec![0.0, 1.0] }.grid(UNIT_SQUARE).unwrap_err();
         let at = |index| MeshError::BadLines { direction: "u", index };
         assert_eq!(bad(&[]), at(0));
         assert_eq!(bad(&[0.0]), at(0));
@@ -230,8 +231,8 @@ mod tests {
         assert_eq!(explicit.grid(TRIANGLE), Err(MeshError::LinesOnTriangles));
         assert_eq!(Lines::Counts { u: 2, v: 3 }.grid(TRIANGLE), Err(MeshError::UnequalCounts { u: 2, v: 3 }));
         for edge in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            assert!(matches!(Lines::LargestEdge(edge).grid(SQUARE), Err(MeshError::Length { .. })));
+            assert!(matches!(Lines::LargestEdge(edge).grid(UNIT_SQUARE), Err(MeshError::Length { .. })));
         }
-        assert!(matches!(Lines::LargestEdge(1e-300).grid(SQUARE), Err(MeshError::TooLarge { .. })));
+        assert!(matches!(Lines::LargestEdge(1e-300).grid(UNIT_SQUARE), Err(MeshError::TooLarge { .. })));
     }
 }

@@ -16,7 +16,7 @@ const OF_ALL: f64 = 1e-6;
 const OF_SIDE: f64 = 1e-4;
 /// Height, relative to the longest side, up to which a polygon counts as flat: well within what
 /// [`Patch`](crate::Patch) asks for.
-const FLAT: f64 = 1e-11;
+const FLAT_HEIGHT: f64 = 1e-11;
 /// Most fits of the planes, and projections of a corner onto its planes for each.
 const ROUNDS: usize = 200;
 const SWEEPS: usize = 4;
@@ -69,8 +69,8 @@ pub fn flatten(polygons: &mut [Vec<Vec3>]) -> Flattened {
             *corner = net.points[number as usize];
         }
         if *form == Form::Nearly {
-            let flat =
-                plane(polygon).is_some_and(|plane| plane.rise(polygon) <= 2.0 * FLAT * longest(polygon));
+            let flat = plane(polygon)
+                .is_some_and(|plane| plane.rise(polygon) <= 2.0 * FLAT_HEIGHT * longest(polygon));
             *(if flat { &mut done.polygons } else { &mut done.left }) += 1;
         }
     }
@@ -90,7 +90,7 @@ impl Form {
     fn of(polygon: &[Vec3], extent: f64) -> Self {
         let Some(plane) = plane(polygon).filter(|_| polygon.len() > 3) else { return Self::Free };
         let (rise, longest) = (plane.rise(polygon), longest(polygon));
-        if rise <= FLAT * longest {
+        if rise <= FLAT_HEIGHT * longest {
             Self::Flat
         } else if rise <= (OF_ALL * extent).min(OF_SIDE * longest) {
             Self::Nearly
@@ -181,7 +181,7 @@ impl Net {
             let shapes: Vec<Vec<Vec3>> = self.planar.iter().map(corners).collect();
             let planes: Vec<Option<Plane>> = shapes.iter().map(|shape| plane(shape)).collect();
             let flat = |(shape, plane): (&Vec<Vec3>, &Option<Plane>)| {
-                plane.as_ref().is_none_or(|plane| plane.rise(shape) <= FLAT * longest(shape))
+                plane.as_ref().is_none_or(|plane| plane.rise(shape) <= FLAT_HEIGHT * longest(shape))
             };
             if shapes.iter().zip(&planes).all(flat) {
                 return;

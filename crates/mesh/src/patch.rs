@@ -9,7 +9,7 @@ use crate::{MeshError, Vec3, quad, triangle};
 const SLIVER: f64 = 1e-13;
 /// Distance from the mean plane, relative to the longest side, up to which four corners count as
 /// flat.
-const FLAT: f64 = 1e-10;
+const FLAT_HEIGHT: f64 = 1e-10;
 
 /// A flat convex polygon with three or four corners, counter-clockwise seen from the lit side.
 /// Lengths in metres.
@@ -68,7 +68,7 @@ impl Patch {
     fn is_flat(&self) -> bool {
         let longest = longest_side(self.corners());
         let centre = self.corners().iter().sum::<Vec3>() / self.sides as f64;
-        self.corners().iter().all(|p| (*p - centre).dot(self.normal).abs() <= FLAT * longest)
+        self.corners().iter().all(|p| (*p - centre).dot(self.normal).abs() <= FLAT_HEIGHT * longest)
     }
 
     fn is_convex(&self) -> bool {

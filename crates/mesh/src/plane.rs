@@ -15,7 +15,7 @@ const PLANAR: f64 = 1e-6;
 /// Distance, relative to the extent, up to which corners coincide and borders touch.
 pub(crate) const TOUCH: f64 = 1e-9;
 /// Area, relative to the squared extent, up to which corners lie on one line.
-const STRAIGHT: f64 = 1e-13;
+const COLLINEAR_AREA: f64 = 1e-13;
 
 /// The plane of an outline.
 #[derive(Clone, Copy, Debug)]
@@ -39,8 +39,8 @@ impl Plane {
         // The lobes of a border that crosses itself may cancel: then any of its triangles tells the
         // plane.
         let longer = |a: Vec3, b: Vec3| if b.length_squared() > a.length_squared() { b } else { a };
-        let vector = if area.length() > STRAIGHT { area } else { crosses.fold(area, longer) };
-        if extent <= 0.0 || vector.length() <= STRAIGHT {
+        let vector = if area.length() > COLLINEAR_AREA { area } else { crosses.fold(area, longer) };
+        if extent <= 0.0 || vector.length() <= COLLINEAR_AREA {
             return Err(MeshError::NoArea { area: 0.5 * area.length() * extent * extent, longest: extent });
         }
         let normal = vector.normalize();

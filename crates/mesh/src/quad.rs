@@ -9,9 +9,9 @@ use crate::facet::{Facet, Group};
 use crate::{MeshError, Patch, Vec3};
 
 /// Distance of two corners, relative to the longest side, up to which they are one.
-const SAME: f64 = 1e-12;
+const SAME_CORNER_DISTANCE: f64 = 1e-12;
 /// Twice a corner's area, relative to the squared longest side, up to which the corner is straight.
-const STRAIGHT: f64 = 1e-13;
+const STRAIGHT_CORNER_AREA: f64 = 1e-13;
 /// Relative gain of area that makes the second diagonal the better one.
 const BETTER: f64 = 1e-9;
 
@@ -106,7 +106,7 @@ pub(crate) fn halves([a, b, c, d]: [Vec3; 4]) -> Result<Vec<Patch>, MeshError> {
 }
 
 fn refuse_repeated(corners: &[Vec3; 4]) -> Result<(), MeshError> {
-    let tolerance = SAME * longest(corners);
+    let tolerance = SAME_CORNER_DISTANCE * longest(corners);
     for second in 1..4 {
         for first in 0..second {
             if corners[first].distance(corners[second]) <= tolerance {
@@ -128,9 +128,10 @@ fn reflex(corners: &[Vec3; 4]) -> Result<Option<usize>, MeshError> {
     let crosses = [0, 1, 2, 3].map(|i| (at(i) - at(i + 3)).cross(at(i + 1) - at(i)) / scale);
     let area = (at(2) - at(0)).cross(at(3) - at(1)) / scale;
     // The two halves of a bow-tie may cancel: then any corner that is not straight tells the plane.
-    let normal = if area.length() > STRAIGHT { area } else { crosses.into_iter().fold(area, longer) };
+    let normal =
+        if area.length() > STRAIGHT_CORNER_AREA { area } else { crosses.into_iter().fold(area, longer) };
     let normal = normal.normalize_or_zero();
-    let mut right = (0..4).filter(|&i| crosses[i].dot(normal) < -STRAIGHT);
+    let mut right = (0..4).filter(|&i| crosses[i].dot(normal) < -STRAIGHT_CORNER_AREA);
     let first = right.next();
     if right.next().is_some() { Err(MeshError::BowTie) } else { Ok(first) }
 }

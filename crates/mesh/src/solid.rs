@@ -4,7 +4,7 @@
 //! Number of elements: Σ facets × cells × flat pieces a cell × k², with k elements per side.
 //! Metres.
 
-use crate::builder::LIMIT;
+use crate::builder::MOST_ELEMENTS;
 use crate::cuboid::Cuboid;
 use crate::cutting::{Form, Grid};
 use crate::cylinder::Prism;
@@ -58,8 +58,9 @@ impl<'a> Solid<'a> {
             let faces = grid.cells() - self.skipped(grid)?.len() as u128;
             let pieces = faces.checked_mul(group.number * group.form.pieces());
             let elements = pieces.and_then(|pieces| pieces.checked_mul(per_side * per_side));
-            total =
-                elements.and_then(|e| total.checked_add(e)).ok_or(MeshError::TooLarge { limit: LIMIT })?;
+            total = elements
+                .and_then(|e| total.checked_add(e))
+                .ok_or(MeshError::TooLarge { limit: MOST_ELEMENTS })?;
         }
         Ok(total)
     }

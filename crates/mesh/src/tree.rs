@@ -6,7 +6,7 @@
 use std::iter::successors;
 use std::ops::Range;
 
-use crate::builder::LIMIT;
+use crate::builder::MOST_ELEMENTS;
 use crate::mesh::Element;
 use crate::{Mesh, MeshError};
 
@@ -23,8 +23,8 @@ impl Mesh {
         let leaf = self.leaf_of(element).ok_or(MeshError::NotALeaf { element })?;
         let Element { patch, face, level, .. } = self.elements[element];
         let first = self.elements.len();
-        if first + 4 > LIMIT {
-            return Err(MeshError::TooLarge { limit: LIMIT });
+        if first + 4 > MOST_ELEMENTS {
+            return Err(MeshError::TooLarge { limit: MOST_ELEMENTS });
         }
         let child = |patch| Element { patch, face, parent: Some(element), children: None, level: level + 1 };
         self.elements.extend(patch.split()?.map(child));

@@ -7,7 +7,7 @@
 use fredholm_mesh::{Patch, Vec3};
 
 /// Lengths, over the longest of the scene, up to which two places count as one.
-const NEAR: f64 = 1e-7;
+const SAME_PLACE_DISTANCE: f64 = 1e-7;
 
 /// The patches of every piece.
 #[derive(Clone, Debug)]
@@ -30,7 +30,7 @@ impl Locator {
     pub(crate) fn new(pieces: &[Patch], patches: &[Patch]) -> Self {
         let corners = || pieces.iter().chain(patches).flat_map(Patch::corners);
         let size = corners().fold(0.0, |size: f64, p| size.max(p.abs().max_element()));
-        let grid = |piece: &Patch| Grid::new(piece, patches, NEAR * size);
+        let grid = |piece: &Patch| Grid::new(piece, patches, SAME_PLACE_DISTANCE * size);
         Self { pieces: pieces.iter().map(grid).collect() }
     }
 

@@ -16,7 +16,7 @@ use std::time::Instant;
 /// Batches that are in memory at once.
 pub const WAVE: u32 = 16;
 /// Batches without which a standard error is not worth deciding by.
-pub const FEWEST: u32 = 32;
+pub const FEWEST_BATCHES: u32 = 32;
 
 /// Patches put together, such as to faces, and those to surfaces: means by area.
 #[derive(Clone, Debug, PartialEq)]
@@ -137,7 +137,7 @@ impl Stop {
     pub(crate) fn is_met(&self, done: u64, error: &dyn Fn() -> f64, started: Instant) -> bool {
         let enough = self.batches.is_some_and(|all| done >= all);
         let late = self.seconds.is_some_and(|seconds| started.elapsed().as_secs_f64() >= seconds);
-        let exact = self.error.is_some_and(|wanted| done >= FEWEST.into() && error() <= wanted);
+        let exact = self.error.is_some_and(|wanted| done >= FEWEST_BATCHES.into() && error() <= wanted);
         enough || late || exact || done >= u64::from(u32::MAX - WAVE)
     }
 
@@ -160,7 +160,7 @@ impl Stop {
         let done = batches as f64;
         let drawn = self.batches.map_or(0.0, |all| done / all as f64);
         // Errors fall with the root of the work.
-        let exact = |asked: f64| (asked / error).powi(2).min(done / f64::from(FEWEST)).min(1.0);
+        let exact = |asked: f64| (asked / error).powi(2).min(done / f64::from(FEWEST_BATCHES)).min(1.0);
         let exact = self.error.map_or(0.0, exact);
         let time = self.seconds.map_or(0.0, |asked| seconds / asked);
         watch.advance(drawn.max(exact).max(time).min(1.0), &|| {

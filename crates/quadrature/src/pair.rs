@@ -202,7 +202,7 @@ mod tests {
         Family { value: POWER, integral: triangle_moment, scale: |a, b| 0.5 * peak(a, b) },
         Family { value: chebyshev, integral: triangle_chebyshev, scale: |_, _| 0.5 },
     ];
-    const SQUARE: [Family; 2] = [
+    const SQUARE_FAMILIES: [Family; 2] = [
         Family { value: POWER, integral: |a, b| 1.0 / ((a + 1) * (b + 1)) as f64, scale: |_, _| 1.0 },
         Family {
             value: chebyshev,
@@ -288,10 +288,10 @@ mod tests {
     #[test]
     fn squares_have_the_degree_of_their_triangles() {
         for (b, n) in SQUARES.into_iter().flat_map(|b| (2..=8).map(move |n| (b, n))) {
-            touching(&SQUARE, &quad_pair([0, 1, 2, 3], b, n), n, &format!("{b:?}"));
+            touching(&SQUARE_FAMILIES, &quad_pair([0, 1, 2, 3], b, n), n, &format!("{b:?}"));
         }
         for n in 1..=6 {
-            apart(&SQUARE, &quad_pair([0, 1, 2, 3], [4, 5, 6, 7], n), n, "squares");
+            apart(&SQUARE_FAMILIES, &quad_pair([0, 1, 2, 3], [4, 5, 6, 7], n), n, "squares");
         }
     }
 

@@ -9,9 +9,9 @@ use fredholm_mesh::{Patch, Vec3};
 use crate::{Field, ReportError};
 
 /// Largest width or height, pixels.
-const LARGEST: u32 = 16_384;
+const MOST_PIXELS_A_SIDE: u32 = 16_384;
 /// Cosine above which the direction of view counts as vertical.
-const STEEP: f64 = 0.9;
+const VERTICAL_COSINE: f64 = 0.9;
 /// Share of the total area below which the openings of a scene do not decide where it is seen from.
 const CLOSED: f64 = 1e-3;
 /// Cosine above which the direction of view is turned to an axis.
@@ -19,9 +19,9 @@ const ALIGNED: f64 = 0.8;
 /// Tangent of the angle at which a scene is looked down on.
 const TILT: f64 = 0.12;
 /// Cosine to the direction of view below which a point is not before the eye.
-const NEAR: f64 = 1e-3;
+const LEAST_VIEW_COSINE: f64 = 1e-3;
 /// Room left around a framed scene.
-const MARGIN: f64 = 1.02;
+const FRAME_MARGIN: f64 = 1.02;
 
 /// Where a picture is taken from. Lengths in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,7 +67,7 @@ impl Camera {
             width: FRAMED[0],
             height: FRAMED[1],
         };
-        let distance = MARGIN * reach(field, &camera, forward);
+        let distance = FRAME_MARGIN * reach(field, &camera, forward);
         Self { eye: camera.target - forward * distance, ..camera }
     }
 
@@ -95,8 +95,10 @@ impl Camera {
             Some("up is along the direction of view; choose another up".to_owned())
         } else if !(fov > 0.0 && fov < 180.0) {
             Some(format!("vertical_fov_degrees is {fov}; it must lie between 0 and 180"))
-        } else if ![width, height].iter().all(|side| (1..=LARGEST).contains(side)) {
-            Some(format!("the picture is {width} × {height} pixels; each must be from 1 to {LARGEST}"))
+        } else if ![width, height].iter().all(|side| (1..=MOST_PIXELS_A_SIDE).contains(side)) {
+            Some(format!(
+                "the picture is {width} × {height} pixels; each must be from 1 to {MOST_PIXELS_A_SIDE}"
+            ))
         } else {
             None
         }
@@ -136,7 +138,7 @@ impl Camera {
         let along = |axis: Vec3| line.dot(axis) / (depth * axis.length_squared());
         let (x, y) = (along(axes.right), along(axes.up));
         let place = (0.5 * (1.0 + x) * f64::from(self.width), 0.5 * (1.0 - y) * f64::from(self.height));
-        (depth > NEAR * line.length()).then_some(place)
+        (depth > LEAST_VIEW_COSINE * line.length()).then_some(place)
     }
 }
 
@@ -165,14 +167,14 @@ fn nearest_axis(v: Vec3) -> Vec3 {
 fn view(field: &Field<'_>, up: Vec3) -> Vec3 {
     let total: f64 = field.mesh().patches().map(Patch::area).sum();
     let net: Vec3 = field.mesh().patches().map(|patch| patch.normal() * patch.area()).sum();
-    let level = if up.z.abs() > STEEP { Vec3::Y } else { Vec3::Z };
+    let level = if up.z.abs() > VERTICAL_COSINE { Vec3::Y } else { Vec3::Z };
     if net.length() <= CLOSED * total {
         return (level - TILT * up).normalize();
     }
     let forward = -net.normalize();
     let axis = nearest_axis(forward);
     let forward = if axis.dot(forward) > ALIGNED { axis } else { forward };
-    let steep = forward.dot(up).abs() > STEEP;
+    let steep = forward.dot(up).abs() > VERTICAL_COSINE;
     if steep { (forward + level).normalize() } else { (forward - TILT * up).normalize() }
 }
 

@@ -19,12 +19,12 @@ use crate::source::Source;
 const PLAIN: &str = "plain";
 const SKY: &str = "sky";
 /// Distance of the enclosing box that is the light, over the diagonal of the mesh.
-const AWAY: f64 = 0.5;
+const BOX_DISTANCE: f64 = 0.5;
 /// From where the mesh is looked at.
 const VIEW: Vec3 = Vec3::new(0.55, 0.45, 1.0);
 /// Angle from the lower to the upper edge of the picture, degrees, and room left around the mesh.
 const FIELD_OF_VIEW: f64 = 40.0;
-const MARGIN: f64 = 1.02;
+const BOX_MARGIN: f64 = 1.02;
 
 /// The meaning of a mesh file, and the source that errors about the whole of it name.
 pub(crate) fn meaning(path: &Path, files: &mut Files) -> Result<(Source, Resolved), SceneError> {
@@ -122,14 +122,14 @@ fn bounds(parts: &[Part]) -> Option<Bounds> {
 }
 
 fn sky(bounds: &Bounds, material: usize) -> Part {
-    let away = Vec3::splat(AWAY * bounds.diagonal());
+    let away = Vec3::splat(BOX_DISTANCE * bounds.diagonal());
     let shape = Shape::Box { min: bounds.min - away, max: bounds.max + away, inward: true };
     let (name, shapes, cutting) = (SKY.to_owned(), [shape].into(), Cutting::default());
     Part { name, material, shapes, cutting, elements: 6, origin: Origin::Sky, span: 0..0 }
 }
 
 fn camera(bounds: &Bounds) -> Camera {
-    let distance = MARGIN * 0.5 * bounds.diagonal() / (0.5 * FIELD_OF_VIEW).to_radians().sin();
+    let distance = BOX_MARGIN * 0.5 * bounds.diagonal() / (0.5 * FIELD_OF_VIEW).to_radians().sin();
     let target = bounds.centre();
     Camera {
         eye: target + VIEW.normalize() * distance,

@@ -70,7 +70,7 @@ pub(crate) struct Excerpt {
 }
 
 /// Most characters of a sentence: names and values in a file can be of any length.
-const LONGEST: usize = 2000;
+const LONGEST_SENTENCE: usize = 2000;
 
 #[derive(Debug)]
 struct Detail {
@@ -189,8 +189,8 @@ impl std::error::Error for SceneError {
 /// A sentence that can be shown: what it quotes may be of any length and hold any character.
 fn presentable(sentence: &str) -> String {
     let visible = |c: char| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c };
-    let mut shown: String = sentence.chars().take(LONGEST).map(visible).collect();
-    if shown.len() < sentence.len() && sentence.chars().nth(LONGEST).is_some() {
+    let mut shown: String = sentence.chars().take(LONGEST_SENTENCE).map(visible).collect();
+    if shown.len() < sentence.len() && sentence.chars().nth(LONGEST_SENTENCE).is_some() {
         shown.push_str(" …");
     }
     shown

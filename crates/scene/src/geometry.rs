@@ -15,7 +15,7 @@ use crate::error::{ErrorKind, SceneError};
 use crate::files::Files;
 use crate::import::vs3::{self, Radiating, View3d};
 use crate::import::{Imported, ending, import, is_mesh};
-use crate::resolve::{FARTHEST, Mended, face_shapes};
+use crate::resolve::{LARGEST_COORDINATE, Mended, face_shapes};
 use crate::scene::Scene;
 use crate::source::{Source, read};
 
@@ -366,10 +366,10 @@ fn within_reach<'a>(
     corners: &'a [Vec3],
     span: &std::ops::Range<usize>,
 ) -> Result<&'a [Vec3], SceneError> {
-    if corners.iter().all(|p| p.abs().max_element() <= FARTHEST) {
+    if corners.iter().all(|p| p.abs().max_element() <= LARGEST_COORDINATE) {
         return Ok(corners);
     }
-    let what = format!("this face lies farther away than {FARTHEST:e} m");
+    let what = format!("this face lies farther away than {LARGEST_COORDINATE:e} m");
     Err(source.error(ErrorKind::Value, span.clone(), what, "scale the coordinates down"))
 }
 

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use crate::error::{ErrorKind, Excerpt, Place, SceneError};
 
 /// Largest file that is read, bytes.
-const LARGEST: u64 = 1 << 30;
+const LARGEST_FILE: u64 = 1 << 30;
 /// Most characters of a line that are quoted.
 const QUOTED: usize = 100;
 /// Characters kept before the offending piece of a long line.
@@ -109,11 +109,11 @@ impl Source {
     }
 }
 
-/// Reads a whole file of at most [`LARGEST`] bytes.
+/// Reads a whole file of at most [`LARGEST_FILE`] bytes.
 pub(crate) fn read(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    File::open(path)?.take(LARGEST + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > LARGEST {
+    File::open(path)?.take(LARGEST_FILE + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > LARGEST_FILE {
         return Err(io::Error::other("the file is longer than 1 GiB"));
     }
     Ok(bytes)

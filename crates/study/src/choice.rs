@@ -20,7 +20,7 @@ const PAIRS: f64 = 6.0;
 
 /// Most links at 1 % over √(faces): cells of a wall, and small things far away, are linked as
 /// wholes.
-const TOGETHER: f64 = 10_000.0;
+const MOST_LINKS_OVER_ROOT_FACES: f64 = 10_000.0;
 /// Faces from which on random paths may take the place of links, and the least accuracy.
 const MANY_FACES: usize = 8000;
 const LEAST_ACCURACY: f64 = 0.01;
@@ -35,7 +35,7 @@ const OF_ELEMENT: f64 = 10.0;
 /// of three.
 pub(crate) fn expected(faces: usize, accuracy: f64) -> [usize; 2] {
     let n = faces as f64;
-    let links = (LINKS * n).min(TOGETHER * n.sqrt()) * (0.01 / accuracy).powf(POWER);
+    let links = (LINKS * n).min(MOST_LINKS_OVER_ROOT_FACES * n.sqrt()) * (0.01 / accuracy).powf(POWER);
     [faces.max((links / OF_ELEMENT) as usize), links as usize]
 }
 

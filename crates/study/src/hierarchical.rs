@@ -41,7 +41,7 @@ const HELP: &str = "use fewer faces, or a smaller picture";
 const PICTURES: usize = 3;
 /// Share that tree and links may take of what the scene and the pictures leave: the other part is
 /// for results of the elements, whose number is not known before.
-const SHARE: f64 = 0.6;
+const LINKS_SHARE_OF_MEMORY: f64 = 0.6;
 
 /// Share of what tree and links take that is still there when the results are written and has no
 /// room for them.
@@ -292,7 +292,7 @@ fn limits(options: &SolveSettings, accuracy: f64, plan: &Plan) -> Limits {
         accuracy,
         linear: true,
         residual: options.tolerance,
-        bytes: (allowed as f64 * SHARE) as u64,
+        bytes: (allowed as f64 * LINKS_SHARE_OF_MEMORY) as u64,
         max_iterations: usize::try_from(options.max_iterations).unwrap_or(usize::MAX),
     }
 }

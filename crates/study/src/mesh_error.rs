@@ -35,7 +35,7 @@ const CLOSED: f64 = 1e-6;
 /// Root mean square over the mean of the irradiance that unshot light comes to.
 const UNEVEN: f64 = 1.5;
 /// Share of the sampled square of an error that is left, however large the noise.
-const LEFT: f64 = 0.25;
+const LEAST_SHARE_LEFT: f64 = 0.25;
 
 /// Estimates the error of a solution `x`. There is no estimate where the solution is not within its
 /// tolerance or the sources of errors could not be followed.
@@ -196,7 +196,7 @@ impl Sampled {
             square += area * mean * mean;
             noise += area * spread / (self.draws * (self.draws - 1)) as f64;
         }
-        if square > 0.0 { (1.0 - noise / square).max(LEFT).sqrt() } else { 1.0 }
+        if square > 0.0 { (1.0 - noise / square).max(LEAST_SHARE_LEFT).sqrt() } else { 1.0 }
     }
 }
 

@@ -100,7 +100,7 @@ const READ_MESH: u128 = 30;
 
 /// Bytes for reading that are not worth a question: what is wrong with a small scene, and what
 /// would fit, can then still be told.
-const LITTLE: u128 = 1 << 20;
+const UNQUESTIONED_BYTES: u128 = 1 << 20;
 
 /// Refuses a file that is too large to be read.
 pub(crate) fn admit_file(path: &Path, memory: Option<Bytes>) -> Result<(), Error> {
@@ -109,7 +109,7 @@ pub(crate) fn admit_file(path: &Path, memory: Option<Bytes>) -> Result<(), Error
     let text = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
     let each = if text { READ_SCENE } else { READ_MESH };
     let bytes = each.saturating_mul(found.len().into());
-    if bytes < LITTLE {
+    if bytes < UNQUESTIONED_BYTES {
         return Ok(());
     }
     let plan = Plan::default().stage("reading the scene", bytes);

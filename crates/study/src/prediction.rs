@@ -31,7 +31,7 @@ const RETAINED: u128 = 2;
 /// of its values, for welded corners and the composed file of arrays.
 const PAGE: u128 = 2 << 20;
 const RESULTS: u128 = 650;
-const VALUE: u128 = 50;
+const BYTES_A_VALUE: u128 = 50;
 /// Bytes of an element while pictures are drawn: what rays are cast at, how it lies to eight parts
 /// of lamps. Of each of its values where lamps light the picture: colours at corners, reflectance
 /// and direct light. Of a pixel there: what is seen through its middle, its linear colours, and
@@ -206,7 +206,7 @@ pub(crate) struct Pictures {
 /// Bytes of the results of so many elements, with pictures.
 pub(crate) fn results(elements: usize, bands: usize, pictures: Pictures) -> u128 {
     let (n, values) = (elements as u128, elements as u128 * bands as u128);
-    let files = PAGE + n * RESULTS + values * VALUE;
+    let files = PAGE + n * RESULTS + values * BYTES_A_VALUE;
     let Pictures { pixels, count, lit } = pictures;
     if count == 0 {
         return files;

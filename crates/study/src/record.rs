@@ -105,14 +105,14 @@ fn coarse(solution: &Solution) -> Option<String> {
 }
 
 /// Stated error of the irradiance that is worth a warning.
-pub(crate) const LARGE: f64 = 0.1;
+pub(crate) const ERROR_WORTH_A_WARNING: f64 = 0.1;
 
 /// Whether constants on the elements are far off.
 fn large(solution: &Solution) -> Option<String> {
     let error =
         solution.mesh_error.as_ref().filter(|_| solution.hierarchy.is_none() && solution.paths.is_none())?;
     let worst = error.relative_l2.iter().copied().fold(0.0, f64::max);
-    (worst > LARGE).then(|| {
+    (worst > ERROR_WORTH_A_WARNING).then(|| {
         format!(
             "the irradiance of the faces may be {:.0} % off: light changes much across the elements\n  \
              help: --accuracy 1% chooses elements that suffice, or use more (elements_per_face, divide, largest_edge in the scene)",

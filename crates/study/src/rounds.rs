@@ -27,18 +27,18 @@ use crate::solve::Solved;
 use crate::stages::Stages;
 
 /// Seconds after which a run to little accuracy, and one to that asked for, are ended.
-const LOOSE: f64 = 1.6;
-const CLOSE: f64 = 2.0;
+const LOOSE_SECONDS: f64 = 1.6;
+const CLOSE_SECONDS: f64 = 2.0;
 /// The little accuracy.
-const LITTLE: f64 = 0.5;
+const LOOSE_ACCURACY: f64 = 0.5;
 /// Exponents of links, as far as they are to be expected, and that which is measured in the mean.
 const EXPONENTS: [f64; 2] = [0.5, 1.6];
-const USUAL: f64 = 0.9;
+const MEAN_EXPONENT: f64 = 0.9;
 /// Widths of the small pictures, pixels.
 const WIDTHS: [u32; 2] = [40, 160];
 /// Seconds for a value in the files, and for a pixel of the pictures of elements and of links.
-const VALUE: f64 = 2e-6;
-const LAYERS: f64 = 2e-6;
+const SECONDS_A_VALUE: f64 = 2e-6;
+const SECONDS_A_PIXEL: f64 = 2e-6;
 
 /// Seconds that a run to an accuracy takes one thread, with its files and its picture; none where
 /// its first rounds take too long to be tried. A run may be free to go over to random paths.
@@ -57,8 +57,8 @@ fn by_links(
     (accuracy, free): (f64, bool),
     watch: &dyn Watch,
 ) -> Option<f64> {
-    let meter = Meter::new(watch, LOOSE);
-    let little = accuracy.max(LITTLE);
+    let meter = Meter::new(watch, LOOSE_SECONDS);
+    let little = accuracy.max(LOOSE_ACCURACY);
     let loose = SolveSettings { accuracy: Some(little), ..options.clone() };
     let found = hierarchical::compute(scene, &loose, (little, None, None), free, &mut Stages::new(&meter));
     let whole = meter.seconds();
@@ -71,7 +71,7 @@ fn by_links(
     // What comes after the last round, beside it.
     let after =
         meter.readings().shares.last().map_or(1.0, |&[last, _]| whole / last.max(1e-3)).clamp(1.0, 2.0);
-    let meter = Meter::new(watch, CLOSE);
+    let meter = Meter::new(watch, CLOSE_SECONDS);
     let found = hierarchical::compute(scene, options, (accuracy, None, None), free, &mut Stages::new(&meter));
     let whole = meter.seconds();
     match found {
@@ -98,12 +98,12 @@ fn extrapolated(rounds: &[[f64; 2]], accuracy: f64) -> Option<f64> {
     let n = known.len() as f64;
     let mean = [0, 1].map(|i| known.iter().map(|round| round[i]).sum::<f64>() / n);
     let moment = |i: usize| known.iter().map(|r| (r[i] - mean[i]) * (r[1] - mean[1])).sum::<f64>();
-    let exponent = if known.len() > 1 && moment(1) > 0.0 { moment(0) / moment(1) } else { USUAL };
+    let exponent = if known.len() > 1 && moment(1) > 0.0 { moment(0) / moment(1) } else { MEAN_EXPONENT };
     Some((last[0] + exponent.clamp(EXPONENTS[0], EXPONENTS[1]) * (digits - last[1])).exp())
 }
 
 fn by_paths(scene: &Arc<Scene>, options: &SolveSettings, accuracy: f64, watch: &dyn Watch) -> Option<f64> {
-    let meter = Meter::new(watch, CLOSE);
+    let meter = Meter::new(watch, CLOSE_SECONDS);
     let (problem, solution) = sampled::compute(scene, options, accuracy, &mut Stages::new(&meter)).ok()?;
     if watch.go_on() == ControlFlow::Break(()) {
         return None;
@@ -131,8 +131,8 @@ fn written(options: &SolveSettings, (problem, solution): (Problem, Solution)) ->
     let [few, more] = [drawn(WIDTHS[0])?, drawn(WIDTHS[1])?];
     let square = |width: u32| f64::from(width).powi(2);
     let each = ((more - few) / (square(WIDTHS[1]) - square(WIDTHS[0]))).max(0.0);
-    let layers = LAYERS * pixels(&solved.problem.scene) as f64;
-    Some(VALUE * values + layers + few + each * (full * full - square(WIDTHS[0])).max(0.0))
+    let layers = SECONDS_A_PIXEL * pixels(&solved.problem.scene) as f64;
+    Some(SECONDS_A_VALUE * values + layers + few + each * (full * full - square(WIDTHS[0])).max(0.0))
 }
 
 #[cfg(test)]

@@ -19,7 +19,7 @@ const BUDGET: f64 = 0.4;
 /// 2 to 3 GHz (docs/notes/build.md).
 const NUMBER: f64 = 2.5e-10;
 const MULTIPLICATION: f64 = 5e-11;
-const VALUE: f64 = 2e-6;
+const SECONDS_A_VALUE: f64 = 2e-6;
 const PIXEL: f64 = 1e-6;
 /// Relative residual at which the sources of errors are no longer followed.
 const FOLLOWED: f64 = 1e-3;
@@ -31,7 +31,7 @@ pub(crate) fn seconds(problem: &Problem) -> f64 {
     let owned: Vec<Patch> = problem.mesh.patches().copied().collect();
     let exposure = prepare(&owned).map_or(0.0, |lit| exposure_seconds(&patches, &lit, BUDGET, &spent));
     let values = problem.mesh.len() as f64 * problem.scene.bands().len() as f64;
-    let files = VALUE * values + PIXEL * pixels(&problem.scene) as f64;
+    let files = SECONDS_A_VALUE * values + PIXEL * pixels(&problem.scene) as f64;
     form_factors + exposure + solving(problem) + errors(problem, &patches) + files
 }
 

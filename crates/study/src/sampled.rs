@@ -15,7 +15,7 @@ use fredholm_coupling::{Means, MeshError};
 use fredholm_linop::{Report, StopReason, Watch, Work};
 use fredholm_mesh::Mesh;
 use fredholm_montecarlo::light::{Switches, estimator};
-use fredholm_montecarlo::{Enclosure, FEWEST, State, Stop, Tracing, WAVE};
+use fredholm_montecarlo::{Enclosure, FEWEST_BATCHES, State, Stop, Tracing, WAVE};
 use fredholm_scene::Scene;
 
 use crate::error::{Error, ErrorKind};
@@ -119,7 +119,7 @@ fn traced(mesh: &Mesh, lit: &Enclosure, accuracy: f64, watch: &dyn Watch) -> Res
         }
         let error = stated(mesh, &state, lit.bands());
         let worst = error.relative_l2.iter().copied().fold(0.0, f64::max);
-        let reached = state.batches() >= u64::from(FEWEST) && worst <= accuracy;
+        let reached = state.batches() >= u64::from(FEWEST_BATCHES) && worst <= accuracy;
         if reached || watch.go_on().is_break() {
             let reason = if reached { StopReason::Converged } else { StopReason::Interrupted };
             return Ok((state, Stated { error, reason }));

@@ -31,7 +31,7 @@ use crate::probe::Probe;
 const ROUNDINGS_32: f64 = 16.0;
 const ROUNDINGS_64: f64 = 64.0;
 /// The factor 3 above, over the least M, which is ½.
-const SLACK: f64 = 6.0;
+const ROUNDING_FACTOR: f64 = 6.0;
 
 /// A triangle or a parallelogram, ready to be tested.
 #[derive(Clone, Copy, Debug)]
@@ -80,7 +80,7 @@ impl Facet {
         let normal = cross / area;
         let (u, v) = (c.cross(normal) / area, normal.cross(b) / area);
         let gradient = u.length() + v.length();
-        let blur = ROUNDINGS_64 * f64::EPSILON * b.length() * c.length() / area + SLACK * slack;
+        let blur = ROUNDINGS_64 * f64::EPSILON * b.length() * c.length() / area + ROUNDING_FACTOR * slack;
         let vector = |[a, b, c, d]: [f64; 4]| Vec4::new(a as f32, b as f32, c as f32, d as f32);
         Self {
             normal,

@@ -14,8 +14,8 @@ const TOLERANCE: f64 = 1e-9;
 const RESOLUTION: f64 = 16.0 * f64::EPSILON;
 /// Least and largest coordinates, m: products of three lengths, as the exact predicates form them,
 /// stay in range.
-const LEAST: f64 = 1e-50;
-const MOST: f64 = 1e50;
+const LEAST_COORDINATE: f64 = 1e-50;
+const LARGEST_COORDINATE: f64 = 1e50;
 
 /// Where the scene lies, how large it is, and up to what length two places count as one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,8 +38,12 @@ impl Frame {
         let high = corners().fold(Vec3::NEG_INFINITY, |high, &p| high.max(p));
         let largest = low.abs().max(high.abs()).max_element();
         let extent = (high - low).max_element();
-        if !(LEAST..=MOST).contains(&extent) || largest > MOST {
-            return Err(VisibilityError::Span { extent: extent.max(largest), least: LEAST, most: MOST });
+        if !(LEAST_COORDINATE..=LARGEST_COORDINATE).contains(&extent) || largest > LARGEST_COORDINATE {
+            return Err(VisibilityError::Span {
+                extent: extent.max(largest),
+                least: LEAST_COORDINATE,
+                most: LARGEST_COORDINATE,
+            });
         }
         let tolerance = TOLERANCE + RESOLUTION * largest / extent;
         Ok(Self {

@@ -11,7 +11,7 @@ use crate::probe::Probe;
 use crate::tree::{Built, Tree, bounds};
 
 /// Facets are counted in 31 bits, and a patch may need two.
-const LIMIT: usize = (u32::MAX / 4) as usize;
+const MOST_FACETS: usize = (u32::MAX / 4) as usize;
 /// A quad this close to a parallelogram, over the tolerance of length, is tested as one.
 const SKEW: f64 = 1e-2;
 
@@ -39,8 +39,8 @@ impl Occluders {
     /// [`VisibilityError::TooMany`] past 2³⁰ − 1 patches; [`VisibilityError::Span`] for a scene
     /// larger than 1e50 m or smaller than 1e-50 m.
     pub fn new(patches: &[Patch]) -> Result<Self, VisibilityError> {
-        if patches.len() > LIMIT {
-            return Err(VisibilityError::TooMany { count: patches.len(), limit: LIMIT });
+        if patches.len() > MOST_FACETS {
+            return Err(VisibilityError::TooMany { count: patches.len(), limit: MOST_FACETS });
         }
         let frame = Frame::around(patches)?;
         let pieces: Vec<(Facet, [Vec3; 4])> =

@@ -23,14 +23,14 @@ use crate::source::PlaneWave;
 use crate::{ComplexVector, Source, Wave};
 
 /// Degrees beyond k a, for a body of any size: terms of the far field fall below 1e-4 within them.
-const BEYOND: f64 = 4.0;
+const DEGREES_BEYOND: f64 = 4.0;
 
 /// Directions over the sphere and their solid angles (sr), which integrate |F|² of what is within a
 /// ball of this radius (m).
 #[must_use]
 pub fn sphere_rule(wave: &Wave, radius: f64) -> Vec<(Vec3, f64)> {
     let ka = wave.wavenumber() * radius;
-    let degree = (ka + BEYOND + 2.0 * ka.cbrt()).ceil() as usize;
+    let degree = (ka + DEGREES_BEYOND + 2.0 * ka.cbrt()).ceil() as usize;
     let (rings, around) = (gauss_legendre(degree + 1), 2 * degree + 1);
     let ring = |(&t, &w): (&f64, &f64)| {
         let z = 2.0 * t - 1.0;

@@ -19,9 +19,9 @@ use fredholm_quadrature::{PlanePoint, near_triangle, symmetric_triangle, tensor_
 /// C of the module's text.
 const GROWTH: f64 = 6.0;
 /// Most points a side that a rule is given.
-pub(crate) const MOST: usize = 12;
+pub(crate) const MOST_POINTS: usize = 12;
 /// Points a side of each part of a nearly singular rule.
-const NEAR: usize = 14;
+const NEARLY_SINGULAR_POINTS: usize = 14;
 
 /// Bound of the relative error of n points for the phase κh, both directions.
 #[must_use]
@@ -45,17 +45,17 @@ pub(crate) fn reach(n: usize, tolerance: f64) -> f64 {
     0.5 * (ellipse + 1.0 / ellipse)
 }
 
-/// Fewest points a side, at most [`MOST`], for the phase κh at this tolerance.
+/// Fewest points a side, at most [`MOST_POINTS`], for the phase κh at this tolerance.
 #[must_use]
 pub(crate) fn points_for_phase(phase: f64, tolerance: f64) -> usize {
-    (1..MOST).find(|&n| phase_error(n, phase) <= tolerance).unwrap_or(MOST)
+    (1..MOST_POINTS).find(|&n| phase_error(n, phase) <= tolerance).unwrap_or(MOST_POINTS)
 }
 
-/// Fewest points a side for a pole `distance` half-diameters away, where a rule of at most [`MOST`]
+/// Fewest points a side for a pole `distance` half-diameters away, where a rule of at most [`MOST_POINTS`]
 /// reaches so close.
 #[must_use]
 pub(crate) fn points_for_distance(distance: f64, tolerance: f64) -> Option<usize> {
-    (1..=MOST).find(|&n| reach(n, tolerance) <= distance)
+    (1..=MOST_POINTS).find(|&n| reach(n, tolerance) <= distance)
 }
 
 /// Points (m) and weights (m²) of n × n Gauss points, or of the triangle's rule of the same degree.
@@ -69,7 +69,7 @@ pub(crate) fn regular(facet: &Facet, n: usize) -> Vec<(Vec3, f64)> {
     if patch.sides() == 4 {
         placed(facet, &tensor_quad(n), |u, v| quad_jacobian(patch, u, v))
     } else {
-        // The degrees asked for, at most 2 · MOST − 1, exist; the product rule is as good where one
+        // The degrees asked for, at most 2 · MOST_POINTS − 1, exist; the product rule is as good where one
         // should not.
         let rule =
             symmetric_triangle(2 * n - 1).unwrap_or_else(|_| fredholm_quadrature::collapsed_triangle(n));
@@ -98,7 +98,7 @@ pub(crate) fn near(facet: &Facet, x: Vec3) -> Vec<(Vec3, f64)> {
     let triangle = |i: usize| [patch.corner(0), patch.corner(i), patch.corner(i + 1)];
     let points = |corners: [Vec3; 3]| {
         let doubled = (corners[1] - corners[0]).cross(corners[2] - corners[0]).length();
-        let rule = near_triangle(corners.map(Into::into), x.into(), NEAR);
+        let rule = near_triangle(corners.map(Into::into), x.into(), NEARLY_SINGULAR_POINTS);
         let place = move |p: PlanePoint| {
             let point = corners[0] + (corners[1] - corners[0]) * p.u + (corners[2] - corners[0]) * p.v;
             (point, p.weight * doubled * scale)

@@ -15,7 +15,7 @@ use crate::{output, start};
 /// Name of the picture.
 const PICTURE: &str = "check.png";
 /// Seconds for the matrix from which on another way is named.
-const LONG: f64 = 600.0;
+const LONG_RUN_SECONDS: f64 = 600.0;
 /// What is named where the matrix is too much.
 const INSTEAD: &str = "solve --accuracy 5% needs no matrix: links between groups of elements take its place";
 
@@ -90,7 +90,10 @@ fn solution(forecast: &Forecast, lines: &mut Lines) {
     lines.add("memory limit", forecast.limit.to_string());
     let time = |seconds| format!("{}, by {solver}", on_threads(seconds, *threads));
     lines.add_some("time", seconds.map(time));
-    lines.add_some("instead", seconds.filter(|&seconds| seconds > LONG).map(|_| INSTEAD.to_owned()));
+    lines.add_some(
+        "instead",
+        seconds.filter(|&seconds| seconds > LONG_RUN_SECONDS).map(|_| INSTEAD.to_owned()),
+    );
     forecast.warnings.iter().for_each(|warning| lines.add("warning", warning));
 }
 

@@ -11,7 +11,7 @@
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 /// tan(π/8).
-const STEEP: f64 = 0.414_213_562_373_095_05;
+const TAN_EIGHTH_TURN: f64 = 0.414_213_562_373_095_05;
 
 /// P from its constant on.
 const SERIES: [f64; 10] = [
@@ -34,7 +34,7 @@ pub(super) fn angle(sine: f64, cosine: f64) -> f64 {
     let positive = cosine.abs();
     let flat = sine < positive;
     let (least, most) = if flat { (sine, positive) } else { (positive, sine) };
-    let steep = least > STEEP * most;
+    let steep = least > TAN_EIGHTH_TURN * most;
     let above = if steep { least - most } else { least };
     let below = if steep { least + most } else { most };
     let start = if steep { FRAC_PI_4 } else { 0.0 };
@@ -43,13 +43,13 @@ pub(super) fn angle(sine: f64, cosine: f64) -> f64 {
     if cosine < 0.0 { PI - acute } else { acute }
 }
 
-/// atan t for |t| ≤ [`STEEP`].
+/// atan t for |t| ≤ [`TAN_EIGHTH_TURN`].
 #[inline(always)]
 fn arc_tangent(t: f64) -> f64 {
     t + t * series(t * t)
 }
 
-/// atan(t)/t for the square of t, up to that of [`STEEP`].
+/// atan(t)/t for the square of t, up to that of [`TAN_EIGHTH_TURN`].
 #[inline(always)]
 pub(super) fn arc_over_tangent(t2: f64) -> f64 {
     1.0 + series(t2)

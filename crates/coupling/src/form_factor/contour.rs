@@ -23,7 +23,7 @@ use std::f64::consts::TAU;
 /// terms grow with the distance and cancel; quadrature of the inner integral does not.
 const CANCELLING: f64 = 50.0;
 /// Gauss points up to which they cost less than a closed form.
-const FEW: usize = 6;
+const MOST_CHEAP_GAUSS_POINTS: usize = 6;
 
 /// A_i F_ij (m²) between two polygons given by their corners, to an absolute `tolerance` (m²) as
 /// far as rounding lets it.
@@ -96,7 +96,11 @@ pub(crate) fn edge_pair(e: Edge, f: Edge, tolerance: f64) -> Estimate {
     let goal = tolerance.max(rounding);
     let sine2 = e.direction.cross(f.direction).length_squared();
     let outer = Outer::new(e, f, goal);
-    let closed = if outer.points > FEW { closed(e, f, goal.max(CANCELLING * rounding)) } else { None };
+    let closed = if outer.points > MOST_CHEAP_GAUSS_POINTS {
+        closed(e, f, goal.max(CANCELLING * rounding))
+    } else {
+        None
+    };
     let sum = closed.unwrap_or_else(|| outer.integrate(goal, sine2));
     Estimate { value: cosine * sum.value, error: cosine.abs() * (sum.error + rounding) }
 }

@@ -9,7 +9,7 @@
 #![allow(clippy::needless_bitwise_bool, reason = "a jump a lane costs more than to ask both")]
 
 use super::critical::Plane;
-use super::ev_events::{EdgeVertexEvent, INSIDE, MARGIN};
+use super::ev_events::{EDGE_END_MARGIN, EdgeVertexEvent, INSIDE};
 use super::lanes::{LANES, Lanes, Lanes3, Mask, any, ask, cross, difference, dot, each, heights, same};
 use fredholm_mesh::Vec3;
 use pulp::{Arch, NullaryFnOnce};
@@ -278,12 +278,13 @@ fn meeting(block: &Block, c: &Lanes3, n: &Lanes3, across: &Lanes3) -> Meeting {
     let behind = &block.behind;
     Meeting {
         order: ask(|m| {
-            let farther = distance[m] > (1.0 + MARGIN) * whole[m];
-            let nearer = (MARGIN * whole[m] < distance[m]) & (distance[m] < (1.0 - MARGIN) * whole[m]);
+            let farther = distance[m] > (1.0 + EDGE_END_MARGIN) * whole[m];
+            let nearer = (EDGE_END_MARGIN * whole[m] < distance[m])
+                & (distance[m] < (1.0 - EDGE_END_MARGIN) * whole[m]);
             ((behind[m] > 0.0) & farther) | ((behind[m] <= 0.0) & nearer)
         }),
-        before_end: ask(|m| place[m] < (1.0 - MARGIN) * whole[m]),
-        behind_start: ask(|m| place[m] > MARGIN * whole[m]),
+        before_end: ask(|m| place[m] < (1.0 - EDGE_END_MARGIN) * whole[m]),
+        behind_start: ask(|m| place[m] > EDGE_END_MARGIN * whole[m]),
     }
 }
 
@@ -305,14 +306,14 @@ fn lines_up(first: &Meeting, last: &Meeting) -> Mask {
 mod tests {
     use super::*;
 
-    const SQUARE: [Vec3; 4] = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y];
+    const UNIT_SQUARE: [Vec3; 4] = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y];
 
     fn found(pairs: &[EdgeVertexEvent], target: Option<&[Vec3]>) -> Vec<usize> {
         let mut batch = EdgeVertexBatch::default();
         for pair in pairs {
             batch.push(pair);
         }
-        batch.ask(Region { source: &SQUARE, target, flat: 1e-12 });
+        batch.ask(Region { source: &UNIT_SQUARE, target, flat: 1e-12 });
         batch.found().iter().map(|aligned| aligned.pair).collect()
     }
 
@@ -331,7 +332,7 @@ mod tests {
     fn planes_that_miss_the_target_do_not_count() {
         let edge = [Vec3::new(0.5, 0.0, 1.0), Vec3::new(0.5, 1.0, 1.0)];
         let pair = [EdgeVertexEvent { corner: Vec3::new(0.5, 0.5, 2.0), edge, behind: false }];
-        let beside = |x: f64| SQUARE.map(|y| y + Vec3::new(x, 0.0, 3.0));
+        let beside = |x: f64| UNIT_SQUARE.map(|y| y + Vec3::new(x, 0.0, 3.0));
         assert_eq!(found(&pair, None), [0]);
         assert_eq!(found(&pair, Some(&beside(0.2))), [0]);
         assert!(found(&pair, Some(&beside(0.6))).is_empty());
@@ -351,8 +352,8 @@ mod tests {
         let alone = |ev_event: &EdgeVertexEvent| {
             let [a, b] = ev_event.edge;
             let n = (b - a).cross(ev_event.corner - a).normalize();
-            let heights = SQUARE.map(|x| n.dot(x - a));
-            super::super::ev_events::chord(&SQUARE, |k| heights[k])
+            let heights = UNIT_SQUARE.map(|x| n.dot(x - a));
+            super::super::ev_events::chord(&UNIT_SQUARE, |k| heights[k])
                 .is_some_and(|chord| ev_event.is_active(chord, n))
         };
         let expected: Vec<usize> = (0..400).filter(|k| alone(&pairs[*k])).collect();

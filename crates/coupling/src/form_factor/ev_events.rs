@@ -10,7 +10,7 @@ use fredholm_mesh::Vec3;
 
 /// Part of an edge by which a point must be inside its ends to meet it: in scenes with right angles
 /// lines often go exactly through corners.
-pub(super) const MARGIN: f64 = 1e-7;
+pub(super) const EDGE_END_MARGIN: f64 = 1e-7;
 /// Part of a chord that is left out at its ends, where lines of sight are often exactly parallel to
 /// the edge.
 pub(super) const INSIDE: f64 = 1e-6;
@@ -53,9 +53,9 @@ impl EdgeVertexEvent {
     #[inline]
     fn order(&self, &Meeting { whole, distance, .. }: &Meeting) -> bool {
         if self.behind {
-            distance > (1.0 + MARGIN) * whole
+            distance > (1.0 + EDGE_END_MARGIN) * whole
         } else {
-            MARGIN * whole < distance && distance < (1.0 - MARGIN) * whole
+            EDGE_END_MARGIN * whole < distance && distance < (1.0 - EDGE_END_MARGIN) * whole
         }
     }
 }
@@ -71,12 +71,12 @@ struct Meeting {
 impl Meeting {
     #[inline]
     fn before_end(&self) -> bool {
-        self.place < (1.0 - MARGIN) * self.whole
+        self.place < (1.0 - EDGE_END_MARGIN) * self.whole
     }
 
     #[inline]
     fn behind_start(&self) -> bool {
-        self.place > MARGIN * self.whole
+        self.place > EDGE_END_MARGIN * self.whole
     }
 }
 

@@ -6,7 +6,7 @@ use fredholm_mesh::{Patch, Vec3};
 use std::f64::consts::FRAC_1_PI;
 
 /// Heights below this part of the pair's extent count as 0.
-const FLAT: f64 = 1e-12;
+const ZERO_HEIGHT: f64 = 1e-12;
 
 /// A patch with what every pair asks of it.
 #[derive(Clone, Copy, Debug)]
@@ -30,7 +30,7 @@ impl<'a> Side<'a> {
 
     /// As [`flat`].
     pub(crate) fn flat(&self, other: &Self) -> f64 {
-        FLAT * self.extent(other)
+        ZERO_HEIGHT * self.extent(other)
     }
 
     /// As [`facing_exchange`].

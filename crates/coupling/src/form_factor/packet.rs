@@ -20,7 +20,7 @@ use pulp::{Arch, NullaryFnOnce};
 pub(super) const POINTS: usize = LANES;
 
 /// Corners of a polygon at most. A half-space adds one.
-const MOST: usize = 32;
+const MOST_CORNERS: usize = 32;
 
 /// A target, what makes its sides, and the normal of the points that see it.
 #[derive(Clone, Copy, Debug)]
@@ -42,14 +42,14 @@ enum Side {
 /// A convex polygon, relative to each point.
 #[derive(Clone, Copy, Debug)]
 struct Polygon {
-    corners: [Lanes3; MOST],
-    side_ids: [SideId; MOST],
+    corners: [Lanes3; MOST_CORNERS],
+    side_ids: [SideId; MOST_CORNERS],
     len: usize,
 }
 
 impl Default for Polygon {
     fn default() -> Self {
-        Self { corners: [[[0.0; LANES]; 3]; MOST], side_ids: [0; MOST], len: 0 }
+        Self { corners: [[[0.0; LANES]; 3]; MOST_CORNERS], side_ids: [0; MOST_CORNERS], len: 0 }
     }
 }
 
@@ -59,14 +59,19 @@ impl Default for Polygon {
 struct Cover {
     polygons: [Polygon; 2],
     now: usize,
-    heights: [Lanes; MOST],
+    heights: [Lanes; MOST_CORNERS],
     /// 1 above, −1 below, 0 on it.
-    sides: [i8; MOST],
+    sides: [i8; MOST_CORNERS],
 }
 
 impl Default for Cover {
     fn default() -> Self {
-        Self { polygons: [Polygon::default(); 2], now: 0, heights: [[0.0; LANES]; MOST], sides: [0; MOST] }
+        Self {
+            polygons: [Polygon::default(); 2],
+            now: 0,
+            heights: [[0.0; LANES]; MOST_CORNERS],
+            sides: [0; MOST_CORNERS],
+        }
     }
 }
 
@@ -173,7 +178,7 @@ impl Packet {
                 self.list(screen, leader, Topology::first(body));
                 listed = leader;
             }
-            let differs = if leader.is_none() || target.corners.len() + self.sides.len() > MOST {
+            let differs = if leader.is_none() || target.corners.len() + self.sides.len() > MOST_CORNERS {
                 let alone = left.places[0];
                 let nothing = screen.shadow(points[alone], &mut self.volume) == Shadow::Nothing;
                 if !nothing {

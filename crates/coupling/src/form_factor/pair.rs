@@ -26,15 +26,15 @@ use fredholm_visibility::Occluders;
 use fredholm_visibility::body::{Bodies, Body, Face, Screen, Shadow, ShadowVolume};
 
 /// Bodies up to which exact shadows are cheaper than sampling.
-const FEW: usize = 128;
+const MOST_EXACT_BODIES: usize = 128;
 
 /// Tolerance of exchanges with nothing between, in T: a digit more costs them next to nothing.
-const OPEN: f64 = 0.1;
+const OPEN_TOLERANCE: f64 = 0.1;
 
 /// Distance of a small patch from a large one, in diameters of the large one, and its own diameter,
 /// up to which points of the small one are cheaper than points along the edges.
-const CLOSE: f64 = 1.0;
-const SMALL: f64 = 0.1;
+const CLOSE_DISTANCE: f64 = 1.0;
+const SMALL_DIAMETER: f64 = 0.1;
 
 /// Relative difference of two quantities that count as equal.
 const TIE: f64 = 1e-6;
@@ -139,9 +139,18 @@ impl<'a> PairIntegrator<'a> {
         let bodies = Bodies::new(occluders, &patches, &[]);
         let tolerance = rung(tolerance);
         patches.extend(groups);
-        let open = Unoccluded::new(&patches, OPEN * tolerance);
+        let open = Unoccluded::new(&patches, OPEN_TOLERANCE * tolerance);
         let sides = patches.iter().map(|patch| Side::of(patch)).collect();
-        Self { patches, sides, open, occluders, bodies, tolerance, few: FEW, model: ErrorModel::FITTED }
+        Self {
+            patches,
+            sides,
+            open,
+            occluders,
+            bodies,
+            tolerance,
+            few: MOST_EXACT_BODIES,
+            model: ErrorModel::FITTED,
+        }
     }
 
     /// Computes exact shadows behind any number of bodies.
@@ -242,10 +251,12 @@ impl<'a> PairIntegrator<'a> {
         let (large, small) = (self.patches[large], self.patches[small]);
         // Far away, or of like size, few points along the edges are cheaper.
         let size = large.diameter();
-        if large.centroid().distance(small.centroid()) > CLOSE * size || small.diameter() > SMALL * size {
+        if large.centroid().distance(small.centroid()) > CLOSE_DISTANCE * size
+            || small.diameter() > SMALL_DIAMETER * size
+        {
             return None;
         }
-        let goal = OPEN * self.tolerance * facing_exchange(large, small);
+        let goal = OPEN_TOLERANCE * self.tolerance * facing_exchange(large, small);
         Some(Exchange::new(Method::Gauss, small_receiver(large, small, goal)?))
     }
 

@@ -43,14 +43,14 @@ pub(super) fn factor(sum: f64) -> f64 {
 }
 
 /// Square of the tangent up to which the angle follows from it, without a root.
-const NARROW: f64 = 0.04;
+const NARROW_SQUARED_TANGENT: f64 = 0.04;
 
 /// Θ (Γ · n) of one edge. An edge that points at the origin spans no angle.
 #[inline]
 fn edge_term(n: Vec3, from: Vec3, to: Vec3) -> f64 {
     let (cross, cosine) = (from.cross(to), from.dot(to));
     let sine2 = cross.length_squared();
-    if cosine > 0.0 && sine2 < NARROW * cosine * cosine {
+    if cosine > 0.0 && sine2 < NARROW_SQUARED_TANGENT * cosine * cosine {
         let inverse = 1.0 / cosine;
         return cross.dot(n) * inverse * arc_over_tangent(sine2 * inverse * inverse);
     }
@@ -64,7 +64,7 @@ pub(super) fn edge_terms(n: Vec3, from: &Lanes3, to: &Lanes3) -> Lanes {
     let cross = cross(from, to);
     let (cosine, sine2) = (dot(from, to), dot(&cross, &cross));
     let up = dot(&cross, &same(n));
-    let narrow = ask(|m| (cosine[m] > 0.0) & (sine2[m] < NARROW * cosine[m] * cosine[m]));
+    let narrow = ask(|m| (cosine[m] > 0.0) & (sine2[m] < NARROW_SQUARED_TANGENT * cosine[m] * cosine[m]));
     let inverse = each(|m| 1.0 / cosine[m]);
     let shares = each(|m| arc_over_tangent(sine2[m] * inverse[m] * inverse[m]));
     let mut terms = only(&narrow, &each(|m| up[m] * inverse[m] * shares[m]));

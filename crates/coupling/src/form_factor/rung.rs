@@ -6,14 +6,14 @@
 
 /// Finest tolerance: what is asked for below it is lost in rounding, and looking for it makes
 /// results worse.
-const FINEST: f64 = 1e-14;
+const FINEST_TOLERANCE: f64 = 1e-14;
 
 /// Relative distance below a power of ten that counts as rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// The largest power of ten that is at most `tolerance`, but not below [`FINEST`].
+/// The largest power of ten that is at most `tolerance`, but not below [`FINEST_TOLERANCE`].
 pub(super) fn rung(tolerance: f64) -> f64 {
-    10f64.powi((tolerance.max(FINEST) * (1.0 + ROUNDING)).log10().floor() as i32)
+    10f64.powi((tolerance.max(FINEST_TOLERANCE) * (1.0 + ROUNDING)).log10().floor() as i32)
 }
 
 #[cfg(test)]
@@ -29,7 +29,7 @@ mod tests {
             assert!((rung(0.999 * exact) / exact - 0.1).abs() < 1e-15, "{exact}");
         }
         for tolerance in [1e-14, 9e-15, 1e-300, 0.0] {
-            assert!((rung(tolerance) / FINEST - 1.0).abs() < 1e-15, "{tolerance:e}");
+            assert!((rung(tolerance) / FINEST_TOLERANCE - 1.0).abs() < 1e-15, "{tolerance:e}");
         }
     }
 }

@@ -14,8 +14,8 @@ use fredholm_mesh::{Patch, Vec3};
 use fredholm_quadrature::Estimate;
 
 const BATCHES: usize = 8;
-const FIRST: usize = 64;
-const MOST: usize = 16384;
+const FIRST_SAMPLES: usize = 64;
+const MOST_SAMPLES: usize = 16384;
 
 /// A_i F_ij (m²) of two patches whose unoccluded value is `open`; `sees` answers whether two points
 /// see each other.
@@ -29,7 +29,7 @@ pub(crate) fn sampled(
     let mut batches = [Share::default(); BATCHES];
     let (mut done, mut last) = (0, 0.0);
     loop {
-        let until = (4 * done).max(FIRST);
+        let until = (4 * done).max(FIRST_SAMPLES);
         for k in done..until {
             batches[k % BATCHES].add(a, b, pair_parameters(k), &sees);
         }
@@ -40,7 +40,7 @@ pub(crate) fn sampled(
         let error = spread.max((share - last).abs());
         last = share;
         let total = open.value * error + open.error * share;
-        if total <= tolerance || done >= MOST {
+        if total <= tolerance || done >= MOST_SAMPLES {
             return Estimate { value: open.value * share, error: total };
         }
     }

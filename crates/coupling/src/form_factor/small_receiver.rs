@@ -14,7 +14,7 @@ use fredholm_quadrature::{Estimate, PlanePoint, symmetric_triangle, tensor_quad}
 use std::sync::LazyLock;
 
 /// Radius of the patch over its distance from the edges of the polygon, at most.
-const REACH: f64 = 0.5;
+const MOST_RADIUS_OVER_DISTANCE: f64 = 0.5;
 /// Error of the midpoint rule over the square of that ratio, at most. One straight edge gives
 /// 0.43/12; several may add up, and be nearer to the other points.
 const MIDPOINT: f64 = 0.125;
@@ -32,7 +32,7 @@ pub(crate) fn small_receiver(large: &Patch, small: &Patch, goal: f64) -> Option<
     let corners = large.corners();
     let sides = corners.iter().zip(corners.iter().cycle().skip(1)).map(|(&a, &b)| [a, b]);
     let reach = 0.5 * small.diameter() / to_segments(centre, sides.map(Segment::new));
-    if !faces || reach > REACH {
+    if !faces || reach > MOST_RADIUS_OVER_DISTANCE {
         return None;
     }
     let seen = |x: Vec3| point_to_polygon(small.normal(), large.corners().iter().map(|&y| y - x));

@@ -15,9 +15,9 @@ use fredholm_quadrature::{PairPoint, triangle_pair};
 use fredholm_visibility::Occluders;
 
 /// Highest order: 64⁴ point pairs.
-const MOST: usize = 64;
+const HIGHEST_ORDER: usize = 64;
 /// Corners closer than this part of the extent are one.
-const SAME: f64 = 1e-12;
+const SAME_CORNER_DISTANCE: f64 = 1e-12;
 
 pub(super) struct AreaGauss;
 
@@ -45,7 +45,7 @@ impl FormFactorMethod for AreaGauss {
         occluders: &Occluders,
         setting: Setting,
     ) -> Result<Evaluated, MethodError> {
-        let order = setting.order(self.name(), MOST)?;
+        let order = setting.order(self.name(), HIGHEST_ORDER)?;
         let Some(facing) = Facing::new(a, b, occluders) else { return Ok(Evaluated::default()) };
         let touching = touching_pairs(&facing);
         if touching.iter().all(|pair| pair.labels.is_none()) {
@@ -78,7 +78,7 @@ struct TrianglePair {
 /// All pairs of triangles of both parts.
 fn touching_pairs(facing: &Facing) -> Vec<TrianglePair> {
     let (first, second) = (facing.a.triangles(), facing.b.triangles());
-    let reach = SAME * facing.extent();
+    let reach = SAME_CORNER_DISTANCE * facing.extent();
     let pairs = first.iter().flat_map(|a| second.iter().map(move |b| [*a, *b]));
     pairs.map(|triangles| TrianglePair { labels: labels(&triangles, reach), triangles }).collect()
 }

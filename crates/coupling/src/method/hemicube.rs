@@ -16,7 +16,7 @@ use fredholm_visibility::Occluders;
 use std::f64::consts::FRAC_1_PI;
 
 /// Highest resolution.
-const MOST: usize = 4096;
+const HIGHEST_RESOLUTION: usize = 4096;
 
 pub(super) struct Hemicube;
 
@@ -44,7 +44,7 @@ impl FormFactorMethod for Hemicube {
         occluders: &Occluders,
         setting: Setting,
     ) -> Result<Evaluated, MethodError> {
-        let pixels = setting.resolution(self.name(), MOST)?;
+        let pixels = setting.resolution(self.name(), HIGHEST_RESOLUTION)?;
         let Some(facing) = Facing::new(a, b, occluders) else { return Ok(Evaluated::default()) };
         let p = facing.a.centroid();
         let sees = |direction| facing.b.hit(p, direction).is_some_and(|q| facing.sees(p, q));

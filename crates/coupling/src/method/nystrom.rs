@@ -18,7 +18,7 @@ use fredholm_quadrature::Estimate;
 use fredholm_visibility::Occluders;
 
 /// Highest order.
-const MOST: usize = 64;
+const HIGHEST_ORDER: usize = 64;
 /// Points a direction on both patches for the difference between centroid and mean behind
 /// occluders.
 const BEHIND: usize = 6;
@@ -49,7 +49,7 @@ impl FormFactorMethod for Nystrom {
         occluders: &Occluders,
         setting: Setting,
     ) -> Result<Evaluated, MethodError> {
-        let order = setting.order(self.name(), MOST)?;
+        let order = setting.order(self.name(), HIGHEST_ORDER)?;
         let Some(facing) = Facing::new(a, b, occluders) else { return Ok(Evaluated::default()) };
         let (p, area) = (facing.a.centroid(), facing.a.area());
         let row = |n| placed(&facing.b.cells, n).iter().map(|&(q, w)| w * facing.kernel(p, q)).sum::<f64>();

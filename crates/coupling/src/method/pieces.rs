@@ -11,13 +11,13 @@ use crate::polygon::{HalfSpace, clip};
 use fredholm_mesh::Vec3;
 
 /// Heights of cuts below this part of the radius count as 0.
-const FLAT: f64 = 1e-13;
+const ZERO_HEIGHT: f64 = 1e-13;
 /// Sine under which two directions count as nearly one.
-const NARROW: f64 = 0.3;
+const SAME_DIRECTION_SINE: f64 = 0.3;
 
 /// Convex pieces of `outer`, counter-clockwise about its normal.
 pub(super) fn pieces(outer: &Part, target: &Part) -> Vec<Vec<Vec3>> {
-    let flat = FLAT * (outer.radius() + target.radius());
+    let flat = ZERO_HEIGHT * (outer.radius() + target.radius());
     let mut pieces = vec![outer.corners.clone()];
     for plane in cuts(outer, target) {
         let back = HalfSpace { normal: -plane.normal, offset: -plane.offset };
@@ -42,7 +42,7 @@ fn cuts(outer: &Part, target: &Part) -> Vec<HalfSpace> {
     let mut planes = Vec::new();
     for k in 0..target.corners.len() {
         let (before, after) = (along(k + target.corners.len() - 1), along(k));
-        if low(corner(k)) && before.cross(after).length() < NARROW {
+        if low(corner(k)) && before.cross(after).length() < SAME_DIRECTION_SINE {
             let across = if before == Vec3::ZERO { after } else { before };
             planes.extend(plane(corner(k), across));
         }
@@ -56,7 +56,11 @@ fn cuts(outer: &Part, target: &Part) -> Vec<HalfSpace> {
 /// Unit direction of a projected edge, or zero where it is steep.
 fn flattened(edge: Vec3, n: Vec3) -> Vec3 {
     let across = edge - n * edge.dot(n);
-    if across.length() < NARROW * edge.length() { Vec3::ZERO } else { across.normalize_or_zero() }
+    if across.length() < SAME_DIRECTION_SINE * edge.length() {
+        Vec3::ZERO
+    } else {
+        across.normalize_or_zero()
+    }
 }
 
 fn plane(point: Vec3, normal: Vec3) -> Option<HalfSpace> {

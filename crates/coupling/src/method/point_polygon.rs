@@ -24,7 +24,7 @@ use std::cell::Cell;
 const POINTS: usize = 6;
 const POINTS_CLOSE: usize = 10;
 /// Distance, in radii of the outer part, below which layers are looked for.
-const CLOSE: f64 = 0.4;
+const LAYER_DISTANCE: f64 = 0.4;
 /// Most cells that are cut.
 const CUTS: usize = 4000;
 /// Stated error over the difference that one more cut makes, which may be small by accident.
@@ -94,7 +94,7 @@ fn open(outer: &Part, target: &Part, tolerance: f64) -> Evaluated {
 /// outer one.
 fn is_close(outer: &Part, target: &Part) -> bool {
     let gap = outer.centroid().distance(target.centroid()) - outer.radius() - target.radius();
-    gap.max(outer.clearance(target)).max(target.clearance(outer)) < CLOSE * outer.radius()
+    gap.max(outer.clearance(target)).max(target.clearance(outer)) < LAYER_DISTANCE * outer.radius()
 }
 
 /// The sum over all cells, each with an even share of the tolerance.

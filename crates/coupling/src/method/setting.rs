@@ -36,7 +36,7 @@ impl fmt::Display for Setting {
 }
 
 /// Finest tolerance: below it rounding is larger.
-const FINEST: f64 = 1e-15;
+const FINEST_TOLERANCE: f64 = 1e-15;
 
 impl Setting {
     pub(super) fn fixed(self, method: &'static str) -> Result<(), MethodError> {
@@ -52,8 +52,8 @@ impl Setting {
 
     pub(super) fn tolerance(self, method: &'static str) -> Result<f64, MethodError> {
         match self {
-            Self::Tolerance(tolerance) if (FINEST..=1.0).contains(&tolerance) => Ok(tolerance),
-            _ => Err(self.refused(method, format!("a tolerance from {FINEST:e} to 1"))),
+            Self::Tolerance(tolerance) if (FINEST_TOLERANCE..=1.0).contains(&tolerance) => Ok(tolerance),
+            _ => Err(self.refused(method, format!("a tolerance from {FINEST_TOLERANCE:e} to 1"))),
         }
     }
 

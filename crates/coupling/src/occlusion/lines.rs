@@ -16,7 +16,7 @@ use pulp::{Arch, NullaryFnOnce};
 const CERTAIN: f64 = 1e-6;
 /// The corners of the second patch to which the segments from those of the first go: to those of
 /// the same place and of the opposite,
-const FIRST: [usize; LANES] = [0, 1, 2, 3, 2, 3, 0, 1];
+const FIRST_TARGETS: [usize; LANES] = [0, 1, 2, 3, 2, 3, 0, 1];
 /// and to the others.
 const OTHERS: [usize; LANES] = [1, 2, 3, 0, 3, 0, 1, 2];
 
@@ -61,7 +61,12 @@ impl Lines {
             + size(p.corner(2) - p.corner(0))
             + size(q.corner(2) - q.corner(0));
         let starts = lanes(p, [0, 1, 2, 3, 0, 1, 2, 3]);
-        Self { starts, ends: lanes(q, FIRST), others: lanes(q, OTHERS), certain: tolerance + CERTAIN * reach }
+        Self {
+            starts,
+            ends: lanes(q, FIRST_TARGETS),
+            others: lanes(q, OTHERS),
+            certain: tolerance + CERTAIN * reach,
+        }
     }
 
     /// How a body stands between the patches. `heights` is a buffer.

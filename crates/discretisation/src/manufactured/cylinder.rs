@@ -14,10 +14,10 @@ use fredholm_quadrature::{composed_interval, gauss_legendre};
 use std::f64::consts::{FRAC_PI_6, PI, TAU};
 
 /// Distance of the axes of the two strips, and length of the tube, m.
-const APART: f64 = 4.0;
+const AXIS_DISTANCE: f64 = 4.0;
 const LENGTH: f64 = 2.0;
 /// Points a direction of the rule for b.
-const FINE: usize = 14;
+const SOURCE_RULE_POINTS: usize = 14;
 
 /// Two strips of 60° of unit cylinders, convex sides towards each other: x = e^{z/2} cos y.
 #[must_use]
@@ -31,14 +31,14 @@ pub fn two_cylinders() -> Manufactured {
         kernel: Box::new(lambert),
         charts: strips,
         exact,
-        irradiance: Box::new(resolved(&strips(1), FINE, lambert, exact, outward)),
+        irradiance: Box::new(resolved(&strips(1), SOURCE_RULE_POINTS, lambert, exact, outward)),
         peak: None,
     }
 }
 
 /// Unit normal of the strip that p is on.
 fn outward(p: Vec3) -> Vec3 {
-    let axis = if p.x < 0.5 * APART { 0.0 } else { APART };
+    let axis = if p.x < 0.5 * AXIS_DISTANCE { 0.0 } else { AXIS_DISTANCE };
     Vec3::new(p.x - axis, p.y, 0.0)
 }
 
@@ -75,7 +75,8 @@ fn strips(n: usize) -> Vec<Box<dyn Chart>> {
         heights: part([0.0, 1.0], n, k % n),
         inward: false,
     };
-    let all = [(0.0, 0.0), (PI, APART)].into_iter().flat_map(|side| (0..n * n).map(move |k| (side, k)));
+    let all =
+        [(0.0, 0.0), (PI, AXIS_DISTANCE)].into_iter().flat_map(|side| (0..n * n).map(move |k| (side, k)));
     all.map(|((centre, x), k)| Box::new(Moved(strip(centre, k), x)) as Box<dyn Chart>).collect()
 }
 
@@ -108,7 +109,7 @@ fn tube(n: usize) -> Vec<Box<dyn Chart>> {
 
 /// H x for an x that depends on the angle alone.
 fn in_tube(exact: fn(Vec3) -> f64) -> impl Fn(Vec3) -> f64 {
-    let rule = composed_interval(&gauss_legendre(FINE), 8);
+    let rule = composed_interval(&gauss_legendre(SOURCE_RULE_POINTS), 8);
     move |p| {
         let along = |c: f64, t: f64| 0.5 * (c * c * t / (c * c + t * t) + c * (t / c).atan());
         let weigh = |delta: f64| {

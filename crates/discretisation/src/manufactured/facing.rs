@@ -7,7 +7,7 @@ use fredholm_coupling::kernel::lambert;
 use fredholm_mesh::{Patch, Vec3};
 
 /// Points a direction of the rule for b: the error falls by the factor 4.2² a point.
-const FINE: usize = 12;
+const SOURCE_RULE_POINTS: usize = 12;
 
 /// Two facing squares of quads.
 #[must_use]
@@ -22,7 +22,7 @@ pub fn facing_triangles() -> Manufactured {
 }
 
 fn build(name: &'static str, charts: fn(usize) -> Vec<Box<dyn Chart>>) -> Manufactured {
-    let irradiance = resolved(&squares(1), FINE, lambert, exact, normal);
+    let irradiance = resolved(&squares(1), SOURCE_RULE_POINTS, lambert, exact, normal);
     Manufactured {
         name,
         curved: false,

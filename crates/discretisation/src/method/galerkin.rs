@@ -11,7 +11,7 @@
 //! ([`zonal`](super::zonal)).
 
 use super::zonal::Zonal;
-use crate::lagrange::MOST;
+use crate::lagrange::MOST_NODES;
 use crate::mass::Mass;
 use crate::system::{product, spread};
 use crate::transfer::fill_rows;
@@ -71,7 +71,7 @@ impl Discretisation for Galerkin {
     fn numbers(&self, space: &Space, _: usize) -> u128 {
         let n = space.dim() as u128;
         let blocks = if self.conforming { 2 * n * n } else { 0 };
-        n * n + (RUN * MOST) as u128 * n + blocks
+        n * n + (RUN * MOST_NODES) as u128 * n + blocks
     }
 
     fn discretise<'a>(&self, equation: Equation<'a>) -> Result<Box<dyn System + 'a>, DiscretisationError> {

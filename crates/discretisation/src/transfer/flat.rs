@@ -26,9 +26,9 @@ use fredholm_visibility::body::Bodies;
 /// first.
 const RULES: [(f64, usize); 4] = [(12.0, 4), (6.0, 6), (3.5, 10), (2.0, 16)];
 /// Points a direction of the nearly singular rule.
-const NEAR: usize = 8;
+const NEARLY_SINGULAR_POINTS: usize = 8;
 /// Centre distance over the sum of radii above which a pair is regular.
-const APART: f64 = 3.0;
+const REGULAR_DISTANCE: f64 = 3.0;
 /// Points a direction for receivers, beyond the degree.
 pub(crate) const OUTER: usize = 3;
 
@@ -98,7 +98,7 @@ impl<'a> FlatLambert<'a> {
         let rule = if let Some((_, rule)) = far {
             rule
         } else {
-            near = near_triangle(corners.map(|x| x.to_array()), [0.0; 3], NEAR);
+            near = near_triangle(corners.map(|x| x.to_array()), [0.0; 3], NEARLY_SINGULAR_POINTS);
             &near
         };
         for s in rule {
@@ -144,7 +144,7 @@ impl Transfer for FlatLambert<'_> {
     fn is_regular(&self, i: usize, j: usize) -> bool {
         let (a, b) = (&self.patches[i], &self.patches[j]);
         let ((ca, ra), (cb, rb)) = (ball(a), ball(b));
-        let apart = ca.distance(cb) > APART * (ra + rb);
+        let apart = ca.distance(cb) > REGULAR_DISTANCE * (ra + rb);
         let open = || {
             let mut view = VisibleParts::new(self.occluders, &self.bodies);
             view.prepare(a, b) && view.is_open()

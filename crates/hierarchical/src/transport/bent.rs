@@ -11,7 +11,7 @@ use super::draw::Places;
 use super::sample::{Sample, fit, samples};
 use super::side::{POINTS, Points, Side};
 use super::sight::{Viewer, weigh};
-use super::spread::{STEEP, disc, open_factor};
+use super::spread::{CLOSE_DEVIATION, disc, open_factor};
 use crate::tree::Tree;
 use fredholm_mesh::{Patch, Vec3};
 
@@ -19,7 +19,7 @@ use fredholm_mesh::{Patch, Vec3};
 const UNANIMOUS: f64 = 0.05;
 const MIXED: f64 = 0.2;
 /// Most rays of a pair.
-const MOST: usize = 40;
+const MOST_RAYS: usize = 40;
 
 /// A side of a pair: a polygon or a bent cluster.
 pub(super) enum End<'a> {
@@ -172,7 +172,7 @@ pub(super) fn meet(viewer: &mut Viewer, ends: [&End; 2], near: bool) -> Meeting 
     let exact = exact(ends);
     let open = looks[exact].side.mean * ends[exact].area();
     let larger = usize::from(a.area() <= b.area());
-    let least = |k: usize| if near && k == larger { STEEP } else { 0.0 };
+    let least = |k: usize| if near && k == larger { CLOSE_DEVIATION } else { 0.0 };
     let whole = [0, 1].map(|k| looks[k].side.at_least(least(k)));
     let (seen, [all, clear]) = rays(viewer, ends);
     if clear == all {
@@ -197,7 +197,7 @@ fn rays(viewer: &mut Viewer, [a, b]: [&End; 2]) -> ([Vec<f64>; 2], [usize; 2]) {
     let mut sums = [vec![[0.0; 2]; xs.len()], vec![[0.0; 2]; ys.len()]];
     let mut counts = [0, 0];
     let mut drawn = Places::at(xs[0].at, ys[0].at);
-    let stride = (xs.len() * ys.len()).div_ceil(MOST);
+    let stride = (xs.len() * ys.len()).div_ceil(MOST_RAYS);
     for (i, x) in xs.iter().enumerate() {
         for (j, y) in ys.iter().enumerate().filter(|(j, _)| (i + j) % stride == 0) {
             let weight = x.weight(y);

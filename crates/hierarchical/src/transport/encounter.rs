@@ -4,7 +4,7 @@
 use super::bent::{End, Meeting, exact, meet};
 use super::side::Side;
 use super::sight::Viewer;
-use super::spread::{NEAR, STEEP};
+use super::spread::{CLOSE_DEVIATION, CLOSE_DISTANCE};
 use crate::tree::{Node, Tree};
 
 /// What two linkable nodes exchange.
@@ -32,7 +32,7 @@ fn touching(p: &Node, q: &Node) -> bool {
 
 /// Whether points of the larger node are too coarse for the smaller one.
 fn near(p: &Node, q: &Node) -> bool {
-    p.cone().centre.distance(q.cone().centre) < NEAR * (p.cone().radius + q.cone().radius)
+    p.cone().centre.distance(q.cone().centre) < CLOSE_DISTANCE * (p.cone().radius + q.cone().radius)
 }
 
 /// Share of what two nodes would exchange face to face that they may exchange where no part of one
@@ -43,7 +43,7 @@ const GRAZING: f64 = 0.02;
 fn grazing(p: &Node, q: &Node) -> Meeting {
     let distance = p.cone().centre.distance(q.cone().centre);
     let open = GRAZING * p.area() * q.area() / (std::f64::consts::PI * distance * distance);
-    let side = Side::default().at_least(STEEP);
+    let side = Side::default().at_least(CLOSE_DEVIATION);
     Meeting { open: open.min(p.area()).min(q.area()), share: 0.0, sides: [side; 2], doubt: 1.0 }
 }
 
@@ -55,7 +55,7 @@ fn touch(viewer: &mut Viewer, ends: [&End; 2], bound: f64, same: bool) -> Meetin
     let open = ends[exact].open(ends[1 - exact], &mut viewer.front);
     let half = if same { 0.5 } else { 1.0 };
     let guess = half * ends[exact].side(&open, &open).mean * ends[exact].area();
-    let side = Side::default().at_least(STEEP);
+    let side = Side::default().at_least(CLOSE_DEVIATION);
     let share = if bound > 0.0 { (guess / bound).min(1.0) } else { 0.0 };
     Meeting { open: bound, share, sides: [side; 2], doubt: 1.0 }
 }

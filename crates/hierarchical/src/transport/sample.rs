@@ -14,7 +14,7 @@ use fredholm_mesh::{Patch, Vec3};
 const RIDGE: f64 = 1e-3;
 
 /// Radius of a flat part, over that of the cluster, from which on its quarters stand for it.
-const LARGE: f64 = 0.5;
+const LARGE_PART_RADIUS: f64 = 0.5;
 /// Least samples of a bent cluster.
 const SAMPLES: usize = 8;
 /// Numbers that are fitted to the samples.
@@ -38,7 +38,7 @@ pub(super) struct Sample {
 /// The parts of a bent node; quarters of flat ones that are few or large.
 pub(super) fn samples(tree: &Tree, index: u32) -> Vec<Sample> {
     let parts = tree.parts(index);
-    let large = LARGE * tree.nodes()[index as usize].cone().radius;
+    let large = LARGE_PART_RADIUS * tree.nodes()[index as usize].cone().radius;
     let mut samples = Vec::with_capacity(SAMPLES);
     for &part in &parts {
         let node = &tree.nodes()[part as usize];
@@ -127,10 +127,10 @@ fn slope(samples: &[Sample], offsets: &[Vec3], value: impl Fn(usize) -> f64) -> 
 }
 
 /// How far members lie beyond the centres of the parts.
-const BEYOND: f64 = 1.6;
+const MEMBERS_BEYOND_CENTRES: f64 = 1.6;
 
 /// The gradient, shortened where the linear function would be negative.
 fn limited(gradient: Vec3, offsets: &[Vec3]) -> Vec3 {
-    let least = offsets.iter().map(|x| BEYOND * gradient.dot(*x)).fold(0.0, f64::min);
+    let least = offsets.iter().map(|x| MEMBERS_BEYOND_CENTRES * gradient.dot(*x)).fold(0.0, f64::min);
     if least < -1.0 { gradient / -least } else { gradient }
 }

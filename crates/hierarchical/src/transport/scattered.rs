@@ -22,7 +22,7 @@ use std::f64::consts::PI;
 const PAIRS: usize = 16;
 /// Distance of the centres over the sum of the radii from which on two nodes are apart: the kernel
 /// has no peaks then.
-const APART: f64 = 1.5;
+const APART_DISTANCE: f64 = 1.5;
 /// Deviation over a scattered node, over its mean. Members that face the sender receive up to five
 /// times the mean of a box, others nothing, and what many senders on one side do to them goes the
 /// same way and adds up: so such links must be small beside what counts.
@@ -44,7 +44,7 @@ pub(crate) struct Chance {
 
 /// Whether two nodes lie far enough apart.
 pub(crate) fn apart(a: &Node, b: &Node) -> bool {
-    a.cone().centre.distance(b.cone().centre) > APART * (a.cone().radius + b.cone().radius)
+    a.cone().centre.distance(b.cone().centre) > APART_DISTANCE * (a.cone().radius + b.cone().radius)
 }
 
 impl Chance {

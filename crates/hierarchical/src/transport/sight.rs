@@ -10,14 +10,14 @@
 
 use super::segments::{Segments, Through};
 use super::side::{POINTS, Points, Side};
-use super::spread::{STEEP, open_factor};
+use super::spread::{CLOSE_DEVIATION, open_factor};
 use fredholm_coupling::form_factor::VisibleParts;
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::Occluders;
 use fredholm_visibility::body::{Bodies, Body, Shadow, ShadowVolume};
 
 /// Bodies in a scene up to which points see exactly.
-const FEW: usize = 256;
+const MOST_EXACT_BODIES: usize = 256;
 /// Occluders between two patches up to which segments are tested against each of them.
 const LISTED: usize = 64;
 
@@ -72,7 +72,7 @@ impl<'a> Viewer<'a> {
 
     /// What two patches see of each other.
     pub fn view(&mut self, a: &Patch, b: &Patch) -> View {
-        let many = self.sight.many || self.sight.bodies.as_slice().len() > FEW;
+        let many = self.sight.many || self.sight.bodies.as_slice().len() > MOST_EXACT_BODIES;
         if many { self.behind_many(a, b) } else { self.behind_few(a, b) }
     }
 
@@ -144,7 +144,8 @@ pub(super) fn weigh(a: Option<(f64, Side)>, b: Option<(f64, Side)>) -> (f64, [Si
         (Some(one), None) | (None, Some(one)) => (one.0, DOUBT),
         (None, None) => (0.5, 0.5),
     };
-    let sides = [a, b].map(|side| side.map_or_else(|| Side::default().at_least(STEEP), |(_, side)| side));
+    let sides =
+        [a, b].map(|side| side.map_or_else(|| Side::default().at_least(CLOSE_DEVIATION), |(_, side)| side));
     (share, sides, doubt)
 }
 

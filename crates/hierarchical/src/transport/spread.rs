@@ -12,10 +12,10 @@ use fredholm_mesh::{Patch, Vec3};
 use std::f64::consts::PI;
 
 /// Distance, over the mean diameter, below which a pair is close.
-pub(crate) const NEAR: f64 = 1.5;
+pub(crate) const CLOSE_DISTANCE: f64 = 1.5;
 /// Least deviation over the larger patch of a close pair, and over a side of which no point sees
 /// anything.
-pub(super) const STEEP: f64 = 1.0;
+pub(super) const CLOSE_DEVIATION: f64 = 1.0;
 
 /// How far inside a corner its factor is taken, over the distance from the centroid.
 const INSET: f64 = 0.1;
@@ -39,7 +39,7 @@ pub(crate) fn spread(a: &Patch, b: &Patch, front: &mut Vec<Vec3>) -> Spread {
 
 /// Whether points of the larger patch are too coarse for the smaller one.
 fn near(a: &Patch, b: &Patch) -> bool {
-    a.centroid().distance(b.centroid()) < 0.5 * NEAR * (a.diameter() + b.diameter())
+    a.centroid().distance(b.centroid()) < 0.5 * CLOSE_DISTANCE * (a.diameter() + b.diameter())
 }
 
 /// The points of each patch see the quarters of the other one.
@@ -71,7 +71,7 @@ fn close([a, b]: [&Patch; 2], [xs, ys]: [&Points; 2], front: &mut Vec<Vec3>) -> 
     for (k, side) in sides.iter_mut().enumerate() {
         // Points that see nothing do not tell what the rest sees.
         if k == larger || side.mean <= 0.0 {
-            *side = side.at_least(STEEP);
+            *side = side.at_least(CLOSE_DEVIATION);
         }
     }
     Spread { exchange, sides }

@@ -12,7 +12,7 @@ use fredholm_mesh::Vec3;
 /// Parts that stand for a bent cluster, at most.
 const PARTS: usize = 8;
 /// Largest angle between the normals of a bent cluster and their axis.
-const WIDEST: f64 = 1.4;
+const WIDEST_ANGLE: f64 = 1.4;
 /// The same where it has fewer elements than would be parts.
 const WIDEST_OF_FEW: f64 = 0.5;
 
@@ -42,7 +42,7 @@ pub(super) fn summarise(tree: &mut Tree) {
 fn is_fine(tree: &Tree, index: u32) -> bool {
     let (parts, angle) = (tree.parts(index), tree.nodes[index as usize].cone.angle);
     let elements = || parts.iter().all(|&part| tree.nodes[part as usize].root != NONE);
-    angle <= WIDEST && parts.len() == PARTS || angle <= WIDEST_OF_FEW && elements()
+    angle <= WIDEST_ANGLE && parts.len() == PARTS || angle <= WIDEST_OF_FEW && elements()
 }
 
 fn gist(tree: &Tree, node: &Node) -> Gist {

@@ -16,7 +16,7 @@ use std::ops::Range;
 /// Most runs of rows: enough to balance the threads, few enough for a vector each.
 const RUNS: usize = 32;
 /// Fewest entries worth a run.
-const LEAST: usize = 1 << 15;
+const FEWEST_ENTRIES_OF_A_RUN: usize = 1 << 15;
 /// Unknowns added at a time.
 const BLOCK: usize = 1 << 10;
 
@@ -58,7 +58,7 @@ fn split<'a>(mut memory: &'a mut [f64], runs: &[Range<usize>], rhs_count: usize)
 /// Runs of rows that depend on the dimension alone. Row i ends at about i²/2 entries, so equal
 /// shares end at equal steps of i².
 fn runs(dim: usize) -> Vec<Range<usize>> {
-    let count = (dim * (dim + 1) / 2 / LEAST).clamp(1, RUNS);
+    let count = (dim * (dim + 1) / 2 / FEWEST_ENTRIES_OF_A_RUN).clamp(1, RUNS);
     let end = |run: usize| (dim as f64 * (run as f64 / count as f64).sqrt()).round() as usize;
     (0..count).map(|run| end(run)..end(run + 1)).collect()
 }

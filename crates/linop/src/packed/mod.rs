@@ -22,7 +22,7 @@ use std::ops::ControlFlow;
 /// Rows taken at a time.
 const ROWS: usize = 4;
 /// Fewest entries of a column worth a thread.
-const LEAST: usize = 1 << 11;
+const FEWEST_ENTRIES_OF_A_THREAD: usize = 1 << 11;
 /// Columns taken at a time: four rows of them stay in the innermost cache for both directions and
 /// all right-hand sides.
 const TILE: usize = 1 << 9;
@@ -157,7 +157,7 @@ impl<S: Storage> LinearOperator<f64> for PackedSymmetric<S> {
         left.iter_mut().zip(self.packed_row(i)).for_each(|(out, entry)| *out = entry.to_f64());
         // Below the diagonal every entry lies in another page of memory: several threads wait for
         // several at once.
-        let below = right.par_iter_mut().with_min_len(LEAST).enumerate();
+        let below = right.par_iter_mut().with_min_len(FEWEST_ENTRIES_OF_A_THREAD).enumerate();
         below.for_each(|(k, out)| *out = self.packed_row(i + 1 + k)[i].to_f64());
     }
 

@@ -7,7 +7,7 @@ use crate::{Bounds, Patch, Vec3};
 /// Distance, relative to the longest side of the box around all, up to which pieces lie in one
 /// plane. Files mostly hold coordinates of six or seven digits: what was meant to be in one plane
 /// is so within their rounding only.
-const TOGETHER: f64 = 1e-7;
+const SAME_PLANE_DISTANCE: f64 = 1e-7;
 /// Roundings of the largest coordinate that it is no less than.
 const ROUNDINGS: f64 = 16.0;
 
@@ -69,7 +69,7 @@ pub(super) fn tolerance<'a>(pieces: impl IntoIterator<Item = &'a Patch>) -> f64 
     let bounds = Bounds::around(pieces.into_iter().flat_map(|patch| patch.corners().iter().copied()));
     let Some(Bounds { min, max }) = bounds else { return 0.0 };
     let largest = min.abs().max(max.abs()).max_element();
-    (TOGETHER * (max - min).max_element()).max(ROUNDINGS * f64::EPSILON * largest)
+    (SAME_PLANE_DISTANCE * (max - min).max_element()).max(ROUNDINGS * f64::EPSILON * largest)
 }
 
 /// The box around a patch.

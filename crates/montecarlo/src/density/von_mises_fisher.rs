@@ -15,7 +15,7 @@ pub struct VonMisesFisher {
 }
 
 /// Below this κ the density is uniform to rounding.
-const FLAT: f64 = 1e-15;
+const UNIFORM_BELOW: f64 = 1e-15;
 
 impl VonMisesFisher {
     /// The lobe of concentration `kappa`, at least 0; a negative one counts as 0.
@@ -27,7 +27,7 @@ impl VonMisesFisher {
 
 impl DirectionDensity for VonMisesFisher {
     fn sample(&self, [u, turn]: [f64; 2]) -> Vec3 {
-        let t = if self.kappa < FLAT {
+        let t = if self.kappa < UNIFORM_BELOW {
             2.0 * (1.0 - u)
         } else {
             -((1.0 - u) * (-2.0 * self.kappa).exp_m1()).ln_1p() / self.kappa
@@ -38,7 +38,7 @@ impl DirectionDensity for VonMisesFisher {
     fn pdf(&self, direction: Vec3) -> f64 {
         // Near the axis 1 − z has lost its digits; the distance to the pole has not.
         let t = 0.5 * (direction - Vec3::Z).length_squared();
-        if self.kappa < FLAT {
+        if self.kappa < UNIFORM_BELOW {
             return 0.5 / TAU;
         }
         self.kappa * (-self.kappa * t).exp() / (TAU * -(-2.0 * self.kappa).exp_m1())

@@ -1,6 +1,6 @@
 //! The exposed part of patches that something stands on: where photons can arrive, m².
 //!
-//! A patch is cut into [`SIDE`]² parts of equal area; one of which no ray out of a fixed bundle
+//! A patch is cut into [`PARTS_A_SIDE`]² parts of equal area; one of which no ray out of a fixed bundle
 //! meets a lit side or nothing is buried. Patches whose exposed share is 0 or 1 need no parts.
 
 use crate::density::{Cosine, DirectionDensity};
@@ -9,7 +9,7 @@ use fredholm_mesh::Vec3;
 use std::collections::BTreeMap;
 
 /// Parts along a side.
-const SIDE: u32 = 32;
+const PARTS_A_SIDE: u32 = 32;
 /// Rays of a bundle: rings by the cosine density, and rays in each.
 const BUNDLE: [u32; 2] = [3, 5];
 
@@ -23,10 +23,11 @@ pub(super) struct ExposedPart {
 
 impl ExposedPart {
     fn new(scene: &Enclosure, patch: usize) -> Self {
-        let middle = |k: u32| (f64::from(k) + 0.5) / f64::from(SIDE);
-        let sites = (0..SIDE * SIDE).map(|k| scene.point(patch, [middle(k / SIDE), middle(k % SIDE)]));
+        let middle = |k: u32| (f64::from(k) + 0.5) / f64::from(PARTS_A_SIDE);
+        let sites = (0..PARTS_A_SIDE * PARTS_A_SIDE)
+            .map(|k| scene.point(patch, [middle(k / PARTS_A_SIDE), middle(k % PARTS_A_SIDE)]));
         let middles = sites.filter(|&site| exposed(scene, site)).map(|site| site.point).collect();
-        Self { middles, each: scene.patches()[patch].area() / f64::from(SIDE * SIDE) }
+        Self { middles, each: scene.patches()[patch].area() / f64::from(PARTS_A_SIDE * PARTS_A_SIDE) }
     }
 
     /// Exposed area, m².

@@ -3,7 +3,7 @@
 //! E(p) is direct light plus E[ρ Ê(y)] over rays of density cosθ/π, Ê(y) = Σ φ/N(y) over the
 //! photons within r of y on the same flat piece, N(y) the area of that piece within r: constant
 //! irradiance is read without bias up to its edges, and up to what stands on it
-//! ([`super::buried`]). A ray shorter than [`NEAR`] radii is reflected where it ends, as a path: a
+//! ([`super::buried`]). A ray shorter than [`SHORT_RAY_RADII`] radii is reflected where it ends, as a path: a
 //! corner sees every gradient beside it, what is far away only its mean. H. W. Jensen, Eurographics
 //! workshop on rendering 1996, doi:10.1007/978-3-7091-7484-5_3. The bias of Ê falls with r², which
 //! shrinks from batch to batch, r²_{b+1} = r²_b (b + α)/(b + 1), so that the mean of the batches
@@ -27,7 +27,7 @@ const ALPHA: f64 = 2.0 / 3.0;
 /// Photons that a disc of the first radius holds, were they spread evenly.
 const HELD: f64 = 8.0;
 /// Rays up to so many radii long are reflected where they end.
-const NEAR: f64 = 3.0;
+const SHORT_RAY_RADII: f64 = 3.0;
 /// Cosine between normals, and distance from the plane over the size of the scene, up to which
 /// patches are one flat piece.
 const PARALLEL: f64 = 1.0 - 1e-9;
@@ -170,7 +170,7 @@ impl PointEstimator for Map<'_> {
         let mut weight = vec![1.0; scene.bands()];
         let mut step = Step { at, done: 0, rays: 0, weight: &mut weight };
         while let Some(next) = path.step(scene, &mut step, draw, out) {
-            if next.point.distance(step.at.point) > NEAR * self.radius {
+            if next.point.distance(step.at.point) > SHORT_RAY_RADII * self.radius {
                 self.read(scene, next, step.weight, out);
                 break;
             }

@@ -15,7 +15,7 @@ use crate::{
 };
 
 /// Value that stands for 0 on a logarithmic axis.
-const FLOOR: f64 = 1e-17;
+const SMALLEST_ON_LOG_AXIS: f64 = 1e-17;
 /// Classes of a histogram of scores, of width ½ from −5 to 5.
 const CLASSES: i32 = 20;
 
@@ -213,7 +213,8 @@ fn shooting_statements(record: &ShootingRecord) -> Vec<String> {
 }
 
 fn shooting(record: &ShootingRecord) -> ReportPlot {
-    let left: Vec<f64> = record.shots.iter().map(|shot| (1.0 - shot.distributed).max(FLOOR)).collect();
+    let left: Vec<f64> =
+        record.shots.iter().map(|shot| (1.0 - shot.distributed).max(SMALLEST_ON_LOG_AXIS)).collect();
     let over = |label: &str, across: Vec<f64>| {
         (axis(label, false), vec![line("still to be shot", across, left.clone())])
     };
@@ -303,7 +304,7 @@ fn refinement(record: &RefinementRecord) -> ReportPlot {
         let differences = band.differences.iter().copied().enumerate().take(coarser);
         let (levels, errors): (Vec<usize>, Vec<f64>) =
             if band.order.is_some() { of_limit.unzip() } else { differences.unzip() };
-        let errors = errors.into_iter().map(|error| error.max(FLOOR)).collect();
+        let errors = errors.into_iter().map(|error| error.max(SMALLEST_ON_LOG_AXIS)).collect();
         line(&band.band, sizes(&levels), errors)
     };
     ReportPlot {

@@ -20,7 +20,7 @@ use super::Measured;
 use crate::ReportError;
 
 /// Largest number of pictures in a stack, channels of a pixel: what is more is a mistake.
-const MOST: usize = 65_536;
+const MOST_LAYERS: usize = 65_536;
 /// Rounding of a half, relative.
 const HALF: f64 = 1.0 / 2048.0;
 
@@ -95,7 +95,7 @@ fn numpy(path: &Path, file: File, shape: PictureShape) -> Result<Measured, Repor
         [n, h, w, c] if (h, w) == (height, width) && fits(c, bands) => (n, c),
         _ => return Err(other_size(path, &format!("an array of the shape {:?}", found.shape()), shape)),
     };
-    if !(1..=MOST).contains(&seeds) {
+    if !(1..=MOST_LAYERS).contains(&seeds) {
         return Err(other_size(path, &format!("a stack of {seeds} pictures"), shape));
     }
     let values: Vec<f64> = found.iter().copied().collect();
@@ -120,7 +120,7 @@ fn traced(path: &Path, file: File, shape: PictureShape) -> Result<Measured, Repo
 
 /// Whether so many channels stand for the bands.
 fn fits(channels: usize, bands: usize) -> bool {
-    channels == bands || (bands == 1 && (1..=MOST).contains(&channels))
+    channels == bands || (bands == 1 && (1..=MOST_LAYERS).contains(&channels))
 }
 
 /// The bands of channels: themselves, or their mean where there is one band.

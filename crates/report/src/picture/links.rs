@@ -42,7 +42,7 @@ const BOLD: f64 = 1.6;
 /// Share of the picture that is left under the tints.
 const DIM: f64 = 0.35;
 /// Least share of the irradiance that is told from nothing.
-const LEAST: f64 = 1e-4;
+const LEAST_SHARE: f64 = 1e-4;
 /// Colour of the receiver.
 const RECEIVER: Rgb = [1.0, 0.02, 0.02];
 /// Colours of levels, linear.
@@ -88,7 +88,7 @@ impl<'a> LinkPainter<'a> {
 
 /// How much of a colour a share has, in [0, 1].
 fn strength(share: f64) -> f64 {
-    1.0 - (share.clamp(LEAST, 1.0).ln() / LEAST.ln())
+    1.0 - (share.clamp(LEAST_SHARE, 1.0).ln() / LEAST_SHARE.ln())
 }
 
 impl Painter for LinkPainter<'_> {

@@ -12,7 +12,7 @@ mod theme;
 pub(crate) use figure::{Axis, Bar, Figure, Line, Panel, Part, write_svg};
 pub(crate) use map::{ColourBar, Heat, diverging, twilight, viridis};
 pub(crate) use polar::Polar;
-pub(crate) use scale::{FLOOR, Scale, Span};
+pub(crate) use scale::{SMALLEST_ON_LOG_AXIS, Scale, Span};
 pub(crate) use theme::{band_colours, distinct};
 
 /// A point of a plot in its own quantities.

@@ -12,11 +12,11 @@ use super::scale::Scale;
 use super::theme::{GRID, INK, MUTED, SMALL, TEXT, text};
 
 /// Levels so far below the rim and more stand at the centre, dB.
-const REACH: f64 = 40.0;
+const DECIBELS_TO_CENTRE: f64 = 40.0;
 /// Distance of the rings of levels, dB.
 const RING: f64 = 10.0;
 /// Half the side of what is drawn where the rim has radius 1.
-const ROOM: f64 = 1.2;
+const HALF_SIDE: f64 = 1.2;
 
 /// Curves over an angle.
 #[derive(Clone, Debug)]
@@ -39,7 +39,9 @@ impl Polar {
         let top = values.filter(|value| value.is_finite()).fold(f64::NEG_INFINITY, f64::max);
         if self.decibels {
             let rim = if top.is_finite() { (top / RING).ceil() * RING } else { 0.0 };
-            return (0..=(REACH / RING) as i32).map(|i| rim - REACH + RING * f64::from(i)).collect();
+            return (0..=(DECIBELS_TO_CENTRE / RING) as i32)
+                .map(|i| rim - DECIBELS_TO_CENTRE + RING * f64::from(i))
+                .collect();
         }
         let top = if top > 0.0 { top } else { 1.0 };
         let power = 10.0_f64.powf((top / 5.0).log10().floor());
@@ -56,7 +58,7 @@ impl Polar {
         let below = area.split_vertically(28 * unit).1;
         let side = height.saturating_sub((28 * unit).unsigned_abs());
         let margin = width.saturating_sub(side) / 2;
-        let scale = Scale::linear(-ROOM, ROOM);
+        let scale = Scale::linear(-HALF_SIDE, HALF_SIDE);
         let mut chart = ChartBuilder::on(&below)
             .margin_left(margin)
             .margin_right(margin)

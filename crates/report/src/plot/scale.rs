@@ -8,7 +8,7 @@ use plotters::coord::types::RangedCoordf64;
 use crate::words::{number, raised};
 
 /// Value that stands for 0 on a logarithmic axis.
-pub(crate) const FLOOR: f64 = 1e-17;
+pub(crate) const SMALLEST_ON_LOG_AXIS: f64 = 1e-17;
 
 /// How an axis comes from its values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,7 +17,7 @@ pub(crate) enum Span {
     WithZero,
     /// From the smallest to the largest value.
     Tight,
-    /// Over decades; what is smaller than [`FLOOR`] stands there.
+    /// Over decades; what is smaller than [`SMALLEST_ON_LOG_AXIS`] stands there.
     Decades,
 }
 
@@ -44,14 +44,14 @@ impl Scale {
 
     /// A logarithmic axis.
     pub(crate) fn decades(from: f64, to: f64) -> Self {
-        let (from, to) = (from.max(FLOOR), to.max(FLOOR));
+        let (from, to) = (from.max(SMALLEST_ON_LOG_AXIS), to.max(SMALLEST_ON_LOG_AXIS));
         let to = if to > from { to } else { 10.0 * from };
         Self { from, to, logarithmic: true, ticks: round_logarithmic(from, to) }
     }
 
     /// The axis that holds the finite ones of some values.
     pub(crate) fn holding(values: impl Iterator<Item = f64>, span: Span) -> Self {
-        let floor = |v: f64| if span == Span::Decades { v.abs().max(FLOOR) } else { v };
+        let floor = |v: f64| if span == Span::Decades { v.abs().max(SMALLEST_ON_LOG_AXIS) } else { v };
         let start = if span == Span::WithZero { (0.0, 0.0) } else { (f64::INFINITY, f64::NEG_INFINITY) };
         let values = values.filter(|v| v.is_finite()).map(floor);
         let (low, high) = values.fold(start, |(low, high), v| (low.min(v), high.max(v)));
@@ -71,7 +71,7 @@ impl Scale {
 
     /// A value as near as the axis has it.
     pub(crate) fn clamped(&self, value: f64) -> f64 {
-        let value = if self.logarithmic { value.abs().max(FLOOR) } else { value };
+        let value = if self.logarithmic { value.abs().max(SMALLEST_ON_LOG_AXIS) } else { value };
         value.clamp(self.from.min(self.to), self.from.max(self.to))
     }
 

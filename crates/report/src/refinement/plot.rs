@@ -7,7 +7,7 @@
 use std::io::{self, Write};
 
 use super::record::{BandConvergence, RefinementRecord};
-use crate::plot::{Axis, FLOOR, Figure, Line, Panel, Part, Span, band_colours, write_svg};
+use crate::plot::{Axis, Figure, Line, Panel, Part, SMALLEST_ON_LOG_AXIS, Span, band_colours, write_svg};
 
 /// Orders whose slopes are drawn, with their labels.
 const SLOPES: [(f64, &str); 3] = [(1.0, "slope h"), (2.0, "slope h²"), (4.0, "slope h⁴")];
@@ -30,7 +30,9 @@ fn curve(band: &BandConvergence) -> Vec<(usize, f64)> {
 pub fn write_refinement_plot(record: &RefinementRecord, out: &mut dyn Write) -> io::Result<()> {
     let names: Vec<String> = record.bands.iter().map(|band| band.band.clone()).collect();
     let line = |(band, colour): (&BandConvergence, _)| {
-        let points = curve(band).into_iter().map(|(level, error)| (record.levels[level].h, error.max(FLOOR)));
+        let points = curve(band)
+            .into_iter()
+            .map(|(level, error)| (record.levels[level].h, error.max(SMALLEST_ON_LOG_AXIS)));
         let of = band.order.map_or_else(|| "to the finest".to_owned(), |order| format!("order {order:.2}"));
         Line::new(&format!("{}, {of}", band.band), points.filter(|(h, _)| *h > 0.0).collect(), colour)
     };
@@ -45,9 +47,11 @@ pub fn write_refinement_plot(record: &RefinementRecord, out: &mut dyn Write) -> 
 /// Lines of slope 1, 2 and 4 from the finest error of the first band that has one, as far up as
 /// there are errors.
 fn slopes(record: &RefinementRecord) -> Vec<Line> {
-    let drawn = record.bands.iter().flat_map(curve).filter(|(_, error)| *error > FLOOR);
+    let drawn = record.bands.iter().flat_map(curve).filter(|(_, error)| *error > SMALLEST_ON_LOG_AXIS);
     let finest = record.bands.iter().find_map(|band| curve(band).last().copied());
-    let Some((level, error)) = finest.filter(|(_, error)| *error > FLOOR) else { return Vec::new() };
+    let Some((level, error)) = finest.filter(|(_, error)| *error > SMALLEST_ON_LOG_AXIS) else {
+        return Vec::new();
+    };
     let (end, most) = (record.levels[level].h, drawn.map(|(_, error)| error).fold(error, f64::max));
     let slope = |(order, label): (f64, &str)| {
         let reach = (end * (most / error).powf(1.0 / order)).min(record.levels[0].h);

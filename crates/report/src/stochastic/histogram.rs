@@ -9,7 +9,7 @@ use std::io::{self, Write};
 use crate::plot::{Axis, Bar, Figure, Line, Panel, Part, Span, distinct, write_svg};
 
 /// Where the outermost bins end, and how wide a bin is.
-const REACH: f64 = 6.0;
+const OUTERMOST_BIN: f64 = 6.0;
 const BIN: f64 = 0.5;
 const BINS: usize = 24;
 
@@ -34,7 +34,7 @@ pub fn write_score_histogram(title: &str, scores: &[f64], out: &mut dyn Write) -
 fn counts(scores: &[f64]) -> Vec<f64> {
     let mut counts = vec![0.0; BINS];
     for z in scores.iter().filter(|z| !z.is_nan()) {
-        counts[(((z + REACH) / BIN).floor().clamp(0.0, (BINS - 1) as f64)) as usize] += 1.0;
+        counts[(((z + OUTERMOST_BIN) / BIN).floor().clamp(0.0, (BINS - 1) as f64)) as usize] += 1.0;
     }
     counts
 }
@@ -45,7 +45,7 @@ fn expected(z: f64, count: usize) -> f64 {
 }
 
 fn place_of(i: usize, of: usize) -> f64 {
-    2.0 * REACH * i as f64 / of as f64 - REACH
+    2.0 * OUTERMOST_BIN * i as f64 / of as f64 - OUTERMOST_BIN
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ use crate::{Camera, Exposure, Field, Picture, ReportError, render};
 /// Score of the full colour.
 const FULL: f64 = 5.0;
 /// Brightness of white.
-const BRIGHT: f64 = 1.0;
+const WHITE_BRIGHTNESS: f64 = 1.0;
 
 /// Draws the scores of the faces, the worst band of each.
 ///
@@ -32,8 +32,8 @@ pub fn score_map(mesh: &Mesh, scores: &[f64], camera: Option<&Camera>) -> Result
 /// The linear colour of a score.
 pub(crate) fn score_colour(z: f64) -> [f64; 3] {
     let share = (z / FULL).clamp(-1.0, 1.0);
-    let faded = BRIGHT * (1.0 - share.abs());
-    if share > 0.0 { [BRIGHT, faded, faded] } else { [faded, faded, BRIGHT] }
+    let faded = WHITE_BRIGHTNESS * (1.0 - share.abs());
+    if share > 0.0 { [WHITE_BRIGHTNESS, faded, faded] } else { [faded, faded, WHITE_BRIGHTNESS] }
 }
 
 #[cfg(test)]

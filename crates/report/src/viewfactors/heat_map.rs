@@ -11,7 +11,7 @@ use crate::Picture;
 use crate::plot::{ColourBar, Heat, Scale, viridis};
 
 /// Most blocks along a side.
-const SIDE: usize = 752;
+const MOST_BLOCKS_A_SIDE: usize = 752;
 /// Decades shown below the largest factor.
 const DECADES: i32 = 8;
 /// Colour of zero.
@@ -55,7 +55,7 @@ struct Blocks {
 impl Blocks {
     fn new(factors: &ViewFactors) -> Self {
         let n = factors.len();
-        let count = n.min(SIDE);
+        let count = n.min(MOST_BLOCKS_A_SIDE);
         let mut values = vec![0.0_f64; count * count];
         let mut row = vec![0.0; n];
         for i in 0..n {
@@ -111,7 +111,7 @@ mod tests {
 
     #[test]
     fn a_block_shows_its_largest_entry() {
-        let n = 2 * SIDE;
+        let n = 2 * MOST_BLOCKS_A_SIDE;
         let picture = heat_map(&factors(n, |i, j| if (i, j) == (7, 101) { 1.0 } else { 1e-3 })).unwrap();
         assert!((1..100).contains(&(found(&picture, viridis(1.0)).0)));
         assert!(found(&picture, viridis(0.0)).0 > 100_000);

@@ -5,7 +5,7 @@
 use std::io::{self, Write};
 
 use super::matrix::ViewFactors;
-use crate::plot::{Axis, Bar, FLOOR, Figure, Panel, Part, Span, write_svg};
+use crate::plot::{Axis, Bar, Figure, Panel, Part, SMALLEST_ON_LOG_AXIS, Span, write_svg};
 use crate::words::number;
 
 /// Bins of a decade.
@@ -16,7 +16,8 @@ const BINS: f64 = 2.0;
 /// # Errors
 /// What `out` reports.
 pub fn write_closure_histogram(factors: &ViewFactors, out: &mut dyn Write) -> io::Result<()> {
-    let defects: Vec<f64> = factors.defects().into_iter().map(|defect| defect.max(FLOOR)).collect();
+    let defects: Vec<f64> =
+        factors.defects().into_iter().map(|defect| defect.max(SMALLEST_ON_LOG_AXIS)).collect();
     let bar = |(bin, count): (i32, usize)| Bar { from: edge(bin), to: edge(bin + 1), height: count as f64 };
     let across = Axis::new("|Σ F − 1| of a row", Span::Decades);
     let panel = Panel {

@@ -15,7 +15,7 @@ use crate::csv::{numbers, quoted};
 
 const PREFIXES: [&str; 3] = ["inc", "sca", "tot"];
 const COMPONENTS: [&str; 6] = ["ex", "ey", "ez", "hx", "hy", "hz"];
-const FAR: &str = "receiver,index,theta_degrees,phi_degrees,frequency,f_theta_re,f_theta_im,f_phi_re,f_phi_im,rcs_theta,rcs_phi,t_theta_re,t_theta_im,t_phi_re,t_phi_im,gain";
+const FAR_HEADER: &str = "receiver,index,theta_degrees,phi_degrees,frequency,f_theta_re,f_theta_im,f_phi_re,f_phi_im,rcs_theta,rcs_phi,t_theta_re,t_theta_im,t_phi_re,t_phi_im,gain";
 
 /// Writes the fields at the receivers, whose names are given in their order.
 ///
@@ -42,7 +42,7 @@ pub fn write_receivers_csv(names: &[String], rows: &[WaveRow], out: &mut dyn Wri
 /// # Errors
 /// What `out` reports.
 pub fn write_far_csv(names: &[String], rows: &[FarRow], out: &mut dyn Write) -> io::Result<()> {
-    writeln!(out, "{FAR}")?;
+    writeln!(out, "{FAR_HEADER}")?;
     for row in rows {
         write!(out, "{},{}", quoted(name(names, row.receiver)), row.index)?;
         numbers(out, [row.theta_degrees, row.phi_degrees, row.frequency])?;

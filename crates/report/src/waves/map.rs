@@ -10,7 +10,7 @@ use crate::Picture;
 use crate::plot::{ColourBar, Heat, Scale, diverging, twilight, viridis};
 
 /// Colour of what is no number.
-const NOTHING: [u8; 3] = [225, 225, 225];
+const NO_NUMBER_COLOUR: [u8; 3] = [225, 225, 225];
 
 /// What of a complex number is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -107,7 +107,7 @@ impl FieldMap<'_> {
         let (scale, colour) = quantity.bar(&values);
         let cell = |column: usize, row: usize| {
             let place = scale.place(values[row * columns + column]);
-            if place.is_finite() { colour(place) } else { NOTHING }
+            if place.is_finite() { colour(place) } else { NO_NUMBER_COLOUR }
         };
         let (symbol, unit) = self.quantity;
         let label = match quantity {

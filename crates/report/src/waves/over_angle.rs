@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use crate::plot::{Axis, Figure, Line, Panel, Part, Polar, Span, write_svg};
 
 /// Levels further below the largest are at the lower edge, dB.
-const REACH: f64 = 80.0;
+const DECIBELS_SHOWN: f64 = 80.0;
 
 /// A quantity over an angle.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,7 +82,7 @@ pub fn write_angle_plot(
     };
     let (across, up) = (format!("{angle}, degrees"), format!("{name}, {level_unit}"));
     let straight = Panel {
-        reach: REACH,
+        reach: DECIBELS_SHOWN,
         ..Panel::new(Axis::new(&across, Span::Tight), Axis::new(&up, Span::Tight), mapped(&level))
     };
     let polar =

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use crate::plot::{Axis, Figure, Line, Panel, Part, Span, write_svg};
 
 /// Levels further below the largest are at the lower edge, dB.
-const REACH: f64 = 80.0;
+const DECIBELS_SHOWN: f64 = 80.0;
 /// From so many hertz on the axis is in gigahertz.
 const GIGAHERTZ: f64 = 1e10;
 
@@ -44,7 +44,7 @@ pub fn write_frequency_plot(
     };
     let across = Axis::new(&format!("frequency, {unit}"), Span::Tight);
     let lines = lines.iter().enumerate().map(line).collect();
-    let panel = Panel { reach: REACH, ..Panel::new(across, Axis::new(up, Span::Tight), lines) };
+    let panel = Panel { reach: DECIBELS_SHOWN, ..Panel::new(across, Axis::new(up, Span::Tight), lines) };
     write_svg(&Figure { title: title.to_owned(), parts: vec![Part::Panel(panel)] }, out)
 }
 

@@ -10,7 +10,7 @@ use fredholm_mesh::{Mesh, Vec3};
 use super::MapAxis;
 
 /// Distances below this share of the map's size count as none.
-const NEAR: f64 = 1e-9;
+const ZERO_DISTANCE: f64 = 1e-9;
 /// Cosine from which on an axis is that of the coordinates.
 const ALONG: f64 = 1.0 - 1e-12;
 
@@ -85,13 +85,15 @@ impl MapPlane {
             let heights: Vec<f64> = corners
                 .iter()
                 .map(|corner| (*corner - self.origin).dot(normal))
-                .map(|height| if height.abs() <= NEAR * size { 0.0 } else { height })
+                .map(|height| if height.abs() <= ZERO_DISTANCE * size { 0.0 } else { height })
                 .collect();
             let sides = (0..corners.len()).map(|i| (i, (i + 1) % corners.len()));
             if heights.iter().all(|height| *height == 0.0) {
                 for (i, j) in sides {
                     let ends = [self.place(corners[i]), self.place(corners[j])];
-                    let code = |(x, y): (f64, f64)| [x, y].map(|c| (c / (1e3 * NEAR * size)).round() as i64);
+                    let code = |(x, y): (f64, f64)| {
+                        [x, y].map(|c| (c / (1e3 * ZERO_DISTANCE * size)).round() as i64)
+                    };
                     let mut key = ends.map(code);
                     key.sort_unstable();
                     flat.entry(key).or_insert((0, ends)).0 += 1;

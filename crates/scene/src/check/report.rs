@@ -14,7 +14,7 @@ use crate::scene::Scene;
 /// Points along a side of the grid by which a piece is found to be buried.
 const GRID: usize = 2;
 /// Diagonals, m, outside which the unit of length is told to be looked at.
-const USUAL: [f64; 2] = [0.02, 2e3];
+const USUAL_DIAGONALS: [f64; 2] = [0.02, 2e3];
 
 /// One thing that was found.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -97,7 +97,7 @@ impl Scene {
         self.shapes(&topology, &mut report.findings);
         self.contacts(&mut report.findings);
         self.buried(&mut report.findings);
-        let [least, most] = USUAL;
+        let [least, most] = USUAL_DIAGONALS;
         if diagonal > 0.0 && !(least..=most).contains(&diagonal) {
             let what = format!(
                 "{diagonal:.3e} m from end to end: is the unit of length right? scale of an obj tells the metres of one unit"

@@ -44,7 +44,7 @@ const NODES: [(i32, usize); 25] = [
     (31, 56),
 ];
 /// Types of surface elements, and how many of their nodes are corners; the corners come first.
-const FLAT: [(i32, usize); 5] = [(2, 3), (3, 4), (9, 3), (10, 4), (16, 4)];
+const SURFACE_TYPES: [(i32, usize); 5] = [(2, 3), (3, 4), (9, 3), (10, 4), (16, 4)];
 
 pub(super) fn import(path: &Path, bytes: Vec<u8>) -> Result<Imported, SceneError> {
     if is_binary(&bytes) {
@@ -254,7 +254,7 @@ impl Reader {
                 let help = "mesh with triangles or quads";
                 return Err(cursor.error(start, format!("elements of type {kind} are not read"), help));
             };
-            let corners = FLAT.iter().find(|(known, _)| *known == kind).map(|(_, corners)| *corners);
+            let corners = SURFACE_TYPES.iter().find(|(known, _)| *known == kind).map(|(_, corners)| *corners);
             if corners.is_some_and(|corners| corners < *nodes) && count > 0 {
                 let (before, at) = self.curved.unwrap_or((0, start));
                 self.curved = Some((before.saturating_add(usize::try_from(count).unwrap_or(usize::MAX)), at));

@@ -7,7 +7,7 @@ use crate::error::{ErrorKind, SceneError};
 use crate::source::Source;
 
 /// Deepest nesting: no mesh file has a reason for more.
-const DEEPEST: usize = 64;
+const DEEPEST_NESTING: usize = 64;
 
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Value {
@@ -111,8 +111,10 @@ impl Reader<'_> {
 
     fn value(&mut self, depth: usize) -> Result<Json, SceneError> {
         self.blanks();
-        if depth > DEEPEST {
-            return Err(self.error(format!("nested deeper than {DEEPEST} levels"), "flatten the file"));
+        if depth > DEEPEST_NESTING {
+            return Err(
+                self.error(format!("nested deeper than {DEEPEST_NESTING} levels"), "flatten the file")
+            );
         }
         let start = self.at;
         let value = match self.peek() {

@@ -24,16 +24,16 @@ use crate::resolve::Camera;
 use crate::source::Source;
 
 /// Deepest nesting of elements.
-const DEEPEST: usize = 64;
+const DEEPEST_NESTING: usize = 64;
 /// Elements that change no surface.
 const PASSED_OVER: [&str; 9] =
     ["integrator", "sampler", "rfilter", "film", "string", "integer", "float", "boolean", "default"];
 /// Reflectance where a BSDF does not say.
 const UNSAID: f64 = 0.5;
 /// Longest value of an attribute, once defaults are put in: they could double it again and again.
-const LONGEST: usize = 65_536;
+const LONGEST_VALUE: usize = 65_536;
 /// Largest picture that is taken over, pixels along a side.
-const LARGEST: f64 = 16384.0;
+const MOST_PIXELS_A_SIDE: f64 = 16384.0;
 
 /// An element of the text.
 #[derive(Debug, Default)]
@@ -88,8 +88,8 @@ fn tree(source: &Source) -> Result<Node, SceneError> {
         match event {
             Event::Start(tag) => {
                 open.push(node(source, &tag, span.clone(), &mut defaults)?);
-                if open.len() > DEEPEST {
-                    let what = format!("nested deeper than {DEEPEST} levels");
+                if open.len() > DEEPEST_NESTING {
+                    let what = format!("nested deeper than {DEEPEST_NESTING} levels");
                     return Err(source.error(ErrorKind::Syntax, span, what, "flatten the scene"));
                 }
             }
@@ -139,8 +139,8 @@ fn node(
         let mut value = value.map_err(|error| refuse(error.to_string()))?.into_owned();
         for (name, text) in defaults.iter() {
             value = value.replace(&format!("${name}"), text);
-            if value.len() > LONGEST {
-                return Err(refuse(format!("defaults make a value longer than {LONGEST} bytes")));
+            if value.len() > LONGEST_VALUE {
+                return Err(refuse(format!("defaults make a value longer than {LONGEST_VALUE} bytes")));
             }
         }
         node.attributes.push((attribute.key.0.to_owned(), value));
@@ -410,8 +410,8 @@ impl<'a> Reader<'a> {
             text.map_or(Some(usual), |text| text.trim().parse::<f64>().ok())
         };
         let film = node.child("film").unwrap_or(node);
-        let width = number(film, &["width"], 768.0).filter(|w| (1.0..=LARGEST).contains(w));
-        let height = number(film, &["height"], 576.0).filter(|h| (1.0..=LARGEST).contains(h));
+        let width = number(film, &["width"], 768.0).filter(|w| (1.0..=MOST_PIXELS_A_SIDE).contains(w));
+        let height = number(film, &["height"], 576.0).filter(|h| (1.0..=MOST_PIXELS_A_SIDE).contains(h));
         let fov = number(node, &["fov"], 45.0).filter(|fov| *fov > 0.0 && *fov < 180.0);
         let (Some(width), Some(height), Some(fov)) = (width, height, fov) else {
             let help = "write width and height from 1 to 16384, and fov above 0 and below 180";

@@ -244,14 +244,14 @@ mod tests {
         parse(Source::of("a.obj".as_ref(), text.to_owned()))
     }
 
-    const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+    const UNIT_SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
     #[test]
     fn all_ways_of_naming_a_corner_give_the_same_face() {
         for face in
             ["f 1 2 3 4", "f 1/1 2/2 3/3 4/4", "f 1//1 2//1 3//1 4//1", "f -4/9/9 -3 -2 -1", "f 1 2 \\\n 3 4"]
         {
-            let groups = parsed(&format!("{SQUARE}{face}\n")).unwrap().groups;
+            let groups = parsed(&format!("{UNIT_SQUARE}{face}\n")).unwrap().groups;
             assert_eq!(
                 groups[0].faces[0].corners,
                 [Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Y, Vec3::Y],
@@ -262,7 +262,7 @@ mod tests {
 
     #[test]
     fn a_face_has_a_bounded_number_of_corners() {
-        let face = |corners: usize| parsed(&format!("{SQUARE}f{}\n", " 1 2 3 4".repeat(corners / 4)));
+        let face = |corners: usize| parsed(&format!("{UNIT_SQUARE}f{}\n", " 1 2 3 4".repeat(corners / 4)));
         assert!(face(MOST_CORNERS).is_ok());
         let error = face(MOST_CORNERS + 4).unwrap_err();
         assert!(error.kind() == ErrorKind::TooLarge && error.to_string().contains("a.obj:5"), "{error}");
@@ -279,14 +279,14 @@ mod tests {
 
     #[test]
     fn negative_indices_count_from_the_last_corner_read_so_far() {
-        let groups = parsed(&format!("{SQUARE}f -3 -2 -1\nv 9 9 9\nf -4 -3 -2\n")).unwrap().groups;
+        let groups = parsed(&format!("{UNIT_SQUARE}f -3 -2 -1\nv 9 9 9\nf -4 -3 -2\n")).unwrap().groups;
         assert_eq!(groups[0].faces[0].corners, groups[0].faces[1].corners);
     }
 
     #[test]
     fn faces_are_grouped_by_object_and_material() {
         let text = "o a\nusemtl m\nf 1 2 3\nusemtl n\nf 1 2 3\no b\nf 1 2 3\nl 1 2 3 4\no a\nf 1 2 4\ng\nf 1 2 3 4\n";
-        let groups = parsed(&format!("{SQUARE}{text}")).unwrap().groups;
+        let groups = parsed(&format!("{UNIT_SQUARE}{text}")).unwrap().groups;
         let names: Vec<_> = groups
             .iter()
             .map(|g| (g.object.as_deref(), g.material.as_ref().map(|m| m.text.as_str()), g.faces.len()))
@@ -306,9 +306,9 @@ mod tests {
         let at = |line, column| Some(crate::Place::Line { line, column });
         assert_eq!(column("v 0 0 nan\n"), at(1, 7));
         assert_eq!(column("v 1 0 0\nv 0 1 1e400 # far\n"), at(2, 7));
-        assert_eq!(column(&format!("{SQUARE}f 1 2 18446744073709551616\n")), at(5, 7));
-        assert_eq!(column(&format!("{SQUARE}f 1 2 0\n")), at(5, 7));
-        assert_eq!(column(&format!("{SQUARE}f 1 11 1/7\n")), at(5, 5));
+        assert_eq!(column(&format!("{UNIT_SQUARE}f 1 2 18446744073709551616\n")), at(5, 7));
+        assert_eq!(column(&format!("{UNIT_SQUARE}f 1 2 0\n")), at(5, 7));
+        assert_eq!(column(&format!("{UNIT_SQUARE}f 1 11 1/7\n")), at(5, 5));
         assert_eq!(column("curv 0 1 2\n"), at(1, 1));
     }
 }

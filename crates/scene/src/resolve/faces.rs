@@ -6,7 +6,7 @@ use fredholm_mesh::{Cutting, Flattened, MeshError, Shape, Vec3, flatten};
 use crate::check::Finding;
 
 /// Distance of two corners, relative to the longest side, up to which they are one.
-const SAME: f64 = 1e-12;
+const SAME_CORNER_DISTANCE: f64 = 1e-12;
 /// Area over the squared longest side up to which a face has none: what is refused as a patch.
 const NO_AREA: f64 = 1e-13;
 
@@ -53,7 +53,7 @@ impl Mended {
 fn clean(corners: &mut Vec<Vec3>) {
     let next = corners.iter().cycle().skip(1);
     let longest = corners.iter().zip(next).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
-    let same = |a: &Vec3, b: &Vec3| a.distance(*b) <= SAME * longest;
+    let same = |a: &Vec3, b: &Vec3| a.distance(*b) <= SAME_CORNER_DISTANCE * longest;
     corners.dedup_by(|b, a| same(a, b));
     while corners.len() > 1 && same(&corners[0], &corners[corners.len() - 1]) {
         corners.pop();

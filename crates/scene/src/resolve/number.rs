@@ -8,7 +8,7 @@ use crate::source::Source;
 
 /// Largest coordinate, metres: its cube, and the product of two areas, are far from the end of the
 /// numbers.
-pub(crate) const FARTHEST: f64 = 1e30;
+pub(crate) const LARGEST_COORDINATE: f64 = 1e30;
 
 /// A number without rows of zeros.
 pub(super) fn short(value: f64) -> String {
@@ -66,11 +66,11 @@ impl Source {
 
     fn coordinate(&self, number: &At<f64>, quantity: &str) -> Result<f64, SceneError> {
         let value = self.finite(number, quantity)?;
-        if value.abs() <= FARTHEST {
+        if value.abs() <= LARGEST_COORDINATE {
             return Ok(value);
         }
         let what = format!("{quantity} is {value:e} m, too large to compute with");
-        Err(self.value_error(number, what, &format!("stay within {FARTHEST:e} m of 0")))
+        Err(self.value_error(number, what, &format!("stay within {LARGEST_COORDINATE:e} m of 0")))
     }
 
     /// A vector that is not zero.

@@ -10,7 +10,7 @@ use fredholm_mesh::{Cutting, MeshError, Shape, Vec3};
 
 use super::faces::Mended;
 use super::library::{self, Library};
-use super::number::FARTHEST;
+use super::number::LARGEST_COORDINATE;
 use super::surface::{find_material, geometry, part};
 use super::{Context, Reading};
 use crate::check::Warning;
@@ -261,10 +261,10 @@ impl Placing {
 
     /// Refuses a face that comes to stand too far away.
     fn check(&self, face: &ImportedFace, mesh_file: &Source) -> Result<(), SceneError> {
-        if face.corners.iter().all(|&p| self.apply(p).abs().max_element() <= FARTHEST) {
+        if face.corners.iter().all(|&p| self.apply(p).abs().max_element() <= LARGEST_COORDINATE) {
             return Ok(());
         }
-        let what = format!("this face comes to stand farther away than {FARTHEST:e} m");
+        let what = format!("this face comes to stand farther away than {LARGEST_COORDINATE:e} m");
         Err(mesh_file.error(
             ErrorKind::Value,
             face.span.clone(),

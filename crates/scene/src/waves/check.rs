@@ -22,13 +22,13 @@ const ON_SURFACE: f64 = 1e-9;
 /// Points of a receiver that are looked at to tell whether all are inside a body.
 const SAMPLED: usize = 64;
 /// Phase that may be lost in the rounding of a coordinate.
-const LOST: f64 = 1e-6;
+const MOST_LOST_PHASE: f64 = 1e-6;
 /// Extent of a scene over the wavelength below which it is doubted.
-const LEAST: f64 = 1e-4;
+const LEAST_EXTENT: f64 = 1e-4;
 /// Share of the sides of an object that may be open so that it looks like a body with a fault.
-const FEW: f64 = 0.2;
+const FEW_OPEN_SIDES: f64 = 0.2;
 /// Points of a receiver that are asked how far away they are.
-const AWAY: usize = 4096;
+const MOST_POINTS_ASKED: usize = 4096;
 /// Pairs of surfaces that are told one by one.
 const TOLD: usize = 4;
 
@@ -165,7 +165,7 @@ fn told(p: Vec3) -> String {
 /// Refuses coordinates so large that their rounding loses the phase.
 fn told_apart(scene: &WaveScene, pieces: &Pieces) -> Result<(), SceneError> {
     let wavenumber = scene.waves().iter().map(fredholm_waves::Wave::wavenumber).fold(0.0, f64::max);
-    let most = LOST / (wavenumber * f64::EPSILON);
+    let most = MOST_LOST_PHASE / (wavenumber * f64::EPSILON);
     let refuse = |about: About, p: Vec3| {
         let what = format!(
             "{} m is so far from the origin that rounding loses the phase of a wave of {:.3e} m",
@@ -182,7 +182,7 @@ fn told_apart(scene: &WaveScene, pieces: &Pieces) -> Result<(), SceneError> {
     }
     for (number, receiver) in scene.receivers().iter().enumerate().filter(|(_, r)| r.is_near()) {
         let Places::Near { points, .. } = receiver.places() else { continue };
-        let step = points.len().div_ceil(AWAY).max(1);
+        let step = points.len().div_ceil(MOST_POINTS_ASKED).max(1);
         if let Some(&p) = points.iter().step_by(step).find(|p| p.length() > most) {
             return refuse(About::Receiver(number), p);
         }
@@ -208,7 +208,7 @@ fn half_closed(scene: &WaveScene, pieces: &Pieces) -> Vec<Warning> {
         let ([open, turned], first) = (faults[number], components[number].first);
         let part = &scene.parts()[pieces.part_of[first as usize]];
         let sheet = part.imported && part.kind == Kind::Sheet && !part.said;
-        let few = open as f64 <= FEW * sides[number] as f64;
+        let few = open as f64 <= FEW_OPEN_SIDES * sides[number] as f64;
         (sheet && open + turned > 0 && few).then(|| {
             let what = format!(
                 "`{}` is taken as a thin sheet, though nearly closed: {open} sides belong to one face only, along {turned} \
@@ -244,7 +244,7 @@ fn lost_in_the_wave(scene: &WaveScene, pieces: &Pieces) -> Option<Warning> {
         let help = "are the frequencies in Hz and the lengths in metres? results so far below a wavelength lose digits";
         scene.warning(About::Frequencies, what, help)
     };
-    (share < LEAST).then(warning)
+    (share < LEAST_EXTENT).then(warning)
 }
 
 /// Layers on closed bodies, which let nothing through.

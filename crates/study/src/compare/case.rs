@@ -15,7 +15,7 @@ use crate::watcher::Watcher;
 /// The solver that errors are measured against, where it fits.
 const REFERENCE: &str = "lu";
 /// Most unknowns for which it is run only to be the reference.
-const MOST: usize = 20_000;
+const MOST_REFERENCE_UNKNOWNS: usize = 20_000;
 
 /// Runs all solvers on the system whose reflectances are scaled by `factor`.
 pub(super) fn case<S: Storage>(
@@ -83,7 +83,7 @@ fn reference(
     {
         return Ok(solved(outcome));
     }
-    if bench.b.dim() <= MOST {
+    if bench.b.dim() <= MOST_REFERENCE_UNKNOWNS {
         let outcome = run(bench, REFERENCE, stages)?;
         if outcome.x.is_some() {
             return Ok(solved(&outcome));

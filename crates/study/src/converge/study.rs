@@ -14,7 +14,7 @@ use crate::problem::Problem;
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// Relative errors of the solution over the residual and rounding that they come from, for
 /// reflectance 0.
-const MARGIN: f64 = 10.0;
+const ERROR_OVER_RESIDUAL: f64 = 10.0;
 
 /// The record of a study.
 pub(super) fn record(problem: &Problem, options: &SolveSettings, levels: &[Level]) -> RefinementRecord {
@@ -47,7 +47,7 @@ fn follow(problem: &Problem, options: &SolveSettings, levels: &[Level], band: us
 /// How well a solution is known: ‖A⁻¹‖ is about 1/(1 − ρ), but for least squares, which squares it.
 fn noise(problem: &Problem, options: &SolveSettings, band: usize) -> f64 {
     let reflectances = problem.scene.materials().iter().map(|material| material.reflectance[band]);
-    MARGIN * (options.tolerance + ROUNDING) / (1.0 - reflectances.fold(0.0, f64::max))
+    ERROR_OVER_RESIDUAL * (options.tolerance + ROUNDING) / (1.0 - reflectances.fold(0.0, f64::max))
 }
 
 fn band(name: &str, found: &Convergence, highest: f64) -> BandConvergence {

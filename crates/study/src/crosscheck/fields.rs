@@ -23,7 +23,7 @@ use crate::stochastic::{FieldPoint, FieldRun, failure, field_points};
 use crate::waves::{self, Band, Method, Model, Outcome};
 
 /// Method where none is asked for, and the error it is asked for.
-const USUAL: &str = "surface-sampling";
+const USUAL_METHOD: &str = "surface-sampling";
 const ERROR: f64 = 0.01;
 
 pub(super) fn run(
@@ -35,7 +35,7 @@ pub(super) fn run(
     let load = || Model::load_estimated(source.path(), asked.problem.memory);
     let mut model = stages.run("scene", load)?;
     let stop = asked.stop.or_to(ERROR);
-    let run = FieldRun::new(asked.method_or(USUAL), &asked.paths, &stop, &model, stages.watch)?;
+    let run = FieldRun::new(asked.method_or(USUAL_METHOD), &asked.paths, &stop, &model, stages.watch)?;
     // Both sides sum the same bounces, of the same currents.
     model.method = Method::Bounces(run.bounces());
     model.edge_currents = false;
@@ -165,7 +165,7 @@ fn record(
         score_mean: suite.mean,
         score_variance: suite.variance,
         worst: worst(rows),
-        method: asked.method_or(USUAL).to_owned(),
+        method: asked.method_or(USUAL_METHOD).to_owned(),
         seed: asked.paths.seed,
         batches: states.iter().map(FieldEstimate::batches).sum(),
         relative_error: states.iter().map(FieldEstimate::relative_error).fold(0.0, f64::max),

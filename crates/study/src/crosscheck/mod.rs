@@ -25,7 +25,7 @@ use crate::stochastic::{
 };
 
 /// Method where none is asked for.
-const USUAL: &str = "light";
+const USUAL_METHOD: &str = "light";
 /// Error that is asked for where nothing is.
 const ERROR: f64 = 0.01;
 
@@ -286,7 +286,7 @@ struct Traced {
 }
 
 fn named(asked: &CrosscheckOptions, scene: &Enclosure) -> Result<Box<dyn Estimator>, Error> {
-    let name = asked.method_or(USUAL);
+    let name = asked.method_or(USUAL_METHOD);
     let none = || Error::new(ErrorKind::Input, format!("there is no method {name}"));
     estimator(name, scene, asked.paths.switches()).ok_or_else(none)
 }

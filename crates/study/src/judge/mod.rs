@@ -233,7 +233,7 @@ mod tests {
     use fredholm_scene::Scene;
     use std::fs;
 
-    const ROOM: &str = r#"
+    const TEST_SCENE: &str = r#"
 bands = ["r", "g"]
 [camera]
 eye = [0.1, 0.1, 1.4]
@@ -270,8 +270,8 @@ quad = [[0.9, 0.9, 1.8], [0.9, 1.4, 1.8], [1.4, 1.4, 1.8], [1.4, 0.9, 1.8]]
 
     /// The room with one text in the place of another.
     fn with(old: &str, new: &str) -> String {
-        assert!(ROOM.contains(old), "{old}");
-        ROOM.replace(old, new)
+        assert!(TEST_SCENE.contains(old), "{old}");
+        TEST_SCENE.replace(old, new)
     }
 
     /// The pixels of a scene by our own paths, as a traced run writes them.
@@ -311,7 +311,7 @@ quad = [[0.9, 0.9, 1.8], [0.9, 1.4, 1.8], [1.4, 1.4, 1.8], [1.4, 0.9, 1.8]]
         let bundle = folder.path().join("bundle");
         let stop = TraceStop { error: Some(0.01), ..TraceStop::default() };
         let asked = ReferenceOptions { spp: Some(4096), stop, ..ReferenceOptions::default() };
-        reference(scene(ROOM), &asked, &claim(&bundle), &Quiet).unwrap();
+        reference(scene(TEST_SCENE), &asked, &claim(&bundle), &Quiet).unwrap();
         let plain = || PathTracing::continuous(Switches::default());
         let short = Switches { bounces: Some(4), ..Switches::default() };
         let dark =
@@ -320,12 +320,17 @@ quad = [[0.9, 0.9, 1.8], [0.9, 1.4, 1.8], [1.4, 1.4, 1.8], [1.4, 0.9, 1.8]]
         let lamp = "quad = [[0.91, 0.9, 1.8], [0.91, 1.4, 1.8], [1.41, 1.4, 1.8], [1.41, 0.9, 1.8]]";
         let old_lamp = "quad = [[0.9, 0.9, 1.8], [0.9, 1.4, 1.8], [1.4, 1.4, 1.8], [1.4, 0.9, 1.8]]";
         let cases = [
-            ("nothing", ROOM.to_owned(), plain(), Verdict::Agree),
+            ("nothing", TEST_SCENE.to_owned(), plain(), Verdict::Agree),
             ("reflectance 2 % off", with("[0.7, 0.5]", "[0.714, 0.51]"), plain(), Verdict::Disagree),
-            ("five bounces", ROOM.to_owned(), PathTracing::continuous(short), Verdict::Disagree),
+            ("five bounces", TEST_SCENE.to_owned(), PathTracing::continuous(short), Verdict::Disagree),
             ("flipped patch", with(dark, turned), plain(), Verdict::Disagree),
             ("lamp 1 cm off", with(old_lamp, lamp), plain(), Verdict::Disagree),
-            ("no cosine", ROOM.to_owned(), plain().with_directions(Box::new(NoCosine)), Verdict::Disagree),
+            (
+                "no cosine",
+                TEST_SCENE.to_owned(),
+                plain().with_directions(Box::new(NoCosine)),
+                Verdict::Disagree,
+            ),
         ];
         for (what, text, paths, expected) in cases {
             let found = folder.path().join("found.npz");
@@ -346,9 +351,9 @@ quad = [[0.9, 0.9, 1.8], [0.9, 1.4, 1.8], [1.4, 1.4, 1.8], [1.4, 0.9, 1.8]]
         let stop = TraceStop { error: Some(0.01), ..TraceStop::default() };
         let mut asked =
             ReferenceOptions { spp: Some(32), size: Some([4, 3]), stop, ..ReferenceOptions::default() };
-        reference(scene(ROOM), &asked, &claim(&one), &Quiet).unwrap();
+        reference(scene(TEST_SCENE), &asked, &claim(&one), &Quiet).unwrap();
         asked.paths.seed = 2;
-        reference(scene(ROOM), &asked, &claim(&two), &Quiet).unwrap();
+        reference(scene(TEST_SCENE), &asked, &claim(&two), &Quiet).unwrap();
         let (out, table) = (folder.path().join("out"), two.join("reference.csv"));
         let options = JudgeOptions::default();
         let (record, verdict) =

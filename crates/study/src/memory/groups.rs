@@ -16,13 +16,13 @@ struct Version {
     cached: [&'static str; 2],
 }
 
-const SECOND: Version = Version {
+const SECOND_VERSION: Version = Version {
     second: true,
     limits: &["memory.max", "memory.high"],
     used: "memory.current",
     cached: ["active_file", "inactive_file"],
 };
-const FIRST: Version = Version {
+const FIRST_VERSION: Version = Version {
     second: false,
     limits: &["memory.limit_in_bytes"],
     used: "memory.usage_in_bytes",
@@ -68,8 +68,10 @@ fn mount(line: &str) -> Option<(&'static Version, &str, &str)> {
     let (root, point) = (*place.get(3)?, *place.get(4)?);
     let mut kind = kind.split(' ');
     match kind.next()? {
-        "cgroup2" => Some((&SECOND, root, point)),
-        "cgroup" if kind.nth(1)?.split(',').any(|option| option == "memory") => Some((&FIRST, root, point)),
+        "cgroup2" => Some((&SECOND_VERSION, root, point)),
+        "cgroup" if kind.nth(1)?.split(',').any(|option| option == "memory") => {
+            Some((&FIRST_VERSION, root, point))
+        }
         _ => None,
     }
 }

@@ -11,7 +11,7 @@ use crate::threads::cores;
 
 /// Share of what the machine has left that is used where nothing is asked for: the rest keeps it
 /// usable.
-const SHARE: f64 = 0.8;
+const SHARE_OF_FREE_MEMORY: f64 = 0.8;
 /// Limit where the system does not tell what is available.
 const FALLBACK: u128 = 4 << 30;
 /// Address space that a thread sets aside: its stack with what guards it, and its part of the
@@ -96,7 +96,7 @@ impl Machine {
             Some(bytes) if ceiling.is_none_or(|ceiling| bytes <= ceiling.bytes) => {
                 Limit { bytes, bound: Bound::Asked, spare: None }
             }
-            _ => self.least(asked.map_or(SHARE, |_| 1.0)),
+            _ => self.least(asked.map_or(SHARE_OF_FREE_MEMORY, |_| 1.0)),
         };
         let addresses = self.bounds(1.0).find(|limit| limit.bound == Bound::AddressSpace);
         let spare = |all: Limit| all.bytes.0.saturating_sub(found.bytes.0);

@@ -32,9 +32,9 @@ const FORM_FACTORS: f64 = 1e-5;
 
 /// Longer side of the picture where no size is asked for, pixels: the error of every pixel is to be
 /// small, which takes many samples.
-const SIDE: u32 = 64;
+const USUAL_PIXELS_A_SIDE: u32 = 64;
 /// Largest side that may be asked for, pixels.
-const LARGEST: u32 = 4096;
+const MOST_PIXELS_A_SIDE: u32 = 4096;
 /// Samples of a pixel where nothing is asked for.
 const SAMPLES: u32 = 1024;
 /// Batches of a pixel: so many that its standard error is well known, of at least so many samples
@@ -104,14 +104,14 @@ pub fn reference(
 fn sized(camera: Camera, asked: Option<[u32; 2]>) -> Result<Camera, Error> {
     let longer = camera.width.max(camera.height).max(1);
     let less = |side: u32| {
-        let scaled = f64::from(side) * f64::from(SIDE.min(longer)) / f64::from(longer);
+        let scaled = f64::from(side) * f64::from(USUAL_PIXELS_A_SIDE.min(longer)) / f64::from(longer);
         (scaled.round() as u32).max(1)
     };
     let [width, height] = asked.unwrap_or([less(camera.width), less(camera.height)]);
-    if ![width, height].iter().all(|side| (1..=LARGEST).contains(side)) {
+    if ![width, height].iter().all(|side| (1..=MOST_PIXELS_A_SIDE).contains(side)) {
         let text = format!("a picture of {width} × {height} pixels is asked for");
         let error = Error::new(ErrorKind::Input, text);
-        return Err(error.with_help(format!("give each side from 1 to {LARGEST} pixels")));
+        return Err(error.with_help(format!("give each side from 1 to {MOST_PIXELS_A_SIDE} pixels")));
     }
     Ok(Camera { width, height, ..camera })
 }
@@ -179,7 +179,7 @@ fn load(
     asked: &ReferenceOptions,
     stages: &mut Stages,
 ) -> Result<(Problem, SolveSettings), Error> {
-    let [width, height] = asked.size.unwrap_or([SIDE; 2]).map(u128::from);
+    let [width, height] = asked.size.unwrap_or([USUAL_PIXELS_A_SIDE; 2]).map(u128::from);
     let pixel = |scene: &Scene| PIXEL + BAND * scene.bands().len() as u128;
     let more = |plan, scene: &Scene, n| {
         let pictures = pictures(scene, 1, (false, false));

@@ -26,7 +26,7 @@ const VECTORS: u128 = fredholm_montecarlo::WAVE as u128 + 10;
 /// Bytes of an element while the results are drawn and written, and of each of its values: what
 /// paths are traced on is still there.
 const RESULTS: u128 = 920;
-const VALUE: u128 = 200;
+const BYTES_A_VALUE: u128 = 200;
 
 /// A meshed scene.
 pub(crate) struct Ground {
@@ -65,7 +65,7 @@ fn admit(scene: &Scene, asked: &ProblemOptions, drawn: &Drawn, stages: &Stages) 
     let plan = Plan::default().hold(format!("{elements} elements"), MESH.saturating_mul(n));
     let mut plan = with_tracing(plan, scene, elements);
     if let Drawn::Picture(bytes) = drawn {
-        let element = RESULTS + VALUE * scene.bands().len() as u128;
+        let element = RESULTS + BYTES_A_VALUE * scene.bands().len() as u128;
         plan = plan.stage("results and pictures", element.saturating_mul(n).saturating_add(*bytes));
     }
     let help =

@@ -11,8 +11,8 @@ use crate::error::{Error, ErrorKind};
 const GATHERED: u32 = 4;
 const SHOT: u32 = 8;
 /// Fewest and most samples of a batch that shoots.
-const LEAST: u32 = 1 << 12;
-const MOST: u32 = 1 << 20;
+const FEWEST_SAMPLES: u32 = 1 << 12;
+const MOST_SAMPLES: u32 = 1 << 20;
 
 /// A method on a scene, and when it ends.
 pub(crate) struct Tracer<'a> {
@@ -57,8 +57,8 @@ fn batch(scene: &Enclosure, estimator: &dyn Estimator) -> u32 {
     if estimator.gathers() {
         return GATHERED;
     }
-    let samples = u32::try_from(scene.len()).unwrap_or(MOST).saturating_mul(SHOT);
-    samples.clamp(LEAST, MOST).next_power_of_two()
+    let samples = u32::try_from(scene.len()).unwrap_or(MOST_SAMPLES).saturating_mul(SHOT);
+    samples.clamp(FEWEST_SAMPLES, MOST_SAMPLES).next_power_of_two()
 }
 
 /// What is wrong with a traced scene is wrong with the input.

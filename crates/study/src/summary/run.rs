@@ -9,7 +9,7 @@ use super::{Made, Summarise};
 use crate::size::Bytes;
 
 /// Error that is worth a word on how to make it smaller.
-const LARGE: f64 = 0.05;
+const ERROR_WORTH_A_WORD: f64 = 0.05;
 
 impl Summarise for RunRecord {
     fn made(&self) -> Made<'_> {
@@ -116,14 +116,14 @@ fn stated(run: &RunRecord) -> Stated {
         let text = format!("{} of {what} (standard error, RMS)", percent(error));
         let half = percent(error / 2.0).replace(' ', "");
         let closer = format!("--continue with --to {half}: four times as many samples halve the error");
-        return Stated { text, closer: (error > LARGE).then_some(closer) };
+        return Stated { text, closer: (error > ERROR_WORTH_A_WORD).then_some(closer) };
     }
     if let Some(worst) = run.field_error.as_ref().and_then(|error| worst(&error.relative_l2)) {
         let text = format!(
             "{} of the irradiance as polynomials (L2, worst band; estimate); means over elements are closer",
             percent(worst)
         );
-        return Stated { text, closer: (worst > LARGE).then(|| "use more elements".to_owned()) };
+        return Stated { text, closer: (worst > ERROR_WORTH_A_WORD).then(|| "use more elements".to_owned()) };
     }
     if let Some(worst) = run.mesh_error.as_ref().and_then(|error| worst(&error.relative_l2)) {
         let text = format!("{} of the irradiance of the faces (L2, worst band; estimate)", percent(worst));
@@ -138,7 +138,7 @@ fn stated(run: &RunRecord) -> Stated {
 
 /// How an error that is stated becomes smaller.
 fn finer(stated: Option<f64>) -> Option<String> {
-    let error = stated.filter(|&error| error > LARGE)?;
+    let error = stated.filter(|&error| error > ERROR_WORTH_A_WORD)?;
     let asked = percent(error / 4.0).replace(' ', "");
     Some(format!("--accuracy {asked} chooses elements that suffice"))
 }

@@ -12,7 +12,7 @@ use crate::size::Bytes;
 use crate::viewfactors::{SKY, closure as matrix_closure, largest, point_closure};
 
 /// Row sums that differ more from 1 are those of an open scene.
-const OPEN: f64 = 0.01;
+const OPEN_SCENE_DEFECT: f64 = 0.01;
 
 impl Summarise for ViewFactorsRecord {
     fn made(&self) -> Made<'_> {
@@ -54,7 +54,7 @@ fn closed(closure: &Closure, error: Option<f64>, sky: bool) -> Option<String> {
     let most = closure.max?;
     let at = closure.worst_surface.as_ref().map(|surface| format!(" ({surface})")).unwrap_or_default();
     let mean = closure.mean.map(|mean| format!(", {mean:.1e} on average")).unwrap_or_default();
-    let open = most > OPEN.max(error.unwrap_or(0.0));
+    let open = most > OPEN_SCENE_DEFECT.max(error.unwrap_or(0.0));
     let hint = match (open, sky) {
         (false, _) => "",
         (true, false) => "; the scene is open (--sky would add the sky), or backs of surfaces are in view",

@@ -22,7 +22,7 @@ const FILE: u128 = 8;
 /// Samples of a batch of a pixel.
 const SAMPLES: u32 = 4;
 /// Fewest batches of a pixel: without two there is no standard error.
-const FEWEST: u32 = 2;
+const FEWEST_BATCHES: u32 = 2;
 
 /// What traces the pixels; `None` where no such picture is asked for.
 pub(super) fn tracer<'a>(
@@ -34,7 +34,7 @@ pub(super) fn tracer<'a>(
     let Some(samples) = asked.spp else { return Ok(None) };
     let estimator = point_estimator(&asked.method, asked.paths.switches()).ok_or_else(|| refused(asked))?;
     let eye = Eye::new(&ground.mesh, camera).map_err(report_failure)?;
-    let batches = samples.div_ceil(SAMPLES).max(FEWEST);
+    let batches = samples.div_ceil(SAMPLES).max(FEWEST_BATCHES);
     let sampling = PixelSampling { seed: asked.paths.seed, batches, samples: SAMPLES };
     let see = move |x, y| eye.hit(x, y).map(|(patch, point)| Site { patch, point });
     let size = [camera.width, camera.height];

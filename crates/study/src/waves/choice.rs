@@ -39,7 +39,7 @@ const MOST_CLOSED: usize = 8_000;
 /// A facet is of a thin part where the surface opposite is nearer than both of these: shares of the
 /// extent and of the wavelength, below which the second surface of the dual equation has no room
 /// for its full depth.
-const THIN: [f64; 2] = [0.3, 0.6];
+const THIN_DISTANCES: [f64; 2] = [0.3, 0.6];
 /// Share of such facets from which a body is thin.
 const THIN_SHARE: f64 = 0.1;
 /// Incident waves from which on a factorisation is taken for all of them, and the largest matrix
@@ -53,9 +53,9 @@ const MATRICES: u128 = 2;
 /// Longest edge for several bounces, in wavelengths.
 const BOUNCES: f64 = 0.5 * (1.0 + 1e-9);
 /// Most facets for which all bounces are taken unasked: a product then takes some seconds a core.
-const MOST: usize = 60_000;
+const MOST_FACETS: usize = 60_000;
 /// Longest sides of all faces together for which edge currents are added unasked, in wavelengths.
-const LONGEST: f64 = 20_000.0;
+const LONGEST_SIDES: f64 = 20_000.0;
 /// The residual of GMRES where it is taken unasked: below the error of any mesh.
 const TOLERANCE: f64 = 1e-4;
 /// What is asked for where the scene names no method.
@@ -156,7 +156,7 @@ impl Seen {
 /// Whether a good part of closed bodies is thin at a frequency.
 fn is_thin(geometry: &Geometry, band: &Band) -> bool {
     let Ok(scatterer) = geometry.scatterer(&band.materials) else { return false };
-    let most = (THIN[0] * scatterer.extent()).min(THIN[1] * band.wave.wavelength());
+    let most = (THIN_DISTANCES[0] * scatterer.extent()).min(THIN_DISTANCES[1] * band.wave.wavelength());
     let opposite = |facet: &&fredholm_waves::Facet| {
         scatterer.occluders().closest(facet.patch.centroid(), -facet.normal, most).is_some()
     };
@@ -295,7 +295,7 @@ fn chosen(seen: &Seen, small: &dyn Fn() -> bool) -> Taken {
     } else if seen.edge > BOUNCES {
         warnings.push("edges are above half a wavelength: one bounce is all that is known of such facets; mesh finer for more".to_owned());
         one(Shadow::Geometric, seen.sheets, "facets are above half a wavelength")
-    } else if seen.facets > MOST {
+    } else if seen.facets > MOST_FACETS {
         warnings.push(format!("{} facets: one bounce is taken; write a solver for all of them", seen.facets));
         one(Shadow::Geometric, seen.sheets, "there are too many facets for more unasked")
     } else if seen.closed_conductors() && seen.edge <= EQUATION {
@@ -312,7 +312,7 @@ fn chosen(seen: &Seen, small: &dyn Fn() -> bool) -> Taken {
     if shadow == Shadow::ExactDual && seen.thin {
         warnings.push(ON_THIN.to_owned());
     }
-    let long = seen.sides > LONGEST;
+    let long = seen.sides > LONGEST_SIDES;
     if edge_currents && long {
         warnings.push(
             "the edges are too long for edge currents unasked; write edge_currents = true for them"

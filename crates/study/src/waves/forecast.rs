@@ -29,20 +29,20 @@ use crate::meter::{Meter, alone};
 use crate::stages::Stages;
 
 /// Facets of the first trial, about, and the most that it may have: of several bounces, and of one.
-const FIRST: [f64; 2] = [40.0, 20_000.0];
+const FIRST_FACETS: [f64; 2] = [40.0, 20_000.0];
 const MOST_FIRST: [usize; 2] = [600, 40_000];
 /// Seconds that the next trial may be expected to take, and after which it is given up.
 const BUDGET: f64 = 1.0;
-const MOST: f64 = 2.0;
+const MOST_SECONDS: f64 = 2.0;
 /// Exponent that is expected of the second trial.
-const STEEP: f64 = 1.5;
+const EXPECTED_EXPONENT: f64 = 1.5;
 /// Facets on which fields are tried as they are, from currents that are no solution: what a point
 /// near longer edges takes is another matter.
 const AS_THEY_ARE: f64 = 2500.0;
 /// Seconds from which on the growth of a part is measured; below, usual exponents are taken.
-const CLEAR: f64 = 4e-3;
+const CLEAR_SECONDS: f64 = 4e-3;
 /// Growth from which on an exponent is one.
-const APART: f64 = 1.9;
+const LEAST_GROWTH: f64 = 1.9;
 /// Points and directions of a receiver in a trial, at least, times facets; and waves of a sweep, of
 /// which its error takes eight.
 const PLACES: usize = 48;
@@ -51,8 +51,8 @@ const SWEPT: usize = 16;
 /// Frequencies in a trial, of few and of many.
 const FREQUENCIES: usize = 2;
 /// Seconds of a value in the files, and of a plot or a map.
-const VALUE: f64 = 1.2e-6;
-const PLOT: f64 = 0.01;
+const SECONDS_A_VALUE: f64 = 1.2e-6;
+const SECONDS_A_PLOT: f64 = 0.01;
 
 /// The parts of a run, by the words that the names of their stages begin with.
 const PARTS: [&str; 4] = ["coupling", "currents", "fields", "sweep"];
@@ -106,7 +106,7 @@ fn on_this_thread(model: &mut Model, watch: &dyn Watch) -> Option<f64> {
         }
     }
     let fields: f64 = whole.iter().zip(grown).map(|(seconds, grown)| seconds * grown).sum();
-    Some(share * fields + VALUE * values + PLOT * plots)
+    Some(share * fields + SECONDS_A_VALUE * values + SECONDS_A_PLOT * plots)
 }
 
 /// What a part is likely to grow with, where nothing was measured, and the least and the most:
@@ -155,7 +155,7 @@ fn trials(
 ) -> Option<Vec<Trial>> {
     let mut trials: Vec<Trial> = Vec::new();
     let one = usize::from(matches!(model.method, Method::Bounces(1)) && model.coarse.is_none());
-    let mut stretch = if model.is_closed_form() { 1.0 } else { (facets / FIRST[one]).sqrt().max(1.0) };
+    let mut stretch = if model.is_closed_form() { 1.0 } else { (facets / FIRST_FACETS[one]).sqrt().max(1.0) };
     loop {
         stretched(model, waves, stretch).ok()?;
         let here = model.geometry.mesh.len();
@@ -166,8 +166,9 @@ fn trials(
         let all = |trial: &Trial| trial.seconds.iter().sum::<f64>();
         if let Some(last) = trials.last() {
             let before = trials.len().checked_sub(2).map(|i| trials[i]);
-            let steep = before
-                .map_or(STEEP, |before| (all(last) / all(&before)).ln() / (last.facets / before.facets).ln());
+            let steep = before.map_or(EXPECTED_EXPONENT, |before| {
+                (all(last) / all(&before)).ln() / (last.facets / before.facets).ln()
+            });
             let expected = all(last) * (here as f64 / last.facets).powf(steep.clamp(1.0, 3.0));
             if here as f64 > last.facets && expected > BUDGET {
                 break;
@@ -218,7 +219,7 @@ fn stretched(model: &mut Model, waves: &[Wave], stretch: f64) -> Result<(), Erro
 
 /// Runs a model as it is.
 fn trial(model: &Model, watch: &dyn Watch) -> Option<Trial> {
-    let meter = Meter::new(watch, MOST);
+    let meter = Meter::new(watch, MOST_SECONDS);
     compute(model, &mut Stages::new(&meter)).ok()?;
     let mut seconds = [0.0; PARTS.len()];
     for (stage, spent) in meter.readings().stages {
@@ -231,9 +232,9 @@ fn trial(model: &Model, watch: &dyn Watch) -> Option<Trial> {
 /// What a part grew with from one trial to the last, where both took time that is clear.
 fn exponent(trials: &[Trial], part: usize, [usual, least, most]: [f64; 3]) -> f64 {
     let Some(last) = trials.last() else { return usual };
-    let before = trials.iter().rev().find(|trial| last.facets >= APART * trial.facets);
+    let before = trials.iter().rev().find(|trial| last.facets >= LEAST_GROWTH * trial.facets);
     let measured = before
-        .filter(|before| before.seconds[part] > CLEAR)
+        .filter(|before| before.seconds[part] > CLEAR_SECONDS)
         .map(|before| (last.seconds[part] / before.seconds[part]).ln() / (last.facets / before.facets).ln());
     measured.map_or(usual, |exponent| exponent.clamp(least, most))
 }

@@ -27,7 +27,7 @@ use super::{Model, Outcome};
 use crate::error::Error;
 
 /// Frequencies that are computed first.
-const FIRST: usize = 7;
+const FIRST_FREQUENCIES: usize = 7;
 /// Highest degree of the polynomials.
 const DEGREE: usize = 9;
 /// What is stated over the largest difference that was seen.
@@ -65,7 +65,7 @@ pub(super) fn accuracy(model: &Model) -> Option<f64> {
     bits.sort_unstable();
     bits.dedup();
     let distinct = bits.len() == model.bands.len();
-    model.scene.settings().sweep_accuracy.filter(|_| distinct && bits.len() > FIRST)
+    model.scene.settings().sweep_accuracy.filter(|_| distinct && bits.len() > FIRST_FREQUENCIES)
 }
 
 /// All frequencies to an accuracy.
@@ -82,8 +82,8 @@ pub(super) fn swept(model: &Model, accuracy: f64, compute: Compute<'_>) -> Resul
         outcomes.insert(at, outcome);
         Ok(())
     };
-    for i in 0..FIRST {
-        add(i * (count - 1) / (FIRST - 1), &mut samples)?;
+    for i in 0..FIRST_FREQUENCIES {
+        add(i * (count - 1) / (FIRST_FREQUENCIES - 1), &mut samples)?;
     }
     let frequency = |at: usize| bands[at].wave.frequency();
     let mut seen = vec![f64::INFINITY; IN_TURN];

@@ -18,7 +18,7 @@ use crate::error::Error;
 use crate::stages::Signals;
 
 /// Directions that are solved for together.
-const TOGETHER: usize = 8;
+const DIRECTIONS_TOGETHER: usize = 8;
 
 /// What a sweep is made on.
 pub(super) struct Sweep<'a> {
@@ -48,7 +48,7 @@ impl Sweep<'_> {
         // A factorisation serves all waves; others need memory for every wave that they solve for.
         let together = match &self.task.model.method {
             Method::Solver { solver, .. } if !by_products().contains(&solver.name()) => angles.len().max(1),
-            _ => TOGETHER,
+            _ => DIRECTIONS_TOGETHER,
         };
         let count = angles.len();
         for (chunk, angles) in angles.chunks(together).enumerate() {

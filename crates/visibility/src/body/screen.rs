@@ -13,7 +13,7 @@ use super::{Body, Edge, Face, Shadow, ShadowVolume};
 /// Faces that look at part of the source at most, one bit each.
 const TURNING: usize = 62;
 /// The bits of all faces that look at none of the source, and of all that look at all of it.
-const DARK: u8 = 62;
+const ALL_FACES_DARK: u8 = 62;
 const LIT: u8 = 63;
 
 /// A body as points of one polygon see it before another.
@@ -94,7 +94,7 @@ impl<'a> Screen<'a> {
         let edges = Vec::with_capacity(8);
         let (borders, turning, front) = (Vec::with_capacity(8), Vec::new(), Vec::new());
         let mut screen = Self { body, edges, borders, turning, front, lit: 0, plain: false, tolerance };
-        let mut bits = [DARK; super::outline::FACES];
+        let mut bits = [ALL_FACES_DARK; super::outline::FACES];
         for (k, (bit, face)) in bits.iter_mut().zip(&body.faces).enumerate() {
             *bit = screen.look((k as u32, face), source, target);
         }
@@ -115,7 +115,7 @@ impl<'a> Screen<'a> {
             all &= looks;
         }
         if !some {
-            return DARK;
+            return ALL_FACES_DARK;
         }
         let before = target.iter().any(|&y| face.height(y) > self.tolerance);
         if all {
@@ -132,14 +132,14 @@ impl<'a> Screen<'a> {
 
     fn consider(&mut self, (k, edge): (u32, &Edge), faces: [u8; 2], source: &[Vec3], target: &Around) {
         let [left, right] = faces;
-        if left == right && left >= DARK {
+        if left == right && left >= ALL_FACES_DARK {
             return;
         }
         let [a, b] = self.body.ends(edge);
         // Counter-clockwise round a face that looks at x, the inside is to the left.
-        let turned = left == LIT || right == DARK;
+        let turned = left == LIT || right == ALL_FACES_DARK;
         let (ends, faces) = if turned { ([b, a], [right, left]) } else { ([a, b], [left, right]) };
-        let known = faces.iter().any(|&face| face >= DARK);
+        let known = faces.iter().any(|&face| face >= ALL_FACES_DARK);
         let cuts = |x: &Vec3| {
             let inward = (ends[0] - *x).cross(ends[1] - *x);
             let outside = |height: f64| height < 0.0 && height < -self.tolerance * inward.length();
@@ -171,7 +171,7 @@ impl<'a> Screen<'a> {
     #[must_use]
     #[inline]
     pub fn is_fixed(&self, edge: usize) -> bool {
-        !self.plain && self.borders[edge].faces.iter().all(|&bit| bit >= DARK)
+        !self.plain && self.borders[edge].faces.iter().all(|&bit| bit >= ALL_FACES_DARK)
     }
 
     /// The faces whose planes pass through the source, and whether any edge that may cut the target

@@ -9,12 +9,12 @@ use super::HalfSpace;
 use crate::frame::Frame;
 
 /// Corners of a patch of four corners that was cut by one plane.
-const MOST: usize = 5;
+const MOST_CORNERS: usize = 5;
 
 /// A flat convex polygon of up to five corners, in local coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Outline {
-    corners: [Vec3; MOST],
+    corners: [Vec3; MOST_CORNERS],
     len: usize,
     /// Unit normal.
     pub normal: Vec3,
@@ -22,7 +22,7 @@ pub(crate) struct Outline {
 
 impl Outline {
     pub(crate) fn of(patch: &Patch, frame: &Frame) -> Self {
-        let mut outline = Self { corners: [Vec3::ZERO; MOST], len: 0, normal: patch.normal() };
+        let mut outline = Self { corners: [Vec3::ZERO; MOST_CORNERS], len: 0, normal: patch.normal() };
         for &corner in patch.corners() {
             outline.push(frame.local(corner));
         }

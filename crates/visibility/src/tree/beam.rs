@@ -20,7 +20,7 @@ use fredholm_mesh::Vec3;
 const LIMITS: [f64; 2] = [1.0, 1e6];
 /// A component of a direction that is smaller than this is replaced by it: that keeps every
 /// quotient finite, and moves the segment by less than any rounding.
-const LEAST: f32 = 1e-20;
+const LEAST_COMPONENT: f32 = 1e-20;
 
 /// A segment in the coordinates of the boxes.
 #[derive(Clone, Copy, Debug)]
@@ -69,7 +69,8 @@ impl Beam {
 
     #[inline(always)]
     fn between(p: Vec3, q: Vec3, part: [f64; 2]) -> Self {
-        let d = (q - p).as_vec3().to_array().map(|c| if c.abs() < LEAST { LEAST } else { c });
+        let d =
+            (q - p).as_vec3().to_array().map(|c| if c.abs() < LEAST_COMPONENT { LEAST_COMPONENT } else { c });
         Self { origin: p.as_vec3().to_array(), inverse: d.map(|c| 1.0 / c), part }
     }
 

@@ -14,7 +14,7 @@ use fredholm_linop::Dense;
 use num_complex::Complex64;
 
 /// Points a side of the observer where the source is too close for any bound.
-const CLOSE: usize = 6;
+const CLOSE_POINTS: usize = 6;
 
 /// The matrix K (2N × 2N for N facets), `tolerance` relative to a block.
 ///
@@ -47,7 +47,8 @@ pub fn galerkin(
 fn mean(wave: &Wave, p: &Facet, q: &Facet, tolerance: f64) -> ComplexVector {
     let distance = p.centre.distance(q.centre) / (0.5 * p.diameter.max(q.diameter));
     let phase = points_for_phase(wave.wavenumber() * p.edge(), tolerance);
-    let points = points_for_distance(distance, tolerance).unwrap_or(CLOSE).min(CLOSE).max(phase);
+    let points =
+        points_for_distance(distance, tolerance).unwrap_or(CLOSE_POINTS).min(CLOSE_POINTS).max(phase);
     let rule = regular(p, points).into_iter();
     rule.map(|(x, weight)| integral(wave, x, q, tolerance) * (weight / p.area)).sum()
 }

@@ -20,18 +20,19 @@ use rayon::prelude::*;
 /// What the inner equation is multiplied by.
 pub(crate) const FACTOR: Complex64 = Complex64::I;
 /// Most of the extent of the body that δ takes.
-const SHARE: f64 = 0.125;
+const MOST_SHARE_OF_EXTENT: f64 = 0.125;
 /// Most of the way to the surface opposite that δ takes.
-const THIN: f64 = 0.4;
+const MOST_SHARE_OF_THICKNESS: f64 = 0.4;
 /// Least δ, in wavelengths.
-const LEAST: f64 = 1e-4;
+const LEAST_DEPTH: f64 = 1e-4;
 
 /// δ of a facet, m.
 pub(crate) fn depth(scatterer: &Scatterer, wave: &Wave, facet: &Facet) -> f64 {
-    let most = (0.25 * wave.wavelength()).min(SHARE * scatterer.extent());
+    let most = (0.25 * wave.wavelength()).min(MOST_SHARE_OF_EXTENT * scatterer.extent());
     // From the flat facet on: its node may be outside of it, on the curved surface.
-    let opposite = scatterer.occluders().closest(facet.patch.centroid(), -facet.normal, most / THIN);
-    opposite.map_or(most, |hit| most.min(THIN * hit.t))
+    let opposite =
+        scatterer.occluders().closest(facet.patch.centroid(), -facet.normal, most / MOST_SHARE_OF_THICKNESS);
+    opposite.map_or(most, |hit| most.min(MOST_SHARE_OF_THICKNESS * hit.t))
 }
 
 /// The inner point of each facet; none where the treatment has no second surface.
@@ -44,7 +45,7 @@ pub(crate) fn inner_points(
         return Ok(None);
     }
     let depths: Vec<f64> = scatterer.facets().par_iter().map(|facet| depth(scatterer, wave, facet)).collect();
-    if let Some(facet) = depths.iter().position(|&depth| depth < LEAST * wave.wavelength()) {
+    if let Some(facet) = depths.iter().position(|&depth| depth < LEAST_DEPTH * wave.wavelength()) {
         return Err(WaveError::Thin { facet, depth: depths[facet] });
     }
     let inner = scatterer.facets().iter().zip(&depths);

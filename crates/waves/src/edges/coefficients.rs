@@ -35,11 +35,11 @@ use num_complex::Complex64;
 use std::f64::consts::PI;
 
 /// C + S, times √(2ν), below which the limit is taken.
-const LIMIT: f64 = 1e-4;
+const LIMIT_BELOW: f64 = 1e-4;
 /// v below which (½ − F(v))/v is its series.
 const SERIES: f64 = 1e-3;
 /// Angle beside a boundary of a wedge between which the coefficients are interpolated, rad.
-const BESIDE: f64 = 2e-3;
+const BOUNDARY_ANGLE: f64 = 2e-3;
 
 /// The integrals over a strip of a half-plane.
 #[derive(Clone, Copy, Debug)]
@@ -60,7 +60,7 @@ pub(super) fn half_plane(c: f64, source: f64, depth: f64) -> Strip {
     let (root, s, cos, sin) = ((2.0 * depth).sqrt(), (0.5 * (1.0 - c)).max(0.0).sqrt(), cos.abs(), sin.abs());
     let (v, w) = (root * s, root * cos);
     let (phase, j) = (Complex64::cis(-v * v), Complex64::I);
-    let (soft, across) = if v + w < LIMIT {
+    let (soft, across) = if v + w < LIMIT_BELOW {
         // To the second order in v and w.
         ((factor() - 0.5 * j * w) * root, Complex64::from(0.5 * depth))
     } else {
@@ -111,11 +111,12 @@ fn behind(n: f64, source: f64, depths: [f64; 2]) -> Complex64 {
 /// f − f₀ and g − g₀, across the boundaries of shadow and reflection by interpolation.
 fn fringe(n: f64, observer: f64, source: f64) -> [f64; 2] {
     let boundaries = [PI - source, PI + source, (2.0 * n - 1.0) * PI - source];
-    let Some(near) = boundaries.into_iter().find(|boundary| (observer - boundary).abs() < BESIDE) else {
+    let Some(near) = boundaries.into_iter().find(|boundary| (observer - boundary).abs() < BOUNDARY_ANGLE)
+    else {
         return difference(n, observer, source);
     };
-    let share = 0.5 * (1.0 + (observer - near) / BESIDE);
-    let [low, high] = [-BESIDE, BESIDE].map(|side| difference(n, near + side, source));
+    let share = 0.5 * (1.0 + (observer - near) / BOUNDARY_ANGLE);
+    let [low, high] = [-BOUNDARY_ANGLE, BOUNDARY_ANGLE].map(|side| difference(n, near + side, source));
     [0, 1].map(|i| low[i] + share * (high[i] - low[i]))
 }
 

@@ -9,9 +9,9 @@ use num_complex::Complex64;
 use std::f64::consts::{FRAC_PI_4, PI};
 
 /// From here on the continued fraction is taken.
-const LARGE: f64 = 2.0;
+const CONTINUED_FRACTION_FROM: f64 = 2.0;
 /// Below this difference a divided difference is the mean slope.
-const CLOSE: f64 = 0.5;
+const MEAN_SLOPE_BELOW: f64 = 0.5;
 /// Gauss–Legendre points and weights on 0 … 1.
 const GAUSS: [[f64; 2]; 6] = [
     [0.033_765_242_898_423_975, 0.085_662_246_189_585_17],
@@ -30,7 +30,7 @@ pub(super) fn factor() -> Complex64 {
 /// E(a) for a ≥ 0.
 pub(super) fn scaled(a: f64) -> Complex64 {
     let z = Complex64::from_polar(a, FRAC_PI_4);
-    if a < LARGE { series(z) } else { fraction(z, a) }
+    if a < CONTINUED_FRACTION_FROM { series(z) } else { fraction(z, a) }
 }
 
 /// ½ e^{z²} (1 − erf z), erf z = (2/√π) Σ (−1)ⁿ z^{2n+1}/(n! (2n + 1)).
@@ -57,7 +57,7 @@ fn fraction(z: Complex64, a: f64) -> Complex64 {
 
 /// (E(a) − E(b))/(a − b), with E′ = 2ja E − e^{jπ/4}/√π where they are close.
 pub(super) fn divided(a: f64, b: f64) -> Complex64 {
-    if (a - b).abs() >= CLOSE {
+    if (a - b).abs() >= MEAN_SLOPE_BELOW {
         return (scaled(a) - scaled(b)) / (a - b);
     }
     let slope = |[x, weight]: &[f64; 2]| {

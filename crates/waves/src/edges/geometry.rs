@@ -13,7 +13,7 @@ const POINTS: usize = 5;
 const SMOOTH: f64 = 0.9;
 /// Distance, over the extent, within which corners are at the same place and faces in the same
 /// plane.
-const SAME: f64 = 1e-9;
+const SAME_PLACE_DISTANCE: f64 = 1e-9;
 
 /// A straight edge between two faces, or of one thin face.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,7 +91,7 @@ impl Edge {
     pub(super) fn faces_of(&self, scatterer: &Scatterer) -> Vec<bool> {
         let contains = |facet: &Facet| {
             let height = |end: Vec3| facet.patch.normal().dot(end - facet.patch.centroid()).abs();
-            self.ends.iter().all(|&end| height(end) <= SAME * scatterer.extent())
+            self.ends.iter().all(|&end| height(end) <= SAME_PLACE_DISTANCE * scatterer.extent())
         };
         scatterer.facets().iter().map(contains).collect()
     }
@@ -100,7 +100,7 @@ impl Edge {
 /// How far the plane surface that a face is part of reaches from a point along a ray in it, m.
 fn reach(scatterer: &Scatterer, face: usize, place: Vec3, ray: Vec3) -> f64 {
     let faces = scatterer.occluders().patches();
-    let (normal, margin) = (faces[face].normal(), SAME * scatterer.extent());
+    let (normal, margin) = (faces[face].normal(), SAME_PLACE_DISTANCE * scatterer.extent());
     let lies =
         |other: &&Patch| other.corners().iter().all(|&corner| normal.dot(corner - place).abs() <= margin);
     let mut parts: Vec<[f64; 2]> =
@@ -116,7 +116,7 @@ fn inside(face: &Patch, place: Vec3, ray: Vec3, margin: f64) -> Option<[f64; 2]>
         let corner = face.corner(side);
         let inwards = face.normal().cross(face.corner(side + 1) - corner).try_normalize()?;
         let (height, slope) = (inwards.dot(place - corner), inwards.dot(ray));
-        if slope.abs() <= SAME {
+        if slope.abs() <= SAME_PLACE_DISTANCE {
             if height < -margin {
                 return None;
             }
@@ -133,7 +133,7 @@ fn inside(face: &Patch, place: Vec3, ray: Vec3, margin: f64) -> Option<[f64; 2]>
 /// alone. Tessellated spheres have none.
 pub(super) fn edges(scatterer: &Scatterer) -> Vec<Edge> {
     let faces = scatterer.occluders().patches();
-    let sides = Sides::new(faces, SAME * scatterer.extent());
+    let sides = Sides::new(faces, SAME_PLACE_DISTANCE * scatterer.extent());
     let kinds = kinds(scatterer);
     let mut found = Vec::new();
     for (i, face) in faces.iter().enumerate() {
@@ -168,7 +168,7 @@ fn kinds(scatterer: &Scatterer) -> Vec<Kind> {
     if facets.iter().all(|facet| facet.kind == first) {
         return vec![first; faces.len()];
     }
-    let margin = SAME * scatterer.extent();
+    let margin = SAME_PLACE_DISTANCE * scatterer.extent();
     let on = |face: &Patch, p: Vec3| {
         let height = face.normal().dot(p - face.centroid()).abs();
         let within = |side: usize| {

@@ -10,7 +10,7 @@ use super::Lanes;
 use pulp::Simd;
 
 /// Largest argument of the series.
-const SMALL: f64 = 0.125;
+const SERIES_UP_TO: f64 = 0.125;
 /// (−1)ⁿ/n!, from n = 10 down to 1.
 const SERIES: [f64; 10] = [
     1.0 / 3_628_800.0,
@@ -28,7 +28,7 @@ const SERIES: [f64; 10] = [
 /// Halvings that arguments up to `largest` need in [`decay`].
 #[must_use]
 pub fn halvings(largest: f64) -> u32 {
-    (largest.abs() / SMALL).log2().ceil().clamp(0.0, 64.0) as u32
+    (largest.abs() / SERIES_UP_TO).log2().ceil().clamp(0.0, 64.0) as u32
 }
 
 /// e^{−x} for |x| up to 2^`halvings`/8.

@@ -15,7 +15,7 @@ use pulp::{Simd, WithSimd};
 use std::ops::Range;
 
 /// Square of the distance below which an element is not evaluated (it is masked), m².
-const FLOOR: f64 = 1e-60;
+const LEAST_SQUARED_DISTANCE: f64 = 1e-60;
 
 /// An element: where it is and its moment over 4π.
 #[derive(Clone, Copy, Debug)]
@@ -84,7 +84,7 @@ pub(crate) struct Observers<'a> {
 }
 
 /// Most lanes of any instruction set.
-const WIDEST: usize = 64;
+const MOST_LANES: usize = 64;
 
 impl WithSimd for Evaluate<'_> {
     type Output = ();
@@ -99,7 +99,7 @@ impl WithSimd for Evaluate<'_> {
             if let Some(observers) = &self.observers {
                 let (first, last) = (observers.first + start, observers.first + end);
                 let normal = load(simd, &observers.normals[first..last]);
-                let mut behind = [0.0; WIDEST];
+                let mut behind = [0.0; MOST_LANES];
                 behind[..end - start].copy_from_slice(&observers.behind[first..last]);
                 let behind = Lanes::load(simd, &behind[..width]);
                 for group in self.groups {
@@ -122,7 +122,7 @@ impl WithSimd for Evaluate<'_> {
 #[inline(always)]
 fn load<S: Simd>(simd: S, points: &[Vec3]) -> Lanes3<S> {
     let width = S::F64_LANES;
-    let mut places = [[0.0; WIDEST]; 3];
+    let mut places = [[0.0; MOST_LANES]; 3];
     for lane in 0..width {
         let p = points[lane.min(points.len() - 1)];
         (places[0][lane], places[1][lane], places[2][lane]) = (p.x, p.y, p.z);
@@ -146,7 +146,7 @@ fn facing<S: Simd>(group: &Group, p: Lanes3<S>, normal: Lanes3<S>, behind: Lanes
 #[inline(always)]
 fn seen<S: Simd>(simd: S, view: Option<&View>, observers: Range<usize>, source: usize) -> Lanes<S> {
     let Some(view) = view else { return Lanes::splat(simd, 1.0) };
-    let mut seen = [0.0; WIDEST];
+    let mut seen = [0.0; MOST_LANES];
     // The view is symmetric: the bits of the observers are neighbours in the row of the source.
     for (lane, p) in observers.enumerate() {
         seen[lane] = f64::from(u8::from(view.sees(source, p)));
@@ -283,7 +283,7 @@ impl<S: Simd> Sums<S> {
     #[inline(always)]
     fn store(self, width: usize, out: &mut [Field]) {
         let parts = [self.e.re, self.e.im, self.h.re, self.h.im];
-        let mut values = [[[0.0; WIDEST]; 3]; 4];
+        let mut values = [[[0.0; MOST_LANES]; 3]; 4];
         for (part, values) in parts.iter().zip(&mut values) {
             part.x.store(&mut values[0][..width]);
             part.y.store(&mut values[1][..width]);
@@ -317,7 +317,7 @@ struct Scalars<S: Simd> {
 impl<S: Simd> Scalars<S> {
     #[inline(always)]
     fn new(k: f64, square: Lanes<S>, weight: Lanes<S>) -> Self {
-        let square = square.max(square.constant(FLOOR));
+        let square = square.max(square.constant(LEAST_SQUARED_DISTANCE));
         let wavenumber = square.constant(k);
         let inverse = square.sqrt().inverse();
         let (cos, sin) = cos_sin(wavenumber * square * inverse);

@@ -25,7 +25,7 @@ use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// Phase over a facet below which Gauss points are used, rad, and their number a side.
-const SMALL: f64 = 0.5;
+const SMALL_PHASE: f64 = 0.5;
 const POINTS: usize = 3;
 
 impl PhysicalOptics<'_> {
@@ -89,7 +89,7 @@ fn linear_phase_integral(facet: &Facet, w: Vec3) -> Complex64 {
     let patch = &facet.patch;
     let normal = patch.normal();
     let along = w - normal * normal.dot(w);
-    if along.length() * facet.diameter < SMALL {
+    if along.length() * facet.diameter < SMALL_PHASE {
         return regular(facet, POINTS).into_iter().map(|(q, weight)| Complex64::cis(w.dot(q)) * weight).sum();
     }
     let side = |i: usize| {

@@ -19,7 +19,7 @@ const ADAPTIVE: usize = 10;
 /// Squared sine of the angle between edges above which few parts of one are close to the other.
 /// Edges that run along each other would be bisected everywhere by the bound, which does not know
 /// that the inner integral is smooth there.
-const STEEP: f64 = 0.04;
+const STEEP_SQUARED_SINE: f64 = 0.04;
 /// Bisections towards a point that touches: 2⁻⁵⁰ of the edge is below rounding.
 const DEPTH: u32 = 50;
 
@@ -51,7 +51,7 @@ impl Outer {
     /// The integral to an absolute error of `goal`; `sine2` is the squared sine of the angle
     /// between the edges.
     pub(super) fn integrate(&self, goal: f64, sine2: f64) -> Estimate {
-        if self.points <= MAX_POINTS || sine2 > STEEP {
+        if self.points <= MAX_POINTS || sine2 > STEEP_SQUARED_SINE {
             return self.bisect(goal, DEPTH);
         }
         integrate_adaptive(&RULES[ADAPTIVE], 0.0, self.along.length, goal, DEPTH, &|s| self.inner(s))

@@ -34,9 +34,9 @@ use std::ops::Range;
 /// Relative difference below which two errors are equal by design of the scene.
 const EQUAL: f64 = 1e-6;
 /// A line that leaves less than this share of the width of a part on one side does not cut it,
-const SIDE: f64 = 0.020_3;
+const LEAST_CUT_SHARE: f64 = 0.020_3;
 /// and what it may cost at most that it does not, in goals.
-const LOST: f64 = 0.1;
+const MOST_COST_OF_NO_CUT: f64 = 0.1;
 /// Heights over a line below this share of the width of a part count as 0: often several lines meet
 /// in one point.
 const ON_THE_LINE: f64 = 1e-9;
@@ -374,7 +374,7 @@ where
     /// The share of the width of a part which a line must leave on both sides to cut it. Behind a
     /// line h has another slope: what a rule misses there grows with the square of the share.
     fn side(&self, corners: &[Vec3]) -> f64 {
-        SIDE.min((LOST * self.goal / self.most_over(corners)).sqrt())
+        LEAST_CUT_SHARE.min((MOST_COST_OF_NO_CUT * self.goal / self.most_over(corners)).sqrt())
     }
 
     /// Heights over a line that count as 0 on a part, m.

@@ -13,7 +13,7 @@ const PAYS: f64 = 0.3;
 const PAYS_FIRST: f64 = 0.26;
 /// Radius of a part, in its distances from what makes h steep, above which its sides are halved. No
 /// simple number: in a scene with right angles the two are often equal, and rounding would decide.
-const NEAR: f64 = 1.000_001;
+const NEAR_RADIUS: f64 = 1.000_001;
 
 /// Changes below these shares of an integral and of the goal count as that: else rounding would
 /// decide what is improved next.
@@ -73,7 +73,7 @@ impl Piece {
 
     /// Whether h is steep on it.
     pub(super) fn is_near(&self) -> bool {
-        self.reach > NEAR
+        self.reach > NEAR_RADIUS
     }
 
     /// Whether the largest value that h could have has a say in the error, and is not known yet.
@@ -109,7 +109,7 @@ impl Piece {
     fn estimate(&self, model: &ErrorModel, s: f64, v: f64) -> f64 {
         let (r, m) = (self.reach, self.most);
         let ([a, a1, a2], [b, c], [e, f, g]) = (model.smooth, model.smooth_near, model.broken_near);
-        match (self.topology.is_some(), r <= NEAR) {
+        match (self.topology.is_some(), r <= NEAR_RADIUS) {
             (true, true) => r * (r * (a * a * s * v + a1 * a1 * v * v + a2 * a2 * s * s)).sqrt(),
             (false, true) => model.broken * (s * v).sqrt(),
             (true, false) => (r * (b * b * m * m + c * c * s * s)).sqrt(),

@@ -11,7 +11,7 @@ use std::sync::LazyLock;
 pub(super) const DEGREES: [usize; 7] = [1, 2, 4, 7, 10, 14, 20];
 const POINTS_ALONG: [usize; 7] = [1, 2, 3, 4, 6, 8, 11];
 /// Largest reach, so that the error of a part with its centre on an edge of a body is a number.
-const FARTHEST: f64 = 1e3;
+const LARGEST_REACH: f64 = 1e3;
 
 static TRIANGLE: LazyLock<Vec<Vec<PlanePoint>>> =
     LazyLock::new(|| DEGREES.iter().filter_map(|&degree| symmetric_triangle(degree).ok()).collect());
@@ -53,7 +53,7 @@ impl Shape {
     pub(super) fn reach(&self, distance: impl Fn(Vec3) -> f64) -> f64 {
         let centre = self.centre();
         let radius = self.corners().iter().map(|x| x.distance_squared(centre)).fold(0.0, f64::max);
-        (radius.sqrt() / distance(centre)).min(FARTHEST)
+        (radius.sqrt() / distance(centre)).min(LARGEST_REACH)
     }
 
     /// The parts between the middles of the sides.

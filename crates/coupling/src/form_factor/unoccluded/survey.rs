@@ -24,14 +24,14 @@ use std::f64::consts::FRAC_1_PI;
 const PARALLELOGRAM: f64 = 3.0;
 const POLYGON: f64 = 0.3;
 /// Part of the tolerance for each patch; the rest is for rounding.
-const SHARE: f64 = 0.45;
+const PATCH_SHARE_OF_TOLERANCE: f64 = 0.45;
 /// Rounding of the sums, relative to the facing exchange at the least distance, in units of the
 /// last place.
 const ROUNDING: f64 = 6.0;
 /// Heights below this part of the pair's extent count as 0.
-const FLAT: f64 = 1e-12;
+const ZERO_HEIGHT: f64 = 1e-12;
 /// The same as a part of the largest coordinate, which is rounded.
-const FAR: f64 = 1e-15;
+const COORDINATE_ROUNDING: f64 = 1e-15;
 
 /// What is known of a block of pairs.
 pub(super) struct Survey {
@@ -83,7 +83,7 @@ impl Survey {
         let area = [pair[0].of(&patches.area), pair[1].of(&patches.area)];
         let open: Lanes = each(|m| FRAC_1_PI * (area[0][m] * area[1][m]) / (distance[m] * distance[m]));
         self.facing = each(|m| lower(open[m], lower(area[0][m], area[1][m])));
-        let limit: Lanes = each(|m| SHARE * tolerance * (self.facing[m] / open[m]));
+        let limit: Lanes = each(|m| PATCH_SHARE_OF_TOLERANCE * tolerance * (self.facing[m] / open[m]));
         let one = Orders::new(&extents[0], &extents[1].radius, distance, &limit);
         let alike = extents[0] == extents[1];
         let two = if alike { one } else { Orders::new(&extents[1], &extents[0].radius, distance, &limit) };
@@ -133,7 +133,7 @@ impl Sight {
         [one, two]: &[Extents; 2],
     ) -> Self {
         let reach = each(|m| distance[m] + 2.0 * (one.radius[m] + two.radius[m]));
-        let flat = each(|m| FLAT * reach[m] + FAR / f64::EPSILON * patches.rounding);
+        let flat = each(|m| ZERO_HEIGHT * reach[m] + COORDINATE_ROUNDING / f64::EPSILON * patches.rounding);
         let normals = [pair[0].vectors(&patches.normal), pair[1].vectors(&patches.normal)];
         let (there, back) = (dot(&normals[0], d), dot(&normals[1], d));
         // Nearly all patches are farther from the other's plane than they are large.
