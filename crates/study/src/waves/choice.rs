@@ -6,7 +6,7 @@
 //! | closed conductors that are thin or pointed, small | `cfie`, LU | facets that are not small beside the thickness do not follow the current around a rim |
 //! | conductors, sheets among them, small | `efie`, LU | an equation without approximation but the mesh; the matrix is stored |
 //! | conductors, sheets among them, larger | `radiated`, GMRES, edge currents | currents make the shadow themselves: what hides a part of what stands behind is counted once |
-//! | one flat sheet, small | `efie`, LU | as above: it costs no second |
+//! | one flat sheet, small | `efie`, LU | as above: it costs some seconds |
 //! | one flat sheet, larger | one bounce, edge currents | its facets do not light each other |
 //! | panes and other materials | one bounce; `radiated` where something is let through | bounces have to be asked for |
 //! | many incident waves, where the scene names no solver | LU | one factorisation for all of them |
@@ -32,8 +32,8 @@ const EQUATION: f64 = 0.26;
 /// some tens of seconds a core.
 const MOST_UNKNOWNS: usize = 6_000;
 /// The same of one flat sheet, which one bounce with edge currents describes well where it is
-/// larger.
-const MOST_FLAT: usize = 500;
+/// larger and the wave does not graze it.
+const MOST_FLAT: usize = 3_000;
 /// The same of thin closed bodies, for which there is nothing else that is exact.
 const MOST_CLOSED: usize = 8_000;
 /// A facet is of a thin part where the surface opposite is nearer than both of these: shares of the
