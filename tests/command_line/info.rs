@@ -24,7 +24,7 @@ const RESULTS: [(&str, &str, &[&str]); 15] = [
     ("judge b b/reference.csv -o j", "j", &["verdict", "irradiance of faces"]),
     ("viewfactors room.toml -o F.npz", "F.npz", &["80 rows", "closure"]),
     ("viewfactors room.toml -o F.csv", "F.csv", &["80 rows of 80 elements", "closure"]),
-    ("waves plate.toml -o w", "w", &["physical-optics", "stated error", "at point, 1000 MHz"]),
+    ("waves plate.toml -o w", "w", &["efie", "stated error", "at point, 1000 MHz"]),
     ("waves plate.toml --compare neumann,gmres -o v", "v", &["spectral radius", "gmres"]),
 ];
 

@@ -90,7 +90,7 @@ fn what_is_wrong_is_named_with_its_line() {
         ),
         ("name = \"plate\"", "name = \"plate\"\nedge = \"lamda/9\"", "scene.toml:12:", "no edge"),
         ("name = \"plate\"", "name = \"plate\"\nmaterial = \"gold\"", "scene.toml:12:", "no material `gold`"),
-        ("points = [[0, -1, 0]]", "points = [[0.01, 0, 0.02]]", "scene.toml:14:", "lies on facet"),
+        ("points = [[0, -1, 0]]", "points = [[0.01, 0, 0.02]]", "scene.toml:14:", "lies on triangle"),
         ("points = [[0, -1, 0]]", "points = []", "scene.toml:14:", "0 receiver points"),
         ("[wave]", "[wave]\nmethod = \"mfie\"\nsolver = \"lu\"", "scene.toml:12:", "closed bodies"),
         ("[wave]", "[wave]\nmethod = \"thesis\"\nedge_currents = true", "scene.toml:4:", "physical optics"),
@@ -334,7 +334,7 @@ fn small_sheets_are_solved_rigorously_within_the_stated_error() {
 /// The residual after the bounces asked for, and the estimates, are in the record.
 #[test]
 fn errors_are_estimated_for_mesh_bounces_and_form() {
-    let keys = "[wave]\nestimate_errors = true";
+    let keys = "[wave]\nmethod = \"physical-optics\"\nestimate_errors = true";
     let far = "points = [[0, -1, 0]]\n\n[[receiver]]\nname = \"far\"\nfar = { theta_degrees = 90, phi_degrees = [200, 270] }";
     let scene = changed(&[("[wave]", keys), (POINT, far)]).replace("0.3, 0, 0.3]", "0.3, 0.0, 0.3]");
     let bench = Bench::new(&scene);
