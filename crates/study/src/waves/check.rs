@@ -91,7 +91,8 @@ pub fn check_waves(
         warnings: model.warnings.clone(),
     };
     model.storage = storage(&model, coupling)?;
-    let seconds = stages.run("sample", || Ok(forecast::seconds(&mut model, watch)))?;
+    let unknowns = coupling.map(|coupling| coupling.unknowns);
+    let seconds = stages.run("sample", || Ok(forecast::seconds(&mut model, unknowns, watch)))?;
     stages.check()?;
     Ok(CheckedWaves { seconds, ..checked })
 }

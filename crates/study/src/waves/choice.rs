@@ -199,8 +199,14 @@ pub(super) fn in_one_plane(faces: &[fredholm_mesh::Patch], extent: f64) -> bool 
     faces.iter().flat_map(fredholm_mesh::Patch::corners).all(|p| height(p) <= 1e-9 * extent)
 }
 
-/// What is computed of a scene that asks for this, where a matrix of some bytes `fits`.
-pub(super) fn taken(asked: Asked, geometry: &Geometry, bands: &[Band], fits: &dyn Fn(u128) -> bool) -> Taken {
+/// What is computed of a scene that asks for this, where `boundary_elements` may be taken unasked and
+/// a matrix of some bytes `fits`.
+pub(super) fn taken(
+    asked: Asked,
+    (geometry, bands): (&Geometry, &[Band]),
+    boundary_elements: bool,
+    fits: &dyn Fn(u128) -> bool,
+) -> Taken {
     let seen = Seen::of(geometry, bands);
     let mut taken = match (asked.method, asked.shadow) {
         // Edge currents complete physical optics: who asks for them, or for none, means that.
@@ -211,7 +217,8 @@ pub(super) fn taken(asked: Asked, geometry: &Geometry, bands: &[Band], fits: &dy
                 _ => MOST_UNKNOWNS,
             };
             let size = (shortest(bands), most);
-            let small = || asked.edge_currents.is_none() && is_small(geometry, size, fits);
+            let small =
+                || boundary_elements && asked.edge_currents.is_none() && is_small(geometry, size, fits);
             chosen(&seen, &small)
         }
         (method, shadow) => completed(method.unwrap_or(Method::Bounces(1)), (asked.optics, shadow), &seen),

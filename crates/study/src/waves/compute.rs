@@ -97,12 +97,31 @@ fn variant(model: &Model, variant: Variant<'_>, stages: &mut Stages) -> Result<O
     })
 }
 
+/// The fields of the currents that the sources alone drive, as a system radiates them: they take the
+/// time of those of a solution.
+pub(super) fn incident_fields(model: &Model, stages: &mut Stages) -> Result<(), Error> {
+    let as_asked = Variant { name: "", geometry: &model.geometry, shadow: model.shadow };
+    for band in &model.bands {
+        with_task(model, as_asked, band, &mut |task| task.radiate_incident(stages))?;
+    }
+    Ok(())
+}
+
 fn at_frequency(
     model: &Model,
     variant: Variant<'_>,
     band: &Band,
     stages: &mut Stages,
     outcome: &mut Outcome,
+) -> Result<(), Error> {
+    with_task(model, variant, band, &mut |task| task.carry_out(stages, outcome))
+}
+
+fn with_task(
+    model: &Model,
+    variant: Variant<'_>,
+    band: &Band,
+    run: &mut dyn FnMut(&Task<'_>) -> Result<(), Error>,
 ) -> Result<(), Error> {
     let refused = |error: WaveError| model.refused(&error, None);
     let scatterer = variant.geometry.scatterer(&band.materials).map_err(refused)?;
@@ -112,7 +131,7 @@ fn at_frequency(
     let sources = model.sources();
     let first = PhysicalOptics::new(&scatterer, band.wave, &sources, variant.shadow).map_err(refused)?;
     let task = Task { model, variant, band, scatterer: &scatterer, first: &first, sources: &sources };
-    task.carry_out(stages, outcome)
+    run(&task)
 }
 
 /// A far field along θ̂ and φ̂, and the squares of its error (V²), where that is known, and of
@@ -150,6 +169,15 @@ impl Task<'_> {
             stages.run(&format!("sweep at {name}"), || self.sweep(system, signals, outcome))?;
         }
         Ok(())
+    }
+
+    fn radiate_incident(&self, stages: &mut Stages) -> Result<(), Error> {
+        let signals = &stages.signals();
+        let system =
+            solving::lazy(self.model, self.scatterer, (self.band.wave, self.variant.shadow), signals)?;
+        let currents = system.currents(&system.right_hand_side(&[self.first]), 0);
+        // A residual, whatever it is, has the error stated, which is a part of the fields.
+        stages.run("fields", || self.radiate(Some(&system), &currents, Some(1.0), &mut Outcome::default()))
     }
 
     fn refused(&self, error: &WaveError) -> Error {

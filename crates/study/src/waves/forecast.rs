@@ -11,19 +11,24 @@
 //!
 //! on its N facets, with the exponent p that they grew with. A scene small enough is computed as it
 //! is. Of many points and directions some are taken, and of many frequencies.
+//!
+//! Two parts are tried apart, since trials on few facets say little of them: fields at points near
+//! facets, which take longer the longer these are beside the distance, on the facets as they are,
+//! of currents that are no solution; and factorisation, whose rate of operations grows with the
+//! size of the matrix, of a matrix of numbers that mean nothing.
 
 use std::mem;
 
-use fredholm_linop::Watch;
+use fredholm_linop::{Dense, MultiVector, Watch};
 use fredholm_scene::waves::{Cuts, Layout, Places};
-use fredholm_waves::Wave;
+use fredholm_waves::{Complex64, Wave};
 
-use super::compute::compute;
+use super::compute::{compute, incident_fields};
 use super::geometry::Geometry;
 use super::interpolation;
-use super::model::{BY_PRODUCTS, Band, Receiver};
+use super::model::{BY_MATRIX, Band, Receiver};
 use super::over_frequency::MOST_PICTURED;
-use super::{CouplingStorage, Method, Model, registry};
+use super::{CouplingStorage, Method, Model, registry, solving};
 use crate::error::Error;
 use crate::meter::{Meter, alone};
 use crate::stages::Stages;
@@ -36,9 +41,8 @@ const BUDGET: f64 = 1.0;
 const MOST_SECONDS: f64 = 2.0;
 /// Exponent that is expected of the second trial.
 const EXPECTED_EXPONENT: f64 = 1.5;
-/// Facets on which fields are tried as they are, from currents that are no solution: what a point
-/// near longer edges takes is another matter.
-const AS_THEY_ARE: f64 = 2500.0;
+/// Unknowns of the matrix that is factorised for its rate, at most: a fraction of a second.
+const MOST_TRIED: usize = 800;
 /// Seconds from which on the growth of a part is measured; below, usual exponents are taken.
 const CLEAR_SECONDS: f64 = 4e-3;
 /// Growth from which on an exponent is one.
@@ -68,14 +72,16 @@ struct Trial {
 /// Seconds that a run of the model takes one thread; none where its surfaces cannot be meshed
 /// coarser and are no trial themselves, where the number of frequencies is not known before, or
 /// where the trials fail.
-pub(super) fn seconds(model: &mut Model, watch: &dyn Watch) -> Option<f64> {
+///
+/// `unknowns` are those of its system, where it has one.
+pub(super) fn seconds(model: &mut Model, unknowns: Option<usize>, watch: &dyn Watch) -> Option<f64> {
     if interpolation::accuracy(model).is_some() {
         return None;
     }
-    alone(|| on_this_thread(model, watch)).flatten()
+    alone(|| on_this_thread(model, unknowns, watch)).flatten()
 }
 
-fn on_this_thread(model: &mut Model, watch: &dyn Watch) -> Option<f64> {
+fn on_this_thread(model: &mut Model, unknowns: Option<usize>, watch: &dyn Watch) -> Option<f64> {
     let all: Vec<Wave> = model.bands.iter().map(|band| band.wave).collect();
     let counts: Vec<usize> = model.receivers.iter().map(|receiver| count(&receiver.places)).collect();
     let values = counts.iter().sum::<usize>() as f64 * all.len() as f64;
@@ -90,7 +96,13 @@ fn on_this_thread(model: &mut Model, watch: &dyn Watch) -> Option<f64> {
     let mut whole = last.seconds;
     let exponents = [0, 1, 2, 3].map(|part| exponent(&trials, part, bounds(model, part)));
     let mut grown = exponents.map(|exponent| (facets / last.facets).powf(exponent));
-    if last.facets < facets && has_fields_as_they_are(model, facets) {
+    if last.facets < facets
+        && let Some(unknowns) = unknowns.filter(|_| whole[1] > 0.0 && is_factorised(model))
+    {
+        whole[1] = waves.len() as f64 * factorisation(model, unknowns, watch)?;
+        grown[1] = 1.0;
+    }
+    if last.facets < facets && has_fields_as_they_are(model) {
         whole[2] = as_they_are(model, &waves, &receivers, watch)?;
         grown[2] = 1.0;
     }
@@ -128,22 +140,44 @@ fn bounds(model: &Model, part: usize) -> [f64; 3] {
     }
 }
 
-/// Whether fields are tried on the facets as they are: not of sweeps, which are solved for, of
-/// boundary elements, and of too many facets.
-fn has_fields_as_they_are(model: &Model, facets: f64) -> bool {
-    let solved = matches!(model.method, Method::Solver { .. });
-    solved && model.galerkin.is_none() && !model.has_sweep() && facets <= AS_THEY_ARE
+/// Whether the whole matrix is factorised.
+fn is_factorised(model: &Model) -> bool {
+    let whole = model.storage == Some(CouplingStorage::Matrix);
+    whole && matches!(&model.method, Method::Solver { solver, .. } if solver.name() == BY_MATRIX)
 }
 
-/// Seconds of the fields at some places on the facets as they are, after one iteration. Leaves the
-/// model there.
+/// Seconds that a factorisation of so many unknowns takes, from that of fewer.
+fn factorisation(model: &Model, unknowns: usize, watch: &dyn Watch) -> Option<f64> {
+    let fewer = unknowns.min(MOST_TRIED);
+    // What is taken away from 1 is small beside it, so that no pivot vanishes.
+    let entry = |i: usize| {
+        let angle = i as f64;
+        Complex64::new((1.7 * angle).sin(), (0.3 * angle).cos()) / (2 * fewer) as f64
+    };
+    let matrix = Dense::new(fewer, (0..fewer * fewer).map(entry).collect()).ok()?;
+    let b = MultiVector::from_fn(fewer, 1, |_, _| Complex64::ONE);
+    let meter = Meter::new(watch, MOST_SECONDS);
+    let stages = Stages::new(&meter);
+    let began = meter.seconds();
+    solving::solved(&matrix, &b, &model.method, &stages.signals()).ok()?;
+    Some((meter.seconds() - began) * (unknowns as f64 / fewer as f64).powi(3))
+}
+
+/// Whether fields are tried on the facets as they are: not of sweeps, which are solved for, and of
+/// boundary elements, where they take little beside the matrix.
+fn has_fields_as_they_are(model: &Model) -> bool {
+    let solved = matches!(model.method, Method::Solver { .. });
+    solved && model.galerkin.is_none() && !model.has_sweep()
+}
+
+/// Seconds of the fields at some places on the facets as they are, of the currents that the sources
+/// alone drive. Leaves the model there.
 fn as_they_are(model: &mut Model, waves: &[Wave], receivers: &[Receiver], watch: &dyn Watch) -> Option<f64> {
-    let solver = registry::build(BY_PRODUCTS).ok()?;
-    model.method = Method::Solver { solver, tolerance: 0.9, max_iterations: 1 };
-    model.storage = Some(CouplingStorage::Products);
     stretched(model, waves, 1.0).ok()?;
     model.receivers = sampled(receivers, model.geometry.mesh.len(), 1);
-    Some(trial(model, watch)?.seconds[2])
+    let meter = Meter::new(watch, MOST_SECONDS);
+    incident_fields(model, &mut Stages::new(&meter)).ok()?;
+    Some(by_parts(meter)[2])
 }
 
 /// Trials on more and more facets, as far as they are short.
@@ -221,12 +255,17 @@ fn stretched(model: &mut Model, waves: &[Wave], stretch: f64) -> Result<(), Erro
 fn trial(model: &Model, watch: &dyn Watch) -> Option<Trial> {
     let meter = Meter::new(watch, MOST_SECONDS);
     compute(model, &mut Stages::new(&meter)).ok()?;
+    Some(Trial { facets: model.geometry.mesh.len() as f64, seconds: by_parts(meter) })
+}
+
+/// The seconds of the stages of each part.
+fn by_parts(meter: Meter<'_>) -> [f64; PARTS.len()] {
     let mut seconds = [0.0; PARTS.len()];
     for (stage, spent) in meter.readings().stages {
         let part = PARTS.iter().position(|part| stage.starts_with(part)).unwrap_or(2);
         seconds[part] += spent;
     }
-    Some(Trial { facets: model.geometry.mesh.len() as f64, seconds })
+    seconds
 }
 
 /// What a part grew with from one trial to the last, where both took time that is clear.

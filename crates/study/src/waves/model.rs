@@ -114,26 +114,42 @@ pub(crate) struct Model {
     pub(crate) limit: Limit,
 }
 
+/// What is taken where a scene names no method.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Unnamed {
+    /// One bounce with geometric shadows.
+    Plain,
+    /// What suits the scene.
+    Chosen,
+    /// What suits the scene of all but boundary elements.
+    OnFacets,
+}
+
 impl Model {
     /// Reads a scene file and cuts its surfaces, where they fit the memory asked for.
     pub(crate) fn load(path: &Path, memory: Option<Bytes>) -> Result<Self, Error> {
-        Self::read(path, memory, [false, true], &memory_of)
+        Self::read(path, memory, (false, Unnamed::Chosen), &memory_of)
+    }
+
+    /// The same with currents on facets, which solvers are compared on.
+    pub(crate) fn load_on_facets(path: &Path, memory: Option<Bytes>) -> Result<Self, Error> {
+        Self::read(path, memory, (false, Unnamed::OnFacets), &memory_of)
     }
 
     /// The same where the fields are sampled, so many batches at once.
     pub(crate) fn load_sampled(path: &Path, memory: Option<Bytes>, batches: u32) -> Result<Self, Error> {
-        Self::read(path, memory, [false; 2], &|facets, scene| sampled(facets, scene, batches))
+        Self::read(path, memory, (false, Unnamed::Plain), &|facets, scene| sampled(facets, scene, batches))
     }
 
     /// The same with errors estimated, whether the scene asks for it or not.
     pub(crate) fn load_estimated(path: &Path, memory: Option<Bytes>) -> Result<Self, Error> {
-        Self::read(path, memory, [true, false], &memory_of)
+        Self::read(path, memory, (true, Unnamed::Plain), &memory_of)
     }
 
     fn read(
         path: &Path,
         memory: Option<Bytes>,
-        [estimated, chooses]: [bool; 2],
+        (estimated, unnamed): (bool, Unnamed),
         memory_of: &dyn Fn(u128, &WaveScene) -> Plan,
     ) -> Result<Self, Error> {
         admit_file(path, memory)?;
@@ -150,11 +166,12 @@ impl Model {
         let geometry = cut(1.0, whole)?;
         let named = galerkin(settings);
         let Taken { shadow, galerkin, method, edge_currents, reason, warnings } =
-            if chooses && named.is_none() {
-                let fits = |bytes| Plan::default().hold("the matrix", bytes).fits(limit);
-                taken(asked, &geometry, &bands, &fits)
-            } else {
+            if unnamed == Unnamed::Plain || named.is_some() {
                 asked.plain()
+            } else {
+                let boundary_elements = unnamed == Unnamed::Chosen;
+                let fits = |bytes| Plan::default().hold("the matrix", bytes).fits(limit);
+                taken(asked, (&geometry, &bands), boundary_elements, &fits)
             };
         let galerkin = named.or(galerkin);
         // One bounce that was not asked for may do without cutting, too.

@@ -81,7 +81,7 @@ pub fn waves<'a>(
     watch: &'a dyn Watch,
 ) -> Result<SolvedWaves<'a>, Error> {
     let mut stages = Stages::new(watch);
-    let mut model = load(scene.as_ref(), asked, &mut stages)?;
+    let mut model = load(scene.as_ref(), asked, Model::load, &mut stages)?;
     let outcome = super::compute(&model, &mut stages)?;
     let doubts = doubts(&model, &outcome);
     for doubt in &doubts {
@@ -105,7 +105,7 @@ pub fn compare_waves(
     watch: &dyn Watch,
 ) -> Result<(WaveComparison, Ended), Error> {
     let mut stages = Stages::new(watch);
-    let model = load(scene.as_ref(), asked, &mut stages)?;
+    let model = load(scene.as_ref(), asked, Model::load_on_facets, &mut stages)?;
     let stop = Stop { tolerance: solvers.tolerance, max_iterations: solvers.max_iterations as usize };
     let names = written_out(&solvers.solvers, &registry::names());
     let record = super::compare(&model, &names, &stop, &mut stages)?;
@@ -124,8 +124,16 @@ pub fn check_wave_solver(text: &str) -> Result<(), OptionError> {
     registry::build(text).map(drop)
 }
 
-fn load(scene: &Path, asked: &WaveOptions, stages: &mut Stages) -> Result<Model, Error> {
-    let mut model = stages.run("scene", || Model::load(scene, asked.memory))?;
+fn load(
+    scene: &Path,
+    asked: &WaveOptions,
+    read: fn(&Path, Option<Bytes>) -> Result<Model, Error>,
+    stages: &mut Stages,
+) -> Result<Model, Error> {
+    // Products are computed anew of currents on facets alone.
+    let anew = asked.storage == Some(CouplingStorage::Products);
+    let read = if anew { Model::load_on_facets } else { read };
+    let mut model = stages.run("scene", || read(scene, asked.memory))?;
     let (storage, help) = match (asked.storage, model.galerkin) {
         (Some(CouplingStorage::Products), Some(_)) => ("computed anew", "matrix or compressed"),
         (Some(CouplingStorage::Compressed), None) => ("compressed", "matrix or products"),
