@@ -23,6 +23,9 @@ use std::f64::consts::PI;
 /// Functions of a tile: triangles on the border of two tiles are integrated for both.
 const TILE: usize = 192;
 
+/// Functions whose rows are integrated at once for the time that the matrix takes.
+const SAMPLED: usize = 16;
+
 /// Factors of kinds of unknowns on kinds of tests.
 pub(crate) type Kinds = [[Complex64; 2]; 2];
 
@@ -169,6 +172,33 @@ impl<'a> Operator<'a> {
         Ok(Dense::new(self.dim(), entries)?.with_symmetry(self.symmetry)?)
     }
 
+    /// Integrates the entries of some rows at a time, spread evenly, and forgets them: returns the
+    /// share of the work of [`dense`](Self::dense) that this was, so that its time can be told
+    /// before it is spent.
+    #[must_use]
+    pub fn sample(&self, samples: usize) -> f64 {
+        let tiles = self.tiles();
+        let all: usize = tiles.iter().map(|tile| tile.triangles.len()).sum();
+        let functions = self.basis.len();
+        let mut done = 0;
+        for sample in 0..samples {
+            let first = (2 * sample + 1) * functions / (2 * samples);
+            let rows = self.prepare(first..(first + SAMPLED).min(functions));
+            let mut block = vec![Complex64::ZERO; rows.len * TILE * self.kinds.pow(2)];
+            tiles.iter().for_each(|tile| self.fill(&rows, tile, &mut block));
+            done += rows.triangles.len();
+        }
+        let (count, symmetric) = (tiles.len() as f64, self.symmetry == Symmetry::Symmetric);
+        let part = if symmetric { (count + 1.0) / (2.0 * count) } else { 1.0 };
+        done as f64 / (part * all as f64)
+    }
+
+    /// The functions in the tiles that the matrix is integrated by.
+    fn tiles(&self) -> Vec<Set> {
+        let tile = |first: usize| self.prepare(first..(first + TILE).min(self.basis.len()));
+        (0..self.basis.len()).step_by(TILE).map(tile).collect()
+    }
+
     /// The matrix Z compressed, block by block.
     ///
     /// # Errors
@@ -191,8 +221,7 @@ impl<'a> Operator<'a> {
         let mut entries = Vec::new();
         entries.try_reserve_exact(length).map_err(|_| refused)?;
         entries.resize(length, Complex64::ZERO);
-        let tile = |first: usize| self.prepare(first..(first + TILE).min(self.basis.len()));
-        let tiles: Vec<Set> = (0..self.basis.len()).step_by(TILE).map(tile).collect();
+        let tiles = self.tiles();
         let symmetric = self.symmetry == Symmetry::Symmetric;
         let strips = entries.par_chunks_mut((TILE * self.kinds * dim).max(1)).enumerate().with_max_len(1);
         strips.for_each(|(row, strip)| {

@@ -35,7 +35,7 @@ pub(super) fn on_edge(view: &Viewer<'_>, patch: &Patch, sample: &Sample, half: f
     (0..patch.sides()).any(|k| {
         let near = nearest(patch.corner(k), patch.corner(k + 1), sample.point);
         let (x, y) = sample.at;
-        view.project(near).is_some_and(|(u, v)| (u - x).hypot(v - y) < half)
+        view.project(near).is_some_and(|(u, v)| (u - x).powi(2) + (v - y).powi(2) < half * half)
     })
 }
 

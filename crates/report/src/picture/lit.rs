@@ -27,6 +27,11 @@ use crate::{Camera, Eye, Field, ReportError};
 /// Points of a pixel at a border, and the generator of their lattice.
 const FINE: usize = 16;
 const GENERATOR: usize = 7;
+/// One of so many of them has its own light of the lamps, of those that show one leaf: the border
+/// itself needs more points than the light on either side of it.
+const LIT: usize = 4;
+/// Difference of the colours around a point, over the larger, up to which its own is their mean.
+const ALIKE: f64 = 0.03;
 /// Pixels in a row of a tile.
 const SIDE: usize = 32;
 /// Pixels at borders that are looked at together.
@@ -259,7 +264,18 @@ impl<'a> LitView<'a> {
         }
         let look = |(x, y)| self.eye.hit(x as f64 + 0.5, y as f64 + 0.5);
         let samples: Vec<Seen> = tile.pixels().map(look).collect();
-        let colours = self.brush().colours(&samples);
+        let mut brush = self.brush();
+        // Every other pixel of every other row first, then those that they do not tell the colour of.
+        let (w, first) = (tile.xs.len(), |k: usize| k % tile.xs.len() % 2 == 0 && k / tile.xs.len() % 2 == 0);
+        let some = |wanted: &dyn Fn(usize) -> bool| -> Vec<Seen> {
+            samples.iter().enumerate().map(|(k, seen)| seen.filter(|_| wanted(k))).collect()
+        };
+        let known = brush.colours(&some(&first));
+        let between: Vec<Option<Rgb>> = (0..samples.len())
+            .map(|k| if first(k) { Some(known[k]) } else { between(&samples, &known, (w, k)) })
+            .collect();
+        let others = brush.colours(&some(&|k| between[k].is_none()));
+        let colours = between.into_iter().zip(others).map(|(between, other)| between.unwrap_or(other));
         let middle = |(seen, colour): (&Seen, Rgb)| Middle {
             leaf: seen.map_or(NOTHING, |(leaf, _)| leaf as u32),
             colour: colour.map(|c| c as f32),
@@ -290,7 +306,22 @@ impl<'a> LitView<'a> {
                 return None;
             }
             let samples: Vec<Seen> = borders.iter().flat_map(|(_, at)| self.lattice(*at)).collect();
-            let colours = brush.colours(&samples);
+            let lit: Vec<usize> = samples.chunks(FINE).flat_map(lit).collect();
+            // What pixels around show tells the light of most samples.
+            let around: Vec<Option<Rgb>> = (0..samples.len())
+                .map(|k| {
+                    if lit[k] == k % FINE {
+                        around(middles, (w, h), borders[k / FINE].1, samples[k])
+                    } else {
+                        None
+                    }
+                })
+                .collect();
+            let own = |k: usize| samples[k].filter(|_| lit[k] == k % FINE && around[k].is_none());
+            let colours = brush.colours(&(0..samples.len()).map(own).collect::<Vec<_>>());
+            let of = |k: usize| k - k % FINE + lit[k];
+            let colours: Vec<Rgb> =
+                (0..samples.len()).map(of).map(|k| around[k].unwrap_or(colours[k])).collect();
             let pixels = samples.chunks(FINE).zip(colours.chunks(FINE));
             for ((place, _), (samples, colours)) in borders.iter().zip(pixels) {
                 painted[*place] = mean(samples, colours, tone);
@@ -325,8 +356,7 @@ impl<'a> LitView<'a> {
             _ => tone.display(middle.colour.map(f64::from)),
         };
         let colour = shown(own);
-        let (xs, ys) = (x.saturating_sub(1)..=(x + 1).min(w - 1), y.saturating_sub(1)..=(y + 1).min(h - 1));
-        ys.flat_map(|v| xs.clone().map(move |u| v * w + u)).any(|at| {
+        neighbours((w, h), (x, y)).any(|at| {
             let other = &middles[at];
             // A change on one plane is a shadow's, which is seen less than an edge.
             let step = if self.is_alike(own.leaf, other.leaf) { STEP } else { EDGE };
@@ -358,6 +388,64 @@ impl<'a> LitView<'a> {
     }
 }
 
+/// The colour of pixel `k` of rows of `width` from its neighbours in the even rows and columns; none
+/// where one is missing, shows another leaf, or differs.
+fn between(samples: &[Seen], known: &[Rgb], (width, k): (usize, usize)) -> Option<Rgb> {
+    let leaf = |k: usize| samples[k].map(|(leaf, _)| leaf);
+    let (x, y) = (k % width, k / width);
+    let ends = |i: usize| if i % 2 == 0 { [i, i] } else { [i - 1, i + 1] };
+    let ([left, right], [top, bottom]) = (ends(x), ends(y));
+    if right >= width || bottom >= samples.len() / width {
+        return None;
+    }
+    let around = [top * width + left, top * width + right, bottom * width + left, bottom * width + right];
+    if around.iter().any(|&other| leaf(other) != leaf(k)) {
+        return None;
+    }
+    alike(around.into_iter().map(|k| known[k]))
+}
+
+/// The colour of a sample in pixel `at` from the pixels around it that show the same leaf; none
+/// where there are none, or they differ.
+fn around(middles: &[Middle], size: (usize, usize), at: (usize, usize), sample: Seen) -> Option<Rgb> {
+    let (leaf, _) = sample?;
+    let same = neighbours(size, at).map(|at| &middles[at]).filter(|middle| middle.leaf == leaf as u32);
+    alike(same.map(|middle| middle.colour.map(f64::from)))
+}
+
+/// The places of a pixel and of those around it, in rows of pixels.
+fn neighbours((w, h): (usize, usize), (x, y): (usize, usize)) -> impl Iterator<Item = usize> {
+    let (xs, ys) = (x.saturating_sub(1)..=(x + 1).min(w - 1), y.saturating_sub(1)..=(y + 1).min(h - 1));
+    ys.flat_map(move |v| xs.clone().map(move |u| v * w + u))
+}
+
+/// The mean of colours; none where there are none, or they differ.
+fn alike(colours: impl Iterator<Item = Rgb>) -> Option<Rgb> {
+    let (mut count, mut sum) = (0.0, [0.0; 3]);
+    let (mut least, mut most) = ([f64::INFINITY; 3], [0.0_f64; 3]);
+    for colour in colours {
+        count += 1.0;
+        for (i, &c) in colour.iter().enumerate() {
+            sum[i] += c;
+            (least[i], most[i]) = (least[i].min(c), most[i].max(c));
+        }
+    }
+    let same = (0..3).all(|i| most[i] - least[i] <= ALIKE * most[i]);
+    (count > 0.0 && same).then(|| sum.map(|sum| sum / count))
+}
+
+/// For each sample of a pixel the one whose light it has, which shows the same leaf.
+fn lit(samples: &[Seen]) -> [usize; FINE] {
+    let leaf = |k: usize| samples[k].map(|(leaf, _)| leaf);
+    let mut lit = [0; FINE];
+    for k in 0..FINE {
+        let before = (0..k).filter(|&other| leaf(other) == leaf(k));
+        let place = before.clone().count();
+        lit[k] = if place % LIT == 0 { k } else { before.last().map_or(k, |other| lit[other]) };
+    }
+    lit
+}
+
 /// A pixel from its samples: the means of their display values and of their colours.
 fn mean(samples: &[Seen], colours: &[Rgb], tone: Tone) -> Painted {
     let (mut shown, mut seen) = ([0.0; 3], [0.0; 3]);
@@ -367,4 +455,38 @@ fn mean(samples: &[Seen], colours: &[Rgb], tone: Tone) -> Painted {
         seen = [0, 1, 2].map(|i| seen[i] + colour[i] / FINE as f64);
     }
     (shown.map(encode), seen.map(|c| c as f32))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_light_of_a_sample_is_of_its_own_leaf() {
+        let samples: Vec<Seen> =
+            (0..FINE).map(|k| [Some((7, Vec3::X)), Some((9, Vec3::Y)), None][k % 3]).collect();
+        let lit = lit(&samples);
+        let leaf = |k: usize| samples[k].map(|(leaf, _)| leaf);
+        assert!((0..FINE).all(|k| leaf(lit[k]) == leaf(k) && lit[k] <= k));
+        // Six samples of the first leaf, five of each other.
+        let own = |of: Option<usize>| (0..FINE).filter(|&k| leaf(k) == of && lit[k] == k).count();
+        assert_eq!([own(Some(7)), own(Some(9)), own(None)], [2, 2, 2]);
+    }
+
+    #[test]
+    fn a_pixel_between_others_is_their_mean_where_they_are_alike() {
+        // Rows of four pixels, the last of which shows another leaf.
+        let samples: Vec<Seen> = (0..12).map(|k| Some((usize::from(k % 4 == 3), Vec3::ZERO))).collect();
+        let mut known = vec![[0.0; 3]; 12];
+        for (k, colour) in [(0, 1.0), (2, 1.01), (8, 1.01), (10, 1.02)] {
+            known[k] = [colour; 3];
+        }
+        for (k, mean) in [(1, 1.005), (4, 1.005), (5, 1.01), (6, 1.015), (9, 1.015)] {
+            let found = between(&samples, &known, (4, k)).unwrap();
+            assert!(found.iter().all(|c| (c - mean).abs() < 1e-12), "{k}: {found:?}");
+        }
+        assert!([3, 7, 11].iter().all(|&k| between(&samples, &known, (4, k)).is_none()));
+        known[10][2] = 1.1;
+        assert!(between(&samples, &known, (4, 5)).is_none() && between(&samples, &known, (4, 1)).is_some());
+    }
 }

@@ -12,10 +12,11 @@
 //! on its N facets, with the exponent p that they grew with. A scene small enough is computed as it
 //! is. Of many points and directions some are taken, and of many frequencies.
 //!
-//! Two parts are tried apart, since trials on few facets say little of them: fields at points near
-//! facets, which take longer the longer these are beside the distance, on the facets as they are,
-//! of currents that are no solution; and factorisation, whose rate of operations grows with the
-//! size of the matrix, of a matrix of numbers that mean nothing.
+//! Three parts are tried apart, since trials on few facets say little of them: fields at points
+//! near facets, which take longer the longer these are beside the distance, on the facets as they
+//! are, of currents that are no solution; the matrix of boundary elements, of which near pairs take
+//! most up to some size, by some of its rows; and factorisation, whose rate of operations grows with
+//! the size of the matrix, of a matrix of numbers that mean nothing.
 
 use std::mem;
 
@@ -28,9 +29,9 @@ use super::geometry::Geometry;
 use super::interpolation;
 use super::model::{BY_MATRIX, Band, Receiver};
 use super::over_frequency::MOST_PICTURED;
-use super::{CouplingStorage, Method, Model, registry, solving};
+use super::{CouplingStorage, Method, Model, galerkin, registry, solving};
 use crate::error::Error;
-use crate::meter::{Meter, alone};
+use crate::meter::{Meter, alone, spent};
 use crate::stages::Stages;
 
 /// Facets of the first trial, about, and the most that it may have: of several bounces, and of one.
@@ -96,26 +97,32 @@ fn on_this_thread(model: &mut Model, unknowns: Option<usize>, watch: &dyn Watch)
     let mut whole = last.seconds;
     let exponents = [0, 1, 2, 3].map(|part| exponent(&trials, part, bounds(model, part)));
     let mut grown = exponents.map(|exponent| (facets / last.facets).powf(exponent));
-    if last.facets < facets
-        && let Some(unknowns) = unknowns.filter(|_| whole[1] > 0.0 && is_factorised(model))
-    {
-        whole[1] = waves.len() as f64 * factorisation(model, unknowns, watch)?;
-        grown[1] = 1.0;
-    }
-    if last.facets < facets && has_fields_as_they_are(model) {
-        whole[2] = as_they_are(model, &waves, &receivers, watch)?;
-        grown[2] = 1.0;
+    let coarse = last.facets < facets;
+    let mut tried: fn(&Model, &dyn Watch) -> Option<[f64; PARTS.len()]> = trial;
+    if coarse && has_fields_as_they_are(model) {
+        stretched(model, &waves, 1.0).ok()?;
+        model.receivers = sampled(&receivers, model.geometry.mesh.len(), 1);
+        tried = incident;
+        (whole[2], grown[2]) = (tried(model, watch)?[2], 1.0);
     }
     // What does not grow with the points and directions, from a trial with fewer of them.
     let taken = |receivers: &[Receiver]| [false, true].map(|swept| total(receivers, swept));
     let [all_places, places] = [taken(&receivers), taken(&model.receivers)];
     if all_places.iter().zip(places).any(|(all, some)| *all > some) {
         model.receivers = sampled(&receivers, model.geometry.mesh.len(), 4);
-        let (fewer, less) = (taken(&model.receivers), trial(model, watch)?);
+        let (fewer, less) = (taken(&model.receivers), tried(model, watch)?);
         for (kind, part) in [2, 3].into_iter().enumerate() {
-            let each = (whole[part] - less.seconds[part]) / (places[kind] - fewer[kind]).max(1.0);
+            let each = (whole[part] - less[part]) / (places[kind] - fewer[kind]).max(1.0);
             whole[part] += each.max(0.0) * (all_places[kind] - places[kind]);
         }
+    }
+    let stored = coarse && model.storage == Some(CouplingStorage::Matrix);
+    if let (true, Some(equations)) = (stored, model.galerkin) {
+        stretched(model, &waves, 1.0).ok()?;
+        (whole[0], grown[0]) = (galerkin::assembly(model, equations, &spent).ok()?, 1.0);
+    }
+    if let Some(unknowns) = unknowns.filter(|_| stored && whole[1] > 0.0 && is_factorised(model)) {
+        (whole[1], grown[1]) = (waves.len() as f64 * factorisation(model, unknowns, watch)?, 1.0);
     }
     let fields: f64 = whole.iter().zip(grown).map(|(seconds, grown)| seconds * grown).sum();
     Some(share * fields + SECONDS_A_VALUE * values + SECONDS_A_PLOT * plots)
@@ -140,10 +147,9 @@ fn bounds(model: &Model, part: usize) -> [f64; 3] {
     }
 }
 
-/// Whether the whole matrix is factorised.
+/// Whether the matrix is factorised.
 fn is_factorised(model: &Model) -> bool {
-    let whole = model.storage == Some(CouplingStorage::Matrix);
-    whole && matches!(&model.method, Method::Solver { solver, .. } if solver.name() == BY_MATRIX)
+    matches!(&model.method, Method::Solver { solver, .. } if solver.name() == BY_MATRIX)
 }
 
 /// Seconds that a factorisation of so many unknowns takes, from that of fewer.
@@ -170,14 +176,11 @@ fn has_fields_as_they_are(model: &Model) -> bool {
     solved && model.galerkin.is_none() && !model.has_sweep()
 }
 
-/// Seconds of the fields at some places on the facets as they are, of the currents that the sources
-/// alone drive. Leaves the model there.
-fn as_they_are(model: &mut Model, waves: &[Wave], receivers: &[Receiver], watch: &dyn Watch) -> Option<f64> {
-    stretched(model, waves, 1.0).ok()?;
-    model.receivers = sampled(receivers, model.geometry.mesh.len(), 1);
+/// Seconds of the fields of the currents that the sources alone drive, by parts.
+fn incident(model: &Model, watch: &dyn Watch) -> Option<[f64; PARTS.len()]> {
     let meter = Meter::new(watch, MOST_SECONDS);
     incident_fields(model, &mut Stages::new(&meter)).ok()?;
-    Some(by_parts(meter)[2])
+    Some(by_parts(meter))
 }
 
 /// Trials on more and more facets, as far as they are short.
@@ -209,8 +212,8 @@ fn trials(
             }
         }
         // Longer edges may be refused where shorter ones are not.
-        if let Some(found) = trial(model, watch) {
-            trials.push(found);
+        if let Some(seconds) = trial(model, watch) {
+            trials.push(Trial { facets: here as f64, seconds });
         } else if watch.go_on().is_break() || !trials.is_empty() {
             break;
         }
@@ -251,11 +254,11 @@ fn stretched(model: &mut Model, waves: &[Wave], stretch: f64) -> Result<(), Erro
     Ok(())
 }
 
-/// Runs a model as it is.
-fn trial(model: &Model, watch: &dyn Watch) -> Option<Trial> {
+/// Seconds of a model as it is, by parts.
+fn trial(model: &Model, watch: &dyn Watch) -> Option<[f64; PARTS.len()]> {
     let meter = Meter::new(watch, MOST_SECONDS);
     compute(model, &mut Stages::new(&meter)).ok()?;
-    Some(Trial { facets: model.geometry.mesh.len() as f64, seconds: by_parts(meter) })
+    Some(by_parts(meter))
 }
 
 /// The seconds of the stages of each part.

@@ -92,6 +92,22 @@ pub(super) fn run(
     Ok(())
 }
 
+/// Rows of a matrix that are integrated for the time that it takes, in groups.
+const SAMPLES: usize = 6;
+
+/// Seconds that `spent` tells the matrices of the model take at its frequencies, from some rows.
+pub(super) fn assembly(model: &Model, equations: Equations, spent: &dyn Fn() -> f64) -> Result<f64, Error> {
+    let basis = basis(model, &model.geometry)?;
+    let mut seconds = 0.0;
+    for band in &model.bands {
+        let body = Body::new(model, &basis, band, equations)?;
+        let began = spent();
+        let share = body.operator().sample(SAMPLES);
+        seconds += (spent() - began) / share;
+    }
+    Ok(seconds)
+}
+
 /// What the error is stated from.
 enum Known {
     /// The longest edge of sheets, m, by the electric equation.
