@@ -185,7 +185,9 @@ impl<'a> Operator<'a> {
             let first = (2 * sample + 1) * functions / (2 * samples);
             let rows = self.prepare(first..(first + SAMPLED).min(functions));
             let mut block = vec![Complex64::ZERO; rows.len * TILE * self.kinds.pow(2)];
-            tiles.iter().for_each(|tile| self.fill(&rows, tile, &mut block));
+            for tile in &tiles {
+                self.fill(&rows, tile, &mut block);
+            }
             done += rows.triangles.len();
         }
         let (count, symmetric) = (tiles.len() as f64, self.symmetry == Symmetry::Symmetric);

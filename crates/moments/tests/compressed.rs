@@ -51,6 +51,18 @@ fn products_of_conductors_are_within_the_tolerance() {
 }
 
 #[test]
+fn sampled_rows_tell_their_share_of_the_matrix() {
+    let ball = Basis::new(sphere(0.5 * WAVELENGTH, WAVELENGTH / 8.0).unwrap()).unwrap();
+    let share =
+        |equation, samples| Conductor::new(&ball, wave(), equation, 1e-3).unwrap().operator().sample(samples);
+    let [few, more] = [3, 6].map(|samples| share(Equation::Electric, samples));
+    assert!(few > 0.0 && few < 0.5 && (more / few - 2.0).abs() < 0.2, "{few} {more}");
+    // Half of the symmetric matrix is integrated, and the tiles on its diagonal.
+    let whole = share(Equation::default(), 6);
+    assert!(whole < more && whole > 0.5 * more, "{whole} {more}");
+}
+
+#[test]
 fn a_compressed_sphere_has_the_field_of_the_series_and_the_same_bits_with_any_number_of_threads() {
     let radius = 0.5 * WAVELENGTH;
     let basis = Basis::new(sphere(radius, WAVELENGTH / 8.0).unwrap()).unwrap();

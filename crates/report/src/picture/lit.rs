@@ -266,7 +266,8 @@ impl<'a> LitView<'a> {
         let samples: Vec<Seen> = tile.pixels().map(look).collect();
         let mut brush = self.brush();
         // Every other pixel of every other row first, then those that they do not tell the colour of.
-        let (w, first) = (tile.xs.len(), |k: usize| k % tile.xs.len() % 2 == 0 && k / tile.xs.len() % 2 == 0);
+        let w = tile.xs.len();
+        let first = |k: usize| (k % w).is_multiple_of(2) && (k / w).is_multiple_of(2);
         let some = |wanted: &dyn Fn(usize) -> bool| -> Vec<Seen> {
             samples.iter().enumerate().map(|(k, seen)| seen.filter(|_| wanted(k))).collect()
         };
@@ -393,7 +394,7 @@ impl<'a> LitView<'a> {
 fn between(samples: &[Seen], known: &[Rgb], (width, k): (usize, usize)) -> Option<Rgb> {
     let leaf = |k: usize| samples[k].map(|(leaf, _)| leaf);
     let (x, y) = (k % width, k / width);
-    let ends = |i: usize| if i % 2 == 0 { [i, i] } else { [i - 1, i + 1] };
+    let ends = |i: usize| if i.is_multiple_of(2) { [i, i] } else { [i - 1, i + 1] };
     let ([left, right], [top, bottom]) = (ends(x), ends(y));
     if right >= width || bottom >= samples.len() / width {
         return None;
@@ -439,9 +440,9 @@ fn lit(samples: &[Seen]) -> [usize; FINE] {
     let leaf = |k: usize| samples[k].map(|(leaf, _)| leaf);
     let mut lit = [0; FINE];
     for k in 0..FINE {
-        let before = (0..k).filter(|&other| leaf(other) == leaf(k));
+        let mut before = (0..k).filter(|&other| leaf(other) == leaf(k));
         let place = before.clone().count();
-        lit[k] = if place % LIT == 0 { k } else { before.last().map_or(k, |other| lit[other]) };
+        lit[k] = if place.is_multiple_of(LIT) { k } else { before.next_back().map_or(k, |other| lit[other]) };
     }
     lit
 }
