@@ -92,14 +92,18 @@ fn on_this_thread(model: &mut Model, unknowns: Option<usize>, watch: &dyn Watch)
     let share = all.len() as f64 / waves.len() as f64;
     let receivers = mem::take(&mut model.receivers);
     model.balanced = false;
-    let trials = trials(model, (&waves, facets), &|facets| sampled(&receivers, facets, 1), watch)?;
+    let apart = has_fields_as_they_are(model);
+    // Fields that are tried apart would only keep trials from more facets.
+    let places =
+        |facets| if apart { sampled(&receivers, facets, PLACES) } else { sampled(&receivers, facets, 1) };
+    let trials = trials(model, (&waves, facets), &places, watch)?;
     let last = *trials.last()?;
     let mut whole = last.seconds;
     let exponents = [0, 1, 2, 3].map(|part| exponent(&trials, part, bounds(model, part)));
     let mut grown = exponents.map(|exponent| (facets / last.facets).powf(exponent));
     let coarse = last.facets < facets;
     let mut tried: fn(&Model, &dyn Watch) -> Option<[f64; PARTS.len()]> = trial;
-    if coarse && has_fields_as_they_are(model) {
+    if apart {
         stretched(model, &waves, 1.0).ok()?;
         model.receivers = sampled(&receivers, model.geometry.mesh.len(), 1);
         tried = incident;
@@ -300,7 +304,7 @@ fn total(receivers: &[Receiver], swept: bool) -> f64 {
 fn sampled(receivers: &[Receiver], facets: usize, divisor: usize) -> Vec<Receiver> {
     let most = |places: &Places| match places {
         Places::Monostatic(_) => SWEPT / divisor.min(2),
-        _ => (WORK / facets.max(1)).max(PLACES) / divisor,
+        _ => ((WORK / facets.max(1)).max(PLACES) / divisor).max(1),
     };
     receivers.iter().map(|receiver| fewer(receiver, most(&receiver.places))).collect()
 }
