@@ -91,6 +91,18 @@ impl<'a> Currents<'a> {
         current * (0.5 / self.basis.surface().area(triangle))
     }
 
+    /// ∫ |J|² dA (A²) and ∫ |M|² dA (V²) over a triangle.
+    pub(crate) fn squares(&self, triangle: usize) -> [f64; 2] {
+        let shape = Shape::new(self.basis.surface().corners(triangle));
+        let spread = shape.corners.iter().map(|corner| corner.length_squared()).sum::<f64>() / 12.0;
+        let area = self.basis.surface().area(triangle);
+        let square = |current: &Linear| {
+            (current.constant.norm_squared() + spread * current.slope.norm_sqr()) / (4.0 * area)
+        };
+        let magnetic = self.magnetic.as_ref().map_or(0.0, |magnetic| square(&magnetic[triangle]));
+        [square(&self.electric[triangle]) / (IMPEDANCE * IMPEDANCE), magnetic]
+    }
+
     /// E and H that the currents radiate into free space, at points (m) away from the surface.
     ///
     /// # Errors

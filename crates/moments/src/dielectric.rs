@@ -17,7 +17,7 @@
 use crate::currents::Space;
 use crate::equation::tested;
 use crate::kernel::{Medium, Wanted};
-use crate::operator::{Kinds, Operator, Term};
+use crate::operator::{Kinds, Operator, Products, Term};
 use crate::pairs::Integrator;
 use crate::rules::Rules;
 use crate::{Basis, Currents, MomentsError};
@@ -62,7 +62,8 @@ impl<'a> Dielectric<'a> {
         basis.topology().check_closed(basis.surface(), "the equation of dielectric bodies")?;
         let terms =
             [outside, inside].into_iter().map(|space| term(space, tolerance)).collect::<Result<_, _>>()?;
-        let operator = Operator::new(basis, 2, terms, Kinds::default(), Symmetry::Symmetric);
+        let products = Products::Everywhere(Kinds::default());
+        let operator = Operator::new(basis, 2, terms, products, Symmetry::Symmetric);
         Ok(Self { basis, wave, inside, operator })
     }
 
@@ -75,14 +76,7 @@ impl<'a> Dielectric<'a> {
     /// One right-hand side for each of the sets of sources outside, V.
     #[must_use]
     pub fn right_hand_side(&self, excitations: &[&[&dyn Source]]) -> MultiVector<Complex64> {
-        let mut b = MultiVector::zeros(self.operator.dim(), excitations.len());
-        for (rhs, sources) in excitations.iter().enumerate() {
-            let electric = tested(self.basis, &self.wave, sources, |field, _| field.e);
-            let magnetic = tested(self.basis, &self.wave, sources, |field, _| field.h * -IMPEDANCE);
-            let both: Vec<Complex64> = electric.into_iter().zip(magnetic).flat_map(|(e, h)| [e, h]).collect();
-            b.set_vector(rhs, &both);
-        }
-        b
+        tested_with_both(self.basis, &self.wave, excitations, |_| 1.0)
     }
 
     /// The currents of a solution. What they radiate into free space is the scattered field.
@@ -109,6 +103,25 @@ impl<'a> Dielectric<'a> {
     }
 }
 
+/// ⟨f, E_i⟩ and −η₀ ⟨f, H_i⟩ of every function, side by side, the second times the unit of its
+/// unknown.
+pub(crate) fn tested_with_both(
+    basis: &Basis,
+    wave: &Wave,
+    excitations: &[&[&dyn Source]],
+    unit: impl Fn(usize) -> f64,
+) -> MultiVector<Complex64> {
+    let mut b = MultiVector::zeros(2 * basis.len(), excitations.len());
+    for (rhs, sources) in excitations.iter().enumerate() {
+        let electric = tested(basis, wave, sources, |field, _| field.e);
+        let magnetic = tested(basis, wave, sources, |field, _| field.h * -IMPEDANCE);
+        let pairs = electric.into_iter().zip(magnetic).enumerate();
+        let both: Vec<Complex64> = pairs.flat_map(|(n, (e, h))| [e, h * unit(n)]).collect();
+        b.set_vector(rhs, &both);
+    }
+    b
+}
+
 fn check(permittivity: Complex64) -> Result<(), MomentsError> {
     let refuse = |what, value, expected| Err(MomentsError::Parameter { what, value, expected });
     if !(permittivity.re > 0.0 && permittivity.re.is_finite()) {
@@ -121,7 +134,7 @@ fn check(permittivity: Complex64) -> Result<(), MomentsError> {
 }
 
 /// What one side of the surface adds.
-fn term(space: Space, tolerance: f64) -> Result<Term, MomentsError> {
+pub(crate) fn term(space: Space, tolerance: f64) -> Result<Term, MomentsError> {
     let (zero, one) = (Complex64::ZERO, Complex64::ONE);
     let wanted = Wanted { electric: true, magnetic: true, turned: false };
     let rules = Rules::new(tolerance, space.k, true)?;

@@ -16,7 +16,7 @@
 //! every solver is that of these equations.
 
 use crate::kernel::{Medium, Wanted};
-use crate::operator::{Kinds, Operator, Term};
+use crate::operator::{Kinds, Operator, Products, Term};
 use crate::pairs::Integrator;
 use crate::rules::Rules;
 use crate::{Basis, MomentsError};
@@ -128,7 +128,8 @@ impl<'a> Conductor<'a> {
         // n × K tested with f is −(f × n)·… turned: f·(n × v) = (f × n)·v.
         let term = Term { integrator, electric: only(electric), magnetic: only(-magnetic) };
         let symmetry = if magnetic == 0.0 { Symmetry::Symmetric } else { Symmetry::General };
-        let operator = Operator::new(basis, 1, vec![term], only(0.5 * magnetic), symmetry);
+        let products = Products::Everywhere(only(0.5 * magnetic));
+        let operator = Operator::new(basis, 1, vec![term], products, symmetry);
         Ok(Self { basis, wave, equation, operator })
     }
 

@@ -99,6 +99,14 @@ pub enum MomentsError {
         /// The first triangle of the body.
         triangle: usize,
     },
+    /// A closed body with a surface impedance has something else on a part of its surface.
+    #[error("triangles {first} and {second} are of one body, which has one surface impedance all over")]
+    Patchwork {
+        /// A triangle with an impedance.
+        first: usize,
+        /// A triangle with another condition.
+        second: usize,
+    },
     /// Triangles are too large for the wave.
     #[error("edge {edge} is {length} m long, which is more than a third of the wavelength of {wavelength} m")]
     Coarse {
@@ -153,6 +161,7 @@ impl MomentsError {
             Self::Junction { .. } => Some("use the electric field equation"),
             Self::Orientation { .. } => Some("turn one over (`Surface::oriented`)"),
             Self::InsideOut { .. } => Some("turn it over (`Surface::oriented`)"),
+            Self::Patchwork { .. } => Some("give the whole body one surface impedance"),
             Self::Coarse { .. } => Some("mesh finer, λ/10 is usual"),
             Self::OnSurface { .. } => Some("move it off the surface"),
             Self::Wave(error) => error.help(),

@@ -6,6 +6,7 @@
 //! same functions and integrated to a stated tolerance.
 
 mod basis;
+mod condition;
 mod currents;
 mod dielectric;
 mod equation;
@@ -20,6 +21,7 @@ mod surface;
 mod topology;
 
 pub use basis::{Basis, Function, Half};
+pub use condition::{Condition, Imperfect};
 pub use currents::Currents;
 pub use dielectric::Dielectric;
 pub use equation::{Conductor, Equation};

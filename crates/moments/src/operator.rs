@@ -3,12 +3,13 @@
 //! With the integrals T and K of the kernel, every equation here is a sum over media
 //!
 //! ```text
-//! Z_(m,α)(n,β) = Σ_media t_αβ T_mn + κ_αβ K_mn  +  δ_αβ ∫ f_m·f_n dA
+//! Z_(m,α)(n,β) = s_mα s_nβ Σ_media (t_αβ T_mn + κ_αβ K_mn)  +  ∫ δ_αβ f_m·f_n dA
 //! T_mn = jk ∫∫ G [f_m·f_n′ − div f_m div f_n′/k²],   K_mn = ∫∫ f_m·(∇G × f_n′)  or  ∫∫ (f_m × n)·(∇G × f_n′)
 //! ```
 //!
 //! where α and β number the kinds of unknowns of a function (electric and magnetic currents), one
-//! or two. Unknown (n, β) stands at n · kinds + β. T and the first form of K are symmetric.
+//! or two, δ may differ from triangle to triangle, and s, the unit of an unknown, is 1 but where
+//! said. Unknown (n, β) stands at n · kinds + β. T and the first form of K are symmetric.
 
 use crate::pairs::Integrator;
 use crate::set::Set;
@@ -37,14 +38,34 @@ pub(crate) struct Term {
     pub(crate) magnetic: Kinds,
 }
 
+/// What the products of functions are multiplied by.
+#[derive(Clone, Debug)]
+pub(crate) enum Products {
+    /// The same everywhere.
+    Everywhere(Kinds),
+    /// Triangle by triangle.
+    OnTriangles(Vec<Kinds>),
+}
+
+impl Products {
+    fn on(&self, triangle: u32) -> &Kinds {
+        match self {
+            Self::Everywhere(factors) => factors,
+            Self::OnTriangles(factors) => &factors[triangle as usize],
+        }
+    }
+}
+
 /// The entries of an equation on demand.
 #[derive(Clone, Debug)]
 pub struct Operator<'a> {
     basis: &'a Basis,
     kinds: usize,
     terms: Vec<Term>,
-    identity: Kinds,
+    products: Products,
     symmetry: Symmetry,
+    /// Units of the unknowns of the second kind, of every function; all 1 where there are none.
+    units: Vec<f64>,
 }
 
 impl<'a> Operator<'a> {
@@ -52,10 +73,15 @@ impl<'a> Operator<'a> {
         basis: &'a Basis,
         kinds: usize,
         terms: Vec<Term>,
-        identity: Kinds,
+        products: Products,
         symmetry: Symmetry,
     ) -> Self {
-        Self { basis, kinds, terms, identity, symmetry }
+        Self { basis, kinds, terms, products, symmetry, units: Vec::new() }
+    }
+
+    /// The same with units of the unknowns of the second kind, and of their equations.
+    pub(crate) fn with_units(self, units: Vec<f64>) -> Self {
+        Self { units, ..self }
     }
 
     /// The functions.
@@ -85,7 +111,7 @@ impl<'a> Operator<'a> {
     /// Prepares functions for [`Operator::fill`].
     #[must_use]
     pub fn prepare(&self, functions: impl Iterator<Item = usize>) -> Set {
-        Set::new(self.basis, functions)
+        Set::new(self.basis, &self.units, functions)
     }
 
     /// Writes the entries of all unknowns of some functions, row by row: (rows · kinds) × (columns
@@ -103,30 +129,39 @@ impl<'a> Operator<'a> {
                         let weight = m.weight * n.weight / (4.0 * PI);
                         let value = pair.at(m.corner, n.corner).map(|part| part * weight);
                         let first = (m.at * stride + n.at) * self.kinds;
-                        self.add(term, value, &mut out[first..], stride);
+                        self.add(term, value, [m.units, n.units], &mut out[first..], stride);
                     }
                 }
             });
         }
-        self.add_identity(rows, columns, out, stride);
+        self.add_products(rows, columns, out, stride);
     }
 
     /// Adds the electric and magnetic part of two half functions in one medium.
-    fn add(&self, term: &Term, [electric, magnetic]: [Complex64; 2], out: &mut [Complex64], stride: usize) {
+    fn add(
+        &self,
+        term: &Term,
+        [electric, magnetic]: [Complex64; 2],
+        [rows, columns]: [[f64; 2]; 2],
+        out: &mut [Complex64],
+        stride: usize,
+    ) {
         for a in 0..self.kinds {
             for b in 0..self.kinds {
-                out[a * stride + b] += term.electric[a][b] * electric + term.magnetic[a][b] * magnetic;
+                let value = term.electric[a][b] * electric + term.magnetic[a][b] * magnetic;
+                out[a * stride + b] += value * (rows[a] * columns[b]);
             }
         }
     }
 
     /// Adds the products of functions on common triangles.
-    fn add_identity(&self, rows: &Set, columns: &Set, out: &mut [Complex64], stride: usize) {
-        if self.identity == Kinds::default() {
-            return;
-        }
+    fn add_products(&self, rows: &Set, columns: &Set, out: &mut [Complex64], stride: usize) {
         let ranked = |&triangle: &u32| self.basis.rank(triangle);
         for (row, &triangle) in rows.triangles.iter().enumerate() {
+            let factors = self.products.on(triangle);
+            if *factors == Kinds::default() {
+                continue;
+            }
             let found = columns.triangles.binary_search_by_key(&self.basis.rank(triangle), ranked);
             let Ok(column) = found else { continue };
             for m in rows.entries(row) {
@@ -135,7 +170,7 @@ impl<'a> Operator<'a> {
                     let at = (m.at * stride + n.at) * self.kinds;
                     for a in 0..self.kinds {
                         for b in 0..self.kinds {
-                            out[at + a * stride + b] += self.identity[a][b] * product;
+                            out[at + a * stride + b] += factors[a][b] * product;
                         }
                     }
                 }

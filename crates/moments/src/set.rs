@@ -40,13 +40,14 @@ impl Shape {
     }
 }
 
-/// A half function of a set: its corner, which of the functions of the set it belongs to, and its
-/// weight.
+/// A half function of a set: its corner, which of the functions of the set it belongs to, its
+/// weight, and the units of the unknowns of both kinds.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Entry {
     pub(crate) corner: usize,
     pub(crate) at: usize,
     pub(crate) weight: f64,
+    pub(crate) units: [f64; 2],
 }
 
 /// Some functions of a basis, prepared for filling blocks of a matrix.
@@ -65,13 +66,14 @@ pub struct Set {
 }
 
 impl Set {
-    /// Prepares some functions.
-    pub(crate) fn new(basis: &Basis, functions: impl Iterator<Item = usize>) -> Self {
+    /// Prepares some functions; `units` are those of the second kind, all 1 where there are none.
+    pub(crate) fn new(basis: &Basis, units: &[f64], functions: impl Iterator<Item = usize>) -> Self {
         let mut halves: Vec<(u32, u32, Entry)> = Vec::new();
         let mut len = 0;
         for function in functions {
+            let units = [1.0, units.get(function).copied().unwrap_or(1.0)];
             for half in basis.functions()[function].halves {
-                let entry = Entry { corner: half.corner.into(), at: len, weight: half.weight };
+                let entry = Entry { corner: half.corner.into(), at: len, weight: half.weight, units };
                 halves.push((basis.rank(half.triangle), half.triangle, entry));
             }
             len += 1;

@@ -165,6 +165,11 @@ impl Topology {
         parts
     }
 
+    /// Component of every triangle.
+    pub(crate) fn component_of(&self, triangle: usize) -> usize {
+        self.component[triangle]
+    }
+
     /// Edges where two neighbours do not agree on the outside.
     fn misoriented(&self) -> impl Iterator<Item = usize> {
         let differ = |edge: &Edge| matches!(edge.sides[..], [a, b] if a.forward == b.forward);

@@ -80,7 +80,7 @@ fn the_schema_describes_every_key() {
     properties(&schema, &mut found);
     let keys = "frequencies_hz method shadows bounces solver tolerance max_iterations edge_currents \
                 estimate_errors sweep_accuracy spacing kind travel polarisation moment_a_m current_a power_w impedance_ohm \
-                half_space layers itu thickness_m quad triangle polygon holes box sphere disc cylinder mesh \
+                half_space layers sheet resistance_ohm itu thickness_m quad triangle polygon holes box sphere disc cylinder mesh \
                 scale turn translate edge closed points line circle grid far monostatic theta_degrees";
     for key in keys.split_whitespace() {
         assert!(found.contains(key), "{key}: {found:?}");

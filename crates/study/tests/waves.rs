@@ -7,8 +7,9 @@ use std::path::Path;
 
 use fredholm_mesh::Vec3;
 use fredholm_study::{CouplingStorage, Error, Quiet, ResultFolder, SolvedWaves, WaveOptions, waves};
+use fredholm_waves::material::sheet_impedance;
 use fredholm_waves::source::PlaneWave;
-use fredholm_waves::{Complex64, ConductingSphere, DielectricSphere, Source, Wave};
+use fredholm_waves::{Complex64, ConductingSphere, DielectricSphere, ResistiveShell, Source, Wave};
 
 const SOURCE: &str = "[[source]]\nkind = \"plane-wave\"\ntravel = [0, 1, 0]\npolarisation = [0, 0, 1]\n";
 
@@ -98,6 +99,47 @@ fn dielectric_bodies_have_the_field_of_the_series_near_and_far_and_inside() {
     let bare = ball("pmchwt", radius, "lambda/18", 1.0, "");
     let refused = stored(folder.path(), &bare, None).map(drop).unwrap_err().to_string();
     assert!(refused.contains("half_space"), "{refused}");
+}
+
+/// Thin sheets are solved by the electric equation unasked, at several frequencies, whole and
+/// compressed: a shell against its series on both sides, and the powers balance.
+#[test]
+fn thin_sheets_have_the_field_of_the_series_and_absorb_what_is_missing() {
+    let folder = tempfile::tempdir().unwrap();
+    let source = PlaneWave::new(Vec3::Y, Vec3::Z, 1.0.into()).unwrap();
+    let resistive = "sheet = { resistance_ohm = [150, -60] }";
+    let dielectric = "sheet = { permittivity = [9, -2], thickness_m = 0.002 }";
+    for (film, storage) in
+        [(resistive, None), (dielectric, None), (resistive, Some(CouplingStorage::Compressed))]
+    {
+        for distance in [0.06, 2.0] {
+            let more = format!("closed = false\nmaterial = \"film\"\n[materials.film]\n{film}");
+            let text = ball("efie", 0.1, "lambda/12", distance, &more)
+                .replace("method = \"efie\"\n", "")
+                .replace("[1e9]", "[8e8, 1e9]");
+            let found = stored(folder.path(), &text, storage).unwrap();
+            assert_eq!(found.method(), "efie");
+            let series = |row: &fredholm_report::WaveRow| {
+                let wave = Wave::new(row.frequency).unwrap();
+                let z = if film == resistive {
+                    Complex64::new(150.0, -60.0)
+                } else {
+                    sheet_impedance(Complex64::new(9.0, -2.0), 0.002, &wave)
+                };
+                let exact = ResistiveShell::new(0.1, z).unwrap();
+                let e = exact.scattered(&wave, &source, Vec3::from_array(row.position)).components();
+                [e[0].re, e[0].im, e[1].re, e[1].im, e[2].re, e[2].im]
+            };
+            let series: Vec<[f64; 6]> = found.near().iter().map(series).collect();
+            let error = gap(&scattered(&found), &series);
+            assert!(error < 0.02 && series.len() == 72, "{film} {distance}: {error}");
+            for balance in found.balances() {
+                assert!(balance.absorbed > 0.1 * balance.supplied);
+                assert!((balance.ratio() - 1.0).abs() < 3e-3, "{film}: {}", balance.ratio());
+            }
+            assert_eq!(found.balances().len(), 2);
+        }
+    }
 }
 
 /// A sphere of 0.4 wavelengths against the series of Mie, by all equations: E at 2 m.

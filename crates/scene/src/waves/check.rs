@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use fredholm_mesh::{Bounds, Contacts, Cutting, Patch, Topology, Vec3};
+use fredholm_waves::material::Material;
 use fredholm_waves::{Kind, Origin};
 
 use super::receiver::Places;
@@ -60,6 +61,7 @@ pub(super) fn check(scene: &WaveScene) -> Result<Vec<Warning>, SceneError> {
     warnings.extend(frequencies(scene));
     warnings.extend(lost_in_the_wave(scene, &pieces));
     warnings.extend(slabs_on_bodies(scene)?);
+    films_on_bodies(scene)?;
     let bodies = pieces.bodies(scene);
     warnings.extend(inside_out(scene, &bodies));
     warnings.extend(overlaps(scene, &pieces)?);
@@ -252,8 +254,7 @@ fn slabs_on_bodies(scene: &WaveScene) -> Result<Vec<Warning>, SceneError> {
     let Some(wave) = scene.waves().first() else { return Ok(vec![]) };
     let materials = scene.materials(wave)?;
     let slab = |part: &super::surface::Part| {
-        part.kind == Kind::Closed
-            && matches!(materials.get(part.material), Some(fredholm_waves::material::Material::Slab(_)))
+        part.kind == Kind::Closed && matches!(materials.get(part.material), Some(Material::Slab(_)))
     };
     let warning = |(number, part): (usize, &super::surface::Part)| {
         let what = format!("the layers of `{}` let nothing through: it is a closed body", part.name);
@@ -264,6 +265,20 @@ fn slabs_on_bodies(scene: &WaveScene) -> Result<Vec<Warning>, SceneError> {
         )
     };
     Ok(scene.parts().iter().enumerate().filter(|(_, part)| slab(part)).map(warning).collect())
+}
+
+/// Refuses thin sheets on closed bodies, in which there is no field that could be the same on both
+/// sides.
+fn films_on_bodies(scene: &WaveScene) -> Result<(), SceneError> {
+    let Some(wave) = scene.waves().first() else { return Ok(()) };
+    let materials = scene.materials(wave)?;
+    let film = |part: &super::surface::Part| {
+        part.kind == Kind::Closed && matches!(materials.get(part.material), Some(Material::Sheet(_)))
+    };
+    let Some(number) = scene.parts().iter().position(film) else { return Ok(()) };
+    let what = format!("`{}` is a closed body, but its material is a thin sheet", scene.parts()[number].name);
+    let help = "write closed = false for a shell with fields on both sides, or impedance_ohm for a body";
+    Err(scene.error(About::Surface(number), ErrorKind::Value, what, help))
 }
 
 /// Sheets inside of closed bodies, where there is no field.

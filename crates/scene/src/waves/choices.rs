@@ -134,6 +134,35 @@ choice!(
     }
 );
 
+/// A resistance, or an impedance [real, imaginary], Ω.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ResistanceEntry(pub [f64; 2]);
+
+choice!(
+    ResistanceEntry,
+    "Resistance",
+    "a resistance in ohms or [real, imaginary]",
+    {
+        "anyOf": [
+            { "type": "number", "minimum": 0 },
+            { "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 2 }
+        ]
+    },
+    {
+        fn visit_f64<E: Error>(self, resistance: f64) -> Result<ResistanceEntry, E> {
+            Ok(ResistanceEntry([resistance, 0.0]))
+        }
+
+        fn visit_i64<E: Error>(self, resistance: i64) -> Result<ResistanceEntry, E> {
+            Ok(ResistanceEntry([resistance as f64, 0.0]))
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<ResistanceEntry, A::Error> {
+            Deserialize::deserialize(SeqAccessDeserializer::new(list)).map(ResistanceEntry)
+        }
+    }
+);
+
 /// A length in metres, or a part of the wavelength.
 #[derive(Debug)]
 pub(crate) enum EdgeEntry {

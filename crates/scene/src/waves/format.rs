@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::choices::{AnglesEntry, EdgeEntry, FrequenciesEntry, PolarisationEntry};
+use super::choices::{AnglesEntry, EdgeEntry, FrequenciesEntry, PolarisationEntry, ResistanceEntry};
 use super::settings::{Method, Shadows};
 use crate::format::{
     At, BoxEntry, CylinderEntry, DiscEntry, MeshFileEntry, PolygonEntry, Shapes, SphereEntry, Triple,
@@ -135,7 +135,7 @@ fn one() -> f64 {
     1.0
 }
 
-/// A material: exactly one of impedance, half-space or layers.
+/// A material: exactly one of impedance, half-space, layers or sheet.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a table of a material")]
 #[schemars(rename = "WaveMaterial")]
@@ -146,6 +146,24 @@ pub(crate) struct MaterialEntry {
     pub half_space: Option<DielectricEntry>,
     /// Layers from the front to the back.
     pub layers: Option<Vec<LayerEntry>>,
+    /// A sheet without thickness: E along it is its impedance times the current that it carries, and
+    /// the same on both sides.
+    pub sheet: Option<FilmEntry>,
+}
+
+/// A thin sheet: exactly one of resistance, permittivity and itu, the last two with a thickness.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a table of a sheet")]
+#[schemars(rename = "ThinSheet")]
+pub(crate) struct FilmEntry {
+    /// Sheet impedance, Ω: a resistance, or [real, imaginary].
+    pub resistance_ohm: Option<ResistanceEntry>,
+    /// Relative permittivity [ε′, −ε″] of a thin layer.
+    pub permittivity: Option<[f64; 2]>,
+    /// Name of a material of Recommendation ITU-R P.2040, such as "glass", of a thin layer.
+    pub itu: Option<String>,
+    /// Thickness of the layer, m.
+    pub thickness_m: Option<f64>,
 }
 
 /// A dielectric: exactly one of permittivity and itu.

@@ -1,9 +1,10 @@
 //! Materials of a scene, which depend on the frequency.
 
-use fredholm_waves::material::{Layer, Material, itu_permittivity};
+use fredholm_waves::material::{Layer, Material, itu_permittivity, sheet_impedance};
 use fredholm_waves::{Complex64, Wave};
 
-use super::format::{LayerEntry, MaterialEntry, SceneEntry};
+use super::choices::ResistanceEntry;
+use super::format::{FilmEntry, LayerEntry, MaterialEntry, SceneEntry};
 use super::scene::refused;
 use crate::error::{ErrorKind, SceneError};
 use crate::format::At;
@@ -49,23 +50,50 @@ pub(super) fn known(scene: &SceneEntry, name: &str) -> String {
 }
 
 fn material(source: &Source, entry: &At<MaterialEntry>, wave: &Wave) -> Result<Material, SceneError> {
-    let MaterialEntry { impedance_ohm, half_space, layers } = &**entry;
+    let MaterialEntry { impedance_ohm, half_space, layers, sheet } = &**entry;
     let dielectric = |permittivity: Option<[f64; 2]>, itu: &Option<String>| {
         dielectric(source, entry, (permittivity, itu.as_deref()), wave)
     };
-    match (impedance_ohm, half_space, layers) {
-        (Some([re, im]), None, None) => Ok(Material::Impedance(Complex64::new(*re, *im))),
-        (None, Some(half), None) => Ok(Material::HalfSpace(dielectric(half.permittivity, &half.itu)?)),
-        (None, None, Some(layers)) => {
+    match (impedance_ohm, half_space, layers, sheet) {
+        (Some([re, im]), None, None, None) => Ok(Material::Impedance(Complex64::new(*re, *im))),
+        (None, Some(half), None, None) => Ok(Material::HalfSpace(dielectric(half.permittivity, &half.itu)?)),
+        (None, None, Some(layers), None) => {
             let layer = |layer: &LayerEntry| {
                 let permittivity = dielectric(layer.permittivity, &layer.itu)?;
                 Ok(Layer { permittivity, thickness: layer.thickness_m })
             };
             Ok(Material::Slab(layers.iter().map(layer).collect::<Result<_, SceneError>>()?))
         }
+        (None, None, None, Some(film)) => sheet_of(source, entry, film, wave).map(Material::Sheet),
         _ => {
-            let help = "give exactly one of impedance_ohm, half_space, layers";
+            let help = "give exactly one of impedance_ohm, half_space, layers, sheet";
             Err(source.error(ErrorKind::Value, entry.span(), "a material is made of one thing", help))
+        }
+    }
+}
+
+/// The impedance of a thin sheet, Ω.
+fn sheet_of(
+    source: &Source,
+    entry: &At<MaterialEntry>,
+    film: &FilmEntry,
+    wave: &Wave,
+) -> Result<Complex64, SceneError> {
+    let FilmEntry { resistance_ohm, permittivity, itu, thickness_m } = film;
+    match (resistance_ohm, thickness_m) {
+        (Some(ResistanceEntry([re, im])), None) if permittivity.is_none() && itu.is_none() => {
+            Ok(Complex64::new(*re, *im))
+        }
+        (None, Some(thickness)) => {
+            let permittivity = dielectric(source, entry, (*permittivity, itu.as_deref()), wave)?;
+            let layer = Layer { permittivity, thickness: *thickness };
+            let sane = Material::Slab(vec![layer]).check("a sheet");
+            sane.map_err(|error| refused(source, entry.span(), &error))?;
+            Ok(sheet_impedance(permittivity, *thickness, wave))
+        }
+        _ => {
+            let help = "give resistance_ohm, or permittivity = [ε′, −ε″] or itu = \"glass\" with thickness_m";
+            Err(source.error(ErrorKind::Value, entry.span(), "a sheet is made of one thing", help))
         }
     }
 }

@@ -76,7 +76,14 @@ impl Summarise for WaveRecord<'_> {
         }
         for power in self.list("power").iter().take(SHOWN) {
             let ratio = power["ratio"].as_f64().unwrap_or_default();
-            let text = format!("{ratio:.4} of what the sources give is radiated, {}", megahertz(power));
+            let absorbed = power["absorbed_w"].as_f64().unwrap_or_default();
+            let done = if absorbed > 0.0 {
+                let share = absorbed / power["supplied_w"].as_f64().unwrap_or(f64::NAN);
+                format!("radiated or absorbed ({share:.4} absorbed)")
+            } else {
+                "radiated".to_owned()
+            };
+            let text = format!("{ratio:.4} of what the sources give is {done}, {}", megahertz(power));
             lines.add("power", text);
         }
         let all = self.list("reciprocity");

@@ -3,12 +3,11 @@
 //!
 //! Of plane waves the scattered power is compared with what they lose by the optical theorem, of
 //! located sources what they and the scattered field radiate with what they supply
-//! ([`fredholm_waves::supplied`]). Where nothing is absorbed, either ratio is
-//! 1. S_φθ and S_θφ of a monostatic sweep are the same.
+//! ([`fredholm_waves::supplied`]). With what surfaces absorb, either ratio is 1. S_φθ and S_θφ of a
+//! monostatic sweep are the same.
 
 use fredholm_mesh::{Bounds, Vec3};
 use fredholm_report::MonostaticRow;
-use fredholm_waves::material::Material;
 use fredholm_waves::source::PlaneWave;
 use fredholm_waves::{ComplexVector, Origin, extinct, radiated, sphere_rule, supplied};
 use serde_json::{Value, json};
@@ -30,13 +29,15 @@ pub struct Balance {
     pub supplied: f64,
     /// What leaves over the sphere, W.
     pub radiated: f64,
+    /// What surfaces absorb, W.
+    pub absorbed: f64,
 }
 
 impl Balance {
-    /// Radiated over supplied power: 1 where nothing is absorbed.
+    /// Radiated and absorbed over supplied power: 1 for the exact currents.
     #[must_use]
     pub fn ratio(&self) -> f64 {
-        self.radiated / self.supplied
+        (self.radiated + self.absorbed) / self.supplied
     }
 
     pub(super) fn record(&self) -> Value {
@@ -44,6 +45,7 @@ impl Balance {
             "frequency_hz": self.frequency,
             "supplied_w": self.supplied,
             "radiated_w": self.radiated,
+            "absorbed_w": self.absorbed,
             "ratio": self.ratio(),
         })
     }
@@ -109,16 +111,15 @@ pub(super) struct Balancing<'a> {
     pub(super) pairs: f64,
     /// What located sources supply, W.
     pub(super) power: Option<f64>,
+    /// What surfaces absorb, W; none where it is not known.
+    pub(super) absorbed: Option<f64>,
 }
 
 impl Balancing<'_> {
-    /// The powers, where the body is a conductor, the sources are of one kind, and the work is
+    /// The powers, where it is known what is absorbed, the sources are of one kind, and the work is
     /// small beside that of the run.
     pub(super) fn balance(&self, far: FarFields<'_>) -> Result<Option<Balance>, Error> {
-        if !self.model.balanced {
-            return Ok(None);
-        }
-        let conductors = self.band.materials.iter().all(|material| *material == Material::Conductor);
+        let Some(absorbed) = self.absorbed.filter(|_| self.model.balanced) else { return Ok(None) };
         let sources = self.model.sources();
         let located = sources.iter().filter_map(|source| match source.origin() {
             Origin::Point(p) => Some(p),
@@ -131,7 +132,7 @@ impl Balancing<'_> {
         let radius = 0.5 * bounds.diagonal() + more;
         // Before the rule is made: it has some 2 (k a)² directions.
         let directions = 2.0 * (self.band.wave.wavenumber() * radius + 10.0).powi(2);
-        if !conductors || directions * self.elements > CHEAP.max(self.pairs) {
+        if directions * self.elements > CHEAP.max(self.pairs) {
             return Ok(None);
         }
         let waves: Vec<PlaneWave> =
@@ -154,6 +155,6 @@ impl Balancing<'_> {
             }
         }
         let radiated = radiated(&rule, &amplitudes);
-        Ok(Some(Balance { frequency: self.band.wave.frequency(), supplied, radiated }))
+        Ok(Some(Balance { frequency: self.band.wave.frequency(), supplied, radiated, absorbed }))
     }
 }

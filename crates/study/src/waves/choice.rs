@@ -6,6 +6,7 @@
 //! | closed conductors that are thin or pointed, small | `cfie`, LU | facets that are not small beside the thickness do not follow the current around a rim |
 //! | conductors, sheets among them, small | `efie`, LU | an equation without approximation but the mesh; the matrix is stored |
 //! | conductors, sheets among them, larger | `radiated`, GMRES, edge currents | currents make the shadow themselves: what hides a part of what stands behind is counted once |
+//! | thin sheets with an impedance, conductors among them or not, small | `efie`, LU | as above |
 //! | one flat sheet, small | `efie`, LU | as above: it costs some seconds |
 //! | one flat sheet, larger | one bounce, edge currents | its facets do not light each other |
 //! | panes and other materials | one bounce; `radiated` where something is let through | bounces have to be asked for |
@@ -106,6 +107,8 @@ pub(super) struct Taken {
 #[allow(clippy::struct_excessive_bools, reason = "each is a fact of its own")]
 struct Seen {
     conductors: bool,
+    /// Whether there are thin sheets with an impedance, and conductors besides at most.
+    films: bool,
     /// Whether a sheet lets something through.
     panes: bool,
     sheets: bool,
@@ -125,6 +128,7 @@ struct Seen {
 impl Seen {
     fn of(geometry: &Geometry, bands: &[Band]) -> Self {
         let materials = || bands.iter().flat_map(|band| &band.materials);
+        let film = |material: &Material| matches!(material, Material::Sheet(_));
         let mesh = &geometry.mesh;
         let shortest = shortest(bands);
         let sides = |patch: &fredholm_mesh::Patch| -> f64 {
@@ -138,7 +142,8 @@ impl Seen {
         Self {
             sides: mesh.occluders().iter().map(sides).sum::<f64>() / shortest,
             conductors: materials().all(|material| *material == Material::Conductor),
-            panes: sheets && materials().any(|material| matches!(material, Material::Slab(_))),
+            films: materials().any(film) && materials().all(|m| film(m) || *m == Material::Conductor),
+            panes: sheets && materials().any(|m| matches!(m, Material::Slab(_)) || film(m)),
             sheets,
             flat: is_flat(geometry),
             facets: mesh.len(),
@@ -211,7 +216,7 @@ pub(super) fn taken(
     let mut taken = match (asked.method, asked.shadow) {
         // Edge currents complete physical optics: who asks for them, or for none, means that.
         (None, None) if !asked.optics => {
-            let most = match (seen.flat, seen.thin) {
+            let most = match (seen.flat && seen.conductors, seen.thin) {
                 (true, _) => MOST_FLAT,
                 (_, true) => MOST_CLOSED,
                 _ => MOST_UNKNOWNS,
@@ -259,7 +264,7 @@ fn factorise(taken: &mut Taken, seen: &Seen, fits: &dyn Fn(u128) -> bool) {
 }
 
 fn chosen(seen: &Seen, small: &dyn Fn() -> bool) -> Taken {
-    let boundary_elements = seen.conductors && (seen.sheets || seen.thin) && !seen.sweep;
+    let boundary_elements = seen.films || seen.conductors && (seen.sheets || seen.thin) && !seen.sweep;
     if boundary_elements
         && small()
         && let Ok(solver) = super::registry::build(BY_MATRIX)
@@ -269,7 +274,9 @@ fn chosen(seen: &Seen, small: &dyn Fn() -> bool) -> Taken {
             galerkin: Some(if seen.sheets { Equations::Electric } else { Equations::Combined }),
             method: Method::Solver { solver, tolerance: TOLERANCE, max_iterations: ITERATIONS },
             edge_currents: false,
-            reason: Some(if seen.sheets {
+            reason: Some(if seen.films {
+                "thin sheets of few unknowns: an equation without approximation".to_owned()
+            } else if seen.sheets {
                 "conductors, sheets among them, of few unknowns: an equation without approximation".to_owned()
             } else {
                 "thin or pointed closed conductors of few unknowns: an equation without approximation"
@@ -290,7 +297,12 @@ fn chosen(seen: &Seen, small: &dyn Fn() -> bool) -> Taken {
     };
     let mut warnings = Vec::new();
     let (method, shadow, edge_currents, why) = if !seen.conductors {
-        if !seen.flat {
+        if seen.films {
+            warnings.push(
+                "thin sheets with an impedance have an equation without approximation, which is not taken unasked for so many unknowns; write method = \"efie\""
+                    .to_owned(),
+            );
+        } else if !seen.flat {
             warnings.push(
                 "several bounces between materials are not taken unasked; write bounces = 3, say".to_owned(),
             );

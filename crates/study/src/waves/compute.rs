@@ -6,6 +6,7 @@ use fredholm_linop::Steps;
 use fredholm_mesh::Vec3;
 use fredholm_report::{FarRow, FarTotal, WaveCurrents, WaveRow};
 use fredholm_scene::waves::{Places, direction};
+use fredholm_waves::material::Material;
 use fredholm_waves::medium::IMPEDANCE;
 use fredholm_waves::{
     Bounced, Complex64, ComplexVector, Current, EdgeCurrents, FacetCurrents, FarField, Field, Kind,
@@ -283,6 +284,7 @@ impl Task<'_> {
             let facets = self.scatterer.facets().len() as f64;
             let solved = if all.is_some() { facets * facets } else { 0.0 };
             let edges = edges.as_ref().map_or(0, EdgeCurrents::len) as f64;
+            let conductors = self.band.materials.iter().all(|material| *material == Material::Conductor);
             let balancing = Balancing {
                 model: self.model,
                 band: self.band,
@@ -290,6 +292,7 @@ impl Task<'_> {
                 elements: facets + 4.0 * edges,
                 pairs: solved,
                 power,
+                absorbed: conductors.then_some(0.0),
             };
             let far = |u: &[Vec3]| {
                 let far = far_of(u).map_err(|error| self.refused(&error))?;

@@ -1,13 +1,16 @@
-//! Boundary elements: the electric and the combined field integral equation of conductors, and the
-//! equations of homogeneous dielectric bodies, with Rao–Wilton–Glisson functions on triangles
-//! (crate `moments`, docs/moments.md), their matrix stored or compressed (crate `compressed`).
+//! Boundary elements: the electric field integral equation of conductors, thin sheets and bodies
+//! with a surface impedance, the combined one of conductors, and the equations of homogeneous
+//! dielectric bodies, with Rao–Wilton–Glisson functions on triangles (crate `moments`,
+//! docs/moments.md), their matrix stored or compressed (crate `compressed`).
 
 use std::slice;
 
 use fredholm_compressed::{BlockDiagonal, CompressionError, Hierarchical, Preconditioned, Settings};
 use fredholm_linop::{Dense, MultiVector, Solver};
 use fredholm_mesh::Vec3;
-use fredholm_moments::{Basis, Conductor, Currents, Dielectric, Equation, MomentsError, Operator, Surface};
+use fredholm_moments::{
+    Basis, Condition, Conductor, Currents, Dielectric, Equation, Imperfect, MomentsError, Operator, Surface,
+};
 use fredholm_report::{MonostaticRow, WaveCurrents};
 use fredholm_scene::ErrorKind as SceneFault;
 use fredholm_scene::waves::{About, Places};
@@ -64,7 +67,7 @@ fn refused(model: &Model, error: &MomentsError) -> Error {
 /// Which equations are solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Equations {
-    /// The electric field equation of conductors.
+    /// The electric field equation of conductors, thin sheets and bodies with a surface impedance.
     Electric,
     /// The combined field equation of closed conductors.
     Combined,
@@ -83,7 +86,7 @@ pub(super) fn run(
     let basis = basis(model, geometry)?;
     let first = name.is_empty();
     for band in bands {
-        let body = Body::new(model, &basis, band, equations)?;
+        let body = Body::new(model, (geometry, &basis), band, equations)?;
         let name = format!("{} MHz{name}", band.wave.frequency() / 1e6);
         let known = if first { Known::of(geometry, &basis, band, equations) } else { None };
         Task { model, geometry, basis: &basis, band, body, known, first }
@@ -118,8 +121,11 @@ enum Known {
 }
 
 impl Known {
-    /// Of surfaces that are all sheets or all closed.
+    /// Of surfaces that are all sheets or all closed, and perfect conductors or dielectric.
     fn of(geometry: &Geometry, basis: &Basis, band: &Band, equations: Equations) -> Option<Self> {
+        if equations == Equations::Electric && !is_perfect(geometry, band) {
+            return None;
+        }
         let edge = basis.topology().longest_edge(basis.surface());
         if geometry.kinds().iter().all(|kind| *kind == Kind::Sheet) {
             return (equations == Equations::Electric).then_some(Self::Edge(edge));
@@ -140,14 +146,25 @@ impl Known {
     }
 }
 
+/// Whether all surfaces are perfect conductors.
+fn is_perfect(geometry: &Geometry, band: &Band) -> bool {
+    geometry.materials().all(|material| band.materials[material] == Material::Conductor)
+}
+
 /// What scatters, with its equations at one frequency.
 enum Body<'a> {
     Conductor(Conductor<'a>),
+    Imperfect(Imperfect<'a>),
     Dielectric(Dielectric<'a>),
 }
 
 impl<'a> Body<'a> {
-    fn new(model: &Model, basis: &'a Basis, band: &Band, equations: Equations) -> Result<Self, Error> {
+    fn new(
+        model: &Model,
+        (geometry, basis): (&Geometry, &'a Basis),
+        band: &Band,
+        equations: Equations,
+    ) -> Result<Self, Error> {
         let conductor = |equation| {
             all_of(model, band, |material| *material == Material::Conductor)?;
             Conductor::new(basis, band.wave, equation, INTEGRALS)
@@ -155,7 +172,13 @@ impl<'a> Body<'a> {
                 .map_err(|error| refused(model, &error))
         };
         match equations {
-            Equations::Electric => conductor(Equation::Electric),
+            Equations::Electric if is_perfect(geometry, band) => conductor(Equation::Electric),
+            Equations::Electric => {
+                let conditions = conditions(model, geometry, band)?;
+                Imperfect::new(basis, band.wave, conditions, INTEGRALS)
+                    .map(Self::Imperfect)
+                    .map_err(|error| refused(model, &error))
+            }
             Equations::Combined => conductor(Equation::default()),
             Equations::Dielectric => {
                 let permittivity = permittivity(model, band)?;
@@ -169,6 +192,7 @@ impl<'a> Body<'a> {
     fn operator(&self) -> &Operator<'a> {
         match self {
             Self::Conductor(body) => body.operator(),
+            Self::Imperfect(body) => body.operator(),
             Self::Dielectric(body) => body.operator(),
         }
     }
@@ -176,6 +200,7 @@ impl<'a> Body<'a> {
     fn right_hand_side(&self, excitations: &[&[&dyn Source]]) -> MultiVector<Complex64> {
         match self {
             Self::Conductor(body) => body.right_hand_side(excitations),
+            Self::Imperfect(body) => body.right_hand_side(excitations),
             Self::Dielectric(body) => body.right_hand_side(excitations),
         }
     }
@@ -183,9 +208,63 @@ impl<'a> Body<'a> {
     fn currents(&self, x: &[Complex64]) -> Currents<'a> {
         match self {
             Self::Conductor(body) => Currents::new(body.basis(), body.wave(), x, None),
+            Self::Imperfect(body) => body.currents(x),
             Self::Dielectric(body) => body.currents(x),
         }
     }
+
+    /// Power that is absorbed, W; none where it is not computed.
+    fn absorbed(&self, currents: &Currents<'a>) -> Option<f64> {
+        match self {
+            Self::Conductor(_) => Some(0.0),
+            Self::Imperfect(body) => Some(body.absorbed_power(currents)),
+            Self::Dielectric(_) => None,
+        }
+    }
+}
+
+/// What every triangle is made of, for the electric equation.
+fn conditions(model: &Model, geometry: &Geometry, band: &Band) -> Result<Vec<Condition>, Error> {
+    let materials: Vec<usize> = geometry.materials().collect();
+    let kinds = geometry.kinds();
+    let mut conditions = Vec::with_capacity(materials.len());
+    for (surface, (&material, kind)) in materials.iter().zip(&kinds).enumerate() {
+        conditions.push(match (&band.materials[material], kind) {
+            (Material::Conductor, _) => Condition::Conductor,
+            (Material::Sheet(z), _) => Condition::Sheet(*z),
+            (Material::Impedance(z), Kind::Closed) => Condition::Body(*z),
+            (Material::Impedance(_), Kind::Sheet) => {
+                let what = "a surface impedance is that of a closed body, and this is a thin sheet";
+                let help = "take sheet = { resistance_ohm = … }, or method = \"physical-optics\"";
+                return Err(scene_failure(model.scene.error(
+                    About::Surface(surface),
+                    SceneFault::Value,
+                    what,
+                    help,
+                )));
+            }
+            (Material::HalfSpace(_) | Material::Slab(_), _) => {
+                return Err(unsuited(
+                    model,
+                    surface,
+                    "knows conductors, thin sheets and surface impedances only",
+                    "take one of these, method = \"pmchwt\" for a solid dielectric, or \"physical-optics\"",
+                ));
+            }
+        });
+    }
+    let mesh = &geometry.mesh;
+    let of_leaf = |(leaf, patch): (usize, &fredholm_mesh::Patch)| {
+        // Quadrilaterals are two triangles.
+        std::iter::repeat_n(conditions[mesh.surface_of(leaf)], patch.sides() - 2)
+    };
+    Ok(mesh.patches().enumerate().flat_map(of_leaf).collect())
+}
+
+/// An equation and a surface that do not go together.
+fn unsuited(model: &Model, surface: usize, what: &str, help: &str) -> Error {
+    let what = format!("{} {what}", model.method_name());
+    scene_failure(model.scene.error(About::Surface(surface), SceneFault::Value, what, help))
 }
 
 /// Refuses a surface whose material does not suit.
@@ -200,10 +279,12 @@ fn all_of(model: &Model, band: &Band, suits: impl Fn(&Material) -> bool) -> Resu
             "give all surfaces one material with half_space, whose permittivity is that of the body",
         )
     } else {
-        ("knows perfect conductors only", "leave the material out, or take method = \"physical-optics\"")
+        (
+            "knows perfect conductors only",
+            "leave the material out, or take method = \"efie\" for thin sheets and surface impedances, \"physical-optics\" for any material",
+        )
     };
-    let what = format!("{} {what}", model.method_name());
-    Err(scene_failure(model.scene.error(About::Surface(surface), SceneFault::Value, what, help)))
+    Err(unsuited(model, surface, what, help))
 }
 
 /// The permittivity of the body that all surfaces bound.
@@ -423,6 +504,7 @@ impl Task<'_> {
         error: Option<&MeanError>,
         outcome: &mut Outcome,
     ) -> Result<(), Error> {
+        let absorbed = self.body.absorbed(currents);
         let power = power(self.model, self.band, &|p| currents.fields(&[p]).ok().map(|fields| fields[0].e));
         if self.first {
             let unknowns = self.basis.len() as f64;
@@ -434,6 +516,7 @@ impl Task<'_> {
                 // An entry of the matrix takes some ten times as long as a direction of an element.
                 pairs: 10.0 * unknowns * unknowns,
                 power,
+                absorbed,
             };
             let far = |u: &[Vec3]| Ok(self.far(currents, u)?.into_iter().map(|far| far.amplitude).collect());
             outcome.balances.extend(balancing.balance(&far)?);

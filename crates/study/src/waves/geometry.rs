@@ -33,6 +33,11 @@ impl Geometry {
         self.scene.kinds()
     }
 
+    /// The number of the material of each surface.
+    pub(super) fn materials(&self) -> impl Iterator<Item = usize> {
+        self.scene.materials_of_surfaces()
+    }
+
     /// The scatterer at one frequency.
     pub(crate) fn scatterer(&self, materials: &[Material]) -> Result<Scatterer, WaveError> {
         self.scene.scatterer(&self.mesh, materials)

@@ -47,7 +47,7 @@ pub(crate) struct Outcome {
     /// Half the difference between the electric and the magnetic form: what physical optics itself
     /// may be wrong by.
     pub(crate) form_errors: Vec<Estimated>,
-    /// Radiated beside supplied powers.
+    /// Radiated and absorbed beside supplied powers.
     pub(crate) balances: Vec<Balance>,
     /// How far sweeps are from being reciprocal.
     pub(crate) reciprocity: Vec<Reciprocity>,

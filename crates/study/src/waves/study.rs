@@ -170,7 +170,7 @@ fn doubts(model: &Model, outcome: &Outcome) -> Vec<String> {
     let worst = outcome.balances.iter().max_by(|a, b| off(a).total_cmp(&off(b)));
     if let Some(balance) = worst.filter(|balance| off(balance) > UNBALANCED) {
         doubts.push(format!(
-            "{:.2} times the power that the sources give at {} MHz is radiated, where nothing is absorbed; take finer edges, or an equation (efie, dual-surface-mfie)",
+            "{:.2} times the power that the sources give at {} MHz is radiated or absorbed; take finer edges, or an equation (efie, dual-surface-mfie)",
             balance.ratio(),
             balance.frequency / 1e6
         ));
@@ -179,8 +179,7 @@ fn doubts(model: &Model, outcome: &Outcome) -> Vec<String> {
 }
 
 impl SolvedWaves<'_> {
-    /// Radiated beside supplied powers, where they are cheap to compute: 1 where nothing is
-    /// absorbed.
+    /// Radiated and absorbed beside supplied powers, where they are cheap to compute.
     #[must_use]
     pub fn balances(&self) -> &[Balance] {
         &self.outcome.balances

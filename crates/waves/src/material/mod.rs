@@ -10,6 +10,7 @@
 //! | impedance | E_tan = Z_s n × H (M. A. Leontovich) | nothing |
 //! | half-space | Fresnel | what is not reflected, into itself |
 //! | slab | layers by recursion | to the other side |
+//! | sheet | E_tan = Z_s J on both sides | to the other side |
 
 mod fresnel;
 mod itu;
@@ -51,6 +52,9 @@ pub enum Material {
     HalfSpace(Complex64),
     /// Layers, from the front to the back, in free space. The surface of the mesh is the front.
     Slab(Vec<Layer>),
+    /// A sheet without thickness, of sheet impedance Z_s (Ω): E_tan = Z_s J, with free space on both
+    /// sides.
+    Sheet(Complex64),
 }
 
 impl Material {
@@ -63,7 +67,9 @@ impl Material {
         match self {
             Self::Impedance(z) if !z.is_finite() => fail("the surface impedance is not finite"),
             Self::Impedance(z) if z.re < 0.0 => fail("a surface impedance needs a real part of at least 0"),
-            Self::Conductor | Self::Impedance(_) => Ok(()),
+            Self::Sheet(z) if !z.is_finite() => fail("the sheet impedance is not finite"),
+            Self::Sheet(z) if z.re < 0.0 => fail("a sheet impedance needs a real part of at least 0"),
+            Self::Conductor | Self::Impedance(_) | Self::Sheet(_) => Ok(()),
             Self::HalfSpace(permittivity) => check_permittivity(*permittivity, what),
             Self::Slab(layers) if layers.is_empty() => fail("a slab needs at least one layer"),
             Self::Slab(layers) => layers.iter().try_for_each(|layer| {
@@ -86,6 +92,7 @@ impl Material {
                 Coefficients { reflected: half_space(*permittivity, cos).reflected, transmitted: nothing }
             }
             Self::Slab(layers) => slab(layers, wave, cos),
+            Self::Sheet(z) => sheet(*z, cos),
         }
     }
 
@@ -118,6 +125,29 @@ fn impedance(z: Complex64, cos: f64) -> [Complex64; 2] {
         if z == Complex64::ZERO { -Complex64::ONE } else { (grazing - IMPEDANCE) / (grazing + IMPEDANCE) };
     let tm = if z == Complex64::ZERO { Complex64::ONE } else { (eta - z) / (eta + z) };
     [te, tm]
+}
+
+/// A thin sheet: with the tangential E continuous and E_tan = Z_s J, where J is the jump of n × H,
+/// r⊥ = −η/(2 Z_s cos θ + η), r∥ = η cos θ/(2 Z_s + η cos θ) (of H), t = 1 + r⊥ and 1 − r∥.
+///
+/// T. B. A. Senior, J. L. Volakis, the same, § 2.4.
+fn sheet(z: Complex64, cos: f64) -> Coefficients {
+    // At grazing a conductor keeps its signs.
+    let tm =
+        if z == Complex64::ZERO { Complex64::ONE } else { IMPEDANCE * cos / (z * 2.0 + IMPEDANCE * cos) };
+    let te = -IMPEDANCE / (z * (2.0 * cos) + IMPEDANCE);
+    Coefficients { reflected: [te, tm], transmitted: [te + 1.0, Complex64::ONE - tm] }
+}
+
+/// The sheet impedance 1/(jωε₀ (ε − 1) d) of a thin layer of permittivity ε and thickness d (m), Ω.
+///
+/// E along the sheet drives the polarisation current jωε₀ (ε − 1) E through its thickness (R. F.
+/// Harrington, J. R. Mautz, An impedance sheet approximation for thin dielectric shells, IEEE Trans.
+/// Antennas Propag. 23 (1975) 531, doi:10.1109/TAP.1975.1141099). What E across the sheet does is
+/// left out.
+#[must_use]
+pub fn sheet_impedance(permittivity: Complex64, thickness: f64, wave: &Wave) -> Complex64 {
+    IMPEDANCE / ((permittivity - 1.0) * Complex64::new(0.0, wave.wavenumber() * thickness))
 }
 
 /// The surface impedance η₀/√ε of a good conductor or dense dielectric, Ω.
@@ -162,6 +192,9 @@ mod tests {
             Material::Slab(vec![layer(6.3, -0.2, 0.006)]),
             Material::Slab(vec![layer(4.0, 0.0, 0.02)]),
             Material::Slab(vec![layer(2.73, -0.1, 0.0125), layer(1.0, 0.0, 0.05), layer(2.73, -0.1, 0.0125)]),
+            Material::Sheet(complex(200.0, 0.0)),
+            Material::Sheet(complex(0.0, -150.0)),
+            Material::Sheet(complex(30.0, 80.0)),
         ]
     }
 
@@ -178,7 +211,7 @@ mod tests {
                     assert!(power <= 1.0 + 1e-12, "{material:?} {cos}: {power}");
                     let lossless = match &material {
                         Material::Conductor => true,
-                        Material::Impedance(z) => z.re == 0.0,
+                        Material::Impedance(z) | Material::Sheet(z) => z.re == 0.0,
                         Material::HalfSpace(_) => false,
                         Material::Slab(layers) => layers.iter().all(|layer| layer.permittivity.im == 0.0),
                     };
@@ -223,6 +256,28 @@ mod tests {
         }
     }
 
+    /// A sheet without impedance is a conductor, and a thin layer is met across as its sheet, the
+    /// error by half of kd and less.
+    #[test]
+    fn thin_layers_are_sheets() {
+        let wave = Wave::new(1e9).unwrap();
+        for cos in [1.0, 0.4, 0.0] {
+            let found = Material::Sheet(Complex64::ZERO).coefficients(&wave, cos);
+            assert_eq!(found, Coefficients::CONDUCTOR);
+        }
+        let permittivity = complex(4.0, -0.4);
+        let errors = [2e-3, 1e-3].map(|thickness| {
+            let layer = Material::Slab(vec![Layer { permittivity, thickness }]).coefficients(&wave, 1.0);
+            let sheet = Material::Sheet(sheet_impedance(permittivity, thickness, &wave));
+            let sheet = sheet.coefficients(&wave, 1.0);
+            // The layer ends a thickness behind the sheet in its middle.
+            let phase = Complex64::cis(wave.wavenumber() * thickness);
+            let gap = (layer.reflected[0] * phase - sheet.reflected[0]).norm();
+            gap.max((layer.transmitted[0] * phase - sheet.transmitted[0]).norm()) / sheet.reflected[0].norm()
+        });
+        assert!(errors[1] < 0.01 && errors[0] / errors[1] > 1.9, "{errors:?}");
+    }
+
     #[test]
     fn what_gives_energy_away_is_refused() {
         let layer = Layer { permittivity: complex(2.0, 0.0), thickness: 0.0 };
@@ -234,6 +289,8 @@ mod tests {
             Material::HalfSpace(Complex64::ZERO),
             Material::Slab(vec![]),
             Material::Slab(vec![layer]),
+            Material::Sheet(complex(-1.0, 5.0)),
+            Material::Sheet(complex(f64::INFINITY, 0.0)),
         ];
         for material in bad {
             assert!(matches!(material.check("bad"), Err(WaveError::Material { .. })), "{material:?}");

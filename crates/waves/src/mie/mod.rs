@@ -1,5 +1,5 @@
 //! The exact scattering of a plane wave by a sphere, perfectly conducting or dielectric: the series
-//! of Mie.
+//! of Mie; in the files beside it those of other boundaries.
 //!
 //! G. Mie, Ann. Phys. 330 (1908) 377, doi:10.1002/andp.19083300302; here as C. F. Bohren, D. R.
 //! Huffman, Absorption and Scattering of Light by Small Particles, Wiley 1983, § 4.3 and 4.4, whose
@@ -16,6 +16,10 @@
 //!
 //! Backscatter: σ/(πa²) = |Σ (−1)ⁿ (2n + 1)/(ξ_n ξ_n′)|²/x² (C. A. Balanis, Advanced Engineering
 //! Electromagnetics, 2nd ed., Wiley 2012, eq. 11-247). Lengths in metres.
+
+mod shell;
+
+pub use shell::ResistiveShell;
 
 use crate::source::PlaneWave;
 use crate::{ComplexVector, Wave, WaveError};
@@ -94,12 +98,7 @@ impl DielectricSphere {
     /// Cross-sections of extinction and of scattering, m².
     #[must_use]
     pub fn cross_sections(&self, wave: &Wave) -> [f64; 2] {
-        let k = wave.wavenumber();
-        let weighted = |value: fn(Complex64) -> f64| {
-            let term = |(i, [a, b]): (usize, &[Complex64; 2])| (2 * i + 3) as f64 * (value(*a) + value(*b));
-            self.series(wave).0.iter().enumerate().map(term).sum::<f64>() * std::f64::consts::TAU / (k * k)
-        };
-        [weighted(|c| c.re), weighted(|c| c.norm_sqr())]
+        self.series(wave).cross_sections(wave)
     }
 
     fn series(&self, wave: &Wave) -> Series {
@@ -136,13 +135,42 @@ fn logarithmic_slopes(z: Complex64, last: usize) -> Vec<Complex64> {
 struct Series(Vec<[Complex64; 2]>);
 
 impl Series {
+    /// Cross-sections of extinction and of scattering, m² (Bohren and Huffman, eq. 4.61 and 4.62).
+    fn cross_sections(&self, wave: &Wave) -> [f64; 2] {
+        let k = wave.wavenumber();
+        let weighted = |value: fn(Complex64) -> f64| {
+            let term = |(i, [a, b]): (usize, &[Complex64; 2])| (2 * i + 3) as f64 * (value(*a) + value(*b));
+            self.0.iter().enumerate().map(term).sum::<f64>() * std::f64::consts::TAU / (k * k)
+        };
+        [weighted(|c| c.re), weighted(|c| c.norm_sqr())]
+    }
+
+    /// The field of outgoing waves.
     fn scattered(&self, wave: &Wave, source: &PlaneWave, p: Vec3) -> ComplexVector {
+        let outer = Riccati::new(wave.wavenumber() * p.length(), self.0.len());
+        self.field(source, p, &outer, |n| [outer.xi(n), outer.xi_slope(n)])
+    }
+
+    /// The field of regular waves in place of the outgoing ones.
+    fn regular(&self, wave: &Wave, source: &PlaneWave, p: Vec3) -> ComplexVector {
+        let inner = Riccati::new(wave.wavenumber() * p.length(), self.0.len());
+        self.field(source, p, &inner, |n| [inner.psi(n).into(), inner.psi_slope(n).into()])
+    }
+
+    /// The field of waves with these radial functions and their slopes at kr.
+    fn field(
+        &self,
+        source: &PlaneWave,
+        p: Vec3,
+        at: &Riccati,
+        radial: impl Fn(usize) -> [Complex64; 2],
+    ) -> ComplexVector {
         let [x, y, z] =
             [source.polarisation(), source.travel().cross(source.polarisation()), source.travel()];
         let local = Vec3::new(p.dot(x), p.dot(y), p.dot(z));
         let (r, rho) = (local.length(), local.x.hypot(local.y));
         let (cos_phi, sin_phi) = if rho > 0.0 { (local.x / rho, local.y / rho) } else { (1.0, 0.0) };
-        let [radial, polar, azimuthal] = self.sums(wave, r, local.z / r, rho / r);
+        let [radial, polar, azimuthal] = self.sums(at.x, radial, local.z / r, rho / r);
         let out = p / r;
         let outward = x * cos_phi + y * sin_phi;
         let theta = outward * (local.z / r) - z * (rho / r);
@@ -154,9 +182,7 @@ impl Series {
     }
 
     /// Σ E_n (i a_n N_n − b_n M_n) without cos φ (r, θ) and −sin φ (φ).
-    fn sums(&self, wave: &Wave, r: f64, cos: f64, sin: f64) -> [Complex64; 3] {
-        let rho = wave.wavenumber() * r;
-        let outer = Riccati::new(rho, self.0.len());
+    fn sums(&self, rho: f64, radial: impl Fn(usize) -> [Complex64; 2], cos: f64, sin: f64) -> [Complex64; 3] {
         let mut sums = [Complex64::ZERO; 3];
         let (mut earlier, mut pi, mut phase) = (0.0, 1.0, Complex64::I);
         for (i, [a, b]) in self.0.iter().enumerate() {
@@ -165,7 +191,7 @@ impl Series {
             let tau = order * cos * pi - (order + 1.0) * earlier;
             let factor = phase * (2.0 * order + 1.0) / (order * (order + 1.0));
             let (a, b) = (factor * Complex64::I * a, factor * b);
-            let (h, slope) = (outer.xi(n) / rho, outer.xi_slope(n) / rho);
+            let [h, slope] = radial(n).map(|value| value / rho);
             sums[0] += a * h * (order * (order + 1.0) * sin * pi / rho);
             sums[1] += a * slope * tau - b * h * pi;
             sums[2] += a * slope * pi - b * h * tau;
