@@ -7,9 +7,11 @@ use std::path::Path;
 
 use fredholm_mesh::Vec3;
 use fredholm_study::{CouplingStorage, Error, Quiet, ResultFolder, SolvedWaves, WaveOptions, waves};
-use fredholm_waves::material::sheet_impedance;
+use fredholm_waves::material::{conductor_impedance, sheet_impedance};
 use fredholm_waves::source::PlaneWave;
-use fredholm_waves::{Complex64, ConductingSphere, DielectricSphere, ResistiveShell, Source, Wave};
+use fredholm_waves::{
+    Complex64, ConductingSphere, DielectricSphere, ImpedanceSphere, ResistiveShell, Source, Wave,
+};
 
 const SOURCE: &str = "[[source]]\nkind = \"plane-wave\"\ntravel = [0, 1, 0]\npolarisation = [0, 0, 1]\n";
 
@@ -139,6 +141,37 @@ fn thin_sheets_have_the_field_of_the_series_and_absorb_what_is_missing() {
             }
             assert_eq!(found.balances().len(), 2);
         }
+    }
+}
+
+/// A ball with a surface impedance, given or by its conductivity, whole and compressed, against its
+/// series; the powers balance.
+#[test]
+fn bodies_with_a_surface_impedance_have_the_field_of_the_series() {
+    let folder = tempfile::tempdir().unwrap();
+    let (wave, radius) = (Wave::new(1e9).unwrap(), 0.09);
+    let source = PlaneWave::new(Vec3::Y, Vec3::Z, 1.0.into()).unwrap();
+    let given = ("impedance_ohm = [90, 40]", Complex64::new(90.0, 40.0));
+    let conductor = ("conductivity_s_per_m = 100", conductor_impedance(100.0, &wave));
+    for ((material, z), storage) in
+        [(given, None), (conductor, None), (given, Some(CouplingStorage::Compressed))]
+    {
+        let more = format!("material = \"m\"\n[materials.m]\n{material}");
+        let text = ball("efie", radius, "lambda/12", 0.3, &more);
+        let found = stored(folder.path(), &text, storage).unwrap();
+        let exact = ImpedanceSphere::new(radius, z).unwrap();
+        let series = |p: [f64; 3]| {
+            let e = exact.scattered(&wave, &source, Vec3::from_array(p)).components();
+            [e[0].re, e[0].im, e[1].re, e[1].im, e[2].re, e[2].im]
+        };
+        let series: Vec<[f64; 6]> = found.near().iter().map(|row| series(row.position)).collect();
+        let error = gap(&scattered(&found), &series);
+        assert!(error < 0.01 && found.method() == "efie", "{material}: {error}");
+        let balance = found.balances()[0];
+        let [extinction, scattering] = exact.cross_sections(&wave);
+        let absorbed = balance.absorbed / balance.supplied;
+        assert!((absorbed - (1.0 - scattering / extinction)).abs() < 0.01, "{material}: {absorbed}");
+        assert!((balance.ratio() - 1.0).abs() < 2e-3, "{material}: {}", balance.ratio());
     }
 }
 

@@ -35,7 +35,7 @@ pub use element::{electric_element, magnetic_element};
 pub use error::WaveError;
 pub use field::Field;
 pub use medium::Wave;
-pub use mie::{ConductingSphere, DielectricSphere, ResistiveShell};
+pub use mie::{ConductingSphere, DielectricSphere, ImpedanceSphere, LayeredSphere, ResistiveShell};
 pub use num_complex::Complex64;
 pub use optics::{PhysicalOptics, Shadow};
 pub use power::{extinct, radiated, sphere_rule, supplied};

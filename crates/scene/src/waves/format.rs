@@ -135,13 +135,15 @@ fn one() -> f64 {
     1.0
 }
 
-/// A material: exactly one of impedance, half-space, layers or sheet.
+/// A material: exactly one of impedance, conductivity, half-space, layers or sheet.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a table of a material")]
 #[schemars(rename = "WaveMaterial")]
 pub(crate) struct MaterialEntry {
     /// Surface impedance [real, imaginary], Ω.
     pub impedance_ohm: Option<[f64; 2]>,
+    /// Conductivity of a good conductor, S/m: its surface impedance is (1 + j) √(ωμ₀/2σ).
+    pub conductivity_s_per_m: Option<f64>,
     /// A dielectric that fills everything behind the surface.
     pub half_space: Option<DielectricEntry>,
     /// Layers from the front to the back.

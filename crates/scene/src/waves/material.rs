@@ -1,6 +1,7 @@
 //! Materials of a scene, which depend on the frequency.
 
-use fredholm_waves::material::{Layer, Material, itu_permittivity, sheet_impedance};
+use fredholm_waves::material::{Layer, Material, conductor_impedance, itu_permittivity, sheet_impedance};
+use fredholm_waves::medium::IMPEDANCE;
 use fredholm_waves::{Complex64, Wave};
 
 use super::choices::ResistanceEntry;
@@ -11,6 +12,9 @@ use crate::format::At;
 use crate::source::Source;
 use crate::suggest::among;
 
+/// Surface impedance over that of free space from which on a conductor is not a good one: the wave
+/// inside may then be 6° off the normal.
+const MOST_OF_FREE_SPACE: f64 = 0.1;
 /// The material that is always there.
 pub(super) const CONDUCTOR: &str = "conductor";
 
@@ -50,26 +54,50 @@ pub(super) fn known(scene: &SceneEntry, name: &str) -> String {
 }
 
 fn material(source: &Source, entry: &At<MaterialEntry>, wave: &Wave) -> Result<Material, SceneError> {
-    let MaterialEntry { impedance_ohm, half_space, layers, sheet } = &**entry;
+    let MaterialEntry { impedance_ohm, conductivity_s_per_m, half_space, layers, sheet } = &**entry;
     let dielectric = |permittivity: Option<[f64; 2]>, itu: &Option<String>| {
         dielectric(source, entry, (permittivity, itu.as_deref()), wave)
     };
-    match (impedance_ohm, half_space, layers, sheet) {
-        (Some([re, im]), None, None, None) => Ok(Material::Impedance(Complex64::new(*re, *im))),
-        (None, Some(half), None, None) => Ok(Material::HalfSpace(dielectric(half.permittivity, &half.itu)?)),
-        (None, None, Some(layers), None) => {
+    match (impedance_ohm, conductivity_s_per_m, half_space, layers, sheet) {
+        (Some([re, im]), None, None, None, None) => Ok(Material::Impedance(Complex64::new(*re, *im))),
+        (None, Some(conductivity), None, None, None) => {
+            good_conductor(source, entry, *conductivity, wave).map(Material::Impedance)
+        }
+        (None, None, Some(half), None, None) => {
+            Ok(Material::HalfSpace(dielectric(half.permittivity, &half.itu)?))
+        }
+        (None, None, None, Some(layers), None) => {
             let layer = |layer: &LayerEntry| {
                 let permittivity = dielectric(layer.permittivity, &layer.itu)?;
                 Ok(Layer { permittivity, thickness: layer.thickness_m })
             };
             Ok(Material::Slab(layers.iter().map(layer).collect::<Result<_, SceneError>>()?))
         }
-        (None, None, None, Some(film)) => sheet_of(source, entry, film, wave).map(Material::Sheet),
+        (None, None, None, None, Some(film)) => sheet_of(source, entry, film, wave).map(Material::Sheet),
         _ => {
-            let help = "give exactly one of impedance_ohm, half_space, layers, sheet";
+            let help = "give exactly one of impedance_ohm, conductivity_s_per_m, half_space, layers, sheet";
             Err(source.error(ErrorKind::Value, entry.span(), "a material is made of one thing", help))
         }
     }
+}
+
+/// The surface impedance of a good conductor, Ω.
+fn good_conductor(
+    source: &Source,
+    entry: &At<MaterialEntry>,
+    conductivity: f64,
+    wave: &Wave,
+) -> Result<Complex64, SceneError> {
+    let z = conductor_impedance(conductivity, wave);
+    if conductivity.is_finite() && z.norm() < MOST_OF_FREE_SPACE * IMPEDANCE {
+        return Ok(z);
+    }
+    let what = format!(
+        "a conductivity of {conductivity} S/m is that of no good conductor at {} Hz",
+        wave.frequency()
+    );
+    let help = "give a larger conductivity, or half_space = { permittivity = [ε′, −ε″] } with ε″ = σ/(ωε₀)";
+    Err(source.error(ErrorKind::Value, entry.span(), what, help))
 }
 
 /// The impedance of a thin sheet, Ω.

@@ -118,7 +118,7 @@ fn storage(model: &Model, coupling: Option<CheckedCoupling>) -> Result<Option<Co
 fn admitted(model: &Model) -> Result<Option<CheckedCoupling>, Error> {
     let refused = |error: WaveError| model.refused(&error, None);
     if model.galerkin.is_some() {
-        let unknowns = galerkin::basis(model, &model.geometry)?.len();
+        let unknowns = galerkin::unknowns(model, &galerkin::basis(model, &model.geometry)?);
         let bytes = Bytes(Dense::<Complex64>::bytes(unknowns).into());
         let fits = model.plan.clone().hold("the matrix", bytes.0).fits(model.limit);
         let compressed = galerkin::is_quicker_compressed(model, unknowns) || !fits;

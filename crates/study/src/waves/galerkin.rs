@@ -58,6 +58,19 @@ pub(super) fn basis(model: &Model, geometry: &Geometry) -> Result<Basis, Error> 
     Basis::new(surface).map_err(|error| refused(model, &error))
 }
 
+/// Unknowns: one for every function, and two where magnetic currents flow.
+pub(super) fn unknowns(model: &Model, basis: &Basis) -> usize {
+    let impedance = |material: usize| {
+        model.bands.iter().any(|band| matches!(band.materials[material], Material::Impedance(_)))
+    };
+    let both = match model.galerkin {
+        Some(Equations::Electric) => model.geometry.materials().any(impedance),
+        Some(Equations::Dielectric) => true,
+        Some(Equations::Combined) | None => false,
+    };
+    if both { 2 * basis.len() } else { basis.len() }
+}
+
 /// What the library of boundary elements says.
 fn refused(model: &Model, error: &MomentsError) -> Error {
     let help = error.help().unwrap_or("correct the surfaces");

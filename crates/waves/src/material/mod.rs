@@ -150,6 +150,15 @@ pub fn sheet_impedance(permittivity: Complex64, thickness: f64, wave: &Wave) -> 
     IMPEDANCE / ((permittivity - 1.0) * Complex64::new(0.0, wave.wavenumber() * thickness))
 }
 
+/// The surface impedance (1 + j) √(ωμ₀/2σ) of a good conductor of conductivity σ (S/m), Ω: what is
+/// behind is deeper than the skin, and σ much above ωε₀ (T. B. A. Senior, J. L. Volakis, the same, §
+/// 2.2).
+#[must_use]
+pub fn conductor_impedance(conductivity: f64, wave: &Wave) -> Complex64 {
+    let size = (0.5 * IMPEDANCE * wave.wavenumber() / conductivity).sqrt();
+    Complex64::new(size, size)
+}
+
 /// The surface impedance η₀/√ε of a good conductor or dense dielectric, Ω.
 #[must_use]
 pub fn surface_impedance(permittivity: Complex64) -> Complex64 {
@@ -276,6 +285,17 @@ mod tests {
             gap.max((layer.transmitted[0] * phase - sheet.transmitted[0]).norm()) / sheet.reflected[0].norm()
         });
         assert!(errors[1] < 0.01 && errors[0] / errors[1] > 1.9, "{errors:?}");
+    }
+
+    /// Copper at 1 GHz: a skin of 2.09 µm, and a resistance of 1/(σδ) = 8.25 mΩ.
+    #[test]
+    fn a_good_conductor_is_a_dense_half_space() {
+        let (wave, conductivity) = (Wave::new(1e9).unwrap(), 5.8e7);
+        let z = conductor_impedance(conductivity, &wave);
+        assert!((z.re - 8.25e-3).abs() < 5e-6 && z.re.to_bits() == z.im.to_bits(), "{z}");
+        // ε = 1 − jσ/(ωε₀), with 1/(ωε₀) = η₀/k.
+        let permittivity = complex(1.0, -conductivity * IMPEDANCE / wave.wavenumber());
+        assert!((surface_impedance(permittivity) - z).norm() < 1e-8 * z.norm());
     }
 
     #[test]

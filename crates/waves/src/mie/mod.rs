@@ -17,8 +17,12 @@
 //! Backscatter: σ/(πa²) = |Σ (−1)ⁿ (2n + 1)/(ξ_n ξ_n′)|²/x² (C. A. Balanis, Advanced Engineering
 //! Electromagnetics, 2nd ed., Wiley 2012, eq. 11-247). Lengths in metres.
 
+mod impedance;
+mod layered;
 mod shell;
 
+pub use impedance::ImpedanceSphere;
+pub use layered::LayeredSphere;
 pub use shell::ResistiveShell;
 
 use crate::source::PlaneWave;
