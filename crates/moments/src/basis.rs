@@ -15,6 +15,7 @@
 
 use crate::{MomentsError, Surface, Topology};
 use fredholm_mesh::Vec3;
+use fredholm_waves::Ground;
 
 /// Half a function: on its triangle f = weight/(2A) (r − v), with v the corner. The weight is
 /// ±l/‖f‖.
@@ -45,6 +46,7 @@ pub struct Basis {
     functions: Vec<Function>,
     /// Place of every triangle in an order in which neighbours are near each other.
     ranks: Vec<u32>,
+    ground: Option<Ground>,
 }
 
 impl Basis {
@@ -82,7 +84,28 @@ impl Basis {
         for (rank, triangle) in along_curve(&centres).into_iter().enumerate() {
             ranks[triangle] = rank as u32;
         }
-        Ok(Self { surface, topology, functions, ranks })
+        Ok(Self { surface, topology, functions, ranks, ground: None })
+    }
+
+    /// The same above a ground plane: all equations and fields then have the images of the currents
+    /// in. The sources are to be those above the plane ([`Grounded`](fredholm_waves::Grounded)).
+    ///
+    /// # Errors
+    /// [`MomentsError::BelowGround`] for a triangle that touches the plane, or is below it.
+    pub fn above(self, ground: Ground) -> Result<Self, MomentsError> {
+        let low = |triangle: &usize| {
+            self.surface.corners(*triangle).iter().any(|corner| corner.z <= ground.height())
+        };
+        match (0..self.surface.triangles().len()).find(low) {
+            Some(index) => Err(MomentsError::BelowGround { what: "triangle", index }),
+            None => Ok(Self { ground: Some(ground), ..self }),
+        }
+    }
+
+    /// The ground plane under the surface.
+    #[must_use]
+    pub fn ground(&self) -> Option<Ground> {
+        self.ground
     }
 
     /// The surface.

@@ -103,12 +103,25 @@ impl<'a> Currents<'a> {
         [square(&self.electric[triangle]) / (IMPEDANCE * IMPEDANCE), magnetic]
     }
 
-    /// E and H that the currents radiate into free space, at points (m) away from the surface.
+    /// E and H that the currents radiate into free space, at points (m) away from the surface; above
+    /// a ground plane with what their images radiate.
     ///
     /// # Errors
-    /// [`MomentsError::OnSurface`] for a point on the surface.
+    /// [`MomentsError::OnSurface`] for a point on the surface, [`MomentsError::BelowGround`] for one
+    /// below the ground.
     pub fn fields(&self, points: &[Vec3]) -> Result<Vec<Field>, MomentsError> {
-        self.fields_in(points, Space { k: self.wave.wavenumber().into(), impedance: Complex64::ONE })
+        let space = Space { k: self.wave.wavenumber().into(), impedance: Complex64::ONE };
+        let mut fields = self.fields_in(points, space)?;
+        if let Some(ground) = self.basis.ground() {
+            if let Some(index) = points.iter().position(|p| p.z < ground.height()) {
+                return Err(MomentsError::BelowGround { what: "receiver point", index });
+            }
+            let images: Vec<Vec3> = points.iter().map(|&p| ground.image(p)).collect();
+            for (field, original) in fields.iter_mut().zip(self.fields_in(&images, space)?) {
+                *field += ground.field_of_image(original);
+            }
+        }
+        Ok(fields)
     }
 
     pub(crate) fn fields_in(&self, points: &[Vec3], space: Space) -> Result<Vec<Field>, MomentsError> {
@@ -120,7 +133,8 @@ impl<'a> Currents<'a> {
         points.par_iter().enumerate().map(|(index, &p)| viewer.field(index, p)).collect()
     }
 
-    /// F in these directions (any length).
+    /// F in these directions (any length); above a ground plane that of the images in, which is
+    /// there in all directions, and means something upwards only.
     ///
     /// # Errors
     /// [`MomentsError::Parameter`] for a direction that is none.
@@ -132,7 +146,12 @@ impl<'a> Currents<'a> {
                 let (what, expected) = ("the length of a direction of the far field", "finite and above 0");
                 return Err(MomentsError::Parameter { what, value: direction.length(), expected });
             }
-            Ok(FarField { direction: unit, amplitude: self.far_amplitude(unit, &sources) })
+            let bare = |unit: Vec3| self.far_amplitude(unit, &sources);
+            let amplitude = match self.basis.ground() {
+                Some(ground) => ground.far(&self.wave, unit, bare),
+                None => bare(unit),
+            };
+            Ok(FarField { direction: unit, amplitude })
         };
         directions.par_iter().map(far).collect()
     }
@@ -166,13 +185,15 @@ impl<'a> Currents<'a> {
         across * Complex64::new(0.0, -k / (4.0 * PI))
     }
 
-    /// Power (W) that the currents radiate into free space: ∮ |F|²/(2η₀) over all directions.
+    /// Power (W) that the currents radiate into free space: ∮ |F|²/(2η₀) over all directions, above a
+    /// ground plane over those upwards.
     ///
     /// # Errors
     /// Those of [`Currents::far_field`].
     pub fn radiated_power(&self) -> Result<f64, MomentsError> {
         let vertices = self.basis.surface().vertices();
-        let extent = vertices.iter().map(|v| v.length()).fold(0.0, f64::max);
+        let image = |v: &Vec3| self.basis.ground().map_or(*v, |ground| ground.image(*v));
+        let extent = vertices.iter().map(|v| v.length().max(image(v).length())).fold(0.0, f64::max);
         // F has the angular bandwidth k times the radius around the origin, |F|² twice that.
         let rings = (self.wave.wavenumber() * extent).ceil() as usize + 12;
         let rule = gauss_legendre(rings);
@@ -188,15 +209,22 @@ impl<'a> Currents<'a> {
             weight * ring.iter().map(|far| far.amplitude.norm_squared()).sum::<f64>()
         };
         let sum: f64 = pattern.chunks(2 * rings).zip(&rule.weights).map(ring).sum();
-        Ok(sum * 4.0 * PI / (2 * rings) as f64 / (2.0 * IMPEDANCE))
+        // With a ground plane the directions downwards have the mirror image.
+        let share = if self.basis.ground().is_some() { 0.5 } else { 1.0 };
+        Ok(share * sum * 4.0 * PI / (2 * rings) as f64 / (2.0 * IMPEDANCE))
     }
 
     /// Power (W) that is taken from a plane wave, scattered or absorbed, by the optical theorem:
-    /// the far field straight ahead interferes with the wave.
+    /// the far field straight ahead interferes with the wave, above a ground plane with the wave that
+    /// the plane reflects.
     ///
     /// # Errors
     /// Those of [`Currents::far_field`].
     pub fn extinguished_power(&self, source: &PlaneWave) -> Result<f64, MomentsError> {
+        let source = match self.basis.ground() {
+            Some(ground) => &ground.reflected(&self.wave, source)?,
+            None => source,
+        };
         let ahead = self.far_field(&[source.travel()])?;
         let forward = ahead[0].amplitude.dot(source.polarisation()) * source.amplitude().conj();
         Ok(-2.0 * PI * forward.im / (self.wave.wavenumber() * IMPEDANCE))

@@ -107,6 +107,14 @@ pub enum MomentsError {
         /// A triangle with another condition.
         second: usize,
     },
+    /// Something is not above the ground plane.
+    #[error("{what} {index} is not above the ground")]
+    BelowGround {
+        /// What it is.
+        what: &'static str,
+        /// Its number.
+        index: usize,
+    },
     /// Triangles are too large for the wave.
     #[error("edge {edge} is {length} m long, which is more than a third of the wavelength of {wavelength} m")]
     Coarse {
@@ -162,6 +170,7 @@ impl MomentsError {
             Self::Orientation { .. } => Some("turn one over (`Surface::oriented`)"),
             Self::InsideOut { .. } => Some("turn it over (`Surface::oriented`)"),
             Self::Patchwork { .. } => Some("give the whole body one surface impedance"),
+            Self::BelowGround { .. } => Some("move it up, or the ground down"),
             Self::Coarse { .. } => Some("mesh finer, λ/10 is usual"),
             Self::OnSurface { .. } => Some("move it off the surface"),
             Self::Wave(error) => error.help(),

@@ -9,7 +9,8 @@
 //!
 //! where α and β number the kinds of unknowns of a function (electric and magnetic currents), one
 //! or two, δ may differ from triangle to triangle, and s, the unit of an unknown, is 1 but where
-//! said. Unknown (n, β) stands at n · kinds + β. T and the first form of K are symmetric.
+//! said. Above a ground plane the first medium, that around the bodies, has the integrals of all
+//! functions with the images of all others in. Unknown (n, β) stands at n · kinds + β. T and the first form of K are symmetric.
 
 use crate::pairs::Integrator;
 use crate::set::Set;
@@ -123,18 +124,27 @@ impl<'a> Operator<'a> {
         let stride = columns.len * self.kinds;
         out[..rows.len * self.kinds * stride].fill(Complex64::ZERO);
         for term in &self.terms {
-            term.integrator.each(rows, columns, |row, column, pair| {
-                for m in rows.entries(row) {
-                    for n in columns.entries(column) {
-                        let weight = m.weight * n.weight / (4.0 * PI);
-                        let value = pair.at(m.corner, n.corner).map(|part| part * weight);
-                        let first = (m.at * stride + n.at) * self.kinds;
-                        self.add(term, value, [m.units, n.units], &mut out[first..], stride);
-                    }
-                }
-            });
+            self.add_term(term, [rows, columns], out, stride);
+        }
+        // The first medium is that around the bodies.
+        if let (Some(outside), Some(images)) = (self.terms.first(), &columns.image) {
+            self.add_term(outside, [rows, images], out, stride);
         }
         self.add_products(rows, columns, out, stride);
+    }
+
+    /// Adds the integrals of all pairs of functions in one medium.
+    fn add_term(&self, term: &Term, [rows, columns]: [&Set; 2], out: &mut [Complex64], stride: usize) {
+        term.integrator.each(rows, columns, |row, column, pair| {
+            for m in rows.entries(row) {
+                for n in columns.entries(column) {
+                    let weight = m.weight * n.weight / (4.0 * PI);
+                    let value = pair.at(m.corner, n.corner).map(|part| part * weight);
+                    let first = (m.at * stride + n.at) * self.kinds;
+                    self.add(term, value, [m.units, n.units], &mut out[first..], stride);
+                }
+            }
+        });
     }
 
     /// Adds the electric and magnetic part of two half functions in one medium.

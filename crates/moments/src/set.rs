@@ -63,6 +63,9 @@ pub struct Set {
     entries: Vec<Entry>,
     starts: Vec<usize>,
     points: [OnceLock<Vec<[Eight; 3]>>; CLASSES],
+    /// The image in the ground plane. Images of electric currents are turned over, so that their
+    /// unit is −1, and those of magnetic ones are not.
+    pub(crate) image: Option<Box<Self>>,
 }
 
 impl Set {
@@ -89,17 +92,39 @@ impl Set {
         starts.push(halves.len());
         let shapes: Vec<Shape> =
             triangles.iter().map(|&t| Shape::new(basis.surface().corners(t as usize))).collect();
+        let entries: Vec<Entry> = halves.into_iter().map(|(_, _, entry)| entry).collect();
+        let image = basis.ground().map(|ground| {
+            let image = |shape: &Shape| Shape::new(shape.places.map(|place| ground.image(place)));
+            let turned = |entry: &Entry| Entry { units: [-entry.units[0], entry.units[1]], ..*entry };
+            let parts = (
+                // No triangle has the name of an image.
+                triangles.iter().map(|&triangle| !triangle).collect(),
+                shapes.iter().map(image).collect(),
+                entries.iter().map(turned).collect(),
+            );
+            Box::new(Self::of(len, parts, starts.clone(), None))
+        });
+        Self::of(len, (triangles, shapes, entries), starts, image)
+    }
+
+    fn of(
+        len: usize,
+        (triangles, shapes, entries): (Vec<u32>, Vec<Shape>, Vec<Entry>),
+        starts: Vec<usize>,
+        image: Option<Box<Self>>,
+    ) -> Self {
         let coordinate = |axis: usize| shapes.iter().map(|shape| shape.centre[axis]).collect();
         let radii = shapes.iter().map(|shape| shape.radius).collect();
         Self {
             len,
             eights: eights(&shapes),
             spheres: [coordinate(0), coordinate(1), coordinate(2), radii],
-            entries: halves.into_iter().map(|(_, _, entry)| entry).collect(),
+            entries,
             triangles,
             shapes,
             starts,
             points: Default::default(),
+            image,
         }
     }
 

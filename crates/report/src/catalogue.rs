@@ -445,7 +445,7 @@ const WAVES: &str = "
 | `receivers` | list of text | their names, in the order of the numbers in arrays |
 | `frequencies` | list | of each `frequency_hz`, `wavelength_m`, `facets`, `converged`, `residuals` |
 | `stated_errors`, `estimated_mesh_errors`, `estimated_form_errors` | list | `receiver`, `frequency_hz`, and the error `relative` to the scattered field |
-| `power` | list | `frequency_hz`, `supplied_w`, `radiated_w`, and their `ratio` |
+| `power` | list | `frequency_hz`, `supplied_w`, `radiated_w`, `absorbed_w`, and the `ratio` of the last two together to the first |
 | `reciprocity` | list | `receiver`, `frequency_hz`, and the relative `defect` of a sweep |
 | `left_out_as_text` | list of text | tables that are arrays only |
 | `warnings`, `timings` | list | as of `solve` |

@@ -175,6 +175,55 @@ fn bodies_with_a_surface_impedance_have_the_field_of_the_series() {
     }
 }
 
+/// A plate above ground in a wave is that plate and its mirror image in the wave and its mirror image,
+/// whole and compressed; what the reflected wave loses is radiated upwards.
+#[test]
+fn a_conducting_ground_is_a_mirror() {
+    let folder = tempfile::tempdir().unwrap();
+    let plate = |name: &str, sign: f64| {
+        let corner = |x: f64, z: f64| format!("[{x}, 0, {}]", sign * z);
+        let corners = [corner(-0.1, 0.04), corner(0.1, 0.04), corner(0.1, 0.24), corner(-0.1, 0.24)];
+        format!("[[surface]]\nname = \"{name}\"\nquad = [{}]\n", corners.join(", "))
+    };
+    let source = |sign: f64| {
+        let (up, along, across) = (-0.6 * sign, sign, -0.2 * sign);
+        format!(
+            "[[source]]\nkind = \"plane-wave\"\ntravel = [0.2, 1, {up}]\npolarisation = [{along}, {across}, 0]\n"
+        )
+    };
+    let receivers = "[[receiver]]\nname = \"r\"\nline = { from = [0.3, -1, 0], to = [-0.2, 2, 1.5], points = 20 }\n\
+                     [[receiver]]\nname = \"f\"\nfar = { theta_degrees = [10, 50, 90], phi_degrees = [0, 70] }\n";
+    let wave = |more: &str| format!("[wave]\nfrequencies_hz = [1e9]\n{more}\n");
+    let ground = wave("ground = { height_m = 0 }") + &source(1.0) + &plate("upper", 1.0) + receivers;
+    let mirror = wave("method = \"efie\"")
+        + &source(1.0)
+        + &source(-1.0)
+        + &plate("upper", 1.0)
+        + &plate("lower", -1.0)
+        + receivers;
+    let both = solved(folder.path(), &mirror);
+    for storage in [None, Some(CouplingStorage::Compressed)] {
+        let found = stored(folder.path(), &ground, storage).unwrap();
+        assert_eq!(found.method(), "efie");
+        let near = gap(&scattered(&found), &scattered(&both));
+        let incident = found.near().iter().zip(both.near()).flat_map(|(a, b)| {
+            a.incident.iter().zip(b.incident).map(|(a, b)| (a - b).abs()).collect::<Vec<_>>()
+        });
+        let amplitudes =
+            |found: &SolvedWaves<'_>| found.far().iter().flat_map(|row| row.amplitude).collect::<Vec<f64>>();
+        let (a, b) = (amplitudes(&found), amplitudes(&both));
+        let far = a.iter().zip(&b).map(|(a, b)| (a - b).powi(2)).sum::<f64>()
+            / b.iter().map(|b| b * b).sum::<f64>();
+        assert!(near < 1e-3 && far.sqrt() < 1e-3, "{near:e} {far:e}");
+        assert!(incident.fold(0.0, f64::max) < 1e-12);
+        let ratio = found.balances()[0].ratio();
+        assert!((ratio - 1.0).abs() < 2e-3, "{ratio}");
+    }
+    let optics = ground.replace("[wave]", "[wave]\nmethod = \"physical-optics\"");
+    let refused = stored(folder.path(), &optics, None).map(drop).unwrap_err().to_string();
+    assert!(refused.contains("the ground is known to boundary elements only"), "{refused}");
+}
+
 /// A sphere of 0.4 wavelengths against the series of Mie, by all equations: E at 2 m.
 #[test]
 fn equations_agree_with_the_exact_answer_on_a_sphere() {

@@ -12,7 +12,7 @@ use fredholm_mesh::{Bounds, Contacts, Cutting, Patch, Topology, Vec3};
 use fredholm_waves::material::Material;
 use fredholm_waves::{Kind, Origin};
 
-use super::receiver::Places;
+use super::receiver::{Places, direction};
 use super::scene::{About, WaveScene};
 use super::settings::Method;
 use crate::check::{Finding, Warning};
@@ -30,6 +30,8 @@ const LEAST_EXTENT: f64 = 1e-4;
 const FEW_OPEN_SIDES: f64 = 0.2;
 /// Points of a receiver that are asked how far away they are.
 const MOST_POINTS_ASKED: usize = 4096;
+/// Cosine of θ below which a direction is below the ground: that of a θ of 90° is rounded.
+const LEAST_HEIGHT: f64 = -1e-12;
 /// Pairs of surfaces that are told one by one.
 const TOLD: usize = 4;
 
@@ -56,6 +58,7 @@ struct Body<'a> {
 pub(super) fn check(scene: &WaveScene) -> Result<Vec<Warning>, SceneError> {
     let pieces = Pieces::of(scene);
     told_apart(scene, &pieces)?;
+    above_ground(scene, &pieces)?;
     let mut warnings: Vec<Warning> = closed(scene, &pieces)?.into_iter().collect();
     warnings.extend(half_closed(scene, &pieces));
     warnings.extend(frequencies(scene));
@@ -187,6 +190,58 @@ fn told_apart(scene: &WaveScene, pieces: &Pieces) -> Result<(), SceneError> {
         let step = points.len().div_ceil(MOST_POINTS_ASKED).max(1);
         if let Some(&p) = points.iter().step_by(step).find(|p| p.length() > most) {
             return refuse(About::Receiver(number), p);
+        }
+    }
+    Ok(())
+}
+
+/// Refuses what is not above the ground plane, and waves that come out of it.
+fn above_ground(scene: &WaveScene, pieces: &Pieces) -> Result<(), SceneError> {
+    let Some(ground) = scene.ground() else { return Ok(()) };
+    let height = ground.height();
+    let refuse =
+        |about: About, what: String, help: &str| Err(scene.error(about, ErrorKind::Geometry, what, help));
+    let raise = "move it up, or the ground down";
+    let low = |patch: &Patch| patch.corners().iter().any(|p| p.z <= height);
+    if let Some(piece) = pieces.patches.iter().position(low) {
+        let part = pieces.part_of[piece];
+        let what = format!(
+            "`{}` is not above the ground at z = {height} m, which no surface may touch",
+            scene.parts()[part].name
+        );
+        return refuse(About::Surface(part), what, raise);
+    }
+    for (number, placed) in scene.sources().iter().enumerate() {
+        let ends = scene.waves().iter().filter_map(|wave| placed.source.wire(wave)).flatten();
+        let mut places = ends.chain(match placed.source.origin() {
+            Origin::Point(p) => Some(p),
+            Origin::Direction(_) => None,
+        });
+        if places.any(|p| p.z <= height) {
+            return refuse(About::Source(number), "the source is not above the ground".to_owned(), raise);
+        }
+        if matches!(placed.source.origin(), Origin::Direction(travel) if travel.z >= 0.0) {
+            let what = "the plane wave does not come from above the ground".to_owned();
+            return refuse(About::Source(number), what, "let it travel downwards, towards −z");
+        }
+    }
+    for (number, receiver) in scene.receivers().iter().enumerate() {
+        let what = match receiver.places() {
+            Places::Near { points, .. } => points.iter().position(|p| p.z < height).map(|point| {
+                format!("point {point} of the receiver `{}` is below the ground", receiver.name)
+            }),
+            Places::Far(angles) | Places::Monostatic(angles) => {
+                let up = |[theta, phi]: &[f64; 2]| direction(*theta, *phi).z >= LEAST_HEIGHT;
+                angles.iter().find(|angles| !up(angles)).map(|[theta, phi]| {
+                    format!(
+                        "the direction θ = {theta}°, φ = {phi}° of the receiver `{}` is not above the ground",
+                        receiver.name
+                    )
+                })
+            }
+        };
+        if let Some(what) = what {
+            return refuse(About::Receiver(number), what, "leave out what is below, or the ground");
         }
     }
     Ok(())

@@ -70,6 +70,17 @@ pub(crate) struct WaveEntry {
     /// Relative error up to which frequencies may be interpolated between computed ones, above 0
     /// and below 1. Default: all frequencies are computed.
     pub sweep_accuracy: Option<At<f64>>,
+    /// A perfectly conducting plane without end under everything. Default: free space.
+    pub ground: Option<At<GroundEntry>>,
+}
+
+/// A perfectly conducting plane z = height, above which everything is.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a table of the ground")]
+#[schemars(rename = "Ground")]
+pub(crate) struct GroundEntry {
+    /// z of the plane, m.
+    pub height_m: f64,
 }
 
 /// A source.

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use fredholm_mesh::Mesh;
 use fredholm_waves::material::Material;
-use fredholm_waves::{Wave, WaveError};
+use fredholm_waves::{Ground, Wave, WaveError};
 
 use super::choices::{FrequenciesEntry, Spacing, SweepEntry};
 use super::format::SceneEntry;
@@ -37,6 +37,8 @@ pub enum About {
     Solver,
     /// The frequencies.
     Frequencies,
+    /// The ground plane.
+    Ground,
     /// A surface of the mesh, by its number.
     Surface(usize),
     /// A source, by its number.
@@ -81,6 +83,7 @@ pub struct WaveScene {
     entry: SceneEntry,
     waves: Vec<Wave>,
     settings: Settings,
+    ground: Option<Ground>,
     sources: Vec<Placed>,
     parts: Vec<Part>,
     receivers: Vec<Receiver>,
@@ -127,13 +130,30 @@ impl WaveScene {
             material::materials(&source, &entry, wave)?;
         }
         let settings = settings(&source, &entry.wave)?;
-        let sources = sources(&source, &entry)?;
+        let ground =
+            entry.wave.ground.as_ref().map(|given| {
+                Ground::new(given.height_m).map_err(|error| refused(&source, given.span(), &error))
+            });
+        let ground = ground.transpose()?;
+        let sources = sources(&source, &entry, ground)?;
         let mut reading = Reading::new(&source, &mut files);
         let parts = parts(&mut reading, &entry)?;
         let Reading { notes, findings, .. } = reading;
         let receivers = receivers(&source, &entry.receiver)?;
         let sha256 = files.fingerprint(&source.text);
-        Ok(Self { source, sha256, entry, waves, settings, sources, parts, receivers, notes, findings })
+        Ok(Self {
+            source,
+            sha256,
+            entry,
+            waves,
+            settings,
+            ground,
+            sources,
+            parts,
+            receivers,
+            notes,
+            findings,
+        })
     }
 
     /// The scene file.
@@ -166,7 +186,13 @@ impl WaveScene {
         &self.settings
     }
 
-    /// The sources.
+    /// The ground plane, above which everything is.
+    #[must_use]
+    pub fn ground(&self) -> Option<Ground> {
+        self.ground
+    }
+
+    /// The sources, above a ground plane with what it reflects of them.
     #[must_use]
     pub fn sources(&self) -> &[Placed] {
         &self.sources
@@ -264,6 +290,7 @@ impl WaveScene {
         match about {
             About::Scene => Some(0..0),
             About::Method => Some(wave.method.as_ref().map_or(wave.span(), At::span)),
+            About::Ground => Some(wave.ground.as_ref().map_or(wave.span(), At::span)),
             About::Frequencies => Some(wave.frequencies_hz.span()),
             About::Solver => Some(wave.solver.as_ref().map_or(wave.span(), At::span)),
             About::Surface(number) => self.parts.get(number).map(|part| part.span.clone()),
@@ -285,13 +312,13 @@ pub(super) fn refused(source: &Source, span: Range<usize>, error: &WaveError) ->
 }
 
 /// The sources, at least one unless all receivers send their own waves.
-fn sources(source: &Source, entry: &SceneEntry) -> Result<Vec<Placed>, SceneError> {
+fn sources(source: &Source, entry: &SceneEntry, ground: Option<Ground>) -> Result<Vec<Placed>, SceneError> {
     if entry.source.is_empty() && !entry.receiver.iter().all(|receiver| receiver.monostatic.is_some()) {
         let help = "add a [[source]] such as kind = \"plane-wave\"";
         let end = source.text.len();
         return Err(source.error(ErrorKind::Empty, end..end, "the scene has no source", help));
     }
-    entry.source.iter().map(|entry| placed(source, entry)).collect()
+    entry.source.iter().map(|entry| placed(source, entry).map(|placed| placed.above(ground))).collect()
 }
 
 fn waves(source: &Source, entry: &At<FrequenciesEntry>) -> Result<Vec<Wave>, SceneError> {

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use fredholm_mesh::Vec3;
 use fredholm_waves::source::{HalfWaveDipole, HertzianDipole, Omnidirectional, PlaneWave};
-use fredholm_waves::{Complex64, Source as Sends, WaveError, polar_frame};
+use fredholm_waves::{Complex64, Ground, Grounded, Source as Sends, WaveError, polar_frame};
 
 use super::choices::PolarisationEntry;
 use super::format::SourceEntry;
@@ -20,8 +20,18 @@ use crate::suggest::among;
 pub struct Placed {
     /// The source.
     pub source: Box<dyn Sends + Send>,
-    /// The plane wave that it is.
+    /// The plane wave that it is, without what a ground plane reflects of it.
     pub plane_wave: Option<PlaneWave>,
+}
+
+impl Placed {
+    /// The same above a ground plane.
+    pub(super) fn above(self, ground: Option<Ground>) -> Self {
+        match ground {
+            Some(ground) => Self { source: Box::new(Grounded::new(self.source, ground)), ..self },
+            None => self,
+        }
+    }
 }
 
 impl fmt::Debug for Placed {

@@ -125,8 +125,11 @@ impl Balancing<'_> {
             Origin::Point(p) => Some(p),
             Origin::Direction(_) => None,
         });
+        let ground = self.model.scene.ground();
         let corners = self.geometry.mesh.patches().flat_map(|patch| patch.corners().to_vec());
-        let Some(bounds) = Bounds::around(corners.chain(located)) else { return Ok(None) };
+        let with_image = |p: Vec3| [Some(p), ground.map(|ground| ground.image(p))].into_iter().flatten();
+        let places = corners.chain(located).flat_map(with_image);
+        let Some(bounds) = Bounds::around(places) else { return Ok(None) };
         // The ends of a half-wave dipole are a quarter of a wavelength from its place.
         let more = if self.power.is_some() { 0.25 * self.band.wave.wavelength() } else { 0.0 };
         let radius = 0.5 * bounds.diagonal() + more;
@@ -139,6 +142,17 @@ impl Balancing<'_> {
             self.model.scene.sources().iter().filter_map(|placed| placed.plane_wave).collect();
         let all_plane = waves.len() == sources.len() && !waves.is_empty();
         let supplied = if all_plane {
+            // Above a ground plane it is the wave that the plane reflects that goes on and is
+            // weakened.
+            let onward = |source: PlaneWave| match ground {
+                Some(ground) => ground.reflected(&self.band.wave, &source),
+                None => Ok(source),
+            };
+            let waves: Vec<PlaneWave> = waves
+                .into_iter()
+                .map(onward)
+                .collect::<Result<_, _>>()
+                .map_err(|error| self.model.refused(&error, None))?;
             let forward = far(&waves.iter().map(PlaneWave::travel).collect::<Vec<_>>())?;
             let waves: Vec<_> = waves.into_iter().zip(forward).collect();
             Some(extinct(&self.band.wave, &waves))
@@ -154,7 +168,9 @@ impl Balancing<'_> {
                 *amplitude += of_sources(self.model, self.band, u).unwrap_or(ComplexVector::ZERO);
             }
         }
-        let radiated = radiated(&rule, &amplitudes);
+        // Of a ground plane the directions downwards have the mirror image.
+        let share = if ground.is_some() { 0.5 } else { 1.0 };
+        let radiated = share * radiated(&rule, &amplitudes);
         Ok(Some(Balance { frequency: self.band.wave.frequency(), supplied, radiated, absorbed }))
     }
 }

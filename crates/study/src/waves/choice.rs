@@ -7,6 +7,7 @@
 //! | conductors, sheets among them, small | `efie`, LU | an equation without approximation but the mesh; the matrix is stored |
 //! | conductors, sheets among them, larger | `radiated`, GMRES, edge currents | currents make the shadow themselves: what hides a part of what stands behind is counted once |
 //! | thin sheets with an impedance, conductors among them or not, small | `efie`, LU | as above |
+//! | conductors above a ground plane, small | `efie` with sheets, else `cfie`, LU | nothing else knows the images |
 //! | one flat sheet, small | `efie`, LU | as above: it costs some seconds |
 //! | one flat sheet, larger | one bounce, edge currents | its facets do not light each other |
 //! | panes and other materials | one bounce; `radiated` where something is let through | bounces have to be asked for |
@@ -68,6 +69,8 @@ pub(super) struct Asked {
     pub(super) shadow: Option<Shadow>,
     /// Whether physical optics is asked for, with whatever shadows suit it.
     pub(super) optics: bool,
+    /// Whether everything is above a ground plane, which boundary elements alone know.
+    pub(super) ground: bool,
     pub(super) method: Option<Method>,
     pub(super) edge_currents: Option<bool>,
     /// Whether a solver is named.
@@ -216,7 +219,7 @@ pub(super) fn taken(
     let mut taken = match (asked.method, asked.shadow) {
         // Edge currents complete physical optics: who asks for them, or for none, means that.
         (None, None) if !asked.optics => {
-            let most = match (seen.flat && seen.conductors, seen.thin) {
+            let most = match (seen.flat && seen.conductors && !asked.ground, seen.thin) {
                 (true, _) => MOST_FLAT,
                 (_, true) => MOST_CLOSED,
                 _ => MOST_UNKNOWNS,
@@ -224,7 +227,7 @@ pub(super) fn taken(
             let size = (shortest(bands), most);
             let small =
                 || boundary_elements && asked.edge_currents.is_none() && is_small(geometry, size, fits);
-            chosen(&seen, &small)
+            chosen(&seen, asked.ground, &small)
         }
         (method, shadow) => completed(method.unwrap_or(Method::Bounces(1)), (asked.optics, shadow), &seen),
     };
@@ -263,8 +266,9 @@ fn factorise(taken: &mut Taken, seen: &Seen, fits: &dyn Fn(u128) -> bool) {
     }
 }
 
-fn chosen(seen: &Seen, small: &dyn Fn() -> bool) -> Taken {
-    let boundary_elements = seen.films || seen.conductors && (seen.sheets || seen.thin) && !seen.sweep;
+fn chosen(seen: &Seen, ground: bool, small: &dyn Fn() -> bool) -> Taken {
+    let exact = (seen.sheets || seen.thin) && !seen.sweep;
+    let boundary_elements = seen.films || seen.conductors && (exact || ground);
     if boundary_elements
         && small()
         && let Ok(solver) = super::registry::build(BY_MATRIX)
@@ -274,7 +278,9 @@ fn chosen(seen: &Seen, small: &dyn Fn() -> bool) -> Taken {
             galerkin: Some(if seen.sheets { Equations::Electric } else { Equations::Combined }),
             method: Method::Solver { solver, tolerance: TOLERANCE, max_iterations: ITERATIONS },
             edge_currents: false,
-            reason: Some(if seen.films {
+            reason: Some(if ground {
+                "a ground plane, which boundary elements alone know".to_owned()
+            } else if seen.films {
                 "thin sheets of few unknowns: an equation without approximation".to_owned()
             } else if seen.sheets {
                 "conductors, sheets among them, of few unknowns: an equation without approximation".to_owned()

@@ -15,9 +15,10 @@ use fredholm_report::{MonostaticRow, WaveCurrents};
 use fredholm_scene::ErrorKind as SceneFault;
 use fredholm_scene::waves::{About, Places};
 use fredholm_waves::material::Material;
+use fredholm_waves::source::PlaneWave;
 use fredholm_waves::{
-    Complex64, ComplexVector, Current, FarField, Field, Indicator, Kind, Source, even_directions, incident,
-    inside_points, left_inside, of_closed_elements,
+    Complex64, ComplexVector, Current, FarField, Field, Grounded, Indicator, Kind, Source, even_directions,
+    incident, inside_points, left_inside, of_closed_elements,
 };
 
 use super::balance::{Balancing, Reciprocity, power};
@@ -55,7 +56,12 @@ const VECTORS: u128 = 3;
 /// The functions on the triangles of a mesh.
 pub(super) fn basis(model: &Model, geometry: &Geometry) -> Result<Basis, Error> {
     let surface = Surface::from_mesh(&geometry.mesh).map_err(|error| refused(model, &error))?;
-    Basis::new(surface).map_err(|error| refused(model, &error))
+    let basis = Basis::new(surface);
+    let above = |basis: Basis| match model.scene.ground() {
+        Some(ground) => basis.above(ground),
+        None => Ok(basis),
+    };
+    basis.and_then(above).map_err(|error| refused(model, &error))
 }
 
 /// Unknowns: one for every function, and two where magnetic currents flow.
@@ -116,7 +122,7 @@ pub(super) fn assembly(model: &Model, equations: Equations, spent: &dyn Fn() -> 
     let basis = basis(model, &model.geometry)?;
     let mut seconds = 0.0;
     for band in &model.bands {
-        let body = Body::new(model, &basis, band, equations)?;
+        let body = Body::new(model, (&model.geometry, &basis), band, equations)?;
         let began = spent();
         let share = body.operator().sample(SAMPLES);
         seconds += (spent() - began) / share;
@@ -134,9 +140,10 @@ enum Known {
 }
 
 impl Known {
-    /// Of surfaces that are all sheets or all closed, and perfect conductors or dielectric.
+    /// Of surfaces that are all sheets or all closed, perfect conductors or dielectric, and in free
+    /// space.
     fn of(geometry: &Geometry, basis: &Basis, band: &Band, equations: Equations) -> Option<Self> {
-        if equations == Equations::Electric && !is_perfect(geometry, band) {
+        if basis.ground().is_some() || equations == Equations::Electric && !is_perfect(geometry, band) {
             return None;
         }
         let edge = basis.topology().longest_edge(basis.surface());
@@ -600,7 +607,14 @@ impl Task<'_> {
     ) -> Result<(Vec<MonostaticRow>, Solution, Option<Estimated>), Error> {
         let directions = directions(angles);
         let waves = plane_waves(&directions).map_err(|error| self.model.refused(&error, None))?;
-        let sources: Vec<&dyn Source> = waves.iter().map(|wave| wave as &dyn Source).collect();
+        let above = |wave: PlaneWave| -> Box<dyn Source> {
+            match self.basis.ground() {
+                Some(ground) => Box::new(Grounded::new(Box::new(wave), ground)),
+                None => Box::new(wave),
+            }
+        };
+        let waves: Vec<Box<dyn Source>> = waves.into_iter().map(above).collect();
+        let sources: Vec<&dyn Source> = waves.iter().map(|wave| &**wave).collect();
         let excitations: Vec<&[&dyn Source]> = sources.iter().map(slice::from_ref).collect();
         let solution = self.solve(matrix, &self.body.right_hand_side(&excitations), signals)?;
         let mut rows = Vec::with_capacity(angles.len());

@@ -4,8 +4,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use fredholm_linop::Solver;
-use fredholm_scene::SceneError;
 use fredholm_scene::waves::{self as scene, About, Cuts, Places, Settings, Shadows, WaveScene};
+use fredholm_scene::{ErrorKind as SceneFault, SceneError};
 use fredholm_waves::material::Material;
 use fredholm_waves::source::PlaneWave;
 use fredholm_waves::{Complex64, Origin, Shadow, Source, Wave, WaveError};
@@ -174,6 +174,11 @@ impl Model {
                 taken(asked, (&geometry, &bands), boundary_elements, &fits)
             };
         let galerkin = named.or(galerkin);
+        if scene.ground().is_some() && galerkin.is_none() {
+            let what = "the ground is known to boundary elements only, which are not taken here";
+            let help = "take method = \"efie\", \"cfie\" or \"pmchwt\", or write the ground as a surface";
+            return Err(scene_failure(scene.error(About::Ground, SceneFault::Value, what, help)));
+        }
         // One bounce that was not asked for may do without cutting, too.
         let geometry =
             if !whole && !estimated && is_closed_form(&scene, &method) { cut(1.0, true)? } else { geometry };
@@ -303,6 +308,7 @@ fn asked(scene: &WaveScene) -> Result<Asked, Error> {
     Ok(Asked {
         shadow: shadow(settings),
         optics: settings.method == Some(scene::Method::PhysicalOptics),
+        ground: scene.ground().is_some(),
         method: method(scene)?,
         edge_currents: settings.edge_currents,
         solver: settings.solver.is_some(),
@@ -351,7 +357,7 @@ fn method(scene: &WaveScene) -> Result<Option<Method>, Error> {
     let max_iterations = settings.max_iterations.unwrap_or(ITERATIONS) as usize;
     let solver = super::registry::build(name).map_err(|error| {
         let help = "correct the name or the options";
-        scene_failure(scene.error(About::Solver, fredholm_scene::ErrorKind::Name, error.to_string(), help))
+        scene_failure(scene.error(About::Solver, SceneFault::Name, error.to_string(), help))
     })?;
     Ok(Some(Method::Solver { solver, tolerance, max_iterations }))
 }
