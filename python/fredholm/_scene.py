@@ -242,6 +242,7 @@ class Scene(LightStudies):
         form_factor_tolerance: Optional[float] = None,
         storage: Optional[str] = None,
         final_gather: bool = False,
+        false_colour: Union[bool, str] = False,
         discontinuity: bool = False,
         pictures: bool = True,
         report: bool = True,
@@ -275,6 +276,9 @@ class Scene(LightStudies):
         final_gather, discontinuity, pictures, report : bool
             What :meth:`Solution.write` makes: a picture whose pixels gather their light, elements
             cut along the borders of shadows, pictures at all, and the page report.html.
+        false_colour : bool or str
+            Whether :meth:`Solution.write` also draws the irradiance in false colour, of all bands
+            together, or of the band named.
         threads : int, optional
             Threads; one a core. Any number gives the same results.
         memory : int or str, optional
@@ -301,6 +305,7 @@ class Scene(LightStudies):
             "way": way,
             "goal": _options.texts(goal),
             "final_gather": final_gather,
+            "false_colour": "" if false_colour is True else false_colour or None,
             "discontinuity": discontinuity,
             "pictures": pictures,
             "report": report,

@@ -8,6 +8,7 @@ mod converge;
 mod determinism;
 mod discretisations;
 mod exit_codes;
+mod false_colour;
 mod first_contact;
 mod folders;
 mod formats;

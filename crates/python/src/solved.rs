@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 
 use fredholm_mesh::{Mesh, Patch};
-use fredholm_study::{Ended, SolveOptions, claim_folder};
+use fredholm_study::{Ended, FalseColour, SolveOptions, claim_folder};
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -28,6 +28,8 @@ pub(crate) struct Asked {
     way: Option<String>,
     goal: Vec<String>,
     final_gather: bool,
+    /// A band in false colour; all of them where it has no name.
+    false_colour: Option<String>,
     discontinuity: bool,
     pictures: bool,
     report: bool,
@@ -43,6 +45,9 @@ pub(crate) fn solve(py: Python<'_>, scene: &Scene, asked: Asked, how: How) -> Py
         way: asked.way.map(|name| way(py, &name)).transpose()?,
         goal: asked.goal,
         final_gather: asked.final_gather,
+        false_colour: asked
+            .false_colour
+            .map(|band| FalseColour { band: Some(band).filter(|b| !b.is_empty()) }),
         discontinuity: asked.discontinuity,
         no_pictures: !asked.pictures,
         no_report: !asked.report,

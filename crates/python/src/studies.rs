@@ -178,7 +178,7 @@ pub(crate) fn spectrum(
     let scene = Arc::clone(&scene.0);
     let ProblemOptions { threads, form_factor_tolerance, memory, .. } = problem.options(py)?;
     let (dense, steps) = asked;
-    let options = SpectrumOptions { dense, steps, threads, form_factor_tolerance, memory };
+    let options = SpectrumOptions { dense, steps, no_report: false, threads, form_factor_tolerance, memory };
     study(py, how, move |folder, watch| {
         let (record, ended) = fredholm_study::spectrum(scene, &options, folder, watch)?;
         Ok((serde_json::to_string(&record), ending(ended)))
@@ -227,6 +227,7 @@ pub(crate) fn trace(py: Python<'_>, source: Source<'_>, asked: Sampling, how: Ho
         control: asked.control,
         spp: asked.spp,
         no_pictures: !asked.pictures,
+        no_report: false,
         go_on: false,
         paths: asked.paths.options(py)?,
         stop: asked.tracing.into(),
@@ -287,7 +288,14 @@ pub(crate) fn reference(
 ) -> PyResult<Py<PyAny>> {
     let scene = Arc::clone(&scene.0);
     let (paths, problem) = (asked.paths.options(py)?, asked.problem.options(py)?);
-    let options = ReferenceOptions { size, spp: asked.spp, paths, stop: asked.tracing.into(), problem };
+    let options = ReferenceOptions {
+        size,
+        spp: asked.spp,
+        no_report: false,
+        paths,
+        stop: asked.tracing.into(),
+        problem,
+    };
     study(py, how, move |folder, watch| {
         let record = fredholm_study::reference(scene, &options, folder, watch)?;
         Ok((serde_json::to_string(&record), "done"))

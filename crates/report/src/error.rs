@@ -83,6 +83,12 @@ pub enum ReportError {
         /// What is wrong.
         why: String,
     },
+    /// A drawing that the plotting library could not make.
+    #[error("the picture cannot be drawn: {why}")]
+    Drawing {
+        /// What the library said.
+        why: String,
+    },
     /// A run record that is cut short or damaged.
     #[error("{}: the run record is cut short or damaged ({why}); solve the scene again", path.display())]
     BrokenRun {

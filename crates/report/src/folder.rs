@@ -88,7 +88,7 @@ impl ResultFolder {
         list.push(stem);
         list.push(LIST);
         let claim = Claim::lock(folder_of(&files.matrix), list, false)?;
-        let all = [&files.matrix, &files.picture, &files.histogram, &files.record];
+        let all = [&files.matrix, &files.picture, &files.histogram, &files.page, &files.record];
         let name = |path: &PathBuf| Some(path.file_name()?.to_string_lossy().into_owned());
         claim.refuse(all.into_iter().filter(|path| path.exists()).filter_map(name))?;
         let ours: BTreeSet<String> = all.into_iter().filter_map(name).collect();

@@ -13,6 +13,7 @@
 //! | `image.png` | a camera view |
 //! | `convergence.svg` | residual against iterations and seconds |
 //! | `mesh.png`, `links.png`, `gather.png` | the elements, links and a final gather, where asked for |
+//! | `false_colour.png`, `false_colour.csv` | irradiance in false colour, and its numbers, where asked for |
 //! | `points.csv` | the irradiance of points, where asked for |
 //! | `shadows.vtu` | triangles cut along the borders of shadows, where asked for |
 //! | `field.ply`, `field.glb` | the elements with the light as colours of their corners, where asked for |
@@ -42,6 +43,7 @@ mod csv;
 mod error;
 mod eye;
 mod faces_csv;
+mod false_colour_csv;
 mod field;
 mod field_csv;
 mod folder;
@@ -89,13 +91,15 @@ pub use convergence::write_convergence;
 pub use error::ReportError;
 pub use eye::Eye;
 pub use faces_csv::write_faces_csv;
+pub use false_colour_csv::write_false_colour_csv;
 pub use field::Field;
 pub use field_csv::write_field_csv;
 pub use folder::ResultFolder;
 pub use hierarchy::{Hierarchy, HierarchyGoal, HierarchyRound};
 pub use html::{
-    ElementPhasors, ElementValues, FieldStep, ReportAxis, ReportBadge, ReportCell, ReportColumn, ReportModel,
-    ReportPage, ReportPlot, ReportSeries, ReportTable, WaveReport, current_phasors, face_scores,
+    ElementLinks, ElementPhasors, ElementValues, FieldStep, ReportAxis, ReportBadge, ReportCell,
+    ReportColumn, ReportModel, ReportPage, ReportPlot, ReportPolar, ReportSeries, ReportTable, WaveReport,
+    current_phasors, face_quantities, face_scores,
 };
 pub use judgement::{
     JUDGE_FILES, JUDGE_FORMAT, JudgeRecord, JudgedPlace, Measured, PictureShape, ReferenceFaces,
@@ -105,12 +109,13 @@ pub use judgement::{
 pub use names::{CHECKPOINT, PIXELS, TRACE_STATE, WAVE_FILES, is_result, records};
 pub use npz::write_npz;
 pub use outputs::{
-    Contents, Extras, FIELD_EXR, FIELD_GLB, FIELD_PLY, GATHER, IMAGE, LINKS_PICTURE, MESH_PICTURE,
-    OutputFile, REPORT, RUN, RunReport, View, Wanted, output_files, wanted_files, write_all, write_with,
+    Contents, Extras, FALSE_COLOUR, FIELD_EXR, FIELD_GLB, FIELD_PLY, GATHER, IMAGE, LINKS_PICTURE,
+    MESH_PICTURE, OutputFile, REPORT, RUN, RunReport, View, Wanted, output_files, wanted_files, write_all,
+    write_with,
 };
 pub use picture::{
-    Back, Gathering, LampLight, Layer, Lighter, Link, Linked, Lit, LitPicture, Picture, Side, render,
-    render_layers, render_lit, render_sides,
+    Back, FalseColourPicture, Gathering, LampLight, Layer, Lighter, Link, Linked, Lit, LitPicture, Picture,
+    PictureNumber, Side, render, render_false_colour, render_layers, render_lit, render_sides,
 };
 pub use points_csv::{PointTable, write_points_csv};
 pub use refinement::{

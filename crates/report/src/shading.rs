@@ -16,13 +16,8 @@ pub(crate) struct Shading<'a> {
 
 impl<'a> Shading<'a> {
     pub(crate) fn new(field: Field<'a>) -> Self {
-        let (mesh, colouring) = (field.mesh(), Colouring::new(field.bands()));
-        let colour = |leaf| colouring.colour(&field.exposed_radiosity(leaf));
-        let leaves: Vec<Rgb> = (0..mesh.len()).map(colour).collect();
-        let Anchored { leaves: welded, hanging, .. } = mesh.anchored(SMOOTH);
-        let mut vertices = vertex_colours(mesh, &welded, &leaves, |leaf| field.exposed(leaf));
-        close(&hanging, &mut vertices);
-        Self { field, welded, vertices }
+        let colouring = Colouring::new(field.bands());
+        Self::of_values(field, 0, |leaf| colouring.colour(&field.exposed_radiosity(leaf)))
     }
 
     /// The same of what is left of the radiosity without a part, W/m² of a leaf and a band.
@@ -32,14 +27,19 @@ impl<'a> Shading<'a> {
     /// iteration of P. van Cittert, Zeitschrift für Physik 69, 1931, doi:10.1007/BF01391351). Else
     /// dark corners of rooms would be too bright by what the light changes within half an element.
     pub(crate) fn of_rest(field: Field<'a>, passes: usize, part: impl Fn(usize, usize) -> f64) -> Self {
-        let (mesh, colouring) = (field.mesh(), Colouring::new(field.bands()));
-        let colour = |leaf: usize| {
+        let colouring = Colouring::new(field.bands());
+        Self::of_values(field, passes, |leaf| {
             let share = field.exposed(leaf);
             let reflected_by = if share > 0.0 { 1.0 / share } else { 1.0 };
             let mut rest = field.exposed_radiosity(leaf);
             rest.iter_mut().enumerate().for_each(|(band, b)| *b -= part(leaf, band) * reflected_by);
             colouring.colour(&rest)
-        };
+        })
+    }
+
+    /// The same of any colours of the leaves.
+    pub(crate) fn of_values(field: Field<'a>, passes: usize, colour: impl Fn(usize) -> Rgb) -> Self {
+        let mesh = field.mesh();
         let leaves: Vec<Rgb> = (0..mesh.len()).map(colour).collect();
         let Anchored { leaves: welded, hanging, .. } = mesh.anchored(SMOOTH);
         let mut vertices = vertex_colours(mesh, &welded, &leaves, |leaf| field.exposed(leaf));

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use crate::csv::quoted;
 use crate::number::Number;
 use crate::plot::{Axis, Figure, Line, Panel, Part, Point, Span, write_svg};
-use crate::{ReportError, ResultFolder, Timing, reading};
+use crate::{REPORT, ReportError, ReportPage, ResultFolder, Timing, reading};
 
 /// Name of the format of `spectrum.json`.
 pub const SPECTRUM_FORMAT: &str = "fredholm-spectrum-1";
@@ -87,14 +87,21 @@ pub struct Eigenvalues {
     pub values: Vec<[f64; 2]>,
 }
 
-/// Writes an analysis into a folder.
+/// Writes an analysis into a folder; with a title, `report.html` too.
 ///
 /// # Errors
 /// [`ReportError::Write`] with the path.
-pub fn write_spectrum(folder: &ResultFolder, record: &SpectrumRecord) -> Result<(), ReportError> {
+pub fn write_spectrum(
+    folder: &ResultFolder,
+    record: &SpectrumRecord,
+    report: Option<&str>,
+) -> Result<(), ReportError> {
     let [table, plot, json] = SPECTRUM_FILES;
     folder.write(table, |out| write_spectrum_csv(record, out))?;
     folder.write(plot, |out| write_spectrum_plot(record, out))?;
+    if let Some(title) = report {
+        folder.write(REPORT, |out| ReportPage::of_spectrum(title, record).write(out))?;
+    }
     let record = |out: &mut dyn Write| {
         serde_json::to_writer_pretty(&mut *out, record)?;
         writeln!(out)
@@ -206,7 +213,7 @@ mod tests {
     #[test]
     fn all_files_are_written_and_every_eigenvalue_is_a_dot_in_both_panels() {
         let folder = tempfile::tempdir().unwrap();
-        write_spectrum(&ResultFolder::claim(folder.path()).unwrap(), &sample()).unwrap();
+        write_spectrum(&ResultFolder::claim(folder.path()).unwrap(), &sample(), None).unwrap();
         let text = fs::read_to_string(folder.path().join("spectrum.svg")).unwrap();
         // One in the legend besides.
         assert_eq!(tags(&text).iter().filter(|(name, _)| name == "circle").count(), 5);

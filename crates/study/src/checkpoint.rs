@@ -16,7 +16,9 @@ use sha2::{Digest, Sha256};
 use thiserror::Error as ThisError;
 
 use crate::error::{Error, ErrorKind};
-use crate::options::{FieldFile, GatherPoints, ProblemOptions, SolveOptions, SolveSettings, StopOptions};
+use crate::options::{
+    FalseColour, FieldFile, GatherPoints, ProblemOptions, SolveOptions, SolveSettings, StopOptions,
+};
 use crate::size::Bytes;
 use crate::solve::report_failure;
 
@@ -45,6 +47,8 @@ pub(crate) struct Header {
     pub(crate) memory_limit_bytes: Option<u64>,
     #[serde(default)]
     pub(crate) final_gather: bool,
+    #[serde(default)]
+    pub(crate) false_colour: Option<FalseColour>,
     #[serde(default)]
     pub(crate) discontinuity: bool,
     #[serde(default)]
@@ -76,6 +80,7 @@ impl Header {
             max_iterations: options.max_iterations,
             memory_limit_bytes: options.problem.memory_limit_bytes,
             final_gather: options.final_gather,
+            false_colour: options.false_colour.clone(),
             discontinuity: options.discontinuity,
             no_pictures: options.no_pictures,
             no_report: options.no_report,
@@ -139,6 +144,7 @@ impl Checkpoint {
             accuracy: Some(self.accuracy),
             goal: header.goal.clone(),
             final_gather: header.final_gather,
+            false_colour: header.false_colour.clone(),
             discontinuity: header.discontinuity,
             no_pictures: header.no_pictures,
             no_report: header.no_report,
@@ -279,6 +285,7 @@ mod tests {
             max_iterations: 1,
             memory_limit_bytes: None,
             final_gather: false,
+            false_colour: None,
             discontinuity: false,
             no_pictures: false,
             no_report: false,

@@ -83,6 +83,7 @@ fn unassessed(lit: &Lit, exposed: Vec<f64>) -> Solution {
         direct: None,
         paths: None,
         field_error: None,
+        senders: Vec::new(),
         replaced: None,
     }
 }

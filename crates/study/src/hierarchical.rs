@@ -66,6 +66,7 @@ pub(crate) fn options(asked: &SolveOptions, scene: &Scene, accuracy: f64) -> Res
     options.accuracy = Some(accuracy);
     options.goal.clone_from(&asked.goal);
     options.final_gather = asked.final_gather;
+    options.false_colour.clone_from(&asked.false_colour);
     options.discontinuity = asked.discontinuity;
     options.no_pictures = asked.no_pictures;
     options.no_report = asked.no_report;
@@ -282,7 +283,7 @@ fn plan(scene: &Scene, count: usize, options: &SolveSettings) -> Plan {
 
 /// Pictures that are drawn.
 fn pictures(scene: &Scene, options: &SolveSettings) -> Pictures {
-    problem::pictures(scene, PICTURES, (options.no_pictures, options.final_gather))
+    problem::pictures(scene, PICTURES, (options.no_pictures, options.further_pictures()))
 }
 
 fn limits(options: &SolveSettings, accuracy: f64, plan: &Plan) -> Limits {
@@ -354,6 +355,7 @@ fn solution(solved: Solved, options: &SolveSettings, accuracy: f64) -> Solution 
         exposed,
         energy,
         field_error: None,
+        senders: Vec::new(),
         replaced: solved
             .replaced
             .map(|why| format!("{} was replaced by {FALLBACK}: {why}", options.problem.solver)),

@@ -39,6 +39,7 @@ mod folder;
 mod hierarchical;
 mod judge;
 mod lamplight;
+mod lit_by;
 mod memory;
 mod mesh_error;
 mod meter;
@@ -89,8 +90,8 @@ pub use memory::{
     Limit as MemoryLimit, Plan as MemoryPlan, addresses_are_limited, less_than_asked, peak as peak_memory,
 };
 pub use options::{
-    FieldFile, GatherPoints, PointGrid, Precision, ProblemOptions, Recorded, SceneSource, SolveOptions,
-    StopOptions, Way,
+    FalseColour, FieldFile, GatherPoints, PointGrid, Precision, ProblemOptions, Recorded, SceneSource,
+    SolveOptions, StopOptions, Way,
 };
 pub use reference::{ReferenceOptions, reference};
 pub use registry::{SolverEntry, build as build_solver, names as solver_names, solvers};

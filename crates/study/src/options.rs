@@ -237,6 +237,8 @@ pub struct SolveOptions {
     pub goal: Vec<String>,
     /// Whether the light of every pixel is gathered for a further picture.
     pub final_gather: bool,
+    /// A further picture, of the irradiance in false colour.
+    pub false_colour: Option<FalseColour>,
     /// Whether elements are cut along the borders of shadows for a further file.
     pub discontinuity: bool,
     /// Whether nothing is drawn.
@@ -256,6 +258,13 @@ pub struct SolveOptions {
     pub folder: Option<ResultFolder>,
     /// What else the record of the run is to say.
     pub recorded: Recorded,
+}
+
+/// What a picture in false colour shows.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FalseColour {
+    /// The band, by its name; none for all bands together.
+    pub band: Option<String>,
 }
 
 /// A way to an accuracy.
@@ -324,6 +333,9 @@ pub(crate) struct SolveSettings {
     /// Whether the light of every pixel is gathered for a picture.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub(crate) final_gather: bool,
+    /// A picture of the irradiance in false colour.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) false_colour: Option<FalseColour>,
     /// Whether elements are cut along the borders of shadows.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub(crate) discontinuity: bool,
@@ -375,6 +387,7 @@ impl SolveSettings {
             choice: None,
             points: Vec::new(),
             final_gather: false,
+            false_colour: None,
             discontinuity: false,
             no_pictures: false,
             no_report: false,
@@ -384,6 +397,11 @@ impl SolveSettings {
             output: String::new(),
             recorded: Recorded::new(),
         }
+    }
+
+    /// Number of pictures that are asked for besides the usual ones.
+    pub(crate) fn further_pictures(&self) -> usize {
+        usize::from(self.final_gather) + usize::from(self.false_colour.is_some())
     }
 }
 

@@ -35,6 +35,7 @@ pub(crate) fn wanted(options: &SolveSettings, solution: &Solution) -> Wanted {
         page: !options.no_report,
         links: solution.tree.is_some() && !options.no_pictures,
         gather: options.final_gather && !options.no_pictures,
+        false_colour: options.false_colour.is_some() && !options.no_pictures,
         points: !options.points.is_empty(),
         shadows: options.discontinuity,
         also: options.also.iter().map(|file| file.name()).collect(),

@@ -173,10 +173,10 @@ pub(crate) fn pixels(scene: &Scene) -> u128 {
     u128::from(width) * u128::from(height)
 }
 
-/// The pictures of a solution, of which lamps light one: the usual ones, and that of the final gather
-/// where it is asked for; none where none are wanted.
-pub(crate) fn pictures(scene: &Scene, usual: usize, (no_pictures, final_gather): (bool, bool)) -> Pictures {
-    let count = if no_pictures { 0 } else { usual + usize::from(final_gather) };
+/// The pictures of a solution, of which lamps light one at a time: the usual ones, and further ones
+/// that are asked for; none where none are wanted.
+pub(crate) fn pictures(scene: &Scene, usual: usize, (no_pictures, further): (bool, usize)) -> Pictures {
+    let count = if no_pictures { 0 } else { usual + further };
     Pictures { pixels: pixels(scene), count, lit: true }
 }
 

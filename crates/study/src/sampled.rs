@@ -86,7 +86,7 @@ fn solver() -> Result<SolverEntry, Error> {
 }
 
 fn plan(scene: &Scene, elements: usize, options: &SolveSettings) -> Plan {
-    let pictures = pictures(scene, 1, (options.no_pictures, options.final_gather));
+    let pictures = pictures(scene, 1, (options.no_pictures, options.further_pictures()));
     let plan = Plan::default().hold(format!("{elements} elements"), MESH.saturating_mul(elements as u128));
     with_results(with_tracing(plan, scene, elements), scene, elements, (pictures, 0))
 }
@@ -201,6 +201,7 @@ fn solution(
         direct: None,
         paths: Some(Paths { accuracy, begun: state.paths, rays: state.rays }),
         field_error: None,
+        senders: Vec::new(),
         replaced: None,
     })
 }

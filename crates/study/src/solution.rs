@@ -12,6 +12,7 @@ use fredholm_report::Hierarchy;
 
 use crate::discretised;
 use crate::error::{Error, ErrorKind};
+use crate::lit_by::{self, Senders};
 use crate::mesh_error;
 use crate::options::Precision;
 use crate::options::SolveSettings;
@@ -54,6 +55,8 @@ pub(crate) struct Solution {
     pub(crate) hierarchy: Option<Hierarchy>,
     /// Elements, clusters and links of hierarchical radiosity, where it did it.
     pub(crate) tree: Option<pictures::Hierarchy>,
+    /// The elements that light every element most, by the matrix; empty where there is none.
+    pub(crate) senders: Vec<Senders>,
     /// What random paths came to, where they were traced.
     pub(crate) paths: Option<Paths>,
     /// Relative error of the field as polynomials, per band.
@@ -130,6 +133,7 @@ fn assess<S: Storage>(
     let energy = radiosity.energy(&x, &means, &closure);
     let row_error = assembled.error.iter().zip(problem.mesh.patches()).map(|(e, p)| e / p.area()).collect();
     let exposed = radiosity.elements().iter().map(|size| size.exposed / size.area).collect();
+    let senders = lit_by::by_matrix(matrix, &problem.mesh, &means);
     Ok(Solution {
         means,
         direct: Some(radiosity.means(matrix, radiosity.exitance()).irradiance),
@@ -147,6 +151,7 @@ fn assess<S: Storage>(
         mesh_error,
         hierarchy: None,
         tree: None,
+        senders,
         paths: None,
         field_error: None,
         replaced: None,

@@ -6,9 +6,9 @@ use std::sync::Arc;
 use fredholm_linop::{MultiVector, Quiet, StopReason, Watch};
 use fredholm_mesh::Mesh;
 use fredholm_report::{
-    CHECKPOINT, Camera, Exposure, Extras, Field, GATHER, LINKS_PICTURE, Layer, LitPicture, MESH_PICTURE,
-    ReportError, ResultFolder, RunRecord, RunReport, View, output_files, render_layers, render_lit,
-    wanted_files, write_with,
+    CHECKPOINT, Camera, Exposure, Extras, FalseColourPicture, Field, GATHER, LINKS_PICTURE, Layer,
+    LitPicture, MESH_PICTURE, ReportError, ResultFolder, RunRecord, RunReport, View, output_files,
+    render_false_colour, render_layers, render_lit, wanted_files, write_with,
 };
 use fredholm_scene::Scene;
 
@@ -18,7 +18,9 @@ use crate::error::{Error, ErrorKind};
 use crate::hierarchical::Answer;
 use crate::lamplight::Lamplight;
 use crate::memory::{self, Plan};
-use crate::options::{FieldFile, ProblemSettings, SceneSource, SolveOptions, SolveSettings, Way};
+use crate::options::{
+    FalseColour, FieldFile, ProblemSettings, SceneSource, SolveOptions, SolveSettings, Way,
+};
 use crate::pictures::{Gathered, Source, gathering, wanted};
 use crate::prediction::{MESH, Prediction, Size};
 use crate::problem::{Problem, pictures, scene_failure, with_results};
@@ -26,7 +28,7 @@ use crate::record::{record, remarks};
 use crate::solution::{Solution, compute};
 use crate::stages::{Signals, Stages};
 use crate::stochastic::expected_error;
-use crate::{hierarchical, registry, sampled};
+use crate::{hierarchical, lit_by, registry, sampled};
 
 /// Pixels of the picture of a partial result.
 const QUICK_PIXELS: f64 = 40_000.0;
@@ -272,12 +274,24 @@ fn answer(
         let points = Plan::default().hold("points", bytes);
         points.admit(memory::limit(asked.problem.memory), "ask for fewer points")?;
     }
+    refuse_unknown_band(asked, &scene)?;
     match accuracy_of(asked, &scene)? {
         Some(accuracy) => to_accuracy(asked, &scene, (accuracy, checkpoint), stages),
         None if asked.way.is_some() => Err(way_alone()),
         None if !asked.goal.is_empty() => Err(hierarchical::goal_alone()),
         None => dense(asked, &scene, stages),
     }
+}
+
+/// Refuses a picture of a band that the scene does not have.
+fn refuse_unknown_band(asked: &SolveOptions, scene: &Scene) -> Result<(), Error> {
+    let Some(FalseColour { band: Some(band) }) = &asked.false_colour else { return Ok(()) };
+    if scene.bands().contains(band) {
+        return Ok(());
+    }
+    let text = format!("{}: there is no band {band} to draw in false colour", scene.path().display());
+    let help = format!("name one of {}, or none for all bands together", scene.bands().join(", "));
+    Err(Error::new(ErrorKind::Input, text).with_help(help))
 }
 
 /// The accuracy asked for, if any, by the options or by the scene.
@@ -309,16 +323,25 @@ fn dense(
         let bands = scene.bands().len();
         let wanted = asked.final_gather || asked.discontinuity || asked.points.bytes(bands) > 0;
         let gathering = if wanted { gathering(elements, bands) + asked.points.bytes(bands) } else { 0 };
-        let pictures = pictures(scene, 1, (asked.no_pictures, asked.final_gather));
+        let further = usize::from(asked.final_gather) + usize::from(asked.false_colour.is_some());
+        let pictures = pictures(scene, 1, (asked.no_pictures, further));
         with_results(plan, scene, elements, (pictures, gathering))
     };
     let problem = Problem::refined(Arc::clone(scene), options, (1, &more), stages)?;
     let options = SolveSettings::new(problem.options.clone(), asked.stop, scene.solve());
     let points = asked.points.receivers();
     let SolveOptions { final_gather, discontinuity, no_pictures, no_report, .. } = *asked;
-    let also = asked.also.clone();
-    let options =
-        SolveSettings { points, final_gather, discontinuity, no_pictures, no_report, also, ..options };
+    let (also, false_colour) = (asked.also.clone(), asked.false_colour.clone());
+    let options = SolveSettings {
+        points,
+        final_gather,
+        false_colour,
+        discontinuity,
+        no_pictures,
+        no_report,
+        also,
+        ..options
+    };
     let solution = compute(&problem, &options, stages)?;
     Ok((options, problem, solution))
 }
@@ -460,10 +483,10 @@ fn write(
     let view = if cancelled { quick(view) } else { view };
     let watch = if cancelled { &Quiet } else { signals.watch };
     let source = Source::new(problem, options, solution)?;
-    let (links, gathered) = (|element| source.linked(element), source.gather(options, signals)?);
+    let (linked, gathered) = (|element| source.linked(element), source.gather(options, signals)?);
     let layer = |name| match name {
         MESH_PICTURE => Some(Layer::Elements),
-        LINKS_PICTURE => Some(Layer::Links(&links)),
+        LINKS_PICTURE => Some(Layer::Links(&linked)),
         GATHER => Some(gathered.as_ref().map_or(Layer::Field, |gathered| Layer::Gathered(gathered))),
         _ => None,
     };
@@ -488,12 +511,24 @@ fn write(
     };
     let pictures = names.into_iter().zip(drawn);
     let pictures: Vec<_> = pictures.filter_map(|(name, picture)| Some((name, picture?))).collect();
+    let false_colour = match &options.false_colour {
+        Some(shown) if !options.no_pictures && !cancelled => {
+            false_colours(problem, solution, (&field, &view, shown), watch)?
+        }
+        _ => None,
+    };
     let points = gathered.as_ref().map(|gathered| gathered.points(options)).transpose()?.flatten();
     let shadows = gathered.as_ref().filter(|_| options.discontinuity).and_then(Gathered::shadows);
     let title = title(&problem.scene);
-    let report = (!options.no_report).then_some(RunReport { title: &title, view: &view, steps: ("", &[]) });
+    let links = match &solution.tree {
+        _ if options.no_report => None,
+        Some(hierarchy) => lit_by::by_links(hierarchy, &problem.mesh, &solution.means),
+        None => lit_by::of_elements(&solution.senders, &problem.mesh, &solution.means),
+    };
+    let page = RunReport { title: &title, view: &view, steps: ("", &[]), links: links.as_ref() };
+    let report = (!options.no_report).then_some(page);
     let (also, exposure) = (wanted.also, view.exposure);
-    let more = Extras { image, linear, pictures, exposure, points, shadows, also, report };
+    let more = Extras { image, linear, pictures, false_colour, exposure, points, shadows, also, report };
     if signals.is_cancelled() && !record.partial {
         leave_out(record, &more, signals);
     }
@@ -516,6 +551,20 @@ fn picture(
         .map_err(report_failure)?
         .map(|drawn| (how(drawn.exposure), drawn))
         .map(|(how, drawn)| (drawn, how)))
+}
+
+/// The irradiance of a solution in false colour; none where the watch did not want it any more
+/// before it was whole.
+fn false_colours(
+    problem: &Problem,
+    solution: &Solution,
+    (field, view, shown): (&Field, &View, &FalseColour),
+    watch: &dyn Watch,
+) -> Result<Option<FalseColourPicture>, Error> {
+    let lamplight = Lamplight::new(problem, solution.direct.as_ref(), watch)?;
+    let named = |name: &String| field.bands().iter().position(|band| band == name);
+    let what = (title(&problem.scene), shown.band.as_ref().and_then(named));
+    render_false_colour(field, &view.camera, &lamplight.lit(), (&what.0, what.1)).map_err(report_failure)
 }
 
 /// How colours become what a screen shows.
@@ -562,7 +611,7 @@ pub(crate) fn view_camera(camera: &fredholm_scene::Camera) -> Camera {
 /// The settings without what takes long to write: whoever has pressed Ctrl-C waits for no final
 /// gather. `resume` goes on with the settings as they were.
 fn quick_settings(settings: SolveSettings) -> SolveSettings {
-    SolveSettings { final_gather: false, discontinuity: false, ..settings }
+    SolveSettings { final_gather: false, false_colour: None, discontinuity: false, ..settings }
 }
 
 /// The view in few pixels: whoever has pressed Ctrl-C does not wait for a large picture.

@@ -21,8 +21,8 @@ use clap::builder::PossibleValuesParser;
 use clap::{Arg, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use fredholm_study::{
-    Bytes, ConvergeOptions, GatherPoints, PointGrid, ProblemOptions, Receiver, ResultFolder, SolveOptions,
-    StopOptions, discretisation, solver_names,
+    Bytes, ConvergeOptions, FalseColour, GatherPoints, PointGrid, ProblemOptions, Receiver, ResultFolder,
+    SolveOptions, StopOptions, discretisation, solver_names,
 };
 use serde::Serialize;
 
@@ -68,6 +68,7 @@ Examples:
   fredholm solve house.obj --accuracy 5%
   fredholm solve city.obj --accuracy 5% --way paths --time-limit 10min
   fredholm solve room.glb --also ply,glb
+  fredholm solve room.toml --accuracy 1% --false-colour
 
 A mesh file stands for a scene: .obj, .stl, .ply, .gltf, .glb, .msh (Gmsh 4.1), .rad (Radiance), .xml
 (Mitsuba 3) or .vs3 (View3D). Reflectances and lamps are those of the file (of an OBJ those of its .mtl
@@ -389,8 +390,14 @@ pub(crate) struct SolveArgs {
     /// image.png interpolates between elements
     #[arg(long)]
     pub(crate) final_gather: bool,
+    /// Also draw false_colour.png, the irradiance (W/m²) of what the camera sees in false colour,
+    /// with lines of equal irradiance and numbers at points of the surfaces, which false_colour.csv
+    /// lists; in a band as in --false-colour=g, else in all bands together
+    #[arg(long, value_name = "BAND", num_args = 0..=1, require_equals = true)]
+    #[allow(clippy::option_option, reason = "the inner one is missing where no band is named")]
+    pub(crate) false_colour: Option<Option<String>>,
     /// Draw no picture
-    #[arg(long, conflicts_with = "final_gather")]
+    #[arg(long, conflicts_with_all = ["final_gather", "false_colour"])]
     pub(crate) no_pictures: bool,
     /// Write no report.html
     #[arg(long)]
@@ -421,6 +428,7 @@ impl SolveArgs {
             way: self.way.map(Into::into),
             goal: self.goal.clone(),
             final_gather: self.final_gather,
+            false_colour: self.false_colour.clone().map(|band| FalseColour { band }),
             discontinuity: self.discontinuity,
             no_pictures: self.no_pictures,
             no_report: self.no_report,

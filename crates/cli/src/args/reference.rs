@@ -22,7 +22,7 @@ the radiosity of every pixel of the camera by path tracing alone, with its stand
 the scene has no camera one is chosen that takes in all of it. Other programs show the backs of
 walls: an eye that would see one is moved through it.
 
-Written are reference.csv, patches.obj, pixels.npz, the scene for Mitsuba 3 (scene.xml) and for
+Written are reference.csv, patches.obj, pixels.npz, report.html, the scene for Mitsuba 3 (scene.xml) and for
 pbrt-v4 (scene.pbrt) and judge_mitsuba.py where its bands are colours or grey, and reference.json
 last, which says what the numbers mean. `fredholm judge` judges what other tracers find. Ctrl-C
 ends the run with nothing written.";
@@ -40,6 +40,9 @@ pub(crate) struct ReferenceArgs {
     /// Samples of every pixel, at least [default: 1024]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1 << 24))]
     pub(crate) spp: Option<u32>,
+    /// Write no report.html
+    #[arg(long)]
+    pub(crate) no_report: bool,
     #[command(flatten)]
     pub(crate) paths: PathArgs,
     #[command(flatten)]
@@ -53,7 +56,8 @@ pub(crate) struct ReferenceArgs {
 impl ReferenceArgs {
     pub(crate) fn options(&self) -> ReferenceOptions {
         let (paths, stop) = (self.paths.options(), self.stop.options());
-        ReferenceOptions { size: self.size, spp: self.spp, paths, stop, problem: self.problem.options() }
+        let (no_report, problem) = (self.no_report, self.problem.options());
+        ReferenceOptions { size: self.size, spp: self.spp, no_report, paths, stop, problem }
     }
 }
 

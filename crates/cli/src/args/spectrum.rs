@@ -13,8 +13,8 @@ Examples:
   fredholm spectrum scenes/leblond_room.toml
   fredholm spectrum room.toml --dense 0 --steps 100 -o analysis
 
-Written are spectrum.csv, spectrum.svg, and spectrum.json last. Ctrl-C ends the run with nothing
-written.";
+Written are spectrum.csv, spectrum.svg, report.html, and spectrum.json last. Ctrl-C ends the run
+with nothing written.";
 
 /// Options of `spectrum`.
 #[derive(Clone, Debug, Args)]
@@ -30,6 +30,9 @@ pub(crate) struct SpectrumArgs {
     /// Steps of the Lanczos process
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=10_000), default_value_t = 60)]
     pub(crate) steps: u32,
+    /// Write no report.html
+    #[arg(long)]
+    pub(crate) no_report: bool,
     /// Threads; any number gives the same results [default: one a core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
@@ -49,6 +52,7 @@ impl SpectrumArgs {
         SpectrumOptions {
             dense: self.dense,
             steps: self.steps,
+            no_report: self.no_report,
             threads: self.threads,
             form_factor_tolerance: self.form_factor_tolerance,
             memory: self.memory,

@@ -23,8 +23,8 @@ All methods estimate the irradiance of the elements, with standard errors betwee
 Methods that gather (path, bidirectional, photon, walk-gathering) start at every element, the
 others (light, walk-shooting, jacobi) at the lamps. walk-gathering, walk-shooting and jacobi
 estimate what `solve` solves, constants on elements; the others the continuous equation. Written
-are faces.csv with standard errors, image.png, trace.json, which --continue reads, and run.json
-last. Ctrl-C keeps what is there by then. Without --samples, --seconds and --to it is --to 1%.
+are faces.csv with standard errors, image.png, report.html, trace.json, which --continue reads, and
+run.json last. Ctrl-C keeps what is there by then. Without --samples, --seconds and --to it is --to 1%.
 With --spp image.png is traced pixel by pixel, and pixels.npz has the standard error of each.
 
 surface-sampling, field-particles and amplitude-particles sample the scattered field of a scene of
@@ -52,6 +52,9 @@ pub(crate) struct TraceArgs {
     /// Draw no picture
     #[arg(long, conflicts_with = "spp")]
     pub(crate) no_pictures: bool,
+    /// Write no report.html
+    #[arg(long)]
+    pub(crate) no_report: bool,
     /// Go on with the run in the folder
     #[arg(long = "continue")]
     pub(crate) go_on: bool,
@@ -72,6 +75,7 @@ impl TraceArgs {
             control: self.control,
             spp: self.spp,
             no_pictures: self.no_pictures,
+            no_report: self.no_report,
             go_on: self.go_on,
             paths: self.paths.options(),
             stop: self.stop.options(),

@@ -26,8 +26,8 @@ Examples:
 the samples (or samples,seed) of monte-carlo, the pixels of hemicube. Other methods than auto
 are for study: they compute one pair after the other.
 
-Beside F.npz come F.png, the matrix as a picture; F.svg, how well its rows close; and
-F.json, the record. Ctrl-C ends the run with nothing written.
+Beside F.npz come F.png, the matrix as a picture; F.svg, how well its rows close; F.html, the
+page for the browser; and F.json, the record. Ctrl-C ends the run with nothing written.
 
 Faces of a mesh file are seen from the side from which their corners run counter-clockwise.";
 
@@ -77,6 +77,9 @@ pub(crate) struct ViewFactorsArgs {
     /// several times)
     #[arg(long, value_name = "PLANE", value_parser = plane, allow_hyphen_values = true)]
     pub(crate) plane: Vec<PointGrid>,
+    /// Write no page for the browser (F.html)
+    #[arg(long)]
+    pub(crate) no_report: bool,
     /// Threads; any number gives the same results [default: one a core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
@@ -142,6 +145,7 @@ impl ViewFactorsArgs {
             close: self.close,
             sky: self.sky,
             points: GatherPoints { points: self.point.clone(), grids: self.plane.clone() },
+            no_report: self.no_report,
             threads: self.threads,
             memory: self.memory,
             recorded: recorded(self.log),

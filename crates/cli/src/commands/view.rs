@@ -14,13 +14,14 @@ pub(crate) const EXAMPLES: &str = "\
 Examples:
   fredholm view out/cornell_box
   fredholm view out/cornell_box/report.html
+  fredholm view F.npz
 
 Where there is no display, the path is printed.";
 
 /// Options of `view`.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct ViewArgs {
-    /// Result folder, or a file in one
+    /// Result folder, or a file in one; or a matrix of view factors
     pub(crate) path: PathBuf,
 }
 
@@ -37,7 +38,16 @@ pub(crate) fn view(args: &ViewArgs) -> Result<Ending, Error> {
 fn page(path: &Path) -> Result<PathBuf, Error> {
     let named = path.extension().is_some_and(|ending| ending == "html") && path.is_file();
     let folder = if path.is_dir() { path } else { path.parent().unwrap_or(path) };
-    let page = if named { path.to_owned() } else { folder.join(REPORT) };
+    let beside = path.with_extension("html");
+    // The page of a matrix has its name.
+    let own = path.is_file() && beside.is_file();
+    let page = if named {
+        path.to_owned()
+    } else if own {
+        beside
+    } else {
+        folder.join(REPORT)
+    };
     if page.is_file() {
         return Ok(std::path::absolute(&page).unwrap_or(page));
     }
@@ -80,6 +90,11 @@ mod tests {
         assert_eq!(refused.kind(), ErrorKind::Files);
         std::fs::write(&expected, "x").unwrap();
         std::fs::write(folder.path().join("run.json"), "{}").unwrap();
+        let matrix = folder.path().join("F.npz");
+        std::fs::write(&matrix, "x").unwrap();
+        assert_eq!(page(&matrix).unwrap(), expected);
+        std::fs::write(folder.path().join("F.html"), "x").unwrap();
+        assert_eq!(page(&matrix).unwrap(), folder.path().join("F.html"));
         for path in [folder.path().to_owned(), expected.clone(), folder.path().join("run.json")] {
             assert_eq!(page(&path).unwrap(), expected);
         }

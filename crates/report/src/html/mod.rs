@@ -12,14 +12,16 @@ mod model;
 mod pack;
 mod page;
 mod plot;
+mod records;
 mod run;
 mod studies;
 mod table;
 mod waves;
 
-pub use model::{ElementPhasors, ElementValues, FieldStep, ReportModel};
+pub use model::{ElementLinks, ElementPhasors, ElementValues, FieldStep, ReportModel};
 pub use page::{ReportBadge, ReportPage};
-pub use plot::{ReportAxis, ReportPlot, ReportSeries};
+pub use plot::{ReportAxis, ReportPlot, ReportPolar, ReportSeries};
+pub use records::face_quantities;
 pub use studies::face_scores;
 pub use table::{ReportCell, ReportColumn, ReportTable};
 pub use waves::{WaveReport, current_phasors};

@@ -64,6 +64,15 @@ pub struct FieldStep {
     pub irradiance: Vec<f64>,
 }
 
+/// What lights the elements most.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ElementLinks {
+    /// Middles of what sends light, m.
+    pub centres: Vec<Vec3>,
+    /// For each element numbers of senders with their shares of its irradiance, the largest first.
+    pub links: Vec<Vec<(u32, f64)>>,
+}
+
 /// What is shown in three dimensions.
 #[derive(Clone, Copy)]
 pub struct ReportModel<'a> {
@@ -81,13 +90,16 @@ pub struct ReportModel<'a> {
     pub values: &'a [ElementValues],
     /// Complex quantities.
     pub phasors: &'a [ElementPhasors],
+    /// What lights the elements most, where that is known.
+    pub links: Option<&'a ElementLinks>,
 }
 
 impl<'a> ReportModel<'a> {
     /// A mesh of which nothing but its surfaces is known.
     #[must_use]
     pub fn bare(mesh: &'a Mesh) -> Self {
-        Self { mesh, field: None, view: None, steps: &[], steps_title: "", values: &[], phasors: &[] }
+        let (steps, values, phasors) = (&[], &[], &[]);
+        Self { mesh, field: None, view: None, steps, steps_title: "", values, phasors, links: None }
     }
 
     /// A field of light, seen from where the scene is seen from.
@@ -123,6 +135,19 @@ pub(super) struct Described {
     steps_title: String,
     scalars: Vec<Scalar>,
     phasors: Vec<Phasor>,
+    links: Option<Links>,
+}
+
+/// Links in elements of the page: middles of the senders as positions, how many links each element
+/// has, the numbers of their senders, and 255 times their shares.
+#[derive(Debug, Serialize)]
+struct Links {
+    senders: usize,
+    centres: String,
+    counts: String,
+    total: usize,
+    from: String,
+    shares: String,
 }
 
 /// Values in an element of the page.
@@ -237,6 +262,7 @@ pub(super) fn write_model(model: &ReportModel<'_>, out: &mut dyn Write) -> io::R
     let light = model.field.map(|field| blobs.light(field, model.steps)).transpose()?.unwrap_or_default();
     let scalars = model.values.iter().map(|values| blobs.scalar(values)).collect::<io::Result<_>>()?;
     let phasors = model.phasors.iter().map(|values| blobs.phasor(values)).collect::<io::Result<_>>()?;
+    let links = model.links.map(|links| blobs.links(links, low, high)).transpose()?;
     Ok(Described {
         elements: mesh.len(),
         vertices: leaves.vertices.len(),
@@ -267,6 +293,7 @@ pub(super) fn write_model(model: &ReportModel<'_>, out: &mut dyn Write) -> io::R
         steps_title: model.steps_title.to_owned(),
         scalars,
         phasors,
+        links,
     })
 }
 
@@ -304,6 +331,25 @@ impl Blobs<'_> {
         };
         let codes = (0..3).flat_map(move |axis| vertices.iter().map(move |vertex| code(axis, vertex)));
         self.add(|out| words(out, &codes, vertices.len().max(1)))
+    }
+
+    fn links(&mut self, links: &ElementLinks, low: Vec3, high: Vec3) -> io::Result<Links> {
+        let all = || links.links.iter().flatten();
+        let mut used: Vec<u32> = all().map(|link| link.0).collect();
+        used.sort_unstable();
+        used.dedup();
+        let centres: Vec<Vec3> = used.iter().map(|&sender| links.centres[sender as usize]).collect();
+        let number = |sender: u32| used.binary_search(&sender).unwrap_or(0) as u32;
+        let counts = links.links.iter().map(|own| u8::try_from(own.len()).unwrap_or(u8::MAX));
+        let share = |&(_, share): &(u32, f64)| (255.0 * share.clamp(0.0, 1.0)).round() as u8;
+        Ok(Links {
+            senders: centres.len(),
+            centres: self.positions(&centres, low, high)?,
+            counts: self.add(|out| out.write_all(&counts.collect::<Vec<_>>()))?,
+            total: all().count(),
+            from: self.add(|out| varints(out, all().map(|link| number(link.0))))?,
+            shares: self.add(|out| out.write_all(&all().map(share).collect::<Vec<_>>()))?,
+        })
     }
 
     fn values(&mut self, values: impl Iterator<Item = f64> + Clone) -> io::Result<Packed> {

@@ -51,6 +51,8 @@ pub struct ReportPage<'a> {
     pub model: Option<ReportModel<'a>>,
     /// What is shown where three dimensions cannot be.
     pub picture: Option<&'a Picture>,
+    /// What the picture shows, for those who cannot see it; nothing for the scene from its camera.
+    pub picture_text: String,
     /// What the user should know.
     pub warnings: Vec<String>,
     /// How far the result can be trusted, in sentences.
@@ -132,7 +134,12 @@ impl ReportPage<'_> {
 
     fn write_picture(&self, out: &mut dyn Write) -> io::Result<()> {
         let Some(picture) = self.picture else { return Ok(()) };
-        write!(out, "<img class=\"picture\" alt=\"The scene from its camera\" src=\"data:image/png;base64,")?;
+        let text = match self.picture_text.as_str() {
+            "" => "The scene from its camera",
+            text => text,
+        };
+        let text = escaped(text);
+        write!(out, "<img class=\"picture\" alt=\"{text}\" src=\"data:image/png;base64,")?;
         let mut encoder = EncoderWriter::new(&mut *out, &STANDARD);
         picture.write_png(&mut encoder)?;
         encoder.finish()?;

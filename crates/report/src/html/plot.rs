@@ -28,6 +28,17 @@ pub struct ReportSeries {
     pub y: Vec<f64>,
 }
 
+/// How a plot of levels over an angle is drawn round a circle.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ReportPolar {
+    /// Whether angles run clockwise from the top rather than counter-clockwise from the right.
+    pub clockwise_from_top: bool,
+    /// Decibels of a decade of the values: 10 for powers and areas, 20 for fields.
+    pub per_decade: f64,
+    /// Quantity and unit of the values themselves.
+    pub linear: String,
+}
+
 /// A plot with one or more choices of what runs across.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReportPlot {
@@ -39,6 +50,8 @@ pub struct ReportPlot {
     pub across: Vec<(ReportAxis, Vec<ReportSeries>)>,
     /// What is drawn upwards.
     pub up: ReportAxis,
+    /// Whether and how it can be polar too: across are degrees then, and upwards levels.
+    pub polar: Option<ReportPolar>,
 }
 
 impl ReportPlot {
@@ -55,12 +68,13 @@ pub(super) struct DescribedPlot<'a> {
     x: Vec<&'a ReportAxis>,
     y: &'a ReportAxis,
     series: Vec<&'a [ReportSeries]>,
+    polar: Option<&'a ReportPolar>,
 }
 
 impl<'a> DescribedPlot<'a> {
     pub(super) fn new(id: String, plot: &'a ReportPlot) -> Self {
         let (x, series) = plot.across.iter().map(|(axis, lines)| (axis, lines.as_slice())).unzip();
-        Self { id, x, y: &plot.up, series }
+        Self { id, x, y: &plot.up, series, polar: plot.polar.as_ref() }
     }
 }
 

@@ -33,6 +33,7 @@ impl<'a> ReportPage<'a> {
             provenance: provenance(run),
             options: run.options.clone(),
             version: run.version.clone(),
+            ..Self::default()
         }
     }
 }
@@ -205,6 +206,7 @@ pub(super) fn convergence(run: &RunRecord) -> ReportPlot {
             .to_owned(),
         across: vec![over("iterations", &iterations), over("seconds", &run.history.seconds)],
         up: ReportAxis { label: "relative residual".to_owned(), logarithmic: true },
+        polar: None,
     }
 }
 

@@ -53,6 +53,7 @@ impl<'a> ReportPage<'a> {
             provenance: provenance(&record.version, &record.scene, &record.scene_sha256, &record.timings),
             options: record.options.clone(),
             version: record.version.clone(),
+            ..Self::default()
         }
     }
 
@@ -164,14 +165,19 @@ pub fn face_scores(mesh: &Mesh, bands: &[String], rows: &[CrosscheckRow]) -> Vec
     bands.iter().enumerate().map(named).collect()
 }
 
-fn badges(text: &str, good: bool, warnings: &[String]) -> Vec<ReportBadge> {
+pub(super) fn badges(text: &str, good: bool, warnings: &[String]) -> Vec<ReportBadge> {
     let warned = warnings.len() as u64;
     let warned =
         (warned > 0).then(|| ReportBadge { text: count(warned, "warning", "warnings"), good: false });
     std::iter::once(ReportBadge { text: text.to_owned(), good }).chain(warned).collect()
 }
 
-fn provenance(version: &str, scene: &str, sha256: &str, timings: &[Timing]) -> Vec<(String, String)> {
+pub(super) fn provenance(
+    version: &str,
+    scene: &str,
+    sha256: &str,
+    timings: &[Timing],
+) -> Vec<(String, String)> {
     let time = if timings.is_empty() { String::new() } else { times(timings) };
     let known = [
         ("Program", format!("Fredholm {version}")),
@@ -228,6 +234,7 @@ fn shooting(record: &ShootingRecord) -> ReportPlot {
             over("columns computed", of(&|shot| shot.columns as f64)),
         ],
         up: axis("share still to be shot", true),
+        polar: None,
     }
 }
 
@@ -257,6 +264,7 @@ fn comparison(case: &ComparisonCase) -> ReportPlot {
             over("iterations", &steps),
         ],
         up: axis("relative residual", true),
+        polar: None,
     }
 }
 
@@ -317,6 +325,7 @@ fn refinement(record: &RefinementRecord) -> ReportPlot {
             record.bands.iter().map(curve).collect(),
         )],
         up: axis("relative error of the irradiance", true),
+        polar: None,
     }
 }
 
@@ -384,6 +393,7 @@ fn histogram(scores: &[f64]) -> ReportPlot {
             .to_owned(),
         across: vec![(axis("z", false), vec![found, normal])],
         up: axis("number", false),
+        polar: None,
     }
 }
 

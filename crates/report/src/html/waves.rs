@@ -109,6 +109,7 @@ fn history(across: &str, residuals: &[WaveResiduals]) -> ReportPlot {
             residuals.iter().map(line).collect(),
         )],
         up: ReportAxis { label: "relative residual".to_owned(), logarithmic: true },
+        polar: None,
     }
 }
 

@@ -14,18 +14,20 @@ use std::path::PathBuf;
 
 use crate::catalogue::CataloguedFile;
 use crate::{
-    Camera, Exposure, Field, FieldStep, Picture, PointTable, ReportError, ReportModel, ReportPage,
-    ResultFolder, RunRecord, ShadowMesh, render,
+    Camera, ElementLinks, Exposure, FalseColourPicture, Field, FieldStep, Picture, PointTable, ReportError,
+    ReportModel, ReportPage, ResultFolder, RunRecord, ShadowMesh, render,
 };
 
 /// The commands that write what every solution has.
 const LIGHT: &str = "solve, resume";
 
 /// All files of a solution, in the order in which they are written.
-const ALL: [&dyn OutputFile; 17] = [
+const ALL: [&dyn OutputFile; 19] = [
     &pictures::Mesh,
     &pictures::Links,
     &pictures::Gathered,
+    &pictures::FalseColours,
+    &tables::FalseColours,
     &tables::Points,
     &meshes::Shadows,
     &meshes::Ply,
@@ -52,6 +54,8 @@ pub const MESH_PICTURE: &str = "mesh.png";
 pub const LINKS_PICTURE: &str = "links.png";
 /// The picture for which every pixel gathers its light.
 pub const GATHER: &str = "gather.png";
+/// The irradiance of the picture in false colour.
+pub const FALSE_COLOUR: &str = "false_colour.png";
 /// The elements with colours, as PLY.
 pub const FIELD_PLY: &str = "field.ply";
 /// The same as binary glTF.
@@ -107,6 +111,8 @@ pub struct Wanted {
     pub links: bool,
     /// [`GATHER`].
     pub gather: bool,
+    /// [`FALSE_COLOUR`] and its table.
+    pub false_colour: bool,
     /// The irradiance of points.
     pub points: bool,
     /// The elements cut along the borders of shadows.
@@ -135,6 +141,8 @@ pub struct Extras<'a> {
     pub linear: Vec<[f32; 3]>,
     /// Further pictures with their names: [`MESH_PICTURE`], [`LINKS_PICTURE`], [`GATHER`].
     pub pictures: Vec<(&'static str, Picture)>,
+    /// The irradiance in false colour, for [`FALSE_COLOUR`] and its table.
+    pub false_colour: Option<FalseColourPicture>,
     /// How bright the colours of [`FIELD_PLY`] and [`FIELD_GLB`] are.
     pub exposure: Exposure,
     /// The irradiance of points.
@@ -156,6 +164,8 @@ pub struct RunReport<'a> {
     pub view: &'a View,
     /// The field on the way to the solution, and what the steps are.
     pub steps: (&'a str, &'a [FieldStep]),
+    /// What lights the elements most, where that is known.
+    pub links: Option<&'a ElementLinks>,
 }
 
 /// What the picture shows.
@@ -200,8 +210,8 @@ pub fn write_with(
     run: &RunRecord,
     more: &Extras<'_>,
 ) -> Result<Vec<PathBuf>, ReportError> {
-    let page = more.report.map(|RunReport { title, view, steps: (steps_title, steps) }| {
-        let model = ReportModel { steps, steps_title, ..ReportModel::lit(field, view) };
+    let page = more.report.map(|RunReport { title, view, steps: (steps_title, steps), links }| {
+        let model = ReportModel { steps, steps_title, links, ..ReportModel::lit(field, view) };
         ReportPage::of_run(title, field, run, model, more.image.as_ref())
     });
     let contents = Contents { field, run, more, page };
@@ -238,7 +248,7 @@ mod tests {
         let named: Vec<PathBuf> = usual().map(|name| folder.join(name)).collect();
         let without_page = [&named[..7], &named[8..]].concat();
         assert_eq!(paths, without_page, "no page was asked for");
-        let report = RunReport { title: "box", view: &view, steps: ("", &[]) };
+        let report = RunReport { title: "box", view: &view, steps: ("", &[]), links: None };
         let image = Some(render(&field, &view.camera, view.exposure).unwrap());
         let more = Extras { image, report: Some(report), ..Extras::default() };
         let paths = write_with(&claim(&folder), &field, &record(), &more).unwrap();

@@ -2,7 +2,9 @@
 
 use std::io::{self, Write};
 
-use super::{Contents, Extras, FIELD_EXR, GATHER, IMAGE, LINKS_PICTURE, MESH_PICTURE, OutputFile, Wanted};
+use super::{
+    Contents, Extras, FALSE_COLOUR, FIELD_EXR, GATHER, IMAGE, LINKS_PICTURE, MESH_PICTURE, OutputFile, Wanted,
+};
 use crate::Picture;
 use crate::catalogue::{CataloguedFile, file};
 
@@ -153,5 +155,35 @@ impl OutputFile for Gathered {
 
     fn write(&self, contents: &Contents<'_>, out: &mut dyn Write) -> io::Result<()> {
         png(drawn(contents.more, GATHER), out)
+    }
+}
+
+/// The irradiance in false colour.
+pub(super) struct FalseColours;
+
+impl OutputFile for FalseColours {
+    fn name(&self) -> &'static str {
+        FALSE_COLOUR
+    }
+
+    fn about(&self) -> Option<CataloguedFile> {
+        Some(file(
+            self.name(),
+            "solve --false-colour",
+            "irradiance in false colour, with lines of equal irradiance and numbers, W/m²",
+            &[],
+        ))
+    }
+
+    fn is_wanted(&self, wanted: &Wanted) -> bool {
+        wanted.false_colour
+    }
+
+    fn is_ready(&self, more: &Extras<'_>) -> bool {
+        more.false_colour.is_some()
+    }
+
+    fn write(&self, contents: &Contents<'_>, out: &mut dyn Write) -> io::Result<()> {
+        png(contents.more.false_colour.as_ref().map(|drawn| &drawn.picture), out)
     }
 }

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use super::{Contents, Extras, LIGHT, OutputFile, Wanted};
 use crate::catalogue::{CataloguedFile, file};
-use crate::{write_faces_csv, write_field_csv, write_points_csv, write_surfaces_csv};
+use crate::{write_faces_csv, write_false_colour_csv, write_field_csv, write_points_csv, write_surfaces_csv};
 
 /// A row an element.
 pub(super) struct Elements;
@@ -140,5 +140,42 @@ impl OutputFile for Points {
     fn write(&self, contents: &Contents<'_>, out: &mut dyn Write) -> io::Result<()> {
         let points = contents.more.points.as_ref();
         points.map_or(Ok(()), |table| write_points_csv(table, contents.field.bands(), out))
+    }
+}
+
+/// The numbers of the picture in false colour.
+pub(super) struct FalseColours;
+
+impl OutputFile for FalseColours {
+    fn name(&self) -> &'static str {
+        "false_colour.csv"
+    }
+
+    fn about(&self) -> Option<CataloguedFile> {
+        Some(file(
+            self.name(),
+            "solve --false-colour",
+            "a row a number of the picture",
+            &[
+                ("column, row", "", "of the pixel, from the upper left, from 0"),
+                ("element, face", "", "numbers, from 0"),
+                ("surface", "", "name"),
+                ("x, y, z", "m", "the point seen through the middle of the pixel"),
+                ("irradiance", "W/m²", "there, in the band of the picture or in all bands together"),
+            ],
+        ))
+    }
+
+    fn is_wanted(&self, wanted: &Wanted) -> bool {
+        wanted.false_colour
+    }
+
+    fn is_ready(&self, more: &Extras<'_>) -> bool {
+        more.false_colour.is_some()
+    }
+
+    fn write(&self, contents: &Contents<'_>, out: &mut dyn Write) -> io::Result<()> {
+        let drawn = contents.more.false_colour.as_ref();
+        drawn.map_or(Ok(()), |drawn| write_false_colour_csv(contents.field.mesh(), &drawn.numbers, out))
     }
 }

@@ -20,9 +20,9 @@ pub(super) struct Elements<'a> {
 
 impl Painter for Elements<'_> {
     fn brush(&self) -> Brush<'_> {
-        Box::new(|view, tone, samples| {
+        Box::new(|view, _, samples| {
             mean(samples, |sample| {
-                let colour = view.shade(tone, sample);
+                let colour = sample.shown;
                 let near = on_edge(view, self.mesh.patch(sample.leaf), sample, HALF);
                 if near { blend(colour, LINE, COVER) } else { colour }
             })

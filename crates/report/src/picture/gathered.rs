@@ -82,6 +82,10 @@ impl Painter for GatherPainter<'_> {
         })
     }
 
+    fn shows_field(&self) -> bool {
+        false
+    }
+
     fn is_whole(&self) -> bool {
         !self.stopped.load(Ordering::Relaxed)
     }

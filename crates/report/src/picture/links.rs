@@ -12,7 +12,7 @@ use super::elements::{blend, on_edge};
 use super::{Brush, Painter, Picture, Sample, Viewer, mean};
 use crate::Field;
 use crate::colour::Rgb;
-use crate::tone::{Tone, encode, luminance};
+use crate::tone::{encode, luminance};
 
 /// A node that sends to the receiver.
 #[derive(Clone, Debug)]
@@ -65,9 +65,9 @@ impl<'a> LinkPainter<'a> {
         Self { field: *field, receiver, linked: links(receiver) }
     }
 
-    fn colour(&self, view: &Viewer<'_>, tone: Tone, sample: &Sample) -> Rgb {
+    fn colour(&self, view: &Viewer<'_>, sample: &Sample) -> Rgb {
         let mesh = self.field.mesh();
-        let grey = [DIM * luminance(view.shade(tone, sample)); 3];
+        let grey = [DIM * luminance(sample.shown); 3];
         if sample.leaf == self.receiver {
             return RECEIVER;
         }
@@ -93,7 +93,7 @@ fn strength(share: f64) -> f64 {
 
 impl Painter for LinkPainter<'_> {
     fn brush(&self) -> Brush<'_> {
-        Box::new(|view, tone, samples| mean(samples, |sample| self.colour(view, tone, sample)))
+        Box::new(|view, _, samples| mean(samples, |sample| self.colour(view, sample)))
     }
 
     /// Lines from the receiver to the middles of the nodes, the strongest last.

@@ -96,10 +96,20 @@ pub struct LitPicture {
 
 /// A leaf and its linear colour as seen through the middle of a pixel.
 #[derive(Clone, Copy)]
-struct Middle {
+pub(super) struct Middle {
     leaf: u32,
-    colour: [f32; 3],
+    pub(super) colour: [f32; 3],
 }
+
+impl Middle {
+    /// The leaf, where one is seen.
+    pub(super) fn leaf(&self) -> Option<usize> {
+        (self.leaf != NOTHING).then_some(self.leaf as usize)
+    }
+}
+
+/// Linear display values, 0 to 1, of a linear colour.
+pub(super) type Display<'a> = dyn Fn(Rgb) -> Rgb + Sync + 'a;
 
 /// Draws one view.
 pub(super) struct LitView<'a> {
@@ -112,7 +122,7 @@ pub(super) struct LitView<'a> {
 }
 
 /// What is seen through a point of the picture: a leaf, and where (m).
-type Seen = Option<(usize, Vec3)>;
+pub(super) type Seen = Option<(usize, Vec3)>;
 
 /// Colours points for one thread.
 struct Brush<'v> {
@@ -174,21 +184,12 @@ impl Tile {
 }
 
 /// A pixel as it is shown, and its linear colour.
-type Painted = ([u8; 3], [f32; 3]);
+pub(super) type Painted = ([u8; 3], [f32; 3]);
 
 impl<'a> LitView<'a> {
     pub fn new(field: Field<'a>, eye: &'a Eye, lit: &'a Lit<'a>) -> Result<Self, ReportError> {
+        check(field, lit)?;
         let (mesh, bands) = (field.mesh(), field.bands().len());
-        let lengths = [
-            ("reflectance", mesh.len() * bands, lit.reflectance.len()),
-            ("direct irradiance", mesh.len() * bands, lit.direct.map_or(mesh.len() * bands, <[f64]>::len)),
-            ("exitance of lamps", lit.light.lamps() * bands, lit.exitance.len()),
-        ];
-        for (what, expected, found) in lengths {
-            if expected != found {
-                return Err(ReportError::Length { what, expected, found });
-            }
-        }
         let colouring = Colouring::new(field.bands());
         let mut sent = vec![[0.0; 3]; mesh.surfaces().len() * lit.light.lamps()];
         // All leaves of a surface have one material.
@@ -210,6 +211,34 @@ impl<'a> LitView<'a> {
         Ok(Self { field, eye, lit, rest, sent })
     }
 
+    /// The irradiance in place of the radiosity, W/m²: the sum over the bands with a weight each,
+    /// as a grey colour.
+    pub fn of_irradiance(
+        field: Field<'a>,
+        eye: &'a Eye,
+        lit: &'a Lit<'a>,
+        weights: &[f64],
+    ) -> Result<Self, ReportError> {
+        check(field, lit)?;
+        let bands = field.bands().len();
+        let weighed = |values: &[f64]| values.iter().zip(weights).map(|(e, w)| e * w).sum::<f64>();
+        let of_lamps: Vec<Rgb> = lit.exitance.chunks_exact(bands).map(|m| [weighed(m); 3]).collect();
+        let sent = of_lamps.repeat(field.mesh().surfaces().len());
+        let passes = if lit.direct.is_some() { PASSES } else { 0 };
+        let rest = Shading::of_values(field, passes, |leaf| {
+            let direct = lit.direct.map_or(0.0, |direct| weighed(field.row(direct, leaf)));
+            let share = field.exposed(leaf);
+            let received_by = if share > 0.0 { 1.0 / share } else { 1.0 };
+            [(weighed(field.row(field.irradiance(), leaf)) - direct) * received_by; 3]
+        });
+        Ok(Self { field, eye, lit, rest, sent })
+    }
+
+    /// Linear colours of points, W/m², each looked at by itself; 0 where nothing is seen.
+    pub fn colours(&self, samples: &[Seen]) -> Vec<Rgb> {
+        self.brush().colours(samples)
+    }
+
     fn brush(&self) -> Brush<'_> {
         let look = self.lit.light.lighter();
         Brush { view: self, look, order: Vec::new(), points: Vec::new(), factors: Vec::new() }
@@ -219,41 +248,48 @@ impl<'a> LitView<'a> {
     /// any more before it was whole.
     pub fn draw(&self, exposure: Exposure, linear: bool) -> Result<Option<LitPicture>, ReportError> {
         let Camera { width, height, .. } = *self.eye.camera();
+        let Some(middles) = self.looked() else { return Ok(None) };
+        let tone = Tone::new(exposure, &self.metered(&middles))?;
+        let Some(painted) = self.shown(&middles, &|colour| tone.display(colour)) else { return Ok(None) };
+        let pixels = painted.iter().flat_map(|(shown, _)| *shown).collect();
+        let colours = if linear { painted.iter().map(|(_, seen)| *seen).collect() } else { Vec::new() };
+        let picture = Picture { width, height, pixels };
+        Ok(Some(LitPicture { picture, linear: colours, exposure: tone.exposure() }))
+    }
+
+    /// What is seen through the middles of all pixels, row by row; none where the picture is not
+    /// wanted any more.
+    pub fn looked(&self) -> Option<Vec<Middle>> {
+        self.in_tiles(0.0, |tile| self.middles(tile))
+    }
+
+    /// All pixels, row by row; none where the picture is not wanted any more.
+    pub fn shown(&self, middles: &[Middle], display: &Display<'_>) -> Option<Vec<Painted>> {
+        self.in_tiles(0.5, |tile| self.painted(tile, middles, display))
+    }
+
+    /// The pixels of all tiles, row by row; half of the way of the picture, from `begun`.
+    fn in_tiles<T: Copy + Send>(
+        &self,
+        begun: f64,
+        of_tile: impl Fn(&Tile) -> Option<Vec<T>> + Sync,
+    ) -> Option<Vec<T>> {
+        let Camera { width, height, .. } = *self.eye.camera();
         let (w, h) = (width as usize, height as usize);
         let tiles = Tile::all(w, h);
         let done = AtomicUsize::new(0);
-        let finished = || {
+        let of_tile = |tile: &Tile| {
+            let found = of_tile(tile)?;
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            self.lit.light.advance(done as f64 / (2 * tiles.len()) as f64);
+            self.lit.light.advance(begun + 0.5 * done as f64 / tiles.len() as f64);
+            Some(found)
         };
-        let looked = tiles.par_iter().map(|tile| {
-            let looked = self.middles(tile)?;
-            finished();
-            Some(looked)
-        });
-        let Some(looked) = looked.collect::<Option<Vec<_>>>() else { return Ok(None) };
-        let mut middles = vec![Middle { leaf: NOTHING, colour: [0.0; 3] }; w * h];
-        for (tile, looked) in tiles.iter().zip(looked) {
-            tile.pixels().zip(looked).for_each(|((x, y), middle)| middles[y * w + x] = middle);
+        let found: Vec<Vec<T>> = tiles.par_iter().map(of_tile).collect::<Option<_>>()?;
+        let mut pixels = vec![*found.first()?.first()?; w * h];
+        for (tile, found) in tiles.iter().zip(found) {
+            tile.pixels().zip(found).for_each(|((x, y), value)| pixels[y * w + x] = value);
         }
-        let tone = Tone::new(exposure, &self.metered(&middles))?;
-        let painted = tiles.par_iter().map(|tile| {
-            let painted = self.painted(tile, &middles, tone)?;
-            finished();
-            Some(painted)
-        });
-        let Some(painted) = painted.collect::<Option<Vec<_>>>() else { return Ok(None) };
-        let mut colours = vec![[0.0_f32; 3]; if linear { w * h } else { 0 }];
-        let mut pixels = vec![0; 3 * w * h];
-        for (tile, painted) in tiles.iter().zip(painted) {
-            for ((x, y), (shown, seen)) in tile.pixels().zip(painted) {
-                let at = y * w + x;
-                pixels[3 * at..3 * at + 3].copy_from_slice(&shown);
-                colours.get_mut(at).into_iter().for_each(|colour| *colour = seen);
-            }
-        }
-        let picture = Picture { width, height, pixels };
-        Ok(Some(LitPicture { picture, linear: colours, exposure: tone.exposure() }))
+        Some(pixels)
     }
 
     /// What is seen through the middles of the pixels of a tile; none where the picture is not
@@ -285,7 +321,7 @@ impl<'a> LitView<'a> {
     }
 
     /// The pixels of a tile; none where the picture is not wanted any more.
-    fn painted(&self, tile: &Tile, middles: &[Middle], tone: Tone) -> Option<Vec<Painted>> {
+    fn painted(&self, tile: &Tile, middles: &[Middle], display: &Display<'_>) -> Option<Vec<Painted>> {
         let Camera { width, height, .. } = *self.eye.camera();
         let (w, h) = (width as usize, height as usize);
         let mut brush = self.brush();
@@ -293,12 +329,12 @@ impl<'a> LitView<'a> {
         let mut borders = Vec::new();
         for (x, y) in tile.pixels() {
             let middle = &middles[y * w + x];
-            if self.is_border(middles, (w, h), (x, y), tone) {
+            if self.is_border(middles, (w, h), (x, y), display) {
                 borders.push((painted.len(), (x, y)));
             }
             let shown = match middle.leaf {
                 NOTHING => [BACKGROUND; 3],
-                _ => tone.display(middle.colour.map(f64::from)),
+                _ => display(middle.colour.map(f64::from)),
             };
             painted.push((shown.map(encode), middle.colour));
         }
@@ -325,7 +361,7 @@ impl<'a> LitView<'a> {
                 (0..samples.len()).map(of).map(|k| around[k].unwrap_or(colours[k])).collect();
             let pixels = samples.chunks(FINE).zip(colours.chunks(FINE));
             for ((place, _), (samples, colours)) in borders.iter().zip(pixels) {
-                painted[*place] = mean(samples, colours, tone);
+                painted[*place] = mean(samples, colours, display);
             }
         }
         Some(painted)
@@ -349,12 +385,12 @@ impl<'a> LitView<'a> {
         middles: &[Middle],
         (w, h): (usize, usize),
         (x, y): (usize, usize),
-        tone: Tone,
+        display: &Display<'_>,
     ) -> bool {
         let own = &middles[y * w + x];
         let shown = |middle: &Middle| match middle.leaf {
             NOTHING => [BACKGROUND; 3],
-            _ => tone.display(middle.colour.map(f64::from)),
+            _ => display(middle.colour.map(f64::from)),
         };
         let colour = shown(own);
         neighbours((w, h), (x, y)).any(|at| {
@@ -447,12 +483,28 @@ fn lit(samples: &[Seen]) -> [usize; FINE] {
     lit
 }
 
+/// Refuses what does not fit the field.
+fn check(field: Field<'_>, lit: &Lit<'_>) -> Result<(), ReportError> {
+    let (leaves, bands) = (field.mesh().len(), field.bands().len());
+    let lengths = [
+        ("reflectance", leaves * bands, lit.reflectance.len()),
+        ("direct irradiance", leaves * bands, lit.direct.map_or(leaves * bands, <[f64]>::len)),
+        ("exitance of lamps", lit.light.lamps() * bands, lit.exitance.len()),
+    ];
+    for (what, expected, found) in lengths {
+        if expected != found {
+            return Err(ReportError::Length { what, expected, found });
+        }
+    }
+    Ok(())
+}
+
 /// A pixel from its samples: the means of their display values and of their colours.
-fn mean(samples: &[Seen], colours: &[Rgb], tone: Tone) -> Painted {
+fn mean(samples: &[Seen], colours: &[Rgb], display: &Display<'_>) -> Painted {
     let (mut shown, mut seen) = ([0.0; 3], [0.0; 3]);
     for (sample, colour) in samples.iter().zip(colours) {
-        let display = if sample.is_some() { tone.display(*colour) } else { [BACKGROUND; 3] };
-        shown = [0, 1, 2].map(|i| shown[i] + display[i] / FINE as f64);
+        let own = if sample.is_some() { display(*colour) } else { [BACKGROUND; 3] };
+        shown = [0, 1, 2].map(|i| shown[i] + own[i] / FINE as f64);
         seen = [0, 1, 2].map(|i| seen[i] + colour[i] / FINE as f64);
     }
     (shown.map(encode), seen.map(|c| c as f32))

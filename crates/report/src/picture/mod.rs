@@ -7,6 +7,7 @@
 //! never changes a pixel. Several pictures of one view share the rays.
 
 mod elements;
+mod false_colour;
 mod gathered;
 mod links;
 mod lit;
@@ -24,6 +25,7 @@ use crate::shading::Shading;
 use crate::tone::{Exposure, Tone, encode, luminance};
 use crate::{Camera, Eye, Field, ReportError};
 use elements::Elements;
+pub use false_colour::{FalseColourPicture, PictureNumber, render_false_colour};
 use gathered::GatherPainter;
 pub use gathered::Gathering;
 use links::LinkPainter;
@@ -169,12 +171,19 @@ struct Sample {
     point: Vec3,
     /// Place in the picture, pixels from the upper left.
     at: (f64, f64),
+    /// Display colour of the interpolated field, where a painter shows it.
+    shown: Rgb,
 }
 
 /// Colours the pixels of a picture.
 trait Painter: Sync {
     /// Paints for one thread: a linear display colour from the samples of a pixel.
     fn brush(&self) -> Brush<'_>;
+
+    /// Whether it shows the interpolated field.
+    fn shows_field(&self) -> bool {
+        true
+    }
 
     /// Adds what is drawn over the whole picture.
     fn finish(&self, _view: &Viewer<'_>, _picture: &mut Picture) {}
@@ -212,8 +221,9 @@ impl<'a> Viewer<'a> {
     fn draw(&self, tone: Tone, painters: &[Box<dyn Painter + '_>], y: usize, rows: &mut [u8]) {
         let width = self.eye.camera().width as usize;
         let mut brushes: Vec<Brush> = painters.iter().map(|painter| painter.brush()).collect();
+        let field = painters.iter().any(|painter| painter.shows_field());
         for x in 0..width {
-            let samples = self.samples(x, y);
+            let samples = self.samples((x, y), field.then_some(tone));
             for (k, brush) in brushes.iter_mut().enumerate() {
                 let at = 3 * (k * width + x);
                 rows[at..at + 3].copy_from_slice(&brush(self, tone, &samples).map(encode));
@@ -221,17 +231,15 @@ impl<'a> Viewer<'a> {
         }
     }
 
-    fn samples(&self, x: usize, y: usize) -> [Option<Sample>; SAMPLES] {
+    /// The samples of a pixel, with the field in a tone where one is given.
+    fn samples(&self, (x, y): (usize, usize), tone: Option<Tone>) -> [Option<Sample>; SAMPLES] {
         std::array::from_fn(|k| {
             let (dx, dy) = lattice(k);
             let at = (x as f64 + dx, y as f64 + dy);
-            self.eye.hit(at.0, at.1).map(|(leaf, point)| Sample { leaf, point, at })
+            let (leaf, point) = self.eye.hit(at.0, at.1)?;
+            let shown = tone.map_or([0.0; 3], |tone| tone.display(self.shading.colour(leaf, point)));
+            Some(Sample { leaf, point, at, shown })
         })
-    }
-
-    /// Display colour of the interpolated field.
-    fn shade(&self, tone: Tone, sample: &Sample) -> Rgb {
-        tone.display(self.shading.colour(sample.leaf, sample.point))
     }
 
     /// Where a point is in the picture, pixels from the upper left; none for one behind the eye.
@@ -289,7 +297,7 @@ struct Plain;
 
 impl Painter for Plain {
     fn brush(&self) -> Brush<'_> {
-        Box::new(|view, tone, samples| mean(samples, |sample| view.shade(tone, sample)))
+        Box::new(|_, _, samples| mean(samples, |sample| sample.shown))
     }
 }
 

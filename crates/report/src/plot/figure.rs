@@ -13,15 +13,15 @@ use plotters::style::ShapeStyle;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::scale::{Scale, Span};
-use super::theme::{GRID, GROUND, INK, MUTED, SMALL, TEXT, TITLE, WIDTH, dark_style, load_font, text};
+use super::theme::{
+    GRID, GROUND, INK, MARGIN, MUTED, SMALL, TEXT, TITLE, TITLE_ROW, WIDTH, dark_style, load_font, text,
+};
 use super::{Point, Polar};
 
 /// Steps of a pixel in an SVG: the library rounds to whole ones.
 const UNIT: i32 = 10;
-/// Border, pixels.
-const MARGIN: i32 = 14;
-/// Height of a line of the title, of a heading and of a row of the legend, pixels.
-const ROW: i32 = 25;
+/// Height of a row of the legend, pixels.
+const ROW: i32 = TITLE_ROW;
 /// Height of a panel with its labels, pixels.
 const PANEL: i32 = 340;
 /// Room for the labels below and beside a panel, pixels.
@@ -165,8 +165,8 @@ pub(crate) struct Figure {
 /// What `out` reports.
 pub(crate) fn write_svg(figure: &Figure, out: &mut dyn Write) -> io::Result<()> {
     load_font()?;
-    let (title, legend) = (wrapped(&figure.title)?, Legend::new(figure)?);
-    let top = MARGIN + ROW * title.len() as i32 + 6;
+    let (title, legend) = (wrapped(&figure.title, WIDTH - 2 * MARGIN)?, Legend::new(figure)?);
+    let top = MARGIN + TITLE_ROW * title.len() as i32 + 6;
     let parts: i32 = figure.parts.iter().map(Part::height).sum();
     let height = top + parts + ROW * legend.rows + MARGIN;
     let mut text = String::new();
@@ -226,7 +226,7 @@ pub(super) fn draw_title<DB: DrawingBackend>(
 ) -> Drawn<DB> {
     for (number, line) in (0..).zip(lines) {
         let style = text(TITLE, unit, INK);
-        root.draw(&Text::new(line.as_str(), (MARGIN * unit, (MARGIN + ROW * number) * unit), style))?;
+        root.draw(&Text::new(line.as_str(), (MARGIN * unit, (MARGIN + TITLE_ROW * number) * unit), style))?;
     }
     Ok(())
 }
@@ -385,14 +385,13 @@ impl Legend {
 }
 
 /// Width of a text, pixels.
-fn width_of(words: &str, size: i32) -> io::Result<i32> {
+pub(super) fn width_of(words: &str, size: i32) -> io::Result<i32> {
     let (wide, _) = text(size, UNIT, INK).font.box_size(words).map_err(failed)?;
     Ok(i32::try_from(wide).unwrap_or(i32::MAX) / UNIT)
 }
 
-/// A title in lines that fit; of a word that is longer than a line the end is kept.
-pub(super) fn wrapped(title: &str) -> io::Result<Vec<String>> {
-    let room = WIDTH - 2 * MARGIN;
+/// A title in lines that fit `room` pixels; of a word that is longer than a line the end is kept.
+pub(super) fn wrapped(title: &str, room: i32) -> io::Result<Vec<String>> {
     let mut lines: Vec<String> = Vec::new();
     for word in title.split_whitespace() {
         let mut word = word.to_owned();
@@ -487,9 +486,9 @@ pub(crate) mod tests {
     #[test]
     fn titles_and_legends_stay_inside() {
         let title = "scenes/a.toml: 12 unknowns with a reflectance up to 0.99, and something more";
-        let lines = wrapped(title).unwrap();
+        let lines = wrapped(title, WIDTH - 2 * MARGIN).unwrap();
         assert!(lines.len() > 1 && lines.join(" ") == title);
-        let long = wrapped(&"x".repeat(500)).unwrap();
+        let long = wrapped(&"x".repeat(500), WIDTH - 2 * MARGIN).unwrap();
         assert!(long.len() == 1 && long[0].starts_with('…'));
         assert!(width_of(&long[0], TITLE).unwrap() <= WIDTH - 2 * MARGIN);
         let line = |i: usize| Line::distinct(&format!("line {i}"), vec![(0.0, 1.0)], i);

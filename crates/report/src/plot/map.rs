@@ -11,7 +11,7 @@ use plotters::style::colors::colormaps::{ColorMap, DerivedColorMap, ViridisRGB};
 use super::Point;
 use super::figure::{draw_axes, draw_title, failed, wrapped};
 use super::scale::Scale;
-use super::theme::{GROUND, INK, SMALL, TEXT, load_font, text};
+use super::theme::{GROUND, INK, MARGIN, SMALL, TEXT, TITLE_ROW, WIDTH, load_font, text};
 use crate::Picture;
 
 /// Pixels of the picture for one of the theme: maps are drawn at twice the size.
@@ -19,7 +19,7 @@ const UNIT: i32 = 2;
 /// Room beside the map, its longest sides and its least side, pixels of the theme.
 const LEFT: i32 = 84;
 const BELOW: i32 = 58;
-const BAR: i32 = 140;
+pub(super) const BAR: i32 = 140;
 const WIDEST: i32 = 376;
 const TALLEST: i32 = 520;
 const LEAST: i32 = 150;
@@ -31,6 +31,42 @@ pub(crate) struct ColourBar<'a> {
     pub(crate) scale: Scale,
     /// Colour of a place from 0 to 1.
     pub(crate) colour: fn(f64) -> [u8; 3],
+}
+
+impl ColourBar<'_> {
+    /// Draws the bar at the left of an area, `tall` pixels of the theme high, each `unit` pixels.
+    ///
+    /// # Errors
+    /// What the library reports.
+    pub(super) fn draw(&self, area: &Area<'_>, tall: i32, unit: i32) -> io::Result<()> {
+        let mut chart = ChartBuilder::on(&area.split_vertically(tall.max(LEAST) * unit).0)
+            .margin_left(18 * unit)
+            .margin_right(((area.dim_in_pixel().0 as i32 / unit - BAR).max(0) + 14) * unit)
+            .right_y_label_area_size(84 * unit)
+            .build_cartesian_2d(Scale::linear(0.0, 1.0), self.scale.clone())
+            .map_err(failed)?;
+        chart
+            .configure_mesh()
+            .disable_x_axis()
+            .disable_mesh()
+            .y_desc(self.label)
+            .y_labels(7)
+            .set_all_tick_mark_size(5 * unit)
+            .axis_style(INK)
+            .label_style(text(SMALL, unit, INK))
+            .axis_desc_style(text(TEXT, unit, INK))
+            .draw()
+            .map_err(failed)?;
+        let inside = chart.plotting_area().strip_coord_spec();
+        let (wide, tall) = inside.dim_in_pixel();
+        for y in 0..tall {
+            let [r, g, b] = (self.colour)(1.0 - (f64::from(y) + 0.5) / f64::from(tall));
+            for x in 0..wide {
+                inside.draw_pixel((x as i32, y as i32), &RGBColor(r, g, b)).map_err(failed)?;
+            }
+        }
+        Ok(())
+    }
 }
 
 /// A map.
@@ -56,11 +92,11 @@ impl Heat<'_> {
     /// What the library reports.
     pub(crate) fn draw(&self) -> io::Result<Picture> {
         load_font()?;
-        let title = wrapped(self.title)?;
+        let title = wrapped(self.title, WIDTH - 2 * MARGIN)?;
         let aspect = if self.aspect.is_normal() { self.aspect.abs() } else { 1.0 };
         let wide = f64::from(WIDEST).min(f64::from(TALLEST) / aspect);
         let [wide, tall] = [wide, wide * aspect].map(|side| (side.round() as i32).max(LEAST));
-        let top = 20 + 25 * title.len() as i32 + 6;
+        let top = 20 + TITLE_ROW * title.len() as i32 + 6;
         let (width, height) = (600, top + tall + BELOW + 14);
         let (right, size) = (width - LEFT - wide, [width, height].map(|side| (UNIT * side).unsigned_abs()));
         let mut pixels = vec![255; 3 * size[0] as usize * size[1] as usize];
@@ -70,7 +106,7 @@ impl Heat<'_> {
             draw_title(&root, &title, UNIT).map_err(failed)?;
             let (map, bar) = root.split_vertically(top * UNIT).1.split_horizontally((width - right) * UNIT);
             self.draw_map(&map)?;
-            self.draw_bar(&bar, tall)?;
+            self.bar.draw(&bar, tall, UNIT)?;
             root.present().map_err(failed)?;
         }
         Ok(Picture { width: size[0], height: size[1], pixels })
@@ -103,39 +139,9 @@ impl Heat<'_> {
         }
         Ok(())
     }
-
-    fn draw_bar(&self, area: &Area<'_>, tall: i32) -> io::Result<()> {
-        let mut chart = ChartBuilder::on(&area.split_vertically(tall * UNIT).0)
-            .margin_left(18 * UNIT)
-            .margin_right(((area.dim_in_pixel().0 as i32 / UNIT - BAR).max(0) + 14) * UNIT)
-            .right_y_label_area_size(84 * UNIT)
-            .build_cartesian_2d(Scale::linear(0.0, 1.0), self.bar.scale.clone())
-            .map_err(failed)?;
-        chart
-            .configure_mesh()
-            .disable_x_axis()
-            .disable_mesh()
-            .y_desc(self.bar.label)
-            .y_labels(7)
-            .set_all_tick_mark_size(5 * UNIT)
-            .axis_style(INK)
-            .label_style(text(SMALL, UNIT, INK))
-            .axis_desc_style(text(TEXT, UNIT, INK))
-            .draw()
-            .map_err(failed)?;
-        let inside = chart.plotting_area().strip_coord_spec();
-        let (wide, tall) = inside.dim_in_pixel();
-        for y in 0..tall {
-            let [r, g, b] = (self.bar.colour)(1.0 - (f64::from(y) + 0.5) / f64::from(tall));
-            for x in 0..wide {
-                inside.draw_pixel((x as i32, y as i32), &RGBColor(r, g, b)).map_err(failed)?;
-            }
-        }
-        Ok(())
-    }
 }
 
-type Area<'a> = plotters::drawing::DrawingArea<BitMapBackend<'a>, plotters::coord::Shift>;
+pub(super) type Area<'a> = plotters::drawing::DrawingArea<BitMapBackend<'a>, plotters::coord::Shift>;
 
 /// The cell of a pixel.
 fn cell_at(pixel: u32, of: u32, cells: usize) -> usize {

@@ -3,16 +3,20 @@
 //! screen (a media query of CSS in the file), and maps with colour bars as PNG with a font of our
 //! own.
 
+mod annotated;
 mod figure;
+mod isolines;
 mod map;
 mod polar;
 mod scale;
 mod theme;
 
+pub(crate) use annotated::{Annotated, Isoline, number_grid};
 pub(crate) use figure::{Axis, Bar, Figure, Line, Panel, Part, write_svg};
+pub(crate) use isolines::Grid;
 pub(crate) use map::{ColourBar, Heat, diverging, twilight, viridis};
 pub(crate) use polar::Polar;
-pub(crate) use scale::{SMALLEST_ON_LOG_AXIS, Scale, Span};
+pub(crate) use scale::{SMALLEST_ON_LOG_AXIS, Scale, Span, round_step};
 pub(crate) use theme::{band_colours, distinct};
 
 /// A point of a plot in its own quantities.

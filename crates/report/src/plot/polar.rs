@@ -1,4 +1,5 @@
-//! A polar plot: angle counter-clockwise from the right, radius by level or by value.
+//! A polar plot: angle counter-clockwise from the right, or clockwise from the top, radius by level
+//! or by value.
 
 use plotters::chart::ChartBuilder;
 use plotters::coord::Shift;
@@ -8,7 +9,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::Point;
 use super::figure::{Drawn, Line, draw_line};
-use super::scale::Scale;
+use super::scale::{Scale, round_step};
 use super::theme::{GRID, INK, MUTED, SMALL, TEXT, text};
 
 /// Levels so far below the rim and more stand at the centre, dB.
@@ -25,6 +26,8 @@ pub(crate) struct Polar {
     pub(crate) label: String,
     /// Whether the values are levels in dB rather than from 0 upwards.
     pub(crate) decibels: bool,
+    /// Whether angles run clockwise from the top rather than counter-clockwise from the right.
+    pub(crate) from_top: bool,
     /// Angles in degrees, and values.
     pub(crate) lines: Vec<Line>,
 }
@@ -44,10 +47,14 @@ impl Polar {
                 .collect();
         }
         let top = if top > 0.0 { top } else { 1.0 };
-        let power = 10.0_f64.powf((top / 5.0).log10().floor());
-        let steps = [1.0, 2.0, 2.5, 5.0, 10.0].map(|m| m * power);
-        let step = steps.into_iter().find(|step| 5.0 * step >= top * (1.0 - 1e-9)).unwrap_or(top);
+        let step = round_step(top, 5.0);
         (0..=(top / step - 1e-9).ceil() as i32).map(|i| step * f64::from(i)).collect()
+    }
+
+    /// Where an angle and a share of the radius stand.
+    fn place(&self, degrees: f64, share: f64) -> Point {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        if self.from_top { (share * sin, share * cos) } else { (share * cos, share * sin) }
     }
 
     pub(super) fn draw<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>, unit: i32) -> Drawn<DB> {
@@ -66,6 +73,7 @@ impl Polar {
         let rings = self.rings();
         let (centre, rim) = (rings[0], rings[rings.len() - 1]);
         let share = |value: f64| ((value - centre) / (rim - centre)).clamp(0.0, 1.0);
+        let place = |degrees: f64, share: f64| self.place(degrees, share);
         let thin = GRID.stroke_width((unit / 2).max(1).unsigned_abs());
         for spoke in 0..12 {
             let degrees = 30.0 * f64::from(spoke);
@@ -84,16 +92,12 @@ impl Polar {
         }
         for &ring in &rings[1..] {
             let style = text(SMALL, unit, MUTED).pos(Pos::new(HPos::Left, VPos::Bottom));
-            chart.draw_series([Text::new(crate::words::number(ring), place(75.0, share(ring)), style)])?;
+            // In a sector that runs from the same spoke whichever way angles are counted.
+            let degrees = if self.from_top { 15.0 } else { 75.0 };
+            chart.draw_series([Text::new(crate::words::number(ring), place(degrees, share(ring)), style)])?;
         }
         Ok(())
     }
-}
-
-/// Where an angle and a share of the radius stand.
-fn place(degrees: f64, share: f64) -> Point {
-    let (sin, cos) = degrees.to_radians().sin_cos();
-    (share * cos, share * sin)
 }
 
 #[cfg(test)]
@@ -105,7 +109,7 @@ mod tests {
     fn polar(decibels: bool, values: &[f64]) -> Polar {
         let points = values.iter().enumerate().map(|(i, v)| (90.0 * i as f64, *v)).collect();
         let line = Line::distinct("E <z>", points, 0);
-        Polar { label: "|E|, dB(V/m)".to_owned(), decibels, lines: vec![line] }
+        Polar { label: "|E|, dB(V/m)".to_owned(), decibels, from_top: false, lines: vec![line] }
     }
 
     #[test]
@@ -124,6 +128,16 @@ mod tests {
         assert!(right.0 > centre.0 && top.1 < centre.1);
         assert!(((right.0 - centre.0) / (centre.1 - top.1) - 1.0).abs() < 0.01, "circles are round");
         assert!(texts(&svg).iter().any(|text| text == "E &lt;z&gt;"));
+    }
+
+    #[test]
+    fn angles_from_an_axis_run_clockwise_from_the_top() {
+        let polar = Polar { from_top: true, ..polar(false, &[1.0, 1.0, 0.0]) };
+        let svg = drawn(vec![Part::Polar(polar)]);
+        let line = &curves(&svg)[0];
+        let (top, right, centre) = (line[0], line[1], line[2]);
+        assert!((right.1 - centre.1).abs() < 2.0 && (top.0 - centre.0).abs() < 2.0);
+        assert!(right.0 > centre.0 && top.1 < centre.1);
     }
 
     #[test]

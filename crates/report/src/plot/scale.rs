@@ -42,6 +42,11 @@ impl Scale {
         Self { from, to, logarithmic: false, ticks: ticks.to_vec() }
     }
 
+    /// A logarithmic axis with ticks at the given numbers.
+    pub(crate) fn decades_with_ticks(from: f64, to: f64, ticks: &[f64]) -> Self {
+        Self { ticks: ticks.to_vec(), ..Self::decades(from, to) }
+    }
+
     /// A logarithmic axis.
     pub(crate) fn decades(from: f64, to: f64) -> Self {
         let (from, to) = (from.max(SMALLEST_ON_LOG_AXIS), to.max(SMALLEST_ON_LOG_AXIS));
@@ -92,6 +97,13 @@ impl Scale {
         }
         self
     }
+}
+
+/// The smallest of 1, 2, 2.5 and 5 times a power of ten of which so many parts reach `top`, above 0.
+pub(crate) fn round_step(top: f64, parts: f64) -> f64 {
+    let power = 10.0_f64.powf((top / parts).log10().floor());
+    let steps = [1.0, 2.0, 2.5, 5.0, 10.0].map(|m| m * power);
+    steps.into_iter().find(|step| parts * step >= top * (1.0 - 1e-9)).unwrap_or(top)
 }
 
 /// Powers of ten, about nine of them at most; where there are less than two decades, 2 and 5 times

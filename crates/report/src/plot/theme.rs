@@ -14,6 +14,10 @@ use plotters::style::{FontStyle, register_font};
 
 /// Width of a drawing, pixels.
 pub(super) const WIDTH: i32 = 600;
+/// Border, pixels.
+pub(super) const MARGIN: i32 = 14;
+/// Height of a line of the title, pixels.
+pub(super) const TITLE_ROW: i32 = 25;
 /// Sizes of text, pixels.
 pub(super) const TITLE: i32 = 19;
 pub(super) const TEXT: i32 = 16;

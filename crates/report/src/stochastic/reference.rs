@@ -20,7 +20,10 @@ use super::crosscheck::json;
 use super::faces::{COLUMNS, place};
 use crate::csv::{header, numbers};
 use crate::number::Number;
-use crate::{ReportError, ResultFolder, Timing};
+use crate::{
+    Exposure, Field, REPORT, ReportError, ReportModel, ReportPage, ResultFolder, Timing, View,
+    face_quantities,
+};
 
 /// Names of the files, in the order in which they are written.
 pub const REFERENCE_FILES: [&str; 4] = ["reference.csv", "patches.obj", "pixels.npz", "reference.json"];
@@ -102,7 +105,8 @@ pub struct ReferenceRecord {
     pub timings: Vec<Timing>,
 }
 
-/// Writes all files into a folder and returns their paths.
+/// Writes all files into a folder and returns their paths; with a title, `report.html` too, seen
+/// from where the view has it.
 ///
 /// # Errors
 /// [`ReportError::Length`] for a table of another length, [`ReportError::Write`] with the file that
@@ -112,6 +116,7 @@ pub fn write_reference(
     mesh: &Mesh,
     (table, pixels): (&ReferenceTable, &Pixels),
     record: &ReferenceRecord,
+    report: Option<(&str, &View)>,
 ) -> Result<Vec<PathBuf>, ReportError> {
     let (expected, found) = (mesh.faces().len() * record.bands.len(), table.irradiance.len());
     let columns =
@@ -121,12 +126,39 @@ pub fn write_reference(
     }
     pixels.check(record.bands.len())?;
     let [values, patches, picture, last] = REFERENCE_FILES;
+    if let Some(report) = report {
+        page(folder, mesh, (table, pixels), record, report)?;
+    }
     Ok(vec![
         folder.write(values, |out| csv(mesh, table, &record.bands, out))?,
         folder.write(patches, |out| obj(mesh, out))?,
         folder.write(picture, |out| pixels.write_npz(out))?,
         folder.write(last, |out| json(record, out))?,
     ])
+}
+
+/// `report.html`: the values of the faces on their elements, with their stated errors.
+fn page(
+    folder: &ResultFolder,
+    mesh: &Mesh,
+    (table, pixels): (&ReferenceTable, &Pixels),
+    record: &ReferenceRecord,
+    (title, view): (&str, &View),
+) -> Result<(), ReportError> {
+    let bands = &record.bands;
+    let all = (0..mesh.len()).flat_map(|leaf| (0..bands.len()).map(move |band| (leaf, band)));
+    let places: Vec<usize> = all.map(|(leaf, band)| mesh.face_of(leaf) * bands.len() + band).collect();
+    let of_leaves = |values: &[f64]| -> Vec<f64> { places.iter().map(|&at| values[at]).collect() };
+    let (irradiance, exitance) = (of_leaves(&table.irradiance), of_leaves(&table.exitance));
+    let reflected = irradiance.iter().zip(of_leaves(&table.reflectance)).map(|(e, rho)| rho * e);
+    let radiosity: Vec<f64> = reflected.zip(&exitance).map(|(reflected, m)| m + reflected).collect();
+    let field = Field::new(mesh, bands, &irradiance, &radiosity)?.with_exitance(&exitance)?;
+    let what = ("Stated error of E", "σ(E)", "W/m²");
+    let errors = face_quantities(mesh, bands, &table.error, what);
+    let model = ReportModel { values: &errors, ..ReportModel::lit(&field, view) };
+    let picture = pixels.picture(bands, Exposure::Auto)?;
+    let page = ReportPage::of_reference(title, &field, record, model, Some(&picture));
+    folder.write(REPORT, |out| page.write(out)).map(drop)
 }
 
 fn csv(mesh: &Mesh, table: &ReferenceTable, bands: &[String], out: &mut dyn Write) -> io::Result<()> {

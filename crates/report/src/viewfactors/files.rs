@@ -1,5 +1,5 @@
 //! The files of a matrix: the matrix itself, a heat map (`.png`), a histogram of the closure errors
-//! (`.svg`) and the record (`.json`).
+//! (`.svg`), the page for the browser (`.html`) and the record (`.json`).
 //!
 //! The record is written last: where it stands, the files beside it belong together.
 
@@ -10,7 +10,7 @@ use super::heat_map::heat_map;
 use super::histogram::write_closure_histogram;
 use super::matrix::ViewFactors;
 use super::record::ViewFactorsRecord;
-use crate::{ReportError, ResultFolder};
+use crate::{ReportError, ReportPage, ResultFolder};
 
 /// Forms of the matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,6 +46,8 @@ pub struct ViewFactorFiles {
     pub picture: PathBuf,
     /// The histogram.
     pub histogram: PathBuf,
+    /// The page for the browser.
+    pub page: PathBuf,
     /// The record.
     pub record: PathBuf,
 }
@@ -55,11 +57,17 @@ impl ViewFactorFiles {
     #[must_use]
     pub fn beside(matrix: &Path) -> Self {
         let with = |ending| matrix.with_extension(ending);
-        Self { matrix: matrix.to_owned(), picture: with("png"), histogram: with("svg"), record: with("json") }
+        Self {
+            matrix: matrix.to_owned(),
+            picture: with("png"),
+            histogram: with("svg"),
+            page: with("html"),
+            record: with("json"),
+        }
     }
 }
 
-/// Writes all files to a place that was claimed for them.
+/// Writes all files to a place that was claimed for them, the page where it is wanted.
 ///
 /// # Errors
 /// [`ReportError::Write`] with the file or folder that could not be written. There is then no
@@ -69,14 +77,20 @@ pub fn write_view_factors(
     format: MatrixFormat,
     factors: &ViewFactors,
     record: &ViewFactorsRecord,
+    report: bool,
 ) -> Result<(), ReportError> {
     place.write(&name(&files.matrix), |out| match format {
         MatrixFormat::Npz => factors.write_npz(out),
         MatrixFormat::Csv => factors.write_csv(out),
         MatrixFormat::View3d => factors.write_view3d(record.enforced.is_some(), out),
     })?;
-    place.write(&name(&files.picture), |out| heat_map(factors)?.write_png(out))?;
+    let map = heat_map(factors).map_err(|error| ReportError::Drawing { why: error.to_string() })?;
+    place.write(&name(&files.picture), |out| map.write_png(out))?;
     place.write(&name(&files.histogram), |out| write_closure_histogram(factors, out))?;
+    if report {
+        let page = ReportPage::of_view_factors(factors, record, Some(&map));
+        place.write(&name(&files.page), |out| page.write(out))?;
+    }
     place.write(&name(&files.record), |out| record.write(out)).map(drop)
 }
 
@@ -98,15 +112,16 @@ mod tests {
         let files = ViewFactorFiles::beside(&base.path().join("new/F.npz"));
         let record = ViewFactorsRecord::default();
         let claim = || ResultFolder::of_matrix(&files).unwrap();
-        write_view_factors((&claim(), &files), MatrixFormat::Npz, &sample(None), &record).unwrap();
+        write_view_factors((&claim(), &files), MatrixFormat::Npz, &sample(None), &record, true).unwrap();
         assert_eq!(ViewFactors::read_npz(&files.matrix).unwrap(), sample(None));
         assert_eq!(read_view_factors_record(&files.record).unwrap(), record);
         let picture = image::open(&files.picture).unwrap();
         assert!(picture.width() > 100 && fs::read_to_string(&files.histogram).unwrap().contains("</svg>"));
+        assert!(fs::read_to_string(&files.page).unwrap().contains("View factors"));
         fs::remove_file(&files.picture).unwrap();
         fs::create_dir(&files.picture).unwrap();
-        let error =
-            write_view_factors((&claim(), &files), MatrixFormat::Npz, &sample(None), &record).unwrap_err();
+        let error = write_view_factors((&claim(), &files), MatrixFormat::Npz, &sample(None), &record, true)
+            .unwrap_err();
         assert!(error.to_string().contains("F.png") && !files.record.exists(), "{error}");
     }
 

@@ -19,6 +19,7 @@ pub use error::ViewFactorsError;
 pub use files::{MatrixFormat, ViewFactorFiles, write_view_factors};
 pub use heat_map::heat_map;
 pub use histogram::write_closure_histogram;
+pub(crate) use histogram::{bins, edge};
 pub use matrix::{Factors, Sparse, SurfaceData, ViewFactors, ViewPoints};
 pub(crate) use npy::write_texts;
 pub use record::{ClosureChange, VIEW_FACTORS_FORMAT, ViewFactorsRecord, read_view_factors_record};

@@ -48,6 +48,25 @@ impl AngleQuantity {
         }
     }
 
+    /// The amplitude f of a far field E = f e^{−jkr}/r, over an angle.
+    #[must_use]
+    pub fn amplitude(angle: &str) -> Self {
+        Self {
+            name: "far-field amplitude |f|".to_owned(),
+            level_unit: "dB(V)".to_owned(),
+            unit: "V".to_owned(),
+            angle: angle.to_owned(),
+            per_decade: 20.0,
+        }
+    }
+
+    /// Whether a polar plot counts the angle clockwise from the top, as θ is from +z, rather than
+    /// counter-clockwise from the right, as φ is from +x.
+    #[must_use]
+    pub fn is_from_top(&self) -> bool {
+        self.angle == "θ"
+    }
+
     /// The magnitude of the electric field over an angle.
     #[must_use]
     pub fn field(angle: &str) -> Self {
@@ -85,8 +104,9 @@ pub fn write_angle_plot(
         reach: DECIBELS_SHOWN,
         ..Panel::new(Axis::new(&across, Span::Tight), Axis::new(&up, Span::Tight), mapped(&level))
     };
-    let polar =
-        |label: String, decibels: bool, lines: Vec<Line>| Part::Polar(Polar { label, decibels, lines });
+    let polar = |label: String, decibels: bool, lines: Vec<Line>| {
+        Part::Polar(Polar { label, decibels, from_top: quantity.is_from_top(), lines })
+    };
     let parts = vec![
         Part::Panel(straight),
         polar(format!("{up}, over {angle}"), true, mapped(&level)),

@@ -84,6 +84,17 @@ export interface Model {
   steps_title: string;
   scalars: Scalar[];
   phasors: Phasor[];
+  links: Links | null;
+}
+
+/** What lights the elements most: middles of senders, and of each element their numbers and 255 times their shares. */
+export interface Links {
+  senders: number;
+  centres: string;
+  counts: string;
+  total: number;
+  from: string;
+  shares: string;
 }
 
 /** A further quantity on the elements. */
@@ -114,6 +125,17 @@ export interface Plot {
   y: Axis;
   /** One list of lines for each choice of the axis across. */
   series: Series[][];
+  polar: Round | null;
+}
+
+/** How levels over an angle are drawn round a circle. */
+export interface Round {
+  /** Whether angles run clockwise from the top rather than counter-clockwise from the right. */
+  clockwise_from_top: boolean;
+  /** Decibels of a decade of the values. */
+  per_decade: number;
+  /** Quantity and unit of the values themselves. */
+  linear: string;
 }
 
 export interface Page {

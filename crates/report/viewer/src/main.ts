@@ -4,6 +4,7 @@
 import { readPage, type Camera, type Model, type Page } from "./data";
 import { Fields } from "./fields";
 import { readGeometry, type Geometry } from "./geometry";
+import { Links } from "./links";
 import { Panel } from "./panel";
 import { startPlots } from "./plots";
 import { startTables } from "./tables";
@@ -49,7 +50,8 @@ async function startModel(page: Page, model: Model): Promise<void> {
   const canvas = document.getElementById("canvas") as HTMLCanvasElement;
   const view = new View(canvas, geometry, model.camera ?? framing(geometry));
   const middle = model.colours.length > 0 ? await fields.exposure() : 1;
-  const panel = new Panel(page, geometry, fields, view, middle);
+  const links = await Links.read(model, geometry, view);
+  const panel = new Panel(page, geometry, fields, view, middle, links);
   await panel.start();
   view.render();
   document.documentElement.classList.add("solid");

@@ -4,6 +4,7 @@ import { DIVERGING, gradient, MAP_NAMES, table } from "./colours";
 import type { Page } from "./data";
 import type { Fields, Quantity } from "./fields";
 import type { Geometry } from "./geometry";
+import type { Links } from "./links";
 import { format, linearTicks, logarithmicTicks, rounded } from "./numbers";
 import { showBand } from "./tables";
 import { colour, onTheme, toggleTheme } from "./theme";
@@ -71,6 +72,7 @@ export class Panel {
     private readonly fields: Fields,
     private readonly view: View,
     private readonly middle: number,
+    private readonly links: Links | null,
   ) {
     if (!page.model) throw new Error("the page has no elements");
     this.model = page.model;
@@ -454,6 +456,7 @@ export class Panel {
 
   private async showPicked(): Promise<void> {
     this.mark();
+    const shares = this.links?.show(this.picked) ?? [];
     const target = at("picked");
     const i = this.picked;
     if (i === null) {
@@ -478,6 +481,10 @@ export class Panel {
     const { symbol, unit, banded } = this.chosen;
     if (!banded) add(symbol, `${format(this.values[i])} ${unit}`, "picked-value");
     const parts: HTMLElement[] = [list];
+    if (shares.length > 0) {
+      const told = shares.map((share) => `${format(100 * share, 2)} %`).join(", ");
+      add("Lit most by", `${told} of E, all bands, along the lines`, "picked-links");
+    }
     if (this.model.irradiance.length > 0) parts.push(await this.bandTable(i));
     if (this.picked === i) target.replaceChildren(...parts);
   }

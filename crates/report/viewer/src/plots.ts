@@ -4,6 +4,7 @@ import uPlot from "uplot";
 import type { Page, Plot, Series } from "./data";
 import { interpolateViridis } from "d3-scale-chromatic";
 import { decade, decades, format, logarithmicTicks } from "./numbers";
+import { Polar } from "./polar";
 import { colour, isDark, onTheme } from "./theme";
 
 /** Lines of the fonts and heights of a plot, pixels. */
@@ -41,6 +42,7 @@ function levels(low: number, high: number): number[] {
 class Curves {
   private across = 0;
   private logarithmic: boolean;
+  private form = "straight";
   private chart: uPlot | null = null;
   private readonly frame: HTMLElement;
 
@@ -76,6 +78,11 @@ class Curves {
       });
       bar.append(select);
     }
+    if (this.plot.polar) {
+      // Levels are logarithms already.
+      bar.append(this.forms());
+      return bar;
+    }
     const label = document.createElement("label");
     const box = document.createElement("input");
     box.type = "checkbox";
@@ -89,9 +96,30 @@ class Curves {
     return bar;
   }
 
+  /** The choice between a straight axis and polar plots. */
+  private forms(): HTMLElement {
+    const select = document.createElement("select");
+    select.ariaLabel = "Form of the plot";
+    select.add(new Option("over a straight axis", "straight"));
+    select.add(new Option("polar, in decibels", "decibels"));
+    select.add(new Option("polar, linear", "linear"));
+    select.addEventListener("change", () => {
+      this.form = select.value;
+      this.make();
+    });
+    return select;
+  }
+
   private make(): void {
     this.chart?.destroy();
+    this.chart = null;
     const series = this.plot.series[this.across];
+    if (this.form !== "straight") {
+      const colours = series.map(({ name }, i) => lineColour(name, i, series.length));
+      new Polar(this.frame, this.plot, this.form === "decibels", colours);
+      return;
+    }
+    this.frame.replaceChildren();
     const axis = this.plot.x[this.across];
     this.chart = new uPlot(
       this.options(series, axis.label, axis.logarithmic),

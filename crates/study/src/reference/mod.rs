@@ -5,7 +5,8 @@ use fredholm_montecarlo::light::PathTracing;
 use fredholm_montecarlo::light::pixels::PixelSampling;
 use fredholm_montecarlo::{Enclosure, State};
 use fredholm_report::{
-    Pixels, REFERENCE_FORMAT, ReferencePixels, ReferenceRecord, ReferenceTable, ResultFolder, write_reference,
+    Exposure, Pixels, REFERENCE_FORMAT, ReferencePixels, ReferenceRecord, ReferenceTable, ResultFolder, View,
+    write_reference,
 };
 use fredholm_scene::{Camera, ExportFormat, Scene};
 
@@ -14,7 +15,7 @@ use crate::exchange::{camera, outline, write};
 use crate::options::{ProblemOptions, SceneSource, SolveSettings, StopOptions};
 use crate::problem::{Problem, pictures, with_results};
 use crate::solution::{Solution, compute};
-use crate::solve::{report_failure, view_camera};
+use crate::solve::{report_failure, title, view_camera};
 use crate::stages::Stages;
 use crate::stochastic::{
     PathOptions, PixelTracer, TraceStop, Tracer, control, enclosure, expected_error, face_means, faces,
@@ -53,6 +54,8 @@ pub struct ReferenceOptions {
     pub size: Option<[u32; 2]>,
     /// Samples of each pixel, at least. None: 1024.
     pub spp: Option<u32>,
+    /// Whether report.html is left out.
+    pub no_report: bool,
     /// How paths are made.
     pub paths: PathOptions,
     /// When tracing ends; without anything at a standard error of 0.2 %.
@@ -96,7 +99,10 @@ pub fn reference(
     }
     let record = record(&problem, &table, (&state, seen), &stages);
     scenes(&problem, &camera, folder)?;
-    write_reference(folder, &problem.mesh, (&table, &pixels), &record).map_err(report_failure)?;
+    let (title, view) =
+        (title(&problem.scene), View { camera: view_camera(&camera), exposure: Exposure::Auto });
+    let report = (!asked.no_report).then_some((title.as_str(), &view));
+    write_reference(folder, &problem.mesh, (&table, &pixels), &record, report).map_err(report_failure)?;
     Ok(record)
 }
 
@@ -182,7 +188,7 @@ fn load(
     let [width, height] = asked.size.unwrap_or([USUAL_PIXELS_A_SIDE; 2]).map(u128::from);
     let pixel = |scene: &Scene| PIXEL + BAND * scene.bands().len() as u128;
     let more = |plan, scene: &Scene, n| {
-        let pictures = pictures(scene, 1, (false, false));
+        let pictures = pictures(scene, 1, (false, 0));
         with_results(with_tracing(plan, scene, n), scene, n, (pictures, width * height * pixel(scene)))
     };
     let asked = &asked.problem;

@@ -189,7 +189,7 @@ impl Job<'_> {
         self.light.field(self.scene, received, &self.light.means(received), |field| {
             let view = view_of(self.scene.scene.camera(), field);
             let title = title(&self.scene.scene);
-            let report = RunReport { title: &title, view: &view, steps: ("Shots", steps) };
+            let report = RunReport { title: &title, view: &view, steps: ("Shots", steps), links: None };
             let report = (!self.asked.no_report).then_some(&report);
             let view = (!self.asked.no_pictures).then_some(&view);
             write_shooting(self.folder, field, record, view, report).map_err(report_failure)

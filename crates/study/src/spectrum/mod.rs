@@ -15,7 +15,7 @@ use crate::problem::Problem;
 use crate::registry;
 use crate::size::Bytes;
 use crate::solution::{form_factors, system};
-use crate::solve::{Ended, report_failure};
+use crate::solve::{Ended, report_failure, title};
 use crate::stages::Stages;
 use crate::watcher::Watcher;
 
@@ -26,6 +26,8 @@ pub struct SpectrumOptions {
     pub dense: usize,
     /// Steps of the Lanczos process.
     pub steps: u32,
+    /// Whether report.html is left out.
+    pub no_report: bool,
     /// Threads of the run; see [`ProblemOptions`].
     pub threads: Option<u16>,
     /// Error asked for in a row of form factors; see [`ProblemOptions`].
@@ -36,7 +38,14 @@ pub struct SpectrumOptions {
 
 impl Default for SpectrumOptions {
     fn default() -> Self {
-        Self { dense: 2000, steps: 60, threads: None, form_factor_tolerance: None, memory: None }
+        Self {
+            dense: 2000,
+            steps: 60,
+            no_report: false,
+            threads: None,
+            form_factor_tolerance: None,
+            memory: None,
+        }
     }
 }
 
@@ -78,7 +87,8 @@ pub fn spectrum(
         Precision::F32 => analysed::<f32>(asked, &problem, &mut stages),
     }?;
     stages.begin_saving()?;
-    write_spectrum(folder, &record).map_err(report_failure)?;
+    let title = title(&problem.scene);
+    write_spectrum(folder, &record, (!asked.no_report).then_some(&title)).map_err(report_failure)?;
     let ended = if stages.is_cancelled() { Ended::Interrupted } else { Ended::Done };
     Ok((record, ended))
 }

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use fredholm_montecarlo::State;
 use fredholm_report::{
-    Counts, FaceEstimates, Field, PIXELS, Picture, Pixels, ReportError, ResultFolder, RunRecord, TRACE_STATE,
-    View, render, write_face_estimates, write_run,
+    Counts, FaceEstimates, Field, PIXELS, Picture, Pixels, REPORT, ReportError, ReportModel, ReportPage,
+    ResultFolder, RunRecord, TRACE_STATE, View, face_quantities, render, write_face_estimates, write_run,
 };
 use serde_json::Value;
 
@@ -14,7 +14,7 @@ use super::saved::Origin;
 use crate::error::Error;
 use crate::memory;
 use crate::record::received;
-use crate::solve::{report_failure, view_of};
+use crate::solve::{report_failure, title, view_of};
 use crate::stages::Stages;
 use crate::stochastic::Ground;
 
@@ -102,18 +102,19 @@ impl<'a> Estimates<'a> {
         picture.map_err(report_failure)
     }
 
-    /// Writes the files, with a picture where one is to be drawn; `run.json` last.
+    /// Writes the files, with a picture and the page where these are wanted; `run.json` last.
     pub(super) fn write(
         &self,
         folder: &ResultFolder,
         origin: &Origin,
-        (drawn, pixels): (bool, Option<&Pixels>),
+        (drawn, pixels, report): (bool, Option<&Pixels>, bool),
         record: &RunRecord,
     ) -> Result<(), Error> {
         let (mesh, bands, state) = (&self.ground.mesh, self.ground.scene.bands(), self.state);
         let errors = state.groups.standard_errors();
         let faces = FaceEstimates::new(mesh, bands, state.groups.mean(), &errors).map_err(report_failure)?;
         let picture = drawn.then(|| self.picture(pixels)).transpose()?;
+        let (field, view) = (self.field()?, self.view()?);
         let write = || -> Result<(), ReportError> {
             folder.write("faces.csv", |out| write_face_estimates(&faces, out))?;
             if let Some(picture) = &picture {
@@ -121,6 +122,14 @@ impl<'a> Estimates<'a> {
             }
             if let Some(pixels) = pixels {
                 folder.write(PIXELS, |out| pixels.write_npz(out))?;
+            }
+            if report {
+                let what = ("Standard error of E, face", "s(E)", "W/m²");
+                let errors = face_quantities(mesh, bands, &errors, what);
+                let model = ReportModel { values: &errors, ..ReportModel::lit(&field, &view) };
+                let title = title(&self.ground.scene);
+                let page = ReportPage::of_trace(&title, &field, record, model, picture.as_ref());
+                folder.write(REPORT, |out| page.write(out))?;
             }
             folder.write(TRACE_STATE, |out| origin.save(state, out))?;
             folder.write("run.json", |out| write_run(record, out)).map(drop)

@@ -41,6 +41,8 @@ pub struct TraceOptions {
     pub spp: Option<u32>,
     /// Whether no picture is drawn.
     pub no_pictures: bool,
+    /// Whether report.html is left out.
+    pub no_report: bool,
     /// Whether the run in the folder is gone on with.
     pub go_on: bool,
     /// How paths are made.
@@ -60,6 +62,7 @@ impl Default for TraceOptions {
             control: false,
             spp: None,
             no_pictures: false,
+            no_report: false,
             go_on: false,
             paths: PathOptions::default(),
             stop: TraceStop::default(),
@@ -122,7 +125,7 @@ fn run(
         _ => None,
     };
     let record = estimates.record(&in_force(asked, stop), reason, stages)?;
-    let drawn = (!asked.no_pictures, pixels.as_ref());
+    let drawn = (!asked.no_pictures, pixels.as_ref(), !asked.no_report);
     stages.run("results", || estimates.write(folder, &origin, drawn, &record))?;
     let ended = if stages.is_cancelled() { Ended::Interrupted } else { Ended::Done };
     Ok((Traced { record, seconds: state.seconds, fields: 0 }, ended))

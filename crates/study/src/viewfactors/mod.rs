@@ -39,6 +39,8 @@ pub struct SolvedViewFactors {
     pub factors: ViewFactors,
     /// The record of the run.
     pub record: ViewFactorsRecord,
+    /// Whether the page for the browser is left out.
+    pub no_report: bool,
 }
 
 /// Computes the view factors that the options ask for and writes nothing.
@@ -59,8 +61,14 @@ impl SolvedViewFactors {
     /// [`ErrorKind::Files`] with the file that could not be written.
     pub fn write(&self, files: &MatrixFiles) -> Result<(), Error> {
         let record = recorded(&self.record, files);
-        write_view_factors((&files.place, &files.files), files.format, &self.factors, &record)
-            .map_err(report_failure)
+        write_view_factors(
+            (&files.place, &files.files),
+            files.format,
+            &self.factors,
+            &record,
+            !self.no_report,
+        )
+        .map_err(report_failure)
     }
 }
 
@@ -83,7 +91,7 @@ fn solved(asked: &ViewFactorOptions, stages: &mut Stages) -> Result<SolvedViewFa
     let problem = Problem::load(asked, stages)?;
     let solution = compute(&problem, stages)?;
     let record = record(asked, &problem, &solution, stages);
-    Ok(SolvedViewFactors { factors: solution.factors, record })
+    Ok(SolvedViewFactors { factors: solution.factors, record, no_report: asked.no_report })
 }
 
 /// Computes the view factors that the options ask for and writes them. The record returned has the

@@ -35,6 +35,8 @@ pub struct ViewFactorOptions {
     pub sky: bool,
     /// Points that see the surfaces.
     pub points: GatherPoints,
+    /// Whether the page for the browser is left out.
+    pub no_report: bool,
     /// Threads of the run; see [`ProblemOptions`](crate::ProblemOptions).
     pub threads: Option<u16>,
     /// Memory allowed; see [`ProblemOptions`](crate::ProblemOptions).
@@ -56,6 +58,7 @@ impl ViewFactorOptions {
             close: false,
             sky: false,
             points: GatherPoints::default(),
+            no_report: false,
             threads: None,
             memory: None,
             recorded: Recorded::new(),

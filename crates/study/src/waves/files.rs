@@ -5,16 +5,17 @@ use std::io;
 
 use fredholm_mesh::Mesh;
 use fredholm_report::{
-    AngleQuantity, FieldMap, MapAxis, MapPlane, MapQuantity, REPORT, ReportAxis, ReportError, ReportModel,
-    ReportPage, ReportPlot, ReportSeries, ResultFolder, Timing, WaveReport, WaveResiduals, WaveRow,
-    current_phasors, scaled_frequencies, write_angle_plot, write_currents_vtu, write_far_csv, write_far_npz,
-    write_frequency_plot, write_monostatic_csv, write_monostatic_npz, write_receivers_csv,
-    write_receivers_npz, write_residuals_csv, write_residuals_plot,
+    FieldMap, MapAxis, MapPlane, MapQuantity, REPORT, ReportError, ReportModel, ReportPage, ReportPlot,
+    ResultFolder, Timing, WaveReport, WaveResiduals, WaveRow, current_phasors, scaled_frequencies,
+    write_angle_plot, write_currents_vtu, write_far_csv, write_far_npz, write_frequency_plot,
+    write_monostatic_csv, write_monostatic_npz, write_receivers_csv, write_receivers_npz,
+    write_residuals_csv, write_residuals_plot,
 };
 
 use fredholm_scene::waves::{Layout, Places};
 
 use super::model::{Method, Receiver};
+use super::over_angle::OverAngle;
 use super::over_frequency::{MOST_PICTURED, levels, plot};
 use super::{Model, Outcome};
 
@@ -167,7 +168,7 @@ fn statements(model: &Model, outcome: &Outcome) -> Vec<String> {
     reason.chain(solved).chain(stated).chain(estimated).collect()
 }
 
-/// Radar cross-sections of all receivers over the angle that is stepped through.
+/// Curves of all receivers over the angle that is stepped through, and over the frequency.
 fn curves(model: &Model, outcome: &Outcome) -> Vec<ReportPlot> {
     let mut plots = Vec::new();
     for (index, receiver) in model.receivers.iter().enumerate() {
@@ -177,48 +178,12 @@ fn curves(model: &Model, outcome: &Outcome) -> Vec<ReportPlot> {
         }
         for band in model.bands.iter().filter(|_| model.bands.len() <= MOST_PICTURED) {
             let frequency = band.wave.frequency();
-            let far =
-                outcome.far.iter().filter(|row| row.receiver == index && same(row.frequency, frequency));
-            let known =
-                far.filter_map(|row| Some(([row.theta_degrees, row.phi_degrees], row.cross_section?)));
-            let (angles, sections): (Vec<_>, Vec<_>) = known.unzip();
-            let line = |(name, part): (&str, usize)| {
-                (name.to_owned(), sections.iter().map(|section: &[f64; 2]| section[part]).collect())
-            };
-            let title = format!("{}, {} MHz", receiver.name, frequency / 1e6);
-            plots.extend(curve(&title, &angles, [("θ", 0), ("φ", 1)].map(line).into()));
-            let rows = outcome.monostatic.iter();
-            let rows = rows.filter(|row| row.receiver == index && same(row.frequency, frequency));
-            let known = rows.map(|row| ([row.theta_degrees, row.phi_degrees], row.cross_sections()));
-            let (angles, sections): (Vec<_>, Vec<_>) = known.unzip();
-            let line = |(name, part): (&str, usize)| {
-                (name.to_owned(), sections.iter().map(|section| section[part]).collect())
-            };
-            plots.extend(curve(&title, &angles, [("θθ", 0), ("φφ", 3), ("φθ", 1)].map(line).into()));
+            let name = format!("{}, {} MHz", receiver.name, frequency / 1e6);
+            let over = OverAngle::of(outcome, (index, receiver), frequency, &name);
+            plots.extend(over.map(|over| over.plot()));
         }
     }
     plots
-}
-
-/// Lines of cross-sections (m²) over φ where θ stays the same, else over θ.
-fn curve(title: &str, angles: &[[f64; 2]], lines: Vec<(String, Vec<f64>)>) -> Option<ReportPlot> {
-    let first = angles.first()?;
-    let over_phi = angles.iter().all(|angle| same(angle[0], first[0]));
-    let x: Vec<f64> = angles.iter().map(|angle| angle[usize::from(over_phi)]).collect();
-    let line = |(name, sections): (String, Vec<f64>)| {
-        let y = sections.iter().map(|section| 10.0 * section.log10()).collect();
-        ReportSeries { name, colour: None, dashed: false, x: x.clone(), y }
-    };
-    let axis = |label: &str| ReportAxis { label: label.to_owned(), logarithmic: false };
-    Some(ReportPlot {
-        title: format!("Radar cross-section: {title}"),
-        note: "Decibels above 1 m².".to_owned(),
-        across: vec![(
-            axis(if over_phi { "φ, degrees" } else { "θ, degrees" }),
-            lines.into_iter().map(line).collect(),
-        )],
-        up: axis("dBsm"),
-    })
 }
 
 /// The residuals of all frequencies that have any.
@@ -262,30 +227,17 @@ fn pictures(
         };
         let here = |row: &&WaveRow| row.receiver == index && row.frequency.total_cmp(&frequency).is_eq();
         let rows: Vec<&WaveRow> = outcome.near.iter().filter(here).collect();
-        match &receiver.places {
-            Places::Near { layout: Layout::Circle(degrees), .. } => circle(folder, &stem, degrees, &rows)?,
-            Places::Near { layout: Layout::Grid(columns), points } => {
-                let plane = MapPlane::of(points, *columns);
-                let title = format!("{}, {} MHz", receiver.name, frequency / 1e6);
-                maps(folder, (&stem, &title), *columns, &rows, (plane, &model.geometry.mesh))?;
-            }
-            Places::Near { layout: Layout::Points, .. } => {}
-            Places::Far(_) => far(folder, &stem, outcome, (index, frequency))?,
-            Places::Monostatic(_) => sweep(folder, &stem, outcome, (index, frequency))?,
+        if let Places::Near { layout: Layout::Grid(columns), points } = &receiver.places {
+            let plane = MapPlane::of(points, *columns);
+            let title = format!("{}, {} MHz", receiver.name, frequency / 1e6);
+            maps(folder, (&stem, &title), *columns, &rows, (plane, &model.geometry.mesh))?;
+        }
+        if let Some(over) = OverAngle::of(outcome, (index, receiver), frequency, &stem) {
+            let OverAngle { title, quantity, lines } = &over;
+            folder.write(&format!("{stem}.svg"), |out| write_angle_plot(title, quantity, lines, out))?;
         }
     }
     Ok(())
-}
-
-/// |E| of the scattered and the total field over the angle.
-fn circle(folder: &ResultFolder, stem: &str, degrees: &[f64], rows: &[&WaveRow]) -> Result<(), ReportError> {
-    let line = |name: &str, of: &dyn Fn(&WaveRow) -> [f64; 12]| {
-        let size = |row: &&WaveRow| of(row)[..6].iter().map(|x| x * x).sum::<f64>().sqrt();
-        (name.to_owned(), degrees.iter().copied().zip(rows.iter().map(size)).collect())
-    };
-    let lines = [line("scattered field", &|row| row.scattered), line("total field", &WaveRow::total)];
-    let (title, quantity) = (format!("{stem}: magnitude of E"), AngleQuantity::field("angle"));
-    folder.write(&format!("{stem}.svg"), |out| write_angle_plot(&title, &quantity, &lines, out)).map(drop)
 }
 
 /// The strongest component of E, total field: magnitude, phase and real part.
@@ -323,71 +275,4 @@ fn maps(
         folder.write(&name, |out| map.draw(quantity)?.write_png(out))?;
     }
     Ok(())
-}
-
-/// Radar cross-section over the angle that is stepped through, where a plane wave is incident.
-fn far(
-    folder: &ResultFolder,
-    stem: &str,
-    outcome: &Outcome,
-    (index, frequency): (usize, f64),
-) -> Result<(), ReportError> {
-    let here = outcome.far.iter().filter(|row| row.receiver == index && same(row.frequency, frequency));
-    let known = here.filter_map(|row| Some(([row.theta_degrees, row.phi_degrees], row.cross_section?)));
-    let (angles, sections): (Vec<_>, Vec<_>) = known.unzip();
-    let lines = [("received θ", 0), ("received φ", 1)];
-    let line = |(name, part): (&str, usize)| (name.to_owned(), sections.iter().map(|s| s[part]).collect());
-    over_angle(folder, stem, AngleQuantity::cross_section, &angles, &lines.map(line))?;
-    let here = outcome.far.iter().filter(|row| row.receiver == index && same(row.frequency, frequency));
-    let known = here.filter_map(|row| Some(([row.theta_degrees, row.phi_degrees], row.total?.gain)));
-    let (angles, gains): (Vec<_>, Vec<_>) = known.filter(|(_, gain)| gain.is_finite()).unzip();
-    over_angle(folder, stem, AngleQuantity::gain, &angles, &[("gain".to_owned(), gains)])
-}
-
-/// The same of a monostatic sweep, for either polarisation and across.
-fn sweep(
-    folder: &ResultFolder,
-    stem: &str,
-    outcome: &Outcome,
-    (index, frequency): (usize, f64),
-) -> Result<(), ReportError> {
-    let rows = outcome.monostatic.iter();
-    let here = rows.filter(|row| row.receiver == index && same(row.frequency, frequency));
-    let known = here.map(|row| ([row.theta_degrees, row.phi_degrees], row.cross_sections()));
-    let (angles, sections): (Vec<_>, Vec<_>) = known.unzip();
-    let lines = [("σ θθ", 0), ("σ φφ", 3), ("σ φθ", 1)];
-    let line = |(name, part): (&str, usize)| (name.to_owned(), sections.iter().map(|s| s[part]).collect());
-    over_angle(folder, stem, AngleQuantity::cross_section, &angles, &lines.map(line))
-}
-
-fn same(a: f64, b: f64) -> bool {
-    a.total_cmp(&b).is_eq()
-}
-
-/// A quantity in decibels and in its unit over φ where θ stays the same, else over θ; nothing where
-/// there is no angle.
-fn over_angle(
-    folder: &ResultFolder,
-    stem: &str,
-    quantity: fn(&str) -> AngleQuantity,
-    angles: &[[f64; 2]],
-    lines: &[(String, Vec<f64>)],
-) -> Result<(), ReportError> {
-    let Some(first) = angles.first() else { return Ok(()) };
-    let over_phi = angles.iter().all(|angle| same(angle[0], first[0]));
-    let across = angles.iter().map(|angle| angle[usize::from(over_phi)]);
-    let line = |(name, values): &(String, Vec<f64>)| {
-        (name.clone(), across.clone().zip(values.iter().copied()).collect())
-    };
-    let lines: Vec<(String, Vec<(f64, f64)>)> = lines.iter().map(line).collect();
-    let (angle, other, held) = if over_phi { ("φ", "θ", first[0]) } else { ("θ", "φ", first[1]) };
-    let quantity = quantity(angle);
-    let title = format!("{stem}: {} over {angle} at {other} = {}°", quantity.name, fixed(held));
-    folder.write(&format!("{stem}.svg"), |out| write_angle_plot(&title, &quantity, &lines, out)).map(drop)
-}
-
-/// An angle with the decimals it needs, five at most.
-fn fixed(degrees: f64) -> String {
-    let text = format!("{degrees:.5}");
-    text.trim_end_matches('0').trim_end_matches('.').replace('-', "−")
 }

@@ -14,6 +14,7 @@ mod interpolation;
 mod memory;
 mod model;
 mod monostatic;
+mod over_angle;
 mod over_frequency;
 mod record;
 mod registry;

@@ -45,8 +45,14 @@ pub(super) fn levels(model: &Model, outcome: &Outcome, index: usize, receiver: &
             let part = |part: usize| -> Vec<(f64, f64)> {
                 rows().filter_map(|row| Some((row.frequency, row.cross_section?[part]))).collect()
             };
-            let tables = vec![table("θ", part(0)), table("φ", part(1))];
-            ("radar cross-section", "dBsm", tables)
+            let gains = rows().filter_map(|row| Some((row.frequency, row.total?.gain)));
+            let gains: Vec<(f64, f64)> = gains.filter(|(_, gain)| gain.is_finite()).collect();
+            if gains.is_empty() {
+                let tables = vec![table("θ", part(0)), table("φ", part(1))];
+                ("radar cross-section", "dBsm", tables)
+            } else {
+                ("gain", "dBi", vec![table("gain", gains)])
+            }
         }
         Places::Monostatic(_) => {
             let rows = || outcome.monostatic.iter().filter(|row| row.receiver == index);
@@ -59,7 +65,8 @@ pub(super) fn levels(model: &Model, outcome: &Outcome, index: usize, receiver: &
     };
     let lines: Vec<FrequencyLine> = tables.iter().flat_map(|table| lines(table, &receiver.places)).collect();
     let any = lines.iter().flat_map(|line| &line.levels).any(|level| level.is_finite());
-    let map = if receiver.places_are_directions() { map(&tables) } else { None };
+    let sections = receiver.places_are_directions() && unit == "dBsm";
+    let map = if sections { map(&tables) } else { None };
     any.then_some(Levels { quantity, unit, lines, map })
 }
 
@@ -119,5 +126,6 @@ pub(super) fn plot(model: &Model, receiver: &Receiver, levels: &Levels) -> Repor
         note: format!("Levels in {}.", levels.unit),
         across: vec![(axis("frequency, MHz"), levels.lines.iter().map(line).collect())],
         up: axis(levels.unit),
+        polar: None,
     }
 }
