@@ -65,7 +65,7 @@ pub(crate) fn of_elements(senders: &[Senders], mesh: &Mesh, means: &Means) -> Op
     let received = together(means.irradiance.as_slice(), means.irradiance.rhs_count());
     let links = senders.iter().zip(received).map(|(senders, all)| shares(senders, all)).collect();
     let centres = mesh.patches().map(Patch::centroid).collect();
-    (!senders.is_empty()).then(|| ElementLinks { centres, links })
+    (!senders.is_empty()).then_some(ElementLinks { centres, links })
 }
 
 /// The nodes that light every element most, by links; none where there are too many elements.

@@ -35,6 +35,7 @@ trace.json and run.json. Without --samples, --seconds and --to they draw 65536 s
 
 /// Options of `trace`.
 #[derive(Clone, Debug, Args)]
+#[allow(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub(crate) struct TraceArgs {
     /// Method
     #[arg(long, value_name = "NAME", default_value = "path", value_parser = PossibleValuesParser::new(LIGHT_METHODS.iter().chain(&FIELD_METHODS)))]

@@ -75,7 +75,7 @@ pub fn render_false_colour(
     let Camera { width, height, .. } = *camera;
     let pixels = painted.iter().flat_map(|(shown, _)| *shown).collect();
     let picture = Picture { width, height, pixels };
-    let isolines = isolines(field, &eye, &middles, &scale.levels);
+    let isolines = isolines(field, &eye, &middles, &scale.lines);
     let numbers = numbers(&view, &eye);
     let label = match band.and_then(|band| bands.get(band)) {
         _ if bands.len() == 1 => "irradiance E, W/m²".to_owned(),
@@ -102,7 +102,7 @@ pub fn render_false_colour(
 /// The range of the colours, and the values of the lines.
 struct Levels {
     scale: Scale,
-    levels: Vec<f64>,
+    lines: Vec<f64>,
     /// The least and the largest value that is seen, lamps left out.
     ends: [f64; 2],
 }
@@ -129,21 +129,21 @@ impl Levels {
             let last = one_two_five().find(|v| *v >= high * (1.0 - 1e-9)).unwrap_or(high);
             let levels: Vec<f64> =
                 one_two_five().skip_while(|v| *v < first).take_while(|v| *v <= last).collect();
-            return Self { scale: Scale::decades_with_ticks(first, last, &levels), levels, ends };
+            return Self { scale: Scale::decades_with_ticks(first, last, &levels), lines: levels, ends };
         }
         if high <= 0.0 {
-            return Self { scale: Scale::linear(0.0, 1.0), levels: Vec::new(), ends };
+            return Self { scale: Scale::linear(0.0, 1.0), lines: Vec::new(), ends };
         }
         let step = round_step(high, STEPS);
         let count = (high / step - 1e-9).ceil() as i32;
         let levels: Vec<f64> = (0..=count).map(|i| step * f64::from(i)).collect();
-        Self { scale: Scale::with_ticks(0.0, step * f64::from(count), &levels), levels, ends }
+        Self { scale: Scale::with_ticks(0.0, step * f64::from(count), &levels), lines: levels, ends }
     }
 
     /// A title, with what lies beyond the bar.
     fn told(&self, title: &str) -> String {
         let [low, high] = self.ends;
-        let (first, last) = (self.levels.first(), self.levels.last());
+        let (first, last) = (self.lines.first(), self.lines.last());
         let below = first.filter(|first| low < **first).map(|_| format!("down to {}", number(low)));
         let above = last.filter(|last| high > **last).map(|_| format!("up to {}", number(high)));
         let beyond: Vec<String> = below.into_iter().chain(above).collect();

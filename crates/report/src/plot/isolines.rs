@@ -26,7 +26,9 @@ impl Grid<'_> {
         let segments = self.segments(level);
         let mut at: BTreeMap<Side, Vec<usize>> = BTreeMap::new();
         for (number, ends) in segments.iter().enumerate() {
-            ends.iter().for_each(|end| at.entry(*end).or_default().push(number));
+            for end in ends {
+                at.entry(*end).or_default().push(number);
+            }
         }
         let mut used = vec![false; segments.len()];
         let mut lines = Vec::new();

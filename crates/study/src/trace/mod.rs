@@ -29,6 +29,7 @@ const ERROR: f64 = 0.01;
 
 /// What is asked of [`trace`].
 #[derive(Clone, Debug)]
+#[allow(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub struct TraceOptions {
     /// Method, one of [`LIGHT_METHODS`] for scenes of light, of [`FIELD_METHODS`] for those of
     /// waves.

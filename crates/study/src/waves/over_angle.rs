@@ -3,7 +3,9 @@
 //! Directions that step through one angle are one cut. Of a grid of directions there is a cut for
 //! each of the values of the angle that has fewer, of many [`MOST_CUTS`] evenly spaced ones.
 
-use fredholm_report::{AngleQuantity, FarRow, ReportAxis, ReportPlot, ReportPolar, ReportSeries, WaveRow};
+use fredholm_report::{
+    AngleQuantity, FarRow, MonostaticRow, ReportAxis, ReportPlot, ReportPolar, ReportSeries, WaveRow,
+};
 use fredholm_scene::waves::{Layout, Places};
 
 use super::Outcome;
@@ -14,12 +16,14 @@ const DECIBELS_SHOWN: f64 = 80.0;
 /// Most cuts of one plot.
 const MOST_CUTS: usize = 4;
 
+/// The name of a line, and its angles (degrees) with values.
+type NamedLine = (String, Vec<(f64, f64)>);
+
 /// Lines over an angle.
 pub(super) struct OverAngle {
     pub(super) title: String,
     pub(super) quantity: AngleQuantity,
-    /// Names, and angles (degrees) with values.
-    pub(super) lines: Vec<(String, Vec<(f64, f64)>)>,
+    pub(super) lines: Vec<NamedLine>,
 }
 
 /// A quantity in directions: what makes it of the angle, and its parts with a value a direction.
@@ -49,7 +53,7 @@ impl OverAngle {
             Places::Monostatic(angles) => {
                 let rows = outcome.monostatic.iter();
                 let rows = rows.filter(|row| row.receiver == index && same(row.frequency, frequency));
-                let sections: Vec<[f64; 4]> = rows.map(|row| row.cross_sections()).collect();
+                let sections: Vec<[f64; 4]> = rows.map(MonostaticRow::cross_sections).collect();
                 let part = |part: usize| sections.iter().map(|sections| sections[part]).collect();
                 let parts = [("σ θθ", 0), ("σ φφ", 3), ("σ φθ", 1)].map(|(name, at)| (name, part(at)));
                 in_directions(angles, &(AngleQuantity::cross_section, parts.into()), name)
@@ -67,7 +71,7 @@ impl OverAngle {
         let least = finite.fold(f64::NEG_INFINITY, f64::max) - DECIBELS_SHOWN;
         // What is nothing but rounding would set the scale.
         let shown = |level: f64| if level >= least { level } else { f64::NAN };
-        let line = |((name, points), levels): (&(String, Vec<(f64, f64)>), Vec<f64>)| ReportSeries {
+        let line = |((name, points), levels): (&NamedLine, Vec<f64>)| ReportSeries {
             name: name.clone(),
             colour: None,
             dashed: false,
