@@ -19,7 +19,8 @@ pub enum Method {
     Mfie,
     /// The same with j times that on a second surface inside, which has no resonances.
     DualSurfaceMfie,
-    /// The electric field integral equation of open and closed conductors, by boundary elements.
+    /// The electric field integral equation of open and closed conductors, thin sheets with an
+    /// impedance and closed bodies with a surface impedance, by boundary elements.
     Efie,
     /// The combined field integral equation of closed conductors, by boundary elements; it has no
     /// resonances.
