@@ -38,8 +38,8 @@ use crate::stages::Stages;
 const FIRST_FACETS: [f64; 2] = [40.0, 20_000.0];
 const MOST_FIRST: [usize; 2] = [600, 40_000];
 /// Seconds that the next trial may be expected to take, and after which it is given up.
-const BUDGET: f64 = 1.0;
-const MOST_SECONDS: f64 = 2.0;
+const BUDGET: f64 = 1.5;
+const MOST_SECONDS: f64 = 3.0;
 /// Exponent that is expected of the second trial.
 const EXPECTED_EXPONENT: f64 = 1.5;
 /// Unknowns of the matrix that is factorised for its rate, at most: a fraction of a second.
@@ -52,7 +52,7 @@ const LEAST_GROWTH: f64 = 1.9;
 /// which its error takes eight.
 const PLACES: usize = 48;
 const WORK: usize = 2_000_000;
-const SWEPT: usize = 16;
+const SWEPT: usize = 32;
 /// Frequencies in a trial, of few and of many.
 const FREQUENCIES: usize = 2;
 /// Seconds of a value in the files, and of a plot or a map.
@@ -303,7 +303,7 @@ fn total(receivers: &[Receiver], swept: bool) -> f64 {
 /// The receivers at some of their places, as many as such facets allow, over a divisor.
 fn sampled(receivers: &[Receiver], facets: usize, divisor: usize) -> Vec<Receiver> {
     let most = |places: &Places| match places {
-        Places::Monostatic(_) => SWEPT / divisor.min(2),
+        Places::Monostatic(_) => (SWEPT / divisor).max(1),
         _ => ((WORK / facets.max(1)).max(PLACES) / divisor).max(1),
     };
     receivers.iter().map(|receiver| fewer(receiver, most(&receiver.places))).collect()
