@@ -359,6 +359,7 @@ mod tests {
             row_error: vec![0.0; 2],
         };
         let factors = ViewFactors::new(surfaces, None, |i, row, _| {
+            row.fill(0.0);
             row[1 - i] = if i == 0 { 0.9 } else { 0.999 };
         });
         let record = ViewFactorsRecord { input: "two.obj".to_owned(), ..ViewFactorsRecord::default() };
