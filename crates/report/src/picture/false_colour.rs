@@ -71,10 +71,9 @@ pub fn render_false_colour(
     let Some(middles) = view.looked() else { return Ok(None) };
     let scale = Levels::of(field, &middles);
     let display = |colour: [f64; 3]| viridis(scale.scale.place(colour[0])).map(decoded);
-    let Some(painted) = view.shown(&middles, &display) else { return Ok(None) };
+    let Some(shown) = view.shown(&middles, &display) else { return Ok(None) };
     let Camera { width, height, .. } = *camera;
-    let pixels = painted.iter().flat_map(|(shown, _)| *shown).collect();
-    let picture = Picture { width, height, pixels };
+    let picture = Picture { width, height, pixels: shown.into_flattened() };
     let isolines = isolines(field, &eye, &middles, &scale.lines);
     let numbers = numbers(&view, &eye);
     let label = match band.and_then(|band| bands.get(band)) {

@@ -184,7 +184,7 @@ impl Tile {
 }
 
 /// A pixel as it is shown, and its linear colour.
-pub(super) type Painted = ([u8; 3], [f32; 3]);
+type Painted = ([u8; 3], [f32; 3]);
 
 impl<'a> LitView<'a> {
     pub fn new(field: Field<'a>, eye: &'a Eye, lit: &'a Lit<'a>) -> Result<Self, ReportError> {
@@ -250,11 +250,17 @@ impl<'a> LitView<'a> {
         let Camera { width, height, .. } = *self.eye.camera();
         let Some(middles) = self.looked() else { return Ok(None) };
         let tone = Tone::new(exposure, &self.metered(&middles))?;
-        let Some(painted) = self.shown(&middles, &|colour| tone.display(colour)) else { return Ok(None) };
-        let pixels = painted.iter().flat_map(|(shown, _)| *shown).collect();
-        let colours = if linear { painted.iter().map(|(_, seen)| *seen).collect() } else { Vec::new() };
-        let picture = Picture { width, height, pixels };
-        Ok(Some(LitPicture { picture, linear: colours, exposure: tone.exposure() }))
+        let display = |colour| tone.display(colour);
+        // Linear colours take four times the memory of what is shown.
+        let drawn = if linear {
+            let painted = self.in_tiles(0.5, |tile| self.painted(tile, &middles, &display));
+            painted.map(|painted| painted.into_iter().unzip())
+        } else {
+            self.shown(&middles, &display).map(|shown| (shown, Vec::new()))
+        };
+        let Some((shown, linear)) = drawn else { return Ok(None) };
+        let picture = Picture { width, height, pixels: Vec::into_flattened(shown) };
+        Ok(Some(LitPicture { picture, linear, exposure: tone.exposure() }))
     }
 
     /// What is seen through the middles of all pixels, row by row; none where the picture is not
@@ -263,9 +269,12 @@ impl<'a> LitView<'a> {
         self.in_tiles(0.0, |tile| self.middles(tile))
     }
 
-    /// All pixels, row by row; none where the picture is not wanted any more.
-    pub fn shown(&self, middles: &[Middle], display: &Display<'_>) -> Option<Vec<Painted>> {
-        self.in_tiles(0.5, |tile| self.painted(tile, middles, display))
+    /// All pixels as they are shown, row by row; none where the picture is not wanted any more.
+    pub fn shown(&self, middles: &[Middle], display: &Display<'_>) -> Option<Vec<[u8; 3]>> {
+        self.in_tiles(0.5, |tile| {
+            let painted = self.painted(tile, middles, display)?;
+            Some(painted.into_iter().map(|(shown, _)| shown).collect())
+        })
     }
 
     /// The pixels of all tiles, row by row; half of the way of the picture, from `begun`.
