@@ -354,7 +354,7 @@ mod tests {
     fn a_matrix_has_its_rows_and_its_closure() {
         let surfaces = SurfaceData {
             names: vec!["a".to_owned(), "b".to_owned()],
-            area: vec![1.0, 2.0],
+            area: vec![1.0; 2],
             emissivity: None,
             row_error: vec![0.0; 2],
         };
