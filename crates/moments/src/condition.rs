@@ -28,17 +28,13 @@
 
 use crate::currents::Space;
 use crate::dielectric::{term, tested_with_both};
-use crate::equation::tested;
-use crate::kernel::{Medium, Wanted};
-use crate::operator::{Kinds, Operator, Products, Term};
-use crate::pairs::Integrator;
-use crate::rules::Rules;
+use crate::equation::{electric_only, electric_term, tested};
+use crate::operator::{Kinds, Operator, Products};
 use crate::{Basis, Currents, MomentsError};
 use fredholm_linop::{MultiVector, Symmetry};
 use fredholm_waves::medium::IMPEDANCE;
 use fredholm_waves::{Source, Wave};
 use num_complex::Complex64;
-use pulp::Arch;
 
 /// What a triangle is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -137,12 +133,8 @@ impl<'a> Imperfect<'a> {
                 Operator::new(basis, 2, terms, products, Symmetry::Symmetric).with_units(units.clone());
             return Ok(Self { basis, wave, conditions, units: Some(units), operator });
         }
-        let wanted = Wanted { electric: true, magnetic: false, turned: true };
-        let rules = Rules::new(tolerance, k, false)?;
-        let integrator = Integrator { medium: Medium::new(k), wanted, rules, arch: Arch::new() };
-        let only = |value: Complex64| Kinds::from([[value, Complex64::ZERO], [Complex64::ZERO; 2]]);
-        let term = Term { integrator, electric: only(Complex64::ONE), magnetic: Kinds::default() };
-        let products = conditions.iter().map(|condition| only(condition.factors()[0][0])).collect();
+        let term = electric_term(k, [1.0, 0.0], tolerance)?;
+        let products = conditions.iter().map(|condition| electric_only(condition.factors()[0][0])).collect();
         let operator =
             Operator::new(basis, 1, vec![term], Products::OnTriangles(products), Symmetry::Symmetric);
         Ok(Self { basis, wave, conditions, units: None, operator })

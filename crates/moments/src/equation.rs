@@ -90,6 +90,26 @@ impl Equation {
     }
 }
 
+/// What electric currents in free space add, with these shares of the electric and the magnetic
+/// equation.
+pub(crate) fn electric_term(
+    k: Complex64,
+    [electric, magnetic]: [f64; 2],
+    tolerance: f64,
+) -> Result<Term, MomentsError> {
+    let wanted = Wanted { electric: electric != 0.0, magnetic: magnetic != 0.0, turned: true };
+    let rules = Rules::new(tolerance, k, wanted.magnetic)?;
+    let integrator = Integrator { medium: Medium::new(k), wanted, rules, arch: Arch::new() };
+    // n × K tested with f is −(f × n)·… turned: f·(n × v) = (f × n)·v.
+    let (electric, magnetic) = (electric_only(electric.into()), electric_only((-magnetic).into()));
+    Ok(Term { integrator, electric, magnetic })
+}
+
+/// A factor of electric currents tested with the electric equation, where there is nothing else.
+pub(crate) fn electric_only(value: Complex64) -> Kinds {
+    [[value, Complex64::ZERO], [Complex64::ZERO; 2]]
+}
+
 /// A perfect conductor in a wave.
 #[derive(Clone, Debug)]
 pub struct Conductor<'a> {
@@ -117,18 +137,9 @@ impl<'a> Conductor<'a> {
         basis.topology().check_resolution(basis.surface(), wave.wavelength())?;
         let [electric, magnetic] = equation.shares();
         let k = Complex64::from(wave.wavenumber());
-        let wanted = Wanted { electric: electric != 0.0, magnetic: magnetic != 0.0, turned: true };
-        let integrator = Integrator {
-            medium: Medium::new(k),
-            wanted,
-            rules: Rules::new(tolerance, k, wanted.magnetic)?,
-            arch: Arch::new(),
-        };
-        let only = |value: f64| Kinds::from([[value.into(), Complex64::ZERO], [Complex64::ZERO; 2]]);
-        // n × K tested with f is −(f × n)·… turned: f·(n × v) = (f × n)·v.
-        let term = Term { integrator, electric: only(electric), magnetic: only(-magnetic) };
+        let term = electric_term(k, [electric, magnetic], tolerance)?;
         let symmetry = if magnetic == 0.0 { Symmetry::Symmetric } else { Symmetry::General };
-        let products = Products::Everywhere(only(0.5 * magnetic));
+        let products = Products::Everywhere(electric_only((0.5 * magnetic).into()));
         let operator = Operator::new(basis, 1, vec![term], products, symmetry);
         Ok(Self { basis, wave, equation, operator })
     }

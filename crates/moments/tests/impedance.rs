@@ -5,10 +5,10 @@
 
 mod common;
 
-use common::{WAVELENGTH, circle, relative_error, solved, source, vertical, wave};
+use common::{WAVELENGTH, circle, currents_on, relative_error, source, vertical, wave};
 use fredholm_mesh::Vec3;
 use fredholm_moments::meshing::sphere;
-use fredholm_moments::{Basis, Condition, Currents, Imperfect, MomentsError, Surface};
+use fredholm_moments::{Basis, Condition, Imperfect, MomentsError, Surface};
 use fredholm_waves::medium::IMPEDANCE;
 use fredholm_waves::{Complex64, ImpedanceSphere, Source};
 
@@ -23,19 +23,12 @@ fn made_of(basis: &Basis, condition: impl Fn(usize) -> Condition) -> Imperfect<'
     Imperfect::new(basis, wave(), conditions, TOLERANCE).unwrap()
 }
 
-fn currents<'a>(body: &Imperfect<'a>) -> Currents<'a> {
-    let source = source();
-    let sources: [&dyn Source; 1] = [&source];
-    let b = body.right_hand_side(&[&sources]);
-    body.currents(&solved(&body.operator().coupling().unwrap(), &b).vector(0))
-}
-
 /// Errors of E at 25 m and at 1.3 radii, the total field in the middle, and radiated and absorbed
 /// over extinguished power.
 fn errors(radius: f64, per_wavelength: f64, z: Complex64) -> ([f64; 3], [f64; 2]) {
     let basis = ball(radius, per_wavelength);
     let body = made_of(&basis, |_| Condition::Body(z));
-    let currents = currents(&body);
+    let currents = currents_on(&body);
     let exact = ImpedanceSphere::new(radius, z).unwrap();
     let error = |distance: f64| {
         let points: Vec<Vec3> = circle().iter().map(|p| p.normalize() * distance).collect();
@@ -77,7 +70,7 @@ fn the_impedance_of_free_space_sends_nothing_straight_back() {
     let basis = ball(0.3 * WAVELENGTH, 10.0);
     let field = |z: f64| {
         let body = made_of(&basis, |_| Condition::Body(z.into()));
-        let currents = currents(&body);
+        let currents = currents_on(&body);
         let far = currents.far_field(&[Vec3::NEG_Y, Vec3::Y]).unwrap();
         far[0].amplitude.norm() / far[1].amplitude.norm()
     };
@@ -90,7 +83,7 @@ fn the_impedance_of_free_space_sends_nothing_straight_back() {
 fn without_impedance_a_body_is_a_conductor() {
     let basis = ball(0.3 * WAVELENGTH, 7.0);
     let field = |condition: Condition| {
-        vertical(&currents(&made_of(&basis, |_| condition)).fields(&circle()).unwrap())
+        vertical(&currents_on(&made_of(&basis, |_| condition)).fields(&circle()).unwrap())
     };
     let conductor = field(Condition::Conductor);
     let gap = |z: f64| relative_error(&field(Condition::Body(z.into())), &conductor);
@@ -121,7 +114,7 @@ fn bodies_of_different_impedance_go_together() {
     let basis = Basis::new(three).unwrap();
     let field = |conditions: [Condition; 3]| {
         let body = made_of(&basis, |triangle| conditions[triangle / count]);
-        let currents = currents(&body);
+        let currents = currents_on(&body);
         let power = currents.radiated_power().unwrap() + body.absorbed_power(&currents);
         assert!((power / currents.extinguished_power(&source()).unwrap() - 1.0).abs() < 1e-3);
         vertical(&currents.fields(&circle()).unwrap())

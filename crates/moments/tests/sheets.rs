@@ -5,13 +5,13 @@
 
 mod common;
 
-use common::{WAVELENGTH, circle, relative_error, solved, source, vertical, wave};
+use common::{WAVELENGTH, circle, currents_on, relative_error, source, vertical, wave};
 use fredholm_compressed::{BlockDiagonal, Preconditioned, Settings};
 use fredholm_iterative::Gmres;
 use fredholm_linop::{MultiVector, Quiet, SecondKind, Solver, Stop, StopReason};
 use fredholm_mesh::Vec3;
 use fredholm_moments::meshing::{Grading, plate, sphere};
-use fredholm_moments::{Basis, Condition, Conductor, Currents, Equation, Imperfect, MomentsError};
+use fredholm_moments::{Basis, Condition, Conductor, Equation, Imperfect, MomentsError};
 use fredholm_waves::{Complex64, ResistiveShell, Source};
 
 const TOLERANCE: f64 = 1e-3;
@@ -26,19 +26,12 @@ fn made_of(basis: &Basis, condition: Condition) -> Imperfect<'_> {
     Imperfect::new(basis, wave(), conditions, TOLERANCE).unwrap()
 }
 
-fn currents<'a>(body: &Imperfect<'a>) -> Currents<'a> {
-    let source = source();
-    let sources: [&dyn Source; 1] = [&source];
-    let b = body.right_hand_side(&[&sources]);
-    body.currents(&solved(&body.operator().coupling().unwrap(), &b).vector(0))
-}
-
 /// Errors of E at 25 m, at 1.3 radii and at half a radius, and radiated and absorbed over
 /// extinguished power, of a shell of this sheet impedance.
 fn errors(per_wavelength: f64, z: Complex64) -> ([f64; 3], [f64; 2]) {
     let basis = shell(per_wavelength);
     let body = made_of(&basis, Condition::Sheet(z));
-    let currents = currents(&body);
+    let currents = currents_on(&body);
     let exact = ResistiveShell::new(RADIUS, z).unwrap();
     let error = |distance: f64| {
         let points: Vec<Vec3> = circle().iter().map(|p| p.normalize() * distance).collect();
@@ -100,12 +93,12 @@ fn conductors_and_sheets_go_together() {
     let alone = Basis::new(metal).unwrap();
     let conductor = Conductor::new(&alone, wave(), Equation::Electric, TOLERANCE).unwrap();
     let expected = vertical(&common::currents(&conductor, &alone).fields(&circle()).unwrap());
-    let faint = vertical(&currents(&before(1e9)).fields(&circle()).unwrap());
+    let faint = vertical(&currents_on(&before(1e9)).fields(&circle()).unwrap());
     assert!(relative_error(&faint, &expected) < 1e-5);
 
     // Salisbury's screen: a sheet of η₀ a quarter of a wavelength before the metal sends little back.
     let screen = before(377.0);
-    let whole = currents(&screen);
+    let whole = currents_on(&screen);
     let back = |field: &[Complex64]| field[270].norm();
     let found = vertical(&whole.fields(&circle()).unwrap());
     assert!(back(&found) < 0.25 * back(&expected), "{} {}", back(&found), back(&expected));

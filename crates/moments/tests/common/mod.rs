@@ -6,7 +6,7 @@
 use fredholm_direct::DenseLu;
 use fredholm_linop::{LinearOperator, MultiVector, Quiet, SecondKind, Solver, Stop, StopReason};
 use fredholm_mesh::Vec3;
-use fredholm_moments::{Basis, Conductor, Currents};
+use fredholm_moments::{Basis, Conductor, Currents, Imperfect};
 use fredholm_waves::source::PlaneWave;
 use fredholm_waves::{Complex64, ConductingSphere, Field, Source, Wave};
 use std::path::Path;
@@ -84,4 +84,12 @@ pub fn currents<'a>(conductor: &Conductor<'a>, basis: &'a Basis) -> Currents<'a>
     let b = conductor.right_hand_side(&[&sources]);
     let x = solved(&conductor.operator().coupling().unwrap(), &b);
     Currents::new(basis, conductor.wave(), &x.vector(0), None)
+}
+
+/// The currents on what is no perfect conductor.
+pub fn currents_on<'a>(body: &Imperfect<'a>) -> Currents<'a> {
+    let source = source();
+    let sources: [&dyn Source; 1] = [&source];
+    let b = body.right_hand_side(&[&sources]);
+    body.currents(&solved(&body.operator().coupling().unwrap(), &b).vector(0))
 }

@@ -10,7 +10,7 @@
 //! For ζ = 1 both are the same, and nothing is scattered straight back (V. H. Weston, Theory of
 //! absorbers in scattering, IEEE Trans. Antennas Propag. 11 (1963) 578).
 
-use super::{ConductingSphere, Riccati, Series, terms};
+use super::{Riccati, Series, check_passive, terms};
 use crate::medium::IMPEDANCE;
 use crate::source::PlaneWave;
 use crate::{ComplexVector, Wave, WaveError};
@@ -31,12 +31,9 @@ impl ImpedanceSphere {
     /// [`WaveError::Length`] unless the radius is finite and above 0, [`WaveError::Material`]
     /// unless Z_s is finite with a real part of at least 0.
     pub fn new(radius: f64, impedance: Complex64) -> Result<Self, WaveError> {
-        ConductingSphere::new(radius)?;
-        if impedance.re >= 0.0 && impedance.is_finite() {
-            return Ok(Self { radius, impedance });
-        }
         let reason = "the surface impedance must be finite with a real part of at least 0";
-        Err(WaveError::Material { what: "of the sphere".into(), reason })
+        check_passive(radius, impedance, ("of the sphere", reason))?;
+        Ok(Self { radius, impedance })
     }
 
     /// The scattered E (V/m) at `p` (m, outside), exact at any distance.
@@ -71,6 +68,7 @@ impl ImpedanceSphere {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ConductingSphere;
     use crate::DielectricSphere;
     use crate::material::surface_impedance;
     use crate::medium::SPEED_OF_LIGHT;

@@ -123,6 +123,19 @@ impl DielectricSphere {
     }
 }
 
+/// Refuses a radius (m) that is none, and for a reason an impedance that gives energy away.
+fn check_passive(
+    radius: f64,
+    impedance: Complex64,
+    (what, reason): (&str, &'static str),
+) -> Result<(), WaveError> {
+    ConductingSphere::new(radius)?;
+    if impedance.re >= 0.0 && impedance.is_finite() {
+        return Ok(());
+    }
+    Err(WaveError::Material { what: what.into(), reason })
+}
+
 /// D_n = ψ_n′/ψ_n at z for n = 0 … last, downwards from far above the turning point.
 fn logarithmic_slopes(z: Complex64, last: usize) -> Vec<Complex64> {
     let start = last.max(z.norm().ceil() as usize) + 30;

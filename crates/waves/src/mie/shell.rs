@@ -11,7 +11,7 @@
 //! which are those of a conductor for ζ = 0. Within, the regular waves take the place of the
 //! outgoing ones, with a_n ξ_n′/ψ_n′ and b_n ξ_n/ψ_n.
 
-use super::{ConductingSphere, Riccati, Series, terms};
+use super::{Riccati, Series, check_passive, terms};
 use crate::medium::IMPEDANCE;
 use crate::source::PlaneWave;
 use crate::{ComplexVector, Wave, WaveError};
@@ -32,12 +32,9 @@ impl ResistiveShell {
     /// [`WaveError::Length`] unless the radius is finite and above 0, [`WaveError::Material`]
     /// unless Z_s is finite with a real part of at least 0.
     pub fn new(radius: f64, impedance: Complex64) -> Result<Self, WaveError> {
-        ConductingSphere::new(radius)?;
-        if impedance.re >= 0.0 && impedance.is_finite() {
-            return Ok(Self { radius, impedance });
-        }
         let reason = "the sheet impedance must be finite with a real part of at least 0";
-        Err(WaveError::Material { what: "of the shell".into(), reason })
+        check_passive(radius, impedance, ("of the shell", reason))?;
+        Ok(Self { radius, impedance })
     }
 
     /// The scattered E (V/m) at `p` (m), outside or within, exact at any distance.
@@ -81,6 +78,7 @@ impl ResistiveShell {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ConductingSphere;
     use crate::Source;
     use crate::medium::SPEED_OF_LIGHT;
     use std::f64::consts::TAU;
