@@ -104,7 +104,14 @@ fn radiosity<S: Storage>(
     let solved = stages.run("solution", || solve(problem, &radiosity, &assembled.matrix, watcher))?;
     stages.begin_saving()?;
     worth_saving(&solved.1)?;
-    stages.run("errors", || assess(problem, &radiosity, &assembled, solved, watcher))
+    stages.run("errors", || {
+        let solution = assess(problem, &radiosity, &assembled, solved, watcher)?;
+        if options.no_report {
+            return Ok(solution);
+        }
+        let senders = lit_by::by_matrix(&assembled.matrix, &problem.mesh, &solution.means);
+        Ok(Solution { senders, ..solution })
+    })
 }
 
 /// Fails where the run was stopped before the first iterate.
@@ -133,7 +140,6 @@ fn assess<S: Storage>(
     let energy = radiosity.energy(&x, &means, &closure);
     let row_error = assembled.error.iter().zip(problem.mesh.patches()).map(|(e, p)| e / p.area()).collect();
     let exposed = radiosity.elements().iter().map(|size| size.exposed / size.area).collect();
-    let senders = lit_by::by_matrix(matrix, &problem.mesh, &means);
     Ok(Solution {
         means,
         direct: Some(radiosity.means(matrix, radiosity.exitance()).irradiance),
@@ -151,7 +157,7 @@ fn assess<S: Storage>(
         mesh_error,
         hierarchy: None,
         tree: None,
-        senders,
+        senders: Vec::new(),
         paths: None,
         field_error: None,
         replaced: None,

@@ -6,9 +6,9 @@ use std::sync::Arc;
 use fredholm_linop::{MultiVector, Quiet, StopReason, Watch};
 use fredholm_mesh::Mesh;
 use fredholm_report::{
-    CHECKPOINT, Camera, Exposure, Extras, FalseColourPicture, Field, GATHER, LINKS_PICTURE, Layer,
-    LitPicture, MESH_PICTURE, ReportError, ResultFolder, RunRecord, RunReport, View, output_files,
-    render_false_colour, render_layers, render_lit, wanted_files, write_with,
+    CHECKPOINT, Camera, Exposure, Extras, Field, GATHER, LINKS_PICTURE, Layer, LitPicture, MESH_PICTURE,
+    ReportError, ResultFolder, RunRecord, RunReport, View, output_files, render_false_colour, render_layers,
+    render_lit, wanted_files, write_with,
 };
 use fredholm_scene::Scene;
 
@@ -175,7 +175,8 @@ impl Solved<'_> {
         let camera = Camera { width, height: (height.round() as u32).max(1), ..view.camera };
         let view = View { camera, ..view };
         // Nobody cancels it: there is all of it.
-        let drawn = picture(&self.problem, &self.solution, (&field, &view, false), &Quiet)?;
+        let light = Lamplight::new(&self.problem, self.solution.direct.as_ref(), &Quiet)?;
+        let drawn = picture((&field, &view, false), &light)?;
         let Some((LitPicture { picture, .. }, _)) = drawn else { return Err(Error::cancelled()) };
         let mut png = Vec::new();
         picture.write_png(&mut png).map_err(|error| Error::new(ErrorKind::Files, error))?;
@@ -491,8 +492,13 @@ fn write(
         _ => None,
     };
     let exact = options.also.contains(&FieldFile::Exr);
-    let draw = || picture(problem, solution, (&field, &view, exact), watch);
-    let drawn = if options.no_pictures { None } else { draw()? };
+    let lamplight = if options.no_pictures {
+        None
+    } else {
+        Some(Lamplight::new(problem, solution.direct.as_ref(), watch)?)
+    };
+    let draw = |light: &Lamplight| picture((&field, &view, exact), light);
+    let drawn = lamplight.as_ref().map(draw).transpose()?.flatten();
     // All pictures are as bright as the first.
     let (image, linear, exposure) = match drawn {
         Some((LitPicture { picture, linear, exposure }, how)) => {
@@ -511,15 +517,17 @@ fn write(
     };
     let pictures = names.into_iter().zip(drawn);
     let pictures: Vec<_> = pictures.filter_map(|(name, picture)| Some((name, picture?))).collect();
-    let false_colour = match &options.false_colour {
-        Some(shown) if !options.no_pictures && !cancelled => {
-            false_colours(problem, solution, (&field, &view, shown), watch)?
+    let title = title(&problem.scene);
+    let false_colour = match (&options.false_colour, &lamplight) {
+        (Some(shown), Some(light)) if !cancelled => {
+            let named = |name: &String| bands.iter().position(|band| band == name);
+            let what = (title.as_str(), shown.band.as_ref().and_then(named));
+            render_false_colour(&field, &view.camera, &light.lit(), what).map_err(report_failure)?
         }
         _ => None,
     };
     let points = gathered.as_ref().map(|gathered| gathered.points(options)).transpose()?.flatten();
     let shadows = gathered.as_ref().filter(|_| options.discontinuity).and_then(Gathered::shadows);
-    let title = title(&problem.scene);
     let links = match &solution.tree {
         _ if options.no_report => None,
         Some(hierarchy) => lit_by::by_links(hierarchy, &problem.mesh, &solution.means),
@@ -539,32 +547,15 @@ fn write(
 /// the light of lamps at every pixel where the solution tells that part of the irradiance apart,
 /// else what its elements have. There is none where the watch did not want it any more.
 fn picture(
-    problem: &Problem,
-    solution: &Solution,
     (field, view, linear): (&Field, &View, bool),
-    watch: &dyn Watch,
+    lamplight: &Lamplight,
 ) -> Result<Option<(LitPicture, String)>, Error> {
-    let lamplight = Lamplight::new(problem, solution.direct.as_ref(), watch)?;
     let drawn = render_lit(field, &view.camera, view.exposure, &lamplight.lit(), linear);
     let how = |exposure| format!("{}; {TONE}; exposure {exposure:.4e} m²/W", lamplight.words());
     Ok(drawn
         .map_err(report_failure)?
         .map(|drawn| (how(drawn.exposure), drawn))
         .map(|(how, drawn)| (drawn, how)))
-}
-
-/// The irradiance of a solution in false colour; none where the watch did not want it any more
-/// before it was whole.
-fn false_colours(
-    problem: &Problem,
-    solution: &Solution,
-    (field, view, shown): (&Field, &View, &FalseColour),
-    watch: &dyn Watch,
-) -> Result<Option<FalseColourPicture>, Error> {
-    let lamplight = Lamplight::new(problem, solution.direct.as_ref(), watch)?;
-    let named = |name: &String| field.bands().iter().position(|band| band == name);
-    let what = (title(&problem.scene), shown.band.as_ref().and_then(named));
-    render_false_colour(field, &view.camera, &lamplight.lit(), (&what.0, what.1)).map_err(report_failure)
 }
 
 /// How colours become what a screen shows.
