@@ -1,11 +1,12 @@
-"""Compares the time that `fredholm check` says with that of the run, in CPU seconds of one thread.
+"""Compares the time and the memory that `fredholm check` says with those of the run, on one thread.
 
     python3 tests/forecasts.py target/release/fredholm           # all
     python3 tests/forecasts.py target/release/fredholm waves     # those whose name has this in it
 
-Prints a table with what is said, what the run takes, their ratio, and what `check` itself takes. Said to be "less than a
-second" are runs of up to two. Ends with exit code 1 where a ratio is beyond a factor of two. Needs Python 3.9 and nothing
-else, and some minutes; other work on the machine changes little.
+Prints a table with what is said, what the run takes in CPU seconds and holds at most, their ratios, and what `check`
+itself takes. Said to be "less than a second" are runs of up to two. Ends with exit code 1 where a time is beyond a factor
+of two, or a memory above 25 MiB beyond 15 %. Needs Python 3.9 and nothing else, and some minutes; other work on the
+machine changes little.
 """
 
 import argparse
@@ -17,6 +18,8 @@ import tempfile
 from pathlib import Path
 
 SCENES = Path(__file__).parent.parent / "scenes"
+# MiB of which most is the program's own.
+LITTLE = 25
 UNITS = {"second": 1, "minute": 60, "hour": 3600, "day": 86400}
 
 WAVE = """[wave]
@@ -63,13 +66,13 @@ LIGHT = [
 ]
 
 
-def cpu(command):
-    """Exit code, CPU seconds and what was printed."""
+def used_by(command):
+    """Exit code, CPU seconds, MiB held at most and what was printed."""
     run = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     text = run.stdout.read()
     _, status, used = os.wait4(run.pid, 0)
     run.returncode = os.waitstatus_to_exitcode(status)
-    return run.returncode, used.ru_utime + used.ru_stime, text
+    return run.returncode, used.ru_utime + used.ru_stime, used.ru_maxrss / 1024, text
 
 
 def said(text):
@@ -80,13 +83,20 @@ def said(text):
     return found[1], float(found[2]) * UNITS[found[3]] if found[2] else 1.0
 
 
+def memory_said(text):
+    """MiB that are said."""
+    found = re.search(r"^\s*memory\s+([\d.]+) (B|KiB|MiB|GiB):", text, re.M)
+    return float(found[1]) * {"B": 2**-20, "KiB": 2**-10, "MiB": 1, "GiB": 1024}[found[2]] if found else None
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("program", type=Path)
     parser.add_argument("part", nargs="?", default="")
     arguments = parser.parse_args()
     program, wrong = str(arguments.program.resolve()), 0
-    print("| scene | `check` says | the run took | ratio | `check` took |\n|---|---|---|---|---|", flush=True)
+    print("| scene | `check` says | the run took | ratio | MiB said | held | ratio | `check` took |", flush=True)
+    print("|---|---|---|---|---|---|---|---|", flush=True)
     with tempfile.TemporaryDirectory() as bench:
         runs = [(name, "solve", SCENES / f"{name.split()[0]}.toml", name.split()[1:]) for name in LIGHT]
         runs += [(f"waves/{scene.stem}", "waves", scene, []) for scene in sorted((SCENES / "waves").glob("*.toml"))]
@@ -98,16 +108,20 @@ def main():
             if arguments.part not in name:
                 continue
             options = [str(scene), "--threads", "1", *(["--accuracy", *accuracy] if accuracy else [])]
-            code, checked, text = cpu([program, "check", *options])
-            words, seconds = said(text)
-            ended, took, more = cpu([program, verb, *options, "--no-report", "-q", "-o", f"{bench}/out"])
+            code, checked, _, text = used_by([program, "check", *options])
+            (words, seconds), expected = said(text), memory_said(text)
+            ended, took, held, more = used_by([program, verb, *options, "--no-report", "-q", "-o", f"{bench}/out"])
             if code or ended:
                 print(f"{name}: exit codes {code}, {ended}: {(text if code else more).strip()}", file=sys.stderr, flush=True)
             ratio = None if seconds is None else seconds / took
             holds = ratio is not None and (took < 2 if words.startswith("less") else 0.5 <= ratio <= 2)
-            wrong += not holds
+            of_memory = expected / held if expected else 0
+            fits = held <= LITTLE or 0.85 <= of_memory <= 1.15
+            wrong += not (holds and fits)
             shown = "" if ratio is None or words.startswith("less") else f"{ratio:.2f}"
-            print(f"| {name} | {words} | {took:.2f} s | {shown}{'' if holds else ' (!)'} | {checked:.2f} s |", flush=True)
+            time = f"{words} | {took:.2f} s | {shown}{'' if holds else ' (!)'}"
+            memory = f"{expected or 0:.0f} | {held:.0f} | {of_memory:.2f}{'' if fits else ' (!)'}"
+            print(f"| {name} | {time} | {memory} | {checked:.2f} s |", flush=True)
     sys.exit(wrong > 0)
 
 

@@ -91,27 +91,13 @@ impl<T: Scalar> Hierarchical<T> {
         settings: Settings,
         watch: &dyn Watch,
     ) -> Result<Self, CompressionError> {
-        check(entries.groups(), places, settings)?;
-        let tree = Tree::new(places, settings.leaf);
-        let symmetric = entries.symmetry() == Symmetry::Symmetric;
-        let pairs = tree.pairs(settings.eta, symmetric);
-        let mut used = vec![false; tree.clusters.len()];
-        for &(row, column, _) in &pairs {
-            (used[row], used[column]) = (true, true);
-        }
-        let builder = Builder {
-            entries,
-            sets: (0..used.len()).map(|at| used[at].then(|| entries.prepare(tree.groups(at)))).collect(),
-            tree: &tree,
-            tolerance: settings.tolerance,
-            scalar: PhantomData,
-        };
+        let (builder, pairs) = Builder::new(entries, places, settings)?;
         let predicted = builder.predicted(&pairs);
         if predicted > settings.limit {
             return Err(CompressionError::Memory { needed: predicted, limit: settings.limit });
         }
         let steps = Steps::new(watch, pairs.len() as u64, "blocks");
-        let stored = |&(row, column, far): &(usize, usize, bool)| {
+        let stored = |&(row, column, far): &Pair| {
             if steps.begin().is_break() {
                 return Err(CompressionError::Interrupted);
             }
@@ -120,13 +106,30 @@ impl<T: Scalar> Hierarchical<T> {
         let blocks: Vec<Stored<T>> =
             pairs.par_iter().with_max_len(1).map(stored).collect::<Result<_, _>>()?;
         let width = entries.width();
-        let mut leaves: Vec<Range<usize>> =
-            tree.leaves().iter().map(|&leaf| scaled(&tree.clusters[leaf].range, width)).collect();
+        let mut leaves: Vec<Range<usize>> = builder
+            .tree
+            .leaves()
+            .iter()
+            .map(|&leaf| scaled(&builder.tree.clusters[leaf].range, width))
+            .collect();
         leaves.sort_by_key(|leaf| leaf.start);
-        let reach = reach(&leaves, &blocks, symmetric);
-        let order = tree.order.iter().flat_map(|&group| group * width..(group + 1) * width).collect();
+        let reach = reach(&leaves, &blocks, entries.symmetry() == Symmetry::Symmetric);
+        let order = builder.tree.order.iter().flat_map(|&group| group * width..(group + 1) * width).collect();
         let dim = entries.groups() * width;
         Ok(Self { dim, symmetry: entries.symmetry(), order, leaves, blocks, reach, predicted })
+    }
+
+    /// Bytes that it will take, from three blocks of each size.
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new) for what does not fit.
+    pub fn predicted_bytes<E: Entries<T>>(
+        entries: &E,
+        places: &[Vec3],
+        settings: Settings,
+    ) -> Result<u64, CompressionError> {
+        let (builder, pairs) = Builder::new(entries, places, settings)?;
+        Ok(builder.predicted(&pairs))
     }
 
     /// What it is made of.
@@ -246,13 +249,33 @@ impl<T: Scalar> LinearOperator<T> for Hierarchical<T> {
 /// What computes the blocks.
 struct Builder<'a, T: Scalar, E: Entries<T>> {
     entries: &'a E,
-    tree: &'a Tree,
+    tree: Tree,
     sets: Vec<Option<E::Set>>,
     tolerance: f64,
     scalar: PhantomData<T>,
 }
 
-impl<T: Scalar, E: Entries<T>> Builder<'_, T, E> {
+/// Two clusters, and whether they are far enough apart for their block to be of low rank.
+type Pair = (usize, usize, bool);
+
+impl<'a, T: Scalar, E: Entries<T>> Builder<'a, T, E> {
+    /// What computes the blocks, and the pairs of clusters that these are of.
+    fn new(
+        entries: &'a E,
+        places: &[Vec3],
+        settings: Settings,
+    ) -> Result<(Self, Vec<Pair>), CompressionError> {
+        check(entries.groups(), places, settings)?;
+        let tree = Tree::new(places, settings.leaf);
+        let pairs = tree.pairs(settings.eta, entries.symmetry() == Symmetry::Symmetric);
+        let mut used = vec![false; tree.clusters.len()];
+        for &(row, column, _) in &pairs {
+            (used[row], used[column]) = (true, true);
+        }
+        let sets = (0..used.len()).map(|at| used[at].then(|| entries.prepare(tree.groups(at)))).collect();
+        Ok((Self { entries, tree, sets, tolerance: settings.tolerance, scalar: PhantomData }, pairs))
+    }
+
     fn stored(&self, row: usize, column: usize, far: bool) -> Stored<T> {
         let width = self.entries.width();
         let [rows, columns] = [row, column].map(|at| scaled(&self.tree.clusters[at].range, width));
@@ -272,21 +295,21 @@ impl<T: Scalar, E: Entries<T>> Builder<'_, T, E> {
     }
 
     /// Bytes of all blocks: near ones are counted, far ones taken to be like some of their level.
-    fn predicted(&self, pairs: &[(usize, usize, bool)]) -> u64 {
+    fn predicted(&self, pairs: &[Pair]) -> u64 {
         let width = self.entries.width();
         let size = |at: usize| self.tree.clusters[at].range.len() * width;
-        let whole = |&(row, column, _): &(usize, usize, bool)| (size(row) * size(column)) as u64;
+        let whole = |&(row, column, _): &Pair| (size(row) * size(column)) as u64;
         let near: u64 = pairs.iter().filter(|pair| !pair.2).map(whole).sum();
         // Blocks with sides within a factor of two are of one level.
-        let level = |pair: &(usize, usize, bool)| (size(pair.0) + size(pair.1)).ilog2() as usize;
-        let mut levels: Vec<Vec<(usize, usize, bool)>> = vec![Vec::new(); 64];
+        let level = |pair: &Pair| (size(pair.0) + size(pair.1)).ilog2() as usize;
+        let mut levels: Vec<Vec<Pair>> = vec![Vec::new(); 64];
         pairs.iter().filter(|pair| pair.2).for_each(|pair| levels[level(pair)].push(*pair));
         let far = levels.par_iter().map(|pairs| {
             let step = (pairs.len() / SAMPLES).max(1);
             let some: Vec<_> = pairs.iter().skip(step / 2).step_by(step).take(SAMPLES).collect();
             let stored: u64 =
                 some.iter().map(|&&(row, column, far)| self.stored(row, column, far).bytes()).sum();
-            let of = |pair: &(usize, usize, bool)| (size(pair.0) + size(pair.1)) as u64;
+            let of = |pair: &Pair| (size(pair.0) + size(pair.1)) as u64;
             let [all, seen] = [pairs.iter().map(of).sum::<u64>(), some.into_iter().map(of).sum()];
             (stored as f64 * all as f64 / seen.max(1) as f64) as u64
         });

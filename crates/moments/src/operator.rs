@@ -256,8 +256,19 @@ impl<'a> Operator<'a> {
         settings: Settings,
         watch: &dyn Watch,
     ) -> Result<Hierarchical<Complex64>, MomentsError> {
-        let places: Vec<Vec3> = (0..self.basis.len()).map(|function| self.basis.centre(function)).collect();
-        Ok(Hierarchical::new(self, &places, settings, watch)?)
+        Ok(Hierarchical::new(self, &self.places(), settings, watch)?)
+    }
+
+    /// Bytes that the compressed matrix will take, from some of its blocks.
+    ///
+    /// # Errors
+    /// [`MomentsError::Compression`] for settings out of range.
+    pub fn compressed_bytes(&self, settings: Settings) -> Result<u64, MomentsError> {
+        Ok(Hierarchical::predicted_bytes(self, &self.places(), settings)?)
+    }
+
+    fn places(&self) -> Vec<Vec3> {
+        (0..self.basis.len()).map(|function| self.basis.centre(function)).collect()
     }
 
     /// The entries of Z, row by row.

@@ -77,6 +77,16 @@ pub(crate) fn regular(facet: &Facet, n: usize) -> Vec<(Vec3, f64)> {
     }
 }
 
+/// How many points [`regular`] has.
+#[must_use]
+pub(crate) fn points_of(facet: &Facet, n: usize) -> usize {
+    match (n, facet.patch.sides()) {
+        (..=1, _) => 1,
+        (_, 4) => n * n,
+        _ => symmetric_triangle(2 * n - 1).map_or(n * n, |rule| rule.len()),
+    }
+}
+
 fn placed(facet: &Facet, rule: &[PlanePoint], jacobian: impl Fn(f64, f64) -> f64) -> Vec<(Vec3, f64)> {
     let scale = facet.area / facet.patch.area();
     let place = |p: &PlanePoint| (facet.patch.point(p.u, p.v), p.weight * jacobian(p.u, p.v) * scale);
@@ -130,6 +140,15 @@ mod tests {
         let quad = Patch::quad(corners).unwrap().unwrap();
         let triangle = Patch::triangle([Vec3::ZERO, Vec3::X, Vec3::Y]).unwrap();
         [quad, triangle].map(|patch| Facet::new(&patch, Kind::Sheet))
+    }
+
+    #[test]
+    fn points_are_counted_before_they_are_made() {
+        for facet in facets() {
+            for n in 1..=MOST_POINTS {
+                assert_eq!(points_of(&facet, n), regular(&facet, n).len(), "{n}");
+            }
+        }
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! `fredholm waves`.
 
 use fredholm_study::{
-    CheckedCoupling, CheckedWaves, Ended, Error, Lines, ResultFolder, Watch, WaveCompareOptions, WaveOptions,
-    WaveRecord, check_waves, frequencies,
+    CheckedCoupling, CheckedWaves, CouplingStorage, Ended, Error, Lines, ResultFolder, Watch,
+    WaveCompareOptions, WaveOptions, WaveRecord, check_waves, frequencies,
 };
 
 use crate::args::{CheckArgs, WavesArgs};
@@ -75,13 +75,15 @@ fn forecast(checked: &CheckedWaves) -> String {
     checked.findings.iter().for_each(|finding| lines.add("found", finding.to_string()));
     lines.add("receivers", format!("{} points and directions", checked.places));
     lines.add("memory", format!("{}: {}", checked.plan.peak(), checked.plan));
-    let coupling = |CheckedCoupling { unknowns, bytes, compressed }| {
-        let how = if compressed {
-            "whole; it is compressed, to a part of that"
-        } else {
-            "where its matrix is stored"
+    let coupling = |CheckedCoupling { unknowns, whole, storage }| {
+        let how = match storage {
+            CouplingStorage::Matrix => format!("in a matrix of {whole}"),
+            CouplingStorage::Compressed => format!("in a compressed matrix, which whole would take {whole}"),
+            CouplingStorage::Products => {
+                format!("whose products are computed anew; their matrix would take {whole}")
+            }
         };
-        format!("{unknowns} unknowns; {bytes} {how}")
+        format!("{unknowns} unknowns {how}")
     };
     lines.add_some("coupling", checked.coupling.map(coupling));
     lines.add("memory limit", checked.limit.to_string());

@@ -7,7 +7,7 @@ use fredholm_scene::Finding;
 use fredholm_scene::waves::Receiver;
 use fredholm_waves::{Complex64, System, Wave, WaveError};
 
-use super::{CouplingStorage, Method, Model, WaveOptions, forecast, galerkin, solving};
+use super::{CouplingStorage, Model, WaveOptions, forecast, galerkin, solving};
 use crate::error::Error;
 use crate::memory::{Limit, Plan};
 use crate::size::Bytes;
@@ -34,7 +34,7 @@ pub struct CheckedWaves {
     pub coupling: Option<CheckedCoupling>,
     /// Points and directions of all receivers.
     pub places: u128,
-    /// Memory by use, but for the coupling.
+    /// Memory by use, the coupling and its solver included.
     pub plan: Plan,
     /// Memory allowed.
     pub limit: Limit,
@@ -54,10 +54,10 @@ pub struct CheckedWaves {
 pub struct CheckedCoupling {
     /// Unknowns.
     pub unknowns: usize,
-    /// Bytes of its matrix where that is stored whole.
-    pub bytes: Bytes,
-    /// Whether it will be compressed, unless a scene or an option says otherwise.
-    pub compressed: bool,
+    /// Bytes of its matrix if that were stored whole.
+    pub whole: Bytes,
+    /// How a run holds it, unless an option says otherwise.
+    pub storage: CouplingStorage,
 }
 
 /// Validates a scene of waves, tells what its mesh is, and predicts what its fields will take.
@@ -71,7 +71,7 @@ pub fn check_waves(
 ) -> Result<CheckedWaves, Error> {
     let mut stages = Stages::new(watch);
     let mut model = stages.run("scene", || Model::load(scene.as_ref(), asked.memory))?;
-    let coupling = stages.run("mesh", || admitted(&model))?;
+    let (plan, coupling) = stages.run("mesh", || admitted(&model))?;
     let findings = stages.run("report", || Ok(model.scene.findings()))?;
     let checked = CheckedWaves {
         path: model.path().to_owned(),
@@ -83,59 +83,43 @@ pub fn check_waves(
         surfaces: model.geometry.mesh.surfaces().len(),
         coupling,
         places: model.scene.receivers().iter().map(Receiver::count).sum(),
-        plan: model.plan.clone(),
+        plan,
         limit: model.limit,
         seconds: None,
         threads: rayon::current_num_threads(),
         findings,
         warnings: model.warnings.clone(),
     };
-    model.storage = storage(&model, coupling)?;
+    // A trial on fewer facets might hold its coupling otherwise.
+    model.storage = coupling.map(|coupling| coupling.storage);
     let unknowns = coupling.map(|coupling| coupling.unknowns);
     let seconds = stages.run("sample", || Ok(forecast::seconds(&mut model, unknowns, watch)))?;
     stages.check()?;
     Ok(CheckedWaves { seconds, ..checked })
 }
 
-/// Where the run will have its coupling: a trial on fewer facets might do otherwise.
-fn storage(model: &Model, coupling: Option<CheckedCoupling>) -> Result<Option<CouplingStorage>, Error> {
-    let Some(coupling) = coupling else { return Ok(None) };
-    if model.galerkin.is_some() {
-        let compressed = coupling.compressed && !galerkin::needs_matrix(model);
-        return Ok(Some(if compressed { CouplingStorage::Compressed } else { CouplingStorage::Matrix }));
-    }
-    let (Method::Solver { solver, .. }, Some(band)) = (&model.method, model.bands.first()) else {
-        return Ok(None);
+/// The memory of a run, and the coupling, where there is one, of a scatterer that the method
+/// admits at all frequencies.
+fn admitted(model: &Model) -> Result<(Plan, Option<CheckedCoupling>), Error> {
+    let coupling = |unknowns, storage| {
+        let whole = Bytes(Dense::<Complex64>::bytes(unknowns).into());
+        CheckedCoupling { unknowns, whole, storage }
     };
-    let scatterer =
-        model.geometry.scatterer(&band.materials).map_err(|error: WaveError| model.refused(&error, None))?;
-    let stored = solving::is_stored(model, &scatterer, model.shadow, &**solver)?;
-    Ok(Some(if stored { CouplingStorage::Matrix } else { CouplingStorage::Products }))
-}
-
-/// The coupling, where there is one, of a scatterer that the method admits at
-/// all frequencies.
-fn admitted(model: &Model) -> Result<Option<CheckedCoupling>, Error> {
-    let refused = |error: WaveError| model.refused(&error, None);
-    if model.galerkin.is_some() {
-        let unknowns = galerkin::unknowns(model, &galerkin::basis(model, &model.geometry)?);
-        let bytes = Bytes(Dense::<Complex64>::bytes(unknowns).into());
-        let fits = model.plan.clone().hold("the matrix", bytes.0).fits(model.limit);
-        let compressed = galerkin::is_quicker_compressed(model, unknowns) || !fits;
-        return Ok(Some(CheckedCoupling { unknowns, bytes, compressed }));
+    if let Some(equations) = model.galerkin {
+        let (plan, storage, unknowns) = galerkin::plan(model, equations)?;
+        return Ok((plan, Some(coupling(unknowns, storage))));
     }
-    let mut coupling = None;
+    let refused = |error: WaveError| model.refused(&error, None);
+    let (mut plan, mut found) = (model.plan.clone(), None);
     for band in &model.bands {
         let scatterer = model.geometry.scatterer(&band.materials).map_err(refused)?;
         model.shadow.check(&scatterer).map_err(refused)?;
         if !model.is_closed_form() {
             scatterer.check_resolution(&band.wave).map_err(refused)?;
         }
-        coupling = Some(CheckedCoupling {
-            unknowns: System::unknowns(&scatterer),
-            bytes: Bytes(System::bytes(&scatterer).into()),
-            compressed: false,
-        });
+        let storage;
+        (plan, storage) = solving::plan(model, &scatterer, band.wave)?;
+        found = storage.map(|storage| coupling(System::unknowns(&scatterer), storage));
     }
-    Ok(coupling.filter(|_| !matches!(model.method, Method::Bounces(1))))
+    Ok((plan, found))
 }

@@ -175,7 +175,7 @@ impl Task<'_> {
     fn radiate_incident(&self, stages: &mut Stages) -> Result<(), Error> {
         let signals = &stages.signals();
         let system =
-            solving::lazy(self.model, self.scatterer, (self.band.wave, self.variant.shadow), signals)?;
+            solving::lazy(self.model, self.scatterer, (self.band.wave, self.variant.shadow), &[], signals)?;
         let currents = system.currents(&system.right_hand_side(&[self.first]), 0);
         // A residual, whatever it is, has the error stated, which is a part of the fields.
         stages.run("fields", || self.radiate(Some(&system), &currents, Some(1.0), &mut Outcome::default()))
@@ -219,7 +219,7 @@ impl Task<'_> {
             return Ok(Vec::new());
         }
         let system =
-            solving::lazy(self.model, self.scatterer, (self.band.wave, self.variant.shadow), signals)?;
+            solving::lazy(self.model, self.scatterer, (self.band.wave, self.variant.shadow), &[], signals)?;
         let b = system.right_hand_side(&[self.first]);
         Ok(solving::bounced(&system, &b, 1, signals)?.residuals)
     }

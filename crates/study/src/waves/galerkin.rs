@@ -25,15 +25,14 @@ use super::balance::{Balancing, Reciprocity, power};
 use super::compute::{current, directions, far_row, near_rows};
 use super::estimate::{Estimated, SweepError};
 use super::geometry::Geometry;
-use super::model::{Band, Receiver};
+use super::model::Band;
 use super::monostatic::plane_waves;
 use super::record::Solved;
 use super::registry::{build, by_products};
-use super::solving::{Solution, solved};
+use super::solving::{Solution, of_solvers, rhs_count, solved};
 use super::{CouplingStorage, Method, Model, Outcome};
 use crate::error::{Error, ErrorKind};
 use crate::memory::Plan;
-use crate::prediction::of_threads;
 use crate::problem::scene_failure;
 use crate::stages::{Signals, Stages};
 
@@ -50,11 +49,9 @@ const MANY: usize = 12_000;
 const FEW: usize = 4;
 /// Directions in which the mean scattered field is taken that errors are compared with.
 const DIRECTIONS: usize = 200;
-/// Copies of the right-hand sides that a solver holds.
-const VECTORS: u128 = 3;
 
 /// The functions on the triangles of a mesh.
-pub(super) fn basis(model: &Model, geometry: &Geometry) -> Result<Basis, Error> {
+fn basis(model: &Model, geometry: &Geometry) -> Result<Basis, Error> {
     let surface = Surface::from_mesh(&geometry.mesh).map_err(|error| refused(model, &error))?;
     let basis = Basis::new(surface);
     let above = |basis: Basis| match model.scene.ground() {
@@ -62,19 +59,6 @@ pub(super) fn basis(model: &Model, geometry: &Geometry) -> Result<Basis, Error> 
         None => Ok(basis),
     };
     basis.and_then(above).map_err(|error| refused(model, &error))
-}
-
-/// Unknowns: one for every function, and two where magnetic currents flow.
-pub(super) fn unknowns(model: &Model, basis: &Basis) -> usize {
-    let impedance = |material: usize| {
-        model.bands.iter().any(|band| matches!(band.materials[material], Material::Impedance(_)))
-    };
-    let both = match model.galerkin {
-        Some(Equations::Electric) => model.geometry.materials().any(impedance),
-        Some(Equations::Dielectric) => true,
-        Some(Equations::Combined) | None => false,
-    };
-    if both { 2 * basis.len() } else { basis.len() }
 }
 
 /// What the library of boundary elements says.
@@ -338,24 +322,63 @@ enum Matrix {
     Compressed(Box<Compressed>),
 }
 
-/// Most right-hand sides that a model has at once.
-fn rhs_count(model: &Model) -> usize {
-    let of = |receiver: &Receiver| match &receiver.places {
-        Places::Monostatic(angles) => 2 * angles.len(),
-        _ => 1,
-    };
-    model.receivers.iter().map(of).max().unwrap_or(1)
-}
-
 /// Whether a compressed matrix of so many unknowns takes less time than a whole one.
-pub(super) fn is_quicker_compressed(model: &Model, unknowns: usize) -> bool {
+fn is_quicker_compressed(model: &Model, unknowns: usize) -> bool {
     model.galerkin == Some(Equations::Combined) && unknowns > MANY && rhs_count(model) <= FEW
 }
 
 /// Whether the scene names a solver that needs the entries of the matrix.
-pub(super) fn needs_matrix(model: &Model) -> bool {
+fn needs_matrix(model: &Model) -> bool {
     let named = model.scene.settings().solver.is_some();
     named && !by_products().contains(&model.method.name().as_str())
+}
+
+/// Memory besides the matrix.
+fn besides(model: &Model, unknowns: usize, solver: &dyn Solver<Complex64>) -> Plan {
+    of_solvers(model.plan.clone(), (unknowns, rhs_count(model)), &[solver])
+}
+
+/// Memory with the whole matrix, and how the matrix is held: as asked for, or what fits and is
+/// quicker.
+fn whole_plan(model: &Model, unknowns: usize, solver: &dyn Solver<Complex64>) -> (Plan, CouplingStorage) {
+    let bytes = Dense::<Complex64>::bytes(unknowns);
+    let plan =
+        besides(model, unknowns, solver).hold(format!("the matrix of {unknowns} unknowns"), bytes.into());
+    let compress = match model.storage {
+        Some(storage) => storage == CouplingStorage::Compressed,
+        None if needs_matrix(model) => false,
+        None => is_quicker_compressed(model, unknowns) || !plan.fits(model.limit),
+    };
+    (plan, if compress { CouplingStorage::Compressed } else { CouplingStorage::Matrix })
+}
+
+/// The solver of a compressed matrix.
+fn of_compressed(model: &Model) -> Result<Box<dyn Solver<Complex64>>, Error> {
+    let asked = model.scene.settings().solver.as_deref().unwrap_or(ITERATIVE);
+    build(asked).map_err(|error| Error::new(ErrorKind::Input, error))
+}
+
+fn settings() -> Settings {
+    Settings { tolerance: COMPRESSION, ..Settings::default() }
+}
+
+/// The memory of a run, how its matrix is held, and the unknowns; that of a compressed matrix from
+/// some of its blocks.
+pub(super) fn plan(model: &Model, equations: Equations) -> Result<(Plan, CouplingStorage, usize), Error> {
+    let (Method::Solver { solver, .. }, Some(band)) = (&model.method, model.bands.first()) else {
+        return Err(Error::new(ErrorKind::Input, "an equation is solved, not summed bounce by bounce"));
+    };
+    let basis = basis(model, &model.geometry)?;
+    let body = Body::new(model, (&model.geometry, &basis), band, equations)?;
+    let unknowns = body.operator().dim();
+    let (plan, storage) = whole_plan(model, unknowns, &**solver);
+    if storage != CouplingStorage::Compressed {
+        return Ok((plan, storage, unknowns));
+    }
+    let bytes = body.operator().compressed_bytes(settings()).map_err(|error| refused(model, &error))?;
+    let plan = besides(model, unknowns, &*of_compressed(model)?)
+        .hold(format!("the compressed matrix of {unknowns} unknowns"), bytes.into());
+    Ok((plan, storage, unknowns))
 }
 
 struct Compressed {
@@ -397,18 +420,8 @@ impl Task<'_> {
         let Method::Solver { solver, .. } = &self.model.method else {
             return Err(Error::new(ErrorKind::Input, "an equation is solved, not summed bounce by bounce"));
         };
-        let unknowns = self.body.operator().dim();
-        let bytes = self.body.operator().dense_bytes();
-        let plan = self
-            .plan(&**solver)
-            .hold(format!("the matrix of {unknowns} unknowns"), bytes.into())
-            .aside(of_threads(solver.addresses()));
-        let compress = match self.model.storage {
-            Some(storage) => storage == CouplingStorage::Compressed,
-            None if needs_matrix(self.model) => false,
-            None => is_quicker_compressed(self.model, unknowns) || !plan.fits(self.model.limit),
-        };
-        if compress {
+        let (plan, storage) = whole_plan(self.model, self.body.operator().dim(), &**solver);
+        if storage == CouplingStorage::Compressed {
             return self.compressed(signals);
         }
         plan.admit(
@@ -420,17 +433,6 @@ impl Task<'_> {
         Ok(Matrix::Whole(whole))
     }
 
-    /// Memory besides the matrix.
-    fn plan(&self, solver: &dyn Solver<Complex64>) -> Plan {
-        let (unknowns, rhs_count) = (self.body.operator().dim(), self.rhs_count());
-        let vectors = VECTORS * (rhs_count * unknowns * size_of::<Complex64>()) as u128;
-        self.model
-            .plan
-            .clone()
-            .hold("the solver", solver.bytes(unknowns, rhs_count).into())
-            .hold("the right-hand sides", vectors)
-    }
-
     fn compressed(&self, signals: &Signals<'_>) -> Result<Matrix, Error> {
         let Method::Solver { solver: named, tolerance, max_iterations } = &self.model.method else {
             return Err(Error::new(ErrorKind::Input, "an equation is solved, not summed bounce by bounce"));
@@ -440,17 +442,16 @@ impl Task<'_> {
             let help = format!("--storage matrix, or a solver that needs none: {}", by_products().join(", "));
             return Err(Error::new(ErrorKind::Input, what).with_help(help));
         }
-        let asked = self.model.scene.settings().solver.as_deref().unwrap_or(ITERATIVE);
-        let solver = build(asked).map_err(|error| Error::new(ErrorKind::Input, error))?;
+        let solver = of_compressed(self.model)?;
         let (limit, help) = (self.model.limit, "take longer edges, or method = \"physical-optics\"");
-        let plan = self.plan(&*solver);
-        plan.admit(limit, help)?;
         let unknowns = self.body.operator().dim();
+        let plan = besides(self.model, unknowns, &*solver);
+        plan.admit(limit, help)?;
         let with = |bytes: u64| {
             plan.clone().hold(format!("the compressed matrix of {unknowns} unknowns"), bytes.into())
         };
         let left = u64::try_from(limit.bytes().0 - plan.peak().0).unwrap_or(u64::MAX);
-        let settings = Settings { tolerance: COMPRESSION, limit: left, ..Settings::default() };
+        let settings = Settings { limit: left, ..settings() };
         let matrix = match self.body.operator().compressed(settings, signals.watch) {
             Ok(matrix) => matrix,
             Err(MomentsError::Compression(CompressionError::Memory { needed, .. })) => {
@@ -464,11 +465,6 @@ impl Task<'_> {
         let inverse = BlockDiagonal::new(&matrix).map_err(|error| refused(self.model, &error.into()))?;
         let method = Method::Solver { solver, tolerance: *tolerance, max_iterations: *max_iterations };
         Ok(Matrix::Compressed(Box::new(Compressed { matrix, inverse, method })))
-    }
-
-    /// Most right-hand sides that are solved for at once.
-    fn rhs_count(&self) -> usize {
-        rhs_count(self.model)
     }
 
     fn solve(

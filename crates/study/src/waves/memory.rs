@@ -13,9 +13,6 @@ const CURRENTS: u128 = 240;
 /// together and written.
 const POINT: u128 = 24;
 const ROW: u128 = 716;
-/// Bytes of a facet in a coupling: its frame in SIMD lanes, and the blocks of what is near.
-pub(super) const COUPLED: u128 = 5000;
-
 /// Bytes of the plots and of the page with its viewer while they are written.
 const PAGE: u128 = 6 << 20;
 /// Bytes of a point while its field is sampled, of each batch that is in memory, and of a point at

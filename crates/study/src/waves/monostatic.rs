@@ -9,16 +9,11 @@ use fredholm_waves::{
 };
 use rayon::prelude::*;
 
-use super::Method;
 use super::compute::{Task, directions};
 use super::estimate::{Estimated, SweepError};
-use super::registry::by_products;
-use super::solving::{Solution, solution};
+use super::solving::{Solution, directions_together, solution};
 use crate::error::Error;
 use crate::stages::Signals;
-
-/// Directions that are solved for together.
-const DIRECTIONS_TOGETHER: usize = 8;
 
 /// What a sweep is made on.
 pub(super) struct Sweep<'a> {
@@ -45,11 +40,7 @@ impl Sweep<'_> {
     ) -> Result<Swept, Error> {
         let (mut rows, mut worst) = (Vec::new(), None);
         let (frequency, mut stated) = (self.task.wave().frequency(), SweepError::default());
-        // A factorisation serves all waves; others need memory for every wave that they solve for.
-        let together = match &self.task.model.method {
-            Method::Solver { solver, .. } if !by_products().contains(&solver.name()) => angles.len().max(1),
-            _ => DIRECTIONS_TOGETHER,
-        };
+        let together = directions_together(self.task.model, angles.len());
         let count = angles.len();
         for (chunk, angles) in angles.chunks(together).enumerate() {
             signals.check()?;

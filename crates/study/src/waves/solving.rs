@@ -3,12 +3,12 @@
 use fredholm_linop::{LinearOperator, MultiVector, SecondKind, Solver, Stop, StopReason};
 use fredholm_scene::waves::Places;
 use fredholm_waves::{
-    Bounces, Complex64, Discretisation, NystromCoupling, Scatterer, Shadow, System, Wave, WaveError,
+    Bounces, Complex64, Discretisation, Kind, Radiator, Sampling, Scatterer, Shadow, System, TOLERANCE, Wave,
+    WaveError,
 };
 
 use super::CouplingStorage;
 use super::Model;
-use super::memory::COUPLED;
 use super::model::Method;
 use super::registry::by_products;
 use crate::error::{Error, ErrorKind};
@@ -35,7 +35,7 @@ pub(super) fn system<'a>(
 ) -> Result<Option<System<'a>>, Error> {
     match &model.method {
         Method::Bounces(1) => Ok(None),
-        Method::Bounces(_) => lazy(model, scatterer, (wave, shadow), signals).map(Some),
+        Method::Bounces(_) => lazy(model, scatterer, (wave, shadow), &[], signals).map(Some),
         Method::Solver { solver, .. } => {
             let products = EXPECTED * incident_waves(model);
             coupled(model, scatterer, (wave, shadow), (&[&**solver], products), signals).map(Some)
@@ -43,15 +43,47 @@ pub(super) fn system<'a>(
     }
 }
 
-/// The system whose products are computed anew each time.
+/// The memory of a run on a scatterer with its coupling and its solver, and how the run holds the
+/// coupling; none where one bounce is all.
+pub(super) fn plan(
+    model: &Model,
+    scatterer: &Scatterer,
+    wave: Wave,
+) -> Result<(Plan, Option<CouplingStorage>), Error> {
+    let solvers: &[&dyn Solver<Complex64>] = match &model.method {
+        Method::Bounces(1) => return Ok((one_bounce_plan(model, scatterer, &wave), None)),
+        Method::Bounces(_) => &[],
+        Method::Solver { solver, .. } => &[&**solver],
+    };
+    let (at, products) = ((wave, model.shadow), EXPECTED * incident_waves(model));
+    if !solvers.is_empty() && wants_matrix(model, scatterer, at, (solvers, products))? {
+        return Ok((stored_plan(model, scatterer, at, solvers), Some(CouplingStorage::Matrix)));
+    }
+    Ok((lazy_plan(model, scatterer, at, solvers), Some(CouplingStorage::Products)))
+}
+
+/// The memory of one bounce, whose currents are sampled as finely as the fields need unless the far
+/// field of all is known in closed form.
+fn one_bounce_plan(model: &Model, scatterer: &Scatterer, wave: &Wave) -> Plan {
+    let sheets = scatterer.facets().iter().all(|facet| facet.kind == Kind::Sheet);
+    let plan = model.plan.clone();
+    if model.is_closed_form() && sheets {
+        return plan;
+    }
+    let bytes = Radiator::bytes(scatterer, wave, Sampling::Tolerance(TOLERANCE));
+    plan.hold("the radiating points", bytes.into())
+}
+
+/// The system whose products are computed anew each time, for bounces or for these solvers.
 pub(super) fn lazy<'a>(
     model: &Model,
     scatterer: &'a Scatterer,
     (wave, shadow): (Wave, Shadow),
+    solvers: &[&dyn Solver<Complex64>],
     signals: &Signals<'_>,
 ) -> Result<System<'a>, Error> {
     let help = "mesh coarser, or ask for one bounce";
-    let plan = coupling(model.plan.clone(), scatterer, shadow);
+    let plan = lazy_plan(model, scatterer, (wave, shadow), solvers);
     plan.admit(model.limit, help)?;
     plan.tell(model.limit, signals.watch);
     System::lazy(scatterer, wave, shadow).map_err(|error: WaveError| model.refused(&error, None))
@@ -59,17 +91,54 @@ pub(super) fn lazy<'a>(
 
 /// Iterations that are expected of a solver, before anything is known.
 const EXPECTED: f64 = 40.0;
+/// Directions of a sweep that are solved for together by products.
+const DIRECTIONS_TOGETHER: usize = 8;
+/// Copies of the right-hand sides that are held beside a solver's.
+const VECTORS: u128 = 3;
 /// Bytes of a matrix that is stored without being asked for, where products would do.
 const UNASKED: u64 = 1 << 30;
 
 /// Incident waves of a run.
 fn incident_waves(model: &Model) -> f64 {
-    let sweep = |receiver: &super::model::Receiver| match &receiver.places {
-        Places::Monostatic(angles) => 2 * angles.len(),
-        _ => 0,
-    };
-    let swept: usize = model.receivers.iter().map(sweep).sum();
+    let swept: usize = sweeps(model).map(|directions| 2 * directions).sum();
     (swept + usize::from(model.has_bistatic())) as f64
+}
+
+/// Numbers of directions of the receivers that send their own waves.
+fn sweeps(model: &Model) -> impl Iterator<Item = usize> {
+    model.receivers.iter().filter_map(|receiver| match &receiver.places {
+        Places::Monostatic(angles) => Some(angles.len()),
+        _ => None,
+    })
+}
+
+/// Directions of a sweep over so many that are solved for together: a factorisation serves all
+/// waves, and others need memory for every wave that they solve for.
+pub(super) fn directions_together(model: &Model, directions: usize) -> usize {
+    match &model.method {
+        _ if model.galerkin.is_some() => directions,
+        Method::Solver { solver, .. } if !by_products().contains(&solver.name()) => directions,
+        _ => directions.min(DIRECTIONS_TOGETHER),
+    }
+    .max(1)
+}
+
+/// Most right-hand sides that are solved for at once.
+pub(super) fn rhs_count(model: &Model) -> usize {
+    sweeps(model).map(|directions| 2 * directions_together(model, directions)).max().unwrap_or(1)
+}
+
+/// What solvers of so many unknowns take, with the vectors that they are given: the largest of
+/// them.
+pub(super) fn of_solvers(
+    plan: Plan,
+    (unknowns, rhs_count): (usize, usize),
+    solvers: &[&dyn Solver<Complex64>],
+) -> Plan {
+    let largest = solvers.iter().map(|solver| solver.bytes(unknowns, rhs_count)).max().unwrap_or(0);
+    let addresses = solvers.iter().map(|solver| solver.addresses()).max().unwrap_or(0);
+    let vectors = VECTORS * (rhs_count * unknowns * size_of::<Complex64>()) as u128;
+    plan.hold("the solver", largest.into()).hold("the right-hand sides", vectors).aside(of_threads(addresses))
 }
 
 /// Whether a matrix is quicker than so many products computed anew. Measured on two cores, in
@@ -89,20 +158,27 @@ fn is_quicker_stored(scatterer: &Scatterer, shadow: Shadow, products: f64) -> bo
 fn stored_plan(
     model: &Model,
     scatterer: &Scatterer,
-    shadow: Shadow,
+    at: (Wave, Shadow),
     solvers: &[&dyn Solver<Complex64>],
 ) -> Plan {
     let unknowns = System::unknowns(scatterer);
-    let solver = solvers
-        .iter()
-        .map(|solver| solver.bytes(unknowns, incident_waves(model) as usize))
-        .max()
-        .unwrap_or(0);
-    let addresses = solvers.iter().map(|solver| solver.addresses()).max().unwrap_or(0);
-    coupling(model.plan.clone(), scatterer, shadow)
-        .hold(format!("the coupling of {unknowns} unknowns"), System::bytes(scatterer).into())
-        .hold("the solver", solver.into())
-        .aside(of_threads(addresses))
+    let plan = lazy_plan(model, scatterer, at, solvers);
+    plan.hold(format!("the coupling of {unknowns} unknowns"), System::bytes(scatterer).into())
+}
+
+/// The memory of a coupling whose products are computed anew with what else there is, for the
+/// largest of some solvers.
+fn lazy_plan(
+    model: &Model,
+    scatterer: &Scatterer,
+    (wave, shadow): (Wave, Shadow),
+    solvers: &[&dyn Solver<Complex64>],
+) -> Plan {
+    let plan = model
+        .plan
+        .clone()
+        .hold("what is near and in view", System::lazy_bytes(scatterer, &wave, shadow).into());
+    of_solvers(plan, (System::unknowns(scatterer), rhs_count(model)), solvers)
 }
 
 /// Whether the coupling for these solvers, from which so many products are expected, is stored:
@@ -110,7 +186,7 @@ fn stored_plan(
 fn wants_matrix(
     model: &Model,
     scatterer: &Scatterer,
-    shadow: Shadow,
+    at: (Wave, Shadow),
     (solvers, products): (&[&dyn Solver<Complex64>], f64),
 ) -> Result<bool, Error> {
     let by_products = by_products();
@@ -124,21 +200,11 @@ fn wants_matrix(
         (Some(storage), _) => Ok(storage == CouplingStorage::Matrix),
         (None, Some(_)) => Ok(true),
         (None, None) => {
-            let quicker = is_quicker_stored(scatterer, shadow, products);
-            let fits = || stored_plan(model, scatterer, shadow, solvers).fits(model.limit);
+            let quicker = is_quicker_stored(scatterer, at.1, products);
+            let fits = || stored_plan(model, scatterer, at, solvers).fits(model.limit);
             Ok(quicker && System::bytes(scatterer) <= UNASKED && fits())
         }
     }
-}
-
-/// Whether a run of the model stores its coupling for a solver.
-pub(super) fn is_stored(
-    model: &Model,
-    scatterer: &Scatterer,
-    shadow: Shadow,
-    solver: &dyn Solver<Complex64>,
-) -> Result<bool, Error> {
-    wants_matrix(model, scatterer, shadow, (&[solver], EXPECTED * incident_waves(model)))
 }
 
 /// The system for these solvers, from which so many products are expected.
@@ -149,25 +215,16 @@ pub(super) fn coupled<'a>(
     (solvers, products): (&[&dyn Solver<Complex64>], f64),
     signals: &Signals<'_>,
 ) -> Result<System<'a>, Error> {
-    if !wants_matrix(model, scatterer, shadow, (solvers, products))? {
-        return lazy(model, scatterer, (wave, shadow), signals);
+    if !wants_matrix(model, scatterer, (wave, shadow), (solvers, products))? {
+        return lazy(model, scatterer, (wave, shadow), solvers, signals);
     }
     let by_products = by_products().join(", ");
     let help = format!("mesh coarser, or take a solver that needs no matrix: {by_products}");
-    let plan = stored_plan(model, scatterer, shadow, solvers);
+    let plan = stored_plan(model, scatterer, (wave, shadow), solvers);
     plan.admit(model.limit, &help)?;
     plan.tell(model.limit, signals.watch);
     System::stored(scatterer, wave, shadow, Discretisation::Nystrom)
         .map_err(|error: WaveError| model.refused(&error, None))
-}
-
-/// What a coupling takes besides its matrix.
-fn coupling(plan: Plan, scatterer: &Scatterer, shadow: Shadow) -> Plan {
-    let facets = scatterer.facets().len() as u128;
-    plan.hold(
-        "what is near and in view",
-        facets * COUPLED + u128::from(NystromCoupling::bytes(scatterer, shadow)),
-    )
 }
 
 /// Solves for all right-hand sides of b by a model's method.

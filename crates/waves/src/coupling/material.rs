@@ -48,6 +48,12 @@ impl<'a> MaterialCoupling<'a> {
         Ok(Self { scatterer, wave, shadow, view: View::new(scatterer, shadow) })
     }
 
+    /// Bytes of the view, at most: before anything is computed.
+    #[must_use]
+    pub fn bytes(scatterer: &Scatterer, shadow: Shadow) -> u64 {
+        View::bytes(scatterer, shadow)
+    }
+
     fn facet(&self, i: usize) -> &Facet {
         &self.scatterer.facets()[i]
     }

@@ -22,7 +22,7 @@ use fredholm_mesh::Vec3;
 use num_complex::Complex64;
 use pulp::Arch;
 use rayon::prelude::*;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// Cosine between normals above which two facets are of one smooth surface.
 pub(super) const SMOOTH: f64 = 0.7;
@@ -93,12 +93,20 @@ impl<'a> NystromCoupling<'a> {
         Ok(dense)
     }
 
-    /// Bytes that the view and the near pairs of so many facets take, at most: before anything is
-    /// computed.
+    /// Bytes of the view, of the near pairs and of what else a facet needs, before anything is
+    /// computed: as many facets are near to one as fit the disc of its reach.
     #[must_use]
-    pub fn bytes(scatterer: &Scatterer, shadow: Shadow) -> u64 {
-        let facets = scatterer.facets().len();
-        if shadow == Shadow::Geometric { View::bytes(facets) } else { 0 }
+    pub fn bytes(scatterer: &Scatterer, wave: &Wave, shadow: Shadow) -> u64 {
+        let facets = scatterer.facets();
+        let near = |(index, facet): (usize, &Facet)| {
+            let group = group(index, facet, wave, shadow);
+            (PI * group.near_squared / facet.area).min(facets.len() as f64)
+        };
+        let pairs: f64 = facets.iter().enumerate().map(near).sum();
+        let each = size_of::<Group>() + size_of::<Vec<(u32, Block)>>() + 4 * size_of::<Vec3>();
+        View::bytes(scatterer, shadow)
+            + (pairs * size_of::<(u32, Block)>() as f64) as u64
+            + (each * facets.len()) as u64
     }
 
     fn facet(&self, i: usize) -> &Facet {
@@ -142,6 +150,8 @@ impl<'a> NystromCoupling<'a> {
                 same
             });
         }
+        // Rows are many: what they reserve beyond their length would be as much as they hold.
+        row.shrink_to_fit();
         row
     }
 

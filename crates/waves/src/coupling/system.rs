@@ -81,6 +81,16 @@ impl<'a> System<'a> {
         scatterer.facets().len().saturating_mul(each)
     }
 
+    /// Bytes of [`lazy`](Self::lazy) besides the scatterer, at most: before anything is computed.
+    #[must_use]
+    pub fn lazy_bytes(scatterer: &Scatterer, wave: &Wave, shadow: Shadow) -> u64 {
+        if scatterer.check_conductor("").is_ok() {
+            NystromCoupling::bytes(scatterer, wave, shadow)
+        } else {
+            MaterialCoupling::bytes(scatterer, shadow)
+        }
+    }
+
     /// Bytes of the stored K.
     #[must_use]
     pub fn bytes(scatterer: &Scatterer) -> u64 {

@@ -23,9 +23,11 @@ impl View {
         Some(Self { words, bits: rows.collect() })
     }
 
-    /// Bytes for this many facets.
-    pub(crate) fn bytes(facets: usize) -> u64 {
-        (facets.div_ceil(64) as u64).saturating_mul(8).saturating_mul(facets as u64)
+    /// Bytes that it takes, at most.
+    pub(crate) fn bytes(scatterer: &Scatterer, shadow: Shadow) -> u64 {
+        let facets = scatterer.facets().len();
+        let row = 8 * facets.div_ceil(64) as u64;
+        if shadow == Shadow::Geometric { row.saturating_mul(facets as u64) } else { 0 }
     }
 
     /// Whether p and q see each other.

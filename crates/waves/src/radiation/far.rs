@@ -76,10 +76,11 @@ impl Radiator<'_> {
 
     fn far_amplitude(&self, u: Vec3) -> ComplexVector {
         let (mut j, mut m) = (ComplexVector::ZERO, ComplexVector::ZERO);
-        for group in &self.groups {
+        let samples = self.samples();
+        for group in &samples.groups {
             let front = u.dot(Vec3::from_array(group.normal)) > 0.0;
             let weight = if front { 1.0 } else { group.behind };
-            for (elements, sum) in [(&self.electric, &mut j), (&self.magnetic, &mut m)] {
+            for (elements, sum) in [(&samples.electric, &mut j), (&samples.magnetic, &mut m)] {
                 for element in elements.iter().skip(group.first).take(group.count) {
                     let phase = self.wave.wavenumber() * u.dot(Vec3::from_array(element.position));
                     let moment = ComplexVector { re: element.re.into(), im: element.im.into() };

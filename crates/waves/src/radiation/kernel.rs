@@ -26,6 +26,9 @@ pub(crate) struct Element {
 }
 
 impl Element {
+    /// One without a current.
+    pub(crate) const DARK: Self = Self { position: [0.0; 3], re: [0.0; 3], im: [0.0; 3] };
+
     /// Whether it carries no current.
     pub(crate) fn is_dark(&self) -> bool {
         self.re.iter().chain(&self.im).all(|&part| part == 0.0)

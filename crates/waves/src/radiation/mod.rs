@@ -19,11 +19,12 @@ pub(crate) use kernel::{Element, Evaluate, Group, Observers};
 pub(crate) use near::Run;
 
 use crate::element::dual;
-use crate::rule::{phase_error, points_for_phase, reach, regular};
+use crate::rule::{phase_error, points_for_phase, points_of, reach, regular};
 use crate::{ComplexVector, Facet, Field, Scatterer, SurfaceCurrent, Wave, WaveError};
 use fredholm_mesh::Vec3;
 use pulp::Arch;
 use rayon::prelude::*;
+use std::sync::OnceLock;
 
 /// Points that one task takes.
 const CHUNK: usize = 64;
@@ -57,16 +58,24 @@ pub struct Radiator<'a> {
     current: &'a dyn SurfaceCurrent,
     wave: Wave,
     gate: Gate,
-    tolerance: f64,
-    groups: Vec<Group>,
-    runs: Vec<Run>,
-    electric: Vec<Element>,
-    magnetic: Vec<Element>,
+    sampling: Sampling,
+    /// Made when the first field is asked for: what is known in closed form does without.
+    samples: OnceLock<Samples>,
     arch: Arch,
 }
 
+/// The currents at the points of the far rule.
+#[derive(Default)]
+struct Samples {
+    groups: Vec<Group>,
+    runs: Vec<Run>,
+    /// Empty where no current of the kind flows: those of one kind cost one pass and one list.
+    electric: Vec<Element>,
+    magnetic: Vec<Element>,
+}
+
 impl<'a> Radiator<'a> {
-    /// Samples the currents.
+    /// Samples the currents when the first field is asked for.
     #[must_use]
     pub fn new(
         scatterer: &'a Scatterer,
@@ -75,77 +84,32 @@ impl<'a> Radiator<'a> {
         gate: Gate,
         sampling: Sampling,
     ) -> Self {
-        let tolerance = match sampling {
-            Sampling::Tolerance(tolerance) => tolerance.max(1e-12),
-            Sampling::Midpoint => TOLERANCE,
-        };
-        let mut radiator = Self {
-            scatterer,
-            current,
-            wave,
-            gate,
-            tolerance,
-            groups: Vec::new(),
-            runs: Vec::new(),
-            electric: Vec::new(),
-            magnetic: Vec::new(),
-            arch: Arch::new(),
-        };
-        for (index, facet) in scatterer.facets().iter().enumerate() {
-            radiator.sample(index, facet, sampling == Sampling::Midpoint);
-        }
-        radiator.complete();
-        radiator
+        let (samples, arch) = (OnceLock::new(), Arch::new());
+        Self { scatterer, current, wave, gate, sampling, samples, arch }
     }
 
-    /// What is left to do when all facets are sampled.
-    fn complete(&mut self) {
-        self.runs = Run::all(&self.groups);
-        // Currents of one kind only cost one pass.
-        for elements in [&mut self.electric, &mut self.magnetic] {
-            if elements.iter().all(Element::is_dark) {
-                elements.clear();
-            }
-        }
+    /// Bytes of the currents of a scatterer once they are sampled, at most: on conductors of one
+    /// kind.
+    #[must_use]
+    pub fn bytes(scatterer: &Scatterer, wave: &Wave, sampling: Sampling) -> u64 {
+        let points = |facet: &Facet| points_of(facet, points_a_side(facet, wave, sampling));
+        let points: usize = scatterer.facets().par_iter().map(points).sum();
+        let kinds = if scatterer.check_conductor("").is_ok() { 1 } else { 2 };
+        (kinds * points * size_of::<Element>() + scatterer.facets().len() * size_of::<Group>()) as u64
     }
 
-    /// Largest phase over a facet, rad: the wave to the observer and the current both turn by up to
-    /// k a metre.
-    fn phase(&self, facet: &Facet) -> f64 {
-        2.0 * self.wave.wavenumber() * facet.edge()
+    fn samples(&self) -> &Samples {
+        self.samples.get_or_init(|| Samples::of(self))
     }
 
-    fn sample(&mut self, index: usize, facet: &Facet, midpoint: bool) {
-        let phase = self.phase(facet);
-        let n = if midpoint { 1 } else { points_for_phase(phase, self.tolerance) };
-        let near = 0.5 * facet.diameter * reach(n, phase_error(n, phase).clamp(self.tolerance, 0.1));
-        let first = self.electric.len();
-        for (q, weight) in regular(facet, n) {
-            let current = self.current.at(index, q);
-            self.electric.push(element(q, current.j, weight));
-            self.magnetic.push(element(q, current.m, weight));
-        }
-        if self.electric[first..].iter().chain(&self.magnetic[first..]).all(Element::is_dark) {
-            self.electric.truncate(first);
-            self.magnetic.truncate(first);
-            return;
-        }
-        let behind = if self.gate == Gate::Open { 1.0 } else { -1.0 };
-        self.groups.push(Group {
-            centre: facet.centre.into(),
-            normal: facet.normal.into(),
-            near_squared: near * near,
-            behind,
-            facet: index,
-            first,
-            count: self.electric.len() - first,
-        });
+    fn tolerance(&self) -> f64 {
+        tolerance(self.sampling)
     }
 
     /// Elements that the far rule has, of electric and of magnetic currents.
     #[must_use]
     pub fn elements(&self) -> usize {
-        self.electric.len() + self.magnetic.len()
+        self.samples().electric.len() + self.samples().magnetic.len()
     }
 
     /// E and H at these points (m), in parallel.
@@ -173,17 +137,90 @@ impl<'a> Radiator<'a> {
     /// What the facets radiate that a point is not near to.
     fn far_part(&self, points: &[Vec3], out: &mut [Field]) {
         let mut part = [Field::ZERO; CHUNK];
-        for (elements, magnetic) in [(&self.electric, false), (&self.magnetic, true)] {
+        let samples = self.samples();
+        for (elements, magnetic) in [(&samples.electric, false), (&samples.magnetic, true)] {
             if elements.is_empty() {
                 continue;
             }
             let part = &mut part[..points.len()];
-            let (wavenumber, groups) = (self.wave.wavenumber(), &self.groups);
+            let (wavenumber, groups) = (self.wave.wavenumber(), &samples.groups);
             self.arch.dispatch(Evaluate { wavenumber, groups, elements, points, observers: None, out: part });
             let turned = |field: Field| if magnetic { dual(field) } else { field };
             out.iter_mut().zip(part.iter()).for_each(|(out, &field)| *out += turned(field));
         }
     }
+}
+
+impl Samples {
+    fn of(radiator: &Radiator<'_>) -> Self {
+        let mut samples = Self::default();
+        let (mut electric, mut magnetic) = (Vec::new(), Vec::new());
+        let mut first = 0;
+        for (index, facet) in radiator.scatterer.facets().iter().enumerate() {
+            electric.clear();
+            magnetic.clear();
+            let n = points_a_side(facet, &radiator.wave, radiator.sampling);
+            for (q, weight) in regular(facet, n) {
+                let current = radiator.current.at(index, q);
+                electric.push(element(q, current.j, weight));
+                magnetic.push(element(q, current.m, weight));
+            }
+            if electric.iter().chain(&magnetic).all(Element::is_dark) {
+                continue;
+            }
+            let near = near(facet, &radiator.wave, (n, tolerance(radiator.sampling)));
+            samples.groups.push(Group {
+                centre: facet.centre.into(),
+                normal: facet.normal.into(),
+                near_squared: near * near,
+                behind: if radiator.gate == Gate::Open { 1.0 } else { -1.0 },
+                facet: index,
+                first,
+                count: electric.len(),
+            });
+            append(&mut samples.electric, first, &electric);
+            append(&mut samples.magnetic, first, &magnetic);
+            first += electric.len();
+        }
+        samples.runs = Run::all(&samples.groups);
+        samples
+    }
+}
+
+/// Appends the elements of a facet to all before, which are `first`: dark ones are left out until
+/// one is not.
+fn append(all: &mut Vec<Element>, first: usize, more: &[Element]) {
+    if all.is_empty() && more.iter().all(Element::is_dark) {
+        return;
+    }
+    all.resize(first, Element::DARK);
+    all.extend_from_slice(more);
+}
+
+fn tolerance(sampling: Sampling) -> f64 {
+    match sampling {
+        Sampling::Tolerance(tolerance) => tolerance.max(1e-12),
+        Sampling::Midpoint => TOLERANCE,
+    }
+}
+
+/// Largest phase over a facet, rad: the wave to the observer and the current both turn by up to k
+/// a metre.
+fn phase(facet: &Facet, wave: &Wave) -> f64 {
+    2.0 * wave.wavenumber() * facet.edge()
+}
+
+/// Gauss points a side of a facet.
+fn points_a_side(facet: &Facet, wave: &Wave, sampling: Sampling) -> usize {
+    match sampling {
+        Sampling::Midpoint => 1,
+        Sampling::Tolerance(_) => points_for_phase(phase(facet, wave), tolerance(sampling)),
+    }
+}
+
+/// Distance from the centre of a facet, m, up to which so many points a side are too few.
+fn near(facet: &Facet, wave: &Wave, (n, tolerance): (usize, f64)) -> f64 {
+    0.5 * facet.diameter * reach(n, phase_error(n, phase(facet, wave)).clamp(tolerance, 0.1))
 }
 
 fn element(q: Vec3, current: ComplexVector, weight: f64) -> Element {

@@ -1,6 +1,6 @@
 //! Facets that a point is close to, integrated for it alone.
 
-use super::{Group, Radiator};
+use super::{Group, Radiator, phase};
 use crate::rule::seen_from;
 use crate::{Current, Facet, Field, WaveError, electric_element, magnetic_element};
 use fredholm_mesh::Vec3;
@@ -52,8 +52,8 @@ impl Run {
 impl Radiator<'_> {
     /// What the near facets of receiver `index` at `p` radiate to it.
     pub(super) fn near_part(&self, index: usize, p: Vec3) -> Result<Field, WaveError> {
-        let mut sum = Field::ZERO;
-        for group in Run::near(&self.groups, &self.runs, p) {
+        let (mut sum, samples) = (Field::ZERO, self.samples());
+        for group in Run::near(&samples.groups, &samples.runs, p) {
             let d = p - Vec3::from_array(group.centre);
             let facet = &self.scatterer.facets()[group.facet];
             if touches(facet, p) {
@@ -71,12 +71,13 @@ impl Radiator<'_> {
         let term = |(q, weight): (Vec3, f64)| {
             let Current { j, m } = self.current.at(index, q);
             let electric = electric_element(&self.wave, j * weight, p - q);
-            if self.magnetic.is_empty() {
+            if self.samples().magnetic.is_empty() {
                 return electric;
             }
             electric + magnetic_element(&self.wave, m * weight, p - q)
         };
-        seen_from(facet, p, self.phase(facet), self.tolerance).into_iter().map(term).sum()
+        let phase = phase(facet, &self.wave);
+        seen_from(facet, p, phase, self.tolerance()).into_iter().map(term).sum()
     }
 }
 
