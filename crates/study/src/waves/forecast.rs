@@ -38,23 +38,23 @@ use crate::stages::Stages;
 const FIRST_FACETS: [f64; 2] = [40.0, 20_000.0];
 const MOST_FIRST: [usize; 2] = [600, 40_000];
 /// Seconds that the next trial may be expected to take, and after which it is given up.
-const BUDGET: f64 = 1.5;
+const MOST_EXPECTED_SECONDS: f64 = 1.5;
 const MOST_SECONDS: f64 = 3.0;
 /// Exponent that is expected of the second trial.
 const EXPECTED_EXPONENT: f64 = 1.5;
 /// Unknowns of the matrix that is factorised for its rate, at most: a fraction of a second.
-const MOST_TRIED: usize = 800;
+const MOST_FACTORISED: usize = 800;
 /// Seconds from which on the growth of a part is measured; below, usual exponents are taken.
 const CLEAR_SECONDS: f64 = 4e-3;
 /// Growth from which on an exponent is one.
 const LEAST_GROWTH: f64 = 1.9;
 /// Points and directions of a receiver in a trial, at least, times facets; and waves of a sweep, of
 /// which its error takes eight.
-const PLACES: usize = 48;
-const WORK: usize = 2_000_000;
-const SWEPT: usize = 32;
+const LEAST_PLACES: usize = 48;
+const FACETS_TIMES_PLACES: usize = 2_000_000;
+const MOST_SWEPT: usize = 32;
 /// Frequencies in a trial, of few and of many.
-const FREQUENCIES: usize = 2;
+const TRIED_FREQUENCIES: usize = 2;
 /// Seconds of a value in the files, and of a plot or a map.
 const SECONDS_A_VALUE: f64 = 1.2e-6;
 const SECONDS_A_PLOT: f64 = 0.01;
@@ -88,14 +88,15 @@ fn on_this_thread(model: &mut Model, unknowns: Option<usize>, watch: &dyn Watch)
     let values = counts.iter().sum::<usize>() as f64 * all.len() as f64;
     let plots = (counts.len() * all.len().min(MOST_PICTURED)) as f64;
     let facets = model.geometry.mesh.len() as f64;
-    let waves = some(&all, if all.len() > MOST_PICTURED { MOST_PICTURED + 1 } else { FREQUENCIES });
+    let waves = some(&all, if all.len() > MOST_PICTURED { MOST_PICTURED + 1 } else { TRIED_FREQUENCIES });
     let share = all.len() as f64 / waves.len() as f64;
     let receivers = mem::take(&mut model.receivers);
     model.balanced = false;
     let apart = has_fields_as_they_are(model);
     // Fields that are tried apart would only keep trials from more facets.
-    let places =
-        |facets| if apart { sampled(&receivers, facets, PLACES) } else { sampled(&receivers, facets, 1) };
+    let places = |facets| {
+        if apart { sampled(&receivers, facets, LEAST_PLACES) } else { sampled(&receivers, facets, 1) }
+    };
     let trials = trials(model, (&waves, facets), &places, watch)?;
     let last = *trials.last()?;
     let mut whole = last.seconds;
@@ -158,7 +159,7 @@ fn is_factorised(model: &Model) -> bool {
 
 /// Seconds that a factorisation of so many unknowns takes, from that of fewer.
 fn factorisation(model: &Model, unknowns: usize, watch: &dyn Watch) -> Option<f64> {
-    let fewer = unknowns.min(MOST_TRIED);
+    let fewer = unknowns.min(MOST_FACTORISED);
     // What is taken away from 1 is small beside it, so that no pivot vanishes.
     let entry = |i: usize| {
         let angle = i as f64;
@@ -211,7 +212,7 @@ fn trials(
                 (all(last) / all(&before)).ln() / (last.facets / before.facets).ln()
             });
             let expected = all(last) * (here as f64 / last.facets).powf(steep.clamp(1.0, 3.0));
-            if here as f64 > last.facets && expected > BUDGET {
+            if here as f64 > last.facets && expected > MOST_EXPECTED_SECONDS {
                 break;
             }
         }
@@ -303,8 +304,8 @@ fn total(receivers: &[Receiver], swept: bool) -> f64 {
 /// The receivers at some of their places, as many as such facets allow, over a divisor.
 fn sampled(receivers: &[Receiver], facets: usize, divisor: usize) -> Vec<Receiver> {
     let most = |places: &Places| match places {
-        Places::Monostatic(_) => (SWEPT / divisor).max(1),
-        _ => ((WORK / facets.max(1)).max(PLACES) / divisor).max(1),
+        Places::Monostatic(_) => (MOST_SWEPT / divisor).max(1),
+        _ => ((FACETS_TIMES_PLACES / facets.max(1)).max(LEAST_PLACES) / divisor).max(1),
     };
     receivers.iter().map(|receiver| fewer(receiver, most(&receiver.places))).collect()
 }

@@ -37,16 +37,16 @@ use crate::problem::scene_failure;
 use crate::stages::{Signals, Stages};
 
 /// Relative error of the integrals over each pair of triangles, below that of usual meshes.
-const INTEGRALS: f64 = 1e-3;
+const INTEGRAL_ERROR: f64 = 1e-3;
 /// Relative error of the blocks of a compressed matrix: that of the integrals.
-const COMPRESSION: f64 = INTEGRALS;
+const COMPRESSION_ERROR: f64 = INTEGRAL_ERROR;
 /// The solver of compressed matrices where the scene names none.
-const ITERATIVE: &str = "gmres:restart=100";
+const COMPRESSED_SOLVER: &str = "gmres:restart=100";
 /// Unknowns of the combined equation from which on compressing its matrix and iterating on it takes
 /// less time than to store and to factorise it, for few right-hand sides (docs/notes/moments.md).
-const MANY: usize = 12_000;
+const LEAST_COMPRESSED_UNKNOWNS: usize = 12_000;
 /// Right-hand sides that are few.
-const FEW: usize = 4;
+const MOST_RHS_OF_COMPRESSED: usize = 4;
 /// Directions in which the mean scattered field is taken that errors are compared with.
 const DIRECTIONS: usize = 200;
 
@@ -99,7 +99,7 @@ pub(super) fn run(
 }
 
 /// Rows of a matrix that are integrated for the time that it takes, in groups.
-const SAMPLES: usize = 6;
+const SAMPLED_GROUPS: usize = 6;
 
 /// Seconds that `spent` tells the matrices of the model take at its frequencies, from some rows.
 pub(super) fn assembly(model: &Model, equations: Equations, spent: &dyn Fn() -> f64) -> Result<f64, Error> {
@@ -108,7 +108,7 @@ pub(super) fn assembly(model: &Model, equations: Equations, spent: &dyn Fn() -> 
     for band in &model.bands {
         let body = Body::new(model, (&model.geometry, &basis), band, equations)?;
         let began = spent();
-        let share = body.operator().sample(SAMPLES);
+        let share = body.operator().sample(SAMPLED_GROUPS);
         seconds += (spent() - began) / share;
     }
     Ok(seconds)
@@ -171,7 +171,7 @@ impl<'a> Body<'a> {
     ) -> Result<Self, Error> {
         let conductor = |equation| {
             all_of(model, band, |material| *material == Material::Conductor)?;
-            Conductor::new(basis, band.wave, equation, INTEGRALS)
+            Conductor::new(basis, band.wave, equation, INTEGRAL_ERROR)
                 .map(Self::Conductor)
                 .map_err(|error| refused(model, &error))
         };
@@ -179,14 +179,14 @@ impl<'a> Body<'a> {
             Equations::Electric if is_perfect(geometry, band) => conductor(Equation::Electric),
             Equations::Electric => {
                 let conditions = conditions(model, geometry, band)?;
-                Imperfect::new(basis, band.wave, conditions, INTEGRALS)
+                Imperfect::new(basis, band.wave, conditions, INTEGRAL_ERROR)
                     .map(Self::Imperfect)
                     .map_err(|error| refused(model, &error))
             }
             Equations::Combined => conductor(Equation::default()),
             Equations::Dielectric => {
                 let permittivity = permittivity(model, band)?;
-                Dielectric::new(basis, band.wave, permittivity, INTEGRALS)
+                Dielectric::new(basis, band.wave, permittivity, INTEGRAL_ERROR)
                     .map(Self::Dielectric)
                     .map_err(|error| refused(model, &error))
             }
@@ -324,7 +324,9 @@ enum Matrix {
 
 /// Whether a compressed matrix of so many unknowns takes less time than a whole one.
 fn is_quicker_compressed(model: &Model, unknowns: usize) -> bool {
-    model.galerkin == Some(Equations::Combined) && unknowns > MANY && rhs_count(model) <= FEW
+    model.galerkin == Some(Equations::Combined)
+        && unknowns > LEAST_COMPRESSED_UNKNOWNS
+        && rhs_count(model) <= MOST_RHS_OF_COMPRESSED
 }
 
 /// Whether the scene names a solver that needs the entries of the matrix.
@@ -354,12 +356,12 @@ fn whole_plan(model: &Model, unknowns: usize, solver: &dyn Solver<Complex64>) ->
 
 /// The solver of a compressed matrix.
 fn of_compressed(model: &Model) -> Result<Box<dyn Solver<Complex64>>, Error> {
-    let asked = model.scene.settings().solver.as_deref().unwrap_or(ITERATIVE);
+    let asked = model.scene.settings().solver.as_deref().unwrap_or(COMPRESSED_SOLVER);
     build(asked).map_err(|error| Error::new(ErrorKind::Input, error))
 }
 
 fn settings() -> Settings {
-    Settings { tolerance: COMPRESSION, ..Settings::default() }
+    Settings { tolerance: COMPRESSION_ERROR, ..Settings::default() }
 }
 
 /// The memory of a run, how its matrix is held, and the unknowns; that of a compressed matrix from

@@ -34,10 +34,15 @@ pub(super) fn system<'a>(
     signals: &Signals<'_>,
 ) -> Result<Option<System<'a>>, Error> {
     match &model.method {
-        Method::Bounces(1) => Ok(None),
+        Method::Bounces(1) => {
+            let plan = one_bounce_plan(model, scatterer, &wave);
+            plan.admit(model.limit, "take longer edges")?;
+            plan.tell(model.limit, signals.watch);
+            Ok(None)
+        }
         Method::Bounces(_) => lazy(model, scatterer, (wave, shadow), &[], signals).map(Some),
         Method::Solver { solver, .. } => {
-            let products = EXPECTED * incident_waves(model);
+            let products = EXPECTED_ITERATIONS * incident_waves(model);
             coupled(model, scatterer, (wave, shadow), (&[&**solver], products), signals).map(Some)
         }
     }
@@ -55,7 +60,7 @@ pub(super) fn plan(
         Method::Bounces(_) => &[],
         Method::Solver { solver, .. } => &[&**solver],
     };
-    let (at, products) = ((wave, model.shadow), EXPECTED * incident_waves(model));
+    let (at, products) = ((wave, model.shadow), EXPECTED_ITERATIONS * incident_waves(model));
     if !solvers.is_empty() && wants_matrix(model, scatterer, at, (solvers, products))? {
         return Ok((stored_plan(model, scatterer, at, solvers), Some(CouplingStorage::Matrix)));
     }
@@ -90,13 +95,13 @@ pub(super) fn lazy<'a>(
 }
 
 /// Iterations that are expected of a solver, before anything is known.
-const EXPECTED: f64 = 40.0;
+const EXPECTED_ITERATIONS: f64 = 40.0;
 /// Directions of a sweep that are solved for together by products.
 const DIRECTIONS_TOGETHER: usize = 8;
 /// Copies of the right-hand sides that are held beside a solver's.
-const VECTORS: u128 = 3;
+const RIGHT_HAND_SIDE_COPIES: u128 = 3;
 /// Bytes of a matrix that is stored without being asked for, where products would do.
-const UNASKED: u64 = 1 << 30;
+const MOST_UNASKED_BYTES: u64 = 1 << 30;
 
 /// Incident waves of a run.
 fn incident_waves(model: &Model) -> f64 {
@@ -137,7 +142,7 @@ pub(super) fn of_solvers(
 ) -> Plan {
     let largest = solvers.iter().map(|solver| solver.bytes(unknowns, rhs_count)).max().unwrap_or(0);
     let addresses = solvers.iter().map(|solver| solver.addresses()).max().unwrap_or(0);
-    let vectors = VECTORS * (rhs_count * unknowns * size_of::<Complex64>()) as u128;
+    let vectors = RIGHT_HAND_SIDE_COPIES * (rhs_count * unknowns * size_of::<Complex64>()) as u128;
     plan.hold("the solver", largest.into()).hold("the right-hand sides", vectors).aside(of_threads(addresses))
 }
 
@@ -202,7 +207,7 @@ fn wants_matrix(
         (None, None) => {
             let quicker = is_quicker_stored(scatterer, at.1, products);
             let fits = || stored_plan(model, scatterer, at, solvers).fits(model.limit);
-            Ok(quicker && System::bytes(scatterer) <= UNASKED && fits())
+            Ok(quicker && System::bytes(scatterer) <= MOST_UNASKED_BYTES && fits())
         }
     }
 }
@@ -255,7 +260,7 @@ pub(super) fn bounced(
         Some(&last) if count > 1 && (last > 1.0 || last.is_nan()) => {
             Err(diverged("the sum of bounces", &residuals))
         }
-        Some(&last) if count > 1 && last > UNSETTLED => {
+        Some(&last) if count > 1 && last > LARGEST_SETTLED_RESIDUAL => {
             signals.watch.warn(&format!(
                 "after {count} bounces {:.0} % is left: the sum may be farther off than one with fewer; take a solver for all",
                 100.0 * last
@@ -267,7 +272,7 @@ pub(super) fn bounced(
 }
 
 /// Residual above which a sum of bounces is told to be unfinished.
-const UNSETTLED: f64 = 0.1;
+const LARGEST_SETTLED_RESIDUAL: f64 = 0.1;
 
 /// Solves x = b + K x for all right-hand sides of b by the solver of a method.
 pub(super) fn solved(
