@@ -85,7 +85,7 @@ def said(text):
 
 def memory_said(text):
     """MiB that are said."""
-    found = re.search(r"^\s*memory\s+([\d.]+) (B|KiB|MiB|GiB):", text, re.M)
+    found = re.search(r"^\s*memory\s+(?:about )?([\d.]+) (B|KiB|MiB|GiB):", text, re.M)
     return float(found[1]) * {"B": 2**-20, "KiB": 2**-10, "MiB": 1, "GiB": 1024}[found[2]] if found else None
 
 

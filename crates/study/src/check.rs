@@ -142,12 +142,12 @@ fn to_accuracy(
         return Ok(Some(ToAccuracy { accuracy, way, by_matrix, plan: None, seconds: None, threads }));
     }
     let settings = hierarchical::options(&asked, scene, accuracy)?;
-    let plan = Some(hierarchical::expected_plan(scene, &settings, accuracy));
     let run = (accuracy, is_free(&asked, scene));
     let watch = stages.watch;
-    let seconds = stages.run("sample", || Ok(rounds::seconds(scene, &settings, run, watch)))?;
+    let expected = stages.run("sample", || Ok(rounds::expected(scene, &settings, run, watch)))?;
     stages.check()?;
-    Ok(Some(ToAccuracy { accuracy, way, by_matrix, plan, seconds, threads }))
+    let plan = Some(hierarchical::expected_plan(scene, &settings, accuracy, expected.sizes));
+    Ok(Some(ToAccuracy { accuracy, way, by_matrix, plan, seconds: expected.seconds, threads }))
 }
 
 fn forecast(problem: Problem, sampled: bool, stages: &mut Stages) -> Result<Forecast, Error> {

@@ -3,7 +3,7 @@
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use fredholm_hierarchical::{
     Goal, HierarchyError, Options as Limits, Problem as Input, RESIDUAL, Round, RoundWatch,
@@ -160,11 +160,17 @@ impl Forecast {
     }
 }
 
-/// What a run to an accuracy is expected to hold.
-pub(crate) fn expected_plan(scene: &Scene, options: &SolveSettings, accuracy: f64) -> Plan {
+/// What a run to an accuracy is expected to hold, with so many elements and links where they are
+/// known.
+pub(crate) fn expected_plan(
+    scene: &Scene,
+    options: &SolveSettings,
+    accuracy: f64,
+    sizes: Option<[usize; 2]>,
+) -> Plan {
     let count = usize::try_from(scene.predicted_faces()).unwrap_or(usize::MAX);
     let most = limits(options, accuracy, &plan(scene, count, options)).bytes;
-    Forecast::new(scene, count, options, most).plan(expected(count, accuracy))
+    Forecast::new(scene, count, options, most).plan(sizes.unwrap_or_else(|| expected(count, accuracy)))
 }
 
 /// What a run came to.
@@ -173,6 +179,17 @@ pub(crate) enum Answer {
     Solved(Box<(Problem, Solution)>),
     /// So many links in the first round that random paths cost less, about so many.
     TooMany { links: f64, paths: f64 },
+    /// Ended from outside with nothing kept: what its rounds had come to.
+    Begun { rounds: Vec<Reached> },
+}
+
+/// What a round came to.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reached {
+    /// The error stated.
+    pub(crate) error: f64,
+    /// Elements and links.
+    pub(crate) sizes: [usize; 2],
 }
 
 /// Solves a scene to an accuracy, but for one that random paths suit better, where `free` allows
@@ -212,15 +229,17 @@ pub(crate) fn compute(
         saved: AtomicBool::new(false),
         paths: Choice::paths(faces.len(), accuracy).filter(|_| free),
         too_many: OnceLock::new(),
+        reached: Mutex::default(),
     };
     let solve = || match fredholm_hierarchical::solve(&input, &limits, solvers, state, &watch) {
         Err(HierarchyError::Interrupted) if watch.too_many.get().is_some() => Ok(None),
         // What the last round came to is in the checkpoint, which stays: the run can go on from
         // there.
         Err(HierarchyError::Interrupted) => {
-            let saved = watch.folder.filter(|_| watch.saved.load(Ordering::Relaxed));
-            let state =
-                self::state(&checkpoint::read(saved.ok_or_else(interrupted)?.path())?, scene, &input)?;
+            let Some(saved) = watch.folder.filter(|_| watch.saved.load(Ordering::Relaxed)) else {
+                return Ok(None);
+            };
+            let state = self::state(&checkpoint::read(saved.path())?, scene, &input)?;
             fredholm_hierarchical::conclude(&input, &limits, solvers, state).map_err(failure).map(Some)
         }
         solved => solved.map_err(failure).map(Some),
@@ -229,7 +248,10 @@ pub(crate) fn compute(
     if let Some(&[links, paths]) = watch.too_many.get() {
         return Ok(Answer::TooMany { links, paths });
     }
-    let Some(solved) = solved else { return Err(interrupted()) };
+    let Some(solved) = solved else {
+        let rounds = watch.reached.into_inner().unwrap_or_else(PoisonError::into_inner);
+        return Ok(Answer::Begun { rounds });
+    };
     stages.begin_saving()?;
     if let Some(plan) = forecast.after(&solved.rounds, true) {
         stages.tell(&plan, forecast.limit);
@@ -397,6 +419,8 @@ struct Follower<'a> {
     paths: Option<f64>,
     /// The links of the first round and those paths, where the paths cost less.
     too_many: OnceLock<[f64; 2]>,
+    /// The rounds that stated an error.
+    reached: Mutex<Vec<Reached>>,
 }
 
 impl Watch for Follower<'_> {
@@ -420,6 +444,10 @@ impl RoundWatch for Follower<'_> {
             self.signals.begin_saving().map_err(|_| HierarchyError::Interrupted)?;
         }
         let error = state.error().map(fredholm_hierarchical::Stated::worst);
+        if let Some(error) = error {
+            let sizes = [last.elements, last.links];
+            self.reached.lock().unwrap_or_else(PoisonError::into_inner).push(Reached { error, sizes });
+        }
         let reached = error.is_some_and(|error| error <= self.accuracy);
         if let Some(plan) = self.forecast.after(rounds, reached) {
             plan.tell(self.forecast.limit, self.signals.watch);
@@ -434,7 +462,7 @@ impl RoundWatch for Follower<'_> {
     }
 }
 
-fn interrupted() -> Error {
+pub(crate) fn interrupted() -> Error {
     let text = "interrupted before the first round had ended; there is no result, nothing was written";
     Error::new(ErrorKind::Interrupted, text)
 }

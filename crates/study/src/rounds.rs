@@ -1,12 +1,13 @@
-//! The time of a run to an accuracy, from its first rounds.
+//! The time of a run to an accuracy, and how many elements and links it comes to, from its first
+//! rounds.
 //!
-//! The links of a scene grow with a power of the accuracy ε, and so do the seconds:
+//! Elements and links grow with a power of the accuracy ε, and so do the seconds:
 //!
 //! ```text
 //! T(ε) = T_k (e_k/ε)^p
 //! ```
 //!
-//! after a round k that states the error e_k. The run is begun, and ended where it takes too long;
+//! after a round k that states the error e_k, and so the elements N and the links. The run is begun, and ended where it takes too long;
 //! p is what its rounds grew with. Random paths take (e/ε)² times what they took to the error e.
 //! The picture is drawn small, and takes as much more as it has more pixels.
 
@@ -17,7 +18,7 @@ use fredholm_linop::{Quiet, Watch};
 use fredholm_report::FRAMED;
 use fredholm_scene::Scene;
 
-use crate::hierarchical::{self, Answer};
+use crate::hierarchical::{self, Answer, Reached};
 use crate::meter::{Meter, alone, spent};
 use crate::options::SolveSettings;
 use crate::problem::{Problem, pixels};
@@ -40,15 +41,25 @@ const WIDTHS: [u32; 2] = [40, 160];
 const SECONDS_A_VALUE: f64 = 2e-6;
 const SECONDS_A_PIXEL: f64 = 2e-6;
 
-/// Seconds that a run to an accuracy takes one thread, with its files and its picture; none where
-/// its first rounds take too long to be tried. A run may be free to go over to random paths.
-pub(crate) fn seconds(
+/// What a run to an accuracy is expected to come to.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Expected {
+    /// Seconds that it takes one thread, with its files and its picture; none where its first
+    /// rounds take too long to be tried.
+    pub(crate) seconds: Option<f64>,
+    /// Elements and links in the end, where links answer it and a round has stated an error.
+    pub(crate) sizes: Option<[usize; 2]>,
+}
+
+/// What a run to an accuracy comes to, from its beginning. A run may be free to go over to random
+/// paths.
+pub(crate) fn expected(
     scene: &Arc<Scene>,
     options: &SolveSettings,
     accuracy: (f64, bool),
     watch: &dyn Watch,
-) -> Option<f64> {
-    alone(|| by_links(scene, options, accuracy, watch)).flatten()
+) -> Expected {
+    alone(|| by_links(scene, options, accuracy, watch)).unwrap_or_default()
 }
 
 fn by_links(
@@ -56,17 +67,24 @@ fn by_links(
     options: &SolveSettings,
     (accuracy, free): (f64, bool),
     watch: &dyn Watch,
-) -> Option<f64> {
+) -> Expected {
+    let by_paths = || Expected { seconds: by_paths(scene, options, accuracy, watch), sizes: None };
+    let known = |whole: f64, solved: (Problem, Solution)| {
+        let sizes = sizes(&solved);
+        Expected { seconds: written(options, solved).map(|written| whole + written), sizes }
+    };
     let meter = Meter::new(watch, LOOSE_SECONDS);
     let little = accuracy.max(LOOSE_ACCURACY);
     let loose = SolveSettings { accuracy: Some(little), ..options.clone() };
     let found = hierarchical::compute(scene, &loose, (little, None, None), free, &mut Stages::new(&meter));
     let whole = meter.seconds();
-    let Answer::Solved(solved) = found.ok()? else {
-        return by_paths(scene, options, accuracy, watch);
+    let solved = match found {
+        Ok(Answer::Solved(solved)) => *solved,
+        Ok(Answer::TooMany { .. }) => return by_paths(),
+        Ok(Answer::Begun { .. }) | Err(_) => return Expected::default(),
     };
     if accuracy >= little {
-        return Some(whole + written(options, *solved)?);
+        return known(whole, solved);
     }
     // What comes after the last round, beside it.
     let after =
@@ -75,14 +93,35 @@ fn by_links(
     let found = hierarchical::compute(scene, options, (accuracy, None, None), free, &mut Stages::new(&meter));
     let whole = meter.seconds();
     match found {
-        Ok(Answer::Solved(solved)) => Some(whole + written(options, *solved)?),
-        Ok(Answer::TooMany { .. }) => by_paths(scene, options, accuracy, watch),
-        Err(_) if watch.go_on() == ControlFlow::Break(()) => None,
-        Err(_) => {
-            let rounds = extrapolated(&meter.readings().shares, accuracy)?;
-            Some(after * rounds + written(options, *solved)?)
-        }
+        Ok(Answer::Solved(solved)) => known(whole, *solved),
+        Ok(Answer::TooMany { .. }) => by_paths(),
+        Ok(Answer::Begun { rounds }) if watch.go_on() == ControlFlow::Continue(()) => Expected {
+            seconds: extrapolated(&meter.readings().shares, accuracy)
+                .and_then(|rounds| Some(after * rounds + written(options, solved)?)),
+            sizes: followed(&rounds, accuracy),
+        },
+        Ok(Answer::Begun { .. }) | Err(_) => Expected::default(),
     }
+}
+
+/// Elements and links of a solution.
+fn sizes((problem, solution): &(Problem, Solution)) -> Option<[usize; 2]> {
+    let links = usize::try_from(solution.hierarchy.as_ref()?.links).ok()?;
+    Some([problem.mesh.len(), links])
+}
+
+/// From the elements and links of rounds to those at the accuracy.
+fn followed(rounds: &[Reached], accuracy: f64) -> Option<[usize; 2]> {
+    let last = rounds.last()?;
+    let before = rounds.len().checked_sub(2).map(|i| rounds[i]).filter(|before| before.error > last.error);
+    let of = |k: usize| {
+        let size = |round: &Reached| round.sizes[k] as f64;
+        let measured = before
+            .map(|before| (size(last) / size(&before).max(1.0)).ln() / (before.error / last.error).ln());
+        let exponent = measured.unwrap_or(MEAN_EXPONENT).clamp(EXPONENTS[0], EXPONENTS[1]);
+        (size(last) * (last.error / accuracy).max(1.0).powf(exponent)) as usize
+    };
+    Some([of(0), of(1)])
 }
 
 /// From the seconds of rounds, and the shares of the digits asked for that they gained, to all.
@@ -138,6 +177,17 @@ fn written(options: &SolveSettings, (problem, solution): (Problem, Solution)) ->
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn sizes_are_followed_to_the_accuracy() {
+        // 100/e elements, 1000/e links.
+        let round = |error: f64| Reached { error, sizes: [(100.0 / error) as usize, (1e3 / error) as usize] };
+        let found = followed(&[round(0.1), round(0.05)], 0.01).unwrap();
+        for (found, wanted) in found.into_iter().zip([1e4, 1e5]) {
+            assert!((found as f64 / wanted - 1.0).abs() < 1e-2, "{found}");
+        }
+        assert!(followed(&[], 0.01).is_none());
+    }
 
     #[test]
     fn rounds_are_followed_to_the_accuracy() {

@@ -382,6 +382,7 @@ fn to_accuracy(
         Answer::TooMany { links, paths } => {
             on_paths(asked, scene, (accuracy, Choice::Paths { links, paths }), stages)
         }
+        Answer::Begun { .. } => Err(hierarchical::interrupted()),
     }
 }
 
