@@ -15,13 +15,13 @@ use fredholm::visibility::Occluders;
 use std::path::{Path, PathBuf};
 
 /// Tolerance of the first step; each next one is half as large.
-const FIRST: f64 = 1e-2;
+const FIRST_TOLERANCE: f64 = 1e-2;
 const STEPS: i32 = 8;
 /// Tolerance of what counts as true.
-const TRUE: f64 = 1e-7;
+const REFERENCE_TOLERANCE: f64 = 1e-7;
 /// Pairs of each kind in a sample, and how many are looked at to find them.
-const PAIRS: usize = 200;
-const LOOKS: usize = 4000;
+const MOST_PAIRS: usize = 200;
+const PAIRS_LOOKED_AT: usize = 4000;
 
 fn scenes() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
@@ -43,18 +43,18 @@ impl<'a> Sample<'a> {
     /// As many pairs with something between as pairs with nothing between, as far as a scene has
     /// them.
     fn new(mesh: &'a Mesh, occluders: &'a Occluders) -> Self {
-        let integrator = PairIntegrator::new(mesh.patches(), occluders, FIRST);
+        let integrator = PairIntegrator::new(mesh.patches(), occluders, FIRST_TOLERANCE);
         let mut work = Workspace::default();
         let (mut open, mut behind) = (Vec::new(), Vec::new());
-        for [i, j] in sample_pairs(mesh.len()).take(LOOKS) {
+        for [i, j] in sample_pairs(mesh.len()).take(PAIRS_LOOKED_AT) {
             match integrator.exchange(i, j, &mut work).method {
                 Method::Hidden => {}
                 Method::Gauss | Method::Contour => open.push([i, j]),
                 Method::Clipped | Method::Sampled => behind.push([i, j]),
             }
         }
-        open.truncate(PAIRS);
-        behind.truncate(PAIRS);
+        open.truncate(MOST_PAIRS);
+        behind.truncate(MOST_PAIRS);
         Self { mesh, occluders, pairs: [open, behind].concat() }
     }
 
@@ -69,9 +69,9 @@ impl<'a> Sample<'a> {
 
     /// Largest error of a factor, and root of the mean square, at each step.
     fn errors(&self) -> Vec<[f64; 2]> {
-        let exact = self.factors(TRUE);
+        let exact = self.factors(REFERENCE_TOLERANCE);
         let error = |step| {
-            let found = self.factors(FIRST * 0.5f64.powi(step));
+            let found = self.factors(FIRST_TOLERANCE * 0.5f64.powi(step));
             let errors = || found.iter().zip(&exact).map(|(found, exact)| (found - exact).abs());
             let squares: f64 = errors().map(|error| error * error).sum();
             [errors().fold(0.0, f64::max), (squares / exact.len() as f64).sqrt()]

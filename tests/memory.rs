@@ -18,12 +18,12 @@ use tempfile::TempDir;
 
 const MIB: f64 = (1 << 20) as f64;
 /// Below this the program itself is most of it.
-const SMALL: f64 = 25.0 * MIB;
+const SMALL_PEAK: f64 = 25.0 * MIB;
 /// No limit is below this share of it: the code of the program and its libraries need addresses
 /// before it can refuse anything.
 const CODE: f64 = 64.0 * MIB;
 /// Predicted over held, and held over predicted.
-const MOST: f64 = 1.15;
+const MOST_RATIO: f64 = 1.15;
 /// Exit codes of runs that end by themselves: done, not converged or limited, refused, disagreeing.
 const ORDERLY: [i32; 4] = [0, 3, 4, 6];
 
@@ -170,7 +170,8 @@ fn agree(cases: &[Case]) {
             case.arguments,
             free.code
         );
-        let close = !case.predictable || free.peak < SMALL || (1.0 / MOST..=MOST).contains(&ratio);
+        let close =
+            !case.predictable || free.peak < SMALL_PEAK || (1.0 / MOST_RATIO..=MOST_RATIO).contains(&ratio);
         if free.code.is_none_or(|code| !ORDERLY.contains(&code)) || !close {
             writeln!(failures, "{}: {ratio:.2}, {:?}\n{}", case.arguments, free.code, free.errors).unwrap();
         }
@@ -195,7 +196,7 @@ fn limited(bench: &Bench, case: &Case, limit: f64, failures: &mut String) {
             if address_space.is_some() { "ulimit -v" } else { "--memory" },
             run.code
         );
-        if !orderly || (run.peak > limit && run.peak > SMALL) {
+        if !orderly || (run.peak > limit && run.peak > SMALL_PEAK) {
             let (held, limit) = (run.peak / MIB, limit / MIB);
             writeln!(
                 failures,

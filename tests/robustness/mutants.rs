@@ -16,11 +16,11 @@ use fredholm_generate::{Case, mutated};
 use crate::settings::{first, keep, number};
 
 /// Mutants where no number is given.
-const USUAL: u64 = 2_000;
+const USUAL_MUTANTS: u64 = 2_000;
 /// Elements up to which a mesh is made: a damaged number may ask for any.
 const ELEMENTS: u128 = 20_000;
 /// Longest time for one.
-const LONGEST: Duration = Duration::from_mins(1);
+const LONGEST_RUN: Duration = Duration::from_mins(1);
 
 const VIEW3D: &str = "T box\nC eps=1e-4 encl=1\nF 3\nV 1 0 0 0\nV 2 4 0 0\nV 3 4 4 0\nV 4 0 4 0\nV 5 1 1 0\nV 6 3 1 0\nV 7 3 3 0\n\
     V 8 0 0 2\nV 9 4 0 2\nS 1 1 2 3 4 0 0 0.8 wall\nS 2 5 6 7 0 1 0 0.9 window\nS 3 1 2 9 8 0 0 0.9 side\nO 4 1 2 3 0\nEnd of data\n";
@@ -110,7 +110,7 @@ fn fault(path: &Path) -> (bool, Option<String>) {
     let spent = started.elapsed();
     let fault = match &outcome {
         Err(panic) => Some(format!("panicked: {}", message(&**panic))),
-        Ok(_) if spent > LONGEST => Some(format!("took {spent:.1?}")),
+        Ok(_) if spent > LONGEST_RUN => Some(format!("took {spent:.1?}")),
         Ok(Err(error)) if error.help().is_empty() || error.what().is_empty() => {
             Some(format!("a refusal without a reason: {error}"))
         }
@@ -122,7 +122,7 @@ fn fault(path: &Path) -> (bool, Option<String>) {
 #[test]
 fn damaged_files_are_read_or_refused() {
     let shipped = shipped();
-    let asked = number("FREDHOLM_MUTANTS").unwrap_or(USUAL);
+    let asked = number("FREDHOLM_MUTANTS").unwrap_or(USUAL_MUTANTS);
     let (mut faults, mut read) = (vec![], 0);
     for seed in first()..first() + asked {
         let mut original = original(seed, &shipped);

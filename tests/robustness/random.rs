@@ -13,9 +13,9 @@ use crate::settings::{first, keep, number};
 /// CPU time of a run, s, and the time that it is given: bright rooms may take longer, and then it
 /// has to end by itself.
 const SECONDS: u64 = 60;
-const GIVEN: &str = "25s";
+const TIME_LIMIT: &str = "25s";
 /// Elapsed time of a run: a run that only waits ends too.
-const ELAPSED: Duration = Duration::from_mins(10);
+const MOST_ELAPSED: Duration = Duration::from_mins(10);
 /// Address space of a run, KiB.
 const MEMORY: u64 = 4 << 20;
 /// Time for all cases where no number of cases is given.
@@ -50,7 +50,7 @@ impl Run {
             if let Some(status) = child.try_wait().unwrap() {
                 break status;
             }
-            if started.elapsed() > ELAPSED {
+            if started.elapsed() > MOST_ELAPSED {
                 child.kill().unwrap();
             }
             std::thread::sleep(Duration::from_millis(5));
@@ -104,7 +104,7 @@ fn random_scenes_are_answered_or_refused() {
         count += 1;
         let (case, folder) = (Case::random(seed), tempfile::tempdir().unwrap());
         case.files.write(folder.path()).unwrap();
-        let given = ["--time-limit", GIVEN].map(str::to_owned);
+        let given = ["--time-limit", TIME_LIMIT].map(str::to_owned);
         let run = Run::of(&[&case.arguments[..], &given].concat(), folder.path());
         late += u64::from(run.is_out_of_time());
         answered += usize::from(run.code == Some(0));
@@ -135,7 +135,7 @@ fn random_scenes_are_answered_or_refused() {
         "{count} cases, {answered} answered, {late} out of time, {} faults, slowest {slowest:.1?}",
         faults.len()
     );
-    assert!(asked.is_none() || 20 * late <= count, "{late} of {count} cases take longer than {GIVEN}");
+    assert!(asked.is_none() || 20 * late <= count, "{late} of {count} cases take longer than {TIME_LIMIT}");
     assert!(faults.is_empty(), "{} of {count} cases:\n{}", faults.len(), faults.join("\n"));
     assert!(2 * answered as u64 > count, "only {answered} of {count} cases are answered");
 }

@@ -7,7 +7,7 @@
 //! program has to begin anew to tell it.
 
 /// Number of heaps, as the C library reads it from the environment.
-const HEAPS: &str = "MALLOC_ARENA_MAX";
+const HEAPS_VARIABLE: &str = "MALLOC_ARENA_MAX";
 
 /// Replaces this process by the same program with one heap where `ulimit -v` is in force. Where
 /// that fails the program goes on as it is.
@@ -16,7 +16,7 @@ pub(crate) fn share() {
     use std::os::unix::process::CommandExt;
     use std::process::Command;
 
-    if std::env::var_os(HEAPS).is_some() || !fredholm_study::addresses_are_limited() {
+    if std::env::var_os(HEAPS_VARIABLE).is_some() || !fredholm_study::addresses_are_limited() {
         return;
     }
     let Ok(program) = std::env::current_exe() else { return };
@@ -26,7 +26,7 @@ pub(crate) fn share() {
         again.arg0(name);
     }
     // It returns only where it failed.
-    let _ = again.args(arguments).env(HEAPS, "1").exec();
+    let _ = again.args(arguments).env(HEAPS_VARIABLE, "1").exec();
 }
 
 /// Elsewhere nothing is known of the heaps.

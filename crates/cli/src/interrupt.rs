@@ -20,7 +20,7 @@ use crate::ending::{Ending, present};
 use crate::output::tell;
 
 /// Time from the signal to the end where nothing can be saved.
-const PATIENCE: Duration = Duration::from_millis(800);
+const GRACE_PERIOD: Duration = Duration::from_millis(800);
 
 /// What would be lost if the process ended now.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -131,7 +131,7 @@ impl Interrupt {
 
     /// Ends the process after a while; the lock keeps the run from beginning to write meanwhile.
     fn wait(&self) {
-        thread::sleep(PATIENCE);
+        thread::sleep(GRACE_PERIOD);
         let phase = self.phase();
         if *phase == Phase::Preparing {
             if self.log == LogFormat::Plain && io::stderr().is_terminal() {

@@ -13,10 +13,10 @@ use fredholm_linop::Scalar;
 /// Blocks up to this many groups high and wide are computed whole before they are compressed.
 const MOST_WHOLE_GROUPS: usize = 128;
 /// Groups of which all rows are compared in the end.
-const CHECKS: usize = 6;
+const GROUPS_COMPARED: usize = 6;
 /// Share of the block from one of them to the next; multiples of the golden ratio meet no pattern
 /// of the rows.
-const STEP: f64 = 0.618_033_988_749_895;
+const SHARE_BETWEEN_GROUPS: f64 = 0.618_033_988_749_895;
 /// What is asked of the crosses, over the tolerance of the block: the rest is left to the
 /// truncation.
 const CROSS_SHARE_OF_TOLERANCE: f64 = 0.3;
@@ -170,8 +170,9 @@ impl<T: Scalar, E: Entries<T>> Crosses<'_, T, E> {
     fn worst(&self, tolerance: f64) -> Option<usize> {
         let (height, width) = (self.block.height(), self.block.entries.width());
         let groups = self.block.rows.len();
-        let group = move |i: usize| (((i + 1) as f64 * STEP).fract() * groups as f64) as usize;
-        let all = (0..CHECKS).flat_map(|i| (0..width).map(move |kind| group(i) * width + kind));
+        let group =
+            move |i: usize| (((i + 1) as f64 * SHARE_BETWEEN_GROUPS).fract() * groups as f64) as usize;
+        let all = (0..GROUPS_COMPARED).flat_map(|i| (0..width).map(move |kind| group(i) * width + kind));
         let rows: Vec<usize> = all.filter(|&row| !self.used[row]).collect();
         let sizes: Vec<f64> = rows.iter().map(|&row| square(&self.rest_of_row(row))).collect();
         let mean = sizes.iter().sum::<f64>() / sizes.len().max(1) as f64;

@@ -29,13 +29,13 @@ use rayon::prelude::*;
 /// Tolerances at which errors are looked at.
 const TOLERANCES: [f64; 3] = [1e-2, 1e-3, 1e-4];
 /// Sets of pairs that constants are fitted to; the others judge them.
-const FITTED: usize = 3;
+const FITTED_SETS: usize = 3;
 /// Share of true errors that must be below the stated ones.
-const COVERED: f64 = 0.99;
+const LEAST_COVERED_SHARE: f64 = 0.99;
 /// By what a constant is multiplied in a step.
-const STEP: f64 = 1.1;
+const STEP_FACTOR: f64 = 1.1;
 /// Relative saving from which on a step is taken.
-const WORTH: f64 = 1e-3;
+const LEAST_SAVING: f64 = 1e-3;
 
 /// A pair with what stands between, and its exchange, m².
 struct Trial {
@@ -137,7 +137,7 @@ fn cost(trials: &[&Trial], model: ErrorModel) -> Option<f64> {
     let mut sum = 0.0;
     for tolerance in TOLERANCES {
         let found = figures(trials, model, tolerance);
-        if found.covered < COVERED {
+        if found.covered < LEAST_COVERED_SHARE {
             return None;
         }
         sum += (found.points as f64).ln();
@@ -153,10 +153,10 @@ fn fit(trials: &[&Trial]) -> ErrorModel {
     loop {
         let before = least;
         for k in 0..count {
-            for factor in [STEP.recip(), STEP] {
+            for factor in [STEP_FACTOR.recip(), STEP_FACTOR] {
                 let mut next = model;
                 *constants(&mut next)[k] *= factor;
-                if let Some(found) = cost(trials, next).filter(|found| *found < least - WORTH) {
+                if let Some(found) = cost(trials, next).filter(|found| *found < least - LEAST_SAVING) {
                     (model, least) = (next, found);
                     println!("{:.4} {model:?}", least.exp());
                     break;
@@ -171,8 +171,8 @@ fn fit(trials: &[&Trial]) -> ErrorModel {
 
 fn main() {
     let trials = trials();
-    let [seen, unseen] =
-        [&trials[..FITTED], &trials[FITTED..]].map(|sets| sets.iter().flatten().collect::<Vec<_>>());
+    let [seen, unseen] = [&trials[..FITTED_SETS], &trials[FITTED_SETS..]]
+        .map(|sets| sets.iter().flatten().collect::<Vec<_>>());
     say("seen by the fit", &seen, ErrorModel::FITTED);
     say("not seen", &unseen, ErrorModel::FITTED);
     if std::env::args().any(|argument| argument == "--fit") {

@@ -52,7 +52,7 @@ fn setting(method: &dyn FormFactorMethod, case: &Case) -> Setting {
 }
 
 /// CPU seconds over which a time is taken, twenty ticks.
-const LONG: f64 = 0.2;
+const LEAST_TIMED_SECONDS: f64 = 0.2;
 
 /// A result and the CPU seconds it takes: the mean over as many rounds as last long enough.
 fn timed(run: impl Fn() -> Evaluated) -> (Evaluated, f64) {
@@ -63,7 +63,7 @@ fn timed(run: impl Fn() -> Evaluated) -> (Evaluated, f64) {
             std::hint::black_box(run());
         });
         let time = cpu_seconds() - start;
-        if time >= LONG {
+        if time >= LEAST_TIMED_SECONDS {
             return (run(), time / f64::from(rounds));
         }
         rounds *= 2;

@@ -15,9 +15,9 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Patches of a panel at most.
-const PANEL: usize = 32;
+const PATCHES_OF_A_PANEL: usize = 32;
 /// Entries that wait for their place in the matrix at most, as far as a batch of panels can tell.
-const WAITING: usize = 1 << 20;
+const MOST_WAITING_ENTRIES: usize = 1 << 20;
 /// Panels of a batch for each thread, at least: enough to keep it busy until the last one of them
 /// ends.
 const OF_A_THREAD: usize = 8;
@@ -93,7 +93,7 @@ pub fn assembly_seconds(integrator: &PairIntegrator, budget: f64, spent: &dyn Fn
     let progress = Progress::new(pairs(n), &Quiet);
     let started = spent();
     let clusters = integrator.clusters();
-    let panels = clusters.panels(PANEL);
+    let panels = clusters.panels(PATCHES_OF_A_PANEL);
     let prepared = spent();
     let mut done = 0;
     for panel in scattered(panels.len()).map(|at| panels[at]) {
@@ -131,7 +131,7 @@ fn assembly<S: Storage>(
     let mut packed = Packed { values: zeros::<S>(n)?, errors };
     let progress = Progress::new(pairs(n), watch);
     let clusters = integrator.clusters();
-    let panels = clusters.panels(PANEL);
+    let panels = clusters.panels(PATCHES_OF_A_PANEL);
     let mut total = Report::new(n);
     for batch in panels.chunks(batch(n)) {
         let keep = !packed.errors.is_empty();
@@ -152,14 +152,14 @@ fn assembly<S: Storage>(
 #[must_use]
 pub fn waiting_bytes<S: Storage>(n: usize, errors: bool) -> u64 {
     // The last batch has the longest rows.
-    let batch = pairs(n) - pairs(n.saturating_sub(PANEL * batch(n)));
+    let batch = pairs(n) - pairs(n.saturating_sub(PATCHES_OF_A_PANEL * batch(n)));
     let entry = size_of::<u32>() + size_of::<S>() + if errors { size_of::<f64>() } else { 0 };
     batch * entry as u64
 }
 
 /// Panels of a batch.
 fn batch(n: usize) -> usize {
-    (WAITING / PANEL / n.max(1)).max(OF_A_THREAD * rayon::current_num_threads())
+    (MOST_WAITING_ENTRIES / PATCHES_OF_A_PANEL / n.max(1)).max(OF_A_THREAD * rayon::current_num_threads())
 }
 
 fn pairs(n: usize) -> u64 {

@@ -28,19 +28,19 @@ use thiserror::Error;
 /// larger still.
 const OPEN_SCENE_DEFECT: f64 = 0.01;
 /// Stated errors of a row by which a closed row may differ from 1.
-const STATED: f64 = 3.0;
+const STATED_ERRORS_OFF_ONE: f64 = 3.0;
 /// Largest |Σ_j F_ij − 1| that is left.
 const LARGEST_DEFECT_LEFT: f64 = 1e-13;
 /// Steps of Newton's method; a few suffice where there is a solution.
-const STEPS: usize = 60;
+const MOST_NEWTON_STEPS: usize = 60;
 /// Iterations of the conjugate gradients a step.
-const ITERATIONS: usize = 2000;
+const MOST_CG_ITERATIONS: usize = 2000;
 /// Relative residual of the conjugate gradients.
-const EXACT: f64 = 1e-15;
+const CG_RESIDUAL: f64 = 1e-15;
 /// Halvings of a step.
-const HALVINGS: usize = 40;
+const MOST_STEP_HALVINGS: usize = 40;
 /// Share of the predicted gain that a step must bring (Armijo).
-const GAIN: f64 = 1e-4;
+const ARMIJO_SHARE: f64 = 1e-4;
 
 /// Why closure cannot be enforced.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -125,7 +125,7 @@ fn refuse_open(matrix: &PackedSymmetric<f64>, areas: &[f64], error: &[f64]) -> R
     for (row, (exchange, (area, &error))) in matrix.row_sums().iter().zip(areas.iter().zip(error)).enumerate()
     {
         let sum = exchange / area;
-        let allowed = OPEN_SCENE_DEFECT.max(STATED * error);
+        let allowed = OPEN_SCENE_DEFECT.max(STATED_ERRORS_OFF_ONE * error);
         // A sum that is no number is refused as well.
         let near = (sum - 1.0).abs() <= allowed && sum > 0.0;
         if !near {
@@ -199,7 +199,7 @@ impl Dual<'_> {
     fn maximise(&self) -> Result<(Vec<f64>, usize), ClosureError> {
         let mut multipliers = vec![0.0; self.areas.len()];
         let (mut value, mut gradient) = self.evaluate(&multipliers);
-        for step in 0..STEPS {
+        for step in 0..MOST_NEWTON_STEPS {
             if self.worst(&gradient).1 <= LARGEST_DEFECT_LEFT {
                 return Ok((multipliers, step));
             }
@@ -223,11 +223,11 @@ impl Dual<'_> {
     ) -> Option<(Vec<f64>, (f64, Vec<f64>))> {
         let slope: f64 = dot(gradient, direction);
         let defect = self.worst(gradient).1;
-        (0..HALVINGS).find_map(|halving| {
+        (0..MOST_STEP_HALVINGS).find_map(|halving| {
             let length = 0.5_f64.powi(halving as i32);
             let to: Vec<f64> = from.iter().zip(direction).map(|(m, d)| m + length * d).collect();
             let (reached, gradient) = self.evaluate(&to);
-            let gains = reached >= value + GAIN * length * slope && reached > value;
+            let gains = reached >= value + ARMIJO_SHARE * length * slope && reached > value;
             (gains || self.worst(&gradient).1 < defect).then_some((to, (reached, gradient)))
         })
     }
@@ -240,8 +240,8 @@ impl Dual<'_> {
         let mut r = gradient.to_vec();
         let mut p = scaled(&r);
         let mut energy = dot(&r, &p);
-        let stop = EXACT * EXACT * energy;
-        for _ in 0..ITERATIONS {
+        let stop = CG_RESIDUAL * CG_RESIDUAL * energy;
+        for _ in 0..MOST_CG_ITERATIONS {
             let product = self.curvature(multipliers, &p);
             let steepness = dot(&p, &product);
             if energy <= stop || steepness <= 0.0 {

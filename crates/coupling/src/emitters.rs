@@ -21,7 +21,7 @@ use crate::occlusion::{Bound, Clusters, Node, Panel, walk_from};
 /// Receivers that one thread takes at a time.
 const CHUNK: usize = 512;
 /// Relative difference up to which the areas of elements fill a rectangle.
-const FILLED: f64 = 1e-9;
+const AREA_TOLERANCE: f64 = 1e-9;
 
 /// The elements of a scene, and flat groups of them that can shoot as one.
 #[derive(Clone, Debug)]
@@ -87,7 +87,7 @@ impl Groups {
 fn fills(node: &Node, members: &[u32], elements: &[&Patch]) -> bool {
     let Bound::Flat(rectangle) = &node.bound else { return false };
     let area: f64 = members.iter().map(|&k| elements[k as usize].area()).sum();
-    (area - rectangle.area()).abs() <= FILLED * area
+    (area - rectangle.area()).abs() <= AREA_TOLERANCE * area
 }
 
 fn alike(members: &[u32], kinds: &[u32]) -> bool {

@@ -15,7 +15,7 @@ use fredholm_visibility::Occluders;
 use rayon::prelude::*;
 
 /// Points along a side of the first grid, and of the one for elements that are partly buried.
-const GRIDS: [usize; 2] = [8, 32];
+const POINTS_ALONG_GRIDS: [usize; 2] = [8, 32];
 
 /// Exposed shares in [0, 1] of the patches of a mesh; `lit` holds these patches, in order.
 #[must_use]
@@ -53,8 +53,8 @@ pub fn extents(patches: &[&Patch], shares: &[f64], rows: &[f64]) -> Vec<Extent> 
 }
 
 fn share(patch: &Patch, patches: &[&Patch], lit: &Occluders) -> f64 {
-    let first = exposed_share(patch, GRIDS[0], patches, lit);
-    if first > 0.0 && first < 1.0 { exposed_share(patch, GRIDS[1], patches, lit) } else { first }
+    let first = exposed_share(patch, POINTS_ALONG_GRIDS[0], patches, lit);
+    if first > 0.0 && first < 1.0 { exposed_share(patch, POINTS_ALONG_GRIDS[1], patches, lit) } else { first }
 }
 
 /// Exposed share in [0, 1] of one patch, from a grid of n × n points; it may be a part of one of

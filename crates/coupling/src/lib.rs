@@ -34,4 +34,4 @@ pub use pair_sample::sample_pairs;
 pub use radiosity::{Energy, Extent, Means, Radiosity};
 pub use receiver::{Receiver, Targets, sky, sky_exchanges, with_sky};
 pub use reciprocity::reciprocity;
-pub use residual::{Constants, DRAWS, MeshError, Residual};
+pub use residual::{Constants, DRAWN_SEQUENCES, MeshError, Residual};

@@ -17,7 +17,7 @@ const STEPS: [f64; 4] =
 /// Tilts (cosines) of the rings of rays about the normal that tell whether a point is buried, and
 /// rays in a ring.
 const TILTS: [f64; 2] = [0.75, 0.3];
-const RING: usize = 6;
+const RAYS_IN_A_RING: usize = 6;
 
 /// The k-th point of the recurrence in [0, 1)⁴ that begins at `start`.
 #[must_use]
@@ -72,8 +72,8 @@ impl Bundle {
         let other = n.cross(across);
         let ring = |tilt: f64| {
             let sine = (1.0 - tilt * tilt).sqrt();
-            (0..RING).map(move |k| {
-                let angle = TAU * (k as f64 + tilt) / RING as f64;
+            (0..RAYS_IN_A_RING).map(move |k| {
+                let angle = TAU * (k as f64 + tilt) / RAYS_IN_A_RING as f64;
                 n * tilt + (across * angle.cos() + other * angle.sin()) * sine
             })
         };

@@ -7,8 +7,8 @@ use crate::form_factor::{Method, PairIntegrator, Workspace};
 use crate::sample_pairs;
 
 /// Pairs looked at, and occluded ones among them that are compared.
-const LOOKS: usize = 20_000;
-const COMPARED: usize = 100;
+const PAIRS_LOOKED_AT: usize = 20_000;
+const OCCLUDED_PAIRS_COMPARED: usize = 100;
 
 /// Largest difference of the two orders, relative to the smaller area (that is, of the larger form
 /// factor), over a fixed sample of partly occluded pairs; `None` where the sample has none.
@@ -22,6 +22,10 @@ pub fn reciprocity(integrator: &PairIntegrator) -> Option<f64> {
         occluded.then(|| (there.value - back.value).abs() / integrator.smaller_area(i, j))
     };
     // A small scene has fewer pairs than that.
-    let looks = LOOKS.min(integrator.len().saturating_pow(2));
-    sample_pairs(integrator.len()).take(looks).filter_map(&mut defect).take(COMPARED).reduce(f64::max)
+    let looks = PAIRS_LOOKED_AT.min(integrator.len().saturating_pow(2));
+    sample_pairs(integrator.len())
+        .take(looks)
+        .filter_map(&mut defect)
+        .take(OCCLUDED_PAIRS_COMPARED)
+        .reduce(f64::max)
 }

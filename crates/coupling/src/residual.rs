@@ -17,9 +17,9 @@
 //!
 //! The covariance is taken over a k × k grid of each element, times k²/(k² − 1), which is exact
 //! where both factors are linear. Where so many rows cost too much, elements are drawn in
-//! proportion to what they reflect, in [`DRAWS`] interleaved sequences whose differences tell the
-//! noise, and each has the ends of one of two diagonals of its 2 × 2 grid in turn. Power in W,
-//! irradiance in W/m².
+//! proportion to what they reflect, in [`DRAWN_SEQUENCES`] interleaved sequences whose differences
+//! tell the noise, and each has the ends of one of two diagonals of its 2 × 2 grid in turn. Power
+//! in W, irradiance in W/m².
 
 use crate::CouplingError;
 use crate::pair_sample::scattered;
@@ -32,13 +32,13 @@ use fredholm_visibility::body::Bodies;
 use rayon::prelude::*;
 
 /// Interleaved sequences of elements that are drawn.
-pub const DRAWS: usize = 4;
+pub const DRAWN_SEQUENCES: usize = 4;
 /// Form factors from points that may always be computed: what a tenth of a second is for.
-const FREE: usize = 1 << 17;
+const POINT_FACTORS_ALWAYS_COMPUTED: usize = 1 << 17;
 /// Points per element where nothing stands between, so that a form factor costs as much as an
 /// exchange, and where it costs a small part of one.
 const POINTS_IN_THE_OPEN: f64 = 0.25;
-const BLOCKED: f64 = 0.5;
+const POINTS_AMONG_BODIES: f64 = 0.5;
 /// Bodies from which on looking through all of them costs more than everything else of a form
 /// factor.
 const MANY_BODIES: f64 = 256.0;
@@ -51,7 +51,7 @@ const DARK_SHARE: f64 = 0.1;
 /// Elements whose rows are in memory at once, of up to so many bands; of more bands fewer, but
 /// some for each thread.
 const CHUNK: usize = 64;
-const BANDS: usize = 4;
+const BANDS_OF_A_CHUNK: usize = 4;
 const OF_A_THREAD: usize = 2;
 
 /// Estimated error of the irradiance of faces, per band.
@@ -108,7 +108,7 @@ pub struct Residual {
     /// p of every draw, W: elements × (draws × bands), the bands of a draw side by side. The mean
     /// over the draws is the estimate.
     pub power: MultiVector<f64>,
-    /// 1 where every element was looked at, else [`DRAWS`].
+    /// 1 where every element was looked at, else [`DRAWN_SEQUENCES`].
     pub draws: usize,
 }
 
@@ -262,7 +262,12 @@ impl Constants<'_> {
             while sum > next {
                 let turn = chosen.len();
                 let times = expected.recip();
-                chosen.push(Chosen { element, times, draw: turn % DRAWS, turn: turn / DRAWS });
+                chosen.push(Chosen {
+                    element,
+                    times,
+                    draw: turn % DRAWN_SEQUENCES,
+                    turn: turn / DRAWN_SEQUENCES,
+                });
                 next += 1.0;
             }
         }
@@ -310,14 +315,18 @@ impl Chosen {
 /// Points that are looked from, among so many elements and bodies.
 fn points(elements: usize, bodies: usize) -> usize {
     let n = elements.max(1) as f64;
-    let share = if bodies == 0 { POINTS_IN_THE_OPEN } else { BLOCKED / (1.0 + bodies as f64 / MANY_BODIES) };
-    (FREE / elements.max(1)).max((share * n) as usize)
+    let share = if bodies == 0 {
+        POINTS_IN_THE_OPEN
+    } else {
+        POINTS_AMONG_BODIES / (1.0 + bodies as f64 / MANY_BODIES)
+    };
+    (POINT_FACTORS_ALWAYS_COMPUTED / elements.max(1)).max((share * n) as usize)
 }
 
 /// Elements whose rows are in memory at once.
 fn at_once(bands: usize) -> usize {
     let some = OF_A_THREAD * rayon::current_num_threads();
-    (CHUNK * BANDS / bands.max(1)).clamp(some.min(CHUNK), CHUNK)
+    (CHUNK * BANDS_OF_A_CHUNK / bands.max(1)).clamp(some.min(CHUNK), CHUNK)
 }
 
 /// The point of a patch for two numbers in [0, 1], as many on equal areas; of a quad that is no
@@ -440,7 +449,7 @@ mod tests {
         let stood_for: f64 = chosen.iter().map(|one| one.times * solved.sizes[one.element].area).sum();
         let area: f64 = solved.sizes.iter().map(|size| size.area).sum();
         assert!((stood_for / area - 1.0).abs() < 0.05, "{stood_for} {area}");
-        assert_eq!(constants.residual(&Quiet).unwrap().draws, DRAWS);
+        assert_eq!(constants.residual(&Quiet).unwrap().draws, DRAWN_SEQUENCES);
         let stopped = constants.residual(&Cancelled);
         assert!(matches!(stopped, Err(CouplingError::Interrupted { done: 0, .. })));
     }

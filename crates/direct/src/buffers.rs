@@ -8,14 +8,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Rows or columns that are packed at a time.
-const DEPTH: u64 = 512;
+const ROWS_PACKED: u64 = 512;
 /// Least size that faer takes the last cache for, and its multiple of the one before.
 const LEAST_CACHE_BYTES: u64 = 2 << 20;
-const MULTIPLE: u64 = 4;
+const LEAST_CACHE_RATIO: u64 = 4;
 
 /// Bytes that products of matrices with `dim` rows of entries of `entry` bytes touch.
 pub(crate) fn touched(dim: usize, entry: usize) -> u64 {
-    (dim as u64).saturating_mul(DEPTH * entry as u64)
+    (dim as u64).saturating_mul(ROWS_PACKED * entry as u64)
 }
 
 /// Bytes of addresses that every thread sets aside for products of dense matrices, and hardly
@@ -32,7 +32,7 @@ fn last_cache(folder: &Path) -> u64 {
     let of = |level: u64| caches.iter().filter_map(move |cache| sizes(cache, level));
     let last: u64 = of(3).map(|[size, sharing]| size / sharing).sum();
     let second = of(2).map(|[size, _]| size).max().unwrap_or(0);
-    last.max(MULTIPLE * second).max(LEAST_CACHE_BYTES)
+    last.max(LEAST_CACHE_RATIO * second).max(LEAST_CACHE_BYTES)
 }
 
 /// Bytes of a cache of this level, and how many processors share it.

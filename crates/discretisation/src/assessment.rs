@@ -14,7 +14,7 @@ use fredholm_linop::{MultiVector, Watch};
 use rayon::prelude::*;
 
 /// Points a direction, beyond the degree.
-const POINTS: usize = 2;
+const POINTS_BEYOND_DEGREE: usize = 2;
 
 /// An estimate of the error of the irradiance as a piecewise polynomial.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,7 +66,8 @@ impl Lit<'_> {
     }
 
     fn integrator(&self) -> impl Fn(usize) -> Integrals + Sync {
-        let (coefficients, rules) = (self.irradiance(), Rules::gauss(self.system.space().degree() + POINTS));
+        let (coefficients, rules) =
+            (self.irradiance(), Rules::gauss(self.system.space().degree() + POINTS_BEYOND_DEGREE));
         move |i| self.integrals(&coefficients, &rules, i)
     }
 

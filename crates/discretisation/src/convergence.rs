@@ -12,7 +12,7 @@ use fredholm_quadrature::richardson;
 /// Refinement from one mesh to the next.
 const RATIO: f64 = 2.0;
 /// Cosine between two steps above which they point the same way.
-const ALIGNED: f64 = 0.5;
+const ALIGNED_COSINE: f64 = 0.5;
 
 /// What a sequence comes to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -109,7 +109,7 @@ fn order(levels: &[Vec<f64>], l: usize, norm: &Norm, noise: f64) -> Option<f64> 
     let [first, second, third] = levels.get(l.checked_sub(2)?..=l)? else { return None };
     let (before, step) = (norm.distance(second, first), norm.distance(third, second));
     let aligned =
-        norm.product(&difference(second, first), &difference(third, second)) > ALIGNED * before * step;
+        norm.product(&difference(second, first), &difference(third, second)) > ALIGNED_COSINE * before * step;
     (step > noise && step < before && aligned).then(|| (before / step).log2())
 }
 

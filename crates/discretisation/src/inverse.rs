@@ -13,7 +13,7 @@ const STEPS: usize = 20;
 const SMALLEST_STEP: f64 = 1e-14;
 /// Distance of a corner from that of the parallelogram, relative to its diameter, that is taken for
 /// rounding.
-const SKEW: f64 = 1e-14;
+const SKEW_TOLERANCE: f64 = 1e-14;
 
 /// The inverse of one patch's parametrisation.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +28,7 @@ impl Inverse {
         let [a, b, c] = [0, 1, 2].map(|i| patch.corner(i));
         let d = if patch.sides() == 3 { c } else { patch.corner(3) };
         let skew = (a - b + c - d).length();
-        if patch.sides() == 4 && skew > SKEW * patch.diameter() {
+        if patch.sides() == 4 && skew > SKEW_TOLERANCE * patch.diameter() {
             return Self::Bilinear(*patch);
         }
         let (e, f, n) = (b - a, d - a, patch.normal());

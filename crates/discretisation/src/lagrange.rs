@@ -19,7 +19,7 @@ use fredholm_quadrature::{PlanePoint, gauss_legendre, symmetric_triangle, tensor
 /// Most nodes of an element: those of Q2.
 pub const MOST_NODES: usize = 9;
 /// Highest degree.
-pub const HIGHEST: usize = 2;
+pub const HIGHEST_DEGREE: usize = 2;
 
 /// Where the nodes of a basis lie.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -166,8 +166,8 @@ fn product_values(line: &[f64], u: f64, v: f64) -> [f64; MOST_NODES] {
 }
 
 /// Π_{b≠a} (x − x_b)/(x_a − x_b) for all a.
-fn line_values(line: &[f64], x: f64) -> [f64; HIGHEST + 1] {
-    let mut values = [0.0; HIGHEST + 1];
+fn line_values(line: &[f64], x: f64) -> [f64; HIGHEST_DEGREE + 1] {
+    let mut values = [0.0; HIGHEST_DEGREE + 1];
     for (a, value) in values[..line.len()].iter_mut().enumerate() {
         let others = line.iter().enumerate().filter(|(b, _)| *b != a);
         *value = others.map(|(_, &xb)| (x - xb) / (line[a] - xb)).product();
@@ -183,7 +183,7 @@ mod tests {
         let kinds = [Nodes::Interior, Nodes::Border];
         let each = move |sides| {
             kinds.into_iter().flat_map(move |kind| {
-                (0..=HIGHEST).map(move |k| (sides, k, Lagrange::new(sides, k, kind).unwrap()))
+                (0..=HIGHEST_DEGREE).map(move |k| (sides, k, Lagrange::new(sides, k, kind).unwrap()))
             })
         };
         [3, 4].into_iter().flat_map(each)

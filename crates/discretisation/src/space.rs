@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 /// Distance, relative to the extent of the surface, up to which nodes are one.
 const TOLERANCE: f64 = 1e-9;
 /// Width of the cubes that nodes are sorted into, over the tolerance.
-const CUBE: f64 = 4.0;
+const CUBE_WIDTH: f64 = 4.0;
 
 /// Piecewise polynomials of one degree.
 #[derive(Debug)]
@@ -197,7 +197,7 @@ impl Joints {
     }
 
     fn cube(&self, point: Vec3) -> [i64; 3] {
-        (point / (CUBE * self.tolerance)).floor().as_i64vec3().to_array()
+        (point / (CUBE_WIDTH * self.tolerance)).floor().as_i64vec3().to_array()
     }
 }
 

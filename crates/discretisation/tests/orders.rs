@@ -18,17 +18,17 @@ use fredholm_iterative::GaussSeidel;
 /// Parts along the side of a square, fine enough for every method.
 const MESHES: [usize; 5] = [6, 7, 8, 9, 10];
 /// Enough for constants and linear functions, and for quadratics that are not conforming.
-const COARSE: [usize; 5] = [4, 5, 6, 7, 8];
-const MIDDLE: [usize; 5] = [5, 6, 7, 8, 9];
+const COARSE_MESHES: [usize; 5] = [4, 5, 6, 7, 8];
+const MIDDLE_MESHES: [usize; 5] = [5, 6, 7, 8, 9];
 /// Closed surfaces have three or six times the elements.
-const CLOSED: [usize; 5] = [3, 4, 5, 6, 7];
+const CLOSED_MESHES: [usize; 5] = [3, 4, 5, 6, 7];
 /// Gauss points along the sides of an element inside the sphere and the tube: the error of fewer
 /// shows beside that of the methods.
-const INSIDE: usize = 6;
+const POINTS_INSIDE: usize = 6;
 /// Errors below this are rounding, and have no order.
 const ROUNDING: f64 = 1e-12;
 /// Farthest from theory that an order may be.
-const NEAR: f64 = 0.15;
+const MOST_ORDER_DEFECT: f64 = 0.15;
 
 /// Degree of the polynomials on an element.
 fn degree(name: &str) -> usize {
@@ -46,7 +46,7 @@ fn theory(name: &str) -> [f64; 2] {
 /// Errors of the own and of the iterated solution on every mesh.
 fn errors(problem: &Manufactured, method: &dyn Discretisation, meshes: &[usize]) -> [Vec<f64>; 2] {
     // Gauss points whose error is far below that of the method.
-    let points = if problem.name.starts_with("inside") { INSIDE } else { degree(method.name()) + 3 };
+    let points = if problem.name.starts_with("inside") { POINTS_INSIDE } else { degree(method.name()) + 3 };
     let measured = |&n: &usize| measure(problem, method, n, points, &GaussSeidel).unwrap();
     let levels: Vec<Errors> = meshes.iter().map(measured).collect();
     [levels.iter().map(|e| e.own).collect(), levels.iter().map(|e| e.iterated).collect()]
@@ -57,7 +57,7 @@ fn check(label: &str, errors: &[f64], meshes: &[usize], theory: f64) {
     println!("{label:60} {orders:.2?}, errors to {:.1e}", errors[errors.len() - 1]);
     let above_rounding = orders.iter().zip(&errors[1..]).filter(|(_, error)| **error > ROUNDING);
     for (order, _) in above_rounding {
-        assert!((order - theory).abs() <= NEAR, "{label}: {orders:?}, theory {theory}");
+        assert!((order - theory).abs() <= MOST_ORDER_DEFECT, "{label}: {orders:?}, theory {theory}");
     }
 }
 
@@ -88,20 +88,20 @@ fn check_layer(label: &str, errors: &[f64], meshes: &[usize]) {
     let slope = (orders[last] - orders[0]) / (middle(0) - middle(last));
     let limit = orders[last] + slope * middle(last);
     println!("{label}, iterated: {orders:.2?}, continued to {limit:.2}");
-    assert!(orders.is_sorted() && (limit - 6.0).abs() <= NEAR, "{label}: {orders:?}, {limit}");
+    assert!(orders.is_sorted() && (limit - 6.0).abs() <= MOST_ORDER_DEFECT, "{label}: {orders:?}, {limit}");
 }
 
 #[test]
 fn constants_have_order_one_and_two() {
     for problem in [facing_squares(), facing_triangles()] {
-        check_all(&problem, |name| degree(name) == 0, &COARSE);
+        check_all(&problem, |name| degree(name) == 0, &COARSE_MESHES);
     }
 }
 
 #[test]
 fn linear_functions_have_order_two_and_four() {
     for problem in [facing_squares(), facing_triangles()] {
-        check_all(&problem, |name| degree(name) == 1, &COARSE);
+        check_all(&problem, |name| degree(name) == 1, &COARSE_MESHES);
     }
 }
 
@@ -112,7 +112,7 @@ fn conforming(name: &str) -> bool {
 #[test]
 fn quadratic_functions_have_order_three_and_six() {
     check_all(&facing_squares(), |name| degree(name) == 2 && conforming(name), &MESHES);
-    check_all(&facing_squares(), |name| degree(name) == 2 && !conforming(name), &MIDDLE);
+    check_all(&facing_squares(), |name| degree(name) == 2 && !conforming(name), &MIDDLE_MESHES);
 }
 
 #[test]
@@ -120,7 +120,7 @@ fn quadratic_functions_have_order_three_and_six_on_triangles() {
     check_all(
         &facing_triangles(),
         |name| ["galerkin-2", "collocation-2", "nystrom-3"].contains(&name),
-        &COARSE,
+        &COARSE_MESHES,
     );
 }
 
@@ -131,15 +131,15 @@ fn conforming_quadratics_have_order_three_and_six_on_triangles() {
 
 #[test]
 fn curved_surfaces_keep_the_orders_of_constants_and_linear_functions() {
-    check_all(&two_cylinders(), |name| degree(name) < 2, &COARSE);
-    check_all(&smooth_kernel_on_a_sphere(), |name| name == "galerkin-0", &CLOSED);
+    check_all(&two_cylinders(), |name| degree(name) < 2, &COARSE_MESHES);
+    check_all(&smooth_kernel_on_a_sphere(), |name| name == "galerkin-0", &CLOSED_MESHES);
 }
 
 /// Lambert's kernel is constant there and lies in every basis: Galerkin's iterated solution is
 /// exact, and has no order.
 #[test]
 fn galerkin_has_its_order_inside_a_sphere() {
-    for (name, meshes) in [("galerkin-0", &CLOSED[..]), ("galerkin-1", &CLOSED[..3])] {
+    for (name, meshes) in [("galerkin-0", &CLOSED_MESHES[..]), ("galerkin-1", &CLOSED_MESHES[..3])] {
         let method = discretisations().into_iter().find(|method| method.name() == name).unwrap();
         let [own, iterated] = errors(&inside_of_a_sphere(), &*method, meshes);
         check(&format!("inside of a sphere, {name}"), &own, meshes, theory(name)[0]);
@@ -150,18 +150,18 @@ fn galerkin_has_its_order_inside_a_sphere() {
 
 #[test]
 fn points_have_their_orders_inside_a_sphere() {
-    check_all(&inside_of_a_sphere(), |name| ["collocation-0", "nystrom-1"].contains(&name), &MIDDLE);
+    check_all(&inside_of_a_sphere(), |name| ["collocation-0", "nystrom-1"].contains(&name), &MIDDLE_MESHES);
 }
 
 #[test]
 fn constants_have_order_one_and_two_inside_a_cylinder() {
     let chosen = |name: &str| ["galerkin-0", "collocation-0"].contains(&name);
-    check_all(&inside_of_a_cylinder(), chosen, &CLOSED);
+    check_all(&inside_of_a_cylinder(), chosen, &CLOSED_MESHES);
 }
 
 #[test]
 fn linear_functions_have_order_two_and_four_inside_a_cylinder() {
-    check_all(&inside_of_a_cylinder(), |name| name == "collocation-1", &CLOSED[..3]);
+    check_all(&inside_of_a_cylinder(), |name| name == "collocation-1", &CLOSED_MESHES[..3]);
 }
 
 #[test]
@@ -175,5 +175,5 @@ fn higher_degrees_have_their_orders_on_triangles() {
 fn curved_surfaces_keep_the_orders() {
     check_all(&two_cylinders(), |name| name != "galerkin-2-conforming", &MESHES);
     let plain = |name: &str| name.starts_with("galerkin") && !conforming(name);
-    check_all(&smooth_kernel_on_a_sphere(), plain, &CLOSED);
+    check_all(&smooth_kernel_on_a_sphere(), plain, &CLOSED_MESHES);
 }

@@ -2,7 +2,9 @@
 //! the surface alone, against one that is refined much further:
 //! `cargo run --release -p fredholm-hierarchical --example goal -- SCENE SURFACE[,SURFACE] ACCURACY...`.
 
-use fredholm_hierarchical::{Goal, Options, Problem, RESIDUAL, Solution, Solvers, Stated, Surfaces, solve};
+use fredholm_hierarchical::{
+    Goal, Options, Problem, RESIDUAL_OVER_ACCURACY, Solution, Solvers, Stated, Surfaces, solve,
+};
 use fredholm_iterative::{CgTheta, Gmres};
 use fredholm_linop::{MultiVector, Quiet};
 use fredholm_mesh::Mesh;
@@ -56,7 +58,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 fn to(problem: &Problem, accuracy: f64) -> Result<Solution, Box<dyn Error>> {
-    let residual = RESIDUAL * accuracy;
+    let residual = RESIDUAL_OVER_ACCURACY * accuracy;
     let options = Options { accuracy, linear: true, residual, bytes: 8 << 30, max_iterations: 200 };
     Ok(solve(problem, &options, SOLVERS, None, &Quiet)?)
 }

@@ -3,8 +3,8 @@
 //! `cargo run --release -p fredholm-hierarchical --example rounds -- SCENE ACCURACY [constant|linear] [REFERENCE.csv]`.
 
 use fredholm_hierarchical::{
-    HierarchyError, Options, Problem, RESIDUAL, Round, RoundWatch, Solution, Solvers, State, Stated,
-    Surfaces, solve,
+    HierarchyError, Options, Problem, RESIDUAL_OVER_ACCURACY, Round, RoundWatch, Solution, Solvers, State,
+    Stated, Surfaces, solve,
 };
 use fredholm_iterative::{CgTheta, Gmres};
 use fredholm_linop::{MultiVector, Watch};
@@ -74,7 +74,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let occluders = Occluders::new(mesh.occluders())?;
     let problem = Problem { mesh: &mesh, occluders: &occluders, surfaces: &surfaces, goal: None };
     let linear = rest.first().is_none_or(|order| order != "constant");
-    let residual = RESIDUAL * accuracy;
+    let residual = RESIDUAL_OVER_ACCURACY * accuracy;
     let options = Options { accuracy, linear, residual, bytes: 8 << 30, max_iterations: 200 };
     let reference = rest.get(1).map(|file| read(&mesh, scene.bands(), file)).transpose()?;
     let print = Print { mesh: &mesh, reference };

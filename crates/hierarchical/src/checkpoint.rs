@@ -12,9 +12,9 @@ use std::sync::Arc;
 /// First bytes of a state.
 const MARK: &[u8; 8] = b"FREDHR02";
 /// Bytes of a link.
-const LINK: usize = 4 + 4 + 8 + 6 * 4 + 6 * 4 + 1;
+const BYTES_A_LINK: usize = 4 + 4 + 8 + 6 * 4 + 6 * 4 + 1;
 /// Most elements of a list that are believed before they have been read.
-const BELIEVED: u64 = 1 << 20;
+const MOST_ELEMENTS_BELIEVED: u64 = 1 << 20;
 
 impl State {
     /// Writes the state.
@@ -99,17 +99,19 @@ fn numbers(out: &mut dyn Write, values: &[f64]) -> io::Result<()> {
     list(out, values.iter().map(|value| value.to_le_bytes()))
 }
 
-fn link_bytes(link: &Link) -> [u8; LINK] {
-    let mut bytes = [0; LINK];
+fn link_bytes(link: &Link) -> [u8; BYTES_A_LINK] {
+    let mut bytes = [0; BYTES_A_LINK];
     let singles = [link.share, link.doubt, link.deviation[0], link.deviation[1], link.rest[0], link.rest[1]];
     let gradients = link.gradient.iter().flat_map(glam::Vec3::to_array);
     bytes[..4].copy_from_slice(&link.a.to_le_bytes());
     bytes[4..8].copy_from_slice(&link.b.to_le_bytes());
     bytes[8..16].copy_from_slice(&link.open.to_le_bytes());
-    for (place, single) in bytes[16..LINK - 1].chunks_exact_mut(4).zip(singles.into_iter().chain(gradients)) {
+    for (place, single) in
+        bytes[16..BYTES_A_LINK - 1].chunks_exact_mut(4).zip(singles.into_iter().chain(gradients))
+    {
         place.copy_from_slice(&single.to_le_bytes());
     }
-    bytes[LINK - 1] = u8::from(link.partly);
+    bytes[BYTES_A_LINK - 1] = u8::from(link.partly);
     bytes
 }
 
@@ -151,7 +153,7 @@ impl Source<'_> {
         mut item: impl FnMut(&mut Self) -> Result<T, HierarchyError>,
     ) -> Result<Vec<T>, HierarchyError> {
         let count = u64::from_le_bytes(self.array()?);
-        let mut items = Vec::with_capacity(count.min(BELIEVED) as usize);
+        let mut items = Vec::with_capacity(count.min(MOST_ELEMENTS_BELIEVED) as usize);
         for _ in 0..count {
             items.push(item(self)?);
         }

@@ -17,12 +17,12 @@ use crate::HierarchicalOperator;
 /// Steps at most.
 const STEPS: usize = 40;
 /// α of a step.
-const POWER: f64 = 2.0 / 3.0;
+const STEP_EXPONENT: f64 = 2.0 / 3.0;
 /// Mean change of the factors that is small enough: least and most. Single leaves that move on do
 /// not matter.
 const SETTLED_CHANGE: [f64; 2] = [1e-7, 1e-4];
 /// Times that what is above is cut, at most, and the relative excess that one cut takes for good.
-const CUTS: usize = 4;
+const MOST_CUTS: usize = 4;
 const SMALL_EXCESS: f64 = 5e-3;
 /// A leaf whose links bring much too little lacks some of them: scaling does not stand in for
 /// those.
@@ -54,7 +54,7 @@ impl Aim {
         if row <= 0.0 {
             return scale;
         }
-        let next = (scale * (self.wanted(scale, row) / row).powf(POWER)).min(LARGEST_FACTOR);
+        let next = (scale * (self.wanted(scale, row) / row).powf(STEP_EXPONENT)).min(LARGEST_FACTOR);
         // On the way back a factor stops at 1.
         match (scale < 1.0 && row < self.most, scale > 1.0 && row > self.least) {
             (true, _) => next.min(1.0),
@@ -78,7 +78,7 @@ impl Wholes<'_> {
         let mut sums = vec![0.0; self.aims.len()];
         self.of_leaf.iter().zip(rows).for_each(|(&whole, row)| sums[whole as usize] += row);
         let next = |((&factor, &sum), aim): ((&f64, &f64), &Option<Aim>)| match aim {
-            Some(aim) if sum > 0.0 => (factor * (sum.clamp(aim.least, aim.most) / sum).powf(POWER))
+            Some(aim) if sum > 0.0 => (factor * (sum.clamp(aim.least, aim.most) / sum).powf(STEP_EXPONENT))
                 .clamp(LARGEST_FACTOR.recip(), LARGEST_FACTOR),
             _ => factor,
         };
@@ -124,7 +124,7 @@ pub(crate) fn balance(operator: &mut HierarchicalOperator, aims: &[Aim], wholes:
     // What is above in the end is cut off. Smaller factors make other row sums smaller, but for the
     // few that links with a steep gradient bring less than nothing: they may rise, and are cut
     // again.
-    for _ in 0..CUTS {
+    for _ in 0..MOST_CUTS {
         let rows = operator.row_sums();
         let above = |(&row, aim): (&f64, &Aim)| if row > aim.most { row / aim.most - 1.0 } else { 0.0 };
         let most = rows.iter().zip(aims).map(above).fold(0.0, f64::max);

@@ -1,14 +1,14 @@
 //! Solve, refine where the solution says so, solve again: until the change from one solution to the
 //! next says that the accuracy is reached.
 //!
-//! Every round lowers the error that a link may leave by [`STEP`]. The irradiance of the input
-//! faces then changes by about what the round before was wrong by; what remains is less. The stated
-//! error is [`CONFIDENCE`] times the relative change ‖E − E'‖/‖E‖ in the area-weighted L2 norm over
-//! the faces, in the worst band; a change is not believed to be less than [`LEAP`] times the one
-//! before. To it comes what the balance of energy tells: the power that row sums lose or gain
-//! against what rays say, over the power that is absorbed; and what the residual of the solver
-//! leaves, amplified as reflection may amplify it. The irradiances are solutions, so that multiple
-//! reflection has amplified it already.
+//! Every round lowers the error that a link may leave by [`THRESHOLD_RATIO`]. The irradiance of the
+//! input faces then changes by about what the round before was wrong by; what remains is less. The
+//! stated error is [`CONFIDENCE`] times the relative change ‖E − E'‖/‖E‖ in the area-weighted L2
+//! norm over the faces, in the worst band; a change is not believed to be less than
+//! [`LEAST_CHANGE_RATIO`] times the one before. To it comes what the balance of energy tells: the
+//! power that row sums lose or gain against what rays say, over the power that is absorbed; and
+//! what the residual of the solver leaves, amplified as reflection may amplify it. The irradiances
+//! are solutions, so that multiple reflection has amplified it already.
 //!
 //! A round that refined nothing tells nothing: it keeps the error that was stated before. So does a
 //! round that memory ended, but for a larger change. With a [`Goal`] the dual problem is solved in
@@ -31,23 +31,23 @@ use fredholm_visibility::body::Bodies;
 use std::sync::Arc;
 
 /// Factor from one threshold to the next.
-pub(crate) const STEP: f64 = 0.3;
+pub(crate) const THRESHOLD_RATIO: f64 = 0.3;
 /// First threshold, over the accuracy.
 const FIRST_THRESHOLD: f64 = 4.0;
 /// Stated error over the last change.
 pub(crate) const CONFIDENCE: f64 = 2.0;
 /// Least change that is believed, over that of the round before: a smaller one is chance.
-const LEAP: f64 = 0.35;
+const LEAST_CHANGE_RATIO: f64 = 0.35;
 /// Rounds at most.
 const ROUNDS: usize = 24;
 /// Residual of a solution, over the accuracy, that is small beside it.
-pub const RESIDUAL: f64 = 1e-3;
+pub const RESIDUAL_OVER_ACCURACY: f64 = 1e-3;
 /// Share of the accuracy that the residual of the solver may cost.
-const UNSOLVED: f64 = 0.05;
+const RESIDUAL_SHARE_OF_ACCURACY: f64 = 0.05;
 /// No residual less than this is asked for: rounding would keep it from being met.
 const LEAST_RESIDUAL: f64 = 1e-13;
 /// Tolerance of exchanges, over the accuracy.
-const EXCHANGE: f64 = 0.1;
+const EXCHANGE_OVER_ACCURACY: f64 = 0.1;
 /// Least area of an element, over that of the scene.
 const LEAST_AREA: f64 = 1e-10;
 
@@ -62,11 +62,11 @@ const LEAST_ROW: f64 = 0.7;
 
 /// What links that are not divided may hide, over the share of the light that each may carry: found
 /// by trying nearly white rooms that lose light.
-const UNSEEN: f64 = 3.0;
+const HIDDEN_BY_LINKS: f64 = 3.0;
 /// The most that was found hidden: 24 % by 33 links.
-const HIDDEN: f64 = 0.25;
+const MOST_HIDDEN_BY_LINKS: f64 = 0.25;
 /// How often light is received in the mean, up to which changes from round to round tell enough.
-const OFTEN: f64 = 4.0;
+const TIMES_RECEIVED: f64 = 4.0;
 /// Standard errors from which on a difference between rays and links of the whole scene is taken
 /// for a fault of the links.
 const CLEAR_STANDARD_ERRORS: f64 = 2.0;
@@ -99,8 +99,8 @@ pub struct Options {
     /// Whether links follow the variation of the form factor to first order; else it is constant
     /// over each node.
     pub linear: bool,
-    /// Relative residual ‖b − A x‖₂/‖b‖₂ to which each system is solved; [`RESIDUAL`] times the
-    /// accuracy is small beside it.
+    /// Relative residual ‖b − A x‖₂/‖b‖₂ to which each system is solved; [`RESIDUAL_OVER_ACCURACY`]
+    /// times the accuracy is small beside it.
     pub residual: f64,
     /// Bytes that tree and links may take.
     pub bytes: u64,
@@ -248,7 +248,7 @@ pub fn solve(
             if ends {
                 return Ok(run.finish(state, next, report));
             }
-            state.threshold *= STEP;
+            state.threshold *= THRESHOLD_RATIO;
             watch.round(&state.rounds, &state)?;
             system = Some(next);
         }
@@ -545,7 +545,7 @@ impl Run<'_> {
             threshold: state.threshold,
             linear: self.options.linear,
             least_area: LEAST_AREA * area,
-            tolerance: EXCHANGE * self.options.accuracy,
+            tolerance: EXCHANGE_OVER_ACCURACY * self.options.accuracy,
             bytes: self.options.bytes,
             bands: self.problem.surfaces.exitance.rhs_count(),
             watch: self.watch,
@@ -553,11 +553,11 @@ impl Run<'_> {
     }
 
     /// The residual to solve to: what is asked for, or less where reflection may amplify that to
-    /// more than [`UNSOLVED`] of the accuracy.
+    /// more than [`RESIDUAL_SHARE_OF_ACCURACY`] of the accuracy.
     fn residual(&self) -> f64 {
         let reflectances = self.problem.surfaces.reflectance.as_slice();
         let absorbed = 1.0 - reflectances.iter().copied().fold(0.0, f64::max);
-        let bearable = (UNSOLVED * self.options.accuracy * absorbed).max(LEAST_RESIDUAL);
+        let bearable = (RESIDUAL_SHARE_OF_ACCURACY * self.options.accuracy * absorbed).max(LEAST_RESIDUAL);
         self.options.residual.min(bearable)
     }
 
@@ -632,7 +632,9 @@ impl Run<'_> {
         let worst = changes.iter().copied().fold(0.0, f64::max);
         // A small change may be chance.
         let earlier = state.rounds.iter().rev().find_map(|round| round.change).unwrap_or(0.0);
-        let believed = |change: f64| CONFIDENCE * change.max(if change > 0.0 { LEAP * earlier } else { 0.0 });
+        let believed = |change: f64| {
+            CONFIDENCE * change.max(if change > 0.0 { LEAST_CHANGE_RATIO * earlier } else { 0.0 })
+        };
         Some((Stated { relative_l2: changes.into_iter().map(believed).collect(), largest }, worst))
     }
 
@@ -680,7 +682,8 @@ impl Run<'_> {
         let threshold = if self.exposure.opening().closed() { 0.0 } else { state.threshold };
         let share = |(((lost, unsure), gone), received): (((&f64, f64), &f64), f64)| match *gone {
             gone if gone > 0.0 => {
-                let unseen = (UNSEEN * threshold * (received / gone - OFTEN)).clamp(0.0, HIDDEN);
+                let unseen = (HIDDEN_BY_LINKS * threshold * (received / gone - TIMES_RECEIVED))
+                    .clamp(0.0, MOST_HIDDEN_BY_LINKS);
                 unseen + (lost.abs() - 2.0 * unsure).max(0.0) / gone
             }
             _ => 0.0,

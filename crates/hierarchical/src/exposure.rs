@@ -12,9 +12,9 @@ use fredholm_visibility::Occluders;
 use rayon::prelude::*;
 
 /// Points along a side of the grid over an input element that is partly buried.
-const WHOLE: usize = 16;
+const POINTS_ALONG_ELEMENT: usize = 16;
 /// Points along a side of the grid over a part of it.
-const PART: usize = 4;
+const POINTS_ALONG_PART: usize = 4;
 
 /// Exposed shares of the nodes that were looked at, and what is needed to look at others.
 pub(crate) struct Exposure<'a> {
@@ -83,10 +83,10 @@ impl<'a> Exposure<'a> {
         let Some(patch) = node.patch() else { return 1.0 };
         let on_grid = |n: usize| exposed_share(patch, n, &self.patches, &self.lit);
         match node.root().filter(|&root| tree.roots()[root] == index) {
-            None => on_grid(PART),
+            None => on_grid(POINTS_ALONG_PART),
             Some(element) => {
                 let first = self.opening.exposed(element);
-                if first > 0.0 && first < 1.0 { on_grid(WHOLE) } else { first }
+                if first > 0.0 && first < 1.0 { on_grid(POINTS_ALONG_ELEMENT) } else { first }
             }
         }
     }

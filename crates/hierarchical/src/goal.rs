@@ -16,7 +16,7 @@
 //! doi:10.1145/142920.134080; R. Becker, R. Rannacher, Acta Numerica 10 (2001),
 //! doi:10.1017/S0962492901000010.
 
-use crate::driver::{STEP, Stated};
+use crate::driver::{Stated, THRESHOLD_RATIO};
 use crate::light::ambient;
 use crate::{HierarchyError, Surfaces, Tree};
 use fredholm_coupling::Radiosity;
@@ -180,9 +180,9 @@ pub(crate) struct Estimate<'a> {
 impl Estimate<'_> {
     /// [`CONFIDENCE`] times the change of the goal, or the root of the summed squares of what the
     /// input elements have to do with it where that is more, and what the residual of the solver
-    /// may do. A change is not believed to be smaller than [`STEP`] times the `earlier` one, that
-    /// of the round before, relative and of the worst band: it may be so by chance. So nothing is
-    /// stated where there is no earlier one. With it comes the change of this round.
+    /// may do. A change is not believed to be smaller than [`THRESHOLD_RATIO`] times the `earlier`
+    /// one, that of the round before, relative and of the worst band: it may be so by chance. So
+    /// nothing is stated where there is no earlier one. With it comes the change of this round.
     ///
     /// # Errors
     /// [`LinopError`] where the vectors do not fit.
@@ -193,7 +193,7 @@ impl Estimate<'_> {
         for (band, (share, unsolved)) in shares.into_iter().zip(unsolved).enumerate() {
             let [before, now] = self.means.map(|means| means[band]);
             let change = share.max((now - before).abs());
-            let believed = change.max(STEP * earlier.unwrap_or(0.0) * now);
+            let believed = change.max(THRESHOLD_RATIO * earlier.unwrap_or(0.0) * now);
             let error = CONFIDENCE * believed + unsolved;
             stated.relative_l2.push(if now > 0.0 { error / now } else { 0.0 });
             stated.largest.push(error);

@@ -30,7 +30,8 @@ mod transport;
 mod tree;
 
 pub use driver::{
-    Options, Problem, RESIDUAL, Round, RoundWatch, Solution, Solvers, Stated, conclude, expected_bytes, solve,
+    Options, Problem, RESIDUAL_OVER_ACCURACY, Round, RoundWatch, Solution, Solvers, Stated, conclude,
+    expected_bytes, solve,
 };
 pub use error::HierarchyError;
 pub use gather::{Gather, Gatherer, Lamps, Leaves, Lighter};

@@ -28,7 +28,7 @@ impl Light {
             let relative = rows.clone().map(|((rho, m), e)| if *e > 0.0 { rho + m / e } else { *rho });
             light.nodes[node as usize][0] = relative.fold(0.0, f64::max);
             let reflected = surfaces.reflectance.row(root).iter().copied().fold(0.0, f64::max);
-            light.nodes[node as usize][1] = GUESS * reflected;
+            light.nodes[node as usize][1] = AMBIENT_VARIATION * reflected;
         }
         light.summarise(tree);
         light
@@ -142,7 +142,7 @@ impl Light {
 }
 
 /// Share of the reflected ambient light by which it may vary over an input element.
-const GUESS: f64 = 0.3;
+const AMBIENT_VARIATION: f64 = 0.3;
 
 /// The ambient irradiance of each band, W/m².
 pub(crate) fn ambient(tree: &Tree, surfaces: &Surfaces) -> Vec<f64> {

@@ -22,12 +22,12 @@ const BRIGHT_REFLECTANCE: f64 = 0.85;
 const FIRST_RAYS: usize = 36;
 /// Rays of an element that tell its row sum where the scene loses something, at least; and of any,
 /// at most.
-const ROW: [usize; 2] = [128, 16384];
+const RAYS_OF_A_ROW: [usize; 2] = [128, 16384];
 /// Share of all rays that may meet nothing lit where a scene still counts as closed: seams of
 /// rounded coordinates let some through.
-const SEAMS: f64 = 1e-3;
+const MOST_SEAM_SHARE: f64 = 1e-3;
 /// Golden ratio less one.
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
+const GOLDEN_SECTION: f64 = 0.618_033_988_749_894_9;
 
 /// Rays of one element.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -55,7 +55,7 @@ pub(crate) struct Opening {
 impl Opening {
     /// Sends the rays; `lit` holds the elements in order, `reflectance` is the largest one.
     pub fn new(patches: &[&Patch], lit: &Occluders, reflectance: f64) -> Self {
-        let each = |rays: usize, least: usize| (rays / patches.len().max(1)).clamp(least, ROW[1]);
+        let each = |rays: usize, least: usize| (rays / patches.len().max(1)).clamp(least, RAYS_OF_A_ROW[1]);
         let first = each(RAYS[0], FIRST_RAYS);
         let mut rays = vec![Rays::default(); patches.len()];
         let send_all = |rays: &mut Vec<Rays>, numbers: Range<usize>| {
@@ -66,9 +66,9 @@ impl Opening {
         // another surface: it is no part of what may be closed.
         let inside = || rays.iter().filter(|rays| rays.met > 0);
         let sum = |of: fn(&Rays) -> u32| inside().map(|rays| u64::from(of(rays))).sum::<u64>() as f64;
-        let closed = sum(|rays| rays.lost()) <= SEAMS * sum(|rays| rays.all - rays.buried);
+        let closed = sum(|rays| rays.lost()) <= MOST_SEAM_SHARE * sum(|rays| rays.all - rays.buried);
         if !closed {
-            let rows = each(RAYS[usize::from(reflectance >= BRIGHT_REFLECTANCE)], ROW[0]);
+            let rows = each(RAYS[usize::from(reflectance >= BRIGHT_REFLECTANCE)], RAYS_OF_A_ROW[0]);
             send_all(&mut rays, first..rows);
         }
         Self { rays, closed }
@@ -117,7 +117,7 @@ fn share(some: u32, all: u32) -> [f64; 2] {
 /// Sends the rays of some numbers from an element.
 fn send(element: usize, rays: &mut Rays, numbers: Range<usize>, patches: &[&Patch], lit: &Occluders) {
     let patch = patches[element];
-    let start = [1.0, 2.0, 3.0, 4.0].map(|times| (element as f64 * GOLDEN * times).fract());
+    let start = [1.0, 2.0, 3.0, 4.0].map(|times| (element as f64 * GOLDEN_SECTION * times).fract());
     for number in numbers {
         let (from, along) = cosine_ray(patch, recurrence(number + 1, start));
         let met = meets(from, along, patches, lit);

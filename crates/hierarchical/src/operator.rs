@@ -24,9 +24,9 @@ use std::sync::Arc;
 /// Receivers that one thread takes at a time.
 const CHUNK: usize = 256;
 /// Share of the area of a buried element that counts as exposed.
-const BURIED: f64 = 1e-9;
+const BURIED_SHARE: f64 = 1e-9;
 /// Numbers of a node and band: the mean and the three components of the moment or gradient.
-const NUMBERS: usize = 4;
+const NUMBERS_OF_A_NODE: usize = 4;
 
 /// The bit of an end that says that the receiver is the second node of its link.
 const RECEIVER_IS_SECOND: u32 = 1 << 31;
@@ -67,7 +67,7 @@ impl HierarchicalOperator {
         }
         let parents = nodes.iter().map(|node| node.parent().unwrap_or(u32::MAX)).collect();
         let (areas, centres) = areas(tree, &leaves, exposed);
-        let limit = |(area, node): (&f64, &Node)| *area <= 2.0 * BURIED * node.area();
+        let limit = |(area, node): (&f64, &Node)| *area <= 2.0 * BURIED_SHARE * node.area();
         let buried = areas.iter().zip(nodes).map(limit).collect();
         let scale = vec![1.0; leaves.len()];
         Self { parents, areas, centres, buried, leaves, links, starts, ends, scale }
@@ -110,7 +110,9 @@ impl HierarchicalOperator {
     #[must_use]
     pub fn means(&self, x: &MultiVector<f64>) -> MultiVector<f64> {
         let pulled = self.pull(x, |_| 1.0);
-        MultiVector::from_fn(self.parents.len(), x.rhs_count(), |node, rhs| pulled.row(node)[NUMBERS * rhs])
+        MultiVector::from_fn(self.parents.len(), x.rhs_count(), |node, rhs| {
+            pulled.row(node)[NUMBERS_OF_A_NODE * rhs]
+        })
     }
 
     /// What a node exchanges with itself, m²; such links have no gradient.
@@ -129,16 +131,18 @@ impl HierarchicalOperator {
 
     /// Means and moments of all nodes of values on the leaves, each times a factor.
     fn pull(&self, x: &MultiVector<f64>, factor: impl Fn(usize) -> f64) -> MultiVector<f64> {
-        let mut pulled = MultiVector::zeros(self.parents.len(), NUMBERS * x.rhs_count());
+        let mut pulled = MultiVector::zeros(self.parents.len(), NUMBERS_OF_A_NODE * x.rhs_count());
         for (i, &leaf) in self.leaves.iter().enumerate() {
-            let numbers = pulled.row_mut(leaf as usize).chunks_exact_mut(NUMBERS);
+            let numbers = pulled.row_mut(leaf as usize).chunks_exact_mut(NUMBERS_OF_A_NODE);
             let factor = factor(i);
             numbers.zip(x.row(i)).for_each(|(numbers, &x)| numbers[0] = factor * x);
         }
         for child in (1..self.parents.len()).rev() {
             let (offset, share) = self.place(child);
             let (parent, child) = rows(&mut pulled, self.parents[child] as usize, child);
-            for (to, from) in parent.chunks_exact_mut(NUMBERS).zip(child.chunks_exact(NUMBERS)) {
+            for (to, from) in
+                parent.chunks_exact_mut(NUMBERS_OF_A_NODE).zip(child.chunks_exact(NUMBERS_OF_A_NODE))
+            {
                 to[0] += share * from[0];
                 (0..3).for_each(|k| to[k + 1] += share * (from[k + 1] + from[0] * offset[k]));
             }
@@ -169,8 +173,8 @@ impl HierarchicalOperator {
         for (link, side) in self.received(node) {
             let (to, from) = (link.gradient[side].as_dvec3(), link.gradient[1 - side].as_dvec3());
             let (sender, exchange) = (if side == 0 { link.b } else { link.a }, link.exchange());
-            let sent = pulled.row(sender as usize).chunks_exact(NUMBERS);
-            for (power, x) in power.chunks_exact_mut(NUMBERS).zip(sent) {
+            let sent = pulled.row(sender as usize).chunks_exact(NUMBERS_OF_A_NODE);
+            for (power, x) in power.chunks_exact_mut(NUMBERS_OF_A_NODE).zip(sent) {
                 let s = exchange * (x[0] + from.x * x[1] + from.y * x[2] + from.z * x[3]);
                 power[0] += s;
                 (0..3).for_each(|k| power[k + 1] += s * to[k]);
@@ -183,10 +187,12 @@ impl HierarchicalOperator {
         for child in 1..self.parents.len() {
             let (offset, share) = self.place(child);
             let (parent, child) = rows(power, self.parents[child] as usize, child);
-            for (from, to) in parent.chunks_exact(NUMBERS).zip(child.chunks_exact_mut(NUMBERS)) {
+            for (from, to) in
+                parent.chunks_exact(NUMBERS_OF_A_NODE).zip(child.chunks_exact_mut(NUMBERS_OF_A_NODE))
+            {
                 let rise = offset.x * from[1] + offset.y * from[2] + offset.z * from[3];
                 to[0] += share * (from[0] + rise);
-                (1..NUMBERS).for_each(|k| to[k] += share * from[k]);
+                (1..NUMBERS_OF_A_NODE).for_each(|k| to[k] += share * from[k]);
             }
         }
     }
@@ -206,7 +212,7 @@ fn areas(tree: &Tree, leaves: &[u32], exposed: &[f64]) -> (Vec<f64>, Vec<Vec3>) 
     let (mut areas, mut centres) = (vec![0.0; nodes.len()], vec![Vec3::ZERO; nodes.len()]);
     for (&leaf, &exposed) in leaves.iter().zip(exposed) {
         let node = &nodes[leaf as usize];
-        areas[leaf as usize] = exposed.max(BURIED * node.area());
+        areas[leaf as usize] = exposed.max(BURIED_SHARE * node.area());
         centres[leaf as usize] = areas[leaf as usize] * node.cone().centre;
     }
     for (index, parent) in nodes.iter().map(Node::parent).enumerate().rev() {
@@ -240,7 +246,7 @@ impl LinearOperator<f64> for HierarchicalOperator {
         let mut power = self.gather(&self.pull(x, |leaf| self.scale[leaf]));
         self.push(&mut power);
         for (i, &leaf) in self.leaves.iter().enumerate() {
-            let numbers = power.row(leaf as usize).chunks_exact(NUMBERS);
+            let numbers = power.row(leaf as usize).chunks_exact(NUMBERS_OF_A_NODE);
             y.row_mut(i).iter_mut().zip(numbers).for_each(|(y, numbers)| *y = self.scale[i] * numbers[0]);
         }
     }

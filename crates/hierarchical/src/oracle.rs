@@ -12,7 +12,7 @@
 //!
 //! They are compared with the irradiance of p. Below the faces an error weighs less: it is the
 //! means of faces that accuracy is promised for. On the part of a face that p is, A_p/A_face is the
-//! weight of an error of a mean, and a further [`DETAIL`] that of a deviation from it. The
+//! weight of an error of a mean, and a further [`DETAIL_WEIGHT`] that of a deviation from it. The
 //! weighting by brightness is that of P. Hanrahan, D. Salzman, L. Aupperle, SIGGRAPH 1991,
 //! doi:10.1145/122718.122740.
 //!
@@ -21,7 +21,7 @@
 use crate::tree::{Node, Tree};
 
 /// Weight of deviations within a face.
-const DETAIL: f64 = 0.2;
+const DETAIL_WEIGHT: f64 = 0.2;
 /// Share of the mean irradiance that counts as present everywhere: nothing is resolved below it.
 pub(crate) const LEAST_IRRADIANCE_SHARE: f64 = 0.01;
 
@@ -120,7 +120,7 @@ impl Oracle<'_> {
             Some(root) => {
                 let whole = self.tree.nodes()[self.tree.roots()[root] as usize].area();
                 let share = node.area() / whole;
-                [share, DETAIL * share]
+                [share, DETAIL_WEIGHT * share]
             }
         }
     }

@@ -26,11 +26,11 @@ use std::ops::ControlFlow;
 /// Pairs that one thread takes at a time.
 const CHUNK: usize = 256;
 /// Pairs that are judged before the tree grows.
-const BLOCK: usize = 1 << 15;
+const PAIRS_OF_A_BLOCK: usize = 1 << 15;
 
 /// Input elements from which on clusters that face all ways are linked as wholes. Where there are
 /// fewer, the links of their parts are few enough, and more exact.
-const PLENTY: usize = 4096;
+const MANY_INPUT_ELEMENTS: usize = 4096;
 
 /// A pair of nodes to be judged.
 #[derive(Clone, Copy, Debug)]
@@ -91,7 +91,7 @@ const NODE_WORK: usize = 320;
 const BAND_WORK: usize = 176;
 /// Share of the memory from which on nothing is refined any further: the rest is for pairs that
 /// cannot be links.
-const SOFT: f64 = 0.85;
+const MOST_MEMORY_TO_REFINE: f64 = 0.85;
 
 /// Refines links, or the pair of the whole scene with itself where there are none yet.
 pub(crate) fn refine(
@@ -112,14 +112,14 @@ pub(crate) fn refine(
     let changed = !waiting.is_empty();
     let mut limited = false;
     while !waiting.is_empty() {
-        let block = waiting.split_off(waiting.len().saturating_sub(BLOCK));
+        let block = waiting.split_off(waiting.len().saturating_sub(PAIRS_OF_A_BLOCK));
         let threshold = if limited { f64::INFINITY } else { limits.threshold };
         let oracle = Oracle { tree, light, threshold, linear: limits.linear, least_area: limits.least_area };
         let fates = judge(&oracle, sight, &block, limits.watch)?;
         let [nodes, pairs] = outcome(tree, &fates);
         let links = kept.len() + fresh.len() + waiting.len() + pairs;
         let needed = bytes(nodes, links, limits.bands);
-        if !limited && needed as f64 > SOFT * limits.bytes as f64 {
+        if !limited && needed as f64 > MOST_MEMORY_TO_REFINE * limits.bytes as f64 {
             limited = true;
             // Once more, and nothing is too coarse now but what cannot be a link.
             waiting.extend(block);
@@ -232,7 +232,9 @@ fn fate(oracle: &Oracle, viewer: &mut Viewer, pair: Pair) -> Fate {
         (Some(p), None) if b.cone().apart_from(p) => Fate::Gone,
         (None, Some(q)) if a.cone().apart_from(q) => Fate::Gone,
         _ if a.faces_one_way() && b.faces_one_way() => bent(oracle, viewer, pair),
-        _ if oracle.tree.roots().len() > PLENTY && apart(a, b) => scattered(oracle, viewer, pair),
+        _ if oracle.tree.roots().len() > MANY_INPUT_ELEMENTS && apart(a, b) => {
+            scattered(oracle, viewer, pair)
+        }
         _ if b.faces_one_way() => Fate::Split(pair),
         _ if a.faces_one_way() || a.cone().radius < b.cone().radius => Fate::Split(swapped(pair)),
         _ => Fate::Split(pair),
@@ -350,7 +352,7 @@ fn advance(
             Fate::Link(link) => {
                 if links.len() == links.capacity() {
                     // A quarter more at a time: doubling would take memory that nothing needs.
-                    links.reserve_exact(links.len() / 4 + BLOCK);
+                    links.reserve_exact(links.len() / 4 + PAIRS_OF_A_BLOCK);
                 }
                 links.push(link);
             }

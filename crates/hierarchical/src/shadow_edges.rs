@@ -14,7 +14,7 @@ use fredholm_visibility::body::{Bodies, Body, Edge, Face};
 /// Height of what casts a shadow, over that of the corner of the lamp, at most.
 const MOST_CASTER_HEIGHT: f64 = 1.0 - 1e-6;
 /// Difference of heights, over that of the corner of the lamp, below which an edge is level.
-const LEVEL: f64 = 1e-14;
+const LEVEL_HEIGHT: f64 = 1e-14;
 
 /// The lines that lamps and bodies make on the plane of `onto`; they may lie outside of it, or
 /// where another body hides the lamp.
@@ -70,7 +70,7 @@ fn between(plane: &Face, [a, b]: [Vec3; 2], most: f64) -> Option<[Vec3; 2]> {
     }
     // Rounding must not put the ends beyond the heights that were asked for.
     let inside = |x: Vec3| x + plane.normal * (plane.height(x).clamp(0.0, most) - plane.height(x));
-    if (to - from).abs() <= LEVEL * most {
+    if (to - from).abs() <= LEVEL_HEIGHT * most {
         return Some([a, b].map(inside));
     }
     let (low, high) = (at(0.0).min(at(most)), at(0.0).max(at(most)));

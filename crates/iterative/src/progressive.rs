@@ -93,7 +93,7 @@ impl<T: Scalar> Scheme<T> for Progressive {
         if !self.overshoot {
             return Ok(Box::new(Shooting::new(a, b, (diagonal, areas), Plain).with_shots(shots)));
         }
-        if !T::REAL {
+        if !T::IS_REAL {
             let reason = "overshooting adds an ambient power, which complex unknowns do not have".to_owned();
             return Err(SolveError::Unsuitable { solver: NAME, reason }.into());
         }

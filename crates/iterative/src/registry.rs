@@ -41,18 +41,18 @@ pub fn solvers<T: Scalar>() -> Vec<Box<dyn Solver<T>>> {
 
 type Made<T> = Result<Box<dyn Scheme<T>>, OptionError>;
 
-const DIAGONAL: &str = "a diagonal without zeros";
-const SYMMETRIC: &str = "a symmetric coupling, factors at least 0, positive definite";
+const NEEDS_DIAGONAL: &str = "a diagonal without zeros";
+const NEEDS_SYMMETRY: &str = "a symmetric coupling, factors at least 0, positive definite";
 
 fn relaxations<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
     vec![
-        plain("gauss-seidel", Access::Entries, DIAGONAL, |_| Ok(Box::new(GaussSeidel))),
+        plain("gauss-seidel", Access::Entries, NEEDS_DIAGONAL, |_| Ok(Box::new(GaussSeidel))),
         plain("neumann", Access::Products, "none", |_| Ok(Box::new(Neumann))),
         Entry {
             name: "jacobi",
             access: Access::Diagonal,
             symmetric: false,
-            requirements: DIAGONAL,
+            requirements: NEEDS_DIAGONAL,
             options: &[("omega", "weight above 0, default 1")],
             make: |options| {
                 let omega = options.number("omega", "a number above 0", |x| x > 0.0 && x.is_finite())?;
@@ -63,7 +63,7 @@ fn relaxations<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
             name: "sor",
             access: Access::Entries,
             symmetric: false,
-            requirements: DIAGONAL,
+            requirements: NEEDS_DIAGONAL,
             options: &[("omega", "factor between 0 and 2, default automatic")],
             make: |options| Ok(Box::new(Sor { omega: omega(options, 2.0)? })),
         },
@@ -71,7 +71,7 @@ fn relaxations<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
             name: "sur",
             access: Access::Entries,
             symmetric: false,
-            requirements: DIAGONAL,
+            requirements: NEEDS_DIAGONAL,
             options: &[("omega", "factor between 0 and 1, default 0.8")],
             make: |options| {
                 Ok(Box::new(omega(options, 1.0)?.map_or_else(Sur::default, |omega| Sur { omega })))
@@ -81,7 +81,7 @@ fn relaxations<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
             name: "ssor",
             access: Access::Entries,
             symmetric: false,
-            requirements: DIAGONAL,
+            requirements: NEEDS_DIAGONAL,
             options: &[("omega", "factor between 0 and 2, default 1")],
             make: |options| {
                 Ok(Box::new(omega(options, 2.0)?.map_or_else(Ssor::default, |omega| Ssor { omega })))
@@ -92,12 +92,12 @@ fn relaxations<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
 
 fn shootings<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
     vec![
-        plain("southwell", Access::Entries, DIAGONAL, |_| Ok(Box::new(Southwell))),
+        plain("southwell", Access::Entries, NEEDS_DIAGONAL, |_| Ok(Box::new(Southwell))),
         Entry {
             name: "progressive",
             access: Access::Entries,
             symmetric: false,
-            requirements: DIAGONAL,
+            requirements: NEEDS_DIAGONAL,
             options: &[
                 ("overshoot", "yes or no, default no; real unknowns only"),
                 ("shots", "shots an iteration, default one for each unknown"),
@@ -150,14 +150,14 @@ fn blocks<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
 
 fn krylov<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
     vec![
-        symmetric("cg-psi", Access::Products, SYMMETRIC, |_| Ok(Box::new(CgPsi))),
-        symmetric("cg-theta", Access::Products, SYMMETRIC, |_| Ok(Box::new(CgTheta))),
-        symmetric("pcg-jacobi", Access::Diagonal, SYMMETRIC, |_| Ok(Box::new(PcgJacobi))),
+        symmetric("cg-psi", Access::Products, NEEDS_SYMMETRY, |_| Ok(Box::new(CgPsi))),
+        symmetric("cg-theta", Access::Products, NEEDS_SYMMETRY, |_| Ok(Box::new(CgTheta))),
+        symmetric("pcg-jacobi", Access::Diagonal, NEEDS_SYMMETRY, |_| Ok(Box::new(PcgJacobi))),
         Entry {
             name: "pcg-ssor",
             access: Access::Entries,
             symmetric: true,
-            requirements: SYMMETRIC,
+            requirements: NEEDS_SYMMETRY,
             options: &[("omega", "factor between 0 and 2, default 1")],
             make: |options| {
                 Ok(Box::new(omega(options, 2.0)?.map_or_else(PcgSsor::default, |omega| PcgSsor { omega })))
@@ -167,7 +167,7 @@ fn krylov<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
             name: "pcg-ic",
             access: Access::Entries,
             symmetric: true,
-            requirements: SYMMETRIC,
+            requirements: NEEDS_SYMMETRY,
             options: &[("threshold", "what is left out, relative to the mean of a row, default 10")],
             make: |options| {
                 let threshold = options.number("threshold", "a number of at least 0", |x| x >= 0.0)?;
@@ -226,7 +226,7 @@ fn hybrids<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
                 Ok(Box::new(sequence.map_or_else(Hgs1::default, |sequence| Hgs1 { sequence })))
             },
         },
-        plain("hgs2", Access::Entries, DIAGONAL, |_| Ok(Box::new(Hgs2))),
+        plain("hgs2", Access::Entries, NEEDS_DIAGONAL, |_| Ok(Box::new(Hgs2))),
         Entry {
             name: "hybrid",
             access: Access::Entries,

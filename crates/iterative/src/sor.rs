@@ -32,7 +32,7 @@ use crate::core::{Sweeping, divisors, jacobi_radius, relax_by, solve_by_steps};
 use fredholm_linop::{Context, Halt, Iteration, MultiVector, Scalar, Scheme, SecondKind, SolveError};
 
 const NAME: &str = "sor";
-const UNDER: &str = "sur";
+const UNDER_RELAXED_NAME: &str = "sur";
 
 /// Over-relaxation.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -85,7 +85,7 @@ solve_by_steps!(Sur);
 
 impl<T: Scalar> Scheme<T> for Sur {
     fn name(&self) -> &'static str {
-        UNDER
+        UNDER_RELAXED_NAME
     }
 
     fn description(&self) -> &'static str {
@@ -102,8 +102,8 @@ impl<T: Scalar> Scheme<T> for Sur {
         b: &'a MultiVector<T>,
         _: &mut Context<'_>,
     ) -> Result<Box<dyn Iteration<T> + 'a>, Halt> {
-        divisors(UNDER, a)?;
-        check(UNDER, self.omega, 1.0)?;
+        divisors(UNDER_RELAXED_NAME, a)?;
+        check(UNDER_RELAXED_NAME, self.omega, 1.0)?;
         let omega = vec![self.omega; b.rhs_count()];
         Ok(Box::new(Sweeping::forward(a, b, move |b, visit| relax_by(&omega, b, visit))))
     }

@@ -45,7 +45,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// Columns computed at a time by an application, each by one thread.
 const COLUMNS_TOGETHER: usize = 32;
 /// Marks a column that is not kept.
-const NONE: usize = usize::MAX;
+const NOT_KEPT: usize = usize::MAX;
 
 /// What computes the columns of a square matrix.
 pub trait Columns<T: Scalar>: Sync {
@@ -75,7 +75,7 @@ pub struct Lazy<'a, T> {
 
 /// The columns that are kept.
 struct Kept<T> {
-    /// Place of every column among the slots, or [`NONE`].
+    /// Place of every column among the slots, or [`NOT_KEPT`].
     places: Vec<usize>,
     slots: Vec<Slot<T>>,
     most: usize,
@@ -96,7 +96,7 @@ impl<'a, T: Scalar> Lazy<'a, T> {
         let (dim, count) = (columns.dim(), columns.count());
         let one = (dim as u64).saturating_mul(size_of::<T>() as u64).max(1);
         let most = usize::try_from(bytes / one).unwrap_or(usize::MAX).min(count);
-        let kept = Kept { places: vec![NONE; count], slots: Vec::new(), most, clock: 0, computed: 0 };
+        let kept = Kept { places: vec![NOT_KEPT; count], slots: Vec::new(), most, clock: 0, computed: 0 };
         Self { columns, kept: Mutex::new(kept) }
     }
 
@@ -138,7 +138,7 @@ impl<T: Scalar> Kept<T> {
     /// Keeps a computed column in place of the one used longest ago.
     fn keep(&mut self, j: usize, entries: &[T]) {
         self.computed += 1;
-        if self.most == 0 || self.places[j] != NONE {
+        if self.most == 0 || self.places[j] != NOT_KEPT {
             return;
         }
         if self.slots.len() < self.most {
@@ -149,7 +149,7 @@ impl<T: Scalar> Kept<T> {
         let oldest = self.slots.iter().enumerate().min_by_key(|(_, slot)| slot.used).map(|(at, _)| at);
         if let Some(at) = oldest {
             let slot = &mut self.slots[at];
-            self.places[slot.column] = NONE;
+            self.places[slot.column] = NOT_KEPT;
             self.places[j] = at;
             (slot.column, slot.used) = (j, self.clock);
             slot.entries.copy_from_slice(entries);

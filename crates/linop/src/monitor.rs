@@ -12,7 +12,7 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 /// Growth over the best residual that is taken for divergence.
-const GROWTH: f64 = 1e6;
+const DIVERGED_GROWTH: f64 = 1e6;
 
 /// Follows one solution: keeps the history, calls the observer, decides when to stop.
 pub struct Monitor<'a, T> {
@@ -108,7 +108,7 @@ impl<'a, T: Scalar> Monitor<'a, T> {
         self.best = self.best.min(worst);
         if worst <= self.stop.tolerance {
             Some(StopReason::Converged)
-        } else if worst > GROWTH * self.best {
+        } else if worst > DIVERGED_GROWTH * self.best {
             Some(StopReason::Diverged)
         } else if wish.is_break() {
             Some(StopReason::Interrupted)

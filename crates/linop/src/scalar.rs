@@ -30,7 +30,7 @@ pub trait Scalar:
     + 'static
 {
     /// Whether these are the real numbers.
-    const REAL: bool;
+    const IS_REAL: bool;
     /// 0.
     fn zero() -> Self;
     /// 1.
@@ -54,7 +54,7 @@ pub trait Scalar:
 }
 
 impl Scalar for f64 {
-    const REAL: bool = true;
+    const IS_REAL: bool = true;
 
     fn zero() -> Self {
         0.0
@@ -94,7 +94,7 @@ impl Scalar for f64 {
 }
 
 impl Scalar for Complex64 {
-    const REAL: bool = false;
+    const IS_REAL: bool = false;
 
     fn zero() -> Self {
         Self::new(0.0, 0.0)
@@ -143,7 +143,10 @@ mod tests {
         let z = Complex64::new(3.0, -4.0);
         assert_eq!((Scalar::abs(z), Scalar::abs2(z)), (5.0, 25.0));
         assert_eq!(Scalar::conj(z), Complex64::new(3.0, 4.0));
-        assert_eq!((Scalar::re(z), <Complex64 as Scalar>::REAL, <f64 as Scalar>::REAL), (3.0, false, true));
+        assert_eq!(
+            (Scalar::re(z), <Complex64 as Scalar>::IS_REAL, <f64 as Scalar>::IS_REAL),
+            (3.0, false, true)
+        );
         assert_eq!(z * Scalar::conj(z), Complex64::from_real(25.0));
         assert_eq!(Scalar::scale(z, 2.0), z + z);
         assert!(!Scalar::is_finite(Complex64::new(0.0, f64::NAN)));

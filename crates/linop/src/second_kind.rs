@@ -61,11 +61,11 @@ impl<'a, T: Scalar> SecondKind<'a, T> {
         let refuse = |reason| Err(SolveError::Unsuitable { solver, reason });
         let symmetric = match self.coupling.symmetry() {
             Symmetry::General => false,
-            Symmetry::Symmetric => T::REAL,
+            Symmetry::Symmetric => T::IS_REAL,
             Symmetry::Hermitian => true,
         };
         if !symmetric {
-            let needed = if T::REAL { "symmetric" } else { "Hermitian" };
+            let needed = if T::IS_REAL { "symmetric" } else { "Hermitian" };
             return refuse(format!(
                 "it needs a coupling that is known to be {needed}; gmres and lu do without"
             ));

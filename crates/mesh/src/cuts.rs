@@ -14,10 +14,10 @@ use crate::Vec3;
 /// Distance, over the size of the polygon, below which two places are one.
 const SAME_PLACE_DISTANCE: f64 = 1e-7;
 /// Area, over that of the polygon, below which a triangle is one of rounding.
-const SLIVER: f64 = 1e-12;
+const SLIVER_AREA: f64 = 1e-12;
 /// Sine of the angle between segments below which they do not cross but lie beside or on each
 /// other.
-const PARALLEL: f64 = 1e-12;
+const PARALLEL_SINE: f64 = 1e-12;
 
 /// Triangles, counter-clockwise about `normal`, that fill a convex polygon and have the parts of
 /// segments in its plane that lie in it as sides. `corners` may have any number of corners on one
@@ -46,7 +46,7 @@ pub fn cut_polygon(corners: &[Vec3], normal: Vec3, segments: &[[Vec3; 2]]) -> Ve
     let triangle = |points: [Point2<f64>; 3]| points.map(|point| plane.place(point));
     let triangles = cdt.inner_faces().map(|face| triangle(face.positions()));
     let area = |[a, b, c]: &[Vec3; 3]| 0.5 * (*b - *a).cross(*c - *a).dot(normal);
-    triangles.filter(|triangle| area(triangle) > SLIVER * plane.size * plane.size).collect()
+    triangles.filter(|triangle| area(triangle) > SLIVER_AREA * plane.size * plane.size).collect()
 }
 
 /// The corners, the ends of segments and the places where those cross, none of them near another.
@@ -66,7 +66,7 @@ fn places(corners: &[Vec3], normal: Vec3, parts: &[[Vec3; 2]], near: f64) -> Vec
 fn crossing([a, b]: [Vec3; 2], [c, d]: [Vec3; 2], normal: Vec3) -> Option<Vec3> {
     let (first, second) = (b - a, d - c);
     let turn = first.cross(second).dot(normal);
-    if turn.abs() <= PARALLEL * first.length() * second.length() {
+    if turn.abs() <= PARALLEL_SINE * first.length() * second.length() {
         return None;
     }
     let t = (c - a).cross(second).dot(normal) / turn;

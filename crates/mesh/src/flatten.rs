@@ -18,8 +18,8 @@ const OF_SIDE: f64 = 1e-4;
 /// [`Patch`](crate::Patch) asks for.
 const FLAT_HEIGHT: f64 = 1e-11;
 /// Most fits of the planes, and projections of a corner onto its planes for each.
-const ROUNDS: usize = 200;
-const SWEEPS: usize = 4;
+const MOST_FITS: usize = 200;
+const PROJECTIONS_A_FIT: usize = 4;
 
 /// What was done to polygons that are not quite flat.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -174,7 +174,7 @@ impl Net {
     }
 
     fn relax(&mut self) {
-        for _ in 0..ROUNDS {
+        for _ in 0..MOST_FITS {
             let corners = |k: &u32| -> Vec<Vec3> {
                 self.polygons[*k as usize].iter().map(|&corner| self.points[corner as usize]).collect()
             };
@@ -188,7 +188,7 @@ impl Net {
             }
             for (corner, own) in &self.moving {
                 let point = &mut self.points[*corner as usize];
-                for _ in 0..SWEEPS {
+                for _ in 0..PROJECTIONS_A_FIT {
                     for plane in own.iter().filter_map(|&k| planes[k as usize].as_ref()) {
                         *point -= plane.normal * plane.height(*point);
                     }

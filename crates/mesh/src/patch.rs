@@ -6,7 +6,7 @@ use crate::cutting::Grid;
 use crate::{MeshError, Vec3, quad, triangle};
 
 /// Relative area (area over squared longest side) below which corners enclose no area.
-const SLIVER: f64 = 1e-13;
+const SLIVER_AREA: f64 = 1e-13;
 /// Distance from the mean plane, relative to the longest side, up to which four corners count as
 /// flat.
 const FLAT_HEIGHT: f64 = 1e-10;
@@ -58,7 +58,7 @@ impl Patch {
 
     fn checked(self) -> Result<Self, MeshError> {
         let longest = longest_side(self.corners());
-        let enough = self.area > f64::MIN_POSITIVE && self.area > SLIVER * longest * longest;
+        let enough = self.area > f64::MIN_POSITIVE && self.area > SLIVER_AREA * longest * longest;
         if !enough || !self.area.is_finite() {
             return Err(MeshError::NoArea { area: self.area, longest });
         }

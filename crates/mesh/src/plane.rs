@@ -11,9 +11,9 @@ use crate::error::Ring;
 use crate::{MeshError, Vec3};
 
 /// Distance from the plane, relative to the extent, up to which a polygon counts as flat.
-const PLANAR: f64 = 1e-6;
+const PLANAR_TOLERANCE: f64 = 1e-6;
 /// Distance, relative to the extent, up to which corners coincide and borders touch.
-pub(crate) const TOUCH: f64 = 1e-9;
+pub(crate) const TOUCH_DISTANCE: f64 = 1e-9;
 /// Area, relative to the squared extent, up to which corners lie on one line.
 const COLLINEAR_AREA: f64 = 1e-13;
 
@@ -51,7 +51,7 @@ impl Plane {
     pub fn border(&self, ring: Ring, corners: &[Vec3]) -> Result<Vec<Corner>, MeshError> {
         let flat = corners.iter().enumerate().map(|(index, p)| self.corner(ring, index, *p));
         let mut border: Vec<Corner> = flat.collect::<Result<_, _>>()?;
-        let same = |a: &Corner, b: &Corner| a.at.distance(b.at) <= TOUCH;
+        let same = |a: &Corner, b: &Corner| a.at.distance(b.at) <= TOUCH_DISTANCE;
         border.dedup_by(|b, a| same(a, b));
         while border.len() > 1 && same(&border[0], &border[border.len() - 1]) {
             border.pop();
@@ -62,7 +62,7 @@ impl Plane {
     fn corner(&self, ring: Ring, index: usize, point: Vec3) -> Result<Corner, MeshError> {
         let offset = (point - self.origin) / self.extent;
         let height = offset.dot(self.normal).abs();
-        if height > PLANAR {
+        if height > PLANAR_TOLERANCE {
             return Err(MeshError::NotPlanar { ring, corner: index, distance: height * self.extent });
         }
         Ok(Corner { index, at: DVec2::new(offset.dot(self.across[0]), offset.dot(self.across[1])) })

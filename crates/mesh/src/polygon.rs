@@ -8,12 +8,12 @@ use crate::border::{Corner, area, contains, refuse_contact};
 use crate::cutting::Form;
 use crate::error::Ring;
 use crate::facet::{Facet, Group};
-use crate::plane::{Plane, TOUCH};
+use crate::plane::{Plane, TOUCH_DISTANCE};
 use crate::triangulation::triangulate;
 use crate::{MeshError, Patch, Vec3, triangle};
 
 /// Relative defect of area up to which the triangles fill the polygon.
-const FILLED: f64 = 1e-9;
+const AREA_TOLERANCE: f64 = 1e-9;
 
 /// A polygon, triangulated.
 #[derive(Clone, Debug)]
@@ -57,7 +57,7 @@ fn borders(input: &[&[Vec3]]) -> Result<Vec<Vec<Corner>>, MeshError> {
     let plane = Plane::of(input[0])?;
     let border = |(number, ring): (usize, &&[Vec3])| plane.border(Ring::numbered(number), ring);
     let rings: Vec<_> = input.iter().enumerate().map(border).collect::<Result<_, _>>()?;
-    refuse_contact(&rings, TOUCH)?;
+    refuse_contact(&rings, TOUCH_DISTANCE)?;
     refuse_misplaced(&rings[0], &rings[1..])?;
     Ok(rings)
 }
@@ -78,7 +78,7 @@ fn refuse_misplaced(outline: &[Corner], holes: &[Vec<Corner>]) -> Result<(), Mes
 fn refuse_gaps(rings: &[Vec<Corner>], triangles: impl Iterator<Item = [DVec2; 3]>) -> Result<(), MeshError> {
     let expected = area(&rings[0]).abs() - rings[1..].iter().map(|hole| area(hole).abs()).sum::<f64>();
     let found = triangles.map(|[a, b, c]| 0.5 * (b - a).perp_dot(c - a)).sum::<f64>();
-    if (found - expected).abs() <= FILLED * expected {
+    if (found - expected).abs() <= AREA_TOLERANCE * expected {
         Ok(())
     } else {
         Err(MeshError::Triangulation { expected, found })

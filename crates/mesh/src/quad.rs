@@ -13,7 +13,7 @@ const SAME_CORNER_DISTANCE: f64 = 1e-12;
 /// Twice a corner's area, relative to the squared longest side, up to which the corner is straight.
 const STRAIGHT_CORNER_AREA: f64 = 1e-13;
 /// Relative gain of area that makes the second diagonal the better one.
-const BETTER: f64 = 1e-9;
+const LEAST_AREA_GAIN: f64 = 1e-9;
 
 /// Four corners that make sense, and the cells to leave out.
 #[derive(Clone, Debug)]
@@ -100,8 +100,11 @@ pub(crate) fn halves([a, b, c, d]: [Vec3; 4]) -> Result<Vec<Patch>, MeshError> {
     let area = |p: Vec3, q: Vec3, r: Vec3| (q - p).cross(r - p).dot(normal);
     let first = area(a, b, c).min(area(a, c, d));
     let second = area(b, c, d).min(area(b, d, a));
-    let [p, q] =
-        if second > first + BETTER * first.abs() { [[b, c, d], [b, d, a]] } else { [[a, b, c], [a, c, d]] };
+    let [p, q] = if second > first + LEAST_AREA_GAIN * first.abs() {
+        [[b, c, d], [b, d, a]]
+    } else {
+        [[a, b, c], [a, c, d]]
+    };
     Ok(vec![Patch::triangle(p)?, Patch::triangle(q)?])
 }
 

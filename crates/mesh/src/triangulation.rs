@@ -12,12 +12,12 @@ use crate::border::Corner;
 type Cdt = ConstrainedDelaunayTriangulation<Point2<f64>>;
 
 /// Below this a coordinate is zero: spade refuses numbers near underflow.
-const ZERO: f64 = 1e-30;
+const LEAST_COORDINATE: f64 = 1e-30;
 
 /// Triangles, counter-clockwise, as indices of corners counted through all rings; `None` where the
 /// borders conflict.
 pub(crate) fn triangulate(rings: &[Vec<Corner>]) -> Option<Vec<[usize; 3]>> {
-    let number = |x: f64| if x.abs() < ZERO { 0.0 } else { x };
+    let number = |x: f64| if x.abs() < LEAST_COORDINATE { 0.0 } else { x };
     let points = rings.iter().flatten().map(|c| Point2::new(number(c.at.x), number(c.at.y))).collect();
     let mut conflict = false;
     let cdt = Cdt::try_bulk_load_cdt(points, constraints(rings), |_| conflict = true).ok()?;

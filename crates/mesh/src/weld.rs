@@ -11,7 +11,7 @@ use crate::{Bounds, Mesh, Vec3};
 /// Distance, relative to the diagonal of the mesh, up to which corners are one vertex.
 const TOLERANCE: f64 = 1e-9;
 /// Width of the cubes over the tolerance.
-const CUBE: f64 = 4.0;
+const CUBE_WIDTH: f64 = 4.0;
 
 /// Which corners at one place become one vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -226,7 +226,7 @@ impl Points {
     }
 
     fn cube(&self, point: Vec3) -> [i64; 3] {
-        ((point - self.origin) / (CUBE * self.tolerance)).floor().as_i64vec3().to_array()
+        ((point - self.origin) / (CUBE_WIDTH * self.tolerance)).floor().as_i64vec3().to_array()
     }
 }
 

@@ -32,7 +32,7 @@ const TOLERANCE: f64 = 1e-6;
 /// Distance over the size of a triangle below which a point is on it.
 const ON_SURFACE: f64 = 1e-4;
 /// Halvings after which a part of a triangle is taken as it is.
-const DEEPEST: usize = 40;
+const MOST_HALVINGS: usize = 40;
 /// Degree of the rule for the far field: 1e-6 of it at λ/6.
 const FAR_DEGREE: usize = 8;
 
@@ -289,7 +289,7 @@ impl Viewer<'_> {
     fn add(&self, p: Vec3, part: Part, depth: usize, waiting: &mut [Vec<Part>; CLASSES], field: &mut Field) {
         let ratio = p.distance(part.shape.centre) / part.shape.radius;
         let class = self.rules.class(ratio, part.shape.radius);
-        if class.is_some() || depth >= DEEPEST {
+        if class.is_some() || depth >= MOST_HALVINGS {
             let class = class.unwrap_or(CLASSES - 1);
             waiting[class].push(part);
             if waiting[class].len() == WIDTH {

@@ -30,7 +30,7 @@ use pulp::Arch;
 use rayon::prelude::*;
 
 /// Degree of the rule for incident fields: exact for a source at λ/10 to 1e-6.
-const DEGREE: usize = 6;
+const INCIDENT_DEGREE: usize = 6;
 
 /// Which equation is solved on a conductor.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -185,7 +185,7 @@ pub(crate) fn tested(
     value: impl Fn(Field, Vec3) -> ComplexVector + Sync,
 ) -> Vec<Complex64> {
     // The degree is one of the table.
-    let rule = symmetric_triangle(DEGREE).unwrap_or_default();
+    let rule = symmetric_triangle(INCIDENT_DEGREE).unwrap_or_default();
     let surface = basis.surface();
     let on_triangle = |triangle: usize| {
         let [a, b, c] = surface.corners(triangle);

@@ -8,12 +8,12 @@ use num_complex::Complex64;
 use pulp::Arch;
 
 /// Halvings after which a pair is taken as it is: only triangles that cut each other come here.
-const DEEPEST: usize = 24;
+const MOST_HALVINGS: usize = 24;
 /// Elongation beyond which touching triangles are halved.
-const ELONGATED: f64 = 3.0;
+const MOST_ELONGATION: f64 = 3.0;
 /// Product of the shares of both areas below which they are not: a sharp corner stays one however
 /// it is cut.
-const SMALL: f64 = 1.0 / 500.0;
+const LEAST_AREA_SHARES: f64 = 1.0 / 500.0;
 
 /// Both parts of all pairs of corners (3a + b) of a pair of triangles: the integrals of the kernel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -169,12 +169,12 @@ impl Parts<'_> {
             let radii = parts[0].radius + parts[1].radius;
             let ratio = parts[0].centre.distance(parts[1].centre) / radii;
             let class = self.integrator.rules.class(ratio, radii);
-            if class.is_some() || depth >= DEEPEST {
+            if class.is_some() || depth >= MOST_HALVINGS {
                 self.collect(&parts, shares, class.unwrap_or(CLASSES - 1));
                 return;
             }
-        } else if shares[0] * shares[1] < SMALL
-            || corners.iter().all(|&corners| elongation(corners) < ELONGATED)
+        } else if shares[0] * shares[1] < LEAST_AREA_SHARES
+            || corners.iter().all(|&corners| elongation(corners) < MOST_ELONGATION)
         {
             self.touching(corners, shares, orders, common);
             return;

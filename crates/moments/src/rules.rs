@@ -18,9 +18,9 @@ const DEGREES: [usize; CLASSES] = [2, 5, 8, 12];
 pub(crate) const CLASSES: usize = 4;
 /// Measured errors of a rule of degree d without and with the magnetic part: this times ((a +
 /// b)/D)^{d + 1}.
-const STATIC: [[f64; CLASSES]; 2] = [[2.4e-3, 7e-5, 5e-6, 8e-9], [9e-2, 5e-3, 3e-4, 1e-6]];
+const STATIC_ERRORS: [[f64; CLASSES]; 2] = [[2.4e-3, 7e-5, 5e-6, 8e-9], [9e-2, 5e-3, 3e-4, 1e-6]];
 /// Measured error of the phase: this times (|k| (a + b)/2)^{d + 1}.
-const PHASE: [[f64; CLASSES]; 2] = [[3e-3, 1e-5, 5e-10, 1e-14], [1e-2, 4e-5, 1e-9, 1e-14]];
+const PHASE_ERRORS: [[f64; CLASSES]; 2] = [[3e-3, 1e-5, 5e-10, 1e-14], [1e-2, 4e-5, 1e-9, 1e-14]];
 /// Tolerances that can be asked for.
 pub(crate) const TOLERANCES: [f64; 2] = [1e-8, 0.1];
 
@@ -77,8 +77,8 @@ impl Rule {
         Self {
             points: rule.iter().map(|p| [p.u, p.v]).collect(),
             weights: rule.iter().map(|p| p.weight).collect(),
-            reach: (2.0 * STATIC[part][class] / tolerance).powf(order.recip()).max(1.05),
-            largest: 2.0 * (0.5 * tolerance / PHASE[part][class]).powf(order.recip()) / k,
+            reach: (2.0 * STATIC_ERRORS[part][class] / tolerance).powf(order.recip()).max(1.05),
+            largest: 2.0 * (0.5 * tolerance / PHASE_ERRORS[part][class]).powf(order.recip()) / k,
         }
     }
 }

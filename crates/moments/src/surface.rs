@@ -5,7 +5,7 @@ use fredholm_mesh::{Mesh, Vec3, Weld};
 use std::f64::consts::TAU;
 
 /// Area over the square of the longest side below which a triangle has none.
-const FLAT: f64 = 1e-12;
+const LEAST_RELATIVE_AREA: f64 = 1e-12;
 
 /// Triangles over common vertices: only vertices that are the same, not those that are at the same
 /// place, join triangles to a surface that carries current from one to the other.
@@ -43,7 +43,11 @@ impl Surface {
         let [a, b, c] = self.corners(triangle);
         let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
         // Written so that what overflows is refused.
-        if self.area(triangle) > FLAT * longest { Ok(()) } else { Err(MomentsError::Degenerate { triangle }) }
+        if self.area(triangle) > LEAST_RELATIVE_AREA * longest {
+            Ok(())
+        } else {
+            Err(MomentsError::Degenerate { triangle })
+        }
     }
 
     /// The leaves of a mesh, quadrilaterals cut along the shorter diagonal, corners at the same

@@ -10,9 +10,9 @@ use std::fmt;
 
 /// Distance over the length of an edge (or the diagonal of the surface) below which a point is on
 /// it.
-const CLOSE: f64 = 1e-9;
+const ON_EDGE_DISTANCE: f64 = 1e-9;
 /// Longest edge over the wavelength beyond which the report warns.
-const LONG: f64 = 1.0 / 6.0;
+const LONGEST_EDGE_OVER_WAVELENGTH: f64 = 1.0 / 6.0;
 
 /// A triangle at an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -249,7 +249,10 @@ impl Topology {
         let open = self.open_vertices(surface);
         let places: Vec<Vec3> = open.iter().map(|&vertex| surface.vertices()[vertex]).collect();
         let extent = extent(surface.vertices());
-        close_pairs(&places, CLOSE * extent).into_iter().map(|pair| pair.map(|at| open[at])).collect()
+        close_pairs(&places, ON_EDGE_DISTANCE * extent)
+            .into_iter()
+            .map(|pair| pair.map(|at| open[at]))
+            .collect()
     }
 
     /// Vertices of open edges.
@@ -268,7 +271,7 @@ impl Topology {
         let mut found = Vec::new();
         for (index, edge) in self.edges.iter().enumerate().filter(|(_, edge)| edge.sides.len() == 1) {
             let [a, b] = edge.vertices.map(|vertex| surface.vertices()[vertex as usize]);
-            let slack = CLOSE * a.distance(b);
+            let slack = ON_EDGE_DISTANCE * a.distance(b);
             let (low, high) = (a.x.min(b.x) - slack, a.x.max(b.x) + slack);
             let start = candidates.partition_point(|&vertex| surface.vertices()[vertex].x < low);
             let near = candidates[start..].iter().take_while(|&&vertex| surface.vertices()[vertex].x <= high);
@@ -298,7 +301,10 @@ impl Topology {
             repeated: repeated(surface.triangles()),
             wavelength,
             longest: lengths.iter().copied().fold(0.0, f64::max),
-            long_edges: lengths.iter().filter(|&&length| length > LONG * wavelength).count(),
+            long_edges: lengths
+                .iter()
+                .filter(|&&length| length > LONGEST_EDGE_OVER_WAVELENGTH * wavelength)
+                .count(),
         }
     }
 }
@@ -419,7 +425,7 @@ fn length(surface: &Surface, edge: &Edge) -> f64 {
 /// Whether a point lies between the ends of an edge.
 fn within(p: Vec3, a: Vec3, b: Vec3, slack: f64) -> bool {
     let along = (p - a).dot(b - a) / a.distance_squared(b);
-    along > CLOSE && along < 1.0 - CLOSE && p.distance(a + along * (b - a)) <= slack
+    along > ON_EDGE_DISTANCE && along < 1.0 - ON_EDGE_DISTANCE && p.distance(a + along * (b - a)) <= slack
 }
 
 /// Diagonal of the box around points, m.

@@ -1,8 +1,8 @@
 //! A run: batch after batch, until there are enough.
 //!
-//! Batches are computed in parallel, [`WAVE`] at a time, and folded in their order: the result of
-//! so many batches does not depend on the number of threads, nor on whether the run was continued.
-//! W/m².
+//! Batches are computed in parallel, [`BATCHES_AT_ONCE`] at a time, and folded in their order: the
+//! result of so many batches does not depend on the number of threads, nor on whether the run was
+//! continued. W/m².
 
 use crate::light::{Batch, Estimator, Work};
 use crate::points::PointSet;
@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
 /// Batches that are in memory at once.
-pub const WAVE: u32 = 16;
+pub const BATCHES_AT_ONCE: u32 = 16;
 /// Batches without which a standard error is not worth deciding by.
 pub const FEWEST_BATCHES: u32 = 32;
 
@@ -138,7 +138,7 @@ impl Stop {
         let enough = self.batches.is_some_and(|all| done >= all);
         let late = self.seconds.is_some_and(|seconds| started.elapsed().as_secs_f64() >= seconds);
         let exact = self.error.is_some_and(|wanted| done >= FEWEST_BATCHES.into() && error() <= wanted);
-        enough || late || exact || done >= u64::from(u32::MAX - WAVE)
+        enough || late || exact || done >= u64::from(u32::MAX - BATCHES_AT_ONCE)
     }
 
     /// Which end a run has met after so many batches, with this error, after so many seconds.
@@ -234,8 +234,8 @@ impl<'a> Tracing<'a> {
             watch.go_on().is_continue()
         };
         while !stop.is_met(state.batches(), &|| state.relative_error(), started) && wanted(state) {
-            let left = stop.batches.map_or(u64::from(WAVE), |all| all - state.batches());
-            self.wave(state, left.min(WAVE.into()) as u32);
+            let left = stop.batches.map_or(u64::from(BATCHES_AT_ONCE), |all| all - state.batches());
+            self.wave(state, left.min(BATCHES_AT_ONCE.into()) as u32);
             state.seconds = before + started.elapsed().as_secs_f64();
         }
         Ok(())

@@ -55,7 +55,7 @@ impl Problem {
 }
 
 /// Reflections after which nothing is left: 0.9^400 < 1e-18.
-const ALL: usize = 400;
+const MOST_REFLECTIONS: usize = 400;
 
 fn traced(scene: &Enclosure, estimator: &dyn Estimator, seed: u64, samples: u32) -> State {
     run(scene, estimator, single(scene), (seed, samples, 32))
@@ -119,8 +119,10 @@ fn twenty_scenes_that_are_right_pass() {
     for number in 0..20 {
         let problem = room(number);
         let scene = problem.enclosure();
-        let found =
-            verdict(&problem.irradiance(ALL), &traced(&scene, &StochasticJacobi, number.into(), 2048));
+        let found = verdict(
+            &problem.irradiance(MOST_REFLECTIONS),
+            &traced(&scene, &StochasticJacobi, number.into(), 2048),
+        );
         let worst = found.worst(1)[0];
         println!(
             "{number:2}: {:3} patches, mean z² {:.2}, worst z {:+.2}",
@@ -154,12 +156,12 @@ fn furnished() -> Problem {
 fn a_form_factor_two_percent_wrong_is_found_and_located() {
     let right = plain();
     let state = traced(&right.enclosure(), &StochasticJacobi, 1, 1 << 14);
-    assert!(verdict(&right.irradiance(ALL), &state).agrees());
+    assert!(verdict(&right.irradiance(MOST_REFLECTIONS), &state).agrees());
     let mut wrong = plain();
     // Between the lamp and the wall opposite; both directions, as one stored exchange has them.
     wrong.factors[5][4] *= 1.02;
     wrong.factors[4][5] *= 1.02;
-    let found = verdict(&wrong.irradiance(ALL), &state);
+    let found = verdict(&wrong.irradiance(MOST_REFLECTIONS), &state);
     println!("{:?}", found.worst(2));
     assert!(!found.agrees() && found.worst(1)[0].index == 4 && found.worst(1)[0].z < 0.0);
 }
@@ -168,11 +170,11 @@ fn a_form_factor_two_percent_wrong_is_found_and_located() {
 fn a_flipped_normal_is_found() {
     let right = furnished();
     let state = traced(&right.enclosure(), &StochasticJacobi, 2, 1 << 12);
-    assert!(verdict(&right.irradiance(ALL), &state).agrees());
+    assert!(verdict(&right.irradiance(MOST_REFLECTIONS), &state).agrees());
     let mut patches = right.patches.clone();
     patches[25] = patches[25].flipped();
     let wrong = Problem::new(patches, right.rho.clone(), right.exitance.clone());
-    let found = verdict(&wrong.irradiance(ALL), &state);
+    let found = verdict(&wrong.irradiance(MOST_REFLECTIONS), &state);
     println!("{:?}", found.worst(2));
     assert!(!found.agrees() && found.worst(1)[0].index == 25);
 }
@@ -186,8 +188,8 @@ fn a_missing_bounce_is_found_on_either_side() {
     assert!(!verdict(&right.irradiance(3), &state).agrees());
     let short = PathTracing::patchwise(Switches { bounces: Some(3), ..Switches::default() });
     let whole = PathTracing::patchwise(Switches::default());
-    assert!(verdict(&right.irradiance(ALL), &traced(&scene, &whole, 4, 128)).agrees());
-    let found = verdict(&right.irradiance(ALL), &traced(&scene, &short, 4, 128));
+    assert!(verdict(&right.irradiance(MOST_REFLECTIONS), &traced(&scene, &whole, 4, 128)).agrees());
+    let found = verdict(&right.irradiance(MOST_REFLECTIONS), &traced(&scene, &short, 4, 128));
     assert!(!found.agrees() && found.suite.mean < -1.0, "{:?}", found.suite);
     // As many reflections on both sides agree.
     assert!(verdict(&right.irradiance(3), &traced(&scene, &short, 4, 128)).agrees());
@@ -209,7 +211,7 @@ impl DirectionDensity for Misstated {
 #[test]
 fn a_wrong_density_is_found_and_another_right_one_is_not() {
     let right = furnished();
-    let (scene, irradiance) = (right.enclosure(), right.irradiance(ALL));
+    let (scene, irradiance) = (right.enclosure(), right.irradiance(MOST_REFLECTIONS));
     let with = |density: Box<dyn DirectionDensity>| {
         let tracing = PathTracing::patchwise(Switches::default()).with_directions(density);
         verdict(&irradiance, &traced(&scene, &tracing, 5, 128))

@@ -8,7 +8,7 @@ mod common;
 
 use common::{SQUARES, furnace, method, run, samples, single, sphere, squares, whole};
 use fredholm_montecarlo::light::pixels::{PixelSampling, pixel};
-use fredholm_montecarlo::light::{METHODS, PICTURED, Switches, point_estimator};
+use fredholm_montecarlo::light::{METHODS, PIXEL_METHODS, Switches, point_estimator};
 use fredholm_montecarlo::statistics::{Suite, normal_score};
 use fredholm_montecarlo::{Enclosure, Groups};
 
@@ -100,7 +100,7 @@ fn means_are_within_three_standard_errors_of_the_exact_values() {
 #[test]
 fn pixels_show_the_radiosity_within_their_errors() {
     let scene = furnace(0.5);
-    for name in PICTURED {
+    for name in PIXEL_METHODS {
         let estimator = point_estimator(name, Switches::default()).unwrap();
         let half = |patch: usize, [u, v]: [f64; 2]| (u < 0.5).then(|| scene.point(patch, [2.0 * u, v]));
         let difference = |number: u32| {

@@ -16,12 +16,12 @@ use crate::failure::{failure, internal, interrupted};
 use crate::locks::locked;
 
 /// Time between two looks for signals and progress.
-const LOOK: Duration = Duration::from_millis(40);
+const LOOK_INTERVAL: Duration = Duration::from_millis(40);
 /// Time from Ctrl-C to the end where there is nothing to save: the run is then left to end by
 /// itself at its next look.
-const PATIENCE: Duration = Duration::from_millis(700);
+const GRACE_PERIOD: Duration = Duration::from_millis(700);
 /// Time between two notes of progress.
-const PAUSE: Duration = Duration::from_millis(100);
+const NOTE_INTERVAL: Duration = Duration::from_millis(100);
 
 /// How a run is carried out.
 #[derive(FromPyObject)]
@@ -84,7 +84,7 @@ impl Relay {
     /// Whether a note of progress is due.
     fn is_due(&self) -> bool {
         let Ok(mut noted) = self.noted.try_lock() else { return false };
-        let due = noted.is_none_or(|last| last.elapsed() >= PAUSE);
+        let due = noted.is_none_or(|last| last.elapsed() >= NOTE_INTERVAL);
         if due {
             *noted = Some(Instant::now());
         }
@@ -180,7 +180,7 @@ impl<R: Send> Wait<'_, R> {
     /// The result, or none of a run that was left.
     fn outcome(&mut self, py: Python<'_>) -> PyResult<Option<R>> {
         loop {
-            let received = py.detach(|| locked(&self.receiver).recv_timeout(LOOK));
+            let received = py.detach(|| locked(&self.receiver).recv_timeout(LOOK_INTERVAL));
             self.look(py);
             match received {
                 Ok(result) => return Ok(Some(result)),
@@ -192,7 +192,7 @@ impl<R: Send> Wait<'_, R> {
             if self.again {
                 return Ok(None);
             }
-            let waited = self.stopped.as_ref().is_some_and(|(since, _)| since.elapsed() >= PATIENCE);
+            let waited = self.stopped.as_ref().is_some_and(|(since, _)| since.elapsed() >= GRACE_PERIOD);
             if waited && self.relay.leave() {
                 return Ok(None);
             }

@@ -8,9 +8,9 @@
 use crate::{IntervalRule, PlanePoint, gauss_legendre};
 
 /// Rounding allowed.
-pub const EXACT: f64 = 1e-14;
+pub const ROUNDING_ALLOWED: f64 = 1e-14;
 /// An error that is not rounding.
-pub const WRONG: f64 = 10.0 * EXACT;
+pub const LEAST_WRONG_ERROR: f64 = 10.0 * ROUNDING_ALLOWED;
 
 /// An integrand on [0, 1], and one on the square or the triangle.
 pub type Curve<'a> = &'a dyn Fn(f64) -> f64;
@@ -26,11 +26,11 @@ pub fn interval_degree(rule: &IntervalRule) {
 pub fn interval_degree_of(label: &str, degree: usize, integrate: impl Fn(Curve) -> f64) {
     for power in 0..=degree {
         let error = (integrate(&|x| x.powi(power as i32)) - 1.0 / (power + 1) as f64).abs();
-        assert!(error <= EXACT, "{label}, x^{power}: {error:e}");
+        assert!(error <= ROUNDING_ALLOWED, "{label}, x^{power}: {error:e}");
     }
     let next = degree + 1;
     let beyond = (integrate(&|x| chebyshev(next, x)) - chebyshev_integral(next)).abs();
-    assert!(beyond > WRONG, "{label}: degree {next} is off by only {beyond:e}");
+    assert!(beyond > LEAST_WRONG_ERROR, "{label}: degree {next} is off by only {beyond:e}");
 }
 
 /// T_m on [0, 1].
@@ -56,12 +56,16 @@ fn monomial(a: usize, b: usize) -> impl Fn(f64, f64) -> f64 {
 pub fn square_degree_of(label: &str, degree: usize, integrate: impl Fn(Surface) -> f64) {
     for (a, b) in (0..=degree).flat_map(|a| (0..=degree).map(move |b| (a, b))) {
         let error = (integrate(&monomial(a, b)) - 1.0 / ((a + 1) * (b + 1)) as f64).abs();
-        assert!(error <= EXACT, "{label}, u^{a} v^{b}: {error:e}");
+        assert!(error <= ROUNDING_ALLOWED, "{label}, u^{a} v^{b}: {error:e}");
     }
     let exact = chebyshev_integral(degree + 1);
     let in_u = (integrate(&|u, _| chebyshev(degree + 1, u)) - exact).abs();
     let in_v = (integrate(&|_, v| chebyshev(degree + 1, v)) - exact).abs();
-    assert!(in_u.min(in_v) > WRONG, "{label}: degree {} is off by only {in_u:e}, {in_v:e}", degree + 1);
+    assert!(
+        in_u.min(in_v) > LEAST_WRONG_ERROR,
+        "{label}: degree {} is off by only {in_u:e}, {in_v:e}",
+        degree + 1
+    );
 }
 
 /// ∫ u^a v^b over the unit triangle, a! b! / (a + b + 2)!.
@@ -79,7 +83,7 @@ pub fn triangle_degree(points: &[PlanePoint], degree: usize) {
 pub fn triangle_degree_of(label: &str, degree: usize, integrate: impl Fn(Surface) -> f64) {
     for (a, b) in (0..=degree).flat_map(|a| (0..=degree - a).map(move |b| (a, b))) {
         let error = (integrate(&monomial(a, b)) - triangle_moment(a, b)).abs() / (0.5 * peak(a, b));
-        assert!(error <= EXACT, "{label}, u^{a} v^{b}: {error:e}");
+        assert!(error <= ROUNDING_ALLOWED, "{label}, u^{a} v^{b}: {error:e}");
     }
     let next = degree + 1;
     let error = |a: usize| {
@@ -87,7 +91,7 @@ pub fn triangle_degree_of(label: &str, degree: usize, integrate: impl Fn(Surface
         (got - triangle_chebyshev(a, next - a)).abs()
     };
     let beyond = (0..=next).map(error).fold(0.0, f64::max);
-    assert!(beyond > WRONG, "{label}: degree {next} is off by only {beyond:e}");
+    assert!(beyond > LEAST_WRONG_ERROR, "{label}: degree {next} is off by only {beyond:e}");
 }
 
 /// ∫ Tₐ(u) T_b(v) over the unit triangle, collapsed, by a Gauss–Legendre rule that is exact.

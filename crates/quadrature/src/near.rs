@@ -14,7 +14,7 @@ type Vector = [f64; 3];
 
 /// Distance over edge length below which x lies on the triangle: closer points are lost in the
 /// rounding of x − y.
-const TOUCHING: f64 = 1e-12;
+const TOUCHING_DISTANCE: f64 = 1e-12;
 
 /// The rule with n × n points in each of up to three parts for the triangle with these corners,
 /// seen from `x` (any unit of length). Points and weights are in the parameters of the unit
@@ -117,7 +117,7 @@ impl Rays {
     /// Points r and weights on [0, 1], for an integrand with poles at ± i d/ρ(t).
     fn along(&self, t: f64, rule: &IntervalRule) -> Vec<(f64, f64)> {
         let reach = self.height.hypot(t - self.centre);
-        if self.distance < TOUCHING {
+        if self.distance < TOUCHING_DISTANCE {
             return rule.points.iter().copied().zip(rule.weights.iter().copied()).collect();
         }
         sinh_points(rule, 0.0, self.distance / reach)

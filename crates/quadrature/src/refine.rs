@@ -87,7 +87,7 @@ pub fn adaptive_triangle(rule: &[PlanePoint], goal: Goal, mut f: impl FnMut(f64,
 }
 
 /// Largest ratio of successive steps that is believed; a larger one is not yet a trend.
-const SLOWEST: f64 = 0.98;
+const LARGEST_STEP_RATIO: f64 = 0.98;
 
 /// A cell that has been cut once to learn its error.
 struct Region<C> {
@@ -119,7 +119,7 @@ impl<C> Region<C> {
 
 /// Sets the errors of the parts of a cell whose own step was `step`, 0 where there was none.
 fn weigh<C>(parts: &mut [Region<C>], step: f64) {
-    let ratio = (parts.iter().map(|part| part.step).sum::<f64>() / step).min(SLOWEST);
+    let ratio = (parts.iter().map(|part| part.step).sum::<f64>() / step).min(LARGEST_STEP_RATIO);
     for part in parts {
         part.error = part.step * (ratio / (1.0 - ratio)).max(1.0);
     }

@@ -14,7 +14,7 @@ use tempfile::{Builder, NamedTempFile};
 use crate::ReportError;
 
 /// Ending of the names of temporary files.
-pub(crate) const TEMPORARY: &str = ".tmp";
+pub(crate) const TEMPORARY_ENDING: &str = ".tmp";
 
 /// Writes `path` whole or not at all. `fill` writes the contents.
 ///
@@ -68,7 +68,7 @@ fn folder_of(path: &Path) -> &Path {
 
 fn temporary(folder: &Path, prefix: &str) -> io::Result<NamedTempFile> {
     let mut builder = Builder::new();
-    builder.prefix(prefix).suffix(TEMPORARY);
+    builder.prefix(prefix).suffix(TEMPORARY_ENDING);
     // Temporary files are private by default; a result is as readable as any other new file.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));

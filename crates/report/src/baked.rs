@@ -18,7 +18,7 @@ use fredholm_mesh::{Anchored, Welded};
 use serde_json::{Value, json};
 
 use crate::colour::{Colouring, Rgb};
-use crate::nodal::{SMOOTH, close, vertex_colours};
+use crate::nodal::{SMOOTH_WELD, close, vertex_colours};
 use crate::tone::{Tone, encode, luminance};
 use crate::{Exposure, Field, ReportError};
 
@@ -36,7 +36,7 @@ impl Baked {
         let (mesh, colouring) = (field.mesh(), Colouring::new(field.bands()));
         let leaves: Vec<Rgb> =
             (0..mesh.len()).map(|k| colouring.colour(&field.exposed_radiosity(k))).collect();
-        let Anchored { leaves: welded, polygons, hanging, .. } = mesh.anchored(SMOOTH);
+        let Anchored { leaves: welded, polygons, hanging, .. } = mesh.anchored(SMOOTH_WELD);
         let mut radiosity = vertex_colours(mesh, &welded, &leaves, |leaf| field.exposed(leaf));
         close(&hanging, &mut radiosity);
         let dull = leaves.iter().enumerate().filter(|(leaf, _)| !field.emits(*leaf));

@@ -13,11 +13,11 @@ const MOST_PIXELS_A_SIDE: u32 = 16_384;
 /// Cosine above which the direction of view counts as vertical.
 const VERTICAL_COSINE: f64 = 0.9;
 /// Share of the total area below which the openings of a scene do not decide where it is seen from.
-const CLOSED: f64 = 1e-3;
+const MOST_OPEN_SHARE: f64 = 1e-3;
 /// Cosine above which the direction of view is turned to an axis.
-const ALIGNED: f64 = 0.8;
+const ALIGNED_COSINE: f64 = 0.8;
 /// Tangent of the angle at which a scene is looked down on.
-const TILT: f64 = 0.12;
+const TILT_TANGENT: f64 = 0.12;
 /// Cosine to the direction of view below which a point is not before the eye.
 const LEAST_VIEW_COSINE: f64 = 1e-3;
 /// Room left around a framed scene.
@@ -49,7 +49,7 @@ pub(crate) struct Axes {
 }
 
 /// Width and height of the picture of a scene without a camera of its own, pixels.
-pub const FRAMED: [u32; 2] = [800, 600];
+pub const USUAL_PIXELS: [u32; 2] = [800, 600];
 
 impl Camera {
     /// A camera that sees the whole scene: through its opening, or through a wall where it is
@@ -64,8 +64,8 @@ impl Camera {
             target: field.mesh().bounds().map_or(Vec3::ZERO, |bounds| bounds.centre()),
             up,
             vertical_fov_degrees: 40.0,
-            width: FRAMED[0],
-            height: FRAMED[1],
+            width: USUAL_PIXELS[0],
+            height: USUAL_PIXELS[1],
         };
         let distance = FRAME_MARGIN * reach(field, &camera, forward);
         Self { eye: camera.target - forward * distance, ..camera }
@@ -168,14 +168,14 @@ fn view(field: &Field<'_>, up: Vec3) -> Vec3 {
     let total: f64 = field.mesh().patches().map(Patch::area).sum();
     let net: Vec3 = field.mesh().patches().map(|patch| patch.normal() * patch.area()).sum();
     let level = if up.z.abs() > VERTICAL_COSINE { Vec3::Y } else { Vec3::Z };
-    if net.length() <= CLOSED * total {
-        return (level - TILT * up).normalize();
+    if net.length() <= MOST_OPEN_SHARE * total {
+        return (level - TILT_TANGENT * up).normalize();
     }
     let forward = -net.normalize();
     let axis = nearest_axis(forward);
-    let forward = if axis.dot(forward) > ALIGNED { axis } else { forward };
+    let forward = if axis.dot(forward) > ALIGNED_COSINE { axis } else { forward };
     let steep = forward.dot(up).abs() > VERTICAL_COSINE;
-    if steep { (forward + level).normalize() } else { (forward - TILT * up).normalize() }
+    if steep { (forward + level).normalize() } else { (forward - TILT_TANGENT * up).normalize() }
 }
 
 /// Distance from the target at which every corner lies in the picture.

@@ -52,7 +52,7 @@ const SOLVERS: Values = &[
     ("error", "1", "‖x − x*‖₂/‖x*‖₂ against the reference, worst band"),
     ("reason", "", "why it was refused"),
 ];
-const PHASORS: &str = "E in V/m, H in A/m";
+const PHASOR_UNITS: &str = "E in V/m, H in A/m";
 
 /// All files but records, by command.
 const FILES: &[CataloguedFile] = &[
@@ -259,17 +259,17 @@ const FILES: &[CataloguedFile] = &[
             ("frequency", "Hz", ""),
             (
                 "inc_ex_re, inc_ex_im, inc_ey_re, inc_ey_im, inc_ez_re, inc_ez_im, inc_hx_re, inc_hx_im, inc_hy_re, inc_hy_im, inc_hz_re, inc_hz_im",
-                PHASORS,
+                PHASOR_UNITS,
                 "incident",
             ),
             (
                 "sca_ex_re, sca_ex_im, sca_ey_re, sca_ey_im, sca_ez_re, sca_ez_im, sca_hx_re, sca_hx_im, sca_hy_re, sca_hy_im, sca_hz_re, sca_hz_im",
-                PHASORS,
+                PHASOR_UNITS,
                 "scattered",
             ),
             (
                 "tot_ex_re, tot_ex_im, tot_ey_re, tot_ey_im, tot_ez_re, tot_ez_im, tot_hx_re, tot_hx_im, tot_hy_re, tot_hy_im, tot_hz_re, tot_hz_im",
-                PHASORS,
+                PHASOR_UNITS,
                 "both",
             ),
         ],
@@ -284,7 +284,7 @@ const FILES: &[CataloguedFile] = &[
             ("frequency", "Hz", "f64, n"),
             (
                 "incident, scattered, total",
-                PHASORS,
+                PHASOR_UNITS,
                 "f64, n × 6 × 2: ex, ey, ez, hx, hy, hz; real, imaginary part",
             ),
         ],
@@ -387,7 +387,7 @@ pub fn catalogue() -> impl Iterator<Item = CataloguedFile> {
 /// The page `docs/results.md`.
 #[must_use]
 pub fn results_page() -> String {
-    let mut page = HEAD.to_owned();
+    let mut page = PAGE_HEAD.to_owned();
     for CataloguedFile { name, by, about, values } in catalogue() {
         // Writing to a string cannot fail.
         let _ = writeln!(page, "\n### {name} ({by})\n\n{}.", wrapped(&capital(about)));
@@ -399,9 +399,9 @@ pub fn results_page() -> String {
             let _ = writeln!(page, "| {} | {unit} | {text} |", names.join(", "));
         }
     }
-    page.push_str(RECORDS);
+    page.push_str(RECORDS_TEXT);
     record::<RunRecord>("run.json (solve, resume, trace)", &mut page);
-    page.push_str(WAVES);
+    page.push_str(WAVES_TEXT);
     record::<ViewFactorsRecord>("*.json (viewfactors)", &mut page);
     record::<ShootingRecord>("shots.json (shoot)", &mut page);
     record::<ComparisonRecord>("compare.json (compare)", &mut page);
@@ -414,7 +414,7 @@ pub fn results_page() -> String {
     page
 }
 
-const HEAD: &str = "# Files of results
+const PAGE_HEAD: &str = "# Files of results
 
 What every command writes, and what the columns, arrays and keys mean. This page is written by
 `FREDHOLM_WRITE=1 cargo test --test command_line results_page` from the tables and types of
@@ -429,13 +429,13 @@ What every command writes, and what the columns, arrays and keys mean. This page
 ## Tables, arrays and pictures
 ";
 
-const RECORDS: &str = "
+const RECORDS_TEXT: &str = "
 ## Records
 
 JSON. Numbers that are not finite are `null`. Times are by the clock.
 ";
 
-const WAVES: &str = "
+const WAVES_TEXT: &str = "
 ### run.json (waves)
 
 | key | type | |

@@ -9,10 +9,10 @@
 /// Amplitude, centre (nm), reciprocal widths below and above the centre (1/nm).
 type Lobe = [f64; 4];
 
-const X: [Lobe; 3] =
+const X_LOBES: [Lobe; 3] =
     [[0.362, 442.0, 0.0624, 0.0374], [1.056, 599.8, 0.0264, 0.0323], [-0.065, 501.1, 0.0490, 0.0382]];
-const Y: [Lobe; 2] = [[0.821, 568.8, 0.0213, 0.0247], [0.286, 530.9, 0.0613, 0.0322]];
-const Z: [Lobe; 2] = [[1.217, 437.0, 0.0845, 0.0278], [0.681, 459.0, 0.0385, 0.0725]];
+const Y_LOBES: [Lobe; 2] = [[0.821, 568.8, 0.0213, 0.0247], [0.286, 530.9, 0.0613, 0.0322]];
+const Z_LOBES: [Lobe; 2] = [[1.217, 437.0, 0.0845, 0.0278], [0.681, 459.0, 0.0385, 0.0725]];
 
 /// The colour matching functions x̄, ȳ, z̄ (dimensionless) at a wavelength in nm.
 ///
@@ -23,7 +23,7 @@ const Z: [Lobe; 2] = [[1.217, 437.0, 0.0845, 0.0278], [0.681, 459.0, 0.0385, 0.0
 /// ```
 #[must_use]
 pub fn colour_matching(wavelength: f64) -> [f64; 3] {
-    [sum(&X, wavelength), sum(&Y, wavelength), sum(&Z, wavelength)]
+    [sum(&X_LOBES, wavelength), sum(&Y_LOBES, wavelength), sum(&Z_LOBES, wavelength)]
 }
 
 fn sum(lobes: &[Lobe], wavelength: f64) -> f64 {

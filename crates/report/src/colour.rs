@@ -15,15 +15,15 @@ use crate::cie::colour_matching;
 pub(crate) type Rgb = [f64; 3];
 
 /// White of sRGB: D65 at Y = 1 (IEC 61966-2-1).
-const WHITE: [f64; 3] = [0.950_455_927_051_671_6, 1.0, 1.089_057_750_759_878_4];
+const WHITE_POINT: [f64; 3] = [0.950_455_927_051_671_6, 1.0, 1.089_057_750_759_878_4];
 /// XYZ to linear sRGB for the primaries and the white point of IEC 61966-2-1.
-const SRGB: [[f64; 3]; 3] = [
+const XYZ_TO_SRGB: [[f64; 3]; 3] = [
     [3.240_969_941_904_521_4, -1.537_383_177_570_093_5, -0.498_610_760_293_003_3],
     [-0.969_243_636_280_879_8, 1.875_967_501_507_720_7, 0.041_555_057_407_175_61],
     [0.055_630_079_696_993_61, -0.203_976_958_888_976_57, 1.056_971_514_242_878_6],
 ];
 /// Share of the best possible response below which wavelengths count as invisible.
-const INVISIBLE: f64 = 1e-3;
+const INVISIBLE_RESPONSE: f64 = 1e-3;
 
 /// How bands mix into a colour.
 #[derive(Clone, Debug, PartialEq)]
@@ -92,8 +92,8 @@ fn spectrum(bands: &[String]) -> Option<Vec<Rgb>> {
     let responses: Vec<[f64; 3]> =
         wavelengths.iter().zip(&weights).map(|(&l, w)| colour_matching(l).map(|m| w * m)).collect();
     let white = responses.iter().fold([0.0; 3], |sum, r| [0, 1, 2].map(|i| sum[i] + r[i]));
-    let visible = INVISIBLE * weights.iter().sum::<f64>();
-    let scaled = |r: &[f64; 3]| to_srgb([0, 1, 2].map(|i| r[i] / white[i] * WHITE[i]));
+    let visible = INVISIBLE_RESPONSE * weights.iter().sum::<f64>();
+    let scaled = |r: &[f64; 3]| to_srgb([0, 1, 2].map(|i| r[i] / white[i] * WHITE_POINT[i]));
     white.iter().all(|&sum| sum > visible).then(|| responses.iter().map(scaled).collect())
 }
 
@@ -112,7 +112,7 @@ fn trapezoid(points: &[f64]) -> Option<Vec<f64>> {
 }
 
 fn to_srgb(xyz: [f64; 3]) -> Rgb {
-    SRGB.map(|row| row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2])
+    XYZ_TO_SRGB.map(|row| row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2])
 }
 
 #[cfg(test)]
@@ -139,7 +139,7 @@ mod tests {
 
     #[test]
     fn the_matrix_takes_white_to_white_and_red_to_its_chromaticity() {
-        close(to_srgb(WHITE), [1.0; 3], 1e-12);
+        close(to_srgb(WHITE_POINT), [1.0; 3], 1e-12);
         // Red primary of sRGB: chromaticity (0.64, 0.33), luminance 0.2126.
         let y = 0.212_639;
         close(to_srgb([0.64 / 0.33 * y, y, 0.03 / 0.33 * y]), [1.0, 0.0, 0.0], 1e-5);

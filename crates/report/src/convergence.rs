@@ -10,7 +10,7 @@ use crate::RunRecord;
 use crate::plot::{Axis, Figure, Line, Panel, Part, Span, band_colours, write_svg};
 use crate::words::number;
 
-const RESIDUAL: &str = "relative residual ‖b − A x‖ / ‖b‖";
+const RESIDUAL_LABEL: &str = "relative residual ‖b − A x‖ / ‖b‖";
 
 /// Writes the plot of a run's history.
 ///
@@ -30,7 +30,11 @@ pub fn write_convergence(run: &RunRecord, out: &mut dyn Write) -> io::Result<()>
         lines.extend(level.map(|level| {
             Line::level(&format!("tolerance {}", number(level)), vec![(0.0, level), (end, level)])
         }));
-        Part::Panel(Panel::new(Axis::new(label, Span::WithZero), Axis::new(RESIDUAL, Span::Decades), lines))
+        Part::Panel(Panel::new(
+            Axis::new(label, Span::WithZero),
+            Axis::new(RESIDUAL_LABEL, Span::Decades),
+            lines,
+        ))
     };
     let parts = vec![over("iterations", &iterations), over("time, s", &run.history.seconds)];
     write_svg(&Figure { title: title(run), parts }, out)

@@ -16,12 +16,12 @@ use std::path::{Component, Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::ReportError;
-use crate::atomic::{TEMPORARY, write_with_prefix};
+use crate::atomic::{TEMPORARY_ENDING, write_with_prefix};
 use crate::names::is_result;
 use crate::viewfactors::ViewFactorFiles;
 
 /// Name of the list of a folder, and ending of the lists of single files.
-const LIST: &str = ".fredholm";
+const LIST_NAME: &str = ".fredholm";
 
 /// A folder, or the name of a matrix, that one run writes to. All clones are the same run; the lock
 /// is released with the last of them. One to which nothing was written leaves nothing behind.
@@ -70,7 +70,7 @@ impl ResultFolder {
     /// with a file of the name of a result that no run is known to have written,
     /// [`ReportError::Write`] where nothing can be written.
     pub fn claim(folder: impl AsRef<Path>) -> Result<Self, ReportError> {
-        let claim = Claim::lock(folder.as_ref(), LIST.into(), false)?;
+        let claim = Claim::lock(folder.as_ref(), LIST_NAME.into(), false)?;
         let entries = fs::read_dir(&claim.folder).map_err(read_failure(&claim.folder))?;
         let names = entries.flatten().map(|entry| entry.file_name().to_string_lossy().into_owned());
         claim.refuse(names.filter(|name| is_result(name)))?;
@@ -86,7 +86,7 @@ impl ResultFolder {
         let stem = files.matrix.file_stem().unwrap_or_default();
         let mut list = OsString::from(".");
         list.push(stem);
-        list.push(LIST);
+        list.push(LIST_NAME);
         let claim = Claim::lock(folder_of(&files.matrix), list, false)?;
         let all = [&files.matrix, &files.picture, &files.histogram, &files.page, &files.record];
         let name = |path: &PathBuf| Some(path.file_name()?.to_string_lossy().into_owned());
@@ -105,7 +105,7 @@ impl ResultFolder {
     /// # Errors
     /// [`ReportError::Busy`] and [`ReportError::Write`] as for [`claim`](Self::claim).
     pub fn to_add(folder: impl AsRef<Path>) -> Result<Self, ReportError> {
-        Ok(Self(Arc::new(Claim::lock(folder.as_ref(), LIST.into(), true)?)))
+        Ok(Self(Arc::new(Claim::lock(folder.as_ref(), LIST_NAME.into(), true)?)))
     }
 
     /// Where it is.
@@ -214,7 +214,7 @@ impl Claim {
         for folder in std::iter::once(self.folder.clone()).chain(below) {
             for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
                 let name = entry.file_name().to_string_lossy().into_owned();
-                if name.starts_with(&prefix) && name.ends_with(TEMPORARY) {
+                if name.starts_with(&prefix) && name.ends_with(TEMPORARY_ENDING) {
                     removed(&entry.path())?;
                 }
             }
@@ -445,7 +445,7 @@ mod tests {
         let (folder, outside) = (base.path().join("a"), base.path().join("outside.txt"));
         fs::create_dir(&folder).unwrap();
         fs::write(&outside, "x").unwrap();
-        fs::write(folder.join(LIST), format!("../outside.txt\n{}\n\n", outside.display())).unwrap();
+        fs::write(folder.join(LIST_NAME), format!("../outside.txt\n{}\n\n", outside.display())).unwrap();
         ResultFolder::claim(&folder).unwrap().begin().unwrap();
         assert!(outside.exists());
     }

@@ -78,7 +78,7 @@ mod xml;
 
 pub use atomic::write_atomically;
 pub use baked::{write_field_glb, write_field_ply};
-pub use camera::{Camera, FRAMED};
+pub use camera::{Camera, USUAL_PIXELS};
 pub use catalogue::{CataloguedFile, catalogue, results_page};
 pub use cie::colour_matching;
 pub use colour::Colouring;

@@ -1,6 +1,6 @@
 //! Names that the files of results have.
 
-use crate::comparison::{COMPARISON_FILES, SWEEP};
+use crate::comparison::{COMPARISON_FILES, SWEEP_PLOT};
 use crate::judgement::JUDGE_FILES;
 use crate::outputs::{RUN, output_files};
 use crate::refinement::REFINEMENT_FILES;
@@ -51,7 +51,7 @@ pub fn is_result(name: &str) -> bool {
     output_files().any(|file| file.name() == name)
         || STUDIES.iter().any(|names| names.contains(&name))
         || WAVE_FILES.contains(&name)
-        || [SWEEP, CHECKPOINT, TRACE_STATE, PIXELS].contains(&name)
+        || [SWEEP_PLOT, CHECKPOINT, TRACE_STATE, PIXELS].contains(&name)
         || shot.is_some_and(|number| number.len() >= 5 && number.bytes().all(|digit| digit.is_ascii_digit()))
 }
 

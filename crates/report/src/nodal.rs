@@ -12,10 +12,10 @@ use fredholm_mesh::{Hanging, Mesh, Weld, Welded};
 use crate::colour::Rgb;
 
 /// Elements of a surface shade smoothly into each other where their normals are at most 40° apart.
-pub(crate) const SMOOTH: Weld = Weld::Smooth { degrees: 40.0 };
+pub(crate) const SMOOTH_WELD: Weld = Weld::Smooth { degrees: 40.0 };
 
 /// Share given to buried elements, so that a vertex among nothing else has a value.
-const BURIED: f64 = 1e-9;
+const BURIED_SHARE: f64 = 1e-9;
 
 /// The colour at each vertex, from the colour and the exposed share of each leaf.
 pub(crate) fn vertex_colours(
@@ -26,7 +26,7 @@ pub(crate) fn vertex_colours(
 ) -> Vec<Rgb> {
     let mut sums = vec![([0.0; 3], 0.0); welded.vertices.len()];
     for (leaf, patch) in mesh.patches().enumerate() {
-        let weight = exposed(leaf).max(BURIED) / patch.area();
+        let weight = exposed(leaf).max(BURIED_SHARE) / patch.area();
         for &vertex in welded.patch(leaf) {
             let (sum, total) = &mut sums[vertex];
             *total += weight;
@@ -57,7 +57,7 @@ mod tests {
 
     /// The colours at the corners of each leaf.
     fn corner_colours(mesh: &Mesh, leaves: &[Rgb]) -> Vec<Vec<Rgb>> {
-        let welded = mesh.welded(SMOOTH);
+        let welded = mesh.welded(SMOOTH_WELD);
         let colours = vertex_colours(mesh, &welded, leaves, |_| 1.0);
         welded.patches().map(|patch| patch.iter().map(|&vertex| colours[vertex]).collect()).collect()
     }
@@ -95,7 +95,7 @@ mod tests {
         builder.surface("floor", 0);
         grid(&mut builder, &lines, &[0.0, 1.0]);
         let mesh = builder.build();
-        let welded = mesh.welded(SMOOTH);
+        let welded = mesh.welded(SMOOTH_WELD);
         let leaves = [[0.0; 3], [4.0; 3]];
         let colours = vertex_colours(&mesh, &welded, &leaves, |leaf| leaf as f64);
         let shared: Vec<_> = welded.patch(0).iter().filter(|v| welded.patch(1).contains(v)).collect();
@@ -118,9 +118,9 @@ mod tests {
         builder.face(&fine).unwrap();
         let mesh = builder.build();
         let leaves: Vec<Rgb> = (0..mesh.len()).map(|leaf| [(leaf * leaf) as f64; 3]).collect();
-        let welded = mesh.welded(SMOOTH);
+        let welded = mesh.welded(SMOOTH_WELD);
         let mut colours = vertex_colours(&mesh, &welded, &leaves, |_| 1.0);
-        close(&mesh.anchored(SMOOTH).hanging, &mut colours);
+        close(&mesh.anchored(SMOOTH_WELD).hanging, &mut colours);
         let on_side = |leaf: usize, p: Vec3| {
             let weights = corner_weights(mesh.patch(leaf), p);
             let corners = welded.patch(leaf).iter().zip(weights);

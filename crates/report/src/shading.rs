@@ -5,7 +5,7 @@ use fredholm_mesh::{Anchored, Vec3, Welded};
 use crate::Field;
 use crate::colour::{Colouring, Rgb};
 use crate::interpolate::corner_weights;
-use crate::nodal::{SMOOTH, close, vertex_colours};
+use crate::nodal::{SMOOTH_WELD, close, vertex_colours};
 
 /// Colours at the vertices of the leaves.
 pub(crate) struct Shading<'a> {
@@ -41,7 +41,7 @@ impl<'a> Shading<'a> {
     pub(crate) fn of_values(field: Field<'a>, passes: usize, colour: impl Fn(usize) -> Rgb) -> Self {
         let mesh = field.mesh();
         let leaves: Vec<Rgb> = (0..mesh.len()).map(colour).collect();
-        let Anchored { leaves: welded, hanging, .. } = mesh.anchored(SMOOTH);
+        let Anchored { leaves: welded, hanging, .. } = mesh.anchored(SMOOTH_WELD);
         let mut vertices = vertex_colours(mesh, &welded, &leaves, |leaf| field.exposed(leaf));
         close(&hanging, &mut vertices);
         for _ in 0..passes {

@@ -17,8 +17,8 @@ use crate::csv::{header, numbers, quoted};
 use crate::mean::Means;
 
 const COLUMNS: &str = "surface,faces,elements,area";
-const MEANS: [&str; 2] = ["irradiance", "radiosity"];
-const ALL: [&str; 5] = ["irradiance", "radiosity", "emitted", "reflected", "absorbed"];
+const MEAN_COLUMNS: [&str; 2] = ["irradiance", "radiosity"];
+const ALL_COLUMNS: [&str; 5] = ["irradiance", "radiosity", "emitted", "reflected", "absorbed"];
 
 struct Quantities {
     irradiance: Means,
@@ -54,7 +54,7 @@ impl Quantities {
 /// What `out` reports.
 pub fn write_surfaces_csv(field: &Field<'_>, out: &mut dyn Write) -> io::Result<()> {
     let quantities = Quantities::new(field);
-    let titles = if quantities.exitance.is_some() { &ALL[..] } else { &MEANS[..] };
+    let titles = if quantities.exitance.is_some() { &ALL_COLUMNS[..] } else { &MEAN_COLUMNS[..] };
     header(out, COLUMNS, titles, field.bands())?;
     let (faces, elements) = counts(field);
     for (i, surface) in field.mesh().surfaces().iter().enumerate() {

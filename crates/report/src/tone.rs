@@ -11,13 +11,13 @@ use crate::ReportError;
 use crate::colour::Rgb;
 
 /// Exposed luminance that becomes white.
-const WHITE: f64 = 4.0;
+const WHITE_LUMINANCE: f64 = 4.0;
 /// Display luminance of the mean of the picture: mid grey.
 const MID_GREY: f64 = 0.18;
 /// Luminance, relative to the mean, below which darkness does not lengthen the exposure further.
-const FLOOR: f64 = 1e-2;
+const LUMINANCE_FLOOR: f64 = 1e-2;
 /// Coefficients of luminance in linear sRGB.
-const LUMINANCE: Rgb = [0.2126, 0.7152, 0.0722];
+const LUMINANCE_WEIGHTS: Rgb = [0.2126, 0.7152, 0.0722];
 
 /// How bright a picture is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -64,7 +64,7 @@ impl Tone {
 
 /// Luminance of a linear colour, negative channels taken as 0.
 pub(crate) fn luminance(colour: Rgb) -> f64 {
-    (0..3).map(|i| LUMINANCE[i] * colour[i].max(0.0)).sum()
+    (0..3).map(|i| LUMINANCE_WEIGHTS[i] * colour[i].max(0.0)).sum()
 }
 
 fn automatic(metered: &[f64]) -> f64 {
@@ -72,17 +72,21 @@ fn automatic(metered: &[f64]) -> f64 {
     if mean <= 0.0 || !mean.is_finite() {
         return 1.0;
     }
-    let logs: f64 = metered.iter().map(|l| l.max(FLOOR * mean).ln()).sum();
+    let logs: f64 = metered.iter().map(|l| l.max(LUMINANCE_FLOOR * mean).ln()).sum();
     expand(MID_GREY) / (logs / metered.len() as f64).exp()
 }
 
 fn compress(bright: f64) -> f64 {
-    if bright >= WHITE { 1.0 } else { bright * (1.0 + bright / (WHITE * WHITE)) / (1.0 + bright) }
+    if bright >= WHITE_LUMINANCE {
+        1.0
+    } else {
+        bright * (1.0 + bright / (WHITE_LUMINANCE * WHITE_LUMINANCE)) / (1.0 + bright)
+    }
 }
 
 /// The luminance that [`compress`] takes to `y`.
 fn expand(y: f64) -> f64 {
-    let (w2, b) = (WHITE * WHITE, 1.0 - y);
+    let (w2, b) = (WHITE_LUMINANCE * WHITE_LUMINANCE, 1.0 - y);
     0.5 * w2 * ((b * b + 4.0 * y / w2).sqrt() - b)
 }
 

@@ -18,7 +18,7 @@ use flate2::write::ZlibEncoder;
 use fredholm_mesh::{Anchored, Patch, Vec3, Welded};
 
 use crate::Field;
-use crate::nodal::SMOOTH;
+use crate::nodal::SMOOTH_WELD;
 use crate::xml::escaped;
 
 pub(crate) const TRIANGLE: u8 = 5;
@@ -124,7 +124,7 @@ impl Write for Blocks {
 /// # Errors
 /// What `out` reports.
 pub fn write_vtu(field: &Field<'_>, out: &mut dyn Write) -> io::Result<()> {
-    let Anchored { leaves, polygons: welded, .. } = field.mesh().anchored(SMOOTH);
+    let Anchored { leaves, polygons: welded, .. } = field.mesh().anchored(SMOOTH_WELD);
     let sections =
         [("Points", vec![points(&welded)]), ("Cells", cells(&leaves, &welded)), ("CellData", data(field))];
     write_grid([welded.vertices.len(), welded.len()], &sections, out)

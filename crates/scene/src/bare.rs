@@ -12,16 +12,16 @@ use crate::files::Files;
 use crate::import::{Imported, import};
 use crate::parse::parse;
 use crate::part::{Origin, Part};
-use crate::resolve::{Camera, Material, Resolved, UNSAID, load_library, own_library, resolve};
+use crate::resolve::{Camera, Material, Resolved, USUAL_REFLECTANCE, load_library, own_library, resolve};
 use crate::source::Source;
 
 /// Name of the material of faces that have none, and of the light from all sides.
-const PLAIN: &str = "plain";
-const SKY: &str = "sky";
+const PLAIN_MATERIAL: &str = "plain";
+const SKY_NAME: &str = "sky";
 /// Distance of the enclosing box that is the light, over the diagonal of the mesh.
 const BOX_DISTANCE: f64 = 0.5;
 /// From where the mesh is looked at.
-const VIEW: Vec3 = Vec3::new(0.55, 0.45, 1.0);
+const VIEW_DIRECTION: Vec3 = Vec3::new(0.55, 0.45, 1.0);
 /// Angle from the lower to the upper edge of the picture, degrees, and room left around the mesh.
 const FIELD_OF_VIEW: f64 = 40.0;
 const BOX_MARGIN: f64 = 1.02;
@@ -74,7 +74,7 @@ fn text(path: &Path, coloured: bool) -> String {
     let file = path.file_name().unwrap_or_default().to_string_lossy();
     let bands = if coloured { "bands = [\"r\", \"g\", \"b\"]\n" } else { "" };
     format!(
-        "{bands}[materials.{PLAIN}]\nreflectance = {UNSAID}\n[[surface]]\nname = {}\nmaterial = \"{PLAIN}\"\nmesh = {{ file = {} }}\n",
+        "{bands}[materials.{PLAIN_MATERIAL}]\nreflectance = {USUAL_REFLECTANCE}\n[[surface]]\nname = {}\nmaterial = \"{PLAIN_MATERIAL}\"\nmesh = {{ file = {} }}\n",
         quoted(&stem),
         quoted(&file)
     )
@@ -87,7 +87,7 @@ fn complete(source: &Source, meaning: &mut Resolved) {
         Warning { file, place, what, help: help.to_owned() }
     };
     if meaning.parts.iter().any(|part| part.material == 0) {
-        let what = format!("faces without a material that is known reflect {UNSAID}");
+        let what = format!("faces without a material that is known reflect {USUAL_REFLECTANCE}");
         meaning.notes.push(note(
             what,
             "give them materials in a scene file, or in the mesh (the .mtl file of an OBJ)",
@@ -100,7 +100,7 @@ fn complete(source: &Source, meaning: &mut Resolved) {
     let Some(bounds) = bounds(&meaning.parts) else { return };
     meaning.parts.push(sky(&bounds, meaning.materials.len()));
     let bands = meaning.bands.len();
-    let (name, reflectance, exitance) = (SKY.to_owned(), vec![0.0; bands], vec![PI; bands]);
+    let (name, reflectance, exitance) = (SKY_NAME.to_owned(), vec![0.0; bands], vec![PI; bands]);
     meaning.materials.push(Material { name, reflectance, exitance });
     meaning.camera = meaning.camera.or_else(|| Some(camera(&bounds)));
     let what = "nothing emits, so a black box around the mesh, `sky`, lights it evenly from all sides: radiance 1 W/(m² sr)";
@@ -124,7 +124,7 @@ fn bounds(parts: &[Part]) -> Option<Bounds> {
 fn sky(bounds: &Bounds, material: usize) -> Part {
     let away = Vec3::splat(BOX_DISTANCE * bounds.diagonal());
     let shape = Shape::Box { min: bounds.min - away, max: bounds.max + away, inward: true };
-    let (name, shapes, cutting) = (SKY.to_owned(), [shape].into(), Cutting::default());
+    let (name, shapes, cutting) = (SKY_NAME.to_owned(), [shape].into(), Cutting::default());
     Part { name, material, shapes, cutting, elements: 6, origin: Origin::Sky, span: 0..0 }
 }
 
@@ -132,7 +132,7 @@ fn camera(bounds: &Bounds) -> Camera {
     let distance = BOX_MARGIN * 0.5 * bounds.diagonal() / (0.5 * FIELD_OF_VIEW).to_radians().sin();
     let target = bounds.centre();
     Camera {
-        eye: target + VIEW.normalize() * distance,
+        eye: target + VIEW_DIRECTION.normalize() * distance,
         target,
         up: Vec3::Y,
         vertical_fov_degrees: FIELD_OF_VIEW,

@@ -20,7 +20,7 @@ use crate::scene::Scene;
 use crate::source::{Source, read};
 
 /// What is asked of subsurfaces.
-const SUBSURFACES: &str = "subsurfaces must lie flat inside their base and touch neither its border nor each other; \
+const SUBSURFACES_HELP: &str = "subsurfaces must lie flat inside their base and touch neither its border nor each other; \
                            otherwise describe the base as pieces around them, put together by the combine column";
 
 /// What a row of a view-factor matrix stands for.
@@ -248,7 +248,7 @@ impl MeshFile {
 
     fn unmeshable(&self, face: &InputFace, error: &MeshError) -> SceneError {
         let has_holes = |shape: &Shape| matches!(shape, Shape::Polygon { holes, .. } if !holes.is_empty());
-        let help = if face.shapes.iter().any(has_holes) { SUBSURFACES } else { error.help() };
+        let help = if face.shapes.iter().any(has_holes) { SUBSURFACES_HELP } else { error.help() };
         self.source.error(ErrorKind::Geometry, face.span.clone(), error.to_string(), help)
     }
 }

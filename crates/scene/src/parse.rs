@@ -13,7 +13,7 @@ use crate::source::Source;
 use crate::suggest::among;
 
 /// Types as the reader calls them, and in plain words.
-const PLAIN: [(&str, &str); 10] = [
+const PLAIN_TYPE_NAMES: [(&str, &str); 10] = [
     ("expected f64", "expected a number"),
     ("expected u64", "expected a whole number, 0 or more"),
     ("expected u32", "expected a whole number from 0 to 4294967295"),
@@ -27,7 +27,7 @@ const PLAIN: [(&str, &str); 10] = [
 ];
 
 /// Keys that belong elsewhere, or that scene files had once, and what to do about them.
-const ELSEWHERE: [(&str, &str); 2] = [
+const MISPLACED_KEYS: [(&str, &str); 2] = [
     ("wave", "this is a scene of waves: `fredholm waves` computes its fields, `fredholm check` tells of it"),
     (
         "shadow",
@@ -74,12 +74,12 @@ fn meaning(source: &Source, error: &Error) -> SceneError {
         let help = format!("write {key} = {{ {} }}", form(key));
         return source.error(ErrorKind::Type, span, format!("`{key}` is a table, not a list"), help);
     }
-    let message = PLAIN.iter().fold(message.to_owned(), |m, (from, to)| m.replace(from, to));
+    let message = PLAIN_TYPE_NAMES.iter().fold(message.to_owned(), |m, (from, to)| m.replace(from, to));
     source.error(ErrorKind::Type, span, message, "write a value of the type that is expected here")
 }
 
 /// Shapes that are tables, and what is in them.
-const FORMS: [(&str, &str); 5] = [
+const SHAPE_FORMS: [(&str, &str); 5] = [
     ("polygon", "outline = [[x, y, z], …]"),
     ("box", "min = [x, y, z], max = [x, y, z]"),
     ("sphere", "centre = [x, y, z], radius = …"),
@@ -88,7 +88,7 @@ const FORMS: [(&str, &str); 5] = [
 ];
 
 fn form(shape: &str) -> &'static str {
-    FORMS.iter().find(|(name, _)| *name == shape).map_or("", |(_, form)| form)
+    SHAPE_FORMS.iter().find(|(name, _)| *name == shape).map_or("", |(_, form)| form)
 }
 
 /// The shape that a line gives as a list, where the piece at `span` is in it: the reader takes a
@@ -97,13 +97,13 @@ fn table_as_list(source: &Source, span: &Range<usize>) -> Option<&'static str> {
     let before = source.text.get(..span.start)?;
     let line = &source.text[before.rfind('\n').map_or(0, |end| end + 1)..];
     let (key, value) = line.split_once('=')?;
-    let (name, _) = FORMS.iter().find(|(name, _)| *name == key.trim())?;
+    let (name, _) = SHAPE_FORMS.iter().find(|(name, _)| *name == key.trim())?;
     value.trim_start().starts_with('[').then_some(name)
 }
 
 fn unknown_key(source: &Source, span: Range<usize>, rest: &str) -> SceneError {
     let (key, known) = names(rest);
-    if let Some((_, help)) = ELSEWHERE.iter().find(|(old, _)| *old == key) {
+    if let Some((_, help)) = MISPLACED_KEYS.iter().find(|(old, _)| *old == key) {
         return source.error(ErrorKind::UnknownKey, span, format!("unknown key `{key}`"), help);
     }
     source.error(ErrorKind::UnknownKey, span, format!("unknown key `{key}`"), among(key, known, "keys"))

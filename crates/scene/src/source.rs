@@ -10,9 +10,9 @@ use crate::error::{ErrorKind, Excerpt, Place, SceneError};
 /// Largest file that is read, bytes.
 const LARGEST_FILE: u64 = 1 << 30;
 /// Most characters of a line that are quoted.
-const QUOTED: usize = 100;
+const MOST_QUOTED_CHARACTERS: usize = 100;
 /// Characters kept before the offending piece of a long line.
-const LEAD: usize = 30;
+const QUOTED_CHARACTERS_BEFORE: usize = 30;
 
 /// A file, for messages about it.
 #[derive(Debug)]
@@ -125,8 +125,12 @@ fn floor_char(text: &str, index: usize) -> usize {
 }
 
 fn excerpt(line: &str, before: usize, width: usize) -> Excerpt {
-    let skipped = if before + width > QUOTED { before.saturating_sub(LEAD) } else { 0 };
-    let shown = line.trim_end().chars().skip(skipped).take(QUOTED);
+    let skipped = if before + width > MOST_QUOTED_CHARACTERS {
+        before.saturating_sub(QUOTED_CHARACTERS_BEFORE)
+    } else {
+        0
+    };
+    let shown = line.trim_end().chars().skip(skipped).take(MOST_QUOTED_CHARACTERS);
     let line: String = shown.map(|c| if c.is_control() { ' ' } else { c }).collect();
     let line = line.trim_end().to_owned();
     let before = before - skipped;

@@ -18,7 +18,7 @@ pub(crate) fn among<'a>(name: &str, known: impl IntoIterator<Item = &'a str>, pl
 }
 
 /// Names by which scene files of other programs, and the literature, know some keys.
-const FOREIGN: [(&str, &[&str]); 14] = [
+const FOREIGN_KEYS: [(&str, &[&str]); 14] = [
     (
         "reflectance",
         &["albedo", "diffuse", "rho", "kd", "color", "colour", "base_color", "diffuse_reflectance"],
@@ -41,10 +41,10 @@ const FOREIGN: [(&str, &[&str]); 14] = [
     ("outline", &["vertices", "points", "corners"]),
 ];
 
-/// The known name that has the meaning of one of [`FOREIGN`].
+/// The known name that has the meaning of one of [`FOREIGN_KEYS`].
 fn foreign<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
     let name = name.to_lowercase().replace('-', "_");
-    let mut meant = FOREIGN.iter().filter(|(_, others)| others.contains(&name.as_str()));
+    let mut meant = FOREIGN_KEYS.iter().filter(|(_, others)| others.contains(&name.as_str()));
     meant.find_map(|(ours, _)| known.iter().copied().find(|known| known == ours))
 }
 

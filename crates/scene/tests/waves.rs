@@ -10,7 +10,7 @@ use fredholm_scene::waves::{Cuts, Places, WaveScene, is_wave_scene};
 use fredholm_waves::{Kind, Wave};
 use serde_json::Value;
 
-const FINE: Cuts = Cuts { wavelength: 0.3, stretch: 1.0, whole: false };
+const FINE_CUTS: Cuts = Cuts { wavelength: 0.3, stretch: 1.0, whole: false };
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes")
@@ -32,7 +32,7 @@ fn with_surface(shape: &str) -> WaveScene {
 
 /// How many facets there are, and whether all of them belong to closed bodies.
 fn facets(scene: &WaveScene) -> (usize, bool) {
-    let mesh = scene.cut(FINE).unwrap().mesh().unwrap();
+    let mesh = scene.cut(FINE_CUTS).unwrap().mesh().unwrap();
     let materials = scene.materials(&scene.waves()[0]).unwrap();
     let scatterer = scene.scatterer(&mesh, &materials).unwrap();
     (mesh.len(), scatterer.facets().iter().all(|facet| facet.kind == Kind::Closed))
@@ -48,7 +48,7 @@ fn every_shipped_scene_is_sound() {
         let scene = WaveScene::load(&file).unwrap();
         assert_eq!(scene.check().unwrap(), [], "{}", file.display());
         let wavelength = scene.waves()[0].wavelength();
-        let cut = scene.cut(Cuts { wavelength, ..FINE }).unwrap();
+        let cut = scene.cut(Cuts { wavelength, ..FINE_CUTS }).unwrap();
         assert_eq!(cut.facets(), cut.mesh().unwrap().len() as u128);
     }
     assert!(
@@ -175,10 +175,10 @@ fn places_are_as_many_as_was_said_before() {
 /// One plate that is seen from far away in one bounce is left whole, where its edges are not given.
 #[test]
 fn a_single_plate_may_be_left_whole() {
-    let whole = Cuts { whole: true, ..FINE };
+    let whole = Cuts { whole: true, ..FINE_CUTS };
     let count = |surface: &str, cuts: Cuts| with_surface(surface).cut(cuts).unwrap().facets();
     let plate = "quad = [[0, 0, 0], [3, 0, 0], [3, 3, 0], [0, 3, 0]]";
-    assert_eq!((count(plate, whole), count(plate, FINE)), (1, 10_000));
+    assert_eq!((count(plate, whole), count(plate, FINE_CUTS)), (1, 10_000));
     assert_eq!(count(&format!("{plate}\nedge = 1.0"), whole), 9);
     // A second plate may shade a part of the first.
     let two =

@@ -77,7 +77,7 @@ fn row(case: &Case, body: &Scatterer, shadow: Shadow, truth: &[ComplexVector], u
 }
 
 /// The stored references: name, scene file, and the column.
-const STORED: [(&str, &str, &str); 4] = [
+const STORED_REFERENCES: [(&str, &str, &str); 4] = [
     ("plate 5", "plate.toml", "plate_5lambda_normal.csv"),
     ("two plates 5", "two_plates.toml", "two_plates_normal.csv"),
     ("cube 5", "cube.toml", "cube_5lambda_normal.csv"),
@@ -109,7 +109,7 @@ fn stored(folder: &Path, (name, file, column): (&str, &str, &str)) {
 fn main() {
     let wanted = std::env::args().nth(1).unwrap_or_default();
     let folder = tempfile::tempdir().unwrap();
-    for body in STORED.into_iter().filter(|(name, ..)| name.contains(&wanted)) {
+    for body in STORED_REFERENCES.into_iter().filter(|(name, ..)| name.contains(&wanted)) {
         stored(folder.path(), body);
     }
     let u = directions();

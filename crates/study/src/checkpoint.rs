@@ -25,9 +25,9 @@ use crate::solve::report_failure;
 /// Name and version of the format.
 const FORMAT: &str = "fredholm-checkpoint-2";
 /// Hexadecimal digits of a checksum.
-const DIGITS: usize = 64;
+const CHECKSUM_DIGITS: usize = 64;
 /// Bytes of the two checksums and the end of their line.
-const CHECKSUMS: usize = 2 * DIGITS + 1;
+const BYTES_OF_CHECKSUMS: usize = 2 * CHECKSUM_DIGITS + 1;
 
 /// What a run needs to go on besides the state.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -227,13 +227,16 @@ pub(crate) enum Broken {
 /// Header and range of the state of a checkpoint.
 fn parts(bytes: &[u8]) -> Result<(Header, [f64; 2], Range<usize>), Broken> {
     let end = bytes.iter().position(|&byte| byte == b'\n').ok_or(Broken::Foreign)? + 1;
-    let last = bytes.len().checked_sub(CHECKSUMS).filter(|&last| last >= end).ok_or(Broken::Foreign)?;
+    let last =
+        bytes.len().checked_sub(BYTES_OF_CHECKSUMS).filter(|&last| last >= end).ok_or(Broken::Foreign)?;
     if bytes.last() != Some(&b'\n') {
         return Err(Broken::Damaged { part: "end", bytes: last..bytes.len() });
     }
-    let sections = [("header", 0..end, last), ("state", end..last, last + DIGITS)];
+    let sections = [("header", 0..end, last), ("state", end..last, last + CHECKSUM_DIGITS)];
     for (part, range, at) in sections {
-        if digits(Sha256::new_with_prefix(&bytes[range.clone()])).as_bytes() != &bytes[at..at + DIGITS] {
+        if digits(Sha256::new_with_prefix(&bytes[range.clone()])).as_bytes()
+            != &bytes[at..at + CHECKSUM_DIGITS]
+        {
             return Err(Broken::Damaged { part, bytes: range });
         }
     }

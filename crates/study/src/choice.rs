@@ -1,10 +1,10 @@
 //! Which way to an accuracy costs less: the matrix of the scene's elements, or links.
 //!
-//! The matrix has n(n + 1)/2 pairs. The links are about [`LINKS`] (1 %/ε)^[`POWER`] a face at the
-//! accuracy ε, and one costs as much as [`PAIRS`] pairs, as measured on the scenes of
-//! docs/notes/hierarchical.md. On fewer than 2 × 2 elements a face the matrix is seldom exact
-//! enough, and links would have to follow; else the error that it states decides whether it was
-//! enough.
+//! The matrix has n(n + 1)/2 pairs. The links are about [`LINKS_A_FACE`] (1 %/ε)^[`LINKS_EXPONENT`]
+//! a face at the accuracy ε, and one costs as much as [`PAIRS_A_LINK`] pairs, as measured on the
+//! scenes of docs/notes/hierarchical.md. On fewer than 2 × 2 elements a face the matrix is seldom
+//! exact enough, and links would have to follow; else the error that it states decides whether it
+//! was enough.
 
 use std::fmt;
 
@@ -12,11 +12,11 @@ use crate::options::Way;
 use crate::sampled;
 
 /// Links a face at 1 %, one for both ways.
-const LINKS: f64 = 160.0;
+const LINKS_A_FACE: f64 = 160.0;
 /// Exponent of 1 %/ε.
-const POWER: f64 = 0.8;
+const LINKS_EXPONENT: f64 = 0.8;
 /// Pairs of the matrix that take the time of one link.
-const PAIRS: f64 = 6.0;
+const PAIRS_A_LINK: f64 = 6.0;
 
 /// Most links at 1 % over √(faces): cells of a wall, and small things far away, are linked as
 /// wholes.
@@ -27,7 +27,7 @@ const LEAST_ACCURACY: f64 = 0.01;
 /// Paths that take the time of all links of a run, over the links of its first round: about ten
 /// times as many come of them, and one takes about as long as five paths. Measured on cities and
 /// curved objects (docs/notes/hierarchical.md).
-const PATHS: f64 = 50.0;
+const PATHS_A_LINK: f64 = 50.0;
 /// Links of an element.
 const OF_ELEMENT: f64 = 10.0;
 
@@ -35,7 +35,8 @@ const OF_ELEMENT: f64 = 10.0;
 /// of three.
 pub(crate) fn expected(faces: usize, accuracy: f64) -> [usize; 2] {
     let n = faces as f64;
-    let links = (LINKS * n).min(MOST_LINKS_OVER_ROOT_FACES * n.sqrt()) * (0.01 / accuracy).powf(POWER);
+    let links = (LINKS_A_FACE * n).min(MOST_LINKS_OVER_ROOT_FACES * n.sqrt())
+        * (0.01 / accuracy).powf(LINKS_EXPONENT);
     [faces.max((links / OF_ELEMENT) as usize), links as usize]
 }
 
@@ -73,8 +74,8 @@ impl Choice {
     /// The cheaper way to an accuracy.
     pub(crate) fn new(extent: Extent, accuracy: f64) -> Self {
         let pairs = 0.5 * extent.elements * (extent.elements + 1.0);
-        let links = LINKS * extent.faces * (0.01 / accuracy).powf(POWER);
-        if pairs >= PAIRS * links {
+        let links = LINKS_A_FACE * extent.faces * (0.01 / accuracy).powf(LINKS_EXPONENT);
+        if pairs >= PAIRS_A_LINK * links {
             Self::Links { pairs, links }
         } else if extent.fewest < 4 {
             Self::Coarse
@@ -85,7 +86,7 @@ impl Choice {
 
     /// Elements from which on links cost less, whatever the faces.
     pub(crate) fn most_elements(accuracy: f64) -> f64 {
-        2.0 * PAIRS * LINKS * (0.01 / accuracy).powf(POWER)
+        2.0 * PAIRS_A_LINK * LINKS_A_FACE * (0.01 / accuracy).powf(LINKS_EXPONENT)
     }
 
     /// Random paths that answer a scene of so many faces, where they may: on fewer faces light that
@@ -97,7 +98,7 @@ impl Choice {
 
     /// Whether the links of a first round promise more work than these paths.
     pub(crate) fn too_many(links: f64, paths: f64) -> bool {
-        paths < PATHS * links
+        paths < PATHS_A_LINK * links
     }
 
     /// Whether paths were asked for.

@@ -32,9 +32,9 @@ pub struct Written {
 /// Cosine below which a surface is seen edge-on.
 const EDGE_ON: f64 = 1e-9;
 /// Share of the way to the target by which the eye stands before a wall that it was moved through.
-const BEFORE: f64 = 0.02;
+const SHARE_BEFORE_WALL: f64 = 0.02;
 /// Vertical field of view of an eye inside a room, degrees.
-const WIDE: f64 = 75.0;
+const INSIDE_FIELD_OF_VIEW: f64 = 75.0;
 
 /// Writes a scene in the format of another program: geometry, diffuse reflectances, emitters and
 /// the camera. Where the scene has none, it takes in the whole scene; an eye that would see a wall
@@ -69,7 +69,7 @@ pub(crate) fn camera(scene: &Scene) -> Result<Camera, Error> {
     let camera = scene.camera().copied().map_or_else(|| whole(scene), Ok)?;
     let mesh = scene.face_mesh().map_err(scene_failure)?;
     Ok(match before_backs(&mesh, camera.eye, camera.target)? {
-        Some(eye) => Camera { eye, vertical_fov_degrees: WIDE, ..camera },
+        Some(eye) => Camera { eye, vertical_fov_degrees: INSIDE_FIELD_OF_VIEW, ..camera },
         None => camera,
     })
 }
@@ -92,7 +92,7 @@ fn before_backs(mesh: &Mesh, eye: Vec3, target: Vec3) -> Result<Option<Vec3>, Er
         let back = hit.filter(|hit| pieces[hit.patch].normal().dot(way) > EDGE_ON);
         match back {
             Some(hit) => last = Some(hit.point),
-            None => return Ok(last.map(|wall| wall + (target - wall) * BEFORE)),
+            None => return Ok(last.map(|wall| wall + (target - wall) * SHARE_BEFORE_WALL)),
         }
     }
 }

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use fredholm_hierarchical::{
-    Goal, HierarchyError, Options as Limits, Problem as Input, RESIDUAL, Round, RoundWatch,
+    Goal, HierarchyError, Options as Limits, Problem as Input, RESIDUAL_OVER_ACCURACY, Round, RoundWatch,
     Solution as Solved, Solvers, State, Surfaces, expected_bytes,
 };
 use fredholm_linop::{Access, MultiVector, Watch};
@@ -19,8 +19,8 @@ use crate::checkpoint::{self, Checkpoint, Header};
 use crate::choice::{Choice, expected};
 use crate::error::{Error, ErrorKind};
 use crate::memory::{Limit, Plan};
-use crate::options::{Precision, ProblemSettings, RADIOSITY, SolveOptions, SolveSettings};
-use crate::prediction::{Dense, MESH, Pictures, Prediction, Size, results};
+use crate::options::{Precision, ProblemSettings, SolveOptions, SolveSettings, USUAL_DISCRETISATION};
+use crate::prediction::{BYTES_OF_AN_ELEMENT, Dense, Pictures, Prediction, Size, results};
 use crate::problem::{self, Problem, check, occluders, scene_failure};
 use crate::registry::{self, SolverEntry};
 use crate::size::Bytes;
@@ -30,24 +30,24 @@ use crate::stages::{Signals, Stages};
 /// What the record calls the discretisation.
 const NAME: &str = "hierarchical";
 /// What solves where the solver asked for fails: it needs products alone.
-const FALLBACK: &str = "gmres";
+const FALLBACK_SOLVER: &str = "gmres";
 /// The solver where none is asked for.
-const SOLVER: &str = "cg-theta";
+const USUAL_SOLVER: &str = "cg-theta";
 /// What the operator of the links offers. A row or column of it takes a product.
-const OFFERED: Access = Access::Diagonal;
+const OFFERED_ACCESS: Access = Access::Diagonal;
 /// How to need less memory.
-const HELP: &str = "use fewer faces, or a smaller picture";
+const MEMORY_HELP: &str = "use fewer faces, or a smaller picture";
 /// Pictures: of the field, of the elements, of links.
-const PICTURES: usize = 3;
+const MOST_PICTURES: usize = 3;
 /// Share that tree and links may take of what the scene and the pictures leave: the other part is
 /// for results of the elements, whose number is not known before.
 const LINKS_SHARE_OF_MEMORY: f64 = 0.6;
 
 /// Share of what tree and links take that is still there when the results are written and has no
 /// room for them.
-const KEPT: f64 = 0.5;
+const KEPT_SHARE: f64 = 0.5;
 /// Growth of elements and links in a round, where none is known yet, and the most that is expected.
-const GROWTH: f64 = 2.0;
+const MOST_GROWTH_A_ROUND: f64 = 2.0;
 const MOST_GROWTH: f64 = 3.0;
 
 /// The options in force.
@@ -55,10 +55,10 @@ pub(crate) fn options(asked: &SolveOptions, scene: &Scene, accuracy: f64) -> Res
     let mut problem = ProblemSettings::new(&asked.problem, scene.solve());
     NAME.clone_into(&mut problem.discretisation);
     if asked.problem.solver.is_none() && scene.solve().solver.is_none() {
-        SOLVER.clone_into(&mut problem.solver);
+        USUAL_SOLVER.clone_into(&mut problem.solver);
     } else {
         let entry = registry::build(&problem.solver).map_err(|e| Error::new(ErrorKind::Input, e))?;
-        if entry.access > OFFERED {
+        if entry.access > OFFERED_ACCESS {
             return Err(unsuitable(&problem.solver));
         }
     }
@@ -72,15 +72,16 @@ pub(crate) fn options(asked: &SolveOptions, scene: &Scene, accuracy: f64) -> Res
     options.no_report = asked.no_report;
     options.also.clone_from(&asked.also);
     options.points = asked.points.receivers();
-    options.tolerance = asked.stop.tolerance.or(scene.solve().tolerance).unwrap_or(RESIDUAL * accuracy);
+    options.tolerance =
+        asked.stop.tolerance.or(scene.solve().tolerance).unwrap_or(RESIDUAL_OVER_ACCURACY * accuracy);
     Ok(options)
 }
 
 /// Refuses what an accuracy is not promised for.
 pub(crate) fn refuse_dense(options: &ProblemSettings) -> Result<(), Error> {
     let what = match (options.discretisation.as_str(), options.storage) {
-        (RADIOSITY, Precision::F64) => return Ok(()),
-        (RADIOSITY, Precision::F32) => "--storage f32".to_owned(),
+        (USUAL_DISCRETISATION, Precision::F64) => return Ok(()),
+        (USUAL_DISCRETISATION, Precision::F32) => "--storage f32".to_owned(),
         (name, _) => format!("the discretisation {name}"),
     };
     let help = "leave out one of them; with an accuracy there is no stored matrix, and the elements are \
@@ -104,7 +105,7 @@ fn goal(options: &SolveSettings, mesh: &Mesh) -> Result<Option<Goal>, Error> {
 fn unsuitable(solver: &str) -> Error {
     let text =
         format!("{solver} reads rows or columns of a matrix, which hierarchical radiosity does not have");
-    let help = format!("with an accuracy choose one of {}", registry::names_within(OFFERED));
+    let help = format!("with an accuracy choose one of {}", registry::names_within(OFFERED_ACCESS));
     Error::new(ErrorKind::Input, text).with_help(help)
 }
 
@@ -134,12 +135,12 @@ impl Forecast {
     fn plan(&self, [elements, links]: [usize; 2]) -> Plan {
         let bytes = expected_bytes(elements, links, self.bands).min(self.most);
         Plan::default()
-            .hold(format!("{} faces", self.faces), MESH * self.faces as u128)
+            .hold(format!("{} faces", self.faces), BYTES_OF_AN_ELEMENT * self.faces as u128)
             .hold(
                 format!("about {links} links and {elements} elements ({} allowed)", Bytes(self.most.into())),
-                (bytes as f64 * KEPT) as u128,
+                (bytes as f64 * KEPT_SHARE) as u128,
             )
-            .stage("their solution", (bytes as f64 * (1.0 - KEPT)) as u128)
+            .stage("their solution", (bytes as f64 * (1.0 - KEPT_SHARE)) as u128)
             .stage("results and pictures", results(elements, self.bands, self.pictures))
     }
 
@@ -153,7 +154,8 @@ impl Forecast {
         }
         let before = rounds.len().checked_sub(2).map(|i| size(&rounds[i]));
         let grown = |k: usize| {
-            let growth = before.map_or(GROWTH, |before| size(last)[k] as f64 / before[k].max(1) as f64);
+            let growth =
+                before.map_or(MOST_GROWTH_A_ROUND, |before| size(last)[k] as f64 / before[k].max(1) as f64);
             (size(last)[k] as f64 * growth.clamp(1.0, MOST_GROWTH)) as usize
         };
         Some(self.plan([grown(0), grown(1)]))
@@ -201,7 +203,8 @@ pub(crate) fn compute(
     free: bool,
     stages: &mut Stages,
 ) -> Result<Answer, Error> {
-    let admit = |plan: &Plan, stages: &Stages| stages.admit(plan, options.problem.memory_limit(), HELP);
+    let admit =
+        |plan: &Plan, stages: &Stages| stages.admit(plan, options.problem.memory_limit(), MEMORY_HELP);
     let count = usize::try_from(scene.predicted_faces()).unwrap_or(usize::MAX);
     admit(&plan(scene, count, options), stages)?;
     let faces = stages.run("mesh", || scene.face_mesh().map_err(scene_failure))?;
@@ -218,7 +221,7 @@ pub(crate) fn compute(
     stages.tell(&plan, forecast.limit);
     let entry = registry::build(&options.problem.solver).map_err(|e| Error::new(ErrorKind::Input, e))?;
     let state = checkpoint.map(|checkpoint| state(checkpoint, scene, &input)).transpose()?;
-    let fallback = registry::build(FALLBACK).map_err(|e| Error::new(ErrorKind::Input, e))?;
+    let fallback = registry::build(FALLBACK_SOLVER).map_err(|e| Error::new(ErrorKind::Input, e))?;
     let solvers = Solvers { first: &*entry.solver, fallback: &*fallback.solver };
     let watch = Follower {
         forecast: &forecast,
@@ -270,7 +273,7 @@ pub(crate) fn problem(
 ) -> Result<Problem, Error> {
     let (unknowns, dense) = (mesh.len(), Some(Dense { bytes: 0 }));
     let size = Size { elements: unknowns, unknowns, dense };
-    let discretisation = fredholm_discretisation::discretisation(RADIOSITY)
+    let discretisation = fredholm_discretisation::discretisation(USUAL_DISCRETISATION)
         .map_err(|error| Error::new(ErrorKind::Input, error))?;
     Ok(Problem {
         scene: Arc::clone(scene),
@@ -299,13 +302,13 @@ fn state(checkpoint: &Checkpoint, scene: &Scene, input: &Input) -> Result<State,
 fn plan(scene: &Scene, count: usize, options: &SolveSettings) -> Plan {
     let bands = scene.bands().len();
     Plan::default()
-        .hold(format!("{count} faces"), MESH * count as u128)
+        .hold(format!("{count} faces"), BYTES_OF_AN_ELEMENT * count as u128)
         .hold("results and pictures", results(count, bands, pictures(scene, options)))
 }
 
 /// Pictures that are drawn.
 fn pictures(scene: &Scene, options: &SolveSettings) -> Pictures {
-    problem::pictures(scene, PICTURES, (options.no_pictures, options.further_pictures()))
+    problem::pictures(scene, MOST_PICTURES, (options.no_pictures, options.further_pictures()))
 }
 
 fn limits(options: &SolveSettings, accuracy: f64, plan: &Plan) -> Limits {
@@ -380,7 +383,7 @@ fn solution(solved: Solved, options: &SolveSettings, accuracy: f64) -> Solution 
         senders: Vec::new(),
         replaced: solved
             .replaced
-            .map(|why| format!("{} was replaced by {FALLBACK}: {why}", options.problem.solver)),
+            .map(|why| format!("{} was replaced by {FALLBACK_SOLVER}: {why}", options.problem.solver)),
     }
 }
 

@@ -55,7 +55,7 @@ impl<'a> Lamplight<'a> {
         let area = |patches: &mut dyn Iterator<Item = &Patch>| patches.map(Patch::area).sum::<f64>();
         let emitting = area(&mut kinds.iter().flatten().copied());
         let all = area(&mut mesh.patches());
-        if emitting > SURROUNDING * (all - emitting) {
+        if emitting > SKY_AREA_RATIO * (all - emitting) {
             return Ok(none(reflectance));
         }
         let lamps = Lamps::new(&kinds, mesh.patches().collect(), &problem.occluders);
@@ -83,7 +83,7 @@ impl<'a> Lamplight<'a> {
 
 /// Area of the lamps, over that of all else, from which they are a sky rather than lamps: their
 /// shadows have no borders to be seen, and much stands before each of them.
-const SURROUNDING: f64 = 0.5;
+const SKY_AREA_RATIO: f64 = 0.5;
 /// Exitances that differ, at most: scenes of more have no lamps that are few.
 const MOST_KINDS: usize = 128;
 

@@ -8,18 +8,20 @@ use fredholm_report::ElementLinks;
 use crate::pictures::Hierarchy;
 
 /// Links of one element, at most.
-const MOST: usize = 6;
+const MOST_LINKS_OF_AN_ELEMENT: usize = 6;
 /// Links of all elements, at most: some 200 kB of the page.
-const ALL: usize = 60_000;
+const MOST_LINKS: usize = 60_000;
 /// Least share of the irradiance of an element that a link is kept for.
-const LEAST: f64 = 0.01;
+const LEAST_SHARE: f64 = 0.01;
 
 /// Senders of one element with what they bring, W/m², the most first.
 pub(crate) type Senders = Vec<(u32, f64)>;
 
 /// How many links each of so many elements may have: none where that would be fewer than two.
 fn most(elements: usize) -> usize {
-    Some(ALL / elements.max(1)).filter(|most| *most >= 2).map_or(0, |most| most.min(MOST))
+    Some(MOST_LINKS / elements.max(1))
+        .filter(|most| *most >= 2)
+        .map_or(0, |most| most.min(MOST_LINKS_OF_AN_ELEMENT))
 }
 
 /// Adds a sender where it is among those that bring the most.
@@ -117,7 +119,7 @@ pub(crate) fn by_links(hierarchy: &Hierarchy, mesh: &Mesh, means: &Means) -> Opt
 /// Shares of what an element receives in all, W/m².
 fn shares(senders: &Senders, all: f64) -> Vec<(u32, f64)> {
     let share = |&(sender, brought): &(u32, f64)| (sender, if all > 0.0 { brought / all } else { 0.0 });
-    senders.iter().map(share).filter(|(_, share)| *share >= LEAST).collect()
+    senders.iter().map(share).filter(|(_, share)| *share >= LEAST_SHARE).collect()
 }
 
 #[cfg(test)]

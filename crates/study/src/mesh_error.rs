@@ -25,15 +25,15 @@ use crate::watcher::Watcher;
 
 /// What an error of first order is multiplied with: of a coarse mesh it is down to half of the true
 /// one.
-const SAFETY: f64 = 2.0;
+const FIRST_ORDER_SAFETY: f64 = 2.0;
 /// Sources of an error need not be followed further: relative residual, and iterations.
-const STOP: Stop = Stop { tolerance: 1e-3, max_iterations: 10_000 };
+const SOURCES_STOP: Stop = Stop { tolerance: 1e-3, max_iterations: 10_000 };
 /// Stated errors of a row within which its sum is that of a closed scene, and the error that is
 /// always allowed.
-const ROWS: f64 = 3.0;
-const CLOSED: f64 = 1e-6;
+const STATED_ERRORS_OFF_ONE: f64 = 3.0;
+const CLOSED_TOLERANCE: f64 = 1e-6;
 /// Root mean square over the mean of the irradiance that unshot light comes to.
-const UNEVEN: f64 = 1.5;
+const ROOT_MEAN_SQUARE_OVER_MEAN: f64 = 1.5;
 /// Share of the sampled square of an error that is left, however large the noise.
 const LEAST_SHARE_LEFT: f64 = 0.25;
 
@@ -91,7 +91,7 @@ impl Rows {
         let whole = |i: usize| sizes[i].exposed >= sizes[i].area;
         let closed = (0..sizes.len())
             .filter(|&i| whole(i))
-            .all(|i| (sums[i] - 1.0).abs() <= (ROWS * error(i)).max(CLOSED));
+            .all(|i| (sums[i] - 1.0).abs() <= (STATED_ERRORS_OFF_ONE * error(i)).max(CLOSED_TOLERANCE));
         let half = |i: usize| {
             let defect = 0.5 * (1.0 - sums[i]);
             if closed { defect } else { defect.min(0.0) }
@@ -139,8 +139,10 @@ fn follow<S: Storage>(
     let reflectance =
         MultiVector::from_fn(source.dim(), rhs_count, |i, rhs| radiosity.reflectance().row(i)[rhs % bands]);
     let system = Radiosity::new(sizes.to_vec(), reflectance, emitted).map_err(coupling_failure)?;
-    let solver = registry::build(registry::DEFAULT).map_err(|error| Error::new(ErrorKind::Input, error))?;
-    let (change, report) = solve_with(&*solver.solver, &system, &assembled.matrix, watcher.until(STOP))?;
+    let solver =
+        registry::build(registry::USUAL_SOLVER).map_err(|error| Error::new(ErrorKind::Input, error))?;
+    let (change, report) =
+        solve_with(&*solver.solver, &system, &assembled.matrix, watcher.until(SOURCES_STOP))?;
     if report.reason != StopReason::Converged {
         return Ok(None);
     }
@@ -159,7 +161,7 @@ fn stated(mesh: &Mesh, irradiance: &MultiVector<f64>, errors: &MultiVector<f64>,
     let delta = |face: usize, band: usize| {
         let row = errors.row(face);
         let rows = row[draws * bands + band].abs() + row[(draws + 1) * bands + band].abs();
-        SAFETY * sampled.kept[band] * sampled.mean(row, band).abs() + rows
+        FIRST_ORDER_SAFETY * sampled.kept[band] * sampled.mean(row, band).abs() + rows
     };
     let per_face = (0..areas.len()).flat_map(|face| (0..bands).map(move |band| (face, band)));
     MeshError::new(per_face.map(|(face, band)| delta(face, band)).collect(), &values, &areas)
@@ -241,7 +243,7 @@ pub(crate) fn of_shooting(
     let missing: Vec<f64> = (0..bands).map(|band| left(band) / absorbing(constants, band)).collect();
     let ambient: Vec<f64> = (0..sampled)
         .map(|rhs| reflected(rhs) / absorbing(constants, rhs % bands))
-        .chain(missing.iter().map(|missing| UNEVEN * missing))
+        .chain(missing.iter().map(|missing| ROOT_MEAN_SQUARE_OVER_MEAN * missing))
         .collect();
     let errors = MultiVector::from_fn(mesh.len(), sampled + 2 * bands, |i, rhs| match rhs {
         _ if rhs < sampled => residual.power.row(i)[rhs] / sizes[i].area + ambient[rhs],

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use crate::problem::{Problem, prepare};
 
 /// Rays that are cast.
-const RAYS: usize = 1 << 14;
+const RAYS_CAST: usize = 1 << 14;
 /// Rays that are cast one after the other.
 const CHUNK: usize = 256;
 
@@ -26,7 +26,7 @@ struct Ends {
 }
 
 /// Row sums below which an element sees nothing.
-pub(crate) const BLIND: f64 = 1e-9;
+pub(crate) const LEAST_ROW_SUM: f64 = 1e-9;
 
 /// Adds to a closure how much of the area sees nothing, and where light goes from the rest;
 /// `exposed` has the share of every element that is not buried, `rows` its row sums where they are
@@ -36,7 +36,7 @@ pub(crate) fn openness(closure: Closure, problem: &Problem, exposed: &[f64], row
     let areas: Vec<f64> = mesh.patches().map(Patch::area).collect();
     let area: f64 = areas.iter().sum();
     // A face that lies on another looks into the void, as a ray does that begins there.
-    let sees = |i: usize| rows.get(i).is_none_or(|&row| row > BLIND);
+    let sees = |i: usize| rows.get(i).is_none_or(|&row| row > LEAST_ROW_SUM);
     let seeing: f64 = (0..areas.len()).filter(|&i| sees(i)).map(|i| areas[i] * exposed[i]).sum();
     let closure = Closure { blind: (area > 0.0).then_some((1.0 - seeing / area).max(0.0)), ..closure };
     let whole: Vec<usize> =
@@ -46,9 +46,9 @@ pub(crate) fn openness(closure: Closure, problem: &Problem, exposed: &[f64], row
     let total: f64 = whole.iter().map(|&i| areas[i]).sum();
     let missing = lacking.filter(|_| total > 0.0).map(|lacking| lacking / total);
     let Some(ends) = ends(&whole, &areas, problem) else { return closure };
-    let share = |count: usize| Some(count as f64 / RAYS as f64);
+    let share = |count: usize| Some(count as f64 / RAYS_CAST as f64);
     let (open, backs) = (share(ends.nowhere), share(ends.back));
-    Closure { rays: Some(RAYS as u64), open, backs, missing, ..closure }
+    Closure { rays: Some(RAYS_CAST as u64), open, backs, missing, ..closure }
 }
 
 /// Where the rays from these elements end; none where there are no elements.
@@ -67,7 +67,7 @@ fn ends(whole: &[usize], areas: &[f64], problem: &Problem) -> Option<Ends> {
     let lit = prepare(&faces).ok()?;
     let faces: Vec<&Patch> = faces.iter().collect();
     let end = |ray: usize| {
-        let at = (ray as f64 + 0.5) / RAYS as f64 * total;
+        let at = (ray as f64 + 0.5) / RAYS_CAST as f64 * total;
         let element = sums.partition_point(|&sum| sum < at).min(whole.len() - 1);
         let (from, direction) = cosine_ray(mesh.patch(whole[element]), recurrence(ray, [0.5; 4]));
         match meets(from, direction, &faces, &lit) {
@@ -76,9 +76,11 @@ fn ends(whole: &[usize], areas: &[f64], problem: &Problem) -> Option<Ends> {
             Meets::Lit => Ends::default(),
         }
     };
-    let counts: Vec<Ends> = (0..RAYS.div_ceil(CHUNK))
+    let counts: Vec<Ends> = (0..RAYS_CAST.div_ceil(CHUNK))
         .into_par_iter()
-        .map(|chunk| (chunk * CHUNK..((chunk + 1) * CHUNK).min(RAYS)).map(end).fold(Ends::default(), add))
+        .map(|chunk| {
+            (chunk * CHUNK..((chunk + 1) * CHUNK).min(RAYS_CAST)).map(end).fold(Ends::default(), add)
+        })
         .collect();
     Some(counts.into_iter().fold(Ends::default(), add))
 }

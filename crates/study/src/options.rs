@@ -23,7 +23,7 @@ const TOLERANCE: f64 = 1e-10;
 const MAX_ITERATIONS: u64 = 1000;
 const FORM_FACTOR_TOLERANCE: f64 = 1e-3;
 /// The discretisation where none is asked for: constants on the elements, from form factors.
-pub(crate) const RADIOSITY: &str = "galerkin-0";
+pub(crate) const USUAL_DISCRETISATION: &str = "galerkin-0";
 
 /// Number format of the stored matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -173,7 +173,7 @@ pub struct GatherPoints {
 }
 
 /// Bytes of a point: it is listed for the options, to gather, and for the file.
-const POINT: u128 = 200;
+const BYTES_OF_A_POINT: u128 = 200;
 
 impl GatherPoints {
     /// Number of points.
@@ -183,7 +183,7 @@ impl GatherPoints {
 
     /// Bytes that the points take, with their irradiance in each band.
     pub(crate) fn bytes(&self, bands: usize) -> u128 {
-        self.count() as u128 * (POINT + 32 * bands as u128)
+        self.count() as u128 * (BYTES_OF_A_POINT + 32 * bands as u128)
     }
 
     /// All points.
@@ -363,8 +363,8 @@ impl ProblemSettings {
         let form_factor_tolerance = asked.form_factor_tolerance.or(scene.form_factor_tolerance);
         let storage = asked.storage.or(scene.storage.map(precision));
         Self {
-            discretisation: discretisation.map_or_else(|| RADIOSITY.to_owned(), Clone::clone),
-            solver: solver.map_or_else(|| registry::DEFAULT.to_owned(), Clone::clone),
+            discretisation: discretisation.map_or_else(|| USUAL_DISCRETISATION.to_owned(), Clone::clone),
+            solver: solver.map_or_else(|| registry::USUAL_SOLVER.to_owned(), Clone::clone),
             form_factor_tolerance: form_factor_tolerance.unwrap_or(FORM_FACTOR_TOLERANCE),
             storage: storage.unwrap_or(Precision::F64),
             threads: threads::count(asked.threads),

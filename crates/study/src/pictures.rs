@@ -17,9 +17,9 @@ use crate::solution::Solution;
 use crate::stages::Signals;
 
 /// Error that a node may leave in the irradiance of a pixel, over the accuracy asked for.
-const SHARE: f64 = 0.1;
+const NODE_ERROR_OVER_ACCURACY: f64 = 0.1;
 /// The same where no accuracy was asked for.
-const ALONE: f64 = 1e-3;
+const USUAL_NODE_ERROR: f64 = 1e-3;
 
 /// Elements and clusters of a solution, and the links between them.
 #[derive(Debug)]
@@ -87,7 +87,7 @@ impl<'a> Source<'a> {
         let Some(tree) = tree else { return Ok(None) };
         let Light { radiosity, irradiance, exposed, .. } = light;
         let leaves = Leaves { radiosity, irradiance, exposed };
-        let share = options.accuracy.map_or(ALONE, |accuracy| SHARE * accuracy);
+        let share = options.accuracy.map_or(USUAL_NODE_ERROR, |accuracy| NODE_ERROR_OVER_ACCURACY * accuracy);
         let points: Vec<Vec3> = options.points.iter().map(|receiver| receiver.point).collect();
         let gather = Gather::new(tree, &leaves, &self.problem.occluders, &points, share).map_err(failure)?;
         Ok(Some(Gathered { problem: self.problem, light, gather, signals }))
@@ -171,16 +171,16 @@ impl Light {
 }
 
 /// Bytes of a node of the tree over elements.
-const NODE: u128 = 320;
+const BYTES_OF_A_NODE: u128 = 320;
 /// Vectors of all elements and bands that gathering needs.
-const VECTORS: u128 = 5;
+const GATHERING_VECTORS: u128 = 5;
 
 /// Bytes of what gathers light from so many elements, of which a tree is made.
 pub(crate) fn gathering(elements: usize, bands: usize) -> u128 {
     let nodes = elements.saturating_mul(2);
     u128::from(Gather::bytes(nodes, bands))
-        + nodes as u128 * NODE
-        + elements as u128 * 8 * VECTORS * bands as u128
+        + nodes as u128 * BYTES_OF_A_NODE
+        + elements as u128 * 8 * GATHERING_VECTORS * bands as u128
 }
 
 /// Refuses to gather where the memory does not allow it.

@@ -9,46 +9,46 @@ use fredholm_linop::{PackedSymmetric, Storage};
 use crate::error::Error;
 use crate::memory::{Limit, Plan};
 use crate::options::Precision;
-use crate::options::{ProblemSettings, RADIOSITY};
+use crate::options::{ProblemSettings, USUAL_DISCRETISATION};
 use crate::registry::SolverEntry;
 use crate::size::Bytes;
 use crate::stages::Stages;
 
 /// Bytes of an element from the scene on: its patch, the scene's surfaces, what blocks the view.
-pub(crate) const MESH: u128 = 600;
+pub(crate) const BYTES_OF_AN_ELEMENT: u128 = 600;
 /// Bytes of an element while its exchanges are computed: quadrature points, clusters, error sums.
-pub(crate) const ASSEMBLY: u128 = 800;
+pub(crate) const BYTES_OF_AN_ASSEMBLED_ELEMENT: u128 = 800;
 /// Bytes of an element that is shot from: quadrature points, groups, the tree of elements. Of each
 /// of its values while shots go on; of it and of each of its values while errors are followed.
-const SHOT: u128 = 1450;
-const SHOT_VALUE: u128 = 200;
-const SHOT_ERRORS: u128 = 130;
-const SHOT_ERROR_VALUE: u128 = 630;
+const BYTES_OF_A_SHOT_ELEMENT: u128 = 1450;
+const BYTES_OF_A_SHOT_VALUE: u128 = 200;
+const BYTES_OF_A_FOLLOWED_ELEMENT: u128 = 130;
+const BYTES_OF_A_FOLLOWED_VALUE: u128 = 630;
 /// Of the entries on their way, many small pieces, the C library still has one in so many when they
 /// have arrived.
-const RETAINED: u128 = 2;
+const RETAINED_ONE_IN: u128 = 2;
 /// Bytes while results are written: of any, for the page and the plots; of an element and of each
 /// of its values, for welded corners and the composed file of arrays.
-const PAGE: u128 = 2 << 20;
-const RESULTS: u128 = 650;
+const BYTES_OF_PAGE: u128 = 2 << 20;
+const BYTES_OF_A_WRITTEN_ELEMENT: u128 = 650;
 const BYTES_A_VALUE: u128 = 50;
 /// Bytes of an element while pictures are drawn: what rays are cast at, how it lies to eight parts
 /// of lamps. Of each of its values where lamps light the picture: colours at corners, reflectance
 /// and direct light. Of a pixel there: what is seen through its middle, its linear colours, and
 /// either once more in the tiles that it is put together from.
-const DRAWN: u128 = 500;
-const LIT_VALUE: u128 = 24;
-const LIT_PIXEL: u128 = 37;
+const BYTES_OF_A_DRAWN_ELEMENT: u128 = 500;
+const BYTES_OF_A_LIT_VALUE: u128 = 24;
+const BYTES_OF_A_LIT_PIXEL: u128 = 37;
 /// Bytes of a pixel while the exposure is found, and in each picture: while it is drawn, and when
 /// all are taken apart. Besides, what the last rows take.
-const METERED: u128 = 14;
-const LAYER: u128 = 6;
-const ROWS: u128 = 2;
+const BYTES_OF_A_METERED_PIXEL: u128 = 14;
+const BYTES_OF_A_PICTURE_PIXEL: u128 = 6;
+const BYTES_OF_LAST_ROWS: u128 = 2;
 /// Vectors of all bands held at once: system and results, and six sources of errors with their
 /// system, iterates and residuals.
-const VECTORS: u128 = 48;
+const VECTORS_HELD: u128 = 48;
 /// Vectors of all bands more while errors are followed.
-const FOLLOWED: u128 = 150;
+const VECTORS_OF_ERRORS: u128 = 150;
 
 /// Sizes that decide the memory.
 #[derive(Clone, Copy, Debug)]
@@ -70,7 +70,7 @@ impl Size {
     /// What is known of a number of elements before they are there: other discretisations may have
     /// any number of unknowns.
     pub(crate) fn before_mesh(elements: usize, options: &ProblemSettings) -> Self {
-        let radiosity = options.discretisation == RADIOSITY;
+        let radiosity = options.discretisation == USUAL_DISCRETISATION;
         let (unknowns, dense) = if radiosity { (elements, None) } else { (0, Some(Dense { bytes: 0 })) };
         Self { elements, unknowns, dense }
     }
@@ -104,8 +104,8 @@ impl Prediction {
             size,
             matrix: dense.map_or(packed.into(), |dense| dense.bytes),
             waiting: if dense.is_none() { waiting.into() } else { 0 },
-            mesh: n * MESH,
-            vectors: elements.max(unknowns) as u128 * VECTORS * 8 * bands as u128,
+            mesh: n * BYTES_OF_AN_ELEMENT,
+            vectors: elements.max(unknowns) as u128 * VECTORS_HELD * 8 * bands as u128,
             solver: solver.solver.bytes(unknowns, bands).into(),
             aside: of_threads(solver.solver.addresses()),
             residual: if dense.is_none() { residual(elements, bands) } else { 0 },
@@ -116,7 +116,8 @@ impl Prediction {
     pub(crate) fn plan(&self) -> Plan {
         let Self { matrix, waiting, mesh, vectors, solver, residual, .. } = *self;
         let Size { elements, unknowns, .. } = self.size;
-        let (assembly, retained) = (waiting + elements as u128 * ASSEMBLY, waiting / RETAINED);
+        let (assembly, retained) =
+            (waiting + elements as u128 * BYTES_OF_AN_ASSEMBLED_ELEMENT, waiting / RETAINED_ONE_IN);
         let what = match self.size.dense {
             None => format!("{} of form factors of {elements} elements", Bytes(matrix)),
             Some(_) => format!("{} of matrices of {unknowns} unknowns on {elements} elements", Bytes(matrix)),
@@ -168,7 +169,7 @@ impl Prediction {
 /// Bytes of what follows the residual of a solution: besides what is sampled of it, the products of
 /// its six sources in every band, in parts.
 fn residual(elements: usize, bands: usize) -> u128 {
-    let followed = elements as u128 * (bands as u128) * 8 * FOLLOWED;
+    let followed = elements as u128 * (bands as u128) * 8 * VECTORS_OF_ERRORS;
     u128::from(Constants::bytes(elements, bands)).saturating_add(followed)
 }
 
@@ -188,9 +189,15 @@ pub(crate) fn waiting<S: Storage>(elements: usize, errors: bool) -> u64 {
 pub(crate) fn without_matrix(elements: usize, bands: usize, kept: Bytes) -> Plan {
     let (n, values) = (elements as u128, elements as u128 * bands as u128);
     Plan::default()
-        .hold(format!("{elements} elements and groups of them"), n * (MESH + SHOT))
-        .stage("columns that are kept, and the field", kept.0.saturating_add(values * SHOT_VALUE))
-        .stage("the errors of the field", n * SHOT_ERRORS + values * SHOT_ERROR_VALUE)
+        .hold(
+            format!("{elements} elements and groups of them"),
+            n * (BYTES_OF_AN_ELEMENT + BYTES_OF_A_SHOT_ELEMENT),
+        )
+        .stage("columns that are kept, and the field", kept.0.saturating_add(values * BYTES_OF_A_SHOT_VALUE))
+        .stage(
+            "the errors of the field",
+            n * BYTES_OF_A_FOLLOWED_ELEMENT + values * BYTES_OF_A_FOLLOWED_VALUE,
+        )
 }
 
 /// The pictures of a run.
@@ -206,19 +213,22 @@ pub(crate) struct Pictures {
 /// Bytes of the results of so many elements, with pictures.
 pub(crate) fn results(elements: usize, bands: usize, pictures: Pictures) -> u128 {
     let (n, values) = (elements as u128, elements as u128 * bands as u128);
-    let files = PAGE + n * RESULTS + values * BYTES_A_VALUE;
+    let files = BYTES_OF_PAGE + n * BYTES_OF_A_WRITTEN_ELEMENT + values * BYTES_A_VALUE;
     let Pictures { pixels, count, lit } = pictures;
     if count == 0 {
         return files;
     }
-    let drawn = n * DRAWN + if lit { values * LIT_VALUE } else { 0 };
-    let of_pixels = pictured(pixels, count).max(if lit { pixels.saturating_mul(LIT_PIXEL) } else { 0 });
+    let drawn = n * BYTES_OF_A_DRAWN_ELEMENT + if lit { values * BYTES_OF_A_LIT_VALUE } else { 0 };
+    let of_pixels =
+        pictured(pixels, count).max(if lit { pixels.saturating_mul(BYTES_OF_A_LIT_PIXEL) } else { 0 });
     files.saturating_add(drawn).saturating_add(of_pixels)
 }
 
 /// Bytes of so many pictures of so many pixels.
 pub(crate) fn pictured(pixels: u128, pictures: usize) -> u128 {
-    pixels.saturating_mul(METERED.max(LAYER * pictures as u128 + ROWS))
+    pixels.saturating_mul(
+        BYTES_OF_A_METERED_PIXEL.max(BYTES_OF_A_PICTURE_PIXEL * pictures as u128 + BYTES_OF_LAST_ROWS),
+    )
 }
 
 #[cfg(test)]
@@ -242,7 +252,7 @@ mod tests {
     fn single_precision_is_advised_where_it_is_enough() {
         let advice = |bytes: u64| {
             let options = ProblemSettings {
-                discretisation: RADIOSITY.into(),
+                discretisation: USUAL_DISCRETISATION.into(),
                 solver: "gauss-seidel".into(),
                 form_factor_tolerance: 1e-3,
                 storage: Precision::F64,

@@ -7,13 +7,13 @@ use fredholm_coupling::form_factor::PairIntegrator;
 use fredholm_discretisation::{Discretisation, Surface, discretisation, discretisations};
 use fredholm_linop::MultiVector;
 use fredholm_mesh::{Mesh, Patch};
-use fredholm_report::FRAMED;
+use fredholm_report::USUAL_PIXELS;
 use fredholm_scene::{Scene, SceneError};
 use fredholm_visibility::Occluders;
 
 use crate::error::{Error, ErrorKind};
 use crate::memory::Plan;
-use crate::options::{Precision, ProblemOptions, ProblemSettings, RADIOSITY, SceneSource};
+use crate::options::{Precision, ProblemOptions, ProblemSettings, SceneSource, USUAL_DISCRETISATION};
 use crate::prediction::{Dense, Pictures, Prediction, Size, results, without_matrix};
 use crate::registry::{self, SolverEntry};
 use crate::size::Bytes;
@@ -92,7 +92,7 @@ impl Problem {
 
     /// Whether the system is that of form factors between elements.
     pub(crate) fn is_radiosity(&self) -> bool {
-        self.options.discretisation == RADIOSITY
+        self.options.discretisation == USUAL_DISCRETISATION
     }
 
     /// Refuses another system, for a study that works on the matrix of form factors.
@@ -101,7 +101,7 @@ impl Problem {
             return Ok(());
         }
         let text = format!(
-            "{study} works on the matrix of form factors, which is {RADIOSITY}; the scene asks for {}",
+            "{study} works on the matrix of form factors, which is {USUAL_DISCRETISATION}; the scene asks for {}",
             self.options.discretisation
         );
         Err(Error::new(ErrorKind::Input, text))
@@ -169,7 +169,7 @@ impl Open {
 
 /// Pixels of the picture of a scene.
 pub(crate) fn pixels(scene: &Scene) -> u128 {
-    let [width, height] = scene.camera().map_or(FRAMED, |camera| [camera.width, camera.height]);
+    let [width, height] = scene.camera().map_or(USUAL_PIXELS, |camera| [camera.width, camera.height]);
     u128::from(width) * u128::from(height)
 }
 
@@ -207,9 +207,9 @@ fn named(scene: &Scene, options: &ProblemSettings) -> Result<Box<dyn Discretisat
         let known: Vec<&str> = discretisations().iter().map(|known| known.name()).collect();
         scene_failure(scene.unknown_discretisation(&known))
     })?;
-    if found.name() != RADIOSITY && options.storage == Precision::F32 {
+    if found.name() != USUAL_DISCRETISATION && options.storage == Precision::F32 {
         let error = Error::new(ErrorKind::Input, format!("{} stores f64 only", found.name()));
-        return Err(error.with_help(format!("--storage f64, or {RADIOSITY}")));
+        return Err(error.with_help(format!("--storage f64, or {USUAL_DISCRETISATION}")));
     }
     Ok(found)
 }
@@ -217,7 +217,7 @@ fn named(scene: &Scene, options: &ProblemSettings) -> Result<Box<dyn Discretisat
 /// Sizes of the meshed problem.
 fn size(scene: &Scene, discretisation: &dyn Discretisation, mesh: &Mesh) -> Result<Size, Error> {
     let elements = mesh.len();
-    if discretisation.name() == RADIOSITY {
+    if discretisation.name() == USUAL_DISCRETISATION {
         return Ok(Size { elements, unknowns: elements, dense: None });
     }
     let surface = Surface::from_mesh(mesh);

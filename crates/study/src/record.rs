@@ -11,7 +11,7 @@ use fredholm_report::{
 use serde_json::Value;
 
 use crate::memory;
-use crate::openness::{BLIND, openness};
+use crate::openness::{LEAST_ROW_SUM, openness};
 use crate::options::SolveSettings;
 use crate::pictures;
 use crate::problem::Problem;
@@ -123,13 +123,13 @@ fn large(solution: &Solution) -> Option<String> {
 
 /// Row errors, in tolerances, that are reported: the tolerance is a pair's, and the errors of a row
 /// add up to about twice as much.
-const ROW: f64 = 3.0;
+const REPORTED_ROW_ERROR: f64 = 3.0;
 
 /// Whether the form factors came out less exact than asked for.
 fn inexact(options: &SolveSettings, solution: &Solution) -> Option<String> {
     let asked = options.problem.form_factor_tolerance;
     let error = solution.row_error.iter().copied().fold(0.0, f64::max);
-    (error > (ROW * asked).max(ROUNDING)).then(|| {
+    (error > (REPORTED_ROW_ERROR * asked).max(ROUNDING)).then(|| {
         format!(
             "the estimated error of a row of form factors is {error:.1e}, where {asked:.1e} was asked for a pair; \
              cut the surfaces more finely where they almost touch"
@@ -202,7 +202,7 @@ fn closure(problem: &Problem, closure: &[f64]) -> Closure {
     let (mut sum, mut area) = (0.0, 0.0);
     for (element, (patch, row)) in problem.mesh.patches().zip(closure).enumerate() {
         // What sees nothing has no error.
-        if *row <= BLIND {
+        if *row <= LEAST_ROW_SUM {
             continue;
         }
         let defect = (row - 1.0).abs();

@@ -3,7 +3,7 @@
 use fredholm_linop::{Access, OptionError, Options, Solver};
 
 /// The solver where none is asked for.
-pub(crate) const DEFAULT: &str = "gauss-seidel";
+pub(crate) const USUAL_SOLVER: &str = "gauss-seidel";
 
 /// A solver, and what is known of it.
 pub struct SolverEntry {
@@ -71,8 +71,8 @@ mod tests {
         let count = names.len();
         names.sort_unstable();
         names.dedup();
-        assert!(names.len() == count && names.contains(&DEFAULT));
-        assert!(find(DEFAULT).unwrap().iterative && !find("lu").unwrap().iterative);
+        assert!(names.len() == count && names.contains(&USUAL_SOLVER));
+        assert!(find(USUAL_SOLVER).unwrap().iterative && !find("lu").unwrap().iterative);
         assert!(find("magic").is_none());
         assert_eq!(solvers().count(), count);
     }

@@ -15,7 +15,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use fredholm_linop::{Quiet, Watch};
-use fredholm_report::FRAMED;
+use fredholm_report::USUAL_PIXELS;
 use fredholm_scene::Scene;
 
 use crate::hierarchical::{self, Answer, Reached};
@@ -33,10 +33,10 @@ const CLOSE_SECONDS: f64 = 2.0;
 /// The little accuracy.
 const LOOSE_ACCURACY: f64 = 0.5;
 /// Exponents of links, as far as they are to be expected, and that which is measured in the mean.
-const EXPONENTS: [f64; 2] = [0.5, 1.6];
+const LINK_EXPONENTS: [f64; 2] = [0.5, 1.6];
 const MEAN_EXPONENT: f64 = 0.9;
 /// Widths of the small pictures, pixels.
-const WIDTHS: [u32; 2] = [40, 160];
+const PICTURE_WIDTHS: [u32; 2] = [40, 160];
 /// Seconds for a value in the files, and for a pixel of the pictures of elements and of links.
 const SECONDS_A_VALUE: f64 = 2e-6;
 const SECONDS_A_PIXEL: f64 = 2e-6;
@@ -138,7 +138,7 @@ fn extrapolated(rounds: &[[f64; 2]], accuracy: f64) -> Option<f64> {
     let mean = [0, 1].map(|i| known.iter().map(|round| round[i]).sum::<f64>() / n);
     let moment = |i: usize| known.iter().map(|r| (r[i] - mean[i]) * (r[1] - mean[1])).sum::<f64>();
     let exponent = if known.len() > 1 && moment(1) > 0.0 { moment(0) / moment(1) } else { MEAN_EXPONENT };
-    Some((last[0] + exponent.clamp(EXPONENTS[0], EXPONENTS[1]) * (digits - last[1])).exp())
+    Some((last[0] + exponent.clamp(LINK_EXPONENTS[0], LINK_EXPONENTS[1]) * (digits - last[1])).exp())
 }
 
 fn by_paths(scene: &Arc<Scene>, options: &SolveSettings, accuracy: f64, watch: &dyn Watch) -> Option<f64> {
@@ -160,18 +160,18 @@ fn by_paths(scene: &Arc<Scene>, options: &SolveSettings, accuracy: f64, watch: &
 /// Seconds for the picture and the files of a solution.
 fn written(options: &SolveSettings, (problem, solution): (Problem, Solution)) -> Option<f64> {
     let values = problem.mesh.len() as f64 * problem.scene.bands().len() as f64;
-    let full = f64::from(problem.scene.camera().map_or(FRAMED[0], |camera| camera.width));
+    let full = f64::from(problem.scene.camera().map_or(USUAL_PIXELS[0], |camera| camera.width));
     let solved = Solved { settings: options.clone(), problem, solution, stages: Stages::new(&Quiet) };
     let drawn = |width: u32| -> Option<f64> {
         let began = spent();
         solved.picture(width).ok()?;
         Some(spent() - began)
     };
-    let [few, more] = [drawn(WIDTHS[0])?, drawn(WIDTHS[1])?];
+    let [few, more] = [drawn(PICTURE_WIDTHS[0])?, drawn(PICTURE_WIDTHS[1])?];
     let square = |width: u32| f64::from(width).powi(2);
-    let each = ((more - few) / (square(WIDTHS[1]) - square(WIDTHS[0]))).max(0.0);
+    let each = ((more - few) / (square(PICTURE_WIDTHS[1]) - square(PICTURE_WIDTHS[0]))).max(0.0);
     let layers = SECONDS_A_PIXEL * pixels(&solved.problem.scene) as f64;
-    Some(SECONDS_A_VALUE * values + layers + few + each * (full * full - square(WIDTHS[0])).max(0.0))
+    Some(SECONDS_A_VALUE * values + layers + few + each * (full * full - square(PICTURE_WIDTHS[0])).max(0.0))
 }
 
 #[cfg(test)]

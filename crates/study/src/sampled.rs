@@ -15,14 +15,14 @@ use fredholm_coupling::{Means, MeshError};
 use fredholm_linop::{Report, StopReason, Watch, Work};
 use fredholm_mesh::Mesh;
 use fredholm_montecarlo::light::{Switches, estimator};
-use fredholm_montecarlo::{Enclosure, FEWEST_BATCHES, State, Stop, Tracing, WAVE};
+use fredholm_montecarlo::{BATCHES_AT_ONCE, Enclosure, FEWEST_BATCHES, State, Stop, Tracing};
 use fredholm_scene::Scene;
 
 use crate::error::{Error, ErrorKind};
 use crate::hierarchical;
 use crate::memory::Plan;
 use crate::options::SolveSettings;
-use crate::prediction::MESH;
+use crate::prediction::BYTES_OF_AN_ELEMENT;
 use crate::problem::{Problem, check, occluders, pictures, scene_failure, with_results};
 use crate::registry::{self, SolverEntry};
 use crate::solution::Solution;
@@ -35,10 +35,10 @@ pub(crate) const NAME: &str = "random-paths";
 /// The same numbers in every run.
 const SEED: u64 = 1;
 /// Particles for each face at an error of 1, about: most arrive several times.
-const EACH: f64 = 0.25;
+const PARTICLES_A_FACE: f64 = 0.25;
 /// Batches in which the accuracy is likely to be reached, and sizes of a batch.
 const BATCHES: f64 = 48.0;
-const SAMPLES: [f64; 2] = [4096.0, 1_048_576.0];
+const SAMPLES_OF_A_BATCH: [f64; 2] = [4096.0, 1_048_576.0];
 /// Stated error over the standard error, at least: faces that the same paths light err together.
 const CONFIDENCE: f64 = 1.25;
 /// Standard errors that are stated for a single face.
@@ -82,18 +82,19 @@ pub(crate) fn compute(
 
 /// An entry for the problem, which needs one; nothing is solved with it.
 fn solver() -> Result<SolverEntry, Error> {
-    registry::build(registry::DEFAULT).map_err(|error| Error::new(ErrorKind::Input, error))
+    registry::build(registry::USUAL_SOLVER).map_err(|error| Error::new(ErrorKind::Input, error))
 }
 
 fn plan(scene: &Scene, elements: usize, options: &SolveSettings) -> Plan {
     let pictures = pictures(scene, 1, (options.no_pictures, options.further_pictures()));
-    let plan = Plan::default().hold(format!("{elements} elements"), MESH.saturating_mul(elements as u128));
+    let plan = Plan::default()
+        .hold(format!("{elements} elements"), BYTES_OF_AN_ELEMENT.saturating_mul(elements as u128));
     with_results(with_tracing(plan, scene, elements), scene, elements, (pictures, 0))
 }
 
 /// Paths that a scene of so many faces is likely to need.
 pub(crate) fn expected_paths(faces: usize, accuracy: f64) -> f64 {
-    EACH * faces as f64 * (CONFIDENCE / accuracy).powi(2)
+    PARTICLES_A_FACE * faces as f64 * (CONFIDENCE / accuracy).powi(2)
 }
 
 /// How exact the means are: the stated error of all faces in each band, and that of each face.
@@ -107,12 +108,12 @@ fn traced(mesh: &Mesh, lit: &Enclosure, accuracy: f64, watch: &dyn Watch) -> Res
     let method = estimator(METHOD, lit, Switches::default())
         .ok_or_else(|| Error::new(ErrorKind::Input, format!("there is no method {METHOD}")))?;
     let particles = expected_paths(mesh.faces().len(), accuracy);
-    let samples = (particles / BATCHES).clamp(SAMPLES[0], SAMPLES[1]) as u32;
+    let samples = (particles / BATCHES).clamp(SAMPLES_OF_A_BATCH[0], SAMPLES_OF_A_BATCH[1]) as u32;
     let tracing = Tracing::new(lit, &*method, faces(mesh, lit)?, SEED, samples.next_power_of_two());
     let tracing = tracing.map_err(failure)?;
     let mut state = tracing.start();
     loop {
-        let stop = Stop { batches: Some(state.batches() + u64::from(WAVE)), ..Stop::default() };
+        let stop = Stop { batches: Some(state.batches() + u64::from(BATCHES_AT_ONCE)), ..Stop::default() };
         tracing.go_on(&mut state, &stop, &Cancel(watch)).map_err(failure)?;
         if state.batches() < 2 {
             return Err(Error::cancelled());

@@ -10,14 +10,14 @@ use rayon::prelude::*;
 use crate::pictures::Gathered;
 
 /// Most lines that cut an element, where elements are few: the longest ones within it.
-const LINES: usize = 24;
+const MOST_LINES: usize = 24;
 /// Triangles that all elements together are cut into, about. `n` lines cut an element into `n²`
 /// triangles at most. Many small elements show the borders of shadows by themselves already, and
 /// light is gathered at every corner: that must not take longer than the solution.
-const TRIANGLES: usize = 200_000;
+const MOST_TRIANGLES: usize = 200_000;
 /// How far from a corner of a triangle its irradiance is gathered, over the distance of the
 /// centroid: each side of a border has its own.
-const INSET: f64 = 1e-5;
+const CORNER_INSET: f64 = 1e-5;
 
 impl Gathered<'_> {
     /// All elements, cut; nothing where the run was cancelled before the end.
@@ -68,7 +68,7 @@ impl Gathered<'_> {
     fn light(&self, leaf: usize, triangle: [Vec3; 3], gatherer: &mut Gatherer, irradiance: &mut Vec<f64>) {
         let (normal, middle) = (self.problem.mesh.patch(leaf).normal(), triangle.iter().sum::<Vec3>() / 3.0);
         for corner in triangle {
-            let receiver = Receiver { point: corner.lerp(middle, INSET), normal };
+            let receiver = Receiver { point: corner.lerp(middle, CORNER_INSET), normal };
             irradiance.extend_from_slice(gatherer.irradiance(&receiver, self.expected(leaf)));
         }
     }
@@ -84,7 +84,7 @@ struct Edges {
 
 /// Most lines that cut each of some elements.
 fn most_lines(elements: usize) -> usize {
-    (TRIANGLES / elements.max(1)).isqrt().min(LINES)
+    (MOST_TRIANGLES / elements.max(1)).isqrt().min(MOST_LINES)
 }
 
 /// The parts of lines in a polygon that are longest, some at most.

@@ -22,7 +22,7 @@ use crate::options::{
     FalseColour, FieldFile, ProblemSettings, SceneSource, SolveOptions, SolveSettings, Way,
 };
 use crate::pictures::{Gathered, Source, gathering, wanted};
-use crate::prediction::{MESH, Prediction, Size};
+use crate::prediction::{BYTES_OF_AN_ELEMENT, Prediction, Size};
 use crate::problem::{Problem, pictures, scene_failure, with_results};
 use crate::record::{record, remarks};
 use crate::solution::{Solution, compute};
@@ -403,7 +403,8 @@ pub(crate) fn predicted(asked: &SolveOptions, scene: &Scene, accuracy: f64) -> R
         return Ok(Choice::new(Extent { elements, faces: elements, fewest: 1 }, accuracy));
     }
     let options = ProblemSettings::new(&asked.problem, scene.solve());
-    let meshed = Plan::default().hold("the mesh", MESH.saturating_mul(scene.predicted_elements()));
+    let meshed =
+        Plan::default().hold("the mesh", BYTES_OF_AN_ELEMENT.saturating_mul(scene.predicted_elements()));
     if !meshed.fits(options.memory_limit()) {
         return Ok(Choice::Memory);
     }

@@ -6,13 +6,13 @@ use fredholm_report::{ComparisonHistory, ComparisonRun};
 use crate::solution::reason;
 
 /// Outcome of a solver that does not suit the system or the memory.
-const REFUSED: &str = "refused";
+const REFUSED_OUTCOME: &str = "refused";
 
 /// A solver that was refused, and why.
 pub(crate) fn refused(solver: &str, reason: String) -> ComparisonRun {
     ComparisonRun {
         solver: solver.to_owned(),
-        outcome: REFUSED.to_owned(),
+        outcome: REFUSED_OUTCOME.to_owned(),
         reason: Some(reason),
         residual: f64::NAN,
         error: f64::NAN,
@@ -46,7 +46,7 @@ pub(crate) fn ran(solver: &str, report: &Report) -> ComparisonRun {
 
 /// Whether a run failed to converge, other than by being refused.
 pub(crate) fn failed(run: &ComparisonRun) -> bool {
-    run.outcome != reason(StopReason::Converged) && run.outcome != REFUSED
+    run.outcome != reason(StopReason::Converged) && run.outcome != REFUSED_OUTCOME
 }
 
 /// The largest, or one that is no number.
@@ -64,7 +64,7 @@ mod tests {
     #[test]
     fn a_refusal_is_no_failure() {
         let run = |outcome: &str| ComparisonRun { outcome: outcome.into(), ..ComparisonRun::default() };
-        assert!(!failed(&run(REFUSED)) && !failed(&run("converged")));
+        assert!(!failed(&run(REFUSED_OUTCOME)) && !failed(&run("converged")));
         assert!(failed(&run("diverged")) && failed(&run("not converged")));
     }
 }

@@ -8,7 +8,7 @@ use std::fs;
 
 use fredholm_study::{Bytes, CheckedWaves, Error, ErrorKind, Quiet, WaveOptions, check_waves};
 
-const GOOD: &str = r#"
+const GOOD_SCENE: &str = r#"
 [wave]
 frequencies_hz = [1e9]
 
@@ -58,7 +58,7 @@ fn checked(scene: &str, mesh: &str) -> Result<CheckedWaves, Error> {
 }
 
 fn changed(changes: &[(&str, &str)]) -> String {
-    changes.iter().fold(GOOD.to_owned(), |scene, (from, to)| {
+    changes.iter().fold(GOOD_SCENE.to_owned(), |scene, (from, to)| {
         assert!(scene.contains(from), "{from}");
         scene.replacen(from, to, 1)
     })
@@ -84,7 +84,7 @@ fn warned(changes: &[(&str, &str)], mesh: &str, what: &str) {
 
 #[test]
 fn a_good_scene_is_told_nothing() {
-    let found = checked(GOOD, "").unwrap();
+    let found = checked(GOOD_SCENE, "").unwrap();
     assert!(found.warnings.is_empty() && found.facets == 441, "{found:?}");
     let solid = changed(&[(PLATE, "mesh = { file = \"mesh.obj\" }")]);
     let found = checked(&solid, &cube(&FACES)).unwrap();

@@ -23,11 +23,11 @@ use crate::facet::Facet;
 use crate::probe::Probe;
 
 /// Errors of heights over ε M.
-const HEIGHT: f32 = 4.0;
+const HEIGHT_ERROR: f32 = 4.0;
 /// Errors of U, V and D over g M ε: the factors of |D| and of M.
-const INSIDE: [f32; 2] = [8.0, 32.0];
+const INSIDE_ERRORS: [f32; 2] = [8.0, 32.0];
 /// The height of any point over the plane of a facet that is not there.
-const NOWHERE: f32 = 1e30;
+const HEIGHT_OF_NO_FACET: f32 = 1e30;
 
 /// Up to eight facets.
 #[derive(Clone, Debug)]
@@ -65,7 +65,7 @@ pub(crate) struct Ends<E: Eight> {
 impl<E: Eight> Ends<E> {
     #[inline(always)]
     pub(crate) fn new(eight: E, probe: &Probe) -> Self {
-        let doubt = HEIGHT * f32::EPSILON * probe.reach;
+        let doubt = HEIGHT_ERROR * f32::EPSILON * probe.reach;
         let near = probe.near[0].max(probe.near[1]) as f32;
         let [[p_x, q_x], [p_y, q_y], [p_z, q_z]] = probe.axes;
         Self {
@@ -82,7 +82,7 @@ impl Packet {
     pub(crate) fn new(facets: &[Facet], first: u32) -> Self {
         let mut packet = Self {
             normal: [[0.0; WIDTH]; 3],
-            offset: [NOWHERE; WIDTH],
+            offset: [HEIGHT_OF_NO_FACET; WIDTH],
             u: [[0.0; WIDTH]; 4],
             v: [[0.0; WIDTH]; 4],
             triangle: [1.0; WIDTH],
@@ -100,7 +100,7 @@ impl Packet {
             }
             packet.triangle[i] = facet.triangle;
             let (gradient, blur) = facet.doubts();
-            let wide = INSIDE.map(|factor| factor * f32::EPSILON * gradient);
+            let wide = INSIDE_ERRORS.map(|factor| factor * f32::EPSILON * gradient);
             packet.doubt[0] = packet.doubt[0].max(wide[0]);
             packet.doubt[1] = packet.doubt[1].max(wide[1] + blur);
         }

@@ -17,7 +17,7 @@ use fredholm_mesh::{Patch, Vec3};
 use fredholm_quadrature::{PlanePoint, near_triangle, symmetric_triangle, tensor_quad};
 
 /// C of the module's text.
-const GROWTH: f64 = 6.0;
+const KERNEL_GROWTH: f64 = 6.0;
 /// Most points a side that a rule is given.
 pub(crate) const MOST_POINTS: usize = 12;
 /// Points a side of each part of a nearly singular rule.
@@ -41,7 +41,7 @@ pub(crate) fn phase_error(n: usize, phase: f64) -> f64 {
 /// `tolerance`.
 #[must_use]
 pub(crate) fn reach(n: usize, tolerance: f64) -> f64 {
-    let ellipse = (GROWTH / tolerance).powf(0.5 / n as f64).max(1.0);
+    let ellipse = (KERNEL_GROWTH / tolerance).powf(0.5 / n as f64).max(1.0);
     0.5 * (ellipse + 1.0 / ellipse)
 }
 

@@ -24,7 +24,7 @@ use crate::{Field, Kind, Radiator, Scatterer, Source, Wave, WaveError, incident}
 use fredholm_mesh::Vec3;
 
 /// Most points inside that are looked at.
-const POINTS: usize = 64;
+const MOST_POINTS: usize = 64;
 
 /// The indicator, and what it is multiplied by.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,7 +100,7 @@ pub fn inside_points(scatterer: &Scatterer, wave: &Wave) -> Option<Vec<Vec3>> {
     if facets.is_empty() || facets.iter().any(|facet| facet.kind == Kind::Sheet) {
         return None;
     }
-    let step = facets.len().div_ceil(POINTS);
+    let step = facets.len().div_ceil(MOST_POINTS);
     let inside = |facet: &crate::Facet| facet.centre - facet.normal * inner_depth(scatterer, wave, facet);
     Some(facets.iter().step_by(step).map(inside).collect())
 }

@@ -21,7 +21,7 @@ compare.svg, for a sweep compare_sweep.svg, report.html, and compare.json last. 
 the run with nothing written.";
 
 /// Values of a sweep where their number is not given.
-const VALUES: usize = 10;
+const DEFAULT_SWEEP_VALUES: usize = 10;
 
 /// Options of `compare`.
 #[derive(Clone, Debug, Args)]
@@ -99,7 +99,7 @@ fn sweep(text: &str) -> Result<Sweep, String> {
     let range = text.strip_prefix("reflectance=").ok_or_else(wrong)?;
     let (range, count) = match range.split_once(':') {
         Some((range, count)) => (range, count.parse::<usize>().map_err(|_| wrong())?),
-        None => (range, VALUES),
+        None => (range, DEFAULT_SWEEP_VALUES),
     };
     let (low, high) = range.split_once("..").ok_or_else(wrong)?;
     let (low, high): (f64, f64) = (low.parse().map_err(|_| wrong())?, high.parse().map_err(|_| wrong())?);
@@ -121,7 +121,7 @@ mod tests {
         assert!(
             values.iter().zip([0.1, 0.3, 0.5, 0.7, 0.9]).all(|(value, exact)| (value - exact).abs() < 1e-15)
         );
-        assert_eq!(sweep("reflectance=0.1..0.99").unwrap().0.len(), VALUES);
+        assert_eq!(sweep("reflectance=0.1..0.99").unwrap().0.len(), DEFAULT_SWEEP_VALUES);
         for wrong in [
             "occlusion=0..1",
             "reflectance=0.5",

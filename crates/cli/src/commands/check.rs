@@ -17,7 +17,8 @@ const PICTURE: &str = "check.png";
 /// Seconds for the matrix from which on another way is named.
 const LONG_RUN_SECONDS: f64 = 600.0;
 /// What is named where the matrix is too much.
-const INSTEAD: &str = "solve --accuracy 5% needs no matrix: links between groups of elements take its place";
+const INSTEAD_OF_MATRIX: &str =
+    "solve --accuracy 5% needs no matrix: links between groups of elements take its place";
 
 /// Validates a scene, tells what its mesh is and predicts what its solution will take.
 pub(crate) fn check(args: &CheckArgs) -> Result<Ending, Error> {
@@ -63,7 +64,7 @@ fn report(args: &CheckArgs, folder: Option<&ResultFolder>, terminal: &Terminal) 
 /// Says that the matrix does not fit, and what to do.
 fn too_large(scene: &Scene, error: &Error, mut lines: Lines) -> Result<(), Error> {
     lines.add("memory", error.to_string());
-    lines.add("instead", INSTEAD);
+    lines.add("instead", INSTEAD_OF_MATRIX);
     scene.notes().iter().for_each(|note| lines.add("warning", note.to_string()));
     let heading = format!("{}: a valid scene whose matrix does not fit", scene.path().display());
     output::report(&lines.under(&heading))
@@ -92,7 +93,7 @@ fn solution(forecast: &Forecast, lines: &mut Lines) {
     lines.add_some("time", seconds.map(time));
     lines.add_some(
         "instead",
-        seconds.filter(|&seconds| seconds > LONG_RUN_SECONDS).map(|_| INSTEAD.to_owned()),
+        seconds.filter(|&seconds| seconds > LONG_RUN_SECONDS).map(|_| INSTEAD_OF_MATRIX.to_owned()),
     );
     forecast.warnings.iter().for_each(|warning| lines.add("warning", warning));
 }

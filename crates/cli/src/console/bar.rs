@@ -11,7 +11,7 @@ use crate::output::tell;
 /// Steps of the bar.
 const STEPS: u64 = 1000;
 /// Time between two frames.
-const FRAME: Duration = Duration::from_millis(100);
+const FRAME_INTERVAL: Duration = Duration::from_millis(100);
 
 /// A clock for the current stage, a bar once it tells of progress; a line stays for each that has
 /// ended.
@@ -34,7 +34,7 @@ impl Console for Bar {
             .with_style(style("{prefix:>16}  {elapsed}"))
             .with_prefix(stage.to_owned());
         let bar = bar.with_finish(ProgressFinish::AndClear);
-        bar.enable_steady_tick(FRAME);
+        bar.enable_steady_tick(FRAME_INTERVAL);
         *self.current.lock().unwrap_or_else(PoisonError::into_inner) = Some(bar);
     }
 

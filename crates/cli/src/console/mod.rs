@@ -45,7 +45,7 @@ pub(crate) fn choose(log: LogArgs) -> Box<dyn Console> {
 }
 
 /// Time between two lines of a stage.
-const PAUSE: Duration = Duration::from_millis(500);
+const LINE_INTERVAL: Duration = Duration::from_millis(500);
 
 /// Decides which progress is worth a line: full tenths, ten at most, and not in a hurry.
 #[derive(Debug)]
@@ -64,7 +64,7 @@ impl Tenths {
     /// The tenth that `share` completes, where it is a new one; the end of the stage has its own
     /// line.
     fn completed(&mut self, share: f64) -> Option<u32> {
-        if self.last.elapsed() < PAUSE {
+        if self.last.elapsed() < LINE_INTERVAL {
             return None;
         }
         let tenth = (share * 10.0).clamp(0.0, 9.0) as u32;
@@ -82,7 +82,7 @@ mod tests {
 
     #[test]
     fn each_tenth_is_told_once() {
-        let long_ago = Instant::now().checked_sub(PAUSE).unwrap();
+        let long_ago = Instant::now().checked_sub(LINE_INTERVAL).unwrap();
         let mut tenths = Tenths::default();
         let told: Vec<_> = [0.0, 0.05, 0.11, 0.12, 0.35, 0.3, 0.99, 1.0, 2.0, f64::NAN]
             .into_iter()

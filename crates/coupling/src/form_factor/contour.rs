@@ -21,7 +21,7 @@ use std::f64::consts::TAU;
 
 /// Error of a closed form, over the rounding of the inner integrals alone, at which it is used: its
 /// terms grow with the distance and cancel; quadrature of the inner integral does not.
-const CANCELLING: f64 = 50.0;
+const MOST_CANCELLATION: f64 = 50.0;
 /// Gauss points up to which they cost less than a closed form.
 const MOST_CHEAP_GAUSS_POINTS: usize = 6;
 
@@ -97,7 +97,7 @@ pub(crate) fn edge_pair(e: Edge, f: Edge, tolerance: f64) -> Estimate {
     let sine2 = e.direction.cross(f.direction).length_squared();
     let outer = Outer::new(e, f, goal);
     let closed = if outer.points > MOST_CHEAP_GAUSS_POINTS {
-        closed(e, f, goal.max(CANCELLING * rounding))
+        closed(e, f, goal.max(MOST_CANCELLATION * rounding))
     } else {
         None
     };

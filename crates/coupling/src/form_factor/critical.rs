@@ -11,23 +11,23 @@
 use super::ev_batch::{Aligned, EdgeVertexBatch, Region};
 use super::ev_events::{CriticalPlane, EdgeVertexEvent, EdgeVertexEvents, chord};
 use fredholm_mesh::Vec3;
-use fredholm_visibility::body::{ODD, Screen};
+use fredholm_visibility::body::{GENERIC_DIRECTION, Screen};
 
 /// Lines that are listed at most: among many, most are not active, and a part that any of them cuts
 /// counts as not smooth.
-const LINES: usize = 400;
+const MOST_LINES: usize = 400;
 
 /// A plane n·x = c with a unit normal.
 pub(crate) type Plane = (Vec3, f64);
 
 /// Corners of a source of which heights are kept: a patch that is cut by a plane has at most five.
-const CORNERS: usize = 8;
+const MOST_CORNERS: usize = 8;
 
 /// A plane that cuts the source, and the heights of the corners of the source over it.
 #[derive(Clone, Copy, Debug)]
 struct Line {
     event: CriticalPlane,
-    heights: [f64; CORNERS],
+    heights: [f64; MOST_CORNERS],
 }
 
 /// Critical planes, and buffers.
@@ -46,8 +46,8 @@ pub(crate) struct Critical {
 
 impl Critical {
     /// Finds the events of `screens` before `target` on planes that cut the `source` polygon. Those
-    /// of single bodies come first, long ones before short ones, and at most [`LINES`] are kept.
-    /// Lengths below `flat` (m) count as 0.
+    /// of single bodies come first, long ones before short ones, and at most [`MOST_LINES`] are
+    /// kept. Lengths below `flat` (m) count as 0.
     pub(crate) fn events(
         &mut self,
         source: &[Vec3],
@@ -156,8 +156,8 @@ impl Search<'_> {
         }
         self.sort(0);
         let single = self.found.len();
-        if single >= LINES {
-            return self.found.truncate(LINES);
+        if single >= MOST_LINES {
+            return self.found.truncate(MOST_LINES);
         }
         for k in 0..count {
             for l in (0..count).filter(|&l| l != k) {
@@ -165,7 +165,7 @@ impl Search<'_> {
             }
         }
         self.sort(single);
-        self.found.truncate(LINES);
+        self.found.truncate(MOST_LINES);
     }
 
     /// Events where the outline `near` lines up with `far` behind it. Those of two bodies matter
@@ -207,7 +207,7 @@ impl Search<'_> {
     }
 
     fn line(&self, event: CriticalPlane) -> Line {
-        let mut heights = [0.0; CORNERS];
+        let mut heights = [0.0; MOST_CORNERS];
         for (height, x) in heights.iter_mut().zip(self.source) {
             *height = event.plane.0.dot(*x) - event.plane.1;
         }
@@ -216,7 +216,7 @@ impl Search<'_> {
 
     /// The place of the same line among those found: parallel edges give the same plane many times.
     fn known(&self, line: &Line) -> Option<usize> {
-        let corners = self.source.len().min(CORNERS);
+        let corners = self.source.len().min(MOST_CORNERS);
         let near = |a: &f64, b: f64| (a - b).abs() <= self.flat;
         let same = |other: &Line| {
             let turned = if line.event.plane.0.dot(other.event.plane.0) < 0.0 { -1.0 } else { 1.0 };
@@ -234,7 +234,7 @@ impl Search<'_> {
         self.keyed.clear();
         for line in &self.found[start..] {
             let [a, b] = self.chord(line).unwrap_or_default();
-            let key = a.distance(b) + 1e-3 * (0.5 * (a + b) - self.source[0]).dot(ODD);
+            let key = a.distance(b) + 1e-3 * (0.5 * (a + b) - self.source[0]).dot(GENERIC_DIRECTION);
             self.keyed.push((key, *line));
         }
         self.keyed.sort_by(|(a, _), (b, _)| b.total_cmp(a));
@@ -244,7 +244,7 @@ impl Search<'_> {
 
     /// The two ends of a line on the source.
     fn chord(&self, line: &Line) -> Option<[Vec3; 2]> {
-        let corners = &self.source[..self.source.len().min(CORNERS)];
+        let corners = &self.source[..self.source.len().min(MOST_CORNERS)];
         chord(corners, |k| line.heights[k])
     }
 }

@@ -9,13 +9,13 @@
 #![allow(clippy::needless_bitwise_bool, reason = "a jump a lane costs more than to ask both")]
 
 use super::critical::Plane;
-use super::ev_events::{EDGE_END_MARGIN, EdgeVertexEvent, INSIDE};
+use super::ev_events::{CHORD_END_MARGIN, EDGE_END_MARGIN, EdgeVertexEvent};
 use super::lanes::{LANES, Lanes, Lanes3, Mask, any, ask, cross, difference, dot, each, heights, same};
 use fredholm_mesh::Vec3;
 use pulp::{Arch, NullaryFnOnce};
 
 /// Squared sine below which a corner and an edge span no plane.
-const SLIM: f64 = 1e-24;
+const LEAST_SQUARED_SINE: f64 = 1e-24;
 
 /// Where a pair is asked about.
 #[derive(Clone, Copy, Debug)]
@@ -167,7 +167,7 @@ impl Planes {
         let (edge2, arm2) = (dot(&self.edge, &self.edge), dot(&self.arm, &self.arm));
         let (length2, flat) = (dot(&self.normal, &self.normal), place.flat);
         let least = each(|m| {
-            let slim = SLIM * arm2[m];
+            let slim = LEAST_SQUARED_SINE * arm2[m];
             edge2[m] * if slim > flat * flat { slim } else { flat * flat }
         });
         let inverse = each(|m| 1.0 / length2[m].sqrt());
@@ -254,7 +254,7 @@ fn chord(n: &Lanes3, offset: &Lanes, polygon: &[Vec3], flat: f64) -> (Mask, [Lan
 fn shrunk(a: &Lanes3, b: &Lanes3) -> Lanes3 {
     let mut moved = *a;
     for axis in 0..3 {
-        moved[axis] = each(|m| a[axis][m] * (1.0 - INSIDE) + b[axis][m] * INSIDE);
+        moved[axis] = each(|m| a[axis][m] * (1.0 - CHORD_END_MARGIN) + b[axis][m] * CHORD_END_MARGIN);
     }
     moved
 }

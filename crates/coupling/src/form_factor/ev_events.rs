@@ -13,7 +13,7 @@ use fredholm_mesh::Vec3;
 pub(super) const EDGE_END_MARGIN: f64 = 1e-7;
 /// Part of a chord that is left out at its ends, where lines of sight are often exactly parallel to
 /// the edge.
-pub(super) const INSIDE: f64 = 1e-6;
+pub(super) const CHORD_END_MARGIN: f64 = 1e-6;
 
 /// A corner and an edge that line up.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +28,7 @@ impl EdgeVertexEvent {
     /// Whether they line up from a part of a chord in the plane with normal n.
     #[inline]
     pub(super) fn is_active(&self, [first, last]: [Vec3; 2], n: Vec3) -> bool {
-        let inner = [first.lerp(last, INSIDE), last.lerp(first, INSIDE)];
+        let inner = [first.lerp(last, CHORD_END_MARGIN), last.lerp(first, CHORD_END_MARGIN)];
         let across = (self.edge[1] - self.edge[0]).cross(n);
         let [first, last] = [self.meeting(inner[0], n, across), self.meeting(inner[1], n, across)];
         match (self.order(&first), self.order(&last)) {

@@ -37,7 +37,7 @@ const CLOSE_DISTANCE: f64 = 1.0;
 const SMALL_DIAMETER: f64 = 0.1;
 
 /// Relative difference of two quantities that count as equal.
-const TIE: f64 = 1e-6;
+const TIE_TOLERANCE: f64 = 1e-6;
 
 /// How an exchange was computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -368,11 +368,11 @@ fn rises(patch: &Patch, plane: HalfSpace, flat: f64) -> bool {
 /// the numbers of the patches nor rounding decide.
 fn clearer(a: Side, b: Side, bodies: &[&Body]) -> bool {
     let [here, there] = [clearance(a, bodies), clearance(b, bodies)];
-    if (here - there).abs() > TIE * here.abs().max(there.abs()).max(1.0) {
+    if (here - there).abs() > TIE_TOLERANCE * here.abs().max(there.abs()).max(1.0) {
         return here > there;
     }
     let way = a.centroid - b.centroid;
-    let decides = |coordinate: &f64| coordinate.abs() > TIE * way.length();
+    let decides = |coordinate: &f64| coordinate.abs() > TIE_TOLERANCE * way.length();
     way.to_array().into_iter().find(decides).is_none_or(|coordinate| coordinate < 0.0)
 }
 

@@ -17,7 +17,7 @@ use std::sync::LazyLock;
 const MOST_RADIUS_OVER_DISTANCE: f64 = 0.5;
 /// Error of the midpoint rule over the square of that ratio, at most. One straight edge gives
 /// 0.43/12; several may add up, and be nearer to the other points.
-const MIDPOINT: f64 = 0.125;
+const MIDPOINT_ERROR: f64 = 0.125;
 
 static TRIANGLE: LazyLock<Vec<PlanePoint>> = LazyLock::new(|| symmetric_triangle(2).unwrap_or_default());
 static QUAD: LazyLock<Vec<PlanePoint>> = LazyLock::new(|| tensor_quad(2));
@@ -39,7 +39,7 @@ pub(crate) fn small_receiver(large: &Patch, small: &Patch, goal: f64) -> Option<
     let rule = if small.sides() == 3 { &*TRIANGLE } else { &*QUAD };
     let term = |p: &PlanePoint| p.weight * jacobian(small, p.u, p.v) * seen(small.point(p.u, p.v));
     let value: f64 = rule.iter().map(term).sum();
-    let bound = MIDPOINT * reach.powi(3) * small.area();
+    let bound = MIDPOINT_ERROR * reach.powi(3) * small.area();
     let error = if bound <= goal { bound } else { reach * (value - small.area() * seen(centre)).abs() };
     (error <= goal).then_some(Estimate { value, error })
 }
@@ -98,8 +98,8 @@ mod tests {
             let sides = (0..4).map(|k| [wall.corners()[k], wall.corners()[(k + 1) % 4]]);
             let reach = 0.5 * tile.diameter() / to_segments(tile.centroid(), sides.map(Segment::new));
             let middle = point_to_polygon(tile.normal(), wall.corners().iter().map(|&y| y - tile.centroid()));
-            worst =
-                worst.max((tile.area() * middle - exact).abs() / (MIDPOINT * reach.powi(2) * tile.area()));
+            worst = worst
+                .max((tile.area() * middle - exact).abs() / (MIDPOINT_ERROR * reach.powi(2) * tile.area()));
             rule = rule.max((estimate.value - exact).abs() / estimate.error);
         }
         assert!(worst < 1.0 && worst > 0.1, "{worst}");

@@ -11,7 +11,7 @@ use fredholm_quadrature::{Estimate, Goal, PlanePoint, adaptive_quad};
 use std::f64::consts::PI;
 
 /// |τ| at the ends: the rest of [0, 1] beyond is below rounding.
-const END: f64 = 3.2;
+const TAU_AT_ENDS: f64 = 3.2;
 
 /// ∫ f dA over a triangle by a rule for the unit square.
 pub(super) fn graded(triangle: &Patch, rule: &[PlanePoint], goal: Goal, f: impl Fn(Vec3) -> f64) -> Estimate {
@@ -27,10 +27,10 @@ pub(super) fn graded(triangle: &Patch, rule: &[PlanePoint], goal: Goal, f: impl 
 
 /// x and dx/du, u in [0, 1].
 fn grade(u: f64) -> (f64, f64) {
-    let tau = END * (2.0 * u - 1.0);
+    let tau = TAU_AT_ENDS * (2.0 * u - 1.0);
     let growth = (-PI * tau.sinh()).exp();
     let x = 1.0 / (1.0 + growth);
-    (x, 2.0 * END * PI * tau.cosh() * x * (growth * x))
+    (x, 2.0 * TAU_AT_ENDS * PI * tau.cosh() * x * (growth * x))
 }
 
 #[cfg(test)]

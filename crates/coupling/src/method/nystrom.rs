@@ -21,7 +21,7 @@ use fredholm_visibility::Occluders;
 const HIGHEST_ORDER: usize = 64;
 /// Points a direction on both patches for the difference between centroid and mean behind
 /// occluders.
-const BEHIND: usize = 6;
+const POINTS_BEHIND_OCCLUDERS: usize = 6;
 
 pub(super) struct Nystrom;
 
@@ -65,9 +65,9 @@ impl FormFactorMethod for Nystrom {
 pub(super) fn collocation(facing: &Facing) -> f64 {
     let (p, area) = (facing.a.centroid(), facing.a.area());
     if facing.between() > 0 {
-        let target = placed(&facing.b.cells, BEHIND);
+        let target = placed(&facing.b.cells, POINTS_BEHIND_OCCLUDERS);
         let seen: f64 = target.iter().map(|&(q, weight)| weight * facing.kernel(p, q)).sum();
-        let mean = settled(BEHIND, true, |n| tensor(facing, n));
+        let mean = settled(POINTS_BEHIND_OCCLUDERS, true, |n| tensor(facing, n));
         return (mean.value - area * seen).abs() + mean.error;
     }
     let exact = contour_integral(&facing.a.corners, &facing.b.corners, 0.0).value;

@@ -12,11 +12,11 @@ use fredholm_mesh::{Patch, Vec3};
 use fredholm_quadrature::{Estimate, PlanePoint, collapsed_triangle, tensor_quad};
 
 /// Smallest and largest ratio of two steps that is believed.
-const CREDIBLE: (f64, f64) = (0.06, 0.98);
+const CREDIBLE_RATIOS: (f64, f64) = (0.06, 0.98);
 /// Stated error over the sum of a geometric series.
-const SAFETY: f64 = 2.0;
+const SERIES_SAFETY: f64 = 2.0;
 /// Stated error over the root of the summed squares of two steps, where the integrand jumps.
-const SCATTER: f64 = 2.0;
+const JUMP_SAFETY: f64 = 2.0;
 /// Rounding of a sum of positive terms, relative.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
@@ -37,14 +37,14 @@ pub(super) fn settled(n: usize, jumps: bool, at: impl Fn(usize) -> f64) -> Estim
     let below = |k: usize| if n > k { at(n - k) } else { 0.0 };
     let (value, lower, lowest) = (at(n), below(1), below(2));
     let (step, before) = ((value - lower).abs(), (lower - lowest).abs());
-    let error = if jumps { SCATTER * step.hypot(before) } else { series(step, before) };
+    let error = if jumps { JUMP_SAFETY * step.hypot(before) } else { series(step, before) };
     Estimate { value, error: error.max(ROUNDING * value.abs()) }
 }
 
 /// What is still to come after a step and the one before it.
 fn series(step: f64, before: f64) -> f64 {
-    let ratio = if before > 0.0 { (step / before).min(CREDIBLE.1) } else { 0.0 };
-    (step * (SAFETY * ratio / (1.0 - ratio)).max(1.0)).max(CREDIBLE.0 * before)
+    let ratio = if before > 0.0 { (step / before).min(CREDIBLE_RATIOS.1) } else { 0.0 };
+    (step * (SERIES_SAFETY * ratio / (1.0 - ratio)).max(1.0)).max(CREDIBLE_RATIOS.0 * before)
 }
 
 /// Points that [`settled`] evaluates for a rule of n^`power` points.

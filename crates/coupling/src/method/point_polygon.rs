@@ -26,7 +26,7 @@ const POINTS_CLOSE: usize = 10;
 /// Distance, in radii of the outer part, below which layers are looked for.
 const LAYER_DISTANCE: f64 = 0.4;
 /// Most cells that are cut.
-const CUTS: usize = 4000;
+const MOST_CUTS: usize = 4000;
 /// Stated error over the difference that one more cut makes, which may be small by accident.
 const SAFETY: f64 = 10.0;
 /// Rounding of Lambert's sum for a point at unit distance.
@@ -99,7 +99,7 @@ fn is_close(outer: &Part, target: &Part) -> bool {
 
 /// The sum over all cells, each with an even share of the tolerance.
 fn total(cells: &[Patch], tolerance: f64, integral: impl Fn(&Patch, Goal) -> Estimate) -> Estimate {
-    let goal = Goal { tolerance: tolerance / cells.len() as f64, cuts: CUTS };
+    let goal = Goal { tolerance: tolerance / cells.len() as f64, cuts: MOST_CUTS };
     cells.iter().map(|cell| integral(cell, goal)).fold(Estimate::default(), |a, b| a + b)
 }
 

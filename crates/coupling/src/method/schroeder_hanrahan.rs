@@ -16,10 +16,10 @@ use fredholm_quadrature::Estimate;
 use fredholm_visibility::Occluders;
 
 /// Squared sine of the angle under which edges count as parallel.
-const PARALLEL: f64 = 1e-28;
+const PARALLEL_SQUARED_SINE: f64 = 1e-28;
 
 /// Rounding of the closed form over that of bisection, up to which it is used.
-const LOSS: f64 = 10.0;
+const MOST_ROUNDING_LOSS: f64 = 10.0;
 
 pub(super) struct SchroederHanrahan;
 
@@ -64,9 +64,9 @@ fn closed(e: Edge, f: Edge, tolerance: f64) -> Estimate {
         return Estimate::default();
     }
     let rounding = rounding(e, f);
-    if e.direction.cross(f.direction).length_squared() > PARALLEL {
+    if e.direction.cross(f.direction).length_squared() > PARALLEL_SQUARED_SINE {
         let skew = skew_edges(e, f);
-        if skew.error <= LOSS * rounding {
+        if skew.error <= MOST_ROUNDING_LOSS * rounding {
             return Estimate { value: cosine * skew.value, error: cosine.abs() * (skew.error + rounding) };
         }
     }

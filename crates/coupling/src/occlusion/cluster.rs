@@ -6,15 +6,15 @@
 //! boxes. Lengths in metres.
 
 use fredholm_mesh::{Patch, Vec3};
-use fredholm_visibility::body::ODD;
+use fredholm_visibility::body::GENERIC_DIRECTION;
 use std::ops::Range;
 
 /// Planes in a node up to which it is cut between planes rather than through the middle.
-const PLANES: usize = 32;
-/// Share of the place along [`ODD`] in the order of patches.
-const SHEAR: f64 = 1e-4;
+const MOST_PLANES: usize = 32;
+/// Share of the place along [`GENERIC_DIRECTION`] in the order of patches.
+const ORDER_SHEAR: f64 = 1e-4;
 /// Cosine of the angle between normals, less than 1 by this, up to which they count as one.
-const TURN: f64 = 1e-14;
+const COSINE_TOLERANCE: f64 = 1e-14;
 
 /// What bounds the patches of a node.
 #[derive(Clone, Debug)]
@@ -92,7 +92,7 @@ impl Builder<'_> {
         let (bound, radius) = self.bound(order, planes.len());
         nodes.push(Node { places: start..start + order.len(), children: None, bound, radius });
         if order.len() > 1 {
-            let middle = if (2..=PLANES).contains(&planes.len()) {
+            let middle = if (2..=MOST_PLANES).contains(&planes.len()) {
                 self.between_planes(order, &planes)
             } else {
                 self.through_the_middle(order)
@@ -112,18 +112,18 @@ impl Builder<'_> {
     fn in_plane(&self, k: u32, p: u32) -> bool {
         let (patch, first) = (self.patch(k), self.patch(p));
         self.kinds[k as usize] == self.kinds[p as usize]
-            && patch.normal().dot(first.normal()) > 1.0 - TURN
+            && patch.normal().dot(first.normal()) > 1.0 - COSINE_TOLERANCE
             && (patch.corner(0) - first.corner(0)).dot(first.normal()).abs() <= self.tolerance
     }
 
     /// One patch of each plane, in a geometrical order that the numbering does not change; more
-    /// than [`PLANES`] are not told apart.
+    /// than [`MOST_PLANES`] are not told apart.
     fn planes(&self, order: &[u32]) -> Vec<u32> {
         let mut planes: Vec<u32> = Vec::new();
         for &k in order {
             if !planes.iter().any(|&p| self.in_plane(k, p)) {
                 planes.push(k);
-                if planes.len() > PLANES {
+                if planes.len() > MOST_PLANES {
                     break;
                 }
             }
@@ -158,10 +158,12 @@ impl Builder<'_> {
         let axis = (0..3).find(|&axis| size[axis] >= most).unwrap_or(0);
         // Patches at one place along the axis are told apart by a small shear, not by their
         // numbers.
-        let key = |&k: &u32| self.centres[k as usize][axis] + SHEAR * self.centres[k as usize].dot(ODD);
+        let key = |&k: &u32| {
+            self.centres[k as usize][axis] + ORDER_SHEAR * self.centres[k as usize].dot(GENERIC_DIRECTION)
+        };
         order.sort_by(|a, b| key(a).total_cmp(&key(b)));
         let place = |k: usize| self.centres[order[k] as usize][axis];
-        let gap = |k: &usize| place(*k) - place(*k - 1) > 2.0 * SHEAR * most;
+        let gap = |k: &usize| place(*k) - place(*k - 1) > 2.0 * ORDER_SHEAR * most;
         // Between rows of a grid rather than through one, so that both halves are rectangles again.
         let middle = order.len() / 2;
         let near = (0..=middle).flat_map(|d| [middle - d, middle + d]);

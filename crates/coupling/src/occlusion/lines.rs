@@ -13,12 +13,12 @@ use fredholm_visibility::body::{Body, Face};
 use pulp::{Arch, NullaryFnOnce};
 
 /// Height over a body, in lengths of a segment, that is not rounding.
-const CERTAIN: f64 = 1e-6;
+const CERTAIN_HEIGHT: f64 = 1e-6;
 /// The corners of the second patch to which the segments from those of the first go: to those of
 /// the same place and of the opposite,
 const FIRST_TARGETS: [usize; LANES] = [0, 1, 2, 3, 2, 3, 0, 1];
 /// and to the others.
-const OTHERS: [usize; LANES] = [1, 2, 3, 0, 3, 0, 1, 2];
+const OTHER_TARGETS: [usize; LANES] = [1, 2, 3, 0, 3, 0, 1, 2];
 
 /// What is known of a body between two patches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,8 +64,8 @@ impl Lines {
         Self {
             starts,
             ends: lanes(q, FIRST_TARGETS),
-            others: lanes(q, OTHERS),
-            certain: tolerance + CERTAIN * reach,
+            others: lanes(q, OTHER_TARGETS),
+            certain: tolerance + CERTAIN_HEIGHT * reach,
         }
     }
 

@@ -8,7 +8,7 @@ use fredholm_visibility::Occluders;
 /// Unit squares at distance 1 with a centred square of side ½ halfway: by superposition of
 /// rectangles.
 const HALF_HIDDEN: f64 = 0.099_506_294_598_985;
-const CLOSED: [&str; 2] = ["contour", "schroeder-hanrahan"];
+const CLOSED_FORMS: [&str; 2] = ["contour", "schroeder-hanrahan"];
 
 fn quad(corners: [[f64; 3]; 4]) -> Patch {
     Patch::quad(corners.map(Vec3::from)).unwrap().unwrap()
@@ -30,7 +30,7 @@ fn plate(side: f64) -> [Patch; 2] {
 
 #[test]
 fn a_centred_plate_hides_half_within_the_stated_errors() {
-    for method in methods().iter().filter(|method| !CLOSED.contains(&method.name())) {
+    for method in methods().iter().filter(|method| !CLOSED_FORMS.contains(&method.name())) {
         let got = behind(method.name(), &squares(), &plate(0.5), method.default_setting());
         let error = (got.value - HALF_HIDDEN).abs();
         println!("{:<14} {:.6} ± {:.1e}, off by {error:.1e}", method.name(), got.value, got.error);
@@ -60,7 +60,7 @@ fn finer_settings_come_closer() {
 
 #[test]
 fn a_large_plate_hides_everything() {
-    for method in methods().iter().filter(|method| !CLOSED.contains(&method.name())) {
+    for method in methods().iter().filter(|method| !CLOSED_FORMS.contains(&method.name())) {
         let got = behind(method.name(), &squares(), &plate(1.5), method.default_setting());
         assert!(got.value == 0.0, "{}: {got:?}", method.name());
     }
@@ -71,7 +71,7 @@ fn closed_forms_refuse_what_they_cannot_see() {
     let [a, b] = squares();
     let between = Occluders::new(&plate(0.5)).unwrap();
     let beside = Occluders::new(&plate(0.5).map(|p| moved(&p))).unwrap();
-    for name in CLOSED {
+    for name in CLOSED_FORMS {
         let method = method(name).unwrap();
         let refused = method.exchange(&a, &b, &between, method.default_setting());
         assert_eq!(refused, Err(MethodError::Occluded { method: method.name() }));

@@ -7,7 +7,7 @@ use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::Occluders;
 
 /// A tolerance that only rounding ends.
-const EXACT: f64 = 1e-13;
+const ROUNDING_TOLERANCE: f64 = 1e-13;
 
 fn exchange(a: &Patch, b: &Patch, tolerance: f64) -> Exchange {
     let bvh = Occluders::new(&[]).unwrap();
@@ -34,7 +34,7 @@ fn the_contour_integral_agrees_with_quadrature_of_point_to_polygon() {
         let mut random = Random::new(1);
         for k in 0..8 {
             let p = pair(kind, &mut random);
-            let got = exchange(&p[0], &p[1], EXACT);
+            let got = exchange(&p[0], &p[1], ROUNDING_TOLERANCE);
             let goal = 1e-5 * got.value.max(1e-6 * smaller(&p));
             let exact = reference::exchange(&p[0], &p[1], &[], goal);
             let off = (got.value - exact.value).abs() - got.error;
@@ -46,12 +46,13 @@ fn the_contour_integral_agrees_with_quadrature_of_point_to_polygon() {
 /// The defect of the whole against the sum of its 16 parts and against the reverse order, and the
 /// sum of the stated errors.
 fn defect(p: &[Patch; 2]) -> (f64, f64) {
-    let (whole, back) = (exchange(&p[0], &p[1], EXACT), exchange(&p[1], &p[0], EXACT));
+    let (whole, back) =
+        (exchange(&p[0], &p[1], ROUNDING_TOLERANCE), exchange(&p[1], &p[0], ROUNDING_TOLERANCE));
     assert!(whole.value >= 0.0 && whole.value <= smaller(p) * (1.0 + 1e-9), "{whole:?}");
     let (mut sum, mut stated) = (0.0, whole.error);
     for part in p[0].split().unwrap() {
         for other in p[1].split().unwrap() {
-            let exchange = exchange(&part, &other, EXACT);
+            let exchange = exchange(&part, &other, ROUNDING_TOLERANCE);
             sum += exchange.value;
             stated += exchange.error;
         }

@@ -98,7 +98,7 @@ pub struct Reference {
 
 /// Splits, and how many of them are made in any case: on a coarse grid values agree by accident.
 const DEPTH: u32 = 24;
-const SURE: u32 = 3;
+const SPLITS_IN_ANY_CASE: u32 = 3;
 const GAUSS: [(f64, f64); 4] = [
     (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
     (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
@@ -143,7 +143,7 @@ fn refined(
     let values = parts.map(|part| rule(part, f));
     let value: f64 = values.iter().sum();
     let error = (value - whole).abs();
-    if (error <= tolerance && depth <= DEPTH - SURE) || depth == 0 {
+    if (error <= tolerance && depth <= DEPTH - SPLITS_IN_ANY_CASE) || depth == 0 {
         return Reference { value, error };
     }
     let mut sum = Reference::default();

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// Residual that the solver is asked for: below every error that is measured.
-const SOLVED: f64 = 1e-13;
+const SOLVER_RESIDUAL: f64 = 1e-13;
 
 /// Relative errors in L².
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -63,7 +63,7 @@ fn solution(
 ) -> Result<MultiVector<f64>, DiscretisationError> {
     let b = system.right_hand_side(source);
     let mut x = MultiVector::zeros(b.dim(), 1);
-    let stop = Stop { tolerance: SOLVED, max_iterations: 10_000 };
+    let stop = Stop { tolerance: SOLVER_RESIDUAL, max_iterations: 10_000 };
     solver.solve(&system.operator()?, &b, &mut x, &stop, &mut Quiet)?;
     Ok(x)
 }

@@ -20,7 +20,7 @@ use fredholm_linop::{Dense, LinearOperator, MultiVector};
 use rayon::prelude::*;
 
 /// Largest angle between normals across which a conforming basis is continuous, degrees.
-const SMOOTH: f64 = 30.0;
+const SMOOTH_DEGREES: f64 = 30.0;
 
 /// Galerkin's method with one degree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,7 +60,7 @@ impl Discretisation for Galerkin {
     fn space<'a>(&self, surface: &'a Surface) -> Result<Space<'a>, DiscretisationError> {
         let degree = self.degree.number();
         if self.conforming {
-            Space::conforming(surface, degree, SMOOTH)
+            Space::conforming(surface, degree, SMOOTH_DEGREES)
         } else {
             Space::discontinuous(surface, degree)
         }
@@ -71,7 +71,7 @@ impl Discretisation for Galerkin {
     fn numbers(&self, space: &Space, _: usize) -> u128 {
         let n = space.dim() as u128;
         let blocks = if self.conforming { 2 * n * n } else { 0 };
-        n * n + (RUN * MOST_NODES) as u128 * n + blocks
+        n * n + (ELEMENTS_OF_A_RUN * MOST_NODES) as u128 * n + blocks
     }
 
     fn discretise<'a>(&self, equation: Equation<'a>) -> Result<Box<dyn System + 'a>, DiscretisationError> {
@@ -108,8 +108,8 @@ fn projected(equation: &Equation, space: &Space, mass: &Mass) -> Result<Dense<f6
     let block = |i| tested_rows(equation, space, mass, i);
     // Runs keep the blocks that wait for their turn small; their length does not show in the
     // result.
-    for start in (0..space.surface().len()).step_by(RUN) {
-        let run = start..(start + RUN).min(space.surface().len());
+    for start in (0..space.surface().len()).step_by(ELEMENTS_OF_A_RUN) {
+        let run = start..(start + ELEMENTS_OF_A_RUN).min(space.surface().len());
         let blocks: Vec<Vec<f64>> = run.clone().into_par_iter().map(block).collect();
         for (i, block) in run.zip(blocks) {
             for (&dof, row) in space.dofs(i).iter().zip(block.chunks_exact(n.max(1))) {
@@ -123,7 +123,7 @@ fn projected(equation: &Equation, space: &Space, mass: &Mass) -> Result<Dense<f6
 }
 
 /// Elements whose rows are computed before they are added up.
-const RUN: usize = 64;
+const ELEMENTS_OF_A_RUN: usize = 64;
 
 /// ∫_i φ_a H φ_j dA for the functions a of element i: functions × unknowns.
 fn tested_rows(equation: &Equation, space: &Space, mass: &Mass, i: usize) -> Vec<f64> {

@@ -44,7 +44,7 @@ impl Discretisation for LeastSquares {
     /// The samples; for each reflectance the weighted samples and a matrix.
     fn numbers(&self, space: &Space, reflectances: usize) -> u128 {
         let n = space.dim() as u128;
-        let each = (self.0.number() + crate::transfer::OUTER).pow(2);
+        let each = (self.0.number() + crate::transfer::RECEIVER_POINTS_BEYOND_DEGREE).pow(2);
         let samples = space.surface().len() as u128 * each as u128 * n;
         samples + reflectances as u128 * (samples + n * n)
     }

@@ -14,7 +14,7 @@ use fredholm_quadrature::PlanePoint;
 
 /// Points of the rule for the mean of the source: enough for what varies within an element of
 /// constants.
-const MEAN: usize = 3;
+const MEAN_POINTS: usize = 3;
 
 pub(super) struct Zonal<'a> {
     equation: Equation<'a>,
@@ -34,7 +34,7 @@ impl<'a> Zonal<'a> {
     /// Mean of the source over element i.
     fn mean(&self, source: &Source, i: usize, rhs: usize) -> f64 {
         let surface = self.space.surface();
-        let rules = crate::surface::Rules::gauss(MEAN);
+        let rules = crate::surface::Rules::gauss(MEAN_POINTS);
         let rule: &[PlanePoint] = rules.of(surface.chart(i).sides());
         let (mut sum, mut area) = (0.0, 0.0);
         for (site, weight) in surface.place(i, rule) {

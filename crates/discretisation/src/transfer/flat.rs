@@ -30,7 +30,7 @@ const NEARLY_SINGULAR_POINTS: usize = 8;
 /// Centre distance over the sum of radii above which a pair is regular.
 const REGULAR_DISTANCE: f64 = 3.0;
 /// Points a direction for receivers, beyond the degree.
-pub(crate) const OUTER: usize = 3;
+pub(crate) const RECEIVER_POINTS_BEYOND_DEGREE: usize = 3;
 
 /// Diffuse light between the leaves of a mesh.
 #[derive(Debug)]
@@ -182,7 +182,7 @@ impl Transfer for FlatLambert<'_> {
     }
 
     fn outer(&self, degree: usize) -> Rules {
-        Rules::gauss(degree + OUTER)
+        Rules::gauss(degree + RECEIVER_POINTS_BEYOND_DEGREE)
     }
 
     fn exchanges(&self) -> Option<Result<Exchanges, DiscretisationError>> {

@@ -11,7 +11,7 @@ mod near;
 mod smooth;
 
 pub use flat::FlatLambert;
-pub(crate) use flat::OUTER;
+pub(crate) use flat::RECEIVER_POINTS_BEYOND_DEGREE;
 pub use smooth::{Kernel, SmoothTransfer};
 
 use crate::surface::Rules;

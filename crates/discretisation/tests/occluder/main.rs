@@ -32,15 +32,15 @@ const CONSTANT: Cuts = Cuts {
 };
 
 /// Lower walls for methods that find too much light on them from constants.
-const FINER: [&[Part]; 2] = [&[(0.12, 3), (0.5, 7)], &[(0.1, 2), (1.0, 10)]];
+const FINER_LOWER_WALLS: [&[Part]; 2] = [&[(0.12, 3), (0.5, 7)], &[(0.1, 2), (1.0, 10)]];
 
 /// For Nyström's method with one point an element: one point is not enough for the whole lamp.
-const MIDPOINTS: Cuts = Cuts { lamp: &[(0.5, 2)], lower: FINER, ..CONSTANT };
+const MIDPOINTS: Cuts = Cuts { lamp: &[(0.5, 2)], lower: FINER_LOWER_WALLS, ..CONSTANT };
 
 /// For least squares, whose residual is largest in the corners of the ceiling.
 const LEAST_SQUARES: Cuts = Cuts {
     ceiling: &[(0.12, 9), (0.35, 6), (0.5, 1)],
-    lower: FINER,
+    lower: FINER_LOWER_WALLS,
     upper: [&[(0.12, 7), (0.5, 11)], &[(0.5, 7), (1.0, 12)]],
     ..CONSTANT
 };

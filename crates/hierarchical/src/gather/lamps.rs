@@ -8,7 +8,7 @@
 //! found once an element; what nothing can come between is open for all of its points. In scenes of
 //! very many occluders rays to a grid on each piece are counted instead. Metres.
 
-use super::shadows::{Covers, FLAT, Shadows};
+use super::shadows::{Covers, FLAT_HEIGHT, Shadows};
 use fredholm_coupling::form_factor::point_to_polygon;
 use fredholm_coupling::polygon::{HalfSpace, clip};
 use fredholm_mesh::{Patch, Vec3};
@@ -23,13 +23,13 @@ const MOST_PIECES: usize = 128;
 /// look through.
 const MOST_PAIRS: usize = 16_384;
 /// Occluders up to which their shadows are cut out exactly.
-const MANY: usize = 20_000;
+const MOST_EXACT_OCCLUDERS: usize = 20_000;
 /// Patches of a piece up to which the room between it and an element is a shaft for each.
 const FEW_PATCHES: usize = 8;
 /// How often a triangle of a piece is halved both ways for the grid that rays go to.
 const HALVINGS: u32 = 3;
 /// Points without which no plane through the scene has anything on both of its sides, in radii.
-const FAR: f64 = 10.0;
+const FAR_RADII: f64 = 10.0;
 /// Points that are looked at one by one, behind what may come between any of them and a piece.
 const FEW_POINTS: usize = 12;
 /// Bodies that hide parts of a piece from all points between which its factors are interpolated, at
@@ -41,11 +41,11 @@ const MANY_POINTS: usize = 20;
 const MOST_POINTS: usize = 256;
 /// How far such factors may be from being linear between two nodes, over their size. What the
 /// polynomial of degree 2 leaves is much less.
-const BENT: f64 = 0.005;
+const LINEAR_TOLERANCE: f64 = 0.005;
 /// How often a plane between two convex sets is looked for.
-const TRIALS: usize = 6;
+const PLANE_TRIALS: usize = 6;
 /// Relative difference of areas that is none.
-const SAME: f64 = 1e-6;
+const AREA_TOLERANCE: f64 = 1e-6;
 
 /// A convex part of the surfaces of one lamp.
 #[derive(Debug)]
@@ -104,11 +104,11 @@ impl<'a> Lamps<'a> {
         elements: Vec<&'a Patch>,
         occluders: &'a Occluders,
     ) -> Result<Option<Self>, VisibilityError> {
-        let exact = occluders.len() <= MANY;
+        let exact = occluders.len() <= MOST_EXACT_OCCLUDERS;
         let mut pieces = Vec::new();
         for (lamp, patches) in lamps.iter().enumerate() {
             // Thousands of small lamps are not worth being put together.
-            if patches.len() > MANY {
+            if patches.len() > MOST_EXACT_OCCLUDERS {
                 return Ok(None);
             }
             pieces.extend(put_together(lamp, patches, exact)?);
@@ -222,7 +222,7 @@ impl Piece {
 
     /// A length that counts as none, seen from `x`, m.
     fn least(&self, x: Vec3) -> f64 {
-        FLAT * (self.ball.0.distance(x) + self.ball.1)
+        FLAT_HEIGHT * (self.ball.0.distance(x) + self.ball.1)
     }
 
     /// The corners of the outline as seen from `x`, relative to it; none where nothing is seen.
@@ -242,10 +242,10 @@ impl Piece {
 /// The outline of a convex solid: its edges between a face that looks at `x` and one that does not,
 /// one behind the other.
 fn silhouette(body: &Body, x: Vec3, tolerance: f64, out: &mut Vec<Vec3>) {
-    const NONE: u32 = u32::MAX;
+    const NO_CORNER: u32 = u32::MAX;
     let lit: Vec<bool> = body.faces().iter().map(|face| face.height(x) > tolerance).collect();
-    let mut next = vec![NONE; body.corners().len()];
-    let mut first = NONE;
+    let mut next = vec![NO_CORNER; body.corners().len()];
+    let mut first = NO_CORNER;
     for edge in body.edges() {
         let [left, right] = edge.faces.map(|face| lit[face as usize]);
         if left != right {
@@ -256,7 +256,7 @@ fn silhouette(body: &Body, x: Vec3, tolerance: f64, out: &mut Vec<Vec3>) {
         }
     }
     let mut at = first;
-    while at != NONE && out.len() <= next.len() {
+    while at != NO_CORNER && out.len() <= next.len() {
         out.push(body.corners()[at as usize] - x);
         at = next[at as usize];
         if at == first {
@@ -276,7 +276,7 @@ fn put_together(lamp: usize, patches: &[&Patch], exact: bool) -> Result<Vec<Piec
     let far: Vec<Vec3> = (0..8)
         .map(|k| {
             let sign = |bit: u32| if k >> bit & 1 == 1 { 1.0 } else { -1.0 };
-            centre + FAR * radius.max(f64::MIN_POSITIVE) * Vec3::new(sign(0), sign(1), sign(2))
+            centre + FAR_RADII * radius.max(f64::MIN_POSITIVE) * Vec3::new(sign(0), sign(1), sign(2))
         })
         .collect();
     let occluders = Occluders::new(&owned)?;
@@ -299,7 +299,7 @@ fn put_together(lamp: usize, patches: &[&Patch], exact: bool) -> Result<Vec<Piec
 /// A body as a piece, where the patches on it make up all of its surface and are lit outside.
 fn piece(lamp: usize, body: &Body, patches: &[Patch], tolerance: f64, exact: bool) -> Option<Piece> {
     let on = |patch: &&Patch, normal: Vec3, offset: f64| {
-        patch.normal().dot(normal) > 1.0 - SAME
+        patch.normal().dot(normal) > 1.0 - AREA_TOLERANCE
             && patch.corners().iter().all(|x| (normal.dot(*x) - offset).abs() <= tolerance)
     };
     if body.is_solid() {
@@ -310,7 +310,7 @@ fn piece(lamp: usize, body: &Body, patches: &[Patch], tolerance: f64, exact: boo
             patches.iter().filter(|patch| inside(patch.centroid())).filter(outside).copied().collect();
         let covered: f64 = own.iter().map(Patch::area).sum();
         let surface = surface(body);
-        let closed = (covered - surface).abs() <= SAME * surface;
+        let closed = (covered - surface).abs() <= AREA_TOLERANCE * surface;
         let corners = body.corners().to_vec();
         let shape = Shape::Solid(body.clone());
         return (closed && exact).then(|| Piece { lamp, shape, ball: ball(&corners), corners, patches: own });
@@ -332,7 +332,8 @@ fn piece(lamp: usize, body: &Body, patches: &[Patch], tolerance: f64, exact: boo
     let area = (2..corners.len())
         .map(|k| 0.5 * (corners[k - 1] - corners[0]).cross(corners[k] - corners[0]).dot(normal))
         .sum::<f64>();
-    ((covered - area).abs() <= SAME * area).then(|| Piece::flat(lamp, corners.to_vec(), normal, own))
+    ((covered - area).abs() <= AREA_TOLERANCE * area)
+        .then(|| Piece::flat(lamp, corners.to_vec(), normal, own))
 }
 
 /// Area of the surface of a solid by the divergence theorem over its edges, m².
@@ -474,7 +475,7 @@ fn is_apart(region: &[Vec3], piece: &[Vec3], body: &[Vec3]) -> bool {
         found
     };
     let mut v = region[0] - body[0];
-    for _ in 0..TRIALS {
+    for _ in 0..PLANE_TRIALS {
         let (height, a) = least(v, &mut region.iter().chain(piece));
         let (depth, b) = least(-v, &mut body.iter());
         if height + depth > 0.0 {
@@ -620,7 +621,7 @@ impl Lighter<'_> {
             let value = self.factor(sight, group.piece.least(x), normal);
             values[i][j] = value;
             let at = |[i, j]: [usize; 2]| values[i][j];
-            if ends.is_some_and(|[a, b]| (value - 0.5 * (at(a) + at(b))).abs() > BENT * value) {
+            if ends.is_some_and(|[a, b]| (value - 0.5 * (at(a) + at(b))).abs() > LINEAR_TOLERANCE * value) {
                 return None;
             }
         }

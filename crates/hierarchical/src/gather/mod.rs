@@ -34,7 +34,7 @@ pub use walk::Gatherer;
 /// Points that one thread takes at a time.
 const CHUNK: usize = 16;
 /// Share of the mean irradiance that counts as present everywhere: nothing is resolved below it.
-const FLOOR: f64 = 0.01;
+const IRRADIANCE_FLOOR: f64 = 0.01;
 
 /// A solution as points see it.
 #[derive(Debug)]
@@ -101,7 +101,7 @@ impl<'a> Gather<'a> {
     /// The irradiance expected at a point where nothing is known of it, of each band, W/m².
     #[must_use]
     pub fn usual(&self) -> Vec<f64> {
-        self.floor.iter().map(|e| e / FLOOR).collect()
+        self.floor.iter().map(|e| e / IRRADIANCE_FLOOR).collect()
     }
 
     /// The tree that is gathered from.
@@ -163,5 +163,5 @@ fn floor(tree: &Tree, order: &[u32], irradiance: &MultiVector<f64>) -> Vec<f64> 
         area += size;
         squares.iter_mut().zip(irradiance.row(i)).for_each(|(sum, e)| *sum += size * e * e);
     }
-    squares.into_iter().map(|sum| FLOOR * (sum / area).sqrt()).collect()
+    squares.into_iter().map(|sum| IRRADIANCE_FLOOR * (sum / area).sqrt()).collect()
 }

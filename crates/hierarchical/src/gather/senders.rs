@@ -9,7 +9,7 @@ use fredholm_linop::MultiVector;
 use fredholm_mesh::{Bounds, Patch, Vec3};
 
 /// Share of the area of a buried leaf that counts as exposed, so that shares are numbers.
-const BURIED: f64 = 1e-9;
+const BURIED_SHARE: f64 = 1e-9;
 
 #[derive(Debug)]
 pub(super) struct Senders {
@@ -32,7 +32,7 @@ impl Senders {
         let mut areas = vec![0.0; nodes];
         for (i, &leaf) in order.iter().enumerate() {
             let area = tree.nodes()[leaf as usize].area();
-            areas[leaf as usize] = leaves.exposed[i].max(BURIED * area);
+            areas[leaf as usize] = leaves.exposed[i].max(BURIED_SHARE * area);
             senders.mean.row_mut(leaf as usize).copy_from_slice(leaves.radiosity.row(i));
         }
         for node in (0..nodes).rev() {

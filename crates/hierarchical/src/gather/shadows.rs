@@ -18,10 +18,10 @@ const MOST_PIECES: usize = 4096;
 const HALVINGS: u32 = 5;
 
 /// Cosine of the angle from the middle of a polygon up to which it is seen on a screen.
-const NARROWEST: f64 = 0.1;
+const LEAST_SCREEN_COSINE: f64 = 0.1;
 
 /// Heights below this part of the distance count as 0.
-pub(super) const FLAT: f64 = 1e-12;
+pub(super) const FLAT_HEIGHT: f64 = 1e-12;
 
 /// How a shadow lies to a group of points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -225,7 +225,7 @@ impl Screen {
     /// the screen.
     fn bounds(&self, points: &[Vec3]) -> Bounds {
         let Some([u, v, to]) = self.0 else { return Bounds::ALL };
-        let mut bounds = Bounds::NOTHING;
+        let mut bounds = Bounds::EMPTY;
         for &y in points {
             if is_beside(to, y) {
                 return Bounds::ALL;
@@ -243,12 +243,12 @@ impl Screen {
 /// Whether a point is seen far from a direction, or behind.
 fn is_beside(to: Vec3, y: Vec3) -> bool {
     let along = to.dot(y);
-    along <= 0.0 || along * along <= NARROWEST * NARROWEST * y.length_squared()
+    along <= 0.0 || along * along <= LEAST_SCREEN_COSINE * LEAST_SCREEN_COSINE * y.length_squared()
 }
 
 impl Bounds {
     const ALL: Self = Self([f64::NEG_INFINITY; 2], [f64::INFINITY; 2]);
-    const NOTHING: Self = Self([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    const EMPTY: Self = Self([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
 
     fn meets(&self, other: &Self) -> bool {
         (0..2).all(|i| self.0[i] <= other.1[i] && other.0[i] <= self.1[i])

@@ -1,6 +1,6 @@
 //! The walk down the tree for one point.
 
-use super::shadows::{Covers, FLAT, Shadows};
+use super::shadows::{Covers, FLAT_HEIGHT, Shadows};
 use super::{Gather, Senders};
 use crate::tree::Node;
 use fredholm_coupling::Receiver;
@@ -14,15 +14,15 @@ use std::ops::Range;
 
 /// Bodies in a scene up to which their shadows are cut out exactly; behind more of them segments to
 /// points of a node are tested.
-const FEW: usize = 256;
+const MOST_EXACT_BODIES: usize = 256;
 /// Bodies in a scene up to which those before strong senders are looked for.
-const MOST: usize = 10_000;
+const MOST_BODIES: usize = 10_000;
 /// Part of the irradiance above which a node behind some of many bodies is cut exactly.
-const STRONG: f64 = 0.02;
+const LEAST_EXACT_SHARE: f64 = 0.02;
 /// Points along a side of the grid on a node that brings all of the irradiance.
-const SIDE: f64 = 8.0;
+const MOST_POINTS_ALONG_SIDE: f64 = 8.0;
 /// Deviation of the kernel over its mean, for a node of radius r at distance d, over r/d.
-const BEND: f64 = 2.0;
+const KERNEL_DEVIATION: f64 = 2.0;
 
 /// Gathers for one thread; buffers are kept from point to point.
 #[derive(Debug)]
@@ -77,7 +77,7 @@ impl<'g> Gatherer<'g> {
     }
 
     fn is_exact(&self) -> bool {
-        self.gather.bodies.as_slice().len() <= FEW
+        self.gather.bodies.as_slice().len() <= MOST_EXACT_BODIES
     }
 
     fn node(&self, index: u32) -> &'g Node {
@@ -96,7 +96,7 @@ impl<'g> Gatherer<'g> {
             return;
         }
         let start = self.lists.len();
-        let flat = FLAT * (to.length() + radius);
+        let flat = FLAT_HEIGHT * (to.length() + radius);
         let seen = match self.node(index).patch() {
             Some(patch) => {
                 self.face(patch, flat)
@@ -165,7 +165,7 @@ impl<'g> Gatherer<'g> {
         let (nearest, sine) = (distance - radius, radius / distance);
         let cosine = ((self.receiver.normal.dot(to) + radius) / nearest).clamp(0.0, 1.0);
         let factor = (sine * sine).min(cosine * area / (PI * nearest * nearest));
-        (factor, (BEND * sine).min(1.0))
+        (factor, (KERNEL_DEVIATION * sine).min(1.0))
     }
 
     /// Adds what comes from a node, of one radiosity.
@@ -198,7 +198,7 @@ impl<'g> Gatherer<'g> {
         let Some(patch) = self.node(index).patch() else { return open };
         let expected = self.expected.iter().zip(self.senders().mean(index));
         let part = expected.map(|(e, b)| if *e > 0.0 { open * b / e } else { 0.0 }).fold(0.0, f64::max);
-        let exact = if part > STRONG { self.cut(patch, flat) } else { None };
+        let exact = if part > LEAST_EXACT_SHARE { self.cut(patch, flat) } else { None };
         exact.unwrap_or_else(|| open * self.sampled(patch, part))
     }
 
@@ -206,7 +206,7 @@ impl<'g> Gatherer<'g> {
     fn cut(&mut self, patch: &Patch, flat: f64) -> Option<f64> {
         let Gather { occluders, bodies, .. } = self.gather;
         let Receiver { point, normal } = self.receiver;
-        if bodies.as_slice().len() > MOST {
+        if bodies.as_slice().len() > MOST_BODIES {
             return None;
         }
         let shaft = occluders.shaft_from(point, patch);
@@ -214,13 +214,13 @@ impl<'g> Gatherer<'g> {
         self.shadows.cast(point, normal, bodies.as_slice().iter().filter(reaches), bodies.tolerance());
         let all: Vec<u32> = (0..self.shadows.len() as u32).collect();
         self.shadows.turn(&self.front);
-        (all.len() <= FEW).then(|| self.shadows.factor(normal, &self.front, &all, flat))
+        (all.len() <= MOST_EXACT_BODIES).then(|| self.shadows.factor(normal, &self.front, &all, flat))
     }
 
     /// Share of what comes from a grid of points on a node that is seen; the grid is finer on nodes
     /// that bring a larger part of the irradiance.
     fn sampled(&self, patch: &Patch, part: f64) -> f64 {
-        let side = (SIDE * part.sqrt()).ceil().clamp(1.0, SIDE) as usize;
+        let side = (MOST_POINTS_ALONG_SIDE * part.sqrt()).ceil().clamp(1.0, MOST_POINTS_ALONG_SIDE) as usize;
         let middle = |k: usize| (k as f64 + 0.5) / side as f64;
         let place = |k: usize| folded(patch, middle(k / side), middle(k % side));
         let Receiver { point, normal } = self.receiver;

@@ -16,8 +16,8 @@ use crate::tree::Tree;
 use fredholm_mesh::{Patch, Vec3};
 
 /// Uncertainty of a share of which all rays say the same, and of any other.
-const UNANIMOUS: f64 = 0.05;
-const MIXED: f64 = 0.2;
+const UNANIMOUS_UNCERTAINTY: f64 = 0.05;
+const MIXED_UNCERTAINTY: f64 = 0.2;
 /// Most rays of a pair.
 const MOST_RAYS: usize = 40;
 
@@ -176,12 +176,12 @@ pub(super) fn meet(viewer: &mut Viewer, ends: [&End; 2], near: bool) -> Meeting 
     let whole = [0, 1].map(|k| looks[k].side.at_least(least(k)));
     let (seen, [all, clear]) = rays(viewer, ends);
     if clear == all {
-        return Meeting { open, share: 1.0, sides: whole, doubt: UNANIMOUS };
+        return Meeting { open, share: 1.0, sides: whole, doubt: UNANIMOUS_UNCERTAINTY };
     }
     let views = [0, 1].map(|k| looks[k].seen(ends[k], &seen[k]));
     let (share, partly, doubt) = weigh(views[0], views[1]);
     let sides = [0, 1].map(|k| partly[k].at_least_of(&whole[k], share));
-    let unsure = if clear == 0 { UNANIMOUS } else { MIXED };
+    let unsure = if clear == 0 { UNANIMOUS_UNCERTAINTY } else { MIXED_UNCERTAINTY };
     Meeting { open, share, sides, doubt: doubt.max(unsure) }
 }
 

@@ -37,12 +37,12 @@ fn near(p: &Node, q: &Node) -> bool {
 
 /// Share of what two nodes would exchange face to face that they may exchange where no part of one
 /// is seen from the parts of the other, but some members may be.
-const GRAZING: f64 = 0.02;
+const GRAZING_SHARE: f64 = 0.02;
 
 /// Nodes that hardly see each other.
 fn grazing(p: &Node, q: &Node) -> Meeting {
     let distance = p.cone().centre.distance(q.cone().centre);
-    let open = GRAZING * p.area() * q.area() / (std::f64::consts::PI * distance * distance);
+    let open = GRAZING_SHARE * p.area() * q.area() / (std::f64::consts::PI * distance * distance);
     let side = Side::default().at_least(CLOSE_DEVIATION);
     Meeting { open: open.min(p.area()).min(q.area()), share: 0.0, sides: [side; 2], doubt: 1.0 }
 }

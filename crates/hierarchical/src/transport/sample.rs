@@ -5,20 +5,20 @@
 //! members if that is more, is the rest. Lengths in metres.
 
 use super::scattered::place;
-use super::side::{OUTER, Points, Side};
+use super::side::{POINTS_OF_THE_MEAN, Points, Side};
 use crate::tree::{Node, Tree};
 use fredholm_mesh::{Patch, Vec3};
 
 /// Part of the variance of places that is added in all directions before a linear function is
 /// fitted.
-const RIDGE: f64 = 1e-3;
+const RIDGE_SHARE: f64 = 1e-3;
 
 /// Radius of a flat part, over that of the cluster, from which on its quarters stand for it.
 const LARGE_PART_RADIUS: f64 = 0.5;
 /// Least samples of a bent cluster.
-const SAMPLES: usize = 8;
+const LEAST_SAMPLES: usize = 8;
 /// Numbers that are fitted to the samples.
-const FITTED: usize = 4;
+const FITTED_NUMBERS: usize = 4;
 /// A part of a bent cluster.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sample {
@@ -39,11 +39,11 @@ pub(super) struct Sample {
 pub(super) fn samples(tree: &Tree, index: u32) -> Vec<Sample> {
     let parts = tree.parts(index);
     let large = LARGE_PART_RADIUS * tree.nodes()[index as usize].cone().radius;
-    let mut samples = Vec::with_capacity(SAMPLES);
+    let mut samples = Vec::with_capacity(LEAST_SAMPLES);
     for &part in &parts {
         let node = &tree.nodes()[part as usize];
         match node.patch() {
-            Some(patch) if parts.len() < SAMPLES || node.cone().radius > large => {
+            Some(patch) if parts.len() < LEAST_SAMPLES || node.cone().radius > large => {
                 quarters(patch, part, &mut samples);
             }
             Some(patch) => samples.push(Sample::of(part, node, node.centre(), patch.normal())),
@@ -58,7 +58,7 @@ pub(super) fn samples(tree: &Tree, index: u32) -> Vec<Sample> {
 }
 
 fn quarters(patch: &Patch, part: u32, samples: &mut Vec<Sample>) {
-    let area = patch.area() / OUTER as f64;
+    let area = patch.area() / POINTS_OF_THE_MEAN as f64;
     let quarter = |(k, &x): (usize, &Vec3)| Sample {
         centre: x,
         vector: patch.normal() * area,
@@ -67,7 +67,7 @@ fn quarters(patch: &Patch, part: u32, samples: &mut Vec<Sample>) {
         part,
         quarter: Some(k),
     };
-    samples.extend(Points::of(patch).at[..OUTER].iter().enumerate().map(quarter));
+    samples.extend(Points::of(patch).at[..POINTS_OF_THE_MEAN].iter().enumerate().map(quarter));
 }
 
 impl Sample {
@@ -107,7 +107,7 @@ pub(super) fn fit(samples: &[Sample], values: &[f64], probes: &[f64]) -> Side {
     let linear = |x: Vec3| 1.0 + gradient.dot(x - centre);
     let parts = over(&|k| (values[k] / mean - linear(samples[k].centre)).powi(2));
     let members = over(&|k| (probes[k] / mean - linear(samples[k].member[0])).powi(2));
-    let freedom = samples.len() as f64 / (samples.len() - FITTED) as f64;
+    let freedom = samples.len() as f64 / (samples.len() - FITTED_NUMBERS) as f64;
     let rest = (parts * freedom).max(members).sqrt();
     let explained = over(&|k| gradient.dot(offsets[k]).powi(2));
     Side { mean, gradient, deviation: rest.hypot(explained.sqrt()), rest }
@@ -122,7 +122,7 @@ fn slope(samples: &[Sample], offsets: &[Vec3], value: impl Fn(usize) -> f64) -> 
         moment += weighted * value(k);
     }
     let trace = square.x_axis.x + square.y_axis.y + square.z_axis.z;
-    let ridged = square + glam::DMat3::from_diagonal(Vec3::splat(RIDGE * trace));
+    let ridged = square + glam::DMat3::from_diagonal(Vec3::splat(RIDGE_SHARE * trace));
     if trace > 0.0 { ridged.inverse() * moment } else { Vec3::ZERO }
 }
 

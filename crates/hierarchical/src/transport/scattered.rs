@@ -7,8 +7,9 @@
 //! run, and their errors have nothing to do with each other: over the many small links of a
 //! receiver they average out. The standard error of the mean is the doubt of the link, so that an
 //! oracle divides what matters. The members of a scattered node receive very differently, which
-//! counts as a deviation of [`UNEVEN`]. Exchanges in m², lengths in metres. B. Smits, J. Arvo, D.
-//! Greenberg, SIGGRAPH 1994, doi:10.1145/192161.192277, for links of clusters that face all ways.
+//! counts as a deviation of [`SCATTERED_DEVIATION`]. Exchanges in m², lengths in metres. B. Smits,
+//! J. Arvo, D. Greenberg, SIGGRAPH 1994, doi:10.1145/192161.192277, for links of clusters that face
+//! all ways.
 
 use super::draw::Places;
 use super::sight::Viewer;
@@ -26,10 +27,10 @@ const APART_DISTANCE: f64 = 1.5;
 /// Deviation over a scattered node, over its mean. Members that face the sender receive up to five
 /// times the mean of a box, others nothing, and what many senders on one side do to them goes the
 /// same way and adds up: so such links must be small beside what counts.
-const UNEVEN: f64 = 20.0;
+const SCATTERED_DEVIATION: f64 = 20.0;
 /// Share of what two nodes would exchange face to face that they may exchange where no pair of
 /// points does.
-const GRAZING: f64 = 0.02;
+const GRAZING_SHARE: f64 = 0.02;
 /// Pairs of points of two nodes.
 pub(crate) struct Chance {
     /// Exchange A_a F_ab with nothing between, m².
@@ -71,10 +72,11 @@ impl Chance {
         let distance = a.cone().centre.distance(b.cone().centre);
         // What faces one way sees a sender of about this size under angles that vary by its own
         // size over the distance.
-        let deviations = [a, b]
-            .map(|node| if node.faces_one_way() { 2.0 * node.cone().radius / distance } else { UNEVEN });
+        let deviations = [a, b].map(|node| {
+            if node.faces_one_way() { 2.0 * node.cone().radius / distance } else { SCATTERED_DEVIATION }
+        });
         if sum <= 0.0 {
-            let open = GRAZING * areas / (PI * distance * distance);
+            let open = GRAZING_SHARE * areas / (PI * distance * distance);
             return Self { open: open.min(a.area()).min(b.area()), deviations, pairs, error: 1.0 };
         }
         let count = PAIRS as f64;

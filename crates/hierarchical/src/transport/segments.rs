@@ -4,22 +4,23 @@
 //! Where the patches are near each other K varies by orders, and of a few uniform segments hardly
 //! one is among those that count: the ratio of two sums is then too small or too large by several
 //! per cent, the same way in all pairs of a kind. So many segments are drawn, which costs little,
-//! and [`TESTED`] of them are tested, each chosen as likely as it weighs (resampling: D. B. Rubin,
-//! J. Am. Stat. Assoc. 82, 543–546, 1987; one at every step of the running sum: G. Kitagawa, J.
-//! Comput. Graph. Stat. 5, 1–25, 1996). The share is the part of them that gets through.
+//! and [`SEGMENTS_TESTED`] of them are tested, each chosen as likely as it weighs (resampling: D.
+//! B. Rubin, J. Am. Stat. Assoc. 82, 543–546, 1987; one at every step of the running sum: G.
+//! Kitagawa, J. Comput. Graph. Stat. 5, 1–25, 1996). The share is the part of them that gets
+//! through.
 
 use super::draw::Places;
-use super::side::{OUTER, POINTS, Points, Side};
+use super::side::{POINTS, POINTS_OF_THE_MEAN, Points, Side};
 use fredholm_coupling::kernel::lambert;
 use fredholm_mesh::{Patch, Vec3};
 
 /// Segments of a pair that are tested.
-const TESTED: usize = 16;
+const SEGMENTS_TESTED: usize = 16;
 /// Standard errors by which a share is taken to be uncertain.
-const ERRORS: f64 = 1.7;
+const STANDARD_ERRORS: f64 = 1.7;
 /// Distances of the centroids over the sum of the diameters, and how many segments are drawn for
 /// each part of either side below them.
-const DRAWN: [(f64, usize); 2] = [(0.75, 16), (1.5, 4)];
+const SEGMENTS_BY_DISTANCE: [(f64, usize); 2] = [(0.75, 16), (1.5, 4)];
 
 /// A segment, the parts of the patches that its ends are on, and the kernel between its ends, 1/m².
 #[derive(Clone, Copy, Debug)]
@@ -60,11 +61,12 @@ impl Segments {
     }
 
     fn draw(&mut self, [a, b]: [&Patch; 2], [xs, ys]: [&Points; 2]) {
-        let mut places = Places::at(xs.at[OUTER], ys.at[OUTER]);
+        let mut places = Places::at(xs.at[POINTS_OF_THE_MEAN], ys.at[POINTS_OF_THE_MEAN]);
         let distance = a.centroid().distance(b.centroid()) / (a.diameter() + b.diameter());
-        let number = DRAWN.iter().find(|(near, _)| distance < *near).map_or(1, |(_, number)| *number);
+        let number =
+            SEGMENTS_BY_DISTANCE.iter().find(|(near, _)| distance < *near).map_or(1, |(_, number)| *number);
         self.drawn.clear();
-        for parts in (0..OUTER).flat_map(|i| (0..OUTER).map(move |j| [i, j])) {
+        for parts in (0..POINTS_OF_THE_MEAN).flat_map(|i| (0..POINTS_OF_THE_MEAN).map(move |j| [i, j])) {
             for _ in 0..number {
                 let [(_, s), (_, t)] = places.next();
                 let ends = [xs.within(parts[0], s), ys.within(parts[1], t)];
@@ -77,8 +79,8 @@ impl Segments {
     }
 
     fn test(&self, weight: f64, points: [&Points; 2], clear: impl Fn(Vec3, Vec3) -> bool) -> Through {
-        let mut tallies = [[Tally::default(); OUTER]; 2];
-        let step = weight / TESTED as f64;
+        let mut tallies = [[Tally::default(); POINTS_OF_THE_MEAN]; 2];
+        let step = weight / SEGMENTS_TESTED as f64;
         // In the middle of the steps: no rounding of the running sum adds or loses one.
         let (mut next, mut sum, mut passed) = (0.5 * step, 0.0, 0.0);
         for Segment { ends: [x, y], parts, weight } in &self.drawn {
@@ -94,7 +96,7 @@ impl Segments {
                 side[part].add(*weight, times, through);
             }
         }
-        let share = passed / TESTED as f64;
+        let share = passed / SEGMENTS_TESTED as f64;
         let sides = [0, 1].map(|k| varied(points[k], &tallies[k], share));
         Through { share, sides, doubt: doubt(passed) }
     }
@@ -124,10 +126,10 @@ impl Tally {
 }
 
 /// How what is seen varies over a side, relative to the open exchange.
-fn varied(points: &Points, tallies: &[Tally; OUTER], share: f64) -> Side {
+fn varied(points: &Points, tallies: &[Tally; POINTS_OF_THE_MEAN], share: f64) -> Side {
     let side = |value: &dyn Fn(&Tally) -> f64| {
         // Nothing is known of the centroid: it is given the mean.
-        let mut values = [tallies.iter().map(value).sum::<f64>() / OUTER as f64; POINTS];
+        let mut values = [tallies.iter().map(value).sum::<f64>() / POINTS_OF_THE_MEAN as f64; POINTS];
         values.iter_mut().zip(tallies).for_each(|(x, tally)| *x = value(tally));
         points.side(&values)
     };
@@ -138,9 +140,9 @@ fn varied(points: &Points, tallies: &[Tally; OUTER], share: f64) -> Side {
 /// How uncertain a share is where so many of the tested segments got through: as if one more got
 /// through and one more did not (A. Agresti, B. A. Coull, Am. Stat. 52, 119–126, 1998).
 fn doubt(passed: f64) -> f64 {
-    let number = TESTED as f64 + 2.0;
+    let number = SEGMENTS_TESTED as f64 + 2.0;
     let share = (passed + 1.0) / number;
-    ERRORS * (share * (1.0 - share) / number).sqrt()
+    STANDARD_ERRORS * (share * (1.0 - share) / number).sqrt()
 }
 
 #[cfg(test)]

@@ -11,12 +11,12 @@ use fredholm_mesh::{Patch, Vec3};
 /// Points of a patch.
 pub(crate) const POINTS: usize = 5;
 /// Those that the mean is made of; the last point is the centroid.
-pub(super) const OUTER: usize = POINTS - 1;
+pub(super) const POINTS_OF_THE_MEAN: usize = POINTS - 1;
 /// Places of the two Gauss points of the unit interval.
-const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
+const GAUSS_POINTS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 /// Places on a triangle of the centroids of three of its quarters, and of the fourth a little off
 /// the middle, which is the fifth point.
-const QUARTERS: [[f64; 2]; OUTER] =
+const TRIANGLE_POINTS: [[f64; 2]; POINTS_OF_THE_MEAN] =
     [[1.0 / 6.0, 1.0 / 6.0], [2.0 / 3.0, 1.0 / 6.0], [1.0 / 6.0, 2.0 / 3.0], [1.0 / 3.0, 1.0 / 3.0]];
 
 /// What is known of a function over a patch.
@@ -62,9 +62,9 @@ pub(crate) struct Points<'a> {
 impl<'a> Points<'a> {
     pub fn of(patch: &'a Patch) -> Self {
         let at = std::array::from_fn(|k| match (k, patch.sides()) {
-            (OUTER, _) => patch.centroid(),
-            (_, 3) => patch.point(QUARTERS[k][0], QUARTERS[k][1]),
-            _ => patch.point(GAUSS[k / 2], GAUSS[k % 2]),
+            (POINTS_OF_THE_MEAN, _) => patch.centroid(),
+            (_, 3) => patch.point(TRIANGLE_POINTS[k][0], TRIANGLE_POINTS[k][1]),
+            _ => patch.point(GAUSS_POINTS[k / 2], GAUSS_POINTS[k % 2]),
         });
         Self { at, patch }
     }
@@ -81,7 +81,7 @@ impl<'a> Points<'a> {
                 2 => (half(0.0, r), half(1.0, s)),
                 _ => (half(1.0, -r), half(1.0, -s)),
             }
-        } else if k < OUTER {
+        } else if k < POINTS_OF_THE_MEAN {
             (half((k / 2) as f64, r), half((k % 2) as f64, s))
         } else {
             (half(0.5, r), half(0.5, s))
@@ -91,18 +91,18 @@ impl<'a> Points<'a> {
 
     /// What values at the points, of either sign or none, tell of the function.
     pub fn side(&self, values: &[f64; POINTS]) -> Side {
-        let mean = values[..OUTER].iter().sum::<f64>() / OUTER as f64;
+        let mean = values[..POINTS_OF_THE_MEAN].iter().sum::<f64>() / POINTS_OF_THE_MEAN as f64;
         if mean <= 0.0 {
             return Side::default();
         }
         let relative = values.map(|value| value / mean - 1.0);
         let gradient = self.gradient(&relative);
-        let centre = self.at[OUTER];
-        let root = |squares: f64| (squares / OUTER as f64).sqrt();
-        let left = (0..OUTER).map(|k| relative[k] - gradient.dot(self.at[k] - centre));
-        let bend = relative[OUTER];
+        let centre = self.at[POINTS_OF_THE_MEAN];
+        let root = |squares: f64| (squares / POINTS_OF_THE_MEAN as f64).sqrt();
+        let left = (0..POINTS_OF_THE_MEAN).map(|k| relative[k] - gradient.dot(self.at[k] - centre));
+        let bend = relative[POINTS_OF_THE_MEAN];
         let twist = root(left.map(|r| r * r).sum());
-        let deviation = root(relative[..OUTER].iter().map(|r| r * r).sum());
+        let deviation = root(relative[..POINTS_OF_THE_MEAN].iter().map(|r| r * r).sum());
         Side {
             mean,
             gradient: self.limited(gradient),
@@ -113,11 +113,11 @@ impl<'a> Points<'a> {
 
     /// The gradient in the plane that fits the outer points best.
     fn gradient(&self, values: &[f64; POINTS]) -> Vec3 {
-        let centre = self.at[OUTER];
+        let centre = self.at[POINTS_OF_THE_MEAN];
         let u = (self.at[0] - centre).normalize_or_zero();
         let v = self.patch.normal().cross(u);
         let (mut uu, mut uv, mut vv, mut fu, mut fv) = (0.0, 0.0, 0.0, 0.0, 0.0);
-        for (x, f) in self.at[..OUTER].iter().zip(values) {
+        for (x, f) in self.at[..POINTS_OF_THE_MEAN].iter().zip(values) {
             let (s, t) = ((*x - centre).dot(u), (*x - centre).dot(v));
             (uu, uv, vv) = (uu + s * s, uv + s * t, vv + t * t);
             (fu, fv) = (fu + f * s, fv + f * t);
@@ -131,7 +131,7 @@ impl<'a> Points<'a> {
 
     /// The gradient, shortened where the linear function would be negative at a corner.
     fn limited(&self, gradient: Vec3) -> Vec3 {
-        let centre = self.at[OUTER];
+        let centre = self.at[POINTS_OF_THE_MEAN];
         let least = self.patch.corners().iter().map(|x| gradient.dot(*x - centre)).fold(0.0, f64::min);
         if least < -1.0 { gradient / -least } else { gradient }
     }
@@ -173,10 +173,11 @@ mod tests {
                 let places = (0..n * n).map(|p| points.within(k, [middle(p / n), middle(p % n)]));
                 places.sum::<Vec3>() / (n * n) as f64
             };
-            let outer: Vec3 = (0..OUTER).map(mean).sum::<Vec3>() / OUTER as f64;
+            let outer: Vec3 = (0..POINTS_OF_THE_MEAN).map(mean).sum::<Vec3>() / POINTS_OF_THE_MEAN as f64;
             assert!((outer - patch.centroid()).length() < 1e-3, "{outer}");
-            assert!((mean(OUTER) - patch.centroid()).length() < 1e-3);
-            (0..OUTER).for_each(|k| assert!((mean(k) - points.at[k]).length() < 0.1 * patch.area().sqrt()));
+            assert!((mean(POINTS_OF_THE_MEAN) - patch.centroid()).length() < 1e-3);
+            (0..POINTS_OF_THE_MEAN)
+                .for_each(|k| assert!((mean(k) - points.at[k]).length() < 0.1 * patch.area().sqrt()));
         }
     }
 

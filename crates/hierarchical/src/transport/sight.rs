@@ -19,12 +19,12 @@ use fredholm_visibility::body::{Bodies, Body, Shadow, ShadowVolume};
 /// Bodies in a scene up to which points see exactly.
 const MOST_EXACT_BODIES: usize = 256;
 /// Occluders between two patches up to which segments are tested against each of them.
-const LISTED: usize = 64;
+const MOST_LISTED_OCCLUDERS: usize = 64;
 
 /// Least uncertainty of a share that is neither 0 nor 1 for sure.
-const DOUBT: f64 = 0.2;
+const LEAST_UNCERTAINTY: f64 = 0.2;
 /// Spread that is added to both sides before they are weighed.
-const EVEN: f64 = 1e-3;
+const ADDED_SPREAD: f64 = 1e-3;
 
 /// What may come between the elements of a scene.
 #[derive(Clone, Copy, Debug)]
@@ -111,7 +111,7 @@ impl<'a> Viewer<'a> {
 
     fn behind_many(&mut self, a: &Patch, b: &Patch) -> View {
         let occluders = self.sight.occluders;
-        let listed = occluders.shaft_up_to(a, b, LISTED, &mut self.between);
+        let listed = occluders.shaft_up_to(a, b, MOST_LISTED_OCCLUDERS, &mut self.between);
         if self.between.is_empty() {
             return View::Open;
         }
@@ -130,7 +130,7 @@ impl<'a> Viewer<'a> {
 /// Puts together what the points of both sides see.
 fn view(a: Option<(f64, Side)>, b: Option<(f64, Side)>) -> View {
     let (share, sides, doubt) = weigh(a, b);
-    View::Part { share, sides, doubt: doubt.max(DOUBT) }
+    View::Part { share, sides, doubt: doubt.max(LEAST_UNCERTAINTY) }
 }
 
 /// The share that both sides make out, how it varies over them, and how far they differ.
@@ -138,10 +138,10 @@ pub(super) fn weigh(a: Option<(f64, Side)>, b: Option<(f64, Side)>) -> (f64, [Si
     let (share, doubt) = match (a, b) {
         (Some(a), Some(b)) => {
             // The side over which less varies knows the share better.
-            let (here, there) = (b.1.deviation + EVEN, a.1.deviation + EVEN);
+            let (here, there) = (b.1.deviation + ADDED_SPREAD, a.1.deviation + ADDED_SPREAD);
             ((here * a.0 + there * b.0) / (here + there), (a.0 - b.0).abs())
         }
-        (Some(one), None) | (None, Some(one)) => (one.0, DOUBT),
+        (Some(one), None) | (None, Some(one)) => (one.0, LEAST_UNCERTAINTY),
         (None, None) => (0.5, 0.5),
     };
     let sides =

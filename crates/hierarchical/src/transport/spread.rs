@@ -18,9 +18,9 @@ pub(crate) const CLOSE_DISTANCE: f64 = 1.5;
 pub(super) const CLOSE_DEVIATION: f64 = 1.0;
 
 /// How far inside a corner its factor is taken, over the distance from the centroid.
-const INSET: f64 = 0.1;
+const CORNER_INSET: f64 = 0.1;
 /// Share of a close patch that may see what one of its corners sees.
-const CORNER: f64 = 0.1;
+const CORNER_SHARE: f64 = 0.1;
 
 /// What a pair exchanges when open, roughly, and how that varies over both patches.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,9 +61,9 @@ fn far([a, b]: [&Patch; 2], [xs, ys]: [&Points; 2]) -> Spread {
 fn close([a, b]: [&Patch; 2], [xs, ys]: [&Points; 2], front: &mut Vec<Vec3>) -> Spread {
     let mut seen = |points: &Points, p: &Patch, q: &Patch| {
         let side = points.side(&points.at.map(|x| open_factor(x, p.normal(), q, front)));
-        let inset = |x: &Vec3| x.lerp(points.at[POINTS - 1], INSET);
+        let inset = |x: &Vec3| x.lerp(points.at[POINTS - 1], CORNER_INSET);
         let corners = p.corners().iter().map(|x| open_factor(inset(x), p.normal(), q, front));
-        (side, p.area() * side.mean.max(CORNER * corners.fold(0.0, f64::max)))
+        (side, p.area() * side.mean.max(CORNER_SHARE * corners.fold(0.0, f64::max)))
     };
     let ((over_a, from_a), (over_b, from_b)) = (seen(xs, a, b), seen(ys, b, a));
     let (mut sides, exchange) = ([over_a, over_b], from_a.max(from_b));

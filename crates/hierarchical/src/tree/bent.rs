@@ -6,7 +6,7 @@
 //! radiosity*, Rendering Techniques '99, 293–304; F. X. Sillion 1995, doi:10.1109/2945.466719.
 //! Lengths in metres.
 
-use super::{NONE, Node, Tree};
+use super::{NO_NODE, Node, Tree};
 use fredholm_mesh::Vec3;
 
 /// Parts that stand for a bent cluster, at most.
@@ -29,7 +29,7 @@ pub(super) struct Gist {
 /// Finds the gists of all clusters, from the elements up.
 pub(super) fn summarise(tree: &mut Tree) {
     for index in (0..tree.nodes.len()).rev() {
-        if tree.nodes[index].root == NONE {
+        if tree.nodes[index].root == NO_NODE {
             let node = &tree.nodes[index];
             let bent = node.patch.is_none() && is_fine(tree, index as u32);
             tree.nodes[index].gist = Gist { bent, ..gist(tree, node) };
@@ -41,7 +41,7 @@ pub(super) fn summarise(tree: &mut Tree) {
 /// bend. Over the two sides of an edge it is not, whatever is sent there.
 fn is_fine(tree: &Tree, index: u32) -> bool {
     let (parts, angle) = (tree.parts(index), tree.nodes[index as usize].cone.angle);
-    let elements = || parts.iter().all(|&part| tree.nodes[part as usize].root != NONE);
+    let elements = || parts.iter().all(|&part| tree.nodes[part as usize].root != NO_NODE);
     angle <= WIDEST_ANGLE && parts.len() == PARTS || angle <= WIDEST_OF_FEW && elements()
 }
 

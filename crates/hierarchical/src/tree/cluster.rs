@@ -1,37 +1,38 @@
 //! Clusters of input elements: a binary tree, first by place, then by plane, then by place in the
 //! plane.
 //!
-//! Elements of at most [`PLANES`] planes are parted between planes, others through the middle of
-//! their longest extent. Where nearly each element has a plane of its own, normals count as places,
-//! so that what faces elsewhere is parted from what only lies elsewhere. Elements of one plane are
-//! parted along a line that cuts none of them, where there is one. Lengths in metres.
+//! Elements of at most [`MOST_PLANES`] planes are parted between planes, others through the middle
+//! of their longest extent. Where nearly each element has a plane of its own, normals count as
+//! places, so that what faces elsewhere is parted from what only lies elsewhere. Elements of one
+//! plane are parted along a line that cuts none of them, where there is one. Lengths in metres.
 
 use super::hull::filled;
-use super::{Cone, NONE, Node, Tree};
+use super::{Cone, NO_NODE, Node, Tree};
 use fredholm_mesh::{Mesh, Patch, Vec3};
 
 /// Planes up to which a group is parted between planes.
-const PLANES: usize = 32;
-/// Planes from which on a group is curved, if each is met within [`SHARED`] elements.
-const CURVED: usize = 7;
-const SHARED: usize = 3;
+const MOST_PLANES: usize = 32;
+/// Planes from which on a group is curved, if each is met within [`MOST_ELEMENTS_BETWEEN_PLANES`]
+/// elements.
+const LEAST_CURVED_PLANES: usize = 7;
+const MOST_ELEMENTS_BETWEEN_PLANES: usize = 3;
 /// Length of a unit normal as a place, over the extent of the group.
-const TURNED: f64 = 0.5;
+const NORMAL_LENGTH: f64 = 0.5;
 /// Cosine of the angle between normals, less than 1 by this, up to which they count as one.
-const TURN: f64 = 1e-12;
+const COSINE_TOLERANCE: f64 = 1e-12;
 
 /// Appends the clusters and roots of a mesh, parents before children.
 pub(super) fn build(mesh: &Mesh, tolerance: f64, tree: &mut Tree) {
     let patches: Vec<&Patch> = mesh.patches().collect();
     let builder = Builder { mesh, patches, tolerance };
     let all: Vec<u32> = (0..mesh.len() as u32).collect();
-    let mut stack = vec![(NONE, all)];
+    let mut stack = vec![(NO_NODE, all)];
     while let Some((parent, order)) = stack.pop() {
         let index = tree.nodes.len() as u32;
         tree.nodes.push(Node { parent, ..builder.node(&order, index) });
-        if parent != NONE {
+        if parent != NO_NODE {
             let children = &mut tree.nodes[parent as usize].children;
-            children[usize::from(children[0] != NONE)] = index;
+            children[usize::from(children[0] != NO_NODE)] = index;
         }
         if let [single] = *order {
             tree.roots[single as usize] = index;
@@ -71,8 +72,10 @@ impl<'a> Builder<'a> {
         let (planes, met) = self.planes(&order);
         let (mut low, mut high) = match planes.len() {
             1 => self.in_one_plane(order),
-            count if count >= CURVED && met < SHARED * count => self.through_place_or_normal(order),
-            2..=PLANES => self.between_planes(order, &planes),
+            count if count >= LEAST_CURVED_PLANES && met < MOST_ELEMENTS_BETWEEN_PLANES * count => {
+                self.through_place_or_normal(order)
+            }
+            2..=MOST_PLANES => self.between_planes(order, &planes),
             _ => self.through_the_middle(order, [Vec3::X, Vec3::Y, Vec3::Z]),
         };
         if low.is_empty() || high.is_empty() {
@@ -84,18 +87,18 @@ impl<'a> Builder<'a> {
 
     fn same_plane(&self, k: u32, of: u32) -> bool {
         let (patch, first) = (self.patch(k), self.patch(of));
-        patch.normal().dot(first.normal()) > 1.0 - TURN
+        patch.normal().dot(first.normal()) > 1.0 - COSINE_TOLERANCE
             && (patch.corner(0) - first.corner(0)).dot(first.normal()).abs() <= self.tolerance
     }
 
-    /// One element of each plane, and how many elements were asked; more than [`PLANES`] are not
-    /// told apart.
+    /// One element of each plane, and how many elements were asked; more than [`MOST_PLANES`] are
+    /// not told apart.
     fn planes(&self, order: &[u32]) -> (Vec<u32>, usize) {
         let mut planes: Vec<u32> = Vec::new();
         for (met, &k) in order.iter().enumerate() {
             if !planes.iter().any(|&plane| self.same_plane(k, plane)) {
                 planes.push(k);
-                if planes.len() > PLANES {
+                if planes.len() > MOST_PLANES {
                     return (planes, met + 1);
                 }
             }
@@ -165,7 +168,7 @@ impl<'a> Builder<'a> {
         let axes = [Vec3::X, Vec3::Y, Vec3::Z];
         let place = |k: u32| self.patch(k).centroid();
         let extents = axes.map(|axis| extent(&order, |k| place(k).dot(axis)));
-        let length = TURNED * extents.iter().copied().fold(0.0, f64::max);
+        let length = NORMAL_LENGTH * extents.iter().copied().fold(0.0, f64::max);
         let normal = |k: u32| self.patch(k).normal() * length;
         let turns = axes.map(|axis| extent(&order, |k| normal(k).dot(axis)));
         match (widest(&extents), widest(&turns)) {

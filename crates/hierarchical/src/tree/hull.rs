@@ -8,10 +8,10 @@ use fredholm_mesh::{Patch, Vec3};
 
 /// Relative difference of areas up to which the hull counts as filled, and of the doubled area of a
 /// corner's triangle up to which it is none.
-const FILLED: f64 = 1e-9;
+const AREA_TOLERANCE: f64 = 1e-9;
 
 /// Tangent of the angle between a side and the order of corners: no simple number.
-const ASKEW: f64 = 0.412_7;
+const ORDER_TANGENT: f64 = 0.412_7;
 
 /// A point in the plane and in space.
 type Corner = ([f64; 2], Vec3);
@@ -26,7 +26,7 @@ pub(super) fn filled(patches: &[&Patch]) -> Option<Patch> {
         [a, b, c, d] => Patch::quad([a, b, c, d]).ok()??,
         _ => return None,
     };
-    ((patch.area() - area).abs() <= FILLED * area).then_some(patch)
+    ((patch.area() - area).abs() <= AREA_TOLERANCE * area).then_some(patch)
 }
 
 /// The corners in coordinates of the plane, sorted.
@@ -35,7 +35,7 @@ fn plane_corners(patches: &[&Patch]) -> Vec<Corner> {
     let side = (patches[0].corner(1) - origin).normalize();
     // Askew to the sides: of corners on a side across the order, rounding would decide which is the
     // first.
-    let u = (side + n.cross(side) * ASKEW).normalize();
+    let u = (side + n.cross(side) * ORDER_TANGENT).normalize();
     let v = n.cross(u);
     let flat = |x: &Vec3| ([(*x - origin).dot(u), (*x - origin).dot(v)], *x);
     let mut corners: Vec<Corner> =
@@ -46,7 +46,7 @@ fn plane_corners(patches: &[&Patch]) -> Vec<Corner> {
 
 /// The corners of the convex hull, counter-clockwise; those nearly on a side are left out.
 fn hull(corners: &[Corner], area: f64) -> Vec<Vec3> {
-    let least = FILLED * area;
+    let least = AREA_TOLERANCE * area;
     let mut lower = half(corners.iter().copied(), least);
     let mut upper = half(corners.iter().rev().copied(), least);
     lower.pop();

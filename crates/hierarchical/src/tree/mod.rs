@@ -19,7 +19,7 @@ pub(crate) use cone::Cone;
 use fredholm_mesh::{Mesh, Patch, Vec3};
 
 /// Stands for a node that does not exist.
-const NONE: u32 = u32::MAX;
+const NO_NODE: u32 = u32::MAX;
 
 /// A node of the tree.
 #[derive(Clone, Debug)]
@@ -50,32 +50,32 @@ impl Node {
     /// The node it is a part of; none for the first.
     #[must_use]
     pub fn parent(&self) -> Option<u32> {
-        (self.parent != NONE).then_some(self.parent)
+        (self.parent != NO_NODE).then_some(self.parent)
     }
 
     /// Its parts: two of a cluster, four of an element, none of a leaf.
     #[must_use]
     pub fn children(&self) -> &[u32] {
-        let count = self.children.iter().position(|&child| child == NONE).unwrap_or(4);
+        let count = self.children.iter().position(|&child| child == NO_NODE).unwrap_or(4);
         &self.children[..count]
     }
 
     /// The face it lies on; none for a cluster of several elements.
     #[must_use]
     pub fn face(&self) -> Option<usize> {
-        (self.face != NONE).then_some(self.face as usize)
+        (self.face != NO_NODE).then_some(self.face as usize)
     }
 
     /// The input element it is or lies on, as a leaf of the mesh; none for a cluster.
     #[must_use]
     pub fn root(&self) -> Option<usize> {
-        (self.root != NONE).then_some(self.root as usize)
+        (self.root != NO_NODE).then_some(self.root as usize)
     }
 
     /// Whether it has no children.
     #[must_use]
     pub fn is_leaf(&self) -> bool {
-        self.children[0] == NONE
+        self.children[0] == NO_NODE
     }
 
     /// Whether its elements fill a polygon or face about the same way.
@@ -123,7 +123,7 @@ impl Tree {
         if mesh.is_empty() {
             return Err(HierarchyError::Empty);
         }
-        let mut tree = Self { nodes: Vec::new(), roots: vec![NONE; mesh.len()], splits: Vec::new() };
+        let mut tree = Self { nodes: Vec::new(), roots: vec![NO_NODE; mesh.len()], splits: Vec::new() };
         cluster::build(mesh, tolerance, &mut tree);
         bent::summarise(&mut tree);
         Ok(tree)
@@ -170,7 +170,7 @@ impl Tree {
     pub fn split(&mut self, index: u32) -> Result<(), HierarchyError> {
         let node = &self.nodes[index as usize];
         let Some(patch) = node.patch.filter(|_| node.is_leaf()) else { return Ok(()) };
-        if self.nodes.len() + 4 >= NONE as usize {
+        if self.nodes.len() + 4 >= NO_NODE as usize {
             return Err(HierarchyError::TooLarge);
         }
         let (face, root, first) = (node.face, node.root, self.nodes.len() as u32);
@@ -187,13 +187,22 @@ impl Node {
     fn element(patch: Patch, face: u32, root: u32, number: u32) -> Self {
         let (cone, area) = (Cone::of(&patch), patch.area());
         let gist = Gist { vector: patch.normal() * area, centre: cone.centre, middle: number, bent: false };
-        Self { parent: NONE, children: [NONE; 4], face, root, patch: Some(patch), cone, area, gist }
+        Self { parent: NO_NODE, children: [NO_NODE; 4], face, root, patch: Some(patch), cone, area, gist }
     }
 
     /// A cluster whose gist is still to be found.
     fn cluster(patch: Option<Patch>, cone: Cone, area: f64) -> Self {
-        let gist = Gist { vector: Vec3::ZERO, centre: cone.centre, middle: NONE, bent: false };
-        Self { parent: NONE, children: [NONE; 4], face: NONE, root: NONE, patch, cone, area, gist }
+        let gist = Gist { vector: Vec3::ZERO, centre: cone.centre, middle: NO_NODE, bent: false };
+        Self {
+            parent: NO_NODE,
+            children: [NO_NODE; 4],
+            face: NO_NODE,
+            root: NO_NODE,
+            patch,
+            cone,
+            area,
+            gist,
+        }
     }
 }
 

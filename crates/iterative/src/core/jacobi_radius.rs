@@ -7,9 +7,9 @@
 use fredholm_linop::{Context, Halt, MultiVector, Scalar, SecondKind};
 
 /// Most steps.
-const STEPS: usize = 30;
+const MOST_STEPS: usize = 30;
 /// Relative change of the estimate that ends it.
-const CHANGE: f64 = 1e-3;
+const SETTLED_CHANGE: f64 = 1e-3;
 
 /// The estimate per right-hand side. One application of A a step.
 pub(crate) fn jacobi_radius<T: Scalar>(
@@ -21,13 +21,13 @@ pub(crate) fn jacobi_radius<T: Scalar>(
     let mut v = MultiVector::from_fn(dim, rhs_count, |_, _| T::one());
     let mut image = v.clone();
     let mut radius = vec![0.0; rhs_count];
-    for _ in 0..STEPS {
+    for _ in 0..MOST_STEPS {
         normalise(&mut v);
         context.apply(a, &v, &mut image)?;
         let terms = image.as_slice().iter().zip(divisors.as_slice());
         v.as_mut_slice().iter_mut().zip(terms).for_each(|(v, (&av, &divisor))| *v -= av / divisor);
         let found = v.norms();
-        let settled = found.iter().zip(&radius).all(|(new, old)| (new - old).abs() <= CHANGE * new);
+        let settled = found.iter().zip(&radius).all(|(new, old)| (new - old).abs() <= SETTLED_CHANGE * new);
         radius = found;
         if settled {
             break;

@@ -60,7 +60,7 @@ use rhs::Rhs;
 use std::ops::Range;
 
 /// How much more unshot power a column that is to be computed must promise than one that is there.
-const FRESH: f64 = 2.0;
+const FRESH_COLUMN_RATIO: f64 = 2.0;
 
 /// What shoots: groups of elements, as ranges in an order of the elements, and the areas of the
 /// elements in m².
@@ -85,7 +85,7 @@ pub struct MultilevelShooting<'a> {
     /// The column of a shot, by element and by place.
     column: Vec<f64>,
     exchanges: Vec<f64>,
-    /// Per group 1, or 1/[`FRESH`] as long as its column is to be computed.
+    /// Per group 1, or 1/[`FRESH_COLUMN_RATIO`] as long as its column is to be computed.
     worth: Vec<f64>,
     /// Per group the unshot power in the band where it is largest, over ‖b‖₂.
     sizes: Vec<f64>,
@@ -119,7 +119,7 @@ impl<'a> MultilevelShooting<'a> {
             scaling,
             column: vec![0.0; dim],
             exchanges: vec![0.0; dim],
-            worth: vec![FRESH.recip(); frame.groups.len()],
+            worth: vec![FRESH_COLUMN_RATIO.recip(); frame.groups.len()],
             sizes: vec![0.0; frame.groups.len()],
         })
     }

@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 /// Places that a running sum takes at a time: within them nothing waits for the sum before.
-const STEP: usize = 4;
+const PLACES_A_STEP: usize = 4;
 
 /// x, G x, r and D of one right-hand side in the order of the groups, and Σ A r over the places
 /// before each.
@@ -69,16 +69,16 @@ impl Rhs {
     }
 
     fn sum_up(&mut self, areas: &[f64]) {
-        let (mut before, mut left) = (0.0, [0.0; STEP]);
-        let own = areas.chunks(STEP).zip(self.unshot.chunks(STEP));
-        for ((areas, unshot), sums) in own.zip(self.sums[1..].chunks_mut(STEP)) {
-            let mut powers = [0.0; STEP];
+        let (mut before, mut left) = (0.0, [0.0; PLACES_A_STEP]);
+        let own = areas.chunks(PLACES_A_STEP).zip(self.unshot.chunks(PLACES_A_STEP));
+        for ((areas, unshot), sums) in own.zip(self.sums[1..].chunks_mut(PLACES_A_STEP)) {
+            let mut powers = [0.0; PLACES_A_STEP];
             powers.iter_mut().zip(areas).zip(unshot).for_each(|((power, area), r)| *power = area * r);
             let [a, b, c, d] = powers;
             let running = [a, a + b, (a + b) + c, (a + b) + (c + d)];
             sums.iter_mut().zip(running).for_each(|(sum, running)| *sum = before + running);
             left.iter_mut().zip(powers).for_each(|(left, power)| *left += power.abs());
-            before += running[STEP - 1];
+            before += running[PLACES_A_STEP - 1];
         }
         self.left = (left[0] + left[1]) + (left[2] + left[3]);
     }

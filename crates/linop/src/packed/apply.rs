@@ -7,18 +7,18 @@
 
 use super::planar::{Planar, PlanarMut};
 use super::strip::{Both, Strip};
-use super::{PackedSymmetric, ROWS, Storage, TILE};
+use super::{COLUMNS_OF_A_TILE, PackedSymmetric, ROWS_TOGETHER, Storage};
 use crate::MultiVector;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use std::ops::Range;
 
 /// Most runs of rows: enough to balance the threads, few enough for a vector each.
-const RUNS: usize = 32;
+const MOST_RUNS: usize = 32;
 /// Fewest entries worth a run.
 const FEWEST_ENTRIES_OF_A_RUN: usize = 1 << 15;
 /// Unknowns added at a time.
-const BLOCK: usize = 1 << 10;
+const UNKNOWNS_OF_A_BLOCK: usize = 1 << 10;
 
 pub(super) fn apply<S: Storage>(matrix: &PackedSymmetric<S>, x: &MultiVector<f64>, y: &mut MultiVector<f64>) {
     let (planar, runs) = (Planar::copied(x), runs(matrix.dim()));
@@ -30,13 +30,13 @@ pub(super) fn apply<S: Storage>(matrix: &PackedSymmetric<S>, x: &MultiVector<f64
         Arch::new().dispatch(Whole(&mut Product::new(matrix, rows, x.rhs_count(), &planar, part.view_mut())));
     });
     let rhs_count = x.rhs_count().max(1);
-    y.as_mut_slice().par_chunks_mut(BLOCK * rhs_count).enumerate().for_each(|(at, y)| {
-        let mut sums = [0.0; BLOCK];
+    y.as_mut_slice().par_chunks_mut(UNKNOWNS_OF_A_BLOCK * rhs_count).enumerate().for_each(|(at, y)| {
+        let mut sums = [0.0; UNKNOWNS_OF_A_BLOCK];
         for rhs in 0..x.rhs_count() {
             let sums = &mut sums[..y.len() / rhs_count];
             sums.fill(0.0);
             for part in &parts {
-                let part = part.vector(rhs).iter().skip(at * BLOCK);
+                let part = part.vector(rhs).iter().skip(at * UNKNOWNS_OF_A_BLOCK);
                 sums.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
             }
             y.iter_mut().skip(rhs).step_by(rhs_count).zip(sums).for_each(|(y, sum)| *y = *sum);
@@ -58,7 +58,7 @@ fn split<'a>(mut memory: &'a mut [f64], runs: &[Range<usize>], rhs_count: usize)
 /// Runs of rows that depend on the dimension alone. Row i ends at about i²/2 entries, so equal
 /// shares end at equal steps of i².
 fn runs(dim: usize) -> Vec<Range<usize>> {
-    let count = (dim * (dim + 1) / 2 / FEWEST_ENTRIES_OF_A_RUN).clamp(1, RUNS);
+    let count = (dim * (dim + 1) / 2 / FEWEST_ENTRIES_OF_A_RUN).clamp(1, MOST_RUNS);
     let end = |run: usize| (dim as f64 * (run as f64 / count as f64).sqrt()).round() as usize;
     (0..count).map(|run| end(run)..end(run + 1)).collect()
 }
@@ -84,9 +84,9 @@ impl<S: Storage> WithSimd for Whole<'_, '_, S> {
     #[inline(always)]
     fn with_simd<V: Simd>(self, simd: V) {
         let Range { start, end } = self.0.rows;
-        let whole = start + (end - start) / ROWS * ROWS;
-        for first in (start..whole).step_by(ROWS) {
-            self.0.add_rows::<V, ROWS>(simd, first);
+        let whole = start + (end - start) / ROWS_TOGETHER * ROWS_TOGETHER;
+        for first in (start..whole).step_by(ROWS_TOGETHER) {
+            self.0.add_rows::<V, ROWS_TOGETHER>(simd, first);
         }
         for first in whole..end {
             self.0.add_rows::<V, 1>(simd, first);
@@ -102,7 +102,7 @@ impl<'a, S: Storage> Product<'a, S> {
         x: &'a Planar,
         y: PlanarMut<'a>,
     ) -> Self {
-        let zeros = vec![0.0; ROWS * rhs_count];
+        let zeros = vec![0.0; ROWS_TOGETHER * rhs_count];
         Self { matrix, rows, rhs_count, x, y, sums: zeros.clone(), factors: zeros }
     }
 
@@ -117,8 +117,8 @@ impl<'a, S: Storage> Product<'a, S> {
             let factors = &mut self.factors[r * self.rhs_count..(r + 1) * self.rhs_count];
             factors.iter_mut().zip(self.x.row(first + r)).for_each(|(factor, x)| *factor = x);
         }
-        for from in (0..first).step_by(TILE) {
-            let to = (from + TILE).min(first);
+        for from in (0..first).step_by(COLUMNS_OF_A_TILE) {
+            let to = (from + COLUMNS_OF_A_TILE).min(first);
             let tile = rows.map(|row| &row[from..]);
             let strip = Strip { rows: &tile, from };
             let (sums, factors) = (&mut self.sums[..count], &self.factors[..count]);

@@ -20,12 +20,12 @@ use rayon::prelude::*;
 use std::ops::ControlFlow;
 
 /// Rows taken at a time.
-const ROWS: usize = 4;
+const ROWS_TOGETHER: usize = 4;
 /// Fewest entries of a column worth a thread.
 const FEWEST_ENTRIES_OF_A_THREAD: usize = 1 << 11;
 /// Columns taken at a time: four rows of them stay in the innermost cache for both directions and
 /// all right-hand sides.
-const TILE: usize = 1 << 9;
+const COLUMNS_OF_A_TILE: usize = 1 << 9;
 
 mod sealed {
     pub trait Sealed {}

@@ -2,14 +2,15 @@
 //! g_rj x_jl and u_jl += Σ_r g_rj f_rl.
 //!
 //! Taking several rows at a time divides the traffic of x and u, which do not fit the innermost
-//! cache, by their number. At most [`RHS_AT_ONCE`] right-hand sides and [`PAIR`] rows are taken at
-//! a time by the innermost loops, so that everything that is summed stays in registers, the widest
-//! ones of the machine; a strip is short enough for the innermost cache to serve the repetitions.
-//! Every sum runs in [`WIDTH`] parts that are added in a fixed order, by fused operations that a
-//! machine without them emulates: the bits depend on the code alone, not on the machine.
+//! cache, by their number. At most [`RHS_AT_ONCE`] right-hand sides and [`ROWS_OF_A_PAIR`] rows are
+//! taken at a time by the innermost loops, so that everything that is summed stays in registers,
+//! the widest ones of the machine; a strip is short enough for the innermost cache to serve the
+//! repetitions. Every sum runs in [`WIDTH`] parts that are added in a fixed order, by fused
+//! operations that a machine without them emulates: the bits depend on the code alone, not on the
+//! machine.
 
 use super::planar::{Planar, PlanarMut};
-use super::{ROWS, Storage};
+use super::{ROWS_TOGETHER, Storage};
 use pulp::{Simd, WithSimd};
 
 /// Parts of a sum: no register holds more numbers.
@@ -17,12 +18,12 @@ const WIDTH: usize = 8;
 /// Most right-hand sides at a time.
 const RHS_AT_ONCE: usize = 3;
 /// Rows at a time, where there are several right-hand sides.
-const PAIR: usize = 2;
+const ROWS_OF_A_PAIR: usize = 2;
 /// Pieces that a row is read ahead of its products, where there are several right-hand sides:
 /// products that wait for an entry fill up the machine, and it asks for the next entries too late.
-const AHEAD: usize = 8;
+const PIECES_READ_AHEAD: usize = 8;
 
-/// Up to [`ROWS`] rows whose first entry stands in column `from`.
+/// Up to [`ROWS_TOGETHER`] rows whose first entry stands in column `from`.
 #[derive(Clone, Copy)]
 pub(super) struct Strip<'a, S> {
     pub rows: &'a [&'a [S]],
@@ -86,9 +87,9 @@ impl<S: Storage> Dot<'_, S> {
         for rhs in (0..rhs_count).step_by(RHS_AT_ONCE) {
             let at = Place { row: 0, rhs, rhs_count };
             match rhs_count - rhs {
-                1 => strip.dots::<V, ROWS, 1, K>(simd, at, x, sums),
-                2 => strip.dots::<V, PAIR, 2, K>(simd, at, x, sums),
-                _ => strip.dots::<V, PAIR, RHS_AT_ONCE, K>(simd, at, x, sums),
+                1 => strip.dots::<V, ROWS_TOGETHER, 1, K>(simd, at, x, sums),
+                2 => strip.dots::<V, ROWS_OF_A_PAIR, 2, K>(simd, at, x, sums),
+                _ => strip.dots::<V, ROWS_OF_A_PAIR, RHS_AT_ONCE, K>(simd, at, x, sums),
             }
         }
     }
@@ -104,9 +105,9 @@ impl<S: Storage> WithSimd for Add<'_, S> {
         for rhs in (0..rhs_count).step_by(RHS_AT_ONCE) {
             let at = Place { row: 0, rhs, rhs_count };
             match rhs_count - rhs {
-                1 => strip.adds::<V, ROWS, 1>(simd, at, factors, &mut u),
-                2 => strip.adds::<V, PAIR, 2>(simd, at, factors, &mut u),
-                _ => strip.adds::<V, PAIR, RHS_AT_ONCE>(simd, at, factors, &mut u),
+                1 => strip.adds::<V, ROWS_TOGETHER, 1>(simd, at, factors, &mut u),
+                2 => strip.adds::<V, ROWS_OF_A_PAIR, 2>(simd, at, factors, &mut u),
+                _ => strip.adds::<V, ROWS_OF_A_PAIR, RHS_AT_ONCE>(simd, at, factors, &mut u),
             }
         }
     }
@@ -134,10 +135,10 @@ impl<S: Storage> Both<'_, S> {
         for rhs in (0..rhs_count).step_by(RHS_AT_ONCE) {
             let at = Place { row: 0, rhs, rhs_count };
             match rhs_count - rhs {
-                1 => self.vectors::<V, ROWS, 1, K>(simd, at),
-                2 if K == 1 => self.vectors::<V, ROWS, 2, K>(simd, at),
-                2 => self.vectors::<V, PAIR, 2, K>(simd, at),
-                _ if K == 1 => self.vectors::<V, ROWS, RHS_AT_ONCE, K>(simd, at),
+                1 => self.vectors::<V, ROWS_TOGETHER, 1, K>(simd, at),
+                2 if K == 1 => self.vectors::<V, ROWS_TOGETHER, 2, K>(simd, at),
+                2 => self.vectors::<V, ROWS_OF_A_PAIR, 2, K>(simd, at),
+                _ if K == 1 => self.vectors::<V, ROWS_TOGETHER, RHS_AT_ONCE, K>(simd, at),
                 // Machines of narrow registers have few of them, too: no more sums than fit.
                 _ => self.vectors::<V, 1, RHS_AT_ONCE, K>(simd, at),
             }
@@ -360,7 +361,7 @@ fn both<V: Simd, S: Storage, const R: usize, const L: usize, const K: usize>(
     let pieces = rows.map(|row| &row.as_chunks::<WIDTH>().0[..blocks]);
     let ahead = rows.map(|row| {
         let all = row.as_chunks::<WIDTH>().0;
-        &all[AHEAD.min(all.len() - blocks)..][..blocks]
+        &all[PIECES_READ_AHEAD.min(all.len() - blocks)..][..blocks]
     });
     let x_pieces = xs.map(|x| &V::as_simd_f64s(x).0[..blocks * K]);
     let u_pieces = us.each_mut().map(|u| &mut V::as_mut_simd_f64s(u).0[..blocks * K]);
@@ -448,7 +449,7 @@ mod tests {
     fn every_right_hand_side_count_and_remainder_gives_the_plain_sums() {
         for rhs_count in 0..9 {
             for n in 0..20 {
-                (1..=ROWS).for_each(|rows| check(rows, n, rhs_count));
+                (1..=ROWS_TOGETHER).for_each(|rows| check(rows, n, rhs_count));
             }
         }
     }

@@ -8,7 +8,7 @@
 
 use super::planar::Planar;
 use super::strip::{Add, Dot, Strip};
-use super::{PackedSymmetric, ROWS, Storage, TILE};
+use super::{COLUMNS_OF_A_TILE, PackedSymmetric, ROWS_TOGETHER, Storage};
 use crate::{MultiVector, Relax, Sweep, Visit};
 use pulp::{Arch, Simd, WithSimd};
 use std::ops::ControlFlow;
@@ -21,9 +21,9 @@ pub(super) fn sweep<S: Storage>(
 ) -> ControlFlow<()> {
     let upper = Planar::copied(&sweep.upper);
     let mut pass = Pass::new(x, sweep, upper);
-    let whole = matrix.dim() / ROWS * ROWS;
-    for first in (0..whole).step_by(ROWS) {
-        pass.visit_rows::<S, ROWS>(matrix.packed_rows(first), first, relax)?;
+    let whole = matrix.dim() / ROWS_TOGETHER * ROWS_TOGETHER;
+    for first in (0..whole).step_by(ROWS_TOGETHER) {
+        pass.visit_rows::<S, ROWS_TOGETHER>(matrix.packed_rows(first), first, relax)?;
     }
     for first in whole..matrix.dim() {
         pass.visit_rows::<S, 1>(matrix.packed_rows(first), first, relax)?;
@@ -41,12 +41,12 @@ pub(super) fn sweep_back<S: Storage>(
 ) -> ControlFlow<()> {
     let upper = Planar::zeros(x.dim(), x.rhs_count());
     let mut pass = Pass::new(x, sweep, upper);
-    let whole = matrix.dim() / ROWS * ROWS;
+    let whole = matrix.dim() / ROWS_TOGETHER * ROWS_TOGETHER;
     for first in (whole..matrix.dim()).rev() {
         pass.visit_rows_back::<S, 1>(matrix.packed_rows(first), first, relax)?;
     }
-    for first in (0..whole).step_by(ROWS).rev() {
-        pass.visit_rows_back::<S, ROWS>(matrix.packed_rows(first), first, relax)?;
+    for first in (0..whole).step_by(ROWS_TOGETHER).rev() {
+        pass.visit_rows_back::<S, ROWS_TOGETHER>(matrix.packed_rows(first), first, relax)?;
     }
     pass.keep_upper();
     ControlFlow::Continue(())
@@ -71,7 +71,7 @@ struct Pass<'a> {
 impl<'a> Pass<'a> {
     fn new(x: &'a mut MultiVector<f64>, sweep: &'a mut Sweep<f64>, upper: Planar) -> Self {
         let rhs_count = x.rhs_count();
-        let (row, rows) = (vec![0.0; rhs_count], vec![0.0; ROWS * rhs_count]);
+        let (row, rows) = (vec![0.0; rhs_count], vec![0.0; ROWS_TOGETHER * rhs_count]);
         Self {
             rhs_count,
             known: Planar::copied(x),
@@ -188,8 +188,8 @@ impl<S: Storage, const R: usize> WithSimd for Gather<'_, '_, '_, S, R> {
     fn with_simd<V: Simd>(self, simd: V) {
         let Self { pass, rows, first } = self;
         pass.lower.fill(0.0);
-        for from in (0..first).step_by(TILE) {
-            let tile = rows.map(|row| &row[from..(from + TILE).min(first)]);
+        for from in (0..first).step_by(COLUMNS_OF_A_TILE) {
+            let tile = rows.map(|row| &row[from..(from + COLUMNS_OF_A_TILE).min(first)]);
             let (strip, sums) = (Strip { rows: &tile, from }, &mut pass.lower[..R * pass.rhs_count]);
             Dot { strip, x: &pass.known, sums }.with_simd(simd);
         }
@@ -209,8 +209,8 @@ impl<S: Storage, const R: usize> WithSimd for Scatter<'_, '_, '_, S, R> {
     #[inline(always)]
     fn with_simd<V: Simd>(self, simd: V) {
         let Self { pass, rows, first } = self;
-        for from in (0..first).step_by(TILE) {
-            let tile = rows.map(|row| &row[from..(from + TILE).min(first)]);
+        for from in (0..first).step_by(COLUMNS_OF_A_TILE) {
+            let tile = rows.map(|row| &row[from..(from + COLUMNS_OF_A_TILE).min(first)]);
             let (strip, factors) = (Strip { rows: &tile, from }, &pass.factors[..R * pass.rhs_count]);
             Add { strip, factors, u: pass.upper.view_mut() }.with_simd(simd);
         }

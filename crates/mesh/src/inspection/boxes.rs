@@ -4,7 +4,7 @@
 use crate::{Bounds, Vec3};
 
 /// Boxes of a leaf, at most.
-const LEAF: usize = 4;
+const BOXES_OF_A_LEAF: usize = 4;
 
 /// A tree over boxes.
 pub(super) struct Boxes {
@@ -35,7 +35,7 @@ impl Boxes {
         let node = self.nodes.len();
         let bounds = self.around(start, end);
         self.nodes.push(Node { bounds, range: [start as u32, end as u32], second: 0 });
-        if end - start <= LEAF {
+        if end - start <= BOXES_OF_A_LEAF {
             return;
         }
         let middles = Bounds::around(self.order[start..end].iter().map(|&k| self.all[k as usize].centre()));

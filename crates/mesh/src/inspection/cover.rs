@@ -113,7 +113,7 @@ struct Order {
 }
 
 /// Difference of areas, relative, up to which faces are as large as each other.
-const ALIKE: f64 = 1e-9;
+const AREA_TOLERANCE: f64 = 1e-9;
 
 impl Order {
     fn of(mesh: &Mesh, emits: impl Fn(usize) -> bool) -> Self {
@@ -128,7 +128,7 @@ impl Order {
         order.sort_by(|&a, &b| areas[a].total_cmp(&areas[b]).then(a.cmp(&b)));
         let mut ranked = areas.to_vec();
         for pair in order.windows(2) {
-            if areas[pair[1]] <= areas[pair[0]] * (1.0 + ALIKE) {
+            if areas[pair[1]] <= areas[pair[0]] * (1.0 + AREA_TOLERANCE) {
                 ranked[pair[1]] = ranked[pair[0]];
             }
         }

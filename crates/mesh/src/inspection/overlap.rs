@@ -7,9 +7,9 @@
 use crate::{Patch, Vec3};
 
 /// Cosine, less than 1 by this, above which planes are compared point by point.
-const PARALLEL: f64 = 1e-6;
+const PARALLEL_COSINE_DEFECT: f64 = 1e-6;
 /// Widths, over the tolerance, below which an overlap is one of rounding.
-const WIDTH: f64 = 8.0;
+const LEAST_WIDTH: f64 = 8.0;
 
 /// A line in a plane: the half-plane to its left, seen from the tip of the plane's normal.
 struct HalfPlane {
@@ -67,7 +67,7 @@ fn cut(polygon: &[Vec3], line: &HalfPlane, tolerance: f64) -> [Vec<Vec3>; 2] {
 
 /// The part of `a` that lies on `b`, where both are in one plane there up to `tolerance`.
 pub(super) fn common(a: &Patch, b: &Patch, tolerance: f64) -> Option<Vec<Vec3>> {
-    if a.normal().dot(b.normal()).abs() < 1.0 - PARALLEL {
+    if a.normal().dot(b.normal()).abs() < 1.0 - PARALLEL_COSINE_DEFECT {
         return None;
     }
     let mut polygon = a.corners().to_vec();
@@ -80,7 +80,7 @@ pub(super) fn common(a: &Patch, b: &Patch, tolerance: f64) -> Option<Vec<Vec3>> 
     }
     let off = |p: &Vec3| (*p - b.corner(0)).dot(b.normal()).abs();
     let width = 2.0 * area(&polygon, a.normal()) / extent(&polygon);
-    (width > WIDTH * tolerance && polygon.iter().all(|p| off(p) <= tolerance)).then_some(polygon)
+    (width > LEAST_WIDTH * tolerance && polygon.iter().all(|p| off(p) <= tolerance)).then_some(polygon)
 }
 
 /// The parts of `a`, as convex polygons, that none of the others covers. They must lie in its
@@ -137,7 +137,7 @@ pub(super) fn cross(a: &Patch, b: &Patch, tolerance: f64) -> bool {
         [x.min(y), x.max(y)]
     };
     let ([a0, a1], [b0, b1]) = (interval(p), interval(q));
-    a1.min(b1) - a0.max(b0) > WIDTH * tolerance
+    a1.min(b1) - a0.max(b0) > LEAST_WIDTH * tolerance
 }
 
 /// The segment in which a polygon meets the plane of another, where corners lie on both sides of

@@ -7,7 +7,7 @@ use crate::weld::Points;
 use crate::{Bounds, Patch, Vec3};
 
 /// Height over the longest side below which a piece is a sliver.
-const SLIVER: f64 = 1e-3;
+const SLIVER_HEIGHT: f64 = 1e-3;
 
 /// Pieces that hang together through sides that two of them share.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -206,7 +206,7 @@ fn slivers(pieces: &[Patch]) -> Vec<u32> {
     let thin = |patch: &Patch| {
         let sides = (0..patch.sides()).map(|k| patch.corner(k).distance(patch.corner(k + 1)));
         let longest = sides.fold(0.0, f64::max);
-        patch.area() < 0.5 * SLIVER * longest * longest
+        patch.area() < 0.5 * SLIVER_HEIGHT * longest * longest
     };
     pieces.iter().zip(0..).filter(|(patch, _)| thin(patch)).map(|(_, k)| k).collect()
 }

@@ -52,7 +52,7 @@ impl Bidirectional {
             // The first vertex is no reflection.
             let reflects = self.switches.reflects(vertices.len() as u32 - 2);
             let goes_on =
-                if self.switches.roulette { draw.single() < survival } else { most > super::NEGLIGIBLE };
+                if self.switches.roulette { draw.single() < survival } else { most > super::LEAST_WEIGHT };
             if !reflects || !goes_on {
                 break;
             }

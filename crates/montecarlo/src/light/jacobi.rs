@@ -16,7 +16,7 @@ use crate::points::{Draw, Key, PointSet};
 pub struct StochasticJacobi;
 
 /// Streams from here on hold the ξ of the iterations.
-const ROUNDING: u32 = 1 << 31;
+const ROUNDING_STREAMS: u32 = 1 << 31;
 
 impl Estimator for StochasticJacobi {
     fn name(&self) -> &'static str {
@@ -75,7 +75,7 @@ fn powers(scene: &Enclosure, unshot: &[f64]) -> Vec<f64> {
 
 /// Lines of each patch.
 fn lines(scene: &Enclosure, batch: &Batch, unshot: &[f64], line: f64, iteration: u32) -> Vec<u32> {
-    let key = Key { seed: batch.seed, batch: batch.number, stream: ROUNDING | iteration };
+    let key = Key { seed: batch.seed, batch: batch.number, stream: ROUNDING_STREAMS | iteration };
     let mut sum = Draw::new(PointSet::Independent, key, 0, 1).single();
     let mut share = |power: f64| {
         let before = sum.floor();

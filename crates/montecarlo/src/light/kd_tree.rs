@@ -7,7 +7,7 @@
 use fredholm_mesh::Vec3;
 
 /// Ranges up to this many points are searched one by one.
-const LEAF: usize = 8;
+const POINTS_OF_A_LEAF: usize = 8;
 
 /// Points with their numbers, in the order of the tree.
 #[derive(Clone, Debug, Default)]
@@ -31,7 +31,7 @@ impl KdTree {
     }
 
     fn search(&self, from: usize, to: usize, centre: Vec3, radius: f64, found: &mut dyn FnMut(u32)) {
-        if to - from <= LEAF {
+        if to - from <= POINTS_OF_A_LEAF {
             for (point, number) in &self.points[from..to] {
                 if point.distance_squared(centre) <= radius * radius {
                     found(*number);
@@ -56,7 +56,7 @@ impl KdTree {
 }
 
 fn build(points: &mut [(Vec3, u32)], axes: &mut [u8]) {
-    if points.len() <= LEAF {
+    if points.len() <= POINTS_OF_A_LEAF {
         return;
     }
     let (low, high) = points

@@ -34,7 +34,7 @@ pub use jacobi::StochasticJacobi;
 pub use particles::ParticleTracing;
 pub use path::{Control, PathTracing};
 pub use photon::PhotonMap;
-pub use registry::{METHODS, PICTURED, estimator, point_estimator};
+pub use registry::{METHODS, PIXEL_METHODS, estimator, point_estimator};
 
 use crate::points::{Draw, Key, PointSet};
 use crate::{Enclosure, Site};
@@ -59,13 +59,13 @@ impl Default for Switches {
 }
 
 /// Weight, relative to the first, at which a path without roulette ends.
-const NEGLIGIBLE: f64 = 1e-9;
+const LEAST_WEIGHT: f64 = 1e-9;
 
 impl Switches {
     /// Whether a path goes on, with the probability `survival`; its weight grows accordingly.
     fn goes_on(self, survival: f64, draw: &mut Draw, weight: &mut [f64], start: f64) -> bool {
         if !self.roulette {
-            return weight.iter().any(|&w| w > NEGLIGIBLE * start);
+            return weight.iter().any(|&w| w > LEAST_WEIGHT * start);
         }
         if draw.single() >= survival {
             return false;

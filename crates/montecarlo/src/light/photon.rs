@@ -25,15 +25,15 @@ use std::f64::consts::PI;
 /// α of the shrinking radius.
 const ALPHA: f64 = 2.0 / 3.0;
 /// Photons that a disc of the first radius holds, were they spread evenly.
-const HELD: f64 = 8.0;
+const PHOTONS_OF_A_DISC: f64 = 8.0;
 /// Rays up to so many radii long are reflected where they end.
 const SHORT_RAY_RADII: f64 = 3.0;
 /// Cosine between normals, and distance from the plane over the size of the scene, up to which
 /// patches are one flat piece.
-const PARALLEL: f64 = 1.0 - 1e-9;
-const COPLANAR: f64 = 1e-7;
+const SAME_PLANE_COSINE: f64 = 1.0 - 1e-9;
+const SAME_PLANE_DISTANCE: f64 = 1e-7;
 /// Streams of photons lie beyond those of patches.
-const PHOTONS: u32 = 1 << 30;
+const PHOTON_STREAMS: u32 = 1 << 30;
 
 /// The photon map with final gathering.
 pub struct PhotonMap {
@@ -68,7 +68,7 @@ impl PhotonMap {
     #[must_use]
     pub fn new(scene: &Enclosure, switches: Switches, photons: u32) -> Self {
         let area: f64 = scene.patches().iter().map(Patch::area).sum();
-        let radius = (HELD * area / (PI * f64::from(photons.max(1)))).sqrt();
+        let radius = (PHOTONS_OF_A_DISC * area / (PI * f64::from(photons.max(1)))).sqrt();
         let mut outlines: Vec<Outline> = scene.patches().iter().map(Outline::new).collect();
         let near = neighbours(scene, &outlines, radius);
         let parts = partly_buried(scene);
@@ -95,7 +95,12 @@ impl PhotonMap {
                 sites.push(at);
                 powers.extend_from_slice(power);
             };
-            rays += tracing.fly(scene, &mut batch.draw(PHOTONS, photon, self.photons), &mut power, &mut keep);
+            rays += tracing.fly(
+                scene,
+                &mut batch.draw(PHOTON_STREAMS, photon, self.photons),
+                &mut power,
+                &mut keep,
+            );
         }
         let tree = KdTree::new(sites.iter().map(|site| site.point));
         let work = Work { paths: u64::from(self.photons), rays };
@@ -110,8 +115,8 @@ fn neighbours(scene: &Enclosure, outlines: &[Outline], radius: f64) -> Vec<Vec<u
     let near = |i: usize, j: usize| {
         let (a, b) = (&patches[i], &patches[j]);
         let between = outlines[j].centre - outlines[i].centre;
-        a.normal().dot(b.normal()) > PARALLEL
-            && between.dot(a.normal()).abs() < COPLANAR * size
+        a.normal().dot(b.normal()) > SAME_PLANE_COSINE
+            && between.dot(a.normal()).abs() < SAME_PLANE_DISTANCE * size
             && between.length() < radius + outlines[i].reach + outlines[j].reach
     };
     let row = |i: usize| (0..patches.len()).filter(|&j| near(i, j)).map(|j| j as u32).collect();

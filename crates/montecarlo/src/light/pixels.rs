@@ -10,7 +10,7 @@ use crate::statistics::Moments;
 use crate::{Enclosure, Site};
 
 /// Streams of pixels lie beyond those of patches.
-const PIXELS: u32 = 1 << 31;
+const PIXEL_STREAMS: u32 = 1 << 31;
 
 /// How every pixel is sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,7 +49,7 @@ pub fn pixel(
     for batch in 0..batches {
         sum.fill(0.0);
         for sample in 0..samples {
-            let key = Key { seed, batch, stream: PIXELS | number };
+            let key = Key { seed, batch, stream: PIXEL_STREAMS | number };
             let mut draw = Draw::new(PointSet::Sobol, key, sample, samples);
             let Some(site) = see(draw.pair()) else { continue };
             seen += 1;

@@ -89,7 +89,7 @@ pub struct Draw {
 
 /// Dimensions from here on seed the patterns of a batch, so that they share no number with the
 /// samples.
-const PATTERN: u32 = 1 << 31;
+const PATTERN_DIMENSIONS: u32 = 1 << 31;
 
 impl Draw {
     /// The numbers of sample `sample` of the `size` of a batch.
@@ -109,11 +109,12 @@ impl Draw {
         match self.set {
             PointSet::Independent => unit_pair(self.key.words(self.sample, dimension)),
             PointSet::Sobol => {
-                let (scramble, first) = (self.key.words(2, PATTERN + dimension), dimension % DIMENSIONS);
+                let (scramble, first) =
+                    (self.key.words(2, PATTERN_DIMENSIONS + dimension), dimension % DIMENSIONS);
                 [0, 1].map(|i| sobol::point(self.index, first + i as u32, scramble[i]))
             }
             set => {
-                let pattern = self.key.words(0, PATTERN + dimension);
+                let pattern = self.key.words(0, PATTERN_DIMENSIONS + dimension);
                 place(pattern, unit_pair(self.key.words(self.sample, dimension)), set)
             }
         }
@@ -125,7 +126,7 @@ impl Draw {
             return self.pair()[0];
         }
         let dimension = self.advance();
-        let scramble = self.key.words(2, PATTERN + dimension);
+        let scramble = self.key.words(2, PATTERN_DIMENSIONS + dimension);
         sobol::point(self.index, dimension % DIMENSIONS, scramble[0])
     }
 
@@ -143,7 +144,7 @@ impl Draw {
     /// same ones.
     fn enter(&mut self) {
         if self.set == PointSet::Sobol {
-            let shuffle = self.key.words(1, PATTERN + self.dimension / DIMENSIONS);
+            let shuffle = self.key.words(1, PATTERN_DIMENSIONS + self.dimension / DIMENSIONS);
             self.index = sobol::scrambled(self.sample.reverse_bits(), shuffle[0]);
         }
     }

@@ -10,7 +10,7 @@ use std::f64::consts::SQRT_2;
 
 /// Degrees of freedom from which on Student's t is taken as normal: the scores then differ by less
 /// than 1e-5 at |z| = 3.
-const NORMAL: f64 = 1e6;
+const NORMAL_DEGREES: f64 = 1e6;
 
 /// Probability that a normal score is as far from 0 as this one.
 #[must_use]
@@ -21,7 +21,7 @@ pub fn two_sided_p(z: f64) -> f64 {
 /// The normal score of a value of Student's t with these degrees of freedom.
 #[must_use]
 pub fn normal_score(t: f64, freedom: f64) -> f64 {
-    if freedom >= NORMAL || t == 0.0 || t.is_nan() {
+    if freedom >= NORMAL_DEGREES || t == 0.0 || t.is_nan() {
         return t;
     }
     let tail = StudentsT::new(0.0, 1.0, freedom).map_or(f64::NAN, |law| law.cdf(-t.abs()));
@@ -32,7 +32,7 @@ pub fn normal_score(t: f64, freedom: f64) -> f64 {
 /// The value of Student's t that is exceeded with this two-sided probability.
 #[must_use]
 pub(crate) fn critical_t(p: f64, freedom: f64) -> f64 {
-    if freedom >= NORMAL {
+    if freedom >= NORMAL_DEGREES {
         return SQRT_2 * erfc_inv(p);
     }
     StudentsT::new(0.0, 1.0, freedom).map_or(f64::INFINITY, |law| -law.inverse_cdf(0.5 * p))

@@ -25,8 +25,8 @@ pub enum Aim {
     Facets,
 }
 
-/// The density at the rim of the scatterer is that at its middle times e^{−RIM}.
-const RIM: f64 = 1.0;
+/// The density at the rim of the scatterer is that at its middle times e^{−RIM_DECAY}.
+const RIM_DECAY: f64 = 1.0;
 
 /// A density of directions from one point.
 pub(super) enum Directions {
@@ -44,7 +44,7 @@ impl Directions {
         let density: Box<dyn DirectionDensity> = match aim {
             Aim::Sphere => Box::new(UniformSphere),
             Aim::Cosine => Box::new(Cosine),
-            Aim::Lobe(kappa) => Box::new(VonMisesFisher::new(kappa.unwrap_or(RIM / rim))),
+            Aim::Lobe(kappa) => Box::new(VonMisesFisher::new(kappa.unwrap_or(RIM_DECAY / rim))),
             Aim::Facets => return Self::Facets(SolidAngles::new(problem, receiver, |_, _| true)),
         };
         Self::Lobe(Frame::about(towards.normalize_or(Vec3::Z)), density)

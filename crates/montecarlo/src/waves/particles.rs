@@ -15,7 +15,7 @@ use fredholm_mesh::Vec3;
 use fredholm_waves::ComplexVector;
 
 /// κ of the lobe about the mirror direction.
-const GUIDED: f64 = 10.0;
+const MIRROR_LOBE_KAPPA: f64 = 10.0;
 
 /// Field particles.
 #[derive(Clone, Copy, Debug)]
@@ -104,7 +104,7 @@ impl Partner {
         let facet = problem.facet(self.spot);
         let normal = if turned && problem.two_sided(self.spot) { -facet.normal } else { facet.normal };
         let direction = if mirrored {
-            self.lobe(normal).world(VonMisesFisher::new(GUIDED).sample(numbers))
+            self.lobe(normal).world(VonMisesFisher::new(MIRROR_LOBE_KAPPA).sample(numbers))
         } else {
             Frame::about(normal).world(Cosine.sample(numbers))
         };
@@ -125,7 +125,7 @@ impl Partner {
         let direction = (from.point - self.spot.point).normalize_or(facet.normal);
         let normal = if direction.dot(facet.normal) < 0.0 { -facet.normal } else { facet.normal };
         let even = Cosine.pdf(Frame::about(normal).local(direction));
-        let guided = VonMisesFisher::new(GUIDED).pdf(self.lobe(normal).local(direction));
+        let guided = VonMisesFisher::new(MIRROR_LOBE_KAPPA).pdf(self.lobe(normal).local(direction));
         let sides = if problem.two_sided(self.spot) { 2.0 } else { 1.0 };
         let per_angle = 0.5 * (even + guided) / sides;
         let per_area = shown(problem, from, self.spot.point, 1.0).map_or(0.0, |area| per_angle / area);

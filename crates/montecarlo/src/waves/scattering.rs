@@ -18,7 +18,7 @@ pub enum Bounces {
 }
 
 /// Surfaces that a ray meets beyond which a body is no longer looked through.
-const LAYERS: usize = 64;
+const MOST_SURFACES_MET: usize = 64;
 
 /// A scatterer of conductors in an incident field.
 pub struct Scattering<'a> {
@@ -126,7 +126,7 @@ impl<'a> Scattering<'a> {
         while let Some(hit) = self.facets.closest(from, direction, f64::INFINITY) {
             spots.push(Spot { facet: hit.patch, point: hit.point });
             from = hit.point;
-            if spots.len() == LAYERS {
+            if spots.len() == MOST_SURFACES_MET {
                 break;
             }
         }

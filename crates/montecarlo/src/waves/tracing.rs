@@ -4,7 +4,7 @@ use super::{FieldEstimator, Scattering};
 use crate::MonteCarloError;
 use crate::light::Batch;
 use crate::points::PointSet;
-use crate::run::{Stop, WAVE};
+use crate::run::{BATCHES_AT_ONCE, Stop};
 use crate::statistics::Moments;
 use fredholm_linop::Watch;
 use fredholm_mesh::Vec3;
@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
 /// Real numbers of a field: three complex components.
-const NUMBERS: usize = 6;
+const NUMBERS_OF_A_FIELD: usize = 6;
 
 /// Estimates of the scattered E at receivers, V/m: all that a continuation needs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -31,22 +31,25 @@ impl FieldEstimate {
     /// The mean at each receiver.
     #[must_use]
     pub fn mean(&self) -> Vec<ComplexVector> {
-        self.moments.mean().chunks_exact(NUMBERS).map(vector).collect()
+        self.moments.mean().chunks_exact(NUMBERS_OF_A_FIELD).map(vector).collect()
     }
 
     /// Standard errors of E at each receiver, √ of the sum over its components.
     #[must_use]
     pub fn standard_errors(&self) -> Vec<f64> {
         let errors = self.moments.standard_errors();
-        errors.chunks_exact(NUMBERS).map(|row| row.iter().map(|s| s * s).sum::<f64>().sqrt()).collect()
+        errors
+            .chunks_exact(NUMBERS_OF_A_FIELD)
+            .map(|row| row.iter().map(|s| s * s).sum::<f64>().sqrt())
+            .collect()
     }
 
     /// Standard errors of the real and the imaginary part of each component at each receiver: x, y,
     /// z, real parts first.
     #[must_use]
-    pub fn component_errors(&self) -> Vec<[f64; NUMBERS]> {
+    pub fn component_errors(&self) -> Vec<[f64; NUMBERS_OF_A_FIELD]> {
         let errors = self.moments.standard_errors();
-        errors.chunks_exact(NUMBERS).map(|row| std::array::from_fn(|i| row[i])).collect()
+        errors.chunks_exact(NUMBERS_OF_A_FIELD).map(|row| std::array::from_fn(|i| row[i])).collect()
     }
 
     /// √(Σ s²/Σ |E|²) over the receivers: what a target error is compared with. Infinite below two
@@ -99,7 +102,7 @@ impl<'a> FieldTracing<'a> {
             method: self.estimator.name().to_owned(),
             seed: self.seed,
             samples: self.samples,
-            moments: Moments::new(NUMBERS * self.receivers.len()),
+            moments: Moments::new(NUMBERS_OF_A_FIELD * self.receivers.len()),
             seconds: 0.0,
         }
     }
@@ -122,8 +125,8 @@ impl<'a> FieldTracing<'a> {
             watch.go_on().is_continue()
         };
         while !stop.is_met(state.batches(), &|| state.relative_error(), started) && wanted(state) {
-            let left = stop.batches.map_or(u64::from(WAVE), |all| all - state.batches());
-            self.wave(state, left.min(WAVE.into()) as u32);
+            let left = stop.batches.map_or(u64::from(BATCHES_AT_ONCE), |all| all - state.batches());
+            self.wave(state, left.min(BATCHES_AT_ONCE.into()) as u32);
             state.seconds = before + started.elapsed().as_secs_f64();
         }
         Ok(())
@@ -167,13 +170,13 @@ pub fn estimate(
     let mut state = tracing.start();
     while state.batches() < batches.into() {
         let left = batches - state.batches() as u32;
-        tracing.wave(&mut state, left.min(WAVE));
+        tracing.wave(&mut state, left.min(BATCHES_AT_ONCE));
     }
     state
 }
 
 /// Real and imaginary parts of a vector, component by component.
-fn numbers(e: ComplexVector) -> [f64; NUMBERS] {
+fn numbers(e: ComplexVector) -> [f64; NUMBERS_OF_A_FIELD] {
     let [x, y, z] = e.components();
     [x.re, x.im, y.re, y.im, z.re, z.im]
 }

@@ -16,7 +16,7 @@ pub use record::{COMPARISON_FORMAT, ComparisonCase, ComparisonHistory, Compariso
 /// The files of a comparison without a sweep, in the order in which they are written.
 pub const COMPARISON_FILES: [&str; 4] = ["compare.csv", "compare_history.csv", "compare.svg", "compare.json"];
 /// The plot of a sweep.
-pub(crate) const SWEEP: &str = "compare_sweep.svg";
+pub(crate) const SWEEP_PLOT: &str = "compare_sweep.svg";
 
 /// Writes a comparison into a folder; with a title, `report.html` too.
 ///
@@ -32,7 +32,7 @@ pub fn write_comparison(
     folder.write(history, |out| write_comparison_history(record, out))?;
     folder.write(plot, |out| write_comparison_plot(record, out))?;
     if record.cases.len() > 1 {
-        folder.write(SWEEP, |out| write_sweep_plot(record, out))?;
+        folder.write(SWEEP_PLOT, |out| write_sweep_plot(record, out))?;
     }
     if let Some(title) = title {
         folder.write(REPORT, |out| ReportPage::of_comparison(title, record).write(out))?;
@@ -54,7 +54,7 @@ mod tests {
     fn the_record_names_every_case_and_solver() {
         let folder = tempfile::tempdir().unwrap();
         write_comparison(&ResultFolder::claim(folder.path()).unwrap(), &sample(), Some("a")).unwrap();
-        for name in COMPARISON_FILES.into_iter().chain([SWEEP, REPORT]) {
+        for name in COMPARISON_FILES.into_iter().chain([SWEEP_PLOT, REPORT]) {
             assert!(folder.path().join(name).is_file(), "{name}");
         }
         let text = fs::read(folder.path().join("compare.json")).unwrap();

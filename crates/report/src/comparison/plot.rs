@@ -10,9 +10,9 @@ use super::record::{ComparisonCase, ComparisonRecord, ComparisonRun};
 use crate::plot::{Axis, Figure, Line, Panel, Part, Point, Span, write_svg};
 
 /// An axis ends at this many medians, unless all end before.
-const MEDIANS: f64 = 4.0;
-const RESIDUAL: &str = "relative residual, worst band";
-const ACROSS: [&str; 3] = ["iterations", "readings of the matrix", "time, s"];
+const MEDIANS_OF_AN_AXIS: f64 = 4.0;
+const RESIDUAL_LABEL: &str = "relative residual, worst band";
+const LABELS_ACROSS: [&str; 3] = ["iterations", "readings of the matrix", "time, s"];
 
 /// Writes the plot of the case of the largest reflectance.
 ///
@@ -31,12 +31,12 @@ pub fn write_comparison_plot(record: &ComparisonRecord, out: &mut dyn Write) -> 
             Line::distinct(&run.solver, points, number)
         };
         let lines = solved(case).zip(&curves).enumerate().map(line).collect();
-        let (across, up) = (Axis::new(across, Span::WithZero), Axis::new(RESIDUAL, Span::Decades));
+        let (across, up) = (Axis::new(across, Span::WithZero), Axis::new(RESIDUAL_LABEL, Span::Decades));
         Part::Panel(Panel::new(across, up, lines))
     };
     let title =
         format!("{}: {} unknowns, reflectance up to {}", record.scene, record.unknowns, case.reflectance);
-    write_svg(&Figure { title, parts: ACROSS.into_iter().enumerate().map(part).collect() }, out)
+    write_svg(&Figure { title, parts: LABELS_ACROSS.into_iter().enumerate().map(part).collect() }, out)
 }
 
 fn solved(case: &ComparisonCase) -> impl Iterator<Item = &ComparisonRun> {
@@ -60,7 +60,7 @@ fn end(lines: &[[Vec<Point>; 3]], at: usize) -> f64 {
         lines.iter().filter_map(|panels| panels[at].last()).map(|point| point.0).collect();
     ends.sort_by(f64::total_cmp);
     let median = ends.get(ends.len() / 2).copied().unwrap_or(1.0);
-    ends.last().copied().unwrap_or(1.0).min(MEDIANS * median)
+    ends.last().copied().unwrap_or(1.0).min(MEDIANS_OF_AN_AXIS * median)
 }
 
 /// Writes the plot of a sweep: iterations and readings of the matrix of every solver that
@@ -85,9 +85,9 @@ pub fn write_sweep_plot(record: &ComparisonRecord, out: &mut dyn Write) -> io::R
     };
     let entries = record.entries.max(1) as f64;
     let parts = vec![
-        part(ACROSS[0], &|run| run.iterations as f64),
-        part(ACROSS[1], &|run| run.entries as f64 / entries),
-        part(ACROSS[2], &|run| run.seconds),
+        part(LABELS_ACROSS[0], &|run| run.iterations as f64),
+        part(LABELS_ACROSS[1], &|run| run.entries as f64 / entries),
+        part(LABELS_ACROSS[2], &|run| run.seconds),
     ];
     write_svg(&Figure { title: format!("{}: {} unknowns", record.scene, record.unknowns), parts }, out)
 }

@@ -14,14 +14,14 @@ use serde::Serialize;
 use super::pack::{Scale, differences, packed, varints, words};
 use crate::colour::Colouring;
 use crate::mean::Means;
-use crate::nodal::SMOOTH;
+use crate::nodal::SMOOTH_WELD;
 use crate::{Camera, Exposure, Field, View};
 
 /// Largest code of a position.
-const CODES: f64 = 65_535.0;
+const LARGEST_CODE: f64 = 65_535.0;
 /// Relative error up to which the law B = M + ρ E stands for the radiosity: below that of 16-bit
 /// codes.
-const LAW: f64 = 2e-5;
+const LAW_TOLERANCE: f64 = 2e-5;
 
 /// A quantity on the elements, one number each.
 #[derive(Clone, Debug, PartialEq)]
@@ -229,13 +229,13 @@ impl Described {
 
     /// Width of a step of the positions along the longest side of the box, m.
     pub(super) fn grain(&self) -> f64 {
-        (0..3).map(|axis| (self.high[axis] - self.low[axis]) / CODES).fold(0.0, f64::max)
+        (0..3).map(|axis| (self.high[axis] - self.low[axis]) / LARGEST_CODE).fold(0.0, f64::max)
     }
 }
 
 /// Writes the arrays of a model, and tells where they are.
 pub(super) fn write_model(model: &ReportModel<'_>, out: &mut dyn Write) -> io::Result<Described> {
-    let Anchored { leaves, hanging, .. } = model.mesh.anchored(SMOOTH);
+    let Anchored { leaves, hanging, .. } = model.mesh.anchored(SMOOTH_WELD);
     let bounds = model.mesh.bounds();
     let (low, high) = bounds.map_or((Vec3::ZERO, Vec3::ZERO), |bounds| (bounds.min, bounds.max));
     let mut blobs = Blobs { out, count: 0 };
@@ -327,7 +327,7 @@ impl Blobs<'_> {
         let code = move |axis: usize, vertex: &Vec3| {
             let extent = high[axis] - low[axis];
             let share = if extent > 0.0 { (vertex[axis] - low[axis]) / extent } else { 0.0 };
-            (CODES * share.clamp(0.0, 1.0)).round() as u16
+            (LARGEST_CODE * share.clamp(0.0, 1.0)).round() as u16
         };
         let codes = (0..3).flat_map(move |axis| vertices.iter().map(move |vertex| code(axis, vertex)));
         self.add(|out| words(out, &codes, vertices.len().max(1)))
@@ -386,7 +386,7 @@ impl Blobs<'_> {
         if shares.clone().all(|share| share >= 1.0) {
             return Ok(None);
         }
-        let codes = shares.map(|share| (CODES * share.clamp(0.0, 1.0)).round() as u16);
+        let codes = shares.map(|share| (LARGEST_CODE * share.clamp(0.0, 1.0)).round() as u16);
         self.add(|out| words(out, &codes, usize::MAX)).map(Some)
     }
 
@@ -454,7 +454,7 @@ fn holds(field: &Field<'_>, laws: &[Law], band: usize) -> bool {
         let Some(exitance) = &law.exitance else { return false };
         let [e, b] = [field.irradiance(), field.radiosity()].map(|values| field.row(values, leaf)[band]);
         let found = exitance[band] + law.reflectance[band].unwrap_or(0.0) * e;
-        (found - b).abs() <= LAW * b.abs()
+        (found - b).abs() <= LAW_TOLERANCE * b.abs()
     })
 }
 

@@ -16,11 +16,11 @@ use flate2::write::ZlibEncoder;
 use serde::Serialize;
 
 /// Smallest magnitude that is told from 0, over the largest.
-const SMALLEST: f64 = 1e-9;
+const LEAST_MAGNITUDE: f64 = 1e-9;
 /// Most codes of numbers of one sign, and of either sign.
-const LEVELS: [u16; 2] = [0xffff, 0x7fff];
+const MOST_CODES: [u16; 2] = [0xffff, 0x7fff];
 /// Relative step between codes that is fine enough: finer ones would only cost bytes.
-const STEP: f64 = 1e-4;
+const FINE_STEP: f64 = 1e-4;
 
 /// How 16-bit codes stand for numbers: code 0 for 0, code c for ±low (high/low)^((c − 1)/(levels −
 /// 1)); the codes of negative numbers are those of their magnitudes, negated modulo 2¹⁶.
@@ -50,9 +50,9 @@ impl Scale {
         if high == 0.0 {
             (least, high) = (1.0, 1.0);
         }
-        let low = least.max(high * SMALLEST);
+        let low = least.max(high * LEAST_MAGNITUDE);
         let range = (high / low).ln();
-        let wanted = (range / STEP).ceil().clamp(1.0, f64::from(LEVELS[usize::from(signed)] - 1));
+        let wanted = (range / FINE_STEP).ceil().clamp(1.0, f64::from(MOST_CODES[usize::from(signed)] - 1));
         let levels = 1 + wanted as u16;
         let error = (0.5 * range / wanted).exp_m1();
         Self { low, high, levels, signed, error }
@@ -95,12 +95,12 @@ pub(super) fn words(
 ) -> io::Result<()> {
     for shift in [8, 0] {
         let mut last = 0;
-        let mut bytes = Vec::with_capacity(BLOCK);
+        let mut bytes = Vec::with_capacity(BYTES_OF_A_BLOCK);
         for (i, code) in codes.clone().enumerate() {
             last = if i % run == 0 { 0 } else { last };
             bytes.push((folded(code.wrapping_sub(last)) >> shift) as u8);
             last = code;
-            if bytes.len() == BLOCK {
+            if bytes.len() == BYTES_OF_A_BLOCK {
                 out.write_all(&bytes)?;
                 bytes.clear();
             }
@@ -111,7 +111,7 @@ pub(super) fn words(
 }
 
 /// Bytes that are handed over at once.
-const BLOCK: usize = 1 << 14;
+const BYTES_OF_A_BLOCK: usize = 1 << 14;
 
 /// A difference modulo 2¹⁶, so that small ones of either sign are small numbers.
 fn folded(difference: u16) -> u16 {
@@ -121,14 +121,14 @@ fn folded(difference: u16) -> u16 {
 
 /// Writes integers of seven bits a byte.
 pub(super) fn varints(out: &mut dyn Write, values: impl Iterator<Item = u32>) -> io::Result<()> {
-    let mut bytes = Vec::with_capacity(BLOCK + 5);
+    let mut bytes = Vec::with_capacity(BYTES_OF_A_BLOCK + 5);
     for mut value in values {
         while value > 0x7f {
             bytes.push(value as u8 | 0x80);
             value >>= 7;
         }
         bytes.push(value as u8);
-        if bytes.len() >= BLOCK {
+        if bytes.len() >= BYTES_OF_A_BLOCK {
             out.write_all(&bytes)?;
             bytes.clear();
         }

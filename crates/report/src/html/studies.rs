@@ -17,7 +17,7 @@ use crate::{
 /// Value that stands for 0 on a logarithmic axis.
 const SMALLEST_ON_LOG_AXIS: f64 = 1e-17;
 /// Classes of a histogram of scores, of width ½ from −5 to 5.
-const CLASSES: i32 = 20;
+const HISTOGRAM_CLASSES: i32 = 20;
 
 impl<'a> ReportPage<'a> {
     /// The page of progressive radiosity, with the field so far.
@@ -378,8 +378,8 @@ fn crosscheck_statements(record: &CrosscheckRecord) -> Vec<String> {
 /// How many scores fall into classes of width ½, beside what the normal distribution leads to
 /// expect.
 fn histogram(scores: &[f64]) -> ReportPlot {
-    let centre = |class: i32| 0.5 * f64::from(class - CLASSES / 2) + 0.25;
-    let classes: Vec<f64> = (0..CLASSES).map(centre).collect();
+    let centre = |class: i32| 0.5 * f64::from(class - HISTOGRAM_CLASSES / 2) + 0.25;
+    let classes: Vec<f64> = (0..HISTOGRAM_CLASSES).map(centre).collect();
     let inside = |middle: f64| scores.iter().filter(|z| (**z - middle).abs() <= 0.25).count() as f64;
     let expected = |z: f64| 0.5 * scores.len() as f64 * (-0.5 * z * z).exp() / std::f64::consts::TAU.sqrt();
     let mut normal = level_line("normal distribution", 0.0, [0.0; 2]);
@@ -439,7 +439,7 @@ mod tests {
         let plot = histogram(&scores);
         let [found, normal] = &plot.across[0].1[..] else { panic!("two lines") };
         assert!((found.y.iter().sum::<f64>() - 5.0).abs() < 1e-12);
-        assert!((found.y[CLASSES as usize / 2] - 2.0).abs() < 1e-12);
+        assert!((found.y[HISTOGRAM_CLASSES as usize / 2] - 2.0).abs() < 1e-12);
         assert!((normal.y.iter().sum::<f64>() - 6.0).abs() < 1e-3);
     }
 }

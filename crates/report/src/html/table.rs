@@ -8,7 +8,7 @@ use crate::words;
 use crate::xml::escaped;
 
 /// Most rows of a table that are written.
-const ROWS: usize = 1000;
+const MOST_ROWS: usize = 1000;
 
 /// A column.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -60,13 +60,13 @@ impl ReportTable {
             write!(out, "<th scope=\"col\"{class}{band}>{}</th>", escaped(&column.title))?;
         }
         writeln!(out, "</tr></thead><tbody>")?;
-        for (number, row) in self.rows.iter().take(ROWS).enumerate() {
+        for (number, row) in self.rows.iter().take(MOST_ROWS).enumerate() {
             write!(out, "<tr data-row=\"{number}\">")?;
             row.iter().try_for_each(|cell| write_cell(cell, out))?;
             writeln!(out, "</tr>")?;
         }
         writeln!(out, "</tbody></table></div>")?;
-        if let Some(left @ 1..) = self.rows.len().checked_sub(ROWS) {
+        if let Some(left @ 1..) = self.rows.len().checked_sub(MOST_ROWS) {
             let left = words::count(left as u64, "further row is", "further rows are");
             writeln!(out, "<p class=\"hint\">{left} in the table of the result folder only.</p>")?;
         }

@@ -12,7 +12,7 @@ use crate::{WaveCurrents, WaveResiduals};
 /// Names of the components along the axes.
 const AXES: [&str; 3] = ["x", "y", "z"];
 /// Share of the largest magnitude below which a current is none.
-const NONE: f64 = 1e-12;
+const LEAST_CURRENT: f64 = 1e-12;
 
 /// What a page of waves says besides what it shows.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -90,7 +90,7 @@ pub fn current_phasors(mesh: &Mesh, currents: &[WaveCurrents]) -> Vec<ElementPha
     };
     let largest = |phasors: &ElementPhasors| phasors.magnitude.iter().copied().fold(0.0, f64::max);
     let all = currents.iter().flat_map(|set| kinds.map(|kind| of(set, kind)));
-    all.filter(|phasors| largest(phasors) > NONE).collect()
+    all.filter(|phasors| largest(phasors) > LEAST_CURRENT).collect()
 }
 
 fn history(across: &str, residuals: &[WaveResiduals]) -> ReportPlot {

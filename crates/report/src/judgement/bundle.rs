@@ -11,7 +11,7 @@ use super::table::Table;
 use crate::{REFERENCE_FORMAT, ReferenceRecord, ReportError};
 
 /// What mends a bundle.
-const AGAIN: &str = "make the bundle again by `fredholm reference`";
+const BUNDLE_HELP: &str = "make the bundle again by `fredholm reference`";
 
 /// Faces or pixels with known values.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -44,8 +44,12 @@ pub fn read_reference_record(folder: &Path) -> Result<ReferenceRecord, ReportErr
     let path = folder.join("reference.json");
     let text =
         fs::read_to_string(&path).map_err(|source| ReportError::Read { path: path.clone(), source })?;
-    let refuse =
-        |line, what: String| ReportError::Values { path: path.clone(), line, what, help: AGAIN.to_owned() };
+    let refuse = |line, what: String| ReportError::Values {
+        path: path.clone(),
+        line,
+        what,
+        help: BUNDLE_HELP.to_owned(),
+    };
     let record: ReferenceRecord =
         serde_json::from_str(&text).map_err(|error| refuse(Some(error.line()), error.to_string()))?;
     if record.format == REFERENCE_FORMAT {
@@ -59,7 +63,7 @@ pub fn read_reference_record(folder: &Path) -> Result<ReferenceRecord, ReportErr
 /// # Errors
 /// [`ReportError::Read`], and [`ReportError::Values`] with the line that cannot be used.
 pub fn read_reference_faces(folder: &Path, bands: &[String]) -> Result<ReferenceFaces, ReportError> {
-    let table = Table::read(&folder.join("reference.csv"), AGAIN)?;
+    let table = Table::read(&folder.join("reference.csv"), BUNDLE_HELP)?;
     let [surface, area] = [table.column("surface")?, table.column("area")?];
     let mut columns = Vec::new();
     for band in bands {
@@ -93,8 +97,12 @@ pub fn read_reference_pixels(
 ) -> Result<ReferenceValues, ReportError> {
     let path = folder.join("pixels.npz");
     let file = File::open(&path).map_err(|source| ReportError::Read { path: path.clone(), source })?;
-    let refuse =
-        |what: String| ReportError::Values { path: path.clone(), line: None, what, help: AGAIN.to_owned() };
+    let refuse = |what: String| ReportError::Values {
+        path: path.clone(),
+        line: None,
+        what,
+        help: BUNDLE_HELP.to_owned(),
+    };
     let mut npz = NpzReader::new(file).map_err(|error| refuse(error.to_string()))?;
     let shape = (record.pixels.height as usize, record.pixels.width as usize, record.bands.len());
     let mut array = |name: &str| {

@@ -22,7 +22,7 @@ use crate::ReportError;
 /// Largest number of pictures in a stack, channels of a pixel: what is more is a mistake.
 const MOST_LAYERS: usize = 65_536;
 /// Rounding of a half, relative.
-const HALF: f64 = 1.0 / 2048.0;
+const HALF_ROUNDING: f64 = 1.0 / 2048.0;
 
 /// A picture of this size, in pixels, is expected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -156,7 +156,7 @@ fn open_exr(path: &Path, shape: PictureShape) -> Result<Measured, ReportError> {
         values.extend(wanted.iter().map(|samples| f64::from(samples.value_by_flat_index(at).to_f32())));
     }
     let seeds = vec![in_bands(&values, wanted.len(), shape.bands)];
-    Ok(Measured { seeds, sigma: None, rounding: if half { HALF } else { 0.0 } })
+    Ok(Measured { seeds, sigma: None, rounding: if half { HALF_ROUNDING } else { 0.0 } })
 }
 
 /// The channels R, G and B, or Y, or the only one; their names may stand after a point.

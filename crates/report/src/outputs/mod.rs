@@ -19,7 +19,7 @@ use crate::{
 };
 
 /// The commands that write what every solution has.
-const LIGHT: &str = "solve, resume";
+const LIGHT_COMMANDS: &str = "solve, resume";
 
 /// All files of a solution, in the order in which they are written.
 const ALL: [&dyn OutputFile; 19] = [

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::{Contents, Extras, LIGHT, OutputFile, REPORT, RUN, Wanted};
+use super::{Contents, Extras, LIGHT_COMMANDS, OutputFile, REPORT, RUN, Wanted};
 use crate::catalogue::{CataloguedFile, file};
 use crate::{write_convergence, write_run};
 
@@ -15,7 +15,7 @@ impl OutputFile for Convergence {
     }
 
     fn about(&self) -> Option<CataloguedFile> {
-        Some(file(self.name(), LIGHT, "residuals over iterations and seconds", &[]))
+        Some(file(self.name(), LIGHT_COMMANDS, "residuals over iterations and seconds", &[]))
     }
 
     fn is_wanted(&self, _: &Wanted) -> bool {

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::{Contents, Extras, LIGHT, OutputFile, Wanted};
+use super::{Contents, Extras, LIGHT_COMMANDS, OutputFile, Wanted};
 use crate::catalogue::{CataloguedFile, file};
 use crate::{write_faces_csv, write_false_colour_csv, write_field_csv, write_points_csv, write_surfaces_csv};
 
@@ -17,7 +17,7 @@ impl OutputFile for Elements {
     fn about(&self) -> Option<CataloguedFile> {
         Some(file(
             self.name(),
-            LIGHT,
+            LIGHT_COMMANDS,
             "a row an element",
             &[
                 ("element", "", "number of the unknown, from 0"),
@@ -85,7 +85,7 @@ impl OutputFile for Surfaces {
     fn about(&self) -> Option<CataloguedFile> {
         Some(file(
             self.name(),
-            LIGHT,
+            LIGHT_COMMANDS,
             "a row a named surface",
             &[
                 ("surface", "", "name"),

@@ -9,10 +9,10 @@ use super::{Brush, Painter, Sample, Viewer, mean};
 use crate::colour::Rgb;
 
 /// Half the width of a line, pixels.
-const HALF: f64 = 0.55;
+const HALF_LINE_WIDTH: f64 = 0.55;
 /// Linear display colour of lines, and its share: seen on light and on dark.
-const LINE: Rgb = [0.01, 0.09, 0.30];
-const COVER: f64 = 0.75;
+const LINE_COLOUR: Rgb = [0.01, 0.09, 0.30];
+const LINE_SHARE: f64 = 0.75;
 
 pub(super) struct Elements<'a> {
     pub mesh: &'a Mesh,
@@ -23,8 +23,8 @@ impl Painter for Elements<'_> {
         Box::new(|view, _, samples| {
             mean(samples, |sample| {
                 let colour = sample.shown;
-                let near = on_edge(view, self.mesh.patch(sample.leaf), sample, HALF);
-                if near { blend(colour, LINE, COVER) } else { colour }
+                let near = on_edge(view, self.mesh.patch(sample.leaf), sample, HALF_LINE_WIDTH);
+                if near { blend(colour, LINE_COLOUR, LINE_SHARE) } else { colour }
             })
         })
     }

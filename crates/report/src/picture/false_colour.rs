@@ -5,8 +5,8 @@
 //! rest interpolated between elements, as in the usual picture ([`super::lit`]). The range holds
 //! what is seen but for lamps, and but for the brightest and the darkest fiftieth of it. It begins
 //! at 0, and is divided into equal steps; where the ends of the range are further apart than
-//! [`WIDE`] it is logarithmic, with steps of 1, 2 and 5 times powers of ten, as tables of lighting
-//! have them. Lines run over one surface and end at its edges.
+//! [`LEAST_LOGARITHMIC_RATIO`] it is logarithmic, with steps of 1, 2 and 5 times powers of ten, as
+//! tables of lighting have them. Lines run over one surface and end at its edges.
 
 use fredholm_mesh::Vec3;
 
@@ -19,10 +19,10 @@ use crate::{Camera, Eye, Field, ReportError};
 /// Share of the pixels that the range of colours leaves out at either end.
 const LEFT_OUT: f64 = 0.02;
 /// Ratio of the ends of the range from which it is logarithmic, and the most of it.
-const WIDE: f64 = 100.0;
-const WIDEST: f64 = 1e4;
+const LEAST_LOGARITHMIC_RATIO: f64 = 100.0;
+const MOST_RATIO: f64 = 1e4;
 /// Steps of a range that is not logarithmic, at most.
-const STEPS: f64 = 8.0;
+const MOST_STEPS: f64 = 8.0;
 /// Neighbours belong to one smooth surface up to this cosine of their normals, and up to this sine
 /// of the angle between the surface and the line from one to the other.
 const SMOOTH_COSINE: f64 = 0.766;
@@ -122,8 +122,8 @@ impl Levels {
         let at = |share: f64| at(share).or(values.last().copied()).unwrap_or(0.0);
         let [low, high] = [at(LEFT_OUT), at(1.0 - LEFT_OUT)];
         let ends = [at(0.0), at(1.0)];
-        if low > 0.0 && high > WIDE * low {
-            let low = low.max(high / WIDEST);
+        if low > 0.0 && high > LEAST_LOGARITHMIC_RATIO * low {
+            let low = low.max(high / MOST_RATIO);
             let first = one_two_five().take_while(|v| *v <= low * (1.0 + 1e-9)).last().unwrap_or(low);
             let last = one_two_five().find(|v| *v >= high * (1.0 - 1e-9)).unwrap_or(high);
             let levels: Vec<f64> =
@@ -133,7 +133,7 @@ impl Levels {
         if high <= 0.0 {
             return Self { scale: Scale::linear(0.0, 1.0), lines: Vec::new(), ends };
         }
-        let step = round_step(high, STEPS);
+        let step = round_step(high, MOST_STEPS);
         let count = (high / step - 1e-9).ceil() as i32;
         let levels: Vec<f64> = (0..=count).map(|i| step * f64::from(i)).collect();
         Self { scale: Scale::with_ticks(0.0, step * f64::from(count), &levels), lines: levels, ends }

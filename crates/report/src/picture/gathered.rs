@@ -14,7 +14,7 @@ use crate::Field;
 use crate::colour::{Colouring, Rgb};
 
 /// Cosine, less than 1 by this, up to which two elements have one normal.
-const TURN: f64 = 1e-9;
+const COSINE_TOLERANCE: f64 = 1e-9;
 
 /// Gathers the radiosity of points.
 pub trait Gathering: Sync {
@@ -46,8 +46,8 @@ impl<'a> GatherPainter<'a> {
         let [p, q] = [a, b].map(|sample| mesh.patch(sample.leaf));
         let apart = (b.point - a.point).dot(p.normal()).abs();
         mesh.surface_of(a.leaf) == mesh.surface_of(b.leaf)
-            && p.normal().dot(q.normal()) > 1.0 - TURN
-            && apart <= TURN * p.diameter()
+            && p.normal().dot(q.normal()) > 1.0 - COSINE_TOLERANCE
+            && apart <= COSINE_TOLERANCE * p.diameter()
     }
 
     /// The sample of a group nearest to the mean of their points.

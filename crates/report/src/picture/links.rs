@@ -37,16 +37,16 @@ pub struct Linked {
 }
 
 /// Half the widths of an outline and of the receiver's outline, pixels.
-const HALF: f64 = 0.6;
-const BOLD: f64 = 1.6;
+const HALF_LINE_WIDTH: f64 = 0.6;
+const HALF_RECEIVER_LINE_WIDTH: f64 = 1.6;
 /// Share of the picture that is left under the tints.
-const DIM: f64 = 0.35;
+const SHARE_UNDER_TINTS: f64 = 0.35;
 /// Least share of the irradiance that is told from nothing.
 const LEAST_SHARE: f64 = 1e-4;
 /// Colour of the receiver.
-const RECEIVER: Rgb = [1.0, 0.02, 0.02];
+const RECEIVER_COLOUR: Rgb = [1.0, 0.02, 0.02];
 /// Colours of levels, linear.
-const LEVELS: [Rgb; 5] =
+const LEVEL_COLOURS: [Rgb; 5] =
     [[0.95, 0.30, 0.02], [0.75, 0.55, 0.02], [0.10, 0.50, 0.12], [0.04, 0.35, 0.70], [0.22, 0.12, 0.60]];
 
 pub(super) struct LinkPainter<'a> {
@@ -67,19 +67,19 @@ impl<'a> LinkPainter<'a> {
 
     fn colour(&self, view: &Viewer<'_>, sample: &Sample) -> Rgb {
         let mesh = self.field.mesh();
-        let grey = [DIM * luminance(sample.shown); 3];
+        let grey = [SHARE_UNDER_TINTS * luminance(sample.shown); 3];
         if sample.leaf == self.receiver {
-            return RECEIVER;
+            return RECEIVER_COLOUR;
         }
         let patch = mesh.patch(self.receiver);
         if mesh.surface_of(sample.leaf) == mesh.surface_of(self.receiver)
-            && on_edge(view, patch, sample, BOLD)
+            && on_edge(view, patch, sample, HALF_RECEIVER_LINE_WIDTH)
         {
-            return RECEIVER;
+            return RECEIVER_COLOUR;
         }
         let Some(link) = self.linked.link_of[sample.leaf].map(|k| &self.linked.links[k]) else { return grey };
-        let colour = LEVELS[link.level.min(LEVELS.len() - 1)];
-        if link.patch.is_some_and(|patch| on_edge(view, &patch, sample, HALF)) {
+        let colour = LEVEL_COLOURS[link.level.min(LEVEL_COLOURS.len() - 1)];
+        if link.patch.is_some_and(|patch| on_edge(view, &patch, sample, HALF_LINE_WIDTH)) {
             return colour;
         }
         blend(grey, colour, 0.6 * strength(link.share))
@@ -102,7 +102,7 @@ impl Painter for LinkPainter<'_> {
         let mut links: Vec<&Link> = self.linked.links.iter().collect();
         links.sort_by(|a, b| a.share.total_cmp(&b.share));
         for link in links {
-            let colour = LEVELS[link.level.min(LEVELS.len() - 1)].map(encode);
+            let colour = LEVEL_COLOURS[link.level.min(LEVEL_COLOURS.len() - 1)].map(encode);
             if let [Some(a), Some(b)] = [from, link.centre].map(|end| view.project(end)) {
                 line(picture, [a, b], (colour, 0.15 + 0.7 * strength(link.share)));
             }

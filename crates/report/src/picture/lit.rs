@@ -7,9 +7,9 @@
 //! surface: so no light passes under walls or blocks.
 //!
 //! Every pixel is first looked at through its middle. One whose neighbours show another plane,
-//! surface or brightness is then the mean of [`FINE`] points of a lattice: borders of bodies, of
-//! lamps and of shadows are smooth (adaptive supersampling, T. Whitted, CACM 23(6), 1980,
-//! doi:10.1145/358876.358882). W/m².
+//! surface or brightness is then the mean of [`POINTS_OF_A_PIXEL`] points of a lattice: borders of
+//! bodies, of lamps and of shadows are smooth (adaptive supersampling, T. Whitted, CACM 23(6),
+//! 1980, doi:10.1145/358876.358882). W/m².
 
 use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -25,29 +25,29 @@ use crate::tone::{Exposure, Tone, encode, luminance};
 use crate::{Camera, Eye, Field, ReportError};
 
 /// Points of a pixel at a border, and the generator of their lattice.
-const FINE: usize = 16;
+const POINTS_OF_A_PIXEL: usize = 16;
 const GENERATOR: usize = 7;
 /// One of so many of them has its own light of the lamps, of those that show one leaf: the border
 /// itself needs more points than the light on either side of it.
-const LIT: usize = 4;
+const POINTS_OF_A_LIGHT: usize = 4;
 /// Difference of the colours around a point, over the larger, up to which its own is their mean.
-const ALIKE: f64 = 0.03;
+const ALIKE_DIFFERENCE: f64 = 0.03;
 /// Pixels in a row of a tile.
-const SIDE: usize = 32;
+const TILE_SIDE: usize = 32;
 /// Pixels at borders that are looked at together.
-const TOGETHER: usize = 64;
+const PIXELS_TOGETHER: usize = 64;
 /// Difference of linear display values between neighbours, over the larger, from which there is a
 /// border; and of values so dark that none is seen.
-const STEP: f64 = 0.06;
+const BORDER_STEP: f64 = 0.06;
 /// The same between neighbours on different planes or surfaces.
-const EDGE: f64 = 0.02;
-const DARK: f64 = 0.01;
+const EDGE_STEP: f64 = 0.02;
+const UNSEEN_DIFFERENCE: f64 = 0.01;
 /// Cosine, less than 1 by this, up to which two elements have one normal.
-const TURN: f64 = 1e-9;
+const COSINE_TOLERANCE: f64 = 1e-9;
 /// How often the corners are moved towards the means of elements where the rest is smooth.
-const PASSES: usize = 3;
+const CORNER_PASSES: usize = 3;
 /// No leaf.
-const NOTHING: u32 = u32::MAX;
+const NO_LEAF: u32 = u32::MAX;
 
 /// Tells the factors from points (m) of a leaf to what they see of each lamp, points × lamps.
 pub type Lighter<'a> = Box<dyn FnMut(usize, &[Vec3], &mut [f64]) + 'a>;
@@ -104,7 +104,7 @@ pub(super) struct Middle {
 impl Middle {
     /// The leaf, where one is seen.
     pub(super) fn leaf(&self) -> Option<usize> {
-        (self.leaf != NOTHING).then_some(self.leaf as usize)
+        (self.leaf != NO_LEAF).then_some(self.leaf as usize)
     }
 }
 
@@ -172,9 +172,9 @@ struct Tile {
 impl Tile {
     /// The tiles of a picture.
     fn all(w: usize, h: usize) -> Vec<Self> {
-        let part = |k: usize, end: usize| k * SIDE..((k + 1) * SIDE).min(end);
-        let row = |j: usize| (0..w.div_ceil(SIDE)).map(move |i| Self { xs: part(i, w), ys: part(j, h) });
-        (0..h.div_ceil(SIDE)).flat_map(row).collect()
+        let part = |k: usize, end: usize| k * TILE_SIDE..((k + 1) * TILE_SIDE).min(end);
+        let row = |j: usize| (0..w.div_ceil(TILE_SIDE)).map(move |i| Self { xs: part(i, w), ys: part(j, h) });
+        (0..h.div_ceil(TILE_SIDE)).flat_map(row).collect()
     }
 
     /// Its pixels, row by row.
@@ -207,7 +207,7 @@ impl<'a> LitView<'a> {
             let at = leaf * bands + band;
             lit.direct.map_or(0.0, |direct| lit.reflectance[at] * direct[at])
         };
-        let rest = Shading::of_rest(field, if lit.direct.is_some() { PASSES } else { 0 }, part);
+        let rest = Shading::of_rest(field, if lit.direct.is_some() { CORNER_PASSES } else { 0 }, part);
         Ok(Self { field, eye, lit, rest, sent })
     }
 
@@ -224,7 +224,7 @@ impl<'a> LitView<'a> {
         let weighed = |values: &[f64]| values.iter().zip(weights).map(|(e, w)| e * w).sum::<f64>();
         let of_lamps: Vec<Rgb> = lit.exitance.chunks_exact(bands).map(|m| [weighed(m); 3]).collect();
         let sent = of_lamps.repeat(field.mesh().surfaces().len());
-        let passes = if lit.direct.is_some() { PASSES } else { 0 };
+        let passes = if lit.direct.is_some() { CORNER_PASSES } else { 0 };
         let rest = Shading::of_values(field, passes, |leaf| {
             let direct = lit.direct.map_or(0.0, |direct| weighed(field.row(direct, leaf)));
             let share = field.exposed(leaf);
@@ -323,7 +323,7 @@ impl<'a> LitView<'a> {
         let others = brush.colours(&some(&|k| between[k].is_none()));
         let colours = between.into_iter().zip(others).map(|(between, other)| between.unwrap_or(other));
         let middle = |(seen, colour): (&Seen, Rgb)| Middle {
-            leaf: seen.map_or(NOTHING, |(leaf, _)| leaf as u32),
+            leaf: seen.map_or(NO_LEAF, |(leaf, _)| leaf as u32),
             colour: colour.map(|c| c as f32),
         };
         Some(samples.iter().zip(colours).map(middle).collect())
@@ -342,33 +342,34 @@ impl<'a> LitView<'a> {
                 borders.push((painted.len(), (x, y)));
             }
             let shown = match middle.leaf {
-                NOTHING => [BACKGROUND; 3],
+                NO_LEAF => [BACKGROUND; 3],
                 _ => display(middle.colour.map(f64::from)),
             };
             painted.push((shown.map(encode), middle.colour));
         }
-        for borders in borders.chunks(TOGETHER) {
+        for borders in borders.chunks(PIXELS_TOGETHER) {
             if self.lit.light.go_on().is_break() {
                 return None;
             }
             let samples: Vec<Seen> = borders.iter().flat_map(|(_, at)| self.lattice(*at)).collect();
-            let lit: Vec<usize> = samples.chunks(FINE).flat_map(lit).collect();
+            let lit: Vec<usize> = samples.chunks(POINTS_OF_A_PIXEL).flat_map(lit).collect();
             // What pixels around show tells the light of most samples.
             let around: Vec<Option<Rgb>> = (0..samples.len())
                 .map(|k| {
-                    if lit[k] == k % FINE {
-                        around(middles, (w, h), borders[k / FINE].1, samples[k])
+                    if lit[k] == k % POINTS_OF_A_PIXEL {
+                        around(middles, (w, h), borders[k / POINTS_OF_A_PIXEL].1, samples[k])
                     } else {
                         None
                     }
                 })
                 .collect();
-            let own = |k: usize| samples[k].filter(|_| lit[k] == k % FINE && around[k].is_none());
+            let own =
+                |k: usize| samples[k].filter(|_| lit[k] == k % POINTS_OF_A_PIXEL && around[k].is_none());
             let colours = brush.colours(&(0..samples.len()).map(own).collect::<Vec<_>>());
-            let of = |k: usize| k - k % FINE + lit[k];
+            let of = |k: usize| k - k % POINTS_OF_A_PIXEL + lit[k];
             let colours: Vec<Rgb> =
                 (0..samples.len()).map(of).map(|k| around[k].unwrap_or(colours[k])).collect();
-            let pixels = samples.chunks(FINE).zip(colours.chunks(FINE));
+            let pixels = samples.chunks(POINTS_OF_A_PIXEL).zip(colours.chunks(POINTS_OF_A_PIXEL));
             for ((place, _), (samples, colours)) in borders.iter().zip(pixels) {
                 painted[*place] = mean(samples, colours, display);
             }
@@ -379,7 +380,7 @@ impl<'a> LitView<'a> {
     /// Luminances that an automatic exposure goes by: of lit surfaces, or of lamps where there is
     /// nothing else.
     fn metered(&self, middles: &[Middle]) -> Vec<f64> {
-        let seen = || middles.iter().filter(|middle| middle.leaf != NOTHING);
+        let seen = || middles.iter().filter(|middle| middle.leaf != NO_LEAF);
         let of = |lamps: bool| -> Vec<f64> {
             let of = seen().filter(|middle| self.field.emits(middle.leaf as usize) == lamps);
             of.map(|middle| luminance(middle.colour.map(f64::from))).collect()
@@ -398,16 +399,18 @@ impl<'a> LitView<'a> {
     ) -> bool {
         let own = &middles[y * w + x];
         let shown = |middle: &Middle| match middle.leaf {
-            NOTHING => [BACKGROUND; 3],
+            NO_LEAF => [BACKGROUND; 3],
             _ => display(middle.colour.map(f64::from)),
         };
         let colour = shown(own);
         neighbours((w, h), (x, y)).any(|at| {
             let other = &middles[at];
             // A change on one plane is a shadow's, which is seen less than an edge.
-            let step = if self.is_alike(own.leaf, other.leaf) { STEP } else { EDGE };
+            let step = if self.is_alike(own.leaf, other.leaf) { BORDER_STEP } else { EDGE_STEP };
             let beside = shown(other);
-            (0..3).any(|i| (colour[i] - beside[i]).abs() > step * colour[i].max(beside[i]).max(DARK / step))
+            (0..3).any(|i| {
+                (colour[i] - beside[i]).abs() > step * colour[i].max(beside[i]).max(UNSEEN_DIFFERENCE / step)
+            })
         })
     }
 
@@ -416,21 +419,24 @@ impl<'a> LitView<'a> {
         if a == b {
             return true;
         }
-        if a == NOTHING || b == NOTHING {
+        if a == NO_LEAF || b == NO_LEAF {
             return false;
         }
         let mesh = self.field.mesh();
         let (a, b) = (a as usize, b as usize);
         let [p, q] = [a, b].map(|leaf| mesh.patch(leaf));
         mesh.surface_of(a) == mesh.surface_of(b)
-            && p.normal().dot(q.normal()) > 1.0 - TURN
-            && (q.corner(0) - p.corner(0)).dot(p.normal()).abs() <= TURN * (p.diameter() + q.diameter())
+            && p.normal().dot(q.normal()) > 1.0 - COSINE_TOLERANCE
+            && (q.corner(0) - p.corner(0)).dot(p.normal()).abs()
+                <= COSINE_TOLERANCE * (p.diameter() + q.diameter())
     }
 
     /// What is seen through the points of a lattice in a pixel.
-    fn lattice(&self, (x, y): (usize, usize)) -> [Seen; FINE] {
-        let place = |i: usize| (i as f64 + 0.5) / FINE as f64;
-        std::array::from_fn(|k| self.eye.hit(x as f64 + place(k), y as f64 + place(GENERATOR * k % FINE)))
+    fn lattice(&self, (x, y): (usize, usize)) -> [Seen; POINTS_OF_A_PIXEL] {
+        let place = |i: usize| (i as f64 + 0.5) / POINTS_OF_A_PIXEL as f64;
+        std::array::from_fn(|k| {
+            self.eye.hit(x as f64 + place(k), y as f64 + place(GENERATOR * k % POINTS_OF_A_PIXEL))
+        })
     }
 }
 
@@ -476,18 +482,22 @@ fn alike(colours: impl Iterator<Item = Rgb>) -> Option<Rgb> {
             (least[i], most[i]) = (least[i].min(c), most[i].max(c));
         }
     }
-    let same = (0..3).all(|i| most[i] - least[i] <= ALIKE * most[i]);
+    let same = (0..3).all(|i| most[i] - least[i] <= ALIKE_DIFFERENCE * most[i]);
     (count > 0.0 && same).then(|| sum.map(|sum| sum / count))
 }
 
 /// For each sample of a pixel the one whose light it has, which shows the same leaf.
-fn lit(samples: &[Seen]) -> [usize; FINE] {
+fn lit(samples: &[Seen]) -> [usize; POINTS_OF_A_PIXEL] {
     let leaf = |k: usize| samples[k].map(|(leaf, _)| leaf);
-    let mut lit = [0; FINE];
-    for k in 0..FINE {
+    let mut lit = [0; POINTS_OF_A_PIXEL];
+    for k in 0..POINTS_OF_A_PIXEL {
         let mut before = (0..k).filter(|&other| leaf(other) == leaf(k));
         let place = before.clone().count();
-        lit[k] = if place.is_multiple_of(LIT) { k } else { before.next_back().map_or(k, |other| lit[other]) };
+        lit[k] = if place.is_multiple_of(POINTS_OF_A_LIGHT) {
+            k
+        } else {
+            before.next_back().map_or(k, |other| lit[other])
+        };
     }
     lit
 }
@@ -513,8 +523,8 @@ fn mean(samples: &[Seen], colours: &[Rgb], display: &Display<'_>) -> Painted {
     let (mut shown, mut seen) = ([0.0; 3], [0.0; 3]);
     for (sample, colour) in samples.iter().zip(colours) {
         let own = if sample.is_some() { display(*colour) } else { [BACKGROUND; 3] };
-        shown = [0, 1, 2].map(|i| shown[i] + own[i] / FINE as f64);
-        seen = [0, 1, 2].map(|i| seen[i] + colour[i] / FINE as f64);
+        shown = [0, 1, 2].map(|i| shown[i] + own[i] / POINTS_OF_A_PIXEL as f64);
+        seen = [0, 1, 2].map(|i| seen[i] + colour[i] / POINTS_OF_A_PIXEL as f64);
     }
     (shown.map(encode), seen.map(|c| c as f32))
 }
@@ -526,12 +536,13 @@ mod tests {
     #[test]
     fn the_light_of_a_sample_is_of_its_own_leaf() {
         let samples: Vec<Seen> =
-            (0..FINE).map(|k| [Some((7, Vec3::X)), Some((9, Vec3::Y)), None][k % 3]).collect();
+            (0..POINTS_OF_A_PIXEL).map(|k| [Some((7, Vec3::X)), Some((9, Vec3::Y)), None][k % 3]).collect();
         let lit = lit(&samples);
         let leaf = |k: usize| samples[k].map(|(leaf, _)| leaf);
-        assert!((0..FINE).all(|k| leaf(lit[k]) == leaf(k) && lit[k] <= k));
+        assert!((0..POINTS_OF_A_PIXEL).all(|k| leaf(lit[k]) == leaf(k) && lit[k] <= k));
         // Six samples of the first leaf, five of each other.
-        let own = |of: Option<usize>| (0..FINE).filter(|&k| leaf(k) == of && lit[k] == k).count();
+        let own =
+            |of: Option<usize>| (0..POINTS_OF_A_PIXEL).filter(|&k| leaf(k) == of && lit[k] == k).count();
         assert_eq!([own(Some(7)), own(Some(9)), own(None)], [2, 2, 2]);
     }
 

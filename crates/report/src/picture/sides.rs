@@ -14,14 +14,14 @@ use crate::tone::encode;
 use crate::{Camera, ReportError};
 
 /// Linear display colours.
-const FRONT: Rgb = [0.16, 0.34, 0.62];
-const BACK: Rgb = [0.75, 0.24, 0.04];
-const MARKED: Rgb = [0.55, 0.06, 0.62];
-const LINE: [u8; 3] = [255, 225, 30];
+const FRONT_COLOUR: Rgb = [0.16, 0.34, 0.62];
+const BACK_COLOUR: Rgb = [0.75, 0.24, 0.04];
+const MARKED_COLOUR: Rgb = [0.55, 0.06, 0.62];
+const LINE_COLOUR: [u8; 3] = [255, 225, 30];
 /// Share of the brightness that is left at grazing angles.
-const GRAZING: f64 = 0.35;
+const GRAZING_BRIGHTNESS: f64 = 0.35;
 /// Share of a line over what is behind it.
-const COVER: f64 = 0.9;
+const LINE_SHARE: f64 = 0.9;
 /// Places of the samples in a pixel.
 const SAMPLES: [[f64; 2]; 4] = [[0.125, 0.625], [0.375, 0.125], [0.625, 0.875], [0.875, 0.375]];
 
@@ -84,16 +84,16 @@ pub fn render_sides(sides: &[Side], lines: &[[Vec3; 2]], camera: &Camera) -> Res
 fn colour(side: &Side, direction: Vec3) -> Rgb {
     let cosine = -side.patch.normal().dot(direction);
     let base = match (side.marked, cosine > 0.0 || side.back == Back::Lit) {
-        (true, _) => MARKED,
-        (false, true) => FRONT,
-        (false, false) => BACK,
+        (true, _) => MARKED_COLOUR,
+        (false, true) => FRONT_COLOUR,
+        (false, false) => BACK_COLOUR,
     };
-    base.map(|channel| channel * (GRAZING + (1.0 - GRAZING) * cosine.abs()))
+    base.map(|channel| channel * (GRAZING_BRIGHTNESS + (1.0 - GRAZING_BRIGHTNESS) * cosine.abs()))
 }
 
 fn draw(camera: &Camera, axes: &Axes, picture: &mut Picture, ends: [Vec3; 2]) {
     if let [Some(a), Some(b)] = ends.map(|end| camera.place(axes, end)) {
-        line(picture, [a, b], (LINE, COVER));
+        line(picture, [a, b], (LINE_COLOUR, LINE_SHARE));
     }
 }
 

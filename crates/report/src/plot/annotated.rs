@@ -10,28 +10,28 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::Point;
 use super::figure::{draw_title, failed, width_of, wrapped};
-use super::map::{Area, BAR, ColourBar};
-use super::theme::{GROUND, INK, MARGIN, SMALL, TITLE_ROW, load_font, text};
+use super::map::{Area, BAR_WIDTH, ColourBar};
+use super::theme::{GROUND, INK, MARGIN, SMALL_TEXT_SIZE, TITLE_ROW, load_font, text};
 use crate::Picture;
 
 /// Shorter side of a picture for one pixel of the theme to be one of the picture.
-const SIDE: u32 = 560;
+const SHORTER_SIDE: u32 = 560;
 /// Least height of the bar, pixels of the theme.
-const LEAST: i32 = 220;
+const LEAST_BAR_HEIGHT: i32 = 220;
 /// Least width of the whole, pixels of the theme.
 const LEAST_WIDTH: i32 = 480;
 /// Height of a number, pixels of the theme.
-const TALL: f64 = 17.0;
+const NUMBER_HEIGHT: f64 = 17.0;
 /// Room between numbers, pixels of the theme.
-const APART: f64 = 3.0;
+const NUMBER_MARGIN: f64 = 3.0;
 /// Length of a line from which it has a label, pixels of the theme.
-const LABELLED: f64 = 70.0;
+const LEAST_LABELLED_LENGTH: f64 = 70.0;
 /// Pixels of the theme between the points of the grid of numbers, across and down.
-const SPACING: [f64; 2] = [92.0, 76.0];
+const NUMBER_SPACING: [f64; 2] = [92.0, 76.0];
 
 /// Pixels of a picture of so many pixels that one of the theme has.
 pub(crate) fn unit_of(width: u32, height: u32) -> i32 {
-    i32::try_from((width.min(height) + SIDE / 2) / SIDE).unwrap_or(1).max(1)
+    i32::try_from((width.min(height) + SHORTER_SIDE / 2) / SHORTER_SIDE).unwrap_or(1).max(1)
 }
 
 /// Columns and rows of a grid of pixels that are far enough from each other for numbers.
@@ -41,8 +41,8 @@ pub(crate) fn number_grid(width: u32, height: u32) -> Vec<(u32, u32)> {
         let count = (f64::from(side) / (spacing * unit)).floor().max(1.0);
         (0..count as u32).map(move |i| (f64::from(side) * (f64::from(i) + 0.5) / count) as u32)
     };
-    let across: Vec<u32> = along(width, SPACING[0]).collect();
-    along(height, SPACING[1]).flat_map(|y| across.iter().map(move |&x| (x, y))).collect()
+    let across: Vec<u32> = along(width, NUMBER_SPACING[0]).collect();
+    along(height, NUMBER_SPACING[1]).flat_map(|y| across.iter().map(move |&x| (x, y))).collect()
 }
 
 /// A line of equal value, and its number.
@@ -74,10 +74,10 @@ impl Annotated<'_> {
         let Picture { width, height, .. } = *self.picture;
         let unit = unit_of(width, height);
         let [wide, tall] = [width, height].map(|side| i32::try_from(side).unwrap_or(i32::MAX / 4));
-        let full = (wide + (MARGIN + BAR) * unit).max(LEAST_WIDTH * unit);
+        let full = (wide + (MARGIN + BAR_WIDTH) * unit).max(LEAST_WIDTH * unit);
         let title = wrapped(self.title, full / unit - 2 * MARGIN)?;
         let top = (MARGIN + TITLE_ROW * title.len() as i32 + 6) * unit;
-        let size = [full, top + tall.max(LEAST * unit) + MARGIN * unit].map(i32::unsigned_abs);
+        let size = [full, top + tall.max(LEAST_BAR_HEIGHT * unit) + MARGIN * unit].map(i32::unsigned_abs);
         let mut pixels = vec![255; 3 * size[0] as usize * size[1] as usize];
         let mut lined = self.picture.pixels.clone();
         self.draw_lines(&mut lined, f64::from(unit));
@@ -129,14 +129,14 @@ impl Annotated<'_> {
             lettered(area, whole(above), number, unit, INK)?;
         }
         for line in self.isolines {
-            if length(&line.points) < LABELLED * f64::from(unit) {
+            if length(&line.points) < LEAST_LABELLED_LENGTH * f64::from(unit) {
                 continue;
             }
             for at in candidates(&line.points) {
                 let room = Self::room(at, &line.label, unit)?;
                 if self.holds(room) && taken.iter().all(|other| is_apart(room, *other)) {
                     taken.push(room);
-                    lettered(area, whole(at), &line.label, unit, LABEL)?;
+                    lettered(area, whole(at), &line.label, unit, LABEL_COLOUR)?;
                     break;
                 }
             }
@@ -146,7 +146,10 @@ impl Annotated<'_> {
 
     /// What a number around a place takes.
     fn room((x, y): Point, number: &str, unit: i32) -> io::Result<Taken> {
-        let half = [0.5 * f64::from(width_of(number, SMALL)?) + APART, 0.5 * TALL + APART];
+        let half = [
+            0.5 * f64::from(width_of(number, SMALL_TEXT_SIZE)?) + NUMBER_MARGIN,
+            0.5 * NUMBER_HEIGHT + NUMBER_MARGIN,
+        ];
         let [wide, tall] = half.map(|side| side * f64::from(unit));
         Ok([x - wide, y - tall, x + wide, y + tall])
     }
@@ -161,11 +164,11 @@ impl Annotated<'_> {
 }
 
 /// Colour of the labels of lines, told apart from the numbers of points.
-const LABEL: RGBColor = RGBColor(150, 30, 30);
+const LABEL_COLOUR: RGBColor = RGBColor(150, 30, 30);
 
 /// Writes a number around a place, on a light edge.
 fn lettered(area: &Area<'_>, (x, y): (i32, i32), number: &str, unit: i32, ink: RGBColor) -> io::Result<()> {
-    let style = |colour| text(SMALL, unit, colour).pos(Pos::new(HPos::Center, VPos::Center));
+    let style = |colour| text(SMALL_TEXT_SIZE, unit, colour).pos(Pos::new(HPos::Center, VPos::Center));
     let around = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
     for (dx, dy) in around {
         let at = (x + dx * unit, y + dy * unit);

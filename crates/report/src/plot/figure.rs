@@ -14,28 +14,29 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::scale::{Scale, Span};
 use super::theme::{
-    GRID, GROUND, INK, MARGIN, MUTED, SMALL, TEXT, TITLE, TITLE_ROW, WIDTH, dark_style, load_font, text,
+    GRID_COLOUR, GROUND, INK, MARGIN, MUTED_INK, SMALL_TEXT_SIZE, TEXT_SIZE, TITLE_ROW, TITLE_SIZE, WIDTH,
+    dark_style, load_font, text,
 };
 use super::{Point, Polar};
 
 /// Steps of a pixel in an SVG: the library rounds to whole ones.
-const UNIT: i32 = 10;
+const STEPS_OF_A_PIXEL: i32 = 10;
 /// Height of a row of the legend, pixels.
-const ROW: i32 = TITLE_ROW;
+const LEGEND_ROW: i32 = TITLE_ROW;
 /// Height of a panel with its labels, pixels.
-const PANEL: i32 = 340;
+const PANEL_HEIGHT: i32 = 340;
 /// Room for the labels below and beside a panel, pixels.
-const BELOW: i32 = 58;
-const BESIDE: i32 = 84;
+const ROOM_BELOW: i32 = 58;
+const ROOM_BESIDE: i32 = 84;
 /// Width of a line in the legend, pixels.
-const SWATCH: i32 = 28;
+const SWATCH_WIDTH: i32 = 28;
 /// Most points of a line; longer ones are thinned evenly.
-const POINTS: usize = 600;
+const MOST_POINTS: usize = 600;
 /// Most points of a line that are marked one by one; of more, so many are marked.
-const MARKED: usize = 12;
+const MOST_MARKED_POINTS: usize = 12;
 /// Most entries of the legend; of more, evenly spaced ones are named.
-const ENTRIES: usize = 40;
-const NAMED: usize = 12;
+const MOST_ENTRIES: usize = 40;
+const NAMED_ENTRIES: usize = 12;
 
 /// Quantity, unit and kind of an axis.
 #[derive(Clone, Debug)]
@@ -78,14 +79,14 @@ impl Line {
 
     /// A line to compare with.
     pub(crate) fn level(name: &str, points: Vec<Point>) -> Self {
-        Self { dashed: true, ..Self::new(name, points, MUTED) }
+        Self { dashed: true, ..Self::new(name, points, MUTED_INK) }
     }
 
-    /// The finite points as near as the axes have them: at most [`POINTS`] and the last.
+    /// The finite points as near as the axes have them: at most [`MOST_POINTS`] and the last.
     fn drawn(&self, across: &Scale, up: &Scale) -> Vec<Point> {
         let finite = self.points.iter().filter(|(x, y)| x.is_finite() && y.is_finite());
         let all: Vec<Point> = finite.map(|&(x, y)| (across.clamped(x), up.clamped(y))).collect();
-        let stride = all.len().div_ceil(POINTS).max(1);
+        let stride = all.len().div_ceil(MOST_POINTS).max(1);
         let last = all.len().saturating_sub(1);
         all.into_iter().enumerate().filter(|(i, _)| i % stride == 0 || *i == last).map(|(_, p)| p).collect()
     }
@@ -146,7 +147,7 @@ impl Part {
 
     fn height(&self) -> i32 {
         match self {
-            Self::Panel(_) => PANEL,
+            Self::Panel(_) => PANEL_HEIGHT,
             Self::Polar(_) => Polar::HEIGHT,
         }
     }
@@ -168,17 +169,17 @@ pub(crate) fn write_svg(figure: &Figure, out: &mut dyn Write) -> io::Result<()> 
     let (title, legend) = (wrapped(&figure.title, WIDTH - 2 * MARGIN)?, Legend::new(figure)?);
     let top = MARGIN + TITLE_ROW * title.len() as i32 + 6;
     let parts: i32 = figure.parts.iter().map(Part::height).sum();
-    let height = top + parts + ROW * legend.rows + MARGIN;
+    let height = top + parts + LEGEND_ROW * legend.rows + MARGIN;
     let mut text = String::new();
     {
-        let size = ((WIDTH * UNIT).unsigned_abs(), (height * UNIT).unsigned_abs());
+        let size = ((WIDTH * STEPS_OF_A_PIXEL).unsigned_abs(), (height * STEPS_OF_A_PIXEL).unsigned_abs());
         let root = SVGBackend::with_string(&mut text, size).into_drawing_area();
         draw(&root, figure, &title, &legend, top).map_err(failed)?;
         root.present().map_err(failed)?;
     }
     // Sizes in pixels, and the dark colours.
     let head = text.find('>').map_or(0, |at| at + 1);
-    let (wide, tall) = (WIDTH * UNIT, height * UNIT);
+    let (wide, tall) = (WIDTH * STEPS_OF_A_PIXEL, height * STEPS_OF_A_PIXEL);
     write!(
         out,
         "<svg width=\"{WIDTH}\" height=\"{height}\" viewBox=\"0 0 {wide} {tall}\" \
@@ -205,14 +206,14 @@ fn draw<DB: DrawingBackend>(
     top: i32,
 ) -> Drawn<DB> {
     root.fill(&GROUND)?;
-    draw_title(root, title, UNIT)?;
-    let mut left = root.split_vertically(top * UNIT).1;
+    draw_title(root, title, STEPS_OF_A_PIXEL)?;
+    let mut left = root.split_vertically(top * STEPS_OF_A_PIXEL).1;
     for part in &figure.parts {
-        let (here, below) = left.split_vertically(part.height() * UNIT);
+        let (here, below) = left.split_vertically(part.height() * STEPS_OF_A_PIXEL);
         left = below;
         match part {
             Part::Panel(panel) => draw_panel(&here, panel)?,
-            Part::Polar(polar) => polar.draw(&here, UNIT)?,
+            Part::Polar(polar) => polar.draw(&here, STEPS_OF_A_PIXEL)?,
         }
     }
     legend.draw(&left)
@@ -225,7 +226,7 @@ pub(super) fn draw_title<DB: DrawingBackend>(
     unit: i32,
 ) -> Drawn<DB> {
     for (number, line) in (0..).zip(lines) {
-        let style = text(TITLE, unit, INK);
+        let style = text(TITLE_SIZE, unit, INK);
         root.draw(&Text::new(line.as_str(), (MARGIN * unit, (MARGIN + TITLE_ROW * number) * unit), style))?;
     }
     Ok(())
@@ -234,13 +235,13 @@ pub(super) fn draw_title<DB: DrawingBackend>(
 fn draw_panel<DB: DrawingBackend>(area: &DrawingArea<DB, Shift>, panel: &Panel) -> Drawn<DB> {
     let (across, up) = panel.scales();
     let mut chart = ChartBuilder::on(area)
-        .margin_top(8 * UNIT)
-        .margin_left(MARGIN * UNIT)
-        .margin_right(2 * MARGIN * UNIT)
-        .x_label_area_size(BELOW * UNIT)
-        .y_label_area_size((BESIDE - MARGIN) * UNIT)
+        .margin_top(8 * STEPS_OF_A_PIXEL)
+        .margin_left(MARGIN * STEPS_OF_A_PIXEL)
+        .margin_right(2 * MARGIN * STEPS_OF_A_PIXEL)
+        .x_label_area_size(ROOM_BELOW * STEPS_OF_A_PIXEL)
+        .y_label_area_size((ROOM_BESIDE - MARGIN) * STEPS_OF_A_PIXEL)
         .build_cartesian_2d(across.clone(), up.clone())?;
-    draw_axes(&mut chart, (&panel.across.label, &panel.up.label), UNIT)?;
+    draw_axes(&mut chart, (&panel.across.label, &panel.up.label), STEPS_OF_A_PIXEL)?;
     let fill = super::distinct(0).0;
     for bar in &panel.bars {
         let inset = 0.07 * (bar.to - bar.from);
@@ -270,11 +271,11 @@ pub(super) fn draw_axes<DB: DrawingBackend>(
         .y_labels(8)
         .max_light_lines(0)
         .set_all_tick_mark_size(5 * unit)
-        .bold_line_style(GRID.stroke_width(width))
+        .bold_line_style(GRID_COLOUR.stroke_width(width))
         .light_line_style(plotters::style::TRANSPARENT)
-        .axis_style(MUTED.stroke_width(width))
-        .label_style(text(SMALL, unit, INK))
-        .axis_desc_style(text(TEXT, unit, INK))
+        .axis_style(MUTED_INK.stroke_width(width))
+        .label_style(text(SMALL_TEXT_SIZE, unit, INK))
+        .axis_desc_style(text(TEXT_SIZE, unit, INK))
         .draw()
 }
 
@@ -284,16 +285,21 @@ pub(super) fn draw_line<DB: DrawingBackend>(
     line: &Line,
     points: &[Point],
 ) -> Drawn<DB> {
-    let stroke = line.colour.stroke_width(2 * UNIT.unsigned_abs() - 2);
+    let stroke = line.colour.stroke_width(2 * STEPS_OF_A_PIXEL.unsigned_abs() - 2);
     if line.joined && points.len() > 1 {
         if line.dashed {
-            chart.draw_series(DashedLineSeries::new(points.iter().copied(), 6 * UNIT, 5 * UNIT, stroke))?;
+            chart.draw_series(DashedLineSeries::new(
+                points.iter().copied(),
+                6 * STEPS_OF_A_PIXEL,
+                5 * STEPS_OF_A_PIXEL,
+                stroke,
+            ))?;
         } else {
             chart.draw_series(LineSeries::new(points.iter().copied(), stroke))?;
         }
     }
-    let every = points.len().div_ceil(MARKED).max(1);
-    let marked = !line.dashed && (!line.joined || points.len() <= MARKED || line.shape > 0);
+    let every = points.len().div_ceil(MOST_MARKED_POINTS).max(1);
+    let marked = !line.dashed && (!line.joined || points.len() <= MOST_MARKED_POINTS || line.shape > 0);
     let every = if line.joined { every } else { 1 };
     for &at in points.iter().step_by(every).filter(|_| marked) {
         mark(chart, at, line)?;
@@ -302,11 +308,11 @@ pub(super) fn draw_line<DB: DrawingBackend>(
 }
 
 fn mark<DB: DrawingBackend>(chart: &mut Chart<'_, DB>, at: Point, line: &Line) -> Drawn<DB> {
-    let (size, style) = (35 * UNIT / 10, line.colour.filled());
+    let (size, style) = (35 * STEPS_OF_A_PIXEL / 10, line.colour.filled());
     match line.shape {
         0 => chart.draw_series([Circle::new(at, size, style)])?,
-        1 => chart.draw_series([TriangleMarker::new(at, 5 * UNIT, style)])?,
-        2 => chart.draw_series([Cross::new(at, 4 * UNIT, crossed(line.colour))])?,
+        1 => chart.draw_series([TriangleMarker::new(at, 5 * STEPS_OF_A_PIXEL, style)])?,
+        2 => chart.draw_series([Cross::new(at, 4 * STEPS_OF_A_PIXEL, crossed(line.colour))])?,
         _ => {
             let square = Rectangle::new([(-size, -size), (size, size)], style);
             chart.draw_series([EmptyElement::at(at) + square])?
@@ -316,7 +322,7 @@ fn mark<DB: DrawingBackend>(chart: &mut Chart<'_, DB>, at: Point, line: &Line) -
 }
 
 fn crossed(colour: RGBColor) -> ShapeStyle {
-    colour.stroke_width(2 * UNIT.unsigned_abs())
+    colour.stroke_width(2 * STEPS_OF_A_PIXEL.unsigned_abs())
 }
 
 /// What the lines are called, below all of them.
@@ -333,18 +339,20 @@ impl Legend {
             .filter(|line| !line.name.is_empty() && seen.insert(line.name.clone()))
             .map(|line| Line { points: Vec::new(), ..line.clone() })
             .collect();
-        if named.len() > ENTRIES {
+        if named.len() > MOST_ENTRIES {
             // What is compared with keeps its name.
             let (levels, lines): (Vec<Line>, Vec<Line>) = named.into_iter().partition(|line| line.dashed);
             let (count, last, named_of) = (lines.len(), lines.len().saturating_sub(1), lines);
-            named = (0..NAMED).filter_map(|i| named_of.get(i * last / (NAMED - 1)).cloned()).collect();
+            named = (0..NAMED_ENTRIES)
+                .filter_map(|i| named_of.get(i * last / (NAMED_ENTRIES - 1)).cloned())
+                .collect();
             let rest = format!("and so on: {count} lines");
             named.push(Line { joined: false, ..Line::level(&rest, Vec::new()) });
             named.extend(levels);
         }
         let (mut x, mut rows, mut entries) = (MARGIN, 0, Vec::new());
         for line in named {
-            let wide = SWATCH + 8 + width_of(&line.name, SMALL)? + 22;
+            let wide = SWATCH_WIDTH + 8 + width_of(&line.name, SMALL_TEXT_SIZE)? + 22;
             if rows == 0 || x + wide > WIDTH {
                 (x, rows) = (MARGIN, rows + 1);
             }
@@ -356,29 +364,38 @@ impl Legend {
 
     fn draw<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> Drawn<DB> {
         for (line, (x, row)) in &self.entries {
-            let (x, y) = (*x as i32 * UNIT, (*row as i32 * ROW + ROW / 2) * UNIT);
-            let (end, stroke) = (x + SWATCH * UNIT, line.colour.stroke_width(25 * UNIT.unsigned_abs() / 10));
-            let middle = (x + SWATCH * UNIT / 2, y);
+            let (x, y) = (
+                *x as i32 * STEPS_OF_A_PIXEL,
+                (*row as i32 * LEGEND_ROW + LEGEND_ROW / 2) * STEPS_OF_A_PIXEL,
+            );
+            let (end, stroke) = (
+                x + SWATCH_WIDTH * STEPS_OF_A_PIXEL,
+                line.colour.stroke_width(25 * STEPS_OF_A_PIXEL.unsigned_abs() / 10),
+            );
+            let middle = (x + SWATCH_WIDTH * STEPS_OF_A_PIXEL / 2, y);
             if line.dashed && line.joined {
                 for part in [0, 11, 22] {
-                    let from = x + part * UNIT;
-                    area.draw(&PathElement::new([(from, y), ((from + 6 * UNIT).min(end), y)], stroke))?;
+                    let from = x + part * STEPS_OF_A_PIXEL;
+                    area.draw(&PathElement::new(
+                        [(from, y), ((from + 6 * STEPS_OF_A_PIXEL).min(end), y)],
+                        stroke,
+                    ))?;
                 }
             } else if line.joined {
                 area.draw(&PathElement::new([(x, y), (end, y)], stroke))?;
             }
-            let (size, style) = (35 * UNIT / 10, line.colour.filled());
+            let (size, style) = (35 * STEPS_OF_A_PIXEL / 10, line.colour.filled());
             let (mx, my) = middle;
             match line.shape {
                 _ if line.dashed => {}
                 0 if line.joined => {}
                 0 => area.draw(&Circle::new(middle, size, style))?,
-                1 => area.draw(&TriangleMarker::new(middle, 5 * UNIT, style))?,
-                2 => area.draw(&Cross::new(middle, 4 * UNIT, crossed(line.colour)))?,
+                1 => area.draw(&TriangleMarker::new(middle, 5 * STEPS_OF_A_PIXEL, style))?,
+                2 => area.draw(&Cross::new(middle, 4 * STEPS_OF_A_PIXEL, crossed(line.colour)))?,
                 _ => area.draw(&Rectangle::new([(mx - size, my - size), (mx + size, my + size)], style))?,
             }
-            let style = text(SMALL, UNIT, INK).pos(Pos::new(HPos::Left, VPos::Center));
-            area.draw(&Text::new(line.name.as_str(), (end + 8 * UNIT, y), style))?;
+            let style = text(SMALL_TEXT_SIZE, STEPS_OF_A_PIXEL, INK).pos(Pos::new(HPos::Left, VPos::Center));
+            area.draw(&Text::new(line.name.as_str(), (end + 8 * STEPS_OF_A_PIXEL, y), style))?;
         }
         Ok(())
     }
@@ -386,8 +403,8 @@ impl Legend {
 
 /// Width of a text, pixels.
 pub(super) fn width_of(words: &str, size: i32) -> io::Result<i32> {
-    let (wide, _) = text(size, UNIT, INK).font.box_size(words).map_err(failed)?;
-    Ok(i32::try_from(wide).unwrap_or(i32::MAX) / UNIT)
+    let (wide, _) = text(size, STEPS_OF_A_PIXEL, INK).font.box_size(words).map_err(failed)?;
+    Ok(i32::try_from(wide).unwrap_or(i32::MAX) / STEPS_OF_A_PIXEL)
 }
 
 /// A title in lines that fit `room` pixels; of a word that is longer than a line the end is kept.
@@ -395,13 +412,13 @@ pub(super) fn wrapped(title: &str, room: i32) -> io::Result<Vec<String>> {
     let mut lines: Vec<String> = Vec::new();
     for word in title.split_whitespace() {
         let mut word = word.to_owned();
-        while width_of(&word, TITLE)? > room {
+        while width_of(&word, TITLE_SIZE)? > room {
             word = std::iter::once('…')
                 .chain(word.chars().skip(if word.starts_with('…') { 2 } else { 4 }))
                 .collect();
         }
         match lines.last_mut() {
-            Some(line) if width_of(&format!("{line} {word}"), TITLE)? <= room => {
+            Some(line) if width_of(&format!("{line} {word}"), TITLE_SIZE)? <= room => {
                 line.push(' ');
                 line.push_str(&word);
             }
@@ -424,7 +441,7 @@ pub(crate) mod tests {
 
     /// The curves: what is as wide as they are, and none to compare with.
     pub(crate) fn curves(svg: &str) -> Vec<Vec<Point>> {
-        let RGBColor(r, g, b) = MUTED;
+        let RGBColor(r, g, b) = MUTED_INK;
         let level = format!("#{r:02X}{g:02X}{b:02X}");
         let own = |tag: &str| attribute(tag, "stroke-width") == "18" && attribute(tag, "stroke") != level;
         let lines = tags(svg).into_iter().filter(|(name, tag)| name == "polyline" && own(tag));
@@ -480,7 +497,7 @@ pub(crate) mod tests {
             }
         }
         let svg = panel(Span::WithZero, (0..10_000).map(|i| (f64::from(i), 1.0)).collect());
-        assert!((POINTS / 2..2 * POINTS).contains(&curves(&svg)[0].len()));
+        assert!((MOST_POINTS / 2..2 * MOST_POINTS).contains(&curves(&svg)[0].len()));
     }
 
     #[test]
@@ -490,7 +507,7 @@ pub(crate) mod tests {
         assert!(lines.len() > 1 && lines.join(" ") == title);
         let long = wrapped(&"x".repeat(500), WIDTH - 2 * MARGIN).unwrap();
         assert!(long.len() == 1 && long[0].starts_with('…'));
-        assert!(width_of(&long[0], TITLE).unwrap() <= WIDTH - 2 * MARGIN);
+        assert!(width_of(&long[0], TITLE_SIZE).unwrap() <= WIDTH - 2 * MARGIN);
         let line = |i: usize| Line::distinct(&format!("line {i}"), vec![(0.0, 1.0)], i);
         let axis = || Axis::new("x", Span::WithZero);
         let figure = |count| Figure {
@@ -499,6 +516,6 @@ pub(crate) mod tests {
         };
         let legend = Legend::new(&figure(27)).unwrap();
         assert_eq!(legend.entries.len(), 27);
-        assert_eq!(Legend::new(&figure(76)).unwrap().entries.len(), NAMED + 1);
+        assert_eq!(Legend::new(&figure(76)).unwrap().entries.len(), NAMED_ENTRIES + 1);
     }
 }

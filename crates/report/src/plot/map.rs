@@ -11,18 +11,18 @@ use plotters::style::colors::colormaps::{ColorMap, DerivedColorMap, ViridisRGB};
 use super::Point;
 use super::figure::{draw_axes, draw_title, failed, wrapped};
 use super::scale::Scale;
-use super::theme::{GROUND, INK, MARGIN, SMALL, TEXT, TITLE_ROW, WIDTH, load_font, text};
+use super::theme::{GROUND, INK, MARGIN, SMALL_TEXT_SIZE, TEXT_SIZE, TITLE_ROW, WIDTH, load_font, text};
 use crate::Picture;
 
 /// Pixels of the picture for one of the theme: maps are drawn at twice the size.
-const UNIT: i32 = 2;
+const PIXELS_A_THEME_PIXEL: i32 = 2;
 /// Room beside the map, its longest sides and its least side, pixels of the theme.
-const LEFT: i32 = 84;
-const BELOW: i32 = 58;
-pub(super) const BAR: i32 = 140;
-const WIDEST: i32 = 376;
-const TALLEST: i32 = 520;
-const LEAST: i32 = 150;
+const ROOM_LEFT: i32 = 84;
+const ROOM_BELOW: i32 = 58;
+pub(super) const BAR_WIDTH: i32 = 140;
+const MOST_WIDTH: i32 = 376;
+const MOST_HEIGHT: i32 = 520;
+const LEAST_SIDE: i32 = 150;
 
 /// The colours of a quantity beside a map.
 pub(crate) struct ColourBar<'a> {
@@ -39,9 +39,9 @@ impl ColourBar<'_> {
     /// # Errors
     /// What the library reports.
     pub(super) fn draw(&self, area: &Area<'_>, tall: i32, unit: i32) -> io::Result<()> {
-        let mut chart = ChartBuilder::on(&area.split_vertically(tall.max(LEAST) * unit).0)
+        let mut chart = ChartBuilder::on(&area.split_vertically(tall.max(LEAST_SIDE) * unit).0)
             .margin_left(18 * unit)
-            .margin_right(((area.dim_in_pixel().0 as i32 / unit - BAR).max(0) + 14) * unit)
+            .margin_right(((area.dim_in_pixel().0 as i32 / unit - BAR_WIDTH).max(0) + 14) * unit)
             .right_y_label_area_size(84 * unit)
             .build_cartesian_2d(Scale::linear(0.0, 1.0), self.scale.clone())
             .map_err(failed)?;
@@ -53,8 +53,8 @@ impl ColourBar<'_> {
             .y_labels(7)
             .set_all_tick_mark_size(5 * unit)
             .axis_style(INK)
-            .label_style(text(SMALL, unit, INK))
-            .axis_desc_style(text(TEXT, unit, INK))
+            .label_style(text(SMALL_TEXT_SIZE, unit, INK))
+            .axis_desc_style(text(TEXT_SIZE, unit, INK))
             .draw()
             .map_err(failed)?;
         let inside = chart.plotting_area().strip_coord_spec();
@@ -94,19 +94,25 @@ impl Heat<'_> {
         load_font()?;
         let title = wrapped(self.title, WIDTH - 2 * MARGIN)?;
         let aspect = if self.aspect.is_normal() { self.aspect.abs() } else { 1.0 };
-        let wide = f64::from(WIDEST).min(f64::from(TALLEST) / aspect);
-        let [wide, tall] = [wide, wide * aspect].map(|side| (side.round() as i32).max(LEAST));
+        let wide = f64::from(MOST_WIDTH).min(f64::from(MOST_HEIGHT) / aspect);
+        let [wide, tall] = [wide, wide * aspect].map(|side| (side.round() as i32).max(LEAST_SIDE));
         let top = 20 + TITLE_ROW * title.len() as i32 + 6;
-        let (width, height) = (600, top + tall + BELOW + 14);
-        let (right, size) = (width - LEFT - wide, [width, height].map(|side| (UNIT * side).unsigned_abs()));
+        let (width, height) = (600, top + tall + ROOM_BELOW + 14);
+        let (right, size) = (
+            width - ROOM_LEFT - wide,
+            [width, height].map(|side| (PIXELS_A_THEME_PIXEL * side).unsigned_abs()),
+        );
         let mut pixels = vec![255; 3 * size[0] as usize * size[1] as usize];
         {
             let root = BitMapBackend::with_buffer(&mut pixels, (size[0], size[1])).into_drawing_area();
             root.fill(&GROUND).map_err(failed)?;
-            draw_title(&root, &title, UNIT).map_err(failed)?;
-            let (map, bar) = root.split_vertically(top * UNIT).1.split_horizontally((width - right) * UNIT);
+            draw_title(&root, &title, PIXELS_A_THEME_PIXEL).map_err(failed)?;
+            let (map, bar) = root
+                .split_vertically(top * PIXELS_A_THEME_PIXEL)
+                .1
+                .split_horizontally((width - right) * PIXELS_A_THEME_PIXEL);
             self.draw_map(&map)?;
-            self.bar.draw(&bar, tall, UNIT)?;
+            self.bar.draw(&bar, tall, PIXELS_A_THEME_PIXEL)?;
             root.present().map_err(failed)?;
         }
         Ok(Picture { width: size[0], height: size[1], pixels })
@@ -115,13 +121,13 @@ impl Heat<'_> {
     fn draw_map(&self, area: &Area<'_>) -> io::Result<()> {
         let (across, up) = (&self.across, &self.up);
         let mut chart = ChartBuilder::on(area)
-            .margin_bottom(14 * UNIT)
-            .margin_left(14 * UNIT)
-            .x_label_area_size(BELOW * UNIT)
-            .y_label_area_size((LEFT - 14) * UNIT)
+            .margin_bottom(14 * PIXELS_A_THEME_PIXEL)
+            .margin_left(14 * PIXELS_A_THEME_PIXEL)
+            .x_label_area_size(ROOM_BELOW * PIXELS_A_THEME_PIXEL)
+            .y_label_area_size((ROOM_LEFT - 14) * PIXELS_A_THEME_PIXEL)
             .build_cartesian_2d(across.1.clone(), up.1.clone())
             .map_err(failed)?;
-        draw_axes(&mut chart, (across.0, up.0), UNIT).map_err(failed)?;
+        draw_axes(&mut chart, (across.0, up.0), PIXELS_A_THEME_PIXEL).map_err(failed)?;
         let inside = chart.plotting_area().strip_coord_spec();
         let (wide, tall) = inside.dim_in_pixel();
         for y in 0..tall.min(if self.rows * self.columns > 0 { tall } else { 0 }) {
@@ -133,7 +139,7 @@ impl Heat<'_> {
         }
         // Dark on a light edge, so that it stands out from every colour.
         for (colour, wide) in [(GROUND, 3), (INK, 1)] {
-            let style = colour.stroke_width(wide * UNIT.unsigned_abs());
+            let style = colour.stroke_width(wide * PIXELS_A_THEME_PIXEL.unsigned_abs());
             let lines = self.outline.iter().map(|line| PathElement::new(line.to_vec(), style));
             chart.draw_series(lines).map_err(failed)?;
         }

@@ -10,12 +10,12 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use super::Point;
 use super::figure::{Drawn, Line, draw_line};
 use super::scale::{Scale, round_step};
-use super::theme::{GRID, INK, MUTED, SMALL, TEXT, text};
+use super::theme::{GRID_COLOUR, INK, MUTED_INK, SMALL_TEXT_SIZE, TEXT_SIZE, text};
 
 /// Levels so far below the rim and more stand at the centre, dB.
 const DECIBELS_TO_CENTRE: f64 = 40.0;
 /// Distance of the rings of levels, dB.
-const RING: f64 = 10.0;
+const RING_DISTANCE: f64 = 10.0;
 /// Half the side of what is drawn where the rim has radius 1.
 const HALF_SIDE: f64 = 1.2;
 
@@ -41,9 +41,9 @@ impl Polar {
         let values = self.lines.iter().flat_map(|line| &line.points).map(|point| point.1);
         let top = values.filter(|value| value.is_finite()).fold(f64::NEG_INFINITY, f64::max);
         if self.decibels {
-            let rim = if top.is_finite() { (top / RING).ceil() * RING } else { 0.0 };
-            return (0..=(DECIBELS_TO_CENTRE / RING) as i32)
-                .map(|i| rim - DECIBELS_TO_CENTRE + RING * f64::from(i))
+            let rim = if top.is_finite() { (top / RING_DISTANCE).ceil() * RING_DISTANCE } else { 0.0 };
+            return (0..=(DECIBELS_TO_CENTRE / RING_DISTANCE) as i32)
+                .map(|i| rim - DECIBELS_TO_CENTRE + RING_DISTANCE * f64::from(i))
                 .collect();
         }
         let top = if top > 0.0 { top } else { 1.0 };
@@ -58,7 +58,7 @@ impl Polar {
     }
 
     pub(super) fn draw<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>, unit: i32) -> Drawn<DB> {
-        let heading = text(TEXT, unit, INK).pos(Pos::new(HPos::Center, VPos::Top));
+        let heading = text(TEXT_SIZE, unit, INK).pos(Pos::new(HPos::Center, VPos::Top));
         let (width, height) = area.dim_in_pixel();
         let centre = i32::try_from(width / 2).unwrap_or(0);
         area.draw(&Text::new(self.label.as_str(), (centre, 6 * unit), heading))?;
@@ -74,11 +74,11 @@ impl Polar {
         let (centre, rim) = (rings[0], rings[rings.len() - 1]);
         let share = |value: f64| ((value - centre) / (rim - centre)).clamp(0.0, 1.0);
         let place = |degrees: f64, share: f64| self.place(degrees, share);
-        let thin = GRID.stroke_width((unit / 2).max(1).unsigned_abs());
+        let thin = GRID_COLOUR.stroke_width((unit / 2).max(1).unsigned_abs());
         for spoke in 0..12 {
             let degrees = 30.0 * f64::from(spoke);
             chart.draw_series([PathElement::new([place(degrees, 0.0), place(degrees, 1.0)], thin)])?;
-            let style = text(SMALL, unit, INK).pos(Pos::new(HPos::Center, VPos::Center));
+            let style = text(SMALL_TEXT_SIZE, unit, INK).pos(Pos::new(HPos::Center, VPos::Center));
             chart.draw_series([Text::new(format!("{degrees}°"), place(degrees, 1.1), style)])?;
         }
         for &ring in &rings[1..] {
@@ -91,7 +91,7 @@ impl Polar {
             draw_line(&mut chart, line, &points)?;
         }
         for &ring in &rings[1..] {
-            let style = text(SMALL, unit, MUTED).pos(Pos::new(HPos::Left, VPos::Bottom));
+            let style = text(SMALL_TEXT_SIZE, unit, MUTED_INK).pos(Pos::new(HPos::Left, VPos::Bottom));
             // In a sector that runs from the same spoke whichever way angles are counted.
             let degrees = if self.from_top { 15.0 } else { 75.0 };
             chart.draw_series([Text::new(crate::words::number(ring), place(degrees, share(ring)), style)])?;

@@ -19,20 +19,20 @@ pub(super) const MARGIN: i32 = 14;
 /// Height of a line of the title, pixels.
 pub(super) const TITLE_ROW: i32 = 25;
 /// Sizes of text, pixels.
-pub(super) const TITLE: i32 = 19;
-pub(super) const TEXT: i32 = 16;
-pub(super) const SMALL: i32 = 15;
+pub(super) const TITLE_SIZE: i32 = 19;
+pub(super) const TEXT_SIZE: i32 = 16;
+pub(super) const SMALL_TEXT_SIZE: i32 = 15;
 
 pub(super) const GROUND: RGBColor = RGBColor(255, 255, 255);
 pub(super) const INK: RGBColor = RGBColor(31, 35, 40);
-pub(super) const MUTED: RGBColor = RGBColor(98, 104, 112);
-pub(super) const GRID: RGBColor = RGBColor(222, 225, 229);
+pub(super) const MUTED_INK: RGBColor = RGBColor(98, 104, 112);
+pub(super) const GRID_COLOUR: RGBColor = RGBColor(222, 225, 229);
 
 /// The colours above, in order, on a dark ground.
-const DARK: [(RGBColor, &str); 4] =
-    [(GROUND, "#16181d"), (INK, "#e6e8eb"), (MUTED, "#a3a9b2"), (GRID, "#363b43")];
+const DARK_COLOURS: [(RGBColor, &str); 4] =
+    [(GROUND, "#16181d"), (INK, "#e6e8eb"), (MUTED_INK, "#a3a9b2"), (GRID_COLOUR, "#363b43")];
 
-const DISTINCT: [RGBColor; 8] = [
+const DISTINCT_COLOURS: [RGBColor; 8] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 150, 108),
@@ -45,20 +45,20 @@ const DISTINCT: [RGBColor; 8] = [
 
 /// The font, by the name that SVG knows. Pictures take it from the program itself: DejaVu Sans
 /// 2.37, cut down to the characters that plots use.
-const FAMILY: &str = "sans-serif";
+const FONT_FAMILY: &str = "sans-serif";
 static FONT: &[u8] = include_bytes!("../../assets/plot-font.ttf");
 
 /// Makes the font known to the library that draws, once.
 pub(super) fn load_font() -> io::Result<()> {
     static LOADED: OnceLock<bool> = OnceLock::new();
-    let loaded = *LOADED.get_or_init(|| register_font(FAMILY, FontStyle::Normal, FONT).is_ok());
+    let loaded = *LOADED.get_or_init(|| register_font(FONT_FAMILY, FontStyle::Normal, FONT).is_ok());
     if loaded { Ok(()) } else { Err(io::Error::other("the font of the plots cannot be read")) }
 }
 
 /// A text of `size` pixels where a pixel has `unit` steps of the drawing.
 pub(super) fn text(size: i32, unit: i32, colour: RGBColor) -> TextStyle<'static> {
     // The library takes the height of a line, 1.24 times the size.
-    let mut style = TextStyle::from((FAMILY, 1.24 * f64::from(size * unit)).into_font());
+    let mut style = TextStyle::from((FONT_FAMILY, 1.24 * f64::from(size * unit)).into_font());
     style.color = colour.to_backend_color();
     style
 }
@@ -70,7 +70,7 @@ pub(super) fn dark_style() -> String {
         let light = format!("#{r:02X}{g:02X}{b:02X}");
         format!("[fill=\"{light}\"]{{fill:{dark}}}[stroke=\"{light}\"]{{stroke:{dark}}}")
     };
-    let rules: String = DARK.iter().map(rule).collect();
+    let rules: String = DARK_COLOURS.iter().map(rule).collect();
     format!("<style>@media screen and (prefers-color-scheme:dark){{{rules}}}</style>")
 }
 
@@ -81,7 +81,7 @@ pub(crate) fn band_colours(names: &[String]) -> Vec<RGBColor> {
         "r" | "red" => RGBColor(208, 52, 44),
         "g" | "green" => RGBColor(34, 139, 62),
         "b" | "blue" => RGBColor(66, 112, 220),
-        _ if names.len() <= DISTINCT.len() => DISTINCT[number],
+        _ if names.len() <= DISTINCT_COLOURS.len() => DISTINCT_COLOURS[number],
         _ => ramp(number as f64 / (names.len() - 1) as f64),
     };
     names.iter().enumerate().map(colour).collect()
@@ -89,7 +89,7 @@ pub(crate) fn band_colours(names: &[String]) -> Vec<RGBColor> {
 
 /// The colour of one of many things without an order, and which shape marks it.
 pub(crate) fn distinct(number: usize) -> (RGBColor, usize) {
-    (DISTINCT[number % DISTINCT.len()], number / DISTINCT.len())
+    (DISTINCT_COLOURS[number % DISTINCT_COLOURS.len()], number / DISTINCT_COLOURS.len())
 }
 
 /// From blue at 0 through green to red at 1.

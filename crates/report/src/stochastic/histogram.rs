@@ -10,7 +10,7 @@ use crate::plot::{Axis, Bar, Figure, Line, Panel, Part, Span, distinct, write_sv
 
 /// Where the outermost bins end, and how wide a bin is.
 const OUTERMOST_BIN: f64 = 6.0;
-const BIN: f64 = 0.5;
+const BIN_WIDTH: f64 = 0.5;
 const BINS: usize = 24;
 
 /// Writes the histogram as SVG under a title.
@@ -34,14 +34,14 @@ pub fn write_score_histogram(title: &str, scores: &[f64], out: &mut dyn Write) -
 fn counts(scores: &[f64]) -> Vec<f64> {
     let mut counts = vec![0.0; BINS];
     for z in scores.iter().filter(|z| !z.is_nan()) {
-        counts[(((z + OUTERMOST_BIN) / BIN).floor().clamp(0.0, (BINS - 1) as f64)) as usize] += 1.0;
+        counts[(((z + OUTERMOST_BIN) / BIN_WIDTH).floor().clamp(0.0, (BINS - 1) as f64)) as usize] += 1.0;
     }
     counts
 }
 
 /// Scores expected in a bin about z, were all normal.
 fn expected(z: f64, count: usize) -> f64 {
-    count as f64 * BIN * (-0.5 * z * z).exp() / TAU.sqrt()
+    count as f64 * BIN_WIDTH * (-0.5 * z * z).exp() / TAU.sqrt()
 }
 
 fn place_of(i: usize, of: usize) -> f64 {

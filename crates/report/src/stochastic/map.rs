@@ -8,7 +8,7 @@ use fredholm_mesh::Mesh;
 use crate::{Camera, Exposure, Field, Picture, ReportError, render};
 
 /// Score of the full colour.
-const FULL: f64 = 5.0;
+const FULL_COLOUR_SCORE: f64 = 5.0;
 /// Brightness of white.
 const WHITE_BRIGHTNESS: f64 = 1.0;
 
@@ -31,7 +31,7 @@ pub fn score_map(mesh: &Mesh, scores: &[f64], camera: Option<&Camera>) -> Result
 
 /// The linear colour of a score.
 pub(crate) fn score_colour(z: f64) -> [f64; 3] {
-    let share = (z / FULL).clamp(-1.0, 1.0);
+    let share = (z / FULL_COLOUR_SCORE).clamp(-1.0, 1.0);
     let faded = WHITE_BRIGHTNESS * (1.0 - share.abs());
     if share > 0.0 { [WHITE_BRIGHTNESS, faded, faded] } else { [faded, faded, WHITE_BRIGHTNESS] }
 }

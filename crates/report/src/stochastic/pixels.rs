@@ -17,7 +17,7 @@ use crate::tone::{Tone, encode, luminance};
 use crate::{Colouring, Exposure, Picture, ReportError};
 
 /// Bytes that the archive adds to the arrays.
-const HEADERS: usize = 4096;
+const BYTES_OF_HEADERS: usize = 4096;
 
 /// Estimates of all pixels, rows from the top.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -96,7 +96,7 @@ impl Pixels {
         let shaped = |error| WriteNpzError::Zip(io::Error::other(error).into());
         // A file that grows would be held twice over.
         let values = 2 * self.radiosity.len() + self.covered.len();
-        let file = Vec::with_capacity(values * size_of::<f64>() + HEADERS);
+        let file = Vec::with_capacity(values * size_of::<f64>() + BYTES_OF_HEADERS);
         let mut npz = NpzWriter::new(Cursor::new(file));
         for (name, values) in [("radiosity", &self.radiosity), ("standard_error", &self.standard_error)] {
             npz.add_array(name, &ArrayView3::from_shape((height, width, bands), values).map_err(shaped)?)?;

@@ -13,9 +13,9 @@ use crate::plot::{ColourBar, Heat, Scale, viridis};
 /// Most blocks along a side.
 const MOST_BLOCKS_A_SIDE: usize = 752;
 /// Decades shown below the largest factor.
-const DECADES: i32 = 8;
+const DECADES_SHOWN: i32 = 8;
 /// Colour of zero.
-const ZERO: [u8; 3] = [225, 225, 225];
+const ZERO_COLOUR: [u8; 3] = [225, 225, 225];
 
 /// Draws the matrix.
 ///
@@ -29,7 +29,7 @@ pub fn heat_map(factors: &ViewFactors) -> io::Result<Picture> {
     let cell = |column: usize, row: usize| {
         // The axis upwards begins with the last row.
         let value = blocks.values[(blocks.count - 1 - row) * blocks.count + column];
-        if value > 0.0 { viridis(scale.place(value)) } else { ZERO }
+        if value > 0.0 { viridis(scale.place(value)) } else { ZERO_COLOUR }
     };
     let patches = if n == 1 { "1 surface".to_owned() } else { format!("{n} surfaces") };
     Heat {
@@ -70,7 +70,7 @@ impl Blocks {
     }
 }
 
-/// Whole decades from the smallest, or the last of [`DECADES`], to the largest factor.
+/// Whole decades from the smallest, or the last of [`DECADES_SHOWN`], to the largest factor.
 fn decades(values: &[f64]) -> (i32, i32) {
     let logs = || values.iter().filter(|&&value| value > 0.0).map(|value| value.log10());
     let high = logs().fold(f64::NEG_INFINITY, f64::max);
@@ -79,7 +79,7 @@ fn decades(values: &[f64]) -> (i32, i32) {
     }
     let high = high.ceil() as i32;
     let low = logs().fold(f64::INFINITY, f64::min).floor() as i32;
-    (low.clamp(high - DECADES, high - 1), high)
+    (low.clamp(high - DECADES_SHOWN, high - 1), high)
 }
 
 #[cfg(test)]
@@ -104,7 +104,7 @@ mod tests {
     fn entries_have_the_colour_of_their_decade_and_row_0_is_at_the_top() {
         let picture = heat_map(&factors(2, |i, j| [[0.0, 1.0], [1e-4, 1e-8]][i][j])).unwrap();
         let [none, one, middle, least] =
-            [ZERO, viridis(1.0), viridis(0.5), viridis(0.0)].map(|colour| found(&picture, colour));
+            [ZERO_COLOUR, viridis(1.0), viridis(0.5), viridis(0.0)].map(|colour| found(&picture, colour));
         assert!([none, one, middle, least].iter().all(|(count, _)| *count > 50_000));
         assert!(one.1.0 > none.1.0 + 100.0 && middle.1.1 > none.1.1 + 100.0);
     }

@@ -9,7 +9,7 @@ use crate::plot::{Axis, Bar, Figure, Panel, Part, SMALLEST_ON_LOG_AXIS, Span, wr
 use crate::words::number;
 
 /// Bins of a decade.
-const BINS: f64 = 2.0;
+const BINS_OF_A_DECADE: f64 = 2.0;
 
 /// Writes the histogram of the closure errors as SVG.
 ///
@@ -29,13 +29,14 @@ pub fn write_closure_histogram(factors: &ViewFactors, out: &mut dyn Write) -> io
 
 /// Bins that are not empty, in order, with their counts: bin k begins at 10^(k / BINS).
 pub(crate) fn bins(defects: &[f64]) -> Vec<(i32, usize)> {
-    let mut places: Vec<i32> = defects.iter().map(|d| (BINS * d.log10() + 1e-9).floor() as i32).collect();
+    let mut places: Vec<i32> =
+        defects.iter().map(|d| (BINS_OF_A_DECADE * d.log10() + 1e-9).floor() as i32).collect();
     places.sort_unstable();
     places.chunk_by(|a, b| a == b).map(|bin| (bin[0], bin.len())).collect()
 }
 
 pub(crate) fn edge(bin: i32) -> f64 {
-    10.0_f64.powf(f64::from(bin) / BINS)
+    10.0_f64.powf(f64::from(bin) / BINS_OF_A_DECADE)
 }
 
 fn title(factors: &ViewFactors) -> String {

@@ -24,7 +24,7 @@ pub const WAVE_COMPARISON_FORMAT: &str = "fredholm-waves-compare-1";
 const COLUMNS: &str =
     "frequency,spectral_radius,solver,outcome,iterations,entries,seconds,residual,error,reason";
 const HISTORY_COLUMNS: &str = "frequency,solver,iteration,entries,seconds,residual";
-const RESIDUAL: &str = "relative residual ‖b − x + K x‖ / ‖b‖";
+const RESIDUAL_LABEL: &str = "relative residual ‖b − x + K x‖ / ‖b‖";
 
 /// What solvers did, and what made it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -117,7 +117,7 @@ fn plot(record: &WaveComparison, out: &mut dyn Write) -> io::Result<()> {
         let solved = case.runs.iter().filter(|run| !run.history.residual.is_empty());
         let line = |(number, run): (usize, &ComparisonRun)| Line::distinct(&run.solver, points(run), number);
         let lines = solved.enumerate().map(line).collect();
-        let (across, up) = (Axis::new(across, Span::WithZero), Axis::new(RESIDUAL, Span::Decades));
+        let (across, up) = (Axis::new(across, Span::WithZero), Axis::new(RESIDUAL_LABEL, Span::Decades));
         Part::Panel(Panel::new(across, up, lines))
     };
     let title = format!(

@@ -28,8 +28,8 @@ use ndarray_npy::{NpzWriter, WriteNpzError};
 use super::{FarRow, MonostaticRow, WaveRow};
 
 /// Bytes of a row in the file, and of all that the archive adds.
-const ROW: usize = 8 * (3 + 3 + 3 * 12);
-const HEADERS: usize = 4096;
+const BYTES_OF_A_ROW: usize = 8 * (3 + 3 + 3 * 12);
+const BYTES_OF_HEADERS: usize = 4096;
 
 /// Writes the fields as arrays. The file is composed in memory.
 ///
@@ -98,7 +98,7 @@ fn number(i: usize) -> i64 {
 
 fn compose(rows: &[WaveRow]) -> Result<Vec<u8>, WriteNpzError> {
     // A file that grows would be held twice over.
-    let file = Vec::with_capacity(rows.len() * ROW + HEADERS);
+    let file = Vec::with_capacity(rows.len() * BYTES_OF_A_ROW + BYTES_OF_HEADERS);
     let mut npz = NpzWriter::new(Cursor::new(file));
     npz.add_array("receiver", &rows.iter().map(|row| number(row.receiver)).collect::<Array1<i64>>())?;
     npz.add_array("index", &rows.iter().map(|row| number(row.index)).collect::<Array1<i64>>())?;

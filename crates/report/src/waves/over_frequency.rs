@@ -7,7 +7,7 @@ use crate::plot::{Axis, Figure, Line, Panel, Part, Span, write_svg};
 /// Levels further below the largest are at the lower edge, dB.
 const DECIBELS_SHOWN: f64 = 80.0;
 /// From so many hertz on the axis is in gigahertz.
-const GIGAHERTZ: f64 = 1e10;
+const LEAST_IN_GIGAHERTZ: f64 = 1e10;
 
 /// A level at every frequency of a sweep.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,7 +22,7 @@ pub struct FrequencyLine {
 #[must_use]
 pub fn scaled_frequencies(frequencies: &[f64]) -> (Vec<f64>, &'static str) {
     let top = frequencies.iter().copied().fold(0.0, f64::max);
-    let (scale, name) = if top >= GIGAHERTZ { (1e9, "GHz") } else { (1e6, "MHz") };
+    let (scale, name) = if top >= LEAST_IN_GIGAHERTZ { (1e9, "GHz") } else { (1e6, "MHz") };
     (frequencies.iter().map(|frequency| frequency / scale).collect(), name)
 }
 

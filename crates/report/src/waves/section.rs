@@ -12,7 +12,7 @@ use super::MapAxis;
 /// Distances below this share of the map's size count as none.
 const ZERO_DISTANCE: f64 = 1e-9;
 /// Cosine from which on an axis is that of the coordinates.
-const ALONG: f64 = 1.0 - 1e-12;
+const ALONG_AXIS_COSINE: f64 = 1.0 - 1e-12;
 
 /// The ends of a line on the axes of a map.
 type Segment = [(f64, f64); 2];
@@ -56,7 +56,7 @@ impl MapPlane {
     /// The coordinate that a side runs along, and whether up or down.
     fn coordinate(&self, side: usize) -> Option<(usize, f64)> {
         let along = (self.sides[side] / self.sides[side].length()).to_array();
-        (0..3).find(|&axis| along[axis].abs() >= ALONG).map(|axis| (axis, along[axis].signum()))
+        (0..3).find(|&axis| along[axis].abs() >= ALONG_AXIS_COSINE).map(|axis| (axis, along[axis].signum()))
     }
 
     fn start(&self, side: usize) -> f64 {

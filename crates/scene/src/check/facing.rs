@@ -11,10 +11,10 @@ use crate::error::{ErrorKind, SceneError};
 use crate::scene::Scene;
 
 /// Sine of the angle above a plane, up to which a corner counts as lying in it.
-const GRAZING: f64 = 1e-9;
+const GRAZING_SINE: f64 = 1e-9;
 /// Most patches that are compared with each other; of larger scenes, every n-th patch of every
 /// surface.
-const SAMPLES: usize = 4000;
+const MOST_PATCHES: usize = 4000;
 
 const HELP: &str = "a face is lit on the side from which its corners run counter-clockwise: \
     reverse their order, or set inward = true or two_sided = true";
@@ -59,7 +59,7 @@ fn samples(mesh: &Mesh) -> Vec<Vec<&Patch>> {
     for (leaf, patch) in mesh.patches().enumerate() {
         surfaces[mesh.surface_of(leaf)].push(patch);
     }
-    let quota = (SAMPLES / surfaces.len().max(1)).max(1);
+    let quota = (MOST_PATCHES / surfaces.len().max(1)).max(1);
     for patches in &mut surfaces {
         let step = patches.len().div_ceil(quota).max(1);
         *patches = patches.iter().step_by(step).copied().collect();
@@ -75,7 +75,7 @@ fn face_each_other(a: &Patch, b: &Patch) -> bool {
 fn in_front(a: &Patch, b: &Patch) -> bool {
     let above = |p: &Vec3| {
         let offset = *p - a.corner(0);
-        offset.dot(a.normal()) > GRAZING * offset.length()
+        offset.dot(a.normal()) > GRAZING_SINE * offset.length()
     };
     b.corners().iter().any(above)
 }

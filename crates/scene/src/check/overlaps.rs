@@ -9,7 +9,7 @@ use super::Warning;
 use crate::scene::Scene;
 
 /// Pairs of surfaces that are told one by one.
-const TOLD: usize = 4;
+const MOST_PAIRS_TOLD: usize = 4;
 
 pub(super) fn check(scene: &Scene) -> Vec<Warning> {
     let mut pairs: BTreeMap<[usize; 2], (f64, Vec3)> = BTreeMap::new();
@@ -20,7 +20,7 @@ pub(super) fn check(scene: &Scene) -> Vec<Warning> {
     }
     let help = "nothing is to be done if that is meant; otherwise remove one of them or move it";
     let mut warnings: Vec<Warning> = vec![];
-    for ([first, second], (area, place)) in pairs.iter().take(TOLD) {
+    for ([first, second], (area, place)) in pairs.iter().take(MOST_PAIRS_TOLD) {
         let name = |part: usize| format!("`{}`", scene.parts()[part].name);
         let who = if first == second {
             format!("faces of {} lie on each other", name(*first))
@@ -33,7 +33,9 @@ pub(super) fn check(scene: &Scene) -> Vec<Warning> {
         );
         warnings.push(scene.warning(*second, what, help));
     }
-    if let (Some(([_, second], _)), more @ 1..) = (pairs.iter().nth(TOLD), pairs.len().saturating_sub(TOLD)) {
+    if let (Some(([_, second], _)), more @ 1..) =
+        (pairs.iter().nth(MOST_PAIRS_TOLD), pairs.len().saturating_sub(MOST_PAIRS_TOLD))
+    {
         let what = format!("{more} more pairs of surfaces lie on each other and are lit on the same side");
         warnings.push(scene.warning(*second, what, "fredholm check SCENE -o DIR draws them"));
     }

@@ -12,7 +12,7 @@ use crate::part::Origin;
 use crate::scene::Scene;
 
 /// Points along a side of the grid by which a piece is found to be buried.
-const GRID: usize = 2;
+const POINTS_ALONG_PIECE: usize = 2;
 /// Diagonals, m, outside which the unit of length is told to be looked at.
 const USUAL_DIAGONALS: [f64; 2] = [0.02, 2e3];
 
@@ -189,7 +189,7 @@ impl Scene {
         let buried: Vec<bool> = pieces
             .patches
             .par_iter()
-            .map(|patch| exposed_share(patch, GRID, &all, &occluders) <= 0.0)
+            .map(|patch| exposed_share(patch, POINTS_ALONG_PIECE, &all, &occluders) <= 0.0)
             .collect();
         let first = pieces.patches.iter().zip(&buried).find(|(_, buried)| **buried);
         let what = format!(

@@ -22,7 +22,7 @@ use crate::error::{ErrorKind, SceneError};
 use crate::source::Source;
 
 /// Extensions that a file may require: they change nothing that is read, or are read.
-const KNOWN: [&str; 8] = [
+const KNOWN_EXTENSIONS: [&str; 8] = [
     "KHR_materials_emissive_strength",
     "KHR_materials_unlit",
     "KHR_materials_specular",
@@ -124,7 +124,8 @@ impl<'a> File<'a> {
             }
         }
         let required = self.json.get("extensionsRequired").and_then(Json::list).unwrap_or_default();
-        let unknown = required.iter().find(|name| name.text().is_none_or(|name| !KNOWN.contains(&name)));
+        let unknown =
+            required.iter().find(|name| name.text().is_none_or(|name| !KNOWN_EXTENSIONS.contains(&name)));
         let Some(name) = unknown else { return Ok(()) };
         let what = format!("the file requires the extension `{}`", name.text().unwrap_or_default());
         let help = "it is not read: export the file without it, such as without compression";

@@ -16,7 +16,7 @@ use crate::error::{ErrorKind, SceneError};
 use crate::source::Source;
 
 /// Nodes of the types of elements 1 to 19 and 26 to 31.
-const NODES: [(i32, usize); 25] = [
+const NODES_OF_TYPES: [(i32, usize); 25] = [
     (1, 2),
     (2, 3),
     (3, 4),
@@ -250,7 +250,7 @@ impl Reader {
             let entity = cursor.int("the tag of an entity")?;
             let kind = cursor.int("the type of elements")?;
             let count = cursor.size("the number of elements")?;
-            let Some((_, nodes)) = NODES.iter().find(|(known, _)| *known == kind) else {
+            let Some((_, nodes)) = NODES_OF_TYPES.iter().find(|(known, _)| *known == kind) else {
                 let help = "mesh with triangles or quads";
                 return Err(cursor.error(start, format!("elements of type {kind} are not read"), help));
             };

@@ -29,7 +29,7 @@ const DEEPEST_NESTING: usize = 64;
 const PASSED_OVER: [&str; 9] =
     ["integrator", "sampler", "rfilter", "film", "string", "integer", "float", "boolean", "default"];
 /// Reflectance where a BSDF does not say.
-const UNSAID: f64 = 0.5;
+const USUAL_REFLECTANCE: f64 = 0.5;
 /// Longest value of an attribute, once defaults are put in: they could double it again and again.
 const LONGEST_VALUE: usize = 65_536;
 /// Largest picture that is taken over, pixels along a side.
@@ -217,7 +217,7 @@ impl<'a> Reader<'a> {
             "twosided" => self.two_sided(node, &name),
             "diffuse" => {
                 let colour = node.named(&["reflectance"]).map(|value| self.colour(value)).transpose()?;
-                let colour = colour.unwrap_or([UNSAID; 3]);
+                let colour = colour.unwrap_or([USUAL_REFLECTANCE; 3]);
                 Ok(Diffuse { name, colour, two_sided: false, span: node.span.clone() })
             }
             kind => {
@@ -360,9 +360,12 @@ impl<'a> Reader<'a> {
         let diffuse = match (node.child("bsdf"), reference) {
             (Some(bsdf), _) => self.bsdf(bsdf, &otherwise)?,
             (None, Some(reference)) => self.referred(reference)?,
-            (None, None) => {
-                Diffuse { name: otherwise, colour: [UNSAID; 3], two_sided: false, span: node.span.clone() }
-            }
+            (None, None) => Diffuse {
+                name: otherwise,
+                colour: [USUAL_REFLECTANCE; 3],
+                two_sided: false,
+                span: node.span.clone(),
+            },
         };
         let emitter = node.child("emitter");
         let emission = emitter.map(|emitter| self.radiance(emitter)).transpose()?;

@@ -16,7 +16,7 @@ use crate::error::SceneError;
 use crate::source::Source;
 
 /// Names of the list of the corners of a face.
-const INDICES: [&str; 2] = ["vertex_indices", "vertex_index"];
+const INDEX_LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
 struct Property {
     name: String,
@@ -185,7 +185,7 @@ fn read_faces(
     group: &mut Group,
 ) -> Result<(), SceneError> {
     let is_list =
-        |p: &Property| INDICES.contains(&p.name.as_str()) && p.length.is_some() && p.kind.is_whole();
+        |p: &Property| INDEX_LISTS.contains(&p.name.as_str()) && p.length.is_some() && p.kind.is_whole();
     let Some(list) = element.properties.iter().position(is_list) else {
         let help = "write: property list uchar int vertex_indices";
         return Err(cursor.error(element.span.start, "the faces have no list of vertices", help));

@@ -17,10 +17,10 @@ use crate::error::{ErrorKind, SceneError};
 use crate::source::Source;
 
 /// Materials whose reflection is diffuse but for the part that is specular.
-const REFLECTING: [&str; 1] = ["plastic"];
-const EMITTING: [&str; 2] = ["light", "glow"];
+const REFLECTING_MATERIALS: [&str; 1] = ["plastic"];
+const EMITTING_MATERIALS: [&str; 2] = ["light", "glow"];
 /// Surfaces that are no polygons.
-const ROUND: [&str; 8] = ["sphere", "bubble", "cone", "cup", "cylinder", "tube", "ring", "instance"];
+const ROUND_SURFACES: [&str; 8] = ["sphere", "bubble", "cone", "cup", "cylinder", "tube", "ring", "instance"];
 
 pub(super) fn import(source: Source) -> Result<Imported, SceneError> {
     let mut reader = Reader { words: Words { source: &source, at: 0 }, ..Reader::new(&source) };
@@ -127,10 +127,10 @@ impl<'a> Reader<'a> {
         let primitive = Primitive { kind, name, reals, span };
         match primitive.kind.text.as_str() {
             "polygon" => self.polygon(modifier, primitive),
-            kind if REFLECTING.contains(&kind) || EMITTING.contains(&kind) => {
+            kind if REFLECTING_MATERIALS.contains(&kind) || EMITTING_MATERIALS.contains(&kind) => {
                 self.material(modifier, primitive)
             }
-            kind if ROUND.contains(&kind) => {
+            kind if ROUND_SURFACES.contains(&kind) => {
                 let what = format!("a {kind} is not read");
                 let help = "cut it into polygons, such as with gensurf, or make it a sphere, disc or cylinder of a scene file";
                 Err(self.error(&primitive.kind.span, what, help))
@@ -176,7 +176,7 @@ impl<'a> Reader<'a> {
             let help = "the colour of the material is taken as it stands".to_owned();
             self.notes.push(Note { span: modifier.span.clone(), what, help });
         }
-        let is_light = EMITTING.contains(&kind.text.as_str());
+        let is_light = EMITTING_MATERIALS.contains(&kind.text.as_str());
         let (colour, specular) = match reals[..] {
             [r, g, b, specular, _] if !is_light => ([r, g, b], specular),
             [r, g, b] | [r, g, b, _] if is_light => ([r, g, b], 0.0),

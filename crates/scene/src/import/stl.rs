@@ -13,8 +13,8 @@ use crate::error::SceneError;
 use crate::source::Source;
 
 /// Bytes before the first triangle, and of a triangle.
-const HEADER: usize = 80;
-const TRIANGLE: usize = 50;
+const BYTES_OF_HEADER: usize = 80;
+const BYTES_OF_A_TRIANGLE: usize = 50;
 
 pub(super) fn import(path: &Path, bytes: Vec<u8>) -> Result<Imported, SceneError> {
     if is_text(&bytes) {
@@ -27,21 +27,22 @@ pub(super) fn import(path: &Path, bytes: Vec<u8>) -> Result<Imported, SceneError
 
 /// Whether a file is text. Binary ones may begin with `solid`, too, but then have the right length.
 fn is_text(bytes: &[u8]) -> bool {
-    let count = bytes.get(HEADER..HEADER + 4).map_or(0.0, |bytes| Scalar::U32.of_little(bytes));
-    let expected = (HEADER + 4) as f64 + TRIANGLE as f64 * count;
+    let count =
+        bytes.get(BYTES_OF_HEADER..BYTES_OF_HEADER + 4).map_or(0.0, |bytes| Scalar::U32.of_little(bytes));
+    let expected = (BYTES_OF_HEADER + 4) as f64 + BYTES_OF_A_TRIANGLE as f64 * count;
     let begins = bytes.trim_ascii_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
-    let is_binary = bytes.len() > HEADER + 4 && (expected - bytes.len() as f64).abs() < 0.5;
+    let is_binary = bytes.len() > BYTES_OF_HEADER + 4 && (expected - bytes.len() as f64).abs() < 0.5;
     begins && !is_binary && !bytes.contains(&0)
 }
 
 fn binary(source: &Source, bytes: &[u8]) -> Result<(Group, Option<Note>), SceneError> {
     let mut cursor = Cursor::new(source, bytes, Encoding::Little);
-    cursor.take(HEADER, "the header of a binary STL file")?;
+    cursor.take(BYTES_OF_HEADER, "the header of a binary STL file")?;
     let count = cursor.number(Scalar::U32, "the number of triangles")? as u64;
     let mut group = Group::default();
     for triangle in 0..count {
         let start = cursor.at;
-        if bytes.len() - start < TRIANGLE {
+        if bytes.len() - start < BYTES_OF_A_TRIANGLE {
             return Err(cursor.ended(&format!("triangle {triangle} of {count}")));
         }
         cursor.take(12, "a normal")?;
@@ -148,7 +149,7 @@ mod tests {
 
     fn packed(count: u32, corners: &[f32]) -> Vec<u8> {
         let mut bytes = b"solid but binary".to_vec();
-        bytes.resize(HEADER, b' ');
+        bytes.resize(BYTES_OF_HEADER, b' ');
         bytes.extend(count.to_le_bytes());
         bytes.extend(corners.iter().flat_map(|x| x.to_le_bytes()));
         bytes.extend([0; 2]);

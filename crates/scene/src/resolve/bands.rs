@@ -7,10 +7,10 @@ use crate::format::{At, SceneEntry};
 use crate::source::Source;
 
 /// The band of a scene that names none.
-const GREY: &str = "grey";
+const GREY_BAND: &str = "grey";
 
 pub(super) fn bands(source: &Source, entry: &SceneEntry) -> Result<Vec<String>, SceneError> {
-    let Some(list) = &entry.bands else { return Ok(vec![GREY.to_owned()]) };
+    let Some(list) = &entry.bands else { return Ok(vec![GREY_BAND.to_owned()]) };
     if list.is_empty() {
         let help = "name at least one band, or leave the key out for the one band `grey`";
         return Err(source.value_error(list, "the list of bands is empty".to_owned(), help));

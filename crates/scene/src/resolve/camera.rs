@@ -8,7 +8,7 @@ use crate::source::Source;
 
 const LARGEST_PICTURE: u32 = 16384;
 /// Sine of the angle between the view and up, below which up is taken for parallel to the view.
-const PARALLEL: f64 = 1e-9;
+const PARALLEL_SINE: f64 = 1e-9;
 
 /// A pinhole camera. Lengths in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,7 +60,7 @@ fn check_view(source: &Source, entry: &CameraEntry, camera: &Camera) -> Result<(
         let what = "the camera looks at the point where it stands".to_owned();
         return Err(source.value_error(&entry.target, what, "move eye or target, so that they differ"));
     }
-    if view.normalize().cross(camera.up.normalize()).length() > PARALLEL {
+    if view.normalize().cross(camera.up.normalize()).length() > PARALLEL_SINE {
         return Ok(());
     }
     let what = "the direction up is along the line of sight".to_owned();

@@ -18,13 +18,13 @@ use crate::import::{Imported, MeshMaterial, Name, ending, mesh_materials};
 use crate::source::Source;
 
 /// Shares of red, green and blue in a luminance.
-const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
+const LUMINANCE_WEIGHTS: [f64; 3] = [0.2126, 0.7152, 0.0722];
 /// What a library's reflectance of 1 is lowered to: nothing reflects all light.
-const WHITEST: f64 = 0.95;
+const MOST_REFLECTANCE: f64 = 0.95;
 /// Reflectance where a library does not say.
-pub(crate) const UNSAID: f64 = 0.5;
+pub(crate) const USUAL_REFLECTANCE: f64 = 0.5;
 /// Names of bands for red, green and blue.
-const COLOURS: [[&str; 3]; 2] = [["r", "g", "b"], ["red", "green", "blue"]];
+const COLOUR_BANDS: [[&str; 3]; 2] = [["r", "g", "b"], ["red", "green", "blue"]];
 
 /// A material library that was read.
 #[derive(Debug)]
@@ -42,7 +42,7 @@ struct Terms {
     radiance: &'static str,
 }
 
-const MTL: Terms = Terms { library: "library", reflectance: "Kd", radiance: "Ke" };
+const MTL_TERMS: Terms = Terms { library: "library", reflectance: "Kd", radiance: "Ke" };
 
 /// The words of a format that holds its materials itself.
 fn terms(path: &Path) -> Terms {
@@ -103,7 +103,7 @@ pub(crate) fn load(
     })?;
     let source = Source::decode_mesh(&files.path(&name), bytes)?;
     let materials = mesh_materials(&source)?;
-    Ok(Library { source: Arc::new(source), materials, terms: MTL })
+    Ok(Library { source: Arc::new(source), materials, terms: MTL_TERMS })
 }
 
 /// Index of the material that a library defines by this name; it is added where it is new. None
@@ -145,8 +145,10 @@ fn tell(context: &mut Context, library: &Library, entry: &MeshMaterial, material
     let mut what = format!("`{}` is read from this {kind}: reflectance {known}", entry.name);
     // Writing to a string cannot fail.
     if lowered {
-        let _ =
-            write!(what, ", lowered to {WHITEST} where {reflectance} is 1, since nothing reflects all light");
+        let _ = write!(
+            what,
+            ", lowered to {MOST_REFLECTANCE} where {reflectance} is 1, since nothing reflects all light"
+        );
     }
     if entry.diffuse.is_none() {
         let _ = write!(what, ", since it has no {reflectance}");
@@ -172,7 +174,7 @@ fn material(
     let refuse = |span: &std::ops::Range<usize>, what: String, help: &str| {
         Err(source.error(ErrorKind::Value, span.clone(), what, help))
     };
-    let (mut diffuse, mut lowered) = ([UNSAID; 3], false);
+    let (mut diffuse, mut lowered) = ([USUAL_REFLECTANCE; 3], false);
     if let Some((kd, span)) = &entry.diffuse {
         if kd.iter().any(|value| !(0.0..=1.0).contains(value)) {
             let what =
@@ -180,7 +182,7 @@ fn material(
             let help = "write numbers from 0 to below 1: no surface reflects more than it receives; or give the material in a scene file";
             return refuse(span, what, help);
         }
-        diffuse = kd.map(|value| if value < 1.0 { value } else { WHITEST });
+        diffuse = kd.map(|value| if value < 1.0 { value } else { MOST_REFLECTANCE });
         lowered = kd.iter().any(|value| *value >= 1.0);
     }
     let mut emission = [0.0; 3];
@@ -220,7 +222,7 @@ pub(crate) fn colours(bands: &[String], values: &[f64]) -> Option<[f64; 3]> {
         let at = |name: &str| bands.iter().position(|band| band == name).map(|k| values[k]);
         Some([at(names[0])?, at(names[1])?, at(names[2])?])
     };
-    COLOURS.iter().find_map(of).filter(|_| bands.len() == 3)
+    COLOUR_BANDS.iter().find_map(of).filter(|_| bands.len() == 3)
 }
 
 /// A colour in the bands of a scene.
@@ -229,9 +231,10 @@ fn to_bands(colour: [f64; 3], bands: &[String]) -> Option<Vec<f64>> {
         return Some(vec![colour[0]; bands.len()]);
     }
     if bands.len() == 1 {
-        return Some(vec![colour.iter().zip(LUMINANCE).map(|(c, share)| c * share).sum()]);
+        return Some(vec![colour.iter().zip(LUMINANCE_WEIGHTS).map(|(c, share)| c * share).sum()]);
     }
-    let place = |band: &String| COLOURS.iter().find_map(|names| names.iter().position(|name| name == band));
+    let place =
+        |band: &String| COLOUR_BANDS.iter().find_map(|names| names.iter().position(|name| name == band));
     bands.iter().map(|band| place(band).map(|k| colour[k])).collect()
 }
 

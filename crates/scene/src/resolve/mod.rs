@@ -25,7 +25,7 @@ use crate::part::Part;
 use crate::source::Source;
 
 pub(crate) use faces::{Mended, shapes as face_shapes};
-pub(crate) use library::{UNSAID, colours, load as load_library, own as own_library};
+pub(crate) use library::{USUAL_REFLECTANCE, colours, load as load_library, own as own_library};
 pub(crate) use number::LARGEST_COORDINATE;
 
 pub use camera::Camera;

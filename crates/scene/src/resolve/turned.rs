@@ -12,7 +12,7 @@ use crate::format::SurfaceEntry;
 use crate::part::Part;
 
 /// Names that are listed.
-const LISTED: usize = 4;
+const MOST_NAMES_LISTED: usize = 4;
 
 /// Which of the parts of one file have neighbouring faces that run along their common side in the
 /// same direction, or have two sides as the file `said` and an open border.
@@ -66,8 +66,8 @@ pub(super) fn two_sided(
 
 /// The first names, and how many more.
 fn listed(names: &[&str]) -> String {
-    let quoted: Vec<String> = names.iter().take(LISTED).map(|name| format!("`{name}`")).collect();
-    match names.len().saturating_sub(LISTED) {
+    let quoted: Vec<String> = names.iter().take(MOST_NAMES_LISTED).map(|name| format!("`{name}`")).collect();
+    match names.len().saturating_sub(MOST_NAMES_LISTED) {
         0 => quoted.join(", "),
         more => format!("{} and {more} more", quoted.join(", ")),
     }

@@ -21,7 +21,7 @@ use crate::error::{ErrorKind, SceneError};
 /// Distance over the extent of the scene below which a source is on a surface.
 const ON_SURFACE: f64 = 1e-9;
 /// Points of a receiver that are looked at to tell whether all are inside a body.
-const SAMPLED: usize = 64;
+const MOST_POINTS_OF_A_RECEIVER: usize = 64;
 /// Phase that may be lost in the rounding of a coordinate.
 const MOST_LOST_PHASE: f64 = 1e-6;
 /// Extent of a scene over the wavelength below which it is doubted.
@@ -33,7 +33,7 @@ const MOST_POINTS_ASKED: usize = 4096;
 /// Cosine of θ below which a direction is below the ground: that of a θ of 90° is rounded.
 const LEAST_HEIGHT: f64 = -1e-12;
 /// Pairs of surfaces that are told one by one.
-const TOLD: usize = 4;
+const MOST_PAIRS_TOLD: usize = 4;
 
 /// The pieces of the surfaces, and how they hang together.
 struct Pieces {
@@ -276,7 +276,7 @@ fn half_closed(scene: &WaveScene, pieces: &Pieces) -> Vec<Warning> {
             scene.warning(About::Surface(pieces.part_of[first as usize]), what, help)
         })
     };
-    (0..components.len()).filter_map(warning).take(TOLD).collect()
+    (0..components.len()).filter_map(warning).take(MOST_PAIRS_TOLD).collect()
 }
 
 /// Frequencies that are there twice.
@@ -355,7 +355,7 @@ fn sheets_inside(scene: &WaveScene, pieces: &Pieces, bodies: &[Body]) -> Vec<War
             "remove it, or make the outer one a thin sheet: closed = false",
         ))
     };
-    sheets.filter_map(warning).take(TOLD).collect()
+    sheets.filter_map(warning).take(MOST_PAIRS_TOLD).collect()
 }
 
 /// Distance of a point from a patch, m.
@@ -511,7 +511,7 @@ fn overlaps(scene: &WaveScene, pieces: &Pieces) -> Result<Vec<Warning>, SceneErr
             pairs.entry(key(*crossing)).or_insert("cross, so that parts of them are inside a body");
         }
     }
-    let told = pairs.iter().take(TOLD).map(|([first, second], how)| {
+    let told = pairs.iter().take(MOST_PAIRS_TOLD).map(|([first, second], how)| {
         let name = |part: usize| &scene.parts()[part].name;
         let who = if first == second {
             format!("faces of `{}`", name(*first))
@@ -584,7 +584,7 @@ fn receivers(scene: &WaveScene, bodies: &[Body]) -> Vec<Warning> {
     let mut warnings = vec![];
     for (number, receiver) in scene.receivers().iter().enumerate().filter(|(_, r)| r.is_near()) {
         let Places::Near { points, .. } = receiver.places() else { continue };
-        let step = points.len().div_ceil(SAMPLED).max(1);
+        let step = points.len().div_ceil(MOST_POINTS_OF_A_RECEIVER).max(1);
         let inside = |p: &Vec3| bodies.iter().any(|body| body.holds(*p));
         if points.iter().step_by(step).all(inside) {
             let what = format!("all points of the receiver `{}` lie inside closed bodies", receiver.name);

@@ -13,7 +13,7 @@ use crate::stages::Stages;
 use crate::watcher::Watcher;
 
 /// The solver that errors are measured against, where it fits.
-const REFERENCE: &str = "lu";
+const REFERENCE_SOLVER: &str = "lu";
 /// Most unknowns for which it is run only to be the reference.
 const MOST_REFERENCE_UNKNOWNS: usize = 20_000;
 
@@ -51,7 +51,7 @@ fn left(problem: &Problem) -> u128 {
 
 /// Says what will be held with the solver of those that fit that takes most.
 fn tell(asked: &CompareOptions, problem: &Problem, stages: &Stages) {
-    let names = asked.solvers().into_iter().chain([REFERENCE.to_owned()]);
+    let names = asked.solvers().into_iter().chain([REFERENCE_SOLVER.to_owned()]);
     let (unknowns, bands) = (problem.unknowns, problem.scene.bands().len());
     let bytes =
         |text: String| registry::build(&text).ok().map(|entry| entry.solver.bytes(unknowns, bands).into());
@@ -79,12 +79,12 @@ fn reference(
 ) -> Result<Option<(ComparisonRun, MultiVector<f64>)>, Error> {
     let solved = |outcome: &Outcome| Some((outcome.run.clone(), outcome.x.clone()?));
     if let Some(outcome) =
-        outcomes.iter().find(|outcome| outcome.run.solver == REFERENCE && outcome.x.is_some())
+        outcomes.iter().find(|outcome| outcome.run.solver == REFERENCE_SOLVER && outcome.x.is_some())
     {
         return Ok(solved(outcome));
     }
     if bench.b.dim() <= MOST_REFERENCE_UNKNOWNS {
-        let outcome = run(bench, REFERENCE, stages)?;
+        let outcome = run(bench, REFERENCE_SOLVER, stages)?;
         if outcome.x.is_some() {
             return Ok(solved(&outcome));
         }

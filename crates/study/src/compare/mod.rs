@@ -69,7 +69,7 @@ impl CompareOptions {
         ProblemOptions {
             threads: self.threads,
             discretisation: None,
-            solver: Some(registry::DEFAULT.to_owned()),
+            solver: Some(registry::USUAL_SOLVER.to_owned()),
             form_factor_tolerance: self.form_factor_tolerance,
             storage: self.storage,
             memory: self.memory,

@@ -12,7 +12,7 @@ use fredholm_scene::Scene;
 use crate::error::{Error, ErrorKind};
 use crate::memory::Plan;
 use crate::options::{ProblemOptions, ProblemSettings, Recorded, SceneSource, SolveSettings, StopOptions};
-use crate::prediction::MESH;
+use crate::prediction::BYTES_OF_AN_ELEMENT;
 use crate::problem::Problem;
 use crate::solution::compute;
 use crate::solve::{Ended, report_failure, title};
@@ -81,7 +81,8 @@ fn problems(
     let scene = source.load(asked.problem.memory, stages)?;
     let settings = ProblemSettings::new(&asked.problem, scene.solve());
     // Each of the coarser meshes has a quarter of the elements of the next.
-    let others = |plan: Plan, _: &Scene, n: usize| plan.hold("coarser meshes", n as u128 * MESH / 3);
+    let others =
+        |plan: Plan, _: &Scene, n: usize| plan.hold("coarser meshes", n as u128 * BYTES_OF_AN_ELEMENT / 3);
     let problem = |level: u8| {
         let refinement = 1_usize.checked_shl(level.into()).unwrap_or(usize::MAX);
         let mut stages = stages.part(&format!("level {level}"));

@@ -13,7 +13,7 @@ use fredholm_scene::waves::Places;
 use fredholm_waves::TOLERANCE;
 use std::collections::BTreeMap;
 
-use super::record::WORST;
+use super::record::PLACES_NAMED;
 use super::{CrosscheckOptions, Verdict};
 use crate::error::Error;
 use crate::options::SceneSource;
@@ -24,7 +24,7 @@ use crate::waves::{self, Band, Method, Model, Outcome};
 
 /// Method where none is asked for, and the error it is asked for.
 const USUAL_METHOD: &str = "surface-sampling";
-const ERROR: f64 = 0.01;
+const USUAL_ERROR: f64 = 0.01;
 
 pub(super) fn run(
     source: &SceneSource,
@@ -34,7 +34,7 @@ pub(super) fn run(
 ) -> Result<(CrosscheckRecord, Verdict), Error> {
     let load = || Model::load_estimated(source.path(), asked.problem.memory);
     let mut model = stages.run("scene", load)?;
-    let stop = asked.stop.or_to(ERROR);
+    let stop = asked.stop.or_to(USUAL_ERROR);
     let run = FieldRun::new(asked.method_or(USUAL_METHOD), &asked.paths, &stop, &model, stages.watch)?;
     // Both sides sum the same bounces, of the same currents.
     model.method = Method::Bounces(run.bounces());
@@ -187,5 +187,5 @@ fn worst(rows: &[FieldScore]) -> Vec<WorstPlace> {
         z: row.score,
         relative: row.stochastic[0] / row.deterministic[0] - 1.0,
     };
-    order.iter().take(WORST).map(place).collect()
+    order.iter().take(PLACES_NAMED).map(place).collect()
 }

@@ -27,16 +27,16 @@ use crate::stochastic::{
 /// Method where none is asked for.
 const USUAL_METHOD: &str = "light";
 /// Error that is asked for where nothing is.
-const ERROR: f64 = 0.01;
+const USUAL_ERROR: f64 = 0.01;
 
 /// A stated error in standard deviations of it, inverse: it holds in 95 of 100 cases.
-const STATED: f64 = 0.5;
+const STATED_ERROR_DEVIATIONS: f64 = 0.5;
 /// What is missing where a continuous method is compared.
-const UNKNOWN: &str = "the solution states no error, so that all of it counts as a fault";
+const NO_STATED_ERROR: &str = "the solution states no error, so that all of it counts as a fault";
 /// Deviations of the whole, and of a typical face, that must have been found where the two are said
 /// to agree.
-const WHOLE: f64 = 0.5;
-const FACE: f64 = 1.0;
+const MOST_WHOLE_DEVIATION: f64 = 0.5;
+const MOST_FACE_DEVIATION: f64 = 1.0;
 
 /// What is asked of [`crosscheck`].
 #[derive(Clone, Debug)]
@@ -155,7 +155,7 @@ fn run(
     let places = Places::new(&problem);
     let Traced { scene, state, patchwise } = traced(asked, &problem, &places, &mut stages)?;
     if !patchwise && solution.mesh_error.is_none() {
-        stages.watch.warn(UNKNOWN);
+        stages.watch.warn(NO_STATED_ERROR);
     }
     let faces = face_means(&problem, &solution);
     let error = errors(&places, (&problem, &solution), &faces, patchwise);
@@ -221,8 +221,11 @@ fn errors(
     match solution.mesh_error.as_ref().filter(|error| !patchwise && error.per_face.is_empty()) {
         Some(error) => {
             let norms = places.norms(faces);
-            let stated: Vec<f64> =
-                norms.iter().zip(&error.relative_l2).map(|(norm, part)| STATED * norm * part).collect();
+            let stated: Vec<f64> = norms
+                .iter()
+                .zip(&error.relative_l2)
+                .map(|(norm, part)| STATED_ERROR_DEVIATIONS * norm * part)
+                .collect();
             places.of_norms(&stated)
         }
         None => places.root_mean_squares(&expected_error(problem, solution, !patchwise)),
@@ -258,7 +261,7 @@ impl Power {
 
     /// Whether agreement says something.
     fn suffices(&self) -> bool {
-        self.whole < WHOLE && self.face < FACE
+        self.whole < MOST_WHOLE_DEVIATION && self.face < MOST_FACE_DEVIATION
     }
 }
 
@@ -308,7 +311,7 @@ fn traced(
         scene = enclosure(&problem.scene, mesh)?;
         method = named(asked, &scene)?;
     }
-    let stop = asked.stop.or_to(ERROR);
+    let stop = asked.stop.or_to(USUAL_ERROR);
     let tracer = Tracer::new(&scene, &*method, places.groups(mesh, &scene)?, &asked.paths, &stop)?;
     let mut state = tracer.start();
     let watch = stages.watch;

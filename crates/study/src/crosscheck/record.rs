@@ -10,7 +10,7 @@ use crate::problem::Problem;
 use crate::stages::Stages;
 
 /// Places that are named.
-pub(crate) const WORST: usize = 5;
+pub(crate) const PLACES_NAMED: usize = 5;
 
 /// What the comparison came to.
 pub(super) fn record(
@@ -37,7 +37,7 @@ pub(super) fn record(
         power: Some(power.record()),
         score_mean: found.suite.mean,
         score_variance: found.suite.variance,
-        worst: found.worst(WORST).iter().map(named).collect(),
+        worst: found.worst(PLACES_NAMED).iter().map(named).collect(),
         method: state.method.clone(),
         seed: state.seed,
         batches: state.batches(),

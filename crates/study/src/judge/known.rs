@@ -13,7 +13,7 @@ use crate::error::Error;
 use crate::solve::report_failure;
 
 /// Sides of a tile, pixels.
-const TILE: usize = 8;
+const TILE_SIDE: usize = 8;
 
 /// What is known.
 pub(super) struct Known {
@@ -53,10 +53,10 @@ impl Known {
         }
         let [width, height] = [record.pixels.width, record.pixels.height].map(|side| side as usize);
         let shape = PictureShape { width, height, bands: record.bands.len() };
-        let across = width.div_ceil(TILE);
-        let tile = |pixel: usize| pixel / width / TILE * across + pixel % width / TILE;
+        let across = width.div_ceil(TILE_SIDE);
+        let tile = |pixel: usize| pixel / width / TILE_SIDE * across + pixel % width / TILE_SIDE;
         let tile_of: Vec<usize> = (0..width * height).map(tile).collect();
-        let on = (tile_of, across * height.div_ceil(TILE));
+        let on = (tile_of, across * height.div_ceil(TILE_SIDE));
         Ok(Self {
             places: Places::of(shape.bands, on, vec![1.0; width * height]),
             reference,
@@ -110,9 +110,9 @@ impl Known {
                 ("pixel", number, format!("the pixel in row {row}, column {column}"))
             }
             (Place::Surface(number), Some(shape)) => {
-                let across = shape.width.div_ceil(TILE);
-                let (row, column) = (number / across * TILE, number % across * TILE);
-                ("tile", number, format!("{TILE} × {TILE} pixels from row {row}, column {column}"))
+                let across = shape.width.div_ceil(TILE_SIDE);
+                let (row, column) = (number / across * TILE_SIDE, number % across * TILE_SIDE);
+                ("tile", number, format!("{TILE_SIDE} × {TILE_SIDE} pixels from row {row}, column {column}"))
             }
             (Place::Whole, Some(_)) => ("picture", 0, "the picture".to_owned()),
             (Place::Face(number), None) => {

@@ -20,7 +20,7 @@ use fredholm_report::{
 
 use known::Known;
 
-use crate::crosscheck::record::WORST;
+use crate::crosscheck::record::PLACES_NAMED;
 use crate::crosscheck::{MultipleTests, Power, Verdict, verdict};
 use crate::error::{Error, ErrorKind};
 use crate::solve::report_failure;
@@ -100,7 +100,7 @@ pub fn judge(
         power: power.record(),
         score_mean: suite.mean,
         score_variance: suite.variance,
-        worst: compared.worst(WORST).iter().map(|place| sides.judged(place)).collect(),
+        worst: compared.worst(PLACES_NAMED).iter().map(|place| sides.judged(place)).collect(),
         timings: stages.timings().to_vec(),
     };
     write_judgement(folder, &places, known.shape, &judged).map_err(report_failure)?;

@@ -13,10 +13,10 @@ use crate::threads::cores;
 /// usable.
 const SHARE_OF_FREE_MEMORY: f64 = 0.8;
 /// Limit where the system does not tell what is available.
-const FALLBACK: u128 = 4 << 30;
+const LIMIT_UNTOLD: u128 = 4 << 30;
 /// Address space that a thread sets aside: its stack with what guards it, and its part of the
 /// runtime.
-const THREAD: u128 = 3 << 20;
+const BYTES_OF_A_THREAD: u128 = 3 << 20;
 /// Share of a limit on the address space that threads may set aside.
 const SET_ASIDE: u128 = 4;
 /// Addresses without which no run begins: reading a scene, and threads.
@@ -105,7 +105,7 @@ impl Machine {
 
     /// The least bound, with a share of what is available.
     fn least(&self, share: f64) -> Limit {
-        let fallback = Limit { bytes: Bytes(FALLBACK), bound: Bound::Fallback, spare: None };
+        let fallback = Limit { bytes: Bytes(LIMIT_UNTOLD), bound: Bound::Fallback, spare: None };
         self.bounds(share).min_by_key(|limit| limit.bytes).unwrap_or(fallback)
     }
 
@@ -113,7 +113,7 @@ impl Machine {
     fn bounds(&self, share: f64) -> impl Iterator<Item = Limit> {
         // Of the address space a part is set aside that is never touched; how much of it is not
         // known before.
-        let aside = |left: u128| left - (left / SET_ASIDE).min(self.threads() as u128 * THREAD);
+        let aside = |left: u128| left - (left / SET_ASIDE).min(self.threads() as u128 * BYTES_OF_A_THREAD);
         let bounds = [
             (self.available.map(|left| (left as f64 * share) as u128), Bound::Available),
             (self.group, Bound::Group),
@@ -128,7 +128,8 @@ impl Machine {
     }
 
     fn threads(&self) -> usize {
-        let room = |left: u128| (left / SET_ASIDE / THREAD).clamp(1, MOST_THREADS.max(cores() as u128));
+        let room =
+            |left: u128| (left / SET_ASIDE / BYTES_OF_A_THREAD).clamp(1, MOST_THREADS.max(cores() as u128));
         let most = self.address_space.map_or(u128::MAX, room);
         usize::try_from(most).unwrap_or(usize::MAX)
     }
@@ -195,7 +196,7 @@ mod tests {
         assert_eq!(of(grouped.limit(Some(Bytes(GIB)))), (GIB, Bound::Asked));
         let data = Machine { data: Some(GIB), ..grouped };
         assert_eq!(of(data.limit(None)), (GIB + 5, Bound::Data));
-        assert_eq!(of(Machine::default().limit(None)), (FALLBACK, Bound::Fallback));
+        assert_eq!(of(Machine::default().limit(None)), (LIMIT_UNTOLD, Bound::Fallback));
     }
 
     #[test]
@@ -217,7 +218,7 @@ mod tests {
             (machine(GIB).threads(), machine(GIB / 8).threads(), machine(GIB / 1024).threads()),
             (cores().max(16), 10, 1)
         );
-        let aside = cores().max(16) as u128 * THREAD;
+        let aside = cores().max(16) as u128 * BYTES_OF_A_THREAD;
         assert_eq!(of(machine(GIB).limit(None)), (GIB - aside, Bound::AddressSpace));
         assert_eq!(machine(GIB / 256).limit(None).bytes, Bytes(GIB / 256 * 3 / 4));
     }

@@ -9,7 +9,7 @@ use crate::error::{Error, ErrorKind};
 use crate::size::Bytes;
 
 /// Bytes of the program itself, before there is a scene.
-const PROGRAM: u128 = 10 << 20;
+const BYTES_OF_PROGRAM: u128 = 10 << 20;
 
 /// Bytes by use: what is held from its beginning on, and what each stage holds besides, of which
 /// there is one at a time.
@@ -49,7 +49,7 @@ impl Plan {
     /// The most that is held at a time.
     #[must_use]
     pub fn peak(&self) -> Bytes {
-        let held = self.held.iter().fold(PROGRAM, |sum, part| sum.saturating_add(part.bytes));
+        let held = self.held.iter().fold(BYTES_OF_PROGRAM, |sum, part| sum.saturating_add(part.bytes));
         Bytes(held.saturating_add(self.largest().map_or(0, |part| part.bytes)))
     }
 
@@ -90,7 +90,7 @@ impl fmt::Display for Plan {
         for Part { what, bytes } in self.held.iter().chain(self.largest()).filter(|part| part.bytes > 0) {
             write!(f, "{} for {what}, ", Bytes(*bytes))?;
         }
-        write!(f, "{} for the program", Bytes(PROGRAM))
+        write!(f, "{} for the program", Bytes(BYTES_OF_PROGRAM))
     }
 }
 

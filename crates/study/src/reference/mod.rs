@@ -24,9 +24,9 @@ use crate::stochastic::{
 
 /// The script that renders the scene with Mitsuba and judges it, and its name.
 const JUDGE_MITSUBA: &str = include_str!("judge_mitsuba.py");
-const SCRIPT: &str = "judge_mitsuba.py";
+const SCRIPT_NAME: &str = "judge_mitsuba.py";
 /// Error that is asked for where nothing is.
-const ERROR: f64 = 0.002;
+const USUAL_ERROR: f64 = 0.002;
 /// Error of a row of form factors where neither the caller nor the scene asks for one: small beside
 /// what is compared.
 const FORM_FACTORS: f64 = 1e-5;
@@ -41,10 +41,10 @@ const SAMPLES: u32 = 1024;
 /// Batches of a pixel: so many that its standard error is well known, of at least so many samples
 /// that they share out the pixel.
 const BATCHES: u32 = 128;
-const BATCH: u32 = 16;
+const SAMPLES_OF_A_BATCH: u32 = 16;
 /// Bytes of a pixel and of each of its bands, in memory and in the file.
-const PIXEL: u128 = 18;
-const BAND: u128 = 32;
+const BYTES_OF_A_PIXEL: u128 = 18;
+const BYTES_OF_A_BAND: u128 = 32;
 
 /// What is asked of [`reference()`].
 #[derive(Clone, Debug, Default)]
@@ -124,7 +124,7 @@ fn sized(camera: Camera, asked: Option<[u32; 2]>) -> Result<Camera, Error> {
 
 fn sampling(asked: &ReferenceOptions) -> PixelSampling {
     let spp = asked.spp.unwrap_or(SAMPLES).max(1);
-    let batches = (spp / BATCH).clamp(2, BATCHES);
+    let batches = (spp / SAMPLES_OF_A_BATCH).clamp(2, BATCHES);
     PixelSampling { seed: asked.paths.seed, batches, samples: spp.div_ceil(batches) }
 }
 
@@ -176,7 +176,7 @@ fn scenes(problem: &Problem, camera: &Camera, folder: &ResultFolder) -> Result<(
     for format in [ExportFormat::Mitsuba, ExportFormat::Pbrt] {
         write(&outline, format, folder, "scene")?;
     }
-    folder.write(SCRIPT, |out| out.write_all(JUDGE_MITSUBA.as_bytes())).map(drop).map_err(report_failure)
+    folder.write(SCRIPT_NAME, |out| out.write_all(JUDGE_MITSUBA.as_bytes())).map(drop).map_err(report_failure)
 }
 
 /// The problem, with form factors more exact than for a picture.
@@ -186,7 +186,7 @@ fn load(
     stages: &mut Stages,
 ) -> Result<(Problem, SolveSettings), Error> {
     let [width, height] = asked.size.unwrap_or([USUAL_PIXELS_A_SIDE; 2]).map(u128::from);
-    let pixel = |scene: &Scene| PIXEL + BAND * scene.bands().len() as u128;
+    let pixel = |scene: &Scene| BYTES_OF_A_PIXEL + BYTES_OF_A_BAND * scene.bands().len() as u128;
     let more = |plan, scene: &Scene, n| {
         let pictures = pictures(scene, 1, (false, 0));
         with_results(with_tracing(plan, scene, n), scene, n, (pictures, width * height * pixel(scene)))
@@ -208,7 +208,7 @@ fn traced(
 ) -> Result<State, Error> {
     let known = control(scene, solution, false)?;
     let method = PathTracing::continuous(asked.paths.switches()).with_control(known);
-    let stop = asked.stop.or_to(ERROR);
+    let stop = asked.stop.or_to(USUAL_ERROR);
     let tracer = Tracer::new(scene, &method, faces(&problem.mesh, scene)?, &asked.paths, &stop)?;
     let mut state = tracer.start();
     let watch = stages.watch;

@@ -54,7 +54,7 @@ impl SpectrumOptions {
         ProblemOptions {
             threads: self.threads,
             discretisation: None,
-            solver: Some(registry::DEFAULT.to_owned()),
+            solver: Some(registry::USUAL_SOLVER.to_owned()),
             form_factor_tolerance: self.form_factor_tolerance,
             storage: None,
             memory: self.memory,

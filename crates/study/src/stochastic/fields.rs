@@ -6,7 +6,7 @@ use fredholm_montecarlo::waves::{
     Aim, AmplitudeParticles, Bounces, FieldEstimate, FieldEstimator, FieldParticles, FieldTracing,
     Scattering, SurfaceSampling,
 };
-use fredholm_montecarlo::{Stop, WAVE};
+use fredholm_montecarlo::{BATCHES_AT_ONCE, Stop};
 use fredholm_scene::waves::Places;
 use fredholm_waves::{PhysicalOptics, Shadow, Wave, WaveError};
 
@@ -26,12 +26,12 @@ pub const FIELD_METHODS: [&str; 6] = [
 ];
 
 /// Samples of a batch, and in all, where nothing is asked for.
-const BATCH: u32 = 1024;
-const SAMPLES: u64 = 1 << 16;
+const SAMPLES_OF_A_BATCH: u32 = 1024;
+const USUAL_SAMPLES: u64 = 1 << 16;
 /// Radius of a cell of amplitude particles over the wavelength, and rays that leave each for the
 /// second bounce.
-const CELL: f64 = 0.1;
-const SECOND: u32 = 16;
+const CELL_RADIUS_OVER_WAVELENGTH: f64 = 0.1;
+const RAYS_OF_A_CELL: u32 = 16;
 
 /// A point of a receiver: the number of the receiver, its own, and where it lies (m).
 pub(crate) type FieldPoint = (usize, usize, Vec3);
@@ -70,7 +70,7 @@ impl FieldRun {
         watch: &dyn Watch,
     ) -> Result<Self, Error> {
         admit(method, paths, model)?;
-        let batch = paths.batch.unwrap_or(BATCH);
+        let batch = paths.batch.unwrap_or(SAMPLES_OF_A_BATCH);
         let stop = Stop {
             batches: batches(paths, stop),
             // Every frequency has its share of the time.
@@ -82,7 +82,9 @@ impl FieldRun {
 
     /// Batches that are in memory at once.
     pub(crate) fn at_once(paths: &PathOptions, stop: &TraceStop) -> u32 {
-        batches(paths, stop).and_then(|all| u32::try_from(all).ok()).map_or(WAVE, |all| all.min(WAVE))
+        batches(paths, stop)
+            .and_then(|all| u32::try_from(all).ok())
+            .map_or(BATCHES_AT_ONCE, |all| all.min(BATCHES_AT_ONCE))
     }
 
     /// Bounces that are summed.
@@ -125,8 +127,8 @@ impl FieldRun {
 
 /// Batches in all, where their number is known.
 fn batches(paths: &PathOptions, stop: &TraceStop) -> Option<u64> {
-    let samples = stop.samples.or(stop.is_empty().then_some(SAMPLES));
-    samples.map(|all| all.div_ceil(paths.batch.unwrap_or(BATCH).into()).max(2))
+    let samples = stop.samples.or(stop.is_empty().then_some(USUAL_SAMPLES));
+    samples.map(|all| all.div_ceil(paths.batch.unwrap_or(SAMPLES_OF_A_BATCH).into()).max(2))
 }
 
 fn admit(method: &str, paths: &PathOptions, model: &Model) -> Result<(), Error> {
@@ -170,7 +172,9 @@ fn estimator(name: &str, wave: &Wave) -> Box<dyn FieldEstimator> {
         "field-particles-uniform" => Box::new(FieldParticles::new(Aim::Sphere)),
         "field-particles-cosine" => Box::new(FieldParticles::new(Aim::Cosine)),
         "field-particles-von-mises-fisher" => Box::new(FieldParticles::new(Aim::Lobe(None))),
-        "amplitude-particles" => Box::new(AmplitudeParticles::new(CELL * wave.wavelength(), SECOND)),
+        "amplitude-particles" => {
+            Box::new(AmplitudeParticles::new(CELL_RADIUS_OVER_WAVELENGTH * wave.wavelength(), RAYS_OF_A_CELL))
+        }
         _ => Box::new(SurfaceSampling),
     }
 }

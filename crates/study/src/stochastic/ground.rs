@@ -12,20 +12,20 @@ use super::tracer::failure;
 use crate::error::Error;
 use crate::memory::{self, Plan};
 use crate::options::{ProblemOptions, SceneSource};
-use crate::prediction::MESH;
+use crate::prediction::BYTES_OF_AN_ELEMENT;
 use crate::problem::{Problem, check, prepare, scene_failure};
 use crate::solution::Solution;
 use crate::stages::Stages;
 
 /// Bytes an element takes while paths are traced: what rays are cast at, densities, the state that
 /// is written.
-const TRACED: u128 = 600;
+const BYTES_OF_A_TRACED_ELEMENT: u128 = 600;
 /// Vectors of all elements and bands held at once: a wave of batches, sums, means and errors.
-const VECTORS: u128 = fredholm_montecarlo::WAVE as u128 + 10;
+const VECTORS_HELD: u128 = fredholm_montecarlo::BATCHES_AT_ONCE as u128 + 10;
 
 /// Bytes of an element while the results are drawn and written, and of each of its values: what
 /// paths are traced on is still there.
-const RESULTS: u128 = 920;
+const BYTES_OF_A_WRITTEN_ELEMENT: u128 = 920;
 const BYTES_A_VALUE: u128 = 200;
 
 /// A meshed scene.
@@ -62,10 +62,10 @@ pub(crate) enum Drawn {
 fn admit(scene: &Scene, asked: &ProblemOptions, drawn: &Drawn, stages: &Stages) -> Result<(), Error> {
     let elements = usize::try_from(scene.predicted_elements()).unwrap_or(usize::MAX);
     let n = elements as u128;
-    let plan = Plan::default().hold(format!("{elements} elements"), MESH.saturating_mul(n));
+    let plan = Plan::default().hold(format!("{elements} elements"), BYTES_OF_AN_ELEMENT.saturating_mul(n));
     let mut plan = with_tracing(plan, scene, elements);
     if let Drawn::Picture(bytes) = drawn {
-        let element = RESULTS + BYTES_A_VALUE * scene.bands().len() as u128;
+        let element = BYTES_OF_A_WRITTEN_ELEMENT + BYTES_A_VALUE * scene.bands().len() as u128;
         plan = plan.stage("results and pictures", element.saturating_mul(n).saturating_add(*bytes));
     }
     let help =
@@ -75,7 +75,7 @@ fn admit(scene: &Scene, asked: &ProblemOptions, drawn: &Drawn, stages: &Stages) 
 
 /// Random paths as a thing after another.
 pub(crate) fn with_tracing(plan: Plan, scene: &Scene, elements: usize) -> Plan {
-    let element = TRACED + VECTORS * 8 * scene.bands().len() as u128;
+    let element = BYTES_OF_A_TRACED_ELEMENT + VECTORS_HELD * 8 * scene.bands().len() as u128;
     plan.stage("random paths", element.saturating_mul(elements as u128))
 }
 

@@ -8,7 +8,7 @@ use fredholm_report::Pixels;
 use rayon::prelude::*;
 
 /// Rows between looks for Ctrl-C.
-const STRIP: u32 = 16;
+const ROWS_BETWEEN_LOOKS: u32 = 16;
 
 /// What is needed to trace pixels.
 pub(crate) struct PixelTracer<'a> {
@@ -36,13 +36,13 @@ impl PixelTracer<'_> {
             covered: Vec::with_capacity(count),
             lamp: Vec::with_capacity(count),
         };
-        for first in (0..height).step_by(STRIP as usize) {
+        for first in (0..height).step_by(ROWS_BETWEEN_LOOKS as usize) {
             if watch.go_on().is_break() {
                 return None;
             }
             let done = f64::from(first) / f64::from(height);
             watch.advance(done, &|| format!("{first} of {height} rows"));
-            let last = (first + STRIP).min(height);
+            let last = (first + ROWS_BETWEEN_LOOKS).min(height);
             let strip: Vec<(PixelEstimate, bool)> =
                 (first * width..last * width).into_par_iter().map(|number| self.pixel(number)).collect();
             for (found, lamp) in strip {

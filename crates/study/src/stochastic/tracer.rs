@@ -8,8 +8,8 @@ use super::options::{PathOptions, TraceStop};
 use crate::error::{Error, ErrorKind};
 
 /// Samples of a batch of each element, and for each element.
-const GATHERED: u32 = 4;
-const SHOT: u32 = 8;
+const GATHERED_SAMPLES: u32 = 4;
+const SHOT_SAMPLES: u32 = 8;
 /// Fewest and most samples of a batch that shoots.
 const FEWEST_SAMPLES: u32 = 1 << 12;
 const MOST_SAMPLES: u32 = 1 << 20;
@@ -55,9 +55,9 @@ impl<'a> Tracer<'a> {
 
 fn batch(scene: &Enclosure, estimator: &dyn Estimator) -> u32 {
     if estimator.gathers() {
-        return GATHERED;
+        return GATHERED_SAMPLES;
     }
-    let samples = u32::try_from(scene.len()).unwrap_or(MOST_SAMPLES).saturating_mul(SHOT);
+    let samples = u32::try_from(scene.len()).unwrap_or(MOST_SAMPLES).saturating_mul(SHOT_SAMPLES);
     samples.clamp(FEWEST_SAMPLES, MOST_SAMPLES).next_power_of_two()
 }
 

@@ -5,9 +5,9 @@ use std::fmt::Write;
 use fredholm_report::Timing;
 
 /// Columns that labels take.
-const LABEL: usize = 16;
+const LABEL_COLUMNS: usize = 16;
 /// Entries of a list that are told one by one.
-pub(super) const SHOWN: usize = 8;
+pub(super) const MOST_ENTRIES_TOLD: usize = 8;
 
 /// Lines with a label each.
 #[derive(Debug, Default)]
@@ -16,9 +16,9 @@ pub struct Lines(String);
 impl Lines {
     /// Adds a line; what has more lines is indented under its label.
     pub fn add(&mut self, label: &str, text: impl AsRef<str>) {
-        let text = text.as_ref().replace('\n', &format!("\n{:1$}", "", LABEL + 2));
+        let text = text.as_ref().replace('\n', &format!("\n{:1$}", "", LABEL_COLUMNS + 2));
         // Writing to a string cannot fail.
-        let _ = writeln!(self.0, "  {label:<LABEL$}{text}");
+        let _ = writeln!(self.0, "  {label:<LABEL_COLUMNS$}{text}");
     }
 
     /// Adds a line where there is something to say.

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use fredholm_report::{Closure, Counts, Energy, IMAGE, Received, RunRecord};
 
-use super::lines::{Lines, SHOWN, extent, number, percent, times, value};
+use super::lines::{Lines, MOST_ENTRIES_TOLD, extent, number, percent, times, value};
 use super::{Made, Summarise};
 use crate::size::Bytes;
 
@@ -76,8 +76,8 @@ fn in_band(run: &RunRecord, band: &str, mean: f64) -> String {
 
 /// The first of many.
 fn listed(items: impl Iterator<Item = String>, count: usize) -> String {
-    let shown: Vec<String> = items.take(SHOWN).collect();
-    let more = count.saturating_sub(SHOWN);
+    let shown: Vec<String> = items.take(MOST_ENTRIES_TOLD).collect();
+    let more = count.saturating_sub(MOST_ENTRIES_TOLD);
     let more = if more > 0 { format!(" and {more} bands more, in run.json,") } else { String::new() };
     shown.join(", ") + &more
 }

@@ -7,7 +7,7 @@ use fredholm_report::{
 };
 use serde_json::Value;
 
-use super::lines::{Lines, SHOWN, percent, times};
+use super::lines::{Lines, MOST_ENTRIES_TOLD, percent, times};
 use super::{Made, Summarise};
 use crate::size::Bytes;
 
@@ -118,7 +118,7 @@ impl Summarise for SpectrumRecord {
 
     fn lines(&self, lines: &mut Lines) {
         lines.add("unknowns", format!("{} in each band, {} methods", self.unknowns, self.method));
-        self.bands.iter().take(SHOWN).for_each(|band| spectrum(band, lines));
+        self.bands.iter().take(MOST_ENTRIES_TOLD).for_each(|band| spectrum(band, lines));
         lines.add_some("", more(self.bands.len(), SPECTRUM_FILES[2]));
     }
 
@@ -127,7 +127,7 @@ impl Summarise for SpectrumRecord {
 
 /// Of how many bands nothing was told.
 fn more(bands: usize, file: &str) -> Option<String> {
-    (bands > SHOWN).then(|| format!("and {} bands more: see {file}", bands - SHOWN))
+    (bands > MOST_ENTRIES_TOLD).then(|| format!("and {} bands more: see {file}", bands - MOST_ENTRIES_TOLD))
 }
 
 fn spectrum(band: &BandSpectrum, lines: &mut Lines) {
@@ -168,7 +168,7 @@ impl Summarise for RefinementRecord {
     fn lines(&self, lines: &mut Lines) {
         lines.add("discretisation", &self.discretisation);
         (0..self.levels.len()).for_each(|at| lines.add(&format!("level {at}"), level(self, at)));
-        self.bands.iter().take(SHOWN).for_each(|band| lines.add(&band.band, &band.verdict));
+        self.bands.iter().take(MOST_ENTRIES_TOLD).for_each(|band| lines.add(&band.band, &band.verdict));
         lines.add_some("", more(self.bands.len(), REFINEMENT_FILES[2]));
         self.warnings.iter().for_each(|warning| lines.add("warning", warning));
     }

@@ -3,7 +3,7 @@
 use fredholm_report::Timing;
 use serde_json::Value;
 
-use super::lines::{Lines, SHOWN, percent, times};
+use super::lines::{Lines, MOST_ENTRIES_TOLD, percent, times};
 use super::{Made, Summarise};
 
 /// The format of the record.
@@ -54,18 +54,20 @@ impl Summarise for WaveRecord<'_> {
     }
 
     fn lines(&self, lines: &mut Lines) {
-        for (label, key) in ERRORS {
+        for (label, key) in ERROR_LABELS {
             let all = self.list(key);
-            all.iter().take(SHOWN).for_each(|error| lines.add(label, at_receiver(error, "relative")));
+            all.iter()
+                .take(MOST_ENTRIES_TOLD)
+                .for_each(|error| lines.add(label, at_receiver(error, "relative")));
             lines.add_some("", more(all.len()));
         }
         lines.add("method", self.method());
         lines.add_some("chosen", self.text("chosen_because").map(str::to_owned));
         let found = self.list("frequencies");
-        if found.len() > SHOWN {
+        if found.len() > MOST_ENTRIES_TOLD {
             lines.add("frequencies", sweep(found));
         }
-        for found in found.iter().filter(|_| found.len() <= SHOWN) {
+        for found in found.iter().filter(|_| found.len() <= MOST_ENTRIES_TOLD) {
             let ending = last_residual(found).map_or_else(String::new, |residual| {
                 let count = found["residuals"].as_array().map_or(0, Vec::len) - 1;
                 let missed = found["converged"] == Value::Bool(false);
@@ -74,7 +76,7 @@ impl Summarise for WaveRecord<'_> {
             });
             lines.add(&megahertz(found), format!("{} facets{ending}", found["facets"]));
         }
-        for power in self.list("power").iter().take(SHOWN) {
+        for power in self.list("power").iter().take(MOST_ENTRIES_TOLD) {
             let ratio = power["ratio"].as_f64().unwrap_or_default();
             let absorbed = power["absorbed_w"].as_f64().unwrap_or_default();
             let done = if absorbed > 0.0 {
@@ -87,7 +89,9 @@ impl Summarise for WaveRecord<'_> {
             lines.add("power", text);
         }
         let all = self.list("reciprocity");
-        all.iter().take(SHOWN).for_each(|found| lines.add("reciprocity", at_receiver(found, "defect")));
+        all.iter()
+            .take(MOST_ENTRIES_TOLD)
+            .for_each(|found| lines.add("reciprocity", at_receiver(found, "defect")));
         self.list("warnings").iter().filter_map(Value::as_str).for_each(|text| lines.add("warning", text));
     }
 
@@ -101,7 +105,7 @@ impl Summarise for WaveRecord<'_> {
 }
 
 /// Labels of the errors that a record has, and their keys.
-const ERRORS: [(&str, &str); 3] = [
+const ERROR_LABELS: [(&str, &str); 3] = [
     ("stated error", "stated_errors"),
     ("mesh error", "estimated_mesh_errors"),
     ("form error", "estimated_form_errors"),
@@ -119,7 +123,7 @@ fn at_receiver(found: &Value, key: &str) -> String {
 }
 
 fn more(count: usize) -> Option<String> {
-    (count > SHOWN).then(|| format!("and {} more: see run.json", count - SHOWN))
+    (count > MOST_ENTRIES_TOLD).then(|| format!("and {} more: see run.json", count - MOST_ENTRIES_TOLD))
 }
 
 fn last_residual(found: &Value) -> Option<f64> {

@@ -25,7 +25,7 @@ use crate::stochastic::{
 use crate::threads;
 
 /// Error that is asked for where nothing is.
-const ERROR: f64 = 0.01;
+const USUAL_ERROR: f64 = 0.01;
 
 /// What is asked of [`trace`].
 #[derive(Clone, Debug)]
@@ -115,7 +115,7 @@ fn run(
     let drawn = |scene: &_| picture::drawn(asked, scene);
     let ground = Ground::load(source, &asked.problem, &drawn, stages)?;
     let scene = stages.run("exposure", || enclosure(&ground.scene, &ground.mesh))?;
-    let stop = asked.stop.or_to(ERROR);
+    let stop = asked.stop.or_to(USUAL_ERROR);
     let origin = Origin::new(asked, ground.scene.sha256(), 0);
     let (state, reason) = traced((source, asked), folder, (&ground, &scene, &origin), &stop, stages)?;
     let estimates = Estimates::new(&ground, &state);

@@ -1,7 +1,7 @@
 //! Pictures of which every pixel is traced by itself.
 
 use fredholm_montecarlo::light::pixels::PixelSampling;
-use fredholm_montecarlo::light::{PICTURED, point_estimator};
+use fredholm_montecarlo::light::{PIXEL_METHODS, point_estimator};
 use fredholm_montecarlo::{Enclosure, Site};
 use fredholm_report::{Camera, Eye};
 use fredholm_scene::Scene;
@@ -14,13 +14,13 @@ use crate::solve::report_failure;
 use crate::stochastic::{Drawn, Ground, PixelTracer};
 
 /// Bytes of a pixel, and of each of its bands.
-const PIXEL: u128 = 9;
-const BAND: u128 = 16;
+const BYTES_OF_A_PIXEL: u128 = 9;
+const BYTES_OF_A_BAND: u128 = 16;
 /// Bytes of its colour with what the exposure goes by, and of the rest of it in the file.
-const COLOUR: u128 = 35;
-const FILE: u128 = 8;
+const BYTES_OF_COLOUR: u128 = 35;
+const BYTES_IN_FILE: u128 = 8;
 /// Samples of a batch of a pixel.
-const SAMPLES: u32 = 4;
+const SAMPLES_OF_A_BATCH: u32 = 4;
 /// Fewest batches of a pixel: without two there is no standard error.
 const FEWEST_BATCHES: u32 = 2;
 
@@ -34,8 +34,8 @@ pub(super) fn tracer<'a>(
     let Some(samples) = asked.spp else { return Ok(None) };
     let estimator = point_estimator(&asked.method, asked.paths.switches()).ok_or_else(|| refused(asked))?;
     let eye = Eye::new(&ground.mesh, camera).map_err(report_failure)?;
-    let batches = samples.div_ceil(SAMPLES).max(FEWEST_BATCHES);
-    let sampling = PixelSampling { seed: asked.paths.seed, batches, samples: SAMPLES };
+    let batches = samples.div_ceil(SAMPLES_OF_A_BATCH).max(FEWEST_BATCHES);
+    let sampling = PixelSampling { seed: asked.paths.seed, batches, samples: SAMPLES_OF_A_BATCH };
     let see = move |x, y| eye.hit(x, y).map(|(patch, point)| Site { patch, point });
     let size = [camera.width, camera.height];
     Ok(Some(PixelTracer { scene, estimator, size, sampling, see: Box::new(see) }))
@@ -43,7 +43,7 @@ pub(super) fn tracer<'a>(
 
 /// Refuses what cannot be traced pixel by pixel, before any path is traced.
 pub(super) fn admit(asked: &TraceOptions) -> Result<(), Error> {
-    if asked.spp.is_some() && !PICTURED.contains(&asked.method.as_str()) {
+    if asked.spp.is_some() && !PIXEL_METHODS.contains(&asked.method.as_str()) {
         return Err(refused(asked));
     }
     Ok(())
@@ -58,11 +58,16 @@ pub(super) fn drawn(asked: &TraceOptions, scene: &Scene) -> Drawn {
     }
     Drawn::Picture(match asked.spp {
         None => pictured(pixels, 1),
-        Some(_) => pixels * (PIXEL + BAND * bands + COLOUR.max(FILE + BAND * bands)),
+        Some(_) => {
+            pixels
+                * (BYTES_OF_A_PIXEL
+                    + BYTES_OF_A_BAND * bands
+                    + BYTES_OF_COLOUR.max(BYTES_IN_FILE + BYTES_OF_A_BAND * bands))
+        }
     })
 }
 
 fn refused(asked: &TraceOptions) -> Error {
-    let help = format!("--spp goes with --method {}", PICTURED.join(" or --method "));
+    let help = format!("--spp goes with --method {}", PIXEL_METHODS.join(" or --method "));
     Error::new(ErrorKind::Input, format!("{} traces no pixels", asked.method)).with_help(help)
 }

@@ -14,7 +14,7 @@ use crate::error::{Error, ErrorKind};
 use crate::stochastic::failure;
 
 /// What helps where it cannot be read.
-const ANEW: &str = "without --continue the run starts anew";
+const START_ANEW_HELP: &str = "without --continue the run starts anew";
 
 /// Everything that the numbers of a run depend on, beside what its state knows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -57,11 +57,12 @@ impl Origin {
         folder.keep(TRACE_STATE);
         let path = folder.path().join(TRACE_STATE);
         let text = fs::read_to_string(&path).map_err(|error| {
-            Error::new(ErrorKind::Files, format!("cannot read {}: {error}", path.display())).with_help(ANEW)
+            Error::new(ErrorKind::Files, format!("cannot read {}: {error}", path.display()))
+                .with_help(START_ANEW_HELP)
         })?;
         let saved: Saved<S> = serde_json::from_str(&text).map_err(|error| {
             let text = format!("{} is no state of such a run: {error}", path.display());
-            Error::new(ErrorKind::Input, text).with_help(ANEW)
+            Error::new(ErrorKind::Input, text).with_help(START_ANEW_HELP)
         })?;
         self.check(&saved.origin).map_err(failure)?;
         Ok(saved.state)

@@ -17,7 +17,7 @@ use crate::error::{Error, ErrorKind};
 pub(super) const AUTO: &str = "auto";
 
 /// Rows that are computed before they are stored: enough to keep many threads busy.
-const BATCH: usize = 128;
+const ROWS_OF_A_BATCH: usize = 128;
 
 /// The names of all methods.
 pub(super) fn names() -> Vec<&'static str> {
@@ -85,8 +85,8 @@ impl Chosen {
             self.row(patches, occluders, i)
         };
         let mut matrix = Matrix::new(patches)?;
-        for start in (0..patches.len()).step_by(BATCH) {
-            let batch = start..(start + BATCH).min(patches.len());
+        for start in (0..patches.len()).step_by(ROWS_OF_A_BATCH) {
+            let batch = start..(start + ROWS_OF_A_BATCH).min(patches.len());
             let rows: Vec<_> = batch.clone().into_par_iter().map(row).collect();
             for (i, row) in batch.zip(rows) {
                 let row = row.map_err(|(j, error)| refused([name(j), name(i)], &error))?;

@@ -13,12 +13,12 @@ use crate::stages::Stages;
 
 /// Row errors, in tolerances, that are reported: the tolerance is a pair's, and the errors of a row
 /// add up to about twice as much.
-const ROW: f64 = 3.0;
+const REPORTED_ROW_ERROR: f64 = 3.0;
 /// Estimated error of a row that may be rounding alone.
 const ROUNDING: f64 = 1e-11;
 
 /// Change of a row by closing, Σ_j |F'_ij − F_ij|, that is reported.
-const BENT: f64 = 0.01;
+const REPORTED_CHANGE: f64 = 0.01;
 
 /// Everything that is worth knowing of a run.
 pub(super) fn record(
@@ -103,7 +103,7 @@ pub fn largest(values: impl Iterator<Item = f64>) -> Option<f64> {
 
 /// Whether closing the rows changed more than errors of a computation should make.
 fn bent(change: &ClosureChange) -> Option<String> {
-    let most = change.row_max.filter(|&most| most > BENT)?;
+    let most = change.row_max.filter(|&most| most > REPORTED_CHANGE)?;
     Some(format!(
         "--close changed a row by {most:.1e} in all: such factors are those of another room; use a finer tolerance or setting"
     ))
@@ -112,7 +112,7 @@ fn bent(change: &ClosureChange) -> Option<String> {
 /// Whether the factors came out less exact than asked for.
 fn inexact(error: &FormFactorError) -> Option<String> {
     let (found, asked) = (error.row_max?, error.tolerance?);
-    (found > (ROW * asked).max(ROUNDING)).then(|| {
+    (found > (REPORTED_ROW_ERROR * asked).max(ROUNDING)).then(|| {
         format!(
             "the estimated error of a row is {found:.1e}, where {asked:.1e} was asked for a pair; cut the surfaces more finely where \
              they almost touch"

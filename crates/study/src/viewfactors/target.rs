@@ -8,7 +8,7 @@ use crate::error::{Error, ErrorKind};
 use crate::folder;
 
 /// Endings of the files that come beside the matrix.
-const TAKEN: [&str; 3] = ["png", "svg", "json"];
+const TAKEN_ENDINGS: [&str; 3] = ["png", "svg", "json"];
 
 /// Where a matrix goes, what comes beside it, and in which form it is written.
 #[derive(Debug)]
@@ -50,7 +50,7 @@ impl MatrixFiles {
 
 fn format(path: &Path, given: Option<MatrixFormat>) -> Result<MatrixFormat, Error> {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase();
-    if TAKEN.contains(&ending.as_str()) {
+    if TAKEN_ENDINGS.contains(&ending.as_str()) {
         let text = format!(
             "{} is the name of a picture, plot or record that comes beside the matrix",
             path.display()

@@ -18,7 +18,7 @@ use super::model::Band;
 use crate::error::Error;
 
 /// Elements times directions that are cheap beside anything.
-const CHEAP: f64 = 4e6;
+const CHEAP_ELEMENT_DIRECTIONS: f64 = 4e6;
 
 /// The powers of the fields at one frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -135,7 +135,7 @@ impl Balancing<'_> {
         let radius = 0.5 * bounds.diagonal() + more;
         // Before the rule is made: it has some 2 (k a)² directions.
         let directions = 2.0 * (self.band.wave.wavenumber() * radius + 10.0).powi(2);
-        if directions * self.elements > CHEAP.max(self.pairs) {
+        if directions * self.elements > CHEAP_ELEMENT_DIRECTIONS.max(self.pairs) {
             return Ok(None);
         }
         let waves: Vec<PlaneWave> =

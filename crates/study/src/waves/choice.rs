@@ -29,7 +29,7 @@ use super::model::{BY_MATRIX, Band, Method};
 use super::over_frequency::MOST_PICTURED;
 
 /// Longest edge for the equation, in wavelengths.
-const EQUATION: f64 = 0.26;
+const LONGEST_EDGE_OF_EQUATION: f64 = 0.26;
 /// Most unknowns of boundary elements that are taken unasked: assembly and factorisation then take
 /// some tens of seconds a core.
 const MOST_UNKNOWNS: usize = 6_000;
@@ -49,20 +49,20 @@ const THIN_SHARE: f64 = 0.1;
 const MANY_WAVES: usize = 16;
 const MOST_FACTORISED: u128 = 4 << 30;
 /// Extent over the wavelength below which physical optics says nothing.
-const OPTICAL: f64 = 0.5;
+const LEAST_OPTICAL_EXTENT: f64 = 0.5;
 /// Matrices that the factorisation holds at once.
-const MATRICES: u128 = 2;
+const MATRICES_AT_ONCE: u128 = 2;
 /// Longest edge for several bounces, in wavelengths.
-const BOUNCES: f64 = 0.5 * (1.0 + 1e-9);
+const LONGEST_EDGE_OF_BOUNCES: f64 = 0.5 * (1.0 + 1e-9);
 /// Most facets for which all bounces are taken unasked: a product then takes some seconds a core.
 const MOST_FACETS: usize = 60_000;
 /// Longest sides of all faces together for which edge currents are added unasked, in wavelengths.
 const LONGEST_SIDES: f64 = 20_000.0;
 /// The residual of GMRES where it is taken unasked: below the error of any mesh.
-const TOLERANCE: f64 = 1e-4;
+const UNASKED_RESIDUAL: f64 = 1e-4;
 /// What is asked for where the scene names no method.
-const SOLVER: &str = "gmres:restart=60";
-const ITERATIONS: usize = 500;
+const UNASKED_SOLVER: &str = "gmres:restart=60";
+const UNASKED_ITERATIONS: usize = 500;
 
 /// What a scene says of the method.
 pub(super) struct Asked {
@@ -188,7 +188,7 @@ fn is_small(geometry: &Geometry, (wavelength, most): (f64, usize), fits: &dyn Fn
     Surface::from_mesh(&geometry.mesh).and_then(Basis::new).is_ok_and(|basis| {
         let matrix = (basis.len() * basis.len() * size_of::<Complex64>()) as u128;
         let resolved = basis.topology().check_resolution(basis.surface(), wavelength).is_ok();
-        resolved && basis.len() <= most && fits(MATRICES * matrix)
+        resolved && basis.len() <= most && fits(MATRICES_AT_ONCE * matrix)
     })
 }
 
@@ -244,7 +244,11 @@ pub(super) fn taken(
     }
     let longest = bands.iter().map(|band| band.wave.wavelength()).fold(0.0, f64::max);
     let extent = geometry.mesh.bounds().map_or(0.0, |bounds| bounds.diagonal()) / longest;
-    if taken.galerkin.is_none() && !taken.shadow.is_equation() && seen.conductors && extent < OPTICAL {
+    if taken.galerkin.is_none()
+        && !taken.shadow.is_equation()
+        && seen.conductors
+        && extent < LEAST_OPTICAL_EXTENT
+    {
         taken.warnings.push(format!(
             "the surfaces are {extent:.2e} wavelengths from end to end, where physical optics says nothing; take method = \"efie\""
         ));
@@ -259,7 +263,7 @@ fn factorise(taken: &mut Taken, seen: &Seen, fits: &dyn Fn(u128) -> bool) {
         && taken.galerkin.is_none()
         && seen.conductors
         && matrix <= MOST_FACTORISED
-        && fits(MATRICES * matrix)
+        && fits(MATRICES_AT_ONCE * matrix)
         && let Ok(lu) = super::registry::build(BY_MATRIX)
     {
         *solver = lu;
@@ -276,7 +280,11 @@ fn chosen(seen: &Seen, ground: bool, small: &dyn Fn() -> bool) -> Taken {
         return Taken {
             shadow: Shadow::default(),
             galerkin: Some(if seen.sheets { Equations::Electric } else { Equations::Combined }),
-            method: Method::Solver { solver, tolerance: TOLERANCE, max_iterations: ITERATIONS },
+            method: Method::Solver {
+                solver,
+                tolerance: UNASKED_RESIDUAL,
+                max_iterations: UNASKED_ITERATIONS,
+            },
             edge_currents: false,
             reason: Some(if ground {
                 "a ground plane, which boundary elements alone know".to_owned()
@@ -294,9 +302,10 @@ fn chosen(seen: &Seen, ground: bool, small: &dyn Fn() -> bool) -> Taken {
     let one = |shadow, edge_currents, why: &str| {
         (Method::Bounces(1), shadow, edge_currents, format!("one bounce: {why}"))
     };
-    let all = |shadow, edge_currents, why: &str| match super::registry::build(SOLVER) {
+    let all = |shadow, edge_currents, why: &str| match super::registry::build(UNASKED_SOLVER) {
         Ok(solver) => {
-            let method = Method::Solver { solver, tolerance: TOLERANCE, max_iterations: ITERATIONS };
+            let method =
+                Method::Solver { solver, tolerance: UNASKED_RESIDUAL, max_iterations: UNASKED_ITERATIONS };
             (method, shadow, edge_currents, why.to_owned())
         }
         Err(_) => (Method::Bounces(1), shadow, edge_currents, why.to_owned()),
@@ -317,13 +326,13 @@ fn chosen(seen: &Seen, ground: bool, small: &dyn Fn() -> bool) -> Taken {
         one(shadow, false, "the scene has other materials than conductors")
     } else if seen.flat {
         one(Shadow::Geometric, true, "everything is in one plane, where nothing lights anything else")
-    } else if seen.edge > BOUNCES {
+    } else if seen.edge > LONGEST_EDGE_OF_BOUNCES {
         warnings.push("edges are above half a wavelength: one bounce is all that is known of such facets; mesh finer for more".to_owned());
         one(Shadow::Geometric, seen.sheets, "facets are above half a wavelength")
     } else if seen.facets > MOST_FACETS {
         warnings.push(format!("{} facets: one bounce is taken; write a solver for all of them", seen.facets));
         one(Shadow::Geometric, seen.sheets, "there are too many facets for more unasked")
-    } else if seen.closed_conductors() && seen.edge <= EQUATION {
+    } else if seen.closed_conductors() && seen.edge <= LONGEST_EDGE_OF_EQUATION {
         all(Shadow::ExactDual, false, "closed conductors have an equation without approximation")
     } else if seen.closed_conductors() {
         all(
@@ -379,7 +388,7 @@ fn completed(method: Method, (optics, shadow): (bool, Option<Shadow>), seen: &Se
             (Shadow::Geometric, "one bounce: what is hidden is dark")
         } else if seen.sheets || seen.panes {
             (Shadow::Radiated, "sheets light and shadow each other through their currents")
-        } else if rigorous && seen.closed_conductors() && seen.edge <= EQUATION {
+        } else if rigorous && seen.closed_conductors() && seen.edge <= LONGEST_EDGE_OF_EQUATION {
             (Shadow::ExactDual, "closed conductors have an equation without approximation")
         } else {
             (Shadow::Geometric, "bounces between closed bodies: what is hidden is dark")

@@ -14,7 +14,7 @@ use crate::stages::{Signals, Stages};
 use crate::trial;
 
 /// Applications that the spectral radius is estimated from.
-const STEPS: usize = 200;
+const RADIUS_APPLICATIONS: usize = 200;
 
 /// Runs the solvers, given as texts such as `gmres:restart=100`, at every frequency.
 pub(crate) fn compare(
@@ -65,7 +65,7 @@ fn case(
     let made = solvers.iter().map(|text| build(text)).collect::<Result<Vec<_>, _>>()?;
     let system = stages.run(&format!("coupling at {name}"), || {
         let all: Vec<&dyn Solver<Complex64>> = made.iter().map(AsRef::as_ref).collect();
-        let products = (STEPS + 40 * all.len()) as f64;
+        let products = (RADIUS_APPLICATIONS + 40 * all.len()) as f64;
         coupled(model, &scatterer, (band.wave, model.shadow), (&all, products), signals)
     })?;
     let radius = stages.run(&format!("spectral radius at {name}"), || radius(&system, signals))?;
@@ -85,7 +85,7 @@ fn build(text: &str) -> Result<Box<dyn Solver<Complex64>>, Error> {
 }
 
 fn radius(system: &System<'_>, signals: &Signals<'_>) -> Result<f64, Error> {
-    spectral_radius(system.coupling(), STEPS, signals.watch).ok_or_else(Error::cancelled)
+    spectral_radius(system.coupling(), RADIUS_APPLICATIONS, signals.watch).ok_or_else(Error::cancelled)
 }
 
 fn run(

@@ -33,7 +33,7 @@ use crate::stages::{Signals, Stages, Unstaged};
 /// Most elements of edges that errors are stated from.
 const MOST_ELEMENTS: f64 = 2e5;
 /// Directions in which the mean field of a wave of a sweep is taken.
-const DIRECTIONS: usize = 100;
+const MEAN_FIELD_DIRECTIONS: usize = 100;
 
 /// Computes everything that the model asks for.
 pub(crate) fn compute(model: &Model, stages: &mut Stages) -> Result<Outcome, Error> {
@@ -453,7 +453,8 @@ impl Task<'_> {
                 let size = match stating {
                     Stating::Edges { .. } => found,
                     Stating::Inside { .. } => {
-                        let far = radiator.far_field(&even_directions(DIRECTIONS)).map_err(refused)?;
+                        let far =
+                            radiator.far_field(&even_directions(MEAN_FIELD_DIRECTIONS)).map_err(refused)?;
                         let sum: f64 = far.iter().map(|far| far.amplitude.norm_squared()).sum();
                         found.max(sum / far.len() as f64)
                     }

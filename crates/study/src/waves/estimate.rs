@@ -41,10 +41,10 @@ impl Estimated {
 }
 
 /// Most points or directions of a receiver that the share of edge currents is taken from.
-const SAMPLE: usize = 60;
+const MOST_PLACES_OF_A_RECEIVER: usize = 60;
 
 /// Directions of a sweep that its error is stated from, at most some more.
-const SWEPT: usize = 8;
+const SWEEP_DIRECTIONS: usize = 8;
 
 /// The error of a monostatic sweep, from that of some of its waves: root mean square over that of
 /// what they send back.
@@ -59,7 +59,7 @@ pub(super) struct SweepError {
 impl SweepError {
     /// Whether a direction of so many is one of the sample.
     pub(super) fn samples(index: usize, count: usize) -> bool {
-        index.is_multiple_of(count.div_ceil(SWEPT).max(1))
+        index.is_multiple_of(count.div_ceil(SWEEP_DIRECTIONS).max(1))
     }
 
     /// Squares of the error, where it is known, and of the field, V².
@@ -96,7 +96,7 @@ impl Stating {
             Self::Inside { inside, equation: true } => Indicator::InsideEquation(*inside),
             Self::Inside { inside, equation: false } => Indicator::InsideOptics(*inside),
             Self::Edges { edges, added } => {
-                let step = places.len().div_ceil(SAMPLE).max(1);
+                let step = places.len().div_ceil(MOST_PLACES_OF_A_RECEIVER).max(1);
                 let (mut share, mut size) = (0.0, 0.0);
                 for (&place, field) in places.iter().zip(fields).step_by(step) {
                     share += edge(edges, place).norm_squared();

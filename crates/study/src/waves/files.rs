@@ -20,7 +20,7 @@ use super::over_frequency::{MOST_PICTURED, levels, plot};
 use super::{Model, Outcome};
 
 const COMPONENTS: [&str; 6] = ["ex", "ey", "ez", "hx", "hy", "hz"];
-const LAST: &str = "run.json";
+const LAST_FILE: &str = "run.json";
 /// Most rows of a table that is written as text, some 600 bytes a row of fields.
 const MOST_ROWS: usize = 50_000;
 
@@ -65,7 +65,7 @@ pub(crate) fn write(
         page(folder, model, outcome, timings)?;
     }
     let record = outcome.record(model, timings);
-    put(LAST, &|out| serde_json::to_writer_pretty(out, &record).map_err(io::Error::other))
+    put(LAST_FILE, &|out| serde_json::to_writer_pretty(out, &record).map_err(io::Error::other))
 }
 
 /// Whether so many rows are written as text; more are arrays only.

@@ -23,11 +23,11 @@ use crate::size::Bytes;
 use crate::stages::Stages;
 
 /// How to need less memory.
-const HELP: &str = "take longer edges, or fewer points and directions of receivers";
+const MEMORY_HELP: &str = "take longer edges, or fewer points and directions of receivers";
 /// Residual where the scene does not say.
-const TOLERANCE: f64 = 1e-6;
+const USUAL_RESIDUAL: f64 = 1e-6;
 /// Iterations where the scene does not say.
-const ITERATIONS: u32 = 500;
+const USUAL_ITERATIONS: u32 = 500;
 /// Solvers of equations where the scene does not say: of those by products, and of those whose
 /// matrix is stored and may be ill-conditioned.
 pub(super) const BY_PRODUCTS: &str = "gmres";
@@ -159,7 +159,7 @@ impl Model {
         let asked = asked(&scene)?;
         let bands = bands(&scene)?;
         let limit = memory::limit(memory);
-        let admit = |facets| memory_of(facets, &scene).admit(limit, HELP);
+        let admit = |facets| memory_of(facets, &scene).admit(limit, MEMORY_HELP);
         let wavelength = scene.waves().iter().map(Wave::wavelength).fold(f64::INFINITY, f64::min);
         let cut = |stretch, whole| Geometry::new(&scene, Cuts { wavelength, stretch, whole }, &admit);
         let whole = !estimated && asked.method.as_ref().is_some_and(|method| is_closed_form(&scene, method));
@@ -185,7 +185,7 @@ impl Model {
         let coarse = estimated.then(|| cut(2.0, false)).transpose()?;
         let facets = geometry.mesh.len() + coarse.as_ref().map_or(0, |coarse| coarse.mesh.len());
         let plan = memory_of(facets as u128, &scene);
-        plan.admit(limit, HELP)?;
+        plan.admit(limit, MEMORY_HELP)?;
         let doubts = scene.check().map_err(scene_failure)?;
         Ok(Self {
             bands,
@@ -353,8 +353,8 @@ fn method(scene: &WaveScene) -> Result<Option<Method>, Error> {
     };
     let name = settings.solver.as_deref().or(usual);
     let Some(name) = name else { return Ok(settings.bounces.map(|n| Method::Bounces(n as usize))) };
-    let tolerance = settings.tolerance.unwrap_or(TOLERANCE);
-    let max_iterations = settings.max_iterations.unwrap_or(ITERATIONS) as usize;
+    let tolerance = settings.tolerance.unwrap_or(USUAL_RESIDUAL);
+    let max_iterations = settings.max_iterations.unwrap_or(USUAL_ITERATIONS) as usize;
     let solver = super::registry::build(name).map_err(|error| {
         let help = "correct the name or the options";
         scene_failure(scene.error(About::Solver, SceneFault::Name, error.to_string(), help))

@@ -149,15 +149,15 @@ fn load(
 }
 
 /// Stated error above which a result is warned about.
-const DOUBTFUL: f64 = 0.5;
+const DOUBTFUL_ERROR: f64 = 0.5;
 /// Share of the supplied power that may be missing, or too much, before it is warned about.
-const UNBALANCED: f64 = 0.25;
+const UNBALANCED_SHARE: f64 = 0.25;
 
 /// What should be known of results.
 fn doubts(model: &Model, outcome: &Outcome) -> Vec<String> {
     let mut doubts = outcome.notes.clone();
     let worst = outcome.stated_errors.iter().max_by(|a, b| a.relative.total_cmp(&b.relative));
-    if let Some(error) = worst.filter(|error| error.relative > DOUBTFUL) {
+    if let Some(error) = worst.filter(|error| error.relative > DOUBTFUL_ERROR) {
         let name = model.receivers.get(error.receiver).map_or("", |receiver| &receiver.name);
         doubts.push(format!(
             "the stated error at `{name}`, {} MHz, is {:.0} % of the field there: not a result; take finer edges, or another method ({})",
@@ -168,7 +168,7 @@ fn doubts(model: &Model, outcome: &Outcome) -> Vec<String> {
     }
     let off = |balance: &&Balance| (balance.ratio() - 1.0).abs();
     let worst = outcome.balances.iter().max_by(|a, b| off(a).total_cmp(&off(b)));
-    if let Some(balance) = worst.filter(|balance| off(balance) > UNBALANCED) {
+    if let Some(balance) = worst.filter(|balance| off(balance) > UNBALANCED_SHARE) {
         doubts.push(format!(
             "{:.2} times the power that the sources give at {} MHz is radiated or absorbed; take finer edges, or an equation (efie, dual-surface-mfie)",
             balance.ratio(),

@@ -6,11 +6,11 @@ use super::weld::{Polygon, connected, undirected};
 
 /// Part of its area, or of its perimeter, by which a hull may differ from the polygons that fill
 /// it.
-const FILLED: f64 = 1e-9;
+const AREA_TOLERANCE: f64 = 1e-9;
 
 /// Tangent of the angle between the first side of a polygon and the direction along which corners
 /// are sorted.
-const OBLIQUE: f64 = 0.573_1;
+const ORDER_TANGENT: f64 = 0.573_1;
 
 /// Merges polygons that share a side and lie in one plane up to `tolerance` (m). A group that is
 /// not convex is halved until its parts are.
@@ -68,7 +68,7 @@ impl<'a> Plane<'a> {
     /// places of corners on such a side differ by rounding alone, and their order would be none.
     fn place(&self, k: u32) -> [f64; 2] {
         let [u, v] = self.axes;
-        [u + v * OBLIQUE, v - u * OBLIQUE].map(|axis| axis.dot(self.points[k as usize]))
+        [u + v * ORDER_TANGENT, v - u * ORDER_TANGENT].map(|axis| axis.dot(self.points[k as usize]))
     }
 
     /// The convex hull of the listed polygons, if they fill it.
@@ -84,7 +84,8 @@ impl<'a> Plane<'a> {
         let perimeter: f64 = ends().map(|side| self.length(side)).sum();
         let filled: f64 = list.iter().map(|&k| polygons[k].area).sum();
         let border = self.border(polygons, list);
-        let fits = (filled - area).abs() <= FILLED * area && (border - perimeter).abs() <= FILLED * perimeter;
+        let fits = (filled - area).abs() <= AREA_TOLERANCE * area
+            && (border - perimeter).abs() <= AREA_TOLERANCE * perimeter;
         fits.then_some(Polygon { corners: hull, normal: self.normal, area })
     }
 
@@ -132,7 +133,7 @@ impl<'a> Plane<'a> {
     fn turns_left(&self, a: u32, b: u32, c: u32) -> bool {
         let [a, b, c] = [a, b, c].map(|k| self.points[k as usize]);
         let (first, second) = (b - a, c - b);
-        first.cross(second).dot(self.normal) > FILLED * first.length() * second.length()
+        first.cross(second).dot(self.normal) > AREA_TOLERANCE * first.length() * second.length()
     }
 
     /// The list halved at the middle of its longer extent.

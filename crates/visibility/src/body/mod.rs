@@ -133,11 +133,11 @@ impl Body {
 
 /// A direction along which parts of a scene have different places, whatever its design: an order
 /// along it does not depend on numbers.
-pub const ODD: Vec3 = Vec3::new(0.573_1, 0.319_7, 0.754_5);
+pub const GENERIC_DIRECTION: Vec3 = Vec3::new(0.573_1, 0.319_7, 0.754_5);
 
-/// Where points lie in the mean along [`ODD`], m: an order that the numbers of the patches do not
-/// change.
+/// Where points lie in the mean along [`GENERIC_DIRECTION`], m: an order that the numbers of the
+/// patches do not change.
 fn place<'a>(points: impl ExactSizeIterator<Item = &'a Vec3>) -> f64 {
     let n = points.len() as f64;
-    points.sum::<Vec3>().dot(ODD) / n
+    points.sum::<Vec3>().dot(GENERIC_DIRECTION) / n
 }

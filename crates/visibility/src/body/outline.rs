@@ -5,11 +5,11 @@ use fredholm_mesh::Vec3;
 use super::{Body, Edge};
 
 /// Faces of a solid at most, one bit each.
-pub(super) const FACES: usize = 256;
+pub(super) const MOST_FACES: usize = 256;
 
 /// One bit for each face.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Bits([u64; FACES / 64]);
+struct Bits([u64; MOST_FACES / 64]);
 
 impl Bits {
     fn set(&mut self, k: usize) {
@@ -23,7 +23,7 @@ impl Bits {
 
 /// Sine of the angle by which a point that counts as hidden may lie outside: where it lies exactly
 /// on the border, rounding does not decide.
-const GRAZING: f64 = 1e-9;
+const GRAZING_SINE: f64 = 1e-9;
 
 /// What a body hides from a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,7 +66,7 @@ impl ShadowVolume {
     pub fn holds(&self, points: &[Vec3]) -> bool {
         let holds = |(n, c, _): &(Vec3, f64, u32), y: &Vec3| {
             let height = n.dot(*y) - *c;
-            height > 0.0 || height > -GRAZING * n.length() * y.length()
+            height > 0.0 || height > -GRAZING_SINE * n.length() * y.length()
         };
         self.planes.iter().all(|plane| points.iter().all(|y| holds(plane, y)))
     }
@@ -74,7 +74,7 @@ impl ShadowVolume {
 
 /// The number of the half-space within edge `k`; those behind faces have the numbers of these.
 pub(super) fn edge_number(k: u32) -> u32 {
-    FACES as u32 + k
+    MOST_FACES as u32 + k
 }
 
 impl Body {

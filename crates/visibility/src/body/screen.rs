@@ -11,10 +11,10 @@ use super::outline::edge_number;
 use super::{Body, Edge, Face, Shadow, ShadowVolume};
 
 /// Faces that look at part of the source at most, one bit each.
-const TURNING: usize = 62;
+const MOST_TURNING_FACES: usize = 62;
 /// The bits of all faces that look at none of the source, and of all that look at all of it.
 const ALL_FACES_DARK: u8 = 62;
-const LIT: u8 = 63;
+const LIT_BIT: u8 = 63;
 
 /// A body as points of one polygon see it before another.
 #[derive(Clone, Debug)]
@@ -94,11 +94,11 @@ impl<'a> Screen<'a> {
         let edges = Vec::with_capacity(8);
         let (borders, turning, front) = (Vec::with_capacity(8), Vec::new(), Vec::new());
         let mut screen = Self { body, edges, borders, turning, front, lit: 0, plain: false, tolerance };
-        let mut bits = [ALL_FACES_DARK; super::outline::FACES];
+        let mut bits = [ALL_FACES_DARK; super::outline::MOST_FACES];
         for (k, (bit, face)) in bits.iter_mut().zip(&body.faces).enumerate() {
             *bit = screen.look((k as u32, face), source, target);
         }
-        screen.plain = screen.turning.len() > TURNING || body.edges.is_empty();
+        screen.plain = screen.turning.len() > MOST_TURNING_FACES || body.edges.is_empty();
         let target = Around::new(target);
         for (k, edge) in body.edges.iter().enumerate() {
             screen.consider((k as u32, edge), edge.faces.map(|face| bits[face as usize]), source, &target);
@@ -119,15 +119,15 @@ impl<'a> Screen<'a> {
         }
         let before = target.iter().any(|&y| face.height(y) > self.tolerance);
         if all {
-            self.lit = 1 << LIT;
+            self.lit = 1 << LIT_BIT;
             if before {
                 self.front.push((k, *face));
             }
-            return LIT;
+            return LIT_BIT;
         }
         self.turning.push((k, *face, before));
         // Those beyond share a bit, which says no more than that they turn.
-        (self.turning.len() - 1).min(TURNING - 1) as u8
+        (self.turning.len() - 1).min(MOST_TURNING_FACES - 1) as u8
     }
 
     fn consider(&mut self, (k, edge): (u32, &Edge), faces: [u8; 2], source: &[Vec3], target: &Around) {
@@ -137,7 +137,7 @@ impl<'a> Screen<'a> {
         }
         let [a, b] = self.body.ends(edge);
         // Counter-clockwise round a face that looks at x, the inside is to the left.
-        let turned = left == LIT || right == ALL_FACES_DARK;
+        let turned = left == LIT_BIT || right == ALL_FACES_DARK;
         let (ends, faces) = if turned { ([b, a], [right, left]) } else { ([a, b], [left, right]) };
         let known = faces.iter().any(|&face| face >= ALL_FACES_DARK);
         let cuts = |x: &Vec3| {

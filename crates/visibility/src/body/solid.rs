@@ -8,14 +8,14 @@ use std::collections::BTreeMap;
 
 use fredholm_mesh::{Patch, Vec3};
 
-use super::outline::FACES;
+use super::outline::MOST_FACES;
 use super::weld::{Polygon, undirected};
 use super::{Body, Edge, Face};
 use crate::frame::Frame;
 
 /// The faces as one convex solid, or `None` where they are none.
 pub(super) fn solid(points: &[Vec3], polygons: &[&Polygon], tolerance: f64, frame: &Frame) -> Option<Solid> {
-    if polygons.len() < 3 || polygons.len() >= FACES {
+    if polygons.len() < 3 || polygons.len() >= MOST_FACES {
         return None;
     }
     let mut numbers: Vec<u32> = polygons.iter().flat_map(|p| p.corners.iter().copied()).collect();
@@ -33,7 +33,7 @@ pub(super) fn solid(points: &[Vec3], polygons: &[&Polygon], tolerance: f64, fram
         lids.push(Lid::over(points, &ring, tolerance)?);
     }
     faces.extend(lids.iter().map(|lid| lid.face));
-    if faces.len() > FACES {
+    if faces.len() > MOST_FACES {
         return None;
     }
     let convex = faces.iter().all(|face| bounds(face, &corners, tolerance));
@@ -129,7 +129,7 @@ fn bounds(face: &Face, corners: &[Vec3], tolerance: f64) -> bool {
 }
 
 /// Relative difference of an area and the sum of its parts.
-const PART: f64 = 1e-6;
+const AREA_TOLERANCE: f64 = 1e-6;
 
 impl Solid {
     /// Whether one solid hides what its faces hide: no point is in it, no element reaches into it,
@@ -183,7 +183,7 @@ impl Solid {
     /// Whether elements that look in cover all faces but one at most.
     fn hollow(&self, looked_into: &[f64]) -> bool {
         let bare = (0..looked_into.len() - self.lids.len())
-            .filter(|&k| looked_into[k] < (1.0 - PART) * self.body.face_area(k));
+            .filter(|&k| looked_into[k] < (1.0 - AREA_TOLERANCE) * self.body.face_area(k));
         bare.count() <= 1
     }
 

@@ -22,16 +22,16 @@ use outline::Outline;
 use supporting::supporting_planes;
 
 /// Two front sides and a supporting plane for each edge of two polygons of up to five corners.
-pub(crate) const PLANES: usize = 12;
+pub(crate) const MOST_PLANES: usize = 12;
 /// Corners of two polygons of up to five corners.
-const CORNERS: usize = 10;
+const MOST_CORNERS: usize = 10;
 
 /// The convex hull of two polygons, or of a point and a polygon.
 #[derive(Clone, Copy, Debug)]
 pub struct Shaft {
-    planes: [HalfSpace; PLANES],
+    planes: [HalfSpace; MOST_PLANES],
     plane_count: usize,
-    corners: [Vec3; CORNERS],
+    corners: [Vec3; MOST_CORNERS],
     corner_count: usize,
 }
 
@@ -73,8 +73,8 @@ impl Shaft {
     }
 
     fn empty() -> Self {
-        let planes = [HalfSpace::default(); PLANES];
-        Self { planes, plane_count: 0, corners: [Vec3::ZERO; CORNERS], corner_count: 0 }
+        let planes = [HalfSpace::default(); MOST_PLANES];
+        Self { planes, plane_count: 0, corners: [Vec3::ZERO; MOST_CORNERS], corner_count: 0 }
     }
 
     /// The half-spaces, less a layer of the tolerance so that a patch that merely touches the shaft

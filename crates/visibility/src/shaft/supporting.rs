@@ -18,7 +18,7 @@ use super::outline::Outline;
 
 /// An edge, or the distance of a corner from the edge, that is shorter than this many tolerances
 /// points nowhere for sure. Such a plane is left out, which only makes the shaft larger.
-const SURE: f64 = 1e3;
+const LEAST_TOLERANCES: f64 = 1e3;
 
 /// Hands the supporting plane of every edge of `polygon` to `found`. All the `others` lie in front
 /// of the polygon.
@@ -53,7 +53,7 @@ fn supporting_plane(start: Vec3, edge: Vec3, n: Vec3, others: &[Vec3], tolerance
         }
     }
     let normal = z_last * m - x_last * n;
-    let sure = length > SURE * tolerance && norm1(normal) > SURE * tolerance * length;
+    let sure = length > LEAST_TOLERANCES * tolerance && norm1(normal) > LEAST_TOLERANCES * tolerance * length;
     (any && sure).then(|| HalfSpace { normal, offset: normal.dot(start) })
 }
 

@@ -17,7 +17,7 @@ use fredholm_mesh::Vec3;
 
 /// Largest coordinates of the start and of the end of a beam; a segment that reaches farther is
 /// first cut to the scene.
-const LIMITS: [f64; 2] = [1.0, 1e6];
+const LARGEST_COORDINATES: [f64; 2] = [1.0, 1e6];
 /// A component of a direction that is smaller than this is replaced by it: that keeps every
 /// quotient finite, and moves the segment by less than any rounding.
 const LEAST_COMPONENT: f32 = 1e-20;
@@ -51,7 +51,7 @@ impl Beam {
     #[inline(always)]
     pub(crate) fn new(probe: &Probe, frame: &Frame) -> Option<Self> {
         let (p, q) = (probe.p, probe.q);
-        if within(p, LIMITS[0]) && within(q, LIMITS[1]) {
+        if within(p, LARGEST_COORDINATES[0]) && within(q, LARGEST_COORDINATES[1]) {
             Some(Self::between(p, q, [0.0, 1.0]))
         } else {
             Self::inside(p, q, frame)

@@ -15,10 +15,10 @@ use fredholm_mesh::Vec3;
 pub(crate) type Bounds = Aabb;
 
 /// Facets in a leaf, at most: those of a packet.
-const LEAF: u32 = WIDTH as u32;
+const FACETS_OF_A_LEAF: u32 = WIDTH as u32;
 /// What it costs to go through a node of two boxes, over the test of one facet. A packet is tested
 /// as a whole, so that as many facets as it holds stay together.
-const TRAVERSAL: f32 = 16.0;
+const TRAVERSAL_COST: f32 = 16.0;
 
 /// The padded box of some points.
 pub(crate) fn bounds(corners: &[Vec3]) -> Bounds {
@@ -35,8 +35,8 @@ impl Tree {
     pub(crate) fn over(boxes: &[Bounds]) -> Built {
         let params = BvhBuildParams {
             pre_split: false,
-            max_prims_per_leaf: LEAF,
-            collapse_traversal_cost: TRAVERSAL,
+            max_prims_per_leaf: FACETS_OF_A_LEAF,
+            collapse_traversal_cost: TRAVERSAL_COST,
             ..BvhBuildParams::very_slow_build()
         };
         let binary = build_bvh2(boxes, params, &mut Duration::default());

@@ -47,24 +47,24 @@ pub(crate) struct Node {
 pub(crate) struct Child(u32);
 
 impl Child {
-    const LEAF: u32 = 1 << 31;
+    const LEAF_FLAG: u32 = 1 << 31;
 
     fn node(place: usize) -> Self {
         Self(place as u32)
     }
 
     fn leaf(place: usize) -> Self {
-        Self(place as u32 | Self::LEAF)
+        Self(place as u32 | Self::LEAF_FLAG)
     }
 
     #[inline(always)]
     fn is_leaf(self) -> bool {
-        self.0 & Self::LEAF != 0
+        self.0 & Self::LEAF_FLAG != 0
     }
 
     #[inline(always)]
     fn place(self) -> usize {
-        (self.0 & !Self::LEAF) as usize
+        (self.0 & !Self::LEAF_FLAG) as usize
     }
 }
 

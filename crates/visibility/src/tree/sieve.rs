@@ -9,7 +9,7 @@
 
 use super::{Node, WIDTH};
 use crate::eight::Eight;
-use crate::shaft::{HalfSpace, PLANES};
+use crate::shaft::{HalfSpace, MOST_PLANES};
 
 /// A half-space in the coordinates of the boxes.
 #[derive(Clone, Copy, Debug, Default)]
@@ -23,13 +23,13 @@ struct Side {
 /// Half-spaces in the coordinates of the boxes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sieve {
-    sides: [Side; PLANES],
+    sides: [Side; MOST_PLANES],
     count: usize,
 }
 
 impl Sieve {
     pub(crate) fn new(planes: &[HalfSpace]) -> Self {
-        let mut sieve = Self { sides: [Side::default(); PLANES], count: planes.len().min(PLANES) };
+        let mut sieve = Self { sides: [Side::default(); MOST_PLANES], count: planes.len().min(MOST_PLANES) };
         for (side, plane) in sieve.sides.iter_mut().zip(planes) {
             *side = Side::new(plane);
         }

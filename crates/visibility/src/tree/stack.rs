@@ -4,12 +4,12 @@
 
 /// Entries kept on the machine's stack. A tree of a hundred thousand facets is about six levels
 /// deep, and a level leaves seven entries at most.
-const INLINE: usize = 48;
+const ENTRIES_INLINE: usize = 48;
 
 /// A stack that only allocates for trees of unusual depth.
 #[derive(Debug)]
 pub(crate) struct Stack<T> {
-    inline: [T; INLINE],
+    inline: [T; ENTRIES_INLINE],
     len: usize,
     spill: Vec<T>,
 }
@@ -17,7 +17,7 @@ pub(crate) struct Stack<T> {
 impl<T: Copy + Default> Default for Stack<T> {
     #[inline(always)]
     fn default() -> Self {
-        Self { inline: [T::default(); INLINE], len: 0, spill: Vec::new() }
+        Self { inline: [T::default(); ENTRIES_INLINE], len: 0, spill: Vec::new() }
     }
 }
 
@@ -39,7 +39,7 @@ impl<T: Copy> Stack<T> {
 
     #[inline(always)]
     pub(crate) fn pop(&mut self) -> Option<T> {
-        if self.len == INLINE
+        if self.len == ENTRIES_INLINE
             && let Some(entry) = self.spill.pop()
         {
             return Some(entry);

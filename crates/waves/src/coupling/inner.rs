@@ -18,7 +18,7 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 
 /// What the inner equation is multiplied by.
-pub(crate) const FACTOR: Complex64 = Complex64::I;
+pub(crate) const INNER_FACTOR: Complex64 = Complex64::I;
 /// Most of the extent of the body that δ takes.
 const MOST_SHARE_OF_EXTENT: f64 = 0.125;
 /// Most of the way to the surface opposite that δ takes.

@@ -83,7 +83,8 @@ impl<'a> MaterialCoupling<'a> {
     fn is_far(&self, p: &Facet, q: &Facet) -> bool {
         let error = phase_error(1, self.wave.wavenumber() * q.edge()).clamp(TOLERANCE, 0.1);
         let near = 0.5 * q.diameter * reach(1, error);
-        p.centre.distance_squared(q.centre) > near * near || p.normal.dot(q.normal) > super::nystrom::SMOOTH
+        p.centre.distance_squared(q.centre) > near * near
+            || p.normal.dot(q.normal) > super::nystrom::SMOOTH_COSINE
     }
 
     /// The same for one point of the source, at the separation d.

@@ -10,7 +10,7 @@
 //! has 0.2 % of error, integrated neighbours 2.9 %.
 
 use super::dense::assemble;
-use super::inner::{FACTOR, inner_points};
+use super::inner::{INNER_FACTOR, inner_points};
 use super::pair::{integral, midpoint};
 use super::sides::sign;
 use super::{Block, Sides, View, block};
@@ -25,7 +25,7 @@ use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
 /// Cosine between normals above which two facets are of one smooth surface.
-pub(super) const SMOOTH: f64 = 0.7;
+pub(super) const SMOOTH_COSINE: f64 = 0.7;
 
 /// Observers that one task takes.
 const CHUNK: usize = 64;
@@ -169,7 +169,7 @@ impl<'a> NystromCoupling<'a> {
                 // The second surface may be closer than the size of a facet, where one point is not
                 // enough.
                 let apart = self.facet(q).diameter <= 2.0 * x.distance(self.centres[p]);
-                let smooth = self.normals[p].dot(self.normals[q]) > SMOOTH;
+                let smooth = self.normals[p].dot(self.normals[q]) > SMOOTH_COSINE;
                 let g = if smooth && (apart || x == self.centres[p]) {
                     midpoint(&self.wave, x, self.facet(q))
                 } else {
@@ -195,7 +195,7 @@ impl<'a> NystromCoupling<'a> {
         let mut fields = self.evaluate(elements, &self.centres, true);
         if let Some(points) = &self.inner {
             let inner = self.evaluate(elements, points, false);
-            fields.iter_mut().zip(inner).for_each(|(field, inner)| field.h += inner.h * FACTOR);
+            fields.iter_mut().zip(inner).for_each(|(field, inner)| field.h += inner.h * INNER_FACTOR);
         }
         fields
     }
@@ -302,5 +302,5 @@ fn sum(a: Block, b: Block) -> Block {
 
 /// A block of the second surface.
 fn scaled(block: Block) -> Block {
-    block.map(|row| row.map(|entry| entry * FACTOR))
+    block.map(|row| row.map(|entry| entry * INNER_FACTOR))
 }

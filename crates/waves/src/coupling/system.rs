@@ -1,7 +1,7 @@
 //! The system x = b + K x of a scatterer, its sources and a treatment of shadows, and the currents
 //! it gives.
 
-use super::inner::{FACTOR, inner_points};
+use super::inner::{INNER_FACTOR, inner_points};
 use super::material::{UNKNOWNS, current, values};
 use super::nystrom::tangential;
 use super::{MaterialCoupling, NystromCoupling, galerkin};
@@ -117,7 +117,7 @@ impl<'a> System<'a> {
             for (i, facet) in self.scatterer.facets().iter().enumerate() {
                 let mut current = self.sampled(*optics, i, facet);
                 if let Some(points) = &inner {
-                    current.j += optics.on(facet, points[i]) * FACTOR;
+                    current.j += optics.on(facet, points[i]) * INNER_FACTOR;
                 }
                 self.put(&mut b, (i, l), current);
             }

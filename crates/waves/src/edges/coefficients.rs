@@ -30,14 +30,14 @@
 //! 2), with that factor at both faces.
 
 use super::fresnel::{divided, factor, scaled};
-use crate::surface::GRAZING;
+use crate::surface::GRAZING_COSINE;
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
 /// C + S, times √(2ν), below which the limit is taken.
 const LIMIT_BELOW: f64 = 1e-4;
 /// v below which (½ − F(v))/v is its series.
-const SERIES: f64 = 1e-3;
+const SERIES_BELOW: f64 = 1e-3;
 /// Angle beside a boundary of a wedge between which the coefficients are interpolated, rad.
 const BOUNDARY_ANGLE: f64 = 2e-3;
 
@@ -56,7 +56,7 @@ pub(super) struct Strip {
 pub(super) fn half_plane(c: f64, source: f64, depth: f64) -> Strip {
     let (sin, cos) = (0.5 * source).sin_cos();
     // In the plane of the face physical optics has no current, and neither side is the lit one.
-    let sign = if cos.abs() > 0.5 * GRAZING { cos.signum() } else { 0.0 };
+    let sign = if cos.abs() > 0.5 * GRAZING_COSINE { cos.signum() } else { 0.0 };
     let (root, s, cos, sin) = ((2.0 * depth).sqrt(), (0.5 * (1.0 - c)).max(0.0).sqrt(), cos.abs(), sin.abs());
     let (v, w) = (root * s, root * cos);
     let (phase, j) = (Complex64::cis(-v * v), Complex64::I);
@@ -75,7 +75,7 @@ pub(super) fn half_plane(c: f64, source: f64, depth: f64) -> Strip {
 
 /// (½ − F(v))/v.
 fn rest(v: f64) -> Complex64 {
-    if v < SERIES {
+    if v < SERIES_BELOW {
         factor() * Complex64::new(1.0, -v * v / 3.0)
     } else {
         (0.5 - scaled(v) * Complex64::cis(-v * v)) / v

@@ -7,10 +7,10 @@ use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 
 /// Longest piece of an edge that one Gauss rule takes, in wavelengths, and its points.
-const PIECE: f64 = 0.5;
+const LONGEST_PIECE: f64 = 0.5;
 const POINTS: usize = 5;
 /// Cosine between normals above which two faces meet smoothly.
-const SMOOTH: f64 = 0.9;
+const SMOOTH_COSINE: f64 = 0.9;
 /// Distance, over the extent, within which corners are at the same place and faces in the same
 /// plane.
 const SAME_PLACE_DISTANCE: f64 = 1e-9;
@@ -64,7 +64,7 @@ impl Edge {
     /// Gauss points along the edge.
     pub(super) fn pieces(&self, wave: &Wave) -> Vec<Piece> {
         let [a, b] = self.ends;
-        let count = (self.length() / (PIECE * wave.wavelength())).ceil().max(1.0) as usize;
+        let count = (self.length() / (LONGEST_PIECE * wave.wavelength())).ceil().max(1.0) as usize;
         let length = self.length() / count as f64;
         let rule = gauss_legendre(POINTS);
         let piece = |i: usize| {
@@ -149,7 +149,7 @@ pub(super) fn edges(scatterer: &Scatterer) -> Vec<Edge> {
             };
             match (sides.neighbour(faces, i, ends), kinds[i]) {
                 (None, Kind::Sheet) => found.push(edge(2.0, i)),
-                (Some(j), Kind::Closed) if i < j && face.normal().dot(faces[j].normal()) < SMOOTH => {
+                (Some(j), Kind::Closed) if i < j && face.normal().dot(faces[j].normal()) < SMOOTH_COSINE => {
                     // The second face runs away from the edge at the outer angle.
                     let away = faces[j].centroid() - ends[0].midpoint(ends[1]);
                     found.push(edge(edge(2.0, j).angle(away) / PI, j));

@@ -33,11 +33,11 @@ use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
 /// Shortest edge and shallowest face, in wavelengths.
-const SHORTEST: f64 = 0.5;
+const SHORTEST_EDGE: f64 = 0.5;
 /// Elements a wavelength along an edge.
 const PER_WAVELENGTH: f64 = 10.0;
 /// sin²β below which a wave runs along the edge.
-const ALONG: f64 = 1e-6;
+const ALONG_EDGE_SQUARED_SINE: f64 = 1e-6;
 
 /// An element of an edge in the light of one source.
 #[derive(Clone, Copy, Debug)]
@@ -121,7 +121,7 @@ impl EdgeCurrents {
         let long = |edge: &Edge| {
             let middle = edge.ends[0].midpoint(edge.ends[1]);
             let depths = edge.depths(scatterer, middle, 0.0);
-            depths.into_iter().fold(edge.length(), f64::min) >= SHORTEST * wave.wavelength()
+            depths.into_iter().fold(edge.length(), f64::min) >= SHORTEST_EDGE * wave.wavelength()
         };
         let (large, small): (Vec<Edge>, Vec<Edge>) = all.into_iter().partition(long);
         Ok((Self { wave, elements: Vec::new(), small: small.len() }, large))
@@ -178,7 +178,7 @@ impl EdgeCurrents {
     ) -> Option<Element> {
         let (t, source_angle) = (edge.tangent(), edge.angle(towards));
         let along = -towards.dot(t);
-        if 1.0 - along * along < ALONG || source_angle > edge.opening * PI {
+        if 1.0 - along * along < ALONG_EDGE_SQUARED_SINE || source_angle > edge.opening * PI {
             return None;
         }
         let depths = edge.depths(scatterer, piece.place, along);

@@ -14,10 +14,10 @@ use super::Lanes;
 use pulp::Simd;
 
 /// 1.5 · 2⁵²: adding and subtracting it rounds to an integer.
-const ROUND: f64 = 6_755_399_441_055_744.0;
+const ROUNDING_SHIFT: f64 = 6_755_399_441_055_744.0;
 /// π/2 and what it lacks of it.
 const HALF_PI: [f64; 2] = [std::f64::consts::FRAC_PI_2, 6.123_233_995_736_766e-17];
-const SIN: [f64; 6] = [
+const SIN_SERIES: [f64; 6] = [
     -1.666_666_666_666_663_2e-1,
     8.333_333_333_322_49e-3,
     -1.984_126_982_985_795e-4,
@@ -25,7 +25,7 @@ const SIN: [f64; 6] = [
     -2.505_076_025_340_686_4e-8,
     1.589_690_995_211_55e-10,
 ];
-const COS: [f64; 6] = [
+const COS_SERIES: [f64; 6] = [
     4.166_666_666_666_66e-2,
     -1.388_888_888_887_411e-3,
     2.480_158_728_947_673e-5,
@@ -37,7 +37,7 @@ const COS: [f64; 6] = [
 /// Rounds to the nearest integer, for |x| < 2⁵¹.
 #[inline(always)]
 fn round<S: Simd>(x: Lanes<S>) -> Lanes<S> {
-    let big = x.constant(ROUND);
+    let big = x.constant(ROUNDING_SHIFT);
     (x + big) - big
 }
 
@@ -57,8 +57,8 @@ pub fn cos_sin<S: Simd>(x: Lanes<S>) -> (Lanes<S>, Lanes<S>) {
     let r = (-turns).mul_add(x.constant(HALF_PI[0]), x);
     let r = (-turns).mul_add(x.constant(HALF_PI[1]), r);
     let z = r * r;
-    let sin = (z * r).mul_add(polynomial(z, SIN), r);
-    let cos = (z * z).mul_add(polynomial(z, COS), z.mul_add(x.constant(-0.5), one));
+    let sin = (z * r).mul_add(polynomial(z, SIN_SERIES), r);
+    let cos = (z * z).mul_add(polynomial(z, COS_SERIES), z.mul_add(x.constant(-0.5), one));
     let quarter = round(turns * x.constant(0.25)).mul_add(x.constant(-4.0), turns);
     let size = quarter.abs();
     let (turn_cos, turn_sin) = (one - size, quarter * (x.constant(2.0) - size));

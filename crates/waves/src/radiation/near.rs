@@ -6,10 +6,10 @@ use crate::{Current, Facet, Field, WaveError, electric_element, magnetic_element
 use fredholm_mesh::Vec3;
 
 /// Height over a facet, in its diameters, up to which a point lies on it.
-const TOUCHING: f64 = 1e-9;
+const TOUCHING_HEIGHT: f64 = 1e-9;
 
 /// Facets that are looked at together.
-const RUN: usize = 64;
+const FACETS_OF_A_RUN: usize = 64;
 
 /// A sphere around the places that are near to some facets.
 #[derive(Clone, Copy, Debug)]
@@ -21,7 +21,7 @@ pub(crate) struct Run {
 impl Run {
     /// The spheres of consecutive groups.
     pub(crate) fn all(groups: &[Group]) -> Vec<Self> {
-        groups.chunks(RUN).map(Self::around).collect()
+        groups.chunks(FACETS_OF_A_RUN).map(Self::around).collect()
     }
 
     fn around(groups: &[Group]) -> Self {
@@ -39,7 +39,7 @@ impl Run {
         runs: &'a [Self],
         p: Vec3,
     ) -> impl Iterator<Item = &'a Group> {
-        let close = groups.chunks(RUN).zip(runs).filter(move |(_, run)| run.may_be_near(p));
+        let close = groups.chunks(FACETS_OF_A_RUN).zip(runs).filter(move |(_, run)| run.may_be_near(p));
         let left_out = move |group: &&Group| group.leaves_out(p - Vec3::from_array(group.centre));
         close.flat_map(|(groups, _)| groups).filter(left_out)
     }
@@ -83,7 +83,7 @@ impl Radiator<'_> {
 
 /// Whether p lies on the facet.
 fn touches(facet: &Facet, p: Vec3) -> bool {
-    let margin = TOUCHING * facet.diameter;
+    let margin = TOUCHING_HEIGHT * facet.diameter;
     let height = facet.normal.dot(p - facet.centre);
     let inside = |i: usize| {
         let (a, b) = (facet.patch.corner(i), facet.patch.corner(i + 1));

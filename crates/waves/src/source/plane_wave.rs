@@ -8,7 +8,7 @@ use num_complex::Complex64;
 
 /// Relative length of the part of a polarisation across the travel below which it counts as
 /// parallel.
-const PARALLEL: f64 = 1e-9;
+const PARALLEL_LENGTH: f64 = 1e-9;
 
 /// A linearly polarised plane wave.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,7 +29,7 @@ impl PlaneWave {
         let travel = unit(travel, "the direction of travel of a plane wave")?;
         let polarisation = unit(polarisation, "the polarisation of a plane wave")?;
         let across = polarisation - travel * polarisation.dot(travel);
-        if across.length() < PARALLEL {
+        if across.length() < PARALLEL_LENGTH {
             return Err(WaveError::Polarisation);
         }
         finite(amplitude.re + amplitude.im, "the amplitude of a plane wave")?;

@@ -18,7 +18,7 @@ use fredholm_mesh::{Mesh, Patch, Vec3};
 use fredholm_visibility::Occluders;
 
 /// Cosine between a direction and a normal up to which the direction lies in the plane.
-pub(crate) const GRAZING: f64 = 1e-9;
+pub(crate) const GRAZING_COSINE: f64 = 1e-9;
 
 /// What a facet is part of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,9 +82,9 @@ impl Facet {
     #[must_use]
     pub fn side(&self, towards: Vec3) -> f64 {
         let height = self.normal.dot(towards);
-        if height > GRAZING {
+        if height > GRAZING_COSINE {
             1.0
-        } else if self.kind == Kind::Sheet && height < -GRAZING {
+        } else if self.kind == Kind::Sheet && height < -GRAZING_COSINE {
             -1.0
         } else {
             0.0

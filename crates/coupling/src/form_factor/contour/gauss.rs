@@ -15,13 +15,13 @@ use std::sync::LazyLock;
 /// Most points along an edge; beyond, two halves are cheaper.
 const MAX_POINTS: usize = 16;
 /// Points of the rule that is bisected until it agrees with its halves.
-const ADAPTIVE: usize = 10;
+const ADAPTIVE_POINTS: usize = 10;
 /// Squared sine of the angle between edges above which few parts of one are close to the other.
 /// Edges that run along each other would be bisected everywhere by the bound, which does not know
 /// that the inner integral is smooth there.
 const STEEP_SQUARED_SINE: f64 = 0.04;
 /// Bisections towards a point that touches: 2⁻⁵⁰ of the edge is below rounding.
-const DEPTH: u32 = 50;
+const MOST_BISECTIONS: u32 = 50;
 
 static RULES: LazyLock<Vec<IntervalRule>> = LazyLock::new(|| (0..=MAX_POINTS).map(gauss_legendre).collect());
 
@@ -52,9 +52,11 @@ impl Outer {
     /// between the edges.
     pub(super) fn integrate(&self, goal: f64, sine2: f64) -> Estimate {
         if self.points <= MAX_POINTS || sine2 > STEEP_SQUARED_SINE {
-            return self.bisect(goal, DEPTH);
+            return self.bisect(goal, MOST_BISECTIONS);
         }
-        integrate_adaptive(&RULES[ADAPTIVE], 0.0, self.along.length, goal, DEPTH, &|s| self.inner(s))
+        integrate_adaptive(&RULES[ADAPTIVE_POINTS], 0.0, self.along.length, goal, MOST_BISECTIONS, &|s| {
+            self.inner(s)
+        })
     }
 
     fn bisect(&self, goal: f64, depth: u32) -> Estimate {

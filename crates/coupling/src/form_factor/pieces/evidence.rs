@@ -4,7 +4,7 @@
 //! A line may also pass between the points and the border of a part. No sample lies beyond such a
 //! line: its state is unknown.
 
-use super::EQUAL;
+use super::EQUAL_ERROR_TOLERANCE;
 use crate::form_factor::critical::Plane;
 use crate::form_factor::shadow::Topology;
 use fredholm_mesh::Vec3;
@@ -100,7 +100,7 @@ impl Points {
     pub(super) fn jump(&self) -> f64 {
         let last = self.places.len() - 1;
         let distances = || self.places[..last].iter().map(|x| x.distance(self.places[last]));
-        let nearest = distances().fold(f64::INFINITY, f64::min) * (1.0 + EQUAL);
+        let nearest = distances().fold(f64::INFINITY, f64::min) * (1.0 + EQUAL_ERROR_TOLERANCE);
         let near = distances().zip(&self.found).filter(|(distance, _)| *distance <= nearest);
         near.map(|(_, (h, _))| (h - self.found[last].0).abs()).fold(0.0, f64::max)
     }

@@ -25,14 +25,14 @@ use crate::polygon::{HalfSpace, clip};
 use evidence::{Line, Points};
 use fredholm_mesh::Vec3;
 use fredholm_quadrature::Estimate;
-use fredholm_visibility::body::ODD;
+use fredholm_visibility::body::GENERIC_DIRECTION;
 use observed::Observed;
 use piece::Piece;
 use shape::{Shape, width};
 use std::ops::Range;
 
 /// Relative difference below which two errors are equal by design of the scene.
-const EQUAL: f64 = 1e-6;
+const EQUAL_ERROR_TOLERANCE: f64 = 1e-6;
 /// A line that leaves less than this share of the width of a part on one side does not cut it,
 const LEAST_CUT_SHARE: f64 = 0.020_3;
 /// and what it may cost at most that it does not, in goals.
@@ -41,12 +41,12 @@ const MOST_COST_OF_NO_CUT: f64 = 0.1;
 /// in one point.
 const ON_THE_LINE: f64 = 1e-9;
 /// What may be hidden behind a line, in goals, from which on a point there is looked at.
-const MATTERS: f64 = 0.15;
+const LEAST_HIDDEN_TO_LOOK_AT: f64 = 0.15;
 /// What may be hidden behind a line that is certainly active, in goals, from which on the source is
 /// cut along it at once.
-const SURELY: f64 = 2.2;
+const LEAST_HIDDEN_TO_CUT: f64 = 2.2;
 /// Points after which an integral ends with the error that it has.
-const POINTS: usize = 100_000;
+const MOST_POINTS: usize = 100_000;
 
 /// Where h is not smooth.
 #[derive(Clone, Copy)]
@@ -158,7 +158,7 @@ where
         self.cut_surely(corners, lines);
         loop {
             let error = self.observed.error(&self.work.parts);
-            if error <= self.goal || self.points >= POINTS {
+            if error <= self.goal || self.points >= MOST_POINTS {
                 self.work.points_asked += self.points as u64;
                 return Estimate { value: self.work.parts.iter().map(|p| p.value).sum(), error };
             }
@@ -189,7 +189,7 @@ where
     /// Adds a convex polygon, cut along the lines that are certainly active, where much may be
     /// hidden behind them.
     fn cut_surely(&mut self, corners: &[Vec3], lines: Lines) {
-        let worth = self.side(corners).max(SURELY * self.goal / self.most_over(corners));
+        let worth = self.side(corners).max(LEAST_HIDDEN_TO_CUT * self.goal / self.most_over(corners));
         let list = &self.work.cutting[lines.places()];
         let matter = list.iter().filter(|line| line.surely && line.share >= worth);
         let found = matter.map(|line| self.line(line));
@@ -292,7 +292,7 @@ where
         let flat = self.flat(piece.shape.corners());
         let PiecesWork { points, lines, unseen, .. } = &mut *self.work;
         for &(plane, share) in unseen.iter() {
-            let matters = share * piece.most >= MATTERS * self.goal;
+            let matters = share * piece.most >= LEAST_HIDDEN_TO_LOOK_AT * self.goal;
             if !matters || points.judge(plane) != Line::Unseen {
                 continue;
             }
@@ -311,7 +311,7 @@ where
     fn improve_worst(&mut self) {
         let worst = self.work.parts.iter().map(|p| p.error).fold(0.0, f64::max);
         for k in (0..self.work.parts.len()).rev() {
-            if self.work.parts[k].error >= worst * (1.0 - EQUAL) {
+            if self.work.parts[k].error >= worst * (1.0 - EQUAL_ERROR_TOLERANCE) {
                 self.improve(k);
             }
         }
@@ -401,7 +401,7 @@ fn area(corners: &[Vec3]) -> f64 {
 /// How well a line with this share of the width on its smaller side halves a part; of equals, the
 /// place decides.
 fn merit(((n, _), share): &(Plane, f64)) -> f64 {
-    share + 1e-3 * n.dot(ODD).abs()
+    share + 1e-3 * n.dot(GENERIC_DIRECTION).abs()
 }
 
 /// The share of the width of a convex polygon on the smaller side of a plane that cuts it, and the

@@ -9,8 +9,8 @@ use crate::form_factor::shadow::Topology;
 
 /// Ratio of two changes, and of the first change to v, below which the next rule is expected to
 /// pay.
-const PAYS: f64 = 0.3;
-const PAYS_FIRST: f64 = 0.26;
+const LARGEST_CHANGE_RATIO: f64 = 0.3;
+const LARGEST_FIRST_CHANGE_RATIO: f64 = 0.26;
 /// Radius of a part, in its distances from what makes h steep, above which its sides are halved. No
 /// simple number: in a scene with right angles the two are often equal, and rounding would decide.
 const NEAR_RADIUS: f64 = 1.000_001;
@@ -91,7 +91,8 @@ impl Piece {
         let before = if first || self.topology.is_none() { self.range } else { self.step }.max(step);
         self.degree += 1;
         self.error = self.estimate(model, step, before) + self.between(model);
-        let quick = step < if first { PAYS_FIRST } else { PAYS } * before || self.hides_most(model);
+        let quick = step < if first { LARGEST_FIRST_CHANGE_RATIO } else { LARGEST_CHANGE_RATIO } * before
+            || self.hides_most(model);
         self.pays = self.topology.is_some() && !self.is_near() && quick && self.degree + 1 < DEGREES.len();
         (self.value, self.step) = (value, step);
     }

@@ -4,7 +4,7 @@ use crate::form_factor::critical::Plane;
 use crate::form_factor::shadow::Topology;
 use fredholm_mesh::Vec3;
 use fredholm_quadrature::{PlanePoint, symmetric_triangle, tensor_quad};
-use fredholm_visibility::body::ODD;
+use fredholm_visibility::body::GENERIC_DIRECTION;
 use std::sync::LazyLock;
 
 /// Degrees that are tried on a triangle, and points a direction on a quad.
@@ -77,7 +77,7 @@ impl Shape {
     pub(super) fn behind(&self, (n, c): Plane, flat: f64) -> Vec3 {
         let centre = self.centre();
         let middle = n.dot(centre) - c;
-        let side = if middle.abs() > flat { middle } else { n.dot(ODD) };
+        let side = if middle.abs() > flat { middle } else { n.dot(GENERIC_DIRECTION) };
         let depth = |x: &Vec3| ((c - n.dot(*x)) * side.signum()).max(0.0);
         let weight: f64 = self.corners().iter().map(depth).sum();
         let far = self.corners().iter().map(|x| *x * depth(x)).sum::<Vec3>() / weight;

@@ -5,7 +5,7 @@ use super::patches::Outline;
 use super::rules::MAX_POINTS;
 
 /// Keys there can be: two outlines of two bits, two numbers of points of four bits.
-const KEYS: usize = 1 << 12;
+const KEY_COUNT: usize = 1 << 12;
 const OUTLINES: [Outline; 3] = [Outline::Parallelogram, Outline::Triangle, Outline::Quad];
 
 /// What computes a pair, as a number.
@@ -60,7 +60,7 @@ impl Buckets {
     }
 
     fn count(&mut self, ways: &[Way]) {
-        self.counts.resize(KEYS, 0);
+        self.counts.resize(KEY_COUNT, 0);
         self.used.drain(..).for_each(|way| self.counts[usize::from(way.0)] = 0);
         for &way in ways.iter().filter(|way| **way != Way::BEHIND) {
             let count = &mut self.counts[usize::from(way.0)];

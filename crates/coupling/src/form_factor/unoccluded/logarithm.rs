@@ -22,10 +22,10 @@ pub(super) const SERIES_END: f64 = 0.171_572_875_253_809_9;
 
 /// Bits of √½, rounded as fdlibm does.
 const ROOT_HALF: u64 = 0x3fe6_a09e_667f_3bcd;
-const ONE: u64 = 0x3ff0_0000_0000_0000;
-const MANTISSA: u64 = 0x000f_ffff_ffff_ffff;
+const BITS_OF_ONE: u64 = 0x3ff0_0000_0000_0000;
+const MANTISSA_BITS: u64 = 0x000f_ffff_ffff_ffff;
 /// Bits of 2⁵², to which an integer below it is added by setting low bits.
-const BIG: u64 = 0x4330_0000_0000_0000;
+const BITS_OF_INTEGERS: u64 = 0x4330_0000_0000_0000;
 
 /// 2 atanh(s) for |s| ≤ [`SERIES_END`].
 #[inline(always)]
@@ -40,9 +40,10 @@ pub(super) fn twice_atanh(s: f64) -> f64 {
 #[inline(always)]
 pub(super) fn ln_1p(x: f64) -> f64 {
     let y = 1.0 + x;
-    let shifted = y.to_bits().wrapping_add(ONE - ROOT_HALF);
-    let exponent = f64::from_bits((shifted >> 52) | BIG) - (f64::from_bits(BIG) + 1023.0);
-    let reduced = f64::from_bits((shifted & MANTISSA) + ROOT_HALF) - 1.0;
+    let shifted = y.to_bits().wrapping_add(BITS_OF_ONE - ROOT_HALF);
+    let exponent =
+        f64::from_bits((shifted >> 52) | BITS_OF_INTEGERS) - (f64::from_bits(BITS_OF_INTEGERS) + 1023.0);
+    let reduced = f64::from_bits((shifted & MANTISSA_BITS) + ROOT_HALF) - 1.0;
     // Without a power of two to take out, x itself is exact and 1 + x is not.
     let f = if exponent == 0.0 { x } else { reduced };
     exponent * std::f64::consts::LN_2 + twice_atanh(f / (2.0 + f))

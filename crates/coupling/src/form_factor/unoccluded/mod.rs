@@ -44,7 +44,7 @@ const ROUNDING: f64 = 16.0;
 
 /// Rounding of the logarithms at the edges of other shapes, over the product of the circumferences:
 /// four nodes share one logarithm, which is small.
-const EDGES: f64 = 1.0 / 64.0;
+const EDGE_ROUNDING: f64 = 1.0 / 64.0;
 
 /// Computes exchanges between patches of one scene that see each other wholly.
 #[derive(Debug)]
@@ -205,7 +205,7 @@ impl Row<'_> {
     fn rounding(&self, j: u32, value: f64) -> f64 {
         let patches = &self.all.patches;
         let circumference = |k: u32| patches.slenderness[k as usize] * patches.area[k as usize];
-        f64::EPSILON * (ROUNDING * value.abs() + EDGES * circumference(self.i) * circumference(j))
+        f64::EPSILON * (ROUNDING * value.abs() + EDGE_ROUNDING * circumference(self.i) * circumference(j))
     }
 
     /// A_i F_ij of a block in squared units, lower index first.

@@ -20,7 +20,7 @@ use crate::form_factor::lanes::{LANES, Lanes, Lanes3, Places, difference, dot, e
 use std::f64::consts::TAU;
 
 /// Cosine below which two directions count as perpendicular.
-const PERPENDICULAR: f64 = 4.0 * f64::EPSILON;
+const PERPENDICULAR_COSINE: f64 = 4.0 * f64::EPSILON;
 
 /// A_i F_ij of a block of pairs, with so many points along the sides of the first and of the
 /// second.
@@ -52,7 +52,7 @@ fn weights(w: &Lanes3, w2: &Lanes3, same: bool) -> Lanes {
     let (cosine, one, two) = (dot(w, w2), dot(w, w), dot(w2, w2));
     each(|m| {
         let square = cosine[m] * cosine[m];
-        let is_right = square <= PERPENDICULAR * PERPENDICULAR * (one[m] * two[m]);
+        let is_right = square <= PERPENDICULAR_COSINE * PERPENDICULAR_COSINE * (one[m] * two[m]);
         if is_right { 0.0 } else { scale * cosine[m] }
     })
 }

@@ -6,7 +6,7 @@
 use fredholm_mesh::{Patch, Vec3};
 
 /// Deviation from a parallelogram, relative to the diameter, that is rounding.
-const SKEW: f64 = 1e-14;
+const SKEW_TOLERANCE: f64 = 1e-14;
 
 /// A field of vectors, by components.
 pub(super) type Vectors = [Vec<f64>; 3];
@@ -83,7 +83,9 @@ impl Patches {
         let skew = (*a - *b + (*c - *d)).length();
         match patch.sides() {
             3 => Outline::Triangle,
-            _ if skew <= SKEW * patch.diameter() / self.unit + 4.0 * self.rounding => Outline::Parallelogram,
+            _ if skew <= SKEW_TOLERANCE * patch.diameter() / self.unit + 4.0 * self.rounding => {
+                Outline::Parallelogram
+            }
             _ => Outline::Quad,
         }
     }

@@ -21,8 +21,8 @@ use std::f64::consts::FRAC_1_PI;
 
 /// C for a parallelogram, and for other patches. The largest errors among 18,000 random pairs are
 /// 0.7 and 0.3 of the bound.
-const PARALLELOGRAM: f64 = 3.0;
-const POLYGON: f64 = 0.3;
+const PARALLELOGRAM_FACTOR: f64 = 3.0;
+const POLYGON_FACTOR: f64 = 0.3;
 /// Part of the tolerance for each patch; the rest is for rounding.
 const PATCH_SHARE_OF_TOLERANCE: f64 = 0.45;
 /// Rounding of the sums, relative to the facing exchange at the least distance, in units of the
@@ -229,7 +229,8 @@ impl Decay {
             1.0 / (rho * rho)
         });
         let error = each(|m| {
-            let shape = higher(PARALLELOGRAM * near[m], POLYGON * (distance[m] * slenderness[m]));
+            let shape =
+                higher(PARALLELOGRAM_FACTOR * near[m], POLYGON_FACTOR * (distance[m] * slenderness[m]));
             near[m] * shape * power[m] / (1.0 - power[m])
         });
         Self { power, error, near }
