@@ -72,7 +72,7 @@ mod waves;
 
 pub use check::{Checked, Forecast, ToAccuracy, check};
 pub use checkpoint::Checkpoint;
-pub use compare::{CompareOptions, check_solver, compare};
+pub use compare::{CompareOptions, check_solver, compare, reflectance_sweep};
 pub use converge::{ConvergeOptions, converge};
 pub use couplings::{Couplings, couplings};
 pub use crosscheck::{CrosscheckOptions, MultipleTests, Verdict, crosscheck};

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use fredholm_study::{Bytes, CompareOptions, check_solver};
+use fredholm_study::{Bytes, CompareOptions, check_solver, reflectance_sweep};
 
 use super::{LogArgs, Precision, tolerance};
 
@@ -20,9 +20,6 @@ fit the memory, are listed as refused. Written are compare.csv, compare_history.
 compare.svg, for a sweep compare_sweep.svg, report.html, and compare.json last. Ctrl-C ends
 the run with nothing written.";
 
-/// Values of a sweep where their number is not given.
-const DEFAULT_SWEEP_VALUES: usize = 10;
-
 /// Options of `compare`.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct CompareArgs {
@@ -36,10 +33,10 @@ pub(crate) struct CompareArgs {
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "all", value_parser = solver)]
     pub(crate) solvers: Vec<String>,
     /// Relative residual ‖b − A x‖₂/‖b‖₂ to reach in every band
-    #[arg(long, value_name = "T", value_parser = tolerance, default_value = "1e-10")]
+    #[arg(long, value_name = "T", value_parser = tolerance, default_value = format!("{:e}", CompareOptions::default().tolerance))]
     pub(crate) to: f64,
     /// Iterations allowed
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), default_value_t = 1000)]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), default_value_t = CompareOptions::default().max_iterations)]
     pub(crate) max_iterations: u32,
     /// Repeat with all reflectances scaled so that the largest takes these values:
     /// reflectance=0.1..0.99, or reflectance=0.1..0.9:5 for five of them
@@ -98,17 +95,12 @@ fn sweep(text: &str) -> Result<Sweep, String> {
         || "must be reflectance=LOW..HIGH or reflectance=LOW..HIGH:COUNT with 0 < LOW < HIGH < 1".to_owned();
     let range = text.strip_prefix("reflectance=").ok_or_else(wrong)?;
     let (range, count) = match range.split_once(':') {
-        Some((range, count)) => (range, count.parse::<usize>().map_err(|_| wrong())?),
-        None => (range, DEFAULT_SWEEP_VALUES),
+        Some((range, count)) => (range, Some(count.parse().map_err(|_| wrong())?)),
+        None => (range, None),
     };
     let (low, high) = range.split_once("..").ok_or_else(wrong)?;
-    let (low, high): (f64, f64) = (low.parse().map_err(|_| wrong())?, high.parse().map_err(|_| wrong())?);
-    if !(0.0 < low && low < high && high < 1.0 && (2..=100).contains(&count)) {
-        return Err(wrong());
-    }
-    let step = (high - low) / (count - 1) as f64;
-    let value = |i: usize| if i + 1 == count { high } else { low + i as f64 * step };
-    Ok(Sweep((0..count).map(value).collect()))
+    let range = low.parse().map_err(|_| wrong())?..high.parse().map_err(|_| wrong())?;
+    reflectance_sweep(range, count).map(Sweep).ok_or_else(wrong)
 }
 
 #[cfg(test)]
@@ -117,11 +109,9 @@ mod tests {
 
     #[test]
     fn sweeps_are_ranges_below_one() {
-        let Sweep(values) = sweep("reflectance=0.1..0.9:5").unwrap();
-        assert!(
-            values.iter().zip([0.1, 0.3, 0.5, 0.7, 0.9]).all(|(value, exact)| (value - exact).abs() < 1e-15)
-        );
-        assert_eq!(sweep("reflectance=0.1..0.99").unwrap().0.len(), DEFAULT_SWEEP_VALUES);
+        let five = reflectance_sweep(0.1..0.9, Some(5)).map(Sweep);
+        assert_eq!(sweep("reflectance=0.1..0.9:5").ok(), five);
+        assert_eq!(sweep("reflectance=0.1..0.99").ok(), reflectance_sweep(0.1..0.99, None).map(Sweep));
         for wrong in [
             "occlusion=0..1",
             "reflectance=0.5",

@@ -43,7 +43,7 @@ pub(crate) struct CrosscheckArgs {
     #[arg(long, value_name = "E", value_parser = accuracy)]
     pub(crate) accuracy: Option<f64>,
     /// Probability of a false alarm that is allowed
-    #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = share)]
+    #[arg(long, value_name = "P", default_value_t = CrosscheckOptions::default().significance, value_parser = share)]
     pub(crate) significance: f64,
     /// How many tests are taken into account
     #[arg(long, value_enum, value_name = "NAME", default_value_t = CorrectionName::Holm)]

@@ -46,7 +46,7 @@ pub(crate) struct JudgeArgs {
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
     /// Probability of a false alarm that is allowed
-    #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = share)]
+    #[arg(long, value_name = "P", default_value_t = JudgeOptions::default().significance, value_parser = share)]
     pub(crate) significance: f64,
     /// How many tests are taken into account
     #[arg(long, value_enum, value_name = "NAME", default_value_t = CorrectionName::Holm)]

@@ -7,7 +7,7 @@ use fredholm_study::{PathOptions, SamplePoints, TraceStop};
 #[derive(Clone, Copy, Debug, Args)]
 pub(crate) struct PathArgs {
     /// Seed of the random numbers; the same seed gives the same results for any number of threads
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = PathOptions::default().seed)]
     pub(crate) seed: u64,
     /// How the samples of a batch share out their random numbers
     #[arg(long, value_enum, value_name = "SET", default_value_t = Points::Sobol)]

@@ -28,13 +28,13 @@ pub(crate) struct ShootArgs {
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
     /// Share of the power of the solution to distribute, such as 90% or 0.9
-    #[arg(long, value_name = "SHARE", value_parser = share, default_value = "90%")]
+    #[arg(long, value_name = "SHARE", value_parser = share, default_value = percent(ShootOptions::default().share))]
     pub(crate) share: f64,
     /// Shots allowed
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), default_value_t = 100_000)]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), default_value_t = ShootOptions::default().max_shots)]
     pub(crate) max_shots: u32,
     /// Numbers of shots after which to write a picture
-    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "1,10,100")]
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = listed(&ShootOptions::default().pictures))]
     pub(crate) pictures: Vec<u64>,
     /// Draw no picture, neither on the way nor at the end
     #[arg(long, conflicts_with = "pictures")]
@@ -43,7 +43,7 @@ pub(crate) struct ShootArgs {
     #[arg(long)]
     pub(crate) no_report: bool,
     /// Memory for columns that are kept for the next shot from there
-    #[arg(long, value_name = "LIMIT", default_value = "32MiB")]
+    #[arg(long, value_name = "LIMIT", default_value = mebibytes(ShootOptions::default().keep))]
     pub(crate) keep: Bytes,
     /// Threads; any number gives the same results [default: one a core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -73,6 +73,21 @@ impl ShootArgs {
             memory: self.memory,
         }
     }
+}
+
+/// A share as it is asked for.
+fn percent(share: f64) -> String {
+    format!("{}%", 100.0 * share)
+}
+
+/// Numbers as they are asked for.
+fn listed(numbers: &[u64]) -> String {
+    numbers.iter().map(ToString::to_string).collect::<Vec<_>>().join(",")
+}
+
+/// A memory as it is asked for.
+fn mebibytes(Bytes(bytes): Bytes) -> String {
+    format!("{}MiB", bytes >> 20)
 }
 
 fn share(text: &str) -> Result<f64, String> {

@@ -25,10 +25,10 @@ pub(crate) struct SpectrumArgs {
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
     /// Most unknowns for dense methods; beyond, there are estimates by the Lanczos process
-    #[arg(long, value_name = "N", default_value_t = 2000)]
+    #[arg(long, value_name = "N", default_value_t = SpectrumOptions::default().dense)]
     pub(crate) dense: usize,
     /// Steps of the Lanczos process
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=10_000), default_value_t = 60)]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=10_000), default_value_t = SpectrumOptions::default().steps)]
     pub(crate) steps: u32,
     /// Write no report.html
     #[arg(long)]

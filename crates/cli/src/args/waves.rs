@@ -45,10 +45,10 @@ pub(crate) struct WavesArgs {
     #[arg(long)]
     pub(crate) no_report: bool,
     /// Residual that compared solvers are to reach
-    #[arg(long, value_name = "T", value_parser = tolerance, default_value = "1e-6", requires = "compare")]
+    #[arg(long, value_name = "T", value_parser = tolerance, default_value = format!("{:e}", WaveCompareOptions::default().tolerance), requires = "compare")]
     pub(crate) to: f64,
     /// Iterations that compared solvers are allowed
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), default_value_t = 1000, requires = "compare")]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), default_value_t = WaveCompareOptions::default().max_iterations, requires = "compare")]
     pub(crate) max_iterations: u32,
     #[command(flatten)]
     pub(crate) log: LogArgs,

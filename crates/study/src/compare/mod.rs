@@ -1,7 +1,10 @@
 //! Solvers on one system: iterations, work, time and errors.
 
 mod case;
+mod sweep;
 mod trial;
+
+pub use sweep::reflectance_sweep;
 
 use fredholm_coupling::Radiosity;
 use fredholm_linop::{OptionError, PackedSymmetric, Stop, Storage, Watch};
