@@ -118,7 +118,7 @@ fn followed(rounds: &[Reached], accuracy: f64) -> Option<[usize; 2]> {
         let size = |round: &Reached| round.sizes[k] as f64;
         let measured = before
             .map(|before| (size(last) / size(&before).max(1.0)).ln() / (before.error / last.error).ln());
-        let exponent = measured.unwrap_or(MEAN_EXPONENT).clamp(EXPONENTS[0], EXPONENTS[1]);
+        let exponent = measured.unwrap_or(MEAN_EXPONENT).clamp(LINK_EXPONENTS[0], LINK_EXPONENTS[1]);
         (size(last) * (last.error / accuracy).max(1.0).powf(exponent)) as usize
     };
     Some([of(0), of(1)])
