@@ -132,3 +132,11 @@ pub fn usual_files() -> impl Iterator<Item = &'static str> {
     let wanted = Wanted { image: true, page: true, ..Wanted::default() };
     wanted_files(&wanted).collect::<Vec<_>>().into_iter()
 }
+
+/// A help text without the list of all solvers, which a new one makes longer.
+pub fn without_solvers(help: &str) -> String {
+    const LIST: &str = "[possible values: gauss-seidel,";
+    let Some((before, list)) = help.split_once(LIST) else { return help.to_owned() };
+    let (_, after) = list.split_once(']').unwrap();
+    format!("{before}[possible values: the solvers]{}", without_solvers(after))
+}
