@@ -7,7 +7,7 @@
 //! T(ε) = T_k (e_k/ε)^p
 //! ```
 //!
-//! after a round k that states the error e_k, and so the elements N and the links. The run is begun, and ended where it takes too long;
+//! after a round k that states the error e_k. Of elements and links there are whole rounds. The run is begun, and ended where it takes too long;
 //! p is what its rounds grew with. Random paths take (e/ε)² times what they took to the error e.
 //! The picture is drawn small, and takes as much more as it has more pixels.
 
@@ -28,13 +28,16 @@ use crate::solve::Solved;
 use crate::stages::Stages;
 
 /// Seconds after which a run to little accuracy, and one to that asked for, are ended.
-const LOOSE_SECONDS: f64 = 1.6;
+const LOOSE_SECONDS: f64 = 3.0;
 const CLOSE_SECONDS: f64 = 2.0;
 /// The little accuracy.
 const LOOSE_ACCURACY: f64 = 0.5;
 /// Exponents of links, as far as they are to be expected, and that which is measured in the mean.
 const LINK_EXPONENTS: [f64; 2] = [0.5, 1.6];
 const MEAN_EXPONENT: f64 = 0.9;
+/// What a round divides the error by where only one has stated it, and at least.
+const USUAL_ERROR_RATIO: f64 = 2.2;
+const LEAST_ERROR_RATIO: f64 = 1.3;
 /// Widths of the small pictures, pixels.
 const PICTURE_WIDTHS: [u32; 2] = [40, 160];
 /// Seconds for a value in the files, and for a pixel of the pictures of elements and of links.
@@ -110,16 +113,17 @@ fn sizes((problem, solution): &(Problem, Solution)) -> Option<[usize; 2]> {
     Some([problem.mesh.len(), links])
 }
 
-/// From the elements and links of rounds to those at the accuracy.
+/// From the elements and links of rounds to those at the accuracy: there are whole rounds only, each
+/// of which divides the error, and multiplies the sizes, as the last one did.
 fn followed(rounds: &[Reached], accuracy: f64) -> Option<[usize; 2]> {
     let last = rounds.last()?;
-    let before = rounds.len().checked_sub(2).map(|i| rounds[i]).filter(|before| before.error > last.error);
+    let before = rounds.len().checked_sub(2).map(|i| rounds[i]);
+    let divided = before.map_or(USUAL_ERROR_RATIO, |before| before.error / last.error);
+    let more = (last.error / accuracy).max(1.0).ln() / divided.max(LEAST_ERROR_RATIO).ln();
     let of = |k: usize| {
-        let size = |round: &Reached| round.sizes[k] as f64;
-        let measured = before
-            .map(|before| (size(last) / size(&before).max(1.0)).ln() / (before.error / last.error).ln());
-        let exponent = measured.unwrap_or(MEAN_EXPONENT).clamp(LINK_EXPONENTS[0], LINK_EXPONENTS[1]);
-        (size(last) * (last.error / accuracy).max(1.0).powf(exponent)) as usize
+        let usual = USUAL_ERROR_RATIO.powf(MEAN_EXPONENT);
+        let grown = before.map_or(usual, |before| last.sizes[k] as f64 / before.sizes[k].max(1) as f64);
+        (last.sizes[k] as f64 * grown.max(1.0).powf(more.ceil())) as usize
     };
     Some([of(0), of(1)])
 }
@@ -179,13 +183,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sizes_are_followed_to_the_accuracy() {
-        // 100/e elements, 1000/e links.
-        let round = |error: f64| Reached { error, sizes: [(100.0 / error) as usize, (1e3 / error) as usize] };
-        let found = followed(&[round(0.1), round(0.05)], 0.01).unwrap();
-        for (found, wanted) in found.into_iter().zip([1e4, 1e5]) {
-            assert!((found as f64 / wanted - 1.0).abs() < 1e-2, "{found}");
-        }
+    fn sizes_are_followed_in_whole_rounds() {
+        let round = |error: f64, elements: usize| Reached { error, sizes: [elements, 10 * elements] };
+        // Half the error with three times the elements: 10 and 5, then 2.5, 1.25 and 0.6 %.
+        let rounds = [round(0.1, 1000), round(0.05, 3000)];
+        assert_eq!(followed(&rounds, 0.01), Some([81_000, 810_000]));
+        assert_eq!(followed(&rounds, 0.05), Some([3000, 30_000]));
+        assert!(followed(&rounds[..1], 0.05).is_some_and(|[elements, _]| (2000..2200).contains(&elements)));
         assert!(followed(&[], 0.01).is_none());
     }
 
