@@ -7,9 +7,10 @@
 //! T(ε) = T_k (e_k/ε)^p
 //! ```
 //!
-//! after a round k that states the error e_k. Of elements and links there are whole rounds. The run is begun, and ended where it takes too long;
-//! p is what its rounds grew with. Random paths take (e/ε)² times what they took to the error e.
-//! The picture is drawn small, and takes as much more as it has more pixels.
+//! after a round k that states the error e_k. Of elements and links there are whole rounds. The run
+//! is begun, and ended where it takes too long; p is what its rounds grew with. Random paths take
+//! (e/ε)² times what they took to the error e. The picture is drawn small, and takes as much more
+//! as it has more pixels.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
