@@ -30,15 +30,17 @@ use crate::stages::Stages;
 
 /// Seconds after which a run to little accuracy, and one to that asked for, are ended.
 const LOOSE_SECONDS: f64 = 3.0;
-const CLOSE_SECONDS: f64 = 2.0;
+const CLOSE_SECONDS: f64 = 3.5;
 /// The little accuracy.
 const LOOSE_ACCURACY: f64 = 0.5;
 /// Exponents of links, as far as they are to be expected, and that which is measured in the mean.
 const LINK_EXPONENTS: [f64; 2] = [0.5, 1.6];
 const MEAN_EXPONENT: f64 = 0.9;
-/// What a round divides the error by where only one has stated it, and at least.
-const USUAL_ERROR_RATIO: f64 = 2.2;
+/// What a round divides the error by where only one has stated it, and at least; what it multiplies
+/// the sizes by at least, since the first rounds of many faces divide few of them.
+const USUAL_ERROR_RATIO: f64 = 2.0;
 const LEAST_ERROR_RATIO: f64 = 1.3;
+const LEAST_GROWTH: f64 = 2.0;
 /// Widths of the small pictures, pixels.
 const PICTURE_WIDTHS: [u32; 2] = [40, 160];
 /// Seconds for a value in the files, and for a pixel of the pictures of elements and of links.
@@ -122,9 +124,8 @@ fn followed(rounds: &[Reached], accuracy: f64) -> Option<[usize; 2]> {
     let divided = before.map_or(USUAL_ERROR_RATIO, |before| before.error / last.error);
     let more = (last.error / accuracy).max(1.0).ln() / divided.max(LEAST_ERROR_RATIO).ln();
     let of = |k: usize| {
-        let usual = USUAL_ERROR_RATIO.powf(MEAN_EXPONENT);
-        let grown = before.map_or(usual, |before| last.sizes[k] as f64 / before.sizes[k].max(1) as f64);
-        (last.sizes[k] as f64 * grown.max(1.0).powf(more.ceil())) as usize
+        let grown = before.map_or(0.0, |before| last.sizes[k] as f64 / before.sizes[k].max(1) as f64);
+        (last.sizes[k] as f64 * grown.max(LEAST_GROWTH).powf(more.ceil())) as usize
     };
     Some([of(0), of(1)])
 }
