@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use fredholm_linop::{Dense, Watch};
 use fredholm_scene::Finding;
 use fredholm_scene::waves::Receiver;
-use fredholm_waves::{Complex64, System, Wave, WaveError};
+use fredholm_waves::{Complex64, PhysicalOptics, System, Wave, WaveError};
 
 use super::{CouplingStorage, Model, WaveOptions, forecast, galerkin, solving};
 use crate::error::Error;
@@ -117,8 +117,10 @@ fn admitted(model: &Model) -> Result<(Plan, Option<CheckedCoupling>), Error> {
         if !model.is_closed_form() {
             scatterer.check_resolution(&band.wave).map_err(refused)?;
         }
+        let sources = model.sources();
+        let first = PhysicalOptics::new(&scatterer, band.wave, &sources, model.shadow).map_err(refused)?;
         let storage;
-        (plan, storage) = solving::plan(model, &scatterer, band.wave)?;
+        (plan, storage) = solving::plan(model, &scatterer, (band.wave, &first))?;
         found = storage.map(|storage| coupling(System::unknowns(&scatterer), storage));
     }
     Ok((plan, found))

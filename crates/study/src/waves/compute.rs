@@ -186,7 +186,12 @@ impl Task<'_> {
     }
 
     fn system(&self, signals: &Signals<'_>) -> Result<Option<System<'_>>, Error> {
-        solving::system(self.model, self.scatterer, (self.band.wave, self.variant.shadow), signals)
+        solving::system(
+            self.model,
+            self.scatterer,
+            (self.band.wave, self.variant.shadow, self.first),
+            signals,
+        )
     }
 
     /// The currents at the centres of the facets.

@@ -3,8 +3,8 @@
 use fredholm_linop::{LinearOperator, MultiVector, SecondKind, Solver, Stop, StopReason};
 use fredholm_scene::waves::Places;
 use fredholm_waves::{
-    Bounces, Complex64, Discretisation, Kind, Radiator, Sampling, Scatterer, Shadow, System, TOLERANCE, Wave,
-    WaveError,
+    Bounces, Complex64, Discretisation, Kind, PhysicalOptics, Radiator, Sampling, Scatterer, Shadow, System,
+    TOLERANCE, Wave, WaveError,
 };
 
 use super::CouplingStorage;
@@ -30,12 +30,12 @@ pub(super) struct Solution {
 pub(super) fn system<'a>(
     model: &Model,
     scatterer: &'a Scatterer,
-    (wave, shadow): (Wave, Shadow),
+    (wave, shadow, first): (Wave, Shadow, &PhysicalOptics<'_>),
     signals: &Signals<'_>,
 ) -> Result<Option<System<'a>>, Error> {
     match &model.method {
         Method::Bounces(1) => {
-            let plan = one_bounce_plan(model, scatterer, &wave);
+            let plan = one_bounce_plan(model, scatterer, (&wave, first));
             plan.admit(model.limit, "take longer edges")?;
             plan.tell(model.limit, signals.watch);
             Ok(None)
@@ -53,10 +53,10 @@ pub(super) fn system<'a>(
 pub(super) fn plan(
     model: &Model,
     scatterer: &Scatterer,
-    wave: Wave,
+    (wave, first): (Wave, &PhysicalOptics<'_>),
 ) -> Result<(Plan, Option<CouplingStorage>), Error> {
     let solvers: &[&dyn Solver<Complex64>] = match &model.method {
-        Method::Bounces(1) => return Ok((one_bounce_plan(model, scatterer, &wave), None)),
+        Method::Bounces(1) => return Ok((one_bounce_plan(model, scatterer, (&wave, first)), None)),
         Method::Bounces(_) => &[],
         Method::Solver { solver, .. } => &[&**solver],
     };
@@ -69,13 +69,19 @@ pub(super) fn plan(
 
 /// The memory of one bounce, whose currents are sampled as finely as the fields need unless the far
 /// field of all is known in closed form.
-fn one_bounce_plan(model: &Model, scatterer: &Scatterer, wave: &Wave) -> Plan {
+fn one_bounce_plan(
+    model: &Model,
+    scatterer: &Scatterer,
+    (wave, first): (&Wave, &PhysicalOptics<'_>),
+) -> Plan {
     let sheets = scatterer.facets().iter().all(|facet| facet.kind == Kind::Sheet);
     let plan = model.plan.clone();
     if model.is_closed_form() && sheets {
         return plan;
     }
-    let bytes = Radiator::bytes(scatterer, wave, Sampling::Tolerance(TOLERANCE));
+    // The waves of a sweep light what those of the scene may not.
+    let carries = |facet: usize| model.has_sweep() || first.is_lit(facet);
+    let bytes = Radiator::bytes(scatterer, wave, Sampling::Tolerance(TOLERANCE), &carries);
     plan.hold("the radiating points", bytes.into())
 }
 

@@ -147,6 +147,12 @@ impl<'a> PhysicalOptics<'a> {
         crate::source::incident(self.sources, &self.wave, p).h.crossed_by(facet.normal) * 2.0
     }
 
+    /// Whether any source lights a facet.
+    #[must_use]
+    pub fn is_lit(&self, facet: usize) -> bool {
+        self.lit.iter().any(|lit| lit[facet] != 0.0)
+    }
+
     /// These currents, ready to radiate.
     #[must_use]
     pub fn radiator(&'a self, sampling: Sampling) -> Radiator<'a> {

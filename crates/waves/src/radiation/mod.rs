@@ -88,12 +88,19 @@ impl<'a> Radiator<'a> {
         Self { scatterer, current, wave, gate, sampling, samples, arch }
     }
 
-    /// Bytes of the currents of a scatterer once they are sampled, at most: on conductors of one
-    /// kind.
+    /// Bytes of the currents of a scatterer once they are sampled: on conductors of one kind, and
+    /// on the facets of these numbers that carry any.
     #[must_use]
-    pub fn bytes(scatterer: &Scatterer, wave: &Wave, sampling: Sampling) -> u64 {
-        let points = |facet: &Facet| points_of(facet, points_a_side(facet, wave, sampling));
-        let points: usize = scatterer.facets().par_iter().map(points).sum();
+    pub fn bytes(
+        scatterer: &Scatterer,
+        wave: &Wave,
+        sampling: Sampling,
+        carries: &(dyn Fn(usize) -> bool + Sync),
+    ) -> u64 {
+        let points = |(index, facet): (usize, &Facet)| {
+            if carries(index) { points_of(facet, points_a_side(facet, wave, sampling)) } else { 0 }
+        };
+        let points: usize = scatterer.facets().par_iter().enumerate().map(points).sum();
         let kinds = if scatterer.check_conductor("").is_ok() { 1 } else { 2 };
         (kinds * points * size_of::<Element>() + scatterer.facets().len() * size_of::<Group>()) as u64
     }
