@@ -7,8 +7,9 @@ use crate::memory::Plan;
 /// Bytes of a facet: its patch in the mesh, its frame, what blocks the view, radiating points, and
 /// the arrays of its file.
 const BYTES_A_FACET: u128 = 490;
-/// Bytes of a facet and frequency: its currents, and their arrays in the file.
-const BYTES_OF_CURRENTS: u128 = 240;
+/// Bytes of a facet and frequency: its currents, and their arrays while the file is written.
+const BYTES_OF_CURRENTS: u128 = 96;
+const BYTES_OF_CURRENT_ARRAYS: u128 = 144;
 /// Bytes of a receiver's point, and of a row of it at one frequency while the fields are put
 /// together and written.
 const BYTES_A_POINT: u128 = 24;
@@ -42,11 +43,12 @@ fn all_places(scene: &WaveScene) -> u128 {
 pub(super) fn plan(facets: u128, scene: &WaveScene) -> Plan {
     let bands = scene.waves().len() as u128;
     let places = all_places(scene);
+    let arrays = facets.saturating_mul(BYTES_OF_CURRENT_ARRAYS * bands);
     Plan::default()
         .hold(format!("{facets} facets"), facets.saturating_mul(BYTES_A_FACET + BYTES_OF_CURRENTS * bands))
         .hold(
             format!("{places} points and directions"),
             places.saturating_mul(BYTES_A_POINT + BYTES_A_ROW * bands),
         )
-        .hold("plots and the page", BYTES_OF_PAGE)
+        .stage("plots, the page and the files of currents", arrays.saturating_add(BYTES_OF_PAGE))
 }

@@ -82,7 +82,7 @@ fn one_bounce_plan(
     // The waves of a sweep light what those of the scene may not.
     let carries = |facet: usize| model.has_sweep() || first.is_lit(facet);
     let bytes = Radiator::bytes(scatterer, wave, Sampling::Tolerance(TOLERANCE), &carries);
-    plan.hold("the radiating points", bytes.into())
+    plan.stage("the radiating points", bytes.into())
 }
 
 /// The system whose products are computed anew each time, for bounces or for these solvers.
