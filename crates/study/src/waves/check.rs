@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use fredholm_linop::{Dense, Watch};
 use fredholm_scene::Finding;
 use fredholm_scene::waves::Receiver;
-use fredholm_waves::{Complex64, PhysicalOptics, System, Wave, WaveError};
+use fredholm_waves::{Complex64, System, Wave, WaveError};
 
 use super::{CouplingStorage, Model, WaveOptions, forecast, galerkin, solving};
 use crate::error::Error;
@@ -117,10 +117,11 @@ fn admitted(model: &Model) -> Result<(Plan, Option<CheckedCoupling>), Error> {
         if !model.is_closed_form() {
             scatterer.check_resolution(&band.wave).map_err(refused)?;
         }
-        let sources = model.sources();
-        let first = PhysicalOptics::new(&scatterer, band.wave, &sources, model.shadow).map_err(refused)?;
-        let storage;
-        (plan, storage) = solving::plan(model, &scatterer, (band.wave, &first))?;
+        let (of_band, storage) = solving::plan(model, &scatterer, band.wave)?;
+        // Frequencies come one after the other: the one that holds most counts.
+        if of_band.peak().0 > plan.peak().0 {
+            plan = of_band;
+        }
         found = storage.map(|storage| coupling(System::unknowns(&scatterer), storage));
     }
     Ok((plan, found))

@@ -53,10 +53,15 @@ pub(super) fn system<'a>(
 pub(super) fn plan(
     model: &Model,
     scatterer: &Scatterer,
-    (wave, first): (Wave, &PhysicalOptics<'_>),
+    wave: Wave,
 ) -> Result<(Plan, Option<CouplingStorage>), Error> {
     let solvers: &[&dyn Solver<Complex64>] = match &model.method {
-        Method::Bounces(1) => return Ok((one_bounce_plan(model, scatterer, (&wave, first)), None)),
+        Method::Bounces(1) => {
+            let sources = model.sources();
+            let first = PhysicalOptics::new(scatterer, wave, &sources, model.shadow);
+            let first = first.map_err(|error| model.refused(&error, None))?;
+            return Ok((one_bounce_plan(model, scatterer, (&wave, &first)), None));
+        }
         Method::Bounces(_) => &[],
         Method::Solver { solver, .. } => &[&**solver],
     };
