@@ -74,6 +74,7 @@ fn a_second_signal_ends_at_once() {
     let (code, time) = end(child, "-INT");
     assert_eq!(code, 130);
     assert!(time < PROMPT, "{time:?}");
+    assert!(!bench.path("out").exists());
 }
 
 #[test]

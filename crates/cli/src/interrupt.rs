@@ -6,12 +6,12 @@
 
 use std::io::{self, IsTerminal};
 use std::ops::ControlFlow;
-use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::Duration;
 
+use fredholm_report::exit;
 use fredholm_study::{Error, ErrorKind};
 
 use crate::args::{LogArgs, LogFormat};
@@ -112,7 +112,7 @@ impl Interrupt {
 
     fn signal(self: &Arc<Self>) {
         if self.requested.swap(true, Ordering::Relaxed) {
-            process::exit(i32::from(Ending::Interrupted.code()));
+            exit(i32::from(Ending::Interrupted.code()));
         }
         let watchman = Arc::clone(self);
         thread::spawn(move || watchman.wait());
@@ -140,7 +140,7 @@ impl Interrupt {
             }
             let error = self.explained(Error::cancelled());
             present(&error, self.log);
-            process::exit(i32::from(Ending::from(error.kind()).code()));
+            exit(i32::from(Ending::from(error.kind()).code()));
         }
     }
 }

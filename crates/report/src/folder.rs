@@ -12,8 +12,10 @@ use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Write};
+use std::mem;
 use std::path::{Component, Path, PathBuf};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::process;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
 use crate::ReportError;
 use crate::atomic::{TEMPORARY_ENDING, write_with_prefix};
@@ -22,6 +24,9 @@ use crate::viewfactors::ViewFactorFiles;
 
 /// Name of the list of a folder, and ending of the lists of single files.
 const LIST_NAME: &str = ".fredholm";
+
+/// What this process has claimed, for [`exit`].
+static CLAIMS: Mutex<Vec<Weak<Claim>>> = Mutex::new(Vec::new());
 
 /// A folder, or the name of a matrix, that one run writes to. All clones are the same run; the lock
 /// is released with the last of them. One to which nothing was written leaves nothing behind.
@@ -74,7 +79,7 @@ impl ResultFolder {
         let entries = fs::read_dir(&claim.folder).map_err(read_failure(&claim.folder))?;
         let names = entries.flatten().map(|entry| entry.file_name().to_string_lossy().into_owned());
         claim.refuse(names.filter(|name| is_result(name)))?;
-        Ok(Self(Arc::new(claim)))
+        Ok(Self(claim))
     }
 
     /// Claims the names of a matrix of view factors and of what comes beside it; other files of the
@@ -96,7 +101,7 @@ impl ResultFolder {
         // The same matrix in another form stays.
         state.kept = state.listed.difference(&ours).cloned().collect();
         drop(state);
-        Ok(Self(Arc::new(claim)))
+        Ok(Self(claim))
     }
 
     /// Claims a folder to add files that are no result: nothing there is removed, and the files of
@@ -105,7 +110,7 @@ impl ResultFolder {
     /// # Errors
     /// [`ReportError::Busy`] and [`ReportError::Write`] as for [`claim`](Self::claim).
     pub fn to_add(folder: impl AsRef<Path>) -> Result<Self, ReportError> {
-        Ok(Self(Arc::new(Claim::lock(folder.as_ref(), LIST_NAME.into(), true)?)))
+        Ok(Self(Claim::lock(folder.as_ref(), LIST_NAME.into(), true)?))
     }
 
     /// Where it is.
@@ -175,7 +180,7 @@ impl ResultFolder {
 impl Claim {
     /// Makes the folder, locks its list and reads it; files that a killed run has not finished are
     /// removed.
-    fn lock(folder: &Path, list: OsString, adds: bool) -> Result<Self, ReportError> {
+    fn lock(folder: &Path, list: OsString, adds: bool) -> Result<Arc<Self>, ReportError> {
         let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
         let made: Vec<PathBuf> = folder
             .ancestors()
@@ -185,7 +190,11 @@ impl Claim {
         let list = folder.join(list);
         let file = locked(folder, &list)?;
         let (folder, state) = (folder.to_owned(), Mutex::default());
-        let claim = Self { folder, list, file, adds, made, state };
+        let claim = Arc::new(Self { folder, list, file, adds, made, state });
+        let mut claims = CLAIMS.lock().unwrap_or_else(PoisonError::into_inner);
+        claims.retain(|known| known.strong_count() > 0);
+        claims.push(Arc::downgrade(&claim));
+        drop(claims);
         let mut text = String::new();
         (&claim.file).read_to_string(&mut text).map_err(read_failure(&claim.list))?;
         claim.state().listed = text.lines().filter(|name| is_inside(name)).map(str::to_owned).collect();
@@ -246,6 +255,15 @@ impl Claim {
         Ok(())
     }
 
+    /// Leaves a place that nothing was written to as it was found.
+    fn leave(&self, state: &State) {
+        // Elsewhere a list that is waited for could not be told from a new one.
+        if cfg!(unix) && state.listed.is_empty() {
+            let _ = fs::remove_file(&self.list);
+            self.made.iter().for_each(|made| drop(fs::remove_dir(made)));
+        }
+    }
+
     /// Removes a file, and the folders within this one that it leaves empty.
     fn remove(&self, name: &str) -> Result<(), ReportError> {
         removed(&self.folder.join(name))?;
@@ -256,14 +274,27 @@ impl Claim {
 }
 
 impl Drop for Claim {
-    /// A place that nothing was written to is left as it was found.
     fn drop(&mut self) {
-        // Elsewhere a list that is waited for could not be told from a new one.
-        if cfg!(unix) && self.state().listed.is_empty() {
-            let _ = fs::remove_file(&self.list);
-            self.made.iter().for_each(|made| drop(fs::remove_dir(made)));
-        }
+        self.leave(&self.state());
     }
+}
+
+/// Ends the process at once, with this exit code, while other threads may still compute. Places
+/// that nothing was written to are left as they were found, which their claims would do if they
+/// were dropped.
+pub fn exit(code: i32) -> ! {
+    let claims = CLAIMS.lock().unwrap_or_else(PoisonError::into_inner);
+    for claim in claims.iter().filter_map(Weak::upgrade) {
+        // Where the state is in use, a file is just being listed, and there is something to keep.
+        if let Ok(state) = claim.state.try_lock() {
+            claim.leave(&state);
+            // Nothing is written there any more: whoever would list a file waits for the end.
+            mem::forget(state);
+        }
+        // The last one would wait for the state.
+        mem::forget(claim);
+    }
+    process::exit(code)
 }
 
 /// The list, locked. Where the file system knows no locks nothing keeps two runs apart.

@@ -94,7 +94,7 @@ pub use faces_csv::write_faces_csv;
 pub use false_colour_csv::write_false_colour_csv;
 pub use field::Field;
 pub use field_csv::write_field_csv;
-pub use folder::ResultFolder;
+pub use folder::{ResultFolder, exit};
 pub use hierarchy::{Hierarchy, HierarchyGoal, HierarchyRound};
 pub use html::{
     ElementLinks, ElementPhasors, ElementValues, FieldStep, ReportAxis, ReportBadge, ReportCell,

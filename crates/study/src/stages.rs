@@ -41,6 +41,14 @@ impl Signals<'_> {
         }
         Ok(())
     }
+
+    /// Tells the memory that a plan predicts, and refuses what a limit does not allow, before any
+    /// of it is taken; `help` says how to need less.
+    pub(crate) fn admit(&self, plan: &Plan, limit: Limit, help: &str) -> Result<(), Error> {
+        // Programs are told what was predicted of what is refused, too.
+        plan.tell(limit, self.watch);
+        plan.admit(limit, help)
+    }
 }
 
 /// A solver that tells nothing of its iterations, but ends where the run is cancelled.
@@ -155,12 +163,9 @@ impl<'a> Stages<'a> {
         plan.tell(limit, self.watch);
     }
 
-    /// Refuses what a limit does not allow, before any of it is taken; `help` says how to need
-    /// less.
+    /// See [`Signals::admit`].
     pub(crate) fn admit(&self, plan: &Plan, limit: Limit, help: &str) -> Result<(), Error> {
-        // Programs are told what was predicted of what is refused, too.
-        self.tell(plan, limit);
-        plan.admit(limit, help)
+        self.signals.admit(plan, limit, help)
     }
 
     /// The stages so far.

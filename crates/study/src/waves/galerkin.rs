@@ -426,11 +426,8 @@ impl Task<'_> {
         if storage == CouplingStorage::Compressed {
             return self.compressed(signals);
         }
-        plan.admit(
-            self.model.limit,
-            "take longer edges, --storage compressed, or method = \"physical-optics\"",
-        )?;
-        plan.tell(self.model.limit, signals.watch);
+        let help = "take longer edges, --storage compressed, or method = \"physical-optics\"";
+        signals.admit(&plan, self.model.limit, help)?;
         let whole = self.body.operator().coupling().map_err(|error| refused(self.model, &error))?;
         Ok(Matrix::Whole(whole))
     }

@@ -36,8 +36,7 @@ pub(super) fn system<'a>(
     match &model.method {
         Method::Bounces(1) => {
             let plan = one_bounce_plan(model, scatterer, (&wave, first));
-            plan.admit(model.limit, "take longer edges")?;
-            plan.tell(model.limit, signals.watch);
+            signals.admit(&plan, model.limit, "take longer edges")?;
             Ok(None)
         }
         Method::Bounces(_) => lazy(model, scatterer, (wave, shadow), &[], signals).map(Some),
@@ -100,8 +99,7 @@ pub(super) fn lazy<'a>(
 ) -> Result<System<'a>, Error> {
     let help = "mesh coarser, or ask for one bounce";
     let plan = lazy_plan(model, scatterer, (wave, shadow), solvers);
-    plan.admit(model.limit, help)?;
-    plan.tell(model.limit, signals.watch);
+    signals.admit(&plan, model.limit, help)?;
     System::lazy(scatterer, wave, shadow).map_err(|error: WaveError| model.refused(&error, None))
 }
 
@@ -237,8 +235,7 @@ pub(super) fn coupled<'a>(
     let by_products = by_products().join(", ");
     let help = format!("mesh coarser, or take a solver that needs no matrix: {by_products}");
     let plan = stored_plan(model, scatterer, (wave, shadow), solvers);
-    plan.admit(model.limit, &help)?;
-    plan.tell(model.limit, signals.watch);
+    signals.admit(&plan, model.limit, &help)?;
     System::stored(scatterer, wave, shadow, Discretisation::Nystrom)
         .map_err(|error: WaveError| model.refused(&error, None))
 }
