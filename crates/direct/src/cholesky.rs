@@ -31,24 +31,66 @@
 use crate::buffers;
 use crate::factorisation::{par, scratch};
 use crate::groups::{Ended, Run, columns, in_groups};
-use faer::dyn_stack::MemStack;
+use crate::scalar::DenseScalar;
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::{factor, solve};
-use faer::traits::ComplexField;
 use faer::{MatMut, MatRef, Spec};
 use fredholm_linop::{
-    Dense, LinearOperator, LinopError, MultiVector, Observer, Report, Scalar, SecondKind, SolveError, Solver,
-    Stop,
+    Dense, LinearOperator, MultiVector, Observer, Report, Scalar, SecondKind, SolveError, Solver, Stop,
 };
+use num_complex::Complex64;
 
 const NAME: &str = "cholesky";
 /// Rows that are turned into columns at a time: their entries of a column lie together in memory.
 const ROWS: usize = 16;
 
+/// A number whose Hermitian matrices are factorised. The functions are compiled here, once for each
+/// kind: those of faer are generic and long.
+pub trait Llt: Copy {
+    /// Scratch of [`Self::factorise_symmetric`].
+    fn symmetric_scratch(n: usize) -> StackReq;
+    /// Puts L of L Lᴴ in the place of a matrix, column by column. False where a pivot is not positive.
+    fn factorise_symmetric(matrix: &mut [Self], n: usize, scratch: &mut MemBuffer) -> bool;
+    /// Scratch of [`Self::substitute_symmetric`].
+    fn symmetric_substitution_scratch(n: usize, columns: usize) -> StackReq;
+    /// Solves for right-hand sides one after the other.
+    fn substitute_symmetric(factor: &[Self], n: usize, b: &mut [Self], scratch: &mut MemBuffer);
+}
+
+macro_rules! llt {
+    ($($number:ty),*) => {$(
+        impl Llt for $number {
+            fn symmetric_scratch(n: usize) -> StackReq {
+                factor::cholesky_in_place_scratch::<Self>(n, par(), Spec::default())
+            }
+
+            fn factorise_symmetric(matrix: &mut [Self], n: usize, scratch: &mut MemBuffer) -> bool {
+                let columns = MatMut::from_column_major_slice_mut(matrix, n, n);
+                let (plain, stack) = (factor::LltRegularization::default(), MemStack::new(scratch));
+                factor::cholesky_in_place(columns, plain, par(), stack, Spec::default()).is_ok()
+            }
+
+            fn symmetric_substitution_scratch(n: usize, columns: usize) -> StackReq {
+                solve::solve_in_place_scratch::<Self>(n, columns, par())
+            }
+
+            fn substitute_symmetric(factor: &[Self], n: usize, b: &mut [Self], scratch: &mut MemBuffer) {
+                let count = b.len() / n.max(1);
+                let factor = MatRef::from_column_major_slice(factor, n, n);
+                let columns = MatMut::from_column_major_slice_mut(b, n, count);
+                solve::solve_in_place::<Self, Self>(factor, columns, par(), MemStack::new(scratch));
+            }
+        }
+    )*};
+}
+
+llt!(f64, Complex64);
+
 /// Factorises the symmetric form, once for all right-hand sides that share it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Cholesky;
 
-impl<T: Scalar + ComplexField> Solver<T> for Cholesky {
+impl<T: DenseScalar> Solver<T> for Cholesky {
     fn name(&self) -> &'static str {
         NAME
     }
@@ -83,19 +125,22 @@ impl<T: Scalar + ComplexField> Solver<T> for Cholesky {
     }
 }
 
-fn solve_all<T: Scalar + ComplexField>(run: &mut Run<'_, '_, T>, group: &[usize]) -> Result<(), Ended> {
+fn solve_all<T: DenseScalar>(run: &mut Run<'_, '_, T>, group: &[usize]) -> Result<(), Ended> {
     let (n, rhs) = (run.a.dim(), group[0]);
     let roots: Vec<f64> = (0..n).map(|i| run.a.factor().row(i)[rhs].re().sqrt()).collect();
     let mut matrix = theta(run.a, rhs, &roots)?;
     run.work.row_visits += n as u64;
     run.work.entries_touched += run.a.entries();
-    factorise(&mut matrix, n)?.ok_or(SolveError::Indefinite { solver: NAME, rhs })?;
+    if !T::factorise_symmetric(&mut matrix, n, &mut scratch(T::symmetric_scratch(n))?) {
+        return Err(SolveError::Indefinite { solver: NAME, rhs }.into());
+    }
     let mut solutions = columns(&right_side(run), group);
     for solution in solutions.chunks_exact_mut(n) {
         let inverse = |root: f64| if root > 0.0 { root.recip() } else { 1.0 };
         solution.iter_mut().zip(&roots).for_each(|(value, &root)| *value = value.scale(inverse(root)));
     }
-    substitute(&matrix, n, &mut solutions)?;
+    let needed = T::symmetric_substitution_scratch(n, group.len());
+    T::substitute_symmetric(&matrix, n, &mut solutions, &mut scratch(needed)?);
     for (&rhs, solution) in group.iter().zip(solutions.chunks_exact_mut(n)) {
         let factor = |root: f64| if root > 0.0 { root } else { 1.0 };
         solution.iter_mut().zip(&roots).for_each(|(value, &root)| *value = value.scale(factor(root)));
@@ -144,21 +189,4 @@ fn right_side<T: Scalar>(run: &mut Run<'_, '_, T>) -> MultiVector<T> {
         .zip(terms)
         .for_each(|(right, (&known, &product))| *right += known - product);
     right
-}
-
-/// Θ = L Lᴴ in place. `None` where a pivot is not positive.
-fn factorise<T: Scalar + ComplexField>(matrix: &mut [T], n: usize) -> Result<Option<()>, LinopError> {
-    let mut memory = scratch(factor::cholesky_in_place_scratch::<T>(n, par(), Spec::default()))?;
-    let columns = MatMut::from_column_major_slice_mut(matrix, n, n);
-    let (plain, stack) = (factor::LltRegularization::default(), MemStack::new(&mut memory));
-    Ok(factor::cholesky_in_place(columns, plain, par(), stack, Spec::default()).ok().map(drop))
-}
-
-fn substitute<T: Scalar + ComplexField>(matrix: &[T], n: usize, b: &mut [T]) -> Result<(), SolveError> {
-    let count = b.len() / n.max(1);
-    let mut memory = scratch(solve::solve_in_place_scratch::<T>(n, count, par()))?;
-    let factor = MatRef::from_column_major_slice(matrix, n, n);
-    let columns = MatMut::from_column_major_slice_mut(b, n, count);
-    solve::solve_in_place::<T, T>(factor, columns, par(), MemStack::new(&mut memory));
-    Ok(())
 }

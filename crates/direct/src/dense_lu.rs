@@ -31,7 +31,7 @@
 use crate::buffers;
 use crate::factorisation::{Factorisation, scratch_bytes};
 use crate::groups::{Ended, Run, columns, in_groups};
-use faer::traits::ComplexField;
+use crate::scalar::DenseScalar;
 use fredholm_linop::{
     LinearOperator, MultiVector, Observer, Report, Scalar, SecondKind, SolveError, Solver, Stop,
 };
@@ -40,7 +40,7 @@ use fredholm_linop::{
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DenseLu;
 
-impl<T: Scalar + ComplexField> Solver<T> for DenseLu {
+impl<T: DenseScalar> Solver<T> for DenseLu {
     fn name(&self) -> &'static str {
         "lu"
     }
@@ -77,7 +77,7 @@ impl<T: Scalar + ComplexField> Solver<T> for DenseLu {
     }
 }
 
-fn solve_all<T: Scalar + ComplexField>(run: &mut Run<'_, '_, T>, group: &[usize]) -> Result<(), Ended> {
+fn solve_all<T: DenseScalar>(run: &mut Run<'_, '_, T>, group: &[usize]) -> Result<(), Ended> {
     let matrix = run.a.dense(group[0])?;
     run.work.row_visits += run.a.dim() as u64;
     run.work.entries_touched += run.a.entries();

@@ -11,20 +11,40 @@ mod eigen;
 mod factorisation;
 mod groups;
 mod mixed_lu;
+mod scalar;
 mod spectrum;
 
 pub use buffers::thread_addresses;
 pub use cholesky::Cholesky;
 pub use dense_lu::DenseLu;
-pub use faer::traits::ComplexField;
-pub use mixed_lu::{MixedLu, Single};
+pub use mixed_lu::MixedLu;
+pub use scalar::DenseScalar;
 pub use spectrum::{Spectrum, SpectrumError, spectrum, spectrum_bytes};
 
-use fredholm_linop::{Access, Entry, Options, Solver};
+use fredholm_linop::{Access, Entry, OfScalar, Options, Scalar, Solver};
+use num_complex::Complex64;
 
 /// All solvers of this crate, by name. T is f64 or Complex64.
 #[must_use]
-pub fn entries<T: Single + ComplexField>() -> Vec<Entry<dyn Solver<T>>> {
+pub fn entries<T: DenseScalar>() -> Vec<Entry<dyn Solver<T>>> {
+    T::choose::<Entries>(real, complex)
+}
+
+struct Entries;
+
+impl OfScalar for Entries {
+    type Of<T: Scalar> = Vec<Entry<dyn Solver<T>>>;
+}
+
+fn real() -> Vec<Entry<dyn Solver<f64>>> {
+    all()
+}
+
+fn complex() -> Vec<Entry<dyn Solver<Complex64>>> {
+    all()
+}
+
+fn all<T: DenseScalar>() -> Vec<Entry<dyn Solver<T>>> {
     let none = "a matrix that is not singular to working precision";
     vec![
         Entry {
@@ -61,6 +81,6 @@ pub fn entries<T: Single + ComplexField>() -> Vec<Entry<dyn Solver<T>>> {
 /// assert_eq!(names, ["lu", "lu-mixed", "cholesky"]);
 /// ```
 #[must_use]
-pub fn solvers<T: Single + ComplexField>() -> Vec<Box<dyn Solver<T>>> {
+pub fn solvers<T: DenseScalar>() -> Vec<Box<dyn Solver<T>>> {
     entries().into_iter().filter_map(|entry| entry.build(Options::default()).ok()).collect()
 }

@@ -31,55 +31,20 @@
 use crate::buffers;
 use crate::factorisation::{Factorisation, scratch_bytes};
 use crate::groups::{Ended, Run, columns, in_groups};
-use faer::traits::ComplexField;
+use crate::scalar::DenseScalar;
 use fredholm_linop::{
     LinearOperator, LinopError, MultiVector, Observer, Report, Scalar, SecondKind, SolveError, Solver, Stop,
 };
-use num_complex::{Complex32, Complex64};
 
 const NAME: &str = "lu-mixed";
 /// Most steps for a matrix.
 const STEPS: usize = 50;
 
-/// A number with a counterpart in single precision. Implemented for f64 and Complex64.
-pub trait Single: Scalar {
-    /// The counterpart.
-    type Low: ComplexField + Copy;
-    /// The nearest number in single precision.
-    fn lower(self) -> Self::Low;
-    /// The same number in double precision.
-    fn raise(low: Self::Low) -> Self;
-}
-
-impl Single for f64 {
-    type Low = f32;
-
-    fn lower(self) -> f32 {
-        self as f32
-    }
-
-    fn raise(low: f32) -> Self {
-        f64::from(low)
-    }
-}
-
-impl Single for Complex64 {
-    type Low = Complex32;
-
-    fn lower(self) -> Complex32 {
-        Complex32::new(self.re as f32, self.im as f32)
-    }
-
-    fn raise(low: Complex32) -> Self {
-        Self::new(low.re.into(), low.im.into())
-    }
-}
-
 /// Factorises in single precision, refines in double.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct MixedLu;
 
-impl<T: Single> Solver<T> for MixedLu {
+impl<T: DenseScalar> Solver<T> for MixedLu {
     fn name(&self) -> &'static str {
         NAME
     }
@@ -115,7 +80,7 @@ impl<T: Single> Solver<T> for MixedLu {
     }
 }
 
-fn solve_all<T: Single>(run: &mut Run<'_, '_, T>, group: &[usize], tolerance: f64) -> Result<(), Ended> {
+fn solve_all<T: DenseScalar>(run: &mut Run<'_, '_, T>, group: &[usize], tolerance: f64) -> Result<(), Ended> {
     let matrix = read(run.a, group[0])?;
     run.work.row_visits += run.a.dim() as u64;
     run.work.entries_touched += run.a.entries();
@@ -137,7 +102,7 @@ fn solve_all<T: Single>(run: &mut Run<'_, '_, T>, group: &[usize], tolerance: f6
 }
 
 /// x += s, from residuals that are scaled to be no smaller than single precision can hold.
-fn step<T: Single>(
+fn step<T: DenseScalar>(
     run: &mut Run<'_, '_, T>,
     factorisation: &Factorisation<T::Low>,
     group: &[usize],
@@ -170,7 +135,7 @@ fn scaled_residuals<T: Scalar>(run: &Run<'_, '_, T>, group: &[usize]) -> (Vec<(f
 }
 
 /// A of a right-hand side in single precision, row by row.
-fn read<T: Single>(a: &SecondKind<'_, T>, rhs: usize) -> Result<Vec<T::Low>, LinopError> {
+fn read<T: DenseScalar>(a: &SecondKind<'_, T>, rhs: usize) -> Result<Vec<T::Low>, LinopError> {
     let n = a.dim();
     let bytes = (n as u64).saturating_mul(n as u64).saturating_mul(size_of::<T::Low>() as u64);
     let refused = LinopError::Memory { what: "a matrix in single precision", bytes };

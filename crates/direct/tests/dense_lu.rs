@@ -3,9 +3,9 @@
 
 #![allow(clippy::float_cmp, clippy::needless_range_loop, clippy::unwrap_used)]
 
-use fredholm_direct::{ComplexField, DenseLu};
+use fredholm_direct::{DenseLu, DenseScalar};
 use fredholm_linop::{
-    Dense, LinearOperator, LinopError, MultiVector, Observer, Progress, Quiet, Report, Scalar, SecondKind,
+    Dense, LinearOperator, LinopError, MultiVector, Observer, Progress, Quiet, Report, SecondKind,
     SolveError, Solver, Stop, StopReason,
 };
 use num_complex::Complex64;
@@ -18,7 +18,7 @@ fn scattered(at: usize) -> f64 {
     ((at + 1) as f64 * 0.618_033_988_749_895).fract() - 0.5
 }
 
-fn solve<T: Scalar + ComplexField>(
+fn solve<T: DenseScalar>(
     coupling: &dyn LinearOperator<T>,
     factor: MultiVector<T>,
     b: &MultiVector<T>,
@@ -89,7 +89,7 @@ fn an_observer_stops_it_before_the_next_factorisation() {
     assert!(x.vector(0).iter().all(|value| (value - 2.0).abs() < 1e-15));
 }
 
-fn bits_on<T: Scalar + ComplexField>(threads: usize, n: usize, draw: fn(usize) -> T) -> Vec<[u64; 2]> {
+fn bits_on<T: DenseScalar>(threads: usize, n: usize, draw: fn(usize) -> T) -> Vec<[u64; 2]> {
     let coupling = Dense::new(n, (0..n * n).map(draw).collect()).unwrap();
     let factor = MultiVector::from_fn(n, 1, |_, _| T::from_real(1.0 / n as f64));
     let b = MultiVector::from_fn(n, 1, |i, _| draw(i));

@@ -5,7 +5,8 @@ use crate::{
     GroupShooting, Hgs1, Hgs2, Hybrid, Jacobi, Minres, Neumann, PcgCholesky, PcgJacobi, PcgSsor, Progressive,
     Sor, Southwell, Ssor, Sur,
 };
-use fredholm_linop::{Access, Entry, OptionError, Options, Scalar, Scheme, Solver, build};
+use fredholm_linop::{Access, Entry, OfScalar, OptionError, Options, Scalar, Scheme, Solver, build};
+use num_complex::Complex64;
 
 /// All schemes of this crate, by name.
 ///
@@ -19,6 +20,24 @@ use fredholm_linop::{Access, Entry, OptionError, Options, Scalar, Scheme, Solver
 /// ```
 #[must_use]
 pub fn entries<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
+    T::choose::<Entries>(real, complex)
+}
+
+struct Entries;
+
+impl OfScalar for Entries {
+    type Of<T: Scalar> = Vec<Entry<dyn Scheme<T>>>;
+}
+
+fn real() -> Vec<Entry<dyn Scheme<f64>>> {
+    all()
+}
+
+fn complex() -> Vec<Entry<dyn Scheme<Complex64>>> {
+    all()
+}
+
+fn all<T: Scalar>() -> Vec<Entry<dyn Scheme<T>>> {
     let mut entries = relaxations();
     entries.extend(shootings());
     entries.extend(blocks());

@@ -46,7 +46,7 @@ pub use monitor::Monitor;
 pub use multivector::MultiVector;
 pub use operator::{LinearOperator, Symmetry};
 pub use packed::{PackedSymmetric, Storage};
-pub use scalar::Scalar;
+pub use scalar::{OfScalar, Scalar};
 pub use scheme::{Context, Halt, Iteration, Scheme, solve_by_steps};
 pub use second_kind::SecondKind;
 pub use solver::{Observer, Progress, Quiet, Record, Report, Solver, Stop, StopReason, Work};

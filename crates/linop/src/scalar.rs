@@ -10,6 +10,12 @@ mod sealed {
     impl Sealed for num_complex::Complex64 {}
 }
 
+/// What there is one of for each kind of number, such as a list of solvers.
+pub trait OfScalar {
+    /// That of T.
+    type Of<T: Scalar>;
+}
+
 /// A real or complex number in double precision. Implemented for f64 and Complex64 only.
 pub trait Scalar:
     sealed::Sealed
@@ -51,6 +57,10 @@ pub trait Scalar:
     fn abs2(self) -> f64;
     /// Neither NaN nor infinite.
     fn is_finite(self) -> bool;
+    /// What `real` or `complex` makes, whichever is of this kind. These are no generic functions, so
+    /// that what they name is compiled in their crate, once, and not wherever a generic function
+    /// calls this.
+    fn choose<F: OfScalar>(real: fn() -> F::Of<f64>, complex: fn() -> F::Of<Complex64>) -> F::Of<Self>;
 }
 
 impl Scalar for f64 {
@@ -91,6 +101,10 @@ impl Scalar for f64 {
     fn is_finite(self) -> bool {
         f64::is_finite(self)
     }
+
+    fn choose<F: OfScalar>(real: fn() -> F::Of<f64>, _: fn() -> F::Of<Complex64>) -> F::Of<f64> {
+        real()
+    }
 }
 
 impl Scalar for Complex64 {
@@ -130,6 +144,10 @@ impl Scalar for Complex64 {
 
     fn is_finite(self) -> bool {
         Complex64::is_finite(self)
+    }
+
+    fn choose<F: OfScalar>(_: fn() -> F::Of<f64>, complex: fn() -> F::Of<Complex64>) -> F::Of<Self> {
+        complex()
     }
 }
 

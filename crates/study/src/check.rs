@@ -96,12 +96,22 @@ pub struct Forecast {
 /// matrix that does not fit the memory is no error, but what was asked.
 pub fn check(
     source: impl Into<SceneSource>,
+    asked: (&ProblemOptions, Option<f64>),
+    picture: Option<(&ResultFolder, &str)>,
+    watch: &dyn Watch,
+) -> Result<Checked, Error> {
+    check_scene(&source.into(), asked, picture, watch)
+}
+
+/// [`check`], compiled once and not for each kind of source.
+fn check_scene(
+    source: &SceneSource,
     (asked, accuracy): (&ProblemOptions, Option<f64>),
     picture: Option<(&ResultFolder, &str)>,
     watch: &dyn Watch,
 ) -> Result<Checked, Error> {
     let mut stages = Stages::new(watch);
-    let scene = source.into().load(asked.memory, &mut stages)?;
+    let scene = source.load(asked.memory, &mut stages)?;
     let report = stages.run("report", || Ok(scene.report()))?;
     if let Some((folder, name)) = picture {
         let plan = Plan::default().stage("the picture", pictured(pixels(&scene), 1));

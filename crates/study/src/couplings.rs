@@ -40,9 +40,18 @@ pub fn couplings(
     asked: &ProblemOptions,
     watch: &dyn Watch,
 ) -> Result<Couplings, Error> {
+    couplings_scene(&source.into(), asked, watch)
+}
+
+/// [`couplings`], compiled once and not for each kind of source.
+fn couplings_scene(
+    source: &SceneSource,
+    asked: &ProblemOptions,
+    watch: &dyn Watch,
+) -> Result<Couplings, Error> {
     let mut stages = Stages::new(watch);
     let asked = ProblemOptions { storage: Some(Precision::F64), ..asked.clone() };
-    let problem = Problem::load(&source.into(), &asked, &|plan, _, _| plan, &mut stages)?;
+    let problem = Problem::load(source, &asked, &|plan, _, _| plan, &mut stages)?;
     problem.require_radiosity("couplings")?;
     let watcher = Watcher::to(&stages, Stop { tolerance: 0.0, max_iterations: 0 });
     let assembled = stages.run("assembly", || form_factors::<f64>(&problem, watcher))?;

@@ -50,7 +50,18 @@ pub fn export(
     folder: &ResultFolder,
     watch: &dyn Watch,
 ) -> Result<Written, Error> {
-    let scene = source.into().load(None, &mut Stages::new(watch))?;
+    export_scene(&source.into(), format, band, folder, watch)
+}
+
+/// [`export`], compiled once and not for each kind of source.
+fn export_scene(
+    source: &SceneSource,
+    format: ExportFormat,
+    band: Option<&str>,
+    folder: &ResultFolder,
+    watch: &dyn Watch,
+) -> Result<Written, Error> {
+    let scene = source.load(None, &mut Stages::new(watch))?;
     let stem = scene.path().file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     write(&outline(&scene, band)?, format, folder, &stem)
 }
@@ -126,13 +137,17 @@ pub fn convert(
     target: impl AsRef<Path>,
     watch: &dyn Watch,
 ) -> Result<Written, Error> {
-    let target = target.as_ref();
+    convert_scene(&source.into(), target.as_ref(), watch)
+}
+
+/// [`convert`], compiled once and not for each kind of source.
+fn convert_scene(source: &SceneSource, target: &Path, watch: &dyn Watch) -> Result<Written, Error> {
     let format = ExportFormat::of(target).ok_or_else(|| {
         let endings: Vec<String> = ExportFormat::ALL.iter().map(|(_, _, e)| format!(".{e}")).collect();
         let text = format!("`{}` has the ending of no format that is written", target.display());
         Error::new(ErrorKind::Input, text).with_help(format!("end its name in {}", endings.join(", ")))
     })?;
-    let scene = source.into().load(None, &mut Stages::new(watch))?;
+    let scene = source.load(None, &mut Stages::new(watch))?;
     let mut outline = scene.outline(None).map_err(scene_failure)?.bare(&scene);
     outline.camera = None;
     let stem = target.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());

@@ -110,16 +110,16 @@ fn agreement(pairs: impl Iterator<Item = ((Vec<Patch>, Exchange), f64)>, slack: 
 /// What the errors above are measured against agrees with other formulas.
 #[test]
 fn resolved_exchanges_are_true() {
-    let (agree, worst) = agreement(occluded(1e-2).zip(resolved()).take(60), [1.0, 1e-3]);
-    assert!(agree >= 59 && worst < 0.01);
+    let (agree, worst) = agreement(occluded(1e-2).zip(resolved()).take(40), [1.0, 1e-3]);
+    assert!(agree >= 39 && worst < 0.01);
 }
 
 /// In the other sets the integral of the other formulas misses a small shadow now and then: to a
 /// tenth of the goal these pairs agree to 0.005 T.
 #[test]
 fn resolved_exchanges_of_all_sets_are_true() {
-    let (agree, worst) = agreement(occluded(1e-2).zip(resolved()).step_by(40), [2.0, 5e-3]);
-    assert!(agree >= 62 && worst < 0.05);
+    let (agree, worst) = agreement(occluded(1e-2).zip(resolved()).step_by(80), [2.0, 5e-3]);
+    assert!(agree >= 31 && worst < 0.05);
 }
 
 /// Sides and pitch of the squares of a screen, and half their number along a side.
@@ -195,7 +195,7 @@ fn sampled_shares_state_their_error() {
 fn where_sampling_does_not_reach_the_tolerance_shadows_are_exact() {
     let mut random = Random::new(8);
     let mut clipped = 0;
-    for _ in 0..5 {
+    for _ in 0..3 {
         let patches = behind_a_screen(&mut random);
         let [coarse, fine] = [1e-3, 1e-4].map(|tolerance| exchange(&patches, tolerance));
         clipped += usize::from(coarse.method == Method::Clipped);
@@ -206,7 +206,7 @@ fn where_sampling_does_not_reach_the_tolerance_shadows_are_exact() {
         let segments = through_the_screen(&patches[0], &patches[1], &mut random);
         assert!((fine.value - segments.value).abs() <= fine.error + segments.error, "{fine:?} {segments:?}");
     }
-    assert!(clipped >= 4, "{clipped}");
+    assert!(clipped >= 2, "{clipped}");
 }
 
 /// Two squares at distance 2, slightly skewed, and m × m squares between them, at even or uneven

@@ -123,12 +123,22 @@ pub fn compare(
     folder: &ResultFolder,
     watch: &dyn Watch,
 ) -> Result<(ComparisonRecord, Ended), Error> {
+    compare_scene(&source.into(), asked, folder, watch)
+}
+
+/// [`compare`], compiled once and not for each kind of source.
+fn compare_scene(
+    source: &SceneSource,
+    asked: &CompareOptions,
+    folder: &ResultFolder,
+    watch: &dyn Watch,
+) -> Result<(ComparisonRecord, Ended), Error> {
     let mut stages = Stages::new(watch);
     let answers = asked.solvers().len() as u128 * 8;
     let more = |plan: Plan, scene: &Scene, n: usize| {
         plan.hold("the answers of the solvers", answers * n as u128 * scene.bands().len() as u128)
     };
-    let problem = Problem::load(&source.into(), &asked.problem(), &more, &mut stages)?;
+    let problem = Problem::load(source, &asked.problem(), &more, &mut stages)?;
     problem.require_radiosity("compare")?;
     let record = match problem.options.storage {
         Precision::F64 => compared::<f64>(asked, &problem, &mut stages),

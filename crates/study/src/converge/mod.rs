@@ -53,8 +53,18 @@ pub fn converge(
     folder: &ResultFolder,
     watch: &dyn Watch,
 ) -> Result<(RefinementRecord, Ended), Error> {
+    converge_scene(&source.into(), asked, folder, watch)
+}
+
+/// [`converge`], compiled once and not for each kind of source.
+fn converge_scene(
+    source: &SceneSource,
+    asked: &ConvergeOptions,
+    folder: &ResultFolder,
+    watch: &dyn Watch,
+) -> Result<(RefinementRecord, Ended), Error> {
     let mut stages = Stages::new(watch);
-    let problems = problems(&source.into(), asked, &mut stages)?;
+    let problems = problems(source, asked, &mut stages)?;
     let Some(coarsest) = problems.first() else {
         let error = Error::new(ErrorKind::Input, "a study of convergence without a level");
         return Err(error.with_help("ask for 3 levels or more"));

@@ -69,7 +69,18 @@ pub fn judge(
     folder: &ResultFolder,
     watch: &dyn Watch,
 ) -> Result<(JudgeRecord, Verdict), Error> {
-    let (bundle, mut stages) = (bundle.as_ref(), Stages::new(watch).part("judge"));
+    judge_bundle(bundle.as_ref(), files, asked, folder, watch)
+}
+
+/// [`judge`], compiled once and not for each kind of source.
+fn judge_bundle(
+    bundle: &Path,
+    files: &[PathBuf],
+    asked: &JudgeOptions,
+    folder: &ResultFolder,
+    watch: &dyn Watch,
+) -> Result<(JudgeRecord, Verdict), Error> {
+    let mut stages = Stages::new(watch).part("judge");
     let record = read_reference_record(bundle).map_err(report_failure)?;
     let (known, measured) = stages.run("files", || read(bundle, &record, files))?;
     let rounding = asked.rounding.unwrap_or(ROUNDING).max(measured.rounding);

@@ -83,8 +83,18 @@ pub fn reference(
     folder: &ResultFolder,
     watch: &dyn Watch,
 ) -> Result<ReferenceRecord, Error> {
+    reference_scene(&source.into(), asked, folder, watch)
+}
+
+/// [`reference`], compiled once and not for each kind of source.
+fn reference_scene(
+    source: &SceneSource,
+    asked: &ReferenceOptions,
+    folder: &ResultFolder,
+    watch: &dyn Watch,
+) -> Result<ReferenceRecord, Error> {
     let mut stages = Stages::new(watch).part("reference");
-    let (problem, settings) = load(&source.into(), asked, &mut stages)?;
+    let (problem, settings) = load(source, asked, &mut stages)?;
     let camera = sized(camera(&problem.scene)?, asked.size)?;
     let solution = compute(&problem, &settings, &mut stages)?;
     let scene = enclosure(&problem.scene, &problem.mesh)?;

@@ -90,9 +90,19 @@ pub fn shoot(
     folder: &ResultFolder,
     watch: &dyn Watch,
 ) -> Result<(ShootingRecord, Ended), Error> {
+    shoot_scene(&source.into(), asked, folder, watch)
+}
+
+/// [`shoot`], compiled once and not for each kind of source.
+fn shoot_scene(
+    source: &SceneSource,
+    asked: &ShootOptions,
+    folder: &ResultFolder,
+    watch: &dyn Watch,
+) -> Result<(ShootingRecord, Ended), Error> {
     let mut stages = Stages::new(watch);
     let pictures = usize::from(!asked.no_pictures);
-    let scene = Open::load(&source.into(), &asked.problem(), (asked.keep, pictures), &mut stages)?;
+    let scene = Open::load(source, &asked.problem(), (asked.keep, pictures), &mut stages)?;
     let light = stages.run("exposure", || Light::new(&scene))?;
     let groups = stages.run("groups", || Ok(light.groups(&scene)))?;
     let tolerance = scene.options.form_factor_tolerance;

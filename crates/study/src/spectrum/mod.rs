@@ -73,6 +73,16 @@ pub fn spectrum(
     folder: &ResultFolder,
     watch: &dyn Watch,
 ) -> Result<(SpectrumRecord, Ended), Error> {
+    spectrum_scene(&source.into(), asked, folder, watch)
+}
+
+/// [`spectrum`], compiled once and not for each kind of source.
+fn spectrum_scene(
+    source: &SceneSource,
+    asked: &SpectrumOptions,
+    folder: &ResultFolder,
+    watch: &dyn Watch,
+) -> Result<(SpectrumRecord, Ended), Error> {
     let mut stages = Stages::new(watch);
     let dense = |plan: Plan, _: &Scene, n: usize| {
         if n > asked.dense {
@@ -80,7 +90,7 @@ pub fn spectrum(
         }
         plan.hold("dense methods", spectrum_bytes(n).into()).aside(of_threads(thread_addresses()))
     };
-    let problem = Problem::load(&source.into(), &asked.problem(), &dense, &mut stages)?;
+    let problem = Problem::load(source, &asked.problem(), &dense, &mut stages)?;
     problem.require_radiosity("spectrum")?;
     let record = match problem.options.storage {
         Precision::F64 => analysed::<f64>(asked, &problem, &mut stages),

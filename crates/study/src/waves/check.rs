@@ -69,8 +69,13 @@ pub fn check_waves(
     asked: &WaveOptions,
     watch: &dyn Watch,
 ) -> Result<CheckedWaves, Error> {
+    check_waves_of_file(scene.as_ref(), asked, watch)
+}
+
+/// [`check_waves`], compiled once and not for each kind of source.
+fn check_waves_of_file(scene: &Path, asked: &WaveOptions, watch: &dyn Watch) -> Result<CheckedWaves, Error> {
     let mut stages = Stages::new(watch);
-    let mut model = stages.run("scene", || Model::load(scene.as_ref(), asked.memory))?;
+    let mut model = stages.run("scene", || Model::load(scene, asked.memory))?;
     let (plan, coupling) = stages.run("mesh", || admitted(&model))?;
     let findings = stages.run("report", || Ok(model.scene.findings()))?;
     let checked = CheckedWaves {
@@ -110,19 +115,18 @@ fn admitted(model: &Model) -> Result<(Plan, Option<CheckedCoupling>), Error> {
         return Ok((plan, Some(coupling(unknowns, storage))));
     }
     let refused = |error: WaveError| model.refused(&error, None);
-    let (mut plan, mut found) = (model.plan.clone(), None);
-    for band in &model.bands {
+    let mut most = (model.plan.clone(), None);
+    for (i, band) in model.bands.iter().enumerate() {
         let scatterer = model.geometry.scatterer(&band.materials).map_err(refused)?;
         model.shadow.check(&scatterer).map_err(refused)?;
         if !model.is_closed_form() {
             scatterer.check_resolution(&band.wave).map_err(refused)?;
         }
-        let (of_band, storage) = solving::plan(model, &scatterer, band.wave)?;
+        let (plan, storage) = solving::plan(model, &scatterer, band.wave)?;
         // Frequencies come one after the other: the one that holds most counts.
-        if of_band.peak().0 > plan.peak().0 {
-            plan = of_band;
+        if i == 0 || plan.peak().0 > most.0.peak().0 {
+            most = (plan, storage.map(|storage| coupling(System::unknowns(&scatterer), storage)));
         }
-        found = storage.map(|storage| coupling(System::unknowns(&scatterer), storage));
     }
-    Ok((plan, found))
+    Ok(most)
 }
