@@ -4,7 +4,6 @@
 //! Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., Johns Hopkins University
 //! Press 2013, § 3.4. Cost: 2n³/3 real or 8n³/3 complex operations, and 2n² or 8n² for each
 //! right-hand side.
-
 //!
 //! What calls faer is compiled here, once for each kind of number, and not wherever a solver is
 //! used: its functions are generic and long.

@@ -21,30 +21,11 @@ pub use mixed_lu::MixedLu;
 pub use scalar::DenseScalar;
 pub use spectrum::{Spectrum, SpectrumError, spectrum, spectrum_bytes};
 
-use fredholm_linop::{Access, Entry, OfScalar, Options, Scalar, Solver};
-use num_complex::Complex64;
+use fredholm_linop::{Access, Entry, Options, Solver};
 
 /// All solvers of this crate, by name. T is f64 or Complex64.
 #[must_use]
 pub fn entries<T: DenseScalar>() -> Vec<Entry<dyn Solver<T>>> {
-    T::choose::<Entries>(real, complex)
-}
-
-struct Entries;
-
-impl OfScalar for Entries {
-    type Of<T: Scalar> = Vec<Entry<dyn Solver<T>>>;
-}
-
-fn real() -> Vec<Entry<dyn Solver<f64>>> {
-    all()
-}
-
-fn complex() -> Vec<Entry<dyn Solver<Complex64>>> {
-    all()
-}
-
-fn all<T: DenseScalar>() -> Vec<Entry<dyn Solver<T>>> {
     let none = "a matrix that is not singular to working precision";
     vec![
         Entry {

@@ -50,18 +50,7 @@ pub fn export(
     folder: &ResultFolder,
     watch: &dyn Watch,
 ) -> Result<Written, Error> {
-    export_scene(&source.into(), format, band, folder, watch)
-}
-
-/// [`export`], compiled once and not for each kind of source.
-fn export_scene(
-    source: &SceneSource,
-    format: ExportFormat,
-    band: Option<&str>,
-    folder: &ResultFolder,
-    watch: &dyn Watch,
-) -> Result<Written, Error> {
-    let scene = source.load(None, &mut Stages::new(watch))?;
+    let scene = source.into().load(None, &mut Stages::new(watch))?;
     let stem = scene.path().file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     write(&outline(&scene, band)?, format, folder, &stem)
 }

@@ -129,23 +129,13 @@ pub fn crosscheck(
     folder: &ResultFolder,
     watch: &dyn Watch,
 ) -> Result<(CrosscheckRecord, Verdict), Error> {
-    crosscheck_scene(&source.into(), asked, folder, watch)
-}
-
-/// [`crosscheck`], compiled once and not for each kind of source.
-fn crosscheck_scene(
-    source: &SceneSource,
-    asked: &CrosscheckOptions,
-    folder: &ResultFolder,
-    watch: &dyn Watch,
-) -> Result<(CrosscheckRecord, Verdict), Error> {
-    let stages = Stages::new(watch).part("check");
+    let (source, stages) = (source.into(), Stages::new(watch).part("check"));
     let fields = match &asked.method {
         Some(name) => FIELD_METHODS.contains(&name.as_str()),
         None => is_wave_scene(source.path()),
     };
     let run = if fields { fields::run } else { run };
-    run(source, asked, folder, stages)
+    run(&source, asked, folder, stages)
 }
 
 impl CrosscheckOptions {

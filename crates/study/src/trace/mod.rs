@@ -99,20 +99,10 @@ pub fn trace(
     folder: &ResultFolder,
     watch: &dyn Watch,
 ) -> Result<(Traced, Ended), Error> {
-    trace_scene(&source.into(), asked, folder, watch)
-}
-
-/// [`trace`], compiled once and not for each kind of source.
-fn trace_scene(
-    source: &SceneSource,
-    asked: &TraceOptions,
-    folder: &ResultFolder,
-    watch: &dyn Watch,
-) -> Result<(Traced, Ended), Error> {
-    let mut stages = Stages::new(watch);
+    let (source, mut stages) = (source.into(), Stages::new(watch));
     let waves = FIELD_METHODS.contains(&asked.method.as_str());
     let run = if waves { fields::run } else { run };
-    run(source, asked, folder, &mut stages)
+    run(&source, asked, folder, &mut stages)
 }
 
 fn run(

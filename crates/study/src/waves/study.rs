@@ -80,17 +80,8 @@ pub fn waves<'a>(
     asked: &WaveOptions,
     watch: &'a dyn Watch,
 ) -> Result<SolvedWaves<'a>, Error> {
-    waves_of_file(scene.as_ref(), asked, watch)
-}
-
-/// [`waves`], compiled once and not for each kind of source.
-fn waves_of_file<'a>(
-    scene: &Path,
-    asked: &WaveOptions,
-    watch: &'a dyn Watch,
-) -> Result<SolvedWaves<'a>, Error> {
     let mut stages = Stages::new(watch);
-    let mut model = load(scene, asked, Model::load, &mut stages)?;
+    let mut model = load(scene.as_ref(), asked, Model::load, &mut stages)?;
     let outcome = super::compute(&model, &mut stages)?;
     let doubts = doubts(&model, &outcome);
     for doubt in &doubts {
@@ -113,19 +104,8 @@ pub fn compare_waves(
     folder: &ResultFolder,
     watch: &dyn Watch,
 ) -> Result<(WaveComparison, Ended), Error> {
-    compare_waves_of_file(scene.as_ref(), asked, solvers, folder, watch)
-}
-
-/// [`compare_waves`], compiled once and not for each kind of source.
-fn compare_waves_of_file(
-    scene: &Path,
-    asked: &WaveOptions,
-    solvers: &WaveCompareOptions,
-    folder: &ResultFolder,
-    watch: &dyn Watch,
-) -> Result<(WaveComparison, Ended), Error> {
     let mut stages = Stages::new(watch);
-    let model = load(scene, asked, Model::load_on_facets, &mut stages)?;
+    let model = load(scene.as_ref(), asked, Model::load_on_facets, &mut stages)?;
     let stop = Stop { tolerance: solvers.tolerance, max_iterations: solvers.max_iterations as usize };
     let names = written_out(&solvers.solvers, &registry::names());
     let record = super::compare(&model, &names, &stop, &mut stages)?;
