@@ -49,7 +49,8 @@ const ROWS: usize = 16;
 pub trait Llt: Copy {
     /// Scratch of [`Self::factorise_symmetric`].
     fn symmetric_scratch(n: usize) -> StackReq;
-    /// Puts L of L Lᴴ in the place of a matrix, column by column. False where a pivot is not positive.
+    /// Puts L of L Lᴴ in the place of a matrix, column by column. False where a pivot is not
+    /// positive.
     fn factorise_symmetric(matrix: &mut [Self], n: usize, scratch: &mut MemBuffer) -> bool;
     /// Scratch of [`Self::substitute_symmetric`].
     fn symmetric_substitution_scratch(n: usize, columns: usize) -> StackReq;

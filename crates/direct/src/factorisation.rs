@@ -23,8 +23,8 @@ const PARTS: usize = 8;
 pub trait Lu: Copy {
     /// Scratch of [`Self::factorise`].
     fn scratch(dim: usize) -> StackReq;
-    /// Puts L and U in the place of a matrix, column by column, and its order of rows and the inverse
-    /// of that into `orders`.
+    /// Puts L and U in the place of a matrix, column by column, and its order of rows and the
+    /// inverse of that into `orders`.
     fn factorise(matrix: &mut [Self], orders: [&mut [usize]; 2], scratch: &mut MemBuffer);
     /// Scratch of [`Self::substitute`].
     fn substitution_scratch(dim: usize, columns: usize) -> StackReq;

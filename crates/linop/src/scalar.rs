@@ -57,8 +57,8 @@ pub trait Scalar:
     fn abs2(self) -> f64;
     /// Neither NaN nor infinite.
     fn is_finite(self) -> bool;
-    /// What `real` or `complex` makes, whichever is of this kind. These are no generic functions, so
-    /// that what they name is compiled in their crate, once, and not wherever a generic function
+    /// What `real` or `complex` makes, whichever is of this kind. These are no generic functions,
+    /// so that what they name is compiled in their crate, once, and not wherever a generic function
     /// calls this.
     fn choose<F: OfScalar>(real: fn() -> F::Of<f64>, complex: fn() -> F::Of<Complex64>) -> F::Of<Self>;
 }
