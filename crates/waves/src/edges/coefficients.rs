@@ -110,7 +110,8 @@ fn behind(n: f64, source: f64, depths: [f64; 2]) -> Complex64 {
 
 /// f − f₀ and g − g₀, across the boundaries of shadow and reflection by interpolation.
 fn fringe(n: f64, observer: f64, source: f64) -> [f64; 2] {
-    let boundaries = [PI - source, PI + source, (2.0 * n - 1.0) * PI - source];
+    // Of the first face the boundary of its reflection, or of its shadow where it is not lit.
+    let boundaries = [(PI - source).abs(), PI + source, (2.0 * n - 1.0) * PI - source];
     let Some(near) = boundaries.into_iter().find(|boundary| (observer - boundary).abs() < BOUNDARY_ANGLE)
     else {
         return difference(n, observer, source);
@@ -206,11 +207,12 @@ mod tests {
                 let [before, after] = [-step, step].map(|d| half_plane(c, PI + d, depth).soft);
                 assert!((before - after).norm() < 1e-6, "{depth} {c}");
             }
-            for source in [0.5, 0.8, 1.2, 2.5] {
-                for observer in [0.0, PI - source, 2.0 * PI - source, 1.5 * PI] {
+            for source in [0.5, 0.8, 1.2, 2.5, 3.4, 4.1, 4.5] {
+                for observer in [0.0, (PI - source).abs(), 2.0 * PI - source, 1.5 * PI] {
                     let go = |d: f64| wedge(1.5, observer + d, source, [depth; 2]);
                     let gap: f64 = [0, 1].map(|i| (go(-step)[i] - go(step)[i]).norm()).iter().sum();
-                    assert!(gap < 1e-5, "{depth} {source} {observer}: {gap}");
+                    let at: f64 = [0, 1].map(|i| (go(0.0)[i] - go(step)[i]).norm()).iter().sum();
+                    assert!(gap < 1e-5 && at < 1e-5, "{depth} {source} {observer}: {gap} {at}");
                 }
             }
         }
