@@ -142,7 +142,7 @@ def solve(
         ),
         "tolerance": float(tolerance),
         "max_iterations": int(max_iterations),
-        "symmetry": _symmetry(system, symmetric),
+        "symmetric": None if symmetric is None else bool(symmetric),
         "scale": scale,
     }
     how = _options.how(threads, progress)
@@ -166,8 +166,8 @@ class _System:
 
     handed: Any
     dtype: Any
-    multiply: Callable[[NDArray[Any]], NDArray[Any]]
-    matrix: Optional[NDArray[Any]]
+    #: The largest entry of a matrix; of a function it is not known.
+    size: Optional[float]
 
 
 def _system(A: Any, b: NDArray[Any]) -> _System:
@@ -189,9 +189,12 @@ def _system(A: Any, b: NDArray[Any]) -> _System:
     dtype = np.dtype(np.complex128 if complex_ else np.float64)
     if matvec is None:
         matrix = np.ascontiguousarray(A, dtype=dtype)
-        if not np.isfinite(matrix).all():
+        # Of complex numbers the larger part will do, and what is not finite stays so.
+        parts = matrix.view(np.float64)
+        size = max(float(parts.max(initial=0.0)), -float(parts.min(initial=0.0)))
+        if not math.isfinite(size):
             raise wrong("A has entries that are not finite", "correct them")
-        return _System(matrix, dtype, lambda x: matrix @ x, matrix)
+        return _System(matrix, dtype, size)
 
     def multiply(x: NDArray[Any]) -> NDArray[Any]:
         product = np.asarray(matvec(x)).reshape(-1)
@@ -199,7 +202,7 @@ def _system(A: Any, b: NDArray[Any]) -> _System:
             raise TypeError("matvec returned complex numbers; give b as complex numbers, too")
         return np.ascontiguousarray(product, dtype=dtype)
 
-    return _System(multiply, dtype, multiply, None)
+    return _System(multiply, dtype, None)
 
 
 def _columns(values: NDArray[Any], dtype: Any) -> NDArray[Any]:
@@ -219,23 +222,13 @@ def _scale(system: _System, b: NDArray[Any]) -> float:
     would leave nothing of the 1. Where nothing can be lost the system stays as it is, since schemes
     such as neumann converge by the K that it has.
     """
-    if system.matrix is not None:
-        size = float(np.abs(system.matrix).max(initial=0.0))
-    else:
+    size = system.size
+    if size is None:
         vector = b[:, 0] if b.shape[1] and np.any(b[:, 0]) else np.ones(len(b), dtype=b.dtype)
-        size = float(np.linalg.norm(system.multiply(vector)) / np.linalg.norm(vector))
+        size = float(np.linalg.norm(system.handed(vector)) / np.linalg.norm(vector))
     if not (math.isfinite(size) and size > 0.0) or 1 / 16 <= size <= 16:
         return 1.0
     return math.ldexp(1.0, max(-1000, min(1000, math.frexp(size)[1])))
-
-
-def _symmetry(system: _System, symmetric: Optional[bool]) -> str:
-    """How symmetric the system is."""
-    name = "hermitian" if system.dtype == np.complex128 else "symmetric"
-    if symmetric is None:
-        matrix = system.matrix
-        symmetric = matrix is not None and bool(np.array_equal(matrix, matrix.conj().T))
-    return name if symmetric else "general"
 
 
 def _text(value: Any) -> str:

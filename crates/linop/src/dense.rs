@@ -3,6 +3,9 @@
 use crate::{LinearOperator, LinopError, MultiVector, Scalar, Symmetry};
 use rayon::prelude::*;
 
+/// Rows and columns of a tile in which an entry is compared with its mirror image.
+const SYMMETRY_TILE: usize = 64;
+
 /// A square matrix stored row by row: k_ij at i · dim + j. It serves any number of right-hand
 /// sides.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,21 +40,44 @@ impl<T: Scalar> Dense<T> {
         Ok(Self { dim, entries, symmetry: Symmetry::General })
     }
 
+    /// Rows made one by one, on all threads: `make` gets the number of a row and zeros.
+    ///
+    /// # Errors
+    /// [`LinopError::Memory`] if dim² entries do not fit.
+    pub fn from_rows(dim: usize, make: impl Fn(usize, &mut [T]) + Sync) -> Result<Self, LinopError> {
+        let mut matrix = Self::zeros(dim)?;
+        matrix.entries.par_chunks_mut(dim.max(1)).enumerate().for_each(|(i, row)| make(i, row));
+        Ok(matrix)
+    }
+
     /// The same matrix as one that is known to have this symmetry, as some solvers ask for.
     ///
     /// # Errors
     /// [`LinopError::Asymmetric`] where an entry contradicts it.
     pub fn with_symmetry(self, symmetry: Symmetry) -> Result<Self, LinopError> {
+        match self.asymmetry(symmetry) {
+            Some((row, column)) => Err(LinopError::Asymmetric { row, column }),
+            None => Ok(Self { symmetry, ..self }),
+        }
+    }
+
+    /// Row and column of an entry that contradicts a symmetry, if there is one.
+    #[must_use]
+    pub fn asymmetry(&self, symmetry: Symmetry) -> Option<(usize, usize)> {
         let mirrored = |i: usize, j: usize| match symmetry {
             Symmetry::General => self.get(i, j),
             Symmetry::Symmetric => self.get(j, i),
             Symmetry::Hermitian => self.get(j, i).conj(),
         };
-        let pairs = (0..self.dim).flat_map(|i| (0..=i).map(move |j| (i, j)));
-        match pairs.into_iter().find(|&(i, j)| self.get(i, j) != mirrored(i, j)) {
-            Some((row, column)) => Err(LinopError::Asymmetric { row, column }),
-            None => Ok(Self { symmetry, ..self }),
-        }
+        // In square tiles, since memory is read a line at a time.
+        let ends = |first: usize, all: usize| (first + SYMMETRY_TILE).min(all);
+        let starts = |all: usize| (0..all).step_by(SYMMETRY_TILE);
+        let tiles = starts(self.dim).flat_map(|i| starts(ends(i, self.dim)).map(move |j| (i, j)));
+        let pairs = tiles.flat_map(|(first, across)| {
+            let below = first..ends(first, self.dim);
+            below.flat_map(move |i| (across..ends(across, i + 1)).map(move |j| (i, j)))
+        });
+        pairs.into_iter().find(|&(i, j)| self.get(i, j) != mirrored(i, j))
     }
 
     /// Bytes that dim² entries take.
@@ -111,13 +137,20 @@ impl<T: Scalar> LinearOperator<T> for Dense<T> {
         self.dim
     }
 
-    // Each thread sums whole rows in their order, so the number of threads changes no bit.
+    // Each thread sums whole rows in the same way, so the number of threads changes no bit.
     fn apply(&self, x: &MultiVector<T>, y: &mut MultiVector<T>) {
         let rhs_count = x.rhs_count().max(1);
         y.as_mut_slice().par_chunks_mut(rhs_count).enumerate().with_min_len(16).for_each(|(i, y)| {
-            y.fill(T::zero());
-            for (&entry, x) in self.row_slice(i).iter().zip(x.as_slice().chunks_exact(rhs_count)) {
-                y.iter_mut().zip(x).for_each(|(y, &x)| *y += entry * x);
+            let row = self.row_slice(i);
+            let mut columns = Columns { x: x.as_slice(), rhs_count, first: 0 };
+            for y in y.chunks_mut(RHS_TOGETHER) {
+                match y.len() {
+                    1 => y.copy_from_slice(&columns.product::<1, 8>(row)),
+                    2 => y.copy_from_slice(&columns.product::<2, 4>(row)),
+                    3 => y.copy_from_slice(&columns.product::<3, 2>(row)),
+                    _ => y.copy_from_slice(&columns.product::<RHS_TOGETHER, 2>(row)),
+                }
+                columns.first += y.len();
             }
         });
     }
@@ -146,9 +179,62 @@ impl<T: Scalar> LinearOperator<T> for Dense<T> {
     }
 }
 
+/// Right-hand sides that a row is multiplied with at a time.
+const RHS_TOGETHER: usize = 4;
+
+/// Right-hand sides from `first` on: x_j of right-hand side l at j · `rhs_count` + l.
+struct Columns<'a, T> {
+    x: &'a [T],
+    rhs_count: usize,
+    first: usize,
+}
+
+impl<T: Scalar> Columns<'_, T> {
+    /// Σ_j k_ij x_j of K right-hand sides, as P sums of every P-th term each: a single sum would
+    /// wait for the last addition at every term, longer than memory takes to bring the entry.
+    fn product<const K: usize, const P: usize>(&self, row: &[T]) -> [T; K] {
+        let mut sums = [[T::zero(); K]; P];
+        let entries = row.chunks_exact(P);
+        let rest = entries.remainder();
+        let mut terms = self.x.chunks_exact(P * self.rhs_count);
+        for (entries, x) in entries.zip(&mut terms) {
+            for p in 0..P {
+                let x = &x[p * self.rhs_count + self.first..][..K];
+                (0..K).for_each(|k| sums[p][k] += entries[p] * x[k]);
+            }
+        }
+        for (p, (&entry, x)) in rest.iter().zip(terms.remainder().chunks_exact(self.rhs_count)).enumerate() {
+            (0..K).for_each(|k| sums[p][k] += entry * x[self.first + k]);
+        }
+        sums.into_iter().fold([T::zero(); K], |all, part| std::array::from_fn(|k| all[k] + part[k]))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Any number of unknowns and right-hand sides, whatever is left over of parts and groups.
+    #[test]
+    fn products_are_the_sums_of_their_terms() {
+        let value = |i: usize| ((i * 7919 + 13) % 101) as f64 - 50.0;
+        for dim in [1, 2, 3, 7, 8, 9, 16, 37] {
+            let entries: Vec<f64> = (0..dim * dim).map(value).collect();
+            let matrix = Dense::new(dim, entries).unwrap();
+            for rhs_count in [1, 2, 3, 4, 5, 7, 8, 9] {
+                let x = MultiVector::from_fn(dim, rhs_count, |j, l| value(3 * j + 31 * l));
+                let mut y = MultiVector::from_fn(dim, rhs_count, |_, _| f64::NAN);
+                matrix.apply(&x, &mut y);
+                for i in 0..dim {
+                    for l in 0..rhs_count {
+                        // Whole numbers: every order of the sum gives the same.
+                        let expected: f64 = (0..dim).map(|j| matrix.get(i, j) * x.row(j)[l]).sum();
+                        assert!((y.row(i)[l] - expected).abs() < 0.5, "{dim} {rhs_count}: {i} {l}");
+                    }
+                }
+            }
+        }
+    }
 
     #[test]
     fn a_wrong_number_of_entries_is_refused() {

@@ -7,24 +7,37 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 use fredholm_linop::{Dense, LinearOperator, LinopError, MultiVector, Scalar, Symmetry};
+use numpy::ndarray::ArrayView2;
 use numpy::{Element, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
-/// I − A/s of the entries of A, row by row.
+/// I − A/s of the entries of A. Where nothing is said of the symmetry of A, it is looked at.
 pub(crate) fn dense<T: Scalar>(
-    dim: usize,
-    entries: impl Iterator<Item = T>,
+    entries: ArrayView2<'_, T>,
     scale: f64,
-    symmetry: Symmetry,
+    symmetric: Option<bool>,
 ) -> Result<Dense<T>, LinopError> {
-    let mut coupling = Dense::zeros(dim)?;
-    for (at, entry) in entries.enumerate() {
-        let (i, j) = (at / dim, at % dim);
-        let one = if i == j { T::one() } else { T::zero() };
-        coupling.row_slice_mut(i)[j] = one - entry.scale(scale.recip());
+    let coupling = Dense::from_rows(entries.nrows(), |i, row| {
+        row.iter_mut().zip(entries.row(i)).for_each(|(k, a)| *k = -a.scale(scale.recip()));
+        row[i] += T::one();
+    })?;
+    match symmetric {
+        Some(symmetric) => coupling.with_symmetry(symmetry::<T>(symmetric)),
+        None if coupling.asymmetry(symmetry::<T>(true)).is_none() => {
+            coupling.with_symmetry(symmetry::<T>(true))
+        }
+        None => Ok(coupling),
     }
-    coupling.with_symmetry(symmetry)
+}
+
+/// The symmetry that solvers ask for, or none.
+pub(crate) fn symmetry<T: Scalar>(symmetric: bool) -> Symmetry {
+    match (symmetric, T::IS_REAL) {
+        (false, _) => Symmetry::General,
+        (true, true) => Symmetry::Symmetric,
+        (true, false) => Symmetry::Hermitian,
+    }
 }
 
 /// A function of Python that multiplies a vector and returns an array of the same numbers.

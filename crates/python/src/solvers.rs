@@ -36,8 +36,8 @@ pub(crate) struct Asked {
     solver: String,
     tolerance: f64,
     max_iterations: usize,
-    /// general, symmetric or hermitian.
-    symmetry: String,
+    /// Whether A is symmetric, Hermitian where it is complex; none: a matrix is looked at.
+    symmetric: Option<bool>,
     /// A power of two near the size of A.
     scale: f64,
 }
@@ -154,16 +154,13 @@ impl<T: Scalar + Element> System<T> {
     }
 
     fn coupling(&self, a: &Bound<'_, PyAny>, dim: usize) -> PyResult<Coupling<T>> {
-        let (py, scale) = (a.py(), self.asked.scale);
-        let symmetry = match self.asked.symmetry.as_str() {
-            "symmetric" => Symmetry::Symmetric,
-            "hermitian" => Symmetry::Hermitian,
-            _ => Symmetry::General,
-        };
+        let (py, scale, symmetric) = (a.py(), self.asked.scale, self.asked.symmetric);
         if let Ok(matrix) = a.extract::<PyReadonlyArray2<'_, T>>() {
-            let made = operator::dense(dim, matrix.as_array().iter().copied(), scale, symmetry);
+            let entries = matrix.as_array();
+            let made = py.detach(|| operator::dense(entries, scale, symmetric));
             return made.map(Coupling::Matrix).map_err(|error| input(py, error, None));
         }
+        let symmetry = symmetric.map_or(Symmetry::General, operator::symmetry::<T>);
         Ok(Coupling::Operator(Operator::new(a.clone().unbind(), dim, scale, symmetry)))
     }
 
