@@ -6,7 +6,7 @@
 #
 # FREDHOLM names the program (default: fredholm). Faces are traced to a standard error of TO
 # (default 0.1%), or for LIMIT seconds (default 600) where that comes first; every pixel gets SPP samples
-# (default 16384). docs/montecarlo.md says what each scene catches and what it takes.
+# (default 16384). docs/bundles.md says what each scene catches.
 set -eu
 program=${FREDHOLM:-fredholm}
 scenes=$(dirname "$0")/../scenes

@@ -76,6 +76,7 @@ impl Summarise for WaveRecord<'_> {
             });
             lines.add(&megahertz(found), format!("{} facets{ending}", found["facets"]));
         }
+        lines.add_some("interpolated", interpolated(&self.0["interpolated"]));
         for power in self.list("power").iter().take(MOST_ENTRIES_TOLD) {
             let ratio = power["ratio"].as_f64().unwrap_or_default();
             let absorbed = power["absorbed_w"].as_f64().unwrap_or_default();
@@ -130,6 +131,17 @@ fn last_residual(found: &Value) -> Option<f64> {
     found["residuals"].as_array()?.last()?.as_f64()
 }
 
+/// How many frequencies of a sweep were interpolated between the others, and how exactly.
+fn interpolated(record: &Value) -> Option<String> {
+    let [computed, all] = ["computed", "frequencies"].map(|key| record[key].as_u64());
+    let (computed, all, relative) = (computed?, all?, record["relative"].as_f64()?);
+    let between = all.saturating_sub(computed);
+    Some(format!(
+        "{between} of {all} frequencies, to {} of a receiver's field over the sweep",
+        percent(relative)
+    ))
+}
+
 /// What is to be said of many frequencies together.
 fn sweep(all: &[Value]) -> String {
     let values: Vec<f64> = all.iter().filter_map(|one| one["frequency_hz"].as_f64()).collect();
@@ -137,4 +149,19 @@ fn sweep(all: &[Value]) -> String {
     let worst = all.iter().filter_map(last_residual).reduce(f64::max);
     let ending = worst.map_or(String::new(), |residual| format!(", residuals up to {residual:.1e}"));
     format!("{}, {facets} facets{ending}", frequencies(&values))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    /// A sweep says how many of its frequencies were not computed; other runs say nothing.
+    #[test]
+    fn interpolated_frequencies_are_told() {
+        let record = json!({ "computed": 21, "frequencies": 61, "relative": 4.2e-3 });
+        let told = interpolated(&record).unwrap();
+        assert_eq!(told, "40 of 61 frequencies, to 0.42 % of a receiver's field over the sweep");
+        assert_eq!(interpolated(&Value::Null), None);
+    }
 }
