@@ -23,7 +23,7 @@ of() {
         two_rooms) echo "two_rooms 64x48 1e-6" ;;
         white_room) echo "white_room 48x36 1e-7" ;;
         sphere) echo "sphere 48x48 1e-6" ;;
-        studio) echo "studio 48x32 1e-4" ;;
+        studio) echo "studio 48x32 1e-3" ;;
         corridor) echo "corridor 48x64 1e-6" ;;
         courtyard) echo "courtyard 64x48 1e-6" ;;
         fifty_boxes) echo "fifty_boxes 64x48 1e-5" ;;
