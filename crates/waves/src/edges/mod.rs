@@ -39,6 +39,9 @@ const PER_WAVELENGTH: f64 = 10.0;
 /// sin²β below which a wave runs along the edge.
 const ALONG_EDGE_SQUARED_SINE: f64 = 1e-6;
 
+/// Depths that differ by less than this share of them are the same but for rounding.
+const SAME_DEPTH: f64 = 1e-12;
+
 /// An element of an edge in the light of one source.
 #[derive(Clone, Copy, Debug)]
 struct Element {
@@ -135,8 +138,9 @@ impl EdgeCurrents {
         sources: &[&dyn Source],
         sees: &dyn Fn(&Piece, &dyn Source) -> bool,
     ) {
-        for piece in edge.pieces(&self.wave) {
-            for &source in sources.iter().filter(|source| sees(&piece, **source)) {
+        let pieces = edge.pieces(&self.wave);
+        for &source in sources {
+            for &piece in pieces.iter().filter(|piece| sees(piece, source)) {
                 let towards = source.origin().seen_from(piece.place);
                 let field = source.field(&self.wave, piece.place);
                 self.elements.extend(Self::element(scatterer, (edge, piece), towards, field));
@@ -226,13 +230,20 @@ impl EdgeCurrents {
     #[must_use]
     pub fn far_amplitude(&self, u: Vec3) -> ComplexVector {
         let k = self.wave.wavenumber();
-        let term = |element: &Element| {
-            let [electric, magnetic] = element.moments(&self.wave, u, f64::INFINITY);
-            let phase = Complex64::cis(k * u.dot(element.piece.place)) * element.piece.length;
+        // A plane wave meets all elements of an edge alike: only their phases differ.
+        let term = |alike: &[Element]| {
+            let mut strength = [Complex64::ZERO; 2];
+            for Element { piece, strength: [e, h], .. } in alike {
+                let phase = Complex64::cis(k * u.dot(piece.place)) * piece.length;
+                strength[0] += e * phase;
+                strength[1] += h * phase;
+            }
+            let [electric, magnetic] = alike[0].moments(&self.wave, u, f64::INFINITY, strength);
             let across = (electric - ComplexVector::along(u, electric.dot(u))) * IMPEDANCE;
-            (across - magnetic.crossed_by(u)) * phase
+            across - magnetic.crossed_by(u)
         };
-        self.elements.iter().map(term).sum::<ComplexVector>() * Complex64::new(0.0, -k / (2.0 * TAU))
+        let all: ComplexVector = self.elements.chunk_by(Element::is_like).map(term).sum();
+        all * Complex64::new(0.0, -k / (2.0 * TAU))
     }
 }
 
@@ -249,9 +260,16 @@ impl SurfaceCurrent for Others<'_> {
 }
 
 impl Element {
+    /// Whether another element radiates as this one in every direction, but for its strength.
+    fn is_like(&self, other: &Self) -> bool {
+        let same = |(a, b): (f64, f64)| a == b || (a - b).abs() <= SAME_DEPTH * a.abs();
+        let geometry = |element: &Self| (element.edge, element.source_angle, element.along);
+        geometry(self) == geometry(other) && self.depths.into_iter().zip(other.depths).all(same)
+    }
+
     /// The electric and the magnetic moment a metre that radiate towards the direction u from this
-    /// distance (m).
-    fn moments(&self, wave: &Wave, u: Vec3, distance: f64) -> [ComplexVector; 2] {
+    /// distance (m), for E·t and H·t of this strength.
+    fn moments(&self, wave: &Wave, u: Vec3, distance: f64, [e, h]: [Complex64; 2]) -> [ComplexVector; 2] {
         let t = self.edge.tangent();
         let k = wave.wavenumber();
         let sin_squared = 1.0 - self.along * self.along;
@@ -259,7 +277,6 @@ impl Element {
         // What lies farther from the edge than the point itself does not count for it.
         let reaches = self.depths.map(|depth| depth / (1.0 + (depth / distance).powi(2)).sqrt());
         let depths = reaches.map(|reach| k * sin_squared * reach);
-        let [e, h] = self.strength;
         if !self.edge.is_sheet() {
             let [f, g] = wedge(self.edge.opening, self.edge.angle(u), self.source_angle, depths);
             let electric = ComplexVector::along(t, e * f * factor / IMPEDANCE);
@@ -282,7 +299,7 @@ impl Element {
     fn field(&self, wave: &Wave, p: Vec3) -> Field {
         let d = p - self.piece.place;
         let distance = d.length();
-        let [electric, magnetic] = self.moments(wave, d / distance, distance);
+        let [electric, magnetic] = self.moments(wave, d / distance, distance, self.strength);
         let length = self.piece.length;
         electric_element(wave, electric * length, d) + magnetic_element(wave, magnetic * length, d)
     }
