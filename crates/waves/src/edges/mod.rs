@@ -262,7 +262,7 @@ impl SurfaceCurrent for Others<'_> {
 impl Element {
     /// Whether another element radiates as this one in every direction, but for its strength.
     fn is_like(&self, other: &Self) -> bool {
-        let same = |(a, b): (f64, f64)| a == b || (a - b).abs() <= SAME_DEPTH * a.abs();
+        let same = |(a, b): (f64, f64)| (a - b).abs() <= SAME_DEPTH * a.abs();
         let geometry = |element: &Self| (element.edge, element.source_angle, element.along);
         geometry(self) == geometry(other) && self.depths.into_iter().zip(other.depths).all(same)
     }
