@@ -61,9 +61,16 @@ impl<T: Scalar> Dense<T> {
         }
     }
 
-    /// Row and column of an entry that contradicts a symmetry, if there is one.
+    /// The same matrix as one that is known to be symmetric, Hermitian where it is complex, if its
+    /// entries are.
     #[must_use]
-    pub fn asymmetry(&self, symmetry: Symmetry) -> Option<(usize, usize)> {
+    pub fn with_found_symmetry(self) -> Self {
+        let symmetry = if T::IS_REAL { Symmetry::Symmetric } else { Symmetry::Hermitian };
+        if self.asymmetry(symmetry).is_none() { Self { symmetry, ..self } } else { self }
+    }
+
+    /// Row and column of an entry that contradicts a symmetry, if there is one.
+    fn asymmetry(&self, symmetry: Symmetry) -> Option<(usize, usize)> {
         let mirrored = |i: usize, j: usize| match symmetry {
             Symmetry::General => self.get(i, j),
             Symmetry::Symmetric => self.get(j, i),
@@ -247,6 +254,8 @@ mod tests {
         let matrix = |last| Dense::new(2, vec![1.0, 2.0, last, 3.0]).unwrap();
         let symmetric = matrix(2.0).with_symmetry(Symmetry::Symmetric).unwrap();
         assert_eq!(symmetric.symmetry(), Symmetry::Symmetric);
+        assert_eq!(matrix(2.0).with_found_symmetry(), symmetric);
+        assert_eq!(matrix(5.0).with_found_symmetry(), matrix(5.0));
         let refusal = matrix(5.0).with_symmetry(Symmetry::Hermitian);
         assert_eq!(refusal, Err(LinopError::Asymmetric { row: 1, column: 0 }));
         let mut changed = symmetric;

@@ -24,10 +24,7 @@ pub(crate) fn dense<T: Scalar>(
     })?;
     match symmetric {
         Some(symmetric) => coupling.with_symmetry(symmetry::<T>(symmetric)),
-        None if coupling.asymmetry(symmetry::<T>(true)).is_none() => {
-            coupling.with_symmetry(symmetry::<T>(true))
-        }
-        None => Ok(coupling),
+        None => Ok(coupling.with_found_symmetry()),
     }
 }
 
