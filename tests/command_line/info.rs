@@ -9,11 +9,11 @@ use crate::support::{Bench, PLATE, room};
 const RESULTS: [(&str, &str, &[&str]); 15] = [
     ("solve room.toml -o r", "r", &["mean irradiance r ", "stated error", "converged after", "80 elements"]),
     ("solve room.toml --accuracy 20% -o a", "a", &["20 % was asked for", "hierarchical"]),
-    ("trace room.toml --samples 64 -o t", "t", &["standard error, RMS", "by path", "paths"]),
+    ("trace room.toml --samples 64 -o t", "t", &["standard error, L2", "by path", "paths"]),
     (
         "trace plate.toml --method surface-sampling --samples 64 -o f",
         "f",
-        &["of the fields (standard error, RMS)"],
+        &["of the fields (standard error, L2)"],
     ),
     ("shoot room.toml -o s", "s", &["of the power distributed", "stated error"]),
     ("compare room.toml --solvers gauss-seidel,lu -o c", "c", &["gauss-seidel", "outcome", "errors against"]),

@@ -125,7 +125,7 @@ fn a_reference_holds_the_exact_values_of_a_furnace() {
     }
     assert!(text(&bench, "bundle/patches.obj").lines().filter(|line| line.starts_with("f ")).count() == 24);
     let record: Value = serde_json::from_str(&text(&bench, "bundle/reference.json")).unwrap();
-    assert_eq!(record["format"], "fredholm-reference-2");
+    assert_eq!(record["format"], "fredholm-reference-3");
     assert_eq!((&record["pixels"]["width"], &record["pixels"]["chosen"]), (&4.into(), &true.into()));
 }
 

@@ -8,7 +8,7 @@ use fredholm_mesh::Patch;
 use fredholm_montecarlo::light::{Batch, Control, Estimator, METHODS, PathTracing, Switches, estimator};
 use fredholm_montecarlo::points::PointSet;
 use fredholm_montecarlo::statistics::Moments;
-use fredholm_montecarlo::{Enclosure, Groups, Stop, Tracing};
+use fredholm_montecarlo::{Enclosure, Groups, State, Stop, Tracing};
 use fredholm_scene::Scene;
 use std::error::Error;
 
@@ -97,7 +97,15 @@ fn reductions(ground: &Ground) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// CPU seconds to 1 % RMS over the faces, from a run of at least so many batches.
+/// √ of the mean of (s/x)² over the faces and bands.
+fn rms(state: &State) -> f64 {
+    let errors = state.groups.standard_errors();
+    let lit = state.groups.mean().iter().zip(&errors).filter(|(mean, _)| **mean > 0.0);
+    let (sum, count) = lit.fold((0.0, 0.0), |(sum, n), (mean, s)| (sum + (s / mean).powi(2), n + 1.0));
+    f64::sqrt(sum / count)
+}
+
+/// CPU seconds to 1 % over the faces, RMS and in L², from a run of at least so many batches.
 fn to_one_percent(ground: &Ground) -> Result<(), Box<dyn Error>> {
     for name in METHODS {
         let method = estimator(name, &ground.scene, Switches::default()).ok_or("no such method")?;
@@ -108,8 +116,9 @@ fn to_one_percent(ground: &Ground) -> Result<(), Box<dyn Error>> {
         let clock = Clock::start();
         tracing.go_on(&mut state, &stop, &fredholm_linop::Quiet)?;
         // Errors fall with the root of the work.
-        let seconds = clock.seconds() * (state.relative_error() / 0.01).powi(2);
-        println!("{}: {name:15} {seconds:6.1} CPU s to 1 % RMS", ground.name);
+        let seconds = clock.seconds();
+        let [rms, l2] = [rms(&state), state.relative_error()].map(|error| seconds * (error / 0.01).powi(2));
+        println!("{}: {name:15} {rms:6.1} CPU s to 1 % RMS, {l2:6.1} to 1 % in L2", ground.name);
     }
     Ok(())
 }

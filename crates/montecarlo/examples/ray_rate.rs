@@ -6,7 +6,7 @@ use fredholm_mesh::{Patch, Vec3};
 use fredholm_montecarlo::Enclosure;
 use fredholm_montecarlo::density::{Cosine, DirectionDensity};
 use fredholm_montecarlo::light::{Batch, METHODS, Switches, estimator};
-use fredholm_montecarlo::points::{Draw, Key, PointSet};
+use fredholm_montecarlo::points::{Key, PointSet, Samples};
 use fredholm_scene::Scene;
 use fredholm_visibility::Occluders;
 use std::error::Error;
@@ -48,8 +48,9 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Cosine-distributed rays from even points of the patches, per second.
 fn cast(enclosure: &Enclosure, occluders: &Occluders) -> f64 {
+    let mut samples = Samples::new(PointSet::Independent, Key { seed: 1, batch: 0, stream: 0 }, RAYS);
     let ray = |sample| -> (Vec3, Vec3) {
-        let mut draw = Draw::new(PointSet::Independent, Key { seed: 1, batch: 0, stream: 0 }, sample, RAYS);
+        let mut draw = samples.draw(sample);
         let at = enclosure.point(sample as usize % enclosure.len(), draw.pair());
         (at.point, enclosure.world(at, Cosine.sample(draw.pair())))
     };

@@ -9,6 +9,7 @@ use crate::density::{Cosine, DirectionDensity, Frame, LampDensity, SurfaceDensit
 use crate::locator::Locator;
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::Occluders;
+use std::collections::HashMap;
 use std::f64::consts::FRAC_1_PI;
 
 /// A point of a patch.
@@ -24,7 +25,9 @@ pub struct Site {
 #[derive(Clone, Debug)]
 pub struct Enclosure {
     patches: Vec<Patch>,
+    /// One of every direction that a patch is turned to.
     frames: Vec<Frame>,
+    frame_of: Vec<u32>,
     surfaces: Vec<SurfaceDensity>,
     occluders: Occluders,
     locator: Option<Locator>,
@@ -60,8 +63,10 @@ impl Enclosure {
             .collect();
         let lamps = LampDensity::new(&patches, &power).ok_or(MonteCarloError::NoLight)?;
         let largest = |row: &[f64]| row.iter().copied().fold(0.0, f64::max);
+        let (frames, frame_of) = frames(&patches);
         Ok(Self {
-            frames: patches.iter().map(|patch| Frame::about(patch.normal())).collect(),
+            frames,
+            frame_of,
             surfaces: patches.iter().map(SurfaceDensity::new).collect(),
             occluders: Occluders::new(&patches)?,
             locator: None,
@@ -181,25 +186,25 @@ impl Enclosure {
     /// A direction of the frame of a patch, in the axes of the scene.
     #[must_use]
     pub fn world(&self, at: Site, direction: Vec3) -> Vec3 {
-        self.frames[at.patch].world(direction)
+        self.frames[self.frame_of[at.patch] as usize].world(direction)
     }
 
     /// Unit direction to a point, in the frame of the patch.
     #[must_use]
     pub fn direction(&self, from: Site, to: Vec3) -> Vec3 {
-        self.frames[from.patch].local((to - from.point).normalize_or_zero())
+        self.frames[self.frame_of[from.patch] as usize].local((to - from.point).normalize_or_zero())
     }
 
     /// The lit side that a ray from anywhere meets first.
     #[must_use]
     pub fn cast(&self, origin: Vec3, direction: Vec3) -> Option<Site> {
         let hit = self.occluders.closest(origin, direction, f64::INFINITY)?;
+        let lit = || (self.patches[hit.patch].normal().dot(direction) < 0.0).then_some(hit.patch);
         let patch = match &self.locator {
-            Some(locator) => locator.lit(hit.patch, hit.point, direction, &self.patches)?,
-            None => hit.patch,
+            Some(locator) => locator.lit(hit.patch, hit.point, direction, &self.patches),
+            None => lit(),
         };
-        let lit = self.patches[patch].normal().dot(direction) < 0.0;
-        lit.then_some(Site { patch, point: hit.point })
+        patch.map(|patch| Site { patch, point: hit.point })
     }
 
     /// Whether a ray of this direction, in the frame of the patch, meets a lit side or nothing:
@@ -229,6 +234,21 @@ impl Enclosure {
     }
 }
 
+/// The frames of all normals, and which one each patch has: a few for a room, which stay near at
+/// hand where one of each patch would not.
+fn frames(patches: &[Patch]) -> (Vec<Frame>, Vec<u32>) {
+    let (mut frames, mut known) = (Vec::new(), HashMap::new());
+    let frame_of = patches.iter().map(|patch| {
+        let normal = patch.normal();
+        *known.entry(normal.to_array().map(f64::to_bits)).or_insert_with(|| {
+            frames.push(Frame::about(normal));
+            frames.len() as u32 - 1
+        })
+    });
+    let frame_of = frame_of.collect();
+    (frames, frame_of)
+}
+
 fn check(
     what: &'static str,
     range: &'static str,
@@ -249,7 +269,7 @@ fn check(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::points::{Draw, Key, PointSet};
+    use crate::points::{Key, PointSet, Samples};
     use fredholm_mesh::{Cutting, Lines, MeshBuilder, Shape};
 
     /// Rays against the undivided pieces find what rays against the patches find.
@@ -272,9 +292,9 @@ mod tests {
         assert!(mesh.occluders().len() < n);
         let fine = Enclosure::new(patches, 1, vec![0.5; n], vec![1.0; n]).unwrap();
         let coarse = fine.clone().blocked_by(mesh.occluders()).unwrap();
+        let mut samples = Samples::new(PointSet::Independent, Key { seed: 3, batch: 0, stream: 0 }, 4000);
         for sample in 0..4000 {
-            let mut draw =
-                Draw::new(PointSet::Independent, Key { seed: 3, batch: 0, stream: 0 }, sample, 4000);
+            let mut draw = samples.draw(sample);
             let at = fine.point(sample as usize % n, draw.pair());
             let numbers = draw.pair();
             let [a, b] = [&fine, &coarse].map(|scene| scene.bounce(at, numbers));

@@ -43,4 +43,4 @@ pub mod waves;
 
 pub use enclosure::{Enclosure, Site};
 pub use error::MonteCarloError;
-pub use run::{BATCHES_AT_ONCE, FEWEST_BATCHES, Groups, State, Stop, Tracing};
+pub use run::{BATCHES_AT_ONCE, FEWEST_BATCHES, Groups, State, Stop, Tracing, relative_l2};

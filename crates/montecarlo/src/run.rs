@@ -6,7 +6,7 @@
 
 use crate::light::{Batch, Estimator, Work};
 use crate::points::PointSet;
-use crate::statistics::Moments;
+use crate::statistics::{Moments, bits};
 use crate::{Enclosure, MonteCarloError};
 use fredholm_linop::Watch;
 use rayon::prelude::*;
@@ -29,7 +29,7 @@ pub struct Groups {
 struct Level {
     of: Vec<usize>,
     share: Vec<f64>,
-    count: usize,
+    areas: Vec<f64>,
 }
 
 impl Groups {
@@ -55,13 +55,13 @@ impl Groups {
         of.iter().zip(scene.patches()).for_each(|(&group, patch)| areas[group] += patch.area());
         let share =
             of.iter().zip(scene.patches()).map(|(&group, patch)| patch.area() / areas[group]).collect();
-        self.levels.push(Level { of, share, count });
+        self.levels.push(Level { of, share, areas });
         Ok(self)
     }
 
-    /// Number of groups of all levels.
-    fn count(&self) -> usize {
-        self.levels.iter().map(|level| level.count).sum()
+    /// Areas of the groups of all levels, m².
+    fn areas(&self) -> Vec<f64> {
+        self.levels.iter().flat_map(|level| level.areas.iter().copied()).collect()
     }
 
     fn means(&self, values: &[f64], bands: usize) -> Vec<f64> {
@@ -71,7 +71,7 @@ impl Groups {
 
 impl Level {
     fn means(&self, values: &[f64], bands: usize) -> Vec<f64> {
-        let mut means = vec![0.0; self.count * bands];
+        let mut means = vec![0.0; self.areas.len() * bands];
         for ((&group, share), row) in self.of.iter().zip(&self.share).zip(values.chunks(bands)) {
             let mean = &mut means[group * bands..(group + 1) * bands];
             mean.iter_mut().zip(row).for_each(|(mean, value)| *mean += share * value);
@@ -95,6 +95,9 @@ pub struct State {
     pub patches: Moments,
     /// Irradiance of the groups.
     pub groups: Moments,
+    /// Areas of the groups, m².
+    #[serde(with = "bits")]
+    pub areas: Vec<f64>,
     /// Paths so far.
     pub paths: u64,
     /// Rays and segments so far.
@@ -110,15 +113,29 @@ impl State {
         self.patches.count()
     }
 
-    /// √ of the mean of (s/x)² over the groups and bands with x ≠ 0: what a target error is
-    /// compared with. Infinite below two batches.
+    /// Error in L² over the groups, as [`relative_l2`] has it: what a target error is compared with.
+    /// Infinite below two batches, and where nothing is lit.
     #[must_use]
     pub fn relative_error(&self) -> f64 {
-        let errors = self.groups.standard_errors();
-        let shares = self.groups.mean().iter().zip(&errors).filter(|(mean, _)| **mean != 0.0);
-        let (sum, count) = shares.fold((0.0, 0.0), |(sum, n), (mean, s)| (sum + (s / mean).powi(2), n + 1.0));
-        if count > 0.0 { f64::sqrt(sum / count) } else { f64::INFINITY }
+        let (means, errors) = (self.groups.mean(), self.groups.standard_errors());
+        relative_l2(&self.areas, means, &errors).unwrap_or(f64::INFINITY)
     }
+}
+
+/// √(Σ A s²/Σ A x²) with the values x of places, their standard deviations s and the areas A of the
+/// places, in the worst band that is lit. Values and deviations place by place, the bands of each
+/// together. None where nothing is lit.
+///
+/// Faces that are almost dark count for what they send on, which is little: relative to their own
+/// values they would need most of the samples, and those that are covered would need them for ever.
+#[must_use]
+pub fn relative_l2(areas: &[f64], values: &[f64], errors: &[f64]) -> Option<f64> {
+    let bands = values.len().checked_div(areas.len())?;
+    let squares = |of: &[f64], band: usize| -> f64 {
+        of.iter().skip(band).step_by(bands).zip(areas).map(|(x, area)| area * x * x).sum()
+    };
+    let shares = (0..bands).map(|band| (squares(errors, band), squares(values, band)));
+    shares.filter(|(_, size)| *size > 0.0).map(|(error, size)| f64::sqrt(error / size)).reduce(f64::max)
 }
 
 /// When a run ends: at the first that is met.
@@ -207,14 +224,15 @@ impl<'a> Tracing<'a> {
     /// A run that has not begun.
     #[must_use]
     pub fn start(&self) -> State {
-        let bands = self.scene.bands();
+        let (bands, areas) = (self.scene.bands(), self.groups.areas());
         State {
             method: self.estimator.name().to_owned(),
             seed: self.seed,
             samples: self.samples,
             points: self.points,
             patches: Moments::new(self.scene.len() * bands),
-            groups: Moments::new(self.groups.count() * bands),
+            groups: Moments::new(areas.len() * bands),
+            areas,
             paths: 0,
             rays: 0,
             seconds: 0.0,
@@ -248,7 +266,7 @@ impl<'a> Tracing<'a> {
             ("the seed", own.seed != state.seed),
             ("the number of samples of a batch", own.samples != state.samples),
             ("the point set", own.points != state.points),
-            ("the mesh", own.patches.len() != state.patches.len() || own.groups.len() != state.groups.len()),
+            ("the mesh", own.patches.len() != state.patches.len() || own.areas != state.areas),
         ];
         let found = differences.iter().find(|(_, differs)| *differs);
         found.map_or(Ok(()), |&(what, _)| Err(MonteCarloError::Foreign { what }))
@@ -271,5 +289,24 @@ impl<'a> Tracing<'a> {
         let mut values = vec![0.0; self.scene.len() * self.scene.bands()];
         let work = self.estimator.batch(self.scene, &batch, &mut values);
         (values, work)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_in_l2_is_that_of_the_worst_band_weighted_by_area() {
+        // Two places of 1 m² and 3 m², two bands: 4/(16 + 3 · 16), and 4/4.
+        let (areas, values, errors) = ([1.0, 3.0], [4.0, 2.0, 4.0, 0.0], [2.0, 2.0, 0.0, 0.0]);
+        assert_eq!(relative_l2(&areas, &values, &errors), Some(1.0));
+        let quiet = [2.0, 0.0, 0.0, 0.0];
+        assert_eq!(relative_l2(&areas, &values, &quiet), Some(0.25));
+        // A place that is dark but for its noise hardly counts; a band that is dark does not.
+        let dark = [4.0, 0.0, 1e-9, 0.0];
+        assert_eq!(relative_l2(&[1.0; 2], &dark, &[0.0, 0.0, 1e-6, 5.0]), Some(1e-6 / 4.0));
+        assert_eq!(relative_l2(&areas, &[0.0; 4], &errors), None);
+        assert_eq!(relative_l2(&[], &[], &[]), None);
     }
 }

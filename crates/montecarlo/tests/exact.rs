@@ -7,8 +7,9 @@
 mod common;
 
 use common::{SQUARES, furnace, method, run, samples, single, sphere, squares, whole};
+use fredholm_mesh::{Patch, Vec3};
 use fredholm_montecarlo::light::pixels::{PixelSampling, pixel};
-use fredholm_montecarlo::light::{METHODS, PIXEL_METHODS, Switches, point_estimator};
+use fredholm_montecarlo::light::{Control, METHODS, PIXEL_METHODS, PathTracing, Switches, point_estimator};
 use fredholm_montecarlo::statistics::{Suite, normal_score};
 use fredholm_montecarlo::{Enclosure, Groups};
 
@@ -120,4 +121,54 @@ fn pixels_show_the_radiosity_within_their_errors() {
             "{name}: {together} {suite:?}"
         );
     }
+}
+
+/// Two reflecting squares: with the solution of one constant a square as control variate, paths
+/// tell what the discretisation missed, with less noise than without.
+#[test]
+fn a_control_variate_changes_no_mean_and_takes_noise_away() {
+    let scene = squares(0.8);
+    let below = SQUARES / (1.0 - 0.64 * SQUARES * SQUARES);
+    let control = Control::new(&scene, vec![below, 0.8 * SQUARES * below], false).unwrap();
+    let traced = |estimator: &PathTracing, seed| {
+        let state = run(&scene, estimator, single(&scene), (seed, 64, 4000));
+        [state.groups.mean().to_vec(), state.groups.standard_errors()]
+    };
+    let plain = PathTracing::continuous(Switches::default());
+    let [known, error] = traced(&plain, 1);
+    let [found, less] = traced(&PathTracing::continuous(Switches::default()).with_control(control), 2);
+    for square in 0..2 {
+        let z = (found[square] - known[square]) / error[square].hypot(less[square]);
+        println!(
+            "square {square}: {:.6} ± {:.1e} with, {:.6} ± {:.1e} without, z = {z:+.2}",
+            found[square], less[square], known[square], error[square]
+        );
+        assert!(z.abs() < 3.5, "{z}");
+        assert!(less[square] < 0.75 * error[square], "{} {}", less[square], error[square]);
+    }
+    // The upper one gets its light by way of the lower one, more of it than constants say.
+    assert!(found[1] > 0.8 * SQUARES * below + 5.0 * less[1]);
+}
+
+/// What lies on a patch: its mean is taken from the paths, whatever the control variate says of it,
+/// since a solution knows nothing of the light that rays meet from under there.
+#[test]
+fn a_control_variate_decides_nothing_where_another_patch_lies() {
+    let known = squares(0.8);
+    let corner = |x: f64, y: f64| Vec3::new(x, y, 0.0);
+    let turned = [corner(0.0, 0.0), corner(0.0, 1.0), corner(0.5, 1.0), corner(0.5, 0.0)];
+    let mut patches = known.patches().to_vec();
+    patches.push(Patch::quad(turned).unwrap().unwrap());
+    let scene = Enclosure::new(patches, 1, vec![0.8, 0.8, 0.0], vec![0.0, 1.0, 0.0]).unwrap();
+    let below = 0.5 * SQUARES;
+    let control = Control::new(&scene, vec![below, 0.8 * SQUARES * below, 0.0], false).unwrap();
+    let controlled = PathTracing::continuous(Switches::default()).with_control(control);
+    let plain = PathTracing::continuous(Switches::default());
+    let traced = |estimator: &PathTracing, seed| {
+        let state = run(&scene, estimator, single(&scene), (seed, 64, 2000));
+        (state.groups.mean()[0], state.groups.standard_errors()[0])
+    };
+    let ((a, s), (b, t)) = (traced(&plain, 1), traced(&controlled, 2));
+    println!("{b:.6} ± {t:.1e} with, {a:.6} ± {s:.1e} without");
+    assert!((a - b).abs() < 3.5 * s.hypot(t) && t < 0.01 * a, "{a} ± {s}, {b} ± {t}");
 }

@@ -63,7 +63,7 @@ pub struct RunRecord {
     /// What the faces receive, one entry a band.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub received: Vec<Received>,
-    /// Standard error of the irradiance of the faces over the irradiance, RMS over faces and bands,
+    /// Standard error of the irradiance of the faces over the irradiance, L2 over the faces in the worst band,
     /// where it was traced.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub standard_error: Option<f64>,

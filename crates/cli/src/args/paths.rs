@@ -75,7 +75,7 @@ pub(crate) struct TraceStopArgs {
     /// Seconds after which no further batches are begun
     #[arg(long, value_name = "S", value_parser = seconds)]
     pub(crate) seconds: Option<f64>,
-    /// Standard error to reach, root mean square over the faces, such as 1% or 0.01
+    /// Standard error to reach, in L2 over the faces, such as 1% or 0.01
     #[arg(long, value_name = "E", value_parser = share)]
     pub(crate) to: Option<f64>,
 }

@@ -60,7 +60,7 @@ impl LampDensity {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::points::{Draw, Key, PointSet};
+    use crate::points::{Key, PointSet, Samples};
 
     #[test]
     fn lamps_are_chosen_by_power_and_dark_patches_never() {
@@ -74,9 +74,9 @@ mod tests {
         let density = LampDensity::new(&patches, &[1.0, 0.0, 3.0]).unwrap();
         let n = 40_000;
         let key = Key { seed: 1, batch: 0, stream: 0 };
-        let mut counts = [0.0; 3];
+        let (mut counts, mut samples) = ([0.0; 3], Samples::new(PointSet::Independent, key, n));
         for s in 0..n {
-            let (patch, p) = density.sample(Draw::new(PointSet::Independent, key, s, n).pair());
+            let (patch, p) = density.sample(samples.draw(s).pair());
             counts[patch] += 1.0 / f64::from(n);
             assert!((p - patches[patch].centroid()).abs().max_element() <= 1.0);
         }

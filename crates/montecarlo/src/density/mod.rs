@@ -38,7 +38,7 @@ fn at(t: f64, turn: f64) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::points::{Draw, Key, PointSet};
+    use crate::points::{Key, PointSet, Samples};
     use statrs::distribution::{ChiSquared, ContinuousCDF};
     use std::f64::consts::TAU;
 
@@ -48,9 +48,9 @@ mod tests {
         let n = 20_000;
         let (rings, quarters) = (edges.len() - 1, 4);
         let mut counts = vec![0.0; rings * quarters];
+        let mut samples = Samples::new(PointSet::Independent, Key { seed: 11, batch: 0, stream: 0 }, n);
         for sample in 0..n {
-            let key = Key { seed: 11, batch: 0, stream: 0 };
-            let d = density.sample(Draw::new(PointSet::Independent, key, sample, n).pair());
+            let d = density.sample(samples.draw(sample).pair());
             assert!((d.length() - 1.0).abs() < 1e-12 && density.pdf(d) > 0.0, "{name}: {d}");
             let t = 0.5 * (d - Vec3::Z).length_squared();
             let ring = edges[1..rings].iter().filter(|&&edge| t >= edge).count();

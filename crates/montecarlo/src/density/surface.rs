@@ -47,7 +47,7 @@ fn in_triangle([a, b, c]: [Vec3; 3], [u, v]: [f64; 2]) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::points::{Draw, Key, PointSet};
+    use crate::points::{Key, PointSet, Samples};
 
     /// Moments of a trapezoid and a triangle: mean is the centroid, and as many points fall on each
     /// side of a line as area.
@@ -59,8 +59,8 @@ mod tests {
         for patch in [Patch::quad(trapezoid).unwrap().unwrap(), Patch::triangle(triangle).unwrap()] {
             let (n, density) = (20_000, SurfaceDensity::new(&patch));
             let key = Key { seed: 2, batch: 0, stream: 0 };
-            let draw = |s| Draw::new(PointSet::Independent, key, s, n).pair();
-            let points: Vec<Vec3> = (0..n).map(|s| density.sample(draw(s))).collect();
+            let mut samples = Samples::new(PointSet::Independent, key, n);
+            let points: Vec<Vec3> = (0..n).map(|s| density.sample(samples.draw(s).pair())).collect();
             let mean = points.iter().sum::<Vec3>() / f64::from(n);
             assert!((mean - patch.centroid()).length() < 0.02, "{mean}");
             // Left of x = 1: 1 of 2, and 3/4 of 1.

@@ -39,7 +39,7 @@ struct Vertex {
 }
 
 impl Bidirectional {
-    fn half(&self, scene: &Enclosure, from: Site, draw: &mut Draw) -> (Vec<Vertex>, u64) {
+    fn half(&self, scene: &Enclosure, from: Site, draw: &mut Draw<'_>) -> (Vec<Vertex>, u64) {
         let first =
             Vertex { site: from, survival: 1.0, inner: 0.0, ending: 0.0, weight: vec![1.0; scene.bands()] };
         let (mut vertices, mut rays) = (vec![first], 0);
@@ -73,7 +73,7 @@ impl Bidirectional {
 }
 
 impl PointEstimator for Bidirectional {
-    fn irradiance(&self, scene: &Enclosure, at: Site, draw: &mut Draw, out: &mut [f64]) -> u64 {
+    fn irradiance(&self, scene: &Enclosure, at: Site, draw: &mut Draw<'_>, out: &mut [f64]) -> u64 {
         let lamp = scene.lamp(draw.pair());
         let density = scene.lamps().pdf(lamp.patch);
         let (eye, eye_rays) = self.half(scene, at, draw);

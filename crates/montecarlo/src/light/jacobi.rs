@@ -9,7 +9,7 @@
 
 use super::{Batch, Estimator, Work, per_area, scale};
 use crate::Enclosure;
-use crate::points::{Draw, Key, PointSet};
+use crate::points::{Key, PointSet, Samples};
 
 /// Stochastic Jacobi radiosity.
 #[derive(Clone, Copy, Debug, Default)]
@@ -76,7 +76,7 @@ fn powers(scene: &Enclosure, unshot: &[f64]) -> Vec<f64> {
 /// Lines of each patch.
 fn lines(scene: &Enclosure, batch: &Batch, unshot: &[f64], line: f64, iteration: u32) -> Vec<u32> {
     let key = Key { seed: batch.seed, batch: batch.number, stream: ROUNDING_STREAMS | iteration };
-    let mut sum = Draw::new(PointSet::Independent, key, 0, 1).single();
+    let mut sum = Samples::new(PointSet::Independent, key, 1).draw(0).single();
     let mut share = |power: f64| {
         let before = sum.floor();
         sum += power / line;
@@ -92,8 +92,9 @@ fn shoot(scene: &Enclosure, batch: &Batch, shot: &Shot<'_>) -> Vec<f64> {
     let mut received = vec![0.0; shot.unshot.len()];
     let size = shot.lines.iter().sum();
     let senders = shot.lines.iter().enumerate().flat_map(|(i, &count)| (0..count).map(move |_| i));
+    let mut samples = batch.samples_of(shot.iteration, size);
     for (i, sample) in senders.zip(0..size) {
-        let mut draw = batch.draw(shot.iteration, sample, size);
+        let mut draw = samples.draw(sample);
         let from = scene.point(i, draw.pair());
         if let Some(to) = scene.bounce(from, draw.pair()) {
             let row = &mut received[to.patch * bands..(to.patch + 1) * bands];

@@ -36,7 +36,7 @@ pub use path::{Control, PathTracing};
 pub use photon::PhotonMap;
 pub use registry::{METHODS, PIXEL_METHODS, estimator, point_estimator};
 
-use crate::points::{Draw, Key, PointSet};
+use crate::points::{Draw, Key, PointSet, Samples};
 use crate::{Enclosure, Site};
 
 /// What of variance reduction is used.
@@ -63,7 +63,7 @@ const LEAST_WEIGHT: f64 = 1e-9;
 
 impl Switches {
     /// Whether a path goes on, with the probability `survival`; its weight grows accordingly.
-    fn goes_on(self, survival: f64, draw: &mut Draw, weight: &mut [f64], start: f64) -> bool {
+    fn goes_on(self, survival: f64, draw: &mut Draw<'_>, weight: &mut [f64], start: f64) -> bool {
         if !self.roulette {
             return weight.iter().any(|&w| w > LEAST_WEIGHT * start);
         }
@@ -96,9 +96,9 @@ pub struct Batch {
 }
 
 impl Batch {
-    /// The numbers of sample `sample` of `size` in a stream.
-    fn draw(&self, stream: u32, sample: u32, size: u32) -> Draw {
-        Draw::new(self.points, Key { seed: self.seed, batch: self.number, stream }, sample, size)
+    /// So many samples of a stream.
+    pub(crate) fn samples_of(&self, stream: u32, size: u32) -> Samples {
+        Samples::new(self.points, Key { seed: self.seed, batch: self.number, stream }, size)
     }
 }
 
@@ -140,7 +140,7 @@ pub trait Estimator: Sync {
 pub trait PointEstimator: Sync {
     /// Adds one sample of the irradiance (W/m²) at a site to `out`, one place a band, and returns
     /// the rays it took.
-    fn irradiance(&self, scene: &Enclosure, at: Site, draw: &mut Draw, out: &mut [f64]) -> u64;
+    fn irradiance(&self, scene: &Enclosure, at: Site, draw: &mut Draw<'_>, out: &mut [f64]) -> u64;
 }
 
 /// The batch of an estimator that gathers: means over even points of each patch.
@@ -148,8 +148,9 @@ fn gather(scene: &Enclosure, batch: &Batch, estimator: &dyn PointEstimator, out:
     let mut work = Work::default();
     out.fill(0.0);
     for (patch, row) in out.chunks_mut(scene.bands()).enumerate() {
+        let mut samples = batch.samples_of(patch as u32, batch.samples);
         for sample in 0..batch.samples {
-            let mut draw = batch.draw(patch as u32, sample, batch.samples);
+            let mut draw = samples.draw(sample);
             let at = scene.point(patch, draw.pair());
             work += Work { paths: 1, rays: estimator.irradiance(scene, at, &mut draw, row) };
         }

@@ -34,7 +34,7 @@ impl ParticleTracing {
     pub(crate) fn fly(
         &self,
         scene: &Enclosure,
-        draw: &mut Draw,
+        draw: &mut Draw<'_>,
         power: &mut [f64],
         arrive: &mut dyn FnMut(Site, &[f64]),
     ) -> u64 {
@@ -60,7 +60,7 @@ impl ParticleTracing {
 }
 
 /// Where a particle starts; its power, times M/p_L.
-fn emitted(scene: &Enclosure, draw: &mut Draw, power: &mut [f64]) -> Site {
+fn emitted(scene: &Enclosure, draw: &mut Draw<'_>, power: &mut [f64]) -> Site {
     let at = scene.lamp(draw.pair());
     let density = scene.lamps().pdf(at.patch);
     for power in power.iter_mut() {
@@ -88,13 +88,14 @@ impl Estimator for ParticleTracing {
         let mut work = Work::default();
         let mut power = vec![0.0; bands];
         out.fill(0.0);
+        let mut samples = batch.samples_of(0, batch.samples);
         for sample in 0..batch.samples {
             power.fill(1.0 / f64::from(batch.samples));
             let mut arrive = |at: Site, power: &[f64]| {
                 let row = &mut out[at.patch * bands..(at.patch + 1) * bands];
                 row.iter_mut().zip(power).for_each(|(sum, power)| *sum += power);
             };
-            let mut draw = batch.draw(0, sample, batch.samples);
+            let mut draw = samples.draw(sample);
             work += Work { paths: 1, rays: self.fly(scene, &mut draw, &mut power, &mut arrive) };
         }
         per_area(scene, out);

@@ -9,10 +9,15 @@
 //!
 //! *Control variate.* With known irradiances Ẽ of patches, whose mean after one application of the
 //! operator is Ẽ again, E_i = Ẽ_i + E[Σ_{k≥1} W_k (D(y_k) + ρ Ẽ(y_{k+1}) − Ẽ(y_k))]: only what the
-//! discretisation missed is sampled. The result is then as exact as the form factors behind Ẽ.
+//! discretisation missed is sampled. And since Ẽ is the mean of D + ρ Ẽ over the patch, it may be
+//! replaced by the same estimate at another point z_k of the patch, even in it, with the same lamp
+//! and direction: what both have in common, which is most of the noise, is gone. The result is as
+//! exact as the form factors behind Ẽ. Of patches on which another one lies the mean is not known:
+//! rays that start under it meet what no light comes from. They are estimated without it.
 
 use super::{Batch, Estimator, PointEstimator, Switches, Work, add, gather, scale};
 use crate::density::{Cosine, DirectionDensity};
+use crate::locator::overlaid;
 use crate::points::Draw;
 use crate::{Enclosure, MonteCarloError, Site};
 use std::f64::consts::FRAC_1_PI;
@@ -31,6 +36,8 @@ pub struct Control {
     whole: Vec<f64>,
     /// Means over the part that can be met.
     met: Vec<f64>,
+    /// Of which patches the mean of D + ρ Ẽ is Ẽ.
+    known: Vec<bool>,
 }
 
 impl Control {
@@ -46,7 +53,17 @@ impl Control {
         }
         let share = |at: usize| if patchwise { 1.0 } else { scene.exposed(at / bands) };
         let met = |(at, e): (usize, &f64)| if share(at) > 0.0 { e / share(at) } else { 0.0 };
-        Ok(Self { met: irradiance.iter().enumerate().map(met).collect(), whole: irradiance })
+        let bare = overlaid(scene.patches()).into_iter().enumerate();
+        Ok(Self {
+            met: irradiance.iter().enumerate().map(met).collect(),
+            known: bare.map(|(patch, overlaid)| !overlaid && scene.exposed(patch) >= 1.0).collect(),
+            whole: irradiance,
+        })
+    }
+
+    /// Irradiances of a patch, means over the part that can be met, W/m².
+    fn met_at(&self, scene: &Enclosure, patch: usize) -> &[f64] {
+        &self.met[patch * scene.bands()..(patch + 1) * scene.bands()]
     }
 }
 
@@ -75,16 +92,16 @@ impl PathTracing {
         Self { directions, ..self }
     }
 
-    /// A point of a lamp.
+    /// What a point of a lamp brings.
     fn next_event(
         &self,
         scene: &Enclosure,
         at: Site,
-        draw: &mut Draw,
-        weight: &[f64],
+        numbers: [f64; 2],
+        weight: &Weight<'_>,
         out: &mut [f64],
     ) -> u64 {
-        let lamp = scene.lamp(draw.pair());
+        let lamp = scene.lamp(numbers);
         let kernel = scene.kernel(at, lamp);
         if kernel <= 0.0 {
             return 0;
@@ -92,7 +109,7 @@ impl PathTracing {
         if scene.sees(at, lamp) {
             let sampled = scene.lamps().pdf(lamp.patch);
             let met = if self.switches.multiple_importance { self.met(scene, at, lamp, kernel) } else { 0.0 };
-            add(out, weight, scene.exitance(lamp.patch), kernel / (sampled + met));
+            weight.add(out, scene.exitance(lamp.patch), kernel / (sampled + met));
         }
         1
     }
@@ -116,75 +133,116 @@ impl PathTracing {
         }
     }
 
-    /// What the control variate has put in the place of the irradiance here, or of what is
-    /// reflected next.
-    fn correct(&self, scene: &Enclosure, patch: usize, weight: &[f64], sign: f64, out: &mut [f64]) {
-        if let Some(control) = &self.control {
-            let bands = scene.bands();
-            add(out, weight, &control.met[patch * bands..(patch + 1) * bands], sign);
-        }
-    }
-
     /// One step: from a vertex to the next, or the end.
     pub(super) fn step(
         &self,
         scene: &Enclosure,
         step: &mut Step<'_>,
-        draw: &mut Draw,
+        draw: &mut Draw<'_>,
         out: &mut [f64],
     ) -> Option<Site> {
-        self.leave(scene, step, draw, out);
-        let direction = self.directions.sample(draw.pair());
-        if direction.z <= 0.0 {
-            return None;
+        let twin = self.twin(scene, step, draw);
+        let scored = self.scores(step);
+        let numbers = Numbers {
+            lamp: (scored && self.switches.next_event).then(|| draw.pair()),
+            direction: draw.pair(),
+        };
+        match (twin, &self.control) {
+            (Some(twin), _) => {
+                let weight = Weight { of: &*step.weight, share: -1.0 };
+                step.rays += self.leave(scene, (twin, step.done, scored), &numbers, &weight, out).rays;
+            }
+            (None, Some(control)) if step.done > 0 => {
+                add(out, step.weight, control.met_at(scene, step.at.patch), -1.0);
+            }
+            (None, _) => {}
         }
-        let factor = direction.z * FRAC_1_PI / self.directions.pdf(direction);
-        step.rays += 1;
-        let next = scene.ray(step.at, direction)?;
-        if !self.arrive(scene, step, (next, factor), out) {
-            return None;
-        }
-        let survival = scene.survival(next.patch);
-        self.switches.goes_on(survival, draw, step.weight, 1.0).then_some(next)
+        let weight = Weight { of: &*step.weight, share: 1.0 };
+        let left = self.leave(scene, (step.at, step.done, scored), &numbers, &weight, out);
+        step.rays += left.rays;
+        let (next, factor) = left.reflected?;
+        scale(step.weight, scene.reflectance(next.patch), factor);
+        self.switches.goes_on(scene.survival(next.patch), draw, step.weight, 1.0).then_some(next)
     }
 
-    /// What is scored at a vertex before a ray leaves it.
-    fn leave(&self, scene: &Enclosure, step: &mut Step<'_>, draw: &mut Draw, out: &mut [f64]) {
-        if step.done > 0 {
-            self.correct(scene, step.at.patch, step.weight, -1.0, out);
-        }
-        if self.scores(step) && self.switches.next_event {
-            step.rays += self.next_event(scene, step.at, draw, step.weight, out);
-        }
+    /// Another point of the patch of a vertex; none at the first vertex, and where its mean is not
+    /// known.
+    fn twin(&self, scene: &Enclosure, step: &Step<'_>, draw: &mut Draw<'_>) -> Option<Site> {
+        let paired = !self.patchwise && step.done > 0 && self.knows(step.at.patch);
+        paired.then(|| scene.point(step.at.patch, draw.pair()))
     }
 
-    /// What is scored where a ray of this factor arrives; whether it is reflected.
-    fn arrive(
+    /// Whether a control variate knows the mean of a patch.
+    fn knows(&self, patch: usize) -> bool {
+        self.control.as_ref().is_some_and(|control| control.known[patch])
+    }
+
+    /// What is scored at a vertex and where a ray from it arrives: D and, with a control variate,
+    /// ρ Ẽ.
+    fn leave(
         &self,
         scene: &Enclosure,
-        step: &mut Step<'_>,
-        (next, factor): (Site, f64),
+        (at, done, scored): (Site, u32, bool),
+        numbers: &Numbers,
+        weight: &Weight<'_>,
         out: &mut [f64],
-    ) -> bool {
-        let scored = self.scores(step);
+    ) -> Left {
+        let mut left = Left { rays: 0, reflected: None };
+        if let Some(numbers) = numbers.lamp {
+            left.rays += self.next_event(scene, at, numbers, weight, out);
+        }
+        let direction = self.directions.sample(numbers.direction);
+        if direction.z <= 0.0 {
+            return left;
+        }
+        let factor = direction.z * FRAC_1_PI / self.directions.pdf(direction);
+        left.rays += 1;
+        let Some(next) = scene.ray(at, direction) else { return left };
         if scored {
-            add(out, step.weight, scene.exitance(next.patch), self.share(scene, step.at, next, factor));
+            weight.add(out, scene.exitance(next.patch), self.share(scene, at, next, factor));
         }
         let exposed = if self.patchwise { scene.exposed(next.patch) } else { 1.0 };
-        if exposed <= 0.0 || !self.switches.reflects(step.done) {
-            return false;
+        if exposed > 0.0 && self.switches.reflects(done) {
+            let factor = factor / exposed;
+            left.reflected = Some((next, factor));
+            if let Some(control) = self.control.as_ref().filter(|_| scored) {
+                let reflected = scene.reflectance(next.patch).iter().zip(control.met_at(scene, next.patch));
+                let sums = out.iter_mut().zip(weight.of).zip(reflected);
+                sums.for_each(|((out, w), (rho, e))| *out += w * rho * e * factor * weight.share);
+            }
         }
-        scale(step.weight, scene.reflectance(next.patch), factor / exposed);
-        if scored {
-            self.correct(scene, next.patch, step.weight, 1.0, out);
-        }
-        true
+        left
     }
 
-    /// A control variate has scored the first vertex already.
+    /// A control variate that knows the mean of the first vertex has scored it already.
     fn scores(&self, step: &Step<'_>) -> bool {
-        self.control.is_none() || step.done > 0
+        step.done > 0 || !self.knows(step.at.patch)
     }
+}
+
+/// What is drawn at a vertex.
+struct Numbers {
+    /// The point of a lamp, where one is looked at.
+    lamp: Option<[f64; 2]>,
+    direction: [f64; 2],
+}
+
+/// What a vertex weighs, band by band and in all of them.
+struct Weight<'a> {
+    of: &'a [f64],
+    share: f64,
+}
+
+impl Weight<'_> {
+    fn add(&self, out: &mut [f64], values: &[f64], factor: f64) {
+        add(out, self.of, values, factor * self.share);
+    }
+}
+
+/// The rays that a vertex took, and what one met that reflects it, with its factor.
+struct Left {
+    rays: u64,
+    reflected: Option<(Site, f64)>,
 }
 
 /// Where a path is, how often it was reflected, and what it weighs.
@@ -196,9 +254,9 @@ pub(super) struct Step<'a> {
 }
 
 impl PointEstimator for PathTracing {
-    fn irradiance(&self, scene: &Enclosure, at: Site, draw: &mut Draw, out: &mut [f64]) -> u64 {
+    fn irradiance(&self, scene: &Enclosure, at: Site, draw: &mut Draw<'_>, out: &mut [f64]) -> u64 {
         let mut weight = vec![1.0; scene.bands()];
-        if let Some(control) = &self.control {
+        if let Some(control) = self.control.as_ref().filter(|control| control.known[at.patch]) {
             let bands = scene.bands();
             add(out, &weight, &control.whole[at.patch * bands..(at.patch + 1) * bands], 1.0);
         }

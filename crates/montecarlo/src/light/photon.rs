@@ -89,18 +89,14 @@ impl PhotonMap {
         let tracing = ParticleTracing::continuous(self.switches);
         let (mut sites, mut powers, mut rays) = (Vec::new(), Vec::new(), 0);
         let mut power = vec![0.0; scene.bands()];
+        let mut samples = batch.samples_of(PHOTON_STREAMS, self.photons);
         for photon in 0..self.photons {
             power.fill(1.0 / f64::from(self.photons));
             let mut keep = |at: Site, power: &[f64]| {
                 sites.push(at);
                 powers.extend_from_slice(power);
             };
-            rays += tracing.fly(
-                scene,
-                &mut batch.draw(PHOTON_STREAMS, photon, self.photons),
-                &mut power,
-                &mut keep,
-            );
+            rays += tracing.fly(scene, &mut samples.draw(photon), &mut power, &mut keep);
         }
         let tree = KdTree::new(sites.iter().map(|site| site.point));
         let work = Work { paths: u64::from(self.photons), rays };
@@ -170,7 +166,7 @@ impl Map<'_> {
 }
 
 impl PointEstimator for Map<'_> {
-    fn irradiance(&self, scene: &Enclosure, at: Site, draw: &mut Draw, out: &mut [f64]) -> u64 {
+    fn irradiance(&self, scene: &Enclosure, at: Site, draw: &mut Draw<'_>, out: &mut [f64]) -> u64 {
         let path = PathTracing::continuous(self.of.switches);
         let mut weight = vec![1.0; scene.bands()];
         let mut step = Step { at, done: 0, rays: 0, weight: &mut weight };

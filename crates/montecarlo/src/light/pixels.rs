@@ -5,7 +5,7 @@
 //! independent, and the standard error comes from them.
 
 use super::{PointEstimator, add};
-use crate::points::{Draw, Key, PointSet};
+use crate::points::{Key, PointSet, Samples};
 use crate::statistics::Moments;
 use crate::{Enclosure, Site};
 
@@ -48,9 +48,10 @@ pub fn pixel(
     let [mut sum, mut irradiance] = [vec![0.0; bands], vec![0.0; bands]];
     for batch in 0..batches {
         sum.fill(0.0);
+        let key = Key { seed, batch, stream: PIXEL_STREAMS | number };
+        let mut numbers = Samples::new(PointSet::Sobol, key, samples);
         for sample in 0..samples {
-            let key = Key { seed, batch, stream: PIXEL_STREAMS | number };
-            let mut draw = Draw::new(PointSet::Sobol, key, sample, samples);
+            let mut draw = numbers.draw(sample);
             let Some(site) = see(draw.pair()) else { continue };
             seen += 1;
             irradiance.fill(0.0);

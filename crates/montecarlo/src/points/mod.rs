@@ -1,6 +1,7 @@
 //! Point sets: how the random numbers of the samples of one batch share out the unit square.
 //!
-//! Sample s of n draws its numbers one pair after the other, by a [`Draw`]. In every set each
+//! Sample s of n draws its numbers one pair after the other, by a [`Draw`] of their
+//! [`Samples`]. In every set each
 //! number of each sample is even in [0, 1) by itself, so that means stay unbiased; the sets differ
 //! in how the samples of a batch go together. Every pair is a pattern of its own, and the batches
 //! are independent of each other: errors are estimated between batches.
@@ -75,58 +76,94 @@ impl Key {
     }
 }
 
-/// The random numbers of one sample, drawn one after the other.
-#[derive(Clone, Copy, Debug)]
-pub struct Draw {
+/// Dimensions from here on seed the patterns of a batch, so that they share no number with the
+/// samples.
+const PATTERN_DIMENSIONS: u32 = 1 << 31;
+
+/// The samples of one key. What they have in common is computed once, when it is first asked for.
+#[derive(Clone, Debug)]
+pub struct Samples {
     set: PointSet,
     key: Key,
-    sample: u32,
     size: u32,
+    /// The words that make the pattern of each pair of dimensions.
+    patterns: Vec<[u32; 4]>,
+    /// The words that shuffle the points of each block of dimensions.
+    shuffles: Vec<u32>,
+}
+
+impl Samples {
+    /// So many samples of a batch.
+    #[must_use]
+    pub fn new(set: PointSet, key: Key, size: u32) -> Self {
+        Self { set, key, size, patterns: Vec::new(), shuffles: Vec::new() }
+    }
+
+    /// The numbers of one of the samples.
+    pub fn draw(&mut self, sample: u32) -> Draw<'_> {
+        let mut draw = Draw { samples: self, sample, dimension: 0, index: 0 };
+        draw.enter();
+        draw
+    }
+
+    /// The words that make the pattern of a pair, of which all before it were asked for.
+    fn pattern(&mut self, dimension: u32) -> [u32; 4] {
+        let pair = dimension as usize / 2;
+        if let Some(&words) = self.patterns.get(pair) {
+            return words;
+        }
+        let role = if self.set == PointSet::Sobol { 2 } else { 0 };
+        let words = self.key.words(role, PATTERN_DIMENSIONS + dimension);
+        self.patterns.push(words);
+        words
+    }
+
+    /// The word that shuffles the points of a block, of which all before it were asked for.
+    fn shuffle(&mut self, block: u32) -> u32 {
+        if let Some(&word) = self.shuffles.get(block as usize) {
+            return word;
+        }
+        let [word, ..] = self.key.words(1, PATTERN_DIMENSIONS + block);
+        self.shuffles.push(word);
+        word
+    }
+}
+
+/// The random numbers of one sample, drawn one after the other.
+#[derive(Debug)]
+pub struct Draw<'a> {
+    samples: &'a mut Samples,
+    sample: u32,
     dimension: u32,
     /// Number of the Sobol point in this block of dimensions.
     index: u32,
 }
 
-/// Dimensions from here on seed the patterns of a batch, so that they share no number with the
-/// samples.
-const PATTERN_DIMENSIONS: u32 = 1 << 31;
-
-impl Draw {
-    /// The numbers of sample `sample` of the `size` of a batch.
-    #[must_use]
-    pub fn new(set: PointSet, key: Key, sample: u32, size: u32) -> Self {
-        let mut draw = Self { set, key, sample, size, dimension: 0, index: 0 };
-        draw.enter();
-        draw
-    }
-
+impl Draw<'_> {
     /// The next pair, each even in [0, 1).
     pub fn pair(&mut self) -> [f64; 2] {
         let dimension = self.advance();
-        let place = |pattern: [u32; 4], jitter: [f64; 2], set| {
-            strata::place(set, self.sample, self.size, pattern, jitter)
-        };
-        match self.set {
-            PointSet::Independent => unit_pair(self.key.words(self.sample, dimension)),
+        let Samples { set, key, size, .. } = *self.samples;
+        match set {
+            PointSet::Independent => unit_pair(key.words(self.sample, dimension)),
             PointSet::Sobol => {
-                let (scramble, first) =
-                    (self.key.words(2, PATTERN_DIMENSIONS + dimension), dimension % DIMENSIONS);
+                let (scramble, first) = (self.samples.pattern(dimension), dimension % DIMENSIONS);
                 [0, 1].map(|i| sobol::point(self.index, first + i as u32, scramble[i]))
             }
             set => {
-                let pattern = self.key.words(0, PATTERN_DIMENSIONS + dimension);
-                place(pattern, unit_pair(self.key.words(self.sample, dimension)), set)
+                let jitter = unit_pair(key.words(self.sample, dimension));
+                strata::place(set, self.sample, size, self.samples.pattern(dimension), jitter)
             }
         }
     }
 
     /// The next single number: of a pair, so that the pairs that follow keep their pattern.
     pub fn single(&mut self) -> f64 {
-        if self.set != PointSet::Sobol {
+        if self.samples.set != PointSet::Sobol {
             return self.pair()[0];
         }
         let dimension = self.advance();
-        let scramble = self.key.words(2, PATTERN_DIMENSIONS + dimension);
+        let scramble = self.samples.pattern(dimension);
         sobol::point(self.index, dimension % DIMENSIONS, scramble[0])
     }
 
@@ -143,9 +180,9 @@ impl Draw {
     /// Shuffles the points for a new block of dimensions: met in the same order they would be the
     /// same ones.
     fn enter(&mut self) {
-        if self.set == PointSet::Sobol {
-            let shuffle = self.key.words(1, PATTERN_DIMENSIONS + self.dimension / DIMENSIONS);
-            self.index = sobol::scrambled(self.sample.reverse_bits(), shuffle[0]);
+        if self.samples.set == PointSet::Sobol {
+            let shuffle = self.samples.shuffle(self.dimension / DIMENSIONS);
+            self.index = sobol::scrambled(self.sample.reverse_bits(), shuffle);
         }
     }
 }
@@ -156,8 +193,9 @@ mod tests {
 
     fn points(set: PointSet, size: u32, pair: usize, seed: u64) -> Vec<[f64; 2]> {
         let key = Key { seed, batch: 3, stream: 5 };
+        let mut samples = Samples::new(set, key, size);
         let point = |sample| {
-            let mut draw = Draw::new(set, key, sample, size);
+            let mut draw = samples.draw(sample);
             for _ in 0..pair {
                 draw.pair();
             }
@@ -222,9 +260,9 @@ mod tests {
             let (mut sum, mut squares, mut crossed) = (0.0, 0.0, 0.0);
             for batch in 0..batches {
                 let key = Key { seed: 5, batch, stream: 0 };
-                let mut mean = 0.0;
+                let (mut mean, mut samples) = (0.0, Samples::new(set, key, size));
                 for sample in 0..size {
-                    let mut draw = Draw::new(set, key, sample, size);
+                    let mut draw = samples.draw(sample);
                     let (a, b) = (draw.pair(), draw.pair());
                     mean += a[0] * a[1] / f64::from(size);
                     crossed += (a[0] - 0.5) * (b[0] - 0.5);

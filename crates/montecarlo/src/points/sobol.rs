@@ -49,15 +49,23 @@ fn directions(s: usize, a: u32, m: &[u32]) -> [u32; 32] {
     v
 }
 
+/// Values of four bits, and how many times four bits an index has.
+const NIBBLE: usize = 16;
+const NIBBLES: usize = 8;
+
+/// What four bits of an index add to a coordinate, at each of their places in each dimension.
+static SUMS: LazyLock<Vec<[[u32; NIBBLE]; NIBBLES]>> = LazyLock::new(|| {
+    let sum = |v: &[u32; 32], place: usize, bits: usize| {
+        (0..4).filter(|b| bits >> b & 1 == 1).fold(0, |x, b| x ^ v[4 * place + b])
+    };
+    let sums = |v| std::array::from_fn(|place| std::array::from_fn(|bits| sum(v, place, bits)));
+    DIRECTIONS.iter().map(sums).collect()
+});
+
 /// Coordinate `dimension` of point `index`, scrambled by `seed`, in [0, 1).
 pub(super) fn point(index: u32, dimension: u32, seed: u32) -> f64 {
-    let v = &DIRECTIONS[dimension as usize];
-    let (mut x, mut left) = (0, index);
-    while left != 0 {
-        let bit = left.trailing_zeros();
-        x ^= v[bit as usize];
-        left &= left - 1;
-    }
+    let sums = &SUMS[dimension as usize];
+    let x = (0..NIBBLES).fold(0, |x, place| x ^ sums[place][index as usize >> (4 * place) & (NIBBLE - 1)]);
     f64::from(scrambled(x.reverse_bits(), seed)) / 2_f64.powi(32)
 }
 

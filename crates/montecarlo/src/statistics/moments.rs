@@ -91,14 +91,14 @@ impl Moments {
 }
 
 /// Numbers as their bits, so that a state reads back as it was.
-mod bits {
+pub(crate) mod bits {
     use serde::{Deserialize, Deserializer, Serializer};
 
-    pub(super) fn serialize<S: Serializer>(values: &[f64], out: S) -> Result<S::Ok, S::Error> {
+    pub(crate) fn serialize<S: Serializer>(values: &[f64], out: S) -> Result<S::Ok, S::Error> {
         out.collect_seq(values.iter().map(|value| value.to_bits()))
     }
 
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(source: D) -> Result<Vec<f64>, D::Error> {
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(source: D) -> Result<Vec<f64>, D::Error> {
         Ok(Vec::<u64>::deserialize(source)?.into_iter().map(f64::from_bits).collect())
     }
 }

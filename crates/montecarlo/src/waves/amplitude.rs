@@ -14,7 +14,6 @@ use super::scattering::Spot;
 use super::{FieldEstimator, Scattering};
 use crate::light::Batch;
 use crate::light::kd_tree::KdTree;
-use crate::points::{Draw, Key};
 use fredholm_mesh::Vec3;
 use fredholm_waves::ComplexVector;
 
@@ -70,10 +69,9 @@ impl AmplitudeParticles {
     ) -> ComplexVector {
         let angles =
             SolidAngles::new(problem, cell.point, |number, facet| problem.lights(number, facet, cell));
-        let key = Key { seed: batch.seed, batch: batch.number, stream: (1 << 31) | stream };
+        let mut samples = batch.samples_of((1 << 31) | stream, self.second);
         let impact = |ray: u32| {
-            let mut draw = Draw::new(batch.points, key, ray, self.second);
-            let (spots, density) = angles.shoot(problem, cell.point, draw.pair());
+            let (spots, density) = angles.shoot(problem, cell.point, samples.draw(ray).pair());
             // What lies behind the first is hidden.
             let first = spots.first().filter(|_| density > 0.0);
             first.map(|&spot| (spot, 1.0 / (density * f64::from(self.second))))
@@ -90,10 +88,9 @@ impl AmplitudeParticles {
     fn field(&self, problem: &Scattering<'_>, receiver: Vec3, batch: &Batch, stream: u32) -> ComplexVector {
         let directions = Directions::new(problem, Aim::Facets, receiver);
         let mut impacts = Vec::new();
+        let mut samples = batch.samples_of(stream, batch.samples);
         for sample in 0..batch.samples {
-            let key = Key { seed: batch.seed, batch: batch.number, stream };
-            let mut draw = Draw::new(batch.points, key, sample, batch.samples);
-            let (spots, density) = directions.shoot(problem, receiver, draw.pair());
+            let (spots, density) = directions.shoot(problem, receiver, samples.draw(sample).pair());
             let angle = 1.0 / (density * f64::from(batch.samples));
             impacts.extend(spots.into_iter().filter(|_| density > 0.0).map(|spot| (spot, angle)));
         }

@@ -10,7 +10,7 @@ use super::scattering::Spot;
 use super::{FieldEstimator, Scattering};
 use crate::density::{Cosine, DirectionDensity, Frame, VonMisesFisher};
 use crate::light::Batch;
-use crate::points::{Draw, Key};
+use crate::points::Draw;
 use fredholm_mesh::Vec3;
 use fredholm_waves::ComplexVector;
 
@@ -45,9 +45,9 @@ impl FieldEstimator for FieldParticles {
         let field = |(stream, &receiver): (usize, &Vec3)| {
             let directions = Directions::new(problem, self.aim, receiver);
             let mut sum = ComplexVector::ZERO;
+            let mut samples = batch.samples_of(stream as u32, batch.samples);
             for sample in 0..batch.samples {
-                let key = Key { seed: batch.seed, batch: batch.number, stream: stream as u32 };
-                let mut draw = Draw::new(batch.points, key, sample, batch.samples);
+                let mut draw = samples.draw(sample);
                 let (spots, density) = directions.shoot(problem, receiver, draw.pair());
                 let angle = 1.0 / (density * f64::from(batch.samples));
                 for spot in spots {
@@ -66,7 +66,7 @@ fn arrived(
     spot: Spot,
     receiver: Vec3,
     angle: f64,
-    draw: &mut Draw,
+    draw: &mut Draw<'_>,
 ) -> ComplexVector {
     let Some(area) = shown(problem, spot, receiver, angle) else { return ComplexVector::ZERO };
     let mut current = problem.first(spot);
@@ -84,7 +84,7 @@ struct Partner {
 
 impl Partner {
     /// One sample of J₂, A/m.
-    fn sample(&self, problem: &Scattering<'_>, draw: &mut Draw) -> ComplexVector {
+    fn sample(&self, problem: &Scattering<'_>, draw: &mut Draw<'_>) -> ComplexVector {
         let even = problem.spot(draw.pair());
         let even = Some(even).filter(|&from| problem.sees(self.spot, from));
         let (turned, mirrored) = (draw.single() < 0.5, draw.single() < 0.5);

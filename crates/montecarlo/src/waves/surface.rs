@@ -6,7 +6,6 @@
 
 use super::{FieldEstimator, Scattering};
 use crate::light::Batch;
-use crate::points::{Draw, Key};
 use fredholm_mesh::Vec3;
 use fredholm_waves::ComplexVector;
 
@@ -23,9 +22,9 @@ impl FieldEstimator for SurfaceSampling {
         let mut fields = vec![ComplexVector::ZERO; receivers.len()];
         let area = problem.area();
         let share = area / f64::from(batch.samples);
+        let mut samples = batch.samples_of(0, batch.samples);
         for sample in 0..batch.samples {
-            let key = Key { seed: batch.seed, batch: batch.number, stream: 0 };
-            let mut draw = Draw::new(batch.points, key, sample, batch.samples);
+            let mut draw = samples.draw(sample);
             let spot = problem.spot(draw.pair());
             let mut current = problem.first(spot);
             if problem.twice() {

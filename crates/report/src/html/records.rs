@@ -153,7 +153,7 @@ fn trace_statements(run: &RunRecord) -> Vec<String> {
     let mut said = Vec::new();
     said.extend(run.standard_error.map(|error| {
         format!(
-            "The relative standard error of the irradiance is {} (RMS over the faces), after {} and {}.",
+            "The relative standard error of the irradiance is {} (L2 over the faces), after {} and {}.",
             percent(error),
             count(work("batches"), "batch", "batches"),
             count(work("paths"), "path", "paths"),
@@ -170,13 +170,15 @@ fn trace_statements(run: &RunRecord) -> Vec<String> {
 fn reference_statements(record: &ReferenceRecord) -> Vec<String> {
     let mut said = vec![
         format!(
-            "The stated error of the irradiance of a face is {} (RMS over faces and bands), after {}: \
-            standard error and form factors together, one standard deviation.",
+            "The stated error of the irradiance is {} (L2 over the faces, the worst band), and {} of its own \
+            value for the median face, after {}: standard error and form factors together, one standard \
+            deviation.",
             percent(record.relative_error),
+            percent(record.median_error),
             count(record.batches, "batch", "batches"),
         ),
         format!(
-            "The standard error of a pixel is {} (RMS over those that are not black).",
+            "The standard error of a pixel is {} (L2 over the picture, the worst band).",
             percent(record.pixels.relative_error)
         ),
         format!("The values come from {}.", record.method),

@@ -350,7 +350,7 @@ fn crosscheck_statements(record: &CrosscheckRecord) -> Vec<String> {
         record.headline() + ".",
         format!(
             "The level of significance is {} ({} for many tests); the relative \
-                standard error of the paths is {} (RMS over the faces) after {}.",
+                standard error of the paths is {} (L2 over the faces) after {}.",
             number(record.significance),
             record.correction,
             percent(record.relative_error),

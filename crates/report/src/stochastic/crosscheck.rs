@@ -118,7 +118,7 @@ pub struct CrosscheckRecord {
     pub seed: u64,
     /// Batches.
     pub batches: u64,
-    /// Relative standard error, RMS over the faces.
+    /// Relative standard error in L² over the faces, the worst band.
     #[serde(deserialize_with = "reading::number")]
     pub relative_error: f64,
     /// Deterministic solver.

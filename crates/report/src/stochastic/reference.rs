@@ -28,7 +28,7 @@ use crate::{
 /// Names of the files, in the order in which they are written.
 pub const REFERENCE_FILES: [&str; 4] = ["reference.csv", "patches.obj", "pixels.npz", "reference.json"];
 /// Name and version of the format of the record.
-pub const REFERENCE_FORMAT: &str = "fredholm-reference-2";
+pub const REFERENCE_FORMAT: &str = "fredholm-reference-3";
 
 /// Values of every face and band, face-major.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,7 +67,7 @@ pub struct ReferencePixels {
     pub batches: u32,
     /// Samples of a batch.
     pub samples: u32,
-    /// Standard error over the value, RMS over the pixels and bands that are not black.
+    /// Standard error over the value in L² over the pixels, the worst band.
     pub relative_error: f64,
 }
 
@@ -91,8 +91,10 @@ pub struct ReferenceRecord {
     pub bands: Vec<String>,
     /// Number of faces.
     pub faces: usize,
-    /// Stated error over the value, RMS over faces and bands.
+    /// Stated error over the value in L² over the faces, weighted by area, the worst band.
     pub relative_error: f64,
+    /// Stated error of a face over its own value: the median over the faces and bands that are lit.
+    pub median_error: f64,
     /// Error asked for in a row of form factors.
     pub form_factor_tolerance: f64,
     /// Seed.

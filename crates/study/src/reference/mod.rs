@@ -3,7 +3,7 @@
 use fredholm_linop::Watch;
 use fredholm_montecarlo::light::PathTracing;
 use fredholm_montecarlo::light::pixels::PixelSampling;
-use fredholm_montecarlo::{Enclosure, State};
+use fredholm_montecarlo::{Enclosure, State, relative_l2};
 use fredholm_report::{
     Exposure, Pixels, REFERENCE_FORMAT, ReferencePixels, ReferenceRecord, ReferenceTable, ResultFolder, View,
     write_reference,
@@ -156,6 +156,7 @@ fn pictured(
 
 /// The camera and how well its pixels are known.
 fn seen(camera: &Camera, chosen: bool, sampling: PixelSampling, pixels: &Pixels) -> ReferencePixels {
+    let even = vec![1.0; camera.width as usize * camera.height as usize];
     let [eye, target, up] = [camera.eye, camera.target, camera.up].map(|v| v.to_array());
     ReferencePixels {
         eye,
@@ -167,15 +168,16 @@ fn seen(camera: &Camera, chosen: bool, sampling: PixelSampling, pixels: &Pixels)
         chosen,
         batches: sampling.batches,
         samples: sampling.samples,
-        relative_error: relative(&pixels.radiosity, &pixels.standard_error),
+        relative_error: relative_l2(&even, &pixels.radiosity, &pixels.standard_error).unwrap_or(0.0),
     }
 }
 
-/// Error over the value, RMS over what is not 0.
-fn relative(values: &[f64], errors: &[f64]) -> f64 {
+/// Error over the own value, the median of what is not 0; 0 where nothing is.
+fn median(values: &[f64], errors: &[f64]) -> f64 {
     let lit = values.iter().zip(errors).filter(|(value, _)| **value > 0.0);
-    let (sum, count) = lit.fold((0.0, 0.0), |(sum, n), (x, s)| (sum + (s / x).powi(2), n + 1.0));
-    if count > 0.0 { f64::sqrt(sum / count) } else { 0.0 }
+    let mut shares: Vec<f64> = lit.map(|(value, error)| error / value).collect();
+    shares.sort_by(f64::total_cmp);
+    shares.get(shares.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// Writes the scene for Mitsuba 3 and pbrt-v4, where its bands are colours or grey, and what judges
@@ -227,9 +229,12 @@ fn traced(
 }
 
 fn table(problem: &Problem, solution: &Solution, state: &State) -> ReferenceTable {
-    let factors = expected_error(problem, solution, false);
     let (mesh, scene) = (&problem.mesh, &problem.scene);
-    let error = state.groups.standard_errors().iter().zip(&factors).map(|(s, f)| s.hypot(*f)).collect();
+    // The control variate stands for the irradiance at every vertex of a path, so that the errors
+    // of its form factors are reflected as light is.
+    let reflected = 1.0 / (1.0 - scene.reflectance(mesh).into_iter().fold(0.0, f64::max));
+    let factors = expected_error(problem, solution, false).into_iter().map(|f| f * reflected);
+    let error = state.groups.standard_errors().iter().zip(factors).map(|(s, f)| s.hypot(f)).collect();
     let material = |face: usize| &scene.materials()[mesh.surfaces()[mesh.faces()[face].surface].material];
     let all = || 0..mesh.faces().len();
     ReferenceTable {
@@ -256,6 +261,7 @@ fn record(
         "pixels.npz: standard_error is one standard deviation of all known errors",
         "what is seen of nothing, or of the back of a face, counts as 0",
     ];
+    let areas: Vec<f64> = problem.mesh.faces().iter().map(|face| face.area).collect();
     ReferenceRecord {
         format: REFERENCE_FORMAT.to_owned(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -265,7 +271,8 @@ fn record(
         method: "path tracing, the deterministic solution as control variate".to_owned(),
         bands: problem.scene.bands().to_vec(),
         faces: problem.mesh.faces().len(),
-        relative_error: relative(&table.irradiance, &table.error),
+        relative_error: relative_l2(&areas, &table.irradiance, &table.error).unwrap_or(0.0),
+        median_error: median(&table.irradiance, &table.error),
         form_factor_tolerance: problem.options.form_factor_tolerance,
         seed: state.seed,
         batches: state.batches(),

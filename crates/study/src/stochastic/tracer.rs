@@ -49,7 +49,7 @@ impl<'a> Tracer<'a> {
     pub(crate) fn reason(&self, state: &State) -> String {
         let error = state.relative_error();
         let what = self.stop.ended(state.batches(), error, state.seconds);
-        format!("{what}, standard error {:.3} % (RMS over the faces)", 100.0 * error)
+        format!("{what}, standard error {:.3} % (L2 over the faces)", 100.0 * error)
     }
 }
 

@@ -113,7 +113,7 @@ fn stated(run: &RunRecord) -> Stated {
     }
     if let Some(error) = run.standard_error {
         let what = if run.received.is_empty() { "the fields" } else { "the irradiance of the faces" };
-        let text = format!("{} of {what} (standard error, RMS)", percent(error));
+        let text = format!("{} of {what} (standard error, L2)", percent(error));
         let half = percent(error / 2.0).replace(' ', "");
         let closer = format!("--continue with --to {half}: four times as many samples halve the error");
         return Stated { text, closer: (error > ERROR_WORTH_A_WORD).then_some(closer) };

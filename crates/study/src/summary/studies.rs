@@ -368,11 +368,12 @@ impl Summarise for ReferenceRecord {
     }
 
     fn lines(&self, lines: &mut Lines) {
-        lines.add("stated error", format!("{:.3} % (RMS over faces)", 100.0 * self.relative_error));
+        lines.add("stated error", format!("{:.3} % (L2 over faces)", 100.0 * self.relative_error));
+        lines.add("median face", format!("{:.3} % of its own value", 100.0 * self.median_error));
         lines.add("values", format!("{} faces, {} bands", self.faces, self.bands.len()));
         let seen = &self.pixels;
         let picture =
-            format!("{} × {} pixels, {:.3} % (RMS)", seen.width, seen.height, 100.0 * seen.relative_error);
+            format!("{} × {} pixels, {:.3} % (L2)", seen.width, seen.height, 100.0 * seen.relative_error);
         lines.add("picture", picture);
         lines.add("time", times(&self.timings));
     }
