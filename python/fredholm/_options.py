@@ -63,8 +63,9 @@ def known(name: str, names: Iterable[str], what: str) -> None:
     """Refuses a name that there is not, and says which are like it."""
     names = list(names)
     if name not in names:
-        like = difflib.get_close_matches(name, names, 3) or names
-        raise wrong(f"there is no {what} {name!r}", "known are " + ", ".join(like))
+        like = difflib.get_close_matches(name, names, 3)
+        said = "write " + " or ".join(like) if like else "known are " + ", ".join(names)
+        raise wrong(f"there is no {what} {name!r}", said)
 
 
 def texts(names: Union[str, Sequence[str]]) -> List[str]:

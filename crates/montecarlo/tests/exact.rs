@@ -136,18 +136,21 @@ fn a_control_variate_changes_no_mean_and_takes_noise_away() {
     };
     let plain = PathTracing::continuous(Switches::default());
     let [known, error] = traced(&plain, 1);
-    let [found, less] = traced(&PathTracing::continuous(Switches::default()).with_control(control), 2);
-    for square in 0..2 {
-        let z = (found[square] - known[square]) / error[square].hypot(less[square]);
-        println!(
-            "square {square}: {:.6} ± {:.1e} with, {:.6} ± {:.1e} without, z = {z:+.2}",
-            found[square], less[square], known[square], error[square]
-        );
-        assert!(z.abs() < 3.5, "{z}");
-        assert!(less[square] < 0.75 * error[square], "{} {}", less[square], error[square]);
+    for paired in [false, true] {
+        let controlled = PathTracing::continuous(Switches::default()).with_control(control.clone());
+        let [found, less] = traced(&controlled.paired(paired), 2);
+        for square in 0..2 {
+            let z = (found[square] - known[square]) / error[square].hypot(less[square]);
+            println!(
+                "square {square}: {:.6} ± {:.1e} with, {:.6} ± {:.1e} without, z = {z:+.2}",
+                found[square], less[square], known[square], error[square]
+            );
+            assert!(z.abs() < 3.5, "{z}");
+            assert!(less[square] < 0.75 * error[square], "{} {}", less[square], error[square]);
+        }
+        // The upper one gets its light by way of the lower one, more of it than constants say.
+        assert!(found[1] > 0.8 * SQUARES * below + 3.5 * less[1]);
     }
-    // The upper one gets its light by way of the lower one, more of it than constants say.
-    assert!(found[1] > 0.8 * SQUARES * below + 5.0 * less[1]);
 }
 
 /// What lies on a patch: its mean is taken from the paths, whatever the control variate says of it,
@@ -162,7 +165,7 @@ fn a_control_variate_decides_nothing_where_another_patch_lies() {
     let scene = Enclosure::new(patches, 1, vec![0.8, 0.8, 0.0], vec![0.0, 1.0, 0.0]).unwrap();
     let below = 0.5 * SQUARES;
     let control = Control::new(&scene, vec![below, 0.8 * SQUARES * below, 0.0], false).unwrap();
-    let controlled = PathTracing::continuous(Switches::default()).with_control(control);
+    let controlled = PathTracing::continuous(Switches::default()).with_control(control).paired(true);
     let plain = PathTracing::continuous(Switches::default());
     let traced = |estimator: &PathTracing, seed| {
         let state = run(&scene, estimator, single(&scene), (seed, 64, 2000));

@@ -8,7 +8,6 @@
 //! √(faces/N), so that it hardly matters how the faces lie
 //! (light or particle tracing; docs/montecarlo.md). W/m².
 
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use fredholm_coupling::{Means, MeshError};
@@ -27,7 +26,7 @@ use crate::problem::{Problem, check, occluders, pictures, scene_failure, with_re
 use crate::registry::{self, SolverEntry};
 use crate::solution::Solution;
 use crate::stages::Stages;
-use crate::stochastic::{enclosure, faces, failure, with_tracing};
+use crate::stochastic::{Silent, enclosure, faces, failure, with_tracing};
 
 /// The estimator, and what the record calls the discretisation and the solver.
 const METHOD: &str = "light";
@@ -114,7 +113,7 @@ fn traced(mesh: &Mesh, lit: &Enclosure, accuracy: f64, watch: &dyn Watch) -> Res
     let mut state = tracing.start();
     loop {
         let stop = Stop { batches: Some(state.batches() + u64::from(BATCHES_AT_ONCE)), ..Stop::default() };
-        tracing.go_on(&mut state, &stop, &Cancel(watch)).map_err(failure)?;
+        tracing.go_on(&mut state, &stop, &Silent(watch)).map_err(failure)?;
         if state.batches() < 2 {
             return Err(Error::cancelled());
         }
@@ -127,15 +126,6 @@ fn traced(mesh: &Mesh, lit: &Enclosure, accuracy: f64, watch: &dyn Watch) -> Res
         }
         let share = (accuracy / worst).powi(2).min(1.0);
         watch.advance(share, &|| format!("{} paths, estimated error {worst:.1e}", state.paths));
-    }
-}
-
-/// Passes on whether to go on, and nothing else: the share of a part is not that of the whole.
-struct Cancel<'a>(&'a dyn Watch);
-
-impl Watch for Cancel<'_> {
-    fn go_on(&self) -> ControlFlow<()> {
-        self.0.go_on()
     }
 }
 

@@ -27,6 +27,7 @@ pub struct PathTracing {
     switches: Switches,
     patchwise: bool,
     control: Option<Control>,
+    paired: bool,
     directions: Box<dyn DirectionDensity>,
 }
 
@@ -71,7 +72,8 @@ impl PathTracing {
     /// Path tracing: reflected where it meets a patch.
     #[must_use]
     pub fn continuous(switches: Switches) -> Self {
-        Self { switches, patchwise: false, control: None, directions: Box::new(Cosine) }
+        let directions = Box::new(Cosine);
+        Self { switches, patchwise: false, control: None, paired: false, directions }
     }
 
     /// The gathering walk: goes on from a new point of the patch that it met.
@@ -84,6 +86,14 @@ impl PathTracing {
     #[must_use]
     pub fn with_control(self, control: Control) -> Self {
         Self { control: Some(control), ..self }
+    }
+
+    /// The same, every vertex compared with another point of its patch where its mean is known, or
+    /// none. It takes twice the rays, and pays where patches are small beside what light varies
+    /// over. For continuous paths with a control variate.
+    #[must_use]
+    pub fn paired(self, paired: bool) -> Self {
+        Self { paired, ..self }
     }
 
     /// The same with another density of directions than the cosine.
@@ -168,7 +178,7 @@ impl PathTracing {
     /// Another point of the patch of a vertex; none at the first vertex, and where its mean is not
     /// known.
     fn twin(&self, scene: &Enclosure, step: &Step<'_>, draw: &mut Draw<'_>) -> Option<Site> {
-        let paired = !self.patchwise && step.done > 0 && self.knows(step.at.patch);
+        let paired = self.paired && !self.patchwise && step.done > 0 && self.knows(step.at.patch);
         paired.then(|| scene.point(step.at.patch, draw.pair()))
     }
 

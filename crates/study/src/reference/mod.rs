@@ -18,8 +18,8 @@ use crate::solution::{Solution, compute};
 use crate::solve::{report_failure, title, view_camera};
 use crate::stages::Stages;
 use crate::stochastic::{
-    PathOptions, PixelTracer, TraceStop, Tracer, control, enclosure, expected_error, face_means, faces,
-    with_tracing,
+    PathOptions, PixelTracer, TraceStop, Tracer, control, controlled, enclosure, expected_error, face_means,
+    faces, with_tracing,
 };
 
 /// The script that renders the scene with Mitsuba and judges it, and its name.
@@ -219,11 +219,11 @@ fn traced(
     stages: &mut Stages,
 ) -> Result<State, Error> {
     let known = control(scene, solution, false)?;
-    let method = PathTracing::continuous(asked.paths.switches()).with_control(known);
+    let (watch, groups) = (stages.watch, faces(&problem.mesh, scene)?);
+    let method = stages.run("trial", || controlled(scene, &known, &groups, &asked.paths, watch))?;
     let stop = asked.stop.or_to(USUAL_ERROR);
-    let tracer = Tracer::new(scene, &method, faces(&problem.mesh, scene)?, &asked.paths, &stop)?;
+    let tracer = Tracer::new(scene, &method, groups, &asked.paths, &stop)?;
     let mut state = tracer.start();
-    let watch = stages.watch;
     stages.run("tracing", || tracer.run(&mut state, watch))?;
     if stages.is_cancelled() { Err(Error::cancelled()) } else { Ok(state) }
 }

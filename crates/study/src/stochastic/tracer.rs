@@ -1,7 +1,9 @@
 //! One traced run, with its progress.
 
+use std::ops::ControlFlow;
+
 use fredholm_linop::Watch;
-use fredholm_montecarlo::light::Estimator;
+use fredholm_montecarlo::light::{Control, Estimator, PathTracing};
 use fredholm_montecarlo::{Enclosure, Groups, MonteCarloError, State, Stop, Tracing};
 
 use super::options::{PathOptions, TraceStop};
@@ -13,6 +15,10 @@ const SHOT_SAMPLES: u32 = 8;
 /// Fewest and most samples of a batch that shoots.
 const FEWEST_SAMPLES: u32 = 1 << 12;
 const MOST_SAMPLES: u32 = 1 << 20;
+/// Batches of the trial that tells whether vertices are to be compared in pairs, and what keeps
+/// their random numbers apart from those of the run.
+const TRIAL_BATCHES: u64 = 8;
+const TRIAL_SEED: u64 = 0x5bd1_e995_0000_0000;
 
 /// A method on a scene, and when it ends.
 pub(crate) struct Tracer<'a> {
@@ -59,6 +65,38 @@ fn batch(scene: &Enclosure, estimator: &dyn Estimator) -> u32 {
     }
     let samples = u32::try_from(scene.len()).unwrap_or(MOST_SAMPLES).saturating_mul(SHOT_SAMPLES);
     samples.clamp(FEWEST_SAMPLES, MOST_SAMPLES).next_power_of_two()
+}
+
+/// Paths with a control variate; in pairs where a trial needs fewer rays for the same error so.
+pub(crate) fn controlled(
+    scene: &Enclosure,
+    known: &Control,
+    groups: &Groups,
+    paths: &PathOptions,
+    watch: &dyn Watch,
+) -> Result<PathTracing, Error> {
+    let method =
+        |paired| PathTracing::continuous(paths.switches()).with_control(known.clone()).paired(paired);
+    let rays = |paired| {
+        let (method, seed) = (method(paired), paths.seed ^ TRIAL_SEED);
+        let samples = paths.batch.unwrap_or(GATHERED_SAMPLES);
+        let tracing = Tracing::new(scene, &method, groups.clone(), seed, samples).map_err(failure)?;
+        let mut state = tracing.start();
+        let stop = Stop { batches: Some(TRIAL_BATCHES), ..Stop::default() };
+        tracing.go_on(&mut state, &stop, &Silent(watch)).map_err(failure)?;
+        // Errors fall with the root of the work.
+        Ok::<f64, Error>(state.relative_error().powi(2) * state.rays as f64)
+    };
+    Ok(method(rays(true)? < rays(false)?))
+}
+
+/// Passes on whether to go on, and nothing else: the share of a part is not that of the whole.
+pub(crate) struct Silent<'a>(pub(crate) &'a dyn Watch);
+
+impl Watch for Silent<'_> {
+    fn go_on(&self) -> ControlFlow<()> {
+        self.0.go_on()
+    }
 }
 
 /// What is wrong with a traced scene is wrong with the input.

@@ -7,7 +7,7 @@ mod saved;
 
 use fredholm_linop::Watch;
 use fredholm_montecarlo::light::{Estimator, METHODS, PathTracing, estimator};
-use fredholm_montecarlo::{Enclosure, State};
+use fredholm_montecarlo::{Enclosure, Groups, State};
 use fredholm_report::{ResultFolder, RunRecord};
 use serde::Serialize;
 
@@ -20,7 +20,8 @@ use crate::solution::{Solution, compute};
 use crate::solve::Ended;
 use crate::stages::Stages;
 use crate::stochastic::{
-    FIELD_METHODS, Ground, PathOptions, TraceStop, Tracer, control, enclosure, faces, with_tracing,
+    FIELD_METHODS, Ground, PathOptions, TraceStop, Tracer, control, controlled, enclosure, faces,
+    with_tracing,
 };
 use crate::threads;
 
@@ -165,8 +166,9 @@ fn traced(
     stop: &TraceStop,
     stages: &mut Stages,
 ) -> Result<(State, String), Error> {
-    let estimator = method((source, asked), scene, stages)?;
-    let tracer = Tracer::new(scene, &*estimator, faces(&ground.mesh, scene)?, &asked.paths, stop)?;
+    let groups = faces(&ground.mesh, scene)?;
+    let estimator = method((source, asked), (scene, &groups), stages)?;
+    let tracer = Tracer::new(scene, &*estimator, groups, &asked.paths, stop)?;
     let mut state = if asked.go_on { origin.earlier(folder)? } else { tracer.start() };
     stages.begin_saving()?;
     let watch = stages.watch;
@@ -178,7 +180,7 @@ fn traced(
 
 fn method(
     (source, asked): (&SceneSource, &TraceOptions),
-    scene: &Enclosure,
+    (scene, groups): (&Enclosure, &Groups),
     stages: &Stages,
 ) -> Result<Box<dyn Estimator>, Error> {
     let patchwise = asked.method == "walk-gathering";
@@ -192,10 +194,10 @@ fn method(
         return Err(error.with_help("--method path, or leave out --control"));
     }
     let known = control(scene, &solution(source, asked, stages)?, patchwise)?;
-    let switches = asked.paths.switches();
-    let tracing =
-        if patchwise { PathTracing::patchwise(switches) } else { PathTracing::continuous(switches) };
-    Ok(Box::new(tracing.with_control(known)))
+    if patchwise {
+        return Ok(Box::new(PathTracing::patchwise(asked.paths.switches()).with_control(known)));
+    }
+    Ok(Box::new(controlled(scene, &known, groups, &asked.paths, stages.watch)?))
 }
 
 fn solution(source: &SceneSource, asked: &TraceOptions, stages: &Stages) -> Result<Solution, Error> {
