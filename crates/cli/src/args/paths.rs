@@ -12,7 +12,7 @@ pub(crate) struct PathArgs {
     /// How the samples of a batch share out their random numbers
     #[arg(long, value_enum, value_name = "SET", default_value_t = Points::Sobol)]
     pub(crate) points: Points,
-    /// Samples of a batch, of each element where a method gathers [default: 4, else 8 an element]
+    /// Samples of a batch, of each element where a method gathers [default: 4 to 32, else 8 an element]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
     pub(crate) batch: Option<u32>,
     /// Let paths end when they weigh nothing, not by chance

@@ -9,8 +9,13 @@ use fredholm_montecarlo::{Enclosure, Groups, MonteCarloError, State, Stop, Traci
 use super::options::{PathOptions, TraceStop};
 use crate::error::{Error, ErrorKind};
 
-/// Samples of a batch of each element, and for each element.
-const GATHERED_SAMPLES: u32 = 4;
+/// Paths of a batch that gathers, about: the more of them an element has, the more evenly they are
+/// spread, and the more there are at least in all.
+const GATHERED_PATHS: usize = 1 << 16;
+/// Fewest and most of each element.
+const FEWEST_GATHERED: usize = 4;
+const MOST_GATHERED: usize = 32;
+/// Samples of a batch that shoots, for each element.
 const SHOT_SAMPLES: u32 = 8;
 /// Fewest and most samples of a batch that shoots.
 const FEWEST_SAMPLES: u32 = 1 << 12;
@@ -61,7 +66,8 @@ impl<'a> Tracer<'a> {
 
 fn batch(scene: &Enclosure, estimator: &dyn Estimator) -> u32 {
     if estimator.gathers() {
-        return GATHERED_SAMPLES;
+        let even = GATHERED_PATHS.div_ceil(scene.len().max(1)).next_power_of_two();
+        return even.clamp(FEWEST_GATHERED, MOST_GATHERED) as u32;
     }
     let samples = u32::try_from(scene.len()).unwrap_or(MOST_SAMPLES).saturating_mul(SHOT_SAMPLES);
     samples.clamp(FEWEST_SAMPLES, MOST_SAMPLES).next_power_of_two()
@@ -79,7 +85,7 @@ pub(crate) fn controlled(
         |paired| PathTracing::continuous(paths.switches()).with_control(known.clone()).paired(paired);
     let rays = |paired| {
         let (method, seed) = (method(paired), paths.seed ^ TRIAL_SEED);
-        let samples = paths.batch.unwrap_or(GATHERED_SAMPLES);
+        let samples = paths.batch.unwrap_or_else(|| batch(scene, &method));
         let tracing = Tracing::new(scene, &method, groups.clone(), seed, samples).map_err(failure)?;
         let mut state = tracing.start();
         let stop = Stop { batches: Some(TRIAL_BATCHES), ..Stop::default() };
