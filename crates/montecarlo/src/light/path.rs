@@ -96,6 +96,12 @@ impl PathTracing {
         Self { paired, ..self }
     }
 
+    /// Whether vertices are compared in pairs.
+    #[must_use]
+    pub fn is_paired(&self) -> bool {
+        self.paired
+    }
+
     /// The same with another density of directions than the cosine.
     #[must_use]
     pub fn with_directions(self, directions: Box<dyn DirectionDensity>) -> Self {

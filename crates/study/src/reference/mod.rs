@@ -98,10 +98,10 @@ fn reference_scene(
     let camera = sized(camera(&problem.scene)?, asked.size)?;
     let solution = compute(&problem, &settings, &mut stages)?;
     let scene = enclosure(&problem.scene, &problem.mesh)?;
-    let state = traced(asked, &problem, (&scene, &solution), &mut stages)?;
+    let (state, paired) = traced(asked, &problem, (&scene, &solution), &mut stages)?;
     let sampling = sampling(asked);
     let pixels = pictured(asked, &scene, (&camera, sampling), &mut stages)?;
-    let table = table(&problem, &solution, &state);
+    let table = table(&problem, &solution, (&state, paired));
     let chosen = problem.scene.camera().is_none_or(|own| own.eye != camera.eye);
     let seen = seen(&camera, chosen, sampling, &pixels);
     if pixels.covered.iter().all(|&share| share == 0.0) {
@@ -212,12 +212,13 @@ fn load(
     Ok((problem, settings))
 }
 
+/// The irradiances, and whether the control variate stands for them at every vertex of a path.
 fn traced(
     asked: &ReferenceOptions,
     problem: &Problem,
     (scene, solution): (&Enclosure, &Solution),
     stages: &mut Stages,
-) -> Result<State, Error> {
+) -> Result<(State, bool), Error> {
     let known = control(scene, solution, false)?;
     let (watch, groups) = (stages.watch, faces(&problem.mesh, scene)?);
     let method = stages.run("trial", || controlled(scene, &known, &groups, &asked.paths, watch))?;
@@ -225,16 +226,16 @@ fn traced(
     let tracer = Tracer::new(scene, &method, groups, &asked.paths, &stop)?;
     let mut state = tracer.start();
     stages.run("tracing", || tracer.run(&mut state, watch))?;
-    if stages.is_cancelled() { Err(Error::cancelled()) } else { Ok(state) }
+    if stages.is_cancelled() { Err(Error::cancelled()) } else { Ok((state, method.is_paired())) }
 }
 
-fn table(problem: &Problem, solution: &Solution, state: &State) -> ReferenceTable {
+fn table(problem: &Problem, solution: &Solution, (state, paired): (&State, bool)) -> ReferenceTable {
     let (mesh, scene) = (&problem.mesh, &problem.scene);
-    // The control variate stands for the irradiance at every vertex of a path, so that the errors
-    // of its form factors are reflected as light is.
-    let reflected = 1.0 / (1.0 - scene.reflectance(mesh).into_iter().fold(0.0, f64::max));
-    let factors = expected_error(problem, solution, false).into_iter().map(|f| f * reflected);
-    let error = state.groups.standard_errors().iter().zip(factors).map(|(s, f)| s.hypot(f)).collect();
+    let mut factors = expected_error(problem, solution, false);
+    if paired {
+        reflect(&mut factors, problem);
+    }
+    let error = state.groups.standard_errors().iter().zip(&factors).map(|(s, f)| s.hypot(*f)).collect();
     let material = |face: usize| &scene.materials()[mesh.surfaces()[mesh.faces()[face].surface].material];
     let all = || 0..mesh.faces().len();
     ReferenceTable {
@@ -243,6 +244,20 @@ fn table(problem: &Problem, solution: &Solution, state: &State) -> ReferenceTabl
         deterministic: face_means(problem, solution),
         reflectance: all().flat_map(|face| material(face).reflectance.clone()).collect(),
         exitance: all().flat_map(|face| material(face).exitance.clone()).collect(),
+    }
+}
+
+/// Adds to the errors that form factors leave in the irradiance of faces what comes of them where
+/// they are reflected as light is: ρ/(1 − ρ) times their mean, with the largest reflectance.
+fn reflect(errors: &mut [f64], problem: &Problem) {
+    let (faces, bands) = (problem.mesh.faces(), problem.scene.bands().len());
+    let reflectance = problem.scene.reflectance(&problem.mesh);
+    let whole: f64 = faces.iter().map(|face| face.area).sum();
+    for band in 0..bands {
+        let of_band = errors.iter().skip(band).step_by(bands);
+        let mean = of_band.zip(faces).map(|(error, face)| error * face.area).sum::<f64>() / whole;
+        let rho = reflectance.iter().skip(band).step_by(bands).copied().fold(0.0, f64::max);
+        errors.iter_mut().skip(band).step_by(bands).for_each(|error| *error += mean * rho / (1.0 - rho));
     }
 }
 
