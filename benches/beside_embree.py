@@ -11,14 +11,13 @@ decides in f32 and is told where a segment begins and ends, a ten-thousandth of 
 import re
 import subprocess
 import sys
-import time
 
 import numpy as np
 from embreex import rtcore_scene
 from embreex.mesh_construction import TriangleMesh
+from timing import best
 
 SEGMENTS = 1 << 16
-TRIALS = 6
 MARGIN = 1e-4
 
 
@@ -80,16 +79,6 @@ def points(triangles, random):
     return picked[:, 0] + u * (picked[:, 1] - picked[:, 0]) + v * (picked[:, 2] - picked[:, 0])
 
 
-def best(work):
-    """Shortest time of some trials, s."""
-    times = []
-    for _ in range(TRIALS):
-        start = time.perf_counter()
-        work()
-        times.append(time.perf_counter() - start)
-    return min(times)
-
-
 def embree():
     """Millions a second of segments and of closest hits, and the share of segments that is blocked."""
     for name, triangles in (("46 triangles", room()), ("81932 triangles", spheres())):
@@ -117,6 +106,11 @@ def own():
         print(f"Fredholm  {name.strip():16} {kind} {float(rate) / (1.0 if unit == 'M' else 1e3):6.2f}")
 
 
-for _ in range(int(sys.argv[1]) if len(sys.argv) > 1 else 2):
-    embree()
-    own()
+def main():
+    for _ in range(int(sys.argv[1]) if len(sys.argv) > 1 else 2):
+        embree()
+        own()
+
+
+if __name__ == "__main__":
+    main()

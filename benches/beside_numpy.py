@@ -9,13 +9,12 @@ The matrix is that of crates/direct/benches/faer.rs: I - D G with a symmetric G,
 import re
 import subprocess
 import sys
-import time
 
 import numpy as np
 import scipy.linalg
+from timing import best
 
 DIM = 2500
-TRIALS = 6
 
 
 def matrices():
@@ -27,16 +26,6 @@ def matrices():
     d = 0.7 / g.sum(axis=1)
     root = np.sqrt(d)
     return np.eye(DIM) - d[:, None] * g, np.eye(DIM) - root[:, None] * g * root[None, :]
-
-
-def best(work):
-    """Shortest time of some trials, s."""
-    times = []
-    for _ in range(TRIALS):
-        start = time.perf_counter()
-        work()
-        times.append(time.perf_counter() - start)
-    return min(times)
 
 
 def numpy_times(general, symmetric, right):

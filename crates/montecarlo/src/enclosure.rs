@@ -199,12 +199,12 @@ impl Enclosure {
     #[must_use]
     pub fn cast(&self, origin: Vec3, direction: Vec3) -> Option<Site> {
         let hit = self.occluders.closest(origin, direction, f64::INFINITY)?;
-        let lit = || (self.patches[hit.patch].normal().dot(direction) < 0.0).then_some(hit.patch);
         let patch = match &self.locator {
-            Some(locator) => locator.lit(hit.patch, hit.point, direction, &self.patches),
-            None => lit(),
+            Some(locator) => locator.lit(hit.patch, hit.point, direction, &self.patches)?,
+            None if self.patches[hit.patch].normal().dot(direction) < 0.0 => hit.patch,
+            None => return None,
         };
-        patch.map(|patch| Site { patch, point: hit.point })
+        Some(Site { patch, point: hit.point })
     }
 
     /// Whether a ray of this direction, in the frame of the patch, meets a lit side or nothing:

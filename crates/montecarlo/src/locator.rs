@@ -60,11 +60,9 @@ impl Candidate {
 impl Locator {
     /// For fewer than 2³¹ patches.
     pub(crate) fn new(pieces: &[Patch], patches: &[Patch]) -> Self {
-        let corners = || pieces.iter().chain(patches).flat_map(Patch::corners);
-        let size = corners().fold(0.0, |size: f64, p| size.max(p.abs().max_element()));
-        let near = SAME_PLACE_DISTANCE * size;
-        let found = Sorted::new(patches, near);
-        let grid = |piece: &Patch| Grid::new(piece, &found.to(piece), patches, near);
+        let near = same_place(pieces.iter().chain(patches));
+        let sorted = Sorted::new(patches, near);
+        let grid = |piece: &Patch| Grid::new(piece, &sorted, patches, near);
         Self { pieces: pieces.iter().map(grid).collect(), near }
     }
 
@@ -119,23 +117,22 @@ impl Sorted {
         Self { axis, near, longest, starts }
     }
 
-    /// The patches that may lie on a piece, by number.
-    fn to(&self, piece: &Patch) -> Vec<u32> {
+    /// The patches that may lie on a piece.
+    fn near(&self, piece: &Patch) -> impl Iterator<Item = u32> {
         let (low, high) = span(piece, self.axis);
         let first = self.starts.partition_point(|(start, _)| *start < low - self.near - self.longest);
         let end = self.starts.partition_point(|(start, _)| *start <= high + self.near);
-        let mut found: Vec<u32> = self.starts[first..end].iter().map(|(_, patch)| *patch).collect();
-        found.sort_unstable();
-        found
+        self.starts[first..end].iter().map(|(_, patch)| *patch)
     }
 }
 
 impl Grid {
-    fn new(piece: &Patch, found: &[u32], patches: &[Patch], near: f64) -> Self {
+    fn new(piece: &Patch, sorted: &Sorted, patches: &[Patch], near: f64) -> Self {
         let axes = axes(piece);
         let origin = piece.corner(0);
         let on = |patch: &Patch| coplanar(piece, patch, near) && overlap(piece, patch, axes, near);
-        let inside: Vec<u32> = found.iter().copied().filter(|&i| on(&patches[i as usize])).collect();
+        let mut inside: Vec<u32> = sorted.near(piece).filter(|&i| on(&patches[i as usize])).collect();
+        inside.sort_unstable();
         let spans = axes.map(|axis| span(piece, axis));
         let corner = origin
             + axes[0] * (spans[0].0 - axes[0].dot(origin))
@@ -252,20 +249,23 @@ fn overlap(piece: &Patch, patch: &Patch, axes: [Vec3; 2], near: f64) -> bool {
 /// Which patches may have another one on them, turned the other way, as the floor has the bottom of
 /// a box: by the rectangles about them.
 pub(crate) fn overlaid(patches: &[Patch]) -> Vec<bool> {
-    let size =
-        patches.iter().flat_map(Patch::corners).fold(0.0, |size: f64, p| size.max(p.abs().max_element()));
-    let near = SAME_PLACE_DISTANCE * size;
-    let found = Sorted::new(patches, near);
-    let on = |patch: &Patch, other: &Patch| {
+    let near = same_place(patches.iter());
+    let sorted = Sorted::new(patches, near);
+    let is_overlaid = |patch: &Patch| {
         let axes = axes(patch);
-        patch.normal().dot(other.normal()) < 0.0
-            && coplanar(patch, other, near)
-            && overlap(patch, other, axes, -near)
+        sorted.near(patch).map(|other| &patches[other as usize]).any(|other| {
+            patch.normal().dot(other.normal()) < 0.0
+                && coplanar(patch, other, near)
+                && overlap(patch, other, axes, -near)
+        })
     };
-    patches
-        .iter()
-        .map(|patch| found.to(patch).iter().any(|&other| on(patch, &patches[other as usize])))
-        .collect()
+    patches.iter().map(is_overlaid).collect()
+}
+
+/// Length up to which two places of a scene count as one, m.
+fn same_place<'a>(patches: impl Iterator<Item = &'a Patch>) -> f64 {
+    let corners = patches.flat_map(Patch::corners);
+    SAME_PLACE_DISTANCE * corners.fold(0.0, |size: f64, p| size.max(p.abs().max_element()))
 }
 
 /// Two directions in the plane of a patch.

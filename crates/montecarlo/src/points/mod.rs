@@ -1,10 +1,9 @@
 //! Point sets: how the random numbers of the samples of one batch share out the unit square.
 //!
-//! Sample s of n draws its numbers one pair after the other, by a [`Draw`] of their
-//! [`Samples`]. In every set each
-//! number of each sample is even in [0, 1) by itself, so that means stay unbiased; the sets differ
-//! in how the samples of a batch go together. Every pair is a pattern of its own, and the batches
-//! are independent of each other: errors are estimated between batches.
+//! Sample s of n draws its numbers one pair after the other, by a [`Draw`] of their [`Samples`]. In
+//! every set each number of each sample is even in [0, 1) by itself, so that means stay unbiased;
+//! the sets differ in how the samples of a batch go together. Every pair is a pattern of its own,
+//! and the batches are independent of each other: errors are estimated between batches.
 //!
 //! | set | pair d of the n samples |
 //! |---|---|

@@ -221,7 +221,7 @@ fn traced(
 ) -> Result<(State, bool), Error> {
     let known = control(scene, solution, false)?;
     let (watch, groups) = (stages.watch, faces(&problem.mesh, scene)?);
-    let method = stages.run("trial", || controlled(scene, &known, &groups, &asked.paths, watch))?;
+    let method = stages.run("trial", || controlled(scene, known, &groups, &asked.paths, watch))?;
     let stop = asked.stop.or_to(USUAL_ERROR);
     let tracer = Tracer::new(scene, &method, groups, &asked.paths, &stop)?;
     let mut state = tracer.start();

@@ -76,24 +76,25 @@ fn batch(scene: &Enclosure, estimator: &dyn Estimator) -> u32 {
 /// Paths with a control variate; in pairs where a trial needs fewer rays for the same error so.
 pub(crate) fn controlled(
     scene: &Enclosure,
-    known: &Control,
+    known: Control,
     groups: &Groups,
     paths: &PathOptions,
     watch: &dyn Watch,
 ) -> Result<PathTracing, Error> {
-    let method =
-        |paired| PathTracing::continuous(paths.switches()).with_control(known.clone()).paired(paired);
-    let rays = |paired| {
-        let (method, seed) = (method(paired), paths.seed ^ TRIAL_SEED);
-        let samples = paths.batch.unwrap_or_else(|| batch(scene, &method));
-        let tracing = Tracing::new(scene, &method, groups.clone(), seed, samples).map_err(failure)?;
-        let mut state = tracing.start();
-        let stop = Stop { batches: Some(TRIAL_BATCHES), ..Stop::default() };
-        tracing.go_on(&mut state, &stop, &Silent(watch)).map_err(failure)?;
+    let apart = PathOptions { seed: paths.seed ^ TRIAL_SEED, ..*paths };
+    let rays = |method: &PathTracing| {
+        let tracer = Tracer::new(scene, method, groups.clone(), &apart, &TraceStop::default())?;
+        let trial = Tracer { stop: Stop { batches: Some(TRIAL_BATCHES), ..Stop::default() }, ..tracer };
+        let mut state = trial.start();
+        trial.run(&mut state, &Silent(watch))?;
         // Errors fall with the root of the work.
         Ok::<f64, Error>(state.relative_error().powi(2) * state.rays as f64)
     };
-    Ok(method(rays(true)? < rays(false)?))
+    let method = PathTracing::continuous(paths.switches()).with_control(known).paired(true);
+    let in_pairs = rays(&method)?;
+    let method = method.paired(false);
+    let single = rays(&method)?;
+    Ok(method.paired(in_pairs < single))
 }
 
 /// Passes on whether to go on, and nothing else: the share of a part is not that of the whole.

@@ -197,7 +197,7 @@ fn method(
     if patchwise {
         return Ok(Box::new(PathTracing::patchwise(asked.paths.switches()).with_control(known)));
     }
-    Ok(Box::new(controlled(scene, &known, groups, &asked.paths, stages.watch)?))
+    Ok(Box::new(controlled(scene, known, groups, &asked.paths, stages.watch)?))
 }
 
 fn solution(source: &SceneSource, asked: &TraceOptions, stages: &Stages) -> Result<Solution, Error> {
