@@ -17,7 +17,7 @@ const SAME: [&str; 10] = [
     "image.png",
     "mesh.png",
     "links.png",
-    "gather.png",
+    "pixels.npz",
     "points.csv",
 ];
 
@@ -158,23 +158,28 @@ fn pictures_of_the_elements_and_links_are_among_the_results() {
     let bench = Bench::new(&room(8));
     bench.solve(&["--accuracy", "5%", "--final-gather", "-o", "out"]);
     let listed = bench.record("out")["files"].clone();
-    for name in ["mesh.png", "links.png", "gather.png"] {
+    for name in ["mesh.png", "links.png"] {
         assert!(listed.as_array().unwrap().iter().any(|file| file == name), "{listed}");
         let file = fs::read(bench.path("out").join(name)).unwrap();
         assert!(
             file.starts_with(b"\x89PNG") && file != fs::read(bench.path("out").join("image.png")).unwrap()
         );
     }
+    let picture = bench.record("out")["picture"].to_string();
+    assert!(
+        picture.contains("gathered at") && listed.to_string().contains("pixels.npz"),
+        "{picture} {listed}"
+    );
     let info = bench.run(&["info", "out/links.png"]);
     assert!(
-        info.code == 0 && info.stdout.contains("mesh.png, links.png, gather.png, field.csv"),
+        info.code == 0 && info.stdout.contains("mesh.png, links.png, pixels.npz, field.csv"),
         "{}",
         info.stdout
     );
     // What another result left does not stay.
     bench.solve(&["-o", "out"]);
     assert!(
-        ["mesh.png", "links.png", "gather.png"].iter().all(|name| !bench.path("out").join(name).exists())
+        ["mesh.png", "links.png", "pixels.npz"].iter().all(|name| !bench.path("out").join(name).exists())
     );
 }
 

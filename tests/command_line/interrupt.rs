@@ -148,12 +148,12 @@ fn the_limit_of_time_does_what_a_signal_does() {
 fn what_is_drawn_is_left_out_of_a_run_cut_short() {
     // A picture of many pixels, walls of many faces, and many points are several seconds of work
     // each.
-    let drawn = room(8).replace("width = 64\nheight = 48\n", "width = 480\nheight = 360\n");
+    let drawn = room(8).replace("width = 64\nheight = 48\n", "width = 4000\nheight = 3000\n");
     let plane = "--plane=0.1,0.1,0.5,0.8,0,0,0,0.8,0,400,400";
     let large = room(8).replace("width = 64\nheight = 48\n", "width = 8000\nheight = 6000\n");
     let cases = [
         ("--no-report", "image.png", large),
-        ("--final-gather", "gather.png", drawn),
+        ("--final-gather", "pixels.npz", drawn),
         ("--discontinuity", "shadows.vtu", room(16)),
         (plane, "points.csv", room(8)),
     ];

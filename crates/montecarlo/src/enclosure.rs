@@ -5,32 +5,16 @@
 //! ends on a back, or nowhere, brings nothing. Lengths in metres, exitance in W/m².
 
 use crate::MonteCarloError;
-use crate::density::{Cosine, DirectionDensity, Frame, LampDensity, SurfaceDensity};
-use crate::locator::Locator;
+use crate::density::{LampDensity, SurfaceDensity};
+use crate::surfaces::{Site, Surfaces};
 use fredholm_mesh::{Patch, Vec3};
-use fredholm_visibility::Occluders;
-use std::collections::HashMap;
 use std::f64::consts::FRAC_1_PI;
-
-/// A point of a patch.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Site {
-    /// The patch.
-    pub patch: usize,
-    /// The point, m.
-    pub point: Vec3,
-}
 
 /// Patches with their materials, ready to be traced.
 #[derive(Clone, Debug)]
 pub struct Enclosure {
-    patches: Vec<Patch>,
-    /// One of every direction that a patch is turned to.
-    frames: Vec<Frame>,
-    frame_of: Vec<u32>,
-    surfaces: Vec<SurfaceDensity>,
-    occluders: Occluders,
-    locator: Option<Locator>,
+    surfaces: Surfaces,
+    densities: Vec<SurfaceDensity>,
     bands: usize,
     reflectance: Vec<f64>,
     exitance: Vec<f64>,
@@ -63,20 +47,15 @@ impl Enclosure {
             .collect();
         let lamps = LampDensity::new(&patches, &power).ok_or(MonteCarloError::NoLight)?;
         let largest = |row: &[f64]| row.iter().copied().fold(0.0, f64::max);
-        let (frames, frame_of) = frames(&patches);
         Ok(Self {
-            frames,
-            frame_of,
-            surfaces: patches.iter().map(SurfaceDensity::new).collect(),
-            occluders: Occluders::new(&patches)?,
-            locator: None,
+            densities: patches.iter().map(SurfaceDensity::new).collect(),
             survival: reflectance.chunks(bands.max(1)).map(largest).collect(),
             exposed: vec![1.0; patches.len()],
             bands,
             reflectance,
             exitance,
             lamps,
-            patches,
+            surfaces: Surfaces::new(patches)?,
         })
     }
 
@@ -86,8 +65,7 @@ impl Enclosure {
     /// # Errors
     /// [`MonteCarloError::Visibility`].
     pub fn blocked_by(mut self, pieces: &[Patch]) -> Result<Self, MonteCarloError> {
-        self.occluders = Occluders::new(pieces)?;
-        self.locator = Some(Locator::new(pieces, &self.patches));
+        self.surfaces = self.surfaces.blocked_by(pieces)?;
         Ok(self)
     }
 
@@ -97,7 +75,7 @@ impl Enclosure {
     /// # Errors
     /// [`MonteCarloError::Length`], [`MonteCarloError::Range`] for a share outside [0, 1].
     pub fn with_exposed(mut self, shares: Vec<f64>) -> Result<Self, MonteCarloError> {
-        check("the exposed share", "[0, 1]", &shares, self.patches.len(), 1, |x| (0.0..=1.0).contains(&x))?;
+        check("the exposed share", "[0, 1]", &shares, self.len(), 1, |x| (0.0..=1.0).contains(&x))?;
         self.exposed = shares;
         Ok(self)
     }
@@ -105,19 +83,19 @@ impl Enclosure {
     /// The patches.
     #[must_use]
     pub fn patches(&self) -> &[Patch] {
-        &self.patches
+        self.surfaces.patches()
     }
 
     /// Number of patches.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.patches.len()
+        self.patches().len()
     }
 
     /// Whether there is no patch; such an enclosure cannot be made.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.patches.is_empty()
+        self.patches().is_empty()
     }
 
     /// Number of bands.
@@ -160,7 +138,7 @@ impl Enclosure {
     /// The even point of a patch.
     #[must_use]
     pub fn point(&self, patch: usize, numbers: [f64; 2]) -> Site {
-        Site { patch, point: self.surfaces[patch].sample(numbers) }
+        Site { patch, point: self.densities[patch].sample(numbers) }
     }
 
     /// A point of a lamp, in proportion to exitance.
@@ -173,7 +151,7 @@ impl Enclosure {
     /// The lit side that a ray with density cosθ/π meets first.
     #[must_use]
     pub fn bounce(&self, from: Site, numbers: [f64; 2]) -> Option<Site> {
-        self.ray(from, Cosine.sample(numbers))
+        self.surfaces.bounce(from, numbers)
     }
 
     /// The lit side that a ray meets first; the direction is in the frame of the patch, its normal
@@ -186,25 +164,19 @@ impl Enclosure {
     /// A direction of the frame of a patch, in the axes of the scene.
     #[must_use]
     pub fn world(&self, at: Site, direction: Vec3) -> Vec3 {
-        self.frames[self.frame_of[at.patch] as usize].world(direction)
+        self.surfaces.frame(at.patch).world(direction)
     }
 
     /// Unit direction to a point, in the frame of the patch.
     #[must_use]
     pub fn direction(&self, from: Site, to: Vec3) -> Vec3 {
-        self.frames[self.frame_of[from.patch] as usize].local((to - from.point).normalize_or_zero())
+        self.surfaces.frame(from.patch).local((to - from.point).normalize_or_zero())
     }
 
     /// The lit side that a ray from anywhere meets first.
     #[must_use]
     pub fn cast(&self, origin: Vec3, direction: Vec3) -> Option<Site> {
-        let hit = self.occluders.closest(origin, direction, f64::INFINITY)?;
-        let patch = match &self.locator {
-            Some(locator) => locator.lit(hit.patch, hit.point, direction, &self.patches)?,
-            None if self.patches[hit.patch].normal().dot(direction) < 0.0 => hit.patch,
-            None => return None,
-        };
-        Some(Site { patch, point: hit.point })
+        self.surfaces.cast(origin, direction)
     }
 
     /// Whether a ray of this direction, in the frame of the patch, meets a lit side or nothing:
@@ -212,7 +184,7 @@ impl Enclosure {
     #[must_use]
     pub fn opens(&self, from: Site, direction: Vec3) -> bool {
         let world = self.world(from, direction);
-        self.occluders.closest(from.point, world, f64::INFINITY).is_none()
+        self.surfaces.occluders().closest(from.point, world, f64::INFINITY).is_none()
             || self.ray(from, direction).is_some()
     }
 
@@ -222,31 +194,16 @@ impl Enclosure {
     pub fn kernel(&self, p: Site, q: Site) -> f64 {
         let between = q.point - p.point;
         let square = between.length_squared();
-        let out = self.patches[p.patch].normal().dot(between);
-        let back = -self.patches[q.patch].normal().dot(between);
+        let out = self.patches()[p.patch].normal().dot(between);
+        let back = -self.patches()[q.patch].normal().dot(between);
         if out > 0.0 && back > 0.0 { out * back * FRAC_1_PI / (square * square) } else { 0.0 }
     }
 
     /// Whether nothing lies between two sites.
     #[must_use]
     pub fn sees(&self, p: Site, q: Site) -> bool {
-        self.occluders.unoccluded(p.point, q.point)
+        self.surfaces.occluders().unoccluded(p.point, q.point)
     }
-}
-
-/// The frames of all normals, and which one each patch has: a few for a room, which stay near at
-/// hand where one of each patch would not.
-fn frames(patches: &[Patch]) -> (Vec<Frame>, Vec<u32>) {
-    let (mut frames, mut known) = (Vec::new(), HashMap::new());
-    let frame_of = patches.iter().map(|patch| {
-        let normal = patch.normal();
-        *known.entry(normal.to_array().map(f64::to_bits)).or_insert_with(|| {
-            frames.push(Frame::about(normal));
-            frames.len() as u32 - 1
-        })
-    });
-    let frame_of = frame_of.collect();
-    (frames, frame_of)
 }
 
 fn check(

@@ -39,8 +39,10 @@ pub mod philox;
 pub mod points;
 mod run;
 pub mod statistics;
+mod surfaces;
 pub mod waves;
 
-pub use enclosure::{Enclosure, Site};
+pub use enclosure::Enclosure;
 pub use error::MonteCarloError;
 pub use run::{BATCHES_AT_ONCE, FEWEST_BATCHES, Groups, State, Stop, Tracing, relative_l2};
+pub use surfaces::{Site, Surfaces};

@@ -18,7 +18,7 @@ use fredholm_mesh::{Anchored, Welded};
 use serde_json::{Value, json};
 
 use crate::colour::{Colouring, Rgb};
-use crate::nodal::{SMOOTH_WELD, close, vertex_colours};
+use crate::nodal::{SMOOTH_WELD, close, vertex_values};
 use crate::tone::{Tone, encode, luminance};
 use crate::{Exposure, Field, ReportError};
 
@@ -37,8 +37,10 @@ impl Baked {
         let leaves: Vec<Rgb> =
             (0..mesh.len()).map(|k| colouring.colour(&field.exposed_radiosity(k))).collect();
         let Anchored { leaves: welded, polygons, hanging, .. } = mesh.anchored(SMOOTH_WELD);
-        let mut radiosity = vertex_colours(mesh, &welded, &leaves, |leaf| field.exposed(leaf));
-        close(&hanging, &mut radiosity);
+        let of_leaves = (leaves.as_flattened(), 3);
+        let mut radiosity = vertex_values(mesh, &welded, of_leaves, |leaf| field.exposed(leaf));
+        close(&hanging, &mut radiosity, 3);
+        let radiosity: Vec<Rgb> = radiosity.as_chunks().0.to_vec();
         let dull = leaves.iter().enumerate().filter(|(leaf, _)| !field.emits(*leaf));
         let metered: Vec<f64> = dull.map(|(_, colour)| luminance(*colour)).collect();
         let tone = Tone::new(exposure, &metered)?;

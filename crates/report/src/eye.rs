@@ -49,6 +49,13 @@ impl Eye {
         Some((self.leaves[hit.patch], hit.point))
     }
 
+    /// The point (m) of the plane of a patch that is seen through a place of the picture.
+    pub(crate) fn on_plane(&self, patch: &Patch, x: f64, y: f64) -> Vec3 {
+        let direction = self.camera.direction(&self.axes, x, y);
+        let (origin, normal) = (self.camera.eye, patch.normal());
+        origin + direction * (normal.dot(patch.centroid() - origin) / normal.dot(direction))
+    }
+
     /// Where a point is in the picture, pixels from the upper left; none for one behind the eye.
     pub(crate) fn place(&self, point: Vec3) -> Option<(f64, f64)> {
         self.camera.place(&self.axes, point)

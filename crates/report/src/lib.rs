@@ -12,7 +12,8 @@
 //! | `field.npz` | the same numbers as `NumPy` arrays |
 //! | `image.png` | a camera view |
 //! | `convergence.svg` | residual against iterations and seconds |
-//! | `mesh.png`, `links.png`, `gather.png` | the elements, links and a final gather, where asked for |
+//! | `mesh.png`, `links.png` | the elements and links, where there are any |
+//! | `pixels.npz` | colours of the pixels and their errors, where light was gathered |
 //! | `false_colour.png`, `false_colour.csv` | irradiance in false colour, and its numbers, where asked for |
 //! | `points.csv` | the irradiance of points, where asked for |
 //! | `shadows.vtu` | triangles cut along the borders of shadows, where asked for |
@@ -109,13 +110,13 @@ pub use judgement::{
 pub use names::{CHECKPOINT, PIXELS, TRACE_STATE, WAVE_FILES, is_result, records};
 pub use npz::write_npz;
 pub use outputs::{
-    Contents, Extras, FALSE_COLOUR, FIELD_EXR, FIELD_GLB, FIELD_PLY, GATHER, IMAGE, LINKS_PICTURE,
-    MESH_PICTURE, OutputFile, REPORT, RUN, RunReport, View, Wanted, output_files, wanted_files, write_all,
-    write_with,
+    Contents, Extras, FALSE_COLOUR, FIELD_EXR, FIELD_GLB, FIELD_PLY, IMAGE, LINKS_PICTURE, MESH_PICTURE,
+    OutputFile, REPORT, RUN, RunReport, View, Wanted, output_files, wanted_files, write_all, write_with,
 };
 pub use picture::{
-    Back, FalseColourPicture, Gathering, LampLight, Layer, Lighter, Link, Linked, Lit, LitPicture, Picture,
-    PictureNumber, Side, render, render_false_colour, render_layers, render_lit, render_sides,
+    Back, DIRECTION_GROUPS, FalseColourPicture, Gathering, LampLight, Layer, Lighter, Link, Linked, Lit,
+    LitPicture, Picture, PictureNumber, Seen, Side, render, render_false_colour, render_layers, render_lit,
+    render_sides,
 };
 pub use points_csv::{PointTable, write_points_csv};
 pub use refinement::{

@@ -51,7 +51,7 @@ pub fn is_result(name: &str) -> bool {
     output_files().any(|file| file.name() == name)
         || STUDIES.iter().any(|names| names.contains(&name))
         || WAVE_FILES.contains(&name)
-        || [SWEEP_PLOT, CHECKPOINT, TRACE_STATE, PIXELS].contains(&name)
+        || [SWEEP_PLOT, CHECKPOINT, TRACE_STATE].contains(&name)
         || shot.is_some_and(|number| number.len() >= 5 && number.bytes().all(|digit| digit.is_ascii_digit()))
 }
 

@@ -9,50 +9,65 @@
 
 use fredholm_mesh::{Hanging, Mesh, Weld, Welded};
 
-use crate::colour::Rgb;
-
 /// Elements of a surface shade smoothly into each other where their normals are at most 40° apart.
 pub(crate) const SMOOTH_WELD: Weld = Weld::Smooth { degrees: 40.0 };
 
 /// Share given to buried elements, so that a vertex among nothing else has a value.
 const BURIED_SHARE: f64 = 1e-9;
 
-/// The colour at each vertex, from the colour and the exposed share of each leaf.
-pub(crate) fn vertex_colours(
+/// The values at each vertex, so many of each, from those of each leaf and its exposed share.
+pub(crate) fn vertex_values(
     mesh: &Mesh,
     welded: &Welded,
-    leaves: &[Rgb],
+    (leaves, width): (&[f64], usize),
     exposed: impl Fn(usize) -> f64,
-) -> Vec<Rgb> {
-    let mut sums = vec![([0.0; 3], 0.0); welded.vertices.len()];
-    for (leaf, patch) in mesh.patches().enumerate() {
+) -> Vec<f64> {
+    let mut sums = vec![0.0; welded.vertices.len() * width];
+    let mut totals = vec![0.0; welded.vertices.len()];
+    for ((leaf, patch), values) in mesh.patches().enumerate().zip(leaves.chunks_exact(width)) {
         let weight = exposed(leaf).max(BURIED_SHARE) / patch.area();
         for &vertex in welded.patch(leaf) {
-            let (sum, total) = &mut sums[vertex];
-            *total += weight;
-            *sum = [0, 1, 2].map(|i| sum[i] + weight * leaves[leaf][i]);
+            totals[vertex] += weight;
+            let sums = &mut sums[vertex * width..(vertex + 1) * width];
+            sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value);
         }
     }
-    sums.into_iter().map(|(sum, total)| sum.map(|value| value / total)).collect()
+    for (sums, total) in sums.chunks_exact_mut(width).zip(totals) {
+        sums.iter_mut().for_each(|sum| *sum /= total);
+    }
+    sums
 }
 
-/// Gives vertices on the sides of larger elements the colour that these have there, so that there
-/// is no crack in it: the mean of the ends.
-pub(crate) fn close(hanging: &[Hanging], vertices: &mut [Rgb]) {
+/// Gives vertices on the sides of larger elements the values that these have there, so that there
+/// is no crack in them: the means of the ends.
+pub(crate) fn close(hanging: &[Hanging], vertices: &mut [f64], width: usize) {
     for Hanging { vertex, ends: [a, b] } in hanging {
-        vertices[*vertex] = [0, 1, 2].map(|i| 0.5 * (vertices[*a][i] + vertices[*b][i]));
+        for i in 0..width {
+            vertices[vertex * width + i] = 0.5 * (vertices[a * width + i] + vertices[b * width + i]);
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::colour::Rgb;
     use crate::field::tests::grid;
     use crate::interpolate::corner_weights;
     use fredholm_mesh::{MeshBuilder, Patch, Vec3};
 
     fn bilinear(p: Vec3) -> Rgb {
         [1.0 + 2.0 * p.x, 3.0 - p.y, 2.0 + p.x - 0.5 * p.x * p.y]
+    }
+
+    /// The colour at each vertex.
+    fn vertex_colours(
+        mesh: &Mesh,
+        welded: &Welded,
+        leaves: &[Rgb],
+        exposed: impl Fn(usize) -> f64,
+    ) -> Vec<Rgb> {
+        vertex_values(mesh, welded, (leaves.as_flattened(), 3), exposed).as_chunks().0.to_vec()
     }
 
     /// The colours at the corners of each leaf.
@@ -120,7 +135,7 @@ mod tests {
         let leaves: Vec<Rgb> = (0..mesh.len()).map(|leaf| [(leaf * leaf) as f64; 3]).collect();
         let welded = mesh.welded(SMOOTH_WELD);
         let mut colours = vertex_colours(&mesh, &welded, &leaves, |_| 1.0);
-        close(&mesh.anchored(SMOOTH_WELD).hanging, &mut colours);
+        close(&mesh.anchored(SMOOTH_WELD).hanging, colours.as_flattened_mut(), 3);
         let on_side = |leaf: usize, p: Vec3| {
             let weights = corner_weights(mesh.patch(leaf), p);
             let corners = welded.patch(leaf).iter().zip(weights);

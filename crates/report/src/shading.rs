@@ -1,74 +1,80 @@
-//! The colour of a point of the surfaces: radiosity as linear sRGB, smoothly interpolated.
+//! Values at the points of the surfaces, smoothly interpolated between the corners of elements:
+//! radiosity of each band, or as linear sRGB.
 
 use fredholm_mesh::{Anchored, Vec3, Welded};
 
 use crate::Field;
 use crate::colour::{Colouring, Rgb};
 use crate::interpolate::corner_weights;
-use crate::nodal::{SMOOTH_WELD, close, vertex_colours};
+use crate::nodal::{SMOOTH_WELD, close, vertex_values};
 
-/// Colours at the vertices of the leaves.
+/// Values at the vertices of the leaves.
 pub(crate) struct Shading<'a> {
     field: Field<'a>,
     welded: Welded,
-    vertices: Vec<Rgb>,
+    /// Number of values of a vertex.
+    width: usize,
+    vertices: Vec<f64>,
 }
 
 impl<'a> Shading<'a> {
-    pub(crate) fn new(field: Field<'a>) -> Self {
-        let colouring = Colouring::new(field.bands());
-        Self::of_values(field, 0, |leaf| colouring.colour(&field.exposed_radiosity(leaf)))
-    }
-
-    /// The same of what is left of the radiosity without a part, W/m² of a leaf and a band.
-    ///
-    /// A rest that is smooth is interpolated so that the mean over an element is about that of the
-    /// element: so many times the corners are moved by what the elements around them lack (the
-    /// iteration of P. van Cittert, Zeitschrift für Physik 69, 1931, doi:10.1007/BF01391351). Else
-    /// dark corners of rooms would be too bright by what the light changes within half an element.
+    /// The radiosity as linear sRGB, without a part, W/m² of a leaf and a band.
     pub(crate) fn of_rest(field: Field<'a>, passes: usize, part: impl Fn(usize, usize) -> f64) -> Self {
         let colouring = Colouring::new(field.bands());
-        Self::of_values(field, passes, |leaf| {
+        let colour = |leaf: usize| {
             let share = field.exposed(leaf);
             let reflected_by = if share > 0.0 { 1.0 / share } else { 1.0 };
             let mut rest = field.exposed_radiosity(leaf);
             rest.iter_mut().enumerate().for_each(|(band, b)| *b -= part(leaf, band) * reflected_by);
             colouring.colour(&rest)
-        })
+        };
+        Self::of_values(field, passes, (3, (0..field.mesh().len()).flat_map(colour).collect()))
     }
 
-    /// The same of any colours of the leaves.
-    pub(crate) fn of_values(field: Field<'a>, passes: usize, colour: impl Fn(usize) -> Rgb) -> Self {
+    /// The same of any values of the leaves, so many of each.
+    ///
+    /// What is smooth is interpolated so that the mean over an element is about that of the
+    /// element: so many times the corners are moved by what the elements around them lack (the
+    /// iteration of P. van Cittert, Zeitschrift für Physik 69, 1931, doi:10.1007/BF01391351). Else
+    /// dark corners of rooms would be too bright by what the light changes within half an element.
+    pub(crate) fn of_values(field: Field<'a>, passes: usize, (width, leaves): (usize, Vec<f64>)) -> Self {
         let mesh = field.mesh();
-        let leaves: Vec<Rgb> = (0..mesh.len()).map(colour).collect();
         let Anchored { leaves: welded, hanging, .. } = mesh.anchored(SMOOTH_WELD);
-        let mut vertices = vertex_colours(mesh, &welded, &leaves, |leaf| field.exposed(leaf));
-        close(&hanging, &mut vertices);
+        let at_vertices = |leaves: &[f64]| {
+            let mut vertices = vertex_values(mesh, &welded, (leaves, width), |leaf| field.exposed(leaf));
+            close(&hanging, &mut vertices, width);
+            vertices
+        };
+        let mut vertices = at_vertices(&leaves);
         for _ in 0..passes {
-            let lacking: Vec<Rgb> = (0..mesh.len())
-                .map(|leaf| {
-                    let corners = welded.patch(leaf);
-                    let mean = corners.iter().fold([0.0; 3], |sum: Rgb, &vertex| {
-                        [0, 1, 2].map(|i| sum[i] + vertices[vertex][i] / corners.len() as f64)
-                    });
-                    [0, 1, 2].map(|i| leaves[leaf][i] - mean[i])
-                })
-                .collect();
-            let moved = vertex_colours(mesh, &welded, &lacking, |leaf| field.exposed(leaf));
-            for (vertex, by) in vertices.iter_mut().zip(moved) {
-                *vertex = [0, 1, 2].map(|i| vertex[i] + by[i]);
+            let mut lacking = leaves.clone();
+            for (leaf, lacking) in lacking.chunks_exact_mut(width).enumerate() {
+                let corners = welded.patch(leaf);
+                for &vertex in corners {
+                    let values = &vertices[vertex * width..(vertex + 1) * width];
+                    let part = |(lacking, value): (&mut f64, &f64)| *lacking -= value / corners.len() as f64;
+                    lacking.iter_mut().zip(values).for_each(part);
+                }
             }
-            close(&hanging, &mut vertices);
+            vertices.iter_mut().zip(at_vertices(&lacking)).for_each(|(vertex, by)| *vertex += by);
+            close(&hanging, &mut vertices, width);
         }
-        Self { field, welded, vertices }
+        Self { field, welded, width, vertices }
     }
 
-    /// Linear sRGB of the radiosity at a point of a leaf, W/m².
-    pub(crate) fn colour(&self, leaf: usize, point: Vec3) -> Rgb {
+    /// Adds the values at a point of a leaf.
+    pub(crate) fn add(&self, leaf: usize, point: Vec3, sum: &mut [f64]) {
         let weights = corner_weights(self.field.mesh().patch(leaf), point);
-        let corners = self.welded.patch(leaf).iter().map(|&vertex| self.vertices[vertex]);
-        corners.zip(weights).fold([0.0; 3], |sum, (colour, weight)| {
-            [0, 1, 2].map(|channel| sum[channel] + weight * colour[channel])
-        })
+        for (&vertex, weight) in self.welded.patch(leaf).iter().zip(weights) {
+            let values = &self.vertices[vertex * self.width..(vertex + 1) * self.width];
+            sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value);
+        }
+    }
+
+    /// The three values at a point of a leaf: linear sRGB, W/m².
+    pub(crate) fn colour(&self, leaf: usize, point: Vec3) -> Rgb {
+        let mut colour = [0.0; 3];
+        self.add(leaf, point, &mut colour);
+        colour
     }
 }

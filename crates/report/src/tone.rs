@@ -106,6 +106,12 @@ pub(crate) fn encode(value: f64) -> u8 {
     (255.0 * curved).round() as u8
 }
 
+/// The linear display value of a code of sRGB.
+pub(crate) fn decode(code: u8) -> f64 {
+    let value = f64::from(code) / 255.0;
+    if value <= 0.040_45 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+}
+
 #[cfg(test)]
 #[expect(clippy::float_cmp, reason = "these values are exact")]
 mod tests {
@@ -127,6 +133,11 @@ mod tests {
         assert!(steps.windows(2).all(|w| w[1] > w[0]));
         assert!((steps[400] - 1.0).abs() < 1e-12 && steps[0] == 0.0);
         assert!((compress(expand(0.5)) - 0.5).abs() < 1e-14);
+    }
+
+    #[test]
+    fn codes_come_back() {
+        assert!((0..=255).all(|code| encode(decode(code)) == code));
     }
 
     #[test]

@@ -4,7 +4,10 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use fredholm_mesh::{Mesh, MeshBuilder, Patch, Vec3};
-use fredholm_report::{Camera, Exposure, Field, LampLight, Lighter, Lit, render_lit};
+use fredholm_report::{
+    Camera, DIRECTION_GROUPS, Exposure, Field, Gathering, LampLight, Lighter, Lit, LitPicture, Seen,
+    render_lit,
+};
 use rayon::ThreadPoolBuilder;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -71,7 +74,13 @@ fn drawn(cells: usize) -> (Vec<u8>, Vec<[f32; 3]>) {
     let (irradiance, radiosity) = (vec![3.0; mesh.len()], vec![1.5; mesh.len()]);
     let field = Field::new(&mesh, &bands, &irradiance, &radiosity).unwrap();
     let (reflectance, direct) = (vec![0.5; mesh.len()], vec![2.0; mesh.len()]);
-    let lit = Lit { light: &Half, exitance: &[6.0], reflectance: &reflectance, direct: Some(&direct) };
+    let lit = Lit {
+        light: &Half,
+        exitance: &[6.0],
+        reflectance: &reflectance,
+        direct: Some(&direct),
+        gathering: None,
+    };
     let drawn = render_lit(&field, &camera(), Exposure::Fixed(0.2), &lit, true).unwrap().unwrap();
     (drawn.picture.pixels, drawn.linear)
 }
@@ -103,7 +112,13 @@ fn a_smooth_rest_keeps_its_means_up_to_the_edge() {
     let radiosity: Vec<f64> = mesh.patches().map(|patch| 2.0 + patch.centroid().x).collect();
     let field = Field::new(&mesh, &bands, &radiosity, &radiosity).unwrap();
     let (reflectance, direct) = (vec![1.0; mesh.len()], vec![0.0; mesh.len()]);
-    let lit = Lit { light: &Dark, exitance: &[], reflectance: &reflectance, direct: Some(&direct) };
+    let lit = Lit {
+        light: &Dark,
+        exitance: &[],
+        reflectance: &reflectance,
+        direct: Some(&direct),
+        gathering: None,
+    };
     let linear = render_lit(&field, &camera(), Exposure::Fixed(0.2), &lit, true).unwrap().unwrap().linear;
     // Corners at the edge of the square that had the mean of their elements would lack 0.125.
     for (x, y) in [(17, 32), (32, 32), (46, 20), (46, 46)] {
@@ -126,22 +141,22 @@ impl LampLight for Impatient {
     }
 
     fn go_on(&self) -> ControlFlow<()> {
-        let left = self.0.fetch_sub(1, Ordering::Relaxed);
-        if left == 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        let left = self.0.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1));
+        if left.is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }
 
 #[test]
-fn a_picture_that_is_not_wanted_any_more_is_none() {
+fn a_picture_that_is_not_wanted_any_more_is_none_or_has_rough_borders() {
     let (mesh, bands) = (square(3), vec!["grey".to_owned()]);
     let values = vec![1.5; mesh.len()];
     let field = Field::new(&mesh, &bands, &values, &values).unwrap();
     // Two looks at each of four tiles, and one more where there are borders.
-    for (asks, whole) in [(0, false), (3, false), (6, false), (100, true)] {
+    for (asks, whole) in [(0, None), (3, None), (6, Some(false)), (100, Some(true))] {
         let light = Impatient(AtomicUsize::new(asks));
-        let lit = Lit { light: &light, exitance: &[], reflectance: &values, direct: None };
+        let lit = Lit { light: &light, exitance: &[], reflectance: &values, direct: None, gathering: None };
         let drawn = render_lit(&field, &camera(), Exposure::Fixed(0.2), &lit, false).unwrap();
-        assert_eq!(drawn.is_some(), whole, "{asks}");
+        assert_eq!(drawn.map(|drawn| drawn.whole), whole, "{asks}");
     }
 }
 
@@ -149,7 +164,118 @@ fn a_picture_that_is_not_wanted_any_more_is_none() {
 fn vectors_that_do_not_fit_are_refused() {
     let (mesh, bands) = (square(2), vec!["grey".to_owned()]);
     let field = Field::new(&mesh, &bands, &[1.0; 4], &[1.0; 4]).unwrap();
-    let lit = Lit { light: &Half, exitance: &[6.0], reflectance: &[0.5; 4], direct: Some(&[1.0; 3]) };
+    let lit = Lit {
+        light: &Half,
+        exitance: &[6.0],
+        reflectance: &[0.5; 4],
+        direct: Some(&[1.0; 3]),
+        gathering: None,
+    };
     let error = render_lit(&field, &camera(), Exposure::Auto, &lit, false).err().unwrap();
     assert!(error.to_string().contains("direct irradiance"), "{error}");
+}
+
+/// A shining square above the lower one.
+const HEIGHT: f64 = 0.75;
+
+/// Looks along random directions from the lower square to the upper one, which is element 16.
+struct Above;
+
+impl Gathering for Above {
+    fn meet(&self, number: u32, _: usize, point: Vec3, met: &mut Vec<Seen>) {
+        met.clear();
+        let mut state = u64::from(number);
+        // SplitMix64 (G. L. Steele, D. Lea, C. H. Flood, OOPSLA 2014, doi:10.1145/2660193.2660195).
+        let mut random = || {
+            state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+            let z = (state ^ (state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+            ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        met.extend((0..DIRECTION_GROUPS * 64).map(|_| {
+            let (sine, turn) = (random().sqrt(), std::f64::consts::TAU * random());
+            let slope = HEIGHT * sine / (1.0 - sine * sine).sqrt();
+            let at = point + Vec3::new(slope * turn.cos(), slope * turn.sin(), HEIGHT);
+            (at.x.abs() < 1.0 && at.y.abs() < 1.0).then_some((16, at))
+        }));
+    }
+}
+
+/// View factor from a point of the lower square to the upper one (J. R. Howell, catalogue of
+/// configuration factors, B-3: the sum over its four parts about the point above).
+fn factor(x: f64, y: f64) -> f64 {
+    let part = |a: f64, b: f64| {
+        let (a, b) = (a / HEIGHT, b / HEIGHT);
+        let (p, q) = ((1.0 + a * a).sqrt(), (1.0 + b * b).sqrt());
+        (a / p * (b / p).atan() + b / q * (a / q).atan()) / std::f64::consts::TAU
+    };
+    [1.0 - x, 1.0 + x].iter().flat_map(|&a| [part(a, 1.0 - y), part(a, 1.0 + y)]).sum()
+}
+
+fn gathered(light: &dyn LampLight, side: u32) -> LitPicture {
+    let line = |i: usize| 0.5 * i as f64 - 1.0;
+    let corner = |i: usize, j: usize| Vec3::new(line(i), line(j), 0.0);
+    let mut builder = MeshBuilder::default();
+    builder.surface("floor", 0);
+    for (i, j) in (0..4).flat_map(|i| (0..4).map(move |j| (i, j))) {
+        let ring = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
+        builder.face(&[Patch::quad(ring).unwrap().unwrap()]).unwrap();
+    }
+    builder.surface("ceiling", 1);
+    let above = [corner(0, 0), corner(0, 4), corner(4, 4), corner(4, 0)].map(|p| p + Vec3::Z * HEIGHT);
+    builder.face(&[Patch::quad(above).unwrap().unwrap()]).unwrap();
+    let (mesh, bands) = (builder.build(), vec!["grey".to_owned()]);
+    let mut radiosity = vec![0.4; 17];
+    radiosity[16] = 6.0;
+    let field = Field::new(&mesh, &bands, &radiosity, &radiosity).unwrap();
+    let lit = Lit { light, exitance: &[], reflectance: &[0.5; 17], direct: None, gathering: Some(&Above) };
+    let camera = Camera { width: side, height: side, ..camera() };
+    render_lit(&field, &camera, Exposure::Fixed(0.2), &lit, true).unwrap().unwrap()
+}
+
+#[test]
+fn gathered_light_is_that_of_the_closed_form_and_its_error_the_stated_one() {
+    let side = 160;
+    let drawn = gathered(&Dark, side as u32);
+    assert!(drawn.whole && drawn.places > 100 && drawn.places < 2000, "{}", drawn.places);
+    let (mut squares, mut scores, mut count, mut worst) = (0.0, 0.0, 0.0, 0.0_f64);
+    for (y, x) in (41..119).flat_map(|y| (41..119).map(move |x| (y, x))) {
+        let place = |at: usize| (at as f64 + 0.5 - 80.0) / 40.0;
+        // 0.5 of what 6 W/m² bring.
+        let exact = 3.0 * factor(place(x), place(y));
+        let off = f64::from(drawn.linear[y * side + x][0]) - exact;
+        squares += (off / exact).powi(2);
+        scores += (off / f64::from(drawn.standard_error[y * side + x][0])).powi(2);
+        worst = worst.max((off / exact).abs());
+        count += 1.0;
+    }
+    let (off, score) = ((squares / count).sqrt(), (scores / count).sqrt());
+    // Places have 5 to 10 %, and each pixel up to sixteen of them.
+    assert!(off < 0.025 && worst < 0.12, "{off} {worst}");
+    assert!(score > 0.5 && score < 1.5, "{score}");
+}
+
+#[test]
+fn threads_do_not_change_what_is_gathered() {
+    let with = |threads| {
+        let pool = ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let drawn = pool.install(|| gathered(&Dark, 64));
+        (drawn.picture, drawn.linear, drawn.standard_error, drawn.places)
+    };
+    let one = with(1);
+    assert!(one == with(2) && one == with(3));
+}
+
+#[test]
+fn gathering_that_is_stopped_leaves_a_whole_picture_of_what_there_is() {
+    // Four tiles are asked for, then every place.
+    for asks in [5, 12] {
+        let light = Impatient(AtomicUsize::new(asks));
+        let drawn = gathered(&light, 64);
+        assert!(!drawn.whole && drawn.places == asks - 4, "{}", drawn.places);
+        let at = |x: usize, y: usize| f64::from(drawn.linear[64 * y + x][0]);
+        assert!((17..47).all(|k| at(k, 30) > 0.3 && at(k, 30) < 2.0), "all is lit");
+        let untold = drawn.standard_error.iter().filter(|error| error[0].is_nan()).count();
+        assert!(untold > 0, "where light is interpolated no error is known");
+    }
 }

@@ -124,7 +124,8 @@ fn check_scene(
     }
     let to_accuracy = to_accuracy(asked, accuracy, &scene, &mut stages)?;
     let settings = ProblemSettings::new(asked, scene.solve());
-    let more = |plan, scene: &Scene, n| with_results(plan, scene, n, (pictures(scene, 1, (false, 0)), 0));
+    let more =
+        |plan, scene: &Scene, n| with_results(plan, scene, n, (pictures(scene, 1, (false, (0, false))), 0));
     let forecast = match Problem::refined(Arc::clone(&scene), settings, (1, &more), &mut stages) {
         Err(error) if error.kind() == ErrorKind::Resources => Err(error),
         loaded => {

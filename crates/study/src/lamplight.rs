@@ -5,8 +5,9 @@ use std::ops::ControlFlow;
 use fredholm_hierarchical::Lamps;
 use fredholm_linop::{MultiVector, Watch};
 use fredholm_mesh::Patch;
-use fredholm_report::{LampLight, Lighter, Lit};
+use fredholm_report::{Gathering, LampLight, Lighter, Lit};
 
+use crate::directions::Directions;
 use crate::error::{Error, ErrorKind};
 use crate::problem::{Problem, scene_failure};
 
@@ -18,21 +19,26 @@ pub(crate) struct Lamplight<'a> {
     /// Exitance of each lamp, lamps × bands, W/m².
     exitance: Vec<f64>,
     reflectance: Vec<f64>,
+    gathering: Option<Directions>,
     /// Whoever waits for the picture.
     watch: &'a dyn Watch,
 }
 
 impl<'a> Lamplight<'a> {
     /// The lamps of a scene, of which the irradiance of the elements has a part `direct`, W/m²,
-    /// where that is known.
+    /// where that is known. The rest is gathered where that is wanted.
     pub(crate) fn new(
         problem: &'a Problem,
-        direct: Option<&'a MultiVector<f64>>,
+        (direct, gathers): (Option<&'a MultiVector<f64>>, bool),
         watch: &'a dyn Watch,
     ) -> Result<Self, Error> {
         let (scene, mesh) = (&problem.scene, &problem.mesh);
         let reflectance = scene.reflectance(mesh);
-        let none = |reflectance| Self { lamps: None, exitance: Vec::new(), reflectance, watch };
+        let mut gathering = gathers.then(|| Directions::new(problem)).transpose()?;
+        let mut none = |reflectance| {
+            let gathering = gathering.take();
+            Self { lamps: None, exitance: Vec::new(), reflectance, gathering, watch }
+        };
         let Some(direct) = direct else { return Ok(none(reflectance)) };
         let bands = scene.bands().len();
         let (mut exitance, mut kinds): (Vec<f64>, Vec<Vec<&Patch>>) = (Vec::new(), Vec::new());
@@ -61,22 +67,28 @@ impl<'a> Lamplight<'a> {
         let lamps = Lamps::new(&kinds, mesh.patches().collect(), &problem.occluders);
         let lamps = lamps.map_err(|error| Error::new(ErrorKind::Input, error))?;
         let Some(lamps) = lamps.filter(|lamps| !lamps.is_empty()) else { return Ok(none(reflectance)) };
-        Ok(Self { lamps: Some((lamps, direct.as_slice())), exitance, reflectance, watch })
+        Ok(Self { lamps: Some((lamps, direct.as_slice())), exitance, reflectance, gathering, watch })
     }
 
     /// What the picture is drawn with.
     pub(crate) fn lit(&self) -> Lit<'_> {
-        let Self { lamps, exitance, reflectance, .. } = self;
-        Lit { light: self, exitance, reflectance, direct: lamps.as_ref().map(|(_, direct)| *direct) }
+        let Self { lamps, exitance, reflectance, gathering, .. } = self;
+        let gathering = gathering.as_ref().map(|directions| directions as &dyn Gathering);
+        let direct = lamps.as_ref().map(|(_, direct)| *direct);
+        Lit { light: self, exitance, reflectance, direct, gathering }
     }
 
-    /// Where the light of the picture comes from.
-    pub(crate) fn words(&self) -> &'static str {
+    /// Where the light of the picture comes from, of which some was gathered at so many places.
+    pub(crate) fn words(&self, places: usize) -> String {
+        let rest = match places {
+            0 => "interpolated between elements".to_owned(),
+            _ => format!("gathered at {places} places"),
+        };
         match self.lamps {
-            Some(_) => {
-                "light of the lamps at every pixel, or between pixels where it hardly changes, the rest interpolated between elements"
-            }
-            None => "light interpolated between elements",
+            Some(_) => format!(
+                "light of the lamps at every pixel, or between pixels where it hardly changes, the rest {rest}"
+            ),
+            None => format!("light {rest}"),
         }
     }
 }
@@ -138,7 +150,7 @@ mod tests {
         let field = Field::new(mesh, bands, &values, &values).unwrap().with_exitance(&exitance).unwrap();
         let view = view_of(problem.scene.camera(), &field);
         let start = Instant::now();
-        let light = Lamplight::new(&problem, Some(&direct), &Quiet).unwrap();
+        let light = Lamplight::new(&problem, (Some(&direct), false), &Quiet).unwrap();
         let made = start.elapsed().as_secs_f64();
         let drawn = render_lit(&field, &view.camera, view.exposure, &light.lit(), true).unwrap().unwrap();
         let all = start.elapsed().as_secs_f64();

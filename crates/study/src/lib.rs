@@ -32,6 +32,7 @@ mod compare;
 mod converge;
 mod couplings;
 mod crosscheck;
+mod directions;
 mod discretised;
 mod error;
 mod exchange;

@@ -235,7 +235,7 @@ pub struct SolveOptions {
     /// Surfaces, by their names, whose mean irradiance is to have the accuracy; all else is only as
     /// exact as that needs.
     pub goal: Vec<String>,
-    /// Whether the light of every pixel is gathered for a further picture.
+    /// Whether the light of the picture that lamps do not send is gathered.
     pub final_gather: bool,
     /// A further picture, of the irradiance in false colour.
     pub false_colour: Option<FalseColour>,
@@ -330,7 +330,7 @@ pub(crate) struct SolveSettings {
     /// Points whose irradiance is gathered.
     #[serde(serialize_with = "places", skip_serializing_if = "Vec::is_empty")]
     pub(crate) points: Vec<Receiver>,
-    /// Whether the light of every pixel is gathered for a picture.
+    /// Whether the light of the picture that lamps do not send is gathered.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub(crate) final_gather: bool,
     /// A picture of the irradiance in false colour.
@@ -399,9 +399,10 @@ impl SolveSettings {
         }
     }
 
-    /// Number of pictures that are asked for besides the usual ones.
-    pub(crate) fn further_pictures(&self) -> usize {
-        usize::from(self.final_gather) + usize::from(self.false_colour.is_some())
+    /// Number of pictures that are asked for besides the usual ones, and whether their light is
+    /// gathered.
+    pub(crate) fn further_pictures(&self) -> (usize, bool) {
+        (usize::from(self.false_colour.is_some()), self.final_gather)
     }
 }
 

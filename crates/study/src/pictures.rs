@@ -1,14 +1,13 @@
-//! What a solution is seen by: pictures of the elements, of links, and of the light that every
-//! pixel gathers.
+//! What a solution is seen by: pictures of the elements and of links, and the light that points
+//! gather.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use fredholm_coupling::Receiver;
 use fredholm_hierarchical::{Gather, HierarchyError, Leaves, Link, Sender, Tree, senders};
 use fredholm_linop::MultiVector;
 use fredholm_mesh::{Patch, Vec3};
-use fredholm_report::{Gathering, Link as Drawn, Linked, PointTable, Wanted};
+use fredholm_report::{Link as Drawn, Linked, PointTable, Wanted};
 
 use crate::error::{Error, ErrorKind};
 use crate::options::SolveSettings;
@@ -54,7 +53,6 @@ pub(crate) struct Source<'a> {
 struct Light {
     /// The tree over the elements, where the solution has none.
     tree: Option<Tree>,
-    reflectance: MultiVector<f64>,
     exitance: MultiVector<f64>,
     /// Irradiance and radiosity of the exposed parts of the elements, W/m².
     irradiance: MultiVector<f64>,
@@ -71,7 +69,7 @@ impl<'a> Source<'a> {
         solution: &'a Solution,
     ) -> Result<Self, Error> {
         let hierarchy = solution.tree.as_ref();
-        let wanted = options.final_gather || options.discontinuity || !options.points.is_empty();
+        let wanted = options.discontinuity || !options.points.is_empty();
         let light = wanted.then(|| Light::new(problem, solution)).transpose()?;
         Ok(Self { problem, solution, hierarchy, light })
     }
@@ -166,7 +164,7 @@ impl Light {
             exitance.row(i)[band] + reflectance.row(i)[band] * irradiance.row(i)[band]
         });
         let exposed = mesh.patches().zip(&solution.exposed).map(|(p, share)| p.area() * share).collect();
-        Ok(Self { tree, reflectance, exitance, irradiance, radiosity, exposed })
+        Ok(Self { tree, exitance, irradiance, radiosity, exposed })
     }
 }
 
@@ -187,10 +185,7 @@ pub(crate) fn gathering(elements: usize, bands: usize) -> u128 {
 fn admit(problem: &Problem, nodes: usize) -> Result<(), Error> {
     let bytes = Gather::bytes(nodes, problem.scene.bands().len());
     let plan = problem.plan.clone().hold("gathering", bytes.into());
-    plan.admit(
-        problem.options.memory_limit(),
-        "leave out --final-gather, --discontinuity, --point and --plane",
-    )
+    plan.admit(problem.options.memory_limit(), "leave out --discontinuity, --point and --plane")
 }
 
 /// Gathers the light of points on the elements.
@@ -205,6 +200,11 @@ impl Gathered<'_> {
     /// Whether an element is a lamp.
     pub(crate) fn emits(&self, element: usize) -> bool {
         self.light.exitance.row(element).iter().any(|m| *m > 0.0)
+    }
+
+    /// Whether the run goes on; asked often.
+    pub(crate) fn go_on(&self) -> ControlFlow<()> {
+        self.signals.watch.go_on()
     }
 
     /// Irradiance of an element, of each band, W/m².
@@ -228,23 +228,6 @@ impl Gathered<'_> {
         };
         let points = options.points.iter().map(|receiver| [receiver.point, receiver.normal]).collect();
         Ok(Some(PointTable { points, irradiance: found.as_slice().to_vec() }))
-    }
-}
-
-impl Gathering for Gathered<'_> {
-    fn gatherer(&self) -> Box<dyn FnMut(usize, Vec3) -> Vec<f64> + '_> {
-        let mut gatherer = self.gather.gatherer();
-        let Light { reflectance, exitance, irradiance, .. } = self.light;
-        Box::new(move |element, point| {
-            let receiver = Receiver { point, normal: self.problem.mesh.patch(element).normal() };
-            let e = gatherer.irradiance(&receiver, irradiance.row(element));
-            let (rho, m) = (reflectance.row(element), exitance.row(element));
-            (0..e.len()).map(|band| m[band] + rho[band] * e[band]).collect()
-        })
-    }
-
-    fn go_on(&self) -> ControlFlow<()> {
-        self.signals.watch.go_on()
     }
 }
 

@@ -6,6 +6,7 @@
 use fredholm_coupling::{Constants, waiting_bytes};
 use fredholm_linop::{PackedSymmetric, Storage};
 
+use crate::directions::BYTES_OF_A_MET_ELEMENT;
 use crate::error::Error;
 use crate::memory::{Limit, Plan};
 use crate::options::Precision;
@@ -39,6 +40,10 @@ const BYTES_A_VALUE: u128 = 50;
 const BYTES_OF_A_DRAWN_ELEMENT: u128 = 500;
 const BYTES_OF_A_LIT_VALUE: u128 = 24;
 const BYTES_OF_A_LIT_PIXEL: u128 = 37;
+/// Bytes of a pixel of which the light is gathered: errors, the file, and places where many are.
+/// Of a value of the elements: what rays find there.
+const BYTES_OF_A_GATHERED_PIXEL: u128 = 70;
+const BYTES_OF_A_SENT_VALUE: u128 = 40;
 /// Bytes of a pixel while the exposure is found, and in each picture: while it is drawn, and when
 /// all are taken apart. Besides, what the last rows take.
 const BYTES_OF_A_METERED_PIXEL: u128 = 14;
@@ -208,20 +213,29 @@ pub(crate) struct Pictures {
     pub(crate) count: usize,
     /// Whether lamps light one of them, so that shadows are seen as they are.
     pub(crate) lit: bool,
+    /// Whether the light of one is gathered.
+    pub(crate) gathered: bool,
 }
 
 /// Bytes of the results of so many elements, with pictures.
 pub(crate) fn results(elements: usize, bands: usize, pictures: Pictures) -> u128 {
     let (n, values) = (elements as u128, elements as u128 * bands as u128);
     let files = BYTES_OF_PAGE + n * BYTES_OF_A_WRITTEN_ELEMENT + values * BYTES_A_VALUE;
-    let Pictures { pixels, count, lit } = pictures;
+    let Pictures { pixels, count, lit, gathered } = pictures;
     if count == 0 {
         return files;
     }
     let drawn = n * BYTES_OF_A_DRAWN_ELEMENT + if lit { values * BYTES_OF_A_LIT_VALUE } else { 0 };
     let of_pixels =
         pictured(pixels, count).max(if lit { pixels.saturating_mul(BYTES_OF_A_LIT_PIXEL) } else { 0 });
-    files.saturating_add(drawn).saturating_add(of_pixels)
+    let of_gathering = if gathered {
+        pixels.saturating_mul(BYTES_OF_A_GATHERED_PIXEL)
+            + n * BYTES_OF_A_MET_ELEMENT
+            + values * BYTES_OF_A_SENT_VALUE
+    } else {
+        0
+    };
+    files.saturating_add(drawn).saturating_add(of_pixels).saturating_add(of_gathering)
 }
 
 /// Bytes of so many pictures of so many pixels.
@@ -274,7 +288,7 @@ mod tests {
 
     #[test]
     fn a_large_picture_counts() {
-        let pictures = |pixels, count| Pictures { pixels, count, lit: true };
+        let pictures = |pixels, count| Pictures { pixels, count, lit: true, gathered: false };
         assert!(results(600, 3, pictures(16_384 * 16_384, 1)) > 2 << 30);
         assert!(results(600, 3, pictures(16_384 * 16_384, 0)) < 4 << 20);
         assert!(results(1 << 60, 3, pictures(u128::MAX, 1)) == u128::MAX);

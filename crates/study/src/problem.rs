@@ -146,7 +146,7 @@ impl Open {
         let scene = source.load(asked.memory, stages)?;
         let options = ProblemSettings::new(asked, scene.solve());
         let bands = scene.bands().len();
-        let pictures = Pictures { pixels: pixels(&scene), count: pictures, lit: false };
+        let pictures = Pictures { pixels: pixels(&scene), count: pictures, lit: false, gathered: false };
         let admit = |elements: usize, stages: &Stages| {
             let results = results(elements, bands, pictures);
             let plan = without_matrix(elements, bands, kept).stage("results and pictures", results);
@@ -174,10 +174,15 @@ pub(crate) fn pixels(scene: &Scene) -> u128 {
 }
 
 /// The pictures of a solution, of which lamps light one at a time: the usual ones, and further ones
-/// that are asked for; none where none are wanted.
-pub(crate) fn pictures(scene: &Scene, usual: usize, (no_pictures, further): (bool, usize)) -> Pictures {
+/// that are asked for; none where none are wanted. The light of one is gathered where that is asked
+/// for.
+pub(crate) fn pictures(
+    scene: &Scene,
+    usual: usize,
+    (no_pictures, (further, gathered)): (bool, (usize, bool)),
+) -> Pictures {
     let count = if no_pictures { 0 } else { usual + further };
-    Pictures { pixels: pixels(scene), count, lit: true }
+    Pictures { pixels: pixels(scene), count, lit: true, gathered }
 }
 
 /// Results and pictures after a solution, and what these take besides.

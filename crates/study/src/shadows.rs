@@ -4,7 +4,7 @@
 use fredholm_coupling::Receiver;
 use fredholm_hierarchical::{Gatherer, Tree, shadow_edges};
 use fredholm_mesh::{Patch, Vec3, Weld, Welded, cut_polygon, part_inside};
-use fredholm_report::{Gathering, ShadowMesh};
+use fredholm_report::ShadowMesh;
 use rayon::prelude::*;
 
 use crate::pictures::Gathered;

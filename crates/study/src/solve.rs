@@ -6,9 +6,9 @@ use std::sync::Arc;
 use fredholm_linop::{MultiVector, Quiet, StopReason, Watch};
 use fredholm_mesh::Mesh;
 use fredholm_report::{
-    CHECKPOINT, Camera, Exposure, Extras, Field, GATHER, LINKS_PICTURE, Layer, LitPicture, MESH_PICTURE,
-    ReportError, ResultFolder, RunRecord, RunReport, View, output_files, render_false_colour, render_layers,
-    render_lit, wanted_files, write_with,
+    CHECKPOINT, Camera, Exposure, Extras, Field, LINKS_PICTURE, Layer, LitPicture, MESH_PICTURE, ReportError,
+    ResultFolder, RunRecord, RunReport, View, output_files, render_false_colour, render_layers, render_lit,
+    wanted_files, write_with,
 };
 use fredholm_scene::Scene;
 
@@ -175,7 +175,7 @@ impl Solved<'_> {
         let camera = Camera { width, height: (height.round() as u32).max(1), ..view.camera };
         let view = View { camera, ..view };
         // Nobody cancels it: there is all of it.
-        let light = Lamplight::new(&self.problem, self.solution.direct.as_ref(), &Quiet)?;
+        let light = Lamplight::new(&self.problem, (self.solution.direct.as_ref(), false), &Quiet)?;
         let drawn = picture((&field, &view, false), &light)?;
         let Some((LitPicture { picture, .. }, _)) = drawn else { return Err(Error::cancelled()) };
         let mut png = Vec::new();
@@ -322,10 +322,10 @@ fn dense(
     let options = ProblemSettings::new(&asked.problem, scene.solve());
     let more = |plan, scene: &Scene, elements| {
         let bands = scene.bands().len();
-        let wanted = asked.final_gather || asked.discontinuity || asked.points.bytes(bands) > 0;
+        let wanted = asked.discontinuity || asked.points.bytes(bands) > 0;
         let gathering = if wanted { gathering(elements, bands) + asked.points.bytes(bands) } else { 0 };
-        let further = usize::from(asked.final_gather) + usize::from(asked.false_colour.is_some());
-        let pictures = pictures(scene, 1, (asked.no_pictures, further));
+        let more = (usize::from(asked.false_colour.is_some()), asked.final_gather);
+        let pictures = pictures(scene, 1, (asked.no_pictures, more));
         with_results(plan, scene, elements, (pictures, gathering))
     };
     let problem = Problem::refined(Arc::clone(scene), options, (1, &more), stages)?;
@@ -490,35 +490,37 @@ fn write(
     let layer = |name| match name {
         MESH_PICTURE => Some(Layer::Elements),
         LINKS_PICTURE => Some(Layer::Links(&linked)),
-        GATHER => Some(gathered.as_ref().map_or(Layer::Field, |gathered| Layer::Gathered(gathered))),
         _ => None,
     };
-    let exact = options.also.contains(&FieldFile::Exr);
+    let gathers = options.final_gather && !cancelled;
+    let exact = gathers || options.also.contains(&FieldFile::Exr);
     let lamplight = if options.no_pictures {
         None
     } else {
-        Some(Lamplight::new(problem, solution.direct.as_ref(), watch)?)
+        Some(Lamplight::new(problem, (solution.direct.as_ref(), gathers), watch)?)
     };
     let draw = |light: &Lamplight| picture((&field, &view, exact), light);
     let drawn = lamplight.as_ref().map(draw).transpose()?.flatten();
-    // All pictures are as bright as the first.
-    let (image, linear, exposure) = match drawn {
-        Some((LitPicture { picture, linear, exposure }, how)) => {
+    let (image, linear, standard_error) = match drawn {
+        Some((LitPicture { picture, linear, standard_error, whole, .. }, how)) => {
             record.picture = Some(how);
-            (Some(picture), linear, Exposure::Fixed(exposure))
+            if !whole {
+                let text = "interrupted: the picture is as it was then; the solution itself is whole";
+                signals.watch.warn(text);
+                record.warnings.push(text.to_owned());
+            }
+            (Some(picture), linear, standard_error)
         }
-        None => (None, Vec::new(), view.exposure),
+        None => (None, Vec::new(), Vec::new()),
     };
     let wanted = wanted(options, solution);
     let (names, layers): (Vec<&str>, Vec<Layer>) =
         wanted_files(&wanted).filter_map(|name| Some((name, layer(name)?))).unzip();
-    let drawn = if layers.is_empty() || (image.is_none() && signals.is_cancelled()) {
-        Vec::new()
-    } else {
-        render_layers(&field, &view.camera, exposure, &layers).map_err(report_failure)?
+    let drawn = match &image {
+        Some(image) => render_layers(&field, &view.camera, image, &layers).map_err(report_failure)?,
+        None => Vec::new(),
     };
-    let pictures = names.into_iter().zip(drawn);
-    let pictures: Vec<_> = pictures.filter_map(|(name, picture)| Some((name, picture?))).collect();
+    let pictures: Vec<_> = names.into_iter().zip(drawn).collect();
     let title = title(&problem.scene);
     let false_colour = match (&options.false_colour, &lamplight) {
         (Some(shown), Some(light)) if !cancelled => {
@@ -538,7 +540,18 @@ fn write(
     let page = RunReport { title: &title, view: &view, steps: ("", &[]), links: links.as_ref() };
     let report = (!options.no_report).then_some(page);
     let (also, exposure) = (wanted.also, view.exposure);
-    let more = Extras { image, linear, pictures, false_colour, exposure, points, shadows, also, report };
+    let more = Extras {
+        image,
+        linear,
+        standard_error,
+        pictures,
+        false_colour,
+        exposure,
+        points,
+        shadows,
+        also,
+        report,
+    };
     if signals.is_cancelled() && !record.partial {
         leave_out(record, &more, signals);
     }
@@ -553,11 +566,10 @@ fn picture(
     lamplight: &Lamplight,
 ) -> Result<Option<(LitPicture, String)>, Error> {
     let drawn = render_lit(field, &view.camera, view.exposure, &lamplight.lit(), linear);
-    let how = |exposure| format!("{}; {TONE}; exposure {exposure:.4e} m²/W", lamplight.words());
-    Ok(drawn
-        .map_err(report_failure)?
-        .map(|drawn| (how(drawn.exposure), drawn))
-        .map(|(how, drawn)| (drawn, how)))
+    Ok(drawn.map_err(report_failure)?.map(|drawn| {
+        let (light, exposure) = (lamplight.words(drawn.places), drawn.exposure);
+        (drawn, format!("{light}; {TONE}; exposure {exposure:.4e} m²/W"))
+    }))
 }
 
 /// How colours become what a screen shows.

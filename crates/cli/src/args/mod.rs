@@ -386,8 +386,9 @@ pub(crate) struct SolveArgs {
     /// exact as that needs, and the elements are chosen by hierarchical radiosity
     #[arg(long, value_name = "SURFACE", value_delimiter = ',')]
     pub(crate) goal: Vec<String>,
-    /// Also draw gather.png, for which every pixel gathers its light from all that it sees;
-    /// image.png interpolates between elements
+    /// Gather the light of image.png that lamps do not send themselves along 256 directions from
+    /// some thousand places, instead of interpolating it between elements; pixels.npz has its
+    /// colours with their standard errors
     #[arg(long)]
     pub(crate) final_gather: bool,
     /// Also draw false_colour.png, the irradiance (W/m²) of what the camera sees in false colour,

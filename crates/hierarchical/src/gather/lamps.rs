@@ -655,13 +655,9 @@ impl Lighter<'_> {
         }
         let bodies = self.lamps.bodies.as_ref().map_or(&[][..], Bodies::as_slice);
         let between = self.between[between].iter().map(|&k| &bodies[k as usize]);
-        self.shadows.cast(x, normal, between, self.lamps.occluders.tolerance());
-        self.shadows.turn(&self.above);
+        self.shadows.cast_on(&self.above, (x, normal), between, self.lamps.occluders.tolerance());
         self.list.clear();
         for shadow in 0..self.shadows.len() as u32 {
-            if !self.shadows.meets(shadow) {
-                continue;
-            }
             match self.shadows.covers(shadow, &self.above, piece.least(x)) {
                 Covers::Nothing => {}
                 Covers::Part => self.list.push(shadow),

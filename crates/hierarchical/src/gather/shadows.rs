@@ -40,8 +40,7 @@ pub(super) struct Shadows {
     tips: Vec<Vec3>,
     starts: Vec<usize>,
     screen: Screen,
-    /// What a polygon and each shadow cover on the screen.
-    seen: Bounds,
+    /// What each shadow covers on the screen.
     dark: Vec<Bounds>,
     volume: ShadowVolume,
     pieces: Pieces,
@@ -60,38 +59,74 @@ impl Shadows {
         bodies: impl Iterator<Item = &'b Body>,
         tolerance: f64,
     ) {
+        self.clear();
+        for body in bodies {
+            self.starts.push(self.tips.len());
+            self.tips.extend(body.corners().iter().map(|y| *y - x));
+            self.add(body, (x, normal), tolerance);
+        }
+        self.starts.push(self.tips.len());
+    }
+
+    /// Casts the shadows of bodies that may cover a part of a polygon, and turns to it.
+    pub fn cast_on<'b>(
+        &mut self,
+        polygon: &[Vec3],
+        (x, normal): (Vec3, Vec3),
+        bodies: impl Iterator<Item = &'b Body>,
+        tolerance: f64,
+    ) {
+        self.clear();
+        self.dark.clear();
+        self.screen = Screen::before(polygon);
+        let seen = self.screen.bounds(polygon);
+        for body in bodies {
+            let start = self.tips.len();
+            self.tips.extend(body.corners().iter().map(|y| *y - x));
+            // Where a body is seen is known sooner than its shadow.
+            let bounds = self.screen.bounds(&self.tips[start..]);
+            if !bounds.meets(&seen) {
+                self.tips.truncate(start);
+                continue;
+            }
+            self.starts.push(start);
+            if self.add(body, (x, normal), tolerance) {
+                self.dark.push(bounds);
+            }
+        }
+        self.starts.push(self.tips.len());
+    }
+
+    fn clear(&mut self) {
         self.planes.clear();
         self.spans.clear();
         self.tips.clear();
         self.starts.clear();
-        for body in bodies {
-            let below = body.corners().iter().all(|y| normal.dot(*y - x) <= tolerance);
-            if below || body.shadow(x, tolerance, &mut self.volume) == Shadow::Nothing {
-                continue;
-            }
-            let start = self.planes.len();
-            let unit =
-                |&(n, c, _): &(Vec3, f64, u32)| HalfSpace { normal: n / n.length(), offset: c / n.length() };
-            self.planes.extend(self.volume.planes().iter().map(unit));
-            self.spans.push(start..self.planes.len());
-            self.starts.push(self.tips.len());
-            self.tips.extend(body.corners().iter().map(|y| *y - x));
+    }
+
+    /// Adds the shadow of a body of which the corners are the last tips; takes these back where it
+    /// casts none.
+    fn add(&mut self, body: &Body, (x, normal): (Vec3, Vec3), tolerance: f64) -> bool {
+        let tips = &self.tips[self.starts.last().copied().unwrap_or(0)..];
+        let below = tips.iter().all(|y| normal.dot(*y) <= tolerance);
+        if below || body.shadow(x, tolerance, &mut self.volume) == Shadow::Nothing {
+            self.tips.truncate(self.starts.pop().unwrap_or(0));
+            return false;
         }
-        self.starts.push(self.tips.len());
+        let start = self.planes.len();
+        let unit =
+            |&(n, c, _): &(Vec3, f64, u32)| HalfSpace { normal: n / n.length(), offset: c / n.length() };
+        self.planes.extend(self.volume.planes().iter().map(unit));
+        self.spans.push(start..self.planes.len());
+        true
     }
 
     /// Turns to a polygon, of which [`factor`](Self::factor) is then asked.
     pub fn turn(&mut self, polygon: &[Vec3]) {
         let Self { tips, starts, screen, dark, .. } = self;
         *screen = Screen::before(polygon);
-        self.seen = screen.bounds(polygon);
         dark.clear();
         dark.extend(starts.windows(2).map(|ends| screen.bounds(&tips[ends[0]..ends[1]])));
-    }
-
-    /// Whether a shadow may cover a part of the polygon turned to.
-    pub fn meets(&self, shadow: u32) -> bool {
-        self.dark[shadow as usize].meets(&self.seen)
     }
 
     pub fn len(&self) -> usize {

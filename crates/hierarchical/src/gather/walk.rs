@@ -211,9 +211,9 @@ impl<'g> Gatherer<'g> {
         }
         let shaft = occluders.shaft_from(point, patch);
         let reaches = |body: &&Body| shaft.as_ref().is_some_and(|shaft| occluders.reaches(body, shaft));
-        self.shadows.cast(point, normal, bodies.as_slice().iter().filter(reaches), bodies.tolerance());
+        let reaching = bodies.as_slice().iter().filter(reaches);
+        self.shadows.cast_on(&self.front, (point, normal), reaching, bodies.tolerance());
         let all: Vec<u32> = (0..self.shadows.len() as u32).collect();
-        self.shadows.turn(&self.front);
         (all.len() <= MOST_EXACT_BODIES).then(|| self.shadows.factor(normal, &self.front, &all, flat))
     }
 

@@ -25,7 +25,7 @@ const LIGHT_COMMANDS: &str = "solve, resume";
 const ALL: &[&dyn OutputFile] = &[
     &pictures::Mesh,
     &pictures::Links,
-    &pictures::Gathered,
+    &pictures::Pixels,
     &pictures::FalseColours,
     &tables::FalseColours,
     &tables::Points,
@@ -52,8 +52,6 @@ pub const REPORT: &str = "report.html";
 pub const MESH_PICTURE: &str = "mesh.png";
 /// The picture of the links of an element.
 pub const LINKS_PICTURE: &str = "links.png";
-/// The picture for which every pixel gathers its light.
-pub const GATHER: &str = "gather.png";
 /// The irradiance of the picture in false colour.
 pub const FALSE_COLOUR: &str = "false_colour.png";
 /// The elements with colours, as PLY.
@@ -109,7 +107,7 @@ pub struct Wanted {
     pub page: bool,
     /// [`MESH_PICTURE`] and [`LINKS_PICTURE`].
     pub links: bool,
-    /// [`GATHER`].
+    /// [`PIXELS`](crate::PIXELS).
     pub gather: bool,
     /// [`FALSE_COLOUR`] and its table.
     pub false_colour: bool,
@@ -137,9 +135,11 @@ pub struct Contents<'a> {
 pub struct Extras<'a> {
     /// The usual picture.
     pub image: Option<Picture>,
-    /// Its linear colours, for [`FIELD_EXR`].
+    /// Its linear colours, for [`FIELD_EXR`] and [`PIXELS`](crate::PIXELS).
     pub linear: Vec<[f32; 3]>,
-    /// Further pictures with their names: [`MESH_PICTURE`], [`LINKS_PICTURE`], [`GATHER`].
+    /// Standard error of them, where light was gathered.
+    pub standard_error: Vec<[f32; 3]>,
+    /// Further pictures with their names: [`MESH_PICTURE`], [`LINKS_PICTURE`].
     pub pictures: Vec<(&'static str, Picture)>,
     /// The irradiance in false colour, for [`FALSE_COLOUR`] and its table.
     pub false_colour: Option<FalseColourPicture>,

@@ -1,12 +1,15 @@
 //! Pictures of a solution.
 
-use std::io::{self, Write};
+use std::io::{self, Cursor, Write};
+
+use ndarray::ArrayView3;
+use ndarray_npy::NpzWriter;
 
 use super::{
-    Contents, Extras, FALSE_COLOUR, FIELD_EXR, GATHER, IMAGE, LINKS_PICTURE, MESH_PICTURE, OutputFile, Wanted,
+    Contents, Extras, FALSE_COLOUR, FIELD_EXR, IMAGE, LINKS_PICTURE, MESH_PICTURE, OutputFile, Wanted,
 };
-use crate::Picture;
 use crate::catalogue::{CataloguedFile, file};
+use crate::{PIXELS, Picture};
 
 /// One of the further pictures, by its name.
 fn drawn<'a>(more: &'a Extras<'_>, name: &str) -> Option<&'a Picture> {
@@ -128,20 +131,31 @@ impl OutputFile for Links {
     }
 }
 
-/// The picture for which every pixel gathers its light.
-pub(super) struct Gathered;
+/// The colours of a picture whose light was gathered, and their errors.
+pub(super) struct Pixels;
 
-impl OutputFile for Gathered {
+impl OutputFile for Pixels {
     fn name(&self) -> &'static str {
-        GATHER
+        PIXELS
     }
 
     fn about(&self) -> Option<CataloguedFile> {
         Some(file(
             self.name(),
             "solve --final-gather",
-            "the picture for which every pixel gathers its light",
-            &[],
+            "the pixels of the picture, rows from the top; that of a traced picture has other arrays",
+            &[
+                (
+                    "colour",
+                    "W/m²",
+                    "f32, height × width × 3: radiosity as linear sRGB, 0 where nothing is seen",
+                ),
+                (
+                    "standard_error",
+                    "W/m²",
+                    "f32, the same shape: of the gathered light at the middle of the pixel, without the errors of the solution; no number where light is interpolated between elements",
+                ),
+            ],
         ))
     }
 
@@ -150,11 +164,19 @@ impl OutputFile for Gathered {
     }
 
     fn is_ready(&self, more: &Extras<'_>) -> bool {
-        drawn(more, GATHER).is_some()
+        more.image.is_some() && !more.standard_error.is_empty()
     }
 
     fn write(&self, contents: &Contents<'_>, out: &mut dyn Write) -> io::Result<()> {
-        png(drawn(contents.more, GATHER), out)
+        let more = contents.more;
+        let Some(picture) = &more.image else { return Ok(()) };
+        let shape = (picture.height as usize, picture.width as usize, 3);
+        let mut npz = NpzWriter::new(Cursor::new(Vec::new()));
+        for (name, values) in [("colour", &more.linear), ("standard_error", &more.standard_error)] {
+            let values = ArrayView3::from_shape(shape, values.as_flattened()).map_err(io::Error::other)?;
+            npz.add_array(name, &values).map_err(io::Error::other)?;
+        }
+        out.write_all(npz.finish().map_err(io::Error::other)?.get_ref())
     }
 }
 

@@ -1,11 +1,11 @@
-//! The edges of the elements, drawn over the field: a sample nearer than half a line to an edge of
+//! The edges of the elements, drawn over the picture: a sample nearer than half a line to an edge of
 //! its element takes the colour of the line.
 //!
 //! The distance is taken in the picture, to the point of the edge that is nearest in space. Pixels.
 
 use fredholm_mesh::{Mesh, Patch, Vec3};
 
-use super::{Brush, Painter, Sample, Viewer, mean};
+use super::{Overlay, Sample, Viewer};
 use crate::colour::Rgb;
 
 /// Half the width of a line, pixels.
@@ -18,25 +18,27 @@ pub(super) struct Elements<'a> {
     pub mesh: &'a Mesh,
 }
 
-impl Painter for Elements<'_> {
-    fn brush(&self) -> Brush<'_> {
-        Box::new(|view, _, samples| {
-            mean(samples, |sample| {
-                let colour = sample.shown;
-                let near = on_edge(view, self.mesh.patch(sample.leaf), sample, HALF_LINE_WIDTH);
-                if near { blend(colour, LINE_COLOUR, LINE_SHARE) } else { colour }
-            })
-        })
+impl Overlay for Elements<'_> {
+    fn colour(&self, view: &Viewer<'_>, sample: &Sample, under: Rgb) -> Rgb {
+        let cover = cover(view, self.mesh.patch(sample.leaf), sample, HALF_LINE_WIDTH);
+        blend(under, LINE_COLOUR, LINE_SHARE * cover)
     }
 }
 
-/// Whether a sample is within `half` pixels of an edge of a patch.
-pub(super) fn on_edge(view: &Viewer<'_>, patch: &Patch, sample: &Sample, half: f64) -> bool {
-    (0..patch.sides()).any(|k| {
+/// The share of a sample that lines along the edges of a patch cover, `half` pixels to either side:
+/// all or nothing of a point, and of a whole pixel as much as of a strip of its width.
+pub(super) fn cover(view: &Viewer<'_>, patch: &Patch, sample: &Sample, half: f64) -> f64 {
+    let distance = |k: usize| {
         let near = nearest(patch.corner(k), patch.corner(k + 1), sample.point);
         let (x, y) = sample.at;
-        view.project(near).is_some_and(|(u, v)| (u - x).powi(2) + (v - y).powi(2) < half * half)
-    })
+        view.project(near).map_or(f64::INFINITY, |(u, v)| (u - x).hypot(v - y))
+    };
+    let distance = (0..patch.sides()).map(distance).fold(f64::INFINITY, f64::min);
+    if sample.is_pixel {
+        (half + 0.5 - distance).clamp(0.0, 1.0)
+    } else {
+        f64::from(u8::from(distance < half))
+    }
 }
 
 /// The point of a segment nearest to `p`.

@@ -13,6 +13,7 @@ use fredholm_mesh::Vec3;
 use super::lit::{LitView, Middle, Seen};
 use super::{Lit, Picture};
 use crate::plot::{Annotated, ColourBar, Grid, Isoline, Scale, number_grid, round_step, viridis};
+use crate::tone::decode;
 use crate::words::number;
 use crate::{Camera, Eye, Field, ReportError};
 
@@ -70,7 +71,7 @@ pub fn render_false_colour(
     let view = LitView::of_irradiance(*field, &eye, lit, &weights)?;
     let Some(middles) = view.looked() else { return Ok(None) };
     let scale = Levels::of(field, &middles);
-    let display = |colour: [f64; 3]| viridis(scale.scale.place(colour[0])).map(decoded);
+    let display = |colour: [f64; 3]| viridis(scale.scale.place(colour[0])).map(decode);
     let Some(shown) = view.shown(&middles, &display) else { return Ok(None) };
     let Camera { width, height, .. } = *camera;
     let picture = Picture { width, height, pixels: shown.into_flattened() };
@@ -196,10 +197,4 @@ fn numbers(view: &LitView<'_>, eye: &Eye) -> Vec<PictureNumber> {
         Some(PictureNumber { pixel: [x, y], element, point, irradiance: colour[0] })
     });
     found.collect()
-}
-
-/// The linear value of a code of sRGB.
-fn decoded(code: u8) -> f64 {
-    let value = f64::from(code) / 255.0;
-    if value <= 0.040_45 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
 }

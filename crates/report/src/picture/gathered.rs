@@ -1,92 +1,494 @@
-//! The radiosity of every pixel, gathered from all that it sees: B(x) = M + ρ E(x).
+//! Light gathered at some of the pixels, and between them what these tell: E(x) = ∫ B cosθ/π dω
+//! over the directions from x, of which a few hundred are looked along.
 //!
-//! The samples of a pixel that lie on one plane of one surface have one colour: it is gathered at
-//! the one nearest to their mean. So borders are drawn as finely as in the interpolated picture,
-//! and light is gathered little more than once a pixel. W/m².
+//! Only what changes slowly is gathered, so a few thousand places are enough for a picture: a cache
+//! of irradiance (G. J. Ward, F. M. Rubinstein, R. D. Clear, SIGGRAPH 1988,
+//! doi:10.1145/54852.378490). The harmonic mean of the lengths of the rays of a place tells how far
+//! it reaches. A point has the value at it of the plane that fits the places around it best
+//! (weighted least squares), on the same surface and where normals are alike. What these are off
+//! that plane, and what the groups of directions of a place differ by, is the stated error.
+//! Places are added on grids of pixels, each twice as fine, where too few others reach or where
+//! that error is too large. W/m².
 
-use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, Ordering};
+use rayon::prelude::*;
 
 use fredholm_mesh::Vec3;
 
-use super::{BACKGROUND, Brush, Painter, SAMPLES, Sample, mean};
-use crate::Field;
-use crate::colour::{Colouring, Rgb};
+use super::lit::Seen;
+use crate::colour::Rgb;
+use crate::shading::Shading;
+use crate::tone::luminance;
+use crate::{Eye, Field};
 
-/// Cosine, less than 1 by this, up to which two elements have one normal.
-const COSINE_TOLERANCE: f64 = 1e-9;
+/// Groups of directions of a place, each evenly distributed: their scatter tells the error.
+pub const DIRECTION_GROUPS: usize = 4;
+/// Pixels from place to place on each of the grids.
+const STRIDES: [usize; 4] = [16, 8, 4, 2];
+/// Places that have to reach a pixel of these grids, else it becomes one.
+const FEWEST: [usize; 4] = [6, 6, 4, 1];
+/// Distance, over the harmonic mean of the lengths of its rays, to which a place reaches.
+const REACH: f64 = 0.35;
+/// The same at least, pixels: so few are not seen.
+const LEAST_REACH_PIXELS: f64 = 3.0;
+/// Places that tell a point, at most: the nearest.
+const MOST_PLACES: usize = 16;
+/// Places from which on a plane is laid through them, and not their mean taken.
+const PLACES_OF_A_PLANE: usize = 6;
+/// Determinant, over the product of the diagonal, below which places lie on a line.
+const SINGULAR: f64 = 1e-4;
+/// Sum of the squares of the weights of the places from which on a plane is not trusted: the point
+/// lies outside of them.
+const MOST_SPREAD: f64 = 1.0;
+/// Standard error, over the colour of the pixel, that a pixel of a grid may have.
+const WANTED_ERROR: f64 = 0.005;
+/// Darker pixels may have the error of this share of the mean.
+const DARK_SHARE: f64 = 0.3;
+/// Normals of one surface are alike up to this cosine, and points of it lie in one plane up to this
+/// part of their distance.
+const ALIKE_COSINE: f64 = 0.9;
+const FLAT_SHARE: f64 = 0.25;
+/// Pixels along the side of a bin of places, and bins that are looked through on either side.
+const BIN_SIDE: usize = 8;
+const MOST_RINGS: usize = 8;
 
-/// Gathers the radiosity of points.
+/// Looks along directions.
 pub trait Gathering: Sync {
-    /// A gatherer for one thread: the radiosity of a point of an element, of each band, W/m².
-    fn gatherer(&self) -> Box<dyn FnMut(usize, Vec3) -> Vec<f64> + '_>;
-
-    /// Whether the picture is still wanted; asked for every pixel.
-    fn go_on(&self) -> ControlFlow<()> {
-        ControlFlow::Continue(())
-    }
+    /// What rays from a point of a leaf meet, of which the directions have the density cosθ/π: leaf
+    /// and point (m), or none for a back or for nothing. [`DIRECTION_GROUPS`] groups of equally
+    /// many, independent of each other, one behind the other. Numbers below 2³¹ tell places apart,
+    /// and the directions of different ones are independent.
+    fn meet(&self, number: u32, leaf: usize, point: Vec3, met: &mut Vec<Seen>);
 }
 
-pub(super) struct GatherPainter<'a> {
-    field: Field<'a>,
-    gathering: &'a dyn Gathering,
-    colouring: Colouring,
-    /// Whether a pixel was left out because the picture was not wanted any more.
-    stopped: AtomicBool,
+/// What surfaces send on, W/m².
+pub(super) struct Sent<'a> {
+    /// What is interpolated between the corners of leaves, and what each has as a whole, leaves ×
+    /// bands.
+    smooth: Shading<'a>,
+    constant: Vec<f64>,
 }
 
-impl<'a> GatherPainter<'a> {
-    pub fn new(field: Field<'a>, gathering: &'a dyn Gathering) -> Self {
-        Self { field, gathering, colouring: Colouring::new(field.bands()), stopped: AtomicBool::new(false) }
-    }
-
-    /// Whether two samples lie on one plane of one surface.
-    fn alike(&self, a: &Sample, b: &Sample) -> bool {
-        let mesh = self.field.mesh();
-        let [p, q] = [a, b].map(|sample| mesh.patch(sample.leaf));
-        let apart = (b.point - a.point).dot(p.normal()).abs();
-        mesh.surface_of(a.leaf) == mesh.surface_of(b.leaf)
-            && p.normal().dot(q.normal()) > 1.0 - COSINE_TOLERANCE
-            && apart <= COSINE_TOLERANCE * p.diameter()
-    }
-
-    /// The sample of a group nearest to the mean of their points.
-    fn middle<'s>(&self, first: &Sample, samples: &'s [Option<Sample>; SAMPLES]) -> Option<&'s Sample> {
-        let group = || samples.iter().flatten().filter(|sample| self.alike(first, sample));
-        let (sum, count) = group().fold((Vec3::ZERO, 0.0), |(sum, count), s| (sum + s.point, count + 1.0));
-        group().min_by(|a, b| {
-            let [a, b] = [a, b].map(|sample| sample.point.distance_squared(sum / count));
-            a.total_cmp(&b)
-        })
-    }
-}
-
-impl Painter for GatherPainter<'_> {
-    fn brush(&self) -> Brush<'_> {
-        let mut gather = self.gathering.gatherer();
-        Box::new(move |_, tone, samples| {
-            if self.stopped.load(Ordering::Relaxed) || self.gathering.go_on().is_break() {
-                self.stopped.store(true, Ordering::Relaxed);
-                return [BACKGROUND; 3];
-            }
-            let mut known: Vec<(Sample, Rgb)> = Vec::new();
-            mean(samples, |sample| {
-                if let Some((_, colour)) = known.iter().find(|(other, _)| self.alike(other, sample)) {
-                    return *colour;
+impl<'a> Sent<'a> {
+    /// The radiosity; without its exitance, and with the part `direct` of its irradiance (leaves ×
+    /// bands) not interpolated, where that is told apart.
+    pub fn new(field: Field<'a>, reflectance: &[f64], direct: Option<&[f64]>, passes: usize) -> Self {
+        let bands = field.bands().len();
+        let mut smooth: Vec<f64> =
+            (0..field.mesh().len()).flat_map(|leaf| field.exposed_radiosity(leaf)).collect();
+        let mut constant = Vec::new();
+        if let Some(direct) = direct {
+            for (leaf, smooth) in smooth.chunks_exact_mut(bands).enumerate() {
+                let share = field.exposed(leaf);
+                let reflected_by = if share > 0.0 { 1.0 / share } else { 1.0 };
+                let exitance = field.exitance().map(|m| field.row(m, leaf));
+                for (band, smooth) in smooth.iter_mut().enumerate() {
+                    let at = leaf * bands + band;
+                    let part = reflectance[at] * direct[at] * reflected_by;
+                    *smooth -= exitance.map_or(0.0, |m| m[band]) + part;
+                    constant.push(part);
                 }
-                let middle = self.middle(sample, samples).unwrap_or(sample);
-                let colour = tone.display(self.colouring.colour(&gather(middle.leaf, middle.point)));
-                known.push((*sample, colour));
-                colour
+            }
+        }
+        Self { smooth: Shading::of_values(field, passes, (bands, smooth)), constant }
+    }
+
+    fn add(&self, leaf: usize, point: Vec3, sum: &mut [f64]) {
+        self.smooth.add(leaf, point, sum);
+        if !self.constant.is_empty() {
+            let bands = sum.len();
+            let values = &self.constant[leaf * bands..(leaf + 1) * bands];
+            sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
+        }
+    }
+}
+
+/// A place at which light was gathered.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    point: Vec3,
+    normal: Vec3,
+    surface: u32,
+    /// Where it is in the picture, pixels.
+    at: (f64, f64),
+    /// To where it reaches, m.
+    reach: f64,
+    /// What is reflected of the light, as linear sRGB, and the square of its standard error.
+    colour: Rgb,
+    variance: Rgb,
+}
+
+/// What places tell of a point: what it reflects, as linear sRGB, and the standard error.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Told {
+    pub colour: Rgb,
+    pub error: Rgb,
+    /// How many told it.
+    places: usize,
+    /// Sum of the squares of their weights.
+    spread: f64,
+}
+
+/// The places of a picture.
+pub(super) struct Gathered<'a> {
+    field: Field<'a>,
+    eye: &'a Eye,
+    places: Vec<Place>,
+    /// Numbers of the places in squares of pixels.
+    bins: Vec<Vec<u32>>,
+    /// Bins in a row, and rows.
+    sides: [usize; 2],
+}
+
+/// A pixel that may become a place.
+pub(super) struct Candidate {
+    pub leaf: usize,
+    pub point: Vec3,
+    /// Its colour without what is gathered.
+    pub colour: Rgb,
+}
+
+impl<'a> Gathered<'a> {
+    /// Gathers for a picture. `pixel` is what is seen through the middle of a pixel, `reflected`
+    /// the colour that a leaf reflects of an irradiance, leaf by leaf; `begin` is told the share of
+    /// the way and says whether to go on.
+    pub fn new(
+        (field, eye): (Field<'a>, &'a Eye),
+        (gathering, sent): (&dyn Gathering, &Sent<'_>),
+        pixel: &(dyn Fn(usize, usize) -> Option<Candidate> + Sync),
+        reflected: &(dyn Fn(usize, &[f64]) -> Rgb + Sync),
+        go_on: &(dyn Fn(f64) -> bool + Sync),
+    ) -> Self {
+        let camera = eye.camera();
+        let (w, h) = (camera.width as usize, camera.height as usize);
+        let sides = [w.div_ceil(BIN_SIDE), h.div_ceil(BIN_SIDE)];
+        let bins = vec![Vec::new(); sides[0] * sides[1]];
+        let mut gathered = Self { field, eye, places: Vec::new(), bins, sides };
+        for (pass, stride) in STRIDES.into_iter().enumerate() {
+            let coarser = if pass == 0 { 0 } else { 2 * stride };
+            let is_new = |x: usize, y: usize| {
+                coarser == 0 || !(x.is_multiple_of(coarser) && y.is_multiple_of(coarser))
+            };
+            let grid = (0..h).step_by(stride).flat_map(|y| (0..w).step_by(stride).map(move |x| (x, y)));
+            let pixels: Vec<(usize, usize)> = grid.filter(|&(x, y)| is_new(x, y)).collect();
+            let mean = gathered.mean(&pixels, pixel);
+            let wanted = |&(x, y): &(usize, usize)| {
+                let candidate = pixel(x, y)?;
+                let told = gathered.told(candidate.leaf, candidate.point);
+                let enough = told.is_some_and(|told| is_enough(&told, &candidate, (FEWEST[pass], mean)));
+                (!enough).then_some((x, y, candidate))
+            };
+            let wanted: Vec<(usize, usize, Candidate)> = pixels.par_iter().filter_map(wanted).collect();
+            let begun = pass as f64 / STRIDES.len() as f64;
+            let look = |met: &mut Vec<Seen>, (k, (x, y, candidate)): (usize, &(usize, usize, Candidate))| {
+                let share = begun + k as f64 / (wanted.len() * STRIDES.len()) as f64;
+                if !go_on(share) {
+                    return None;
+                }
+                gathering.meet((y * w + x) as u32, candidate.leaf, candidate.point, met);
+                let at = (*x as f64 + 0.5, *y as f64 + 0.5);
+                Some(gathered.place((candidate, at), (met, sent), reflected))
+            };
+            let places = wanted.par_iter().enumerate().map_init(Vec::new, look);
+            let places: Vec<Option<Place>> = places.collect();
+            let stopped = places.iter().any(Option::is_none);
+            gathered.insert(places.into_iter().flatten());
+            if stopped {
+                break;
+            }
+        }
+        gathered
+    }
+
+    /// Number of places.
+    pub fn len(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Mean luminance of some pixels.
+    fn mean(
+        &self,
+        pixels: &[(usize, usize)],
+        pixel: &(dyn Fn(usize, usize) -> Option<Candidate> + Sync),
+    ) -> f64 {
+        let bright = |&(x, y): &(usize, usize)| {
+            let candidate = pixel(x, y)?;
+            let told = self.told(candidate.leaf, candidate.point)?;
+            Some(luminance(sum(candidate.colour, told.colour)))
+        };
+        let found: Vec<f64> = pixels.par_iter().filter_map(bright).collect();
+        found.iter().sum::<f64>() / found.len().max(1) as f64
+    }
+
+    fn insert(&mut self, places: impl Iterator<Item = Place>) {
+        for place in places {
+            let [x, y] = [place.at.0, place.at.1].map(|at| at as usize / BIN_SIDE);
+            self.bins[y * self.sides[0] + x].push(self.places.len() as u32);
+            self.places.push(place);
+        }
+    }
+
+    /// A place, from what its directions meet.
+    fn place(
+        &self,
+        (candidate, at): (&Candidate, (f64, f64)),
+        (met, sent): (&[Seen], &Sent<'_>),
+        reflected: &dyn Fn(usize, &[f64]) -> Rgb,
+    ) -> Place {
+        let Candidate { leaf, point, .. } = *candidate;
+        let bands = self.field.bands().len();
+        let (mut inverse, mut irradiance) = (0.0, vec![0.0; bands]);
+        let mut colours = [[0.0; 3]; DIRECTION_GROUPS];
+        let of_group = met.len() / DIRECTION_GROUPS;
+        for (met, colour) in met.chunks_exact(of_group.max(1)).zip(&mut colours) {
+            irradiance.fill(0.0);
+            for &(leaf, at) in met.iter().flatten() {
+                inverse += 1.0 / at.distance(point).max(f64::MIN_POSITIVE);
+                sent.add(leaf, at, &mut irradiance);
+            }
+            irradiance.iter_mut().for_each(|e| *e /= of_group as f64);
+            *colour = reflected(leaf, &irradiance);
+        }
+        let groups = DIRECTION_GROUPS as f64;
+        let colour = [0, 1, 2].map(|i| colours.iter().map(|group| group[i]).sum::<f64>() / groups);
+        let variance = [0, 1, 2].map(|i| {
+            let squares = colours.iter().map(|group| (group[i] - colour[i]).powi(2));
+            squares.sum::<f64>() / (groups * (groups - 1.0))
+        });
+        let mesh = self.field.mesh();
+        let reach = REACH * met.len() as f64 / inverse;
+        let (normal, surface) = (mesh.patch(leaf).normal(), mesh.surface_of(leaf) as u32);
+        Place { point, normal, surface, at, reach, colour, variance }
+    }
+
+    /// What the places around a point of a leaf tell; none where none reaches it.
+    pub fn told(&self, leaf: usize, point: Vec3) -> Option<Told> {
+        let near = self.near(leaf, point)?;
+        if near.is_empty() {
+            return None;
+        }
+        let plane = if near.len() >= PLACES_OF_A_PLANE { self.plane(leaf, point, &near) } else { None };
+        Some(plane.filter(|told| told.spread <= MOST_SPREAD).unwrap_or_else(|| self.middle(&near)))
+    }
+
+    /// The places that reach a point, each with its weight, the heaviest first.
+    fn near(&self, leaf: usize, point: Vec3) -> Option<Vec<(f64, u32)>> {
+        let at = self.eye.place(point)?;
+        let mesh = self.field.mesh();
+        let (normal, surface) = (mesh.patch(leaf).normal(), mesh.surface_of(leaf) as u32);
+        let own = [at.0, at.1].map(|at| (at.max(0.0) as usize) / BIN_SIDE);
+        let own = [own[0].min(self.sides[0] - 1), own[1].min(self.sides[1] - 1)];
+        let mut near: Vec<(f64, u32)> = Vec::with_capacity(2 * MOST_PLACES);
+        for ring in 0..=MOST_RINGS {
+            if ring > 1 && near.len() >= MOST_PLACES {
+                break;
+            }
+            let [columns, rows] =
+                [0, 1].map(|i| own[i].saturating_sub(ring)..=(own[i] + ring).min(self.sides[i] - 1));
+            for row in rows {
+                for column in columns.clone() {
+                    if row.abs_diff(own[1]).max(column.abs_diff(own[0])) != ring {
+                        continue;
+                    }
+                    for &k in &self.bins[row * self.sides[0] + column] {
+                        let place = &self.places[k as usize];
+                        if let Some(weight) = weight(place, (point, normal, surface), at) {
+                            near.push((weight, k));
+                        }
+                    }
+                }
+            }
+        }
+        near.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        near.truncate(MOST_PLACES);
+        Some(near)
+    }
+
+    /// The weighted mean of places.
+    fn middle(&self, near: &[(f64, u32)]) -> Told {
+        let all: f64 = near.iter().map(|(weight, _)| weight).sum();
+        let shares: Vec<f64> = near.iter().map(|(weight, _)| weight / all).collect();
+        let places = || near.iter().map(|&(_, k)| &self.places[k as usize]).zip(&shares);
+        let colour = places()
+            .fold([0.0; 3], |sum, (place, share)| [0, 1, 2].map(|i| sum[i] + share * place.colour[i]));
+        self.stated(near, &shares, colour, |_| colour, 1)
+    }
+
+    /// The value at a point of the plane through places.
+    fn plane(&self, leaf: usize, point: Vec3, near: &[(f64, u32)]) -> Option<Told> {
+        let normal = self.field.mesh().patch(leaf).normal();
+        let x = normal.any_orthonormal_vector();
+        let y = normal.cross(x);
+        let size =
+            near.iter().map(|&(_, k)| self.places[k as usize].point.distance(point)).fold(0.0, f64::max);
+        let coordinates: Vec<[f64; 3]> = near
+            .iter()
+            .map(|&(_, k)| {
+                let off = (self.places[k as usize].point - point) / size;
+                [1.0, off.dot(x), off.dot(y)]
             })
-        })
+            .collect();
+        let mut matrix = [[0.0; 3]; 3];
+        for ((weight, _), c) in near.iter().zip(&coordinates) {
+            for i in 0..3 {
+                for j in 0..3 {
+                    matrix[i][j] += weight * c[i] * c[j];
+                }
+            }
+        }
+        let inverse = inverse(matrix)?;
+        // Row i of the inverse tells the weights of the places in coefficient i.
+        let parts: Vec<[f64; 3]> = near
+            .iter()
+            .zip(&coordinates)
+            .map(|((weight, _), c)| {
+                [0, 1, 2].map(|i| weight * (0..3).map(|j| inverse[i][j] * c[j]).sum::<f64>())
+            })
+            .collect();
+        let mut coefficients = [[0.0; 3]; 3];
+        for (&(_, k), part) in near.iter().zip(&parts) {
+            let colour = self.places[k as usize].colour;
+            for (coefficient, part) in coefficients.iter_mut().zip(part) {
+                *coefficient = [0, 1, 2].map(|i| coefficient[i] + part * colour[i]);
+            }
+        }
+        let shares: Vec<f64> = parts.iter().map(|part| part[0]).collect();
+        let fitted =
+            |k: usize| [0, 1, 2].map(|i| (0..3).map(|j| coefficients[j][i] * coordinates[k][j]).sum::<f64>());
+        let colour = coefficients[0].map(|c| c.max(0.0));
+        Some(self.stated(near, &shares, colour, fitted, 3))
     }
 
-    fn shows_field(&self) -> bool {
-        false
+    /// A colour with its error, from what places are off what was fitted with some free numbers.
+    fn stated(
+        &self,
+        near: &[(f64, u32)],
+        shares: &[f64],
+        colour: Rgb,
+        fitted: impl Fn(usize) -> Rgb,
+        free: usize,
+    ) -> Told {
+        let (mut all, mut off, mut noise) = (0.0, [0.0; 3], [0.0; 3]);
+        for (k, &(weight, number)) in near.iter().enumerate() {
+            let (place, fitted) = (&self.places[number as usize], fitted(k));
+            all += weight;
+            off = [0, 1, 2].map(|i| off[i] + weight * (place.colour[i] - fitted[i]).powi(2));
+            noise = [0, 1, 2].map(|i| noise[i] + weight * place.variance[i]);
+        }
+        let n = near.len() as f64;
+        let freedom = n / (n - free as f64);
+        let spread: f64 = shares.iter().map(|share| share * share).sum();
+        let error = [0, 1, 2].map(|i| {
+            let off = if near.len() > free { off[i] / all * freedom } else { 0.0 };
+            (off.max(noise[i] / all) * spread).sqrt()
+        });
+        Told { colour, error, places: near.len(), spread }
+    }
+}
+
+/// Whether a pixel need not become a place.
+fn is_enough(told: &Told, candidate: &Candidate, (fewest, mean): (usize, f64)) -> bool {
+    let bright = luminance(sum(candidate.colour, told.colour)).max(DARK_SHARE * mean);
+    told.places >= fewest && luminance(told.error) <= WANTED_ERROR * bright
+}
+
+/// The weight of a place for a point with its normal and surface, that is seen at a place of the
+/// picture; none where it does not reach it.
+fn weight(place: &Place, (point, normal, surface): (Vec3, Vec3, u32), at: (f64, f64)) -> Option<f64> {
+    if place.surface != surface || place.normal.dot(normal) < ALIKE_COSINE {
+        return None;
+    }
+    let off = point - place.point;
+    let distance = off.length();
+    let pixels = (at.0 - place.at.0).hypot(at.1 - place.at.1);
+    let share = (distance / place.reach).min(pixels / LEAST_REACH_PIXELS);
+    if share >= 1.0 || off.dot(place.normal + normal).abs() > 2.0 * FLAT_SHARE * distance {
+        return None;
+    }
+    Some((1.0 - share).powi(2))
+}
+
+fn sum(a: Rgb, b: Rgb) -> Rgb {
+    [0, 1, 2].map(|i| a[i] + b[i])
+}
+
+/// The inverse of a symmetric matrix; none where it has hardly one.
+fn inverse(m: [[f64; 3]; 3]) -> Option<[[f64; 3]; 3]> {
+    let minor = |i: usize, j: usize| {
+        let [a, b] = [(i + 1) % 3, (i + 2) % 3];
+        let [c, d] = [(j + 1) % 3, (j + 2) % 3];
+        m[a][c] * m[b][d] - m[a][d] * m[b][c]
+    };
+    let determinant: f64 = (0..3).map(|j| m[0][j] * minor(0, j)).sum();
+    let scale = m[0][0] * m[1][1] * m[2][2];
+    (determinant > SINGULAR * scale)
+        .then(|| std::array::from_fn(|i| std::array::from_fn(|j| minor(j, i) / determinant)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Camera;
+    use crate::field::tests::{grid, names};
+    use fredholm_mesh::{Mesh, MeshBuilder};
+
+    fn square() -> Mesh {
+        let mut builder = MeshBuilder::default();
+        builder.surface("square", 0);
+        grid(&mut builder, &[0.0, 1.0], &[0.0, 1.0]);
+        builder.build()
     }
 
-    fn is_whole(&self) -> bool {
-        !self.stopped.load(Ordering::Relaxed)
+    /// Looks down on the unit square, which fills columns and rows 30 to 50 of 80.
+    fn above() -> Camera {
+        Camera {
+            eye: Vec3::new(0.5, 0.5, 2.0),
+            target: Vec3::new(0.5, 0.5, 0.0),
+            up: Vec3::Y,
+            vertical_fov_degrees: 90.0,
+            width: 80,
+            height: 80,
+        }
+    }
+
+    #[test]
+    fn places_of_a_plane_tell_it_between_them_and_beyond() {
+        let (mesh, bands) = (square(), names(&["grey"]));
+        let field = Field::new(&mesh, &bands, &[1.0], &[1.0]).unwrap();
+        let eye = Eye::new(&mesh, &above()).unwrap();
+        let mut gathered =
+            Gathered { field, eye: &eye, places: Vec::new(), bins: vec![Vec::new(); 100], sides: [10, 10] };
+        let colour = |p: Vec3| [2.0 + p.x, 3.0 - p.y, 1.0 + 0.5 * p.x + 0.25 * p.y];
+        let place = |k: usize| {
+            let point = Vec3::new(0.2 + 0.15 * (k % 4) as f64, 0.25 + 0.2 * (k / 4) as f64, 0.0);
+            let (at, colour) = (eye.place(point).unwrap(), colour(point));
+            Place { point, normal: Vec3::Z, surface: 0, at, reach: 1.0, colour, variance: [0.0; 3] }
+        };
+        let told = |gathered: &Gathered, x: f64, y: f64| gathered.told(0, Vec3::new(x, y, 0.0));
+        assert!(told(&gathered, 0.5, 0.5).is_none());
+        gathered.insert((0..12).map(place));
+        for (x, y) in [(0.3, 0.3), (0.5, 0.5), (0.62, 0.4), (0.7, 0.7)] {
+            let told = told(&gathered, x, y).unwrap();
+            let exact = colour(Vec3::new(x, y, 0.0));
+            assert!((0..3).all(|i| (told.colour[i] - exact[i]).abs() < 1e-12 && told.error[i] < 1e-12));
+            assert!(told.places == 12 && told.spread < MOST_SPREAD);
+        }
+        // Another surface, a wall on this one, and what is out of reach.
+        let [mut other, mut wall, mut far] = [place(0); 3];
+        (other.surface, wall.normal, far.reach) = (1, Vec3::X, 1e-3);
+        let at = (40.0, 40.0);
+        let point = Vec3::new(0.5, 0.5, 0.0);
+        assert!([other, wall, far].iter().all(|place| weight(place, (point, Vec3::Z, 0), at).is_none()));
+        assert!(weight(&place(0), (point, Vec3::Z, 0), at).is_some());
+    }
+
+    #[test]
+    fn an_inverse_is_one() {
+        let m = [[4.0, 1.0, 0.5], [1.0, 3.0, -0.25], [0.5, -0.25, 2.0]];
+        let found = inverse(m).unwrap();
+        for (i, j) in (0..9).map(|k| (k / 3, k % 3)) {
+            let product: f64 = (0..3).map(|k| m[i][k] * found[k][j]).sum();
+            assert!((product - f64::from(u8::from(i == j))).abs() < 1e-14);
+        }
+        assert!(inverse([[1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.0, 1.0]]).is_none());
     }
 }

@@ -8,8 +8,8 @@
 
 use fredholm_mesh::{Patch, Vec3};
 
-use super::elements::{blend, on_edge};
-use super::{Brush, Painter, Picture, Sample, Viewer, mean};
+use super::elements::{blend, cover};
+use super::{Overlay, Picture, Sample, Viewer};
 use crate::Field;
 use crate::colour::Rgb;
 use crate::tone::{encode, luminance};
@@ -49,13 +49,13 @@ const RECEIVER_COLOUR: Rgb = [1.0, 0.02, 0.02];
 const LEVEL_COLOURS: [Rgb; 5] =
     [[0.95, 0.30, 0.02], [0.75, 0.55, 0.02], [0.10, 0.50, 0.12], [0.04, 0.35, 0.70], [0.22, 0.12, 0.60]];
 
-pub(super) struct LinkPainter<'a> {
+pub(super) struct LinkOverlay<'a> {
     field: Field<'a>,
     receiver: usize,
     linked: Linked,
 }
 
-impl<'a> LinkPainter<'a> {
+impl<'a> LinkOverlay<'a> {
     /// The links of the element in the middle of the picture, or of the first one where nothing is
     /// there.
     pub fn new(view: &Viewer<'a>, field: &Field<'a>, links: &(dyn Fn(usize) -> Linked + Sync)) -> Self {
@@ -64,26 +64,6 @@ impl<'a> LinkPainter<'a> {
         let receiver = view.eye.hit(middle[0], middle[1]).map_or(0, |(leaf, _)| leaf);
         Self { field: *field, receiver, linked: links(receiver) }
     }
-
-    fn colour(&self, view: &Viewer<'_>, sample: &Sample) -> Rgb {
-        let mesh = self.field.mesh();
-        let grey = [SHARE_UNDER_TINTS * luminance(sample.shown); 3];
-        if sample.leaf == self.receiver {
-            return RECEIVER_COLOUR;
-        }
-        let patch = mesh.patch(self.receiver);
-        if mesh.surface_of(sample.leaf) == mesh.surface_of(self.receiver)
-            && on_edge(view, patch, sample, HALF_RECEIVER_LINE_WIDTH)
-        {
-            return RECEIVER_COLOUR;
-        }
-        let Some(link) = self.linked.link_of[sample.leaf].map(|k| &self.linked.links[k]) else { return grey };
-        let colour = LEVEL_COLOURS[link.level.min(LEVEL_COLOURS.len() - 1)];
-        if link.patch.is_some_and(|patch| on_edge(view, &patch, sample, HALF_LINE_WIDTH)) {
-            return colour;
-        }
-        blend(grey, colour, 0.6 * strength(link.share))
-    }
 }
 
 /// How much of a colour a share has, in [0, 1].
@@ -91,9 +71,23 @@ fn strength(share: f64) -> f64 {
     1.0 - (share.clamp(LEAST_SHARE, 1.0).ln() / LEAST_SHARE.ln())
 }
 
-impl Painter for LinkPainter<'_> {
-    fn brush(&self) -> Brush<'_> {
-        Box::new(|view, _, samples| mean(samples, |sample| self.colour(view, sample)))
+impl Overlay for LinkOverlay<'_> {
+    fn colour(&self, view: &Viewer<'_>, sample: &Sample, under: Rgb) -> Rgb {
+        let mesh = self.field.mesh();
+        if sample.leaf == self.receiver {
+            return RECEIVER_COLOUR;
+        }
+        let mut colour = [SHARE_UNDER_TINTS * luminance(under); 3];
+        if let Some(link) = self.linked.link_of[sample.leaf].map(|k| &self.linked.links[k]) {
+            let own = LEVEL_COLOURS[link.level.min(LEVEL_COLOURS.len() - 1)];
+            let lines = link.patch.map_or(0.0, |patch| cover(view, &patch, sample, HALF_LINE_WIDTH));
+            colour = blend(blend(colour, own, 0.6 * strength(link.share)), own, lines);
+        }
+        if mesh.surface_of(sample.leaf) == mesh.surface_of(self.receiver) {
+            let lines = cover(view, mesh.patch(self.receiver), sample, HALF_RECEIVER_LINE_WIDTH);
+            colour = blend(colour, RECEIVER_COLOUR, lines);
+        }
+        colour
     }
 
     /// Lines from the receiver to the middles of the nodes, the strongest last.

@@ -4,7 +4,7 @@
 //! F are factors of what the point sees of each lamp, so that shadows have their true borders
 //! whatever the elements; E_r is the rest of the irradiance, E − E_d with the part E_d that the
 //! solution itself has straight from the lamps, interpolated between the corners of elements of one
-//! surface: so no light passes under walls or blocks.
+//! surface: so no light passes under walls or blocks. Or it is gathered ([`super::gathered`]).
 //!
 //! Every pixel is first looked at through its middle. One whose neighbours show another plane,
 //! surface or brightness is then the mean of [`POINTS_OF_A_PIXEL`] points of a lattice: borders of
@@ -18,6 +18,7 @@ use rayon::prelude::*;
 
 use fredholm_mesh::Vec3;
 
+use super::gathered::{Candidate, Gathered, Gathering, Sent};
 use super::{BACKGROUND, Picture};
 use crate::colour::{Colouring, Rgb};
 use crate::shading::Shading;
@@ -30,6 +31,11 @@ const GENERATOR: usize = 7;
 /// One of so many of them has its own light of the lamps, of those that show one leaf: the border
 /// itself needs more points than the light on either side of it.
 const POINTS_OF_A_LIGHT: usize = 4;
+/// Luminance of the brightest over that of the darkest sample of a pixel from which on more points
+/// tell what share of it each leaf has: in linear colours the border of a lamp would have steps.
+const BRIGHT_BORDER_RATIO: f64 = 8.0;
+/// These points along each side of the pixel.
+const POINTS_ALONG_BRIGHT_PIXEL: usize = 16;
 /// Difference of the colours around a point, over the larger, up to which its own is their mean.
 const ALIKE_DIFFERENCE: f64 = 0.03;
 /// Pixels in a row of a tile.
@@ -46,6 +52,10 @@ const UNSEEN_DIFFERENCE: f64 = 0.01;
 const COSINE_TOLERANCE: f64 = 1e-9;
 /// How often the corners are moved towards the means of elements where the rest is smooth.
 const CORNER_PASSES: usize = 3;
+/// From where to where on the way of a picture the lamps are looked at, and pixels painted; light
+/// is gathered between.
+const LOOKED: [f64; 2] = [0.0, 0.4];
+const PAINTED: [f64; 2] = [0.6, 1.0];
 /// No leaf.
 const NO_LEAF: u32 = u32::MAX;
 
@@ -69,6 +79,19 @@ pub trait LampLight: Sync {
     }
 }
 
+/// No lamps: all light is interpolated.
+pub(super) struct Unlit;
+
+impl LampLight for Unlit {
+    fn lamps(&self) -> usize {
+        0
+    }
+
+    fn lighter(&self) -> Lighter<'_> {
+        Box::new(|_, _, _| {})
+    }
+}
+
 /// What a solution is drawn with.
 pub struct Lit<'a> {
     /// The lamps.
@@ -81,6 +104,8 @@ pub struct Lit<'a> {
     /// leaves × bands, W/m²; none where there are no lamps that are told apart: then all of it is
     /// interpolated.
     pub direct: Option<&'a [f64]>,
+    /// What gathers the rest, where it is not to be interpolated.
+    pub gathering: Option<&'a dyn Gathering>,
 }
 
 /// A picture, and what it was made with.
@@ -90,6 +115,14 @@ pub struct LitPicture {
     /// Linear sRGB of its pixels, W/m², rows from the top, 0 where nothing is seen; empty unless
     /// asked for.
     pub linear: Vec<[f32; 3]>,
+    /// Standard error of the linear colours at the middles of the pixels, for what is gathered;
+    /// empty unless linear colours were asked for and light was gathered.
+    pub standard_error: Vec<[f32; 3]>,
+    /// Number of places at which light was gathered.
+    pub places: usize,
+    /// Whether all of it was drawn: else borders are not smooth, and light is interpolated where it
+    /// was not yet gathered.
+    pub whole: bool,
     /// The factor that radiosity was multiplied by before tone mapping, m²/W.
     pub exposure: f64,
 }
@@ -117,12 +150,15 @@ pub(super) struct LitView<'a> {
     eye: &'a Eye,
     lit: &'a Lit<'a>,
     rest: Shading<'a>,
+    gathered: Option<Gathered<'a>>,
     /// Linear sRGB of ρ M for each surface and lamp.
     sent: Vec<Rgb>,
+    /// Linear sRGB of M for each surface.
+    own: Vec<Rgb>,
 }
 
 /// What is seen through a point of the picture: a leaf, and where (m).
-pub(super) type Seen = Option<(usize, Vec3)>;
+pub type Seen = Option<(usize, Vec3)>;
 
 /// Colours points for one thread.
 struct Brush<'v> {
@@ -135,11 +171,21 @@ struct Brush<'v> {
 }
 
 impl Brush<'_> {
-    /// Linear colours of samples, W/m²; 0 where nothing is seen. The samples of one leaf are looked
-    /// at together.
+    /// Linear colours of samples, W/m²; 0 where nothing is seen.
     fn colours(&mut self, samples: &[Seen]) -> Vec<Rgb> {
+        let mut colours = self.of_lamps(samples);
+        for (colour, sample) in colours.iter_mut().zip(samples) {
+            if let Some((leaf, point)) = *sample {
+                *colour = sum(*colour, self.view.rest(leaf, point));
+            }
+        }
+        colours
+    }
+
+    /// The part of the lamps in them. The samples of one leaf are looked at together.
+    fn of_lamps(&mut self, samples: &[Seen]) -> Vec<Rgb> {
         let mut colours = vec![[0.0; 3]; samples.len()];
-        let LitView { field, lit, rest, sent, .. } = self.view;
+        let LitView { field, lit, sent, .. } = self.view;
         let lamps = lit.light.lamps();
         self.order.clear();
         let seen = samples.iter().enumerate();
@@ -153,10 +199,10 @@ impl Brush<'_> {
             (self.look)(leaf, &self.points, &mut self.factors);
             let surface = field.mesh().surface_of(leaf);
             let sent = &sent[surface * lamps..(surface + 1) * lamps];
-            for (i, ((_, k), &point)) in group.iter().zip(&self.points).enumerate() {
+            for (i, (_, k)) in group.iter().enumerate() {
                 let factors = &self.factors[i * lamps..(i + 1) * lamps];
                 let add = |sum: Rgb, (f, c): (&f64, &Rgb)| [0, 1, 2].map(|i| sum[i] + f * c[i]);
-                colours[*k as usize] = factors.iter().zip(sent).fold(rest.colour(leaf, point), add);
+                colours[*k as usize] = factors.iter().zip(sent).fold([0.0; 3], add);
             }
         }
         colours
@@ -208,11 +254,17 @@ impl<'a> LitView<'a> {
             lit.direct.map_or(0.0, |direct| lit.reflectance[at] * direct[at])
         };
         let rest = Shading::of_rest(field, if lit.direct.is_some() { CORNER_PASSES } else { 0 }, part);
-        Ok(Self { field, eye, lit, rest, sent })
+        let mut own = vec![[0.0; 3]; mesh.surfaces().len()];
+        if let Some(exitance) = field.exitance() {
+            for leaf in 0..mesh.len() {
+                own[mesh.surface_of(leaf)] = colouring.colour(field.row(exitance, leaf));
+            }
+        }
+        Ok(Self { field, eye, lit, rest, gathered: None, sent, own })
     }
 
     /// The irradiance in place of the radiosity, W/m²: the sum over the bands with a weight each,
-    /// as a grey colour.
+    /// as a grey colour. What lamps do not send is always interpolated.
     pub fn of_irradiance(
         field: Field<'a>,
         eye: &'a Eye,
@@ -225,13 +277,15 @@ impl<'a> LitView<'a> {
         let of_lamps: Vec<Rgb> = lit.exitance.chunks_exact(bands).map(|m| [weighed(m); 3]).collect();
         let sent = of_lamps.repeat(field.mesh().surfaces().len());
         let passes = if lit.direct.is_some() { CORNER_PASSES } else { 0 };
-        let rest = Shading::of_values(field, passes, |leaf| {
+        let of_leaf = |leaf: usize| {
             let direct = lit.direct.map_or(0.0, |direct| weighed(field.row(direct, leaf)));
             let share = field.exposed(leaf);
             let received_by = if share > 0.0 { 1.0 / share } else { 1.0 };
             [(weighed(field.row(field.irradiance(), leaf)) - direct) * received_by; 3]
-        });
-        Ok(Self { field, eye, lit, rest, sent })
+        };
+        let rest = (0..field.mesh().len()).flat_map(of_leaf).collect();
+        let rest = Shading::of_values(field, passes, (3, rest));
+        Ok(Self { field, eye, lit, rest, gathered: None, sent, own: Vec::new() })
     }
 
     /// Linear colours of points, W/m², each looked at by itself; 0 where nothing is seen.
@@ -245,42 +299,125 @@ impl<'a> LitView<'a> {
     }
 
     /// The picture, with its linear colours where these are wanted; none where it was not wanted
-    /// any more before it was whole.
-    pub fn draw(&self, exposure: Exposure, linear: bool) -> Result<Option<LitPicture>, ReportError> {
+    /// any more before all pixels had the light of the lamps.
+    pub fn draw(mut self, exposure: Exposure, linear: bool) -> Result<Option<LitPicture>, ReportError> {
         let Camera { width, height, .. } = *self.eye.camera();
-        let Some(middles) = self.looked() else { return Ok(None) };
+        let Some(mut middles) = self.lit_by_lamps() else { return Ok(None) };
+        if let Some(gathering) = self.lit.gathering {
+            self.gathered = Some(self.gather(gathering, &middles));
+        }
+        self.add_rest(&mut middles);
         let tone = Tone::new(exposure, &self.metered(&middles))?;
         let display = |colour| tone.display(colour);
         // Linear colours take four times the memory of what is shown.
         let drawn = if linear {
-            let painted = self.in_tiles(0.5, |tile| self.painted(tile, &middles, &display));
+            let painted = self.in_tiles(PAINTED, |tile| self.painted(tile, &middles, &display));
             painted.map(|painted| painted.into_iter().unzip())
         } else {
             self.shown(&middles, &display).map(|shown| (shown, Vec::new()))
         };
-        let Some((shown, linear)) = drawn else { return Ok(None) };
+        let whole = drawn.is_some();
+        let (shown, linear_colours) = drawn.unwrap_or_else(|| {
+            let shown = middles.iter().map(|middle| shown(middle, &display).map(encode)).collect();
+            let colours = middles.iter().filter(|_| linear).map(|middle| middle.colour);
+            (shown, colours.collect())
+        });
         let picture = Picture { width, height, pixels: Vec::into_flattened(shown) };
-        Ok(Some(LitPicture { picture, linear, exposure: tone.exposure() }))
+        let standard_error = if linear { self.errors(&middles) } else { Vec::new() };
+        let (exposure, places) = (tone.exposure(), self.gathered.as_ref().map_or(0, Gathered::len));
+        let linear = linear_colours;
+        Ok(Some(LitPicture { picture, linear, standard_error, places, whole, exposure }))
     }
 
     /// What is seen through the middles of all pixels, row by row; none where the picture is not
     /// wanted any more.
     pub fn looked(&self) -> Option<Vec<Middle>> {
-        self.in_tiles(0.0, |tile| self.middles(tile))
+        let mut middles = self.lit_by_lamps()?;
+        self.add_rest(&mut middles);
+        Some(middles)
+    }
+
+    /// The same with the light of the lamps alone.
+    fn lit_by_lamps(&self) -> Option<Vec<Middle>> {
+        self.in_tiles(LOOKED, |tile| self.middles(tile))
+    }
+
+    /// Linear colour at a point of a leaf without the light of the lamps, W/m².
+    fn rest(&self, leaf: usize, point: Vec3) -> Rgb {
+        match self.gathered.as_ref().and_then(|gathered| gathered.told(leaf, point)) {
+            Some(told) => sum(self.own[self.field.mesh().surface_of(leaf)], told.colour),
+            None => self.rest.colour(leaf, point),
+        }
+    }
+
+    /// Adds to the light of the lamps what else there is.
+    fn add_rest(&self, middles: &mut [Middle]) {
+        let columns = self.eye.camera().width as usize;
+        middles.par_chunks_mut(columns).enumerate().for_each(|(y, row)| {
+            for (x, middle) in row.iter_mut().enumerate() {
+                if let Some(leaf) = middle.leaf() {
+                    let rest = self.rest(leaf, self.point(leaf, (x, y)));
+                    middle.colour = sum(middle.colour.map(f64::from), rest).map(|c| c as f32);
+                }
+            }
+        });
+    }
+
+    /// The point of a leaf (m) that is seen through the middle of a pixel.
+    fn point(&self, leaf: usize, (x, y): (usize, usize)) -> Vec3 {
+        self.eye.on_plane(self.field.mesh().patch(leaf), x as f64 + 0.5, y as f64 + 0.5)
+    }
+
+    /// Gathers what is not of the lamps.
+    fn gather(&self, gathering: &dyn Gathering, middles: &[Middle]) -> Gathered<'a> {
+        let columns = self.eye.camera().width as usize;
+        let LitView { field, eye, lit, own, .. } = self;
+        let sent = Sent::new(*field, lit.reflectance, lit.direct, CORNER_PASSES);
+        let pixel = |x: usize, y: usize| {
+            let middle = &middles[y * columns + x];
+            let leaf = middle.leaf()?;
+            let colour = sum(middle.colour.map(f64::from), own[field.mesh().surface_of(leaf)]);
+            Some(Candidate { leaf, point: self.point(leaf, (x, y)), colour })
+        };
+        let colouring = Colouring::new(field.bands());
+        let reflected = |leaf: usize, irradiance: &[f64]| {
+            let rho = field.row(lit.reflectance, leaf);
+            let columns = colouring.columns().iter().zip(rho.iter().zip(irradiance));
+            columns.fold([0.0; 3], |sum, (column, (rho, e))| [0, 1, 2].map(|i| sum[i] + column[i] * rho * e))
+        };
+        let go_on = |share: f64| {
+            lit.light.advance(LOOKED[1] + share * (PAINTED[0] - LOOKED[1]));
+            lit.light.go_on().is_continue()
+        };
+        Gathered::new((*field, eye), (gathering, &sent), &pixel, &reflected, &go_on)
+    }
+
+    /// Standard error of what is gathered at the middles of the pixels, W/m²; empty where nothing
+    /// is.
+    fn errors(&self, middles: &[Middle]) -> Vec<[f32; 3]> {
+        let Some(gathered) = &self.gathered else { return Vec::new() };
+        let columns = self.eye.camera().width as usize;
+        let of = |(k, middle): (usize, &Middle)| {
+            let Some(leaf) = middle.leaf() else { return [0.0; 3] };
+            let told = gathered.told(leaf, self.point(leaf, (k % columns, k / columns)));
+            // Of what is interpolated between elements no such error is known.
+            told.map_or([f32::NAN; 3], |told| told.error.map(|e| e as f32))
+        };
+        middles.par_iter().enumerate().map(of).collect()
     }
 
     /// All pixels as they are shown, row by row; none where the picture is not wanted any more.
     pub fn shown(&self, middles: &[Middle], display: &Display<'_>) -> Option<Vec<[u8; 3]>> {
-        self.in_tiles(0.5, |tile| {
+        self.in_tiles(PAINTED, |tile| {
             let painted = self.painted(tile, middles, display)?;
             Some(painted.into_iter().map(|(shown, _)| shown).collect())
         })
     }
 
-    /// The pixels of all tiles, row by row; half of the way of the picture, from `begun`.
+    /// The pixels of all tiles, row by row; a part of the way of the picture.
     fn in_tiles<T: Copy + Send>(
         &self,
-        begun: f64,
+        [begun, end]: [f64; 2],
         of_tile: impl Fn(&Tile) -> Option<Vec<T>> + Sync,
     ) -> Option<Vec<T>> {
         let Camera { width, height, .. } = *self.eye.camera();
@@ -290,7 +427,7 @@ impl<'a> LitView<'a> {
         let of_tile = |tile: &Tile| {
             let found = of_tile(tile)?;
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            self.lit.light.advance(begun + 0.5 * done as f64 / tiles.len() as f64);
+            self.lit.light.advance(begun + (end - begun) * done as f64 / tiles.len() as f64);
             Some(found)
         };
         let found: Vec<Vec<T>> = tiles.par_iter().map(of_tile).collect::<Option<_>>()?;
@@ -316,11 +453,11 @@ impl<'a> LitView<'a> {
         let some = |wanted: &dyn Fn(usize) -> bool| -> Vec<Seen> {
             samples.iter().enumerate().map(|(k, seen)| seen.filter(|_| wanted(k))).collect()
         };
-        let known = brush.colours(&some(&first));
+        let known = brush.of_lamps(&some(&first));
         let between: Vec<Option<Rgb>> = (0..samples.len())
             .map(|k| if first(k) { Some(known[k]) } else { between(&samples, &known, (w, k)) })
             .collect();
-        let others = brush.colours(&some(&|k| between[k].is_none()));
+        let others = brush.of_lamps(&some(&|k| between[k].is_none()));
         let colours = between.into_iter().zip(others).map(|(between, other)| between.unwrap_or(other));
         let middle = |(seen, colour): (&Seen, Rgb)| Middle {
             leaf: seen.map_or(NO_LEAF, |(leaf, _)| leaf as u32),
@@ -341,11 +478,7 @@ impl<'a> LitView<'a> {
             if self.is_border(middles, (w, h), (x, y), display) {
                 borders.push((painted.len(), (x, y)));
             }
-            let shown = match middle.leaf {
-                NO_LEAF => [BACKGROUND; 3],
-                _ => display(middle.colour.map(f64::from)),
-            };
-            painted.push((shown.map(encode), middle.colour));
+            painted.push((shown(middle, display).map(encode), middle.colour));
         }
         for borders in borders.chunks(PIXELS_TOGETHER) {
             if self.lit.light.go_on().is_break() {
@@ -370,11 +503,42 @@ impl<'a> LitView<'a> {
             let colours: Vec<Rgb> =
                 (0..samples.len()).map(of).map(|k| around[k].unwrap_or(colours[k])).collect();
             let pixels = samples.chunks(POINTS_OF_A_PIXEL).zip(colours.chunks(POINTS_OF_A_PIXEL));
-            for ((place, _), (samples, colours)) in borders.iter().zip(pixels) {
-                painted[*place] = mean(samples, colours, display);
+            for ((place, at), (samples, colours)) in borders.iter().zip(pixels) {
+                let shares = self.shares(*at, samples, colours);
+                painted[*place] = mean((samples, colours), &shares, display);
             }
         }
         Some(painted)
+    }
+
+    /// The shares that the samples of a pixel have of it: equal ones, or those of the planes that
+    /// they show by many more points where some are much brighter than others.
+    fn shares(&self, (x, y): (usize, usize), samples: &[Seen], colours: &[Rgb]) -> Vec<f64> {
+        let bright = || colours.iter().map(|&colour| luminance(colour));
+        let (least, most) = (bright().fold(f64::INFINITY, f64::min), bright().fold(0.0, f64::max));
+        if most <= BRIGHT_BORDER_RATIO * least {
+            return vec![1.0 / samples.len() as f64; samples.len()];
+        }
+        let number = |seen: Seen| seen.map_or(NO_LEAF, |(leaf, _)| leaf as u32);
+        // The first sample that shows the same plane.
+        let first =
+            |seen: Seen| samples.iter().position(|&sample| self.is_alike(number(sample), number(seen)));
+        let mut counts = vec![0.0; samples.len()];
+        let place = |i: usize| (i as f64 + 0.5) / POINTS_ALONG_BRIGHT_PIXEL as f64;
+        for k in 0..POINTS_ALONG_BRIGHT_PIXEL * POINTS_ALONG_BRIGHT_PIXEL {
+            let (u, v) = (place(k % POINTS_ALONG_BRIGHT_PIXEL), place(k / POINTS_ALONG_BRIGHT_PIXEL));
+            // What no sample shows is seen of hardly anything.
+            if let Some(first) = first(self.eye.hit(x as f64 + u, y as f64 + v)) {
+                counts[first] += 1.0;
+            }
+        }
+        let all: f64 = counts.iter().sum();
+        let firsts: Vec<Option<usize>> = samples.iter().map(|&sample| first(sample)).collect();
+        let share = |own: &Option<usize>| {
+            let same = firsts.iter().filter(|other| *other == own).count();
+            own.map_or(0.0, |first| counts[first] / (same as f64 * all))
+        };
+        firsts.iter().map(share).collect()
     }
 
     /// Luminances that an automatic exposure goes by: of lit surfaces, or of lamps where there is
@@ -398,16 +562,12 @@ impl<'a> LitView<'a> {
         display: &Display<'_>,
     ) -> bool {
         let own = &middles[y * w + x];
-        let shown = |middle: &Middle| match middle.leaf {
-            NO_LEAF => [BACKGROUND; 3],
-            _ => display(middle.colour.map(f64::from)),
-        };
-        let colour = shown(own);
+        let colour = shown(own, display);
         neighbours((w, h), (x, y)).any(|at| {
             let other = &middles[at];
             // A change on one plane is a shadow's, which is seen less than an edge.
             let step = if self.is_alike(own.leaf, other.leaf) { BORDER_STEP } else { EDGE_STEP };
-            let beside = shown(other);
+            let beside = shown(other, display);
             (0..3).any(|i| {
                 (colour[i] - beside[i]).abs() > step * colour[i].max(beside[i]).max(UNSEEN_DIFFERENCE / step)
             })
@@ -440,6 +600,18 @@ impl<'a> LitView<'a> {
     }
 }
 
+/// A pixel as its middle shows it, linear display values.
+fn shown(middle: &Middle, display: &Display<'_>) -> Rgb {
+    match middle.leaf {
+        NO_LEAF => [BACKGROUND; 3],
+        _ => display(middle.colour.map(f64::from)),
+    }
+}
+
+fn sum(a: Rgb, b: Rgb) -> Rgb {
+    [0, 1, 2].map(|i| a[i] + b[i])
+}
+
 /// The colour of pixel `k` of rows of `width` from its neighbours in the even rows and columns; none
 /// where one is missing, shows another leaf, or differs.
 fn between(samples: &[Seen], known: &[Rgb], (width, k): (usize, usize)) -> Option<Rgb> {
@@ -457,16 +629,8 @@ fn between(samples: &[Seen], known: &[Rgb], (width, k): (usize, usize)) -> Optio
     alike(around.into_iter().map(|k| known[k]))
 }
 
-/// The colour of a sample in pixel `at` from the pixels around it that show the same leaf; none
-/// where there are none, or they differ.
-fn around(middles: &[Middle], size: (usize, usize), at: (usize, usize), sample: Seen) -> Option<Rgb> {
-    let (leaf, _) = sample?;
-    let same = neighbours(size, at).map(|at| &middles[at]).filter(|middle| middle.leaf == leaf as u32);
-    alike(same.map(|middle| middle.colour.map(f64::from)))
-}
-
 /// The places of a pixel and of those around it, in rows of pixels.
-fn neighbours((w, h): (usize, usize), (x, y): (usize, usize)) -> impl Iterator<Item = usize> {
+pub(super) fn neighbours((w, h): (usize, usize), (x, y): (usize, usize)) -> impl Iterator<Item = usize> {
     let (xs, ys) = (x.saturating_sub(1)..=(x + 1).min(w - 1), y.saturating_sub(1)..=(y + 1).min(h - 1));
     ys.flat_map(move |v| xs.clone().map(move |u| v * w + u))
 }
@@ -484,6 +648,14 @@ fn alike(colours: impl Iterator<Item = Rgb>) -> Option<Rgb> {
     }
     let same = (0..3).all(|i| most[i] - least[i] <= ALIKE_DIFFERENCE * most[i]);
     (count > 0.0 && same).then(|| sum.map(|sum| sum / count))
+}
+
+/// The colour of a sample in pixel `at` from the pixels around it that show the same leaf; none
+/// where there are none, or they differ.
+fn around(middles: &[Middle], size: (usize, usize), at: (usize, usize), sample: Seen) -> Option<Rgb> {
+    let (leaf, _) = sample?;
+    let same = neighbours(size, at).map(|at| &middles[at]).filter(|middle| middle.leaf == leaf as u32);
+    alike(same.map(|middle| middle.colour.map(f64::from)))
 }
 
 /// For each sample of a pixel the one whose light it has, which shows the same leaf.
@@ -518,13 +690,14 @@ fn check(field: Field<'_>, lit: &Lit<'_>) -> Result<(), ReportError> {
     Ok(())
 }
 
-/// A pixel from its samples: the means of their display values and of their colours.
-fn mean(samples: &[Seen], colours: &[Rgb], display: &Display<'_>) -> Painted {
+/// A pixel from its samples and their shares of it: the means of their display values and of their
+/// colours.
+fn mean((samples, colours): (&[Seen], &[Rgb]), shares: &[f64], display: &Display<'_>) -> Painted {
     let (mut shown, mut seen) = ([0.0; 3], [0.0; 3]);
-    for (sample, colour) in samples.iter().zip(colours) {
+    for ((sample, colour), share) in samples.iter().zip(colours).zip(shares) {
         let own = if sample.is_some() { display(*colour) } else { [BACKGROUND; 3] };
-        shown = [0, 1, 2].map(|i| shown[i] + own[i] / POINTS_OF_A_PIXEL as f64);
-        seen = [0, 1, 2].map(|i| seen[i] + colour[i] / POINTS_OF_A_PIXEL as f64);
+        shown = [0, 1, 2].map(|i| shown[i] + own[i] * share);
+        seen = [0, 1, 2].map(|i| seen[i] + colour[i] * share);
     }
     (shown.map(encode), seen.map(|c| c as f32))
 }

@@ -1,10 +1,9 @@
 //! A camera view of a solved field.
 //!
-//! Each pixel is the mean of the display values of [`SAMPLES`] points of a fixed lattice. What a
-//! sample sees is found by ray casting among the leaves that turn their lit side to the eye; the
-//! others are invisible, so that a closed room shows its inside. The colour there is the radiosity,
-//! smoothly interpolated. Rows are drawn in parallel, each by itself, so that the number of threads
-//! never changes a pixel. Several pictures of one view share the rays.
+//! What a pixel sees is found by ray casting among the leaves that turn their lit side to the eye;
+//! the others are invisible, so that a closed room shows its inside. The usual picture is that of
+//! [`lit`]; what is drawn of elements and links lies over it. Pixels are computed in parallel, each
+//! by itself, so that the number of threads never changes one.
 
 mod elements;
 mod false_colour;
@@ -16,33 +15,33 @@ mod sides;
 use std::io::{self, Cursor, Write};
 
 use exr::prelude::{SpecificChannels, WritableImage};
-use fredholm_mesh::Vec3;
+use fredholm_mesh::{Mesh, Vec3};
 use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
 use rayon::prelude::*;
 
 use crate::colour::Rgb;
-use crate::shading::Shading;
-use crate::tone::{Exposure, Tone, encode, luminance};
+use crate::tone::{Exposure, decode, encode};
 use crate::{Camera, Eye, Field, ReportError};
 use elements::Elements;
 pub use false_colour::{FalseColourPicture, PictureNumber, render_false_colour};
-use gathered::GatherPainter;
-pub use gathered::Gathering;
-use links::LinkPainter;
+pub use gathered::{DIRECTION_GROUPS, Gathering};
+use links::LinkOverlay;
 pub use links::{Link, Linked};
-use lit::LitView;
-pub use lit::{LampLight, Lighter, Lit, LitPicture};
+pub use lit::{LampLight, Lighter, Lit, LitPicture, Seen};
+use lit::{LitView, Unlit, neighbours};
 pub use sides::{Back, Side, render_sides};
 
-/// Samples of a pixel.
+/// Samples of a pixel at a border.
 const SAMPLES: usize = 8;
 /// Generator of the lattice of samples: sample i stands at ((i + ½)/8, ((3 i mod 8) + ½)/8).
 const GENERATOR: usize = 3;
+/// Cosine of the normals of two leaves of a surface from which on there is no border between them.
+const SMOOTH_COSINE: f64 = 0.9;
 /// Linear display value where nothing is hit: a dark grey.
 pub(crate) const BACKGROUND: f64 = 0.012;
 
 /// A finished picture: rows from the top, three bytes a pixel, sRGB.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Picture {
     /// Pixels in a row.
     pub width: u32,
@@ -82,32 +81,32 @@ impl Picture {
     }
 }
 
-/// What a picture shows.
+/// What is drawn over a picture.
 pub enum Layer<'a> {
-    /// The radiosity, interpolated between the corners of elements.
-    Field,
-    /// The elements, drawn over the field.
+    /// The elements.
     Elements,
     /// The links of the element in the middle of the picture: what is drawn of an element, of which
     /// the number is given.
     Links(&'a (dyn Fn(usize) -> Linked + Sync)),
-    /// The radiosity of every pixel, gathered from all that it sees.
-    Gathered(&'a dyn Gathering),
 }
 
-/// Draws a field as a camera sees it.
+/// Draws a field as a camera sees it, interpolated between the corners of elements.
 ///
 /// # Errors
 /// [`ReportError::Camera`] or [`ReportError::Exposure`] for settings that make no picture,
 /// [`ReportError::Visibility`] where the surfaces cannot be prepared for ray casting.
 pub fn render(field: &Field<'_>, camera: &Camera, exposure: Exposure) -> Result<Picture, ReportError> {
-    let mut pictures = drawn(field, camera, exposure, &[Layer::Field])?;
-    Ok(pictures.swap_remove(0).0)
+    let eye = Eye::new(field.mesh(), camera)?;
+    let reflectance = vec![0.0; field.radiosity().len()];
+    let lit = Lit { light: &Unlit, exitance: &[], reflectance: &reflectance, direct: None, gathering: None };
+    // Nobody ends what [`Unlit`] is drawn with.
+    let drawn = LitView::new(*field, &eye, &lit)?.draw(exposure, false)?;
+    Ok(drawn.map(|drawn| drawn.picture).unwrap_or_default())
 }
 
 /// Draws a field as a camera sees it, with the light of the lamps taken at every pixel; `linear`
 /// colours come with it where they are wanted. There is none where [`LampLight::go_on`] did not
-/// want it any more before it was whole.
+/// want it any more before all pixels had that light.
 ///
 /// # Errors
 /// As for [`render`], and [`ReportError::Length`] for vectors that do not fit the field.
@@ -122,46 +121,38 @@ pub fn render_lit(
     LitView::new(*field, &eye, lit)?.draw(exposure, linear)
 }
 
-/// Draws several pictures of a field as a camera sees it, all of one exposure, and casts the rays
-/// once. There is none of what [`Gathering::go_on`] did not want any more before it was whole.
+/// Draws layers over a picture of a field, each by itself.
 ///
 /// # Errors
-/// As for [`render`].
+/// [`ReportError::Camera`] for a camera that makes no picture, [`ReportError::Length`] for one of
+/// another size than the picture's, [`ReportError::Visibility`] where the surfaces cannot be
+/// prepared for ray casting.
 pub fn render_layers<'a>(
     field: &Field<'_>,
     camera: &Camera,
-    exposure: Exposure,
+    under: &Picture,
     layers: impl IntoIterator<Item = &'a Layer<'a>>,
-) -> Result<Vec<Option<Picture>>, ReportError> {
-    let pictures = drawn(field, camera, exposure, layers)?;
-    Ok(pictures.into_iter().map(|(picture, whole)| whole.then_some(picture)).collect())
-}
-
-/// The pictures, and whether each is whole.
-fn drawn<'a>(
-    field: &Field<'_>,
-    camera: &Camera,
-    exposure: Exposure,
-    layers: impl IntoIterator<Item = &'a Layer<'a>>,
-) -> Result<Vec<(Picture, bool)>, ReportError> {
-    let view = Viewer::new(field, camera)?;
-    let metered = if exposure == Exposure::Auto { view.meter(field) } else { Vec::new() };
-    let tone = Tone::new(exposure, &metered)?;
-    let painters: Vec<Box<dyn Painter + '_>> =
-        layers.into_iter().map(|layer| view.painter(field, layer)).collect();
-    let row_bytes = 3 * camera.width as usize;
-    let width = row_bytes * painters.len();
-    let mut rows = vec![0; width * camera.height as usize];
-    rows.par_chunks_mut(width).enumerate().for_each(|(y, row)| view.draw(tone, &painters, y, row));
-    let mut pictures = Vec::new();
-    for (k, painter) in painters.iter().enumerate() {
-        let part = |row: &[u8]| row[k * row_bytes..(k + 1) * row_bytes].to_vec();
-        let pixels = rows.chunks_exact(width).flat_map(part).collect();
-        let mut picture = Picture { width: camera.width, height: camera.height, pixels };
-        painter.finish(&view, &mut picture);
-        pictures.push((picture, painter.is_whole()));
+) -> Result<Vec<Picture>, ReportError> {
+    let eye = Eye::new(field.mesh(), camera)?;
+    let (expected, found) = (3 * camera.width as usize * camera.height as usize, under.pixels.len());
+    if expected != found {
+        return Err(ReportError::Length { what: "the picture under layers", expected, found });
     }
-    Ok(pictures)
+    let view = Viewer { mesh: field.mesh(), eye };
+    let leaves = view.leaves();
+    let drawn = |layer: &Layer<'_>| {
+        let overlay: Box<dyn Overlay> = match *layer {
+            Layer::Elements => Box::new(Elements { mesh: field.mesh() }),
+            Layer::Links(links) => Box::new(LinkOverlay::new(&view, field, links)),
+        };
+        let mut picture = under.clone();
+        let width = camera.width as usize;
+        let rows = picture.pixels.par_chunks_mut(3 * width).enumerate();
+        rows.for_each(|(y, row)| view.draw(&*overlay, &leaves, (y, row)));
+        overlay.finish(&view, &mut picture);
+        picture
+    };
+    Ok(layers.into_iter().map(drawn).collect())
 }
 
 /// What is seen through a point of the picture.
@@ -171,108 +162,85 @@ struct Sample {
     point: Vec3,
     /// Place in the picture, pixels from the upper left.
     at: (f64, f64),
-    /// Display colour of the interpolated field, where a painter shows it.
-    shown: Rgb,
+    /// Whether it stands for a whole pixel.
+    is_pixel: bool,
 }
 
-/// Colours the pixels of a picture.
-trait Painter: Sync {
-    /// Paints for one thread: a linear display colour from the samples of a pixel.
-    fn brush(&self) -> Brush<'_>;
-
-    /// Whether it shows the interpolated field.
-    fn shows_field(&self) -> bool {
-        true
-    }
+/// What is drawn over a picture.
+trait Overlay: Sync {
+    /// The linear display colour of a sample, where the picture has another one.
+    fn colour(&self, view: &Viewer<'_>, sample: &Sample, under: Rgb) -> Rgb;
 
     /// Adds what is drawn over the whole picture.
     fn finish(&self, _view: &Viewer<'_>, _picture: &mut Picture) {}
-
-    /// Whether all pixels were painted.
-    fn is_whole(&self) -> bool {
-        true
-    }
 }
-
-/// Paints a pixel.
-type Brush<'a> = Box<dyn FnMut(&Viewer<'_>, Tone, &[Option<Sample>; SAMPLES]) -> Rgb + 'a>;
 
 /// A camera before a scene.
 struct Viewer<'a> {
+    mesh: &'a Mesh,
     eye: Eye,
-    shading: Shading<'a>,
 }
 
-impl<'a> Viewer<'a> {
-    fn new(field: &Field<'a>, camera: &Camera) -> Result<Self, ReportError> {
-        Ok(Self { eye: Eye::new(field.mesh(), camera)?, shading: Shading::new(*field) })
+impl Viewer<'_> {
+    /// The leaves seen through the middles of the pixels, row by row.
+    fn leaves(&self) -> Vec<Option<u32>> {
+        let Camera { width, height, .. } = *self.eye.camera();
+        let look = |k: usize| {
+            let (x, y) = (k % width as usize, k / width as usize);
+            self.eye.hit(x as f64 + 0.5, y as f64 + 0.5).map(|(leaf, _)| leaf as u32)
+        };
+        (0..width as usize * height as usize).into_par_iter().map(look).collect()
     }
 
-    fn painter<'v>(&'v self, field: &Field<'v>, layer: &Layer<'v>) -> Box<dyn Painter + 'v> {
-        match *layer {
-            Layer::Field => Box::new(Plain),
-            Layer::Elements => Box::new(Elements { mesh: field.mesh() }),
-            Layer::Links(links) => Box::new(LinkPainter::new(self, field, links)),
-            Layer::Gathered(gathering) => Box::new(GatherPainter::new(*field, gathering)),
+    /// Draws an overlay over a row.
+    fn draw(&self, overlay: &dyn Overlay, leaves: &[Option<u32>], (y, row): (usize, &mut [u8])) {
+        let Camera { width, height, .. } = *self.eye.camera();
+        let size = (width as usize, height as usize);
+        for (x, pixel) in row.chunks_exact_mut(3).enumerate() {
+            let under = [0, 1, 2].map(|i| decode(pixel[i]));
+            let own = leaves[y * size.0 + x];
+            let even = neighbours(size, (x, y)).all(|at| self.is_smooth(own, leaves[at]));
+            let colour = match own {
+                // Nothing is drawn beside the scene.
+                None if even => continue,
+                Some(leaf) if even => {
+                    let (leaf, at) = (leaf as usize, (x as f64 + 0.5, y as f64 + 0.5));
+                    let point = self.eye.on_plane(self.mesh.patch(leaf), at.0, at.1);
+                    overlay.colour(self, &Sample { leaf, point, at, is_pixel: true }, under)
+                }
+                _ => self.mean(overlay, (x, y), under),
+            };
+            pixel.copy_from_slice(&colour.map(encode));
         }
     }
 
-    /// Draws one row of all pictures, one behind the other.
-    fn draw(&self, tone: Tone, painters: &[Box<dyn Painter + '_>], y: usize, rows: &mut [u8]) {
-        let width = self.eye.camera().width as usize;
-        let mut brushes: Vec<Brush> = painters.iter().map(|painter| painter.brush()).collect();
-        let field = painters.iter().any(|painter| painter.shows_field());
-        for x in 0..width {
-            let samples = self.samples((x, y), field.then_some(tone));
-            for (k, brush) in brushes.iter_mut().enumerate() {
-                let at = 3 * (k * width + x);
-                rows[at..at + 3].copy_from_slice(&brush(self, tone, &samples).map(encode));
-            }
-        }
+    /// Whether there is no border between two leaves.
+    fn is_smooth(&self, a: Option<u32>, b: Option<u32>) -> bool {
+        let (Some(p), Some(q)) = (a.map(|leaf| leaf as usize), b.map(|leaf| leaf as usize)) else {
+            return a == b;
+        };
+        p == q
+            || (self.mesh.surface_of(p) == self.mesh.surface_of(q)
+                && self.mesh.patch(p).normal().dot(self.mesh.patch(q).normal()) > SMOOTH_COSINE)
     }
 
-    /// The samples of a pixel, with the field in a tone where one is given.
-    fn samples(&self, (x, y): (usize, usize), tone: Option<Tone>) -> [Option<Sample>; SAMPLES] {
-        std::array::from_fn(|k| {
+    /// The mean of the display colours of the samples of a pixel.
+    fn mean(&self, overlay: &dyn Overlay, (x, y): (usize, usize), under: Rgb) -> Rgb {
+        let mut sum = [0.0; 3];
+        for k in 0..SAMPLES {
             let (dx, dy) = lattice(k);
             let at = (x as f64 + dx, y as f64 + dy);
-            let (leaf, point) = self.eye.hit(at.0, at.1)?;
-            let shown = tone.map_or([0.0; 3], |tone| tone.display(self.shading.colour(leaf, point)));
-            Some(Sample { leaf, point, at, shown })
-        })
+            let part = self.eye.hit(at.0, at.1).map_or(under, |(leaf, point)| {
+                overlay.colour(self, &Sample { leaf, point, at, is_pixel: false }, under)
+            });
+            sum = [0, 1, 2].map(|i| sum[i] + part[i] / SAMPLES as f64);
+        }
+        sum
     }
 
     /// Where a point is in the picture, pixels from the upper left; none for one behind the eye.
     fn project(&self, point: Vec3) -> Option<(f64, f64)> {
         self.eye.place(point)
-    }
-
-    /// Luminances seen through the middle of each pixel: of lit surfaces, or of lamps where there
-    /// is nothing else.
-    fn meter(&self, field: &Field<'_>) -> Vec<f64> {
-        let Camera { width, height, .. } = *self.eye.camera();
-        // One list for all: a row that sees nothing somewhere would leave gaps in the heap. Lamps
-        // have the sign of a negative number there, and nothing is no number.
-        let mut seen = vec![f64::NAN; width as usize * height as usize];
-        let look = |(y, row): (usize, &mut [f64])| {
-            for (x, value) in row.iter_mut().enumerate() {
-                if let Some((leaf, p)) = self.eye.hit(x as f64 + 0.5, y as f64 + 0.5) {
-                    let bright = luminance(self.shading.colour(leaf, p));
-                    *value = if field.emits(leaf) { -bright } else { bright };
-                }
-            }
-        };
-        seen.par_chunks_mut(width as usize).enumerate().for_each(look);
-        let reflects = |value: f64| !value.is_nan() && value.is_sign_positive();
-        if seen.iter().any(|&value| reflects(value)) {
-            seen.retain(|&value| reflects(value));
-        } else {
-            seen.retain(|value| !value.is_nan());
-            for value in &mut seen {
-                *value = -*value;
-            }
-        }
-        seen
     }
 }
 
@@ -282,33 +250,12 @@ fn lattice(i: usize) -> (f64, f64) {
     (place(i), place(GENERATOR * i % SAMPLES))
 }
 
-/// The mean of the display colours of the samples of a pixel.
-fn mean(samples: &[Option<Sample>; SAMPLES], mut colour: impl FnMut(&Sample) -> Rgb) -> Rgb {
-    let mut sum = [0.0; 3];
-    for sample in samples {
-        let part = sample.as_ref().map_or([BACKGROUND; 3], &mut colour);
-        sum = [0, 1, 2].map(|i| sum[i] + part[i]);
-    }
-    sum.map(|channel| channel / SAMPLES as f64)
-}
-
-/// The interpolated field.
-struct Plain;
-
-impl Painter for Plain {
-    fn brush(&self) -> Brush<'_> {
-        Box::new(|_, _, samples| mean(samples, |sample| sample.shown))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::field::tests::{grid, names};
-    use fredholm_mesh::{Mesh, MeshBuilder, Patch, Vec3};
+    use fredholm_mesh::{MeshBuilder, Patch};
     use rayon::ThreadPoolBuilder;
-    use std::ops::ControlFlow;
-    use std::sync::atomic::{AtomicUsize, Ordering};
 
     /// Looks down on the unit square from 2 m: the picture is 4 m wide and high.
     fn above(width: u32, height: u32) -> Camera {
@@ -421,17 +368,19 @@ mod tests {
         assert_eq!(back.into_raw(), picture.pixels);
     }
 
-    /// Several pictures of a square of 2 × 2 elements, which fills columns and rows 30 to 50 of 80.
+    /// A picture, and it with layers, of a square of 2 × 2 elements, which fills columns and rows 30 to 50 of 80.
     fn layers(layers: &[Layer<'_>]) -> Vec<Picture> {
         let (mesh, bands) = (square(2), names(&["grey"]));
         let field = Field::new(&mesh, &bands, &[2.0; 4], &[2.0; 4]).unwrap();
-        let pictures = render_layers(&field, &above(80, 80), Exposure::Fixed(0.5), layers).unwrap();
-        pictures.into_iter().map(Option::unwrap).collect()
+        let camera = above(80, 80);
+        let under = render(&field, &camera, Exposure::Fixed(0.5)).unwrap();
+        let over = render_layers(&field, &camera, &under, layers).unwrap();
+        [vec![under], over].concat()
     }
 
     #[test]
     fn edges_are_drawn_over_the_field() {
-        let pictures = layers(&[Layer::Field, Layer::Elements]);
+        let pictures = layers(&[Layer::Elements]);
         assert_eq!(pixel(&pictures[0], 40, 35), [193; 3]);
         for (x, y) in [(39, 35), (40, 35), (30, 35), (35, 49), (35, 40)] {
             let [red, _, blue] = pixel(&pictures[1], x, y);
@@ -457,7 +406,7 @@ mod tests {
             links: vec![link(1.0, 0.0, 0.5), link(1.0, 1.0, 1e-3)],
             link_of: vec![None, Some(0), None, Some(1)],
         };
-        let picture = &layers(&[Layer::Links(&linked)])[0];
+        let picture = &layers(&[Layer::Links(&linked)])[1];
         let blueness = |x: u32, y: u32| {
             let [red, _, blue] = pixel(picture, x, y);
             i32::from(blue) - i32::from(red)
@@ -469,54 +418,5 @@ mod tests {
         };
         let [strong, none, weak] = [1, 2, 3].map(|leaf| blueness(place(leaf).0, place(leaf).1));
         assert!(strong > weak && weak > none && none <= 0, "{strong} {weak} {none}");
-    }
-
-    /// Radiosity 4 x.
-    struct Ramp;
-
-    impl Gathering for Ramp {
-        fn gatherer(&self) -> Box<dyn FnMut(usize, Vec3) -> Vec<f64> + '_> {
-            Box::new(|_, point| vec![4.0 * point.x])
-        }
-    }
-
-    #[test]
-    fn gathered_pixels_have_the_radiosity_of_their_points() {
-        let picture = &layers(&[Layer::Gathered(&Ramp)])[0];
-        let tone = Tone::new(Exposure::Fixed(0.5), &[]).unwrap();
-        for x in 31..49 {
-            // The sample nearest to the middle of pixel x stands within an eighth of a pixel of it.
-            let [low, high] = [-0.15, 0.15].map(|off| {
-                let b = 4.0 * (f64::from(x) + 0.5 + off - 30.0) / 20.0;
-                encode(tone.display([b; 3])[0])
-            });
-            let found = pixel(picture, x, 37)[0];
-            assert!(low <= found && found <= high, "{x}: {found} is not from {low} to {high}");
-        }
-        assert_eq!(pixel(picture, 2, 2), pixel(picture, 70, 70), "nothing is gathered beside the square");
-    }
-
-    /// Whoever wants the first pixels only.
-    struct Impatient(AtomicUsize);
-
-    impl Gathering for Impatient {
-        fn gatherer(&self) -> Box<dyn FnMut(usize, Vec3) -> Vec<f64> + '_> {
-            Ramp.gatherer()
-        }
-
-        fn go_on(&self) -> ControlFlow<()> {
-            let asked = self.0.fetch_add(1, Ordering::Relaxed);
-            if asked < 100 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
-        }
-    }
-
-    #[test]
-    fn a_picture_that_is_not_whole_is_none() {
-        let (mesh, bands) = (square(2), names(&["grey"]));
-        let field = Field::new(&mesh, &bands, &[2.0; 4], &[2.0; 4]).unwrap();
-        let gathering = Impatient(AtomicUsize::new(0));
-        let layers = [Layer::Field, Layer::Gathered(&gathering)];
-        let pictures = render_layers(&field, &above(80, 80), Exposure::Fixed(0.5), &layers).unwrap();
-        assert!(pictures[0].is_some() && pictures[1].is_none());
     }
 }

@@ -200,7 +200,7 @@ fn load(
     let [width, height] = asked.size.unwrap_or([USUAL_PIXELS_A_SIDE; 2]).map(u128::from);
     let pixel = |scene: &Scene| BYTES_OF_A_PIXEL + BYTES_OF_A_BAND * scene.bands().len() as u128;
     let more = |plan, scene: &Scene, n| {
-        let pictures = pictures(scene, 1, (false, 0));
+        let pictures = pictures(scene, 1, (false, (0, false)));
         with_results(with_tracing(plan, scene, n), scene, n, (pictures, width * height * pixel(scene)))
     };
     let asked = &asked.problem;

@@ -1,0 +1,101 @@
+//! What rays meet first: the lit sides of patches.
+//!
+//! A ray that ends on a back, or nowhere, meets nothing. Metres.
+
+use crate::MonteCarloError;
+use crate::density::{Cosine, DirectionDensity, Frame};
+use crate::locator::Locator;
+use fredholm_mesh::{Patch, Vec3};
+use fredholm_visibility::Occluders;
+use std::collections::HashMap;
+
+/// A point of a patch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Site {
+    /// The patch.
+    pub patch: usize,
+    /// The point, m.
+    pub point: Vec3,
+}
+
+/// Patches that rays are cast at.
+#[derive(Clone, Debug)]
+pub struct Surfaces {
+    patches: Vec<Patch>,
+    /// One of every direction that a patch is turned to.
+    frames: Vec<Frame>,
+    frame_of: Vec<u32>,
+    occluders: Occluders,
+    locator: Option<Locator>,
+}
+
+impl Surfaces {
+    /// Takes patches.
+    ///
+    /// # Errors
+    /// [`MonteCarloError::Visibility`].
+    pub fn new(patches: Vec<Patch>) -> Result<Self, MonteCarloError> {
+        let (frames, frame_of) = frames(&patches);
+        Ok(Self { frames, frame_of, occluders: Occluders::new(&patches)?, locator: None, patches })
+    }
+
+    /// The same traced against these pieces instead of the patches, which together they must cover:
+    /// as few as possible, as a mesh has them.
+    ///
+    /// # Errors
+    /// [`MonteCarloError::Visibility`].
+    pub fn blocked_by(mut self, pieces: &[Patch]) -> Result<Self, MonteCarloError> {
+        self.occluders = Occluders::new(pieces)?;
+        self.locator = Some(Locator::new(pieces, &self.patches));
+        Ok(self)
+    }
+
+    /// The patches.
+    #[must_use]
+    pub fn patches(&self) -> &[Patch] {
+        &self.patches
+    }
+
+    /// What rays are cast at.
+    pub(crate) fn occluders(&self) -> &Occluders {
+        &self.occluders
+    }
+
+    /// The frame of a patch, its normal z.
+    pub(crate) fn frame(&self, patch: usize) -> &Frame {
+        &self.frames[self.frame_of[patch] as usize]
+    }
+
+    /// The lit side that a ray with density cosθ/π meets first.
+    #[must_use]
+    pub fn bounce(&self, from: Site, numbers: [f64; 2]) -> Option<Site> {
+        self.cast(from.point, self.frame(from.patch).world(Cosine.sample(numbers)))
+    }
+
+    /// The lit side that a ray from anywhere meets first.
+    #[must_use]
+    pub fn cast(&self, origin: Vec3, direction: Vec3) -> Option<Site> {
+        let hit = self.occluders.closest(origin, direction, f64::INFINITY)?;
+        let patch = match &self.locator {
+            Some(locator) => locator.lit(hit.patch, hit.point, direction, &self.patches)?,
+            None if self.patches[hit.patch].normal().dot(direction) < 0.0 => hit.patch,
+            None => return None,
+        };
+        Some(Site { patch, point: hit.point })
+    }
+}
+
+/// The frames of all normals, and which one each patch has: a few for a room, which stay near at
+/// hand where one of each patch would not.
+fn frames(patches: &[Patch]) -> (Vec<Frame>, Vec<u32>) {
+    let (mut frames, mut known) = (Vec::new(), HashMap::new());
+    let frame_of = patches.iter().map(|patch| {
+        let normal = patch.normal();
+        *known.entry(normal.to_array().map(f64::to_bits)).or_insert_with(|| {
+            frames.push(Frame::about(normal));
+            frames.len() as u32 - 1
+        })
+    });
+    let frame_of = frame_of.collect();
+    (frames, frame_of)
+}
