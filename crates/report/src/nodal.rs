@@ -33,7 +33,9 @@ pub(crate) fn vertex_values(
         }
     }
     for (sums, total) in sums.chunks_exact_mut(width).zip(totals) {
-        sums.iter_mut().for_each(|sum| *sum /= total);
+        for sum in sums {
+            *sum /= total;
+        }
     }
     sums
 }

@@ -245,7 +245,9 @@ impl<'a> Gathered<'a> {
                 inverse += 1.0 / at.distance(point).max(f64::MIN_POSITIVE);
                 sent.add(leaf, at, &mut irradiance);
             }
-            irradiance.iter_mut().for_each(|e| *e /= of_group as f64);
+            for e in &mut irradiance {
+                *e /= of_group as f64;
+            }
             *colour = reflected(leaf, &irradiance);
         }
         let groups = DIRECTION_GROUPS as f64;
