@@ -44,6 +44,11 @@ impl Colouring {
         &self.columns
     }
 
+    /// Linear sRGB of what is reflected of an irradiance in each band, in its unit.
+    pub(crate) fn reflected(&self, reflectance: &[f64], irradiance: &[f64]) -> Rgb {
+        self.mixed(reflectance.iter().zip(irradiance).map(|(rho, e)| rho * e))
+    }
+
     /// Linear sRGB of a value in each band, in the unit of the values.
     ///
     /// # Examples
@@ -54,10 +59,19 @@ impl Colouring {
     /// ```
     #[must_use]
     pub fn colour(&self, values: &[f64]) -> [f64; 3] {
+        self.mixed(values.iter().copied())
+    }
+
+    fn mixed(&self, values: impl Iterator<Item = f64>) -> Rgb {
         self.columns.iter().zip(values).fold([0.0; 3], |sum, (column, value)| {
             [0, 1, 2].map(|channel| sum[channel] + column[channel] * value)
         })
     }
+}
+
+/// The sum of two colours.
+pub(crate) fn sum(a: Rgb, b: Rgb) -> Rgb {
+    [0, 1, 2].map(|i| a[i] + b[i])
 }
 
 fn grey(bands: usize) -> Vec<Rgb> {

@@ -113,10 +113,16 @@ impl<'a> Field<'a> {
         self.exposed.map_or(1.0, |shares| shares[leaf])
     }
 
+    /// What a mean over all of a leaf is multiplied by for that over its exposed part: means of what
+    /// is buried are 0, and stay so.
+    pub(crate) fn over_exposed(&self, leaf: usize) -> f64 {
+        let share = self.exposed(leaf);
+        if share > 0.0 { 1.0 / share } else { 1.0 }
+    }
+
     /// Radiosity of the exposed part of leaf `leaf`, M + (B − M)/w, in all bands, W/m².
     pub(crate) fn exposed_radiosity(&self, leaf: usize) -> Vec<f64> {
-        let share = self.exposed(leaf);
-        let reflected_by = if share > 0.0 { 1.0 / share } else { 1.0 };
+        let reflected_by = self.over_exposed(leaf);
         let exitance = |band: usize| self.exitance.map_or(0.0, |m| self.row(m, leaf)[band]);
         let mean = self.row(self.radiosity, leaf).iter().enumerate();
         mean.map(|(band, b)| exitance(band) + (b - exitance(band)) * reflected_by).collect()

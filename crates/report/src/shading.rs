@@ -22,8 +22,7 @@ impl<'a> Shading<'a> {
     pub(crate) fn of_rest(field: Field<'a>, passes: usize, part: impl Fn(usize, usize) -> f64) -> Self {
         let colouring = Colouring::new(field.bands());
         let colour = |leaf: usize| {
-            let share = field.exposed(leaf);
-            let reflected_by = if share > 0.0 { 1.0 / share } else { 1.0 };
+            let reflected_by = field.over_exposed(leaf);
             let mut rest = field.exposed_radiosity(leaf);
             rest.iter_mut().enumerate().for_each(|(band, b)| *b -= part(leaf, band) * reflected_by);
             colouring.colour(&rest)

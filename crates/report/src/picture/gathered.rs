@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use fredholm_mesh::Vec3;
 
 use super::lit::Seen;
-use crate::colour::Rgb;
+use crate::colour::{Rgb, sum};
 use crate::shading::Shading;
 use crate::tone::luminance;
 use crate::{Eye, Field};
@@ -78,8 +78,7 @@ impl<'a> Sent<'a> {
         let mut constant = Vec::new();
         if let Some(direct) = direct {
             for (leaf, smooth) in smooth.chunks_exact_mut(bands).enumerate() {
-                let share = field.exposed(leaf);
-                let reflected_by = if share > 0.0 { 1.0 / share } else { 1.0 };
+                let reflected_by = field.over_exposed(leaf);
                 let exitance = field.exitance().map(|m| field.row(m, leaf));
                 for (band, smooth) in smooth.iter_mut().enumerate() {
                     let at = leaf * bands + band;
@@ -149,7 +148,7 @@ pub(super) struct Candidate {
 
 impl<'a> Gathered<'a> {
     /// Gathers for a picture. `pixel` is what is seen through the middle of a pixel, `reflected`
-    /// the colour that a leaf reflects of an irradiance, leaf by leaf; `begin` is told the share of
+    /// the colour that a leaf reflects of an irradiance, leaf by leaf; `go_on` is told the share of
     /// the way and says whether to go on.
     pub fn new(
         (field, eye): (Field<'a>, &'a Eye),
@@ -170,14 +169,21 @@ impl<'a> Gathered<'a> {
             };
             let grid = (0..h).step_by(stride).flat_map(|y| (0..w).step_by(stride).map(move |x| (x, y)));
             let pixels: Vec<(usize, usize)> = grid.filter(|&(x, y)| is_new(x, y)).collect();
-            let mean = gathered.mean(&pixels, pixel);
-            let wanted = |&(x, y): &(usize, usize)| {
+            let look = |&(x, y): &(usize, usize)| {
                 let candidate = pixel(x, y)?;
                 let told = gathered.told(candidate.leaf, candidate.point);
-                let enough = told.is_some_and(|told| is_enough(&told, &candidate, (FEWEST[pass], mean)));
-                (!enough).then_some((x, y, candidate))
+                Some((x, y, candidate, told))
             };
-            let wanted: Vec<(usize, usize, Candidate)> = pixels.par_iter().filter_map(wanted).collect();
+            let seen: Vec<(usize, usize, Candidate, Option<Told>)> =
+                pixels.par_iter().filter_map(look).collect();
+            let mean =
+                mean(seen.iter().filter_map(|(_, _, candidate, told)| Some((candidate, told.as_ref()?))));
+            let enough =
+                |told: &Told, candidate: &Candidate| is_enough(told, candidate, (FEWEST[pass], mean));
+            let wanted = seen.into_iter().filter_map(|(x, y, candidate, told)| {
+                (!told.is_some_and(|told| enough(&told, &candidate))).then_some((x, y, candidate))
+            });
+            let wanted: Vec<(usize, usize, Candidate)> = wanted.collect();
             let begun = pass as f64 / STRIDES.len() as f64;
             let look = |met: &mut Vec<Seen>, (k, (x, y, candidate)): (usize, &(usize, usize, Candidate))| {
                 let share = begun + k as f64 / (wanted.len() * STRIDES.len()) as f64;
@@ -202,21 +208,6 @@ impl<'a> Gathered<'a> {
     /// Number of places.
     pub fn len(&self) -> usize {
         self.places.len()
-    }
-
-    /// Mean luminance of some pixels.
-    fn mean(
-        &self,
-        pixels: &[(usize, usize)],
-        pixel: &(dyn Fn(usize, usize) -> Option<Candidate> + Sync),
-    ) -> f64 {
-        let bright = |&(x, y): &(usize, usize)| {
-            let candidate = pixel(x, y)?;
-            let told = self.told(candidate.leaf, candidate.point)?;
-            Some(luminance(sum(candidate.colour, told.colour)))
-        };
-        let found: Vec<f64> = pixels.par_iter().filter_map(bright).collect();
-        found.iter().sum::<f64>() / found.len().max(1) as f64
     }
 
     fn insert(&mut self, places: impl Iterator<Item = Place>) {
@@ -387,6 +378,15 @@ impl<'a> Gathered<'a> {
     }
 }
 
+/// Mean luminance of pixels that places tell.
+fn mean<'c>(told: impl Iterator<Item = (&'c Candidate, &'c Told)>) -> f64 {
+    let add = |(all, count): (f64, f64), (candidate, told): (&Candidate, &Told)| {
+        (all + luminance(sum(candidate.colour, told.colour)), count + 1.0)
+    };
+    let (all, count) = told.fold((0.0, 0.0), add);
+    all / count.max(1.0)
+}
+
 /// Whether a pixel need not become a place.
 fn is_enough(told: &Told, candidate: &Candidate, (fewest, mean): (usize, f64)) -> bool {
     let bright = luminance(sum(candidate.colour, told.colour)).max(DARK_SHARE * mean);
@@ -407,10 +407,6 @@ fn weight(place: &Place, (point, normal, surface): (Vec3, Vec3, u32), at: (f64, 
         return None;
     }
     Some((1.0 - share).powi(2))
-}
-
-fn sum(a: Rgb, b: Rgb) -> Rgb {
-    [0, 1, 2].map(|i| a[i] + b[i])
 }
 
 /// The inverse of a symmetric matrix; none where it has hardly one.

@@ -20,7 +20,7 @@ use fredholm_mesh::Vec3;
 
 use super::gathered::{Candidate, Gathered, Gathering, Sent};
 use super::{BACKGROUND, Picture};
-use crate::colour::{Colouring, Rgb};
+use crate::colour::{Colouring, Rgb, sum};
 use crate::shading::Shading;
 use crate::tone::{Exposure, Tone, encode, luminance};
 use crate::{Camera, Eye, Field, ReportError};
@@ -116,7 +116,7 @@ pub struct LitPicture {
     /// asked for.
     pub linear: Vec<[f32; 3]>,
     /// Standard error of the linear colours at the middles of the pixels, for what is gathered;
-    /// empty unless linear colours were asked for and light was gathered.
+    /// empty unless light was gathered.
     pub standard_error: Vec<[f32; 3]>,
     /// Number of places at which light was gathered.
     pub places: usize,
@@ -176,7 +176,7 @@ impl Brush<'_> {
         let mut colours = self.of_lamps(samples);
         for (colour, sample) in colours.iter_mut().zip(samples) {
             if let Some((leaf, point)) = *sample {
-                *colour = sum(*colour, self.view.rest(leaf, point));
+                *colour = sum(*colour, self.view.rest(leaf, point).0);
             }
         }
         colours
@@ -244,8 +244,7 @@ impl<'a> LitView<'a> {
             for (lamp, m) in lit.exitance.chunks_exact(bands).enumerate() {
                 let sent = &mut sent[mesh.surface_of(leaf) * lit.light.lamps() + lamp];
                 if sent.iter().all(|part| *part == 0.0) {
-                    let both: Vec<f64> = rho.iter().zip(m).map(|(rho, m)| rho * m).collect();
-                    *sent = colouring.colour(&both);
+                    *sent = colouring.reflected(rho, m);
                 }
             }
         }
@@ -279,9 +278,7 @@ impl<'a> LitView<'a> {
         let passes = if lit.direct.is_some() { CORNER_PASSES } else { 0 };
         let of_leaf = |leaf: usize| {
             let direct = lit.direct.map_or(0.0, |direct| weighed(field.row(direct, leaf)));
-            let share = field.exposed(leaf);
-            let received_by = if share > 0.0 { 1.0 / share } else { 1.0 };
-            [(weighed(field.row(field.irradiance(), leaf)) - direct) * received_by; 3]
+            [(weighed(field.row(field.irradiance(), leaf)) - direct) * field.over_exposed(leaf); 3]
         };
         let rest = (0..field.mesh().len()).flat_map(of_leaf).collect();
         let rest = Shading::of_values(field, passes, (3, rest));
@@ -306,7 +303,7 @@ impl<'a> LitView<'a> {
         if let Some(gathering) = self.lit.gathering {
             self.gathered = Some(self.gather(gathering, &middles));
         }
-        self.add_rest(&mut middles);
+        let standard_error = self.add_rest(&mut middles);
         let tone = Tone::new(exposure, &self.metered(&middles))?;
         let display = |colour| tone.display(colour);
         // Linear colours take four times the memory of what is shown.
@@ -323,7 +320,6 @@ impl<'a> LitView<'a> {
             (shown, colours.collect())
         });
         let picture = Picture { width, height, pixels: Vec::into_flattened(shown) };
-        let standard_error = if linear { self.errors(&middles) } else { Vec::new() };
         let (exposure, places) = (tone.exposure(), self.gathered.as_ref().map_or(0, Gathered::len));
         let linear = linear_colours;
         Ok(Some(LitPicture { picture, linear, standard_error, places, whole, exposure }))
@@ -342,25 +338,34 @@ impl<'a> LitView<'a> {
         self.in_tiles(LOOKED, |tile| self.middles(tile))
     }
 
-    /// Linear colour at a point of a leaf without the light of the lamps, W/m².
-    fn rest(&self, leaf: usize, point: Vec3) -> Rgb {
+    /// Linear colour at a point of a leaf without the light of the lamps, W/m², with its standard
+    /// error where it is gathered.
+    fn rest(&self, leaf: usize, point: Vec3) -> (Rgb, Option<Rgb>) {
         match self.gathered.as_ref().and_then(|gathered| gathered.told(leaf, point)) {
-            Some(told) => sum(self.own[self.field.mesh().surface_of(leaf)], told.colour),
-            None => self.rest.colour(leaf, point),
+            Some(told) => (sum(self.own[self.field.mesh().surface_of(leaf)], told.colour), Some(told.error)),
+            None => (self.rest.colour(leaf, point), None),
         }
     }
 
-    /// Adds to the light of the lamps what else there is.
-    fn add_rest(&self, middles: &mut [Middle]) {
+    /// Adds to the light of the lamps what else there is. Standard errors of what is gathered are
+    /// returned, W/m²: none for pixels where nothing is seen, no number where light is interpolated,
+    /// and no list where nothing is gathered.
+    fn add_rest(&self, middles: &mut [Middle]) -> Vec<[f32; 3]> {
         let columns = self.eye.camera().width as usize;
-        middles.par_chunks_mut(columns).enumerate().for_each(|(y, row)| {
-            for (x, middle) in row.iter_mut().enumerate() {
-                if let Some(leaf) = middle.leaf() {
-                    let rest = self.rest(leaf, self.point(leaf, (x, y)));
-                    middle.colour = sum(middle.colour.map(f64::from), rest).map(|c| c as f32);
-                }
-            }
+        let add = |(k, middle): (usize, &mut Middle)| {
+            let Some(leaf) = middle.leaf() else { return [0.0; 3] };
+            let (rest, error) = self.rest(leaf, self.point(leaf, (k % columns, k / columns)));
+            middle.colour = sum(middle.colour.map(f64::from), rest).map(|c| c as f32);
+            error.map_or([f32::NAN; 3], |error| error.map(|e| e as f32))
+        };
+        let all = middles.par_iter_mut().enumerate();
+        if self.gathered.is_some() {
+            return all.map(add).collect();
+        }
+        all.for_each(|pixel| {
+            add(pixel);
         });
+        Vec::new()
     }
 
     /// The point of a leaf (m) that is seen through the middle of a pixel.
@@ -380,30 +385,12 @@ impl<'a> LitView<'a> {
             Some(Candidate { leaf, point: self.point(leaf, (x, y)), colour })
         };
         let colouring = Colouring::new(field.bands());
-        let reflected = |leaf: usize, irradiance: &[f64]| {
-            let rho = field.row(lit.reflectance, leaf);
-            let columns = colouring.columns().iter().zip(rho.iter().zip(irradiance));
-            columns.fold([0.0; 3], |sum, (column, (rho, e))| [0, 1, 2].map(|i| sum[i] + column[i] * rho * e))
-        };
+        let reflected = |leaf: usize, e: &[f64]| colouring.reflected(field.row(lit.reflectance, leaf), e);
         let go_on = |share: f64| {
             lit.light.advance(LOOKED[1] + share * (PAINTED[0] - LOOKED[1]));
             lit.light.go_on().is_continue()
         };
         Gathered::new((*field, eye), (gathering, &sent), &pixel, &reflected, &go_on)
-    }
-
-    /// Standard error of what is gathered at the middles of the pixels, W/m²; empty where nothing
-    /// is.
-    fn errors(&self, middles: &[Middle]) -> Vec<[f32; 3]> {
-        let Some(gathered) = &self.gathered else { return Vec::new() };
-        let columns = self.eye.camera().width as usize;
-        let of = |(k, middle): (usize, &Middle)| {
-            let Some(leaf) = middle.leaf() else { return [0.0; 3] };
-            let told = gathered.told(leaf, self.point(leaf, (k % columns, k / columns)));
-            // Of what is interpolated between elements no such error is known.
-            told.map_or([f32::NAN; 3], |told| told.error.map(|e| e as f32))
-        };
-        middles.par_iter().enumerate().map(of).collect()
     }
 
     /// All pixels as they are shown, row by row; none where the picture is not wanted any more.
@@ -606,10 +593,6 @@ fn shown(middle: &Middle, display: &Display<'_>) -> Rgb {
         NO_LEAF => [BACKGROUND; 3],
         _ => display(middle.colour.map(f64::from)),
     }
-}
-
-fn sum(a: Rgb, b: Rgb) -> Rgb {
-    [0, 1, 2].map(|i| a[i] + b[i])
 }
 
 /// The colour of pixel `k` of rows of `width` from its neighbours in the even rows and columns; none
