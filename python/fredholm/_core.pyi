@@ -29,6 +29,7 @@ __all__ = [
     "methods",
     "view_factors",
     "Waves",
+    "compare_wave_methods",
     "compare_waves",
     "waves",
     "VERSION",
@@ -191,6 +192,9 @@ def reference(
 ) -> Study: ...
 def judge(asked: _Options, how: _Options) -> Study: ...
 def waves(path: _Path, report: bool, problem: _Options, how: _Options) -> Waves: ...
+def compare_wave_methods(
+    path: _Path, methods: Sequence[str], problem: _Options, how: _Options
+) -> Study: ...
 def compare_waves(
     path: _Path, asked: Tuple[Sequence[str], float, int], problem: _Options, how: _Options
 ) -> Study: ...

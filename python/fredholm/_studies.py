@@ -163,6 +163,20 @@ class Comparison(Study):
         ]
 
 
+class Methods(Study):
+    """Methods on one scene of waves: what each makes of the fields, against the most exact one.
+
+    ``table("methods.csv")`` has the stated error of every method at every receiver and frequency,
+    and its difference from ``record["reference"]``.
+    """
+
+    @property
+    def runs(self) -> List[Dict[str, Any]]:
+        """What became of each method, with ``method``, ``outcome``, ``reason``, ``seconds`` and
+        ``receivers``."""
+        return list(self.record["methods"])
+
+
 class Convergence(Study):
     """A scene on finer and finer meshes: the order of the error, and how much of it is left.
 

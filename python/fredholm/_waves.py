@@ -199,6 +199,32 @@ class WaveScene:
             compared, lambda: _core.compare_waves(self.path, asked, problem, how)
         )
 
+    def methods(
+        self,
+        methods: Union[str, Sequence[str]] = "all",
+        *,
+        threads: Optional[int] = None,
+        memory: Memory = None,
+        progress: Progress = None,
+    ) -> _studies.Methods:
+        """Computes the fields by several methods, and compares each with the one that states the
+        least error.
+
+        Parameters
+        ----------
+        methods : str or sequence of str
+            Such as ``["physical-optics:edges", "iterated", "efie"]``; ``"all"`` stands for all of
+            them. Those that the scene does not admit are left out, with the reason.
+        threads, memory, progress
+            As for :meth:`fredholm.Scene.solve`.
+        """
+        problem, how = _options.problem(threads, memory=memory), _options.how(threads, progress)
+        asked = _options.texts(methods)
+        compared = _studies.Methods
+        return _studies.answered(
+            compared, lambda: _core.compare_wave_methods(self.path, asked, problem, how)
+        )
+
     def trace(
         self,
         method: str = "surface-sampling",

@@ -175,3 +175,16 @@ far = { theta_degrees = 0, phi_degrees = 0 }
 def test_a_study_has_a_page() -> None:
     page = fredholm.Scene.from_toml(ROOM).compare("gmres").page(height=300)
     assert "height:300px" in page._repr_html_()
+
+
+def test_methods_of_waves(scenes: pathlib.Path) -> None:
+    found = fredholm.WaveScene.load(scenes / "waves" / "dihedral.toml").methods(
+        ["physical-optics", "iterated", "cfie"]
+    )
+    assert [run["outcome"] for run in found.runs] == ["done", "done", "refused"]
+    assert found.record["reference"] == "iterated"
+    differences = [run["receivers"][0]["difference"] for run in found.runs[:2]]
+    assert differences[0] > 0.5 and differences[1] is None
+    assert list(found.table("methods.csv")["method"]) == ["physical-optics", "iterated", "cfie"]
+    with pytest.raises(fredholm.InputError, match="no method `magic`"):
+        fredholm.WaveScene.load(scenes / "waves" / "dihedral.toml").methods("magic")

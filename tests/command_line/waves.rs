@@ -186,12 +186,74 @@ fn a_comparison_tells_what_diverges() {
     let residual: f64 = rows[1][7].parse().unwrap();
     assert!(residual < 1e-6 && rows[0][8].is_empty(), "{table}");
     assert!(read(&bench, "compare_history.csv").lines().count() > 100);
-    for file in ["compare.svg", "compare.json"] {
+    for file in ["compare.svg", "compare.json", "report.html"] {
         assert!(read(&bench, file).contains("neumann"), "{file}");
     }
     assert!(!bench.path("out/scene/run.json").exists() && run.stdout.contains("spectral radius 1.1"));
     let wrong = bench.run(&["waves", "scene.toml", "--compare", "magic"]);
     assert!(wrong.code == 2 && wrong.stderr.contains("magic"), "{}", wrong.stderr);
+}
+
+/// ‖f − g‖/‖g‖ of the far fields of two runs.
+fn far_difference(one: &str, other: &str) -> f64 {
+    let (mut gap, mut size) = (0.0, 0.0);
+    for part in ["f_theta_re", "f_theta_im", "f_phi_re", "f_phi_im"] {
+        let (a, b) = (column(one, part), column(other, part));
+        gap += a.iter().zip(&b).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+        size += b.iter().map(|b| b * b).sum::<f64>();
+    }
+    (gap / size).sqrt()
+}
+
+/// Methods beside each other: each has the fields of a run of its own, differences are those from
+/// the one that states the least error, what a scene does not admit has its reason, and numbers of
+/// threads change nothing but seconds.
+#[test]
+fn methods_are_compared_with_the_one_that_states_the_least_error() {
+    let far = "far = { theta_degrees = 90, phi_degrees = { from = 0, to = 180, points = 19 } }";
+    let grid = "grid = { corner = [-1, -1, 0], u = [2, 0, 0], v = [0, 2, 0], columns = 9, rows = 8 }";
+    let receivers = format!("{far}\n\n[[receiver]]\nname = \"map\"\n{grid}");
+    let scene = changed(&[(POINT, &receivers)]);
+    let bench = Bench::new(&scene);
+    let list = "physical-optics,iterated:edges,efie,cfie";
+    for threads in ["1", "2"] {
+        let run = bench.run(&["waves", "scene.toml", "--methods", list, "-o", threads, "--threads", threads]);
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        assert!(run.stdout.contains("differences from efie"), "{}", run.stdout);
+        assert!(run.stderr.contains("cfie is left out: the combined field equation"), "{}", run.stderr);
+    }
+    let read = |file: &str| fs::read_to_string(bench.path(file)).unwrap();
+    assert_eq!(read("1/methods_over_angle.csv"), read("2/methods_over_angle.csv"));
+    let table = read("1/methods.csv");
+    let rows: Vec<Vec<&str>> = table.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    let methods: Vec<&str> = rows.iter().map(|row| row[0]).collect();
+    let twice = |name| [name; 2];
+    assert_eq!(methods[..4], [twice("physical-optics"), twice("iterated:edges")].concat()[..]);
+    assert_eq!(methods[4..], ["efie", "efie", "cfie"]);
+    assert!(rows[6][1] == "refused" && table.contains("made for closed bodies"), "{table}");
+    assert!(rows[4][4].parse::<f64>().unwrap() < 0.1 && rows[4][5].is_empty(), "{table}");
+    let alone = |method: &str| {
+        let text = scene.replace("[wave]", &format!("[wave]\n{method}"));
+        fs::write(bench.path("alone.toml"), text).unwrap();
+        let run = bench.run(&["waves", "alone.toml", "-o", "alone"]);
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        read("alone/far.csv")
+    };
+    let exact = alone("method = \"efie\"");
+    let optics = alone("method = \"physical-optics\"\nbounces = 1\nedge_currents = false");
+    let (told, found) = (rows[0][5].parse::<f64>().unwrap(), far_difference(&optics, &exact));
+    assert!(found > 0.01 && (told / found - 1.0).abs() < 1e-9, "{told} {found}");
+    let files = ["map_efie_ez_magnitude.png", "map_iterated-edges_ez_difference.png", "report.html"];
+    for file in files {
+        assert!(bench.path("1").join(file).exists(), "{file}");
+    }
+    assert!(!bench.path("1/map_efie_ez_difference.png").exists());
+    let told = bench.run(&["info", "1"]).stdout;
+    assert!(told.contains("iterated:edges at map, 1000 MHz: states"), "{told}");
+    let wrong = bench.run(&["waves", "scene.toml", "--methods", "efie:edges"]);
+    assert!(wrong.code == 2 && wrong.stderr.contains("it has none"), "{}", wrong.stderr);
+    let none = bench.run(&["waves", "scene.toml", "--methods", "cfie,mfie"]);
+    assert!(none.code == 2 && none.stderr.contains("closed bodies"), "{}", none.stderr);
 }
 
 /// A sweep needs no source, and has at every direction what the plane wave from there sends back.

@@ -7,7 +7,8 @@
 //! Hierarchical Matrices: Algorithms and Analysis, Springer 2015, doi:10.1007/978-3-662-47324-5.
 //!
 //! Every block is approximated to a relative tolerance in the Frobenius norm, so that the error of
-//! a product is at most about the tolerance times the norm of the matrix. Products and blocks have
+//! a product is at most about the tolerance times the norm of the matrix. Blocks are stored in
+//! single precision, which is far finer, and multiplied in double precision. Products and blocks have
 //! the same bits for any number of threads: a block is the work of one thread, and each part of a
 //! product is summed in the order of the blocks.
 

@@ -2,7 +2,6 @@
 
 use crate::clusters::Tree;
 use crate::cross::Block;
-use crate::low_rank::LowRank;
 use crate::{CompressionError, Entries};
 use fredholm_linop::{LinearOperator, MultiVector, Scalar, Steps, Symmetry, Watch};
 use fredholm_mesh::Vec3;
@@ -12,11 +11,14 @@ use std::ops::Range;
 
 /// Far blocks of each level that are computed for the prediction of memory.
 const SAMPLES: usize = 3;
+/// The finest tolerance: entries have errors of 6e-8 in single precision.
+const FINEST_TOLERANCE: f64 = 1e-6;
 
 /// How a matrix is compressed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Relative error of every block in the Frobenius norm, between 1e-14 and 0.5.
+    /// Relative error of every block in the Frobenius norm, between 1e-6 and 0.5: blocks are stored
+    /// in single precision.
     pub tolerance: f64,
     /// Most groups of a cluster that is not halved.
     pub leaf: usize,
@@ -45,25 +47,28 @@ pub struct Summary {
     pub bytes: u64,
     /// Bytes that were predicted from some blocks before the others were computed.
     pub predicted: u64,
-    /// Bytes over those of the matrix stored whole.
+    /// Bytes over those of the matrix stored whole in double precision.
     pub share: f64,
 }
 
-/// A block: its rows and columns in the order of the tree, and its entries.
-struct Stored<T> {
+/// A block: its rows and columns in the order of the tree, and its entries in single precision.
+struct Stored<T: Scalar> {
     rows: Range<usize>,
     columns: Range<usize>,
-    kind: Kind<T>,
+    /// What the entries are multiples of, a power of two: single precision spans fewer of them.
+    unit: f64,
+    kind: Kind<T::Single>,
 }
 
-enum Kind<T> {
+enum Kind<S> {
     /// Row by row.
-    Whole(Vec<T>),
-    Low(LowRank<T>),
+    Whole(Vec<S>),
+    /// U Vᵀ, column by column.
+    Low { u: Vec<S>, v: Vec<S> },
 }
 
 /// A square matrix in blocks, many of them of low rank.
-pub struct Hierarchical<T> {
+pub struct Hierarchical<T: Scalar> {
     dim: usize,
     symmetry: Symmetry,
     /// Unknowns in the order of the tree.
@@ -137,7 +142,7 @@ impl<T: Scalar> Hierarchical<T> {
     pub fn summary(&self) -> Summary {
         let rank = |block: &Stored<T>| match &block.kind {
             Kind::Whole(_) => None,
-            Kind::Low(low) => Some(low.rank),
+            Kind::Low { u, .. } => Some(u.len() / block.rows.len().max(1)),
         };
         let ranks: Vec<usize> = self.blocks.iter().filter_map(rank).collect();
         let bytes: u64 = self.blocks.iter().map(Stored::bytes).sum();
@@ -155,7 +160,8 @@ impl<T: Scalar> Hierarchical<T> {
     pub(crate) fn diagonal_blocks(&self) -> Vec<(Vec<usize>, Vec<T>)> {
         let on_diagonal = |block: &Stored<T>| match &block.kind {
             Kind::Whole(entries) if block.rows == block.columns => {
-                Some((self.order[block.rows.clone()].to_vec(), entries.clone()))
+                let entries = entries.iter().map(|&entry| T::from_single(entry).scale(block.unit));
+                Some((self.order[block.rows.clone()].to_vec(), entries.collect()))
             }
             _ => None,
         };
@@ -170,9 +176,9 @@ impl<T: Scalar> Hierarchical<T> {
             .par_iter()
             .map(|block| match &block.kind {
                 Kind::Whole(_) => [Vec::new(), Vec::new()],
-                Kind::Low(low) => {
-                    let back = if symmetric { dots(&low.u, &x[block.rows.clone()]) } else { Vec::new() };
-                    [dots(&low.v, &x[block.columns.clone()]), back]
+                Kind::Low { u, v } => {
+                    let back = if symmetric { dots(u, &x[block.rows.clone()]) } else { Vec::new() };
+                    [dots(v, &x[block.columns.clone()]), back]
                 }
             })
             .collect();
@@ -188,12 +194,16 @@ impl<T: Scalar> Hierarchical<T> {
 }
 
 impl<T: Scalar> Stored<T> {
-    fn bytes(&self) -> u64 {
-        let entries = match &self.kind {
+    fn numbers(&self) -> u64 {
+        let numbers = match &self.kind {
             Kind::Whole(entries) => entries.len(),
-            Kind::Low(low) => low.u.len() + low.v.len(),
+            Kind::Low { u, v } => u.len() + v.len(),
         };
-        (entries * size_of::<T>()) as u64
+        numbers as u64
+    }
+
+    fn bytes(&self) -> u64 {
+        self.numbers() * size_of::<T::Single>() as u64
     }
 
     /// Adds the rows of a leaf of the block, or of its transpose, times x. `inner` has the products
@@ -201,24 +211,22 @@ impl<T: Scalar> Stored<T> {
     fn add(&self, leaf: &Range<usize>, x: &[T], inner: &[T], turned: bool, y: &mut [T]) {
         let (own, other) = if turned { (&self.columns, &self.rows) } else { (&self.rows, &self.columns) };
         let first = leaf.start - own.start;
+        let unit = self.unit;
         match &self.kind {
-            Kind::Low(low) => {
-                let factor = if turned { &low.v } else { &low.u };
+            Kind::Low { u, v } => {
+                let factor = if turned { v } else { u };
                 for (column, &value) in factor.chunks_exact(own.len()).zip(inner) {
-                    y.iter_mut().zip(&column[first..]).for_each(|(y, &u)| *y += u * value);
+                    add_scaled(y, &column[first..], value.scale(unit));
                 }
             }
             Kind::Whole(entries) if turned => {
                 for (row, &value) in entries.chunks_exact(own.len()).zip(&x[other.clone()]) {
-                    y.iter_mut().zip(&row[first..]).for_each(|(y, &entry)| *y += entry * value);
+                    add_scaled(y, &row[first..], value.scale(unit));
                 }
             }
             Kind::Whole(entries) => {
                 let rows = entries.chunks_exact(other.len()).skip(first);
-                for (y, row) in y.iter_mut().zip(rows) {
-                    let x = &x[other.clone()];
-                    *y += row.iter().zip(x).fold(T::zero(), |sum, (&entry, &x)| sum + entry * x);
-                }
+                y.iter_mut().zip(rows).for_each(|(y, row)| *y += dot(row, &x[other.clone()]).scale(unit));
             }
         }
     }
@@ -242,7 +250,7 @@ impl<T: Scalar> LinearOperator<T> for Hierarchical<T> {
     }
 
     fn entries(&self) -> u64 {
-        self.blocks.iter().map(Stored::bytes).sum::<u64>() / size_of::<T>() as u64
+        self.blocks.iter().map(Stored::numbers).sum()
     }
 }
 
@@ -279,19 +287,22 @@ impl<'a, T: Scalar, E: Entries<T>> Builder<'a, T, E> {
     fn stored(&self, row: usize, column: usize, far: bool) -> Stored<T> {
         let width = self.entries.width();
         let [rows, columns] = [row, column].map(|at| scaled(&self.tree.clusters[at].range, width));
-        Stored { rows, columns, kind: self.kind(row, column, far) }
+        let (unit, kind) = self.kind(row, column, far);
+        Stored { rows, columns, unit, kind }
     }
 
-    fn kind(&self, row: usize, column: usize, far: bool) -> Kind<T> {
+    fn kind(&self, row: usize, column: usize, far: bool) -> (f64, Kind<T::Single>) {
         let (Some(row_set), Some(column_set)) = (&self.sets[row], &self.sets[column]) else {
-            return Kind::Whole(Vec::new());
+            return (1.0, Kind::Whole(Vec::new()));
         };
         let (rows, columns) = (self.tree.groups(row), self.tree.groups(column));
         let block = Block::new(self.entries, [rows, columns], [row_set, column_set]);
         if far && let Some(low) = block.compressed(self.tolerance) {
-            return Kind::Low(low);
+            let ((left, u), (right, v)) = (single(&low.u), single(&low.v));
+            return (left * right, Kind::Low { u, v });
         }
-        Kind::Whole(block.into_whole())
+        let (unit, entries) = single(&block.into_whole());
+        (unit, Kind::Whole(entries))
     }
 
     /// Bytes of all blocks: near ones are counted, far ones taken to be like some of their level.
@@ -313,7 +324,7 @@ impl<'a, T: Scalar, E: Entries<T>> Builder<'a, T, E> {
             let [all, seen] = [pairs.iter().map(of).sum::<u64>(), some.into_iter().map(of).sum()];
             (stored as f64 * all as f64 / seen.max(1) as f64) as u64
         });
-        near * size_of::<T>() as u64 + far.sum::<u64>()
+        near * size_of::<T::Single>() as u64 + far.sum::<u64>()
     }
 }
 
@@ -325,8 +336,8 @@ fn check(groups: usize, places: &[Vec3], settings: Settings) -> Result<(), Compr
         return Err(CompressionError::NotFinite { group });
     }
     let refuse = |what, value, expected| Err(CompressionError::Setting { what, value, expected });
-    if !(1e-14..=0.5).contains(&settings.tolerance) {
-        return refuse("the tolerance of the compression", settings.tolerance, "between 1e-14 and 0.5");
+    if !(FINEST_TOLERANCE..=0.5).contains(&settings.tolerance) {
+        return refuse("the tolerance of the compression", settings.tolerance, "between 1e-6 and 0.5");
     }
     if !(settings.eta > 0.0 && settings.eta.is_finite()) {
         return refuse("eta of the compression", settings.eta, "finite and above 0");
@@ -343,7 +354,11 @@ fn scaled(range: &Range<usize>, width: usize) -> Range<usize> {
 }
 
 /// For every leaf the blocks that reach its rows, in their order.
-fn reach<T>(leaves: &[Range<usize>], blocks: &[Stored<T>], symmetric: bool) -> Vec<Vec<(usize, bool)>> {
+fn reach<T: Scalar>(
+    leaves: &[Range<usize>],
+    blocks: &[Stored<T>],
+    symmetric: bool,
+) -> Vec<Vec<(usize, bool)>> {
     let mut reach = vec![Vec::new(); leaves.len()];
     let mut add = |range: &Range<usize>, at: usize, turned: bool| {
         let first = leaves.partition_point(|leaf| leaf.start < range.start);
@@ -359,8 +374,36 @@ fn reach<T>(leaves: &[Range<usize>], blocks: &[Stored<T>], symmetric: bool) -> V
     reach
 }
 
+/// Numbers in single precision, and the power of two that they are multiples of.
+fn single<T: Scalar>(numbers: &[T]) -> (f64, Vec<T::Single>) {
+    let largest = numbers.iter().map(|number| number.abs2()).fold(0.0, f64::max).sqrt();
+    let unit = if largest.is_normal() { largest.log2().floor().exp2() } else { 1.0 };
+    let inverse = unit.recip();
+    (unit, numbers.iter().map(|number| number.scale(inverse).to_single()).collect())
+}
+
 /// The products of the columns of a factor with x, not conjugated.
-fn dots<T: Scalar>(factor: &[T], x: &[T]) -> Vec<T> {
-    let dot = |column: &[T]| column.iter().zip(x).fold(T::zero(), |sum, (&a, &b)| sum + a * b);
-    factor.chunks_exact(x.len().max(1)).map(dot).collect()
+fn dots<T: Scalar>(factor: &[T::Single], x: &[T]) -> Vec<T> {
+    factor.chunks_exact(x.len().max(1)).map(|column| dot(column, x)).collect()
+}
+
+/// Σ aᵢ xᵢ, in four sums that do not wait for each other.
+fn dot<T: Scalar>(stored: &[T::Single], x: &[T]) -> T {
+    let mut sums = [T::zero(); 4];
+    let (fours, rest) = stored.as_chunks::<4>();
+    let (x_fours, x_rest) = x.as_chunks::<4>();
+    for (a, b) in fours.iter().zip(x_fours) {
+        for lane in 0..4 {
+            sums[lane] += T::from_single(a[lane]) * b[lane];
+        }
+    }
+    for (&a, &b) in rest.iter().zip(x_rest) {
+        sums[0] += T::from_single(a) * b;
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3])
+}
+
+/// y += a s.
+fn add_scaled<T: Scalar>(y: &mut [T], stored: &[T::Single], factor: T) {
+    y.iter_mut().zip(stored).for_each(|(y, &a)| *y += T::from_single(a) * factor);
 }

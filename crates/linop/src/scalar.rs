@@ -1,6 +1,6 @@
 //! The numbers that unknowns are made of: f64 for light, Complex64 for waves.
 
-use num_complex::Complex64;
+use num_complex::{Complex32, Complex64};
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
@@ -35,8 +35,14 @@ pub trait Scalar:
     + bytemuck::Zeroable
     + 'static
 {
+    /// The same number in single precision, for storage in half the memory.
+    type Single: Copy + Debug + PartialEq + Send + Sync + bytemuck::Zeroable + 'static;
     /// Whether these are the real numbers.
     const IS_REAL: bool;
+    /// The nearest number in single precision; what is above 3.4e38 becomes infinite.
+    fn to_single(self) -> Self::Single;
+    /// The number that is stored in single precision.
+    fn from_single(single: Self::Single) -> Self;
     /// 0.
     fn zero() -> Self;
     /// 1.
@@ -64,7 +70,16 @@ pub trait Scalar:
 }
 
 impl Scalar for f64 {
+    type Single = f32;
     const IS_REAL: bool = true;
+
+    fn to_single(self) -> f32 {
+        self as f32
+    }
+
+    fn from_single(single: f32) -> Self {
+        single.into()
+    }
 
     fn zero() -> Self {
         0.0
@@ -108,7 +123,16 @@ impl Scalar for f64 {
 }
 
 impl Scalar for Complex64 {
+    type Single = Complex32;
     const IS_REAL: bool = false;
+
+    fn to_single(self) -> Complex32 {
+        Complex32::new(self.re as f32, self.im as f32)
+    }
+
+    fn from_single(single: Complex32) -> Self {
+        Self::new(single.re.into(), single.im.into())
+    }
 
     fn zero() -> Self {
         Self::new(0.0, 0.0)
@@ -168,6 +192,9 @@ mod tests {
         assert_eq!(z * Scalar::conj(z), Complex64::from_real(25.0));
         assert_eq!(Scalar::scale(z, 2.0), z + z);
         assert!(!Scalar::is_finite(Complex64::new(0.0, f64::NAN)));
+        assert_eq!(Complex64::from_single(z.to_single()), z);
+        let rounded = f64::from_single(0.1.to_single());
+        assert!(rounded != 0.1 && (rounded - 0.1).abs() < 1e-8);
     }
 
     #[test]

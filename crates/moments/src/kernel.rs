@@ -23,7 +23,27 @@ use fredholm_mesh::Vec3;
 use fredholm_waves::lanes::{Lanes, cos_sin, decay, halvings};
 use num_complex::Complex64;
 use pulp::{Simd, WithSimd};
-use std::array;
+
+/// One value for each axis. (What `array::from_fn` and `map` call may stay a function of its own,
+/// compiled for narrow vectors.)
+macro_rules! axes {
+    ($axis:ident => $value:expr) => {
+        [
+            {
+                let $axis: usize = 0;
+                $value
+            },
+            {
+                let $axis: usize = 1;
+                $value
+            },
+            {
+                let $axis: usize = 2;
+                $value
+            },
+        ]
+    };
+}
 
 /// Pairs at once, on any instruction set.
 pub(crate) const WIDTH: usize = 8;
@@ -139,18 +159,20 @@ impl Apart<'_> {
     fn run<S: Simd, const ELECTRIC: bool, const MAGNETIC: bool, const LOSSY: bool>(self, simd: S) {
         let wave = Kernel::<S, LOSSY>::new(simd, self.medium, self.spread);
         for at in 0..WIDTH / S::F64_LANES {
-            let register = |values: &[Eight; 3]| values.map(|v| Lanes::register(simd, &v, at));
             let (observers, sources) = (self.observers, self.sources);
-            let normal = register(&observers.triangles.normal);
-            let shift = sub(register(&observers.triangles.centre), register(&sources.triangles.centre));
+            let normal = register(simd, &observers.triangles.normal, at);
+            let shift = sub(
+                register(simd, &observers.triangles.centre, at),
+                register(simd, &sources.triangles.centre, at),
+            );
             let middle = if LOSSY { dot(shift, shift).sqrt() } else { Lanes::splat(simd, 0.0) };
             let mut moments = Moments::<S, ELECTRIC, MAGNETIC>::zero(simd);
             for (p, &weight) in observers.places.iter().zip(observers.weights) {
-                let own = register(p);
+                let own = register(simd, p, at);
                 let e = add(shift, own);
                 let mut inner = Inner::<S>::zero(simd);
                 for (s, &weight) in sources.places.iter().zip(sources.weights) {
-                    let other = register(s);
+                    let other = register(simd, s, at);
                     let weight = Lanes::splat(simd, weight);
                     inner.add::<ELECTRIC, MAGNETIC, LOSSY>(&wave, sub(e, other), other, middle, weight);
                 }
@@ -223,18 +245,14 @@ impl Touching<'_> {
         let zero = Lanes::splat(simd, 0.0);
         let one = Lanes::splat(simd, 1.0);
         for at in 0..WIDTH / S::F64_LANES {
-            let register = |values: &[Eight; 3]| values.map(|v| Lanes::register(simd, &v, at));
-            let normal = register(&self.observer.normal);
-            let shift = sub(register(&self.observer.centre), register(&self.source.centre));
-            let [observer, source] = self.corners.map(|corners| frame(simd, corners));
+            let normal = register(simd, &self.observer.normal, at);
+            let shift =
+                sub(register(simd, &self.observer.centre, at), register(simd, &self.source.centre, at));
+            let (observer, source) = (frame(simd, self.corners[0]), frame(simd, self.corners[1]));
             let mut moments = Moments::<S, ELECTRIC, MAGNETIC>::zero(simd);
             for points in self.rule {
-                let place = |frame: &[[Lanes<S>; 3]; 3], uv: &[Eight; 2]| {
-                    let [u, v] = uv.map(|c| Lanes::register(simd, &c, at));
-                    array::from_fn(|c| frame[1][c].mul_add(u, frame[2][c].mul_add(v, frame[0][c])))
-                };
-                let own: [Lanes<S>; 3] = place(&observer, &points.observer);
-                let other: [Lanes<S>; 3] = place(&source, &points.source);
+                let own = place(&observer, &points.observer, at);
+                let other = place(&source, &points.source, at);
                 let e = add(shift, own);
                 let weight = Lanes::register(simd, &points.weight, at);
                 let mut inner = Inner::<S>::zero(simd);
@@ -256,10 +274,30 @@ impl Values {
     }
 }
 
+/// Register `at` of eight vectors.
+#[inline(always)]
+fn register<S: Simd>(simd: S, values: &[Eight; 3], at: usize) -> [Lanes<S>; 3] {
+    axes!(c => Lanes::register(simd, &values[c], at))
+}
+
+/// A vector in all lanes.
+#[inline(always)]
+fn splat<S: Simd>(simd: S, v: Vec3) -> [Lanes<S>; 3] {
+    axes!(c => Lanes::splat(simd, v[c]))
+}
+
 /// Corner 0 and the sides from it to the others.
 #[inline(always)]
 fn frame<S: Simd>(simd: S, [a, b, c]: [Vec3; 3]) -> [[Lanes<S>; 3]; 3] {
-    [a, b - a, c - a].map(|v| v.to_array().map(|x| Lanes::splat(simd, x)))
+    [splat(simd, a), splat(simd, b - a), splat(simd, c - a)]
+}
+
+/// The points with these weights of the sides of a frame.
+#[inline(always)]
+fn place<S: Simd>(frame: &[[Lanes<S>; 3]; 3], uv: &[Eight; 2], at: usize) -> [Lanes<S>; 3] {
+    let simd = frame[0][0].simd();
+    let (u, v) = (Lanes::register(simd, &uv[0], at), Lanes::register(simd, &uv[1], at));
+    axes!(c => frame[1][c].mul_add(u, frame[2][c].mul_add(v, frame[0][c])))
 }
 
 /// e^{−κR₀} of every lane.
@@ -369,7 +407,7 @@ impl<S: Simd> Inner<S> {
         if ELECTRIC {
             let one = wave.one;
             self.potential = self.potential.plus(one, g);
-            self.vector = array::from_fn(|c| self.vector[c].plus(other[c], g));
+            self.vector = axes!(c => self.vector[c].plus(other[c], g));
         }
         if MAGNETIC {
             let second = inverse * inverse;
@@ -377,7 +415,7 @@ impl<S: Simd> Inner<S> {
             let re = (g.re * damping - g.im * phase) * second;
             let im = g.im.mul_add(damping, g.re * phase) * second;
             let slope = Complex { re, im };
-            self.gradient = array::from_fn(|c| self.gradient[c].plus(d[c], slope));
+            self.gradient = axes!(c => self.gradient[c].plus(d[c], slope));
         }
     }
 }
@@ -435,7 +473,7 @@ impl<S: Simd, const ELECTRIC: bool, const MAGNETIC: bool> Moments<S, ELECTRIC, M
         }
         if MAGNETIC {
             let one = weight.constant(1.0);
-            let q: [Complex<S>; 3] = array::from_fn(|c| inner.gradient[c].scaled(weight));
+            let q: [Complex<S>; 3] = axes!(c => inner.gradient[c].scaled(weight));
             let turned = crossed(e, q);
             let tested = crossed(test, q);
             for c in 0..3 {
@@ -461,18 +499,17 @@ impl<S: Simd, const ELECTRIC: bool, const MAGNETIC: bool> Moments<S, ELECTRIC, M
         out: &mut Values,
     ) {
         let simd = fade.simd();
-        let register = |values: &[Eight; 3]| values.map(|v| Lanes::register(simd, &v, at));
-        let normal = register(&observers.normal);
+        let normal = register(simd, &observers.normal, at);
         for a in 0..3 {
-            let corner = register(&observers.corners[a]);
+            let corner = register(simd, &observers.corners[a], at);
             if ELECTRIC {
                 let k = wave.medium.k;
                 let charge = self.potential.times(-4.0 / (k * k));
                 let rest = sub_dot(self.product, corner, &self.other);
                 let rest = Complex { re: rest.re + charge.re, im: rest.im + charge.im };
-                let slope: [Complex<S>; 3] = array::from_fn(|c| self.own[c].plus(-corner[c], self.potential));
+                let slope: [Complex<S>; 3] = axes!(c => self.own[c].plus(-corner[c], self.potential));
                 for b in 0..3 {
-                    let value = sub_dot(rest, register(&sources.corners[b]), &slope);
+                    let value = sub_dot(rest, register(simd, &sources.corners[b], at), &slope);
                     let value = value.times(Complex64::I * k).scaled(fade);
                     value.store(&mut out.electric[3 * a + b], at);
                 }
@@ -481,10 +518,9 @@ impl<S: Simd, const ELECTRIC: bool, const MAGNETIC: bool> Moments<S, ELECTRIC, M
                 let corner = test(wanted, corner, normal);
                 let rest = sub_dot(self.triple, corner, &self.turned);
                 let across = crossed(corner, self.gradient);
-                let slope: [Complex<S>; 3] =
-                    array::from_fn(|c| across[c].plus(-fade.constant(1.0), self.tested[c]));
+                let slope: [Complex<S>; 3] = axes!(c => across[c].plus(-fade.constant(1.0), self.tested[c]));
                 for b in 0..3 {
-                    let value = sub_dot(rest, register(&sources.corners[b]), &slope);
+                    let value = sub_dot(rest, register(simd, &sources.corners[b], at), &slope);
                     value.scaled(fade).store(&mut out.magnetic[3 * a + b], at);
                 }
             }
@@ -510,12 +546,12 @@ fn sub_dot<S: Simd>(value: Complex<S>, x: [Lanes<S>; 3], v: &[Complex<S>; 3]) ->
 
 #[inline(always)]
 fn add<S: Simd>(a: [Lanes<S>; 3], b: [Lanes<S>; 3]) -> [Lanes<S>; 3] {
-    array::from_fn(|c| a[c] + b[c])
+    axes!(c => a[c] + b[c])
 }
 
 #[inline(always)]
 fn sub<S: Simd>(a: [Lanes<S>; 3], b: [Lanes<S>; 3]) -> [Lanes<S>; 3] {
-    array::from_fn(|c| a[c] - b[c])
+    axes!(c => a[c] - b[c])
 }
 
 #[inline(always)]
@@ -525,7 +561,7 @@ fn dot<S: Simd>(a: [Lanes<S>; 3], b: [Lanes<S>; 3]) -> Lanes<S> {
 
 #[inline(always)]
 fn cross<S: Simd>(a: [Lanes<S>; 3], b: [Lanes<S>; 3]) -> [Lanes<S>; 3] {
-    array::from_fn(|c| {
+    axes!(c => {
         let (d, e) = ((c + 1) % 3, (c + 2) % 3);
         a[d] * b[e] - a[e] * b[d]
     })
@@ -534,7 +570,7 @@ fn cross<S: Simd>(a: [Lanes<S>; 3], b: [Lanes<S>; 3]) -> [Lanes<S>; 3] {
 /// Real a × complex b.
 #[inline(always)]
 fn crossed<S: Simd>(a: [Lanes<S>; 3], b: [Complex<S>; 3]) -> [Complex<S>; 3] {
-    array::from_fn(|c| {
+    axes!(c => {
         let (d, e) = ((c + 1) % 3, (c + 2) % 3);
         b[e].scaled(a[d]).plus(-a[e], b[d])
     })
@@ -563,14 +599,13 @@ impl Seen<'_> {
     #[inline(always)]
     fn run<S: Simd, const LOSSY: bool>(self, simd: S) {
         let wave = Kernel::<S, LOSSY>::new(simd, self.medium, self.spread);
-        let point = self.point.to_array().map(|c| Lanes::splat(simd, c));
+        let point = splat(simd, self.point);
         for at in 0..WIDTH / S::F64_LANES {
-            let register = |values: &[Eight; 3]| values.map(|v| Lanes::register(simd, &v, at));
-            let e = sub(point, register(&self.sources.triangles.centre));
+            let e = sub(point, register(simd, &self.sources.triangles.centre, at));
             let middle = if LOSSY { dot(e, e).sqrt() } else { Lanes::splat(simd, 0.0) };
             let mut inner = Inner::<S>::zero(simd);
             for (s, &weight) in self.sources.places.iter().zip(self.sources.weights) {
-                let other = register(s);
+                let other = register(simd, s, at);
                 let weight = Lanes::splat(simd, weight);
                 inner.add::<true, true, LOSSY>(&wave, sub(e, other), other, middle, weight);
             }

@@ -38,7 +38,7 @@ mod _core {
     #[pymodule_export]
     use crate::viewfactors::{ViewFactors, methods, view_factors};
     #[pymodule_export]
-    use crate::waves::{Waves, compare_waves, waves};
+    use crate::waves::{Waves, compare_wave_methods, compare_waves, waves};
 
     /// Version of the package.
     #[pymodule_export]

@@ -4,7 +4,9 @@ use std::path::PathBuf;
 use std::sync::Mutex;
 
 use fredholm_report::{FarRow, MonostaticRow, WaveRow};
-use fredholm_study::{SolvedWaves, Watch, WaveCompareOptions, WaveOptions, claim_folder};
+use fredholm_study::{
+    Error, ErrorKind, SolvedWaves, Watch, WaveCompareOptions, WaveMethod, WaveOptions, claim_folder,
+};
 use numpy::{Complex64, PyArray2};
 use pyo3::prelude::*;
 
@@ -46,6 +48,25 @@ pub(crate) fn compare_waves(
     let solvers = WaveCompareOptions { solvers, tolerance, max_iterations };
     crate::studies::study(py, how, move |folder, watch| {
         let (record, ended) = fredholm_study::compare_waves(path, &options, &solvers, folder, watch)?;
+        Ok((serde_json::to_string(&record), ending(ended)))
+    })
+}
+
+/// Finds the currents of a scene of waves by several methods.
+#[pyfunction]
+pub(crate) fn compare_wave_methods(
+    py: Python<'_>,
+    path: PathBuf,
+    methods: Vec<String>,
+    problem: Problem,
+    how: How,
+) -> PyResult<Py<PyAny>> {
+    let options =
+        WaveOptions { memory: problem.options(py)?.memory, no_report: true, ..WaveOptions::default() };
+    let methods =
+        WaveMethod::list(&methods).map_err(|text| failure(py, &Error::new(ErrorKind::Input, text)))?;
+    crate::studies::study(py, how, move |folder, watch| {
+        let (record, ended) = fredholm_study::compare_wave_methods(path, &options, &methods, folder, watch)?;
         Ok((serde_json::to_string(&record), ending(ended)))
     })
 }

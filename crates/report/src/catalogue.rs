@@ -11,8 +11,8 @@ use serde_json::Value;
 
 use crate::outputs::{OutputFile, output_files};
 use crate::{
-    ComparisonRecord, CrosscheckRecord, JudgeRecord, ReferenceRecord, RefinementRecord, RunRecord,
-    ShootingRecord, SpectrumRecord, ViewFactorsRecord, WaveComparison,
+    ComparisonRecord, CrosscheckRecord, JudgeRecord, MethodsRecord, ReferenceRecord, RefinementRecord,
+    RunRecord, ShootingRecord, SpectrumRecord, ViewFactorsRecord, WaveComparison,
 };
 
 /// A file of results.
@@ -139,6 +139,40 @@ const FILES: &[CataloguedFile] = &[
             ("seconds", "s", "by then"),
             ("residual", "1", ""),
         ],
+    ),
+    file(
+        "methods.csv",
+        "waves --methods",
+        "a row a method, receiver and frequency; one a method that was refused",
+        &[
+            ("method, outcome", "", "as asked for; `done`, `not converged` or `refused`"),
+            ("receiver", "", ""),
+            ("frequency", "Hz", ""),
+            ("stated_error", "1", "of the scattered field, L², as the method states it"),
+            ("difference", "1", "of the scattered field from that of the reference, L²"),
+            ("level_difference", "dB", "largest where the reference is within 20 dB of its largest"),
+            ("facets", "1", ""),
+            ("seconds", "s", "by the clock"),
+            ("reason", "", "why it was refused"),
+        ],
+    ),
+    file(
+        "methods_over_angle.csv",
+        "waves --methods",
+        "the curves of all methods, a row an angle",
+        &[
+            ("receiver, method", "", ""),
+            ("frequency", "Hz", ""),
+            ("quantity, unit", "", "of the values"),
+            ("angle_degrees", "°", ""),
+            ("value", "", "in its unit"),
+        ],
+    ),
+    file(
+        "*.svg, *.png",
+        "waves --methods",
+        "curves of all methods over each other; maps of each and of its difference from the reference",
+        &[],
     ),
     file(
         "spectrum.csv",
@@ -406,6 +440,7 @@ pub fn results_page() -> String {
     record::<ShootingRecord>("shots.json (shoot)", &mut page);
     record::<ComparisonRecord>("compare.json (compare)", &mut page);
     record::<WaveComparison>("compare.json (waves --compare)", &mut page);
+    record::<MethodsRecord>("methods.json (waves --methods)", &mut page);
     record::<SpectrumRecord>("spectrum.json (spectrum)", &mut page);
     record::<RefinementRecord>("converge.json (converge)", &mut page);
     record::<CrosscheckRecord>("crosscheck.json (crosscheck)", &mut page);

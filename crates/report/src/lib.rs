@@ -152,9 +152,10 @@ pub use viewfactors::{
 };
 pub use vtu::write_vtu;
 pub use waves::{
-    AngleQuantity, FarRow, FarTotal, FieldMap, FrequencyLine, MapAxis, MapPlane, MapQuantity, MonostaticRow,
+    AngleQuantity, FarRow, FarTotal, FieldMap, FrequencyLine, METHODS_FILES, METHODS_FORMAT, MapAxis,
+    MapPlane, MapQuantity, MethodAtReceiver, MethodCurves, MethodRun, MethodsRecord, MonostaticRow,
     WAVE_COMPARISON_FORMAT, WaveComparison, WaveComparisonCase, WaveCurrents, WaveResiduals, WaveRow,
     scaled_frequencies, write_angle_plot, write_currents_vtu, write_far_csv, write_far_npz,
-    write_frequency_plot, write_monostatic_csv, write_monostatic_npz, write_receivers_csv,
+    write_frequency_plot, write_methods, write_monostatic_csv, write_monostatic_npz, write_receivers_csv,
     write_receivers_npz, write_residuals_csv, write_residuals_plot, write_wave_comparison,
 };

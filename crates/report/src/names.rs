@@ -7,6 +7,7 @@ use crate::refinement::REFINEMENT_FILES;
 use crate::shooting::SHOOTING_FILES;
 use crate::spectrum::SPECTRUM_FILES;
 use crate::stochastic::{CROSSCHECK_FILES, REFERENCE_FILES};
+use crate::waves::METHODS_FILES;
 
 /// Tables, arrays and plots of a result of waves, beside those of single receivers.
 pub const WAVE_FILES: [&str; 9] = [
@@ -29,7 +30,7 @@ pub const TRACE_STATE: &str = "trace.json";
 pub const PIXELS: &str = "pixels.npz";
 
 /// The files of a study, by kind; the last is its record.
-const STUDIES: [&[&str]; 7] = [
+const STUDIES: [&[&str]; 8] = [
     &COMPARISON_FILES,
     &REFINEMENT_FILES,
     &SPECTRUM_FILES,
@@ -37,6 +38,7 @@ const STUDIES: [&[&str]; 7] = [
     &CROSSCHECK_FILES,
     &REFERENCE_FILES,
     &JUDGE_FILES,
+    &METHODS_FILES,
 ];
 
 /// The names of the records of all kinds of folders; a folder has one of them.

@@ -11,7 +11,7 @@
 //! | pictures at once, and scenes whose matrix would not fit | [`shoot`] |
 //! | the matrix of view factors | [`view_factors`], [`solve_view_factors`] |
 //! | the couplings themselves, for solvers and analyses of one's own | [`couplings`] |
-//! | the fields of a scene of waves | [`waves`], [`check_waves`], [`compare_waves`] |
+//! | the fields of a scene of waves | [`waves`], [`check_waves`], [`compare_waves`], [`compare_wave_methods`] |
 //! | estimates by random paths | [`trace`] |
 //! | whether a solution and random paths agree | [`crosscheck`] |
 //! | reference values for other programs | [`reference()`] |
@@ -110,6 +110,6 @@ pub use viewfactors::{
 };
 pub use waves::{
     Balance, CheckedCoupling, CheckedWaves, CouplingStorage, Estimated, InterpolatedSweep, Reciprocity,
-    SolvedFrequency, SolvedWaves, WaveCompareOptions, WaveOptions, build_wave_solver, check_wave_solver,
-    check_waves, compare_waves, waves,
+    SolvedFrequency, SolvedWaves, WaveCompareOptions, WaveMethod, WaveOptions, build_wave_solver,
+    check_wave_solver, check_waves, compare_wave_methods, compare_waves, waves,
 };

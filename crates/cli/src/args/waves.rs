@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use fredholm_study::{Bytes, CouplingStorage, WaveCompareOptions, WaveOptions, check_wave_solver};
+use fredholm_study::{
+    Bytes, CouplingStorage, WaveCompareOptions, WaveMethod, WaveOptions, check_wave_solver,
+};
 
 use super::{LogArgs, tolerance};
 
@@ -13,10 +15,13 @@ Examples:
   fredholm waves scenes/waves/plate.toml
   fredholm waves dihedral.toml -o results --threads 2
   fredholm waves scenes/waves/facing_plates.toml --compare neumann,gmres,southwell
+  fredholm waves scenes/waves/dihedral.toml --methods physical-optics:edges,iterated,efie
 
 Written are receivers.csv, receivers.npz, currents.vtu, far.csv, plots and maps of the
 receivers, report.html, and run.json last; with --compare, compare.csv, compare_history.csv,
-compare.svg and compare.json instead. Ctrl-C ends the run with nothing written.";
+compare.svg, report.html and compare.json instead; with --methods, methods.csv, plots and maps of
+all methods over each other, report.html, and methods.json last. Ctrl-C ends the run with nothing written;
+with --methods it keeps those that are done.";
 
 /// Options of `waves`.
 #[derive(Clone, Debug, Args)]
@@ -24,7 +29,7 @@ pub(crate) struct WavesArgs {
     /// Scene of waves (TOML), see docs/waves.md
     pub(crate) scene: PathBuf,
     /// Folder for the results [default: out/<name of the scene file>, with -compare at its end for
-    /// --compare]
+    /// --compare, -methods for --methods]
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
     /// Threads; any number gives the same results [default: one a core]
@@ -41,6 +46,11 @@ pub(crate) struct WavesArgs {
     /// neumann,gmres:restart=100,southwell
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = solver)]
     pub(crate) compare: Vec<String>,
+    /// Compare methods on the scene instead, with their options, or all: physical-optics, thesis
+    /// (:bounces=N), iterated, mfie, dual-surface-mfie, efie, cfie, pmchwt; physical-optics and
+    /// iterated may have :edges for edge currents, and :radiated or :geometric shadows
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = method, conflicts_with_all = ["compare", "storage"])]
+    pub(crate) methods: Vec<String>,
     /// Write no report.html
     #[arg(long)]
     pub(crate) no_report: bool,
@@ -69,6 +79,14 @@ pub(crate) enum StorageArg {
 fn solver(text: &str) -> Result<String, String> {
     if text != "all" {
         check_wave_solver(text).map_err(|error| error.to_string())?;
+    }
+    Ok(text.to_owned())
+}
+
+/// A method that there is, or all of them.
+fn method(text: &str) -> Result<String, String> {
+    if text != "all" {
+        WaveMethod::parse(text)?;
     }
     Ok(text.to_owned())
 }

@@ -1,8 +1,8 @@
 //! `fredholm waves`.
 
 use fredholm_study::{
-    CheckedCoupling, CheckedWaves, CouplingStorage, Ended, Error, Lines, ResultFolder, Watch,
-    WaveCompareOptions, WaveOptions, WaveRecord, check_waves, frequencies,
+    CheckedCoupling, CheckedWaves, CouplingStorage, Ended, Error, ErrorKind, Lines, ResultFolder, Watch,
+    WaveCompareOptions, WaveMethod, WaveOptions, WaveRecord, check_waves, frequencies,
 };
 
 use crate::args::{CheckArgs, WavesArgs};
@@ -17,13 +17,18 @@ pub(crate) fn waves(args: &WavesArgs) -> Result<Ending, Error> {
     let start = Start {
         scene: &args.scene,
         output: args.output.as_ref(),
-        verb: if args.comparison().is_some() { "compare" } else { "" },
+        verb: match (args.comparison(), args.methods.is_empty()) {
+            (Some(_), _) => "compare",
+            (None, false) => "methods",
+            (None, true) => "",
+        },
         threads: args.threads,
         memory: args.memory,
         log: args.log,
     };
     start.run(|folder, terminal| match args.comparison() {
         Some(comparison) => compare(args, &comparison, folder, terminal),
+        None if !args.methods.is_empty() => compare_methods(args, folder, terminal),
         None => run(args, folder, terminal),
     })
 }
@@ -46,6 +51,14 @@ fn compare(
 ) -> Result<Ending, Error> {
     let (scene, options) = (&args.scene, args.options());
     let (record, ended) = fredholm_study::compare_waves(scene, &options, comparison, folder, terminal)?;
+    output::summarise(&record, folder.path(), args.log)?;
+    Ok(ended.into())
+}
+
+fn compare_methods(args: &WavesArgs, folder: &ResultFolder, terminal: &Terminal) -> Result<Ending, Error> {
+    let (scene, options) = (&args.scene, args.options());
+    let methods = WaveMethod::list(&args.methods).map_err(|text| Error::new(ErrorKind::Input, text))?;
+    let (record, ended) = fredholm_study::compare_wave_methods(scene, &options, &methods, folder, terminal)?;
     output::summarise(&record, folder.path(), args.log)?;
     Ok(ended.into())
 }

@@ -6,6 +6,7 @@
 mod comparison;
 mod csv;
 mod map;
+mod methods;
 mod monostatic;
 mod npz;
 mod over_angle;
@@ -17,6 +18,9 @@ mod vtu;
 pub use comparison::{WAVE_COMPARISON_FORMAT, WaveComparison, WaveComparisonCase, write_wave_comparison};
 pub use csv::{write_far_csv, write_receivers_csv};
 pub use map::{FieldMap, MapAxis, MapQuantity};
+pub use methods::{
+    METHODS_FILES, METHODS_FORMAT, MethodAtReceiver, MethodCurves, MethodRun, MethodsRecord, write_methods,
+};
 pub use monostatic::{MonostaticRow, write_monostatic_csv};
 pub use npz::{write_far_npz, write_monostatic_npz, write_receivers_npz};
 pub use over_angle::{AngleQuantity, write_angle_plot};

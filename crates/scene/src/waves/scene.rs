@@ -186,6 +186,12 @@ impl WaveScene {
         &self.settings
     }
 
+    /// The same scene with the currents found in another way than it says itself.
+    #[must_use]
+    pub fn with_settings(self, settings: Settings) -> Self {
+        Self { settings, ..self }
+    }
+
     /// The ground plane, above which everything is.
     #[must_use]
     pub fn ground(&self) -> Option<Ground> {

@@ -33,6 +33,17 @@ pub enum Method {
 }
 
 impl Method {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::PhysicalOptics,
+        Self::Mfie,
+        Self::DualSurfaceMfie,
+        Self::Efie,
+        Self::Cfie,
+        Self::Pmchwt,
+        Self::Thesis,
+    ];
+
     /// The name in scene files.
     #[must_use]
     pub fn name(self) -> &'static str {

@@ -11,9 +11,10 @@ use std::path::{Path, PathBuf};
 
 use fredholm_report::{
     COMPARISON_FORMAT, CROSSCHECK_FORMAT, ComparisonRecord, CrosscheckRecord, FORMAT, JUDGE_FORMAT,
-    JudgeRecord, MatrixFormat, REFERENCE_FORMAT, REFINEMENT_FORMAT, RUN, ReferenceRecord, RefinementRecord,
-    RunRecord, SHOOTING_FORMAT, SPECTRUM_FORMAT, ShootingRecord, SpectrumRecord, VIEW_FACTORS_FORMAT,
-    ViewFactorFiles, ViewFactorsRecord, WAVE_COMPARISON_FORMAT, WaveComparison, is_result, records,
+    JudgeRecord, METHODS_FORMAT, MatrixFormat, MethodsRecord, REFERENCE_FORMAT, REFINEMENT_FORMAT, RUN,
+    ReferenceRecord, RefinementRecord, RunRecord, SHOOTING_FORMAT, SPECTRUM_FORMAT, ShootingRecord,
+    SpectrumRecord, VIEW_FACTORS_FORMAT, ViewFactorFiles, ViewFactorsRecord, WAVE_COMPARISON_FORMAT,
+    WaveComparison, is_result, records,
 };
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -85,6 +86,7 @@ pub fn info(path: &Path) -> Result<String, Error> {
         VIEW_FACTORS_FORMAT => told::<ViewFactorsRecord>(record, &path),
         COMPARISON_FORMAT => told::<ComparisonRecord>(record, &path),
         WAVE_COMPARISON_FORMAT => told::<WaveComparison>(record, &path),
+        METHODS_FORMAT => told::<MethodsRecord>(record, &path),
         REFINEMENT_FORMAT => told::<RefinementRecord>(record, &path),
         SPECTRUM_FORMAT => told::<SpectrumRecord>(record, &path),
         SHOOTING_FORMAT => told::<ShootingRecord>(record, &path),

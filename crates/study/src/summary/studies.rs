@@ -2,8 +2,9 @@
 
 use fredholm_report::{
     BandSpectrum, COMPARISON_FILES, ComparisonCase, ComparisonRecord, ComparisonRun, CrosscheckPower,
-    CrosscheckRecord, JudgeRecord, JudgedPlace, REFINEMENT_FILES, ReferenceRecord, RefinementRecord,
-    SPECTRUM_FILES, ShootingRecord, SpectrumRecord, WaveComparison, WorstPlace,
+    CrosscheckRecord, JudgeRecord, JudgedPlace, METHODS_FILES, MethodAtReceiver, MethodRun, MethodsRecord,
+    REFINEMENT_FILES, ReferenceRecord, RefinementRecord, SPECTRUM_FILES, ShootingRecord, SpectrumRecord,
+    WaveComparison, WorstPlace,
 };
 use serde_json::Value;
 
@@ -105,6 +106,62 @@ fn wave_row(run: &ComparisonRun) -> String {
             format!("{:>10}  {:>9.1e}  {:>9.1e}  {}", run.iterations, run.residual, run.error, run.outcome)
         }
     }
+}
+
+impl Summarise for MethodsRecord {
+    fn made(&self) -> Made<'_> {
+        Made { version: &self.version, of: &self.scene, sha256: &self.scene_sha256 }
+    }
+
+    fn shown(&self) -> Option<(&'static str, &'static str)> {
+        Some(("table", METHODS_FILES[0]))
+    }
+
+    fn lines(&self, lines: &mut Lines) {
+        let width = self.methods.iter().map(|run| run.method.chars().count()).fold(8, usize::max);
+        let head = [
+            String::new(),
+            format!("largest over receivers and frequencies; differences from {}", self.reference),
+            format!("{:width$}   stated  difference  levels, dB   seconds  outcome", "method"),
+        ];
+        let row = |run: &MethodRun| format!("{:width$}  {}", run.method, method_row(run));
+        lines.table(head.into_iter().chain(self.methods.iter().map(row)));
+        lines.add_some("partial", self.partial.then(|| "cancelled before all methods were done".to_owned()));
+        self.warnings.iter().for_each(|warning| lines.add("warning", warning));
+    }
+
+    fn details(&self, lines: &mut Lines) {
+        let places = self.methods.iter().flat_map(|run| run.receivers.iter().map(move |at| (run, at)));
+        let percent = |value: Option<f64>| value.map_or_else(|| "unknown".to_owned(), percent);
+        for (run, at) in places {
+            let difference =
+                at.difference.map(|difference| format!(", differs by {}", self::percent(difference)));
+            let text = format!(
+                "{} at {}, {} MHz: states {}{}",
+                run.method,
+                at.receiver,
+                at.frequency / 1e6,
+                percent(at.stated_error),
+                difference.unwrap_or_default()
+            );
+            lines.add("method", text);
+        }
+    }
+}
+
+fn method_row(run: &MethodRun) -> String {
+    if let Some(reason) = &run.reason {
+        return format!("{:>40}  refused: {reason}", "");
+    }
+    let worst =
+        |of: fn(&MethodAtReceiver) -> Option<f64>| run.receivers.iter().filter_map(of).max_by(f64::total_cmp);
+    let shown = |value: Option<f64>, scale: f64, unit: &str| {
+        value.map_or_else(|| "–".to_owned(), |value| format!("{:.2}{unit}", scale * value))
+    };
+    let stated = shown(worst(|at| at.stated_error), 100.0, " %");
+    let difference = shown(worst(|at| at.difference), 100.0, " %");
+    let levels = shown(worst(|at| at.level_difference), 1.0, "");
+    format!("{stated:>9}  {difference:>10}  {levels:>10}  {:>8.2}  {}", run.seconds, run.outcome)
 }
 
 impl Summarise for SpectrumRecord {

@@ -3,23 +3,20 @@
 
 use std::io;
 
-use fredholm_mesh::Mesh;
 use fredholm_report::{
-    FieldMap, MapAxis, MapPlane, MapQuantity, REPORT, ReportError, ReportModel, ReportPage, ReportPlot,
-    ResultFolder, Timing, WaveReport, WaveResiduals, WaveRow, current_phasors, scaled_frequencies,
-    write_angle_plot, write_currents_vtu, write_far_csv, write_far_npz, write_frequency_plot,
-    write_monostatic_csv, write_monostatic_npz, write_receivers_csv, write_receivers_npz,
-    write_residuals_csv, write_residuals_plot,
+    FieldMap, MapAxis, MapQuantity, REPORT, ReportError, ReportModel, ReportPage, ReportPlot, ResultFolder,
+    Timing, WaveReport, WaveResiduals, WaveRow, current_phasors, scaled_frequencies, write_angle_plot,
+    write_currents_vtu, write_far_csv, write_far_npz, write_frequency_plot, write_monostatic_csv,
+    write_monostatic_npz, write_receivers_csv, write_receivers_npz, write_residuals_csv,
+    write_residuals_plot,
 };
 
-use fredholm_scene::waves::{Layout, Places};
-
+use super::maps::{Component, Grid};
 use super::model::{Method, Receiver};
 use super::over_angle::OverAngle;
 use super::over_frequency::{MOST_PICTURED, levels, plot};
 use super::{Model, Outcome};
 
-const COMPONENTS: [&str; 6] = ["ex", "ey", "ez", "hx", "hy", "hz"];
 const LAST_FILE: &str = "run.json";
 /// Most rows of a table that is written as text, some 600 bytes a row of fields.
 const MOST_ROWS: usize = 50_000;
@@ -211,6 +208,15 @@ fn residuals(folder: &ResultFolder, model: &Model, outcome: &Outcome) -> Result<
     folder.write("residuals.svg", draw).map(drop)
 }
 
+/// What the names of the pictures of a receiver at a frequency begin with.
+pub(super) fn stem(model: &Model, receiver: &Receiver, frequency: f64) -> String {
+    if model.bands.len() > 1 {
+        format!("{}_{}MHz", receiver.name, frequency / 1e6)
+    } else {
+        receiver.name.clone()
+    }
+}
+
 /// The plots and maps of one receiver.
 fn pictures(
     folder: &ResultFolder,
@@ -220,17 +226,12 @@ fn pictures(
 ) -> Result<(), ReportError> {
     for band in &model.bands {
         let frequency = band.wave.frequency();
-        let stem = if model.bands.len() > 1 {
-            format!("{}_{}MHz", receiver.name, frequency / 1e6)
-        } else {
-            receiver.name.clone()
-        };
+        let stem = stem(model, receiver, frequency);
         let here = |row: &&WaveRow| row.receiver == index && row.frequency.total_cmp(&frequency).is_eq();
         let rows: Vec<&WaveRow> = outcome.near.iter().filter(here).collect();
-        if let Places::Near { layout: Layout::Grid(columns), points } = &receiver.places {
-            let plane = MapPlane::of(points, *columns);
+        if let Some(grid) = Grid::of(receiver, &model.geometry.mesh) {
             let title = format!("{}, {} MHz", receiver.name, frequency / 1e6);
-            maps(folder, (&stem, &title), *columns, &rows, (plane, &model.geometry.mesh))?;
+            maps(folder, (&stem, &title), &rows, &grid)?;
         }
         if let Some(over) = OverAngle::of(outcome, (index, receiver), frequency, &stem) {
             let OverAngle { title, quantity, lines } = &over;
@@ -244,34 +245,15 @@ fn pictures(
 fn maps(
     folder: &ResultFolder,
     (stem, place): (&str, &str),
-    columns: usize,
     rows: &[&WaveRow],
-    (plane, mesh): (Option<MapPlane>, &Mesh),
+    grid: &Grid,
 ) -> Result<(), ReportError> {
-    let totals: Vec<[f64; 12]> = rows.iter().map(|row| row.total()).collect();
-    let power = |c: usize| totals.iter().map(|t| t[2 * c].powi(2) + t[2 * c + 1].powi(2)).sum::<f64>();
-    let strongest = (0..3).max_by(|&a, &b| power(a).total_cmp(&power(b))).unwrap_or(0);
-    let values: Vec<[f64; 2]> = totals.iter().map(|t| [t[2 * strongest], t[2 * strongest + 1]]).collect();
-    // Points in a single line span no plane: they are counted.
-    let counted =
-        |label: &str, count: usize| MapAxis { label: label.to_owned(), from: 1.0, to: count.max(1) as f64 };
-    let axes = plane.map_or_else(
-        || [counted("column", columns), counted("row", values.len() / columns.max(1))],
-        |plane| plane.axes(),
-    );
-    let outline = plane.map_or_else(Vec::new, |plane| plane.outline(mesh));
+    let component = Component::strongest(rows);
+    let values: Vec<[f64; 2]> = rows.iter().map(|row| component.of(row)).collect();
     let title = format!("Total field at {place}");
-    let map = FieldMap {
-        title: &title,
-        quantity: (["Ex", "Ey", "Ez"][strongest], "V/m"),
-        axes,
-        aspect: plane.map(|plane| plane.aspect()),
-        columns,
-        values: &values,
-        outline: &outline,
-    };
+    let map = grid.map(&title, component, &values);
     for quantity in MapQuantity::ALL {
-        let name = format!("{stem}_{}_{}.png", COMPONENTS[strongest], quantity.name());
+        let name = format!("{stem}_{}_{}.png", component.name(), quantity.name());
         folder.write(&name, |out| map.draw(quantity)?.write_png(out))?;
     }
     Ok(())

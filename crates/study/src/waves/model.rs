@@ -146,14 +146,34 @@ impl Model {
         Self::read(path, memory, (true, Unnamed::Plain), &memory_of)
     }
 
+    /// The same with currents found in another way than the scene says; `settings` are made of its
+    /// own.
+    pub(crate) fn load_with(
+        path: &Path,
+        memory: Option<Bytes>,
+        settings: &dyn Fn(&Settings) -> Settings,
+    ) -> Result<Self, Error> {
+        let scene = scene_of(path, memory)?;
+        let settings = settings(scene.settings());
+        Self::of(scene.with_settings(settings), memory, (false, Unnamed::Plain), &memory_of)
+    }
+
     fn read(
         path: &Path,
+        memory: Option<Bytes>,
+        how: (bool, Unnamed),
+        memory_of: &dyn Fn(u128, &WaveScene) -> Plan,
+    ) -> Result<Self, Error> {
+        Self::of(scene_of(path, memory)?, memory, how, memory_of)
+    }
+
+    fn of(
+        scene: WaveScene,
         memory: Option<Bytes>,
         (estimated, unnamed): (bool, Unnamed),
         memory_of: &dyn Fn(u128, &WaveScene) -> Plan,
     ) -> Result<Self, Error> {
-        admit_file(path, memory)?;
-        let scene = Arc::new(WaveScene::load(path).map_err(|error| of_waves(path, error))?);
+        let scene = Arc::new(scene);
         let settings = scene.settings();
         let estimated = estimated || settings.estimate_errors;
         let asked = asked(&scene)?;
@@ -272,6 +292,11 @@ impl Model {
         let about = receiver.map_or(About::Scene, |receiver| About::Receiver(receiver.number));
         scene_failure(self.scene.refused(about, error, Some(&self.geometry.mesh)))
     }
+}
+
+fn scene_of(path: &Path, memory: Option<Bytes>) -> Result<WaveScene, Error> {
+    admit_file(path, memory)?;
+    WaveScene::load(path).map_err(|error| of_waves(path, error))
 }
 
 fn sources(scene: &WaveScene) -> Vec<&dyn Source> {

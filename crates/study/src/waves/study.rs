@@ -3,11 +3,15 @@
 use std::path::Path;
 
 use fredholm_linop::{OptionError, Stop, Watch};
-use fredholm_report::{FarRow, MonostaticRow, ResultFolder, WaveComparison, WaveRow, write_wave_comparison};
+use fredholm_report::{
+    FarRow, MethodsRecord, MonostaticRow, REPORT, ReportPage, ResultFolder, WaveComparison, WaveRow,
+    write_wave_comparison,
+};
 
 use super::balance::{Balance, Reciprocity};
 use super::estimate::Estimated;
 use super::interpolation::Interpolated;
+use super::methods::{self, WaveMethod};
 use super::model::Model;
 use super::record::{Outcome, Solved};
 use super::{files, registry};
@@ -110,9 +114,38 @@ pub fn compare_waves(
     let names = written_out(&solvers.solvers, &registry::names());
     let record = super::compare(&model, &names, &stop, &mut stages)?;
     stages.begin_saving()?;
+    if !asked.no_report {
+        let title = model.scene.title().unwrap_or(&record.scene);
+        let page = ReportPage::of_wave_comparison(title, &record);
+        folder.write(REPORT, |out| page.write(out)).map_err(report_failure)?;
+    }
     write_wave_comparison(folder, &record).map_err(report_failure)?;
     let any = record.cases.iter().any(|case| case.runs.iter().any(failed));
     Ok((record, if any { Ended::NotConverged } else { Ended::Done }))
+}
+
+/// Finds the currents of a scene of waves, whose file is given, by several methods, and writes what
+/// each came to into a folder. A method that the scene does not admit is left out, with the reason
+/// in its place. A run that is cancelled keeps the methods that are done.
+///
+/// # Errors
+/// As [`waves`], where no method is admitted.
+pub fn compare_wave_methods(
+    scene: impl AsRef<Path>,
+    asked: &WaveOptions,
+    methods: &[WaveMethod],
+    folder: &ResultFolder,
+    watch: &dyn Watch,
+) -> Result<(MethodsRecord, Ended), Error> {
+    let mut stages = Stages::new(watch);
+    let how = (methods, asked.memory, !asked.no_report);
+    let (record, met) = methods::compare(scene.as_ref(), how, folder, &mut stages)?;
+    let ended = match (record.partial, met) {
+        (true, _) => Ended::Interrupted,
+        (false, true) => Ended::Done,
+        (false, false) => Ended::NotConverged,
+    };
+    Ok((record, ended))
 }
 
 /// Fails where a text such as `gmres:restart=100` names no solver of complex systems with its
@@ -154,7 +187,7 @@ const DOUBTFUL_ERROR: f64 = 0.5;
 const UNBALANCED_SHARE: f64 = 0.25;
 
 /// What should be known of results.
-fn doubts(model: &Model, outcome: &Outcome) -> Vec<String> {
+pub(super) fn doubts(model: &Model, outcome: &Outcome) -> Vec<String> {
     let mut doubts = outcome.notes.clone();
     let worst = outcome.stated_errors.iter().max_by(|a, b| a.relative.total_cmp(&b.relative));
     if let Some(error) = worst.filter(|error| error.relative > DOUBTFUL_ERROR) {
