@@ -73,46 +73,57 @@ impl Scalar for f64 {
     type Single = f32;
     const IS_REAL: bool = true;
 
+    #[inline]
     fn to_single(self) -> f32 {
         self as f32
     }
 
+    #[inline]
     fn from_single(single: f32) -> Self {
         single.into()
     }
 
+    #[inline]
     fn zero() -> Self {
         0.0
     }
 
+    #[inline]
     fn one() -> Self {
         1.0
     }
 
+    #[inline]
     fn from_real(value: f64) -> Self {
         value
     }
 
+    #[inline]
     fn re(self) -> f64 {
         self
     }
 
+    #[inline]
     fn conj(self) -> Self {
         self
     }
 
+    #[inline]
     fn scale(self, factor: f64) -> Self {
         self * factor
     }
 
+    #[inline]
     fn abs(self) -> f64 {
         f64::abs(self)
     }
 
+    #[inline]
     fn abs2(self) -> f64 {
         self * self
     }
 
+    #[inline]
     fn is_finite(self) -> bool {
         f64::is_finite(self)
     }
@@ -126,46 +137,57 @@ impl Scalar for Complex64 {
     type Single = Complex32;
     const IS_REAL: bool = false;
 
+    #[inline]
     fn to_single(self) -> Complex32 {
         Complex32::new(self.re as f32, self.im as f32)
     }
 
+    #[inline]
     fn from_single(single: Complex32) -> Self {
         Self::new(single.re.into(), single.im.into())
     }
 
+    #[inline]
     fn zero() -> Self {
         Self::new(0.0, 0.0)
     }
 
+    #[inline]
     fn one() -> Self {
         Self::new(1.0, 0.0)
     }
 
+    #[inline]
     fn from_real(value: f64) -> Self {
         Self::new(value, 0.0)
     }
 
+    #[inline]
     fn re(self) -> f64 {
         self.re
     }
 
+    #[inline]
     fn conj(self) -> Self {
         Complex64::conj(&self)
     }
 
+    #[inline]
     fn scale(self, factor: f64) -> Self {
         Complex64::scale(&self, factor)
     }
 
+    #[inline]
     fn abs(self) -> f64 {
         self.norm()
     }
 
+    #[inline]
     fn abs2(self) -> f64 {
         self.norm_sqr()
     }
 
+    #[inline]
     fn is_finite(self) -> bool {
         Complex64::is_finite(self)
     }
