@@ -14,7 +14,7 @@ use fredholm_scene::waves::{Method as SceneMethod, Places, Settings, Shadows};
 
 use super::files::stem;
 use super::maps::{Component, Grid};
-use super::model::Receiver;
+use super::model::{Receiver, scene_of};
 use super::over_angle::OverAngle;
 use super::over_frequency::{self, Levels, MOST_PICTURED, levels};
 use super::study::doubts;
@@ -233,6 +233,8 @@ pub(super) fn compare(
     folder: &ResultFolder,
     stages: &mut Stages,
 ) -> Result<(MethodsRecord, bool), Error> {
+    // What is wrong with the scene itself is no reason of a method.
+    stages.run("scene", || scene_of(path, memory))?;
     let (mut done, mut refused): (Vec<Done>, Vec<(&WaveMethod, Error)>) = (Vec::new(), Vec::new());
     let mut record = MethodsRecord::default();
     for method in methods {

@@ -294,7 +294,8 @@ impl Model {
     }
 }
 
-fn scene_of(path: &Path, memory: Option<Bytes>) -> Result<WaveScene, Error> {
+/// The scene of a file, where reading it is within the memory asked for.
+pub(super) fn scene_of(path: &Path, memory: Option<Bytes>) -> Result<WaveScene, Error> {
     admit_file(path, memory)?;
     WaveScene::load(path).map_err(|error| of_waves(path, error))
 }
