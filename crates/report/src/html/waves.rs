@@ -359,7 +359,7 @@ mod tests {
         let record = MethodsRecord { reference: "efie".to_owned(), methods, ..MethodsRecord::default() };
         let said = methods_statements(&record);
         assert_eq!(said.len(), 2);
-        assert!(said[0].contains("efie, which states an error of at most 1.0 %"), "{said:?}");
+        assert!(said[0].contains("efie, which states an error of at most 1 % of itself"), "{said:?}");
         assert!(said[1].contains("iterated differs by at most 20 % and states no error"), "{said:?}");
         let table = methods_table(&record);
         assert_eq!((table.rows.len(), table.rows[1][5].clone()), (3, ReportCell::Number(Some(20.0))));

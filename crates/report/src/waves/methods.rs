@@ -195,7 +195,7 @@ mod tests {
         table(&record(), &mut out).unwrap();
         let rows = parse(&String::from_utf8(out).unwrap());
         assert!(rows.len() == 4 && rows.iter().all(|row| row.len() == rows[0].len()));
-        assert_eq!(rows[1][..7], ["efie", "done", "a, b", "1e9", "0.01", "", ""]);
+        assert_eq!(rows[1][..7], ["efie", "done", "a, b", "1000000000", "0.01", "", ""]);
         assert_eq!((rows[2][1].as_str(), rows[2][9].as_str()), ("refused", "the body, \"a\", is open"));
         assert_eq!(rows[3][5..9], ["0.25", "0.25", "12", "0.5"]);
     }
@@ -213,7 +213,7 @@ mod tests {
         values(&[curves], &mut out).unwrap();
         let rows = parse(&String::from_utf8(out).unwrap());
         assert_eq!(rows.len(), 5);
-        assert_eq!(rows[4], ["far", "1e9", "mfie", "radar cross-section σ", "m²", "10", "2"]);
+        assert_eq!(rows[4], ["far", "1000000000", "mfie", "radar cross-section σ", "m²", "10", "2"]);
     }
 
     #[test]
