@@ -8,9 +8,9 @@
 //!
 //! Every block is approximated to a relative tolerance in the Frobenius norm, so that the error of
 //! a product is at most about the tolerance times the norm of the matrix. Blocks are stored in
-//! single precision, which is far finer, and multiplied in double precision. Products and blocks have
-//! the same bits for any number of threads: a block is the work of one thread, and each part of a
-//! product is summed in the order of the blocks.
+//! single precision, which is far finer, and multiplied in double precision. Products and blocks
+//! have the same bits for any number of threads: a block is the work of one thread, and each part
+//! of a product is summed in the order of the blocks.
 
 mod block_diagonal;
 mod clusters;

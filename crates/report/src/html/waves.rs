@@ -171,7 +171,7 @@ fn solvers_table(record: &WaveComparison) -> ReportTable {
 
 /// What the methods are compared with, and how far each is from it.
 fn methods_statements(record: &MethodsRecord) -> Vec<String> {
-    let least = |run: &MethodRun| worst(&run.receivers, |at| at.stated_error);
+    let least = |run: &MethodRun| run.worst(|at| at.stated_error);
     let reference = record.methods.iter().find(|run| run.method == record.reference);
     let stated = match reference.and_then(least) {
         Some(error) => format!(", which states an error of at most {} of itself", percent(error)),
@@ -180,7 +180,7 @@ fn methods_statements(record: &MethodsRecord) -> Vec<String> {
     let partial = record.partial.then(|| "The run was cancelled before all methods were done.".to_owned());
     let first = format!("Differences are those from {}{stated}.", record.reference);
     let others = record.methods.iter().filter_map(|run| {
-        let difference = percent(worst(&run.receivers, |at| at.difference)?);
+        let difference = percent(run.worst(|at| at.difference)?);
         let stated = match least(run) {
             Some(error) => format!("states at most {}", percent(error)),
             None => "states no error".to_owned(),
@@ -188,11 +188,6 @@ fn methods_statements(record: &MethodsRecord) -> Vec<String> {
         Some(format!("{} differs by at most {difference} and {stated}.", run.method))
     });
     partial.into_iter().chain([first]).chain(others).collect()
-}
-
-/// The largest of some figure over all receivers and frequencies.
-fn worst(places: &[MethodAtReceiver], of: fn(&MethodAtReceiver) -> Option<f64>) -> Option<f64> {
-    places.iter().filter_map(of).max_by(f64::total_cmp)
 }
 
 fn methods_table(record: &MethodsRecord) -> ReportTable {

@@ -69,6 +69,14 @@ pub struct MethodRun {
     pub receivers: Vec<MethodAtReceiver>,
 }
 
+impl MethodRun {
+    /// The largest of some figure over all receivers and frequencies.
+    #[must_use]
+    pub fn worst(&self, of: fn(&MethodAtReceiver) -> Option<f64>) -> Option<f64> {
+        self.receivers.iter().filter_map(of).max_by(f64::total_cmp)
+    }
+}
+
 /// One method at one receiver and frequency.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]

@@ -2,9 +2,9 @@
 
 use fredholm_report::{
     BandSpectrum, COMPARISON_FILES, ComparisonCase, ComparisonRecord, ComparisonRun, CrosscheckPower,
-    CrosscheckRecord, JudgeRecord, JudgedPlace, METHODS_FILES, MethodAtReceiver, MethodRun, MethodsRecord,
-    REFINEMENT_FILES, ReferenceRecord, RefinementRecord, SPECTRUM_FILES, ShootingRecord, SpectrumRecord,
-    WaveComparison, WorstPlace,
+    CrosscheckRecord, JudgeRecord, JudgedPlace, METHODS_FILES, MethodRun, MethodsRecord, REFINEMENT_FILES,
+    ReferenceRecord, RefinementRecord, SPECTRUM_FILES, ShootingRecord, SpectrumRecord, WaveComparison,
+    WorstPlace,
 };
 use serde_json::Value;
 
@@ -153,14 +153,12 @@ fn method_row(run: &MethodRun) -> String {
     if let Some(reason) = &run.reason {
         return format!("{:>40}  refused: {reason}", "");
     }
-    let worst =
-        |of: fn(&MethodAtReceiver) -> Option<f64>| run.receivers.iter().filter_map(of).max_by(f64::total_cmp);
     let shown = |value: Option<f64>, scale: f64, unit: &str| {
         value.map_or_else(|| "–".to_owned(), |value| format!("{:.2}{unit}", scale * value))
     };
-    let stated = shown(worst(|at| at.stated_error), 100.0, " %");
-    let difference = shown(worst(|at| at.difference), 100.0, " %");
-    let levels = shown(worst(|at| at.level_difference), 1.0, "");
+    let stated = shown(run.worst(|at| at.stated_error), 100.0, " %");
+    let difference = shown(run.worst(|at| at.difference), 100.0, " %");
+    let levels = shown(run.worst(|at| at.level_difference), 1.0, "");
     format!("{stated:>9}  {difference:>10}  {levels:>10}  {:>8.2}  {}", run.seconds, run.outcome)
 }
 
