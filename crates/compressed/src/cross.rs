@@ -21,13 +21,42 @@ const SHARE_BETWEEN_GROUPS: f64 = 0.618_033_988_749_895;
 /// truncation.
 const CROSS_SHARE_OF_TOLERANCE: f64 = 0.3;
 
+/// The unknowns of some groups on one side of a block.
+struct Lines<'a> {
+    groups: &'a [usize],
+    /// The first line of every group, and their number.
+    starts: Vec<usize>,
+}
+
+impl<'a> Lines<'a> {
+    fn new<T: Scalar, E: Entries<T>>(entries: &E, groups: &'a [usize]) -> Self {
+        let mut starts = vec![0];
+        let mut end = 0;
+        starts.extend(groups.iter().map(|&group| {
+            end += entries.width(group);
+            end
+        }));
+        Self { groups, starts }
+    }
+
+    fn len(&self) -> usize {
+        self.starts[self.groups.len()]
+    }
+
+    /// The group of a line, as a slice, which of its lines it is, and how many there are.
+    fn find(&self, line: usize) -> (&'a [usize], usize, usize) {
+        let at = self.starts.partition_point(|&start| start <= line) - 1;
+        (&self.groups[at..=at], line - self.starts[at], self.starts[at + 1] - self.starts[at])
+    }
+}
+
 /// Rows and columns of a block on demand.
 pub(crate) struct Block<'a, T: Scalar, E: Entries<T>> {
-    pub(crate) entries: &'a E,
-    pub(crate) rows: &'a [usize],
-    pub(crate) columns: &'a [usize],
-    pub(crate) row_set: &'a E::Set,
-    pub(crate) column_set: &'a E::Set,
+    entries: &'a E,
+    rows: Lines<'a>,
+    columns: Lines<'a>,
+    row_set: &'a E::Set,
+    column_set: &'a E::Set,
     /// All entries, row by row, where that costs less than the rows and columns of the crosses one
     /// by one.
     whole: Option<Vec<T>>,
@@ -40,8 +69,10 @@ impl<'a, T: Scalar, E: Entries<T>> Block<'a, T, E> {
         [rows, columns]: [&'a [usize]; 2],
         [row_set, column_set]: [&'a E::Set; 2],
     ) -> Self {
+        let few = rows.len() * columns.len() <= MOST_WHOLE_GROUPS * MOST_WHOLE_GROUPS;
+        let (rows, columns) = (Lines::new(entries, rows), Lines::new(entries, columns));
         let mut block = Self { entries, rows, columns, row_set, column_set, whole: None };
-        if rows.len() * columns.len() <= MOST_WHOLE_GROUPS * MOST_WHOLE_GROUPS {
+        if few {
             block.whole = Some(block.computed());
         }
         block
@@ -59,33 +90,31 @@ impl<'a, T: Scalar, E: Entries<T>> Block<'a, T, E> {
     }
 
     fn height(&self) -> usize {
-        self.rows.len() * self.entries.width()
+        self.rows.len()
     }
 
     fn breadth(&self) -> usize {
-        self.columns.len() * self.entries.width()
+        self.columns.len()
     }
 
     fn row(&self, i: usize) -> Vec<T> {
         if let Some(whole) = &self.whole {
             return whole[i * self.breadth()..(i + 1) * self.breadth()].to_vec();
         }
-        let width = self.entries.width();
-        let set = self.entries.prepare(&self.rows[i / width..=i / width]);
+        let (group, kind, width) = self.rows.find(i);
         let mut out = vec![T::zero(); width * self.breadth()];
-        self.entries.fill(&set, self.column_set, &mut out);
-        out.chunks_exact(self.breadth()).nth(i % width).map(<[T]>::to_vec).unwrap_or_default()
+        self.entries.fill(&self.entries.prepare(group), self.column_set, &mut out);
+        out.chunks_exact(self.breadth()).nth(kind).map(<[T]>::to_vec).unwrap_or_default()
     }
 
     fn column(&self, j: usize) -> Vec<T> {
         if let Some(whole) = &self.whole {
             return whole.iter().skip(j).step_by(self.breadth()).copied().collect();
         }
-        let width = self.entries.width();
-        let set = self.entries.prepare(&self.columns[j / width..=j / width]);
+        let (group, kind, width) = self.columns.find(j);
         let mut out = vec![T::zero(); width * self.height()];
-        self.entries.fill(self.row_set, &set, &mut out);
-        out.iter().skip(j % width).step_by(width).copied().collect()
+        self.entries.fill(self.row_set, &self.entries.prepare(group), &mut out);
+        out.iter().skip(kind).step_by(width).copied().collect()
     }
 
     /// The block to a relative tolerance in the Frobenius norm; none where that takes as much as
@@ -168,11 +197,12 @@ impl<T: Scalar, E: Entries<T>> Crosses<'_, T, E> {
 
     /// Of rows spread over the block the one that is worst, if they say that the block is not met.
     fn worst(&self, tolerance: f64) -> Option<usize> {
-        let (height, width) = (self.block.height(), self.block.entries.width());
-        let groups = self.block.rows.len();
+        let (height, lines) = (self.block.height(), &self.block.rows);
+        let groups = lines.groups.len();
         let group =
             move |i: usize| (((i + 1) as f64 * SHARE_BETWEEN_GROUPS).fract() * groups as f64) as usize;
-        let all = (0..GROUPS_COMPARED).flat_map(|i| (0..width).map(move |kind| group(i) * width + kind));
+        let of_group = |at: usize| lines.starts[at]..lines.starts[at + 1];
+        let all = (0..GROUPS_COMPARED).flat_map(|i| of_group(group(i)));
         let rows: Vec<usize> = all.filter(|&row| !self.used[row]).collect();
         let sizes: Vec<f64> = rows.iter().map(|&row| square(&self.rest_of_row(row))).collect();
         let mean = sizes.iter().sum::<f64>() / sizes.len().max(1) as f64;
@@ -217,7 +247,7 @@ mod tests {
             60
         }
 
-        fn width(&self) -> usize {
+        fn width(&self, _group: usize) -> usize {
             2
         }
 

@@ -3,7 +3,7 @@
 use fredholm_linop::{Scalar, Symmetry};
 
 /// A square matrix of which blocks are computed on demand. Its unknowns come in groups that share a
-/// place: group g has the unknowns g · width … g · width + width − 1.
+/// place; those of a group follow each other, and those of the next group come after them.
 pub trait Entries<T: Scalar>: Sync {
     /// Groups that are prepared for filling blocks.
     type Set: Send + Sync;
@@ -11,8 +11,8 @@ pub trait Entries<T: Scalar>: Sync {
     /// Number of groups.
     fn groups(&self) -> usize;
 
-    /// Unknowns of a group.
-    fn width(&self) -> usize {
+    /// Unknowns of a group, at least 1.
+    fn width(&self, _group: usize) -> usize {
         1
     }
 

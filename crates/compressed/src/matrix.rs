@@ -110,17 +110,13 @@ impl<T: Scalar> Hierarchical<T> {
         };
         let blocks: Vec<Stored<T>> =
             pairs.par_iter().with_max_len(1).map(stored).collect::<Result<_, _>>()?;
-        let width = entries.width();
-        let mut leaves: Vec<Range<usize>> = builder
-            .tree
-            .leaves()
-            .iter()
-            .map(|&leaf| scaled(&builder.tree.clusters[leaf].range, width))
-            .collect();
+        let mut leaves: Vec<Range<usize>> =
+            builder.tree.leaves().into_iter().map(|leaf| builder.unknowns(leaf)).collect();
         leaves.sort_by_key(|leaf| leaf.start);
         let reach = reach(&leaves, &blocks, entries.symmetry() == Symmetry::Symmetric);
-        let order = builder.tree.order.iter().flat_map(|&group| group * width..(group + 1) * width).collect();
-        let dim = entries.groups() * width;
+        let starts = starts(entries, 0..entries.groups());
+        let order = builder.tree.order.iter().flat_map(|&group| starts[group]..starts[group + 1]).collect();
+        let dim = starts[entries.groups()];
         Ok(Self { dim, symmetry: entries.symmetry(), order, leaves, blocks, reach, predicted })
     }
 
@@ -258,6 +254,8 @@ impl<T: Scalar> LinearOperator<T> for Hierarchical<T> {
 struct Builder<'a, T: Scalar, E: Entries<T>> {
     entries: &'a E,
     tree: Tree,
+    /// The first unknown of every group in the order of the tree, and their number.
+    starts: Vec<usize>,
     sets: Vec<Option<E::Set>>,
     tolerance: f64,
     scalar: PhantomData<T>,
@@ -281,12 +279,18 @@ impl<'a, T: Scalar, E: Entries<T>> Builder<'a, T, E> {
             (used[row], used[column]) = (true, true);
         }
         let sets = (0..used.len()).map(|at| used[at].then(|| entries.prepare(tree.groups(at)))).collect();
-        Ok((Self { entries, tree, sets, tolerance: settings.tolerance, scalar: PhantomData }, pairs))
+        let starts = starts(entries, tree.order.iter().copied());
+        Ok((Self { entries, tree, starts, sets, tolerance: settings.tolerance, scalar: PhantomData }, pairs))
+    }
+
+    /// The unknowns of a cluster, in the order of the tree.
+    fn unknowns(&self, cluster: usize) -> Range<usize> {
+        let Range { start, end } = self.tree.clusters[cluster].range;
+        self.starts[start]..self.starts[end]
     }
 
     fn stored(&self, row: usize, column: usize, far: bool) -> Stored<T> {
-        let width = self.entries.width();
-        let [rows, columns] = [row, column].map(|at| scaled(&self.tree.clusters[at].range, width));
+        let [rows, columns] = [row, column].map(|at| self.unknowns(at));
         let (unit, kind) = self.kind(row, column, far);
         Stored { rows, columns, unit, kind }
     }
@@ -307,8 +311,7 @@ impl<'a, T: Scalar, E: Entries<T>> Builder<'a, T, E> {
 
     /// Bytes of all blocks: near ones are counted, far ones taken to be like some of their level.
     fn predicted(&self, pairs: &[Pair]) -> u64 {
-        let width = self.entries.width();
-        let size = |at: usize| self.tree.clusters[at].range.len() * width;
+        let size = |at: usize| self.unknowns(at).len();
         let whole = |&(row, column, _): &Pair| (size(row) * size(column)) as u64;
         let near: u64 = pairs.iter().filter(|pair| !pair.2).map(whole).sum();
         // Blocks with sides within a factor of two are of one level.
@@ -348,9 +351,14 @@ fn check(groups: usize, places: &[Vec3], settings: Settings) -> Result<(), Compr
     Ok(())
 }
 
-/// The unknowns of some groups.
-fn scaled(range: &Range<usize>, width: usize) -> Range<usize> {
-    range.start * width..range.end * width
+/// The first unknown of each of some groups one after the other, and the number of all.
+fn starts<T: Scalar, E: Entries<T>>(entries: &E, groups: impl Iterator<Item = usize>) -> Vec<usize> {
+    let mut end = 0;
+    let ends = groups.map(|group| {
+        end += entries.width(group);
+        end
+    });
+    std::iter::once(0).chain(ends).collect()
 }
 
 /// For every leaf the blocks that reach its rows, in their order.

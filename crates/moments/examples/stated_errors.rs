@@ -15,7 +15,7 @@ use common::{WAVELENGTH, solved, wave};
 use fredholm_iterative::Gmres;
 use fredholm_linop::{LinearOperator, MultiVector, Quiet, SecondKind, Solver, Stop};
 use fredholm_mesh::Vec3;
-use fredholm_moments::{Basis, Conductor, Currents, Dielectric, Equation};
+use fredholm_moments::{Basis, Composite, Conductor, Currents, Equation, Filling, Regions};
 use fredholm_waves::source::PlaneWave;
 use fredholm_waves::{
     Bounced, Complex64, ComplexVector, DielectricSphere, EdgeCurrents, Indicator, PhysicalOptics, Scatterer,
@@ -130,9 +130,12 @@ fn closed_elements(u: &[Vec3]) {
                 u.iter().map(|&u| exact.scattered(&wave(), &bodies[0].source(), u * far) * back).collect();
             for per in [5.0, 8.0, 11.0] {
                 let per = per * permittivity.re.sqrt();
-                let basis = Basis::new(bodies[0].surface(per)).unwrap();
+                let surface = bodies[0].surface(per);
+                let solid = vec![Filling::Dielectric(0); surface.triangles().len()];
+                let regions = Regions::new(&surface, &solid).unwrap();
+                let basis = Basis::between(regions).unwrap();
                 let points = inside_points(&bodies[0].scatterer(per), &wave()).unwrap();
-                let body = Dielectric::new(&basis, wave(), permittivity, 1e-3).unwrap();
+                let body = Composite::new(&basis, wave(), &[permittivity], 1e-3).unwrap();
                 let x =
                     right_hand_sides_solved(&bodies, &body.operator().coupling().unwrap(), &|excitations| {
                         body.right_hand_side(excitations)

@@ -12,10 +12,22 @@
 //! of the equations are of order one on any mesh. Functions are in 1/m, coefficients of an electric
 //! current in A. An edge where n > 2 triangles meet has n − 1 functions, each between the first of
 //! them and another, so that the sum of the currents into it is 0.
+//!
+//! Between several regions ([`Regions`]) every side of a triangle has a current of its own, n × H
+//! with n into the region. Through a wedge of one region between two triangles the component of H
+//! along the edge is the same, so that what flows away from the edge on one of them comes to it on
+//! the other: a function for every wedge. The component is the same on both sides of a triangle,
+//! too, unless that is a conductor, so that the wedges between two conductors have one coefficient,
+//! and all wedges where there is no conductor. The same holds for E and the magnetic current; at
+//! conductors it is 0. (P. Ylä-Oijala, M. Taskinen, J. Sarvas, Surface integral equation method for
+//! general composite metallic and dielectric structures with junctions, Progress In
+//! Electromagnetics Research 52 (2005) 81, doi:10.2528/PIER04071301.)
 
-use crate::{MomentsError, Surface, Topology};
+use crate::regions::{Face, Regions};
+use crate::{MomentsError, Side, Surface, Topology};
 use fredholm_mesh::Vec3;
 use fredholm_waves::Ground;
+use std::f64::consts::TAU;
 
 /// Half a function: on its triangle f = weight/(2A) (r − v), with v the corner. The weight is
 /// ±l/‖f‖.
@@ -27,15 +39,20 @@ pub struct Half {
     pub corner: u8,
     /// ±l/‖f‖, dimensionless.
     pub weight: f64,
+    /// The region that the current radiates into; 0 where there is one only.
+    pub region: usize,
 }
 
-/// A Rao–Wilton–Glisson function of unit norm; its current flows from the first half to the second.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A Rao–Wilton–Glisson function of unit norm. In every region its current flows through pairs of
+/// halves, from one to the next.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Function {
     /// Its edge in the topology.
     pub edge: usize,
-    /// Both halves.
-    pub halves: [Half; 2],
+    /// The halves, two for every wedge.
+    pub halves: Vec<Half>,
+    /// Whether a magnetic current can flow there between regions: there is no conductor.
+    pub magnetic: bool,
 }
 
 /// The functions of a surface, neighbours near each other in their order.
@@ -47,10 +64,12 @@ pub struct Basis {
     /// Place of every triangle in an order in which neighbours are near each other.
     ranks: Vec<u32>,
     ground: Option<Ground>,
+    /// None where there is one region only.
+    regions: Option<Regions>,
 }
 
 impl Basis {
-    /// One function for every inner edge.
+    /// One function for every inner edge of a surface in free space.
     ///
     /// # Errors
     /// Those of [`Topology::check`].
@@ -63,28 +82,58 @@ impl Basis {
             let length = ends[0].distance(ends[1]);
             for second in meeting.sides.iter().skip(1) {
                 let sides = [meeting.sides[0], *second];
-                let shares = sides.map(|side| length * length * share(&surface, side.triangle, side.corner));
-                let weight = length / (shares[0] + shares[1]).sqrt();
+                let triangles = sides.map(|side| (side.triangle, side.corner));
+                let weight = length / norm(&surface, length, &triangles);
                 let half = |at: usize, sign: f64| Half {
                     triangle: sides[at].triangle,
                     corner: sides[at].corner,
                     weight: sign * weight,
+                    region: 0,
                 };
-                functions.push(Function { edge, halves: [half(0, 1.0), half(1, -1.0)] });
+                let halves = vec![half(0, 1.0), half(1, -1.0)];
+                functions.push(Function { edge, halves, magnetic: false });
             }
         }
+        Ok(Self::ordered(surface, topology, functions, None))
+    }
+
+    /// The functions of the currents between regions.
+    ///
+    /// # Errors
+    /// [`MomentsError::NoInnerEdge`], and [`MomentsError::Regions`] for regions that do not fit each
+    /// other.
+    pub fn between(regions: Regions) -> Result<Self, MomentsError> {
+        let surface = regions.surface().clone();
+        let topology = Topology::new(&surface);
+        let mut functions = Vec::new();
+        for edge in 0..topology.edges().len() {
+            functions.extend(around(&surface, &topology, regions.faces(), edge)?);
+        }
+        if functions.is_empty() {
+            return Err(MomentsError::NoInnerEdge);
+        }
+        Ok(Self::ordered(surface, topology, functions, Some(regions)))
+    }
+
+    fn ordered(
+        surface: Surface,
+        topology: Topology,
+        functions: Vec<Function>,
+        regions: Option<Regions>,
+    ) -> Self {
         let middle = |function: &Function| {
             let ends = topology.edges()[function.edge].vertices;
             0.5 * (surface.vertices()[ends[0] as usize] + surface.vertices()[ends[1] as usize])
         };
         let order = along_curve(&functions.iter().map(middle).collect::<Vec<_>>());
-        let functions = order.into_iter().map(|at| functions[at]).collect();
+        let mut waiting: Vec<Option<Function>> = functions.into_iter().map(Some).collect();
+        let functions = order.into_iter().filter_map(|at| waiting[at].take()).collect();
         let centres: Vec<Vec3> = (0..surface.triangles().len()).map(|t| surface.centre(t)).collect();
         let mut ranks = vec![0; centres.len()];
         for (rank, triangle) in along_curve(&centres).into_iter().enumerate() {
             ranks[triangle] = rank as u32;
         }
-        Ok(Self { surface, topology, functions, ranks, ground: None })
+        Self { surface, topology, functions, ranks, ground: None, regions }
     }
 
     /// The same above a ground plane: all equations and fields then have the images of the currents
@@ -106,6 +155,17 @@ impl Basis {
     #[must_use]
     pub fn ground(&self) -> Option<Ground> {
         self.ground
+    }
+
+    /// The regions that the surface is between; none where it is in free space.
+    #[must_use]
+    pub fn regions(&self) -> Option<&Regions> {
+        self.regions.as_ref()
+    }
+
+    /// What is on the sides of every triangle; nothing where there is one region only.
+    pub(crate) fn faces(&self) -> &[Face] {
+        self.regions.as_ref().map_or(&[], Regions::faces)
     }
 
     /// The surface.
@@ -161,6 +221,97 @@ impl Basis {
         let spread: f64 = corners.iter().map(|corner| corner.length_squared()).sum();
         (spread / 12.0 + corners[a].dot(corners[b])) / (4.0 * self.surface.area(triangle))
     }
+}
+
+/// A triangle at an edge: the regions ahead of it and behind it on the way around the edge.
+struct Wedge {
+    side: Side,
+    ahead: Option<usize>,
+    behind: Option<usize>,
+    conductor: bool,
+}
+
+/// The functions of an edge: one for all wedges between two conductors, or one for all.
+fn around(
+    surface: &Surface,
+    topology: &Topology,
+    faces: &[Face],
+    edge: usize,
+) -> Result<Vec<Function>, MomentsError> {
+    let meeting = &topology.edges()[edge];
+    let [from, to] = meeting.vertices.map(|vertex| surface.vertices()[vertex as usize]);
+    let length = from.distance(to);
+    let along = (to - from) / length;
+    let wedge = |side: &Side| {
+        let face = faces[side.triangle as usize];
+        // The normal of a triangle that runs along the edge is the way around it.
+        let [front, back] = face.regions;
+        let (ahead, behind) = if side.forward { (front, back) } else { (back, front) };
+        Wedge { side: *side, ahead, behind, conductor: face.conductor }
+    };
+    let mut wedges: Vec<Wedge> = meeting.sides.iter().map(wedge).collect();
+    let out = |wedge: &Wedge| {
+        let corner = surface.corners(wedge.side.triangle as usize)[usize::from(wedge.side.corner)];
+        corner - from - along * (corner - from).dot(along)
+    };
+    let (x, y) = (out(&wedges[0]).normalize(), along.cross(out(&wedges[0]).normalize()));
+    let angle = |wedge: &Wedge| {
+        let d = out(wedge);
+        d.dot(y).atan2(d.dot(x)).rem_euclid(TAU)
+    };
+    // The first is at angle 0, whatever rounding says.
+    wedges[1..].sort_by(|a, b| angle(a).total_cmp(&angle(b)).then(a.side.triangle.cmp(&b.side.triangle)));
+    let count = wedges.len();
+    let next = |at: usize| &wedges[(at + 1) % count];
+    if (0..count).any(|at| wedges[at].ahead != next(at).behind) {
+        return Err(MomentsError::Regions { edge });
+    }
+    // From a conductor on, so that no run of wedges goes through the first.
+    let first = wedges.iter().position(|wedge| wedge.conductor);
+    let magnetic = first.is_none();
+    let mut runs: Vec<Vec<usize>> = Vec::new();
+    for at in (0..count).map(|i| (first.unwrap_or(0) + i) % count) {
+        if wedges[at].conductor || runs.is_empty() {
+            runs.push(Vec::new());
+        }
+        if let Some(run) = runs.last_mut() {
+            run.push(at);
+        }
+    }
+    // Inside of a conductor there is no current.
+    runs.retain(|run| wedges[run[0]].ahead.is_some());
+    // All around in one region the currents of all wedges but one are that of the last.
+    if !magnetic && wedges.iter().all(|wedge| wedge.ahead == wedges[0].ahead) {
+        runs.pop();
+    }
+    let function = |run: Vec<usize>| {
+        let mut triangles: Vec<(u32, u8)> = run
+            .iter()
+            .flat_map(|&at| [&wedges[at], next(at)])
+            .map(|wedge| (wedge.side.triangle, wedge.side.corner))
+            .collect();
+        triangles.sort_unstable();
+        triangles.dedup();
+        let weight = length / norm(surface, length, &triangles);
+        let half = |wedge: &Wedge, region: Option<usize>, sign: f64| Half {
+            triangle: wedge.side.triangle,
+            corner: wedge.side.corner,
+            weight: sign * weight,
+            region: region.unwrap_or_default(),
+        };
+        let pair = |&at: &usize| {
+            let region = wedges[at].ahead;
+            [half(&wedges[at], region, -1.0), half(next(at), region, 1.0)]
+        };
+        Function { edge, halves: run.iter().flat_map(pair).collect(), magnetic }
+    };
+    Ok(runs.into_iter().map(function).collect())
+}
+
+/// ‖f‖ over some triangles, for the weight l.
+fn norm(surface: &Surface, length: f64, triangles: &[(u32, u8)]) -> f64 {
+    let square = |&(triangle, corner): &(u32, u8)| length * length * share(surface, triangle, corner);
+    triangles.iter().map(square).sum::<f64>().sqrt()
 }
 
 /// ∫ |r − v|² dA/(2A)² over a triangle.
@@ -230,13 +381,17 @@ mod tests {
             let ends = basis.topology().edges()[function.edge].vertices;
             let ends = ends.map(|vertex| basis.surface().vertices()[vertex as usize]);
             let along = (ends[1] - ends[0]).normalize();
-            let flux = function.halves.map(|half| {
-                let triangle = half.triangle as usize;
-                let out = basis.surface().centre(triangle) - ends[0];
-                let out = (out - along * out.dot(along)).normalize();
-                let p = ends[0].lerp(ends[1], 0.3);
-                value(&basis, &half, p).dot(-out)
-            });
+            let flux: Vec<f64> = function
+                .halves
+                .iter()
+                .map(|half| {
+                    let triangle = half.triangle as usize;
+                    let out = basis.surface().centre(triangle) - ends[0];
+                    let out = (out - along * out.dot(along)).normalize();
+                    let p = ends[0].lerp(ends[1], 0.3);
+                    value(&basis, half, p).dot(-out)
+                })
+                .collect();
             assert!((flux[0] + flux[1]).abs() < 1e-14 && flux[0] > 0.0, "{flux:?}");
         }
     }

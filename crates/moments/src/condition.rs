@@ -24,12 +24,12 @@
 //! 0. The first equation alone is that of a conductor for Z_s = 0.
 //!
 //! Both matrices are symmetric. Unknowns are η₀ J and, where a body has an impedance, M/√|ζ| with ζ
-//! = Z_s/η₀, in V; on what has no M it is an unknown by itself that stays 0.
+//! = Z_s/η₀, in V.
 
+use crate::composite::{coefficients, term, tested_with_both};
 use crate::currents::Space;
-use crate::dielectric::{term, tested_with_both};
-use crate::equation::{electric_only, electric_term, tested};
-use crate::operator::{Kinds, Operator, Products};
+use crate::equation::{electric_only, electric_term};
+use crate::operator::{Factors, Kinds, Operator, Products};
 use crate::{Basis, Currents, MomentsError};
 use fredholm_linop::{MultiVector, Symmetry};
 use fredholm_waves::medium::IMPEDANCE;
@@ -73,19 +73,20 @@ impl Condition {
         Ok(())
     }
 
-    /// The unit of M, dimensionless: √|ζ|; 0 where no M flows.
-    fn unit(self) -> f64 {
-        if self.is_body() { (self.impedance().norm() / IMPEDANCE).sqrt() } else { 0.0 }
+    /// The unknowns of a function: M flows on bodies with an impedance, in the unit √|ζ|.
+    fn kinds(self) -> Kinds {
+        let unit = (self.impedance().norm() / IMPEDANCE).sqrt();
+        if self.is_body() && unit > 0.0 { Kinds { count: 2, unit } } else { Kinds::ELECTRIC }
     }
 
     /// What the products of functions are multiplied by.
-    fn factors(self) -> Kinds {
+    fn factors(self) -> Factors {
         let zeta = self.impedance() / IMPEDANCE;
-        let size = zeta.norm();
-        // Where no M flows its unknown is 0: any factor does.
-        let phase = if self.is_body() && size > 0.0 { zeta.conj() / size } else { Complex64::ONE };
-        let share = if self.is_body() { 0.5 } else { 1.0 };
-        [[zeta * share, Complex64::ZERO], [Complex64::ZERO, phase * -0.5]]
+        if self.kinds().count == 1 {
+            return electric_only(zeta);
+        }
+        let phase = zeta.conj() / zeta.norm();
+        [[zeta * 0.5, Complex64::ZERO], [Complex64::ZERO, phase * -0.5]]
     }
 }
 
@@ -95,8 +96,6 @@ pub struct Imperfect<'a> {
     basis: &'a Basis,
     wave: Wave,
     conditions: Vec<Condition>,
-    /// Of every function, where any M flows.
-    units: Option<Vec<f64>>,
     operator: Operator<'a>,
 }
 
@@ -124,20 +123,16 @@ impl<'a> Imperfect<'a> {
         check_bodies(basis, &conditions)?;
         basis.topology().check_resolution(basis.surface(), wave.wavelength())?;
         let k = Complex64::from(wave.wavenumber());
-        if conditions.iter().any(|condition| condition.is_body()) {
-            let unit = |half: &crate::Half| conditions[half.triangle as usize].unit();
-            let units: Vec<f64> = basis.functions().iter().map(|f| unit(&f.halves[0])).collect();
-            let terms = vec![term(Space { k, impedance: Complex64::ONE }, tolerance)?];
-            let products = Products::OnTriangles(conditions.iter().map(|c| c.factors()).collect());
-            let operator =
-                Operator::new(basis, 2, terms, products, Symmetry::Symmetric).with_units(units.clone());
-            return Ok(Self { basis, wave, conditions, units: Some(units), operator });
-        }
-        let term = electric_term(k, [1.0, 0.0], tolerance)?;
-        let products = conditions.iter().map(|condition| electric_only(condition.factors()[0][0])).collect();
-        let operator =
-            Operator::new(basis, 1, vec![term], Products::OnTriangles(products), Symmetry::Symmetric);
-        Ok(Self { basis, wave, conditions, units: None, operator })
+        let of_function = |f: &crate::Function| conditions[f.halves[0].triangle as usize].kinds();
+        let kinds: Vec<Kinds> = basis.functions().iter().map(of_function).collect();
+        let term = if kinds.iter().all(|kinds| kinds.count == 1) {
+            electric_term(k, [1.0, 0.0], tolerance)?
+        } else {
+            term(Space { k, impedance: Complex64::ONE }, tolerance)?
+        };
+        let products = Products::OnTriangles(conditions.iter().map(|c| c.factors()).collect());
+        let operator = Operator::new(basis, kinds, vec![term], products, Symmetry::Symmetric);
+        Ok(Self { basis, wave, conditions, operator })
     }
 
     /// The matrix.
@@ -149,14 +144,7 @@ impl<'a> Imperfect<'a> {
     /// One right-hand side for each of the sets of sources outside, V.
     #[must_use]
     pub fn right_hand_side(&self, excitations: &[&[&dyn Source]]) -> MultiVector<Complex64> {
-        if let Some(units) = &self.units {
-            return tested_with_both(self.basis, &self.wave, excitations, |n| units[n]);
-        }
-        let mut b = MultiVector::zeros(self.basis.len(), excitations.len());
-        for (rhs, sources) in excitations.iter().enumerate() {
-            b.set_vector(rhs, &tested(self.basis, &self.wave, sources, |field, _| field.e));
-        }
-        b
+        tested_with_both(&self.operator, &self.wave, excitations)
     }
 
     /// The currents of a solution. What they radiate into free space is the scattered field.
@@ -165,11 +153,8 @@ impl<'a> Imperfect<'a> {
     /// Like a slice, where there are fewer unknowns than those of the operator.
     #[must_use]
     pub fn currents(&self, x: &[Complex64]) -> Currents<'a> {
-        let Some(units) = &self.units else { return Currents::new(self.basis, self.wave, x, None) };
-        let electric: Vec<Complex64> = x.iter().step_by(2).copied().collect();
-        let of_unit = x.iter().skip(1).step_by(2).zip(units);
-        let magnetic: Vec<Complex64> = of_unit.map(|(m, unit)| m * unit).collect();
-        Currents::new(self.basis, self.wave, &electric, Some(&magnetic))
+        let (electric, magnetic) = coefficients(&self.operator, x);
+        Currents::new(self.basis, self.wave, &electric, magnetic.as_deref())
     }
 
     /// Power (W) that sheets and bodies absorb: ½ ∫ Re Z_s |J|² dA. Of bodies, where M stands for Z_s

@@ -9,6 +9,9 @@
 //! E → F e^{−jkr}/r,   F(u) = −(jk/4π) ∫ [η (J − u (u·J)) − u × M] e^{jk u·q} dA
 //! ```
 //!
+//! Between several regions, each has the currents on its own border, which are on the other side the
+//! opposite ones.
+//!
 //! (C. A. Balanis, Advanced Engineering Electromagnetics, 2nd ed., Wiley 2012, ch. 6 and 7). The
 //! charges are taken from the divergence of the functions, so that close to the surface, too, no
 //! line charge of a triangle's border is left.
@@ -52,13 +55,37 @@ pub(crate) struct Space {
     pub(crate) impedance: Complex64,
 }
 
+/// The currents on the border of a region.
+#[derive(Clone, Debug)]
+struct Border {
+    /// The triangles of the border, in order.
+    triangles: Vec<usize>,
+    /// η₀ J on each of them.
+    electric: Vec<Linear>,
+    /// M, where there is any.
+    magnetic: Option<Vec<Linear>>,
+}
+
+impl Border {
+    /// Both currents on a triangle, 0 where it is not of the border.
+    fn on(&self, triangle: usize) -> [Linear; 2] {
+        let Ok(at) = self.triangles.binary_search(&triangle) else { return Default::default() };
+        self.at(at)
+    }
+
+    /// Both currents on the triangle at this place of the border.
+    fn at(&self, at: usize) -> [Linear; 2] {
+        [self.electric[at], self.magnetic.as_ref().map_or(Linear::default(), |magnetic| magnetic[at])]
+    }
+}
+
 /// Surface currents as coefficients of the functions of a basis.
 #[derive(Clone, Debug)]
 pub struct Currents<'a> {
     basis: &'a Basis,
     wave: Wave,
-    electric: Vec<Linear>,
-    magnetic: Option<Vec<Linear>>,
+    /// Of every region.
+    borders: Vec<Border>,
 }
 
 impl<'a> Currents<'a> {
@@ -68,27 +95,52 @@ impl<'a> Currents<'a> {
     /// Like a slice, where there are fewer coefficients than functions.
     #[must_use]
     pub fn new(basis: &'a Basis, wave: Wave, electric: &[Complex64], magnetic: Option<&[Complex64]>) -> Self {
-        let electric = linear(basis, electric);
-        Self { basis, wave, electric, magnetic: magnetic.map(|x| linear(basis, x)) }
+        let regions = || basis.faces().iter().flat_map(|face| face.regions).flatten();
+        let count = regions().max().map_or(1, |last| last + 1);
+        let border = |region: usize| {
+            let is_of = |&t: &usize| basis.faces().get(t).is_none_or(|f| f.regions.contains(&Some(region)));
+            let triangles: Vec<usize> = (0..basis.surface().triangles().len()).filter(is_of).collect();
+            let of = |x: &[Complex64]| linear(basis, region, &triangles, x);
+            Border { electric: of(electric), magnetic: magnetic.map(of), triangles }
+        };
+        Self { basis, wave, borders: (0..count).map(border).collect() }
     }
 
-    /// J (A/m) at the centre of a triangle.
+    /// Both currents on a triangle, twice its area times: of a border between dielectrics those of
+    /// the side in front, of conductors the sum of both sides.
+    fn on(&self, triangle: usize) -> [Linear; 2] {
+        let Some(face) = self.basis.faces().get(triangle) else { return self.borders[0].on(triangle) };
+        let [front, back] = face.regions;
+        let of = |side: Option<usize>| side.map_or_else(Default::default, |r| self.borders[r].on(triangle));
+        let [electric, magnetic] = of(front);
+        if !face.conductor || back == front {
+            return [electric, magnetic];
+        }
+        let [other, _] = of(back);
+        let sum =
+            Linear { constant: electric.constant + other.constant, slope: electric.slope + other.slope };
+        [sum, magnetic]
+    }
+
+    /// J (A/m) at the centre of a triangle: on the side of its normal, on sheets of both sides
+    /// together.
     ///
     /// # Panics
     /// Like a slice, where there is no such triangle.
     #[must_use]
     pub fn electric(&self, triangle: usize) -> ComplexVector {
-        self.electric[triangle].constant * (0.5 / (self.basis.surface().area(triangle) * IMPEDANCE))
+        let [electric, _] = self.on(triangle);
+        electric.constant * (0.5 / (self.basis.surface().area(triangle) * IMPEDANCE))
     }
 
-    /// M (V/m) at the centre of a triangle.
+    /// M (V/m) at the centre of a triangle, on the side of its normal.
     ///
     /// # Panics
     /// Like a slice, where there is no such triangle.
     #[must_use]
     pub fn magnetic(&self, triangle: usize) -> ComplexVector {
-        let current = self.magnetic.as_ref().map_or(ComplexVector::ZERO, |m| m[triangle].constant);
-        current * (0.5 / self.basis.surface().area(triangle))
+        let [_, magnetic] = self.on(triangle);
+        magnetic.constant * (0.5 / self.basis.surface().area(triangle))
     }
 
     /// ∫ |J|² dA (A²) and ∫ |M|² dA (V²) over a triangle.
@@ -99,8 +151,8 @@ impl<'a> Currents<'a> {
         let square = |current: &Linear| {
             (current.constant.norm_squared() + spread * current.slope.norm_sqr()) / (4.0 * area)
         };
-        let magnetic = self.magnetic.as_ref().map_or(0.0, |magnetic| square(&magnetic[triangle]));
-        [square(&self.electric[triangle]) / (IMPEDANCE * IMPEDANCE), magnetic]
+        let [electric, magnetic] = self.on(triangle);
+        [square(&electric) / (IMPEDANCE * IMPEDANCE), square(&magnetic)]
     }
 
     /// E and H that the currents radiate into free space, at points (m) away from the surface; above
@@ -111,25 +163,30 @@ impl<'a> Currents<'a> {
     /// below the ground.
     pub fn fields(&self, points: &[Vec3]) -> Result<Vec<Field>, MomentsError> {
         let space = Space { k: self.wave.wavenumber().into(), impedance: Complex64::ONE };
-        let mut fields = self.fields_in(points, space)?;
+        let mut fields = self.fields_in(points, 0, space)?;
         if let Some(ground) = self.basis.ground() {
             if let Some(index) = points.iter().position(|p| p.z < ground.height()) {
                 return Err(MomentsError::BelowGround { what: "receiver point", index });
             }
             let images: Vec<Vec3> = points.iter().map(|&p| ground.image(p)).collect();
-            for (field, original) in fields.iter_mut().zip(self.fields_in(&images, space)?) {
+            for (field, original) in fields.iter_mut().zip(self.fields_in(&images, 0, space)?) {
                 *field += ground.field_of_image(original);
             }
         }
         Ok(fields)
     }
 
-    pub(crate) fn fields_in(&self, points: &[Vec3], space: Space) -> Result<Vec<Field>, MomentsError> {
+    /// E and H that the currents on the border of a region radiate in a medium.
+    pub(crate) fn fields_in(
+        &self,
+        points: &[Vec3],
+        region: usize,
+        space: Space,
+    ) -> Result<Vec<Field>, MomentsError> {
         let rules = Rules::new(TOLERANCE, space.k, true)?;
-        let surface = self.basis.surface();
-        let shapes: Vec<Shape> =
-            (0..surface.triangles().len()).map(|t| Shape::new(surface.corners(t))).collect();
-        let viewer = Viewer { currents: self, space, rules, shapes, arch: Arch::new() };
+        let (surface, border) = (self.basis.surface(), &self.borders[region]);
+        let shapes: Vec<Shape> = border.triangles.iter().map(|&t| Shape::new(surface.corners(t))).collect();
+        let viewer = Viewer { border, space, rules, shapes, arch: Arch::new() };
         points.par_iter().enumerate().map(|(index, &p)| viewer.field(index, p)).collect()
     }
 
@@ -160,14 +217,15 @@ impl<'a> Currents<'a> {
     fn far_sources(&self) -> Vec<(Vec3, ComplexVector, ComplexVector)> {
         // The degree is one of the table.
         let rule = symmetric_triangle(FAR_DEGREE).unwrap_or_default();
-        let mut sources = Vec::with_capacity(self.electric.len() * rule.len());
-        for (triangle, electric) in self.electric.iter().enumerate() {
+        let border = &self.borders[0];
+        let mut sources = Vec::with_capacity(border.triangles.len() * rule.len());
+        for (at, &triangle) in border.triangles.iter().enumerate() {
             let shape = Shape::new(self.basis.surface().corners(triangle));
-            let magnetic = self.magnetic.as_ref().map_or(Linear::default(), |m| m[triangle]);
+            let [electric, magnetic] = border.at(at);
             for point in &rule {
                 let p = shape.point([point.u, point.v]);
-                let at = |current: &Linear| current.at(p) * point.weight;
-                sources.push((shape.centre + p, at(electric), at(&magnetic)));
+                let at = |current: Linear| current.at(p) * point.weight;
+                sources.push((shape.centre + p, at(electric), at(magnetic)));
             }
         }
         sources
@@ -231,19 +289,19 @@ impl<'a> Currents<'a> {
     }
 }
 
-/// The currents of all triangles from the coefficients.
-fn linear(basis: &Basis, coefficients: &[Complex64]) -> Vec<Linear> {
+/// The currents on some triangles of the border of a region, from the coefficients.
+fn linear(basis: &Basis, region: usize, triangles: &[usize], coefficients: &[Complex64]) -> Vec<Linear> {
     let surface = basis.surface();
     let mut all = vec![Linear::default(); surface.triangles().len()];
     for (function, &x) in basis.functions().iter().zip(coefficients) {
-        for half in function.halves {
+        for half in function.halves.iter().filter(|half| half.region == region) {
             let triangle = half.triangle as usize;
             let corner = surface.corners(triangle)[usize::from(half.corner)] - surface.centre(triangle);
             all[triangle].constant += ComplexVector::along(corner, x * -half.weight);
             all[triangle].slope += x * half.weight;
         }
     }
-    all
+    triangles.iter().map(|&triangle| all[triangle]).collect()
 }
 
 impl Linear {
@@ -255,7 +313,7 @@ impl Linear {
 
 /// What computes fields at points.
 struct Viewer<'a> {
-    currents: &'a Currents<'a>,
+    border: &'a Border,
     space: Space,
     rules: Rules,
     shapes: Vec<Shape>,
@@ -265,6 +323,7 @@ struct Viewer<'a> {
 /// A part of a triangle that waits for its rule.
 #[derive(Clone, Copy)]
 struct Part {
+    /// Its place in the border.
     triangle: usize,
     shape: Shape,
     share: f64,
@@ -276,6 +335,7 @@ impl Viewer<'_> {
         let mut field = Field::ZERO;
         for (triangle, &shape) in self.shapes.iter().enumerate() {
             if distance(p, shape.places) < ON_SURFACE * shape.radius {
+                let triangle = self.border.triangles[triangle];
                 return Err(MomentsError::OnSurface { point, triangle });
             }
             self.add(p, Part { triangle, shape, share: 1.0 }, 0, &mut waiting, &mut field);
@@ -338,9 +398,9 @@ impl Viewer<'_> {
         let at = |current: Linear| Linear { constant: current.at(shift), ..current };
         let e = p - part.shape.centre;
         let Space { k, impedance } = self.space;
-        let [e_j, h_j] = element(at(self.currents.electric[part.triangle]), k, e, integrals);
+        let [e_j, h_j] = element(at(self.border.electric[part.triangle]), k, e, integrals);
         let mut field = Field { e: e_j * impedance, h: h_j };
-        if let Some(magnetic) = &self.currents.magnetic {
+        if let Some(magnetic) = &self.border.magnetic {
             let [e_m, h_m] = element(at(magnetic[part.triangle]), k, e, integrals);
             field.e = field.e - h_m;
             field.h += e_m * impedance.inv();

@@ -16,7 +16,7 @@
 //! every solver is that of these equations.
 
 use crate::kernel::{Medium, Wanted};
-use crate::operator::{Kinds, Operator, Products, Term};
+use crate::operator::{Factors, Kinds, Operator, Products, Term};
 use crate::pairs::Integrator;
 use crate::rules::Rules;
 use crate::{Basis, MomentsError};
@@ -106,7 +106,7 @@ pub(crate) fn electric_term(
 }
 
 /// A factor of electric currents tested with the electric equation, where there is nothing else.
-pub(crate) fn electric_only(value: Complex64) -> Kinds {
+pub(crate) fn electric_only(value: Complex64) -> Factors {
     [[value, Complex64::ZERO], [Complex64::ZERO; 2]]
 }
 
@@ -140,7 +140,8 @@ impl<'a> Conductor<'a> {
         let term = electric_term(k, [electric, magnetic], tolerance)?;
         let symmetry = if magnetic == 0.0 { Symmetry::Symmetric } else { Symmetry::General };
         let products = Products::Everywhere(electric_only((0.5 * magnetic).into()));
-        let operator = Operator::new(basis, 1, vec![term], products, symmetry);
+        let kinds = vec![Kinds::ELECTRIC; basis.len()];
+        let operator = Operator::new(basis, kinds, vec![term], products, symmetry);
         Ok(Self { basis, wave, equation, operator })
     }
 
@@ -177,7 +178,7 @@ impl<'a> Conductor<'a> {
     }
 }
 
-/// ∫ f·v dA of every function, for a vector v of the incident field and the normal.
+/// ∫ f·v dA of every function in region 0, for a vector v of the incident field and the normal.
 pub(crate) fn tested(
     basis: &Basis,
     wave: &Wave,
@@ -200,5 +201,8 @@ pub(crate) fn tested(
     };
     let sums: Vec<[Complex64; 3]> = (0..surface.triangles().len()).into_par_iter().map(on_triangle).collect();
     let product = |half: &crate::Half| sums[half.triangle as usize][usize::from(half.corner)] * half.weight;
-    basis.functions().iter().map(|function| function.halves.iter().map(product).sum()).collect()
+    let outside = |function: &crate::Function| {
+        function.halves.iter().filter(|half| half.region == 0).map(product).sum()
+    };
+    basis.functions().iter().map(outside).collect()
 }

@@ -99,6 +99,31 @@ pub enum MomentsError {
         /// The first triangle of the body.
         triangle: usize,
     },
+    /// Bodies touch, but not with the same triangles.
+    #[error("triangles {first} and {second} lie on each other, but have not the same corners")]
+    Unmatched {
+        /// A triangle.
+        first: usize,
+        /// The other.
+        second: usize,
+    },
+    /// Bodies cross.
+    #[error("triangles {first} and {second} cross each other")]
+    Crossing {
+        /// A triangle.
+        first: usize,
+        /// The other.
+        second: usize,
+    },
+    /// The functions are those of a surface in free space, not between regions.
+    #[error("the functions are those of a surface in free space, not between regions")]
+    NoRegions,
+    /// The regions around an edge do not agree.
+    #[error("what is between the triangles at edge {edge} is told differently by two of them")]
+    Regions {
+        /// The edge.
+        edge: usize,
+    },
     /// A closed body with a surface impedance has something else on a part of its surface.
     #[error("triangles {first} and {second} are of one body, which has one surface impedance all over")]
     Patchwork {
@@ -169,6 +194,10 @@ impl MomentsError {
             Self::Junction { .. } => Some("use the electric field equation"),
             Self::Orientation { .. } => Some("turn one over (`Surface::oriented`)"),
             Self::InsideOut { .. } => Some("turn it over (`Surface::oriented`)"),
+            Self::Unmatched { .. } => Some("cut both bodies alike where they touch, or move them apart"),
+            Self::Crossing { .. } => Some("move them apart, or cut one where it enters the other"),
+            Self::NoRegions => Some("take those between regions (`Basis::between`)"),
+            Self::Regions { .. } => Some("mend the bodies there, or move them apart"),
             Self::Patchwork { .. } => Some("give the whole body one surface impedance"),
             Self::BelowGround { .. } => Some("move it up, or the ground down"),
             Self::Coarse { .. } => Some("mesh finer, λ/10 is usual"),

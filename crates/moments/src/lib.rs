@@ -6,27 +6,29 @@
 //! same functions and integrated to a stated tolerance.
 
 mod basis;
+mod composite;
 mod condition;
 mod currents;
-mod dielectric;
 mod equation;
 mod error;
 mod kernel;
 pub mod meshing;
 mod operator;
 mod pairs;
+mod regions;
 mod rules;
 mod set;
 mod surface;
 mod topology;
 
 pub use basis::{Basis, Function, Half};
+pub use composite::Composite;
 pub use condition::{Condition, Imperfect};
 pub use currents::Currents;
-pub use dielectric::Dielectric;
 pub use equation::{Conductor, Equation};
 pub use error::MomentsError;
 pub use operator::Operator;
+pub use regions::{Face, Filling, Placed, Regions};
 pub use set::Set;
 pub use surface::Surface;
 pub use topology::{Component, Edge, Report, Side, TJunction, Topology};

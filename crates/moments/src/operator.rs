@@ -3,17 +3,19 @@
 //! With the integrals T and K of the kernel, every equation here is a sum over media
 //!
 //! ```text
-//! Z_(m,α)(n,β) = s_mα s_nβ Σ_media (t_αβ T_mn + κ_αβ K_mn)  +  ∫ δ_αβ f_m·f_n dA
+//! Z_(m,α)(n,β) = s_mα s_nβ Σ_regions (t_αβ T_mn + κ_αβ K_mn)  +  ∫ δ_αβ f_m·f_n dA
 //! T_mn = jk ∫∫ G [f_m·f_n′ − div f_m div f_n′/k²],   K_mn = ∫∫ f_m·(∇G × f_n′)  or  ∫∫ (f_m × n)·(∇G × f_n′)
 //! ```
 //!
 //! where α and β number the kinds of unknowns of a function (electric and magnetic currents), one
 //! or two, δ may differ from triangle to triangle, and s, the unit of an unknown, is 1 but where
-//! said. Above a ground plane the first medium, that around the bodies, has the integrals of all
-//! functions with the images of all others in. Unknown (n, β) stands at n · kinds + β. T and the first form of K are symmetric.
+//! said. T and K of a region are those of the halves that the functions have in it, in its medium.
+//! Above a ground plane region 0, that around the bodies, has the integrals of all functions with
+//! the images of all others in. The unknowns of a function follow each other. T and the first form
+//! of K are symmetric.
 
 use crate::pairs::Integrator;
-use crate::set::Set;
+use crate::set::{Halves, Set};
 use crate::{Basis, MomentsError};
 use fredholm_compressed::{Entries, Hierarchical, Settings};
 use fredholm_linop::{Dense, LinopError, Symmetry, Watch};
@@ -29,27 +31,43 @@ const TILE: usize = 192;
 const SAMPLED: usize = 16;
 
 /// Factors of kinds of unknowns on kinds of tests.
-pub(crate) type Kinds = [[Complex64; 2]; 2];
+pub(crate) type Factors = [[Complex64; 2]; 2];
 
-/// What one medium adds.
+/// The unknowns of a function.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Kinds {
+    /// One, or two with a magnetic current.
+    pub(crate) count: usize,
+    /// The unit of the second.
+    pub(crate) unit: f64,
+}
+
+impl Kinds {
+    /// An electric current alone.
+    pub(crate) const ELECTRIC: Self = Self { count: 1, unit: 1.0 };
+    /// Both, in the same unit.
+    pub(crate) const BOTH: Self = Self { count: 2, unit: 1.0 };
+}
+
+/// What one region adds.
 #[derive(Clone, Debug)]
 pub(crate) struct Term {
     pub(crate) integrator: Integrator,
-    pub(crate) electric: Kinds,
-    pub(crate) magnetic: Kinds,
+    pub(crate) electric: Factors,
+    pub(crate) magnetic: Factors,
 }
 
 /// What the products of functions are multiplied by.
 #[derive(Clone, Debug)]
 pub(crate) enum Products {
     /// The same everywhere.
-    Everywhere(Kinds),
+    Everywhere(Factors),
     /// Triangle by triangle.
-    OnTriangles(Vec<Kinds>),
+    OnTriangles(Vec<Factors>),
 }
 
 impl Products {
-    fn on(&self, triangle: u32) -> &Kinds {
+    fn on(&self, triangle: u32) -> &Factors {
         match self {
             Self::Everywhere(factors) => factors,
             Self::OnTriangles(factors) => &factors[triangle as usize],
@@ -61,28 +79,31 @@ impl Products {
 #[derive(Clone, Debug)]
 pub struct Operator<'a> {
     basis: &'a Basis,
-    kinds: usize,
+    /// Of every function.
+    kinds: Vec<Kinds>,
+    /// The first unknown of every function, and their number.
+    starts: Vec<usize>,
+    /// Of every region.
     terms: Vec<Term>,
     products: Products,
     symmetry: Symmetry,
-    /// Units of the unknowns of the second kind, of every function; all 1 where there are none.
-    units: Vec<f64>,
 }
 
 impl<'a> Operator<'a> {
     pub(crate) fn new(
         basis: &'a Basis,
-        kinds: usize,
+        kinds: Vec<Kinds>,
         terms: Vec<Term>,
         products: Products,
         symmetry: Symmetry,
     ) -> Self {
-        Self { basis, kinds, terms, products, symmetry, units: Vec::new() }
-    }
-
-    /// The same with units of the unknowns of the second kind, and of their equations.
-    pub(crate) fn with_units(self, units: Vec<f64>) -> Self {
-        Self { units, ..self }
+        let mut end = 0;
+        let ends = kinds.iter().map(|kinds| {
+            end += kinds.count;
+            end
+        });
+        let starts = std::iter::once(0).chain(ends).collect();
+        Self { basis, kinds, starts, terms, products, symmetry }
     }
 
     /// The functions.
@@ -91,16 +112,19 @@ impl<'a> Operator<'a> {
         self.basis
     }
 
-    /// Unknowns for each function.
-    #[must_use]
-    pub fn kinds(&self) -> usize {
-        self.kinds
-    }
-
     /// Number of unknowns.
     #[must_use]
     pub fn dim(&self) -> usize {
-        self.basis.len() * self.kinds
+        self.starts[self.basis.len()]
+    }
+
+    /// The unknowns of every function: one of the electric and, where there is one, one of the
+    /// magnetic current.
+    pub(crate) fn unknowns(&self) -> impl Iterator<Item = (usize, Option<(usize, f64)>)> {
+        let of = |(kinds, &first): (&Kinds, &usize)| {
+            (first, (kinds.count == 2).then_some((first + 1, kinds.unit)))
+        };
+        self.kinds.iter().zip(&self.starts).map(of)
     }
 
     /// What is known of the symmetry of the matrix.
@@ -112,64 +136,33 @@ impl<'a> Operator<'a> {
     /// Prepares functions for [`Operator::fill`].
     #[must_use]
     pub fn prepare(&self, functions: impl Iterator<Item = usize>) -> Set {
-        Set::new(self.basis, &self.units, functions)
+        Set::new(self.basis, &self.kinds, self.terms.len(), functions)
     }
 
-    /// Writes the entries of all unknowns of some functions, row by row: (rows · kinds) × (columns
-    /// · kinds).
+    /// Writes the entries of all unknowns of some functions, row by row.
     ///
     /// # Panics
     /// Like a slice, where `out` is shorter.
     pub fn fill(&self, rows: &Set, columns: &Set, out: &mut [Complex64]) {
-        let stride = columns.len * self.kinds;
-        out[..rows.len * self.kinds * stride].fill(Complex64::ZERO);
-        for term in &self.terms {
-            self.add_term(term, [rows, columns], out, stride);
-        }
-        // The first medium is that around the bodies.
-        if let (Some(outside), Some(images)) = (self.terms.first(), &columns.image) {
-            self.add_term(outside, [rows, images], out, stride);
-        }
-        self.add_products(rows, columns, out, stride);
-    }
-
-    /// Adds the integrals of all pairs of functions in one medium.
-    fn add_term(&self, term: &Term, [rows, columns]: [&Set; 2], out: &mut [Complex64], stride: usize) {
-        term.integrator.each(rows, columns, |row, column, pair| {
-            for m in rows.entries(row) {
-                for n in columns.entries(column) {
-                    let weight = m.weight * n.weight / (4.0 * PI);
-                    let value = pair.at(m.corner, n.corner).map(|part| part * weight);
-                    let first = (m.at * stride + n.at) * self.kinds;
-                    self.add(term, value, [m.units, n.units], &mut out[first..], stride);
-                }
+        let stride = columns.len;
+        out[..rows.len * stride].fill(Complex64::ZERO);
+        for (term, (rows, columns)) in self.terms.iter().zip(rows.regions.iter().zip(&columns.regions)) {
+            add_term(term, [rows, columns], out, stride);
+            if let Some(images) = &columns.image {
+                add_term(term, [rows, images], out, stride);
             }
-        });
-    }
-
-    /// Adds the electric and magnetic part of two half functions in one medium.
-    fn add(
-        &self,
-        term: &Term,
-        [electric, magnetic]: [Complex64; 2],
-        [rows, columns]: [[f64; 2]; 2],
-        out: &mut [Complex64],
-        stride: usize,
-    ) {
-        for a in 0..self.kinds {
-            for b in 0..self.kinds {
-                let value = term.electric[a][b] * electric + term.magnetic[a][b] * magnetic;
-                out[a * stride + b] += value * (rows[a] * columns[b]);
-            }
+        }
+        if let (Some(rows), Some(columns)) = (rows.regions.first(), columns.regions.first()) {
+            self.add_products(rows, columns, out, stride);
         }
     }
 
     /// Adds the products of functions on common triangles.
-    fn add_products(&self, rows: &Set, columns: &Set, out: &mut [Complex64], stride: usize) {
+    fn add_products(&self, rows: &Halves, columns: &Halves, out: &mut [Complex64], stride: usize) {
         let ranked = |&triangle: &u32| self.basis.rank(triangle);
         for (row, &triangle) in rows.triangles.iter().enumerate() {
             let factors = self.products.on(triangle);
-            if *factors == Kinds::default() {
+            if *factors == Factors::default() {
                 continue;
             }
             let found = columns.triangles.binary_search_by_key(&self.basis.rank(triangle), ranked);
@@ -177,9 +170,9 @@ impl<'a> Operator<'a> {
             for m in rows.entries(row) {
                 for n in columns.entries(column) {
                     let product = m.weight * n.weight * self.basis.gram(triangle, m.corner, n.corner);
-                    let at = (m.at * stride + n.at) * self.kinds;
-                    for a in 0..self.kinds {
-                        for b in 0..self.kinds {
+                    let at = m.at * stride + n.at;
+                    for a in 0..m.kinds {
+                        for b in 0..n.kinds {
                             out[at + a * stride + b] += factors[a][b] * product;
                         }
                     }
@@ -223,17 +216,18 @@ impl<'a> Operator<'a> {
     #[must_use]
     pub fn sample(&self, samples: usize) -> f64 {
         let tiles = self.tiles();
-        let all: usize = tiles.iter().map(|tile| tile.triangles.len()).sum();
+        let all: usize =
+            tiles.iter().map(|row| tiles.iter().map(|tile| pairs(row, tile)).sum::<usize>()).sum();
         let functions = self.basis.len();
         let mut done = 0;
         for sample in 0..samples {
             let first = (2 * sample + 1) * functions / (2 * samples);
             let rows = self.prepare(first..(first + SAMPLED).min(functions));
-            let mut block = vec![Complex64::ZERO; rows.len * TILE * self.kinds.pow(2)];
+            let mut block = vec![Complex64::ZERO; rows.len * widest(&tiles)];
             for tile in &tiles {
                 self.fill(&rows, tile, &mut block);
+                done += pairs(&rows, tile);
             }
-            done += rows.triangles.len();
         }
         let (count, symmetric) = (tiles.len() as f64, self.symmetry == Symmetry::Symmetric);
         let part = if symmetric { (count + 1.0) / (2.0 * count) } else { 1.0 };
@@ -281,8 +275,14 @@ impl<'a> Operator<'a> {
         entries.resize(length, Complex64::ZERO);
         let tiles = self.tiles();
         let symmetric = self.symmetry == Symmetry::Symmetric;
-        let strips = entries.par_chunks_mut((TILE * self.kinds * dim).max(1)).enumerate().with_max_len(1);
-        strips.for_each(|(row, strip)| {
+        let mut strips = Vec::with_capacity(tiles.len());
+        let mut rest = &mut entries[..];
+        for tile in &tiles {
+            let (strip, others) = rest.split_at_mut(tile.len * dim);
+            strips.push(strip);
+            rest = others;
+        }
+        strips.into_par_iter().enumerate().with_max_len(1).for_each(|(row, strip)| {
             let last = if symmetric { row + 1 } else { tiles.len() };
             self.fill_strip(&tiles[row], &tiles[..last], strip);
         });
@@ -294,14 +294,14 @@ impl<'a> Operator<'a> {
 
     /// Writes the first tiles of some rows.
     fn fill_strip(&self, rows: &Set, tiles: &[Set], strip: &mut [Complex64]) {
-        let mut block = vec![Complex64::ZERO; rows.len * TILE * self.kinds.pow(2)];
-        for (column, tile) in tiles.iter().enumerate() {
+        let mut block = vec![Complex64::ZERO; rows.len * widest(tiles)];
+        let mut first = 0;
+        for tile in tiles {
             self.fill(rows, tile, &mut block);
-            let width = tile.len * self.kinds;
-            let first = column * TILE * self.kinds;
-            for (strip, block) in strip.chunks_exact_mut(self.dim()).zip(block.chunks_exact(width)) {
-                strip[first..first + width].copy_from_slice(block);
+            for (strip, block) in strip.chunks_exact_mut(self.dim()).zip(block.chunks_exact(tile.len)) {
+                strip[first..first + tile.len].copy_from_slice(block);
             }
+            first += tile.len;
         }
     }
 }
@@ -313,8 +313,8 @@ impl Entries<Complex64> for Operator<'_> {
         self.basis.len()
     }
 
-    fn width(&self) -> usize {
-        self.kinds
+    fn width(&self, group: usize) -> usize {
+        self.kinds[group].count
     }
 
     fn symmetry(&self) -> Symmetry {
@@ -328,6 +328,36 @@ impl Entries<Complex64> for Operator<'_> {
     fn fill(&self, rows: &Set, columns: &Set, out: &mut [Complex64]) {
         Operator::fill(self, rows, columns, out);
     }
+}
+
+/// Adds the integrals of all pairs of halves of functions in one region.
+fn add_term(term: &Term, [rows, columns]: [&Halves; 2], out: &mut [Complex64], stride: usize) {
+    term.integrator.each(rows, columns, |row, column, pair| {
+        for m in rows.entries(row) {
+            for n in columns.entries(column) {
+                let weight = m.weight * n.weight / (4.0 * PI);
+                let [electric, magnetic] = pair.at(m.corner, n.corner).map(|part| part * weight);
+                let out = &mut out[m.at * stride + n.at..];
+                for a in 0..m.kinds {
+                    for b in 0..n.kinds {
+                        let value = term.electric[a][b] * electric + term.magnetic[a][b] * magnetic;
+                        out[a * stride + b] += value * (m.units[a] * n.units[b]);
+                    }
+                }
+            }
+        }
+    });
+}
+
+/// Pairs of triangles of two sets in all regions.
+fn pairs(rows: &Set, columns: &Set) -> usize {
+    let count = |(a, b): (&Halves, &Halves)| a.triangles.len() * b.triangles.len();
+    rows.regions.iter().zip(&columns.regions).map(count).sum()
+}
+
+/// The largest number of unknowns of a tile.
+fn widest(tiles: &[Set]) -> usize {
+    tiles.iter().map(|tile| tile.len).max().unwrap_or(0)
 }
 
 /// Copies the lower triangle to the upper one.

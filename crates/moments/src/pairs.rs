@@ -1,8 +1,8 @@
-//! The integrals of all pairs of triangles of two sets, each by the rule that suits it.
+//! The integrals of all pairs of triangles of the halves of functions, each by the rule that suits it.
 
 use crate::kernel::{Apart, Eight, Eights, Medium, Points, Touching, Values, WIDTH, Wanted};
 use crate::rules::{CLASSES, Rule, Rules};
-use crate::set::{Set, Shape};
+use crate::set::{Halves, Shape};
 use fredholm_mesh::Vec3;
 use num_complex::Complex64;
 use pulp::Arch;
@@ -54,8 +54,8 @@ impl<'a> One<'a> {
 }
 
 impl Integrator {
-    /// Visits the integrals of all pairs (observer, source) of triangles of two sets.
-    pub(crate) fn each(&self, rows: &Set, columns: &Set, mut visit: impl FnMut(usize, usize, &Pair)) {
+    /// Visits the integrals of all pairs (observer, source) of two sets of triangles.
+    pub(crate) fn each(&self, rows: &Halves, columns: &Halves, mut visit: impl FnMut(usize, usize, &Pair)) {
         if rows.shapes.len() <= columns.shapes.len() {
             for (row, shape) in rows.shapes.iter().enumerate() {
                 self.one(shape, rows.triangles[row], columns, true, |column, pair| visit(row, column, pair));
@@ -69,7 +69,14 @@ impl Integrator {
 
     /// Visits the integrals of one triangle with all of a set; `observes` says which of them is the
     /// observer.
-    fn one(&self, shape: &Shape, name: u32, set: &Set, observes: bool, mut visit: impl FnMut(usize, &Pair)) {
+    fn one(
+        &self,
+        shape: &Shape,
+        name: u32,
+        set: &Halves,
+        observes: bool,
+        mut visit: impl FnMut(usize, &Pair),
+    ) {
         let eights = Eights::splat(shape.centre, shape.normal, shape.corners);
         let mut one = One::new(shape, &eights);
         let mut values = Values::default();
@@ -100,7 +107,7 @@ impl Integrator {
     }
 
     /// The rule for every lane of an eight, and the largest sum of two radii.
-    fn classes(&self, shape: &Shape, set: &Set, eight: usize) -> ([Option<usize>; WIDTH], f64) {
+    fn classes(&self, shape: &Shape, set: &Halves, eight: usize) -> ([Option<usize>; WIDTH], f64) {
         let (mut classes, mut spread) = ([None; WIDTH], 0.0_f64);
         let [x, y, z, radius] = &set.spheres;
         for (lane, class) in classes.iter_mut().enumerate() {
@@ -119,7 +126,7 @@ impl Integrator {
     fn regular(
         &self,
         one: &mut One<'_>,
-        set: &Set,
+        set: &Halves,
         eight: usize,
         class: usize,
         spread: f64,

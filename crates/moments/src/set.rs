@@ -1,9 +1,12 @@
-//! The triangles of some functions, ready for the kernel: eight together, neighbours in one eight.
+//! The triangles of some functions in every region, ready for the kernel: eight together, neighbours
+//! in one eight.
 
 use crate::Basis;
 use crate::kernel::{Eight, Eights, WIDTH};
+use crate::operator::Kinds;
 use crate::rules::{CLASSES, Rule};
 use fredholm_mesh::Vec3;
+use fredholm_waves::Ground;
 use std::sync::OnceLock;
 
 /// A triangle with its circumscribed circle around the centroid.
@@ -40,12 +43,13 @@ impl Shape {
     }
 }
 
-/// A half function of a set: its corner, which of the functions of the set it belongs to, its
-/// weight, and the units of the unknowns of both kinds.
+/// A half function of a set: its corner, the first of its unknowns among those of the set, their
+/// number, its weight, and the units of the unknowns of both kinds.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Entry {
     pub(crate) corner: usize,
     pub(crate) at: usize,
+    pub(crate) kinds: usize,
     pub(crate) weight: f64,
     pub(crate) units: [f64; 2],
 }
@@ -53,7 +57,15 @@ pub(crate) struct Entry {
 /// Some functions of a basis, prepared for filling blocks of a matrix.
 #[derive(Debug)]
 pub struct Set {
+    /// Number of unknowns.
     pub(crate) len: usize,
+    /// In every region.
+    pub(crate) regions: Vec<Halves>,
+}
+
+/// The halves of some functions in one region.
+#[derive(Debug)]
+pub(crate) struct Halves {
     /// Triangles in the order of their ranks.
     pub(crate) triangles: Vec<u32>,
     pub(crate) shapes: Vec<Shape>,
@@ -69,18 +81,33 @@ pub struct Set {
 }
 
 impl Set {
-    /// Prepares some functions; `units` are those of the second kind, all 1 where there are none.
-    pub(crate) fn new(basis: &Basis, units: &[f64], functions: impl Iterator<Item = usize>) -> Self {
-        let mut halves: Vec<(u32, u32, Entry)> = Vec::new();
+    /// Prepares some functions, which have unknowns of so many kinds, in so many regions.
+    pub(crate) fn new(
+        basis: &Basis,
+        kinds: &[Kinds],
+        regions: usize,
+        functions: impl Iterator<Item = usize>,
+    ) -> Self {
+        let mut halves: Vec<Vec<(u32, u32, Entry)>> = vec![Vec::new(); regions];
         let mut len = 0;
         for function in functions {
-            let units = [1.0, units.get(function).copied().unwrap_or(1.0)];
-            for half in basis.functions()[function].halves {
-                let entry = Entry { corner: half.corner.into(), at: len, weight: half.weight, units };
-                halves.push((basis.rank(half.triangle), half.triangle, entry));
+            let Kinds { count, unit } = kinds[function];
+            for half in &basis.functions()[function].halves {
+                let corner = half.corner.into();
+                let entry = Entry { corner, at: len, kinds: count, weight: half.weight, units: [1.0, unit] };
+                halves[half.region].push((basis.rank(half.triangle), half.triangle, entry));
             }
-            len += 1;
+            len += count;
         }
+        // Regions have numbers from that around the bodies on, which alone has a ground.
+        let ground = |region: usize| basis.ground().filter(|_| region == 0);
+        let in_region = |(region, halves)| Halves::new(basis, halves, ground(region));
+        Self { len, regions: halves.into_iter().enumerate().map(in_region).collect() }
+    }
+}
+
+impl Halves {
+    fn new(basis: &Basis, mut halves: Vec<(u32, u32, Entry)>, ground: Option<Ground>) -> Self {
         halves.sort_by_key(|&(rank, _, entry)| (rank, entry.at));
         let (mut triangles, mut starts) = (Vec::new(), Vec::new());
         for (place, &(_, triangle, _)) in halves.iter().enumerate() {
@@ -93,7 +120,7 @@ impl Set {
         let shapes: Vec<Shape> =
             triangles.iter().map(|&t| Shape::new(basis.surface().corners(t as usize))).collect();
         let entries: Vec<Entry> = halves.into_iter().map(|(_, _, entry)| entry).collect();
-        let image = basis.ground().map(|ground| {
+        let image = ground.map(|ground| {
             let image = |shape: &Shape| Shape::new(shape.places.map(|place| ground.image(place)));
             let turned = |entry: &Entry| Entry { units: [-entry.units[0], entry.units[1]], ..*entry };
             let parts = (
@@ -102,13 +129,12 @@ impl Set {
                 shapes.iter().map(image).collect(),
                 entries.iter().map(turned).collect(),
             );
-            Box::new(Self::of(len, parts, starts.clone(), None))
+            Box::new(Self::of(parts, starts.clone(), None))
         });
-        Self::of(len, (triangles, shapes, entries), starts, image)
+        Self::of((triangles, shapes, entries), starts, image)
     }
 
     fn of(
-        len: usize,
         (triangles, shapes, entries): (Vec<u32>, Vec<Shape>, Vec<Entry>),
         starts: Vec<usize>,
         image: Option<Box<Self>>,
@@ -116,7 +142,6 @@ impl Set {
         let coordinate = |axis: usize| shapes.iter().map(|shape| shape.centre[axis]).collect();
         let radii = shapes.iter().map(|shape| shape.radius).collect();
         Self {
-            len,
             eights: eights(&shapes),
             spheres: [coordinate(0), coordinate(1), coordinate(2), radii],
             entries,

@@ -2,7 +2,7 @@
 
 use crate::{MomentsError, Topology};
 use fredholm_mesh::{Mesh, Vec3, Weld};
-use std::f64::consts::TAU;
+use std::collections::BTreeMap;
 
 /// Area over the square of the longest side below which a triangle has none.
 const LEAST_RELATIVE_AREA: f64 = 1e-12;
@@ -50,24 +50,28 @@ impl Surface {
         }
     }
 
-    /// The leaves of a mesh, quadrilaterals cut along the shorter diagonal, corners at the same
-    /// place joined.
+    /// The leaves of a mesh, quadrilaterals cut along the shorter diagonal, those at the same place
+    /// along the same, and corners at the same place joined.
     ///
     /// # Errors
     /// Those of [`Surface::new`].
     pub fn from_mesh(mesh: &Mesh) -> Result<Self, MomentsError> {
         let welded = mesh.welded(Weld::Everywhere);
         let mut triangles = Vec::new();
+        let mut diagonals: BTreeMap<[usize; 4], [usize; 2]> = BTreeMap::new();
         for patch in welded.patches() {
             match *patch {
                 [a, b, c, d] => {
                     let across = |i: usize, j: usize| welded.vertices[i].distance(welded.vertices[j]);
-                    let halves = if across(a, c) <= across(b, d) {
+                    let mut sorted = [a, b, c, d];
+                    sorted.sort_unstable();
+                    let shorter = if across(a, c) <= across(b, d) { [a, c] } else { [b, d] };
+                    let diagonal = *diagonals.entry(sorted).or_insert(shorter);
+                    triangles.extend(if diagonal.contains(&a) {
                         [[a, b, c], [a, c, d]]
                     } else {
                         [[a, b, d], [b, c, d]]
-                    };
-                    triangles.extend(halves);
+                    });
                 }
                 [a, b, c] => triangles.push([a, b, c]),
                 _ => {}
@@ -111,20 +115,6 @@ impl Surface {
         let turn = |(&[a, b, c], turned): (&[u32; 3], bool)| if turned { [a, c, b] } else { [a, b, c] };
         let triangles = self.triangles.iter().zip(turned).map(turn).collect();
         Self { vertices: self.vertices.clone(), triangles }
-    }
-
-    /// Whether a point (m) is inside the closed bodies of the surface: they fill more than half of
-    /// all directions seen from there, by the solid angle of each triangle (A. van Oosterom, J.
-    /// Strackee, IEEE Trans. Biomed. Eng. 30 (1983) 125, doi:10.1109/TBME.1983.325207).
-    #[must_use]
-    pub fn holds(&self, point: Vec3) -> bool {
-        let angle = |triangle: usize| {
-            let [a, b, c] = self.corners(triangle).map(|corner| corner - point);
-            let [p, q, r] = [a, b, c].map(Vec3::length);
-            let below = p * q * r + a.dot(b) * r + b.dot(c) * p + c.dot(a) * q;
-            2.0 * a.dot(b.cross(c)).atan2(below)
-        };
-        (0..self.triangles.len()).map(angle).sum::<f64>() > TAU
     }
 
     /// Positions, m.
@@ -176,24 +166,5 @@ impl Surface {
     pub fn area(&self, triangle: usize) -> f64 {
         let [a, b, c] = self.corners(triangle);
         0.5 * (b - a).cross(c - a).length()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::meshing::{Grading, cuboid};
-
-    #[test]
-    fn points_are_inside_the_bodies_that_hold_them() {
-        let box_at = |x: f64| {
-            let surface = cuboid(Vec3::splat(1.0), 0.4, Grading::default()).unwrap();
-            let vertices = surface.vertices().iter().map(|v| *v + Vec3::X * x).collect();
-            Surface::new(vertices, surface.triangles().to_vec()).unwrap()
-        };
-        let both = box_at(0.0).with(&box_at(3.0)).unwrap();
-        for (x, held) in [(0.0, true), (0.49, true), (0.51, false), (1.5, false), (2.6, true), (9.0, false)] {
-            assert_eq!(both.holds(Vec3::new(x, 0.1, -0.2)), held, "{x}");
-        }
     }
 }

@@ -449,7 +449,7 @@ pub(crate) fn close_pairs(points: &[Vec3], distance: f64) -> Vec<[usize; 2]> {
 }
 
 /// Joins the sets of two triangles.
-fn join(roots: &mut [usize], a: usize, b: usize) {
+pub(crate) fn join(roots: &mut [usize], a: usize, b: usize) {
     let (a, b) = (root(roots, a), root(roots, b));
     roots[a.max(b)] = a.min(b);
 }
@@ -464,7 +464,7 @@ fn root(roots: &mut [usize], mut at: usize) -> usize {
 }
 
 /// Sets numbered by their first triangle, and how many there are.
-fn numbered(mut roots: Vec<usize>) -> (Vec<usize>, usize) {
+pub(crate) fn numbered(mut roots: Vec<usize>) -> (Vec<usize>, usize) {
     let mut numbers = vec![0; roots.len()];
     let mut count = 0;
     for at in 0..roots.len() {

@@ -10,7 +10,8 @@ use fredholm_linop::MultiVector;
 use fredholm_mesh::Vec3;
 use fredholm_moments::meshing::{Grading, rectangle, sphere};
 use fredholm_moments::{
-    Basis, Condition, Conductor, Currents, Dielectric, Equation, Imperfect, MomentsError, Operator, Surface,
+    Basis, Composite, Condition, Conductor, Currents, Equation, Filling, Imperfect, MomentsError, Operator,
+    Regions, Surface,
 };
 use fredholm_waves::source::{HertzianDipole, PlaneWave};
 use fredholm_waves::{Complex64, Ground, Grounded, Source};
@@ -38,6 +39,19 @@ fn doubled(surface: &Surface, ground: Ground) -> Surface {
     surface.clone().with(&Surface::new(vertices, triangles).unwrap()).unwrap()
 }
 
+/// All of a surface around one dielectric.
+fn solid(surface: &Surface) -> Regions {
+    Regions::new(surface, &vec![Filling::Dielectric(0); surface.triangles().len()]).unwrap()
+}
+
+/// The functions of a body.
+fn basis_of(surface: &Surface, body: Body) -> Basis {
+    match body {
+        Body::Dielectric(_) => Basis::between(solid(surface)).unwrap(),
+        _ => Basis::new(surface.clone()).unwrap(),
+    }
+}
+
 /// The currents in some sources, and what of power is absorbed.
 fn currents<'a>(basis: &'a Basis, body: Body, sources: &[&dyn Source]) -> (Currents<'a>, f64) {
     let solve = |operator: &Operator<'_>, b: &MultiVector<Complex64>| {
@@ -57,7 +71,7 @@ fn currents<'a>(basis: &'a Basis, body: Body, sources: &[&dyn Source]) -> (Curre
             (currents, absorbed)
         }
         Body::Dielectric(permittivity) => {
-            let body = Dielectric::new(basis, wave(), permittivity.into(), TOLERANCE).unwrap();
+            let body = Composite::new(basis, wave(), &[permittivity.into()], TOLERANCE).unwrap();
             (body.currents(&solve(body.operator(), &body.right_hand_side(&[sources]))), 0.0)
         }
     }
@@ -92,8 +106,8 @@ fn a_body_above_ground_is_half_of_the_body_with_its_mirror_image() {
         (&ball, Body::Imperfect(Condition::Body(Complex64::new(100.0, 50.0)))),
         (&lens, Body::Dielectric(3.0)),
     ] {
-        let half = Basis::new(surface.clone()).unwrap().above(ground).unwrap();
-        let whole = Basis::new(doubled(surface, ground)).unwrap();
+        let half = basis_of(surface, body).above(ground).unwrap();
+        let whole = basis_of(&doubled(surface, ground), body);
         for source in [&wave_from as &dyn Source, &dipole] {
             let [one, both] = [&half, &whole].map(|basis| field(&currents(basis, body, &[source]).0));
             let gap = relative_error(&one, &both);
@@ -109,13 +123,13 @@ fn what_is_taken_from_the_reflected_wave_is_radiated_upwards_or_absorbed() {
     let source = PlaneWave::new(Vec3::new(0.3, 1.0, -0.8), Vec3::new(1.0, -0.3, 0.0), 1.0.into()).unwrap();
     let grounded = Grounded::new(Box::new(source), ground);
     let ball = moved(&sphere(0.06, WAVELENGTH / 9.0).unwrap(), Vec3::Z * 0.05);
-    let basis = Basis::new(ball).unwrap().above(ground).unwrap();
     for body in [
         Body::Conductor(Equation::Electric),
         Body::Imperfect(Condition::Sheet(100.0.into())),
         Body::Imperfect(Condition::Body(100.0.into())),
         Body::Dielectric(2.0),
     ] {
+        let basis = basis_of(&ball, body).above(ground).unwrap();
         let (currents, absorbed) = currents(&basis, body, &[&grounded]);
         let power = currents.radiated_power().unwrap() + absorbed;
         let ratio = power / currents.extinguished_power(&source).unwrap();

@@ -10,7 +10,8 @@ use fredholm_study::{CouplingStorage, Error, Quiet, ResultFolder, SolvedWaves, W
 use fredholm_waves::material::{conductor_impedance, sheet_impedance};
 use fredholm_waves::source::PlaneWave;
 use fredholm_waves::{
-    Complex64, ConductingSphere, DielectricSphere, ImpedanceSphere, ResistiveShell, Source, Wave,
+    Complex64, ConductingSphere, DielectricSphere, ImpedanceSphere, LayeredSphere, ResistiveShell, Source,
+    Wave,
 };
 
 const SOURCE: &str = "[[source]]\nkind = \"plane-wave\"\ntravel = [0, 1, 0]\npolarisation = [0, 0, 1]\n";
@@ -101,6 +102,92 @@ fn dielectric_bodies_have_the_field_of_the_series_near_and_far_and_inside() {
     let bare = ball("pmchwt", radius, "lambda/18", 1.0, "");
     let refused = stored(folder.path(), &bare, None).map(drop).unwrap_err().to_string();
     assert!(refused.contains("half_space"), "{refused}");
+}
+
+const CORE: &str = "material = \"core\"\n[materials.core]\nhalf_space = { permittivity = [5, -0.5] }\n";
+
+/// A ball of two layers, the inner one perhaps a conductor, against its series outside, and the
+/// error stated of it.
+#[test]
+fn coated_balls_have_the_field_of_the_series_and_a_stated_error_that_holds() {
+    let folder = tempfile::tempdir().unwrap();
+    let wave = Wave::new(1e9).unwrap();
+    let source = PlaneWave::new(Vec3::Y, Vec3::Z, 1.0.into()).unwrap();
+    let [coat, core] = [Complex64::new(2.5, -0.1), Complex64::new(5.0, -0.5)];
+    let (inner, outer) = (0.04, 0.06);
+    for (inside, of_core) in [("", None), (CORE, Some(core))] {
+        for edge in ["lambda/12", "lambda/20"] {
+            let more = format!(
+                "material = \"coat\"\n[[surface]]\nname = \"core\"\n\
+                 sphere = {{ centre = [0, 0, 0], radius = {inner} }}\nedge = \"{edge}\"\n{inside}\
+                 [materials.coat]\nhalf_space = {{ permittivity = [2.5, -0.1] }}\n"
+            );
+            let found = solved(folder.path(), &ball("pmchwt", outer, edge, 5.0, &more));
+            let layers = vec![(outer, coat)];
+            let exact = match of_core {
+                None => LayeredSphere::new(Some(inner), layers),
+                Some(core) => LayeredSphere::new(None, [vec![(inner, core)], layers].concat()),
+            }
+            .unwrap();
+            let series = |p: [f64; 3]| {
+                let e = exact.scattered(&wave, &source, Vec3::from_array(p)).components();
+                [e[0].re, e[0].im, e[1].re, e[1].im, e[2].re, e[2].im]
+            };
+            let series: Vec<[f64; 6]> = found.near().iter().map(|row| series(row.position)).collect();
+            let error = gap(&scattered(&found), &series);
+            let [stated] = found.stated_errors() else { panic!("{:?}", found.stated_errors()) };
+            println!("{inside:?} {edge}: {error:.5}, stated {:.5}", stated.relative);
+            assert!(error < 0.03 && error < stated.relative && stated.relative < 10.0 * error);
+        }
+    }
+}
+
+/// Two blocks that touch: of one dielectric in two materials as of one, and what is said of blocks
+/// that do not fit.
+#[test]
+fn blocks_that_touch_are_solved_together() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = |second: &str, box_: &str, edge: &str| {
+        format!(
+            "[wave]\nfrequencies_hz = [1e9]\nmethod = \"pmchwt\"\n{SOURCE}\
+             [[surface]]\nname = \"low\"\nbox = {{ min = [0, 0, 0], max = [0.1, 0.1, 0.05] }}\n\
+             edge = 0.025\nmaterial = \"glass\"\n\
+             [[surface]]\nname = \"high\"\nbox = {{ {box_} }}\nedge = {edge}\n{second}\
+             [materials.glass]\nhalf_space = {{ permittivity = [3, -0.1] }}\n\
+             [materials.other]\nhalf_space = {{ permittivity = [3, -0.1] }}\n\
+             [[receiver]]\nname = \"line\"\nline = {{ from = [0.05, 0.05, -0.3], to = [0.05, 0.05, 0.31], points = 24 }}\n"
+        )
+    };
+    let above = "min = [0, 0, 0.05], max = [0.1, 0.1, 0.1]";
+    let one = solved(folder.path(), &scene("material = \"glass\"\n", above, "0.025"));
+    let two = solved(folder.path(), &scene("material = \"other\"\n", above, "0.025"));
+    let difference = gap(&scattered(&two), &scattered(&one));
+    assert!(difference > 0.0 && difference < 0.03, "{difference}");
+    // On a conductor they are not the same.
+    let metal = solved(folder.path(), &scene("", above, "0.025"));
+    assert!(gap(&scattered(&metal), &scattered(&one)) > 0.3);
+    // A block of free space on a conductor is none: the error is that of the edges, and is stated.
+    let airy = scene("", above, "0.025").replace("[3, -0.1]", "[1, 0]");
+    let alone = "[wave]\nfrequencies_hz = [1e9]\nmethod = \"cfie\"\n".to_owned()
+        + SOURCE
+        + &airy[airy.find("[[surface]]\nname = \"high\"").unwrap()..];
+    let alone = alone.replace("edge = 0.025", "edge = 0.01");
+    let (airy, alone) = (solved(folder.path(), &airy), solved(folder.path(), &alone));
+    let error = gap(&scattered(&airy), &scattered(&alone));
+    let [stated] = airy.stated_errors() else { panic!("{:?}", airy.stated_errors()) };
+    println!("free space on a conductor: {error:.5}, stated {:.5}", stated.relative);
+    assert!(error < stated.relative && error < 0.05);
+    let refused = |box_: &str, edge: &str| {
+        let text = scene("material = \"other\"\n", box_, edge);
+        stored(folder.path(), &text, None).map(drop).unwrap_err().to_string()
+    };
+    assert!(
+        refused(above, "0.02").contains("`low` and `high` lie on each other"),
+        "{}",
+        refused(above, "0.02")
+    );
+    let crossing = refused("min = [0.013, 0.01, 0.017], max = [0.12, 0.12, 0.1]", "0.025");
+    assert!(crossing.contains("cross"), "{crossing}");
 }
 
 /// Thin sheets are solved by the electric equation unasked, at several frequencies, whole and

@@ -67,12 +67,16 @@ pub(super) fn check(scene: &WaveScene) -> Result<Vec<Warning>, SceneError> {
     films_on_bodies(scene)?;
     let bodies = pieces.bodies(scene);
     warnings.extend(inside_out(scene, &bodies));
-    warnings.extend(overlaps(scene, &pieces)?);
-    warnings.extend(nested(scene, &bodies)?);
-    warnings.extend(sheets_inside(scene, &pieces, &bodies));
+    // Where there are fields inside of bodies, these may be in each other and touch.
+    let solid = scene.settings().method.is_some_and(Method::knows_insides);
+    warnings.extend(overlaps(scene, &pieces, solid)?);
+    if !solid {
+        warnings.extend(nested(scene, &bodies)?);
+        warnings.extend(sheets_inside(scene, &pieces, &bodies));
+        warnings.extend(receivers(scene, &bodies));
+    }
     sources(scene, &pieces, &bodies)?;
     warnings.extend(weak_or_near(scene, &pieces));
-    warnings.extend(receivers(scene, &bodies));
     Ok(warnings)
 }
 
@@ -495,15 +499,15 @@ impl WaveScene {
     }
 }
 
-/// Faces that lie on each other, and closed bodies that cross.
-fn overlaps(scene: &WaveScene, pieces: &Pieces) -> Result<Vec<Warning>, SceneError> {
+/// Faces that lie on each other, unless bodies may touch, and closed bodies that cross.
+fn overlaps(scene: &WaveScene, pieces: &Pieces, touching: bool) -> Result<Vec<Warning>, SceneError> {
     let contacts = Contacts::of(&pieces.patches);
     let mut pairs: BTreeMap<[usize; 2], &str> = BTreeMap::new();
     let key = |pair: [u32; 2]| {
         let [a, b] = pair.map(|piece| pieces.part_of[piece as usize]);
         [a.min(b), a.max(b)]
     };
-    for overlap in &contacts.overlaps {
+    for overlap in contacts.overlaps.iter().filter(|_| !touching) {
         pairs.insert(key(overlap.pieces), "lie on each other, so that their currents count twice");
     }
     for crossing in &contacts.crossings {

@@ -25,8 +25,8 @@ pub enum Method {
     /// The combined field integral equation of closed conductors, by boundary elements; it has no
     /// resonances.
     Cfie,
-    /// The equations of Poggio, Miller, Chang, Harrington, Wu and Tsai for both currents of a
-    /// homogeneous dielectric body, by boundary elements.
+    /// The equations of Poggio, Miller, Chang, Harrington, Wu and Tsai for both currents of
+    /// dielectric bodies, and of conductors next to and inside of them, by boundary elements.
     Pmchwt,
     /// M = 2 n × E with n turned to the observer (G. Viennot, Limoges 2012).
     Thesis,
@@ -62,6 +62,11 @@ impl Method {
     #[must_use]
     pub fn is_equation(self) -> bool {
         !matches!(self, Self::PhysicalOptics | Self::Thesis)
+    }
+
+    /// Whether it finds the fields inside of bodies.
+    pub(super) fn knows_insides(self) -> bool {
+        self == Self::Pmchwt
     }
 }
 

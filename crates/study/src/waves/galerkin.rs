@@ -1,6 +1,6 @@
 //! Boundary elements: the electric field integral equation of conductors, thin sheets and bodies
-//! with a surface impedance, the combined one of conductors, and the equations of homogeneous
-//! dielectric bodies, with Rao–Wilton–Glisson functions on triangles (crate `moments`,
+//! with a surface impedance, the combined one of conductors, and the equations of dielectric bodies
+//! and conductors together, with Rao–Wilton–Glisson functions on triangles (crate `moments`,
 //! docs/moments.md), their matrix stored or compressed (crate `compressed`).
 
 use std::slice;
@@ -9,7 +9,8 @@ use fredholm_compressed::{BlockDiagonal, CompressionError, Hierarchical, Precond
 use fredholm_linop::{Dense, MultiVector, Solver};
 use fredholm_mesh::Vec3;
 use fredholm_moments::{
-    Basis, Condition, Conductor, Currents, Dielectric, Equation, Imperfect, MomentsError, Operator, Surface,
+    Basis, Composite, Condition, Conductor, Currents, Equation, Filling, Imperfect, MomentsError, Operator,
+    Placed, Regions, Surface,
 };
 use fredholm_report::{MonostaticRow, WaveCurrents};
 use fredholm_scene::ErrorKind as SceneFault;
@@ -51,14 +52,104 @@ const MOST_RHS_OF_COMPRESSED: usize = 4;
 const DIRECTIONS: usize = 200;
 
 /// The functions on the triangles of a mesh.
-fn basis(model: &Model, geometry: &Geometry) -> Result<Basis, Error> {
+fn basis(model: &Model, geometry: &Geometry, equations: Equations) -> Result<Basis, Error> {
     let surface = Surface::from_mesh(&geometry.mesh).map_err(|error| refused(model, &error))?;
-    let basis = Basis::new(surface);
+    let basis = if equations == Equations::Dielectric {
+        let fillings = fillings(model, geometry)?;
+        let regions = Regions::new(&surface, &fillings);
+        regions.map_err(|error| refused_bodies(model, geometry, &error)).map(Basis::between)?
+    } else {
+        Basis::new(surface)
+    };
     let above = |basis: Basis| match model.scene.ground() {
         Some(ground) => basis.above(ground),
         None => Ok(basis),
     };
     basis.and_then(above).map_err(|error| refused(model, &error))
+}
+
+/// What every triangle bounds, for the equations of dielectrics: those of one material are one
+/// dielectric.
+fn fillings(model: &Model, geometry: &Geometry) -> Result<Vec<Filling>, Error> {
+    let materials: Vec<usize> = geometry.materials().collect();
+    // What a material is does not depend on the frequency.
+    let Some(band) = model.bands.first() else { return Ok(Vec::new()) };
+    let mut fillings = Vec::with_capacity(materials.len());
+    for (surface, (&material, kind)) in materials.iter().zip(&geometry.kinds()).enumerate() {
+        fillings.push(match (&band.materials[material], kind) {
+            (Material::Conductor, Kind::Closed) => Filling::Conductor,
+            (Material::Conductor, Kind::Sheet) => Filling::Sheet,
+            (Material::HalfSpace(_), Kind::Closed) => Filling::Dielectric(material),
+            (Material::HalfSpace(_), Kind::Sheet) => {
+                let what = "a half_space fills a closed body, and this is a thin sheet";
+                let help =
+                    "close it, or take sheet = { permittivity = …, thickness_m = … } in method = \"efie\"";
+                return Err(scene_failure(model.scene.error(
+                    About::Surface(surface),
+                    SceneFault::Value,
+                    what,
+                    help,
+                )));
+            }
+            _ => {
+                return Err(unsuited(
+                    model,
+                    surface,
+                    "knows dielectric bodies and conductors only",
+                    "give it a half_space, or none; method = \"efie\" knows sheets and surface impedances",
+                ));
+            }
+        });
+    }
+    if !fillings.iter().any(|filling| matches!(filling, Filling::Dielectric(_))) {
+        let what = "is for dielectric bodies, and there is none";
+        let help = "give the material of a closed body a half_space, whose permittivity fills it, or take method = \"efie\" or \"cfie\"";
+        return Err(unsuited(model, 0, what, help));
+    }
+    Ok(on_triangles(geometry, &fillings))
+}
+
+/// What is said of every surface, of each of the triangles.
+fn on_triangles<T: Copy>(geometry: &Geometry, of_surface: &[T]) -> Vec<T> {
+    let mesh = &geometry.mesh;
+    let of_leaf = |(leaf, patch): (usize, &fredholm_mesh::Patch)| {
+        // Quadrilaterals are two triangles.
+        std::iter::repeat_n(of_surface[mesh.surface_of(leaf)], patch.sides() - 2)
+    };
+    mesh.patches().enumerate().flat_map(of_leaf).collect()
+}
+
+/// What is wrong with bodies, at the surface that it is about.
+fn refused_bodies(model: &Model, geometry: &Geometry, error: &MomentsError) -> Error {
+    let numbers: Vec<usize> = (0..geometry.kinds().len()).collect();
+    let surface_of = on_triangles(geometry, &numbers);
+    let names: Vec<&str> = model.scene.surface_names().collect();
+    let name = |triangle: usize| names[surface_of[triangle]];
+    let (triangle, what) = match *error {
+        MomentsError::Unmatched { first, second } => {
+            let [a, b] = [first, second].map(name);
+            (
+                second,
+                format!("faces of `{a}` and `{b}` lie on each other, but are cut into different triangles"),
+            )
+        }
+        MomentsError::Crossing { first, second } => {
+            (second, format!("`{}` and `{}` cross", name(first), name(second)))
+        }
+        MomentsError::Repeated { first, second } => {
+            (second, format!("`{}` and `{}` have the same face twice", name(first), name(second)))
+        }
+        MomentsError::NotClosed { triangle, .. } => (
+            triangle,
+            format!("the body with `{}` is not closed by surfaces of its material", name(triangle)),
+        ),
+        MomentsError::InsideOut { triangle } => {
+            (triangle, format!("the normals of the body with `{}` point inwards", name(triangle)))
+        }
+        _ => return refused(model, error),
+    };
+    let help = error.help().unwrap_or("correct the surfaces");
+    scene_failure(model.scene.error(About::Surface(surface_of[triangle]), SceneFault::Geometry, what, help))
 }
 
 /// What the library of boundary elements says.
@@ -74,7 +165,7 @@ pub(crate) enum Equations {
     Electric,
     /// The combined field equation of closed conductors.
     Combined,
-    /// Those of a homogeneous dielectric body.
+    /// Those of dielectric bodies, and conductors with them.
     Dielectric,
 }
 
@@ -86,7 +177,7 @@ pub(super) fn run(
     equations: Equations,
     (stages, outcome): (&mut Stages, &mut Outcome),
 ) -> Result<(), Error> {
-    let basis = basis(model, geometry)?;
+    let basis = basis(model, geometry, equations)?;
     let first = name.is_empty();
     for band in bands {
         let body = Body::new(model, (geometry, &basis), band, equations)?;
@@ -103,7 +194,7 @@ const SAMPLED_GROUPS: usize = 6;
 
 /// Seconds that `spent` tells the matrices of the model take at its frequencies, from some rows.
 pub(super) fn assembly(model: &Model, equations: Equations, spent: &dyn Fn() -> f64) -> Result<f64, Error> {
-    let basis = basis(model, &model.geometry)?;
+    let basis = basis(model, &model.geometry, equations)?;
     let mut seconds = 0.0;
     for band in &model.bands {
         let body = Body::new(model, (&model.geometry, &basis), band, equations)?;
@@ -159,7 +250,7 @@ fn is_perfect(geometry: &Geometry, band: &Band) -> bool {
 enum Body<'a> {
     Conductor(Conductor<'a>),
     Imperfect(Imperfect<'a>),
-    Dielectric(Dielectric<'a>),
+    Dielectric(Composite<'a>),
 }
 
 impl<'a> Body<'a> {
@@ -185,8 +276,13 @@ impl<'a> Body<'a> {
             }
             Equations::Combined => conductor(Equation::default()),
             Equations::Dielectric => {
-                let permittivity = permittivity(model, band)?;
-                Dielectric::new(basis, band.wave, permittivity, INTEGRAL_ERROR)
+                let permittivity = |material: &Material| match material {
+                    Material::HalfSpace(permittivity) => *permittivity,
+                    // Of no region.
+                    _ => Complex64::ONE,
+                };
+                let permittivities: Vec<Complex64> = band.materials.iter().map(permittivity).collect();
+                Composite::new(basis, band.wave, &permittivities, INTEGRAL_ERROR)
                     .map(Self::Dielectric)
                     .map_err(|error| refused(model, &error))
             }
@@ -257,12 +353,7 @@ fn conditions(model: &Model, geometry: &Geometry, band: &Band) -> Result<Vec<Con
             }
         });
     }
-    let mesh = &geometry.mesh;
-    let of_leaf = |(leaf, patch): (usize, &fredholm_mesh::Patch)| {
-        // Quadrilaterals are two triangles.
-        std::iter::repeat_n(conditions[mesh.surface_of(leaf)], patch.sides() - 2)
-    };
-    Ok(mesh.patches().enumerate().flat_map(of_leaf).collect())
+    Ok(on_triangles(geometry, &conditions))
 }
 
 /// An equation and a surface that do not go together.
@@ -277,28 +368,8 @@ fn all_of(model: &Model, band: &Band, suits: impl Fn(&Material) -> bool) -> Resu
     let Some(surface) = model.scene.materials_of_surfaces().position(|material| other(&material)) else {
         return Ok(());
     };
-    let (what, help) = if model.galerkin == Some(Equations::Dielectric) {
-        (
-            "knows one homogeneous dielectric only, the same on all surfaces",
-            "give all surfaces one material with half_space, whose permittivity is that of the body",
-        )
-    } else {
-        (
-            "knows perfect conductors only",
-            "leave the material out, or take method = \"efie\" for thin sheets and surface impedances, \"physical-optics\" for any material",
-        )
-    };
-    Err(unsuited(model, surface, what, help))
-}
-
-/// The permittivity of the body that all surfaces bound.
-fn permittivity(model: &Model, band: &Band) -> Result<Complex64, Error> {
-    let first = model.scene.materials_of_surfaces().next().map(|material| &band.materials[material]);
-    let Some(Material::HalfSpace(permittivity)) = first else {
-        return all_of(model, band, |_| false).map(|()| Complex64::ONE);
-    };
-    all_of(model, band, |material| *material == Material::HalfSpace(*permittivity))?;
-    Ok(*permittivity)
+    let help = "leave the material out, or take method = \"efie\" for thin sheets and surface impedances, \"pmchwt\" for solid dielectrics, \"physical-optics\" for any material";
+    Err(unsuited(model, surface, "knows perfect conductors only", help))
 }
 
 /// One frequency.
@@ -370,7 +441,7 @@ pub(super) fn plan(model: &Model, equations: Equations) -> Result<(Plan, Couplin
     let (Method::Solver { solver, .. }, Some(band)) = (&model.method, model.bands.first()) else {
         return Err(Error::new(ErrorKind::Input, "an equation is solved, not summed bounce by bounce"));
     };
-    let basis = basis(model, &model.geometry)?;
+    let basis = basis(model, &model.geometry, equations)?;
     let body = Body::new(model, (&model.geometry, &basis), band, equations)?;
     let unknowns = body.operator().dim();
     let (plan, storage) = whole_plan(model, unknowns, &**solver);
@@ -567,7 +638,7 @@ impl Task<'_> {
         Ok(())
     }
 
-    /// The scattered field; in a dielectric body that is the field there less the incident one.
+    /// The scattered field; inside of bodies that is the field there less the incident one.
     fn near(&self, currents: &Currents<'_>, receiver: usize, points: &[Vec3]) -> Result<Vec<Field>, Error> {
         let refused = |error: MomentsError| {
             let (about, what) = (About::Receiver(receiver), error.to_string());
@@ -576,13 +647,12 @@ impl Task<'_> {
         };
         let mut fields = currents.fields(points).map_err(refused)?;
         if let Body::Dielectric(body) = &self.body {
-            let held = |&i: &usize| self.basis.surface().holds(points[i]);
-            let inside: Vec<usize> = (0..points.len()).filter(held).collect();
-            let places: Vec<Vec3> = inside.iter().map(|&i| points[i]).collect();
-            let found = body.fields_inside(currents, &places).map_err(refused)?;
+            let found = body.fields_inside(currents, points).map_err(refused)?;
             let sources = self.model.sources();
-            for (&i, field) in inside.iter().zip(found) {
-                fields[i] = field - incident(&sources, &self.band.wave, points[i]);
+            for (i, total) in found.into_iter().enumerate() {
+                if let Some(total) = total {
+                    fields[i] = total - incident(&sources, &self.band.wave, points[i]);
+                }
             }
         }
         Ok(fields)
@@ -636,7 +706,8 @@ impl Task<'_> {
         Ok((rows, solution, stated.estimated(receiver, frequency)))
     }
 
-    /// J and M at the centres of the facets: of a quadrilateral the mean of its two triangles.
+    /// J and M at the centres of the facets, on the side of their normals: of a quadrilateral the
+    /// mean of its two triangles.
     fn on_facets(&self, currents: &Currents<'_>) -> Vec<Current> {
         let mut next = 0;
         let mut facet = |sides: usize| {
@@ -644,14 +715,25 @@ impl Task<'_> {
             let triangles = next..next + count;
             next += count;
             let [mut j, mut m] = [ComplexVector::ZERO; 2];
-            for triangle in triangles {
-                j += currents.electric(triangle);
-                m += currents.magnetic(triangle);
+            for current in triangles.filter_map(|triangle| self.on_triangle(currents, triangle)) {
+                j += current.j;
+                m += current.m;
             }
             let share = 1.0 / count as f64;
             Current { j: j * share, m: m * share }
         };
         self.geometry.mesh.patches().map(|patch| facet(patch.sides())).collect()
+    }
+
+    /// J and M on a triangle of the mesh; none where it bounds nothing.
+    fn on_triangle(&self, currents: &Currents<'_>, triangle: usize) -> Option<Current> {
+        let Some(regions) = self.basis.regions() else {
+            return Some(Current { j: currents.electric(triangle), m: currents.magnetic(triangle) });
+        };
+        let Placed { triangle, turned } = regions.placed()[triangle]?;
+        // Of conductors it is the current of both sides.
+        let sign = if turned && !regions.faces()[triangle].conductor { -1.0 } else { 1.0 };
+        Some(Current { j: currents.electric(triangle) * sign, m: currents.magnetic(triangle) * sign })
     }
 }
 
