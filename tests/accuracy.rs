@@ -50,7 +50,7 @@ impl<'a> Sample<'a> {
             match integrator.exchange(i, j, &mut work).method {
                 Method::Hidden => {}
                 Method::Gauss | Method::Contour => open.push([i, j]),
-                Method::Clipped | Method::Sampled => behind.push([i, j]),
+                Method::Clipped | Method::Sampled | Method::Segments => behind.push([i, j]),
             }
         }
         open.truncate(MOST_PAIRS);

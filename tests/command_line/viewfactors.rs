@@ -96,6 +96,27 @@ fn the_errors_of_the_pairs_of_a_row_add_up_to_its_own() {
 }
 
 #[test]
+fn rows_with_a_budget_are_within_what_is_stated_and_pairs_less_exact() {
+    let bench = bench();
+    let exact = computed(&bench, &data("cubebox8.vs3"), &["--tolerance", "1e-6"]);
+    let loose = computed(&bench, &data("cubebox8.vs3"), &["--tolerance", "1e-2", "--method", "row-budget"]);
+    assert!(record(&bench)["pairs"]["segments"].as_u64().unwrap() > 1000);
+    let (mut largest, mut sum) = (0.0_f64, 0.0);
+    for i in 0..exact.surfaces.names.len() {
+        let (found, truth) = (row(&loose, i), row(&exact, i));
+        let off: f64 = found.iter().zip(&truth).map(|(a, b)| a - b).sum();
+        assert!(
+            off.abs() <= loose.surfaces.row_error[i] + exact.surfaces.row_error[i],
+            "{i}: {off} {}",
+            loose.surfaces.row_error[i]
+        );
+        largest = largest.max(loose.surfaces.row_error[i]);
+        sum += found.iter().zip(&truth).map(|(a, b)| (a - b).abs()).sum::<f64>();
+    }
+    assert!(largest < 0.05 && sum > 0.0, "{largest} {sum}");
+}
+
+#[test]
 fn the_walls_of_a_cube_add_up_from_their_patches() {
     let bench = bench();
     let factors = computed(&bench, &data("cube8.vs3"), &["--tolerance", "1e-6"]);

@@ -14,6 +14,8 @@ use rayon::prelude::*;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+/// Standard errors that are stated.
+const STANDARD_ERRORS: f64 = 3.0;
 /// Patches of a panel at most.
 const PATCHES_OF_A_PANEL: usize = 32;
 /// Entries that wait for their place in the matrix at most, as far as a batch of panels can tell.
@@ -35,6 +37,8 @@ pub struct MethodCounts {
     pub clipped: u64,
     /// Pairs with sampled visibility.
     pub sampled: u64,
+    /// Pairs with the visibility of few segments.
+    pub segments: u64,
 }
 
 impl MethodCounts {
@@ -45,6 +49,7 @@ impl MethodCounts {
             Method::Contour => &mut self.contour,
             Method::Clipped => &mut self.clipped,
             Method::Sampled => &mut self.sampled,
+            Method::Segments => &mut self.segments,
         } += 1;
     }
 
@@ -54,10 +59,11 @@ impl MethodCounts {
         self.contour += other.contour;
         self.clipped += other.clipped;
         self.sampled += other.sampled;
+        self.segments += other.segments;
     }
 
     fn sum(&self) -> u64 {
-        self.hidden + self.gauss + self.contour + self.clipped + self.sampled
+        self.hidden + self.gauss + self.contour + self.clipped + self.sampled + self.segments
     }
 }
 
@@ -66,7 +72,8 @@ impl MethodCounts {
 pub struct Assembled<S> {
     /// G_ij = A_i F_ij, m².
     pub matrix: PackedSymmetric<S>,
-    /// Σ_j |error of G_ij| as estimated, m², per element.
+    /// Σ_j |error of G_ij| as estimated, m², per element; of pairs by segments, whose errors are
+    /// independent, three times the root of the sum of their squares.
     pub error: Vec<f64>,
     /// Largest estimated error of a form factor F_ij.
     pub largest: f64,
@@ -143,7 +150,8 @@ fn assembly<S: Storage>(
     }
     progress.finish()?;
     total.methods.hidden += pairs(n) - total.methods.sum();
-    let (matrix, Report { error, largest, methods }) = (PackedSymmetric::new(n, packed.values)?, total);
+    let matrix = PackedSymmetric::new(n, packed.values)?;
+    let (error, Report { largest, methods, .. }) = (total.errors(), total);
     Ok((Assembled { matrix, error, largest, methods }, packed.errors))
 }
 
@@ -255,32 +263,51 @@ impl<S: Storage> Strip<S> {
         }
         let values = exchanges.iter().map(|exchange| S::from_f64(exchange.value)).collect();
         let kept = if self.keep_errors { &exchanges[..] } else { &[] };
-        let errors = kept.iter().map(|exchange| exchange.error).collect();
+        let errors = kept.iter().map(stated).collect();
         self.rows.push(Row { patch: i, columns, values, errors });
     }
 }
 
+/// The stated error of one exchange, m².
+fn stated(exchange: &Exchange) -> f64 {
+    if exchange.method == Method::Segments { STANDARD_ERRORS * exchange.error } else { exchange.error }
+}
+
 /// What one panel knows of its pairs.
 struct Report {
+    /// Sums of errors, m².
     error: Vec<f64>,
+    /// Sums of the squares of standard errors, m⁴.
+    variance: Vec<f64>,
     largest: f64,
     methods: MethodCounts,
 }
 
 impl Report {
     fn new(n: usize) -> Self {
-        Self { error: vec![0.0; n], largest: 0.0, methods: MethodCounts::default() }
+        Self { error: vec![0.0; n], variance: vec![0.0; n], largest: 0.0, methods: MethodCounts::default() }
     }
 
     fn add(&mut self, i: usize, j: usize, exchange: &Exchange, area: f64) {
-        self.largest = self.largest.max(exchange.error / area);
-        self.error[i] += exchange.error;
-        self.error[j] += exchange.error;
+        self.largest = self.largest.max(stated(exchange) / area);
+        let (sums, part) = match exchange.method {
+            Method::Segments => (&mut self.variance, exchange.error * exchange.error),
+            _ => (&mut self.error, exchange.error),
+        };
+        sums[i] += part;
+        sums[j] += part;
         self.methods.add(exchange.method);
+    }
+
+    /// The stated errors of all rows, m².
+    fn errors(&self) -> Vec<f64> {
+        let row = |(error, variance): (&f64, &f64)| error + STANDARD_ERRORS * variance.sqrt();
+        self.error.iter().zip(&self.variance).map(row).collect()
     }
 
     fn merge(&mut self, other: &Self) {
         self.error.iter_mut().zip(&other.error).for_each(|(a, b)| *a += b);
+        self.variance.iter_mut().zip(&other.variance).for_each(|(a, b)| *a += b);
         self.largest = self.largest.max(other.largest);
         self.methods.merge(&other.methods);
     }

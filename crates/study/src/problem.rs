@@ -110,7 +110,7 @@ impl Problem {
     /// What computes the form factors of the elements.
     pub(crate) fn integrator(&self) -> PairIntegrator<'_> {
         let tolerance = self.options.form_factor_tolerance;
-        PairIntegrator::new(self.mesh.patches(), &self.occluders, tolerance)
+        PairIntegrator::new(self.mesh.patches(), &self.occluders, tolerance).with_row_budget()
     }
 
     /// The elements.

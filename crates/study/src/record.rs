@@ -121,8 +121,8 @@ fn large(solution: &Solution) -> Option<String> {
     })
 }
 
-/// Row errors, in tolerances, that are reported: the tolerance is a pair's, and the errors of a row
-/// add up to about twice as much.
+/// Row errors, in tolerances, that are reported: the stated errors of exact pairs of a row add up to
+/// about twice the tolerance.
 const REPORTED_ROW_ERROR: f64 = 3.0;
 
 /// Whether the form factors came out less exact than asked for.
@@ -131,7 +131,7 @@ fn inexact(options: &SolveSettings, solution: &Solution) -> Option<String> {
     let error = solution.row_error.iter().copied().fold(0.0, f64::max);
     (error > (REPORTED_ROW_ERROR * asked).max(ROUNDING)).then(|| {
         format!(
-            "the estimated error of a row of form factors is {error:.1e}, where {asked:.1e} was asked for a pair; \
+            "the estimated error of a row of form factors is {error:.1e}, where {asked:.1e} was asked for; \
              cut the surfaces more finely where they almost touch"
         )
     })
@@ -232,6 +232,7 @@ pub(crate) fn pairs(methods: &MethodCounts) -> BTreeMap<String, u64> {
         ("contour", methods.contour),
         ("clipped", methods.clipped),
         ("sampled", methods.sampled),
+        ("segments", methods.segments),
     ];
     counts.map(|(name, count)| (name.to_owned(), count)).into()
 }

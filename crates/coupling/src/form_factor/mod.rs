@@ -19,6 +19,7 @@ mod pieces;
 mod point_polygon;
 mod rung;
 mod sampled;
+mod segments;
 mod shadow;
 mod small_receiver;
 mod together;

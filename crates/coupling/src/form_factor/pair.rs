@@ -7,15 +7,22 @@
 //! | nothing between, close, touching or crossing each other's plane | contour integral on the parts that face each other |
 //! | bodies between | the unoccluded value less its hidden part: exact shadows inside, rules between critical lines outside |
 //! | many bodies between | sampled share of the unoccluded value, where that is exact enough |
+//! | bodies between, in rows that have a budget | share from few segments, where the pair matters little |
 //!
 //! The tolerance T is relative to the exchange the two patches would have squarely facing each
 //! other, A_i A_j / (π d²), or the smaller area where that is less: stated errors of a row of F
 //! then add up to about 2 T. It is rounded down to a power of ten: a little more accuracy asked for
 //! then never gives a little less.
+//!
+//! In the assembly of a matrix, rows may have a [budget](PairIntegrator::with_row_budget): a pair
+//! behind bodies then gets as many segments as it contributes to the row of its smaller patch, and
+//! exact shadows where these are cheaper. With n = λp segments for a pair of form factor p, the
+//! variance of a row is s² Σ p²/n = s² Σ p/λ ≤ s²/λ, with s² ≤ ¼ that of one segment.
 
 use super::hidden::{HiddenWork, Occluded, hidden_exchange};
 use super::rung::rung;
 use super::sampled::sampled;
+use super::segments::Blockers;
 use super::small_receiver::small_receiver;
 use super::{ErrorModel, Side, Unoccluded, Work, facing_exchange, front};
 use crate::occlusion::{Clusters, Sight};
@@ -27,6 +34,14 @@ use fredholm_visibility::body::{Bodies, Body, Face, Screen, Shadow, ShadowVolume
 
 /// Bodies up to which exact shadows are cheaper than sampling.
 const MOST_EXACT_BODIES: usize = 128;
+
+/// Segments of a pair over its form factor times the square of T: three standard errors of a row
+/// are then about T where a third of it is behind bodies.
+const SEGMENTS_OF_A_ROW: f64 = 0.35;
+/// Segments of a pair at least,
+const LEAST_SEGMENTS: f64 = 8.0;
+/// and at most: exact shadows take less time than more.
+const MOST_SEGMENTS: f64 = 4096.0;
 
 /// Tolerance of exchanges with nothing between, in T: a digit more costs them next to nothing.
 const OPEN_TOLERANCE: f64 = 0.1;
@@ -52,9 +67,12 @@ pub enum Method {
     Clipped,
     /// Sampled visibility.
     Sampled,
+    /// Visibility of few segments, their errors independent between pairs.
+    Segments,
 }
 
-/// A_i F_ij (m²), its estimated absolute error (m²) and where it comes from.
+/// A_i F_ij (m²), its estimated absolute error (m²; of [`Method::Segments`] one standard error) and
+/// where it comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exchange {
     /// A_i F_ij, m².
@@ -115,6 +133,16 @@ pub struct PairIntegrator<'a> {
     /// Bodies up to which exact shadows come first.
     few: usize,
     model: ErrorModel,
+    /// What rows have a budget by.
+    rows: Option<Rows>,
+}
+
+/// The budget of rows.
+#[derive(Debug)]
+struct Rows {
+    blockers: Blockers,
+    /// Segments of a pair over its form factor.
+    per_factor: f64,
 }
 
 impl<'a> PairIntegrator<'a> {
@@ -150,7 +178,16 @@ impl<'a> PairIntegrator<'a> {
             tolerance,
             few: MOST_EXACT_BODIES,
             model: ErrorModel::FITTED,
+            rows: None,
         }
+    }
+
+    /// Lets the assembly spend on a pair behind bodies what it contributes to its rows: T is then
+    /// the error of a row, not of each pair.
+    #[must_use]
+    pub fn with_row_budget(self) -> Self {
+        let per_factor = SEGMENTS_OF_A_ROW / (self.tolerance * self.tolerance);
+        Self { rows: Some(Rows { blockers: Blockers::new(&self.bodies), per_factor }), ..self }
     }
 
     /// Computes exact shadows behind any number of bodies.
@@ -268,8 +305,12 @@ impl<'a> PairIntegrator<'a> {
         open: Exchange,
         work: &mut Workspace,
     ) -> Exchange {
-        if open.method == Method::Hidden {
+        if open.method == Method::Hidden || bodies.is_empty() {
             return open;
+        }
+        if let Some(found) = self.rows.as_ref().and_then(|rows| self.by_segments(rows, [i, j], bodies, open))
+        {
+            return found;
         }
         let bodies: Vec<&Body> = bodies.iter().map(|&k| &self.bodies.as_slice()[k as usize]).collect();
         self.behind_bodies([self.side(i), self.side(j)], Outer::Clearer, &bodies, open, work)
@@ -292,6 +333,29 @@ impl<'a> PairIntegrator<'a> {
         share.unwrap_or_else(|| {
             let sides = if outer == Outer::First || clearer(a, b, bodies) { [a, b] } else { [b, a] };
             self.behind_all(sides, bodies, open, tolerance, work)
+        })
+    }
+
+    /// The share from few segments, where the pair matters little to its rows.
+    fn by_segments(
+        &self,
+        rows: &Rows,
+        [i, j]: [usize; 2],
+        bodies: &[u32],
+        open: Exchange,
+    ) -> Option<Exchange> {
+        let segments = (rows.per_factor * open.value / self.smaller_area(i, j)).max(LEAST_SEGMENTS);
+        if segments > MOST_SEGMENTS {
+            return None;
+        }
+        let [first, second] = [i.min(j), i.max(j)];
+        let key = (first as u64) << 32 | second as u64;
+        let pair = [self.patches[first], self.patches[second]];
+        let share = rows.blockers.share(pair, bodies, segments as usize, key)?;
+        Some(Exchange {
+            value: open.value * share.value,
+            error: open.value * share.deviation + open.error * share.value,
+            method: Method::Segments,
         })
     }
 

@@ -1,6 +1,6 @@
 //! The methods that form factors can be computed with. This is the one place that knows them.
 //!
-//! `auto` is the fast assembly. Every other method of [`fredholm_coupling::method`] computes A_i
+//! `auto` is the fast assembly, and `row-budget` the same to a tolerance of rows. Every other method of [`fredholm_coupling::method`] computes A_i
 //! F_ij (m²) of one pair after the other, for study. Each pair is computed once, from the smaller
 //! patch (of equal ones the first), so that the matrix is symmetric whether the method is or not.
 
@@ -15,13 +15,17 @@ use crate::error::{Error, ErrorKind};
 
 /// The cheapest method whose error estimate meets the tolerance, for each pair.
 pub(super) const AUTO: &str = "auto";
+/// The same where the tolerance is that of a row: few segments for pairs that matter little to it.
+pub(super) const BUDGET: &str = "row-budget";
 
 /// Rows that are computed before they are stored: enough to keep many threads busy.
 const ROWS_OF_A_BATCH: usize = 128;
 
 /// The names of all methods.
 pub(super) fn names() -> Vec<&'static str> {
-    methods().iter().map(|method| method.name()).collect()
+    let all = methods();
+    let names = all.iter().map(|method| method.name());
+    names.flat_map(|name| if name == AUTO { vec![AUTO, BUDGET] } else { vec![name] }).collect()
 }
 
 /// A method with its setting.
@@ -32,14 +36,15 @@ pub(super) struct Chosen {
 
 impl Chosen {
     /// The method of a name with the setting given, else the tolerance given, else its usual
-    /// setting. `None` for [`AUTO`].
+    /// setting. `None` for [`AUTO`] and [`BUDGET`].
     pub(super) fn new(
         name: &str,
         setting: Option<&str>,
         tolerance: Option<f64>,
     ) -> Result<Option<Self>, Error> {
-        if name == AUTO {
-            let refused = || Error::new(ErrorKind::Input, "--setting: the method auto takes --tolerance");
+        if name == AUTO || name == BUDGET {
+            let text = format!("--setting: the method {name} takes --tolerance");
+            let refused = || Error::new(ErrorKind::Input, text);
             return setting.map_or(Ok(None), |_| Err(refused()));
         }
         let method = method(name).map_err(|error| Error::new(ErrorKind::Input, error))?;

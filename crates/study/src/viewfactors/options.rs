@@ -17,12 +17,12 @@ const TOLERANCE: f64 = 1e-3;
 pub struct ViewFactorOptions {
     /// Scene, or mesh file whose faces are the patches.
     pub input: SceneSource,
-    /// Error asked for in a row. None: the input's, else 1e-3; of another method than `auto` its
+    /// Error asked for in a pair, of `row-budget` in a row. None: the input's, else 1e-3; of another method than `auto` its
     /// usual one.
     pub tolerance: Option<f64>,
     /// How form factors are computed, one of [`view_factor_methods`](super::view_factor_methods).
     pub method: String,
-    /// Setting of a method other than `auto`: its order, tolerance, samples or pixels. None: its
+    /// Setting of a method other than `auto` and `row-budget`: its order, tolerance, samples or pixels. None: its
     /// usual one.
     pub setting: Option<String>,
     /// What a row stands for.

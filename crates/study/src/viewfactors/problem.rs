@@ -10,7 +10,7 @@ use fredholm_scene::{Geometry, Rows, Surfaces};
 use fredholm_visibility::Occluders;
 
 use super::SKY;
-use super::method::Chosen;
+use super::method::{BUDGET, Chosen};
 use super::options::{Settings, ViewFactorOptions};
 use super::plan::{help, plan};
 use crate::error::{Error, ErrorKind};
@@ -67,7 +67,16 @@ impl Problem {
 
     /// What computes the form factors between surfaces.
     pub(super) fn integrator(&self) -> PairIntegrator<'_> {
-        PairIntegrator::new(self.surfaces.mesh.patches(), &self.occluders, self.options.tolerance)
+        self.budgeted(PairIntegrator::new(
+            self.surfaces.mesh.patches(),
+            &self.occluders,
+            self.options.tolerance,
+        ))
+    }
+
+    /// With a budget for rows, where that is asked for.
+    fn budgeted<'a>(&self, pairs: PairIntegrator<'a>) -> PairIntegrator<'a> {
+        if self.options.method == BUDGET { pairs.with_row_budget() } else { pairs }
     }
 
     /// The elements of the surfaces.
@@ -83,11 +92,12 @@ impl Problem {
     /// What computes the form factors to the sky, where there is one: the patches of the sky come
     /// last.
     pub(super) fn sky_integrator(&self) -> Option<PairIntegrator<'_>> {
-        let integrator = || PairIntegrator::new(self.patches(), &self.occluders, self.options.tolerance);
+        let pairs = || PairIntegrator::new(self.patches(), &self.occluders, self.options.tolerance);
+        let integrator = || self.budgeted(pairs());
         (!self.sky.is_empty()).then(integrator)
     }
 
-    /// The tolerance asked of a pair, where the method has one.
+    /// The tolerance asked of a pair, or of a row, where the method has one.
     pub(super) fn asked(&self) -> Option<f64> {
         match &self.method {
             None => Some(self.options.tolerance),

@@ -6,6 +6,7 @@ use fredholm_report::{Closure, ClosureChange, FormFactorError, ViewFactors, View
 use serde_json::Value;
 
 use super::compute::Solution;
+use super::method::BUDGET;
 use super::options::ViewFactorOptions;
 use super::problem::Problem;
 use crate::memory;
@@ -51,7 +52,7 @@ pub(super) fn record(
         point_closure_max: point_closure(factors),
         enforced: solution.enforced.clone(),
         warnings: warnings
-            .chain(inexact(&form_factor_error))
+            .chain(inexact(&form_factor_error, &problem.options.method))
             .chain(solution.enforced.as_ref().and_then(bent))
             .collect(),
         form_factor_error,
@@ -110,11 +111,12 @@ fn bent(change: &ClosureChange) -> Option<String> {
 }
 
 /// Whether the factors came out less exact than asked for.
-fn inexact(error: &FormFactorError) -> Option<String> {
+fn inexact(error: &FormFactorError, method: &str) -> Option<String> {
+    let of = if method == BUDGET { "row" } else { "pair" };
     let (found, asked) = (error.row_max?, error.tolerance?);
     (found > (REPORTED_ROW_ERROR * asked).max(ROUNDING)).then(|| {
         format!(
-            "the estimated error of a row is {found:.1e}, where {asked:.1e} was asked for a pair; cut the surfaces more finely where \
+            "the estimated error of a row is {found:.1e}, where {asked:.1e} was asked for a {of}; cut the surfaces more finely where \
              they almost touch"
         )
     })
