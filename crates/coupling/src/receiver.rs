@@ -20,6 +20,8 @@ use rayon::prelude::*;
 
 /// Heights below this part of the distance to the patch count as 0.
 const ZERO_HEIGHT: f64 = 1e-12;
+/// Part by which cones are wider than what they hold: far more than rounding.
+const CONE_MARGIN: f64 = 1e-9;
 /// Room between the scene and the sky, in diagonals of the scene.
 const SKY_MARGIN: f64 = 0.5;
 
@@ -87,7 +89,8 @@ impl Targets<'_> {
 
     /// The form factors of one receiver, behind these bodies of the occluders.
     pub(crate) fn row(&self, receiver: &Receiver, bodies: &Bodies) -> Vec<f64> {
-        let mut sight = Sight::default();
+        let cones = bodies.as_slice().iter().map(|body| Cone::around(receiver.point, body.corners()));
+        let mut sight = Sight { cones: cones.collect(), ..Sight::default() };
         let mut row = vec![0.0; self.rows];
         for (patch, &at) in self.patches.iter().zip(self.row_of) {
             row[at] += sight.factor(receiver, patch, self.occluders, bodies);
@@ -96,9 +99,41 @@ impl Targets<'_> {
     }
 }
 
+/// A cone from a point around some others, and the distances between which they are, m.
+#[derive(Clone, Copy, Debug)]
+struct Cone {
+    axis: Vec3,
+    /// Cosine and sine of half the angle, below a right one; none where the point is among the
+    /// others.
+    half: Option<[f64; 2]>,
+    near: f64,
+    far: f64,
+}
+
+impl Cone {
+    fn around(apex: Vec3, corners: &[Vec3]) -> Self {
+        let centre = corners.iter().sum::<Vec3>() / corners.len().max(1) as f64;
+        let square = corners.iter().map(|corner| corner.distance_squared(centre)).fold(0.0, f64::max);
+        let (radius, way) = (square.sqrt() * (1.0 + CONE_MARGIN), centre - apex);
+        let distance = way.length();
+        let sine = radius / distance;
+        let half = (sine < 1.0).then(|| [(1.0 - sine * sine).sqrt(), sine]);
+        Self { axis: way.normalize_or_zero(), half, near: distance - radius, far: distance + radius }
+    }
+
+    /// Whether no segment from the apex to what is in `target` meets what is in this one.
+    fn is_beside(&self, target: &Self) -> bool {
+        let (Some([cos, sin]), Some([other_cos, other_sin])) = (self.half, target.half) else { return false };
+        let apart = self.axis.dot(target.axis) < cos * other_cos - sin * other_sin - CONE_MARGIN;
+        apart || self.near > target.far
+    }
+}
+
 /// Buffers of one receiver.
 #[derive(Default)]
 struct Sight {
+    /// Around the bodies.
+    cones: Vec<Cone>,
     target: Vec<Vec3>,
     hiding: Hiding,
 }
@@ -121,10 +156,16 @@ impl Sight {
         if bodies.as_slice().is_empty() {
             return whole;
         }
+        let around = Cone::around(point, patch.corners());
+        let may = |(body, cone)| (!Cone::is_beside(cone, &around)).then_some(body);
+        let mut near = bodies.as_slice().iter().zip(&self.cones).filter_map(may).peekable();
+        if near.peek().is_none() {
+            return whole.max(0.0);
+        }
         let shaft = occluders.shaft_from(point, patch);
         let reaches = |body: &&Body| shaft.as_ref().is_some_and(|shaft| occluders.reaches(body, shaft));
         let screen = |body| Screen::new(body, &[point], &self.target, bodies.tolerance());
-        let between: Vec<Screen> = bodies.as_slice().iter().filter(reaches).map(screen).collect();
+        let between: Vec<Screen> = near.filter(reaches).map(screen).collect();
         let hidden = self.hiding.hidden_factor(point, normal, &self.target, between.iter().enumerate());
         (whole - hidden).max(0.0)
     }
