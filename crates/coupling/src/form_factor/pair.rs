@@ -366,7 +366,7 @@ impl<'a> PairIntegrator<'a> {
     /// The bodies that may come between two patches.
     fn between(&self, a: &Patch, b: &Patch) -> Vec<&Body> {
         let Some(shaft) = self.occluders.shaft_between(a, b) else { return Vec::new() };
-        self.bodies.as_slice().iter().filter(|body| self.occluders.reaches(body, &shaft)).collect()
+        self.occluders.reaching(&self.bodies, &shaft).collect()
     }
 
     /// The sampled share, where it meets the tolerance.

@@ -52,7 +52,7 @@ impl<'a> VisibleParts<'a> {
         self.between.clear();
         if let Some(shaft) = &shaft {
             let tolerance = self.bodies.tolerance();
-            let reaching = self.bodies.as_slice().iter().filter(|body| self.occluders.reaches(body, shaft));
+            let reaching = self.occluders.reaching(self.bodies, shaft);
             let screens = reaching.map(|body| Screen::new(body, from.corners(), &self.target, tolerance));
             self.between.extend(screens);
         }

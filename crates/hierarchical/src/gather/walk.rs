@@ -8,7 +8,6 @@ use fredholm_coupling::form_factor::point_to_polygon;
 use fredholm_coupling::kernel::lambert;
 use fredholm_coupling::polygon::{HalfSpace, clip, folded};
 use fredholm_mesh::{Patch, Vec3};
-use fredholm_visibility::body::Body;
 use std::f64::consts::PI;
 use std::ops::Range;
 
@@ -210,8 +209,7 @@ impl<'g> Gatherer<'g> {
             return None;
         }
         let shaft = occluders.shaft_from(point, patch);
-        let reaches = |body: &&Body| shaft.as_ref().is_some_and(|shaft| occluders.reaches(body, shaft));
-        let reaching = bodies.as_slice().iter().filter(reaches);
+        let reaching = shaft.iter().flat_map(|shaft| occluders.reaching(bodies, shaft));
         self.shadows.cast_on(&self.front, (point, normal), reaching, bodies.tolerance());
         let all: Vec<u32> = (0..self.shadows.len() as u32).collect();
         (all.len() <= MOST_EXACT_BODIES).then(|| self.shadows.factor(normal, &self.front, &all, flat))

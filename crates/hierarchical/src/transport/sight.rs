@@ -84,7 +84,7 @@ impl<'a> Viewer<'a> {
     fn behind_few(&mut self, a: &Patch, b: &Patch) -> View {
         let Sight { occluders, bodies, .. } = self.sight;
         let Some(shaft) = occluders.shaft_between(a, b) else { return View::Nothing };
-        let mut reaching = bodies.as_slice().iter().filter(|body| occluders.reaches(body, &shaft)).peekable();
+        let mut reaching = occluders.reaching(bodies, &shaft).peekable();
         if reaching.peek().is_none() {
             return View::Open;
         }

@@ -12,7 +12,9 @@ use crate::Occluders;
 /// Convex bodies that block the view between the elements of a scene.
 #[derive(Clone, Debug, Default)]
 pub struct Bodies {
-    bodies: Vec<Body>,
+    list: Vec<Body>,
+    /// Balls around them, side by side: most bodies are told by them to be out of the way.
+    balls: Vec<(Vec3, f64)>,
     tolerance: f64,
 }
 
@@ -40,13 +42,19 @@ impl Bodies {
             }
         }
         bodies.sort_by(|a, b| place(a.corners().iter()).total_cmp(&place(b.corners().iter())));
-        Self { bodies, tolerance }
+        let balls = bodies.iter().map(Body::ball).collect();
+        Self { list: bodies, balls, tolerance }
     }
 
     /// The bodies, in an order that the numbers of the patches do not change.
     #[must_use]
     pub fn as_slice(&self) -> &[Body] {
-        &self.bodies
+        &self.list
+    }
+
+    /// Balls around the bodies in the coordinates of the scene's frame: centres and radii.
+    pub(crate) fn balls(&self) -> &[(Vec3, f64)] {
+        &self.balls
     }
 
     /// Length up to which two places count as one, m.

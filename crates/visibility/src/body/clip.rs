@@ -32,7 +32,8 @@ impl Body {
         };
         self.edges.iter().for_each(|edge| part.edge(edge));
         part.close(faces.len() as u32 - 1);
-        Some(Self { corners: part.corners, faces, edges: part.edges, local: Vec::new(), solid: self.solid })
+        let (corners, edges) = (part.corners, part.edges);
+        Some(Self { corners, faces, edges, local: Vec::new(), solid: self.solid })
     }
 }
 

@@ -103,6 +103,13 @@ impl Body {
         &self.edges
     }
 
+    /// A ball around the body in the coordinates of the scene's frame: its centre and its radius.
+    fn ball(&self) -> (Vec3, f64) {
+        let centre = self.local.iter().sum::<Vec3>() / self.local.len().max(1) as f64;
+        let square = self.local.iter().map(|corner| corner.distance_squared(centre)).fold(0.0, f64::max);
+        (centre, square.sqrt())
+    }
+
     /// Area of face `k` of a solid, m².
     fn face_area(&self, k: usize) -> f64 {
         let doubled = self.edges.iter().map(|edge| {

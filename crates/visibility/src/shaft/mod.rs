@@ -25,6 +25,8 @@ use supporting::supporting_planes;
 pub(crate) const MOST_PLANES: usize = 12;
 /// Corners of two polygons of up to five corners.
 const MOST_CORNERS: usize = 10;
+/// Part by which a capsule is wider than what it holds: far more than rounding.
+const CAPSULE_MARGIN: f64 = 1e-9;
 
 /// The convex hull of two polygons, or of a point and a polygon.
 #[derive(Clone, Copy, Debug)]
@@ -33,6 +35,40 @@ pub struct Shaft {
     plane_count: usize,
     corners: [Vec3; MOST_CORNERS],
     corner_count: usize,
+    capsule: Capsule,
+}
+
+/// What is within a distance of a line: it holds the whole shaft, and is asked quickly.
+#[derive(Clone, Copy, Debug, Default)]
+struct Capsule {
+    start: Vec3,
+    way: Vec3,
+    /// 1/|way|², 0 where it has no length.
+    inverse: f64,
+    radius: f64,
+}
+
+impl Capsule {
+    /// Around two polygons.
+    fn around(a: &[Vec3], b: &[Vec3]) -> Self {
+        let centre = |corners: &[Vec3]| corners.iter().sum::<Vec3>() / corners.len().max(1) as f64;
+        let (start, end) = (centre(a), centre(b));
+        let reach = |corners: &[Vec3], centre: Vec3| {
+            corners.iter().map(|corner| corner.distance_squared(centre)).fold(0.0, f64::max)
+        };
+        let (way, radius) = (end - start, reach(a, start).max(reach(b, end)).sqrt());
+        let square = way.length_squared();
+        Self { start, way, inverse: if square > 0.0 { square.recip() } else { 0.0 }, radius }
+    }
+
+    /// Whether a ball is outside, more than rounding would make it so.
+    #[inline]
+    fn is_beside(&self, (centre, radius): (Vec3, f64)) -> bool {
+        let to = centre - self.start;
+        let along = (to.dot(self.way) * self.inverse).clamp(0.0, 1.0);
+        let reach = (self.radius + radius) * (1.0 + CAPSULE_MARGIN);
+        (to - self.way * along).length_squared() > reach * reach
+    }
 }
 
 impl Shaft {
@@ -53,6 +89,7 @@ impl Shaft {
         supporting_planes(&b, a.corners(), frame.tolerance, |plane| shaft.bound(plane, frame));
         shaft.span(a.corners());
         shaft.span(b.corners());
+        shaft.capsule = Capsule::around(a.corners(), b.corners());
         Some(shaft)
     }
 
@@ -69,12 +106,14 @@ impl Shaft {
         supporting_planes(&patch, &[point], frame.tolerance, |plane| shaft.bound(plane, frame));
         shaft.span(patch.corners());
         shaft.span(&[point]);
+        shaft.capsule = Capsule::around(patch.corners(), &[point]);
         Some(shaft)
     }
 
     fn empty() -> Self {
         let planes = [HalfSpace::default(); MOST_PLANES];
-        Self { planes, plane_count: 0, corners: [Vec3::ZERO; MOST_CORNERS], corner_count: 0 }
+        let corners = [Vec3::ZERO; MOST_CORNERS];
+        Self { planes, plane_count: 0, corners, corner_count: 0, capsule: Capsule::default() }
     }
 
     /// The half-spaces, less a layer of the tolerance so that a patch that merely touches the shaft

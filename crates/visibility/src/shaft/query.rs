@@ -6,7 +6,7 @@ use fredholm_mesh::{Patch, Vec3};
 
 use super::Shaft;
 use crate::Occluders;
-use crate::body::Body;
+use crate::body::{Bodies, Body};
 use crate::eight::{Eight, Work, run};
 use crate::tree::{Node, Sieve, Visitor};
 
@@ -73,6 +73,17 @@ impl Occluders {
             shaft.corners().iter().all(|x| face.normal.dot(*x) + offset >= -tolerance)
         });
         !beside && !shaft.planes().iter().any(|plane| plane.excludes(&body.local))
+    }
+
+    /// The bodies that [reach](Self::reaches) into the shaft.
+    pub fn reaching<'b, 's>(
+        &'s self,
+        bodies: &'b Bodies,
+        shaft: &'s Shaft,
+    ) -> impl Iterator<Item = &'b Body> + use<'b, 's> {
+        let near = bodies.balls().iter().zip(bodies.as_slice());
+        let near = near.filter(|(ball, _)| !shaft.capsule.is_beside(**ball)).map(|(_, body)| body);
+        near.filter(|body| self.reaches(body, shaft))
     }
 
     /// Whether all of them were listed.
