@@ -39,7 +39,6 @@ use std::f64::consts::TAU;
 /// Bodies of one or several dielectrics and conductors in a wave.
 #[derive(Clone, Debug)]
 pub struct Composite<'a> {
-    basis: &'a Basis,
     regions: &'a Regions,
     wave: Wave,
     /// Of every region.
@@ -77,7 +76,7 @@ impl<'a> Composite<'a> {
         let kinds = basis.functions().iter().map(kinds).collect();
         let products = Products::Everywhere(Factors::default());
         let operator = Operator::new(basis, kinds, terms, products, Symmetry::Symmetric);
-        Ok(Self { basis, regions, wave, spaces, operator })
+        Ok(Self { regions, wave, spaces, operator })
     }
 
     /// The matrix.
@@ -98,8 +97,7 @@ impl<'a> Composite<'a> {
     /// Like a slice, where there are fewer unknowns than those of the operator.
     #[must_use]
     pub fn currents(&self, x: &[Complex64]) -> Currents<'a> {
-        let (electric, magnetic) = coefficients(&self.operator, x);
-        Currents::new(self.basis, self.wave, &electric, magnetic.as_deref())
+        currents(&self.operator, self.wave, x)
     }
 
     /// The total field at points (m) inside of bodies, 0 in conductors; none in region 0.
@@ -196,15 +194,14 @@ pub(crate) fn tested_with_both(
     b
 }
 
-/// The coefficients of η₀ J and, where there is any, M of every function (V) from the unknowns.
-pub(crate) fn coefficients(
-    operator: &Operator<'_>,
-    x: &[Complex64],
-) -> (Vec<Complex64>, Option<Vec<Complex64>>) {
-    let electric = operator.unknowns().map(|(first, _)| x[first]).collect();
-    let magnetic = |second: Option<(usize, f64)>| second.map_or(Complex64::ZERO, |(at, unit)| x[at] * unit);
+/// The currents of the unknowns of an operator.
+pub(crate) fn currents<'a>(operator: &Operator<'a>, wave: Wave, x: &[Complex64]) -> Currents<'a> {
+    let electric: Vec<Complex64> = operator.unknowns().map(|(first, _)| x[first]).collect();
+    let of = |second: Option<(usize, f64)>| second.map_or(Complex64::ZERO, |(at, unit)| x[at] * unit);
     let any = operator.unknowns().any(|(_, second)| second.is_some());
-    (electric, any.then(|| operator.unknowns().map(|(_, second)| magnetic(second)).collect()))
+    let magnetic: Option<Vec<Complex64>> =
+        any.then(|| operator.unknowns().map(|(_, second)| of(second)).collect());
+    Currents::new(operator.basis(), wave, &electric, magnetic.as_deref())
 }
 
 /// What one region adds.

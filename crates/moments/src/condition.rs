@@ -26,7 +26,7 @@
 //! Both matrices are symmetric. Unknowns are η₀ J and, where a body has an impedance, M/√|ζ| with ζ
 //! = Z_s/η₀, in V.
 
-use crate::composite::{coefficients, term, tested_with_both};
+use crate::composite::{currents, term, tested_with_both};
 use crate::currents::Space;
 use crate::equation::{electric_only, electric_term};
 use crate::operator::{Factors, Kinds, Operator, Products};
@@ -93,7 +93,6 @@ impl Condition {
 /// Conductors, thin sheets and bodies with a surface impedance, together in a wave.
 #[derive(Clone, Debug)]
 pub struct Imperfect<'a> {
-    basis: &'a Basis,
     wave: Wave,
     conditions: Vec<Condition>,
     operator: Operator<'a>,
@@ -132,7 +131,7 @@ impl<'a> Imperfect<'a> {
         };
         let products = Products::OnTriangles(conditions.iter().map(|c| c.factors()).collect());
         let operator = Operator::new(basis, kinds, vec![term], products, Symmetry::Symmetric);
-        Ok(Self { basis, wave, conditions, operator })
+        Ok(Self { wave, conditions, operator })
     }
 
     /// The matrix.
@@ -153,8 +152,7 @@ impl<'a> Imperfect<'a> {
     /// Like a slice, where there are fewer unknowns than those of the operator.
     #[must_use]
     pub fn currents(&self, x: &[Complex64]) -> Currents<'a> {
-        let (electric, magnetic) = coefficients(&self.operator, x);
-        Currents::new(self.basis, self.wave, &electric, magnetic.as_deref())
+        currents(&self.operator, self.wave, x)
     }
 
     /// Power (W) that sheets and bodies absorb: ½ ∫ Re Z_s |J|² dA. Of bodies, where M stands for Z_s

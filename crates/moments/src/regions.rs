@@ -147,11 +147,7 @@ impl Regions {
 /// The region of a point: that of the smallest shell around it.
 fn located(shells: &[Shell], p: Vec3) -> Option<usize> {
     let around = shells.iter().filter(|shell| shell.holds(p));
-    let smaller = |a: &&Shell, b: &&Shell| a.is_within(b);
-    let smallest = around.fold(None, |best: Option<&Shell>, shell| match best {
-        Some(best) if !smaller(&shell, &best) => Some(best),
-        _ => Some(shell),
-    });
+    let smallest = around.reduce(|best, shell| if shell.is_within(best) { shell } else { best });
     smallest.map_or(Some(0), |shell| shell.inside)
 }
 
@@ -315,14 +311,7 @@ impl Merged {
 
     /// The faces of all places.
     fn faces(&self, shells: &[Shell]) -> Vec<Face> {
-        let mut neighbours = vec![Vec::new(); self.firsts.len()];
-        for edge in self.topology.edges() {
-            if let [a, b] = edge.sides[..] {
-                let differ = a.forward == b.forward;
-                neighbours[a.triangle as usize].push((b.triangle as usize, differ));
-                neighbours[b.triangle as usize].push((a.triangle as usize, differ));
-            }
-        }
+        let neighbours = self.topology.neighbours();
         let mut regions: Vec<Option<[Option<usize>; 2]>> = vec![None; self.firsts.len()];
         for first in 0..regions.len() {
             if regions[first].is_some() {

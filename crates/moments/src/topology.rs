@@ -89,10 +89,9 @@ impl Topology {
         &self.edges
     }
 
-    /// Which triangles have to be turned over for neighbours to agree and closed bodies to have
-    /// their normals outwards.
-    pub(crate) fn turned(&self, surface: &Surface) -> Vec<bool> {
-        let mut neighbours = vec![Vec::new(); surface.triangles().len()];
+    /// The neighbours of every triangle across edges of two, and whether they disagree on the outside.
+    pub(crate) fn neighbours(&self) -> Vec<Vec<(usize, bool)>> {
+        let mut neighbours = vec![Vec::new(); self.component.len()];
         for edge in &self.edges {
             if let [a, b] = edge.sides[..] {
                 let differ = a.forward == b.forward;
@@ -100,6 +99,13 @@ impl Topology {
                 neighbours[b.triangle as usize].push((a.triangle as usize, differ));
             }
         }
+        neighbours
+    }
+
+    /// Which triangles have to be turned over for neighbours to agree and closed bodies to have
+    /// their normals outwards.
+    pub(crate) fn turned(&self, surface: &Surface) -> Vec<bool> {
+        let neighbours = self.neighbours();
         let mut turned: Vec<Option<bool>> = vec![None; neighbours.len()];
         for first in 0..neighbours.len() {
             let mut waiting = if turned[first].is_none() { vec![(first, false)] } else { Vec::new() };

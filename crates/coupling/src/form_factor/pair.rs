@@ -348,10 +348,9 @@ impl<'a> PairIntegrator<'a> {
         if segments > MOST_SEGMENTS {
             return None;
         }
-        let [first, second] = [i.min(j), i.max(j)];
-        let key = (first as u64) << 32 | second as u64;
-        let pair = [self.patches[first], self.patches[second]];
-        let share = rows.blockers.share(pair, bodies, segments as usize, key)?;
+        let names = [i.min(j), i.max(j)];
+        let pair = names.map(|name| self.patches[name]);
+        let share = rows.blockers.share(pair, bodies, segments as usize, names)?;
         Some(Exchange {
             value: open.value * share.value,
             error: open.value * share.deviation + open.error * share.value,

@@ -20,6 +20,7 @@
 #![allow(clippy::needless_bitwise_bool, reason = "a branch is not compiled to vectors")]
 
 use super::lanes::{LANES, Lanes, Lanes3, any, ask, dot, each, heights, same};
+use crate::method::keyed::keyed;
 use crate::rays::STEPS;
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::body::{Bodies, Body};
@@ -70,14 +71,20 @@ impl Blockers {
     }
 
     /// The share of an exchange that gets through between some bodies, from about so many segments;
-    /// `key` tells pairs apart. None where the weights are too uneven.
-    pub(crate) fn share(&self, pair: [&Patch; 2], list: &[u32], samples: usize, key: u64) -> Option<Share> {
+    /// `names` tell pairs apart. None where the weights are too uneven.
+    pub(crate) fn share(
+        &self,
+        pair: [&Patch; 2],
+        list: &[u32],
+        samples: usize,
+        names: [usize; 2],
+    ) -> Option<Share> {
         let sums = self.arch.dispatch(Ask {
             blockers: self,
             sides: pair.map(Parameters::of),
             list,
             blocks: samples.div_ceil(LANES),
-            start: start(key),
+            start: [0, 1, 2, 3].map(|axis| keyed(names[0] as u64, names[1] as u64, axis)),
         });
         sums.share(samples.div_ceil(LANES) * LANES)
     }
@@ -96,17 +103,6 @@ fn flat(body: &Body) -> impl Iterator<Item = [f64; 4]> {
         Some(plane(out, out.dot(a)))
     });
     up.map(|face| plane(face.normal, face.offset)).into_iter().chain(sides)
-}
-
-/// Four numbers in [0, 1) from a key (SplitMix64: G. L. Steele, D. Lea, C. H. Flood, OOPSLA 2014).
-fn start(key: u64) -> [f64; 4] {
-    let mut state = key;
-    [0; 4].map(|_| {
-        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (state ^ (state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    })
 }
 
 /// A patch as x = a + u b + v c + u v d, with its normal.
@@ -319,10 +315,10 @@ mod tests {
             assert_eq!((bodies.as_slice().len(), bodies.as_slice()[0].is_solid()), (1, solid));
             let blockers = Blockers::new(&bodies);
             for samples in [16, 64, 256] {
-                let keys = 2000_u64;
+                let keys = 2000_usize;
                 let (mut sum, mut squares, mut stated) = (0.0, 0.0, 0.0);
                 for key in 0..keys {
-                    let Some(share) = blockers.share([&a, &b], &[0], samples, key) else { continue };
+                    let Some(share) = blockers.share([&a, &b], &[0], samples, [0, key]) else { continue };
                     sum += share.value - exact;
                     squares += (share.value - exact).powi(2);
                     stated += share.deviation.powi(2);
@@ -351,9 +347,9 @@ mod tests {
         let under = quad([[0.3, 0.3, 0.499], [0.7, 0.3, 0.499], [0.7, 0.7, 0.499], [0.3, 0.7, 0.499]]);
         let bodies = Bodies::new(&occluders, &[&a, &b, &top, &under], &[]);
         let blockers = Blockers::new(&bodies);
-        let share = |p: &Patch, q: &Patch| blockers.share([p, q], &[0], 64, 7).unwrap().value;
+        let share = |p: &Patch, q: &Patch| blockers.share([p, q], &[0], 64, [3, 7]).unwrap().value;
         assert!((share(&top, &b) - 1.0).abs() < 1e-15);
         assert!(share(&under, &b).abs() < 1e-15);
-        assert!(blockers.share([&top, &a], &[0], 64, 7).is_none());
+        assert!(blockers.share([&top, &a], &[0], 64, [3, 7]).is_none());
     }
 }

@@ -7,7 +7,7 @@
 const GAMMA: u64 = 0x9E37_79B9_7F4A_7C15;
 
 /// The random number of one dimension of one sample.
-pub(super) fn keyed(seed: u64, sample: u64, dimension: u64) -> f64 {
+pub(crate) fn keyed(seed: u64, sample: u64, dimension: u64) -> f64 {
     let step = |state: u64, part: u64| mix(state.wrapping_add(part.wrapping_add(1).wrapping_mul(GAMMA)));
     let bits = step(step(mix(seed.wrapping_add(GAMMA)), sample), dimension);
     (bits >> 11) as f64 / (1u64 << 53) as f64

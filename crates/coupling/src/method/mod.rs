@@ -31,7 +31,7 @@ mod error;
 mod facing;
 mod graded;
 mod hemicube;
-mod keyed;
+pub(crate) mod keyed;
 mod monte_carlo;
 mod nystrom;
 mod orders;

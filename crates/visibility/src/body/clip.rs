@@ -32,8 +32,7 @@ impl Body {
         };
         self.edges.iter().for_each(|edge| part.edge(edge));
         part.close(faces.len() as u32 - 1);
-        let (corners, edges) = (part.corners, part.edges);
-        Some(Self { corners, faces, edges, local: Vec::new(), solid: self.solid })
+        Some(Self { corners: part.corners, faces, edges: part.edges, local: Vec::new(), solid: self.solid })
     }
 }
 
