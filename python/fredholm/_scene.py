@@ -257,9 +257,9 @@ class Scene(LightStudies):
         accuracy : float, optional
             Relative error of the irradiance of the faces to reach, above 0 and below 1; the
             elements are then chosen where they are needed. Left out: the elements of the scene.
-        way : {"links", "paths"}, optional
-            How the accuracy is reached: by hierarchical radiosity, or by random paths from the
-            lamps; left out, as is predicted to cost least.
+        way : {"links", "rays"}, optional
+            How the accuracy is reached: by hierarchical radiosity, or by rays from the elements
+            of the scene; left out, as is predicted to cost least.
         goal : str or sequence of str
             Surfaces whose mean irradiance is to have the accuracy; all else is only as exact as
             that needs.

@@ -51,18 +51,18 @@ fn an_accuracy_is_reached_and_stated() {
 }
 
 #[test]
-fn random_paths_reach_an_accuracy_with_the_error_that_they_state() {
+fn rays_reach_an_accuracy_with_the_error_that_they_state() {
     let bench = Bench::new(&room(4));
     bench.solve(&["--accuracy", "0.5%", "--way", "links", "-o", "links"]);
     for threads in ["1", "2", "4"] {
-        bench.solve(&["--accuracy", "2%", "--way", "paths", "--threads", threads, "-o", threads]);
+        bench.solve(&["--accuracy", "2%", "--way", "rays", "--threads", threads, "-o", threads]);
         for name in ["field.csv", "faces.csv", "image.png"] {
             let [one, other] = ["1", threads].map(|folder| fs::read(bench.path(folder).join(name)).unwrap());
             assert!(one == other, "{name} with {threads} threads");
         }
     }
     let record = bench.record("1");
-    assert!(record["choice"].as_str().unwrap().starts_with("random paths"), "{}", record["choice"]);
+    assert!(record["choice"].as_str().unwrap().starts_with("rays"), "{}", record["choice"]);
     for (band, name) in ["irradiance_r", "irradiance_g"].iter().enumerate() {
         let stated = record["mesh_error"]["relative_l2"][band].as_f64().unwrap();
         assert!(stated > 0.0 && stated <= 0.02, "{stated}");
@@ -72,7 +72,7 @@ fn random_paths_reach_an_accuracy_with_the_error_that_they_state() {
         let error = (sum(&|k| (found[k] - known[k]).powi(2)) / sum(&|k| known[k].powi(2))).sqrt();
         assert!(error < stated && error > 1e-4, "{error}, stated {stated}");
     }
-    for wrong in [&["--way", "paths"][..], &["--accuracy", "1%", "--way", "paths", "--goal", "lamp"]] {
+    for wrong in [&["--way", "rays"][..], &["--accuracy", "1%", "--way", "rays", "--goal", "lamp"]] {
         let run = bench.run(&[&["solve", "scene.toml"], wrong].concat());
         assert!(run.code == 2 && run.stderr.contains("help: "), "{}", run.stderr);
     }

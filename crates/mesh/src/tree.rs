@@ -34,6 +34,34 @@ impl Mesh {
         Ok(children)
     }
 
+    /// Splits all leaves that are chosen, by the number of their unknown, each as
+    /// [`split`](Self::split) does. A leaf whose pieces would be too small for the precision of
+    /// their coordinates stays whole.
+    ///
+    /// # Errors
+    /// [`MeshError::TooLarge`] past 2³² − 1 elements.
+    pub fn split_leaves(&mut self, chosen: impl Fn(usize) -> bool) -> Result<(), MeshError> {
+        let mut leaves = Vec::with_capacity(self.leaves.len());
+        for (unknown, &element) in self.leaves.iter().enumerate() {
+            let Element { patch, face, level, .. } = self.elements[element];
+            let Some(pieces) = chosen(unknown).then(|| patch.split().ok()).flatten() else {
+                leaves.push(element);
+                continue;
+            };
+            let first = self.elements.len();
+            if first + 4 > MOST_ELEMENTS {
+                return Err(MeshError::TooLarge { limit: MOST_ELEMENTS });
+            }
+            let child =
+                |patch| Element { patch, face, parent: Some(element), children: None, level: level + 1 };
+            self.elements.extend(pieces.map(child));
+            self.elements[element].children = Some(first);
+            leaves.extend(first..first + 4);
+        }
+        self.leaves = leaves;
+        Ok(())
+    }
+
     /// The unknown that lives on an element; none where the element is not a leaf.
     #[must_use]
     pub fn leaf_of(&self, element: usize) -> Option<usize> {

@@ -5,10 +5,13 @@
 //! ends on a back, or nowhere, brings nothing. Lengths in metres, exitance in W/m².
 
 use crate::MonteCarloError;
-use crate::density::{LampDensity, SurfaceDensity};
-use crate::surfaces::{Site, Surfaces};
+use crate::density::{Cosine, DirectionDensity, LampDensity, SurfaceDensity};
+use crate::surfaces::{Meets, Site, Surfaces};
 use fredholm_mesh::{Patch, Vec3};
 use std::f64::consts::FRAC_1_PI;
+
+/// Rays of a bundle: rings by the cosine density, and rays in each.
+const BUNDLE: [u32; 2] = [3, 5];
 
 /// Patches with their materials, ready to be traced.
 #[derive(Clone, Debug)]
@@ -154,6 +157,12 @@ impl Enclosure {
         self.surfaces.bounce(from, numbers)
     }
 
+    /// What a ray with density cosθ/π meets first.
+    #[must_use]
+    pub fn bounce_to(&self, from: Site, numbers: [f64; 2]) -> Meets {
+        self.surfaces.bounce_to(from, numbers)
+    }
+
     /// The lit side that a ray meets first; the direction is in the frame of the patch, its normal
     /// z.
     #[must_use]
@@ -184,8 +193,27 @@ impl Enclosure {
     #[must_use]
     pub fn opens(&self, from: Site, direction: Vec3) -> bool {
         let world = self.world(from, direction);
-        self.surfaces.occluders().closest(from.point, world, f64::INFINITY).is_none()
-            || self.ray(from, direction).is_some()
+        self.surfaces.meets(from.point, world) != Meets::Back
+    }
+
+    /// Whether a ray of a fixed bundle from a site meets a lit side or nothing: it is not buried.
+    #[must_use]
+    pub fn is_exposed(&self, site: Site) -> bool {
+        let [rings, rays] = BUNDLE;
+        let direction = |k: u32| {
+            let (ring, ray) = (f64::from(k / rays), f64::from(k % rays));
+            Cosine
+                .sample([(ring + 0.5) / f64::from(rings), (ray + ring / f64::from(rings)) / f64::from(rays)])
+        };
+        (0..rings * rays).any(|k| self.opens(site, direction(k)))
+    }
+
+    /// Share of an n × n grid of points of a patch that are not buried, in [0, 1].
+    #[must_use]
+    pub fn share_exposed(&self, patch: usize, n: u32) -> f64 {
+        let middle = |k: u32| (f64::from(k) + 0.5) / f64::from(n);
+        let exposed = |k: &u32| self.is_exposed(self.point(patch, [middle(k / n), middle(k % n)]));
+        (0..n * n).filter(exposed).count() as f64 / f64::from(n * n)
     }
 
     /// cosθ cosθ′/(π r²) between two sites that face each other, else 0; 1/m². Visibility is not

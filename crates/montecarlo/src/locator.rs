@@ -4,6 +4,7 @@
 //! grid of the patches in its plane. At a border the patch is taken that the point is deepest
 //! inside of.
 
+use std::collections::{BTreeMap, HashMap};
 use std::ops::RangeInclusive;
 
 use fredholm_mesh::{Patch, Vec3};
@@ -89,41 +90,74 @@ impl Locator {
     }
 }
 
-/// Patches in the order of where they begin along an axis, so that those near a piece are found
-/// without a look at all.
+/// Patches in the cells of grids, each in that whose cells are about as wide as it is long, so that
+/// those near a piece are found without a look at all.
 struct Sorted {
-    axis: Vec3,
     near: f64,
-    /// Longest patch along the axis, m.
-    longest: f64,
-    /// Where each patch begins, m, and its number.
-    starts: Vec<(f64, u32)>,
+    grids: Vec<Cells>,
+}
+
+/// Cells of equal width, with the patches that begin in each.
+struct Cells {
+    /// Width, m.
+    width: f64,
+    members: HashMap<[i64; 3], Vec<u32>>,
+    /// How many patches there are.
+    count: usize,
 }
 
 impl Sorted {
     fn new(patches: &[Patch], near: f64) -> Self {
-        let extent = |axis: &Vec3| {
-            let spans = patches.iter().map(|patch| span(patch, *axis));
-            let (low, high) = spans
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (a, b)| (low.min(a), high.max(b)));
-            high - low
+        let mut classes: BTreeMap<i32, Vec<u32>> = BTreeMap::new();
+        for (patch, number) in patches.iter().zip(0..) {
+            let (low, high) = bounds(patch);
+            let longest = (high - low).max_element().max(near).max(f64::MIN_POSITIVE);
+            classes.entry(longest.log2().ceil() as i32).or_default().push(number);
+        }
+        let grid = |(class, members): (i32, Vec<u32>)| {
+            let width = f64::from(class).exp2();
+            let mut cells: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
+            for &number in &members {
+                cells.entry(cell(bounds(&patches[number as usize]).0, width)).or_default().push(number);
+            }
+            Cells { width, members: cells, count: members.len() }
         };
-        let axes = [Vec3::X, Vec3::Y, Vec3::Z];
-        let axis = axes.into_iter().max_by(|a, b| extent(a).total_cmp(&extent(b))).unwrap_or(Vec3::X);
-        let spans = || patches.iter().map(|patch| span(patch, axis));
-        let longest = spans().fold(0.0, |longest: f64, (low, high)| longest.max(high - low));
-        let mut starts: Vec<(f64, u32)> = spans().map(|(low, _)| low).zip(0..).collect();
-        starts.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        Self { axis, near, longest, starts }
+        Self { near, grids: classes.into_iter().map(grid).collect() }
     }
 
     /// The patches that may lie on a piece.
-    fn near(&self, piece: &Patch) -> impl Iterator<Item = u32> {
-        let (low, high) = span(piece, self.axis);
-        let first = self.starts.partition_point(|(start, _)| *start < low - self.near - self.longest);
-        let end = self.starts.partition_point(|(start, _)| *start <= high + self.near);
-        self.starts[first..end].iter().map(|(_, patch)| *patch)
+    fn near(&self, piece: &Patch) -> Vec<u32> {
+        let (low, high) = bounds(piece);
+        let mut found = Vec::new();
+        for Cells { width, members: cells, count } in &self.grids {
+            // A patch begins in a cell and ends in this or the next one.
+            let first = cell(low - Vec3::splat(self.near + width), *width);
+            let last = cell(high + Vec3::splat(self.near), *width);
+            let many = (0..3).map(|i| (last[i] - first[i] + 1) as f64).product::<f64>() > *count as f64;
+            if many {
+                let inside = |at: &[i64; 3]| (0..3).all(|i| (first[i]..=last[i]).contains(&at[i]));
+                found.extend(cells.iter().filter(|(at, _)| inside(at)).flat_map(|(_, members)| members));
+            } else {
+                for x in first[0]..=last[0] {
+                    for y in first[1]..=last[1] {
+                        let column = (first[2]..=last[2]).filter_map(|z| cells.get(&[x, y, z]));
+                        found.extend(column.flatten());
+                    }
+                }
+            }
+        }
+        found
     }
+}
+
+/// The smallest box along the axes.
+fn bounds(patch: &Patch) -> (Vec3, Vec3) {
+    let corners = patch.corners().iter();
+    corners.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)))
+}
+
+fn cell(place: Vec3, width: f64) -> [i64; 3] {
+    (place / width).floor().to_array().map(|place| place as i64)
 }
 
 impl Grid {
@@ -131,7 +165,8 @@ impl Grid {
         let axes = axes(piece);
         let origin = piece.corner(0);
         let on = |patch: &Patch| coplanar(piece, patch, near) && overlap(piece, patch, axes, near);
-        let mut inside: Vec<u32> = sorted.near(piece).filter(|&i| on(&patches[i as usize])).collect();
+        let mut inside = sorted.near(piece);
+        inside.retain(|&i| on(&patches[i as usize]));
         inside.sort_unstable();
         let spans = axes.map(|axis| span(piece, axis));
         let corner = origin
@@ -253,7 +288,7 @@ pub(crate) fn overlaid(patches: &[Patch]) -> Vec<bool> {
     let sorted = Sorted::new(patches, near);
     let is_overlaid = |patch: &Patch| {
         let axes = axes(patch);
-        sorted.near(patch).map(|other| &patches[other as usize]).any(|other| {
+        sorted.near(patch).into_iter().map(|other| &patches[other as usize]).any(|other| {
             patch.normal().dot(other.normal()) < 0.0
                 && coplanar(patch, other, near)
                 && overlap(patch, other, axes, -near)

@@ -18,6 +18,25 @@ pub struct Site {
     pub point: Vec3,
 }
 
+/// What a ray meets first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Meets {
+    /// The lit side of a patch.
+    Lit(Site),
+    /// A back.
+    Back,
+    /// Nothing: it leaves the scene.
+    Nothing,
+}
+
+impl Meets {
+    /// The lit side, where one is met.
+    #[must_use]
+    pub fn lit(self) -> Option<Site> {
+        if let Self::Lit(site) = self { Some(site) } else { None }
+    }
+}
+
 /// Patches that rays are cast at.
 #[derive(Clone, Debug)]
 pub struct Surfaces {
@@ -72,16 +91,29 @@ impl Surfaces {
         self.cast(from.point, self.frame(from.patch).world(Cosine.sample(numbers)))
     }
 
+    /// What a ray with density cosθ/π meets first.
+    #[must_use]
+    pub fn bounce_to(&self, from: Site, numbers: [f64; 2]) -> Meets {
+        self.meets(from.point, self.frame(from.patch).world(Cosine.sample(numbers)))
+    }
+
     /// The lit side that a ray from anywhere meets first.
     #[must_use]
     pub fn cast(&self, origin: Vec3, direction: Vec3) -> Option<Site> {
-        let hit = self.occluders.closest(origin, direction, f64::INFINITY)?;
-        let patch = match &self.locator {
-            Some(locator) => locator.lit(hit.patch, hit.point, direction, &self.patches)?,
-            None if self.patches[hit.patch].normal().dot(direction) < 0.0 => hit.patch,
-            None => return None,
+        self.meets(origin, direction).lit()
+    }
+
+    /// What a ray from anywhere meets first.
+    #[must_use]
+    pub fn meets(&self, origin: Vec3, direction: Vec3) -> Meets {
+        let Some(hit) = self.occluders.closest(origin, direction, f64::INFINITY) else {
+            return Meets::Nothing;
         };
-        Some(Site { patch, point: hit.point })
+        let patch = match &self.locator {
+            Some(locator) => locator.lit(hit.patch, hit.point, direction, &self.patches),
+            None => (self.patches[hit.patch].normal().dot(direction) < 0.0).then_some(hit.patch),
+        };
+        patch.map_or(Meets::Back, |patch| Meets::Lit(Site { patch, point: hit.point }))
     }
 }
 

@@ -52,8 +52,8 @@ fn precision(py: Python<'_>, name: &str) -> PyResult<Precision> {
 pub(crate) fn way(py: Python<'_>, name: &str) -> PyResult<Way> {
     match name {
         "links" => Ok(Way::Links),
-        "paths" => Ok(Way::Paths),
-        _ => Err(input(py, format!("there is no way {name:?}"), Some("use \"links\" or \"paths\""))),
+        "rays" => Ok(Way::Rays),
+        _ => Err(input(py, format!("there is no way {name:?}"), Some("use \"links\" or \"rays\""))),
     }
 }
 

@@ -12,9 +12,10 @@ use crate::memory::{Limit, Plan, limit};
 use crate::options::{ProblemOptions, ProblemSettings, SceneSource, SolveOptions};
 use crate::prediction::pictured;
 use crate::problem::{Problem, pictures, pixels, scene_failure, with_results};
+use crate::rays;
 use crate::rounds;
 use crate::sample;
-use crate::solve::{accuracy_of, is_free, predicted, report_failure, view_camera};
+use crate::solve::{accuracy_of, predicted, report_failure, view_camera};
 use crate::stages::Stages;
 
 /// A valid scene, its mesh, and what its solution will take.
@@ -153,11 +154,16 @@ fn to_accuracy(
         return Ok(Some(ToAccuracy { accuracy, way, by_matrix, plan: None, seconds: None, threads }));
     }
     let settings = hierarchical::options(&asked, scene, accuracy)?;
-    let run = (accuracy, is_free(&asked, scene));
+    let run = (accuracy, choice.is_rays());
     let watch = stages.watch;
     let expected = stages.run("sample", || Ok(rounds::expected(scene, &settings, run, watch)))?;
     stages.check()?;
-    let plan = Some(hierarchical::expected_plan(scene, &settings, accuracy, expected.sizes));
+    let plan = if choice.is_rays() {
+        rays::expected_plan(scene, &settings, accuracy)?
+    } else {
+        hierarchical::expected_plan(scene, &settings, accuracy, expected.sizes)
+    };
+    let plan = Some(plan);
     Ok(Some(ToAccuracy { accuracy, way, by_matrix, plan, seconds: expected.seconds, threads }))
 }
 

@@ -1,15 +1,18 @@
-//! Which way to an accuracy costs less: the matrix of the scene's elements, or links.
+//! Which way to an accuracy costs less: the matrix of the scene's elements, links, or rays.
 //!
 //! The matrix has n(n + 1)/2 pairs. The links are about [`LINKS_A_FACE`] (1 %/ε)^[`LINKS_EXPONENT`]
 //! a face at the accuracy ε, and one costs as much as [`PAIRS_A_LINK`] pairs, as measured on the
 //! scenes of docs/notes/hierarchical.md. On fewer than 2 × 2 elements a face the matrix is seldom
 //! exact enough, and links would have to follow; else the error that it states decides whether it
-//! was enough.
+//! was enough. What rays take does not depend on what stands between surfaces, but a link takes
+//! [`RAYS_A_LINK`] and [`RAYS_AN_OCCLUDER`] for every occluder of the scene (docs/notes/rays.md).
 
 use std::fmt;
 
+use fredholm_mesh::Mesh;
+
 use crate::options::Way;
-use crate::sampled;
+use crate::rays;
 
 /// Links a face at 1 %, one for both ways.
 const LINKS_A_FACE: f64 = 160.0;
@@ -21,13 +24,13 @@ const PAIRS_A_LINK: f64 = 6.0;
 /// Most links at 1 % over √(faces): cells of a wall, and small things far away, are linked as
 /// wholes.
 const MOST_LINKS_OVER_ROOT_FACES: f64 = 10_000.0;
-/// Faces from which on random paths may take the place of links, and the least accuracy.
-const MANY_FACES: usize = 8000;
-const LEAST_ACCURACY: f64 = 0.01;
-/// Paths that take the time of all links of a run, over the links of its first round: about ten
-/// times as many come of them, and one takes about as long as five paths. Measured on cities and
-/// curved objects (docs/notes/hierarchical.md).
-const PATHS_A_LINK: f64 = 50.0;
+/// Rays that take the time of one link, and of what one occluder adds to it.
+const RAYS_A_LINK: f64 = 11.0;
+const RAYS_AN_OCCLUDER: f64 = 0.125;
+/// How often rays must go into the time of links: elements chosen for links show more.
+const RAYS_MARGIN: f64 = 2.0;
+/// Rays of about a second, for which links are not given up.
+const FEW_RAYS: f64 = 1.3e6;
 /// Links of an element.
 const OF_ELEMENT: f64 = 10.0;
 
@@ -47,6 +50,23 @@ pub(crate) struct Extent {
     pub(crate) faces: f64,
     /// Fewest elements of a face.
     pub(crate) fewest: usize,
+    /// Undivided pieces that may stand between elements.
+    pub(crate) occluders: usize,
+    /// Faces of equal area that need as many rays.
+    pub(crate) alike: f64,
+}
+
+impl Extent {
+    pub(crate) fn of(mesh: &Mesh) -> Self {
+        let count = mesh.faces().len();
+        Self {
+            elements: mesh.len() as f64,
+            faces: count as f64,
+            fewest: (0..count).map(|face| mesh.leaves_of_face(face).len()).min().unwrap_or(0),
+            occluders: mesh.occluders().len(),
+            alike: rays::alike(mesh),
+        }
+    }
 }
 
 /// What was predicted, and what it came to.
@@ -58,8 +78,8 @@ pub(crate) enum Choice {
     Goal,
     /// The way that was asked for.
     Asked(Way),
-    /// The links of the first round were so many that paths cost less.
-    Paths { links: f64, paths: f64 },
+    /// Rays cost less than links.
+    Rays { links: f64, rays: f64 },
     /// The matrix costs more: pairs and links.
     Links { pairs: f64, links: f64 },
     /// The matrix does not fit the memory.
@@ -71,10 +91,15 @@ pub(crate) enum Choice {
 }
 
 impl Choice {
-    /// The cheaper way to an accuracy.
-    pub(crate) fn new(extent: Extent, accuracy: f64) -> Self {
+    /// The cheaper way to an accuracy; `free` where rays may take the place of links.
+    pub(crate) fn new(extent: Extent, accuracy: f64, free: bool) -> Self {
         let pairs = 0.5 * extent.elements * (extent.elements + 1.0);
         let links = LINKS_A_FACE * extent.faces * (0.01 / accuracy).powf(LINKS_EXPONENT);
+        let rays = rays::expected(extent.elements, extent.alike, accuracy);
+        let time = links * (RAYS_A_LINK + RAYS_AN_OCCLUDER * extent.occluders as f64);
+        if free && time > FEW_RAYS && RAYS_MARGIN * rays < time {
+            return Self::Rays { links, rays };
+        }
         if pairs >= PAIRS_A_LINK * links {
             Self::Links { pairs, links }
         } else if extent.fewest < 4 {
@@ -84,26 +109,9 @@ impl Choice {
         }
     }
 
-    /// Elements from which on links cost less, whatever the faces.
-    pub(crate) fn most_elements(accuracy: f64) -> f64 {
-        2.0 * PAIRS_A_LINK * LINKS_A_FACE * (0.01 / accuracy).powf(LINKS_EXPONENT)
-    }
-
-    /// Random paths that answer a scene of so many faces, where they may: on fewer faces light that
-    /// changes over a face would not be seen.
-    pub(crate) fn paths(faces: usize, accuracy: f64) -> Option<f64> {
-        let suit = faces >= MANY_FACES && accuracy >= LEAST_ACCURACY;
-        suit.then(|| sampled::expected_paths(faces, accuracy))
-    }
-
-    /// Whether the links of a first round promise more work than these paths.
-    pub(crate) fn too_many(links: f64, paths: f64) -> bool {
-        paths < PATHS_A_LINK * links
-    }
-
-    /// Whether paths were asked for.
-    pub(crate) fn is_paths(self) -> bool {
-        self == Self::Asked(Way::Paths)
+    /// Whether rays were asked for.
+    pub(crate) fn is_rays(self) -> bool {
+        matches!(self, Self::Asked(Way::Rays) | Self::Rays { .. })
     }
 
     pub(crate) fn is_matrix(self) -> bool {
@@ -119,11 +127,10 @@ impl fmt::Display for Choice {
             ),
             Self::Goal => f.write_str("hierarchical, since elements are chosen for a goal"),
             Self::Asked(Way::Links) => f.write_str("hierarchical, as asked for"),
-            Self::Asked(Way::Paths) => f.write_str("random paths, as asked for"),
-            Self::Paths { links, paths } => write!(
-                f,
-                "random paths, since {links:.1e} links in the first round promised more work than about {paths:.1e} paths"
-            ),
+            Self::Asked(Way::Rays) => f.write_str("rays, as asked for"),
+            Self::Rays { links, rays } => {
+                write!(f, "rays, since about {rays:.1e} of them cost less than {links:.1e} links")
+            }
             Self::Links { pairs, links } => {
                 write!(
                     f,
@@ -157,7 +164,9 @@ mod tests {
     use super::*;
 
     fn choice(faces: f64, fewest: usize, accuracy: f64) -> Choice {
-        Choice::new(Extent { elements: faces * fewest as f64, faces, fewest }, accuracy)
+        let elements = faces * fewest as f64;
+        let extent = Extent { elements, faces, fewest, occluders: 12, alike: faces };
+        Choice::new(extent, accuracy, true)
     }
 
     #[test]
@@ -172,22 +181,18 @@ mod tests {
     }
 
     #[test]
-    fn paths_take_the_place_of_many_links_only() {
-        // Cities of 13,000 and 40,000 faces at 5 %, with the links of their first rounds.
-        for (faces, links) in [(13_000, 7.4e5), (40_000, 1.9e6)] {
-            assert!(Choice::paths(faces, 0.05).is_some_and(|paths| Choice::too_many(links, paths)));
+    fn rays_take_the_place_of_many_links_in_furnished_scenes() {
+        let of = |faces: f64, occluders: usize, accuracy: f64| {
+            let extent = Extent { elements: faces, faces, fewest: 1, occluders, alike: faces };
+            Choice::new(extent, accuracy, true)
+        };
+        // Furnished rooms, and a city.
+        for (faces, occluders) in [(2200.0, 300), (2900.0, 640), (13_000.0, 6000)] {
+            assert!(of(faces, occluders, 0.05).is_rays() && of(faces, occluders, 0.01).is_rays());
         }
-        // A curved object of 100,000 triangles at 2 % has 1.6 million links in the end.
-        assert!(Choice::paths(100_000, 0.02).is_some_and(|paths| !Choice::too_many(1.6e6, paths)));
-        assert!(Choice::paths(3000, 0.05).is_none() && Choice::paths(13_000, 0.001).is_none());
-    }
-
-    #[test]
-    fn above_the_most_elements_links_always_cost_less() {
-        for accuracy in [0.1, 0.01, 0.001] {
-            let most = Choice::most_elements(accuracy);
-            let at = |elements: f64| Choice::new(Extent { elements, faces: elements, fewest: 1 }, accuracy);
-            assert!(matches!(at(most), Choice::Links { .. }) && at(0.9 * most) == Choice::Coarse);
-        }
+        // A box, and great accuracy.
+        assert!(!of(600.0, 17, 0.01).is_rays() && !of(2900.0, 100, 0.0005).is_rays());
+        let extent = Extent { elements: 2900.0, faces: 2900.0, fewest: 1, occluders: 640, alike: 2900.0 };
+        assert!(!Choice::new(extent, 0.05, false).is_rays(), "links were asked for");
     }
 }

@@ -81,7 +81,7 @@ fn unassessed(lit: &Lit, exposed: Vec<f64>) -> Solution {
         hierarchy: None,
         tree: None,
         direct: None,
-        paths: None,
+        rays: None,
         field_error: None,
         senders: Vec::new(),
         replaced: None,

@@ -3,7 +3,7 @@
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use fredholm_hierarchical::{
     Goal, HierarchyError, Options as Limits, Problem as Input, RESIDUAL_OVER_ACCURACY, Round, RoundWatch,
@@ -16,7 +16,7 @@ use fredholm_scene::Scene;
 use fredholm_visibility::Occluders;
 
 use crate::checkpoint::{self, Checkpoint, Header};
-use crate::choice::{Choice, expected};
+use crate::choice::expected;
 use crate::error::{Error, ErrorKind};
 use crate::memory::{Limit, Plan};
 use crate::options::{Precision, ProblemSettings, SolveOptions, SolveSettings, USUAL_DISCRETISATION};
@@ -179,8 +179,6 @@ pub(crate) fn expected_plan(
 pub(crate) enum Answer {
     /// A solution.
     Solved(Box<(Problem, Solution)>),
-    /// So many links in the first round that random paths cost less, about so many.
-    TooMany { links: f64, paths: f64 },
     /// Ended from outside with nothing kept: what its rounds had come to.
     Begun { rounds: Vec<Reached> },
 }
@@ -194,13 +192,11 @@ pub(crate) struct Reached {
     pub(crate) sizes: [usize; 2],
 }
 
-/// Solves a scene to an accuracy, but for one that random paths suit better, where `free` allows
-/// it.
+/// Solves a scene to an accuracy.
 pub(crate) fn compute(
     scene: &Arc<Scene>,
     options: &SolveSettings,
     (accuracy, checkpoint, folder): (f64, Option<&Checkpoint>, Option<&ResultFolder>),
-    free: bool,
     stages: &mut Stages,
 ) -> Result<Answer, Error> {
     let admit =
@@ -230,12 +226,9 @@ pub(crate) fn compute(
         accuracy,
         folder,
         saved: AtomicBool::new(false),
-        paths: Choice::paths(faces.len(), accuracy).filter(|_| free),
-        too_many: OnceLock::new(),
         reached: Mutex::default(),
     };
     let solve = || match fredholm_hierarchical::solve(&input, &limits, solvers, state, &watch) {
-        Err(HierarchyError::Interrupted) if watch.too_many.get().is_some() => Ok(None),
         // What the last round came to is in the checkpoint, which stays: the run can go on from
         // there.
         Err(HierarchyError::Interrupted) => {
@@ -248,9 +241,6 @@ pub(crate) fn compute(
         solved => solved.map_err(failure).map(Some),
     };
     let solved = stages.run("solution", solve)?;
-    if let Some(&[links, paths]) = watch.too_many.get() {
-        return Ok(Answer::TooMany { links, paths });
-    }
     let Some(solved) = solved else {
         let rounds = watch.reached.into_inner().unwrap_or_else(PoisonError::into_inner);
         return Ok(Answer::Begun { rounds });
@@ -366,7 +356,7 @@ fn solution(solved: Solved, options: &SolveSettings, accuracy: f64) -> Solution 
         mesh_error: solved.error.as_ref().filter(|_| solved.goal.is_none()).map(stated),
         hierarchy: Some(hierarchy(&solved, options, accuracy)),
         tree: Some(crate::pictures::Hierarchy { tree: solved.tree, links: solved.links }),
-        paths: None,
+        rays: None,
         means: solved.means,
         direct: Some(solved.direct),
         report: solved.report,
@@ -418,10 +408,6 @@ struct Follower<'a> {
     folder: Option<&'a ResultFolder>,
     /// Whether there is a checkpoint of this run.
     saved: AtomicBool,
-    /// Random paths that would answer the scene, where they may.
-    paths: Option<f64>,
-    /// The links of the first round and those paths, where the paths cost less.
-    too_many: OnceLock<[f64; 2]>,
     /// The rounds that stated an error.
     reached: Mutex<Vec<Reached>>,
 }
@@ -435,11 +421,6 @@ impl Watch for Follower<'_> {
 impl RoundWatch for Follower<'_> {
     fn round(&self, rounds: &[Round], state: &State) -> Result<(), HierarchyError> {
         let Some(last) = rounds.last() else { return Ok(()) };
-        let links = last.links as f64;
-        if let Some(paths) = self.paths.filter(|&paths| rounds.len() == 1 && Choice::too_many(links, paths)) {
-            self.too_many.get_or_init(|| [links, paths]);
-            return Err(HierarchyError::Interrupted);
-        }
         if let Some(folder) = self.folder {
             checkpoint::write(folder, &self.header, state).map_err(|why| HierarchyError::Save { why })?;
             self.saved.store(true, Ordering::Relaxed);

@@ -272,8 +272,8 @@ pub struct FalseColour {
 pub enum Way {
     /// Hierarchical radiosity: elements are chosen where they are needed, and linked.
     Links,
-    /// Random paths from the lamps; the elements are those of the scene.
-    Paths,
+    /// Rays from the elements of the scene, whose parts they tell apart.
+    Rays,
 }
 
 /// A further file with the field.

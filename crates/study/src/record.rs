@@ -15,7 +15,7 @@ use crate::openness::{LEAST_ROW_SUM, openness};
 use crate::options::SolveSettings;
 use crate::pictures;
 use crate::problem::Problem;
-use crate::sampled::Paths;
+use crate::rays::Rays;
 use crate::solution::{Solution, reason};
 use crate::stages::Stages;
 
@@ -43,9 +43,9 @@ pub(crate) fn record(
         discretisation: options.problem.discretisation.clone(),
         means: solution.means_of.to_owned(),
         solver: options.problem.solver.clone(),
-        tolerance: solution.paths.is_none().then_some(options.tolerance),
+        tolerance: solution.rays.is_none().then_some(options.tolerance),
         history: history(report, problem.scene.bands().len()),
-        work: solution.paths.as_ref().map_or_else(|| work(&report.work), traced),
+        work: work(&report.work, solution.rays.as_ref()),
         stop_reason: reason(report.reason).to_owned(),
         received: field(problem, solution).map_or_else(Vec::new, |field| received(&field)),
         closure: openness(closure(problem, &solution.closure), problem, &solution.exposed, &solution.closure),
@@ -76,8 +76,8 @@ fn unfinished(solution: &Solution) -> Option<String> {
         StopReason::Interrupted if solution.hierarchy.is_some() => {
             "interrupted: the results are those of the last round, marked partial; `fredholm resume DIR`, with the folder of the results, goes on from there"
         }
-        StopReason::Interrupted if solution.paths.is_some() => {
-            "interrupted: the results are those of the paths so far, marked partial"
+        StopReason::Interrupted if solution.rays.is_some() => {
+            "interrupted: the results are those of the rays so far, marked partial"
         }
         StopReason::Interrupted => "interrupted: the results are those of the last iterate, marked partial",
         StopReason::IterationLimit | StopReason::Diverged => {
@@ -110,7 +110,7 @@ pub(crate) const ERROR_WORTH_A_WARNING: f64 = 0.1;
 /// Whether constants on the elements are far off.
 fn large(solution: &Solution) -> Option<String> {
     let error =
-        solution.mesh_error.as_ref().filter(|_| solution.hierarchy.is_none() && solution.paths.is_none())?;
+        solution.mesh_error.as_ref().filter(|_| solution.hierarchy.is_none() && solution.rays.is_none())?;
     let worst = error.relative_l2.iter().copied().fold(0.0, f64::max);
     (worst > ERROR_WORTH_A_WARNING).then(|| {
         format!(
@@ -159,18 +159,15 @@ fn history(report: &Report, bands: usize) -> History {
     }
 }
 
-fn work(work: &Work) -> BTreeMap<String, u64> {
+fn work(work: &Work, rays: Option<&Rays>) -> BTreeMap<String, u64> {
     let counters = [
         ("operator_applications", work.operator_applications),
         ("row_visits", work.row_visits),
         ("column_visits", work.column_visits),
         ("entries_touched", work.entries_touched),
     ];
-    counters.map(|(name, count)| (name.to_owned(), count)).into()
-}
-
-fn traced(paths: &Paths) -> BTreeMap<String, u64> {
-    [("paths", paths.begun), ("rays", paths.rays)].map(|(name, count)| (name.to_owned(), count)).into()
+    let rays = rays.map(|rays| ("rays", rays.cast));
+    counters.into_iter().chain(rays).map(|(name, count)| (name.to_owned(), count)).collect()
 }
 
 /// The irradiance of the faces of a field, band by band.

@@ -8,8 +8,8 @@
 //! ```
 //!
 //! after a round k that states the error e_k. Of elements and links there are whole rounds. The run
-//! is begun, and ended where it takes too long; p is what its rounds grew with. Random paths take
-//! (e/ε)² times what they took to the error e. The picture is drawn small, and takes as much more
+//! is begun, and ended where it takes too long; p is what its rounds grew with. Rays take (e/ε)^1.4
+//! times what they took to the error e. The picture is drawn small, and takes as much more
 //! as it has more pixels.
 
 use std::ops::ControlFlow;
@@ -23,7 +23,7 @@ use crate::hierarchical::{self, Answer, Reached};
 use crate::meter::{Meter, alone, spent};
 use crate::options::SolveSettings;
 use crate::problem::{Problem, pixels};
-use crate::sampled;
+use crate::rays;
 use crate::solution::Solution;
 use crate::solve::Solved;
 use crate::stages::Stages;
@@ -46,6 +46,8 @@ const PICTURE_WIDTHS: [u32; 2] = [40, 160];
 /// Seconds for a value in the files, and for a pixel of the pictures of elements and of links.
 const SECONDS_A_VALUE: f64 = 2e-6;
 const SECONDS_A_PIXEL: f64 = 2e-6;
+/// Exponent with which the time of rays grows with the accuracy.
+const RAYS_EXPONENT: f64 = 1.4;
 
 /// What a run to an accuracy is expected to come to.
 #[derive(Clone, Copy, Debug, Default)]
@@ -57,24 +59,23 @@ pub(crate) struct Expected {
     pub(crate) sizes: Option<[usize; 2]>,
 }
 
-/// What a run to an accuracy comes to, from its beginning. A run may be free to go over to random
-/// paths.
+/// What a run to an accuracy comes to, from its beginning, by rays or by links.
 pub(crate) fn expected(
     scene: &Arc<Scene>,
     options: &SolveSettings,
-    accuracy: (f64, bool),
+    (accuracy, rays): (f64, bool),
     watch: &dyn Watch,
 ) -> Expected {
-    alone(|| by_links(scene, options, accuracy, watch)).unwrap_or_default()
+    let found = alone(|| {
+        if rays {
+            return Expected { seconds: by_rays(scene, options, accuracy, watch), sizes: None };
+        }
+        by_links(scene, options, accuracy, watch)
+    });
+    found.unwrap_or_default()
 }
 
-fn by_links(
-    scene: &Arc<Scene>,
-    options: &SolveSettings,
-    (accuracy, free): (f64, bool),
-    watch: &dyn Watch,
-) -> Expected {
-    let by_paths = || Expected { seconds: by_paths(scene, options, accuracy, watch), sizes: None };
+fn by_links(scene: &Arc<Scene>, options: &SolveSettings, accuracy: f64, watch: &dyn Watch) -> Expected {
     let known = |whole: f64, solved: (Problem, Solution)| {
         let sizes = sizes(&solved);
         Expected { seconds: written(options, solved).map(|written| whole + written), sizes }
@@ -82,11 +83,10 @@ fn by_links(
     let meter = Meter::new(watch, LOOSE_SECONDS);
     let little = accuracy.max(LOOSE_ACCURACY);
     let loose = SolveSettings { accuracy: Some(little), ..options.clone() };
-    let found = hierarchical::compute(scene, &loose, (little, None, None), free, &mut Stages::new(&meter));
+    let found = hierarchical::compute(scene, &loose, (little, None, None), &mut Stages::new(&meter));
     let whole = meter.seconds();
     let solved = match found {
         Ok(Answer::Solved(solved)) => *solved,
-        Ok(Answer::TooMany { .. }) => return by_paths(),
         Ok(Answer::Begun { .. }) | Err(_) => return Expected::default(),
     };
     if accuracy >= little {
@@ -96,11 +96,10 @@ fn by_links(
     let after =
         meter.readings().shares.last().map_or(1.0, |&[last, _]| whole / last.max(1e-3)).clamp(1.0, 2.0);
     let meter = Meter::new(watch, CLOSE_SECONDS);
-    let found = hierarchical::compute(scene, options, (accuracy, None, None), free, &mut Stages::new(&meter));
+    let found = hierarchical::compute(scene, options, (accuracy, None, None), &mut Stages::new(&meter));
     let whole = meter.seconds();
     match found {
         Ok(Answer::Solved(solved)) => known(whole, *solved),
-        Ok(Answer::TooMany { .. }) => by_paths(),
         Ok(Answer::Begun { rounds }) if watch.go_on() == ControlFlow::Continue(()) => Expected {
             seconds: extrapolated(&meter.readings().shares, accuracy)
                 .and_then(|rounds| Some(after * rounds + written(options, solved)?)),
@@ -147,9 +146,9 @@ fn extrapolated(rounds: &[[f64; 2]], accuracy: f64) -> Option<f64> {
     Some((last[0] + exponent.clamp(LINK_EXPONENTS[0], LINK_EXPONENTS[1]) * (digits - last[1])).exp())
 }
 
-fn by_paths(scene: &Arc<Scene>, options: &SolveSettings, accuracy: f64, watch: &dyn Watch) -> Option<f64> {
+fn by_rays(scene: &Arc<Scene>, options: &SolveSettings, accuracy: f64, watch: &dyn Watch) -> Option<f64> {
     let meter = Meter::new(watch, CLOSE_SECONDS);
-    let (problem, solution) = sampled::compute(scene, options, accuracy, &mut Stages::new(&meter)).ok()?;
+    let (problem, solution) = rays::compute(scene, options, accuracy, &mut Stages::new(&meter)).ok()?;
     if watch.go_on() == ControlFlow::Break(()) {
         return None;
     }
@@ -159,7 +158,7 @@ fn by_paths(scene: &Arc<Scene>, options: &SolveSettings, accuracy: f64, watch: &
         let stages = stages.iter().filter(|(stage, _)| (stage == "solution") == traced);
         stages.map(|(_, seconds)| seconds).sum::<f64>()
     };
-    let more = (reached / accuracy).powi(2).max(1.0);
+    let more = (reached / accuracy).powf(RAYS_EXPONENT).max(1.0);
     Some(of(false) + of(true) * more + written(options, (problem, solution))?)
 }
 

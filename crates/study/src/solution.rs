@@ -18,7 +18,7 @@ use crate::options::Precision;
 use crate::options::SolveSettings;
 use crate::pictures;
 use crate::problem::{Problem, prepare};
-use crate::sampled::Paths;
+use crate::rays::Rays;
 use crate::stages::Stages;
 use crate::watcher::Watcher;
 
@@ -57,8 +57,8 @@ pub(crate) struct Solution {
     pub(crate) tree: Option<pictures::Hierarchy>,
     /// The elements that light every element most, by the matrix; empty where there is none.
     pub(crate) senders: Vec<Senders>,
-    /// What random paths came to, where they were traced.
-    pub(crate) paths: Option<Paths>,
+    /// What rays came to, where rows are of rays.
+    pub(crate) rays: Option<Rays>,
     /// Relative error of the field as polynomials, per band.
     pub(crate) field_error: Option<Vec<f64>>,
     /// Which solver took the place of the one asked for, and why.
@@ -72,7 +72,7 @@ impl Solution {
         let worst = stated.and_then(|errors| errors.reduce(f64::max));
         let known = |stated: Option<f64>, accuracy: f64| stated.is_some_and(|error| error <= accuracy);
         self.hierarchy.as_ref().is_none_or(|h| known(h.stated, h.accuracy))
-            && self.paths.as_ref().is_none_or(|paths| known(worst, paths.accuracy))
+            && self.rays.as_ref().is_none_or(|rays| known(worst, rays.accuracy))
     }
 }
 
@@ -158,7 +158,7 @@ fn assess<S: Storage>(
         hierarchy: None,
         tree: None,
         senders: Vec::new(),
-        paths: None,
+        rays: None,
         field_error: None,
         replaced: None,
     })

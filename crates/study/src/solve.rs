@@ -28,7 +28,7 @@ use crate::record::{record, remarks};
 use crate::solution::{Solution, compute};
 use crate::stages::{Signals, Stages};
 use crate::stochastic::expected_error;
-use crate::{hierarchical, lit_by, registry, sampled};
+use crate::{hierarchical, lit_by, rays, registry};
 
 /// Pixels of the picture of a partial result.
 const QUICK_PIXELS: f64 = 40_000.0;
@@ -306,9 +306,9 @@ pub(crate) fn accuracy_of(asked: &SolveOptions, scene: &Scene) -> Result<Option<
     }
 }
 
-/// Whether a run may go over from links to paths: who names a way, a goal or a solver has links in
+/// Whether rays may take the place of links: who names a way, a goal or a solver has links in
 /// mind.
-pub(crate) fn is_free(asked: &SolveOptions, scene: &Scene) -> bool {
+fn is_free(asked: &SolveOptions, scene: &Scene) -> bool {
     let solver = asked.problem.solver.is_some() || scene.solve().solver.is_some();
     asked.way.is_none() && asked.goal.is_empty() && !solver
 }
@@ -359,8 +359,8 @@ fn to_accuracy(
     if checkpoint.is_none() {
         let predicted = predicted(asked, scene, accuracy)?;
         choice = Some(predicted);
-        if predicted.is_paths() {
-            return on_paths(asked, scene, (accuracy, predicted), stages);
+        if predicted.is_rays() {
+            return on_rays(asked, scene, (accuracy, predicted), stages);
         }
         if predicted.is_matrix() {
             match on_matrix(asked, scene, (accuracy, predicted), stages)? {
@@ -370,17 +370,13 @@ fn to_accuracy(
         }
     }
     let options = hierarchical::options(asked, scene, accuracy)?;
-    let free = checkpoint.is_none() && is_free(asked, scene);
     let choice = choice.map(|choice| choice.to_string());
     let options = SolveSettings { choice: choice.or_else(|| checkpoint?.header.choice.clone()), ..options };
     let saved = (accuracy, checkpoint, asked.folder.as_ref());
-    match hierarchical::compute(scene, &options, saved, free, stages)? {
+    match hierarchical::compute(scene, &options, saved, stages)? {
         Answer::Solved(solved) => {
             let (problem, solution) = *solved;
             Ok((options, problem, solution))
-        }
-        Answer::TooMany { links, paths } => {
-            on_paths(asked, scene, (accuracy, Choice::Paths { links, paths }), stages)
         }
         Answer::Begun { .. } => Err(hierarchical::interrupted()),
     }
@@ -389,18 +385,13 @@ fn to_accuracy(
 /// The way that is predicted to cost less.
 pub(crate) fn predicted(asked: &SolveOptions, scene: &Scene, accuracy: f64) -> Result<Choice, Error> {
     match asked.way {
-        Some(Way::Paths) if !asked.goal.is_empty() => {
-            let error = Error::new(ErrorKind::Input, "random paths know no goal");
+        Some(Way::Rays) if !asked.goal.is_empty() => {
+            let error = Error::new(ErrorKind::Input, "rays know no goal");
             return Err(error.with_help("leave out the goal, or the way"));
         }
         Some(way) => return Ok(Choice::Asked(way)),
         None if !asked.goal.is_empty() => return Ok(Choice::Goal),
         None => {}
-    }
-    let elements = scene.predicted_elements() as f64;
-    if elements >= Choice::most_elements(accuracy) {
-        // Whatever the faces: as many as there are elements, they have the most links.
-        return Ok(Choice::new(Extent { elements, faces: elements, fewest: 1 }, accuracy));
     }
     let options = ProblemSettings::new(&asked.problem, scene.solve());
     let meshed =
@@ -409,9 +400,10 @@ pub(crate) fn predicted(asked: &SolveOptions, scene: &Scene, accuracy: f64) -> R
         return Ok(Choice::Memory);
     }
     let mesh = scene.mesh().map_err(scene_failure)?;
-    let count = mesh.faces().len();
-    let fewest = (0..count).map(|face| mesh.leaves_of_face(face).len()).min().unwrap_or(0);
-    let choice = Choice::new(Extent { elements: mesh.len() as f64, faces: count as f64, fewest }, accuracy);
+    let settings = hierarchical::options(asked, scene, accuracy)?;
+    let free = is_free(asked, scene)
+        && rays::plan_on(scene, &mesh, &settings, accuracy).fits(options.memory_limit());
+    let choice = Choice::new(Extent::of(&mesh), accuracy, free);
     let fits = fits(&options, mesh.len(), scene.bands().len());
     Ok(if choice.is_matrix() && !fits { Choice::Memory } else { choice })
 }
@@ -445,18 +437,18 @@ fn on_matrix(
     Ok(Ok((SolveSettings { accuracy: Some(accuracy), choice, ..options }, problem, solution)))
 }
 
-/// By random paths, on the elements of the scene.
-fn on_paths(
+/// By rays, on the elements of the scene.
+fn on_rays(
     asked: &SolveOptions,
     scene: &Arc<Scene>,
     (accuracy, choice): (f64, Choice),
     stages: &mut Stages,
 ) -> Result<(SolveSettings, Problem, Solution), Error> {
     let mut options = hierarchical::options(asked, scene, accuracy)?;
-    sampled::NAME.clone_into(&mut options.problem.discretisation);
-    sampled::NAME.clone_into(&mut options.problem.solver);
+    rays::NAME.clone_into(&mut options.problem.discretisation);
+    rays::SOLVER.clone_into(&mut options.problem.solver);
     let options = SolveSettings { choice: Some(choice.to_string()), ..options };
-    let (problem, solution) = sampled::compute(scene, &options, accuracy, stages)?;
+    let (problem, solution) = rays::compute(scene, &options, accuracy, stages)?;
     Ok((options, problem, solution))
 }
 

@@ -66,7 +66,7 @@ Examples:
   fredholm solve room.toml --accuracy 1% --goal desk,board
   fredholm solve room.toml --accuracy 1% --final-gather --point 1,2,0.8,0,0,1
   fredholm solve house.obj --accuracy 5%
-  fredholm solve city.obj --accuracy 5% --way paths --time-limit 10min
+  fredholm solve city.obj --accuracy 5% --way rays --time-limit 10min
   fredholm solve room.glb --also ply,glb
   fredholm solve room.toml --accuracy 1% --false-colour
 
@@ -74,9 +74,10 @@ A mesh file stands for a scene: .obj, .stl, .ply, .gltf, .glb, .msh (Gmsh 4.1), 
 (Mitsuba 3) or .vs3 (View3D). Reflectances and lamps are those of the file (of an OBJ those of its .mtl
 file: Kd and Ke); where nothing emits, light comes evenly from all sides. What was taken is told.
 
-An accuracy is reached by hierarchical radiosity, by the matrix of the scene's elements, or in scenes
-of many faces by random paths, whichever is predicted to cost least; the summary says which. With the former, mesh.png shows the elements and
-links.png what the element in the middle of the picture receives its light from.
+An accuracy is reached by hierarchical radiosity, by the matrix of the scene's elements, or in
+furnished scenes by rays, whichever is predicted to cost least; the summary says which. With the
+former, mesh.png shows the elements and links.png what the element in the middle of the picture
+receives its light from.
 
 Ctrl-C during the assembly ends the run with nothing written; during the solution by an
 iterative solver the current iterate is written as a result marked \"partial\", with a small
@@ -274,15 +275,15 @@ pub(crate) enum LogFormat {
 pub(crate) enum Way {
     /// Hierarchical radiosity: elements are chosen where they are needed, and linked
     Links,
-    /// Random paths from the lamps to the elements of the scene
-    Paths,
+    /// Rays from the elements of the scene, whose parts they tell apart
+    Rays,
 }
 
 impl From<Way> for fredholm_study::Way {
     fn from(way: Way) -> Self {
         match way {
             Way::Links => Self::Links,
-            Way::Paths => Self::Paths,
+            Way::Rays => Self::Rays,
         }
     }
 }

@@ -5,6 +5,7 @@
 
 mod cosine;
 mod frame;
+mod lamp_tree;
 mod lamps;
 mod surface;
 mod uniform;
@@ -12,6 +13,7 @@ mod von_mises_fisher;
 
 pub use cosine::Cosine;
 pub use frame::Frame;
+pub use lamp_tree::{Cut, Cuts, LampTree, Receiver};
 pub use lamps::LampDensity;
 pub use surface::SurfaceDensity;
 pub use uniform::{UniformHemisphere, UniformSphere};

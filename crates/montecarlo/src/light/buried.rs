@@ -3,15 +3,12 @@
 //! A patch is cut into [`PARTS_A_SIDE`]² parts of equal area; one of which no ray out of a fixed bundle
 //! meets a lit side or nothing is buried. Patches whose exposed share is 0 or 1 need no parts.
 
-use crate::density::{Cosine, DirectionDensity};
-use crate::{Enclosure, Site};
+use crate::Enclosure;
 use fredholm_mesh::Vec3;
 use std::collections::BTreeMap;
 
 /// Parts along a side.
 const PARTS_A_SIDE: u32 = 32;
-/// Rays of a bundle: rings by the cosine density, and rays in each.
-const BUNDLE: [u32; 2] = [3, 5];
 
 /// The exposed parts of a patch.
 #[derive(Clone, Debug)]
@@ -26,7 +23,7 @@ impl ExposedPart {
         let middle = |k: u32| (f64::from(k) + 0.5) / f64::from(PARTS_A_SIDE);
         let sites = (0..PARTS_A_SIDE * PARTS_A_SIDE)
             .map(|k| scene.point(patch, [middle(k / PARTS_A_SIDE), middle(k % PARTS_A_SIDE)]));
-        let middles = sites.filter(|&site| exposed(scene, site)).map(|site| site.point).collect();
+        let middles = sites.filter(|&site| scene.is_exposed(site)).map(|site| site.point).collect();
         Self { middles, each: scene.patches()[patch].area() / f64::from(PARTS_A_SIDE * PARTS_A_SIDE) }
     }
 
@@ -40,15 +37,6 @@ impl ExposedPart {
         let inside = self.middles.iter().filter(|middle| middle.distance_squared(centre) <= radius * radius);
         self.each * inside.count() as f64
     }
-}
-
-fn exposed(scene: &Enclosure, site: Site) -> bool {
-    let [rings, rays] = BUNDLE;
-    let direction = |k: u32| {
-        let (ring, ray) = (f64::from(k / rays), f64::from(k % rays));
-        Cosine.sample([(ring + 0.5) / f64::from(rings), (ray + ring / f64::from(rings)) / f64::from(rays)])
-    };
-    (0..rings * rays).any(|k| scene.opens(site, direction(k)))
 }
 
 /// The patches that are neither wholly buried nor wholly exposed.

@@ -11,4 +11,4 @@ pub(crate) use fields::{FieldPoint, FieldRun, field_points};
 pub(crate) use ground::{Drawn, Ground, control, enclosure, expected_error, face_means, faces, with_tracing};
 pub use options::{PathOptions, SamplePoints, TraceStop};
 pub(crate) use pixels::PixelTracer;
-pub(crate) use tracer::{Silent, Tracer, controlled, failure};
+pub(crate) use tracer::{Tracer, controlled, failure};

@@ -176,7 +176,9 @@ fn solution(run: &RunRecord) -> String {
     let residual = last.fold(0.0, |worst: f64, &r| if r > worst || r.is_nan() { r } else { worst });
     let asked = run.tolerance.map(|t| format!(" (asked: {t:.1e})")).unwrap_or_default();
     let (solver, reason) = (&run.solver, &run.stop_reason);
-    format!("{reason} after {} of {solver}, residual {residual:.1e}{asked}", number(iterations, "iteration"))
+    let rays = run.work.get("rays").map(|n| format!("; {n} rays")).unwrap_or_default();
+    let count = number(iterations, "iteration");
+    format!("{reason} after {count} of {solver}, residual {residual:.1e}{asked}{rays}")
 }
 
 /// Whether the scene is open, what of it is buried, and how far row sums are off besides.

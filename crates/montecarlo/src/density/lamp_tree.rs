@@ -1,0 +1,356 @@
+//! Lamps as one receiver sees them: a tree of lamps, and a cut through it for every receiver.
+//!
+//! The density of a point q of a lamp is P(q)/A, with the probability P of its lamp in proportion to
+//! a bound on what the lamp can bring to the receiver,
+//!
+//! ```text
+//! A M max cosθ max cosθ′ / max(d², r²),
+//! ```
+//!
+//! over the balls (radii r) round both. Lamps that are many are taken together where they are far
+//! away: from the root on, the part with the largest bound is opened until [`MOST_PARTS`] are left;
+//! within a part, lamps are taken by power (B. Walter et al., *Lightcuts*, SIGGRAPH 2005,
+//! doi:10.1145/1186822.1073318). No lamp that may light the receiver has probability 0, so means
+//! stay unbiased. M is the mean exitance over the bands, W/m².
+
+use super::SurfaceDensity;
+use fredholm_mesh::{Patch, Vec3};
+use rayon::prelude::*;
+
+/// Parts of a cut at most.
+const MOST_PARTS: usize = 16;
+/// Height of a receiver's ball over its plane, relative to its radius, that counts as none.
+const LEAST_HEIGHT: f64 = 1e-9;
+/// Distance of a lamp that is near, over the radii of both balls.
+const NEAR: f64 = 1.5;
+
+/// All lamps.
+#[derive(Clone, Debug)]
+pub struct LampTree {
+    lamps: Vec<Lamp>,
+    /// The first is the root; children follow their parent.
+    nodes: Vec<Node>,
+    /// Power of all lamps up to each, in the order of the tree, W.
+    cumulated: Vec<f64>,
+    /// Place in the order of the tree of every patch that is a lamp.
+    place_of: Vec<Option<u32>>,
+}
+
+#[derive(Clone, Debug)]
+struct Lamp {
+    patch: usize,
+    surface: SurfaceDensity,
+    normal: Vec3,
+    area: f64,
+}
+
+#[derive(Clone, Debug)]
+struct Node {
+    centre: Vec3,
+    radius: f64,
+    power: f64,
+    first: usize,
+    count: usize,
+    /// The second child; the first one follows its parent. None for a single lamp.
+    second: Option<usize>,
+}
+
+/// What lamps may light.
+#[derive(Clone, Copy, Debug)]
+pub struct Receiver {
+    centre: Vec3,
+    radius: f64,
+    normal: Vec3,
+}
+
+impl Receiver {
+    /// All of a patch.
+    #[must_use]
+    pub fn of(patch: &Patch) -> Self {
+        let centre = patch.centroid();
+        let radius = patch.corners().iter().map(|x| x.distance(centre)).fold(0.0, f64::max);
+        Self { centre, radius, normal: patch.normal() }
+    }
+}
+
+/// The parts of the tree that each of many receivers tells apart, and how likely they are.
+#[derive(Clone, Debug, Default)]
+pub struct Cuts {
+    /// Where the parts of every receiver begin, and where those of the last end.
+    starts: Vec<usize>,
+    parts: Vec<Part>,
+    /// Receivers that are so near a lamp that what its points bring varies without bound.
+    near: Vec<bool>,
+}
+
+/// The parts for one receiver.
+#[derive(Clone, Copy, Debug)]
+pub struct Cut<'a>(&'a [Part]);
+
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    node: u32,
+    /// Probability.
+    share: f32,
+    /// Probability of this part and those before it.
+    end: f32,
+}
+
+impl Cuts {
+    /// The parts for a receiver.
+    #[must_use]
+    pub fn of(&self, receiver: usize) -> Cut<'_> {
+        Cut(&self.parts[self.starts[receiver]..self.starts[receiver + 1]])
+    }
+
+    /// Whether a receiver is so near a lamp that what points of it bring varies without bound.
+    #[must_use]
+    pub fn is_near(&self, receiver: usize) -> bool {
+        self.near[receiver]
+    }
+}
+
+impl LampTree {
+    /// The tree of patches that emit so much each (W).
+    #[must_use]
+    pub fn new(patches: &[Patch], power: &[f64]) -> Self {
+        let mut order: Vec<usize> = (0..patches.len()).filter(|&patch| power[patch] > 0.0).collect();
+        let mut nodes = Vec::new();
+        if !order.is_empty() {
+            let count = order.len();
+            build(&mut order, (0, count), patches, power, &mut nodes);
+        }
+        let mut place_of = vec![None; patches.len()];
+        for (place, &patch) in order.iter().enumerate() {
+            place_of[patch] = Some(place as u32);
+        }
+        let lamp = |&patch: &usize| Lamp {
+            patch,
+            surface: SurfaceDensity::new(&patches[patch]),
+            normal: patches[patch].normal(),
+            area: patches[patch].area(),
+        };
+        let mut sum = 0.0;
+        let cumulated = order.iter().map(|&patch| {
+            sum += power[patch];
+            sum
+        });
+        let cumulated = cumulated.collect();
+        Self { lamps: order.iter().map(lamp).collect(), nodes, cumulated, place_of }
+    }
+
+    /// The parts that may light each of some receivers.
+    #[must_use]
+    pub fn cuts(&self, receivers: &[Receiver]) -> Cuts {
+        let found: Vec<(Vec<Part>, bool)> = receivers.par_iter().map(|receiver| self.cut(receiver)).collect();
+        let mut cuts = Cuts { starts: vec![0], ..Cuts::default() };
+        for (parts, near) in found {
+            cuts.parts.extend(parts);
+            cuts.starts.push(cuts.parts.len());
+            cuts.near.push(near);
+        }
+        cuts
+    }
+
+    fn cut(&self, receiver: &Receiver) -> (Vec<Part>, bool) {
+        let mut parts: Vec<(usize, f64)> = Vec::with_capacity(MOST_PARTS);
+        let part = |node: usize| (node, self.bound(node, receiver));
+        if !self.nodes.is_empty() {
+            parts.push(part(0));
+        }
+        while parts.len() < MOST_PARTS {
+            let open = |(_, part): &(usize, &(usize, f64))| self.nodes[part.0].second.is_some();
+            let largest = parts.iter().enumerate().filter(open);
+            let largest = largest.max_by(|(_, a), (_, b)| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)));
+            let Some((at, &(node, bound))) = largest else { break };
+            let Some(second) = self.nodes[node].second.filter(|_| bound > 0.0) else { break };
+            parts[at] = part(node + 1);
+            parts.push(part(second));
+        }
+        parts.retain(|part| part.1 > 0.0);
+        parts.sort_unstable_by_key(|part| part.0);
+        let total: f64 = parts.iter().map(|part| part.1).sum();
+        let mut end = 0.0;
+        let parts = parts.into_iter().map(|(node, bound)| {
+            let share = (bound / total) as f32;
+            end += share;
+            Part { node: node as u32, share, end }
+        });
+        (parts.collect(), self.is_near(receiver))
+    }
+
+    /// Whether any lamp that may light a receiver lies within a few radii.
+    fn is_near(&self, receiver: &Receiver) -> bool {
+        let mut left: Vec<usize> = if self.nodes.is_empty() { Vec::new() } else { vec![0] };
+        while let Some(node) = left.pop() {
+            let Node { centre, radius, second, .. } = self.nodes[node];
+            // A lamp of the node is no larger than it, and no farther away than its centre and more.
+            let off = if second.is_some() { radius } else { 0.0 };
+            let reach = off + NEAR * (radius + receiver.radius);
+            if centre.distance_squared(receiver.centre) < reach * reach && self.bound(node, receiver) > 0.0 {
+                match second {
+                    Some(second) => left.extend([node + 1, second]),
+                    None => return true,
+                }
+            }
+        }
+        false
+    }
+
+    /// A bound on what a node brings to a receiver, W/m² but for factors that all have.
+    fn bound(&self, node: usize, receiver: &Receiver) -> f64 {
+        let Node { centre, radius, power, first, count, .. } = self.nodes[node];
+        let between = centre - receiver.centre;
+        let (square, reach) = (between.length_squared(), radius + receiver.radius);
+        let distance = square.sqrt();
+        let cosine = |height: f64| {
+            let most = height + reach;
+            if most <= LEAST_HEIGHT * reach {
+                0.0
+            } else {
+                (most / distance.max(most)).max(f64::MIN_POSITIVE)
+            }
+        };
+        let before = cosine(receiver.normal.dot(between));
+        let lit = if count == 1 { cosine(-self.lamps[first].normal.dot(between)) } else { 1.0 };
+        power * before * lit / square.max(reach * reach)
+    }
+
+    /// A point of a lamp from three numbers in [0, 1), its patch, and its density (1/m²); none where
+    /// no lamp lights the receiver.
+    #[must_use]
+    pub fn sample(&self, Cut(parts): Cut, choice: f64, numbers: [f64; 2]) -> Option<(usize, Vec3, f64)> {
+        let last = parts.len().checked_sub(1)?;
+        let choice = choice * f64::from(parts[last].end);
+        let at = parts.partition_point(|part| f64::from(part.end) <= choice).min(last);
+        let (node, share) = self.part(parts[at]);
+        let begin = f64::from(parts[at].end) - share;
+        let rest = ((choice - begin) / share).clamp(0.0, 1.0);
+        let before = node.first.checked_sub(1).map_or(0.0, |last| self.cumulated[last]);
+        let range = &self.cumulated[node.first..node.first + node.count];
+        let place = range.partition_point(|&end| end - before <= rest * node.power).min(node.count - 1);
+        let lamp = &self.lamps[node.first + place];
+        let density = self.density((node, share), node.first + place) / f64::from(parts[last].end);
+        Some((lamp.patch, lamp.surface.sample(numbers), density))
+    }
+
+    /// The density with which a cut finds points of a patch, 1/m².
+    #[must_use]
+    pub fn pdf(&self, Cut(parts): Cut, patch: usize) -> f64 {
+        let Some(place) = self.place_of[patch].map(|place| place as usize) else { return 0.0 };
+        let holds = |part: &&Part| {
+            let node = &self.nodes[part.node as usize];
+            (node.first..node.first + node.count).contains(&place)
+        };
+        let (Some(&part), Some(last)) = (parts.iter().find(holds), parts.last()) else { return 0.0 };
+        self.density(self.part(part), place) / f64::from(last.end)
+    }
+
+    fn part(&self, part: Part) -> (&Node, f64) {
+        (&self.nodes[part.node as usize], f64::from(part.share))
+    }
+
+    /// Density of points of the lamp at this place, as a part with this share has them, 1/m².
+    fn density(&self, (node, share): (&Node, f64), place: usize) -> f64 {
+        let before = place.checked_sub(1).map_or(0.0, |last| self.cumulated[last]);
+        share * (self.cumulated[place] - before) / (node.power * self.lamps[place].area)
+    }
+}
+
+/// Builds the tree of a part of the order, halved where its centres lie farthest apart.
+fn build(
+    order: &mut [usize],
+    (first, count): (usize, usize),
+    patches: &[Patch],
+    power: &[f64],
+    nodes: &mut Vec<Node>,
+) {
+    let members = &mut order[first..first + count];
+    let corners = || members.iter().flat_map(|&patch| patches[patch].corners().iter().copied());
+    let (low, high) =
+        corners().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    let centre = 0.5 * (low + high);
+    let radius = corners().map(|x| x.distance(centre)).fold(0.0, f64::max);
+    let sum = members.iter().map(|&patch| power[patch]).sum();
+    let own = nodes.len();
+    nodes.push(Node { centre, radius, power: sum, first, count, second: None });
+    if count == 1 {
+        return;
+    }
+    let axis = (high - low).to_array();
+    let axis = (0..3).max_by(|&a, &b| axis[a].total_cmp(&axis[b])).unwrap_or(0);
+    let place = |&patch: &usize| patches[patch].centroid()[axis];
+    let half = count / 2;
+    members.select_nth_unstable_by(half, |a, b| place(a).total_cmp(&place(b)).then(a.cmp(b)));
+    build(order, (first, half), patches, power, nodes);
+    nodes[own].second = Some(nodes.len());
+    build(order, (first + half, count - half), patches, power, nodes);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::points::{Key, PointSet, Samples};
+
+    fn square(corner: Vec3, side: f64, up: bool) -> Patch {
+        let at = |i: f64, j: f64| corner + Vec3::new(side * i, side * j, 0.0);
+        let corners = [at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)];
+        let patch = Patch::quad(corners).unwrap().unwrap();
+        if up { patch } else { patch.flipped() }
+    }
+
+    /// A field of lamps over a floor, some of them turned away.
+    fn lamps() -> (Vec<Patch>, Vec<f64>) {
+        let patch = |k: usize| {
+            let place = Vec3::new((k % 20) as f64, (k / 20) as f64, 2.0 + 0.1 * (k % 3) as f64);
+            square(place, 0.5, k.is_multiple_of(7))
+        };
+        let patches: Vec<Patch> = (0..300).map(patch).collect();
+        let power =
+            (0..300_u32).map(|k| if k.is_multiple_of(11) { 0.0 } else { 1.0 + f64::from(k % 5) }).collect();
+        (patches, power)
+    }
+
+    #[test]
+    fn densities_of_a_cut_integrate_to_one_and_leave_no_lamp_out() {
+        let (patches, power) = lamps();
+        let tree = LampTree::new(&patches, &power);
+        let receivers = [square(Vec3::ZERO, 1.0, true), square(Vec3::new(10.0, 8.0, 1.9), 0.2, true)];
+        let cuts = tree.cuts(&receivers.map(|patch| Receiver::of(&patch)));
+        for receiver in 0..2 {
+            let cut = cuts.of(receiver);
+            assert!(cut.0.len() <= MOST_PARTS);
+            let mass = |k: usize| tree.pdf(cut, k) * patches[k].area();
+            assert!(((0..300).map(mass).sum::<f64>() - 1.0).abs() < 1e-6);
+            for (k, patch) in patches.iter().enumerate() {
+                let lights = power[k] > 0.0 && patch.normal().z < 0.0;
+                assert!(mass(k) > 0.0 || !lights, "{k}");
+            }
+        }
+        assert!(!cuts.is_near(0) && cuts.is_near(1));
+        // Nothing lights what looks away from all lamps.
+        let away = tree.cuts(&[Receiver::of(&square(Vec3::new(0.0, 0.0, -30.0), 1.0, false))]);
+        assert!(tree.sample(away.of(0), 0.3, [0.5; 2]).is_none());
+    }
+
+    #[test]
+    fn samples_follow_the_density() {
+        let (patches, power) = lamps();
+        let tree = LampTree::new(&patches, &power);
+        let cuts = tree.cuts(&[Receiver::of(&square(Vec3::ZERO, 1.0, true))]);
+        let cut = cuts.of(0);
+        let n = 40_000;
+        let mut samples = Samples::new(PointSet::Independent, Key { seed: 3, batch: 0, stream: 0 }, n);
+        let mut counts = vec![0.0; patches.len()];
+        for s in 0..n {
+            let mut draw = samples.draw(s);
+            let (patch, _, density) = tree.sample(cut, draw.single(), draw.pair()).unwrap();
+            assert!((density / tree.pdf(cut, patch) - 1.0).abs() < 1e-9);
+            counts[patch] += 1.0;
+        }
+        for (k, count) in counts.iter().enumerate() {
+            let expected = f64::from(n) * tree.pdf(cut, k) * patches[k].area();
+            assert!((count - expected).abs() <= 5.0 * expected.sqrt() + 1.0, "{k}: {count} {expected}");
+        }
+    }
+}

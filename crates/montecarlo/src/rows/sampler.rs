@@ -1,0 +1,318 @@
+//! The rays themselves: where they go, and the looks at lamps on their way.
+
+use crate::density::{Cut, Cuts, LampTree, Receiver};
+use crate::points::{Draw, Key, PointSet, Samples};
+use crate::surfaces::Meets;
+use crate::{Enclosure, Site};
+use fredholm_linop::Watch;
+use rayon::prelude::*;
+
+use super::{BACK, Batch, Family, Looks, NOTHING, REPLICATES, Rows, WALKED};
+
+/// Distance, over the root of the area of a patch, from which on the patch is seen as a whole.
+const NEAR: f64 = 1.0;
+/// Reflections after which a ray that goes on may be absorbed by chance.
+const SURE_REFLECTIONS: usize = 3;
+/// Families that one thread takes at a time.
+const CHUNK: usize = 64;
+
+/// What casts the rays of rows.
+#[derive(Debug)]
+pub struct RowSampler<'a> {
+    scene: &'a Enclosure,
+    families: &'a [Family],
+    /// The family of each part.
+    family_of: Vec<u32>,
+    lamps: LampTree,
+    /// What each family sees of them.
+    cuts: Cuts,
+    looks: Looks,
+    seed: u64,
+    stage: u32,
+}
+
+/// The rays of some families.
+#[derive(Default)]
+struct Cast {
+    met: Vec<u32>,
+    direct: Vec<f64>,
+    reflected: Vec<f64>,
+    checked: Vec<f64>,
+    /// Rays of each part and replicate that went on, where they ended and what they weigh.
+    walks: Vec<usize>,
+    walked: Vec<u32>,
+    weights: Vec<f64>,
+}
+
+impl<'a> RowSampler<'a> {
+    /// Rows of the parts of these families, which together are the patches of the enclosure in
+    /// order. The same seed and stage give the same rows; rows of other stages are independent.
+    #[must_use]
+    pub fn new(
+        scene: &'a Enclosure,
+        families: &'a [Family],
+        looks: Looks,
+        (seed, stage): (u64, u32),
+    ) -> Self {
+        let bands = scene.bands() as f64;
+        let power =
+            |patch: usize| scene.exitance(patch).iter().sum::<f64>() / bands * scene.patches()[patch].area();
+        let power: Vec<f64> = (0..scene.len()).map(power).collect();
+        let lamps = LampTree::new(scene.patches(), &power);
+        let receivers: Vec<Receiver> = families.iter().map(|family| Receiver::of(&family.whole)).collect();
+        let cuts = lamps.cuts(&receivers);
+        let numbered = families.iter().zip(0..);
+        let family_of = numbered.flat_map(|(family, k)| std::iter::repeat_n(k, family.parts.len())).collect();
+        Self { scene, families, family_of, lamps, cuts, looks, seed, stage }
+    }
+
+    /// No rows yet.
+    #[must_use]
+    pub fn start(&self) -> Rows {
+        let (parts, bands) = (self.scene.len(), self.scene.bands());
+        let sums = vec![0.0; parts * REPLICATES * bands];
+        Rows {
+            bands,
+            looks: self.looks,
+            counts: vec![0; parts],
+            direct: sums.clone(),
+            checked: if self.looks.is_checked() { sums.clone() } else { Vec::new() },
+            reflected: sums,
+            batches: Vec::new(),
+        }
+    }
+
+    /// Prolongs rows to so many rays a part and replicate for each family, powers of two and no
+    /// fewer than before. Whether it was done: where the watch breaks, rows stay as they were.
+    pub fn prolong(&self, rows: &mut Rows, counts: &[u32], watch: &dyn Watch) -> bool {
+        loop {
+            // The first points, then as many again, until there are enough.
+            let more: Vec<u32> = self
+                .families
+                .iter()
+                .zip(counts)
+                .map(|(family, &wanted)| match rows.counts[family.parts.start] {
+                    known if known >= wanted => 0,
+                    0 => wanted,
+                    known => known,
+                })
+                .collect();
+            if more.iter().all(|&more| more == 0) {
+                return true;
+            }
+            if !self.cast_batch(rows, &more, watch) {
+                return false;
+            }
+        }
+    }
+
+    fn cast_batch(&self, rows: &mut Rows, more: &[u32], watch: &dyn Watch) -> bool {
+        let chunk = |families: &[Family], more: &[u32]| {
+            let mut cast = Cast::default();
+            for (family, &more) in families.iter().zip(more) {
+                if watch.go_on().is_break() {
+                    return None;
+                }
+                if more > 0 {
+                    self.cast_family(family, (rows.counts[family.parts.start], more), &mut cast);
+                }
+            }
+            Some(cast)
+        };
+        let chunks = self.families.par_chunks(CHUNK).zip(more.par_chunks(CHUNK));
+        let Some(found) = chunks.map(|(families, more)| chunk(families, more)).collect::<Option<Vec<_>>>()
+        else {
+            return false;
+        };
+        let mut starts = Vec::with_capacity(rows.counts.len() + 1);
+        let mut end = 0;
+        let width = REPLICATES * rows.bands;
+        let mut direct = found.iter().flat_map(|cast| cast.direct.chunks(width));
+        let mut reflected = found.iter().flat_map(|cast| cast.reflected.chunks(width));
+        let mut checked = found.iter().flat_map(|cast| cast.checked.chunks(width));
+        let add = |own: &mut [f64], part: usize, sum: Option<&[f64]>| {
+            let own = own.iter_mut().skip(part * width);
+            own.zip(sum.into_iter().flatten()).for_each(|(own, sum)| *own += sum);
+        };
+        for (family, &more) in self.families.iter().zip(more) {
+            for part in family.parts.clone() {
+                starts.push(end);
+                end += REPLICATES * more as usize;
+                rows.counts[part] += more;
+                if more > 0 {
+                    add(&mut rows.direct, part, direct.next());
+                    add(&mut rows.reflected, part, reflected.next());
+                    add(&mut rows.checked, part, checked.next());
+                }
+            }
+        }
+        starts.push(end);
+        let mut batch = Batch { starts, ..Batch::default() };
+        batch.met.reserve_exact(end);
+        let mut walks = found.iter().flat_map(|cast| &cast.walks);
+        let mut walk_end = 0;
+        for part in 0..rows.counts.len() {
+            let cast = batch.starts[part + 1] > batch.starts[part];
+            for _ in 0..REPLICATES {
+                batch.walk_starts.push(walk_end);
+                walk_end += if cast { walks.next().copied().unwrap_or(0) } else { 0 };
+            }
+        }
+        batch.walk_starts.push(walk_end);
+        for cast in &found {
+            batch.met.extend_from_slice(&cast.met);
+            batch.walked.extend_from_slice(&cast.walked);
+            batch.weights.extend_from_slice(&cast.weights);
+        }
+        rows.batches.push(batch);
+        true
+    }
+
+    /// The rays `known..known + more` of each part and replicate.
+    fn cast_family(&self, family: &Family, (known, more): (u32, u32), cast: &mut Cast) {
+        let (parts, bands) = (family.parts.len() as u32, self.scene.bands());
+        // The parts are stored one after the other, so a replicate is taken part by part.
+        let mut samples: [Samples; REPLICATES] = std::array::from_fn(|replicate| {
+            let batch = self.stage * REPLICATES as u32 + replicate as u32;
+            let key = Key { seed: self.seed, batch, stream: family.stream };
+            Samples::new(PointSet::Sobol, key, 0)
+        });
+        let mut weight = vec![1.0; bands];
+        for part in 0..parts {
+            let begin = parts * known + part * more;
+            for samples in &mut samples {
+                let (sum, before) = (cast.direct.len(), cast.walked.len());
+                cast.direct.resize(sum + bands, 0.0);
+                cast.reflected.resize(sum + bands, 0.0);
+                if self.looks.is_checked() {
+                    cast.checked.resize(sum + bands, 0.0);
+                }
+                for ray in begin..begin + more {
+                    let mut draw = samples.draw(ray);
+                    let from = self.scene.point(family.parts.start + part as usize, draw.pair());
+                    weight.fill(1.0);
+                    let met = self.step(from, &mut draw, &weight, &mut cast.direct[sum..]);
+                    cast.met.push(match met {
+                        Meets::Nothing => NOTHING,
+                        Meets::Back => BACK,
+                        Meets::Lit(site) => {
+                            let reflected = &mut cast.reflected[sum..];
+                            match self.walk((from, site), &mut draw, &mut weight, reflected) {
+                                Some((end, 0)) => {
+                                    if self.looks.checks((ray - begin) as usize) {
+                                        let rho = self.scene.reflectance(end.patch);
+                                        self.look(end, &mut draw, unshared, (rho, &mut cast.checked[sum..]));
+                                    }
+                                    end.patch as u32
+                                }
+                                Some((end, _)) => {
+                                    cast.walked.push(end.patch as u32);
+                                    cast.weights.extend_from_slice(&weight);
+                                    WALKED
+                                }
+                                None => WALKED,
+                            }
+                        }
+                    });
+                }
+                cast.walks.push(cast.walked.len() - before);
+            }
+        }
+    }
+
+    fn cut(&self, patch: usize) -> Cut<'_> {
+        self.cuts.of(self.family_of[patch] as usize)
+    }
+
+    /// Whether a ray that meets a patch goes on: where the patch is so near that what it sends
+    /// varies over what is seen of it, or where it is so near a lamp that looks at the lamp are not
+    /// enough.
+    fn goes_on(&self, from: Site, to: Site) -> bool {
+        let area = self.scene.patches()[to.patch].area();
+        from.point.distance_squared(to.point) < NEAR * NEAR * area
+            || self.cuts.is_near(self.family_of[to.patch] as usize)
+    }
+
+    /// A ray and a look at a lamp from one site: what the ray meets. What both bring is added.
+    fn step(&self, from: Site, draw: &mut Draw, weight: &[f64], sum: &mut [f64]) -> Meets {
+        let cut = self.cut(from.patch);
+        let met = self.scene.bounce_to(from, draw.pair());
+        if let Meets::Lit(site) = met {
+            let exitance = self.scene.exitance(site.patch);
+            if exitance.iter().any(|&m| m > 0.0) {
+                let kernel = self.scene.kernel(from, site);
+                let looked_at = self.lamps.pdf(cut, site.patch);
+                add(sum, weight, kernel / (looked_at + kernel), exitance);
+            }
+        }
+        self.look(from, draw, shared, (weight, sum));
+        met
+    }
+
+    /// Looks at a point of a lamp.
+    fn look(
+        &self,
+        from: Site,
+        draw: &mut Draw,
+        share: impl Fn(f64, f64) -> f64,
+        (weight, sum): (&[f64], &mut [f64]),
+    ) {
+        let (choice, numbers) = (draw.single(), draw.pair());
+        if let Some((patch, point, density)) = self.lamps.sample(self.cut(from.patch), choice, numbers) {
+            let lamp = Site { patch, point };
+            let kernel = self.scene.kernel(from, lamp);
+            if kernel > 0.0 && self.scene.sees(from, lamp) {
+                add(sum, weight, share(kernel, density), self.scene.exitance(patch));
+            }
+        }
+    }
+
+    /// From what a ray has met to the site from which it goes on no more, and the reflections
+    /// before that, with their weight; none where it is absorbed, leaves the scene or ends on a
+    /// back. What lamps send to the patches on the way is added.
+    fn walk(
+        &self,
+        (mut from, mut at): (Site, Site),
+        draw: &mut Draw,
+        weight: &mut [f64],
+        sum: &mut [f64],
+    ) -> Option<(Site, usize)> {
+        let mut reflected = weight.to_vec();
+        for reflections in 0.. {
+            let sure = reflections < SURE_REFLECTIONS;
+            let survival = if sure { 1.0 } else { self.scene.survival(at.patch) };
+            if !sure && draw.single() >= survival {
+                return None;
+            }
+            let rho = self.scene.reflectance(at.patch);
+            reflected.iter_mut().zip(&*weight).zip(rho).for_each(|((out, w), rho)| *out = w * rho / survival);
+            if !self.goes_on(from, at) {
+                if self.looks == Looks::Everywhere {
+                    self.look(at, draw, unshared, (&reflected, sum));
+                }
+                for weight in weight.iter_mut() {
+                    *weight /= survival;
+                }
+                return Some((at, reflections));
+            }
+            let next = self.step(at, draw, &reflected, sum).lit()?;
+            weight.copy_from_slice(&reflected);
+            (from, at) = (at, next);
+        }
+        None
+    }
+}
+
+/// Adds what comes from a lamp.
+fn add(sum: &mut [f64], weight: &[f64], share: f64, exitance: &[f64]) {
+    sum.iter_mut().zip(weight.iter().zip(exitance)).for_each(|(sum, (weight, m))| *sum += weight * share * m);
+}
+
+/// What a point of a lamp counts where rays may meet it too, and where they may not.
+fn shared(kernel: f64, density: f64) -> f64 {
+    kernel / (density + kernel)
+}
+
+fn unshared(kernel: f64, density: f64) -> f64 {
+    kernel / density
+}

@@ -1,0 +1,182 @@
+//! The elements that rows are of, in families of four parts, and sums over them.
+
+use fredholm_linop::MultiVector;
+use fredholm_mesh::{Mesh, Patch};
+use fredholm_montecarlo::Enclosure;
+use fredholm_montecarlo::rows::{Family, Rows};
+use fredholm_scene::Scene;
+
+use super::estimate::{PAIRS, confidence};
+use crate::error::Error;
+use crate::stochastic::failure;
+
+/// Share of its own variance that a family is expected to have; the rest is that of its surface.
+const OWN_VARIANCE: f64 = 0.5;
+
+/// Parts of elements, and what they are made of.
+pub(super) struct Ground<'m> {
+    pub(super) mesh: &'m Mesh,
+    pub(super) bands: usize,
+    pub(super) lit: Enclosure,
+    pub(super) families: Vec<Family>,
+    reflectance: Vec<f64>,
+    areas: Vec<f64>,
+    face_of: Vec<usize>,
+}
+
+impl<'m> Ground<'m> {
+    /// Takes a mesh whose leaves are the parts.
+    pub(super) fn new(scene: &Scene, mesh: &'m Mesh) -> Result<Self, Error> {
+        let patches: Vec<Patch> = mesh.patches().copied().collect();
+        let areas = patches.iter().map(Patch::area).collect();
+        let (bands, reflectance) = (scene.bands().len(), scene.reflectance(mesh));
+        let lit = Enclosure::new(patches, bands, reflectance.clone(), scene.exitance(mesh))
+            .and_then(|enclosure| enclosure.blocked_by(mesh.occluders()))
+            .map_err(failure)?;
+        let face_of = (0..mesh.len()).map(|part| mesh.face_of(part)).collect();
+        Ok(Self { mesh, bands, lit, families: families(mesh), reflectance, areas, face_of })
+    }
+
+    /// ρ/w: what is sent for each irradiance, which is a mean over what is not exposed too.
+    pub(super) fn factor(&self, exposed: &[f64]) -> MultiVector<f64> {
+        MultiVector::from_fn(self.areas.len(), self.bands, |part, band| match exposed[part] {
+            share if share > 0.0 => self.reflectance[part * self.bands + band] / share,
+            _ => 0.0,
+        })
+    }
+
+    /// Σ w A (1 − ρ) of every band, m²: what absorbs.
+    pub(super) fn absorbing(&self, exposed: &[f64]) -> Vec<f64> {
+        let part = |part: usize, band: usize| {
+            exposed[part] * self.areas[part] * (1.0 - self.reflectance[part * self.bands + band])
+        };
+        (0..self.bands).map(|band| (0..self.areas.len()).map(|k| part(k, band)).sum()).collect()
+    }
+
+    /// Means over the faces, W/m², and evenly what is reflected of them.
+    pub(super) fn of_faces(&self, values: &MultiVector<f64>, absorbing: &[f64]) -> MultiVector<f64> {
+        let mut faces = self.means(values);
+        for (band, absorbing) in absorbing.iter().enumerate() {
+            let rho = |part: usize| self.reflectance[part * self.bands + band];
+            let part = |part: usize| self.areas[part] * rho(part) * values.row(part)[band];
+            let reflected = (0..self.areas.len()).map(part).sum::<f64>() / absorbing;
+            (0..faces.dim()).for_each(|face| faces.row_mut(face)[band] += reflected);
+        }
+        faces
+    }
+
+    fn means(&self, values: &MultiVector<f64>) -> MultiVector<f64> {
+        let mut faces = MultiVector::zeros(self.mesh.faces().len(), self.bands);
+        for ((&face, area), row) in self.face_of.iter().zip(&self.areas).zip(values.rows()) {
+            let share = area / self.mesh.faces()[face].area;
+            faces.row_mut(face).iter_mut().zip(row).for_each(|(sum, value)| *sum += share * value);
+        }
+        faces
+    }
+
+    /// Σ A E² over the faces, of every band.
+    pub(super) fn norms(&self, irradiance: &MultiVector<f64>) -> Vec<f64> {
+        let means = self.means(irradiance);
+        let of = |band: usize| self.squares(|face| means.row(face)[band].powi(2)).sum();
+        (0..self.bands).map(of).collect()
+    }
+
+    fn squares(&self, of: impl Fn(usize) -> f64) -> impl Iterator<Item = f64> {
+        self.mesh.faces().iter().enumerate().map(move |(face, it)| it.area * of(face))
+    }
+
+    /// Relative error of a band by chance, with its confidence.
+    pub(super) fn noise(&self, variances: &MultiVector<f64>, norms: &[f64], band: usize) -> f64 {
+        let squares = || self.squares(|face| variances.row(face)[band]);
+        let (sum, fourths) = (squares().sum::<f64>(), squares().map(|x| x * x).sum::<f64>());
+        if sum > 0.0 { (sum / norms[band]).sqrt() * confidence(sum * sum / fourths) } else { 0.0 }
+    }
+
+    /// Square of the relative error of a band, from two estimates of it, and its standard deviation.
+    pub(super) fn left_out(&self, halves: &[MultiVector<f64>; 2], norms: &[f64], band: usize) -> [f64; 2] {
+        let products = || self.squares(|face| halves[0].row(face)[band] * halves[1].row(face)[band]);
+        let norm = norms[band].max(f64::MIN_POSITIVE);
+        [products().sum::<f64>() / norm, products().map(|x| x * x).sum::<f64>().sqrt() / norm]
+    }
+
+    /// What the parts of every family send beside their mean.
+    pub(super) fn apart(&self, sent: &MultiVector<f64>, exposed: &[f64]) -> MultiVector<f64> {
+        let mut apart = sent.clone();
+        for family in &self.families {
+            let weight = |part: usize| exposed[part] * self.areas[part];
+            let whole: f64 = family.parts.clone().map(weight).sum();
+            for band in (0..self.bands).filter(|_| whole > 0.0) {
+                let parts = family.parts.clone();
+                let mean = parts.map(|part| weight(part) * sent.row(part)[band]).sum::<f64>() / whole;
+                family.parts.clone().for_each(|part| apart.row_mut(part)[band] -= mean);
+            }
+        }
+        apart
+    }
+
+    /// Σ A d_A d_B over the parts of every family and the bands, relative to the norms.
+    pub(super) fn products(&self, apart: &[MultiVector<f64>; 2], norms: &[f64]) -> Vec<f64> {
+        let part = |part: usize| {
+            let rows = apart[0].row(part).iter().zip(apart[1].row(part)).zip(norms);
+            self.areas[part] * rows.map(|((a, b), norm)| a * b / norm.max(f64::MIN_POSITIVE)).sum::<f64>()
+        };
+        let of = |family: &Family| family.parts.clone().map(part).sum::<f64>().max(0.0);
+        self.families.iter().map(of).collect()
+    }
+
+    /// Variance of the mean of every family over one ray of each part and replicate, relative to the
+    /// norm of a band: of four replicates it is known badly, so that half of it is the mean over the
+    /// surface. 1/m².
+    pub(super) fn variance_of_a_ray(
+        &self,
+        deviations: &[MultiVector<f64>],
+        rows: &Rows,
+        (band, norm): (usize, f64),
+    ) -> Vec<f64> {
+        let own = |family: &Family| {
+            let whole = family.whole.area();
+            let mean = |values: &MultiVector<f64>| {
+                let part = |part: usize| self.areas[part] * values.row(part)[band];
+                family.parts.clone().map(part).sum::<f64>() / whole
+            };
+            let squares = deviations.iter().map(|values| mean(values).powi(2)).sum::<f64>();
+            f64::from(rows.count(family.parts.start)) * squares / (PAIRS * norm.max(f64::MIN_POSITIVE))
+        };
+        let own: Vec<f64> = self.families.iter().map(own).collect();
+        let mut surfaces = vec![[0.0; 2]; self.mesh.surfaces().len()];
+        let surface = |family: &Family| self.mesh.faces()[self.face_of[family.parts.start]].surface;
+        for (family, own) in self.families.iter().zip(&own) {
+            let [sum, area] = &mut surfaces[surface(family)];
+            *sum += family.whole.area() * own;
+            *area += family.whole.area();
+        }
+        let pooled = |(family, own): (&Family, &f64)| {
+            let [sum, area] = surfaces[surface(family)];
+            OWN_VARIANCE * own + (1.0 - OWN_VARIANCE) * sum / area
+        };
+        self.families.iter().zip(&own).map(pooled).collect()
+    }
+
+    /// A²/A_face of a family: what the variance of its mean counts in the square of the error, m².
+    pub(super) fn weight(&self, family: &Family) -> f64 {
+        family.whole.area().powi(2) / self.mesh.faces()[self.face_of[family.parts.start]].area
+    }
+}
+
+/// The leaves of a mesh, those of the same parent together.
+fn families(mesh: &Mesh) -> Vec<Family> {
+    let leaves = mesh.leaves();
+    let (mut families, mut at) = (Vec::new(), 0);
+    while at < leaves.len() {
+        let parent = mesh.elements()[leaves[at]].parent;
+        let are_all = |parent: &usize| {
+            let children = mesh.children(*parent);
+            leaves[at..].iter().take(children.len()).copied().eq(children)
+        };
+        let (element, count) = parent.filter(are_all).map_or((leaves[at], 1), |parent| (parent, 4));
+        let whole = mesh.elements()[element].patch;
+        families.push(Family { whole, parts: at..at + count, stream: element as u32 });
+        at += count;
+    }
+    families
+}

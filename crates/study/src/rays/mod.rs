@@ -1,0 +1,322 @@
+//! The computation to an accuracy by rays, for scenes in which links would take far longer.
+//!
+//! Each row of the light equation is estimated by rays from its element and looks at lamps
+//! ([`fredholm_montecarlo::rows`]), and the equation is solved with these rows; what stands between
+//! surfaces costs nothing but the time that rays take to find it. There are three steps:
+//!
+//! 1. Few rays tell how much the rows of each element vary, and whether the light of lamps may be
+//!    reflected by elements as wholes: else rays look at lamps from where they end.
+//! 2. Rays are shared out so that the error in the L2 norm over the faces, by chance and by the
+//!    elements together, is what is asked for.
+//! 3. All rows are prolonged until it is; elements are divided where they are too large.
+//!
+//! Rays of the first step are not used in the rows of the second: elements of which few rays have
+//! found little light would get few more, and keep too little. docs/rays.md. W/m².
+
+mod budget;
+mod estimate;
+mod ground;
+
+use std::sync::Arc;
+
+use fredholm_coupling::Means;
+use fredholm_linop::StopReason;
+use fredholm_mesh::Mesh;
+use fredholm_montecarlo::rows::{Looks, RowSampler};
+use fredholm_scene::Scene;
+
+use self::budget::{Share, prolonged, shared_out};
+use self::estimate::Estimate;
+use self::ground::Ground;
+use crate::error::{Error, ErrorKind};
+use crate::hierarchical;
+use crate::memory::Plan;
+use crate::options::SolveSettings;
+use crate::prediction::BYTES_OF_AN_ELEMENT;
+use crate::problem::{Problem, check, occluders, pictures, scene_failure, with_results};
+use crate::registry;
+use crate::solution::Solution;
+use crate::stages::{Signals, Stages};
+
+/// What the record calls the discretisation and the solver.
+pub(crate) const NAME: &str = "rays";
+/// What solves the rows, which are not symmetric.
+pub(crate) const SOLVER: &str = "bicgstab";
+/// The same numbers in every run.
+const SEED: u64 = 1;
+/// Share of the accuracy that the elements may take up before they are divided.
+const OF_ELEMENTS: f64 = 0.6;
+/// Error by chance over what is left to it, so that the first rows are likely to be enough.
+const AIM: f64 = 0.95;
+/// Standard deviation of what a ray brings over its mean, about; share of all rays that the first
+/// step takes; and its rays of a part and replicate at most.
+const DEVIATION: f64 = 0.8;
+const OF_FIRST_STEP: f64 = 0.1;
+const MOST_OF_FIRST_STEP: f64 = 8.0;
+/// One ray in so many checks whether elements may reflect as wholes, after the first step.
+const CHECKED: usize = 4;
+/// Share of the differences within elements whose elements are divided.
+const DIVIDED: f64 = 0.9;
+/// Steps at most, so that what cannot be reached ends.
+const MOST_STEPS: u32 = 24;
+/// Rays that a scene needs: [`RAYS_OF_AN_ELEMENT`] for each, and [`RAYS_OF_A_FACE`] (1 %/ε)^a for
+/// each face, were all of them alike.
+const RAYS_OF_AN_ELEMENT: f64 = 16.0;
+const RAYS_OF_A_FACE: f64 = 1500.0;
+const RAYS_EXPONENT: f64 = 1.4;
+/// Bytes of a ray, twice while rows grow, and of a part and band of it.
+const BYTES_OF_A_RAY: f64 = 10.0;
+const BYTES_OF_A_PART: u128 = 700;
+const BYTES_OF_A_BAND: u128 = 400;
+/// How to need less memory.
+const HELP: &str = "ask for less accuracy, use fewer elements (elements_per_face, divide, largest_edge in the scene), or no pictures";
+
+/// What rays came to.
+#[derive(Clone, Debug)]
+pub(crate) struct Rays {
+    /// Accuracy asked for.
+    pub(crate) accuracy: f64,
+    /// Rays from elements.
+    pub(crate) cast: u64,
+}
+
+/// Rays that a scene of so many elements and faces is likely to need.
+pub(crate) fn expected(elements: f64, faces: f64, accuracy: f64) -> f64 {
+    RAYS_OF_AN_ELEMENT * elements + RAYS_OF_A_FACE * faces * (0.01 / accuracy).powf(RAYS_EXPONENT)
+}
+
+/// Faces of equal area that need as many rays as those of a mesh: (Σ √A)²/Σ A.
+pub(crate) fn alike(mesh: &Mesh) -> f64 {
+    let areas = || mesh.faces().iter().map(|face| face.area);
+    areas().map(f64::sqrt).sum::<f64>().powi(2) / areas().sum::<f64>()
+}
+
+/// Solves a scene to an accuracy.
+pub(crate) fn compute(
+    scene: &Arc<Scene>,
+    options: &SolveSettings,
+    accuracy: f64,
+    stages: &mut Stages,
+) -> Result<(Problem, Solution), Error> {
+    let limit = options.problem.memory_limit();
+    let count = usize::try_from(scene.predicted_elements()).unwrap_or(usize::MAX);
+    stages.admit(&plan(scene, (count, 0.0), options), limit, HELP)?;
+    let mut mesh = stages.run("mesh", || scene.mesh().map_err(scene_failure))?;
+    let plan = plan_on(scene, &mesh, options, accuracy);
+    stages.admit(&plan, limit, HELP)?;
+    let warnings = check(scene, &mesh, stages)?;
+    let occluders = stages.run("visibility", || occluders(scene, &mesh))?;
+    stages.begin_saving()?;
+    let signals = stages.signals();
+    let found = stages.run("solution", || solved(scene, &mut mesh, accuracy, &signals))?;
+    let entry =
+        registry::build(registry::USUAL_SOLVER).map_err(|error| Error::new(ErrorKind::Input, error))?;
+    let problem = hierarchical::problem((scene, options), mesh, (warnings, occluders), (entry, plan))?;
+    let solution = solution(&problem, found, accuracy)?;
+    Ok((problem, solution))
+}
+
+/// Memory of a whole run to an accuracy.
+pub(crate) fn expected_plan(scene: &Scene, options: &SolveSettings, accuracy: f64) -> Result<Plan, Error> {
+    let mesh = scene.mesh().map_err(scene_failure)?;
+    Ok(plan_on(scene, &mesh, options, accuracy))
+}
+
+/// The same of a mesh.
+pub(crate) fn plan_on(scene: &Scene, mesh: &Mesh, options: &SolveSettings, accuracy: f64) -> Plan {
+    let rays = expected(mesh.len() as f64, alike(mesh), accuracy);
+    plan(scene, (mesh.len(), rays), options)
+}
+
+fn plan(scene: &Scene, (elements, rays): (usize, f64), options: &SolveSettings) -> Plan {
+    let parts = 4 * elements as u128;
+    let pictures = pictures(scene, 1, (options.no_pictures, options.further_pictures()));
+    let bands = scene.bands().len() as u128;
+    let rows = (BYTES_OF_A_PART + BYTES_OF_A_BAND * bands).saturating_mul(parts);
+    let plan = Plan::default()
+        .hold(format!("{parts} parts of elements"), BYTES_OF_AN_ELEMENT.saturating_mul(parts))
+        .stage("rays", rows.saturating_add((BYTES_OF_A_RAY * rays) as u128));
+    with_results(plan, scene, 4 * elements, (pictures, 0))
+}
+
+/// A solution to the accuracy, or where it was cancelled.
+struct Found {
+    estimate: Estimate,
+    exposed: Vec<f64>,
+    rays: u64,
+}
+
+/// What has to be done next.
+enum Next {
+    /// These rays, which give rows that are exact enough.
+    Cast(Vec<u32>),
+    /// Elements do not reflect as wholes: rays look at lamps from where they end.
+    Look,
+    /// These elements are too large.
+    Divide(Vec<bool>),
+}
+
+fn solved(scene: &Scene, mesh: &mut Mesh, accuracy: f64, signals: &Signals) -> Result<Found, Error> {
+    mesh.split_leaves(|_| true).map_err(|error| Error::new(ErrorKind::Resources, error))?;
+    let mut run = Run { accuracy, signals, stage: 0, rays: 0, best: None };
+    let mut everywhere = false;
+    loop {
+        let ground = Ground::new(scene, mesh)?;
+        let divided = run.on(&ground, &mut everywhere)?;
+        let Some(chosen) = divided else { break };
+        mesh.split_leaves(|part| chosen[part]).map_err(|error| Error::new(ErrorKind::Resources, error))?;
+    }
+    run.best.ok_or_else(Error::cancelled)
+}
+
+/// The steps of a computation.
+struct Run<'s> {
+    accuracy: f64,
+    signals: &'s Signals<'s>,
+    stage: u32,
+    rays: u64,
+    best: Option<Found>,
+}
+
+impl Run<'_> {
+    /// The steps on the parts of one mesh: which of them to divide; none where it is done.
+    fn on(&mut self, ground: &Ground, everywhere: &mut bool) -> Result<Option<Vec<bool>>, Error> {
+        let few = OF_FIRST_STEP * (DEVIATION / self.accuracy).powi(2) / 64.0;
+        let few = 1 << few.clamp(1.0, MOST_OF_FIRST_STEP).log2().round() as u32;
+        let first = vec![few; ground.families.len()];
+        let (mut counts, mut is_first) = (first.clone(), true);
+        loop {
+            let checked = if is_first { 1 } else { CHECKED };
+            let looks = if *everywhere { Looks::Everywhere } else { Looks::Checked(checked) };
+            match self.step(ground, (looks, counts), is_first)? {
+                None => return Ok(None),
+                Some(Next::Cast(next)) => (counts, is_first) = (next, false),
+                Some(Next::Look) => {
+                    *everywhere = true;
+                    (counts, is_first) = (first.clone(), true);
+                }
+                Some(Next::Divide(chosen)) => return Ok(Some(chosen)),
+            }
+        }
+    }
+
+    /// Rows of so many rays each, prolonged until they are exact enough; what else has to be done;
+    /// none where it is done. In the first step rows are not prolonged.
+    fn step(
+        &mut self,
+        ground: &Ground,
+        (looks, mut counts): (Looks, Vec<u32>),
+        is_first: bool,
+    ) -> Result<Option<Next>, Error> {
+        let sampler = RowSampler::new(&ground.lit, &ground.families, looks, (SEED, self.stage));
+        self.stage += 1;
+        let (mut rows, mut exposed) = (sampler.start(), None);
+        loop {
+            let cast = rows.rays();
+            if !sampler.prolong(&mut rows, &counts, self.signals.watch) {
+                return if self.best.is_some() { Ok(None) } else { Err(Error::cancelled()) };
+            }
+            self.rays += rows.rays() - cast;
+            let known = exposed.take();
+            let shares = rows.exposed_shares(&ground.lit, known.as_deref());
+            let estimate = Estimate::new(ground, &rows, &shares, (looks, self.accuracy), self.signals)?;
+            let stated = estimate.stated();
+            let next = self.next(ground, (&estimate, &counts), looks, is_first);
+            self.best = Some(Found { estimate, exposed: shares.clone(), rays: self.rays });
+            exposed = Some(shares);
+            let share = (self.accuracy / stated).powi(2).min(1.0);
+            self.signals
+                .watch
+                .advance(share, &|| format!("{} rays, estimated error {stated:.1e}", self.rays));
+            if stated <= self.accuracy || self.stage > MOST_STEPS || self.signals.watch.go_on().is_break() {
+                return Ok(None);
+            }
+            match next {
+                Next::Cast(more) if !is_first => counts = more,
+                next => return Ok(Some(next)),
+            }
+        }
+    }
+
+    fn next(
+        &self,
+        ground: &Ground,
+        (estimate, counts): (&Estimate, &[u32]),
+        looks: Looks,
+        is_first: bool,
+    ) -> Next {
+        let most = OF_ELEMENTS * self.accuracy;
+        if estimate.elements_at_least > most {
+            return if looks == Looks::Everywhere {
+                Next::Divide(divided(ground, &estimate.differences))
+            } else {
+                Next::Look
+            };
+        }
+        let elements = if is_first { estimate.elements_at_least.max(0.5 * most) } else { estimate.elements };
+        let left = AIM * (self.accuracy.powi(2) - elements.min(most).powi(2)).sqrt();
+        if !is_first {
+            return Next::Cast(prolonged(counts, estimate.worst_noise(), left));
+        }
+        let share = |(family, variance): (&_, &f64)| Share {
+            weighed: ground.weight(family) * variance,
+            parts: family.parts.len(),
+        };
+        let shares: Vec<Share> = ground.families.iter().zip(&estimate.variance).map(share).collect();
+        // What is stated is larger than the standard error.
+        let ratio = {
+            let now: f64 = shares.iter().zip(counts).map(|(s, &n)| s.weighed / f64::from(n)).sum();
+            estimate.worst_noise() / now.sqrt().max(f64::MIN_POSITIVE)
+        };
+        Next::Cast(shared_out(&shares, counts, (left / ratio.max(1.0)).powi(2)))
+    }
+}
+
+/// The parts of the families that differ most.
+fn divided(ground: &Ground, differences: &[f64]) -> Vec<bool> {
+    let mut order: Vec<usize> = (0..differences.len()).collect();
+    order.sort_by(|&a, &b| differences[b].total_cmp(&differences[a]).then(a.cmp(&b)));
+    let mut left = DIVIDED * differences.iter().sum::<f64>();
+    let mut chosen = vec![false; ground.mesh.len()];
+    for family in order {
+        if left <= 0.0 {
+            break;
+        }
+        left -= differences[family];
+        chosen[ground.families[family].parts.clone()].fill(true);
+    }
+    chosen
+}
+
+fn solution(problem: &Problem, found: Found, accuracy: f64) -> Result<Solution, Error> {
+    let Found { estimate, exposed, rays } = found;
+    let (reflectance, exitance) =
+        (problem.scene.reflectance(&problem.mesh), problem.scene.exitance(&problem.mesh));
+    let values = estimate.irradiance.as_slice().iter().zip(&reflectance).zip(&exitance);
+    let radiosity: Vec<f64> = values.map(|((e, rho), m)| m + rho * e).collect();
+    let reached = estimate.stated() <= accuracy;
+    let reason = if reached { StopReason::Converged } else { StopReason::Interrupted };
+    let mut report = estimate.report;
+    report.reason = reason;
+    Ok(Solution {
+        means: Means { irradiance: estimate.irradiance, radiosity: problem.multivector(radiosity)? },
+        report,
+        means_of: "rows from rays",
+        entries: rays,
+        closure: Vec::new(),
+        row_error: Vec::new(),
+        pair_error: None,
+        reciprocity: None,
+        methods: None,
+        exposed,
+        energy: Vec::new(),
+        mesh_error: Some(estimate.error),
+        hierarchy: None,
+        tree: None,
+        direct: Some(estimate.direct),
+        rays: Some(Rays { accuracy, cast: rays }),
+        field_error: None,
+        senders: Vec::new(),
+        replaced: None,
+    })
+}
