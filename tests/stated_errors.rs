@@ -1,4 +1,5 @@
-//! Stated errors of the matrix and of shooting against the same scenes on much finer meshes.
+//! Stated errors of the matrix, of shooting and of rays against the same scenes on much finer
+//! meshes.
 
 // A test that cannot run should panic, in its helpers too.
 #![allow(clippy::unwrap_used)]
@@ -239,6 +240,36 @@ fn stated_errors_of_shooting_hold_wherever_it_ends() {
     assert!(holds >= 0.95 && median < 4.0, "{holds} {median}");
 }
 
+/// Error of what is taken for the truth, below which true errors are not known.
+const TRUTH_ERROR: f64 = 1e-3;
+
+/// Rooms by rays to some accuracies.
+fn by_rays(rooms: &[Room], accuracies: &[&str]) -> Cases {
+    let folder = tempfile::tempdir().unwrap();
+    let mut cases = Cases::default();
+    for room in rooms {
+        let (truth, _) =
+            solved(folder.path(), "fine", &room.scene(room.fine), &["--form-factor-tolerance", "1e-4"]);
+        for side in [1, 2] {
+            for &accuracy in accuracies {
+                let asked = ["--accuracy", accuracy, "--way", "rays"];
+                let (found, record) = solved(folder.path(), "rays", &room.scene(side), &asked);
+                let stated = numbers(&record["mesh_error"]["relative_l2"]);
+                let name = format!("{}, {} a face, {accuracy}", room.name, side * side);
+                let known = |error: f64| (error - TRUTH_ERROR).max(1e-6);
+                cases.add(&name, found.differences(&truth).into_iter().map(known).collect(), stated);
+            }
+        }
+    }
+    cases
+}
+
+#[test]
+fn stated_errors_of_rays_hold() {
+    let (holds, median) = by_rays(&ROOMS[2..3], &["10%", "4%"]).quality();
+    assert!(holds >= 0.95 && median < 8.0, "{holds} {median}");
+}
+
 #[test]
 fn an_error_beyond_a_tenth_is_stated_and_warned_of() {
     // A lamp shines at the ceiling close above it: all of the light comes from a spot that
@@ -271,6 +302,7 @@ fn an_error_beyond_a_tenth_is_stated_and_warned_of() {
 fn stated_errors_of_all_rooms_hold() {
     let mut cases = rooms(&ROOMS);
     cases.0.extend(shot(&ROOMS).0);
+    cases.0.extend(by_rays(&ROOMS, &["10%", "4%", "1.5%"]).0);
     let (holds, median) = cases.quality();
     assert!(holds >= 0.95 && median < 4.0, "{holds} {median}");
 }

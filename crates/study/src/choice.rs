@@ -5,7 +5,7 @@
 //! scenes of docs/notes/hierarchical.md. On fewer than 2 × 2 elements a face the matrix is seldom
 //! exact enough, and links would have to follow; else the error that it states decides whether it
 //! was enough. What rays take does not depend on what stands between surfaces, but a link takes
-//! [`RAYS_A_LINK`] and [`RAYS_AN_OCCLUDER`] for every occluder of the scene (docs/notes/rays.md).
+//! [`RAYS_A_LINK`] and [`RAYS_AN_OCCLUDER`] for every occluder of the scene (docs/rays.md).
 
 use std::fmt;
 

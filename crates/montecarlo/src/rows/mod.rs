@@ -42,7 +42,7 @@ const WALKED: u32 = u32::MAX - 2;
 const LEAST_BURIED: f64 = 0.02;
 /// Points along a side of the first grid that finds what is exposed, and of the one for parts that
 /// are partly buried.
-const POINTS_ALONG_GRIDS: [u32; 2] = [6, 16];
+const POINTS_ALONG_GRIDS: [u32; 2] = [6, 12];
 /// Rows of a product that one thread takes at a time.
 const ROWS_OF_A_TASK: usize = 256;
 
@@ -130,9 +130,14 @@ impl Rows {
     #[must_use]
     pub fn exposed_shares(&self, scene: &Enclosure, known: Option<&[f64]>) -> Vec<f64> {
         let share = |part: usize| {
-            let known = known.map_or(1.0, |known| known[part]);
             let backs = self.batches.iter().map(|b| b.of(part).iter().filter(|&&met| met == BACK).count());
-            if known < 1.0 || backs.sum::<usize>() as f64 <= LEAST_BURIED * self.rays_of(part) {
+            let (backs, rays) = (backs.sum::<usize>() as f64, self.rays_of(part));
+            if backs >= rays {
+                // It receives nothing, and so sends nothing, whatever its share.
+                return 0.0;
+            }
+            let known = known.map(|known| known[part]).filter(|&share| share > 0.0).unwrap_or(1.0);
+            if known < 1.0 || backs <= LEAST_BURIED * rays {
                 return known;
             }
             let few = scene.share_exposed(part, POINTS_ALONG_GRIDS[0]);

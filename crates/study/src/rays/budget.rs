@@ -11,7 +11,7 @@
 //! with m parts (from the derivative of Σ w v_1 n^{−a} + Σ m n/λ′).
 
 /// Exponent a with which the variance falls: measured on furnished rooms and cities, where it is 1.4
-/// to 1.5 (docs/notes/rays.md).
+/// to 1.5 (docs/rays.md).
 const EXPONENT: f64 = 1.3;
 /// Rays of a part and replicate at most.
 const MOST_RAYS: u32 = 1 << 20;

@@ -1,8 +1,8 @@
 //! What rows came to: the solution, and how exact it is.
 //!
 //! *Chance.* Every row is known from replicates, y_r = D_r + C_r B. The variance of the mean of a
-//! face is that of their differences, to which the light that they all reflect wrongly is added
-//! evenly.
+//! face is that of their differences. What elements receive too much or too little is reflected, and
+//! comes to all faces evenly; this part is known from the few replicates alone.
 //!
 //! *Elements.* Rows see the mean of an element where a point sends more or less. What that leaves
 //! out is d = d_A + chance = d_B + chance by each half of the replicates, so that Σ A d_A d_B over
@@ -29,6 +29,9 @@ const MOST_ITERATIONS: usize = 500;
 const CONFIDENCE: f64 = 1.25;
 /// Standard errors that are stated for a single face.
 const OF_FACE: f64 = 2.0;
+/// The same of what all faces have in common, which only the replicates tell: the 95 % quantile of
+/// Student's distribution with three degrees of freedom.
+const OF_ALL: f64 = 3.182;
 
 /// A solution of some rows.
 pub(super) struct Estimate {
@@ -76,12 +79,20 @@ impl Estimate {
         let absorbing = ground.absorbing(exposed);
         let deviations = replicates.each_ref().map(|replicate| difference(replicate, &irradiance));
         let mut variances = MultiVector::zeros(ground.mesh.faces().len(), ground.bands);
+        let mut common = vec![0.0; ground.bands];
         for deviation in &deviations {
-            let of_faces = ground.of_faces(deviation, &absorbing);
+            let of_faces = ground.means(deviation);
             let terms = variances.as_mut_slice().iter_mut().zip(of_faces.as_slice());
             terms.for_each(|(variance, d)| *variance += d * d / PAIRS);
+            let reflected = ground.reflected(deviation, &absorbing);
+            common.iter_mut().zip(reflected).for_each(|(variance, d)| *variance += d * d / PAIRS);
         }
-        let noise: Vec<f64> = (0..ground.bands).map(|band| ground.noise(&variances, &norms, band)).collect();
+        let area: f64 = ground.mesh.faces().iter().map(|face| face.area).sum();
+        let together =
+            |band: usize| OF_ALL * (area * common[band] / norms[band].max(f64::MIN_POSITIVE)).sqrt();
+        let noise: Vec<f64> = (0..ground.bands)
+            .map(|band| ground.noise(&variances, &norms, band).hypot(together(band)))
+            .collect();
         let halves = [0, 2].map(|first| half(&replicates, first));
         let direct_halves = {
             let directs = rows.direct_replicates();
@@ -114,7 +125,10 @@ impl Estimate {
             .as_slice()
             .iter()
             .zip(products)
-            .map(|(variance, (a, b))| (OF_FACE * OF_FACE * variance + (a * b).max(0.0)).sqrt())
+            .zip(common.iter().cycle())
+            .map(|((own, (a, b)), common)| {
+                (OF_FACE * OF_FACE * own + OF_ALL * OF_ALL * common + (a * b).max(0.0)).sqrt()
+            })
             .collect();
         let bands = ground.bands;
         let largest = |band| per_face.iter().skip(band).step_by(bands).copied().fold(0.0, f64::max);
@@ -123,7 +137,7 @@ impl Estimate {
             error: MeshError { relative_l2: relative, largest: (0..bands).map(largest).collect(), per_face },
             elements: found.iter().map(of_band).fold(0.0, f64::max),
             elements_at_least: found.iter().map(at_least).fold(0.0, f64::max),
-            irradiance,
+            irradiance: ground.evened(&irradiance, &direct, exposed),
             direct,
             report,
             noise,

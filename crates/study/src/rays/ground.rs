@@ -56,16 +56,25 @@ impl<'m> Ground<'m> {
     /// Means over the faces, W/m², and evenly what is reflected of them.
     pub(super) fn of_faces(&self, values: &MultiVector<f64>, absorbing: &[f64]) -> MultiVector<f64> {
         let mut faces = self.means(values);
-        for (band, absorbing) in absorbing.iter().enumerate() {
-            let rho = |part: usize| self.reflectance[part * self.bands + band];
-            let part = |part: usize| self.areas[part] * rho(part) * values.row(part)[band];
-            let reflected = (0..self.areas.len()).map(part).sum::<f64>() / absorbing;
-            (0..faces.dim()).for_each(|face| faces.row_mut(face)[band] += reflected);
+        let reflected = self.reflected(values, absorbing);
+        for face in faces.as_mut_slice().chunks_mut(self.bands) {
+            face.iter_mut().zip(&reflected).for_each(|(value, reflected)| *value += reflected);
         }
         faces
     }
 
-    fn means(&self, values: &MultiVector<f64>) -> MultiVector<f64> {
+    /// What is reflected of values, spread evenly over what absorbs it, W/m².
+    pub(super) fn reflected(&self, values: &MultiVector<f64>, absorbing: &[f64]) -> Vec<f64> {
+        let of = |(band, absorbing): (usize, &f64)| {
+            let rho = |part: usize| self.reflectance[part * self.bands + band];
+            let part = |part: usize| self.areas[part] * rho(part) * values.row(part)[band];
+            (0..self.areas.len()).map(part).sum::<f64>() / absorbing
+        };
+        absorbing.iter().enumerate().map(of).collect()
+    }
+
+    /// Means over the faces.
+    pub(super) fn means(&self, values: &MultiVector<f64>) -> MultiVector<f64> {
         let mut faces = MultiVector::zeros(self.mesh.faces().len(), self.bands);
         for ((&face, area), row) in self.face_of.iter().zip(&self.areas).zip(values.rows()) {
             let share = area / self.mesh.faces()[face].area;
@@ -112,6 +121,29 @@ impl<'m> Ground<'m> {
             }
         }
         apart
+    }
+
+    /// Irradiances of which all that is not direct is spread evenly over the exposed part of every
+    /// family: it varies little over one, and has half the noise. Means of faces stay.
+    pub(super) fn evened(
+        &self,
+        irradiance: &MultiVector<f64>,
+        direct: &MultiVector<f64>,
+        exposed: &[f64],
+    ) -> MultiVector<f64> {
+        let mut out = irradiance.clone();
+        for family in &self.families {
+            let whole: f64 = family.parts.clone().map(|part| exposed[part] * self.areas[part]).sum();
+            for band in (0..self.bands).filter(|_| whole > 0.0) {
+                let part =
+                    |part: usize| self.areas[part] * (irradiance.row(part)[band] - direct.row(part)[band]);
+                let mean = family.parts.clone().map(part).sum::<f64>() / whole;
+                for part in family.parts.clone() {
+                    out.row_mut(part)[band] = direct.row(part)[band] + exposed[part] * mean;
+                }
+            }
+        }
+        out
     }
 
     /// Σ A d_A d_B over the parts of every family and the bands, relative to the norms.
