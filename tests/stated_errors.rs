@@ -240,24 +240,24 @@ fn stated_errors_of_shooting_hold_wherever_it_ends() {
     assert!(holds >= 0.95 && median < 4.0, "{holds} {median}");
 }
 
-/// Error of what is taken for the truth, below which true errors are not known.
-const TRUTH_ERROR: f64 = 1e-3;
+/// Error that what is taken for the truth states; what is stated is compared with that much more.
+const TRUTH_ERROR: f64 = 2.5e-3;
 
 /// Rooms by rays to some accuracies.
 fn by_rays(rooms: &[Room], accuracies: &[&str]) -> Cases {
     let folder = tempfile::tempdir().unwrap();
     let mut cases = Cases::default();
     for room in rooms {
-        let (truth, _) =
-            solved(folder.path(), "fine", &room.scene(room.fine), &["--form-factor-tolerance", "1e-4"]);
+        let asked = ["--accuracy", "0.25%", "--way", "links"];
+        let (truth, _) = solved(folder.path(), "fine", &room.scene(1), &asked);
         for side in [1, 2] {
             for &accuracy in accuracies {
                 let asked = ["--accuracy", accuracy, "--way", "rays"];
                 let (found, record) = solved(folder.path(), "rays", &room.scene(side), &asked);
                 let stated = numbers(&record["mesh_error"]["relative_l2"]);
                 let name = format!("{}, {} a face, {accuracy}", room.name, side * side);
-                let known = |error: f64| (error - TRUTH_ERROR).max(1e-6);
-                cases.add(&name, found.differences(&truth).into_iter().map(known).collect(), stated);
+                let stated = stated.into_iter().map(|error| error + TRUTH_ERROR).collect();
+                cases.add(&name, found.differences(&truth), stated);
             }
         }
     }
@@ -267,7 +267,7 @@ fn by_rays(rooms: &[Room], accuracies: &[&str]) -> Cases {
 #[test]
 fn stated_errors_of_rays_hold() {
     let (holds, median) = by_rays(&ROOMS[2..3], &["10%", "4%"]).quality();
-    assert!(holds >= 0.95 && median < 8.0, "{holds} {median}");
+    assert!(holds >= 0.95 && median < 6.0, "{holds} {median}");
 }
 
 #[test]
@@ -302,7 +302,13 @@ fn an_error_beyond_a_tenth_is_stated_and_warned_of() {
 fn stated_errors_of_all_rooms_hold() {
     let mut cases = rooms(&ROOMS);
     cases.0.extend(shot(&ROOMS).0);
-    cases.0.extend(by_rays(&ROOMS, &["10%", "4%", "1.5%"]).0);
     let (holds, median) = cases.quality();
     assert!(holds >= 0.95 && median < 4.0, "{holds} {median}");
+}
+
+#[test]
+#[ignore = "fine meshes take minutes: cargo test --release --test stated_errors -- --ignored --nocapture"]
+fn stated_errors_of_rays_hold_in_all_rooms() {
+    let (holds, median) = by_rays(&ROOMS, &["10%", "4%", "1.5%"]).quality();
+    assert!(holds >= 0.95 && median < 6.0, "{holds} {median}");
 }

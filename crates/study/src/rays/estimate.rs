@@ -98,21 +98,20 @@ impl Estimate {
             let directs = rows.direct_replicates();
             [0, 2].map(|first| half(&directs, first))
         };
-        let mut differences = vec![0.0; ground.families.len()];
-        let left_out = if everywhere {
-            // What the parts of a family send beside their mean.
-            let apart = [0, 1].map(|k| {
-                let indirect = difference(&halves[k], &direct_halves[k]);
-                ground.apart(&times(&factor, &indirect), exposed)
-            });
-            differences = ground.products(&apart, &norms);
-            [0, 1].map(|k| ground.of_faces(&rows.half(k == 1, &apart[k]), &absorbing))
-        } else {
-            [0, 1].map(|k| {
+        // What the parts of a family send of indirect light beside their mean, and what that comes to.
+        let apart = [0, 1].map(|k| {
+            let indirect = difference(&halves[k], &direct_halves[k]);
+            ground.apart(&times(&factor, &indirect), exposed)
+        });
+        let left_out = [0, 1].map(|k| {
+            let second = k == 1;
+            let mut found = rows.half(second, &apart[k]);
+            if !everywhere {
                 let sent = times(&factor, &direct_halves[k]);
-                ground.of_faces(&rows.left_out(k == 1, &sent), &absorbing)
-            })
-        };
+                found = sum(&found, &rows.left_out(second, &sent));
+            }
+            ground.of_faces(&found, &absorbing)
+        });
         let found: Vec<[f64; 2]> =
             (0..ground.bands).map(|band| ground.left_out(&left_out, &norms, band)).collect();
         let of_band = |&[square, deviation]: &[f64; 2]| (square.max(0.0) + deviation).sqrt();
@@ -141,7 +140,7 @@ impl Estimate {
             direct,
             report,
             noise,
-            differences,
+            differences: ground.products(&apart, &norms),
         })
     }
 
@@ -159,11 +158,15 @@ impl Estimate {
 /// R (R − 1): squares of deviations over it are the variance of the mean of R replicates.
 pub(super) const PAIRS: f64 = (REPLICATES * (REPLICATES - 1)) as f64;
 
-/// The 95 % quantile of √(χ²/k) for so many independent squares (E. B. Wilson, M. M. Hilferty,
-/// Proc. Natl. Acad. Sci. 17, 684–688, 1931), no less than [`CONFIDENCE`].
+/// The 95 % quantile of the root of a mean of k independent squares over its estimate from
+/// replicates, which has R − 1 degrees of freedom for each: √F(k, (R − 1) k), no less than
+/// [`CONFIDENCE`] (E. Paulson, Ann. Math. Stat. 13, 233–235, 1942).
 pub(super) fn confidence(independent: f64) -> f64 {
-    let ninth = 2.0 / (9.0 * independent.max(1.0));
-    (1.0 - ninth + 1.645 * ninth.sqrt()).powf(1.5).max(CONFIDENCE)
+    let above = 2.0 / (9.0 * independent.max(1.0));
+    let below = above / (REPLICATES - 1) as f64;
+    let (a, b, z) = (1.0 - above, 1.0 - below, 1.645);
+    let root = (b * b * above + a * a * below - z * z * above * below).sqrt();
+    ((a * b + z * root) / (b * b - z * z * below)).powf(1.5).max(CONFIDENCE)
 }
 
 fn combined(a: &MultiVector<f64>, b: &MultiVector<f64>, of: impl Fn(f64, f64) -> f64) -> MultiVector<f64> {
@@ -199,9 +202,11 @@ mod tests {
 
     #[test]
     fn few_independent_squares_need_more_confidence() {
-        // √χ² of one and of ten degrees of freedom at 95 %, from tables: 1.960 and √(18.307/10).
-        assert!((confidence(1.0) - 1.960).abs() < 0.03);
-        assert!((confidence(10.0) - 1.353).abs() < 0.005);
+        // √F of (1, 3), (10, 30) and (30, 90) degrees of freedom at 95 %, from tables: √10.13, √2.16
+        // and √1.59.
+        assert!((confidence(1.0) - 3.18).abs() < 0.1, "{}", confidence(1.0));
+        assert!((confidence(10.0) - 1.471).abs() < 0.01, "{}", confidence(10.0));
+        assert!((confidence(30.0) - 1.262).abs() < 0.01, "{}", confidence(30.0));
         assert!((confidence(1e6) - CONFIDENCE).abs() < 1e-12);
     }
 }
