@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use crate::builder::MOST_ELEMENTS;
 use crate::mesh::Element;
-use crate::{Mesh, MeshError};
+use crate::{Mesh, MeshError, Patch};
 
 impl Mesh {
     /// Splits a leaf into four elements at the middles of its sides and returns their indices in
@@ -21,17 +21,23 @@ impl Mesh {
     /// coordinates; [`MeshError::TooLarge`] past 2³² − 1 elements.
     pub fn split(&mut self, element: usize) -> Result<[usize; 4], MeshError> {
         let leaf = self.leaf_of(element).ok_or(MeshError::NotALeaf { element })?;
-        let Element { patch, face, level, .. } = self.elements[element];
+        let pieces = self.elements[element].patch.split()?;
+        let first = self.add_children(element, &pieces)?;
+        self.leaves.splice(leaf..=leaf, first..first + 4);
+        Ok([first, first + 1, first + 2, first + 3])
+    }
+
+    /// Gives an element four children, the first of which is returned.
+    fn add_children(&mut self, element: usize, pieces: &[Patch; 4]) -> Result<usize, MeshError> {
+        let Element { face, level, .. } = self.elements[element];
         let first = self.elements.len();
         if first + 4 > MOST_ELEMENTS {
             return Err(MeshError::TooLarge { limit: MOST_ELEMENTS });
         }
         let child = |patch| Element { patch, face, parent: Some(element), children: None, level: level + 1 };
-        self.elements.extend(patch.split()?.map(child));
+        self.elements.extend(pieces.iter().copied().map(child));
         self.elements[element].children = Some(first);
-        let children = [first, first + 1, first + 2, first + 3];
-        self.leaves.splice(leaf..=leaf, children);
-        Ok(children)
+        Ok(first)
     }
 
     /// Splits all leaves that are chosen, by the number of their unknown, each as
@@ -42,21 +48,16 @@ impl Mesh {
     /// [`MeshError::TooLarge`] past 2³² − 1 elements.
     pub fn split_leaves(&mut self, chosen: impl Fn(usize) -> bool) -> Result<(), MeshError> {
         let mut leaves = Vec::with_capacity(self.leaves.len());
-        for (unknown, &element) in self.leaves.iter().enumerate() {
-            let Element { patch, face, level, .. } = self.elements[element];
-            let Some(pieces) = chosen(unknown).then(|| patch.split().ok()).flatten() else {
-                leaves.push(element);
-                continue;
-            };
-            let first = self.elements.len();
-            if first + 4 > MOST_ELEMENTS {
-                return Err(MeshError::TooLarge { limit: MOST_ELEMENTS });
+        for unknown in 0..self.leaves.len() {
+            let element = self.leaves[unknown];
+            let patch = self.elements[element].patch;
+            match chosen(unknown).then(|| patch.split().ok()).flatten() {
+                Some(pieces) => {
+                    let first = self.add_children(element, &pieces)?;
+                    leaves.extend(first..first + 4);
+                }
+                None => leaves.push(element),
             }
-            let child =
-                |patch| Element { patch, face, parent: Some(element), children: None, level: level + 1 };
-            self.elements.extend(pieces.map(child));
-            self.elements[element].children = Some(first);
-            leaves.extend(first..first + 4);
         }
         self.leaves = leaves;
         Ok(())

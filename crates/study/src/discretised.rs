@@ -65,27 +65,9 @@ fn assess(problem: &Problem, lit: &Lit, watcher: Watcher) -> Result<Solution, Er
 
 /// A solution of which nothing is known but itself.
 fn unassessed(lit: &Lit, exposed: Vec<f64>) -> Solution {
-    Solution {
-        means: means(lit.means()),
-        means_of: "the irradiance as polynomials",
-        report: lit.report().clone(),
-        entries: lit.system().coupling().entries(),
-        closure: Vec::new(),
-        row_error: Vec::new(),
-        pair_error: None,
-        reciprocity: None,
-        methods: None,
-        exposed,
-        energy: Vec::new(),
-        mesh_error: None,
-        hierarchy: None,
-        tree: None,
-        direct: None,
-        rays: None,
-        field_error: None,
-        senders: Vec::new(),
-        replaced: None,
-    }
+    let (means_of, report) = ("the irradiance as polynomials", lit.report().clone());
+    let entries = lit.system().coupling().entries();
+    Solution { entries, ..Solution::unassessed(means(lit.means()), means_of, report, exposed) }
 }
 
 fn means(ElementMeans { irradiance, radiosity }: ElementMeans) -> Means {

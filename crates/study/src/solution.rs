@@ -66,6 +66,36 @@ pub(crate) struct Solution {
 }
 
 impl Solution {
+    /// A solution of which nothing is known but itself.
+    pub(crate) fn unassessed(
+        means: Means,
+        means_of: &'static str,
+        report: Report,
+        exposed: Vec<f64>,
+    ) -> Self {
+        Self {
+            means,
+            means_of,
+            report,
+            exposed,
+            direct: None,
+            entries: 0,
+            closure: Vec::new(),
+            row_error: Vec::new(),
+            pair_error: None,
+            reciprocity: None,
+            methods: None,
+            energy: Vec::new(),
+            mesh_error: None,
+            hierarchy: None,
+            tree: None,
+            senders: Vec::new(),
+            rays: None,
+            field_error: None,
+            replaced: None,
+        }
+    }
+
     /// Whether the accuracy asked for was reached, where one was.
     pub(crate) fn is_accurate(&self) -> bool {
         let stated = self.mesh_error.as_ref().map(|error| error.relative_l2.iter().copied());

@@ -7,8 +7,8 @@
 //! *Elements.* Rows see the mean of an element where a point sends more or less. What that leaves
 //! out is d = d_A + chance = d_B + chance by each half of the replicates, so that Σ A d_A d_B over
 //! the faces is the square of its norm in the mean, with a standard deviation of √Σ (A d_A d_B)².
-//! It is found by rays that look at lamps from where they end; or, where all of them do, from how
-//! the four parts of an element differ in what is reflected more than once, which is at least what
+//! Of the light of lamps it is found by rays that look at lamps from where they end, unless all of
+//! them do; of indirect light from how the four parts of an element differ, which is at least what
 //! the parts leave out.
 
 use fredholm_coupling::MeshError;

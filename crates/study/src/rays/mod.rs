@@ -301,25 +301,12 @@ fn solution(problem: &Problem, found: Found, accuracy: f64) -> Result<Solution, 
     let reason = if reached { StopReason::Converged } else { StopReason::Interrupted };
     let mut report = estimate.report;
     report.reason = reason;
+    let means = Means { irradiance: estimate.irradiance, radiosity: problem.multivector(radiosity)? };
     Ok(Solution {
-        means: Means { irradiance: estimate.irradiance, radiosity: problem.multivector(radiosity)? },
-        report,
-        means_of: "rows from rays",
         entries: rays,
-        closure: Vec::new(),
-        row_error: Vec::new(),
-        pair_error: None,
-        reciprocity: None,
-        methods: None,
-        exposed,
-        energy: Vec::new(),
         mesh_error: Some(estimate.error),
-        hierarchy: None,
-        tree: None,
         direct: (problem.occluders.len() <= MOST_OCCLUDERS_IN_PICTURES).then_some(estimate.direct),
         rays: Some(Rays { accuracy, cast: rays }),
-        field_error: None,
-        senders: Vec::new(),
-        replaced: None,
+        ..Solution::unassessed(means, "rows from rays", report, exposed)
     })
 }
