@@ -5,7 +5,7 @@ use std::error::Error;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
-use fredholm_generate::{Almond, City, Files, Room, Scan};
+use fredholm_generate::{Almond, City, Classroom, Files, Office, Room, Scan};
 
 /// Writes a scene made from a number: an OBJ and a scene file beside it.
 #[derive(Debug, Parser)]
@@ -49,6 +49,19 @@ enum Kind {
         #[command(flatten)]
         common: Common,
     },
+    /// An open-plan office with desks, chairs, shelves of books, plants and lamps
+    Office {
+        /// Bays of about 30,000 triangles
+        #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
+        bays: u16,
+        #[command(flatten)]
+        common: Common,
+    },
+    /// A classroom with twelve desks, cupboards, radiators and curtains
+    Classroom {
+        #[command(flatten)]
+        common: Common,
+    },
     /// A closed room, whose energy balance is known
     Room {
         /// Reflectance of everything
@@ -89,6 +102,10 @@ impl Kind {
             Self::Scan { triangles, noise, common } => {
                 (Scan { triangles, seed: common.seed, noise }.files(), common.output)
             }
+            Self::Office { bays, common } => {
+                (Office { bays: bays.into(), seed: common.seed }.files(), common.output)
+            }
+            Self::Classroom { common } => (Classroom { seed: common.seed }.files(), common.output),
             Self::Room { reflectance, furnace, boxes, divide, common } => {
                 let room = Room { reflectance, furnace, boxes, divide: divide.into(), seed: common.seed };
                 (room.files(), common.output)

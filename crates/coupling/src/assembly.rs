@@ -18,6 +18,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 const STANDARD_ERRORS: f64 = 3.0;
 /// Patches of a panel at most.
 const PATCHES_OF_A_PANEL: usize = 32;
+/// Pairs of a panel, roughly, when the time of all is to be found out.
+const PAIRS_OF_A_SAMPLE: usize = 50_000;
 /// Entries that wait for their place in the matrix at most, as far as a batch of panels can tell.
 const MOST_WAITING_ENTRIES: usize = 1 << 20;
 /// Panels of a batch for each thread, at least: enough to keep it busy until the last one of them
@@ -100,7 +102,8 @@ pub fn assembly_seconds(integrator: &PairIntegrator, budget: f64, spent: &dyn Fn
     let progress = Progress::new(pairs(n), &Quiet);
     let started = spent();
     let clusters = integrator.clusters();
-    let panels = clusters.panels(PATCHES_OF_A_PANEL);
+    // One panel of the usual size takes minutes in a large scene.
+    let panels = clusters.panels((PAIRS_OF_A_SAMPLE / n.max(1)).clamp(1, PATCHES_OF_A_PANEL));
     let prepared = spent();
     let mut done = 0;
     for panel in scattered(panels.len()).map(|at| panels[at]) {

@@ -1,4 +1,4 @@
-//! A scene file and the mesh file beside it.
+//! A scene file and the mesh files beside it.
 
 use std::fs;
 use std::io;
@@ -11,7 +11,7 @@ pub struct Files {
     pub name: String,
     /// Text of the scene file.
     pub scene: String,
-    /// Names and texts of the files that it names.
+    /// Names and texts of the files that it names; a name may have folders before it.
     pub others: Vec<(String, String)>,
 }
 
@@ -24,7 +24,9 @@ impl Files {
     pub fn write(&self, folder: &Path) -> io::Result<PathBuf> {
         fs::create_dir_all(folder)?;
         for (name, text) in &self.others {
-            fs::write(folder.join(name), text)?;
+            let path = folder.join(name);
+            path.parent().map_or(Ok(()), fs::create_dir_all)?;
+            fs::write(path, text)?;
         }
         let path = folder.join(&self.name);
         fs::write(&path, &self.scene)?;

@@ -60,17 +60,15 @@ impl Scan {
         let phase = [dice.between(0.0, TAU), dice.between(0.0, TAU)];
         let foot = DVec3::new(0.5 * ROOM_SIZE[0], 0.5 * ROOM_SIZE[1], 0.0);
         let edge = HEIGHT / rows as f64;
-        let mut corners = vec![foot];
-        for row in 1..rows {
-            for column in 0..columns {
-                let (t, angle) = (row as f64 / rows as f64, TAU * column as f64 / columns as f64);
-                let moved = on_figure(t, angle, phase) + dice.direction() * (self.noise * edge);
-                // Noise does not push the figure through the floor.
-                corners.push(foot + DVec3::new(moved.x, moved.y, moved.z.max(0.0)));
+        Body::round(rows, columns, "plaster", |row, column| {
+            if row == 0 || row == rows {
+                return foot + DVec3::Z * (if row == 0 { 0.0 } else { HEIGHT });
             }
-        }
-        corners.push(foot + DVec3::Z * HEIGHT);
-        Body { corners, faces: grid(rows, columns) }
+            let (t, angle) = (row as f64 / rows as f64, TAU * column as f64 / columns as f64);
+            let moved = on_figure(t, angle, phase) + dice.direction() * (self.noise * edge);
+            // Noise does not push the figure through the floor.
+            foot + DVec3::new(moved.x, moved.y, moved.z.max(0.0))
+        })
     }
 }
 
@@ -85,22 +83,4 @@ fn on_figure(t: f64, angle: f64, phase: [f64; 2]) -> DVec3 {
     let slanting = (2.0 * angle + 14.0 * t + phase[1]).sin().abs();
     let radius = profile * closing * (1.0 - 0.2 * upright - 0.15 * slanting);
     DVec3::new(radius * angle.cos(), 0.7 * radius * angle.sin(), HEIGHT * t)
-}
-
-/// Triangles of a grid that is closed around and drawn together to a point below and above.
-fn grid(rows: usize, columns: usize) -> Vec<(&'static str, Vec<usize>)> {
-    let ring = |row: usize, column: usize| 1 + (row - 1) * columns + column % columns;
-    let top = 1 + (rows - 1) * columns;
-    let mut faces = vec![];
-    for column in 0..columns {
-        faces.push(vec![0, ring(1, column + 1), ring(1, column)]);
-        for row in 1..rows - 1 {
-            let (a, b) = (ring(row, column), ring(row, column + 1));
-            let (c, d) = (ring(row + 1, column + 1), ring(row + 1, column));
-            faces.push(vec![a, b, c]);
-            faces.push(vec![a, c, d]);
-        }
-        faces.push(vec![top, ring(rows - 1, column), ring(rows - 1, column + 1)]);
-    }
-    faces.into_iter().map(|face| ("plaster", face)).collect()
 }

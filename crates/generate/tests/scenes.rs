@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use fredholm_generate::{Almond, City, Files, Room, Scan};
+use fredholm_generate::{Almond, City, Classroom, Files, Office, Room, Scan};
 use fredholm_mesh::{Mesh, Vec3};
 use fredholm_scene::Scene;
 use fredholm_scene::waves::{Cuts, WaveScene};
@@ -66,6 +66,73 @@ fn a_scan_is_closed_creased_and_of_the_size_asked_for() {
         let flux: f64 =
             figure.iter().map(|patch| patch.centroid().dot(patch.normal()) * patch.area() / 3.0).sum();
         assert!((0.05..0.5).contains(&flux), "its volume is {flux} m³: is it inside out?");
+    }
+}
+
+/// What is shipped in scenes/ is what is made.
+#[test]
+fn the_office_and_the_classroom_are_those_that_are_shipped() {
+    let shipped = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    for files in [Office::default().files(), Classroom::default().files()] {
+        let text = |name: &str| std::fs::read_to_string(shipped.join(name)).unwrap();
+        assert!(text(&files.name) == files.scene, "{} is another", files.name);
+        for (name, made) in &files.others {
+            assert!(text(name) == *made, "{name} is another");
+        }
+    }
+}
+
+#[test]
+fn an_office_grows_by_bays_and_is_lit_from_every_ceiling() {
+    let triangles = |mesh: &Mesh| mesh.patches().map(|patch| patch.sides() - 2).sum::<usize>();
+    let (_, one) = read(&Office::default().files());
+    assert!((20_000..=50_000).contains(&triangles(&one)), "{}", triangles(&one));
+    for bays in [3, 8] {
+        let (scene, mesh) = read(&Office { bays, seed: 2 }.files());
+        let ratio = triangles(&mesh) as f64 / (bays * triangles(&one)) as f64;
+        assert!((0.9..1.1).contains(&ratio), "{bays}: {ratio}");
+        let power: f64 = scene
+            .exitance(&mesh)
+            .chunks(3)
+            .zip(mesh.patches())
+            .filter(|(_, patch)| patch.normal().z < -0.99)
+            .map(|(exitance, patch)| exitance[0] * patch.area())
+            .sum();
+        let of_a_bay = 6.0 * 1.2 * 0.22 * 170.0;
+        assert!((0.99..1.2).contains(&(power / (bays as f64 * of_a_bay))), "{bays}: {power}");
+    }
+}
+
+/// Bodies that are whole by themselves enclose a volume, their faces outwards.
+#[test]
+fn furniture_is_turned_outwards() {
+    let objects = |files: Files| files.others.into_iter();
+    let sheets = ["leaves", "curtain"];
+    for (name, text) in objects(Office::default().files()).chain(objects(Classroom::default().files())) {
+        if sheets.iter().any(|sheet| name.contains(sheet)) {
+            continue;
+        }
+        let numbers =
+            |line: &str| line.split(' ').skip(1).map(|x| x.parse::<f64>().unwrap()).collect::<Vec<_>>();
+        let corners: Vec<Vec3> = text
+            .lines()
+            .filter(|line| line.starts_with("v "))
+            .map(|line| Vec3::from_slice(&numbers(line)))
+            .collect();
+        let (mut sides, mut volume) = (std::collections::HashMap::new(), 0.0);
+        for face in text.lines().filter(|line| line.starts_with("f ")).map(numbers) {
+            let [a, b, c] = [face[0], face[1], face[2]].map(|i| i as usize - 1);
+            volume += corners[a].dot(corners[b].cross(corners[c])) / 6.0;
+            for side in [(a, b), (b, c), (c, a)] {
+                *sides.entry(side).or_insert(0) += 1;
+            }
+        }
+        assert!(volume > 0.0, "{name}: its volume is {volume} m³");
+        let twice = sides.iter().filter(|(_, count)| **count > 1).count();
+        assert_eq!(twice, 0, "{name}: faces that share a side run along it in opposite directions");
+        let open = sides.keys().filter(|(a, b)| !sides.contains_key(&(*b, *a))).count();
+        // The lamp that hangs has its housing and its diffuser side by side.
+        assert!(open == 0 || name.contains("luminaire"), "{name} has {open} open sides");
     }
 }
 
