@@ -7,7 +7,7 @@
 //! A M max cosθ max cosθ′ / max(d², r²),
 //! ```
 //!
-//! over the balls (radii r) round both. Lamps that are many are taken together where they are far
+//! over the balls (radii r) round both, and 0 where one is wholly behind the other. Lamps that are many are taken together where they are far
 //! away: from the root on, the part with the largest bound is opened until [`MOST_PARTS`] are left;
 //! within a part, lamps are taken by power (B. Walter et al., *Lightcuts*, SIGGRAPH 2005,
 //! doi:10.1145/1186822.1073318). No lamp that may light the receiver has probability 0, so means
@@ -21,6 +21,8 @@ use rayon::prelude::*;
 const MOST_PARTS: usize = 16;
 /// Height of a receiver's ball over its plane, relative to its radius, that counts as none.
 const LEAST_HEIGHT: f64 = 1e-9;
+/// 1 − cosθ of the angle θ between normals up to which they count as one.
+const SAME_NORMAL: f64 = 1e-12;
 /// Distance of a lamp that is near, over the radii of both balls.
 const NEAR: f64 = 1.5;
 
@@ -40,8 +42,7 @@ pub struct LampTree {
 struct Lamp {
     patch: usize,
     surface: SurfaceDensity,
-    normal: Vec3,
-    area: f64,
+    outline: Patch,
 }
 
 #[derive(Clone, Debug)]
@@ -49,6 +50,9 @@ struct Node {
     centre: Vec3,
     radius: f64,
     power: f64,
+    /// The normal that all its lamps have, and the height over the origin, along it, of the lowest:
+    /// what is not higher is lit by none.
+    turned: Option<(Vec3, f64)>,
     first: usize,
     count: usize,
     /// The second child; the first one follows its parent. None for a single lamp.
@@ -58,9 +62,9 @@ struct Node {
 /// What lamps may light.
 #[derive(Clone, Copy, Debug)]
 pub struct Receiver {
+    patch: Patch,
     centre: Vec3,
     radius: f64,
-    normal: Vec3,
 }
 
 impl Receiver {
@@ -69,7 +73,7 @@ impl Receiver {
     pub fn of(patch: &Patch) -> Self {
         let centre = patch.centroid();
         let radius = patch.corners().iter().map(|x| x.distance(centre)).fold(0.0, f64::max);
-        Self { centre, radius, normal: patch.normal() }
+        Self { patch: *patch, centre, radius }
     }
 }
 
@@ -127,8 +131,7 @@ impl LampTree {
         let lamp = |&patch: &usize| Lamp {
             patch,
             surface: SurfaceDensity::new(&patches[patch]),
-            normal: patches[patch].normal(),
-            area: patches[patch].area(),
+            outline: patches[patch],
         };
         let mut sum = 0.0;
         let cumulated = order.iter().map(|&patch| {
@@ -197,9 +200,10 @@ impl LampTree {
         false
     }
 
-    /// A bound on what a node brings to a receiver, W/m² but for factors that all have.
+    /// A bound on what a node brings to a receiver, W/m² but for factors that all have; 0 where its
+    /// lamps are behind the receiver or turned away from it.
     fn bound(&self, node: usize, receiver: &Receiver) -> f64 {
-        let Node { centre, radius, power, first, count, .. } = self.nodes[node];
+        let Node { centre, radius, power, turned, first, count, .. } = self.nodes[node];
         let between = centre - receiver.centre;
         let (square, reach) = (between.length_squared(), radius + receiver.radius);
         let distance = square.sqrt();
@@ -211,9 +215,18 @@ impl LampTree {
                 (most / distance.max(most)).max(f64::MIN_POSITIVE)
             }
         };
-        let before = cosine(receiver.normal.dot(between));
-        let lit = if count == 1 { cosine(-self.lamps[first].normal.dot(between)) } else { 1.0 };
-        power * before * lit / square.max(reach * reach)
+        let normal = receiver.patch.normal();
+        let is_above = |outline: &Patch, normal: Vec3, plane: f64| {
+            outline.corners().iter().any(|&x| normal.dot(x) - plane > LEAST_HEIGHT * reach)
+        };
+        let lit = turned.map_or(1.0, |(turned, lowest)| {
+            if is_above(&receiver.patch, turned, lowest) { cosine(-turned.dot(between)) } else { 0.0 }
+        });
+        let alone = (count == 1).then(|| &self.lamps[first].outline);
+        if lit == 0.0 || alone.is_some_and(|lamp| !is_above(lamp, normal, normal.dot(receiver.centre))) {
+            return 0.0;
+        }
+        power * cosine(normal.dot(between)) * lit / square.max(reach * reach)
     }
 
     /// A point of a lamp from three numbers in [0, 1), its patch, and its density (1/m²); none where
@@ -253,7 +266,7 @@ impl LampTree {
     /// Density of points of the lamp at this place, as a part with this share has them, 1/m².
     fn density(&self, (node, share): (&Node, f64), place: usize) -> f64 {
         let before = place.checked_sub(1).map_or(0.0, |last| self.cumulated[last]);
-        share * (self.cumulated[place] - before) / (node.power * self.lamps[place].area)
+        share * (self.cumulated[place] - before) / (node.power * self.lamps[place].outline.area())
     }
 }
 
@@ -273,7 +286,11 @@ fn build(
     let radius = corners().map(|x| x.distance(centre)).fold(0.0, f64::max);
     let sum = members.iter().map(|&patch| power[patch]).sum();
     let own = nodes.len();
-    nodes.push(Node { centre, radius, power: sum, first, count, second: None });
+    let normal = patches[members[0]].normal();
+    let alike = members.iter().all(|&patch| patches[patch].normal().dot(normal) > 1.0 - SAME_NORMAL);
+    let lowest = corners().map(|x| normal.dot(x)).fold(f64::INFINITY, f64::min);
+    let turned = alike.then_some((normal, lowest));
+    nodes.push(Node { centre, radius, power: sum, turned, first, count, second: None });
     if count == 1 {
         return;
     }

@@ -42,7 +42,7 @@ const WALKED: u32 = u32::MAX - 2;
 const LEAST_BURIED: f64 = 0.02;
 /// Points along a side of the first grid that finds what is exposed, and of the one for parts that
 /// are partly buried.
-const POINTS_ALONG_GRIDS: [u32; 2] = [6, 12];
+const POINTS_ALONG_GRIDS: [u32; 2] = [4, 6];
 /// Rows of a product that one thread takes at a time.
 const ROWS_OF_A_TASK: usize = 256;
 

@@ -15,6 +15,10 @@
 const EXPONENT: f64 = 1.3;
 /// Rays of a part and replicate at most.
 const MOST_RAYS: u32 = 1 << 20;
+/// Rays after a prolongation over those before, at least: each has its price in products.
+const LEAST_GROWTH: f64 = 1.15;
+/// By which the square aimed at is lowered until there are so many.
+const STEP_OF_TARGET: f64 = 0.95;
 
 /// A family: w v_1 and its number of parts.
 #[derive(Clone, Copy, Debug)]
@@ -23,29 +27,62 @@ pub(super) struct Share {
     pub(super) parts: usize,
 }
 
-/// Rays of a part and replicate for each family, powers of two, that bring the square of the error
-/// to a target. `known` are the rays from which each v_1 was found, as v n.
-pub(super) fn shared_out(shares: &[Share], known: &[u32], target: f64) -> Vec<u32> {
-    // v n of `known` rays stands for v_1 = v n^a.
-    let one = |(share, &known): (&Share, &u32)| share.weighed * f64::from(known.max(1)).powf(EXPONENT - 1.0);
-    let power = EXPONENT / (1.0 + EXPONENT);
-    let terms = || shares.iter().zip(known).map(one).zip(shares);
-    let sum: f64 = terms()
-        .filter(|(weighed, _)| *weighed > 0.0)
-        .map(|(weighed, share)| weighed * (weighed / share.parts as f64).powf(-power))
-        .sum();
-    let lambda = (sum / target).powf(1.0 / power);
-    let rays = |(weighed, share): (f64, &Share)| {
-        let rays = (lambda * weighed / share.parts as f64).powf(1.0 / (1.0 + EXPONENT)).max(1.0);
-        (1_u32 << (rays.log2().round().min(f64::from(MOST_RAYS.ilog2())) as u32)).min(MOST_RAYS)
-    };
-    terms().map(rays).collect()
+/// What the families need, as rays of a first step have it, and the square of the error that is
+/// aimed at.
+///
+/// Rows that have turned out not to be exact enough are prolonged by the same shares: chosen by
+/// what the rows themselves vary, those which found too little light would get few rays more.
+#[derive(Clone, Debug)]
+pub(super) struct Budget {
+    shares: Vec<Share>,
+    target: f64,
 }
 
-/// As many rays more as bring an error by chance to a target, at least twice as many.
-pub(super) fn prolonged(known: &[u32], noise: f64, target: f64) -> Vec<u32> {
-    let factor = (noise / target).powf(2.0 / EXPONENT).max(2.0).log2().round() as u32;
-    known.iter().map(|&known| known.saturating_mul(1 << factor.min(8)).min(MOST_RAYS)).collect()
+impl Budget {
+    /// `known` are the rays of the first step, from which each v_1 was found, as v n.
+    pub(super) fn new(mut shares: Vec<Share>, known: &[u32], target: f64) -> Self {
+        // v n of `known` rays stands for v_1 = v n^a.
+        for (share, &known) in shares.iter_mut().zip(known) {
+            share.weighed *= f64::from(known.max(1)).powf(EXPONENT - 1.0);
+        }
+        Self { shares, target }
+    }
+
+    /// Rays of a part and replicate for each family, powers of two.
+    pub(super) fn counts(&self) -> Vec<u32> {
+        let power = EXPONENT / (1.0 + EXPONENT);
+        let terms = || self.shares.iter().map(|share| (share.weighed, share.parts as f64));
+        let sum: f64 = terms()
+            .filter(|(weighed, _)| *weighed > 0.0)
+            .map(|(weighed, parts)| weighed * (weighed / parts).powf(-power))
+            .sum();
+        let lambda = (sum / self.target).powf(1.0 / power);
+        let rays = |(weighed, parts): (f64, f64)| {
+            let rays = (lambda * weighed / parts).powf(1.0 / (1.0 + EXPONENT)).max(1.0);
+            (1_u32 << (rays.log2().round().min(f64::from(MOST_RAYS.ilog2())) as u32)).min(MOST_RAYS)
+        };
+        terms().map(rays).collect()
+    }
+
+    /// More rays than `known`, where these have left an error `noise` by chance that is to be
+    /// brought down to another.
+    pub(super) fn prolonged(&mut self, known: &[u32], noise: f64, to: f64) -> Vec<u32> {
+        let least = LEAST_GROWTH * self.rays(known);
+        self.target *= (to / noise).powi(2).min(1.0);
+        loop {
+            let counts: Vec<u32> =
+                self.counts().iter().zip(known).map(|(&wanted, &known)| wanted.max(known)).collect();
+            let is_full = counts.iter().all(|&count| count == MOST_RAYS);
+            if is_full || self.rays(&counts) >= least {
+                return counts;
+            }
+            self.target *= STEP_OF_TARGET;
+        }
+    }
+
+    fn rays(&self, counts: &[u32]) -> f64 {
+        self.shares.iter().zip(counts).map(|(share, &count)| share.parts as f64 * f64::from(count)).sum()
+    }
 }
 
 #[cfg(test)]
@@ -57,18 +94,29 @@ mod tests {
         let shares: Vec<Share> =
             (1..200).map(|k| Share { weighed: f64::from(k * k) * 1e-6, parts: 4 }).collect();
         let known = vec![1; shares.len()];
-        for target in [1e-3, 1e-4] {
-            let rays = shared_out(&shares, &known, target);
+        let reached = |rays: &[u32]| -> f64 {
             let of = |(share, &n): (&Share, &u32)| share.weighed * f64::from(n).powf(-EXPONENT);
-            let reached: f64 = shares.iter().zip(&rays).map(of).sum();
-            assert!((0.6..1.6).contains(&(reached / target)), "{reached}");
+            shares.iter().zip(rays).map(of).sum()
+        };
+        for target in [1e-3, 1e-4] {
+            let mut budget = Budget::new(shares.clone(), &known, target);
+            let rays = budget.counts();
+            assert!((0.6..1.6).contains(&(reached(&rays) / target)), "{}", reached(&rays));
             assert!(rays.windows(2).all(|pair| pair[0] <= pair[1]));
+            // A third less error by chance: some rows are prolonged, and none is cut.
+            let more = budget.prolonged(&rays, 0.03, 0.02);
+            assert!(rays.iter().zip(&more).all(|(before, after)| before <= after));
+            let ratio = reached(&more) / reached(&rays);
+            assert!((0.33..0.6).contains(&ratio), "{ratio}");
         }
     }
 
     #[test]
-    fn more_rays_are_at_least_twice_as_many() {
-        assert_eq!(prolonged(&[1, 4], 0.011, 0.01), [2, 8]);
-        assert_eq!(prolonged(&[4], 0.04, 0.01), [32]);
+    fn a_prolongation_has_more_rays_even_where_none_are_wanted() {
+        let shares = vec![Share { weighed: 1.0, parts: 4 }; 50];
+        let mut budget = Budget::new(shares, &[1; 50], 1.0);
+        let rays = budget.counts();
+        let more = budget.prolonged(&rays, 0.01, 0.01);
+        assert!(budget.rays(&more) >= LEAST_GROWTH * budget.rays(&rays));
     }
 }

@@ -17,6 +17,7 @@ mod budget;
 mod estimate;
 mod ground;
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use fredholm_coupling::Means;
@@ -25,7 +26,7 @@ use fredholm_mesh::Mesh;
 use fredholm_montecarlo::rows::{Looks, RowSampler};
 use fredholm_scene::Scene;
 
-use self::budget::{Share, prolonged, shared_out};
+use self::budget::{Budget, Share};
 use self::estimate::Estimate;
 use self::ground::Ground;
 use crate::error::{Error, ErrorKind};
@@ -151,8 +152,8 @@ struct Found {
 
 /// What has to be done next.
 enum Next {
-    /// These rays, which give rows that are exact enough.
-    Cast(Vec<u32>),
+    /// Rays of this budget, which are likely to be enough.
+    Cast(Budget),
     /// Elements do not reflect as wholes: rays look at lamps from where they end.
     Look,
     /// These elements are too large.
@@ -187,32 +188,30 @@ impl Run<'_> {
         let few = OF_FIRST_STEP * (DEVIATION / self.accuracy).powi(2) / 64.0;
         let few = 1 << few.clamp(1.0, MOST_OF_FIRST_STEP).log2().round() as u32;
         let first = vec![few; ground.families.len()];
-        let (mut counts, mut is_first) = (first.clone(), true);
+        let mut budget = None;
         loop {
-            let checked = if is_first { 1 } else { CHECKED };
+            let checked = if budget.is_none() { 1 } else { CHECKED };
             let looks = if *everywhere { Looks::Everywhere } else { Looks::Checked(checked) };
-            match self.step(ground, (looks, counts), is_first)? {
+            match self.step(ground, (looks, &first), budget.take())? {
                 None => return Ok(None),
-                Some(Next::Cast(next)) => (counts, is_first) = (next, false),
-                Some(Next::Look) => {
-                    *everywhere = true;
-                    (counts, is_first) = (first.clone(), true);
-                }
+                Some(Next::Cast(next)) => budget = Some(next),
+                Some(Next::Look) => (*everywhere, budget) = (true, None),
                 Some(Next::Divide(chosen)) => return Ok(Some(chosen)),
             }
         }
     }
 
-    /// Rows of so many rays each, prolonged until they are exact enough; what else has to be done;
-    /// none where it is done. In the first step rows are not prolonged.
+    /// Rows of the rays of a budget, prolonged until they are exact enough; or of these few, which
+    /// are not prolonged. What else has to be done; none where it is done.
     fn step(
         &mut self,
         ground: &Ground,
-        (looks, mut counts): (Looks, Vec<u32>),
-        is_first: bool,
+        (looks, first): (Looks, &[u32]),
+        mut budget: Option<Budget>,
     ) -> Result<Option<Next>, Error> {
         let sampler = RowSampler::new(&ground.lit, &ground.families, looks, (SEED, self.stage));
         self.stage += 1;
+        let mut counts = budget.as_ref().map_or_else(|| first.to_vec(), Budget::counts);
         let (mut rows, mut exposed) = (sampler.start(), None);
         loop {
             let cast = rows.rays();
@@ -224,7 +223,14 @@ impl Run<'_> {
             let shares = rows.exposed_shares(&ground.lit, known.as_deref());
             let estimate = Estimate::new(ground, &rows, &shares, (looks, self.accuracy), self.signals)?;
             let stated = estimate.stated();
-            let next = self.next(ground, (&estimate, &counts), looks, is_first);
+            let next = match (self.too_large(ground, &estimate, looks), &mut budget) {
+                (Some(next), _) => ControlFlow::Break(next),
+                (None, None) => ControlFlow::Break(Next::Cast(self.budget(ground, &estimate, &counts))),
+                (None, Some(budget)) => {
+                    let left = self.left(estimate.elements);
+                    ControlFlow::Continue(budget.prolonged(&counts, estimate.worst_noise(), left))
+                }
+            };
             self.best = Some(Found { estimate, exposed: shares.clone(), rays: self.rays });
             exposed = Some(shares);
             let share = (self.accuracy / stated).powi(2).min(1.0);
@@ -235,43 +241,43 @@ impl Run<'_> {
                 return Ok(None);
             }
             match next {
-                Next::Cast(more) if !is_first => counts = more,
-                next => return Ok(Some(next)),
+                ControlFlow::Break(next) => return Ok(Some(next)),
+                ControlFlow::Continue(more) if more == counts => return Ok(None),
+                ControlFlow::Continue(more) => counts = more,
             }
         }
     }
 
-    fn next(
-        &self,
-        ground: &Ground,
-        (estimate, counts): (&Estimate, &[u32]),
-        looks: Looks,
-        is_first: bool,
-    ) -> Next {
-        let most = OF_ELEMENTS * self.accuracy;
-        if estimate.elements_at_least > most {
-            return if looks == Looks::Everywhere {
-                Next::Divide(divided(ground, &estimate.differences))
-            } else {
-                Next::Look
-            };
+    /// What is to be done where elements leave out too much.
+    fn too_large(&self, ground: &Ground, estimate: &Estimate, looks: Looks) -> Option<Next> {
+        if estimate.elements_at_least <= OF_ELEMENTS * self.accuracy {
+            return None;
         }
-        let elements = if is_first { estimate.elements_at_least.max(0.5 * most) } else { estimate.elements };
-        let left = AIM * (self.accuracy.powi(2) - elements.min(most).powi(2)).sqrt();
-        if !is_first {
-            return Next::Cast(prolonged(counts, estimate.worst_noise(), left));
-        }
+        Some(if looks == Looks::Everywhere {
+            Next::Divide(divided(ground, &estimate.differences))
+        } else {
+            Next::Look
+        })
+    }
+
+    /// The error by chance that an error of the elements leaves.
+    fn left(&self, elements: f64) -> f64 {
+        let elements = elements.min(OF_ELEMENTS * self.accuracy);
+        AIM * (self.accuracy.powi(2) - elements.powi(2)).sqrt()
+    }
+
+    /// The rays that are likely to be enough, from the first step.
+    fn budget(&self, ground: &Ground, estimate: &Estimate, counts: &[u32]) -> Budget {
+        let left = self.left(estimate.elements_at_least.max(0.5 * OF_ELEMENTS * self.accuracy));
         let share = |(family, variance): (&_, &f64)| Share {
             weighed: ground.weight(family) * variance,
             parts: family.parts.len(),
         };
         let shares: Vec<Share> = ground.families.iter().zip(&estimate.variance).map(share).collect();
         // What is stated is larger than the standard error.
-        let ratio = {
-            let now: f64 = shares.iter().zip(counts).map(|(s, &n)| s.weighed / f64::from(n)).sum();
-            estimate.worst_noise() / now.sqrt().max(f64::MIN_POSITIVE)
-        };
-        Next::Cast(shared_out(&shares, counts, (left / ratio.max(1.0)).powi(2)))
+        let now: f64 = shares.iter().zip(counts).map(|(s, &n)| s.weighed / f64::from(n)).sum();
+        let ratio = estimate.worst_noise() / now.sqrt().max(f64::MIN_POSITIVE);
+        Budget::new(shares, counts, (left / ratio.max(1.0)).powi(2))
     }
 }
 
