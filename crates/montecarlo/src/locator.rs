@@ -20,6 +20,10 @@ const MOST_CELLS_ALONG: f64 = 4096.0;
 #[derive(Clone, Debug)]
 pub(crate) struct Locator {
     pieces: Vec<Grid>,
+    /// Where the candidates of the cells of all pieces begin, and where those of the last end. In one
+    /// list, since each ray looks at other pieces, and waits for every place in memory.
+    starts: Vec<u32>,
+    candidates: Vec<Candidate>,
     /// Length up to which two places count as one, m.
     near: f64,
 }
@@ -29,15 +33,26 @@ pub(crate) struct Locator {
 struct Grid {
     normal: Vec3,
     corner: Vec3,
-    /// Along the sides of the grid, and as long as it has cells a metre.
+    /// Scalar products of an offset from the corner with them are its place in rows and columns.
     axes: [Vec3; 2],
     /// Number of rows, and of cells in a row.
-    sides: [usize; 2],
-    /// Whether every patch fills one cell, so that none need be asked whether it holds a point.
-    regular: bool,
-    /// Where the candidates of each cell begin, and where those of the last end.
-    starts: Vec<u32>,
-    candidates: Vec<Candidate>,
+    sides: [u32; 2],
+    /// Its first cell among those of all pieces.
+    first: u32,
+    cells: Cells,
+}
+
+/// What a cell holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Cells {
+    /// Patches that reach into a rectangle.
+    Any,
+    /// One patch of each side, which fills a rectangle.
+    Filled,
+    /// One patch of each side, which fills half a parallelogram: two cells each, the first for the
+    /// half with the corner of the piece. Rows and columns count from a corner of a triangle along
+    /// its sides.
+    Halved,
 }
 
 /// A patch, and whether it is lit from the side of the piece.
@@ -63,8 +78,35 @@ impl Locator {
     pub(crate) fn new(pieces: &[Patch], patches: &[Patch]) -> Self {
         let near = same_place(pieces.iter().chain(patches));
         let sorted = Sorted::new(patches, near);
-        let grid = |piece: &Patch| Grid::new(piece, &sorted, patches, near);
-        Self { pieces: pieces.iter().map(grid).collect(), near }
+        let mut locator = Self { pieces: Vec::new(), starts: vec![0], candidates: Vec::new(), near };
+        for piece in pieces {
+            let on_it = on(piece, &sorted, patches, near);
+            let grid = Grid::new(piece, &on_it, patches, near);
+            locator.add(grid, &on_it, patches);
+        }
+        locator
+    }
+
+    /// Takes a grid, and writes every patch down in the cells that it may reach into.
+    fn add(&mut self, mut grid: Grid, on_it: &[u32], patches: &[Patch]) {
+        grid.first = self.starts.len() as u32 - 1;
+        let ranges: Vec<_> = on_it.iter().map(|&i| grid.range(&patches[i as usize], self.near)).collect();
+        let [rows, columns] = grid.sides.map(|side| side as usize);
+        let count = rows * columns * grid.cells.of_a_place();
+        let begin = self.candidates.len();
+        let mut next = vec![0; count + 1];
+        ranges.iter().flat_map(|range| grid.of(range)).for_each(|cell| next[cell + 1] += 1);
+        (0..count).for_each(|cell| next[cell + 1] += next[cell]);
+        self.starts.extend(next[1..].iter().map(|&end| (begin + end) as u32));
+        self.candidates.resize(begin + next[count], Candidate(0));
+        for (&patch, range) in on_it.iter().zip(&ranges) {
+            let candidate = Candidate::new(patch, patches[patch as usize].normal().dot(grid.normal) > 0.0);
+            for cell in grid.of(range) {
+                self.candidates[begin + next[cell]] = candidate;
+                next[cell] += 1;
+            }
+        }
+        self.pieces.push(grid);
     }
 
     /// The patch at a point of a piece that turns its lit side to a ray of this direction.
@@ -72,12 +114,13 @@ impl Locator {
         let grid = &self.pieces[piece];
         let along = grid.normal.dot(direction) < 0.0;
         let lit = |&&candidate: &&Candidate| candidate.along() == along;
-        let cell = grid.cell(point);
+        let cell = grid.first as usize + grid.cell(point);
+        let cell = &self.candidates[self.starts[cell] as usize..self.starts[cell + 1] as usize];
         if let [only] = cell {
             return lit(&only).then_some(only.patch());
         }
         let candidates = || cell.iter().filter(lit).map(|candidate| candidate.patch());
-        if grid.regular {
+        if grid.cells != Cells::Any {
             return candidates().next();
         }
         if let Some(found) = candidates().find(|&patch| holds(&patches[patch], point)) {
@@ -90,15 +133,27 @@ impl Locator {
     }
 }
 
+/// The patches that lie in the plane of a piece and may overlap it, or touch it, in order.
+fn on(piece: &Patch, sorted: &Sorted, patches: &[Patch], near: f64) -> Vec<u32> {
+    let axes = axes(piece);
+    let mut found = sorted.near(piece);
+    found.retain(|&i| {
+        let patch = &patches[i as usize];
+        coplanar(piece, patch, near) && overlap(piece, patch, axes, near)
+    });
+    found.sort_unstable();
+    found
+}
+
 /// Patches in the cells of grids, each in that whose cells are about as wide as it is long, so that
 /// those near a piece are found without a look at all.
 struct Sorted {
     near: f64,
-    grids: Vec<Cells>,
+    grids: Vec<Class>,
 }
 
 /// Cells of equal width, with the patches that begin in each.
-struct Cells {
+struct Class {
     /// Width, m.
     width: f64,
     members: HashMap<[i64; 3], Vec<u32>>,
@@ -120,7 +175,7 @@ impl Sorted {
             for &number in &members {
                 cells.entry(cell(bounds(&patches[number as usize]).0, width)).or_default().push(number);
             }
-            Cells { width, members: cells, count: members.len() }
+            Class { width, members: cells, count: members.len() }
         };
         Self { near, grids: classes.into_iter().map(grid).collect() }
     }
@@ -129,7 +184,7 @@ impl Sorted {
     fn near(&self, piece: &Patch) -> Vec<u32> {
         let (low, high) = bounds(piece);
         let mut found = Vec::new();
-        for Cells { width, members: cells, count } in &self.grids {
+        for Class { width, members: cells, count } in &self.grids {
             // A patch begins in a cell and ends in this or the next one.
             let first = cell(low - Vec3::splat(self.near + width), *width);
             let last = cell(high + Vec3::splat(self.near), *width);
@@ -160,37 +215,90 @@ fn cell(place: Vec3, width: f64) -> [i64; 3] {
     (place / width).floor().to_array().map(|place| place as i64)
 }
 
+impl Cells {
+    /// Cells at each row and column.
+    fn of_a_place(self) -> usize {
+        1 + usize::from(self == Self::Halved)
+    }
+}
+
+/// Rows, columns and halves that a patch may reach into.
+type Range = [RangeInclusive<usize>; 3];
+
 impl Grid {
-    fn new(piece: &Patch, sorted: &Sorted, patches: &[Patch], near: f64) -> Self {
+    fn new(piece: &Patch, on_it: &[u32], patches: &[Patch], near: f64) -> Self {
+        let here = || on_it.iter().map(|&i| &patches[i as usize]);
+        if let Some(grid) = Self::halved(piece, here, near) {
+            return grid;
+        }
         let axes = axes(piece);
-        let origin = piece.corner(0);
-        let on = |patch: &Patch| coplanar(piece, patch, near) && overlap(piece, patch, axes, near);
-        let mut inside = sorted.near(piece);
-        inside.retain(|&i| on(&patches[i as usize]));
-        inside.sort_unstable();
         let spans = axes.map(|axis| span(piece, axis));
-        let corner = origin
-            + axes[0] * (spans[0].0 - axes[0].dot(origin))
-            + axes[1] * (spans[1].0 - axes[1].dot(origin));
-        let (normal, lengths) = (piece.normal(), spans.map(|(low, high)| high - low));
-        let of = |sides: [usize; 2], regular| Self {
-            normal,
-            corner,
-            axes: [0, 1].map(|i| axes[i] * (sides[i] as f64 / lengths[i])),
-            sides,
-            regular,
-            starts: Vec::new(),
-            candidates: Vec::new(),
+        let lengths = spans.map(|(low, high)| high - low);
+        let of = |sides: [u32; 2], cells| {
+            let axes = [0, 1].map(|i| axes[i] * (f64::from(sides[i]) / lengths[i]));
+            Self { normal: piece.normal(), corner: corner_of(piece), axes, sides, first: 0, cells }
         };
-        let here = || inside.iter().map(|&i| &patches[i as usize]);
-        let fits = |sides: [usize; 2]| of(sides, true).is_filled(here(), near);
-        let regular = here().next().map(|patch| cells_of(patch, axes, lengths)).filter(|&sides| fits(sides));
+        let fits = |sides: &[u32; 2]| of(*sides, Cells::Filled).is_filled(here(), near);
+        if let Some(sides) = here().next().map(|patch| cells_of(patch, axes, lengths)).filter(fits) {
+            return of(sides, Cells::Filled);
+        }
         // Borders of other meshes are to fall within cells and not between them.
-        let along = (inside.len() as f64).sqrt().ceil() as usize;
+        let along = (on_it.len() as f64).sqrt().ceil() as usize;
         let side = if along > 1 { CELLS_OF_A_PATCH * along + 1 } else { 1 };
-        let mut grid = of(regular.unwrap_or([side; 2]), regular.is_some());
-        grid.fill(&inside, patches, near);
-        grid
+        of([side as u32; 2], Cells::Any)
+    }
+
+    /// The grid of a triangle that is divided evenly, as a mesh divides it.
+    fn halved<'a, I: Iterator<Item = &'a Patch>>(
+        piece: &Patch,
+        here: impl Fn() -> I,
+        near: f64,
+    ) -> Option<Self> {
+        let [a, b, c] = *piece.corners() else { return None };
+        let first = here().next()?;
+        let side = (piece.area() / first.area()).sqrt().round().clamp(1.0, MOST_CELLS_ALONG);
+        // Dual to the sides, so that a row and a column are coordinates along them.
+        let (along, up, normal) = (b - a, c - a, piece.normal());
+        let dual = |side_of: Vec3, other: Vec3| {
+            let across = normal.cross(other);
+            across * (side / across.dot(side_of))
+        };
+        let axes = [dual(along, up), dual(up, along)];
+        let grid = Self { normal, corner: a, axes, sides: [side as u32; 2], first: 0, cells: Cells::Halved };
+        here().all(|patch| grid.is_beside(patch, near) || grid.is_half(patch, near)).then_some(grid)
+    }
+
+    /// Rows and columns at a point.
+    fn place(&self, point: Vec3) -> [f64; 2] {
+        self.axes.map(|axis| axis.dot(point - self.corner))
+    }
+
+    /// Whether a patch only touches the triangle that this grid is of.
+    fn is_beside(&self, patch: &Patch, near: f64) -> bool {
+        let slack = near * self.axes[0].length().max(self.axes[1].length());
+        let places = || patch.corners().iter().map(|&corner| self.place(corner));
+        places().all(|[row, _]| row <= slack)
+            || places().all(|[_, column]| column <= slack)
+            || places().all(|[row, column]| row + column >= f64::from(self.sides[0]) - 2.0 * slack)
+    }
+
+    /// Whether a patch is half a parallelogram of the grid.
+    fn is_half(&self, patch: &Patch, near: f64) -> bool {
+        let even = |&corner: &Vec3| {
+            let place = self.place(corner);
+            (0..2).all(|i| (place[i] - place[i].round()).abs() <= near * self.axes[i].length())
+        };
+        let unit = |axis| {
+            let (low, high) = span(patch, axis);
+            (high - low - 1.0).abs() <= 2.0 * near * axis.length()
+        };
+        // Of the two diagonals only that along the third side is one of these halves.
+        let sums = patch.corners().iter().map(|&corner| self.place(corner).iter().sum::<f64>().round());
+        let (low, high) = sums.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+        patch.sides() == 3
+            && patch.corners().iter().all(even)
+            && self.axes.into_iter().all(unit)
+            && high - low == 1.0
     }
 
     /// Whether every patch is a rectangle that fills one cell.
@@ -208,63 +316,77 @@ impl Grid {
         })
     }
 
-    /// Writes every patch down in the cells that it may reach into.
-    fn fill(&mut self, inside: &[u32], patches: &[Patch], near: f64) {
-        let ranges: Vec<_> = inside.iter().map(|&i| self.range(&patches[i as usize], near)).collect();
-        let [rows, columns] = self.sides;
-        let cells = |[rows, of_row]: &[RangeInclusive<usize>; 2]| {
-            let of_row = of_row.clone();
-            rows.clone().flat_map(move |row| of_row.clone().map(move |column| row * columns + column))
-        };
-        let mut starts = vec![0; rows * columns + 1];
-        ranges.iter().flat_map(cells).for_each(|cell| starts[cell + 1] += 1);
-        (0..rows * columns).for_each(|cell| starts[cell + 1] += starts[cell]);
-        let mut next = starts.clone();
-        let mut candidates = vec![Candidate(0); starts[rows * columns] as usize];
-        for (&patch, range) in inside.iter().zip(&ranges) {
-            let candidate = Candidate::new(patch, patches[patch as usize].normal().dot(self.normal) > 0.0);
-            for cell in cells(range) {
-                candidates[next[cell] as usize] = candidate;
-                next[cell] += 1;
+    /// What a patch may reach into: one cell, or none, where every patch fills one.
+    fn range(&self, patch: &Patch, near: f64) -> Range {
+        if self.cells == Cells::Halved {
+            let middle = self.place(patch.centroid());
+            let whole = f64::from(self.sides[0]);
+            // A patch that only touches the triangle has its middle outside.
+            if middle[0] < 0.0 || middle[1] < 0.0 || middle[0] + middle[1] > whole {
+                return [1..=0, 1..=0, 1..=0];
             }
+            let [row, column] = middle.map(|place| place as usize);
+            let half = usize::from(middle[0].fract() + middle[1].fract() > 1.0);
+            return [row..=row, column..=column, half..=half];
         }
-        (self.starts, self.candidates) = (starts, candidates);
-    }
-
-    /// Rows, and cells in them, that a patch may reach into: one where every patch fills a cell.
-    fn range(&self, patch: &Patch, near: f64) -> [RangeInclusive<usize>; 2] {
-        [0, 1].map(|i| {
+        let [rows, columns] = [0, 1].map(|i| {
             let axis = self.axes[i];
             let ((low, high), start) = (span(patch, axis), axis.dot(self.corner));
-            if self.regular {
-                // A patch that only touches the piece has its middle outside.
+            if self.cells == Cells::Filled {
                 let middle = 0.5 * (low + high) - start;
                 let cell = self.index(i, middle);
-                let outside = middle < 0.0 || middle > self.sides[i] as f64;
+                let outside = middle < 0.0 || middle > f64::from(self.sides[i]);
                 return cell + usize::from(outside)..=cell;
             }
             let near = near * axis.length();
             self.index(i, low - near - start)..=self.index(i, high + near - start)
+        });
+        [rows, columns, 0..=0]
+    }
+
+    /// The cells of a range.
+    fn of(&self, [rows, columns, halves]: &Range) -> impl Iterator<Item = usize> + use<> {
+        let (of_row, of_place) = (self.sides[1] as usize, self.cells.of_a_place());
+        let (columns, halves) = (columns.clone(), halves.clone());
+        rows.clone().flat_map(move |row| {
+            let halves = halves.clone();
+            let of_column =
+                move |column| halves.clone().map(move |half| (row * of_row + column) * of_place + half);
+            columns.clone().flat_map(of_column)
         })
     }
 
     fn index(&self, axis: usize, cells: f64) -> usize {
-        (cells.max(0.0) as usize).min(self.sides[axis] - 1)
+        (cells.max(0.0) as usize).min(self.sides[axis] as usize - 1)
     }
 
-    fn cell(&self, point: Vec3) -> &[Candidate] {
-        let offset = point - self.corner;
-        let [row, column] = [0, 1].map(|i| self.index(i, offset.dot(self.axes[i])));
-        let cell = row * self.sides[1] + column;
-        &self.candidates[self.starts[cell] as usize..self.starts[cell + 1] as usize]
+    /// The cell of a point.
+    fn cell(&self, point: Vec3) -> usize {
+        let place = self.place(point);
+        let of_row = self.sides[1] as usize;
+        let [row, column] = [0, 1].map(|i| self.index(i, place[i]));
+        if self.cells != Cells::Halved {
+            return row * of_row + column;
+        }
+        // Beyond the third side, by rounding, lies nothing.
+        let column = column.min(of_row - 1 - row);
+        let is_second = place[0] - row as f64 + (place[1] - column as f64) > 1.0 && row + column + 1 < of_row;
+        2 * (row * of_row + column) + usize::from(is_second)
     }
 }
 
+/// The corner of the rectangle about a piece.
+fn corner_of(piece: &Patch) -> Vec3 {
+    let origin = piece.corner(0);
+    let to_border = |axis: Vec3| axis * (span(piece, axis).0 - axis.dot(origin));
+    axes(piece).into_iter().map(to_border).fold(origin, |corner, step| corner + step)
+}
+
 /// How many patches of this size lie along each side of a piece.
-fn cells_of(patch: &Patch, axes: [Vec3; 2], lengths: [f64; 2]) -> [usize; 2] {
+fn cells_of(patch: &Patch, axes: [Vec3; 2], lengths: [f64; 2]) -> [u32; 2] {
     [0, 1].map(|i| {
         let (low, high) = span(patch, axes[i]);
-        (lengths[i] / (high - low)).round().clamp(1.0, MOST_CELLS_ALONG) as usize
+        (lengths[i] / (high - low)).round().clamp(1.0, MOST_CELLS_ALONG) as u32
     })
 }
 
@@ -396,7 +518,7 @@ mod tests {
             rectangle([at(3), at(8)], [at(2), at(8)]).flipped(),
         ];
         let locator = Locator::new(&pieces, &patches);
-        assert!(locator.pieces.iter().all(|grid| grid.regular));
+        assert!(locator.pieces.iter().all(|grid| grid.cells == Cells::Filled));
         for number in 0..2000 {
             let [x, y] = unit_pair(philox([number, 0, 0, 0], [5, 5])).map(|u| 0.8 * u);
             let piece = if x < at(3) { 0 } else { 1 + usize::from(y > at(2)) };
@@ -404,6 +526,49 @@ mod tests {
             let point = Vec3::new(x, y, 0.5);
             assert_eq!(locator.lit(piece, point, -Vec3::Z, &patches), Some(expected));
             assert_eq!(locator.lit(piece, point, Vec3::Z, &patches), Some(expected + 64));
+        }
+    }
+
+    /// Triangles divided evenly, on their two sides, with their neighbour across the diagonal: a point
+    /// finds the part that holds it.
+    #[test]
+    fn parts_of_triangles_are_found_without_a_look_at_each() {
+        let corners = [Vec3::new(0.1, 0.2, 0.3), Vec3::new(1.3, 0.1, 0.8), Vec3::new(0.4, 1.1, 0.1)];
+        let [a, b, c] = corners;
+        let pieces = [Patch::triangle([a, b, c]).unwrap(), Patch::triangle([c, b, b + c - a]).unwrap()];
+        for levels in 0..3 {
+            let mut patches = pieces.to_vec();
+            for _ in 0..levels {
+                let quarters = |patch: &Patch| patch.split().unwrap();
+                patches = patches.iter().flat_map(quarters).collect();
+            }
+            patches.extend(patches.clone().iter().map(Patch::flipped));
+            let locator = Locator::new(&pieces, &patches);
+            assert!(locator.pieces.iter().all(|grid| grid.cells == Cells::Halved), "{levels}");
+            for number in 0..2000 {
+                let [u, v] = unit_pair(philox([number, 0, 0, 0], [5, 5]));
+                let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+                for (piece, patch) in pieces.iter().enumerate() {
+                    let point = patch.corner(0)
+                        + u * (patch.corner(1) - patch.corner(0))
+                        + v * (patch.corner(2) - patch.corner(0));
+                    for side in [-1.0, 1.0] {
+                        let found = locator.lit(piece, point, side * patch.normal(), &patches).unwrap();
+                        assert!(
+                            holds(&patches[found], point)
+                                && patches[found].normal().dot(patch.normal()) * side < 0.0
+                        );
+                    }
+                }
+            }
+            // Corners and sides belong to one of the parts there.
+            for (piece, patch) in pieces.iter().enumerate() {
+                for (k, t) in (0..3).flat_map(|k| [0.0, 0.25, 0.5, 0.7].map(|t| (k, t))) {
+                    let point = patch.corner(k).lerp(patch.corner(k + 1), t);
+                    let found = locator.lit(piece, point, -patch.normal(), &patches).unwrap();
+                    assert!(depth(&patches[found], point) > -1e-9);
+                }
+            }
         }
     }
 
