@@ -8,7 +8,7 @@ use fredholm_mesh::Patch;
 use fredholm_montecarlo::light::{Batch, Control, Estimator, METHODS, PathTracing, Switches, estimator};
 use fredholm_montecarlo::points::PointSet;
 use fredholm_montecarlo::statistics::Moments;
-use fredholm_montecarlo::{Enclosure, Groups, State, Stop, Tracing};
+use fredholm_montecarlo::{Enclosure, Groups, State, Stop, Surfaces, Tracing};
 use fredholm_scene::Scene;
 use std::error::Error;
 
@@ -31,8 +31,8 @@ impl Ground {
         let mesh = scene.mesh()?;
         let bands = scene.bands().len();
         let patches: Vec<Patch> = mesh.patches().copied().collect();
-        let enclosure = Enclosure::new(patches, bands, scene.reflectance(&mesh), scene.exitance(&mesh))?
-            .blocked_by(mesh.occluders())?;
+        let surfaces = Surfaces::blocked_by(mesh.occluders(), patches)?;
+        let enclosure = Enclosure::of(surfaces, bands, scene.reflectance(&mesh), scene.exitance(&mesh))?;
         let faces = (0..mesh.len()).map(|leaf| mesh.face_of(leaf)).collect();
         Ok(Self { name: name.to_owned(), scene: enclosure, faces })
     }

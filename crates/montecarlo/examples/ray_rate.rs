@@ -3,10 +3,10 @@
 //! `cargo run --release -p fredholm-montecarlo --example ray_rate -- scenes/cornell_planar.toml`
 
 use fredholm_mesh::{Patch, Vec3};
-use fredholm_montecarlo::Enclosure;
 use fredholm_montecarlo::density::{Cosine, DirectionDensity};
 use fredholm_montecarlo::light::{Batch, METHODS, Switches, estimator};
 use fredholm_montecarlo::points::{Key, PointSet, Samples};
+use fredholm_montecarlo::{Enclosure, Surfaces};
 use fredholm_scene::Scene;
 use fredholm_visibility::Occluders;
 use std::error::Error;
@@ -23,8 +23,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mesh = scene.mesh()?;
     let patches: Vec<Patch> = mesh.patches().copied().collect();
     let bands = scene.bands().len();
-    let enclosure = Enclosure::new(patches.clone(), bands, scene.reflectance(&mesh), scene.exitance(&mesh))?
-        .blocked_by(mesh.occluders())?;
+    let surfaces = Surfaces::blocked_by(mesh.occluders(), patches.clone())?;
+    let enclosure = Enclosure::of(surfaces, bands, scene.reflectance(&mesh), scene.exitance(&mesh))?;
     for (name, set) in [("elements", &patches[..]), ("occluders", mesh.occluders())] {
         let occluders = Occluders::new(set)?;
         println!(

@@ -27,7 +27,8 @@ pub struct Enclosure {
 }
 
 impl Enclosure {
-    /// Takes patches, and for each and every band reflectance and exitance (W/m²), patch-major.
+    /// Takes patches, and for each and every band reflectance and exitance (W/m²), patch-major. Rays
+    /// are traced against the patches.
     ///
     /// # Errors
     /// [`MonteCarloError::Length`] for vectors of other lengths, [`MonteCarloError::Range`] for a
@@ -39,16 +40,27 @@ impl Enclosure {
         reflectance: Vec<f64>,
         exitance: Vec<f64>,
     ) -> Result<Self, MonteCarloError> {
+        Self::of(Surfaces::new(patches)?, bands, reflectance, exitance)
+    }
+
+    /// The same of surfaces that know what rays are traced against.
+    ///
+    /// # Errors
+    /// As of [`Enclosure::new`].
+    pub fn of(
+        surfaces: Surfaces,
+        bands: usize,
+        reflectance: Vec<f64>,
+        exitance: Vec<f64>,
+    ) -> Result<Self, MonteCarloError> {
+        let patches = surfaces.patches();
         let values = patches.len() * bands;
         check("the reflectance", "[0, 1)", &reflectance, values, bands, |x| (0.0..1.0).contains(&x))?;
         check("the exitance", "[0, ∞)", &exitance, values, bands, |x| x >= 0.0 && x.is_finite())?;
         let mean = |row: &[f64]| row.iter().sum::<f64>() / bands as f64;
-        let power: Vec<f64> = exitance
-            .chunks(bands.max(1))
-            .zip(&patches)
-            .map(|(row, patch)| mean(row) * patch.area())
-            .collect();
-        let lamps = LampDensity::new(&patches, &power).ok_or(MonteCarloError::NoLight)?;
+        let power: Vec<f64> =
+            exitance.chunks(bands.max(1)).zip(patches).map(|(row, patch)| mean(row) * patch.area()).collect();
+        let lamps = LampDensity::new(patches, &power).ok_or(MonteCarloError::NoLight)?;
         let largest = |row: &[f64]| row.iter().copied().fold(0.0, f64::max);
         Ok(Self {
             densities: patches.iter().map(SurfaceDensity::new).collect(),
@@ -58,18 +70,8 @@ impl Enclosure {
             reflectance,
             exitance,
             lamps,
-            surfaces: Surfaces::new(patches)?,
+            surfaces,
         })
-    }
-
-    /// The same traced against these pieces instead of the patches, which together they must cover:
-    /// as few as possible, as a mesh has them.
-    ///
-    /// # Errors
-    /// [`MonteCarloError::Visibility`].
-    pub fn blocked_by(mut self, pieces: &[Patch]) -> Result<Self, MonteCarloError> {
-        self.surfaces = self.surfaces.blocked_by(pieces)?;
-        Ok(self)
     }
 
     /// The same with the exposed share of each patch, which patch-wise walks need: what is buried
@@ -275,8 +277,9 @@ mod tests {
         let patches: Vec<Patch> = mesh.patches().copied().collect();
         let n = patches.len();
         assert!(mesh.occluders().len() < n);
+        let surfaces = Surfaces::blocked_by(mesh.occluders(), patches.clone()).unwrap();
+        let coarse = Enclosure::of(surfaces, 1, vec![0.5; n], vec![1.0; n]).unwrap();
         let fine = Enclosure::new(patches, 1, vec![0.5; n], vec![1.0; n]).unwrap();
-        let coarse = fine.clone().blocked_by(mesh.occluders()).unwrap();
         let mut samples = Samples::new(PointSet::Independent, Key { seed: 3, batch: 0, stream: 0 }, 4000);
         for sample in 0..4000 {
             let mut draw = samples.draw(sample);

@@ -49,24 +49,28 @@ pub struct Surfaces {
 }
 
 impl Surfaces {
-    /// Takes patches.
+    /// Takes patches, which rays are traced against.
     ///
     /// # Errors
     /// [`MonteCarloError::Visibility`].
     pub fn new(patches: Vec<Patch>) -> Result<Self, MonteCarloError> {
-        let (frames, frame_of) = frames(&patches);
-        Ok(Self { frames, frame_of, occluders: Occluders::new(&patches)?, locator: None, patches })
+        let occluders = Occluders::new(&patches)?;
+        Ok(Self::of(patches, occluders, None))
     }
 
-    /// The same traced against these pieces instead of the patches, which together they must cover:
-    /// as few as possible, as a mesh has them.
+    /// Takes patches, and pieces that rays are traced against instead, which together they must
+    /// cover: as few as possible, as a mesh has them.
     ///
     /// # Errors
     /// [`MonteCarloError::Visibility`].
-    pub fn blocked_by(mut self, pieces: &[Patch]) -> Result<Self, MonteCarloError> {
-        self.occluders = Occluders::new(pieces)?;
-        self.locator = Some(Locator::new(pieces, &self.patches));
-        Ok(self)
+    pub fn blocked_by(pieces: &[Patch], patches: Vec<Patch>) -> Result<Self, MonteCarloError> {
+        let locator = Locator::new(pieces, &patches);
+        Ok(Self::of(patches, Occluders::new(pieces)?, Some(locator)))
+    }
+
+    fn of(patches: Vec<Patch>, occluders: Occluders, locator: Option<Locator>) -> Self {
+        let (frames, frame_of) = frames(&patches);
+        Self { frames, frame_of, occluders, locator, patches }
     }
 
     /// The patches.

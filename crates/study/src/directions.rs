@@ -23,7 +23,7 @@ pub(crate) struct Directions {
 impl Directions {
     pub(crate) fn new(problem: &Problem) -> Result<Self, Error> {
         let patches: Vec<Patch> = problem.mesh.patches().copied().collect();
-        let surfaces = Surfaces::new(patches).and_then(|all| all.blocked_by(problem.mesh.occluders()));
+        let surfaces = Surfaces::blocked_by(problem.mesh.occluders(), patches);
         Ok(Self { surfaces: surfaces.map_err(failure)? })
     }
 }

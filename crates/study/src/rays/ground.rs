@@ -2,8 +2,8 @@
 
 use fredholm_linop::MultiVector;
 use fredholm_mesh::{Mesh, Patch};
-use fredholm_montecarlo::Enclosure;
 use fredholm_montecarlo::rows::{Family, Rows};
+use fredholm_montecarlo::{Enclosure, Surfaces};
 use fredholm_scene::Scene;
 
 use super::estimate::{PAIRS, confidence};
@@ -30,8 +30,8 @@ impl<'m> Ground<'m> {
         let patches: Vec<Patch> = mesh.patches().copied().collect();
         let areas = patches.iter().map(Patch::area).collect();
         let (bands, reflectance) = (scene.bands().len(), scene.reflectance(mesh));
-        let lit = Enclosure::new(patches, bands, reflectance.clone(), scene.exitance(mesh))
-            .and_then(|enclosure| enclosure.blocked_by(mesh.occluders()))
+        let lit = Surfaces::blocked_by(mesh.occluders(), patches)
+            .and_then(|all| Enclosure::of(all, bands, reflectance.clone(), scene.exitance(mesh)))
             .map_err(failure)?;
         let face_of = (0..mesh.len()).map(|part| mesh.face_of(part)).collect();
         Ok(Self { mesh, bands, lit, families: families(mesh), reflectance, areas, face_of })

@@ -22,7 +22,7 @@ use std::sync::Arc;
 
 use fredholm_coupling::Means;
 use fredholm_linop::StopReason;
-use fredholm_mesh::Mesh;
+use fredholm_mesh::{Mesh, Patch};
 use fredholm_montecarlo::rows::{Looks, RowSampler};
 use fredholm_scene::Scene;
 
@@ -45,8 +45,10 @@ pub(crate) const NAME: &str = "rays";
 pub(crate) const SOLVER: &str = "bicgstab";
 /// The same numbers in every run.
 const SEED: u64 = 1;
-/// Share of the accuracy that the elements may take up before they are divided.
+/// Share of the accuracy that the elements may take up before they are divided, as the first step
+/// finds it; and once many rays are cast, when it is quicker to cast more than to begin again.
 const OF_ELEMENTS: f64 = 0.6;
+const MOST_OF_ELEMENTS: f64 = 0.85;
 /// Error by chance over what is left to it, so that the first rows are likely to be enough.
 const AIM: f64 = 0.95;
 /// Standard deviation of what a ray brings over its mean, about; share of all rays that the first
@@ -95,6 +97,12 @@ pub(crate) fn alike(mesh: &Mesh) -> f64 {
     areas().map(f64::sqrt).sum::<f64>().powi(2) / areas().sum::<f64>()
 }
 
+/// Which elements are cut into four: those that are smaller than the parts of a mean one stay whole.
+fn in_four(mesh: &Mesh) -> impl Iterator<Item = bool> {
+    let mean = mesh.patches().map(Patch::area).sum::<f64>() / mesh.len() as f64;
+    mesh.patches().map(move |patch| patch.area() >= 0.25 * mean)
+}
+
 /// Solves a scene to an accuracy.
 pub(crate) fn compute(
     scene: &Arc<Scene>,
@@ -129,18 +137,19 @@ pub(crate) fn expected_plan(scene: &Scene, options: &SolveSettings, accuracy: f6
 /// The same of a mesh.
 pub(crate) fn plan_on(scene: &Scene, mesh: &Mesh, options: &SolveSettings, accuracy: f64) -> Plan {
     let rays = expected(mesh.len() as f64, alike(mesh), accuracy);
-    plan(scene, (mesh.len(), rays), options)
+    let parts = mesh.len() + 3 * in_four(mesh).filter(|&is_cut| is_cut).count();
+    plan(scene, (parts, rays), options)
 }
 
-fn plan(scene: &Scene, (elements, rays): (usize, f64), options: &SolveSettings) -> Plan {
-    let parts = 4 * elements as u128;
+fn plan(scene: &Scene, (parts, rays): (usize, f64), options: &SolveSettings) -> Plan {
+    let count = parts as u128;
     let pictures = pictures(scene, 1, (options.no_pictures, options.further_pictures()));
     let bands = scene.bands().len() as u128;
-    let rows = (BYTES_OF_A_PART + BYTES_OF_A_BAND * bands).saturating_mul(parts);
+    let rows = (BYTES_OF_A_PART + BYTES_OF_A_BAND * bands).saturating_mul(count);
     let plan = Plan::default()
-        .hold(format!("{parts} parts of elements"), BYTES_OF_AN_ELEMENT.saturating_mul(parts))
+        .hold(format!("{parts} parts of elements"), BYTES_OF_AN_ELEMENT.saturating_mul(count))
         .stage("rays", rows.saturating_add((BYTES_OF_A_RAY * rays) as u128));
-    with_results(plan, scene, 4 * elements, (pictures, 0))
+    with_results(plan, scene, parts, (pictures, 0))
 }
 
 /// A solution to the accuracy, or where it was cancelled.
@@ -161,7 +170,8 @@ enum Next {
 }
 
 fn solved(scene: &Scene, mesh: &mut Mesh, accuracy: f64, signals: &Signals) -> Result<Found, Error> {
-    mesh.split_leaves(|_| true).map_err(|error| Error::new(ErrorKind::Resources, error))?;
+    let chosen: Vec<bool> = in_four(mesh).collect();
+    mesh.split_leaves(|leaf| chosen[leaf]).map_err(|error| Error::new(ErrorKind::Resources, error))?;
     let mut run = Run { accuracy, signals, stage: 0, rays: 0, best: None };
     let mut everywhere = false;
     loop {
@@ -223,11 +233,12 @@ impl Run<'_> {
             let shares = rows.exposed_shares(&ground.lit, known.as_deref());
             let estimate = Estimate::new(ground, &rows, &shares, (looks, self.accuracy), self.signals)?;
             let stated = estimate.stated();
-            let next = match (self.too_large(ground, &estimate, looks), &mut budget) {
+            let most = if budget.is_none() { OF_ELEMENTS } else { MOST_OF_ELEMENTS };
+            let next = match (self.too_large(ground, (&estimate, most), looks), &mut budget) {
                 (Some(next), _) => ControlFlow::Break(next),
                 (None, None) => ControlFlow::Break(Next::Cast(self.budget(ground, &estimate, &counts))),
                 (None, Some(budget)) => {
-                    let left = self.left(estimate.elements);
+                    let left = self.left(estimate.elements.min(most * self.accuracy));
                     ControlFlow::Continue(budget.prolonged(&counts, estimate.worst_noise(), left))
                 }
             };
@@ -248,9 +259,9 @@ impl Run<'_> {
         }
     }
 
-    /// What is to be done where elements leave out too much.
-    fn too_large(&self, ground: &Ground, estimate: &Estimate, looks: Looks) -> Option<Next> {
-        if estimate.elements_at_least <= OF_ELEMENTS * self.accuracy {
+    /// What is to be done where elements leave out more than this share of the accuracy.
+    fn too_large(&self, ground: &Ground, (estimate, most): (&Estimate, f64), looks: Looks) -> Option<Next> {
+        if estimate.elements_at_least <= most * self.accuracy {
             return None;
         }
         Some(if looks == Looks::Everywhere {
@@ -262,7 +273,6 @@ impl Run<'_> {
 
     /// The error by chance that an error of the elements leaves.
     fn left(&self, elements: f64) -> f64 {
-        let elements = elements.min(OF_ELEMENTS * self.accuracy);
         AIM * (self.accuracy.powi(2) - elements.powi(2)).sqrt()
     }
 

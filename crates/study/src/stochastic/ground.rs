@@ -5,7 +5,7 @@ use std::sync::Arc;
 use fredholm_coupling::exposed_shares;
 use fredholm_mesh::{Mesh, Patch};
 use fredholm_montecarlo::light::Control;
-use fredholm_montecarlo::{Enclosure, Groups};
+use fredholm_montecarlo::{Enclosure, Groups, Surfaces};
 use fredholm_scene::Scene;
 
 use super::tracer::failure;
@@ -84,8 +84,8 @@ pub(crate) fn enclosure(scene: &Scene, mesh: &Mesh) -> Result<Enclosure, Error> 
     let patches: Vec<Patch> = mesh.patches().copied().collect();
     let shares = exposed_shares(&mesh.patches().collect::<Vec<_>>(), &prepare(&patches)?);
     let (rho, exitance) = (scene.reflectance(mesh), scene.exitance(mesh));
-    Enclosure::new(patches, scene.bands().len(), rho, exitance)
-        .and_then(|enclosure| enclosure.with_exposed(shares)?.blocked_by(mesh.occluders()))
+    Surfaces::blocked_by(mesh.occluders(), patches)
+        .and_then(|all| Enclosure::of(all, scene.bands().len(), rho, exitance)?.with_exposed(shares))
         .map_err(failure)
 }
 
