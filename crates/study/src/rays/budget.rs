@@ -8,22 +8,26 @@
 //! n = (λ w v_1/m)^{1/(1 + a)},   λ = (Σ w v_1 (w v_1/m)^{−a/(1 + a)} / T)^{(1 + a)/a}
 //! ```
 //!
-//! with m parts (from the derivative of Σ w v_1 n^{−a} + Σ m n/λ′).
+//! with m parts (from the derivative of Σ w v_1 n^{−a} + Σ m n/λ′). A large face that is dark
+//! counts little in this sum; it gets the rays that its own error needs.
 
 /// Exponent a with which the variance falls: measured on furnished rooms and cities, where it is 1.4
 /// to 1.5 (docs/rays.md).
 const EXPONENT: f64 = 1.3;
 /// Rays of a part and replicate at most.
 const MOST_RAYS: u32 = 1 << 20;
+/// The same only for the error of the own face.
+const MOST_RAYS_OF_A_LARGE_FACE: f64 = 1024.0;
 /// Rays after a prolongation over those before, at least: each has its price in products.
 const LEAST_GROWTH: f64 = 1.15;
 /// By which the square aimed at is lowered until there are so many.
 const STEP_OF_TARGET: f64 = 0.95;
 
-/// A family: w v_1 and its number of parts.
+/// A family: w v_1, the most that w v_n may be whatever the others are, and its number of parts.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Share {
     pub(super) weighed: f64,
+    pub(super) most: f64,
     pub(super) parts: usize,
 }
 
@@ -51,17 +55,17 @@ impl Budget {
     /// Rays of a part and replicate for each family, powers of two.
     pub(super) fn counts(&self) -> Vec<u32> {
         let power = EXPONENT / (1.0 + EXPONENT);
-        let terms = || self.shares.iter().map(|share| (share.weighed, share.parts as f64));
-        let sum: f64 = terms()
-            .filter(|(weighed, _)| *weighed > 0.0)
-            .map(|(weighed, parts)| weighed * (weighed / parts).powf(-power))
-            .sum();
+        let term = |share: &Share| share.weighed * (share.weighed / share.parts as f64).powf(-power);
+        let sum: f64 = self.shares.iter().filter(|share| share.weighed > 0.0).map(term).sum();
         let lambda = (sum / self.target).powf(1.0 / power);
-        let rays = |(weighed, parts): (f64, f64)| {
-            let rays = (lambda * weighed / parts).powf(1.0 / (1.0 + EXPONENT)).max(1.0);
+        let rays = |share: &Share| {
+            let best = (lambda * share.weighed / share.parts as f64).powf(1.0 / (1.0 + EXPONENT));
+            // Where nothing is known to arrive, nothing is known to be asked for.
+            let least = (share.weighed / share.most.max(f64::MIN_POSITIVE)).powf(1.0 / EXPONENT);
+            let rays = best.max(least.min(MOST_RAYS_OF_A_LARGE_FACE)).max(1.0);
             (1_u32 << (rays.log2().round().min(f64::from(MOST_RAYS.ilog2())) as u32)).min(MOST_RAYS)
         };
-        terms().map(rays).collect()
+        self.shares.iter().map(rays).collect()
     }
 
     /// More rays than `known`, where these have left an error `noise` by chance that is to be
@@ -91,8 +95,9 @@ mod tests {
 
     #[test]
     fn rays_meet_the_target_where_the_variance_falls_as_expected() {
-        let shares: Vec<Share> =
-            (1..200).map(|k| Share { weighed: f64::from(k * k) * 1e-6, parts: 4 }).collect();
+        let shares: Vec<Share> = (1..200)
+            .map(|k| Share { weighed: f64::from(k * k) * 1e-6, most: f64::INFINITY, parts: 4 })
+            .collect();
         let known = vec![1; shares.len()];
         let reached = |rays: &[u32]| -> f64 {
             let of = |(share, &n): (&Share, &u32)| share.weighed * f64::from(n).powf(-EXPONENT);
@@ -112,8 +117,17 @@ mod tests {
     }
 
     #[test]
+    fn what_a_family_may_have_at_most_is_kept_whatever_the_sum() {
+        let mut shares = vec![Share { weighed: 1.0, most: f64::INFINITY, parts: 4 }; 50];
+        shares[7].most = 0.02;
+        let rays = Budget::new(shares, &[1; 50], 1e3).counts();
+        let left = f64::from(rays[7]).powf(-EXPONENT);
+        assert!((0.01..0.04).contains(&left) && rays[8] == 1, "{left}");
+    }
+
+    #[test]
     fn a_prolongation_has_more_rays_even_where_none_are_wanted() {
-        let shares = vec![Share { weighed: 1.0, parts: 4 }; 50];
+        let shares = vec![Share { weighed: 1.0, most: f64::INFINITY, parts: 4 }; 50];
         let mut budget = Budget::new(shares, &[1; 50], 1.0);
         let rays = budget.counts();
         let more = budget.prolonged(&rays, 0.01, 0.01);

@@ -47,6 +47,9 @@ pub(super) struct Estimate {
     /// Variance of the mean of each family over one ray of each part and replicate, relative to the
     /// square of the norm, in the band with the most noise; 1/m².
     pub(super) variance: Vec<f64>,
+    /// What each family of a large face has of the square of the norm in this band; infinite for
+    /// others.
+    pub(super) large: Vec<f64>,
     /// What the parts of each family contribute to the square of the error of the elements.
     pub(super) differences: Vec<f64>,
 }
@@ -132,6 +135,7 @@ impl Estimate {
         let bands = ground.bands;
         let largest = |band| per_face.iter().skip(band).step_by(bands).copied().fold(0.0, f64::max);
         Ok(Self {
+            large: ground.large(&irradiance, (worst, norms[worst])),
             variance: ground.variance_of_a_ray(&deviations, rows, (worst, norms[worst])),
             error: MeshError { relative_l2: relative, largest: (0..bands).map(largest).collect(), per_face },
             elements: found.iter().map(of_band).fold(0.0, f64::max),

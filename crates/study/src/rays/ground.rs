@@ -13,6 +13,9 @@ use crate::stochastic::failure;
 /// Share of its own variance that a family is expected to have; the rest is that of its surface.
 const OWN_VARIANCE: f64 = 0.5;
 
+/// Share of all area from which on a face is large.
+const LARGE_FACE: f64 = 1e-3;
+
 /// Parts of elements, and what they are made of.
 pub(super) struct Ground<'m> {
     pub(super) mesh: &'m Mesh,
@@ -187,6 +190,20 @@ impl<'m> Ground<'m> {
             OWN_VARIANCE * own + (1.0 - OWN_VARIANCE) * sum / area
         };
         self.families.iter().zip(&own).map(pooled).collect()
+    }
+
+    /// E² A/‖E‖² of every family, E the mean over its face: what it has of the square of the norm of
+    /// a band. Infinite for faces that are not large.
+    pub(super) fn large(&self, irradiance: &MultiVector<f64>, (band, norm): (usize, f64)) -> Vec<f64> {
+        let faces = self.mesh.faces();
+        let means = self.means(irradiance);
+        let least = LARGE_FACE * faces.iter().map(|face| face.area).sum::<f64>();
+        let of = |family: &Family| {
+            let face = self.face_of[family.parts.start];
+            let share = means.row(face)[band].powi(2) * family.whole.area() / norm.max(f64::MIN_POSITIVE);
+            if faces[face].area > least { share } else { f64::INFINITY }
+        };
+        self.families.iter().map(of).collect()
     }
 
     /// A²/A_face of a family: what the variance of its mean counts in the square of the error, m².

@@ -23,7 +23,7 @@ use std::sync::Arc;
 use fredholm_coupling::Means;
 use fredholm_linop::StopReason;
 use fredholm_mesh::{Mesh, Patch};
-use fredholm_montecarlo::rows::{Looks, RowSampler};
+use fredholm_montecarlo::rows::{Family, Looks, RowSampler};
 use fredholm_scene::Scene;
 
 use self::budget::{Budget, Share};
@@ -49,6 +49,9 @@ const SEED: u64 = 1;
 /// finds it; and once many rays are cast, when it is quicker to cast more than to begin again.
 const OF_ELEMENTS: f64 = 0.6;
 const MOST_OF_ELEMENTS: f64 = 0.85;
+/// Standard error of a large face over the accuracy, so that hardly any is off by five times as
+/// much.
+const OF_LARGE_FACE: f64 = 1.25;
 /// Error by chance over what is left to it, so that the first rows are likely to be enough.
 const AIM: f64 = 0.95;
 /// Standard deviation of what a ray brings over its mean, about; share of all rays that the first
@@ -279,11 +282,14 @@ impl Run<'_> {
     /// The rays that are likely to be enough, from the first step.
     fn budget(&self, ground: &Ground, estimate: &Estimate, counts: &[u32]) -> Budget {
         let left = self.left(estimate.elements_at_least.max(0.5 * OF_ELEMENTS * self.accuracy));
-        let share = |(family, variance): (&_, &f64)| Share {
+        let of_face = (OF_LARGE_FACE * self.accuracy).powi(2);
+        let share = |((family, variance), norm): ((&Family, &f64), &f64)| Share {
             weighed: ground.weight(family) * variance,
+            most: of_face * norm,
             parts: family.parts.len(),
         };
-        let shares: Vec<Share> = ground.families.iter().zip(&estimate.variance).map(share).collect();
+        let families = ground.families.iter().zip(&estimate.variance).zip(&estimate.large);
+        let shares: Vec<Share> = families.map(share).collect();
         // What is stated is larger than the standard error.
         let now: f64 = shares.iter().zip(counts).map(|(s, &n)| s.weighed / f64::from(n)).sum();
         let ratio = estimate.worst_noise() / now.sqrt().max(f64::MIN_POSITIVE);
