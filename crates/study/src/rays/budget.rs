@@ -16,8 +16,9 @@
 const EXPONENT: f64 = 1.3;
 /// Rays of a part and replicate at most.
 const MOST_RAYS: u32 = 1 << 20;
-/// The same only for the error of the own face.
-const MOST_RAYS_OF_A_LARGE_FACE: f64 = 1024.0;
+const MOST_BITS: f64 = 20.0;
+/// Rays with those for the errors of large faces over those without, at most.
+const FOR_LARGE_FACES: f64 = 1.25;
 /// Rays after a prolongation over those before, at least: each has its price in products.
 const LEAST_GROWTH: f64 = 1.15;
 /// By which the square aimed at is lowered until there are so many.
@@ -58,14 +59,24 @@ impl Budget {
         let term = |share: &Share| share.weighed * (share.weighed / share.parts as f64).powf(-power);
         let sum: f64 = self.shares.iter().filter(|share| share.weighed > 0.0).map(term).sum();
         let lambda = (sum / self.target).powf(1.0 / power);
-        let rays = |share: &Share| {
-            let best = (lambda * share.weighed / share.parts as f64).powf(1.0 / (1.0 + EXPONENT));
-            // Where nothing is known to arrive, nothing is known to be asked for.
-            let least = (share.weighed / share.most.max(f64::MIN_POSITIVE)).powf(1.0 / EXPONENT);
-            let rays = best.max(least.min(MOST_RAYS_OF_A_LARGE_FACE)).max(1.0);
-            (1_u32 << (rays.log2().round().min(f64::from(MOST_RAYS.ilog2())) as u32)).min(MOST_RAYS)
+        let rounded =
+            |rays: f64| (1_u32 << (rays.max(1.0).log2().round().min(MOST_BITS) as u32)).min(MOST_RAYS);
+        let best = |share: &Share| {
+            rounded((lambda * share.weighed / share.parts as f64).powf(1.0 / (1.0 + EXPONENT)))
         };
-        self.shares.iter().map(rays).collect()
+        let best: Vec<u32> = self.shares.iter().map(best).collect();
+        // Where nothing is known to arrive, nothing is known to be asked for.
+        let alone = |share: &Share| (share.weighed / share.most.max(f64::MIN_POSITIVE)).powf(1.0 / EXPONENT);
+        let alone: Vec<u32> = self.shares.iter().map(|share| rounded(alone(share))).collect();
+        let mut bound = MOST_RAYS;
+        loop {
+            let counts: Vec<u32> =
+                best.iter().zip(&alone).map(|(&best, &alone)| best.max(alone.min(bound))).collect();
+            if self.rays(&counts) <= FOR_LARGE_FACES * self.rays(&best) {
+                return counts;
+            }
+            bound /= 2;
+        }
     }
 
     /// More rays than `known`, where these have left an error `noise` by chance that is to be
@@ -120,9 +131,9 @@ mod tests {
     fn what_a_family_may_have_at_most_is_kept_whatever_the_sum() {
         let mut shares = vec![Share { weighed: 1.0, most: f64::INFINITY, parts: 4 }; 50];
         shares[7].most = 0.02;
-        let rays = Budget::new(shares, &[1; 50], 1e3).counts();
+        let rays = Budget::new(shares, &[1; 50], 3.0).counts();
         let left = f64::from(rays[7]).powf(-EXPONENT);
-        assert!((0.01..0.04).contains(&left) && rays[8] == 1, "{left}");
+        assert!((0.01..0.04).contains(&left) && rays[8] < rays[7], "{left} {rays:?}");
     }
 
     #[test]
