@@ -18,7 +18,7 @@ const PICTURE: &str = "check.png";
 const LONG_RUN_SECONDS: f64 = 600.0;
 /// What is named where the matrix is too much.
 const INSTEAD_OF_MATRIX: &str =
-    "solve --accuracy 5% needs no matrix: links between groups of elements take its place";
+    "solve --accuracy 5% needs no matrix: rays, or links between groups of elements, take its place";
 
 /// Validates a scene, tells what its mesh is and predicts what its solution will take.
 pub(crate) fn check(args: &CheckArgs) -> Result<Ending, Error> {

@@ -45,10 +45,12 @@ pub(crate) const NAME: &str = "rays";
 pub(crate) const SOLVER: &str = "bicgstab";
 /// The same numbers in every run.
 const SEED: u64 = 1;
-/// Share of the accuracy that the elements may take up before they are divided, as the first step
-/// finds it; and once many rays are cast, when it is quicker to cast more than to begin again.
+/// Share of the accuracy that the elements may take up before they are divided; and once many rays
+/// are cast, so that it is quicker to cast some more than to begin again.
 const OF_ELEMENTS: f64 = 0.6;
 const MOST_OF_ELEMENTS: f64 = 0.85;
+/// Error by chance over what the elements leave to it, up to which it is.
+const MOST_NOISE_OVER_WHAT_IS_LEFT: f64 = 1.3;
 /// Standard error of a large face over the accuracy, so that hardly any is off by five times as
 /// much.
 const OF_LARGE_FACE: f64 = 1.25;
@@ -236,12 +238,15 @@ impl Run<'_> {
             let shares = rows.exposed_shares(&ground.lit, known.as_deref());
             let estimate = Estimate::new(ground, &rows, &shares, (looks, self.accuracy), self.signals)?;
             let stated = estimate.stated();
-            let most = if budget.is_none() { OF_ELEMENTS } else { MOST_OF_ELEMENTS };
-            let next = match (self.too_large(ground, (&estimate, most), looks), &mut budget) {
-                (Some(next), _) => ControlFlow::Break(next),
-                (None, None) => ControlFlow::Break(Next::Cast(self.budget(ground, &estimate, &counts))),
-                (None, Some(budget)) => {
-                    let left = self.left(estimate.elements.min(most * self.accuracy));
+            let too_large = self.too_large(&estimate, budget.is_none());
+            let next = match (too_large, &mut budget) {
+                (true, _) if looks == Looks::Everywhere => {
+                    ControlFlow::Break(Next::Divide(divided(ground, &estimate.differences)))
+                }
+                (true, _) => ControlFlow::Break(Next::Look),
+                (false, None) => ControlFlow::Break(Next::Cast(self.budget(ground, &estimate, &counts))),
+                (false, Some(budget)) => {
+                    let left = self.left(estimate.elements.min(MOST_OF_ELEMENTS * self.accuracy));
                     ControlFlow::Continue(budget.prolonged(&counts, estimate.worst_noise(), left))
                 }
             };
@@ -262,21 +267,24 @@ impl Run<'_> {
         }
     }
 
-    /// What is to be done where elements leave out more than this share of the accuracy.
-    fn too_large(&self, ground: &Ground, (estimate, most): (&Estimate, f64), looks: Looks) -> Option<Next> {
-        if estimate.elements_at_least <= most * self.accuracy {
-            return None;
+    /// Whether elements leave out too much. In the first step that is a share of the accuracy; later
+    /// it is so where it is quicker to begin again than to cast the rays that would make up for it.
+    fn too_large(&self, estimate: &Estimate, is_first: bool) -> bool {
+        let Estimate { elements, elements_at_least, .. } = *estimate;
+        let is_more_than = |share: f64| elements_at_least > share * self.accuracy;
+        let noise = estimate.worst_noise();
+        if is_first {
+            return is_more_than(OF_ELEMENTS);
         }
-        Some(if looks == Looks::Everywhere {
-            Next::Divide(divided(ground, &estimate.differences))
-        } else {
-            Next::Look
-        })
+        let is_costly = noise > MOST_NOISE_OVER_WHAT_IS_LEFT * self.left(elements);
+        is_more_than(MOST_OF_ELEMENTS)
+            || is_more_than(OF_ELEMENTS) && is_costly
+            || noise <= self.left(MOST_OF_ELEMENTS * self.accuracy)
     }
 
     /// The error by chance that an error of the elements leaves.
     fn left(&self, elements: f64) -> f64 {
-        AIM * (self.accuracy.powi(2) - elements.powi(2)).sqrt()
+        AIM * (self.accuracy.powi(2) - elements.powi(2)).max(0.0).sqrt()
     }
 
     /// The rays that are likely to be enough, from the first step.
