@@ -8,17 +8,24 @@
 //! ```
 //!
 //! over the balls (radii r) round both, and 0 where one is wholly behind the other. Lamps that are many are taken together where they are far
-//! away: from the root on, the part with the largest bound is opened until [`MOST_PARTS`] are left;
-//! within a part, lamps are taken by power (B. Walter et al., *Lightcuts*, SIGGRAPH 2005,
+//! away: from the root on, the part with the largest bound is opened until it has little of the sum
+//! or there are [`MOST_PARTS`]; within a part, lamps are taken by power (B. Walter et al.,
+//! *Lightcuts*, SIGGRAPH 2005,
 //! doi:10.1145/1186822.1073318). No lamp that may light the receiver has probability 0, so means
 //! stay unbiased. M is the mean exitance over the bands, W/m².
 
 use super::SurfaceDensity;
 use fredholm_mesh::{Patch, Vec3};
 use rayon::prelude::*;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
 
 /// Parts of a cut at most.
-const MOST_PARTS: usize = 16;
+const MOST_PARTS: usize = 256;
+/// Distance of the nearest lamp of a part over its radius, at least.
+const NEAREST: f64 = 0.25;
+/// What a part may bring, over the sum of all bounds, from which on it is opened.
+const LEAST_OPENED: f64 = 0.03;
 /// Height of a receiver's ball over its plane, relative to its radius, that counts as none.
 const LEAST_HEIGHT: f64 = 1e-9;
 /// 1 − cosθ of the angle θ between normals up to which they count as one.
@@ -86,6 +93,35 @@ pub struct Cuts {
     /// Receivers that are so near a lamp that what its points bring varies without bound.
     near: Vec<bool>,
 }
+
+/// A node of the tree as a receiver sees it. That which may bring most comes first.
+#[derive(Clone, Copy, Debug)]
+struct Bounded {
+    /// The same as `bound` were all of its lamps where the nearest may be.
+    most: f64,
+    bound: f64,
+    node: usize,
+}
+
+impl Ord for Bounded {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.most.total_cmp(&other.most).then(other.node.cmp(&self.node))
+    }
+}
+
+impl PartialOrd for Bounded {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Bounded {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Bounded {}
 
 /// The parts for one receiver.
 #[derive(Clone, Copy, Debug)]
@@ -156,21 +192,31 @@ impl LampTree {
     }
 
     fn cut(&self, receiver: &Receiver) -> (Vec<Part>, bool) {
-        let mut parts: Vec<(usize, f64)> = Vec::with_capacity(MOST_PARTS);
-        let part = |node: usize| (node, self.bound(node, receiver));
-        if !self.nodes.is_empty() {
-            parts.push(part(0));
+        let part = |node: usize| {
+            let bound = self.bound(node, receiver);
+            let Node { centre, radius, .. } = self.nodes[node];
+            let (distance, reach) = (centre.distance(receiver.centre), radius + receiver.radius);
+            // The nearest lamp of a node that reaches about the receiver brings far more.
+            let ratio = distance.max(reach) / (distance - reach).max(NEAREST * reach);
+            Bounded { most: bound * ratio * ratio, bound, node }
+        };
+        let (mut open, mut parts): (BinaryHeap<Bounded>, Vec<Bounded>) = (BinaryHeap::new(), Vec::new());
+        open.extend((!self.nodes.is_empty()).then(|| part(0)));
+        let mut total = open.peek().map_or(0.0, |root| root.bound);
+        while open.len() + parts.len() < MOST_PARTS {
+            let Some(largest) = open.peek().filter(|part| part.most > LEAST_OPENED * total) else { break };
+            let largest = *largest;
+            open.pop();
+            let Some(second) = self.nodes[largest.node].second else {
+                parts.push(largest);
+                continue;
+            };
+            let halves = [part(largest.node + 1), part(second)];
+            total += halves[0].bound + halves[1].bound - largest.bound;
+            open.extend(halves.into_iter().filter(|half| half.bound > 0.0));
         }
-        while parts.len() < MOST_PARTS {
-            let open = |(_, part): &(usize, &(usize, f64))| self.nodes[part.0].second.is_some();
-            let largest = parts.iter().enumerate().filter(open);
-            let largest = largest.max_by(|(_, a), (_, b)| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)));
-            let Some((at, &(node, bound))) = largest else { break };
-            let Some(second) = self.nodes[node].second.filter(|_| bound > 0.0) else { break };
-            parts[at] = part(node + 1);
-            parts.push(part(second));
-        }
-        parts.retain(|part| part.1 > 0.0);
+        parts.extend(open.into_iter().filter(|part| part.bound > 0.0));
+        let mut parts: Vec<(usize, f64)> = parts.into_iter().map(|part| (part.node, part.bound)).collect();
         parts.sort_unstable_by_key(|part| part.0);
         let total: f64 = parts.iter().map(|part| part.1).sum();
         let mut end = 0.0;
