@@ -88,7 +88,9 @@ fn check(file: &Path) {
     let shown: Vec<String> = errors.iter().map(|[largest, _]| format!("{largest:.1e}")).collect();
     println!("{}: {} pairs, errors {}", file.display(), sample.pairs.len(), shown.join(", "));
     for steps in errors.windows(2) {
-        assert!((0..2).all(|k| steps[1][k] <= steps[0][k]), "{}: {errors:?}", file.display());
+        // What counts as true is not known better.
+        let is_no_worse = |k: usize| steps[1][k] <= steps[0][k] + REFERENCE_TOLERANCE;
+        assert!((0..2).all(is_no_worse), "{}: {errors:?}", file.display());
     }
 }
 

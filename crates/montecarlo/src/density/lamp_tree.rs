@@ -7,12 +7,12 @@
 //! A M max cosθ max cosθ′ / max(d², r²),
 //! ```
 //!
-//! over the balls (radii r) round both, and 0 where one is wholly behind the other. Lamps that are many are taken together where they are far
-//! away: from the root on, the part with the largest bound is opened until it has little of the sum
-//! or there are [`MOST_PARTS`]; within a part, lamps are taken by power (B. Walter et al.,
-//! *Lightcuts*, SIGGRAPH 2005,
-//! doi:10.1145/1186822.1073318). No lamp that may light the receiver has probability 0, so means
-//! stay unbiased. M is the mean exitance over the bands, W/m².
+//! over the balls (radii r) round both, and 0 where one is wholly behind the other. Lamps that are
+//! many are taken together where they are far away: from the root on, the part that may bring most,
+//! were all of it where its nearest lamp may be, is opened until that is little or there are
+//! [`MOST_PARTS`]; within a part, lamps are taken by power (B. Walter et al., *Lightcuts*, SIGGRAPH
+//! 2005, doi:10.1145/1186822.1073318). No lamp that may light the receiver has probability 0, so
+//! means stay unbiased. M is the mean exitance over the bands, W/m².
 
 use super::SurfaceDensity;
 use fredholm_mesh::{Patch, Vec3};
