@@ -298,7 +298,7 @@ impl Grid {
         patch.sides() == 3
             && patch.corners().iter().all(even)
             && self.axes.into_iter().all(unit)
-            && high - low == 1.0
+            && (high - low - 1.0).abs() < 0.5
     }
 
     /// Whether every patch is a rectangle that fills one cell.
@@ -322,12 +322,10 @@ impl Grid {
             let middle = self.place(patch.centroid());
             let whole = f64::from(self.sides[0]);
             // A patch that only touches the triangle has its middle outside.
-            if middle[0] < 0.0 || middle[1] < 0.0 || middle[0] + middle[1] > whole {
-                return [1..=0, 1..=0, 1..=0];
-            }
+            let is_outside = middle[0] < 0.0 || middle[1] < 0.0 || middle[0] + middle[1] > whole;
             let [row, column] = middle.map(|place| place as usize);
             let half = usize::from(middle[0].fract() + middle[1].fract() > 1.0);
-            return [row..=row, column..=column, half..=half];
+            return [row + usize::from(is_outside)..=row, column..=column, half..=half];
         }
         let [rows, columns] = [0, 1].map(|i| {
             let axis = self.axes[i];

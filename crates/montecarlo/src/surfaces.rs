@@ -70,7 +70,7 @@ impl Surfaces {
 
     fn of(patches: Vec<Patch>, occluders: Occluders, locator: Option<Locator>) -> Self {
         let (frames, frame_of) = frames(&patches);
-        Self { frames, frame_of, occluders, locator, patches }
+        Self { patches, frames, frame_of, occluders, locator }
     }
 
     /// The patches.
