@@ -218,7 +218,7 @@ def by_particles(soup, area, seconds):
     """Runs for some CPU seconds, at least; yields seconds and irradiances at their doubles."""
     dr.eval(particles(soup, 0, LANES))
     dr.sync_thread()
-    rounds = (lambda seed: particles(soup, seed, LANES))
+    rounds = lambda seed: particles(soup, seed, LANES)
     for spent, mean, error in repeated(rounds, seconds):
         yield spent, mean / LANES / area[:, None], error / LANES / area[:, None]
 
@@ -313,7 +313,7 @@ def main():
             line = ["solve", ASKED.scene, "--accuracy", accuracy, "--way", "links", *quiet]
             add("links", accuracy, *by_fredholm(line))
     if ASKED.matrix:
-        add("matrix", "", *by_fredholm(["solve", ASKED.scene, "--no-error", *quiet]))
+        add("matrix", "", *by_fredholm(["solve", ASKED.scene, *quiet]))
     dr.set_thread_count(1)
     polygons, exposed, reflectance, exitance = geometry(ASKED.scene)
     soup = Soup(polygons, reflectance, exitance)

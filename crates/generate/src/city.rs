@@ -11,7 +11,7 @@ use glam::DVec3;
 
 use crate::body::{Body, rectangle, wavefront};
 use crate::dice::Dice;
-use crate::files::Files;
+use crate::files::{Files, quad};
 
 /// From the middle of a block to that of the next, m.
 const PITCH: f64 = 70.0;
@@ -121,12 +121,6 @@ reflectance = 0.25
 ";
 
 const HOUSES: &str = "[[surface]]\nname = \"houses\"\nobj = { file = \"city.obj\" }\n";
-
-fn quad(name: &str, material: &str, corners: [[f64; 3]; 4], divide: [usize; 2]) -> String {
-    format!(
-        "[[surface]]\nname = \"{name}\"\nmaterial = \"{material}\"\nquad = {corners:?}\ndivide = {divide:?}\n"
-    )
-}
 
 /// The bodies of a block.
 fn block(middle: DVec3, dice: &mut Dice) -> Vec<Body> {

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::dice::Dice;
 use crate::files::Files;
-use crate::furnished::{Furnished, MATERIALS, Window, quarters};
+use crate::furnished::{Furnished, MATERIALS, Window};
 use crate::furniture;
 
 /// Length, width and height, m. The board is on the wall at y = 0, windows at x = 0.
@@ -110,7 +110,7 @@ fn furnish(room: &mut Furnished, dice: &mut Dice) {
             }
         }
     }
-    let half = quarters(2);
+    let half = 180.0;
     let mut put = |model: &str, name: &str, degrees: f64, to: [f64; 3], more: &str| {
         room.place(model, name, degrees, to.into(), more);
     };
@@ -118,25 +118,25 @@ fn furnish(room: &mut Furnished, dice: &mut Dice) {
     put("teacher_chair", "teacher_chair", 12.0, [5.2, 0.75, 0.0], "");
     put("basket", "basket", 0.0, [6.5, 0.5, 0.0], "");
     for (i, y) in [3.3, 4.4, 5.5].into_iter().enumerate() {
-        put("bookcase", &format!("bookcase_{i}"), quarters(-1), [6.82, y, 0.0], "");
+        put("bookcase", &format!("bookcase_{i}"), -90.0, [6.82, y, 0.0], "");
     }
     for (i, x) in [1.6, 3.0, 4.4].into_iter().enumerate() {
         put("cupboard", &format!("cupboard_{i}"), 0.0, [x, 8.15, 0.0], "largest_edge = 0.5\n");
     }
-    put("board", "board", quarters(2), [3.5, 0.0, 0.0], "largest_edge = 0.4\n");
+    put("board", "board", 180.0, [3.5, 0.0, 0.0], "largest_edge = 0.4\n");
     put("globe", "globe", 0.0, [3.1, 8.12, 1.201], "");
     for i in 0..3 {
         let y = ROOM.y * (f64::from(i) + 0.5) / 3.0;
-        put("radiator", &format!("radiator_{i}"), quarters(1), [0.12, y, 0.0], "");
+        put("radiator", &format!("radiator_{i}"), 90.0, [0.12, y, 0.0], "");
         for (side, dy) in [("left", -1.1), ("right", 1.1)] {
             let to = [0.1, y + dy, 0.85];
-            put("curtain", &format!("curtain_{i}_{side}"), quarters(1), to, "two_sided = true\n");
+            put("curtain", &format!("curtain_{i}_{side}"), 90.0, to, "two_sided = true\n");
         }
     }
     for row in 0..4 {
         for column in 0..3 {
             let to = [1.5 + 2.0 * f64::from(column), 1.4 + 1.9 * f64::from(row), ROOM.z - 0.4];
-            put("luminaire", &format!("luminaire_{row}_{column}"), quarters(1), to, "");
+            put("luminaire", &format!("luminaire_{row}_{column}"), 90.0, to, "");
         }
     }
 }

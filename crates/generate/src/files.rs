@@ -33,3 +33,10 @@ impl Files {
         Ok(path)
     }
 }
+
+/// A rectangle in pieces as a surface of a scene file.
+pub(crate) fn quad(name: &str, material: &str, corners: [[f64; 3]; 4], divide: [usize; 2]) -> String {
+    format!(
+        "[[surface]]\nname = \"{name}\"\nmaterial = \"{material}\"\nquad = {corners:?}\ndivide = {divide:?}\n"
+    )
+}

@@ -1,11 +1,11 @@
 //! What scenes with furniture share: models in OBJ files, placed many times.
 
-use std::f64::consts::FRAC_PI_2;
 use std::fmt::Write;
 
 use glam::DVec3;
 
 use crate::body::{Body, wavefront};
+use crate::files::quad;
 use crate::furniture::Piece;
 
 /// A scene file and its models, as they grow.
@@ -48,10 +48,7 @@ impl Furnished {
     /// Adds a rectangle in pieces: counter-clockwise seen from the side that is lit.
     pub fn quad(&mut self, name: &str, material: &str, corners: [DVec3; 4], divide: [usize; 2]) {
         let corners = corners.map(|p| p.to_array().map(rounded));
-        let _ = writeln!(
-            self.scene,
-            "[[surface]]\nname = \"{name}\"\nmaterial = \"{material}\"\nquad = {corners:?}\ndivide = {divide:?}\n"
-        );
+        let _ = writeln!(self.scene, "{}", quad(name, material, corners, divide));
     }
 
     /// Adds a wall of height `height` from `from` to `to` on the floor with a window, which lets in
@@ -84,11 +81,6 @@ pub(crate) struct Window {
 /// To micrometres, so that the text of a number is short.
 fn rounded(x: f64) -> f64 {
     (x * 1e6).round() / 1e6 + 0.0
-}
-
-/// Degrees of a quarter turn times `quarters`.
-pub(crate) fn quarters(quarters: i32) -> f64 {
-    (f64::from(quarters) * FRAC_PI_2).to_degrees()
 }
 
 /// The materials of furniture and of rooms around it.

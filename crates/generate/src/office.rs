@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::dice::Dice;
 use crate::files::Files;
-use crate::furnished::{Furnished, MATERIALS, Window, quarters};
+use crate::furnished::{Furnished, MATERIALS, Window};
 use crate::furniture;
 
 /// Length, width and height of a bay, m.
@@ -115,7 +115,7 @@ fn furnish(office: &mut Furnished, bay: &str, corner: DVec3, dice: &mut Dice) {
     {
         let (x, y, facing) = (*x, *y, *facing);
         let side = if facing == 0 { 1.0 } else { -1.0 };
-        let turn = quarters(facing);
+        let turn = 90.0 * f64::from(facing);
         put("desk", &format!("desk_{i}"), turn, [x, y, 0.0], "largest_edge = 0.5\n");
         let (dx, dy) = (dice.between(-0.15, 0.15), dice.between(0.0, 0.25));
         let chair = [x + dx, y - side * (0.62 + dy), 0.0];
@@ -139,7 +139,7 @@ fn furnish(office: &mut Furnished, bay: &str, corner: DVec3, dice: &mut Dice) {
     for i in 0..3 {
         let kind = dice.below(KINDS);
         let to = [4.75, 1.9 + 1.02 * f64::from(i), 0.0];
-        put(&format!("bookcase_{kind}"), &format!("bookcase_{i}"), quarters(-1), to, "");
+        put(&format!("bookcase_{kind}"), &format!("bookcase_{i}"), -90.0, to, "");
     }
     let table = [6.1, 3.0];
     put("table", "table", 0.0, [table[0], table[1], 0.0], "");

@@ -61,8 +61,11 @@ impl Scan {
         let foot = DVec3::new(0.5 * ROOM_SIZE[0], 0.5 * ROOM_SIZE[1], 0.0);
         let edge = HEIGHT / rows as f64;
         Body::round(rows, columns, "plaster", |row, column| {
-            if row == 0 || row == rows {
-                return foot + DVec3::Z * (if row == 0 { 0.0 } else { HEIGHT });
+            if row == 0 {
+                return foot;
+            }
+            if row == rows {
+                return foot + DVec3::Z * HEIGHT;
             }
             let (t, angle) = (row as f64 / rows as f64, TAU * column as f64 / columns as f64);
             let moved = on_figure(t, angle, phase) + dice.direction() * (self.noise * edge);

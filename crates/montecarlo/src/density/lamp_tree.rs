@@ -96,32 +96,34 @@ pub struct Cuts {
 
 /// A node of the tree as a receiver sees it. That which may bring most comes first.
 #[derive(Clone, Copy, Debug)]
-struct Bounded {
+struct Seen {
     /// The same as `bound` were all of its lamps where the nearest may be.
     most: f64,
+    /// A bound on what it brings, W/m² but for factors that all have, that takes its lamps as far away
+    /// as its centre; 0 where they are behind the receiver or turned away from it.
     bound: f64,
     node: usize,
 }
 
-impl Ord for Bounded {
+impl Ord for Seen {
     fn cmp(&self, other: &Self) -> Ordering {
         self.most.total_cmp(&other.most).then(other.node.cmp(&self.node))
     }
 }
 
-impl PartialOrd for Bounded {
+impl PartialOrd for Seen {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl PartialEq for Bounded {
+impl PartialEq for Seen {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other).is_eq()
     }
 }
 
-impl Eq for Bounded {}
+impl Eq for Seen {}
 
 /// The parts for one receiver.
 #[derive(Clone, Copy, Debug)]
@@ -192,35 +194,28 @@ impl LampTree {
     }
 
     fn cut(&self, receiver: &Receiver) -> (Vec<Part>, bool) {
-        let part = |node: usize| {
-            let bound = self.bound(node, receiver);
-            let Node { centre, radius, .. } = self.nodes[node];
-            let (distance, reach) = (centre.distance(receiver.centre), radius + receiver.radius);
-            // The nearest lamp of a node that reaches about the receiver brings far more.
-            let ratio = distance.max(reach) / (distance - reach).max(NEAREST * reach);
-            Bounded { most: bound * ratio * ratio, bound, node }
-        };
-        let (mut open, mut parts): (BinaryHeap<Bounded>, Vec<Bounded>) = (BinaryHeap::new(), Vec::new());
-        open.extend((!self.nodes.is_empty()).then(|| part(0)));
+        let part = |node: usize| Some(self.seen(node, receiver)).filter(|part| part.bound > 0.0);
+        let mut open: BinaryHeap<Seen> =
+            (!self.nodes.is_empty()).then(|| part(0)).flatten().into_iter().collect();
+        let mut parts: Vec<Seen> = Vec::new();
         let mut total = open.peek().map_or(0.0, |root| root.bound);
-        while open.len() + parts.len() < MOST_PARTS {
-            let Some(largest) = open.peek().filter(|part| part.most > LEAST_OPENED * total) else { break };
-            let largest = *largest;
-            open.pop();
+        while open.len() + parts.len() < MOST_PARTS
+            && open.peek().is_some_and(|part| part.most > LEAST_OPENED * total)
+        {
+            let Some(largest) = open.pop() else { break };
             let Some(second) = self.nodes[largest.node].second else {
                 parts.push(largest);
                 continue;
             };
             let halves = [part(largest.node + 1), part(second)];
-            total += halves[0].bound + halves[1].bound - largest.bound;
-            open.extend(halves.into_iter().filter(|half| half.bound > 0.0));
+            total += halves.iter().flatten().map(|half| half.bound).sum::<f64>() - largest.bound;
+            open.extend(halves.into_iter().flatten());
         }
-        parts.extend(open.into_iter().filter(|part| part.bound > 0.0));
-        let mut parts: Vec<(usize, f64)> = parts.into_iter().map(|part| (part.node, part.bound)).collect();
-        parts.sort_unstable_by_key(|part| part.0);
-        let total: f64 = parts.iter().map(|part| part.1).sum();
+        parts.extend(open);
+        parts.sort_unstable_by_key(|part| part.node);
+        let total: f64 = parts.iter().map(|part| part.bound).sum();
         let mut end = 0.0;
-        let parts = parts.into_iter().map(|(node, bound)| {
+        let parts = parts.into_iter().map(|Seen { node, bound, .. }| {
             let share = (bound / total) as f32;
             end += share;
             Part { node: node as u32, share, end }
@@ -236,7 +231,9 @@ impl LampTree {
             // A lamp of the node is no larger than it, and no farther away than its centre and more.
             let off = if second.is_some() { radius } else { 0.0 };
             let reach = off + NEAR * (radius + receiver.radius);
-            if centre.distance_squared(receiver.centre) < reach * reach && self.bound(node, receiver) > 0.0 {
+            if centre.distance_squared(receiver.centre) < reach * reach
+                && self.seen(node, receiver).bound > 0.0
+            {
                 match second {
                     Some(second) => left.extend([node + 1, second]),
                     None => return true,
@@ -246,9 +243,7 @@ impl LampTree {
         false
     }
 
-    /// A bound on what a node brings to a receiver, W/m² but for factors that all have; 0 where its
-    /// lamps are behind the receiver or turned away from it.
-    fn bound(&self, node: usize, receiver: &Receiver) -> f64 {
+    fn seen(&self, node: usize, receiver: &Receiver) -> Seen {
         let Node { centre, radius, power, turned, first, count, .. } = self.nodes[node];
         let between = centre - receiver.centre;
         let (square, reach) = (between.length_squared(), radius + receiver.radius);
@@ -270,9 +265,12 @@ impl LampTree {
         });
         let alone = (count == 1).then(|| &self.lamps[first].outline);
         if lit == 0.0 || alone.is_some_and(|lamp| !is_above(lamp, normal, normal.dot(receiver.centre))) {
-            return 0.0;
+            return Seen { most: 0.0, bound: 0.0, node };
         }
-        power * cosine(normal.dot(between)) * lit / square.max(reach * reach)
+        let bound = power * cosine(normal.dot(between)) * lit / square.max(reach * reach);
+        // The nearest lamp of a node that reaches about the receiver brings far more.
+        let ratio = distance.max(reach) / (distance - reach).max(NEAREST * reach);
+        Seen { most: bound * ratio * ratio, bound, node }
     }
 
     /// A point of a lamp from three numbers in [0, 1), its patch, and its density (1/m²); none where

@@ -16,7 +16,6 @@
 const EXPONENT: f64 = 1.3;
 /// Rays of a part and replicate at most.
 const MOST_RAYS: u32 = 1 << 20;
-const MOST_BITS: f64 = 20.0;
 /// Rays with those for the errors of large faces over those without, at most.
 const FOR_LARGE_FACES: f64 = 1.25;
 /// Rays after a prolongation over those before, at least: each has its price in products.
@@ -59,8 +58,7 @@ impl Budget {
         let term = |share: &Share| share.weighed * (share.weighed / share.parts as f64).powf(-power);
         let sum: f64 = self.shares.iter().filter(|share| share.weighed > 0.0).map(term).sum();
         let lambda = (sum / self.target).powf(1.0 / power);
-        let rounded =
-            |rays: f64| (1_u32 << (rays.max(1.0).log2().round().min(MOST_BITS) as u32)).min(MOST_RAYS);
+        let rounded = |rays: f64| 1_u32 << (rays.clamp(1.0, f64::from(MOST_RAYS)).log2().round() as u32);
         let best = |share: &Share| {
             rounded((lambda * share.weighed / share.parts as f64).powf(1.0 / (1.0 + EXPONENT)))
         };
