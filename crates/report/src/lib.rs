@@ -114,9 +114,9 @@ pub use outputs::{
     OutputFile, REPORT, RUN, RunReport, View, Wanted, output_files, wanted_files, write_all, write_with,
 };
 pub use picture::{
-    Back, DIRECTION_GROUPS, FalseColourPicture, Gathering, LampLight, Layer, Lighter, Link, Linked, Lit,
-    LitPicture, Picture, PictureNumber, Seen, Side, render, render_false_colour, render_layers, render_lit,
-    render_sides,
+    Back, DIRECTION_GROUPS, FalseColourPicture, Gathering, LampFactors, LampLight, Layer, Lighter, Link,
+    Linked, Lit, LitPicture, Picture, PictureNumber, Points, Seen, Side, render, render_false_colour,
+    render_layers, render_lit, render_sides,
 };
 pub use points_csv::{PointTable, write_points_csv};
 pub use refinement::{

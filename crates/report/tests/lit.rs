@@ -5,7 +5,7 @@
 
 use fredholm_mesh::{Mesh, MeshBuilder, Patch, Vec3};
 use fredholm_report::{
-    Camera, DIRECTION_GROUPS, Exposure, Field, Gathering, LampLight, Lighter, Lit, LitPicture, Seen,
+    Camera, DIRECTION_GROUPS, Exposure, Field, Gathering, LampLight, Lighter, Lit, LitPicture, Points, Seen,
     render_lit,
 };
 use rayon::ThreadPoolBuilder;
@@ -45,9 +45,9 @@ impl LampLight for Half {
         1
     }
 
-    fn lighter(&self) -> Lighter<'_> {
+    fn lighter(&self, _points: Points) -> Lighter<'_> {
         Box::new(|_, points, factors| {
-            for (factor, point) in factors.iter_mut().zip(points) {
+            for (factor, point) in factors.values.iter_mut().zip(points) {
                 *factor = if point.x < 0.0 { 0.5 } else { 0.0 };
             }
         })
@@ -62,7 +62,7 @@ impl LampLight for Dark {
         0
     }
 
-    fn lighter(&self) -> Lighter<'_> {
+    fn lighter(&self, _points: Points) -> Lighter<'_> {
         Box::new(|_, _, _| {})
     }
 }
@@ -136,7 +136,7 @@ impl LampLight for Impatient {
         0
     }
 
-    fn lighter(&self) -> Lighter<'_> {
+    fn lighter(&self, _points: Points) -> Lighter<'_> {
         Box::new(|_, _, _| {})
     }
 
@@ -277,5 +277,55 @@ fn gathering_that_is_stopped_leaves_a_whole_picture_of_what_there_is() {
         assert!((17..47).all(|k| at(k, 30) > 0.3 && at(k, 30) < 2.0), "all is lit");
         let untold = drawn.standard_error.iter().filter(|error| error[0].is_nan()).count();
         assert!(untold > 0, "where light is interpolated no error is known");
+    }
+}
+
+/// The lamp of [`Half`], known to within an error of so much.
+struct Noisy(f64);
+
+impl LampLight for Noisy {
+    fn lamps(&self) -> usize {
+        1
+    }
+
+    fn lighter(&self, _points: Points) -> Lighter<'_> {
+        Box::new(|_, points, factors| {
+            let found = factors.values.iter_mut().zip(&mut factors.errors);
+            for ((factor, error), point) in found.zip(points) {
+                let whole = if point.x < 0.0 { 0.5 } else { 0.2 };
+                // A number in [-1, 1), even but for its pattern.
+                let even =
+                    2.0 * ((point.x * 917.3).sin() * 43_758.5 + point.y * 7_919.7).rem_euclid(1.0) - 1.0;
+                (*factor, *error) = (whole + 3_f64.sqrt() * self.0 * even, self.0);
+            }
+        })
+    }
+}
+
+#[test]
+fn noise_is_smoothed_and_borders_stay() {
+    let (mesh, bands) = (square(3), vec!["grey".to_owned()]);
+    let values = vec![1.0; mesh.len()];
+    let field = Field::new(&mesh, &bands, &values, &values).unwrap();
+    let direct = vec![1.0; mesh.len()];
+    let deviations = |error: f64| {
+        let light = &Noisy(error);
+        let lit =
+            Lit { light, exitance: &[1.0], reflectance: &values, direct: Some(&direct), gathering: None };
+        let linear = render_lit(&field, &camera(), Exposure::Fixed(0.2), &lit, true).unwrap().unwrap().linear;
+        let deviation = |columns: std::ops::Range<usize>, truth: f64| {
+            let pixels = (18..46).flat_map(|y| columns.clone().map(move |x| (x, y)));
+            let off: Vec<f64> = pixels.map(|(x, y)| f64::from(linear[64 * y + x][0]) - truth).collect();
+            let mean = |of: &dyn Fn(f64) -> f64| off.iter().map(|o| of(*o)).sum::<f64>() / off.len() as f64;
+            (mean(&|o| o), mean(&|o| o * o).sqrt())
+        };
+        [deviation(18..32, 0.5), deviation(32..46, 0.2)]
+    };
+    // 49 pixels of a window have a seventh of the error of one; some differ too much to count.
+    for (mean, error) in deviations(0.03) {
+        assert!(mean.abs() < 0.005 && error < 0.03 / 3.0, "{mean} {error}");
+    }
+    for (mean, error) in deviations(0.0) {
+        assert!(mean.abs() < 1e-6 && error < 1e-6, "{mean} {error}");
     }
 }

@@ -5,17 +5,26 @@ use std::ops::ControlFlow;
 use fredholm_hierarchical::Lamps;
 use fredholm_linop::{MultiVector, Watch};
 use fredholm_mesh::Patch;
-use fredholm_report::{Gathering, LampLight, Lighter, Lit};
+use fredholm_report::{Gathering, LampLight, Lighter, Lit, Points};
 
 use crate::directions::Directions;
 use crate::error::{Error, ErrorKind};
 use crate::problem::{Problem, scene_failure};
+use crate::sampled_lamps::{SEGMENTS, SampledLamps};
+
+/// How points look at lamps.
+enum Looks<'a> {
+    /// Shadows have their true borders.
+    Exact(Lamps<'a>),
+    /// By segments: among very many bodies, or where the lamps are a sky.
+    Sampled(SampledLamps<'a>),
+}
 
 /// What the light of lamps at pixels is taken from.
 pub(crate) struct Lamplight<'a> {
-    /// None where there are no lamps, or too many, or where the solution does not tell their light
-    /// apart.
-    lamps: Option<(Lamps<'a>, &'a [f64])>,
+    /// None where there are no lamps, or too many kinds, or where the solution does not tell their
+    /// light apart.
+    lamps: Option<(Looks<'a>, &'a [f64])>,
     /// Exitance of each lamp, lamps × bands, W/m².
     exitance: Vec<f64>,
     reflectance: Vec<f64>,
@@ -61,13 +70,24 @@ impl<'a> Lamplight<'a> {
         let area = |patches: &mut dyn Iterator<Item = &Patch>| patches.map(Patch::area).sum::<f64>();
         let emitting = area(&mut kinds.iter().flatten().copied());
         let all = area(&mut mesh.patches());
-        if emitting > SKY_AREA_RATIO * (all - emitting) {
+        if kinds.is_empty() {
             return Ok(none(reflectance));
         }
-        let lamps = Lamps::new(&kinds, mesh.patches().collect(), &problem.occluders);
-        let lamps = lamps.map_err(|error| Error::new(ErrorKind::Input, error))?;
-        let Some(lamps) = lamps.filter(|lamps| !lamps.is_empty()) else { return Ok(none(reflectance)) };
-        Ok(Self { lamps: Some((lamps, direct.as_slice())), exitance, reflectance, gathering, watch })
+        let elements = || mesh.patches().collect();
+        let exact = if emitting > SKY_AREA_RATIO * (all - emitting) {
+            None
+        } else {
+            let lamps = Lamps::new(&kinds, elements(), &problem.occluders);
+            lamps.map_err(|error| Error::new(ErrorKind::Input, error))?
+        };
+        let looks = exact.map_or_else(
+            || {
+                let power: Vec<f64> = exitance.chunks_exact(bands).map(|m| m.iter().sum()).collect();
+                Looks::Sampled(SampledLamps::new(&kinds, &power, elements(), &problem.occluders))
+            },
+            Looks::Exact,
+        );
+        Ok(Self { lamps: Some((looks, direct.as_slice())), exitance, reflectance, gathering, watch })
     }
 
     /// What the picture is drawn with.
@@ -85,9 +105,12 @@ impl<'a> Lamplight<'a> {
             _ => format!("gathered at {places} places"),
         };
         match self.lamps {
-            Some(_) => format!(
+            Some((Looks::Exact(_), _)) => format!(
                 "light of the lamps at every pixel, or between pixels where it hardly changes, the rest {rest}"
             ),
+            Some((Looks::Sampled(_), _)) => {
+                format!("light of the lamps at every pixel, by {SEGMENTS} segments, the rest {rest}")
+            }
             None => format!("light {rest}"),
         }
     }
@@ -101,14 +124,23 @@ const MOST_KINDS: usize = 128;
 
 impl LampLight for Lamplight<'_> {
     fn lamps(&self) -> usize {
-        self.lamps.as_ref().map_or(0, |(lamps, _)| lamps.len())
+        match &self.lamps {
+            Some((Looks::Exact(lamps), _)) => lamps.len(),
+            Some((Looks::Sampled(lamps), _)) => lamps.len(),
+            None => 0,
+        }
     }
 
-    fn lighter(&self) -> Lighter<'_> {
+    fn lighter(&self, pixel: Points) -> Lighter<'_> {
         match &self.lamps {
-            Some((lamps, _)) => {
+            Some((Looks::Exact(lamps), _)) => {
                 let mut lighter = lamps.lighter();
-                Box::new(move |element, points, factors| lighter.factors(element, points, factors))
+                Box::new(move |element, points, factors| {
+                    lighter.factors(element, points, &mut factors.values);
+                })
+            }
+            Some((Looks::Sampled(lamps), _)) => {
+                Box::new(move |element, points, factors| lamps.factors(element, points, pixel, factors))
             }
             None => Box::new(|_, _, _| {}),
         }

@@ -55,6 +55,7 @@ mod reference;
 mod registry;
 mod rounds;
 mod sample;
+mod sampled_lamps;
 mod shadows;
 mod shoot;
 mod size;

@@ -5,8 +5,8 @@
 //! Lambert's formula the factor of such a piece is a sum over the edges of its outline, whatever
 //! lies within (Schröder & Hanrahan, doi:10.1145/166117.166138). Of the outline the shadows of the
 //! bodies between are cut out exactly. Which bodies may come between an element and a piece is
-//! found once an element; what nothing can come between is open for all of its points. In scenes of
-//! very many occluders rays to a grid on each piece are counted instead. Metres.
+//! found once an element; what nothing can come between is open for all of its points. Scenes of very
+//! many occluders or lamps have none. Metres.
 
 use super::shadows::{Covers, FLAT_HEIGHT, Shadows};
 use fredholm_coupling::form_factor::point_to_polygon;
@@ -22,12 +22,10 @@ const MOST_PIECES: usize = 128;
 /// Parts of lamps times bodies that may stand before them, at most: what every pixel may have to
 /// look through.
 const MOST_PAIRS: usize = 16_384;
-/// Occluders up to which their shadows are cut out exactly.
-const MOST_EXACT_OCCLUDERS: usize = 20_000;
+/// Occluders up to which their shadows are cut out.
+const MOST_OCCLUDERS: usize = 5_000;
 /// Patches of a piece up to which the room between it and an element is a shaft for each.
 const FEW_PATCHES: usize = 8;
-/// How often a triangle of a piece is halved both ways for the grid that rays go to.
-const HALVINGS: u32 = 3;
 /// Points without which no plane through the scene has anything on both of its sides, in radii.
 const FAR_RADII: f64 = 10.0;
 /// Points that are looked at one by one, behind what may come between any of them and a piece.
@@ -76,8 +74,6 @@ enum Sight {
     Open,
     /// These bodies may come between.
     Behind(Vec<u32>),
-    /// Something may come between that rays find.
-    Rays,
 }
 
 /// The lamps of a scene as its elements see them.
@@ -85,8 +81,7 @@ enum Sight {
 pub struct Lamps<'a> {
     occluders: &'a Occluders,
     elements: Vec<&'a Patch>,
-    /// None where there are very many occluders.
-    bodies: Option<Bodies>,
+    bodies: Bodies,
     balls: Vec<(Vec3, f64)>,
     pieces: Vec<Piece>,
     count: usize,
@@ -104,24 +99,25 @@ impl<'a> Lamps<'a> {
         elements: Vec<&'a Patch>,
         occluders: &'a Occluders,
     ) -> Result<Option<Self>, VisibilityError> {
-        let exact = occluders.len() <= MOST_EXACT_OCCLUDERS;
+        if occluders.len() > MOST_OCCLUDERS {
+            return Ok(None);
+        }
         let mut pieces = Vec::new();
         for (lamp, patches) in lamps.iter().enumerate() {
             // Thousands of small lamps are not worth being put together.
-            if patches.len() > MOST_EXACT_OCCLUDERS {
+            if patches.len() > MOST_OCCLUDERS {
                 return Ok(None);
             }
-            pieces.extend(put_together(lamp, patches, exact)?);
+            pieces.extend(put_together(lamp, patches)?);
             if pieces.len() > MOST_PIECES {
                 return Ok(None);
             }
         }
-        let bodies = exact.then(|| Bodies::new(occluders, &elements, &[]));
-        let list = bodies.as_ref().map_or(&[][..], Bodies::as_slice);
-        if pieces.len() * list.len() > MOST_PAIRS {
+        let bodies = Bodies::new(occluders, &elements, &[]);
+        if pieces.len() * bodies.as_slice().len() > MOST_PAIRS {
             return Ok(None);
         }
-        let balls = list.iter().map(|body| ball(body.corners())).collect();
+        let balls = bodies.as_slice().iter().map(|body| ball(body.corners())).collect();
         let sights = elements.iter().map(|_| OnceLock::new()).collect();
         Ok(Some(Self { occluders, elements, bodies, balls, pieces, count: lamps.len(), sights }))
     }
@@ -175,20 +171,12 @@ impl<'a> Lamps<'a> {
         if unlit || piece.corners.iter().all(below) {
             return Sight::Away;
         }
-        let Some(bodies) = &self.bodies else {
-            let mut found = Vec::new();
-            let open = piece
-                .patches
-                .iter()
-                .all(|patch| self.occluders.shaft_up_to(element, patch, 0, &mut found) && found.is_empty());
-            return if open { Sight::Open } else { Sight::Rays };
-        };
         let shafts: Option<Vec<_>> = (piece.patches.len() <= FEW_PATCHES).then(|| {
             piece.patches.iter().filter_map(|patch| self.occluders.shaft_between(element, patch)).collect()
         });
         let own = ball(element.corners());
         let between = |&k: &u32| {
-            let body = &bodies.as_slice()[k as usize];
+            let body = &self.bodies.as_slice()[k as usize];
             near(own, piece.ball, self.balls[k as usize])
                 && !body.corners().iter().all(below)
                 && !piece.is_behind(body, tolerance)
@@ -197,7 +185,7 @@ impl<'a> Lamps<'a> {
                     .as_ref()
                     .is_none_or(|shafts| shafts.iter().any(|shaft| self.occluders.reaches(body, shaft)))
         };
-        let found: Vec<u32> = (0..bodies.as_slice().len() as u32).filter(between).collect();
+        let found: Vec<u32> = (0..self.bodies.as_slice().len() as u32).filter(between).collect();
         if found.is_empty() { Sight::Open } else { Sight::Behind(found) }
     }
 }
@@ -269,7 +257,7 @@ fn silhouette(body: &Body, x: Vec3, tolerance: f64, out: &mut Vec<Vec3>) {
 
 /// Convex pieces of the patches of a lamp: merged where that keeps their area and the sides that
 /// they are lit on, else as they are.
-fn put_together(lamp: usize, patches: &[&Patch], exact: bool) -> Result<Vec<Piece>, VisibilityError> {
+fn put_together(lamp: usize, patches: &[&Patch]) -> Result<Vec<Piece>, VisibilityError> {
     let owned: Vec<Patch> = patches.iter().map(|patch| **patch).collect();
     let corners: Vec<Vec3> = owned.iter().flat_map(|patch| patch.corners().iter().copied()).collect();
     let (centre, radius) = ball(&corners);
@@ -283,7 +271,7 @@ fn put_together(lamp: usize, patches: &[&Patch], exact: bool) -> Result<Vec<Piec
     let bodies = Bodies::new(&occluders, &[], &far);
     let tolerance = occluders.tolerance();
     let merged: Option<Vec<Piece>> =
-        bodies.as_slice().iter().map(|body| piece(lamp, body, &owned, tolerance, exact)).collect();
+        bodies.as_slice().iter().map(|body| piece(lamp, body, &owned, tolerance)).collect();
     let whole = |pieces: &Vec<Piece>| {
         let count: usize = pieces.iter().map(|piece| piece.patches.len()).sum();
         count == owned.len()
@@ -297,7 +285,7 @@ fn put_together(lamp: usize, patches: &[&Patch], exact: bool) -> Result<Vec<Piec
 }
 
 /// A body as a piece, where the patches on it make up all of its surface and are lit outside.
-fn piece(lamp: usize, body: &Body, patches: &[Patch], tolerance: f64, exact: bool) -> Option<Piece> {
+fn piece(lamp: usize, body: &Body, patches: &[Patch], tolerance: f64) -> Option<Piece> {
     let on = |patch: &&Patch, normal: Vec3, offset: f64| {
         patch.normal().dot(normal) > 1.0 - AREA_TOLERANCE
             && patch.corners().iter().all(|x| (normal.dot(*x) - offset).abs() <= tolerance)
@@ -313,7 +301,7 @@ fn piece(lamp: usize, body: &Body, patches: &[Patch], tolerance: f64, exact: boo
         let closed = (covered - surface).abs() <= AREA_TOLERANCE * surface;
         let corners = body.corners().to_vec();
         let shape = Shape::Solid(body.clone());
-        return (closed && exact).then(|| Piece { lamp, shape, ball: ball(&corners), corners, patches: own });
+        return closed.then(|| Piece { lamp, shape, ball: ball(&corners), corners, patches: own });
     }
     let normal = body.faces()[0].normal;
     let corners = body.corners();
@@ -526,13 +514,6 @@ impl Lighter<'_> {
                     self.between.extend_from_slice(found);
                     self.part(group, (0..points.len(), 0..found.len()), factors);
                 }
-                Sight::Rays => {
-                    for (k, &x) in points.iter().enumerate() {
-                        if self.look(piece, x, patch.normal()) {
-                            factors[k * lamps.count + piece.lamp] += self.counted(x, patch.normal());
-                        }
-                    }
-                }
             }
         }
     }
@@ -545,7 +526,7 @@ impl Lighter<'_> {
             return self.each(group, (own, among), factors);
         }
         let region = Region::new(group, &self.order[own.clone()], self.lamps.occluders.tolerance());
-        let bodies = self.lamps.bodies.as_ref().map_or(&[][..], Bodies::as_slice);
+        let bodies = self.lamps.bodies.as_slice();
         let start = self.between.len();
         for k in among {
             let number = self.between[k];
@@ -653,7 +634,7 @@ impl Lighter<'_> {
         if !self.look(piece, x, normal) {
             return Covers::All;
         }
-        let bodies = self.lamps.bodies.as_ref().map_or(&[][..], Bodies::as_slice);
+        let bodies = self.lamps.bodies.as_slice();
         let between = self.between[between].iter().map(|&k| &bodies[k as usize]);
         self.shadows.cast_on(&self.above, (x, normal), between, self.lamps.occluders.tolerance());
         self.list.clear();
@@ -674,28 +655,5 @@ impl Lighter<'_> {
             Covers::Nothing => point_to_polygon(normal, self.above.iter().copied()).max(0.0),
             Covers::Part => self.shadows.factor(normal, &self.above, &self.list, flat),
         }
-    }
-
-    /// The factor of small triangles of which the middle is seen.
-    fn counted(&mut self, x: Vec3, normal: Vec3) -> f64 {
-        let (cells, polygon) = (1_u32 << HALVINGS, &self.above);
-        let mut sum = 0.0;
-        for k in 2..polygon.len() {
-            let [origin, u, v] = [polygon[0], polygon[k - 1] - polygon[0], polygon[k] - polygon[0]];
-            let at = |i: u32, j: u32| origin + (u * f64::from(i) + v * f64::from(j)) / f64::from(cells);
-            for i in 0..cells {
-                for j in 0..cells - i {
-                    let lower = [at(i, j), at(i + 1, j), at(i, j + 1)];
-                    let upper = [at(i + 1, j + 1), at(i, j + 1), at(i + 1, j)];
-                    for corners in [lower, upper].iter().take(if i + j + 1 < cells { 2 } else { 1 }) {
-                        let middle = corners.iter().sum::<Vec3>() / 3.0;
-                        if self.lamps.occluders.unoccluded(x, x + middle) {
-                            sum += point_to_polygon(normal, corners.iter().copied());
-                        }
-                    }
-                }
-            }
-        }
-        sum.max(0.0)
     }
 }

@@ -291,6 +291,15 @@ impl LampTree {
         Some((lamp.patch, lamp.surface.sample(numbers), density))
     }
 
+    /// The patches that may light the receiver of a cut.
+    pub fn patches<'a>(&'a self, Cut(parts): Cut<'a>) -> impl Iterator<Item = usize> + 'a {
+        let of_part = move |part: &'a Part| {
+            let node = &self.nodes[part.node as usize];
+            self.lamps[node.first..node.first + node.count].iter().map(|lamp| lamp.patch)
+        };
+        parts.iter().flat_map(of_part)
+    }
+
     /// The density with which a cut finds points of a patch, 1/m².
     #[must_use]
     pub fn pdf(&self, Cut(parts): Cut, patch: usize) -> f64 {

@@ -57,7 +57,7 @@ impl OutputFile for Exr {
         Some(file(
             self.name(),
             "solve --also exr",
-            "linear colours of the picture, radiance in W/(m² sr) before exposure",
+            "linear colours of the picture before exposure: radiosity as linear sRGB, W/m²",
             &[],
         ))
     }

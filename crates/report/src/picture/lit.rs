@@ -19,6 +19,7 @@ use rayon::prelude::*;
 use fredholm_mesh::Vec3;
 
 use super::gathered::{Candidate, Gathered, Gathering, Sent};
+use super::smoothed::smoothed;
 use super::{BACKGROUND, Picture};
 use crate::colour::{Colouring, Rgb, sum};
 use crate::shading::Shading;
@@ -59,16 +60,45 @@ const PAINTED: [f64; 2] = [0.6, 1.0];
 /// No leaf.
 const NO_LEAF: u32 = u32::MAX;
 
-/// Tells the factors from points (m) of a leaf to what they see of each lamp, points × lamps.
-pub type Lighter<'a> = Box<dyn FnMut(usize, &[Vec3], &mut [f64]) + 'a>;
+/// Factors from points to what they see of each lamp, points × lamps.
+#[derive(Clone, Debug, Default)]
+pub struct LampFactors {
+    /// The factors.
+    pub values: Vec<f64>,
+    /// Standard errors of them, which are independent from point to point; 0 where they are exact.
+    pub errors: Vec<f64>,
+}
+
+impl LampFactors {
+    /// As many factors of 0.
+    fn reset(&mut self, count: usize) {
+        for list in [&mut self.values, &mut self.errors] {
+            list.clear();
+            list.resize(count, 0.0);
+        }
+    }
+}
+
+/// Tells the factors of points (m) of a leaf, which are 0 before.
+pub type Lighter<'a> = Box<dyn FnMut(usize, &[Vec3], &mut LampFactors) + 'a>;
+
+/// What a pixel is looked at through.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Points {
+    /// Its middle.
+    One,
+    /// Several points, of which the mean is taken.
+    Several,
+}
 
 /// Looks at the lamps of a scene.
 pub trait LampLight: Sync {
     /// Number of lamps.
     fn lamps(&self) -> usize;
 
-    /// Looks for one thread.
-    fn lighter(&self) -> Lighter<'_>;
+    /// Looks for one thread; at pixels of one point each, or at pixels of several points, where less
+    /// exact factors are enough.
+    fn lighter(&self, points: Points) -> Lighter<'_>;
 
     /// The picture has come to `share`, 0 to 1, of its way.
     fn advance(&self, _share: f64) {}
@@ -87,7 +117,7 @@ impl LampLight for Unlit {
         0
     }
 
-    fn lighter(&self) -> Lighter<'_> {
+    fn lighter(&self, _points: Points) -> Lighter<'_> {
         Box::new(|_, _, _| {})
     }
 }
@@ -127,11 +157,20 @@ pub struct LitPicture {
     pub exposure: f64,
 }
 
-/// A leaf and its linear colour as seen through the middle of a pixel.
+/// A linear colour, and the standard error of its luminance, W/m².
+#[derive(Clone, Copy, Debug, Default)]
+struct Light {
+    colour: Rgb,
+    error: f64,
+}
+
+/// A leaf and its linear colour as seen through the middle of a pixel, with the standard error of
+/// its luminance where that is known to be independent of other pixels.
 #[derive(Clone, Copy)]
 pub(super) struct Middle {
-    leaf: u32,
+    pub(super) leaf: u32,
     pub(super) colour: [f32; 3],
+    pub(super) error: f32,
 }
 
 impl Middle {
@@ -167,24 +206,22 @@ struct Brush<'v> {
     /// Numbers of the samples by their leaves.
     order: Vec<(u32, u32)>,
     points: Vec<Vec3>,
-    factors: Vec<f64>,
+    factors: LampFactors,
 }
 
 impl Brush<'_> {
     /// Linear colours of samples, W/m²; 0 where nothing is seen.
     fn colours(&mut self, samples: &[Seen]) -> Vec<Rgb> {
-        let mut colours = self.of_lamps(samples);
-        for (colour, sample) in colours.iter_mut().zip(samples) {
-            if let Some((leaf, point)) = *sample {
-                *colour = sum(*colour, self.view.rest(leaf, point).0);
-            }
-        }
-        colours
+        let lights = self.of_lamps(samples);
+        let add = |(light, sample): (Light, &Seen)| {
+            sample.map_or(light.colour, |(leaf, point)| sum(light.colour, self.view.rest(leaf, point).0))
+        };
+        lights.into_iter().zip(samples).map(add).collect()
     }
 
     /// The part of the lamps in them. The samples of one leaf are looked at together.
-    fn of_lamps(&mut self, samples: &[Seen]) -> Vec<Rgb> {
-        let mut colours = vec![[0.0; 3]; samples.len()];
+    fn of_lamps(&mut self, samples: &[Seen]) -> Vec<Light> {
+        let mut lights = vec![Light::default(); samples.len()];
         let LitView { field, lit, sent, .. } = self.view;
         let lamps = lit.light.lamps();
         self.order.clear();
@@ -195,17 +232,21 @@ impl Brush<'_> {
             let leaf = group[0].0 as usize;
             self.points.clear();
             self.points.extend(group.iter().filter_map(|(_, k)| samples[*k as usize].map(|(_, x)| x)));
-            self.factors.resize(lamps * self.points.len(), 0.0);
+            self.factors.reset(lamps * self.points.len());
             (self.look)(leaf, &self.points, &mut self.factors);
             let surface = field.mesh().surface_of(leaf);
             let sent = &sent[surface * lamps..(surface + 1) * lamps];
             for (i, (_, k)) in group.iter().enumerate() {
-                let factors = &self.factors[i * lamps..(i + 1) * lamps];
+                let of_lamps = i * lamps..(i + 1) * lamps;
+                let factors = &self.factors.values[of_lamps.clone()];
                 let add = |sum: Rgb, (f, c): (&f64, &Rgb)| [0, 1, 2].map(|i| sum[i] + f * c[i]);
-                colours[*k as usize] = factors.iter().zip(sent).fold([0.0; 3], add);
+                let colour = factors.iter().zip(sent).fold([0.0; 3], add);
+                let error = |(e, c): (&f64, &Rgb)| (e * luminance(*c)).powi(2);
+                let square: f64 = self.factors.errors[of_lamps].iter().zip(sent).map(error).sum();
+                lights[*k as usize] = Light { colour, error: square.sqrt() };
             }
         }
-        colours
+        lights
     }
 }
 
@@ -287,12 +328,12 @@ impl<'a> LitView<'a> {
 
     /// Linear colours of points, W/m², each looked at by itself; 0 where nothing is seen.
     pub fn colours(&self, samples: &[Seen]) -> Vec<Rgb> {
-        self.brush().colours(samples)
+        self.brush(Points::One).colours(samples)
     }
 
-    fn brush(&self) -> Brush<'_> {
-        let look = self.lit.light.lighter();
-        Brush { view: self, look, order: Vec::new(), points: Vec::new(), factors: Vec::new() }
+    fn brush(&self, points: Points) -> Brush<'_> {
+        let look = self.lit.light.lighter(points);
+        Brush { view: self, look, order: Vec::new(), points: Vec::new(), factors: LampFactors::default() }
     }
 
     /// The picture, with its linear colours where these are wanted; none where it was not wanted
@@ -335,7 +376,15 @@ impl<'a> LitView<'a> {
 
     /// The same with the light of the lamps alone.
     fn lit_by_lamps(&self) -> Option<Vec<Middle>> {
-        self.in_tiles(LOOKED, |tile| self.middles(tile))
+        let middles = self.in_tiles(LOOKED, |tile| self.middles(tile))?;
+        if middles.iter().all(|middle| middle.error == 0.0) {
+            return Some(middles);
+        }
+        let width = self.eye.camera().width as usize;
+        let smooth = |tile: &Tile| {
+            Some(smoothed((self.eye, self.field.mesh()), (&middles, width), (&tile.xs, &tile.ys)))
+        };
+        self.in_tiles([LOOKED[1]; 2], smooth)
     }
 
     /// Linear colour at a point of a leaf without the light of the lamps, W/m², with its standard
@@ -433,7 +482,7 @@ impl<'a> LitView<'a> {
         }
         let look = |(x, y)| self.eye.hit(x as f64 + 0.5, y as f64 + 0.5);
         let samples: Vec<Seen> = tile.pixels().map(look).collect();
-        let mut brush = self.brush();
+        let mut brush = self.brush(Points::One);
         // Every other pixel of every other row first, then those that they do not tell the colour of.
         let w = tile.xs.len();
         let first = |k: usize| (k % w).is_multiple_of(2) && (k / w).is_multiple_of(2);
@@ -441,23 +490,24 @@ impl<'a> LitView<'a> {
             samples.iter().enumerate().map(|(k, seen)| seen.filter(|_| wanted(k))).collect()
         };
         let known = brush.of_lamps(&some(&first));
-        let between: Vec<Option<Rgb>> = (0..samples.len())
+        let between: Vec<Option<Light>> = (0..samples.len())
             .map(|k| if first(k) { Some(known[k]) } else { between(&samples, &known, (w, k)) })
             .collect();
         let others = brush.of_lamps(&some(&|k| between[k].is_none()));
-        let colours = between.into_iter().zip(others).map(|(between, other)| between.unwrap_or(other));
-        let middle = |(seen, colour): (&Seen, Rgb)| Middle {
+        let lights = between.into_iter().zip(others).map(|(between, other)| between.unwrap_or(other));
+        let middle = |(seen, Light { colour, error }): (&Seen, Light)| Middle {
             leaf: seen.map_or(NO_LEAF, |(leaf, _)| leaf as u32),
             colour: colour.map(|c| c as f32),
+            error: error as f32,
         };
-        Some(samples.iter().zip(colours).map(middle).collect())
+        Some(samples.iter().zip(lights).map(middle).collect())
     }
 
     /// The pixels of a tile; none where the picture is not wanted any more.
     fn painted(&self, tile: &Tile, middles: &[Middle], display: &Display<'_>) -> Option<Vec<Painted>> {
         let Camera { width, height, .. } = *self.eye.camera();
         let (w, h) = (width as usize, height as usize);
-        let mut brush = self.brush();
+        let mut brush = self.brush(Points::Several);
         let mut painted = Vec::with_capacity(tile.xs.len() * tile.ys.len());
         let mut borders = Vec::new();
         for (x, y) in tile.pixels() {
@@ -477,7 +527,7 @@ impl<'a> LitView<'a> {
             let around: Vec<Option<Rgb>> = (0..samples.len())
                 .map(|k| {
                     if lit[k] == k % POINTS_OF_A_PIXEL {
-                        around(middles, (w, h), borders[k / POINTS_OF_A_PIXEL].1, samples[k])
+                        self.around(middles, (w, h), borders[k / POINTS_OF_A_PIXEL].1, samples[k])
                     } else {
                         None
                     }
@@ -553,12 +603,39 @@ impl<'a> LitView<'a> {
         neighbours((w, h), (x, y)).any(|at| {
             let other = &middles[at];
             // A change on one plane is a shadow's, which is seen less than an edge.
-            let step = if self.is_alike(own.leaf, other.leaf) { BORDER_STEP } else { EDGE_STEP };
+            let step = match self.is_alike(own.leaf, other.leaf) {
+                // Nor is it where light is smooth up to its noise.
+                true if own.error > 0.0 && other.error > 0.0 => return false,
+                true => BORDER_STEP,
+                false => EDGE_STEP,
+            };
             let beside = shown(other, display);
             (0..3).any(|i| {
                 (colour[i] - beside[i]).abs() > step * colour[i].max(beside[i]).max(UNSEEN_DIFFERENCE / step)
             })
         })
+    }
+
+    /// The colour of a sample in pixel `at` from the pixels around it that show the same leaf, or
+    /// the same plane where their light is smooth up to its noise; none where there are none, or
+    /// they differ.
+    fn around(
+        &self,
+        middles: &[Middle],
+        size: (usize, usize),
+        at: (usize, usize),
+        sample: Seen,
+    ) -> Option<Rgb> {
+        let leaf = sample?.0 as u32;
+        let near = || neighbours(size, at).map(|at| &middles[at]);
+        let colours = |same: &dyn Fn(&&Middle) -> bool| {
+            near().filter(same).map(|middle| middle.colour.map(f64::from)).collect::<Vec<Rgb>>()
+        };
+        if near().any(|middle| middle.error > 0.0) {
+            mean_colour(colours(&|middle| middle.error > 0.0 && self.is_alike(middle.leaf, leaf)).into_iter())
+        } else {
+            alike(colours(&|middle| middle.leaf == leaf).into_iter())
+        }
     }
 
     /// Whether two leaves lie on one plane of one surface.
@@ -597,7 +674,7 @@ fn shown(middle: &Middle, display: &Display<'_>) -> Rgb {
 
 /// The colour of pixel `k` of rows of `width` from its neighbours in the even rows and columns; none
 /// where one is missing, shows another leaf, or differs.
-fn between(samples: &[Seen], known: &[Rgb], (width, k): (usize, usize)) -> Option<Rgb> {
+fn between(samples: &[Seen], known: &[Light], (width, k): (usize, usize)) -> Option<Light> {
     let leaf = |k: usize| samples[k].map(|(leaf, _)| leaf);
     let (x, y) = (k % width, k / width);
     let ends = |i: usize| if i.is_multiple_of(2) { [i, i] } else { [i - 1, i + 1] };
@@ -609,7 +686,8 @@ fn between(samples: &[Seen], known: &[Rgb], (width, k): (usize, usize)) -> Optio
     if around.iter().any(|&other| leaf(other) != leaf(k)) {
         return None;
     }
-    alike(around.into_iter().map(|k| known[k]))
+    let colour = alike(around.into_iter().map(|k| known[k].colour))?;
+    Some(Light { colour, error: known[around[0]].error })
 }
 
 /// The places of a pixel and of those around it, in rows of pixels.
@@ -633,12 +711,11 @@ fn alike(colours: impl Iterator<Item = Rgb>) -> Option<Rgb> {
     (count > 0.0 && same).then(|| sum.map(|sum| sum / count))
 }
 
-/// The colour of a sample in pixel `at` from the pixels around it that show the same leaf; none
-/// where there are none, or they differ.
-fn around(middles: &[Middle], size: (usize, usize), at: (usize, usize), sample: Seen) -> Option<Rgb> {
-    let (leaf, _) = sample?;
-    let same = neighbours(size, at).map(|at| &middles[at]).filter(|middle| middle.leaf == leaf as u32);
-    alike(same.map(|middle| middle.colour.map(f64::from)))
+/// The mean of colours, at least of one.
+fn mean_colour(colours: impl Iterator<Item = Rgb>) -> Option<Rgb> {
+    let add = |(count, all): (f64, Rgb), colour| (count + 1.0, sum(all, colour));
+    let (count, all) = colours.fold((0.0, [0.0; 3]), add);
+    (count > 0.0).then(|| all.map(|c| c / count))
 }
 
 /// For each sample of a pixel the one whose light it has, which shows the same leaf.
@@ -706,16 +783,16 @@ mod tests {
     fn a_pixel_between_others_is_their_mean_where_they_are_alike() {
         // Rows of four pixels, the last of which shows another leaf.
         let samples: Vec<Seen> = (0..12).map(|k| Some((usize::from(k % 4 == 3), Vec3::ZERO))).collect();
-        let mut known = vec![[0.0; 3]; 12];
+        let mut known = vec![Light::default(); 12];
         for (k, colour) in [(0, 1.0), (2, 1.01), (8, 1.01), (10, 1.02)] {
-            known[k] = [colour; 3];
+            known[k].colour = [colour; 3];
         }
         for (k, mean) in [(1, 1.005), (4, 1.005), (5, 1.01), (6, 1.015), (9, 1.015)] {
             let found = between(&samples, &known, (4, k)).unwrap();
-            assert!(found.iter().all(|c| (c - mean).abs() < 1e-12), "{k}: {found:?}");
+            assert!(found.colour.iter().all(|c| (c - mean).abs() < 1e-12), "{k}: {found:?}");
         }
         assert!([3, 7, 11].iter().all(|&k| between(&samples, &known, (4, k)).is_none()));
-        known[10][2] = 1.1;
+        known[10].colour[2] = 1.1;
         assert!(between(&samples, &known, (4, 5)).is_none() && between(&samples, &known, (4, 1)).is_some());
     }
 }

@@ -11,6 +11,7 @@ mod gathered;
 mod links;
 mod lit;
 mod sides;
+mod smoothed;
 
 use std::io::{self, Cursor, Write};
 
@@ -27,7 +28,7 @@ pub use false_colour::{FalseColourPicture, PictureNumber, render_false_colour};
 pub use gathered::{DIRECTION_GROUPS, Gathering};
 use links::LinkOverlay;
 pub use links::{Link, Linked};
-pub use lit::{LampLight, Lighter, Lit, LitPicture, Seen};
+pub use lit::{LampFactors, LampLight, Lighter, Lit, LitPicture, Points, Seen};
 use lit::{LitView, Unlit, neighbours};
 pub use sides::{Back, Side, render_sides};
 

@@ -65,9 +65,6 @@ const MOST_OF_FIRST_STEP: f64 = 8.0;
 const CHECKED: usize = 4;
 /// Share of the differences within elements whose elements are divided.
 const DIVIDED: f64 = 0.9;
-/// Occluders up to which pictures show the light of lamps at every pixel: among more it would take
-/// many times as long as the solution.
-const MOST_OCCLUDERS_IN_PICTURES: usize = 5000;
 /// Steps at most, so that what cannot be reached ends.
 const MOST_STEPS: u32 = 24;
 /// Rays that a scene needs: [`RAYS_OF_AN_ELEMENT`] for each, and [`RAYS_OF_A_FACE`] (1 %/ε)^a for
@@ -335,7 +332,7 @@ fn solution(problem: &Problem, found: Found, accuracy: f64) -> Result<Solution, 
     Ok(Solution {
         entries: rays,
         mesh_error: Some(estimate.error),
-        direct: (problem.occluders.len() <= MOST_OCCLUDERS_IN_PICTURES).then_some(estimate.direct),
+        direct: Some(estimate.direct),
         rays: Some(Rays { accuracy, cast: rays }),
         ..Solution::unassessed(means, "rows from rays", report, exposed)
     })
