@@ -93,7 +93,7 @@ def main():
     subprocess.run([*line, "-o", own, *OPTIONS], check=True)
     record = json.loads((own / "run.json").read_text())
     stages = ", ".join(f"{timing['stage']} {timing['seconds']:.2f} s" for timing in record["timings"])
-    print(stages)
+    print(stages, record["picture"][:150])
     found = list(pictures(own))
     h, w = reference.shape[:2]
     shown = np.maximum(*(half @ LUMINANCE for half in halves))

@@ -115,7 +115,7 @@ pub use outputs::{
 };
 pub use picture::{
     Back, DIRECTION_GROUPS, FalseColourPicture, Gathering, LampFactors, LampLight, Layer, Lighter, Link,
-    Linked, Lit, LitPicture, Picture, PictureNumber, Points, Seen, Side, render, render_false_colour,
+    Linked, Lit, LitPicture, Picture, PictureNumber, Points, Seen, Side, Where, render, render_false_colour,
     render_layers, render_lit, render_sides,
 };
 pub use points_csv::{PointTable, write_points_csv};

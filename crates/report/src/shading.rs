@@ -70,6 +70,23 @@ impl<'a> Shading<'a> {
         }
     }
 
+    /// By how much the leaves around each bend: those that share a corner with it, and itself. A leaf
+    /// bends by the difference of its value from the mean over its corners, of which each has the
+    /// mean of the leaves around it.
+    pub(crate) fn bends(&self, values: &[f64]) -> Vec<f64> {
+        let mesh = self.field.mesh();
+        let corners = vertex_values(mesh, &self.welded, (values, 1), |leaf| self.field.exposed(leaf));
+        let mut around = vec![0.0_f64; corners.len()];
+        for (own, value) in self.welded.patches().zip(values) {
+            let mean = own.iter().map(|&vertex| corners[vertex]).sum::<f64>() / own.len() as f64;
+            for &vertex in own {
+                around[vertex] = around[vertex].max((value - mean).abs());
+            }
+        }
+        let most = |own: &[usize]| own.iter().map(|&vertex| around[vertex]).fold(0.0, f64::max);
+        self.welded.patches().map(most).collect()
+    }
+
     /// The three values at a point of a leaf: linear sRGB, W/m².
     pub(crate) fn colour(&self, leaf: usize, point: Vec3) -> Rgb {
         let mut colour = [0.0; 3];

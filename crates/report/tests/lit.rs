@@ -6,7 +6,7 @@
 use fredholm_mesh::{Mesh, MeshBuilder, Patch, Vec3};
 use fredholm_report::{
     Camera, DIRECTION_GROUPS, Exposure, Field, Gathering, LampLight, Lighter, Lit, LitPicture, Points, Seen,
-    render_lit,
+    Where, render_lit,
 };
 use rayon::ThreadPoolBuilder;
 use std::ops::ControlFlow;
@@ -155,7 +155,8 @@ fn a_picture_that_is_not_wanted_any_more_is_none_or_has_rough_borders() {
     for (asks, whole) in [(0, None), (3, None), (6, Some(false)), (100, Some(true))] {
         let light = Impatient(AtomicUsize::new(asks));
         let lit = Lit { light: &light, exitance: &[], reflectance: &values, direct: None, gathering: None };
-        let drawn = render_lit(&field, &camera(), Exposure::Fixed(0.2), &lit, false).unwrap();
+        let camera = Camera { width: 128, height: 128, ..camera() };
+        let drawn = render_lit(&field, &camera, Exposure::Fixed(0.2), &lit, false).unwrap();
         assert_eq!(drawn.map(|drawn| drawn.whole), whole, "{asks}");
     }
 }
@@ -213,6 +214,11 @@ fn factor(x: f64, y: f64) -> f64 {
 }
 
 fn gathered(light: &dyn LampLight, side: u32) -> LitPicture {
+    gathered_where(Where::Everywhere, light, side, 0.4)
+}
+
+/// The same where so much is sent on by a corner of the floor.
+fn gathered_where(place: Where, light: &dyn LampLight, side: u32, corner_sends: f64) -> LitPicture {
     let line = |i: usize| 0.5 * i as f64 - 1.0;
     let corner = |i: usize, j: usize| Vec3::new(line(i), line(j), 0.0);
     let mut builder = MeshBuilder::default();
@@ -226,11 +232,31 @@ fn gathered(light: &dyn LampLight, side: u32) -> LitPicture {
     builder.face(&[Patch::quad(above).unwrap().unwrap()]).unwrap();
     let (mesh, bands) = (builder.build(), vec!["grey".to_owned()]);
     let mut radiosity = vec![0.4; 17];
-    radiosity[16] = 6.0;
+    (radiosity[0], radiosity[16]) = (corner_sends, 6.0);
     let field = Field::new(&mesh, &bands, &radiosity, &radiosity).unwrap();
-    let lit = Lit { light, exitance: &[], reflectance: &[0.5; 17], direct: None, gathering: Some(&Above) };
+    let lit =
+        Lit { light, exitance: &[], reflectance: &[0.5; 17], direct: None, gathering: Some((&Above, place)) };
     let camera = Camera { width: side, height: side, ..camera() };
     render_lit(&field, &camera, Exposure::Fixed(0.2), &lit, true).unwrap().unwrap()
+}
+
+#[test]
+fn light_is_gathered_where_elements_are_too_large_for_it() {
+    let even = gathered_where(Where::Uneven, &Dark, 64, 0.4);
+    assert_eq!(even.places, 0);
+    assert!(even.standard_error.is_empty(), "no error is known of what is interpolated");
+    let at = |drawn: &LitPicture, x: usize, y: usize| f64::from(drawn.linear[64 * y + x][0]);
+    assert!((17..47).all(|k| (at(&even, k, 30) - 0.4).abs() < 1e-6));
+    // The corner at −1, −1 is to the left and below.
+    let step = gathered_where(Where::Uneven, &Dark, 64, 0.1);
+    assert!(step.places > 10, "{}", step.places);
+    let exact = |x: usize, y: usize| {
+        let place = |at: f64| (at + 0.5 - 32.0) / 16.0;
+        3.0 * factor(place(x as f64), -place(y as f64))
+    };
+    let (near, far) = (at(&step, 20, 43), at(&step, 44, 20));
+    assert!((near / exact(20, 43) - 1.0).abs() < 0.15, "{near} {}", exact(20, 43));
+    assert!((far - 0.4).abs() < 1e-6, "{far}");
 }
 
 #[test]
@@ -271,10 +297,10 @@ fn gathering_that_is_stopped_leaves_a_whole_picture_of_what_there_is() {
     // Four tiles are asked for, then every place.
     for asks in [5, 12] {
         let light = Impatient(AtomicUsize::new(asks));
-        let drawn = gathered(&light, 64);
+        let drawn = gathered(&light, 128);
         assert!(!drawn.whole && drawn.places == asks - 4, "{}", drawn.places);
-        let at = |x: usize, y: usize| f64::from(drawn.linear[64 * y + x][0]);
-        assert!((17..47).all(|k| at(k, 30) > 0.3 && at(k, 30) < 2.0), "all is lit");
+        let at = |x: usize, y: usize| f64::from(drawn.linear[128 * y + x][0]);
+        assert!((34..94).all(|k| at(k, 60) > 0.3 && at(k, 60) < 4.0), "all is lit");
         let untold = drawn.standard_error.iter().filter(|error| error[0].is_nan()).count();
         assert!(untold > 0, "where light is interpolated no error is known");
     }

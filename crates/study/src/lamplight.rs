@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use fredholm_hierarchical::Lamps;
 use fredholm_linop::{MultiVector, Watch};
 use fredholm_mesh::Patch;
-use fredholm_report::{Gathering, LampLight, Lighter, Lit, Points};
+use fredholm_report::{Gathering, LampLight, Lighter, Lit, Points, Where};
 
 use crate::directions::Directions;
 use crate::error::{Error, ErrorKind};
@@ -28,27 +28,31 @@ pub(crate) struct Lamplight<'a> {
     /// Exitance of each lamp, lamps × bands, W/m².
     exitance: Vec<f64>,
     reflectance: Vec<f64>,
-    gathering: Option<Directions>,
+    gathering: Option<(Directions, Where)>,
     /// Whoever waits for the picture.
     watch: &'a dyn Watch,
 }
 
 impl<'a> Lamplight<'a> {
     /// The lamps of a scene, of which the irradiance of the elements has a part `direct`, W/m²,
-    /// where that is known. The rest is gathered where that is wanted.
+    /// where that is known. The rest is gathered where that is wanted: at all pixels, or only where
+    /// elements are too large to tell it, of lamps that are told apart and in scenes of few elements.
     pub(crate) fn new(
         problem: &'a Problem,
-        (direct, gathers): (Option<&'a MultiVector<f64>>, bool),
+        (direct, gathers): (Option<&'a MultiVector<f64>>, Option<Where>),
         watch: &'a dyn Watch,
     ) -> Result<Self, Error> {
         let (scene, mesh) = (&problem.scene, &problem.mesh);
         let reflectance = scene.reflectance(mesh);
-        let mut gathering = gathers.then(|| Directions::new(problem)).transpose()?;
-        let mut none = |reflectance| {
-            let gathering = gathering.take();
-            Self { lamps: None, exitance: Vec::new(), reflectance, gathering, watch }
+        let gathering = |place| -> Result<_, Error> { Ok(Some((Directions::new(problem)?, place))) };
+        let none = |reflectance| {
+            let gathering = match gathers {
+                Some(Where::Everywhere) => gathering(Where::Everywhere)?,
+                _ => None,
+            };
+            Ok(Self { lamps: None, exitance: Vec::new(), reflectance, gathering, watch })
         };
-        let Some(direct) = direct else { return Ok(none(reflectance)) };
+        let Some(direct) = direct else { return none(reflectance) };
         let bands = scene.bands().len();
         let (mut exitance, mut kinds): (Vec<f64>, Vec<Vec<&Patch>>) = (Vec::new(), Vec::new());
         // The faces, not what a solution has split them into: the fewer patches, the quicker.
@@ -60,7 +64,7 @@ impl<'a> Lamplight<'a> {
             }
             match exitance.chunks_exact(bands).position(|known| known == m) {
                 Some(kind) => kinds[kind].push(patch),
-                None if kinds.len() == MOST_KINDS => return Ok(none(reflectance)),
+                None if kinds.len() == MOST_KINDS => return none(reflectance),
                 None => {
                     exitance.extend(m);
                     kinds.push(vec![patch]);
@@ -71,7 +75,7 @@ impl<'a> Lamplight<'a> {
         let emitting = area(&mut kinds.iter().flatten().copied());
         let all = area(&mut mesh.patches());
         if kinds.is_empty() {
-            return Ok(none(reflectance));
+            return none(reflectance);
         }
         let elements = || mesh.patches().collect();
         let exact = if emitting > SKY_AREA_RATIO * (all - emitting) {
@@ -87,22 +91,30 @@ impl<'a> Lamplight<'a> {
             },
             Looks::Exact,
         );
+        let gathering = match gathers {
+            Some(Where::Uneven) if mesh.len() > MOST_GATHERED_ELEMENTS => None,
+            Some(place) => gathering(place)?,
+            None => None,
+        };
         Ok(Self { lamps: Some((looks, direct.as_slice())), exitance, reflectance, gathering, watch })
     }
 
     /// What the picture is drawn with.
     pub(crate) fn lit(&self) -> Lit<'_> {
         let Self { lamps, exitance, reflectance, gathering, .. } = self;
-        let gathering = gathering.as_ref().map(|directions| directions as &dyn Gathering);
+        let gathering = gathering.as_ref().map(|(directions, place)| (directions as &dyn Gathering, *place));
         let direct = lamps.as_ref().map(|(_, direct)| *direct);
         Lit { light: self, exitance, reflectance, direct, gathering }
     }
 
     /// Where the light of the picture comes from, of which some was gathered at so many places.
     pub(crate) fn words(&self, places: usize) -> String {
-        let rest = match places {
-            0 => "interpolated between elements".to_owned(),
-            _ => format!("gathered at {places} places"),
+        let rest = match self.gathering {
+            Some((_, Where::Everywhere)) => format!("gathered at {places} places"),
+            Some((_, Where::Uneven)) if places > 0 => format!(
+                "interpolated between elements, or gathered at {places} places where it changes within them"
+            ),
+            _ => "interpolated between elements".to_owned(),
         };
         match self.lamps {
             Some((Looks::Exact(_), _)) => format!(
@@ -119,6 +131,9 @@ impl<'a> Lamplight<'a> {
 /// Area of the lamps, over that of all else, from which they are a sky rather than lamps: their
 /// shadows have no borders to be seen, and much stands before each of them.
 const SKY_AREA_RATIO: f64 = 0.5;
+/// Elements up to which the rest of the light is gathered where they are too large for it; where
+/// there are more, they are small.
+pub(crate) const MOST_GATHERED_ELEMENTS: usize = 20_000;
 /// Exitances that differ, at most: scenes of more have no lamps that are few.
 const MOST_KINDS: usize = 128;
 
@@ -182,7 +197,7 @@ mod tests {
         let field = Field::new(mesh, bands, &values, &values).unwrap().with_exitance(&exitance).unwrap();
         let view = view_of(problem.scene.camera(), &field);
         let start = Instant::now();
-        let light = Lamplight::new(&problem, (Some(&direct), false), &Quiet).unwrap();
+        let light = Lamplight::new(&problem, (Some(&direct), None), &Quiet).unwrap();
         let made = start.elapsed().as_secs_f64();
         let drawn = render_lit(&field, &view.camera, view.exposure, &light.lit(), true).unwrap().unwrap();
         let all = start.elapsed().as_secs_f64();

@@ -8,6 +8,7 @@ use fredholm_linop::{PackedSymmetric, Storage};
 
 use crate::directions::BYTES_OF_A_MET_ELEMENT;
 use crate::error::Error;
+use crate::lamplight::MOST_GATHERED_ELEMENTS;
 use crate::memory::{Limit, Plan};
 use crate::options::Precision;
 use crate::options::{ProblemSettings, USUAL_DISCRETISATION};
@@ -228,7 +229,7 @@ pub(crate) fn results(elements: usize, bands: usize, pictures: Pictures) -> u128
     let drawn = n * BYTES_OF_A_DRAWN_ELEMENT + if lit { values * BYTES_OF_A_LIT_VALUE } else { 0 };
     let of_pixels =
         pictured(pixels, count).max(if lit { pixels.saturating_mul(BYTES_OF_A_LIT_PIXEL) } else { 0 });
-    let of_gathering = if gathered {
+    let of_gathering = if gathered || lit && elements <= MOST_GATHERED_ELEMENTS {
         pixels.saturating_mul(BYTES_OF_A_GATHERED_PIXEL)
             + n * BYTES_OF_A_MET_ELEMENT
             + values * BYTES_OF_A_SENT_VALUE

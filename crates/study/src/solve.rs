@@ -7,8 +7,8 @@ use fredholm_linop::{MultiVector, Quiet, StopReason, Watch};
 use fredholm_mesh::Mesh;
 use fredholm_report::{
     CHECKPOINT, Camera, Exposure, Extras, Field, LINKS_PICTURE, Layer, LitPicture, MESH_PICTURE, ReportError,
-    ResultFolder, RunRecord, RunReport, View, output_files, render_false_colour, render_layers, render_lit,
-    wanted_files, write_with,
+    ResultFolder, RunRecord, RunReport, View, Where, output_files, render_false_colour, render_layers,
+    render_lit, wanted_files, write_with,
 };
 use fredholm_scene::Scene;
 
@@ -175,7 +175,8 @@ impl Solved<'_> {
         let camera = Camera { width, height: (height.round() as u32).max(1), ..view.camera };
         let view = View { camera, ..view };
         // Nobody cancels it: there is all of it.
-        let light = Lamplight::new(&self.problem, (self.solution.direct.as_ref(), false), &Quiet)?;
+        let light =
+            Lamplight::new(&self.problem, (self.solution.direct.as_ref(), Some(Where::Uneven)), &Quiet)?;
         let drawn = picture((&field, &view, false), &light)?;
         let Some((LitPicture { picture, .. }, _)) = drawn else { return Err(Error::cancelled()) };
         let mut png = Vec::new();
@@ -484,8 +485,9 @@ fn write(
         LINKS_PICTURE => Some(Layer::Links(&linked)),
         _ => None,
     };
-    let gathers = options.final_gather && !cancelled;
-    let exact = gathers || options.also.contains(&FieldFile::Exr);
+    let gathers =
+        (!cancelled).then_some(if options.final_gather { Where::Everywhere } else { Where::Uneven });
+    let exact = gathers == Some(Where::Everywhere) || options.also.contains(&FieldFile::Exr);
     let lamplight = if options.no_pictures {
         None
     } else {

@@ -12,9 +12,9 @@
 
 use rayon::prelude::*;
 
-use fredholm_mesh::Vec3;
+use fredholm_mesh::{Mesh, Vec3};
 
-use super::lit::Seen;
+use super::lit::{LampFactors, LampLight, Lighter, Lit, Points, Seen};
 use crate::colour::{Rgb, sum};
 use crate::shading::Shading;
 use crate::tone::luminance;
@@ -39,8 +39,6 @@ const SINGULAR: f64 = 1e-4;
 /// Sum of the squares of the weights of the places from which on a plane is not trusted: the point
 /// lies outside of them.
 const MOST_SPREAD: f64 = 1.0;
-/// Standard error, over the colour of the pixel, that a pixel of a grid may have.
-const WANTED_ERROR: f64 = 0.005;
 /// Darker pixels may have the error of this share of the mean.
 const DARK_SHARE: f64 = 0.3;
 /// Normals of one surface are alike up to this cosine, and points of it lie in one plane up to this
@@ -60,18 +58,27 @@ pub trait Gathering: Sync {
     fn meet(&self, number: u32, leaf: usize, point: Vec3, met: &mut Vec<Seen>);
 }
 
+/// Distance of what a direction meets, over the root of the area of its leaf, up to which the light
+/// that the lamps send to the leaf is looked at where it is met: its mean is not enough there.
+const NEAR: f64 = 1.0;
+
 /// What surfaces send on, W/m².
 pub(super) struct Sent<'a> {
     /// What is interpolated between the corners of leaves, and what each has as a whole, leaves ×
     /// bands.
     smooth: Shading<'a>,
     constant: Vec<f64>,
+    /// The lamps that are looked at where leaves are near, with the exitance of each, lamps × bands,
+    /// and the reflectance of the leaves, leaves × bands.
+    lamps: Option<(&'a dyn LampLight, &'a [f64], &'a [f64])>,
 }
 
 impl<'a> Sent<'a> {
-    /// The radiosity; without its exitance, and with the part `direct` of its irradiance (leaves ×
-    /// bands) not interpolated, where that is told apart.
-    pub fn new(field: Field<'a>, reflectance: &[f64], direct: Option<&[f64]>, passes: usize) -> Self {
+    /// The radiosity; without its exitance, and with the part of its irradiance that is the lamps' not
+    /// interpolated, where that is told apart; nearby that part is looked at where it is exact.
+    pub fn new(field: Field<'a>, lit: &Lit<'a>, (passes, is_exact): (usize, bool)) -> Self {
+        let Lit { light, exitance, reflectance, direct, .. } = *lit;
+        let lamps = (is_exact && direct.is_some()).then_some((light, exitance, reflectance));
         let bands = field.bands().len();
         let mut smooth: Vec<f64> =
             (0..field.mesh().len()).flat_map(|leaf| field.exposed_radiosity(leaf)).collect();
@@ -88,15 +95,75 @@ impl<'a> Sent<'a> {
                 }
             }
         }
-        Self { smooth: Shading::of_values(field, passes, (bands, smooth)), constant }
+        Self { smooth: Shading::of_values(field, passes, (bands, smooth)), constant, lamps }
     }
 
-    fn add(&self, leaf: usize, point: Vec3, sum: &mut [f64]) {
-        self.smooth.add(leaf, point, sum);
+    /// What a leaf sends on of the light of lamps, as a whole.
+    fn add_whole(&self, leaf: usize, sum: &mut [f64]) {
         if !self.constant.is_empty() {
             let bands = sum.len();
             let values = &self.constant[leaf * bands..(leaf + 1) * bands];
             sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
+        }
+    }
+
+    fn looker(&self) -> Looker<'_> {
+        let look = self.lamps.map(|(light, ..)| light.lighter(Points::Several));
+        Looker { sent: self, look, near: Vec::new(), points: Vec::new(), factors: LampFactors::default() }
+    }
+}
+
+/// Looks at the lamps from what directions of one place meet nearby, for one thread.
+struct Looker<'s> {
+    sent: &'s Sent<'s>,
+    look: Option<Lighter<'s>>,
+    /// Leaf, group of directions, and point.
+    near: Vec<(u32, u32, Vec3)>,
+    points: Vec<Vec3>,
+    factors: LampFactors,
+}
+
+impl Looker<'_> {
+    /// Sums of what the groups of directions meet, groups × bands, W/m².
+    fn sums(&mut self, from: Vec3, met: &[Seen], (mesh, bands): (&Mesh, usize)) -> Vec<f64> {
+        let of_group = (met.len() / DIRECTION_GROUPS).max(1);
+        let mut sums = vec![0.0; DIRECTION_GROUPS * bands];
+        self.near.clear();
+        for (k, (leaf, at)) in met.iter().enumerate().filter_map(|(k, met)| met.map(|met| (k, met))) {
+            let group = (k / of_group).min(DIRECTION_GROUPS - 1);
+            let sum = &mut sums[group * bands..(group + 1) * bands];
+            self.sent.smooth.add(leaf, at, sum);
+            let reach = NEAR * NEAR * mesh.patch(leaf).area();
+            if self.look.is_some() && at.distance_squared(from) < reach {
+                self.near.push((leaf as u32, group as u32, at));
+            } else {
+                self.sent.add_whole(leaf, sum);
+            }
+        }
+        self.add_near(bands, &mut sums);
+        sums
+    }
+
+    fn add_near(&mut self, bands: usize, sums: &mut [f64]) {
+        let (Some(look), Some((light, exitance, reflectance))) = (&mut self.look, self.sent.lamps) else {
+            return;
+        };
+        let lamps = light.lamps();
+        // In the order of directions, those of one leaf together.
+        self.near.sort_by_key(|(leaf, ..)| *leaf);
+        for group in self.near.chunk_by(|a, b| a.0 == b.0) {
+            let leaf = group[0].0 as usize;
+            self.points.clear();
+            self.points.extend(group.iter().map(|(.., at)| *at));
+            self.factors.reset(lamps * group.len());
+            look(leaf, &self.points, &mut self.factors);
+            let rho = &reflectance[leaf * bands..(leaf + 1) * bands];
+            for ((_, group, _), factors) in group.iter().zip(self.factors.values.chunks_exact(lamps)) {
+                let sum = &mut sums[*group as usize * bands..(*group as usize + 1) * bands];
+                for (factor, m) in factors.iter().zip(exitance.chunks_exact(bands)) {
+                    sum.iter_mut().zip(rho.iter().zip(m)).for_each(|(sum, (r, m))| *sum += r * m * factor);
+                }
+            }
         }
     }
 }
@@ -147,13 +214,14 @@ pub(super) struct Candidate {
 }
 
 impl<'a> Gathered<'a> {
-    /// Gathers for a picture. `pixel` is what is seen through the middle of a pixel, `reflected`
+    /// Gathers for a picture. `pixel` is what is seen through the middle of a pixel, `error` the
+    /// standard error over the colour of the pixel that pixels of a grid may have, `reflected`
     /// the colour that a leaf reflects of an irradiance, leaf by leaf; `go_on` is told the share of
     /// the way and says whether to go on.
     pub fn new(
         (field, eye): (Field<'a>, &'a Eye),
         (gathering, sent): (&dyn Gathering, &Sent<'_>),
-        pixel: &(dyn Fn(usize, usize) -> Option<Candidate> + Sync),
+        (pixel, error): (&(dyn Fn(usize, usize) -> Option<Candidate> + Sync), f64),
         reflected: &(dyn Fn(usize, &[f64]) -> Rgb + Sync),
         go_on: &(dyn Fn(f64) -> bool + Sync),
     ) -> Self {
@@ -179,22 +247,24 @@ impl<'a> Gathered<'a> {
             let mean =
                 mean(seen.iter().filter_map(|(_, _, candidate, told)| Some((candidate, told.as_ref()?))));
             let enough =
-                |told: &Told, candidate: &Candidate| is_enough(told, candidate, (FEWEST[pass], mean));
+                |told: &Told, candidate: &Candidate| is_enough(told, candidate, (FEWEST[pass], mean, error));
             let wanted = seen.into_iter().filter_map(|(x, y, candidate, told)| {
                 (!told.is_some_and(|told| enough(&told, &candidate))).then_some((x, y, candidate))
             });
             let wanted: Vec<(usize, usize, Candidate)> = wanted.collect();
             let begun = pass as f64 / STRIDES.len() as f64;
-            let look = |met: &mut Vec<Seen>, (k, (x, y, candidate)): (usize, &(usize, usize, Candidate))| {
+            let begin = || (Vec::new(), sent.looker());
+            let look = |(met, looker): &mut (Vec<Seen>, Looker<'_>),
+                        (k, (x, y, candidate)): (usize, &(usize, usize, Candidate))| {
                 let share = begun + k as f64 / (wanted.len() * STRIDES.len()) as f64;
                 if !go_on(share) {
                     return None;
                 }
                 gathering.meet((y * w + x) as u32, candidate.leaf, candidate.point, met);
                 let at = (*x as f64 + 0.5, *y as f64 + 0.5);
-                Some(gathered.place((candidate, at), (met, sent), reflected))
+                Some(gathered.place((candidate, at), (met, looker), reflected))
             };
-            let places = wanted.par_iter().enumerate().map_init(Vec::new, look);
+            let places = wanted.par_iter().enumerate().map_init(begin, look);
             let places: Vec<Option<Place>> = places.collect();
             let stopped = places.iter().any(Option::is_none);
             gathered.insert(places.into_iter().flatten());
@@ -222,24 +292,21 @@ impl<'a> Gathered<'a> {
     fn place(
         &self,
         (candidate, at): (&Candidate, (f64, f64)),
-        (met, sent): (&[Seen], &Sent<'_>),
+        (met, looker): (&[Seen], &mut Looker<'_>),
         reflected: &dyn Fn(usize, &[f64]) -> Rgb,
     ) -> Place {
         let Candidate { leaf, point, .. } = *candidate;
         let bands = self.field.bands().len();
-        let (mut inverse, mut irradiance) = (0.0, vec![0.0; bands]);
-        let mut colours = [[0.0; 3]; DIRECTION_GROUPS];
         let of_group = met.len() / DIRECTION_GROUPS;
-        for (met, colour) in met.chunks_exact(of_group.max(1)).zip(&mut colours) {
-            irradiance.fill(0.0);
-            for &(leaf, at) in met.iter().flatten() {
-                inverse += 1.0 / at.distance(point).max(f64::MIN_POSITIVE);
-                sent.add(leaf, at, &mut irradiance);
-            }
-            for e in &mut irradiance {
-                *e /= of_group as f64;
-            }
-            *colour = reflected(leaf, &irradiance);
+        let inverse: f64 =
+            met.iter().flatten().map(|(_, at)| 1.0 / at.distance(point).max(f64::MIN_POSITIVE)).sum();
+        let mut sums = looker.sums(point, met, (self.field.mesh(), bands));
+        for sum in &mut sums {
+            *sum /= of_group as f64;
+        }
+        let mut colours = [[0.0; 3]; DIRECTION_GROUPS];
+        for (colour, irradiance) in colours.iter_mut().zip(sums.chunks_exact(bands)) {
+            *colour = reflected(leaf, irradiance);
         }
         let groups = DIRECTION_GROUPS as f64;
         let colour = [0, 1, 2].map(|i| colours.iter().map(|group| group[i]).sum::<f64>() / groups);
@@ -388,9 +455,9 @@ fn mean<'c>(told: impl Iterator<Item = (&'c Candidate, &'c Told)>) -> f64 {
 }
 
 /// Whether a pixel need not become a place.
-fn is_enough(told: &Told, candidate: &Candidate, (fewest, mean): (usize, f64)) -> bool {
+fn is_enough(told: &Told, candidate: &Candidate, (fewest, mean, error): (usize, f64, f64)) -> bool {
     let bright = luminance(sum(candidate.colour, told.colour)).max(DARK_SHARE * mean);
-    told.places >= fewest && luminance(told.error) <= WANTED_ERROR * bright
+    told.places >= fewest && luminance(told.error) <= error * bright
 }
 
 /// The weight of a place for a point with its normal and surface, that is seen at a place of the

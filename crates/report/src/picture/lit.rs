@@ -39,8 +39,11 @@ const BRIGHT_BORDER_RATIO: f64 = 8.0;
 const POINTS_ALONG_BRIGHT_PIXEL: usize = 16;
 /// Difference of the colours around a point, over the larger, up to which its own is their mean.
 const ALIKE_DIFFERENCE: f64 = 0.03;
+/// Second difference of colours of every other pixel, over the larger, up to which what lies between
+/// two of them is interpolated: the parabola takes an eighth of it away.
+const MOST_BEND: f64 = 0.04;
 /// Pixels in a row of a tile.
-const TILE_SIDE: usize = 32;
+const TILE_SIDE: usize = 64;
 /// Pixels at borders that are looked at together.
 const PIXELS_TOGETHER: usize = 64;
 /// Difference of linear display values between neighbours, over the larger, from which there is a
@@ -51,6 +54,13 @@ const EDGE_STEP: f64 = 0.02;
 const UNSEEN_DIFFERENCE: f64 = 0.01;
 /// Cosine, less than 1 by this, up to which two elements have one normal.
 const COSINE_TOLERANCE: f64 = 1e-9;
+/// By how much the light without that of the lamps bends between elements, over all that an element
+/// sends on, from which on it is too large for that light.
+const UNEVEN_SHARE: f64 = 0.02;
+/// Standard error, over the colour of the pixel, that the pixels of a grid may have where all is
+/// gathered, and where only what is uneven is.
+const WANTED_ERROR: f64 = 0.005;
+const ERROR_WHERE_UNEVEN: f64 = 0.01;
 /// How often the corners are moved towards the means of elements where the rest is smooth.
 const CORNER_PASSES: usize = 3;
 /// From where to where on the way of a picture the lamps are looked at, and pixels painted; light
@@ -71,7 +81,7 @@ pub struct LampFactors {
 
 impl LampFactors {
     /// As many factors of 0.
-    fn reset(&mut self, count: usize) {
+    pub(super) fn reset(&mut self, count: usize) {
         for list in [&mut self.values, &mut self.errors] {
             list.clear();
             list.resize(count, 0.0);
@@ -134,8 +144,18 @@ pub struct Lit<'a> {
     /// leaves × bands, W/m²; none where there are no lamps that are told apart: then all of it is
     /// interpolated.
     pub direct: Option<&'a [f64]>,
-    /// What gathers the rest, where it is not to be interpolated.
-    pub gathering: Option<&'a dyn Gathering>,
+    /// What gathers the rest, and where.
+    pub gathering: Option<(&'a dyn Gathering, Where)>,
+}
+
+/// Where the rest of the light is gathered, and not interpolated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Where {
+    /// At all pixels.
+    Everywhere,
+    /// Where elements are too large for it: between the corners of one it differs by more than
+    /// [`UNEVEN_SHARE`] of the light of the element.
+    Uneven,
 }
 
 /// A picture, and what it was made with.
@@ -190,6 +210,8 @@ pub(super) struct LitView<'a> {
     lit: &'a Lit<'a>,
     rest: Shading<'a>,
     gathered: Option<Gathered<'a>>,
+    /// The leaves at which all is interpolated; empty where there is none.
+    even: Vec<bool>,
     /// Linear sRGB of ρ M for each surface and lamp.
     sent: Vec<Rgb>,
     /// Linear sRGB of M for each surface.
@@ -300,7 +322,7 @@ impl<'a> LitView<'a> {
                 own[mesh.surface_of(leaf)] = colouring.colour(field.row(exitance, leaf));
             }
         }
-        Ok(Self { field, eye, lit, rest, gathered: None, sent, own })
+        Ok(Self { field, eye, lit, rest, gathered: None, even: Vec::new(), sent, own })
     }
 
     /// The irradiance in place of the radiosity, W/m²: the sum over the bands with a weight each,
@@ -323,7 +345,7 @@ impl<'a> LitView<'a> {
         };
         let rest = (0..field.mesh().len()).flat_map(of_leaf).collect();
         let rest = Shading::of_values(field, passes, (3, rest));
-        Ok(Self { field, eye, lit, rest, gathered: None, sent, own: Vec::new() })
+        Ok(Self { field, eye, lit, rest, gathered: None, even: Vec::new(), sent, own: Vec::new() })
     }
 
     /// Linear colours of points, W/m², each looked at by itself; 0 where nothing is seen.
@@ -341,8 +363,12 @@ impl<'a> LitView<'a> {
     pub fn draw(mut self, exposure: Exposure, linear: bool) -> Result<Option<LitPicture>, ReportError> {
         let Camera { width, height, .. } = *self.eye.camera();
         let Some(mut middles) = self.lit_by_lamps() else { return Ok(None) };
-        if let Some(gathering) = self.lit.gathering {
-            self.gathered = Some(self.gather(gathering, &middles));
+        if let Some((gathering, place)) = self.lit.gathering {
+            if place == Where::Uneven {
+                self.even = self.even();
+            }
+            let error = if place == Where::Uneven { ERROR_WHERE_UNEVEN } else { WANTED_ERROR };
+            self.gathered = Some(self.gather((gathering, error), &middles));
         }
         let standard_error = self.add_rest(&mut middles);
         let tone = Tone::new(exposure, &self.metered(&middles))?;
@@ -390,10 +416,30 @@ impl<'a> LitView<'a> {
     /// Linear colour at a point of a leaf without the light of the lamps, W/m², with its standard
     /// error where it is gathered.
     fn rest(&self, leaf: usize, point: Vec3) -> (Rgb, Option<Rgb>) {
-        match self.gathered.as_ref().and_then(|gathered| gathered.told(leaf, point)) {
+        let gathered = self.gathered.as_ref().filter(|_| self.is_gathered(leaf));
+        match gathered.and_then(|gathered| gathered.told(leaf, point)) {
             Some(told) => (sum(self.own[self.field.mesh().surface_of(leaf)], told.colour), Some(told.error)),
             None => (self.rest.colour(leaf, point), None),
         }
+    }
+
+    /// Whether the rest of the light of a leaf is gathered.
+    fn is_gathered(&self, leaf: usize) -> bool {
+        self.even.get(leaf).is_none_or(|even| !even)
+    }
+
+    /// Which leaves are small enough for the rest of the light to be interpolated.
+    fn even(&self) -> Vec<bool> {
+        let Self { field, lit, .. } = self;
+        let colouring = Colouring::new(field.bands());
+        let colour = |leaf: usize| luminance(colouring.colour(&field.exposed_radiosity(leaf)));
+        let of_lamps = |leaf: usize| {
+            let (direct, rho) = (lit.direct?, field.row(lit.reflectance, leaf));
+            Some(luminance(colouring.reflected(rho, field.row(direct, leaf))) * field.over_exposed(leaf))
+        };
+        let all: Vec<f64> = (0..field.mesh().len()).map(colour).collect();
+        let rest: Vec<f64> = (0..).zip(&all).map(|(leaf, all)| all - of_lamps(leaf).unwrap_or(0.0)).collect();
+        self.rest.bends(&rest).iter().zip(&all).map(|(bend, all)| *bend <= UNEVEN_SHARE * all).collect()
     }
 
     /// Adds to the light of the lamps what else there is. Standard errors of what is gathered are
@@ -408,7 +454,7 @@ impl<'a> LitView<'a> {
             error.map_or([f32::NAN; 3], |error| error.map(|e| e as f32))
         };
         let all = middles.par_iter_mut().enumerate();
-        if self.gathered.is_some() {
+        if self.gathered.is_some() && self.even.is_empty() {
             return all.map(add).collect();
         }
         all.for_each(|pixel| {
@@ -423,13 +469,13 @@ impl<'a> LitView<'a> {
     }
 
     /// Gathers what is not of the lamps.
-    fn gather(&self, gathering: &dyn Gathering, middles: &[Middle]) -> Gathered<'a> {
+    fn gather(&self, (gathering, error): (&dyn Gathering, f64), middles: &[Middle]) -> Gathered<'a> {
         let columns = self.eye.camera().width as usize;
         let LitView { field, eye, lit, own, .. } = self;
-        let sent = Sent::new(*field, lit.reflectance, lit.direct, CORNER_PASSES);
+        let sent = Sent::new(*field, lit, (CORNER_PASSES, self.even.is_empty()));
         let pixel = |x: usize, y: usize| {
             let middle = &middles[y * columns + x];
-            let leaf = middle.leaf()?;
+            let leaf = middle.leaf().filter(|&leaf| self.is_gathered(leaf))?;
             let colour = sum(middle.colour.map(f64::from), own[field.mesh().surface_of(leaf)]);
             Some(Candidate { leaf, point: self.point(leaf, (x, y)), colour })
         };
@@ -439,7 +485,7 @@ impl<'a> LitView<'a> {
             lit.light.advance(LOOKED[1] + share * (PAINTED[0] - LOOKED[1]));
             lit.light.go_on().is_continue()
         };
-        Gathered::new((*field, eye), (gathering, &sent), &pixel, &reflected, &go_on)
+        Gathered::new((*field, eye), (gathering, &sent), (&pixel, error), &reflected, &go_on)
     }
 
     /// All pixels as they are shown, row by row; none where the picture is not wanted any more.
@@ -490,8 +536,19 @@ impl<'a> LitView<'a> {
             samples.iter().enumerate().map(|(k, seen)| seen.filter(|_| wanted(k))).collect()
         };
         let known = brush.of_lamps(&some(&first));
+        let number = |seen: Seen| seen.map_or(NO_LEAF, |(leaf, _)| leaf as u32);
+        let beside = |k: usize, dx: isize, dy: isize| {
+            let (x, y) = ((k % w).checked_add_signed(dx)?, (k / w).checked_add_signed(dy)?);
+            let other = y * w + x;
+            let inside = x < w && other < samples.len();
+            (inside && self.is_alike(number(samples[k]), number(samples[other]))).then(|| known[other])
+        };
         let between: Vec<Option<Light>> = (0..samples.len())
-            .map(|k| if first(k) { Some(known[k]) } else { between(&samples, &known, (w, k)) })
+            .map(|k| match samples[k] {
+                _ if first(k) => Some(known[k]),
+                None => None,
+                Some(_) => between((k % w, k / w), |dx, dy| beside(k, dx, dy)),
+            })
             .collect();
         let others = brush.of_lamps(&some(&|k| between[k].is_none()));
         let lights = between.into_iter().zip(others).map(|(between, other)| between.unwrap_or(other));
@@ -672,22 +729,44 @@ fn shown(middle: &Middle, display: &Display<'_>) -> Rgb {
     }
 }
 
-/// The colour of pixel `k` of rows of `width` from its neighbours in the even rows and columns; none
-/// where one is missing, shows another leaf, or differs.
-fn between(samples: &[Seen], known: &[Light], (width, k): (usize, usize)) -> Option<Light> {
-    let leaf = |k: usize| samples[k].map(|(leaf, _)| leaf);
-    let (x, y) = (k % width, k / width);
-    let ends = |i: usize| if i.is_multiple_of(2) { [i, i] } else { [i - 1, i + 1] };
-    let ([left, right], [top, bottom]) = (ends(x), ends(y));
-    if right >= width || bottom >= samples.len() / width {
+/// The light at an odd row or column from those at even ones around it, on lines through them along
+/// which it hardly bends: places are relative to the pixel. None where it bends, or one is missing.
+fn between((x, y): (usize, usize), known: impl Fn(isize, isize) -> Option<Light>) -> Option<Light> {
+    let line = |dx: isize, dy: isize| {
+        let at = |step: isize| known(step * dx, step * dy);
+        let (a, b) = (at(-1)?, at(1)?);
+        let colour = midpoint([a.colour, b.colour], [at(-3), at(3)].map(|end| end.map(|end| end.colour)))?;
+        Some(Light { colour, error: a.error.max(b.error) })
+    };
+    match (x % 2, y % 2) {
+        (1, 0) => line(1, 0),
+        (0, 1) => line(0, 1),
+        _ => {
+            let (down, up) = (line(1, 1)?, line(1, -1)?);
+            let colour = alike([down.colour, up.colour].into_iter())?;
+            Some(Light { colour, error: down.error.max(up.error) })
+        }
+    }
+}
+
+/// The colour halfway between two from the cubic through them and those beyond, the parabola where
+/// there is one of these, or the mean of two that are alike where there is none; none where the
+/// line through them bends.
+fn midpoint([a, b]: [Rgb; 2], beyond: [Option<Rgb>; 2]) -> Option<Rgb> {
+    let bend = |end: Option<Rgb>, from: Rgb, to: Rgb| {
+        end.map(|end| [0, 1, 2].map(|i| end[i] - 2.0 * from[i] + to[i]))
+    };
+    let bends = [bend(beyond[0], a, b), bend(beyond[1], b, a)];
+    let count = bends.iter().flatten().count() as f64;
+    if count == 0.0 {
+        return alike([a, b].into_iter());
+    }
+    let is_bent = |bend: &Rgb| (0..3).any(|i| bend[i].abs() > MOST_BEND * a[i].max(b[i]));
+    if bends.iter().flatten().any(is_bent) {
         return None;
     }
-    let around = [top * width + left, top * width + right, bottom * width + left, bottom * width + right];
-    if around.iter().any(|&other| leaf(other) != leaf(k)) {
-        return None;
-    }
-    let colour = alike(around.into_iter().map(|k| known[k].colour))?;
-    Some(Light { colour, error: known[around[0]].error })
+    let mean = bends.iter().flatten().fold([0.0; 3], |all, &bend| sum(all, bend)).map(|all| all / count);
+    Some([0, 1, 2].map(|i| 0.5 * (a[i] + b[i]) - 0.125 * mean[i]))
 }
 
 /// The places of a pixel and of those around it, in rows of pixels.
@@ -780,19 +859,22 @@ mod tests {
     }
 
     #[test]
-    fn a_pixel_between_others_is_their_mean_where_they_are_alike() {
-        // Rows of four pixels, the last of which shows another leaf.
-        let samples: Vec<Seen> = (0..12).map(|k| Some((usize::from(k % 4 == 3), Vec3::ZERO))).collect();
-        let mut known = vec![Light::default(); 12];
-        for (k, colour) in [(0, 1.0), (2, 1.01), (8, 1.01), (10, 1.02)] {
-            known[k].colour = [colour; 3];
+    fn a_pixel_between_others_is_on_their_curve() {
+        let grey = |value: f64| Light { colour: [value; 3], error: 0.0 };
+        // Smooth: steep, but bent little. Every pixel with an odd place is told.
+        let smooth = |x: isize, y: isize| 1.0 + 0.1 * x as f64 + 0.02 * y as f64 + 0.003 * (x * x) as f64;
+        for (x, y) in [(5, 4), (4, 5), (5, 5)] {
+            let own = smooth(x as isize, y as isize);
+            let known = |dx: isize, dy: isize| Some(grey(smooth(x as isize + dx, y as isize + dy)));
+            let found = between((x, y), known).unwrap();
+            assert!(found.colour.iter().all(|c| (c - own).abs() < 1e-12), "{x} {y}: {found:?} {own}");
+            // Without what is beyond it is their mean, were they alike.
+            let near = |dx: isize, dy: isize| known(dx, dy).filter(|_| dx.abs() < 2 && dy.abs() < 2);
+            assert!(between((x, y), near).is_none() == (x == 5), "{x} {y}");
+            let border = |dx: isize, dy: isize| Some(grey(if dx + dy > 2 { 1.2 } else { 1.0 }));
+            assert!(between((x, y), border).is_none());
+            let missing = |dx: isize, dy: isize| known(dx, dy).filter(|_| (dx, dy) != (1, 0) && dx * dy != 1);
+            assert!(between((x, y), missing).is_none() == (x == 5));
         }
-        for (k, mean) in [(1, 1.005), (4, 1.005), (5, 1.01), (6, 1.015), (9, 1.015)] {
-            let found = between(&samples, &known, (4, k)).unwrap();
-            assert!(found.colour.iter().all(|c| (c - mean).abs() < 1e-12), "{k}: {found:?}");
-        }
-        assert!([3, 7, 11].iter().all(|&k| between(&samples, &known, (4, k)).is_none()));
-        known[10].colour[2] = 1.1;
-        assert!(between(&samples, &known, (4, 5)).is_none() && between(&samples, &known, (4, 1)).is_some());
     }
 }

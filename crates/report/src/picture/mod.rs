@@ -28,7 +28,7 @@ pub use false_colour::{FalseColourPicture, PictureNumber, render_false_colour};
 pub use gathered::{DIRECTION_GROUPS, Gathering};
 use links::LinkOverlay;
 pub use links::{Link, Linked};
-pub use lit::{LampFactors, LampLight, Lighter, Lit, LitPicture, Points, Seen};
+pub use lit::{LampFactors, LampLight, Lighter, Lit, LitPicture, Points, Seen, Where};
 use lit::{LitView, Unlit, neighbours};
 pub use sides::{Back, Side, render_sides};
 
