@@ -74,7 +74,8 @@ impl<'a> Lamplight<'a> {
         let area = |patches: &mut dyn Iterator<Item = &Patch>| patches.map(Patch::area).sum::<f64>();
         let emitting = area(&mut kinds.iter().flatten().copied());
         let all = area(&mut mesh.patches());
-        if kinds.is_empty() {
+        // Where nearly everything emits there are no shadows to be seen.
+        if kinds.is_empty() || emitting > MOST_EMITTING * all {
             return none(reflectance);
         }
         let elements = || mesh.patches().collect();
@@ -131,9 +132,11 @@ impl<'a> Lamplight<'a> {
 /// Area of the lamps, over that of all else, from which they are a sky rather than lamps: their
 /// shadows have no borders to be seen, and much stands before each of them.
 const SKY_AREA_RATIO: f64 = 0.5;
+/// Share of the area that emits, at most.
+const MOST_EMITTING: f64 = 0.9;
 /// Elements up to which the rest of the light is gathered where they are too large for it; where
 /// there are more, they are small.
-pub(crate) const MOST_GATHERED_ELEMENTS: usize = 20_000;
+pub(crate) const MOST_GATHERED_ELEMENTS: usize = 200_000;
 /// Exitances that differ, at most: scenes of more have no lamps that are few.
 const MOST_KINDS: usize = 128;
 

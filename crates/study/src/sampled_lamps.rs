@@ -19,9 +19,11 @@ use fredholm_report::{LampFactors, Points};
 use fredholm_visibility::Occluders;
 use std::f64::consts::FRAC_1_PI;
 
-/// Segments of a point, and of one of several points of a pixel.
+/// Segments of a point, of one of several points of a pixel, and of one whose number is told. Powers
+/// of two are where Sobol points are most even.
 pub(crate) const SEGMENTS: usize = 32;
 const SEGMENTS_OF_PART: usize = 8;
+const SEGMENTS_OF_NUMBER: usize = 1024;
 /// Lamps before an element up to which each is looked at as a whole.
 const MOST_WHOLE_LAMPS: usize = 24;
 /// A length that counts as none, over the distance.
@@ -54,13 +56,13 @@ impl<'a> SampledLamps<'a> {
             patches.iter().zip(&lamp_of).map(|(patch, &lamp)| patch.area() * power[lamp]).collect();
         let tree = LampTree::new(&patches, &powers);
         let mut samples =
-            Samples::new(PointSet::Sobol, Key { seed: 0, batch: 0, stream: 0 }, SEGMENTS as u32);
+            Samples::new(PointSet::Sobol, Key { seed: 0, batch: 0, stream: 0 }, SEGMENTS_OF_NUMBER as u32);
         let point = |sample| {
             let mut draw = samples.draw(sample);
             let (choice, [u, v]) = (draw.single(), draw.pair());
             [choice, u, v]
         };
-        let points = (0..SEGMENTS as u32).map(point).collect();
+        let points = (0..SEGMENTS_OF_NUMBER as u32).map(point).collect();
         Self { occluders, elements, patches, lamp_of, tree, count: lamps.len(), points }
     }
 
@@ -80,6 +82,7 @@ impl<'a> SampledLamps<'a> {
         let segments = match pixel {
             Points::One => SEGMENTS,
             Points::Several => SEGMENTS_OF_PART,
+            Points::Told => SEGMENTS_OF_NUMBER,
         };
         let mut sums = vec![Sums::default(); self.count];
         let mut corners = [Vec::new(), Vec::new()];
@@ -225,7 +228,7 @@ mod tests {
             let points: Vec<Vec3> = (0..1600).map(place).collect();
             let mut truth = vec![0.0; 2 * points.len()];
             exact.lighter().factors(0, &points, &mut truth);
-            for pixel in [Points::One, Points::Several] {
+            for pixel in [Points::One, Points::Several, Points::Told] {
                 let zeros = vec![0.0; truth.len()];
                 let mut found = LampFactors { values: zeros.clone(), errors: zeros };
                 sampled.factors(0, &points, pixel, &mut found);
@@ -236,7 +239,7 @@ mod tests {
                 let (all, bright) = (off.iter().sum::<f64>(), truth.iter().sum::<f64>());
                 assert!(all.abs() < 4.0 * stated.sqrt() + 0.01 * bright, "{n} {pixel:?}: {all} of {bright}");
                 let ratio = (squares / stated).sqrt();
-                assert!((0.3..1.2).contains(&ratio), "{n} {pixel:?}: {ratio}");
+                assert!((0.1..1.2).contains(&ratio), "{n} {pixel:?}: {ratio}");
                 if n == 2 {
                     // What nothing hides is exact, and what sees nothing is dark.
                     let open = (0..truth.len()).filter(|&i| points[i / 2].x > 3.6 && points[i / 2].y > 3.6);

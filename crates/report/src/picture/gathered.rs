@@ -26,9 +26,7 @@ pub const DIRECTION_GROUPS: usize = 4;
 const STRIDES: [usize; 4] = [16, 8, 4, 2];
 /// Places that have to reach a pixel of these grids, else it becomes one.
 const FEWEST: [usize; 4] = [6, 6, 4, 1];
-/// Distance, over the harmonic mean of the lengths of its rays, to which a place reaches.
-const REACH: f64 = 0.35;
-/// The same at least, pixels: so few are not seen.
+/// Pixels to which a place reaches at least: so few are not seen.
 const LEAST_REACH_PIXELS: f64 = 3.0;
 /// Places that tell a point, at most: the nearest.
 const MOST_PLACES: usize = 16;
@@ -48,6 +46,15 @@ const FLAT_SHARE: f64 = 0.25;
 /// Pixels along the side of a bin of places, and bins that are looked through on either side.
 const BIN_SIDE: usize = 8;
 const MOST_RINGS: usize = 8;
+
+/// How exact what is gathered has to be.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Quality {
+    /// Standard error, over the colour of the pixel, that a pixel of a grid may have.
+    pub error: f64,
+    /// Distance, over the harmonic mean of the lengths of its rays, to which a place reaches.
+    pub reach: f64,
+}
 
 /// Looks along directions.
 pub trait Gathering: Sync {
@@ -198,6 +205,8 @@ pub(super) struct Told {
 pub(super) struct Gathered<'a> {
     field: Field<'a>,
     eye: &'a Eye,
+    /// As of [`Quality`].
+    reach: f64,
     places: Vec<Place>,
     /// Numbers of the places in squares of pixels.
     bins: Vec<Vec<u32>>,
@@ -214,14 +223,13 @@ pub(super) struct Candidate {
 }
 
 impl<'a> Gathered<'a> {
-    /// Gathers for a picture. `pixel` is what is seen through the middle of a pixel, `error` the
-    /// standard error over the colour of the pixel that pixels of a grid may have, `reflected`
+    /// Gathers for a picture. `pixel` is what is seen through the middle of a pixel, `reflected`
     /// the colour that a leaf reflects of an irradiance, leaf by leaf; `go_on` is told the share of
     /// the way and says whether to go on.
     pub fn new(
         (field, eye): (Field<'a>, &'a Eye),
         (gathering, sent): (&dyn Gathering, &Sent<'_>),
-        (pixel, error): (&(dyn Fn(usize, usize) -> Option<Candidate> + Sync), f64),
+        (pixel, quality): (&(dyn Fn(usize, usize) -> Option<Candidate> + Sync), Quality),
         reflected: &(dyn Fn(usize, &[f64]) -> Rgb + Sync),
         go_on: &(dyn Fn(f64) -> bool + Sync),
     ) -> Self {
@@ -229,7 +237,7 @@ impl<'a> Gathered<'a> {
         let (w, h) = (camera.width as usize, camera.height as usize);
         let sides = [w.div_ceil(BIN_SIDE), h.div_ceil(BIN_SIDE)];
         let bins = vec![Vec::new(); sides[0] * sides[1]];
-        let mut gathered = Self { field, eye, places: Vec::new(), bins, sides };
+        let mut gathered = Self { field, eye, reach: quality.reach, places: Vec::new(), bins, sides };
         for (pass, stride) in STRIDES.into_iter().enumerate() {
             let coarser = if pass == 0 { 0 } else { 2 * stride };
             let is_new = |x: usize, y: usize| {
@@ -246,8 +254,9 @@ impl<'a> Gathered<'a> {
                 pixels.par_iter().filter_map(look).collect();
             let mean =
                 mean(seen.iter().filter_map(|(_, _, candidate, told)| Some((candidate, told.as_ref()?))));
-            let enough =
-                |told: &Told, candidate: &Candidate| is_enough(told, candidate, (FEWEST[pass], mean, error));
+            let enough = |told: &Told, candidate: &Candidate| {
+                is_enough(told, candidate, (FEWEST[pass], mean, quality.error))
+            };
             let wanted = seen.into_iter().filter_map(|(x, y, candidate, told)| {
                 (!told.is_some_and(|told| enough(&told, &candidate))).then_some((x, y, candidate))
             });
@@ -315,7 +324,7 @@ impl<'a> Gathered<'a> {
             squares.sum::<f64>() / (groups * (groups - 1.0))
         });
         let mesh = self.field.mesh();
-        let reach = REACH * met.len() as f64 / inverse;
+        let reach = self.reach * met.len() as f64 / inverse;
         let (normal, surface) = (mesh.patch(leaf).normal(), mesh.surface_of(leaf) as u32);
         Place { point, normal, surface, at, reach, colour, variance }
     }
@@ -520,8 +529,14 @@ mod tests {
         let (mesh, bands) = (square(), names(&["grey"]));
         let field = Field::new(&mesh, &bands, &[1.0], &[1.0]).unwrap();
         let eye = Eye::new(&mesh, &above()).unwrap();
-        let mut gathered =
-            Gathered { field, eye: &eye, places: Vec::new(), bins: vec![Vec::new(); 100], sides: [10, 10] };
+        let mut gathered = Gathered {
+            field,
+            eye: &eye,
+            reach: 0.35,
+            places: Vec::new(),
+            bins: vec![Vec::new(); 100],
+            sides: [10, 10],
+        };
         let colour = |p: Vec3| [2.0 + p.x, 3.0 - p.y, 1.0 + 0.5 * p.x + 0.25 * p.y];
         let place = |k: usize| {
             let point = Vec3::new(0.2 + 0.15 * (k % 4) as f64, 0.25 + 0.2 * (k / 4) as f64, 0.0);

@@ -18,7 +18,7 @@ use rayon::prelude::*;
 
 use fredholm_mesh::Vec3;
 
-use super::gathered::{Candidate, Gathered, Gathering, Sent};
+use super::gathered::{Candidate, Gathered, Gathering, Quality, Sent};
 use super::smoothed::smoothed;
 use super::{BACKGROUND, Picture};
 use crate::colour::{Colouring, Rgb, sum};
@@ -57,10 +57,9 @@ const COSINE_TOLERANCE: f64 = 1e-9;
 /// By how much the light without that of the lamps bends between elements, over all that an element
 /// sends on, from which on it is too large for that light.
 const UNEVEN_SHARE: f64 = 0.02;
-/// Standard error, over the colour of the pixel, that the pixels of a grid may have where all is
-/// gathered, and where only what is uneven is.
-const WANTED_ERROR: f64 = 0.005;
-const ERROR_WHERE_UNEVEN: f64 = 0.01;
+/// How exact all that is gathered has to be, and what is gathered only where it is uneven.
+const EVERYWHERE: Quality = Quality { error: 0.005, reach: 0.15 };
+const WHERE_UNEVEN: Quality = Quality { error: 0.01, reach: 0.35 };
 /// How often the corners are moved towards the means of elements where the rest is smooth.
 const CORNER_PASSES: usize = 3;
 /// From where to where on the way of a picture the lamps are looked at, and pixels painted; light
@@ -92,13 +91,15 @@ impl LampFactors {
 /// Tells the factors of points (m) of a leaf, which are 0 before.
 pub type Lighter<'a> = Box<dyn FnMut(usize, &[Vec3], &mut LampFactors) + 'a>;
 
-/// What a pixel is looked at through.
+/// What is looked through.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Points {
     /// Its middle.
     One,
     /// Several points, of which the mean is taken.
     Several,
+    /// A point of which the number is told.
+    Told,
 }
 
 /// Looks at the lamps of a scene.
@@ -106,8 +107,8 @@ pub trait LampLight: Sync {
     /// Number of lamps.
     fn lamps(&self) -> usize;
 
-    /// Looks for one thread; at pixels of one point each, or at pixels of several points, where less
-    /// exact factors are enough.
+    /// Looks for one thread; at pixels of one point each, at pixels of several points, where less
+    /// exact factors are enough, or at points that need better ones.
     fn lighter(&self, points: Points) -> Lighter<'_>;
 
     /// The picture has come to `share`, 0 to 1, of its way.
@@ -350,7 +351,7 @@ impl<'a> LitView<'a> {
 
     /// Linear colours of points, W/m², each looked at by itself; 0 where nothing is seen.
     pub fn colours(&self, samples: &[Seen]) -> Vec<Rgb> {
-        self.brush(Points::One).colours(samples)
+        self.brush(Points::Told).colours(samples)
     }
 
     fn brush(&self, points: Points) -> Brush<'_> {
@@ -367,8 +368,8 @@ impl<'a> LitView<'a> {
             if place == Where::Uneven {
                 self.even = self.even();
             }
-            let error = if place == Where::Uneven { ERROR_WHERE_UNEVEN } else { WANTED_ERROR };
-            self.gathered = Some(self.gather((gathering, error), &middles));
+            let quality = if place == Where::Uneven { WHERE_UNEVEN } else { EVERYWHERE };
+            self.gathered = Some(self.gather((gathering, quality), &middles));
         }
         let standard_error = self.add_rest(&mut middles);
         let tone = Tone::new(exposure, &self.metered(&middles))?;
@@ -469,7 +470,7 @@ impl<'a> LitView<'a> {
     }
 
     /// Gathers what is not of the lamps.
-    fn gather(&self, (gathering, error): (&dyn Gathering, f64), middles: &[Middle]) -> Gathered<'a> {
+    fn gather(&self, (gathering, quality): (&dyn Gathering, Quality), middles: &[Middle]) -> Gathered<'a> {
         let columns = self.eye.camera().width as usize;
         let LitView { field, eye, lit, own, .. } = self;
         let sent = Sent::new(*field, lit, (CORNER_PASSES, self.even.is_empty()));
@@ -485,7 +486,7 @@ impl<'a> LitView<'a> {
             lit.light.advance(LOOKED[1] + share * (PAINTED[0] - LOOKED[1]));
             lit.light.go_on().is_continue()
         };
-        Gathered::new((*field, eye), (gathering, &sent), (&pixel, error), &reflected, &go_on)
+        Gathered::new((*field, eye), (gathering, &sent), (&pixel, quality), &reflected, &go_on)
     }
 
     /// All pixels as they are shown, row by row; none where the picture is not wanted any more.
