@@ -1,9 +1,8 @@
-//! The page of a result, opened in a headless browser: an element is picked and compared with
+//! The pages of results, opened in a headless browser: an element is picked and compared with
 //! faces.csv, every control is moved, and nothing may be asked of the network.
 //!
 //! Skipped where `FREDHOLM_SKIP_BROWSER` is set, and where there is no Node, no Chromium, or no
-//! package of
-//! `npm ci --ignore-scripts` in crates/report/viewer; the reason is printed.
+//! package of `npm ci --ignore-scripts` in crates/report/viewer; the reason is printed.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -42,17 +41,41 @@ fn fredholm(arguments: &[&str]) {
 }
 
 #[test]
-fn the_page_of_the_cornell_box_can_be_used() {
+fn pages_of_all_kinds_can_be_used() {
     if let Some(why) = missing() {
         eprintln!("skipped: {why}");
         return;
     }
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().to_str().unwrap();
-    fredholm(&["solve", "scenes/cornell_box.toml", "-o", path, "--quiet"]);
-    let tried = Command::new("node").current_dir(viewer()).arg("test/open.mjs").arg(path).output().unwrap();
+    let place = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let kinds: [&[&str]; 6] = [
+        &["solve", "scenes/cornell_box.toml"],
+        &["waves", "scenes/waves/two_plates.toml"],
+        &["compare", "scenes/leblond_room.toml"],
+        &["converge", "scenes/leblond_room.toml", "--levels", "3"],
+        &["crosscheck", "scenes/leblond_room.toml", "--to", "5%"],
+        // Half a million elements: rays cut each face into four.
+        &["solve", &large_room(&place("room.toml")), "--accuracy", "50%", "--way", "rays"],
+    ];
+    let mut tried = Command::new("node");
+    tried.current_dir(viewer()).arg("test/open.mjs");
+    for (k, arguments) in kinds.iter().enumerate() {
+        let out = place(&k.to_string());
+        fredholm(&[*arguments, &["-o", &out, "--quiet"]].concat());
+        tried.arg(out);
+    }
+    let tried = tried.output().unwrap();
     let said = String::from_utf8_lossy(&tried.stdout).into_owned() + &String::from_utf8_lossy(&tried.stderr);
-    assert!(tried.status.success() && said.contains("all is well"), "{said}");
+    assert!(tried.status.success() && said.contains("all is well") && said.contains("a phase"), "{said}");
+}
+
+/// The white room with 123,002 faces, as a file.
+fn large_room(path: &str) -> String {
+    let room = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/white_room.toml");
+    let text = std::fs::read_to_string(room).unwrap();
+    let text = text.replace("divide = [4, 4]", "divide = [140, 140]");
+    std::fs::write(path, text.replace("divide = [2, 2]", "divide = [30, 30]")).unwrap();
+    path.to_owned()
 }
 
 #[test]

@@ -307,6 +307,8 @@ export class Panel {
     at("phase-text").textContent = `${this.phase.value}°`;
     for (const id of ["row-quantity", "row-map", "row-range", "row-log", "row-iso"])
       at(id).hidden = appearance;
+    // What has both signs has no logarithm.
+    at("row-log").hidden ||= this.chosen.diverging;
     at("row-exposure").hidden = !appearance;
     at("row-band").hidden = appearance || !this.chosen.banded || this.page.bands.length < 2;
     at("row-phase").hidden =
