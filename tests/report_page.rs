@@ -4,6 +4,8 @@
 //! Skipped where `FREDHOLM_SKIP_BROWSER` is set, and where there is no Node, no Chromium, or no
 //! package of `npm ci --ignore-scripts` in crates/report/viewer; the reason is printed.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
 

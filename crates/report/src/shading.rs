@@ -36,6 +36,7 @@ impl<'a> Shading<'a> {
     /// element: so many times the corners are moved by what the elements around them lack (the
     /// iteration of P. van Cittert, Zeitschrift für Physik 69, 1931, doi:10.1007/BF01391351). Else
     /// dark corners of rooms would be too bright by what the light changes within half an element.
+    /// Corners are not moved below 0, nor below the least of the elements around them if that is less.
     pub(crate) fn of_values(field: Field<'a>, passes: usize, (width, leaves): (usize, Vec<f64>)) -> Self {
         let mesh = field.mesh();
         let Anchored { leaves: welded, hanging, .. } = mesh.anchored(SMOOTH_WELD);
@@ -57,6 +58,10 @@ impl<'a> Shading<'a> {
             }
             vertices.iter_mut().zip(at_vertices(&lacking)).for_each(|(vertex, by)| *vertex += by);
             close(&hanging, &mut vertices, width);
+        }
+        if passes > 0 {
+            let least = least_around(&welded, (&leaves, width), vertices.len());
+            vertices.iter_mut().zip(least).for_each(|(vertex, least)| *vertex = vertex.max(least));
         }
         Self { field, welded, width, vertices }
     }
@@ -92,5 +97,61 @@ impl<'a> Shading<'a> {
         let mut colour = [0.0; 3];
         self.add(leaf, point, &mut colour);
         colour
+    }
+}
+
+/// The least value of the leaves around each vertex, or 0 where all are above.
+fn least_around(welded: &Welded, (leaves, width): (&[f64], usize), count: usize) -> Vec<f64> {
+    let mut least = vec![0.0_f64; count];
+    for (corners, values) in welded.patches().zip(leaves.chunks_exact(width)) {
+        for &vertex in corners {
+            let own = &mut least[vertex * width..(vertex + 1) * width];
+            own.iter_mut().zip(values).for_each(|(least, value)| *least = least.min(*value));
+        }
+    }
+    least
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::field::tests::{grid, names};
+    use fredholm_mesh::{Mesh, MeshBuilder};
+
+    /// A strip of leaves along x.
+    fn strip(count: usize) -> Mesh {
+        let lines: Vec<f64> = (0..=count).map(|k| k as f64).collect();
+        let mut builder = MeshBuilder::default();
+        builder.surface("strip", 0);
+        grid(&mut builder, &lines, &[0.0, 1.0]);
+        builder.build()
+    }
+
+    #[test]
+    fn corners_beside_a_step_stay_above_nothing() {
+        let (mesh, bands) = (strip(8), names(&["grey"]));
+        let values = [5.0, 5.0, 5.0, 5.0, 0.0, 0.0, 0.0, 0.0];
+        let field = Field::new(&mesh, &bands, &values, &values).unwrap();
+        let shading = Shading::of_values(field, 3, (1, values.to_vec()));
+        assert!(shading.vertices.iter().all(|v| *v >= 0.0) && shading.vertices.contains(&0.0));
+        let signed = values.map(|v| v - 1.0);
+        let shading = Shading::of_values(field, 3, (1, signed.to_vec()));
+        assert!(shading.vertices.iter().all(|v| *v >= -1.0) && shading.vertices.contains(&-1.0));
+    }
+
+    #[test]
+    fn leaves_beside_a_step_bend_and_those_on_a_slope_do_not() {
+        let (mesh, bands) = (strip(10), names(&["grey"]));
+        let slope: Vec<f64> = (0..10).map(f64::from).collect();
+        let field = Field::new(&mesh, &bands, &slope, &slope).unwrap();
+        let shading = Shading::of_values(field, 0, (1, slope.clone()));
+        // At the ends of the strip there is nothing beyond: a quarter of a step is missing.
+        let bends = shading.bends(&slope);
+        assert!(bends[2..8].iter().all(|bend| *bend < 1e-12) && bends[0] > 0.2 && bends[9] > 0.2);
+        let step: Vec<f64> = (0..10).map(|k| if k < 5 { 1.0 } else { 3.0 }).collect();
+        let bends = shading.bends(&step);
+        // Half a step at the one corner, a quarter in the mean, and one leaf farther on either side.
+        assert!((3..7).all(|k| (bends[k] - 0.5).abs() < 1e-12), "{bends:?}");
+        assert!(bends[..3].iter().chain(&bends[7..]).all(|bend| *bend < 1e-12), "{bends:?}");
     }
 }

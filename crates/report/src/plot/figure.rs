@@ -6,6 +6,7 @@ use std::io::{self, Write};
 use plotters::chart::{ChartBuilder, ChartContext};
 use plotters::coord::Shift;
 use plotters::coord::cartesian::Cartesian2d;
+use plotters::coord::ranged1d::{BoldPoints, Ranged, ValueFormatter};
 use plotters::element::{Circle, Cross, EmptyElement, PathElement, Rectangle, Text, TriangleMarker};
 use plotters::prelude::{Color, DrawingArea, DrawingBackend, IntoDrawingArea, RGBColor, SVGBackend};
 use plotters::series::{DashedLineSeries, LineSeries};
@@ -25,9 +26,13 @@ const STEPS_OF_A_PIXEL: i32 = 10;
 const LEGEND_ROW: i32 = TITLE_ROW;
 /// Height of a panel with its labels, pixels.
 const PANEL_HEIGHT: i32 = 340;
-/// Room for the labels below and beside a panel, pixels.
+/// Room for the labels below a panel, and at least beside it, pixels; and that for the name of an axis
+/// beside its numbers.
 const ROOM_BELOW: i32 = 58;
 const ROOM_BESIDE: i32 = 84;
+const ROOM_OF_A_NAME: i32 = 38;
+/// Numbers along the side of a panel, about.
+const NUMBERS_BESIDE: usize = 8;
 /// Width of a line in the legend, pixels.
 const SWATCH_WIDTH: i32 = 28;
 /// Most points of a line; longer ones are thinned evenly.
@@ -168,13 +173,14 @@ pub(crate) fn write_svg(figure: &Figure, out: &mut dyn Write) -> io::Result<()> 
     load_font()?;
     let (title, legend) = (wrapped(&figure.title, WIDTH - 2 * MARGIN)?, Legend::new(figure)?);
     let top = MARGIN + TITLE_ROW * title.len() as i32 + 6;
+    let beside = room_beside(figure)?;
     let parts: i32 = figure.parts.iter().map(Part::height).sum();
     let height = top + parts + LEGEND_ROW * legend.rows + MARGIN;
     let mut text = String::new();
     {
         let size = ((WIDTH * STEPS_OF_A_PIXEL).unsigned_abs(), (height * STEPS_OF_A_PIXEL).unsigned_abs());
         let root = SVGBackend::with_string(&mut text, size).into_drawing_area();
-        draw(&root, figure, &title, &legend, top).map_err(failed)?;
+        draw(&root, figure, (&title, &legend), (top, beside)).map_err(failed)?;
         root.present().map_err(failed)?;
     }
     // Sizes in pixels, and the dark colours.
@@ -201,9 +207,8 @@ pub(super) type Drawn<DB> =
 fn draw<DB: DrawingBackend>(
     root: &DrawingArea<DB, Shift>,
     figure: &Figure,
-    title: &[String],
-    legend: &Legend,
-    top: i32,
+    (title, legend): (&[String], &Legend),
+    (top, beside): (i32, i32),
 ) -> Drawn<DB> {
     root.fill(&GROUND)?;
     draw_title(root, title, STEPS_OF_A_PIXEL)?;
@@ -212,7 +217,7 @@ fn draw<DB: DrawingBackend>(
         let (here, below) = left.split_vertically(part.height() * STEPS_OF_A_PIXEL);
         left = below;
         match part {
-            Part::Panel(panel) => draw_panel(&here, panel)?,
+            Part::Panel(panel) => draw_panel(&here, panel, beside)?,
             Part::Polar(polar) => polar.draw(&here, STEPS_OF_A_PIXEL)?,
         }
     }
@@ -232,14 +237,27 @@ pub(super) fn draw_title<DB: DrawingBackend>(
     Ok(())
 }
 
-fn draw_panel<DB: DrawingBackend>(area: &DrawingArea<DB, Shift>, panel: &Panel) -> Drawn<DB> {
+/// Room beside the panels of a figure for their widest numbers, pixels.
+fn room_beside(figure: &Figure) -> io::Result<i32> {
+    let mut room = ROOM_BESIDE;
+    for part in &figure.parts {
+        let Part::Panel(panel) = part else { continue };
+        let (_, up) = panel.scales();
+        for value in up.key_points(BoldPoints(NUMBERS_BESIDE)) {
+            room = room.max(MARGIN + ROOM_OF_A_NAME + width_of(&up.format_ext(&value), SMALL_TEXT_SIZE)?);
+        }
+    }
+    Ok(room)
+}
+
+fn draw_panel<DB: DrawingBackend>(area: &DrawingArea<DB, Shift>, panel: &Panel, beside: i32) -> Drawn<DB> {
     let (across, up) = panel.scales();
     let mut chart = ChartBuilder::on(area)
         .margin_top(8 * STEPS_OF_A_PIXEL)
         .margin_left(MARGIN * STEPS_OF_A_PIXEL)
         .margin_right(2 * MARGIN * STEPS_OF_A_PIXEL)
         .x_label_area_size(ROOM_BELOW * STEPS_OF_A_PIXEL)
-        .y_label_area_size((ROOM_BESIDE - MARGIN) * STEPS_OF_A_PIXEL)
+        .y_label_area_size((beside - MARGIN) * STEPS_OF_A_PIXEL)
         .build_cartesian_2d(across.clone(), up.clone())?;
     draw_axes(&mut chart, (&panel.across.label, &panel.up.label), STEPS_OF_A_PIXEL)?;
     let fill = super::distinct(0).0;
@@ -268,7 +286,7 @@ pub(super) fn draw_axes<DB: DrawingBackend>(
         .x_desc(across)
         .y_desc(up)
         .x_labels(7)
-        .y_labels(8)
+        .y_labels(NUMBERS_BESIDE)
         .max_light_lines(0)
         .set_all_tick_mark_size(5 * unit)
         .bold_line_style(GRID_COLOUR.stroke_width(width))

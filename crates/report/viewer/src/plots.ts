@@ -204,7 +204,9 @@ class Curves {
           labelFont: font,
           label: this.plot.y.label,
           labelSize: 26,
-          size: 62,
+          // As wide as its numbers.
+          size: (_, values) =>
+            Math.max(62, 16 + 7 * Math.max(0, ...(values ?? []).map((v) => v.length))),
           values: this.logarithmic ? power : number,
           splits: this.logarithmic ? (_, __, low, high) => levels(low, high) : undefined,
           filter: (_, ticks) => ticks,

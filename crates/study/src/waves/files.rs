@@ -116,17 +116,16 @@ fn page(
     let shown = outcome.currents.len().min(MOST_PICTURED);
     let phasors = current_phasors(mesh, &outcome.currents[..shown]);
     let shown = ReportModel { phasors: &phasors, ..ReportModel::bare(mesh) };
-    let path = model.path().display().to_string();
     let seconds: f64 = timings.iter().map(|timing| timing.seconds).sum();
     let known = [
         ("Program", format!("Fredholm {}", env!("CARGO_PKG_VERSION"))),
-        ("Scene", path.clone()),
+        ("Scene", model.path().display().to_string()),
         ("Method", model.method_in_words()),
         ("Solution", model.method.name()),
         ("Time", format!("{seconds:.2} s")),
     ];
     let report = WaveReport {
-        title: model.scene.title().map_or(path, str::to_owned),
+        title: title(model),
         method: model.method_in_words(),
         across: across(model).to_owned(),
         warnings: model.warnings.clone(),
@@ -196,6 +195,11 @@ fn across(model: &Model) -> &'static str {
     if let Method::Bounces(_) = model.method { "bounces" } else { "iterations" }
 }
 
+/// The title of a scene, or its file.
+fn title(model: &Model) -> String {
+    model.scene.title().map_or_else(|| model.path().display().to_string(), str::to_owned)
+}
+
 /// The residual after every iteration or bounce, where there is any.
 fn residuals(folder: &ResultFolder, model: &Model, outcome: &Outcome) -> Result<(), ReportError> {
     let lines = histories(outcome);
@@ -203,8 +207,8 @@ fn residuals(folder: &ResultFolder, model: &Model, outcome: &Outcome) -> Result<
         return Ok(());
     }
     folder.write("residuals.csv", |out| write_residuals_csv(&lines, out))?;
-    let draw =
-        |out: &mut dyn io::Write| write_residuals_plot(&model.method.name(), across(model), &lines, out);
+    let title = format!("{}: residuals of {}", title(model), model.method.name());
+    let draw = |out: &mut dyn io::Write| write_residuals_plot(&title, across(model), &lines, out);
     folder.write("residuals.svg", draw).map(drop)
 }
 
