@@ -3,14 +3,16 @@
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_montecarlo::points::{Key, PointSet, Samples};
 use fredholm_montecarlo::{Site, Surfaces};
-use fredholm_report::{DIRECTION_GROUPS, Gathering, Seen};
+use fredholm_report::{DIRECTION_GROUPS, Gathering, Seen, Where};
 
 use crate::error::Error;
 use crate::problem::Problem;
 use crate::stochastic::failure;
 
-/// Directions of a group. Powers of two are where Sobol points are most even.
-const DIRECTIONS: u32 = 64;
+/// Directions of a group where all is gathered, and where only what is uneven is. Powers of two are
+/// where Sobol points are most even.
+const EVERYWHERE: u32 = 64;
+const WHERE_UNEVEN: u32 = 32;
 
 /// Bytes of an element while rays look for it.
 pub(crate) const BYTES_OF_A_MET_ELEMENT: u128 = 400;
@@ -18,13 +20,15 @@ pub(crate) const BYTES_OF_A_MET_ELEMENT: u128 = 400;
 /// Casts rays from points of elements.
 pub(crate) struct Directions {
     surfaces: Surfaces,
+    of_group: u32,
 }
 
 impl Directions {
-    pub(crate) fn new(problem: &Problem) -> Result<Self, Error> {
+    pub(crate) fn new(problem: &Problem, place: Where) -> Result<Self, Error> {
         let patches: Vec<Patch> = problem.mesh.patches().copied().collect();
         let surfaces = Surfaces::blocked_by(problem.mesh.occluders(), patches);
-        Ok(Self { surfaces: surfaces.map_err(failure)? })
+        let of_group = if place == Where::Everywhere { EVERYWHERE } else { WHERE_UNEVEN };
+        Ok(Self { surfaces: surfaces.map_err(failure)?, of_group })
     }
 }
 
@@ -34,8 +38,8 @@ impl Gathering for Directions {
         let from = Site { patch: leaf, point };
         for group in 0..DIRECTION_GROUPS as u32 {
             let key = Key { seed: 0, batch: group, stream: number };
-            let mut samples = Samples::new(PointSet::Sobol, key, DIRECTIONS);
-            met.extend((0..DIRECTIONS).map(|sample| {
+            let mut samples = Samples::new(PointSet::Sobol, key, self.of_group);
+            met.extend((0..self.of_group).map(|sample| {
                 let site = self.surfaces.bounce(from, samples.draw(sample).pair())?;
                 Some((site.patch, site.point))
             }));

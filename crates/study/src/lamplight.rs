@@ -44,7 +44,7 @@ impl<'a> Lamplight<'a> {
     ) -> Result<Self, Error> {
         let (scene, mesh) = (&problem.scene, &problem.mesh);
         let reflectance = scene.reflectance(mesh);
-        let gathering = |place| -> Result<_, Error> { Ok(Some((Directions::new(problem)?, place))) };
+        let gathering = |place| -> Result<_, Error> { Ok(Some((Directions::new(problem, place)?, place))) };
         let none = |reflectance| {
             let gathering = match gathers {
                 Some(Where::Everywhere) => gathering(Where::Everywhere)?,

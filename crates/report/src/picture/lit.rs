@@ -56,7 +56,7 @@ const UNSEEN_DIFFERENCE: f64 = 0.01;
 const COSINE_TOLERANCE: f64 = 1e-9;
 /// By how much the light without that of the lamps bends between elements, over all that an element
 /// sends on, from which on it is too large for that light.
-const UNEVEN_SHARE: f64 = 0.02;
+const UNEVEN_SHARE: f64 = 0.03;
 /// How exact all that is gathered has to be, and what is gathered only where it is uneven.
 const EVERYWHERE: Quality = Quality { error: 0.005, reach: 0.15 };
 const WHERE_UNEVEN: Quality = Quality { error: 0.01, reach: 0.35 };
