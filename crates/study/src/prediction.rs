@@ -229,14 +229,14 @@ pub(crate) fn results(elements: usize, bands: usize, pictures: Pictures) -> u128
     let drawn = n * BYTES_OF_A_DRAWN_ELEMENT + if lit { values * BYTES_OF_A_LIT_VALUE } else { 0 };
     let of_pixels =
         pictured(pixels, count).max(if lit { pixels.saturating_mul(BYTES_OF_A_LIT_PIXEL) } else { 0 });
-    let of_gathering = if gathered || lit && elements <= MOST_GATHERED_ELEMENTS {
-        pixels.saturating_mul(BYTES_OF_A_GATHERED_PIXEL)
-            + n * BYTES_OF_A_MET_ELEMENT
-            + values * BYTES_OF_A_SENT_VALUE
+    let of_elements = if gathered || lit && elements <= MOST_GATHERED_ELEMENTS {
+        n * BYTES_OF_A_MET_ELEMENT + values * BYTES_OF_A_SENT_VALUE
     } else {
         0
     };
-    files.saturating_add(drawn).saturating_add(of_pixels).saturating_add(of_gathering)
+    let of_places = if gathered { pixels.saturating_mul(BYTES_OF_A_GATHERED_PIXEL) } else { 0 };
+    let gathering = of_places.saturating_add(of_elements);
+    files.saturating_add(drawn).saturating_add(of_pixels).saturating_add(gathering)
 }
 
 /// Bytes of so many pictures of so many pixels.

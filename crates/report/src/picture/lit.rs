@@ -154,8 +154,7 @@ pub struct Lit<'a> {
 pub enum Where {
     /// At all pixels.
     Everywhere,
-    /// Where elements are too large for it: between the corners of one it differs by more than
-    /// [`UNEVEN_SHARE`] of the light of the element.
+    /// Where it bends so much between elements that they are too large for it.
     Uneven,
 }
 
