@@ -4,7 +4,9 @@
 //! F are factors of what the point sees of each lamp, so that shadows have their true borders
 //! whatever the elements; E_r is the rest of the irradiance, E − E_d with the part E_d that the
 //! solution itself has straight from the lamps, interpolated between the corners of elements of one
-//! surface: so no light passes under walls or blocks. Or it is gathered ([`super::gathered`]).
+//! surface: so no light passes under walls or blocks. Or it is gathered ([`super::gathered`]), at all
+//! pixels or where elements are too large for it. Factors may have errors that are known and
+//! independent from point to point; their light is smoothed ([`super::smoothed`]).
 //!
 //! Every pixel is first looked at through its middle. One whose neighbours show another plane,
 //! surface or brightness is then the mean of [`POINTS_OF_A_PIXEL`] points of a lattice: borders of
