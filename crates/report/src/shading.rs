@@ -36,7 +36,8 @@ impl<'a> Shading<'a> {
     /// element: so many times the corners are moved by what the elements around them lack (the
     /// iteration of P. van Cittert, Zeitschrift für Physik 69, 1931, doi:10.1007/BF01391351). Else
     /// dark corners of rooms would be too bright by what the light changes within half an element.
-    /// Corners are not moved below 0, nor below the least of the elements around them if that is less.
+    /// Corners are not moved below 0, nor below the least of the elements around them if that is
+    /// less.
     pub(crate) fn of_values(field: Field<'a>, passes: usize, (width, leaves): (usize, Vec<f64>)) -> Self {
         let mesh = field.mesh();
         let Anchored { leaves: welded, hanging, .. } = mesh.anchored(SMOOTH_WELD);
@@ -75,9 +76,9 @@ impl<'a> Shading<'a> {
         }
     }
 
-    /// By how much the leaves around each bend: those that share a corner with it, and itself. A leaf
-    /// bends by the difference of its value from the mean over its corners, of which each has the
-    /// mean of the leaves around it.
+    /// By how much the leaves around each bend: those that share a corner with it, and itself. A
+    /// leaf bends by the difference of its value from the mean over its corners, of which each has
+    /// the mean of the leaves around it.
     pub(crate) fn bends(&self, values: &[f64]) -> Vec<f64> {
         let mesh = self.field.mesh();
         let corners = vertex_values(mesh, &self.welded, (values, 1), |leaf| self.field.exposed(leaf));
@@ -150,7 +151,8 @@ mod tests {
         assert!(bends[2..8].iter().all(|bend| *bend < 1e-12) && bends[0] > 0.2 && bends[9] > 0.2);
         let step: Vec<f64> = (0..10).map(|k| if k < 5 { 1.0 } else { 3.0 }).collect();
         let bends = shading.bends(&step);
-        // Half a step at the one corner, a quarter in the mean, and one leaf farther on either side.
+        // Half a step at the one corner, a quarter in the mean, and one leaf farther on either
+        // side.
         assert!((3..7).all(|k| (bends[k] - 0.5).abs() < 1e-12), "{bends:?}");
         assert!(bends[..3].iter().chain(&bends[7..]).all(|bend| *bend < 1e-12), "{bends:?}");
     }

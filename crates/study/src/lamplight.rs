@@ -36,7 +36,8 @@ pub(crate) struct Lamplight<'a> {
 impl<'a> Lamplight<'a> {
     /// The lamps of a scene, of which the irradiance of the elements has a part `direct`, W/m²,
     /// where that is known. The rest is gathered where that is wanted: at all pixels, or only where
-    /// elements are too large to tell it, of lamps that are told apart and in scenes of few elements.
+    /// elements are too large to tell it, of lamps that are told apart and in scenes of few
+    /// elements.
     pub(crate) fn new(
         problem: &'a Problem,
         (direct, gathers): (Option<&'a MultiVector<f64>>, Option<Where>),

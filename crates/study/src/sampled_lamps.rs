@@ -19,8 +19,8 @@ use fredholm_report::{LampFactors, Points};
 use fredholm_visibility::Occluders;
 use std::f64::consts::FRAC_1_PI;
 
-/// Segments of a point, of one of several points of a pixel, and of one whose number is told. Powers
-/// of two are where Sobol points are most even.
+/// Segments of a point, of one of several points of a pixel, and of one whose number is told.
+/// Powers of two are where Sobol points are most even.
 pub(crate) const SEGMENTS: usize = 32;
 const SEGMENTS_OF_PART: usize = 8;
 const SEGMENTS_OF_NUMBER: usize = 1024;

@@ -5,8 +5,8 @@
 //! Lambert's formula the factor of such a piece is a sum over the edges of its outline, whatever
 //! lies within (Schröder & Hanrahan, doi:10.1145/166117.166138). Of the outline the shadows of the
 //! bodies between are cut out exactly. Which bodies may come between an element and a piece is
-//! found once an element; what nothing can come between is open for all of its points. Scenes of very
-//! many occluders or lamps have none. Metres.
+//! found once an element; what nothing can come between is open for all of its points. Scenes of
+//! very many occluders or lamps have none. Metres.
 
 use super::shadows::{Covers, FLAT_HEIGHT, Shadows};
 use fredholm_coupling::form_factor::point_to_polygon;

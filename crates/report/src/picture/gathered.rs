@@ -75,14 +75,14 @@ pub(super) struct Sent<'a> {
     /// bands.
     smooth: Shading<'a>,
     constant: Vec<f64>,
-    /// The lamps that are looked at where leaves are near, with the exitance of each, lamps × bands,
-    /// and the reflectance of the leaves, leaves × bands.
+    /// The lamps that are looked at where leaves are near, with the exitance of each, lamps ×
+    /// bands, and the reflectance of the leaves, leaves × bands.
     lamps: Option<(&'a dyn LampLight, &'a [f64], &'a [f64])>,
 }
 
 impl<'a> Sent<'a> {
-    /// The radiosity; without its exitance, and with the part of its irradiance that is the lamps' not
-    /// interpolated, where that is told apart; nearby that part is looked at where it is exact.
+    /// The radiosity; without its exitance, and with the part of its irradiance that is the lamps'
+    /// not interpolated, where that is told apart; nearby that part is looked at where it is exact.
     pub fn new(field: Field<'a>, lit: &Lit<'a>, (passes, is_exact): (usize, bool)) -> Self {
         let Lit { light, exitance, reflectance, direct, .. } = *lit;
         let lamps = (is_exact && direct.is_some()).then_some((light, exitance, reflectance));

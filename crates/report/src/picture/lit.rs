@@ -4,8 +4,8 @@
 //! F are factors of what the point sees of each lamp, so that shadows have their true borders
 //! whatever the elements; E_r is the rest of the irradiance, E − E_d with the part E_d that the
 //! solution itself has straight from the lamps, interpolated between the corners of elements of one
-//! surface: so no light passes under walls or blocks. Or it is gathered ([`super::gathered`]), at all
-//! pixels or where elements are too large for it. Factors may have errors that are known and
+//! surface: so no light passes under walls or blocks. Or it is gathered ([`super::gathered`]), at
+//! all pixels or where elements are too large for it. Factors may have errors that are known and
 //! independent from point to point; their light is smoothed ([`super::smoothed`]).
 //!
 //! Every pixel is first looked at through its middle. One whose neighbours show another plane,
@@ -41,8 +41,8 @@ const BRIGHT_BORDER_RATIO: f64 = 8.0;
 const POINTS_ALONG_BRIGHT_PIXEL: usize = 16;
 /// Difference of the colours around a point, over the larger, up to which its own is their mean.
 const ALIKE_DIFFERENCE: f64 = 0.03;
-/// Second difference of colours of every other pixel, over the larger, up to which what lies between
-/// two of them is interpolated: the parabola takes an eighth of it away.
+/// Second difference of colours of every other pixel, over the larger, up to which what lies
+/// between two of them is interpolated: the parabola takes an eighth of it away.
 const MOST_BEND: f64 = 0.04;
 /// Pixels in a row of a tile.
 const TILE_SIDE: usize = 64;
@@ -445,8 +445,8 @@ impl<'a> LitView<'a> {
     }
 
     /// Adds to the light of the lamps what else there is. Standard errors of what is gathered are
-    /// returned, W/m²: none for pixels where nothing is seen, no number where light is interpolated,
-    /// and no list where nothing is gathered.
+    /// returned, W/m²: none for pixels where nothing is seen, no number where light is
+    /// interpolated, and no list where nothing is gathered.
     fn add_rest(&self, middles: &mut [Middle]) -> Vec<[f32; 3]> {
         let columns = self.eye.camera().width as usize;
         let add = |(k, middle): (usize, &mut Middle)| {
@@ -531,7 +531,8 @@ impl<'a> LitView<'a> {
         let look = |(x, y)| self.eye.hit(x as f64 + 0.5, y as f64 + 0.5);
         let samples: Vec<Seen> = tile.pixels().map(look).collect();
         let mut brush = self.brush(Points::One);
-        // Every other pixel of every other row first, then those that they do not tell the colour of.
+        // Every other pixel of every other row first, then those that they do not tell the colour
+        // of.
         let w = tile.xs.len();
         let first = |k: usize| (k % w).is_multiple_of(2) && (k / w).is_multiple_of(2);
         let some = |wanted: &dyn Fn(usize) -> bool| -> Vec<Seen> {

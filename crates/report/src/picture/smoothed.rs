@@ -5,8 +5,8 @@
 //! ```
 //!
 //! over the pixels q that show the same surface, about the same plane of it and a like normal (the
-//! bilateral filter of C. Tomasi and R. Manduchi, ICCV 1998, doi:10.1109/ICCV.1998.710815). l is the
-//! luminance and s the root of the mean square of its standard errors in the window: borders of
+//! bilateral filter of C. Tomasi and R. Manduchi, ICCV 1998, doi:10.1109/ICCV.1998.710815). l is
+//! the luminance and s the root of the mean square of its standard errors in the window: borders of
 //! shadows that differ by more than the noise stay where they are.
 
 use std::ops::Range;
@@ -48,8 +48,8 @@ impl Shown {
     }
 }
 
-/// The colours of the pixels of a part of the picture, row by row, from those of all pixels, rows of
-/// `width`.
+/// The colours of the pixels of a part of the picture, row by row, from those of all pixels, rows
+/// of `width`.
 pub(super) fn smoothed(
     (eye, mesh): (&Eye, &Mesh),
     (middles, width): (&[Middle], usize),

@@ -26,8 +26,8 @@ const STEPS_OF_A_PIXEL: i32 = 10;
 const LEGEND_ROW: i32 = TITLE_ROW;
 /// Height of a panel with its labels, pixels.
 const PANEL_HEIGHT: i32 = 340;
-/// Room for the labels below a panel, and at least beside it, pixels; and that for the name of an axis
-/// beside its numbers.
+/// Room for the labels below a panel, and at least beside it, pixels; and that for the name of an
+/// axis beside its numbers.
 const ROOM_BELOW: i32 = 58;
 const ROOM_BESIDE: i32 = 84;
 const ROOM_OF_A_NAME: i32 = 38;
