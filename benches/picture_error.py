@@ -44,6 +44,15 @@ def means(values, side):
     return parts.mean((1, 3))
 
 
+def beside_lamps(radiosity, lamps):
+    """Pixels that show a lamp, height × width, and those two pixels round them."""
+    bright = radiosity.max(2) > lamps
+    for _ in range(2):
+        bright = bright | np.roll(bright, 1, 0) | np.roll(bright, -1, 0)
+        bright = bright | np.roll(bright, 1, 1) | np.roll(bright, -1, 1)
+    return bright
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("traced")
@@ -53,11 +62,7 @@ def main():
     file = np.load(pathlib.Path(asked.traced) / "pixels.npz")
     radiosity, error = (np.broadcast_to(file[name], (*file["covered"].shape, 3))
                         for name in ("radiosity", "standard_error"))
-    bright = radiosity.max(2) > asked.lamps
-    for _ in range(2):
-        bright = bright | np.roll(bright, 1, 0) | np.roll(bright, -1, 0)
-        bright = bright | np.roll(bright, 1, 1) | np.roll(bright, -1, 1)
-    used = (file["covered"] > 0.999) & ~bright
+    used = (file["covered"] > 0.999) & ~beside_lamps(radiosity, asked.lamps)
     # The channels of a pixel come from the same paths: their errors add up.
     traced, noise = radiosity @ LUMINANCE, (error @ LUMINANCE) ** 2
     mean = traced[used].mean()

@@ -200,6 +200,11 @@ impl Gathering for Above {
             (at.x.abs() < 1.0 && at.y.abs() < 1.0).then_some((16, at))
         }));
     }
+
+    fn onward(&self, _: u32, _: u32, from: &[(usize, Vec3)], met: &mut Vec<Seen>) {
+        met.clear();
+        met.resize(from.len(), None);
+    }
 }
 
 /// View factor from a point of the lower square to the upper one (J. R. Howell, catalogue of
@@ -279,6 +284,66 @@ fn gathered_light_is_that_of_the_closed_form_and_its_error_the_stated_one() {
     // Places have 5 to 10 %, and each pixel up to sixteen of them.
     assert!(off < 0.025 && worst < 0.12, "{off} {worst}");
     assert!(score > 0.5 && score < 1.5, "{score}");
+}
+
+/// Meets a ceiling close above the floor, and from there a corner of the floor.
+struct Gap;
+
+impl Gathering for Gap {
+    fn meet(&self, _: u32, _: usize, point: Vec3, met: &mut Vec<Seen>) {
+        met.clear();
+        met.resize(DIRECTION_GROUPS * 4, Some((16, point.with_z(0.1))));
+    }
+
+    fn onward(&self, _: u32, _: u32, from: &[(usize, Vec3)], met: &mut Vec<Seen>) {
+        met.clear();
+        met.resize(from.len(), Some((0, Vec3::new(-0.75, -0.75, 0.0))));
+    }
+}
+
+/// A lamp of which all see a quarter.
+struct Quarter;
+
+impl LampLight for Quarter {
+    fn lamps(&self) -> usize {
+        1
+    }
+
+    fn lighter(&self, _points: Points) -> Lighter<'_> {
+        Box::new(|_, _, factors| factors.values.fill(0.25))
+    }
+}
+
+#[test]
+fn what_is_met_nearby_sends_on_the_light_of_lamps_and_of_one_more_direction() {
+    let line = |i: usize| 0.5 * i as f64 - 1.0;
+    let corner = |i: usize, j: usize| Vec3::new(line(i), line(j), 0.0);
+    let mut builder = MeshBuilder::default();
+    builder.surface("floor", 0);
+    for (i, j) in (0..4).flat_map(|i| (0..4).map(move |j| (i, j))) {
+        let ring = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
+        builder.face(&[Patch::quad(ring).unwrap().unwrap()]).unwrap();
+    }
+    builder.surface("ceiling", 1);
+    let above = [corner(0, 0), corner(0, 4), corner(4, 4), corner(4, 0)].map(|p| p.with_z(0.1));
+    builder.face(&[Patch::quad(above).unwrap().unwrap()]).unwrap();
+    let (mesh, bands) = (builder.build(), vec!["grey".to_owned()]);
+    // The solution has far too much light in the ceiling.
+    let mut radiosity = vec![0.4; 17];
+    radiosity[16] = 100.0;
+    let field = Field::new(&mesh, &bands, &radiosity, &radiosity).unwrap();
+    let lit = Lit {
+        light: &Quarter,
+        exitance: &[6.0],
+        reflectance: &[0.5; 17],
+        direct: Some(&[0.2; 17]),
+        gathering: Some((&Gap, Where::Everywhere)),
+    };
+    let camera = Camera { eye: Vec3::new(0.0, 0.0, 2.0), width: 64, height: 64, ..camera() };
+    let drawn = render_lit(&field, &camera, Exposure::Fixed(0.2), &lit, true).unwrap().unwrap();
+    // ρ (6/4 + ρ (6/4 + 0.4)), the corner at −0.75 being too far from the ceiling above the rest.
+    let found = f64::from(drawn.linear[64 * 20 + 40][0]);
+    assert!((found - 0.5 * (1.5 + 0.5 * 1.9)).abs() < 1e-6, "{found}");
 }
 
 #[test]

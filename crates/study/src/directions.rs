@@ -45,4 +45,15 @@ impl Gathering for Directions {
             }));
         }
     }
+
+    fn onward(&self, number: u32, step: u32, from: &[(usize, Vec3)], met: &mut Vec<Seen>) {
+        met.clear();
+        // The points of a sequence that are taken one behind the other are even among themselves.
+        let key = Key { seed: 0, batch: DIRECTION_GROUPS as u32 + step, stream: number };
+        let mut samples = Samples::new(PointSet::Sobol, key, from.len() as u32);
+        met.extend((0..).zip(from).map(|(sample, &(patch, point))| {
+            let site = self.surfaces.bounce(Site { patch, point }, samples.draw(sample).pair())?;
+            Some((site.patch, site.point))
+        }));
+    }
 }

@@ -7,8 +7,15 @@
 //! it reaches. A point has the value at it of the plane that fits the places around it best
 //! (weighted least squares), on the same surface and where normals are alike. What these are off
 //! that plane, and what the groups of directions of a place differ by, is the stated error.
-//! Places are added on grids of pixels, each twice as fine, where too few others reach or where
-//! that error is too large. W/m².
+//! No place reaches farther than others nearby allow that are close to something. Places are added
+//! on grids of pixels, each twice as fine, where too few others reach or where that error is too
+//! large.
+//!
+//! What a direction meets has the radiosity of the solution, but for surfaces nearby, whose
+//! elements are too large to tell it: narrow gaps and corners would be too bright. There the light
+//! of the lamps is taken where it is met, and the rest from what one more direction meets. W/m².
+
+use std::ops::{Range, RangeInclusive};
 
 use rayon::prelude::*;
 
@@ -46,6 +53,8 @@ const FLAT_SHARE: f64 = 0.25;
 /// Pixels along the side of a bin of places, and bins that are looked through on either side.
 const BIN_SIDE: usize = 8;
 const MOST_RINGS: usize = 8;
+/// The same where places limit each other.
+const CLAMPING_RINGS: usize = 3;
 
 /// How exact what is gathered has to be.
 #[derive(Clone, Copy, Debug)]
@@ -63,11 +72,18 @@ pub trait Gathering: Sync {
     /// many, independent of each other, one behind the other. Numbers below 2³¹ tell places apart,
     /// and the directions of different ones are independent.
     fn meet(&self, number: u32, leaf: usize, point: Vec3, met: &mut Vec<Seen>);
+
+    /// What one more ray meets from each of some points of leaves, with the same density of
+    /// directions and independent of the others: `step` counts the rays on the way there.
+    fn onward(&self, number: u32, step: u32, from: &[(usize, Vec3)], met: &mut Vec<Seen>);
 }
 
-/// Distance of what a direction meets, over the root of the area of its leaf, up to which the light
-/// that the lamps send to the leaf is looked at where it is met: its mean is not enough there.
-const NEAR: f64 = 1.0;
+/// Distance of what a direction meets, over the root of the area of its leaf, up to which the mean
+/// over the leaf is not enough: the lamps are looked at where it is met, and what else comes to it
+/// is taken from where one more direction ends.
+const NEAR: f64 = 0.5;
+/// More directions of this kind, one behind the other, at most.
+const MOST_STEPS: u32 = 4;
 
 /// What surfaces send on, W/m².
 pub(super) struct Sent<'a> {
@@ -105,73 +121,149 @@ impl<'a> Sent<'a> {
         Self { smooth: Shading::of_values(field, passes, (bands, smooth)), constant, lamps }
     }
 
-    /// What a leaf sends on of the light of lamps, as a whole.
-    fn add_whole(&self, leaf: usize, sum: &mut [f64]) {
+    /// Adds a share of what a point of a leaf sends on, without the light that comes to it straight
+    /// from lamps that are told apart.
+    fn add_smooth(&self, (leaf, point): (usize, Vec3), share: &[f64], sum: &mut [f64]) {
+        let mut sent = vec![0.0; share.len()];
+        self.smooth.add(leaf, point, &mut sent);
+        sum.iter_mut().zip(share.iter().zip(sent)).for_each(|(sum, (share, sent))| *sum += share * sent);
+    }
+
+    /// Adds a share of what a leaf sends on of the light of lamps, as a whole.
+    fn add_whole(&self, leaf: usize, share: &[f64], sum: &mut [f64]) {
         if !self.constant.is_empty() {
             let bands = sum.len();
-            let values = &self.constant[leaf * bands..(leaf + 1) * bands];
-            sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
+            let sent = &self.constant[leaf * bands..(leaf + 1) * bands];
+            sum.iter_mut().zip(share.iter().zip(sent)).for_each(|(sum, (share, sent))| *sum += share * sent);
         }
     }
 
-    fn looker(&self) -> Looker<'_> {
-        let look = self.lamps.map(|(light, ..)| light.lighter(Points::Several));
-        Looker { sent: self, look, near: Vec::new(), points: Vec::new(), factors: LampFactors::default() }
+    fn looker<'s>(&'s self, gathering: &'s dyn Gathering) -> Looker<'s> {
+        Looker {
+            sent: self,
+            gathering,
+            look: self.lamps.map(|(light, ..)| light.lighter(Points::Several)),
+            near: Vec::new(),
+            shares: Vec::new(),
+            onward: Vec::new(),
+            points: Vec::new(),
+            factors: LampFactors::default(),
+        }
     }
 }
 
-/// Looks at the lamps from what directions of one place meet nearby, for one thread.
+/// What a direction met nearby: of a place, or of what was itself met nearby.
+#[derive(Clone, Copy, Debug)]
+struct Near {
+    leaf: usize,
+    point: Vec3,
+    /// Group of directions of the place.
+    group: usize,
+}
+
+/// Sums what the directions of one place meet, for one thread.
 struct Looker<'s> {
     sent: &'s Sent<'s>,
+    gathering: &'s dyn Gathering,
     look: Option<Lighter<'s>>,
-    /// Leaf, group of directions, and point.
-    near: Vec<(u32, u32, Vec3)>,
+    near: Vec<Near>,
+    /// The shares of what they send on that the place gets, near × bands.
+    shares: Vec<f64>,
+    onward: Vec<Seen>,
     points: Vec<Vec3>,
     factors: LampFactors,
 }
 
 impl Looker<'_> {
-    /// Sums of what the groups of directions meet, groups × bands, W/m².
-    fn sums(&mut self, from: Vec3, met: &[Seen], (mesh, bands): (&Mesh, usize)) -> Vec<f64> {
+    /// Sums of what the groups of directions of a place meet, groups × bands, W/m². What is met
+    /// nearby sends on the light of the lamps that comes to it and what one more direction meets.
+    fn sums(&mut self, number: u32, place: Vec3, met: &[Seen], mesh: &Mesh, bands: usize) -> Vec<f64> {
         let of_group = (met.len() / DIRECTION_GROUPS).max(1);
         let mut sums = vec![0.0; DIRECTION_GROUPS * bands];
         self.near.clear();
-        for (k, (leaf, at)) in met.iter().enumerate().filter_map(|(k, met)| met.map(|met| (k, met))) {
+        self.shares.clear();
+        let whole = vec![1.0; bands];
+        for (k, (leaf, point)) in met.iter().enumerate().filter_map(|(k, met)| met.map(|met| (k, met))) {
             let group = (k / of_group).min(DIRECTION_GROUPS - 1);
-            let sum = &mut sums[group * bands..(group + 1) * bands];
-            self.sent.smooth.add(leaf, at, sum);
-            let reach = NEAR * NEAR * mesh.patch(leaf).area();
-            if self.look.is_some() && at.distance_squared(from) < reach {
-                self.near.push((leaf as u32, group as u32, at));
-            } else {
-                self.sent.add_whole(leaf, sum);
+            self.add(place, Near { leaf, point, group }, &whole, (mesh, &mut sums));
+        }
+        let mut new = 0..self.near.len();
+        for step in 0..MOST_STEPS {
+            let sites: Vec<(usize, Vec3)> =
+                self.near[new.clone()].iter().map(|near| (near.leaf, near.point)).collect();
+            let mut onward = std::mem::take(&mut self.onward);
+            self.gathering.onward(number, step, &sites, &mut onward);
+            for (k, met) in new.clone().zip(&onward) {
+                let Some((leaf, point)) = *met else { continue };
+                let Near { point: from, group, .. } = self.near[k];
+                let share = self.reflected(k, bands);
+                self.add(from, Near { leaf, point, group }, &share, (mesh, &mut sums));
+            }
+            self.onward = onward;
+            new = new.end..self.near.len();
+            if new.is_empty() {
+                break;
             }
         }
-        self.add_near(bands, &mut sums);
+        // What is left is taken from the solution, without the light of lamps.
+        for k in new {
+            let Near { leaf, point, group } = self.near[k];
+            self.sent.add_smooth(
+                (leaf, point),
+                &self.shares[k * bands..(k + 1) * bands],
+                &mut sums[group * bands..(group + 1) * bands],
+            );
+        }
+        self.add_lamps(bands, &mut sums);
         sums
     }
 
-    fn add_near(&mut self, bands: usize, sums: &mut [f64]) {
-        let (Some(look), Some((light, exitance, reflectance))) = (&mut self.look, self.sent.lamps) else {
+    /// The share of its irradiance that the place gets of what is nearby.
+    fn reflected(&self, k: usize, bands: usize) -> Vec<f64> {
+        let share = &self.shares[k * bands..(k + 1) * bands];
+        let leaf = self.near[k].leaf;
+        let rho = self.sent.lamps.map_or(&[][..], |(.., rho)| &rho[leaf * bands..(leaf + 1) * bands]);
+        share.iter().zip(rho).map(|(share, rho)| share * rho).collect()
+    }
+
+    /// Adds a share of what is met, as it is seen from a point, or puts it with what is near.
+    fn add(&mut self, from: Vec3, met: Near, share: &[f64], (mesh, sums): (&Mesh, &mut [f64])) {
+        let Near { leaf, point, group } = met;
+        let reach = NEAR * NEAR * mesh.patch(leaf).area();
+        if self.look.is_some() && point.distance_squared(from) < reach {
+            self.near.push(met);
+            self.shares.extend_from_slice(share);
+            return;
+        }
+        let sum = &mut sums[group * share.len()..(group + 1) * share.len()];
+        self.sent.add_smooth((leaf, point), share, sum);
+        self.sent.add_whole(leaf, share, sum);
+    }
+
+    /// Adds the light of lamps that what is near sends on.
+    fn add_lamps(&mut self, bands: usize, sums: &mut [f64]) {
+        let (Some(mut look), Some((light, exitance, _))) = (self.look.take(), self.sent.lamps) else {
             return;
         };
         let lamps = light.lamps();
         // In the order of directions, those of one leaf together.
-        self.near.sort_by_key(|(leaf, ..)| *leaf);
-        for group in self.near.chunk_by(|a, b| a.0 == b.0) {
-            let leaf = group[0].0 as usize;
+        let mut order: Vec<usize> = (0..self.near.len()).collect();
+        order.sort_by_key(|&k| self.near[k].leaf);
+        for together in order.chunk_by(|&a, &b| self.near[a].leaf == self.near[b].leaf) {
             self.points.clear();
-            self.points.extend(group.iter().map(|(.., at)| *at));
-            self.factors.reset(lamps * group.len());
-            look(leaf, &self.points, &mut self.factors);
-            let rho = &reflectance[leaf * bands..(leaf + 1) * bands];
-            for ((_, group, _), factors) in group.iter().zip(self.factors.values.chunks_exact(lamps)) {
-                let sum = &mut sums[*group as usize * bands..(*group as usize + 1) * bands];
+            self.points.extend(together.iter().map(|&k| self.near[k].point));
+            self.factors.reset(lamps * together.len());
+            look(self.near[together[0]].leaf, &self.points, &mut self.factors);
+            for (&k, factors) in together.iter().zip(self.factors.values.chunks_exact(lamps)) {
+                let (group, share) = (self.near[k].group, self.reflected(k, bands));
+                let sum = &mut sums[group * bands..(group + 1) * bands];
                 for (factor, m) in factors.iter().zip(exitance.chunks_exact(bands)) {
-                    sum.iter_mut().zip(rho.iter().zip(m)).for_each(|(sum, (r, m))| *sum += r * m * factor);
+                    let add = |(sum, (share, m)): (&mut f64, (&f64, &f64))| *sum += share * m * factor;
+                    sum.iter_mut().zip(share.iter().zip(m)).for_each(add);
                 }
             }
         }
+        self.look = Some(look);
     }
 }
 
@@ -208,8 +300,8 @@ pub(super) struct Gathered<'a> {
     /// As of [`Quality`].
     reach: f64,
     places: Vec<Place>,
-    /// Numbers of the places in squares of pixels.
-    bins: Vec<Vec<u32>>,
+    /// Where the places of each bin begin, a square of pixels, row by row; and where the last end.
+    bins: Vec<usize>,
     /// Bins in a row, and rows.
     sides: [usize; 2],
 }
@@ -236,7 +328,7 @@ impl<'a> Gathered<'a> {
         let camera = eye.camera();
         let (w, h) = (camera.width as usize, camera.height as usize);
         let sides = [w.div_ceil(BIN_SIDE), h.div_ceil(BIN_SIDE)];
-        let bins = vec![Vec::new(); sides[0] * sides[1]];
+        let bins = vec![0; sides[0] * sides[1] + 1];
         let mut gathered = Self { field, eye, reach: quality.reach, places: Vec::new(), bins, sides };
         for (pass, stride) in STRIDES.into_iter().enumerate() {
             let coarser = if pass == 0 { 0 } else { 2 * stride };
@@ -262,16 +354,18 @@ impl<'a> Gathered<'a> {
             });
             let wanted: Vec<(usize, usize, Candidate)> = wanted.collect();
             let begun = pass as f64 / STRIDES.len() as f64;
-            let begin = || (Vec::new(), sent.looker());
+            let begin = || (Vec::new(), sent.looker(gathering));
             let look = |(met, looker): &mut (Vec<Seen>, Looker<'_>),
                         (k, (x, y, candidate)): (usize, &(usize, usize, Candidate))| {
                 let share = begun + k as f64 / (wanted.len() * STRIDES.len()) as f64;
                 if !go_on(share) {
                     return None;
                 }
-                gathering.meet((y * w + x) as u32, candidate.leaf, candidate.point, met);
+                let number = (y * w + x) as u32;
+                gathering.meet(number, candidate.leaf, candidate.point, met);
                 let at = (*x as f64 + 0.5, *y as f64 + 0.5);
-                Some(gathered.place((candidate, at), (met, looker), reflected))
+                let sums = looker.sums(number, candidate.point, met, field.mesh(), field.bands().len());
+                Some(gathered.place((candidate, at), (met, sums), reflected))
             };
             let places = wanted.par_iter().enumerate().map_init(begin, look);
             let places: Vec<Option<Place>> = places.collect();
@@ -290,18 +384,58 @@ impl<'a> Gathered<'a> {
     }
 
     fn insert(&mut self, places: impl Iterator<Item = Place>) {
-        for place in places {
-            let [x, y] = [place.at.0, place.at.1].map(|at| at as usize / BIN_SIDE);
-            self.bins[y * self.sides[0] + x].push(self.places.len() as u32);
-            self.places.push(place);
+        self.places.extend(places);
+        let of_row = self.sides[0];
+        let bin = |place: &Place| place.at.1 as usize / BIN_SIDE * of_row + place.at.0 as usize / BIN_SIDE;
+        self.places.sort_by_key(bin);
+        self.bins.fill(0);
+        self.places.iter().for_each(|place| self.bins[bin(place) + 1] += 1);
+        for k in 1..self.bins.len() {
+            self.bins[k] += self.bins[k - 1];
         }
+        self.clamp();
+    }
+
+    /// The bin of a place of the picture: column and row.
+    fn bin(&self, at: (f64, f64)) -> [usize; 2] {
+        let bin = |at: f64, i: usize| (at.max(0.0) as usize / BIN_SIDE).min(self.sides[i] - 1);
+        [bin(at.0, 0), bin(at.1, 1)]
+    }
+
+    /// The columns and rows of bins up to so many from one.
+    fn around(&self, own: [usize; 2], rings: usize) -> [RangeInclusive<usize>; 2] {
+        [0, 1].map(|i| own[i].saturating_sub(rings)..=(own[i] + rings).min(self.sides[i] - 1))
+    }
+
+    /// The numbers of the places of some columns of a row of bins.
+    fn of_bins(&self, row: usize, columns: RangeInclusive<usize>) -> Range<usize> {
+        let first = row * self.sides[0];
+        self.bins[first + columns.start()]..self.bins[first + columns.end() + 1]
+    }
+
+    /// Lets no place reach farther than what others nearby are close to allows: the distance from a
+    /// point to what is around it changes by no more than the point moves (neighbour clamping, J.
+    /// Křivánek, K. Bouatouch, S. Pattanaik, J. Žára, Rendering Techniques 2006).
+    fn clamp(&mut self) {
+        let clamped = |place: &Place| {
+            let [columns, rows] = self.around(self.bin(place.at), CLAMPING_RINGS);
+            let others = rows.flat_map(|row| &self.places[self.of_bins(row, columns.clone())]);
+            let alike = others.filter(|other| {
+                other.surface == place.surface && other.normal.dot(place.normal) >= ALIKE_COSINE
+            });
+            alike.fold(place.reach, |reach, other| {
+                reach.min(other.reach + self.reach * other.point.distance(place.point))
+            })
+        };
+        let reaches: Vec<f64> = self.places.par_iter().map(clamped).collect();
+        self.places.iter_mut().zip(reaches).for_each(|(place, reach)| place.reach = reach);
     }
 
     /// A place, from what its directions meet.
     fn place(
         &self,
         (candidate, at): (&Candidate, (f64, f64)),
-        (met, looker): (&[Seen], &mut Looker<'_>),
+        (met, mut sums): (&[Seen], Vec<f64>),
         reflected: &dyn Fn(usize, &[f64]) -> Rgb,
     ) -> Place {
         let Candidate { leaf, point, .. } = *candidate;
@@ -309,7 +443,6 @@ impl<'a> Gathered<'a> {
         let of_group = met.len() / DIRECTION_GROUPS;
         let inverse: f64 =
             met.iter().flatten().map(|(_, at)| 1.0 / at.distance(point).max(f64::MIN_POSITIVE)).sum();
-        let mut sums = looker.sums(point, met, (self.field.mesh(), bands));
         for sum in &mut sums {
             *sum /= of_group as f64;
         }
@@ -344,25 +477,27 @@ impl<'a> Gathered<'a> {
         let at = self.eye.place(point)?;
         let mesh = self.field.mesh();
         let (normal, surface) = (mesh.patch(leaf).normal(), mesh.surface_of(leaf) as u32);
-        let own = [at.0, at.1].map(|at| (at.max(0.0) as usize) / BIN_SIDE);
-        let own = [own[0].min(self.sides[0] - 1), own[1].min(self.sides[1] - 1)];
+        let own = self.bin(at);
         let mut near: Vec<(f64, u32)> = Vec::with_capacity(2 * MOST_PLACES);
         for ring in 0..=MOST_RINGS {
             if ring > 1 && near.len() >= MOST_PLACES {
                 break;
             }
-            let [columns, rows] =
-                [0, 1].map(|i| own[i].saturating_sub(ring)..=(own[i] + ring).min(self.sides[i] - 1));
+            let [columns, rows] = self.around(own, ring);
+            let mut look = |places: Range<usize>| {
+                for k in places {
+                    let weight = weight(&self.places[k], (point, normal, surface), at);
+                    near.extend(weight.map(|weight| (weight, k as u32)));
+                }
+            };
             for row in rows {
-                for column in columns.clone() {
-                    if row.abs_diff(own[1]).max(column.abs_diff(own[0])) != ring {
-                        continue;
-                    }
-                    for &k in &self.bins[row * self.sides[0] + column] {
-                        let place = &self.places[k as usize];
-                        if let Some(weight) = weight(place, (point, normal, surface), at) {
-                            near.push((weight, k));
-                        }
+                if row.abs_diff(own[1]) == ring {
+                    look(self.of_bins(row, columns.clone()));
+                    continue;
+                }
+                for column in [*columns.start(), *columns.end()] {
+                    if column.abs_diff(own[0]) == ring {
+                        look(self.of_bins(row, column..=column));
                     }
                 }
             }
@@ -476,10 +611,14 @@ fn weight(place: &Place, (point, normal, surface): (Vec3, Vec3, u32), at: (f64, 
         return None;
     }
     let off = point - place.point;
-    let distance = off.length();
-    let pixels = (at.0 - place.at.0).hypot(at.1 - place.at.1);
-    let share = (distance / place.reach).min(pixels / LEAST_REACH_PIXELS);
-    if share >= 1.0 || off.dot(place.normal + normal).abs() > 2.0 * FLAT_SHARE * distance {
+    let (squared, pixels) = (off.length_squared(), (at.0 - place.at.0).powi(2) + (at.1 - place.at.1).powi(2));
+    let reach = place.reach;
+    if squared >= reach * reach && pixels >= LEAST_REACH_PIXELS * LEAST_REACH_PIXELS {
+        return None;
+    }
+    let distance = squared.sqrt();
+    let share = (distance / reach).min(pixels.sqrt() / LEAST_REACH_PIXELS);
+    if off.dot(place.normal + normal).abs() > 2.0 * FLAT_SHARE * distance {
         return None;
     }
     Some((1.0 - share).powi(2))
@@ -534,7 +673,7 @@ mod tests {
             eye: &eye,
             reach: 0.35,
             places: Vec::new(),
-            bins: vec![Vec::new(); 100],
+            bins: vec![0; 101],
             sides: [10, 10],
         };
         let colour = |p: Vec3| [2.0 + p.x, 3.0 - p.y, 1.0 + 0.5 * p.x + 0.25 * p.y];

@@ -60,7 +60,7 @@ const COSINE_TOLERANCE: f64 = 1e-9;
 /// sends on, from which on it is too large for that light.
 const UNEVEN_SHARE: f64 = 0.03;
 /// How exact all that is gathered has to be, and what is gathered only where it is uneven.
-const EVERYWHERE: Quality = Quality { error: 0.005, reach: 0.15 };
+const EVERYWHERE: Quality = Quality { error: 0.005, reach: 0.2 };
 const WHERE_UNEVEN: Quality = Quality { error: 0.01, reach: 0.35 };
 /// How often the corners are moved towards the means of elements where the rest is smooth.
 const CORNER_PASSES: usize = 3;
