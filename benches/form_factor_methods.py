@@ -32,11 +32,16 @@ quad = [[0, 0, 1], [0, 1, 1], [1, 1, 1], [1, 0, 1]]
 METHODS = {
     "area-gauss": ([(n, n**4) for n in (1, 2, 3, 4, 5, 6, 8, 10)], "#0072b2"),
     "monte-carlo": ([(4**k, 4**k) for k in range(2, 10)], "#d55e00"),
-    "nystrom": ([(n, n**2) for n in (1, 2, 4, 8, 16, 32)], "#009e73"),
-    "hemicube": ([(n, 3 * n**2) for n in (8, 16, 32, 64, 128, 256)], "#cc79a7"),
+    "nystrom": ([(n, n**2) for n in (1, 2, 4, 8, 16, 32)], "#00966c"),
+    "hemicube": ([(n, 3 * n**2) for n in (8, 16, 32, 64, 128, 256)], "#c4649b"),
 }
-LEFT, TOP, WIDTH, HEIGHT = 70, 20, 460, 300
+LEFT, TOP, WIDTH, HEIGHT = 84, 50, 490, 320
 DECADES_ACROSS, DECADES_DOWN = 6, 14
+#: Colours of the plots of the program, and those of them on a dark ground.
+GROUND, INK, GRID = "#ffffff", "#1f2328", "#dee1e5"
+DARK = {GROUND: "#16181d", INK: "#e6e8eb", GRID: "#434954", "#0072b2": "#3d9bd8",
+        "#d55e00": "#f07f2e", "#00966c": "#2bbf94", "#c4649b": "#dd86b8"}
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def exact():
@@ -61,20 +66,30 @@ def place(points, error):
     return f"{x:.1f},{y:.1f}"
 
 
+def text(x, y, words, anchor="middle", turned=""):
+    """Words in the drawing."""
+    return f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}" fill="{INK}"{turned}>{words}</text>'
+
+
+def power(k):
+    """A power of ten."""
+    return "10" + str(k).translate(RAISED)
+
+
 def grid():
-    """Lines and numbers of both axes."""
+    """Title, lines, and numbers and names of both axes."""
+    yield text(14, 28, "Unit squares at distance 1: error of their view factor", "start")
     for k in range(0, DECADES_ACROSS + 1):
         x = LEFT + WIDTH * k / DECADES_ACROSS
-        yield f'<line x1="{x:.1f}" y1="{TOP}" x2="{x:.1f}" y2="{TOP + HEIGHT}" stroke="#dddddd"/>'
-        yield f'<text x="{x:.1f}" y="{TOP + HEIGHT + 18}" text-anchor="middle">1e{k}</text>'
+        yield f'<path d="M{x:.1f} {TOP}v{HEIGHT}" stroke="{GRID}"/>'
+        yield text(x, TOP + HEIGHT + 20, power(k))
     for k in range(0, DECADES_DOWN + 1, 2):
         y = TOP + HEIGHT * k / DECADES_DOWN
-        yield f'<line x1="{LEFT}" y1="{y:.1f}" x2="{LEFT + WIDTH}" y2="{y:.1f}" stroke="#dddddd"/>'
-        yield f'<text x="{LEFT - 8}" y="{y + 4:.1f}" text-anchor="end">1e{-k}</text>'
-    middle = LEFT + WIDTH / 2
-    yield f'<text x="{middle}" y="{TOP + HEIGHT + 40}" text-anchor="middle">points or pixels</text>'
-    yield f'<text transform="translate(18,{TOP + HEIGHT / 2}) rotate(-90)" ' \
-          'text-anchor="middle">relative error</text>'
+        yield f'<path d="M{LEFT} {y:.1f}h{WIDTH}" stroke="{GRID}"/>'
+        yield text(LEFT - 8, y + 5, power(-k), "end")
+    yield text(LEFT + WIDTH / 2, TOP + HEIGHT + 44, "points or pixels")
+    middle = TOP + HEIGHT / 2
+    yield text(20, middle, "relative error", turned=f' transform="rotate(-90 20 {middle})"')
 
 
 def main():
@@ -85,15 +100,17 @@ def main():
         for number, (method, (settings, colour)) in enumerate(METHODS.items()):
             errors = [(n, abs(computed(folder, method, s) / exact() - 1)) for s, n in settings]
             line = " ".join(place(*value) for value in errors)
-            style = f'fill="none" stroke="{colour}" stroke-width="2"'
-            parts.append(f'<polyline points="{line}" {style}/>')
-            y = TOP + 20 + 20 * number
-            parts.append(f'<text x="{LEFT + WIDTH + 12}" y="{y}" fill="{colour}">{method}</text>')
+            parts.append(f'<polyline points="{line}" fill="none" stroke="{colour}" stroke-width="2"/>')
+            x, y = 14 + 145 * number, TOP + HEIGHT + 74
+            parts.append(f'<path d="M{x} {y - 5}h24" stroke="{colour}" stroke-width="2"/>')
+            parts.append(text(x + 32, y, method, "start"))
             print(method, ", ".join(f"{n}: {error:.1e}" for n, error in errors))
-    head = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 640 380" ' \
-           'font-family="sans-serif" font-size="13">'
-    white = '<rect width="640" height="380" fill="white"/>'
-    picture.write_text("\n".join([head, white, *parts, "</svg>\n"]), encoding="utf-8")
+    rules = "".join(f'[fill="{a}"]{{fill:{b}}}[stroke="{a}"]{{stroke:{b}}}' for a, b in DARK.items())
+    head = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 600 456" ' \
+           'font-family="sans-serif" font-size="16">'
+    style = f"<style>@media screen and (prefers-color-scheme:dark){{{rules}}}</style>"
+    ground = f'<rect width="600" height="456" fill="{GROUND}"/>'
+    picture.write_text("\n".join([head, style, ground, *parts, "</svg>\n"]), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -219,7 +219,12 @@ const FILES: &[CataloguedFile] = &[
             ("significant", "", "1 or 0"),
         ],
     ),
-    file("crosscheck.svg, crosscheck.png", "crosscheck", "histogram of z; z in the picture", &[]),
+    file(
+        "crosscheck.svg, crosscheck.png",
+        "crosscheck",
+        "histogram of z; the scene in the colours of z",
+        &[],
+    ),
     file(
         "reference.csv",
         "reference",
@@ -252,7 +257,7 @@ const FILES: &[CataloguedFile] = &[
             ("significant", "", "1 or 0"),
         ],
     ),
-    file("judge.svg, judge.png", "judge", "histogram of z; z of the pixels", &[]),
+    file("judge.svg, judge.png", "judge", "histogram of z; the pixels in the colours of z", &[]),
     file(
         "*.csv",
         "viewfactors",
@@ -410,7 +415,7 @@ const FILES: &[CataloguedFile] = &[
         "residuals; cross-sections and fields of each receiver",
         &[],
     ),
-    file("check.png", "check -o", "the mesh by its sides", &[]),
+    file("check.png", "check -o", "the mesh by its sides, with what is marked", &[]),
 ];
 
 /// All files but records.

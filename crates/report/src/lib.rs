@@ -116,7 +116,7 @@ pub use outputs::{
 pub use picture::{
     Back, DIRECTION_GROUPS, FalseColourPicture, Gathering, LampFactors, LampLight, Layer, Lighter, Link,
     Linked, Lit, LitPicture, Picture, PictureNumber, Points, Seen, Side, Where, render, render_false_colour,
-    render_layers, render_lit, render_sides,
+    render_layers, render_lit, sides_map,
 };
 pub use points_csv::{PointTable, write_points_csv};
 pub use refinement::{

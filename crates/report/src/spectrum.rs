@@ -136,7 +136,7 @@ pub fn write_spectrum_plot(record: &SpectrumRecord, out: &mut dyn Write) -> io::
     let panel = |across: &str, up: Axis, points: fn(&Eigenvalues) -> Vec<Point>| {
         let line = |(number, of): (usize, &Eigenvalues)| Line {
             joined: false,
-            ..Line::distinct(&of.matrix, points(of), number)
+            ..Line::distinct(&of.matrix.replace('_', "-"), points(of), number)
         };
         let lines = band.eigenvalues.iter().enumerate().map(line).collect();
         Part::Panel(Panel::new(Axis::new(across, Span::WithZero), up, lines))

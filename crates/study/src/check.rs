@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use fredholm_linop::Watch;
-use fredholm_report::{Back, Camera, Field, ResultFolder, Side, render_sides};
+use fredholm_report::{Back, Camera, Field, ResultFolder, Side, sides_map};
 use fredholm_scene::{Report, Scene};
 
 use crate::error::{Error, ErrorKind};
@@ -206,7 +206,13 @@ fn draw(scene: &Scene, found: &Report, (folder, name): (&ResultFolder, &str)) ->
         Side { patch: shown.patch, back, marked: shown.meets }
     };
     let sides: Vec<Side> = found.shown.iter().map(side).collect();
-    let picture = render_sides(&sides, &found.open, &camera).map_err(report_failure)?;
+    let picture = sides_map(
+        &sides,
+        (&found.open, "open sides"),
+        &camera,
+        (scene.title().unwrap_or("The mesh"), "pieces that lie on others or cross them"),
+    );
+    let picture = picture.map_err(report_failure)?;
     folder.write(name, |out| picture.write_png(out)).map(drop).map_err(report_failure)
 }
 

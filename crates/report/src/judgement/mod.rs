@@ -24,8 +24,7 @@ pub use pictures::{PictureShape, read_measured_pixels};
 pub use table::read_measured_faces;
 
 use crate::csv::{numbers, quoted};
-use crate::stochastic::{json, score_colour};
-use crate::tone::encode;
+use crate::stochastic::{headline, json, score_colour, with_score_bar};
 use crate::{CrosscheckPower, Picture, ReportError, ResultFolder, Timing, reading, write_score_histogram};
 
 /// Names of the files, in the order in which they are written.
@@ -130,14 +129,13 @@ pub fn write_judgement(
 ) -> Result<(), ReportError> {
     let [values, histogram, image, last] = JUDGE_FILES;
     let scores: Vec<f64> = places.iter().map(|place| place.z).collect();
-    let title = format!(
-        "{}: {} of {} places apart, mean z {:.2}, mean z² {:.2}",
-        record.verdict, record.significant, record.places, record.score_mean, record.score_variance
-    );
+    let JudgeRecord { verdict, significant, places: count, score_mean, score_variance, .. } = record;
+    let title = headline(verdict, [*significant, *count], [*score_mean, *score_variance]);
     folder.write(values, |out| table(places, out))?;
     folder.write(histogram, |out| write_score_histogram(&title, &scores, out))?;
     if let Some(shape) = shape {
-        let picture = picture(&scores, shape);
+        let title = "Tracer and reference: red where the tracer is brighter";
+        let picture = with_score_bar(title, &picture(&scores, shape))?;
         folder.write(image, |out| picture.write_png(out))?;
     }
     folder.write(last, |out| json(record, out)).map(drop)
@@ -157,7 +155,7 @@ fn table(places: &[JudgedPlace], out: &mut dyn Write) -> io::Result<()> {
 fn picture(scores: &[f64], shape: PictureShape) -> Picture {
     let worse = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
     let pixels = scores.chunks(shape.bands).take(shape.width * shape.height);
-    let colour = |pixel: &[f64]| score_colour(pixel.iter().copied().fold(0.0, worse)).map(encode);
+    let colour = |pixel: &[f64]| score_colour(pixel.iter().copied().fold(0.0, worse));
     // Sides of a picture are numbers that were u32 before.
     let [width, height] = [shape.width, shape.height].map(|side| side as u32);
     Picture { width, height, pixels: pixels.flat_map(colour).collect() }

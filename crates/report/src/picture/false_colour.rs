@@ -87,15 +87,14 @@ pub fn render_false_colour(
         let [x, y] = found.pixel.map(|at| f64::from(at) + 0.5);
         ((x, y), number(found.irradiance))
     });
-    let drawn = Annotated {
+    let picture = Annotated {
         title: &title,
         picture: &picture,
-        bar: ColourBar { label: &label, scale: scale.scale.clone(), colour: viridis },
+        bar: Some(ColourBar { label: &label, scale: scale.scale.clone(), colour: viridis }),
         isolines: &isolines,
         numbers: &labelled.collect::<Vec<_>>(),
     }
-    .draw();
-    let picture = drawn.map_err(|error| ReportError::Drawing { why: error.to_string() })?;
+    .drawn()?;
     Ok(Some(FalseColourPicture { picture, numbers }))
 }
 

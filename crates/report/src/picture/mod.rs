@@ -30,7 +30,8 @@ use links::LinkOverlay;
 pub use links::{Link, Linked};
 pub use lit::{LampFactors, LampLight, Lighter, Lit, LitPicture, Points, Seen, Where};
 use lit::{LitView, Unlit, neighbours};
-pub use sides::{Back, Side, render_sides};
+pub(crate) use sides::SAMPLES_OF_A_PIXEL;
+pub use sides::{Back, Side, sides_map};
 
 /// Samples of a pixel at a border.
 const SAMPLES: usize = 8;

@@ -10,6 +10,7 @@ use super::links::line;
 use super::{BACKGROUND, Picture};
 use crate::camera::Axes;
 use crate::colour::Rgb;
+use crate::plot::Annotated;
 use crate::tone::encode;
 use crate::{Camera, ReportError};
 
@@ -23,7 +24,8 @@ const GRAZING_BRIGHTNESS: f64 = 0.35;
 /// Share of a line over what is behind it.
 const LINE_SHARE: f64 = 0.9;
 /// Places of the samples in a pixel.
-const SAMPLES: [[f64; 2]; 4] = [[0.125, 0.625], [0.375, 0.125], [0.625, 0.875], [0.875, 0.375]];
+pub(crate) const SAMPLES_OF_A_PIXEL: [[f64; 2]; 4] =
+    [[0.125, 0.625], [0.375, 0.125], [0.625, 0.875], [0.875, 0.375]];
 
 /// What the back of a piece is drawn as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,12 +49,28 @@ pub struct Side {
     pub marked: bool,
 }
 
-/// Draws pieces by their sides, and lines over them.
+/// Draws pieces by their sides, and lines over them, which are called so; the title begins with
+/// what it is, and tells the colours.
 ///
 /// # Errors
 /// [`ReportError::Camera`] for settings that make no picture, [`ReportError::Visibility`] where the
-/// pieces cannot be prepared for ray casting.
-pub fn render_sides(sides: &[Side], lines: &[[Vec3; 2]], camera: &Camera) -> Result<Picture, ReportError> {
+/// pieces cannot be prepared for ray casting, [`ReportError::Drawing`] where the plotting library
+/// fails.
+pub fn sides_map(
+    sides: &[Side],
+    (lines, called): (&[[Vec3; 2]], &str),
+    camera: &Camera,
+    (title, marked): (&str, &str),
+) -> Result<Picture, ReportError> {
+    let picture = render_sides(sides, lines, &camera.enlarged())?;
+    let of_pieces =
+        if sides.iter().any(|side| side.marked) { format!(", violet: {marked}") } else { String::new() };
+    let of_lines = if lines.is_empty() { String::new() } else { format!(", yellow: {called}") };
+    let title = format!("{title}: fronts blue, backs orange{of_pieces}{of_lines}");
+    Annotated { title: &title, picture: &picture, bar: None, isolines: &[], numbers: &[] }.drawn()
+}
+
+fn render_sides(sides: &[Side], lines: &[[Vec3; 2]], camera: &Camera) -> Result<Picture, ReportError> {
     let axes = camera.axes()?;
     let faces_eye = |patch: &Patch| patch.normal().dot(camera.eye - patch.centroid()) > 0.0;
     let seen: Vec<&Side> =
@@ -65,11 +83,11 @@ pub fn render_sides(sides: &[Side], lines: &[[Vec3; 2]], camera: &Camera) -> Res
     let row = |(y, row): (usize, &mut [u8])| {
         for (x, pixel) in row.chunks_exact_mut(3).enumerate() {
             let mut sum = [0.0; 3];
-            for [dx, dy] in SAMPLES {
+            for [dx, dy] in SAMPLES_OF_A_PIXEL {
                 let direction = camera.direction(&axes, x as f64 + dx, y as f64 + dy);
                 let hit = pieces.closest(camera.eye, direction, f64::INFINITY);
                 let colour = hit.map_or([BACKGROUND; 3], |hit| colour(seen[hit.patch], direction));
-                sum = [0, 1, 2].map(|i| sum[i] + colour[i] / SAMPLES.len() as f64);
+                sum = [0, 1, 2].map(|i| sum[i] + colour[i] / SAMPLES_OF_A_PIXEL.len() as f64);
             }
             pixel.copy_from_slice(&sum.map(encode));
         }

@@ -1,5 +1,5 @@
-//! A picture with a title above it, the colours of a quantity beside it, and lines and numbers over
-//! it.
+//! A picture with a title above it, the colours of a quantity beside it where it shows one, and
+//! lines and numbers over it.
 
 use std::io;
 
@@ -12,7 +12,7 @@ use super::Point;
 use super::figure::{draw_title, failed, width_of, wrapped};
 use super::map::{Area, BAR_WIDTH, ColourBar};
 use super::theme::{GROUND, INK, MARGIN, SMALL_TEXT_SIZE, TITLE_ROW, load_font, text};
-use crate::Picture;
+use crate::{Picture, ReportError};
 
 /// Shorter side of a picture for one pixel of the theme to be one of the picture.
 const SHORTER_SIDE: u32 = 560;
@@ -55,7 +55,7 @@ pub(crate) struct Isoline {
 pub(crate) struct Annotated<'a> {
     pub(crate) title: &'a str,
     pub(crate) picture: &'a Picture,
-    pub(crate) bar: ColourBar<'a>,
+    pub(crate) bar: Option<ColourBar<'a>>,
     pub(crate) isolines: &'a [Isoline],
     /// Points with their numbers.
     pub(crate) numbers: &'a [(Point, String)],
@@ -68,16 +68,22 @@ impl Annotated<'_> {
     /// Draws it.
     ///
     /// # Errors
-    /// What the library reports.
-    pub(crate) fn draw(&self) -> io::Result<Picture> {
+    /// [`ReportError::Drawing`] where the plotting library fails.
+    pub(crate) fn drawn(&self) -> Result<Picture, ReportError> {
+        self.draw().map_err(|error| ReportError::Drawing { why: error.to_string() })
+    }
+
+    fn draw(&self) -> io::Result<Picture> {
         load_font()?;
         let Picture { width, height, .. } = *self.picture;
         let unit = unit_of(width, height);
         let [wide, tall] = [width, height].map(|side| i32::try_from(side).unwrap_or(i32::MAX / 4));
-        let full = (wide + (MARGIN + BAR_WIDTH) * unit).max(LEAST_WIDTH * unit);
+        let beside = if self.bar.is_some() { BAR_WIDTH } else { MARGIN };
+        let full = (wide + (MARGIN + beside) * unit).max(LEAST_WIDTH * unit);
         let title = wrapped(self.title, full / unit - 2 * MARGIN)?;
         let top = (MARGIN + TITLE_ROW * title.len() as i32 + 6) * unit;
-        let size = [full, top + tall.max(LEAST_BAR_HEIGHT * unit) + MARGIN * unit].map(i32::unsigned_abs);
+        let least = if self.bar.is_some() { LEAST_BAR_HEIGHT * unit } else { 0 };
+        let size = [full, top + tall.max(least) + MARGIN * unit].map(i32::unsigned_abs);
         let mut pixels = vec![255; 3 * size[0] as usize * size[1] as usize];
         let mut lined = self.picture.pixels.clone();
         self.draw_lines(&mut lined, f64::from(unit));
@@ -90,7 +96,9 @@ impl Annotated<'_> {
             draw_title(&root, &title, unit).map_err(failed)?;
             let below = root.split_vertically(top).1;
             let (left, right) = below.split_horizontally(MARGIN * unit + wide);
-            self.bar.draw(&right, tall / unit, unit)?;
+            if let Some(bar) = &self.bar {
+                bar.draw(&right, tall / unit, unit)?;
+            }
             let over = left.split_horizontally(MARGIN * unit).1;
             self.draw_numbers(&over, unit)?;
             root.present().map_err(failed)?;
@@ -229,7 +237,7 @@ mod tests {
         let pixels = [90, 150, 210].repeat((width * height) as usize);
         let picture = Picture { width, height, pixels };
         let bar = ColourBar { label: "E, W/m²", scale: Scale::linear(0.0, 5.0), colour: viridis };
-        Annotated { title: "a room", picture: &picture, bar, isolines, numbers }.draw().unwrap()
+        Annotated { title: "a room", picture: &picture, bar: Some(bar), isolines, numbers }.draw().unwrap()
     }
 
     #[test]

@@ -18,6 +18,8 @@ const DECIBELS_TO_CENTRE: f64 = 40.0;
 const RING_DISTANCE: f64 = 10.0;
 /// Half the side of what is drawn where the rim has radius 1.
 const HALF_SIDE: f64 = 1.2;
+/// What the heading takes, with the room that parts it from what is above, pixels.
+const HEADING_HEIGHT: i32 = 40;
 
 /// Curves over an angle.
 #[derive(Clone, Debug)]
@@ -34,7 +36,7 @@ pub(crate) struct Polar {
 
 impl Polar {
     /// Height of the part of a figure, pixels.
-    pub(super) const HEIGHT: i32 = 540;
+    pub(super) const HEIGHT: i32 = 552;
 
     /// The rings, from the centre to the rim.
     fn rings(&self) -> Vec<f64> {
@@ -61,9 +63,9 @@ impl Polar {
         let heading = text(TEXT_SIZE, unit, INK).pos(Pos::new(HPos::Center, VPos::Top));
         let (width, height) = area.dim_in_pixel();
         let centre = i32::try_from(width / 2).unwrap_or(0);
-        area.draw(&Text::new(self.label.as_str(), (centre, 6 * unit), heading))?;
-        let below = area.split_vertically(28 * unit).1;
-        let side = height.saturating_sub((28 * unit).unsigned_abs());
+        area.draw(&Text::new(self.label.as_str(), (centre, 18 * unit), heading))?;
+        let below = area.split_vertically(HEADING_HEIGHT * unit).1;
+        let side = height.saturating_sub((HEADING_HEIGHT * unit).unsigned_abs());
         let margin = width.saturating_sub(side) / 2;
         let scale = Scale::linear(-HALF_SIDE, HALF_SIDE);
         let mut chart = ChartBuilder::on(&below)

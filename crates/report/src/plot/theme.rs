@@ -28,10 +28,30 @@ pub(super) const INK: RGBColor = RGBColor(31, 35, 40);
 pub(super) const MUTED_INK: RGBColor = RGBColor(98, 104, 112);
 pub(super) const GRID_COLOUR: RGBColor = RGBColor(222, 225, 229);
 
-/// The colours above, in order, on a dark ground.
-const DARK_COLOURS: [(RGBColor, &str); 4] =
-    [(GROUND, "#16181d"), (INK, "#e6e8eb"), (MUTED_INK, "#a3a9b2"), (GRID_COLOUR, "#363b43")];
+/// The colours of this module on a dark ground, where lines of the others are hard to see when they
+/// are thin: those of series have a contrast of at least 4.5 : 1 to it.
+const DARK_COLOURS: [(RGBColor, &str); 15] = [
+    (GROUND, "#16181d"),
+    (INK, "#e6e8eb"),
+    (MUTED_INK, "#a3a9b2"),
+    (GRID_COLOUR, "#434954"),
+    (DISTINCT_COLOURS[0], "#3d9bd8"),
+    (DISTINCT_COLOURS[1], "#f07f2e"),
+    (DISTINCT_COLOURS[2], "#2bbf94"),
+    (DISTINCT_COLOURS[3], "#dd86b8"),
+    (DISTINCT_COLOURS[4], "#d9a02a"),
+    (DISTINCT_COLOURS[5], "#7cc8f0"),
+    (DISTINCT_COLOURS[6], "#c29670"),
+    (DISTINCT_COLOURS[7], "#a6a6a6"),
+    (RED, "#f0645c"),
+    (GREEN, "#46b765"),
+    (BLUE, "#7d9ff5"),
+];
 
+/// The colours of bands of these names.
+const RED: RGBColor = RGBColor(208, 52, 44);
+const GREEN: RGBColor = RGBColor(34, 139, 62);
+const BLUE: RGBColor = RGBColor(66, 112, 220);
 const DISTINCT_COLOURS: [RGBColor; 8] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -78,9 +98,9 @@ pub(super) fn dark_style() -> String {
 /// a few, and from blue to red in their order for many.
 pub(crate) fn band_colours(names: &[String]) -> Vec<RGBColor> {
     let colour = |(number, name): (usize, &String)| match name.to_ascii_lowercase().as_str() {
-        "r" | "red" => RGBColor(208, 52, 44),
-        "g" | "green" => RGBColor(34, 139, 62),
-        "b" | "blue" => RGBColor(66, 112, 220),
+        "r" | "red" => RED,
+        "g" | "green" => GREEN,
+        "b" | "blue" => BLUE,
         _ if names.len() <= DISTINCT_COLOURS.len() => DISTINCT_COLOURS[number],
         _ => ramp(number as f64 / (names.len() - 1) as f64),
     };
@@ -143,6 +163,12 @@ mod tests {
     #[test]
     fn every_colour_of_the_theme_has_a_dark_one() {
         let style = dark_style();
-        assert!(style.contains("[fill=\"#FFFFFF\"]{fill:#16181d}") && style.contains("stroke:#363b43"));
+        assert!(style.contains("[fill=\"#FFFFFF\"]{fill:#16181d}") && style.contains("stroke:#434954"));
+        let dark = luminance(RGBColor(0x16, 0x18, 0x1d));
+        for (light, found) in &DARK_COLOURS[4..] {
+            let channel = |at: usize| u8::from_str_radix(&found[at..at + 2], 16).unwrap();
+            let contrast = (luminance(RGBColor(channel(1), channel(3), channel(5))) + 0.05) / (dark + 0.05);
+            assert!(contrast >= 4.5, "{light:?} {found} {contrast}");
+        }
     }
 }

@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 use super::faces::{COLUMNS, place};
 use super::histogram::write_score_histogram;
 use crate::csv::{numbers, quoted};
+use crate::words::number;
 use crate::{
     Picture, REPORT, ReportError, ReportModel, ReportPage, ResultFolder, Timing, View, face_scores, reading,
 };
@@ -130,11 +131,15 @@ pub struct CrosscheckRecord {
 impl CrosscheckRecord {
     /// The verdict in one line.
     pub(crate) fn headline(&self) -> String {
-        format!(
-            "{}: {} of {} places apart, mean z {:.2}, mean z² {:.2}",
-            self.verdict, self.significant, self.places, self.score_mean, self.score_variance
-        )
+        headline(&self.verdict, [self.significant, self.places], [self.score_mean, self.score_variance])
     }
+}
+
+/// A verdict in one line: places that are significantly apart of all, the mean of the scores and of
+/// their squares.
+pub(crate) fn headline(verdict: &str, [apart, places]: [usize; 2], [mean, variance]: [f64; 2]) -> String {
+    let [mean, variance] = [mean, variance].map(number);
+    format!("{verdict}: {apart} of {places} places apart, mean z {mean}, mean z² {variance}")
 }
 
 /// Writes the table.

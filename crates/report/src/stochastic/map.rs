@@ -1,39 +1,66 @@
-//! Where two solutions differ: a picture of the scene in the colours of z.
+//! Where two solutions differ: pictures in the colours of the score z, with their bar.
 //!
-//! White is agreement, red is where the stochastic solution is the brighter, blue where it is the
-//! darker; full at |z| = 5.
+//! Nearly white is agreement, red is where the first is the brighter, blue where it is the darker;
+//! full at |z| = 5.
 
 use fredholm_mesh::Mesh;
+use rayon::prelude::*;
 
-use crate::{Camera, Exposure, Field, Picture, ReportError, render};
+use crate::picture::{BACKGROUND, SAMPLES_OF_A_PIXEL};
+use crate::plot::{Annotated, ColourBar, Scale, diverging};
+use crate::tone::{decode, encode};
+use crate::{Camera, Eye, Field, Picture, ReportError};
 
 /// Score of the full colour.
 const FULL_COLOUR_SCORE: f64 = 5.0;
-/// Brightness of white.
-const WHITE_BRIGHTNESS: f64 = 1.0;
 
-/// Draws the scores of the faces, the worst band of each.
+/// Draws the scores of the faces, the worst band of each, under a title.
 ///
 /// # Errors
-/// [`ReportError::Length`] where there is not one score a face, and those of [`render`].
-pub fn score_map(mesh: &Mesh, scores: &[f64], camera: Option<&Camera>) -> Result<Picture, ReportError> {
+/// [`ReportError::Length`] where there is not one score a face, [`ReportError::Camera`] for
+/// settings that make no picture, [`ReportError::Visibility`] where the surfaces cannot be prepared
+/// for ray casting, [`ReportError::Drawing`] where the plotting library fails.
+pub fn score_map(
+    mesh: &Mesh,
+    scores: &[f64],
+    camera: Option<&Camera>,
+    title: &str,
+) -> Result<Picture, ReportError> {
     let (expected, found) = (mesh.faces().len(), scores.len());
     if found != expected {
         return Err(ReportError::Length { what: "the scores of faces", expected, found });
     }
-    let bands = ["r", "g", "b"].map(str::to_owned);
-    let colours: Vec<f64> =
-        (0..mesh.len()).flat_map(|leaf| score_colour(scores[mesh.face_of(leaf)])).collect();
-    let field = Field::new(mesh, &bands, &colours, &colours)?;
-    let camera = camera.copied().unwrap_or_else(|| Camera::framing(&field));
-    render(&field, &camera, Exposure::Fixed(1.0))
+    let (bands, dark) = (["z".to_owned()], vec![0.0; mesh.len()]);
+    let field = Field::new(mesh, &bands, &dark, &dark)?;
+    let camera = camera.copied().unwrap_or_else(|| Camera::framing(&field)).enlarged();
+    let eye = Eye::new(mesh, &camera)?;
+    let Camera { width, height, .. } = camera;
+    let columns = width as usize;
+    // Of every face its own colour: scores are not interpolated.
+    let pixel = |at: usize| {
+        let mut sum = [0.0; 3];
+        for [dx, dy] in SAMPLES_OF_A_PIXEL {
+            let hit = eye.hit((at % columns) as f64 + dx, (at / columns) as f64 + dy);
+            let colour = |(leaf, _)| score_colour(scores[mesh.face_of(leaf)]).map(decode);
+            let colour = hit.map_or([BACKGROUND; 3], colour);
+            sum = [0, 1, 2].map(|i| sum[i] + colour[i] / SAMPLES_OF_A_PIXEL.len() as f64);
+        }
+        sum.map(encode)
+    };
+    let pixels: Vec<[u8; 3]> = (0..columns * height as usize).into_par_iter().map(pixel).collect();
+    with_score_bar(title, &Picture { width, height, pixels: pixels.into_flattened() })
 }
 
-/// The linear colour of a score.
-pub(crate) fn score_colour(z: f64) -> [f64; 3] {
-    let share = (z / FULL_COLOUR_SCORE).clamp(-1.0, 1.0);
-    let faded = WHITE_BRIGHTNESS * (1.0 - share.abs());
-    if share > 0.0 { [WHITE_BRIGHTNESS, faded, faded] } else { [faded, faded, WHITE_BRIGHTNESS] }
+/// A picture of scores with a title, and the colours of the scores beside it.
+pub(crate) fn with_score_bar(title: &str, picture: &Picture) -> Result<Picture, ReportError> {
+    let scale = Scale::linear(-FULL_COLOUR_SCORE, FULL_COLOUR_SCORE);
+    let bar = ColourBar { label: "score z of the worst band", scale, colour: diverging };
+    Annotated { title, picture, bar: Some(bar), isolines: &[], numbers: &[] }.drawn()
+}
+
+/// The colour of a score.
+pub(crate) fn score_colour(z: f64) -> [u8; 3] {
+    diverging(0.5 + 0.5 * z / FULL_COLOUR_SCORE)
 }
 
 #[cfg(test)]
@@ -56,9 +83,11 @@ mod tests {
             width: 2,
             height: 2,
         };
+        // The picture stands below a title of one line, within the border.
         let pixel = |z: f64| {
-            let picture = score_map(&mesh, &[z], Some(&camera)).unwrap();
-            [picture.pixels[0], picture.pixels[1], picture.pixels[2]]
+            let picture = score_map(&mesh, &[z], Some(&camera), "a wall").unwrap();
+            let at = 3 * (45 * picture.width as usize + 14);
+            [picture.pixels[at], picture.pixels[at + 1], picture.pixels[at + 2]]
         };
         let (red, white, blue) = (pixel(9.0), pixel(0.0), pixel(-9.0));
         assert!(
@@ -66,6 +95,6 @@ mod tests {
             "{red:?} {blue:?}"
         );
         assert!(white[0] == white[1] && white[1] == white[2]);
-        assert!(score_map(&mesh, &[], None).is_err());
+        assert!(score_map(&mesh, &[], None, "a wall").is_err());
     }
 }

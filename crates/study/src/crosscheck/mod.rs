@@ -329,5 +329,6 @@ fn map(problem: &Problem, faces: &[Place]) -> Result<fredholm_report::Picture, E
     let scores: Vec<f64> =
         faces.chunks(bands).map(|face| face.iter().map(|place| place.z).fold(0.0, worse)).collect();
     let camera = problem.scene.camera().map(view_camera);
-    score_map(&problem.mesh, &scores, camera.as_ref()).map_err(report_failure)
+    let title = "Solution and paths: red where the paths are brighter";
+    score_map(&problem.mesh, &scores, camera.as_ref(), title).map_err(report_failure)
 }
