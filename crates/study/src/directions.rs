@@ -11,7 +11,7 @@ use crate::stochastic::failure;
 
 /// Directions of a group where all is gathered, and where only what is uneven is. Powers of two are
 /// where Sobol points are most even.
-const EVERYWHERE: u32 = 64;
+const EVERYWHERE: u32 = 128;
 const WHERE_UNEVEN: u32 = 32;
 
 /// Bytes of an element while rays look for it.
