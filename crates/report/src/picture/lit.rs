@@ -34,11 +34,11 @@ const GENERATOR: usize = 7;
 /// One of so many of them has its own light of the lamps, of those that show one leaf: the border
 /// itself needs more points than the light on either side of it.
 const POINTS_OF_A_LIGHT: usize = 4;
-/// Luminance of the brightest over that of the darkest sample of a pixel from which on more points
-/// tell what share of it each leaf has: in linear colours the border of a lamp would have steps.
-const BRIGHT_BORDER_RATIO: f64 = 8.0;
-/// These points along each side of the pixel.
-const POINTS_ALONG_BRIGHT_PIXEL: usize = 16;
+/// Luminances of the brightest over that of the darkest sample of a pixel from which on so many
+/// points tell what share of it each plane has, and the generators of their lattices: those of
+/// Fibonacci, which tell the share of a half-plane evenly well whatever its direction. The border
+/// of a lamp has steps in linear colours without.
+const BORDER_LATTICES: [(f64, usize, usize); 2] = [(8.0, 233, 144), (1.1, 55, 34)];
 /// Difference of the colours around a point, over the larger, up to which its own is their mean.
 const ALIKE_DIFFERENCE: f64 = 0.03;
 /// Second difference of colours of every other pixel, over the larger, up to which what lies
@@ -613,17 +613,18 @@ impl<'a> LitView<'a> {
     fn shares(&self, (x, y): (usize, usize), samples: &[Seen], colours: &[Rgb]) -> Vec<f64> {
         let bright = || colours.iter().map(|&colour| luminance(colour));
         let (least, most) = (bright().fold(f64::INFINITY, f64::min), bright().fold(0.0, f64::max));
-        if most <= BRIGHT_BORDER_RATIO * least {
+        let lattice = BORDER_LATTICES.into_iter().find(|(ratio, ..)| most > ratio * least);
+        let Some((_, points, generator)) = lattice else {
             return vec![1.0 / samples.len() as f64; samples.len()];
-        }
+        };
         let number = |seen: Seen| seen.map_or(NO_LEAF, |(leaf, _)| leaf as u32);
         // The first sample that shows the same plane.
         let first =
             |seen: Seen| samples.iter().position(|&sample| self.is_alike(number(sample), number(seen)));
         let mut counts = vec![0.0; samples.len()];
-        let place = |i: usize| (i as f64 + 0.5) / POINTS_ALONG_BRIGHT_PIXEL as f64;
-        for k in 0..POINTS_ALONG_BRIGHT_PIXEL * POINTS_ALONG_BRIGHT_PIXEL {
-            let (u, v) = (place(k % POINTS_ALONG_BRIGHT_PIXEL), place(k / POINTS_ALONG_BRIGHT_PIXEL));
+        let place = |i: usize| ((i % points) as f64 + 0.5) / points as f64;
+        for k in 0..points {
+            let (u, v) = (place(k), place(generator * k));
             // What no sample shows is seen of hardly anything.
             if let Some(first) = first(self.eye.hit(x as f64 + u, y as f64 + v)) {
                 counts[first] += 1.0;
