@@ -37,8 +37,9 @@ const POINTS_OF_A_LIGHT: usize = 4;
 /// Luminances of the brightest over that of the darkest sample of a pixel from which on so many
 /// points tell what share of it each plane has, and the generators of their lattices: those of
 /// Fibonacci, which tell the share of a half-plane evenly well whatever its direction. The border
-/// of a lamp has steps in linear colours without.
-const BORDER_LATTICES: [(f64, usize, usize); 2] = [(8.0, 233, 144), (1.1, 55, 34)];
+/// of a lamp has steps in linear colours without. The last is for pictures of which all light is
+/// gathered, where these shares are most of what a pixel is off.
+const BORDER_LATTICES: [(f64, usize, usize); 3] = [(8.0, 233, 144), (1.2, 34, 21), (1.05, 89, 55)];
 /// Difference of the colours around a point, over the larger, up to which its own is their mean.
 const ALIKE_DIFFERENCE: f64 = 0.03;
 /// Second difference of colours of every other pixel, over the larger, up to which what lies
@@ -613,7 +614,10 @@ impl<'a> LitView<'a> {
     fn shares(&self, (x, y): (usize, usize), samples: &[Seen], colours: &[Rgb]) -> Vec<f64> {
         let bright = || colours.iter().map(|&colour| luminance(colour));
         let (least, most) = (bright().fold(f64::INFINITY, f64::min), bright().fold(0.0, f64::max));
-        let lattice = BORDER_LATTICES.into_iter().find(|(ratio, ..)| most > ratio * least);
+        let [lamp, usual, gathered] = BORDER_LATTICES;
+        let is_exact = self.gathered.is_some() && self.even.is_empty();
+        let beside = if is_exact { gathered } else { usual };
+        let lattice = [lamp, beside].into_iter().find(|(ratio, ..)| most > ratio * least);
         let Some((_, points, generator)) = lattice else {
             return vec![1.0 / samples.len() as f64; samples.len()];
         };
