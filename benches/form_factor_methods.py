@@ -16,6 +16,8 @@ import sys
 import tempfile
 from pathlib import Path
 
+from plots import SERIES, Panel, drawing, legend, power, text
+
 SCENE = """
 [materials.grey]
 reflectance = 0.5
@@ -28,20 +30,13 @@ name = "ceiling"
 material = "grey"
 quad = [[0, 0, 1], [0, 1, 1], [1, 1, 1], [1, 0, 1]]
 """
-#: Settings of every method with the points that they stand for, and the colour of the line.
+#: Settings of every method with the points that they stand for.
 METHODS = {
-    "area-gauss": ([(n, n**4) for n in (1, 2, 3, 4, 5, 6, 8, 10)], "#0072b2"),
-    "monte-carlo": ([(4**k, 4**k) for k in range(2, 10)], "#d55e00"),
-    "nystrom": ([(n, n**2) for n in (1, 2, 4, 8, 16, 32)], "#00966c"),
-    "hemicube": ([(n, 3 * n**2) for n in (8, 16, 32, 64, 128, 256)], "#c4649b"),
+    "area-gauss": [(n, n**4) for n in (1, 2, 3, 4, 5, 6, 8, 10)],
+    "monte-carlo": [(4**k, 4**k) for k in range(2, 10)],
+    "nystrom": [(n, n**2) for n in (1, 2, 4, 8, 16, 32)],
+    "hemicube": [(n, 3 * n**2) for n in (8, 16, 32, 64, 128, 256)],
 }
-LEFT, TOP, WIDTH, HEIGHT = 84, 50, 490, 320
-DECADES_ACROSS, DECADES_DOWN = 6, 14
-#: Colours of the plots of the program, and those of them on a dark ground.
-GROUND, INK, GRID = "#ffffff", "#1f2328", "#dee1e5"
-DARK = {GROUND: "#16181d", INK: "#e6e8eb", GRID: "#434954", "#0072b2": "#3d9bd8",
-        "#d55e00": "#f07f2e", "#00966c": "#2bbf94", "#c4649b": "#dd86b8"}
-RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def exact():
@@ -59,58 +54,20 @@ def computed(folder, method, setting):
         return float(next(csv.DictReader(file))["ceiling"])
 
 
-def place(points, error):
-    """Where a value lies in the picture."""
-    x = LEFT + WIDTH * math.log10(points) / DECADES_ACROSS
-    y = TOP - HEIGHT * math.log10(max(error, 10.0**-DECADES_DOWN)) / DECADES_DOWN
-    return f"{x:.1f},{y:.1f}"
-
-
-def text(x, y, words, anchor="middle", turned=""):
-    """Words in the drawing."""
-    return f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}" fill="{INK}"{turned}>{words}</text>'
-
-
-def power(k):
-    """A power of ten."""
-    return "10" + str(k).translate(RAISED)
-
-
-def grid():
-    """Title, lines, and numbers and names of both axes."""
-    yield text(14, 28, "Unit squares at distance 1: error of their view factor", "start")
-    for k in range(0, DECADES_ACROSS + 1):
-        x = LEFT + WIDTH * k / DECADES_ACROSS
-        yield f'<path d="M{x:.1f} {TOP}v{HEIGHT}" stroke="{GRID}"/>'
-        yield text(x, TOP + HEIGHT + 20, power(k))
-    for k in range(0, DECADES_DOWN + 1, 2):
-        y = TOP + HEIGHT * k / DECADES_DOWN
-        yield f'<path d="M{LEFT} {y:.1f}h{WIDTH}" stroke="{GRID}"/>'
-        yield text(LEFT - 8, y + 5, power(-k), "end")
-    yield text(LEFT + WIDTH / 2, TOP + HEIGHT + 44, "points or pixels")
-    middle = TOP + HEIGHT / 2
-    yield text(20, middle, "relative error", turned=f' transform="rotate(-90 20 {middle})"')
-
-
 def main():
-    picture, parts = Path(sys.argv[1]), list(grid())
+    panel = Panel(50, 320, (1, 1e6), (1e-14, 1))
+    parts = [text(14, 28, "Unit squares at distance 1: error of their view factor", "start")]
+    numbers = [[(10.0**k, power(k)) for k in range(0, 7)], [(10.0**k, power(k)) for k in range(-14, 1, 2)]]
+    parts += panel.axes(("points or pixels", "relative error"), numbers)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "squares.toml").write_text(SCENE, encoding="utf-8")
-        for number, (method, (settings, colour)) in enumerate(METHODS.items()):
+        for (method, settings), colour in zip(METHODS.items(), SERIES):
             errors = [(n, abs(computed(folder, method, s) / exact() - 1)) for s, n in settings]
-            line = " ".join(place(*value) for value in errors)
-            parts.append(f'<polyline points="{line}" fill="none" stroke="{colour}" stroke-width="2"/>')
-            x, y = 14 + 145 * number, TOP + HEIGHT + 74
-            parts.append(f'<path d="M{x} {y - 5}h24" stroke="{colour}" stroke-width="2"/>')
-            parts.append(text(x + 32, y, method, "start"))
+            parts += panel.line(errors, colour)
             print(method, ", ".join(f"{n}: {error:.1e}" for n, error in errors))
-    rules = "".join(f'[fill="{a}"]{{fill:{b}}}[stroke="{a}"]{{stroke:{b}}}' for a, b in DARK.items())
-    head = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 600 456" ' \
-           'font-family="sans-serif" font-size="16">'
-    style = f"<style>@media screen and (prefers-color-scheme:dark){{{rules}}}</style>"
-    ground = f'<rect width="600" height="456" fill="{GROUND}"/>'
-    picture.write_text("\n".join([head, style, ground, *parts, "</svg>\n"]), encoding="utf-8")
+    parts += legend(zip(METHODS, SERIES), 444, 4)
+    Path(sys.argv[1]).write_text(drawing(parts, 456), encoding="utf-8")
 
 
 if __name__ == "__main__":
