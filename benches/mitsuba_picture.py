@@ -2,15 +2,18 @@
 """A scene as Mitsuba 3 traces it, for picture_error.py.
 
     pip install numpy mitsuba
-    python3 benches/mitsuba_picture.py SCENE -o DIR [--rounds 16] [--samples 64] [--tiles 200 --lamps 4.5]
+    python3 benches/mitsuba_picture.py SCENE -o DIR [--rounds 16] [--samples 64] \\
+        [--tiles 200 --lamps 4.5]
     fredholm solve SCENE --also exr -o out/solved
     python3 benches/picture_error.py DIR out/solved
 
 The integrator `path` (variant llvm_ad_rgb, as many threads as there are) through the camera of the
 exported scene: the mean over each pixel, in rounds with seeds of their own, whose scatter is the
 standard error. Then the square tile with the largest mean square error, without pixels that show
-lamps as in picture_error.py, gets as many paths as its pixels have, again and again. Writes pixels.npz into DIR: radiosity and standard_error, height ×
-width × 3, W/m², and covered, paths and rounds, height × width. Goes on from what DIR has of it.
+lamps as in picture_error.py, gets as many paths as its pixels have, again and again. Writes
+pixels.npz into DIR: radiosity and standard_error, height × width × 3, W/m², and luminance_error,
+covered, paths and rounds, height × width. Goes on from what DIR has of it: `--rounds 0` adds tiles
+alone.
 """
 
 import argparse
@@ -42,11 +45,13 @@ class Pixels:
         if file.exists():
             old = np.load(file)
             self.paths, self.rounds = (old[name].astype(float)[..., None] for name in ("paths", "rounds"))
-            self.first = self.paths * old["radiosity"]
-            squares = old["standard_error"] ** 2 * self.paths * (self.rounds - 1.0)
-            self.second = squares + self.paths * old["radiosity"] ** 2
+            means = with_luminance(old["radiosity"])
+            errors = np.concatenate([old["standard_error"], old["luminance_error"][..., None]], axis=2)
+            self.first = self.paths * means
+            self.second = errors**2 * self.paths * (self.rounds - 1.0) + self.paths * means**2
 
     def add(self, radiosity, paths, place=np.s_[:, :]):
+        radiosity = with_luminance(radiosity)
         if np.isscalar(self.paths):
             shape = radiosity.shape
             self.paths, self.rounds = np.zeros((*shape[:2], 1)), np.zeros((*shape[:2], 1))
@@ -57,17 +62,28 @@ class Pixels:
         self.second[place] += paths * radiosity**2
 
     def mean(self):
+        """Red, green, blue and luminance."""
         return self.first / self.paths
 
     def error(self):
-        squares = self.second - self.first**2 / self.paths
-        return np.sqrt(np.maximum(squares, 0.0) / (self.paths * np.maximum(self.rounds - 1.0, 1.0)))
+        """The standard errors of these; unknown, and so infinite, after one round."""
+        squares = np.maximum(self.second - self.first**2 / self.paths, 0.0)
+        known = np.sqrt(squares / (self.paths * np.maximum(self.rounds - 1.0, 1.0)))
+        return np.where(self.rounds > 1.0, known, np.inf)
 
     def write(self):
         self.file.parent.mkdir(parents=True, exist_ok=True)
         paths, rounds = self.paths[..., 0], self.rounds[..., 0]
-        np.savez(self.file, radiosity=self.mean(), standard_error=self.error(),
-                 covered=np.ones(paths.shape), paths=paths, rounds=rounds)
+        mean, error = self.mean(), self.error()
+        unfinished = self.file.with_name("unfinished.npz")
+        np.savez(unfinished, radiosity=mean[..., :3], standard_error=error[..., :3],
+                 luminance_error=error[..., 3], covered=np.ones(paths.shape), paths=paths, rounds=rounds)
+        unfinished.replace(self.file)
+
+
+def with_luminance(colours):
+    """Colours with their luminance behind them."""
+    return np.concatenate([colours, (colours @ LUMINANCE)[..., None]], axis=2)
 
 
 def main():
@@ -101,7 +117,8 @@ def main():
             pixels.write()
             print(f"round {k + 1} of {asked.rounds}, {time.time() - start:.0f} s", flush=True)
         for k in range(asked.tiles):
-            variance = np.where(beside_lamps(pixels.mean(), asked.lamps), 0.0, (pixels.error() @ LUMINANCE) ** 2)
+            beside = beside_lamps(pixels.mean()[..., :3], asked.lamps)
+            variance = np.where(beside, 0.0, pixels.error()[..., 3] ** 2)
             height, width = variance.shape
             corners = [(y, x) for y in range(0, height, TILE) for x in range(0, width, TILE)]
             y, x = max(corners, key=lambda at: variance[at[0] : at[0] + TILE, at[1] : at[1] + TILE].mean())

@@ -63,8 +63,10 @@ def main():
     radiosity, error = (np.broadcast_to(file[name], (*file["covered"].shape, 3))
                         for name in ("radiosity", "standard_error"))
     used = (file["covered"] > 0.999) & ~beside_lamps(radiosity, asked.lamps)
-    # The channels of a pixel come from the same paths: their errors add up.
-    traced, noise = radiosity @ LUMINANCE, (error @ LUMINANCE) ** 2
+    traced = radiosity @ LUMINANCE
+    # The channels of a pixel come from the same paths. Where the error of their luminance is not
+    # told, their errors are added up, which is more than it is in coloured light.
+    noise = (file["luminance_error"] if "luminance_error" in file else error @ LUMINANCE) ** 2
     mean = traced[used].mean()
     print(f"mean luminance {mean:.4g} W/m², {used.mean():.1%} of the pixels")
     for folder in asked.solved:

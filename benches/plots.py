@@ -1,5 +1,6 @@
-"""Drawings of the documents by scripts, in the colours and sizes of the plots of the program: light,
-or dark on screens that ask for it. The standard library suffices."""
+"""Drawings of the documents by scripts, in the colours of crates/report/src/plot/theme.rs and the
+sizes of the plots of the program: light, or dark on screens that ask for it. The standard library
+suffices."""
 
 import math
 

@@ -21,7 +21,7 @@ const TILT_TANGENT: f64 = 0.12;
 /// Cosine to the direction of view below which a point is not before the eye.
 const LEAST_VIEW_COSINE: f64 = 1e-3;
 /// Pixels in a row from which on a picture has room for a title.
-const LEAST_WRITTEN_WIDTH: u32 = 480;
+pub(crate) const LEAST_WRITTEN_WIDTH: u32 = 480;
 /// Room left around a framed scene.
 const FRAME_MARGIN: f64 = 1.02;
 
@@ -133,10 +133,11 @@ impl Camera {
 
 impl Camera {
     /// The same view in a picture that is wide enough for what is written above it: of as many
-    /// pixels, or a multiple of it along both sides.
+    /// pixels, or a multiple of it along both sides as far as they may be so long.
     pub(crate) fn enlarged(self) -> Self {
-        let times = LEAST_WRITTEN_WIDTH.div_ceil(self.width.max(1));
-        Self { width: self.width * times, height: self.height.saturating_mul(times), ..self }
+        let possible = MOST_PIXELS_A_SIDE / self.height.max(1);
+        let times = LEAST_WRITTEN_WIDTH.div_ceil(self.width.max(1)).min(possible).max(1);
+        Self { width: self.width * times, height: self.height * times, ..self }
     }
 
     /// Column and row from the upper left, in pixels, at which a point is seen; none for one that

@@ -387,8 +387,8 @@ pub(crate) struct SolveArgs {
     /// exact as that needs, and the elements are chosen by hierarchical radiosity
     #[arg(long, value_name = "SURFACE", value_delimiter = ',')]
     pub(crate) goal: Vec<String>,
-    /// Gather the light of image.png that lamps do not send themselves along 256 directions from
-    /// some thousand places, instead of interpolating it between elements; pixels.npz has its
+    /// Gather the light of image.png that lamps do not send themselves along 512 directions from
+    /// some ten thousand places, instead of interpolating it between elements; pixels.npz has its
     /// colours with their standard errors
     #[arg(long)]
     pub(crate) final_gather: bool,

@@ -1,7 +1,7 @@
 //! Light gathered at some of the pixels, and between them what these tell: E(x) = ∫ B cosθ/π dω
 //! over the directions from x, of which a few hundred are looked along.
 //!
-//! Only what changes slowly is gathered, so a few thousand places are enough for a picture: a cache
+//! Only what changes slowly is gathered, so some ten thousand places are enough for a picture: a cache
 //! of irradiance (G. J. Ward, F. M. Rubinstein, R. D. Clear, SIGGRAPH 1988,
 //! doi:10.1145/54852.378490). The harmonic mean of the lengths of the rays of a place tells how far
 //! it reaches. A point has the value at it of the plane that fits the places around it best
@@ -189,6 +189,9 @@ impl Looker<'_> {
         }
         let mut new = 0..self.near.len();
         for step in 0..MOST_STEPS {
+            if new.is_empty() {
+                break;
+            }
             let sites: Vec<(usize, Vec3)> =
                 self.near[new.clone()].iter().map(|near| (near.leaf, near.point)).collect();
             let mut onward = std::mem::take(&mut self.onward);
@@ -201,9 +204,6 @@ impl Looker<'_> {
             }
             self.onward = onward;
             new = new.end..self.near.len();
-            if new.is_empty() {
-                break;
-            }
         }
         // What is left is taken from the solution, without the light of lamps.
         for k in new {
@@ -386,7 +386,11 @@ impl<'a> Gathered<'a> {
     fn insert(&mut self, places: impl Iterator<Item = Place>) {
         self.places.extend(places);
         let of_row = self.sides[0];
-        let bin = |place: &Place| place.at.1 as usize / BIN_SIDE * of_row + place.at.0 as usize / BIN_SIDE;
+        let sides = self.sides;
+        let bin = |place: &Place| {
+            let [column, row] = bin_of(place.at, sides);
+            row * of_row + column
+        };
         self.places.sort_by_key(bin);
         self.bins.fill(0);
         self.places.iter().for_each(|place| self.bins[bin(place) + 1] += 1);
@@ -394,12 +398,6 @@ impl<'a> Gathered<'a> {
             self.bins[k] += self.bins[k - 1];
         }
         self.clamp();
-    }
-
-    /// The bin of a place of the picture: column and row.
-    fn bin(&self, at: (f64, f64)) -> [usize; 2] {
-        let bin = |at: f64, i: usize| (at.max(0.0) as usize / BIN_SIDE).min(self.sides[i] - 1);
-        [bin(at.0, 0), bin(at.1, 1)]
     }
 
     /// The columns and rows of bins up to so many from one.
@@ -418,7 +416,7 @@ impl<'a> Gathered<'a> {
     /// Křivánek, K. Bouatouch, S. Pattanaik, J. Žára, Rendering Techniques 2006).
     fn clamp(&mut self) {
         let clamped = |place: &Place| {
-            let [columns, rows] = self.around(self.bin(place.at), CLAMPING_RINGS);
+            let [columns, rows] = self.around(bin_of(place.at, self.sides), CLAMPING_RINGS);
             let others = rows.flat_map(|row| &self.places[self.of_bins(row, columns.clone())]);
             let alike = others.filter(|other| {
                 other.surface == place.surface && other.normal.dot(place.normal) >= ALIKE_COSINE
@@ -477,7 +475,7 @@ impl<'a> Gathered<'a> {
         let at = self.eye.place(point)?;
         let mesh = self.field.mesh();
         let (normal, surface) = (mesh.patch(leaf).normal(), mesh.surface_of(leaf) as u32);
-        let own = self.bin(at);
+        let own = bin_of(at, self.sides);
         let mut near: Vec<(f64, u32)> = Vec::with_capacity(2 * MOST_PLACES);
         for ring in 0..=MOST_RINGS {
             if ring > 1 && near.len() >= MOST_PLACES {
@@ -587,6 +585,12 @@ impl<'a> Gathered<'a> {
         });
         Told { colour, error, places: near.len(), spread }
     }
+}
+
+/// The bin of a place of the picture, column and row, of so many columns and rows.
+fn bin_of(at: (f64, f64), sides: [usize; 2]) -> [usize; 2] {
+    let bin = |at: f64, i: usize| (at.max(0.0) as usize / BIN_SIDE).min(sides[i] - 1);
+    [bin(at.0, 0), bin(at.1, 1)]
 }
 
 /// Mean luminance of pixels that places tell.

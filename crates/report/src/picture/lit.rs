@@ -34,12 +34,25 @@ const GENERATOR: usize = 7;
 /// One of so many of them has its own light of the lamps, of those that show one leaf: the border
 /// itself needs more points than the light on either side of it.
 const POINTS_OF_A_LIGHT: usize = 4;
-/// Luminances of the brightest over that of the darkest sample of a pixel from which on so many
-/// points tell what share of it each plane has, and the generators of their lattices: those of
-/// Fibonacci, which tell the share of a half-plane evenly well whatever its direction. The border
-/// of a lamp has steps in linear colours without. The last is for pictures of which all light is
-/// gathered, where these shares are most of what a pixel is off.
-const BORDER_LATTICES: [(f64, usize, usize); 3] = [(8.0, 233, 144), (1.2, 34, 21), (1.05, 89, 55)];
+/// The points that tell what share of a pixel at a border each plane has.
+#[derive(Clone, Copy)]
+struct BorderLattice {
+    /// Luminance of the brightest over that of the darkest sample from which on it is taken.
+    ratio: f64,
+    /// Points and generator: those of Fibonacci tell the share of a half-plane evenly well whatever
+    /// its direction.
+    points: usize,
+    generator: usize,
+}
+
+/// At the border of a lamp, which else has steps in linear colours.
+const LAMP_LATTICE: BorderLattice = BorderLattice { ratio: 8.0, points: 233, generator: 144 };
+const USUAL_LATTICE: BorderLattice = BorderLattice { ratio: 1.2, points: 34, generator: 21 };
+/// Where all light is gathered: these shares are most of what a pixel is off there.
+const GATHERED_LATTICE: BorderLattice = BorderLattice { ratio: 1.05, points: 55, generator: 34 };
+/// Points for each plane in the samples of a pixel from which on they tell the shares: of the many
+/// planes of small facets they would miss some.
+const LEAST_POINTS_OF_A_PLANE: usize = 8;
 /// Difference of the colours around a point, over the larger, up to which its own is their mean.
 const ALIKE_DIFFERENCE: f64 = 0.03;
 /// Second difference of colours of every other pixel, over the larger, up to which what lies
@@ -610,32 +623,37 @@ impl<'a> LitView<'a> {
     }
 
     /// The shares that the samples of a pixel have of it: equal ones, or those of the planes that
-    /// they show by many more points where some are much brighter than others.
+    /// they show by more points where these differ in brightness.
     fn shares(&self, (x, y): (usize, usize), samples: &[Seen], colours: &[Rgb]) -> Vec<f64> {
         let bright = || colours.iter().map(|&colour| luminance(colour));
         let (least, most) = (bright().fold(f64::INFINITY, f64::min), bright().fold(0.0, f64::max));
-        let [lamp, usual, gathered] = BORDER_LATTICES;
-        let is_exact = self.gathered.is_some() && self.even.is_empty();
-        let beside = if is_exact { gathered } else { usual };
-        let lattice = [lamp, beside].into_iter().find(|(ratio, ..)| most > ratio * least);
-        let Some((_, points, generator)) = lattice else {
-            return vec![1.0 / samples.len() as f64; samples.len()];
-        };
+        let beside =
+            if self.gathered.is_some() && self.even.is_empty() { GATHERED_LATTICE } else { USUAL_LATTICE };
+        let equal = || vec![1.0 / samples.len() as f64; samples.len()];
+        let lattice = [LAMP_LATTICE, beside].into_iter().find(|lattice| most > lattice.ratio * least);
+        let Some(BorderLattice { points, generator, .. }) = lattice else { return equal() };
         let number = |seen: Seen| seen.map_or(NO_LEAF, |(leaf, _)| leaf as u32);
         // The first sample that shows the same plane.
         let first =
             |seen: Seen| samples.iter().position(|&sample| self.is_alike(number(sample), number(seen)));
+        let firsts: Vec<Option<usize>> = samples.iter().map(|&sample| first(sample)).collect();
+        let planes = firsts.iter().enumerate().filter(|(k, first)| **first == Some(*k)).count();
+        if planes * LEAST_POINTS_OF_A_PLANE > points {
+            return equal();
+        }
         let mut counts = vec![0.0; samples.len()];
         let place = |i: usize| ((i % points) as f64 + 0.5) / points as f64;
         for k in 0..points {
             let (u, v) = (place(k), place(generator * k));
-            // What no sample shows is seen of hardly anything.
+            // What no sample shows is hardly seen: there are few planes.
             if let Some(first) = first(self.eye.hit(x as f64 + u, y as f64 + v)) {
                 counts[first] += 1.0;
             }
         }
         let all: f64 = counts.iter().sum();
-        let firsts: Vec<Option<usize>> = samples.iter().map(|&sample| first(sample)).collect();
+        if all == 0.0 {
+            return equal();
+        }
         let share = |own: &Option<usize>| {
             let same = firsts.iter().filter(|other| *other == own).count();
             own.map_or(0.0, |first| counts[first] / (same as f64 * all))

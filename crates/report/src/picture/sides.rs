@@ -49,8 +49,8 @@ pub struct Side {
     pub marked: bool,
 }
 
-/// Draws pieces by their sides, and lines over them, which are called so; the title begins with
-/// what it is, and tells the colours.
+/// Draws pieces by their sides, and lines over them. Above stands `title` with what the colours
+/// tell, `called` being what the lines are, `marked` the marked pieces.
 ///
 /// # Errors
 /// [`ReportError::Camera`] for settings that make no picture, [`ReportError::Visibility`] where the

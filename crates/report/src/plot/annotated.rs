@@ -12,6 +12,7 @@ use super::Point;
 use super::figure::{draw_title, failed, width_of, wrapped};
 use super::map::{Area, BAR_WIDTH, ColourBar};
 use super::theme::{GROUND, INK, MARGIN, SMALL_TEXT_SIZE, TITLE_ROW, load_font, text};
+use crate::camera::LEAST_WRITTEN_WIDTH;
 use crate::{Picture, ReportError};
 
 /// Shorter side of a picture for one pixel of the theme to be one of the picture.
@@ -19,7 +20,7 @@ const SHORTER_SIDE: u32 = 560;
 /// Least height of the bar, pixels of the theme.
 const LEAST_BAR_HEIGHT: i32 = 220;
 /// Least width of the whole, pixels of the theme.
-const LEAST_WIDTH: i32 = 480;
+const LEAST_WIDTH: i32 = LEAST_WRITTEN_WIDTH as i32;
 /// Height of a number, pixels of the theme.
 const NUMBER_HEIGHT: f64 = 17.0;
 /// Room between numbers, pixels of the theme.

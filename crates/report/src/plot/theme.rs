@@ -28,8 +28,8 @@ pub(super) const INK: RGBColor = RGBColor(31, 35, 40);
 pub(super) const MUTED_INK: RGBColor = RGBColor(98, 104, 112);
 pub(super) const GRID_COLOUR: RGBColor = RGBColor(222, 225, 229);
 
-/// The colours of this module on a dark ground, where lines of the others are hard to see when they
-/// are thin: those of series have a contrast of at least 4.5 : 1 to it.
+/// What the colours of this module become on a dark ground, on which thin lines in those for the
+/// light one are hard to see: those of series have a contrast of at least 4.5 : 1 to it.
 const DARK_COLOURS: [(RGBColor, &str); 15] = [
     (GROUND, "#16181d"),
     (INK, "#e6e8eb"),

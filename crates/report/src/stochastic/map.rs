@@ -1,7 +1,7 @@
 //! Where two solutions differ: pictures in the colours of the score z, with their bar.
 //!
-//! Nearly white is agreement, red is where the first is the brighter, blue where it is the darker;
-//! full at |z| = 5.
+//! Nearly white is agreement, red is where what was traced is the brighter, blue where it is the
+//! darker; full at |z| = 5.
 
 use fredholm_mesh::Mesh;
 use rayon::prelude::*;
