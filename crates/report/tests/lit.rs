@@ -222,8 +222,8 @@ fn gathered(light: &dyn LampLight, side: u32) -> LitPicture {
     gathered_where(Where::Everywhere, light, side, 0.4)
 }
 
-/// The same where so much is sent on by a corner of the floor.
-fn gathered_where(place: Where, light: &dyn LampLight, side: u32, corner_sends: f64) -> LitPicture {
+/// The square of 4 × 4 faces, and one of one face above it, which looks down.
+fn floor_and_ceiling(height: f64) -> Mesh {
     let line = |i: usize| 0.5 * i as f64 - 1.0;
     let corner = |i: usize, j: usize| Vec3::new(line(i), line(j), 0.0);
     let mut builder = MeshBuilder::default();
@@ -233,9 +233,14 @@ fn gathered_where(place: Where, light: &dyn LampLight, side: u32, corner_sends: 
         builder.face(&[Patch::quad(ring).unwrap().unwrap()]).unwrap();
     }
     builder.surface("ceiling", 1);
-    let above = [corner(0, 0), corner(0, 4), corner(4, 4), corner(4, 0)].map(|p| p + Vec3::Z * HEIGHT);
+    let above = [corner(0, 0), corner(0, 4), corner(4, 4), corner(4, 0)].map(|p| p + Vec3::Z * height);
     builder.face(&[Patch::quad(above).unwrap().unwrap()]).unwrap();
-    let (mesh, bands) = (builder.build(), vec!["grey".to_owned()]);
+    builder.build()
+}
+
+/// The same where so much is sent on by a corner of the floor.
+fn gathered_where(place: Where, light: &dyn LampLight, side: u32, corner_sends: f64) -> LitPicture {
+    let (mesh, bands) = (floor_and_ceiling(HEIGHT), vec!["grey".to_owned()]);
     let mut radiosity = vec![0.4; 17];
     (radiosity[0], radiosity[16]) = (corner_sends, 6.0);
     let field = Field::new(&mesh, &bands, &radiosity, &radiosity).unwrap();
@@ -316,18 +321,7 @@ impl LampLight for Quarter {
 
 #[test]
 fn what_is_met_nearby_sends_on_the_light_of_lamps_and_of_one_more_direction() {
-    let line = |i: usize| 0.5 * i as f64 - 1.0;
-    let corner = |i: usize, j: usize| Vec3::new(line(i), line(j), 0.0);
-    let mut builder = MeshBuilder::default();
-    builder.surface("floor", 0);
-    for (i, j) in (0..4).flat_map(|i| (0..4).map(move |j| (i, j))) {
-        let ring = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
-        builder.face(&[Patch::quad(ring).unwrap().unwrap()]).unwrap();
-    }
-    builder.surface("ceiling", 1);
-    let above = [corner(0, 0), corner(0, 4), corner(4, 4), corner(4, 0)].map(|p| p.with_z(0.1));
-    builder.face(&[Patch::quad(above).unwrap().unwrap()]).unwrap();
-    let (mesh, bands) = (builder.build(), vec!["grey".to_owned()]);
+    let (mesh, bands) = (floor_and_ceiling(0.1), vec!["grey".to_owned()]);
     // The solution has far too much light in the ceiling.
     let mut radiosity = vec![0.4; 17];
     radiosity[16] = 100.0;

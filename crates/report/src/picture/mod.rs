@@ -30,7 +30,7 @@ use links::LinkOverlay;
 pub use links::{Link, Linked};
 pub use lit::{LampFactors, LampLight, Lighter, Lit, LitPicture, Points, Seen, Where};
 use lit::{LitView, Unlit, neighbours};
-pub(crate) use sides::SAMPLES_OF_A_PIXEL;
+pub(crate) use sides::supersampled;
 pub use sides::{Back, Side, sides_map};
 
 /// Samples of a pixel at a border.

@@ -24,8 +24,7 @@ const GRAZING_BRIGHTNESS: f64 = 0.35;
 /// Share of a line over what is behind it.
 const LINE_SHARE: f64 = 0.9;
 /// Places of the samples in a pixel.
-pub(crate) const SAMPLES_OF_A_PIXEL: [[f64; 2]; 4] =
-    [[0.125, 0.625], [0.375, 0.125], [0.625, 0.875], [0.875, 0.375]];
+const SAMPLES_OF_A_PIXEL: [[f64; 2]; 4] = [[0.125, 0.625], [0.375, 0.125], [0.625, 0.875], [0.875, 0.375]];
 
 /// What the back of a piece is drawn as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,25 +77,31 @@ fn render_sides(sides: &[Side], lines: &[[Vec3; 2]], camera: &Camera) -> Result<
     let patches: Vec<Patch> = seen.iter().map(|side| side.patch).collect();
     let pieces =
         Occluders::new(&patches).map_err(|error| ReportError::Visibility { why: error.to_string() })?;
-    let (width, height) = (camera.width, camera.height);
-    let mut picture = Picture { width, height, pixels: vec![0; 3 * width as usize * height as usize] };
-    let row = |(y, row): (usize, &mut [u8])| {
-        for (x, pixel) in row.chunks_exact_mut(3).enumerate() {
-            let mut sum = [0.0; 3];
-            for [dx, dy] in SAMPLES_OF_A_PIXEL {
-                let direction = camera.direction(&axes, x as f64 + dx, y as f64 + dy);
-                let hit = pieces.closest(camera.eye, direction, f64::INFINITY);
-                let colour = hit.map_or([BACKGROUND; 3], |hit| colour(seen[hit.patch], direction));
-                sum = [0, 1, 2].map(|i| sum[i] + colour[i] / SAMPLES_OF_A_PIXEL.len() as f64);
-            }
-            pixel.copy_from_slice(&sum.map(encode));
-        }
-    };
-    picture.pixels.par_chunks_mut(3 * width as usize).enumerate().for_each(row);
+    let mut picture = supersampled(camera, |x, y| {
+        let direction = camera.direction(&axes, x, y);
+        let hit = pieces.closest(camera.eye, direction, f64::INFINITY);
+        hit.map_or([BACKGROUND; 3], |hit| colour(seen[hit.patch], direction))
+    });
     for ends in lines {
         draw(camera, &axes, &mut picture, *ends);
     }
     Ok(picture)
+}
+
+/// A picture of the size of a camera's, each pixel the mean of the linear colours at four places.
+pub(crate) fn supersampled(camera: &Camera, colour: impl Fn(f64, f64) -> Rgb + Sync) -> Picture {
+    let Camera { width, height, .. } = *camera;
+    let columns = width as usize;
+    let pixel = |at: usize| {
+        let mut sum = [0.0; 3];
+        for [dx, dy] in SAMPLES_OF_A_PIXEL {
+            let colour = colour((at % columns) as f64 + dx, (at / columns) as f64 + dy);
+            sum = [0, 1, 2].map(|i| sum[i] + colour[i] / SAMPLES_OF_A_PIXEL.len() as f64);
+        }
+        sum.map(encode)
+    };
+    let pixels: Vec<[u8; 3]> = (0..columns * height as usize).into_par_iter().map(pixel).collect();
+    Picture { width, height, pixels: pixels.into_flattened() }
 }
 
 fn colour(side: &Side, direction: Vec3) -> Rgb {

@@ -4,11 +4,10 @@
 //! darker; full at |z| = 5.
 
 use fredholm_mesh::Mesh;
-use rayon::prelude::*;
 
-use crate::picture::{BACKGROUND, SAMPLES_OF_A_PIXEL};
+use crate::picture::{BACKGROUND, supersampled};
 use crate::plot::{Annotated, ColourBar, Scale, diverging};
-use crate::tone::{decode, encode};
+use crate::tone::decode;
 use crate::{Camera, Eye, Field, Picture, ReportError};
 
 /// Score of the full colour.
@@ -34,21 +33,12 @@ pub fn score_map(
     let field = Field::new(mesh, &bands, &dark, &dark)?;
     let camera = camera.copied().unwrap_or_else(|| Camera::framing(&field)).enlarged();
     let eye = Eye::new(mesh, &camera)?;
-    let Camera { width, height, .. } = camera;
-    let columns = width as usize;
     // Of every face its own colour: scores are not interpolated.
-    let pixel = |at: usize| {
-        let mut sum = [0.0; 3];
-        for [dx, dy] in SAMPLES_OF_A_PIXEL {
-            let hit = eye.hit((at % columns) as f64 + dx, (at / columns) as f64 + dy);
-            let colour = |(leaf, _)| score_colour(scores[mesh.face_of(leaf)]).map(decode);
-            let colour = hit.map_or([BACKGROUND; 3], colour);
-            sum = [0, 1, 2].map(|i| sum[i] + colour[i] / SAMPLES_OF_A_PIXEL.len() as f64);
-        }
-        sum.map(encode)
-    };
-    let pixels: Vec<[u8; 3]> = (0..columns * height as usize).into_par_iter().map(pixel).collect();
-    with_score_bar(title, &Picture { width, height, pixels: pixels.into_flattened() })
+    let picture = supersampled(&camera, |x, y| {
+        let colour = |(leaf, _)| score_colour(scores[mesh.face_of(leaf)]).map(decode);
+        eye.hit(x, y).map_or([BACKGROUND; 3], colour)
+    });
+    with_score_bar(title, &picture)
 }
 
 /// A picture of scores with a title, and the colours of the scores beside it.
