@@ -347,7 +347,7 @@ class Scene(LightStudies):
         *,
         rows: str = "face",
         tolerance: Optional[float] = None,
-        method: str = "auto",
+        method: str = "row-budget",
         setting: Optional[str] = None,
         threshold: Optional[float] = None,
         close: bool = False,

@@ -20,8 +20,8 @@ Floats = NDArray[np.float64]
 
 
 def view_factor_methods() -> List[str]:
-    """Names of the methods: "auto", the fast assembly to a tolerance of pairs, "row-budget", the
-    same to one of rows, and those that are there for study."""
+    """Names of the methods: "row-budget", the usual one, to a tolerance of rows, "auto", the same to
+    one of pairs, and those that are there for study."""
     return _core.methods()
 
 
@@ -30,7 +30,7 @@ def view_factors(
     *,
     rows: str = "face",
     tolerance: Optional[float] = None,
-    method: str = "auto",
+    method: str = "row-budget",
     setting: Optional[str] = None,
     threshold: Optional[float] = None,
     close: bool = False,
@@ -50,11 +50,11 @@ def view_factors(
     rows : {"face", "element", "surface"}
         What a row stands for.
     tolerance : float, optional
-        Error asked for in a pair, of "row-budget" in a row; 1e-3.
+        Error asked for in a row, of "auto" in a pair; 1e-3.
     method : str
         One of :func:`view_factor_methods`.
     setting : str, optional
-        Setting of a method other than "auto" and "row-budget": its order, tolerance, samples or pixels.
+        Setting of a method for study: its order, tolerance, samples or pixels.
     threshold : float, optional
         Least factor that is kept; what a row drops is stated. All are kept where it is left out.
     close : bool

@@ -6,7 +6,7 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use fredholm_coupling::form_factor::{Exchange, Method, Unoccluded, Work};
+use fredholm_coupling::form_factor::{Exchange, Unoccluded, Work};
 use fredholm_mesh::{Patch, Vec3};
 use std::hint::black_box;
 
@@ -35,7 +35,7 @@ fn closure(patches: &[Patch], tolerance: f64) -> f64 {
     let exchanges = Unoccluded::new(&list, tolerance);
     let (mut work, mut sums) = (Work::default(), vec![0.0; patches.len()]);
     let js: Vec<u32> = (0..patches.len() as u32).collect();
-    let mut row = vec![Exchange { value: 0.0, error: 0.0, method: Method::Hidden }; patches.len()];
+    let mut row = vec![Exchange::NONE; patches.len()];
     for i in 0..patches.len() {
         exchanges.row(i, &js[..i], &mut work, &mut row);
         for (j, exchange) in row[..i].iter().enumerate() {

@@ -6,7 +6,7 @@
 //! the number of threads changes no bit.
 
 use crate::CouplingError;
-use crate::form_factor::{Exchange, Method, PairIntegrator, Workspace};
+use crate::form_factor::{Exchange, Method, PairIntegrator, STANDARD_ERRORS, Workspace};
 use crate::occlusion::{Clusters, Panel, walk};
 use crate::pair_sample::scattered;
 use fredholm_linop::{PackedSymmetric, Quiet, Steps, Storage, Watch};
@@ -14,8 +14,6 @@ use rayon::prelude::*;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Standard errors that are stated.
-const STANDARD_ERRORS: f64 = 3.0;
 /// Patches of a panel at most.
 const PATCHES_OF_A_PANEL: usize = 32;
 /// Pairs of a panel, roughly, when the time of all is to be found out.
@@ -74,8 +72,8 @@ impl MethodCounts {
 pub struct Assembled<S> {
     /// G_ij = A_i F_ij, m².
     pub matrix: PackedSymmetric<S>,
-    /// Σ_j |error of G_ij| as estimated, m², per element; of pairs by segments, whose errors are
-    /// independent, three times the root of the sum of their squares.
+    /// Σ_j |error of G_ij| as estimated, m², per element; of errors that are independent between
+    /// pairs, three times the root of the sum of their squares.
     pub error: Vec<f64>,
     /// Largest estimated error of a form factor F_ij.
     pub largest: f64,
@@ -266,14 +264,9 @@ impl<S: Storage> Strip<S> {
         }
         let values = exchanges.iter().map(|exchange| S::from_f64(exchange.value)).collect();
         let kept = if self.keep_errors { &exchanges[..] } else { &[] };
-        let errors = kept.iter().map(stated).collect();
+        let errors = kept.iter().map(Exchange::stated).collect();
         self.rows.push(Row { patch: i, columns, values, errors });
     }
-}
-
-/// The stated error of one exchange, m².
-fn stated(exchange: &Exchange) -> f64 {
-    if exchange.method == Method::Segments { STANDARD_ERRORS * exchange.error } else { exchange.error }
 }
 
 /// What one panel knows of its pairs.
@@ -292,13 +285,11 @@ impl Report {
     }
 
     fn add(&mut self, i: usize, j: usize, exchange: &Exchange, area: f64) {
-        self.largest = self.largest.max(stated(exchange) / area);
-        let (sums, part) = match exchange.method {
-            Method::Segments => (&mut self.variance, exchange.error * exchange.error),
-            _ => (&mut self.error, exchange.error),
-        };
-        sums[i] += part;
-        sums[j] += part;
+        self.largest = self.largest.max(exchange.stated() / area);
+        for row in [i, j] {
+            self.error[row] += exchange.error;
+            self.variance[row] += exchange.deviation * exchange.deviation;
+        }
         self.methods.add(exchange.method);
     }
 

@@ -153,7 +153,7 @@ impl<'a> Emitters<'a> {
     /// Remembers the largest error of a form factor.
     fn note(&self, source: u32, columns: &[u32], exchanges: &[Vec<Exchange>]) {
         let error = |(&j, exchange): (&u32, &Exchange)| {
-            exchange.error / self.integrator.smaller_area(source as usize, j as usize)
+            exchange.stated() / self.integrator.smaller_area(source as usize, j as usize)
         };
         let largest = columns.iter().zip(exchanges.iter().flatten()).map(error).fold(0.0, f64::max);
         self.largest.fetch_max(largest.to_bits(), Ordering::Relaxed);
@@ -167,8 +167,8 @@ fn single(clusters: &mut Clusters, node: usize) -> usize {
     }
     let place = clusters.order.len();
     clusters.order.push(place as u32);
-    let Node { bound, radius, .. } = clusters.nodes[node].clone();
-    clusters.nodes.push(Node { places: place..place + 1, children: None, bound, radius });
+    let whole = clusters.nodes[node].clone();
+    clusters.nodes.push(Node { places: place..place + 1, children: None, ..whole });
     clusters.nodes.len() - 1
 }
 

@@ -207,8 +207,8 @@ pub fn sky_exchanges(
     let steps = Steps::new(watch, surfaces as u64, "elements");
     let sum = |work: &mut Workspace, i: usize| {
         steps.begin().is_continue().then(|| {
-            let parts = (surfaces..integrator.len()).map(|k| integrator.exchange_from(i, k, work));
-            parts.fold([0.0; 2], |[value, error], part: Exchange| [value + part.value, error + part.error])
+            let parts = (surfaces..integrator.len()).map(|k| integrator.exchange_of_a_row(i, k, work));
+            parts.fold([0.0; 2], |[value, error], part: Exchange| [value + part.value, error + part.stated()])
         })
     };
     let found: Vec<Option<[f64; 2]>> =

@@ -19,7 +19,8 @@ use fredholm_quadrature::Estimate;
 use generator::{Kind, Random, moved, pair};
 use std::f64::consts::PI;
 
-const EMPTY: Exchange = Exchange { value: f64::NAN, error: f64::NAN, method: Method::Sampled };
+const EMPTY: Exchange =
+    Exchange { value: f64::NAN, error: f64::NAN, deviation: 0.0, method: Method::Sampled };
 
 /// Exchanges of the first patch with all others.
 fn exchanges(patches: &[Patch], tolerance: f64) -> Vec<Exchange> {

@@ -11,6 +11,7 @@
 //! | triangle | [`symmetric_triangle`], [`collapsed_triangle`] |
 //! | cut up | [`composed_interval`], [`composed_quad`], [`composed_triangle`] |
 //! | adaptive | [`integrate_adaptive`], [`adaptive_interval`], [`adaptive_quad`], [`adaptive_triangle`] |
+//! | unit cube | Sobol's points, scrambled ([`sobol`]) |
 //! | singular | [`triangle_pair`], [`quad_pair`] where patches touch, [`near_triangle`], [`near_pair`] where they are close |
 
 mod adaptive;
@@ -30,6 +31,7 @@ mod quad;
 mod refine;
 mod richardson;
 mod romberg;
+pub mod sobol;
 mod symmetric;
 mod triangle;
 

@@ -16,16 +16,17 @@ use crate::start::recorded;
 pub(super) const EXAMPLES: &str = "\
 Examples:
   fredholm viewfactors room.vs3 -o F.npz
-  fredholm viewfactors room.obj -o F.csv --tolerance 1e-6
+  fredholm viewfactors room.obj -o F.csv --tolerance 1e-4
+  fredholm viewfactors room.obj -o F.csv --method auto --tolerance 1e-6
   fredholm viewfactors room.toml -o F.txt --rows surface --close
   fredholm viewfactors court.obj -o F.npz --sky --threshold 1e-5
   fredholm viewfactors room.obj -o F.npz --method hemicube --setting 256
   fredholm viewfactors hall.obj -o F.npz --point 1,2,0.8,0,0,1 --plane 0,0,0.8,6,0,0,0,4,0,12,8
 
-auto meets the tolerance in every pair, row-budget in every row, which is quicker in furnished
-rooms. --setting is the order of area-gauss and nystrom, the tolerance of contour and point-polygon,
-the samples (or samples,seed) of monte-carlo, the pixels of hemicube. All other methods are for
-study: they compute one pair after the other.
+row-budget asks the tolerance of a row and spends on a pair what it matters to its row; auto asks it
+of every pair: take that for factors that are used one by one. All other methods are for study: they
+compute one pair after the other. --setting is the order of area-gauss and nystrom, the tolerance of
+contour and point-polygon, the samples (or samples,seed) of monte-carlo, the pixels of hemicube.
 
 Beside F.npz come F.png, the matrix as a picture; F.svg, how well its rows close; F.html, the
 page for the browser; and F.json, the record. Ctrl-C ends the run with nothing written.
@@ -47,12 +48,12 @@ pub(crate) struct ViewFactorsArgs {
     /// view3d]
     #[arg(long, value_enum, value_name = "FORM")]
     pub(crate) format: Option<Format>,
-    /// Error asked for in a pair, of row-budget in a row; rounded down to a power of ten, 1e-14 at
+    /// Error asked for in a row; with auto in a pair, and rounded down to a power of ten, 1e-14 at
     /// least [default: the file's, else 1e-3; of methods for study, their usual one]
     #[arg(long, value_name = "T", value_parser = tolerance)]
     pub(crate) tolerance: Option<f64>,
     /// How form factors are computed
-    #[arg(long, value_name = "NAME", default_value = "auto",
+    #[arg(long, value_name = "NAME", default_value = "row-budget",
         value_parser = PossibleValuesParser::new(view_factor_methods()))]
     pub(crate) method: String,
     /// Setting of a method for study: its order, tolerance, samples or pixels [default: its

@@ -31,6 +31,7 @@ pub use error_model::ErrorModel;
 pub(crate) use facing::{Segment, Side, extent, facing_exchange, flat, front, front_of, to_segments};
 pub(crate) use jacobian::jacobian;
 pub(crate) use lanes::{LANES, Lanes, Lanes3, any, ask, each, heights, range, same};
+pub(crate) use pair::STANDARD_ERRORS;
 pub(crate) use pair::blocks;
 pub use pair::{Exchange, Method, PairIntegrator, Workspace};
 pub use point_polygon::point_to_polygon;

@@ -22,7 +22,7 @@
 use super::hidden::{HiddenWork, Occluded, hidden_exchange};
 use super::rung::rung;
 use super::sampled::sampled;
-use super::segments::Blockers;
+use super::segments::{Blockers, Wanted};
 use super::small_receiver::small_receiver;
 use super::{ErrorModel, Side, Unoccluded, Work, facing_exchange, front};
 use crate::occlusion::{Clusters, Sight};
@@ -35,13 +35,25 @@ use fredholm_visibility::body::{Bodies, Body, Face, Screen, Shadow, ShadowVolume
 /// Bodies up to which exact shadows are cheaper than sampling.
 const MOST_EXACT_BODIES: usize = 128;
 
-/// Segments of a pair over its form factor times the square of T: three standard errors of a row
-/// are then about T where a third of it is behind bodies.
+/// Independent segments of a pair over its form factor times the square of T: three standard errors
+/// of a row are then about T where a third of it is behind bodies.
 const SEGMENTS_OF_A_ROW: f64 = 0.35;
-/// Segments of a pair at least,
+/// Variance of a pair over its form factor times the square of T, for the same.
+const VARIANCE_OF_A_ROW: f64 = 0.29;
+/// Independent segments of a pair at least, and at most: more than any pair gets.
 const LEAST_SEGMENTS: f64 = 8.0;
-/// and at most: exact shadows take less time than more.
-const MOST_SEGMENTS: f64 = 4096.0;
+const MOST_SEGMENTS: f64 = 1e12;
+/// Segments that take about as long as exact shadows to T = 1e-3, for each face of the bodies up to
+/// so many faces; behind more they are as many more (measured in a furnished room and on a scanned
+/// figure of 1,000 triangles).
+const SEGMENTS_OF_A_FACE: f64 = 100.0;
+const FACES_OF_A_LINE: f64 = 32.0;
+/// The power of 1/T with which the time of exact shadows grows.
+const POWER_OF_SHADOWS: f64 = 0.4;
+/// Standard errors that are stated.
+pub(crate) const STANDARD_ERRORS: f64 = 3.0;
+/// Bodies behind which exact shadows take a hundredth of a second at most.
+const QUICK_BODIES: usize = 32;
 
 /// Tolerance of exchanges with nothing between, in T: a digit more costs them next to nothing.
 const OPEN_TOLERANCE: f64 = 0.1;
@@ -71,25 +83,34 @@ pub enum Method {
     Segments,
 }
 
-/// A_i F_ij (m²), its estimated absolute error (m²; of [`Method::Segments`] one standard error) and
-/// where it comes from.
+/// A_i F_ij, how wrong it may be, and where it comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exchange {
     /// A_i F_ij, m².
     pub value: f64,
-    /// Estimated absolute error, m².
+    /// Estimated absolute error, m²; errors of a row add up.
     pub error: f64,
+    /// Standard error of a part that is independent of all other pairs, m², as in rows that have a
+    /// [budget](PairIntegrator::with_row_budget): of a row the squares add up.
+    pub deviation: f64,
     /// Method.
     pub method: Method,
 }
 
 impl Exchange {
-    pub(super) const NONE: Self = Self { value: 0.0, error: 0.0, method: Method::Hidden };
+    /// Nothing is exchanged.
+    pub const NONE: Self = Self { value: 0.0, error: 0.0, deviation: 0.0, method: Method::Hidden };
 
     /// A factor is not negative: rounding below 0 becomes 0 and is added to the error.
     pub(super) fn new(method: Method, estimate: Estimate) -> Self {
         let below = (-estimate.value).max(0.0);
-        Self { value: estimate.value.max(0.0), error: estimate.error + below, method }
+        Self { value: estimate.value.max(0.0), error: estimate.error + below, deviation: 0.0, method }
+    }
+
+    /// The error that is stated for it alone, m²: with three standard errors.
+    #[must_use]
+    pub fn stated(&self) -> f64 {
+        self.error + STANDARD_ERRORS * self.deviation
     }
 }
 
@@ -130,6 +151,8 @@ pub struct PairIntegrator<'a> {
     occluders: &'a Occluders,
     bodies: Bodies,
     tolerance: f64,
+    /// T as it was given.
+    asked: f64,
     /// Bodies up to which exact shadows come first.
     few: usize,
     model: ErrorModel,
@@ -141,8 +164,24 @@ pub struct PairIntegrator<'a> {
 #[derive(Debug)]
 struct Rows {
     blockers: Blockers,
-    /// Segments of a pair over its form factor.
-    per_factor: f64,
+    /// T, which is not rounded here.
+    tolerance: f64,
+}
+
+impl Rows {
+    /// How exact the share of a pair is wanted, of a form factor from the smaller patch and behind
+    /// some bodies.
+    fn wanted(&self, factor: f64, bodies: &[u32]) -> Wanted {
+        let square = self.tolerance * self.tolerance;
+        let (faces, finer) =
+            (self.blockers.faces(bodies) as f64, (1e-3 / self.tolerance).powf(POWER_OF_SHADOWS));
+        let most = SEGMENTS_OF_A_FACE * faces * (faces / FACES_OF_A_LINE).max(1.0) * finer;
+        Wanted {
+            independent: (SEGMENTS_OF_A_ROW * factor / square).clamp(LEAST_SEGMENTS, MOST_SEGMENTS) as usize,
+            deviation: (VARIANCE_OF_A_ROW * square / factor).sqrt(),
+            most: most as usize,
+        }
+    }
 }
 
 impl<'a> PairIntegrator<'a> {
@@ -165,7 +204,7 @@ impl<'a> PairIntegrator<'a> {
         tolerance: f64,
     ) -> Self {
         let bodies = Bodies::new(occluders, &patches, &[]);
-        let tolerance = rung(tolerance);
+        let (asked, tolerance) = (tolerance, rung(tolerance));
         patches.extend(groups);
         let open = Unoccluded::new(&patches, OPEN_TOLERANCE * tolerance);
         let sides = patches.iter().map(|patch| Side::of(patch)).collect();
@@ -176,6 +215,7 @@ impl<'a> PairIntegrator<'a> {
             occluders,
             bodies,
             tolerance,
+            asked,
             few: MOST_EXACT_BODIES,
             model: ErrorModel::FITTED,
             rows: None,
@@ -186,8 +226,7 @@ impl<'a> PairIntegrator<'a> {
     /// the error of a row, not of each pair.
     #[must_use]
     pub fn with_row_budget(self) -> Self {
-        let per_factor = SEGMENTS_OF_A_ROW / (self.tolerance * self.tolerance);
-        Self { rows: Some(Rows { blockers: Blockers::new(&self.bodies), per_factor }), ..self }
+        Self { rows: Some(Rows { blockers: Blockers::new(&self.bodies), tolerance: self.asked }), ..self }
     }
 
     /// Computes exact shadows behind any number of bodies.
@@ -219,6 +258,12 @@ impl<'a> PairIntegrator<'a> {
         self.patches[i].area().min(self.patches[j].area())
     }
 
+    /// Whether the assembly may ask exact shadows of a pair.
+    pub(crate) fn may_be_clipped(&self, i: usize, j: usize) -> bool {
+        let between = || self.between(self.patches[i], self.patches[j]).len();
+        self.rows.is_none() || between() <= QUICK_BODIES
+    }
+
     /// A_i F_ij of patches i and j.
     pub fn exchange(&self, i: usize, j: usize, work: &mut Workspace) -> Exchange {
         self.compute(i, j, Outer::Clearer, work)
@@ -230,23 +275,43 @@ impl<'a> PairIntegrator<'a> {
         self.compute(i, j, Outer::First, work)
     }
 
+    /// A_i F_ij with the outer integral, where there is one, over patch i; where rows have a budget,
+    /// as exactly as it matters to them.
+    pub(crate) fn exchange_of_a_row(&self, i: usize, j: usize, work: &mut Workspace) -> Exchange {
+        let found = self.in_view(i, j, work);
+        found.map_or(Exchange::NONE, |(open, bodies)| {
+            self.behind_in_a_row([i, j], Outer::First, &bodies, open, work)
+        })
+    }
+
     fn compute(&self, i: usize, j: usize, outer: Outer, work: &mut Workspace) -> Exchange {
-        if i == j {
-            return Exchange::NONE;
-        }
+        let found = self.in_view(i, j, work);
+        found.map_or(Exchange::NONE, |(open, bodies)| {
+            let bodies = self.listed(&bodies);
+            self.behind_bodies([self.side(i), self.side(j)], outer, &bodies, open, work)
+        })
+    }
+
+    /// The exchange with nothing between, and the bodies that may come between; `None` where
+    /// nothing is exchanged.
+    fn in_view(&self, i: usize, j: usize, work: &mut Workspace) -> Option<(Exchange, Vec<u32>)> {
         let (a, b) = (self.side(i), self.side(j));
         let flat = a.flat(&b);
-        if !rises(b.patch, a.plane, flat) || !rises(a.patch, b.plane, flat) {
-            return Exchange::NONE;
+        if i == j || !rises(b.patch, a.plane, flat) || !rises(a.patch, b.plane, flat) {
+            return None;
         }
-        let bodies = self.between(a.patch, b.patch);
-        let nothing = self.bodies.tolerance();
-        if bodies.iter().any(|body| blocks(body, a.patch, b.patch, nothing, &mut work.volume)) {
-            return Exchange::NONE;
+        let (bodies, nothing) = (self.between(a.patch, b.patch), self.bodies.tolerance());
+        let listed = self.listed(&bodies);
+        if listed.iter().any(|body| blocks(body, a.patch, b.patch, nothing, &mut work.volume)) {
+            return None;
         }
         let mut open = [Exchange::NONE];
         self.open.row(i, &[j as u32], &mut work.open, &mut open);
-        self.behind_bodies([a, b], outer, &bodies, open[0], work)
+        Some((open[0], bodies))
+    }
+
+    fn listed(&self, bodies: &[u32]) -> Vec<&Body> {
+        bodies.iter().map(|&k| &self.bodies.as_slice()[k as usize]).collect()
     }
 
     /// Groups of patches, for the assembly.
@@ -305,15 +370,29 @@ impl<'a> PairIntegrator<'a> {
         open: Exchange,
         work: &mut Workspace,
     ) -> Exchange {
+        self.behind_in_a_row([i, j], Outer::Clearer, bodies, open, work)
+    }
+
+    fn behind_in_a_row(
+        &self,
+        [i, j]: [usize; 2],
+        outer: Outer,
+        bodies: &[u32],
+        open: Exchange,
+        work: &mut Workspace,
+    ) -> Exchange {
         if open.method == Method::Hidden || bodies.is_empty() {
             return open;
         }
-        if let Some(found) = self.rows.as_ref().and_then(|rows| self.by_segments(rows, [i, j], bodies, open))
-        {
-            return found;
-        }
-        let bodies: Vec<&Body> = bodies.iter().map(|&k| &self.bodies.as_slice()[k as usize]).collect();
-        self.behind_bodies([self.side(i), self.side(j)], Outer::Clearer, &bodies, open, work)
+        let sides = [self.side(i), self.side(j)];
+        let Some(rows) = &self.rows else {
+            return self.behind_bodies(sides, outer, &self.listed(bodies), open, work);
+        };
+        let wanted = rows.wanted(open.value / self.smaller_area(i, j), bodies);
+        self.by_segments(rows, [i, j], bodies, wanted, open).unwrap_or_else(|| {
+            let goal = rows.tolerance * sides[0].facing_exchange(&sides[1]);
+            self.to_goal(sides, outer, (&self.listed(bodies), goal), open, work)
+        })
     }
 
     fn behind_bodies(
@@ -325,35 +404,45 @@ impl<'a> PairIntegrator<'a> {
         work: &mut Workspace,
     ) -> Exchange {
         let [a, b] = sides;
-        let tolerance = self.tolerance * a.facing_exchange(&b);
+        self.to_goal(sides, outer, (bodies, self.tolerance * a.facing_exchange(&b)), open, work)
+    }
+
+    /// The share or exact shadows, to an absolute goal (m²).
+    fn to_goal(
+        &self,
+        sides: [Side; 2],
+        outer: Outer,
+        (bodies, goal): (&[&Body], f64),
+        open: Exchange,
+        work: &mut Workspace,
+    ) -> Exchange {
+        let [a, b] = sides;
         if bodies.is_empty() {
             return open;
         }
-        let share = if bodies.len() > self.few { self.share(sides, open, tolerance) } else { None };
+        let share = if bodies.len() > self.few { self.share(sides, open, goal) } else { None };
         share.unwrap_or_else(|| {
             let sides = if outer == Outer::First || clearer(a, b, bodies) { [a, b] } else { [b, a] };
-            self.behind_all(sides, bodies, open, tolerance, work)
+            self.behind_all(sides, bodies, open, goal, work)
         })
     }
 
-    /// The share from few segments, where the pair matters little to its rows.
+    /// The share from few segments, where that takes less time than exact shadows.
     fn by_segments(
         &self,
         rows: &Rows,
         [i, j]: [usize; 2],
         bodies: &[u32],
+        wanted: Wanted,
         open: Exchange,
     ) -> Option<Exchange> {
-        let segments = (rows.per_factor * open.value / self.smaller_area(i, j)).max(LEAST_SEGMENTS);
-        if segments > MOST_SEGMENTS {
-            return None;
-        }
         let names = [i.min(j), i.max(j)];
         let pair = names.map(|name| self.patches[name]);
-        let share = rows.blockers.share(pair, bodies, segments as usize, names)?;
+        let share = rows.blockers.share(pair, (bodies, self.occluders), wanted, names)?;
         Some(Exchange {
             value: open.value * share.value,
-            error: open.value * share.deviation + open.error * share.value,
+            error: open.error * share.value,
+            deviation: open.value * share.deviation,
             method: Method::Segments,
         })
     }
@@ -362,10 +451,10 @@ impl<'a> PairIntegrator<'a> {
         self.sides[i]
     }
 
-    /// The bodies that may come between two patches.
-    fn between(&self, a: &Patch, b: &Patch) -> Vec<&Body> {
+    /// The bodies that may come between two patches, by their numbers.
+    fn between(&self, a: &Patch, b: &Patch) -> Vec<u32> {
         let Some(shaft) = self.occluders.shaft_between(a, b) else { return Vec::new() };
-        self.occluders.reaching(&self.bodies, &shaft).collect()
+        self.occluders.reaching(&self.bodies, &shaft).map(|(number, _)| number).collect()
     }
 
     /// The sampled share, where it meets the tolerance.

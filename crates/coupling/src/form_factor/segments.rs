@@ -6,12 +6,15 @@
 //! ```
 //!
 //! over pairs of points (p_k, q_k), w the kernel at them times the areas that they stand for, V
-//! whether the segment is free. The points are those of a four-dimensional additive recurrence that
-//! begins at a place of its own for every pair (R. Cranley, T. N. L. Patterson, SIAM J. Numer.
-//! Anal. 13 (1976) 904, doi:10.1137/0713071), so that errors of pairs are independent and average
-//! out in a row. The standard error is that of independent points,
-//! σ² = Σ w² (V − R)² / (Σ w)², which is more than that of the recurrence. A ratio is off by 1/n
-//! in the mean where w is uneven: such pairs are left to other methods.
+//! whether the segment is free. The points are [Sobol's](fredholm_quadrature::sobol) in four
+//! dimensions, scrambled for every pair by itself, so that errors of pairs are independent and
+//! average out in a row. A ratio is off by 1/n in the mean where w is uneven: such pairs are left to
+//! other methods.
+//!
+//! The standard error of few segments is that of independent points, σ² = Σ w² (V − R)² / (Σ w)²,
+//! which is more than that of Sobol's. Where that would ask for many, eight sets of points scrambled
+//! each by itself take an eighth of them, and their differences tell the error, which falls faster
+//! than n^−½. They go on until it meets the goal.
 //!
 //! A segment is blocked by a convex body where it is below all of its faces at once (M. Cyrus, J.
 //! Beck, Comput. Graph. 3(1) (1978) 23, doi:10.1016/0097-8493(78)90021-3). In metres.
@@ -21,13 +24,50 @@
 
 use super::lanes::{LANES, Lanes, Lanes3, any, ask, dot, each, heights, same};
 use crate::method::keyed::keyed;
-use crate::rays::STEPS;
 use fredholm_mesh::{Patch, Vec3};
+use fredholm_quadrature::sobol::{reversed, scrambled};
+use fredholm_visibility::Occluders;
 use fredholm_visibility::body::{Bodies, Body};
 use pulp::{Arch, NullaryFnOnce};
+use std::ops::Range;
 
 /// Weight of one pair of points over the mean, above which the weights are uneven.
 const MOST_WEIGHT: f64 = 6.0;
+/// Segments of which the heaviest, at this weight, is a tenth of all: what is no less even will do
+/// where its error does.
+const EVEN_ENOUGH: usize = 60;
+/// Coordinates of a segment.
+const AXES: usize = 4;
+/// Segments above which eight sets of points take an eighth each.
+const FEWEST_REPLICATED: usize = 256;
+/// The order in which the error falls with the number of segments.
+const ORDER_OF_SEGMENTS: f64 = 0.63;
+/// The variance of the fewest segments of easy pairs over that of as many independent ones at most.
+const EASIEST_VARIANCE: f64 = 0.07;
+/// Doublings from one turn to the next at most.
+const MOST_DOUBLINGS: u32 = 3;
+/// Bodies above which the tree of the occluders takes less time than the list.
+const MOST_LISTED_BODIES: usize = 32;
+
+/// How exact a share is wanted.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Wanted {
+    /// Segments that it would take if they were independent,
+    pub independent: usize,
+    /// the standard error that they would have,
+    pub deviation: f64,
+    /// and how many are worth their time.
+    pub most: usize,
+}
+
+impl Wanted {
+    /// Segments that it takes in eight sets where bodies hide nearly all or nothing.
+    fn fewest_replicated(&self) -> usize {
+        let fewest = FEWEST_REPLICATED as f64;
+        let over = EASIEST_VARIANCE * self.independent as f64 / fewest;
+        (fewest * over.max(1.0).powf(0.5 / ORDER_OF_SEGMENTS)) as usize
+    }
+}
 
 /// A share and its standard error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,6 +84,8 @@ pub(crate) struct Blockers {
     bodies: Vec<Blocker>,
     /// Depth up to which a point is not in a body, m.
     tolerance: f64,
+    /// What the numbers of eight points of one set add to their coordinates.
+    lanes: [[u32; LANES]; AXES],
     arch: Arch,
 }
 
@@ -67,27 +109,107 @@ impl Blockers {
             }
             blockers.push(Blocker { first, end: planes.len(), solid: body.is_solid() });
         }
-        Self { planes, bodies: blockers, tolerance: bodies.tolerance(), arch: Arch::new() }
+        let lanes = [0, 1, 2, 3].map(|axis| [0, 1, 2, 3, 4, 5, 6, 7].map(|lane| reversed(lane, axis)));
+        Self { planes, bodies: blockers, tolerance: bodies.tolerance(), lanes, arch: Arch::new() }
     }
 
-    /// The share of an exchange that gets through between some bodies, from about so many segments;
-    /// `names` tell pairs apart. None where the weights are too uneven.
+    /// Faces of some bodies; a flat one has one.
+    pub(crate) fn faces(&self, list: &[u32]) -> usize {
+        let faces = |body: Blocker| if body.solid { body.end - body.first } else { 1 };
+        list.iter().map(|&number| faces(self.bodies[number as usize])).sum()
+    }
+
+    /// The share of an exchange that gets through between some bodies; `names` tell pairs apart.
+    /// None where the weights are too uneven, or where it would take more segments than are wanted.
     pub(crate) fn share(
         &self,
         pair: [&Patch; 2],
-        list: &[u32],
-        samples: usize,
+        (list, occluders): (&[u32], &Occluders),
+        wanted: Wanted,
         names: [usize; 2],
     ) -> Option<Share> {
-        let sums = self.arch.dispatch(Ask {
-            blockers: self,
-            sides: pair.map(Parameters::of),
-            list,
-            blocks: samples.div_ceil(LANES),
-            start: [0, 1, 2, 3].map(|axis| keyed(names[0] as u64, names[1] as u64, axis)),
-        });
-        sums.share(samples.div_ceil(LANES) * LANES)
+        let occluders = (list.len() > MOST_LISTED_BODIES).then_some(occluders);
+        let ask = Ask { blockers: self, occluders, sides: pair.map(Parameters::of), list };
+        let names = names.map(|name| name as u64);
+        let mut samples = wanted.independent.next_multiple_of(LANES);
+        while samples <= FEWEST_REPLICATED.min(wanted.most) {
+            let sums = self.sums(&ask, &Points::of_one_set(names, self.lanes), 0..samples / LANES);
+            let share = sums.share_of_independent(samples);
+            if sums.are_even(samples) {
+                return Some(share);
+            }
+            let deviation = share.deviation.hypot(sums.least_deviation());
+            if sums.are_even(EVEN_ENOUGH) && deviation <= wanted.deviation {
+                return Some(Share { deviation, ..share });
+            }
+            samples *= 2;
+        }
+        if wanted.fewest_replicated() > wanted.most { None } else { self.replicated(&ask, wanted, names) }
     }
+
+    /// From a set of points a lane, until the standard error is met.
+    fn replicated(&self, ask: &Ask, wanted: Wanted, names: [u64; 2]) -> Option<Share> {
+        let (mut sums, mut done, mut next) = (Sums::default(), 0, FEWEST_REPLICATED / LANES);
+        loop {
+            sums.add(&self.sums(ask, &Points::of_eight_sets(names), done..next));
+            done = next;
+            if total(&sums.all) == 0.0 {
+                // Nothing faces each other as far as these points tell.
+                return None;
+            }
+            let share = sums.share_of_replicates();
+            let even = sums.are_even(FEWEST_REPLICATED);
+            if even && share.deviation <= wanted.deviation {
+                return Some(share);
+            }
+            // Whole powers of two, which fill the square evenly.
+            let missing = (share.deviation / wanted.deviation).powf(ORDER_OF_SEGMENTS.recip()).log2().ceil();
+            next = done << (missing as u32).clamp(1, MOST_DOUBLINGS);
+            // What was begun is worth a little more.
+            if next * LANES > 2 * wanted.most {
+                return None;
+            }
+        }
+    }
+
+    fn sums(&self, ask: &Ask, points: &Points, blocks: Range<usize>) -> Sums {
+        self.arch.dispatch(Look { ask, points, blocks })
+    }
+}
+
+/// The numbers of the segments of a block, those of all lanes at once.
+#[derive(Clone, Copy)]
+struct Points {
+    seeds: [[u32; LANES]; AXES],
+    /// What the number of a lane adds to its coordinates.
+    lanes: [[u32; LANES]; AXES],
+    /// How many points of a set make a block.
+    stride: u32,
+}
+
+impl Points {
+    /// Eight points of one set.
+    fn of_one_set(names: [u64; 2], lanes: [[u32; LANES]; AXES]) -> Self {
+        let seeds = [0, 1, 2, 3].map(|axis| [seed(names, axis); LANES]);
+        Self { seeds, lanes, stride: LANES as u32 }
+    }
+
+    /// A point of each of eight sets.
+    fn of_eight_sets(names: [u64; 2]) -> Self {
+        let lane = |axis| [0, 1, 2, 3, 4, 5, 6, 7].map(|lane| seed(names, axis + AXES as u64 * (1 + lane)));
+        Self { seeds: [0, 1, 2, 3].map(lane), lanes: [[0; LANES]; AXES], stride: 1 }
+    }
+
+    #[inline(always)]
+    fn coordinate(&self, block: u32, axis: usize) -> Lanes {
+        let first = reversed(block * self.stride, axis as u32);
+        let [seeds, lanes] = [&self.seeds[axis], &self.lanes[axis]];
+        each(|m| f64::from(scrambled(first ^ lanes[m], seeds[m])) * (1.0 / 4_294_967_296.0))
+    }
+}
+
+fn seed([first, second]: [u64; 2], which: u64) -> u32 {
+    (keyed(first, second, which) * 4_294_967_296.0) as u32
 }
 
 fn plane(normal: Vec3, offset: f64) -> [f64; 4] {
@@ -142,7 +264,7 @@ impl Parameters {
 }
 
 /// Σ w, Σ w V, Σ w², Σ w² V and the largest w.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Sums {
     all: Lanes,
     through: Lanes,
@@ -152,50 +274,85 @@ struct Sums {
 }
 
 impl Sums {
-    fn share(&self, samples: usize) -> Option<Share> {
-        let sum = |lanes: &Lanes| lanes.iter().sum::<f64>();
-        let all = sum(&self.all);
-        let largest = self.largest.iter().fold(0.0_f64, |a, &b| a.max(b));
+    fn add(&mut self, other: &Self) {
+        let sum = |a: &Lanes, b: &Lanes| each(|m| a[m] + b[m]);
+        self.all = sum(&self.all, &other.all);
+        self.through = sum(&self.through, &other.through);
+        self.squares = sum(&self.squares, &other.squares);
+        self.squares_through = sum(&self.squares_through, &other.squares_through);
+        self.largest = each(|m| self.largest[m].max(other.largest[m]));
+    }
+
+    /// Whether no segment weighs much more than the mean of so many.
+    fn are_even(&self, samples: usize) -> bool {
+        let (all, largest) = (total(&self.all), self.heaviest());
         // Nothing has a weight where no pair of points faces each other.
-        if all.is_nan() || all <= 0.0 || largest * samples as f64 > MOST_WEIGHT * all {
-            return None;
-        }
-        let value = sum(&self.through) / all;
-        let through = sum(&self.squares_through);
-        let square = (through * (1.0 - 2.0 * value) + value * value * sum(&self.squares)).max(0.0);
+        all > 0.0 && largest * samples as f64 <= MOST_WEIGHT * all
+    }
+
+    /// What is not known where all segments see the same: half the heaviest one.
+    fn least_deviation(&self) -> f64 {
+        0.5 * self.heaviest() / total(&self.all)
+    }
+
+    fn heaviest(&self) -> f64 {
+        self.largest.iter().fold(0.0_f64, |a, &b| a.max(b))
+    }
+
+    fn share_of_independent(&self, samples: usize) -> Share {
+        let all = total(&self.all);
+        let value = total(&self.through) / all;
+        let through = total(&self.squares_through);
+        let square = (through * (1.0 - 2.0 * value) + value * value * total(&self.squares)).max(0.0);
         // n/(n − 1), since the mean is that of the same points.
         let few = samples as f64 / (samples as f64 - 1.0);
-        Some(Share { value, deviation: (square * few).sqrt() / all })
+        Share { value, deviation: (square * few).sqrt() / all }
+    }
+
+    fn share_of_replicates(&self) -> Share {
+        let all = total(&self.all);
+        let value = total(&self.through) / all;
+        let square = total(&each(|m| (self.through[m] - value * self.all[m]).powi(2)));
+        let n = LANES as f64;
+        let deviation = (square * n / (n - 1.0)).sqrt() / all;
+        Share { value, deviation: deviation.hypot(self.least_deviation()) }
     }
 }
 
-struct Ask<'a> {
-    blockers: &'a Blockers,
-    sides: [Parameters; 2],
-    list: &'a [u32],
-    /// Eights of segments.
-    blocks: usize,
-    start: [f64; 4],
+fn total(lanes: &Lanes) -> f64 {
+    lanes.iter().sum()
 }
 
-impl NullaryFnOnce for Ask<'_> {
+/// Two patches, and what is between.
+#[derive(Clone, Copy)]
+struct Ask<'a> {
+    blockers: &'a Blockers,
+    /// What is asked in place of a long list.
+    occluders: Option<&'a Occluders>,
+    sides: [Parameters; 2],
+    list: &'a [u32],
+}
+
+/// Blocks of segments to look along.
+struct Look<'a> {
+    ask: &'a Ask<'a>,
+    points: &'a Points,
+    blocks: Range<usize>,
+}
+
+impl NullaryFnOnce for Look<'_> {
     type Output = Sums;
 
     #[inline(always)]
     fn call(self) -> Sums {
-        let zero = [0.0; LANES];
-        let mut sums = Sums { all: zero, through: zero, squares: zero, squares_through: zero, largest: zero };
-        let [a, b] = self.sides;
+        let Ask { blockers, occluders, sides: [a, b], list } = *self.ask;
+        let mut sums = Sums::default();
         let (up, down) = (same(a.normal), same(b.normal));
-        for block in 0..self.blocks {
-            let parameter = |axis: usize| {
-                each(|m| {
-                    let x = self.start[axis] + (block * LANES + m) as f64 * STEPS[axis];
-                    x - x.floor()
-                })
-            };
-            let (p, at_p) = a.at(&parameter(0), &parameter(1));
-            let (q, at_q) = b.at(&parameter(2), &parameter(3));
+        for block in self.blocks {
+            // A closure called four times stays a call of its own.
+            let (block, points) = (block as u32, self.points);
+            let (p, at_p) = a.at(&points.coordinate(block, 0), &points.coordinate(block, 1));
+            let (q, at_q) = b.at(&points.coordinate(block, 2), &points.coordinate(block, 3));
             let way = [each(|m| q[0][m] - p[0][m]), each(|m| q[1][m] - p[1][m]), each(|m| q[2][m] - p[2][m])];
             let (rise, fall, square) = (dot(&way, &up), dot(&way, &down), dot(&way, &way));
             let weight = each(|m| {
@@ -204,10 +361,16 @@ impl NullaryFnOnce for Ask<'_> {
                 if faces { kernel } else { 0.0 }
             });
             let mut free = [1.0; LANES];
-            for &number in self.list {
-                self.blockers.block(self.blockers.bodies[number as usize], &p, &q, &mut free);
-                if !any(&ask(|m| free[m] > 0.0)) {
-                    break;
+            if let Some(occluders) = occluders {
+                let at = |x: &Lanes3, m: usize| Vec3::new(x[0][m], x[1][m], x[2][m]);
+                let sees = |m: usize| weight[m] > 0.0 && occluders.unoccluded(at(&p, m), at(&q, m));
+                free = each(|m| f64::from(u8::from(sees(m))));
+            } else {
+                for &number in list {
+                    blockers.block(blockers.bodies[number as usize], &p, &q, &mut free);
+                    if !any(&ask(|m| free[m] > 0.0)) {
+                        break;
+                    }
                 }
             }
             let through = each(|m| weight[m] * free[m]);
@@ -275,7 +438,10 @@ impl Blockers {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fredholm_visibility::Occluders;
+
+    fn few(independent: usize) -> Wanted {
+        Wanted { independent, deviation: 0.0, most: independent }
+    }
 
     fn quad(corners: [[f64; 3]; 4]) -> Patch {
         Patch::quad(corners.map(Vec3::from_array)).unwrap().unwrap()
@@ -318,7 +484,10 @@ mod tests {
                 let keys = 2000_usize;
                 let (mut sum, mut squares, mut stated) = (0.0, 0.0, 0.0);
                 for key in 0..keys {
-                    let Some(share) = blockers.share([&a, &b], &[0], samples, [0, key]) else { continue };
+                    let Some(share) = blockers.share([&a, &b], (&[0], &occluders), few(samples), [0, key])
+                    else {
+                        continue;
+                    };
                     sum += share.value - exact;
                     squares += (share.value - exact).powi(2);
                     stated += share.deviation.powi(2);
@@ -347,9 +516,10 @@ mod tests {
         let under = quad([[0.3, 0.3, 0.499], [0.7, 0.3, 0.499], [0.7, 0.7, 0.499], [0.3, 0.7, 0.499]]);
         let bodies = Bodies::new(&occluders, &[&a, &b, &top, &under], &[]);
         let blockers = Blockers::new(&bodies);
-        let share = |p: &Patch, q: &Patch| blockers.share([p, q], &[0], 64, [3, 7]).unwrap().value;
+        let share =
+            |p: &Patch, q: &Patch| blockers.share([p, q], (&[0], &occluders), few(64), [3, 7]).unwrap().value;
         assert!((share(&top, &b) - 1.0).abs() < 1e-15);
         assert!(share(&under, &b).abs() < 1e-15);
-        assert!(blockers.share([&top, &a], &[0], 64, [3, 7]).is_none());
+        assert!(blockers.share([&top, &a], (&[0], &occluders), few(64), [3, 7]).is_none());
     }
 }

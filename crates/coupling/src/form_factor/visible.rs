@@ -53,7 +53,8 @@ impl<'a> VisibleParts<'a> {
         if let Some(shaft) = &shaft {
             let tolerance = self.bodies.tolerance();
             let reaching = self.occluders.reaching(self.bodies, shaft);
-            let screens = reaching.map(|body| Screen::new(body, from.corners(), &self.target, tolerance));
+            let screens =
+                reaching.map(|(_, body)| Screen::new(body, from.corners(), &self.target, tolerance));
             self.between.extend(screens);
         }
         shaft.is_some()

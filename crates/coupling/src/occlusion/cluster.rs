@@ -13,6 +13,8 @@ use std::ops::Range;
 const MOST_PLANES: usize = 32;
 /// Share of the place along [`GENERIC_DIRECTION`] in the order of patches.
 const ORDER_SHEAR: f64 = 1e-4;
+/// Rounding of a cosine.
+const CONE_ROUNDING: f64 = 1e-12;
 /// Cosine of the angle between normals, less than 1 by this, up to which they count as one.
 const COSINE_TOLERANCE: f64 = 1e-14;
 
@@ -34,6 +36,45 @@ pub(crate) struct Node {
     pub bound: Bound,
     /// Half its extent, m.
     pub radius: f64,
+    /// A ball around its patches: centre and radius, m.
+    pub ball: (Vec3, f64),
+    pub normals: Cone,
+}
+
+/// A cone of directions: axis, and cosine and sine of half its opening.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cone {
+    axis: Vec3,
+    opening: [f64; 2],
+}
+
+impl Cone {
+    /// Around the normals of some patches; all directions where it would have to open beyond a
+    /// right angle.
+    fn around(normals: impl Iterator<Item = Vec3> + Clone) -> Self {
+        let axis = normals.clone().sum::<Vec3>().normalize_or_zero();
+        let cosine = normals.map(|n| n.dot(axis)).fold(1.0, f64::min) - CONE_ROUNDING;
+        let opening = if cosine > 0.0 { [cosine, (1.0 - cosine * cosine).sqrt()] } else { [-1.0, 0.0] };
+        Self { axis, opening }
+    }
+
+    /// The largest n·d of its directions n.
+    fn most_along(&self, d: Vec3) -> f64 {
+        let [cosine, sine] = self.opening;
+        let (along, length) = (self.axis.dot(d), d.length());
+        if along >= cosine * length {
+            return length;
+        }
+        along * cosine + (length * length - along * along).max(0.0).sqrt() * sine
+    }
+}
+
+impl Node {
+    /// Whether all of another node lies behind all planes of this one's patches.
+    pub(crate) fn has_behind(&self, other: &Self) -> bool {
+        let ((here, radius), (there, other_radius)) = (self.ball, other.ball);
+        self.normals.most_along(there - here) + radius + other_radius < 0.0
+    }
 }
 
 /// The tree; node 0 is the root.
@@ -90,7 +131,10 @@ impl Builder<'_> {
         let index = nodes.len();
         let planes = self.planes(order);
         let (bound, radius) = self.bound(order, planes.len());
-        nodes.push(Node { places: start..start + order.len(), children: None, bound, radius });
+        let ball = ball(extent(order.iter().flat_map(|&k| self.patch(k).corners())));
+        let normals = Cone::around(order.iter().map(|&k| self.patch(k).normal()));
+        let places = start..start + order.len();
+        nodes.push(Node { places, children: None, bound, radius, ball, normals });
         if order.len() > 1 {
             let middle = if (2..=MOST_PLANES).contains(&planes.len()) {
                 self.between_planes(order, &planes)
@@ -181,10 +225,19 @@ impl Builder<'_> {
         {
             return (Bound::Flat(rectangle), 0.5 * rectangle.diameter());
         }
-        let low = corners().fold(Vec3::INFINITY, |low, &x| low.min(x));
-        let high = corners().fold(Vec3::NEG_INFINITY, |high, &x| high.max(x));
+        let [low, high] = extent(corners());
         (Bound::Box([low, high]), 0.5 * low.distance(high))
     }
+}
+
+/// The lowest and highest coordinates of some corners.
+fn extent<'a>(corners: impl Iterator<Item = &'a Vec3>) -> [Vec3; 2] {
+    corners.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[low, high], &x| [low.min(x), high.max(x)])
+}
+
+/// The ball around a box.
+fn ball([low, high]: [Vec3; 2]) -> (Vec3, f64) {
+    (0.5 * (low + high), 0.5 * low.distance(high))
 }
 
 /// A rectangle in the plane of a patch round some corners.

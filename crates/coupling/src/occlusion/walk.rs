@@ -13,9 +13,15 @@ use super::lines::{Heights, Lines, Stands};
 use crate::form_factor::blocks;
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::Occluders;
-use fredholm_visibility::body::{Bodies, Body, ShadowVolume};
+use fredholm_visibility::body::{Bodies, ShadowVolume};
 use pulp::Arch;
 use std::ops::Range;
+
+/// Sine of the angle between the side of a hull of two balls and its axis, up to which it is told
+/// from the larger ball.
+const MOST_SINE: f64 = 0.95;
+/// Rounding of a radius.
+const TUBE_ROUNDING: f64 = 1e-12;
 
 /// What the walk asks about.
 #[derive(Clone, Copy)]
@@ -126,6 +132,10 @@ impl Walker<'_> {
     }
 
     fn pair(&mut self, a: usize, b: usize, bodies: Range<usize>) {
+        let (one, other) = (self.node(a), self.node(b));
+        if one.has_behind(other) || other.has_behind(one) {
+            return;
+        }
         let start = self.stack.len();
         match self.between(a, b, bodies) {
             Seen::Nothing => {}
@@ -142,8 +152,9 @@ impl Walker<'_> {
         let blocked = if let (Bound::Flat(p), Bound::Flat(q)) = (&nodes[a].bound, &nodes[b].bound) {
             self.between_rectangles(p, q, bodies)
         } else {
-            let around = hull(&nodes[a].bound, &nodes[b].bound);
-            self.keep(bodies, |body| meets(around, body.corners()));
+            let tube = Tube::between(&nodes[a], &nodes[b]);
+            let around = self.sight.bodies.bounds();
+            self.keep(bodies, |body| tube.meets(around[body as usize]));
             false
         };
         match (blocked, self.stack.len() == start) {
@@ -189,10 +200,10 @@ impl Walker<'_> {
         false
     }
 
-    fn keep(&mut self, bodies: Range<usize>, matters: impl Fn(&Body) -> bool) {
+    fn keep(&mut self, bodies: Range<usize>, matters: impl Fn(u32) -> bool) {
         for k in bodies {
             let body = self.stack[k];
-            if matters(&self.sight.bodies.as_slice()[body as usize]) {
+            if matters(body) {
                 self.stack.push(body);
             }
         }
@@ -272,14 +283,46 @@ fn corners(bound: &Bound) -> [Vec3; 2] {
     }
 }
 
-fn hull(a: &Bound, b: &Bound) -> [Vec3; 2] {
-    let ([low, high], [least, most]) = (corners(a), corners(b));
-    [low.min(least), high.max(most)]
+/// What holds all segments from one node to another: the box around both, and the convex hull of
+/// their balls.
+struct Tube {
+    low: Vec3,
+    high: Vec3,
+    start: Vec3,
+    way: Vec3,
+    /// 1/|way|².
+    scale: f64,
+    /// Radius of the hull at the start, what it grows by up to the end, and the distance of its side
+    /// from the axis over the radius there.
+    radius: f64,
+    growth: f64,
+    secant: f64,
 }
 
-/// Whether a polyhedron reaches into a box, as far as its own box tells.
-fn meets([low, high]: [Vec3; 2], corners: &[Vec3]) -> bool {
-    let least = corners.iter().fold(Vec3::INFINITY, |least, &x| least.min(x));
-    let most = corners.iter().fold(Vec3::NEG_INFINITY, |most, &x| most.max(x));
-    least.cmple(high).all() && most.cmpge(low).all()
+impl Tube {
+    fn between(a: &Node, b: &Node) -> Self {
+        let ([low, high], [least, most]) = (corners(&a.bound), corners(&b.bound));
+        let ((start, from), (end, to)) = (a.ball, b.ball);
+        let way = end - start;
+        let sine = (to - from) / way.length();
+        let (low, high, scale) = (low.min(least), high.max(most), way.length_squared().recip());
+        if sine.abs() < MOST_SINE {
+            let secant = (1.0 - sine * sine).sqrt().recip();
+            return Self { low, high, start, way, scale, radius: from, growth: to - from, secant };
+        }
+        // One ball is nearly within the other, or quite.
+        let (scale, radius) = (0.0, from.max(way.length() + to));
+        Self { low, high, start, way, scale, radius, growth: 0.0, secant: 1.0 }
+    }
+
+    /// Whether a body within a box may reach into it: its ball widens the hull by its own radius.
+    fn meets(&self, [least, most]: [Vec3; 2]) -> bool {
+        if !(least.cmple(self.high).all() && most.cmpge(self.low).all()) {
+            return false;
+        }
+        let (middle, size) = (0.5 * (least + most) - self.start, 0.5 * least.distance(most));
+        let t = (middle.dot(self.way) * self.scale).clamp(0.0, 1.0);
+        let reach = (self.radius + self.growth * t + size) * self.secant * (1.0 + TUBE_ROUNDING);
+        (middle - t * self.way).length_squared() <= reach * reach
+    }
 }

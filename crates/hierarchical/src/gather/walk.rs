@@ -210,6 +210,7 @@ impl<'g> Gatherer<'g> {
         }
         let shaft = occluders.shaft_from(point, patch);
         let reaching = shaft.iter().flat_map(|shaft| occluders.reaching(bodies, shaft));
+        let reaching = reaching.map(|(_, body)| body);
         self.shadows.cast_on(&self.front, (point, normal), reaching, bodies.tolerance());
         let all: Vec<u32> = (0..self.shadows.len() as u32).collect();
         (all.len() <= MOST_EXACT_BODIES).then(|| self.shadows.factor(normal, &self.front, &all, flat))

@@ -36,12 +36,9 @@ pub(crate) fn exchanges(tree: &Tree, links: &mut [Link], tolerance: f64) {
 fn row(open: &Unoccluded, places: &[u32], links: &mut [&mut Link], work: &mut Work) {
     let Some(first) = links.first().map(|link| places[link.a as usize] as usize) else { return };
     let others: Vec<u32> = links.iter().map(|link| places[link.b as usize]).collect();
-    let mut found = vec![NO_EXCHANGE; links.len()];
+    let mut found = vec![Exchange::NONE; links.len()];
     open.row(first, &others, work, &mut found);
     for (link, exchange) in links.iter_mut().zip(found) {
         link.open = exchange.value;
     }
 }
-
-const NO_EXCHANGE: Exchange =
-    Exchange { value: 0.0, error: 0.0, method: fredholm_coupling::form_factor::Method::Hidden };

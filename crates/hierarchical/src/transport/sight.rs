@@ -88,7 +88,7 @@ impl<'a> Viewer<'a> {
         if reaching.peek().is_none() {
             return View::Open;
         }
-        if reaching.any(|body| blocks(body, a, b, bodies.tolerance(), &mut self.volume)) {
+        if reaching.any(|(_, body)| blocks(body, a, b, bodies.tolerance(), &mut self.volume)) {
             return View::Nothing;
         }
         let (xs, ys) = (Points::of(a), Points::of(b));

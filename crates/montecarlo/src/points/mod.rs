@@ -14,12 +14,10 @@
 //! | Sobol | Owen-scrambled Sobol, all pairs together up to its dimensions (A. B. Owen, 1995, doi:10.1007/978-1-4612-2552-2_19) |
 
 mod permutation;
-mod sobol;
 mod strata;
 
-pub use sobol::DIMENSIONS;
-
 use crate::philox::{philox, unit_pair};
+use fredholm_quadrature::sobol::{self, DIMENSIONS};
 use serde::{Deserialize, Serialize};
 
 /// A way to place the samples of a batch.

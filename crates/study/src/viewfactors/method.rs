@@ -1,8 +1,9 @@
 //! The methods that form factors can be computed with. This is the one place that knows them.
 //!
-//! `auto` is the fast assembly, and `row-budget` the same to a tolerance of rows. Every other method of [`fredholm_coupling::method`] computes A_i
-//! F_ij (m²) of one pair after the other, for study. Each pair is computed once, from the smaller
-//! patch (of equal ones the first), so that the matrix is symmetric whether the method is or not.
+//! `row-budget` is the fast assembly to a tolerance of rows, and `auto` the same to one of pairs.
+//! Every other method of [`fredholm_coupling::method`] computes A_i F_ij (m²) of one pair after the
+//! other, for study. Each pair is computed once, from the smaller patch (of equal ones the first),
+//! so that the matrix is symmetric whether the method is or not.
 
 use fredholm_coupling::method::{Evaluated, FormFactorMethod, MethodError, Setting, method, methods};
 use fredholm_coupling::{Assembled, MethodCounts};
@@ -15,7 +16,8 @@ use crate::error::{Error, ErrorKind};
 
 /// The cheapest method whose error estimate meets the tolerance, for each pair.
 pub(super) const AUTO: &str = "auto";
-/// The same where the tolerance is that of a row: few segments for pairs that matter little to it.
+/// The same where the tolerance is that of a row, which is the usual one: few segments for pairs
+/// that matter little to it.
 pub(super) const BUDGET: &str = "row-budget";
 
 /// Rows that are computed before they are stored: enough to keep many threads busy.
@@ -25,7 +27,7 @@ const ROWS_OF_A_BATCH: usize = 128;
 pub(super) fn names() -> Vec<&'static str> {
     let all = methods();
     let names = all.iter().map(|method| method.name());
-    names.flat_map(|name| if name == AUTO { vec![AUTO, BUDGET] } else { vec![name] }).collect()
+    names.flat_map(|name| if name == AUTO { vec![BUDGET, AUTO] } else { vec![name] }).collect()
 }
 
 /// A method with its setting.

@@ -25,8 +25,8 @@ use record::record;
 /// Name of the row of the sky.
 pub const SKY: &str = "sky";
 
-/// The names of the methods: `auto`, the fast assembly, `row-budget`, the same to a tolerance of
-/// rows, and those that compute one pair after the other, for study.
+/// The names of the methods: `row-budget`, the usual one, to a tolerance of rows, `auto`, to a
+/// tolerance of pairs, and those that compute one pair after the other, for study.
 #[must_use]
 pub fn view_factor_methods() -> Vec<&'static str> {
     method::names()

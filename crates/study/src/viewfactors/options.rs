@@ -3,7 +3,7 @@
 use fredholm_scene::{By, Geometry};
 use serde::Serialize;
 
-use super::method::{AUTO, Chosen};
+use super::method::{BUDGET, Chosen};
 use crate::memory::Limit;
 use crate::options::{GatherPoints, Recorded, SceneSource};
 use crate::size::Bytes;
@@ -17,13 +17,12 @@ const TOLERANCE: f64 = 1e-3;
 pub struct ViewFactorOptions {
     /// Scene, or mesh file whose faces are the patches.
     pub input: SceneSource,
-    /// Error asked for in a pair, of `row-budget` in a row. None: the input's, else 1e-3; of another method than `auto` its
-    /// usual one.
+    /// Error asked for in a row, of `auto` in a pair. None: the input's, else 1e-3; of a method for
+    /// study its usual one.
     pub tolerance: Option<f64>,
     /// How form factors are computed, one of [`view_factor_methods`](super::view_factor_methods).
     pub method: String,
-    /// Setting of a method other than `auto` and `row-budget`: its order, tolerance, samples or pixels. None: its
-    /// usual one.
+    /// Setting of a method for study: its order, tolerance, samples or pixels. None: its usual one.
     pub setting: Option<String>,
     /// What a row stands for.
     pub rows: MatrixRows,
@@ -46,12 +45,12 @@ pub struct ViewFactorOptions {
 }
 
 impl ViewFactorOptions {
-    /// The factors between the faces of a file by the fast assembly.
+    /// The factors between the faces of a file, to a tolerance of rows.
     pub fn new(input: impl Into<SceneSource>) -> Self {
         Self {
             input: input.into(),
             tolerance: None,
-            method: AUTO.to_owned(),
+            method: BUDGET.to_owned(),
             setting: None,
             rows: MatrixRows::default(),
             threshold: None,
@@ -84,7 +83,7 @@ pub enum MatrixRows {
 pub(super) struct Settings {
     pub(super) tolerance: f64,
     pub(super) method: String,
-    /// Setting of a method other than auto, in words.
+    /// Setting of a method for study, in words.
     pub(super) setting: Option<String>,
     pub(super) rows: MatrixRows,
     pub(super) threshold: Option<f64>,

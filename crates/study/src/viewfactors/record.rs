@@ -12,8 +12,8 @@ use super::problem::Problem;
 use crate::memory;
 use crate::stages::Stages;
 
-/// Row errors, in tolerances, that are reported: the tolerance is a pair's, and the errors of a row
-/// add up to about twice as much.
+/// Row errors, in tolerances, that are reported. Where the tolerance is a pair's, the errors of a row
+/// add up to about twice as much; where it is a row's, it is met in the mean of the rows.
 const REPORTED_ROW_ERROR: f64 = 3.0;
 /// Estimated error of a row that may be rounding alone.
 const ROUNDING: f64 = 1e-11;

@@ -15,6 +15,8 @@ pub struct Bodies {
     list: Vec<Body>,
     /// Balls around them, side by side: most bodies are told by them to be out of the way.
     balls: Vec<(Vec3, f64)>,
+    /// Boxes around them, m.
+    bounds: Vec<[Vec3; 2]>,
     tolerance: f64,
 }
 
@@ -43,7 +45,8 @@ impl Bodies {
         }
         bodies.sort_by(|a, b| place(a.corners().iter()).total_cmp(&place(b.corners().iter())));
         let balls = bodies.iter().map(Body::ball).collect();
-        Self { list: bodies, balls, tolerance }
+        let bounds = bodies.iter().map(around).collect();
+        Self { list: bodies, balls, bounds, tolerance }
     }
 
     /// The bodies, in an order that the numbers of the patches do not change.
@@ -57,11 +60,22 @@ impl Bodies {
         &self.balls
     }
 
+    /// The lowest and highest coordinates of each body, m.
+    #[must_use]
+    pub fn bounds(&self) -> &[[Vec3; 2]] {
+        &self.bounds
+    }
+
     /// Length up to which two places count as one, m.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         self.tolerance
     }
+}
+
+fn around(body: &Body) -> [Vec3; 2] {
+    let low = body.corners().iter().fold(Vec3::INFINITY, |low, &x| low.min(x));
+    [low, body.corners().iter().fold(Vec3::NEG_INFINITY, |high, &x| high.max(x))]
 }
 
 fn flat(corners: &[Vec3], polygon: &Polygon, occluders: &Occluders) -> Body {

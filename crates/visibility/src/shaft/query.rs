@@ -75,15 +75,15 @@ impl Occluders {
         !beside && !shaft.planes().iter().any(|plane| plane.excludes(&body.local))
     }
 
-    /// The bodies that [reach](Self::reaches) into the shaft.
+    /// The bodies that [reach](Self::reaches) into the shaft, with their numbers.
     pub fn reaching<'b, 's>(
         &'s self,
         bodies: &'b Bodies,
         shaft: &'s Shaft,
-    ) -> impl Iterator<Item = &'b Body> + use<'b, 's> {
-        let near = bodies.balls().iter().zip(bodies.as_slice());
+    ) -> impl Iterator<Item = (u32, &'b Body)> + use<'b, 's> {
+        let near = bodies.balls().iter().zip((0..).zip(bodies.as_slice()));
         let near = near.filter(|(ball, _)| !shaft.capsule.is_beside(**ball)).map(|(_, body)| body);
-        near.filter(|body| self.reaches(body, shaft))
+        near.filter(|(_, body)| self.reaches(body, shaft))
     }
 
     /// Whether all of them were listed.

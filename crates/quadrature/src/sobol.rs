@@ -4,7 +4,9 @@
 //! numbers: S. Joe, F. Y. Kuo, SIAM J. Sci. Comput. 30 (2008) 2635, doi:10.1137/070709359, the file
 //! new-joe-kuo-6.21201, its first rows. The scrambling hashes each bit with those above it (S.
 //! Laine, T. Karras, Comput. Graph. Forum 30 (2011) 1275, doi:10.1111/j.1467-8659.2011.01972.x; B.
-//! Burley, JCGT 9(4), 2020).
+//! Burley, JCGT 9(4), 2020). The first 2^m points with different seeds a coordinate are a net whose
+//! mean over a smooth function errs by about n^−1.5, and over one with jumps in four dimensions by
+//! about n^−0.63.
 
 use std::sync::LazyLock;
 
@@ -62,16 +64,27 @@ static SUMS: LazyLock<Vec<[[u32; NIBBLE]; NIBBLES]>> = LazyLock::new(|| {
     DIRECTIONS.iter().map(sums).collect()
 });
 
-/// Coordinate `dimension` of point `index`, scrambled by `seed`, in [0, 1).
-pub(super) fn point(index: u32, dimension: u32, seed: u32) -> f64 {
+/// Coordinate `dimension` (below [`DIMENSIONS`]) of point `index`, scrambled by `seed`, in [0, 1).
+#[must_use]
+pub fn point(index: u32, dimension: u32, seed: u32) -> f64 {
+    f64::from(scrambled(reversed(index, dimension), seed)) / 2_f64.powi(32)
+}
+
+/// The bits of coordinate `dimension` (below [`DIMENSIONS`]) of point `index` before they are
+/// scrambled, the highest last. Those of i ⊕ j are those of i ⊕ those of j.
+#[must_use]
+pub fn reversed(index: u32, dimension: u32) -> u32 {
     let sums = &SUMS[dimension as usize];
     let x = (0..NIBBLES).fold(0, |x, place| x ^ sums[place][index as usize >> (4 * place) & (NIBBLE - 1)]);
-    f64::from(scrambled(x.reverse_bits(), seed)) / 2_f64.powi(32)
+    x.reverse_bits()
 }
 
 /// Owen's scrambling of the number whose bits, the highest last, are `reversed`: each bit changes
 /// by those above it only.
-pub(super) fn scrambled(reversed: u32, seed: u32) -> u32 {
+#[must_use]
+#[inline(always)]
+#[allow(clippy::inline_always, reason = "loops over lanes are compiled for wide vectors where they stand")]
+pub fn scrambled(reversed: u32, seed: u32) -> u32 {
     let mut x = reversed;
     x ^= x.wrapping_mul(0x3d20_adea);
     x = x.wrapping_add(seed);
