@@ -2,7 +2,7 @@
 
 use fredholm_linop::MultiVector;
 use fredholm_mesh::{Mesh, Patch};
-use fredholm_montecarlo::rows::{Family, Rows};
+use fredholm_montecarlo::rows::{Family, REPLICATES, Rows};
 use fredholm_montecarlo::{Enclosure, Surfaces};
 use fredholm_scene::Scene;
 
@@ -202,6 +202,21 @@ impl<'m> Ground<'m> {
             let face = self.face_of[family.parts.start];
             let share = means.row(face)[band].powi(2) * family.whole.area() / norm.max(f64::MIN_POSITIVE);
             if faces[face].area > least { share } else { f64::INFINITY }
+        };
+        self.families.iter().map(of).collect()
+    }
+
+    /// Rays of a part and replicate in the first step: so few, and more where a large face would have
+    /// less than `least` in all.
+    pub(super) fn first(&self, few: u32, least: u32) -> Vec<u32> {
+        let faces = self.mesh.faces();
+        let large = LARGE_FACE * faces.iter().map(|face| face.area).sum::<f64>();
+        let mut parts = vec![0_u32; faces.len()];
+        self.face_of.iter().for_each(|&face| parts[face] += 1);
+        let of = |family: &Family| {
+            let face = self.face_of[family.parts.start];
+            let own = least / (parts[face] * REPLICATES as u32).max(1);
+            if faces[face].area > large { few.max(own.max(1).next_power_of_two()) } else { few }
         };
         self.families.iter().map(of).collect()
     }

@@ -61,6 +61,8 @@ const AIM: f64 = 0.95;
 const DEVIATION: f64 = 0.8;
 const OF_FIRST_STEP: f64 = 0.1;
 const MOST_OF_FIRST_STEP: f64 = 8.0;
+/// Rays of a large face in the first step, so that its variance is known.
+const RAYS_OF_A_LARGE_FACE: u32 = 1024;
 /// One ray in so many checks whether elements may reflect as wholes, after the first step.
 const CHECKED: usize = 4;
 /// Share of the differences within elements whose elements are divided.
@@ -199,7 +201,7 @@ impl Run<'_> {
     fn on(&mut self, ground: &Ground, everywhere: &mut bool) -> Result<Option<Vec<bool>>, Error> {
         let few = OF_FIRST_STEP * (DEVIATION / self.accuracy).powi(2) / 64.0;
         let few = 1 << few.clamp(1.0, MOST_OF_FIRST_STEP).log2().round() as u32;
-        let first = vec![few; ground.families.len()];
+        let first = ground.first(few, RAYS_OF_A_LARGE_FACE);
         let mut budget = None;
         loop {
             let checked = if budget.is_none() { 1 } else { CHECKED };
