@@ -37,7 +37,7 @@ pub struct MethodCounts {
     pub clipped: u64,
     /// Pairs with sampled visibility.
     pub sampled: u64,
-    /// Pairs with the visibility of few segments.
+    /// Pairs with the visibility of segments.
     pub segments: u64,
 }
 

@@ -12,7 +12,7 @@ use fredholm_visibility::Occluders;
 use std::f64::consts::TAU;
 
 /// φ⁻¹, φ⁻², φ⁻³, φ⁻⁴ with φ⁵ = φ + 1.
-pub(crate) const STEPS: [f64; 4] =
+const STEPS: [f64; 4] =
     [0.856_674_883_854_502_9, 0.733_891_856_627_126, 0.628_706_721_037_808_6, 0.538_597_257_223_61];
 /// Tilts (cosines) of the rings of rays about the normal that tell whether a point is buried, and
 /// rays in a ring.

@@ -12,13 +12,13 @@ const OCCLUDED_PAIRS_COMPARED: usize = 100;
 
 /// Largest difference of the two orders, relative to the smaller area (that is, of the larger form
 /// factor), over a fixed sample of partly occluded pairs; `None` where the sample has none. Where rows
-/// have a budget, pairs behind many bodies are left out: the assembly asks no exact shadows of them,
-/// which would take longer than all the rest.
+/// have a budget, pairs behind many bodies are left out: their exact shadows, of which the assembly
+/// asks few, would take longer than all the rest.
 #[must_use]
 pub fn reciprocity(integrator: &PairIntegrator) -> Option<f64> {
     let mut work = Workspace::default();
     let mut defect = |[i, j]: [usize; 2]| {
-        if !integrator.may_be_clipped(i, j) {
+        if !integrator.is_quickly_exact(i, j) {
             return None;
         }
         let (there, back) =

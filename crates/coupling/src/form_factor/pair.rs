@@ -7,12 +7,12 @@
 //! | nothing between, close, touching or crossing each other's plane | contour integral on the parts that face each other |
 //! | bodies between | the unoccluded value less its hidden part: exact shadows inside, rules between critical lines outside |
 //! | many bodies between | sampled share of the unoccluded value, where that is exact enough |
-//! | bodies between, in rows that have a budget | share from few segments, where the pair matters little |
+//! | bodies between, in rows that have a budget | share from segments, as few as the row allows, or exact shadows where these are quicker |
 //!
 //! The tolerance T is relative to the exchange the two patches would have squarely facing each
 //! other, A_i A_j / (π d²), or the smaller area where that is less: stated errors of a row of F
-//! then add up to about 2 T. It is rounded down to a power of ten: a little more accuracy asked for
-//! then never gives a little less.
+//! then add up to about 2 T. It is rounded down to a power of ten, but in rows with a budget: a little
+//! more accuracy asked for then never gives a little less.
 //!
 //! In the assembly of a matrix, rows may have a [budget](PairIntegrator::with_row_budget): a pair
 //! behind bodies then gets as many segments as it contributes to the row of its smaller patch, and
@@ -40,9 +40,11 @@ const MOST_EXACT_BODIES: usize = 128;
 const SEGMENTS_OF_A_ROW: f64 = 0.35;
 /// Variance of a pair over its form factor times the square of T, for the same.
 const VARIANCE_OF_A_ROW: f64 = 0.29;
-/// Independent segments of a pair at least, and at most: more than any pair gets.
+/// Independent segments of a pair at least, and so many that they are out of the question.
 const LEAST_SEGMENTS: f64 = 8.0;
-const MOST_SEGMENTS: f64 = 1e12;
+const ENDLESS: f64 = 1e12;
+/// Segments that a pair gets at most: a second's worth.
+const MOST_SEGMENTS: f64 = 4e6;
 /// Segments that take about as long as exact shadows to T = 1e-3, for each face of the bodies up to
 /// so many faces; behind more they are as many more (measured in a furnished room and on a scanned
 /// figure of 1,000 triangles).
@@ -79,7 +81,7 @@ pub enum Method {
     Clipped,
     /// Sampled visibility.
     Sampled,
-    /// Visibility of few segments, their errors independent between pairs.
+    /// Visibility of segments, their errors independent between pairs.
     Segments,
 }
 
@@ -151,7 +153,7 @@ pub struct PairIntegrator<'a> {
     occluders: &'a Occluders,
     bodies: Bodies,
     tolerance: f64,
-    /// T as it was given.
+    /// T as it was given, if that is not finer than the finest.
     asked: f64,
     /// Bodies up to which exact shadows come first.
     few: usize,
@@ -177,9 +179,9 @@ impl Rows {
             (self.blockers.faces(bodies) as f64, (1e-3 / self.tolerance).powf(POWER_OF_SHADOWS));
         let most = SEGMENTS_OF_A_FACE * faces * (faces / FACES_OF_A_LINE).max(1.0) * finer;
         Wanted {
-            independent: (SEGMENTS_OF_A_ROW * factor / square).clamp(LEAST_SEGMENTS, MOST_SEGMENTS) as usize,
+            independent: (SEGMENTS_OF_A_ROW * factor / square).clamp(LEAST_SEGMENTS, ENDLESS) as usize,
             deviation: (VARIANCE_OF_A_ROW * square / factor).sqrt(),
-            most: most as usize,
+            most: most.min(MOST_SEGMENTS) as usize,
         }
     }
 }
@@ -204,7 +206,7 @@ impl<'a> PairIntegrator<'a> {
         tolerance: f64,
     ) -> Self {
         let bodies = Bodies::new(occluders, &patches, &[]);
-        let (asked, tolerance) = (tolerance, rung(tolerance));
+        let (asked, tolerance) = (tolerance.max(rung(tolerance)), rung(tolerance));
         patches.extend(groups);
         let open = Unoccluded::new(&patches, OPEN_TOLERANCE * tolerance);
         let sides = patches.iter().map(|patch| Side::of(patch)).collect();
@@ -258,8 +260,8 @@ impl<'a> PairIntegrator<'a> {
         self.patches[i].area().min(self.patches[j].area())
     }
 
-    /// Whether the assembly may ask exact shadows of a pair.
-    pub(crate) fn may_be_clipped(&self, i: usize, j: usize) -> bool {
+    /// Whether exact shadows of a pair are quick, or what the assembly asks of it anyway.
+    pub(crate) fn is_quickly_exact(&self, i: usize, j: usize) -> bool {
         let between = || self.between(self.patches[i], self.patches[j]).len();
         self.rows.is_none() || between() <= QUICK_BODIES
     }
@@ -427,7 +429,7 @@ impl<'a> PairIntegrator<'a> {
         })
     }
 
-    /// The share from few segments, where that takes less time than exact shadows.
+    /// The share from segments, where that takes less time than exact shadows.
     fn by_segments(
         &self,
         rows: &Rows,

@@ -1,5 +1,5 @@
-//! The share of an exchange that gets through between bodies, from few segments: the way of pairs
-//! that matter little to their rows.
+//! The share of an exchange that gets through between bodies, from segments, as few as the budget of
+//! the row allows.
 //!
 //! ```text
 //! G_ij = G⁰_ij R,   R = Σ_k w_k V_k / Σ_k w_k
@@ -44,6 +44,9 @@ const FEWEST_REPLICATED: usize = 256;
 const ORDER_OF_SEGMENTS: f64 = 0.63;
 /// The variance of the fewest segments of easy pairs over that of as many independent ones at most.
 const EASIEST_VARIANCE: f64 = 0.07;
+/// By which the standard error of eight sets is raised: they go on until it is low, so that those
+/// which end have a low one by chance.
+const OF_STOPPING: f64 = 1.2;
 /// Doublings from one turn to the next at most.
 const MOST_DOUBLINGS: u32 = 3;
 /// Bodies above which the tree of the occluders takes less time than the list.
@@ -135,12 +138,9 @@ impl Blockers {
         while samples <= FEWEST_REPLICATED.min(wanted.most) {
             let sums = self.sums(&ask, &Points::of_one_set(names, self.lanes), 0..samples / LANES);
             let share = sums.share_of_independent(samples);
-            if sums.are_even(samples) {
+            let even_enough = sums.are_even(EVEN_ENOUGH) && share.deviation <= wanted.deviation;
+            if sums.are_even(samples) || even_enough {
                 return Some(share);
-            }
-            let deviation = share.deviation.hypot(sums.least_deviation());
-            if sums.are_even(EVEN_ENOUGH) && deviation <= wanted.deviation {
-                return Some(Share { deviation, ..share });
             }
             samples *= 2;
         }
@@ -150,6 +150,7 @@ impl Blockers {
     /// From a set of points a lane, until the standard error is met.
     fn replicated(&self, ask: &Ask, wanted: Wanted, names: [u64; 2]) -> Option<Share> {
         let (mut sums, mut done, mut next) = (Sums::default(), 0, FEWEST_REPLICATED / LANES);
+        let mut expected: Option<f64> = None;
         loop {
             sums.add(&self.sums(ask, &Points::of_eight_sets(names), done..next));
             done = next;
@@ -157,14 +158,20 @@ impl Blockers {
                 // Nothing faces each other as far as these points tell.
                 return None;
             }
-            let share = sums.share_of_replicates();
+            let Share { value, deviation } = sums.share_of_replicates();
+            // Segments end where the error is low, by chance too; what fewer let expect was not.
+            let both =
+                expected.map_or(deviation, |expected| (0.5 * (deviation.powi(2) + expected.powi(2))).sqrt());
+            let share = Share { value, deviation: OF_STOPPING * both };
             let even = sums.are_even(FEWEST_REPLICATED);
             if even && share.deviation <= wanted.deviation {
                 return Some(share);
             }
             // Whole powers of two, which fill the square evenly.
             let missing = (share.deviation / wanted.deviation).powf(ORDER_OF_SEGMENTS.recip()).log2().ceil();
-            next = done << (missing as u32).clamp(1, MOST_DOUBLINGS);
+            let doublings = (missing as u32).clamp(1, MOST_DOUBLINGS);
+            expected = Some(both * f64::from(1 << doublings).powf(-ORDER_OF_SEGMENTS));
+            next = done << doublings;
             // What was begun is worth a little more.
             if next * LANES > 2 * wanted.most {
                 return None;
@@ -306,7 +313,7 @@ impl Sums {
         let square = (through * (1.0 - 2.0 * value) + value * value * total(&self.squares)).max(0.0);
         // n/(n − 1), since the mean is that of the same points.
         let few = samples as f64 / (samples as f64 - 1.0);
-        Share { value, deviation: (square * few).sqrt() / all }
+        Share { value, deviation: ((square * few).sqrt() / all).hypot(self.least_deviation()) }
     }
 
     fn share_of_replicates(&self) -> Share {
@@ -505,6 +512,37 @@ mod tests {
                 assert!(squares < 1.1 * stated && stated < 40.0 * squares, "{samples}");
             }
         }
+    }
+
+    #[test]
+    fn eight_sets_meet_the_error_asked_for_and_state_no_less_than_theirs() {
+        let [a, b] = squares();
+        let exact = 0.099_506_294_598_985 / 0.199_824_895_698_388;
+        let [sheet, _] = blocks();
+        let occluders = Occluders::new(&sheet).unwrap();
+        let blockers = Blockers::new(&Bodies::new(&occluders, &[&a, &b], &[]));
+        for deviation in [0.02, 0.005] {
+            let wanted = Wanted { independent: 100_000, deviation, most: 1 << 20 };
+            let keys = 300_usize;
+            let (mut sum, mut squares, mut stated, mut covered) = (0.0, 0.0, 0.0, 0);
+            for key in 0..keys {
+                let share = blockers.share([&a, &b], (&[0], &occluders), wanted, [1, key]).unwrap();
+                let off = share.value - exact;
+                assert!(share.deviation <= deviation);
+                sum += off;
+                squares += off * off;
+                stated += share.deviation.powi(2);
+                covered += usize::from(off.abs() <= 3.0 * share.deviation);
+            }
+            let n = keys as f64;
+            println!("{deviation}: {:.4} stated {:.4}, {covered}", (squares / n).sqrt(), (stated / n).sqrt());
+            assert!((sum / squares.sqrt()).abs() < 4.0, "{deviation}: {}", sum / n);
+            assert!(squares < 1.1 * stated && squares > 0.1 * stated, "{deviation}");
+            assert!(covered as f64 >= 0.98 * n, "{deviation}: {covered}");
+        }
+        // What would take longer than it is worth is left to others.
+        let short = Wanted { independent: 100_000, deviation: 1e-4, most: 1 << 12 };
+        assert_eq!(blockers.share([&a, &b], (&[0], &occluders), short, [1, 2]), None);
     }
 
     #[test]

@@ -3,7 +3,8 @@
 //!
 //! M. F. Cohen, J. R. Wallace, *Radiosity and Realistic Image Synthesis*, Academic Press 1993,
 //! chapter 4, compares most of them. A method is one file here and one line in [`methods`].
-//! Assemblies use [`PairIntegrator`](crate::form_factor::PairIntegrator), here called `auto`.
+//! Assemblies use [`PairIntegrator`](crate::form_factor::PairIntegrator), which without a budget of
+//! rows is called `auto` here.
 //!
 //! | name | what it computes | setting | converges to A_i F_ij |
 //! |---|---|---|---|

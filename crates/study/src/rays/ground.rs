@@ -215,8 +215,8 @@ impl<'m> Ground<'m> {
         self.face_of.iter().for_each(|&face| parts[face] += 1);
         let of = |family: &Family| {
             let face = self.face_of[family.parts.start];
-            let own = least / (parts[face] * REPLICATES as u32).max(1);
-            if faces[face].area > large { few.max(own.max(1).next_power_of_two()) } else { few }
+            let own = least.div_ceil(parts[face] * REPLICATES as u32);
+            if faces[face].area > large { few.max(own.next_power_of_two()) } else { few }
         };
         self.families.iter().map(of).collect()
     }

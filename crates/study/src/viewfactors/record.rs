@@ -112,12 +112,13 @@ fn bent(change: &ClosureChange) -> Option<String> {
 
 /// Whether the factors came out less exact than asked for.
 fn inexact(error: &FormFactorError, method: &str) -> Option<String> {
-    let of = if method == BUDGET { "row" } else { "pair" };
+    let (of, mend) = if method == BUDGET {
+        ("row", "ask for a finer --tolerance, or cut the surfaces more finely where they almost touch")
+    } else {
+        ("pair", "cut the surfaces more finely where they almost touch")
+    };
     let (found, asked) = (error.row_max?, error.tolerance?);
     (found > (REPORTED_ROW_ERROR * asked).max(ROUNDING)).then(|| {
-        format!(
-            "the estimated error of a row is {found:.1e}, where {asked:.1e} was asked for a {of}; cut the surfaces more finely where \
-             they almost touch"
-        )
+        format!("the estimated error of a row is {found:.1e}, where {asked:.1e} was asked for a {of}; {mend}")
     })
 }
