@@ -265,6 +265,32 @@ mod tests {
         Patch::quad([corner, corner + v, corner + u + v, corner + u]).unwrap().unwrap()
     }
 
+    /// Triangles on a ball, as nodes of the tree: those that face away are told, and no others.
+    #[test]
+    fn what_faces_away_is_behind_and_what_is_behind_faces_away() {
+        let point = |i: usize, j: usize| {
+            let (polar, turn) = (0.2 + 0.2 * i as f64, 0.35 * j as f64);
+            Vec3::new(polar.sin() * turn.cos(), polar.sin() * turn.sin(), polar.cos())
+        };
+        let corner = |k: usize| [point(k / 9, k % 9), point(k / 9 + 1, k % 9), point(k / 9, k % 9 + 1)];
+        let patches: Vec<Patch> = (0..108).map(|k| Patch::triangle(corner(k)).unwrap()).collect();
+        let tree = Clusters::new(&patches.iter().collect::<Vec<_>>(), 1e-9);
+        let mut told = 0;
+        for (one, other) in tree.nodes.iter().flat_map(|one| tree.nodes.iter().map(move |other| (one, other)))
+        {
+            if !one.has_behind(other) {
+                continue;
+            }
+            told += 1;
+            for (a, b) in one.places.clone().flat_map(|a| other.places.clone().map(move |b| (a, b))) {
+                let [a, b] = [a, b].map(|place| &patches[tree.order[place] as usize]);
+                assert!(b.corners().iter().all(|x| a.normal().dot(*x - a.corner(0)) < 0.0));
+            }
+        }
+        assert!(told > 1000, "{told}");
+        assert!(!tree.nodes[0].has_behind(&tree.nodes[0]));
+    }
+
     #[test]
     fn a_patch_in_the_plane_of_another_that_is_not_in_its_own_ends_the_tree() {
         // The level square's plane goes through the corner of the tilted one, that of the tilted

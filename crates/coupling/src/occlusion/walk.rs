@@ -326,3 +326,41 @@ impl Tube {
         (middle - t * self.way).length_squared() <= reach * reach
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::method::keyed::keyed;
+
+    /// Nodes of two squares anywhere, of any size: points of segments between them are in the tube,
+    /// and what is far from it is not.
+    #[test]
+    fn segments_stay_in_the_tube_and_what_is_far_is_outside() {
+        let (mut outside, rounding) = (0, Vec3::splat(1e-12));
+        for case in 0..2000 {
+            let random = |k: u64| keyed(case, 1, k);
+            let square = |k: u64| {
+                let size = 0.01_f64.powf(random(k));
+                let [low, u, v] = [0, 1, 2].map(|n| {
+                    let x = |axis| random(k + 1 + 3 * n + axis) - 0.5;
+                    Vec3::new(x(0), x(1), x(2)) * if n == 0 { 2.0 } else { size }
+                });
+                Patch::triangle([low, low + u, low + v]).unwrap()
+            };
+            let patches = [square(0), square(20)];
+            let clusters = Clusters::new(&patches.each_ref(), 1e-9);
+            let leaves: Vec<&Node> = clusters.nodes.iter().filter(|node| node.children.is_none()).collect();
+            let tube = Tube::between(leaves[0], leaves[1]);
+            let [a, b] = [0, 1].map(|k| &patches[clusters.order[k] as usize]);
+            for (x, y) in a.corners().iter().flat_map(|x| b.corners().iter().map(move |y| (*x, *y))) {
+                for t in [0.0, 0.2, 0.5, 0.9, 1.0] {
+                    let at = x + t * (y - x);
+                    assert!(tube.meets([at - rounding, at + rounding]), "{case}");
+                }
+            }
+            let aside = Vec3::new(random(40) - 0.5, random(41) - 0.5, random(42) - 0.5) * 4.0;
+            outside += usize::from(!tube.meets([aside, aside]));
+        }
+        assert!(outside > 1000, "{outside}");
+    }
+}
