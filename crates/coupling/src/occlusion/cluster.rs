@@ -231,7 +231,7 @@ impl Builder<'_> {
 }
 
 /// The lowest and highest coordinates of some corners.
-fn extent<'a>(corners: impl Iterator<Item = &'a Vec3>) -> [Vec3; 2] {
+pub(super) fn extent<'a>(corners: impl Iterator<Item = &'a Vec3>) -> [Vec3; 2] {
     corners.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[low, high], &x| [low.min(x), high.max(x)])
 }
 

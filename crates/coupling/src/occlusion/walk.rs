@@ -8,7 +8,7 @@
 //! doi:10.1007/978-3-642-57963-9_12, treat the shaft; S. Teller & P. Hanrahan, SIGGRAPH 1993,
 //! doi:10.1145/166117.166148, the descent with lists of blockers.
 
-use super::cluster::{Bound, Clusters, Node};
+use super::cluster::{Bound, Clusters, Node, extent};
 use super::lines::{Heights, Lines, Stands};
 use crate::form_factor::blocks;
 use fredholm_mesh::{Patch, Vec3};
@@ -273,12 +273,8 @@ fn side(p: &Patch, q: &Patch, tolerance: f64) -> Side {
 }
 
 fn corners(bound: &Bound) -> [Vec3; 2] {
-    let around = |patch: &Patch| {
-        let low = patch.corners().iter().fold(Vec3::INFINITY, |low, &x| low.min(x));
-        [low, patch.corners().iter().fold(Vec3::NEG_INFINITY, |high, &x| high.max(x))]
-    };
     match bound {
-        Bound::Flat(patch) => around(patch),
+        Bound::Flat(patch) => extent(patch.corners().iter()),
         Bound::Box(corners) => *corners,
     }
 }

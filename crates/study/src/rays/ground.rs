@@ -197,7 +197,7 @@ impl<'m> Ground<'m> {
     pub(super) fn large(&self, irradiance: &MultiVector<f64>, (band, norm): (usize, f64)) -> Vec<f64> {
         let faces = self.mesh.faces();
         let means = self.means(irradiance);
-        let least = LARGE_FACE * faces.iter().map(|face| face.area).sum::<f64>();
+        let least = self.area_of_a_large_face();
         let of = |family: &Family| {
             let face = self.face_of[family.parts.start];
             let share = means.row(face)[band].powi(2) * family.whole.area() / norm.max(f64::MIN_POSITIVE);
@@ -206,11 +206,16 @@ impl<'m> Ground<'m> {
         self.families.iter().map(of).collect()
     }
 
+    /// Area from which on a face is large, m².
+    fn area_of_a_large_face(&self) -> f64 {
+        LARGE_FACE * self.mesh.faces().iter().map(|face| face.area).sum::<f64>()
+    }
+
     /// Rays of a part and replicate in the first step: so few, and more where a large face would have
     /// less than `least` in all.
     pub(super) fn first(&self, few: u32, least: u32) -> Vec<u32> {
         let faces = self.mesh.faces();
-        let large = LARGE_FACE * faces.iter().map(|face| face.area).sum::<f64>();
+        let large = self.area_of_a_large_face();
         let mut parts = vec![0_u32; faces.len()];
         self.face_of.iter().for_each(|&face| parts[face] += 1);
         let of = |family: &Family| {
