@@ -24,7 +24,7 @@ impl<T: Scalar> BlockDiagonal<T> {
         };
         let blocks =
             matrix.diagonal_blocks().into_par_iter().enumerate().map(invert).collect::<Result<_, _>>()?;
-        Ok(Self { dim: matrix.dim(), blocks })
+        Ok(Self { dim: matrix.order().len(), blocks })
     }
 }
 
@@ -51,7 +51,7 @@ impl<T: Scalar> LinearOperator<T> for BlockDiagonal<T> {
 }
 
 /// The inverse by Gauss and Jordan with partial pivoting; none where a pivot is lost in rounding.
-fn inverse<T: Scalar>(n: usize, mut a: Vec<T>) -> Option<Vec<T>> {
+pub(crate) fn inverse<T: Scalar>(n: usize, mut a: Vec<T>) -> Option<Vec<T>> {
     let mut inverse = vec![T::zero(); n * n];
     (0..n).for_each(|i| inverse[i * n + i] = T::one());
     let largest = a.iter().map(|x| x.abs()).fold(0.0, f64::max);

@@ -64,7 +64,7 @@ impl Tree {
             if lower && a.range.end <= b.range.start {
                 continue;
             }
-            if a.size().min(b.size()) <= eta * a.distance(b) {
+            if row != column && a.size().min(b.size()) <= eta * a.distance(b) {
                 pairs.push((row, column, true));
                 continue;
             }

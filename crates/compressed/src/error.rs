@@ -40,6 +40,16 @@ pub enum CompressionError {
         /// Bytes allowed.
         limit: u64,
     },
+    /// The factors do not fit.
+    #[error(
+        "the factors of the compressed matrix need more than {needed} bytes, but {limit} are allowed; raise their tolerance or the limit"
+    )]
+    Factors {
+        /// Bytes that they have grown to.
+        needed: u64,
+        /// Bytes allowed.
+        limit: u64,
+    },
     /// A block on the diagonal cannot be inverted.
     #[error("block {block} of the diagonal is singular to working precision; use no preconditioner")]
     Singular {

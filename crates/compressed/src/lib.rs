@@ -17,12 +17,16 @@ mod clusters;
 mod cross;
 mod entries;
 mod error;
+mod factors;
 mod low_rank;
 mod matrix;
+mod number;
 mod preconditioned;
 
 pub use block_diagonal::BlockDiagonal;
 pub use entries::Entries;
 pub use error::CompressionError;
+pub use factors::Factors;
 pub use matrix::{Hierarchical, Settings, Summary};
+pub use number::{Number, Times};
 pub use preconditioned::Preconditioned;

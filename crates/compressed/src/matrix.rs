@@ -1,8 +1,10 @@
 //! The hierarchical matrix and its products.
 
-use crate::clusters::Tree;
+use crate::clusters::{Cluster, Tree};
 use crate::cross::Block;
+use crate::number::{Times, add_product};
 use crate::{CompressionError, Entries};
+use faer::{Mat, MatMut, MatRef};
 use fredholm_linop::{LinearOperator, MultiVector, Scalar, Steps, Symmetry, Watch};
 use fredholm_mesh::Vec3;
 use rayon::prelude::*;
@@ -11,6 +13,8 @@ use std::ops::Range;
 
 /// Far blocks of each level that are computed for the prediction of memory.
 const SAMPLES: usize = 3;
+/// Right-hand sides that are multiplied together.
+pub(crate) const TOGETHER: usize = 16;
 /// The finest tolerance: entries have errors of 6e-8 in single precision.
 const FINEST_TOLERANCE: f64 = 1e-6;
 
@@ -51,16 +55,25 @@ pub struct Summary {
     pub share: f64,
 }
 
-/// A block: its rows and columns in the order of the tree, and its entries in single precision.
-struct Stored<T: Scalar> {
-    rows: Range<usize>,
-    columns: Range<usize>,
-    /// What the entries are multiples of, a power of two: single precision spans fewer of them.
-    unit: f64,
-    kind: Kind<T::Single>,
+/// The unknowns of a cluster.
+#[derive(Clone, Debug)]
+pub(crate) struct Span {
+    /// In the order of the tree.
+    pub(crate) range: Range<usize>,
+    /// The first half; the second follows it.
+    pub(crate) halves: Option<usize>,
 }
 
-enum Kind<S> {
+/// A block: its rows and columns in the order of the tree, and its entries in single precision.
+pub(crate) struct Stored<T: Scalar> {
+    pub(crate) rows: Range<usize>,
+    pub(crate) columns: Range<usize>,
+    /// What the entries are multiples of, a power of two: single precision spans fewer of them.
+    pub(crate) unit: f64,
+    pub(crate) kind: Kind<T::Single>,
+}
+
+pub(crate) enum Kind<S> {
     /// Row by row.
     Whole(Vec<S>),
     /// U Vᵀ, column by column.
@@ -73,6 +86,8 @@ pub struct Hierarchical<T: Scalar> {
     symmetry: Symmetry,
     /// Unknowns in the order of the tree.
     order: Vec<usize>,
+    /// The clusters; the first has all unknowns.
+    spans: Vec<Span>,
     /// Unknowns of the clusters that are not halved, in order.
     leaves: Vec<Range<usize>>,
     blocks: Vec<Stored<T>>,
@@ -110,14 +125,17 @@ impl<T: Scalar> Hierarchical<T> {
         };
         let blocks: Vec<Stored<T>> =
             pairs.par_iter().with_max_len(1).map(stored).collect::<Result<_, _>>()?;
+        let span =
+            |(at, cluster): (usize, &Cluster)| Span { range: builder.unknowns(at), halves: cluster.halves };
+        let spans: Vec<Span> = builder.tree.clusters.iter().enumerate().map(span).collect();
         let mut leaves: Vec<Range<usize>> =
-            builder.tree.leaves().into_iter().map(|leaf| builder.unknowns(leaf)).collect();
+            builder.tree.leaves().into_iter().map(|leaf| spans[leaf].range.clone()).collect();
         leaves.sort_by_key(|leaf| leaf.start);
         let reach = reach(&leaves, &blocks, entries.symmetry() == Symmetry::Symmetric);
         let starts = starts(entries, 0..entries.groups());
         let order = builder.tree.order.iter().flat_map(|&group| starts[group]..starts[group + 1]).collect();
         let dim = starts[entries.groups()];
-        Ok(Self { dim, symmetry: entries.symmetry(), order, leaves, blocks, reach, predicted })
+        Ok(Self { dim, symmetry: entries.symmetry(), order, spans, leaves, blocks, reach, predicted })
     }
 
     /// Bytes that it will take, from three blocks of each size.
@@ -152,6 +170,26 @@ impl<T: Scalar> Hierarchical<T> {
         }
     }
 
+    /// The largest unit of the blocks, a power of two.
+    pub(crate) fn unit(&self) -> f64 {
+        self.blocks.iter().map(|block| block.unit).fold(f64::MIN_POSITIVE, f64::max)
+    }
+
+    /// The clusters.
+    pub(crate) fn spans(&self) -> &[Span] {
+        &self.spans
+    }
+
+    /// The blocks.
+    pub(crate) fn blocks(&self) -> &[Stored<T>] {
+        &self.blocks
+    }
+
+    /// Unknowns in the order of the tree.
+    pub(crate) fn order(&self) -> &[usize] {
+        &self.order
+    }
+
     /// The blocks on the diagonal with their unknowns, row by row.
     pub(crate) fn diagonal_blocks(&self) -> Vec<(Vec<usize>, Vec<T>)> {
         let on_diagonal = |block: &Stored<T>| match &block.kind {
@@ -163,29 +201,39 @@ impl<T: Scalar> Hierarchical<T> {
         };
         self.blocks.iter().filter_map(on_diagonal).collect()
     }
+}
 
-    /// y = A x of one right-hand side, both in the order of the tree.
-    fn product(&self, x: &[T]) -> Vec<T> {
+impl<T: Scalar + Times<T::Single>> Hierarchical<T> {
+    /// A x, both in the order of the tree, a right-hand side a column: the parts of the leaves.
+    fn product(&self, x: MatRef<'_, T>) -> Vec<Mat<T>> {
         let symmetric = self.symmetry == Symmetry::Symmetric;
-        let inner: Vec<[Vec<T>; 2]> = self
+        let inner: Vec<[Mat<T>; 2]> = self
             .blocks
             .par_iter()
             .map(|block| match &block.kind {
-                Kind::Whole(_) => [Vec::new(), Vec::new()],
+                Kind::Whole(_) => [Mat::new(), Mat::new()],
                 Kind::Low { u, v } => {
-                    let back = if symmetric { dots(u, &x[block.rows.clone()]) } else { Vec::new() };
-                    [dots(v, &x[block.columns.clone()]), back]
+                    let dots = |factor: &[T::Single], range: &Range<usize>| {
+                        let x = x.subrows(range.start, range.len());
+                        let rank = factor.len() / range.len().max(1);
+                        let factor = MatRef::from_column_major_slice(factor, range.len(), rank);
+                        let mut dots = Mat::zeros(rank, x.ncols());
+                        add_product(factor.transpose(), x, dots.as_mut(), T::from_real(block.unit));
+                        dots
+                    };
+                    let back = if symmetric { dots(u, &block.rows) } else { Mat::new() };
+                    [dots(v, &block.columns), back]
                 }
             })
             .collect();
         let part = |(leaf, reach): (&Range<usize>, &Vec<(usize, bool)>)| {
-            let mut y = vec![T::zero(); leaf.len()];
+            let mut y = Mat::zeros(leaf.len(), x.ncols());
             for &(at, turned) in reach {
-                self.blocks[at].add(leaf, x, &inner[at][usize::from(turned)], turned, &mut y);
+                self.blocks[at].add(leaf, x, &inner[at][usize::from(turned)], turned, y.as_mut());
             }
             y
         };
-        self.leaves.par_iter().zip(&self.reach).flat_map_iter(part).collect()
+        self.leaves.par_iter().zip(&self.reach).map(part).collect()
     }
 }
 
@@ -204,40 +252,44 @@ impl<T: Scalar> Stored<T> {
 
     /// Adds the rows of a leaf of the block, or of its transpose, times x. `inner` has the products
     /// with the other factor.
-    fn add(&self, leaf: &Range<usize>, x: &[T], inner: &[T], turned: bool, y: &mut [T]) {
+    fn add(&self, leaf: &Range<usize>, x: MatRef<'_, T>, inner: &Mat<T>, turned: bool, y: MatMut<'_, T>)
+    where
+        T: Times<T::Single>,
+    {
         let (own, other) = if turned { (&self.columns, &self.rows) } else { (&self.rows, &self.columns) };
         let first = leaf.start - own.start;
-        let unit = self.unit;
         match &self.kind {
             Kind::Low { u, v } => {
-                let factor = if turned { v } else { u };
-                for (column, &value) in factor.chunks_exact(own.len()).zip(inner) {
-                    add_scaled(y, &column[first..], value.scale(unit));
-                }
-            }
-            Kind::Whole(entries) if turned => {
-                for (row, &value) in entries.chunks_exact(own.len()).zip(&x[other.clone()]) {
-                    add_scaled(y, &row[first..], value.scale(unit));
-                }
+                let factor =
+                    MatRef::from_column_major_slice(if turned { v } else { u }, own.len(), inner.nrows());
+                add_product(factor.subrows(first, leaf.len()), inner.as_ref(), y, T::one());
             }
             Kind::Whole(entries) => {
-                let rows = entries.chunks_exact(other.len()).skip(first);
-                y.iter_mut().zip(rows).for_each(|(y, row)| *y += dot(row, &x[other.clone()]).scale(unit));
+                let all = MatRef::from_row_major_slice(entries, self.rows.len(), self.columns.len());
+                let all = if turned { all.transpose() } else { all };
+                let x = x.subrows(other.start, other.len());
+                add_product(all.subrows(first, leaf.len()), x, y, T::from_real(self.unit));
             }
         }
     }
 }
 
-impl<T: Scalar> LinearOperator<T> for Hierarchical<T> {
+impl<T: Scalar + Times<T::Single>> LinearOperator<T> for Hierarchical<T> {
     fn dim(&self) -> usize {
         self.dim
     }
 
     fn apply(&self, x: &MultiVector<T>, y: &mut MultiVector<T>) {
-        for rhs in 0..x.rhs_count() {
-            let sorted: Vec<T> = self.order.iter().map(|&i| x.row(i)[rhs]).collect();
-            let product = self.product(&sorted);
-            self.order.iter().zip(product).for_each(|(&i, value)| y.row_mut(i)[rhs] = value);
+        for first in (0..x.rhs_count()).step_by(TOGETHER) {
+            let count = TOGETHER.min(x.rhs_count() - first);
+            let sorted = Mat::from_fn(self.dim, count, |i, rhs| x.row(self.order[i])[first + rhs]);
+            let product = self.product(sorted.as_ref());
+            for (leaf, part) in self.leaves.iter().zip(product) {
+                for (i, &at) in self.order[leaf.clone()].iter().enumerate() {
+                    let values = &mut y.row_mut(at)[first..first + count];
+                    values.iter_mut().enumerate().for_each(|(rhs, value)| *value = part[(i, rhs)]);
+                }
+            }
         }
     }
 
@@ -339,9 +391,7 @@ fn check(groups: usize, places: &[Vec3], settings: Settings) -> Result<(), Compr
         return Err(CompressionError::NotFinite { group });
     }
     let refuse = |what, value, expected| Err(CompressionError::Setting { what, value, expected });
-    if !(FINEST_TOLERANCE..=0.5).contains(&settings.tolerance) {
-        return refuse("the tolerance of the compression", settings.tolerance, "between 1e-6 and 0.5");
-    }
+    check_tolerance(settings.tolerance)?;
     if !(settings.eta > 0.0 && settings.eta.is_finite()) {
         return refuse("eta of the compression", settings.eta, "finite and above 0");
     }
@@ -349,6 +399,15 @@ fn check(groups: usize, places: &[Vec3], settings: Settings) -> Result<(), Compr
         return refuse("the size of the smallest clusters", 0.0, "at least 1");
     }
     Ok(())
+}
+
+/// Refuses tolerances that single precision does not hold, and those that say nothing.
+pub(crate) fn check_tolerance(tolerance: f64) -> Result<(), CompressionError> {
+    if (FINEST_TOLERANCE..=0.5).contains(&tolerance) {
+        return Ok(());
+    }
+    let (what, expected) = ("the tolerance of the compression", "between 1e-6 and 0.5");
+    Err(CompressionError::Setting { what, value: tolerance, expected })
 }
 
 /// The first unknown of each of some groups one after the other, and the number of all.
@@ -388,30 +447,4 @@ fn single<T: Scalar>(numbers: &[T]) -> (f64, Vec<T::Single>) {
     let unit = if largest.is_normal() { largest.log2().floor().exp2() } else { 1.0 };
     let inverse = unit.recip();
     (unit, numbers.iter().map(|number| number.scale(inverse).to_single()).collect())
-}
-
-/// The products of the columns of a factor with x, not conjugated.
-fn dots<T: Scalar>(factor: &[T::Single], x: &[T]) -> Vec<T> {
-    factor.chunks_exact(x.len().max(1)).map(|column| dot(column, x)).collect()
-}
-
-/// Σ aᵢ xᵢ, in four sums that do not wait for each other.
-fn dot<T: Scalar>(stored: &[T::Single], x: &[T]) -> T {
-    let mut sums = [T::zero(); 4];
-    let (fours, rest) = stored.as_chunks::<4>();
-    let (x_fours, x_rest) = x.as_chunks::<4>();
-    for (a, b) in fours.iter().zip(x_fours) {
-        for lane in 0..4 {
-            sums[lane] += T::from_single(a[lane]) * b[lane];
-        }
-    }
-    for (&a, &b) in rest.iter().zip(x_rest) {
-        sums[0] += T::from_single(a) * b;
-    }
-    (sums[0] + sums[1]) + (sums[2] + sums[3])
-}
-
-/// y += a s.
-fn add_scaled<T: Scalar>(y: &mut [T], stored: &[T::Single], factor: T) {
-    y.iter_mut().zip(stored).for_each(|(y, &a)| *y += T::from_single(a) * factor);
 }

@@ -2,7 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
-use fredholm_compressed::{BlockDiagonal, CompressionError, Entries, Hierarchical, Preconditioned, Settings};
+use fredholm_compressed::{
+    BlockDiagonal, CompressionError, Entries, Factors, Hierarchical, Preconditioned, Settings,
+};
 use fredholm_iterative::Gmres;
 use fredholm_linop::{
     LinearOperator, MultiVector, Quiet, SecondKind, Solver, Stop, StopReason, Symmetry, Watch,
@@ -179,4 +181,58 @@ fn what_does_not_fit_is_refused() {
     let mut lost = waves.places.clone();
     lost[7] = Vec3::NAN;
     assert_eq!(new(&lost, Settings::default()), Err(CompressionError::NotFinite { group: 7 }));
+}
+
+/// ‖x − A⁻¹ A x‖/‖x‖ with the factors.
+fn error_of(factors: &Factors<Complex64>, matrix: &Hierarchical<Complex64>) -> f64 {
+    let exact = vector(matrix.dim(), 3);
+    let mut b = MultiVector::zeros(matrix.dim(), 3);
+    matrix.apply(&exact, &mut b);
+    let mut x = MultiVector::zeros(matrix.dim(), 3);
+    factors.apply(&b, &mut x);
+    x.add_scaled(&[-Complex64::ONE; 3], &exact);
+    norm(&x) / norm(&exact)
+}
+
+#[test]
+fn factors_solve_to_their_tolerance() {
+    for skew in [0.0, 0.3] {
+        let waves = Waves::new(1500, 5.0, skew);
+        let settings = Settings { tolerance: 1e-5, leaf: 24, ..Settings::default() };
+        let matrix = Hierarchical::new(&waves, &waves.places, settings, &Quiet).unwrap();
+        let mut bytes = Vec::new();
+        for tolerance in [1e-2, 1e-3, 1e-4, 1e-5] {
+            let factors = Factors::new(&matrix, tolerance, u64::MAX, &Quiet).unwrap();
+            let error = error_of(&factors, &matrix);
+            assert!(error < 3.0 * tolerance && error > 1e-3 * tolerance, "{skew} {tolerance}: {error:e}");
+            bytes.push(factors.bytes());
+        }
+        assert!(bytes.is_sorted() && bytes[0] < bytes[3], "{bytes:?}");
+        let limit = bytes[2] / 2;
+        let refused = Factors::new(&matrix, 1e-4, limit, &Quiet).map(|_| ());
+        assert!(
+            matches!(refused, Err(CompressionError::Factors { needed, .. }) if needed > limit),
+            "{refused:?}"
+        );
+    }
+}
+
+#[test]
+fn factors_have_the_same_bits_for_any_number_of_threads() {
+    for skew in [0.0, 0.2] {
+        let waves = Waves::new(700, 8.0, skew);
+        let settings = Settings { leaf: 16, ..Settings::default() };
+        let matrix = Hierarchical::new(&waves, &waves.places, settings, &Quiet).unwrap();
+        let b = vector(matrix.dim(), 20);
+        let solutions = [1, 2, 4].map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let factors = Factors::new(&matrix, 1e-3, u64::MAX, &Quiet).unwrap();
+                let mut x = MultiVector::zeros(b.dim(), b.rhs_count());
+                factors.apply(&b, &mut x);
+                x
+            })
+        });
+        assert!(solutions[0] == solutions[1] && solutions[0] == solutions[2]);
+    }
 }

@@ -147,6 +147,12 @@ impl<T: Scalar> LinearOperator<T> for Dense<T> {
     // Each thread sums whole rows in the same way, so the number of threads changes no bit.
     fn apply(&self, x: &MultiVector<T>, y: &mut MultiVector<T>) {
         let rhs_count = x.rhs_count().max(1);
+        if rhs_count >= LEAST_RHS_OF_BLOCKS {
+            let rows = y.as_mut_slice().par_chunks_mut(rhs_count * ROWS_TOGETHER);
+            rows.zip(self.entries.par_chunks(self.dim.max(1) * ROWS_TOGETHER))
+                .for_each(|(y, rows)| T::multiply(rows, x.as_slice(), y, self.dim, rhs_count));
+            return;
+        }
         y.as_mut_slice().par_chunks_mut(rhs_count).enumerate().with_min_len(16).for_each(|(i, y)| {
             let row = self.row_slice(i);
             let mut columns = Columns { x: x.as_slice(), rhs_count, first: 0 };
@@ -186,6 +192,11 @@ impl<T: Scalar> LinearOperator<T> for Dense<T> {
     }
 }
 
+/// Right-hand sides from which on a block of rows is multiplied with all of them: fewer are limited
+/// by the memory that brings the entries, more by arithmetic.
+const LEAST_RHS_OF_BLOCKS: usize = 8;
+/// Rows of such a block.
+const ROWS_TOGETHER: usize = 96;
 /// Right-hand sides that a row is multiplied with at a time.
 const RHS_TOGETHER: usize = 4;
 
@@ -225,10 +236,10 @@ mod tests {
     #[test]
     fn products_are_the_sums_of_their_terms() {
         let value = |i: usize| ((i * 7919 + 13) % 101) as f64 - 50.0;
-        for dim in [1, 2, 3, 7, 8, 9, 16, 37] {
+        for dim in [1, 2, 3, 7, 8, 9, 16, 37, 100] {
             let entries: Vec<f64> = (0..dim * dim).map(value).collect();
             let matrix = Dense::new(dim, entries).unwrap();
-            for rhs_count in [1, 2, 3, 4, 5, 7, 8, 9] {
+            for rhs_count in [1, 2, 3, 4, 5, 7, 8, 9, 17] {
                 let x = MultiVector::from_fn(dim, rhs_count, |j, l| value(3 * j + 31 * l));
                 let mut y = MultiVector::from_fn(dim, rhs_count, |_, _| f64::NAN);
                 matrix.apply(&x, &mut y);

@@ -1,5 +1,9 @@
 //! The numbers that unknowns are made of: f64 for light, Complex64 for waves.
 
+use faer::linalg::matmul::matmul;
+use faer::traits::ComplexField;
+use faer::traits::math_utils::one;
+use faer::{Accum, MatMut, MatRef, Par};
 use num_complex::{Complex32, Complex64};
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
@@ -63,6 +67,9 @@ pub trait Scalar:
     fn abs2(self) -> f64;
     /// Neither NaN nor infinite.
     fn is_finite(self) -> bool;
+    /// y = A x for matrices stored row by row: `count` numbers of x for each of `len` numbers of a
+    /// row of A. The bits depend on the sizes alone.
+    fn multiply(a: &[Self], x: &[Self], y: &mut [Self], len: usize, count: usize);
     /// What `real` or `complex` makes, whichever is of this kind. These are no generic functions,
     /// so that what they name is compiled in their crate, once, and not wherever a generic function
     /// calls this.
@@ -126,6 +133,10 @@ impl Scalar for f64 {
     #[inline]
     fn is_finite(self) -> bool {
         f64::is_finite(self)
+    }
+
+    fn multiply(a: &[Self], x: &[Self], y: &mut [Self], len: usize, count: usize) {
+        multiply(a, x, y, len, count);
     }
 
     fn choose<F: OfScalar>(real: fn() -> F::Of<f64>, _: fn() -> F::Of<Complex64>) -> F::Of<f64> {
@@ -192,9 +203,19 @@ impl Scalar for Complex64 {
         Complex64::is_finite(self)
     }
 
+    fn multiply(a: &[Self], x: &[Self], y: &mut [Self], len: usize, count: usize) {
+        multiply(a, x, y, len, count);
+    }
+
     fn choose<F: OfScalar>(_: fn() -> F::Of<f64>, complex: fn() -> F::Of<Complex64>) -> F::Of<Self> {
         complex()
     }
+}
+
+fn multiply<T: ComplexField>(a: &[T], x: &[T], y: &mut [T], len: usize, count: usize) {
+    let rows = a.len() / len.max(1);
+    let (a, x) = (MatRef::from_row_major_slice(a, rows, len), MatRef::from_row_major_slice(x, len, count));
+    matmul(MatMut::from_row_major_slice_mut(y, rows, count), Accum::Replace, a, x, one(), Par::Seq);
 }
 
 #[cfg(test)]

@@ -1,11 +1,13 @@
-//! The combined equation of a sphere, compressed, against the series of Mie: unknowns, CPU seconds,
-//! memory and error.
+//! A sphere by a compressed matrix, against the series of Mie: unknowns, CPU seconds, memory,
+//! iterations and error.
 //!
 //! ```text
-//! cargo run --release -p fredholm-moments --example compressed -- RADIUS EDGES TOLERANCE
+//! cargo run --release -p fredholm-moments --example compressed -- RADIUS EDGES TOLERANCE BODY FACTORS
 //! ```
 //!
-//! RADIUS is in wavelengths, EDGES are counted to a wavelength.
+//! RADIUS is in wavelengths, EDGES are counted to a wavelength, BODY is `combined` (usual) or
+//! `electric` for a conductor by one of these equations, or a permittivity. FACTORS is the tolerance
+//! of the factors that precondition the system; without it the blocks on the diagonal do.
 
 #![allow(clippy::unwrap_used, reason = "an example that cannot go on has failed")]
 #![allow(clippy::print_stdout, reason = "it prints its table")]
@@ -14,48 +16,95 @@
 mod common;
 
 use common::{WAVELENGTH, circle, mie, relative_error, source, vertical, wave};
-use fredholm_compressed::{BlockDiagonal, Preconditioned, Settings};
+use fredholm_compressed::{BlockDiagonal, Factors, Preconditioned, Settings};
 use fredholm_iterative::Gmres;
-use fredholm_linop::{MultiVector, Quiet, SecondKind, Solver, Stop};
+use fredholm_linop::{LinearOperator, MultiVector, Quiet, SecondKind, Solver, Stop};
 use fredholm_moments::meshing::sphere;
-use fredholm_moments::{Basis, Conductor, Currents, Equation};
-use fredholm_waves::{Complex64, Source};
+use fredholm_moments::{Basis, Composite, Conductor, Currents, Equation, Filling, Operator, Regions};
+use fredholm_waves::{Complex64, DielectricSphere, Source};
 use std::time::Instant;
+
+/// Refines what the factors leave.
+const RESTART: usize = 100;
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let number = |i: usize, usual: f64| arguments.get(i).map_or(usual, |text| text.parse().unwrap());
     let (radius, edge) = (number(0, 1.0) * WAVELENGTH, WAVELENGTH / number(1, 10.0));
-    let tolerance = number(2, 1e-3);
-    let basis = Basis::new(sphere(radius, edge).unwrap()).unwrap();
-    let conductor = Conductor::new(&basis, wave(), Equation::default(), 1e-3).unwrap();
-    let settings = Settings { tolerance, ..Settings::default() };
-    let (matrix, assembly) = timed(|| conductor.operator().compressed(settings, &Quiet).unwrap());
-    let summary = matrix.summary();
-    let source = source();
+    let body = arguments.get(3).map_or("combined", String::as_str);
+    let run = Run { tolerance: number(2, 1e-3), factors: arguments.get(4).map(|text| text.parse().unwrap()) };
+    let (surface, source) = (sphere(radius, edge).unwrap(), source());
     let sources: [&dyn Source; 1] = [&source];
-    let b = conductor.right_hand_side(&[&sources]);
-    let inverse = BlockDiagonal::new(&matrix).unwrap();
-    let system = Preconditioned::new(&matrix, &inverse);
-    let right = system.right_hand_side(&b);
-    let a = SecondKind::new(&system, MultiVector::from_fn(b.dim(), 1, |_, _| Complex64::ONE)).unwrap();
-    let mut x = MultiVector::zeros(b.dim(), 1);
-    let stop = Stop { tolerance: 1e-4, max_iterations: 300 };
-    let (report, solution) =
-        timed(|| Gmres { restart: 100 }.solve(&a, &right, &mut x, &stop, &mut Quiet).unwrap());
-    let currents = Currents::new(&basis, wave(), &x.vector(0), None);
-    let error = relative_error(&vertical(&currents.fields(&circle()).unwrap()), &mie(radius));
-    println!(
-        "{} unknowns: assembly {assembly:.1} CPU s, {:.3} GB ({:.3} predicted, {:.3} of the whole), largest rank {}; {:?} \
-         after {} iterations, {solution:.1} CPU s; error {error:.5}",
-        basis.len(),
-        summary.bytes as f64 / 1e9,
-        summary.predicted as f64 / 1e9,
-        summary.share,
-        summary.largest_rank,
-        report.reason,
-        report.history.len() - 1,
-    );
+    let (currents, exact) = match body {
+        "combined" | "electric" => {
+            let equation = if body == "electric" { Equation::Electric } else { Equation::default() };
+            let basis = Basis::new(surface).unwrap();
+            let conductor = Conductor::new(&basis, wave(), equation, 1e-3).unwrap();
+            let x = run.solve(conductor.operator(), &conductor.right_hand_side(&[&sources]));
+            (Currents::new(&basis, wave(), &x, None).fields(&circle()).unwrap(), mie(radius))
+        }
+        permittivity => {
+            let permittivity = Complex64::from(permittivity.parse::<f64>().unwrap());
+            let fillings = vec![Filling::Dielectric(0); surface.triangles().len()];
+            let regions = Regions::new(&surface, &fillings).unwrap();
+            let basis = Basis::between(regions).unwrap();
+            let composite = Composite::new(&basis, wave(), &[permittivity], 1e-3).unwrap();
+            let x = run.solve(composite.operator(), &composite.right_hand_side(&[&sources]));
+            let ball = DielectricSphere::new(radius, permittivity).unwrap();
+            let exact = |&p| ball.scattered(&wave(), &source, p).components()[2];
+            (composite.currents(&x).fields(&circle()).unwrap(), circle().iter().map(exact).collect())
+        }
+    };
+    println!("error {:.5}", relative_error(&vertical(&currents), &exact));
+}
+
+struct Run {
+    tolerance: f64,
+    factors: Option<f64>,
+}
+
+impl Run {
+    /// Compresses and solves, and says what that took.
+    fn solve(&self, operator: &Operator<'_>, b: &MultiVector<Complex64>) -> Vec<Complex64> {
+        let settings = Settings { tolerance: self.tolerance, ..Settings::default() };
+        let (matrix, assembly) = timed(|| operator.compressed(settings, &Quiet).unwrap());
+        let summary = matrix.summary();
+        println!(
+            "{} unknowns: assembly {assembly:.1} CPU s, {:.3} GB ({:.3} predicted, {:.3} of the whole), largest rank {}",
+            operator.dim(),
+            summary.bytes as f64 / 1e9,
+            summary.predicted as f64 / 1e9,
+            summary.share,
+            summary.largest_rank,
+        );
+        let (inverse, seconds): (Box<dyn LinearOperator<Complex64>>, f64) = match self.factors {
+            Some(tolerance) => {
+                let (factors, seconds) =
+                    timed(|| Factors::new(&matrix, tolerance, u64::MAX, &Quiet).unwrap());
+                println!(
+                    "factors to {tolerance}: {seconds:.1} CPU s, {:.3} GB",
+                    factors.bytes() as f64 / 1e9
+                );
+                (Box::new(factors), seconds)
+            }
+            None => (Box::new(BlockDiagonal::new(&matrix).unwrap()), 0.0),
+        };
+        let system = Preconditioned::new(&matrix, &*inverse);
+        let right = system.right_hand_side(b);
+        let ones = MultiVector::from_fn(b.dim(), 1, |_, _| Complex64::ONE);
+        let a = SecondKind::new(&system, ones).unwrap();
+        let mut x = MultiVector::zeros(b.dim(), 1);
+        let stop = Stop { tolerance: 1e-4, max_iterations: 3000 };
+        let (report, solution) =
+            timed(|| Gmres { restart: RESTART }.solve(&a, &right, &mut x, &stop, &mut Quiet).unwrap());
+        println!(
+            "{:?} after {} iterations, {solution:.1} CPU s; {:.1} with the factors",
+            report.reason,
+            report.history.len() - 1,
+            solution + seconds,
+        );
+        x.vector(0)
+    }
 }
 
 /// Seconds of the processor on all threads, user and system, as Linux counts them; of the clock

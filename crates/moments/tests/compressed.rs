@@ -6,11 +6,13 @@
 mod common;
 
 use common::{WAVELENGTH, circle, mie, relative_error, solved, source, vertical, wave};
-use fredholm_compressed::{BlockDiagonal, CompressionError, Preconditioned, Settings};
+use fredholm_compressed::{BlockDiagonal, CompressionError, Factors, Preconditioned, Settings};
 use fredholm_iterative::Gmres;
 use fredholm_linop::{LinearOperator, MultiVector, Quiet, SecondKind, Solver, Stop, StopReason};
 use fredholm_moments::meshing::{Grading, plate, sphere};
-use fredholm_moments::{Basis, Conductor, Currents, Equation, MomentsError, Operator};
+use fredholm_moments::{
+    Basis, Composite, Conductor, Currents, Equation, Filling, MomentsError, Operator, Regions,
+};
 use fredholm_waves::{Complex64, Source};
 
 /// ‖(Z − Z̃) x‖/‖Z x‖ of a vector that looks like chance.
@@ -107,4 +109,42 @@ fn what_is_predicted_not_to_fit_is_refused() {
         panic!("65 kB are not enough");
     };
     assert!(needed > limit && limit == 1 << 16);
+}
+
+/// The currents by the factors of the compressed matrix and a few iterations, and by LU.
+fn by_factors(operator: &Operator<'_>, b: &MultiVector<Complex64>) -> [Vec<Complex64>; 2] {
+    let settings = Settings { tolerance: 1e-4, leaf: 24, ..Settings::default() };
+    let matrix = operator.compressed(settings, &Quiet).unwrap();
+    let factors = Factors::new(&matrix, 1e-2, u64::MAX, &Quiet).unwrap();
+    assert!(factors.bytes() as f64 <= 1.2 * matrix.summary().bytes as f64, "{:?}", matrix.summary());
+    let system = Preconditioned::new(&matrix, &factors);
+    let ones = MultiVector::from_fn(b.dim(), 1, |_, _| Complex64::ONE);
+    let a = SecondKind::new(&system, ones).unwrap();
+    let mut x = MultiVector::zeros(b.dim(), 1);
+    // Without factors hundreds of iterations are needed, and single precision would end before 1e-10.
+    let stop = Stop { tolerance: 1e-10, max_iterations: 20 };
+    let right = system.right_hand_side(b);
+    let report = Gmres { restart: 20 }.solve(&a, &right, &mut x, &stop, &mut Quiet).unwrap();
+    assert_eq!(report.reason, StopReason::Converged);
+    [x.vector(0), solved(&operator.coupling().unwrap(), b).vector(0)]
+}
+
+#[test]
+fn factors_solve_equations_that_iterate_slowly() {
+    let source = source();
+    let sources: [&dyn Source; 1] = [&source];
+    let sheet = Basis::new(plate(1.5 * WAVELENGTH, WAVELENGTH / 12.0, Grading::default()).unwrap()).unwrap();
+    let conductor = Conductor::new(&sheet, wave(), Equation::Electric, 1e-3).unwrap();
+    let field = |x: &[Complex64]| Currents::new(&sheet, wave(), x, None).fields(&circle()).unwrap();
+    let [found, exact] = by_factors(conductor.operator(), &conductor.right_hand_side(&[&sources]))
+        .map(|x| vertical(&field(&x)));
+    assert!(relative_error(&found, &exact) < 1e-4, "{:e}", relative_error(&found, &exact));
+
+    let surface = sphere(0.25 * WAVELENGTH, WAVELENGTH / 16.0).unwrap();
+    let regions = Regions::new(&surface, &vec![Filling::Dielectric(0); surface.triangles().len()]).unwrap();
+    let basis = Basis::between(regions).unwrap();
+    let body = Composite::new(&basis, wave(), &[Complex64::new(4.0, -0.1)], 1e-3).unwrap();
+    let [found, exact] = by_factors(body.operator(), &body.right_hand_side(&[&sources]))
+        .map(|x| vertical(&body.currents(&x).fields(&circle()).unwrap()));
+    assert!(relative_error(&found, &exact) < 1e-4, "{:e}", relative_error(&found, &exact));
 }

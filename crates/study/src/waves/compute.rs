@@ -214,7 +214,7 @@ impl Task<'_> {
         let (frequency, facets) = (self.band.wave.frequency(), self.scatterer.facets().len());
         let (residuals, reason) =
             solution.map_or((Vec::new(), None), |solution| (solution.residuals, solution.reason));
-        Solved { frequency, facets, residuals, reason }
+        Solved { frequency, facets, solution: self.model.method.name(), residuals, reason }
     }
 
     /// What a second bounce would add, where errors are to be estimated; it is not asked of the

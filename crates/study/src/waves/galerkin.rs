@@ -5,8 +5,8 @@
 
 use std::slice;
 
-use fredholm_compressed::{BlockDiagonal, CompressionError, Hierarchical, Preconditioned, Settings};
-use fredholm_linop::{Dense, MultiVector, Solver};
+use fredholm_compressed::{BlockDiagonal, CompressionError, Factors, Hierarchical, Preconditioned, Settings};
+use fredholm_linop::{Dense, LinearOperator, MultiVector, Solver};
 use fredholm_mesh::Vec3;
 use fredholm_moments::{
     Basis, Composite, Condition, Conductor, Currents, Equation, Filling, Imperfect, MomentsError, Operator,
@@ -35,6 +35,7 @@ use super::{CouplingStorage, Method, Model, Outcome};
 use crate::error::{Error, ErrorKind};
 use crate::memory::Plan;
 use crate::problem::scene_failure;
+use crate::size::Bytes;
 use crate::stages::{Signals, Stages};
 
 /// Relative error of the integrals over each pair of triangles, below that of usual meshes.
@@ -43,11 +44,16 @@ const INTEGRAL_ERROR: f64 = 1e-3;
 const COMPRESSION_ERROR: f64 = INTEGRAL_ERROR;
 /// The solver of compressed matrices where the scene names none.
 const COMPRESSED_SOLVER: &str = "gmres:restart=100";
-/// Unknowns of the combined equation from which on compressing its matrix and iterating on it takes
-/// less time than to store and to factorise it, for few right-hand sides (docs/notes/moments.md).
-const LEAST_COMPRESSED_UNKNOWNS: usize = 12_000;
+/// Relative error of the blocks of the factors that precondition it: a few iterations are left, and
+/// finer factors cost more than they save (docs/notes/moments.md).
+const FACTOR_ERROR: f64 = 1e-2;
+/// Most bytes of the factors over those of the matrix: 0.72 to 0.95 were measured.
+const FACTOR_SHARE: f64 = 1.2;
+/// Unknowns from which on compressing the matrix takes less time than to store and to factorise it,
+/// for few and for many right-hand sides (docs/notes/moments.md).
+const LEAST_COMPRESSED_UNKNOWNS: [usize; 2] = [6_000, 15_000];
 /// Right-hand sides that are few.
-const MOST_RHS_OF_COMPRESSED: usize = 4;
+const MOST_RHS_OF_COMPRESSED: usize = 8;
 /// Directions in which the mean scattered field is taken that errors are compared with.
 const DIRECTIONS: usize = 200;
 
@@ -389,15 +395,13 @@ struct Task<'a> {
 enum Matrix {
     /// 1 − Z.
     Whole(Dense<Complex64>),
-    /// Z, the inverse of its blocks on the diagonal, and the solver.
+    /// Z, what preconditions it, and the solver.
     Compressed(Box<Compressed>),
 }
 
 /// Whether a compressed matrix of so many unknowns takes less time than a whole one.
 fn is_quicker_compressed(model: &Model, unknowns: usize) -> bool {
-    model.galerkin == Some(Equations::Combined)
-        && unknowns > LEAST_COMPRESSED_UNKNOWNS
-        && rhs_count(model) <= MOST_RHS_OF_COMPRESSED
+    unknowns > LEAST_COMPRESSED_UNKNOWNS[usize::from(rhs_count(model) > MOST_RHS_OF_COMPRESSED)]
 }
 
 /// Whether the scene names a solver that needs the entries of the matrix.
@@ -425,6 +429,24 @@ fn whole_plan(model: &Model, unknowns: usize, solver: &dyn Solver<Complex64>) ->
     (plan, if compress { CouplingStorage::Compressed } else { CouplingStorage::Matrix })
 }
 
+/// Whether a compressed matrix is preconditioned by its factors, and not by the blocks on its
+/// diagonal: iterations of all equations but the combined one grow with the number of unknowns, and
+/// those of the combined one for a few right-hand sides take as long as its factors.
+fn takes_factors(model: &Model) -> bool {
+    model.galerkin != Some(Equations::Combined) || rhs_count(model) > MOST_RHS_OF_COMPRESSED
+}
+
+/// Memory with a compressed matrix and its factors.
+fn with_compressed(model: &Model, plan: Plan, unknowns: usize, bytes: u64) -> Plan {
+    let plan = plan.hold(format!("the compressed matrix of {unknowns} unknowns"), bytes.into());
+    if takes_factors(model) { plan.hold("its factors", factor_bytes(bytes).into()) } else { plan }
+}
+
+/// Bytes predicted of the factors of a compressed matrix.
+fn factor_bytes(matrix: u64) -> u64 {
+    (FACTOR_SHARE * matrix as f64) as u64
+}
+
 /// The solver of a compressed matrix.
 fn of_compressed(model: &Model) -> Result<Box<dyn Solver<Complex64>>, Error> {
     let asked = model.scene.settings().solver.as_deref().unwrap_or(COMPRESSED_SOLVER);
@@ -449,15 +471,22 @@ pub(super) fn plan(model: &Model, equations: Equations) -> Result<(Plan, Couplin
         return Ok((plan, storage, unknowns));
     }
     let bytes = body.operator().compressed_bytes(settings()).map_err(|error| refused(model, &error))?;
-    let plan = besides(model, unknowns, &*of_compressed(model)?)
-        .hold(format!("the compressed matrix of {unknowns} unknowns"), bytes.into());
+    let plan = with_compressed(model, besides(model, unknowns, &*of_compressed(model)?), unknowns, bytes);
     Ok((plan, storage, unknowns))
 }
 
 struct Compressed {
     matrix: Hierarchical<Complex64>,
-    inverse: BlockDiagonal<Complex64>,
+    inverse: Box<dyn LinearOperator<Complex64>>,
     method: Method,
+}
+
+impl Compressed {
+    /// How its systems are solved.
+    fn name(&self, model: &Model) -> String {
+        let with = if takes_factors(model) { "the factors of" } else { "the diagonal blocks of" };
+        format!("{} with {with} the compressed matrix", self.method.name())
+    }
 }
 
 impl Task<'_> {
@@ -473,7 +502,7 @@ impl Task<'_> {
             stages.run(&format!("fields at {name}"), || self.receive(&currents, error.as_ref(), outcome))?;
             let values = self.on_facets(&currents).iter().map(current).collect();
             outcome.currents.push(WaveCurrents { name: name.to_owned(), values });
-            outcome.solved.push(self.record(solution));
+            outcome.solved.push(self.record(&matrix, solution));
         }
         for (index, receiver) in self.model.receivers.iter().enumerate() {
             if let Places::Monostatic(angles) = &receiver.places {
@@ -482,7 +511,7 @@ impl Task<'_> {
                 outcome.stated_errors.extend(stated);
                 outcome.reciprocity.extend(Reciprocity::of(&rows));
                 outcome.monostatic.extend(rows);
-                outcome.solved.push(self.record(solution));
+                outcome.solved.push(self.record(&matrix, solution));
             }
         }
         Ok(())
@@ -517,11 +546,10 @@ impl Task<'_> {
         let unknowns = self.body.operator().dim();
         let plan = besides(self.model, unknowns, &*solver);
         plan.admit(limit, help)?;
-        let with = |bytes: u64| {
-            plan.clone().hold(format!("the compressed matrix of {unknowns} unknowns"), bytes.into())
-        };
+        let with = |bytes: u64| with_compressed(self.model, plan.clone(), unknowns, bytes);
         let left = u64::try_from(limit.bytes().0 - plan.peak().0).unwrap_or(u64::MAX);
-        let settings = Settings { limit: left, ..settings() };
+        let share = if takes_factors(self.model) { 1.0 + FACTOR_SHARE } else { 1.0 };
+        let settings = Settings { limit: (left as f64 / share) as u64, ..settings() };
         let matrix = match self.body.operator().compressed(settings, signals.watch) {
             Ok(matrix) => matrix,
             Err(MomentsError::Compression(CompressionError::Memory { needed, .. })) => {
@@ -532,9 +560,33 @@ impl Task<'_> {
             Err(error) => return Err(refused(self.model, &error)),
         };
         with(matrix.summary().bytes).tell(limit, signals.watch);
-        let inverse = BlockDiagonal::new(&matrix).map_err(|error| refused(self.model, &error.into()))?;
+        let inverse = self.inverse(&matrix, left.saturating_sub(matrix.summary().bytes), signals)?;
         let method = Method::Solver { solver, tolerance: *tolerance, max_iterations: *max_iterations };
         Ok(Matrix::Compressed(Box::new(Compressed { matrix, inverse, method })))
+    }
+
+    /// What preconditions a compressed matrix, in at most `limit` bytes.
+    fn inverse(
+        &self,
+        matrix: &Hierarchical<Complex64>,
+        limit: u64,
+        signals: &Signals<'_>,
+    ) -> Result<Box<dyn LinearOperator<Complex64>>, Error> {
+        if !takes_factors(self.model) {
+            let blocks = BlockDiagonal::new(matrix).map_err(|error| refused(self.model, &error.into()))?;
+            return Ok(Box::new(blocks));
+        }
+        match Factors::new(matrix, FACTOR_ERROR, limit, signals.watch) {
+            Ok(factors) => Ok(Box::new(factors)),
+            Err(CompressionError::Interrupted) => Err(Error::cancelled()),
+            Err(CompressionError::Factors { needed, limit }) => {
+                let [needed, limit] = [needed, limit].map(|bytes| Bytes(bytes.into()));
+                let what = format!("the factors of the matrix take more than {needed}, and {limit} are left");
+                let help = "allow more with --memory, take longer edges, or method = \"cfie\" for closed conductors, which need no factors";
+                Err(Error::new(ErrorKind::Resources, what).with_help(help))
+            }
+            Err(error) => Err(refused(self.model, &error.into())),
+        }
     }
 
     fn solve(
@@ -546,15 +598,23 @@ impl Task<'_> {
         match matrix {
             Matrix::Whole(coupling) => solved(coupling, b, &self.model.method, signals),
             Matrix::Compressed(parts) => {
-                let system = Preconditioned::new(&parts.matrix, &parts.inverse);
+                let system = Preconditioned::new(&parts.matrix, &*parts.inverse);
                 solved(&system, &system.right_hand_side(b), &parts.method, signals)
             }
         }
     }
 
-    fn record(&self, solution: Solution) -> Solved {
-        let (frequency, facets) = (self.band.wave.frequency(), self.geometry.mesh.len());
-        Solved { frequency, facets, residuals: solution.residuals, reason: solution.reason }
+    fn record(&self, matrix: &Matrix, solution: Solution) -> Solved {
+        Solved {
+            frequency: self.band.wave.frequency(),
+            facets: self.geometry.mesh.len(),
+            solution: match matrix {
+                Matrix::Whole(_) => self.model.method.name(),
+                Matrix::Compressed(parts) => parts.name(self.model),
+            },
+            residuals: solution.residuals,
+            reason: solution.reason,
+        }
     }
 
     /// The expected error of the scattered field of these sources, where it is known.

@@ -18,6 +18,8 @@ pub struct Solved {
     pub frequency: f64,
     /// Facets of the scatterer.
     pub facets: usize,
+    /// How many bounces were summed, or the solver.
+    pub solution: String,
     /// Relative residual after every iteration; none where bounces are merely summed.
     pub residuals: Vec<f64>,
     /// Why the solver stopped, where one did.
@@ -78,6 +80,11 @@ impl Outcome {
         self.solved.iter().all(Solved::converged)
     }
 
+    /// How many bounces were summed, or the solver, which may be another than that of the scene.
+    pub(super) fn solution(&self, model: &Model) -> String {
+        self.solved.first().map_or_else(|| model.method.name(), |solved| solved.solution.clone())
+    }
+
     /// Tables that are too large for text, and are arrays only.
     fn left_out(&self) -> Vec<&'static str> {
         let all = [
@@ -107,7 +114,7 @@ impl Outcome {
             "title": model.scene.title(),
             "method": model.method_name(),
             "shadows": model.shadows_name(),
-            "solution": model.method.name(),
+            "solution": self.solution(model),
             "edge_currents": model.edge_currents,
             "chosen_because": model.reason,
             "receivers": model.receivers.iter().map(|receiver| &receiver.name).collect::<Vec<_>>(),

@@ -270,7 +270,7 @@ impl SolvedWaves<'_> {
     /// How many bounces were summed, or the solver.
     #[must_use]
     pub fn solution(&self) -> String {
-        self.model.method.name()
+        self.outcome.solution(&self.model)
     }
 
     /// Why this method was taken, where the scene left it open.
