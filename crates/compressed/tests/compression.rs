@@ -236,3 +236,15 @@ fn factors_have_the_same_bits_for_any_number_of_threads() {
         assert!(solutions[0] == solutions[1] && solutions[0] == solutions[2]);
     }
 }
+
+#[test]
+fn small_matrices_have_factors_too() {
+    for count in [1, 2, 5] {
+        let waves = Waves::new(count, 1.0, 0.1);
+        let settings = Settings { tolerance: 1e-6, leaf: 1, ..Settings::default() };
+        let matrix = Hierarchical::new(&waves, &waves.places, settings, &Quiet).unwrap();
+        let factors = Factors::new(&matrix, 1e-6, u64::MAX, &Quiet).unwrap();
+        let error = error_of(&factors, &matrix);
+        assert!(error < 1e-5, "{count}: {error:e}");
+    }
+}

@@ -24,7 +24,7 @@ pub(super) fn product<N: Number>(a: MatRef<'_, N>, b: MatRef<'_, N>) -> Mat<N> {
 pub(super) fn truncated<N: Number>(u: Mat<N>, v: &Mat<N>, tolerance: f64) -> [Mat<N>; 2] {
     let [q, r] = orthogonal(u);
     let rest = product(v.as_ref(), r.transpose());
-    // Columns are compared with the largest one, which must not be 0.
+    // Columns are compared with the largest one, which has to be there and must not be 0.
     if rest.col_iter().all(|column| column.iter().all(|&x| x == N::zero())) {
         return [Mat::zeros(q.nrows(), 0), Mat::zeros(v.nrows(), 0)];
     }
@@ -139,7 +139,9 @@ mod tests {
                 assert!(left.ncols() <= needed + 2, "{m} {n} {tolerance}: {}", left.ncols());
             }
         }
-        let [left, right] = truncated(Mat::<f32>::zeros(5, 2), &Mat::zeros(4, 2), 1e-3);
-        assert!(left.ncols() == 0 && right.ncols() == 0);
+        for rank in [0, 2] {
+            let [left, right] = truncated(Mat::<f32>::zeros(5, rank), &Mat::zeros(4, rank), 1e-3);
+            assert!(left.shape() == (5, 0) && right.shape() == (4, 0));
+        }
     }
 }
