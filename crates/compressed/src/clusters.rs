@@ -61,7 +61,7 @@ impl Tree {
         let (mut pairs, mut waiting) = (Vec::new(), vec![(0, 0)]);
         while let Some((row, column)) = waiting.pop() {
             let [a, b] = [row, column].map(|at| &self.clusters[at]);
-            if lower && a.range.end <= b.range.start {
+            if lower && row != column && a.range.end <= b.range.start {
                 continue;
             }
             if row != column && a.size().min(b.size()) <= eta * a.distance(b) {

@@ -11,17 +11,13 @@ use std::ops::{Mul, Neg};
 pub trait Number: Times<Self> + Send + Sync {
     /// The number in double precision.
     type Double: Scalar<Single = Self> + Times<Self>;
-    /// 0.
-    fn zero() -> Self;
-    /// 1.
-    fn one() -> Self;
     /// |x|².
     fn square(self) -> f64;
 }
 
 /// A number that matrices of others are multiplied with: in single precision while they are
-/// factorised, in double precision when they solve, so that a solver meets one operator, to the last
-/// digits, at every step.
+/// factorised, in double precision when they solve, so that a solver meets the same operator at
+/// every step.
 pub trait Times<N>: ComplexField + Copy + Mul<Output = Self> + Neg<Output = Self> {
     /// Gives a matrix in this precision to `run`.
     fn with<R>(a: MatRef<'_, N>, run: impl FnOnce(MatRef<'_, Self>) -> R) -> R;
@@ -31,14 +27,6 @@ macro_rules! numbers {
     ($($single:ty, $double:ty);*) => {$(
         impl Number for $single {
             type Double = $double;
-
-            fn zero() -> Self {
-                <$double>::zero().to_single()
-            }
-
-            fn one() -> Self {
-                <$double>::one().to_single()
-            }
 
             fn square(self) -> f64 {
                 <$double>::from_single(self).abs2()

@@ -2,12 +2,13 @@
 //! iterations and error.
 //!
 //! ```text
-//! cargo run --release -p fredholm-moments --example compressed -- RADIUS EDGES TOLERANCE BODY FACTORS
+//! cargo run --release -p fredholm-moments --example compressed -- \
+//!     RADIUS EDGES TOLERANCE BODY FACTORS
 //! ```
 //!
 //! RADIUS is in wavelengths, EDGES are counted to a wavelength, BODY is `combined` (usual) or
-//! `electric` for a conductor by one of these equations, or a permittivity. FACTORS is the tolerance
-//! of the factors that precondition the system; without it the blocks on the diagonal do.
+//! `electric` for a conductor by one of these equations, or a permittivity. FACTORS is the
+//! tolerance of the factors that precondition the system; without it the blocks on the diagonal do.
 
 #![allow(clippy::unwrap_used, reason = "an example that cannot go on has failed")]
 #![allow(clippy::print_stdout, reason = "it prints its table")]
@@ -24,7 +25,7 @@ use fredholm_moments::{Basis, Composite, Conductor, Currents, Equation, Filling,
 use fredholm_waves::{Complex64, DielectricSphere, Source};
 use std::time::Instant;
 
-/// Refines what the factors leave.
+/// Steps of GMRES before it starts anew.
 const RESTART: usize = 100;
 
 fn main() {

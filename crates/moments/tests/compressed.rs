@@ -121,7 +121,8 @@ fn by_factors(operator: &Operator<'_>, b: &MultiVector<Complex64>) -> [Vec<Compl
     let ones = MultiVector::from_fn(b.dim(), 1, |_, _| Complex64::ONE);
     let a = SecondKind::new(&system, ones).unwrap();
     let mut x = MultiVector::zeros(b.dim(), 1);
-    // Without factors hundreds of iterations are needed, and single precision would end before 1e-10.
+    // Without factors hundreds of iterations are needed; solved in single precision they would end
+    // before 1e-10.
     let stop = Stop { tolerance: 1e-10, max_iterations: 20 };
     let right = system.right_hand_side(b);
     let report = Gmres { restart: 20 }.solve(&a, &right, &mut x, &stop, &mut Quiet).unwrap();

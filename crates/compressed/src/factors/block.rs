@@ -51,7 +51,7 @@ impl<N: Number> Middle<'_, N> {
         product
     }
 
-    pub(super) fn turned(self) -> Self {
+    pub(super) fn transpose(self) -> Self {
         Self { transposed: !self.transposed, ..self }
     }
 
@@ -91,7 +91,7 @@ impl<N: Number> Block<N> {
         factor: X,
     ) {
         match self {
-            Self::Whole(a) => add_product(turned(a, transposed), x, y, factor),
+            Self::Whole(a) => add_product(oriented(a, transposed), x, y, factor),
             Self::Low(low) => {
                 let (left, right) = if transposed { (&low.v, &low.u) } else { (&low.u, &low.v) };
                 let mut inner = Mat::zeros(right.ncols(), x.ncols());
@@ -113,7 +113,7 @@ impl<N: Number> Block<N> {
     fn times(&self, transposed: bool, x: MatRef<'_, N>) -> Mat<N> {
         let [rows, columns] = self.shape();
         let mut y = Mat::zeros(if transposed { columns } else { rows }, x.ncols());
-        self.multiply(transposed, x, y.as_mut(), N::one());
+        self.multiply(transposed, x, y.as_mut(), one::<N>());
         y
     }
 
@@ -123,7 +123,7 @@ impl<N: Number> Block<N> {
             Self::Whole(a) => a,
             other => {
                 let [_, columns] = other.shape();
-                let unit = Mat::from_fn(columns, columns, |i, j| if i == j { N::one() } else { N::zero() });
+                let unit = Mat::<N>::identity(columns, columns);
                 other.times(false, unit.as_ref())
             }
         }
@@ -137,11 +137,11 @@ impl<N: Number> Block<N> {
         }
     }
 
-    /// Rows and columns of the parts; of a whole block one of each.
-    fn grid(&self) -> [Vec<usize>; 2] {
+    /// Rows of the parts; of a whole block all.
+    fn heights(&self) -> Vec<usize> {
         match self {
-            Self::Parts(grid) => [grid.rows.clone(), grid.columns.clone()],
-            Self::Whole(_) | Self::Low(_) => self.shape().map(|size| vec![size]),
+            Self::Parts(grid) => grid.rows.clone(),
+            Self::Whole(_) | Self::Low(_) => vec![self.shape()[0]],
         }
     }
 
@@ -180,14 +180,14 @@ impl<N: Number> Block<N> {
     /// C −= A D Bᵀ, where nothing waits in A and B.
     pub(super) fn subtract(&mut self, a: &Self, b: &Self, middle: Option<Middle<'_, N>>, tolerance: f64) {
         if let Some([u, v]) = low_product(a, b, middle) {
-            self.add(-N::one(), u.as_ref(), v.as_ref(), tolerance);
+            self.add(-one::<N>(), u.as_ref(), v.as_ref(), tolerance);
             return;
         }
         match self {
             Self::Whole(c) => {
                 if let (Self::Whole(left), Self::Whole(right)) = (a, b) {
                     let left = times_middle(left, middle);
-                    matmul(c.as_mut(), Accum::Add, left.as_ref(), right.transpose(), -N::one(), Par::Seq);
+                    matmul(c.as_mut(), Accum::Add, left.as_ref(), right.transpose(), -one::<N>(), Par::Seq);
                     return;
                 }
                 // Rows and columns of a whole block are clusters that are not halved.
@@ -197,7 +197,7 @@ impl<N: Number> Block<N> {
             }
             Self::Low(low) => {
                 let [u, v] = truncated_product(a, b, middle, tolerance);
-                low.wait([scaled(u.as_ref(), -N::one()), v], tolerance);
+                low.wait([scaled(u.as_ref(), -one::<N>()), v], tolerance);
             }
             Self::Parts(grid) => {
                 let columns = grid.columns.len();
@@ -212,7 +212,7 @@ impl<N: Number> Block<N> {
 }
 
 /// A, or its transpose.
-pub(super) fn turned<N>(a: &Mat<N>, transposed: bool) -> MatRef<'_, N> {
+pub(super) fn oriented<N>(a: &Mat<N>, transposed: bool) -> MatRef<'_, N> {
     if transposed { a.transpose() } else { a.as_ref() }
 }
 
@@ -221,7 +221,10 @@ pub(super) fn between<'a, N: Number>(
     a: &Block<N>,
     middle: Option<Middle<'a, N>>,
 ) -> impl Iterator<Item = (usize, Option<Middle<'a, N>>)> + use<'a, N> {
-    let count = a.grid()[1].len();
+    let count = match a {
+        Block::Parts(grid) => grid.columns.len(),
+        Block::Whole(_) | Block::Low(_) => 1,
+    };
     (0..count).map(move |k| (k, middle.map(|middle| middle.part(k, count))))
 }
 
@@ -231,8 +234,8 @@ pub(super) fn low_product<N: Number>(
     b: &Block<N>,
     middle: Option<Middle<'_, N>>,
 ) -> Option<[Mat<N>; 2]> {
-    let through = |x: &Mat<N>, turned: bool| match middle {
-        Some(middle) => (if turned { middle.turned() } else { middle }).times(x.as_ref()),
+    let through = |x: &Mat<N>, transposed: bool| match middle {
+        Some(middle) => (if transposed { middle.transpose() } else { middle }).times(x.as_ref()),
         None => x.to_owned(),
     };
     match (a, b) {
@@ -259,48 +262,37 @@ fn truncated_product<N: Number>(
     if let (Block::Whole(left), Block::Whole(right)) = (a, b) {
         return [times_middle(left, middle), right.to_owned()];
     }
-    let [rows, columns] = [a, b].map(|block| block.grid()[0].clone());
+    let [rows, columns] = [a, b].map(Block::heights);
+    let below = |sizes: &[usize], at: usize| sizes[..at].iter().sum();
     let mut all = Vec::new();
     for (i, &height) in rows.iter().enumerate() {
         for (j, &breadth) in columns.iter().enumerate() {
-            let sums: Vec<[Mat<N>; 2]> = between(a, middle)
-                .map(|(k, middle)| truncated_product(a.part(i, k), b.part(j, k), middle, tolerance))
-                .collect();
-            let [u, v] = if sums.len() > 1 {
-                let [u, v] = beside(&sums, [height, breadth]);
-                truncated(u, &v, tolerance)
-            } else {
-                beside(&sums, [height, breadth])
-            };
-            let below = |sizes: &[usize], at: usize| sizes[..at].iter().sum();
-            all.push(([below(&rows, i), below(&columns, j)], [u, v]));
+            let product = |(k, middle)| truncated_product(a.part(i, k), b.part(j, k), middle, tolerance);
+            let terms: Vec<_> = between(a, middle).map(|term| ([0; 2], product(term))).collect();
+            all.push(([below(&rows, i), below(&columns, j)], sum(&terms, [height, breadth], tolerance)));
         }
     }
-    let sizes = [rows.iter().sum(), columns.iter().sum()];
-    let rank = all.iter().map(|(_, [u, _])| u.ncols()).sum();
-    let mut sum = sizes.map(|size| Mat::zeros(size, rank));
-    let mut first = 0;
-    for (starts, parts) in &all {
-        let count = parts[0].ncols();
-        for ((sum, part), &start) in sum.iter_mut().zip(parts).zip(starts) {
-            let mut place = sum.as_mut().submatrix_mut(start, first, part.nrows(), count);
-            place.copy_from(part);
-        }
-        first += count;
-    }
-    let [u, v] = sum;
+    sum(&all, [rows.iter().sum(), columns.iter().sum()], tolerance)
+}
+
+/// Factors of low rank, and their first row and column in a block.
+type Placed<N> = ([usize; 2], [Mat<N>; 2]);
+
+/// The sum of blocks of low rank to a tolerance.
+fn sum<N: Number>(all: &[Placed<N>], sizes: [usize; 2], tolerance: f64) -> [Mat<N>; 2] {
+    let [u, v] = beside(all, sizes);
     if all.len() > 1 { truncated(u, &v, tolerance) } else { [u, v] }
 }
 
-/// Factors beside each other, of blocks of one size.
-fn beside<N: Number>(all: &[[Mat<N>; 2]], sizes: [usize; 2]) -> [Mat<N>; 2] {
-    let rank = all.iter().map(|[u, _]| u.ncols()).sum();
+/// Factors beside each other, in a block of this size.
+fn beside<N: Number>(all: &[Placed<N>], sizes: [usize; 2]) -> [Mat<N>; 2] {
+    let rank = all.iter().map(|(_, [u, _])| u.ncols()).sum();
     let mut out = sizes.map(|size| Mat::zeros(size, rank));
     let mut first = 0;
-    for parts in all {
+    for (starts, parts) in all {
         let count = parts[0].ncols();
-        for (out, part) in out.iter_mut().zip(parts) {
-            out.as_mut().subcols_mut(first, count).copy_from(part);
+        for ((out, part), &start) in out.iter_mut().zip(parts).zip(starts) {
+            out.as_mut().submatrix_mut(start, first, part.nrows(), count).copy_from(part);
         }
         first += count;
     }
@@ -310,7 +302,7 @@ fn beside<N: Number>(all: &[[Mat<N>; 2]], sizes: [usize; 2]) -> [Mat<N>; 2] {
 /// A D.
 fn times_middle<N: Number>(a: &Mat<N>, middle: Option<Middle<'_, N>>) -> Mat<N> {
     match middle {
-        Some(middle) => middle.turned().times(a.transpose()).transpose().to_owned(),
+        Some(middle) => middle.transpose().times(a.transpose()).transpose().to_owned(),
         None => a.to_owned(),
     }
 }
@@ -333,13 +325,10 @@ impl<N: Number> Low<N> {
             return;
         }
         let sizes = [self.u.nrows(), self.v.nrows()];
-        let mut all = std::mem::take(&mut self.waiting);
-        all.insert(
-            0,
-            [std::mem::replace(&mut self.u, Mat::new()), std::mem::replace(&mut self.v, Mat::new())],
-        );
-        let [u, v] = beside(&all, sizes);
-        [self.u, self.v] = truncated(u, &v, tolerance);
+        let own = [&mut self.u, &mut self.v].map(|factor| std::mem::replace(factor, Mat::new()));
+        let waiting = std::mem::take(&mut self.waiting);
+        let all: Vec<_> = std::iter::once(own).chain(waiting).map(|factors| ([0; 2], factors)).collect();
+        [self.u, self.v] = sum(&all, sizes, tolerance);
     }
 
     /// The right factor.

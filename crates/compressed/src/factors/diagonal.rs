@@ -1,6 +1,6 @@
 //! A block on the diagonal, halved down to whole blocks: both triangles and D.
 
-use super::block::{Block, Middle, between, low_product, turned};
+use super::block::{Block, Middle, between, low_product, oriented};
 use crate::CompressionError;
 use crate::block_diagonal::inverse as inverse_of;
 use crate::number::{Number, Times, add_product};
@@ -134,8 +134,8 @@ impl<N: Number> Diagonal<N> {
         let Self::Halved { halves, lower, upper, .. } = self else { return };
         let off = of_side(side, lower, upper.as_ref());
         match block {
-            Block::Low(low) => self.solve(side, low.right().as_mut()),
-            Block::Whole(matrix) => self.solve(side, matrix.transpose_mut()),
+            Block::Low(low) => self.solve(side, false, low.right().as_mut()),
+            Block::Whole(matrix) => self.solve(side, false, matrix.transpose_mut()),
             // The columns are halved as the triangle is.
             Block::Parts(grid) => grid.rows().for_each(|row| {
                 let [left, right] = row else { return };
@@ -193,7 +193,11 @@ impl<N: Number> Diagonal<N> {
                     || {
                         rayon::join(
                             || beside(lower, [a, b], middle),
-                            || upper.as_mut().map(|upper| beside(upper, [b, a], middle.map(Middle::turned))),
+                            || {
+                                upper
+                                    .as_mut()
+                                    .map(|upper| beside(upper, [b, a], middle.map(Middle::transpose)))
+                            },
                         )
                     },
                 );
@@ -205,40 +209,35 @@ impl<N: Number> Diagonal<N> {
     fn subtract_product(&mut self, u: MatRef<'_, N>, v: MatRef<'_, N>, tolerance: f64) {
         match self {
             Self::Leaf { matrix, .. } => {
-                matmul(matrix.as_mut(), Accum::Add, u, v.transpose(), -N::one(), Par::Seq);
+                matmul(matrix.as_mut(), Accum::Add, u, v.transpose(), -one::<N>(), Par::Seq);
             }
             Self::Halved { at, halves, lower, upper } => {
                 let ((u_first, u_second), (v_first, v_second)) = (u.split_at_row(*at), v.split_at_row(*at));
                 let [first, second] = &mut **halves;
                 first.subtract_product(u_first, v_first, tolerance);
                 second.subtract_product(u_second, v_second, tolerance);
-                lower.add(-N::one(), u_second, v_first, tolerance);
+                lower.add(-one::<N>(), u_second, v_first, tolerance);
                 if let Some(upper) = upper {
-                    upper.add(-N::one(), v_second, u_first, tolerance);
+                    upper.add(-one::<N>(), v_second, u_first, tolerance);
                 }
             }
         }
     }
 
-    /// x ← T⁻¹ x with a triangle T.
-    pub(super) fn solve<X: Times<N>>(&self, side: Side, x: MatMut<'_, X>) {
+    /// x ← T⁻¹ x with a triangle T, or T⁻ᵀ x.
+    pub(super) fn solve<X: Times<N>>(&self, side: Side, transposed: bool, x: MatMut<'_, X>) {
         if let Self::Halved { at, halves, lower, upper } = self {
-            let (mut first, mut second) = x.split_at_row_mut(*at);
-            halves[0].solve(side, first.as_mut());
+            let (first, second) = x.split_at_row_mut(*at);
+            let mut order = [(&halves[0], first), (&halves[1], second)];
+            // Tᵀ has its block above the diagonal, so that the second half comes first.
+            if transposed {
+                order.reverse();
+            }
+            let [(own, mut x), (other, mut y)] = order;
+            own.solve(side, transposed, x.as_mut());
             let off = of_side(side, lower, upper.as_ref());
-            off.multiply(false, first.as_ref(), second.as_mut(), -one::<X>());
-            halves[1].solve(side, second);
-        }
-    }
-
-    /// x ← T⁻ᵀ x with a triangle T.
-    pub(super) fn solve_transposed<X: Times<N>>(&self, side: Side, x: MatMut<'_, X>) {
-        if let Self::Halved { at, halves, lower, upper } = self {
-            let (mut first, mut second) = x.split_at_row_mut(*at);
-            halves[1].solve_transposed(side, second.as_mut());
-            let off = of_side(side, lower, upper.as_ref());
-            off.multiply(true, second.as_ref(), first.as_mut(), -one::<X>());
-            halves[0].solve_transposed(side, first);
+            off.multiply(transposed, x.as_ref(), y.as_mut(), -one::<X>());
+            other.solve(side, transposed, y);
         }
     }
 
@@ -248,7 +247,7 @@ impl<N: Number> Diagonal<N> {
             Self::Leaf { inverse, .. } => {
                 let old = x.to_owned();
                 x.fill(zero());
-                add_product(turned(inverse, transposed), old.as_ref(), x, one());
+                add_product(oriented(inverse, transposed), old.as_ref(), x, one());
             }
             Self::Halved { at, halves, .. } => {
                 let (first, second) = x.split_at_row_mut(*at);
@@ -261,7 +260,7 @@ impl<N: Number> Diagonal<N> {
     /// y += D x, or Dᵀ x.
     pub(super) fn multiply(&self, transposed: bool, x: MatRef<'_, N>, y: MatMut<'_, N>) {
         match self {
-            Self::Leaf { matrix, .. } => add_product(turned(matrix, transposed), x, y, N::one()),
+            Self::Leaf { matrix, .. } => add_product(oriented(matrix, transposed), x, y, one::<N>()),
             Self::Halved { at, halves, .. } => {
                 let ((x_first, x_second), (first, second)) = (x.split_at_row(*at), y.split_at_row_mut(*at));
                 halves[0].multiply(transposed, x_first, first);

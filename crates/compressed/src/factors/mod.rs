@@ -1,18 +1,19 @@
 //! A = L D Mᵀ of a hierarchical matrix, in the same blocks.
 //!
-//! L and M are triangles of blocks with ones on the diagonal, D has the blocks on the diagonal; of a
-//! symmetric matrix M = L. With halves 1 and 2 of the unknowns,
+//! L and M are triangles of blocks with ones on the diagonal, D has the blocks on the diagonal; of
+//! a symmetric matrix M = L. With halves 1 and 2 of the unknowns,
 //!
 //! ```text
-//! A₁₁ = L₁₁ D₁ M₁₁ᵀ,   L₂₁ = A₂₁ M₁₁⁻ᵀ D₁⁻¹,   M₂₁ = A₁₂ᵀ L₁₁⁻ᵀ D₁⁻ᵀ,   A₂₂ − L₂₁ D₁ M₂₁ᵀ = L₂₂ D₂ M₂₂ᵀ,
+//! A₁₁ = L₁₁ D₁ M₁₁ᵀ,   L₂₁ = A₂₁ M₁₁⁻ᵀ D₁⁻¹,   M₂₁ = A₁₂ᵀ L₁₁⁻ᵀ D₁⁻ᵀ,
+//! A₂₂ − L₂₁ D₁ M₂₁ᵀ = L₂₂ D₂ M₂₂ᵀ,
 //! ```
 //!
 //! and so on in the halves (W. Hackbusch, Hierarchical Matrices: Algorithms and Analysis, Springer
 //! 2015, § 7.6). The part above the diagonal is stored transposed, so that both triangles take the
-//! same steps. What is added to a block of low rank waits until it has as many columns as the block,
-//! then all of it is truncated to the tolerance. The factors are in single
-//! precision, and solve in double precision: few of their digits count, but an iterative solver that
-//! finds the others wants the same operator at every step.
+//! same steps. What is added to a block of low rank waits until it has as many columns as the
+//! block, then all of it is truncated to the tolerance. The factors are in single precision, and
+//! solve in double precision: few of their digits count, but an iterative solver that finds the
+//! others wants the same operator at every step.
 //!
 //! Each block is changed in the same order of steps by any number of threads, so that the bits are
 //! the same.
@@ -96,9 +97,9 @@ where
         let solved = |columns: &[usize]| {
             let entry = |i: usize, j: usize| x.row(self.order[i])[columns[j]];
             let mut b = Mat::from_fn(self.dim(), columns.len(), entry);
-            self.diagonal.solve(Side::Lower, b.as_mut());
+            self.diagonal.solve(Side::Lower, false, b.as_mut());
             self.diagonal.divide(false, b.as_mut());
-            self.diagonal.solve_transposed(Side::Upper, b.as_mut());
+            self.diagonal.solve(Side::Upper, true, b.as_mut());
             b
         };
         let parts: Vec<Mat<T>> = columns.par_chunks(TOGETHER).map(solved).collect();
@@ -157,11 +158,11 @@ where
     }
 
     /// A block of two clusters, or its transpose.
-    fn block(&self, row: usize, column: usize, turned: bool) -> Block<T::Single> {
+    fn block(&self, row: usize, column: usize, transposed: bool) -> Block<T::Single> {
         let [rows, columns] = [row, column].map(|at| self.spans[at].range.clone());
         match self.blocks.get(&(rows, columns)) {
-            Some(stored) => self.stored(stored, [row, column], turned),
-            None => self.parts([row, column], turned, &|row, column| self.block(row, column, turned)),
+            Some(stored) => self.stored(stored, [row, column], transposed),
+            None => self.parts([row, column], transposed, &|row, column| self.block(row, column, transposed)),
         }
     }
 
@@ -169,18 +170,18 @@ where
     fn parts(
         &self,
         [row, column]: [usize; 2],
-        turned: bool,
+        transposed: bool,
         block: &dyn Fn(usize, usize) -> Block<T::Single>,
     ) -> Block<T::Single> {
         let halves = |at: usize| self.spans[at].halves.map_or(vec![at], |first| vec![first, first + 1]);
         let lengths = |at: usize| halves(at).iter().map(|&half| self.spans[half].range.len()).collect();
-        let (own, other) = if turned { (column, row) } else { (row, column) };
-        let pair = |a: usize, b: usize| if turned { block(b, a) } else { block(a, b) };
+        let (own, other) = if transposed { (column, row) } else { (row, column) };
+        let pair = |a: usize, b: usize| if transposed { block(b, a) } else { block(a, b) };
         let all = halves(own).into_iter().flat_map(|a| halves(other).into_iter().map(move |b| (a, b)));
         Block::parts(lengths(own), lengths(other), all.map(|(a, b)| pair(a, b)).collect())
     }
 
-    fn stored(&self, stored: &Stored<T>, pair: [usize; 2], turned: bool) -> Block<T::Single> {
+    fn stored(&self, stored: &Stored<T>, pair: [usize; 2], transposed: bool) -> Block<T::Single> {
         let factor = stored.unit / self.unit;
         let scaled = |x: T::Single| T::from_single(x).scale(factor).to_single();
         let (m, n) = (stored.rows.len(), stored.columns.len());
@@ -189,13 +190,13 @@ where
                 let entry = |i: usize, j: usize| {
                     scaled(entries[(i - stored.rows.start) * n + j - stored.columns.start])
                 };
-                self.whole(pair, turned, &entry)
+                self.whole(pair, transposed, &entry)
             }
             Kind::Low { u, v } => {
                 let rank = u.len() / m.max(1);
                 let u = Mat::from_fn(m, rank, |i, j| scaled(u[j * m + i]));
                 let v = Mat::from_fn(n, rank, |i, j| v[j * n + i]);
-                if turned { Block::low(v, u) } else { Block::low(u, v) }
+                if transposed { Block::low(v, u) } else { Block::low(u, v) }
             }
         }
     }
@@ -205,17 +206,18 @@ where
     fn whole(
         &self,
         [row, column]: [usize; 2],
-        turned: bool,
+        transposed: bool,
         entry: &dyn Fn(usize, usize) -> T::Single,
     ) -> Block<T::Single> {
         let [rows, columns] = [row, column].map(|at| &self.spans[at]);
         if rows.halves.is_some() || columns.halves.is_some() {
-            return self
-                .parts([row, column], turned, &|row, column| self.whole([row, column], turned, entry));
+            return self.parts([row, column], transposed, &|row, column| {
+                self.whole([row, column], transposed, entry)
+            });
         }
         let ([m, n], [first, left]) =
             ([rows, columns].map(|span| span.range.len()), [rows, columns].map(|span| span.range.start));
-        Block::Whole(if turned {
+        Block::Whole(if transposed {
             Mat::from_fn(n, m, |i, j| entry(first + j, left + i))
         } else {
             Mat::from_fn(m, n, |i, j| entry(first + i, left + j))

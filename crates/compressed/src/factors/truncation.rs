@@ -1,7 +1,7 @@
-//! U Vᵀ with fewer columns: U = Q R, then V Rᵀ = Q₂ S with the largest columns first, of which those
-//! are kept that the tolerance asks for; U′ = Q Sᵀ, V′ = Q₂. Since Q has orthonormal columns, what
-//! is left out has the Frobenius norm of the rows of S that are left out (G. H. Golub, C. F. Van
-//! Loan, Matrix Computations, 4th ed., Johns Hopkins University Press 2013, § 5.4.2).
+//! U Vᵀ with fewer columns: U = Q R, then V Rᵀ = Q₂ S with the largest columns first, of which
+//! those are kept that the tolerance asks for; U′ = Q Sᵀ, V′ = Q₂. Since Q has orthonormal columns,
+//! what is left out has the Frobenius norm of the rows of S that are left out (G. H. Golub, C. F.
+//! Van Loan, Matrix Computations, 4th ed., Johns Hopkins University Press 2013, § 5.4.2).
 
 use crate::Number;
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -11,12 +11,13 @@ use faer::linalg::householder::{
 };
 use faer::linalg::matmul::matmul;
 use faer::linalg::qr::{col_pivoting, no_pivoting};
+use faer::traits::math_utils::{one, zero};
 use faer::{Accum, Conj, Mat, MatRef, Par, Spec};
 
 /// The product of two matrices.
 pub(super) fn product<N: Number>(a: MatRef<'_, N>, b: MatRef<'_, N>) -> Mat<N> {
     let mut c = Mat::zeros(a.nrows(), b.ncols());
-    matmul(c.as_mut(), Accum::Replace, a, b, N::one(), Par::Seq);
+    matmul(c.as_mut(), Accum::Replace, a, b, one(), Par::Seq);
     c
 }
 
@@ -25,7 +26,7 @@ pub(super) fn truncated<N: Number>(u: Mat<N>, v: &Mat<N>, tolerance: f64) -> [Ma
     let [q, r] = orthogonal(u);
     let rest = product(v.as_ref(), r.transpose());
     // Columns are compared with the largest one, which has to be there and must not be 0.
-    if rest.col_iter().all(|column| column.iter().all(|&x| x == N::zero())) {
+    if rest.col_iter().all(|column| column.iter().all(|&x| x == zero::<N>())) {
         return [Mat::zeros(q.nrows(), 0), Mat::zeros(v.nrows(), 0)];
     }
     let (basis, order, coefficients) = pivoted(rest);
@@ -39,13 +40,13 @@ pub(super) fn truncated<N: Number>(u: Mat<N>, v: &Mat<N>, tolerance: f64) -> [Ma
         left += squares[rank];
     }
     // Column j of the coefficients is that of column order[j] of V Rᵀ.
-    let mut turned = Mat::zeros(q.ncols(), rank);
+    let mut sorted = Mat::zeros(q.ncols(), rank);
     for (j, &at) in order.iter().enumerate() {
         for i in 0..rank.min(j + 1) {
-            turned[(at, i)] = coefficients[(i, j)];
+            sorted[(at, i)] = coefficients[(i, j)];
         }
     }
-    [product(q.as_ref(), turned.as_ref()), basis.subcols(0, rank).to_owned()]
+    [product(q.as_ref(), sorted.as_ref()), basis.subcols(0, rank).to_owned()]
 }
 
 /// Q and R with A = Q R.
@@ -86,13 +87,13 @@ fn pivoted<N: Number>(mut a: Mat<N>) -> (Mat<N>, Vec<usize>, Mat<N>) {
 
 /// The upper triangle, or trapezium.
 fn upper<N: Number>(a: &Mat<N>) -> Mat<N> {
-    Mat::from_fn(a.nrows().min(a.ncols()), a.ncols(), |i, j| if i <= j { a[(i, j)] } else { N::zero() })
+    Mat::from_fn(a.nrows().min(a.ncols()), a.ncols(), |i, j| if i <= j { a[(i, j)] } else { zero() })
 }
 
 /// The orthonormal columns of a sequence of reflections.
 fn columns_of<N: Number>(reflections: &Mat<N>, factor: &Mat<N>) -> Mat<N> {
     let (m, size) = (reflections.nrows(), factor.ncols());
-    let mut q = Mat::from_fn(m, size, |i, j| if i == j { N::one() } else { N::zero() });
+    let mut q = Mat::<N>::identity(m, size);
     let scratch = apply_block_householder_sequence_on_the_left_in_place_scratch::<N>(m, factor.nrows(), size);
     apply_block_householder_sequence_on_the_left_in_place_with_conj(
         reflections.subcols(0, size),
