@@ -50,18 +50,21 @@ impl<T: Scalar> LinearOperator<T> for BlockDiagonal<T> {
     }
 }
 
-/// The inverse by Gauss and Jordan with partial pivoting; none where a pivot is lost in rounding.
+/// The inverse by Gauss and Jordan with partial pivoting; none where a pivot is lost in the rounding
+/// of its row to single precision, in which the entries were stored.
 pub(crate) fn inverse<T: Scalar>(n: usize, mut a: Vec<T>) -> Option<Vec<T>> {
     let mut inverse = vec![T::zero(); n * n];
     (0..n).for_each(|i| inverse[i * n + i] = T::one());
-    let largest = a.iter().map(|x| x.abs()).fold(0.0, f64::max);
+    let mut largest: Vec<f64> =
+        a.chunks(n.max(1)).map(|row| row.iter().map(|x| x.abs()).fold(0.0, f64::max)).collect();
     for k in 0..n {
         let pivot =
             (k..n).fold(k, |best, i| if a[i * n + k].abs() > a[best * n + k].abs() { i } else { best });
         let size = a[pivot * n + k].abs();
-        if size.is_nan() || size <= f64::EPSILON * largest {
+        if size.is_nan() || size <= f64::from(f32::EPSILON) * largest[pivot] {
             return None;
         }
+        largest.swap(k, pivot);
         for j in 0..n {
             a.swap(k * n + j, pivot * n + j);
             inverse.swap(k * n + j, pivot * n + j);

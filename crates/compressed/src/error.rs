@@ -51,7 +51,7 @@ pub enum CompressionError {
         limit: u64,
     },
     /// A block on the diagonal cannot be inverted.
-    #[error("block {block} of the diagonal is singular to working precision; use no preconditioner")]
+    #[error("block {block} of the diagonal is singular to single precision")]
     Singular {
         /// The block.
         block: usize,

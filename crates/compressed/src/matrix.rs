@@ -175,6 +175,11 @@ impl<T: Scalar> Hierarchical<T> {
         self.blocks.iter().map(|block| block.unit).fold(f64::MIN_POSITIVE, f64::max)
     }
 
+    /// The number of clusters that are not halved.
+    pub(crate) fn leaves(&self) -> usize {
+        self.leaves.len()
+    }
+
     /// The clusters.
     pub(crate) fn spans(&self) -> &[Span] {
         &self.spans
@@ -444,7 +449,8 @@ fn reach<T: Scalar>(
 /// Numbers in single precision, and the power of two that they are multiples of.
 fn single<T: Scalar>(numbers: &[T]) -> (f64, Vec<T::Single>) {
     let largest = numbers.iter().map(|number| number.abs2()).fold(0.0, f64::max).sqrt();
-    let unit = if largest.is_normal() { largest.log2().floor().exp2() } else { 1.0 };
+    // That of a block of zeros is the smallest, since the largest of all blocks counts elsewhere.
+    let unit = if largest.is_finite() { largest.max(f64::MIN_POSITIVE).log2().floor().exp2() } else { 1.0 };
     let inverse = unit.recip();
     (unit, numbers.iter().map(|number| number.scale(inverse).to_single()).collect())
 }

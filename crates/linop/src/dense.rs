@@ -144,7 +144,8 @@ impl<T: Scalar> LinearOperator<T> for Dense<T> {
         self.dim
     }
 
-    // Each thread sums whole rows in the same way, so the number of threads changes no bit.
+    // Whole rows, or blocks of them, are the work of one thread and always the same, so the number of
+    // threads changes no bit.
     fn apply(&self, x: &MultiVector<T>, y: &mut MultiVector<T>) {
         let rhs_count = x.rhs_count().max(1);
         if rhs_count >= LEAST_RHS_OF_BLOCKS {

@@ -45,7 +45,10 @@ fn main() {
             (Currents::new(&basis, wave(), &x, None).fields(&circle()).unwrap(), mie(radius))
         }
         permittivity => {
-            let permittivity = Complex64::from(permittivity.parse::<f64>().unwrap());
+            let Ok(permittivity) = permittivity.parse::<f64>().map(Complex64::from) else {
+                println!("BODY is combined, electric or a permittivity, not {permittivity}");
+                std::process::exit(2);
+            };
             let fillings = vec![Filling::Dielectric(0); surface.triangles().len()];
             let regions = Regions::new(&surface, &fillings).unwrap();
             let basis = Basis::between(regions).unwrap();

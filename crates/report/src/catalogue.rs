@@ -483,7 +483,7 @@ const WAVES_TEXT: &str = "
 | `format`, `program`, `scene`, `scene_sha256`, `title` | text | what made it |
 | `method`, `shadows`, `solution`, `edge_currents`, `chosen_because` | text, yes or no | what was computed, and why |
 | `receivers` | list of text | their names, in the order of the numbers in arrays |
-| `frequencies` | list | of each `frequency_hz`, `wavelength_m`, `facets`, `converged`, `residuals` |
+| `frequencies` | list | of each `frequency_hz`, `wavelength_m`, `facets`, `solution`, `converged`, `residuals` |
 | `stated_errors`, `estimated_mesh_errors`, `estimated_form_errors` | list | `receiver`, `frequency_hz`, and the error `relative` to the scattered field |
 | `power` | list | `frequency_hz`, `supplied_w`, `radiated_w`, `absorbed_w`, and the `ratio` of the last two together to the first |
 | `reciprocity` | list | `receiver`, `frequency_hz`, and the relative `defect` of a sweep |

@@ -71,6 +71,30 @@ fn boundary_elements_are_compressed_where_asked_for() {
     assert!(refused(&facets, CouplingStorage::Compressed).contains("--storage matrix or products"));
 }
 
+/// A sweep of more waves than are solved for together, of conductors and of dielectrics.
+#[test]
+fn compressed_sweeps_are_those_of_the_whole_matrix() {
+    let folder = tempfile::tempdir().unwrap();
+    let glass = "material = \"glass\"\n[materials.glass]\nhalf_space = { permittivity = [3, -0.1] }";
+    for (method, material) in [("efie", ""), ("cfie", ""), ("pmchwt", glass)] {
+        let ball = ball(method, 0.06, "lambda/10", 1.0, material);
+        let sweep = "theta_degrees = 80, phi_degrees = { from = 0, to = 190, points = 20 }";
+        let text = format!("{ball}[[receiver]]\nname = \"back\"\nmonostatic = {{ {sweep} }}\n");
+        let run = |storage| stored(folder.path(), &text, Some(storage)).unwrap();
+        let [whole, compressed] = [CouplingStorage::Matrix, CouplingStorage::Compressed].map(run);
+        let rows = |found: &SolvedWaves<'_>| -> Vec<[f64; 6]> {
+            let ends = |s: [[f64; 2]; 4]| [s[0][0], s[0][1], s[1][0], s[1][1], s[3][0], s[3][1]];
+            found.monostatic().iter().map(|row| ends(row.scattering)).collect()
+        };
+        let difference = gap(&rows(&compressed), &rows(&whole));
+        assert!(
+            rows(&whole).len() == 20 && difference > 0.0 && difference < 2e-3,
+            "{method}: {difference:e}"
+        );
+        assert!(compressed.frequencies().iter().all(|solved| solved.solution.contains("gmres")), "{method}");
+    }
+}
+
 /// A dielectric ball against its series outside; one that is small has 3/(ε + 2) of the incident
 /// field inside.
 #[test]

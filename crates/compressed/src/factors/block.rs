@@ -11,6 +11,9 @@ use rayon::prelude::*;
 /// Columns that wait before a block of low rank is truncated, at least.
 const LEAST_WAITING: usize = 16;
 
+/// Rows of a product that are worth the work of two threads, at least.
+const LEAST_SHARED: usize = 512;
+
 /// A block of the triangles.
 pub(super) enum Block<N: Number> {
     /// All entries.
@@ -73,11 +76,14 @@ impl<N: Number> Block<N> {
         Self::Parts(Parts { rows, columns, blocks })
     }
 
+    /// Bytes, with what waits to be added.
     pub(super) fn bytes(&self) -> u64 {
-        let of = |a: &Mat<N>| (a.nrows() * a.ncols() * size_of::<N>()) as u64;
         match self {
-            Self::Whole(a) => of(a),
-            Self::Low(low) => of(&low.u) + of(&low.v),
+            Self::Whole(a) => bytes_of(a),
+            Self::Low(low) => {
+                let waiting = low.waiting.iter().flatten().map(bytes_of);
+                bytes_of(&low.u) + bytes_of(&low.v) + waiting.sum::<u64>()
+            }
             Self::Parts(grid) => grid.blocks.iter().map(Self::bytes).sum(),
         }
     }
@@ -87,7 +93,7 @@ impl<N: Number> Block<N> {
         &self,
         transposed: bool,
         x: MatRef<'_, X>,
-        mut y: MatMut<'_, X>,
+        y: MatMut<'_, X>,
         factor: X,
     ) {
         match self {
@@ -99,11 +105,27 @@ impl<N: Number> Block<N> {
                 add_product(left.as_ref(), inner.as_ref(), y, factor);
             }
             Self::Parts(grid) => {
-                for (at, part) in grid.blocks.iter().enumerate() {
-                    let [row, column] = grid.range(at);
-                    let (own, other) = if transposed { (column, row) } else { (row, column) };
-                    let own = y.as_mut().subrows_mut(own.0, own.1);
-                    part.multiply(transposed, x.subrows(other.0, other.1), own, factor);
+                let own = if transposed { &grid.columns } else { &grid.rows };
+                let part = |k: usize, mut y: MatMut<'_, X>| {
+                    for at in grid.of_line(k, transposed) {
+                        let [row, column] = grid.range(at);
+                        let other = if transposed { row } else { column };
+                        grid.blocks[at].multiply(transposed, x.subrows(other.0, other.1), y.as_mut(), factor);
+                    }
+                };
+                match own[..] {
+                    [first, second] if first + second >= LEAST_SHARED => {
+                        let (above, below) = y.split_at_row_mut(first);
+                        rayon::join(|| part(0, above), || part(1, below));
+                    }
+                    _ => {
+                        let mut rest = y;
+                        for (k, &size) in own.iter().enumerate() {
+                            let (next, left) = rest.split_at_row_mut(size);
+                            part(k, next);
+                            rest = left;
+                        }
+                    }
                 }
             }
         }
@@ -209,6 +231,11 @@ impl<N: Number> Block<N> {
             }
         }
     }
+}
+
+/// Bytes of a matrix, whose columns may be stored with gaps between them.
+pub(super) fn bytes_of<N>(a: &Mat<N>) -> u64 {
+    (a.col_stride().unsigned_abs() * a.ncols() * size_of::<N>()) as u64
 }
 
 /// A, or its transpose.
@@ -343,6 +370,13 @@ impl<N: Number> Parts<N> {
         let (row, column) = (at / self.columns.len(), at % self.columns.len());
         let range = |sizes: &[usize], at: usize| (sizes[..at].iter().sum(), sizes[at]);
         [range(&self.rows, row), range(&self.columns, column)]
+    }
+
+    /// The parts of a row, or of a column.
+    fn of_line(&self, k: usize, column: bool) -> impl Iterator<Item = usize> + use<N> {
+        let (rows, columns) = (self.rows.len(), self.columns.len());
+        let (first, step, count) = if column { (k, columns, rows) } else { (k * columns, 1, columns) };
+        (0..count).map(move |at| first + at * step)
     }
 
     /// The rows of parts.

@@ -1,6 +1,6 @@
 //! A block on the diagonal, halved down to whole blocks: both triangles and D.
 
-use super::block::{Block, Middle, between, low_product, oriented};
+use super::block::{Block, Middle, between, bytes_of, low_product, oriented};
 use crate::CompressionError;
 use crate::block_diagonal::inverse as inverse_of;
 use crate::number::{Number, Times, add_product};
@@ -9,7 +9,6 @@ use faer::traits::math_utils::{one, zero};
 use faer::{Accum, Mat, MatMut, MatRef, Par};
 use fredholm_linop::{Scalar, Steps};
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A triangle: L, or M of A = L D Mᵀ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,17 +47,12 @@ pub(super) struct Work<'a> {
     pub(super) tolerance: f64,
     /// Most bytes of the factors.
     pub(super) limit: u64,
-    /// Bytes of the blocks that are done, and of the others as they were.
-    pub(super) held: AtomicU64,
     pub(super) steps: &'a Steps<'a>,
 }
 
 impl Work<'_> {
-    /// Counts a block that had so many bytes before.
-    fn count<N: Number>(&self, block: &Block<N>, before: u64) -> Result<(), CompressionError> {
-        // Differences below 0 wrap around, and so does the sum.
-        let grown = block.bytes().wrapping_sub(before);
-        let needed = self.held.fetch_add(grown, Ordering::Relaxed).wrapping_add(grown);
+    /// Refuses factors of so many bytes where they are too many.
+    pub(super) fn admit(&self, needed: u64) -> Result<(), CompressionError> {
         if needed > self.limit {
             return Err(CompressionError::Factors { needed, limit: self.limit });
         }
@@ -71,10 +65,11 @@ impl<N: Number> Diagonal<N> {
         Self::Leaf { matrix, inverse: Mat::new() }
     }
 
-    /// Bytes of both triangles and D.
+    /// Bytes of both triangles and D, with what waits to be added to them.
     pub(super) fn bytes(&self) -> u64 {
         match self {
-            Self::Leaf { matrix, .. } => 2 * (matrix.nrows() * matrix.ncols() * size_of::<N>()) as u64,
+            // The inverse will be as large.
+            Self::Leaf { matrix, .. } => 2 * bytes_of(matrix),
             Self::Halved { halves, lower, upper, .. } => {
                 let halves = halves.iter().map(Self::bytes).sum::<u64>();
                 halves + lower.bytes() + upper.as_ref().map_or(0, Block::bytes)
@@ -82,16 +77,8 @@ impl<N: Number> Diagonal<N> {
         }
     }
 
-    /// Blocks of D.
-    pub(super) fn leaves(&self) -> u64 {
-        match self {
-            Self::Leaf { .. } => 1,
-            Self::Halved { halves, .. } => halves.iter().map(Self::leaves).sum(),
-        }
-    }
-
-    /// Puts L, D and M in the place of A.
-    pub(super) fn factorise(&mut self, work: &Work<'_>) -> Result<(), CompressionError> {
+    /// Puts L, D and M in the place of A, while `besides` bytes are held by other blocks.
+    pub(super) fn factorise(&mut self, besides: u64, work: &Work<'_>) -> Result<(), CompressionError> {
         match self {
             Self::Leaf { matrix, inverse } => {
                 let n = matrix.nrows();
@@ -104,27 +91,35 @@ impl<N: Number> Diagonal<N> {
                 let found =
                     inverse_of(n, entries).ok_or(CompressionError::Singular { block: block as usize })?;
                 *inverse = Mat::from_fn(n, n, |i, j| found[i * n + j].to_single());
+                if inverse.col_iter().any(|column| column.iter().any(|x| !x.square().is_finite())) {
+                    return Err(CompressionError::Singular { block: block as usize });
+                }
                 Ok(())
             }
             Self::Halved { halves, lower, upper, .. } => {
                 let [first, second] = &mut **halves;
-                first.factorise(work)?;
+                let between = |lower: &Block<N>, upper: &Option<Block<N>>| {
+                    lower.bytes() + upper.as_ref().map_or(0, Block::bytes)
+                };
+                first.factorise(besides + between(lower, upper) + second.bytes(), work)?;
                 let first = &*first;
                 let finish = |block: &mut Block<N>, side: Side| {
-                    let before = block.bytes();
                     block.settle(work.tolerance);
                     first.solve_block(side.other(), block, work.tolerance);
                     first.divide_block(side == Side::Lower, block);
-                    work.count(block, before)
                 };
-                let (below, above) = rayon::join(
+                rayon::join(
                     || finish(lower, Side::Lower),
-                    || upper.as_mut().map_or(Ok(()), |upper| finish(upper, Side::Upper)),
+                    || upper.as_mut().map(|upper| finish(upper, Side::Upper)),
                 );
-                below.and(above)?;
+                // The bytes are summed between the parallel steps, so that what is refused does not
+                // depend on the order of the threads.
+                let besides = besides + first.bytes() + between(lower, upper);
+                work.admit(besides + second.bytes())?;
                 let middle = Middle { diagonal: first, transposed: false };
                 second.subtract(lower, upper.as_ref().unwrap_or(lower), Some(middle), work.tolerance);
-                second.factorise(work)
+                work.admit(besides + second.bytes())?;
+                second.factorise(besides, work)
             }
         }
     }
@@ -214,12 +209,24 @@ impl<N: Number> Diagonal<N> {
             Self::Halved { at, halves, lower, upper } => {
                 let ((u_first, u_second), (v_first, v_second)) = (u.split_at_row(*at), v.split_at_row(*at));
                 let [first, second] = &mut **halves;
-                first.subtract_product(u_first, v_first, tolerance);
-                second.subtract_product(u_second, v_second, tolerance);
-                lower.add(-one::<N>(), u_second, v_first, tolerance);
-                if let Some(upper) = upper {
-                    upper.add(-one::<N>(), v_second, u_first, tolerance);
-                }
+                rayon::join(
+                    || {
+                        rayon::join(
+                            || first.subtract_product(u_first, v_first, tolerance),
+                            || second.subtract_product(u_second, v_second, tolerance),
+                        )
+                    },
+                    || {
+                        rayon::join(
+                            || lower.add(-one::<N>(), u_second, v_first, tolerance),
+                            || {
+                                upper
+                                    .as_mut()
+                                    .map(|upper| upper.add(-one::<N>(), v_second, u_first, tolerance))
+                            },
+                        )
+                    },
+                );
             }
         }
     }

@@ -31,7 +31,6 @@ use fredholm_linop::{LinearOperator, MultiVector, Scalar, Steps, Symmetry, Watch
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::ops::Range;
-use std::sync::atomic::AtomicU64;
 
 /// The factors of a hierarchical matrix: a direct solver to their tolerance, and the preconditioner
 /// for any other.
@@ -53,7 +52,8 @@ where
     T::Single: Number<Double = T>,
 {
     /// Factorises a matrix with truncations to a relative `tolerance` of each block (1e-6 to 0.5),
-    /// if the factors take at most `limit` bytes.
+    /// if the factors take at most `limit` bytes. Between two counts of these bytes, what waits to be
+    /// truncated may take as much as the blocks of low rank that it is added to.
     ///
     /// # Errors
     /// [`CompressionError::Setting`] for a tolerance out of range, [`CompressionError::Singular`]
@@ -68,14 +68,17 @@ where
     ) -> Result<Self, CompressionError> {
         check_tolerance(tolerance)?;
         let unit = matrix.unit();
+        let steps = Steps::new(watch, matrix.leaves() as u64, "blocks of the diagonal");
+        let work = Work { tolerance, limit, steps: &steps };
+        // They begin as a copy of the blocks.
+        work.admit(matrix.summary().bytes)?;
         let mut diagonal = Nested::new(matrix, unit).diagonal(0);
-        let steps = Steps::new(watch, diagonal.leaves(), "blocks of the diagonal");
-        let work = Work { tolerance, limit, held: AtomicU64::new(diagonal.bytes()), steps: &steps };
-        diagonal.factorise(&work)?;
+        work.admit(diagonal.bytes())?;
+        diagonal.factorise(0, &work)?;
         Ok(Self { order: matrix.order().to_vec(), symmetry: matrix.symmetry(), unit, diagonal })
     }
 
-    /// Bytes of the factors.
+    /// Bytes of the factors, at most the limit.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         self.diagonal.bytes()

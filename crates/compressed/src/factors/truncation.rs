@@ -14,6 +14,10 @@ use faer::linalg::qr::{col_pivoting, no_pivoting};
 use faer::traits::math_utils::{one, zero};
 use faer::{Accum, Conj, Mat, MatRef, Par, Spec};
 
+/// The square of what counts as nothing beside entries of the order of 1, long before it is lost in
+/// single precision.
+const NOTHING: f64 = 1e-60;
+
 /// The product of two matrices.
 pub(super) fn product<N: Number>(a: MatRef<'_, N>, b: MatRef<'_, N>) -> Mat<N> {
     let mut c = Mat::zeros(a.nrows(), b.ncols());
@@ -25,8 +29,8 @@ pub(super) fn product<N: Number>(a: MatRef<'_, N>, b: MatRef<'_, N>) -> Mat<N> {
 pub(super) fn truncated<N: Number>(u: Mat<N>, v: &Mat<N>, tolerance: f64) -> [Mat<N>; 2] {
     let [q, r] = orthogonal(u);
     let rest = product(v.as_ref(), r.transpose());
-    // Columns are compared with the largest one, which has to be there and must not be 0.
-    if rest.col_iter().all(|column| column.iter().all(|&x| x == zero::<N>())) {
+    // Columns are compared with the largest one, which has to be there, and to be more than nothing.
+    if rest.col_iter().all(|column| column.iter().all(|&x| x.square() < NOTHING)) {
         return [Mat::zeros(q.nrows(), 0), Mat::zeros(v.nrows(), 0)];
     }
     let (basis, order, coefficients) = pivoted(rest);
@@ -138,6 +142,21 @@ mod tests {
                 let needed = (tolerance.ln() / 0.09_f64.ln()).ceil() as usize;
                 assert!(error <= 1.01 * tolerance, "{m} {n} {tolerance}: {error:e}");
                 assert!(left.ncols() <= needed + 2, "{m} {n} {tolerance}: {}", left.ncols());
+            }
+        }
+        // Columns whose squares single precision cannot hold.
+        for small in [1e-12_f32, 1e-18, 1e-21, 1e-30, 1e-38, 1e-44] {
+            let scaled = |a: Mat<Complex32>, few: bool| {
+                let scale = |j: usize| if few && j < 3 { 1.0 } else { small };
+                Mat::from_fn(a.nrows(), a.ncols(), |i, j| a[(i, j)] * scale(j))
+            };
+            for (few, both) in [(true, false), (false, false), (false, true)] {
+                let (u, v) = (scaled(factor(40, 8, 2), few), factor(30, 8, 5));
+                let v = if both { scaled(v, few) } else { v };
+                let whole = product(u.as_ref(), v.transpose());
+                let [left, right] = truncated(u, &v, 1e-3);
+                let error = norm(&(&product(left.as_ref(), right.transpose()) - &whole));
+                assert!(error <= 1.1e-3 * norm(&whole) + 1e-19, "{small} {few} {both}: {error:e}");
             }
         }
         for rank in [0, 2] {

@@ -42,8 +42,14 @@ use crate::stages::{Signals, Stages};
 const INTEGRAL_ERROR: f64 = 1e-3;
 /// Relative error of the blocks of a compressed matrix: that of the integrals.
 const COMPRESSION_ERROR: f64 = INTEGRAL_ERROR;
-/// The solver of compressed matrices where the scene names none.
-const COMPRESSED_SOLVER: &str = "gmres:restart=100";
+/// The solvers of compressed matrices where the scene names none: by their diagonal blocks, which
+/// leave tens of iterations, and by their factors, which leave a few.
+const COMPRESSED_SOLVERS: [&str; 2] = ["gmres:restart=100", "gmres:restart=30"];
+/// Right-hand sides that are solved for together by a compressed matrix: a product of so many takes
+/// hardly longer than that of a few, and an iterative solver holds tens of vectors for each.
+const RHS_TOGETHER: usize = 16;
+/// Vectors for each of those that preconditioned products hold.
+const PRODUCT_VECTORS: usize = 3;
 /// Relative error of the blocks of the factors that precondition it: a few iterations are left, and
 /// finer factors cost more than they save (docs/notes/moments.md).
 const FACTOR_ERROR: f64 = 1e-2;
@@ -410,17 +416,12 @@ fn needs_matrix(model: &Model) -> bool {
     named && !by_products().contains(&model.method.name().as_str())
 }
 
-/// Memory besides the matrix.
-fn besides(model: &Model, unknowns: usize, solver: &dyn Solver<Complex64>) -> Plan {
-    of_solvers(model.plan.clone(), (unknowns, rhs_count(model)), &[solver])
-}
-
 /// Memory with the whole matrix, and how the matrix is held: as asked for, or what fits and is
 /// quicker.
 fn whole_plan(model: &Model, unknowns: usize, solver: &dyn Solver<Complex64>) -> (Plan, CouplingStorage) {
     let bytes = Dense::<Complex64>::bytes(unknowns);
-    let plan =
-        besides(model, unknowns, solver).hold(format!("the matrix of {unknowns} unknowns"), bytes.into());
+    let plan = of_solvers(model.plan.clone(), (unknowns, rhs_count(model)), &[solver])
+        .hold(format!("the matrix of {unknowns} unknowns"), bytes.into());
     let compress = match model.storage {
         Some(storage) => storage == CouplingStorage::Compressed,
         None if needs_matrix(model) => false,
@@ -436,6 +437,15 @@ fn takes_factors(model: &Model) -> bool {
     model.galerkin != Some(Equations::Combined) || rhs_count(model) > MOST_RHS_OF_COMPRESSED
 }
 
+/// Memory besides a compressed matrix.
+fn besides_compressed(model: &Model, unknowns: usize, solver: &dyn Solver<Complex64>) -> Plan {
+    let vectors = |count: usize| (count * unknowns * size_of::<Complex64>()) as u128;
+    let (all, together) = (rhs_count(model), rhs_count(model).min(RHS_TOGETHER));
+    of_solvers(model.plan.clone(), (unknowns, together), &[solver])
+        .hold("what products hold", vectors(PRODUCT_VECTORS * together))
+        .hold("the currents of all waves", vectors(2 * all))
+}
+
 /// Memory with a compressed matrix and its factors.
 fn with_compressed(model: &Model, plan: Plan, unknowns: usize, bytes: u64) -> Plan {
     let plan = plan.hold(format!("the compressed matrix of {unknowns} unknowns"), bytes.into());
@@ -449,7 +459,8 @@ fn factor_bytes(matrix: u64) -> u64 {
 
 /// The solver of a compressed matrix.
 fn of_compressed(model: &Model) -> Result<Box<dyn Solver<Complex64>>, Error> {
-    let asked = model.scene.settings().solver.as_deref().unwrap_or(COMPRESSED_SOLVER);
+    let usual = COMPRESSED_SOLVERS[usize::from(takes_factors(model))];
+    let asked = model.scene.settings().solver.as_deref().unwrap_or(usual);
     build(asked).map_err(|error| Error::new(ErrorKind::Input, error))
 }
 
@@ -471,21 +482,68 @@ pub(super) fn plan(model: &Model, equations: Equations) -> Result<(Plan, Couplin
         return Ok((plan, storage, unknowns));
     }
     let bytes = body.operator().compressed_bytes(settings()).map_err(|error| refused(model, &error))?;
-    let plan = with_compressed(model, besides(model, unknowns, &*of_compressed(model)?), unknowns, bytes);
+    let besides = besides_compressed(model, unknowns, &*of_compressed(model)?);
+    let plan = with_compressed(model, besides, unknowns, bytes);
     Ok((plan, storage, unknowns))
 }
 
 struct Compressed {
     matrix: Hierarchical<Complex64>,
-    inverse: Box<dyn LinearOperator<Complex64>>,
+    inverse: Inverse,
     method: Method,
+}
+
+/// What preconditions a compressed matrix.
+enum Inverse {
+    Factors(Box<Factors<Complex64>>),
+    Blocks(BlockDiagonal<Complex64>),
+}
+
+impl Inverse {
+    fn operator(&self) -> &dyn LinearOperator<Complex64> {
+        match self {
+            Self::Factors(factors) => &**factors,
+            Self::Blocks(blocks) => blocks,
+        }
+    }
 }
 
 impl Compressed {
     /// How its systems are solved.
-    fn name(&self, model: &Model) -> String {
-        let with = if takes_factors(model) { "the factors of" } else { "the diagonal blocks of" };
+    fn name(&self) -> String {
+        let with = match self.inverse {
+            Inverse::Factors(_) => "the factors of",
+            Inverse::Blocks(_) => "the diagonal blocks of",
+        };
         format!("{} with {with} the compressed matrix", self.method.name())
+    }
+
+    /// The solutions for all right-hand sides, some of them together, and how the worst of these was
+    /// found.
+    fn solve(&self, b: &MultiVector<Complex64>, signals: &Signals<'_>) -> Result<Solution, Error> {
+        let system = Preconditioned::new(&self.matrix, self.inverse.operator());
+        let mut x = MultiVector::zeros(b.dim(), b.rhs_count());
+        let mut worst: Option<Solution> = None;
+        for first in (0..b.rhs_count()).step_by(RHS_TOGETHER) {
+            let count = RHS_TOGETHER.min(b.rhs_count() - first);
+            let some = MultiVector::from_fn(b.dim(), count, |i, rhs| b.row(i)[first + rhs]);
+            let next = solved(&system, &system.right_hand_side(&some), &self.method, signals)?;
+            copy_columns(&next.x, &mut x, first);
+            worst = match worst {
+                Some(worst) if !next.is_worse_than(&worst) => Some(worst),
+                _ => Some(next),
+            };
+        }
+        let (residuals, reason) =
+            worst.map_or_else(Default::default, |worst| (worst.residuals, worst.reason));
+        Ok(Solution { x, residuals, reason })
+    }
+}
+
+/// Copies right-hand sides to those of another from `first` on.
+fn copy_columns(from: &MultiVector<Complex64>, to: &mut MultiVector<Complex64>, first: usize) {
+    for i in 0..from.dim() {
+        to.row_mut(i)[first..first + from.rhs_count()].copy_from_slice(from.row(i));
     }
 }
 
@@ -498,7 +556,7 @@ impl Task<'_> {
             let b = self.body.right_hand_side(&[&sources]);
             let solution = stages.run(&format!("currents at {name}"), || self.solve(&matrix, &b, signals))?;
             let currents = self.body.currents(&solution.x.vector(0));
-            let error = self.error(&currents, &sources, solution.residuals.last())?;
+            let error = self.error(&currents, &sources, solution.residual())?;
             stages.run(&format!("fields at {name}"), || self.receive(&currents, error.as_ref(), outcome))?;
             let values = self.on_facets(&currents).iter().map(current).collect();
             outcome.currents.push(WaveCurrents { name: name.to_owned(), values });
@@ -544,7 +602,7 @@ impl Task<'_> {
         let solver = of_compressed(self.model)?;
         let (limit, help) = (self.model.limit, "take longer edges, or method = \"physical-optics\"");
         let unknowns = self.body.operator().dim();
-        let plan = besides(self.model, unknowns, &*solver);
+        let plan = besides_compressed(self.model, unknowns, &*solver);
         plan.admit(limit, help)?;
         let with = |bytes: u64| with_compressed(self.model, plan.clone(), unknowns, bytes);
         let left = u64::try_from(limit.bytes().0 - plan.peak().0).unwrap_or(u64::MAX);
@@ -565,28 +623,33 @@ impl Task<'_> {
         Ok(Matrix::Compressed(Box::new(Compressed { matrix, inverse, method })))
     }
 
-    /// What preconditions a compressed matrix, in at most `limit` bytes.
+    /// What preconditions a compressed matrix: its factors in at most `limit` bytes where they are
+    /// worth it and can be had, or the blocks on its diagonal.
     fn inverse(
         &self,
         matrix: &Hierarchical<Complex64>,
         limit: u64,
         signals: &Signals<'_>,
-    ) -> Result<Box<dyn LinearOperator<Complex64>>, Error> {
-        if !takes_factors(self.model) {
-            let blocks = BlockDiagonal::new(matrix).map_err(|error| refused(self.model, &error.into()))?;
-            return Ok(Box::new(blocks));
-        }
-        match Factors::new(matrix, FACTOR_ERROR, limit, signals.watch) {
-            Ok(factors) => Ok(Box::new(factors)),
-            Err(CompressionError::Interrupted) => Err(Error::cancelled()),
-            Err(CompressionError::Factors { needed, limit }) => {
-                let [needed, limit] = [needed, limit].map(|bytes| Bytes(bytes.into()));
-                let what = format!("the factors of the matrix take more than {needed}, and {limit} are left");
-                let help = "allow more with --memory, take longer edges, or method = \"cfie\" for closed conductors, which need no factors";
-                Err(Error::new(ErrorKind::Resources, what).with_help(help))
+    ) -> Result<Inverse, Error> {
+        if takes_factors(self.model) {
+            match Factors::new(matrix, FACTOR_ERROR, limit, signals.watch) {
+                Ok(factors) => return Ok(Inverse::Factors(Box::new(factors))),
+                Err(CompressionError::Interrupted) => return Err(Error::cancelled()),
+                Err(CompressionError::Factors { needed, limit }) => {
+                    let [needed, limit] = [needed, limit].map(|bytes| Bytes(bytes.into()));
+                    signals.watch.warn(&format!(
+                        "the factors of the compressed matrix take more than {needed}, and {limit} are left: the blocks on its diagonal precondition it, which takes more iterations; --memory allows more"
+                    ));
+                }
+                Err(error) => signals.watch.warn(&format!(
+                    "there are no factors of the compressed matrix: {error}; the blocks on its diagonal precondition it"
+                )),
             }
-            Err(error) => Err(refused(self.model, &error.into())),
         }
+        BlockDiagonal::new(matrix).map(Inverse::Blocks).map_err(|error| {
+            let help = "--storage matrix, which needs no preconditioner";
+            Error::new(ErrorKind::Input, error).with_help(help)
+        })
     }
 
     fn solve(
@@ -597,10 +660,7 @@ impl Task<'_> {
     ) -> Result<Solution, Error> {
         match matrix {
             Matrix::Whole(coupling) => solved(coupling, b, &self.model.method, signals),
-            Matrix::Compressed(parts) => {
-                let system = Preconditioned::new(&parts.matrix, &*parts.inverse);
-                solved(&system, &system.right_hand_side(b), &parts.method, signals)
-            }
+            Matrix::Compressed(parts) => parts.solve(b, signals),
         }
     }
 
@@ -610,7 +670,7 @@ impl Task<'_> {
             facets: self.geometry.mesh.len(),
             solution: match matrix {
                 Matrix::Whole(_) => self.model.method.name(),
-                Matrix::Compressed(parts) => parts.name(self.model),
+                Matrix::Compressed(parts) => parts.name(),
             },
             residuals: solution.residuals,
             reason: solution.reason,
@@ -622,7 +682,7 @@ impl Task<'_> {
         &self,
         currents: &Currents<'_>,
         sources: &[&dyn Source],
-        residual: Option<&f64>,
+        residual: Option<f64>,
     ) -> Result<Option<MeanError>, Error> {
         let (Some(known), Some(residual)) = (&self.known, residual) else { return Ok(None) };
         let indicator = match known {
@@ -755,7 +815,7 @@ impl Task<'_> {
                     scattering[2 * along + part] = [far.re, far.im];
                 }
                 if SweepError::samples(index, angles.len()) {
-                    let last = solution.residuals.last();
+                    let last = solution.residual();
                     let error = self.error(&currents, excitations[2 * index + along], last)?;
                     let square = back.iter().map(|far| far.amplitude.norm_squared()).sum();
                     stated.add(error.map(|error| error.square(square)), square);

@@ -38,7 +38,7 @@ impl Sweep<'_> {
         angles: &[[f64; 2]],
         signals: &Signals<'_>,
     ) -> Result<Swept, Error> {
-        let (mut rows, mut worst) = (Vec::new(), None);
+        let (mut rows, mut worst): (Vec<_>, Option<Solution>) = (Vec::new(), None);
         let (frequency, mut stated) = (self.task.wave().frequency(), SweepError::default());
         let together = directions_together(self.task.model, angles.len());
         let count = angles.len();
@@ -58,10 +58,10 @@ impl Sweep<'_> {
                 });
                 pair.iter().filter_map(|echo| echo.1).for_each(|(error, field)| stated.add(error, field));
             }
-            let last = |solution: &Option<Solution>| {
-                solution.as_ref().and_then(|s| s.residuals.last().copied()).unwrap_or(-1.0)
+            worst = match (worst, solution) {
+                (Some(worst), Some(next)) if !next.is_worse_than(&worst) => Some(worst),
+                (worst, next) => next.or(worst),
             };
-            worst = if last(&solution) > last(&worst) { solution } else { worst };
         }
         Ok((rows, worst, stated.estimated(receiver, frequency)))
     }
@@ -106,11 +106,10 @@ impl Sweep<'_> {
         known: Option<(&Solution, usize)>,
         sampled: bool,
     ) -> Result<Echo, Error> {
-        let residual = |solution: &Solution| solution.residuals.last().copied();
         if let (Some(system), Some((solution, excitation))) = (self.system, known) {
             let currents = system.currents(&solution.x, excitation);
             let all = Bounced::new(task.scatterer, task.first, &currents);
-            let left = task.left(residual(solution), true);
+            let left = task.left(solution.residual(), true);
             task.echo(u, &system.radiator(&all), Some(&all), left.filter(|_| sampled))
         } else {
             let left = task.left(None, false);

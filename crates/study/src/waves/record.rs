@@ -80,9 +80,16 @@ impl Outcome {
         self.solved.iter().all(Solved::converged)
     }
 
-    /// How many bounces were summed, or the solver, which may be another than that of the scene.
+    /// How many bounces were summed, or the solver, which may be another than that of the scene:
+    /// every one of those that its frequencies took.
     pub(super) fn solution(&self, model: &Model) -> String {
-        self.solved.first().map_or_else(|| model.method.name(), |solved| solved.solution.clone())
+        let mut names: Vec<&str> = Vec::new();
+        for solved in &self.solved {
+            if !names.contains(&solved.solution.as_str()) {
+                names.push(&solved.solution);
+            }
+        }
+        if names.is_empty() { model.method.name() } else { names.join("; ") }
     }
 
     /// Tables that are too large for text, and are arrays only.
@@ -102,6 +109,7 @@ impl Outcome {
                 "frequency_hz": solved.frequency,
                 "wavelength_m": fredholm_waves::medium::SPEED_OF_LIGHT / solved.frequency,
                 "facets": solved.facets,
+                "solution": solved.solution,
                 "converged": solved.converged(),
                 "residuals": solved.residuals,
             })

@@ -26,6 +26,18 @@ pub(super) struct Solution {
     pub(super) reason: Option<StopReason>,
 }
 
+impl Solution {
+    /// The residual that is left.
+    pub(super) fn residual(&self) -> Option<f64> {
+        self.residuals.last().copied()
+    }
+
+    /// Whether more is left than of another.
+    pub(super) fn is_worse_than(&self, other: &Self) -> bool {
+        self.residual() > other.residual()
+    }
+}
+
 /// The system of a model's method; none where one bounce is all.
 pub(super) fn system<'a>(
     model: &Model,
