@@ -97,7 +97,8 @@ pub(crate) fn electric_term(
     [electric, magnetic]: [f64; 2],
     tolerance: f64,
 ) -> Result<Term, MomentsError> {
-    let wanted = Wanted { electric: electric != 0.0, magnetic: magnetic != 0.0, turned: true };
+    let (electric_part, magnetic_part) = (electric != 0.0, magnetic != 0.0);
+    let wanted = Wanted { electric: electric_part, magnetic: magnetic_part, turned: magnetic_part };
     let rules = Rules::new(tolerance, k, wanted.magnetic)?;
     let integrator = Integrator { medium: Medium::new(k), wanted, rules, arch: Arch::new() };
     // n × K tested with f is −(f × n)·… turned: f·(n × v) = (f × n)·v.

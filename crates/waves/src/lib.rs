@@ -40,7 +40,7 @@ pub use medium::Wave;
 pub use mie::{ConductingSphere, DielectricSphere, ImpedanceSphere, LayeredSphere, ResistiveShell};
 pub use num_complex::Complex64;
 pub use optics::{PhysicalOptics, Shadow};
-pub use power::{extinct, radiated, sphere_rule, supplied};
+pub use power::{extinct, largest_extinct, radiated, sphere_rule, supplied};
 pub use radiation::{
     FarField, Gate, Pattern, Radiator, Sampling, TOLERANCE, cross_section, even_directions, polar_frame,
 };

@@ -60,6 +60,14 @@ pub fn extinct(wave: &Wave, waves: &[(PlaneWave, ComplexVector)]) -> f64 {
     -TAU / (wave.wavenumber() * IMPEDANCE) * waves.iter().map(one).sum::<f64>()
 }
 
+/// The most that plane waves could lose by amplitudes of this strength, W: what they do lose is a
+/// small part of it where the body is small beside the wavelength, and known to as much less.
+#[must_use]
+pub fn largest_extinct(wave: &Wave, waves: &[(PlaneWave, ComplexVector)]) -> f64 {
+    let one = |(wave, forward): &(PlaneWave, ComplexVector)| wave.amplitude().norm() * forward.norm();
+    TAU / (wave.wavenumber() * IMPEDANCE) * waves.iter().map(one).sum::<f64>()
+}
+
 /// The mean power that located sources give away together against the scattered E at a point, W;
 /// none where one of them is a wave from infinity.
 #[must_use]

@@ -9,7 +9,7 @@
 use fredholm_mesh::{Bounds, Vec3};
 use fredholm_report::MonostaticRow;
 use fredholm_waves::source::PlaneWave;
-use fredholm_waves::{ComplexVector, Origin, extinct, radiated, sphere_rule, supplied};
+use fredholm_waves::{ComplexVector, Origin, extinct, largest_extinct, radiated, sphere_rule, supplied};
 use serde_json::{Value, json};
 
 use super::Model;
@@ -17,6 +17,9 @@ use super::geometry::Geometry;
 use super::model::Band;
 use crate::error::Error;
 
+/// Power that waves lose over the most that they could, below which it says nothing of the error:
+/// it is the small part of the amplitude that is out of phase.
+const LEAST_LOST: f64 = 0.01;
 /// Elements times directions that are cheap beside anything.
 const CHEAP_ELEMENT_DIRECTIONS: f64 = 4e6;
 
@@ -155,7 +158,8 @@ impl Balancing<'_> {
                 .map_err(|error| self.model.refused(&error, None))?;
             let forward = far(&waves.iter().map(PlaneWave::travel).collect::<Vec<_>>())?;
             let waves: Vec<_> = waves.into_iter().zip(forward).collect();
-            Some(extinct(&self.band.wave, &waves))
+            let lost = extinct(&self.band.wave, &waves);
+            Some(lost).filter(|lost| *lost > LEAST_LOST * largest_extinct(&self.band.wave, &waves))
         } else {
             self.power
         };
