@@ -3,7 +3,7 @@
 //!
 //!     cargo run --release -p fredholm-moments --example stated_errors > tests/data/wave/stated_errors.csv
 //!
-//! With `facets`, `sheets` or `closed` behind it that part alone.
+//! With `facets`, `sheets`, `closed`, `small` or `imperfect` behind it that part alone.
 
 #![allow(clippy::unwrap_used, reason = "an example shows the way, not what may go wrong on it")]
 
@@ -15,13 +15,19 @@ use common::{WAVELENGTH, solved, wave};
 use fredholm_iterative::Gmres;
 use fredholm_linop::{LinearOperator, MultiVector, Quiet, SecondKind, Solver, Stop};
 use fredholm_mesh::Vec3;
-use fredholm_moments::{Basis, Composite, Conductor, Currents, Equation, Filling, Regions};
+use fredholm_moments::{
+    Basis, Composite, Condition, Conductor, Currents, Equation, Filling, Imperfect, Regions, Surface,
+    Topology,
+};
 use fredholm_waves::source::PlaneWave;
 use fredholm_waves::{
-    Bounced, Complex64, ComplexVector, DielectricSphere, EdgeCurrents, Indicator, PhysicalOptics, Scatterer,
-    Shadow, Source, System, field_inside, inside_points, left_inside, of_closed_elements,
+    Bounced, Complex64, ComplexVector, DielectricSphere, EdgeCurrents, Field, ImpedanceSphere, Indicator,
+    PhysicalOptics, ResistiveShell, Scatterer, Shadow, Source, System, field_inside, inside_points,
+    left_inside, of_closed_elements,
 };
-use wave_cases::{Body, Case, calibration, directions, error, small_bodies, small_sheets};
+use wave_cases::{
+    Body, Case, calibration, directions, error, small_bodies, small_sheets, tiny_bodies, tiny_sheets,
+};
 
 type Vectors = MultiVector<Complex64>;
 /// What several excitations give.
@@ -79,15 +85,155 @@ fn boundary_elements(u: &[Vec3]) {
     for bodies in small_sheets() {
         let truths = Case::truths(&bodies, u, 20.0, 2);
         for per in [4.5, 6.0, 8.0, 10.0] {
-            let indicator = Indicator::BoundaryElements(bodies[0].longest_edge(per));
-            for ((case, far), truth) in bodies.iter().zip(Case::truths(&bodies, u, per, 0)).zip(&truths) {
-                println!(
-                    "{},efie,BoundaryElements,{:.5},{:.5}",
-                    case.name,
-                    indicator.value(),
-                    error(&far, truth)
-                );
+            let found = Case::truths(&bodies, u, per, 0);
+            sheets(&bodies, (&bodies[0].surface(per), "efie"), &found, &truths);
+        }
+    }
+}
+
+/// The same of bodies that are small beside the wavelength.
+fn small(u: &[Vec3]) {
+    for (size, bodies) in tiny_bodies() {
+        let truths = Case::truths(&bodies, u, 14.0 / size, 1);
+        for per in [4.0, 6.0, 9.0] {
+            conductors(&bodies, per / size, &truths, u);
+        }
+    }
+    for (size, bodies) in tiny_sheets() {
+        let truths = Case::truths(&bodies, u, 20.0 / size, 2);
+        for per in [4.5, 6.0, 8.0, 10.0] {
+            let found = Case::truths(&bodies, u, per / size, 0);
+            sheets(&bodies, (&bodies[0].surface(per / size), "efie"), &found, &truths);
+        }
+    }
+}
+
+/// Rows of sheets whose cells are even.
+fn sheets(
+    cases: &[Case],
+    (surface, treatment): (&Surface, &str),
+    found: &[Vec<ComplexVector>],
+    truths: &[Vec<ComplexVector>],
+) {
+    let topology = Topology::new(surface);
+    let edge = topology.longest_edge(surface) / topology.field_length(surface, WAVELENGTH);
+    let indicator = if topology.is_open() {
+        Indicator::BoundaryElements(edge)
+    } else {
+        Indicator::ShellElements(of_closed_elements(0.0, edge))
+    };
+    for ((case, far), truth) in cases.iter().zip(found).zip(truths) {
+        element_row(case, treatment, indicator, error(far, truth));
+    }
+}
+
+/// Surface impedances and resistive sheets: balls, a cube, shells and plates.
+fn imperfect(u: &[Vec3]) {
+    let impedances =
+        [Complex64::new(20.0, 20.0), 100.0.into(), 377.0.into(), Complex64::new(50.0, -150.0), 1500.0.into()];
+    for z in impedances {
+        for radius in [0.15, 0.3, 0.5] {
+            let bodies = [Case { name: "ball", body: Body::Sphere(radius), ..calibration()[0][0].clone() }];
+            let ball = ImpedanceSphere::new(radius * WAVELENGTH, z).unwrap();
+            let shell = ResistiveShell::new(radius * WAVELENGTH, z).unwrap();
+            let source = bodies[0].source();
+            let on_ball = [far_series(u, |p| ball.scattered(&wave(), &source, p))];
+            let on_shell = [far_series(u, |p| shell.scattered(&wave(), &source, p))];
+            for per in [5.0, 7.0, 10.0] {
+                let surface = bodies[0].surface(per);
+                coated(&bodies, per, (&surface, Condition::Body(z)), &on_ball, u);
+                let found = of_condition(&bodies, &surface, Condition::Sheet(z), u).0;
+                sheets(&bodies, (&surface, "shell"), &found, &on_shell);
             }
+        }
+        for bodies in [small_bodies().remove(0), small_bodies().remove(2)] {
+            let fine = bodies[0].finer(14.0, 1);
+            let truths = of_condition(&bodies, &fine, Condition::Body(z), u).0;
+            for per in [5.0, 7.0, 10.0] {
+                coated(&bodies, per, (&bodies[0].surface(per), Condition::Body(z)), &truths, u);
+            }
+        }
+        for bodies in [small_sheets().remove(1), small_sheets().remove(2)] {
+            let truths = of_condition(&bodies, &bodies[0].finer(20.0, 2), Condition::Sheet(z), u).0;
+            for per in [4.5, 6.0, 8.0, 10.0] {
+                let surface = bodies[0].surface(per);
+                let found = of_condition(&bodies, &surface, Condition::Sheet(z), u).0;
+                sheets(&bodies, (&surface, "sheet"), &found, &truths);
+            }
+        }
+    }
+}
+
+/// Rows of bodies with a surface impedance.
+fn coated(
+    cases: &[Case],
+    per: f64,
+    (surface, condition): (&Surface, Condition),
+    truths: &[Vec<ComplexVector>],
+    u: &[Vec3],
+) {
+    let points = inside_points(&cases[0].scatterer(per), &wave()).unwrap();
+    let (found, inside) = of_condition_at(cases, surface, condition, u, &points);
+    let topology = Topology::new(surface);
+    let edge = topology.longest_edge(surface) / topology.field_length(surface, WAVELENGTH);
+    for (((case, far), inside), truth) in cases.iter().zip(&found).zip(inside).zip(truths) {
+        let source = case.source();
+        let left = left_inside(&wave(), &[&source], &points, &inside).unwrap();
+        let indicator = Indicator::InsideImpedance(of_closed_elements(left, edge));
+        element_row(case, "impedance", indicator, error(far, truth));
+    }
+}
+
+/// Far fields of every case, and the fields at some points.
+type Found = (Vec<Vec<ComplexVector>>, Vec<Vec<Field>>);
+
+fn of_condition(cases: &[Case], surface: &Surface, condition: Condition, u: &[Vec3]) -> Found {
+    of_condition_at(cases, surface, condition, u, &[])
+}
+
+fn of_condition_at(
+    cases: &[Case],
+    surface: &Surface,
+    condition: Condition,
+    u: &[Vec3],
+    points: &[Vec3],
+) -> Found {
+    let basis = Basis::new(surface.clone()).unwrap();
+    let body = Imperfect::new(&basis, wave(), vec![condition; surface.triangles().len()], 1e-3).unwrap();
+    let x = right_hand_sides_solved(cases, &body.operator().coupling().unwrap(), &|excitations| {
+        body.right_hand_side(excitations)
+    });
+    let of = |rhs: usize| {
+        let currents = body.currents(&x.vector(rhs));
+        let far = currents.far_field(u).unwrap().into_iter().map(|far| far.amplitude).collect();
+        (far, currents.fields(points).unwrap())
+    };
+    (0..cases.len()).map(of).unzip()
+}
+
+/// The far field of a series.
+fn far_series(u: &[Vec3], scattered: impl Fn(Vec3) -> ComplexVector) -> Vec<ComplexVector> {
+    let far = 1e6 * WAVELENGTH;
+    let back = Complex64::cis(wave().wavenumber() * far) * far;
+    u.iter().map(|&u| scattered(u * far) * back).collect()
+}
+
+/// Boundary elements of conductors.
+fn conductors(bodies: &[Case], per: f64, truths: &[Vec<ComplexVector>], u: &[Vec3]) {
+    let surface = bodies[0].surface(per);
+    let basis = Basis::new(surface).unwrap();
+    let points = inside_points(&bodies[0].scatterer(per), &wave()).unwrap();
+    for equation in [Equation::Electric, Equation::default()] {
+        let conductor = Conductor::new(&basis, wave(), equation, 1e-3).unwrap();
+        let x = right_hand_sides_solved(bodies, &conductor.operator().coupling().unwrap(), &|excitations| {
+            conductor.right_hand_side(excitations)
+        });
+        for (rhs, (case, truth)) in bodies.iter().zip(truths).enumerate() {
+            let currents = Currents::new(&basis, wave(), &x.vector(rhs), None);
+            let electric = equation == Equation::Electric;
+            let of = if electric { Indicator::InsideElectric } else { Indicator::InsideCombined };
+            let name = if electric { "efie" } else { "cfie" };
+            inside_row(case, (name, 1.0, &of), (&currents, &basis), &points, (truth, u));
         }
     }
 }
@@ -98,24 +244,7 @@ fn closed_elements(u: &[Vec3]) {
     for bodies in small_bodies() {
         let truths = Case::truths(&bodies, u, 14.0, 1);
         for per in [5.0, 7.0, 10.0] {
-            let surface = bodies[0].surface(per);
-            let basis = Basis::new(surface).unwrap();
-            let points = inside_points(&bodies[0].scatterer(per), &wave()).unwrap();
-            for equation in [Equation::Electric, Equation::default()] {
-                let conductor = Conductor::new(&basis, wave(), equation, 1e-3).unwrap();
-                let x = right_hand_sides_solved(
-                    &bodies,
-                    &conductor.operator().coupling().unwrap(),
-                    &|excitations| conductor.right_hand_side(excitations),
-                );
-                for (rhs, (case, truth)) in bodies.iter().zip(&truths).enumerate() {
-                    let currents = Currents::new(&basis, wave(), &x.vector(rhs), None);
-                    let electric = equation == Equation::Electric;
-                    let of = if electric { Indicator::InsideElectric } else { Indicator::InsideCombined };
-                    let name = if electric { "efie" } else { "cfie" };
-                    inside_row(case, (name, 1.0, &of), (&currents, &basis), &points, (truth, u));
-                }
-            }
+            conductors(&bodies, per, &truths, u);
         }
     }
     for (radius, permittivity) in [(0.15, 2.0), (0.25, 3.0), (0.4, 2.5), (0.25, 5.0)] {
@@ -124,10 +253,8 @@ fn closed_elements(u: &[Vec3]) {
             let ways = &calibration()[0];
             let bodies = [Case { name: "dielectric ball", body: Body::Sphere(radius), ..ways[0].clone() }];
             let exact = DielectricSphere::new(radius * WAVELENGTH, permittivity).unwrap();
-            let far = 1e6 * WAVELENGTH;
-            let back = Complex64::cis(wave().wavenumber() * far) * far;
-            let truth: Vec<ComplexVector> =
-                u.iter().map(|&u| exact.scattered(&wave(), &bodies[0].source(), u * far) * back).collect();
+            let source = bodies[0].source();
+            let truth = far_series(u, |p| exact.scattered(&wave(), &source, p));
             for per in [5.0, 8.0, 11.0] {
                 let per = per * permittivity.re.sqrt();
                 let surface = bodies[0].surface(per);
@@ -172,11 +299,16 @@ fn inside_row(
     let inside = left_inside(&wave(), &[&source], points, &currents.fields(points).unwrap()).unwrap();
     let far: Vec<ComplexVector> =
         currents.far_field(u).unwrap().into_iter().map(|far| far.amplitude).collect();
-    let edge = basis.topology().longest_edge(basis.surface());
-    let value = of_closed_elements(inside, shorter * edge / WAVELENGTH);
-    let kind = format!("{:?}", of(value));
+    let (surface, topology) = (basis.surface(), basis.topology());
+    let edge = topology.longest_edge(surface) / topology.field_length(surface, WAVELENGTH / shorter);
+    element_row(case, method, of(of_closed_elements(inside, edge)), error(&far, truth));
+}
+
+/// The name, the equation, the indicator and the true error.
+fn element_row(case: &Case, equation: &str, indicator: Indicator, true_error: f64) {
+    let kind = format!("{indicator:?}");
     let kind = kind.split('(').next().unwrap();
-    println!("{},{method},{kind},{value:.5},{:.5}", case.name, error(&far, truth));
+    println!("{},{equation},{kind},{:.6},{true_error:.6}", case.name, indicator.value());
 }
 
 /// Currents on facets, after all bounces.
@@ -201,8 +333,13 @@ fn main() {
     let u = directions();
     let wanted = std::env::args().nth(1).unwrap_or_default();
     println!("case,treatment,indicator,value,true_error");
-    let parts: [(&str, Part); 3] =
-        [("facets", facets), ("sheets", boundary_elements), ("closed", closed_elements)];
+    let parts: [(&str, Part); 5] = [
+        ("facets", facets),
+        ("sheets", boundary_elements),
+        ("closed", closed_elements),
+        ("small", small),
+        ("imperfect", imperfect),
+    ];
     for (_, part) in parts.iter().filter(|(name, _)| name.contains(&wanted)) {
         part(&u);
     }

@@ -5,12 +5,17 @@
 //! opposite directions.
 
 use crate::{MomentsError, Surface};
-use fredholm_mesh::Vec3;
+use fredholm_mesh::{Bounds, Vec3};
 use std::fmt;
 
 /// Distance over the length of an edge (or the diagonal of the surface) below which a point is on
 /// it.
 const ON_EDGE_DISTANCE: f64 = 1e-9;
+/// Largest extents of a closed part over which its field changes where it is small beside the
+/// wavelength, measured on balls, cubes and boxes.
+const EXTENTS_OF_CLOSED: f64 = 1.5;
+/// The same of an open part, in areas over lengths of its open edges, measured on plates and strips.
+const WIDTHS_OF_OPEN: f64 = 4.8;
 /// Longest edge over the wavelength beyond which the report warns.
 const LONGEST_EDGE_OVER_WAVELENGTH: f64 = 1.0 / 6.0;
 
@@ -235,6 +240,33 @@ impl Topology {
     #[must_use]
     pub fn longest_edge(&self, surface: &Surface) -> f64 {
         self.edges.iter().map(|edge| length(surface, edge)).fold(0.0, f64::max)
+    }
+
+    /// Whether some edge has one triangle only.
+    #[must_use]
+    pub fn is_open(&self) -> bool {
+        self.edges.iter().any(|edge| edge.sides.len() == 1)
+    }
+
+    /// The length over which the currents change, m: the wavelength (m), or less where a part of the
+    /// surface is small beside it. Edges over this length tell the error of boundary elements.
+    #[must_use]
+    pub fn field_length(&self, surface: &Surface, wavelength: f64) -> f64 {
+        let mut parts = vec![(0.0, 0.0, None::<Bounds>); self.components];
+        for (triangle, &component) in self.component.iter().enumerate() {
+            let (area, _, bounds) = &mut parts[component];
+            *area += surface.area(triangle);
+            let corners = surface.corners(triangle);
+            *bounds = Bounds::around(bounds.iter().flat_map(|b| [b.min, b.max]).chain(corners));
+        }
+        for edge in self.edges.iter().filter(|edge| edge.sides.len() == 1) {
+            parts[self.component[edge.sides[0].triangle as usize]].1 += length(surface, edge);
+        }
+        let of_part = |(area, open, bounds): (f64, f64, Option<Bounds>)| {
+            let extent = bounds.map_or(f64::INFINITY, |b| (b.max - b.min).max_element());
+            if open > 0.0 { WIDTHS_OF_OPEN * area / open } else { EXTENTS_OF_CLOSED * extent }
+        };
+        parts.into_iter().map(of_part).fold(wavelength, f64::min)
     }
 
     /// Refuses edges above a third of the wavelength (m), on which no wave can be told from its
@@ -528,6 +560,24 @@ mod tests {
         assert!(report(&surface).to_string().contains("point inwards"));
         let mended = surface.oriented();
         Topology::new(&mended).check_closed(&mended, "").unwrap();
+    }
+
+    #[test]
+    fn small_parts_shorten_the_length_on_which_currents_change() {
+        let plate = |u: f64, v: f64| {
+            let corners = vec![Vec3::ZERO, Vec3::X * u, Vec3::new(u, v, 0.0), Vec3::Y * v];
+            Surface::new(corners, vec![[0, 1, 2], [0, 2, 3]]).unwrap()
+        };
+        let length = |surface: &Surface| Topology::new(surface).field_length(surface, 1.0);
+        assert_eq!(length(&plate(2.0, 2.0)), 1.0);
+        assert!((length(&plate(0.1, 0.1)) - 0.12).abs() < 1e-12);
+        assert!((length(&plate(0.4, 0.1)) - 4.8 * 0.04).abs() < 1e-12);
+        let ball = |radius| crate::meshing::sphere(radius, radius).unwrap();
+        assert!(length(&ball(1.0)) == 1.0 && (length(&ball(0.01)) - 0.03).abs() < 4e-3);
+        // The smallest part counts.
+        let both = plate(2.0, 2.0).with(&ball(0.01)).unwrap();
+        assert!(length(&both) == length(&ball(0.01)) && Topology::new(&both).is_open());
+        assert!(!Topology::new(&ball(0.01)).is_open());
     }
 
     #[test]

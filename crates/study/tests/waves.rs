@@ -173,6 +173,72 @@ fn coated_balls_have_the_field_of_the_series_and_a_stated_error_that_holds() {
     }
 }
 
+/// Its name, the scene with these edges, and the edges to compare.
+type Run<'a> = (&'static str, Box<dyn Fn(&str) -> String + 'a>, [&'static str; 2]);
+
+/// What is stated of surface impedances, thin sheets, bodies above the ground and bodies that are
+/// small beside the wavelength, against series and far finer meshes.
+#[test]
+fn stated_errors_hold_on_all_that_boundary_elements_solve() {
+    let folder = tempfile::tempdir().unwrap();
+    let material = |text: &str| format!("material = \"m\"\n[materials.m]\n{text}\n");
+    let [rough, film, glass] = [
+        "impedance_ohm = [90, 40]",
+        "sheet = { resistance_ohm = [150, -60] }",
+        "half_space = { permittivity = [4, 0] }",
+    ]
+    .map(material);
+    let film = format!("closed = false\n{film}");
+    let plate = "quad = [[0, -0.1, 0.03], [0, 0.1, 0.03], [0, 0.1, 0.2], [0, -0.1, 0.2]]";
+    let of_plate = |text: String| {
+        let line = text.lines().find(|line| line.starts_with("sphere")).unwrap().to_owned();
+        text.replace(&line, plate)
+    };
+    let grounded = |text: String| {
+        text.replace("[wave]\n", "[wave]\nground = { height_m = -0.15 }\n")
+            .replace("travel = [0, 1, 0]", "travel = [0, 0.8, -0.6]")
+            .replace("polarisation = [0, 0, 1]", "polarisation = [0, 0.6, 0.8]")
+    };
+    let runs: Vec<Run<'_>> = vec![
+        ("impedance", Box::new(|edge| ball("efie", 0.08, edge, 5.0, &rough)), ["lambda/8", "lambda/24"]),
+        ("shell", Box::new(|edge| ball("efie", 0.08, edge, 5.0, &film)), ["lambda/8", "lambda/24"]),
+        ("film", Box::new(|edge| of_plate(ball("efie", 0.08, edge, 5.0, &film))), ["lambda/8", "lambda/36"]),
+        ("grounded", Box::new(|edge| grounded(ball("cfie", 0.08, edge, 5.0, ""))), ["lambda/8", "lambda/24"]),
+        (
+            "grounded plate",
+            Box::new(|edge| grounded(of_plate(ball("efie", 0.08, edge, 5.0, "closed = false")))),
+            ["lambda/8", "lambda/36"],
+        ),
+        (
+            "grounded glass",
+            Box::new(|edge| grounded(ball("pmchwt", 0.06, edge, 5.0, &glass))),
+            ["lambda/16", "lambda/32"],
+        ),
+        ("small", Box::new(|edge| ball("efie", 0.003, edge, 5.0, "")), ["lambda/300", "lambda/900"]),
+        (
+            "small, combined",
+            Box::new(|edge| ball("cfie", 0.003, edge, 0.005, "")),
+            ["lambda/300", "lambda/900"],
+        ),
+        (
+            "small glass",
+            Box::new(|edge| ball("pmchwt", 0.003, edge, 5.0, &glass)),
+            ["lambda/300", "lambda/700"],
+        ),
+    ];
+    for (name, scene, edges) in runs {
+        let [found, truth] = edges.map(|edge| solved(folder.path(), &scene(edge)));
+        let error = gap(&scattered(&found), &scattered(&truth));
+        let [stated] = found.stated_errors() else { panic!("{name}: {:?}", found.stated_errors()) };
+        println!("{name}: {error:.5}, stated {:.5}", stated.relative);
+        assert!(
+            error < stated.relative && stated.relative < 12.0 * error,
+            "{name}: {error} {}",
+            stated.relative
+        );
+    }
+}
+
 /// Two blocks that touch: of one dielectric in two materials as of one, and what is said of blocks
 /// that do not fit.
 #[test]

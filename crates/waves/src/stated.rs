@@ -1,6 +1,6 @@
 //! Stated errors of scattered fields: what is known of a result without the exact one.
 //!
-//! Four indicators, each times a factor that was measured on bodies with known answers
+//! Several indicators, each times a factor that was measured on bodies with known answers
 //! (`tests/data/wave/stated_errors.csv`, written by the example `stated_errors` of
 //! `fredholm-moments`), so that the product is above the true error in at least 95 of 100 runs
 //! there, and in the median less than four times as large:
@@ -9,13 +9,16 @@
 //!   them added, what edges send to edges is missing, which is a part of it.
 //! - Closed bodies: the total field inside, where there is none, over the incident one. It sees the
 //!   mesh, the form of the currents and the solver together.
-//! - Boundary elements of closed bodies: the same and half the square of the longest edge in
-//!   wavelengths, in the medium where they are shortest. What the currents radiate inside has to
-//!   take the incident field away, of conductors and of dielectric bodies alike; that flat
-//!   triangles are not the curved body is not seen from there, hence the second part.
-//! - Boundary elements on open sheets: the longest edge in wavelengths. At an open edge the current
-//!   along it grows as one over the root of the distance, which even cells follow slowly, whatever
-//!   the body: so their size tells the error.
+//! - Boundary elements of closed bodies: the same and half the square of the longest edge over the
+//!   length on which currents change. That is the wavelength, in the medium where it is shortest, or
+//!   1.5 times the extent of a smaller body. What the currents radiate inside has to take the
+//!   incident field away, of conductors and of dielectric bodies alike; that flat triangles are not
+//!   the curved body is not seen from there, hence the second part, which alone is there for shells
+//!   of thin sheets.
+//! - Boundary elements on open sheets: the longest edge over the same length, for small sheets 4.8
+//!   times their area over the length of their edges. At an open edge the current along it grows as
+//!   one over the root of the distance, which even cells follow slowly, whatever the body: so their
+//!   size tells the error.
 //!
 //! Errors are relative in the L² norm over the points or directions of a receiver.
 
@@ -43,9 +46,13 @@ pub enum Indicator {
     InsideCombined(f64),
     /// [`of_closed_elements`] of a homogeneous dielectric body.
     InsideDielectric(f64),
-    /// Longest edge of the boundary elements of the electric field equation on open sheets, in
-    /// wavelengths.
+    /// [`of_closed_elements`] of bodies with a surface impedance.
+    InsideImpedance(f64),
+    /// Longest edge of the boundary elements of the electric field equation on open sheets, over the
+    /// length on which currents change.
     BoundaryElements(f64),
+    /// [`of_closed_elements`] of sheets without open edges, of which nothing is known inside.
+    ShellElements(f64),
 }
 
 impl Indicator {
@@ -55,11 +62,14 @@ impl Indicator {
         match self {
             Self::EdgesLeft(_) => 1.15,
             Self::EdgesAdded(_) => 1.05,
-            Self::InsideEquation(_) | Self::InsideDielectric(_) => 2.2,
+            Self::InsideEquation(_) => 2.2,
+            Self::InsideDielectric(_) => 1.6,
             Self::InsideOptics(_) => 1.4,
-            Self::InsideElectric(_) => 1.35,
+            Self::InsideElectric(_) => 1.2,
             Self::InsideCombined(_) => 1.75,
+            Self::InsideImpedance(_) => 0.8,
             Self::BoundaryElements(_) => 0.65,
+            Self::ShellElements(_) => 4.5,
         }
     }
 
@@ -74,7 +84,9 @@ impl Indicator {
             | Self::InsideElectric(value)
             | Self::InsideCombined(value)
             | Self::InsideDielectric(value)
-            | Self::BoundaryElements(value) => value,
+            | Self::InsideImpedance(value)
+            | Self::BoundaryElements(value)
+            | Self::ShellElements(value) => value,
         }
     }
 
@@ -86,7 +98,7 @@ impl Indicator {
 }
 
 /// The value of the indicator of boundary elements of closed bodies: from the total field inside
-/// over the incident one, and the longest edge over the shortest wavelength.
+/// over the incident one, and the longest edge over the length on which currents change.
 #[must_use]
 pub fn of_closed_elements(inside: f64, edge: f64) -> f64 {
     inside + 0.5 * edge * edge
@@ -155,6 +167,8 @@ mod tests {
             "InsideElectric" => Indicator::InsideElectric(value),
             "InsideCombined" => Indicator::InsideCombined(value),
             "InsideDielectric" => Indicator::InsideDielectric(value),
+            "InsideImpedance" => Indicator::InsideImpedance(value),
+            "ShellElements" => Indicator::ShellElements(value),
             _ => Indicator::InsideOptics(value),
         };
         for kind in [
@@ -165,7 +179,9 @@ mod tests {
             "InsideElectric",
             "InsideCombined",
             "InsideDielectric",
+            "InsideImpedance",
             "BoundaryElements",
+            "ShellElements",
         ] {
             let runs = text.lines().skip(1).map(|line| line.split(',').collect::<Vec<_>>());
             let ratio = |cells: Vec<&str>| {

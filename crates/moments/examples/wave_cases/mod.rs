@@ -7,7 +7,7 @@
 use super::common::{WAVELENGTH, solved, wave};
 use fredholm_mesh::{Cutting, Lines, MeshBuilder, Shape, Vec3};
 use fredholm_moments::meshing::{Grading, cuboid, rectangle};
-use fredholm_moments::{Basis, Conductor, Currents, Equation, Surface, Topology};
+use fredholm_moments::{Basis, Conductor, Currents, Equation, Surface};
 use fredholm_waves::source::PlaneWave;
 use fredholm_waves::surface::{cube, cuboid as cuboid_of_facets, sphere, sphere_segments};
 use fredholm_waves::{ComplexVector, ConductingSphere, Kind, Scatterer, Source, even_directions};
@@ -109,11 +109,9 @@ impl Case {
         }
     }
 
-    /// The longest edge of the even mesh of plates and cubes with cells up to λ over `per`, in
-    /// wavelengths.
-    pub fn longest_edge(&self, per: f64) -> f64 {
-        let surface = surface(&self.body, WAVELENGTH / per, Grading::default());
-        Topology::new(&surface).longest_edge(&surface) / WAVELENGTH
+    /// The mesh of plates and boxes with edges up to λ over `per`, halved towards the edges.
+    pub fn finer(&self, per: f64, halvings: usize) -> Surface {
+        surface(&self.body, WAVELENGTH / per, Grading { halvings })
     }
 
     /// From the field far away; the distance is in it as λ/r, some millionths.
@@ -286,6 +284,28 @@ pub fn small_sheets() -> Vec<Vec<Case>> {
             vec![upright(1.0, 0.0, 0.0), square([0.4, 0.7, 0.2], [0.8, 0.3, 0.0], [0.0, 0.2, 0.7])],
         ),
     ]
+}
+
+/// Closed conductors that are small beside the wavelength, and how large they are, one list a body.
+pub fn tiny_bodies() -> Vec<(f64, Vec<Case>)> {
+    let mut all = Vec::new();
+    for size in [0.1, 0.01] {
+        all.push((size, in_waves("small cube", &Body::Cube(size))));
+        all.push((size, in_waves("small box", &Body::Box(Vec3::new(1.0, 0.6, 0.3) * size))));
+        all.push((size, in_waves("small ball", &Body::Sphere(0.5 * size)).into_iter().take(1).collect()));
+    }
+    all
+}
+
+/// Sheets that are small beside the wavelength, and how large they are, one list a body.
+pub fn tiny_sheets() -> Vec<(f64, Vec<Case>)> {
+    let mut all = Vec::new();
+    for size in [0.1, 0.01] {
+        all.push((size, in_waves("small plate", &Body::Plates(vec![upright(size, 0.0, 0.0)]))));
+        let strip = square([0.0; 3], [size, 0.0, 0.0], [0.0, 0.0, 0.3 * size]);
+        all.push((size, in_waves("small strip", &Body::Plates(vec![strip]))));
+    }
+    all
 }
 
 /// Closed conductors small enough for a mesh far finer than usual, one list a body.

@@ -219,36 +219,38 @@ pub(super) fn assembly(model: &Model, equations: Equations, spent: &dyn Fn() -> 
 
 /// What the error is stated from.
 enum Known {
-    /// The longest edge of sheets, m, by the electric equation.
-    Edge(f64),
-    /// Points inside closed bodies, the longest edge over the shortest wavelength, and the
-    /// indicator.
+    /// The mesh alone, of sheets and what is with them.
+    Mesh(Indicator),
+    /// Points inside closed bodies, the longest edge over the length on which currents change, and
+    /// the indicator.
     Inside { points: Vec<Vec3>, edge: f64, indicator: fn(f64) -> Indicator },
 }
 
 impl Known {
-    /// Of surfaces that are all sheets or all closed, perfect conductors or dielectric, and in free
-    /// space.
+    /// Of everything but dielectrics with sheets.
     fn of(geometry: &Geometry, basis: &Basis, band: &Band, equations: Equations) -> Option<Self> {
-        if basis.ground().is_some() || equations == Equations::Electric && !is_perfect(geometry, band) {
-            return None;
-        }
-        let edge = basis.topology().longest_edge(basis.surface());
-        if geometry.kinds().iter().all(|kind| *kind == Kind::Sheet) {
-            return (equations == Equations::Electric).then_some(Self::Edge(edge));
-        }
-        let scatterer = geometry.scatterer(&band.materials).ok()?;
-        let indicator = match equations {
-            Equations::Electric => Indicator::InsideElectric,
-            Equations::Combined => Indicator::InsideCombined,
-            Equations::Dielectric => Indicator::InsideDielectric,
-        };
         let denser = |material: &Material| match material {
             Material::HalfSpace(permittivity) => permittivity.sqrt().norm(),
             _ => 1.0,
         };
         let shortest = band.wave.wavelength() / band.materials.iter().map(denser).fold(1.0, f64::max);
-        let edge = edge / shortest;
+        let (surface, topology) = (basis.surface(), basis.topology());
+        let edge = topology.longest_edge(surface) / topology.field_length(surface, shortest);
+        let is_sheet = |material: usize| matches!(band.materials[material], Material::Sheet(_));
+        if geometry.kinds().contains(&Kind::Sheet) || geometry.materials().any(is_sheet) {
+            let shells = of_closed_elements(0.0, edge);
+            let open = topology.is_open();
+            let indicator =
+                if open { Indicator::BoundaryElements(edge) } else { Indicator::ShellElements(shells) };
+            return (equations == Equations::Electric).then_some(Self::Mesh(indicator));
+        }
+        let indicator = match equations {
+            Equations::Electric if is_perfect(geometry, band) => Indicator::InsideElectric,
+            Equations::Electric => Indicator::InsideImpedance,
+            Equations::Combined => Indicator::InsideCombined,
+            Equations::Dielectric => Indicator::InsideDielectric,
+        };
+        let scatterer = geometry.scatterer(&band.materials).ok()?;
         inside_points(&scatterer, &band.wave).map(|points| Self::Inside { points, edge, indicator })
     }
 }
@@ -718,7 +720,7 @@ impl Task<'_> {
     ) -> Result<Option<MeanError>, Error> {
         let (Some(known), Some(residual)) = (&self.known, residual) else { return Ok(None) };
         let indicator = match known {
-            Known::Edge(edge) => Indicator::BoundaryElements(edge / self.band.wave.wavelength()),
+            Known::Mesh(indicator) => *indicator,
             Known::Inside { points, edge, indicator } => {
                 let scattered = currents.fields(points).map_err(|error| refused(self.model, &error))?;
                 let Some(left) = left_inside(&self.band.wave, sources, points, &scattered) else {
