@@ -123,18 +123,23 @@ fn products_are_within_the_tolerance_and_memory_within_the_prediction() {
     }
 }
 
+/// What is found with one, two and four threads.
+fn with_threads<R: Send>(run: impl Fn() -> R + Sync) -> [R; 3] {
+    [1, 2, 4].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(&run)
+    })
+}
+
 #[test]
 fn products_have_the_same_bits_for_any_number_of_threads() {
     let waves = Waves::new(600, 8.0, 0.0);
     let x = vector(1000, 1);
-    let products = [1, 2, 4].map(|threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| {
-            let matrix = Hierarchical::new(&waves, &waves.places, Settings::default(), &Quiet).unwrap();
-            let mut y = MultiVector::zeros(1000, 1);
-            matrix.apply(&x, &mut y);
-            y
-        })
+    let products = with_threads(|| {
+        let matrix = Hierarchical::new(&waves, &waves.places, Settings::default(), &Quiet).unwrap();
+        let mut y = MultiVector::zeros(1000, 1);
+        matrix.apply(&x, &mut y);
+        y
     });
     assert!(products[0] == products[1] && products[0] == products[2]);
 }
@@ -221,10 +226,8 @@ fn factors_take_at_most_the_limit_and_are_refused_alike_by_any_number_of_threads
         let mut fitted = 0;
         for percent in [1, 40, 60, 80, 90, 97, 99, 100, 103, 120, 160, 200] {
             let limit = bytes * percent / 100;
-            let outcomes = [1, 2, 4].map(|threads| {
-                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-                pool.install(|| Factors::new(&matrix, 1e-4, limit, &Quiet).map(|factors| factors.bytes()))
-            });
+            let outcomes =
+                with_threads(|| Factors::new(&matrix, 1e-4, limit, &Quiet).map(|factors| factors.bytes()));
             match &outcomes[0] {
                 Ok(held) => {
                     assert!(*held == bytes && *held <= limit, "{percent}");
@@ -304,14 +307,11 @@ fn factors_have_the_same_bits_for_any_number_of_threads() {
         let settings = Settings { leaf: 16, ..Settings::default() };
         let matrix = Hierarchical::new(&waves, &waves.places, settings, &Quiet).unwrap();
         let b = vector(matrix.dim(), 20);
-        let solutions = [1, 2, 4].map(|threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| {
-                let factors = Factors::new(&matrix, 1e-3, u64::MAX, &Quiet).unwrap();
-                let mut x = MultiVector::zeros(b.dim(), b.rhs_count());
-                factors.apply(&b, &mut x);
-                x
-            })
+        let solutions = with_threads(|| {
+            let factors = Factors::new(&matrix, 1e-3, u64::MAX, &Quiet).unwrap();
+            let mut x = MultiVector::zeros(b.dim(), b.rhs_count());
+            factors.apply(&b, &mut x);
+            x
         });
         assert!(solutions[0] == solutions[1] && solutions[0] == solutions[2]);
     }

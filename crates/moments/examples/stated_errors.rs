@@ -26,7 +26,8 @@ use fredholm_waves::{
     left_inside, of_closed_elements,
 };
 use wave_cases::{
-    Body, Case, calibration, directions, error, small_bodies, small_sheets, tiny_bodies, tiny_sheets,
+    Body, Case, calibration, directions, error, far_series, small_bodies, small_sheets, tiny_bodies,
+    tiny_sheets,
 };
 
 type Vectors = MultiVector<Complex64>;
@@ -116,7 +117,7 @@ fn sheets(
     truths: &[Vec<ComplexVector>],
 ) {
     let topology = Topology::new(surface);
-    let edge = topology.longest_edge(surface) / topology.field_length(surface, WAVELENGTH);
+    let edge = topology.relative_edge(surface, WAVELENGTH);
     let indicator = if topology.is_open() {
         Indicator::BoundaryElements(edge)
     } else {
@@ -142,22 +143,22 @@ fn imperfect(u: &[Vec3]) {
             for per in [5.0, 7.0, 10.0] {
                 let surface = bodies[0].surface(per);
                 coated(&bodies, per, (&surface, Condition::Body(z)), &on_ball, u);
-                let found = of_condition(&bodies, &surface, Condition::Sheet(z), u).0;
+                let found = of_condition(&bodies, &surface, Condition::Sheet(z), u);
                 sheets(&bodies, (&surface, "shell"), &found, &on_shell);
             }
         }
         for bodies in [small_bodies().remove(0), small_bodies().remove(2)] {
             let fine = bodies[0].finer(14.0, 1);
-            let truths = of_condition(&bodies, &fine, Condition::Body(z), u).0;
+            let truths = of_condition(&bodies, &fine, Condition::Body(z), u);
             for per in [5.0, 7.0, 10.0] {
                 coated(&bodies, per, (&bodies[0].surface(per), Condition::Body(z)), &truths, u);
             }
         }
         for bodies in [small_sheets().remove(1), small_sheets().remove(2)] {
-            let truths = of_condition(&bodies, &bodies[0].finer(20.0, 2), Condition::Sheet(z), u).0;
+            let truths = of_condition(&bodies, &bodies[0].finer(20.0, 2), Condition::Sheet(z), u);
             for per in [4.5, 6.0, 8.0, 10.0] {
                 let surface = bodies[0].surface(per);
-                let found = of_condition(&bodies, &surface, Condition::Sheet(z), u).0;
+                let found = of_condition(&bodies, &surface, Condition::Sheet(z), u);
                 sheets(&bodies, (&surface, "sheet"), &found, &truths);
             }
         }
@@ -174,8 +175,7 @@ fn coated(
 ) {
     let points = inside_points(&cases[0].scatterer(per), &wave()).unwrap();
     let (found, inside) = of_condition_at(cases, surface, condition, u, &points);
-    let topology = Topology::new(surface);
-    let edge = topology.longest_edge(surface) / topology.field_length(surface, WAVELENGTH);
+    let edge = Topology::new(surface).relative_edge(surface, WAVELENGTH);
     for (((case, far), inside), truth) in cases.iter().zip(&found).zip(inside).zip(truths) {
         let source = case.source();
         let left = left_inside(&wave(), &[&source], &points, &inside).unwrap();
@@ -187,8 +187,14 @@ fn coated(
 /// Far fields of every case, and the fields at some points.
 type Found = (Vec<Vec<ComplexVector>>, Vec<Vec<Field>>);
 
-fn of_condition(cases: &[Case], surface: &Surface, condition: Condition, u: &[Vec3]) -> Found {
-    of_condition_at(cases, surface, condition, u, &[])
+/// The far fields alone.
+fn of_condition(
+    cases: &[Case],
+    surface: &Surface,
+    condition: Condition,
+    u: &[Vec3],
+) -> Vec<Vec<ComplexVector>> {
+    of_condition_at(cases, surface, condition, u, &[]).0
 }
 
 fn of_condition_at(
@@ -209,13 +215,6 @@ fn of_condition_at(
         (far, currents.fields(points).unwrap())
     };
     (0..cases.len()).map(of).unzip()
-}
-
-/// The far field of a series.
-fn far_series(u: &[Vec3], scattered: impl Fn(Vec3) -> ComplexVector) -> Vec<ComplexVector> {
-    let far = 1e6 * WAVELENGTH;
-    let back = Complex64::cis(wave().wavenumber() * far) * far;
-    u.iter().map(|&u| scattered(u * far) * back).collect()
 }
 
 /// Boundary elements of conductors.
@@ -299,8 +298,7 @@ fn inside_row(
     let inside = left_inside(&wave(), &[&source], points, &currents.fields(points).unwrap()).unwrap();
     let far: Vec<ComplexVector> =
         currents.far_field(u).unwrap().into_iter().map(|far| far.amplitude).collect();
-    let (surface, topology) = (basis.surface(), basis.topology());
-    let edge = topology.longest_edge(surface) / topology.field_length(surface, WAVELENGTH / shorter);
+    let edge = basis.topology().relative_edge(basis.surface(), WAVELENGTH / shorter);
     element_row(case, method, of(of_closed_elements(inside, edge)), error(&far, truth));
 }
 

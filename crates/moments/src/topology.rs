@@ -248,10 +248,16 @@ impl Topology {
         self.edges.iter().any(|edge| edge.sides.len() == 1)
     }
 
-    /// The length over which the currents change, m: the wavelength (m), or less where a part of the
-    /// surface is small beside it. Edges over this length tell the error of boundary elements.
+    /// The longest edge over the length on which currents change at a wavelength (m): what the error of
+    /// boundary elements follows. That length is the wavelength, or less where a part of the surface
+    /// is small beside it.
     #[must_use]
-    pub fn field_length(&self, surface: &Surface, wavelength: f64) -> f64 {
+    pub fn relative_edge(&self, surface: &Surface, wavelength: f64) -> f64 {
+        self.longest_edge(surface) / self.field_length(surface, wavelength)
+    }
+
+    /// The length on which currents change, m.
+    fn field_length(&self, surface: &Surface, wavelength: f64) -> f64 {
         let mut parts = vec![(0.0, 0.0, None::<Bounds>); self.components];
         for (triangle, &component) in self.component.iter().enumerate() {
             let (area, _, bounds) = &mut parts[component];

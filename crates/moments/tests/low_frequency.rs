@@ -5,6 +5,8 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 mod common;
+#[path = "../examples/wave_cases/mod.rs"]
+mod wave_cases;
 
 use common::{relative_error, solved, source, vertical};
 use fredholm_compressed::{Factors, Preconditioned, Settings};
@@ -23,6 +25,7 @@ use fredholm_waves::{
     Wave,
 };
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use wave_cases::error;
 
 const TOLERANCE: f64 = 1e-3;
 const RADIUS: f64 = 1.0;
@@ -213,11 +216,6 @@ fn far_over_square(sheet: Surface, source: &PlaneWave, wavelength: f64) -> Vec<C
     far.into_iter().map(|far| far.amplitude * wave.wavenumber().powi(-2)).collect()
 }
 
-fn gap(a: &[ComplexVector], b: &[ComplexVector]) -> f64 {
-    let gap: f64 = a.iter().zip(b).map(|(a, b)| (*a - *b).norm_squared()).sum();
-    (gap / b.iter().map(|b| b.norm_squared()).sum::<f64>()).sqrt()
-}
-
 /// A conducting disc of radius a has the moments p = 16/3 ε₀ a³ E along it and m = −8/3 a³ H across
 /// (C. J. Bouwkamp, Rep. Prog. Phys. 17 (1954) 35, by Babinet's principle).
 #[test]
@@ -233,7 +231,7 @@ fn a_disc_has_its_static_moments() {
             .map(|f| ComplexVector::from_components(f.to_array().map(Complex64::from)))
             .collect();
         for wavelength in [1e3, 1e5] {
-            let error = |rings| gap(&far_over_square(disc(rings, 0), &source, wavelength), &moments);
+            let error = |rings| error(&far_over_square(disc(rings, 0), &source, wavelength), &moments);
             let (coarse, fine) = (error(5), error(10));
             println!("{travel} {wavelength:e}: {coarse:.5} {fine:.5}");
             assert!(fine < 0.01 && (coarse / fine).log2() > 1.5, "{travel} {wavelength}: {coarse} {fine}");
@@ -249,7 +247,7 @@ fn a_ring_keeps_the_current_around_its_hole() {
     let slow = ring(1e3);
     for wavelength in [1e4, 1e5] {
         // What is left is the size over the wavelength, squared.
-        let change = gap(&ring(wavelength), &slow);
+        let change = error(&ring(wavelength), &slow);
         println!("{wavelength:e}: {change:e}");
         assert!(change < 1e-4, "{wavelength}: {change:e}");
     }

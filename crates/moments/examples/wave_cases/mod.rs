@@ -10,7 +10,7 @@ use fredholm_moments::meshing::{Grading, cuboid, rectangle};
 use fredholm_moments::{Basis, Conductor, Currents, Equation, Surface};
 use fredholm_waves::source::PlaneWave;
 use fredholm_waves::surface::{cube, cuboid as cuboid_of_facets, sphere, sphere_segments};
-use fredholm_waves::{ComplexVector, ConductingSphere, Kind, Scatterer, Source, even_directions};
+use fredholm_waves::{Complex64, ComplexVector, ConductingSphere, Kind, Scatterer, Source, even_directions};
 
 /// What scatters; lengths in wavelengths.
 #[derive(Clone, Debug)]
@@ -114,12 +114,18 @@ impl Case {
         surface(&self.body, WAVELENGTH / per, Grading { halvings })
     }
 
-    /// From the field far away; the distance is in it as λ/r, some millionths.
     fn mie(&self, radius: f64, directions: &[Vec3]) -> Vec<ComplexVector> {
-        let (ball, far) = (ConductingSphere::new(radius).unwrap(), 1e6 * WAVELENGTH);
-        let back = fredholm_waves::Complex64::cis(wave().wavenumber() * far) * far;
-        directions.iter().map(|&u| ball.scattered(&wave(), &self.source(), u * far) * back).collect()
+        let (ball, source) = (ConductingSphere::new(radius).unwrap(), self.source());
+        far_series(directions, |p| ball.scattered(&wave(), &source, p))
     }
+}
+
+/// The far field of a series, from the field far away; the distance is in it as λ/r, some
+/// millionths.
+pub fn far_series(directions: &[Vec3], scattered: impl Fn(Vec3) -> ComplexVector) -> Vec<ComplexVector> {
+    let far = 1e6 * WAVELENGTH;
+    let back = Complex64::cis(wave().wavenumber() * far) * far;
+    directions.iter().map(|&u| scattered(u * far) * back).collect()
 }
 
 fn surface(body: &Body, edge: f64, grading: Grading) -> Surface {

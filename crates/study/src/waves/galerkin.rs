@@ -235,7 +235,7 @@ impl Known {
         };
         let shortest = band.wave.wavelength() / band.materials.iter().map(denser).fold(1.0, f64::max);
         let (surface, topology) = (basis.surface(), basis.topology());
-        let edge = topology.longest_edge(surface) / topology.field_length(surface, shortest);
+        let edge = topology.relative_edge(surface, shortest);
         let is_sheet = |material: usize| matches!(band.materials[material], Material::Sheet(_));
         if geometry.kinds().contains(&Kind::Sheet) || geometry.materials().any(is_sheet) {
             let shells = of_closed_elements(0.0, edge);
@@ -547,10 +547,7 @@ impl Compressed {
             let some = MultiVector::from_fn(b.dim(), count, |i, rhs| b.row(i)[first + rhs]);
             let next = solved(&system, &system.right_hand_side(&some), &self.method, signals)?;
             copy_columns(&next.x, &mut x, first);
-            worst = match worst {
-                Some(worst) if !next.is_worse_than(&worst) => Some(worst),
-                _ => Some(next),
-            };
+            worst = Solution::worse(worst, Some(next));
         }
         let (residuals, reason) =
             worst.map_or_else(Default::default, |worst| (worst.residuals, worst.reason));

@@ -38,7 +38,7 @@ impl Sweep<'_> {
         angles: &[[f64; 2]],
         signals: &Signals<'_>,
     ) -> Result<Swept, Error> {
-        let (mut rows, mut worst): (Vec<_>, Option<Solution>) = (Vec::new(), None);
+        let (mut rows, mut worst) = (Vec::new(), None);
         let (frequency, mut stated) = (self.task.wave().frequency(), SweepError::default());
         let together = directions_together(self.task.model, angles.len());
         let count = angles.len();
@@ -58,10 +58,7 @@ impl Sweep<'_> {
                 });
                 pair.iter().filter_map(|echo| echo.1).for_each(|(error, field)| stated.add(error, field));
             }
-            worst = match (worst, solution) {
-                (Some(worst), Some(next)) if !next.is_worse_than(&worst) => Some(worst),
-                (worst, next) => next.or(worst),
-            };
+            worst = Solution::worse(worst, solution);
         }
         Ok((rows, worst, stated.estimated(receiver, frequency)))
     }

@@ -32,9 +32,12 @@ impl Solution {
         self.residuals.last().copied()
     }
 
-    /// Whether more is left than of another.
-    pub(super) fn is_worse_than(&self, other: &Self) -> bool {
-        self.residual() > other.residual()
+    /// That of two of which more is left, the first where it is the same.
+    pub(super) fn worse(first: Option<Self>, second: Option<Self>) -> Option<Self> {
+        match (first, second) {
+            (Some(first), Some(second)) if second.residual() <= first.residual() => Some(first),
+            (first, second) => second.or(first),
+        }
     }
 }
 
