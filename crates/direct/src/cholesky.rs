@@ -30,19 +30,16 @@
 
 use crate::buffers;
 use crate::factorisation::{par, scratch};
-use crate::groups::{Ended, Run, columns, in_groups};
+use crate::groups::{Ended, Run, in_groups};
 use crate::scalar::DenseScalar;
+use crate::symmetric_form::SymmetricForm;
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::{factor, solve};
 use faer::{MatMut, MatRef, Spec};
-use fredholm_linop::{
-    Dense, LinearOperator, MultiVector, Observer, Report, Scalar, SecondKind, SolveError, Solver, Stop,
-};
+use fredholm_linop::{LinearOperator, MultiVector, Observer, Report, SecondKind, SolveError, Solver, Stop};
 use num_complex::Complex64;
 
 const NAME: &str = "cholesky";
-/// Rows that are turned into columns at a time: their entries of a column lie together in memory.
-const ROWS: usize = 16;
 
 /// A number whose Hermitian matrices are factorised. The functions are compiled here, once for each
 /// kind: those of faer are generic and long.
@@ -128,66 +125,14 @@ impl<T: DenseScalar> Solver<T> for Cholesky {
 
 fn solve_all<T: DenseScalar>(run: &mut Run<'_, '_, T>, group: &[usize]) -> Result<(), Ended> {
     let (n, rhs) = (run.a.dim(), group[0]);
-    let roots: Vec<f64> = (0..n).map(|i| run.a.factor().row(i)[rhs].re().sqrt()).collect();
-    let mut matrix = theta(run.a, rhs, &roots)?;
-    run.work.row_visits += n as u64;
-    run.work.entries_touched += run.a.entries();
+    let form = SymmetricForm::new(run.a, rhs, |d: T| T::from_real(d.re().sqrt()));
+    let mut matrix = form.lower(run, rhs)?;
     if !T::factorise_symmetric(&mut matrix, n, &mut scratch(T::symmetric_scratch(n))?) {
         return Err(SolveError::Indefinite { solver: NAME, rhs }.into());
     }
-    let mut solutions = columns(&right_side(run), group);
-    for solution in solutions.chunks_exact_mut(n) {
-        let inverse = |root: f64| if root > 0.0 { root.recip() } else { 1.0 };
-        solution.iter_mut().zip(&roots).for_each(|(value, &root)| *value = value.scale(inverse(root)));
-    }
+    let mut z = form.right_hand_sides(run, group);
     let needed = T::symmetric_substitution_scratch(n, group.len());
-    T::substitute_symmetric(&matrix, n, &mut solutions, &mut scratch(needed)?);
-    for (&rhs, solution) in group.iter().zip(solutions.chunks_exact_mut(n)) {
-        let factor = |root: f64| if root > 0.0 { root } else { 1.0 };
-        solution.iter_mut().zip(&roots).for_each(|(value, &root)| *value = value.scale(factor(root)));
-        run.x.set_vector(rhs, solution);
-    }
+    T::substitute_symmetric(&matrix, n, &mut z, &mut scratch(needed)?);
+    form.take(run, group, z);
     Ok(())
-}
-
-/// The lower triangle of Θ, column by column.
-fn theta<T: Scalar>(a: &SecondKind<'_, T>, rhs: usize, roots: &[f64]) -> Result<Vec<T>, SolveError> {
-    let n = a.dim();
-    let mut matrix = Dense::zeros(n)?.into_vec();
-    let mut rows = vec![T::zero(); n * ROWS];
-    for first in (0..n).step_by(ROWS) {
-        let last = (first + ROWS).min(n);
-        for i in first..last {
-            a.coupling().lower_row(i, rhs, &mut rows[(i - first) * n..][..=i]);
-        }
-        for (j, column) in matrix.chunks_exact_mut(n.max(1)).enumerate().take(last) {
-            for i in first.max(j)..last {
-                column[i] = -rows[(i - first) * n + j].scale(roots[i] * roots[j]);
-            }
-        }
-    }
-    (0..n).for_each(|i| matrix[i * n + i] += T::one());
-    Ok(matrix)
-}
-
-/// b + D K b_black on the unknowns that reflect, b on the black ones.
-fn right_side<T: Scalar>(run: &mut Run<'_, '_, T>) -> MultiVector<T> {
-    let factor = run.a.factor();
-    let mut right = run.b.clone();
-    if factor.as_slice().iter().all(|&d| d != T::zero()) {
-        return right;
-    }
-    let black = |i: usize, l: usize| if factor.row(i)[l] == T::zero() { run.b.row(i)[l] } else { T::zero() };
-    let known = MultiVector::from_fn(run.b.dim(), run.b.rhs_count(), black);
-    run.a.apply(&known, &mut run.product);
-    run.work.operator_applications += 1;
-    run.work.entries_touched += run.a.entries();
-    // A known = known − D K known, which is known on the black unknowns.
-    let terms = known.as_slice().iter().zip(run.product.as_slice());
-    right
-        .as_mut_slice()
-        .iter_mut()
-        .zip(terms)
-        .for_each(|(right, (&known, &product))| *right += known - product);
-    right
 }

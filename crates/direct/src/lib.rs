@@ -5,7 +5,9 @@
 //! [`fredholm_linop::Monitor`].
 
 mod buffers;
+mod bunch_kaufman;
 mod cholesky;
+mod dense_ldlt;
 mod dense_lu;
 mod eigen;
 mod factorisation;
@@ -13,9 +15,11 @@ mod groups;
 mod mixed_lu;
 mod scalar;
 mod spectrum;
+mod symmetric_form;
 
 pub use buffers::thread_addresses;
 pub use cholesky::Cholesky;
+pub use dense_ldlt::DenseLdlt;
 pub use dense_lu::DenseLu;
 pub use mixed_lu::MixedLu;
 pub use scalar::DenseScalar;
@@ -45,6 +49,14 @@ pub fn entries<T: DenseScalar>() -> Vec<Entry<dyn Solver<T>>> {
             make: |_| Ok(Box::new(MixedLu)),
         },
         Entry {
+            name: "ldlt",
+            access: Access::Entries,
+            symmetric: true,
+            requirements: "a symmetric coupling, factors at least 0 where they are real",
+            options: &[],
+            make: |_| Ok(Box::new(DenseLdlt)),
+        },
+        Entry {
             name: "cholesky",
             access: Access::Entries,
             symmetric: true,
@@ -59,7 +71,7 @@ pub fn entries<T: DenseScalar>() -> Vec<Entry<dyn Solver<T>>> {
 ///
 /// ```
 /// let names: Vec<_> = fredholm_direct::solvers::<f64>().iter().map(|solver| solver.name()).collect();
-/// assert_eq!(names, ["lu", "lu-mixed", "cholesky"]);
+/// assert_eq!(names, ["lu", "lu-mixed", "ldlt", "cholesky"]);
 /// ```
 #[must_use]
 pub fn solvers<T: DenseScalar>() -> Vec<Box<dyn Solver<T>>> {

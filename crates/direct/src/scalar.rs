@@ -1,5 +1,6 @@
 //! The numbers that dense systems are made of.
 
+use crate::bunch_kaufman::Ldlt;
 use crate::cholesky::Llt;
 use crate::factorisation::Lu;
 use fredholm_linop::Scalar;
@@ -7,7 +8,7 @@ use num_complex::{Complex32, Complex64};
 
 /// A number whose dense matrices are factorised, also in single precision. Implemented for f64 and
 /// Complex64.
-pub trait DenseScalar: Scalar + Lu + Llt {
+pub trait DenseScalar: Scalar + Lu + Llt + Ldlt {
     /// The counterpart in single precision.
     type Low: Lu;
     /// The nearest number in single precision.

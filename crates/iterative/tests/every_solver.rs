@@ -15,8 +15,8 @@ use std::ops::ControlFlow;
 const STOP: Stop = Stop { tolerance: 1e-13, max_iterations: 1000 };
 
 /// Those that need a symmetric coupling and factors of at least 0.
-const SYMMETRIC: [&str; 8] =
-    ["cg-psi", "cg-theta", "pcg-jacobi", "pcg-ssor", "pcg-ic", "chebyshev", "minres", "cholesky"];
+const SYMMETRIC: [&str; 9] =
+    ["cg-psi", "cg-theta", "pcg-jacobi", "pcg-ssor", "pcg-ic", "chebyshev", "minres", "ldlt", "cholesky"];
 
 /// Those that ask whether to go on at every unknown.
 const BY_UNKNOWNS: [&str; 8] =
@@ -88,7 +88,6 @@ fn general_solvers() -> Vec<Box<dyn Solver<f64>>> {
 /// K with its entries by a formula of the test, D, and the solution.
 struct Case<T> {
     name: &'static str,
-    symmetric: bool,
     coupling: Box<dyn LinearOperator<T>>,
     entry: Box<dyn Fn(usize, usize) -> T + Sync>,
     factor: MultiVector<T>,
@@ -137,7 +136,7 @@ fn m_matrix(n: usize) -> Case<f64> {
     let coupling = Box::new(Dense::new(n, entries.clone()).unwrap());
     let entry = Box::new(move |i: usize, j: usize| entries[i * n + j]);
     let factor = MultiVector::from_fn(n, 2, |_, l| [1.0, 0.5][l]);
-    Case { name: "M-matrix", symmetric: false, coupling, entry, factor, x }
+    Case { name: "M-matrix", coupling, entry, factor, x }
 }
 
 /// A closed scene: G_ij = G_ji ≥ 0, A_i = Σ_j G_ij, reflectances up to 0.95 in three bands.
@@ -151,7 +150,7 @@ fn radiosity<S: Storage>(n: usize) -> Case<f64> {
     let factor = MultiVector::from_fn(n, 3, |i, _| 0.95 * random.next().sqrt() / areas[i]);
     let x = MultiVector::from_fn(n, 3, |_, l| (random.next() + 0.1) * [1.0, 1e3, 1e-3][l]);
     let coupling = Box::new(PackedSymmetric::new(n, packed).unwrap());
-    Case { name: "radiosity", symmetric: true, coupling, entry: Box::new(entry), factor, x }
+    Case { name: "radiosity", coupling, entry: Box::new(entry), factor, x }
 }
 
 /// Complex K with Σ_j |k_ij| = 0.8, so that I − K is strictly diagonally dominant.
@@ -169,28 +168,41 @@ fn complex_dominant(n: usize) -> Case<Complex64> {
     let coupling = Box::new(Dense::new(n, entries.clone()).unwrap());
     let entry = Box::new(move |i: usize, j: usize| entries[i * n + j]);
     let factor = MultiVector::from_fn(n, 2, |_, l| [Complex64::new(1.0, 0.0), Complex64::new(0.0, -1.0)][l]);
-    Case { name: "complex dominant", symmetric: false, coupling, entry, factor, x }
+    Case { name: "complex dominant", coupling, entry, factor, x }
 }
 
 /// Hermitian K with Σ_j |k_ij| ≤ 0.8, so that I − D K is similar to a positive definite matrix for
 /// 0 ≤ D ≤ 1.
 fn hermitian(n: usize) -> Case<Complex64> {
+    mirrored(n, Symmetry::Hermitian)
+}
+
+/// Complex K with k_ij = k_ji and Σ_j |k_ij| ≤ 0.8, complex D with |D| ≤ 1.
+fn complex_symmetric(n: usize) -> Case<Complex64> {
+    mirrored(n, Symmetry::Symmetric)
+}
+
+fn mirrored(n: usize, symmetry: Symmetry) -> Case<Complex64> {
+    let hermitian = symmetry == Symmetry::Hermitian;
     let mut random = random();
     let mut draw = move || Complex64::new(random.next() - 0.5, random.next() - 0.5);
     let mut entries = vec![Complex64::new(0.0, 0.0); n * n];
     for i in 0..n {
         for j in 0..i {
             let entry = draw() * (0.8 / n as f64);
-            (entries[i * n + j], entries[j * n + i]) = (entry, entry.conj());
+            (entries[i * n + j], entries[j * n + i]) = (entry, if hermitian { entry.conj() } else { entry });
         }
-        entries[i * n + i] = Complex64::new(draw().re / n as f64, 0.0);
+        let entry = draw() / n as f64;
+        entries[i * n + i] = if hermitian { entry.re.into() } else { entry };
     }
     let x = MultiVector::from_fn(n, 2, |_, _| draw());
-    let coupling = Dense::new(n, entries.clone()).unwrap().with_symmetry(Symmetry::Hermitian).unwrap();
+    let coupling = Dense::new(n, entries.clone()).unwrap().with_symmetry(symmetry).unwrap();
     let entry = Box::new(move |i: usize, j: usize| entries[i * n + j]);
     let black = |i: usize, l: usize| if (i + l).is_multiple_of(5) { 0.0 } else { 0.3 + 0.7 * l as f64 };
-    let factor = MultiVector::from_fn(n, 2, |i, l| Complex64::new(black(i, l), 0.0));
-    Case { name: "Hermitian", symmetric: true, coupling: Box::new(coupling), entry, factor, x }
+    let phase = |i: usize| if hermitian { 0.0 } else { i as f64 };
+    let factor = MultiVector::from_fn(n, 2, |i, l| Complex64::from_polar(black(i, l), phase(i)));
+    let name = if hermitian { "Hermitian" } else { "complex symmetric" };
+    Case { name, coupling: Box::new(coupling), entry, factor, x }
 }
 
 /// The radiosity system with every third unknown black in the second band.
@@ -208,10 +220,20 @@ fn refuses<T: Scalar>(case: &Case<T>, solver: &dyn Solver<T>) {
     assert!(refusal.to_string().contains("a coupling that is known to be"), "{refusal}");
 }
 
+/// Whether a solver is for couplings like this.
+fn takes<T: Scalar>(coupling: &dyn LinearOperator<T>, solver: &str) -> bool {
+    let any = !SYMMETRIC.contains(&solver);
+    match coupling.symmetry() {
+        Symmetry::General => any,
+        Symmetry::Symmetric => any || T::IS_REAL || solver == "ldlt",
+        Symmetry::Hermitian => T::IS_REAL || solver != "ldlt",
+    }
+}
+
 fn check<T: Scalar>(case: &Case<T>, solvers: &[Box<dyn Solver<T>>]) {
     let b = case.product(&case.x);
     for solver in solvers {
-        if !case.symmetric && SYMMETRIC.contains(&solver.name()) {
+        if !takes(&*case.coupling, solver.name()) {
             refuses(case, &**solver);
             continue;
         }
@@ -244,6 +266,7 @@ fn every_solver_finds_the_solution_of_every_system() {
     check(&partly_black(50), &real_solvers());
     check(&complex_dominant(40), &complex_solvers());
     check(&hermitian(40), &complex_solvers());
+    check(&complex_symmetric(40), &complex_solvers());
     check(&m_matrix(1), &real_solvers());
 }
 
@@ -279,7 +302,7 @@ fn two_hundred_random_m_matrices_are_solved() {
         let entry = Box::new(move |i: usize, j: usize| entries[i * n + j]);
         let factor = MultiVector::from_fn(n, 1, |_, _| 1.0);
         let x = MultiVector::from_fn(n, 1, |_, _| random.next() - 0.4);
-        check(&Case { name: "random M-matrix", symmetric, coupling, entry, factor, x }, &solvers);
+        check(&Case { name: "random M-matrix", coupling, entry, factor, x }, &solvers);
     }
 }
 
@@ -498,7 +521,7 @@ fn indefinite_systems_are_solved_or_refused_by_krylov_and_direct_methods() {
                 let expected = SolveError::Indefinite { solver: solver.name(), rhs: 0 };
                 assert_eq!(refusal, expected);
             }
-            "minres" | "gmres" | "bicgstab" | "anderson" | "lu" | "lu-mixed" => {
+            "minres" | "gmres" | "bicgstab" | "anderson" | "lu" | "lu-mixed" | "ldlt" => {
                 let (report, x) = solve_indefinite(&*solver).unwrap();
                 assert_eq!(report.reason, StopReason::Converged, "{}", solver.name());
                 // x = (−2, −1).

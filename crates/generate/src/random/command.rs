@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::frame::{Frame, somewhere};
 use crate::dice::Dice;
 
-const SOLVERS: [&str; 27] = [
+const SOLVERS: [&str; 28] = [
     "gauss-seidel",
     "neumann",
     "jacobi",
@@ -32,6 +32,7 @@ const SOLVERS: [&str; 27] = [
     "hybrid",
     "lu",
     "lu-mixed",
+    "ldlt",
     "cholesky",
 ];
 

@@ -4,11 +4,11 @@
 //! |---|---|---|
 //! | closed conductors, edges up to λ/4 | `dual-surface-mfie`, GMRES | an equation without approximation but the mesh |
 //! | closed conductors that are thin or pointed, small | `cfie`, LU | facets that are not small beside the thickness do not follow the current around a rim |
-//! | conductors, sheets among them, small | `efie`, LU | an equation without approximation but the mesh; the matrix is stored |
+//! | conductors, sheets among them, small | `efie`, LDLᵀ | an equation without approximation but the mesh; the matrix is stored |
 //! | conductors, sheets among them, larger | `radiated`, GMRES, edge currents | currents make the shadow themselves: what hides a part of what stands behind is counted once |
-//! | thin sheets with an impedance, conductors among them or not, small | `efie`, LU | as above |
-//! | conductors above a ground plane, small | `efie` with sheets, else `cfie`, LU | nothing else knows the images |
-//! | one flat sheet, small | `efie`, LU | as above: it costs some seconds |
+//! | thin sheets with an impedance, conductors among them or not, small | `efie`, LDLᵀ | as above |
+//! | conductors above a ground plane, small | `efie` with sheets, else `cfie`, by factors | nothing else knows the images |
+//! | one flat sheet, small | `efie`, LDLᵀ | as above: it costs some seconds |
 //! | one flat sheet, larger | one bounce, edge currents | its facets do not light each other |
 //! | panes and other materials | one bounce; `radiated` where something is let through | bounces have to be asked for |
 //! | many incident waves, where the scene names no solver | LU | one factorisation for all of them |
@@ -273,13 +273,14 @@ fn factorise(taken: &mut Taken, seen: &Seen, fits: &dyn Fn(u128) -> bool) {
 fn chosen(seen: &Seen, ground: bool, small: &dyn Fn() -> bool) -> Taken {
     let exact = (seen.sheets || seen.thin) && !seen.sweep;
     let boundary_elements = seen.films || seen.conductors && (exact || ground);
+    let equations = if seen.sheets { Equations::Electric } else { Equations::Combined };
     if boundary_elements
         && small()
-        && let Ok(solver) = super::registry::build(BY_MATRIX)
+        && let Ok(solver) = super::registry::build(equations.direct_solver())
     {
         return Taken {
             shadow: Shadow::default(),
-            galerkin: Some(if seen.sheets { Equations::Electric } else { Equations::Combined }),
+            galerkin: Some(equations),
             method: Method::Solver {
                 solver,
                 tolerance: UNASKED_RESIDUAL,

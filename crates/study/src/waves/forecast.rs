@@ -20,14 +20,14 @@
 
 use std::mem;
 
-use fredholm_linop::{Dense, MultiVector, Watch};
+use fredholm_linop::{Dense, MultiVector, Symmetry, Watch};
 use fredholm_scene::waves::{Cuts, Layout, Places};
 use fredholm_waves::{Complex64, Wave};
 
 use super::compute::{compute, incident_fields};
 use super::geometry::Geometry;
 use super::interpolation;
-use super::model::{BY_MATRIX, Band, Receiver};
+use super::model::{BY_MATRIX, BY_SYMMETRIC_MATRIX, Band, Receiver};
 use super::over_frequency::MOST_PICTURED;
 use super::{CouplingStorage, Method, Model, galerkin, registry, solving};
 use crate::error::Error;
@@ -154,18 +154,21 @@ fn bounds(model: &Model, part: usize) -> [f64; 3] {
 
 /// Whether the matrix is factorised.
 fn is_factorised(model: &Model) -> bool {
-    matches!(&model.method, Method::Solver { solver, .. } if solver.name() == BY_MATRIX)
+    let factorises = |name: &str| [BY_MATRIX, BY_SYMMETRIC_MATRIX].contains(&name);
+    matches!(&model.method, Method::Solver { solver, .. } if factorises(solver.name()))
 }
 
 /// Seconds that a factorisation of so many unknowns takes, from that of fewer.
 fn factorisation(model: &Model, unknowns: usize, watch: &dyn Watch) -> Option<f64> {
     let fewer = unknowns.min(MOST_FACTORISED);
     // What is taken away from 1 is small beside it, so that no pivot vanishes.
-    let entry = |i: usize| {
-        let angle = i as f64;
+    let entry = |at: usize| {
+        let (i, j) = (at / fewer, at % fewer);
+        let angle = (i * j + i + j) as f64;
         Complex64::new((1.7 * angle).sin(), (0.3 * angle).cos()) / (2 * fewer) as f64
     };
-    let matrix = Dense::new(fewer, (0..fewer * fewer).map(entry).collect()).ok()?;
+    let entries = (0..fewer * fewer).map(entry).collect();
+    let matrix = Dense::new(fewer, entries).ok()?.with_symmetry(Symmetry::Symmetric).ok()?;
     let b = MultiVector::from_fn(fewer, 1, |_, _| Complex64::ONE);
     let meter = Meter::new(watch, MOST_SECONDS);
     let stages = Stages::new(&meter);

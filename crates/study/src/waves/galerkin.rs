@@ -26,7 +26,7 @@ use super::balance::{Balancing, Reciprocity, power};
 use super::compute::{current, directions, far_row, near_rows};
 use super::estimate::{Estimated, SweepError};
 use super::geometry::Geometry;
-use super::model::Band;
+use super::model::{BY_MATRIX, BY_SYMMETRIC_MATRIX, Band};
 use super::monostatic::plane_waves;
 use super::record::Solved;
 use super::registry::{build, by_products};
@@ -179,6 +179,17 @@ pub(crate) enum Equations {
     Combined,
     /// Those of dielectric bodies, and conductors with them.
     Dielectric,
+}
+
+impl Equations {
+    /// The solver of their matrix where the scene names none: that of the combined equation alone
+    /// is not symmetric.
+    pub(super) fn direct_solver(self) -> &'static str {
+        match self {
+            Self::Electric | Self::Dielectric => BY_SYMMETRIC_MATRIX,
+            Self::Combined => BY_MATRIX,
+        }
+    }
 }
 
 /// Computes everything that the model asks for at some of its frequencies on one of its meshes.

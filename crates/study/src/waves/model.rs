@@ -29,9 +29,10 @@ const USUAL_RESIDUAL: f64 = 1e-6;
 /// Iterations where the scene does not say.
 const USUAL_ITERATIONS: u32 = 500;
 /// Solvers of equations where the scene does not say: of those by products, and of those whose
-/// matrix is stored and may be ill-conditioned.
+/// matrix is stored and may be ill-conditioned, general or symmetric.
 pub(super) const BY_PRODUCTS: &str = "gmres";
 pub(super) const BY_MATRIX: &str = "lu";
+pub(super) const BY_SYMMETRIC_MATRIX: &str = "ldlt";
 
 /// How many bounces are summed.
 pub(crate) enum Method {
@@ -372,9 +373,9 @@ fn galerkin(settings: &Settings) -> Option<Equations> {
 /// The bounces or the solver, where they are asked for.
 fn method(scene: &WaveScene) -> Result<Option<Method>, Error> {
     let settings = scene.settings();
-    let usual = match settings.method {
-        _ if galerkin(settings).is_some() => Some(BY_MATRIX),
-        Some(method) if method.is_equation() => Some(BY_PRODUCTS),
+    let usual = match (galerkin(settings), settings.method) {
+        (Some(equations), _) => Some(equations.direct_solver()),
+        (None, Some(method)) if method.is_equation() => Some(BY_PRODUCTS),
         _ => None,
     };
     let name = settings.solver.as_deref().or(usual);
