@@ -7,8 +7,10 @@
 //! ```
 //!
 //! RADIUS is in wavelengths, EDGES are counted to a wavelength, BODY is `combined` (usual) or
-//! `electric` for a conductor by one of these equations, or a permittivity. FACTORS is the
-//! tolerance of the factors that precondition the system; without it the blocks on the diagonal do.
+//! `electric` for a conductor by one of these equations, or a permittivity such as 4 or 10-5j.
+//! FACTORS is the tolerance of the factors that precondition the system; without it the blocks on
+//! the diagonal do. The errors are those of E_z at 25 m, at 1.5 radii and, in dielectrics, at half a
+//! radius.
 
 #![allow(clippy::unwrap_used, reason = "an example that cannot go on has failed")]
 #![allow(clippy::print_stdout, reason = "it prints its table")]
@@ -16,13 +18,14 @@
 #[path = "../tests/common/mod.rs"]
 mod common;
 
-use common::{WAVELENGTH, circle, mie, relative_error, source, vertical, wave};
+use common::{WAVELENGTH, circle, relative_error, source, vertical, wave};
 use fredholm_compressed::{BlockDiagonal, Factors, Preconditioned, Settings};
 use fredholm_iterative::Gmres;
 use fredholm_linop::{LinearOperator, MultiVector, Quiet, SecondKind, Solver, Stop};
+use fredholm_mesh::Vec3;
 use fredholm_moments::meshing::sphere;
 use fredholm_moments::{Basis, Composite, Conductor, Currents, Equation, Filling, Operator, Regions};
-use fredholm_waves::{Complex64, DielectricSphere, Source};
+use fredholm_waves::{Complex64, ComplexVector, ConductingSphere, DielectricSphere, Field, Source};
 use std::time::Instant;
 
 /// Steps of GMRES before it starts anew.
@@ -36,16 +39,26 @@ fn main() {
     let run = Run { tolerance: number(2, 1e-3), factors: arguments.get(4).map(|text| text.parse().unwrap()) };
     let (surface, source) = (sphere(radius, edge).unwrap(), source());
     let sources: [&dyn Source; 1] = [&source];
-    let (currents, exact) = match body {
+    let at = |radii: f64| -> Vec<Vec3> { circle().iter().map(|p| *p * (radii * radius / 25.0)).collect() };
+    let (far, near, within) = (circle(), at(1.5), at(0.5));
+    let show = |currents: &Currents<'_>, scattered: &dyn Fn(Vec3) -> ComplexVector| {
+        let error = |points: &[Vec3]| {
+            let exact: Vec<Complex64> = points.iter().map(|&p| scattered(p).components()[2]).collect();
+            relative_error(&vertical(&currents.fields(points).unwrap()), &exact)
+        };
+        println!("error {:.5} far, {:.5} near", error(&far), error(&near));
+    };
+    match body {
         "combined" | "electric" => {
             let equation = if body == "electric" { Equation::Electric } else { Equation::default() };
             let basis = Basis::new(surface).unwrap();
             let conductor = Conductor::new(&basis, wave(), equation, 1e-3).unwrap();
             let x = run.solve(conductor.operator(), &conductor.right_hand_side(&[&sources]));
-            (Currents::new(&basis, wave(), &x, None).fields(&circle()).unwrap(), mie(radius))
+            let ball = ConductingSphere::new(radius).unwrap();
+            show(&Currents::new(&basis, wave(), &x, None), &|p| ball.scattered(&wave(), &source, p));
         }
         permittivity => {
-            let Ok(permittivity) = permittivity.parse::<f64>().map(Complex64::from) else {
+            let Ok(permittivity) = permittivity.parse::<Complex64>() else {
                 println!("BODY is combined, electric or a permittivity, not {permittivity}");
                 std::process::exit(2);
             };
@@ -55,11 +68,15 @@ fn main() {
             let composite = Composite::new(&basis, wave(), &[permittivity], 1e-3).unwrap();
             let x = run.solve(composite.operator(), &composite.right_hand_side(&[&sources]));
             let ball = DielectricSphere::new(radius, permittivity).unwrap();
-            let exact = |&p| ball.scattered(&wave(), &source, p).components()[2];
-            (composite.currents(&x).fields(&circle()).unwrap(), circle().iter().map(exact).collect())
+            let currents = composite.currents(&x);
+            show(&currents, &|p| ball.scattered(&wave(), &source, p));
+            let inside: Vec<Field> =
+                composite.fields_inside(&currents, &within).unwrap().into_iter().flatten().collect();
+            let exact = |&p: &Vec3| ball.inside(&wave(), &source, p).components()[2];
+            let exact: Vec<Complex64> = within.iter().map(exact).collect();
+            println!("      {:.5} inside", relative_error(&vertical(&inside), &exact));
         }
-    };
-    println!("error {:.5}", relative_error(&vertical(&currents), &exact));
+    }
 }
 
 struct Run {

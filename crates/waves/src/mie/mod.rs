@@ -30,6 +30,9 @@ use crate::{ComplexVector, Wave, WaveError};
 use fredholm_mesh::Vec3;
 use num_complex::Complex64;
 
+/// Distance from the centre, in radii, below which the field inside is that at it.
+const LEAST_DISTANCE: f64 = 1e-6;
+
 /// A perfectly conducting sphere around the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConductingSphere {
@@ -99,17 +102,50 @@ impl DielectricSphere {
         self.series(wave).scattered(wave, source, p)
     }
 
+    /// The total E (V/m) at `p` (m, inside).
+    #[must_use]
+    pub fn inside(&self, wave: &Wave, source: &PlaneWave, p: Vec3) -> ComplexVector {
+        // Directions are lost at the centre, and the field changes with the square of the distance.
+        let least = LEAST_DISTANCE * self.radius;
+        let p = if p.length() < least { source.travel() * least } else { p };
+        let x = wave.wavenumber() * self.radius;
+        let (at, m) = (Riccati::new(x, terms(x)), self.index());
+        // What arrives is the series with a_n = b_n = −1 of regular waves. H and E along the surface
+        // are the same on both sides: two conditions for each order, u and u′, of which either may
+        // have a zero of ψ_n or ψ_n′ before the unknown.
+        let scattered = self.series(wave).0;
+        let [z, surface] = [m * (wave.wavenumber() * p.length()), m * x];
+        let [within, border] = [z, surface].map(|z| Regular::new(z, scattered.len()));
+        let term = |(i, [a, b]): (usize, &[Complex64; 2])| {
+            let n = i + 1;
+            let (psi, slope) = (border.psi[n], border.slope(n));
+            let inside = |u: Complex64, v: Complex64| {
+                (psi.conj() * u + slope.conj() * v) / (psi.norm_sqr() + slope.norm_sqr())
+            };
+            let value = |c: &Complex64| c * at.xi(n) - at.psi(n);
+            let change = |c: &Complex64| c * at.xi_slope(n) - at.psi_slope(n);
+            [inside(value(a), m * change(a)), inside(m * value(b), change(b))]
+        };
+        let series = Series(scattered.iter().enumerate().map(term).collect());
+        let growth = (within.exponent - border.exponent).exp();
+        series.field(source, p, z, |n| [within.psi[n] * growth, within.slope(n) * growth])
+    }
+
     /// Cross-sections of extinction and of scattering, m².
     #[must_use]
     pub fn cross_sections(&self, wave: &Wave) -> [f64; 2] {
         self.series(wave).cross_sections(wave)
     }
 
+    /// √ε in the time factor of the series, which is the conjugate of ours.
+    fn index(&self) -> Complex64 {
+        self.permittivity.conj().sqrt()
+    }
+
     fn series(&self, wave: &Wave) -> Series {
         let x = wave.wavenumber() * self.radius;
         let inner = Riccati::new(x, terms(x));
-        // The time factor of the source is the conjugate of ours.
-        let m = self.permittivity.conj().sqrt();
+        let m = self.index();
         let slopes = logarithmic_slopes(m * x, terms(x));
         let term = |n: usize| {
             let (psi, psi_slope) = (inner.psi(n), inner.psi_slope(n));
@@ -165,32 +201,32 @@ impl Series {
     /// The field of outgoing waves.
     fn scattered(&self, wave: &Wave, source: &PlaneWave, p: Vec3) -> ComplexVector {
         let outer = Riccati::new(wave.wavenumber() * p.length(), self.0.len());
-        self.field(source, p, &outer, |n| [outer.xi(n), outer.xi_slope(n)])
+        self.field(source, p, outer.x.into(), |n| [outer.xi(n), outer.xi_slope(n)])
     }
 
     /// The field of regular waves in place of the outgoing ones.
     fn regular(&self, wave: &Wave, source: &PlaneWave, p: Vec3) -> ComplexVector {
         let inner = Riccati::new(wave.wavenumber() * p.length(), self.0.len());
-        self.field(source, p, &inner, |n| [inner.psi(n).into(), inner.psi_slope(n).into()])
+        self.field(source, p, inner.x.into(), |n| [inner.psi(n).into(), inner.psi_slope(n).into()])
     }
 
-    /// The field of waves with these radial functions and their slopes at kr.
+    /// The field of waves with these radial functions and their slopes at `rho`, kr in the medium.
     fn field(
         &self,
         source: &PlaneWave,
         p: Vec3,
-        at: &Riccati,
+        rho: Complex64,
         radial: impl Fn(usize) -> [Complex64; 2],
     ) -> ComplexVector {
         let [x, y, z] =
             [source.polarisation(), source.travel().cross(source.polarisation()), source.travel()];
         let local = Vec3::new(p.dot(x), p.dot(y), p.dot(z));
-        let (r, rho) = (local.length(), local.x.hypot(local.y));
-        let (cos_phi, sin_phi) = if rho > 0.0 { (local.x / rho, local.y / rho) } else { (1.0, 0.0) };
-        let [radial, polar, azimuthal] = self.sums(at.x, radial, local.z / r, rho / r);
+        let (r, across) = (local.length(), local.x.hypot(local.y));
+        let (cos_phi, sin_phi) = if across > 0.0 { (local.x / across, local.y / across) } else { (1.0, 0.0) };
+        let [radial, polar, azimuthal] = self.sums(rho, radial, local.z / r, across / r);
         let out = p / r;
         let outward = x * cos_phi + y * sin_phi;
-        let theta = outward * (local.z / r) - z * (rho / r);
+        let theta = outward * (local.z / r) - z * (across / r);
         let phi = y * cos_phi - x * sin_phi;
         let field = ComplexVector::along(out, radial * cos_phi)
             + ComplexVector::along(theta, polar * cos_phi)
@@ -199,7 +235,13 @@ impl Series {
     }
 
     /// Σ E_n (i a_n N_n − b_n M_n) without cos φ (r, θ) and −sin φ (φ).
-    fn sums(&self, rho: f64, radial: impl Fn(usize) -> [Complex64; 2], cos: f64, sin: f64) -> [Complex64; 3] {
+    fn sums(
+        &self,
+        rho: Complex64,
+        radial: impl Fn(usize) -> [Complex64; 2],
+        cos: f64,
+        sin: f64,
+    ) -> [Complex64; 3] {
         let mut sums = [Complex64::ZERO; 3];
         let (mut earlier, mut pi, mut phase) = (0.0, 1.0, Complex64::I);
         for (i, [a, b]) in self.0.iter().enumerate() {
@@ -209,7 +251,7 @@ impl Series {
             let factor = phase * (2.0 * order + 1.0) / (order * (order + 1.0));
             let (a, b) = (factor * Complex64::I * a, factor * b);
             let [h, slope] = radial(n).map(|value| value / rho);
-            sums[0] += a * h * (order * (order + 1.0) * sin * pi / rho);
+            sums[0] += a * h / rho * (order * (order + 1.0) * sin * pi);
             sums[1] += a * slope * tau - b * h * pi;
             sums[2] += a * slope * pi - b * h * tau;
             (earlier, pi) = (pi, ((2.0 * order + 1.0) * cos * pi - (order + 1.0) * earlier) / order);
@@ -238,7 +280,11 @@ impl Riccati {
         // only χ = −x y_n grows.
         let (sin, cos) = x.sin_cos();
         let chi = upwards(x, last, cos, cos / x + sin);
-        let psi = if x > last as f64 { upwards(x, last, sin, sin / x - cos) } else { downwards(x, last) };
+        let psi = if x > last as f64 {
+            upwards(x, last, sin, sin / x - cos)
+        } else {
+            Regular::new(x.into(), last).psi.iter().map(|value| value.re).collect()
+        };
         let xi = psi.iter().zip(&chi).map(|(&psi, &chi)| Complex64::new(psi, -chi)).collect();
         Self { x, psi, xi }
     }
@@ -269,22 +315,44 @@ fn upwards(x: f64, last: usize, zero: f64, one: f64) -> Vec<f64> {
     values
 }
 
-/// ψ_n downwards from far above the turning point (J. C. P. Miller), scaled by the larger of ψ₀ and
-/// ψ₁.
-fn downwards(x: f64, last: usize) -> Vec<f64> {
-    let start = last + 30;
-    let mut values = vec![0.0; start + 2];
-    values[start] = 1e-200;
-    for n in (1..=start).rev() {
-        values[n - 1] = (2 * n + 1) as f64 / x * values[n] - values[n + 1];
-        if values[n - 1].abs() > 1e200 {
-            values[n - 1..].iter_mut().for_each(|value| *value *= 1e-200);
+/// ψ_n(z) e^{−exponent} for n = 0 … last, exponent = |Im z|: nothing overflows.
+struct Regular {
+    z: Complex64,
+    exponent: f64,
+    psi: Vec<Complex64>,
+}
+
+impl Regular {
+    /// Downwards from far above the turning point (J. C. P. Miller), scaled by the larger of ψ₀ and
+    /// ψ₁.
+    fn new(z: Complex64, last: usize) -> Self {
+        let start = last.max(z.norm().ceil() as usize) + 30;
+        let mut psi = vec![Complex64::ZERO; start + 2];
+        psi[start] = 1e-100.into();
+        for n in (1..=start).rev() {
+            psi[n - 1] = (2 * n + 1) as f64 / z * psi[n] - psi[n + 1];
+            if psi[n - 1].norm() > 1e100 {
+                psi[n - 1..].iter_mut().for_each(|value| *value *= 1e-200);
+            }
         }
+        let exponent = z.im.abs();
+        // cosh and sinh of Im z without their growth.
+        let (cosh, sinh) = (0.5 + 0.5 * (-2.0 * exponent).exp(), -0.5 * (-2.0 * exponent).exp_m1());
+        let (real_sin, real_cos) = z.re.sin_cos();
+        let sinh = sinh.copysign(z.im);
+        let sin = Complex64::new(real_sin * cosh, real_cos * sinh);
+        let cos = Complex64::new(real_cos * cosh, -real_sin * sinh);
+        let (zero, one) = (sin, sin / z - cos);
+        let scale = if zero.norm() > one.norm() { zero / psi[0] } else { one / psi[1] };
+        psi.truncate(last + 1);
+        psi.iter_mut().for_each(|value| *value *= scale);
+        Self { z, exponent, psi }
     }
-    let (zero, one) = (x.sin(), x.sin() / x - x.cos());
-    let scale = if zero.abs() > one.abs() { zero / values[0] } else { one / values[1] };
-    values.truncate(last + 1);
-    values.iter().map(|value| value * scale).collect()
+
+    /// ψ_n′.
+    fn slope(&self, n: usize) -> Complex64 {
+        self.psi[n - 1] - self.psi[n] * (n as f64 / self.z)
+    }
 }
 
 #[cfg(test)]
@@ -367,5 +435,52 @@ mod tests {
             assert!((a - b).norm() < 1e-4 * b.norm(), "{p}");
         }
         assert!(DielectricSphere::new(1.0, Complex64::new(2.0, 0.1)).is_err());
+    }
+
+    #[test]
+    fn the_field_inside_a_dielectric_sphere_goes_on_outside() {
+        use crate::Source;
+        let source = PlaneWave::new(Vec3::new(0.3, 1.0, -0.2), Vec3::Z, Complex64::new(0.5, 2.0)).unwrap();
+        for (permittivity, ka) in
+            [(2.0.into(), 3.0), (4.0.into(), std::f64::consts::PI), (Complex64::new(10.0, -5.0), 12.0)]
+        {
+            let (wave, sphere) = (wave_of(ka), DielectricSphere::new(1.0, permittivity).unwrap());
+            for p in [Vec3::X, Vec3::new(0.6, 0.0, 0.8), Vec3::new(-0.48, 0.64, -0.6), source.travel()] {
+                let outside = sphere.scattered(&wave, &source, p) + source.field(&wave, p).e;
+                let inside = sphere.inside(&wave, &source, p);
+                let along = (outside - inside).crossed_by(p).norm();
+                let across = (outside.dot(p) - inside.dot(p) * permittivity).norm();
+                assert!(along < 1e-10 && across < 1e-10, "{permittivity} {p}: {along:e} {across:e}");
+            }
+            // div E = 0, and E solves the wave equation of the material at any place.
+            let (at, h) = (Vec3::new(0.3, -0.2, 0.4), 1e-3);
+            let e = |p: Vec3| sphere.inside(&wave, &source, p);
+            let ways = [Vec3::X, Vec3::Y, Vec3::Z].map(|way| way * h);
+            let sum = ways.iter().fold(e(at) * -6.0, |sum, &way| sum + e(at + way) + e(at - way));
+            let expected = e(at) * -(permittivity * (ka * h).powi(2));
+            assert!((sum - expected).norm() < 1e-3 * expected.norm(), "{permittivity}");
+            let divergence: Complex64 =
+                ways.iter().map(|&way| (e(at + way) - e(at - way)).dot(way / h)).sum();
+            assert!(divergence.norm() < 1e-3 * ka * h * e(at).norm(), "{divergence}");
+        }
+    }
+
+    #[test]
+    fn the_field_inside_is_known_for_no_contrast_and_for_small_spheres() {
+        use crate::Source;
+        let source = PlaneWave::new(Vec3::Y, Vec3::Z, 1.0.into()).unwrap();
+        let nothing = DielectricSphere::new(1.0, 1.0.into()).unwrap();
+        for p in [Vec3::ZERO, Vec3::new(0.1, 0.2, -0.6), Vec3::Y * 0.9] {
+            let gap = nothing.inside(&wave_of(5.0), &source, p) - source.field(&wave_of(5.0), p).e;
+            assert!(gap.norm() < 1e-5, "{p}: {:e}", gap.norm());
+        }
+        // 3/(ε + 2) of what arrives, at the centre and elsewhere.
+        let permittivity = Complex64::new(4.0, -1.0);
+        let small = DielectricSphere::new(1.0, permittivity).unwrap();
+        for p in [Vec3::ZERO, Vec3::new(0.1, 0.2, -0.6)] {
+            let found = small.inside(&wave_of(1e-3), &source, p);
+            let expected = ComplexVector::along(Vec3::Z, 3.0 / (permittivity + 2.0));
+            assert!((found - expected).norm() < 2e-3, "{p}: {found:?}");
+        }
     }
 }
