@@ -11,11 +11,16 @@ use num_complex::Complex64;
 
 /// A number whose square overflows soon, and its inverse underflows.
 const LARGE: f64 = 1e150;
+/// Most orders that are computed at once.
+const MOST: usize = 10_000_000;
 
 /// J_n(z) e^{−|Im z|} for n = 0 … last; 0 where it is too small for a number.
 pub(super) fn regular(z: Complex64, last: usize) -> Result<Vec<Complex64>, WaveError> {
     if z == Complex64::ZERO {
         return Ok((0..=last).map(|n| if n == 0 { Complex64::ONE } else { Complex64::ZERO }).collect());
+    }
+    if last.max(terms(z.norm())) > MOST {
+        return Err(none(Error::TotalPrecisionLoss));
     }
     let [zero, one] = [0.0, 1.0].map(|order| besselj_scaled(order, z));
     let (zero, one) = (zero.map_err(none)?, one.map_err(none)?);

@@ -1,12 +1,12 @@
 //! Circular cylinders around z: a perfect conductor, and layers around a core that is dielectric or
 //! conducting.
 //!
-//! With E_z = E₀ e_z Σ j⁻ⁿ J_n(κρ) e^{jn(φ − φ_i)} e^{−jk_z z} of the wave that comes, and H_z as
-//! well (φ_i the azimuth of its travel), what goes out is a series of H_n⁽²⁾(κρ); on a conductor with
-//! −J_n(κa)/H_n⁽²⁾(κa) times E_z and −J_n′/H_n⁽²⁾′ times H_z (C. A. Balanis, Advanced Engineering
-//! Electromagnetics, 2nd ed., Wiley 2012, § 11.5 and 11.6), on layers by two-by-two matrices (C. F.
-//! Bohren, D. R. Huffman, Absorption and Scattering of Light by Small Particles, Wiley 1983, § 8.4;
-//! `layers` beside this file).
+//! With E_z = E₀ e_z Σ j⁻ⁿ J_n(κρ) e^{jn(φ − φ_i)} e^{−jk_z z} of the wave that comes and such an
+//! H_z (φ_i the azimuth of its travel), what goes out is a series of H_n⁽²⁾(κρ); on a conductor
+//! with −J_n(κa)/H_n⁽²⁾(κa) times E_z and −J_n′/H_n⁽²⁾′ times H_z (C. A. Balanis, Advanced
+//! Engineering Electromagnetics, 2nd ed., Wiley 2012, § 11.5), on layers by two-by-two matrices (C.
+//! F. Bohren, D. R. Huffman, Absorption and Scattering of Light by Small Particles, Wiley 1983, §
+//! 8.4; `layers` beside this file).
 //!
 //! Widths are powers per length of the cylinder over the incident power density, with b_n the
 //! amplitudes of E_z and η₀H_z that go out and i_n those that come in:
@@ -130,7 +130,7 @@ impl LayeredCylinder {
     /// density. Their difference is what is absorbed.
     ///
     /// # Errors
-    /// Those of [`LayeredCylinder::scattered`].
+    /// Those of [`LayeredCylinder::scattered`], and [`WaveError::NotFinite`] without an amplitude.
     pub fn widths(&self, wave: &Wave, source: &PlaneWave) -> Result<[f64; 2], WaveError> {
         let series = Series::new(self, wave, source)?;
         let mut sums = [0.0; 2];
@@ -142,7 +142,12 @@ impl LayeredCylinder {
         }
         let kappa = series.seen.kappa.re;
         let scale = 4.0 * wave.wavenumber() / (kappa * kappa * source.amplitude().norm_sqr());
-        Ok(sums.map(|sum| sum * scale))
+        let widths = sums.map(|sum| sum * scale);
+        if widths.iter().all(|width| width.is_finite()) {
+            Ok(widths)
+        } else {
+            Err(WaveError::NotFinite { what: "a width of the cylinder" })
+        }
     }
 
     fn radius(&self) -> f64 {
@@ -229,8 +234,8 @@ impl Series {
         Filling::new(permittivity, self.k, self.cosine)
     }
 
-    /// The field of the waves whose E_z and η₀H_z are Σ f_i(|n|) e^{jnφ}, i = n + last, where f_i(m)
-    /// has a cylinder function of the order m. With those, (∂x + j∂y) f_n e^{jnφ} is −κ f_{n+1}
+    /// The field of the waves whose E_z and η₀H_z are Σ f_i(|n|) e^{jnφ}, i = n + last, where
+    /// f_i(m) has a cylinder function of order m. With those, (∂x + j∂y) f_n e^{jnφ} is −κ f_{n+1}
     /// e^{j(n+1)φ}, and (∂x − j∂y) f_n e^{jnφ} is κ f_{n−1} e^{j(n−1)φ}.
     fn field(
         &self,

@@ -9,7 +9,7 @@
 //! ∇V = jκ V (ρ̂ cos ψ − φ̂ sin ψ) + √(jκ/(2πρ)) e^{−jκρ} (ρ̂ cos(ψ/2) − φ̂ sin(ψ/2))
 //! ```
 //!
-//! (C. A. Balanis, Advanced Engineering Electromagnetics, 2nd ed., Wiley 2012, § 13.2). κ may be
+//! (C. A. Balanis, Advanced Engineering Electromagnetics, 2nd ed., Wiley 2012, ch. 13). κ may be
 //! complex: V is e^{−jκρ} E(−a), or e^{jκρ cos ψ} − e^{−jκρ} E(a) where Re a > 0, with the function
 //! E(a) = ½ erfcx(e^{jπ/4} a) of the edge currents, |arg e^{jπ/4} a| ≤ π/4.
 

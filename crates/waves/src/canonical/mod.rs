@@ -16,6 +16,7 @@
 //! | [`ConductingCylinder`], [`LayeredCylinder`] | series of J_n and H_n⁽²⁾ |
 //! | [`ConductingWedge`] | series of J_{m/n} |
 //! | [`HalfPlane`] | Fresnel integrals |
+//! | [`ResistiveHalfPlane`] | factors of Wiener and Hopf |
 //!
 //! Lengths in metres, angles in radians.
 
@@ -23,10 +24,12 @@ mod bessel;
 mod cylinder;
 mod half_plane;
 mod layers;
+mod resistive;
 mod wedge;
 
 pub use cylinder::{ConductingCylinder, LayeredCylinder};
 pub use half_plane::HalfPlane;
+pub use resistive::ResistiveHalfPlane;
 pub use wedge::ConductingWedge;
 
 use crate::medium::IMPEDANCE;

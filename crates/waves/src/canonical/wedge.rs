@@ -9,8 +9,8 @@
 //! ```
 //!
 //! (J. J. Bowman, T. B. A. Senior, P. L. E. Uslenghi, Electromagnetic and Acoustic Scattering by
-//! Simple Shapes, North-Holland 1969, § 6.3; C. A. Balanis, Advanced Engineering Electromagnetics,
-//! 2nd ed., Wiley 2012, § 13.2.)
+//! Simple Shapes, North-Holland 1969, ch. 6; C. A. Balanis, Advanced Engineering Electromagnetics,
+//! 2nd ed., Wiley 2012, § 11.6.)
 
 use super::bessel::{pair, terms};
 use super::{Medium, Oblique, finite};
@@ -55,6 +55,9 @@ impl ConductingWedge {
         let seen = Oblique::new(medium, source)?;
         let from = self.open(-source.travel());
         let from = from.ok_or(WaveError::Travel { what: "leads out of the conductor" })?;
+        if !p.is_finite() {
+            return Err(WaveError::NotFinite { what: "a coordinate of the place" });
+        }
         let Some(phi) = self.open(p) else { return Ok(Field::ZERO) };
         let rho = p.x.hypot(p.y);
         let z = seen.kappa * rho;
@@ -178,7 +181,7 @@ mod tests {
         }
     }
 
-    /// E across the edge grows as ρ^{1/n − 1} (Balanis § 13.2).
+    /// E across the edge grows as ρ^{1/n − 1} (Balanis, § 11.6).
     #[test]
     fn near_the_edge_it_goes_as_a_power_of_the_distance() {
         let wedge = ConductingWedge::new(1.5).unwrap();
