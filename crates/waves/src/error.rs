@@ -32,6 +32,18 @@ pub enum WaveError {
     /// A polarisation points along the direction of travel.
     #[error("the polarisation is parallel to the direction of travel")]
     Polarisation,
+    /// A plane wave comes from where it cannot.
+    #[error("the direction of travel {what}")]
+    Travel {
+        /// What is wrong with it.
+        what: &'static str,
+    },
+    /// A wedge has no such angle.
+    #[error("the open angle of a wedge is {value} π, but must be above 0 and at most 2 π")]
+    Wedge {
+        /// What was given, over π.
+        value: f64,
+    },
     /// An amplitude or a coordinate is NaN or infinite.
     #[error("{what} is not a finite number")]
     NotFinite {
@@ -135,6 +147,8 @@ impl WaveError {
             Self::Frequency { .. }
             | Self::Length { .. }
             | Self::Direction { .. }
+            | Self::Travel { .. }
+            | Self::Wedge { .. }
             | Self::NotFinite { .. }
             | Self::Material { .. }
             | Self::Visibility(_)

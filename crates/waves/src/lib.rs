@@ -6,6 +6,7 @@
 //!
 //! Here u = (p − q)/R points from the source q to the observer p, and g = e^{−jkR}/(4πR).
 
+pub mod canonical;
 mod complex;
 mod coupling;
 mod current;

@@ -17,7 +17,7 @@
 //! lengths in metres.
 
 mod coefficients;
-mod fresnel;
+pub(crate) mod fresnel;
 mod geometry;
 
 use crate::medium::IMPEDANCE;
