@@ -3,8 +3,8 @@
 #![allow(dead_code, reason = "every test file and example uses its part")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
-use fredholm_direct::DenseLu;
-use fredholm_linop::{LinearOperator, MultiVector, Quiet, SecondKind, Solver, Stop, StopReason};
+use fredholm_direct::{DenseLdlt, DenseLu};
+use fredholm_linop::{LinearOperator, MultiVector, Quiet, SecondKind, Solver, Stop, StopReason, Symmetry};
 use fredholm_mesh::Vec3;
 use fredholm_moments::{Basis, Conductor, Currents, Imperfect};
 use fredholm_waves::source::PlaneWave;
@@ -72,12 +72,14 @@ pub fn solved(k: &dyn LinearOperator<Complex64>, b: &MultiVector<Complex64>) -> 
     let a = SecondKind::new(k, ones).unwrap();
     let mut x = MultiVector::zeros(b.dim(), b.rhs_count());
     let stop = Stop { tolerance: 1e-9, max_iterations: 1 };
-    let report = DenseLu.solve(&a, b, &mut x, &stop, &mut Quiet).unwrap();
+    let symmetric = k.symmetry() == Symmetry::Symmetric;
+    let solver: &dyn Solver<Complex64> = if symmetric { &DenseLdlt } else { &DenseLu };
+    let report = solver.solve(&a, b, &mut x, &stop, &mut Quiet).unwrap();
     assert_eq!(report.reason, StopReason::Converged);
     x
 }
 
-/// The currents of a conductor in the wave of the references, by LU.
+/// The currents of a conductor in the wave of the references.
 pub fn currents<'a>(conductor: &Conductor<'a>, basis: &'a Basis) -> Currents<'a> {
     let source = source();
     let sources: [&dyn Source; 1] = [&source];
