@@ -6,8 +6,8 @@
 //!     RADIUS EDGES TOLERANCE BODY FACTORS
 //! ```
 //!
-//! RADIUS is in wavelengths, EDGES are counted to a wavelength, BODY is `combined` (usual) or
-//! `electric` for a conductor by one of these equations, or a permittivity such as 4 or 10-5j.
+//! RADIUS is in wavelengths, EDGES are counted to a wavelength, BODY is `combined` (usual),
+//! `magnetic` or `electric` for a conductor by one of these equations, or a permittivity such as 4 or 10-5j.
 //! FACTORS is the tolerance of the factors that precondition the system; without it the blocks on
 //! the diagonal do. The errors are those of E_z at 25 m, at 1.5 radii and, in dielectrics, at half a
 //! radius.
@@ -49,8 +49,12 @@ fn main() {
         println!("error {:.5} far, {:.5} near", error(&far), error(&near));
     };
     match body {
-        "combined" | "electric" => {
-            let equation = if body == "electric" { Equation::Electric } else { Equation::default() };
+        "combined" | "magnetic" | "electric" => {
+            let equation = match body {
+                "electric" => Equation::Electric,
+                "magnetic" => Equation::Magnetic,
+                _ => Equation::default(),
+            };
             let basis = Basis::new(surface).unwrap();
             let conductor = Conductor::new(&basis, wave(), equation, 1e-3).unwrap();
             let x = run.solve(conductor.operator(), &conductor.right_hand_side(&[&sources]));
@@ -59,7 +63,7 @@ fn main() {
         }
         permittivity => {
             let Ok(permittivity) = permittivity.parse::<Complex64>() else {
-                println!("BODY is combined, electric or a permittivity, not {permittivity}");
+                println!("BODY is combined, magnetic, electric or a permittivity, not {permittivity}");
                 std::process::exit(2);
             };
             let fillings = vec![Filling::Dielectric(0); surface.triangles().len()];

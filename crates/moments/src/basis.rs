@@ -23,6 +23,7 @@
 //! general composite metallic and dielectric structures with junctions, Progress In
 //! Electromagnetics Research 52 (2005) 81, doi:10.2528/PIER04071301.)
 
+use crate::dual::PARTS;
 use crate::regions::{Face, Regions};
 use crate::{MomentsError, Side, Surface, Topology};
 use fredholm_mesh::Vec3;
@@ -128,12 +129,22 @@ impl Basis {
         let order = along_curve(&functions.iter().map(middle).collect::<Vec<_>>());
         let mut waiting: Vec<Option<Function>> = functions.into_iter().map(Some).collect();
         let functions = order.into_iter().filter_map(|at| waiting[at].take()).collect();
+        Self { regions, ..Self::with(surface, topology, functions, None) }
+    }
+
+    /// Functions in the order in which they are given.
+    pub(crate) fn with(
+        surface: Surface,
+        topology: Topology,
+        functions: Vec<Function>,
+        ground: Option<Ground>,
+    ) -> Self {
         let centres: Vec<Vec3> = (0..surface.triangles().len()).map(|t| surface.centre(t)).collect();
         let mut ranks = vec![0; centres.len()];
         for (rank, triangle) in along_curve(&centres).into_iter().enumerate() {
             ranks[triangle] = rank as u32;
         }
-        Self { surface, topology, functions, ranks, ground: None, regions }
+        Self { surface, topology, functions, ranks, ground, regions: None }
     }
 
     /// The same above a ground plane: all equations and fields then have the images of the currents
@@ -213,14 +224,25 @@ impl Basis {
         self.ranks[triangle as usize]
     }
 
-    /// ∫ f_a·f_b dA over one triangle, for corners `a` and `b` and weights 1.
-    pub(crate) fn gram(&self, triangle: u32, a: usize, b: usize) -> f64 {
-        let triangle = triangle as usize;
-        let centre = self.surface.centre(triangle);
-        let corners = self.surface.corners(triangle).map(|corner| corner - centre);
-        let spread: f64 = corners.iter().map(|corner| corner.length_squared()).sum();
-        (spread / 12.0 + corners[a].dot(corners[b])) / (4.0 * self.surface.area(triangle))
+    /// ∫ (n × g_a)·f_b dA over one of the triangles that a triangle of another basis is cut into,
+    /// for corner `a` of that part, corner `b` of the whole and weights 1.
+    pub(crate) fn turned_gram(&self, part: u32, whole: &Self, [a, b]: [usize; 2]) -> f64 {
+        let (part, triangle) = (part as usize, part as usize / PARTS);
+        let centre = self.surface.centre(part);
+        let own = centre - self.surface.corners(part)[a];
+        let other = centre - whole.surface.corners(triangle)[b];
+        let normal = whole.surface.normal(triangle);
+        normal.dot(own.cross(other)) / (4.0 * whole.surface.area(triangle))
     }
+}
+
+/// ∫ f_a·f_b dA over one triangle, for its corners `a` and `b` and weights 1.
+pub(crate) fn gram(surface: &Surface, triangle: u32, [a, b]: [usize; 2]) -> f64 {
+    let triangle = triangle as usize;
+    let centre = surface.centre(triangle);
+    let corners = surface.corners(triangle).map(|corner| corner - centre);
+    let spread: f64 = corners.iter().map(|corner| corner.length_squared()).sum();
+    (spread / 12.0 + corners[a].dot(corners[b])) / (4.0 * surface.area(triangle))
 }
 
 /// A triangle at an edge: the regions ahead of it and behind it on the way around the edge.

@@ -210,7 +210,13 @@ pub(crate) fn term(space: Space, tolerance: f64) -> Result<Term, MomentsError> {
     let wanted = Wanted { electric: true, magnetic: true, turned: false };
     let rules = Rules::new(tolerance, space.k, true)?;
     Ok(Term {
-        integrator: Integrator { medium: Medium::new(space.k), wanted, rules, arch: Arch::new() },
+        integrator: Integrator {
+            medium: Medium::new(space.k),
+            wanted,
+            rules,
+            arch: Arch::new(),
+            observers_cut: false,
+        },
         electric: [[space.impedance, zero], [zero, -space.impedance.inv()]],
         magnetic: [[zero, one], [one, zero]],
     })

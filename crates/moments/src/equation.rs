@@ -4,9 +4,13 @@
 //!
 //! ```text
 //! electric  (any surface):   η ⟨f, T J⟩ = ⟨f, E_i⟩
-//! magnetic  (closed bodies): η [½ ⟨f, J⟩ − ⟨f, n × K J⟩] = η ⟨f, n × H_i⟩
-//! combined  (closed bodies): α electric + (1 − α) magnetic
+//! magnetic  (closed bodies): η [½ ⟨n × g, J⟩ − ⟨g, K J⟩] = η ⟨g, H_i⟩
+//! combined  (closed bodies): α electric + (1 − α) η [½ ⟨f, J⟩ − ⟨f, n × K J⟩ = ⟨f, n × H_i⟩]
 //! ```
+//!
+//! where g are the dual functions (`dual`): ½ J − n × K J = n × H_i is an equality of functions that
+//! n × g and not f are the duals of. Tested with f, a sphere of half a wavelength with edges of λ/10
+//! has 1.44 % of error. The combination needs one kind of tests, and has the half of that.
 //!
 //! R. F. Harrington, Field Computation by Moment Methods, Macmillan 1968; J. R. Mautz, R. F.
 //! Harrington, H-field, E-field, and combined-field solutions for conducting bodies of revolution,
@@ -15,6 +19,7 @@
 //! answer at every frequency. Unknowns are η J (V/m times a function of 1/m, so V); the residual of
 //! every solver is that of these equations.
 
+use crate::dual::dual;
 use crate::kernel::{Medium, Wanted};
 use crate::operator::{Factors, Kinds, Operator, Products, Term};
 use crate::pairs::Integrator;
@@ -100,10 +105,20 @@ pub(crate) fn electric_term(
     let (electric_part, magnetic_part) = (electric != 0.0, magnetic != 0.0);
     let wanted = Wanted { electric: electric_part, magnetic: magnetic_part, turned: magnetic_part };
     let rules = Rules::new(tolerance, k, wanted.magnetic)?;
-    let integrator = Integrator { medium: Medium::new(k), wanted, rules, arch: Arch::new() };
+    let integrator =
+        Integrator { medium: Medium::new(k), wanted, rules, arch: Arch::new(), observers_cut: false };
     // n × K tested with f is −(f × n)·… turned: f·(n × v) = (f × n)·v.
     let (electric, magnetic) = (electric_only(electric.into()), electric_only((-magnetic).into()));
     Ok(Term { integrator, electric, magnetic })
+}
+
+/// What electric currents in free space add to the magnetic equation that dual functions test.
+fn magnetic_term(k: Complex64, tolerance: f64) -> Result<Term, MomentsError> {
+    let wanted = Wanted { electric: false, magnetic: true, turned: false };
+    let rules = Rules::new(tolerance, k, true)?;
+    let integrator =
+        Integrator { medium: Medium::new(k), wanted, rules, arch: Arch::new(), observers_cut: true };
+    Ok(Term { integrator, electric: Factors::default(), magnetic: electric_only((-1.0).into()) })
 }
 
 /// A factor of electric currents tested with the electric equation, where there is nothing else.
@@ -138,11 +153,19 @@ impl<'a> Conductor<'a> {
         basis.topology().check_resolution(basis.surface(), wave.wavelength())?;
         let [electric, magnetic] = equation.shares();
         let k = Complex64::from(wave.wavenumber());
-        let term = electric_term(k, [electric, magnetic], tolerance)?;
+        let is_magnetic = equation == Equation::Magnetic;
+        let term = if is_magnetic {
+            magnetic_term(k, tolerance)?
+        } else {
+            electric_term(k, [electric, magnetic], tolerance)?
+        };
         let symmetry = if magnetic == 0.0 { Symmetry::Symmetric } else { Symmetry::General };
         let products = Products::Everywhere(electric_only((0.5 * magnetic).into()));
         let kinds = vec![Kinds::ELECTRIC; basis.len()];
-        let operator = Operator::new(basis, kinds, vec![term], products, symmetry);
+        let mut operator = Operator::new(basis, kinds, vec![term], products, symmetry);
+        if is_magnetic {
+            operator = operator.tested_with(dual(basis)?);
+        }
         Ok(Self { basis, wave, equation, operator })
     }
 
@@ -170,9 +193,12 @@ impl<'a> Conductor<'a> {
         let [electric, magnetic] = self.equation.shares();
         let mut b = MultiVector::zeros(self.basis.len(), excitations.len());
         for (rhs, sources) in excitations.iter().enumerate() {
-            let tested = tested(self.basis, &self.wave, sources, |field, normal| {
-                field.e * electric + field.h.crossed_by(normal) * (magnetic * IMPEDANCE)
-            });
+            let tested = match self.operator.tests() {
+                Some(tests) => tested(tests, &self.wave, sources, |field, _| field.h * IMPEDANCE),
+                None => tested(self.basis, &self.wave, sources, |field, normal| {
+                    field.e * electric + field.h.crossed_by(normal) * (magnetic * IMPEDANCE)
+                }),
+            };
             b.set_vector(rhs, &tested);
         }
         b

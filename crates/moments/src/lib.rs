@@ -9,6 +9,7 @@ mod basis;
 mod composite;
 mod condition;
 mod currents;
+mod dual;
 mod equation;
 mod error;
 mod kernel;

@@ -14,6 +14,8 @@
 //! the images of all others in. The unknowns of a function follow each other. T and the first form
 //! of K are symmetric.
 
+use crate::basis::gram;
+use crate::dual::PARTS;
 use crate::pairs::Integrator;
 use crate::set::{Halves, Set};
 use crate::{Basis, MomentsError};
@@ -23,6 +25,7 @@ use fredholm_mesh::Vec3;
 use num_complex::Complex64;
 use rayon::prelude::*;
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// Functions of a tile: triangles on the border of two tiles are integrated for both.
 const TILE: usize = 192;
@@ -79,6 +82,8 @@ impl Products {
 #[derive(Clone, Debug)]
 pub struct Operator<'a> {
     basis: &'a Basis,
+    /// What the equation is tested with, where it is not the functions themselves: their dual ones.
+    tests: Option<Arc<Basis>>,
     /// Of every function.
     kinds: Vec<Kinds>,
     /// The first unknown of every function, and their number.
@@ -103,7 +108,18 @@ impl<'a> Operator<'a> {
             end
         });
         let starts = std::iter::once(0).chain(ends).collect();
-        Self { basis, kinds, starts, terms, products, symmetry }
+        Self { basis, tests: None, kinds, starts, terms, products, symmetry }
+    }
+
+    /// The same tested with n × the dual functions.
+    pub(crate) fn tested_with(self, tests: Basis) -> Self {
+        Self { tests: Some(Arc::new(tests)), ..self }
+    }
+
+    /// The dual functions that the equation is tested with; none where it is the functions
+    /// themselves.
+    pub(crate) fn tests(&self) -> Option<&Basis> {
+        self.tests.as_deref()
     }
 
     /// The functions.
@@ -135,8 +151,9 @@ impl<'a> Operator<'a> {
 
     /// Prepares functions for [`Operator::fill`].
     #[must_use]
-    pub fn prepare(&self, functions: impl Iterator<Item = usize>) -> Set {
-        Set::new(self.basis, &self.kinds, self.terms.len(), functions)
+    pub fn prepare(&self, functions: impl Iterator<Item = usize> + Clone) -> Set {
+        let of = |basis: &Basis| Set::new(basis, &self.kinds, self.terms.len(), functions.clone());
+        Set { tests: self.tests().map(|tests| Box::new(of(tests))), ..of(self.basis) }
     }
 
     /// Writes the entries of all unknowns of some functions, row by row.
@@ -145,6 +162,7 @@ impl<'a> Operator<'a> {
     /// Like a slice, where `out` is shorter.
     pub fn fill(&self, rows: &Set, columns: &Set, out: &mut [Complex64]) {
         let stride = columns.len;
+        let rows = rows.tests.as_deref().unwrap_or(rows);
         out[..rows.len * stride].fill(Complex64::ZERO);
         for (term, (rows, columns)) in self.terms.iter().zip(rows.regions.iter().zip(&columns.regions)) {
             add_term(term, [rows, columns], out, stride);
@@ -165,11 +183,18 @@ impl<'a> Operator<'a> {
             if *factors == Factors::default() {
                 continue;
             }
-            let found = columns.triangles.binary_search_by_key(&self.basis.rank(triangle), ranked);
+            // Dual functions are on parts of the triangles.
+            let whole = if self.tests.is_some() { triangle / PARTS as u32 } else { triangle };
+            let found = columns.triangles.binary_search_by_key(&self.basis.rank(whole), ranked);
             let Ok(column) = found else { continue };
             for m in rows.entries(row) {
                 for n in columns.entries(column) {
-                    let product = m.weight * n.weight * self.basis.gram(triangle, m.corner, n.corner);
+                    let corners = [m.corner, n.corner];
+                    let gram = match self.tests() {
+                        Some(tests) => tests.turned_gram(triangle, self.basis, corners),
+                        None => gram(self.basis.surface(), triangle, corners),
+                    };
+                    let product = m.weight * n.weight * gram;
                     let at = m.at * stride + n.at;
                     for a in 0..m.kinds {
                         for b in 0..n.kinds {
@@ -352,6 +377,7 @@ fn add_term(term: &Term, [rows, columns]: [&Halves; 2], out: &mut [Complex64], s
 /// Pairs of triangles of two sets in all regions.
 fn pairs(rows: &Set, columns: &Set) -> usize {
     let count = |(a, b): (&Halves, &Halves)| a.triangles.len() * b.triangles.len();
+    let rows = rows.tests.as_deref().unwrap_or(rows);
     rows.regions.iter().zip(&columns.regions).map(count).sum()
 }
 

@@ -1,5 +1,6 @@
 //! The integrals of all pairs of triangles of the halves of functions, each by the rule that suits it.
 
+use crate::dual::{PARTS, parts};
 use crate::kernel::{Apart, Eight, Eights, Medium, Points, Touching, Values, WIDTH, Wanted};
 use crate::rules::{CLASSES, Rule, Rules};
 use crate::set::{Halves, Shape};
@@ -29,6 +30,9 @@ pub(crate) struct Integrator {
     pub(crate) wanted: Wanted,
     pub(crate) rules: Rules,
     pub(crate) arch: Arch,
+    /// Whether the observers are the parts that the sources are cut into (`dual`): those of source
+    /// t have the names 6t to 6t + 5.
+    pub(crate) observers_cut: bool,
 }
 
 /// The triangle of one set that meets all of the other.
@@ -155,11 +159,30 @@ impl Integrator {
     /// potentials with the same errors: the difference of two errors would act as a charge, which at
     /// low frequencies counts (λ/2πh)² times as much as the current itself.
     fn near(&self, shapes: [&Shape; 2], names: [u32; 2]) -> Pair {
+        if self.observers_cut {
+            return self.close_to_part(shapes, names[0] / PARTS as u32 == names[1]);
+        }
         if names[0] > names[1] && !self.wanted.turned {
             let [observer, source] = shapes;
             return self.close([source, observer], [names[1], names[0]]).transposed();
         }
         self.close(shapes, names)
+    }
+
+    /// The magnetic integrals of a part of a triangle as observer with a source, which is cut likewise
+    /// so that the two have whole sides in common; `within` says whether it is a part of the source,
+    /// with which it has none.
+    fn close_to_part(&self, shapes: [&Shape; 2], within: bool) -> Pair {
+        if within {
+            return Pair::default();
+        }
+        let [observer, source] = shapes;
+        let mut sums = Parts { integrator: self, shapes, waiting: Default::default(), sum: Pair::default() };
+        for part in parts(source.places) {
+            sums.add([observer.places, part], [1.0, 1.0 / PARTS as f64], 0);
+        }
+        (0..CLASSES).for_each(|class| sums.flush(class));
+        sums.sum
     }
 
     fn close(&self, shapes: [&Shape; 2], names: [u32; 2]) -> Pair {
@@ -371,7 +394,8 @@ mod tests {
 
     fn integrator(k: Complex64, tolerance: f64, turned: bool) -> Integrator {
         let rules = Rules::new(tolerance, k, true).unwrap();
-        Integrator { medium: Medium::new(k), wanted: Wanted { turned, ..WANTED }, rules, arch: Arch::new() }
+        let wanted = Wanted { turned, ..WANTED };
+        Integrator { medium: Medium::new(k), wanted, rules, arch: Arch::new(), observers_cut: false }
     }
 
     /// The integrals as they are defined, by a list of pairs of points.

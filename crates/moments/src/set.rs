@@ -61,6 +61,8 @@ pub struct Set {
     pub(crate) len: usize,
     /// In every region.
     pub(crate) regions: Vec<Halves>,
+    /// What the equation is tested with instead of these functions.
+    pub(crate) tests: Option<Box<Self>>,
 }
 
 /// The halves of some functions in one region.
@@ -102,7 +104,7 @@ impl Set {
         // Regions have numbers from that around the bodies on, which alone has a ground.
         let ground = |region: usize| basis.ground().filter(|_| region == 0);
         let in_region = |(region, halves)| Halves::new(basis, halves, ground(region));
-        Self { len, regions: halves.into_iter().enumerate().map(in_region).collect() }
+        Self { len, regions: halves.into_iter().enumerate().map(in_region).collect(), tests: None }
     }
 }
 

@@ -42,6 +42,7 @@ fn products_of_conductors_are_within_the_tolerance() {
     let operators = [
         (conductor(&sheet, Equation::Electric), "electric", &[1e-2, 1e-3, 1e-4][..]),
         (conductor(&ball, Equation::default()), "combined", &[1e-2, 1e-3]),
+        (conductor(&ball, Equation::Magnetic), "magnetic", &[1e-2, 1e-3]),
     ];
     for (operator, name, tolerances) in &operators {
         for &tolerance in *tolerances {

@@ -1,0 +1,224 @@
+//! Dual functions: currents on the barycentric refinement of a closed surface, across the functions
+//! of [`Basis`].
+//!
+//! Every triangle is cut into six at its medians. Around each vertex lies a dual cell of its 2N small
+//! triangles. The function of an edge carries a unit current from the cell of one of its ends to
+//! that of the other, half of it on either side of the middle of the edge, and spreads it evenly:
+//! every small triangle has the same charge. With the spokes of a cell counted from the edge on, the
+//! current through spoke i is i/(2N) − ½. So the functions are div-conforming, as the ones of the
+//! edges are, and n × them is nearly along those: they are what the range of the magnetic equation is
+//! to be tested with. (A. Buffa, S. H. Christiansen, A dual finite element complex on the barycentric
+//! refinement, Math. Comp. 76 (2007) 1743, doi:10.1090/S0025-5718-07-01965-5; K. Cools, F. P.
+//! Andriulli, D. De Zutter, E. Michielssen, Accurate and conforming mixed discretization of the MFIE,
+//! IEEE Antennas Wirel. Propag. Lett. 10 (2011) 528, doi:10.1109/LAWP.2011.2155022.)
+
+use crate::basis::gram;
+use crate::{Basis, Function, Half, MomentsError, Surface, Topology};
+use fredholm_mesh::Vec3;
+
+/// Small triangles of a triangle: triangle t has those from 6t on.
+pub(crate) const PARTS: usize = 6;
+
+/// The small triangles of a triangle, in order: at every corner the one along the next side, and the
+/// one along the side before. Their first corner is that of the triangle.
+pub(crate) fn parts(corners: [Vec3; 3]) -> [[Vec3; 3]; PARTS] {
+    let centre = (corners[0] + corners[1] + corners[2]) / 3.0;
+    let middle = |i: usize| 0.5 * (corners[i % 3] + corners[(i + 1) % 3]);
+    std::array::from_fn(|part| {
+        let i = part / 2;
+        if part % 2 == 0 { [corners[i], middle(i), centre] } else { [corners[i], centre, middle(i + 2)] }
+    })
+}
+
+/// The dual functions of a closed surface, in the order of its functions.
+///
+/// # Errors
+/// Those of [`Surface::new`].
+pub(crate) fn dual(basis: &Basis) -> Result<Basis, MomentsError> {
+    let edges = Edges::new(basis);
+    let surface = refined(basis.surface(), &edges)?;
+    let topology = Topology::new(&surface);
+    let small = Edges::of(&topology, surface.triangles().len());
+    let functions = basis.functions().iter().map(|function| {
+        let meeting = &basis.topology().edges()[function.edge];
+        let mut halves = Vec::new();
+        for side in &meeting.sides {
+            // From either end the triangle that runs through the edge from there on comes first.
+            let sign = if side.forward { 1.0 } else { -1.0 };
+            let from = (side.triangle as usize, (usize::from(side.corner) + 1) % 3);
+            add_cell(basis.topology(), &edges, from, sign, &mut halves);
+        }
+        let norm = norm(&surface, &halves);
+        halves.iter_mut().for_each(|half| half.weight /= norm);
+        // Half of the edge itself, from its lower vertex to the middle.
+        let edge = small.0[halves[0].triangle as usize][2];
+        Function { edge, halves, magnetic: false }
+    });
+    let functions = functions.collect();
+    Ok(Basis::with(surface, topology, functions, basis.ground()))
+}
+
+/// The edges opposite to the corners of every triangle.
+struct Edges(Vec<[usize; 3]>);
+
+impl Edges {
+    fn new(basis: &Basis) -> Self {
+        Self::of(basis.topology(), basis.surface().triangles().len())
+    }
+
+    fn of(topology: &Topology, triangles: usize) -> Self {
+        let mut edges = vec![[0; 3]; triangles];
+        for (edge, meeting) in topology.edges().iter().enumerate() {
+            for side in &meeting.sides {
+                edges[side.triangle as usize][usize::from(side.corner)] = edge;
+            }
+        }
+        Self(edges)
+    }
+}
+
+/// The surface with every triangle cut into its parts.
+fn refined(surface: &Surface, edges: &Edges) -> Result<Surface, MomentsError> {
+    let (corners, triangles) = (surface.vertices(), surface.triangles());
+    let count = edges.0.iter().flatten().max().map_or(0, |last| last + 1);
+    let mut vertices = corners.to_vec();
+    vertices.resize(corners.len() + count + triangles.len(), Vec3::ZERO);
+    let mut cut = Vec::with_capacity(PARTS * triangles.len());
+    for (triangle, names) in triangles.iter().enumerate() {
+        let places = parts(surface.corners(triangle));
+        let centre = corners.len() + count + triangle;
+        let middle = |i: usize| corners.len() + edges.0[triangle][(i + 2) % 3];
+        for i in 0..3 {
+            let [next, before] = [middle(i), middle((i + 2) % 3)];
+            (vertices[next], vertices[centre]) = (places[2 * i][1], places[2 * i][2]);
+            cut.push([names[i], next as u32, centre as u32]);
+            cut.push([names[i], centre as u32, before as u32]);
+        }
+    }
+    Surface::new(vertices, cut)
+}
+
+/// Adds what a function has in the cell of a vertex: a unit current that leaves it through the sides
+/// of its first and last small triangle. The cell begins at a corner of a triangle and goes around
+/// counterclockwise.
+fn add_cell(topology: &Topology, edges: &Edges, first: (usize, usize), sign: f64, halves: &mut Vec<Half>) {
+    let mut fan = vec![first];
+    while let Some(&(triangle, corner)) = fan.last() {
+        // Across the side from the vertex to the corner before.
+        let sides = &topology.edges()[edges.0[triangle][(corner + 1) % 3]].sides;
+        let Some(other) = sides.iter().find(|side| side.triangle as usize != triangle) else { break };
+        let next = (other.triangle as usize, (usize::from(other.corner) + 1) % 3);
+        if next == first || fan.len() == edges.0.len() {
+            break;
+        }
+        fan.push(next);
+    }
+    let count = 2 * fan.len();
+    let through = |spoke: usize| spoke as f64 / count as f64 - 0.5;
+    for spoke in 0..count {
+        let (triangle, corner) = fan[spoke / 2];
+        let triangle = (PARTS * triangle + 2 * corner + spoke % 2) as u32;
+        let mut add = |corner: u8, weight: f64| {
+            halves.push(Half { triangle, corner, weight: sign * weight, region: 0 });
+        };
+        // Small triangles are (vertex, on the spoke, on the next spoke).
+        if spoke > 0 {
+            add(2, -through(spoke));
+        }
+        if spoke + 1 < count {
+            add(1, through(spoke + 1));
+        }
+        if spoke == 0 || spoke + 1 == count {
+            add(0, 0.5);
+        }
+    }
+}
+
+/// ‖f‖ of halves that follow each other triangle by triangle.
+fn norm(surface: &Surface, halves: &[Half]) -> f64 {
+    let mut square = 0.0;
+    for together in halves.chunk_by(|a, b| a.triangle == b.triangle) {
+        for a in together {
+            for b in together {
+                let corners = [a.corner, b.corner].map(usize::from);
+                square += a.weight * b.weight * gram(surface, a.triangle, corners);
+            }
+        }
+    }
+    square.sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::meshing::sphere;
+
+    fn basis() -> Basis {
+        Basis::new(sphere(1.0, 0.6).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn the_parts_of_a_triangle_are_a_sixth_of_it_and_are_those_of_the_refinement() {
+        let basis = basis();
+        let dual = dual(&basis).unwrap();
+        for triangle in 0..basis.surface().triangles().len() {
+            let parts = parts(basis.surface().corners(triangle));
+            for (part, corners) in parts.into_iter().enumerate() {
+                assert_eq!(dual.surface().corners(PARTS * triangle + part), corners);
+                let share = dual.surface().area(PARTS * triangle + part) / basis.surface().area(triangle);
+                assert!((share * 6.0 - 1.0).abs() < 1e-12);
+            }
+        }
+        assert!(dual.topology().check_closed(dual.surface(), "a test").is_ok());
+    }
+
+    /// What comes through an edge of the refinement on one side leaves on the other, and the charge
+    /// of a cell is even.
+    #[test]
+    fn dual_functions_are_continuous_with_even_charges_in_two_cells() {
+        let basis = basis();
+        let dual = dual(&basis).unwrap();
+        let count = dual.surface().triangles().len();
+        let edges = Edges::of(dual.topology(), count);
+        for (function, own) in dual.functions().iter().zip(basis.functions()) {
+            let mut through = vec![0.0; dual.topology().edges().len()];
+            let mut charges = vec![0.0; count];
+            let mut square = 0.0;
+            for half in &function.halves {
+                through[edges.0[half.triangle as usize][usize::from(half.corner)]] += half.weight;
+                charges[half.triangle as usize] += half.weight;
+                square += half.weight.abs();
+            }
+            assert!(square > 0.0 && through.iter().all(|sum| sum.abs() < 1e-12));
+            let ends = basis.topology().edges()[own.edge].vertices;
+            for (end, vertex) in ends.into_iter().enumerate() {
+                let cell: Vec<f64> = (0..count)
+                    .filter(|&t| dual.surface().triangles()[t][0] == vertex)
+                    .map(|t| charges[t])
+                    .collect();
+                let sum: f64 = cell.iter().sum();
+                assert!(cell.iter().all(|c| (c * cell.len() as f64 - sum).abs() < 1e-12));
+                assert!((sum > 0.0) == (end == 0));
+            }
+            assert!(charges.iter().sum::<f64>().abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn dual_functions_have_unit_norms_and_are_across_those_of_the_edges() {
+        let basis = basis();
+        let dual = dual(&basis).unwrap();
+        for (function, own) in dual.functions().iter().zip(basis.functions()) {
+            assert!((norm(dual.surface(), &function.halves) - 1.0).abs() < 1e-12);
+            let mut product = 0.0;
+            for a in &function.halves {
+                for b in own.halves.iter().filter(|b| b.triangle as usize == a.triangle as usize / PARTS) {
+                    let corners = [a.corner, b.corner].map(usize::from);
+                    product += a.weight * b.weight * dual.turned_gram(a.triangle, &basis, corners);
+                }
+            }
+            // The same sign for all, and not small: the matrix of these products can be inverted.
+            assert!(product.abs() > 0.4, "{product}");
+        }
+    }
+}
