@@ -23,7 +23,6 @@
 //! general composite metallic and dielectric structures with junctions, Progress In
 //! Electromagnetics Research 52 (2005) 81, doi:10.2528/PIER04071301.)
 
-use crate::dual::PARTS;
 use crate::regions::{Face, Regions};
 use crate::{MomentsError, Side, Surface, Topology};
 use fredholm_mesh::Vec3;
@@ -222,17 +221,6 @@ impl Basis {
     /// Place of a triangle in an order in which neighbours are near each other.
     pub(crate) fn rank(&self, triangle: u32) -> u32 {
         self.ranks[triangle as usize]
-    }
-
-    /// ∫ (n × g_a)·f_b dA over one of the triangles that a triangle of another basis is cut into,
-    /// for corner `a` of that part, corner `b` of the whole and weights 1.
-    pub(crate) fn turned_gram(&self, part: u32, whole: &Self, [a, b]: [usize; 2]) -> f64 {
-        let (part, triangle) = (part as usize, part as usize / PARTS);
-        let centre = self.surface.centre(part);
-        let own = centre - self.surface.corners(part)[a];
-        let other = centre - whole.surface.corners(triangle)[b];
-        let normal = whole.surface.normal(triangle);
-        normal.dot(own.cross(other)) / (4.0 * whole.surface.area(triangle))
     }
 }
 
@@ -435,8 +423,8 @@ mod tests {
                         .iter()
                         .map(|x| 2.0 * area * x.weight * product(a + x.u * (b - a) + x.v * (c - a)))
                         .sum();
-                    let closed =
-                        half.weight * basis.gram(half.triangle, half.corner.into(), other.corner.into());
+                    let closed = half.weight
+                        * gram(basis.surface(), half.triangle, [half.corner.into(), other.corner.into()]);
                     assert!((sum - closed).abs() < 1e-14 * half.weight.abs());
                     if other.corner == half.corner {
                         norm += half.weight * closed;

@@ -178,9 +178,9 @@ pub(crate) fn tested_with_both(
     let mut b = MultiVector::zeros(operator.dim(), excitations.len());
     let any = operator.unknowns().any(|(_, magnetic)| magnetic.is_some());
     for (rhs, sources) in excitations.iter().enumerate() {
-        let electric = tested(operator.basis(), wave, sources, |field, _| field.e);
+        let electric = tested(operator.basis(), wave, sources, |field| field.e);
         let magnetic = if any {
-            tested(operator.basis(), wave, sources, |field, _| field.h * -IMPEDANCE)
+            tested(operator.basis(), wave, sources, |field| field.h * -IMPEDANCE)
         } else {
             Vec::new()
         };
@@ -207,7 +207,7 @@ pub(crate) fn currents<'a>(operator: &Operator<'a>, wave: Wave, x: &[Complex64])
 /// What one region adds.
 pub(crate) fn term(space: Space, tolerance: f64) -> Result<Term, MomentsError> {
     let (zero, one) = (Complex64::ZERO, Complex64::ONE);
-    let wanted = Wanted { electric: true, magnetic: true, turned: false };
+    let wanted = Wanted { electric: true, magnetic: true };
     let rules = Rules::new(tolerance, space.k, true)?;
     Ok(Term {
         integrator: Integrator {

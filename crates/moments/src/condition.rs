@@ -125,7 +125,7 @@ impl<'a> Imperfect<'a> {
         let of_function = |f: &crate::Function| conditions[f.halves[0].triangle as usize].kinds();
         let kinds: Vec<Kinds> = basis.functions().iter().map(of_function).collect();
         let term = if kinds.iter().all(|kinds| kinds.count == 1) {
-            electric_term(k, [1.0, 0.0], tolerance)?
+            electric_term(k, 1.0, tolerance)?
         } else {
             term(Space { k, impedance: Complex64::ONE }, tolerance)?
         };

@@ -373,7 +373,7 @@ impl Viewer<'_> {
         for lane in 0..WIDTH {
             let shape = parts.get(lane).unwrap_or(&last).shape;
             spread = spread.max(shape.radius);
-            eights.set(lane, shape.centre, shape.normal, shape.corners);
+            eights.set(lane, shape.centre, shape.corners);
             for (place, &uv) in points.iter_mut().zip(&rule.points) {
                 let q = shape.point(uv);
                 (0..3).for_each(|axis| place[axis][lane] = q[axis]);

@@ -5,10 +5,10 @@
 //! −4π ∇G), this computes
 //!
 //! ```text
-//! electric_ab = jk ∫∫ [(r − a)·(r′ − b) − 4/k²] g,      magnetic_ab = −∫∫ t_a · (q × (r′ − b))
+//! electric_ab = jk ∫∫ [(r − a)·(r′ − b) − 4/k²] g,      magnetic_ab = −∫∫ (r − a) · (q × (r′ − b))
 //! ```
 //!
-//! with t_a = r − a, or its turned form (r − a) × n, over the unit triangles (each measures ½).
+//! over the unit triangles (each measures ½).
 //! Because q is along d and r′ − b = (r − b) − d, the inner integral of the magnetic part is (r −
 //! b) × Q with Q = ∫ q: both parts need few sums over the points (the moments), from which all nine
 //! pairs of corners follow. Everything is relative to the centres of the triangles, so that nothing
@@ -50,20 +50,18 @@ pub(crate) const WIDTH: usize = 8;
 /// One number for each pair.
 pub(crate) type Eight = [f64; WIDTH];
 
-/// Eight triangles: centre, unit normal and corners relative to the centre.
+/// Eight triangles: centre, and corners relative to the centre.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Eights {
     pub(crate) centre: [Eight; 3],
-    pub(crate) normal: [Eight; 3],
     pub(crate) corners: [[Eight; 3]; 3],
 }
 
 impl Eights {
     /// Writes a triangle to a lane; `corners` are relative to the centre.
-    pub(crate) fn set(&mut self, lane: usize, centre: Vec3, normal: Vec3, corners: [Vec3; 3]) {
+    pub(crate) fn set(&mut self, lane: usize, centre: Vec3, corners: [Vec3; 3]) {
         for axis in 0..3 {
             self.centre[axis][lane] = centre[axis];
-            self.normal[axis][lane] = normal[axis];
             for (own, corner) in self.corners.iter_mut().zip(corners) {
                 own[axis][lane] = corner[axis];
             }
@@ -71,9 +69,9 @@ impl Eights {
     }
 
     /// One triangle in all lanes.
-    pub(crate) fn splat(centre: Vec3, normal: Vec3, corners: [Vec3; 3]) -> Self {
+    pub(crate) fn splat(centre: Vec3, corners: [Vec3; 3]) -> Self {
         let mut all = Self::default();
-        (0..WIDTH).for_each(|lane| all.set(lane, centre, normal, corners));
+        (0..WIDTH).for_each(|lane| all.set(lane, centre, corners));
         all
     }
 }
@@ -104,8 +102,6 @@ impl Medium {
 pub(crate) struct Wanted {
     pub(crate) electric: bool,
     pub(crate) magnetic: bool,
-    /// Whether the magnetic part is tested with (r − a) × n.
-    pub(crate) turned: bool,
 }
 
 /// Both parts of nine pairs of corners (3a + b), real and imaginary, for eight pairs of triangles.
@@ -160,7 +156,6 @@ impl Apart<'_> {
         let wave = Kernel::<S, LOSSY>::new(simd, self.medium, self.spread);
         for at in 0..WIDTH / S::F64_LANES {
             let (observers, sources) = (self.observers, self.sources);
-            let normal = register(simd, &observers.triangles.normal, at);
             let shift = sub(
                 register(simd, &observers.triangles.centre, at),
                 register(simd, &sources.triangles.centre, at),
@@ -177,18 +172,10 @@ impl Apart<'_> {
                     inner.add::<ELECTRIC, MAGNETIC, LOSSY>(&wave, sub(e, other), other, middle, weight);
                 }
                 let weight = Lanes::splat(simd, weight);
-                moments.add(&inner, own, test(self.wanted, own, normal), e, weight);
+                moments.add(&inner, own, weight);
             }
             let fade = if LOSSY { fade(simd, self.medium, middle) } else { Lanes::splat(simd, 1.0) };
-            moments.write(
-                &wave,
-                fade,
-                self.wanted,
-                self.observers.triangles,
-                self.sources.triangles,
-                at,
-                self.out,
-            );
+            moments.write(&wave, fade, shift, self.observers.triangles, self.sources.triangles, at, self.out);
         }
     }
 }
@@ -245,7 +232,6 @@ impl Touching<'_> {
         let zero = Lanes::splat(simd, 0.0);
         let one = Lanes::splat(simd, 1.0);
         for at in 0..WIDTH / S::F64_LANES {
-            let normal = register(simd, &self.observer.normal, at);
             let shift =
                 sub(register(simd, &self.observer.centre, at), register(simd, &self.source.centre, at));
             let (observer, source) = (frame(simd, self.corners[0]), frame(simd, self.corners[1]));
@@ -257,9 +243,9 @@ impl Touching<'_> {
                 let weight = Lanes::register(simd, &points.weight, at);
                 let mut inner = Inner::<S>::zero(simd);
                 inner.add::<ELECTRIC, MAGNETIC, LOSSY>(&wave, sub(e, other), other, zero, weight);
-                moments.add(&inner, own, test(self.wanted, own, normal), e, one);
+                moments.add(&inner, own, one);
             }
-            moments.write(&wave, one, self.wanted, self.observer, self.source, at, self.out);
+            moments.write(&wave, one, shift, self.observer, self.source, at, self.out);
         }
         self.out.fold();
     }
@@ -307,12 +293,6 @@ fn fade<S: Simd>(simd: S, medium: Medium, middle: Lanes<S>) -> Lanes<S> {
     middle.store(&mut values[..S::F64_LANES]);
     let faded = values.map(|distance| (medium.k.im * distance).exp());
     Lanes::load(simd, &faded[..S::F64_LANES])
-}
-
-/// The test function r of a point, without its corner.
-#[inline(always)]
-fn test<S: Simd>(wanted: Wanted, own: [Lanes<S>; 3], normal: [Lanes<S>; 3]) -> [Lanes<S>; 3] {
-    if wanted.turned { cross(own, normal) } else { own }
 }
 
 /// The constants of a medium.
@@ -427,12 +407,9 @@ struct Moments<S: Simd, const ELECTRIC: bool, const MAGNETIC: bool> {
     own: [Complex<S>; 3],
     other: [Complex<S>; 3],
     product: Complex<S>,
-    /// ∫ Q, ∫ e × Q, ∫ t × Q, ∫ t·(e × Q), with e from the source's centre to the point and t the
-    /// test function.
+    /// ∫ Q, ∫ r × Q.
     gradient: [Complex<S>; 3],
-    turned: [Complex<S>; 3],
     tested: [Complex<S>; 3],
-    triple: Complex<S>,
 }
 
 impl<S: Simd, const ELECTRIC: bool, const MAGNETIC: bool> Moments<S, ELECTRIC, MAGNETIC> {
@@ -445,21 +422,12 @@ impl<S: Simd, const ELECTRIC: bool, const MAGNETIC: bool> Moments<S, ELECTRIC, M
             other: [zero; 3],
             product: zero,
             gradient: [zero; 3],
-            turned: [zero; 3],
             tested: [zero; 3],
-            triple: zero,
         }
     }
 
     #[inline(always)]
-    fn add(
-        &mut self,
-        inner: &Inner<S>,
-        own: [Lanes<S>; 3],
-        test: [Lanes<S>; 3],
-        e: [Lanes<S>; 3],
-        weight: Lanes<S>,
-    ) {
+    fn add(&mut self, inner: &Inner<S>, own: [Lanes<S>; 3], weight: Lanes<S>) {
         if ELECTRIC {
             let g = inner.potential.scaled(weight);
             let one = weight.constant(1.0);
@@ -474,32 +442,34 @@ impl<S: Simd, const ELECTRIC: bool, const MAGNETIC: bool> Moments<S, ELECTRIC, M
         if MAGNETIC {
             let one = weight.constant(1.0);
             let q: [Complex<S>; 3] = axes!(c => inner.gradient[c].scaled(weight));
-            let turned = crossed(e, q);
-            let tested = crossed(test, q);
+            let tested = crossed(own, q);
             for c in 0..3 {
                 self.gradient[c] = self.gradient[c].plus(one, q[c]);
-                self.turned[c] = self.turned[c].plus(one, turned[c]);
                 self.tested[c] = self.tested[c].plus(one, tested[c]);
-                self.triple = self.triple.plus(test[c], turned[c]);
             }
         }
     }
 
-    /// Adds the entries of all pairs of corners to register `at` of the values.
+    /// Adds the entries of all pairs of corners to register `at` of the values; `shift` goes from the
+    /// centre of the sources to that of the observers.
     #[inline(always)]
     #[allow(clippy::too_many_arguments, reason = "two triangles, one medium and where to write")]
     fn write<const LOSSY: bool>(
         &self,
         wave: &Kernel<S, LOSSY>,
         fade: Lanes<S>,
-        wanted: Wanted,
+        shift: [Lanes<S>; 3],
         observers: &Eights,
         sources: &Eights,
         at: usize,
         out: &mut Values,
     ) {
         let simd = fade.simd();
-        let normal = register(simd, &observers.normal, at);
+        // With e = s + r from the sources' centre to the point, and the shift s: ∫ e × Q = s × ∫ Q +
+        // ∫ r × Q, and ∫ r·(e × Q) = −s·∫ r × Q.
+        let outer = crossed(shift, self.gradient);
+        let outer: [Complex<S>; 3] = axes!(c => outer[c].plus(fade.constant(1.0), self.tested[c]));
+        let triple = sub_dot(Complex::zero(simd), shift, &self.tested);
         for a in 0..3 {
             let corner = register(simd, &observers.corners[a], at);
             if ELECTRIC {
@@ -515,8 +485,7 @@ impl<S: Simd, const ELECTRIC: bool, const MAGNETIC: bool> Moments<S, ELECTRIC, M
                 }
             }
             if MAGNETIC {
-                let corner = test(wanted, corner, normal);
-                let rest = sub_dot(self.triple, corner, &self.turned);
+                let rest = sub_dot(triple, corner, &outer);
                 let across = crossed(corner, self.gradient);
                 let slope: [Complex<S>; 3] = axes!(c => across[c].plus(-fade.constant(1.0), self.tested[c]));
                 for b in 0..3 {
@@ -557,14 +526,6 @@ fn sub<S: Simd>(a: [Lanes<S>; 3], b: [Lanes<S>; 3]) -> [Lanes<S>; 3] {
 #[inline(always)]
 fn dot<S: Simd>(a: [Lanes<S>; 3], b: [Lanes<S>; 3]) -> Lanes<S> {
     a[2].mul_add(b[2], a[1].mul_add(b[1], a[0] * b[0]))
-}
-
-#[inline(always)]
-fn cross<S: Simd>(a: [Lanes<S>; 3], b: [Lanes<S>; 3]) -> [Lanes<S>; 3] {
-    axes!(c => {
-        let (d, e) = ((c + 1) % 3, (c + 2) % 3);
-        a[d] * b[e] - a[e] * b[d]
-    })
 }
 
 /// Real a × complex b.

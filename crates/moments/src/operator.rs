@@ -15,7 +15,7 @@
 //! of K are symmetric.
 
 use crate::basis::gram;
-use crate::dual::PARTS;
+use crate::dual::{PARTS, turned_gram};
 use crate::pairs::Integrator;
 use crate::set::{Halves, Set};
 use crate::{Basis, MomentsError};
@@ -78,12 +78,24 @@ impl Products {
     }
 }
 
+/// What dual functions (`dual`) test: the magnetic part of electric currents, and products.
+#[derive(Clone, Debug)]
+pub(crate) struct DualPart {
+    /// In the order of the functions.
+    pub(crate) basis: Arc<Basis>,
+    pub(crate) integrator: Integrator,
+    /// Of ∫∫ g·(∇G × f′).
+    pub(crate) magnetic: f64,
+    /// Of ∫ (n × g)·f dA.
+    pub(crate) product: f64,
+}
+
 /// The entries of an equation on demand.
 #[derive(Clone, Debug)]
 pub struct Operator<'a> {
     basis: &'a Basis,
-    /// What the equation is tested with, where it is not the functions themselves: their dual ones.
-    tests: Option<Arc<Basis>>,
+    /// What dual functions test besides.
+    dual: Option<DualPart>,
     /// Of every function.
     kinds: Vec<Kinds>,
     /// The first unknown of every function, and their number.
@@ -108,18 +120,18 @@ impl<'a> Operator<'a> {
             end
         });
         let starts = std::iter::once(0).chain(ends).collect();
-        Self { basis, tests: None, kinds, starts, terms, products, symmetry }
+        Self { basis, dual: None, kinds, starts, terms, products, symmetry }
     }
 
-    /// The same tested with n × the dual functions.
-    pub(crate) fn tested_with(self, tests: Basis) -> Self {
-        Self { tests: Some(Arc::new(tests)), ..self }
+    /// The same with what dual functions test in the region around the bodies, where all currents
+    /// are electric.
+    pub(crate) fn with_dual(self, dual: DualPart) -> Self {
+        Self { dual: Some(dual), ..self }
     }
 
-    /// The dual functions that the equation is tested with; none where it is the functions
-    /// themselves.
-    pub(crate) fn tests(&self) -> Option<&Basis> {
-        self.tests.as_deref()
+    /// What dual functions test besides.
+    pub(crate) fn dual(&self) -> Option<&DualPart> {
+        self.dual.as_ref()
     }
 
     /// The functions.
@@ -152,8 +164,10 @@ impl<'a> Operator<'a> {
     /// Prepares functions for [`Operator::fill`].
     #[must_use]
     pub fn prepare(&self, functions: impl Iterator<Item = usize> + Clone) -> Set {
-        let of = |basis: &Basis| Set::new(basis, &self.kinds, self.terms.len(), functions.clone());
-        Set { tests: self.tests().map(|tests| Box::new(of(tests))), ..of(self.basis) }
+        // Dual functions are in the region around the bodies.
+        let regions = self.terms.len().max(1);
+        let dual = self.dual().map(|dual| Set::new(&dual.basis, &self.kinds, regions, functions.clone()));
+        Set { dual: dual.map(Box::new), ..Set::new(self.basis, &self.kinds, regions, functions) }
     }
 
     /// Writes the entries of all unknowns of some functions, row by row.
@@ -162,7 +176,6 @@ impl<'a> Operator<'a> {
     /// Like a slice, where `out` is shorter.
     pub fn fill(&self, rows: &Set, columns: &Set, out: &mut [Complex64]) {
         let stride = columns.len;
-        let rows = rows.tests.as_deref().unwrap_or(rows);
         out[..rows.len * stride].fill(Complex64::ZERO);
         for (term, (rows, columns)) in self.terms.iter().zip(rows.regions.iter().zip(&columns.regions)) {
             add_term(term, [rows, columns], out, stride);
@@ -170,8 +183,67 @@ impl<'a> Operator<'a> {
                 add_term(term, [rows, images], out, stride);
             }
         }
-        if let (Some(rows), Some(columns)) = (rows.regions.first(), columns.regions.first()) {
-            self.add_products(rows, columns, out, stride);
+        let Some(outer) = columns.regions.first() else { return };
+        if let Some(rows) = rows.regions.first() {
+            self.add_products(rows, outer, out, stride);
+        }
+        let filled = &mut out[..rows.len * stride];
+        let tests = rows.dual.as_ref().and_then(|tests| tests.regions.first());
+        if let (Some(dual), Some(rows)) = (&self.dual, tests) {
+            self.add_dual(dual, rows, outer, filled, stride);
+        }
+    }
+
+    /// Adds what dual functions test. Every small triangle has halves of a dozen of them, so that
+    /// what its three corners see of every function is summed first.
+    fn add_dual(
+        &self,
+        dual: &DualPart,
+        rows: &Halves,
+        columns: &Halves,
+        out: &mut [Complex64],
+        stride: usize,
+    ) {
+        // One line for every unknown, three corners a triangle.
+        let line = 3 * rows.triangles.len();
+        let mut seen = vec![Complex64::ZERO; line * stride];
+        let mut add = |columns: &Halves| {
+            let factor = dual.magnetic / (4.0 * PI);
+            dual.integrator.each(rows, columns, |row, column, pair| {
+                for n in columns.entries(column) {
+                    let weight = factor * n.weight * n.units[0];
+                    let seen = &mut seen[n.at * line + 3 * row..][..3];
+                    for (corner, seen) in seen.iter_mut().enumerate() {
+                        *seen += pair.magnetic[3 * corner + n.corner] * weight;
+                    }
+                }
+            });
+        };
+        add(columns);
+        if let Some(images) = &columns.image {
+            add(images);
+        }
+        let ranked = |&triangle: &u32| self.basis.rank(triangle);
+        let [cut, whole] = [&*dual.basis, self.basis].map(Basis::surface);
+        for (row, &part) in rows.triangles.iter().enumerate() {
+            let rank = self.basis.rank(part / PARTS as u32);
+            let Ok(column) = columns.triangles.binary_search_by_key(&rank, ranked) else { continue };
+            for n in columns.entries(column) {
+                for corner in 0..3 {
+                    let gram = turned_gram(cut, part, whole, [corner, n.corner]);
+                    seen[n.at * line + 3 * row + corner] += dual.product * n.weight * gram;
+                }
+            }
+        }
+        let mut tested = vec![Complex64::ZERO; out.len() / stride.max(1)];
+        for (n, seen) in seen.chunks_exact(line.max(1)).enumerate() {
+            tested.fill(Complex64::ZERO);
+            for (row, seen) in seen.chunks_exact(3).enumerate() {
+                for m in rows.entries(row) {
+                    tested[m.at] += seen[m.corner] * m.weight;
+                }
+            }
+            out.iter_mut().skip(n).step_by(stride).zip(&tested).for_each(|(sum, tested)| *sum += tested);
         }
     }
 
@@ -183,18 +255,12 @@ impl<'a> Operator<'a> {
             if *factors == Factors::default() {
                 continue;
             }
-            // Dual functions are on parts of the triangles.
-            let whole = if self.tests.is_some() { triangle / PARTS as u32 } else { triangle };
-            let found = columns.triangles.binary_search_by_key(&self.basis.rank(whole), ranked);
+            let found = columns.triangles.binary_search_by_key(&self.basis.rank(triangle), ranked);
             let Ok(column) = found else { continue };
             for m in rows.entries(row) {
                 for n in columns.entries(column) {
                     let corners = [m.corner, n.corner];
-                    let gram = match self.tests() {
-                        Some(tests) => tests.turned_gram(triangle, self.basis, corners),
-                        None => gram(self.basis.surface(), triangle, corners),
-                    };
-                    let product = m.weight * n.weight * gram;
+                    let product = m.weight * n.weight * gram(self.basis.surface(), triangle, corners);
                     let at = m.at * stride + n.at;
                     for a in 0..m.kinds {
                         for b in 0..n.kinds {
@@ -377,8 +443,8 @@ fn add_term(term: &Term, [rows, columns]: [&Halves; 2], out: &mut [Complex64], s
 /// Pairs of triangles of two sets in all regions.
 fn pairs(rows: &Set, columns: &Set) -> usize {
     let count = |(a, b): (&Halves, &Halves)| a.triangles.len() * b.triangles.len();
-    let rows = rows.tests.as_deref().unwrap_or(rows);
-    rows.regions.iter().zip(&columns.regions).map(count).sum()
+    let of = |rows: &Set| rows.regions.iter().zip(&columns.regions).map(count).sum::<usize>();
+    of(rows) + rows.dual.as_deref().map_or(0, of)
 }
 
 /// The largest number of unknowns of a tile.

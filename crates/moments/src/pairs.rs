@@ -1,6 +1,6 @@
 //! The integrals of all pairs of triangles of the halves of functions, each by the rule that suits it.
 
-use crate::dual::{PARTS, parts};
+use crate::dual::PARTS;
 use crate::kernel::{Apart, Eight, Eights, Medium, Points, Touching, Values, WIDTH, Wanted};
 use crate::rules::{CLASSES, Rule, Rules};
 use crate::set::{Halves, Shape};
@@ -81,7 +81,7 @@ impl Integrator {
         observes: bool,
         mut visit: impl FnMut(usize, &Pair),
     ) {
-        let eights = Eights::splat(shape.centre, shape.normal, shape.corners);
+        let eights = Eights::splat(shape.centre, shape.corners);
         let mut one = One::new(shape, &eights);
         let mut values = Values::default();
         for eight in 0..set.eights.len() {
@@ -162,24 +162,30 @@ impl Integrator {
         if self.observers_cut {
             return self.close_to_part(shapes, names[0] / PARTS as u32 == names[1]);
         }
-        if names[0] > names[1] && !self.wanted.turned {
+        if names[0] > names[1] {
             let [observer, source] = shapes;
             return self.close([source, observer], [names[1], names[0]]).transposed();
         }
         self.close(shapes, names)
     }
 
-    /// The magnetic integrals of a part of a triangle as observer with a source, which is cut likewise
-    /// so that the two have whole sides in common; `within` says whether it is a part of the source,
-    /// with which it has none.
+    /// The magnetic integrals of a part of a triangle as observer with a source; `within` says
+    /// whether it is a part of the source, with which it has none. A source that has half a side in
+    /// common with it is halved there, so that the two have a whole one.
     fn close_to_part(&self, shapes: [&Shape; 2], within: bool) -> Pair {
         if within {
             return Pair::default();
         }
         let [observer, source] = shapes;
         let mut sums = Parts { integrator: self, shapes, waiting: Default::default(), sum: Pair::default() };
-        for part in parts(source.places) {
-            sums.add([observer.places, part], [1.0, 1.0 / PARTS as f64], 0);
+        let middle = |first: usize| 0.5 * (source.places[first] + source.places[(first + 1) % 3]);
+        match (0..3).find(|&first| observer.places.contains(&middle(first))) {
+            Some(first) => {
+                for half in halves(source.places, first) {
+                    sums.add([observer.places, half], [1.0, 0.5], 0);
+                }
+            }
+            None => sums.add([observer.places, source.places], [1.0; 2], 0),
         }
         (0..CLASSES).for_each(|class| sums.flush(class));
         sums.sum
@@ -261,7 +267,7 @@ impl Parts<'_> {
         let parts = corners.map(Shape::new);
         let eights = [0, 1].map(|side| {
             let whole = self.shapes[side];
-            Eights::splat(parts[side].centre, whole.normal, whole.seen_from(parts[side].centre))
+            Eights::splat(parts[side].centre, whole.seen_from(parts[side].centre))
         });
         let mut values = Values::default();
         self.integrator.arch.dispatch(Touching {
@@ -299,7 +305,7 @@ impl Parts<'_> {
             spread = spread.max(pair[0].0.radius + pair[1].0.radius);
             for (side, (part, _)) in pair.iter().enumerate() {
                 let whole = self.shapes[side];
-                eights[side].set(lane, part.centre, whole.normal, whole.seen_from(part.centre));
+                eights[side].set(lane, part.centre, whole.seen_from(part.centre));
                 for (place, &uv) in points[side].iter_mut().zip(&rule.points) {
                     let p = part.point(uv);
                     (0..3).for_each(|axis| place[axis][lane] = p[axis]);
@@ -323,7 +329,7 @@ impl Pair {
         Self { electric: read(&values.electric), magnetic: read(&values.magnetic) }
     }
 
-    /// The integrals with observer and source exchanged, of tests that are not turned.
+    /// The integrals with observer and source exchanged.
     fn transposed(&self) -> Self {
         let turned = |part: &[Complex64; 9]| std::array::from_fn(|i| part[3 * (i % 3) + i / 3]);
         Self { electric: turned(&self.electric), magnetic: turned(&self.magnetic) }
@@ -390,17 +396,15 @@ mod tests {
     use super::*;
     use fredholm_quadrature::{PairPoint, collapsed_triangle, triangle_pair};
 
-    const WANTED: Wanted = Wanted { electric: true, magnetic: true, turned: false };
+    const WANTED: Wanted = Wanted { electric: true, magnetic: true };
 
-    fn integrator(k: Complex64, tolerance: f64, turned: bool) -> Integrator {
+    fn integrator(k: Complex64, tolerance: f64) -> Integrator {
         let rules = Rules::new(tolerance, k, true).unwrap();
-        let wanted = Wanted { turned, ..WANTED };
-        Integrator { medium: Medium::new(k), wanted, rules, arch: Arch::new(), observers_cut: false }
+        Integrator { medium: Medium::new(k), wanted: WANTED, rules, arch: Arch::new(), observers_cut: false }
     }
 
     /// The integrals as they are defined, by a list of pairs of points.
-    fn plain(k: Complex64, corners: [[Vec3; 3]; 2], turned: bool, points: &[PairPoint]) -> Pair {
-        let normal = Shape::new(corners[0]).normal;
+    fn plain(k: Complex64, corners: [[Vec3; 3]; 2], points: &[PairPoint]) -> Pair {
         let at = |[a, b, c]: [Vec3; 3], [u, v]: [f64; 2]| a + u * (b - a) + v * (c - a);
         let mut sum = Pair::default();
         for point in points {
@@ -410,9 +414,8 @@ mod tests {
             let slope = -(1.0 + Complex64::I * k * distance) * g / (distance * distance);
             for i in 0..9 {
                 let (own, other) = (r - corners[0][i / 3], s - corners[1][i % 3]);
-                let tested = if turned { own.cross(normal) } else { own };
                 sum.electric[i] += Complex64::I * k * (own.dot(other) - 4.0 / (k * k)) * g;
-                sum.magnetic[i] += slope * tested.dot((r - s).cross(other));
+                sum.magnetic[i] += slope * own.dot((r - s).cross(other));
             }
         }
         sum
@@ -451,10 +454,10 @@ mod tests {
     }
 
     /// What the integrator finds for two triangles.
-    fn found(k: Complex64, tolerance: f64, turned: bool, corners: [[Vec3; 3]; 2]) -> Pair {
+    fn found(k: Complex64, tolerance: f64, corners: [[Vec3; 3]; 2]) -> Pair {
         let [observer, source] = corners.map(Shape::new);
         let names = [0, u32::from(corners[0] != corners[1])];
-        integrator(k, tolerance, turned).near([&observer, &source], names)
+        integrator(k, tolerance).near([&observer, &source], names)
     }
 
     fn products(n: usize) -> Vec<PairPoint> {
@@ -482,10 +485,10 @@ mod tests {
                 let way =
                     Vec3::new(number(seed * 3 + i), number(seed * 3 + 1), number(seed * 3 + 2)).normalize();
                 let corners = [triangle(seed, Vec3::ZERO), triangle(seed + 40, way * (2.0 * ratio))];
-                for (k, turned) in media.into_iter().flat_map(|k| [(k, false), (k, true)]) {
-                    let exact = plain(k, corners, turned, &points);
+                for k in media {
+                    let exact = plain(k, corners, &points);
                     for tolerance in [1e-2, 1e-3, 1e-5, 1e-7] {
-                        let error = errors(&found(k, tolerance, turned, corners), &exact);
+                        let error = errors(&found(k, tolerance, corners), &exact);
                         let share = error[0].max(error[1]) / tolerance;
                         assert!(share < 1.0, "{ratio} {k} {tolerance}: {error:?}");
                         worst = worst.max(share);
@@ -520,11 +523,11 @@ mod tests {
         let k = Complex64::new(0.6, -0.1);
         for fold in [0.0, 0.8, 1.6] {
             for (labels, corners) in contacts(1.0, fold) {
-                let exact = plain(k, corners, false, &triangle_pair([0, 1, 2], labels, 13));
+                let exact = plain(k, corners, &triangle_pair([0, 1, 2], labels, 13));
                 let exact =
                     if labels == [0, 1, 2] { Pair { magnetic: Default::default(), ..exact } } else { exact };
                 for tolerance in [1e-2, 1e-3, 1e-4, 1e-5] {
-                    let error = errors(&found(k, tolerance, false, corners), &exact);
+                    let error = errors(&found(k, tolerance, corners), &exact);
                     assert!(
                         error[0].max(error[1]) < 2.0 * tolerance,
                         "{fold} {labels:?} {tolerance}: {error:?}"
@@ -539,8 +542,8 @@ mod tests {
         let k = Complex64::from(0.6);
         for (height, bound) in [(0.25, 1e-3), (0.125, 6e-3)] {
             for (labels, corners) in contacts(height, 0.0) {
-                let exact = found(k, 1e-5, false, corners);
-                let error = errors(&found(k, 1e-3, false, corners), &exact);
+                let exact = found(k, 1e-5, corners);
+                let error = errors(&found(k, 1e-3, corners), &exact);
                 assert!(error[0] < bound, "{height} {labels:?}: {error:?}");
             }
         }
@@ -550,7 +553,7 @@ mod tests {
     fn a_turned_pair_has_the_transposed_integrals() {
         let k = Complex64::new(0.5, -0.2);
         for (_, [a, b]) in contacts(1.0, 1.0) {
-            let (forth, back) = (found(k, 1e-6, false, [a, b]), found(k, 1e-6, false, [b, a]));
+            let (forth, back) = (found(k, 1e-6, [a, b]), found(k, 1e-6, [b, a]));
             for i in 0..9 {
                 let turned = 3 * (i % 3) + i / 3;
                 assert!((forth.electric[i] - back.electric[turned]).norm() < 1e-5 * norm(&forth.electric));
@@ -559,10 +562,10 @@ mod tests {
         }
     }
 
-    /// Not only up to the tolerance, where the tests are not turned.
+    /// Not only up to the tolerance.
     #[test]
     fn a_pair_has_the_same_integrals_whichever_triangle_observes() {
-        let integrator = integrator(Complex64::new(0.5, -0.2), 1e-2, false);
+        let integrator = integrator(Complex64::new(0.5, -0.2), 1e-2);
         for (_, [a, b]) in contacts(0.6, 1.0) {
             let [a, b] = [a, b].map(Shape::new);
             let (forth, back) = (integrator.near([&a, &b], [3, 5]), integrator.near([&b, &a], [5, 3]));
@@ -580,7 +583,7 @@ mod tests {
         let mut energy = Complex64::ZERO;
         for a in halves {
             for b in halves {
-                energy += found(k.into(), 1e-7, false, [a, b]).electric[4] * Complex64::new(0.0, k / 4.0);
+                energy += found(k.into(), 1e-7, [a, b]).electric[4] * Complex64::new(0.0, k / 4.0);
             }
         }
         let exact = 4.0 / 3.0 * (1.0 - 2f64.sqrt()) + 4.0 * 1f64.asinh();
@@ -594,7 +597,7 @@ mod tests {
         for corners in [*touching, [triangle(1, Vec3::ZERO), triangle(2, Vec3::X * 4.0)]] {
             let [observer, source] = corners.map(Shape::new);
             let values = [Arch::new(), Arch::Scalar].map(|arch| {
-                let integrator = Integrator { arch, ..integrator(k, 1e-4, true) };
+                let integrator = Integrator { arch, ..integrator(k, 1e-4) };
                 integrator.near([&observer, &source], [0, 1])
             });
             assert_eq!(values[0], values[1]);

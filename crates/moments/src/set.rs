@@ -13,7 +13,6 @@ use std::sync::OnceLock;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shape {
     pub(crate) centre: Vec3,
-    pub(crate) normal: Vec3,
     /// Relative to the centre, m.
     pub(crate) corners: [Vec3; 3],
     /// As they were given, m.
@@ -25,10 +24,9 @@ impl Shape {
     pub(crate) fn new(places: [Vec3; 3]) -> Self {
         let corners = places;
         let centre = (corners[0] + corners[1] + corners[2]) / 3.0;
-        let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
         let corners = corners.map(|corner| corner - centre);
         let radius = corners.iter().map(|corner| corner.length()).fold(0.0, f64::max);
-        Self { centre, normal, corners, places, radius }
+        Self { centre, corners, places, radius }
     }
 
     /// The corners relative to another point, m.
@@ -61,8 +59,8 @@ pub struct Set {
     pub(crate) len: usize,
     /// In every region.
     pub(crate) regions: Vec<Halves>,
-    /// What the equation is tested with instead of these functions.
-    pub(crate) tests: Option<Box<Self>>,
+    /// Their dual functions, where these test a part of the equation.
+    pub(crate) dual: Option<Box<Self>>,
 }
 
 /// The halves of some functions in one region.
@@ -104,7 +102,7 @@ impl Set {
         // Regions have numbers from that around the bodies on, which alone has a ground.
         let ground = |region: usize| basis.ground().filter(|_| region == 0);
         let in_region = |(region, halves)| Halves::new(basis, halves, ground(region));
-        Self { len, regions: halves.into_iter().enumerate().map(in_region).collect(), tests: None }
+        Self { len, regions: halves.into_iter().enumerate().map(in_region).collect(), dual: None }
     }
 }
 
@@ -186,7 +184,7 @@ fn eights(shapes: &[Shape]) -> Vec<Eights> {
         let mut eights = Eights::default();
         for lane in 0..WIDTH {
             let shape = chunk[lane.min(chunk.len() - 1)];
-            eights.set(lane, shape.centre, shape.normal, shape.corners);
+            eights.set(lane, shape.centre, shape.corners);
         }
         eights
     };

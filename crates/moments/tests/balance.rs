@@ -1,4 +1,4 @@
-//! Power and reciprocity of eight bodies in a plane wave that comes from aside: what is taken from
+//! Power and reciprocity of nine bodies and equations in a plane wave that comes from aside: what is taken from
 //! the wave (the optical theorem: the far field straight ahead) is radiated or absorbed, and
 //! transmitter and receiver may be exchanged: p₂·F₁(−d₂) = p₁·F₂(−d₁) for two plane waves of
 //! directions d and polarisations p.
@@ -97,6 +97,7 @@ fn what_is_taken_from_the_wave_is_radiated_or_absorbed_and_ways_may_be_reversed(
         ("plate", of_conductor(square, Equation::Electric)),
         ("cube", of_conductor(cube.clone(), Equation::Electric)),
         ("ball, magnetic", of_conductor(ball(0.35), Equation::Magnetic)),
+        ("ball, combined", of_conductor(ball(0.35), Equation::default())),
         ("resistive shell", of_imperfect(ball(0.35), Condition::Sheet(Complex64::new(100.0, -300.0)))),
         ("ball with an impedance", of_imperfect(ball(0.35), Condition::Body(Complex64::new(50.0, 50.0)))),
         ("ball of glass", of_dielectric(&[(ball(0.3), Filling::Dielectric(0))], 4.0)),
@@ -112,11 +113,12 @@ fn what_is_taken_from_the_wave_is_radiated_or_absorbed_and_ways_may_be_reversed(
     }
 }
 
-/// The test functions of the combined equation are not those of its magnetic half.
+/// Its two halves have tests of two kinds, so that on edges the balance is that of the mesh: 1e-4 on
+/// a ball.
 #[test]
-fn the_combined_equation_keeps_power_up_to_its_error() {
+fn the_combined_equation_keeps_power_up_to_the_error_of_the_mesh() {
     let cube = cuboid(Vec3::splat(0.6 * WAVELENGTH), WAVELENGTH / 10.0, Grading { halvings: 1 }).unwrap();
     let [power, reciprocity] = of_conductor(cube, Equation::default());
-    println!("combined: power {power:.1e}, reciprocity {reciprocity:.1e}");
-    assert!(power < 0.02 && reciprocity < 0.02, "{power:e} {reciprocity:e}");
+    println!("cube, combined: power {power:.1e}, reciprocity {reciprocity:.1e}");
+    assert!(power < 6e-3 && reciprocity < 1e-3, "{power:e} {reciprocity:e}");
 }

@@ -29,7 +29,7 @@ fn sphere_error(per_wavelength: f64, equation: Equation) -> (f64, f64) {
 fn spheres_converge_to_the_series_with_the_second_order() {
     for (equation, bound, balance) in [
         (Equation::Electric, 0.004, 1e-3),
-        (Equation::default(), 0.01, 0.02),
+        (Equation::default(), 0.004, 1e-3),
         (Equation::Magnetic, 0.004, 1e-3),
     ] {
         let errors = [5.0, 10.0].map(|per_wavelength| sphere_error(per_wavelength, equation));

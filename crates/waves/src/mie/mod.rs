@@ -332,7 +332,9 @@ impl Regular {
         for n in (1..=start).rev() {
             psi[n - 1] = (2 * n + 1) as f64 / z * psi[n] - psi[n + 1];
             if psi[n - 1].norm() > 1e100 {
-                psi[n - 1..].iter_mut().for_each(|value| *value *= 1e-200);
+                for value in &mut psi[n - 1..] {
+                    *value *= 1e-200;
+                }
             }
         }
         let exponent = z.im.abs();
@@ -345,7 +347,9 @@ impl Regular {
         let (zero, one) = (sin, sin / z - cos);
         let scale = if zero.norm() > one.norm() { zero / psi[0] } else { one / psi[1] };
         psi.truncate(last + 1);
-        psi.iter_mut().for_each(|value| *value *= scale);
+        for value in &mut psi {
+            *value *= scale;
+        }
         Self { z, exponent, psi }
     }
 
