@@ -394,6 +394,7 @@ fn matched(corners: [[Vec3; 3]; 2]) -> ([[usize; 3]; 2], usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dual::parts;
     use fredholm_quadrature::{PairPoint, collapsed_triangle, triangle_pair};
 
     const WANTED: Wanted = Wanted { electric: true, magnetic: true };
@@ -547,6 +548,48 @@ mod tests {
                 assert!(error[0] < bound, "{height} {labels:?}: {error:?}");
             }
         }
+    }
+
+    /// What a point in the plane of a triangle is the sum of its corners with.
+    fn coordinates(corners: [Vec3; 3], p: Vec3) -> [f64; 3] {
+        let [a, b, c] = corners.map(|corner| corner - p);
+        let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+        [b.cross(c), c.cross(a), a.cross(b)].map(|part| part.dot(normal) / normal.length_squared())
+    }
+
+    /// The parts of a triangle as observers of the ones that it touches, against finer rules, and
+    /// together against the whole triangle: r − a is Σ c_i (r − p_i) with Σ c_i p_i = a.
+    #[test]
+    fn parts_of_a_triangle_are_integrated_within_the_tolerance() {
+        let k = Complex64::new(0.6, -0.1);
+        let cut = |tolerance| Integrator { observers_cut: true, ..integrator(k, tolerance) };
+        for fold in [0.8, 1.6] {
+            for (_, [whole, other]) in contacts(1.0, fold).into_iter().skip(1) {
+                let other = Shape::new(other);
+                let mut sums = [Complex64::ZERO; 9];
+                for (part, corners) in parts(whole).into_iter().enumerate() {
+                    let observer = Shape::new(corners);
+                    let of = |tolerance| cut(tolerance).near([&observer, &other], [part as u32, 1]);
+                    let (found, exact) = (of(1e-3), of(1e-6));
+                    // Relative to what the part has with magnitudes added: in planes that nearly
+                    // hold both, most of it cancels.
+                    let difference = std::array::from_fn(|i| found.magnetic[i] - exact.magnetic[i]);
+                    let size = norm(&exact.magnetic).max(0.1 * norm(&exact.electric));
+                    assert!(norm(&difference) < 5e-3 * size, "{fold} {part}: {:e}", norm(&difference) / size);
+                    for (at, sum) in sums.iter_mut().enumerate() {
+                        let shares = coordinates(corners, whole[at / 3]);
+                        let term = |(i, share): (usize, &f64)| exact.magnetic[3 * i + at % 3] * *share;
+                        *sum += shares.iter().enumerate().map(term).sum::<Complex64>() / PARTS as f64;
+                    }
+                }
+                let exact = integrator(k, 1e-6).near([&Shape::new(whole), &other], [0, 1]);
+                let difference = std::array::from_fn(|i| sums[i] - exact.magnetic[i]);
+                let size = norm(&exact.magnetic).max(0.1 * norm(&exact.electric));
+                assert!(norm(&difference) < 1e-4 * size, "{fold}: {:e}", norm(&difference) / size);
+            }
+        }
+        let own = Shape::new(contacts(1.0, 0.8)[0].1[0]);
+        assert_eq!(cut(1e-3).near([&own, &own], [11, 1]), Pair::default());
     }
 
     #[test]
