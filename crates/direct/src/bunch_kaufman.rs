@@ -199,8 +199,8 @@ enum Pivot {
     Pair(usize),
 }
 
-/// Column k of the matrix as the panel so far leaves it, into the panel's place for column `at`,
-/// from row k on: that of the rows and columns from k on that has `row` for its diagonal entry.
+/// Column `row` of what is left from row k on, as the panel so far leaves it, into the panel: that of
+/// k itself into the place of column k, a candidate for an exchange with it into the one behind.
 fn update<T: Scalar + ComplexField>(
     factors: &Factors<T>,
     panel: &mut [T],
@@ -208,7 +208,6 @@ fn update<T: Scalar + ComplexField>(
     row: usize,
 ) {
     let n = factors.dim;
-    // The candidate for an exchange lies behind that which it may be exchanged with.
     let place = k - first + usize::from(row != k);
     let (done, column) = panel.split_at_mut(place * n);
     let column = &mut column[..n];

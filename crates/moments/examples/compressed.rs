@@ -7,10 +7,10 @@
 //! ```
 //!
 //! RADIUS is in wavelengths, EDGES are counted to a wavelength, BODY is `combined` (usual),
-//! `magnetic` or `electric` for a conductor by one of these equations, or a permittivity such as 4 or 10-5j.
-//! FACTORS is the tolerance of the factors that precondition the system; without it the blocks on
-//! the diagonal do. The errors are those of E_z at 25 m, at 1.5 radii and, in dielectrics, at half a
-//! radius.
+//! `magnetic` or `electric` for a conductor by one of these equations, or a permittivity such as 4
+//! or 10-5j. FACTORS is the tolerance of the factors that precondition the system; without it the
+//! blocks on the diagonal do. The errors are those of E_z at 25 m, at 1.5 radii and, in dielectrics,
+//! at half a radius.
 
 #![allow(clippy::unwrap_used, reason = "an example that cannot go on has failed")]
 #![allow(clippy::print_stdout, reason = "it prints its table")]
