@@ -467,9 +467,13 @@ impl<S: Simd, const ELECTRIC: bool, const MAGNETIC: bool> Moments<S, ELECTRIC, M
         let simd = fade.simd();
         // With e = s + r from the sources' centre to the point, and the shift s: ∫ e × Q = s × ∫ Q +
         // ∫ r × Q, and ∫ r·(e × Q) = −s·∫ r × Q.
-        let outer = crossed(shift, self.gradient);
-        let outer: [Complex<S>; 3] = axes!(c => outer[c].plus(fade.constant(1.0), self.tested[c]));
-        let triple = sub_dot(Complex::zero(simd), shift, &self.tested);
+        let zero = Complex::zero(simd);
+        let (mut outer, mut triple) = ([zero; 3], zero);
+        if MAGNETIC {
+            let across = crossed(shift, self.gradient);
+            outer = axes!(c => across[c].plus(fade.constant(1.0), self.tested[c]));
+            triple = sub_dot(zero, shift, &self.tested);
+        }
         for a in 0..3 {
             let corner = register(simd, &observers.corners[a], at);
             if ELECTRIC {
