@@ -397,8 +397,13 @@ class Waves:
             ("method", self.method),
             ("solution", str(self.record["solution"])),
         ]
-        for name, key in (("shadows", "shadows"), ("chosen", "chosen_because")):
-            if self.record[key] is not None:
+        for name, key in (
+            ("order", "order"),
+            ("shadows", "shadows"),
+            ("chosen", "chosen_because"),
+        ):
+            # Records of the first version know no order.
+            if self.record.get(key) is not None:
                 facts.insert(-1, (name, str(self.record[key])))
         for found in self.record["frequencies"]:
             last = found["residuals"][-1] if found["residuals"] else None

@@ -16,14 +16,14 @@ use fredholm_iterative::Gmres;
 use fredholm_linop::{LinearOperator, MultiVector, Quiet, SecondKind, Solver, Stop};
 use fredholm_mesh::Vec3;
 use fredholm_moments::{
-    Basis, Composite, Condition, Conductor, Currents, Equation, Filling, Imperfect, Regions, Surface,
+    Basis, Composite, Condition, Conductor, Currents, Equation, Filling, Imperfect, Order, Regions, Surface,
     Topology,
 };
 use fredholm_waves::source::PlaneWave;
 use fredholm_waves::{
     Bounced, Complex64, ComplexVector, DielectricSphere, EdgeCurrents, Field, ImpedanceSphere, Indicator,
     PhysicalOptics, ResistiveShell, Scatterer, Shadow, Source, System, field_inside, inside_points,
-    left_inside, of_closed_elements,
+    left_inside, of_closed_elements, of_closed_first_order,
 };
 use wave_cases::{
     Body, Case, calibration, directions, error, far_series, small_bodies, small_sheets, tiny_bodies,
@@ -275,6 +275,87 @@ fn closed_elements(u: &[Vec3]) {
     }
 }
 
+/// Functions of the first full order: closed conductors by both equations, sheets, and dielectric
+/// balls.
+fn first_order(u: &[Vec3]) {
+    for bodies in small_bodies() {
+        let truths = Case::fine_truths(&bodies, u, 6.0, 2);
+        for per in [3.1, 4.0, 5.0, 7.0] {
+            let surface = bodies[0].of_first_order(per);
+            let basis = Basis::of_order(surface, Order::First).unwrap();
+            for (equation, name) in [(Equation::Electric, "efie"), (Equation::default(), "cfie")] {
+                let conductor = Conductor::new(&basis, wave(), equation, 1e-4).unwrap();
+                let x = right_hand_sides_solved(&bodies, &conductor.operator().coupling().unwrap(), &|e| {
+                    conductor.right_hand_side(e)
+                });
+                for (rhs, (case, truth)) in bodies.iter().zip(&truths).enumerate() {
+                    let currents = Currents::new(&basis, wave(), &x.vector(rhs), None);
+                    of_first_order(case, (name, 1.0, per), (&currents, &basis), (truth, u));
+                }
+            }
+        }
+    }
+    for bodies in small_sheets() {
+        let truths = Case::fine_truths(&bodies, u, 8.0, 3);
+        for per in [3.1, 4.0, 6.0] {
+            let surface = bodies[0].of_first_order(per);
+            let edge = Topology::new(&surface).relative_edge(&surface, WAVELENGTH);
+            let basis = Basis::of_order(surface, Order::First).unwrap();
+            let conductor = Conductor::new(&basis, wave(), Equation::Electric, 1e-4).unwrap();
+            let x = right_hand_sides_solved(&bodies, &conductor.operator().coupling().unwrap(), &|e| {
+                conductor.right_hand_side(e)
+            });
+            for (rhs, (case, truth)) in bodies.iter().zip(&truths).enumerate() {
+                let currents = Currents::new(&basis, wave(), &x.vector(rhs), None);
+                let far = currents.far_field(u).unwrap().into_iter().map(|far| far.amplitude);
+                let error = error(&far.collect::<Vec<_>>(), truth);
+                element_row(case, "efie", Indicator::OpenOfFirstOrder(edge), error);
+            }
+        }
+    }
+    for (radius, permittivity) in [(0.15, 2.0), (0.25, 3.0), (0.4, 2.5), (0.25, 5.0)] {
+        for lossy in [0.0, -0.5] {
+            let permittivity = Complex64::new(permittivity, lossy);
+            let ways = &calibration()[0];
+            let bodies = [Case { name: "dielectric ball", body: Body::Sphere(radius), ..ways[0].clone() }];
+            let exact = DielectricSphere::new(radius * WAVELENGTH, permittivity).unwrap();
+            let source = bodies[0].source();
+            let truth = far_series(u, |p| exact.scattered(&wave(), &source, p));
+            for per in [3.1, 4.0, 5.5] {
+                let shorter = permittivity.sqrt().norm();
+                let per = per * shorter;
+                let surface = bodies[0].of_first_order(per);
+                let solid = vec![Filling::Dielectric(0); surface.triangles().len()];
+                let regions = Regions::new(&surface, &solid).unwrap();
+                let basis = Basis::between_of_order(regions, Order::First).unwrap();
+                let body = Composite::new(&basis, wave(), &[permittivity], 1e-4).unwrap();
+                let x = right_hand_sides_solved(&bodies, &body.operator().coupling().unwrap(), &|e| {
+                    body.right_hand_side(e)
+                });
+                let currents = body.currents(&x.vector(0));
+                of_first_order(&bodies[0], ("pmchwt", shorter, per), (&currents, &basis), (&truth, u));
+            }
+        }
+    }
+}
+
+/// A row of a closed body.
+fn of_first_order(
+    case: &Case,
+    (method, shorter, per): (&str, f64, f64),
+    (currents, basis): (&Currents<'_>, &Basis),
+    (truth, u): (&[ComplexVector], &[Vec3]),
+) {
+    let source = case.source();
+    let points = inside_points(&case.scatterer(per), &wave()).unwrap();
+    let inside = left_inside(&wave(), &[&source], &points, &currents.fields(&points).unwrap()).unwrap();
+    let far: Vec<ComplexVector> =
+        currents.far_field(u).unwrap().into_iter().map(|far| far.amplitude).collect();
+    let edge = basis.topology().relative_edge(basis.surface(), WAVELENGTH / shorter);
+    let indicator = Indicator::InsideOfFirstOrder(of_closed_first_order(inside, edge));
+    element_row(case, method, indicator, error(&far, truth));
+}
+
 /// The solution for every case.
 fn right_hand_sides_solved(
     cases: &[Case],
@@ -331,12 +412,13 @@ fn main() {
     let u = directions();
     let wanted = std::env::args().nth(1).unwrap_or_default();
     println!("case,treatment,indicator,value,true_error");
-    let parts: [(&str, Part); 5] = [
+    let parts: [(&str, Part); 6] = [
         ("facets", facets),
         ("sheets", boundary_elements),
         ("closed", closed_elements),
         ("small", small),
         ("imperfect", imperfect),
+        ("first", first_order),
     ];
     for (_, part) in parts.iter().filter(|(name, _)| name.contains(&wanted)) {
         part(&u);

@@ -8,6 +8,10 @@
 //! f(r) = ±l/(2A±) (r − v±) on T±,   div f = ±l/A±
 //! ```
 //!
+//! Of the first full order ([`Order::First`]) every edge has a second function, whose current changes
+//! along the edge, and every triangle two that stay inside of it (`element` has the formulas). They
+//! may be on curved triangles.
+//!
 //! Here every function is divided by its norm ‖f‖ = √∫|f|² dA, so that ∫|f|² dA = 1 and the entries
 //! of the equations are of order one on any mesh. Functions are in 1/m, coefficients of an electric
 //! current in A. An edge where n > 2 triangles meet has n − 1 functions, each between the first of
@@ -23,33 +27,65 @@
 //! general composite metallic and dielectric structures with junctions, Progress In
 //! Electromagnetics Research 52 (2005) 81, doi:10.2528/PIER04071301.)
 
+use crate::kernel::WIDTH;
 use crate::regions::{Face, Regions};
 use crate::{MomentsError, Side, Surface, Topology};
 use fredholm_mesh::Vec3;
 use fredholm_waves::Ground;
 use std::f64::consts::TAU;
 
-/// Half a function: on its triangle f = weight/(2A) (r − v), with v the corner. The weight is
-/// ±l/‖f‖.
+/// Which functions there are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Order {
+    /// Those of Rao, Wilton and Glisson, with even charges: order 0.
+    #[default]
+    Lowest,
+    /// Those with all linear currents and linear charges (Graglia, Wilton and Peterson): order 1.
+    First,
+}
+
+impl Order {
+    /// The longest edge that a wave can be told from its alias on, in wavelengths, and in words.
+    pub(crate) fn longest_edge(self) -> (f64, &'static str) {
+        match self {
+            Self::Lowest => (1.0 / 3.0, "a third"),
+            Self::First => (0.5, "half"),
+        }
+    }
+}
+
+/// Half a function: weight/√g F on its triangle, with one of the F of the triangle. The first three
+/// are F = r − v with v the corner of this number where the triangle is flat, and √g is twice its
+/// area.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Half {
     /// The triangle.
     pub triangle: u32,
-    /// The corner v: 0, 1 or 2.
-    pub corner: u8,
-    /// ±l/‖f‖, dimensionless.
+    /// The number of F: 0 to 2 of the side opposite to this corner, 3 to 5 of the same sides but odd
+    /// along them, 6 and 7 of the inside.
+    pub number: u8,
+    /// ± 1 over the norm of the whole function.
     pub weight: f64,
     /// The region that the current radiates into; 0 where there is one only.
     pub region: usize,
 }
 
-/// A Rao–Wilton–Glisson function of unit norm. In every region its current flows through pairs of
-/// halves, from one to the next.
+/// Where a function is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// Around an edge of the topology.
+    Edge(usize),
+    /// On one triangle.
+    Triangle(usize),
+}
+
+/// A function of unit norm. In every region its current flows through pairs of halves, from one to
+/// the next, or stays on one triangle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Function {
-    /// Its edge in the topology.
-    pub edge: usize,
-    /// The halves, two for every wedge.
+    /// Where it is.
+    pub place: Place,
+    /// The halves, two for every wedge, or one for every side of a triangle.
     pub halves: Vec<Half>,
     /// Whether a magnetic current can flow there between regions: there is no conductor.
     pub magnetic: bool,
@@ -60,6 +96,7 @@ pub struct Function {
 pub struct Basis {
     surface: Surface,
     topology: Topology,
+    order: Order,
     functions: Vec<Function>,
     /// Place of every triangle in an order in which neighbours are near each other.
     ranks: Vec<u32>,
@@ -69,40 +106,52 @@ pub struct Basis {
 }
 
 impl Basis {
-    /// One function for every inner edge of a surface in free space.
+    /// One function for every inner edge of a surface in free space: those of the lowest order.
     ///
     /// # Errors
-    /// Those of [`Topology::check`].
+    /// Those of [`Basis::of_order`].
     pub fn new(surface: Surface) -> Result<Self, MomentsError> {
+        Self::of_order(surface, Order::Lowest)
+    }
+
+    /// The functions of a surface in free space.
+    ///
+    /// # Errors
+    /// Those of [`Topology::check`], [`MomentsError::Curved`] for curved triangles with functions of
+    /// the lowest order.
+    pub fn of_order(surface: Surface, order: Order) -> Result<Self, MomentsError> {
         let topology = Topology::new(&surface);
         topology.check(&surface)?;
         let mut functions: Vec<Function> = Vec::new();
         for (edge, meeting) in topology.edges().iter().enumerate() {
-            let ends = meeting.vertices.map(|vertex| surface.vertices()[vertex as usize]);
-            let length = ends[0].distance(ends[1]);
             for second in meeting.sides.iter().skip(1) {
-                let sides = [meeting.sides[0], *second];
-                let triangles = sides.map(|side| (side.triangle, side.corner));
-                let weight = length / norm(&surface, length, &triangles);
-                let half = |at: usize, sign: f64| Half {
-                    triangle: sides[at].triangle,
-                    corner: sides[at].corner,
-                    weight: sign * weight,
+                let half = |side: Side, weight: f64| Half {
+                    triangle: side.triangle,
+                    number: side.corner,
+                    weight,
                     region: 0,
                 };
-                let halves = vec![half(0, 1.0), half(1, -1.0)];
-                functions.push(Function { edge, halves, magnetic: false });
+                let halves = vec![half(meeting.sides[0], 1.0), half(*second, -1.0)];
+                functions.push(Function { place: Place::Edge(edge), halves, magnetic: false });
             }
         }
-        Ok(Self::ordered(surface, topology, functions, None))
+        Self::ordered(surface, topology, order, functions, None)
+    }
+
+    /// The functions of the lowest order of the currents between regions.
+    ///
+    /// # Errors
+    /// Those of [`Basis::between_of_order`].
+    pub fn between(regions: Regions) -> Result<Self, MomentsError> {
+        Self::between_of_order(regions, Order::Lowest)
     }
 
     /// The functions of the currents between regions.
     ///
     /// # Errors
-    /// [`MomentsError::NoInnerEdge`], and [`MomentsError::Regions`] for regions that do not fit each
-    /// other.
-    pub fn between(regions: Regions) -> Result<Self, MomentsError> {
+    /// [`MomentsError::NoInnerEdge`], [`MomentsError::Curved`], and [`MomentsError::Regions`] for
+    /// regions that do not fit each other.
+    pub fn between_of_order(regions: Regions, order: Order) -> Result<Self, MomentsError> {
         let surface = regions.surface().clone();
         let topology = Topology::new(&surface);
         let mut functions = Vec::new();
@@ -112,26 +161,43 @@ impl Basis {
         if functions.is_empty() {
             return Err(MomentsError::NoInnerEdge);
         }
-        Ok(Self::ordered(surface, topology, functions, Some(regions)))
+        Self::ordered(surface, topology, order, functions, Some(regions))
     }
 
+    /// From the functions of the lowest order, with the signs of their halves for weights.
     fn ordered(
         surface: Surface,
         topology: Topology,
-        functions: Vec<Function>,
+        order: Order,
+        mut functions: Vec<Function>,
         regions: Option<Regions>,
-    ) -> Self {
-        let middle = |function: &Function| {
-            let ends = topology.edges()[function.edge].vertices;
-            0.5 * (surface.vertices()[ends[0] as usize] + surface.vertices()[ends[1] as usize])
-        };
-        let order = along_curve(&functions.iter().map(middle).collect::<Vec<_>>());
+    ) -> Result<Self, MomentsError> {
+        if order == Order::Lowest && surface.is_curved() {
+            return Err(MomentsError::Curved);
+        }
+        if order == Order::First {
+            let odd: Vec<Function> = functions.iter().map(|even| along(&surface, &topology, even)).collect();
+            functions.extend(odd);
+            let faces = regions.as_ref().map_or(&[][..], Regions::faces);
+            functions.extend((0..surface.triangles().len()).flat_map(|t| inside(t, faces.get(t))));
+        }
+        let norms: Vec<[f64; WIDTH]> = (0..surface.triangles().len())
+            .map(|t| {
+                let products = surface.element(t).products();
+                std::array::from_fn(|i| products[i][i])
+            })
+            .collect();
+        for function in &mut functions {
+            normalise(function, &norms);
+        }
+        let middle = |function: &Function| middle(&surface, &topology, function.place);
+        let order_of = along_curve(&functions.iter().map(middle).collect::<Vec<_>>());
         let mut waiting: Vec<Option<Function>> = functions.into_iter().map(Some).collect();
-        let functions = order.into_iter().filter_map(|at| waiting[at].take()).collect();
-        Self { regions, ..Self::with(surface, topology, functions, None) }
+        let functions = order_of.into_iter().filter_map(|at| waiting[at].take()).collect();
+        Ok(Self { order, regions, ..Self::with(surface, topology, functions, None) })
     }
 
-    /// Functions in the order in which they are given.
+    /// Functions of the lowest order as they are given.
     pub(crate) fn with(
         surface: Surface,
         topology: Topology,
@@ -143,7 +209,7 @@ impl Basis {
         for (rank, triangle) in along_curve(&centres).into_iter().enumerate() {
             ranks[triangle] = rank as u32;
         }
-        Self { surface, topology, functions, ranks, ground, regions: None }
+        Self { surface, topology, order: Order::Lowest, functions, ranks, ground, regions: None }
     }
 
     /// The same above a ground plane: all equations and fields then have the images of the currents
@@ -159,6 +225,12 @@ impl Basis {
             Some(index) => Err(MomentsError::BelowGround { what: "triangle", index }),
             None => Ok(Self { ground: Some(ground), ..self }),
         }
+    }
+
+    /// Which functions there are.
+    #[must_use]
+    pub fn order(&self) -> Order {
+        self.order
     }
 
     /// The ground plane under the surface.
@@ -208,14 +280,13 @@ impl Basis {
         self.functions.is_empty()
     }
 
-    /// Middle of the edge of a function, m.
+    /// Middle of the edge of a function, or of its triangle, m.
     ///
     /// # Panics
     /// Like a slice, where there is no such function.
     #[must_use]
     pub fn centre(&self, function: usize) -> Vec3 {
-        let ends = self.topology.edges()[self.functions[function].edge].vertices;
-        0.5 * (self.surface.vertices()[ends[0] as usize] + self.surface.vertices()[ends[1] as usize])
+        middle(&self.surface, &self.topology, self.functions[function].place)
     }
 
     /// Place of a triangle in an order in which neighbours are near each other.
@@ -224,13 +295,66 @@ impl Basis {
     }
 }
 
-/// ∫ f_a·f_b dA over one triangle, for its corners `a` and `b` and weights 1.
-pub(crate) fn gram(surface: &Surface, triangle: u32, [a, b]: [usize; 2]) -> f64 {
-    let triangle = triangle as usize;
-    let centre = surface.centre(triangle);
-    let corners = surface.corners(triangle).map(|corner| corner - centre);
-    let spread: f64 = corners.iter().map(|corner| corner.length_squared()).sum();
-    (spread / 12.0 + corners[a].dot(corners[b])) / (4.0 * surface.area(triangle))
+/// Middle of an edge or of a triangle, m.
+fn middle(surface: &Surface, topology: &Topology, place: Place) -> Vec3 {
+    match place {
+        Place::Edge(edge) => {
+            let ends = topology.edges()[edge].vertices;
+            0.5 * (surface.vertices()[ends[0] as usize] + surface.vertices()[ends[1] as usize])
+        }
+        Place::Triangle(triangle) => surface.centre(triangle),
+    }
+}
+
+/// The function of an edge that changes along it, from the even one.
+fn along(surface: &Surface, topology: &Topology, even: &Function) -> Function {
+    let Place::Edge(edge) = even.place else { return even.clone() };
+    let first = topology.edges()[edge].vertices[0];
+    let odd = |half: &Half| {
+        // λ_j − λ_k falls along the edge where the triangle runs from its first vertex on.
+        let begins = surface.triangles()[half.triangle as usize][(usize::from(half.number) + 1) % 3];
+        let weight = if begins == first { half.weight } else { -half.weight };
+        Half { number: half.number + 3, weight, ..*half }
+    };
+    Function { halves: even.halves.iter().map(odd).collect(), ..even.clone() }
+}
+
+/// The functions inside of a triangle: of a border between dielectrics the currents of both sides
+/// are the negatives of each other, on a conductor each side has its own, unless it is a sheet in
+/// one region.
+fn inside(triangle: usize, face: Option<&Face>) -> Vec<Function> {
+    let (mut sides, mut magnetic) = (vec![vec![(0, 1.0)]], false);
+    if let Some(face) = face {
+        let [front, back] = face.regions;
+        magnetic = !face.conductor;
+        sides = match (front, back) {
+            (Some(front), Some(back)) if !face.conductor => vec![vec![(front, 1.0), (back, -1.0)]],
+            (Some(front), Some(back)) if front == back => vec![vec![(front, 1.0)]],
+            _ => [front, back].into_iter().flatten().map(|region| vec![(region, 1.0)]).collect(),
+        };
+    }
+    let mut functions = Vec::new();
+    for side in sides {
+        for number in [6, 7] {
+            let half =
+                |&(region, weight): &(usize, f64)| Half { triangle: triangle as u32, number, weight, region };
+            let halves = side.iter().map(half).collect();
+            functions.push(Function { place: Place::Triangle(triangle), halves, magnetic });
+        }
+    }
+    functions
+}
+
+/// Divides a function by its norm; `norms` are ∫ f² dA of all functions of every triangle.
+fn normalise(function: &mut Function, norms: &[[f64; WIDTH]]) {
+    let mut triangles: Vec<(u32, u8)> =
+        function.halves.iter().map(|half| (half.triangle, half.number)).collect();
+    triangles.sort_unstable();
+    triangles.dedup();
+    let square: f64 = triangles.iter().map(|&(t, number)| norms[t as usize][usize::from(number)]).sum();
+    for half in &mut function.halves {
+        half.weight /= square.sqrt();
+    }
 }
 
 /// A triangle at an edge: the regions ahead of it and behind it on the way around the edge.
@@ -295,41 +419,20 @@ fn around(
         runs.pop();
     }
     let function = |run: Vec<usize>| {
-        let mut triangles: Vec<(u32, u8)> = run
-            .iter()
-            .flat_map(|&at| [&wedges[at], next(at)])
-            .map(|wedge| (wedge.side.triangle, wedge.side.corner))
-            .collect();
-        triangles.sort_unstable();
-        triangles.dedup();
-        let weight = length / norm(surface, length, &triangles);
-        let half = |wedge: &Wedge, region: Option<usize>, sign: f64| Half {
+        let half = |wedge: &Wedge, region: Option<usize>, weight: f64| Half {
             triangle: wedge.side.triangle,
-            corner: wedge.side.corner,
-            weight: sign * weight,
+            number: wedge.side.corner,
+            weight,
             region: region.unwrap_or_default(),
         };
         let pair = |&at: &usize| {
             let region = wedges[at].ahead;
             [half(&wedges[at], region, -1.0), half(next(at), region, 1.0)]
         };
-        Function { edge, halves: run.iter().flat_map(pair).collect(), magnetic }
+        let halves = run.iter().flat_map(pair).collect();
+        Function { place: Place::Edge(edge), halves, magnetic }
     };
     Ok(runs.into_iter().map(function).collect())
-}
-
-/// ‖f‖ over some triangles, for the weight l.
-fn norm(surface: &Surface, length: f64, triangles: &[(u32, u8)]) -> f64 {
-    let square = |&(triangle, corner): &(u32, u8)| length * length * share(surface, triangle, corner);
-    triangles.iter().map(square).sum::<f64>().sqrt()
-}
-
-/// ∫ |r − v|² dA/(2A)² over a triangle.
-fn share(surface: &Surface, triangle: u32, corner: u8) -> f64 {
-    let corners = surface.corners(triangle as usize);
-    let [v, a, b] = [0, 1, 2].map(|i| corners[(usize::from(corner) + i) % 3]);
-    let (a, b) = (a - v, b - v);
-    (a.length_squared() + b.length_squared() + a.dot(b)) / (24.0 * surface.area(triangle as usize))
 }
 
 /// The order of points along a curve that fills their box (G. M. Morton 1966): the bits of the
@@ -372,7 +475,7 @@ mod tests {
     /// f of a half at a point of its triangle.
     fn value(basis: &Basis, half: &Half, p: Vec3) -> Vec3 {
         let triangle = half.triangle as usize;
-        let v = basis.surface().corners(triangle)[usize::from(half.corner)];
+        let v = basis.surface().corners(triangle)[usize::from(half.number)];
         (p - v) * (half.weight / (2.0 * basis.surface().area(triangle)))
     }
 
@@ -388,7 +491,8 @@ mod tests {
     fn the_current_across_the_edge_is_continuous_and_along_the_others_only() {
         let basis = basis();
         for function in basis.functions() {
-            let ends = basis.topology().edges()[function.edge].vertices;
+            let Place::Edge(edge) = function.place else { continue };
+            let ends = basis.topology().edges()[edge].vertices;
             let ends = ends.map(|vertex| basis.surface().vertices()[vertex as usize]);
             let along = (ends[1] - ends[0]).normalize();
             let flux: Vec<f64> = function
@@ -417,16 +521,16 @@ mod tests {
                 let [a, b, c] = basis.surface().corners(triangle);
                 let area = basis.surface().area(triangle);
                 for other in 0..3 {
-                    let other = Half { corner: other, weight: 1.0, ..*half };
+                    let other = Half { number: other, weight: 1.0, ..*half };
                     let product = |p: Vec3| value(&basis, half, p).dot(value(&basis, &other, p));
                     let sum: f64 = rule
                         .iter()
                         .map(|x| 2.0 * area * x.weight * product(a + x.u * (b - a) + x.v * (c - a)))
                         .sum();
-                    let closed = half.weight
-                        * gram(basis.surface(), half.triangle, [half.corner.into(), other.corner.into()]);
+                    let products = basis.surface().element(triangle).products();
+                    let closed = half.weight * products[usize::from(half.number)][usize::from(other.number)];
                     assert!((sum - closed).abs() < 1e-14 * half.weight.abs());
-                    if other.corner == half.corner {
+                    if other.number == half.number {
                         norm += half.weight * closed;
                     }
                 }

@@ -21,19 +21,17 @@
 //! space. Unknowns are η₀ J and M of every function, side by side, in V.
 
 use crate::currents::Space;
+use crate::element_kernel::Tests;
 use crate::equation::tested;
-use crate::kernel::{Medium, Wanted};
-use crate::operator::{Factors, Kinds, Operator, Products, Term};
-use crate::pairs::Integrator;
+use crate::kernel::Wanted;
+use crate::operator::{Factors, Integrals, Kinds, Operator, Products, Term};
 use crate::regions::Regions;
-use crate::rules::Rules;
-use crate::{Basis, Currents, MomentsError};
+use crate::{Basis, Currents, MomentsError, Order};
 use fredholm_linop::{MultiVector, Symmetry};
 use fredholm_mesh::Vec3;
 use fredholm_waves::medium::IMPEDANCE;
 use fredholm_waves::{Field, Source, Wave};
 use num_complex::Complex64;
-use pulp::Arch;
 use std::f64::consts::TAU;
 
 /// Bodies of one or several dielectrics and conductors in a wave.
@@ -52,7 +50,8 @@ impl<'a> Composite<'a> {
     /// regions.
     ///
     /// # Errors
-    /// [`MomentsError::Coarse`] for edges above a third of the wavelength on either side,
+    /// [`MomentsError::Coarse`] for edges above a third of the wavelength on either side (half of it with
+    /// functions of the first full order),
     /// [`MomentsError::Parameter`] for numbers out of range and too few permittivities,
     /// [`MomentsError::NoRegions`] for a basis of a surface in free space.
     pub fn new(
@@ -70,7 +69,8 @@ impl<'a> Composite<'a> {
         };
         let spaces: Vec<Space> = regions.media().iter().map(space).collect::<Result<_, MomentsError>>()?;
         check_resolution(basis, &spaces)?;
-        let terms = spaces.iter().map(|&space| term(space, tolerance)).collect::<Result<_, _>>()?;
+        let terms =
+            spaces.iter().map(|&space| term(basis.order(), space, tolerance)).collect::<Result<_, _>>()?;
         let kinds =
             |function: &crate::Function| if function.magnetic { Kinds::BOTH } else { Kinds::ELECTRIC };
         let kinds = basis.functions().iter().map(kinds).collect();
@@ -160,8 +160,9 @@ fn check_resolution(basis: &Basis, spaces: &[Space]) -> Result<(), MomentsError>
         |(edge, meeting, wavelength)| {
             let [a, b] = meeting.vertices.map(|vertex| basis.surface().vertices()[vertex as usize]);
             let length = a.distance(b);
-            if length > wavelength / 3.0 {
-                return Err(MomentsError::Coarse { edge, length, wavelength });
+            let (longest, most) = basis.order().longest_edge();
+            if length > longest * wavelength {
+                return Err(MomentsError::Coarse { edge, length, wavelength, most });
             }
             Ok(())
         },
@@ -178,9 +179,9 @@ pub(crate) fn tested_with_both(
     let mut b = MultiVector::zeros(operator.dim(), excitations.len());
     let any = operator.unknowns().any(|(_, magnetic)| magnetic.is_some());
     for (rhs, sources) in excitations.iter().enumerate() {
-        let electric = tested(operator.basis(), wave, sources, |field| field.e);
+        let electric = tested(operator.basis(), wave, sources, Tests::Straight, |field| field.e);
         let magnetic = if any {
-            tested(operator.basis(), wave, sources, |field| field.h * -IMPEDANCE)
+            tested(operator.basis(), wave, sources, Tests::Straight, |field| field.h * -IMPEDANCE)
         } else {
             Vec::new()
         };
@@ -205,18 +206,11 @@ pub(crate) fn currents<'a>(operator: &Operator<'a>, wave: Wave, x: &[Complex64])
 }
 
 /// What one region adds.
-pub(crate) fn term(space: Space, tolerance: f64) -> Result<Term, MomentsError> {
+pub(crate) fn term(order: Order, space: Space, tolerance: f64) -> Result<Term, MomentsError> {
     let (zero, one) = (Complex64::ZERO, Complex64::ONE);
     let wanted = Wanted { electric: true, magnetic: true };
-    let rules = Rules::new(tolerance, space.k, true)?;
     Ok(Term {
-        integrator: Integrator {
-            medium: Medium::new(space.k),
-            wanted,
-            rules,
-            arch: Arch::new(),
-            observers_cut: false,
-        },
+        integrals: Integrals::new(order, space.k, (wanted, Tests::Straight), tolerance)?,
         electric: [[space.impedance, zero], [zero, -space.impedance.inv()]],
         magnetic: [[zero, one], [one, zero]],
     })

@@ -103,7 +103,7 @@ impl<'a> Imperfect<'a> {
     /// to a relative `tolerance` for each pair of triangles.
     ///
     /// # Errors
-    /// [`MomentsError::Coarse`] for edges above λ/3, [`MomentsError::Parameter`] for impedances that
+    /// [`MomentsError::Coarse`] for edges above λ/3 (λ/2 with functions of the first full order), [`MomentsError::Parameter`] for impedances that
     /// are none, or another number of conditions than of triangles, and of bodies with a surface
     /// impedance [`MomentsError::NotClosed`], [`MomentsError::Junction`] and
     /// [`MomentsError::Patchwork`].
@@ -120,14 +120,14 @@ impl<'a> Imperfect<'a> {
         }
         conditions.iter().try_for_each(|condition| condition.check())?;
         check_bodies(basis, &conditions)?;
-        basis.topology().check_resolution(basis.surface(), wave.wavelength())?;
+        basis.topology().check_resolution(basis.surface(), wave.wavelength(), basis.order())?;
         let k = Complex64::from(wave.wavenumber());
         let of_function = |f: &crate::Function| conditions[f.halves[0].triangle as usize].kinds();
         let kinds: Vec<Kinds> = basis.functions().iter().map(of_function).collect();
         let term = if kinds.iter().all(|kinds| kinds.count == 1) {
-            electric_term(k, 1.0, tolerance)?
+            electric_term(basis.order(), k, 1.0, tolerance)?
         } else {
-            term(Space { k, impedance: Complex64::ONE }, tolerance)?
+            term(basis.order(), Space { k, impedance: Complex64::ONE }, tolerance)?
         };
         let products = Products::OnTriangles(conditions.iter().map(|c| c.factors()).collect());
         let operator = Operator::new(basis, kinds, vec![term], products, Symmetry::Symmetric);

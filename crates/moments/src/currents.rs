@@ -16,10 +16,11 @@
 //! charges are taken from the divergence of the functions, so that close to the surface, too, no
 //! line charge of a triangle's border is left.
 
-use crate::kernel::{Eights, Medium, Points, Seen, WIDTH};
-use crate::rules::{CLASSES, Rules};
-use crate::set::Shape;
-use crate::{Basis, MomentsError};
+use crate::element::{Element, Functions, Part, WHOLE, shares, within};
+use crate::kernel::{Medium, Seen, Sources, Sums, WIDTH};
+use crate::pairs::longest_side;
+use crate::rules::{CLASSES, Rule, Rules};
+use crate::{Basis, MomentsError, Order};
 use fredholm_mesh::Vec3;
 use fredholm_quadrature::{gauss_legendre, symmetric_triangle};
 use fredholm_waves::medium::IMPEDANCE;
@@ -29,22 +30,17 @@ use num_complex::Complex64;
 use pulp::Arch;
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
+use std::sync::OnceLock;
 
 /// Relative error of the integral over a triangle for a field.
 const TOLERANCE: f64 = 1e-6;
-/// Distance over the size of a triangle below which a point is on it.
+/// Size over that of a triangle of the parts that a point must be away from, else it is on it.
 const ON_SURFACE: f64 = 1e-4;
-/// Halvings after which a part of a triangle is taken as it is.
-const MOST_HALVINGS: usize = 40;
-/// Degree of the rule for the far field: 1e-6 of it at λ/6.
-const FAR_DEGREE: usize = 8;
+/// Degree of the rule for the far field: 1e-6 of it at λ/6, and at λ/3.
+const FAR_DEGREES: [usize; 2] = [8, 12];
 
-/// J and M of a triangle, a + b r′ with r′ from its centre, times twice its area.
-#[derive(Clone, Copy, Debug, Default)]
-struct Linear {
-    constant: ComplexVector,
-    slope: Complex64,
-}
+/// What every function of a triangle has of J or M, its weight in.
+type Coefficients = [Complex64; WIDTH];
 
 /// The medium in which fields are asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,21 +57,21 @@ struct Border {
     /// The triangles of the border, in order.
     triangles: Vec<usize>,
     /// η₀ J on each of them.
-    electric: Vec<Linear>,
+    electric: Vec<Coefficients>,
     /// M, where there is any.
-    magnetic: Option<Vec<Linear>>,
+    magnetic: Option<Vec<Coefficients>>,
 }
 
 impl Border {
     /// Both currents on a triangle, 0 where it is not of the border.
-    fn on(&self, triangle: usize) -> [Linear; 2] {
+    fn on(&self, triangle: usize) -> [Coefficients; 2] {
         let Ok(at) = self.triangles.binary_search(&triangle) else { return Default::default() };
         self.at(at)
     }
 
     /// Both currents on the triangle at this place of the border.
-    fn at(&self, at: usize) -> [Linear; 2] {
-        [self.electric[at], self.magnetic.as_ref().map_or(Linear::default(), |magnetic| magnetic[at])]
+    fn at(&self, at: usize) -> [Coefficients; 2] {
+        [self.electric[at], self.magnetic.as_ref().map_or(Coefficients::default(), |magnetic| magnetic[at])]
     }
 }
 
@@ -100,26 +96,25 @@ impl<'a> Currents<'a> {
         let border = |region: usize| {
             let is_of = |&t: &usize| basis.faces().get(t).is_none_or(|f| f.regions.contains(&Some(region)));
             let triangles: Vec<usize> = (0..basis.surface().triangles().len()).filter(is_of).collect();
-            let of = |x: &[Complex64]| linear(basis, region, &triangles, x);
+            let of = |x: &[Complex64]| on_triangles(basis, region, &triangles, x);
             Border { electric: of(electric), magnetic: magnetic.map(of), triangles }
         };
         Self { basis, wave, borders: (0..count).map(border).collect() }
     }
 
-    /// Both currents on a triangle, twice its area times: of a border between dielectrics those of
-    /// the side in front, of conductors the sum of both sides.
-    fn on(&self, triangle: usize) -> [Linear; 2] {
+    /// Both currents on a triangle: of a border between dielectrics those of the side in front, of
+    /// conductors the sum of both sides.
+    fn on(&self, triangle: usize) -> [Coefficients; 2] {
         let Some(face) = self.basis.faces().get(triangle) else { return self.borders[0].on(triangle) };
         let [front, back] = face.regions;
         let of = |side: Option<usize>| side.map_or_else(Default::default, |r| self.borders[r].on(triangle));
-        let [electric, magnetic] = of(front);
+        let [mut electric, magnetic] = of(front);
         if !face.conductor || back == front {
             return [electric, magnetic];
         }
         let [other, _] = of(back);
-        let sum =
-            Linear { constant: electric.constant + other.constant, slope: electric.slope + other.slope };
-        [sum, magnetic]
+        electric.iter_mut().zip(other).for_each(|(sum, other)| *sum += other);
+        [electric, magnetic]
     }
 
     /// J (A/m) at the centre of a triangle: on the side of its normal, on sheets of both sides
@@ -129,8 +124,7 @@ impl<'a> Currents<'a> {
     /// Like a slice, where there is no such triangle.
     #[must_use]
     pub fn electric(&self, triangle: usize) -> ComplexVector {
-        let [electric, _] = self.on(triangle);
-        electric.constant * (0.5 / (self.basis.surface().area(triangle) * IMPEDANCE))
+        self.at_centre(triangle, &self.on(triangle)[0]) * (1.0 / IMPEDANCE)
     }
 
     /// M (V/m) at the centre of a triangle, on the side of its normal.
@@ -139,17 +133,23 @@ impl<'a> Currents<'a> {
     /// Like a slice, where there is no such triangle.
     #[must_use]
     pub fn magnetic(&self, triangle: usize) -> ComplexVector {
-        let [_, magnetic] = self.on(triangle);
-        magnetic.constant * (0.5 / self.basis.surface().area(triangle))
+        self.at_centre(triangle, &self.on(triangle)[1])
+    }
+
+    fn at_centre(&self, triangle: usize, current: &Coefficients) -> ComplexVector {
+        let (element, centre) = (self.basis.surface().element(triangle), [1.0 / 3.0; 3]);
+        let [sum, _] = values(&element.vectors(centre), &Functions::at(centre), current);
+        sum * (1.0 / element.stretch(centre))
     }
 
     /// ∫ |J|² dA (A²) and ∫ |M|² dA (V²) over a triangle.
     pub(crate) fn squares(&self, triangle: usize) -> [f64; 2] {
-        let shape = Shape::new(self.basis.surface().corners(triangle));
-        let spread = shape.corners.iter().map(|corner| corner.length_squared()).sum::<f64>() / 12.0;
-        let area = self.basis.surface().area(triangle);
-        let square = |current: &Linear| {
-            (current.constant.norm_squared() + spread * current.slope.norm_sqr()) / (4.0 * area)
+        let products = self.basis.surface().element(triangle).products();
+        let square = |current: &Coefficients| -> f64 {
+            let row = |(products, a): (&[f64; WIDTH], &Complex64)| -> f64 {
+                products.iter().zip(current).map(|(product, b)| product * (a.conj() * b).re).sum()
+            };
+            products.iter().zip(current).map(row).sum()
         };
         let [electric, magnetic] = self.on(triangle);
         [square(&electric) / (IMPEDANCE * IMPEDANCE), square(&magnetic)]
@@ -183,10 +183,17 @@ impl<'a> Currents<'a> {
         region: usize,
         space: Space,
     ) -> Result<Vec<Field>, MomentsError> {
-        let rules = Rules::new(TOLERANCE, space.k, true)?;
+        let rules = match self.basis.order() {
+            Order::Lowest => Rules::new(TOLERANCE, space.k, true)?,
+            Order::First => Rules::of_first_order(TOLERANCE, space.k, true)?,
+        };
         let (surface, border) = (self.basis.surface(), &self.borders[region]);
-        let shapes: Vec<Shape> = border.triangles.iter().map(|&t| Shape::new(surface.corners(t))).collect();
-        let viewer = Viewer { border, space, rules, shapes, arch: Arch::new() };
+        let whole = |&triangle: &usize| {
+            let element = surface.element(triangle);
+            (element, Part::new(&element, WHOLE))
+        };
+        let elements = border.triangles.iter().map(whole).collect();
+        let viewer = Viewer { border, space, rules, elements, tables: Default::default(), arch: Arch::new() };
         points.par_iter().enumerate().map(|(index, &p)| viewer.field(index, p)).collect()
     }
 
@@ -216,16 +223,17 @@ impl<'a> Currents<'a> {
     /// Points with η₀ J dA and M dA, V m.
     fn far_sources(&self) -> Vec<(Vec3, ComplexVector, ComplexVector)> {
         // The degree is one of the table.
-        let rule = symmetric_triangle(FAR_DEGREE).unwrap_or_default();
+        let rule = symmetric_triangle(FAR_DEGREES[self.basis.order() as usize]).unwrap_or_default();
         let border = &self.borders[0];
         let mut sources = Vec::with_capacity(border.triangles.len() * rule.len());
         for (at, &triangle) in border.triangles.iter().enumerate() {
-            let shape = Shape::new(self.basis.surface().corners(triangle));
-            let [electric, magnetic] = border.at(at);
+            let element = self.basis.surface().element(triangle);
+            let currents = border.at(at);
             for point in &rule {
-                let p = shape.point([point.u, point.v]);
-                let at = |current: Linear| current.at(p) * point.weight;
-                sources.push((shape.centre + p, at(electric), at(magnetic)));
+                let at = shares([point.u, point.v]);
+                let (vectors, functions) = (element.vectors(at), Functions::at(at));
+                let [j, m] = currents.map(|current| values(&vectors, &functions, &current)[0]);
+                sources.push((element.point(at), j * point.weight, m * point.weight));
             }
         }
         sources
@@ -289,156 +297,139 @@ impl<'a> Currents<'a> {
     }
 }
 
-/// The currents on some triangles of the border of a region, from the coefficients.
-fn linear(basis: &Basis, region: usize, triangles: &[usize], coefficients: &[Complex64]) -> Vec<Linear> {
-    let surface = basis.surface();
-    let mut all = vec![Linear::default(); surface.triangles().len()];
+/// The currents on some triangles of the border of a region, from the coefficients of functions.
+fn on_triangles(
+    basis: &Basis,
+    region: usize,
+    triangles: &[usize],
+    coefficients: &[Complex64],
+) -> Vec<Coefficients> {
+    let mut all = vec![Coefficients::default(); basis.surface().triangles().len()];
     for (function, &x) in basis.functions().iter().zip(coefficients) {
         for half in function.halves.iter().filter(|half| half.region == region) {
-            let triangle = half.triangle as usize;
-            let corner = surface.corners(triangle)[usize::from(half.corner)] - surface.centre(triangle);
-            all[triangle].constant += ComplexVector::along(corner, x * -half.weight);
-            all[triangle].slope += x * half.weight;
+            all[half.triangle as usize][usize::from(half.number)] += x * half.weight;
         }
     }
     triangles.iter().map(|&triangle| all[triangle]).collect()
 }
 
-impl Linear {
-    /// At a point relative to the centre.
-    fn at(&self, p: Vec3) -> ComplexVector {
-        self.constant + ComplexVector::along(p, self.slope)
+/// √g times a current, and times its divergence in the first component, at a point.
+fn values(vectors: &[Vec3; WIDTH], functions: &Functions, current: &Coefficients) -> [ComplexVector; 2] {
+    let (mut sum, mut charge) = (ComplexVector::ZERO, Complex64::ZERO);
+    for ((&vector, own), &x) in vectors.iter().zip(functions.charges).zip(current) {
+        sum += ComplexVector::along(vector, x);
+        charge += x * own;
     }
+    [sum, ComplexVector::along(Vec3::X, charge)]
 }
+
+/// The points of a current on a part of a triangle, which has a share of the unit triangle: in
+/// eights, the last filled up with points that have none.
+fn points(element: &Element, part: &Part, share: f64, rule: &Rule, current: &Coefficients) -> Vec<Sources> {
+    let mut sources = vec![Sources::default(); rule.points.len().div_ceil(WIDTH)];
+    for lane in 0..sources.len() * WIDTH {
+        let point = lane.min(rule.points.len() - 1);
+        let at = within(&part.corners, shares(rule.points[point]));
+        let (eight, lane) = (&mut sources[lane / WIDTH], lane % WIDTH);
+        let place = element.point(at);
+        (0..3).for_each(|c| eight.places[c][lane] = place[c]);
+        if lane != point % WIDTH {
+            continue;
+        }
+        let weight = rule.weights[point] * share;
+        let [sum, charge] = values(&element.vectors(at), &Functions::at(at), current);
+        for (own, value) in eight.current.iter_mut().zip(sum.components()) {
+            (own[0][lane], own[1][lane]) = (value.re * weight, value.im * weight);
+        }
+        let charge = charge.components()[0] * weight;
+        (eight.charge[0][lane], eight.charge[1][lane]) = (charge.re, charge.im);
+    }
+    sources
+}
+
+/// The points of all triangles by one rule, of η₀ J and M.
+type Tables = [Vec<Vec<Sources>>; 2];
 
 /// What computes fields at points.
 struct Viewer<'a> {
     border: &'a Border,
     space: Space,
     rules: Rules,
-    shapes: Vec<Shape>,
+    elements: Vec<(Element, Part)>,
+    /// By rule.
+    tables: [OnceLock<Tables>; CLASSES],
     arch: Arch,
-}
-
-/// A part of a triangle that waits for its rule.
-#[derive(Clone, Copy)]
-struct Part {
-    /// Its place in the border.
-    triangle: usize,
-    shape: Shape,
-    share: f64,
 }
 
 impl Viewer<'_> {
     fn field(&self, point: usize, p: Vec3) -> Result<Field, MomentsError> {
-        let mut waiting: [Vec<Part>; CLASSES] = Default::default();
-        let mut field = Field::ZERO;
-        for (triangle, &shape) in self.shapes.iter().enumerate() {
-            if distance(p, shape.places) < ON_SURFACE * shape.radius {
+        let mut sums = [[[[0.0; WIDTH]; 2]; 9]; 2];
+        for (triangle, (_, part)) in self.elements.iter().enumerate() {
+            if let Some(class) = self.class(p, part) {
+                let tables = self.tables[class].get_or_init(|| self.tables(class));
+                for (table, sums) in tables.iter().zip(&mut sums).filter(|(table, _)| !table.is_empty()) {
+                    self.see(p, &table[triangle], part, sums);
+                }
+            } else if !self.add_close(p, triangle, part, 1.0, &mut sums) {
                 let triangle = self.border.triangles[triangle];
                 return Err(MomentsError::OnSurface { point, triangle });
             }
-            self.add(p, Part { triangle, shape, share: 1.0 }, 0, &mut waiting, &mut field);
         }
-        for (class, parts) in waiting.iter_mut().enumerate() {
-            self.flush(p, class, parts, &mut field);
-        }
-        Ok(field)
+        let [electric, magnetic] = sums.map(|sums| radiated(&sums, self.space.k));
+        let impedance = self.space.impedance;
+        let e = electric.e * impedance - magnetic.h;
+        let h = electric.h + magnetic.e * impedance.inv();
+        Ok(Field { e, h: h * (1.0 / IMPEDANCE) })
     }
 
-    fn add(&self, p: Vec3, part: Part, depth: usize, waiting: &mut [Vec<Part>; CLASSES], field: &mut Field) {
-        let ratio = p.distance(part.shape.centre) / part.shape.radius;
-        let class = self.rules.class(ratio, part.shape.radius);
-        if class.is_some() || depth >= MOST_HALVINGS {
-            let class = class.unwrap_or(CLASSES - 1);
-            waiting[class].push(part);
-            if waiting[class].len() == WIDTH {
-                self.flush(p, class, &mut waiting[class], field);
-            }
-            return;
-        }
-        for half in crate::pairs::halves_of(part.shape.places) {
-            let part = Part { shape: Shape::new(half), share: 0.5 * part.share, ..part };
-            self.add(p, part, depth + 1, waiting, field);
-        }
+    fn class(&self, p: Vec3, part: &Part) -> Option<usize> {
+        self.rules.class(p.distance(part.centre) / part.radius, part.radius)
     }
 
-    /// Adds the fields of the parts that wait for a rule.
-    fn flush(&self, p: Vec3, class: usize, parts: &mut Vec<Part>, field: &mut Field) {
-        let Some(&last) = parts.last() else { return };
+    fn tables(&self, class: usize) -> Tables {
         let rule = &self.rules.classes[class];
-        let mut eights = Eights::default();
-        let mut points = vec![[[0.0; WIDTH]; 3]; rule.points.len()];
-        let mut spread = 0.0_f64;
-        for lane in 0..WIDTH {
-            let shape = parts.get(lane).unwrap_or(&last).shape;
-            spread = spread.max(shape.radius);
-            eights.set(lane, shape.centre, shape.corners);
-            for (place, &uv) in points.iter_mut().zip(&rule.points) {
-                let q = shape.point(uv);
-                (0..3).for_each(|axis| place[axis][lane] = q[axis]);
-            }
-        }
-        let sources = Points { triangles: &eights, places: &points, weights: &rule.weights };
-        let mut out = [[[0.0; WIDTH]; 2]; 7];
+        let of = |currents: &Vec<Coefficients>| {
+            let elements = self.elements.iter().zip(currents);
+            elements.map(|((element, part), current)| points(element, part, 1.0, rule, current)).collect()
+        };
+        [of(&self.border.electric), self.border.magnetic.as_ref().map_or_else(Vec::new, of)]
+    }
+
+    fn see(&self, p: Vec3, sources: &[Sources], part: &Part, sums: &mut Sums) {
         let medium = Medium::new(self.space.k);
-        self.arch.dispatch(Seen { medium, point: p, sources, spread, out: &mut out });
-        for (lane, part) in parts.drain(..).enumerate() {
-            let read = |i: usize| Complex64::new(out[i][0][lane], out[i][1][lane]) * part.share;
-            *field += self.of_part(p, &part, std::array::from_fn(read));
-        }
+        let reach = p.distance(part.centre) + part.radius;
+        self.arch.dispatch(Seen { medium, point: p, sources, reach, sums });
     }
 
-    /// The field of the currents on a part, from the integrals over it.
-    fn of_part(&self, p: Vec3, part: &Part, [g, x, y, z, u, v, w]: [Complex64; 7]) -> Field {
-        let integrals =
-            (g, ComplexVector::from_components([x, y, z]), ComplexVector::from_components([u, v, w]));
-        // The currents are known about the centre of the whole triangle.
-        let shift = part.shape.centre - self.shapes[part.triangle].centre;
-        let at = |current: Linear| Linear { constant: current.at(shift), ..current };
-        let e = p - part.shape.centre;
-        let Space { k, impedance } = self.space;
-        let [e_j, h_j] = element(at(self.border.electric[part.triangle]), k, e, integrals);
-        let mut field = Field { e: e_j * impedance, h: h_j };
-        if let Some(magnetic) = &self.border.magnetic {
-            let [e_m, h_m] = element(at(magnetic[part.triangle]), k, e, integrals);
-            field.e = field.e - h_m;
-            field.h += e_m * impedance.inv();
+    /// Adds what a point sees of a part of a triangle that is close, halved until a rule suits;
+    /// false where it is on it.
+    fn add_close(&self, p: Vec3, triangle: usize, part: &Part, share: f64, sums: &mut [Sums; 2]) -> bool {
+        let (element, whole) = &self.elements[triangle];
+        if let Some(class) = self.class(p, part) {
+            let rule = &self.rules.classes[class];
+            let magnetic = self.border.magnetic.as_ref();
+            let currents = std::iter::once(&self.border.electric).chain(magnetic);
+            for (currents, sums) in currents.zip(sums) {
+                self.see(p, &points(element, part, share, rule, &currents[triangle]), part, sums);
+            }
+            return true;
         }
-        Field { h: field.h * (1.0 / IMPEDANCE), ..field }
+        part.radius > ON_SURFACE * whole.radius
+            && part
+                .halves(element, longest_side(part.places))
+                .iter()
+                .all(|half| self.add_close(p, triangle, half, 0.5 * share, sums))
     }
 }
 
-/// E and H of an electric current in a medium of impedance 1, `e` from the centre: −jk (A − Q
-/// div/k²) and J(e) × Q.
-fn element(
-    current: Linear,
-    k: Complex64,
-    e: Vec3,
-    (g, vector, q): (Complex64, ComplexVector, ComplexVector),
-) -> [ComplexVector; 2] {
-    let potential = current.constant * g + vector * current.slope;
-    let charge = q * (2.0 * current.slope / (k * k));
-    let electric = (potential - charge) * (-Complex64::I * k / (4.0 * PI));
-    let [a, b] = [current.at(e), q].map(ComplexVector::components);
-    let cross = [0, 1, 2].map(|c| {
-        let (d, f) = ((c + 1) % 3, (c + 2) % 3);
-        (a[d] * b[f] - a[f] * b[d]) / (4.0 * PI)
-    });
-    [electric, ComplexVector::from_components(cross)]
-}
-
-/// Distance of a point from a triangle, m.
-fn distance(p: Vec3, [a, b, c]: [Vec3; 3]) -> f64 {
-    let normal = (b - a).cross(c - a);
-    let inside =
-        [[a, b], [b, c], [c, a]].iter().all(|&[from, to]| (to - from).cross(p - from).dot(normal) >= 0.0);
-    if inside {
-        return ((p - a).dot(normal) / normal.length()).abs();
-    }
-    let to_side = |[from, to]: [Vec3; 2]| {
-        let along = ((p - from).dot(to - from) / from.distance_squared(to)).clamp(0.0, 1.0);
-        p.distance(from + along * (to - from))
+/// E and H of an electric current in a medium of impedance 1: −jk/4π (Σ g J − Σ q div J/k²) and Σ J ×
+/// q/4π.
+fn radiated(sums: &Sums, k: Complex64) -> Field {
+    let total = |part: &[[f64; WIDTH]; 2]| {
+        let [re, im] = part.map(|lanes| lanes.iter().sum());
+        Complex64::new(re, im)
     };
-    [[a, b], [b, c], [c, a]].into_iter().map(to_side).fold(f64::INFINITY, f64::min)
+    let vector = |first: usize| ComplexVector::from_components([0, 1, 2].map(|c| total(&sums[first + c])));
+    let e = (vector(0) - vector(3) * (k * k).inv()) * (-Complex64::I * k / (4.0 * PI));
+    Field { e, h: vector(6) * (0.25 / PI) }
 }

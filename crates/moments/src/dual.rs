@@ -12,6 +12,7 @@
 //! Andriulli, D. De Zutter, E. Michielssen, Accurate and conforming mixed discretization of the MFIE,
 //! IEEE Antennas Wirel. Propag. Lett. 10 (2011) 528, doi:10.1109/LAWP.2011.2155022.)
 
+use crate::basis::Place;
 use crate::{Basis, Function, Half, MomentsError, Surface, Topology};
 use fredholm_mesh::Vec3;
 
@@ -39,7 +40,9 @@ pub(crate) fn dual(basis: &Basis) -> Result<Basis, MomentsError> {
     let topology = Topology::new(&surface);
     let small = Edges::of(&topology, surface.triangles().len());
     let functions = basis.functions().iter().map(|function| {
-        let meeting = &basis.topology().edges()[function.edge];
+        // Those of the lowest order are around edges.
+        let (Place::Edge(edge) | Place::Triangle(edge)) = function.place;
+        let meeting = &basis.topology().edges()[edge];
         let mut halves = Vec::new();
         for side in &meeting.sides {
             // From either end the triangle that runs through the edge from there on comes first.
@@ -53,8 +56,8 @@ pub(crate) fn dual(basis: &Basis) -> Result<Basis, MomentsError> {
             half.weight /= product;
         }
         // Half of the edge itself, from its lower vertex to the middle.
-        let edge = small.0[halves[0].triangle as usize][2];
-        Function { edge, halves, magnetic: false }
+        let place = Place::Edge(small.0[halves[0].triangle as usize][2]);
+        Function { place, halves, magnetic: false }
     });
     let functions = functions.collect();
     Ok(Basis::with(surface, topology, functions, basis.ground()))
@@ -121,7 +124,7 @@ fn add_cell(topology: &Topology, edges: &Edges, first: (usize, usize), sign: f64
         let (triangle, corner) = fan[spoke / 2];
         let triangle = (PARTS * triangle + 2 * corner + spoke % 2) as u32;
         let mut add = |corner: u8, weight: f64| {
-            halves.push(Half { triangle, corner, weight: sign * weight, region: 0 });
+            halves.push(Half { triangle, number: corner, weight: sign * weight, region: 0 });
         };
         // Small triangles are (vertex, on the spoke, on the next spoke).
         if spoke > 0 {
@@ -151,7 +154,7 @@ fn product(surface: &Surface, halves: &[Half], basis: &Basis, function: &Functio
     let mut sum = 0.0;
     for g in halves {
         for f in function.halves.iter().filter(|f| f.triangle == g.triangle / PARTS as u32) {
-            let corners = [g.corner, f.corner].map(usize::from);
+            let corners = [g.number, f.number].map(usize::from);
             sum += g.weight * f.weight * turned_gram(surface, g.triangle, basis.surface(), corners);
         }
     }
@@ -195,12 +198,13 @@ mod tests {
             let mut charges = vec![0.0; count];
             let mut square = 0.0;
             for half in &function.halves {
-                through[edges.0[half.triangle as usize][usize::from(half.corner)]] += half.weight;
+                through[edges.0[half.triangle as usize][usize::from(half.number)]] += half.weight;
                 charges[half.triangle as usize] += half.weight;
                 square += half.weight.abs();
             }
             assert!(square > 0.0 && through.iter().all(|sum| sum.abs() < 1e-12));
-            let ends = basis.topology().edges()[own.edge].vertices;
+            let Place::Edge(edge) = own.place else { continue };
+            let ends = basis.topology().edges()[edge].vertices;
             let mut sums = [0.0; 2];
             for (end, vertex) in ends.into_iter().enumerate() {
                 let cell: Vec<f64> = (0..count)
@@ -226,8 +230,8 @@ mod tests {
             let mut square = 0.0;
             for together in function.halves.chunk_by(|a, b| a.triangle == b.triangle) {
                 for (a, b) in together.iter().flat_map(|a| together.iter().map(move |b| (a, b))) {
-                    let corners = [a.corner, b.corner].map(usize::from);
-                    let gram = crate::basis::gram(dual.surface(), a.triangle, corners);
+                    let products = dual.surface().element(a.triangle as usize).products();
+                    let gram = products[usize::from(a.number)][usize::from(b.number)];
                     square += a.weight * b.weight * gram;
                 }
             }

@@ -11,7 +11,8 @@
 //! where g are the dual functions (`dual`), one for each f, with ∫ (n × g)·f dA = 1:
 //! ½ J − n × K J = n × H_i is an equality of functions that n × g and not f are the duals of. Tested
 //! with f, the magnetic equation of a sphere of half a wavelength with edges of λ/10 has six times
-//! the error, and the combined one three times.
+//! the error, and the combined one three times. Functions of the first full order are their own
+//! duals well enough: they test n × the equation, g = f × n.
 //!
 //! R. F. Harrington, Field Computation by Moment Methods, Macmillan 1968; J. R. Mautz, R. F.
 //! Harrington, H-field, E-field, and combined-field solutions for conducting bodies of revolution,
@@ -21,12 +22,15 @@
 //! every solver is that of these equations.
 
 use crate::dual::dual;
-use crate::kernel::{Medium, Wanted};
-use crate::operator::{DualPart, Factors, Kinds, Operator, Products, Term};
+use crate::element::shares;
+use crate::element_kernel::Tests;
+use crate::kernel::{Medium, WIDTH, Wanted};
+use crate::operator::{DualPart, Factors, Integrals, Kinds, Operator, Products, Term};
 use crate::pairs::Integrator;
 use crate::rules::Rules;
-use crate::{Basis, MomentsError};
+use crate::{Basis, MomentsError, Order};
 use fredholm_linop::{MultiVector, Symmetry};
+use fredholm_mesh::Vec3;
 use fredholm_quadrature::symmetric_triangle;
 use fredholm_waves::medium::IMPEDANCE;
 use fredholm_waves::{ComplexVector, Field, Source, Wave, incident};
@@ -37,6 +41,8 @@ use std::sync::Arc;
 
 /// Degree of the rule for incident fields: exact for a source at λ/10 to 1e-6.
 const INCIDENT_DEGREE: usize = 6;
+/// The same with functions of the first full order, whose triangles are larger.
+const INCIDENT_DEGREE_OF_FIRST: usize = 12;
 
 /// Which equation is solved on a conductor.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,17 +103,34 @@ impl Equation {
 }
 
 /// What electric currents in free space add to the electric equation, times a factor.
-pub(crate) fn electric_term(k: Complex64, factor: f64, tolerance: f64) -> Result<Term, MomentsError> {
+pub(crate) fn electric_term(
+    order: Order,
+    k: Complex64,
+    factor: f64,
+    tolerance: f64,
+) -> Result<Term, MomentsError> {
     let wanted = Wanted { electric: true, magnetic: false };
-    let integrator = integrator_of(k, wanted, tolerance)?;
-    Ok(Term { integrator, electric: electric_only(factor.into()), magnetic: Factors::default() })
+    let integrals = Integrals::new(order, k, (wanted, Tests::Straight), tolerance)?;
+    Ok(Term { integrals, electric: electric_only(factor.into()), magnetic: Factors::default() })
 }
 
-/// The integrals in a medium; magnetic ones alone are those that dual functions test.
-fn integrator_of(k: Complex64, wanted: Wanted, tolerance: f64) -> Result<Integrator, MomentsError> {
-    let rules = Rules::new(tolerance, k, wanted.magnetic)?;
-    let observers_cut = !wanted.electric;
-    Ok(Integrator { medium: Medium::new(k), wanted, rules, arch: Arch::new(), observers_cut })
+/// Both equations with functions of the first full order, which test the magnetic one turned.
+fn first_order_term(
+    k: Complex64,
+    [electric, magnetic]: [f64; 2],
+    tolerance: f64,
+) -> Result<Term, MomentsError> {
+    let wanted = Wanted { electric: electric != 0.0, magnetic: magnetic != 0.0 };
+    let integrals = Integrals::new(Order::First, k, (wanted, Tests::Turned), tolerance)?;
+    let (electric, magnetic) = (electric_only(electric.into()), electric_only((-magnetic).into()));
+    Ok(Term { integrals, electric, magnetic })
+}
+
+/// The magnetic integrals that dual functions test.
+fn dual_integrator(k: Complex64, tolerance: f64) -> Result<Integrator, MomentsError> {
+    let wanted = Wanted { electric: false, magnetic: true };
+    let rules = Rules::new(tolerance, k, true)?;
+    Ok(Integrator { medium: Medium::new(k), wanted, rules, arch: Arch::new(), observers_cut: true })
 }
 
 /// A factor of electric currents tested with the electric equation, where there is nothing else.
@@ -129,7 +152,7 @@ impl<'a> Conductor<'a> {
     /// (1e-3 is usual: errors of pairs are smaller than those of the mesh by then).
     ///
     /// # Errors
-    /// [`MomentsError::Coarse`] for edges above λ/3, those of
+    /// [`MomentsError::Coarse`] for edges above λ/3 (λ/2 with functions of the first full order), those of
     /// [`Topology::check_closed`](crate::Topology::check_closed) for equations of closed bodies,
     /// [`MomentsError::Parameter`] for numbers out of range.
     pub fn new(
@@ -139,22 +162,35 @@ impl<'a> Conductor<'a> {
         tolerance: f64,
     ) -> Result<Self, MomentsError> {
         equation.check(basis)?;
-        basis.topology().check_resolution(basis.surface(), wave.wavelength())?;
+        basis.topology().check_resolution(basis.surface(), wave.wavelength(), basis.order())?;
         let [electric, magnetic] = equation.shares();
         let k = Complex64::from(wave.wavenumber());
-        let terms = if electric == 0.0 { Vec::new() } else { vec![electric_term(k, electric, tolerance)?] };
         let symmetry = if magnetic == 0.0 { Symmetry::Symmetric } else { Symmetry::General };
         let kinds = vec![Kinds::ELECTRIC; basis.len()];
         let none = Products::Everywhere(Factors::default());
-        let mut operator = Operator::new(basis, kinds, terms, none, symmetry);
-        if magnetic != 0.0 {
-            operator = operator.with_dual(DualPart {
-                basis: Arc::new(dual(basis)?),
-                integrator: integrator_of(k, Wanted { electric: false, magnetic: true }, tolerance)?,
-                magnetic: -magnetic,
-                product: 0.5 * magnetic,
-            });
-        }
+        let operator = match basis.order() {
+            _ if magnetic == 0.0 => {
+                let term = electric_term(basis.order(), k, electric, tolerance)?;
+                Operator::new(basis, kinds, vec![term], none, symmetry)
+            }
+            Order::First => {
+                let term = first_order_term(k, [electric, magnetic], tolerance)?;
+                let half = Products::Everywhere(electric_only((0.5 * magnetic).into()));
+                Operator::new(basis, kinds, vec![term], half, symmetry)
+            }
+            Order::Lowest => {
+                let terms = match electric {
+                    0.0 => Vec::new(),
+                    _ => vec![electric_term(Order::Lowest, k, electric, tolerance)?],
+                };
+                Operator::new(basis, kinds, terms, none, symmetry).with_dual(DualPart {
+                    basis: Arc::new(dual(basis)?),
+                    integrator: dual_integrator(k, tolerance)?,
+                    magnetic: -magnetic,
+                    product: 0.5 * magnetic,
+                })
+            }
+        };
         Ok(Self { basis, wave, equation, operator })
     }
 
@@ -182,11 +218,16 @@ impl<'a> Conductor<'a> {
         let [electric, magnetic] = self.equation.shares();
         let mut b = MultiVector::zeros(self.basis.len(), excitations.len());
         for (rhs, sources) in excitations.iter().enumerate() {
-            let mut tests = tested(self.basis, &self.wave, sources, |field| field.e * electric);
-            if let Some(dual) = self.operator.dual() {
-                let of_dual =
-                    tested(&dual.basis, &self.wave, sources, |field| field.h * (magnetic * IMPEDANCE));
-                tests.iter_mut().zip(of_dual).for_each(|(sum, part)| *sum += part);
+            let mut tests =
+                tested(self.basis, &self.wave, sources, Tests::Straight, |field| field.e * electric);
+            let (tester, straight) = match self.operator.dual() {
+                Some(dual) => (&*dual.basis, Tests::Straight),
+                None => (self.basis, Tests::Turned),
+            };
+            if magnetic != 0.0 {
+                let field = |field: Field| field.h * (magnetic * IMPEDANCE);
+                let of_magnetic = tested(tester, &self.wave, sources, straight, field);
+                tests.iter_mut().zip(of_magnetic).for_each(|(sum, part)| *sum += part);
             }
             b.set_vector(rhs, &tests);
         }
@@ -194,28 +235,38 @@ impl<'a> Conductor<'a> {
     }
 }
 
-/// ∫ f·v dA of every function in region 0, for a vector v of the incident field.
+/// ∫ f·v dA of every function in region 0, or of f × n, for a vector v of the incident field.
 pub(crate) fn tested(
     basis: &Basis,
     wave: &Wave,
     sources: &[&dyn Source],
+    tests: Tests,
     value: impl Fn(Field) -> ComplexVector + Sync,
 ) -> Vec<Complex64> {
+    let degree = match basis.order() {
+        Order::Lowest => INCIDENT_DEGREE,
+        Order::First => INCIDENT_DEGREE_OF_FIRST,
+    };
     // The degree is one of the table.
-    let rule = symmetric_triangle(INCIDENT_DEGREE).unwrap_or_default();
+    let rule = symmetric_triangle(degree).unwrap_or_default();
     let surface = basis.surface();
     let on_triangle = |triangle: usize| {
-        let [a, b, c] = surface.corners(triangle);
-        let mut sums = [Complex64::ZERO; 3];
+        let element = surface.element(triangle);
+        let mut sums = [Complex64::ZERO; WIDTH];
         for point in &rule {
-            let p = a + point.u * (b - a) + point.v * (c - a);
-            let v = value(incident(sources, wave, p)) * point.weight;
-            sums.iter_mut().zip([a, b, c]).for_each(|(sum, corner)| *sum += v.dot(p - corner));
+            let at = shares([point.u, point.v]);
+            let v = value(incident(sources, wave, element.point(at))) * point.weight;
+            let turned = |f: Vec3| match tests {
+                Tests::Straight => f,
+                Tests::Turned => f.cross(element.normal(at)),
+            };
+            sums.iter_mut().zip(element.vectors(at)).for_each(|(sum, f)| *sum += v.dot(turned(f)));
         }
         sums
     };
-    let sums: Vec<[Complex64; 3]> = (0..surface.triangles().len()).into_par_iter().map(on_triangle).collect();
-    let product = |half: &crate::Half| sums[half.triangle as usize][usize::from(half.corner)] * half.weight;
+    let sums: Vec<[Complex64; WIDTH]> =
+        (0..surface.triangles().len()).into_par_iter().map(on_triangle).collect();
+    let product = |half: &crate::Half| sums[half.triangle as usize][usize::from(half.number)] * half.weight;
     let outside = |function: &crate::Function| {
         function.halves.iter().filter(|half| half.region == 0).map(product).sum()
     };

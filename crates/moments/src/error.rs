@@ -115,6 +115,15 @@ pub enum MomentsError {
         /// The other.
         second: usize,
     },
+    /// Curved triangles have functions of the lowest order.
+    #[error("functions of the lowest order are on flat triangles, and some of these are curved")]
+    Curved,
+    /// A curved triangle turns its other side somewhere.
+    #[error("the sides of triangle {triangle} are so curved that it folds over")]
+    Folded {
+        /// The triangle.
+        triangle: usize,
+    },
     /// The functions are those of a surface in free space, not between regions.
     #[error("the functions are those of a surface in free space, not between regions")]
     NoRegions,
@@ -141,7 +150,7 @@ pub enum MomentsError {
         index: usize,
     },
     /// Triangles are too large for the wave.
-    #[error("edge {edge} is {length} m long, which is more than a third of the wavelength of {wavelength} m")]
+    #[error("edge {edge} is {length} m long, which is more than {most} of the wavelength of {wavelength} m")]
     Coarse {
         /// The edge.
         edge: usize,
@@ -149,6 +158,8 @@ pub enum MomentsError {
         length: f64,
         /// The shortest wavelength on either side, m.
         wavelength: f64,
+        /// The most that it may be of it.
+        most: &'static str,
     },
     /// A number that sets up the problem is out of its range.
     #[error("{what} is {value}, but must be {expected}")]
@@ -196,6 +207,8 @@ impl MomentsError {
             Self::InsideOut { .. } => Some("turn it over (`Surface::oriented`)"),
             Self::Unmatched { .. } => Some("cut both bodies alike where they touch, or move them apart"),
             Self::Crossing { .. } => Some("move them apart, or cut one where it enters the other"),
+            Self::Curved => Some("take those of the first order (`Order::First`)"),
+            Self::Folded { .. } => Some("mesh it finer there, or leave it flat"),
             Self::NoRegions => Some("take those between regions (`Basis::between`)"),
             Self::Regions { .. } => Some("mend the bodies there, or move them apart"),
             Self::Patchwork { .. } => Some("give the whole body one surface impedance"),

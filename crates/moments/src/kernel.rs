@@ -45,6 +45,8 @@ macro_rules! axes {
     };
 }
 
+pub(crate) use axes;
+
 /// Pairs at once, on any instruction set.
 pub(crate) const WIDTH: usize = 8;
 /// One number for each pair.
@@ -87,8 +89,8 @@ pub(crate) struct Points<'a> {
 /// The medium: k = k′ − jκ, 1/m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Medium {
-    k: Complex64,
-    lossy: bool,
+    pub(crate) k: Complex64,
+    pub(crate) lossy: bool,
 }
 
 impl Medium {
@@ -262,13 +264,13 @@ impl Values {
 
 /// Register `at` of eight vectors.
 #[inline(always)]
-fn register<S: Simd>(simd: S, values: &[Eight; 3], at: usize) -> [Lanes<S>; 3] {
+pub(crate) fn register<S: Simd>(simd: S, values: &[Eight; 3], at: usize) -> [Lanes<S>; 3] {
     axes!(c => Lanes::register(simd, &values[c], at))
 }
 
 /// A vector in all lanes.
 #[inline(always)]
-fn splat<S: Simd>(simd: S, v: Vec3) -> [Lanes<S>; 3] {
+pub(crate) fn splat<S: Simd>(simd: S, v: Vec3) -> [Lanes<S>; 3] {
     axes!(c => Lanes::splat(simd, v[c]))
 }
 
@@ -296,7 +298,7 @@ fn fade<S: Simd>(simd: S, medium: Medium, middle: Lanes<S>) -> Lanes<S> {
 }
 
 /// The constants of a medium.
-struct Kernel<S: Simd, const LOSSY: bool> {
+pub(crate) struct Kernel<S: Simd, const LOSSY: bool> {
     real: Lanes<S>,
     loss: Lanes<S>,
     halvings: u32,
@@ -306,7 +308,7 @@ struct Kernel<S: Simd, const LOSSY: bool> {
 
 impl<S: Simd, const LOSSY: bool> Kernel<S, LOSSY> {
     #[inline(always)]
-    fn new(simd: S, medium: Medium, spread: f64) -> Self {
+    pub(crate) fn new(simd: S, medium: Medium, spread: f64) -> Self {
         Self {
             real: Lanes::splat(simd, medium.k.re),
             loss: Lanes::splat(simd, -medium.k.im),
@@ -315,31 +317,73 @@ impl<S: Simd, const LOSSY: bool> Kernel<S, LOSSY> {
             medium,
         }
     }
+
+    /// weight · e^{κ middle} g and, where it is wanted, (1 + jkR)/R² times that, `d` away from the
+    /// source.
+    #[inline(always)]
+    pub(crate) fn at<const MAGNETIC: bool>(
+        &self,
+        d: [Lanes<S>; 3],
+        middle: Lanes<S>,
+        weight: Lanes<S>,
+    ) -> (Complex<S>, Complex<S>) {
+        let square = dot(d, d);
+        let inverse = square.sqrt().inverse();
+        let distance = square * inverse;
+        let phase = self.real * distance;
+        let (cos, sin) = cos_sin(phase);
+        let mut size = weight * inverse;
+        if LOSSY {
+            size = size * decay(self.loss * (distance - middle), self.halvings);
+        }
+        let g = Complex { re: size * cos, im: -(size * sin) };
+        if !MAGNETIC {
+            return (g, g);
+        }
+        let second = inverse * inverse;
+        let damping = if LOSSY { self.loss.mul_add(distance, self.one) } else { self.one };
+        let re = (g.re * damping - g.im * phase) * second;
+        let im = g.im.mul_add(damping, g.re * phase) * second;
+        (g, Complex { re, im })
+    }
 }
 
 /// Complex numbers, one a lane.
 #[derive(Clone, Copy)]
-struct Complex<S: Simd> {
-    re: Lanes<S>,
-    im: Lanes<S>,
+pub(crate) struct Complex<S: Simd> {
+    pub(crate) re: Lanes<S>,
+    pub(crate) im: Lanes<S>,
 }
 
 impl<S: Simd> Complex<S> {
     #[inline(always)]
-    fn zero(simd: S) -> Self {
+    pub(crate) fn zero(simd: S) -> Self {
         let zero = Lanes::splat(simd, 0.0);
         Self { re: zero, im: zero }
     }
 
     /// self + factor · other.
     #[inline(always)]
-    fn plus(self, factor: Lanes<S>, other: Self) -> Self {
+    pub(crate) fn plus(self, factor: Lanes<S>, other: Self) -> Self {
         Self { re: factor.mul_add(other.re, self.re), im: factor.mul_add(other.im, self.im) }
     }
 
     #[inline(always)]
-    fn scaled(self, factor: Lanes<S>) -> Self {
+    pub(crate) fn scaled(self, factor: Lanes<S>) -> Self {
         Self { re: self.re * factor, im: self.im * factor }
+    }
+
+    #[inline(always)]
+    fn sum(self, other: Self) -> Self {
+        Self { re: self.re + other.re, im: self.im + other.im }
+    }
+
+    #[inline(always)]
+    fn product(self, other: Self) -> Self {
+        Self {
+            re: self.re * other.re - self.im * other.im,
+            im: self.re.mul_add(other.im, self.im * other.re),
+        }
     }
 
     /// Times a complex number that is the same in all lanes.
@@ -374,27 +418,13 @@ impl<S: Simd> Inner<S> {
         middle: Lanes<S>,
         weight: Lanes<S>,
     ) {
-        let square = dot(d, d);
-        let inverse = square.sqrt().inverse();
-        let distance = square * inverse;
-        let phase = wave.real * distance;
-        let (cos, sin) = cos_sin(phase);
-        let mut size = weight * inverse;
-        if LOSSY {
-            size = size * decay(wave.loss * (distance - middle), wave.halvings);
-        }
-        let g = Complex { re: size * cos, im: -(size * sin) };
+        let (g, slope) = wave.at::<MAGNETIC>(d, middle, weight);
         if ELECTRIC {
             let one = wave.one;
             self.potential = self.potential.plus(one, g);
             self.vector = axes!(c => self.vector[c].plus(other[c], g));
         }
         if MAGNETIC {
-            let second = inverse * inverse;
-            let damping = if LOSSY { wave.loss.mul_add(distance, wave.one) } else { wave.one };
-            let re = (g.re * damping - g.im * phase) * second;
-            let im = g.im.mul_add(damping, g.re * phase) * second;
-            let slope = Complex { re, im };
             self.gradient = axes!(c => self.gradient[c].plus(d[c], slope));
         }
     }
@@ -504,7 +534,7 @@ impl<S: Simd, const ELECTRIC: bool, const MAGNETIC: bool> Moments<S, ELECTRIC, M
 impl<S: Simd> Complex<S> {
     /// Writes to register `at`.
     #[inline(always)]
-    fn store(self, out: &mut [Eight; 2], at: usize) {
+    pub(crate) fn store(self, out: &mut [Eight; 2], at: usize) {
         let lanes = at * S::F64_LANES..(at + 1) * S::F64_LANES;
         self.re.store(&mut out[0][lanes.clone()]);
         self.im.store(&mut out[1][lanes]);
@@ -523,12 +553,12 @@ fn add<S: Simd>(a: [Lanes<S>; 3], b: [Lanes<S>; 3]) -> [Lanes<S>; 3] {
 }
 
 #[inline(always)]
-fn sub<S: Simd>(a: [Lanes<S>; 3], b: [Lanes<S>; 3]) -> [Lanes<S>; 3] {
+pub(crate) fn sub<S: Simd>(a: [Lanes<S>; 3], b: [Lanes<S>; 3]) -> [Lanes<S>; 3] {
     axes!(c => a[c] - b[c])
 }
 
 #[inline(always)]
-fn dot<S: Simd>(a: [Lanes<S>; 3], b: [Lanes<S>; 3]) -> Lanes<S> {
+pub(crate) fn dot<S: Simd>(a: [Lanes<S>; 3], b: [Lanes<S>; 3]) -> Lanes<S> {
     a[2].mul_add(b[2], a[1].mul_add(b[1], a[0] * b[0]))
 }
 
@@ -541,14 +571,26 @@ fn crossed<S: Simd>(a: [Lanes<S>; 3], b: [Complex<S>; 3]) -> [Complex<S>; 3] {
     })
 }
 
-/// The integrals ∫ g, ∫ g r′ and Q over eight source triangles, seen from a point: seven complex
-/// numbers each.
+/// Eight points of a current: places (m), J dA, and div J dA, real and imaginary.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Sources {
+    pub(crate) places: [Eight; 3],
+    pub(crate) current: [[Eight; 2]; 3],
+    pub(crate) charge: [Eight; 2],
+}
+
+/// What is seen of currents from a point, with q = (1 + jkR) g/R² d: Σ g J, Σ q div J and Σ J × q,
+/// one sum a lane.
+pub(crate) type Sums = [[Eight; 2]; 9];
+
+/// Adds what a point sees of some sources.
 pub(crate) struct Seen<'a> {
     pub(crate) medium: Medium,
     pub(crate) point: Vec3,
-    pub(crate) sources: Points<'a>,
-    pub(crate) spread: f64,
-    pub(crate) out: &'a mut [[Eight; 2]; 7],
+    pub(crate) sources: &'a [Sources],
+    /// Bound of the distance, m.
+    pub(crate) reach: f64,
+    pub(crate) sums: &'a mut Sums,
 }
 
 impl WithSimd for Seen<'_> {
@@ -563,22 +605,34 @@ impl WithSimd for Seen<'_> {
 impl Seen<'_> {
     #[inline(always)]
     fn run<S: Simd, const LOSSY: bool>(self, simd: S) {
-        let wave = Kernel::<S, LOSSY>::new(simd, self.medium, self.spread);
+        let wave = Kernel::<S, LOSSY>::new(simd, self.medium, self.reach);
         let point = splat(simd, self.point);
+        let (zero, one) = (Lanes::splat(simd, 0.0), Lanes::splat(simd, 1.0));
         for at in 0..WIDTH / S::F64_LANES {
-            let e = sub(point, register(simd, &self.sources.triangles.centre, at));
-            let middle = if LOSSY { dot(e, e).sqrt() } else { Lanes::splat(simd, 0.0) };
-            let mut inner = Inner::<S>::zero(simd);
-            for (s, &weight) in self.sources.places.iter().zip(self.sources.weights) {
-                let other = register(simd, s, at);
-                let weight = Lanes::splat(simd, weight);
-                inner.add::<true, true, LOSSY>(&wave, sub(e, other), other, middle, weight);
+            let read = |part: &[Eight; 2]| Complex {
+                re: Lanes::register(simd, &part[0], at),
+                im: Lanes::register(simd, &part[1], at),
+            };
+            let mut potential = axes!(c => read(&self.sums[c]));
+            let mut gradient = axes!(c => read(&self.sums[3 + c]));
+            let mut curl = axes!(c => read(&self.sums[6 + c]));
+            for sources in self.sources {
+                let d = sub(point, register(simd, &sources.places, at));
+                let (g, slope) = wave.at::<true>(d, zero, one);
+                let current = axes!(c => read(&sources.current[c]));
+                let charge = slope.product(read(&sources.charge));
+                potential = axes!(c => potential[c].sum(g.product(current[c])));
+                gradient = axes!(c => gradient[c].plus(d[c], charge));
+                let bent = axes!(c => slope.product(current[c]));
+                curl = axes!(c => {
+                    let (u, v) = ((c + 1) % 3, (c + 2) % 3);
+                    curl[c].plus(d[v], bent[u]).plus(-d[u], bent[v])
+                });
             }
-            let fade = if LOSSY { fade(simd, self.medium, middle) } else { Lanes::splat(simd, 1.0) };
-            let [x, y, z] = inner.vector;
-            let [u, v, w] = inner.gradient;
-            for (value, out) in [inner.potential, x, y, z, u, v, w].iter().zip(self.out.iter_mut()) {
-                value.scaled(fade).store(out, at);
+            for c in 0..3 {
+                potential[c].store(&mut self.sums[c], at);
+                gradient[c].store(&mut self.sums[3 + c], at);
+                curl[c].store(&mut self.sums[6 + c], at);
             }
         }
     }

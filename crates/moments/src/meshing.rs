@@ -125,3 +125,16 @@ pub fn sphere(radius: f64, edge: f64) -> Result<Surface, MomentsError> {
     builder.add(&shape, &Cutting::default()).map_err(fredholm_waves::WaveError::from)?;
     Surface::from_mesh(&builder.build())
 }
+
+/// The closed sphere around the origin in curved triangles with edges up to `edge`, their corners and
+/// the middles of their sides on the sphere: for functions of the first full order.
+///
+/// # Errors
+/// Those of [`sphere`].
+pub fn curved_sphere(radius: f64, edge: f64) -> Result<Surface, MomentsError> {
+    let flat = sphere(radius, edge)?;
+    let on = |v: Vec3| v.normalize_or_zero() * radius;
+    let vertices: Vec<Vec3> = flat.vertices().iter().map(|&v| on(v)).collect();
+    let middle = |side: [u32; 2]| on(vertices[side[0] as usize] + vertices[side[1] as usize]);
+    Surface::new(vertices.clone(), flat.triangles().to_vec())?.curved(middle)
+}

@@ -14,15 +14,19 @@
 //! the images of all others in. The unknowns of a function follow each other. T and the first form
 //! of K are symmetric.
 
-use crate::basis::gram;
 use crate::dual::{PARTS, turned_gram};
+use crate::element_kernel::Tests;
+use crate::element_pairs::ElementIntegrator;
+use crate::kernel::{Medium, Wanted};
 use crate::pairs::Integrator;
-use crate::set::{Halves, Set};
-use crate::{Basis, MomentsError};
+use crate::rules::Rules;
+use crate::set::{Entry, Halves, Set};
+use crate::{Basis, MomentsError, Order};
 use fredholm_compressed::{Entries, Hierarchical, Settings};
 use fredholm_linop::{Dense, LinopError, Symmetry, Watch};
 use fredholm_mesh::Vec3;
 use num_complex::Complex64;
+use pulp::Arch;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -52,10 +56,39 @@ impl Kinds {
     pub(crate) const BOTH: Self = Self { count: 2, unit: 1.0 };
 }
 
+/// What integrates pairs of triangles, with functions of either order.
+#[derive(Clone, Debug)]
+pub(crate) enum Integrals {
+    Lowest(Integrator),
+    First(ElementIntegrator),
+}
+
+impl Integrals {
+    /// To a relative `tolerance` of a pair, in a medium with the wavenumber k (1/m).
+    pub(crate) fn new(
+        order: Order,
+        k: Complex64,
+        (wanted, tests): (Wanted, Tests),
+        tolerance: f64,
+    ) -> Result<Self, MomentsError> {
+        let (medium, arch) = (Medium::new(k), Arch::new());
+        Ok(match order {
+            Order::Lowest => {
+                let rules = Rules::new(tolerance, k, wanted.magnetic)?;
+                Self::Lowest(Integrator { medium, wanted, rules, arch, observers_cut: false })
+            }
+            Order::First => {
+                let rules = Rules::of_first_order(tolerance, k, wanted.magnetic)?;
+                Self::First(ElementIntegrator { medium, wanted, tests, rules, arch })
+            }
+        })
+    }
+}
+
 /// What one region adds.
 #[derive(Clone, Debug)]
 pub(crate) struct Term {
-    pub(crate) integrator: Integrator,
+    pub(crate) integrals: Integrals,
     pub(crate) electric: Factors,
     pub(crate) magnetic: Factors,
 }
@@ -214,7 +247,7 @@ impl<'a> Operator<'a> {
                     let weight = factor * n.weight * n.units[0];
                     let seen = &mut seen[n.at * line + 3 * row..][..3];
                     for (corner, seen) in seen.iter_mut().enumerate() {
-                        *seen += pair.magnetic[3 * corner + n.corner] * weight;
+                        *seen += pair.magnetic[3 * corner + n.number] * weight;
                     }
                 }
             });
@@ -230,7 +263,7 @@ impl<'a> Operator<'a> {
             let Ok(column) = columns.triangles.binary_search_by_key(&rank, ranked) else { continue };
             for n in columns.entries(column) {
                 for corner in 0..3 {
-                    let gram = turned_gram(cut, part, whole, [corner, n.corner]);
+                    let gram = turned_gram(cut, part, whole, [corner, n.number]);
                     seen[n.at * line + 3 * row + corner] += dual.product * n.weight * gram;
                 }
             }
@@ -240,7 +273,7 @@ impl<'a> Operator<'a> {
             tested.fill(Complex64::ZERO);
             for (row, seen) in seen.chunks_exact(3).enumerate() {
                 for m in rows.entries(row) {
-                    tested[m.at] += seen[m.corner] * m.weight;
+                    tested[m.at] += seen[m.number] * m.weight;
                 }
             }
             out.iter_mut().skip(n).step_by(stride).zip(&tested).for_each(|(sum, tested)| *sum += tested);
@@ -257,10 +290,10 @@ impl<'a> Operator<'a> {
             }
             let found = columns.triangles.binary_search_by_key(&self.basis.rank(triangle), ranked);
             let Ok(column) = found else { continue };
+            let products = self.basis.surface().element(triangle as usize).products();
             for m in rows.entries(row) {
                 for n in columns.entries(column) {
-                    let corners = [m.corner, n.corner];
-                    let product = m.weight * n.weight * gram(self.basis.surface(), triangle, corners);
+                    let product = m.weight * n.weight * products[m.number][n.number];
                     let at = m.at * stride + n.at;
                     for a in 0..m.kinds {
                         for b in 0..n.kinds {
@@ -423,21 +456,39 @@ impl Entries<Complex64> for Operator<'_> {
 
 /// Adds the integrals of all pairs of halves of functions in one region.
 fn add_term(term: &Term, [rows, columns]: [&Halves; 2], out: &mut [Complex64], stride: usize) {
-    term.integrator.each(rows, columns, |row, column, pair| {
-        for m in rows.entries(row) {
-            for n in columns.entries(column) {
-                let weight = m.weight * n.weight / (4.0 * PI);
-                let [electric, magnetic] = pair.at(m.corner, n.corner).map(|part| part * weight);
-                let out = &mut out[m.at * stride + n.at..];
-                for a in 0..m.kinds {
-                    for b in 0..n.kinds {
-                        let value = term.electric[a][b] * electric + term.magnetic[a][b] * magnetic;
-                        out[a * stride + b] += value * (m.units[a] * n.units[b]);
-                    }
+    match &term.integrals {
+        Integrals::Lowest(integrator) => integrator.each(rows, columns, |row, column, pair| {
+            let halves = [rows.entries(row), columns.entries(column)];
+            add_pair(term, halves, |a, b| pair.at(a, b), out, stride);
+        }),
+        Integrals::First(integrator) => integrator.each(rows, columns, |row, column, pair| {
+            let halves = [rows.entries(row), columns.entries(column)];
+            add_pair(term, halves, |a, b| pair.at(a, b), out, stride);
+        }),
+    }
+}
+
+/// Adds the integrals of all halves on a pair of triangles.
+fn add_pair(
+    term: &Term,
+    [rows, columns]: [&[Entry]; 2],
+    pair: impl Fn(usize, usize) -> [Complex64; 2],
+    out: &mut [Complex64],
+    stride: usize,
+) {
+    for m in rows {
+        for n in columns {
+            let weight = m.weight * n.weight / (4.0 * PI);
+            let [electric, magnetic] = pair(m.number, n.number).map(|part| part * weight);
+            let out = &mut out[m.at * stride + n.at..];
+            for a in 0..m.kinds {
+                for b in 0..n.kinds {
+                    let value = term.electric[a][b] * electric + term.magnetic[a][b] * magnetic;
+                    out[a * stride + b] += value * (m.units[a] * n.units[b]);
                 }
             }
         }
-    });
+    }
 }
 
 /// Pairs of triangles of two sets in all regions.

@@ -9,12 +9,12 @@ use num_complex::Complex64;
 use pulp::Arch;
 
 /// Halvings after which a pair is taken as it is: only triangles that cut each other come here.
-const MOST_HALVINGS: usize = 24;
+pub(crate) const MOST_HALVINGS: usize = 24;
 /// Elongation beyond which touching triangles are halved.
-const MOST_ELONGATION: f64 = 3.0;
+pub(crate) const MOST_ELONGATION: f64 = 3.0;
 /// Product of the shares of both areas below which they are not: a sharp corner stays one however
 /// it is cut.
-const LEAST_AREA_SHARES: f64 = 1.0 / 500.0;
+pub(crate) const LEAST_AREA_SHARES: f64 = 1.0 / 500.0;
 
 /// Both parts of all pairs of corners (3a + b) of a pair of triangles: the integrals of the kernel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -158,7 +158,7 @@ impl Integrator {
     /// Currents around a loop have no charge only where the charges of all their functions have
     /// potentials with the same errors: the difference of two errors would act as a charge, which at
     /// low frequencies counts (λ/2πh)² times as much as the current itself.
-    fn near(&self, shapes: [&Shape; 2], names: [u32; 2]) -> Pair {
+    pub(crate) fn near(&self, shapes: [&Shape; 2], names: [u32; 2]) -> Pair {
         if self.observers_cut {
             return self.close_to_part(shapes, names[0] / PARTS as u32 == names[1]);
         }
@@ -347,11 +347,6 @@ impl Pair {
     }
 }
 
-/// Both halves of a triangle, cut across its longest side.
-pub(crate) fn halves_of(corners: [Vec3; 3]) -> [[Vec3; 3]; 2] {
-    halves(corners, longest_side(corners))
-}
-
 /// Both halves of a triangle, cut across the side from corner `first`.
 fn halves(corners: [Vec3; 3], first: usize) -> [[Vec3; 3]; 2] {
     let [a, b, c] = [0, 1, 2].map(|i| corners[(first + i) % 3]);
@@ -360,24 +355,24 @@ fn halves(corners: [Vec3; 3], first: usize) -> [[Vec3; 3]; 2] {
 }
 
 /// Length of the side from corner `first`, m.
-fn length(corners: [Vec3; 3], first: usize) -> f64 {
+pub(crate) fn length(corners: [Vec3; 3], first: usize) -> f64 {
     corners[first].distance(corners[(first + 1) % 3])
 }
 
 /// The corner where the longest side begins.
-fn longest_side(corners: [Vec3; 3]) -> usize {
+pub(crate) fn longest_side(corners: [Vec3; 3]) -> usize {
     (0..3).fold(0, |best, i| if length(corners, i) > length(corners, best) { i } else { best })
 }
 
 /// The longest side over the height on it: 1.15 of an equilateral triangle, 2 of half a square.
-fn elongation(corners: [Vec3; 3]) -> f64 {
+pub(crate) fn elongation(corners: [Vec3; 3]) -> f64 {
     let [a, b, c] = corners;
     length(corners, longest_side(corners)).powi(2) / (b - a).cross(c - a).length()
 }
 
 /// Orders of the corners of both triangles with the common ones first, and their number. Corners of
 /// one surface are common where they are the same point, bit by bit.
-fn matched(corners: [[Vec3; 3]; 2]) -> ([[usize; 3]; 2], usize) {
+pub(crate) fn matched(corners: [[Vec3; 3]; 2]) -> ([[usize; 3]; 2], usize) {
     let mut orders = [[0, 1, 2]; 2];
     let mut common = 0;
     for i in 0..3 {
@@ -557,6 +552,47 @@ mod tests {
         [b.cross(c), c.cross(a), a.cross(b)].map(|part| part.dot(normal) / normal.length_squared())
     }
 
+    /// Errors by the number of common corners: to measure the constants of `rules`.
+    #[test]
+    #[ignore = "measures constants"]
+    #[allow(clippy::print_stdout, reason = "it prints them")]
+    fn calibrate() {
+        let k = Complex64::new(0.6, -0.1);
+        for n in 2..11 {
+            let mut worst = [[0.0_f64; 2]; 3];
+            for fold in [0.0, 0.4, 0.8, 1.2, 1.6] {
+                for (labels, corners) in contacts(1.0, fold) {
+                    let of = |n: usize| plain(k, corners, &triangle_pair([0, 1, 2], labels, n));
+                    let error = errors(&of(n), &of(14));
+                    let common = labels.iter().filter(|&&label| label < 3).count();
+                    (0..2).for_each(|i| worst[common - 1][i] = worst[common - 1][i].max(error[i]));
+                }
+            }
+            println!("{n} directions: {worst:?}");
+        }
+        let cut = |tolerance| Integrator { observers_cut: true, ..integrator(k, tolerance) };
+        for tolerance in [1e-2, 3e-3, 1e-3, 1e-4] {
+            let mut worst = [0.0_f64; 3];
+            for fold in [0.4, 0.8, 1.2, 1.6] {
+                for (_, [whole, other]) in contacts(1.0, fold).into_iter().skip(1) {
+                    let other = Shape::new(other);
+                    for (part, corners) in parts(whole).into_iter().enumerate() {
+                        let observer = Shape::new(corners);
+                        let of = |tolerance| cut(tolerance).near([&observer, &other], [part as u32, 1]);
+                        let (found, exact) = (of(tolerance), of(1e-6));
+                        let difference = std::array::from_fn(|i| found.magnetic[i] - exact.magnetic[i]);
+                        let size = norm(&exact.magnetic).max(0.1 * norm(&exact.electric));
+                        let common = matched([corners, other.places]).1;
+                        if common > 0 {
+                            worst[common - 1] = worst[common - 1].max(norm(&difference) / size);
+                        }
+                    }
+                }
+            }
+            println!("parts at {tolerance}: {worst:?}");
+        }
+    }
+
     /// The parts of a triangle as observers of the ones that it touches, against finer rules, and
     /// together against the whole triangle: r − a is Σ c_i (r − p_i) with Σ c_i p_i = a.
     #[test]
@@ -575,7 +611,7 @@ mod tests {
                     // hold both, most of it cancels.
                     let difference = std::array::from_fn(|i| found.magnetic[i] - exact.magnetic[i]);
                     let size = norm(&exact.magnetic).max(0.1 * norm(&exact.electric));
-                    assert!(norm(&difference) < 5e-3 * size, "{fold} {part}: {:e}", norm(&difference) / size);
+                    assert!(norm(&difference) < 6e-3 * size, "{fold} {part}: {:e}", norm(&difference) / size);
                     for (at, sum) in sums.iter_mut().enumerate() {
                         let shares = coordinates(corners, whole[at / 3]);
                         let term = |(i, share): (usize, &f64)| exact.magnetic[3 * i + at % 3] * *share;

@@ -305,7 +305,7 @@ impl Merged {
             placed.push(Placed { triangle: at, turned });
         }
         let triangles = firsts.iter().map(|&triangle| bodies.triangles()[triangle]).collect();
-        let surface = Surface::new(bodies.vertices().to_vec(), triangles)?;
+        let surface = bodies.with_triangles(triangles)?;
         Ok(Self { firsts, sheets, placed, topology: Topology::new(&surface), surface })
     }
 
@@ -384,7 +384,7 @@ impl Merged {
             names[place.triangle].map(|(triangle, turned)| Placed { triangle, turned: place.turned ^ turned })
         };
         let placed = self.placed.iter().map(placed).collect();
-        let surface = Surface::new(bodies.vertices().to_vec(), triangles)?;
+        let surface = bodies.with_triangles(triangles)?;
         Ok(Regions { surface, faces: kept, media: left, placed, shells })
     }
 }

@@ -12,15 +12,42 @@ use crate::kernel::{PairPoints, WIDTH};
 use fredholm_quadrature::{PairPoint, symmetric_triangle, triangle_pair};
 use num_complex::Complex64;
 
-/// Degrees of the rules.
-const DEGREES: [usize; CLASSES] = [2, 5, 8, 12];
 /// Number of rules.
 pub(crate) const CLASSES: usize = 4;
-/// Measured errors of a rule of degree d without and with the magnetic part: this times ((a +
-/// b)/D)^{d + 1}.
-const STATIC_ERRORS: [[f64; CLASSES]; 2] = [[2.4e-3, 7e-5, 5e-6, 8e-9], [9e-2, 5e-3, 3e-4, 1e-6]];
-/// Measured error of the phase: this times (|k| (a + b)/2)^{d + 1}.
-const PHASE_ERRORS: [[f64; CLASSES]; 2] = [[3e-3, 1e-5, 5e-10, 1e-14], [1e-2, 4e-5, 1e-9, 1e-14]];
+
+/// Degrees of the rules, and their measured errors without and with the magnetic part.
+struct Calibration {
+    degrees: [usize; CLASSES],
+    /// Degrees that the functions take.
+    lost: usize,
+    /// This times ((a + b)/D)^{d + 1 − lost}.
+    of_distance: [[f64; CLASSES]; 2],
+    /// Of the phase: this times (|k| (a + b)/2)^{d + 1 − lost}.
+    of_phase: [[f64; CLASSES]; 2],
+    /// Of five Gauss points a direction for pairs with one, two and three common corners.
+    of_five: [[f64; 2]; 3],
+    /// What each more divides that by.
+    of_one_more: f64,
+}
+
+/// Of functions of the lowest order on flat triangles.
+const LOWEST: Calibration = Calibration {
+    degrees: [2, 5, 8, 12],
+    lost: 0,
+    of_distance: [[2.4e-3, 7e-5, 5e-6, 8e-9], [9e-2, 5e-3, 3e-4, 1e-6]],
+    of_phase: [[3e-3, 1e-5, 5e-10, 1e-14], [1e-2, 4e-5, 1e-9, 1e-14]],
+    of_five: [[6e-6, 2.6e-4], [3e-5, 1e-3], [3e-5, 4e-4]],
+    of_one_more: 5.0,
+};
+/// Of those of the first full order.
+const FIRST: Calibration = Calibration {
+    degrees: [5, 8, 10, 13],
+    lost: 2,
+    of_distance: [[2e-4, 9e-6, 4e-7, 4.2e-8], [6e-3, 2.6e-4, 2.1e-5, 2.5e-6]],
+    of_phase: [[1.2e-4, 2.6e-8, 2e-10, 5e-14], [2.6e-4, 1.4e-7, 1.1e-9, 1e-13]],
+    of_five: [[6e-6, 2.6e-4], [3e-5, 1e-3], [3e-5, 6e-4]],
+    of_one_more: 5.5,
+};
 /// Tolerances that can be asked for.
 pub(crate) const TOLERANCES: [f64; 2] = [1e-8, 0.1];
 
@@ -48,6 +75,20 @@ impl Rules {
     /// For a relative error of `tolerance` of a pair, the magnetic part included or not, and waves
     /// up to |k| (1/m).
     pub(crate) fn new(tolerance: f64, k: Complex64, magnetic: bool) -> Result<Self, MomentsError> {
+        Self::with(&LOWEST, tolerance, k, magnetic)
+    }
+
+    /// The same for functions of the first full order.
+    pub(crate) fn of_first_order(tolerance: f64, k: Complex64, magnetic: bool) -> Result<Self, MomentsError> {
+        Self::with(&FIRST, tolerance, k, magnetic)
+    }
+
+    fn with(
+        errors: &Calibration,
+        tolerance: f64,
+        k: Complex64,
+        magnetic: bool,
+    ) -> Result<Self, MomentsError> {
         let [low, high] = TOLERANCES;
         if !(low..=high).contains(&tolerance) {
             let expected = "between 1e-8 and 0.1";
@@ -57,9 +98,14 @@ impl Rules {
                 expected,
             });
         }
-        let classes =
-            (0..CLASSES).map(|class| Rule::new(class, tolerance, k.norm(), usize::from(magnetic))).collect();
-        Ok(Self { classes, touching: touching(directions(tolerance, magnetic)) })
+        let part = usize::from(magnetic);
+        let classes = (0..CLASSES).map(|class| Rule::new(errors, class, tolerance, k.norm(), part)).collect();
+        let touching = [0, 1, 2].map(|kind| {
+            let labels = [[0, 3, 4], [0, 1, 3], [0, 1, 2]][kind];
+            let of_five = errors.of_five[kind][part];
+            packed(&triangle_pair([0, 1, 2], labels, directions(of_five, errors.of_one_more, tolerance)))
+        });
+        Ok(Self { classes, touching })
     }
 
     /// The first rule that suits triangles with radii that sum to `radii` at a distance of `ratio`
@@ -70,30 +116,26 @@ impl Rules {
 }
 
 impl Rule {
-    fn new(class: usize, tolerance: f64, k: f64, part: usize) -> Self {
-        let order = (DEGREES[class] + 1) as f64;
+    fn new(errors: &Calibration, class: usize, tolerance: f64, k: f64, part: usize) -> Self {
+        let degree = errors.degrees[class];
+        let order = (degree + 1 - errors.lost) as f64;
         // The degrees are those of the table.
-        let rule = symmetric_triangle(DEGREES[class]).unwrap_or_default();
+        let rule = symmetric_triangle(degree).unwrap_or_default();
         Self {
             points: rule.iter().map(|p| [p.u, p.v]).collect(),
             weights: rule.iter().map(|p| p.weight).collect(),
-            reach: (2.0 * STATIC_ERRORS[part][class] / tolerance).powf(order.recip()).max(1.05),
-            largest: 2.0 * (0.5 * tolerance / PHASE_ERRORS[part][class]).powf(order.recip()) / k,
+            reach: (2.0 * errors.of_distance[part][class] / tolerance).powf(order.recip()).max(1.05),
+            largest: 2.0 * (0.5 * tolerance / errors.of_phase[part][class]).powf(order.recip()) / k,
         }
     }
 }
 
-/// Gauss points a direction for pairs that touch. With five the measured error is 3e-5 without and
-/// 1e-3 with the magnetic part, and it falls by about a factor of five with each more (see the
-/// tests).
-fn directions(tolerance: f64, magnetic: bool) -> usize {
-    let with_five: f64 = if magnetic { 1e-3 } else { 3e-5 };
-    (5.0 + (with_five / tolerance).log(5.0)).ceil().clamp(2.0, 14.0) as usize
-}
-
-/// The rules for one, two and three common corners.
-fn touching(n: usize) -> [Vec<PairPoints>; 3] {
-    [[0, 3, 4], [0, 1, 3], [0, 1, 2]].map(|labels| packed(&triangle_pair([0, 1, 2], labels, n)))
+/// Gauss points a direction for pairs that touch (see the tests of `pairs` and `element_pairs` for
+/// the errors).
+fn directions(of_five: f64, of_one_more: f64, tolerance: f64) -> usize {
+    // Up to half above the tolerance is within what the errors differ by; two points are lost.
+    let more = (of_five / (1.5 * tolerance)).log(of_one_more);
+    (5.0 + more).ceil().clamp(3.0, 14.0) as usize
 }
 
 /// Pairs of points in eights; the last is repeated with weight 0.

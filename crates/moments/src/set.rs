@@ -1,10 +1,12 @@
 //! The triangles of some functions in every region, ready for the kernel: eight together, neighbours
 //! in one eight.
 
-use crate::Basis;
-use crate::kernel::{Eight, Eights, WIDTH};
+use crate::element::{Element, Part, WHOLE};
+use crate::element_kernel::{Table, Tests};
+use crate::kernel::{Eight, Eights, WIDTH, Wanted};
 use crate::operator::Kinds;
 use crate::rules::{CLASSES, Rule};
+use crate::{Basis, Order};
 use fredholm_mesh::Vec3;
 use fredholm_waves::Ground;
 use std::sync::OnceLock;
@@ -41,11 +43,11 @@ impl Shape {
     }
 }
 
-/// A half function of a set: its corner, the first of its unknowns among those of the set, their
+/// A half function of a set: the number of its F, the first of its unknowns among those of the set, their
 /// number, its weight, and the units of the unknowns of both kinds.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Entry {
-    pub(crate) corner: usize,
+    pub(crate) number: usize,
     pub(crate) at: usize,
     pub(crate) kinds: usize,
     pub(crate) weight: f64,
@@ -75,6 +77,9 @@ pub(crate) struct Halves {
     entries: Vec<Entry>,
     starts: Vec<usize>,
     points: [OnceLock<Vec<[Eight; 3]>>; CLASSES],
+    /// Of functions of the first full order: the triangles themselves, with balls around them.
+    pub(crate) elements: Vec<(Element, Part)>,
+    tables: [OnceLock<Vec<Table>>; CLASSES],
     /// The image in the ground plane. Images of electric currents are turned over, so that their
     /// unit is −1, and those of magnetic ones are not.
     pub(crate) image: Option<Box<Self>>,
@@ -93,8 +98,8 @@ impl Set {
         for function in functions {
             let Kinds { count, unit } = kinds[function];
             for half in &basis.functions()[function].halves {
-                let corner = half.corner.into();
-                let entry = Entry { corner, at: len, kinds: count, weight: half.weight, units: [1.0, unit] };
+                let number = half.number.into();
+                let entry = Entry { number, at: len, kinds: count, weight: half.weight, units: [1.0, unit] };
                 halves[half.region].push((basis.rank(half.triangle), half.triangle, entry));
             }
             len += count;
@@ -119,6 +124,10 @@ impl Halves {
         starts.push(halves.len());
         let shapes: Vec<Shape> =
             triangles.iter().map(|&t| Shape::new(basis.surface().corners(t as usize))).collect();
+        let elements: Vec<Element> = match basis.order() {
+            Order::Lowest => Vec::new(),
+            Order::First => triangles.iter().map(|&t| basis.surface().element(t as usize)).collect(),
+        };
         let entries: Vec<Entry> = halves.into_iter().map(|(_, _, entry)| entry).collect();
         let image = ground.map(|ground| {
             let image = |shape: &Shape| Shape::new(shape.places.map(|place| ground.image(place)));
@@ -128,14 +137,15 @@ impl Halves {
                 triangles.iter().map(|&triangle| !triangle).collect(),
                 shapes.iter().map(image).collect(),
                 entries.iter().map(turned).collect(),
+                elements.iter().map(|element| element.moved(|place| ground.image(place))).collect(),
             );
             Box::new(Self::of(parts, starts.clone(), None))
         });
-        Self::of((triangles, shapes, entries), starts, image)
+        Self::of((triangles, shapes, entries, elements), starts, image)
     }
 
     fn of(
-        (triangles, shapes, entries): (Vec<u32>, Vec<Shape>, Vec<Entry>),
+        (triangles, shapes, entries, elements): (Vec<u32>, Vec<Shape>, Vec<Entry>, Vec<Element>),
         starts: Vec<usize>,
         image: Option<Box<Self>>,
     ) -> Self {
@@ -149,6 +159,8 @@ impl Halves {
             shapes,
             starts,
             points: Default::default(),
+            elements: elements.into_iter().map(|element| (element, Part::new(&element, WHOLE))).collect(),
+            tables: Default::default(),
             image,
         }
     }
@@ -162,6 +174,18 @@ impl Halves {
     pub(crate) fn points(&self, rule: &Rule, class: usize, eight: usize) -> &[[Eight; 3]] {
         let all = self.points[class].get_or_init(|| self.place(rule));
         &all[eight * rule.points.len()..(eight + 1) * rule.points.len()]
+    }
+
+    /// The functions of the first full order on a triangle, at the points of a rule.
+    pub(crate) fn table(
+        &self,
+        rule: &Rule,
+        class: usize,
+        triangle: usize,
+        wanted: (Wanted, Tests),
+    ) -> &Table {
+        let of = |(element, part): &(Element, Part)| Table::new(element, part, rule, wanted);
+        &self.tables[class].get_or_init(|| self.elements.iter().map(of).collect())[triangle]
     }
 
     fn place(&self, rule: &Rule) -> Vec<[Eight; 3]> {

@@ -1,5 +1,6 @@
-//! A surface of flat triangles with common vertices. Metres.
+//! A surface of triangles with common vertices, flat or curved. Metres.
 
+use crate::element::Element;
 use crate::{MomentsError, Topology};
 use fredholm_mesh::{Mesh, Vec3, Weld};
 use std::collections::BTreeMap;
@@ -13,6 +14,8 @@ const LEAST_RELATIVE_AREA: f64 = 1e-12;
 pub struct Surface {
     vertices: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
+    /// The middles of curved sides, by their vertices in order.
+    middles: BTreeMap<[u32; 2], Vec3>,
 }
 
 impl Surface {
@@ -29,9 +32,56 @@ impl Surface {
         if let Some(vertex) = vertices.iter().position(|vertex| !vertex.is_finite()) {
             return Err(MomentsError::NotFinite { vertex });
         }
-        let surface = Self { vertices, triangles };
+        let surface = Self { vertices, triangles, middles: BTreeMap::new() };
         (0..surface.triangles.len()).try_for_each(|triangle| surface.check(triangle))?;
         Ok(surface)
+    }
+
+    /// The same with curved sides: those between two vertices go through the place (m) that is given
+    /// for the two, the first with the lower number.
+    ///
+    /// # Errors
+    /// [`MomentsError::Folded`] for a triangle that turns its other side somewhere.
+    pub fn curved(mut self, middle: impl Fn([u32; 2]) -> Vec3) -> Result<Self, MomentsError> {
+        for &[a, b, c] in &self.triangles {
+            for side in [[a, b], [b, c], [c, a]] {
+                let side = [side[0].min(side[1]), side[0].max(side[1])];
+                self.middles.entry(side).or_insert_with(|| middle(side));
+            }
+        }
+        let faces_back = |&triangle: &usize| {
+            let (element, normal) = (self.element(triangle), self.normal(triangle));
+            // Along the sides and at the middle; written so that what is not finite is refused.
+            let shares = [[1.0, 0.0, 0.0], [0.5, 0.5, 0.0]];
+            let turned = |at: [f64; 3], by: usize| [0, 1, 2].map(|i| at[(i + by) % 3]);
+            let mut places = shares.iter().flat_map(|&at| (0..3).map(move |by| turned(at, by)));
+            !places.all(|at| element.normal(at).dot(normal) > 0.0)
+        };
+        match (0..self.triangles.len()).find(faces_back) {
+            Some(triangle) => Err(MomentsError::Folded { triangle }),
+            None => Ok(self),
+        }
+    }
+
+    /// Whether some sides are curved.
+    #[must_use]
+    pub fn is_curved(&self) -> bool {
+        !self.middles.is_empty()
+    }
+
+    /// A triangle as the functions of the first full order need it.
+    pub(crate) fn element(&self, triangle: usize) -> Element {
+        let corners = self.corners(triangle);
+        if !self.is_curved() {
+            return Element::flat(corners);
+        }
+        let names = self.triangles[triangle];
+        let middle = |i: usize| {
+            let [a, b] = [names[(i + 1) % 3], names[(i + 2) % 3]];
+            let straight = 0.5 * (corners[(i + 1) % 3] + corners[(i + 2) % 3]);
+            self.middles.get(&[a.min(b), a.max(b)]).copied().unwrap_or(straight)
+        };
+        Element::curved(corners, [0, 1, 2].map(middle))
     }
 
     fn check(&self, triangle: usize) -> Result<(), MomentsError> {
@@ -89,7 +139,9 @@ impl Surface {
         let first = self.vertices.len() as u32;
         self.vertices.extend(&other.vertices);
         self.triangles.extend(other.triangles.iter().map(|corners| corners.map(|v| v.wrapping_add(first))));
-        Self::new(self.vertices, self.triangles)
+        let shifted = |(side, middle): (&[u32; 2], &Vec3)| (side.map(|v| v.wrapping_add(first)), *middle);
+        self.middles.extend(other.middles.iter().map(shifted));
+        Ok(Self::new(self.vertices, self.triangles)?.with_middles(self.middles))
     }
 
     /// The surface with vertices closer to each other than `tolerance` (m) joined to the first of
@@ -103,7 +155,12 @@ impl Surface {
             names[second] = names[first];
         }
         let triangles = self.triangles.iter().map(|corners| corners.map(|v| names[v as usize])).collect();
-        Self::new(self.vertices.clone(), triangles)
+        let renamed = |(&[a, b], &middle): (&[u32; 2], &Vec3)| {
+            let [a, b] = [names[a as usize], names[b as usize]];
+            ([a.min(b), a.max(b)], middle)
+        };
+        let middles = self.middles.iter().map(renamed).collect();
+        Ok(Self::new(self.vertices.clone(), triangles)?.with_middles(middles))
     }
 
     /// The surface with triangles turned over so that neighbours agree, and closed bodies have
@@ -114,7 +171,19 @@ impl Surface {
         let turned = Topology::new(self).turned(self);
         let turn = |(&[a, b, c], turned): (&[u32; 3], bool)| if turned { [a, c, b] } else { [a, b, c] };
         let triangles = self.triangles.iter().zip(turned).map(turn).collect();
-        Self { vertices: self.vertices.clone(), triangles }
+        Self { triangles, ..self.clone() }
+    }
+
+    /// Some of its triangles, or all turned over, with the same vertices.
+    ///
+    /// # Errors
+    /// Those of [`Surface::new`].
+    pub(crate) fn with_triangles(&self, triangles: Vec<[u32; 3]>) -> Result<Self, MomentsError> {
+        Ok(Self::new(self.vertices.clone(), triangles)?.with_middles(self.middles.clone()))
+    }
+
+    fn with_middles(self, middles: BTreeMap<[u32; 2], Vec3>) -> Self {
+        Self { middles, ..self }
     }
 
     /// Positions, m.

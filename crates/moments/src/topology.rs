@@ -4,7 +4,7 @@
 //! agree on the side of the surface that is outside where they run through their common edge in
 //! opposite directions.
 
-use crate::{MomentsError, Surface};
+use crate::{MomentsError, Order, Surface};
 use fredholm_mesh::{Bounds, Vec3};
 use std::fmt;
 
@@ -275,15 +275,21 @@ impl Topology {
         parts.into_iter().map(of_part).fold(wavelength, f64::min)
     }
 
-    /// Refuses edges above a third of the wavelength (m), on which no wave can be told from its
-    /// alias.
+    /// Refuses edges above a third of the wavelength (m), or half of it with functions of the first
+    /// full order, on which no wave can be told from its alias.
     ///
     /// # Errors
     /// [`MomentsError::Coarse`] with the first such edge.
-    pub fn check_resolution(&self, surface: &Surface, wavelength: f64) -> Result<(), MomentsError> {
+    pub fn check_resolution(
+        &self,
+        surface: &Surface,
+        wavelength: f64,
+        order: Order,
+    ) -> Result<(), MomentsError> {
+        let (longest, most) = order.longest_edge();
         let lengths = self.edges.iter().map(|edge| length(surface, edge));
-        match lengths.enumerate().find(|(_, length)| *length > wavelength / 3.0) {
-            Some((edge, length)) => Err(MomentsError::Coarse { edge, length, wavelength }),
+        match lengths.enumerate().find(|(_, length)| *length > longest * wavelength) {
+            Some((edge, length)) => Err(MomentsError::Coarse { edge, length, wavelength, most }),
             None => Ok(()),
         }
     }
@@ -644,8 +650,12 @@ mod tests {
     fn edges_beyond_a_third_of_the_wavelength_are_refused() {
         let surface = tetrahedron();
         let topology = Topology::new(&surface);
-        topology.check_resolution(&surface, 4.3).unwrap();
-        assert!(matches!(topology.check_resolution(&surface, 4.2), Err(MomentsError::Coarse { .. })));
+        topology.check_resolution(&surface, 4.3, Order::Lowest).unwrap();
+        topology.check_resolution(&surface, 2.9, Order::First).unwrap();
+        assert!(matches!(
+            topology.check_resolution(&surface, 4.2, Order::Lowest),
+            Err(MomentsError::Coarse { .. })
+        ));
         assert_eq!(topology.report(&surface, 7.0).long_edges, 3);
     }
 }

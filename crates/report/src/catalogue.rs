@@ -481,7 +481,7 @@ const WAVES_TEXT: &str = "
 | key | type | |
 |---|---|---|
 | `format`, `program`, `scene`, `scene_sha256`, `title` | text | what made it |
-| `method`, `shadows`, `solution`, `edge_currents`, `chosen_because` | text, yes or no | what was computed, and why |
+| `method`, `order`, `shadows`, `solution`, `edge_currents`, `chosen_because` | text, number, yes or no | what was computed, and why |
 | `receivers` | list of text | their names, in the order of the numbers in arrays |
 | `frequencies` | list | of each `frequency_hz`, `wavelength_m`, `facets`, `solution`, `converged`, `residuals` |
 | `stated_errors`, `estimated_mesh_errors`, `estimated_form_errors` | list | `receiver`, `frequency_hz`, and the error `relative` to the scattered field |

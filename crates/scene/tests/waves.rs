@@ -78,7 +78,7 @@ fn the_schema_describes_every_key() {
     let schema = wave_schema();
     let mut found = BTreeSet::new();
     properties(&schema, &mut found);
-    let keys = "frequencies_hz method shadows bounces solver tolerance max_iterations edge_currents \
+    let keys = "frequencies_hz method order shadows bounces solver tolerance max_iterations edge_currents \
                 estimate_errors sweep_accuracy ground height_m spacing kind travel polarisation moment_a_m current_a power_w impedance_ohm conductivity_s_per_m \
                 half_space layers sheet resistance_ohm itu thickness_m quad triangle polygon holes box sphere disc cylinder mesh \
                 scale turn translate edge closed points line circle grid far monostatic theta_degrees";

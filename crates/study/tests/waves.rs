@@ -78,6 +78,49 @@ fn boundary_elements_are_compressed_where_asked_for() {
     assert!(refused(&facets, CouplingStorage::Compressed).contains("--storage matrix or products"));
 }
 
+/// Those of order 1 on coarse cells are nearer to the truth than those of order 0, on curved shapes
+/// and on flat ones, and the compressed matrix has them, too.
+#[test]
+fn functions_of_the_first_order_are_better_on_the_same_cells() {
+    let folder = tempfile::tempdir().unwrap();
+    let first = |text: &str| text.replace("[wave]\n", "[wave]\norder = 1\n");
+    let glass = "material = \"glass\"\n[materials.glass]\nhalf_space = { permittivity = [3, -0.1] }";
+    let shape = |text: String, shape: &str| {
+        let line = text.lines().find(|line| line.starts_with("sphere")).unwrap().to_owned();
+        text.replace(&line, shape)
+    };
+    let can = "cylinder = { base = [0, 0, -0.05], axis = [0, 0, 0.1], radius = 0.05 }";
+    let disc = "disc = { centre = [0, 0, 0], normal = [0, 1, 0.2], radius = 0.06 }";
+    let runs: [([&str; 2], Box<dyn Fn(&str) -> String>); 5] = [
+        (["lambda/7", "lambda/12"], Box::new(|edge| ball("efie", 0.08, edge, 1.0, ""))),
+        (["lambda/7", "lambda/12"], Box::new(|edge| ball("cfie", 0.08, edge, 1.0, ""))),
+        (["lambda/10", "lambda/16"], Box::new(|edge| ball("pmchwt", 0.06, edge, 1.0, glass))),
+        (["lambda/6", "lambda/14"], Box::new(|edge| shape(ball("efie", 0.08, edge, 1.0, ""), can))),
+        (["lambda/6", "lambda/20"], Box::new(|edge| shape(ball("efie", 0.08, edge, 1.0, ""), disc))),
+    ];
+    for ([edge, fine], scene) in runs {
+        let lowest = solved(folder.path(), &scene(edge));
+        let found = solved(folder.path(), &first(&scene(edge)));
+        let truth = solved(folder.path(), &first(&scene(fine)));
+        let [lowest, error] = [lowest, found].map(|run| gap(&scattered(&run), &scattered(&truth)));
+        println!("{edge}: {lowest:.5} {error:.5}");
+        // At the rims of the can and of the disc fields are singular.
+        assert!(error < 0.4 * lowest && error < 0.04, "{edge}: {lowest} {error}");
+    }
+    let text = first(&ball("cfie", 0.1, "lambda/5", 2.0, ""));
+    let run = |storage| stored(folder.path(), &text, Some(storage)).unwrap();
+    let [whole, compressed] = [CouplingStorage::Matrix, CouplingStorage::Compressed].map(run);
+    let difference = gap(&scattered(&compressed), &scattered(&whole));
+    assert!(difference > 0.0 && difference < 1e-4, "{difference:e}");
+    for (wrong, what) in [
+        (text.replace("order = 1", "order = 2"), "no functions of order 2"),
+        (text.replace("cfie", "mfie"), "mfie has no functions of a choice of orders"),
+    ] {
+        let error = stored(folder.path(), &wrong, None).map(drop).unwrap_err().to_string();
+        assert!(error.contains(what), "{error}");
+    }
+}
+
 /// A sweep of more waves than are solved for together, of conductors and of dielectrics.
 #[test]
 fn compressed_sweeps_are_those_of_the_whole_matrix() {

@@ -46,5 +46,7 @@ pub use radiation::{
     FarField, Gate, Pattern, Radiator, Sampling, TOLERANCE, cross_section, even_directions, polar_frame,
 };
 pub use source::{Origin, Source, incident};
-pub use stated::{Indicator, field_inside, inside_points, left_inside, of_closed_elements};
+pub use stated::{
+    Indicator, field_inside, inside_points, left_inside, of_closed_elements, of_closed_first_order,
+};
 pub use surface::{Facet, Kind, Scatterer};

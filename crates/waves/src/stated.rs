@@ -15,6 +15,8 @@
 //!   incident field away, of conductors and of dielectric bodies alike; that flat triangles are not
 //!   the curved body is not seen from there, hence the second part, which alone is there for shells
 //!   of thin sheets.
+//! - Boundary elements of the first full order: of closed bodies the field inside and 0.8 times the
+//!   fourth power of the same length.
 //! - Boundary elements on open sheets: the longest edge over the same length, for small sheets 4.8
 //!   times their area over the length of their edges. At an open edge the current along it grows as
 //!   one over the root of the distance, which even cells follow slowly, whatever the body: so their
@@ -53,6 +55,12 @@ pub enum Indicator {
     BoundaryElements(f64),
     /// [`of_closed_elements`] of sheets without open edges, of which nothing is known inside.
     ShellElements(f64),
+    /// [`of_closed_first_order`] of conductors and homogeneous dielectric bodies with functions of the
+    /// first full order.
+    InsideOfFirstOrder(f64),
+    /// Longest edge, as that of [`BoundaryElements`](Self::BoundaryElements), of conducting sheets with
+    /// functions of the first full order.
+    OpenOfFirstOrder(f64),
 }
 
 impl Indicator {
@@ -70,6 +78,8 @@ impl Indicator {
             Self::InsideImpedance(_) => 0.8,
             Self::BoundaryElements(_) => 0.65,
             Self::ShellElements(_) => 4.5,
+            Self::InsideOfFirstOrder(_) => 1.1,
+            Self::OpenOfFirstOrder(_) => 0.16,
         }
     }
 
@@ -86,7 +96,9 @@ impl Indicator {
             | Self::InsideDielectric(value)
             | Self::InsideImpedance(value)
             | Self::BoundaryElements(value)
-            | Self::ShellElements(value) => value,
+            | Self::ShellElements(value)
+            | Self::InsideOfFirstOrder(value)
+            | Self::OpenOfFirstOrder(value) => value,
         }
     }
 
@@ -102,6 +114,12 @@ impl Indicator {
 #[must_use]
 pub fn of_closed_elements(inside: f64, edge: f64) -> f64 {
     inside + 0.5 * edge * edge
+}
+
+/// The same with functions of the first full order.
+#[must_use]
+pub fn of_closed_first_order(inside: f64, edge: f64) -> f64 {
+    inside + 0.8 * edge.powi(4)
 }
 
 /// Points inside closed bodies where the total field of the currents vanishes; none where there is
@@ -169,6 +187,8 @@ mod tests {
             "InsideDielectric" => Indicator::InsideDielectric(value),
             "InsideImpedance" => Indicator::InsideImpedance(value),
             "ShellElements" => Indicator::ShellElements(value),
+            "InsideOfFirstOrder" => Indicator::InsideOfFirstOrder(value),
+            "OpenOfFirstOrder" => Indicator::OpenOfFirstOrder(value),
             _ => Indicator::InsideOptics(value),
         };
         for kind in [
@@ -182,6 +202,8 @@ mod tests {
             "InsideImpedance",
             "BoundaryElements",
             "ShellElements",
+            "InsideOfFirstOrder",
+            "OpenOfFirstOrder",
         ] {
             let runs = text.lines().skip(1).map(|line| line.split(',').collect::<Vec<_>>());
             let ratio = |cells: Vec<&str>| {

@@ -48,7 +48,8 @@ pub(crate) struct WavesArgs {
     pub(crate) compare: Vec<String>,
     /// Compare methods on the scene instead, with their options, or all: physical-optics, thesis
     /// (:bounces=N), iterated, mfie, dual-surface-mfie, efie, cfie, pmchwt; physical-optics and
-    /// iterated may have :edges for edge currents, and :radiated or :geometric shadows
+    /// iterated may have :edges for edge currents, and :radiated or :geometric shadows; efie, cfie
+    /// and pmchwt may have :order=1 for functions of the first full order
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = method, conflicts_with_all = ["compare", "storage"])]
     pub(crate) methods: Vec<String>,
     /// Write no report.html

@@ -7,7 +7,7 @@
 use super::common::{WAVELENGTH, solved, wave};
 use fredholm_mesh::{Cutting, Lines, MeshBuilder, Shape, Vec3};
 use fredholm_moments::meshing::{Grading, cuboid, rectangle};
-use fredholm_moments::{Basis, Conductor, Currents, Equation, Surface};
+use fredholm_moments::{Basis, Conductor, Currents, Curve, Equation, Order, Surface};
 use fredholm_waves::source::PlaneWave;
 use fredholm_waves::surface::{cube, cuboid as cuboid_of_facets, sphere, sphere_segments};
 use fredholm_waves::{Complex64, ComplexVector, ConductingSphere, Kind, Scatterer, Source, even_directions};
@@ -78,8 +78,18 @@ impl Case {
             }
             body => surface(body, WAVELENGTH / per, Grading { halvings }),
         };
-        let basis = Basis::new(surface).unwrap();
-        let conductor = Conductor::new(&basis, wave(), Equation::Electric, 1e-3).unwrap();
+        Self::far_fields(cases, directions, surface, Order::Lowest)
+    }
+
+    fn far_fields(
+        cases: &[Self],
+        directions: &[Vec3],
+        surface: Surface,
+        order: Order,
+    ) -> Vec<Vec<ComplexVector>> {
+        let basis = Basis::of_order(surface, order).unwrap();
+        let tolerance = if order == Order::First { 1e-4 } else { 1e-3 };
+        let conductor = Conductor::new(&basis, wave(), Equation::Electric, tolerance).unwrap();
         let sources: Vec<PlaneWave> = cases.iter().map(Self::source).collect();
         let excitations: Vec<[&dyn Source; 1]> =
             sources.iter().map(|source| [source as &dyn Source]).collect();
@@ -112,6 +122,28 @@ impl Case {
     /// The mesh of plates and boxes with edges up to λ over `per`, halved towards the edges.
     pub fn finer(&self, per: f64, halvings: usize) -> Surface {
         surface(&self.body, WAVELENGTH / per, Grading { halvings })
+    }
+
+    /// The mesh for functions of the first full order: spheres are curved.
+    pub fn of_first_order(&self, per: f64) -> Surface {
+        let flat = self.surface(per);
+        let Body::Sphere(radius) = self.body else { return flat };
+        let curve = Curve::Sphere { centre: Vec3::ZERO, radius: radius * WAVELENGTH };
+        flat.on_curves(&vec![Some(curve); flat.triangles().len()]).unwrap()
+    }
+
+    /// The far fields of one body in several waves by functions of the first full order, with edges
+    /// up to λ over `per`, halved `halvings` times towards the edges of the body; of spheres exact.
+    pub fn fine_truths(
+        cases: &[Self],
+        directions: &[Vec3],
+        per: f64,
+        halvings: usize,
+    ) -> Vec<Vec<ComplexVector>> {
+        if let Body::Sphere(radius) = cases[0].body {
+            return cases.iter().map(|case| case.mie(radius * WAVELENGTH, directions)).collect();
+        }
+        Self::far_fields(cases, directions, cases[0].finer(per, halvings), Order::First)
     }
 
     fn mie(&self, radius: f64, directions: &[Vec3]) -> Vec<ComplexVector> {

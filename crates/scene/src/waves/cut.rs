@@ -98,8 +98,13 @@ impl WaveScene {
                 // The triangles of the sphere are the facets.
                 return Ok((shape, Cutting::default()));
             }
-            Shape::Disc { radius, segments, .. } | Shape::Cylinder { radius, segments, .. } => {
+            Shape::Disc { radius, segments, .. } => *segments = around(*radius),
+            Shape::Cylinder { base, axis, radius, caps, segments, .. } => {
                 *segments = around(*radius);
+                let cap = Shape::Disc { centre: *base, normal: *axis, radius: *radius, segments: *segments };
+                if *caps {
+                    *segments = uncut(cap, &lines).unwrap_or(*segments);
+                }
             }
             _ => {}
         }
@@ -108,6 +113,19 @@ impl WaveScene {
 
     fn unmeshable(&self, part: &Part, error: &MeshError) -> SceneError {
         meshing(self.source(), part, error, (self.source(), part.span.clone()))
+    }
+}
+
+/// Segments of a disc, those that it has or more, with which none of its triangles is longer than
+/// asked for: cut triangles of a cap would have vertices within the edges of the side.
+fn uncut(mut cap: Shape, lines: &Cutting) -> Option<usize> {
+    loop {
+        let (whole, cut) = (cap.count(&Cutting::default()).ok()?, cap.count(lines).ok()?);
+        let Shape::Disc { segments, .. } = &mut cap else { return None };
+        if whole == cut {
+            return Some(*segments);
+        }
+        *segments += 1;
     }
 }
 
@@ -141,6 +159,14 @@ impl WaveScene {
         self.parts().iter().map(|part| part.kind).collect()
     }
 
+    /// The shape of each surface, where it is one alone.
+    pub fn single_shapes(&self) -> impl Iterator<Item = Option<&Shape>> {
+        self.parts().iter().map(|part| match part.shapes.as_slice() {
+            [shape] => Some(shape),
+            _ => None,
+        })
+    }
+
     /// The scatterer of a mesh of this scene, made of these materials (those of
     /// [`materials`](Self::materials)).
     ///
@@ -150,8 +176,8 @@ impl WaveScene {
         let of_parts = self.parts().iter().map(|part| materials[part.material].clone()).collect();
         let kind = |surface: usize| self.parts().get(surface).map_or(Kind::Sheet, |part| part.kind);
         let mut scatterer = Scatterer::new(mesh, kind)?.made_of(of_parts)?;
-        for (surface, part) in self.parts().iter().enumerate() {
-            if let [Shape::Sphere { centre, radius, .. }] = part.shapes.as_slice() {
+        for (surface, shape) in self.single_shapes().enumerate() {
+            if let Some(Shape::Sphere { centre, radius, .. }) = shape {
                 scatterer = scatterer.on_sphere(surface, *centre, *radius);
             }
         }

@@ -51,6 +51,10 @@ pub(crate) struct WaveEntry {
     pub frequencies_hz: At<FrequenciesEntry>,
     /// How the currents are found. Default: chosen by the program.
     pub method: Option<At<Method>>,
+    /// Order of the functions of boundary elements: 0, those of Rao, Wilton and Glisson, or 1, those
+    /// of the first full order, which are more exact on meshes that are half as fine; spheres,
+    /// cylinders and discs are then curved. Default: 0.
+    pub order: Option<At<u32>>,
     /// What of physical optics blocks waves. Default: chosen by the program.
     pub shadows: Option<At<Shadows>>,
     /// Bounces to sum, at least 1. Default: 1.

@@ -64,6 +64,12 @@ impl Method {
         !matches!(self, Self::PhysicalOptics | Self::Thesis)
     }
 
+    /// Whether it is one of boundary elements.
+    #[must_use]
+    pub fn is_boundary_elements(self) -> bool {
+        matches!(self, Self::Efie | Self::Cfie | Self::Pmchwt)
+    }
+
     /// Whether it finds the fields inside of bodies.
     pub(super) fn knows_insides(self) -> bool {
         self == Self::Pmchwt
@@ -97,6 +103,8 @@ impl Shadows {
 pub struct Settings {
     /// How the currents are found.
     pub method: Option<Method>,
+    /// Order of the functions of boundary elements, 0 or 1.
+    pub order: Option<u32>,
     /// What blocks waves.
     pub shadows: Option<Shadows>,
     /// Bounces to sum, at least 1.
@@ -125,6 +133,7 @@ pub(super) fn settings(source: &Source, entry: &WaveEntry) -> Result<Settings, S
     };
     Ok(Settings {
         method: entry.method.as_ref().map(|method| **method),
+        order: entry.order.as_ref().map(|order| **order),
         shadows: entry.shadows.as_ref().map(|shadows| **shadows),
         bounces: at_least_1(&entry.bounces, "the number of bounces")?,
         solver: entry.solver.as_deref().cloned(),
@@ -160,6 +169,17 @@ fn agreement(source: &Source, entry: &WaveEntry) -> Result<(), SceneError> {
         let what = format!("{} has no choice of shadows", method.name());
         let help = "leave shadows out, or take method = \"physical-optics\"";
         return Err(source.value_error(shadows, what, help));
+    }
+    if let Some(order) = &entry.order {
+        if **order > 1 {
+            let what = format!("there are no functions of order {}", **order);
+            return Err(source.value_error(order, what, "write 0 or 1"));
+        }
+        if !method.is_boundary_elements() {
+            let what = format!("{} has no functions of a choice of orders", method.name());
+            let help = "leave order out, or take method = \"efie\", \"cfie\" or \"pmchwt\"";
+            return Err(source.value_error(order, what, help));
+        }
     }
     if let (Some(accuracy), true) = (&entry.sweep_accuracy, entry.estimate_errors) {
         return Err(source.value_error(

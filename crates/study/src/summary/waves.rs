@@ -37,9 +37,12 @@ impl WaveRecord<'_> {
 
     fn method(&self) -> String {
         let shadows = self.text("shadows").map(|name| format!("{name} shadows"));
+        // The lowest order is what is expected.
+        let order = self.0["order"].as_u64().filter(|&order| order > 0);
+        let order = order.map(|order| format!("functions of order {order}"));
         let edges = self.0["edge_currents"].as_bool().unwrap_or(false).then(|| "edge currents".to_owned());
         let [method, solution] = ["method", "solution"].map(|key| self.text(key).map(str::to_owned));
-        [method, shadows, edges, solution].into_iter().flatten().collect::<Vec<_>>().join(", ")
+        [method, order, shadows, edges, solution].into_iter().flatten().collect::<Vec<_>>().join(", ")
     }
 }
 

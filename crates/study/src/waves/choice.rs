@@ -187,7 +187,7 @@ fn is_small(geometry: &Geometry, (wavelength, most): (f64, usize), fits: &dyn Fn
     }
     Surface::from_mesh(&geometry.mesh).and_then(Basis::new).is_ok_and(|basis| {
         let matrix = (basis.len() * basis.len() * size_of::<Complex64>()) as u128;
-        let resolved = basis.topology().check_resolution(basis.surface(), wavelength).is_ok();
+        let resolved = basis.topology().check_resolution(basis.surface(), wavelength, basis.order()).is_ok();
         resolved && basis.len() <= most && fits(MATRICES_AT_ONCE * matrix)
     })
 }

@@ -7,10 +7,10 @@ use std::slice;
 
 use fredholm_compressed::{BlockDiagonal, CompressionError, Factors, Hierarchical, Preconditioned, Settings};
 use fredholm_linop::{Dense, LinearOperator, MultiVector, Solver};
-use fredholm_mesh::Vec3;
+use fredholm_mesh::{Shape, Vec3};
 use fredholm_moments::{
-    Basis, Composite, Condition, Conductor, Currents, Equation, Filling, Imperfect, MomentsError, Operator,
-    Placed, Regions, Surface,
+    Basis, Composite, Condition, Conductor, Currents, Curve, Equation, Filling, Imperfect, MomentsError,
+    Operator, Order, Placed, Regions, Surface,
 };
 use fredholm_report::{MonostaticRow, WaveCurrents};
 use fredholm_scene::ErrorKind as SceneFault;
@@ -19,7 +19,7 @@ use fredholm_waves::material::Material;
 use fredholm_waves::source::PlaneWave;
 use fredholm_waves::{
     Complex64, ComplexVector, Current, FarField, Field, Grounded, Indicator, Kind, Source, even_directions,
-    incident, inside_points, left_inside, of_closed_elements,
+    incident, inside_points, left_inside, of_closed_elements, of_closed_first_order,
 };
 
 use super::balance::{Balancing, Reciprocity, power};
@@ -38,10 +38,28 @@ use crate::problem::scene_failure;
 use crate::size::Bytes;
 use crate::stages::{Signals, Stages};
 
-/// Relative error of the integrals over each pair of triangles, below that of usual meshes.
-const INTEGRAL_ERROR: f64 = 1e-3;
-/// Relative error of the blocks of a compressed matrix: that of the integrals.
-const COMPRESSION_ERROR: f64 = INTEGRAL_ERROR;
+/// Relative error of the integrals over each pair of triangles: below that of usual meshes. The
+/// combined equation is of the second kind, and takes no harm from more.
+fn integral_error(model: &Model, equations: Equations) -> f64 {
+    match (order(model), equations) {
+        (Order::Lowest, _) | (Order::First, Equations::Combined) => 1e-3,
+        (Order::First, Equations::Electric | Equations::Dielectric) => 1e-4,
+    }
+}
+
+/// Relative error of the blocks of a compressed matrix.
+fn compression_error(model: &Model) -> f64 {
+    match order(model) {
+        Order::Lowest => 1e-3,
+        Order::First => 1e-4,
+    }
+}
+
+/// The order of the functions.
+pub(super) fn order(model: &Model) -> Order {
+    if model.scene.settings().order == Some(1) { Order::First } else { Order::Lowest }
+}
+
 /// The solvers of compressed matrices where the scene names none: by their diagonal blocks, which
 /// leave tens of iterations, and by their factors, which leave a few.
 const COMPRESSED_SOLVERS: [&str; 2] = ["gmres:restart=100", "gmres:restart=30"];
@@ -65,19 +83,36 @@ const DIRECTIONS: usize = 200;
 
 /// The functions on the triangles of a mesh.
 fn basis(model: &Model, geometry: &Geometry, equations: Equations) -> Result<Basis, Error> {
-    let surface = Surface::from_mesh(&geometry.mesh).map_err(|error| refused(model, &error))?;
+    let order = order(model);
+    let mut surface = Surface::from_mesh(&geometry.mesh).map_err(|error| refused(model, &error))?;
+    if order == Order::First {
+        let curves: Vec<Option<Curve>> = geometry.shapes().map(|shape| shape.and_then(curve)).collect();
+        let curved = surface.on_curves(&on_triangles(geometry, &curves));
+        surface = curved.map_err(|error| refused(model, &error))?;
+    }
     let basis = if equations == Equations::Dielectric {
         let fillings = fillings(model, geometry)?;
         let regions = Regions::new(&surface, &fillings);
-        regions.map_err(|error| refused_bodies(model, geometry, &error)).map(Basis::between)?
+        let regions = regions.map_err(|error| refused_bodies(model, geometry, &error))?;
+        Basis::between_of_order(regions, order)
     } else {
-        Basis::new(surface)
+        Basis::of_order(surface, order)
     };
     let above = |basis: Basis| match model.scene.ground() {
         Some(ground) => basis.above(ground),
         None => Ok(basis),
     };
     basis.and_then(above).map_err(|error| refused(model, &error))
+}
+
+/// What the facets of a curved shape stand for.
+fn curve(shape: &Shape) -> Option<Curve> {
+    match *shape {
+        Shape::Sphere { centre, radius, .. } => Some(Curve::Sphere { centre, radius }),
+        Shape::Cylinder { base, axis, radius, .. } => Some(Curve::Cylinder { base, axis, radius }),
+        Shape::Disc { centre, radius, .. } => Some(Curve::Disc { centre, radius }),
+        _ => None,
+    }
 }
 
 /// What every triangle bounds, for the equations of dielectrics: those of one material are one
@@ -232,13 +267,13 @@ pub(super) fn assembly(model: &Model, equations: Equations, spent: &dyn Fn() -> 
 enum Known {
     /// The mesh alone, of sheets and what is with them.
     Mesh(Indicator),
-    /// Points inside closed bodies, the longest edge over the length on which currents change, and
-    /// the indicator.
-    Inside { points: Vec<Vec3>, edge: f64, indicator: fn(f64) -> Indicator },
+    /// Points inside closed bodies, and the indicator from the field there over the incident one.
+    Inside { points: Vec<Vec3>, indicator: Box<dyn Fn(f64) -> Indicator> },
 }
 
 impl Known {
-    /// Of everything but dielectrics with sheets.
+    /// Of everything but dielectrics with sheets, and with functions of the first full order but
+    /// sheets and bodies with an impedance.
     fn of(geometry: &Geometry, basis: &Basis, band: &Band, equations: Equations) -> Option<Self> {
         let denser = |material: &Material| match material {
             Material::HalfSpace(permittivity) => permittivity.sqrt().norm(),
@@ -247,22 +282,30 @@ impl Known {
         let shortest = band.wave.wavelength() / band.materials.iter().map(denser).fold(1.0, f64::max);
         let (surface, topology) = (basis.surface(), basis.topology());
         let edge = topology.relative_edge(surface, shortest);
+        let (first, perfect) = (basis.order() == Order::First, is_perfect(geometry, band));
         let is_sheet = |material: usize| matches!(band.materials[material], Material::Sheet(_));
         if geometry.kinds().contains(&Kind::Sheet) || geometry.materials().any(is_sheet) {
-            let shells = of_closed_elements(0.0, edge);
-            let open = topology.is_open();
-            let indicator =
-                if open { Indicator::BoundaryElements(edge) } else { Indicator::ShellElements(shells) };
-            return (equations == Equations::Electric).then_some(Self::Mesh(indicator));
+            let indicator = match (topology.is_open(), first) {
+                (true, true) => perfect.then_some(Indicator::OpenOfFirstOrder(edge)),
+                (true, false) => Some(Indicator::BoundaryElements(edge)),
+                (false, true) => None,
+                (false, false) => Some(Indicator::ShellElements(of_closed_elements(0.0, edge))),
+            };
+            return indicator.filter(|_| equations == Equations::Electric).map(Self::Mesh);
         }
         let indicator = match equations {
-            Equations::Electric if is_perfect(geometry, band) => Indicator::InsideElectric,
+            Equations::Electric if first && !perfect => return None,
+            _ if first => Indicator::InsideOfFirstOrder,
+            Equations::Electric if perfect => Indicator::InsideElectric,
             Equations::Electric => Indicator::InsideImpedance,
             Equations::Combined => Indicator::InsideCombined,
             Equations::Dielectric => Indicator::InsideDielectric,
         };
+        let of_closed = if first { of_closed_first_order } else { of_closed_elements };
         let scatterer = geometry.scatterer(&band.materials).ok()?;
-        inside_points(&scatterer, &band.wave).map(|points| Self::Inside { points, edge, indicator })
+        let stated = move |inside: f64| indicator(of_closed(inside, edge));
+        inside_points(&scatterer, &band.wave)
+            .map(|points| Self::Inside { points, indicator: Box::new(stated) })
     }
 }
 
@@ -285,9 +328,10 @@ impl<'a> Body<'a> {
         band: &Band,
         equations: Equations,
     ) -> Result<Self, Error> {
+        let tolerance = integral_error(model, equations);
         let conductor = |equation| {
             all_of(model, band, |material| *material == Material::Conductor)?;
-            Conductor::new(basis, band.wave, equation, INTEGRAL_ERROR)
+            Conductor::new(basis, band.wave, equation, tolerance)
                 .map(Self::Conductor)
                 .map_err(|error| refused(model, &error))
         };
@@ -295,7 +339,7 @@ impl<'a> Body<'a> {
             Equations::Electric if is_perfect(geometry, band) => conductor(Equation::Electric),
             Equations::Electric => {
                 let conditions = conditions(model, geometry, band)?;
-                Imperfect::new(basis, band.wave, conditions, INTEGRAL_ERROR)
+                Imperfect::new(basis, band.wave, conditions, tolerance)
                     .map(Self::Imperfect)
                     .map_err(|error| refused(model, &error))
             }
@@ -307,7 +351,7 @@ impl<'a> Body<'a> {
                     _ => Complex64::ONE,
                 };
                 let permittivities: Vec<Complex64> = band.materials.iter().map(permittivity).collect();
-                Composite::new(basis, band.wave, &permittivities, INTEGRAL_ERROR)
+                Composite::new(basis, band.wave, &permittivities, tolerance)
                     .map(Self::Dielectric)
                     .map_err(|error| refused(model, &error))
             }
@@ -493,8 +537,8 @@ fn of_compressed(model: &Model) -> Result<Box<dyn Solver<Complex64>>, Error> {
     build(asked).map_err(|error| Error::new(ErrorKind::Input, error))
 }
 
-fn settings() -> Settings {
-    Settings { tolerance: COMPRESSION_ERROR, ..Settings::default() }
+fn settings(model: &Model) -> Settings {
+    Settings { tolerance: compression_error(model), ..Settings::default() }
 }
 
 /// The memory of a run, how its matrix is held, and the unknowns; that of a compressed matrix from
@@ -510,7 +554,7 @@ pub(super) fn plan(model: &Model, equations: Equations) -> Result<(Plan, Couplin
     if storage != CouplingStorage::Compressed {
         return Ok((plan, storage, unknowns));
     }
-    let bytes = body.operator().compressed_bytes(settings()).map_err(|error| refused(model, &error))?;
+    let bytes = body.operator().compressed_bytes(settings(model)).map_err(|error| refused(model, &error))?;
     let besides = besides_compressed(model, unknowns, &*of_compressed(model)?);
     let plan = with_compressed(model, besides, unknowns, bytes);
     Ok((plan, storage, unknowns))
@@ -649,7 +693,7 @@ impl Task<'_> {
         let with = |bytes: u64| with_compressed(self.model, plan.clone(), unknowns, bytes);
         let left = u64::try_from(limit.bytes().0 - plan.peak().0).unwrap_or(u64::MAX);
         let share = if takes_factors(self.model) { 1.0 + FACTOR_SHARE } else { 1.0 };
-        let settings = Settings { limit: (left as f64 / share) as u64, ..settings() };
+        let settings = Settings { limit: (left as f64 / share) as u64, ..settings(self.model) };
         let matrix = match self.body.operator().compressed(settings, signals.watch) {
             Ok(matrix) => matrix,
             Err(MomentsError::Compression(CompressionError::Memory { needed, .. })) => {
@@ -729,12 +773,12 @@ impl Task<'_> {
         let (Some(known), Some(residual)) = (&self.known, residual) else { return Ok(None) };
         let indicator = match known {
             Known::Mesh(indicator) => *indicator,
-            Known::Inside { points, edge, indicator } => {
+            Known::Inside { points, indicator } => {
                 let scattered = currents.fields(points).map_err(|error| refused(self.model, &error))?;
                 let Some(left) = left_inside(&self.band.wave, sources, points, &scattered) else {
                     return Ok(None);
                 };
-                indicator(of_closed_elements(left, *edge))
+                indicator(left)
             }
         };
         let relative = indicator.error() + residual;

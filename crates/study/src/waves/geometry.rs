@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use fredholm_mesh::Mesh;
+use fredholm_mesh::{Mesh, Shape};
 use fredholm_scene::waves::{Cuts, WaveScene};
 use fredholm_waves::material::Material;
 use fredholm_waves::{Kind, Scatterer, WaveError};
@@ -31,6 +31,11 @@ impl Geometry {
     /// What each surface is part of.
     pub(super) fn kinds(&self) -> Vec<Kind> {
         self.scene.kinds()
+    }
+
+    /// The shape of each surface, where it is one alone.
+    pub(super) fn shapes(&self) -> impl Iterator<Item = Option<&Shape>> {
+        self.scene.single_shapes()
     }
 
     /// The number of the material of each surface.

@@ -59,6 +59,7 @@ impl WaveMethod {
     /// ```
     /// use fredholm_study::WaveMethod;
     /// assert!(WaveMethod::parse("physical-optics:edges:bounces=3").is_ok());
+    /// assert!(WaveMethod::parse("efie:order=1").is_ok());
     /// assert!(WaveMethod::parse("efie:edges").is_err());
     /// ```
     pub fn parse(text: &str) -> Result<Self, String> {
@@ -67,9 +68,11 @@ impl WaveMethod {
         let mut settings = named(name)
             .ok_or_else(|| format!("there is no method `{name}`; known are iterated, {}", known()))?;
         let optics = settings.method == Some(SceneMethod::PhysicalOptics);
+        let elements = settings.method.is_some_and(SceneMethod::is_boundary_elements);
         let summed = settings.bounces.is_some();
         for option in parts {
             match option {
+                "order=0" | "order=1" if elements => settings.order = Some(u32::from(option == "order=1")),
                 "edges" if optics => settings.edge_currents = Some(true),
                 "radiated" if optics => settings.shadows = Some(Shadows::Radiated),
                 "geometric" if optics => settings.shadows = Some(Shadows::Geometric),
@@ -137,7 +140,9 @@ fn named(name: &str) -> Option<Settings> {
 
 fn not_an_option(name: &str, option: &str, settings: &Settings) -> String {
     let (optics, summed) = (settings.method == Some(SceneMethod::PhysicalOptics), settings.bounces.is_some());
+    let elements = settings.method.is_some_and(SceneMethod::is_boundary_elements);
     let known = match (optics, summed) {
+        _ if elements => "known are order=0 and order=1",
         (true, true) => "known are edges, radiated, geometric and bounces=N, N at least 1",
         (true, false) => "known are edges, radiated and geometric",
         (false, true) => "known is bounces=N, N at least 1",

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use fredholm_linop::Solver;
+use fredholm_moments::Order;
 use fredholm_scene::waves::{self as scene, About, Cuts, Places, Settings, Shadows, WaveScene};
 use fredholm_scene::{ErrorKind as SceneFault, SceneError};
 use fredholm_waves::material::Material;
@@ -12,7 +13,7 @@ use fredholm_waves::{Complex64, Origin, Shadow, Source, Wave, WaveError};
 
 use super::CouplingStorage;
 use super::choice::{Asked, Taken, taken};
-use super::galerkin::Equations;
+use super::galerkin::{Equations, order};
 use super::geometry::Geometry;
 use super::memory::{plan as memory_of, sampled};
 use crate::error::Error;
@@ -253,6 +254,11 @@ impl Model {
         .name()
     }
 
+    /// The order of the functions of boundary elements.
+    pub(crate) fn order(&self) -> Option<u32> {
+        self.galerkin.map(|_| u32::from(order(self) == Order::First))
+    }
+
     /// What blocks waves, as scenes name it, where that is a choice.
     pub(crate) fn shadows_name(&self) -> Option<&'static str> {
         match (self.galerkin, self.shadow) {
@@ -265,7 +271,8 @@ impl Model {
     /// The method with what blocks waves.
     pub(crate) fn method_in_words(&self) -> String {
         let shadows = self.shadows_name().map(|name| format!(", {name} shadows"));
-        format!("{}{}", self.method_name(), shadows.unwrap_or_default())
+        let order = (self.order() == Some(1)).then(|| ", functions of order 1".to_owned());
+        format!("{}{}", self.method_name(), shadows.or(order).unwrap_or_default())
     }
 
     /// The sources.

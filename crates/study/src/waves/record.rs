@@ -121,6 +121,7 @@ impl Outcome {
             "scene_sha256": model.scene.sha256(),
             "title": model.scene.title(),
             "method": model.method_name(),
+            "order": model.order(),
             "shadows": model.shadows_name(),
             "solution": self.solution(model),
             "edge_currents": model.edge_currents,
