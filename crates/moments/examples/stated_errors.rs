@@ -275,8 +275,7 @@ fn closed_elements(u: &[Vec3]) {
     }
 }
 
-/// Functions of the first full order: closed conductors by both equations, sheets, and dielectric
-/// balls.
+/// Functions of the first full order: closed conductors by both equations, and sheets.
 fn first_order(u: &[Vec3]) {
     for bodies in small_bodies() {
         let truths = Case::fine_truths(&bodies, u, 6.0, 2);
@@ -290,7 +289,7 @@ fn first_order(u: &[Vec3]) {
                 });
                 for (rhs, (case, truth)) in bodies.iter().zip(&truths).enumerate() {
                     let currents = Currents::new(&basis, wave(), &x.vector(rhs), None);
-                    of_first_order(case, (name, 1.0, per), (&currents, &basis), (truth, u));
+                    of_first_order(case, (name, per), (&currents, &basis), (truth, u));
                 }
             }
         }
@@ -313,36 +312,12 @@ fn first_order(u: &[Vec3]) {
             }
         }
     }
-    for (radius, permittivity) in [(0.15, 2.0), (0.25, 3.0), (0.4, 2.5), (0.25, 5.0)] {
-        for lossy in [0.0, -0.5] {
-            let permittivity = Complex64::new(permittivity, lossy);
-            let ways = &calibration()[0];
-            let bodies = [Case { name: "dielectric ball", body: Body::Sphere(radius), ..ways[0].clone() }];
-            let exact = DielectricSphere::new(radius * WAVELENGTH, permittivity).unwrap();
-            let source = bodies[0].source();
-            let truth = far_series(u, |p| exact.scattered(&wave(), &source, p));
-            for per in [3.1, 4.0, 5.5] {
-                let shorter = permittivity.sqrt().norm();
-                let per = per * shorter;
-                let surface = bodies[0].of_first_order(per);
-                let solid = vec![Filling::Dielectric(0); surface.triangles().len()];
-                let regions = Regions::new(&surface, &solid).unwrap();
-                let basis = Basis::between_of_order(regions, Order::First).unwrap();
-                let body = Composite::new(&basis, wave(), &[permittivity], 1e-4).unwrap();
-                let x = right_hand_sides_solved(&bodies, &body.operator().coupling().unwrap(), &|e| {
-                    body.right_hand_side(e)
-                });
-                let currents = body.currents(&x.vector(0));
-                of_first_order(&bodies[0], ("pmchwt", shorter, per), (&currents, &basis), (&truth, u));
-            }
-        }
-    }
 }
 
 /// A row of a closed body.
 fn of_first_order(
     case: &Case,
-    (method, shorter, per): (&str, f64, f64),
+    (method, per): (&str, f64),
     (currents, basis): (&Currents<'_>, &Basis),
     (truth, u): (&[ComplexVector], &[Vec3]),
 ) {
@@ -351,7 +326,7 @@ fn of_first_order(
     let inside = left_inside(&wave(), &[&source], &points, &currents.fields(&points).unwrap()).unwrap();
     let far: Vec<ComplexVector> =
         currents.far_field(u).unwrap().into_iter().map(|far| far.amplitude).collect();
-    let edge = basis.topology().relative_edge(basis.surface(), WAVELENGTH / shorter);
+    let edge = basis.topology().relative_edge(basis.surface(), WAVELENGTH);
     let indicator = Indicator::InsideOfFirstOrder(of_closed_first_order(inside, edge));
     element_row(case, method, indicator, error(&far, truth));
 }

@@ -55,8 +55,7 @@ pub enum Indicator {
     BoundaryElements(f64),
     /// [`of_closed_elements`] of sheets without open edges, of which nothing is known inside.
     ShellElements(f64),
-    /// [`of_closed_first_order`] of conductors and homogeneous dielectric bodies with functions of the
-    /// first full order.
+    /// [`of_closed_first_order`] of conductors with functions of the first full order.
     InsideOfFirstOrder(f64),
     /// Longest edge, as that of [`BoundaryElements`](Self::BoundaryElements), of conducting sheets with
     /// functions of the first full order.

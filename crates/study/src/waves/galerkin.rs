@@ -272,8 +272,8 @@ enum Known {
 }
 
 impl Known {
-    /// Of everything but dielectrics with sheets, and with functions of the first full order but
-    /// sheets and bodies with an impedance.
+    /// Of everything but dielectrics with sheets, and with functions of the first full order of
+    /// conductors only.
     fn of(geometry: &Geometry, basis: &Basis, band: &Band, equations: Equations) -> Option<Self> {
         let denser = |material: &Material| match material {
             Material::HalfSpace(permittivity) => permittivity.sqrt().norm(),
@@ -294,6 +294,7 @@ impl Known {
             return indicator.filter(|_| equations == Equations::Electric).map(Self::Mesh);
         }
         let indicator = match equations {
+            Equations::Dielectric if first => return None,
             Equations::Electric if first && !perfect => return None,
             _ if first => Indicator::InsideOfFirstOrder,
             Equations::Electric if perfect => Indicator::InsideElectric,
