@@ -24,9 +24,11 @@ use crate::dual::dual;
 use crate::kernel::{Medium, Wanted};
 use crate::operator::{DualPart, Factors, Kinds, Operator, Products, Term};
 use crate::pairs::Integrator;
+use crate::patterns::Radiating;
 use crate::rules::Rules;
 use crate::{Basis, MomentsError};
-use fredholm_linop::{MultiVector, Symmetry};
+use fredholm_compressed::{Multipole, MultipoleSettings};
+use fredholm_linop::{MultiVector, Symmetry, Watch};
 use fredholm_quadrature::symmetric_triangle;
 use fredholm_waves::medium::IMPEDANCE;
 use fredholm_waves::{ComplexVector, Field, Source, Wave, incident};
@@ -162,6 +164,32 @@ impl<'a> Conductor<'a> {
     #[must_use]
     pub fn operator(&self) -> &Operator<'a> {
         &self.operator
+    }
+
+    /// The matrix by multilevel fast multipoles, in free space.
+    ///
+    /// # Errors
+    /// [`MomentsError::Grounded`] above a ground plane, [`MomentsError::Compression`] for settings
+    /// out of range, bodies that are too small, where it takes more than the limit, and where
+    /// `watch` no longer wants it.
+    pub fn multipole(
+        &self,
+        settings: MultipoleSettings,
+        watch: &dyn Watch,
+    ) -> Result<Multipole, MomentsError> {
+        self.radiating()?.multipole(settings, watch)
+    }
+
+    /// Bytes that the matrix takes by multipoles.
+    ///
+    /// # Errors
+    /// Those of [`multipole`](Self::multipole) for what does not fit.
+    pub fn multipole_bytes(&self, settings: MultipoleSettings) -> Result<u64, MomentsError> {
+        self.radiating()?.bytes(settings)
+    }
+
+    fn radiating(&self) -> Result<Radiating<'_>, MomentsError> {
+        Radiating::new(&self.operator, self.wave.wavenumber(), self.equation.shares()[0])
     }
 
     /// The functions.

@@ -16,6 +16,7 @@ mod kernel;
 pub mod meshing;
 mod operator;
 mod pairs;
+mod patterns;
 mod regions;
 mod rules;
 mod set;

@@ -17,6 +17,7 @@
 use crate::basis::gram;
 use crate::dual::{PARTS, turned_gram};
 use crate::pairs::Integrator;
+use crate::rules::Rules;
 use crate::set::{Halves, Set};
 use crate::{Basis, MomentsError};
 use fredholm_compressed::{Entries, Hierarchical, Settings};
@@ -352,7 +353,12 @@ impl<'a> Operator<'a> {
         Ok(Hierarchical::predicted_bytes(self, &self.places(), settings)?)
     }
 
-    fn places(&self) -> Vec<Vec3> {
+    /// The rules of what the functions themselves test around the bodies.
+    pub(crate) fn rules(&self) -> Option<&Rules> {
+        self.terms.first().map(|term| &term.integrator.rules)
+    }
+
+    pub(crate) fn places(&self) -> Vec<Vec3> {
         (0..self.basis.len()).map(|function| self.basis.centre(function)).collect()
     }
 
