@@ -20,10 +20,16 @@ const TOLERANCES: [f64; 2] = [1e-5, 0.1];
 /// Sides of leaves in wavelengths: below, translations lose all digits, and above, nearly everything
 /// is near.
 const SIDES: [f64; 2] = [0.15, 2.0];
-/// The error of the worst pair of points of two boxes over that of their product. Points at the far
-/// ends of both boxes on the line between them are few, and the error falls as the power L of the
-/// distance. Measured (docs/notes/moments.md).
-const WORST_PAIR: f64 = 30.0;
+/// Distance of typical pairs of points of two boxes from the middles of these, over that of the two
+/// that are farthest from them on the line between both. The error falls as a high power of it, so
+/// that few pairs matter (docs/notes/moments.md).
+const TYPICAL_DISTANCE: f64 = 0.4;
+/// The tolerance that degrees are chosen for over that of products: excess bandwidths are those of
+/// the largest boxes that could be, with supports all around.
+const DEGREE_SHARE: f64 = 10.0;
+/// Rounding of what translations lose over the tolerance: errors of some hundred directions largely
+/// cancel.
+const ROUNDING_SHARE: f64 = 10.0;
 /// Rounding of what is stored.
 const ROUNDING: f64 = 6e-8;
 /// Error of interpolations over the tolerance.
@@ -146,7 +152,9 @@ impl Plan {
         let largest =
             |level: usize| tree.levels[level].cubes.iter().map(|cube| cube.radius).fold(0.0, f64::max);
         let degrees: Vec<usize> = (0..tree.levels.len())
-            .map(|level| degree(2.0 * k * largest(level), tolerance).ceil() as usize)
+            .map(|level| {
+                degree(2.0 * k * largest(level), (DEGREE_SHARE * tolerance).min(0.5)).ceil() as usize
+            })
             .collect();
         let reach = |level: usize, square: u32| {
             let distance = k * tree.levels[level].side * f64::from(square).sqrt();
@@ -154,10 +162,10 @@ impl Plan {
                 return -1.0;
             }
             let series = Series::new(degrees[level], distance);
-            if series.growth() * ROUNDING > tolerance {
+            if series.growth() * ROUNDING > ROUNDING_SHARE * tolerance {
                 return -1.0;
             }
-            series.reach(WORST_PAIR * tolerance) / k
+            (series.reach(tolerance) / TYPICAL_DISTANCE).min(distance) / k
         };
         let (far, near) = tree.pairs(reach);
         let Some(last) = far.iter().rposition(|far| far.sources.iter().any(|list| !list.is_empty())) else {
