@@ -27,7 +27,7 @@ use crate::pairs::Integrator;
 use crate::patterns::Radiating;
 use crate::rules::Rules;
 use crate::{Basis, MomentsError};
-use fredholm_compressed::{Multipole, MultipoleSettings};
+use fredholm_compressed::{Multipole, MultipoleSettings, MultipoleSummary};
 use fredholm_linop::{MultiVector, Symmetry, Watch};
 use fredholm_quadrature::symmetric_triangle;
 use fredholm_waves::medium::IMPEDANCE;
@@ -180,12 +180,12 @@ impl<'a> Conductor<'a> {
         self.radiating()?.multipole(settings, watch)
     }
 
-    /// Bytes that the matrix takes by multipoles.
+    /// What the matrix by multipoles will be made of, before anything is computed.
     ///
     /// # Errors
     /// Those of [`multipole`](Self::multipole) for what does not fit.
-    pub fn multipole_bytes(&self, settings: MultipoleSettings) -> Result<u64, MomentsError> {
-        self.radiating()?.bytes(settings)
+    pub fn multipole_summary(&self, settings: MultipoleSettings) -> Result<MultipoleSummary, MomentsError> {
+        self.radiating()?.predicted(settings)
     }
 
     fn radiating(&self) -> Result<Radiating<'_>, MomentsError> {

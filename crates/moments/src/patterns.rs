@@ -16,7 +16,7 @@ use crate::kernel::WIDTH;
 use crate::operator::Operator;
 use crate::rules::{Rule, Rules};
 use crate::{Basis, MomentsError, Set};
-use fredholm_compressed::{Direction, Entries, Multipole, MultipoleSettings, Patterns};
+use fredholm_compressed::{Direction, Entries, Multipole, MultipoleSettings, MultipoleSummary, Patterns};
 use fredholm_linop::{Symmetry, Watch};
 use fredholm_mesh::Vec3;
 use fredholm_waves::lanes::{Lanes, cos_sin};
@@ -58,8 +58,8 @@ impl<'a> Radiating<'a> {
         Ok(Multipole::new(self, &self.operator.places(), settings, watch)?)
     }
 
-    pub(crate) fn bytes(&self, settings: MultipoleSettings) -> Result<u64, MomentsError> {
-        Ok(Multipole::predicted_bytes(self, &self.operator.places(), settings)?)
+    pub(crate) fn predicted(&self, settings: MultipoleSettings) -> Result<MultipoleSummary, MomentsError> {
+        Ok(Multipole::predicted(self, &self.operator.places(), settings)?)
     }
 
     /// The patterns of some functions of a basis, one after the other.

@@ -71,7 +71,7 @@ fn boundary_elements_are_compressed_where_asked_for() {
     let [whole, compressed] = [CouplingStorage::Matrix, CouplingStorage::Compressed]
         .map(|storage| run(&small.replace("efie", "cfie"), Some(storage)).unwrap());
     assert!(gap(&scattered(&compressed), &scattered(&whole)) < 2e-3);
-    assert!(refused(&text, CouplingStorage::Products).contains("--storage matrix or compressed"));
+    assert!(refused(&text, CouplingStorage::Products).contains("--storage matrix, compressed or multipole"));
     let lu = text.replace("method", "solver = \"lu\"\nmethod");
     assert!(refused(&lu, CouplingStorage::Compressed).contains("needs all entries"));
     let facets = text.replace("cfie", "mfie");

@@ -71,6 +71,8 @@ pub struct MultipoleSummary {
     pub fields: u64,
     /// All of them together.
     pub bytes: u64,
+    /// Bytes of the inverses of the blocks on the diagonal, where these precondition.
+    pub diagonal: u64,
     /// Bytes over those of the matrix stored whole in double precision.
     pub share: f64,
 }
@@ -230,6 +232,7 @@ impl Plan {
             tables,
             fields,
             bytes,
+            diagonal: self.rows.iter().map(|rows| (rows.len().pow(2) * size_of::<Complex64>()) as u64).sum(),
             share: bytes as f64 / (dim as f64).powi(2) / size_of::<Complex64>() as f64,
         }
     }

@@ -85,16 +85,16 @@ impl Multipole {
         Ok(Self { plan, summary, arch: Arch::new(), share: patterns.share(), leaves, tables })
     }
 
-    /// Bytes that it will take, counted.
+    /// What it will be made of, counted.
     ///
     /// # Errors
     /// Those of [`new`](Self::new) for what does not fit.
-    pub fn predicted_bytes<P: Patterns>(
+    pub fn predicted<P: Patterns>(
         patterns: &P,
         places: &[Vec3],
         settings: MultipoleSettings,
-    ) -> Result<u64, CompressionError> {
-        Ok(Plan::new(patterns, places, settings)?.summary().bytes)
+    ) -> Result<MultipoleSummary, CompressionError> {
+        Ok(Plan::new(patterns, places, settings)?.summary())
     }
 
     /// What it is made of.
@@ -249,36 +249,31 @@ impl Multipole {
         tests
     }
 
-    /// The rows of a leaf, in the order of the tree.
-    fn rows(&self, at: usize, x: &MultiVector<Complex64>, fields: &[Vec<f64>]) -> Vec<Complex64> {
-        let (leaf, count) = (&self.leaves[at], x.rhs_count());
+    /// The rows of a leaf, in the order of the tree, as x is.
+    fn rows(&self, at: usize, x: &[Complex64], field: &[f64]) -> Vec<Complex64> {
+        let leaf = &self.leaves[at];
         let (rows, width) = (self.plan.rows[at].len(), self.plan.width(at));
-        let mut y = vec![Complex64::ZERO; rows * count];
-        let mut near = vec![0.0; 2 * width];
-        let size = PLANES * self.plan.stages[0].grid.len();
-        for rhs in 0..count {
-            let unknowns = self.plan.near[at].iter().flat_map(|&source| self.plan.rows[source].clone());
-            for (column, unknown) in unknowns.enumerate() {
-                let value = x.row(self.plan.order[unknown])[rhs];
-                (near[column], near[width + column]) = (value.re, value.im);
+        let mut near = Vec::with_capacity(2 * width);
+        for part in [|x: &Complex64| x.re, |x: &Complex64| x.im] {
+            for &source in &self.plan.near[at] {
+                near.extend(x[self.plan.rows[source].clone()].iter().map(part));
             }
-            let tests = self.tests(&fields[rhs][at * size..(at + 1) * size]);
-            let (real, imaginary) = leaf.near.split_at(rows * width);
-            let (tests_re, tests_im) = tests.split_at(tests.len() / 2);
-            self.arch.dispatch(|| {
-                for row in 0..rows {
-                    let of = |plane: &[f32]| {
-                        dots(&plane[row * width..(row + 1) * width], &near[..width], &near[width..])
-                    };
-                    let [rr, ri] = of(real);
-                    let [ir, ii] = of(imaginary);
-                    let numbers = tests_re.len();
-                    let [re, im] =
-                        dots(&leaf.patterns[row * numbers..(row + 1) * numbers], tests_re, tests_im);
-                    y[row * count + rhs] = Complex64::new(rr - ii + re, ri + ir + im);
-                }
-            });
         }
+        let tests = self.tests(field);
+        let mut y = vec![Complex64::ZERO; rows];
+        let (real, imaginary) = leaf.near.split_at(rows * width);
+        let ((near_re, near_im), numbers) = (near.split_at(width), tests.len() / 2);
+        let (tests_re, tests_im) = tests.split_at(numbers);
+        self.arch.dispatch(|| {
+            for (row, y) in y.iter_mut().enumerate() {
+                let entries = row * width..(row + 1) * width;
+                let [rr, ri] = dots(&real[entries.clone()], near_re, near_im);
+                let [ir, ii] = dots(&imaginary[entries], near_re, near_im);
+                let pattern = &leaf.patterns[row * numbers..(row + 1) * numbers];
+                let [re, im] = dots(pattern, tests_re, tests_im);
+                *y = Complex64::new(rr - ii + re, ri + ir + im);
+            }
+        });
         y
     }
 }
@@ -421,17 +416,16 @@ impl LinearOperator<Complex64> for Multipole {
     }
 
     fn apply(&self, x: &MultiVector<Complex64>, y: &mut MultiVector<Complex64>) {
-        let fields: Vec<Vec<f64>> = (0..x.rhs_count())
-            .map(|rhs| {
-                let sorted: Vec<Complex64> = self.plan.order.iter().map(|&at| x.row(at)[rhs]).collect();
-                self.far(&sorted)
-            })
-            .collect();
-        let parts: Vec<Vec<Complex64>> =
-            (0..self.leaves.len()).into_par_iter().map(|at| self.rows(at, x, &fields)).collect();
-        let rows = parts.iter().flat_map(|part| part.chunks_exact(x.rhs_count().max(1)));
-        for (&at, row) in self.plan.order.iter().zip(rows) {
-            y.row_mut(at).copy_from_slice(row);
+        // One after the other, so that the fields of one are held at a time.
+        for rhs in 0..x.rhs_count() {
+            let sorted: Vec<Complex64> = self.plan.order.iter().map(|&at| x.row(at)[rhs]).collect();
+            let fields = self.far(&sorted);
+            let size = PLANES * self.plan.stages[0].grid.len();
+            let rows = |at: usize| self.rows(at, &sorted, &fields[at * size..(at + 1) * size]);
+            let parts: Vec<Vec<Complex64>> = (0..self.leaves.len()).into_par_iter().map(rows).collect();
+            for (&at, &value) in self.plan.order.iter().zip(parts.iter().flatten()) {
+                y.row_mut(at)[rhs] = value;
+            }
         }
     }
 
