@@ -78,6 +78,26 @@ fn boundary_elements_are_compressed_where_asked_for() {
     assert!(refused(&facets, CouplingStorage::Compressed).contains("--storage matrix or products"));
 }
 
+/// So do multipoles; bodies that are too small for them are compressed in blocks, and what has no
+/// multipoles is refused.
+#[test]
+fn boundary_elements_are_taken_to_multipoles_where_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |text: &str, storage| stored(folder.path(), text, Some(storage));
+    let text = ball("cfie", 0.2, "lambda/6", 2.0, "");
+    let [whole, found] =
+        [CouplingStorage::Matrix, CouplingStorage::Multipole].map(|how| run(&text, how).unwrap());
+    let difference = gap(&scattered(&found), &scattered(&whole));
+    assert!(difference > 0.0 && difference < 2e-3, "{difference:e}");
+    assert!(found.frequencies()[0].solution.ends_with("with the diagonal blocks of the multipoles"));
+    let small = run(&ball("cfie", 0.04, "lambda/12", 2.0, ""), CouplingStorage::Multipole).unwrap();
+    assert!(small.frequencies()[0].solution.ends_with("of the compressed matrix"));
+    let refused = |text: &str| run(text, CouplingStorage::Multipole).map(drop).unwrap_err().to_string();
+    assert!(refused(&text.replace("cfie", "mfie")).contains("--storage matrix or products"));
+    let glass = "material = \"glass\"\n[materials.glass]\nhalf_space = { permittivity = [3, -0.1] }";
+    assert!(refused(&ball("pmchwt", 0.06, "lambda/10", 1.0, glass)).contains("perfect conductors only"));
+}
+
 /// A sweep of more waves than are solved for together, of conductors and of dielectrics.
 #[test]
 fn compressed_sweeps_are_those_of_the_whole_matrix() {

@@ -1,15 +1,16 @@
 //! Patterns from the directions of one level to those of the next, and back by the transpose.
 //!
-//! Along a circle a pattern is a sum of e^{jmα} with |m| ≤ B. The value at another angle is taken
-//! from the p nearest ones, with the weights for which the mean square of the error over all these
-//! waves is least: the optimal local interpolation of functions with a band. p is the smallest even
-//! number whose error is within the tolerance; from 2B + 1 on there is none. First all rows are
+//! Along a circle a pattern of currents within a radius r is a sum of e^{jmα}, whose terms fall
+//! beyond |m| = kr as the excess bandwidth formula says. The value at another angle is taken from
+//! the p nearest ones, with the weights for which the mean square of the error over such patterns is
+//! least. p is the smallest even number whose error is within the tolerance. First all rows are
 //! interpolated in φ, then all great circles in θ. On the other side of a pole both vectors across
 //! the direction are turned over, hence the sign there.
 
 #![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
 
 use super::grid::Grid;
+use super::plan::EXCESS;
 use std::f64::consts::{PI, TAU};
 
 /// Outputs that are computed together.
@@ -27,20 +28,43 @@ struct Weights {
     left: f64,
 }
 
-/// Σ_{|m| ≤ B} cos(mα)/(2B + 1).
-fn kernel(band: usize, angle: f64) -> f64 {
-    let (order, half) = ((2 * band + 1) as f64, 0.5 * angle);
-    if half.sin().abs() < 1e-12 { 1.0 } else { (order * half).sin() / (order * half.sin()) }
+/// The correlation of the values of such patterns at two angles apart: Σ s_m² cos(mα)/Σ s_m², with
+/// the sizes s_m of the terms.
+struct Correlation(Vec<f64>);
+
+impl Correlation {
+    /// Of patterns of radius `kr`, up to the order that the directions resolve.
+    fn new(kr: f64, orders: usize) -> Self {
+        let size = |m: usize| -> f64 {
+            let excess = (m as f64 - kr).max(0.0) / (EXCESS * kr.cbrt());
+            let twice = if m == 0 { 1.0 } else { 2.0 };
+            twice * 10.0_f64.powf(-2.0 * excess.powf(1.5))
+        };
+        let squares: Vec<f64> = (0..orders).map(size).collect();
+        let all: f64 = squares.iter().sum();
+        Self(squares.iter().map(|square| square / all).collect())
+    }
+
+    fn at(&self, angle: f64) -> f64 {
+        // cos((m + 1)α) = 2 cos α cos(mα) − cos((m − 1)α).
+        let cosine = angle.cos();
+        let (mut before, mut own, mut sum) = (cosine, 1.0, 0.0);
+        for square in &self.0 {
+            sum += square * own;
+            (before, own) = (own, 2.0 * cosine * own - before);
+        }
+        sum
+    }
 }
 
 impl Weights {
     /// From the `count` nearest of some increasing angles.
-    fn new(angles: &[f64], target: f64, count: usize, band: usize) -> Self {
+    fn new(angles: &[f64], target: f64, count: usize, correlation: &Correlation) -> Self {
         let after = angles.partition_point(|&angle| angle <= target);
         let first = after + angles.len() - count / 2;
         let nodes: Vec<usize> = (0..count).map(|i| (first + i) % angles.len()).collect();
-        let between = |i: usize, j: usize| kernel(band, angles[nodes[i]] - angles[nodes[j]]);
-        // Cholesky of the matrix of the kernel.
+        let between = |i: usize, j: usize| correlation.at(angles[nodes[i]] - angles[nodes[j]]);
+        // Cholesky.
         let mut lower = vec![vec![0.0; count]; count];
         for i in 0..count {
             for j in 0..=i {
@@ -50,7 +74,7 @@ impl Weights {
                 lower[i][j] = if i == j { rest.max(RIDGE * RIDGE).sqrt() } else { rest / lower[j][j] };
             }
         }
-        let right: Vec<f64> = nodes.iter().map(|&node| kernel(band, target - angles[node])).collect();
+        let right: Vec<f64> = nodes.iter().map(|&node| correlation.at(target - angles[node])).collect();
         let mut weights = right.clone();
         for i in 0..count {
             let known: f64 = (0..i).map(|k| lower[i][k] * weights[k]).sum();
@@ -69,10 +93,10 @@ impl Weights {
     }
 
     /// Of all targets, from as few as the tolerance allows.
-    fn all(angles: &[f64], targets: &[f64], band: usize, tolerance: f64) -> Vec<Self> {
+    fn all(angles: &[f64], targets: &[f64], correlation: &Correlation, tolerance: f64) -> Vec<Self> {
         let mut count = 4.min(angles.len());
         loop {
-            let of = |&target: &f64| Self::new(angles, target, count, band);
+            let of = |&target: &f64| Self::new(angles, target, count, correlation);
             let weights: Vec<Self> = targets.iter().map(of).collect();
             let worst = weights.iter().map(|weights| weights.left).fold(0.0, f64::max);
             if worst <= tolerance * tolerance || count == angles.len() {
@@ -159,12 +183,13 @@ pub(crate) struct Scratch {
 }
 
 impl Interpolation {
-    /// For patterns with this band.
-    pub(crate) fn new(coarse: &Grid, fine: &Grid, band: usize, tolerance: f64) -> Self {
+    /// For patterns of currents within a radius r, `kr` of the phase.
+    pub(crate) fn new(coarse: &Grid, fine: &Grid, kr: f64, tolerance: f64) -> Self {
+        let correlation = Correlation::new(kr, coarse.rows);
         let even = |count: usize| -> Vec<f64> { (0..count).map(|i| TAU * i as f64 / count as f64).collect() };
         let (from, to) = (even(coarse.columns), even(fine.columns));
         let mut entries = Vec::new();
-        for (output, weights) in Weights::all(&from, &to, band, tolerance).iter().enumerate() {
+        for (output, weights) in Weights::all(&from, &to, &correlation, tolerance).iter().enumerate() {
             entries.extend(weights.nodes.iter().zip(&weights.weights).map(|(&input, &w)| (output, input, w)));
         }
         let turned: Vec<_> = entries.iter().map(|&(output, input, weight)| (input, output, weight)).collect();
@@ -173,7 +198,9 @@ impl Interpolation {
         let circle: Vec<f64> = coarse.angles.iter().copied().chain(beyond).collect();
         let mut rows = Vec::with_capacity(fine.rows);
         let mut turned_rows = vec![Vec::new(); n];
-        for (output, weights) in Weights::all(&circle, &fine.angles, band, tolerance).iter().enumerate() {
+        for (output, weights) in
+            Weights::all(&circle, &fine.angles, &correlation, tolerance).iter().enumerate()
+        {
             let row = |(&node, &weight): (&usize, &f64)| {
                 if node < n { (node, false, weight) } else { (2 * n - 1 - node, true, -weight) }
             };
@@ -286,8 +313,8 @@ mod tests {
         let (coarse, fine) = (Grid::new(21), Grid::new(37));
         let (given, expected) = (pattern(&coarse), pattern(&fine));
         let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
-        for (tolerance, band) in [(1e-2, 10), (1e-4, 14), (1e-9, 20)] {
-            let interpolation = Interpolation::new(&coarse, &fine, band, tolerance);
+        for tolerance in [1e-2, 1e-4, 1e-6] {
+            let interpolation = Interpolation::new(&coarse, &fine, 4.0, tolerance);
             let mut found = vec![0.0; expected.len()];
             interpolation.up(&given, &mut Scratch::default(), &mut found);
             let difference: Vec<f64> = found.iter().zip(&expected).map(|(a, b)| a - b).collect();

@@ -23,17 +23,19 @@ const SIDES: [f64; 2] = [0.15, 2.0];
 /// Distance of typical pairs of points of two boxes from the middles of these, over that of the two
 /// that are farthest from them on the line between both. The error falls as a high power of it, so
 /// that few pairs matter (docs/notes/moments.md).
-const TYPICAL_DISTANCE: f64 = 0.4;
+const TYPICAL_DISTANCE: f64 = 0.45;
 /// The tolerance that degrees are chosen for over that of products: excess bandwidths are those of
 /// the largest boxes that could be, with supports all around.
 const DEGREE_SHARE: f64 = 10.0;
 /// Rounding of what translations lose over the tolerance: errors of some hundred directions largely
 /// cancel.
 const ROUNDING_SHARE: f64 = 10.0;
+/// The number in the excess bandwidth formula.
+pub(crate) const EXCESS: f64 = 1.8;
 /// Rounding of what is stored.
 const ROUNDING: f64 = 6e-8;
 /// Error of interpolations over the tolerance.
-const INTERPOLATION_SHARE: f64 = 0.1;
+const INTERPOLATION_SHARE: f64 = 0.03;
 
 /// How a matrix is taken to multipoles.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,7 +118,7 @@ pub(crate) struct Plan {
 /// Chew et al. 2001, eq. 3.47).
 fn degree(kd: f64, tolerance: f64) -> f64 {
     let digits = -tolerance.log10();
-    kd + 1.8 * digits.powf(2.0 / 3.0) * kd.cbrt()
+    kd + EXCESS * digits.powf(2.0 / 3.0) * kd.cbrt()
 }
 
 fn check<P: Patterns>(
@@ -178,9 +180,7 @@ impl Plan {
             let grid = Grid::new(degrees[level]);
             let interpolation = stages.last().map(|coarse: &Stage| {
                 let kr = k * largest(level - 1);
-                let band =
-                    (degree(kr, INTERPOLATION_SHARE * tolerance).ceil() as usize).min(coarse.grid.rows - 1);
-                Interpolation::new(&coarse.grid, &grid, band, INTERPOLATION_SHARE * tolerance)
+                Interpolation::new(&coarse.grid, &grid, kr, INTERPOLATION_SHARE * tolerance)
             });
             stages.push(Stage::new(
                 &tree,
