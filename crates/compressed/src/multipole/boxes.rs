@@ -164,7 +164,9 @@ mod tests {
         for (level, far) in far.iter().enumerate() {
             for (target, sources) in far.sources.iter().enumerate() {
                 let own = tree.groups(level, target);
-                sources.iter().for_each(|&source| count_pairs(own.clone(), tree.groups(level, source)));
+                for &source in sources {
+                    count_pairs(own.clone(), tree.groups(level, source));
+                }
                 let centre = tree.centre(level, target);
                 for &group in &tree.order[own] {
                     let reach = places[group].distance(centre) + 0.2;
@@ -177,7 +179,9 @@ mod tests {
         }
         for (target, sources) in near.iter().enumerate() {
             assert!(sources.contains(&target));
-            sources.iter().for_each(|&source| count_pairs(tree.groups(0, target), tree.groups(0, source)));
+            for &source in sources {
+                count_pairs(tree.groups(0, target), tree.groups(0, source));
+            }
         }
         assert!(seen.iter().all(|&n| n == 1) && levels > 1, "{levels}");
         assert_eq!(tree.levels.last().map(|level| level.cubes.len()), Some(1));

@@ -23,7 +23,7 @@ const RIDGE: f64 = 1e-13;
 /// Weights of the values around a circle for one at another angle.
 struct Weights {
     nodes: Vec<usize>,
-    weights: Vec<f64>,
+    values: Vec<f64>,
     /// Square of the error.
     left: f64,
 }
@@ -89,7 +89,7 @@ impl Weights {
             let own: f64 = (0..count).map(|j| between(i, j) * weights[j]).sum();
             left += weights[i] * (own - 2.0 * right[i]);
         }
-        Self { nodes, weights, left }
+        Self { nodes, values: weights, left }
     }
 
     /// Of all targets, from as few as the tolerance allows.
@@ -123,7 +123,9 @@ impl Band {
         for first in (0..outputs).step_by(BLOCK) {
             let own: Vec<_> = entries.iter().filter(|entry| entry.0 / BLOCK == first / BLOCK).collect();
             let mut used = vec![false; inputs];
-            own.iter().for_each(|entry| used[entry.1] = true);
+            for entry in &own {
+                used[entry.1] = true;
+            }
             // From the end of the longest gap on.
             let gap = |start: usize| (0..inputs).take_while(|i| !used[(start + i) % inputs]).count();
             let start = (0..inputs).max_by_key(|&start| (gap(start), inputs - start)).unwrap_or(0);
@@ -190,7 +192,7 @@ impl Interpolation {
         let (from, to) = (even(coarse.columns), even(fine.columns));
         let mut entries = Vec::new();
         for (output, weights) in Weights::all(&from, &to, &correlation, tolerance).iter().enumerate() {
-            entries.extend(weights.nodes.iter().zip(&weights.weights).map(|(&input, &w)| (output, input, w)));
+            entries.extend(weights.nodes.iter().zip(&weights.values).map(|(&input, &w)| (output, input, w)));
         }
         let turned: Vec<_> = entries.iter().map(|&(output, input, weight)| (input, output, weight)).collect();
         let n = coarse.rows;
@@ -204,8 +206,10 @@ impl Interpolation {
             let row = |(&node, &weight): (&usize, &f64)| {
                 if node < n { (node, false, weight) } else { (2 * n - 1 - node, true, -weight) }
             };
-            let row: Vec<Meridian> = weights.nodes.iter().zip(&weights.weights).map(row).collect();
-            row.iter().for_each(|&(input, crosses, w)| turned_rows[input].push((output, crosses, w)));
+            let row: Vec<Meridian> = weights.nodes.iter().zip(&weights.values).map(row).collect();
+            for &(input, crosses, weight) in &row {
+                turned_rows[input].push((output, crosses, weight));
+            }
             rows.push(row);
         }
         Self {

@@ -253,7 +253,9 @@ impl Stage {
             std::array::from_fn(|axis| a[axis] - b[axis])
         };
         for (target, sources) in far.sources.iter().enumerate() {
-            sources.iter().for_each(|&source| _ = numbers.insert(offset(target, source), 0));
+            for &source in sources {
+                numbers.insert(offset(target, source), 0);
+            }
         }
         numbers.values_mut().zip(0..).for_each(|(number, at)| *number = at);
         let with_numbers = |(target, sources): (usize, &Vec<usize>)| -> Vec<(u32, u32)> {

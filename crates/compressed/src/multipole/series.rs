@@ -34,7 +34,9 @@ fn bessel(n: usize, x: f64) -> Vec<f64> {
     let at = usize::from(exact[1].abs() > exact[0].abs());
     let scale = exact[at] / values[at];
     values.truncate(n + 1);
-    values.iter_mut().for_each(|value| *value *= scale);
+    for value in &mut values {
+        *value *= scale;
+    }
     values
 }
 
