@@ -13,7 +13,7 @@
 //! of a product is summed in the order of the blocks.
 //!
 //! Beside them stand multilevel fast multipoles ([`Multipole`]), for matrices whose unknowns have far
-//! fields: above some ten thousand unknowns they take less of everything.
+//! fields: from some thousand unknowns on they take less of everything.
 
 mod block_diagonal;
 mod clusters;
