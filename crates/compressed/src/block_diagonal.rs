@@ -1,11 +1,17 @@
 //! The inverse of the blocks on the diagonal: the cheapest preconditioner that knows the strongest
 //! couplings.
 
-use crate::{CompressionError, Hierarchical};
+use crate::CompressionError;
 use fredholm_linop::{LinearOperator, MultiVector, Scalar};
 use rayon::prelude::*;
 
-/// The inverses of the blocks on the diagonal of a hierarchical matrix.
+/// A matrix whose blocks on the diagonal are stored.
+pub trait Diagonal<T: Scalar>: LinearOperator<T> {
+    /// The blocks with their unknowns, row by row. Every unknown is in one of them.
+    fn diagonal_blocks(&self) -> Vec<(Vec<usize>, Vec<T>)>;
+}
+
+/// The inverses of the blocks on the diagonal of a matrix.
 pub struct BlockDiagonal<T> {
     dim: usize,
     /// Unknowns and the inverse of each block, row by row.
@@ -17,14 +23,14 @@ impl<T: Scalar> BlockDiagonal<T> {
     ///
     /// # Errors
     /// [`CompressionError::Singular`] where one cannot be inverted.
-    pub fn new(matrix: &Hierarchical<T>) -> Result<Self, CompressionError> {
+    pub fn new(matrix: &impl Diagonal<T>) -> Result<Self, CompressionError> {
         let invert = |(block, (unknowns, entries)): (usize, (Vec<usize>, Vec<T>))| {
             let inverse = inverse(unknowns.len(), entries).ok_or(CompressionError::Singular { block })?;
             Ok((unknowns, inverse))
         };
         let blocks =
             matrix.diagonal_blocks().into_par_iter().enumerate().map(invert).collect::<Result<_, _>>()?;
-        Ok(Self { dim: matrix.order().len(), blocks })
+        Ok(Self { dim: matrix.dim(), blocks })
     }
 }
 

@@ -56,6 +56,14 @@ pub enum CompressionError {
         /// The block.
         block: usize,
     },
+    /// Nothing is far enough away for multipoles.
+    #[error(
+        "all of the {boxes} smallest boxes are near each other: the bodies are too small beside the wavelength for multipoles"
+    )]
+    Small {
+        /// Boxes of the finest level.
+        boxes: usize,
+    },
     /// The matrix is no longer wanted.
     #[error("the compression was interrupted")]
     Interrupted,

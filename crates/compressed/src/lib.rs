@@ -11,6 +11,9 @@
 //! single precision, which is far finer, and multiplied in double precision. Products and blocks
 //! have the same bits for any number of threads: a block is the work of one thread, and each part
 //! of a product is summed in the order of the blocks.
+//!
+//! Beside them stand multilevel fast multipoles ([`Multipole`]), for matrices whose unknowns have far
+//! fields: from some thousand unknowns on they take less of everything.
 
 mod block_diagonal;
 mod clusters;
@@ -20,13 +23,15 @@ mod error;
 mod factors;
 mod low_rank;
 mod matrix;
+mod multipole;
 mod number;
 mod preconditioned;
 
-pub use block_diagonal::BlockDiagonal;
+pub use block_diagonal::{BlockDiagonal, Diagonal};
 pub use entries::Entries;
 pub use error::CompressionError;
 pub use factors::Factors;
 pub use matrix::{Hierarchical, Settings, Summary};
+pub use multipole::{Direction, Multipole, MultipoleSettings, MultipoleSummary, Patterns};
 pub use number::{Number, Times};
 pub use preconditioned::Preconditioned;

@@ -1,5 +1,6 @@
 //! The hierarchical matrix and its products.
 
+use crate::block_diagonal::Diagonal;
 use crate::clusters::{Cluster, Tree};
 use crate::cross::Block;
 use crate::number::{Times, add_product};
@@ -194,9 +195,10 @@ impl<T: Scalar> Hierarchical<T> {
     pub(crate) fn order(&self) -> &[usize] {
         &self.order
     }
+}
 
-    /// The blocks on the diagonal with their unknowns, row by row.
-    pub(crate) fn diagonal_blocks(&self) -> Vec<(Vec<usize>, Vec<T>)> {
+impl<T: Scalar + Times<T::Single>> Diagonal<T> for Hierarchical<T> {
+    fn diagonal_blocks(&self) -> Vec<(Vec<usize>, Vec<T>)> {
         let on_diagonal = |block: &Stored<T>| match &block.kind {
             Kind::Whole(entries) if block.rows == block.columns => {
                 let entries = entries.iter().map(|&entry| T::from_single(entry).scale(block.unit));
@@ -416,7 +418,10 @@ pub(crate) fn check_tolerance(tolerance: f64) -> Result<(), CompressionError> {
 }
 
 /// The first unknown of each of some groups one after the other, and the number of all.
-fn starts<T: Scalar, E: Entries<T>>(entries: &E, groups: impl Iterator<Item = usize>) -> Vec<usize> {
+pub(crate) fn starts<T: Scalar, E: Entries<T>>(
+    entries: &E,
+    groups: impl Iterator<Item = usize>,
+) -> Vec<usize> {
     let mut end = 0;
     let ends = groups.map(|group| {
         end += entries.width(group);

@@ -1,4 +1,4 @@
-//! A sphere by a compressed matrix, against the series of Mie: unknowns, CPU seconds, memory,
+//! A sphere by a compressed matrix or by multipoles, against the series of Mie: unknowns, CPU seconds, memory,
 //! iterations and error.
 //!
 //! ```text
@@ -8,7 +8,8 @@
 //!
 //! RADIUS is in wavelengths, EDGES are counted to a wavelength, BODY is `combined` (usual),
 //! `magnetic` or `electric` for a conductor by one of these equations, or a permittivity such as 4
-//! or 10-5j. FACTORS is the tolerance of the factors that precondition the system; without it the
+//! or 10-5j. `multipole-combined` and so on take multilevel fast multipoles in place of compressed
+//! blocks. FACTORS is the tolerance of the factors that precondition the system; without it the
 //! blocks on the diagonal do. The errors are those of E_z at 25 m, at 1.5 radii and, in dielectrics,
 //! at half a radius.
 
@@ -19,7 +20,7 @@
 mod common;
 
 use common::{WAVELENGTH, circle, relative_error, source, vertical, wave};
-use fredholm_compressed::{BlockDiagonal, Factors, Preconditioned, Settings};
+use fredholm_compressed::{BlockDiagonal, Factors, MultipoleSettings, Preconditioned, Settings};
 use fredholm_iterative::Gmres;
 use fredholm_linop::{LinearOperator, MultiVector, Quiet, SecondKind, Solver, Stop};
 use fredholm_mesh::Vec3;
@@ -48,6 +49,7 @@ fn main() {
         };
         println!("error {:.5} far, {:.5} near", error(&far), error(&near));
     };
+    let (by_multipoles, body) = body.strip_prefix("multipole-").map_or((false, body), |body| (true, body));
     match body {
         "combined" | "magnetic" | "electric" => {
             let equation = match body {
@@ -57,7 +59,12 @@ fn main() {
             };
             let basis = Basis::new(surface).unwrap();
             let conductor = Conductor::new(&basis, wave(), equation, 1e-3).unwrap();
-            let x = run.solve(conductor.operator(), &conductor.right_hand_side(&[&sources]));
+            let b = conductor.right_hand_side(&[&sources]);
+            let x = if by_multipoles {
+                run.solve_by_multipoles(&conductor, &b)
+            } else {
+                run.solve(conductor.operator(), &b)
+            };
             let ball = ConductingSphere::new(radius).unwrap();
             show(&Currents::new(&basis, wave(), &x, None), &|p| ball.scattered(&wave(), &source, p));
         }
@@ -114,22 +121,56 @@ impl Run {
             }
             None => (Box::new(BlockDiagonal::new(&matrix).unwrap()), 0.0),
         };
-        let system = Preconditioned::new(&matrix, &*inverse);
-        let right = system.right_hand_side(b);
-        let ones = MultiVector::from_fn(b.dim(), 1, |_, _| Complex64::ONE);
-        let a = SecondKind::new(&system, ones).unwrap();
-        let mut x = MultiVector::zeros(b.dim(), 1);
-        let stop = Stop { tolerance: 1e-4, max_iterations: 3000 };
-        let (report, solution) =
-            timed(|| Gmres { restart: RESTART }.solve(&a, &right, &mut x, &stop, &mut Quiet).unwrap());
-        println!(
-            "{:?} after {} iterations, {solution:.1} CPU s; {:.1} with the factors",
-            report.reason,
-            report.history.len() - 1,
-            solution + seconds,
-        );
-        x.vector(0)
+        finish((&matrix, &*inverse), b, seconds)
     }
+
+    /// The same by multipoles.
+    fn solve_by_multipoles(&self, conductor: &Conductor<'_>, b: &MultiVector<Complex64>) -> Vec<Complex64> {
+        let settings = MultipoleSettings { tolerance: self.tolerance, ..MultipoleSettings::default() };
+        let (matrix, assembly) = timed(|| conductor.multipole(settings, &Quiet).unwrap());
+        let summary = matrix.summary();
+        println!(
+            "{} unknowns: assembly {assembly:.1} CPU s, {:.3} GB ({:.4} of the whole): near {:.3}, patterns {:.3}, tables {:.3}, fields {:.3}; {} leaves, {} levels, {:?} directions",
+            b.dim(),
+            summary.bytes as f64 / 1e9,
+            summary.share,
+            summary.near as f64 / 1e9,
+            summary.patterns as f64 / 1e9,
+            summary.tables as f64 / 1e9,
+            summary.fields as f64 / 1e9,
+            summary.leaves,
+            summary.levels,
+            summary.directions,
+        );
+        let (inverse, seconds) = timed(|| BlockDiagonal::new(&matrix).unwrap());
+        let mut y = MultiVector::zeros(b.dim(), 1);
+        let ((), product) = timed(|| matrix.apply(b, &mut y));
+        println!("a product {product:.2} CPU s");
+        finish((&matrix, &inverse), b, seconds)
+    }
+}
+
+/// Solves with a matrix and what preconditions it, which took some seconds.
+fn finish(
+    (matrix, inverse): (&dyn LinearOperator<Complex64>, &dyn LinearOperator<Complex64>),
+    b: &MultiVector<Complex64>,
+    seconds: f64,
+) -> Vec<Complex64> {
+    let system = Preconditioned::new(matrix, inverse);
+    let right = system.right_hand_side(b);
+    let ones = MultiVector::from_fn(b.dim(), 1, |_, _| Complex64::ONE);
+    let a = SecondKind::new(&system, ones).unwrap();
+    let mut x = MultiVector::zeros(b.dim(), 1);
+    let stop = Stop { tolerance: 1e-4, max_iterations: 3000 };
+    let (report, solution) =
+        timed(|| Gmres { restart: RESTART }.solve(&a, &right, &mut x, &stop, &mut Quiet).unwrap());
+    println!(
+        "{:?} after {} iterations, {solution:.1} CPU s; {:.1} with what preconditions",
+        report.reason,
+        report.history.len() - 1,
+        solution + seconds,
+    );
+    x.vector(0)
 }
 
 /// Seconds of the processor on all threads, user and system, as Linux counts them; of the clock

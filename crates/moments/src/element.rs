@@ -95,6 +95,12 @@ impl Element {
         (l0 * a + l1 * b + l2 * c) + (l1 * l2 * d + l2 * l0 * e + l0 * l1 * f)
     }
 
+    /// The largest distance of a corner, or of the middle of a side, from a place, m.
+    pub(crate) fn reach(&self, place: Vec3) -> f64 {
+        let middles = [[0.0, 0.5, 0.5], [0.5, 0.0, 0.5], [0.5, 0.5, 0.0]].map(|at| self.point(at));
+        self.corners.into_iter().chain(middles).map(|p| p.distance(place)).fold(0.0, f64::max)
+    }
+
     /// ∂r/∂λ₁ and ∂r/∂λ₂ with λ₀ = 1 − λ₁ − λ₂, m.
     #[inline(always)]
     #[allow(clippy::inline_always, reason = "kernels of the widest vectors call it")]
@@ -228,16 +234,14 @@ mod tests {
             ([t, 1.0 - t, 0.0], [0.0, -1.0], [1.0, 2.0 * t - 1.0]),
         ];
         for (side, (at, normal, [even, odd])) in through.into_iter().enumerate() {
-            let along = Functions::at(at).along;
-            for i in 0..WIDTH {
-                let expected = if i == side {
-                    even
-                } else if i == side + 3 {
-                    odd
-                } else {
-                    0.0
+            let [u, v] = Functions::at(at).along;
+            for (i, (u, v)) in u.into_iter().zip(v).enumerate() {
+                let expected = match i {
+                    _ if i == side => even,
+                    _ if i == side + 3 => odd,
+                    _ => 0.0,
                 };
-                let flux = along[0][i] * normal[0] + along[1][i] * normal[1];
+                let flux = u * normal[0] + v * normal[1];
                 assert!((flux - expected).abs() < 1e-15, "{side} {i} {flux}");
             }
         }
@@ -256,9 +260,9 @@ mod tests {
     fn products_on_a_flat_triangle_are_the_closed_ones() {
         let corners = [Vec3::ZERO, Vec3::new(1.0, 0.1, 0.0), Vec3::new(0.2, 0.9, 0.3)];
         let products = Element::flat(corners).products();
-        for a in 0..3 {
-            for b in 0..3 {
-                assert!((products[a][b] - closed(corners, [a, b])).abs() < 1e-14);
+        for (a, row) in products.iter().enumerate().take(3) {
+            for (b, product) in row.iter().enumerate().take(3) {
+                assert!((product - closed(corners, [a, b])).abs() < 1e-14);
             }
         }
     }

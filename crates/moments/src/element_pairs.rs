@@ -282,7 +282,7 @@ mod tests {
                     })
                 })
                 .collect();
-            let mut line = format!("{degree} ({} points)", rule.len());
+            print!("{degree} ({} points)", rule.len());
             for (ratio, size) in [
                 (1.1, 0.02),
                 (1.5, 0.02),
@@ -305,22 +305,22 @@ mod tests {
                     let found = errors(&plain(k, pair, Tests::Straight, &pairs), &exact);
                     (0..2).for_each(|i| worst[i] = worst[i].max(found[i]));
                 }
-                line += &format!("  {ratio}/{size}: {:.1e} {:.1e}", worst[0], worst[1]);
+                print!("  {ratio}/{size}: {:.1e} {:.1e}", worst[0], worst[1]);
             }
-            println!("{line}");
+            println!();
         }
         // Pairs that touch.
         for n in 2..11 {
-            let mut line = format!("{n} directions");
+            print!("{n} directions");
             for (labels, pair) in contacts() {
                 let pair = [&pair[0], &pair[1]];
                 let k = Complex64::new(0.6, -0.1);
                 let exact = plain(k, pair, Tests::Straight, &triangle_pair([0, 1, 2], labels, 14));
                 let found =
                     errors(&plain(k, pair, Tests::Straight, &triangle_pair([0, 1, 2], labels, n)), &exact);
-                line += &format!("  {:.1e} {:.1e}", found[0], found[1]);
+                print!("  {:.1e} {:.1e}", found[0], found[1]);
             }
-            println!("{line}");
+            println!();
         }
     }
 

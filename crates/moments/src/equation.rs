@@ -27,9 +27,11 @@ use crate::element_kernel::Tests;
 use crate::kernel::{Medium, WIDTH, Wanted};
 use crate::operator::{DualPart, Factors, Integrals, Kinds, Operator, Products, Term};
 use crate::pairs::Integrator;
+use crate::patterns::Radiating;
 use crate::rules::Rules;
 use crate::{Basis, MomentsError, Order};
-use fredholm_linop::{MultiVector, Symmetry};
+use fredholm_compressed::{Multipole, MultipoleSettings, MultipoleSummary};
+use fredholm_linop::{MultiVector, Symmetry, Watch};
 use fredholm_mesh::Vec3;
 use fredholm_quadrature::symmetric_triangle;
 use fredholm_waves::medium::IMPEDANCE;
@@ -198,6 +200,32 @@ impl<'a> Conductor<'a> {
     #[must_use]
     pub fn operator(&self) -> &Operator<'a> {
         &self.operator
+    }
+
+    /// The matrix by multilevel fast multipoles, in free space.
+    ///
+    /// # Errors
+    /// [`MomentsError::Grounded`] above a ground plane, [`MomentsError::Compression`] for settings
+    /// out of range, bodies that are too small, where it takes more than the limit, and where
+    /// `watch` no longer wants it.
+    pub fn multipole(
+        &self,
+        settings: MultipoleSettings,
+        watch: &dyn Watch,
+    ) -> Result<Multipole, MomentsError> {
+        self.radiating()?.multipole(settings, watch)
+    }
+
+    /// What the matrix by multipoles will be made of, before anything is computed.
+    ///
+    /// # Errors
+    /// Those of [`multipole`](Self::multipole) for what does not fit.
+    pub fn multipole_summary(&self, settings: MultipoleSettings) -> Result<MultipoleSummary, MomentsError> {
+        self.radiating()?.predicted(settings)
+    }
+
+    fn radiating(&self) -> Result<Radiating<'_>, MomentsError> {
+        Radiating::new(&self.operator, self.wave.wavenumber(), self.equation.shares())
     }
 
     /// The functions.

@@ -149,6 +149,12 @@ pub enum MomentsError {
         /// Its number.
         index: usize,
     },
+    /// Multipoles above a ground plane.
+    #[error("multipoles are those of conductors in free space, not above a ground plane")]
+    Grounded,
+    /// Multipoles of what is no perfect conductor.
+    #[error("multipoles are those of perfect conductors only")]
+    Imperfect,
     /// Triangles are too large for the wave.
     #[error("edge {edge} is {length} m long, which is more than {most} of the wavelength of {wavelength} m")]
     Coarse {
@@ -213,6 +219,9 @@ impl MomentsError {
             Self::Regions { .. } => Some("mend the bodies there, or move them apart"),
             Self::Patchwork { .. } => Some("give the whole body one surface impedance"),
             Self::BelowGround { .. } => Some("move it up, or the ground down"),
+            Self::Grounded | Self::Imperfect => {
+                Some("compress the matrix in blocks (`Operator::compressed`, --storage compressed)")
+            }
             Self::Coarse { .. } => Some("mesh finer, λ/10 is usual"),
             Self::OnSurface { .. } => Some("move it off the surface"),
             Self::Wave(error) => error.help(),

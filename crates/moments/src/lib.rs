@@ -20,6 +20,7 @@ mod kernel;
 pub mod meshing;
 mod operator;
 mod pairs;
+mod patterns;
 mod regions;
 mod rules;
 mod set;

@@ -385,7 +385,15 @@ impl<'a> Operator<'a> {
         Ok(Hierarchical::predicted_bytes(self, &self.places(), settings)?)
     }
 
-    fn places(&self) -> Vec<Vec3> {
+    /// The rules of what the functions themselves test around the bodies.
+    pub(crate) fn rules(&self) -> Option<&Rules> {
+        self.terms.first().map(|term| match &term.integrals {
+            Integrals::Lowest(integrator) => &integrator.rules,
+            Integrals::First(integrator) => &integrator.rules,
+        })
+    }
+
+    pub(crate) fn places(&self) -> Vec<Vec3> {
         (0..self.basis.len()).map(|function| self.basis.centre(function)).collect()
     }
 

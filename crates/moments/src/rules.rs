@@ -113,6 +113,11 @@ impl Rules {
     pub(crate) fn class(&self, ratio: f64, radii: f64) -> Option<usize> {
         self.classes.iter().position(|rule| ratio >= rule.reach && radii <= rule.largest)
     }
+
+    /// The rule for what a triangle with this radius radiates to the far.
+    pub(crate) fn of_far(&self, radius: f64) -> &Rule {
+        &self.classes[self.class(f64::INFINITY, 2.0 * radius).unwrap_or(CLASSES - 1)]
+    }
 }
 
 impl Rule {

@@ -71,7 +71,7 @@ fn boundary_elements_are_compressed_where_asked_for() {
     let [whole, compressed] = [CouplingStorage::Matrix, CouplingStorage::Compressed]
         .map(|storage| run(&small.replace("efie", "cfie"), Some(storage)).unwrap());
     assert!(gap(&scattered(&compressed), &scattered(&whole)) < 2e-3);
-    assert!(refused(&text, CouplingStorage::Products).contains("--storage matrix or compressed"));
+    assert!(refused(&text, CouplingStorage::Products).contains("--storage matrix, compressed or multipole"));
     let lu = text.replace("method", "solver = \"lu\"\nmethod");
     assert!(refused(&lu, CouplingStorage::Compressed).contains("needs all entries"));
     let facets = text.replace("cfie", "mfie");
@@ -91,21 +91,21 @@ fn functions_of_the_first_order_are_better_on_the_same_cells() {
     };
     let can = "cylinder = { base = [0, 0, -0.05], axis = [0, 0, 0.1], radius = 0.05 }";
     let disc = "disc = { centre = [0, 0, 0], normal = [0, 1, 0.2], radius = 0.06 }";
-    let runs: [([&str; 2], Box<dyn Fn(&str) -> String>); 5] = [
-        (["lambda/7", "lambda/12"], Box::new(|edge| ball("efie", 0.08, edge, 1.0, ""))),
-        (["lambda/7", "lambda/12"], Box::new(|edge| ball("cfie", 0.08, edge, 1.0, ""))),
-        (["lambda/10", "lambda/16"], Box::new(|edge| ball("pmchwt", 0.06, edge, 1.0, glass))),
-        (["lambda/6", "lambda/14"], Box::new(|edge| shape(ball("efie", 0.08, edge, 1.0, ""), can))),
-        (["lambda/6", "lambda/20"], Box::new(|edge| shape(ball("efie", 0.08, edge, 1.0, ""), disc))),
+    let runs: Vec<Run<'_>> = vec![
+        ("efie", Box::new(|edge| ball("efie", 0.08, edge, 1.0, "")), ["lambda/7", "lambda/12"]),
+        ("cfie", Box::new(|edge| ball("cfie", 0.08, edge, 1.0, "")), ["lambda/7", "lambda/12"]),
+        ("pmchwt", Box::new(|edge| ball("pmchwt", 0.06, edge, 1.0, glass)), ["lambda/10", "lambda/16"]),
+        ("can", Box::new(|edge| shape(ball("efie", 0.08, edge, 1.0, ""), can)), ["lambda/6", "lambda/14"]),
+        ("disc", Box::new(|edge| shape(ball("efie", 0.08, edge, 1.0, ""), disc)), ["lambda/6", "lambda/20"]),
     ];
-    for ([edge, fine], scene) in runs {
+    for (name, scene, [edge, fine]) in runs {
         let lowest = solved(folder.path(), &scene(edge));
         let found = solved(folder.path(), &first(&scene(edge)));
         let truth = solved(folder.path(), &first(&scene(fine)));
         let [lowest, error] = [lowest, found].map(|run| gap(&scattered(&run), &scattered(&truth)));
-        println!("{edge}: {lowest:.5} {error:.5}");
+        println!("{name}: {lowest:.5} {error:.5}");
         // At the rims of the can and of the disc fields are singular.
-        assert!(error < 0.4 * lowest && error < 0.04, "{edge}: {lowest} {error}");
+        assert!(error < 0.4 * lowest && error < 0.04, "{name}: {lowest} {error}");
     }
     let text = first(&ball("cfie", 0.1, "lambda/5", 2.0, ""));
     let run = |storage| stored(folder.path(), &text, Some(storage)).unwrap();
@@ -119,6 +119,26 @@ fn functions_of_the_first_order_are_better_on_the_same_cells() {
         let error = stored(folder.path(), &wrong, None).map(drop).unwrap_err().to_string();
         assert!(error.contains(what), "{error}");
     }
+}
+
+/// So do multipoles; bodies that are too small for them are compressed in blocks, and what has no
+/// multipoles is refused.
+#[test]
+fn boundary_elements_are_taken_to_multipoles_where_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |text: &str, storage| stored(folder.path(), text, Some(storage));
+    let text = ball("cfie", 0.2, "lambda/6", 2.0, "");
+    let [whole, found] =
+        [CouplingStorage::Matrix, CouplingStorage::Multipole].map(|how| run(&text, how).unwrap());
+    let difference = gap(&scattered(&found), &scattered(&whole));
+    assert!(difference > 0.0 && difference < 2e-3, "{difference:e}");
+    assert!(found.frequencies()[0].solution.ends_with("with the diagonal blocks of the multipoles"));
+    let small = run(&ball("cfie", 0.04, "lambda/12", 2.0, ""), CouplingStorage::Multipole).unwrap();
+    assert!(small.frequencies()[0].solution.ends_with("of the compressed matrix"));
+    let refused = |text: &str| run(text, CouplingStorage::Multipole).map(drop).unwrap_err().to_string();
+    assert!(refused(&text.replace("cfie", "mfie")).contains("--storage matrix or products"));
+    let glass = "material = \"glass\"\n[materials.glass]\nhalf_space = { permittivity = [3, -0.1] }";
+    assert!(refused(&ball("pmchwt", 0.06, "lambda/10", 1.0, glass)).contains("perfect conductors only"));
 }
 
 /// A sweep of more waves than are solved for together, of conductors and of dielectrics.

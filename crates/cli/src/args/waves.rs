@@ -74,6 +74,8 @@ pub(crate) enum StorageArg {
     Products,
     /// A compressed matrix: efie, cfie, pmchwt
     Compressed,
+    /// Multilevel fast multipoles: efie and cfie of conductors
+    Multipole,
 }
 
 /// A solver that can be made, or all of them.
@@ -98,6 +100,7 @@ impl WavesArgs {
             StorageArg::Matrix => CouplingStorage::Matrix,
             StorageArg::Products => CouplingStorage::Products,
             StorageArg::Compressed => CouplingStorage::Compressed,
+            StorageArg::Multipole => CouplingStorage::Multipole,
         });
         WaveOptions { memory: self.memory, no_report: self.no_report, storage }
     }

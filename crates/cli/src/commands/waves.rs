@@ -92,6 +92,7 @@ fn forecast(checked: &CheckedWaves) -> String {
         let how = match storage {
             CouplingStorage::Matrix => format!("in a matrix of {whole}"),
             CouplingStorage::Compressed => format!("in a compressed matrix, which whole would take {whole}"),
+            CouplingStorage::Multipole => format!("by multipoles, whose matrix would take {whole}"),
             CouplingStorage::Products => {
                 format!("whose products are computed anew; their matrix would take {whole}")
             }

@@ -1,11 +1,14 @@
 //! Boundary elements: the electric field integral equation of conductors, thin sheets and bodies
 //! with a surface impedance, the combined one of conductors, and the equations of dielectric bodies
 //! and conductors together, with Rao–Wilton–Glisson functions on triangles (crate `moments`,
-//! docs/moments.md), their matrix stored or compressed (crate `compressed`).
+//! docs/moments.md), their matrix stored, compressed or by multipoles (crate `compressed`).
 
 use std::slice;
 
-use fredholm_compressed::{BlockDiagonal, CompressionError, Factors, Hierarchical, Preconditioned, Settings};
+use fredholm_compressed::{
+    BlockDiagonal, CompressionError, Diagonal, Factors, Hierarchical, MultipoleSettings, MultipoleSummary,
+    Preconditioned, Settings,
+};
 use fredholm_linop::{Dense, LinearOperator, MultiVector, Solver};
 use fredholm_mesh::{Shape, Vec3};
 use fredholm_moments::{
@@ -48,8 +51,8 @@ fn integral_error(model: &Model, equations: Equations) -> f64 {
 }
 
 /// Relative error of the blocks of a compressed matrix.
-fn compression_error(model: &Model) -> f64 {
-    match order(model) {
+fn compression_error(order: Order) -> f64 {
+    match order {
         Order::Lowest => 1e-3,
         Order::First => 1e-4,
     }
@@ -76,6 +79,9 @@ const FACTOR_SHARE: f64 = 1.2;
 /// Unknowns from which on compressing the matrix takes less time than to store and to factorise it,
 /// for few and for many right-hand sides (docs/notes/moments.md).
 const LEAST_COMPRESSED_UNKNOWNS: [usize; 2] = [6_000, 15_000];
+/// Bytes an unknown that the smallest compressed matrix takes for which there is a better choice:
+/// multipoles that take more have too many unknowns near each other (docs/notes/moments.md).
+const MOST_BYTES_OF_MULTIPOLES: u64 = 17_000;
 /// Right-hand sides that are few.
 const MOST_RHS_OF_COMPRESSED: usize = 8;
 /// Directions in which the mean scattered field is taken that errors are compared with.
@@ -383,6 +389,14 @@ impl<'a> Body<'a> {
         }
     }
 
+    /// What the matrix by multipoles is made of, where there is one.
+    fn multipole_summary(&self) -> Result<MultipoleSummary, MomentsError> {
+        match self {
+            Self::Conductor(body) => body.multipole_summary(multipole_settings(body.basis().order())),
+            Self::Imperfect(_) | Self::Dielectric(_) => Err(MomentsError::Imperfect),
+        }
+    }
+
     /// Power that is absorbed, W; none where it is not computed.
     fn absorbed(&self, currents: &Currents<'a>) -> Option<f64> {
         match self {
@@ -478,18 +492,33 @@ fn needs_matrix(model: &Model) -> bool {
 /// quicker.
 fn whole_plan(
     model: &Model,
-    (basis, band, unknowns): (&Basis, &Band, usize),
+    (basis, band, body): (&Basis, &Band, &Body<'_>),
     solver: &dyn Solver<Complex64>,
-) -> (Plan, CouplingStorage) {
+) -> Result<(Plan, CouplingStorage), Error> {
+    let unknowns = body.operator().dim();
     let bytes = Dense::<Complex64>::bytes(unknowns);
     let plan = of_solvers(model.plan.clone(), (unknowns, rhs_count(model)), &[solver])
         .hold(format!("the matrix of {unknowns} unknowns"), bytes.into());
-    let compress = match model.storage {
-        Some(storage) => storage == CouplingStorage::Compressed,
-        None if needs_matrix(model) || loses_loops(model, basis, band) => false,
-        None => is_quicker_compressed(model, unknowns) || !plan.fits(model.limit),
+    let storage = match model.storage {
+        Some(CouplingStorage::Multipole) => match body.multipole_summary() {
+            Ok(_) => CouplingStorage::Multipole,
+            Err(MomentsError::Compression(CompressionError::Small { .. })) => CouplingStorage::Compressed,
+            Err(error) => return Err(refused(model, &error)),
+        },
+        Some(storage) => storage,
+        None if needs_matrix(model) || loses_loops(model, basis, band) => CouplingStorage::Matrix,
+        None if is_quicker_compressed(model, unknowns) || !plan.fits(model.limit) => {
+            let is_small =
+                |summary: MultipoleSummary| summary.bytes <= MOST_BYTES_OF_MULTIPOLES * unknowns as u64;
+            if !takes_factors(model) && body.multipole_summary().is_ok_and(is_small) {
+                CouplingStorage::Multipole
+            } else {
+                CouplingStorage::Compressed
+            }
+        }
+        None => CouplingStorage::Matrix,
     };
-    (plan, if compress { CouplingStorage::Compressed } else { CouplingStorage::Matrix })
+    Ok((plan, storage))
 }
 
 /// Edges in wavelengths below which a compressed matrix and iterative solvers lose currents around
@@ -520,6 +549,12 @@ fn besides_compressed(model: &Model, unknowns: usize, solver: &dyn Solver<Comple
         .hold("the currents of all waves", vectors(2 * all))
 }
 
+/// Memory with multipoles and what preconditions them.
+fn with_multipoles(plan: Plan, unknowns: usize, summary: &MultipoleSummary) -> Plan {
+    plan.hold(format!("the multipoles of {unknowns} unknowns"), summary.bytes.into())
+        .hold("the inverses of the blocks on their diagonal", summary.diagonal.into())
+}
+
 /// Memory with a compressed matrix and its factors.
 fn with_compressed(model: &Model, plan: Plan, unknowns: usize, bytes: u64) -> Plan {
     let plan = plan.hold(format!("the compressed matrix of {unknowns} unknowns"), bytes.into());
@@ -531,15 +566,22 @@ fn factor_bytes(matrix: u64) -> u64 {
     (FACTOR_SHARE * matrix as f64) as u64
 }
 
-/// The solver of a compressed matrix.
-fn of_compressed(model: &Model) -> Result<Box<dyn Solver<Complex64>>, Error> {
-    let usual = COMPRESSED_SOLVERS[usize::from(takes_factors(model))];
+/// The solver of a compressed matrix with factors or without.
+fn of_compressed(model: &Model, with_factors: bool) -> Result<Box<dyn Solver<Complex64>>, Error> {
+    let usual = COMPRESSED_SOLVERS[usize::from(with_factors)];
     let asked = model.scene.settings().solver.as_deref().unwrap_or(usual);
     build(asked).map_err(|error| Error::new(ErrorKind::Input, error))
 }
 
+/// What to do where it does not fit.
+const COMPRESSED_HELP: &str = "take longer edges, or method = \"physical-optics\"";
+
 fn settings(model: &Model) -> Settings {
-    Settings { tolerance: compression_error(model), ..Settings::default() }
+    Settings { tolerance: compression_error(order(model)), ..Settings::default() }
+}
+
+fn multipole_settings(order: Order) -> MultipoleSettings {
+    MultipoleSettings { tolerance: compression_error(order), ..MultipoleSettings::default() }
 }
 
 /// The memory of a run, how its matrix is held, and the unknowns; that of a compressed matrix from
@@ -551,18 +593,27 @@ pub(super) fn plan(model: &Model, equations: Equations) -> Result<(Plan, Couplin
     let basis = basis(model, &model.geometry, equations)?;
     let body = Body::new(model, (&model.geometry, &basis), band, equations)?;
     let unknowns = body.operator().dim();
-    let (plan, storage) = whole_plan(model, (&basis, band, unknowns), &**solver);
-    if storage != CouplingStorage::Compressed {
-        return Ok((plan, storage, unknowns));
-    }
-    let bytes = body.operator().compressed_bytes(settings(model)).map_err(|error| refused(model, &error))?;
-    let besides = besides_compressed(model, unknowns, &*of_compressed(model)?);
-    let plan = with_compressed(model, besides, unknowns, bytes);
+    let (plan, storage) = whole_plan(model, (&basis, band, &body), &**solver)?;
+    let plan = match storage {
+        CouplingStorage::Compressed => {
+            let bytes = body.operator().compressed_bytes(settings(model));
+            let besides = besides_compressed(model, unknowns, &*of_compressed(model, takes_factors(model))?);
+            with_compressed(model, besides, unknowns, bytes.map_err(|error| refused(model, &error))?)
+        }
+        CouplingStorage::Multipole => {
+            let summary = body.multipole_summary().map_err(|error| refused(model, &error))?;
+            let besides = besides_compressed(model, unknowns, &*of_compressed(model, false)?);
+            with_multipoles(besides, unknowns, &summary)
+        }
+        CouplingStorage::Matrix | CouplingStorage::Products => plan,
+    };
     Ok((plan, storage, unknowns))
 }
 
 struct Compressed {
-    matrix: Hierarchical<Complex64>,
+    /// What the matrix is called.
+    called: &'static str,
+    matrix: Box<dyn LinearOperator<Complex64>>,
     inverse: Inverse,
     method: Method,
 }
@@ -589,13 +640,13 @@ impl Compressed {
             Inverse::Factors(_) => "the factors of",
             Inverse::Blocks(_) => "the diagonal blocks of",
         };
-        format!("{} with {with} the compressed matrix", self.method.name())
+        format!("{} with {with} {}", self.method.name(), self.called)
     }
 
     /// The solutions for all right-hand sides, some of them together, and how the worst of these was
     /// found.
     fn solve(&self, b: &MultiVector<Complex64>, signals: &Signals<'_>) -> Result<Solution, Error> {
-        let system = Preconditioned::new(&self.matrix, self.inverse.operator());
+        let system = Preconditioned::new(&*self.matrix, self.inverse.operator());
         let mut x = MultiVector::zeros(b.dim(), b.rhs_count());
         let mut worst: Option<Solution> = None;
         for first in (0..b.rhs_count()).step_by(RHS_TOGETHER) {
@@ -609,6 +660,14 @@ impl Compressed {
             worst.map_or_else(Default::default, |worst| (worst.residuals, worst.reason));
         Ok(Solution { x, residuals, reason })
     }
+}
+
+/// The blocks on the diagonal as a preconditioner.
+fn diagonal_blocks(matrix: &impl Diagonal<Complex64>) -> Result<Inverse, Error> {
+    BlockDiagonal::new(matrix).map(Inverse::Blocks).map_err(|error| {
+        let help = "--storage matrix, which needs no preconditioner";
+        Error::new(ErrorKind::Input, error).with_help(help)
+    })
 }
 
 /// Copies right-hand sides to those of another from `first` on.
@@ -651,10 +710,12 @@ impl Task<'_> {
         let Method::Solver { solver, .. } = &self.model.method else {
             return Err(Error::new(ErrorKind::Input, "an equation is solved, not summed bounce by bounce"));
         };
-        let at = (self.basis, self.band, self.body.operator().dim());
-        let (plan, storage) = whole_plan(self.model, at, &**solver);
-        if storage == CouplingStorage::Compressed {
-            return self.compressed(signals);
+        let at = (self.basis, self.band, &self.body);
+        let (plan, storage) = whole_plan(self.model, at, &**solver)?;
+        match storage {
+            CouplingStorage::Compressed => return self.compressed(signals),
+            CouplingStorage::Multipole => return self.by_multipoles(signals),
+            CouplingStorage::Matrix | CouplingStorage::Products => {}
         }
         let help = if loses_loops(self.model, self.basis, self.band) {
             if by_products().contains(&solver.name()) {
@@ -672,7 +733,8 @@ impl Task<'_> {
         Ok(Matrix::Whole(whole))
     }
 
-    fn compressed(&self, signals: &Signals<'_>) -> Result<Matrix, Error> {
+    /// How systems of a compressed matrix are solved, where it is one that can be compressed.
+    fn by_products(&self, with_factors: bool) -> Result<Method, Error> {
         let Method::Solver { solver: named, tolerance, max_iterations } = &self.model.method else {
             return Err(Error::new(ErrorKind::Input, "an equation is solved, not summed bounce by bounce"));
         };
@@ -686,19 +748,37 @@ impl Task<'_> {
             let help = "--storage matrix, longer edges, or method = \"cfie\" for closed conductors";
             return Err(Error::new(ErrorKind::Input, what).with_help(help));
         }
-        let solver = of_compressed(self.model)?;
-        let (limit, help) = (self.model.limit, "take longer edges, or method = \"physical-optics\"");
-        let unknowns = self.body.operator().dim();
-        let plan = besides_compressed(self.model, unknowns, &*solver);
-        plan.admit(limit, help)?;
-        let with = |bytes: u64| with_compressed(self.model, plan.clone(), unknowns, bytes);
-        let left = u64::try_from(limit.bytes().0 - plan.peak().0).unwrap_or(u64::MAX);
+        let solver = of_compressed(self.model, with_factors)?;
+        Ok(Method::Solver { solver, tolerance: *tolerance, max_iterations: *max_iterations })
+    }
+
+    /// Memory besides a compressed matrix, which is to fit, and what is left.
+    fn besides(&self, method: &Method) -> Result<(Plan, u64), Error> {
+        let Method::Solver { solver, .. } = method else {
+            return Err(Error::new(ErrorKind::Input, "an equation is solved, not summed bounce by bounce"));
+        };
+        let plan = besides_compressed(self.model, self.body.operator().dim(), &**solver);
+        plan.admit(self.model.limit, COMPRESSED_HELP)?;
+        let left = u64::try_from(self.model.limit.bytes().0 - plan.peak().0).unwrap_or(u64::MAX);
+        Ok((plan, left))
+    }
+
+    fn compressed(&self, signals: &Signals<'_>) -> Result<Matrix, Error> {
+        if self.model.storage == Some(CouplingStorage::Multipole) {
+            signals.watch.warn(
+                "the bodies are too small beside the wavelength for multipoles: the matrix is compressed in blocks",
+            );
+        }
+        let method = self.by_products(takes_factors(self.model))?;
+        let (plan, left) = self.besides(&method)?;
+        let limit = self.model.limit;
+        let with = |bytes: u64| with_compressed(self.model, plan.clone(), self.body.operator().dim(), bytes);
         let share = if takes_factors(self.model) { 1.0 + FACTOR_SHARE } else { 1.0 };
         let settings = Settings { limit: (left as f64 / share) as u64, ..settings(self.model) };
         let matrix = match self.body.operator().compressed(settings, signals.watch) {
             Ok(matrix) => matrix,
             Err(MomentsError::Compression(CompressionError::Memory { needed, .. })) => {
-                with(needed).admit(limit, help)?;
+                with(needed).admit(limit, COMPRESSED_HELP)?;
                 return Err(Error::new(ErrorKind::Resources, "the compressed matrix does not fit"));
             }
             Err(MomentsError::Compression(CompressionError::Interrupted)) => return Err(Error::cancelled()),
@@ -706,8 +786,32 @@ impl Task<'_> {
         };
         with(matrix.summary().bytes).tell(limit, signals.watch);
         let inverse = self.inverse(&matrix, left.saturating_sub(matrix.summary().bytes), signals)?;
-        let method = Method::Solver { solver, tolerance: *tolerance, max_iterations: *max_iterations };
-        Ok(Matrix::Compressed(Box::new(Compressed { matrix, inverse, method })))
+        let matrix = Box::new(matrix);
+        Ok(Matrix::Compressed(Box::new(Compressed {
+            called: "the compressed matrix",
+            matrix,
+            inverse,
+            method,
+        })))
+    }
+
+    fn by_multipoles(&self, signals: &Signals<'_>) -> Result<Matrix, Error> {
+        let Body::Conductor(body) = &self.body else {
+            return Err(refused(self.model, &MomentsError::Imperfect));
+        };
+        let method = self.by_products(false)?;
+        let (plan, _) = self.besides(&method)?;
+        let summary = self.body.multipole_summary().map_err(|error| refused(self.model, &error))?;
+        let plan = with_multipoles(plan, self.body.operator().dim(), &summary);
+        signals.admit(&plan, self.model.limit, COMPRESSED_HELP)?;
+        let matrix = match body.multipole(multipole_settings(self.basis.order()), signals.watch) {
+            Ok(matrix) => matrix,
+            Err(MomentsError::Compression(CompressionError::Interrupted)) => return Err(Error::cancelled()),
+            Err(error) => return Err(refused(self.model, &error)),
+        };
+        let inverse = diagonal_blocks(&matrix)?;
+        let matrix = Box::new(matrix);
+        Ok(Matrix::Compressed(Box::new(Compressed { called: "the multipoles", matrix, inverse, method })))
     }
 
     /// What preconditions a compressed matrix: its factors in at most `limit` bytes where they are
@@ -733,10 +837,7 @@ impl Task<'_> {
                 )),
             }
         }
-        BlockDiagonal::new(matrix).map(Inverse::Blocks).map_err(|error| {
-            let help = "--storage matrix, which needs no preconditioner";
-            Error::new(ErrorKind::Input, error).with_help(help)
-        })
+        diagonal_blocks(matrix)
     }
 
     fn solve(

@@ -43,6 +43,8 @@ pub enum CouplingStorage {
     Products,
     /// A compressed matrix: of boundary elements only.
     Compressed,
+    /// Multilevel fast multipoles: of boundary elements on conductors only.
+    Multipole,
 }
 
 /// What is asked of [`compare_waves`] besides.
@@ -168,8 +170,9 @@ fn load(
     let read = if anew { Model::load_on_facets } else { read };
     let mut model = stages.run("scene", || read(scene, asked.memory))?;
     let (storage, help) = match (asked.storage, model.galerkin) {
-        (Some(CouplingStorage::Products), Some(_)) => ("computed anew", "matrix or compressed"),
+        (Some(CouplingStorage::Products), Some(_)) => ("computed anew", "matrix, compressed or multipole"),
         (Some(CouplingStorage::Compressed), None) => ("compressed", "matrix or products"),
+        (Some(CouplingStorage::Multipole), None) => ("one by multipoles", "matrix or products"),
         _ => ("", ""),
     };
     if !storage.is_empty() {
