@@ -56,8 +56,8 @@ impl<T: Scalar> LinearOperator<T> for BlockDiagonal<T> {
     }
 }
 
-/// The inverse by Gauss and Jordan with partial pivoting; none where a pivot is lost in the rounding
-/// of its row to single precision, in which the entries were stored.
+/// The inverse by Gauss and Jordan with partial pivoting; none where a pivot is lost in the
+/// rounding of its row to single precision, in which the entries were stored.
 pub(crate) fn inverse<T: Scalar>(n: usize, mut a: Vec<T>) -> Option<Vec<T>> {
     let mut inverse = vec![T::zero(); n * n];
     (0..n).for_each(|i| inverse[i * n + i] = T::one());

@@ -64,6 +64,14 @@ pub enum CompressionError {
         /// Boxes of the finest level.
         boxes: usize,
     },
+    /// The bodies are too large, or too far from each other.
+    #[error(
+        "the bodies are {across:.0} of the smallest boxes across: too large, or too far from each other, for multipoles"
+    )]
+    Large {
+        /// Boxes of the finest level along the longest side.
+        across: f64,
+    },
     /// The matrix is no longer wanted.
     #[error("the compression was interrupted")]
     Interrupted,

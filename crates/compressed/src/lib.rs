@@ -12,8 +12,8 @@
 //! have the same bits for any number of threads: a block is the work of one thread, and each part
 //! of a product is summed in the order of the blocks.
 //!
-//! Beside them stand multilevel fast multipoles ([`Multipole`]), for matrices whose unknowns have far
-//! fields: from some thousand unknowns on they take less of everything.
+//! Beside them stand multilevel fast multipoles ([`Multipole`]), for matrices whose unknowns have
+//! far fields: from some thousand unknowns on they take less of everything.
 
 mod block_diagonal;
 mod clusters;

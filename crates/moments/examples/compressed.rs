@@ -1,5 +1,5 @@
-//! A sphere by a compressed matrix or by multipoles, against the series of Mie: unknowns, CPU seconds, memory,
-//! iterations and error.
+//! A sphere by a compressed matrix or by multipoles, against the series of Mie: unknowns, CPU
+//! seconds, memory, iterations and error.
 //!
 //! ```text
 //! cargo run --release -p fredholm-moments --example compressed -- \
@@ -10,8 +10,8 @@
 //! `magnetic` or `electric` for a conductor by one of these equations, or a permittivity such as 4
 //! or 10-5j. `multipole-combined` and so on take multilevel fast multipoles in place of compressed
 //! blocks. FACTORS is the tolerance of the factors that precondition the system; without it the
-//! blocks on the diagonal do. The errors are those of E_z at 25 m, at 1.5 radii and, in dielectrics,
-//! at half a radius.
+//! blocks on the diagonal do. The errors are those of E_z at 25 m, at 1.5 radii and, in
+//! dielectrics, at half a radius.
 
 #![allow(clippy::unwrap_used, reason = "an example that cannot go on has failed")]
 #![allow(clippy::print_stdout, reason = "it prints its table")]

@@ -8,9 +8,9 @@
 //! f(r) = ±l/(2A±) (r − v±) on T±,   div f = ±l/A±
 //! ```
 //!
-//! Of the first full order ([`Order::First`]) every edge has a second function, whose current changes
-//! along the edge, and every triangle two that stay inside of it (`element` has the formulas). They
-//! may be on curved triangles.
+//! Of the first full order ([`Order::First`]) every edge has a second function, whose current
+//! changes along the edge, and every triangle two that stay inside of it (`element` has the
+//! formulas). They may be on curved triangles.
 //!
 //! Here every function is divided by its norm ‖f‖ = √∫|f|² dA, so that ∫|f|² dA = 1 and the entries
 //! of the equations are of order one on any mesh. Functions are in 1/m, coefficients of an electric
@@ -61,8 +61,8 @@ impl Order {
 pub struct Half {
     /// The triangle.
     pub triangle: u32,
-    /// The number of F: 0 to 2 of the side opposite to this corner, 3 to 5 of the same sides but odd
-    /// along them, 6 and 7 of the inside.
+    /// The number of F: 0 to 2 of the side opposite to this corner, 3 to 5 of the same sides but
+    /// odd along them, 6 and 7 of the inside.
     pub number: u8,
     /// ± 1 over the norm of the whole function.
     pub weight: f64,
@@ -117,8 +117,8 @@ impl Basis {
     /// The functions of a surface in free space.
     ///
     /// # Errors
-    /// Those of [`Topology::check`], [`MomentsError::Curved`] for curved triangles with functions of
-    /// the lowest order.
+    /// Those of [`Topology::check`], [`MomentsError::Curved`] for curved triangles with functions
+    /// of the lowest order.
     pub fn of_order(surface: Surface, order: Order) -> Result<Self, MomentsError> {
         let topology = Topology::new(&surface);
         topology.check(&surface)?;
@@ -219,7 +219,7 @@ impl Basis {
     /// [`MomentsError::BelowGround`] for a triangle that touches the plane, or is below it.
     pub fn above(self, ground: Ground) -> Result<Self, MomentsError> {
         let low = |triangle: &usize| {
-            self.surface.corners(*triangle).iter().any(|corner| corner.z <= ground.height())
+            self.surface.pieces(*triangle).iter().flatten().any(|place| place.z <= ground.height())
         };
         match (0..self.surface.triangles().len()).find(low) {
             Some(index) => Err(MomentsError::BelowGround { what: "triangle", index }),

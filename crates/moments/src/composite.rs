@@ -15,10 +15,10 @@
 //! with f_r the part of a function in region r. What principal values leave out is opposite on both
 //! sides of a border between dielectrics. A. J. Poggio, E. K. Miller, in R. Mittra (ed.), Computer
 //! Techniques for Electromagnetics, Pergamon 1973, ch. 4; J. R. Mautz, R. F. Harrington, AEÜ 33
-//! (1979) 71; P. Ylä-Oijala, M. Taskinen, J. Sarvas, Progress In Electromagnetics Research 52 (2005)
-//! 81, doi:10.2528/PIER04071301. Dielectrics have no resonances; the inside of closed conductors
-//! has those of the electric equation. The matrix is symmetric. The permeability is that of free
-//! space. Unknowns are η₀ J and M of every function, side by side, in V.
+//! (1979) 71; P. Ylä-Oijala, M. Taskinen, J. Sarvas, Progress In Electromagnetics Research 52
+//! (2005) 81, doi:10.2528/PIER04071301. Dielectrics have no resonances; the inside of closed
+//! conductors has those of the electric equation. The matrix is symmetric. The permeability is that
+//! of free space. Unknowns are η₀ J and M of every function, side by side, in V.
 
 use crate::currents::Space;
 use crate::element_kernel::Tests;
@@ -50,10 +50,10 @@ impl<'a> Composite<'a> {
     /// regions.
     ///
     /// # Errors
-    /// [`MomentsError::Coarse`] for edges above a third of the wavelength on either side (half of it with
-    /// functions of the first full order),
-    /// [`MomentsError::Parameter`] for numbers out of range and too few permittivities,
-    /// [`MomentsError::NoRegions`] for a basis of a surface in free space.
+    /// [`MomentsError::Coarse`] for edges above a third of the wavelength on either side (half of
+    /// it with functions of the first full order), [`MomentsError::Parameter`] for numbers out of
+    /// range and too few permittivities, [`MomentsError::NoRegions`] for a basis of a surface in
+    /// free space.
     pub fn new(
         basis: &'a Basis,
         wave: Wave,

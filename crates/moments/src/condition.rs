@@ -1,8 +1,8 @@
 //! Surfaces that are no perfect conductors: thin sheets and bodies with a surface impedance.
 //!
 //! A sheet without thickness has E_tan = Z_s J on both sides, with J the jump of n × H (T. B. A.
-//! Senior, J. L. Volakis, Approximate Boundary Conditions in Electromagnetics, IEE 1995, § 2.4). The
-//! electric equation of its current, tested with the functions of the current, is
+//! Senior, J. L. Volakis, Approximate Boundary Conditions in Electromagnetics, IEE 1995, § 2.4).
+//! The electric equation of its current, tested with the functions of the current, is
 //!
 //! ```text
 //! η ⟨f, T J⟩ + ⟨f, Z_s J⟩ = ⟨f, E_i⟩
@@ -99,14 +99,14 @@ pub struct Imperfect<'a> {
 }
 
 impl<'a> Imperfect<'a> {
-    /// Sets up the electric equation of surfaces with a condition for every triangle, with integrals
-    /// to a relative `tolerance` for each pair of triangles.
+    /// Sets up the electric equation of surfaces with a condition for every triangle, with
+    /// integrals to a relative `tolerance` for each pair of triangles.
     ///
     /// # Errors
-    /// [`MomentsError::Coarse`] for edges above λ/3 (λ/2 with functions of the first full order), [`MomentsError::Parameter`] for impedances that
-    /// are none, or another number of conditions than of triangles, and of bodies with a surface
-    /// impedance [`MomentsError::NotClosed`], [`MomentsError::Junction`] and
-    /// [`MomentsError::Patchwork`].
+    /// [`MomentsError::Coarse`] for edges above λ/3 (λ/2 with functions of the first full order),
+    /// [`MomentsError::Parameter`] for impedances that are none, or another number of conditions
+    /// than of triangles, and of bodies with a surface impedance [`MomentsError::NotClosed`],
+    /// [`MomentsError::Junction`] and [`MomentsError::Patchwork`].
     pub fn new(
         basis: &'a Basis,
         wave: Wave,
@@ -155,8 +155,9 @@ impl<'a> Imperfect<'a> {
         currents(&self.operator, self.wave, x)
     }
 
-    /// Power (W) that sheets and bodies absorb: ½ ∫ Re Z_s |J|² dA. Of bodies, where M stands for Z_s
-    /// J but for the error of the mesh, it is the mean of both forms, ¼ ∫ (Re Z_s |J|² + Re 1/Z_s
+    /// Power (W) that sheets and bodies absorb: ½ ∫ Re Z_s |J|² dA. Of bodies, where M stands for
+    /// Z_s J but for the error of the mesh, it is the mean of both forms, ¼ ∫ (Re Z_s |J|² + Re
+    /// 1/Z_s
     /// |M|²) dA, with which the equations balance by themselves.
     #[must_use]
     pub fn absorbed_power(&self, currents: &Currents<'a>) -> f64 {

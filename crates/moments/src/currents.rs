@@ -9,8 +9,8 @@
 //! E → F e^{−jkr}/r,   F(u) = −(jk/4π) ∫ [η (J − u (u·J)) − u × M] e^{jk u·q} dA
 //! ```
 //!
-//! Between several regions, each has the currents on its own border, which are on the other side the
-//! opposite ones.
+//! Between several regions, each has the currents on its own border, which are on the other side
+//! the opposite ones.
 //!
 //! (C. A. Balanis, Advanced Engineering Electromagnetics, 2nd ed., Wiley 2012, ch. 6 and 7). The
 //! charges are taken from the divergence of the functions, so that close to the surface, too, no
@@ -36,7 +36,7 @@ use std::sync::OnceLock;
 const TOLERANCE: f64 = 1e-6;
 /// Size over that of a triangle of the parts that a point must be away from, else it is on it.
 const ON_SURFACE: f64 = 1e-4;
-/// Degree of the rule for the far field: 1e-6 of it at λ/6, and at λ/3.
+/// Degree of the rule for the far field: 1e-6 of it at λ/6, and at λ/2 of the first full order.
 const FAR_DEGREES: [usize; 2] = [8, 12];
 
 /// What every function of a triangle has of J or M, its weight in.
@@ -155,12 +155,12 @@ impl<'a> Currents<'a> {
         [square(&electric) / (IMPEDANCE * IMPEDANCE), square(&magnetic)]
     }
 
-    /// E and H that the currents radiate into free space, at points (m) away from the surface; above
-    /// a ground plane with what their images radiate.
+    /// E and H that the currents radiate into free space, at points (m) away from the surface;
+    /// above a ground plane with what their images radiate.
     ///
     /// # Errors
-    /// [`MomentsError::OnSurface`] for a point on the surface, [`MomentsError::BelowGround`] for one
-    /// below the ground.
+    /// [`MomentsError::OnSurface`] for a point on the surface, [`MomentsError::BelowGround`] for
+    /// one below the ground.
     pub fn fields(&self, points: &[Vec3]) -> Result<Vec<Field>, MomentsError> {
         let space = Space { k: self.wave.wavenumber().into(), impedance: Complex64::ONE };
         let mut fields = self.fields_in(points, 0, space)?;
@@ -251,8 +251,8 @@ impl<'a> Currents<'a> {
         across * Complex64::new(0.0, -k / (4.0 * PI))
     }
 
-    /// Power (W) that the currents radiate into free space: ∮ |F|²/(2η₀) over all directions, above a
-    /// ground plane over those upwards.
+    /// Power (W) that the currents radiate into free space: ∮ |F|²/(2η₀) over all directions, above
+    /// a ground plane over those upwards.
     ///
     /// # Errors
     /// Those of [`Currents::far_field`].
@@ -281,8 +281,8 @@ impl<'a> Currents<'a> {
     }
 
     /// Power (W) that is taken from a plane wave, scattered or absorbed, by the optical theorem:
-    /// the far field straight ahead interferes with the wave, above a ground plane with the wave that
-    /// the plane reflects.
+    /// the far field straight ahead interferes with the wave, above a ground plane with the wave
+    /// that the plane reflects.
     ///
     /// # Errors
     /// Those of [`Currents::far_field`].
@@ -422,8 +422,8 @@ impl Viewer<'_> {
     }
 }
 
-/// E and H of an electric current in a medium of impedance 1: −jk/4π (Σ g J − Σ q div J/k²) and Σ J ×
-/// q/4π.
+/// E and H of an electric current in a medium of impedance 1: −jk/4π (Σ g J − Σ q div J/k²) and Σ J
+/// × q/4π.
 fn radiated(sums: &Sums, k: Complex64) -> Field {
     let total = |part: &[[f64; WIDTH]; 2]| {
         let [re, im] = part.map(|lanes| lanes.iter().sum());

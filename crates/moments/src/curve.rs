@@ -1,8 +1,8 @@
 //! Curved shapes that the triangles of a surface stand for.
 //!
 //! Meshes of spheres, cylinders and discs are polyhedra with the area of the true shape, their
-//! corners a little outside of it. Functions of the first full order are on curved triangles: corners
-//! are moved onto the true shape, and sides go through it in their middle.
+//! corners a little outside of it. Functions of the first full order are on curved triangles:
+//! corners are moved onto the true shape, and sides go through it in their middle.
 
 use crate::{MomentsError, Surface};
 use fredholm_mesh::Vec3;
@@ -61,14 +61,12 @@ impl Curve {
 }
 
 impl Surface {
-    /// The same on the curved shapes that its triangles stand for; none of a triangle that is flat.
+    /// The same on the curved shapes that its triangles stand for; none of a triangle that is flat,
+    /// as are those beyond the end of the list.
     ///
     /// # Errors
     /// [`MomentsError::Folded`] for triangles that are too coarse for their shape, and those of
     /// [`Surface::new`].
-    ///
-    /// # Panics
-    /// Like a slice, where there are fewer curves than triangles.
     pub fn on_curves(&self, curves: &[Option<Curve>]) -> Result<Self, MomentsError> {
         let mut vertices = self.vertices().to_vec();
         let mut sides: BTreeMap<[u32; 2], Curve> = BTreeMap::new();

@@ -1,16 +1,17 @@
 //! Dual functions: currents on the barycentric refinement of a closed surface, across the functions
 //! of [`Basis`].
 //!
-//! Every triangle is cut into six at its medians. Around each vertex lies a dual cell of its 2N small
-//! triangles. The function of an edge carries a unit current from the cell of one of its ends to
-//! that of the other, half of it on either side of the middle of the edge, and spreads it evenly:
-//! every small triangle has the same charge. With the spokes of a cell counted from the edge on, the
-//! current through spoke i is i/(2N) − ½. So the functions are div-conforming, as the ones of the
-//! edges are, and n × them is nearly along those: they are what the range of the magnetic equation is
-//! to be tested with. (A. Buffa, S. H. Christiansen, A dual finite element complex on the barycentric
-//! refinement, Math. Comp. 76 (2007) 1743, doi:10.1090/S0025-5718-07-01965-5; K. Cools, F. P.
-//! Andriulli, D. De Zutter, E. Michielssen, Accurate and conforming mixed discretization of the MFIE,
-//! IEEE Antennas Wirel. Propag. Lett. 10 (2011) 528, doi:10.1109/LAWP.2011.2155022.)
+//! Every triangle is cut into six at its medians. Around each vertex lies a dual cell of its 2N
+//! small triangles. The function of an edge carries a unit current from the cell of one of its ends
+//! to that of the other, half of it on either side of the middle of the edge, and spreads it
+//! evenly: every small triangle has the same charge. With the spokes of a cell counted from the
+//! edge on, the current through spoke i is i/(2N) − ½. So the functions are div-conforming, as the
+//! ones of the edges are, and n × them is nearly along those: they are what the range of the
+//! magnetic equation is to be tested with. (A. Buffa, S. H. Christiansen, A dual finite element
+//! complex on the barycentric refinement, Math. Comp. 76 (2007) 1743,
+//! doi:10.1090/S0025-5718-07-01965-5; K. Cools, F. P. Andriulli, D. De Zutter, E. Michielssen,
+//! Accurate and conforming mixed discretization of the MFIE, IEEE Antennas Wirel. Propag. Lett. 10
+//! (2011) 528, doi:10.1109/LAWP.2011.2155022.)
 
 use crate::basis::Place;
 use crate::{Basis, Function, Half, MomentsError, Surface, Topology};
@@ -19,8 +20,8 @@ use fredholm_mesh::Vec3;
 /// Small triangles of a triangle: triangle t has those from 6t on.
 pub(crate) const PARTS: usize = 6;
 
-/// The small triangles of a triangle, in order: at every corner the one along the next side, and the
-/// one along the side before. Their first corner is that of the triangle.
+/// The small triangles of a triangle, in order: at every corner the one along the next side, and
+/// the one along the side before. Their first corner is that of the triangle.
 pub(crate) fn parts(corners: [Vec3; 3]) -> [[Vec3; 3]; PARTS] {
     let centre = (corners[0] + corners[1] + corners[2]) / 3.0;
     let middle = |i: usize| 0.5 * (corners[i % 3] + corners[(i + 1) % 3]);
@@ -103,9 +104,9 @@ fn refined(surface: &Surface, edges: &Edges) -> Result<Surface, MomentsError> {
     Surface::new(vertices, cut)
 }
 
-/// Adds what a function has in the cell of a vertex: a unit current that leaves it through the sides
-/// of its first and last small triangle. The cell begins at a corner of a triangle and goes around
-/// counterclockwise.
+/// Adds what a function has in the cell of a vertex: a unit current that leaves it through the
+/// sides of its first and last small triangle. The cell begins at a corner of a triangle and goes
+/// around counterclockwise.
 fn add_cell(topology: &Topology, edges: &Edges, first: (usize, usize), sign: f64, halves: &mut Vec<Half>) {
     let mut fan = vec![first];
     while let Some(&(triangle, corner)) = fan.last() {
@@ -139,8 +140,8 @@ fn add_cell(topology: &Topology, edges: &Edges, first: (usize, usize), sign: f64
     }
 }
 
-/// ∫ (n × g_a)·f_b dA over a part of a triangle, for corner `a` of the part, corner `b` of the whole
-/// and weights 1.
+/// ∫ (n × g_a)·f_b dA over a part of a triangle, for corner `a` of the part, corner `b` of the
+/// whole and weights 1.
 pub(crate) fn turned_gram(cut: &Surface, part: u32, whole: &Surface, [a, b]: [usize; 2]) -> f64 {
     let (part, triangle) = (part as usize, part as usize / PARTS);
     let centre = cut.centre(part);

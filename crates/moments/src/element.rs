@@ -9,9 +9,10 @@
 //! r(λ) = Σ λ_i c_i + 4 Σ_{i<j} λ_i λ_j (m_ij − (c_i + c_j)/2)
 //! ```
 //!
-//! with corners c and places m_ij in the middle of the sides, which are straight where it is flat. A
-//! function is f = F/√g with F = F_u ∂r/∂λ₁ + F_v ∂r/∂λ₂ and √g = |∂r/∂λ₁ × ∂r/∂λ₂|, its charge
-//! div f = (∂F_u/∂λ₁ + ∂F_v/∂λ₂)/√g. With ξ the place in the unit triangle and ξ_i its corners, F is
+//! with corners c and places m_ij in the middle of the sides, which are straight where it is flat.
+//! A function is f = F/√g with F = F_u ∂r/∂λ₁ + F_v ∂r/∂λ₂ and √g = |∂r/∂λ₁ × ∂r/∂λ₂|, its charge
+//! div f = (∂F_u/∂λ₁ + ∂F_v/∂λ₂)/√g. With ξ the place in the unit triangle and ξ_i its corners, F
+//! is
 //!
 //! ```text
 //! ξ − ξ_i               a current through the side opposite to corner i, even on it (0, 1, 2)
@@ -211,8 +212,8 @@ mod tests {
         assert!((u - along_u).length() < 1e-9 && (v - along_v).length() < 1e-9);
     }
 
-    /// Their charges are the slopes of F, their currents leave by their own side only, and they span
-    /// all linear vectors.
+    /// Their charges are the slopes of F, their currents leave by their own side only, and they
+    /// span all linear vectors.
     #[test]
     fn functions_are_what_they_are_said_to_be() {
         let h = 1e-6;

@@ -1,16 +1,16 @@
 //! The integrals of pairs of triangles, flat or curved, with all functions of the first full order.
 //!
-//! With F and D = √g div f of the functions on both triangles (`element`), d = r − r′, g = e^{−jkR}/R
-//! and q = (1 + jkR) g/R² d:
+//! With F and D = √g div f of the functions on both triangles (`element`), d = r − r′, g =
+//! e^{−jkR}/R and q = (1 + jkR) g/R² d:
 //!
 //! ```text
 //! electric_ab = jk ∫∫ [F_a·F_b′ − D_a D_b′/k²] g,      magnetic_ab = −∫∫ F_a·(q × F_b′)
 //! ```
 //!
-//! over the unit triangles, which is what `kernel` computes of flat ones. Where the tests are turned,
-//! F_a × n stands for F_a in the magnetic part. The eight functions of the source are the eight lanes.
-//! For pairs apart the sum over its points comes first: g times a table of F and D, and, as q × F′ is
-//! (1 + jkR) g/R² (e − r′) × F′ with the observer at e, times one of F′ × r′.
+//! over the unit triangles, which is what `kernel` computes of flat ones. Where the tests are
+//! turned, F_a × n stands for F_a in the magnetic part. The eight functions of the source are the
+//! eight lanes. For pairs apart the sum over its points comes first: g times a table of F and D,
+//! and, as q × F′ is (1 + jkR) g/R² (e − r′) × F′ with the observer at e, times one of F′ × r′.
 
 #![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
 

@@ -8,11 +8,11 @@
 //! combined  (closed bodies): α electric + (1 − α) magnetic
 //! ```
 //!
-//! where g are the dual functions (`dual`), one for each f, with ∫ (n × g)·f dA = 1:
-//! ½ J − n × K J = n × H_i is an equality of functions that n × g and not f are the duals of. Tested
-//! with f, the magnetic equation of a sphere of half a wavelength with edges of λ/10 has six times
-//! the error, and the combined one three times. Functions of the first full order are their own
-//! duals well enough: they test n × the equation, g = f × n.
+//! where g are the dual functions (`dual`), one for each f, with ∫ (n × g)·f dA = 1: ½ J − n × K J
+//! = n × H_i is an equality of functions that n × g and not f are the duals of. Tested with f, the
+//! magnetic equation of a sphere of half a wavelength with edges of λ/10 has six times the error,
+//! and the combined one three times. Functions of the first full order are their own duals well
+//! enough: they test n × the equation, g = f × n.
 //!
 //! R. F. Harrington, Field Computation by Moment Methods, Macmillan 1968; J. R. Mautz, R. F.
 //! Harrington, H-field, E-field, and combined-field solutions for conducting bodies of revolution,
@@ -43,7 +43,7 @@ use std::sync::Arc;
 
 /// Degree of the rule for incident fields: exact for a source at λ/10 to 1e-6.
 const INCIDENT_DEGREE: usize = 6;
-/// The same with functions of the first full order, whose triangles are larger.
+/// The same with functions of the first full order, on triangles with edges of λ/2.
 const INCIDENT_DEGREE_OF_FIRST: usize = 12;
 
 /// Which equation is solved on a conductor.
@@ -154,9 +154,9 @@ impl<'a> Conductor<'a> {
     /// (1e-3 is usual: errors of pairs are smaller than those of the mesh by then).
     ///
     /// # Errors
-    /// [`MomentsError::Coarse`] for edges above λ/3 (λ/2 with functions of the first full order), those of
-    /// [`Topology::check_closed`](crate::Topology::check_closed) for equations of closed bodies,
-    /// [`MomentsError::Parameter`] for numbers out of range.
+    /// [`MomentsError::Coarse`] for edges above λ/3 (λ/2 with functions of the first full order),
+    /// those of [`Topology::check_closed`](crate::Topology::check_closed) for equations of closed
+    /// bodies, [`MomentsError::Parameter`] for numbers out of range.
     pub fn new(
         basis: &'a Basis,
         wave: Wave,

@@ -222,7 +222,7 @@ impl MomentsError {
             Self::Grounded | Self::Imperfect => {
                 Some("compress the matrix in blocks (`Operator::compressed`, --storage compressed)")
             }
-            Self::Coarse { .. } => Some("mesh finer, λ/10 is usual"),
+            Self::Coarse { .. } => Some("mesh finer: λ/10 is usual, λ/4 with functions of order 1"),
             Self::OnSurface { .. } => Some("move it off the surface"),
             Self::Wave(error) => error.help(),
             Self::NoSuchVertex { .. }

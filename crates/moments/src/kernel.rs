@@ -480,8 +480,8 @@ impl<S: Simd, const ELECTRIC: bool, const MAGNETIC: bool> Moments<S, ELECTRIC, M
         }
     }
 
-    /// Adds the entries of all pairs of corners to register `at` of the values; `shift` goes from the
-    /// centre of the sources to that of the observers.
+    /// Adds the entries of all pairs of corners to register `at` of the values; `shift` goes from
+    /// the centre of the sources to that of the observers.
     #[inline(always)]
     #[allow(clippy::too_many_arguments, reason = "two triangles, one medium and where to write")]
     fn write<const LOSSY: bool>(
@@ -495,8 +495,8 @@ impl<S: Simd, const ELECTRIC: bool, const MAGNETIC: bool> Moments<S, ELECTRIC, M
         out: &mut Values,
     ) {
         let simd = fade.simd();
-        // With e = s + r from the sources' centre to the point, and the shift s: ∫ e × Q = s × ∫ Q +
-        // ∫ r × Q, and ∫ r·(e × Q) = −s·∫ r × Q.
+        // With e = s + r from the sources' centre to the point, and the shift s: ∫ e × Q = s × ∫ Q
+        // + ∫ r × Q, and ∫ r·(e × Q) = −s·∫ r × Q.
         let zero = Complex::zero(simd);
         let (mut outer, mut triple) = ([zero; 3], zero);
         if MAGNETIC {

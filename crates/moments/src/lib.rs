@@ -2,9 +2,9 @@
 //! triangle surfaces.
 //!
 //! Time factor e^{+jωt}, outgoing waves G = e^{−jkR}/(4πR), SI units, peak phasors. The unknown
-//! surface currents are sums of Rao–Wilton–Glisson functions, or of those of the first full order on
-//! flat or curved triangles; the equations are tested with the same functions and integrated to a
-//! stated tolerance.
+//! surface currents are sums of Rao–Wilton–Glisson functions, or of those of the first full order
+//! on flat or curved triangles; the equations are tested with the same functions and integrated to
+//! a stated tolerance.
 
 mod basis;
 mod composite;

@@ -126,8 +126,8 @@ pub fn sphere(radius: f64, edge: f64) -> Result<Surface, MomentsError> {
     Surface::from_mesh(&builder.build())
 }
 
-/// The closed sphere around the origin in curved triangles with edges up to `edge`, their corners and
-/// the middles of their sides on the sphere: for functions of the first full order.
+/// The closed sphere around the origin in curved triangles with edges up to `edge`, their corners
+/// and the middles of their sides on the sphere: for functions of the first full order.
 ///
 /// # Errors
 /// Those of [`sphere`].

@@ -1,4 +1,5 @@
-//! The integrals of all pairs of triangles of the halves of functions, each by the rule that suits it.
+//! The integrals of all pairs of triangles of the halves of functions, each by the rule that suits
+//! it.
 
 use crate::dual::PARTS;
 use crate::kernel::{Apart, Eight, Eights, Medium, Points, Touching, Values, WIDTH, Wanted};
@@ -156,8 +157,8 @@ impl Integrator {
     ///
     /// Of integrals that are the same when both change places, one of the two is computed for both.
     /// Currents around a loop have no charge only where the charges of all their functions have
-    /// potentials with the same errors: the difference of two errors would act as a charge, which at
-    /// low frequencies counts (λ/2πh)² times as much as the current itself.
+    /// potentials with the same errors: the difference of two errors would act as a charge, which
+    /// at low frequencies counts (λ/2πh)² times as much as the current itself.
     pub(crate) fn near(&self, shapes: [&Shape; 2], names: [u32; 2]) -> Pair {
         if self.observers_cut {
             return self.close_to_part(shapes, names[0] / PARTS as u32 == names[1]);

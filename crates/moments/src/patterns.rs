@@ -1,15 +1,15 @@
 //! The far fields of the functions on a conductor, for multilevel fast multipoles.
 //!
-//! With F = ∫ e^{jk k̂·(r − c)} f dA and the same G of the dual function (of the first full order, of f
-//! × n), relative to the middle c of
-//! a box and across k̂, the entries of the equations (`equation`, `operator`) between far boxes are
+//! With F = ∫ e^{jk k̂·(r − c)} f dA and the same G of the dual function (of the first full order,
+//! of f × n), relative to the middle c of a box and across k̂, the entries of the equations
+//! (`equation`, `operator`) between far boxes are
 //!
 //! ```text
 //! Z_mn = k²/(4π)² ∮ [α F_m* + (1 − α) G_m* × k̂]·F_n T(k̂) d²k̂
 //! ```
 //!
-//! since ∇ on the wave of a direction is −jk k̂: jk ∫∫ G (f·f′ − div f div f′/k²) leaves the parts of
-//! both across k̂, and ∫∫ g·(∇G × f′) leaves −jk k̂ × f′.
+//! since ∇ on the wave of a direction is −jk k̂: jk ∫∫ G (f·f′ − div f div f′/k²) leaves the parts
+//! of both across k̂, and ∫∫ g·(∇G × f′) leaves −jk k̂ × f′.
 
 #![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
 

@@ -238,7 +238,7 @@ fn shells(bodies: &Surface, fillings: &[Filling]) -> Result<Vec<Shell>, MomentsE
 
 impl Shell {
     fn new(bodies: &Surface, triangles: &[usize], filling: Filling) -> Self {
-        let corners: Vec<[Vec3; 3]> = triangles.iter().map(|&triangle| bodies.corners(triangle)).collect();
+        let corners: Vec<[Vec3; 3]> = triangles.iter().flat_map(|&t| bodies.pieces(t)).collect();
         let origin = corners[0][0];
         let cone = |corners: &[Vec3; 3]| {
             let [a, b, c] = corners.map(|corner| corner - origin);
@@ -338,8 +338,12 @@ impl Merged {
 
     /// The regions of both sides of a triangle.
     fn looked_at(&self, shells: &[Shell], triangle: usize) -> [Option<usize>; 2] {
-        let step = self.surface.normal(triangle) * (STEP_ASIDE * self.surface.area(triangle).sqrt());
-        let centre = self.surface.centre(triangle);
+        // Shells are made of the same pieces.
+        let pieces = self.surface.pieces(triangle);
+        let [a, b, c] = pieces[pieces.len() / 2];
+        let across = 0.5 * (b - a).cross(c - a);
+        let step = across * (STEP_ASIDE / across.length().sqrt());
+        let centre = (a + b + c) / 3.0;
         [centre + step, centre - step].map(|p| located(shells, p))
     }
 

@@ -1,5 +1,5 @@
-//! The triangles of some functions in every region, ready for the kernel: eight together, neighbours
-//! in one eight.
+//! The triangles of some functions in every region, ready for the kernel: eight together,
+//! neighbours in one eight.
 
 use crate::element::{Element, Part, WHOLE};
 use crate::element_kernel::{Table, Tests};
@@ -43,8 +43,8 @@ impl Shape {
     }
 }
 
-/// A half function of a set: the number of its F, the first of its unknowns among those of the set, their
-/// number, its weight, and the units of the unknowns of both kinds.
+/// A half function of a set: the number of its F, the first of its unknowns among those of the set,
+/// their number, its weight, and the units of the unknowns of both kinds.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Entry {
     pub(crate) number: usize,

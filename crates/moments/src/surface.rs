@@ -8,6 +8,10 @@ use std::collections::BTreeMap;
 /// Area over the square of the longest side below which a triangle has none.
 const LEAST_RELATIVE_AREA: f64 = 1e-12;
 
+/// Pieces that a side of a curved triangle is cut into where it is looked at as flat ones: they are
+/// within a hundredth of what the whole is away from its chord.
+const PIECES_OF_A_SIDE: usize = 8;
+
 /// Triangles over common vertices: only vertices that are the same, not those that are at the same
 /// place, join triangles to a surface that carries current from one to the other.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,8 +41,8 @@ impl Surface {
         Ok(surface)
     }
 
-    /// The same with curved sides: those between two vertices go through the place (m) that is given
-    /// for the two, the first with the lower number.
+    /// The same with curved sides: those between two vertices go through the place (m) that is
+    /// given for the two, the first with the lower number.
     ///
     /// # Errors
     /// [`MomentsError::Folded`] for a triangle that turns its other side somewhere.
@@ -46,7 +50,13 @@ impl Surface {
         for &[a, b, c] in &self.triangles {
             for side in [[a, b], [b, c], [c, a]] {
                 let side = [side[0].min(side[1]), side[0].max(side[1])];
-                self.middles.entry(side).or_insert_with(|| middle(side));
+                let [from, to] = side.map(|vertex| self.vertices[vertex as usize]);
+                let place = middle(side);
+                if place == 0.5 * (from + to) {
+                    self.middles.remove(&side);
+                } else {
+                    self.middles.insert(side, place);
+                }
             }
         }
         let faces_back = |&triangle: &usize| {
@@ -82,6 +92,27 @@ impl Surface {
             self.middles.get(&[a.min(b), a.max(b)]).copied().unwrap_or(straight)
         };
         Element::curved(corners, [0, 1, 2].map(middle))
+    }
+
+    /// Flat triangles that follow a curved one, or the one itself where it is flat.
+    pub(crate) fn pieces(&self, triangle: usize) -> Vec<[Vec3; 3]> {
+        let element = self.element(triangle);
+        if element == Element::flat(element.corners) {
+            return vec![element.corners];
+        }
+        let steps = PIECES_OF_A_SIDE;
+        let share = |i: usize| i as f64 / steps as f64;
+        let at = |i: usize, j: usize| element.point([share(steps - i - j), share(i), share(j)]);
+        let mut pieces = Vec::with_capacity(steps * steps);
+        for i in 0..steps {
+            for j in 0..steps - i {
+                pieces.push([at(i, j), at(i + 1, j), at(i, j + 1)]);
+                if i + j + 1 < steps {
+                    pieces.push([at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
+                }
+            }
+        }
+        pieces
     }
 
     fn check(&self, triangle: usize) -> Result<(), MomentsError> {

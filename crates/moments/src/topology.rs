@@ -14,7 +14,8 @@ const ON_EDGE_DISTANCE: f64 = 1e-9;
 /// Largest extents of a closed part over which its field changes where it is small beside the
 /// wavelength, measured on balls, cubes and boxes.
 const EXTENTS_OF_CLOSED: f64 = 1.5;
-/// The same of an open part, in areas over lengths of its open edges, measured on plates and strips.
+/// The same of an open part, in areas over lengths of its open edges, measured on plates and
+/// strips.
 const WIDTHS_OF_OPEN: f64 = 4.8;
 /// Longest edge over the wavelength beyond which the report warns.
 const LONGEST_EDGE_OVER_WAVELENGTH: f64 = 1.0 / 6.0;
@@ -94,7 +95,8 @@ impl Topology {
         &self.edges
     }
 
-    /// The neighbours of every triangle across edges of two, and whether they disagree on the outside.
+    /// The neighbours of every triangle across edges of two, and whether they disagree on the
+    /// outside.
     pub(crate) fn neighbours(&self) -> Vec<Vec<(usize, bool)>> {
         let mut neighbours = vec![Vec::new(); self.component.len()];
         for edge in &self.edges {
@@ -248,9 +250,9 @@ impl Topology {
         self.edges.iter().any(|edge| edge.sides.len() == 1)
     }
 
-    /// The longest edge over the length on which currents change at a wavelength (m): what the error of
-    /// boundary elements follows. That length is the wavelength, or less where a part of the surface
-    /// is small beside it.
+    /// The longest edge over the length on which currents change at a wavelength (m): what the
+    /// error of boundary elements follows. That length is the wavelength, or less where a part of
+    /// the surface is small beside it.
     #[must_use]
     pub fn relative_edge(&self, surface: &Surface, wavelength: f64) -> f64 {
         self.longest_edge(surface) / self.field_length(surface, wavelength)

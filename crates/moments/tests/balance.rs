@@ -1,7 +1,7 @@
-//! Power and reciprocity of nine bodies and equations in a plane wave that comes from aside: what is taken from
-//! the wave (the optical theorem: the far field straight ahead) is radiated or absorbed, and
-//! transmitter and receiver may be exchanged: p₂·F₁(−d₂) = p₁·F₂(−d₁) for two plane waves of
-//! directions d and polarisations p.
+//! Power and reciprocity of nine bodies and equations in a plane wave that comes from aside: what
+//! is taken from the wave (the optical theorem: the far field straight ahead) is radiated or
+//! absorbed, and transmitter and receiver may be exchanged: p₂·F₁(−d₂) = p₁·F₂(−d₁) for two plane
+//! waves of directions d and polarisations p.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -117,8 +117,8 @@ fn what_is_taken_from_the_wave_is_radiated_or_absorbed_and_ways_may_be_reversed(
     }
 }
 
-/// Its two halves have tests of two kinds, so that on edges the balance is that of the mesh: 1e-4 on
-/// a ball.
+/// Its two halves have tests of two kinds, so that on edges the balance is that of the mesh: 1e-4
+/// on a ball.
 #[test]
 fn the_combined_equation_keeps_power_up_to_the_error_of_the_mesh() {
     let cube = cuboid(Vec3::splat(0.6 * WAVELENGTH), WAVELENGTH / 10.0, Grading { halvings: 1 }).unwrap();

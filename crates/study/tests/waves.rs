@@ -422,8 +422,8 @@ fn bodies_with_a_surface_impedance_have_the_field_of_the_series() {
     }
 }
 
-/// A plate above ground in a wave is that plate and its mirror image in the wave and its mirror image,
-/// whole and compressed; what the reflected wave loses is radiated upwards.
+/// A plate above ground in a wave is that plate and its mirror image in the wave and its mirror
+/// image, whole and compressed; what the reflected wave loses is radiated upwards.
 #[test]
 fn a_conducting_ground_is_a_mirror() {
     let folder = tempfile::tempdir().unwrap();

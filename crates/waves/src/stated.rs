@@ -57,8 +57,8 @@ pub enum Indicator {
     ShellElements(f64),
     /// [`of_closed_first_order`] of conductors with functions of the first full order.
     InsideOfFirstOrder(f64),
-    /// Longest edge, as that of [`BoundaryElements`](Self::BoundaryElements), of conducting sheets with
-    /// functions of the first full order.
+    /// Longest edge, as that of [`BoundaryElements`](Self::BoundaryElements), of conducting sheets
+    /// with functions of the first full order.
     OpenOfFirstOrder(f64),
 }
 

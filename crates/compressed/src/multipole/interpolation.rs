@@ -2,8 +2,8 @@
 //!
 //! Along a circle a pattern of currents within a radius r is a sum of e^{jmα}, whose terms fall
 //! beyond |m| = kr as the excess bandwidth formula says. The value at another angle is taken from
-//! the p nearest ones, with the weights for which the mean square of the error over such patterns is
-//! least. p is the smallest even number whose error is within the tolerance. First all rows are
+//! the p nearest ones, with the weights for which the mean square of the error over such patterns
+//! is least. p is the smallest even number whose error is within the tolerance. First all rows are
 //! interpolated in φ, then all great circles in θ. On the other side of a pole both vectors across
 //! the direction are turned over, hence the sign there.
 

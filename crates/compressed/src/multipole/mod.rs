@@ -7,18 +7,19 @@
 //! Z_mn = c ∮ V_m(k̂)·F_n(k̂) T(k̂) d²k̂,   T of the series for the distance of two boxes (`series`),
 //! ```
 //!
-//! with the pattern F that an unknown radiates and the pattern V that it is tested by, both with two
-//! components across k̂ and relative to the middles of their boxes. Boxes form an octree. Patterns
-//! are summed over a leaf, interpolated and shifted to the next larger boxes, translated to boxes
-//! that are far although the larger ones are not, and taken back to the leaves by the transposed
-//! steps. Boxes that are near stay whole. (W. C. Chew, J.-M. Jin, E. Michielssen, J. Song, Fast and
-//! Efficient Algorithms in Computational Electromagnetics, Artech House 2001, ch. 3; J. M. Song, C.-C.
-//! Lu, W. C. Chew, IEEE Trans. Antennas Propag. 45 (1997) 1488, doi:10.1109/8.633855.)
+//! with the pattern F that an unknown radiates and the pattern V that it is tested by, both with
+//! two components across k̂ and relative to the middles of their boxes. Boxes form an octree.
+//! Patterns are summed over a leaf, interpolated and shifted to the next larger boxes, translated
+//! to boxes that are far although the larger ones are not, and taken back to the leaves by the
+//! transposed steps. Boxes that are near stay whole. (W. C. Chew, J.-M. Jin, E. Michielssen, J.
+//! Song, Fast and Efficient Algorithms in Computational Electromagnetics, Artech House 2001, ch. 3;
+//! J. M. Song, C.-C. Lu, W. C. Chew, IEEE Trans. Antennas Propag. 45 (1997) 1488,
+//! doi:10.1109/8.633855.)
 //!
-//! Two boxes are far where the series for the supports in them, as they are, has an error within the
-//! tolerance, and loses no digits that single precision needs: everything is stored in single
-//! precision and multiplied in double precision. A box is the work of one thread and sums in a fixed
-//! order, so that products have the same bits for any number of threads.
+//! Two boxes are far where the series for the supports in them, as they are, has an error within
+//! the tolerance, and loses no digits that single precision needs: everything is stored in single
+//! precision and multiplied in double precision. A box is the work of one thread and sums in a
+//! fixed order, so that products have the same bits for any number of threads.
 
 mod boxes;
 mod grid;
@@ -40,9 +41,9 @@ pub(crate) const NUMBERS: usize = 4;
 
 /// A matrix of which unknowns have far fields.
 ///
-/// The pattern of an unknown is F = ∫ e^{jk k̂·(r − c)} f(r) dA for a real current f, so that that of
-/// the opposite direction is its conjugate. It is tested by V = α F* + M with M(−k̂) = −M(k̂)*: of the
-/// electric and the magnetic equation.
+/// The pattern of an unknown is F = ∫ e^{jk k̂·(r − c)} f(r) dA for a real current f, so that that
+/// of the opposite direction is its conjugate. It is tested by V = α F* + M with M(−k̂) = −M(k̂)*:
+/// of the electric and the magnetic equation.
 pub trait Patterns: Entries<Complex64> {
     /// k, 1/m.
     fn wavenumber(&self) -> f64;

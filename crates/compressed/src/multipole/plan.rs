@@ -17,8 +17,8 @@ use std::ops::Range;
 /// Tolerances that can be asked for: single precision and the digits that translations lose leave
 /// no finer one.
 const TOLERANCES: [f64; 2] = [1e-5, 0.1];
-/// Sides of leaves in wavelengths: below, translations lose all digits, and above, nearly everything
-/// is near.
+/// Sides of leaves in wavelengths: below, translations lose all digits, and above, nearly
+/// everything is near.
 const SIDES: [f64; 2] = [0.15, 2.0];
 /// Distance of typical pairs of points of two boxes from the middles of these, over that of the two
 /// that are farthest from them on the line between both. The error falls as a high power of it, so
@@ -36,6 +36,11 @@ pub(crate) const EXCESS: f64 = 1.8;
 const ROUNDING: f64 = 6e-8;
 /// Error of interpolations over the tolerance.
 const INTERPOLATION_SHARE: f64 = 0.03;
+
+/// The highest degree: beyond it, the tables of a level alone take gigabytes.
+const MOST_DEGREE: usize = 1200;
+/// Most leaves along an axis: their numbers have 21 bits.
+const MOST_LEAVES: f64 = 1e6;
 
 /// How a matrix is taken to multipoles.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -151,8 +156,15 @@ impl Plan {
     ) -> Result<Self, CompressionError> {
         check(patterns, places, settings)?;
         let (k, tolerance) = (patterns.wavenumber(), settings.tolerance);
+        let side = settings.leaf * TAU / k;
+        let low = places.iter().copied().reduce(Vec3::min).unwrap_or_default();
+        let high = places.iter().copied().reduce(Vec3::max).unwrap_or_default();
+        let across = (high - low).max_element() / side;
+        if across > MOST_LEAVES {
+            return Err(CompressionError::Large { across });
+        }
         let radii: Vec<f64> = (0..places.len()).map(|group| patterns.radius(group)).collect();
-        let tree = Octree::new(places, &radii, settings.leaf * TAU / k);
+        let tree = Octree::new(places, &radii, side);
         let largest =
             |level: usize| tree.levels[level].cubes.iter().map(|cube| cube.radius).fold(0.0, f64::max);
         let degrees: Vec<usize> = (0..tree.levels.len())
@@ -175,6 +187,9 @@ impl Plan {
         let Some(last) = far.iter().rposition(|far| far.sources.iter().any(|list| !list.is_empty())) else {
             return Err(CompressionError::Small { boxes: tree.levels[0].cubes.len() });
         };
+        if degrees[last] > MOST_DEGREE {
+            return Err(CompressionError::Large { across });
+        }
         let mut stages: Vec<Stage> = Vec::with_capacity(last + 1);
         for (level, far) in far.iter().enumerate().take(last + 1) {
             let grid = Grid::new(degrees[level]);

@@ -117,15 +117,19 @@ impl WaveScene {
 }
 
 /// Segments of a disc, those that it has or more, with which none of its triangles is longer than
-/// asked for: cut triangles of a cap would have vertices within the edges of the side.
+/// asked for: cut triangles of a cap would have vertices within the edges of the side. Where there
+/// would be more facets than there may be, these are refused later.
 fn uncut(mut cap: Shape, lines: &Cutting) -> Option<usize> {
     loop {
-        let (whole, cut) = (cap.count(&Cutting::default()).ok()?, cap.count(lines).ok()?);
-        let Shape::Disc { segments, .. } = &mut cap else { return None };
-        if whole == cut {
-            return Some(*segments);
+        let Shape::Disc { segments, .. } = &cap else { return None };
+        let segments = *segments;
+        let whole = cap.count(&Cutting::default()).ok().filter(|&count| count <= MOST_FACETS)?;
+        if whole == cap.count(lines).ok()? {
+            return Some(segments);
         }
-        *segments += 1;
+        if let Shape::Disc { segments, .. } = &mut cap {
+            *segments += 1 + *segments / 25;
+        }
     }
 }
 

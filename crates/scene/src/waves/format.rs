@@ -51,9 +51,9 @@ pub(crate) struct WaveEntry {
     pub frequencies_hz: At<FrequenciesEntry>,
     /// How the currents are found. Default: chosen by the program.
     pub method: Option<At<Method>>,
-    /// Order of the functions of boundary elements: 0, those of Rao, Wilton and Glisson, or 1, those
-    /// of the first full order, which are more exact on meshes that are half as fine; spheres,
-    /// cylinders and discs are then curved. Default: 0.
+    /// Order of the functions of boundary elements: 0, those of Rao, Wilton and Glisson, or 1,
+    /// those of the first full order, which are more exact on meshes that are half as fine;
+    /// spheres, cylinders and discs are then curved. Default: 0.
     pub order: Option<At<u32>>,
     /// What of physical optics blocks waves. Default: chosen by the program.
     pub shadows: Option<At<Shadows>>,
@@ -163,8 +163,8 @@ pub(crate) struct MaterialEntry {
     pub half_space: Option<DielectricEntry>,
     /// Layers from the front to the back.
     pub layers: Option<Vec<LayerEntry>>,
-    /// A sheet without thickness: E along it is its impedance times the current that it carries, and
-    /// the same on both sides.
+    /// A sheet without thickness: E along it is its impedance times the current that it carries,
+    /// and the same on both sides.
     pub sheet: Option<FilmEntry>,
 }
 

@@ -207,8 +207,8 @@ pub(super) fn in_one_plane(faces: &[fredholm_mesh::Patch], extent: f64) -> bool 
     faces.iter().flat_map(fredholm_mesh::Patch::corners).all(|p| height(p) <= 1e-9 * extent)
 }
 
-/// What is computed of a scene that asks for this, where `boundary_elements` may be taken unasked and
-/// a matrix of some bytes `fits`.
+/// What is computed of a scene that asks for this, where `boundary_elements` may be taken unasked
+/// and a matrix of some bytes `fits`.
 pub(super) fn taken(
     asked: Asked,
     (geometry, bands): (&Geometry, &[Band]),

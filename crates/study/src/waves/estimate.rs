@@ -4,7 +4,7 @@
 //! | estimate | from |
 //! |---|---|
 //! | stated | the share of the edge currents, or the field inside closed bodies, times a measured factor ([`Indicator`]), and what is left of the bounces |
-//! | mesh | Richardson: a third of the difference to edges twice as long, for the second order of the rules |
+//! | mesh | Richardson: a third of the difference to edges twice as long, for the second order of the rules; more than the error where functions are of the first full order |
 //! | form | half the difference between the currents 2 n × H and 2 n × E, which a true conductor does not tell apart |
 //!
 //! Of a monostatic sweep the error is stated from some of its waves. Where the indicator is one of

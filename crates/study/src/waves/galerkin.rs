@@ -13,7 +13,7 @@ use fredholm_linop::{Dense, LinearOperator, MultiVector, Solver};
 use fredholm_mesh::{Shape, Vec3};
 use fredholm_moments::{
     Basis, Composite, Condition, Conductor, Currents, Curve, Equation, Filling, Imperfect, MomentsError,
-    Operator, Order, Placed, Regions, Surface,
+    Operator, Order, Placed, Regions, Surface, Topology,
 };
 use fredholm_report::{MonostaticRow, WaveCurrents};
 use fredholm_scene::ErrorKind as SceneFault;
@@ -92,6 +92,8 @@ fn basis(model: &Model, geometry: &Geometry, equations: Equations) -> Result<Bas
     let order = order(model);
     let mut surface = Surface::from_mesh(&geometry.mesh).map_err(|error| refused(model, &error))?;
     if order == Order::First {
+        // Vertices that lie within edges would be moved away from these, and leave gaps.
+        Topology::new(&surface).check(&surface).map_err(|error| refused(model, &error))?;
         let curves: Vec<Option<Curve>> = geometry.shapes().map(|shape| shape.and_then(curve)).collect();
         let curved = surface.on_curves(&on_triangles(geometry, &curves));
         surface = curved.map_err(|error| refused(model, &error))?;
@@ -497,8 +499,12 @@ fn whole_plan(
 ) -> Result<(Plan, CouplingStorage), Error> {
     let unknowns = body.operator().dim();
     let bytes = Dense::<Complex64>::bytes(unknowns);
-    let plan = of_solvers(model.plan.clone(), (unknowns, rhs_count(model)), &[solver])
+    let mut plan = of_solvers(model.plan.clone(), (unknowns, rhs_count(model)), &[solver])
         .hold(format!("the matrix of {unknowns} unknowns"), bytes.into());
+    if basis.order() == Order::First {
+        let triangles = basis.surface().triangles().len() as u128;
+        plan = plan.hold("functions at the points of rules", triangles * BYTES_OF_FIRST_ORDER);
+    }
     let storage = match model.storage {
         Some(CouplingStorage::Multipole) => match body.multipole_summary() {
             Ok(_) => CouplingStorage::Multipole,
@@ -520,6 +526,10 @@ fn whole_plan(
     };
     Ok((plan, storage))
 }
+
+/// Bytes for each triangle that the functions of the first full order take at the points of all
+/// rules: 85 points of up to 664 bytes, and half of them once more at the borders of tiles.
+const BYTES_OF_FIRST_ORDER: u128 = 85_000;
 
 /// Edges in wavelengths below which a compressed matrix and iterative solvers lose currents around
 /// loops: these have no charge, and act (2πh/λ)² times as much as the charges that errors in the
@@ -643,8 +653,8 @@ impl Compressed {
         format!("{} with {with} {}", self.method.name(), self.called)
     }
 
-    /// The solutions for all right-hand sides, some of them together, and how the worst of these was
-    /// found.
+    /// The solutions for all right-hand sides, some of them together, and how the worst of these
+    /// was found.
     fn solve(&self, b: &MultiVector<Complex64>, signals: &Signals<'_>) -> Result<Solution, Error> {
         let system = Preconditioned::new(&*self.matrix, self.inverse.operator());
         let mut x = MultiVector::zeros(b.dim(), b.rhs_count());
