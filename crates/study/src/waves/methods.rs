@@ -520,7 +520,8 @@ mod tests {
     fn wrong_texts_say_what_is_known() {
         let said = |text: &str| WaveMethod::parse(text).unwrap_err();
         assert!(said("magic").contains("known are iterated, physical-optics"), "{}", said("magic"));
-        assert!(said("efie:edges").contains("it has none"), "{}", said("efie:edges"));
+        assert!(said("efie:edges").contains("known are order=0 and order=1"), "{}", said("efie:edges"));
+        assert!(said("mfie:order=1").contains("it has none"), "{}", said("mfie:order=1"));
         assert!(said("iterated:bounces=2").contains("known are edges, radiated and geometric"));
         assert!(said("physical-optics:bounces=0").contains("bounces=N, N at least 1"));
         assert!(said("thesis:edges").contains("known is bounces=N"));
