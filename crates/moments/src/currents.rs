@@ -138,7 +138,7 @@ impl<'a> Currents<'a> {
 
     fn at_centre(&self, triangle: usize, current: &Coefficients) -> ComplexVector {
         let (element, centre) = (self.basis.surface().element(triangle), [1.0 / 3.0; 3]);
-        let [sum, _] = values(&element.vectors(centre), &Functions::at(centre), current);
+        let (sum, _) = values(&element.vectors(centre), &Functions::at(centre), current);
         sum * (1.0 / element.stretch(centre))
     }
 
@@ -232,7 +232,7 @@ impl<'a> Currents<'a> {
             for point in &rule {
                 let at = shares([point.u, point.v]);
                 let (vectors, functions) = (element.vectors(at), Functions::at(at));
-                let [j, m] = currents.map(|current| values(&vectors, &functions, &current)[0]);
+                let [j, m] = currents.map(|current| values(&vectors, &functions, &current).0);
                 sources.push((element.point(at), j * point.weight, m * point.weight));
             }
         }
@@ -313,14 +313,18 @@ fn on_triangles(
     triangles.iter().map(|&triangle| all[triangle]).collect()
 }
 
-/// √g times a current, and times its divergence in the first component, at a point.
-fn values(vectors: &[Vec3; WIDTH], functions: &Functions, current: &Coefficients) -> [ComplexVector; 2] {
+/// √g times a current, and times its divergence, at a point.
+fn values(
+    vectors: &[Vec3; WIDTH],
+    functions: &Functions,
+    current: &Coefficients,
+) -> (ComplexVector, Complex64) {
     let (mut sum, mut charge) = (ComplexVector::ZERO, Complex64::ZERO);
     for ((&vector, own), &x) in vectors.iter().zip(functions.charges).zip(current) {
         sum += ComplexVector::along(vector, x);
         charge += x * own;
     }
-    [sum, ComplexVector::along(Vec3::X, charge)]
+    (sum, charge)
 }
 
 /// The points of a current on a part of a triangle, which has a share of the unit triangle: in
@@ -337,11 +341,11 @@ fn points(element: &Element, part: &Part, share: f64, rule: &Rule, current: &Coe
             continue;
         }
         let weight = rule.weights[point] * share;
-        let [sum, charge] = values(&element.vectors(at), &Functions::at(at), current);
+        let (sum, charge) = values(&element.vectors(at), &Functions::at(at), current);
         for (own, value) in eight.current.iter_mut().zip(sum.components()) {
             (own[0][lane], own[1][lane]) = (value.re * weight, value.im * weight);
         }
-        let charge = charge.components()[0] * weight;
+        let charge = charge * weight;
         (eight.charge[0][lane], eight.charge[1][lane]) = (charge.re, charge.im);
     }
     sources

@@ -16,7 +16,7 @@
 
 use crate::element::{Element, Functions, Part, Shares, shares, within};
 use crate::kernel::{
-    Complex, Eight, Kernel, Medium, PairPoints, WIDTH, Wanted, axes, dot, register, splat, sub,
+    Complex, Eight, Kernel, Medium, PairPoints, WIDTH, Wanted, axes, by_parts, dot, register, splat, sub,
 };
 use crate::rules::Rule;
 use fredholm_mesh::Vec3;
@@ -170,29 +170,9 @@ pub(crate) struct ElementsApart<'a> {
     pub(crate) out: &'a mut ElementValues,
 }
 
-impl WithSimd for ElementsApart<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        match (self.wanted.electric, self.wanted.magnetic) {
-            (true, false) => self.all::<S, true, false>(simd),
-            (false, true) => self.all::<S, false, true>(simd),
-            _ => self.all::<S, true, true>(simd),
-        }
-    }
-}
+by_parts!(ElementsApart);
 
 impl ElementsApart<'_> {
-    #[inline(always)]
-    fn all<S: Simd, const ELECTRIC: bool, const MAGNETIC: bool>(self, simd: S) {
-        if self.medium.lossy {
-            self.run::<S, ELECTRIC, MAGNETIC, true>(simd);
-        } else {
-            self.run::<S, ELECTRIC, MAGNETIC, false>(simd);
-        }
-    }
-
     #[inline(always)]
     fn run<S: Simd, const ELECTRIC: bool, const MAGNETIC: bool, const LOSSY: bool>(self, simd: S) {
         let (observer, source) = (self.observer, self.source);
@@ -294,29 +274,9 @@ pub(crate) struct ElementsTouching<'a> {
     pub(crate) out: &'a mut ElementValues,
 }
 
-impl WithSimd for ElementsTouching<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        match (self.wanted.electric, self.wanted.magnetic) {
-            (true, false) => self.all::<S, true, false>(simd),
-            (false, true) => self.all::<S, false, true>(simd),
-            _ => self.all::<S, true, true>(simd),
-        }
-    }
-}
+by_parts!(ElementsTouching);
 
 impl ElementsTouching<'_> {
-    #[inline(always)]
-    fn all<S: Simd, const ELECTRIC: bool, const MAGNETIC: bool>(self, simd: S) {
-        if self.medium.lossy {
-            self.run::<S, ELECTRIC, MAGNETIC, true>(simd);
-        } else {
-            self.run::<S, ELECTRIC, MAGNETIC, false>(simd);
-        }
-    }
-
     #[inline(always)]
     fn run<S: Simd, const ELECTRIC: bool, const MAGNETIC: bool, const LOSSY: bool>(self, simd: S) {
         let wave = Kernel::<S, LOSSY>::new(simd, self.medium, self.spread);

@@ -45,7 +45,28 @@ macro_rules! axes {
     };
 }
 
-pub(crate) use axes;
+/// Compiles a kernel for each choice of parts and with or without losses.
+macro_rules! by_parts {
+    ($kernel:ident) => {
+        impl WithSimd for $kernel<'_> {
+            type Output = ();
+
+            #[inline(always)]
+            fn with_simd<S: Simd>(self, simd: S) {
+                match (self.wanted.electric, self.wanted.magnetic, self.medium.lossy) {
+                    (true, false, false) => self.run::<S, true, false, false>(simd),
+                    (true, false, true) => self.run::<S, true, false, true>(simd),
+                    (false, true, false) => self.run::<S, false, true, false>(simd),
+                    (false, true, true) => self.run::<S, false, true, true>(simd),
+                    (_, _, false) => self.run::<S, true, true, false>(simd),
+                    (_, _, true) => self.run::<S, true, true, true>(simd),
+                }
+            }
+        }
+    };
+}
+
+pub(crate) use {axes, by_parts};
 
 /// Pairs at once, on any instruction set.
 pub(crate) const WIDTH: usize = 8;
@@ -130,29 +151,9 @@ pub(crate) struct Apart<'a> {
     pub(crate) out: &'a mut Values,
 }
 
-impl WithSimd for Apart<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        match (self.wanted.electric, self.wanted.magnetic) {
-            (true, false) => self.all::<S, true, false>(simd),
-            (false, true) => self.all::<S, false, true>(simd),
-            _ => self.all::<S, true, true>(simd),
-        }
-    }
-}
+by_parts!(Apart);
 
 impl Apart<'_> {
-    #[inline(always)]
-    fn all<S: Simd, const ELECTRIC: bool, const MAGNETIC: bool>(self, simd: S) {
-        if self.medium.lossy {
-            self.run::<S, ELECTRIC, MAGNETIC, true>(simd);
-        } else {
-            self.run::<S, ELECTRIC, MAGNETIC, false>(simd);
-        }
-    }
-
     #[inline(always)]
     fn run<S: Simd, const ELECTRIC: bool, const MAGNETIC: bool, const LOSSY: bool>(self, simd: S) {
         let wave = Kernel::<S, LOSSY>::new(simd, self.medium, self.spread);
@@ -205,29 +206,9 @@ pub(crate) struct Touching<'a> {
     pub(crate) out: &'a mut Values,
 }
 
-impl WithSimd for Touching<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        match (self.wanted.electric, self.wanted.magnetic) {
-            (true, false) => self.all::<S, true, false>(simd),
-            (false, true) => self.all::<S, false, true>(simd),
-            _ => self.all::<S, true, true>(simd),
-        }
-    }
-}
+by_parts!(Touching);
 
 impl Touching<'_> {
-    #[inline(always)]
-    fn all<S: Simd, const ELECTRIC: bool, const MAGNETIC: bool>(self, simd: S) {
-        if self.medium.lossy {
-            self.run::<S, ELECTRIC, MAGNETIC, true>(simd);
-        } else {
-            self.run::<S, ELECTRIC, MAGNETIC, false>(simd);
-        }
-    }
-
     #[inline(always)]
     fn run<S: Simd, const ELECTRIC: bool, const MAGNETIC: bool, const LOSSY: bool>(self, simd: S) {
         let wave = Kernel::<S, LOSSY>::new(simd, self.medium, self.spread);
