@@ -22,6 +22,10 @@ const REFERENCE_TOLERANCE: f64 = 1e-7;
 /// Pairs of each kind in a sample, and how many are looked at to find them.
 const MOST_PAIRS: usize = 200;
 const PAIRS_LOOKED_AT: usize = 4000;
+/// As much of scenes of more patches, where a pair takes a hundred times as long.
+const MANY_PATCHES: usize = 10_000;
+const FEWER_PAIRS: usize = 24;
+const FEWER_LOOKED_AT: usize = 1000;
 
 fn scenes() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
@@ -46,15 +50,20 @@ impl<'a> Sample<'a> {
         let integrator = PairIntegrator::new(mesh.patches(), occluders, FIRST_TOLERANCE);
         let mut work = Workspace::default();
         let (mut open, mut behind) = (Vec::new(), Vec::new());
-        for [i, j] in sample_pairs(mesh.len()).take(PAIRS_LOOKED_AT) {
+        let [most, looked_at] = if mesh.len() > MANY_PATCHES {
+            [FEWER_PAIRS, FEWER_LOOKED_AT]
+        } else {
+            [MOST_PAIRS, PAIRS_LOOKED_AT]
+        };
+        for [i, j] in sample_pairs(mesh.len()).take(looked_at) {
             match integrator.exchange(i, j, &mut work).method {
                 Method::Hidden => {}
                 Method::Gauss | Method::Contour => open.push([i, j]),
                 Method::Clipped | Method::Sampled | Method::Segments => behind.push([i, j]),
             }
         }
-        open.truncate(MOST_PAIRS);
-        behind.truncate(MOST_PAIRS);
+        open.truncate(most);
+        behind.truncate(most);
         Self { mesh, occluders, pairs: [open, behind].concat() }
     }
 
@@ -87,12 +96,8 @@ fn check(file: &Path) {
     let errors = sample.errors();
     let shown: Vec<String> = errors.iter().map(|[largest, _]| format!("{largest:.1e}")).collect();
     println!("{}: {} pairs, errors {}", file.display(), sample.pairs.len(), shown.join(", "));
-    // The worst pair of the classroom is off by 3.12e-7 where 1e-5 is asked for and by 3.17e-7 where
-    // 1e-6 is (against factors to 1e-8): it is worse, and as exact as asked for. Why is not known.
-    let excused = if file.ends_with("classroom.toml") { 1e-6 } else { 0.0 };
     for steps in errors.windows(2) {
-        let is_no_worse = |k: usize| steps[1][k] <= steps[0][k].max([excused, 0.0][k]);
-        assert!((0..2).all(is_no_worse), "{}: {errors:?}", file.display());
+        assert!((0..2).all(|k| steps[1][k] <= steps[0][k]), "{}: {errors:?}", file.display());
     }
 }
 

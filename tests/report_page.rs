@@ -54,7 +54,7 @@ fn pages_of_all_kinds_can_be_used() {
         &["solve", "scenes/cornell_box.toml"],
         &["waves", "scenes/waves/two_plates.toml"],
         &["compare", "scenes/leblond_room.toml"],
-        &["converge", "scenes/leblond_room.toml", "--levels", "3"],
+        &["converge", "scenes/leblond_room.toml", "--levels", "2"],
         &["crosscheck", "scenes/leblond_room.toml", "--to", "5%"],
         // Half a million elements: rays cut each face into four.
         &["solve", &large_room(&place("room.toml")), "--accuracy", "50%", "--way", "rays"],
@@ -64,6 +64,9 @@ fn pages_of_all_kinds_can_be_used() {
     for (k, arguments) in kinds.iter().enumerate() {
         let out = place(&k.to_string());
         fredholm(&[*arguments, &["-o", &out, "--quiet"]].concat());
+        if k + 1 == kinds.len() {
+            tried.arg("--pick");
+        }
         tried.arg(out);
     }
     let tried = tried.output().unwrap();

@@ -1,4 +1,8 @@
-// Opens the pages of result folders in a headless browser and tries all that each has: node test/open.mjs FOLDER …
+// Opens the pages of result folders in a headless browser and tries all that each has:
+//
+//     node test/open.mjs FOLDER … --pick FOLDER …
+//
+// Those behind --pick are only opened and picked from: software draws large ones slowly.
 //
 // The numbers of a picked element are compared with faces.csv or crosscheck.csv of the same folder. Nothing may be
 // asked of the network, nothing complained of, no picture blank.
@@ -250,6 +254,16 @@ async function curves(page) {
   assert.fail("no number beside the pointer");
 }
 
+/** A page opens, shows something, and tells what an element has. */
+async function briefly(browser) {
+  const { page, requests, errors, seconds } = await open(browser, path);
+  await pick(page);
+  await told(page);
+  assert.ok((await picture(page)).colours > 30, "the picture is blank");
+  assert.deepEqual([requests, errors], [[], []]);
+  console.log(`${folder}: opened in ${seconds.toFixed(2)} s; no request, no complaint`);
+}
+
 async function everything(browser) {
   const { page, requests, errors, seconds } = await open(browser, path);
   const isSolid = (await page.locator("#canvas").count()) > 0;
@@ -301,10 +315,20 @@ async function fallbacks() {
   await plain.close();
 }
 
+let picked = false;
 for (const name of process.argv.slice(2)) {
+  if (name === "--pick") {
+    picked = true;
+    continue;
+  }
   folder = resolve(name);
   path = join(folder, "report.html");
   const browser = await launch();
+  if (picked) {
+    await briefly(browser);
+    await browser.close();
+    continue;
+  }
   await everything(browser);
   await narrow(browser);
   await browser.close();
