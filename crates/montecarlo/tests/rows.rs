@@ -32,7 +32,10 @@ fn cut(whole: &[Patch]) -> (Vec<Patch>, Vec<Family>) {
 }
 
 fn rows(scene: &Enclosure, families: &[Family], looks: Looks, count: u32) -> Rows {
-    let sampler = RowSampler::new(scene, families, looks, (1, 0));
+    long_rows(&RowSampler::new(scene, families, looks, (1, 0)), families, count)
+}
+
+fn long_rows(sampler: &RowSampler, families: &[Family], count: u32) -> Rows {
     let mut rows = sampler.start();
     assert!(sampler.prolong(&mut rows, &vec![count; families.len()], &Quiet));
     rows
@@ -91,6 +94,35 @@ fn furnaces_are_met_within_their_standard_errors() {
             assert!((mean - exact).abs() < 6.0 * error + 1e-3 * exact, "{rho}, {looks:?}: {mean} ± {error}");
             assert!(error < 0.01 * exact);
         }
+    }
+}
+
+/// Rays from dark families go on further: fewer end on what is near, and the light is the same.
+#[test]
+fn from_dark_families_rays_go_on_further() {
+    let (parts, families) = cut(&cube());
+    let exitance = (0..24).map(|part| if part < 4 { 1.0 } else { 0.0 }).collect();
+    let scene = Enclosure::new(parts, 1, vec![0.5; 24], exitance).unwrap();
+    let [usual, dark] = [false, true].map(|is_dark| {
+        let looks = Looks::Checked(2);
+        let sampler = RowSampler::new(&scene, &families, looks, (1, 0)).with_dark(vec![is_dark; 6]);
+        let rows = long_rows(&sampler, &families, 1024);
+        let mut kept = MultiVector::zeros(24, 1);
+        rows.apply(&MultiVector::from_fn(24, 1, |_, _| 1.0), &mut kept);
+        // Of each side of the cube: the mean and the square of its standard error.
+        let replicates = solved(&rows, 0.5, looks);
+        let side = |k: usize| {
+            let of = |y: &MultiVector<f64>| (4 * k..4 * k + 4).map(|part| y.row(part)[0]).sum::<f64>() / 4.0;
+            let means = replicates.each_ref().map(of);
+            let mean = means.iter().sum::<f64>() / 4.0;
+            [mean, means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / 12.0]
+        };
+        (kept.as_slice().iter().sum::<f64>() / 24.0, [0, 1, 2, 3, 4, 5].map(side))
+    });
+    assert!(dark.0 < 0.5 * usual.0, "{} of {}", dark.0, usual.0);
+    for ([a, of_a], [b, of_b]) in usual.1.into_iter().zip(dark.1) {
+        assert!((a - b).abs() < 6.0 * (of_a + of_b).sqrt() + 2e-3 * a, "{a} and {b}");
+        assert!(of_a.sqrt().max(of_b.sqrt()) < 0.02 * a, "{a}: {of_a} and {of_b}");
     }
 }
 

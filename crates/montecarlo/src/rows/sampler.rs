@@ -11,6 +11,9 @@ use super::{BACK, Batch, Family, Looks, NOTHING, REPLICATES, Rows, WALKED};
 
 /// Distance, over the root of the area of a patch, from which on the patch is seen as a whole.
 const NEAR: f64 = 1.0;
+/// The same from dark patches. They are dark since little of the scene is seen from there: behind a
+/// cupboard the floor before it, the near and dim edge of which sends less than its mean.
+const NEAR_FROM_THE_DARK: f64 = 3.0;
 /// Reflections after which a ray that goes on may be absorbed by chance.
 const SURE_REFLECTIONS: usize = 3;
 /// Families that one thread takes at a time.
@@ -27,6 +30,8 @@ pub struct RowSampler<'a> {
     /// What each family sees of them.
     cuts: Cuts,
     looks: Looks,
+    /// Which families are dark.
+    dark: Vec<bool>,
     seed: u64,
     stage: u32,
 }
@@ -63,7 +68,16 @@ impl<'a> RowSampler<'a> {
         let cuts = lamps.cuts(&receivers);
         let numbered = families.iter().zip(0..);
         let family_of = numbered.flat_map(|(family, k)| std::iter::repeat_n(k, family.parts.len())).collect();
-        Self { scene, families, family_of, lamps, cuts, looks, seed, stage }
+        let dark = vec![false; families.len()];
+        Self { scene, families, family_of, lamps, cuts, looks, dark, seed, stage }
+    }
+
+    /// The same with rays that go on further where they leave one of these families, which are dark:
+    /// less is left out of what they see, at the price of more noise.
+    #[must_use]
+    pub fn with_dark(self, dark: Vec<bool>) -> Self {
+        debug_assert_eq!(dark.len(), self.families.len());
+        Self { dark, ..self }
     }
 
     /// No rows yet.
@@ -177,6 +191,8 @@ impl<'a> RowSampler<'a> {
             let key = Key { seed: self.seed, batch, stream: family.stream };
             Samples::new(PointSet::Sobol, key, 0)
         });
+        let is_dark = self.dark[self.family_of[family.parts.start] as usize];
+        let near = if is_dark { NEAR_FROM_THE_DARK } else { NEAR };
         let mut weight = vec![1.0; bands];
         for part in 0..parts {
             let begin = parts * known + part * more;
@@ -197,7 +213,7 @@ impl<'a> RowSampler<'a> {
                         Meets::Back => BACK,
                         Meets::Lit(site) => {
                             let reflected = &mut cast.reflected[sum..];
-                            match self.walk((from, site), &mut draw, &mut weight, reflected) {
+                            match self.walk((from, site, near), &mut draw, &mut weight, reflected) {
                                 Some((end, 0)) => {
                                     if self.looks.checks((ray - begin) as usize) {
                                         let rho = self.scene.reflectance(end.patch);
@@ -227,9 +243,9 @@ impl<'a> RowSampler<'a> {
     /// Whether a ray that meets a patch goes on: where the patch is so near that what it sends
     /// varies over what is seen of it, or where it is so near a lamp that looks at the lamp are not
     /// enough.
-    fn goes_on(&self, from: Site, to: Site) -> bool {
+    fn goes_on(&self, from: Site, to: Site, near: f64) -> bool {
         let area = self.scene.patches()[to.patch].area();
-        from.point.distance_squared(to.point) < NEAR * NEAR * area
+        from.point.distance_squared(to.point) < near * near * area
             || self.cuts.is_near(self.family_of[to.patch] as usize)
     }
 
@@ -272,7 +288,7 @@ impl<'a> RowSampler<'a> {
     /// back. What lamps send to the patches on the way is added.
     fn walk(
         &self,
-        (mut from, mut at): (Site, Site),
+        (mut from, mut at, near): (Site, Site, f64),
         draw: &mut Draw,
         weight: &mut [f64],
         sum: &mut [f64],
@@ -286,7 +302,7 @@ impl<'a> RowSampler<'a> {
             }
             let rho = self.scene.reflectance(at.patch);
             reflected.iter_mut().zip(&*weight).zip(rho).for_each(|((out, w), rho)| *out = w * rho / survival);
-            if !self.goes_on(from, at) {
+            if !self.goes_on(from, at, near) {
                 if self.looks == Looks::Everywhere {
                     self.look(at, draw, unshared, (&reflected, sum));
                 }

@@ -16,8 +16,9 @@
 const EXPONENT: f64 = 1.3;
 /// Rays of a part and replicate at most.
 const MOST_RAYS: u32 = 1 << 20;
-/// Rays with those for the errors of large faces over those without, at most.
-const FOR_LARGE_FACES: f64 = 1.25;
+/// Rays with those for the errors of large faces, over those without or those of the first step, at
+/// most.
+const FOR_LARGE_FACES: f64 = 8.0;
 /// Rays after a prolongation over those before, at least: each has its price in products.
 const LEAST_GROWTH: f64 = 1.15;
 /// By which the square aimed at is lowered until there are so many.
@@ -40,6 +41,8 @@ pub(super) struct Share {
 pub(super) struct Budget {
     shares: Vec<Share>,
     target: f64,
+    /// Rays of the first step.
+    first: f64,
 }
 
 impl Budget {
@@ -49,32 +52,51 @@ impl Budget {
         for (share, &known) in shares.iter_mut().zip(known) {
             share.weighed *= f64::from(known.max(1)).powf(EXPONENT - 1.0);
         }
-        Self { shares, target }
+        let first = rays(&shares, known);
+        Self { shares, target, first }
+    }
+
+    /// Which families have fewer rays than their own errors need.
+    pub(super) fn short(&self, counts: &[u32]) -> Vec<bool> {
+        self.alone().zip(counts).map(|(alone, &count)| alone > count).collect()
+    }
+
+    /// Which families are of faces so dark that their own errors need more rays than the sum does.
+    pub(super) fn dark(&self) -> Vec<bool> {
+        self.short(&self.best())
     }
 
     /// Rays of a part and replicate for each family, powers of two.
     pub(super) fn counts(&self) -> Vec<u32> {
-        let power = EXPONENT / (1.0 + EXPONENT);
-        let term = |share: &Share| share.weighed * (share.weighed / share.parts as f64).powf(-power);
-        let sum: f64 = self.shares.iter().filter(|share| share.weighed > 0.0).map(term).sum();
-        let lambda = (sum / self.target).powf(1.0 / power);
-        let rounded = |rays: f64| 1_u32 << (rays.clamp(1.0, f64::from(MOST_RAYS)).log2().round() as u32);
-        let best = |share: &Share| {
-            rounded((lambda * share.weighed / share.parts as f64).powf(1.0 / (1.0 + EXPONENT)))
-        };
-        let best: Vec<u32> = self.shares.iter().map(best).collect();
-        // Where nothing is known to arrive, nothing is known to be asked for.
-        let alone = |share: &Share| (share.weighed / share.most.max(f64::MIN_POSITIVE)).powf(1.0 / EXPONENT);
-        let alone: Vec<u32> = self.shares.iter().map(|share| rounded(alone(share))).collect();
+        let (best, alone) = (self.best(), self.alone().collect::<Vec<_>>());
         let mut bound = MOST_RAYS;
         loop {
             let counts: Vec<u32> =
                 best.iter().zip(&alone).map(|(&best, &alone)| best.max(alone.min(bound))).collect();
-            if self.rays(&counts) <= FOR_LARGE_FACES * self.rays(&best) {
+            if self.rays(&counts) <= FOR_LARGE_FACES * self.rays(&best).max(self.first) {
                 return counts;
             }
             bound /= 2;
         }
+    }
+
+    /// The rays that the sum needs.
+    fn best(&self) -> Vec<u32> {
+        let power = EXPONENT / (1.0 + EXPONENT);
+        let term = |share: &Share| share.weighed * (share.weighed / share.parts as f64).powf(-power);
+        let sum: f64 = self.shares.iter().filter(|share| share.weighed > 0.0).map(term).sum();
+        let lambda = (sum / self.target).powf(1.0 / power);
+        let best = |share: &Share| {
+            rounded((lambda * share.weighed / share.parts as f64).powf(1.0 / (1.0 + EXPONENT)))
+        };
+        self.shares.iter().map(best).collect()
+    }
+
+    /// The rays that each needs for its own error.
+    fn alone(&self) -> impl Iterator<Item = u32> {
+        // Where nothing is known to arrive, nothing is known to be asked for.
+        let alone = |share: &Share| (share.weighed / share.most.max(f64::MIN_POSITIVE)).powf(1.0 / EXPONENT);
+        self.shares.iter().map(move |share| rounded(alone(share)))
     }
 
     /// More rays than `known`, where these have left an error `noise` by chance that is to be
@@ -94,8 +116,17 @@ impl Budget {
     }
 
     fn rays(&self, counts: &[u32]) -> f64 {
-        self.shares.iter().zip(counts).map(|(share, &count)| share.parts as f64 * f64::from(count)).sum()
+        rays(&self.shares, counts)
     }
+}
+
+fn rays(shares: &[Share], counts: &[u32]) -> f64 {
+    shares.iter().zip(counts).map(|(share, &count)| share.parts as f64 * f64::from(count)).sum()
+}
+
+/// The nearest power of two.
+fn rounded(rays: f64) -> u32 {
+    1 << (rays.clamp(1.0, f64::from(MOST_RAYS)).log2().round() as u32)
 }
 
 #[cfg(test)]

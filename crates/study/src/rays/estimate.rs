@@ -136,7 +136,7 @@ impl Estimate {
         let largest = |band| per_face.iter().skip(band).step_by(bands).copied().fold(0.0, f64::max);
         Ok(Self {
             large: ground.large(&irradiance, (worst, norms[worst])),
-            variance: ground.variance_of_a_ray(&deviations, rows, (worst, norms[worst])),
+            variance: ground.variance_of_a_ray(&irradiance, &deviations, rows, (worst, norms[worst])),
             error: MeshError { relative_l2: relative, largest: (0..bands).map(largest).collect(), per_face },
             elements: found.iter().map(of_band).fold(0.0, f64::max),
             elements_at_least: found.iter().map(at_least).fold(0.0, f64::max),

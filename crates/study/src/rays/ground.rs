@@ -16,6 +16,11 @@ const OWN_VARIANCE: f64 = 0.5;
 /// Share of all area from which on a face is large.
 const LARGE_FACE: f64 = 1e-3;
 
+/// Share of the mean irradiance below which a face is dim; and the one below which its own error may
+/// be as large as if it had this.
+const DIM: f64 = 0.2;
+const DARKEST: f64 = 2e-3;
+
 /// Parts of elements, and what they are made of.
 pub(super) struct Ground<'m> {
     pub(super) mesh: &'m Mesh,
@@ -89,24 +94,30 @@ impl<'m> Ground<'m> {
     /// Σ A E² over the faces, of every band.
     pub(super) fn norms(&self, irradiance: &MultiVector<f64>) -> Vec<f64> {
         let means = self.means(irradiance);
-        let of = |band: usize| self.squares(|face| means.row(face)[band].powi(2)).sum();
+        let of = |band: usize| self.by_area(|face| means.row(face)[band].powi(2)).sum();
         (0..self.bands).map(of).collect()
     }
 
-    fn squares(&self, of: impl Fn(usize) -> f64) -> impl Iterator<Item = f64> {
+    /// The terms A f of the faces.
+    fn by_area(&self, of: impl Fn(usize) -> f64) -> impl Iterator<Item = f64> {
         self.mesh.faces().iter().enumerate().map(move |(face, it)| it.area * of(face))
+    }
+
+    /// Mean over the faces, of their means.
+    fn mean(&self, means: &MultiVector<f64>, band: usize) -> f64 {
+        self.by_area(|face| means.row(face)[band]).sum::<f64>() / self.by_area(|_| 1.0).sum::<f64>()
     }
 
     /// Relative error of a band by chance, with its confidence.
     pub(super) fn noise(&self, variances: &MultiVector<f64>, norms: &[f64], band: usize) -> f64 {
-        let squares = || self.squares(|face| variances.row(face)[band]);
+        let squares = || self.by_area(|face| variances.row(face)[band]);
         let (sum, fourths) = (squares().sum::<f64>(), squares().map(|x| x * x).sum::<f64>());
         if sum > 0.0 { (sum / norms[band]).sqrt() * confidence(sum * sum / fourths) } else { 0.0 }
     }
 
     /// Square of the relative error of a band, from two estimates of it, and its standard deviation.
     pub(super) fn left_out(&self, halves: &[MultiVector<f64>; 2], norms: &[f64], band: usize) -> [f64; 2] {
-        let products = || self.squares(|face| halves[0].row(face)[band] * halves[1].row(face)[band]);
+        let products = || self.by_area(|face| halves[0].row(face)[band] * halves[1].row(face)[band]);
         let norm = norms[band].max(f64::MIN_POSITIVE);
         [products().sum::<f64>() / norm, products().map(|x| x * x).sum::<f64>().sqrt() / norm]
     }
@@ -160,10 +171,11 @@ impl<'m> Ground<'m> {
     }
 
     /// Variance of the mean of every family over one ray of each part and replicate, relative to the
-    /// norm of a band: of four replicates it is known badly, so that half of it is the mean over the
-    /// surface. 1/m².
+    /// norm of a band: of four replicates it is known badly, so that half of it is that of the
+    /// surface, in proportion to the irradiance as where few rays find all of it. 1/m².
     pub(super) fn variance_of_a_ray(
         &self,
+        irradiance: &MultiVector<f64>,
         deviations: &[MultiVector<f64>],
         rows: &Rows,
         (band, norm): (usize, f64),
@@ -178,30 +190,35 @@ impl<'m> Ground<'m> {
             f64::from(rows.count(family.parts.start)) * squares / (PAIRS * norm.max(f64::MIN_POSITIVE))
         };
         let own: Vec<f64> = self.families.iter().map(own).collect();
+        let means = self.means(irradiance);
+        let level = |family: &Family| means.row(self.face_of[family.parts.start])[band];
         let mut surfaces = vec![[0.0; 2]; self.mesh.surfaces().len()];
         let surface = |family: &Family| self.mesh.faces()[self.face_of[family.parts.start]].surface;
         for (family, own) in self.families.iter().zip(&own) {
-            let [sum, area] = &mut surfaces[surface(family)];
+            let [sum, light] = &mut surfaces[surface(family)];
             *sum += family.whole.area() * own;
-            *area += family.whole.area();
+            *light += family.whole.area() * level(family);
         }
         let pooled = |(family, own): (&Family, &f64)| {
-            let [sum, area] = surfaces[surface(family)];
-            OWN_VARIANCE * own + (1.0 - OWN_VARIANCE) * sum / area
+            let [sum, light] = surfaces[surface(family)];
+            let of_surface = if light > 0.0 { level(family) * sum / light } else { 0.0 };
+            OWN_VARIANCE * own + (1.0 - OWN_VARIANCE) * of_surface
         };
         self.families.iter().zip(&own).map(pooled).collect()
     }
 
-    /// E² A/‖E‖² of every family, E the mean over its face: what it has of the square of the norm of
-    /// a band. Infinite for faces that are not large.
+    /// E² A/‖E‖² of every family, E the mean over its face, or that of the darkest: what it has of
+    /// the square of the norm of a band. Infinite for faces that are not large.
     pub(super) fn large(&self, irradiance: &MultiVector<f64>, (band, norm): (usize, f64)) -> Vec<f64> {
         let faces = self.mesh.faces();
         let means = self.means(irradiance);
-        let least = self.area_of_a_large_face();
+        let least = DARKEST * self.mean(&means, band);
+        let large = self.area_of_a_large_face();
         let of = |family: &Family| {
             let face = self.face_of[family.parts.start];
-            let share = means.row(face)[band].powi(2) * family.whole.area() / norm.max(f64::MIN_POSITIVE);
-            if faces[face].area > least { share } else { f64::INFINITY }
+            let square = means.row(face)[band].max(least).powi(2);
+            let share = square * family.whole.area() / norm.max(f64::MIN_POSITIVE);
+            if faces[face].area > large { share } else { f64::INFINITY }
         };
         self.families.iter().map(of).collect()
     }
@@ -211,19 +228,37 @@ impl<'m> Ground<'m> {
         LARGE_FACE * self.mesh.faces().iter().map(|face| face.area).sum::<f64>()
     }
 
-    /// Rays of a part and replicate in the first step: so few, and more where a large face would have
+    /// Rays of a part and replicate for each family: these, and more where a large face would have
     /// less than `least` in all.
-    pub(super) fn first(&self, few: u32, least: u32) -> Vec<u32> {
+    pub(super) fn at_least(&self, least: u32, counts: &[u32]) -> Vec<u32> {
+        self.raised(counts, |_| least)
+    }
+
+    /// The same for the dim ones among them, by what is known of the irradiance.
+    pub(super) fn at_least_of_dim(
+        &self,
+        least: u32,
+        irradiance: &MultiVector<f64>,
+        counts: &[u32],
+    ) -> Vec<u32> {
+        let means = self.means(irradiance);
+        let dim: Vec<f64> = (0..self.bands).map(|band| DIM * self.mean(&means, band)).collect();
+        let is_dim = |face: usize| means.row(face).iter().zip(&dim).any(|(e, dim)| e < dim);
+        self.raised(counts, |face| if is_dim(face) { least } else { 0 })
+    }
+
+    /// Rays that give each large face so many in all, or these where they are more.
+    fn raised(&self, counts: &[u32], least: impl Fn(usize) -> u32) -> Vec<u32> {
         let faces = self.mesh.faces();
         let large = self.area_of_a_large_face();
         let mut parts = vec![0_u32; faces.len()];
         self.face_of.iter().for_each(|&face| parts[face] += 1);
-        let of = |family: &Family| {
+        let of = |(family, &count): (&Family, &u32)| {
             let face = self.face_of[family.parts.start];
-            let own = least.div_ceil(parts[face] * REPLICATES as u32);
-            if faces[face].area > large { few.max(own.next_power_of_two()) } else { few }
+            let own = least(face).div_ceil(parts[face] * REPLICATES as u32);
+            if faces[face].area > large { count.max(own.next_power_of_two()) } else { count }
         };
-        self.families.iter().map(of).collect()
+        self.families.iter().zip(counts).map(of).collect()
     }
 
     /// A²/A_face of a family: what the variance of its mean counts in the square of the error, m².

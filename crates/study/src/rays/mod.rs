@@ -51,9 +51,6 @@ const OF_ELEMENTS: f64 = 0.6;
 const MOST_OF_ELEMENTS: f64 = 0.85;
 /// Error by chance over what the elements leave to it, up to which it is.
 const MOST_NOISE_OVER_WHAT_IS_LEFT: f64 = 1.3;
-/// Standard error of a large face over the accuracy, so that hardly any is off by five times as
-/// much.
-const OF_LARGE_FACE: f64 = 1.25;
 /// Error by chance over what is left to it, so that the first rows are likely to be enough.
 const AIM: f64 = 0.95;
 /// Standard deviation of what a ray brings over its mean, about; share of all rays that the first
@@ -61,8 +58,10 @@ const AIM: f64 = 0.95;
 const DEVIATION: f64 = 0.8;
 const OF_FIRST_STEP: f64 = 0.1;
 const MOST_OF_FIRST_STEP: f64 = 8.0;
-/// Rays of a large face in the first step, so that its variance is known.
-const RAYS_OF_A_LARGE_FACE: u32 = 1024;
+/// Rays of a large face in the first step, so that its variance is known; and where these find it to
+/// be dim.
+const RAYS_OF_A_LARGE_FACE: u32 = 128;
+const RAYS_OF_A_DIM_FACE: u32 = 1024;
 /// One ray in so many checks whether elements may reflect as wholes, after the first step.
 const CHECKED: usize = 4;
 /// Share of the differences within elements whose elements are divided.
@@ -201,7 +200,7 @@ impl Run<'_> {
     fn on(&mut self, ground: &Ground, everywhere: &mut bool) -> Result<Option<Vec<bool>>, Error> {
         let few = OF_FIRST_STEP * (DEVIATION / self.accuracy).powi(2) / 64.0;
         let few = 1 << few.clamp(1.0, MOST_OF_FIRST_STEP).log2().round() as u32;
-        let first = ground.first(few, RAYS_OF_A_LARGE_FACE);
+        let first = ground.at_least(RAYS_OF_A_LARGE_FACE, &vec![few; ground.families.len()]);
         let mut budget = None;
         loop {
             let checked = if budget.is_none() { 1 } else { CHECKED };
@@ -223,7 +222,9 @@ impl Run<'_> {
         (looks, first): (Looks, &[u32]),
         mut budget: Option<Budget>,
     ) -> Result<Option<Next>, Error> {
-        let sampler = RowSampler::new(&ground.lit, &ground.families, looks, (SEED, self.stage));
+        let dark = budget.as_ref().map_or_else(|| vec![false; first.len()], Budget::dark);
+        let sampler =
+            RowSampler::new(&ground.lit, &ground.families, looks, (SEED, self.stage)).with_dark(dark);
         self.stage += 1;
         let mut counts = budget.as_ref().map_or_else(|| first.to_vec(), Budget::counts);
         let (mut rows, mut exposed) = (sampler.start(), None);
@@ -238,12 +239,24 @@ impl Run<'_> {
             let estimate = Estimate::new(ground, &rows, &shares, (looks, self.accuracy), self.signals)?;
             let stated = estimate.stated();
             let too_large = self.too_large(&estimate, budget.is_none());
+            let dim = ground.at_least_of_dim(RAYS_OF_A_DIM_FACE, &estimate.irradiance, &counts);
+            // Dark faces count little in the error that is stated, and are not to be left to the few
+            // rays of the first step.
+            let mut is_enough = stated <= self.accuracy;
             let next = match (too_large, &mut budget) {
                 (true, _) if looks == Looks::Everywhere => {
                     ControlFlow::Break(Next::Divide(divided(ground, &estimate.differences)))
                 }
                 (true, _) => ControlFlow::Break(Next::Look),
-                (false, None) => ControlFlow::Break(Next::Cast(self.budget(ground, &estimate, &counts))),
+                (false, None) if dim != counts => {
+                    is_enough = false;
+                    ControlFlow::Continue(dim)
+                }
+                (false, None) => {
+                    let budget = self.budget(ground, &estimate, &counts);
+                    is_enough &= !budget.short(&counts).contains(&true);
+                    ControlFlow::Break(Next::Cast(budget))
+                }
                 (false, Some(budget)) => {
                     let left = self.left(estimate.elements.min(MOST_OF_ELEMENTS * self.accuracy));
                     ControlFlow::Continue(budget.prolonged(&counts, estimate.worst_noise(), left))
@@ -255,7 +268,7 @@ impl Run<'_> {
             self.signals
                 .watch
                 .advance(share, &|| format!("{} rays, estimated error {stated:.1e}", self.rays));
-            if stated <= self.accuracy || self.stage > MOST_STEPS || self.signals.watch.go_on().is_break() {
+            if is_enough || self.stage > MOST_STEPS || self.signals.watch.go_on().is_break() {
                 return Ok(None);
             }
             match next {
@@ -289,7 +302,8 @@ impl Run<'_> {
     /// The rays that are likely to be enough, from the first step.
     fn budget(&self, ground: &Ground, estimate: &Estimate, counts: &[u32]) -> Budget {
         let left = self.left(estimate.elements_at_least.max(0.5 * OF_ELEMENTS * self.accuracy));
-        let of_face = (OF_LARGE_FACE * self.accuracy).powi(2);
+        // The standard error of a large face may be the accuracy: hardly any is off by five times it.
+        let of_face = self.accuracy.powi(2);
         let share = |((family, variance), norm): ((&Family, &f64), &f64)| Share {
             weighed: ground.weight(family) * variance,
             most: of_face * norm,
