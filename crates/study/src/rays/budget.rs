@@ -17,8 +17,9 @@ const EXPONENT: f64 = 1.3;
 /// Rays of a part and replicate at most.
 const MOST_RAYS: u32 = 1 << 20;
 /// Rays with those for the errors of large faces, over those without or those of the first step, at
-/// most.
+/// most; and how many more they may be in a replicate, since memory is predicted without them: 40 MB.
 const FOR_LARGE_FACES: f64 = 8.0;
+const MOST_FOR_LARGE_FACES: f64 = 1e6;
 /// Rays after a prolongation over those before, at least: each has its price in products.
 const LEAST_GROWTH: f64 = 1.15;
 /// By which the square aimed at is lowered until there are so many.
@@ -69,11 +70,13 @@ impl Budget {
     /// Rays of a part and replicate for each family, powers of two.
     pub(super) fn counts(&self) -> Vec<u32> {
         let (best, alone) = (self.best(), self.alone().collect::<Vec<_>>());
+        let without = self.rays(&best).max(self.first);
+        let most = without + ((FOR_LARGE_FACES - 1.0) * without).min(MOST_FOR_LARGE_FACES);
         let mut bound = MOST_RAYS;
         loop {
             let counts: Vec<u32> =
                 best.iter().zip(&alone).map(|(&best, &alone)| best.max(alone.min(bound))).collect();
-            if self.rays(&counts) <= FOR_LARGE_FACES * self.rays(&best).max(self.first) {
+            if self.rays(&counts) <= most {
                 return counts;
             }
             bound /= 2;
