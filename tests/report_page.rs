@@ -54,7 +54,7 @@ fn pages_of_all_kinds_can_be_used() {
         &["solve", "scenes/cornell_box.toml"],
         &["waves", "scenes/waves/two_plates.toml"],
         &["compare", "scenes/leblond_room.toml"],
-        &["converge", "scenes/leblond_room.toml", "--levels", "2"],
+        &["converge", "scenes/leblond_room.toml", "--levels", "3"],
         &["crosscheck", "scenes/leblond_room.toml", "--to", "5%"],
         // Half a million elements: rays cut each face into four.
         &["solve", &large_room(&place("room.toml")), "--accuracy", "50%", "--way", "rays"],
