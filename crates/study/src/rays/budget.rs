@@ -17,7 +17,8 @@ const EXPONENT: f64 = 1.3;
 /// Rays of a part and replicate at most.
 const MOST_RAYS: u32 = 1 << 20;
 /// Rays with those for the errors of large faces, over those without or those of the first step, at
-/// most; and how many more they may be in a replicate, since memory is predicted without them: 40 MB.
+/// most; and how many more they may be in a replicate, since memory is predicted without them (40
+/// MB).
 const FOR_LARGE_FACES: f64 = 8.0;
 const MOST_FOR_LARGE_FACES: f64 = 1e6;
 /// Rays after a prolongation over those before, at least: each has its price in products.
@@ -53,8 +54,9 @@ impl Budget {
         for (share, &known) in shares.iter_mut().zip(known) {
             share.weighed *= f64::from(known.max(1)).powf(EXPONENT - 1.0);
         }
-        let first = rays(&shares, known);
-        Self { shares, target, first }
+        let mut budget = Self { shares, target, first: 0.0 };
+        budget.first = budget.rays(known);
+        budget
     }
 
     /// Which families have fewer rays than their own errors need.
@@ -119,12 +121,8 @@ impl Budget {
     }
 
     fn rays(&self, counts: &[u32]) -> f64 {
-        rays(&self.shares, counts)
+        self.shares.iter().zip(counts).map(|(share, &count)| share.parts as f64 * f64::from(count)).sum()
     }
-}
-
-fn rays(shares: &[Share], counts: &[u32]) -> f64 {
-    shares.iter().zip(counts).map(|(share, &count)| share.parts as f64 * f64::from(count)).sum()
 }
 
 /// The nearest power of two.

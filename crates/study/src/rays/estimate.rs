@@ -90,7 +90,7 @@ impl Estimate {
             let reflected = ground.reflected(deviation, &absorbing);
             common.iter_mut().zip(reflected).for_each(|(variance, d)| *variance += d * d / PAIRS);
         }
-        let area: f64 = ground.mesh.faces().iter().map(|face| face.area).sum();
+        let area = ground.area();
         let together =
             |band: usize| OF_ALL * (area * common[band] / norms[band].max(f64::MIN_POSITIVE)).sqrt();
         let noise: Vec<f64> = (0..ground.bands)

@@ -103,9 +103,14 @@ impl<'m> Ground<'m> {
         self.mesh.faces().iter().enumerate().map(move |(face, it)| it.area * of(face))
     }
 
+    /// Area of all faces, m².
+    pub(super) fn area(&self) -> f64 {
+        self.mesh.faces().iter().map(|face| face.area).sum()
+    }
+
     /// Mean over the faces, of their means.
     fn mean(&self, means: &MultiVector<f64>, band: usize) -> f64 {
-        self.by_area(|face| means.row(face)[band]).sum::<f64>() / self.by_area(|_| 1.0).sum::<f64>()
+        self.by_area(|face| means.row(face)[band]).sum::<f64>() / self.area()
     }
 
     /// Relative error of a band by chance, with its confidence.
@@ -225,7 +230,7 @@ impl<'m> Ground<'m> {
 
     /// Area from which on a face is large, m².
     fn area_of_a_large_face(&self) -> f64 {
-        LARGE_FACE * self.mesh.faces().iter().map(|face| face.area).sum::<f64>()
+        LARGE_FACE * self.area()
     }
 
     /// Rays of a part and replicate for each family: these, and more where a large face would have

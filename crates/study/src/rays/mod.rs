@@ -215,7 +215,7 @@ impl Run<'_> {
     }
 
     /// Rows of the rays of a budget, prolonged until they are exact enough; or of these few, which
-    /// are not prolonged. What else has to be done; none where it is done.
+    /// are prolonged for dim faces alone. What else has to be done; none where it is done.
     fn step(
         &mut self,
         ground: &Ground,
@@ -239,7 +239,6 @@ impl Run<'_> {
             let estimate = Estimate::new(ground, &rows, &shares, (looks, self.accuracy), self.signals)?;
             let stated = estimate.stated();
             let too_large = self.too_large(&estimate, budget.is_none());
-            let dim = ground.at_least_of_dim(RAYS_OF_A_DIM_FACE, &estimate.irradiance, &counts);
             // Dark faces count little in the error that is stated, and are not to be left to the few
             // rays of the first step.
             let mut is_enough = stated <= self.accuracy;
@@ -248,14 +247,16 @@ impl Run<'_> {
                     ControlFlow::Break(Next::Divide(divided(ground, &estimate.differences)))
                 }
                 (true, _) => ControlFlow::Break(Next::Look),
-                (false, None) if dim != counts => {
-                    is_enough = false;
-                    ControlFlow::Continue(dim)
-                }
                 (false, None) => {
-                    let budget = self.budget(ground, &estimate, &counts);
-                    is_enough &= !budget.short(&counts).contains(&true);
-                    ControlFlow::Break(Next::Cast(budget))
+                    let dim = ground.at_least_of_dim(RAYS_OF_A_DIM_FACE, &estimate.irradiance, &counts);
+                    if dim == counts {
+                        let budget = self.budget(ground, &estimate, &counts);
+                        is_enough &= !budget.short(&counts).contains(&true);
+                        ControlFlow::Break(Next::Cast(budget))
+                    } else {
+                        is_enough = false;
+                        ControlFlow::Continue(dim)
+                    }
                 }
                 (false, Some(budget)) => {
                     let left = self.left(estimate.elements.min(MOST_OF_ELEMENTS * self.accuracy));
