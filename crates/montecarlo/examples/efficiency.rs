@@ -10,7 +10,9 @@ use fredholm_montecarlo::points::PointSet;
 use fredholm_montecarlo::statistics::Moments;
 use fredholm_montecarlo::{Enclosure, Groups, State, Stop, Surfaces, Tracing};
 use fredholm_scene::Scene;
+use fredholm_visibility::Occluders;
 use std::error::Error;
+use std::sync::Arc;
 
 mod common;
 use common::Clock;
@@ -31,7 +33,7 @@ impl Ground {
         let mesh = scene.mesh()?;
         let bands = scene.bands().len();
         let patches: Vec<Patch> = mesh.patches().copied().collect();
-        let surfaces = Surfaces::blocked_by(mesh.occluders(), patches)?;
+        let surfaces = Surfaces::blocked_by(Arc::new(Occluders::new(mesh.occluders())?), patches);
         let enclosure = Enclosure::of(surfaces, bands, scene.reflectance(&mesh), scene.exitance(&mesh))?;
         let faces = (0..mesh.len()).map(|leaf| mesh.face_of(leaf)).collect();
         Ok(Self { name: name.to_owned(), scene: enclosure, faces })

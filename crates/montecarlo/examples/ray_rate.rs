@@ -11,6 +11,7 @@ use fredholm_scene::Scene;
 use fredholm_visibility::Occluders;
 use std::error::Error;
 use std::hint::black_box;
+use std::sync::Arc;
 
 mod common;
 use common::Clock;
@@ -23,7 +24,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mesh = scene.mesh()?;
     let patches: Vec<Patch> = mesh.patches().copied().collect();
     let bands = scene.bands().len();
-    let surfaces = Surfaces::blocked_by(mesh.occluders(), patches.clone())?;
+    let pieces = Arc::new(Occluders::new(mesh.occluders())?);
+    let surfaces = Surfaces::blocked_by(pieces, patches.clone());
     let enclosure = Enclosure::of(surfaces, bands, scene.reflectance(&mesh), scene.exitance(&mesh))?;
     for (name, set) in [("elements", &patches[..]), ("occluders", mesh.occluders())] {
         let occluders = Occluders::new(set)?;

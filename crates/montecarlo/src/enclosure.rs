@@ -258,6 +258,8 @@ mod tests {
     use super::*;
     use crate::points::{Key, PointSet, Samples};
     use fredholm_mesh::{Cutting, Lines, MeshBuilder, Shape};
+    use fredholm_visibility::Occluders;
+    use std::sync::Arc;
 
     /// Rays against the undivided pieces find what rays against the patches find.
     #[test]
@@ -277,7 +279,8 @@ mod tests {
         let patches: Vec<Patch> = mesh.patches().copied().collect();
         let n = patches.len();
         assert!(mesh.occluders().len() < n);
-        let surfaces = Surfaces::blocked_by(mesh.occluders(), patches.clone()).unwrap();
+        let pieces = Arc::new(Occluders::new(mesh.occluders()).unwrap());
+        let surfaces = Surfaces::blocked_by(pieces, patches.clone());
         let coarse = Enclosure::of(surfaces, 1, vec![0.5; n], vec![1.0; n]).unwrap();
         let fine = Enclosure::new(patches, 1, vec![0.5; n], vec![1.0; n]).unwrap();
         let mut samples = Samples::new(PointSet::Independent, Key { seed: 3, batch: 0, stream: 0 }, 4000);

@@ -8,6 +8,7 @@ use crate::locator::Locator;
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_visibility::Occluders;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// A point of a patch.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,7 +45,7 @@ pub struct Surfaces {
     /// One of every direction that a patch is turned to.
     frames: Vec<Frame>,
     frame_of: Vec<u32>,
-    occluders: Occluders,
+    occluders: Arc<Occluders>,
     locator: Option<Locator>,
 }
 
@@ -54,21 +55,19 @@ impl Surfaces {
     /// # Errors
     /// [`MonteCarloError::Visibility`].
     pub fn new(patches: Vec<Patch>) -> Result<Self, MonteCarloError> {
-        let occluders = Occluders::new(&patches)?;
+        let occluders = Arc::new(Occluders::new(&patches)?);
         Ok(Self::of(patches, occluders, None))
     }
 
     /// Takes patches, and pieces that rays are traced against instead, which together they must
     /// cover: as few as possible, as a mesh has them.
-    ///
-    /// # Errors
-    /// [`MonteCarloError::Visibility`].
-    pub fn blocked_by(pieces: &[Patch], patches: Vec<Patch>) -> Result<Self, MonteCarloError> {
-        let locator = Locator::new(pieces, &patches);
-        Ok(Self::of(patches, Occluders::new(pieces)?, Some(locator)))
+    #[must_use]
+    pub fn blocked_by(pieces: Arc<Occluders>, patches: Vec<Patch>) -> Self {
+        let locator = Locator::new(pieces.patches(), &patches);
+        Self::of(patches, pieces, Some(locator))
     }
 
-    fn of(patches: Vec<Patch>, occluders: Occluders, locator: Option<Locator>) -> Self {
+    fn of(patches: Vec<Patch>, occluders: Arc<Occluders>, locator: Option<Locator>) -> Self {
         let (frames, frame_of) = frames(&patches);
         Self { patches, frames, frame_of, occluders, locator }
     }

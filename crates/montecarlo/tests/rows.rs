@@ -32,11 +32,12 @@ fn cut(whole: &[Patch]) -> (Vec<Patch>, Vec<Family>) {
 }
 
 fn rows(scene: &Enclosure, families: &[Family], looks: Looks, count: u32) -> Rows {
-    long_rows(&RowSampler::new(scene, families, looks, (1, 0)), families, count)
+    rows_of_all(scene, families, (looks, false), count)
 }
 
-fn long_rows(sampler: &RowSampler, families: &[Family], count: u32) -> Rows {
-    let mut rows = sampler.start();
+fn rows_of_all(scene: &Enclosure, families: &[Family], (looks, is_dark): (Looks, bool), count: u32) -> Rows {
+    let sampler = RowSampler::new(scene, families, 1);
+    let mut rows = sampler.start(looks, 0, vec![is_dark; families.len()]);
     assert!(sampler.prolong(&mut rows, &vec![count; families.len()], &Quiet));
     rows
 }
@@ -105,8 +106,7 @@ fn from_dark_families_rays_go_on_further() {
     let scene = Enclosure::new(parts, 1, vec![0.5; 24], exitance).unwrap();
     let [usual, dark] = [false, true].map(|is_dark| {
         let looks = Looks::Checked(2);
-        let sampler = RowSampler::new(&scene, &families, looks, (1, 0)).with_dark(vec![is_dark; 6]);
-        let rows = long_rows(&sampler, &families, 1024);
+        let rows = rows_of_all(&scene, &families, (looks, is_dark), 1024);
         let mut kept = MultiVector::zeros(24, 1);
         rows.apply(&MultiVector::from_fn(24, 1, |_, _| 1.0), &mut kept);
         // Of each side of the cube: the mean and the square of its standard error.
@@ -148,12 +148,13 @@ fn longer_rows_are_more_exact() {
         errors.push((square / 6.0).sqrt());
     }
     assert!(errors[3] < 1e-3 && errors[3] < errors[0] / 10.0, "faster than 1/√N: {errors:?}");
-    let sampler = RowSampler::new(&scene, &families, Looks::Checked(4), (1, 0));
-    let mut grown = sampler.start();
+    let sampler = RowSampler::new(&scene, &families, 1);
+    let start = || sampler.start(Looks::Checked(4), 0, vec![false; families.len()]);
+    let mut grown = start();
     for count in [2, 8, 16] {
         assert!(sampler.prolong(&mut grown, &vec![count; families.len()], &Quiet));
     }
-    let mut again = sampler.start();
+    let mut again = start();
     for count in [2, 4, 16] {
         assert!(sampler.prolong(&mut again, &vec![count; families.len()], &Quiet));
     }

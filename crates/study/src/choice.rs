@@ -5,11 +5,11 @@
 //! scenes of docs/notes/hierarchical.md. On fewer than 2 × 2 elements a face the matrix is seldom
 //! exact enough, and links would have to follow; else the error that it states decides whether it
 //! was enough. What rays take does not depend on what stands between surfaces, but a link takes
-//! [`RAYS_A_LINK`] and [`RAYS_AN_OCCLUDER`] for every occluder of the scene (docs/rays.md).
+//! [`RAYS_A_LINK`] and [`RAYS_AN_OBJECT`] for every object of the scene (docs/hierarchical.md).
 
 use std::fmt;
 
-use fredholm_mesh::Mesh;
+use fredholm_mesh::{Component, Mesh, Topology};
 
 use crate::options::Way;
 use crate::rays;
@@ -24,13 +24,17 @@ const PAIRS_A_LINK: f64 = 6.0;
 /// Most links at 1 % over √(faces): cells of a wall, and small things far away, are linked as
 /// wholes.
 const MOST_LINKS_OVER_ROOT_FACES: f64 = 10_000.0;
-/// Rays that take the time of one link, and of what one occluder adds to it.
-const RAYS_A_LINK: f64 = 11.0;
-const RAYS_AN_OCCLUDER: f64 = 0.125;
-/// How often rays must go into the time of links: elements chosen for links show more.
-const RAYS_MARGIN: f64 = 2.0;
+/// Rays that take the time of one link, and of what one object adds to it: links take 3 rays' time
+/// in a box with a plate in it and 68 in a room with eleven things.
+const RAYS_A_LINK: f64 = 6.0;
+const RAYS_AN_OBJECT: f64 = 3.0;
+/// Flat pieces of a curved object that hide as much as one object.
+const PIECES_OF_AN_OBJECT: f64 = 32.0;
+/// How often rays must go into the time of links: dim faces take more rays than are predicted, and
+/// elements chosen for links show more.
+const RAYS_MARGIN: f64 = 4.0;
 /// Rays of about a second, for which links are not given up.
-const FEW_RAYS: f64 = 1.3e6;
+const FEW_RAYS: f64 = 1.1e6;
 /// Links of an element.
 const OF_ELEMENT: f64 = 10.0;
 
@@ -50,8 +54,9 @@ pub(crate) struct Extent {
     pub(crate) faces: f64,
     /// Fewest elements of a face.
     pub(crate) fewest: usize,
-    /// Undivided pieces that may stand between elements.
-    pub(crate) occluders: usize,
+    /// Things that may stand between elements: pieces that hang together, those of curved ones
+    /// counted as several.
+    pub(crate) objects: f64,
     /// Faces of equal area that need as many rays.
     pub(crate) alike: f64,
 }
@@ -63,10 +68,15 @@ impl Extent {
             elements: mesh.len() as f64,
             faces: count as f64,
             fewest: (0..count).map(|face| mesh.leaves_of_face(face).len()).min().unwrap_or(0),
-            occluders: mesh.occluders().len(),
+            objects: Topology::of(mesh.occluders()).components.iter().map(objects).sum(),
             alike: rays::alike(mesh),
         }
     }
+}
+
+/// As many things as pieces that hang together count for.
+fn objects(component: &Component) -> f64 {
+    (component.pieces as f64 / PIECES_OF_AN_OBJECT).max(1.0)
 }
 
 /// What was predicted, and what it came to.
@@ -96,7 +106,7 @@ impl Choice {
         let pairs = 0.5 * extent.elements * (extent.elements + 1.0);
         let links = LINKS_A_FACE * extent.faces * (0.01 / accuracy).powf(LINKS_EXPONENT);
         let rays = rays::expected(extent.elements, extent.alike, accuracy);
-        let time = links * (RAYS_A_LINK + RAYS_AN_OCCLUDER * extent.occluders as f64);
+        let time = links * (RAYS_A_LINK + RAYS_AN_OBJECT * extent.objects);
         if free && time > FEW_RAYS && RAYS_MARGIN * rays < time {
             return Self::Rays { links, rays };
         }
@@ -165,7 +175,7 @@ mod tests {
 
     fn choice(faces: f64, fewest: usize, accuracy: f64) -> Choice {
         let elements = faces * fewest as f64;
-        let extent = Extent { elements, faces, fewest, occluders: 12, alike: faces };
+        let extent = Extent { elements, faces, fewest, objects: 3.0, alike: faces };
         Choice::new(extent, accuracy, true)
     }
 
@@ -182,17 +192,17 @@ mod tests {
 
     #[test]
     fn rays_take_the_place_of_many_links_in_furnished_scenes() {
-        let of = |faces: f64, occluders: usize, accuracy: f64| {
-            let extent = Extent { elements: faces, faces, fewest: 1, occluders, alike: faces };
+        let of = |faces: f64, objects: f64, accuracy: f64| {
+            let extent = Extent { elements: faces, faces, fewest: 1, objects, alike: faces };
             Choice::new(extent, accuracy, true)
         };
         // Furnished rooms, and a city.
-        for (faces, occluders) in [(2200.0, 300), (2900.0, 640), (13_000.0, 6000)] {
-            assert!(of(faces, occluders, 0.05).is_rays() && of(faces, occluders, 0.01).is_rays());
+        for (faces, objects) in [(680.0, 11.0), (2200.0, 52.0), (2900.0, 39.0), (13_000.0, 3000.0)] {
+            assert!(of(faces, objects, 0.05).is_rays() && of(faces, objects, 0.02).is_rays(), "{faces}");
         }
         // A box, and great accuracy.
-        assert!(!of(600.0, 17, 0.01).is_rays() && !of(2900.0, 100, 0.0005).is_rays());
-        let extent = Extent { elements: 2900.0, faces: 2900.0, fewest: 1, occluders: 640, alike: 2900.0 };
+        assert!(!of(600.0, 4.0, 0.01).is_rays() && !of(2900.0, 10.0, 0.0005).is_rays());
+        let extent = Extent { elements: 2900.0, faces: 2900.0, fewest: 1, objects: 39.0, alike: 2900.0 };
         assert!(!Choice::new(extent, 0.05, false).is_rays(), "links were asked for");
     }
 }

@@ -1,13 +1,13 @@
 //! What the points of a picture look at to gather their light.
 
+use std::sync::Arc;
+
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_montecarlo::points::{Key, PointSet, Samples};
 use fredholm_montecarlo::{Site, Surfaces};
 use fredholm_report::{DIRECTION_GROUPS, Gathering, Seen, Where};
 
-use crate::error::Error;
 use crate::problem::Problem;
-use crate::stochastic::failure;
 
 /// Directions of a group where all is gathered, and where only what is uneven is. Powers of two are
 /// where Sobol points are most even.
@@ -24,11 +24,11 @@ pub(crate) struct Directions {
 }
 
 impl Directions {
-    pub(crate) fn new(problem: &Problem, place: Where) -> Result<Self, Error> {
+    pub(crate) fn new(problem: &Problem, place: Where) -> Self {
         let patches: Vec<Patch> = problem.mesh.patches().copied().collect();
-        let surfaces = Surfaces::blocked_by(problem.mesh.occluders(), patches);
+        let surfaces = Surfaces::blocked_by(Arc::clone(&problem.occluders), patches);
         let of_group = if place == Where::Everywhere { EVERYWHERE } else { WHERE_UNEVEN };
-        Ok(Self { surfaces: surfaces.map_err(failure)?, of_group })
+        Self { surfaces, of_group }
     }
 }
 

@@ -258,7 +258,7 @@ pub(crate) fn compute(
 pub(crate) fn problem(
     (scene, options): (&Arc<Scene>, &SolveSettings),
     mesh: Mesh,
-    (warnings, occluders): (Vec<String>, Occluders),
+    (warnings, occluders): (Vec<String>, Arc<Occluders>),
     (solver, plan): (SolverEntry, Plan),
 ) -> Result<Problem, Error> {
     let (unknowns, dense) = (mesh.len(), Some(Dense { bytes: 0 }));

@@ -45,10 +45,10 @@ impl<'a> Lamplight<'a> {
     ) -> Result<Self, Error> {
         let (scene, mesh) = (&problem.scene, &problem.mesh);
         let reflectance = scene.reflectance(mesh);
-        let gathering = |place| -> Result<_, Error> { Ok(Some((Directions::new(problem, place)?, place))) };
+        let gathering = |place| Some((Directions::new(problem, place), place));
         let none = |reflectance| {
             let gathering = match gathers {
-                Some(Where::Everywhere) => gathering(Where::Everywhere)?,
+                Some(Where::Everywhere) => gathering(Where::Everywhere),
                 _ => None,
             };
             Ok(Self { lamps: None, exitance: Vec::new(), reflectance, gathering, watch })
@@ -95,7 +95,7 @@ impl<'a> Lamplight<'a> {
         );
         let gathering = match gathers {
             Some(Where::Uneven) if mesh.len() > MOST_GATHERED_ELEMENTS => None,
-            Some(place) => gathering(place)?,
+            Some(place) => gathering(place),
             None => None,
         };
         Ok(Self { lamps: Some((looks, direct.as_slice())), exitance, reflectance, gathering, watch })

@@ -32,7 +32,7 @@ pub(crate) struct Problem {
     /// Memory of the whole run.
     pub(crate) plan: Plan,
     pub(crate) warnings: Vec<String>,
-    pub(crate) occluders: Occluders,
+    pub(crate) occluders: Arc<Occluders>,
 }
 
 /// What a verb adds to the memory of a solution, of a scene with so many elements.
@@ -131,7 +131,7 @@ pub(crate) struct Open {
     pub(crate) options: ProblemSettings,
     pub(crate) mesh: Mesh,
     pub(crate) warnings: Vec<String>,
-    pub(crate) occluders: Occluders,
+    pub(crate) occluders: Arc<Occluders>,
 }
 
 impl Open {
@@ -201,9 +201,9 @@ pub(crate) fn prepare(patches: &[Patch]) -> Result<Occluders, Error> {
     Occluders::new(patches).map_err(|error| Error::new(ErrorKind::Input, error))
 }
 
-pub(crate) fn occluders(scene: &Scene, mesh: &Mesh) -> Result<Occluders, Error> {
+pub(crate) fn occluders(scene: &Scene, mesh: &Mesh) -> Result<Arc<Occluders>, Error> {
     let named = |error| Error::new(ErrorKind::Input, format!("{}: {error}", scene.path().display()));
-    Occluders::new(mesh.occluders()).map_err(named)
+    Occluders::new(mesh.occluders()).map(Arc::new).map_err(named)
 }
 
 /// The discretisation asked for, which the stored format must suit.

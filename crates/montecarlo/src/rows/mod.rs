@@ -85,6 +85,10 @@ impl Looks {
 pub struct Rows {
     bands: usize,
     looks: Looks,
+    /// Number that the points depend on.
+    stage: u32,
+    /// Families whose rays go on further.
+    dark: Vec<bool>,
     /// Rays of a replicate of each part.
     counts: Vec<u32>,
     /// Sums over the rays, for every part, replicate and band, of what comes from lamps directly and

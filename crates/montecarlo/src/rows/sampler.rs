@@ -29,11 +29,7 @@ pub struct RowSampler<'a> {
     lamps: LampTree,
     /// What each family sees of them.
     cuts: Cuts,
-    looks: Looks,
-    /// Which families are dark.
-    dark: Vec<bool>,
     seed: u64,
-    stage: u32,
 }
 
 /// The rays of some families.
@@ -50,15 +46,10 @@ struct Cast {
 }
 
 impl<'a> RowSampler<'a> {
-    /// Rows of the parts of these families, which together are the patches of the enclosure in
-    /// order. The same seed and stage give the same rows; rows of other stages are independent.
+    /// Casts rays from the parts of these families, which together are the patches of the enclosure
+    /// in order.
     #[must_use]
-    pub fn new(
-        scene: &'a Enclosure,
-        families: &'a [Family],
-        looks: Looks,
-        (seed, stage): (u64, u32),
-    ) -> Self {
+    pub fn new(scene: &'a Enclosure, families: &'a [Family], seed: u64) -> Self {
         let bands = scene.bands() as f64;
         let power =
             |patch: usize| scene.exitance(patch).iter().sum::<f64>() / bands * scene.patches()[patch].area();
@@ -68,29 +59,25 @@ impl<'a> RowSampler<'a> {
         let cuts = lamps.cuts(&receivers);
         let numbered = families.iter().zip(0..);
         let family_of = numbered.flat_map(|(family, k)| std::iter::repeat_n(k, family.parts.len())).collect();
-        let dark = vec![false; families.len()];
-        Self { scene, families, family_of, lamps, cuts, looks, dark, seed, stage }
+        Self { scene, families, family_of, lamps, cuts, seed }
     }
 
-    /// The same with rays that go on further where they leave one of these families, which are dark:
-    /// less is left out of what they see, at the price of more noise.
+    /// No rows yet. The same stage gives the same rows; rows of other stages are independent. Rays
+    /// go on further where they leave a family that is `dark`, one of each: less is left out of what
+    /// they see, at the price of more noise.
     #[must_use]
-    pub fn with_dark(self, dark: Vec<bool>) -> Self {
+    pub fn start(&self, looks: Looks, stage: u32, dark: Vec<bool>) -> Rows {
         debug_assert_eq!(dark.len(), self.families.len());
-        Self { dark, ..self }
-    }
-
-    /// No rows yet.
-    #[must_use]
-    pub fn start(&self) -> Rows {
         let (parts, bands) = (self.scene.len(), self.scene.bands());
         let sums = vec![0.0; parts * REPLICATES * bands];
         Rows {
             bands,
-            looks: self.looks,
+            looks,
+            stage,
+            dark,
             counts: vec![0; parts],
             direct: sums.clone(),
-            checked: if self.looks.is_checked() { sums.clone() } else { Vec::new() },
+            checked: if looks.is_checked() { sums.clone() } else { Vec::new() },
             reflected: sums,
             batches: Vec::new(),
         }
@@ -128,7 +115,7 @@ impl<'a> RowSampler<'a> {
                     return None;
                 }
                 if more > 0 {
-                    self.cast_family(family, (rows.counts[family.parts.start], more), &mut cast);
+                    self.cast_family(family, rows, more, &mut cast);
                 }
             }
             Some(cast)
@@ -182,16 +169,17 @@ impl<'a> RowSampler<'a> {
         true
     }
 
-    /// The rays `known..known + more` of each part and replicate.
-    fn cast_family(&self, family: &Family, (known, more): (u32, u32), cast: &mut Cast) {
+    /// So many rays more of each part and replicate than the rows have.
+    fn cast_family(&self, family: &Family, rows: &Rows, more: u32, cast: &mut Cast) {
         let (parts, bands) = (family.parts.len() as u32, self.scene.bands());
+        let (looks, known) = (rows.looks, rows.counts[family.parts.start]);
         // The parts are stored one after the other, so a replicate is taken part by part.
         let mut samples: [Samples; REPLICATES] = std::array::from_fn(|replicate| {
-            let batch = self.stage * REPLICATES as u32 + replicate as u32;
+            let batch = rows.stage * REPLICATES as u32 + replicate as u32;
             let key = Key { seed: self.seed, batch, stream: family.stream };
             Samples::new(PointSet::Sobol, key, 0)
         });
-        let is_dark = self.dark[self.family_of[family.parts.start] as usize];
+        let is_dark = rows.dark[self.family_of[family.parts.start] as usize];
         let near = if is_dark { NEAR_FROM_THE_DARK } else { NEAR };
         let mut weight = vec![1.0; bands];
         for part in 0..parts {
@@ -200,7 +188,7 @@ impl<'a> RowSampler<'a> {
                 let (sum, before) = (cast.direct.len(), cast.walked.len());
                 cast.direct.resize(sum + bands, 0.0);
                 cast.reflected.resize(sum + bands, 0.0);
-                if self.looks.is_checked() {
+                if looks.is_checked() {
                     cast.checked.resize(sum + bands, 0.0);
                 }
                 for ray in begin..begin + more {
@@ -213,9 +201,10 @@ impl<'a> RowSampler<'a> {
                         Meets::Back => BACK,
                         Meets::Lit(site) => {
                             let reflected = &mut cast.reflected[sum..];
-                            match self.walk((from, site, near), &mut draw, &mut weight, reflected) {
+                            let way = (from, site, near);
+                            match self.walk(way, looks, &mut draw, (&mut weight, reflected)) {
                                 Some((end, 0)) => {
-                                    if self.looks.checks((ray - begin) as usize) {
+                                    if looks.checks((ray - begin) as usize) {
                                         let rho = self.scene.reflectance(end.patch);
                                         self.look(end, &mut draw, unshared, (rho, &mut cast.checked[sum..]));
                                     }
@@ -289,9 +278,9 @@ impl<'a> RowSampler<'a> {
     fn walk(
         &self,
         (mut from, mut at, near): (Site, Site, f64),
+        looks: Looks,
         draw: &mut Draw,
-        weight: &mut [f64],
-        sum: &mut [f64],
+        (weight, sum): (&mut [f64], &mut [f64]),
     ) -> Option<(Site, usize)> {
         let mut reflected = weight.to_vec();
         for reflections in 0.. {
@@ -303,7 +292,7 @@ impl<'a> RowSampler<'a> {
             let rho = self.scene.reflectance(at.patch);
             reflected.iter_mut().zip(&*weight).zip(rho).for_each(|((out, w), rho)| *out = w * rho / survival);
             if !self.goes_on(from, at, near) {
-                if self.looks == Looks::Everywhere {
+                if looks == Looks::Everywhere {
                     self.look(at, draw, unshared, (&reflected, sum));
                 }
                 for weight in weight.iter_mut() {

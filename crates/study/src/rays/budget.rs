@@ -17,10 +17,14 @@ const EXPONENT: f64 = 1.3;
 /// Rays of a part and replicate at most.
 const MOST_RAYS: u32 = 1 << 20;
 /// Rays with those for the errors of large faces, over those without or those of the first step, at
-/// most; and how many more they may be in a replicate, since memory is predicted without them (40
-/// MB).
+/// most; and how many more they may be in a replicate, since memory is predicted without them (60
+/// MB, with those for doubtful ones).
 const FOR_LARGE_FACES: f64 = 8.0;
 const MOST_FOR_LARGE_FACES: f64 = 1e6;
+/// Rays with those for large faces that are in doubt in the end, over those of a budget, at most; and
+/// the step in which fewer are taken for doubtful.
+const FOR_DOUBTFUL: f64 = 1.5;
+const STEP_OF_RATIO: f64 = 1.2;
 /// Rays after a prolongation over those before, at least: each has its price in products.
 const LEAST_GROWTH: f64 = 1.15;
 /// By which the square aimed at is lowered until there are so many.
@@ -59,6 +63,30 @@ impl Budget {
         budget
     }
 
+    /// Four times the rays of the families whose error is above its bound by more than a ratio, of
+    /// those `doubts`: by 1, or as much more as keeps all within what they may have.
+    pub(super) fn of_doubtful(&self, counts: &[u32], doubts: &[f64]) -> Vec<u32> {
+        let most = FOR_DOUBTFUL * self.most();
+        let above = |ratio: f64| -> Vec<u32> {
+            let of = |(&n, &doubt): (&u32, &f64)| if doubt > ratio { (4 * n).min(MOST_RAYS) } else { n };
+            counts.iter().zip(doubts).map(of).collect()
+        };
+        let mut ratio = 1.0;
+        loop {
+            let more = above(ratio);
+            if more == counts || self.rays(&more) <= most {
+                return more;
+            }
+            ratio *= STEP_OF_RATIO;
+        }
+    }
+
+    /// Rays at most, with those for the errors of large faces.
+    fn most(&self) -> f64 {
+        let without = self.rays(&self.best()).max(self.first);
+        without + ((FOR_LARGE_FACES - 1.0) * without).min(MOST_FOR_LARGE_FACES)
+    }
+
     /// Which families have fewer rays than their own errors need.
     pub(super) fn short(&self, counts: &[u32]) -> Vec<bool> {
         self.alone().zip(counts).map(|(alone, &count)| alone > count).collect()
@@ -72,8 +100,7 @@ impl Budget {
     /// Rays of a part and replicate for each family, powers of two.
     pub(super) fn counts(&self) -> Vec<u32> {
         let (best, alone) = (self.best(), self.alone().collect::<Vec<_>>());
-        let without = self.rays(&best).max(self.first);
-        let most = without + ((FOR_LARGE_FACES - 1.0) * without).min(MOST_FOR_LARGE_FACES);
+        let most = self.most();
         let mut bound = MOST_RAYS;
         loop {
             let counts: Vec<u32> =
@@ -164,6 +191,26 @@ mod tests {
         let rays = Budget::new(shares, &[1; 50], 3.0).counts();
         let left = f64::from(rays[7]).powf(-EXPONENT);
         assert!((0.01..0.04).contains(&left) && rays[8] < rays[7], "{left} {rays:?}");
+    }
+
+    #[test]
+    fn families_in_doubt_get_more_rays_the_worst_first() {
+        let shares = vec![Share { weighed: 1.0, most: f64::INFINITY, parts: 4 }; 50];
+        let budget = Budget::new(shares, &[1; 50], 1.0);
+        let counts = budget.counts();
+        let mut doubts = vec![0.5; 50];
+        assert_eq!(budget.of_doubtful(&counts, &doubts), counts);
+        (doubts[3], doubts[7]) = (1.1, 3.0);
+        let more = budget.of_doubtful(&counts, &doubts);
+        let grown = |k: usize| more[k] == 4 * counts[k];
+        assert!((0..50).all(|k| grown(k) == (k == 3 || k == 7)), "{more:?}");
+        // Where all are in doubt, those get more that are so most, as many as may.
+        let doubts: Vec<f64> = (0..50).map(|k| 1.0 + f64::from(k)).collect();
+        let few = Budget::new(vec![budget.shares[0]; 50], &[1 << 19; 50], 1.0);
+        let counts = vec![few.most() as u32 / 200; 50];
+        let more = few.of_doubtful(&counts, &doubts);
+        assert!(few.rays(&more) <= FOR_DOUBTFUL * few.most() && more[49] > counts[49], "{more:?}");
+        assert_eq!(more[0], counts[0]);
     }
 
     #[test]

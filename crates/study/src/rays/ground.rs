@@ -1,10 +1,13 @@
 //! The elements that rows are of, in families of four parts, and sums over them.
 
+use std::sync::Arc;
+
 use fredholm_linop::MultiVector;
 use fredholm_mesh::{Mesh, Patch};
 use fredholm_montecarlo::rows::{Family, REPLICATES, Rows};
 use fredholm_montecarlo::{Enclosure, Surfaces};
 use fredholm_scene::Scene;
+use fredholm_visibility::Occluders;
 
 use super::estimate::{PAIRS, confidence};
 use crate::error::Error;
@@ -34,13 +37,13 @@ pub(super) struct Ground<'m> {
 
 impl<'m> Ground<'m> {
     /// Takes a mesh whose leaves are the parts.
-    pub(super) fn new(scene: &Scene, mesh: &'m Mesh) -> Result<Self, Error> {
+    pub(super) fn new(scene: &Scene, mesh: &'m Mesh, occluders: &Arc<Occluders>) -> Result<Self, Error> {
         let patches: Vec<Patch> = mesh.patches().copied().collect();
         let areas = patches.iter().map(Patch::area).collect();
         let (bands, reflectance) = (scene.bands().len(), scene.reflectance(mesh));
-        let lit = Surfaces::blocked_by(mesh.occluders(), patches)
-            .and_then(|all| Enclosure::of(all, bands, reflectance.clone(), scene.exitance(mesh)))
-            .map_err(failure)?;
+        let surfaces = Surfaces::blocked_by(Arc::clone(occluders), patches);
+        let lit =
+            Enclosure::of(surfaces, bands, reflectance.clone(), scene.exitance(mesh)).map_err(failure)?;
         let face_of = (0..mesh.len()).map(|part| mesh.face_of(part)).collect();
         Ok(Self { mesh, bands, lit, families: families(mesh), reflectance, areas, face_of })
     }
@@ -224,6 +227,28 @@ impl<'m> Ground<'m> {
             let square = means.row(face)[band].max(least).powi(2);
             let share = square * family.whole.area() / norm.max(f64::MIN_POSITIVE);
             if faces[face].area > large { share } else { f64::INFINITY }
+        };
+        self.families.iter().map(of).collect()
+    }
+
+    /// Standard errors of the large faces of families, relative to their irradiance or that of the
+    /// darkest, over `most`, in the worst band; 0 for others.
+    pub(super) fn doubts(
+        &self,
+        irradiance: &MultiVector<f64>,
+        variances: &MultiVector<f64>,
+        most: f64,
+    ) -> Vec<f64> {
+        let means = self.means(irradiance);
+        let least: Vec<f64> = (0..self.bands).map(|band| DARKEST * self.mean(&means, band)).collect();
+        let large = self.area_of_a_large_face();
+        let of = |family: &Family| {
+            let face = self.face_of[family.parts.start];
+            let bands = means.row(face).iter().zip(&least).zip(variances.row(face));
+            let ratio = |((e, least), variance): ((&f64, &f64), &f64)| {
+                variance.sqrt() / (most * e.max(*least)).max(f64::MIN_POSITIVE)
+            };
+            if self.mesh.faces()[face].area > large { bands.map(ratio).fold(0.0, f64::max) } else { 0.0 }
         };
         self.families.iter().map(of).collect()
     }

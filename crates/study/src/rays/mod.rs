@@ -25,6 +25,7 @@ use fredholm_linop::StopReason;
 use fredholm_mesh::{Mesh, Patch};
 use fredholm_montecarlo::rows::{Family, Looks, RowSampler};
 use fredholm_scene::Scene;
+use fredholm_visibility::Occluders;
 
 use self::budget::{Budget, Share};
 use self::estimate::Estimate;
@@ -123,7 +124,7 @@ pub(crate) fn compute(
     let occluders = stages.run("visibility", || occluders(scene, &mesh))?;
     stages.begin_saving()?;
     let signals = stages.signals();
-    let found = stages.run("solution", || solved(scene, &mut mesh, accuracy, &signals))?;
+    let found = stages.run("solution", || solved((scene, &occluders), &mut mesh, accuracy, &signals))?;
     let entry =
         registry::build(registry::USUAL_SOLVER).map_err(|error| Error::new(ErrorKind::Input, error))?;
     let problem = hierarchical::problem((scene, options), mesh, (warnings, occluders), (entry, plan))?;
@@ -172,13 +173,18 @@ enum Next {
     Divide(Vec<bool>),
 }
 
-fn solved(scene: &Scene, mesh: &mut Mesh, accuracy: f64, signals: &Signals) -> Result<Found, Error> {
+fn solved(
+    (scene, occluders): (&Scene, &Arc<Occluders>),
+    mesh: &mut Mesh,
+    accuracy: f64,
+    signals: &Signals,
+) -> Result<Found, Error> {
     let chosen: Vec<bool> = in_four(mesh).collect();
     mesh.split_leaves(|leaf| chosen[leaf]).map_err(|error| Error::new(ErrorKind::Resources, error))?;
     let mut run = Run { accuracy, signals, stage: 0, rays: 0, best: None };
     let mut everywhere = false;
     loop {
-        let ground = Ground::new(scene, mesh)?;
+        let ground = Ground::new(scene, mesh, occluders)?;
         let divided = run.on(&ground, &mut everywhere)?;
         let Some(chosen) = divided else { break };
         mesh.split_leaves(|part| chosen[part]).map_err(|error| Error::new(ErrorKind::Resources, error))?;
@@ -201,11 +207,12 @@ impl Run<'_> {
         let few = OF_FIRST_STEP * (DEVIATION / self.accuracy).powi(2) / 64.0;
         let few = 1 << few.clamp(1.0, MOST_OF_FIRST_STEP).log2().round() as u32;
         let first = ground.at_least(RAYS_OF_A_LARGE_FACE, &vec![few; ground.families.len()]);
+        let sampler = RowSampler::new(&ground.lit, &ground.families, SEED);
         let mut budget = None;
         loop {
             let checked = if budget.is_none() { 1 } else { CHECKED };
             let looks = if *everywhere { Looks::Everywhere } else { Looks::Checked(checked) };
-            match self.step(ground, (looks, &first), budget.take())? {
+            match self.step((ground, &sampler), (looks, &first), budget.take())? {
                 None => return Ok(None),
                 Some(Next::Cast(next)) => budget = Some(next),
                 Some(Next::Look) => (*everywhere, budget) = (true, None),
@@ -218,16 +225,14 @@ impl Run<'_> {
     /// are prolonged for dim faces alone. What else has to be done; none where it is done.
     fn step(
         &mut self,
-        ground: &Ground,
+        (ground, sampler): (&Ground, &RowSampler),
         (looks, first): (Looks, &[u32]),
         mut budget: Option<Budget>,
     ) -> Result<Option<Next>, Error> {
         let dark = budget.as_ref().map_or_else(|| vec![false; first.len()], Budget::dark);
-        let sampler =
-            RowSampler::new(&ground.lit, &ground.families, looks, (SEED, self.stage)).with_dark(dark);
+        let (mut rows, mut exposed) = (sampler.start(looks, self.stage, dark), None);
         self.stage += 1;
         let mut counts = budget.as_ref().map_or_else(|| first.to_vec(), Budget::counts);
-        let (mut rows, mut exposed) = (sampler.start(), None);
         loop {
             let cast = rows.rays();
             if !sampler.prolong(&mut rows, &counts, self.signals.watch) {
@@ -259,8 +264,16 @@ impl Run<'_> {
                     }
                 }
                 (false, Some(budget)) => {
+                    // A face of which a few rays have found far more light than all others.
+                    let more = budget.of_doubtful(&counts, &estimate.doubts);
                     let left = self.left(estimate.elements.min(MOST_OF_ELEMENTS * self.accuracy));
-                    ControlFlow::Continue(budget.prolonged(&counts, estimate.worst_noise(), left))
+                    ControlFlow::Continue(if is_enough {
+                        is_enough = more == counts;
+                        more
+                    } else {
+                        let wanted = budget.prolonged(&counts, estimate.worst_noise(), left);
+                        wanted.into_iter().zip(more).map(|(wanted, more)| wanted.max(more)).collect()
+                    })
                 }
             };
             self.best = Some(Found { estimate, exposed: shares.clone(), rays: self.rays });

@@ -13,7 +13,7 @@ use crate::error::Error;
 use crate::memory::{self, Plan};
 use crate::options::{ProblemOptions, SceneSource};
 use crate::prediction::BYTES_OF_AN_ELEMENT;
-use crate::problem::{Problem, check, prepare, scene_failure};
+use crate::problem::{Problem, check, occluders, prepare, scene_failure};
 use crate::solution::Solution;
 use crate::stages::Stages;
 
@@ -84,8 +84,8 @@ pub(crate) fn enclosure(scene: &Scene, mesh: &Mesh) -> Result<Enclosure, Error> 
     let patches: Vec<Patch> = mesh.patches().copied().collect();
     let shares = exposed_shares(&mesh.patches().collect::<Vec<_>>(), &prepare(&patches)?);
     let (rho, exitance) = (scene.reflectance(mesh), scene.exitance(mesh));
-    Surfaces::blocked_by(mesh.occluders(), patches)
-        .and_then(|all| Enclosure::of(all, scene.bands().len(), rho, exitance)?.with_exposed(shares))
+    Enclosure::of(Surfaces::blocked_by(occluders(scene, mesh)?, patches), scene.bands().len(), rho, exitance)
+        .and_then(|all| all.with_exposed(shares))
         .map_err(failure)
 }
 
