@@ -259,7 +259,7 @@ class Scene(LightStudies):
             elements are then chosen where they are needed. Left out: the elements of the scene.
         way : {"links", "rays"}, optional
             How the accuracy is reached: by hierarchical radiosity, or by rays from the elements
-            of the scene; left out, as is predicted to cost least.
+            of the scene; left out, as is predicted to cost about the least.
         goal : str or sequence of str
             Surfaces whose mean irradiance is to have the accuracy; all else is only as exact as
             that needs.

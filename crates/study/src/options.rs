@@ -230,7 +230,7 @@ pub struct SolveOptions {
     /// Relative error of the irradiance of the faces to reach, above 0 and below 1; the elements
     /// are then chosen where they are needed. None: the scene's, else the elements of the scene.
     pub accuracy: Option<f64>,
-    /// How the accuracy is to be reached. None: as is predicted to cost least.
+    /// How the accuracy is to be reached. None: as is predicted to cost about the least.
     pub way: Option<Way>,
     /// Surfaces, by their names, whose mean irradiance is to have the accuracy; all else is only as
     /// exact as that needs.

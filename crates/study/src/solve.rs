@@ -404,7 +404,7 @@ pub(crate) fn predicted(asked: &SolveOptions, scene: &Scene, accuracy: f64) -> R
     let settings = hierarchical::options(asked, scene, accuracy)?;
     let free = is_free(asked, scene)
         && rays::plan_on(scene, &mesh, &settings, accuracy).fits(options.memory_limit());
-    let choice = Choice::new(Extent::of(&mesh), accuracy, free);
+    let choice = Choice::new(Extent::of(&mesh, free), accuracy);
     let fits = fits(&options, mesh.len(), scene.bands().len());
     Ok(if choice.is_matrix() && !fits { Choice::Memory } else { choice })
 }

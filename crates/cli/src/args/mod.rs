@@ -75,9 +75,9 @@ A mesh file stands for a scene: .obj, .stl, .ply, .gltf, .glb, .msh (Gmsh 4.1), 
 file: Kd and Ke); where nothing emits, light comes evenly from all sides. What was taken is told.
 
 An accuracy is reached by hierarchical radiosity, by the matrix of the scene's elements, or in
-furnished scenes by rays, whichever is predicted to cost least; the summary says which. With the
-former, mesh.png shows the elements and links.png what the element in the middle of the picture
-receives its light from.
+furnished scenes by rays, whichever is predicted to cost about the least; the summary says which.
+With the former, mesh.png shows the elements and links.png what the element in the middle of the
+picture receives its light from.
 
 Ctrl-C during the assembly ends the run with nothing written; during the solution by an
 iterative solver the current iterate is written as a result marked \"partial\", with a small
@@ -380,7 +380,7 @@ pub(crate) struct SolveArgs {
     /// chosen by hierarchical radiosity [default: the scene's, else its elements]
     #[arg(long, value_name = "E", value_parser = accuracy)]
     pub(crate) accuracy: Option<f64>,
-    /// How to reach the accuracy [default: the way that is predicted to cost least]
+    /// How to reach the accuracy [default: the way that is predicted to cost about the least]
     #[arg(long, value_enum, value_name = "WAY")]
     pub(crate) way: Option<Way>,
     /// Surfaces, by their names, whose mean irradiance is to have the accuracy; all else is only as

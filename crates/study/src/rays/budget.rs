@@ -9,7 +9,8 @@
 //! ```
 //!
 //! with m parts (from the derivative of Σ w v_1 n^{−a} + Σ m n/λ′). A large face that is dark
-//! counts little in this sum; it gets the rays that its own error needs.
+//! counts little in this sum; it gets the rays that its own error needs. Where its error turns out to
+//! be larger than expected in the end, it gets more.
 
 /// Exponent a with which the variance falls: measured on furnished rooms and cities, where it is 1.4
 /// to 1.5 (docs/rays.md).
@@ -17,14 +18,13 @@ const EXPONENT: f64 = 1.3;
 /// Rays of a part and replicate at most.
 const MOST_RAYS: u32 = 1 << 20;
 /// Rays with those for the errors of large faces, over those without or those of the first step, at
-/// most; and how many more they may be in a replicate, since memory is predicted without them (60
-/// MB, with those for doubtful ones).
+/// most; and how many more they may be in a replicate, since memory is predicted for usual ones.
 const FOR_LARGE_FACES: f64 = 8.0;
 const MOST_FOR_LARGE_FACES: f64 = 1e6;
-/// Rays with those for large faces that are in doubt in the end, over those of a budget, at most; and
-/// the step in which fewer are taken for doubtful.
-const FOR_DOUBTFUL: f64 = 1.5;
-const STEP_OF_RATIO: f64 = 1.2;
+/// Rays with those for large faces that are uncertain in the end, over the most without them; and the
+/// step by which fewer faces are taken for uncertain.
+const FOR_UNCERTAIN: f64 = 1.5;
+const STEP_OF_LIMIT: f64 = 1.2;
 /// Rays after a prolongation over those before, at least: each has its price in products.
 const LEAST_GROWTH: f64 = 1.15;
 /// By which the square aimed at is lowered until there are so many.
@@ -63,21 +63,24 @@ impl Budget {
         budget
     }
 
-    /// Four times the rays of the families whose error is above its bound by more than a ratio, of
-    /// those `doubts`: by 1, or as much more as keeps all within what they may have.
-    pub(super) fn of_doubtful(&self, counts: &[u32], doubts: &[f64]) -> Vec<u32> {
-        let most = FOR_DOUBTFUL * self.most();
-        let above = |ratio: f64| -> Vec<u32> {
-            let of = |(&n, &doubt): (&u32, &f64)| if doubt > ratio { (4 * n).min(MOST_RAYS) } else { n };
-            counts.iter().zip(doubts).map(of).collect()
+    /// Four times the rays of families whose large faces are uncertain, which is where these ratios are
+    /// above 1; where that is too many, of those only that are above a higher limit.
+    ///
+    /// That lets rows decide by what they vary themselves. It is done once the error over all faces is
+    /// small: what too few rays found too dark stays, and what they found too bright is mended.
+    pub(super) fn of_uncertain(&self, counts: &[u32], uncertainties: &[f64]) -> Vec<u32> {
+        let most = FOR_UNCERTAIN * self.most();
+        let above = |limit: f64| -> Vec<u32> {
+            let of = |(&n, &ratio): (&u32, &f64)| if ratio > limit { (4 * n).min(MOST_RAYS) } else { n };
+            counts.iter().zip(uncertainties).map(of).collect()
         };
-        let mut ratio = 1.0;
+        let mut limit = 1.0;
         loop {
-            let more = above(ratio);
+            let more = above(limit);
             if more == counts || self.rays(&more) <= most {
                 return more;
             }
-            ratio *= STEP_OF_RATIO;
+            limit *= STEP_OF_LIMIT;
         }
     }
 
@@ -194,23 +197,23 @@ mod tests {
     }
 
     #[test]
-    fn families_in_doubt_get_more_rays_the_worst_first() {
+    fn uncertain_families_get_more_rays_the_worst_first() {
         let shares = vec![Share { weighed: 1.0, most: f64::INFINITY, parts: 4 }; 50];
         let budget = Budget::new(shares, &[1; 50], 1.0);
         let counts = budget.counts();
-        let mut doubts = vec![0.5; 50];
-        assert_eq!(budget.of_doubtful(&counts, &doubts), counts);
-        (doubts[3], doubts[7]) = (1.1, 3.0);
-        let more = budget.of_doubtful(&counts, &doubts);
-        let grown = |k: usize| more[k] == 4 * counts[k];
-        assert!((0..50).all(|k| grown(k) == (k == 3 || k == 7)), "{more:?}");
-        // Where all are in doubt, those get more that are so most, as many as may.
-        let doubts: Vec<f64> = (0..50).map(|k| 1.0 + f64::from(k)).collect();
-        let few = Budget::new(vec![budget.shares[0]; 50], &[1 << 19; 50], 1.0);
-        let counts = vec![few.most() as u32 / 200; 50];
-        let more = few.of_doubtful(&counts, &doubts);
-        assert!(few.rays(&more) <= FOR_DOUBTFUL * few.most() && more[49] > counts[49], "{more:?}");
-        assert_eq!(more[0], counts[0]);
+        let mut ratios = vec![0.5; 50];
+        assert_eq!(budget.of_uncertain(&counts, &ratios), counts);
+        (ratios[3], ratios[7]) = (1.1, 3.0);
+        let more = budget.of_uncertain(&counts, &ratios);
+        assert!((0..50).all(|k| (more[k] == 4 * counts[k]) == (k == 3 || k == 7)), "{more:?}");
+        // Where all are uncertain the worst get more, as many as may.
+        let ratios: Vec<f64> = (0..50).map(|k| 1.5 + f64::from(k)).collect();
+        let counts = vec![(0.8 * budget.most() / 200.0) as u32; 50];
+        let more = budget.of_uncertain(&counts, &ratios);
+        let first = (0..50).find(|&k| more[k] > counts[k]).unwrap();
+        assert!((first..50).all(|k| more[k] == 4 * counts[k]), "{more:?}");
+        assert!((1..49).contains(&first), "some get more, and some do not: {first}");
+        assert!(budget.rays(&more) <= FOR_UNCERTAIN * budget.most());
     }
 
     #[test]

@@ -27,8 +27,8 @@ const RESIDUAL: f64 = 0.01;
 const MOST_ITERATIONS: usize = 500;
 /// Stated error over the standard error, at least: faces may err together.
 const CONFIDENCE: f64 = 1.25;
-/// Own standard error of a large face over the accuracy from which on it is in doubt: hardly any is
-/// off by four times as much.
+/// Own standard error of a large face over the accuracy from which on it is uncertain: few are off by
+/// four times as much.
 const MOST_OF_FACE: f64 = 1.25;
 /// Standard errors that are stated for a single face.
 const OF_FACE: f64 = 2.0;
@@ -55,7 +55,7 @@ pub(super) struct Estimate {
     pub(super) large: Vec<f64>,
     /// Own standard error of the large face of each family over [`MOST_OF_FACE`] accuracies; 0 for
     /// others.
-    pub(super) doubts: Vec<f64>,
+    pub(super) uncertainties: Vec<f64>,
     /// What the parts of each family contribute to the square of the error of the elements.
     pub(super) differences: Vec<f64>,
 }
@@ -141,7 +141,7 @@ impl Estimate {
         let bands = ground.bands;
         let largest = |band| per_face.iter().skip(band).step_by(bands).copied().fold(0.0, f64::max);
         Ok(Self {
-            doubts: ground.doubts(&irradiance, &variances, MOST_OF_FACE * accuracy),
+            uncertainties: ground.uncertainties(&irradiance, &variances, MOST_OF_FACE * accuracy),
             large: ground.large(&irradiance, (worst, norms[worst])),
             variance: ground.variance_of_a_ray(&irradiance, &deviations, rows, (worst, norms[worst])),
             error: MeshError { relative_l2: relative, largest: (0..bands).map(largest).collect(), per_face },

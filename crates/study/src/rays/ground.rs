@@ -17,7 +17,7 @@ use crate::stochastic::failure;
 const OWN_VARIANCE: f64 = 0.5;
 
 /// Share of all area from which on a face is large.
-const LARGE_FACE: f64 = 1e-3;
+pub(super) const LARGE_FACE: f64 = 1e-3;
 
 /// Share of the mean irradiance below which a face is dim; and the one below which its own error may
 /// be as large as if it had this.
@@ -233,7 +233,7 @@ impl<'m> Ground<'m> {
 
     /// Standard errors of the large faces of families, relative to their irradiance or that of the
     /// darkest, over `most`, in the worst band; 0 for others.
-    pub(super) fn doubts(
+    pub(super) fn uncertainties(
         &self,
         irradiance: &MultiVector<f64>,
         variances: &MultiVector<f64>,

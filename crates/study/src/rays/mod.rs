@@ -8,7 +8,8 @@
 //!    reflected by elements as wholes: else rays look at lamps from where they end.
 //! 2. Rays are shared out so that the error in the L2 norm over the faces, by chance and by the
 //!    elements together, is what is asked for.
-//! 3. All rows are prolonged until it is; elements are divided where they are too large.
+//! 3. All rows are prolonged until it is, and then those of large faces that are still uncertain;
+//!    elements are divided where they are too large.
 //!
 //! Rays of the first step are not used in the rows of the second: elements of which few rays have
 //! found little light would get few more, and keep too little. docs/rays.md. W/m².
@@ -29,7 +30,7 @@ use fredholm_visibility::Occluders;
 
 use self::budget::{Budget, Share};
 use self::estimate::Estimate;
-use self::ground::Ground;
+use self::ground::{Ground, LARGE_FACE};
 use crate::error::{Error, ErrorKind};
 use crate::hierarchical;
 use crate::memory::Plan;
@@ -69,11 +70,13 @@ const CHECKED: usize = 4;
 const DIVIDED: f64 = 0.9;
 /// Steps at most, so that what cannot be reached ends.
 const MOST_STEPS: u32 = 24;
-/// Rays that a scene needs: [`RAYS_OF_AN_ELEMENT`] for each, and [`RAYS_OF_A_FACE`] (1 %/ε)^a for
-/// each face, were all of them alike.
+/// Rays that a scene needs: [`RAYS_OF_AN_ELEMENT`] for each, [`RAYS_OF_A_FACE`] (1 %/ε)^a for each
+/// face, were all of them alike, and [`RAYS_OF_A_LARGE_FACE_ALONE`] (1 %/ε) for each large one, whose
+/// own error counts.
 const RAYS_OF_AN_ELEMENT: f64 = 16.0;
 const RAYS_OF_A_FACE: f64 = 1500.0;
 const RAYS_EXPONENT: f64 = 1.4;
+const RAYS_OF_A_LARGE_FACE_ALONE: f64 = 5000.0;
 /// Bytes of a ray, twice while rows grow, and of a part and band of it.
 const BYTES_OF_A_RAY: f64 = 10.0;
 const BYTES_OF_A_PART: u128 = 700;
@@ -90,15 +93,28 @@ pub(crate) struct Rays {
     pub(crate) cast: u64,
 }
 
-/// Rays that a scene of so many elements and faces is likely to need.
-pub(crate) fn expected(elements: f64, faces: f64, accuracy: f64) -> f64 {
-    RAYS_OF_AN_ELEMENT * elements + RAYS_OF_A_FACE * faces * (0.01 / accuracy).powf(RAYS_EXPONENT)
+/// Rays that a scene of so many elements is likely to need.
+pub(crate) fn expected(elements: f64, Faces { alike, large }: Faces, accuracy: f64) -> f64 {
+    let ratio = 0.01 / accuracy;
+    RAYS_OF_AN_ELEMENT * elements
+        + RAYS_OF_A_FACE * alike * ratio.powf(RAYS_EXPONENT)
+        + RAYS_OF_A_LARGE_FACE_ALONE * large * ratio
 }
 
-/// Faces of equal area that need as many rays as those of a mesh: (Σ √A)²/Σ A.
-pub(crate) fn alike(mesh: &Mesh) -> f64 {
-    let areas = || mesh.faces().iter().map(|face| face.area);
-    areas().map(f64::sqrt).sum::<f64>().powi(2) / areas().sum::<f64>()
+/// Faces of equal area that need as many rays as those of a mesh, (Σ √A)²/Σ A, and its large faces.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Faces {
+    pub(crate) alike: f64,
+    pub(crate) large: f64,
+}
+
+impl Faces {
+    pub(crate) fn of(mesh: &Mesh) -> Self {
+        let areas = || mesh.faces().iter().map(|face| face.area);
+        let whole: f64 = areas().sum();
+        let large = areas().filter(|&area| area > LARGE_FACE * whole).count() as f64;
+        Self { alike: areas().map(f64::sqrt).sum::<f64>().powi(2) / whole, large }
+    }
 }
 
 /// Which elements are cut into four: those that are smaller than the parts of a mean one stay whole.
@@ -140,7 +156,7 @@ pub(crate) fn expected_plan(scene: &Scene, options: &SolveSettings, accuracy: f6
 
 /// The same of a mesh.
 pub(crate) fn plan_on(scene: &Scene, mesh: &Mesh, options: &SolveSettings, accuracy: f64) -> Plan {
-    let rays = expected(mesh.len() as f64, alike(mesh), accuracy);
+    let rays = expected(mesh.len() as f64, Faces::of(mesh), accuracy);
     let parts = mesh.len() + 3 * in_four(mesh).filter(|&is_cut| is_cut).count();
     plan(scene, (parts, rays), options)
 }
@@ -221,8 +237,8 @@ impl Run<'_> {
         }
     }
 
-    /// Rows of the rays of a budget, prolonged until they are exact enough; or of these few, which
-    /// are prolonged for dim faces alone. What else has to be done; none where it is done.
+    /// Rows of the rays of a budget, prolonged until they are exact enough, and large faces certain; or
+    /// of these few, which are prolonged for dim faces alone. What else has to be done; none where it is done.
     fn step(
         &mut self,
         (ground, sampler): (&Ground, &RowSampler),
@@ -243,7 +259,7 @@ impl Run<'_> {
             let shares = rows.exposed_shares(&ground.lit, known.as_deref());
             let estimate = Estimate::new(ground, &rows, &shares, (looks, self.accuracy), self.signals)?;
             let stated = estimate.stated();
-            let too_large = self.too_large(&estimate, budget.is_none());
+            let too_large = stated > self.accuracy && self.too_large(&estimate, budget.is_none());
             // Dark faces count little in the error that is stated, and are not to be left to the few
             // rays of the first step.
             let mut is_enough = stated <= self.accuracy;
@@ -264,8 +280,9 @@ impl Run<'_> {
                     }
                 }
                 (false, Some(budget)) => {
-                    // A face of which a few rays have found far more light than all others.
-                    let more = budget.of_doubtful(&counts, &estimate.doubts);
+                    // A few rays that found far more light than the others leave a large face
+                    // uncertain, though the error over all faces is small.
+                    let more = budget.of_uncertain(&counts, &estimate.uncertainties);
                     let left = self.left(estimate.elements.min(MOST_OF_ELEMENTS * self.accuracy));
                     ControlFlow::Continue(if is_enough {
                         is_enough = more == counts;
