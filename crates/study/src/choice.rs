@@ -5,8 +5,8 @@
 //! scenes of docs/notes/hierarchical.md. On fewer than 2 × 2 elements a face the matrix is seldom
 //! exact enough, and links would have to follow; else the error that it states decides whether it
 //! was enough. What rays take does not depend on what stands between surfaces, but a link takes
-//! [`RAYS_A_LINK`] and [`RAYS_AN_OBJECT`] for every object of the scene (docs/hierarchical.md). Rays
-//! may take somewhat longer than links, since they are more exact on dim faces.
+//! [`RAYS_A_LINK`] and [`RAYS_AN_OBJECT`] for every object of the scene (docs/hierarchical.md).
+//! Rays may take somewhat longer than links, since they are more exact on dim faces.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -26,12 +26,12 @@ const PAIRS_A_LINK: f64 = 6.0;
 /// Most links at 1 % over √(faces): cells of a wall, and small things far away, are linked as
 /// wholes.
 const MOST_LINKS_OVER_ROOT_FACES: f64 = 10_000.0;
-/// Rays that take the time of one link, and of what one object adds to it. Measured were 3 to 15 with
-/// two to five objects, 68 with eleven, 60 with 52 and 120 with 39; how much stands in the way of a
-/// link is not known before.
+/// Rays that take the time of one link, and of what one object adds to it. Measured were 3 to 15
+/// with two to five objects, 68 with eleven, 60 with 52 and 120 with 39; how much stands in the way
+/// of a link is not known before.
 const RAYS_A_LINK: f64 = 6.0;
 const RAYS_AN_OBJECT: f64 = 3.0;
-/// Directions that the pieces of a curved object are turned to, for each of which it counts as one.
+/// A curved object counts once for every so many directions that its pieces are turned to.
 const DIRECTIONS_OF_AN_OBJECT: f64 = 32.0;
 /// Steps in which the coordinates of unit normals are told apart.
 const STEPS_OF_DIRECTIONS: f64 = 1e6;

@@ -63,8 +63,8 @@ impl<'a> RowSampler<'a> {
     }
 
     /// No rows yet. The same stage gives the same rows; rows of other stages are independent. Rays
-    /// go on further where they leave a family that is `dark`, one flag for each: less is left out of what
-    /// they see, at the price of more noise.
+    /// go on further where they leave a family that is `dark`, one flag for each: less is left out of
+    /// what they see, at the price of more noise.
     #[must_use]
     pub fn start(&self, looks: Looks, stage: u32, dark: Vec<bool>) -> Rows {
         debug_assert_eq!(dark.len(), self.families.len());

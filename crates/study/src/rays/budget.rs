@@ -9,8 +9,8 @@
 //! ```
 //!
 //! with m parts (from the derivative of Σ w v_1 n^{−a} + Σ m n/λ′). A large face that is dark
-//! counts little in this sum; it gets the rays that its own error needs. Where its error turns out to
-//! be larger than expected in the end, it gets more.
+//! counts little in this sum; it gets the rays that its own error needs. Where its error turns out
+//! to be larger than expected in the end, it gets more.
 
 /// Exponent a with which the variance falls: measured on furnished rooms and cities, where it is 1.4
 /// to 1.5 (docs/rays.md).
@@ -21,8 +21,8 @@ const MOST_RAYS: u32 = 1 << 20;
 /// most; and how many more they may be in a replicate, since memory is predicted for usual ones.
 const FOR_LARGE_FACES: f64 = 8.0;
 const MOST_FOR_LARGE_FACES: f64 = 1e6;
-/// Rays with those for large faces that are uncertain in the end, over the most without them; and the
-/// step by which fewer faces are taken for uncertain.
+/// Rays with those for large faces that are uncertain in the end, over the most without them; and
+/// the step by which fewer faces are taken for uncertain.
 const FOR_UNCERTAIN: f64 = 1.5;
 const STEP_OF_LIMIT: f64 = 1.2;
 /// Rays after a prolongation over those before, at least: each has its price in products.
@@ -63,11 +63,11 @@ impl Budget {
         budget
     }
 
-    /// Four times the rays of families whose large faces are uncertain, which is where these ratios are
-    /// above 1; where that is too many, of those only that are above a higher limit.
+    /// Four times the rays of families whose large faces are uncertain, which is where these ratios
+    /// are above 1; where that is too many, of those only that are above a higher limit.
     ///
-    /// That lets rows decide by what they vary themselves. It is done once the error over all faces is
-    /// small: what too few rays found too dark stays, and what they found too bright is mended.
+    /// That lets rows decide by what they vary themselves. It is done once the error over all faces
+    /// is small: what too few rays found too dark stays, and what they found too bright is mended.
     pub(super) fn of_uncertain(&self, counts: &[u32], uncertainties: &[f64]) -> Vec<u32> {
         let most = FOR_UNCERTAIN * self.most();
         let above = |limit: f64| -> Vec<u32> {

@@ -27,8 +27,8 @@ const RESIDUAL: f64 = 0.01;
 const MOST_ITERATIONS: usize = 500;
 /// Stated error over the standard error, at least: faces may err together.
 const CONFIDENCE: f64 = 1.25;
-/// Own standard error of a large face over the accuracy from which on it is uncertain: few are off by
-/// four times as much.
+/// Own standard error of a large face over the accuracy from which on it is uncertain: few are off
+/// by four times as much.
 const MOST_OF_FACE: f64 = 1.25;
 /// Standard errors that are stated for a single face.
 const OF_FACE: f64 = 2.0;

@@ -116,6 +116,11 @@ impl<'m> Ground<'m> {
         self.by_area(|face| means.row(face)[band]).sum::<f64>() / self.area()
     }
 
+    /// Irradiance below which a face counts as if it had this, W/m², from the means of the faces.
+    fn darkest(&self, means: &MultiVector<f64>, band: usize) -> f64 {
+        DARKEST * self.mean(means, band)
+    }
+
     /// Relative error of a band by chance, with its confidence.
     pub(super) fn noise(&self, variances: &MultiVector<f64>, norms: &[f64], band: usize) -> f64 {
         let squares = || self.by_area(|face| variances.row(face)[band]);
@@ -220,7 +225,7 @@ impl<'m> Ground<'m> {
     pub(super) fn large(&self, irradiance: &MultiVector<f64>, (band, norm): (usize, f64)) -> Vec<f64> {
         let faces = self.mesh.faces();
         let means = self.means(irradiance);
-        let least = DARKEST * self.mean(&means, band);
+        let least = self.darkest(&means, band);
         let large = self.area_of_a_large_face();
         let of = |family: &Family| {
             let face = self.face_of[family.parts.start];
@@ -240,7 +245,7 @@ impl<'m> Ground<'m> {
         most: f64,
     ) -> Vec<f64> {
         let means = self.means(irradiance);
-        let least: Vec<f64> = (0..self.bands).map(|band| DARKEST * self.mean(&means, band)).collect();
+        let least: Vec<f64> = (0..self.bands).map(|band| self.darkest(&means, band)).collect();
         let large = self.area_of_a_large_face();
         let of = |family: &Family| {
             let face = self.face_of[family.parts.start];

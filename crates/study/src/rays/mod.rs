@@ -71,8 +71,8 @@ const DIVIDED: f64 = 0.9;
 /// Steps at most, so that what cannot be reached ends.
 const MOST_STEPS: u32 = 24;
 /// Rays that a scene needs: [`RAYS_OF_AN_ELEMENT`] for each, [`RAYS_OF_A_FACE`] (1 %/ε)^a for each
-/// face, were all of them alike, and [`RAYS_OF_A_LARGE_FACE_ALONE`] (1 %/ε) for each large one, whose
-/// own error counts.
+/// face, were all of them alike, and [`RAYS_OF_A_LARGE_FACE_ALONE`] (1 %/ε) for each large one,
+/// whose own error counts.
 const RAYS_OF_AN_ELEMENT: f64 = 16.0;
 const RAYS_OF_A_FACE: f64 = 1500.0;
 const RAYS_EXPONENT: f64 = 1.4;
@@ -237,8 +237,9 @@ impl Run<'_> {
         }
     }
 
-    /// Rows of the rays of a budget, prolonged until they are exact enough, and large faces certain; or
-    /// of these few, which are prolonged for dim faces alone. What else has to be done; none where it is done.
+    /// Rows of the rays of a budget, prolonged until they are exact enough, and large faces certain;
+    /// or of these few, which are prolonged for dim faces alone. What else has to be done; none where
+    /// it is done.
     fn step(
         &mut self,
         (ground, sampler): (&Ground, &RowSampler),
