@@ -1,7 +1,7 @@
 //! The program on random valid input and on damaged files: it answers or refuses, and never
 //! crashes.
 //!
-//! Here it runs for about a minute. By hand it runs for as long as is wanted; what is found is told
+//! Here it runs for about twenty seconds. By hand it runs for as long as is wanted; what is found is told
 //! with the number that makes it again, and its files are kept in the folder named:
 //!
 //!     FREDHOLM_CASES=5000 FREDHOLM_FIRST=1 FREDHOLM_KEEP=/tmp/finds \

@@ -19,7 +19,7 @@ const MOST_ELAPSED: Duration = Duration::from_mins(10);
 /// Address space of a run, KiB.
 const MEMORY: u64 = 4 << 20;
 /// Time for all cases where no number of cases is given.
-const IN_ALL: Duration = Duration::from_mins(1);
+const IN_ALL: Duration = Duration::from_secs(20);
 
 /// How a run ended.
 struct Run {

@@ -460,7 +460,8 @@ impl Run<'_> {
             return light;
         };
         let means = radiosity.means(operator, &state.radiosity);
-        let nodes = [operator.means(&state.radiosity), operator.means(&means.irradiance)];
+        // What is buried of a face is part of the mean that accuracy is promised for.
+        let nodes = [operator.means(&state.radiosity), state.nodes_means(&means.irradiance)];
         let mut light = Light::solved(&state.tree, surfaces, &state.links, operator, [&nodes[0], &nodes[1]]);
         light.weights = self.dual.as_ref().map(|_| {
             let [z, e] = [&state.importance, &means.irradiance].map(|leaves| state.nodes_means(leaves));

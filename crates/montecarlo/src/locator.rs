@@ -4,10 +4,11 @@
 //! grid of the patches in its plane. At a border the patch is taken that the point is deepest
 //! inside of.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
 use fredholm_mesh::{Patch, Vec3};
+use rustc_hash::FxHashMap;
 
 /// Lengths, over the longest of the scene, up to which two places count as one.
 const SAME_PLACE_DISTANCE: f64 = 1e-7;
@@ -20,6 +21,9 @@ const MOST_CELLS_ALONG: f64 = 4096.0;
 #[derive(Clone, Debug)]
 pub(crate) struct Locator {
     pieces: Vec<Grid>,
+    /// What is met on each side of every piece, the lit one first, where that is the same anywhere on
+    /// it. Most pieces of furniture are one patch, and few lines of memory hold them all.
+    alone: Vec<[Alone; 2]>,
     /// Where the candidates of the cells of all pieces begin, and where those of the last end. In one
     /// list, since each ray looks at other pieces, and waits for every place in memory.
     starts: Vec<u32>,
@@ -55,6 +59,15 @@ enum Cells {
     Halved,
 }
 
+/// What is met on one side of a piece.
+#[derive(Clone, Copy, Debug)]
+enum Alone {
+    Patch(u32),
+    Nothing,
+    /// That depends on the point.
+    Many,
+}
+
 /// A patch, and whether it is lit from the side of the piece.
 #[derive(Clone, Copy, Debug)]
 struct Candidate(u32);
@@ -78,7 +91,13 @@ impl Locator {
     pub(crate) fn new(pieces: &[Patch], patches: &[Patch]) -> Self {
         let near = same_place(pieces.iter().chain(patches));
         let sorted = Sorted::new(patches, near);
-        let mut locator = Self { pieces: Vec::new(), starts: vec![0], candidates: Vec::new(), near };
+        let mut locator = Self {
+            pieces: Vec::with_capacity(pieces.len()),
+            alone: Vec::with_capacity(pieces.len()),
+            starts: vec![0],
+            candidates: Vec::new(),
+            near,
+        };
         for piece in pieces {
             let on_it = on(piece, &sorted, patches, near);
             let grid = Grid::new(piece, &on_it, patches, near);
@@ -106,13 +125,26 @@ impl Locator {
                 next[cell] += 1;
             }
         }
+        let first = &self.candidates[begin..begin + next[0]];
+        let is_alone = grid.sides == [1, 1] && (grid.cells != Cells::Any || first.len() == 1);
+        let alone = |along| match first.iter().find(|candidate| candidate.along() == along) {
+            _ if !is_alone => Alone::Many,
+            Some(candidate) => Alone::Patch(candidate.patch() as u32),
+            None => Alone::Nothing,
+        };
+        self.alone.push([true, false].map(alone));
         self.pieces.push(grid);
     }
 
-    /// The patch at a point of a piece that turns its lit side to a ray of this direction.
-    pub(crate) fn lit(&self, piece: usize, point: Vec3, direction: Vec3, patches: &[Patch]) -> Option<usize> {
+    /// The patch at a point of a piece that turns its lit side to a ray which meets the lit side of
+    /// the piece (`along`), or its back.
+    pub(crate) fn lit(&self, piece: usize, point: Vec3, along: bool, patches: &[Patch]) -> Option<usize> {
+        match self.alone[piece][usize::from(!along)] {
+            Alone::Patch(patch) => return Some(patch as usize),
+            Alone::Nothing => return None,
+            Alone::Many => {}
+        }
         let grid = &self.pieces[piece];
-        let along = grid.normal.dot(direction) < 0.0;
         let lit = |&&candidate: &&Candidate| candidate.along() == along;
         let cell = grid.first as usize + grid.cell(point);
         let cell = &self.candidates[self.starts[cell] as usize..self.starts[cell + 1] as usize];
@@ -156,7 +188,7 @@ struct Sorted {
 struct Class {
     /// Width, m.
     width: f64,
-    members: HashMap<[i64; 3], Vec<u32>>,
+    members: FxHashMap<[i64; 3], Vec<u32>>,
     /// How many patches there are.
     count: usize,
 }
@@ -171,7 +203,7 @@ impl Sorted {
         }
         let grid = |(class, members): (i32, Vec<u32>)| {
             let width = f64::from(class).exp2();
-            let mut cells: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
+            let mut cells: FxHashMap<[i64; 3], Vec<u32>> = FxHashMap::default();
             for &number in &members {
                 cells.entry(cell(bounds(&patches[number as usize]).0, width)).or_default().push(number);
             }
@@ -488,8 +520,8 @@ mod tests {
                 let place = |u: f64| lines[1..].iter().filter(|&&line| line <= u).count();
                 let piece = if piece_of == 1 { usize::from(y > x) } else { 0 };
                 let expected = 4 * place(x) + place(y);
-                assert_eq!(locator.lit(piece, corner(x, y), -Vec3::Z, &patches), Some(expected));
-                assert_eq!(locator.lit(piece, corner(x, y), Vec3::Z, &patches), Some(expected + 16));
+                assert_eq!(locator.lit(piece, corner(x, y), true, &patches), Some(expected));
+                assert_eq!(locator.lit(piece, corner(x, y), false, &patches), Some(expected + 16));
             }
         }
     }
@@ -522,8 +554,9 @@ mod tests {
             let piece = if x < at(3) { 0 } else { 1 + usize::from(y > at(2)) };
             let expected = 8 * (x / 0.1) as usize + (y / 0.1) as usize;
             let point = Vec3::new(x, y, 0.5);
-            assert_eq!(locator.lit(piece, point, -Vec3::Z, &patches), Some(expected));
-            assert_eq!(locator.lit(piece, point, Vec3::Z, &patches), Some(expected + 64));
+            let from = |direction| pieces[piece].normal().dot(direction) < 0.0;
+            assert_eq!(locator.lit(piece, point, from(-Vec3::Z), &patches), Some(expected));
+            assert_eq!(locator.lit(piece, point, from(Vec3::Z), &patches), Some(expected + 64));
         }
     }
 
@@ -551,7 +584,7 @@ mod tests {
                         + u * (patch.corner(1) - patch.corner(0))
                         + v * (patch.corner(2) - patch.corner(0));
                     for side in [-1.0, 1.0] {
-                        let found = locator.lit(piece, point, side * patch.normal(), &patches).unwrap();
+                        let found = locator.lit(piece, point, side < 0.0, &patches).unwrap();
                         assert!(
                             holds(&patches[found], point)
                                 && patches[found].normal().dot(patch.normal()) * side < 0.0
@@ -563,7 +596,7 @@ mod tests {
             for (piece, patch) in pieces.iter().enumerate() {
                 for (k, t) in (0..3).flat_map(|k| [0.0, 0.25, 0.5, 0.7].map(|t| (k, t))) {
                     let point = patch.corner(k).lerp(patch.corner(k + 1), t);
-                    let found = locator.lit(piece, point, -patch.normal(), &patches).unwrap();
+                    let found = locator.lit(piece, point, true, &patches).unwrap();
                     assert!(depth(&patches[found], point) > -1e-9);
                 }
             }
@@ -587,7 +620,7 @@ mod tests {
             let [x, y] = unit_pair(philox([number, 0, 0, 0], [5, 5]));
             let on = |piece: usize, side: f64| {
                 let point = Vec3::new(piece as f64 + x, y, 0.5);
-                locator.lit(piece, point, side * Vec3::Z, &patches)
+                locator.lit(piece, point, side * pieces[piece].normal().z < 0.0, &patches)
             };
             assert_eq!((on(0, -1.0), on(0, 1.0)), (None, Some(0)));
             assert!(on(1, -1.0).is_some_and(|patch| patch > 0) && on(1, 1.0).is_none());

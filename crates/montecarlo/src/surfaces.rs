@@ -113,8 +113,8 @@ impl Surfaces {
             return Meets::Nothing;
         };
         let patch = match &self.locator {
-            Some(locator) => locator.lit(hit.patch, hit.point, direction, &self.patches),
-            None => (self.patches[hit.patch].normal().dot(direction) < 0.0).then_some(hit.patch),
+            Some(locator) => locator.lit(hit.patch, hit.point, hit.is_lit, &self.patches),
+            None => hit.is_lit.then_some(hit.patch),
         };
         patch.map_or(Meets::Back, |patch| Meets::Lit(Site { patch, point: hit.point }))
     }

@@ -22,6 +22,8 @@ pub struct Hit {
     pub t: f64,
     /// The place that was hit, m.
     pub point: Vec3,
+    /// Whether the patch turns its lit side to the origin.
+    pub is_lit: bool,
 }
 
 impl Occluders {
@@ -44,9 +46,9 @@ impl Occluders {
         }
         let length = direction.length();
         let span = t_max.min(self.frame.beyond(origin) / length);
-        let (fraction, patch) = run(First { occluders: self, origin, direction, span })?;
+        let (fraction, (is_back, patch)) = run(First { occluders: self, origin, direction, span })?;
         let t = fraction * span;
-        Some(Hit { patch: patch as usize, t, point: origin + direction * t })
+        Some(Hit { patch: patch as usize, t, point: origin + direction * t, is_lit: !is_back })
     }
 }
 
@@ -59,7 +61,7 @@ struct First<'a> {
 }
 
 impl Work for First<'_> {
-    type Output = Option<(f64, u32)>;
+    type Output = Option<(f64, Rank)>;
 
     #[inline(always)]
     fn run<E: Eight>(self, eight: E) -> Self::Output {
@@ -71,7 +73,7 @@ impl Work for First<'_> {
         let found = Found { alike, nearest: f64::INFINITY, best: None, others: Vec::new() };
         let mut ray = Ray { occluders, probe: &probe, beam: &beam, ends, end: 1.0, found };
         occluders.tree.nearest(eight, &mut beam.splat(eight), &mut ray);
-        ray.found.foremost().map(|patch| (ray.found.nearest, patch))
+        ray.found.foremost().map(|rank| (ray.found.nearest, rank))
     }
 }
 
@@ -106,12 +108,15 @@ impl<E: Eight> Seeker<E> for Ray<'_, E> {
     }
 }
 
-/// A facet that was met: facets whose lit side is turned to the start of the ray rank first, then
-/// those of patches that come first.
+/// Whether a facet turns its back to the start of the ray, and its patch: in this order, facets that
+/// may be equally near are preferred.
+type Rank = (bool, u32);
+
+/// A facet that was met.
 #[derive(Clone, Copy, Debug)]
 struct Met {
     fraction: f64,
-    rank: (bool, u32),
+    rank: Rank,
 }
 
 /// The nearest that was met, and what else may be as near as it.
@@ -145,13 +150,10 @@ impl Found {
         }
     }
 
-    /// The patch that ranks first of those as near as the nearest.
+    /// The first rank of those as near as the nearest.
     #[inline(always)]
-    fn foremost(&self) -> Option<u32> {
+    fn foremost(&self) -> Option<Rank> {
         let met = self.best.iter().chain(&self.others);
-        met.filter(|met| met.fraction <= self.nearest + self.alike)
-            .map(|met| met.rank)
-            .min()
-            .map(|rank| rank.1)
+        met.filter(|met| met.fraction <= self.nearest + self.alike).map(|met| met.rank).min()
     }
 }

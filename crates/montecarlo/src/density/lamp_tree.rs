@@ -90,6 +90,9 @@ pub struct Cuts {
     /// Where the parts of every receiver begin, and where those of the last end.
     starts: Vec<usize>,
     parts: Vec<Part>,
+    /// Probability of each part and those before it; in a list of its own, since all of a receiver
+    /// are read to find one.
+    ends: Vec<f32>,
     /// Receivers that are so near a lamp that what its points bring varies without bound.
     near: Vec<bool>,
 }
@@ -127,22 +130,24 @@ impl Eq for Seen {}
 
 /// The parts for one receiver.
 #[derive(Clone, Copy, Debug)]
-pub struct Cut<'a>(&'a [Part]);
+pub struct Cut<'a> {
+    parts: &'a [Part],
+    ends: &'a [f32],
+}
 
 #[derive(Clone, Copy, Debug)]
 struct Part {
     node: u32,
     /// Probability.
     share: f32,
-    /// Probability of this part and those before it.
-    end: f32,
 }
 
 impl Cuts {
     /// The parts for a receiver.
     #[must_use]
     pub fn of(&self, receiver: usize) -> Cut<'_> {
-        Cut(&self.parts[self.starts[receiver]..self.starts[receiver + 1]])
+        let range = self.starts[receiver]..self.starts[receiver + 1];
+        Cut { parts: &self.parts[range.clone()], ends: &self.ends[range] }
     }
 
     /// Whether a receiver is so near a lamp that what points of it bring varies without bound.
@@ -183,9 +188,17 @@ impl LampTree {
     /// The parts that may light each of some receivers.
     #[must_use]
     pub fn cuts(&self, receivers: &[Receiver]) -> Cuts {
-        let found: Vec<(Vec<Part>, bool)> = receivers.par_iter().map(|receiver| self.cut(receiver)).collect();
+        let found: Vec<(Vec<Part>, bool)> = receivers
+            .par_iter()
+            .map_init(Default::default, |scratch, receiver| self.cut(receiver, scratch))
+            .collect();
         let mut cuts = Cuts { starts: vec![0], ..Cuts::default() };
         for (parts, near) in found {
+            let mut end = 0.0;
+            cuts.ends.extend(parts.iter().map(|part| {
+                end += part.share;
+                end
+            }));
             cuts.parts.extend(parts);
             cuts.starts.push(cuts.parts.len());
             cuts.near.push(near);
@@ -193,11 +206,17 @@ impl LampTree {
         cuts
     }
 
-    fn cut(&self, receiver: &Receiver) -> (Vec<Part>, bool) {
+    /// The parts for a receiver; whatever the lists for parts that may be opened and others hold is
+    /// thrown away.
+    fn cut(
+        &self,
+        receiver: &Receiver,
+        (open, parts): &mut (BinaryHeap<Seen>, Vec<Seen>),
+    ) -> (Vec<Part>, bool) {
         let part = |node: usize| Some(self.seen(node, receiver)).filter(|part| part.bound > 0.0);
-        let mut open: BinaryHeap<Seen> =
-            (!self.nodes.is_empty()).then(|| part(0)).flatten().into_iter().collect();
-        let mut parts: Vec<Seen> = Vec::new();
+        open.clear();
+        parts.clear();
+        open.extend((!self.nodes.is_empty()).then(|| part(0)).flatten());
         let mut total = open.peek().map_or(0.0, |root| root.bound);
         while open.len() + parts.len() < MOST_PARTS
             && open.peek().is_some_and(|part| part.most > LEAST_OPENED * total)
@@ -209,18 +228,15 @@ impl LampTree {
             };
             let halves = [part(largest.node + 1), part(second)];
             total += halves.iter().flatten().map(|half| half.bound).sum::<f64>() - largest.bound;
-            open.extend(halves.into_iter().flatten());
+            // Two at once would have the heap made anew.
+            halves.into_iter().flatten().for_each(|half| open.push(half));
         }
-        parts.extend(open);
+        parts.extend(open.drain());
         parts.sort_unstable_by_key(|part| part.node);
         let total: f64 = parts.iter().map(|part| part.bound).sum();
-        let mut end = 0.0;
-        let parts = parts.into_iter().map(|Seen { node, bound, .. }| {
-            let share = (bound / total) as f32;
-            end += share;
-            Part { node: node as u32, share, end }
-        });
-        (parts.collect(), self.is_near(receiver))
+        let part =
+            |&Seen { node, bound, .. }: &Seen| Part { node: node as u32, share: (bound / total) as f32 };
+        (parts.iter().map(part).collect(), self.is_near(receiver))
     }
 
     /// Whether any lamp that may light a receiver lies within a few radii.
@@ -276,40 +292,44 @@ impl LampTree {
     /// A point of a lamp from three numbers in [0, 1), its patch, and its density (1/m²); none where
     /// no lamp lights the receiver.
     #[must_use]
-    pub fn sample(&self, Cut(parts): Cut, choice: f64, numbers: [f64; 2]) -> Option<(usize, Vec3, f64)> {
-        let last = parts.len().checked_sub(1)?;
-        let choice = choice * f64::from(parts[last].end);
-        let at = parts.partition_point(|part| f64::from(part.end) <= choice).min(last);
-        let (node, share) = self.part(parts[at]);
-        let begin = f64::from(parts[at].end) - share;
+    pub fn sample(&self, cut: Cut, choice: f64, numbers: [f64; 2]) -> Option<(usize, Vec3, f64)> {
+        let (last, &whole) = cut.ends.iter().enumerate().next_back()?;
+        let choice = choice * f64::from(whole);
+        // All ends are compared, several at once, which takes less time than the wrong turns of a
+        // search.
+        let chosen = choice as f32;
+        let below = cut.ends.iter().map(|&end| u32::from(end <= chosen)).sum::<u32>();
+        let at = (below as usize).min(last);
+        let (node, share) = self.part(cut.parts[at]);
+        let begin = f64::from(cut.ends[at]) - share;
         let rest = ((choice - begin) / share).clamp(0.0, 1.0);
         let before = node.first.checked_sub(1).map_or(0.0, |last| self.cumulated[last]);
         let range = &self.cumulated[node.first..node.first + node.count];
         let place = range.partition_point(|&end| end - before <= rest * node.power).min(node.count - 1);
         let lamp = &self.lamps[node.first + place];
-        let density = self.density((node, share), node.first + place) / f64::from(parts[last].end);
+        let density = self.density((node, share), node.first + place) / f64::from(whole);
         Some((lamp.patch, lamp.surface.sample(numbers), density))
     }
 
     /// The patches that may light the receiver of a cut.
-    pub fn patches<'a>(&'a self, Cut(parts): Cut<'a>) -> impl Iterator<Item = usize> + 'a {
+    pub fn patches<'a>(&'a self, cut: Cut<'a>) -> impl Iterator<Item = usize> + 'a {
         let of_part = move |part: &'a Part| {
             let node = &self.nodes[part.node as usize];
             self.lamps[node.first..node.first + node.count].iter().map(|lamp| lamp.patch)
         };
-        parts.iter().flat_map(of_part)
+        cut.parts.iter().flat_map(of_part)
     }
 
     /// The density with which a cut finds points of a patch, 1/m².
     #[must_use]
-    pub fn pdf(&self, Cut(parts): Cut, patch: usize) -> f64 {
+    pub fn pdf(&self, cut: Cut, patch: usize) -> f64 {
         let Some(place) = self.place_of[patch].map(|place| place as usize) else { return 0.0 };
         let holds = |part: &&Part| {
             let node = &self.nodes[part.node as usize];
             (node.first..node.first + node.count).contains(&place)
         };
-        let (Some(&part), Some(last)) = (parts.iter().find(holds), parts.last()) else { return 0.0 };
-        self.density(self.part(part), place) / f64::from(last.end)
+        let (Some(&part), Some(&whole)) = (cut.parts.iter().find(holds), cut.ends.last()) else { return 0.0 };
+        self.density(self.part(part), place) / f64::from(whole)
     }
 
     fn part(&self, part: Part) -> (&Node, f64) {
@@ -389,7 +409,7 @@ mod tests {
         let cuts = tree.cuts(&receivers.map(|patch| Receiver::of(&patch)));
         for receiver in 0..2 {
             let cut = cuts.of(receiver);
-            assert!(cut.0.len() <= MOST_PARTS);
+            assert!(cut.parts.len() <= MOST_PARTS);
             let mass = |k: usize| tree.pdf(cut, k) * patches[k].area();
             assert!(((0..300).map(mass).sum::<f64>() - 1.0).abs() < 1e-6);
             for (k, patch) in patches.iter().enumerate() {

@@ -56,7 +56,7 @@ impl PointSet {
 }
 
 /// What the numbers of a batch depend on: nothing else does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Key {
     /// The seed of the run.
     pub seed: u64,
@@ -94,6 +94,13 @@ impl Samples {
     #[must_use]
     pub fn new(set: PointSet, key: Key, size: u32) -> Self {
         Self { set, key, size, patterns: Vec::new(), shuffles: Vec::new() }
+    }
+
+    /// Goes on to another batch of as many.
+    pub fn restart(&mut self, key: Key) {
+        self.key = key;
+        self.patterns.clear();
+        self.shuffles.clear();
     }
 
     /// The numbers of one of the samples.

@@ -24,12 +24,28 @@ const CHUNK: usize = 64;
 pub struct RowSampler<'a> {
     scene: &'a Enclosure,
     families: &'a [Family],
-    /// The family of each part.
-    family_of: Vec<u32>,
+    ends: Vec<End>,
     lamps: LampTree,
     /// What each family sees of them.
     cuts: Cuts,
     seed: u64,
+}
+
+/// What has to be known of a part that a ray meets, in one place of memory.
+#[derive(Clone, Copy, Debug)]
+struct End {
+    /// Area, m².
+    area: f64,
+    family: u32,
+    is_lamp: bool,
+    /// Whether it is so near a lamp that looks at the lamp are not enough.
+    is_near_lamp: bool,
+}
+
+/// What a ray weighs in every band, before and after the reflection where it is.
+struct Weights {
+    before: Vec<f64>,
+    after: Vec<f64>,
 }
 
 /// The rays of some families.
@@ -58,8 +74,15 @@ impl<'a> RowSampler<'a> {
         let receivers: Vec<Receiver> = families.iter().map(|family| Receiver::of(&family.whole)).collect();
         let cuts = lamps.cuts(&receivers);
         let numbered = families.iter().zip(0..);
-        let family_of = numbered.flat_map(|(family, k)| std::iter::repeat_n(k, family.parts.len())).collect();
-        Self { scene, families, family_of, lamps, cuts, seed }
+        let family_of = numbered.flat_map(|(family, k)| std::iter::repeat_n(k, family.parts.len()));
+        let end = |(part, family): (usize, u32)| End {
+            area: scene.patches()[part].area(),
+            family,
+            is_lamp: power[part] > 0.0,
+            is_near_lamp: cuts.is_near(family as usize),
+        };
+        let ends = family_of.enumerate().map(end).collect();
+        Self { scene, families, ends, lamps, cuts, seed }
     }
 
     /// No rows yet. The same stage gives the same rows; rows of other stages are independent. Rays
@@ -110,12 +133,18 @@ impl<'a> RowSampler<'a> {
     fn cast_batch(&self, rows: &mut Rows, more: &[u32], watch: &dyn Watch) -> bool {
         let chunk = |families: &[Family], more: &[u32]| {
             let mut cast = Cast::default();
+            let mut samples: [Samples; REPLICATES] =
+                std::array::from_fn(|_| Samples::new(PointSet::Sobol, Key::default(), 0));
             for (family, &more) in families.iter().zip(more) {
                 if watch.go_on().is_break() {
                     return None;
                 }
                 if more > 0 {
-                    self.cast_family(family, rows, more, &mut cast);
+                    for (replicate, samples) in samples.iter_mut().enumerate() {
+                        let batch = rows.stage * REPLICATES as u32 + replicate as u32;
+                        samples.restart(Key { seed: self.seed, batch, stream: family.stream });
+                    }
+                    self.cast_family(family, (rows, &mut samples), more, &mut cast);
                 }
             }
             Some(cast)
@@ -169,22 +198,24 @@ impl<'a> RowSampler<'a> {
         true
     }
 
-    /// So many rays more of each part and replicate than the rows have.
-    fn cast_family(&self, family: &Family, rows: &Rows, more: u32, cast: &mut Cast) {
+    /// So many rays more of each part and replicate than the rows have, by the samples of each
+    /// replicate.
+    fn cast_family(
+        &self,
+        family: &Family,
+        (rows, samples): (&Rows, &mut [Samples; REPLICATES]),
+        more: u32,
+        cast: &mut Cast,
+    ) {
         let (parts, bands) = (family.parts.len() as u32, self.scene.bands());
         let (looks, known) = (rows.looks, rows.counts[family.parts.start]);
-        // The parts are stored one after the other, so a replicate is taken part by part.
-        let mut samples: [Samples; REPLICATES] = std::array::from_fn(|replicate| {
-            let batch = rows.stage * REPLICATES as u32 + replicate as u32;
-            let key = Key { seed: self.seed, batch, stream: family.stream };
-            Samples::new(PointSet::Sobol, key, 0)
-        });
-        let is_dark = rows.dark[self.family_of[family.parts.start] as usize];
+        let is_dark = rows.dark[self.ends[family.parts.start].family as usize];
         let near = if is_dark { NEAR_FROM_THE_DARK } else { NEAR };
-        let mut weight = vec![1.0; bands];
+        let mut weights = Weights { before: vec![1.0; bands], after: vec![1.0; bands] };
+        // The parts are stored one after the other, so a replicate is taken part by part.
         for part in 0..parts {
             let begin = parts * known + part * more;
-            for samples in &mut samples {
+            for samples in samples.iter_mut() {
                 let (sum, before) = (cast.direct.len(), cast.walked.len());
                 cast.direct.resize(sum + bands, 0.0);
                 cast.reflected.resize(sum + bands, 0.0);
@@ -194,29 +225,29 @@ impl<'a> RowSampler<'a> {
                 for ray in begin..begin + more {
                     let mut draw = samples.draw(ray);
                     let from = self.scene.point(family.parts.start + part as usize, draw.pair());
-                    weight.fill(1.0);
-                    let met = self.step(from, &mut draw, &weight, &mut cast.direct[sum..]);
+                    weights.before.fill(1.0);
+                    let met = self.step(from, &mut draw, &weights.before, &mut cast.direct[sum..]);
                     cast.met.push(match met {
                         Meets::Nothing => NOTHING,
                         Meets::Back => BACK,
-                        Meets::Lit(site) => {
+                        Meets::Lit(site) if self.goes_on(from, site, near) => {
                             let reflected = &mut cast.reflected[sum..];
                             let way = (from, site, near);
-                            match self.walk(way, looks, &mut draw, (&mut weight, reflected)) {
-                                Some((end, 0)) => {
-                                    if looks.checks((ray - begin) as usize) {
-                                        let rho = self.scene.reflectance(end.patch);
-                                        self.look(end, &mut draw, unshared, (rho, &mut cast.checked[sum..]));
-                                    }
-                                    end.patch as u32
-                                }
-                                Some((end, _)) => {
-                                    cast.walked.push(end.patch as u32);
-                                    cast.weights.extend_from_slice(&weight);
-                                    WALKED
-                                }
-                                None => WALKED,
+                            if let Some(end) = self.walk(way, looks, &mut draw, (&mut weights, reflected)) {
+                                cast.walked.push(end.patch as u32);
+                                cast.weights.extend_from_slice(&weights.before);
                             }
+                            WALKED
+                        }
+                        Meets::Lit(site) => {
+                            if looks == Looks::Everywhere {
+                                let rho = self.scene.reflectance(site.patch);
+                                self.look(site, &mut draw, unshared, (rho, &mut cast.reflected[sum..]));
+                            } else if looks.checks((ray - begin) as usize) {
+                                let rho = self.scene.reflectance(site.patch);
+                                self.look(site, &mut draw, unshared, (rho, &mut cast.checked[sum..]));
+                            }
+                            site.patch as u32
                         }
                     });
                 }
@@ -226,29 +257,27 @@ impl<'a> RowSampler<'a> {
     }
 
     fn cut(&self, patch: usize) -> Cut<'_> {
-        self.cuts.of(self.family_of[patch] as usize)
+        self.cuts.of(self.ends[patch].family as usize)
     }
 
     /// Whether a ray that meets a patch goes on: where the patch is so near that what it sends
     /// varies over what is seen of it, or where it is so near a lamp that looks at the lamp are not
     /// enough.
     fn goes_on(&self, from: Site, to: Site, near: f64) -> bool {
-        let area = self.scene.patches()[to.patch].area();
-        from.point.distance_squared(to.point) < near * near * area
-            || self.cuts.is_near(self.family_of[to.patch] as usize)
+        let End { area, is_near_lamp, .. } = self.ends[to.patch];
+        from.point.distance_squared(to.point) < near * near * area || is_near_lamp
     }
 
     /// A ray and a look at a lamp from one site: what the ray meets. What both bring is added.
     fn step(&self, from: Site, draw: &mut Draw, weight: &[f64], sum: &mut [f64]) -> Meets {
         let cut = self.cut(from.patch);
         let met = self.scene.bounce_to(from, draw.pair());
-        if let Meets::Lit(site) = met {
-            let exitance = self.scene.exitance(site.patch);
-            if exitance.iter().any(|&m| m > 0.0) {
-                let kernel = self.scene.kernel(from, site);
-                let looked_at = self.lamps.pdf(cut, site.patch);
-                add(sum, weight, kernel / (looked_at + kernel), exitance);
-            }
+        if let Meets::Lit(site) = met
+            && self.ends[site.patch].is_lamp
+        {
+            let kernel = self.scene.kernel(from, site);
+            let looked_at = self.lamps.pdf(cut, site.patch);
+            add(sum, weight, kernel / (looked_at + kernel), self.scene.exitance(site.patch));
         }
         self.look(from, draw, shared, (weight, sum));
         met
@@ -272,17 +301,17 @@ impl<'a> RowSampler<'a> {
         }
     }
 
-    /// From what a ray has met to the site from which it goes on no more, and the reflections
-    /// before that, with their weight; none where it is absorbed, leaves the scene or ends on a
-    /// back. What lamps send to the patches on the way is added.
+    /// From what a ray has met, and goes on from, to the site from which it goes on no more, with the
+    /// weight before that; none where it is absorbed, leaves the scene or ends on a back. What lamps
+    /// send to the patches on the way is added.
     fn walk(
         &self,
         (mut from, mut at, near): (Site, Site, f64),
         looks: Looks,
         draw: &mut Draw,
-        (weight, sum): (&mut [f64], &mut [f64]),
-    ) -> Option<(Site, usize)> {
-        let mut reflected = weight.to_vec();
+        (weights, sum): (&mut Weights, &mut [f64]),
+    ) -> Option<Site> {
+        let Weights { before, after } = weights;
         for reflections in 0.. {
             let sure = reflections < SURE_REFLECTIONS;
             let survival = if sure { 1.0 } else { self.scene.survival(at.patch) };
@@ -290,18 +319,18 @@ impl<'a> RowSampler<'a> {
                 return None;
             }
             let rho = self.scene.reflectance(at.patch);
-            reflected.iter_mut().zip(&*weight).zip(rho).for_each(|((out, w), rho)| *out = w * rho / survival);
+            after.iter_mut().zip(&*before).zip(rho).for_each(|((out, w), rho)| *out = w * rho / survival);
             if !self.goes_on(from, at, near) {
                 if looks == Looks::Everywhere {
-                    self.look(at, draw, unshared, (&reflected, sum));
+                    self.look(at, draw, unshared, (after, sum));
                 }
-                for weight in weight.iter_mut() {
+                for weight in before.iter_mut() {
                     *weight /= survival;
                 }
-                return Some((at, reflections));
+                return Some(at);
             }
-            let next = self.step(at, draw, &reflected, sum).lit()?;
-            weight.copy_from_slice(&reflected);
+            let next = self.step(at, draw, after, sum).lit()?;
+            before.copy_from_slice(after);
             (from, at) = (at, next);
         }
         None

@@ -61,11 +61,12 @@ pub(super) struct Estimate {
 }
 
 impl Estimate {
-    /// Solves rows, of which so much of every part is exposed.
+    /// Solves rows, of which so much of every part is exposed. What is sent of reflected light is
+    /// found from what it was before, where that is known.
     pub(super) fn new(
         ground: &Ground,
         rows: &Rows,
-        exposed: &[f64],
+        (exposed, sent): (&[f64], &mut Option<MultiVector<f64>>),
         (looks, accuracy): (Looks, f64),
         signals: &Signals,
     ) -> Result<Self, Error> {
@@ -77,12 +78,12 @@ impl Estimate {
         let right = times(&factor, &source);
         let input = |error| Error::new(ErrorKind::Input, error);
         let system = SecondKind::new(rows, factor.clone()).map_err(input)?;
-        let mut sent = right.clone();
+        let sent = sent.get_or_insert_with(|| right.clone());
         let stop = Stop { tolerance: RESIDUAL * accuracy, max_iterations: MOST_ITERATIONS };
         let solver = registry::build(SOLVER).map_err(|error| Error::new(ErrorKind::Input, error))?;
-        let solved = solver.solver.solve(&system, &right, &mut sent, &stop, &mut signals.clone());
+        let solved = solver.solver.solve(&system, &right, sent, &stop, &mut signals.clone());
         let report = solved.map_err(solve_failure)?;
-        let replicates = rows.replicates(&sent);
+        let replicates = rows.replicates(sent);
         let irradiance = mean(&replicates);
         let norms = ground.norms(&irradiance);
         let absorbing = ground.absorbing(exposed);

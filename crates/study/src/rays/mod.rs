@@ -22,7 +22,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use fredholm_coupling::Means;
-use fredholm_linop::StopReason;
+use fredholm_linop::{MultiVector, StopReason};
 use fredholm_mesh::{Mesh, Patch};
 use fredholm_montecarlo::rows::{Family, Looks, RowSampler};
 use fredholm_scene::Scene;
@@ -77,6 +77,8 @@ const RAYS_OF_AN_ELEMENT: f64 = 16.0;
 const RAYS_OF_A_FACE: f64 = 1500.0;
 const RAYS_EXPONENT: f64 = 1.4;
 const RAYS_OF_A_LARGE_FACE_ALONE: f64 = 5000.0;
+/// Rays of an element by this, from which on it is cut into four: four of each part and replicate.
+const RAYS_OF_FOUR_PARTS: f64 = 64.0;
 /// Bytes of a ray, twice while rows grow, and of a part and band of it.
 const BYTES_OF_A_RAY: f64 = 10.0;
 const BYTES_OF_A_PART: u128 = 700;
@@ -117,10 +119,20 @@ impl Faces {
     }
 }
 
-/// Which elements are cut into four: those that are smaller than the parts of a mean one stay whole.
-fn in_four(mesh: &Mesh) -> impl Iterator<Item = bool> {
+/// Which elements are cut into four. Those that are smaller than the parts of a mean one stay whole,
+/// and those to which an accuracy gives few rays for each part: a part has one ray of each replicate
+/// at least, needed or not.
+fn in_four(mesh: &Mesh, accuracy: f64) -> impl Iterator<Item = bool> {
     let mean = mesh.patches().map(Patch::area).sum::<f64>() / mesh.len() as f64;
-    mesh.patches().map(move |patch| patch.area() >= 0.25 * mean)
+    // Shared out by the roots of the areas of faces, and evenly over each.
+    let areas = || mesh.faces().iter().map(|face| face.area);
+    let of_faces = RAYS_OF_A_FACE * (0.01 / accuracy).powf(RAYS_EXPONENT);
+    let of_a_root = of_faces * areas().map(f64::sqrt).sum::<f64>() / areas().sum::<f64>();
+    mesh.patches().enumerate().map(move |(element, patch)| {
+        let area = patch.area();
+        let rays = of_a_root * area / mesh.faces()[mesh.face_of(element)].area.sqrt();
+        area >= 0.25 * mean && rays >= RAYS_OF_FOUR_PARTS
+    })
 }
 
 /// Solves a scene to an accuracy.
@@ -157,7 +169,7 @@ pub(crate) fn expected_plan(scene: &Scene, options: &SolveSettings, accuracy: f6
 /// The same of a mesh.
 pub(crate) fn plan_on(scene: &Scene, mesh: &Mesh, options: &SolveSettings, accuracy: f64) -> Plan {
     let rays = expected(mesh.len() as f64, Faces::of(mesh), accuracy);
-    let parts = mesh.len() + 3 * in_four(mesh).filter(|&is_cut| is_cut).count();
+    let parts = mesh.len() + 3 * in_four(mesh, accuracy).filter(|&is_cut| is_cut).count();
     plan(scene, (parts, rays), options)
 }
 
@@ -195,7 +207,7 @@ fn solved(
     accuracy: f64,
     signals: &Signals,
 ) -> Result<Found, Error> {
-    let chosen: Vec<bool> = in_four(mesh).collect();
+    let chosen: Vec<bool> = in_four(mesh, accuracy).collect();
     mesh.split_leaves(|leaf| chosen[leaf]).map_err(|error| Error::new(ErrorKind::Resources, error))?;
     let mut run = Run { accuracy, signals, stage: 0, rays: 0, best: None };
     let mut everywhere = false;
@@ -206,6 +218,14 @@ fn solved(
         mesh.split_leaves(|part| chosen[part]).map_err(|error| Error::new(ErrorKind::Resources, error))?;
     }
     run.best.ok_or_else(Error::cancelled)
+}
+
+/// What earlier rows on the same elements have found: exposed shares of all parts, and what they
+/// send of reflected light, W/m².
+#[derive(Default)]
+struct Known {
+    exposed: Option<Vec<f64>>,
+    sent: Option<MultiVector<f64>>,
 }
 
 /// The steps of a computation.
@@ -224,11 +244,11 @@ impl Run<'_> {
         let few = 1 << few.clamp(1.0, MOST_OF_FIRST_STEP).log2().round() as u32;
         let first = ground.at_least(RAYS_OF_A_LARGE_FACE, &vec![few; ground.families.len()]);
         let sampler = RowSampler::new(&ground.lit, &ground.families, SEED);
-        let mut budget = None;
+        let (mut budget, mut known) = (None, Known::default());
         loop {
             let checked = if budget.is_none() { 1 } else { CHECKED };
             let looks = if *everywhere { Looks::Everywhere } else { Looks::Checked(checked) };
-            match self.step((ground, &sampler), (looks, &first), budget.take())? {
+            match self.step((ground, &sampler), &mut known, (looks, &first), budget.take())? {
                 None => return Ok(None),
                 Some(Next::Cast(next)) => budget = Some(next),
                 Some(Next::Look) => (*everywhere, budget) = (true, None),
@@ -243,11 +263,12 @@ impl Run<'_> {
     fn step(
         &mut self,
         (ground, sampler): (&Ground, &RowSampler),
+        known: &mut Known,
         (looks, first): (Looks, &[u32]),
         mut budget: Option<Budget>,
     ) -> Result<Option<Next>, Error> {
         let dark = budget.as_ref().map_or_else(|| vec![false; first.len()], Budget::dark);
-        let (mut rows, mut exposed) = (sampler.start(looks, self.stage, dark), None);
+        let mut rows = sampler.start(looks, self.stage, dark);
         self.stage += 1;
         let mut counts = budget.as_ref().map_or_else(|| first.to_vec(), Budget::counts);
         loop {
@@ -256,9 +277,9 @@ impl Run<'_> {
                 return if self.best.is_some() { Ok(None) } else { Err(Error::cancelled()) };
             }
             self.rays += rows.rays() - cast;
-            let known = exposed.take();
-            let shares = rows.exposed_shares(&ground.lit, known.as_deref());
-            let estimate = Estimate::new(ground, &rows, &shares, (looks, self.accuracy), self.signals)?;
+            let exposed = rows.exposed_shares(&ground.lit, known.exposed.as_deref());
+            let by = (exposed.as_slice(), &mut known.sent);
+            let estimate = Estimate::new(ground, &rows, by, (looks, self.accuracy), self.signals)?;
             let stated = estimate.stated();
             let too_large = stated > self.accuracy && self.too_large(&estimate, budget.is_none());
             // Dark faces count little in the error that is stated, and are not to be left to the few
@@ -294,8 +315,8 @@ impl Run<'_> {
                     })
                 }
             };
-            self.best = Some(Found { estimate, exposed: shares.clone(), rays: self.rays });
-            exposed = Some(shares);
+            self.best = Some(Found { estimate, exposed: exposed.clone(), rays: self.rays });
+            known.exposed = Some(exposed);
             let share = (self.accuracy / stated).powi(2).min(1.0);
             self.signals
                 .watch
