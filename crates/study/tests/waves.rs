@@ -716,8 +716,8 @@ fn interpolated_sweeps_are_as_exact_as_stated() {
     // Apart from the origin, and a pair of plates with waves to and fro between them.
     let ball =
         "[[surface]]\nname = \"ball\"\nsphere = { centre = [0.5, 0.2, 0], radius = 0.1 }\nedge = 0.04\n";
-    let pair = "[[surface]]\nname = \"a\"\nquad = [[0, 0, 0], [0.2, 0, 0], [0.2, 0.2, 0], [0, 0.2, 0]]\nedge = 0.04\n\
-                [[surface]]\nname = \"b\"\nquad = [[0, 0, 0.06], [0.2, 0, 0.06], [0.2, 0.2, 0.06], [0, 0.2, 0.06]]\nedge = 0.04\n";
+    let pair = "[[surface]]\nname = \"a\"\nquad = [[0, 0, 0], [0.2, 0, 0], [0.2, 0.2, 0], [0, 0.2, 0]]\nedge = 0.05\n\
+                [[surface]]\nname = \"b\"\nquad = [[0, 0, 0.06], [0.2, 0, 0.06], [0.2, 0.2, 0.06], [0, 0.2, 0.06]]\nedge = 0.05\n";
     let values = |found: &SolvedWaves<'_>, receiver: usize| -> Vec<f64> {
         let near = found.near().iter().filter(|row| row.receiver == receiver).flat_map(|row| row.scattered);
         let far = found.far().iter().filter(|row| row.receiver == receiver).flat_map(|row| row.amplitude);
@@ -727,7 +727,7 @@ fn interpolated_sweeps_are_as_exact_as_stated() {
     for (method, surfaces, accuracy) in [("efie", pair, 1e-2), ("dual-surface-mfie", ball, 5e-3)] {
         let text = |more: &str| {
             format!(
-                "[wave]\nfrequencies_hz = {{ from = 8e8, to = 1.2e9, points = 41 }}\nmethod = \"{method}\"\n\
+                "[wave]\nfrequencies_hz = {{ from = 8e8, to = 1.2e9, points = 61 }}\nmethod = \"{method}\"\n\
                  {more}\n{SOURCE}{surfaces}{receivers}"
             )
         };
@@ -738,18 +738,18 @@ fn interpolated_sweeps_are_as_exact_as_stated() {
         let mut worst = 0.0_f64;
         for receiver in 0..3 {
             let (a, b) = (values(&some, receiver), values(&all, receiver));
-            let size = b.iter().map(|x| x * x).sum::<f64>() / 41.0;
-            let one = b.len() / 41;
+            let size = b.iter().map(|x| x * x).sum::<f64>() / 61.0;
+            let one = b.len() / 61;
             for (a, b) in a.chunks(one).zip(b.chunks(one)) {
                 let gap: f64 = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum();
                 worst = worst.max((gap / size).sqrt());
             }
         }
         eprintln!(
-            "{method} {accuracy}: {} of 41, stated {:.1e}, true {worst:.1e}",
+            "{method} {accuracy}: {} of 61, stated {:.1e}, true {worst:.1e}",
             stated.computed, stated.relative
         );
         assert!(worst <= stated.relative && stated.relative <= accuracy);
-        assert!(stated.computed < 35);
+        assert!(stated.computed < 50);
     }
 }
