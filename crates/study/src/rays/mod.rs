@@ -64,7 +64,8 @@ const MOST_OF_FIRST_STEP: f64 = 8.0;
 /// be dim.
 const RAYS_OF_A_LARGE_FACE: u32 = 128;
 const RAYS_OF_A_DIM_FACE: u32 = 1024;
-/// One ray in so many checks whether elements may reflect as wholes, after the first step.
+/// One ray in so many of each part and replicate checks whether elements may reflect as wholes, the
+/// first one too.
 const CHECKED: usize = 4;
 /// Share of the differences within elements whose elements are divided.
 const DIVIDED: f64 = 0.9;
@@ -246,8 +247,7 @@ impl Run<'_> {
         let sampler = RowSampler::new(&ground.lit, &ground.families, SEED);
         let (mut budget, mut known) = (None, Known::default());
         loop {
-            let checked = if budget.is_none() { 1 } else { CHECKED };
-            let looks = if *everywhere { Looks::Everywhere } else { Looks::Checked(checked) };
+            let looks = if *everywhere { Looks::Everywhere } else { Looks::Checked(CHECKED) };
             match self.step((ground, &sampler), &mut known, (looks, &first), budget.take())? {
                 None => return Ok(None),
                 Some(Next::Cast(next)) => budget = Some(next),
