@@ -9,6 +9,7 @@ use fredholm_mesh::Vec3;
 
 use crate::Occluders;
 use crate::eight::{Eight, Work, run};
+use crate::facet::Meeting;
 use crate::packet::Ends;
 use crate::probe::Probe;
 use crate::tree::{Beam, Seeker};
@@ -71,7 +72,7 @@ impl Work for First<'_> {
         let alike = occluders.frame.tolerance / probe.p.distance(probe.q);
         let ends = Ends::new(eight, &probe);
         let found = Found { alike, nearest: f64::INFINITY, best: None, others: Vec::new() };
-        let mut ray = Ray { occluders, probe: &probe, beam: &beam, ends, end: 1.0, found };
+        let mut ray = Ray { occluders, probe: &probe, beam: &beam, ends, end: 1.0, place: 1.0, found };
         occluders.tree.nearest(eight, &mut beam.splat(eight), &mut ray);
         ray.found.foremost().map(|rank| (ray.found.nearest, rank))
     }
@@ -85,6 +86,8 @@ struct Ray<'a, E: Eight> {
     ends: Ends<E>,
     /// The fraction of the probe beyond which nothing matters.
     end: f64,
+    /// Its place on the beam.
+    place: f32,
     found: Found,
 }
 
@@ -92,19 +95,31 @@ impl<E: Eight> Seeker<E> for Ray<'_, E> {
     #[inline(always)]
     fn leaf(&mut self, eight: E, leaf: usize) -> f32 {
         let packet = &self.occluders.packets[leaf];
-        let mut left = packet.crossed(eight, &self.ends, self.end as f32).may;
+        let crossed = packet.crossed(eight, &self.ends, self.end as f32);
+        let mut left = crossed.may;
         while left != 0 {
-            let facet = &self.occluders.facets[packet.place(left.trailing_zeros())];
+            let lane = left.trailing_zeros();
             left &= left - 1;
-            if let Some(fraction) = self.occluders.crossing(facet, self.probe)
+            let place = packet.place(lane);
+            let facet = &self.occluders.facets[place];
+            let is_sure = crossed.does >> lane & 1 != 0;
+            let meeting = if is_sure {
+                Some(facet.meeting(self.probe))
+            } else {
+                self.occluders.crossing(place, self.probe)
+            };
+            if let Some(Meeting { fraction, is_back }) = meeting
                 && fraction <= self.end
             {
-                let rank = (facet.height(self.probe.p) < 0.0, facet.patch);
-                self.found.add(Met { fraction, rank });
-                self.end = self.end.min(self.found.nearest + self.found.alike);
+                self.found.add(Met { fraction, rank: (is_back, facet.patch) });
+                let end = self.found.nearest + self.found.alike;
+                if end < self.end {
+                    self.end = end;
+                    self.place = self.beam.place(end);
+                }
             }
         }
-        self.beam.place(self.end)
+        self.place
     }
 }
 

@@ -33,15 +33,13 @@ const ROUNDINGS_64: f64 = 64.0;
 /// The factor 3 above, over the least M, which is ½.
 const ROUNDING_FACTOR: f64 = 6.0;
 
-/// A triangle or a parallelogram, ready to be tested.
+/// A triangle or a parallelogram, ready to be tested: what is needed of it where a segment is known
+/// to cross it. One line of memory each, since rays through large scenes wait for little else.
 #[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
 pub(crate) struct Facet {
     normal: Vec3,
     offset: f64,
-    /// ∂u/∂x, ∂v/∂x, ∂u/∂y, ∂v/∂y.
-    slopes_xy: Vec4,
-    /// ∂u/∂z, ∂v/∂z and the values of u and v at 0.
-    slopes_z: Vec4,
     /// Roundings of U, V and D, over M D and over M².
     doubt: [f32; 2],
     /// 1 for a triangle, 0 for a parallelogram: the third condition is max(U, V) + triangle ·
@@ -51,30 +49,49 @@ pub(crate) struct Facet {
     pub patch: u32,
 }
 
+/// The coordinates u and v of a facet as functions of the place.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Slopes {
+    /// ∂u/∂x, ∂v/∂x, ∂u/∂y, ∂v/∂y.
+    xy: Vec4,
+    /// ∂u/∂z, ∂v/∂z and the values of u and v at 0.
+    z: Vec4,
+}
+
+/// A segment that crosses a facet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Meeting {
+    /// How far along the segment.
+    pub fraction: f64,
+    /// Whether the facet turns its back to the start.
+    pub is_back: bool,
+}
+
 /// What a segment does to a facet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Crossing {
     /// It misses for sure.
     Miss,
-    /// It crosses for sure, this fraction of the way from p to q.
-    Hit(f64),
-    /// It crosses the plane at this fraction, so close to the outline that rounding could decide.
-    Doubt(f64),
+    /// It crosses for sure.
+    Hit(Meeting),
+    /// It crosses the plane, so close to the outline that rounding could decide.
+    Doubt(Meeting),
 }
 
 impl Facet {
     /// The triangle with the corner a and the edges b and c from it.
-    pub(crate) fn triangle(a: Vec3, edges: [Vec3; 2], patch: u32) -> Self {
+    pub(crate) fn triangle(a: Vec3, edges: [Vec3; 2], patch: u32) -> (Self, Slopes) {
         Self::new(a, edges, 0.0, patch)
     }
 
     /// The parallelogram with the corner a and the edges b and c from it, whose fourth corner may
     /// lie the distance `slack` off.
-    pub(crate) fn parallelogram(a: Vec3, edges: [Vec3; 2], slack: f64, patch: u32) -> Self {
-        Self { triangle: 0.0, ..Self::new(a, edges, slack, patch) }
+    pub(crate) fn parallelogram(a: Vec3, edges: [Vec3; 2], slack: f64, patch: u32) -> (Self, Slopes) {
+        let (facet, slopes) = Self::new(a, edges, slack, patch);
+        (Self { triangle: 0.0, ..facet }, slopes)
     }
 
-    fn new(a: Vec3, [b, c]: [Vec3; 2], slack: f64, patch: u32) -> Self {
+    fn new(a: Vec3, [b, c]: [Vec3; 2], slack: f64, patch: u32) -> (Self, Slopes) {
         let cross = b.cross(c);
         let area = cross.length();
         let normal = cross / area;
@@ -82,44 +99,58 @@ impl Facet {
         let gradient = u.length() + v.length();
         let blur = ROUNDINGS_64 * f64::EPSILON * b.length() * c.length() / area + ROUNDING_FACTOR * slack;
         let vector = |[a, b, c, d]: [f64; 4]| Vec4::new(a as f32, b as f32, c as f32, d as f32);
-        Self {
+        let facet = Self {
             normal,
             offset: -normal.dot(a),
-            slopes_xy: vector([u.x, v.x, u.y, v.y]),
-            slopes_z: vector([u.z, v.z, -u.dot(a), -v.dot(a)]),
             doubt: [ROUNDINGS_32 * f64::from(f32::EPSILON), blur].map(|share| (gradient * share) as f32),
             triangle: 1.0,
             patch,
-        }
+        };
+        (facet, Slopes { xy: vector([u.x, v.x, u.y, v.y]), z: vector([u.z, v.z, -u.dot(a), -v.dot(a)]) })
+    }
+
+    /// Heights of the ends of a segment.
+    #[inline]
+    fn heights(&self, probe: &Probe) -> [f64; 2] {
+        let [x, y, z] = &probe.axes;
+        let n = self.normal;
+        [0, 1].map(|k| n.x * x[k] + n.y * y[k] + n.z * z[k] + self.offset)
+    }
+
+    /// Where a segment that surely crosses the facet does so.
+    #[inline]
+    pub(crate) fn meeting(&self, probe: &Probe) -> Meeting {
+        let [s_p, s_q] = self.heights(probe);
+        Meeting { fraction: s_p.abs() / (s_p.abs() + s_q.abs()), is_back: s_p < 0.0 }
     }
 
     /// Tests the segment. An end within its tolerance of the plane does not cross it.
     #[inline]
-    pub(crate) fn crossing(&self, probe: &Probe) -> Crossing {
-        let [x, y, z] = &probe.axes;
-        let n = self.normal;
-        let [s_p, s_q] = [0, 1].map(|k| n.x * x[k] + n.y * y[k] + n.z * z[k] + self.offset);
+    pub(crate) fn crossing(&self, slopes: &Slopes, probe: &Probe) -> Crossing {
+        let [s_p, s_q] = self.heights(probe);
         if !((s_p * s_q < 0.0) & (s_p.abs() > probe.near[0]) & (s_q.abs() > probe.near[1])) {
             return Crossing::Miss;
         }
+        let is_back = s_p < 0.0;
         let (s_p, s_q) = (s_p.abs(), s_q.abs());
         let d = s_p + s_q;
-        let (inside, doubt) = self.inside(probe, s_p as f32, s_q as f32, d as f32);
+        let meeting = Meeting { fraction: s_p / d, is_back };
+        let (inside, doubt) = self.inside(slopes, probe, [s_p, s_q, d].map(|s| s as f32));
         // Not a number, where f32 overflows, is in doubt.
         if inside < -doubt {
             Crossing::Miss
         } else if inside > doubt {
-            Crossing::Hit(s_p / d)
+            Crossing::Hit(meeting)
         } else {
-            Crossing::Doubt(s_p / d)
+            Crossing::Doubt(meeting)
         }
     }
 
     /// The least of what must be positive, and how wrong it can be.
     #[inline]
-    fn inside(&self, probe: &Probe, s_p: f32, s_q: f32, d: f32) -> (f32, f32) {
+    fn inside(&self, slopes: &Slopes, probe: &Probe, [s_p, s_q, d]: [f32; 3]) -> (f32, f32) {
         let [x, y, z] = probe.lanes;
-        let (xy, z1) = (self.slopes_xy, self.slopes_z);
+        let (xy, z1) = (slopes.xy, slopes.z);
         let uv = xy.xxyy() * x + xy.zzww() * y + z1.xxyy() * z + z1.zzww();
         let terms = uv * Vec4::new(s_q, s_p, s_q, s_p);
         let (u, v) = (terms.x + terms.y, terms.z + terms.w);
@@ -134,12 +165,6 @@ impl Facet {
         [self.normal.x, self.normal.y, self.normal.z, self.offset]
     }
 
-    /// ∂/∂x, ∂/∂y, ∂/∂z and the value at 0 of u and of v.
-    pub(crate) fn slopes(&self) -> [[f32; 4]; 2] {
-        let ([u_x, v_x, u_y, v_y], [u_z, v_z, u, v]) = (self.slopes_xy.to_array(), self.slopes_z.to_array());
-        [[u_x, u_y, u_z, u], [v_x, v_y, v_z, v]]
-    }
-
     /// g, and what changes U, V and D whatever they are rounded to, over M².
     pub(crate) fn doubts(&self) -> (f32, f32) {
         (self.doubt[0] / (ROUNDINGS_32 as f32 * f32::EPSILON), self.doubt[1])
@@ -149,5 +174,13 @@ impl Facet {
     #[inline]
     pub(crate) fn height(&self, point: Vec3) -> f64 {
         self.normal.dot(point) + self.offset
+    }
+}
+
+impl Slopes {
+    /// ∂/∂x, ∂/∂y, ∂/∂z and the value at 0 of u and of v.
+    pub(crate) fn rows(&self) -> [[f32; 4]; 2] {
+        let ([u_x, v_x, u_y, v_y], [u_z, v_z, u, v]) = (self.xy.to_array(), self.z.to_array());
+        [[u_x, u_y, u_z, u], [v_x, v_y, v_z, v]]
     }
 }

@@ -1,10 +1,12 @@
 //! The set of patches that block the view.
 
+use std::ops::Range;
+
 use fredholm_mesh::{Patch, Vec3};
 
 use crate::VisibilityError;
 use crate::exact::line_crosses;
-use crate::facet::{Crossing, Facet};
+use crate::facet::{Crossing, Facet, Meeting, Slopes};
 use crate::frame::Frame;
 use crate::packet::Packet;
 use crate::probe::Probe;
@@ -22,6 +24,8 @@ pub struct Occluders {
     pub(crate) patches: Vec<Patch>,
     /// In the order of the leaves of the tree.
     pub(crate) facets: Vec<Facet>,
+    /// Of each facet.
+    pub(crate) slopes: Vec<Slopes>,
     pub(crate) tree: Tree,
     /// The facets of each leaf of the tree.
     pub(crate) packets: Vec<Packet>,
@@ -43,15 +47,19 @@ impl Occluders {
             return Err(VisibilityError::TooMany { count: patches.len(), limit: MOST_FACETS });
         }
         let frame = Frame::around(patches)?;
-        let pieces: Vec<(Facet, [Vec3; 4])> =
+        let pieces: Vec<Piece> =
             patches.iter().zip(0..).flat_map(|(patch, index)| pieces(patch, index, &frame)).collect();
-        let boxes: Vec<_> = pieces.iter().map(|(_, outline)| bounds(outline)).collect();
+        let boxes: Vec<_> = pieces.iter().map(|piece| bounds(&piece.outline)).collect();
         let Built { tree, order, leaves } = Tree::over(&boxes);
-        let (facets, outlines): (Vec<_>, Vec<_>) = order.iter().map(|&i| pieces[i as usize]).unzip();
-        let packets =
-            leaves.into_iter().map(|leaf| Packet::new(&facets[leaf.clone()], leaf.start as u32)).collect();
+        let ordered = || order.iter().map(|&i| &pieces[i as usize]);
+        let facets: Vec<Facet> = ordered().map(|piece| piece.facet).collect();
+        let slopes: Vec<Slopes> = ordered().map(|piece| piece.slopes).collect();
+        let outlines = ordered().map(|piece| piece.outline).collect();
+        let packet =
+            |leaf: Range<usize>| Packet::new(&facets[leaf.clone()], &slopes[leaf.clone()], leaf.start as u32);
+        let packets = leaves.into_iter().map(packet).collect();
         let places = places(&facets, patches.len());
-        Ok(Self { frame, patches: patches.to_vec(), facets, outlines, tree, packets, places })
+        Ok(Self { frame, patches: patches.to_vec(), facets, slopes, outlines, tree, packets, places })
     }
 
     /// The patches, as they were given.
@@ -79,14 +87,14 @@ impl Occluders {
         self.frame.metres(self.frame.tolerance)
     }
 
-    /// How far along the probe the facet is crossed, as a fraction of its length, or `None` where
-    /// it is not.
+    /// Where the probe crosses the facet of a place, or `None` where it does not.
     #[inline]
-    pub(crate) fn crossing(&self, facet: &Facet, probe: &Probe) -> Option<f64> {
-        match facet.crossing(probe) {
+    pub(crate) fn crossing(&self, place: usize, probe: &Probe) -> Option<Meeting> {
+        let facet = &self.facets[place];
+        match facet.crossing(&self.slopes[place], probe) {
             Crossing::Miss => None,
-            Crossing::Hit(fraction) => Some(fraction),
-            Crossing::Doubt(fraction) => self.line_crosses(facet, probe).then_some(fraction),
+            Crossing::Hit(meeting) => Some(meeting),
+            Crossing::Doubt(meeting) => self.line_crosses(facet, probe).then_some(meeting),
         }
     }
 
@@ -97,23 +105,31 @@ impl Occluders {
     }
 }
 
+/// A facet, and the corners of its outline, local.
+struct Piece {
+    facet: Facet,
+    slopes: Slopes,
+    outline: [Vec3; 4],
+}
+
 /// A triangle is one facet, and so is a quad that is a parallelogram; any other quad is two
 /// triangles.
 ///
 /// Edges are differences of the corners as given: those of local coordinates lose digits of small
 /// patches.
-fn pieces(patch: &Patch, index: u32, frame: &Frame) -> impl Iterator<Item = (Facet, [Vec3; 4])> + use<> {
+fn pieces(patch: &Patch, index: u32, frame: &Frame) -> impl Iterator<Item = Piece> + use<> {
     let [a, b, c, d] = [0, 1, 2, 3].map(|i| patch.corner(i.min(patch.sides() - 1)));
     let [to_b, to_c, to_d] = [b, c, d].map(|corner| frame.edge(corner - a));
     let [a, b, c, d] = [a, b, c, d].map(|corner| frame.local(corner));
     let skew = (to_b + to_d - to_c).length();
-    let first = (Facet::triangle(a, [to_b, to_c], index), [a, b, c, c]);
+    let piece = |(facet, slopes), outline| Some(Piece { facet, slopes, outline });
+    let first = piece(Facet::triangle(a, [to_b, to_c], index), [a, b, c, c]);
     let pieces = if patch.sides() == 3 {
-        [Some(first), None]
+        [first, None]
     } else if skew <= SKEW * frame.tolerance {
-        [Some((Facet::parallelogram(a, [to_b, to_d], skew, index), [a, b, c, d])), None]
+        [piece(Facet::parallelogram(a, [to_b, to_d], skew, index), [a, b, c, d]), None]
     } else {
-        [Some(first), Some((Facet::triangle(a, [to_c, to_d], index), [a, c, d, d]))]
+        [first, piece(Facet::triangle(a, [to_c, to_d], index), [a, c, d, d])]
     };
     pieces.into_iter().flatten()
 }

@@ -19,7 +19,7 @@
 use std::ops::Range;
 
 use crate::eight::{Eight, WIDTH};
-use crate::facet::Facet;
+use crate::facet::{Facet, Slopes};
 use crate::probe::Probe;
 
 /// Errors of heights over ε M.
@@ -79,7 +79,7 @@ impl<E: Eight> Ends<E> {
 
 impl Packet {
     /// The packet of some facets, at most eight, of which the first has the place `first`.
-    pub(crate) fn new(facets: &[Facet], first: u32) -> Self {
+    pub(crate) fn new(facets: &[Facet], slopes: &[Slopes], first: u32) -> Self {
         let mut packet = Self {
             normal: [[0.0; WIDTH]; 3],
             offset: [HEIGHT_OF_NO_FACET; WIDTH],
@@ -90,11 +90,11 @@ impl Packet {
             first,
             count: facets.len() as u32,
         };
-        for (i, facet) in facets.iter().enumerate() {
+        for (i, (facet, slopes)) in facets.iter().zip(slopes).enumerate() {
             let [n_x, n_y, n_z, offset] = facet.plane().map(|c| c as f32);
             (packet.normal[0][i], packet.normal[1][i], packet.normal[2][i]) = (n_x, n_y, n_z);
             packet.offset[i] = offset;
-            let [u, v] = facet.slopes();
+            let [u, v] = slopes.rows();
             for k in 0..4 {
                 (packet.u[k][i], packet.v[k][i]) = (u[k], v[k]);
             }

@@ -37,7 +37,7 @@ impl Occluders {
     pub fn unoccluded_by(&self, p: Vec3, q: Vec3, candidates: &[u32]) -> bool {
         let Some(probe) = Probe::segment(p, q, &self.frame) else { return true };
         let mut places = candidates.iter().filter_map(|&patch| self.places.get(patch as usize));
-        let crosses = |place: u32| self.crossing(&self.facets[place as usize], &probe).is_some();
+        let crosses = |place: u32| self.crossing(place as usize, &probe).is_some();
         !places.any(|&[first, last]| crosses(first) || (first != last && crosses(last)))
     }
 
@@ -99,9 +99,9 @@ impl<E: Eight> Visitor<E> for Segment<'_, E> {
         }
         let mut left = crossed.may;
         while left != 0 {
-            let facet = &self.occluders.facets[packet.place(left.trailing_zeros())];
+            let place = packet.place(left.trailing_zeros());
             left &= left - 1;
-            if self.occluders.crossing(facet, self.probe).is_some() {
+            if self.occluders.crossing(place, self.probe).is_some() {
                 return true;
             }
         }

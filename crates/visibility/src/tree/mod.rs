@@ -17,7 +17,6 @@ mod beam;
 mod build;
 mod nearest;
 mod sieve;
-mod stack;
 
 use std::ops::Range;
 
@@ -28,7 +27,11 @@ pub(crate) use beam::{Beam, Splat};
 pub(crate) use build::bounds;
 pub(crate) use nearest::Seeker;
 pub(crate) use sieve::Sieve;
-use stack::Stack;
+use smallvec::SmallVec;
+
+/// What is still to visit. What a tree leaves over on the way down has room without an allocation: a
+/// hundred thousand facets are about six levels deep, and a level leaves seven at most.
+type Stack<T> = SmallVec<[T; 64]>;
 
 /// What boxes are padded with: 8 units in the last place of 1, the extent of the scene.
 pub(crate) const PADDING: f32 = 8.0 * f32::EPSILON;
@@ -97,7 +100,7 @@ impl Tree {
     /// whether it did.
     #[inline(always)]
     pub(crate) fn any<E: Eight>(&self, eight: E, visitor: &mut impl Visitor<E>) -> bool {
-        let mut stack = Stack::default();
+        let mut stack = Stack::new();
         let mut next = Some(0);
         while let Some(index) = next {
             let node = &self.nodes[index as usize];

@@ -14,7 +14,7 @@ pub(crate) trait Seeker<E: Eight> {
 
 /// A child by where the beam enters it; a place on a beam is never negative, so its bits are in the
 /// order of its value.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 struct Entry(u64);
 
 impl Entry {
@@ -34,11 +34,23 @@ impl Entry {
     }
 }
 
+/// Sorts a few entries.
+#[inline(always)]
+fn farthest_first(entries: &mut [Entry]) {
+    for i in 1..entries.len() {
+        let mut k = i;
+        while k > 0 && entries[k - 1] < entries[k] {
+            entries.swap(k - 1, k);
+            k -= 1;
+        }
+    }
+}
+
 impl Tree {
     /// Walks down to the leaves that the beam meets, near ones first.
     #[inline(always)]
     pub(crate) fn nearest<E: Eight>(&self, eight: E, beam: &mut Splat<E>, seeker: &mut impl Seeker<E>) {
-        let mut stack: Stack<Entry> = Stack::default();
+        let mut stack: Stack<Entry> = Stack::new();
         let mut next = Some(Entry::default());
         while let Some(entry) = next {
             if beam.reaches(entry.enter()) {
@@ -52,12 +64,20 @@ impl Tree {
                     let mut met = eight.at_most(enter, leave);
                     let enter = eight.store(enter);
                     let base = stack.len();
+                    let mut nearest = None;
                     while met != 0 {
                         let lane = met.trailing_zeros() as usize % WIDTH;
                         met &= met - 1;
-                        stack.push(Entry::new(enter[lane], node.children[lane]));
+                        let entry = Entry::new(enter[lane], node.children[lane]);
+                        let Some(known) = nearest.replace(entry) else { continue };
+                        stack.push(entry.max(known));
+                        nearest = Some(entry.min(known));
                     }
-                    stack.sort_from(base, |a, b| a.0 < b.0);
+                    if nearest.is_some() {
+                        farthest_first(&mut stack[base..]);
+                        next = nearest;
+                        continue;
+                    }
                 }
             }
             next = stack.pop();
