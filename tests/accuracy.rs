@@ -12,6 +12,7 @@ use fredholm::coupling::sample_pairs;
 use fredholm::mesh::Mesh;
 use fredholm::scene::Scene;
 use fredholm::visibility::Occluders;
+use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
 /// Tolerance of the first step; each next one is half as large.
@@ -24,8 +25,8 @@ const MOST_PAIRS: usize = 200;
 const PAIRS_LOOKED_AT: usize = 4000;
 /// As much of scenes of more patches, where a pair takes a hundred times as long.
 const MANY_PATCHES: usize = 10_000;
-const FEWER_PAIRS: usize = 24;
-const FEWER_LOOKED_AT: usize = 1000;
+const FEWER_PAIRS: usize = 12;
+const FEWER_LOOKED_AT: usize = 500;
 
 fn scenes() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
@@ -70,10 +71,10 @@ impl<'a> Sample<'a> {
     /// What of the smaller patch's light goes to the other, to a tolerance.
     fn factors(&self, tolerance: f64) -> Vec<f64> {
         let integrator = PairIntegrator::new(self.mesh.patches(), self.occluders, tolerance);
-        let mut work = Workspace::default();
-        let mut factor =
-            |&[i, j]: &[usize; 2]| integrator.exchange(i, j, &mut work).value / integrator.smaller_area(i, j);
-        self.pairs.iter().map(&mut factor).collect()
+        let factor = |work: &mut Workspace, &[i, j]: &[usize; 2]| {
+            integrator.exchange(i, j, work).value / integrator.smaller_area(i, j)
+        };
+        self.pairs.par_iter().map_init(Workspace::default, factor).collect()
     }
 
     /// Largest error of a factor, and root of the mean square, at each step.
@@ -105,9 +106,5 @@ fn check(file: &Path) {
 fn twice_the_accuracy_is_never_worse() {
     let files = scenes();
     assert!(files.len() >= 6, "{files:?}");
-    std::thread::scope(|scope| {
-        for file in &files {
-            scope.spawn(|| check(file));
-        }
-    });
+    files.par_iter().for_each(|file| check(file));
 }
