@@ -94,6 +94,7 @@ fn check(file: &Path) {
     let mesh = Scene::load(file).unwrap().mesh().unwrap();
     let occluders = Occluders::new(mesh.occluders()).unwrap();
     let sample = Sample::new(&mesh, &occluders);
+    assert!(sample.pairs.len() >= FEWER_PAIRS, "{}: {} pairs", file.display(), sample.pairs.len());
     let errors = sample.errors();
     let shown: Vec<String> = errors.iter().map(|[largest, _]| format!("{largest:.1e}")).collect();
     println!("{}: {} pairs, errors {}", file.display(), sample.pairs.len(), shown.join(", "));

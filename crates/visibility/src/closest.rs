@@ -72,7 +72,7 @@ impl Work for First<'_> {
         let alike = occluders.frame.tolerance / probe.p.distance(probe.q);
         let ends = Ends::new(eight, &probe);
         let found = Found { alike, nearest: f64::INFINITY, best: None, others: Vec::new() };
-        let mut ray = Ray { occluders, probe: &probe, beam: &beam, ends, end: 1.0, place: 1.0, found };
+        let mut ray = Ray { occluders, probe: &probe, beam: &beam, ends, end: 1.0, end_of_beam: 1.0, found };
         occluders.tree.nearest(eight, &mut beam.splat(eight), &mut ray);
         ray.found.foremost().map(|rank| (ray.found.nearest, rank))
     }
@@ -86,8 +86,8 @@ struct Ray<'a, E: Eight> {
     ends: Ends<E>,
     /// The fraction of the probe beyond which nothing matters.
     end: f64,
-    /// Its place on the beam.
-    place: f32,
+    /// The same on the beam.
+    end_of_beam: f32,
     found: Found,
 }
 
@@ -108,6 +108,7 @@ impl<E: Eight> Seeker<E> for Ray<'_, E> {
             } else {
                 self.occluders.crossing(place, self.probe)
             };
+            // What is sure may lie a little past the end, which the packet knows in f32.
             if let Some(Meeting { fraction, is_back }) = meeting
                 && fraction <= self.end
             {
@@ -115,11 +116,11 @@ impl<E: Eight> Seeker<E> for Ray<'_, E> {
                 let end = self.found.nearest + self.found.alike;
                 if end < self.end {
                     self.end = end;
-                    self.place = self.beam.place(end);
+                    self.end_of_beam = self.beam.place(end);
                 }
             }
         }
-        self.place
+        self.end_of_beam
     }
 }
 

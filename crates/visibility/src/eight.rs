@@ -1,8 +1,8 @@
 //! Eight numbers of f32 at once: the same arithmetic for every machine.
 //!
 //! What a processor with AVX2 does in one instruction another does in a few. Products and sums may
-//! be rounded once or twice, so nothing that is computed here decides an answer: it only says what
-//! cannot matter.
+//! be rounded once or twice, so what is computed here decides an answer only where bounds on all
+//! roundings leave no doubt.
 
 #![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
 

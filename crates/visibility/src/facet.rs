@@ -33,8 +33,9 @@ const ROUNDINGS_64: f64 = 64.0;
 /// The factor 3 above, over the least M, which is ½.
 const ROUNDING_FACTOR: f64 = 6.0;
 
-/// A triangle or a parallelogram, ready to be tested: what is needed of it where a segment is known
-/// to cross it. One line of memory each, since rays through large scenes wait for little else.
+/// A triangle or a parallelogram: its plane, and what is known of it beside its [`Slopes`]. Where a
+/// segment surely crosses it nothing else is needed, so that it is one line of memory: rays through
+/// large scenes wait for little else.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct Facet {
@@ -49,7 +50,8 @@ pub(crate) struct Facet {
     pub patch: u32,
 }
 
-/// The coordinates u and v of a facet as functions of the place.
+/// The coordinates u and v of a facet as functions of the point, for the test of a segment that may
+/// cross it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Slopes {
     /// ∂u/∂x, ∂v/∂x, ∂u/∂y, ∂v/∂y.
@@ -58,10 +60,10 @@ pub(crate) struct Slopes {
     z: Vec4,
 }
 
-/// A segment that crosses a facet.
+/// Where a segment crosses the plane of a facet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Meeting {
-    /// How far along the segment.
+    /// The share of the way from p to q.
     pub fraction: f64,
     /// Whether the facet turns its back to the start.
     pub is_back: bool,

@@ -24,7 +24,7 @@ pub struct Occluders {
     pub(crate) patches: Vec<Patch>,
     /// In the order of the leaves of the tree.
     pub(crate) facets: Vec<Facet>,
-    /// Of each facet.
+    /// In the same order.
     pub(crate) slopes: Vec<Slopes>,
     pub(crate) tree: Tree,
     /// The facets of each leaf of the tree.

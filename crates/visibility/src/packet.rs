@@ -1,4 +1,4 @@
-//! Which of eight facets may a segment cross?
+//! Which of eight facets may a segment cross, and which does it cross for sure?
 //!
 //! The heights and coordinates of a [facet](crate::facet), all in f32 and for eight facets at once.
 //! With the heights s_p and s_q of the ends, signed, and their difference D = s_p − s_q, the
@@ -13,6 +13,12 @@
 //! M), and the three of them by less than g M ε (8 |D| + 32 M), where g = |∇u| + |∇v|, plus what a
 //! parallelogram that is not quite one adds. What is farther from zero is sure. The rest, and all
 //! that lies within H of a plane, is left to [`Facet`].
+//!
+//! A ray counts up to a fraction e < 1 of its length only, where its height is s_e = s_p − e D. With
+//! s_p beyond the tolerance on one side and s_e on the other, so is s_q, of the sign of s_e and
+//! farther from the plane, as far as roundings go: they move s_q by less than H, and what is sure is
+//! farther off than H and the tolerance. So what is sure to be crossed before e is so by the exact
+//! test of the whole ray, too.
 
 #![allow(clippy::inline_always, reason = "what is not inlined is compiled for the narrowest vectors")]
 
@@ -118,16 +124,17 @@ impl Packet {
         self.first as usize + lane as usize
     }
 
-    /// What the segment crosses up to the fraction `end` of its length.
+    /// What the segment crosses up to the fraction `end` of its length, or a little farther.
     #[inline(always)]
     pub(crate) fn crossed<E: Eight>(&self, e: E, ends: &Ends<E>, end: f32) -> Crossed {
         let [n_x, n_y, n_z] = &self.normal;
         let [s_p, s_q] = linear(e, [n_x, n_y, n_z, &self.offset], ends);
         let d = e.sub(s_p, s_q);
-        // Where the part that counts ends: a little farther, as `end` is rounded up.
+        // Where the part that counts ends.
         let s_e = if end < 1.0 { e.sub(s_p, e.mul(e.splat(end), d)) } else { s_q };
         let (low, high) = (e.min(s_p, s_e), e.max(s_p, s_e));
         let [near, far] = ends.apart;
+        // `end` may have been rounded down, and the height there errs by more than that of an end.
         let near = if end < 1.0 { 4.0 * near } else { near };
         let aside = e.less(e.splat(near), low) | e.less(high, e.splat(-near));
         if aside == (1 << WIDTH) - 1 {
@@ -147,7 +154,7 @@ impl Packet {
         let outside = e.less(least, negative) & e.less(doubt, most);
         let apart = e.less(low, e.splat(-far)) & e.less(e.splat(far), high);
         let inside = e.less(doubt, least) | e.less(most, negative);
-        let may = !(aside | outside) & ((1 << WIDTH) - 1);
+        let may = !(aside | outside) & ((1 << self.count) - 1);
         Crossed { may, does: apart & inside & may }
     }
 }

@@ -20,6 +20,8 @@ mod sieve;
 
 use std::ops::Range;
 
+use smallvec::SmallVec;
+
 pub(crate) use crate::eight::WIDTH;
 
 use crate::eight::Eight;
@@ -27,10 +29,9 @@ pub(crate) use beam::{Beam, Splat};
 pub(crate) use build::bounds;
 pub(crate) use nearest::Seeker;
 pub(crate) use sieve::Sieve;
-use smallvec::SmallVec;
 
-/// What is still to visit. What a tree leaves over on the way down has room without an allocation: a
-/// hundred thousand facets are about six levels deep, and a level leaves seven at most.
+/// What is still to visit. Up to 64 entries need no allocation: a tree of a hundred thousand facets
+/// is about six levels deep, and a level leaves seven of its eight boxes for later.
 type Stack<T> = SmallVec<[T; 64]>;
 
 /// What boxes are padded with: 8 units in the last place of 1, the extent of the scene.

@@ -84,3 +84,16 @@ impl Tree {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn entries_are_in_the_order_of_their_places() {
+        let places = [0.25, 1.0, 0.0, 0.5, 1e-30, 0.75];
+        let mut entries = [0, 1, 2, 3, 4, 5].map(|leaf| Entry::new(places[leaf], Child::leaf(leaf)));
+        farthest_first(&mut entries);
+        assert_eq!(entries.map(|entry| entry.child().place()), [1, 5, 3, 0, 4, 2]);
+    }
+}

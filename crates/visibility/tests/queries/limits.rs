@@ -33,6 +33,16 @@ fn ends_that_are_no_places_meet_nothing() {
 }
 
 #[test]
+fn ends_beyond_all_measure_name_no_facet_that_is_not_there() {
+    let occluders = Occluders::new(&[triangle([Vec3::ZERO, Vec3::X, Vec3::Y])]).unwrap();
+    for far in [3e35, 3e36, 1e37] {
+        let (p, q) = (Vec3::new(0.9, 0.9, -far), Vec3::new(0.9, 0.9, 1.0));
+        assert!(occluders.unoccluded(p, q));
+        assert_eq!(occluders.closest(q, p - q, 1.0), None);
+    }
+}
+
+#[test]
 fn distant_ends_meet_the_scene() {
     let occluders = Occluders::new(&cuboid(Vec3::ZERO, Vec3::ONE, 0.3, false)).unwrap();
     let mut random = Random(21);
