@@ -192,3 +192,59 @@ fn checks_find_what_elements_leave_out() {
     assert!(exact > 1.1 * as_whole, "{exact} {as_whole}");
     assert!((as_whole + left_out - exact).abs() < 0.03 * exact, "{as_whole} + {left_out} is not {exact}");
 }
+
+/// A floor on both sides of a wall, under a row of lamps on one side and of brighter ones on the
+/// other: what few looks have found lets the same number of rays find the light of the first with
+/// less noise.
+#[test]
+fn lamps_behind_a_wall_are_looked_at_less() {
+    let (side, lamps) = (16, 8);
+    let at = |k: usize| [(k % side) as f64 / 4.0 - 2.0, (k / side) as f64 / 4.0 - 2.0];
+    let tile = |k: usize| {
+        let [x, y] = at(k);
+        square([[x, y, 0.], [x + 0.25, y, 0.], [x + 0.25, y + 0.25, 0.], [x, y + 0.25, 0.]])
+    };
+    let lamp = |k: usize| {
+        let [x, y] = [if k % 2 == 0 { -1.5 } else { 1.3 }, (k / 2) as f64 - 1.8];
+        square([[x, y, 2.], [x, y + 0.2, 2.], [x + 0.2, y + 0.2, 2.], [x + 0.2, y, 2.]])
+    };
+    let wall = square([[0., -2., 0.], [0., 2., 0.], [0., 2., 2.2], [0., -2., 2.2]]);
+    let floor = side * side;
+    let mut patches: Vec<Patch> = (0..floor).map(tile).chain((0..lamps).map(lamp)).collect();
+    patches.extend([wall, wall.flipped()]);
+    let n = patches.len();
+    let family = |(k, &whole): (usize, &Patch)| Family { whole, parts: k..k + 1, stream: k as u32 };
+    let families: Vec<Family> = patches.iter().enumerate().map(family).collect();
+    let mut exitance = vec![0.0; n];
+    (0..lamps).for_each(|k| exitance[floor + k] = if k % 2 == 0 { 1.0 } else { 5.0 });
+    let scene = Enclosure::new(patches, 1, vec![0.0; n], exitance).unwrap();
+    let cast = |sampler: &RowSampler, stage: u32, count: u32| {
+        let mut rows = sampler.start(Looks::Checked(4), stage, vec![false; n]);
+        assert!(sampler.prolong(&mut rows, &vec![count; n], &Quiet));
+        rows
+    };
+    let mut sampler = RowSampler::new(&scene, &families, 1);
+    let exact = cast(&sampler, 0, 4096).lamplight()[0].clone();
+    let square_error = |rows: &Rows| -> f64 {
+        let found = &rows.lamplight()[0];
+        let dim = (0..floor).filter(|&k| at(k)[0] < 0.0);
+        dim.map(|k| (found.row(k)[0] - exact.row(k)[0]).powi(2)).sum()
+    };
+    let by_bounds = cast(&sampler, 1, 16);
+    let few = cast(&sampler, 2, 4);
+    sampler.learn(few);
+    let learned = cast(&sampler, 3, 16);
+    let ratio = square_error(&learned) / square_error(&by_bounds);
+    assert!(ratio < 0.5, "{ratio}");
+    // Every tile by itself, by what its replicates differ: no light is lost or found twice.
+    let many = cast(&sampler, 4, 256);
+    let replicates = many.direct_replicates();
+    let scores = (0..floor).map(|k| {
+        let means = replicates.each_ref().map(|y| y.row(k)[0]);
+        let mean = means.iter().sum::<f64>() / 4.0;
+        let square = means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / 12.0;
+        [(mean - exact.row(k)[0]).powi(2), square]
+    });
+    let [errors, squares] = scores.fold([0.0; 2], |[a, b], [x, y]| [a + x, b + y]);
+    assert!((0.3..2.0).contains(&(errors / squares)), "{errors} and {squares}");
+}

@@ -8,8 +8,8 @@
 //! ```
 //!
 //! over the balls (radii r) round both, and 0 where one is wholly behind the other. Lamps that are
-//! many are taken together where they are far away: from the root on, the part that may bring most,
-//! were all of it where its nearest lamp may be, is opened until that is little or there are
+//! many are taken together where they are far away: from the root on, parts that may bring much,
+//! were all of them where their nearest lamp may be, are opened until none does or there are
 //! [`MOST_PARTS`]; within a part, lamps are taken by power (B. Walter et al., *Lightcuts*, SIGGRAPH
 //! 2005, doi:10.1145/1186822.1073318). No lamp that may light the receiver has probability 0, so
 //! means stay unbiased. M is the mean exitance over the bands, W/m².
@@ -17,8 +17,6 @@
 use super::SurfaceDensity;
 use fredholm_mesh::{Patch, Vec3};
 use rayon::prelude::*;
-use std::cmp::Ordering;
-use std::collections::BinaryHeap;
 
 /// Parts of a cut at most.
 const MOST_PARTS: usize = 256;
@@ -82,6 +80,16 @@ impl Receiver {
         let radius = patch.corners().iter().map(|x| x.distance(centre)).fold(0.0, f64::max);
         Self { patch: *patch, centre, radius }
     }
+
+    /// The middle of it, m.
+    pub(super) fn centre(&self) -> Vec3 {
+        self.centre
+    }
+
+    /// The direction in which it faces.
+    pub(super) fn normal(&self) -> Vec3 {
+        self.patch.normal()
+    }
 }
 
 /// The parts of the tree that each of many receivers tells apart, and how likely they are.
@@ -93,11 +101,13 @@ pub struct Cuts {
     /// Probability of each part and those before it; in a list of its own, since all of a receiver
     /// are read to find one.
     ends: Vec<f32>,
+    /// Sum of the bounds of each receiver's parts, W/m² but for a factor that all have.
+    totals: Vec<f64>,
     /// Receivers that are so near a lamp that what its points bring varies without bound.
     near: Vec<bool>,
 }
 
-/// A node of the tree as a receiver sees it. That which may bring most comes first.
+/// A node of the tree as a receiver sees it.
 #[derive(Clone, Copy, Debug)]
 struct Seen {
     /// The same as `bound` were all of its lamps where the nearest may be.
@@ -108,25 +118,14 @@ struct Seen {
     node: usize,
 }
 
-impl Ord for Seen {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.most.total_cmp(&other.most).then(other.node.cmp(&self.node))
-    }
+/// What is at hand while a cut is made.
+#[derive(Default)]
+struct Lists {
+    parts: Vec<Seen>,
+    opened: Vec<Seen>,
+    /// What the parts that are to be opened may bring.
+    large: Vec<f64>,
 }
-
-impl PartialOrd for Seen {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Seen {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other).is_eq()
-    }
-}
-
-impl Eq for Seen {}
 
 /// The parts for one receiver.
 #[derive(Clone, Copy, Debug)]
@@ -135,11 +134,12 @@ pub struct Cut<'a> {
     ends: &'a [f32],
 }
 
+/// A part of a cut.
 #[derive(Clone, Copy, Debug)]
-struct Part {
-    node: u32,
+pub(super) struct Part {
+    pub(super) node: u32,
     /// Probability.
-    share: f32,
+    pub(super) share: f32,
 }
 
 impl Cuts {
@@ -154,6 +154,27 @@ impl Cuts {
     #[must_use]
     pub fn is_near(&self, receiver: usize) -> bool {
         self.near[receiver]
+    }
+
+    /// Sum of the bounds of a receiver's parts, W/m² but for a factor that all have.
+    #[must_use]
+    pub fn total(&self, receiver: usize) -> f64 {
+        self.totals[receiver]
+    }
+
+    /// The parts of a receiver, and the sums of their probabilities.
+    pub(super) fn of_mut(&mut self, receiver: usize) -> (&mut [Part], &mut [f32]) {
+        let range = self.starts[receiver]..self.starts[receiver + 1];
+        (&mut self.parts[range.clone()], &mut self.ends[range])
+    }
+}
+
+/// Adds up the probabilities of the parts of a receiver.
+pub(super) fn set_ends(parts: &[Part], ends: &mut [f32]) {
+    let mut sum = 0.0;
+    for (end, part) in ends.iter_mut().zip(parts) {
+        sum += part.share;
+        *end = sum;
     }
 }
 
@@ -188,55 +209,58 @@ impl LampTree {
     /// The parts that may light each of some receivers.
     #[must_use]
     pub fn cuts(&self, receivers: &[Receiver]) -> Cuts {
-        let found: Vec<(Vec<Part>, bool)> = receivers
+        let found: Vec<(Vec<Part>, f64, bool)> = receivers
             .par_iter()
-            .map_init(Default::default, |scratch, receiver| self.cut(receiver, scratch))
+            .map_init(Lists::default, |lists, receiver| self.cut(receiver, lists))
             .collect();
         let mut cuts = Cuts { starts: vec![0], ..Cuts::default() };
-        for (parts, near) in found {
-            let mut end = 0.0;
-            cuts.ends.extend(parts.iter().map(|part| {
-                end += part.share;
-                end
-            }));
+        for (parts, total, near) in found {
+            let begin = cuts.ends.len();
+            cuts.ends.resize(begin + parts.len(), 0.0);
+            set_ends(&parts, &mut cuts.ends[begin..]);
             cuts.parts.extend(parts);
             cuts.starts.push(cuts.parts.len());
+            cuts.totals.push(total);
             cuts.near.push(near);
         }
         cuts
     }
 
-    /// The parts for a receiver; whatever the lists for parts that may be opened and others hold is
-    /// thrown away.
-    fn cut(
-        &self,
-        receiver: &Receiver,
-        (open, parts): &mut (BinaryHeap<Seen>, Vec<Seen>),
-    ) -> (Vec<Part>, bool) {
+    /// The parts for a receiver, the sum of their bounds, and whether a lamp is near; what the lists
+    /// held is lost.
+    fn cut(&self, receiver: &Receiver, lists: &mut Lists) -> (Vec<Part>, f64, bool) {
+        let Lists { parts, opened, large } = lists;
         let part = |node: usize| Some(self.seen(node, receiver)).filter(|part| part.bound > 0.0);
-        open.clear();
         parts.clear();
-        open.extend((!self.nodes.is_empty()).then(|| part(0)).flatten());
-        let mut total = open.peek().map_or(0.0, |root| root.bound);
-        while open.len() + parts.len() < MOST_PARTS
-            && open.peek().is_some_and(|part| part.most > LEAST_OPENED * total)
-        {
-            let Some(largest) = open.pop() else { break };
-            let Some(second) = self.nodes[largest.node].second else {
-                parts.push(largest);
-                continue;
-            };
-            let halves = [part(largest.node + 1), part(second)];
-            total += halves.iter().flatten().map(|half| half.bound).sum::<f64>() - largest.bound;
-            // Two at once would have the heap made anew.
-            halves.into_iter().flatten().for_each(|half| open.push(half));
+        parts.extend((!self.nodes.is_empty()).then(|| part(0)).flatten());
+        let mut total: f64 = parts.iter().map(|part| part.bound).sum();
+        loop {
+            // All that may bring much by what is known of the sum are opened at once, in place, so
+            // that parts stay in the order of the tree.
+            let second = |part: &Seen| self.nodes[part.node].second;
+            large.clear();
+            large.extend(
+                parts
+                    .iter()
+                    .filter(|part| part.most > LEAST_OPENED * total && second(part).is_some())
+                    .map(|part| part.most),
+            );
+            large.sort_unstable_by(|a, b| b.total_cmp(a));
+            large.truncate(MOST_PARTS.saturating_sub(parts.len()));
+            let Some(&least) = large.last() else { break };
+            opened.clear();
+            for &whole in parts.iter() {
+                match second(&whole).filter(|_| whole.most >= least) {
+                    Some(second) => opened.extend([part(whole.node + 1), part(second)].into_iter().flatten()),
+                    None => opened.push(whole),
+                }
+            }
+            std::mem::swap(parts, opened);
+            total = parts.iter().map(|part| part.bound).sum();
         }
-        parts.extend(open.drain());
-        parts.sort_unstable_by_key(|part| part.node);
-        let total: f64 = parts.iter().map(|part| part.bound).sum();
         let part =
             |&Seen { node, bound, .. }: &Seen| Part { node: node as u32, share: (bound / total) as f32 };
-        (parts.iter().map(part).collect(), self.is_near(receiver))
+        (parts.iter().map(part).collect(), total, self.is_near(receiver))
     }
 
     /// Whether any lamp that may light a receiver lies within a few radii.
@@ -260,30 +284,32 @@ impl LampTree {
     }
 
     fn seen(&self, node: usize, receiver: &Receiver) -> Seen {
-        let Node { centre, radius, power, turned, first, count, .. } = self.nodes[node];
-        let between = centre - receiver.centre;
+        let Node { centre, radius, power, turned, first, count, .. } = &self.nodes[node];
+        let nothing = Seen { most: 0.0, bound: 0.0, node };
+        let between = *centre - receiver.centre;
         let (square, reach) = (between.length_squared(), radius + receiver.radius);
-        let distance = square.sqrt();
-        let cosine = |height: f64| {
-            let most = height + reach;
-            if most <= LEAST_HEIGHT * reach {
-                0.0
-            } else {
-                (most / distance.max(most)).max(f64::MIN_POSITIVE)
-            }
-        };
         let normal = receiver.patch.normal();
+        // Heights of the centre of each over the other, along its normal. Where a ball reaches below
+        // the plane, corners tell whether all of it lies there.
+        let (height, lamp_height) = (normal.dot(between), turned.map(|(turned, _)| -turned.dot(between)));
+        if height.min(lamp_height.unwrap_or(height)) + reach <= LEAST_HEIGHT * reach {
+            return nothing;
+        }
         let is_above = |outline: &Patch, normal: Vec3, plane: f64| {
             outline.corners().iter().any(|&x| normal.dot(x) - plane > LEAST_HEIGHT * reach)
         };
-        let lit = turned.map_or(1.0, |(turned, lowest)| {
-            if is_above(&receiver.patch, turned, lowest) { cosine(-turned.dot(between)) } else { 0.0 }
+        let is_behind = turned.zip(lamp_height).is_some_and(|((turned, lowest), height)| {
+            height < reach && !is_above(&receiver.patch, turned, lowest)
         });
-        let alone = (count == 1).then(|| &self.lamps[first].outline);
-        if lit == 0.0 || alone.is_some_and(|lamp| !is_above(lamp, normal, normal.dot(receiver.centre))) {
-            return Seen { most: 0.0, bound: 0.0, node };
+        let is_lamp_behind = *count == 1
+            && height < reach
+            && !is_above(&self.lamps[*first].outline, normal, normal.dot(receiver.centre));
+        if is_behind || is_lamp_behind {
+            return nothing;
         }
-        let bound = power * cosine(normal.dot(between)) * lit / square.max(reach * reach);
+        let distance = square.sqrt();
+        let cosine = |height: f64| ((height + reach) / distance.max(height + reach)).max(f64::MIN_POSITIVE);
+        let bound = power * cosine(height) * lamp_height.map_or(1.0, cosine) / square.max(reach * reach);
         // The nearest lamp of a node that reaches about the receiver brings far more.
         let ratio = distance.max(reach) / (distance - reach).max(NEAREST * reach);
         Seen { most: bound * ratio * ratio, bound, node }
@@ -309,6 +335,27 @@ impl LampTree {
         let lamp = &self.lamps[node.first + place];
         let density = self.density((node, share), node.first + place) / f64::from(whole);
         Some((lamp.patch, lamp.surface.sample(numbers), density))
+    }
+
+    /// The place of a lamp in the order of the tree; none of other patches.
+    pub(super) fn place(&self, patch: usize) -> Option<u32> {
+        self.place_of[patch]
+    }
+
+    /// Number of nodes.
+    pub(super) fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Number of lamps.
+    pub(super) fn lamps(&self) -> usize {
+        self.lamps.len()
+    }
+
+    /// The places of the lamps of a node: the first, and the one after the last.
+    pub(super) fn places(&self, node: u32) -> (u32, u32) {
+        let Node { first, count, .. } = self.nodes[node as usize];
+        (first as u32, (first + count) as u32)
     }
 
     /// The patches that may light the receiver of a cut.

@@ -27,6 +27,7 @@ pub use sampler::RowSampler;
 use std::ops::Range;
 
 use crate::Enclosure;
+use crate::density::Look;
 use fredholm_linop::{LinearOperator, MultiVector};
 use fredholm_mesh::Patch;
 use rayon::prelude::*;
@@ -98,6 +99,8 @@ pub struct Rows {
     /// The same of the looks that only check.
     checked: Vec<f64>,
     batches: Vec<Batch>,
+    /// Looks at lamps, as long as the sampler may learn from them.
+    looked: Vec<Look>,
 }
 
 /// Rays cast at one time.

@@ -1,6 +1,6 @@
 //! The rays themselves: where they go, and the looks at lamps on their way.
 
-use crate::density::{Cut, Cuts, LampTree, Receiver};
+use crate::density::{Cut, Cuts, LampTree, Look, Receiver};
 use crate::points::{Draw, Key, PointSet, Samples};
 use crate::surfaces::Meets;
 use crate::{Enclosure, Site};
@@ -28,6 +28,8 @@ pub struct RowSampler<'a> {
     lamps: LampTree,
     /// What each family sees of them.
     cuts: Cuts,
+    /// Whether these know what looks have found.
+    has_learned: bool,
     seed: u64,
 }
 
@@ -59,6 +61,7 @@ struct Cast {
     walks: Vec<usize>,
     walked: Vec<u32>,
     weights: Vec<f64>,
+    looked: Vec<Look>,
 }
 
 impl<'a> RowSampler<'a> {
@@ -71,8 +74,7 @@ impl<'a> RowSampler<'a> {
             |patch: usize| scene.exitance(patch).iter().sum::<f64>() / bands * scene.patches()[patch].area();
         let power: Vec<f64> = (0..scene.len()).map(power).collect();
         let lamps = LampTree::new(scene.patches(), &power);
-        let receivers: Vec<Receiver> = families.iter().map(|family| Receiver::of(&family.whole)).collect();
-        let cuts = lamps.cuts(&receivers);
+        let cuts = lamps.cuts(&receivers(families));
         let numbered = families.iter().zip(0..);
         let family_of = numbered.flat_map(|(family, k)| std::iter::repeat_n(k, family.parts.len()));
         let end = |(part, family): (usize, u32)| End {
@@ -82,7 +84,14 @@ impl<'a> RowSampler<'a> {
             is_near_lamp: cuts.is_near(family as usize),
         };
         let ends = family_of.enumerate().map(end).collect();
-        Self { scene, families, ends, lamps, cuts, seed }
+        Self { scene, families, ends, lamps, cuts, has_learned: false, seed }
+    }
+
+    /// Chooses lamps from here on by what the looks of rows have found. These rows end there: what
+    /// has found much or little may not be drawn again for that reason.
+    pub fn learn(&mut self, rows: Rows) {
+        self.cuts.learn(&self.lamps, &receivers(self.families), &rows.looked);
+        self.has_learned = true;
     }
 
     /// No rows yet. The same stage gives the same rows; rows of other stages are independent. Rays
@@ -103,6 +112,7 @@ impl<'a> RowSampler<'a> {
             checked: if looks.is_checked() { sums.clone() } else { Vec::new() },
             reflected: sums,
             batches: Vec::new(),
+            looked: Vec::new(),
         }
     }
 
@@ -193,6 +203,7 @@ impl<'a> RowSampler<'a> {
             batch.met.extend_from_slice(&cast.met);
             batch.walked.extend_from_slice(&cast.walked);
             batch.weights.extend_from_slice(&cast.weights);
+            rows.looked.extend_from_slice(&cast.looked);
         }
         rows.batches.push(batch);
         true
@@ -226,14 +237,16 @@ impl<'a> RowSampler<'a> {
                     let mut draw = samples.draw(ray);
                     let from = self.scene.point(family.parts.start + part as usize, draw.pair());
                     weights.before.fill(1.0);
-                    let met = self.step(from, &mut draw, &weights.before, &mut cast.direct[sum..]);
+                    let sums = (&*weights.before, &mut cast.direct[sum..]);
+                    let met = self.step(from, &mut draw, sums, &mut cast.looked);
                     cast.met.push(match met {
                         Meets::Nothing => NOTHING,
                         Meets::Back => BACK,
                         Meets::Lit(site) if self.goes_on(from, site, near) => {
                             let reflected = &mut cast.reflected[sum..];
                             let way = (from, site, near);
-                            if let Some(end) = self.walk(way, looks, &mut draw, (&mut weights, reflected)) {
+                            let sums = (&mut weights, reflected, &mut cast.looked);
+                            if let Some(end) = self.walk(way, looks, &mut draw, sums) {
                                 cast.walked.push(end.patch as u32);
                                 cast.weights.extend_from_slice(&weights.before);
                             }
@@ -242,10 +255,12 @@ impl<'a> RowSampler<'a> {
                         Meets::Lit(site) => {
                             if looks == Looks::Everywhere {
                                 let rho = self.scene.reflectance(site.patch);
-                                self.look(site, &mut draw, unshared, (rho, &mut cast.reflected[sum..]));
+                                let sums = (rho, &mut cast.reflected[sum..]);
+                                self.look(site, &mut draw, unshared, sums, &mut cast.looked);
                             } else if looks.checks((ray - begin) as usize) {
                                 let rho = self.scene.reflectance(site.patch);
-                                self.look(site, &mut draw, unshared, (rho, &mut cast.checked[sum..]));
+                                let sums = (rho, &mut cast.checked[sum..]);
+                                self.look(site, &mut draw, unshared, sums, &mut cast.looked);
                             }
                             site.patch as u32
                         }
@@ -269,7 +284,13 @@ impl<'a> RowSampler<'a> {
     }
 
     /// A ray and a look at a lamp from one site: what the ray meets. What both bring is added.
-    fn step(&self, from: Site, draw: &mut Draw, weight: &[f64], sum: &mut [f64]) -> Meets {
+    fn step(
+        &self,
+        from: Site,
+        draw: &mut Draw,
+        (weight, sum): (&[f64], &mut [f64]),
+        looked: &mut Vec<Look>,
+    ) -> Meets {
         let cut = self.cut(from.patch);
         let met = self.scene.bounce_to(from, draw.pair());
         if let Meets::Lit(site) = met
@@ -279,24 +300,35 @@ impl<'a> RowSampler<'a> {
             let looked_at = self.lamps.pdf(cut, site.patch);
             add(sum, weight, kernel / (looked_at + kernel), self.scene.exitance(site.patch));
         }
-        self.look(from, draw, shared, (weight, sum));
+        self.look(from, draw, shared, (weight, sum), looked);
         met
     }
 
-    /// Looks at a point of a lamp.
+    /// Looks at a point of a lamp, and keeps in mind what it has found as long as there is something
+    /// to learn.
     fn look(
         &self,
         from: Site,
         draw: &mut Draw,
         share: impl Fn(f64, f64) -> f64,
         (weight, sum): (&[f64], &mut [f64]),
+        looked: &mut Vec<Look>,
     ) {
         let (choice, numbers) = (draw.single(), draw.pair());
         if let Some((patch, point, density)) = self.lamps.sample(self.cut(from.patch), choice, numbers) {
             let lamp = Site { patch, point };
             let kernel = self.scene.kernel(from, lamp);
-            if kernel > 0.0 && self.scene.sees(from, lamp) {
-                add(sum, weight, share(kernel, density), self.scene.exitance(patch));
+            let exitance = self.scene.exitance(patch);
+            let is_seen = kernel > 0.0 && self.scene.sees(from, lamp);
+            let share = if is_seen { share(kernel, density) } else { 0.0 };
+            if is_seen {
+                add(sum, weight, share, exitance);
+            }
+            if !self.has_learned {
+                let receiver = self.ends[from.patch].family;
+                let mean = exitance.iter().sum::<f64>() / exitance.len() as f64;
+                let found = (share * mean / self.cuts.total(receiver as usize)) as f32;
+                looked.push(Look { receiver, patch: patch as u32, found });
             }
         }
     }
@@ -309,7 +341,7 @@ impl<'a> RowSampler<'a> {
         (mut from, mut at, near): (Site, Site, f64),
         looks: Looks,
         draw: &mut Draw,
-        (weights, sum): (&mut Weights, &mut [f64]),
+        (weights, sum, looked): (&mut Weights, &mut [f64], &mut Vec<Look>),
     ) -> Option<Site> {
         let Weights { before, after } = weights;
         for reflections in 0.. {
@@ -322,19 +354,23 @@ impl<'a> RowSampler<'a> {
             after.iter_mut().zip(&*before).zip(rho).for_each(|((out, w), rho)| *out = w * rho / survival);
             if !self.goes_on(from, at, near) {
                 if looks == Looks::Everywhere {
-                    self.look(at, draw, unshared, (after, sum));
+                    self.look(at, draw, unshared, (after, sum), looked);
                 }
                 for weight in before.iter_mut() {
                     *weight /= survival;
                 }
                 return Some(at);
             }
-            let next = self.step(at, draw, after, sum).lit()?;
+            let next = self.step(at, draw, (after, sum), looked).lit()?;
             before.copy_from_slice(after);
             (from, at) = (at, next);
         }
         None
     }
+}
+
+fn receivers(families: &[Family]) -> Vec<Receiver> {
+    families.iter().map(|family| Receiver::of(&family.whole)).collect()
 }
 
 /// Adds what comes from a lamp.

@@ -4,8 +4,9 @@
 //! ([`fredholm_montecarlo::rows`]), and the equation is solved with these rows; what stands between
 //! surfaces costs nothing but the time that rays take to find it. There are three steps:
 //!
-//! 1. Few rays tell how much the rows of each element vary, and whether the light of lamps may be
-//!    reflected by elements as wholes: else rays look at lamps from where they end.
+//! 1. Few rays tell how much the rows of each element vary, which lamps are worth a look, and whether
+//!    the light of lamps may be reflected by elements as wholes: else rays look at lamps from where
+//!    they end.
 //! 2. Rays are shared out so that the error in the L2 norm over the faces, by chance and by the
 //!    elements together, is what is asked for.
 //! 3. All rows are prolonged until it is, and then those of large faces that are still uncertain;
@@ -53,8 +54,9 @@ const OF_ELEMENTS: f64 = 0.6;
 const MOST_OF_ELEMENTS: f64 = 0.85;
 /// Error by chance over what the elements leave to it, up to which it is.
 const MOST_NOISE_OVER_WHAT_IS_LEFT: f64 = 1.3;
-/// Error by chance over what is left to it, so that the first rows are likely to be enough.
-const AIM: f64 = 0.95;
+/// Error by chance over what is left to it, so that the first rows are likely to be enough: lamps
+/// are chosen better than in the first step, which tells what rows vary by.
+const AIM: f64 = 1.0;
 /// Standard deviation of what a ray brings over its mean, about; share of all rays that the first
 /// step takes; and its rays of a part and replicate at most.
 const DEVIATION: f64 = 0.8;
@@ -244,11 +246,11 @@ impl Run<'_> {
         let few = OF_FIRST_STEP * (DEVIATION / self.accuracy).powi(2) / 64.0;
         let few = 1 << few.clamp(1.0, MOST_OF_FIRST_STEP).log2().round() as u32;
         let first = ground.at_least(RAYS_OF_A_LARGE_FACE, &vec![few; ground.families.len()]);
-        let sampler = RowSampler::new(&ground.lit, &ground.families, SEED);
+        let mut sampler = RowSampler::new(&ground.lit, &ground.families, SEED);
         let (mut budget, mut known) = (None, Known::default());
         loop {
             let looks = if *everywhere { Looks::Everywhere } else { Looks::Checked(CHECKED) };
-            match self.step((ground, &sampler), &mut known, (looks, &first), budget.take())? {
+            match self.step((ground, &mut sampler), &mut known, (looks, &first), budget.take())? {
                 None => return Ok(None),
                 Some(Next::Cast(next)) => budget = Some(next),
                 Some(Next::Look) => (*everywhere, budget) = (true, None),
@@ -262,7 +264,7 @@ impl Run<'_> {
     /// it is done.
     fn step(
         &mut self,
-        (ground, sampler): (&Ground, &RowSampler),
+        (ground, sampler): (&Ground, &mut RowSampler),
         known: &mut Known,
         (looks, first): (Looks, &[u32]),
         mut budget: Option<Budget>,
@@ -325,7 +327,12 @@ impl Run<'_> {
                 return Ok(None);
             }
             match next {
-                ControlFlow::Break(next) => return Ok(Some(next)),
+                ControlFlow::Break(next) => {
+                    if matches!(next, Next::Cast(_)) {
+                        sampler.learn(rows);
+                    }
+                    return Ok(Some(next));
+                }
                 ControlFlow::Continue(more) if more == counts => return Ok(None),
                 ControlFlow::Continue(more) => counts = more,
             }
