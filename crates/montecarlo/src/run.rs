@@ -59,6 +59,11 @@ impl Groups {
         Ok(self)
     }
 
+    /// Area of the group that a patch belongs to on the first level, m².
+    pub(crate) fn area_of(&self, patch: usize) -> f64 {
+        self.levels[0].areas[self.levels[0].of[patch]]
+    }
+
     /// Areas of the groups of all levels, m².
     fn areas(&self) -> Vec<f64> {
         self.levels.iter().flat_map(|level| level.areas.iter().copied()).collect()

@@ -7,9 +7,13 @@
 mod common;
 
 use common::{SQUARES, furnace, method, run, samples, single, sphere, squares, whole};
+use fredholm_linop::Quiet;
 use fredholm_mesh::{Patch, Vec3};
 use fredholm_montecarlo::light::pixels::{PixelSampling, pixel};
-use fredholm_montecarlo::light::{Control, METHODS, PIXEL_METHODS, PathTracing, Switches, point_estimator};
+use fredholm_montecarlo::light::{
+    Control, Estimator, METHODS, PIXEL_METHODS, PathTracing, ResidualShooting, Switches, point_estimator,
+};
+use fredholm_montecarlo::points::PointSet;
 use fredholm_montecarlo::statistics::{Suite, normal_score};
 use fredholm_montecarlo::{Enclosure, Groups};
 
@@ -130,27 +134,26 @@ fn a_control_variate_changes_no_mean_and_takes_noise_away() {
     let scene = squares(0.8);
     let below = SQUARES / (1.0 - 0.64 * SQUARES * SQUARES);
     let control = Control::new(&scene, vec![below, 0.8 * SQUARES * below], false).unwrap();
-    let traced = |estimator: &PathTracing, seed| {
+    let traced = |estimator: &dyn Estimator, seed| {
         let state = run(&scene, estimator, single(&scene), (seed, 64, 4000));
         [state.groups.mean().to_vec(), state.groups.standard_errors()]
     };
     let plain = PathTracing::continuous(Switches::default());
     let [known, error] = traced(&plain, 1);
-    for paired in [false, true] {
-        let controlled = PathTracing::continuous(Switches::default()).with_control(control.clone());
-        let [found, less] = traced(&controlled.paired(paired), 2);
-        for square in 0..2 {
-            let z = (found[square] - known[square]) / error[square].hypot(less[square]);
-            println!(
-                "square {square}: {:.6} ± {:.1e} with, {:.6} ± {:.1e} without, z = {z:+.2}",
-                found[square], less[square], known[square], error[square]
-            );
-            assert!(z.abs() < 3.5, "{z}");
-            assert!(less[square] < 0.75 * error[square], "{} {}", less[square], error[square]);
-        }
-        // The upper one gets its light by way of the lower one, more of it than constants say.
-        assert!(found[1] > 0.8 * SQUARES * below + 3.5 * less[1]);
+    let shooting = ResidualShooting::new(&scene, control, Switches::default());
+    let shooting = shooting.shared_out(&scene, &single(&scene), (2, PointSet::Sobol), &Quiet);
+    let [found, less] = traced(&shooting, 2);
+    for square in 0..2 {
+        let z = (found[square] - known[square]) / error[square].hypot(less[square]);
+        println!(
+            "square {square}: {:.6} ± {:.1e} with, {:.6} ± {:.1e} without, z = {z:+.2}",
+            found[square], less[square], known[square], error[square]
+        );
+        assert!(z.abs() < 3.5, "{z}");
+        assert!(less[square] < 0.75 * error[square], "{} {}", less[square], error[square]);
     }
+    // The upper one gets its light by way of the lower one, more of it than constants say.
+    assert!(found[1] > 0.8 * SQUARES * below + 3.5 * less[1]);
 }
 
 /// What lies on a patch: its mean is taken from the paths, whatever the control variate says of it,
@@ -165,9 +168,9 @@ fn a_control_variate_decides_nothing_where_another_patch_lies() {
     let scene = Enclosure::new(patches, 1, vec![0.8, 0.8, 0.0], vec![0.0, 1.0, 0.0]).unwrap();
     let below = 0.5 * SQUARES;
     let control = Control::new(&scene, vec![below, 0.8 * SQUARES * below, 0.0], false).unwrap();
-    let controlled = PathTracing::continuous(Switches::default()).with_control(control).paired(true);
+    let controlled = ResidualShooting::new(&scene, control, Switches::default());
     let plain = PathTracing::continuous(Switches::default());
-    let traced = |estimator: &PathTracing, seed| {
+    let traced = |estimator: &dyn Estimator, seed| {
         let state = run(&scene, estimator, single(&scene), (seed, 64, 2000));
         (state.groups.mean()[0], state.groups.standard_errors()[0])
     };

@@ -198,14 +198,14 @@ fn checks_find_what_elements_leave_out() {
 /// less noise.
 #[test]
 fn lamps_behind_a_wall_are_looked_at_less() {
-    let (side, lamps) = (16, 8);
+    let (side, lamps) = (16_usize, 8_usize);
     let at = |k: usize| [(k % side) as f64 / 4.0 - 2.0, (k / side) as f64 / 4.0 - 2.0];
     let tile = |k: usize| {
         let [x, y] = at(k);
         square([[x, y, 0.], [x + 0.25, y, 0.], [x + 0.25, y + 0.25, 0.], [x, y + 0.25, 0.]])
     };
     let lamp = |k: usize| {
-        let [x, y] = [if k % 2 == 0 { -1.5 } else { 1.3 }, (k / 2) as f64 - 1.8];
+        let [x, y] = [if k.is_multiple_of(2) { -1.5 } else { 1.3 }, (k / 2) as f64 - 1.8];
         square([[x, y, 2.], [x, y + 0.2, 2.], [x + 0.2, y + 0.2, 2.], [x + 0.2, y, 2.]])
     };
     let wall = square([[0., -2., 0.], [0., 2., 0.], [0., 2., 2.2], [0., -2., 2.2]]);
@@ -216,7 +216,7 @@ fn lamps_behind_a_wall_are_looked_at_less() {
     let family = |(k, &whole): (usize, &Patch)| Family { whole, parts: k..k + 1, stream: k as u32 };
     let families: Vec<Family> = patches.iter().enumerate().map(family).collect();
     let mut exitance = vec![0.0; n];
-    (0..lamps).for_each(|k| exitance[floor + k] = if k % 2 == 0 { 1.0 } else { 5.0 });
+    (0..lamps).for_each(|k| exitance[floor + k] = if k.is_multiple_of(2) { 1.0 } else { 5.0 });
     let scene = Enclosure::new(patches, 1, vec![0.0; n], exitance).unwrap();
     let cast = |sampler: &RowSampler, stage: u32, count: u32| {
         let mut rows = sampler.start(Looks::Checked(4), stage, vec![false; n]);
@@ -232,7 +232,7 @@ fn lamps_behind_a_wall_are_looked_at_less() {
     };
     let by_bounds = cast(&sampler, 1, 16);
     let few = cast(&sampler, 2, 4);
-    sampler.learn(few);
+    sampler.learn(&few);
     let learned = cast(&sampler, 3, 16);
     let ratio = square_error(&learned) / square_error(&by_bounds);
     assert!(ratio < 0.5, "{ratio}");

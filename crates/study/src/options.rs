@@ -345,6 +345,9 @@ pub(crate) struct SolveSettings {
     /// Whether the page is left out.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub(crate) no_report: bool,
+    /// Whether nobody asks what the elements leave out.
+    #[serde(skip)]
+    pub(crate) no_mesh_error: bool,
     /// Further files with the field.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) also: Vec<FieldFile>,
@@ -391,12 +394,20 @@ impl SolveSettings {
             discontinuity: false,
             no_pictures: false,
             no_report: false,
+            no_mesh_error: false,
             also: Vec::new(),
             tolerance: stop.tolerance.or(scene.tolerance).unwrap_or(TOLERANCE),
             max_iterations: iterations.unwrap_or(MAX_ITERATIONS),
             output: String::new(),
             recorded: Recorded::new(),
         }
+    }
+
+    /// Those of a solution that random paths go on from: what its elements leave out is what the
+    /// paths find.
+    pub(crate) fn of_control(problem: ProblemSettings, scene: &SolveDefaults) -> Self {
+        let settings = Self::new(problem, StopOptions::default(), scene);
+        Self { no_report: true, no_mesh_error: true, ..settings }
     }
 
     /// Number of pictures that are asked for besides the usual ones, and whether their light is

@@ -135,7 +135,7 @@ fn radiosity<S: Storage>(
     stages.begin_saving()?;
     worth_saving(&solved.1)?;
     stages.run("errors", || {
-        let solution = assess(problem, &radiosity, &assembled, solved, watcher)?;
+        let solution = assess((problem, options), &radiosity, &assembled, solved, watcher)?;
         if options.no_report {
             return Ok(solution);
         }
@@ -157,7 +157,7 @@ pub(crate) fn form_factors<S: Storage>(problem: &Problem, watcher: Watcher) -> R
 
 /// What follows from a solution, and how far it is to be trusted.
 fn assess<S: Storage>(
-    problem: &Problem,
+    (problem, options): (&Problem, &SolveSettings),
     radiosity: &Radiosity,
     assembled: &Assembled<S>,
     (x, report): (MultiVector<f64>, Report),
@@ -165,7 +165,11 @@ fn assess<S: Storage>(
 ) -> Result<Solution, Error> {
     let matrix = &assembled.matrix;
     let means = radiosity.means(matrix, &x);
-    let mesh_error = mesh_error::estimate(problem, radiosity, assembled, (&x, &report), watcher)?;
+    let mesh_error = if options.no_mesh_error {
+        None
+    } else {
+        mesh_error::estimate(problem, radiosity, assembled, (&x, &report), watcher)?
+    };
     let closure = radiosity.closure(matrix);
     let energy = radiosity.energy(&x, &means, &closure);
     let row_error = assembled.error.iter().zip(problem.mesh.patches()).map(|(e, p)| e / p.area()).collect();

@@ -15,8 +15,8 @@ Examples:
   fredholm reference room.toml --to 0.1% -o reference --form-factor-tolerance 1e-7
   fredholm reference room.toml --size 96x64 --spp 65536
 
-The irradiance of every face by path tracing, with the deterministic solution as control
-variate: what remains are the standard error and the error of the form factors, both stated. And
+The irradiance of every face: the deterministic solution, and what it has missed, carried by
+particles. What remains are the standard error and the error of the form factors, both stated. And
 the radiosity of every pixel of the camera by path tracing alone, with its standard error. Without
 --size the picture is that of the scene, made smaller to 64 pixels along its longer side. Where
 the scene has no camera one is chosen that takes in all of it. Other programs show the backs of

@@ -84,8 +84,12 @@ impl Found {
 /// those of each kind begin and those of the last end.
 fn sorted(kinds: &[u32], count: usize) -> (Vec<usize>, Vec<usize>) {
     let mut starts = vec![0; count + 1];
-    kinds.iter().for_each(|&kind| starts[kind as usize + 1] += 1);
-    (0..count).for_each(|kind| starts[kind + 1] += starts[kind]);
+    for &kind in kinds {
+        starts[kind as usize + 1] += 1;
+    }
+    for kind in 0..count {
+        starts[kind + 1] += starts[kind];
+    }
     let (mut next, mut order) = (starts.clone(), vec![0; kinds.len()]);
     for (thing, &kind) in kinds.iter().enumerate() {
         order[next[kind as usize]] = thing;
@@ -148,7 +152,9 @@ impl Groups {
     /// apart until few looks are left to each.
     fn new(receivers: &[Receiver], looks: &[Look]) -> Self {
         let mut count = vec![0_usize; receivers.len()];
-        looks.iter().for_each(|look| count[look.receiver as usize] += 1);
+        for look in looks {
+            count[look.receiver as usize] += 1;
+        }
         let side = |receiver: usize| {
             let normal = receivers[receiver].normal().to_array();
             let axis = (0..3).max_by(|&a, &b| normal[a].abs().total_cmp(&normal[b].abs())).unwrap_or(0);
@@ -170,7 +176,9 @@ impl Groups {
             }
             if fits(LOOKS_OF_A_SMALL_GROUP) {
                 let small = groups.large_of.len() as u32;
-                members.iter().for_each(|&receiver| groups.small_of[receiver] = small);
+                for &receiver in &*members {
+                    groups.small_of[receiver] = small;
+                }
                 groups.large_of.push(large_groups - 1);
                 continue;
             }

@@ -28,6 +28,7 @@ mod path;
 mod photon;
 pub mod pixels;
 mod registry;
+mod residual;
 
 pub use bidirectional::Bidirectional;
 pub use jacobi::StochasticJacobi;
@@ -35,6 +36,7 @@ pub use particles::ParticleTracing;
 pub use path::{Control, PathTracing};
 pub use photon::PhotonMap;
 pub use registry::{METHODS, PIXEL_METHODS, estimator, point_estimator};
+pub use residual::ResidualShooting;
 
 use crate::points::{Draw, Key, PointSet, Samples};
 use crate::{Enclosure, Site};
@@ -65,7 +67,7 @@ impl Switches {
     /// Whether a path goes on, with the probability `survival`; its weight grows accordingly.
     fn goes_on(self, survival: f64, draw: &mut Draw<'_>, weight: &mut [f64], start: f64) -> bool {
         if !self.roulette {
-            return weight.iter().any(|&w| w > LEAST_WEIGHT * start);
+            return weight.iter().any(|&w| w.abs() > LEAST_WEIGHT * start);
         }
         if draw.single() >= survival {
             return false;

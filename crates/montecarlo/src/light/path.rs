@@ -7,13 +7,13 @@
 //! doi:10.1145/218380.218498). Random walks on a Fredholm equation: J. T. Kajiya, SIGGRAPH 1986,
 //! doi:10.1145/15922.15902; patch-wise: M. Sbert, Comput. Graph. 17 (1993) 635.
 //!
-//! *Control variate.* With known irradiances Ẽ of patches, whose mean after one application of the
-//! operator is Ẽ again, E_i = Ẽ_i + E[Σ_{k≥1} W_k (D(y_k) + ρ Ẽ(y_{k+1}) − Ẽ(y_k))]: only what the
-//! discretisation missed is sampled. And since Ẽ is the mean of D + ρ Ẽ over the patch, it may be
-//! replaced by the same estimate at another point z_k of the patch, even in it, with the same lamp
-//! and direction: what both have in common, which is most of the noise, is gone. The result is as
-//! exact as the form factors behind Ẽ. Of patches on which another one lies the mean is not known:
-//! rays that start under it meet what no light comes from. They are estimated without it.
+//! *Control variate*, of gathering walks. With known irradiances Ẽ of patches, whose mean after one
+//! application of the operator is Ẽ again, E_i = Ẽ_i + E[Σ_{k≥1} W_k (D(y_k) + ρ Ẽ(y_{k+1}) − Ẽ(y_k))]:
+//! the result is as exact as the form factors behind Ẽ. Of patches on which another one lies the mean
+//! is not known: rays that start under it meet what no light comes from. They are estimated without
+//! it. What a solution misses of the continuous equation is shot: [`ResidualShooting`].
+//!
+//! [`ResidualShooting`]: super::ResidualShooting
 
 use super::{Batch, Estimator, PointEstimator, Switches, Work, add, gather, scale};
 use crate::density::{Cosine, DirectionDensity};
@@ -27,7 +27,6 @@ pub struct PathTracing {
     switches: Switches,
     patchwise: bool,
     control: Option<Control>,
-    paired: bool,
     directions: Box<dyn DirectionDensity>,
 }
 
@@ -63,8 +62,18 @@ impl Control {
     }
 
     /// Irradiances of a patch, means over the part that can be met, W/m².
-    fn met_at(&self, scene: &Enclosure, patch: usize) -> &[f64] {
+    pub(super) fn met_at(&self, scene: &Enclosure, patch: usize) -> &[f64] {
         &self.met[patch * scene.bands()..(patch + 1) * scene.bands()]
+    }
+
+    /// Irradiances of a patch, means over the whole, W/m².
+    pub(super) fn whole_at(&self, scene: &Enclosure, patch: usize) -> &[f64] {
+        &self.whole[patch * scene.bands()..(patch + 1) * scene.bands()]
+    }
+
+    /// Whether the mean of D + ρ Ẽ over a patch is Ẽ.
+    pub(super) fn knows(&self, patch: usize) -> bool {
+        self.known[patch]
     }
 }
 
@@ -73,7 +82,7 @@ impl PathTracing {
     #[must_use]
     pub fn continuous(switches: Switches) -> Self {
         let directions = Box::new(Cosine);
-        Self { switches, patchwise: false, control: None, paired: false, directions }
+        Self { switches, patchwise: false, control: None, directions }
     }
 
     /// The gathering walk: goes on from a new point of the patch that it met.
@@ -86,20 +95,6 @@ impl PathTracing {
     #[must_use]
     pub fn with_control(self, control: Control) -> Self {
         Self { control: Some(control), ..self }
-    }
-
-    /// The same, every vertex compared with another point of its patch where its mean is known, or
-    /// none. It takes twice the rays, and pays where patches are small beside what light varies
-    /// over. For continuous paths with a control variate.
-    #[must_use]
-    pub fn paired(self, paired: bool) -> Self {
-        Self { paired, ..self }
-    }
-
-    /// Whether vertices are compared in pairs.
-    #[must_use]
-    pub fn is_paired(&self) -> bool {
-        self.paired
     }
 
     /// The same with another density of directions than the cosine.
@@ -157,21 +152,13 @@ impl PathTracing {
         draw: &mut Draw<'_>,
         out: &mut [f64],
     ) -> Option<Site> {
-        let twin = self.twin(scene, step, draw);
         let scored = self.scores(step);
         let numbers = Numbers {
             lamp: (scored && self.switches.next_event).then(|| draw.pair()),
             direction: draw.pair(),
         };
-        match (twin, &self.control) {
-            (Some(twin), _) => {
-                let weight = Weight { of: &*step.weight, share: -1.0 };
-                step.rays += self.leave(scene, (twin, step.done, scored), &numbers, &weight, out).rays;
-            }
-            (None, Some(control)) if step.done > 0 => {
-                add(out, step.weight, control.met_at(scene, step.at.patch), -1.0);
-            }
-            (None, _) => {}
+        if let Some(control) = self.control.as_ref().filter(|_| step.done > 0) {
+            add(out, step.weight, control.met_at(scene, step.at.patch), -1.0);
         }
         let weight = Weight { of: &*step.weight, share: 1.0 };
         let left = self.leave(scene, (step.at, step.done, scored), &numbers, &weight, out);
@@ -181,21 +168,14 @@ impl PathTracing {
         self.switches.goes_on(scene.survival(next.patch), draw, step.weight, 1.0).then_some(next)
     }
 
-    /// Another point of the patch of a vertex; none at the first vertex, and where its mean is not
-    /// known.
-    fn twin(&self, scene: &Enclosure, step: &Step<'_>, draw: &mut Draw<'_>) -> Option<Site> {
-        let paired = self.paired && !self.patchwise && step.done > 0 && self.knows(step.at.patch);
-        paired.then(|| scene.point(step.at.patch, draw.pair()))
-    }
-
     /// Whether a control variate knows the mean of a patch.
     fn knows(&self, patch: usize) -> bool {
-        self.control.as_ref().is_some_and(|control| control.known[patch])
+        self.control.as_ref().is_some_and(|control| control.knows(patch))
     }
 
     /// What is scored at a vertex and where a ray from it arrives: D and, with a control variate,
     /// ρ Ẽ.
-    fn leave(
+    pub(super) fn leave(
         &self,
         scene: &Enclosure,
         (at, done, scored): (Site, u32, bool),
@@ -237,16 +217,16 @@ impl PathTracing {
 }
 
 /// What is drawn at a vertex.
-struct Numbers {
+pub(super) struct Numbers {
     /// The point of a lamp, where one is looked at.
-    lamp: Option<[f64; 2]>,
-    direction: [f64; 2],
+    pub(super) lamp: Option<[f64; 2]>,
+    pub(super) direction: [f64; 2],
 }
 
 /// What a vertex weighs, band by band and in all of them.
-struct Weight<'a> {
-    of: &'a [f64],
-    share: f64,
+pub(super) struct Weight<'a> {
+    pub(super) of: &'a [f64],
+    pub(super) share: f64,
 }
 
 impl Weight<'_> {
@@ -256,9 +236,9 @@ impl Weight<'_> {
 }
 
 /// The rays that a vertex took, and what one met that reflects it, with its factor.
-struct Left {
-    rays: u64,
-    reflected: Option<(Site, f64)>,
+pub(super) struct Left {
+    pub(super) rays: u64,
+    pub(super) reflected: Option<(Site, f64)>,
 }
 
 /// Where a path is, how often it was reflected, and what it weighs.
@@ -272,9 +252,8 @@ pub(super) struct Step<'a> {
 impl PointEstimator for PathTracing {
     fn irradiance(&self, scene: &Enclosure, at: Site, draw: &mut Draw<'_>, out: &mut [f64]) -> u64 {
         let mut weight = vec![1.0; scene.bands()];
-        if let Some(control) = self.control.as_ref().filter(|control| control.known[at.patch]) {
-            let bands = scene.bands();
-            add(out, &weight, &control.whole[at.patch * bands..(at.patch + 1) * bands], 1.0);
+        if let Some(control) = self.control.as_ref().filter(|control| control.knows(at.patch)) {
+            add(out, &weight, control.whole_at(scene, at.patch), 1.0);
         }
         let mut step = Step { at, done: 0, rays: 0, weight: &mut weight };
         while let Some(next) = self.step(scene, &mut step, draw, out) {

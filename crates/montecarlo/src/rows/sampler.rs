@@ -87,9 +87,9 @@ impl<'a> RowSampler<'a> {
         Self { scene, families, ends, lamps, cuts, has_learned: false, seed }
     }
 
-    /// Chooses lamps from here on by what the looks of rows have found. These rows end there: what
-    /// has found much or little may not be drawn again for that reason.
-    pub fn learn(&mut self, rows: Rows) {
+    /// Chooses lamps from here on by what the looks of rows have found. These rows may not grow any
+    /// more: what they have found would decide what they find.
+    pub fn learn(&mut self, rows: &Rows) {
         self.cuts.learn(&self.lamps, &receivers(self.families), &rows.looked);
         self.has_learned = true;
     }

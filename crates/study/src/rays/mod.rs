@@ -329,7 +329,7 @@ impl Run<'_> {
             match next {
                 ControlFlow::Break(next) => {
                     if matches!(next, Next::Cast(_)) {
-                        sampler.learn(rows);
+                        sampler.learn(&rows);
                     }
                     return Ok(Some(next));
                 }

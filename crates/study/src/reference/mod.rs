@@ -12,14 +12,14 @@ use fredholm_scene::{Camera, ExportFormat, Scene};
 
 use crate::error::{Error, ErrorKind};
 use crate::exchange::{camera, outline, write};
-use crate::options::{ProblemOptions, SceneSource, SolveSettings, StopOptions};
+use crate::options::{ProblemOptions, SceneSource, SolveSettings};
 use crate::problem::{Problem, pictures, with_results};
 use crate::solution::{Solution, compute};
 use crate::solve::{report_failure, title, view_camera};
 use crate::stages::Stages;
 use crate::stochastic::{
-    PathOptions, PixelTracer, TraceStop, Tracer, control, controlled, enclosure, expected_error, face_means,
-    faces, with_tracing,
+    PathOptions, PixelTracer, TraceStop, Tracer, control, controlled, controlling, enclosure, expected_error,
+    face_means, faces, with_tracing,
 };
 
 /// The script that renders the scene with Mitsuba and judges it, and its name.
@@ -98,10 +98,10 @@ fn reference_scene(
     let camera = sized(camera(&problem.scene)?, asked.size)?;
     let solution = compute(&problem, &settings, &mut stages)?;
     let scene = enclosure(&problem.scene, &problem.mesh)?;
-    let (state, paired) = traced(asked, &problem, (&scene, &solution), &mut stages)?;
+    let state = traced(asked, &problem, (&scene, &solution), &mut stages)?;
     let sampling = sampling(asked);
     let pixels = pictured(asked, &scene, (&camera, sampling), &mut stages)?;
-    let table = table(&problem, &solution, (&state, paired));
+    let table = table(&problem, &solution, &state);
     let chosen = problem.scene.camera().is_none_or(|own| own.eye != camera.eye);
     let seen = seen(&camera, chosen, sampling, &pixels);
     if pixels.covered.iter().all(|&share| share == 0.0) {
@@ -204,37 +204,34 @@ fn load(
         with_results(with_tracing(plan, scene, n), scene, n, (pictures, width * height * pixel(scene)))
     };
     let asked = &asked.problem;
-    let mut problem = Problem::load(source, asked, &more, stages)?;
+    let mut problem = controlling(source, asked, &more, stages)?;
     let tolerance = asked.form_factor_tolerance.or(problem.scene.solve().form_factor_tolerance);
     problem.options.form_factor_tolerance = tolerance.unwrap_or(FORM_FACTORS);
-    let (settings, scene) = (problem.options.clone(), problem.scene.solve());
-    let settings = SolveSettings::new(settings, StopOptions::default(), scene);
+    let settings = SolveSettings::of_control(problem.options.clone(), problem.scene.solve());
     Ok((problem, settings))
 }
 
-/// The irradiances, and whether the control variate stands for them at every vertex of a path.
+/// The irradiances.
 fn traced(
     asked: &ReferenceOptions,
     problem: &Problem,
     (scene, solution): (&Enclosure, &Solution),
     stages: &mut Stages,
-) -> Result<(State, bool), Error> {
+) -> Result<State, Error> {
     let known = control(scene, solution, false)?;
     let (watch, groups) = (stages.watch, faces(&problem.mesh, scene)?);
-    let method = stages.run("trial", || controlled(scene, known, &groups, &asked.paths, watch))?;
+    let method = stages.run("trial", || Ok(controlled(scene, known, &groups, &asked.paths, watch)))?;
     let stop = asked.stop.or_to(USUAL_ERROR);
     let tracer = Tracer::new(scene, &method, groups, &asked.paths, &stop)?;
     let mut state = tracer.start();
     stages.run("tracing", || tracer.run(&mut state, watch))?;
-    if stages.is_cancelled() { Err(Error::cancelled()) } else { Ok((state, method.is_paired())) }
+    if stages.is_cancelled() { Err(Error::cancelled()) } else { Ok(state) }
 }
 
-fn table(problem: &Problem, solution: &Solution, (state, paired): (&State, bool)) -> ReferenceTable {
+fn table(problem: &Problem, solution: &Solution, state: &State) -> ReferenceTable {
     let (mesh, scene) = (&problem.mesh, &problem.scene);
     let mut factors = expected_error(problem, solution, false);
-    if paired {
-        reflect(&mut factors, problem);
-    }
+    reflect(&mut factors, problem);
     let error = state.groups.standard_errors().iter().zip(&factors).map(|(s, f)| s.hypot(*f)).collect();
     let material = |face: usize| &scene.materials()[mesh.surfaces()[mesh.faces()[face].surface].material];
     let all = || 0..mesh.faces().len();
@@ -283,7 +280,7 @@ fn record(
         scene: problem.scene.path().display().to_string(),
         scene_sha256: problem.scene.sha256().to_owned(),
         conventions: conventions.map(str::to_owned).to_vec(),
-        method: "path tracing, the deterministic solution as control variate".to_owned(),
+        method: "particles that carry what the deterministic solution has missed".to_owned(),
         bands: problem.scene.bands().to_vec(),
         faces: problem.mesh.faces().len(),
         relative_error: relative_l2(&areas, &table.irradiance, &table.error).unwrap_or(0.0),

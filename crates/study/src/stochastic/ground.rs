@@ -11,7 +11,7 @@ use fredholm_scene::Scene;
 use super::tracer::failure;
 use crate::error::Error;
 use crate::memory::{self, Plan};
-use crate::options::{ProblemOptions, SceneSource};
+use crate::options::{ProblemOptions, SceneSource, USUAL_DISCRETISATION};
 use crate::prediction::BYTES_OF_AN_ELEMENT;
 use crate::problem::{Problem, check, occluders, prepare, scene_failure};
 use crate::solution::Solution;
@@ -93,6 +93,22 @@ pub(crate) fn enclosure(scene: &Scene, mesh: &Mesh) -> Result<Enclosure, Error> 
 pub(crate) fn faces(mesh: &Mesh, enclosure: &Enclosure) -> Result<Groups, Error> {
     let of = (0..mesh.len()).map(|leaf| mesh.face_of(leaf)).collect();
     Groups::new(enclosure, of, mesh.faces().len()).map_err(failure)
+}
+
+/// A problem whose solution is to be a control variate, for constants on the elements whatever the
+/// scene asks for: of them alone it is known that they are the means of what they send.
+pub(crate) fn controlling(
+    source: &SceneSource,
+    asked: &ProblemOptions,
+    more: &dyn Fn(Plan, &Scene, usize) -> Plan,
+    stages: &mut Stages,
+) -> Result<Problem, Error> {
+    let usual = || USUAL_DISCRETISATION.to_owned();
+    let discretisation = Some(asked.discretisation.clone().unwrap_or_else(usual));
+    let asked = ProblemOptions { discretisation, ..asked.clone() };
+    let problem = Problem::load(source, &asked, more, stages)?;
+    problem.require_radiosity("a control variate")?;
+    Ok(problem)
 }
 
 /// A deterministic solution as a control variate.

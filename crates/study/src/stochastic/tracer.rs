@@ -1,9 +1,7 @@
 //! One traced run, with its progress.
 
-use std::ops::ControlFlow;
-
 use fredholm_linop::Watch;
-use fredholm_montecarlo::light::{Control, Estimator, PathTracing};
+use fredholm_montecarlo::light::{Control, Estimator, ResidualShooting};
 use fredholm_montecarlo::{Enclosure, Groups, MonteCarloError, State, Stop, Tracing};
 
 use super::options::{PathOptions, TraceStop};
@@ -20,11 +18,6 @@ const SHOT_SAMPLES: u32 = 8;
 /// Fewest and most samples of a batch that shoots.
 const FEWEST_SAMPLES: u32 = 1 << 12;
 const MOST_SAMPLES: u32 = 1 << 20;
-/// Batches of the trial that tells whether vertices are to be compared in pairs, and what keeps
-/// their random numbers apart from those of the run.
-const TRIAL_BATCHES: u64 = 8;
-const TRIAL_SEED: u64 = 0x5bd1_e995_0000_0000;
-
 /// A method on a scene, and when it ends.
 pub(crate) struct Tracer<'a> {
     tracing: Tracing<'a>,
@@ -73,37 +66,16 @@ fn batch(scene: &Enclosure, estimator: &dyn Estimator) -> u32 {
     samples.clamp(FEWEST_SAMPLES, MOST_SAMPLES).next_power_of_two()
 }
 
-/// Paths with a control variate; in pairs where a trial needs fewer rays for the same error so.
+/// Particles that carry what a solution has missed, for the means of groups.
 pub(crate) fn controlled(
     scene: &Enclosure,
     known: Control,
     groups: &Groups,
     paths: &PathOptions,
     watch: &dyn Watch,
-) -> Result<PathTracing, Error> {
-    let apart = PathOptions { seed: paths.seed ^ TRIAL_SEED, ..*paths };
-    let rays = |method: &PathTracing| {
-        let tracer = Tracer::new(scene, method, groups.clone(), &apart, &TraceStop::default())?;
-        let trial = Tracer { stop: Stop { batches: Some(TRIAL_BATCHES), ..Stop::default() }, ..tracer };
-        let mut state = trial.start();
-        trial.run(&mut state, &Silent(watch))?;
-        // Errors fall with the root of the work.
-        Ok::<f64, Error>(state.relative_error().powi(2) * state.rays as f64)
-    };
-    let method = PathTracing::continuous(paths.switches()).with_control(known).paired(true);
-    let in_pairs = rays(&method)?;
-    let method = method.paired(false);
-    let single = rays(&method)?;
-    Ok(method.paired(in_pairs < single))
-}
-
-/// Passes on whether to go on, and nothing else: the share of a part is not that of the whole.
-pub(crate) struct Silent<'a>(pub(crate) &'a dyn Watch);
-
-impl Watch for Silent<'_> {
-    fn go_on(&self) -> ControlFlow<()> {
-        self.0.go_on()
-    }
+) -> ResidualShooting {
+    let shooting = ResidualShooting::new(scene, known, paths.switches());
+    shooting.shared_out(scene, groups, (paths.seed, paths.point_set()), watch)
 }
 
 /// What is wrong with a traced scene is wrong with the input.

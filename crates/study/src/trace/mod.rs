@@ -14,14 +14,13 @@ use serde::Serialize;
 use self::files::Estimates;
 use self::saved::Origin;
 use crate::error::{Error, ErrorKind};
-use crate::options::{ProblemOptions, SceneSource, SolveSettings, StopOptions};
-use crate::problem::Problem;
+use crate::options::{ProblemOptions, SceneSource, SolveSettings};
 use crate::solution::{Solution, compute};
 use crate::solve::Ended;
 use crate::stages::Stages;
 use crate::stochastic::{
-    FIELD_METHODS, Ground, PathOptions, TraceStop, Tracer, control, controlled, enclosure, faces,
-    with_tracing,
+    FIELD_METHODS, Ground, PathOptions, TraceStop, Tracer, control, controlled, controlling, enclosure,
+    faces, with_tracing,
 };
 use crate::threads;
 
@@ -197,14 +196,13 @@ fn method(
     if patchwise {
         return Ok(Box::new(PathTracing::patchwise(asked.paths.switches()).with_control(known)));
     }
-    Ok(Box::new(controlled(scene, known, groups, &asked.paths, stages.watch)?))
+    Ok(Box::new(controlled(scene, known, groups, &asked.paths, stages.watch)))
 }
 
 fn solution(source: &SceneSource, asked: &TraceOptions, stages: &Stages) -> Result<Solution, Error> {
     let mut stages = stages.part("control");
-    let problem = Problem::load(source, &asked.problem, &with_tracing, &mut stages)?;
-    let (settings, scene) = (problem.options.clone(), problem.scene.solve());
-    let settings = SolveSettings::new(settings, StopOptions::default(), scene);
+    let problem = controlling(source, &asked.problem, &with_tracing, &mut stages)?;
+    let settings = SolveSettings::of_control(problem.options.clone(), problem.scene.solve());
     compute(&problem, &settings, &mut stages)
 }
 
